@@ -1,0 +1,104 @@
+/*
+   Contact - frictional interfaces in steady sliding, linearised: pairs of facing nodes with gap and slip operators.
+
+   Pair p joins a slave node s and the point of the master surface that it faces, which moves as u_m = sum_i w_i u_i of the
+   corners of one master facet: one node of weight 1 where the meshes match, up to four where they do not. n is the master's
+   outward normal, t the direction of the slave's sliding velocity relative to the master, b = n x t. For displacements u (m)
+      (N u)_p = n . (u_m - u_s)     closing of the gap
+      (T u)_p = t . (u_m - u_s)     slip
+      (B u)_p = b . (u_m - u_s)     transverse slip
+   Penalty (seed paper, eq. 1): internal forces k_n N'N u - mu k_n T'N u, that is along n on the master k_n (N u), along t on
+   the master -mu k_n (N u), and the opposite on the slave: friction drags the master along t.
+   Constraint: N u = 0 with force directions N' - mu T'.
+*/
+#pragma once
+
+#include <squeal/model.h>
+
+typedef struct _p_Contact *Contact;
+
+typedef enum {
+  CONTACT_PENALTY,
+  CONTACT_CONSTRAINT
+} ContactLaw;
+
+/* One pair; the array of pairs is distributed, each pair lives on the rank that owns its slave node */
+typedef struct {
+  PetscInt  interface;              /* index of the interface */
+  PetscInt  n_master;               /* corners of the master facet that take part, 1 to 4 */
+  PetscReal weight[4];              /* their weights, sum 1 */
+  PetscInt  master[4][3], slave[3]; /* global unknowns x, y, z; -1 when fixed by a support */
+  PetscReal x[3];                   /* position of the slave, m */
+  PetscReal n[3], t[3], b[3];       /* unit vectors */
+  PetscReal area;                   /* tributary area of the slave node, m^2 */
+  PetscReal force;                  /* normal force carried in the sliding state, N, compressive >= 0; 0 when not given */
+  PetscReal speed;                  /* sliding speed, m/s; 0 when not given */
+} ContactPair;
+
+/* Parameters of an interface; SI units */
+typedef struct {
+  char      *name, *slave, *master; /* surfaces */
+  ContactLaw law;
+  PetscReal  mu;                    /* friction coefficient */
+  PetscReal  mu_slope;              /* d mu / d speed, s/m */
+  PetscReal  kn;                    /* stiffness per pair, N/m */
+  PetscReal  tolerance;             /* pairs farther apart than this are no pairs, m */
+  PetscBool  damping;               /* friction damping: mu N0 / v across the slip, mu_slope N0 along it */
+  PetscReal  force;                 /* total normal force in the sliding state, N */
+  PetscReal  speed;                 /* sliding speed, m/s */
+  PetscReal  slip[3];               /* direction, or 0,0,0 when it comes from the rotation */
+  PetscReal  rotation[3];           /* angular velocity of the master relative to the slave, rad/s */
+  PetscReal  center[3];             /* a point of its axis, m */
+} ContactInterface;
+
+/*@ ContactCreate - makes the interfaces of a model; call before ModelSetUp(). Collective. @*/
+PetscErrorCode ContactCreate(Model model, Contact *contact);
+
+/*@
+   ContactSetFromOptions - reads the interfaces and asks the model to keep their surfaces on one rank. Collective.
+
+   Options Database Keys:
++  -contacts <names>              - interfaces; each name is the prefix of the following, shown for a contact named `contact`
+.  -contact_surfaces <slave,master> - named surfaces
+.  -contact_law <penalty|constraint> - k_n per pair, or k_n to infinity
+.  -contact_mu <0>                - friction coefficient
+.  -contact_mu_slope <0>          - its slope with the sliding speed, s/m
+.  -contact_kn <N/m>              - penalty stiffness per pair
+.  -contact_slip <x,y,z>          - direction of the slave's velocity relative to the master
+.  -contact_rotation <x,y,z>      - or: angular velocity of the master relative to the slave, rad/s
+.  -contact_center <0,0,0>        - a point of the axis of rotation, m
+.  -contact_speed <m/s>           - sliding speed where only the direction is given
+.  -contact_force <N>             - total normal force in the sliding state, shared by area
+.  -contact_friction_damping <bool> - add mu N0 / v across the slip and mu_slope N0 along it
+-  -contact_tolerance <m>         - largest distance of the two nodes of a pair
+@*/
+PetscErrorCode ContactSetFromOptions(Contact contact);
+
+/*@
+   ContactSetUp - pairs facing nodes by position, across ranks. Collective; call after ModelSetUp().
+
+   Errors: PETSC_ERR_USER_INPUT when a slave node finds no master node within the tolerance: names the interface, the position
+   of the node and the distance to the nearest candidate; also when the slip direction vanishes in the surface.
+@*/
+PetscErrorCode ContactSetUp(Contact contact);
+
+/*@ ContactGetInterfaces - parameters (borrowed). Not collective. @*/
+PetscErrorCode ContactGetInterfaces(Contact contact, PetscInt *n, const ContactInterface **interfaces);
+
+/*@ ContactGetPairs - pairs of this rank, and their number over all ranks (borrowed). Not collective. @*/
+PetscErrorCode ContactGetPairs(Contact contact, PetscInt *n_local, PetscInt *n_global, const ContactPair **pairs);
+
+/*@
+   ContactCreateOperators - N, T and B of one interface as sparse matrices of shape [its pairs][unknowns]. Collective.
+   The caller destroys them; pass NULL for what is not needed.
+@*/
+PetscErrorCode ContactCreateOperators(Contact contact, PetscInt interface, Mat *N, Mat *T, Mat *B);
+
+/*@ ContactGetCentre - mean position of all pairs, m; found is false without contact. Collective. @*/
+PetscErrorCode ContactGetCentre(Contact contact, PetscReal centre[3], PetscBool *found);
+
+/*@ ContactView - interfaces in words. Collective. @*/
+PetscErrorCode ContactView(Contact contact, PetscViewer viewer);
+
+/*@ ContactDestroy - frees the interfaces. Collective. @*/
+PetscErrorCode ContactDestroy(Contact *contact);

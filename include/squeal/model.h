@@ -1,0 +1,116 @@
+/*
+   Model - the bodies: one DMPlex of named parts, their materials, essential supports, grounded springs and dashpots.
+
+   The mesh comes from the built-in generator (-model_source rig) or from a Gmsh file (-model_source file). Every named
+   set of the scene is a DMLabel of that name with value 1: parts on cells, surfaces on faces, points on vertices.
+   The DM's local section holds three displacements (m) per vertex in the order x, y, z; displacements fixed by a support
+   are constrained, hence absent from global vectors and matrices.
+*/
+#pragma once
+
+#include <petscdmplex.h>
+#include <squeal/element.h>
+
+typedef struct _p_Model *Model;
+
+/* Material of one body; SI units */
+typedef struct {
+  char      *name;
+  PetscReal  young;   /* Young's modulus, Pa, > 0 */
+  PetscReal  poisson; /* Poisson's ratio, in (-1, 0.5) */
+  PetscReal  density; /* kg/m^3, > 0 */
+  PetscReal  alpha;   /* Rayleigh factor of the mass, 1/s: C = alpha M + beta K */
+  PetscReal  beta;    /* Rayleigh factor of the stiffness, s */
+} Part;
+
+/* Grounded spring (N/m) or dashpot (N s/m) at every node of a set, per node and direction */
+typedef struct {
+  char      *name, *set;
+  PetscReal  value[3];
+} Grounded;
+
+/*@
+   ModelCreate - makes an empty model. Collective.
+@*/
+PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
+
+/*@
+   ModelSetFromOptions - reads the scene: mesh source, parts and materials, supports, springs, dashpots. Collective.
+
+   Options Database Keys:
++  -model_source <rig|file> - where the mesh comes from
+.  -model_mesh <file>       - Gmsh file, format 2.2 or 4.1
+.  -model_element <incompatible|full> - element formulation
+.  -parts, -supports, -springs, -dashpots <names> - lists; each name is the prefix of its own options
+-  -rig_*                   - dimensions (m) and counts of the built-in disc, pad and beam
+
+   Errors: PETSC_ERR_USER_INPUT for a missing or invalid value, naming option, value and what is valid.
+@*/
+PetscErrorCode ModelSetFromOptions(Model model);
+
+/*@
+   ModelKeepTogether - asks the partition to leave all cells that touch the faces of a set on one rank; call before
+   ModelSetUp(). All sets named by any call end on the same rank. Not collective, same call on all ranks.
+@*/
+PetscErrorCode ModelKeepTogether(Model model, const char set[]);
+
+/*@
+   ModelSetUp - generates or reads the mesh, checks its elements, partitions it, and lays out the unknowns. Collective.
+
+   Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_USER_INPUT for a part or set that the mesh does not name, PETSC_ERR_USER_INPUT
+   for an inverted or zero-volume element (number, part and centre are named).
+@*/
+PetscErrorCode ModelSetUp(Model model);
+
+/*@ ModelGetComm - the ranks that share the model. Not collective. @*/
+PetscErrorCode ModelGetComm(Model model, MPI_Comm *comm);
+
+/*@ ModelGetDM - the mesh with its layout of unknowns (borrowed). Not collective. @*/
+PetscErrorCode ModelGetDM(Model model, DM *dm);
+
+/*@ ModelGetParts - the bodies (borrowed). Not collective. @*/
+PetscErrorCode ModelGetParts(Model model, PetscInt *n_parts, const Part **parts);
+
+/*@ ModelGetCellParts - index of the part of each local cell, shape [number of local cells] (borrowed). Not collective. @*/
+PetscErrorCode ModelGetCellParts(Model model, const PetscInt **cell_part);
+
+/*@ ModelGetElement - formulation of the cells. Not collective. @*/
+PetscErrorCode ModelGetElement(Model model, const Element **element);
+
+/*@ ModelGetCell - corners of local cell c in the element's node order: vertices [n_nodes] (points of the DM) and
+    coordinates [n_nodes][3] (m). Not collective. @*/
+PetscErrorCode ModelGetCell(Model model, PetscInt c, PetscInt vertices[], PetscReal coordinates[]);
+
+/*@ ModelGetUnknowns - global number of each displacement of each local vertex, shape [vEnd - vStart][3] in the order of the
+    DM's vertices; -1 where a support fixes it (borrowed). Not collective. @*/
+PetscErrorCode ModelGetUnknowns(Model model, const PetscInt **unknowns);
+
+/*@ ModelGetSprings - grounded springs (borrowed). Not collective. @*/
+PetscErrorCode ModelGetSprings(Model model, PetscInt *n, const Grounded **springs);
+
+/*@ ModelGetDashpots - grounded dashpots (borrowed). Not collective. @*/
+PetscErrorCode ModelGetDashpots(Model model, PetscInt *n, const Grounded **dashpots);
+
+/*@ ModelGetSetVertices - local vertices (points of the DM, ascending, ghosts included) of a named set. Collective.
+    Errors: PETSC_ERR_USER_INPUT when no rank has the set; the message lists the sets of the mesh. @*/
+PetscErrorCode ModelGetSetVertices(Model model, const char set[], IS *vertices);
+
+/*@ ModelGetOwnedVertices - as ModelGetSetVertices(), without ghosts: each vertex of the set on exactly one rank. Collective. @*/
+PetscErrorCode ModelGetOwnedVertices(Model model, const char set[], IS *vertices);
+
+/*@ ModelGetSetFaces - quadrilaterals of a surface set on this rank: corners [n][4] (points of the DM), counter-clockwise seen
+    from outside the body; each face is on exactly one rank. Collective. The caller frees them. @*/
+PetscErrorCode ModelGetSetFaces(Model model, const char set[], PetscInt *n, PetscInt **corners);
+
+/*@ ModelGetSetNormals - for each local vertex, shape [vEnd - vStart][3], the outward normal of a surface set times the vertex's
+    share of its area (m^2), complete on every rank that has the vertex. Collective. The caller frees it. @*/
+PetscErrorCode ModelGetSetNormals(Model model, const char set[], PetscReal **area_normals);
+
+/*@ ModelGetCoordinates - of the local vertices, shape [vEnd - vStart][3], m (borrowed). Not collective. @*/
+PetscErrorCode ModelGetCoordinates(Model model, const PetscReal **coordinates);
+
+/*@ ModelView - prints in words what the scene needs: counts, parts, supports, springs. Collective. @*/
+PetscErrorCode ModelView(Model model, PetscViewer viewer);
+
+/*@ ModelDestroy - frees the model. Collective. @*/
+PetscErrorCode ModelDestroy(Model *model);

@@ -1,0 +1,68 @@
+/*
+   Modes - eigenvalues lambda = sigma + i omega (rad/s) of (lambda^2 M + lambda C + K) x = 0 with their right and left vectors:
+
+      undamped symmetric   K x = kappa M x, kappa = -lambda^2          EPS GHEP,  LDL' of K - s M
+      undamped, friction   the same, K unsymmetric                     EPS GNHEP, LU
+      damped               the quadratic problem                       PEP TOAR,  LU of K + s C + s^2 M
+
+   Left vectors solve the transposed problem with the transposed factors, from a start vector of their own, so that the two
+   spectra are found independently.
+*/
+#pragma once
+
+#include <squeal/operators.h>
+#include <squeal/results.h>
+
+typedef struct _p_Modes *Modes;
+
+/* One eigenvalue of the upper half plane (omega >= 0) and its errors */
+typedef struct {
+  PetscReal sigma, omega;   /* rad/s; sigma > 0 is unstable */
+  PetscReal backward_error; /* |Q(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|), Frobenius norms */
+  PetscReal condition;      /* 2 |lambda| |x|_M |y|_M / |y'(2 lambda M + C) x|: 1 for real modes, infinite at a defective pair */
+  PetscReal error;          /* first-order error of lambda from left and right vectors, |y'Q(lambda)x| / |y'Q'(lambda)x|, rad/s */
+  PetscBool unstable;       /* sigma exceeds its error */
+  PetscBool rigid;          /* zero within its error */
+  char      label[32];
+} Mode;
+
+/*@ ModesCreate - makes a solver. Collective. @*/
+PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes);
+
+/*@ ModesSetOperators - the system to solve (referenced until ModesDestroy()). Collective. @*/
+PetscErrorCode ModesSetOperators(Modes modes, Operators operators);
+
+/*@
+   ModesSetFromOptions - reads what to compute. Collective.
+
+   Options Database Keys:
++  -modes_band <f1,f2>       - all eigenvalues with frequency in this band, Hz
+.  -modes_target <Hz>        - without a band: the -modes_count nearest to this frequency
+.  -modes_count <20>         - how many
+.  -modes_left <true>        - compute left vectors (condition and error need them)
+-  -modes_disc <disc>        - part whose modes are labelled by nodal circles and diameters
+   The solvers take -eps_*, -pep_*, -st_*.
+@*/
+PetscErrorCode ModesSetFromOptions(Modes modes);
+
+/*@ ModesSolve - computes eigenvalues, vectors, errors and labels, and checks that none is missing. Collective. @*/
+PetscErrorCode ModesSolve(Modes modes);
+
+/*@ ModesGet - the modes in order of frequency (borrowed). Not collective. @*/
+PetscErrorCode ModesGet(Modes modes, PetscInt *n, const Mode **mode);
+
+/*@ ModesGetVectors - right (xr + i xi) and left (yr + i yi) vectors of mode i in all unknowns, |x|_M = |y|_M = 1 (borrowed;
+    xi, yi are NULL for a real vector, yr for a mode without left vector). Not collective. @*/
+PetscErrorCode ModesGetVectors(Modes modes, PetscInt i, Vec *xr, Vec *xi, Vec *yr, Vec *yi);
+
+/*@ ModesGetCompleteness - one line that says how it was checked that no mode is missing (borrowed). Not collective. @*/
+PetscErrorCode ModesGetCompleteness(Modes modes, const char **line);
+
+/*@ ModesView - the table of modes for people. Collective. @*/
+PetscErrorCode ModesView(Modes modes, PetscViewer viewer);
+
+/*@ ModesWrite - modes.csv and the shapes. Collective. @*/
+PetscErrorCode ModesWrite(Modes modes, Results results);
+
+/*@ ModesDestroy - frees the solver. Collective. @*/
+PetscErrorCode ModesDestroy(Modes *modes);

@@ -1,0 +1,36 @@
+/*
+   Options - what PETSc's options do not offer: lists of names that become prefixes, and errors for unknown names.
+*/
+#pragma once
+
+#include <petscsys.h>
+
+/*@
+   OptionsGetNames - reads a list of names, each of which becomes the prefix of its own options. Collective.
+
+   Input Parameters:
++  option - e.g. "-parts"
+.  help   - one line
+.  initial - comma separated default, "" for none
+-  max    - most names
+   Output Parameters:
++  n      - number of names
+-  names  - array [max] to fill; free each with PetscFree()
+
+   Errors: PETSC_ERR_USER_INPUT for a name that is no identifier or stands twice.
+@*/
+PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], const char initial[], PetscInt max,
+                               PetscInt *n, char *names[]);
+
+/*@
+   OptionsCheckUnknown - raises an error for an option that nobody read and that is not PETSc's or SLEPc's, naming the nearest
+   valid one. Collective; call when every room has read its options.
+
+   Input Parameters:
++  read_again - reads all options of all rooms on objects of its own, so that the valid names can be listed
+-  ctx        - its context
+@*/
+PetscErrorCode OptionsCheckUnknown(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx);
+
+/*@ OptionsWarnUnused - one line on stderr for each option that nobody used until now. Collective. @*/
+PetscErrorCode OptionsWarnUnused(MPI_Comm comm);

@@ -1,0 +1,215 @@
+/*
+   Contact: interfaces from the options, sparse gap and slip operators from the pairs.
+*/
+#include "contactimpl.h"
+#include <squeal/options.h>
+
+PetscErrorCode ContactCreate(Model model, Contact *contact)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, contact));
+  (*contact)->model = model;
+  PetscCall(ModelGetComm(model, &(*contact)->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Reads a vector of three, when given */
+static PetscErrorCode VectorFromOptions(PetscOptionItems *PetscOptionsObject, const char option[], const char help[], PetscReal v[3])
+{
+  PetscInt  n = 3;
+  PetscBool set;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsRealArray(option, help, NULL, v, &n, &set));
+  PetscCheck(!set || n == 3, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT, "-%s%s has %" PetscInt_FMT " values; give three: x,y,z",
+             PetscOptionsObject->prefix, option + 1, n);
+  PetscFunctionReturn(0);
+}
+
+/* Parameters of one interface, whose name is set */
+static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c)
+{
+  static const char *const laws[] = {"penalty", "constraint"};
+  char     *surfaces[2] = {NULL, NULL}, prefix[128], title[160];
+  PetscInt  n = 2, law = CONTACT_PENALTY;
+  PetscBool set;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", c->name));
+  PetscCall(PetscSNPrintf(title, sizeof(title), "Contact %s", c->name));
+  PetscOptionsBegin(comm, prefix, title, NULL);
+  PetscCall(PetscOptionsStringArray("-surfaces", "slave,master: named surfaces (required)", NULL, surfaces, &n, &set));
+  PetscCall(PetscOptionsEList("-law", "k_n per pair, or the exact constraint", NULL, laws, 2, laws[0], &law, NULL));
+  PetscCall(PetscOptionsReal("-mu", "friction coefficient", NULL, c->mu, &c->mu, NULL));
+  PetscCall(PetscOptionsReal("-mu_slope", "its slope with the sliding speed, s/m", NULL, c->mu_slope, &c->mu_slope, NULL));
+  PetscCall(PetscOptionsReal("-kn", "normal stiffness per pair, N/m (penalty)", NULL, c->kn, &c->kn, NULL));
+  PetscCall(PetscOptionsReal("-tolerance", "largest distance of a pair, m", NULL, c->tolerance, &c->tolerance, NULL));
+  PetscCall(PetscOptionsReal("-force", "total normal force in the sliding state, N", NULL, c->force, &c->force, NULL));
+  PetscCall(PetscOptionsReal("-speed", "sliding speed, m/s", NULL, c->speed, &c->speed, NULL));
+  PetscCall(PetscOptionsBool("-friction_damping", "damping mu N/v across the slip, mu_slope N along it", NULL, c->damping,
+                             &c->damping, NULL));
+  PetscCall(VectorFromOptions(PetscOptionsObject, "-slip", "direction of the slave's velocity relative to the master", c->slip));
+  PetscCall(VectorFromOptions(PetscOptionsObject, "-rotation", "or: angular velocity of the master, rad/s", c->rotation));
+  PetscCall(VectorFromOptions(PetscOptionsObject, "-center", "a point of its axis, m", c->center));
+  PetscOptionsEnd();
+  PetscCheck(!set || n == 2, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces has %" PetscInt_FMT " names; give two: slave,master", c->name, n);
+  c->law    = (ContactLaw)law;
+  c->slave  = surfaces[0];
+  c->master = surfaces[1];
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for parameters that make no sense */
+static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(c->slave && c->master, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces must be given: slave,master", c->name);
+  PetscCheck(PetscIsNormalReal(c->mu) || c->mu == 0, comm, PETSC_ERR_USER_INPUT, "-%s_mu %g must be a number", c->name, (double)c->mu);
+  PetscCheck(c->law == CONTACT_CONSTRAINT || c->kn > 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_kn %g must be given and positive (N/m), or choose -%s_law constraint", c->name, (double)c->kn, c->name);
+  PetscCheck(c->tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-%s_tolerance %g must be positive (m)", c->name, (double)c->tolerance);
+  PetscCheck(c->force >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_force %g must not be negative (N)", c->name, (double)c->force);
+  PetscCheck(!c->damping || c->force > 0, comm, PETSC_ERR_USER_INPUT, "-%s_friction_damping needs a positive -%s_force (N)", c->name,
+             c->name);
+  PetscCheck(!c->damping || c->speed > 0 || c->rotation[0] != 0 || c->rotation[1] != 0 || c->rotation[2] != 0, comm,
+             PETSC_ERR_USER_INPUT, "-%s_friction_damping needs a positive -%s_speed (m/s) or a -%s_rotation", c->name, c->name, c->name);
+  PetscCheck(c->speed >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_speed %g must not be negative (m/s)", c->name, (double)c->speed);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactSetFromOptions(Contact contact)
+{
+  char *names[CONTACT_MAX];
+
+  PetscFunctionBeginUser;
+  PetscCall(OptionsGetNames(contact->comm, "-contacts", "frictional interfaces, each the prefix of its options", "", CONTACT_MAX,
+                            &contact->n_interfaces, names));
+  for (PetscInt i = 0; i < contact->n_interfaces; i++) {
+    ContactInterface *c = &contact->interfaces[i];
+
+    c->name      = names[i];
+    c->tolerance = 1e-5;
+    PetscCall(InterfaceSetFromOptions(contact->comm, c));
+    if (c->slave) PetscCall(ModelKeepTogether(contact->model, c->slave));
+    if (c->master) PetscCall(ModelKeepTogether(contact->model, c->master));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactSetUp(Contact contact)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < contact->n_interfaces; i++) {
+    PetscCall(InterfaceCheck(contact->comm, &contact->interfaces[i]));
+    PetscCall(ContactPairInterface(contact, i));
+  }
+  PetscCallMPI(MPI_Allreduce(&contact->n_pairs, &contact->n_pairs_all, 1, MPIU_INT, MPI_SUM, contact->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactGetInterfaces(Contact contact, PetscInt *n, const ContactInterface **interfaces)
+{
+  PetscFunctionBeginUser;
+  *n          = contact->n_interfaces;
+  *interfaces = contact->interfaces;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactGetPairs(Contact contact, PetscInt *n_local, PetscInt *n_global, const ContactPair **pairs)
+{
+  PetscFunctionBeginUser;
+  *n_local  = contact->n_pairs;
+  *n_global = contact->n_pairs_all;
+  *pairs    = contact->pairs;
+  PetscFunctionReturn(0);
+}
+
+/* Sets row of an operator: d . (u_m - u_s) */
+static PetscErrorCode OperatorSetRow(Mat op, PetscInt row, const ContactPair *pair, const PetscReal d[3])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < pair->n_master; i++) {
+    const PetscScalar values[3] = {pair->weight[i] * d[0], pair->weight[i] * d[1], pair->weight[i] * d[2]};
+
+    PetscCall(MatSetValues(op, 1, &row, 3, pair->master[i], values, ADD_VALUES));
+  }
+  const PetscScalar values[3] = {-d[0], -d[1], -d[2]};
+
+  PetscCall(MatSetValues(op, 1, &row, 3, pair->slave, values, ADD_VALUES));
+  PetscFunctionReturn(0);
+}
+
+/* Sparse operator of one interface along n, t or b, chosen by its offset in ContactPair */
+static PetscErrorCode OperatorCreate(Contact contact, PetscInt interface, size_t direction, Mat *op)
+{
+  PetscInt first = 0, n = 0, row, n_unknowns;
+  Vec      u;
+  DM       dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(contact->model, &dm));
+  PetscCall(DMGetGlobalVector(dm, &u));
+  PetscCall(VecGetLocalSize(u, &n_unknowns));
+  PetscCall(DMRestoreGlobalVector(dm, &u));
+  while (first < contact->n_pairs && contact->pairs[first].interface < interface) first++;
+  while (first + n < contact->n_pairs && contact->pairs[first + n].interface == interface) n++;
+  PetscCall(MatCreateAIJ(contact->comm, n, n_unknowns, PETSC_DETERMINE, PETSC_DETERMINE, 15, NULL, 15, NULL, op));
+  PetscCall(MatGetOwnershipRange(*op, &row, NULL));
+  for (PetscInt p = first; p < first + n; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    PetscCall(OperatorSetRow(*op, row++, pair, (const PetscReal *)((const char *)pair + direction)));
+  }
+  PetscCall(MatAssemblyBegin(*op, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*op, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactCreateOperators(Contact contact, PetscInt interface, Mat *N, Mat *T, Mat *B)
+{
+  PetscFunctionBeginUser;
+  if (N) PetscCall(OperatorCreate(contact, interface, offsetof(ContactPair, n), N));
+  if (T) PetscCall(OperatorCreate(contact, interface, offsetof(ContactPair, t), T));
+  if (B) PetscCall(OperatorCreate(contact, interface, offsetof(ContactPair, b), B));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactGetCentre(Contact contact, PetscReal centre[3], PetscBool *found)
+{
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 3; d++) centre[d] = 0;
+  *found = contact->n_pairs_all ? PETSC_TRUE : PETSC_FALSE;
+  if (!*found) PetscFunctionReturn(0);
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    for (int d = 0; d < 3; d++) centre[d] += contact->pairs[p].x[d] / (PetscReal)contact->n_pairs_all;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, centre, 3, MPIU_REAL, MPI_SUM, contact->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < contact->n_interfaces; i++) {
+    const ContactInterface *c = &contact->interfaces[i];
+
+    PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %s slides on %s, mu %g, ", c->name, c->slave, c->master, (double)c->mu));
+    if (c->law == CONTACT_PENALTY) PetscCall(PetscViewerASCIIPrintf(viewer, "penalty %g N/m per pair\n", (double)c->kn));
+    else PetscCall(PetscViewerASCIIPrintf(viewer, "exact constraint by elimination\n"));
+  }
+  if (contact->n_interfaces) PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " pairs\n", contact->n_pairs_all));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactDestroy(Contact *contact)
+{
+  PetscFunctionBeginUser;
+  if (!*contact) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < (*contact)->n_interfaces; i++) {
+    PetscCall(PetscFree((*contact)->interfaces[i].name));
+    PetscCall(PetscFree((*contact)->interfaces[i].slave));
+    PetscCall(PetscFree((*contact)->interfaces[i].master));
+  }
+  PetscCall(PetscFree((*contact)->pairs));
+  PetscCall(PetscFree(*contact));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,132 @@
+static const char help[] =
+  "squeal: friction-induced vibration of bodies in sliding contact.\n"
+  "  squeal -options_file options/massi2005.yaml [-analysis modes] [-output_dir DIR] [any option]\n"
+  "  mpirun -n 2 squeal ... uses two ranks. SI units everywhere. Options files are YAML; later options override earlier ones.\n";
+
+#include <squeal/squeal.h>
+#include <squeal/options.h>
+
+/* The chain of a run: options -> model -> contact -> operators -> modes, and results */
+typedef struct {
+  Model     model;   /* NULL for matrices without a mesh */
+  Contact   contact;
+  Operators operators;
+  Modes     modes;
+  Results   results;
+  PetscBool view;
+} Chain;
+
+static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
+{
+  static const char *const analyses[] = {"modes"};
+  PetscBool has_matrices;
+  PetscInt  analysis = 0;
+
+  PetscFunctionBeginUser;
+  PetscOptionsBegin(comm, NULL, "squeal", NULL);
+  PetscCall(PetscOptionsEList("-analysis", "what to compute", NULL, analyses, 1, analyses[0], &analysis, NULL));
+  PetscCall(PetscOptionsBool("-squeal_view", "print what was chosen and why, and the time of each stage", NULL, chain->view,
+                             &chain->view, NULL));
+  PetscOptionsEnd();
+  PetscCall(OperatorsCreate(comm, &chain->operators));
+  PetscCall(OperatorsSetFromOptions(chain->operators));
+  PetscCall(OperatorsHaveMatrices(chain->operators, &has_matrices));
+  if (!has_matrices) {
+    PetscCall(ModelCreate(comm, &chain->model));
+    PetscCall(ModelSetFromOptions(chain->model));
+    PetscCall(ContactCreate(chain->model, &chain->contact));
+    PetscCall(ContactSetFromOptions(chain->contact));
+    PetscCall(OperatorsSetModel(chain->operators, chain->model, chain->contact));
+  }
+  PetscCall(ModesCreate(comm, &chain->modes));
+  PetscCall(ModesSetFromOptions(chain->modes));
+  PetscCall(ResultsCreate(comm, &chain->results));
+  PetscCall(ResultsSetFromOptions(chain->results));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ChainDestroy(Chain *chain)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ResultsDestroy(&chain->results));
+  PetscCall(ModesDestroy(&chain->modes));
+  PetscCall(OperatorsDestroy(&chain->operators));
+  PetscCall(ContactDestroy(&chain->contact));
+  PetscCall(ModelDestroy(&chain->model));
+  PetscFunctionReturn(0);
+}
+
+/* Reads all options on a chain of its own, to list the valid names */
+static PetscErrorCode ReadAgain(MPI_Comm comm, void *ctx)
+{
+  Chain chain = {0};
+
+  PetscFunctionBeginUser;
+  (void)ctx;
+  PetscCall(ChainCreate(comm, &chain));
+  PetscCall(ChainDestroy(&chain));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ChainSetUp(Chain *chain)
+{
+  PetscFunctionBeginUser;
+  if (chain->model) {
+    PetscCall(SquealStageBegin(SQUEAL_MODEL));
+    PetscCall(ModelSetUp(chain->model));
+    PetscCall(SquealStageEnd(SQUEAL_MODEL));
+    PetscCall(SquealStageBegin(SQUEAL_CONTACT));
+    PetscCall(ContactSetUp(chain->contact));
+    PetscCall(SquealStageEnd(SQUEAL_CONTACT));
+  }
+  PetscCall(SquealStageBegin(SQUEAL_OPERATORS));
+  PetscCall(OperatorsSetUp(chain->operators));
+  PetscCall(SquealStageEnd(SQUEAL_OPERATORS));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ChainView(Chain *chain, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  if (chain->model) PetscCall(ModelView(chain->model, viewer));
+  if (chain->contact) PetscCall(ContactView(chain->contact, viewer));
+  PetscCall(OperatorsView(chain->operators, viewer));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Run(MPI_Comm comm)
+{
+  Chain       chain  = {0};
+  PetscViewer viewer = PETSC_VIEWER_STDOUT_(comm);
+  PetscBool   asked;
+
+  PetscFunctionBeginUser;
+  PetscCall(ChainCreate(comm, &chain));
+  PetscCall(PetscOptionsHasHelp(NULL, &asked));
+  if (!asked) {
+    PetscCall(OptionsCheckUnknown(comm, ReadAgain, NULL));
+    PetscCall(ResultsOpenDirectory(chain.results));
+    PetscCall(ChainSetUp(&chain));
+    if (chain.view) PetscCall(ChainView(&chain, viewer));
+    PetscCall(SquealStageBegin(SQUEAL_MODES));
+    PetscCall(ModesSetOperators(chain.modes, chain.operators));
+    PetscCall(ModesSolve(chain.modes));
+    PetscCall(SquealStageEnd(SQUEAL_MODES));
+    PetscCall(ModesView(chain.modes, viewer));
+    PetscCall(SquealStageBegin(SQUEAL_RESULTS));
+    PetscCall(ModesWrite(chain.modes, chain.results));
+    PetscCall(SquealStageEnd(SQUEAL_RESULTS));
+    if (chain.view) PetscCall(SquealViewStages(comm, viewer));
+    PetscCall(OptionsWarnUnused(comm));
+  }
+  PetscCall(ChainDestroy(&chain));
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  PetscErrorCode error = SquealInitialize(&argc, &argv, help);
+
+  if (!error) error = Run(PETSC_COMM_WORLD);
+  return SquealFinalize(error);
+}

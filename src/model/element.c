@@ -1,0 +1,64 @@
+/*
+   Element - the table of formulations; -model_element chooses the row among those of the mesh's cell shape.
+
+   DMPlex lists the bottom face of a hexahedron as its nodes 0, 3, 2, 1, that is counter-clockwise seen from outside,
+   and the top face as 4, 5, 6, 7; closure_order undoes the former.
+*/
+#include <squeal/element.h>
+#include <string.h>
+#include "../kernels/hex8.h"
+
+#define INCOMPATIBLE "incompatible"
+#define FULL         "full"
+
+static const Element elements[] = {
+  {
+    .formulation   = INCOMPATIBLE,
+    .description   = "8-node hexahedron with incompatible modes (QM6)",
+    .shape         = DM_POLYTOPE_HEXAHEDRON,
+    .n_nodes       = HEX8_NODES,
+    .closure_order = {0, 3, 2, 1, 4, 5, 6, 7},
+    .matrices      = Hex8IncompatibleMatrices,
+    .measure       = Hex8Measure
+  },
+  {
+    .formulation   = FULL,
+    .description   = "8-node hexahedron, fully integrated",
+    .shape         = DM_POLYTOPE_HEXAHEDRON,
+    .n_nodes       = HEX8_NODES,
+    .closure_order = {0, 3, 2, 1, 4, 5, 6, 7},
+    .matrices      = Hex8FullMatrices,
+    .measure       = Hex8Measure
+  }
+};
+
+/*@
+   ElementFind - the row of the table with this shape and formulation, or NULL
+
+   Not collective
+
+   Input Parameters:
++  shape       - cell shape of the mesh
+-  formulation - value of -model_element
+
+.seealso: `ElementNames()`
+@*/
+const Element *ElementFind(DMPolytopeType shape, const char formulation[])
+{
+  for (size_t i = 0; i < sizeof(elements) / sizeof(elements[0]); i++) {
+    if (elements[i].shape == shape && !strcmp(elements[i].formulation, formulation)) return &elements[i];
+  }
+  return NULL;
+}
+
+/*@
+   ElementNames - the formulations, separated by commas, for messages
+
+   Not collective
+
+.seealso: `ElementFind()`
+@*/
+const char *ElementNames(void)
+{
+  return INCOMPATIBLE ", " FULL;
+}

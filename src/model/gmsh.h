@@ -1,0 +1,51 @@
+/*
+   GmshMesh - the content of a Gmsh file as it stands there: nodes, elements of all dimensions, and named physical
+   groups. Reading is serial; the first error is kept in words, and later reads do nothing.
+*/
+#pragma once
+
+#include "reader.h"
+
+#include <petscdmplex.h>
+
+#define GMSH_MAX_PHYSICAL 16 /* physical groups of one entity */
+#define GMSH_MAX_NODES    8  /* nodes of one element */
+
+/* A type of element; the linear ones */
+typedef struct {
+  PetscInt       type; /* Gmsh's number */
+  PetscInt       dim, n_nodes;
+  DMPolytopeType polytope;
+} GmshShape;
+
+typedef struct {
+  PetscInt dim, tag;
+  char     name[128];
+} GmshGroup;
+
+/* What shares physical groups: a geometric entity (format 4.1) or one named group itself (2.2) */
+typedef struct {
+  PetscInt dim, tag;
+  PetscInt n_physical, physical[GMSH_MAX_PHYSICAL];
+} GmshEntity;
+
+typedef struct {
+  const GmshShape *shape;
+  PetscInt         number;               /* in the file */
+  PetscInt         entity;               /* index, or -1 without physical group */
+  PetscInt         node[GMSH_MAX_NODES]; /* tags; ImportGmsh() makes them indices */
+} GmshElement;
+
+typedef struct {
+  PetscInt     n_groups, n_entities, n_nodes, n_elements;
+  GmshGroup   *groups;
+  GmshEntity  *entities;
+  PetscInt    *node_tags; /* [n_nodes] */
+  PetscReal   *x;         /* [n_nodes][3], m */
+  GmshElement *elements;
+} GmshMesh;
+
+/* Reads a file of format 2.2 or 4.1, text or binary. What is wrong with the file is told in `error` (code 0:
+   nothing), for the caller to raise on all ranks. Not collective; free with GmshMeshDestroy() in any case. */
+PETSC_INTERN PetscErrorCode GmshMeshRead(const char file[], GmshMesh *mesh, ReaderError *error);
+PETSC_INTERN PetscErrorCode GmshMeshDestroy(GmshMesh *mesh);

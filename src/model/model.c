@@ -1,0 +1,251 @@
+/*
+   Model: life cycle, options, access. The mesh is made on rank 0 (generate.c, import.c), checked there (check.c), distributed
+   (partition.c), and then carries parts (part.c) and the layout of the unknowns (support.c).
+*/
+#include "modelimpl.h"
+
+PetscErrorCode ModelCreate(MPI_Comm comm, Model *model)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, model));
+  (*model)->comm = comm;
+  PetscCall(PetscStrncpy((*model)->formulation, "incompatible", sizeof((*model)->formulation)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelSetFromOptions(Model model)
+{
+  static const char *const sources[] = {"rig", "file"};
+  PetscInt  source = 0;
+  PetscBool given, has_mesh;
+
+  PetscFunctionBeginUser;
+  PetscOptionsBegin(model->comm, NULL, "Model", NULL);
+  PetscCall(PetscOptionsEList("-model_source", "mesh: the built-in disc-pad-beam rig, or a file", NULL, sources, 2, sources[0],
+                              &source, &given));
+  PetscCall(PetscOptionsString("-model_mesh", "Gmsh file, format 2.2 or 4.1, with physical names", NULL, model->mesh, model->mesh,
+                               sizeof(model->mesh), &has_mesh));
+  PetscCall(PetscOptionsString("-model_element", "element formulation: incompatible (QM6) or full (trilinear)", NULL,
+                               model->formulation, model->formulation, sizeof(model->formulation), NULL));
+  PetscOptionsEnd();
+  if (!given && has_mesh) source = 1;
+  model->given = given || has_mesh ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(PetscStrncpy(model->source, sources[source], sizeof(model->source)));
+  if (source == 0) PetscCall(RigSetFromOptions(model->comm, &model->rig));
+  PetscCall(PartsSetFromOptions(model));
+  PetscCall(SupportsSetFromOptions(model));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelKeepTogether(Model model, const char set[])
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!model->dm, model->comm, PETSC_ERR_ARG_WRONGSTATE, "ModelKeepTogether() must come before ModelSetUp()");
+  PetscCheck(model->n_together < MODEL_MAX_NAMES, model->comm, PETSC_ERR_ARG_OUTOFRANGE, "more than %d sets to keep together",
+             MODEL_MAX_NAMES);
+  PetscCall(PetscStrallocpy(set, &model->together[model->n_together++]));
+  PetscFunctionReturn(0);
+}
+
+/* Coordinates [local vertices][3] and corners [local cells][n_nodes] in the element's order */
+static PetscErrorCode ModelTabulate(Model model)
+{
+  const PetscInt     n_nodes = model->element->n_nodes;
+  const PetscScalar *x;
+  PetscInt           cStart, cEnd, vStart, vEnd, n_points, *closure = NULL;
+  Vec                coordinates;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, &cEnd));
+  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, &vEnd));
+  PetscCall(DMGetCoordinatesLocal(model->dm, &coordinates));
+  PetscCall(PetscMalloc1(3 * (vEnd - vStart), &model->coordinates));
+  PetscCall(VecGetArrayRead(coordinates, &x));
+  PetscCall(PetscArraycpy(model->coordinates, x, 3 * (vEnd - vStart)));
+  PetscCall(VecRestoreArrayRead(coordinates, &x));
+  PetscCall(PetscMalloc1(n_nodes * (cEnd - cStart), &model->cell_vertices));
+  for (PetscInt c = cStart; c < cEnd; c++) {
+    PetscInt *const corners = &model->cell_vertices[n_nodes * (c - cStart)], first = 0;
+
+    PetscCall(DMPlexGetTransitiveClosure(model->dm, c, PETSC_TRUE, &n_points, &closure));
+    while (closure[2 * first] < vStart || closure[2 * first] >= vEnd) first++;
+    for (PetscInt i = 0; i < n_nodes; i++) corners[i] = closure[2 * (first + model->element->closure_order[i])];
+  }
+  if (closure) PetscCall(DMPlexRestoreTransitiveClosure(model->dm, cStart, PETSC_TRUE, &n_points, &closure));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelSetUp(Model model)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(model->given, model->comm, PETSC_ERR_USER_INPUT,
+             "nothing to compute: give -options_file FILE, -model_source rig, -model_mesh FILE or -operators_load_k FILE");
+  PetscCall(PartsCheck(model));
+  if (!strcmp(model->source, "rig")) PetscCall(RigGenerate(model->comm, &model->rig, &model->dm));
+  else PetscCall(ImportGmsh(model->comm, model->mesh, &model->dm));
+  PetscCall(MeshCheck(model));
+  PetscCall(PartitionMesh(&model->dm, model->n_together, model->together));
+  PetscCall(PartsFindCells(model));
+  PetscCall(ModelTabulate(model));
+  PetscCall(SupportsLayOut(model));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelGetComm(Model model, MPI_Comm *comm)
+{
+  PetscFunctionBeginUser;
+  *comm = model->comm;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelGetDM(Model model, DM *dm)
+{
+  PetscFunctionBeginUser;
+  *dm = model->dm;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelGetParts(Model model, PetscInt *n_parts, const Part **parts)
+{
+  PetscFunctionBeginUser;
+  *n_parts = model->n_parts;
+  *parts   = model->parts;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelGetCellParts(Model model, const PetscInt **cell_part)
+{
+  PetscFunctionBeginUser;
+  *cell_part = model->cell_part;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelGetElement(Model model, const Element **element)
+{
+  PetscFunctionBeginUser;
+  *element = model->element;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelGetCell(Model model, PetscInt c, PetscInt vertices[], PetscReal coordinates[])
+{
+  const PetscInt n_nodes = model->element->n_nodes;
+  PetscInt       vStart;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, NULL));
+  for (PetscInt i = 0; i < n_nodes; i++) {
+    vertices[i] = model->cell_vertices[n_nodes * c + i];
+    for (int d = 0; d < 3; d++) coordinates[3 * i + d] = model->coordinates[3 * (vertices[i] - vStart) + d];
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelGetCoordinates(Model model, const PetscReal **coordinates)
+{
+  PetscFunctionBeginUser;
+  *coordinates = model->coordinates;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelGetUnknowns(Model model, const PetscInt **unknowns)
+{
+  PetscFunctionBeginUser;
+  *unknowns = model->unknowns;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelGetSprings(Model model, PetscInt *n, const Grounded **springs)
+{
+  PetscFunctionBeginUser;
+  *n       = model->n_springs;
+  *springs = model->springs;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelGetDashpots(Model model, PetscInt *n, const Grounded **dashpots)
+{
+  PetscFunctionBeginUser;
+  *n        = model->n_dashpots;
+  *dashpots = model->dashpots;
+  PetscFunctionReturn(0);
+}
+
+/* Prints a list of grounded springs or dashpots */
+static PetscErrorCode GroundedView(const char kind[], const char unit[], PetscInt n, const Grounded g[], PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s %s on %s: %g, %g, %g %s per node\n", kind, g[i].name, g[i].set,
+                                     (double)g[i].value[0], (double)g[i].value[1], (double)g[i].value[2], unit));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelView(Model model, PetscViewer viewer)
+{
+  PetscInt    cStart, cEnd, n_cells, n_unknowns;
+  PetscMPIInt size;
+  Vec         u;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(model->comm, &size));
+  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, &cEnd));
+  n_cells = cEnd - cStart;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_cells, 1, MPIU_INT, MPI_SUM, model->comm));
+  PetscCall(DMGetGlobalVector(model->dm, &u));
+  PetscCall(VecGetSize(u, &n_unknowns));
+  PetscCall(DMRestoreGlobalVector(model->dm, &u));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "model: %s, %" PetscInt_FMT " cells, %" PetscInt_FMT " unknowns on %d ranks; %s\n",
+                                   !strcmp(model->source, "rig") ? "built-in rig" : model->mesh, n_cells, n_unknowns, size,
+                                   model->element->description));
+  for (PetscInt i = 0; i < model->n_parts; i++) {
+    const Part *p = &model->parts[i];
+
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  part %s: E %g Pa, nu %g, rho %g kg/m^3, alpha %g 1/s, beta %g s\n", p->name,
+                                     (double)p->young, (double)p->poisson, (double)p->density, (double)p->alpha, (double)p->beta));
+  }
+  for (PetscInt i = 0; i < model->n_supports; i++)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  support %s holds%s%s%s of %s\n", model->supports[i].name,
+                                     model->supports[i].fix[0] ? " x" : "", model->supports[i].fix[1] ? " y" : "",
+                                     model->supports[i].fix[2] ? " z" : "", model->supports[i].set));
+  PetscCall(GroundedView("spring", "N/m", model->n_springs, model->springs, viewer));
+  PetscCall(GroundedView("dashpot", "N s/m", model->n_dashpots, model->dashpots, viewer));
+  PetscFunctionReturn(0);
+}
+
+/* Frees a list of grounded springs or dashpots */
+static PetscErrorCode GroundedDestroy(PetscInt n, Grounded **g)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(PetscFree((*g)[i].name));
+    PetscCall(PetscFree((*g)[i].set));
+  }
+  PetscCall(PetscFree(*g));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelDestroy(Model *model)
+{
+  Model m = *model;
+
+  PetscFunctionBeginUser;
+  if (!m) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < m->n_parts; i++) PetscCall(PetscFree(m->parts[i].name));
+  for (PetscInt i = 0; i < m->n_supports; i++) {
+    PetscCall(PetscFree(m->supports[i].name));
+    PetscCall(PetscFree(m->supports[i].set));
+  }
+  for (PetscInt i = 0; i < m->n_together; i++) PetscCall(PetscFree(m->together[i]));
+  PetscCall(GroundedDestroy(m->n_springs, &m->springs));
+  PetscCall(GroundedDestroy(m->n_dashpots, &m->dashpots));
+  PetscCall(PetscFree(m->parts));
+  PetscCall(PetscFree(m->supports));
+  PetscCall(PetscFree(m->cell_part));
+  PetscCall(PetscFree(m->cell_vertices));
+  PetscCall(PetscFree(m->coordinates));
+  PetscCall(PetscFree(m->unknowns));
+  PetscCall(DMDestroy(&m->dm));
+  PetscCall(PetscFree(*model));
+  PetscFunctionReturn(0);
+}

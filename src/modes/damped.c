@@ -1,0 +1,112 @@
+/*
+   Damped problem (lambda^2 M + lambda C + K) x = 0: PEP TOAR with shift-and-invert about a real positive shift s. The modes lie
+   near the imaginary axis at +- i omega, at distances sqrt(omega^2 + s^2) from the shift, so they converge from low to high
+   frequency, and a window is reached by converging all below it. Of each conjugate pair the one with omega > 0 is kept.
+*/
+#include "modesimpl.h"
+
+PetscReal DampedShift(const Window *window)
+{
+  return 0.3 * PetscMax(window->high, window->target);
+}
+
+/* Puts the converged eigenvalues of the upper half plane into a spectrum; reach = largest distance from the shift */
+static PetscErrorCode Collect(PEP pep, PetscReal shift, PetscInt n, Spectrum *s)
+{
+  PetscInt n_converged;
+  Vec      xr, xi;
+  Mat      K;
+
+  PetscFunctionBeginUser;
+  PetscCall(PEPGetConverged(pep, &n_converged));
+  PetscCall(PEPGetOperators(pep, 0, &K));
+  PetscCall(MatCreateVecs(K, &xr, &xi));
+  PetscCall(SpectrumCreate(n_converged, s));
+  for (PetscInt i = 0; i < n_converged; i++) {
+    PetscReal kr, ki;
+
+    PetscCall(PEPGetEigenpair(pep, i, &kr, &ki, xr, xi));
+    s->reach = PetscMax(s->reach, PetscSqrtReal((kr - shift) * (kr - shift) + ki * ki));
+    if (ki >= 0) PetscCall(SpectrumAdd(s, kr, ki, xr, ki != 0 ? xi : NULL));
+  }
+  if (n_converged >= 2 * n) s->reach = PETSC_MAX_REAL;
+  PetscCall(VecDestroy(&xr));
+  PetscCall(VecDestroy(&xi));
+  PetscCall(SpectrumSort(s));
+  PetscFunctionReturn(0);
+}
+
+/* Distance from the shift that the converged eigenvalues must exceed */
+static PetscReal RadiusNeeded(const Window *window, PetscReal shift, const Spectrum *found)
+{
+  PetscReal high = window->high;
+
+  if (window->count) {
+    PetscInt above = 0;
+
+    if (found->n < window->count) return PETSC_MAX_REAL;
+    for (PetscInt i = found->n - 1; i >= 0 && found->omega[i] > window->target; i--) above++;
+    high = window->target + (above >= window->count ? found->omega[found->n - 1 - above + window->count - 1] - window->target
+                                                    : window->target - found->omega[PetscMax(0, found->n - window->count)]);
+  }
+  return PetscSqrtReal(high * high + shift * shift);
+}
+
+/* Solver for nev eigenvalues about the shift; the transposed problem starts from another random vector */
+static PetscErrorCode SolverCreate(Mat problem[3], ShiftInvert *si, PetscBool transposed, PetscInt nev, PetscInt n, PEP *pep)
+{
+  PetscRandom random;
+  BV          bv;
+  ST          st;
+
+  PetscFunctionBeginUser;
+  PetscCall(PEPCreate(si->comm, pep));
+  PetscCall(PEPSetOperators(*pep, 3, problem));
+  PetscCall(PEPSetProblemType(*pep, PEP_GENERAL));
+  PetscCall(PEPSetType(*pep, PEPTOAR));
+  PetscCall(PEPSetWhichEigenpairs(*pep, PEP_TARGET_MAGNITUDE));
+  PetscCall(PEPSetTarget(*pep, si->shift));
+  PetscCall(PEPSetDimensions(*pep, nev, PetscMin(2 * n, PetscMax(2 * nev, nev + 20)), PETSC_DEFAULT));
+  PetscCall(PEPSetTolerances(*pep, 1e-11, 200));
+  PetscCall(PEPSetScale(*pep, PEP_SCALE_SCALAR, PETSC_DECIDE, NULL, NULL, PETSC_DECIDE, PETSC_DECIDE));
+  PetscCall(PEPGetST(*pep, &st));
+  PetscCall(ShiftInvertAttach(si, transposed, st));
+  PetscCall(PEPSetFromOptions(*pep));
+  PetscCall(PEPGetBV(*pep, &bv));
+  PetscCall(BVGetRandomContext(bv, &random));
+  PetscCall(PetscRandomSetSeed(random, transposed ? 20051 : 2005));
+  PetscCall(PetscRandomSeed(random));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DampedSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si, PetscBool transposed,
+                           Spectrum *spectrum)
+{
+  Mat       problem[3] = {pencil->K, pencil->C, pencil->M};
+  PetscInt  n, nev = 40;
+  PetscBool covered = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetSize(pencil->K, &n, NULL));
+  if (window->expected >= 0) nev = 2 * (window->below + window->expected + window->extra);
+  if (window->count) nev = 2 * (PetscMax(0, window->below) + window->count + window->extra);
+  for (int i = 0; i < 3 && transposed; i++) PetscCall(MatCreateTranspose(problem[i], &problem[i]));
+  for (int attempt = 0; attempt < 8 && !covered; attempt++, nev += nev / 2) {
+    PEP pep;
+
+    nev = PetscMin(nev, 2 * n);
+    PetscCall(SolverCreate(problem, si, transposed, nev, n, &pep));
+    PetscCall(ProgressBegin(&modes->progress, transposed ? "left vectors" : "right vectors", 2 * nev + nev / 4));
+    PetscCall(PEPSolve(pep));
+    PetscCall(ProgressEnd(&modes->progress));
+    PetscCall(Collect(pep, si->shift, n, spectrum));
+    covered = spectrum->reach > RadiusNeeded(window, si->shift, spectrum) ? PETSC_TRUE : PETSC_FALSE;
+    if (!covered && nev < 2 * n) PetscCall(SpectrumDestroy(spectrum));
+    PetscCall(PEPDestroy(&pep));
+    if (nev == 2 * n) break;
+  }
+  PetscCheck(covered, si->comm, PETSC_ERR_NOT_CONVERGED,
+             "the eigensolver did not converge all modes of the window; raise -pep_max_it or -pep_ncv, or narrow -modes_band");
+  for (int i = 0; i < 3 && transposed; i++) PetscCall(MatDestroy(&problem[i]));
+  PetscFunctionReturn(0);
+}

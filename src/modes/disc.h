@@ -1,0 +1,30 @@
+/* Private to modes/: the fit of a disc's out-of-plane displacement by harmonics and radial polynomials (see label.c) */
+#pragma once
+
+#include <petscsys.h>
+
+#define DISC_HARMONICS   17                       /* m = 0..16 */
+#define DISC_POLYNOMIALS 5                        /* Legendre, degree 0..4 */
+#define DISC_TERMS       ((2 * DISC_HARMONICS - 1) * DISC_POLYNOMIALS)
+
+typedef struct {
+  MPI_Comm   comm;
+  PetscBool  has_contact;
+  PetscReal  centre[3], axis[3], e1[3], e2[3]; /* e1 points to the contact */
+  PetscReal  r_inner, r_outer;                 /* m */
+  PetscInt   n_nodes, n_columns;               /* nodes of the disc on this rank; two right-hand sides per mode: re, im */
+  PetscInt  *node;                             /* their local vertices */
+  PetscReal *weight;                           /* nodal mass, kg */
+  PetscReal *basis;                            /* [n_nodes][DISC_TERMS] */
+  PetscReal *gram;                             /* [DISC_TERMS][DISC_TERMS] */
+  PetscReal *fit;                              /* [n_columns][DISC_TERMS]: right-hand sides, then coefficients */
+} Disc;
+
+/* is_disc = whether two of the three principal moments of inertia agree within 5 %, so that there is an axis */
+PETSC_INTERN PetscErrorCode DiscCreate(MPI_Comm comm, PetscInt n_vertices, const PetscReal x[], const PetscReal mass[], const PetscReal contact[],
+                                       PetscInt n_modes, Disc *disc, PetscBool *is_disc);
+/* Adds the displacements u[local vertices][3] to right-hand side `column`; returns their out-of-plane energy on this rank */
+PETSC_INTERN PetscReal      DiscProject(Disc *disc, PetscInt column, const PetscReal u[]);
+PETSC_INTERN PetscErrorCode DiscSolve(Disc *disc);
+PETSC_INTERN PetscErrorCode DiscName(const Disc *disc, PetscInt mode, char name[], size_t size);
+PETSC_INTERN PetscErrorCode DiscDestroy(Disc *disc);

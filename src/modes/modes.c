@@ -1,0 +1,154 @@
+/*
+   Modes: life cycle, options, and the flow of a solution: window -> factorisation -> right vectors -> left vectors -> errors ->
+   labels, with the check that no mode is missing.
+*/
+#include "modesimpl.h"
+#include "operators/ordering.h"
+
+PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, modes));
+  (*modes)->comm  = comm;
+  (*modes)->left  = PETSC_TRUE;
+  (*modes)->count = 20;
+  PetscCall(PetscStrncpy((*modes)->disc, "disc", sizeof((*modes)->disc)));
+  PetscCall(OrderingRegister());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesSetOperators(Modes modes, Operators operators)
+{
+  PetscFunctionBeginUser;
+  modes->operators = operators;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesSetFromOptions(Modes modes)
+{
+  PetscInt n = 2;
+
+  PetscFunctionBeginUser;
+  PetscOptionsBegin(modes->comm, NULL, "Modes", NULL);
+  PetscCall(PetscOptionsRealArray("-modes_band", "all modes with frequency in f1,f2, Hz", NULL, modes->band, &n, &modes->has_band));
+  PetscCall(PetscOptionsReal("-modes_target", "without a band: the modes nearest to this frequency, Hz", NULL, modes->target, &modes->target, NULL));
+  PetscCall(PetscOptionsInt("-modes_count", "how many of them", NULL, modes->count, &modes->count, NULL));
+  PetscCall(PetscOptionsBool("-modes_left", "left vectors: condition and error of each eigenvalue", NULL, modes->left, &modes->left, NULL));
+  PetscCall(PetscOptionsString("-modes_disc", "part whose shapes are named by nodal circles and diameters", NULL, modes->disc, modes->disc,
+                               sizeof(modes->disc), NULL));
+  PetscOptionsEnd();
+  PetscCheck(!modes->has_band || n == 2, modes->comm, PETSC_ERR_USER_INPUT, "-modes_band has %" PetscInt_FMT " values; give two: f1,f2 in Hz", n);
+  PetscCheck(!modes->has_band || (modes->band[0] >= 0 && modes->band[1] > modes->band[0]), modes->comm, PETSC_ERR_USER_INPUT,
+             "-modes_band %g,%g must satisfy 0 <= f1 < f2 (Hz)", (double)modes->band[0], (double)modes->band[1]);
+  PetscCheck(modes->count > 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_count %" PetscInt_FMT " must be positive", modes->count);
+  PetscCheck(modes->target >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_target %g must not be negative (Hz)", (double)modes->target);
+  PetscCall(ProgressSetFromOptions(modes->comm, &modes->progress));
+  PetscFunctionReturn(0);
+}
+
+/* Right or left spectrum by the solver that fits the pencil */
+static PetscErrorCode SpectrumSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si, PetscBool transposed,
+                                    Spectrum *spectrum)
+{
+  PetscFunctionBeginUser;
+  if (pencil->C) PetscCall(DampedSolve(modes, pencil, window, si, transposed, spectrum));
+  else PetscCall(UndampedSolve(modes, pencil, window, si, transposed, spectrum));
+  PetscFunctionReturn(0);
+}
+
+/* Left vectors of a symmetric pencil are the right ones */
+static PetscErrorCode SpectrumCopy(const Spectrum *from, Spectrum *to)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SpectrumCreate(from->n, to));
+  for (PetscInt i = 0; i < from->n; i++) PetscCall(SpectrumAdd(to, from->sigma[i], from->omega[i], from->xr[i], from->xi[i]));
+  PetscFunctionReturn(0);
+}
+
+/* Right and left spectra that agree; a second attempt asks for more eigenvalues */
+static PetscErrorCode SolveBoth(Modes modes, const OperatorsPencil *pencil, Window *window, ShiftInvert *si)
+{
+  const PetscBool proven = pencil->symmetric && !pencil->C ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool       complete = PETSC_TRUE;
+  PetscReal       worst    = 0;
+
+  PetscFunctionBeginUser;
+  for (int attempt = 0; attempt < 3; attempt++) {
+    PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_FALSE, &modes->right));
+    PetscCall(WindowSelect(window, &modes->right));
+    if (proven) {
+      PetscCall(WindowProve(modes, window, &modes->right, &complete));
+      if (complete && modes->left) PetscCall(SpectrumCopy(&modes->right, &modes->left_spectrum));
+    } else if (modes->left) {
+      PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_TRUE, &modes->left_spectrum));
+      PetscCall(QualityMatchLeft(modes, &worst, &complete));
+    }
+    if (complete) break;
+    PetscCall(SpectrumDestroy(&modes->right));
+    PetscCall(SpectrumDestroy(&modes->left_spectrum));
+    window->extra += 10 + modes->right.n / 2;
+  }
+  PetscCheck(complete, modes->comm, PETSC_ERR_NOT_CONVERGED,
+             "modes are missing after three attempts (%s); narrow -modes_band or tighten -eps_tol", proven ? "inertia count" : "left and right differ");
+  PetscCall(WindowDescribe(window, &modes->right, proven, modes->left, worst, modes->completeness, sizeof(modes->completeness)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesSolve(Modes modes)
+{
+  OperatorsPencil pencil;
+  ShiftInvert     si;
+  Window          window;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetPencil(modes->operators, &pencil));
+  PetscCall(WindowFind(modes, &window));
+  PetscCheck(window.expected != 0 || !pencil.symmetric || pencil.C, modes->comm, PETSC_ERR_USER_INPUT,
+             "-modes_band %g,%g Hz contains no mode (%" PetscInt_FMT " lie below it); widen it", (double)modes->band[0], (double)modes->band[1],
+             window.below);
+  PetscCall(ShiftInvertCreate(&pencil, pencil.C ? DampedShift(&window) : UndampedShift(&window), PETSC_FALSE, &modes->progress, &si));
+  PetscCall(SolveBoth(modes, &pencil, &window, &si));
+  PetscCall(ShiftInvertDestroy(&si));
+  PetscCheck(modes->right.n, modes->comm, PETSC_ERR_USER_INPUT, "-modes_band %g,%g Hz contains no mode; widen it", (double)modes->band[0],
+             (double)modes->band[1]);
+  PetscCall(QualityMeasure(modes, &pencil));
+  PetscCall(ModesLabel(modes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesGet(Modes modes, PetscInt *n, const Mode **mode)
+{
+  PetscFunctionBeginUser;
+  *n    = modes->n;
+  *mode = modes->mode;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesGetVectors(Modes modes, PetscInt i, Vec *xr, Vec *xi, Vec *yr, Vec *yi)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(i >= 0 && i < modes->n, modes->comm, PETSC_ERR_ARG_OUTOFRANGE, "mode %" PetscInt_FMT " of %" PetscInt_FMT, i, modes->n);
+  if (xr) *xr = modes->right.xr[i];
+  if (xi) *xi = modes->right.xi[i];
+  if (yr) *yr = modes->left_spectrum.n ? modes->left_spectrum.xr[i] : NULL;
+  if (yi) *yi = modes->left_spectrum.n ? modes->left_spectrum.xi[i] : NULL;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesGetCompleteness(Modes modes, const char **line)
+{
+  PetscFunctionBeginUser;
+  *line = modes->completeness;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesDestroy(Modes *modes)
+{
+  PetscFunctionBeginUser;
+  if (!*modes) PetscFunctionReturn(0);
+  PetscCall(SpectrumDestroy(&(*modes)->right));
+  PetscCall(SpectrumDestroy(&(*modes)->left_spectrum));
+  PetscCall(PetscFree((*modes)->mode));
+  PetscCall(PetscFree(*modes));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,97 @@
+/* Private to modes/: the record of the solver, and the pieces of a solution */
+#pragma once
+
+#include <squeal/modes.h>
+#include <petscksp.h>
+#include <slepceps.h>
+#include <slepcpep.h>
+
+/* Eigenvalues lambda = sigma + i omega (rad/s), omega >= 0, in order of frequency, with vectors x = xr + i xi in the unknowns of
+   the pencil; xi is NULL for a real vector */
+typedef struct {
+  PetscInt   n, capacity;
+  PetscReal *sigma, *omega;
+  Vec       *xr, *xi;
+  PetscReal  reach; /* all eigenvalues with |lambda| up to this were converged, rad/s (undamped: those around the shift) */
+} Spectrum;
+
+PETSC_INTERN PetscErrorCode SpectrumCreate(PetscInt capacity, Spectrum *spectrum);
+PETSC_INTERN PetscErrorCode SpectrumAdd(Spectrum *spectrum, PetscReal sigma, PetscReal omega, Vec xr, Vec xi);
+PETSC_INTERN PetscErrorCode SpectrumSort(Spectrum *spectrum);
+PETSC_INTERN PetscErrorCode SpectrumKeep(Spectrum *spectrum, PetscInt first, PetscInt n);
+PETSC_INTERN PetscErrorCode SpectrumDestroy(Spectrum *spectrum);
+
+/* Progress line on stderr: what is done, of how much, and the time left */
+typedef struct {
+  PetscBool      on, shown;
+  const char    *what;
+  PetscInt       done, expected;
+  PetscLogDouble begun;
+} Progress;
+
+PETSC_INTERN PetscErrorCode ProgressSetFromOptions(MPI_Comm comm, Progress *progress);
+PETSC_INTERN PetscErrorCode ProgressBegin(Progress *progress, const char what[], PetscInt expected);
+PETSC_INTERN PetscErrorCode ProgressStep(Progress *progress);
+PETSC_INTERN PetscErrorCode ProgressEnd(Progress *progress);
+
+/* Factorisation of K - s M (undamped) or K + s C + s^2 M (damped), shared by right and left vectors and by inertia counts */
+typedef struct {
+  MPI_Comm  comm;
+  KSP       ksp;
+  PetscReal shift; /* kappa (rad/s)^2 when undamped, lambda (rad/s) when damped */
+  Progress *progress;
+} ShiftInvert;
+
+/* shiftinvert.c - prefix st_; a singular matrix moves the shift a little, want_inertia lets MUMPS count negative pivots */
+PETSC_INTERN PetscErrorCode ShiftInvertCreate(const OperatorsPencil *pencil, PetscReal shift, PetscBool want_inertia,
+                                              Progress *progress, ShiftInvert *si);
+PETSC_INTERN PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st);
+PETSC_INTERN PetscErrorCode ShiftInvertGetInertia(const ShiftInvert *si, PetscInt *n_negative);
+PETSC_INTERN PetscErrorCode ShiftInvertDestroy(ShiftInvert *si);
+
+struct _p_Modes {
+  MPI_Comm   comm;
+  Operators  operators;
+  /* set by options */
+  PetscReal  band[2], target; /* Hz */
+  PetscBool  has_band, left;
+  PetscInt   count;
+  char       disc[64];
+  Progress   progress;
+  /* results */
+  Spectrum   right, left_spectrum; /* in the unknowns of the pencil, later expanded to all unknowns */
+  Mode      *mode;
+  PetscInt   n;
+  char       completeness[512];
+};
+
+/* What to look for: all eigenvalues with |lambda| in [low, high] rad/s, and how many there are about */
+typedef struct {
+  PetscReal low, high;
+  PetscInt  expected, below; /* frictionless modes in the window and below it, by inertia; negative when not known */
+  PetscInt  extra;           /* eigenvalues to compute beyond those expected */
+  PetscInt  count;           /* > 0: this many nearest to target instead, low and high unknown */
+  PetscReal target;          /* rad/s */
+} Window;
+
+/* window.c - the window, and the count of frictionless modes in it by Sylvester's law of inertia */
+PETSC_INTERN PetscErrorCode WindowFind(Modes modes, Window *window);
+PETSC_INTERN PetscErrorCode WindowSelect(const Window *window, Spectrum *spectrum);
+PETSC_INTERN PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *spectrum, PetscBool *complete);
+PETSC_INTERN PetscErrorCode WindowDescribe(const Window *window, const Spectrum *spectrum, PetscBool proven, PetscBool left, PetscReal worst,
+                                           char text[], size_t size);
+
+/* undamped.c, damped.c - all eigenvalues of the pencil in the window, right ones or those of the transposed problem */
+PETSC_INTERN PetscErrorCode UndampedSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si,
+                                          PetscBool transposed, Spectrum *spectrum);
+PETSC_INTERN PetscErrorCode DampedSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si,
+                                        PetscBool transposed, Spectrum *spectrum);
+PETSC_INTERN PetscReal UndampedShift(const Window *window);
+PETSC_INTERN PetscReal DampedShift(const Window *window);
+
+/* quality.c - pairs left with right vectors, normalises them, and measures errors */
+PETSC_INTERN PetscErrorCode QualityMatchLeft(Modes modes, PetscReal *worst, PetscBool *complete);
+PETSC_INTERN PetscErrorCode QualityMeasure(Modes modes, const OperatorsPencil *pencil);
+
+/* label.c - names of the shapes */
+PETSC_INTERN PetscErrorCode ModesLabel(Modes modes);

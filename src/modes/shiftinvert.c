@@ -1,0 +1,164 @@
+/*
+   One factorisation for everything: a KSP with the user's -st_ksp_*, -st_pc_*, -st_mat_mumps_* options, which SLEPc's spectral
+   transformations of the right and of the transposed problem both call. MUMPS is the default: LDL' for a symmetric pencil,
+   LU else; on one rank with METIS's fill-reducing order of the node graph.
+*/
+#include "modesimpl.h"
+#include "operators/ordering.h"
+
+/* K - s M, or K + s C + s^2 M with damping */
+static PetscErrorCode ShiftedMatrix(const OperatorsPencil *pencil, PetscReal shift, Mat *A)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatDuplicate(pencil->K, MAT_COPY_VALUES, A));
+  if (pencil->C) {
+    PetscCall(MatAXPY(*A, shift, pencil->C, DIFFERENT_NONZERO_PATTERN));
+    PetscCall(MatAXPY(*A, shift * shift, pencil->M, DIFFERENT_NONZERO_PATTERN));
+  } else {
+    PetscCall(MatAXPY(*A, -shift, pencil->M, DIFFERENT_NONZERO_PATTERN));
+  }
+  PetscCall(MatSetOption(*A, MAT_SYMMETRIC, pencil->symmetric));
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error for a failed factorisation; a singular matrix sets *singular instead */
+static PetscErrorCode FactorCheck(MPI_Comm comm, PC pc, PetscBool *singular)
+{
+  PCFailedReason reason;
+  MatSolverType  type;
+  PetscBool      is_mumps = PETSC_FALSE;
+  PetscInt       info = 0, extra = 0;
+  Mat            F;
+
+  PetscFunctionBeginUser;
+  *singular = PETSC_FALSE;
+  PetscCall(PCGetFailedReason(pc, &reason));
+  PetscCall(PCFactorGetMatSolverType(pc, &type));
+  if (type) PetscCall(PetscStrcmp(type, MATSOLVERMUMPS, &is_mumps));
+  if (is_mumps) {
+    PetscCall(PCFactorGetMatrix(pc, &F));
+    PetscCall(MatMumpsGetInfog(F, 1, &info));
+    PetscCall(MatMumpsGetInfog(F, 2, &extra));
+  }
+  PetscCheck(info != -8 && info != -9 && info != -14 && info != -15 && info != -17 && info != -20, comm, PETSC_ERR_MEM,
+             "MUMPS' workspace is too small (INFOG(1) = %" PetscInt_FMT ", INFOG(2) = %" PetscInt_FMT
+             "): raise -st_mat_mumps_icntl_14 (percent of extra workspace) or -st_mat_mumps_icntl_23 (MB per rank)", info, extra);
+  PetscCheck(info != -13 && info != -7 && info != -19 && info != -5, comm, PETSC_ERR_MEM,
+             "MUMPS ran out of memory (INFOG(1) = %" PetscInt_FMT ", INFOG(2) = %" PetscInt_FMT
+             "): raise -st_mat_mumps_icntl_23 (MB per rank) if it limits, use more ranks or a coarser mesh", info, extra);
+  if (info == -10 || info == -6 || reason == PC_FACTOR_NUMERIC_ZEROPIVOT || reason == PC_FACTOR_STRUCT_ZEROPIVOT) *singular = PETSC_TRUE;
+  PetscCheck(*singular || !reason, comm, PETSC_ERR_NOT_CONVERGED, "factorisation failed (MUMPS INFOG(1) = %" PetscInt_FMT ")", info);
+  PetscFunctionReturn(0);
+}
+
+/* Solver with MUMPS as default */
+static PetscErrorCode SolverCreate(MPI_Comm comm, Mat A, PetscBool symmetric, PetscBool want_inertia, KSP *ksp)
+{
+  PetscMPIInt size;
+  PC          pc;
+  Mat         F;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(KSPCreate(comm, ksp));
+  PetscCall(KSPSetOptionsPrefix(*ksp, "st_"));
+  PetscCall(KSPSetOperators(*ksp, A, A));
+  PetscCall(KSPSetType(*ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(*ksp, &pc));
+  PetscCall(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
+  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  if (size == 1) PetscCall(PCFactorSetMatOrderingType(pc, ORDERING_METIS));
+  PetscCall(KSPSetFromOptions(*ksp));
+  if (want_inertia) {
+    PetscCall(PCFactorSetUpMatSolverType(pc));
+    PetscCall(PCFactorGetMatrix(pc, &F));
+    PetscCall(MatMumpsSetIcntl(F, 13, 1)); /* MUMPS counts negative pivots of the root only without ScaLAPACK */
+    PetscCall(MatMumpsSetIcntl(F, 24, 1));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertCreate(const OperatorsPencil *pencil, PetscReal shift, PetscBool want_inertia, Progress *progress, ShiftInvert *si)
+{
+  PetscBool singular = PETSC_TRUE;
+  Mat       A;
+  PC        pc;
+
+  PetscFunctionBeginUser;
+  si->progress = progress;
+  si->shift    = shift;
+  PetscCall(PetscObjectGetComm((PetscObject)pencil->K, &si->comm));
+  for (int attempt = 0; attempt < 4 && singular; attempt++, si->shift *= singular ? 1 + 1e-4 * attempt : 1) {
+    PetscCall(ShiftedMatrix(pencil, si->shift, &A));
+    PetscCall(SolverCreate(si->comm, A, pencil->symmetric && !(pencil->C && !want_inertia), want_inertia, &si->ksp));
+    PetscCall(KSPSetUp(si->ksp));
+    PetscCall(KSPGetPC(si->ksp, &pc));
+    PetscCall(FactorCheck(si->comm, pc, &singular));
+    PetscCall(MatDestroy(&A));
+    if (singular) PetscCall(KSPDestroy(&si->ksp));
+  }
+  PetscCheck(!singular, si->comm, PETSC_ERR_MAT_LU_ZRPVT,
+             "the problem is singular at every shift near %g: a part without mass or an unknown without stiffness and mass", (double)shift);
+  PetscFunctionReturn(0);
+}
+
+/* y = A^-1 x */
+static PetscErrorCode ApplyInverse(PC pc, Vec x, Vec y)
+{
+  ShiftInvert *si;
+
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &si));
+  PetscCall(KSPSolve(si->ksp, x, y));
+  PetscCall(ProgressStep(si->progress));
+  PetscFunctionReturn(0);
+}
+
+/* y = A^-T x */
+static PetscErrorCode ApplyInverseTranspose(PC pc, Vec x, Vec y)
+{
+  ShiftInvert *si;
+
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &si));
+  PetscCall(KSPSolveTranspose(si->ksp, x, y));
+  PetscCall(ProgressStep(si->progress));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st)
+{
+  KSP ksp;
+  PC  pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(STSetType(st, STSINVERT));
+  PetscCall(STSetMatMode(st, ST_MATMODE_SHELL));
+  PetscCall(STGetKSP(st, &ksp));
+  PetscCall(KSPSetOptionsPrefix(ksp, "st_inner_"));
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCSHELL));
+  PetscCall(PCShellSetContext(pc, si));
+  PetscCall(PCShellSetApply(pc, transposed ? ApplyInverseTranspose : ApplyInverse));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertGetInertia(const ShiftInvert *si, PetscInt *n_negative)
+{
+  PC  pc;
+  Mat F;
+
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(si->ksp, &pc));
+  PetscCall(PCFactorGetMatrix(pc, &F));
+  PetscCall(MatGetInertia(F, n_negative, NULL, NULL));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertDestroy(ShiftInvert *si)
+{
+  PetscFunctionBeginUser;
+  PetscCall(KSPDestroy(&si->ksp));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,79 @@
+/*
+   Spectrum: a list of eigenvalues with their vectors.
+*/
+#include "modesimpl.h"
+
+PetscErrorCode SpectrumCreate(PetscInt capacity, Spectrum *s)
+{
+  PetscFunctionBeginUser;
+  s->n        = 0;
+  s->capacity = capacity;
+  s->reach    = 0;
+  PetscCall(PetscCalloc4(capacity, &s->sigma, capacity, &s->omega, capacity, &s->xr, capacity, &s->xi));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SpectrumAdd(Spectrum *s, PetscReal sigma, PetscReal omega, Vec xr, Vec xi)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(s->n < s->capacity, PETSC_COMM_SELF, PETSC_ERR_PLIB, "spectrum is full");
+  s->sigma[s->n] = sigma;
+  s->omega[s->n] = omega;
+  PetscCall(VecDuplicate(xr, &s->xr[s->n]));
+  PetscCall(VecCopy(xr, s->xr[s->n]));
+  if (xi) {
+    PetscCall(VecDuplicate(xi, &s->xi[s->n]));
+    PetscCall(VecCopy(xi, s->xi[s->n]));
+  }
+  s->n++;
+  PetscFunctionReturn(0);
+}
+
+/* Exchanges two entries */
+static void SpectrumSwap(Spectrum *s, PetscInt i, PetscInt j)
+{
+  const PetscReal sigma = s->sigma[i], omega = s->omega[i];
+  const Vec       xr = s->xr[i], xi = s->xi[i];
+
+  s->sigma[i] = s->sigma[j], s->omega[i] = s->omega[j], s->xr[i] = s->xr[j], s->xi[i] = s->xi[j];
+  s->sigma[j] = sigma, s->omega[j] = omega, s->xr[j] = xr, s->xi[j] = xi;
+}
+
+/* Whether entry i stands after entry j: by frequency; members of a lock-in pair (equal within 1e-7) by growth */
+static PetscBool SpectrumIsAfter(const Spectrum *s, PetscInt i, PetscInt j)
+{
+  const PetscReal close = 1e-7 * PetscMax(s->omega[i], s->omega[j]);
+
+  if (PetscAbsReal(s->omega[i] - s->omega[j]) > close) return s->omega[i] > s->omega[j] ? PETSC_TRUE : PETSC_FALSE;
+  return s->sigma[i] > s->sigma[j] ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode SpectrumSort(Spectrum *s)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 1; i < s->n; i++)
+    for (PetscInt j = i; j > 0 && SpectrumIsAfter(s, j - 1, j); j--) SpectrumSwap(s, j - 1, j);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SpectrumKeep(Spectrum *s, PetscInt first, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++)
+    if (first) SpectrumSwap(s, i, first + i);
+  for (PetscInt i = n; i < s->n; i++) {
+    PetscCall(VecDestroy(&s->xr[i]));
+    PetscCall(VecDestroy(&s->xi[i]));
+  }
+  s->n = n;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SpectrumDestroy(Spectrum *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SpectrumKeep(s, 0, 0));
+  PetscCall(PetscFree4(s->sigma, s->omega, s->xr, s->xi));
+  s->capacity = 0;
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,137 @@
+/*
+   Undamped problem K x = kappa M x, kappa = -lambda^2, half the size of the quadratic one: EPS Krylov-Schur with shift-and-invert
+   about a real shift, symmetric (GHEP) or not (GNHEP). A kappa in the complex plane stands for lambda = sqrt(-kappa) and
+   -lambda; the one with omega >= 0 is kept, so that a complex pair of kappa gives both members of a lock-in pair.
+
+   Krylov-Schur converges eigenvalues in the order of their distance from the shift, so the window is covered when the farthest
+   converged one lies outside the circle about the shift through the ends of the window.
+*/
+#include "modesimpl.h"
+#include <complex.h>
+
+PetscReal UndampedShift(const Window *window)
+{
+  const PetscReal low = window->low * window->low, high = window->high * window->high;
+
+  return window->count ? window->target * window->target : low + 0.2 * (high - low);
+}
+
+/* Radius about the shift that the converged eigenvalues must exceed */
+static PetscReal RadiusNeeded(const Window *window, PetscReal shift, const Spectrum *found)
+{
+  PetscReal far[2] = {window->low, window->high};
+
+  if (window->count) { /* the count-th nearest to the target, on either side */
+    PetscReal distance[1] = {0};
+
+    for (PetscInt i = 0; i < found->n; i++) {
+      PetscInt nearer = 0;
+
+      for (PetscInt j = 0; j < found->n; j++)
+        if (PetscAbsReal(found->omega[j] - window->target) < PetscAbsReal(found->omega[i] - window->target)) nearer++;
+      if (nearer < window->count) distance[0] = PetscMax(distance[0], PetscAbsReal(found->omega[i] - window->target));
+    }
+    if (found->n < window->count) return PETSC_MAX_REAL;
+    far[0] = PetscMax(0, window->target - distance[0]);
+    far[1] = window->target + distance[0];
+  }
+  return PetscMax(PetscAbsReal(shift - far[0] * far[0]), PetscAbsReal(far[1] * far[1] - shift));
+}
+
+/* Puts the converged pairs into a spectrum; reach = distance of the farthest from the shift, infinite when all n are there */
+static PetscErrorCode Collect(EPS eps, PetscReal shift, PetscInt n, Spectrum *s)
+{
+  PetscInt n_converged;
+  Vec      xr, xi;
+  Mat      K;
+
+  PetscFunctionBeginUser;
+  PetscCall(EPSGetConverged(eps, &n_converged));
+  PetscCall(EPSGetOperators(eps, &K, NULL));
+  PetscCall(MatCreateVecs(K, &xr, &xi));
+  PetscCall(SpectrumCreate(n_converged, s));
+  for (PetscInt i = 0; i < n_converged; i++) {
+    PetscReal    kr, ki;
+    PetscComplex lambda;
+
+    PetscCall(EPSGetEigenpair(eps, i, &kr, &ki, xr, xi));
+    lambda = csqrt(-CMPLX(kr, ki));
+    if (cimag(lambda) < 0) lambda = -lambda;
+    if (ki == 0) lambda = kr > 0 ? CMPLX(0, sqrt(kr)) : CMPLX(sqrt(-kr), 0);
+    PetscCall(SpectrumAdd(s, creal(lambda), cimag(lambda), xr, ki != 0 ? xi : NULL));
+    s->reach = PetscMax(s->reach, cabs(CMPLX(kr - shift, ki)));
+  }
+  if (n_converged >= n) s->reach = PETSC_MAX_REAL;
+  PetscCall(VecDestroy(&xr));
+  PetscCall(VecDestroy(&xi));
+  PetscCall(SpectrumSort(s));
+  PetscFunctionReturn(0);
+}
+
+/* Solver for nev eigenvalues about the shift; the transposed problem starts from another random vector */
+static PetscErrorCode SolverCreate(const OperatorsPencil *pencil, ShiftInvert *si, PetscBool transposed, PetscInt nev, PetscInt n, EPS *eps)
+{
+  PetscRandom random;
+  BV          bv;
+  ST          st;
+
+  PetscFunctionBeginUser;
+  PetscCall(EPSCreate(si->comm, eps));
+  PetscCall(EPSSetOperators(*eps, pencil->K, pencil->M));
+  PetscCall(EPSSetProblemType(*eps, pencil->symmetric ? EPS_GHEP : EPS_GNHEP));
+  PetscCall(EPSSetWhichEigenpairs(*eps, EPS_TARGET_MAGNITUDE));
+  PetscCall(EPSSetTarget(*eps, si->shift));
+  PetscCall(EPSSetDimensions(*eps, nev, PetscMin(n, PetscMax(2 * nev, nev + 20)), PETSC_DEFAULT));
+  PetscCall(EPSSetTolerances(*eps, 1e-11, 200));
+  PetscCall(EPSGetST(*eps, &st));
+  PetscCall(ShiftInvertAttach(si, transposed, st));
+  PetscCall(EPSSetFromOptions(*eps));
+  PetscCall(EPSGetBV(*eps, &bv));
+  PetscCall(BVGetRandomContext(bv, &random));
+  PetscCall(PetscRandomSetSeed(random, transposed ? 20051 : 2005));
+  PetscCall(PetscRandomSeed(random));
+  PetscFunctionReturn(0);
+}
+
+/* K', M' for left vectors */
+static PetscErrorCode PencilTranspose(const OperatorsPencil *pencil, OperatorsPencil *transposed)
+{
+  PetscFunctionBeginUser;
+  *transposed = *pencil;
+  PetscCall(MatCreateTranspose(pencil->K, &transposed->K));
+  PetscCall(MatCreateTranspose(pencil->M, &transposed->M));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode UndampedSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si, PetscBool transposed,
+                             Spectrum *spectrum)
+{
+  OperatorsPencil problem = *pencil;
+  PetscInt        n, nev = window->extra + (window->count ? window->count + window->count / 2 : window->expected >= 0 ? window->expected : 40);
+  PetscBool       covered = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetSize(pencil->K, &n, NULL));
+  if (transposed) PetscCall(PencilTranspose(pencil, &problem));
+  for (int attempt = 0; attempt < 8 && !covered; attempt++, nev += nev / 2) {
+    EPS eps;
+
+    nev = PetscMin(nev, n);
+    PetscCall(SolverCreate(&problem, si, transposed, nev, n, &eps));
+    PetscCall(ProgressBegin(&modes->progress, transposed ? "left vectors" : "right vectors", 2 * nev + nev / 4));
+    PetscCall(EPSSolve(eps));
+    PetscCall(ProgressEnd(&modes->progress));
+    PetscCall(Collect(eps, si->shift, n, spectrum));
+    covered = spectrum->reach > RadiusNeeded(window, si->shift, spectrum) || spectrum->n == n ? PETSC_TRUE : PETSC_FALSE;
+    if (!covered && nev < n) PetscCall(SpectrumDestroy(spectrum));
+    PetscCall(EPSDestroy(&eps));
+    if (nev == n) break;
+  }
+  PetscCheck(covered, si->comm, PETSC_ERR_NOT_CONVERGED,
+             "the eigensolver did not converge all modes of the window; raise -eps_max_it or -eps_ncv, or narrow -modes_band");
+  if (transposed) {
+    PetscCall(MatDestroy(&problem.K));
+    PetscCall(MatDestroy(&problem.M));
+  }
+  PetscFunctionReturn(0);
+}

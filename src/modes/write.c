@@ -1,0 +1,97 @@
+/*
+   The table of modes for people and for files, and the shapes.
+*/
+#include "modesimpl.h"
+
+static PetscReal ModeFrequency(const Mode *mode)
+{
+  return mode->omega / (2 * PETSC_PI);
+}
+
+/* Damping ratio -Re(lambda) / |lambda|; 0 for a rigid mode */
+static PetscReal ModeDampingRatio(const Mode *mode)
+{
+  const PetscReal size = PetscSqrtReal(mode->sigma * mode->sigma + mode->omega * mode->omega);
+
+  return size > 0 && mode->sigma != 0 ? -mode->sigma / size : 0;
+}
+
+PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
+{
+  PetscInt n_unstable = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "mode    freq Hz   growth 1/s  damping %%  error Hz  condition  backward  label\n"));
+  for (PetscInt i = 0; i < modes->n; i++) {
+    const Mode *m = &modes->mode[i];
+
+    if (m->unstable) n_unstable++;
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%4" PetscInt_FMT " %10.3f %12.4f %10.5f %9.1e %10.4g %9.1e  %s%s\n", i + 1,
+                                     (double)ModeFrequency(m), (double)m->sigma, (double)(100 * ModeDampingRatio(m)),
+                                     (double)(m->error / (2 * PETSC_PI)), (double)m->condition, (double)m->backward_error, m->label,
+                                     m->unstable ? "  UNSTABLE" : ""));
+  }
+  PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " modes, %" PetscInt_FMT " unstable; %s\n", modes->n, n_unstable, modes->completeness));
+  PetscFunctionReturn(0);
+}
+
+/* modes.csv */
+static PetscErrorCode TableWrite(Modes modes, Results results)
+{
+  ResultsTable table;
+
+  PetscFunctionBeginUser;
+  PetscCall(ResultsTableOpen(results, "modes", "mode,freq_hz,growth_rad_s,damping_ratio,backward_error,condition,unstable,label,error_hz", &table));
+  for (PetscInt i = 0; i < modes->n; i++) {
+    const Mode *m = &modes->mode[i];
+
+    PetscCall(ResultsTableRow(table, "%d,%.15g,%.15g,%.15g,%.15g,%.15g,%d,\"%s\",%.15g", (int)i + 1, (double)ModeFrequency(m), (double)m->sigma,
+                              (double)ModeDampingRatio(m), (double)m->backward_error, (double)m->condition, (int)m->unstable, m->label,
+                              (double)(m->error / (2 * PETSC_PI))));
+  }
+  PetscCall(ResultsTableClose(&table));
+  PetscFunctionReturn(0);
+}
+
+/* modes.h5 and modes.xmf */
+static PetscErrorCode ShapesWrite(Modes modes, Model model, Results results)
+{
+  const Part     *parts;
+  const PetscInt *cell_part;
+  const char    **names;
+  PetscInt        n_parts;
+  ResultsField    field;
+  DM              dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(model, &dm));
+  PetscCall(ModelGetParts(model, &n_parts, &parts));
+  PetscCall(ModelGetCellParts(model, &cell_part));
+  PetscCall(PetscMalloc1(n_parts, &names));
+  for (PetscInt i = 0; i < n_parts; i++) names[i] = parts[i].name;
+  PetscCall(ResultsFieldOpen(results, "modes", dm, n_parts, names, cell_part, &field));
+  for (PetscInt i = 0; i < modes->n; i++) {
+    const Mode *m = &modes->mode[i];
+    char        key[32], title[128];
+
+    PetscCall(PetscSNPrintf(key, sizeof(key), "mode_%03d", (int)i + 1));
+    PetscCall(PetscSNPrintf(title, sizeof(title), "%d: %.6g Hz, growth %.4g 1/s, %s", (int)i + 1, (double)ModeFrequency(m), (double)m->sigma, m->label));
+    PetscCall(ResultsFieldWriteMode(field, key, title, modes->right.xr[i], modes->right.xi[i]));
+  }
+  PetscCall(ResultsFieldClose(&field));
+  PetscCall(PetscFree(names));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesWrite(Modes modes, Results results)
+{
+  PetscBool wanted;
+  Model     model;
+
+  PetscFunctionBeginUser;
+  PetscCall(TableWrite(modes, results));
+  PetscCall(OperatorsGetModel(modes->operators, &model, NULL));
+  PetscCall(ResultsWantFields(results, &wanted));
+  if (model && wanted) PetscCall(ShapesWrite(modes, model, results));
+  PetscFunctionReturn(0);
+}

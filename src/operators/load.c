@@ -1,0 +1,146 @@
+/*
+   Matrices without a mesh: PETSc binary files (MatLoad) or dense lists in the options, rows one after another.
+*/
+#include "operatorsimpl.h"
+
+#define MAX_DENSE 10000 /* entries of an inline matrix: 100 x 100 */
+
+static const char *const letters[N_OPERATORS]  = {"k", "m", "c", "h"};
+static const char *const meanings[N_OPERATORS] = {"stiffness, N/m", "mass, kg", "damping, N s/m", "friction part per unit mu, N/m"};
+
+PetscErrorCode OperatorsLoadFromOptions(Operators o, PetscOptionItems *PetscOptionsObject)
+{
+  char name[64], help[160];
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < N_OPERATORS; i++) {
+    PetscBool set;
+
+    PetscCall(PetscSNPrintf(name, sizeof(name), "-operators_load_%s", letters[i]));
+    PetscCall(PetscSNPrintf(help, sizeof(help), "PETSc binary file of the %s", meanings[i]));
+    PetscCall(PetscOptionsString(name, help, NULL, o->load[i], o->load[i], sizeof(o->load[i]), NULL));
+    PetscCall(PetscSNPrintf(name, sizeof(name), "-operators_dense_%s", letters[i]));
+    PetscCall(PetscSNPrintf(help, sizeof(help), "small dense matrix of the %s, rows one after another", meanings[i]));
+    PetscCall(PetscMalloc1(MAX_DENSE, &o->dense[i]));
+    o->n_dense[i] = MAX_DENSE;
+    PetscCall(PetscOptionsRealArray(name, help, NULL, o->dense[i], &o->n_dense[i], &set));
+    if (!set) o->n_dense[i] = 0;
+    PetscCheck(!set || !o->load[i][0], o->comm, PETSC_ERR_USER_INPUT, "-operators_load_%s and -operators_dense_%s exclude each other",
+               letters[i], letters[i]);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error when the file cannot be read, alike on all ranks */
+static PetscErrorCode FileCheck(MPI_Comm comm, const char letter[], const char file[])
+{
+  PetscBool   readable;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0) PetscCall(PetscTestFile(file, 'r', &readable));
+  PetscCallMPI(MPI_Bcast(&readable, 1, MPIU_BOOL, 0, comm));
+  PetscCheck(readable, comm, PETSC_ERR_FILE_OPEN, "cannot read '%s' of -operators_load_%s: give a file written by -operators_save or MatView()",
+             file, letter);
+  PetscFunctionReturn(0);
+}
+
+/* Sparse matrix from a dense list */
+static PetscErrorCode DenseCreate(MPI_Comm comm, const char letter[], PetscInt n_values, const PetscReal values[], Mat *A)
+{
+  const PetscInt n = (PetscInt)(PetscSqrtReal((PetscReal)n_values) + 0.5);
+  PetscInt       first, last;
+
+  PetscFunctionBeginUser;
+  PetscCheck(n * n == n_values, comm, PETSC_ERR_USER_INPUT, "-operators_dense_%s has %" PetscInt_FMT " values, which is no square number", letter,
+             n_values);
+  PetscCall(MatCreateAIJ(comm, PETSC_DECIDE, PETSC_DECIDE, n, n, n, NULL, n, NULL, A));
+  PetscCall(MatGetOwnershipRange(*A, &first, &last));
+  for (PetscInt i = first; i < last; i++)
+    for (PetscInt j = 0; j < n; j++) PetscCall(MatSetValue(*A, i, j, values[i * n + j], INSERT_VALUES));
+  PetscCall(MatAssemblyBegin(*A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*A, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+/* One matrix from its file */
+static PetscErrorCode FileLoad(MPI_Comm comm, const char letter[], const char file[], Mat *A)
+{
+  PetscViewer viewer;
+
+  PetscFunctionBeginUser;
+  PetscCall(FileCheck(comm, letter, file));
+  PetscCall(PetscViewerBinaryOpen(comm, file, FILE_MODE_READ, &viewer));
+  PetscCall(MatCreate(comm, A));
+  PetscCall(MatSetType(*A, MATAIJ));
+  PetscCall(MatLoad(*A, viewer));
+  PetscCall(PetscViewerDestroy(&viewer));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsLoad(Operators o)
+{
+  PetscInt n, rows, columns;
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < N_OPERATORS; i++) {
+    if (o->load[i][0]) PetscCall(FileLoad(o->comm, letters[i], o->load[i], &o->A[i]));
+    else if (o->n_dense[i]) PetscCall(DenseCreate(o->comm, letters[i], o->n_dense[i], o->dense[i], &o->A[i]));
+  }
+  for (int i = OPERATOR_K; i <= OPERATOR_M; i++)
+    PetscCheck(o->A[i], o->comm, PETSC_ERR_USER_INPUT, "-operators_load_%s or -operators_dense_%s is missing: K and M are both needed",
+               letters[i], letters[i]);
+  PetscCall(MatGetSize(o->A[OPERATOR_K], &n, NULL));
+  for (int i = 0; i < N_OPERATORS; i++) {
+    if (!o->A[i]) continue;
+    PetscCall(MatGetSize(o->A[i], &rows, &columns));
+    PetscCheck(rows == n && columns == n, o->comm, PETSC_ERR_USER_INPUT,
+               "matrix %s is %" PetscInt_FMT " x %" PetscInt_FMT ", but K has %" PetscInt_FMT " rows: all must be square and alike", letters[i],
+               rows, columns, n);
+  }
+  PetscCall(MatIsSymmetric(o->A[OPERATOR_K], 0, &o->symmetric));
+  PetscFunctionReturn(0);
+}
+
+/* Writes one matrix under a temporary name, then renames it */
+static PetscErrorCode FileSave(Operators o, const char name[], Mat A)
+{
+  char        file[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
+  PetscViewer viewer;
+  PetscMPIInt rank;
+  int         failed = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(file, sizeof(file), "%s/%s.bin", o->save, name));
+  PetscCall(PetscSNPrintf(part, sizeof(part), "%s.part", file));
+  PetscCall(PetscViewerCreate(o->comm, &viewer));
+  PetscCall(PetscViewerSetType(viewer, PETSCVIEWERBINARY));
+  PetscCall(PetscViewerBinarySkipInfo(viewer));
+  PetscCall(PetscViewerFileSetMode(viewer, FILE_MODE_WRITE));
+  PetscCall(PetscViewerFileSetName(viewer, part));
+  PetscCall(MatView(A, viewer));
+  PetscCall(PetscViewerDestroy(&viewer));
+  PetscCallMPI(MPI_Comm_rank(o->comm, &rank));
+  if (rank == 0) failed = rename(part, file);
+  PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
+  PetscCheck(!failed, o->comm, PETSC_ERR_FILE_WRITE, "cannot write '%s' of -operators_save", file);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsSave(Operators o)
+{
+  OperatorsPencil pencil;
+  PetscMPIInt     rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(o->comm, &rank));
+  if (rank == 0) PetscCall(PetscMkdir(o->save));
+  PetscCallMPI(MPI_Barrier(o->comm));
+  PetscCall(OperatorsGetPencil(o, &pencil));
+  PetscCall(FileSave(o, "K", o->Zr ? pencil.K : o->A[OPERATOR_K]));
+  PetscCall(FileSave(o, "M", pencil.M));
+  if (pencil.C) PetscCall(FileSave(o, "C", pencil.C));
+  if (o->A[OPERATOR_H] && !o->Zr) PetscCall(FileSave(o, "H", o->A[OPERATOR_H]));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,199 @@
+/*
+   Lists of names, and unknown options.
+
+   An option that nobody read is an error unless its prefix is one of PETSc's or SLEPc's. The valid names are exactly those
+   that -help would print, so they are collected by reading all options once more with PETSc's help printer replaced; this
+   happens only when there is something to complain about. Nearest = smallest Damerau-Levenshtein distance (adjacent swaps
+   count once): F. J. Damerau, Comm. ACM 7, 1964.
+*/
+#include <squeal/options.h>
+#include <ctype.h>
+#include <stdarg.h>
+
+#define MAX_VALID 1024
+#define MAX_NAME  128
+
+/* Prefixes of options that PETSc and SLEPc read themselves, some of them only at the end */
+static const char *const library_prefixes[] = {
+  "bv_",     "checkstack", "citations", "debug",  "display", "dm_",   "draw",   "ds_",     "eps_",  "error_",
+  "fp_",     "get_total",  "help",      "info",   "is_",     "ksp_",  "log_",   "malloc",  "mat_",  "matptap",
+  "memory",  "mpi",        "no_signal", "objects", "on_error", "options_", "partitioner", "pc_", "pep_", "petscpartitioner",
+  "petscspace", "python",  "rg_",       "saws",   "sf_",     "shared_tmp", "slepc", "st_", "start_in", "stop_for",
+  "sub_",    "tmp",        "ts_",       "use_gpu", "vec_",   "vecscatter", "version", "viewer", "x_virtual", NULL};
+
+/* Whether a name can be a prefix: a letter, then letters, digits and underscores */
+static PetscBool NameIsIdentifier(const char name[])
+{
+  if (!isalpha((unsigned char)name[0])) return PETSC_FALSE;
+  for (const char *c = name; *c; c++)
+    if (!isalnum((unsigned char)*c) && *c != '_') return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* Splits a comma separated default into names */
+static PetscErrorCode NamesSplit(const char initial[], PetscInt max, PetscInt *n, char *names[])
+{
+  char **words;
+  int    n_words;
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  if (!initial[0]) PetscFunctionReturn(0);
+  PetscCall(PetscStrToArray(initial, ',', &n_words, &words));
+  for (int i = 0; i < n_words && i < max; i++) PetscCall(PetscStrallocpy(words[i], &names[(*n)++]));
+  PetscCall(PetscStrToArrayDestroy(n_words, words));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], const char initial[], PetscInt max,
+                               PetscInt *n, char *names[])
+{
+  PetscBool set, same;
+  PetscInt  count = max;
+
+  PetscFunctionBeginUser;
+  PetscOptionsBegin(comm, NULL, "Names in the scene", NULL);
+  PetscCall(PetscOptionsStringArray(option, help, initial[0] ? initial : "none", names, &count, &set));
+  PetscOptionsEnd();
+  if (!set) PetscCall(NamesSplit(initial, max, &count, names));
+  for (PetscInt i = 0; i < count; i++) {
+    PetscCheck(NameIsIdentifier(names[i]), comm, PETSC_ERR_USER_INPUT,
+               "%s '%s' is no name: use letters, digits and underscores, a letter first", option, names[i]);
+    for (PetscInt j = 0; j < i; j++) {
+      PetscCall(PetscStrcmp(names[i], names[j], &same));
+      PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "%s names '%s' twice", option, names[i]);
+    }
+  }
+  *n = count;
+  PetscFunctionReturn(0);
+}
+
+/* Number of edits (insert, delete, replace, swap neighbours) from a to b; both at most MAX_NAME - 1 long */
+static int EditDistance(const char a[], const char b[])
+{
+  const int la = (int)strnlen(a, MAX_NAME - 1), lb = (int)strnlen(b, MAX_NAME - 1);
+  int       d[3][MAX_NAME];
+
+  for (int j = 0; j <= lb; j++) d[0][j] = j;
+  for (int i = 1; i <= la; i++) {
+    int *const now = d[i % 3], *const last = d[(i + 2) % 3], *const before = d[(i + 1) % 3];
+
+    now[0] = i;
+    for (int j = 1; j <= lb; j++) {
+      const int differ = a[i - 1] != b[j - 1];
+
+      now[j] = PetscMin(PetscMin(now[j - 1], last[j]) + 1, last[j - 1] + differ);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) now[j] = PetscMin(now[j], before[j - 2] + 1);
+    }
+  }
+  return d[la % 3][lb];
+}
+
+/* Names that the help printer saw. PETSc's printer is a bare function pointer without context: hence the one static record,
+   alive only inside CollectValid(). */
+static struct {
+  int  n;
+  char name[MAX_VALID][MAX_NAME];
+} *collected;
+
+/* Stands in for PetscHelpPrintf: keeps the names from lines such as "  -disc_young: <now ...>" */
+static PetscErrorCode CollectHelp(MPI_Comm comm, const char format[], ...)
+{
+  char        text[4096];
+  size_t      length;
+  const char *c;
+  va_list     args;
+
+  PetscFunctionBeginUser;
+  (void)comm;
+  va_start(args, format);
+  PetscCall(PetscVSNPrintf(text, sizeof(text), format, &length, args));
+  va_end(args);
+  for (c = text; *c == ' '; c++) continue;
+  if (*c++ != '-' || collected->n == MAX_VALID) PetscFunctionReturn(0);
+  length = strspn(c, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_");
+  length = PetscMin(length, MAX_NAME - 1);
+  PetscCall(PetscStrncpy(collected->name[collected->n++], c, length + 1));
+  PetscFunctionReturn(0);
+}
+
+/* Fills `collected` with all valid names */
+static PetscErrorCode CollectValid(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx)
+{
+  PetscErrorCode (*const printer)(MPI_Comm, const char[], ...) = PetscHelpPrintf;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsSetValue(NULL, "-help", NULL));
+  PetscHelpPrintf = CollectHelp;
+  PetscCall((*read_again)(comm, ctx));
+  PetscHelpPrintf = printer;
+  PetscFunctionReturn(0);
+}
+
+/* Whether PETSc or SLEPc read this option */
+static PetscBool OptionIsLibrarys(const char name[])
+{
+  for (const char *const *prefix = library_prefixes; *prefix; prefix++)
+    if (!strncmp(name, *prefix, strlen(*prefix))) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Raises the error for one unknown option */
+static PetscErrorCode ComplainUnknown(MPI_Comm comm, const char name[], const char nearest[])
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!nearest, comm, PETSC_ERR_USER_INPUT, "unknown option -%s; the nearest valid one is -%s", name, nearest);
+  SETERRQ(comm, PETSC_ERR_USER_INPUT, "unknown option -%s; -help lists the valid ones", name);
+}
+
+PetscErrorCode OptionsCheckUnknown(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx)
+{
+  PetscInt    n, best = PETSC_MAX_INT;
+  char      **names, **values, unknown[MAX_NAME] = "", nearest[MAX_NAME] = "";
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  for (PetscInt i = 0; i < n && !unknown[0]; i++)
+    if (!OptionIsLibrarys(names[i])) PetscCall(PetscStrncpy(unknown, names[i], sizeof(unknown)));
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  if (!unknown[0]) PetscFunctionReturn(0);
+
+  PetscCall(PetscCalloc1(1, &collected));
+  PetscCall(CollectValid(comm, read_again, ctx));
+  for (int i = 0; i < collected->n; i++) {
+    const int distance = EditDistance(unknown, collected->name[i]);
+
+    if (distance >= best) continue;
+    best = distance;
+    PetscCall(PetscStrncpy(nearest, collected->name[i], sizeof(nearest)));
+  }
+  PetscCall(PetscFree(collected));
+  PetscCall(ComplainUnknown(comm, unknown, best <= 2 + (PetscInt)strlen(unknown) / 3 ? nearest : NULL));
+  PetscFunctionReturn(0);
+}
+
+/* Whether PETSc reads this option only at its end */
+static PetscBool OptionIsLate(const char name[])
+{
+  static const char *const late[] = {"log_", "malloc", "memory", "objects_dump", "options_left", "options_view", "citations",
+                                     "options_table", "get_total", "version", NULL};
+
+  for (const char *const *prefix = late; *prefix; prefix++)
+    if (!strncmp(name, *prefix, strlen(*prefix))) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+PetscErrorCode OptionsWarnUnused(MPI_Comm comm)
+{
+  PetscInt    n;
+  char      **names, **values;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  for (PetscInt i = 0; i < n && rank == 0; i++)
+    if (!OptionIsLate(names[i])) PetscCall(PetscFPrintf(PETSC_COMM_SELF, stderr, "squeal: warning: option -%s was not used\n", names[i]));
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  PetscFunctionReturn(0);
+}

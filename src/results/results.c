@@ -1,0 +1,131 @@
+/*
+   Results - the folder of the results and its tables. See squeal/results.h.
+*/
+#include "resultsimpl.h"
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+struct _p_ResultsTable {
+  OutFile file;
+};
+
+/* Makes the folder and its parents where they are missing; returns errno, 0 when a folder is there */
+static int MakeFolders(const char dir[])
+{
+  char        path[PETSC_MAX_PATH_LEN];
+  struct stat status;
+
+  strcpy(path, dir);
+  for (char *end = path + 1; *end; end++) {
+    if (*end != '/') continue;
+    *end = '\0';
+    if (mkdir(path, 0777) && errno != EEXIST) return errno;
+    *end = '/';
+  }
+  if (mkdir(path, 0777) && errno != EEXIST) return errno;
+  if (stat(path, &status)) return errno;
+  if (!S_ISDIR(status.st_mode)) return ENOTDIR;
+  return access(path, W_OK | X_OK) ? errno : 0;
+}
+
+PetscErrorCode ResultsCreate(MPI_Comm comm, Results *results)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(results));
+  (*results)->comm   = comm;
+  (*results)->fields = PETSC_TRUE;
+  PetscCall(PetscStrcpy((*results)->dir, "results"));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsSetFromOptions(Results results)
+{
+  const size_t room = sizeof(results->dir) - 256; /* the rest is for the names of the files */
+
+  PetscFunctionBeginUser;
+  PetscOptionsBegin(results->comm, NULL, "Results", "Results");
+  PetscCall(PetscOptionsString("-output_dir", "Folder of all files, made where it is missing", "ResultsSetFromOptions",
+                               results->dir, results->dir, sizeof(results->dir), NULL));
+  PetscCall(PetscOptionsBool("-output_fields", "Write shapes for ParaView (*.h5, *.xmf) beside the tables",
+                             "ResultsSetFromOptions", results->fields, &results->fields, NULL));
+  PetscOptionsEnd();
+  PetscCheck(results->dir[0] && strlen(results->dir) < room, results->comm, PETSC_ERR_USER_INPUT,
+             "-output_dir must be the name of a folder, of at most %d characters", (int)room);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsOpenDirectory(Results results)
+{
+  PetscMPIInt error = 0, rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(results->comm, &rank));
+  if (rank == 0) error = MakeFolders(results->dir);
+  PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, results->comm));
+  PetscCheck(!error, results->comm, PETSC_ERR_FILE_OPEN,
+             "cannot write into the folder -output_dir %s: %s; choose another", results->dir, strerror(error));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsGetDirectory(Results results, const char **dir)
+{
+  PetscFunctionBeginUser;
+  *dir = results->dir;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsWantFields(Results results, PetscBool *wanted)
+{
+  PetscFunctionBeginUser;
+  *wanted = results->fields;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsTableOpen(Results results, const char name[], const char header[], ResultsTable *table)
+{
+  OutFile *file;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(table));
+  file = &(*table)->file;
+  PetscCall(OutFileSetName(results, name, ".csv", file));
+  PetscCall(OutFileOpenText(file));
+  PetscCall(OutFilePrint(file, "%s\n", header));
+  PetscCall(OutFilesCheck(1, &file));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsTableRow(ResultsTable table, const char format[], ...)
+{
+  va_list values;
+
+  PetscFunctionBeginUser;
+  va_start(values, format);
+  PetscCall(OutFileVPrint(&table->file, format, values));
+  va_end(values);
+  PetscCall(OutFilePrint(&table->file, "\n"));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsTableClose(ResultsTable *table)
+{
+  OutFile       *file;
+  PetscErrorCode failure;
+
+  PetscFunctionBeginUser;
+  if (!*table) PetscFunctionReturn(0);
+  file    = &(*table)->file;
+  failure = OutFilesPublish(1, &file);
+  PetscCall(PetscFree(*table));
+  PetscCall(failure);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsDestroy(Results *results)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(*results));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,77 @@
+/*
+   Private to results/: a file under its temporary name, text or HDF5, and the XDMF text that describes the fields.
+
+   Errors of the system are noted per rank (errno) while writing and raised on all ranks by OutFilesCheck() and
+   OutFilesPublish(). HDF5 is driven by the first rank alone, with its serial driver, for groups, attributes and the layout
+   of the datasets; all ranks then write their rows in place. MPI-IO is not used: Open MPI's collective writes report
+   success, or never return, when the disk is full.
+*/
+#pragma once
+
+#include <squeal/results.h>
+#include <hdf5.h>
+#include <stdio.h>
+
+struct _p_Results {
+  MPI_Comm  comm;
+  char      dir[PETSC_MAX_PATH_LEN];
+  PetscBool fields;
+};
+
+/* A file that is being written as `part`, to be renamed to `name` */
+typedef struct {
+  MPI_Comm comm;
+  char     name[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
+  int      error;  /* errno of the first failure on this rank; 0 = none */
+  FILE    *stream; /* text: open on the first rank */
+  hid_t    h5;     /* HDF5: open on the first rank, else H5I_INVALID_HID */
+  int      fd;     /* HDF5: for the rows of this rank, else -1 */
+} OutFile;
+
+/* Rows of a distributed table of values that this rank holds: [first, first + n_local) of n_global */
+typedef struct {
+  PetscInt first, n_local, n_global;
+} Rows;
+
+/* How a cell is described to VTK and XDMF */
+typedef struct {
+  DMPolytopeType polytope;
+  unsigned char  vtk;  /* VTK cell type */
+  const char    *xdmf; /* XDMF TopologyType */
+  PetscInt       n_nodes;
+  PetscInt       closure_order[8]; /* VTK corner i is vertex closure_order[i] of the DMPlex closure */
+} FieldShape;
+
+struct _p_ResultsField {
+  DM                dm;
+  char              h5_name[PETSC_MAX_PATH_LEN]; /* as the XDMF file names it: relative to its own folder */
+  OutFile           h5, xmf;
+  Rows              nodes, cells;
+  const FieldShape *shape;
+  PetscInt          n_modes;
+};
+
+/* outfile.c */
+PETSC_INTERN PetscErrorCode OutFileSetName(Results results, const char name[], const char extension[], OutFile *file);
+PETSC_INTERN PetscErrorCode OutFileNote(OutFile *file, PetscBool failed);
+PETSC_INTERN PetscErrorCode OutFileOpenText(OutFile *file);
+PETSC_INTERN PetscErrorCode OutFilePrint(OutFile *file, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
+PETSC_INTERN PetscErrorCode OutFileVPrint(OutFile *file, const char format[], va_list values);
+PETSC_INTERN PetscErrorCode OutFilesCheck(PetscInt n, OutFile *const files[]);
+PETSC_INTERN PetscErrorCode OutFilesPublish(PetscInt n, OutFile *const files[]);
+
+/* h5file.c */
+PETSC_INTERN PetscErrorCode OutFileOpenH5(OutFile *file);
+PETSC_INTERN PetscErrorCode OutFileH5Group(OutFile *file, const char path[]);
+PETSC_INTERN PetscErrorCode OutFileH5Write(OutFile *file, const char path[], hid_t type, const Rows *rows,
+                                           PetscInt width, const void *values);
+PETSC_INTERN PetscErrorCode OutFileH5Integers(OutFile *file, const char path[], const char attribute[], PetscInt n,
+                                              const int values[]);
+PETSC_INTERN PetscErrorCode OutFileH5Strings(OutFile *file, const char path[], const char attribute[], PetscInt n,
+                                             const char *const strings[]);
+PETSC_INTERN PetscErrorCode OutFileH5Close(OutFile *file);
+
+/* xdmf.c */
+PETSC_INTERN PetscErrorCode XdmfBegin(ResultsField field, PetscInt n_parts, const char *const parts[]);
+PETSC_INTERN PetscErrorCode XdmfGrid(ResultsField field, const char key[], const char title[]);
+PETSC_INTERN PetscErrorCode XdmfEnd(ResultsField field);

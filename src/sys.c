@@ -1,0 +1,110 @@
+/*
+   Life cycle: start, one-line errors, log stages, end.
+
+   An error that all ranks of a communicator meet is printed by its rank 0 and every rank leaves through MPI_Finalize; an error
+   of a single rank is printed there, and the other ranks, which know nothing of it, are aborted.
+*/
+#include <squeal/squeal.h>
+#include <slepcsys.h>
+#include <hdf5.h>
+
+static const char *const stage_names[SQUEAL_N_STAGES] = {"Model", "Contact", "Operators", "Modes", "Results"};
+static PetscLogStage     stages[SQUEAL_N_STAGES];
+
+/* Log handles of the stages: seconds spent and resident memory (bytes) at the end of each, on this rank */
+static struct {
+  PetscLogDouble begun, seconds, memory;
+} ledger[SQUEAL_N_STAGES];
+
+static const char citation[] =
+  "@inproceedings{massi2005,\n  title = {Numerical analysis of squeal instability},\n  year = {2005}\n}\n";
+static PetscBool cited = PETSC_FALSE;
+
+/* Prints the first line of the first message; the codes of the callers above add nothing for a user */
+static PetscErrorCode PrintError(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
+                                 PetscErrorType type, const char *message, void *ctx)
+{
+  PetscMPIInt rank = 0, size = 1;
+  const char *text = message;
+
+  (void)line, (void)function, (void)file, (void)ctx;
+  if (type != PETSC_ERROR_INITIAL) return code;
+  if (comm != MPI_COMM_NULL) (void)MPI_Comm_rank(comm, &rank), (void)MPI_Comm_size(comm, &size);
+  if (rank) return code;
+  if (!text || !text[0]) (void)PetscErrorMessage(code, &text, NULL);
+  fprintf(stderr, "squeal: error: %.*s\n", text ? (int)strcspn(text, "\n") : 13, text ? text : "unknown error");
+  fflush(stderr);
+  return code;
+}
+
+PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
+{
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Init(argc, argv));
+  (void)H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  PetscCall(PetscPushErrorHandler(PrintError, NULL));
+  PetscCall(SlepcInitialize(argc, argv, NULL, help));
+  for (PetscInt s = 0; s < SQUEAL_N_STAGES; s++) PetscCall(PetscLogStageRegister(stage_names[s], &stages[s]));
+  PetscCall(PetscCitationsRegister(citation, &cited));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SquealStageBegin(SquealStage stage)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogStagePush(stages[stage]));
+  PetscCall(PetscTime(&ledger[stage].begun));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SquealStageEnd(SquealStage stage)
+{
+  PetscLogDouble now;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&now));
+  ledger[stage].seconds += now - ledger[stage].begun;
+  PetscCall(PetscMemoryGetCurrentUsage(&ledger[stage].memory));
+  PetscCall(PetscLogStagePop());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SquealViewStages(MPI_Comm comm, PetscViewer viewer)
+{
+  double slowest, memory;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "stage       time s   memory MB\n"));
+  for (PetscInt s = 0; s < SQUEAL_N_STAGES; s++) {
+    PetscCallMPI(MPI_Allreduce(&ledger[s].seconds, &slowest, 1, MPI_DOUBLE, MPI_MAX, comm));
+    PetscCallMPI(MPI_Allreduce(&ledger[s].memory, &memory, 1, MPI_DOUBLE, MPI_SUM, comm));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%-10s %7.2f   %9.0f\n", stage_names[s], slowest, memory / 1e6));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Waits up to two seconds for all ranks; false when some do not come */
+static PetscBool AllRanksArrive(void)
+{
+  MPI_Request request;
+  int         done = 0;
+
+  if (MPI_Ibarrier(MPI_COMM_WORLD, &request)) return PETSC_FALSE;
+  for (int i = 0; i < 200 && !done; i++) {
+    (void)MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    if (!done) (void)PetscSleep(0.01);
+  }
+  return done ? PETSC_TRUE : PETSC_FALSE;
+}
+
+int SquealFinalize(PetscErrorCode error)
+{
+  if (error) {
+    if (!AllRanksArrive()) (void)MPI_Abort(MPI_COMM_WORLD, 1);
+    (void)MPI_Finalize();
+    return 1;
+  }
+  if (SlepcFinalize()) (void)MPI_Abort(MPI_COMM_WORLD, 1);
+  (void)MPI_Finalize();
+  return 0;
+}

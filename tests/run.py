@@ -1,0 +1,351 @@
+#!/usr/bin/env python3
+"""Runs one application test: squeal on every run of a case file, then numeric checks of the tables that they wrote.
+
+A case is a TOML file. Only `run` is required.
+
+    options = "-options_file {source}/options/oscillator.yaml"   # of all runs; {source} is the top of the repository
+    ranks = [1, 2]           # all runs and checks are made on each of these; default [1]
+    needs = ["vtkmodules"]   # Python modules, without which the case is skipped
+
+    [run.NAME]               # made in the order of the file
+    options = "-contact_mu 1"    # {OTHER} is the output folder of an earlier run
+    stdout = ["regex"]           # found in the output
+    files = ["modes.csv"]        # written, not empty
+    warning = "regex"            # each warning matches; without it there must be none
+    error = "regex"              # the run must fail: status not 0, one line on stderr, which matches; no rank and no file left
+                                 # behind but `files`
+    disk_limit = 4096            # bytes that a file may have, as on a full disk; one rank
+
+    [[check]]
+    run = "NAME"                 # default: the only run
+    table = "modes.csv"          # default
+    column = "freq_hz"           # or "eigenvalue", the complex growth_rad_s + 2 pi i freq_hz
+    where = "freq_hz > 100 and unstable == 1"    # which rows; default all
+    # then one reference or more of:
+    equals = [1.0, 2.0]          # in row order; eigenvalues as [growth_rad_s, freq_hz] in any order
+    equals = {"(0,4)" = 3918}    # by label: the nearest of the rows with that label
+    equals_run = "OTHER"         # the same rows of another run; `by = "label"` compares the nearest of the same label
+    across_ranks = true          # the same run on ranks[0]
+    min = 0                      # bounds of every value
+    max = 1e-8
+    count = 2                    # number of rows
+    # with tolerances |a - b| <= atol + rtol |b|, and optionally the root mean square of (a - b)/b:
+    rtol = 1e-10
+    atol = 0
+    rms = 0.01
+
+    [[check]]
+    run = "NAME"
+    command = "{source}/tests/open_fields.py {NAME}/modes.xmf"   # a Python script that must succeed
+
+Every run that succeeds must leave no memory allocated and no option unused. Exit status: 0, 1 failed, 77 skipped.
+"""
+
+import argparse
+import csv
+import importlib.util
+import math
+import os
+import re
+import resource
+import shlex
+import signal
+import subprocess
+import sys
+import tempfile
+import tomllib
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parent.parent
+FINAL_SUFFIXES = {".csv", ".h5", ".xmf", ".bin", ".info"}
+MPIRUN_REMARK = re.compile(r"^-{40,}\n.*?^-{40,}$", re.MULTILINE | re.DOTALL)  # Open MPI 5 cannot be told to be quiet
+SKIPPED = 77
+
+
+class Failure(Exception):
+    """What the test found wrong, for people."""
+
+
+def require(condition, message):
+    if not condition:
+        raise Failure(message)
+
+
+# --- running
+
+
+def limit_files(size):
+    """In the child: writing beyond `size` bytes fails with an error instead of a signal."""
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+
+def end(process):
+    """Asks a launcher to end itself and its ranks, then insists."""
+    process.terminate()
+    try:
+        process.communicate(timeout=10)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
+
+
+def processes_naming(text):
+    """Processes whose command line holds `text`."""
+    found = []
+    for entry in Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            if text.encode() in entry.read_bytes():
+                found.append(entry.parent.name)
+        except OSError:
+            pass  # ended meanwhile
+    return found
+
+
+class Runner:
+    """Makes the runs of a case on a number of ranks, each with an output folder of its own."""
+
+    def __init__(self, arguments, case, folder, ranks):
+        self.arguments, self.case, self.folder, self.ranks = arguments, case, folder, ranks
+
+    def output(self, name):
+        return self.folder / f"{name}-{self.ranks}"
+
+    def expand(self, text):
+        """Words of an options string, with folders in place of {source} and {RUN}."""
+        folders = {name: self.output(name) for name in self.case["run"]}
+        return [word.format(source=SOURCE, **folders) for word in shlex.split(text)]
+
+    def execute(self, name, run):
+        command = [self.arguments.launcher, "-n", str(self.ranks), self.arguments.squeal]
+        environment = {key: value for key, value in os.environ.items() if key != "PETSC_OPTIONS"}
+        limit = None
+        if "disk_limit" in run:
+            require(self.ranks == 1, "disk_limit works on one rank only")
+            command = [self.arguments.squeal]  # mpirun would undo the child's choice of signals
+            environment["OMPI_MCA_btl"] = "self"  # no shared-memory segment, which the limit would forbid
+            limit = lambda: limit_files(run["disk_limit"])  # noqa: E731
+        command += self.expand(self.case.get("options", "") + " " + run.get("options", ""))
+        command += ["-output_dir", str(self.output(name)), "-malloc_dump", "-options_left"]
+        print("$", shlex.join(map(str, command)), flush=True)
+        process = subprocess.Popen(command, cwd=self.folder, env=environment, text=True, preexec_fn=limit,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        try:
+            stdout, stderr = process.communicate(timeout=self.arguments.timeout)
+        except subprocess.TimeoutExpired:
+            end(process)
+            raise Failure(f"no end within {self.arguments.timeout:g} s") from None
+        return process.returncode, stdout, stderr
+
+    def make(self, name):
+        run = self.case["run"][name]
+        status, stdout, stderr = self.execute(name, run)
+        try:
+            if "error" in run:
+                self.check_error(name, run, status, stderr)
+            else:
+                self.check_success(name, run, status, stdout, stderr)
+        except Failure:
+            print(stdout, stderr, sep="\n")
+            raise
+
+    def check_error(self, name, run, status, stderr):
+        lines = [line for line in MPIRUN_REMARK.sub("", stderr).splitlines() if line.strip()]
+        require(status != 0, "exit status 0, but an error was expected")
+        require(len(lines) == 1, f"{len(lines)} lines on stderr, but one was expected")
+        require(re.search(run["error"], lines[0]), f"the message does not match {run['error']!r}")
+        left = {path.name for path in self.output(name).rglob("*") if path.suffix in FINAL_SUFFIXES}
+        left -= set(run.get("files", []))
+        require(not left, f"files left behind: {' '.join(sorted(left))}")
+        alive = processes_naming(str(self.output(name)))
+        require(not alive, f"processes left behind: {' '.join(alive)}")
+
+    def check_success(self, name, run, status, stdout, stderr):
+        require(status == 0, f"exit status {status}")
+        leaks = re.findall(r"^\[ *\d+\] ?\d+ bytes .*", stdout, re.MULTILINE)
+        require(not leaks, f"{len(leaks)} pieces of memory left allocated, the first: {leaks[0] if leaks else ''}")
+        unused = re.findall(r"Option left: name:(-\S+)", stdout)
+        require(not unused, f"options not used: {' '.join(unused)}")
+        for line in stderr.splitlines():
+            expected = "warning" in run and re.search(run["warning"], line)
+            require(expected or not line.startswith("squeal:"), f"unexpected on stderr: {line}")
+        require("warning" not in run or re.search(run["warning"], stderr), f"no warning {run.get('warning')!r}")
+        for pattern in run.get("stdout", []):
+            require(re.search(pattern, stdout, re.MULTILINE), f"the output does not hold {pattern!r}")
+        for file in run.get("files", []):
+            path = self.output(name) / file
+            require(path.is_file() and path.stat().st_size, f"{file} was not written")
+
+
+# --- checking
+
+
+def number(text):
+    """A cell of a table: a number where it is one."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def read_rows(path, where):
+    """Rows of a table for which `where` holds, with the complex eigenvalue as one more column where there is one."""
+    require(path.is_file(), f"{path.name} was not written")
+    with path.open(newline="") as file:
+        rows = [{key: number(cell) for key, cell in row.items()} for row in csv.DictReader(file)]
+    for row in rows:
+        if "growth_rad_s" in row and "freq_hz" in row:
+            row["eigenvalue"] = complex(row["growth_rad_s"], 2 * math.pi * row["freq_hz"])
+    return [row for row in rows if not where or eval(where, {"__builtins__": {"abs": abs}}, row)]
+
+
+def column_of(rows, column):
+    require(all(column in row for row in rows), f"there is no column {column!r}")
+    return [row[column] for row in rows]
+
+
+def nearest_pairs(values, references):
+    """Pairs each reference with the nearest value that is still free."""
+    free, pairs = list(values), []
+    for reference in references:
+        value = min(free, key=lambda other: abs(other - reference))
+        free.remove(value)
+        pairs.append((value, reference))
+    return pairs
+
+
+def pairs_by_label(rows, references, column):
+    """Pairs each (label, reference) with the nearest value of the rows with that label."""
+    pairs = []
+    for label, reference in references:
+        values = [row[column] for row in rows if row["label"] == label]
+        require(values, f"no row has the label {label}")
+        pairs.append((min(values, key=lambda other: abs(other - reference)), reference))
+    return pairs
+
+
+def pairs_in_order(values, references, column):
+    require(len(values) == len(references), f"{len(values)} rows, but {len(references)} were expected")
+    if column == "eigenvalue":
+        return nearest_pairs(values, references)
+    return list(zip(values, references))
+
+
+def compare(pairs, check):
+    """Judges pairs (value, reference); returns the worst error in units of what is allowed, and a line about it."""
+    if any(isinstance(reference, str) for _, reference in pairs):
+        wrong = [f"{value} for {reference}" for value, reference in pairs if value != reference]
+        require(not wrong, "; ".join(wrong))
+        return f"{len(pairs)} texts equal"
+    rtol, atol = check.get("rtol", 0), check.get("atol", 0)
+    errors = [(abs(value - reference), atol + rtol * abs(reference), value, reference) for value, reference in pairs]
+    error, allowed, value, reference = max(errors, key=lambda e: e[0] / e[1] if e[1] else e[0])
+    line = f"{len(pairs)} values, worst {value:.12g} for {reference:.12g}, error {error:.2e}, allowed {allowed:.2e}"
+    require(all(e[0] <= e[1] for e in errors), line)
+    if "rms" in check:
+        rms = math.sqrt(sum(abs((value - reference) / reference) ** 2 for value, reference in pairs) / len(pairs))
+        line += f", rms {rms:.2e}, allowed {check['rms']:.2e}"
+        require(rms <= check["rms"], line)
+    return line
+
+
+class Checker:
+    """Makes the checks of a case on the tables of one number of ranks; `first` is the runner of the first."""
+
+    def __init__(self, runner, first):
+        self.runner, self.first = runner, first
+
+    def rows(self, runner, name, check):
+        return read_rows(runner.output(name) / check.get("table", "modes.csv"), check.get("where"))
+
+    def make(self, check):
+        name = check.get("run", next(iter(self.runner.case["run"])))
+        if "command" in check:
+            command = [sys.executable, *self.runner.expand(check["command"])]
+            require(subprocess.run(command).returncode == 0, f"failed: {shlex.join(command)}")
+            return f"{check['command']} succeeded"
+        rows = self.rows(self.runner, name, check)
+        lines = [*self.references(rows, name, check), *self.bounds(rows, check)]
+        require(lines or "across_ranks" in check, "the check has no reference")
+        return "; ".join(lines)
+
+    def references(self, rows, name, check):
+        column = check.get("column", "eigenvalue")
+        values = column_of(rows, column)
+        if "equals" in check:
+            require(rows, "no row is selected")
+            yield compare(self.stated_pairs(rows, values, column, check["equals"]), check)
+        others = []
+        if "equals_run" in check:
+            others.append(self.rows(self.runner, check["equals_run"], check))
+        if check.get("across_ranks") and self.runner is not self.first:
+            others.append(self.rows(self.first, name, check))
+        for other in others:
+            require(rows, "no row is selected")
+            if check.get("by") == "label":
+                yield compare(pairs_by_label(rows, [(row["label"], row[column]) for row in other], column), check)
+            else:
+                yield compare(pairs_in_order(values, column_of(other, column), column), check)
+
+    @staticmethod
+    def stated_pairs(rows, values, column, equals):
+        if isinstance(equals, dict):
+            return pairs_by_label(rows, list(equals.items()), column)
+        if column == "eigenvalue":
+            equals = [complex(growth, 2 * math.pi * frequency) for growth, frequency in equals]
+        return pairs_in_order(values, equals, column)
+
+    @staticmethod
+    def bounds(rows, check):
+        if "count" in check:
+            require(len(rows) == check["count"], f"{len(rows)} rows, but {check['count']} were expected")
+            yield f"{len(rows)} rows"
+        if "min" in check or "max" in check:
+            require(rows, "no row is selected")
+            values = column_of(rows, check["column"])
+            line = f"{check['column']} from {min(values):.6g} to {max(values):.6g}"
+            require(check.get("min", -math.inf) <= min(values) and max(values) <= check.get("max", math.inf), line)
+            yield line
+
+
+def attempt(title, action, *arguments):
+    """Whether the action passed; prints what it found."""
+    try:
+        print(f"ok     {title}: {action(*arguments) or 'as expected'}")
+        return True
+    except Failure as failure:
+        print(f"FAILED {title}: {failure}")
+        return False
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Runs one application test of squeal.")
+    parser.add_argument("case", type=Path)
+    parser.add_argument("--squeal", type=Path, required=True, help="the program")
+    parser.add_argument("--launcher", default=SOURCE / "scripts/mpirun", help="mpirun")
+    parser.add_argument("--ranks", type=int, action="append", help="instead of the ranks of the case")
+    parser.add_argument("--timeout", type=float, default=120, help="seconds allowed to each run")
+    arguments = parser.parse_args()
+    arguments.squeal = arguments.squeal.resolve()
+    case = tomllib.loads(arguments.case.read_text())
+    absent = [module for module in case.get("needs", []) if not importlib.util.find_spec(module)]
+    if absent:
+        print(f"skipped: no Python module {' '.join(absent)}")
+        return SKIPPED
+
+    results = []
+    with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
+        first = None
+        for ranks in arguments.ranks or case.get("ranks", [1]):
+            runner = Runner(arguments, case, Path(folder), ranks)
+            first = first or runner
+            results += [attempt(f"run {name} on {ranks}", runner.make, name) for name in case["run"]]
+            checker = Checker(runner, first)
+            for index, check in enumerate(case.get("check", []), 1):
+                title = check.get("why", f"check {index}")
+                results.append(attempt(f"{title} on {ranks}", checker.make, check))
+    return 0 if all(results) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

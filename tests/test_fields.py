@@ -1,0 +1,157 @@
+#!/usr/bin/env python3
+"""Checks the shapes that a run wrote (modes.h5, modes.xmf) against its table (modes.csv), as VTK and ParaView see them.
+
+VTK's HDF reader must see the hexahedra, none inverted, every node used, all parts, and for each mode of the table a finite
+shape that is not zero. The XDMF file must name datasets that exist, with their true sizes, and the same attributes at each
+step, since ParaView steps through them. A wrong order of corners, a node lost or doubled between ranks, a shape under the
+wrong mode and a stale path all fail here.
+
+Exit status: 0, or 1 with the first difference on stderr.
+"""
+
+import argparse
+import csv
+import sys
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+import h5py
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON
+from vtkmodules.vtkFiltersVerdict import vtkMeshQuality
+from vtkmodules.vtkIOHDF import vtkHDFReader
+
+
+class Difference(Exception):
+    """What was expected and what was found."""
+
+
+def expect(what, found, expected):
+    """Raises a Difference unless found is as expected."""
+    if found != expected:
+        raise Difference(f"{what}: found {found}, expected {expected}")
+
+
+def mode_keys(table):
+    """Keys of the shapes of all modes of modes.csv, with their frequencies (Hz)."""
+    with table.open(newline="") as lines:
+        return {f"mode_{int(row['mode']):03d}": float(row["freq_hz"]) for row in csv.DictReader(lines)}
+
+
+def read_grid(path):
+    """The unstructured grid of VTK's HDF reader."""
+    reader = vtkHDFReader()
+    expect(f"{path} can be read by VTK", reader.CanReadFile(str(path)), 1)
+    reader.SetFileName(str(path))
+    reader.Update()
+    return reader.GetOutput()
+
+
+def hexahedron_measure(grid, measure):
+    """A quality measure of vtkMeshQuality for every cell."""
+    quality = vtkMeshQuality()
+    quality.SetInputData(grid)
+    getattr(quality, f"SetHexQualityMeasureTo{measure}")()
+    quality.Update()
+    return vtk_to_numpy(quality.GetOutput().GetCellData().GetArray("Quality"))
+
+
+def check_mesh(grid, hexahedra, volume):
+    """Cells: number, kind, orientation, volume (m^3); nodes: each used."""
+    expect("number of hexahedra", grid.GetNumberOfCells(), hexahedra)
+    kinds = set(vtk_to_numpy(grid.GetCellTypesArray()).tolist())
+    expect("kinds of cells", kinds, {VTK_HEXAHEDRON})
+    inverted = numpy.flatnonzero(hexahedron_measure(grid, "Jacobian") <= 0)
+    expect("inverted hexahedra", inverted.tolist(), [])
+    used = numpy.unique(vtk_to_numpy(grid.GetCells().GetConnectivityArray()))
+    expect("every node used", used.tolist(), list(range(grid.GetNumberOfPoints())))
+    total = hexahedron_measure(grid, "Volume").sum()
+    if volume is not None and abs(total - volume) > 1e-10 * volume:
+        raise Difference(f"volume: found {total:.15g} m^3, expected {volume:.15g} m^3")
+
+
+def check_parts(grid, path, parts):
+    """Each part has cells, and its name is in the file."""
+    present = set(vtk_to_numpy(grid.GetCellData().GetArray("part")).tolist())
+    expect("indices of parts", present, set(range(len(parts))))
+    with h5py.File(path) as file:
+        names = [name.decode() for name in file["VTKHDF/CellData/part"].attrs["names"]]
+    expect("names of parts", names, parts)
+
+
+def check_shapes(grid, path, keys):
+    """Two vector arrays per mode of the table, finite, not zero, with the mode's frequency in the title."""
+    data = grid.GetPointData()
+    found = {data.GetArrayName(i) for i in range(data.GetNumberOfArrays())}
+    expect("shapes", found, {key + suffix for key in keys for suffix in ("_re", "_im")})
+    for key, frequency in keys.items():
+        shape = [vtk_to_numpy(data.GetArray(key + suffix)) for suffix in ("_re", "_im")]
+        expect(f"size of {key}", [part.shape for part in shape], 2 * [(grid.GetNumberOfPoints(), 3)])
+        if not all(numpy.isfinite(part).all() for part in shape) or not any(part.any() for part in shape):
+            raise Difference(f"{key} is zero or not finite")
+        with h5py.File(path) as file:
+            title = file[f"VTKHDF/PointData/{key}_re"].attrs["title"].decode()
+        if f"{frequency:.1f}"[:-2] not in title:
+            raise Difference(f"title of {key}: found '{title}', expected {frequency:.2f} Hz in it")
+
+
+def check_item(item, folder):
+    """A <DataItem> names an existing dataset of its size and precision; returns the name."""
+    name, dataset = item.text.split(":")
+    with h5py.File(folder / name) as file:
+        expect(f"{item.text} exists", dataset in file, True)
+        shape = " ".join(str(n) for n in file[dataset].shape)
+        expect(f"size of {item.text}", shape, item.get("Dimensions"))
+        expect(f"precision of {item.text}", str(file[dataset].dtype.itemsize), item.get("Precision"))
+    return dataset
+
+
+def check_xdmf(path, keys, hexahedra):
+    """One grid per mode, Time = its number, the same attributes at each, pointing at the mode's own shape."""
+    grids = xml.parse(path).findall("./Domain/Grid/Grid")
+    expect("grids of the XDMF file", [grid.get("Name") for grid in grids], list(keys))
+    for step, grid in enumerate(grids, 1):
+        key = grid.get("Name")
+        datasets = {item.get("Name"): check_item(item.find("DataItem"), path.parent) for item in grid.findall("Attribute")}
+        expect(f"time of {key}", grid.find("Time").get("Value"), str(step))
+        expect(f"hexahedra of {key}", grid.find("Topology").get("NumberOfElements"), str(hexahedra))
+        expect(f"attributes of {key}", datasets, {
+            "part": "/VTKHDF/CellData/part",
+            "displacement_re": f"/VTKHDF/PointData/{key}_re",
+            "displacement_im": f"/VTKHDF/PointData/{key}_im",
+        })
+        for place in ("Topology", "Geometry"):
+            check_item(grid.find(f"{place}/DataItem"), path.parent)
+
+
+def arguments():
+    """The command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, help="folder with modes.csv, modes.h5 and modes.xmf")
+    parser.add_argument("hexahedra", type=int, help="number of hexahedra of the mesh")
+    parser.add_argument("parts", help="names of the parts in order, e.g. disc,pad,beam")
+    parser.add_argument("--volume", type=float, help="volume of the mesh, m^3, to 1e-10")
+    return parser.parse_args()
+
+
+def main():
+    """Runs all checks; returns the exit status."""
+    args = arguments()
+    fields = args.folder / "modes.h5"
+    try:
+        keys = mode_keys(args.folder / "modes.csv")
+        grid = read_grid(fields)
+        check_mesh(grid, args.hexahedra, args.volume)
+        check_parts(grid, fields, args.parts.split(","))
+        check_shapes(grid, fields, keys)
+        check_xdmf(args.folder / "modes.xmf", keys, args.hexahedra)
+    except (Difference, OSError, KeyError, xml.ParseError) as error:
+        print(f"test_fields: {args.folder}: {error}", file=sys.stderr)
+        return 1
+    print(f"{args.folder}: {grid.GetNumberOfPoints()} nodes, {args.hexahedra} hexahedra, {len(keys)} modes")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,3 @@
+/* A public header, named by HEADER, included first and twice */
+#include HEADER
+#include HEADER
