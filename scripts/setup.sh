@@ -55,7 +55,9 @@ check_blas()
   local blas
   blas=$(ldd "$build/squeal" | sed -n 's/.*libblas\.so[^ ]* => \([^ ]*\).*/\1/p')
   case $(readlink -f "$blas") in
-    */blas/libblas.so*) say "$blas is the reference BLAS, several times slower; see update-alternatives --display ${blas##*/}-$(uname -m)-linux-gnu" ;;
+    */blas/libblas.so*)
+      say "$blas is the reference BLAS, several times slower; see update-alternatives --display ${blas##*/}-$(uname -m)-linux-gnu"
+      ;;
   esac
 }
 

@@ -124,6 +124,7 @@ static PetscErrorCode CollectValid(MPI_Comm comm, PetscErrorCode (*read_again)(M
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsSetValue(NULL, "-help", NULL));
+  PetscCall(PetscOptionsHelpPrintedDestroy(&PetscOptionsHelpPrintedSingleton)); /* forget which titles were printed */
   PetscHelpPrintf = CollectHelp;
   PetscCall((*read_again)(comm, ctx));
   PetscHelpPrintf = printer;

@@ -1,14 +1,20 @@
 /*
    Life cycle: start, one-line errors, log stages, end.
 
-   An error that all ranks of a communicator meet is printed by its rank 0 and every rank leaves through MPI_Finalize; an error
-   of a single rank is printed there, and the other ranks, which know nothing of it, are aborted.
+   The message of an error is kept until its rank leaves. When all ranks come, it was everybody's error: rank 0 prints it, and
+   all leave through MPI_Finalize. When some do not come within two seconds, it was this rank's own error: it prints, and aborts
+   the others, which know nothing of it.
 */
 #include <squeal/squeal.h>
 #include <slepcsys.h>
 #include <hdf5.h>
 
+#define MAX_MESSAGE 1024
+
 static const char *const stage_names[SQUEAL_N_STAGES] = {"Model", "Contact", "Operators", "Modes", "Results"};
+/* First error of this rank, printed by SquealFinalize() */
+static char error_message[MAX_MESSAGE];
+
 static PetscLogStage     stages[SQUEAL_N_STAGES];
 
 /* Log handles of the stages: seconds spent and resident memory (bytes) at the end of each, on this rank */
@@ -20,20 +26,17 @@ static const char citation[] =
   "@inproceedings{massi2005,\n  title = {Numerical analysis of squeal instability},\n  year = {2005}\n}\n";
 static PetscBool cited = PETSC_FALSE;
 
-/* Prints the first line of the first message; the codes of the callers above add nothing for a user */
-static PetscErrorCode PrintError(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
-                                 PetscErrorType type, const char *message, void *ctx)
+/* Keeps the first line of the first message; the codes of the callers above add nothing for a user */
+static PetscErrorCode KeepError(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
+                                PetscErrorType type, const char *message, void *ctx)
 {
-  PetscMPIInt rank = 0, size = 1;
+  char *const kept = ctx;
   const char *text = message;
 
-  (void)line, (void)function, (void)file, (void)ctx;
-  if (type != PETSC_ERROR_INITIAL) return code;
-  if (comm != MPI_COMM_NULL) (void)MPI_Comm_rank(comm, &rank), (void)MPI_Comm_size(comm, &size);
-  if (rank) return code;
+  (void)comm, (void)line, (void)function, (void)file;
+  if (type != PETSC_ERROR_INITIAL || kept[0]) return code;
   if (!text || !text[0]) (void)PetscErrorMessage(code, &text, NULL);
-  fprintf(stderr, "squeal: error: %.*s\n", text ? (int)strcspn(text, "\n") : 13, text ? text : "unknown error");
-  fflush(stderr);
+  (void)snprintf(kept, MAX_MESSAGE, "%.*s", text ? (int)strcspn(text, "\n") : 13, text ? text : "unknown error");
   return code;
 }
 
@@ -42,7 +45,7 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Init(argc, argv));
   (void)H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  PetscCall(PetscPushErrorHandler(PrintError, NULL));
+  PetscCall(PetscPushErrorHandler(KeepError, error_message));
   PetscCall(SlepcInitialize(argc, argv, NULL, help));
   for (PetscInt s = 0; s < SQUEAL_N_STAGES; s++) PetscCall(PetscLogStageRegister(stage_names[s], &stages[s]));
   PetscCall(PetscCitationsRegister(citation, &cited));
@@ -100,7 +103,12 @@ static PetscBool AllRanksArrive(void)
 int SquealFinalize(PetscErrorCode error)
 {
   if (error) {
-    if (!AllRanksArrive()) (void)MPI_Abort(MPI_COMM_WORLD, 1);
+    const PetscBool together = AllRanksArrive();
+    int             rank;
+
+    (void)MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    if (!together || rank == 0) fprintf(stderr, "squeal: error: %s\n", error_message);
+    if (!together) (void)MPI_Abort(MPI_COMM_WORLD, 1);
     (void)MPI_Finalize();
     return 1;
   }

@@ -14,7 +14,6 @@ A case is a TOML file. Only `run` is required.
     warning = "regex"            # each warning matches; without it there must be none
     error = "regex"              # the run must fail: status not 0, one line on stderr, which matches; no rank and no file left
                                  # behind but `files`
-    disk_limit = 4096            # bytes that a file may have, as on a full disk; one rank
 
     [[check]]
     run = "NAME"                 # default: the only run
@@ -47,9 +46,7 @@ import importlib.util
 import math
 import os
 import re
-import resource
 import shlex
-import signal
 import subprocess
 import sys
 import tempfile
@@ -72,12 +69,6 @@ def require(condition, message):
 
 
 # --- running
-
-
-def limit_files(size):
-    """In the child: writing beyond `size` bytes fails with an error instead of a signal."""
-    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
 
 def end(process):
@@ -119,16 +110,10 @@ class Runner:
     def execute(self, name, run):
         command = [self.arguments.launcher, "-n", str(self.ranks), self.arguments.squeal]
         environment = {key: value for key, value in os.environ.items() if key != "PETSC_OPTIONS"}
-        limit = None
-        if "disk_limit" in run:
-            require(self.ranks == 1, "disk_limit works on one rank only")
-            command = [self.arguments.squeal]  # mpirun would undo the child's choice of signals
-            environment["OMPI_MCA_btl"] = "self"  # no shared-memory segment, which the limit would forbid
-            limit = lambda: limit_files(run["disk_limit"])  # noqa: E731
         command += self.expand(self.case.get("options", "") + " " + run.get("options", ""))
         command += ["-output_dir", str(self.output(name)), "-malloc_dump", "-options_left"]
         print("$", shlex.join(map(str, command)), flush=True)
-        process = subprocess.Popen(command, cwd=self.folder, env=environment, text=True, preexec_fn=limit,
+        process = subprocess.Popen(command, cwd=self.folder, env=environment, text=True,
                                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         try:
             stdout, stderr = process.communicate(timeout=self.arguments.timeout)

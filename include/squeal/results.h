@@ -1,6 +1,6 @@
 /*
-   Results - tables (CSV) and fields (HDF5 with an XDMF file beside it) in one folder. Every file is written under a temporary
-   name and renamed when it is complete, so that a final name always means a whole file.
+   Results - tables (CSV) and fields (HDF5 with an XDMF file beside it) in one folder. Every file is written under a
+   temporary name and renamed when it is complete, so that a final name always means a whole file.
 */
 #pragma once
 
@@ -36,12 +36,13 @@ PetscErrorCode ResultsWantFields(Results results, PetscBool *wanted);
     Errors: as ResultsTableClose(). @*/
 PetscErrorCode ResultsTableOpen(Results results, const char name[], const char header[], ResultsTable *table);
 
-/*@ ResultsTableRow - one record, printf-like, without the end of the line; %.15g for numbers, text that may hold a comma
-    in double quotes. Collective, rank 0 writes. Failures are kept for ResultsTableClose(). @*/
+/*@ ResultsTableRow - one record, printf-like, without the end of the line; %.15g for numbers, text that may hold a
+    comma in double quotes. Collective, rank 0 writes. Failures are kept for ResultsTableClose(). @*/
 PetscErrorCode ResultsTableRow(ResultsTable table, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 
 /*@ ResultsTableClose - completes the table under its final name. Collective; the handle is freed in any case.
-    Errors: PETSC_ERR_FILE_WRITE with the file and the reason, e.g. no space left on device; the temporary file is removed. @*/
+    Errors: PETSC_ERR_FILE_WRITE with the file and the reason, e.g. no space left on device; the temporary file is
+    removed. @*/
 PetscErrorCode ResultsTableClose(ResultsTable *table);
 
 /*@
@@ -53,7 +54,7 @@ PetscErrorCode ResultsTableClose(ResultsTable *table);
 .  parts     - their names
 -  cell_part - part of each local cell
 
-   The HDF5 file is also a VTKHDF unstructured grid, so that VTK's own reader opens it; nodes and cells are ordered by rank.
+   The HDF5 file is also a VTKHDF unstructured grid, which VTK's own reader opens; nodes and cells are ordered by rank.
 
    Errors: PETSC_ERR_ARG_NULL without a mesh, PETSC_ERR_SUP for cells other than hexahedra, PETSC_ERR_FILE_WRITE
    as for tables: neither file is then left, under its temporary or its final name.
@@ -62,8 +63,8 @@ PetscErrorCode ResultsFieldOpen(Results results, const char name[], DM dm, Petsc
                                 const PetscInt cell_part[], ResultsField *field);
 
 /*@
-   ResultsFieldWriteMode - one complex shape: arrays `<key>_re` and `<key>_im` (m) at all nodes, zero where a support fixes
-   them. Collective.
+   ResultsFieldWriteMode - one complex shape: arrays `<key>_re` and `<key>_im` (m) at all nodes, zero where a support
+   fixes them. Collective.
 
    Input Parameters:
 +  key    - short unique name: mode_007 for the mode that modes.csv lists as 7

@@ -64,16 +64,16 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
 {
   PetscFunctionBeginUser;
   PetscCheck(c->slave && c->master, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces must be given: slave,master", c->name);
-  PetscCheck(PetscIsNormalReal(c->mu) || c->mu == 0, comm, PETSC_ERR_USER_INPUT, "-%s_mu %g must be a number", c->name, (double)c->mu);
+  PetscCheck(PetscIsNormalReal(c->mu) || c->mu == 0, comm, PETSC_ERR_USER_INPUT, "-%s_mu %.6g must be a number", c->name, (double)c->mu);
   PetscCheck(c->law == CONTACT_CONSTRAINT || c->kn > 0, comm, PETSC_ERR_USER_INPUT,
-             "-%s_kn %g must be given and positive (N/m), or choose -%s_law constraint", c->name, (double)c->kn, c->name);
-  PetscCheck(c->tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-%s_tolerance %g must be positive (m)", c->name, (double)c->tolerance);
-  PetscCheck(c->force >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_force %g must not be negative (N)", c->name, (double)c->force);
+             "-%s_kn %.6g must be given and positive (N/m), or choose -%s_law constraint", c->name, (double)c->kn, c->name);
+  PetscCheck(c->tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-%s_tolerance %.6g must be positive (m)", c->name, (double)c->tolerance);
+  PetscCheck(c->force >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_force %.6g must not be negative (N)", c->name, (double)c->force);
   PetscCheck(!c->damping || c->force > 0, comm, PETSC_ERR_USER_INPUT, "-%s_friction_damping needs a positive -%s_force (N)", c->name,
              c->name);
   PetscCheck(!c->damping || c->speed > 0 || c->rotation[0] != 0 || c->rotation[1] != 0 || c->rotation[2] != 0, comm,
              PETSC_ERR_USER_INPUT, "-%s_friction_damping needs a positive -%s_speed (m/s) or a -%s_rotation", c->name, c->name, c->name);
-  PetscCheck(c->speed >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_speed %g must not be negative (m/s)", c->name, (double)c->speed);
+  PetscCheck(c->speed >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_speed %.6g must not be negative (m/s)", c->name, (double)c->speed);
   PetscFunctionReturn(0);
 }
 
@@ -192,8 +192,8 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
     const ContactInterface *c = &contact->interfaces[i];
 
-    PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %s slides on %s, mu %g, ", c->name, c->slave, c->master, (double)c->mu));
-    if (c->law == CONTACT_PENALTY) PetscCall(PetscViewerASCIIPrintf(viewer, "penalty %g N/m per pair\n", (double)c->kn));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %s slides on %s, mu %.6g, ", c->name, c->slave, c->master, (double)c->mu));
+    if (c->law == CONTACT_PENALTY) PetscCall(PetscViewerASCIIPrintf(viewer, "penalty %.6g N/m per pair\n", (double)c->kn));
     else PetscCall(PetscViewerASCIIPrintf(viewer, "exact constraint by elimination\n"));
   }
   if (contact->n_interfaces) PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " pairs\n", contact->n_pairs_all));

@@ -221,7 +221,7 @@ static PetscErrorCode PairCheck(MPI_Comm comm, const ContactInterface *c, PairFa
   PetscCallMPI(MPI_Bcast(failure->x, 3, MPIU_REAL, worst.rank, comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failure->no_slip, 1, MPIU_REAL, MPI_MAX, comm));
   PetscCheck(worst.distance <= c->tolerance, comm, PETSC_ERR_USER_INPUT,
-             "contact %s: the node of %s at %g, %g, %g m finds no partner on %s (nearest %g m away, -%s_tolerance is %g m)", c->name,
+             "contact %s: the node of %s at %.6g, %.6g, %.6g m finds no partner on %s (nearest %.6g m away, -%s_tolerance is %.6g m)", c->name,
              c->slave, (double)failure->x[0], (double)failure->x[1], (double)failure->x[2], c->master, worst.distance, c->name,
              (double)c->tolerance);
   PetscCheck(failure->no_slip == 0, comm, PETSC_ERR_USER_INPUT,

@@ -5,9 +5,9 @@
    Axisymmetric: r_i and theta_j are uniform.
    Patch: nx rings times ny columns coincide with the Cartesian grid of the rectangle |x - centre| <= size[0]/2,
    |y| <= size[1]/2. With X_i the ring's x in and beside the patch, R_i the uniform radii, theta_j the column's angle,
-      rho    = v X_i + (1 - v) R_i                                          uniform rings a quarter turn away
+      rho    = v X_i + (1 - v) R_i                                          rings, a part `spread` of the way to uniform
       (x, y) = w (X_i, centre tan theta_j) + (1 - w) rho (cos theta_j, sin theta_j)
-   where v falls from 1 to 0 over pi/2 in angle, and w = 1 in the patch falls to 0 at both rims and at three times
+   where v falls from 1 to 1 - spread over pi/2 in angle, and w = 1 in the patch falls to 0 at both rims and at three times
    the patch's angle.
    Cell sizes beside the patch grow logistically from the patch's own size h to a limit s:
       ds/dt = s / (1 + (s/h - 1) exp(-k t)), t counted in cells, k such that the cells fill the length available.
@@ -19,6 +19,10 @@
 
 #define DISC_PI 3.14159265358979323846
 
+/* Largest cells beside the patch over the mean; nearly uniform, since the coarsest cells set the error */
+#define DISC_RING_PLATEAU   1.2
+#define DISC_COLUMN_PLATEAU 1.02
+
 typedef struct {
   double first, limit, rate; /* h, s and k */
   double scale;              /* removes what the search for k leaves */
@@ -29,6 +33,7 @@ typedef struct {
   int         nr, ntheta;
   int         patch; /* 0: axisymmetric, and what follows is unused */
   double      centre, size[2];
+  double      spread; /* 0: rings keep their radii all around; 1: they are uniform away from the patch */
   int         nx, ny;
   int         i0; /* rings inside the patch */
   DiscGrading inward, outward, around;
@@ -77,8 +82,8 @@ static inline void DiscGridGrade(DiscGrid *d)
   double       best = INFINITY;
 
   for (int i0 = 1; i0 + d->nx < d->nr; i0++) {
-    const DiscGrading in  = DiscGradingFill(h, i0, x0 - d->inner, 2);
-    const DiscGrading out = DiscGradingFill(h, d->nr - d->nx - i0, d->outer - x1, 2);
+    const DiscGrading in  = DiscGradingFill(h, i0, x0 - d->inner, DISC_RING_PLATEAU);
+    const DiscGrading out = DiscGradingFill(h, d->nr - d->nx - i0, d->outer - x1, DISC_RING_PLATEAU);
 
     if (fmax(in.rate, out.rate) >= best) continue;
     best       = fmax(in.rate, out.rate);
@@ -86,7 +91,8 @@ static inline void DiscGridGrade(DiscGrid *d)
     d->inward  = in;
     d->outward = out;
   }
-  d->around = DiscGradingFill(d->size[1] / d->ny / d->centre, 0.5 * (d->ntheta - d->ny), DISC_PI - half, 1.3);
+  d->around = DiscGradingFill(d->size[1] / d->ny / d->centre, 0.5 * (d->ntheta - d->ny), DISC_PI - half,
+                              DISC_COLUMN_PLATEAU);
 }
 
 /* From 1 at u <= 0 to 0 at u >= 1 with zero slopes */
@@ -128,7 +134,7 @@ static inline void DiscGridBlended(const DiscGrid *d, int i, double t, double x[
   } else
     ring = DiscPatchNode(d->centre, d->size[0], i - d->i0 - 0.5 * d->nx, d->nx);
 
-  const double near   = DiscFade((theta - half) / (0.5 * DISC_PI));
+  const double near   = 1 - d->spread * (1 - DiscFade((theta - half) / (0.5 * DISC_PI)));
   const double radius = near * ring + (1 - near) * (d->inner + (d->outer - d->inner) * i / d->nr);
 
   x[0] = fade * ring + (1 - fade) * radius * cos(theta);

@@ -66,7 +66,7 @@ static PetscErrorCode FindBadCell(Model model, char text[], size_t size)
     element->measure(x, &volume, &jacobian);
     if (jacobian > FLAT) continue;
     PetscCall(CellPartName(model, c, &part));
-    PetscCall(PetscSNPrintf(text, size, "element %" PetscInt_FMT " (part %s, centre %g, %g, %g m) is inverted or has no volume", c - cStart + 1,
+    PetscCall(PetscSNPrintf(text, size, "element %" PetscInt_FMT " (part %s, centre %.6g, %.6g, %.6g m) is inverted or has no volume", c - cStart + 1,
                             part, (double)centre[0], (double)centre[1], (double)centre[2]));
   }
   PetscFunctionReturn(0);

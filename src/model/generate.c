@@ -46,7 +46,7 @@ static PetscErrorCode RigRowLevels(MPI_Comm comm, const Rig *rig, PetscInt level
                (level[1] <= last || rig->beam_rows[1] >= rig->beam_height),
              comm, PETSC_ERR_USER_INPUT,
              "Option -rig_beam_elements %" PetscInt_FMT
-             " has too few node levels for -rig_beam_rows %g,%g: 3 always suffice",
+             " has too few node levels for -rig_beam_rows %.6g,%.6g: 3 always suffice",
              rig->beam_nz, (double)rig->beam_rows[0], (double)rig->beam_rows[1]);
   PetscFunctionReturn(0);
 }
@@ -106,6 +106,7 @@ static void DiscFillNodes(const Rig *rig, const Grid *g, PetscReal x[])
     .patch  = rig->patch,
     .centre = rig->pad_radius,
     .size   = {rig->pad_size[0], rig->pad_size[1]},
+    .spread = rig->disc_spread,
     .nx     = (int)rig->pad_n[0],
     .ny     = (int)rig->pad_n[1]
   };

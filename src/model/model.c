@@ -176,7 +176,7 @@ static PetscErrorCode GroundedView(const char kind[], const char unit[], PetscIn
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s %s on %s: %g, %g, %g %s per node\n", kind, g[i].name, g[i].set,
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s %s on %s: %.6g, %.6g, %.6g %s per node\n", kind, g[i].name, g[i].set,
                                      (double)g[i].value[0], (double)g[i].value[1], (double)g[i].value[2], unit));
   PetscFunctionReturn(0);
 }
@@ -201,7 +201,7 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
   for (PetscInt i = 0; i < model->n_parts; i++) {
     const Part *p = &model->parts[i];
 
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  part %s: E %g Pa, nu %g, rho %g kg/m^3, alpha %g 1/s, beta %g s\n", p->name,
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  part %s: E %.6g Pa, nu %.6g, rho %.6g kg/m^3, alpha %.6g 1/s, beta %.6g s\n", p->name,
                                      (double)p->young, (double)p->poisson, (double)p->density, (double)p->alpha, (double)p->beta));
   }
   for (PetscInt i = 0; i < model->n_supports; i++)

@@ -11,6 +11,7 @@ typedef struct {
   PetscReal disc_inner, disc_outer, disc_thickness;  /* radii 50, 120 and thickness 10 mm */
   PetscInt  disc_nr, disc_ntheta, disc_nz;           /* 21 x 100 x 3 */
   PetscBool patch;                                   /* disc mesh with a Cartesian patch that matches the pad's grid */
+  PetscReal disc_spread;                             /* 0..1: how far rings even out away from the patch */
   PetscBool with_pad;                                /* false: the disc alone */
   PetscReal pad_radius;                              /* radius of the pad's centre, 110 mm */
   PetscReal pad_size[3];                             /* 10, 10, 10 mm */

@@ -46,14 +46,14 @@ PetscErrorCode PartsCheck(Model model)
   for (PetscInt i = 0; i < model->n_parts; i++) {
     const Part *p = &model->parts[i];
 
-    PetscCheck(p->young > 0, model->comm, PETSC_ERR_USER_INPUT, "-%s_young %g must be given and positive (Pa)", p->name,
+    PetscCheck(p->young > 0, model->comm, PETSC_ERR_USER_INPUT, "-%s_young %.6g must be given and positive (Pa)", p->name,
                (double)p->young);
-    PetscCheck(p->density > 0, model->comm, PETSC_ERR_USER_INPUT, "-%s_density %g must be given and positive (kg/m^3)", p->name,
+    PetscCheck(p->density > 0, model->comm, PETSC_ERR_USER_INPUT, "-%s_density %.6g must be given and positive (kg/m^3)", p->name,
                (double)p->density);
     PetscCheck(p->poisson > -1 && p->poisson < 0.5, model->comm, PETSC_ERR_USER_INPUT,
-               "-%s_poisson %g must lie between -1 and 0.5, ends excluded", p->name, (double)p->poisson);
+               "-%s_poisson %.6g must lie between -1 and 0.5, ends excluded", p->name, (double)p->poisson);
     PetscCheck(p->alpha >= 0 && p->beta >= 0, model->comm, PETSC_ERR_USER_INPUT,
-               "-%s_alpha %g and -%s_beta %g must not be negative", p->name, (double)p->alpha, p->name, (double)p->beta);
+               "-%s_alpha %.6g and -%s_beta %.6g must not be negative", p->name, (double)p->alpha, p->name, (double)p->beta);
   }
   PetscFunctionReturn(0);
 }

@@ -55,7 +55,7 @@ static PetscErrorCode RigCheckFootprint(MPI_Comm comm, const Rig *rig)
   PetscFunctionBeginUser;
   PetscCheck(rig->pad_radius - 0.5 * rig->pad_size[0] > rig->disc_inner && reach < rig->disc_outer, comm,
              PETSC_ERR_USER_INPUT,
-             "Pad at -rig_pad_radius %g with -rig_pad_size %g,%g does not lie on the disc's face, radii %g to %g m",
+             "Pad at -rig_pad_radius %.6g with -rig_pad_size %.6g,%.6g does not lie on the disc's face, radii %.6g to %.6g m",
              (double)rig->pad_radius, (double)rig->pad_size[0], (double)rig->pad_size[1], (double)rig->disc_inner,
              (double)rig->disc_outer);
   PetscCheck(!rig->patch || (rig->disc_nr >= rig->pad_n[0] + 2 && rig->disc_ntheta >= rig->pad_n[1] + 4), comm,
@@ -93,16 +93,18 @@ static PetscErrorCode RigCheck(MPI_Comm comm, const Rig *rig)
 
   PetscFunctionBeginUser;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(positive); i++) {
-    PetscCheck(positive[i].smallest > 0, comm, PETSC_ERR_USER_INPUT, "Option -" RIG_PREFIX "%s %g must be positive",
+    PetscCheck(positive[i].smallest > 0, comm, PETSC_ERR_USER_INPUT, "Option -" RIG_PREFIX "%s %.6g must be positive",
                positive[i].option, (double)positive[i].smallest);
   }
   PetscCheck(rig->disc_outer > rig->disc_inner, comm, PETSC_ERR_USER_INPUT,
-             "Option -rig_disc_outer %g must exceed -rig_disc_inner %g (m)", (double)rig->disc_outer,
+             "Option -rig_disc_outer %.6g must exceed -rig_disc_inner %.6g (m)", (double)rig->disc_outer,
              (double)rig->disc_inner);
+  PetscCheck(0 <= rig->disc_spread && rig->disc_spread <= 1, comm, PETSC_ERR_USER_INPUT,
+             "Option -rig_disc_spread %.6g must lie between 0 and 1", (double)rig->disc_spread);
   PetscCheck(rig->disc_ntheta >= 3, comm, PETSC_ERR_USER_INPUT,
              "Option -rig_disc_elements has %" PetscInt_FMT " columns, valid are 3 or more", rig->disc_ntheta);
   PetscCheck(0 <= rig->beam_rows[0] && rig->beam_rows[0] < rig->beam_rows[1] && rig->beam_rows[1] <= rig->beam_height,
-             comm, PETSC_ERR_USER_INPUT, "Option -rig_beam_rows %g,%g must ascend within 0 and the beam's height %g m",
+             comm, PETSC_ERR_USER_INPUT, "Option -rig_beam_rows %.6g,%.6g must ascend within 0 and the beam's height %.6g m",
              (double)rig->beam_rows[0], (double)rig->beam_rows[1], (double)rig->beam_height);
   if (rig->with_pad || rig->patch) PetscCall(RigCheckFootprint(comm, rig));
   PetscFunctionReturn(0);
@@ -115,6 +117,7 @@ static PetscErrorCode RigCheck(MPI_Comm comm, const Rig *rig)
 +  -rig_disc_inner, -rig_disc_outer, -rig_disc_thickness <0.05, 0.12, 0.01> - m
 .  -rig_disc_mesh <patch|axisymmetric>        - grid of the disc
 .  -rig_disc_elements <21,100,3 or 16,160,4>  - rings, columns, layers
+.  -rig_disc_spread <0>                       - 0: rings of the patch keep their radii all around, 1: they even out
 .  -rig_pad <true>                            - false: the disc alone
 .  -rig_pad_radius <0.11>                     - radius of the pad's centre, m
 .  -rig_pad_size <0.01,0.01,0.01>             - m
@@ -159,6 +162,8 @@ PetscErrorCode RigSetFromOptions(MPI_Comm comm, Rig *rig)
   rig->disc_nr     = elements[0];
   rig->disc_ntheta = elements[1];
   rig->disc_nz     = elements[2];
+  PetscCall(PetscOptionsReal("-disc_spread", "Rings away from the patch: 0 keep their radii, 1 become uniform (-)", NULL,
+                             rig->disc_spread, &rig->disc_spread, NULL));
   PetscCall(PetscOptionsBool("-pad", "Pad and beam as well as the disc", NULL, rig->with_pad, &rig->with_pad, NULL));
   PetscCall(
     PetscOptionsReal("-pad_radius", "Radius of the pad's centre (m)", NULL, rig->pad_radius, &rig->pad_radius, NULL));

@@ -51,7 +51,7 @@ static PetscErrorCode GroundedSetFromOptions(MPI_Comm comm, const char kind[], c
   PetscCheck(!set || n == 3, comm, PETSC_ERR_USER_INPUT, "-%s%s has %" PetscInt_FMT " values; give three: x,y,z", g->name,
              option + 1, n);
   for (int d = 0; d < 3; d++)
-    PetscCheck(g->value[d] >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s value %g must not be negative", g->name, option + 1,
+    PetscCheck(g->value[d] >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s value %.6g must not be negative", g->name, option + 1,
                (double)g->value[d]);
   PetscFunctionReturn(0);
 }

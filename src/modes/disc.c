@@ -7,7 +7,7 @@
 
 #define SAMPLES 41   /* radii at which the profile is read */
 #define ANGLES  360  /* angles at which the rim is read */
-#define RIPPLE  0.02 /* displacements of the rim below this part of the largest count as zero */
+#define RIPPLE  0.005 /* turns of the rim's displacement smaller than this part of the largest do not count */
 
 static PetscReal Dot(const PetscReal a[3], const PetscReal b[3])
 {
@@ -263,61 +263,104 @@ static PetscErrorCode NodalCircles(const Disc *disc, PetscInt mode, int m, const
   PetscFunctionReturn(0);
 }
 
-/* Displacement of the rim at one angle, in the phase c re + s im */
-static PetscReal RimValue(const Disc *disc, PetscInt mode, PetscReal theta, PetscReal c, PetscReal s)
-{
-  PetscReal terms[DISC_TERMS], w = 0;
+/* Harmonics of one mode that share the number of nodal circles with most energy */
+typedef struct {
+  int       circles;
+  int       strongest;         /* harmonic with most energy */
+  PetscReal energy, even, odd; /* even, odd about the contact */
+  PetscBool has[DISC_HARMONICS];
+} Family;
 
-  DiscTerms(disc, disc->r_outer, theta, terms);
-  for (int k = 0; k < DISC_TERMS; k++)
-    w += terms[k] * (c * disc->fit[2 * mode * DISC_TERMS + k] + s * disc->fit[(2 * mode + 1) * DISC_TERMS + k]);
-  return w;
+/* Sorts the harmonics by their nodal circles and takes the family with most energy */
+static PetscErrorCode FamilyFind(const Disc *disc, PetscInt mode, Family *best)
+{
+  Family    family[DISC_POLYNOMIALS] = {{0}};
+  PetscReal most[DISC_POLYNOMIALS]   = {0};
+
+  PetscFunctionBeginUser;
+  for (int m = 0; m < DISC_HARMONICS; m++) {
+    PetscReal       moments[16];
+    const PetscReal energy = ProfileMoments(disc, mode, m, moments);
+    int             n;
+
+    PetscCall(NodalCircles(disc, mode, m, moments, &n));
+    n = PetscMin(n, DISC_POLYNOMIALS - 1);
+    family[n].circles = n;
+    family[n].energy += energy;
+    family[n].even += moments[0] + moments[5];
+    family[n].odd += moments[10] + moments[15];
+    family[n].has[m] = PETSC_TRUE;
+    if (energy > most[n]) family[n].strongest = m, most[n] = energy;
+  }
+  *best = family[0];
+  for (int n = 1; n < DISC_POLYNOMIALS; n++)
+    if (family[n].energy > best->energy) *best = family[n];
+  PetscFunctionReturn(0);
 }
 
-/* Nodal diameters: half the sign changes around the rim, in the phase in which the rim moves most */
-static int NodalDiameters(const Disc *disc, PetscInt mode)
+/* Displacement of the rim at one angle by the family's harmonics: real and imaginary part */
+static void RimValue(const Disc *disc, PetscInt mode, const Family *family, PetscReal theta, PetscReal w[2])
 {
-  PetscReal w[ANGLES], rr = 0, ri = 0, ii = 0, phase, largest = 0, last = 0, first = 0;
-  int       changes = 0;
+  PetscReal v[4];
+
+  w[0] = w[1] = 0;
+  for (int m = 0; m < DISC_HARMONICS; m++) {
+    if (!family->has[m]) continue;
+    DiscProfile(disc, mode, m, disc->r_outer, v);
+    for (int part = 0; part < 2; part++) w[part] += v[part] * PetscCosReal(m * theta) + v[2 + part] * PetscSinReal(m * theta);
+  }
+}
+
+/* Rim values at ANGLES equal angles, in the phase in which the rim moves most; returns the largest */
+static PetscReal RimShape(const Disc *disc, PetscInt mode, const Family *family, PetscReal shape[ANGLES])
+{
+  PetscReal w[ANGLES][2], rr = 0, ri = 0, ii = 0, phase, largest = 0;
 
   for (int a = 0; a < ANGLES; a++) {
-    const PetscReal theta = 2 * PETSC_PI * a / ANGLES, re = RimValue(disc, mode, theta, 1, 0), im = RimValue(disc, mode, theta, 0, 1);
-
-    rr += re * re, ri += re * im, ii += im * im;
+    RimValue(disc, mode, family, 2 * PETSC_PI * a / ANGLES, w[a]);
+    rr += w[a][0] * w[a][0], ri += w[a][0] * w[a][1], ii += w[a][1] * w[a][1];
   }
   phase = 0.5 * atan2(2 * ri, rr - ii);
   for (int a = 0; a < ANGLES; a++) {
-    w[a]    = RimValue(disc, mode, 2 * PETSC_PI * a / ANGLES, PetscCosReal(phase), PetscSinReal(phase));
-    largest = PetscMax(largest, PetscAbsReal(w[a]));
+    shape[a] = PetscCosReal(phase) * w[a][0] + PetscSinReal(phase) * w[a][1];
+    largest  = PetscMax(largest, PetscAbsReal(shape[a]));
   }
-  for (int a = 0; a < ANGLES; a++) {
-    if (PetscAbsReal(w[a]) < RIPPLE * largest) continue;
-    if (first == 0) first = w[a];
-    if (last * w[a] < 0) changes++;
-    last = w[a];
+  return largest;
+}
+
+/* Nodal diameters = half the antinodes around the rim. Antinodes are extrema, not lobes between zeros: the antinode at a stiff
+   contact is so low that it need not cross zero. Two turns are walked; turning points are counted in the second one. */
+static int NodalDiameters(const Disc *disc, PetscInt mode, const Family *family)
+{
+  PetscReal       shape[ANGLES], extreme;
+  const PetscReal ripple = RIPPLE * RimShape(disc, mode, family, shape);
+  int             direction = 0, extrema = 0;
+
+  extreme = shape[0];
+  for (int a = 0; a < 2 * ANGLES; a++) {
+    const PetscReal w = shape[a % ANGLES];
+
+    if (direction * (w - extreme) > 0) {
+      extreme = w;
+    } else if (PetscAbsReal(w - extreme) > ripple) {
+      direction = w < extreme ? -1 : 1;
+      extreme   = w;
+      extrema += a >= ANGLES;
+    }
   }
-  return (changes + (first * last < 0)) / 2;
+  return (extrema + 1) / 2;
 }
 
 PetscErrorCode DiscName(const Disc *disc, PetscInt mode, char name[], size_t size)
 {
-  PetscReal   moments[16], best[16] = {0}, energy, most = -1, even = 0, odd = 0;
-  int         harmonic = 0, circles = 0, diameters = NodalDiameters(disc, mode);
-  const char *plus;
+  Family family;
+  int    diameters;
 
   PetscFunctionBeginUser;
-  for (int m = 0; m < DISC_HARMONICS; m++) {
-    energy = ProfileMoments(disc, mode, m, moments);
-    even += moments[0] + moments[5];
-    odd += moments[10] + moments[15];
-    if (energy <= most) continue;
-    most     = energy;
-    harmonic = m;
-    PetscCall(PetscArraycpy(best, moments, 16));
-  }
-  PetscCall(NodalCircles(disc, mode, harmonic, best, &circles));
-  plus = disc->has_contact && diameters && even > odd ? "+" : "";
-  PetscCall(PetscSNPrintf(name, size, "(%d,%d%s)", circles, diameters, plus));
+  PetscCall(FamilyFind(disc, mode, &family));
+  diameters = family.strongest && disc->has_contact ? NodalDiameters(disc, mode, &family) : family.strongest;
+  PetscCall(PetscSNPrintf(name, size, "(%d,%d%s)", family.circles, diameters,
+                          disc->has_contact && diameters && family.even > family.odd ? "+" : ""));
   PetscFunctionReturn(0);
 }
 

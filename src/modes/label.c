@@ -4,8 +4,9 @@
       w(r, theta) = sum_m sum_j P_j(rho) (a_mj cos m theta + b_mj sin m theta),   m = 0..16, j = 0..4,
 
    P_j Legendre polynomials of the radius mapped to rho in [-1, 1], theta measured about the disc's axis from the contact. The
-   harmonic with most energy gives the nodal diameters, sign changes of its radial profile the nodal circles, and cosine against
-   sine tells an antinode at the contact (+). Axis and centre are those of the part's inertia tensor, so any mesh in any
+   nodal circles are the sign changes of the harmonics' radial profiles (the family of harmonics with most energy decides), the
+   nodal diameters half the antinodes of that family around the rim, since a stiff contact mixes neighbouring harmonics, and
+   cosine against sine tells an antinode at the contact (+). Axis and centre are those of the part's inertia tensor, so any mesh in any
    position serves. A mode is the disc's when the disc has at least a fifth of the kinetic energy and moves mostly out of
    plane; else it bears the name of the part with most energy.
 */

@@ -39,9 +39,9 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   PetscOptionsEnd();
   PetscCheck(!modes->has_band || n == 2, modes->comm, PETSC_ERR_USER_INPUT, "-modes_band has %" PetscInt_FMT " values; give two: f1,f2 in Hz", n);
   PetscCheck(!modes->has_band || (modes->band[0] >= 0 && modes->band[1] > modes->band[0]), modes->comm, PETSC_ERR_USER_INPUT,
-             "-modes_band %g,%g must satisfy 0 <= f1 < f2 (Hz)", (double)modes->band[0], (double)modes->band[1]);
+             "-modes_band %.6g,%.6g must satisfy 0 <= f1 < f2 (Hz)", (double)modes->band[0], (double)modes->band[1]);
   PetscCheck(modes->count > 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_count %" PetscInt_FMT " must be positive", modes->count);
-  PetscCheck(modes->target >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_target %g must not be negative (Hz)", (double)modes->target);
+  PetscCheck(modes->target >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_target %.6g must not be negative (Hz)", (double)modes->target);
   PetscCall(ProgressSetFromOptions(modes->comm, &modes->progress));
   PetscFunctionReturn(0);
 }
@@ -104,12 +104,12 @@ PetscErrorCode ModesSolve(Modes modes)
   PetscCall(OperatorsGetPencil(modes->operators, &pencil));
   PetscCall(WindowFind(modes, &window));
   PetscCheck(window.expected != 0 || !pencil.symmetric || pencil.C, modes->comm, PETSC_ERR_USER_INPUT,
-             "-modes_band %g,%g Hz contains no mode (%" PetscInt_FMT " lie below it); widen it", (double)modes->band[0], (double)modes->band[1],
+             "-modes_band %.6g,%.6g Hz contains no mode (%" PetscInt_FMT " lie below it); widen it", (double)modes->band[0], (double)modes->band[1],
              window.below);
   PetscCall(ShiftInvertCreate(&pencil, pencil.C ? DampedShift(&window) : UndampedShift(&window), PETSC_FALSE, &modes->progress, &si));
   PetscCall(SolveBoth(modes, &pencil, &window, &si));
   PetscCall(ShiftInvertDestroy(&si));
-  PetscCheck(modes->right.n, modes->comm, PETSC_ERR_USER_INPUT, "-modes_band %g,%g Hz contains no mode; widen it", (double)modes->band[0],
+  PetscCheck(modes->right.n, modes->comm, PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g Hz contains no mode; widen it", (double)modes->band[0],
              (double)modes->band[1]);
   PetscCall(QualityMeasure(modes, &pencil));
   PetscCall(ModesLabel(modes));

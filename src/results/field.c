@@ -274,7 +274,7 @@ PetscErrorCode ResultsFieldOpen(Results results, const char name[], DM dm, Petsc
   PetscFunctionReturn(0);
 }
 
-/* Writes the dataset `key``suffix` with its title; x = NULL stands for zero, and so do displacements fixed by supports */
+/* Writes the dataset `key``suffix` with its title; zero for x = NULL and where a support fixes the displacement */
 static PetscErrorCode FieldWriteShape(ResultsField field, const char key[], const char suffix[], const char title[],
                                       Vec x)
 {

@@ -1,12 +1,17 @@
 /*
    HDF5 files written by all ranks. The first rank creates groups, attributes and datasets; a dataset is contiguous and
    allocated at once, so that row r of width w lies at byte offset + r w size, where each rank writes its own rows.
+   Space is reserved before HDF5 is given anything to write, since it does not survive a file that it cannot flush when
+   it closes it.
    Reference: The HDF Group, HDF5 Reference Manual, H5Dget_offset, H5Pset_alloc_time.
 */
 #include "resultsimpl.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <unistd.h>
+
+/* Bytes kept free at the end of the file for the records that HDF5 adds between two reservations */
+#define H5_ROOM 65536
 
 /* Evaluates an HDF5 call that returns a negative value on failure; reasons are reported by us, hence silence here */
 #define H5Quietly(result, call)                                                                                        \
@@ -27,20 +32,49 @@ static PetscErrorCode OutFileH5Note(OutFile *file, PetscInt64 result)
   PetscFunctionReturn(0);
 }
 
-/* Creates the file; collective, raises its failures */
+/* Reserves `size` further bytes of the disk */
+static PetscErrorCode OutFileReserve(OutFile *file, hsize_t size)
+{
+  hsize_t used = 0;
+  herr_t  result;
+
+  PetscFunctionBeginUser;
+  if (file->h5 >= 0) {
+    H5Quietly(result, H5Fget_filesize(file->h5, &used));
+    PetscCall(OutFileH5Note(file, result));
+  }
+  errno = posix_fallocate(file->fd, (off_t)used, (off_t)(size + H5_ROOM));
+  PetscCall(OutFileNote(file, errno ? PETSC_TRUE : PETSC_FALSE));
+  PetscFunctionReturn(0);
+}
+
+/* Creates the file on the first rank, if the disk has room for its head */
+static PetscErrorCode OutFileCreateH5(OutFile *file)
+{
+  PetscFunctionBeginUser;
+  file->fd = open(file->part, O_RDWR | O_CREAT | O_TRUNC, 0666);
+  PetscCall(OutFileNote(file, file->fd < 0 ? PETSC_TRUE : PETSC_FALSE));
+  if (!file->error) PetscCall(OutFileReserve(file, 0));
+  if (file->error) PetscFunctionReturn(0);
+  H5Quietly(file->h5, H5Fcreate(file->part, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  PetscCall(OutFileH5Note(file, file->h5));
+  PetscCall(OutFileReserve(file, 0)); /* again, since HDF5 has emptied the file */
+  PetscFunctionReturn(0);
+}
+
+/* Creates the file and opens it on all ranks; collective, raises its failures */
 PetscErrorCode OutFileOpenH5(OutFile *file)
 {
   PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(file->comm, &rank));
-  if (rank == 0) {
-    H5Quietly(file->h5, H5Fcreate(file->part, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
-    PetscCall(OutFileH5Note(file, file->h5));
-  }
+  if (rank == 0) PetscCall(OutFileCreateH5(file));
   PetscCall(OutFilesCheck(1, &file));
-  file->fd = open(file->part, O_WRONLY);
-  PetscCall(OutFileNote(file, file->fd < 0 ? PETSC_TRUE : PETSC_FALSE));
+  if (rank > 0) {
+    file->fd = open(file->part, O_WRONLY);
+    PetscCall(OutFileNote(file, file->fd < 0 ? PETSC_TRUE : PETSC_FALSE));
+  }
   PetscCall(OutFilesCheck(1, &file));
   PetscFunctionReturn(0);
 }
@@ -101,8 +135,8 @@ static PetscErrorCode OutFileWriteAt(OutFile *file, const char *bytes, size_t si
 }
 
 /*
-   Writes a dataset of shape [rows->n_global] (width 1) or [rows->n_global][width]; every rank gives its rows. The type is
-   that of the values in memory. Collective; failures are noted.
+   Writes a dataset of shape [rows->n_global] (width 1) or [rows->n_global][width]; every rank gives its rows. The type
+   is that of the values in memory. Collective; failures are noted.
 */
 PetscErrorCode OutFileH5Write(OutFile *file, const char path[], hid_t type, const Rows *rows, PetscInt width,
                               const void *values)
@@ -112,6 +146,7 @@ PetscErrorCode OutFileH5Write(OutFile *file, const char path[], hid_t type, cons
   uint64_t      offset  = HADDR_UNDEF;
 
   PetscFunctionBeginUser;
+  if (file->h5 >= 0 && !file->error) PetscCall(OutFileReserve(file, row * dims[0]));
   if (file->h5 >= 0 && !file->error) PetscCall(OutFileH5Dataset(file, path, type, width > 1 ? 2 : 1, dims, &offset));
   PetscCallMPI(MPI_Bcast(&offset, 1, MPI_UINT64_T, 0, file->comm));
   if (offset == HADDR_UNDEF) PetscFunctionReturn(0); /* noted by the first rank, or nothing to write */
@@ -147,8 +182,8 @@ PetscErrorCode OutFileH5Integers(OutFile *file, const char path[], const char at
 }
 
 /*
-   Attaches strings of equal, fixed length to an object of the file, as VTK wants them; n = 0 stands for a single string
-   without dimension.
+   Attaches strings of equal, fixed length to an object of the file, as VTK wants them; n = 0 stands for a single
+   string without dimension.
 */
 PetscErrorCode OutFileH5Strings(OutFile *file, const char path[], const char attribute[], PetscInt n,
                                 const char *const strings[])
@@ -178,15 +213,19 @@ PetscErrorCode OutFileH5Strings(OutFile *file, const char path[], const char att
   PetscFunctionReturn(0);
 }
 
-/* Closes the file on this rank, if it is open; a full disk may show only here */
+/* Closes the file on this rank, if it is open, and gives back the room that was not used */
 PetscErrorCode OutFileH5Close(OutFile *file)
 {
-  herr_t closed;
+  hsize_t used = 0;
+  herr_t  result;
 
   PetscFunctionBeginUser;
   if (file->h5 >= 0) {
-    H5Quietly(closed, H5Fclose(file->h5));
-    PetscCall(OutFileH5Note(file, closed));
+    H5Quietly(result, H5Fget_filesize(file->h5, &used));
+    PetscCall(OutFileH5Note(file, result));
+    H5Quietly(result, H5Fclose(file->h5));
+    PetscCall(OutFileH5Note(file, result));
+    PetscCall(OutFileNote(file, ftruncate(file->fd, (off_t)used) ? PETSC_TRUE : PETSC_FALSE));
     file->h5 = H5I_INVALID_HID;
   }
   if (file->fd >= 0) {

@@ -82,8 +82,6 @@ static PetscErrorCode OutFileDiscard(OutFile *file)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(file->comm, &rank));
   PetscCall(OutFileCloseText(file));
-  /* an empty file gives its space back, so that HDF5 can flush and let go of it */
-  if (file->fd >= 0) PetscCall(OutFileNote(file, ftruncate(file->fd, 0) ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(OutFileH5Close(file));
   if (rank == 0) (void)unlink(file->part); /* it may never have come to exist */
   PetscFunctionReturn(0);
@@ -105,6 +103,7 @@ PetscErrorCode OutFilesCheck(PetscInt n, OutFile *const files[])
   }
   if (failed == n) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < n; i++) PetscCall(OutFileDiscard(files[i]));
+  PetscCallMPI(MPI_Barrier(files[0]->comm)); /* no rank ends the run before the files are gone */
   advice = error == ENOSPC || error == EDQUOT || error == EFBIG ? "free some space or " : "";
   SETERRQ(files[failed]->comm, PETSC_ERR_FILE_WRITE, "cannot write %s: %s; %schoose another -output_dir",
           files[failed]->name, strerror(error), advice);

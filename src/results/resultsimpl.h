@@ -1,10 +1,10 @@
 /*
    Private to results/: a file under its temporary name, text or HDF5, and the XDMF text that describes the fields.
 
-   Errors of the system are noted per rank (errno) while writing and raised on all ranks by OutFilesCheck() and
-   OutFilesPublish(). HDF5 is driven by the first rank alone, with its serial driver, for groups, attributes and the layout
-   of the datasets; all ranks then write their rows in place. MPI-IO is not used: Open MPI's collective writes report
-   success, or never return, when the disk is full.
+   Errors of the system are noted per rank (errno) while writing, and raised on all ranks by OutFilesCheck() and
+   OutFilesPublish(). HDF5 is driven by the first rank alone, with its serial driver, for groups, attributes and the
+   layout of the datasets; all ranks then write their rows in place. MPI-IO is not used: the collective writes of
+   Open MPI 4.1 report success, or never return, when the disk is full.
 */
 #pragma once
 

@@ -1,7 +1,7 @@
 /*
-   XDMF - the text beside the HDF5 file: a temporal collection with one grid per mode. Time is the number of the mode, and
-   the attributes have the same names in all grids, so that ParaView steps through the modes. All values are those of the
-   group /VTKHDF of the HDF5 file. Reference: XDMF Model and Format, version 2.
+   XDMF - the text beside the HDF5 file: a temporal collection with one grid per mode. Time is the number of the mode,
+   and the attributes have the same names in all grids, so that ParaView steps through the modes. All values are those
+   of the group /VTKHDF of the HDF5 file. Reference: XDMF Model and Format, version 2.
 */
 #include "resultsimpl.h"
 #include <string.h>
