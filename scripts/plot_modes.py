@@ -223,14 +223,15 @@ def draw_side(axes, scene, displacement):
 
 
 def shape_layout(scene, n_shapes):
-    """Places of the maps and of the side views, and heights (inches) and relative widths of the rows and columns: a side
+    """Places of the maps and of the side views, heights (inches) of the rows and relative widths of the columns: a side
     view stands below its map, or beside it where there is room."""
+    columns = range(n_shapes)
     edge = min(5.0, (WIDTH - 1.2) / n_shapes - 0.6)
     if not len(scene.rest):
-        return [(0, i) for i in range(n_shapes)], [], [edge + 1.1], n_shapes * [1]
+        return [(0, i) for i in columns], [], [edge + 1.1], n_shapes * [1]
     if n_shapes < 3:
-        return [(0, 2 * i) for i in range(n_shapes)], [(0, 2 * i + 1) for i in range(n_shapes)], [6.1], n_shapes * [1, 0.5]
-    return [(0, i) for i in range(n_shapes)], [(1, i) for i in range(n_shapes)], [edge + 1.1, 3.6], n_shapes * [1]
+        return [(0, 2 * i) for i in columns], [(0, 2 * i + 1) for i in columns], [edge + 1.1], n_shapes * [1, 0.5]
+    return [(0, i) for i in columns], [(1, i) for i in columns], [edge + 1.1, 3.6], n_shapes * [1]
 
 
 def draw_shapes(figure, layout, scene, rows):

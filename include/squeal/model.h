@@ -106,6 +106,10 @@ PetscErrorCode ModelGetSetFaces(Model model, const char set[], PetscInt *n, Pets
     share of its area (m^2), complete on every rank that has the vertex. Collective. The caller frees it. @*/
 PetscErrorCode ModelGetSetNormals(Model model, const char set[], PetscReal **area_normals);
 
+/*@ ModelSumShared - sums a local vector of three values per vertex (layout of the coordinates) over all ranks that share a
+    vertex; every one of them gets the sum. Collective. @*/
+PetscErrorCode ModelSumShared(Model model, Vec local);
+
 /*@ ModelGetCoordinates - of the local vertices, shape [vEnd - vStart][3], m (borrowed). Not collective. @*/
 PetscErrorCode ModelGetCoordinates(Model model, const PetscReal **coordinates);
 

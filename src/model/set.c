@@ -5,22 +5,6 @@
 #include "modelimpl.h"
 #include "kernels/facet.h"
 
-/* Sums a local vector of the coordinates' layout over all ranks that share a vertex */
-static PetscErrorCode SumShared(DM dm, Vec local)
-{
-  DM  cdm;
-  Vec global;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMGetCoordinateDM(dm, &cdm));
-  PetscCall(DMGetGlobalVector(cdm, &global));
-  PetscCall(VecSet(global, 0));
-  PetscCall(DMLocalToGlobal(cdm, local, ADD_VALUES, global));
-  PetscCall(DMGlobalToLocal(cdm, global, INSERT_VALUES, local));
-  PetscCall(DMRestoreGlobalVector(cdm, &global));
-  PetscFunctionReturn(0);
-}
-
 /* The named sets of the mesh as "disc, pad", for messages; the same text on all ranks */
 static PetscErrorCode SetListNames(DM dm, char list[], size_t size)
 {
@@ -88,6 +72,21 @@ static PetscErrorCode MarkClosure(DM dm, IS points, PetscScalar mark[])
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModelSumShared(Model model, Vec local)
+{
+  DM  cdm;
+  Vec global;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMGetCoordinateDM(model->dm, &cdm));
+  PetscCall(DMGetGlobalVector(cdm, &global));
+  PetscCall(VecSet(global, 0));
+  PetscCall(DMLocalToGlobal(cdm, local, ADD_VALUES, global));
+  PetscCall(DMGlobalToLocal(cdm, global, INSERT_VALUES, local));
+  PetscCall(DMRestoreGlobalVector(cdm, &global));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelGetSetVertices(Model model, const char set[], IS *vertices)
 {
   PetscScalar *mark;
@@ -104,7 +103,7 @@ PetscErrorCode ModelGetSetVertices(Model model, const char set[], IS *vertices)
   PetscCall(VecGetArray(marks, &mark));
   if (points) PetscCall(MarkClosure(model->dm, points, mark));
   PetscCall(VecRestoreArray(marks, &mark));
-  PetscCall(SumShared(model->dm, marks));
+  PetscCall(ModelSumShared(model, marks));
   PetscCall(PetscMalloc1(vEnd - vStart, &list));
   PetscCall(VecGetArray(marks, &mark));
   for (PetscInt v = vStart; v < vEnd; v++)
@@ -231,7 +230,7 @@ PetscErrorCode ModelGetSetNormals(Model model, const char set[], PetscReal **are
   }
   PetscCall(VecRestoreArray(sums, &sum));
   PetscCall(PetscFree(corners));
-  PetscCall(SumShared(model->dm, sums));
+  PetscCall(ModelSumShared(model, sums));
   PetscCall(PetscMalloc1(3 * (vEnd - vStart), area_normals));
   PetscCall(VecGetArray(sums, &sum));
   PetscCall(PetscArraycpy(*area_normals, sum, 3 * (vEnd - vStart)));

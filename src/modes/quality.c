@@ -4,7 +4,7 @@
       D(lambda) = M + C / (2 lambda), so that Q' = 2 lambda D
       backward error   |Q x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|)
       condition        |x|_M |y|_M / |y^T D x|
-      error            |y^T Q x| / |y^T Q' x|, first order in the residual
+      error            |y^T Q x| / |y^T Q' x|, first order in the residual, but not below what rounding in K does
    (F. Tisseur, Lin. Alg. Appl. 309, 2000, for the quadratic problem.) In a cluster of equal eigenvalues the left vectors are
    made biorthogonal to the right ones with respect to D; without that neither number would mean anything for a double mode.
 */
@@ -14,6 +14,7 @@
 
 #define MATCH   1e-5 /* left and right eigenvalues farther apart than this, relative, are different ones */
 #define RIGID   1e-5 /* both smaller than this beside the largest of the window: zeros */
+#define RIGID_NOISE 100 /* lambda^2 below this many times its error is a rigid mode */
 #define CLUSTER 1e-7 /* eigenvalues nearer than this, relative, are treated as one cluster */
 
 /* One complex vector */
@@ -267,8 +268,24 @@ static PetscErrorCode PencilNorms(const OperatorsPencil *pencil, PetscReal norms
   PetscFunctionReturn(0);
 }
 
+/* What rounding in K does to x'K x: machine epsilon times the energy without cancellation, sum_i K_ii |x_i|^2 */
+static PetscErrorCode RoundingNoise(Pair x, Vec diagonal, Vec work, PetscReal *noise)
+{
+  PetscReal part = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecPointwiseMult(work, x.r, diagonal));
+  PetscCall(VecDot(work, x.r, noise));
+  if (x.i) {
+    PetscCall(VecPointwiseMult(work, x.i, diagonal));
+    PetscCall(VecDot(work, x.i, &part));
+  }
+  *noise = PETSC_MACHINE_EPSILON * (*noise + part);
+  PetscFunctionReturn(0);
+}
+
 /* Backward error of mode i, |y^T Q x| and |y^T D x| in the unknowns of the pencil; y_Dx is not touched without left vectors */
-static PetscErrorCode MeasureResidual(Modes modes, const OperatorsPencil *pencil, PetscInt i, const PetscReal norms[3], Vec work[3], Mode *mode,
+static PetscErrorCode MeasureResidual(Modes modes, const OperatorsPencil *pencil, PetscInt i, const PetscReal norms[3], Vec work[4], Mode *mode,
                                       PetscReal *y_Qx, PetscReal *y_Dx, PetscReal *noise)
 {
   const Spectrum    *right = &modes->right, *left = &modes->left_spectrum;
@@ -287,7 +304,7 @@ static PetscErrorCode MeasureResidual(Modes modes, const OperatorsPencil *pencil
   residual             = PetscSqrtReal(residual * residual + part * part);
   bound                = cabs(lambda) * cabs(lambda) * norms[2] + cabs(lambda) * norms[1] + norms[0];
   mode->backward_error = residual / (bound * size);
-  *noise               = PETSC_MACHINE_EPSILON * norms[0] * size * size;
+  PetscCall(RoundingNoise(x, work[3], work[0], noise));
   if (!left->n) PetscFunctionReturn(0);
   PetscCall(PairDot((Pair){left->xr[i], left->xi[i]}, z, &dot));
   *y_Qx = cabs(dot);
@@ -298,7 +315,7 @@ static PetscErrorCode MeasureResidual(Modes modes, const OperatorsPencil *pencil
 }
 
 /* Condition, error, and what follows from them; the vectors become vectors of all unknowns with M-norm one */
-static PetscErrorCode MeasureMode(Modes modes, const OperatorsPencil *pencil, Mat M, PetscInt i, const PetscReal norms[3], Vec work[3], Vec full)
+static PetscErrorCode MeasureMode(Modes modes, const OperatorsPencil *pencil, Mat M, PetscInt i, const PetscReal norms[3], Vec work[4], Vec full)
 {
   Spectrum       *right = &modes->right, *left = &modes->left_spectrum;
   Mode           *mode  = &modes->mode[i];
@@ -318,11 +335,11 @@ static PetscErrorCode MeasureMode(Modes modes, const OperatorsPencil *pencil, Ma
   mode->sigma     = right->sigma[i];
   mode->omega     = right->omega[i];
   mode->condition = left->n ? norm_x * norm_y / y_Dx : NAN;
-  noise *= 100 / (norm_x * norm_x) * (left->n ? mode->condition : 1); /* what rounding in K alone does to lambda^2 */
-  kappa          = left->n ? y_Qx / y_Dx : 0;
-  mode->rigid    = size * size <= PetscMax(noise, 2 * kappa) ? PETSC_TRUE : PETSC_FALSE;
-  mode->error    = PetscMin(PetscMax(kappa, noise / 100) / (2 * PetscMax(size, PETSC_SMALL)), PetscSqrtReal(PetscMax(kappa, noise)));
-  if (mode->rigid) mode->error = PetscMax(size, PetscSqrtReal(noise)), mode->sigma = mode->omega = 0;
+  noise *= (left->n ? mode->condition : 1) / (norm_x * norm_x);
+  kappa       = PetscMax(noise, left->n ? y_Qx / y_Dx : 0); /* error of lambda^2 */
+  mode->rigid = size * size <= RIGID_NOISE * kappa ? PETSC_TRUE : PETSC_FALSE;
+  mode->error = mode->rigid ? PetscMax(size, PetscSqrtReal(kappa)) : kappa / (2 * size);
+  if (mode->rigid) mode->sigma = mode->omega = 0;
   mode->unstable = mode->sigma > 3 * mode->error && mode->sigma > 1e-9 * size ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
@@ -330,11 +347,12 @@ static PetscErrorCode MeasureMode(Modes modes, const OperatorsPencil *pencil, Ma
 PetscErrorCode QualityMeasure(Modes modes, const OperatorsPencil *pencil)
 {
   PetscReal norms[3];
-  Vec       work[3], full;
+  Vec       work[4], full; /* three for products, and the diagonal of K */
   Mat       M;
 
   PetscFunctionBeginUser;
-  for (int k = 0; k < 3; k++) PetscCall(MatCreateVecs(pencil->K, &work[k], NULL));
+  for (int k = 0; k < 4; k++) PetscCall(MatCreateVecs(pencil->K, &work[k], NULL));
+  PetscCall(MatGetDiagonal(pencil->K, work[3]));
   PetscCall(OperatorsCreateVec(modes->operators, &full));
   PetscCall(OperatorsGetMatrices(modes->operators, NULL, &M, NULL, NULL, NULL));
   PetscCall(PencilNorms(pencil, norms));
@@ -342,7 +360,7 @@ PetscErrorCode QualityMeasure(Modes modes, const OperatorsPencil *pencil)
   modes->n = modes->right.n;
   PetscCall(PetscCalloc1(modes->n, &modes->mode));
   for (PetscInt i = 0; i < modes->n; i++) PetscCall(MeasureMode(modes, pencil, M, i, norms, work, full));
-  for (int k = 0; k < 3; k++) PetscCall(VecDestroy(&work[k]));
+  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(&work[k]));
   PetscCall(VecDestroy(&full));
   PetscFunctionReturn(0);
 }

@@ -13,7 +13,7 @@ PetscReal UndampedShift(const Window *window)
 {
   const PetscReal low = window->low * window->low, high = window->high * window->high;
 
-  return window->count ? window->target * window->target : low + 0.2 * (high - low);
+  return window->count ? window->target * window->target : low + 0.25 * (high - low);
 }
 
 /* Radius about the shift that the converged eigenvalues must exceed */
@@ -81,7 +81,7 @@ static PetscErrorCode SolverCreate(const OperatorsPencil *pencil, ShiftInvert *s
   PetscCall(EPSSetProblemType(*eps, pencil->symmetric ? EPS_GHEP : EPS_GNHEP));
   PetscCall(EPSSetWhichEigenpairs(*eps, EPS_TARGET_MAGNITUDE));
   PetscCall(EPSSetTarget(*eps, si->shift));
-  PetscCall(EPSSetDimensions(*eps, nev, PetscMin(n, PetscMax(2 * nev, nev + 20)), PETSC_DEFAULT));
+  PetscCall(EPSSetDimensions(*eps, nev, PetscMin(n, nev + PetscMax(nev / 2, 20)), PETSC_DEFAULT));
   PetscCall(EPSSetTolerances(*eps, 1e-11, 200));
   PetscCall(EPSGetST(*eps, &st));
   PetscCall(ShiftInvertAttach(si, transposed, st));

@@ -114,20 +114,6 @@ static PetscErrorCode AssemblyEnd(Operators o)
   PetscFunctionReturn(0);
 }
 
-/* Empty matrix with the couplings of all cells. The duplicate leaves behind the block sizes that DMCreateMatrix() stores, which
-   PETSc 3.18 would leak when MatAXPY() later merges another pattern in. */
-static PetscErrorCode PatternCreate(DM dm, Mat *A)
-{
-  Mat pattern;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMSetMatType(dm, MATAIJ));
-  PetscCall(DMCreateMatrix(dm, &pattern));
-  PetscCall(MatDuplicate(pattern, MAT_DO_NOT_COPY_VALUES, A));
-  PetscCall(MatDestroy(&pattern));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode OperatorsAssemble(Operators o)
 {
   const Grounded *springs, *dashpots;
@@ -140,7 +126,7 @@ PetscErrorCode OperatorsAssemble(Operators o)
   PetscCall(ModelGetSprings(o->model, &n_springs, &springs));
   PetscCall(ModelGetDashpots(o->model, &n_dashpots, &dashpots));
   PetscCall(ModelIsDamped(o->model, &damped));
-  PetscCall(PatternCreate(dm, &o->A[OPERATOR_K]));
+  PetscCall(PatternCreate(o->model, &o->A[OPERATOR_K]));
   PetscCall(MatGetSize(o->A[OPERATOR_K], &n_unknowns, NULL));
   PetscCheck(n_unknowns, o->comm, PETSC_ERR_USER_INPUT, "the -supports hold every node: nothing can vibrate");
   PetscCall(MatDuplicate(o->A[OPERATOR_K], MAT_DO_NOT_COPY_VALUES, &o->A[OPERATOR_M]));

@@ -33,6 +33,9 @@ struct _p_Operators {
 /* assemble.c - K, M, C and lumped mass of the bodies, springs and dashpots */
 PETSC_INTERN PetscErrorCode OperatorsAssemble(Operators operators);
 
+/* pattern.c - empty matrix of all unknowns, preallocated for the couplings of all cells */
+PETSC_INTERN PetscErrorCode PatternCreate(Model model, Mat *A);
+
 /* friction.c - adds the contact's part to K and C, makes H */
 PETSC_INTERN PetscErrorCode OperatorsAddContact(Operators operators);
 

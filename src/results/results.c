@@ -36,7 +36,7 @@ PetscErrorCode ResultsCreate(MPI_Comm comm, Results *results)
   PetscCall(PetscNew(results));
   (*results)->comm   = comm;
   (*results)->fields = PETSC_TRUE;
-  PetscCall(PetscStrcpy((*results)->dir, "results"));
+  PetscCall(PetscStrncpy((*results)->dir, "results", sizeof((*results)->dir)));
   PetscFunctionReturn(0);
 }
 

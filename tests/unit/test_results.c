@@ -93,13 +93,13 @@ static int TestFolder(Scratch *scratch)
 
   failed += CheckTrue("folder with parents is made", !OpenResults(scratch->dir, &results), 0);
   failed += CheckTrue("folder exists", !access(scratch->dir, W_OK), 0);
-  ResultsDestroy(&results);
+  (void)ResultsDestroy(&results);
   if (scratch->rank == 0) fclose(fopen(PathOf(scratch, "file", path), "w"));
   MPI_Barrier(PETSC_COMM_WORLD);
   PathOf(scratch, "file/below", path);
   failed += CheckTrue("no folder below a file", OpenResults(path, &results) == PETSC_ERR_FILE_OPEN, 0);
   failed += CheckTrue("message names the folder", strstr(scratch->message, path) != NULL, 0);
-  ResultsDestroy(&results);
+  (void)ResultsDestroy(&results);
   if (scratch->rank == 0) unlink(PathOf(scratch, "file", path));
   return failed;
 }
@@ -233,7 +233,7 @@ static PetscErrorCode ScratchCreate(Scratch *scratch)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &scratch->rank));
   PetscCall(PetscGetTmp(PETSC_COMM_WORLD, scratch->top, sizeof(scratch->top) - 32));
-  PetscCall(PetscStrcat(scratch->top, "/squealXXXXXX"));
+  PetscCall(PetscStrlcat(scratch->top, "/squealXXXXXX", sizeof(scratch->top)));
   if (scratch->rank == 0 && !mkdtemp(scratch->top)) scratch->top[0] = '\0';
   PetscCallMPI(MPI_Bcast(scratch->top, sizeof(scratch->top), MPI_CHAR, 0, PETSC_COMM_WORLD));
   PetscCheck(scratch->top[0], PETSC_COMM_WORLD, PETSC_ERR_FILE_OPEN, "no scratch folder could be made");
