@@ -7,13 +7,19 @@
    nodal circles are the sign changes of the harmonics' radial profiles (the family of harmonics with most energy decides), the
    nodal diameters half the antinodes of that family around the rim, since a stiff contact mixes neighbouring harmonics, and
    cosine against sine tells an antinode at the contact (+). Axis and centre are those of the part's inertia tensor, so any mesh in any
-   position serves. A mode is the disc's when the disc has at least a fifth of the kinetic energy and moves mostly out of
-   plane; else it bears the name of the part with most energy.
+   position serves.
+
+   A mode is named after the disc's shape when the disc takes part with at least a quarter and moves mostly out of plane, else
+   after the part that takes most part. Participation of part p is |y^T M_p x| from left and right vectors, the share of the
+   part's mass in the eigenvalue's sensitivity: for real modes the share of kinetic energy; at a lock-in, where the right vector
+   moves one body and the left one the other, about one half for each of the two (I. J. Perez-Arriaga et al., IEEE Trans. Power
+   Apparatus and Systems 101, 1982: participation factors).
 */
 #include "modesimpl.h"
 #include "disc.h"
 
-#define DISC_SHARE 0.2 /* of the kinetic energy, from which on a mode is named after the disc's shape */
+#define MAX_PARTS  64
+#define DISC_SHARE 0.25 /* participation from which on a mode is named after the disc's shape */
 
 /* Nodal mass (kg) of one part, shape [local vertices]: an eighth of each of its hexahedra; only what this rank's cells give */
 static PetscErrorCode PartMasses(Model model, PetscInt part, PetscReal **mass)
@@ -62,41 +68,77 @@ static PetscErrorCode NodalValues(DM dm, Vec global, PetscInt n_vertices, PetscR
   PetscFunctionReturn(0);
 }
 
-/* Energy shares of the parts and the disc's fit of all modes, summed over ranks */
+/* Participation of the parts and the disc's fit of all modes, summed over ranks */
 typedef struct {
-  PetscInt   n_parts, n_vertices, disc; /* disc = its part, or -1 */
-  PetscReal **mass;                     /* [part][local vertex] */
-  PetscReal  *energy;                   /* [mode][part], then one more for the disc's out-of-plane part */
+  PetscInt    n_parts, n_vertices, disc; /* disc = its part, or -1 */
+  PetscReal **mass;                      /* [part][local vertex] */
+  PetscReal  *share;                     /* [mode][part][2]: y^T M_p x, real and imaginary */
+  PetscReal  *energy;                    /* [mode][2]: the disc's kinetic energy of x, all and out of plane */
+  PetscReal  *x[2], *y[2];               /* nodal values of one mode, real and imaginary [local vertices][3] */
   Disc        frame;
 } Labels;
 
-/* Adds the energies and the disc's right-hand sides of one vector of mode i */
-static PetscErrorCode LabelsAdd(Labels *l, PetscInt i, PetscInt column, const PetscReal u[])
+/* sum_v m_v a_v . b_v */
+static PetscReal WeightedDot(PetscInt n, const PetscReal m[], const PetscReal a[], const PetscReal b[])
 {
-  PetscReal *const energy = &l->energy[i * (l->n_parts + 1)];
+  PetscReal sum = 0;
+
+  for (PetscInt v = 0; v < n; v++) sum += m[v] * (a[3 * v] * b[3 * v] + a[3 * v + 1] * b[3 * v + 1] + a[3 * v + 2] * b[3 * v + 2]);
+  return sum;
+}
+
+/* Nodal values of a vector that may be NULL, which stands for zero */
+static PetscErrorCode NodalValuesOrZero(DM dm, Vec global, PetscInt n_vertices, PetscReal values[])
+{
+  PetscFunctionBeginUser;
+  if (global) PetscCall(NodalValues(dm, global, n_vertices, values));
+  else PetscCall(PetscArrayzero(values, 3 * n_vertices));
+  PetscFunctionReturn(0);
+}
+
+/* Adds participation and the disc's right-hand sides of mode i; without left vectors y = conj(x) */
+static PetscErrorCode LabelsAdd(Modes modes, DM dm, PetscInt i, Labels *l)
+{
+  Vec xr, xi, yr, yi;
 
   PetscFunctionBeginUser;
-  for (PetscInt part = 0; part < l->n_parts; part++)
-    for (PetscInt v = 0; v < l->n_vertices; v++)
-      energy[part] += l->mass[part][v] * (u[3 * v] * u[3 * v] + u[3 * v + 1] * u[3 * v + 1] + u[3 * v + 2] * u[3 * v + 2]);
-  if (l->disc >= 0) energy[l->n_parts] += DiscProject(&l->frame, column, u);
+  PetscCall(ModesGetVectors(modes, i, &xr, &xi, &yr, &yi));
+  PetscCall(NodalValuesOrZero(dm, xr, l->n_vertices, l->x[0]));
+  PetscCall(NodalValuesOrZero(dm, xi, l->n_vertices, l->x[1]));
+  PetscCall(NodalValuesOrZero(dm, yr ? yr : xr, l->n_vertices, l->y[0]));
+  PetscCall(NodalValuesOrZero(dm, yr ? yi : xi, l->n_vertices, l->y[1]));
+  for (PetscInt v = 0; v < 3 * l->n_vertices && !yr; v++) l->y[1][v] = -l->y[1][v];
+  for (PetscInt part = 0; part < l->n_parts; part++) {
+    const PetscInt   n = l->n_vertices;
+    const PetscReal *m = l->mass[part];
+    PetscReal       *share = &l->share[2 * (i * l->n_parts + part)];
+
+    share[0] = WeightedDot(n, m, l->y[0], l->x[0]) - WeightedDot(n, m, l->y[1], l->x[1]);
+    share[1] = WeightedDot(n, m, l->y[0], l->x[1]) + WeightedDot(n, m, l->y[1], l->x[0]);
+  }
+  for (int k = 0; k < 2 && l->disc >= 0; k++) {
+    l->energy[2 * i] += WeightedDot(l->n_vertices, l->mass[l->disc], l->x[k], l->x[k]);
+    l->energy[2 * i + 1] += DiscProject(&l->frame, 2 * i + k, l->x[k]);
+  }
   PetscFunctionReturn(0);
 }
 
 /* Writes the name of mode i */
 static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Part parts[], PetscInt i)
 {
-  const PetscReal *energy = &l->energy[i * (l->n_parts + 1)];
-  PetscReal        total  = 0;
-  PetscInt         most   = 0;
-  Mode            *mode   = &modes->mode[i];
+  PetscReal share[MAX_PARTS], total = 0;
+  PetscInt  most = 0;
+  Mode     *mode = &modes->mode[i];
 
   PetscFunctionBeginUser;
   for (PetscInt part = 0; part < l->n_parts; part++) {
-    total += energy[part];
-    if (energy[part] > energy[most]) most = part;
+    const PetscReal *z = &l->share[2 * (i * l->n_parts + part)];
+
+    share[part] = PetscSqrtReal(z[0] * z[0] + z[1] * z[1]);
+    total += share[part];
+    if (share[part] > share[most]) most = part;
   }
-  if (l->disc >= 0 && energy[l->disc] > DISC_SHARE * total && energy[l->n_parts] > 0.5 * energy[l->disc] && !mode->rigid)
+  if (l->disc >= 0 && share[l->disc] > DISC_SHARE * total && l->energy[2 * i + 1] > 0.5 * l->energy[2 * i] && !mode->rigid)
     PetscCall(DiscName(&l->frame, i, mode->label, sizeof(mode->label)));
   else PetscCall(PetscSNPrintf(mode->label, sizeof(mode->label), "%s%s", parts[most].name, mode->rigid ? " rigid" : ""));
   PetscFunctionReturn(0);
@@ -119,7 +161,8 @@ static PetscErrorCode LabelsCreate(Modes modes, Model model, Contact contact, Pe
   l->n_vertices = vEnd - vStart;
   l->disc       = -1;
   PetscCall(PetscMalloc1(n_parts, &l->mass));
-  PetscCall(PetscCalloc1(modes->n * (n_parts + 1), &l->energy));
+  PetscCall(PetscCalloc2(2 * modes->n * n_parts, &l->share, 2 * modes->n, &l->energy));
+  PetscCall(PetscMalloc4(3 * l->n_vertices, &l->x[0], 3 * l->n_vertices, &l->x[1], 3 * l->n_vertices, &l->y[0], 3 * l->n_vertices, &l->y[1]));
   for (PetscInt part = 0; part < n_parts; part++) {
     PetscCall(PartMasses(model, part, &l->mass[part]));
     PetscCall(PetscStrcmp(parts[part].name, modes->disc, &same));
@@ -137,7 +180,8 @@ static PetscErrorCode LabelsDestroy(Labels *l)
   PetscFunctionBeginUser;
   for (PetscInt part = 0; part < l->n_parts; part++) PetscCall(PetscFree(l->mass[part]));
   PetscCall(PetscFree(l->mass));
-  PetscCall(PetscFree(l->energy));
+  PetscCall(PetscFree2(l->share, l->energy));
+  PetscCall(PetscFree4(l->x[0], l->x[1], l->y[0], l->y[1]));
   PetscCall(DiscDestroy(&l->frame));
   PetscFunctionReturn(0);
 }
@@ -173,7 +217,6 @@ PetscErrorCode ModesLabel(Modes modes)
   Labels      l = {0};
   const Part *parts;
   PetscInt    n_parts;
-  PetscReal  *u;
   Model       model;
   Contact     contact;
   DM          dm;
@@ -187,16 +230,9 @@ PetscErrorCode ModesLabel(Modes modes)
   PetscCall(ModelGetDM(model, &dm));
   PetscCall(ModelGetParts(model, &n_parts, &parts));
   PetscCall(LabelsCreate(modes, model, contact, n_parts, parts, &l));
-  PetscCall(PetscMalloc1(3 * l.n_vertices, &u));
-  for (PetscInt i = 0; i < modes->n; i++) {
-    PetscCall(NodalValues(dm, modes->right.xr[i], l.n_vertices, u));
-    PetscCall(LabelsAdd(&l, i, 2 * i, u));
-    if (!modes->right.xi[i]) continue;
-    PetscCall(NodalValues(dm, modes->right.xi[i], l.n_vertices, u));
-    PetscCall(LabelsAdd(&l, i, 2 * i + 1, u));
-  }
-  PetscCall(PetscFree(u));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.energy, (PetscMPIInt)(modes->n * (n_parts + 1)), MPIU_REAL, MPI_SUM, modes->comm));
+  for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelsAdd(modes, dm, i, &l));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.share, (PetscMPIInt)(2 * modes->n * n_parts), MPIU_REAL, MPI_SUM, modes->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.energy, (PetscMPIInt)(2 * modes->n), MPIU_REAL, MPI_SUM, modes->comm));
   if (l.disc >= 0) PetscCall(DiscSolve(&l.frame));
   for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelWrite(modes, &l, parts, i));
   PetscCall(LabelsDestroy(&l));
