@@ -66,9 +66,10 @@ static PetscErrorCode SolverCreate(Mat problem[3], ShiftInvert *si, PetscBool tr
   PetscCall(PEPSetType(*pep, PEPTOAR));
   PetscCall(PEPSetWhichEigenpairs(*pep, PEP_TARGET_MAGNITUDE));
   PetscCall(PEPSetTarget(*pep, si->shift));
-  PetscCall(PEPSetDimensions(*pep, nev, PetscMin(2 * n, PetscMax(2 * nev, nev + 20)), PETSC_DEFAULT));
+  PetscCall(PEPSetDimensions(*pep, nev, PetscMin(2 * n, nev + PetscMax(3 * nev / 5, 20)), PETSC_DEFAULT));
   PetscCall(PEPSetTolerances(*pep, 1e-11, 200));
-  PetscCall(PEPSetScale(*pep, PEP_SCALE_SCALAR, PETSC_DECIDE, NULL, NULL, PETSC_DECIDE, PETSC_DECIDE));
+  /* lambda = scale * mu with |mu| <= 1 in the window; explicit, since the norms of transposed matrices are not at hand */
+  PetscCall(PEPSetScale(*pep, PEP_SCALE_SCALAR, 3 * si->shift, NULL, NULL, PETSC_DECIDE, PETSC_DECIDE));
   PetscCall(PEPGetST(*pep, &st));
   PetscCall(ShiftInvertAttach(si, transposed, st));
   PetscCall(PEPSetFromOptions(*pep));

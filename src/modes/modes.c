@@ -84,9 +84,9 @@ static PetscErrorCode SolveBoth(Modes modes, const OperatorsPencil *pencil, Wind
       PetscCall(QualityMatchLeft(modes, &worst, &complete));
     }
     if (complete) break;
+    window->extra += 10 + modes->right.n / 2;
     PetscCall(SpectrumDestroy(&modes->right));
     PetscCall(SpectrumDestroy(&modes->left_spectrum));
-    window->extra += 10 + modes->right.n / 2;
   }
   PetscCheck(complete, modes->comm, PETSC_ERR_NOT_CONVERGED,
              "modes are missing after three attempts (%s); narrow -modes_band or tighten -eps_tol", proven ? "inertia count" : "left and right differ");

@@ -1,0 +1,220 @@
+#!/usr/bin/env python3
+"""Writes the meshes of the verification and invariance tests as Gmsh files.
+
+    mesh.py beam --elements 20,4,2 cantilever.msh
+    mesh.py rig --format 2.2 --binary --renumber 7 --move rig.msh
+
+beam  a bar along x: volume "beam", end x = 0 "root"
+rig   a ring and a block that stands on a sector of its face with nodes of its own: volumes "disc", "block", surfaces
+      "disc_inner", "disc_face", "block_face", "block_top"
+
+--renumber draws new numbers of nodes and elements, a new order of both, and a new first node of each element. --move turns the
+mesh by MOVE_ROTATION, a quarter turn about (1, 2, 2), and shifts it; the direction y becomes (-4, 4, 7) / 9. Lengths in m.
+"""
+
+import argparse
+import itertools
+import struct
+from pathlib import Path
+
+import numpy as np
+
+MOVE_ROTATION = np.array([[1, -4, 8], [8, 4, 1], [-4, 7, 4]]) / 9
+MOVE_SHIFT = np.array([0.3, -0.2, 0.5])
+CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
+TYPES = {8: (5, 3), 4: (3, 2)}  # nodes of an element: its type in the file and its dimension
+
+
+# --- meshes: nodes [n, 3], and groups, name -> elements [m, nodes of an element] with indices of nodes from 0
+
+
+class Grid:
+    """Structured hexahedra; node (i, j, k) has index first + i + ni (j + nj k). The second direction may close on itself."""
+
+    def __init__(self, cells, closed=False, first=0):
+        self.cells, self.first = np.array(cells), first
+        self.nodes = self.cells + [1, 0 if closed else 1, 1]
+
+    def index(self, at):
+        i, j, k = np.moveaxis(np.asarray(at), -1, 0)
+        return self.first + i + self.nodes[0] * (j % self.nodes[1] + self.nodes[1] * k)
+
+    def places(self, counts):
+        """All (i, j, k) below counts, i fastest."""
+        return np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), -1).transpose(2, 1, 0, 3).reshape(-1, 3)
+
+    def hexahedra(self):
+        return self.index(self.places(self.cells)[:, None] + CORNERS)
+
+    def side(self, axis, at):
+        """Quadrilaterals between nodes of equal index `at` along an axis."""
+        counts = self.cells.copy()
+        counts[axis] = 1
+        around = np.zeros((4, 3), int)
+        around[:, [(axis + 1) % 3, (axis + 2) % 3]] = [[0, 0], [1, 0], [1, 1], [0, 1]]
+        corners = self.places(counts)[:, None] + around
+        corners[..., axis] = at
+        return self.index(corners)
+
+
+def beam(elements, size):
+    grid = Grid(elements)
+    nodes = grid.places(grid.nodes) / grid.cells * size - [0, size[1] / 2, size[2] / 2]
+    return nodes, {"beam": grid.hexahedra(), "root": grid.side(0, 0)}
+
+
+def polar(places, r, theta, z):
+    """Points of the grid by the values of r, theta, z at its indices."""
+    r, theta, z = r[places[:, 0]], theta[places[:, 1]], z[places[:, 2]]
+    return np.stack([r * np.cos(theta), r * np.sin(theta), z], -1)
+
+
+def rig():
+    """Ring r 50..120 mm, 10 mm thick, of 7 x 36 x 2 elements; block over rings 4..6 and columns 0..2, 60 mm high."""
+    disc = Grid([7, 36, 2], closed=True)
+    block = Grid([2, 2, 6], first=int(np.prod(disc.nodes)))
+    r, theta = np.linspace(0.05, 0.12, 8), 2 * np.pi * np.arange(36) / 36
+    nodes = [polar(disc.places(disc.nodes), r, theta, np.linspace(-0.01, 0, 3)),
+             polar(block.places(block.nodes), r[4:7], theta[0:3], np.linspace(0, 0.06, 7))]
+    return np.concatenate(nodes), {
+        "disc": disc.hexahedra(), "block": block.hexahedra(), "disc_inner": disc.side(0, 0), "disc_face": disc.side(2, 2),
+        "block_face": block.side(2, 0), "block_top": block.side(2, 6)}
+
+
+# --- changes that leave the physics alone
+
+
+def turned_hexahedra():
+    """The 24 orders of a hexahedron's nodes that keep its orientation."""
+    orders = []
+    for axes in itertools.permutations(range(3)):
+        for signs in itertools.product([1, -1], repeat=3):
+            rotation = np.zeros((3, 3), int)
+            rotation[range(3), axes] = signs
+            if np.linalg.det(rotation) > 0:
+                places = ((2 * CORNERS - 1) @ rotation.T + 1) // 2
+                orders.append([CORNERS.tolist().index(place) for place in places.tolist()])
+    return np.array(orders)
+
+
+def renumber(random, nodes, groups):
+    """Another order of nodes, groups and elements, and other first nodes of the elements."""
+    place = random.permutation(len(nodes))
+    nodes = nodes[np.argsort(place)]
+    orders = {8: turned_hexahedra(), 4: np.array([np.roll(range(4), k) for k in range(4)])}
+    names = list(groups)
+    random.shuffle(names)
+    changed = {}
+    for name in names:
+        elements = place[groups[name][random.permutation(len(groups[name]))]]
+        order = orders[elements.shape[1]]
+        changed[name] = np.take_along_axis(elements, order[random.integers(len(order), size=len(elements))], 1)
+    return nodes, changed
+
+
+# --- Gmsh reference manual, "MSH file format"; every group is an entity and a physical group with the same tag
+
+
+def words(binary, *parts):
+    """Numbers of (code of struct, values) in binary, or as a line of text."""
+    if binary:
+        return b"".join(struct.pack(f"={len(values)}{code}", *values) for code, values in parts)
+    return (" ".join(repr(value) for _, values in parts for value in values) + "\n").encode()
+
+
+def section(name, *content):
+    return b"".join([f"${name}\n".encode(), *content, f"$End{name}\n".encode()])
+
+
+def entities_41(binary, nodes, groups):
+    dimensions = [TYPES[elements.shape[1]][1] for elements in groups.values()]
+    yield words(binary, ("Q", [dimensions.count(d) for d in range(4)]))
+    for dimension in (2, 3):
+        for tag, elements in enumerate(groups.values(), 1):
+            if TYPES[elements.shape[1]][1] == dimension:
+                points = nodes[elements.ravel()]
+                box = [*points.min(0).tolist(), *points.max(0).tolist()]
+                yield words(binary, ("i", [tag]), ("d", box), ("Q", [1]), ("i", [tag]), ("Q", [0]))
+
+
+def nodes_41(binary, nodes, tags, groups):
+    volume = next(tag for tag, elements in enumerate(groups.values(), 1) if elements.shape[1] == 8)
+    yield words(binary, ("Q", [1, len(nodes), min(tags), max(tags)]))
+    yield words(binary, ("i", [3, volume, 0]), ("Q", [len(nodes)]))
+    yield from (words(binary, ("Q", [tag])) for tag in tags)
+    yield from (words(binary, ("d", point)) for point in nodes.tolist())
+
+
+def elements_41(binary, tags, groups, numbers):
+    yield words(binary, ("Q", [len(groups), len(numbers), min(numbers), max(numbers)]))
+    number = iter(numbers)
+    for tag, elements in enumerate(groups.values(), 1):
+        kind, dimension = TYPES[elements.shape[1]]
+        yield words(binary, ("i", [dimension, tag, kind]), ("Q", [len(elements)]))
+        yield from (words(binary, ("Q", [next(number), *(tags[n] for n in element)])) for element in elements.tolist())
+
+
+def nodes_22(binary, nodes, tags):
+    yield f"{len(nodes)}\n".encode()
+    yield from (words(binary, ("i", [tag]), ("d", point)) for tag, point in zip(tags, nodes.tolist()))
+
+
+def elements_22(binary, tags, groups, numbers):
+    yield f"{len(numbers)}\n".encode()
+    number = iter(numbers)
+    for tag, elements in enumerate(groups.values(), 1):
+        kind = TYPES[elements.shape[1]][0]
+        if binary:
+            yield words(binary, ("i", [kind, len(elements), 2]))
+        for element in elements.tolist():
+            head = [next(number), tag, tag] if binary else [next(number), kind, 2, tag, tag]
+            yield words(binary, ("i", [*head, *(tags[n] for n in element)]))
+
+
+def write(path, version, binary, nodes, groups, node_tags, numbers):
+    names = [f'{TYPES[elements.shape[1]][1]} {tag} "{name}"\n' for tag, (name, elements) in enumerate(groups.items(), 1)]
+    order = struct.pack("=i", 1) if binary else b""
+    content = section("MeshFormat", f"{version} {int(binary)} 8\n".encode(), order, b"\n" if binary else b"")
+    content += section("PhysicalNames", f"{len(names)}\n".encode(), "".join(names).encode())
+    end = b"\n" if binary else b""
+    if version == "4.1":
+        content += section("Entities", *entities_41(binary, nodes, groups), end)
+        content += section("Nodes", *nodes_41(binary, nodes, node_tags, groups), end)
+        content += section("Elements", *elements_41(binary, node_tags, groups, numbers), end)
+    else:
+        content += section("Nodes", *nodes_22(binary, nodes, node_tags), end)
+        content += section("Elements", *elements_22(binary, node_tags, groups, numbers), end)
+    path.write_bytes(content)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("shape", choices=["beam", "rig"])
+    parser.add_argument("file", type=Path)
+    parser.add_argument("--elements", default="20,4,2", help="of the beam along x, y, z")
+    parser.add_argument("--size", default="0.1,0.01,0.005", help="of the beam along x, y, z, m")
+    parser.add_argument("--format", choices=["2.2", "4.1"], default="4.1")
+    parser.add_argument("--binary", action="store_true")
+    parser.add_argument("--renumber", type=int, metavar="SEED")
+    parser.add_argument("--move", action="store_true")
+    arguments = parser.parse_args()
+    if arguments.shape == "beam":
+        elements, size = arguments.elements.split(","), arguments.size.split(",")
+        nodes, groups = beam([int(n) for n in elements], np.array([float(s) for s in size]))
+    else:
+        nodes, groups = rig()
+    node_tags = list(range(1, len(nodes) + 1))
+    numbers = list(range(1, sum(map(len, groups.values())) + 1))
+    if arguments.renumber is not None:
+        random = np.random.default_rng(arguments.renumber)
+        nodes, groups = renumber(random, nodes, groups)
+        node_tags = random.choice(3 * len(node_tags), len(node_tags), replace=False).tolist()
+        node_tags = [tag + 1 for tag in node_tags]
+        random.shuffle(numbers)
+    if arguments.move:
+        nodes = nodes @ MOVE_ROTATION.T + MOVE_SHIFT
+    write(arguments.file, arguments.format, arguments.binary, nodes, groups, node_tags, numbers)
+
+
+if __name__ == "__main__":
+    main()
