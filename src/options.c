@@ -1,5 +1,5 @@
 /*
-   Lists of names, and unknown options.
+   Lists of names and numbers, values that are no numbers, and unknown options.
 
    An option that nobody read is an error unless its prefix is one of PETSc's or SLEPc's. The valid names are exactly those
    that -help would print, so they are collected by reading all options once more with PETSc's help printer replaced; this
@@ -12,6 +12,7 @@
 
 #define MAX_VALID 1024
 #define MAX_NAME  128
+#define MAX_REALS 16
 
 /* Prefixes of options that PETSc and SLEPc read themselves, some of them only at the end */
 static const char *const library_prefixes[] = {
@@ -65,6 +66,74 @@ PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char he
     }
   }
   *n = count;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsGetReals(PetscOptionItems *PetscOptionsObject, const char option[], const char help[], PetscInt n,
+                               PetscReal values[], PetscBool *set)
+{
+  const char *prefix = PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "";
+  PetscReal   all[MAX_REALS];
+  PetscInt    count = n;
+  PetscBool   given;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsRealArray(option, help, NULL, values, &count, NULL));
+  count = MAX_REALS; /* PetscOptionsRealArray() leaves out those beyond n */
+  PetscCall(PetscOptionsGetRealArray(PetscOptionsObject->options, prefix, option, all, &count, &given));
+  PetscCheck(!given || count == n, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
+             "-%s%s has %" PetscInt_FMT " values; give %" PetscInt_FMT, prefix, option + 1, count, n);
+  if (set) *set = given;
+  PetscFunctionReturn(0);
+}
+
+/* Splits a message such as "Input string abc has no numeric value" into the value and what is wrong with it */
+static PetscBool MessageSplit(const char message[], char value[MAX_NAME], const char **wrong)
+{
+  static const char *const starts[] = {"Input string ", "Unknown logical value: "};
+  const char              *end;
+
+  for (int i = 0; i < 2; i++) {
+    if (strncmp(message, starts[i], strlen(starts[i]))) continue;
+    message += strlen(starts[i]);
+    end    = i ? NULL : strstr(message, " has no ");
+    *wrong = end ? end : " is neither true nor false";
+    return snprintf(value, MAX_NAME, "%.*s", (int)(end ? end - message : (ptrdiff_t)strlen(message)), message) < MAX_NAME;
+  }
+  return PETSC_FALSE;
+}
+
+/* Whether a comma separated list holds the value */
+static PetscBool ListHolds(const char list[], const char value[])
+{
+  const size_t length = strlen(value);
+
+  for (const char *c = list; c; c = strchr(c, ',') ? strchr(c, ',') + 1 : NULL)
+    if (!strncmp(c, value, length) && (c[length] == ',' || !c[length])) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+PetscErrorCode OptionsExplainValue(const char message[], char text[], size_t size)
+{
+  char        value[MAX_NAME], *all, *word, *rest, *name = NULL;
+  const char *wrong;
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  if (!MessageSplit(message, value, &wrong)) PetscFunctionReturn(0);
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  for (word = strtok_r(all, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
+    if (word[0] == '-' && isalpha((unsigned char)word[1])) name = word;
+    else if (name && ListHolds(word, value)) {
+      PetscCall(PetscStrlcat(text, text[0] ? " or " : "", size));
+      PetscCall(PetscStrlcat(text, name, size));
+    }
+  }
+  PetscCall(PetscFree(all));
+  if (!text[0]) PetscFunctionReturn(0);
+  PetscCall(PetscStrlcat(text, ": ", size));
+  PetscCall(PetscStrlcat(text, value, size));
+  PetscCall(PetscStrlcat(text, wrong, size));
   PetscFunctionReturn(0);
 }
 

@@ -6,8 +6,10 @@
    the others, which know nothing of it.
 */
 #include <squeal/squeal.h>
+#include <squeal/options.h>
 #include <slepcsys.h>
 #include <hdf5.h>
+#include <signal.h>
 
 #define MAX_MESSAGE 1024
 
@@ -32,21 +34,41 @@ static PetscErrorCode KeepError(MPI_Comm comm, int line, const char *function, c
 {
   char *const kept = ctx;
   const char *text = message;
+  char        better[MAX_MESSAGE];
 
   (void)comm, (void)line, (void)function, (void)file;
   if (type != PETSC_ERROR_INITIAL || kept[0]) return code;
   if (!text || !text[0]) (void)PetscErrorMessage(code, &text, NULL);
   (void)snprintf(kept, MAX_MESSAGE, "%.*s", text ? (int)strcspn(text, "\n") : 13, text ? text : "unknown error");
+  if (!OptionsExplainValue(kept, better, sizeof(better)) && better[0]) (void)snprintf(kept, MAX_MESSAGE, "%s", better);
   return code;
+}
+
+/* Adds the files to a message about YAML that names none; PETSc does not say which of several it read */
+static void NameOptionsFiles(int argc, char *const argv[], char message[MAX_MESSAGE])
+{
+  const char *between = "; check tabs, indentation, brackets and quotes of ";
+
+  if (!strstr(message, "YAML") || strstr(message, "option file: ")) return;
+  for (int i = 1; i + 1 < argc; i++) {
+    if (strncmp(argv[i], "-options_file", 13)) continue;
+    (void)snprintf(&message[strlen(message)], MAX_MESSAGE - strlen(message), "%s-options_file %s", between, argv[i + 1]);
+    between = " or ";
+  }
 }
 
 PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
 {
+  PetscErrorCode error;
+
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Init(argc, argv));
   (void)H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  (void)signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit of `ulimit -f` is an error of the write, as a full disk is */
   PetscCall(PetscPushErrorHandler(KeepError, error_message));
-  PetscCall(SlepcInitialize(argc, argv, NULL, help));
+  error = SlepcInitialize(argc, argv, NULL, help);
+  if (error) NameOptionsFiles(*argc, *argv, error_message);
+  PetscCall(error);
   for (PetscInt s = 0; s < SQUEAL_N_STAGES; s++) PetscCall(PetscLogStageRegister(stage_names[s], &stages[s]));
   PetscCall(PetscCitationsRegister(citation, &cited));
   PetscFunctionReturn(0);

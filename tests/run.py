@@ -5,12 +5,18 @@ A case is a TOML file. Only `run` is required.
 
     options = "-options_file {source}/options/oscillator.yaml"   # of all runs; {source} is the top of the repository
     ranks = [1, 2]           # all runs and checks are made on each of these; default [1]
+    make = ["{source}/tests/mesh.py rig rig.msh"]    # Python scripts, run first in the working folder of all runs
     needs = ["vtkmodules"]   # Python modules, without which the case is skipped
+
+    [file]
+    "cube.msh" = "text"      # written into the working folder of all runs
 
     [run.NAME]               # made in the order of the file
     options = "-contact_mu 1"    # {OTHER} is the output folder of an earlier run
     stdout = ["regex"]           # found in the output
     files = ["modes.csv"]        # written, not empty
+    link = {"modes.csv.part" = "/dev/full"}    # symbolic links put into the output folder before
+    file_limit = 8_000_000       # largest file that the run may write, bytes
     warning = "regex"            # each warning matches; without it there must be none
     error = "regex"              # the run must fail: status not 0, one line on stderr, which matches; no rank and no file left
                                  # behind but `files`
@@ -25,6 +31,7 @@ A case is a TOML file. Only `run` is required.
     equals = {"(0,4)" = 3918}    # by label: the nearest of the rows with that label
     equals_run = "OTHER"         # the same rows of another run; `by = "label"` compares the nearest of the same label
     across_ranks = true          # the same run on ranks[0]
+    pairs = true                 # rows 1 and 2, 3 and 4, ... are equal
     min = 0                      # bounds of every value
     max = 1e-8
     count = 2                    # number of rows
@@ -107,11 +114,20 @@ class Runner:
         folders = {name: self.output(name) for name in self.case["run"]}
         return [word.format(source=SOURCE, **folders) for word in shlex.split(text)]
 
+    def link(self, name, run):
+        """Puts the links of a run into its output folder."""
+        for link, target in run.get("link", {}).items():
+            self.output(name).mkdir(exist_ok=True)
+            (self.output(name) / link).symlink_to(target)
+
     def execute(self, name, run):
         command = [self.arguments.launcher, "-n", str(self.ranks), self.arguments.squeal]
         environment = {key: value for key, value in os.environ.items() if key != "PETSC_OPTIONS"}
         command += self.expand(self.case.get("options", "") + " " + run.get("options", ""))
         command += ["-output_dir", str(self.output(name)), "-malloc_dump", "-options_left"]
+        if "file_limit" in run:
+            command = ["prlimit", f"--fsize={run['file_limit']}", *command]
+        self.link(name, run)
         print("$", shlex.join(map(str, command)), flush=True)
         process = subprocess.Popen(command, cwd=self.folder, env=environment, text=True,
                                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -260,6 +276,9 @@ class Checker:
         if "equals" in check:
             require(rows, "no row is selected")
             yield compare(self.stated_pairs(rows, values, column, check["equals"]), check)
+        if check.get("pairs"):
+            require(rows and len(rows) % 2 == 0, f"{len(rows)} rows are no pairs")
+            yield compare(list(zip(values[1::2], values[::2])), check)
         others = []
         if "equals_run" in check:
             others.append(self.rows(self.runner, check["equals_run"], check))
@@ -320,6 +339,10 @@ def main():
 
     results = []
     with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
+        for name, text in case.get("file", {}).items():
+            (Path(folder) / name).write_text(text)
+        for command in case.get("make", []):
+            subprocess.run([sys.executable, *shlex.split(command.format(source=SOURCE))], cwd=folder, check=True)
         first = None
         for ranks in arguments.ranks or case.get("ranks", [1]):
             runner = Runner(arguments, case, Path(folder), ranks)

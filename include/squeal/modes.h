@@ -37,8 +37,8 @@ PetscErrorCode ModesSetOperators(Modes modes, Operators operators);
 
    Options Database Keys:
 +  -modes_band <f1,f2>       - all eigenvalues with frequency in this band, Hz
-.  -modes_target <Hz>        - without a band: the -modes_count nearest to this frequency
-.  -modes_count <20>         - how many
+.  -modes_target <0>         - instead of a band: the -modes_count modes nearest to this frequency, Hz
+.  -modes_count <20>         - how many; either of the two overrides a band
 .  -modes_left <true>        - compute left vectors (condition and error need them)
 -  -modes_disc <disc>        - part whose modes are labelled by nodal circles and diameters
    The solvers take -eps_*, -pep_*, -st_*.

@@ -1,5 +1,6 @@
 /*
-   Options - what PETSc's options do not offer: lists of names that become prefixes, and errors for unknown names.
+   Options - what PETSc's options do not offer: lists of names that become prefixes, arrays of a given length, and errors that
+   name the option.
 */
 #pragma once
 
@@ -21,6 +22,31 @@
 @*/
 PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], const char initial[], PetscInt max,
                                PetscInt *n, char *names[]);
+
+/*@
+   OptionsGetReals - reads an array of exactly n numbers between PetscOptionsBegin() and PetscOptionsEnd(). Collective.
+
+   Input Parameters:
++  option - e.g. "-stiffness", without the prefix
+.  help   - one line with the unit
+-  n      - length of the array, at most 15
+   Output Parameters:
++  values - unchanged where the option is not given
+-  set    - whether it is given, or NULL
+
+   Errors: PETSC_ERR_USER_INPUT for more or fewer values.
+@*/
+PetscErrorCode OptionsGetReals(PetscOptionItems *PetscOptionsObject, const char option[], const char help[], PetscInt n,
+                               PetscReal values[], PetscBool *set);
+
+/*@
+   OptionsExplainValue - rewrites PETSc's message about a value that is no number, integer or logical so that it names the
+   option. Not collective.
+
+   Output Parameter:
+.  text - e.g. "-contact_mu: abc has no numeric value"; all options with that value; empty for other messages
+@*/
+PetscErrorCode OptionsExplainValue(const char message[], char text[], size_t size);
 
 /*@
    OptionsCheckUnknown - raises an error for an option that nobody read and that is not PETSc's or SLEPc's, naming the nearest

@@ -13,19 +13,6 @@ PetscErrorCode ContactCreate(Model model, Contact *contact)
   PetscFunctionReturn(0);
 }
 
-/* Reads a vector of three, when given */
-static PetscErrorCode VectorFromOptions(PetscOptionItems *PetscOptionsObject, const char option[], const char help[], PetscReal v[3])
-{
-  PetscInt  n = 3;
-  PetscBool set;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsRealArray(option, help, NULL, v, &n, &set));
-  PetscCheck(!set || n == 3, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT, "-%s%s has %" PetscInt_FMT " values; give three: x,y,z",
-             PetscOptionsObject->prefix, option + 1, n);
-  PetscFunctionReturn(0);
-}
-
 /* Parameters of one interface, whose name is set */
 static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c)
 {
@@ -48,9 +35,9 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
   PetscCall(PetscOptionsReal("-speed", "sliding speed, m/s", NULL, c->speed, &c->speed, NULL));
   PetscCall(PetscOptionsBool("-friction_damping", "damping mu N/v across the slip, mu_slope N along it", NULL, c->damping,
                              &c->damping, NULL));
-  PetscCall(VectorFromOptions(PetscOptionsObject, "-slip", "direction of the slave's velocity relative to the master", c->slip));
-  PetscCall(VectorFromOptions(PetscOptionsObject, "-rotation", "or: angular velocity of the master, rad/s", c->rotation));
-  PetscCall(VectorFromOptions(PetscOptionsObject, "-center", "a point of its axis, m", c->center));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-slip", "direction of the slave's velocity relative to the master", 3, c->slip, NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-rotation", "or: angular velocity of the master, rad/s", 3, c->rotation, NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-center", "a point of its axis, m", 3, c->center, NULL));
   PetscOptionsEnd();
   PetscCheck(!set || n == 2, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces has %" PetscInt_FMT " names; give two: slave,master", c->name, n);
   c->law    = (ContactLaw)law;

@@ -37,19 +37,15 @@ static PetscErrorCode SupportSetFromOptions(MPI_Comm comm, Support *support)
 /* Three values of a grounded spring or dashpot; option is "-stiffness" or "-viscosity" */
 static PetscErrorCode GroundedSetFromOptions(MPI_Comm comm, const char kind[], const char option[], const char help[], Grounded *g)
 {
-  char      prefix[128], title[160];
-  PetscInt  n = 3;
-  PetscBool set;
+  char prefix[128], title[160];
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", g->name));
   PetscCall(PetscSNPrintf(title, sizeof(title), "%s %s", kind, g->name));
   PetscOptionsBegin(comm, prefix, title, NULL);
   PetscCall(SetNameFromOptions(PetscOptionsObject, &g->set));
-  PetscCall(PetscOptionsRealArray(option, help, NULL, g->value, &n, &set));
+  PetscCall(OptionsGetReals(PetscOptionsObject, option, help, 3, g->value, NULL));
   PetscOptionsEnd();
-  PetscCheck(!set || n == 3, comm, PETSC_ERR_USER_INPUT, "-%s%s has %" PetscInt_FMT " values; give three: x,y,z", g->name,
-             option + 1, n);
   for (int d = 0; d < 3; d++)
     PetscCheck(g->value[d] >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s value %.6g must not be negative", g->name, option + 1,
                (double)g->value[d]);

@@ -26,5 +26,8 @@ PETSC_INTERN PetscErrorCode DiscCreate(MPI_Comm comm, PetscInt n_vertices, const
 /* Adds the displacements u[local vertices][3] to right-hand side `column`; returns their out-of-plane energy on this rank */
 PETSC_INTERN PetscReal      DiscProject(Disc *disc, PetscInt column, const PetscReal u[]);
 PETSC_INTERN PetscErrorCode DiscSolve(Disc *disc);
-PETSC_INTERN PetscErrorCode DiscName(const Disc *disc, PetscInt mode, char name[], size_t size);
+/* P_0 .. P_4 of the radius r mapped to [-1, 1] */
+PETSC_INTERN void           DiscLegendre(const Disc *disc, PetscReal r, PetscReal p[DISC_POLYNOMIALS]);
 PETSC_INTERN PetscErrorCode DiscDestroy(Disc *disc);
+/* discname.c - "(circles,diameters+)" */
+PETSC_INTERN PetscErrorCode DiscName(const Disc *disc, PetscInt mode, char name[], size_t size);

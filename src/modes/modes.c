@@ -4,6 +4,7 @@
 */
 #include "modesimpl.h"
 #include "operators/ordering.h"
+#include <squeal/options.h>
 
 PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
 {
@@ -26,20 +27,21 @@ PetscErrorCode ModesSetOperators(Modes modes, Operators operators)
 
 PetscErrorCode ModesSetFromOptions(Modes modes)
 {
-  PetscInt n = 2;
+  PetscBool has_target, has_count;
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(modes->comm, NULL, "Modes", NULL);
-  PetscCall(PetscOptionsRealArray("-modes_band", "all modes with frequency in f1,f2, Hz", NULL, modes->band, &n, &modes->has_band));
-  PetscCall(PetscOptionsReal("-modes_target", "without a band: the modes nearest to this frequency, Hz", NULL, modes->target, &modes->target, NULL));
-  PetscCall(PetscOptionsInt("-modes_count", "how many of them", NULL, modes->count, &modes->count, NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-modes_band", "all modes with frequency in f1,f2, Hz", 2, modes->band, &modes->has_band));
+  PetscCall(PetscOptionsReal("-modes_target", "instead of a band: the modes nearest to this frequency, Hz", NULL, modes->target, &modes->target,
+                             &has_target));
+  PetscCall(PetscOptionsInt("-modes_count", "how many of them", NULL, modes->count, &modes->count, &has_count));
   PetscCall(PetscOptionsBool("-modes_left", "left vectors: condition and error of each eigenvalue", NULL, modes->left, &modes->left, NULL));
   PetscCall(PetscOptionsString("-modes_disc", "part whose shapes are named by nodal circles and diameters", NULL, modes->disc, modes->disc,
                                sizeof(modes->disc), NULL));
   PetscOptionsEnd();
-  PetscCheck(!modes->has_band || n == 2, modes->comm, PETSC_ERR_USER_INPUT, "-modes_band has %" PetscInt_FMT " values; give two: f1,f2 in Hz", n);
   PetscCheck(!modes->has_band || (modes->band[0] >= 0 && modes->band[1] > modes->band[0]), modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_band %.6g,%.6g must satisfy 0 <= f1 < f2 (Hz)", (double)modes->band[0], (double)modes->band[1]);
+  if (has_target || has_count) modes->has_band = PETSC_FALSE;
   PetscCheck(modes->count > 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_count %" PetscInt_FMT " must be positive", modes->count);
   PetscCheck(modes->target >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_target %.6g must not be negative (Hz)", (double)modes->target);
   PetscCall(ProgressSetFromOptions(modes->comm, &modes->progress));
@@ -75,13 +77,14 @@ static PetscErrorCode SolveBoth(Modes modes, const OperatorsPencil *pencil, Wind
   PetscFunctionBeginUser;
   for (int attempt = 0; attempt < 3; attempt++) {
     PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_FALSE, &modes->right));
+    if (pencil->C) PetscCall(WindowDropTwins(modes, window, &modes->right));
     PetscCall(WindowSelect(window, &modes->right));
     if (proven) {
       PetscCall(WindowProve(modes, window, &modes->right, &complete));
       if (complete && modes->left) PetscCall(SpectrumCopy(&modes->right, &modes->left_spectrum));
     } else if (modes->left) {
       PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_TRUE, &modes->left_spectrum));
-      PetscCall(QualityMatchLeft(modes, &worst, &complete));
+      PetscCall(LeftMatch(modes, window->scale, &worst, &complete));
     }
     if (complete) break;
     window->extra += 10 + modes->right.n / 2;
@@ -106,6 +109,7 @@ PetscErrorCode ModesSolve(Modes modes)
   PetscCheck(window.expected != 0 || !pencil.symmetric || pencil.C, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_band %.6g,%.6g Hz contains no mode (%" PetscInt_FMT " lie below it); widen it", (double)modes->band[0], (double)modes->band[1],
              window.below);
+  if (window.count && pencil.C) PetscCall(WindowReach(modes, &window));
   PetscCall(ShiftInvertCreate(&pencil, pencil.C ? DampedShift(&window) : UndampedShift(&window), PETSC_FALSE, &modes->progress, &si));
   PetscCall(SolveBoth(modes, &pencil, &window, &si));
   PetscCall(ShiftInvertDestroy(&si));

@@ -72,10 +72,13 @@ typedef struct {
   PetscInt  extra;           /* eigenvalues to compute beyond those expected */
   PetscInt  count;           /* > 0: this many nearest to target instead, low and high unknown */
   PetscReal target;          /* rad/s */
+  PetscReal scale;           /* far below any elastic mode yet above rounding: 1e-5 sqrt(|K| / |M|), rad/s */
 } Window;
 
 /* window.c - the window, and the count of frictionless modes in it by Sylvester's law of inertia */
 PETSC_INTERN PetscErrorCode WindowFind(Modes modes, Window *window);
+PETSC_INTERN PetscErrorCode WindowReach(Modes modes, Window *window); /* sets high for the modes nearest to a target */
+PETSC_INTERN PetscErrorCode WindowDropTwins(Modes modes, const Window *window, Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode WindowSelect(const Window *window, Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *spectrum, PetscBool *complete);
 PETSC_INTERN PetscErrorCode WindowDescribe(const Window *window, const Spectrum *spectrum, PetscBool proven, PetscBool left, PetscReal worst,
@@ -89,8 +92,11 @@ PETSC_INTERN PetscErrorCode DampedSolve(Modes modes, const OperatorsPencil *penc
 PETSC_INTERN PetscReal UndampedShift(const Window *window);
 PETSC_INTERN PetscReal DampedShift(const Window *window);
 
-/* quality.c - pairs left with right vectors, normalises them, and measures errors */
-PETSC_INTERN PetscErrorCode QualityMatchLeft(Modes modes, PetscReal *worst, PetscBool *complete);
+/* left.c - left partners of the right eigenvalues, those below zero (rad/s) being all alike; biorthogonal left vectors in clusters, work[3] in the pencil's unknowns */
+PETSC_INTERN PetscErrorCode LeftMatch(Modes modes, PetscReal zero, PetscReal *worst, PetscBool *complete);
+PETSC_INTERN PetscErrorCode LeftBiorthogonalise(Modes modes, const OperatorsPencil *pencil, Vec work[]);
+
+/* quality.c - measures the errors, expands the vectors to all unknowns and normalises them */
 PETSC_INTERN PetscErrorCode QualityMeasure(Modes modes, const OperatorsPencil *pencil);
 
 /* label.c - names of the shapes */

@@ -39,12 +39,14 @@ static void SpectrumSwap(Spectrum *s, PetscInt i, PetscInt j)
   s->sigma[j] = sigma, s->omega[j] = omega, s->xr[j] = xr, s->xi[j] = xi;
 }
 
-/* Whether entry i stands after entry j: by frequency; members of a lock-in pair (equal within 1e-7) by growth */
+/* Whether entry i stands after entry j: by frequency; members of a lock-in pair (equal within 1e-7) by growth, and real
+   eigenvalues by size */
 static PetscBool SpectrumIsAfter(const Spectrum *s, PetscInt i, PetscInt j)
 {
   const PetscReal close = 1e-7 * PetscMax(s->omega[i], s->omega[j]);
 
   if (PetscAbsReal(s->omega[i] - s->omega[j]) > close) return s->omega[i] > s->omega[j] ? PETSC_TRUE : PETSC_FALSE;
+  if (s->omega[i] == 0) return PetscAbsReal(s->sigma[i]) > PetscAbsReal(s->sigma[j]) ? PETSC_TRUE : PETSC_FALSE;
   return s->sigma[i] > s->sigma[j] ? PETSC_TRUE : PETSC_FALSE;
 }
 

@@ -13,7 +13,8 @@ PetscReal UndampedShift(const Window *window)
 {
   const PetscReal low = window->low * window->low, high = window->high * window->high;
 
-  return window->count ? window->target * window->target : low + 0.25 * (high - low);
+  if (window->count) return window->target > 0 ? window->target * window->target : -window->scale * window->scale;
+  return low + 0.25 * (high - low);
 }
 
 /* Radius about the shift that the converged eigenvalues must exceed */

@@ -19,6 +19,18 @@ static PetscErrorCode CountBelow(Modes modes, const OperatorsPencil *pencil, Pet
   PetscFunctionReturn(0);
 }
 
+/* A frequency (rad/s) that is small beside all elastic modes, from the size of the matrices */
+static PetscErrorCode WindowScale(const OperatorsPencil *pencil, PetscReal *scale)
+{
+  PetscReal K, M;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatNorm(pencil->K, NORM_FROBENIUS, &K));
+  PetscCall(MatNorm(pencil->M, NORM_FROBENIUS, &M));
+  *scale = 1e-5 * PetscSqrtReal(K / M);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode WindowFind(Modes modes, Window *window)
 {
   OperatorsPencil frictionless;
@@ -32,6 +44,7 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
   window->count    = modes->has_band ? 0 : modes->count;
   window->expected = window->below = -1;
   window->extra    = 6;
+  PetscCall(WindowScale(&frictionless, &window->scale));
   if (!frictionless.symmetric) PetscFunctionReturn(0);
   if (!modes->has_band) {
     PetscCall(CountBelow(modes, &frictionless, window->target, &window->below));
@@ -40,6 +53,41 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
   PetscCall(CountBelow(modes, &frictionless, window->low, &window->below));
   PetscCall(CountBelow(modes, &frictionless, window->high, &below_high));
   window->expected = below_high - window->below;
+  PetscFunctionReturn(0);
+}
+
+/* The damped problem converges from zero upwards and must know how far: the frictionless, undamped modes tell */
+PetscErrorCode WindowReach(Modes modes, Window *window)
+{
+  OperatorsPencil frictionless;
+  ShiftInvert     si;
+  Spectrum        nearest;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetFrictionless(modes->operators, &frictionless));
+  PetscCall(ShiftInvertCreate(&frictionless, UndampedShift(window), PETSC_FALSE, &modes->progress, &si));
+  PetscCall(UndampedSolve(modes, &frictionless, window, &si, PETSC_FALSE, &nearest));
+  PetscCall(WindowSelect(window, &nearest));
+  for (PetscInt i = 0; i < nearest.n; i++) window->high = PetscMax(window->high, nearest.omega[i]);
+  window->high = PetscMax(window->high, window->scale);
+  PetscCall(SpectrumDestroy(&nearest));
+  PetscCall(ShiftInvertDestroy(&si));
+  PetscFunctionReturn(0);
+}
+
+/* With damping a rigid mode is a double zero, which rounding splits into two tiny eigenvalues: as many are kept as the
+   frictionless system has rigid modes, so that each is listed once */
+PetscErrorCode WindowDropTwins(Modes modes, const Window *window, Spectrum *s)
+{
+  OperatorsPencil frictionless;
+  PetscInt        n_zero = 0, n_rigid;
+
+  PetscFunctionBeginUser;
+  while (n_zero < s->n && PetscAbsReal(s->sigma[n_zero]) < window->scale && s->omega[n_zero] < window->scale) n_zero++;
+  if (!n_zero || window->below < 0) PetscFunctionReturn(0);
+  PetscCall(OperatorsGetFrictionless(modes->operators, &frictionless));
+  PetscCall(CountBelow(modes, &frictionless, window->scale, &n_rigid));
+  if (n_rigid < n_zero) PetscCall(SpectrumKeep(s, n_zero - n_rigid, s->n - (n_zero - n_rigid)));
   PetscFunctionReturn(0);
 }
 

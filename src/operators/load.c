@@ -2,6 +2,8 @@
    Matrices without a mesh: PETSc binary files (MatLoad) or dense lists in the options, rows one after another.
 */
 #include "operatorsimpl.h"
+#include <errno.h>
+#include <unistd.h>
 
 #define MAX_DENSE 10000 /* entries of an inline matrix: 100 x 100 */
 
@@ -106,10 +108,11 @@ PetscErrorCode OperatorsLoad(Operators o)
 /* Writes one matrix under a temporary name, then renames it */
 static PetscErrorCode FileSave(Operators o, const char name[], Mat A)
 {
-  char        file[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
-  PetscViewer viewer;
-  PetscMPIInt rank;
-  int         failed = 0;
+  char           file[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
+  PetscViewer    viewer;
+  PetscMPIInt    rank;
+  PetscErrorCode error;
+  int            failed = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(file, sizeof(file), "%s/%s.bin", o->save, name));
@@ -119,9 +122,13 @@ static PetscErrorCode FileSave(Operators o, const char name[], Mat A)
   PetscCall(PetscViewerBinarySkipInfo(viewer));
   PetscCall(PetscViewerFileSetMode(viewer, FILE_MODE_WRITE));
   PetscCall(PetscViewerFileSetName(viewer, part));
-  PetscCall(MatView(A, viewer));
-  PetscCall(PetscViewerDestroy(&viewer));
   PetscCallMPI(MPI_Comm_rank(o->comm, &rank));
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  error = MatView(A, viewer);
+  PetscCall(PetscPopErrorHandler());
+  if (error) (void)unlink(part);
+  PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write '%s' of -operators_save: %s", file, strerror(errno));
+  PetscCall(PetscViewerDestroy(&viewer));
   if (rank == 0) failed = rename(part, file);
   PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
   PetscCheck(!failed, o->comm, PETSC_ERR_FILE_WRITE, "cannot write '%s' of -operators_save", file);

@@ -1,0 +1,157 @@
+/*
+   Left vectors for right ones. The two spectra were computed apart; here each right eigenvalue gets its left partner, or the
+   spectra are found to differ, so that a mode is missing in one of them. In a cluster of equal eigenvalues the left vectors are
+   made biorthogonal to the right ones with respect to D(lambda); without that neither condition nor error would mean anything
+   for a double mode.
+*/
+#include "complexvec.h"
+#include <petscblaslapack.h>
+
+#define MATCH   1e-5 /* left and right eigenvalues farther apart than this, relative, are different ones */
+#define RIGID   1e-5 /* both smaller than this beside the largest of the window: zeros */
+#define CLUSTER 1e-7 /* eigenvalues nearer than this, relative, are treated as one cluster */
+
+/* Nearest entry of the left spectrum that is not used yet */
+static PetscInt NearestLeft(const Spectrum *left, const PetscBool used[], PetscComplex lambda, PetscReal *distance)
+{
+  PetscInt best = -1;
+
+  *distance = PETSC_MAX_REAL;
+  for (PetscInt j = 0; j < left->n; j++) {
+    const PetscReal here = cabs(SpectrumLambda(left, j) - lambda);
+
+    if (used[j] || here >= *distance) continue;
+    *distance = here;
+    best      = j;
+  }
+  return best;
+}
+
+/* Largest |lambda| of a spectrum */
+static PetscReal LambdaLargest(const Spectrum *s)
+{
+  PetscReal largest = 0;
+
+  for (PetscInt j = 0; j < s->n; j++) largest = PetscMax(largest, cabs(SpectrumLambda(s, j)));
+  return largest;
+}
+
+/* Relative distance of two eigenvalues; rigid modes are zeros up to the square root of rounding, hence all alike */
+static PetscReal LambdaDistance(PetscComplex a, PetscComplex b, PetscReal largest)
+{
+  if (PetscMax(cabs(a), cabs(b)) < RIGID * largest) return 0;
+  return cabs(a - b) / PetscMax(cabs(a), 1e-3 * largest);
+}
+
+PetscErrorCode LeftMatch(Modes modes, PetscReal zero, PetscReal *worst, PetscBool *complete)
+{
+  Spectrum *right = &modes->right, *left = &modes->left_spectrum, matched;
+  const PetscReal tiny = PetscMax(zero, RIGID * LambdaLargest(right)); /* rigid modes: zeros up to the root of rounding */
+  PetscBool      *used;
+
+  PetscFunctionBeginUser;
+  *worst    = 0;
+  *complete = PETSC_TRUE;
+  PetscCall(PetscCalloc1(left->n, &used));
+  PetscCall(SpectrumCreate(right->n, &matched));
+  for (PetscInt i = 0; i < right->n; i++) {
+    PetscReal       distance;
+    PetscInt        j     = NearestLeft(left, used, SpectrumLambda(right, i), &distance);
+    const PetscReal size  = cabs(SpectrumLambda(right, i));
+    const Spectrum *from  = left;
+
+    if (j < 0 || distance > MATCH * size) {
+      *complete = size < tiny ? PETSC_TRUE : PETSC_FALSE;
+      if (!*complete) break;
+      from = right, j = i; /* a zero pairs with any zero; it stays rigid whatever its left vector */
+    } else {
+      used[j] = PETSC_TRUE;
+      if (size > tiny) *worst = PetscMax(*worst, distance / size);
+    }
+    PetscCall(SpectrumAdd(&matched, from->sigma[j], from->omega[j], from->xr[j], from->xi[j]));
+  }
+  for (PetscInt j = 0; j < left->n && right->n; j++) /* a left eigenvalue inside the window without a right one */
+    if (!used[j] && left->omega[j] > PetscMax(tiny, right->omega[0] * (1 + MATCH)) && left->omega[j] < right->omega[right->n - 1] * (1 - MATCH))
+      *complete = PETSC_FALSE;
+  PetscCall(PetscFree(used));
+  PetscCall(SpectrumDestroy(left));
+  *left = matched;
+  PetscFunctionReturn(0);
+}
+
+/* Solves G A = I for the complex m x m matrix G (row-major) through its real form [Re -Im; Im Re] of order 2 m */
+static PetscErrorCode ComplexInverse(PetscInt m, const PetscComplex G[], PetscComplex inverse[])
+{
+  const PetscInt n2 = 2 * m;
+  PetscReal     *a, *b;
+  PetscBLASInt   n, *pivots, info;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n2, &n));
+  PetscCall(PetscCalloc3(n2 * n2, &a, n2 * n2, &b, n2, &pivots));
+  for (PetscInt i = 0; i < m; i++) {
+    for (PetscInt j = 0; j < m; j++) {
+      a[i + j * n2]           = creal(G[i * m + j]);
+      a[i + m + (j + m) * n2] = creal(G[i * m + j]);
+      a[i + m + j * n2]       = cimag(G[i * m + j]);
+      a[i + (j + m) * n2]     = -cimag(G[i * m + j]);
+    }
+    b[i + i * n2] = 1;
+  }
+  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&n, &n, a, &n, pivots, b, &n, &info));
+  for (PetscInt i = 0; i < m * m; i++) inverse[i] = info ? (i % (m + 1) == 0) : CMPLX(b[i / m + (i % m) * n2], b[i / m + m + (i % m) * n2]);
+  PetscCall(PetscFree3(a, b, pivots));
+  PetscFunctionReturn(0);
+}
+
+/* Replaces the left vectors first .. first + m - 1 by combinations with y_i^T D x_j = delta_ij */
+static PetscErrorCode Biorthogonalise(const OperatorsPencil *pencil, const Spectrum *right, PetscInt first, PetscInt m, Vec work[], Spectrum *left)
+{
+  PetscComplex *G, *inverse;
+  Vec          *yr, *yi;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(m * m, &G, m * m, &inverse));
+  for (PetscInt j = 0; j < m; j++) {
+    const ComplexVec x = {right->xr[first + j], right->xi[first + j]}, z = {work[1], work[2]};
+
+    PetscCall(PencilApplyD(pencil, SpectrumLambda(right, first), x, work[0], z));
+    for (PetscInt i = 0; i < m; i++) PetscCall(ComplexVecDot((ComplexVec){left->xr[first + i], left->xi[first + i]}, z, &G[i * m + j]));
+  }
+  PetscCall(ComplexInverse(m, G, inverse));
+  PetscCall(VecDuplicateVecs(work[0], m, &yr));
+  PetscCall(VecDuplicateVecs(work[0], m, &yi));
+  for (PetscInt i = 0; i < m; i++)
+    for (PetscInt j = 0; j < m; j++) {
+      const PetscComplex a = inverse[i * m + j];
+
+      PetscCall(VecAXPY(yr[i], creal(a), left->xr[first + j]));
+      PetscCall(VecAXPY(yi[i], cimag(a), left->xr[first + j]));
+      if (!left->xi[first + j]) continue;
+      PetscCall(VecAXPY(yr[i], -cimag(a), left->xi[first + j]));
+      PetscCall(VecAXPY(yi[i], creal(a), left->xi[first + j]));
+    }
+  for (PetscInt i = 0; i < m; i++) {
+    PetscCall(VecCopy(yr[i], left->xr[first + i]));
+    if (!left->xi[first + i] && right->xi[first + i]) PetscCall(VecDuplicate(yi[i], &left->xi[first + i]));
+    if (left->xi[first + i]) PetscCall(VecCopy(yi[i], left->xi[first + i]));
+  }
+  PetscCall(VecDestroyVecs(m, &yr));
+  PetscCall(VecDestroyVecs(m, &yi));
+  PetscCall(PetscFree2(G, inverse));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LeftBiorthogonalise(Modes modes, const OperatorsPencil *pencil, Vec work[])
+{
+  const Spectrum *right   = &modes->right;
+  const PetscReal largest = LambdaLargest(right);
+
+  PetscFunctionBeginUser;
+  for (PetscInt first = 0, m; first < right->n; first += m) {
+    for (m = 1; first + m < right->n; m++)
+      if (LambdaDistance(SpectrumLambda(right, first + m), SpectrumLambda(right, first + m - 1), largest) > CLUSTER) break;
+    if (m > 1) PetscCall(Biorthogonalise(pencil, right, first, m, work, &modes->left_spectrum));
+  }
+  PetscFunctionReturn(0);
+}

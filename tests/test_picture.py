@@ -1,0 +1,28 @@
+#!/usr/bin/env python3
+"""Draws the modes of a run with scripts/plot_modes.py and checks that the picture is one: a PNG of at least 800 x 600 points, of
+which no colour fills more than 98 %. Exit status: 0, or 1.
+"""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib.image
+import numpy
+
+PLOT = Path(__file__).resolve().parent.parent / "scripts" / "plot_modes.py"
+
+
+def main():
+    folder = Path(sys.argv[1])
+    picture = folder / "picture.png"
+    subprocess.run([sys.executable, PLOT, folder, "-o", picture], check=True)
+    points = (255 * matplotlib.image.imread(picture)[:, :, :3]).astype(int)
+    colours = points.reshape(-1, 3) @ [1, 256, 65536]
+    _, counts = numpy.unique(colours, return_counts=True)
+    print(f"{points.shape[1]} x {points.shape[0]} points, {len(counts)} colours, the most frequent one on {counts.max() / colours.size:.1%}")
+    return 0 if points.shape[1] >= 800 and points.shape[0] >= 600 and counts.max() < 0.98 * colours.size else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
