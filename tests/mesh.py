@@ -4,12 +4,13 @@
     mesh.py beam --elements 20,4,2 cantilever.msh
     mesh.py rig --format 2.2 --binary --renumber 7 --move rig.msh
 
-beam  a bar along x: volume "beam", end x = 0 "root"
+beam  a bar of 100 x 10 x 5 mm along x: volume "beam", end x = 0 "root"
 rig   a ring and a block that stands on a sector of its face with nodes of its own: volumes "disc", "block", surfaces
       "disc_inner", "disc_face", "block_face", "block_top"
 
---renumber draws new numbers of nodes and elements, a new order of both, and a new first node of each element. --move turns the
-mesh by MOVE_ROTATION, a quarter turn about (1, 2, 2), and shifts it; the direction y becomes (-4, 4, 7) / 9. Lengths in m.
+--renumber draws new numbers of nodes and elements, a new order of both, and a new first node of each element.
+--move turns the mesh by MOVE_ROTATION, a quarter turn about (1, 2, 2), and shifts it; the direction y becomes
+(-4, 4, 7) / 9. Lengths in m.
 """
 
 import argparse
@@ -20,8 +21,10 @@ from pathlib import Path
 import numpy as np
 
 MOVE_ROTATION = np.array([[1, -4, 8], [8, 4, 1], [-4, 7, 4]]) / 9
+BEAM_SIZE = np.array([0.1, 0.01, 0.005])
 MOVE_SHIFT = np.array([0.3, -0.2, 0.5])
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
+PHYSICAL = 40  # what the tag of a physical group exceeds that of its entity by
 TYPES = {8: (5, 3), 4: (3, 2)}  # nodes of an element: its type in the file and its dimension
 
 
@@ -29,7 +32,7 @@ TYPES = {8: (5, 3), 4: (3, 2)}  # nodes of an element: its type in the file and 
 
 
 class Grid:
-    """Structured hexahedra; node (i, j, k) has index first + i + ni (j + nj k). The second direction may close on itself."""
+    """Structured hexahedra; node (i, j, k) has index first + i + ni (j + nj k). The second direction may be closed."""
 
     def __init__(self, cells, closed=False, first=0):
         self.cells, self.first = np.array(cells), first
@@ -57,9 +60,9 @@ class Grid:
         return self.index(corners)
 
 
-def beam(elements, size):
+def beam(elements):
     grid = Grid(elements)
-    nodes = grid.places(grid.nodes) / grid.cells * size - [0, size[1] / 2, size[2] / 2]
+    nodes = (grid.places(grid.nodes) / grid.cells - [0, 0.5, 0.5]) * BEAM_SIZE
     return nodes, {"beam": grid.hexahedra(), "root": grid.side(0, 0)}
 
 
@@ -70,15 +73,15 @@ def polar(places, r, theta, z):
 
 
 def rig():
-    """Ring r 50..120 mm, 10 mm thick, of 7 x 36 x 2 elements; block over rings 4..6 and columns 0..2, 60 mm high."""
+    """Ring r 50..120 mm, 10 mm thick, 7 x 36 x 2 elements; block on its rings 4, 5 and columns 0, 1, 60 mm high."""
     disc = Grid([7, 36, 2], closed=True)
     block = Grid([2, 2, 6], first=int(np.prod(disc.nodes)))
     r, theta = np.linspace(0.05, 0.12, 8), 2 * np.pi * np.arange(36) / 36
     nodes = [polar(disc.places(disc.nodes), r, theta, np.linspace(-0.01, 0, 3)),
              polar(block.places(block.nodes), r[4:7], theta[0:3], np.linspace(0, 0.06, 7))]
     return np.concatenate(nodes), {
-        "disc": disc.hexahedra(), "block": block.hexahedra(), "disc_inner": disc.side(0, 0), "disc_face": disc.side(2, 2),
-        "block_face": block.side(2, 0), "block_top": block.side(2, 6)}
+        "disc": disc.hexahedra(), "disc_inner": disc.side(0, 0), "disc_face": disc.side(2, 2),
+        "block": block.hexahedra(), "block_face": block.side(2, 0), "block_top": block.side(2, 6)}
 
 
 # --- changes that leave the physics alone
@@ -112,7 +115,7 @@ def renumber(random, nodes, groups):
     return nodes, changed
 
 
-# --- Gmsh reference manual, "MSH file format"; every group is an entity and a physical group with the same tag
+# --- Gmsh reference manual, "MSH file format"; every group is one geometric entity, with a tag, and one physical group
 
 
 def words(binary, *parts):
@@ -134,7 +137,7 @@ def entities_41(binary, nodes, groups):
             if TYPES[elements.shape[1]][1] == dimension:
                 points = nodes[elements.ravel()]
                 box = [*points.min(0).tolist(), *points.max(0).tolist()]
-                yield words(binary, ("i", [tag]), ("d", box), ("Q", [1]), ("i", [tag]), ("Q", [0]))
+                yield words(binary, ("i", [tag]), ("d", box), ("Q", [1]), ("i", [tag + PHYSICAL]), ("Q", [0]))
 
 
 def nodes_41(binary, nodes, tags, groups):
@@ -166,13 +169,15 @@ def elements_22(binary, tags, groups, numbers):
         kind = TYPES[elements.shape[1]][0]
         if binary:
             yield words(binary, ("i", [kind, len(elements), 2]))
+        tagged = [tag + PHYSICAL, tag]
         for element in elements.tolist():
-            head = [next(number), tag, tag] if binary else [next(number), kind, 2, tag, tag]
+            head = [next(number), *tagged] if binary else [next(number), kind, 2, *tagged]
             yield words(binary, ("i", [*head, *(tags[n] for n in element)]))
 
 
 def write(path, version, binary, nodes, groups, node_tags, numbers):
-    names = [f'{TYPES[elements.shape[1]][1]} {tag} "{name}"\n' for tag, (name, elements) in enumerate(groups.items(), 1)]
+    names = [f'{TYPES[elements.shape[1]][1]} {tag} "{name}"\n'
+             for tag, (name, elements) in enumerate(groups.items(), 1 + PHYSICAL)]
     order = struct.pack("=i", 1) if binary else b""
     content = section("MeshFormat", f"{version} {int(binary)} 8\n".encode(), order, b"\n" if binary else b"")
     content += section("PhysicalNames", f"{len(names)}\n".encode(), "".join(names).encode())
@@ -192,15 +197,13 @@ def main():
     parser.add_argument("shape", choices=["beam", "rig"])
     parser.add_argument("file", type=Path)
     parser.add_argument("--elements", default="20,4,2", help="of the beam along x, y, z")
-    parser.add_argument("--size", default="0.1,0.01,0.005", help="of the beam along x, y, z, m")
     parser.add_argument("--format", choices=["2.2", "4.1"], default="4.1")
     parser.add_argument("--binary", action="store_true")
     parser.add_argument("--renumber", type=int, metavar="SEED")
     parser.add_argument("--move", action="store_true")
     arguments = parser.parse_args()
     if arguments.shape == "beam":
-        elements, size = arguments.elements.split(","), arguments.size.split(",")
-        nodes, groups = beam([int(n) for n in elements], np.array([float(s) for s in size]))
+        nodes, groups = beam([int(n) for n in arguments.elements.split(",")])
     else:
         nodes, groups = rig()
     node_tags = list(range(1, len(nodes) + 1))

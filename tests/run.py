@@ -123,8 +123,8 @@ class Runner:
     def execute(self, name, run):
         command = [self.arguments.launcher, "-n", str(self.ranks), self.arguments.squeal]
         environment = {key: value for key, value in os.environ.items() if key != "PETSC_OPTIONS"}
-        command += self.expand(self.case.get("options", "") + " " + run.get("options", ""))
         command += ["-output_dir", str(self.output(name)), "-malloc_dump", "-options_left"]
+        command += self.expand(self.case.get("options", "") + " " + run.get("options", ""))
         if "file_limit" in run:
             command = ["prlimit", f"--fsize={run['file_limit']}", *command]
         self.link(name, run)

@@ -20,8 +20,9 @@ def main():
     points = (255 * matplotlib.image.imread(picture)[:, :, :3]).astype(int)
     colours = points.reshape(-1, 3) @ [1, 256, 65536]
     _, counts = numpy.unique(colours, return_counts=True)
-    print(f"{points.shape[1]} x {points.shape[0]} points, {len(counts)} colours, the most frequent one on {counts.max() / colours.size:.1%}")
-    return 0 if points.shape[1] >= 800 and points.shape[0] >= 600 and counts.max() < 0.98 * colours.size else 1
+    height, width, share = *points.shape[:2], counts.max() / colours.size
+    print(f"{width} x {height} points, {len(counts)} colours, the most frequent one on {share:.1%}")
+    return 0 if width >= 800 and height >= 600 and share < 0.98 else 1
 
 
 if __name__ == "__main__":

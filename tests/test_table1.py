@@ -2,9 +2,10 @@
 """Compares modes.csv with table 1 of the seed paper (linear column, pad of 25.1 GPa, mu = 0) and prints both.
 
 Each of the 22 modes must exist under its label, each mode of ours serves once, the root mean square of the relative errors is at
-most 1.0 % and none exceeds 2.5 %. Labels are the paper's but for one: the mode that the paper calls (0,7+) at 8594 Hz is by its
-computed shape a second (0,6+), with six nodal diameters and the antinode at the contact as high as the others; the shape with
-seven comes at 10.9 kHz, where the paper lists none. Exit status: 0, or 1.
+most 1.0 % and none exceeds 2.5 %. Labels are the paper's but for one: the mode that the paper calls (0,7+) at 8594 Hz
+bears our label (0,6+), since its rim has twelve changes of sign; the shape with fourteen comes at 10.9 kHz, where the
+paper lists none.
+Exit status: 0, or 1.
 """
 
 import argparse

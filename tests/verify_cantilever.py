@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Bending frequencies of options/cantilever.yaml on three meshes against Timoshenko's beam, and their order of convergence.
+"""Bending frequencies of options/cantilever.yaml on three meshes against Timoshenko's beam, and their order.
 
     verify_cantilever.py COARSE MEDIUM FINE      output folders, length of the elements halved from one to the next
 
@@ -7,8 +7,8 @@ With w the deflection, phi the rotation of the section, M the moment, V the shea
 
     w' = phi + V / (kappa G A),   phi' = M / (E I),   M' = -V - rho I omega^2 phi,   V' = -rho A omega^2 w,
 
-w = phi = 0 at the clamped end and M = V = 0 at the free one; kappa = 5/6 for a rectangle without Poisson's effect (G. R. Cowper,
-J. Appl. Mech. 33, 1966). Trilinear and incompatible elements have an error of order h^2.
+w = phi = 0 at the clamped end and M = V = 0 at the free one; kappa = 5/6 for a rectangle without Poisson's effect
+(G. R. Cowper, J. Appl. Mech. 33, 1966). Trilinear and incompatible elements have an error of order h^2.
 """
 
 import math

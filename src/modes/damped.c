@@ -55,6 +55,7 @@ static PetscReal RadiusNeeded(const Window *window, PetscReal shift, const Spect
 /* Solver for nev eigenvalues about the shift; the transposed problem starts from another random vector */
 static PetscErrorCode SolverCreate(Mat problem[3], ShiftInvert *si, PetscBool transposed, PetscInt nev, PetscInt n, PEP *pep)
 {
+  PetscMPIInt rank;
   PetscRandom random;
   BV          bv;
   ST          st;
@@ -75,7 +76,9 @@ static PetscErrorCode SolverCreate(Mat problem[3], ShiftInvert *si, PetscBool tr
   PetscCall(PEPSetFromOptions(*pep));
   PetscCall(PEPGetBV(*pep, &bv));
   PetscCall(BVGetRandomContext(bv, &random));
-  PetscCall(PetscRandomSetSeed(random, transposed ? 20051 : 2005));
+  PetscCallMPI(MPI_Comm_rank(si->comm, &rank));
+  /* a start vector alike on all ranks could miss what is not */
+  PetscCall(PetscRandomSetSeed(random, (transposed ? 20051 : 2005) + (unsigned long)rank));
   PetscCall(PetscRandomSeed(random));
   PetscFunctionReturn(0);
 }

@@ -5,6 +5,8 @@
 #include "disc.h"
 #include <petscblaslapack.h>
 
+#define BINS 720 /* of the rim, to find gaps between columns of nodes */
+
 static PetscReal Dot(const PetscReal a[3], const PetscReal b[3])
 {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -118,6 +120,27 @@ static PetscErrorCode DiscNodes(Disc *disc, PetscInt n_vertices, const PetscReal
   PetscFunctionReturn(0);
 }
 
+/* Harmonics that the mesh resolves, three columns of nodes to a wave: the widest gap between columns at the rim decides, seen in
+   bins of half a degree */
+static PetscErrorCode DiscResolution(Disc *disc, const PetscReal x[])
+{
+  int       seen[BINS] = {0}, gap = 0, widest = 1;
+  PetscReal r, theta;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < disc->n_nodes; i++) {
+    DiscPolar(disc, &x[3 * disc->node[i]], &r, &theta);
+    if (r > 0.98 * disc->r_outer) seen[(int)((theta + PETSC_PI) / (2 * PETSC_PI) * BINS) % BINS] = 1;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, seen, BINS, MPI_INT, MPI_MAX, disc->comm));
+  for (int a = 0; a < 2 * BINS; a++) {
+    gap    = seen[a % BINS] ? 1 : gap + 1;
+    widest = PetscMax(widest, gap);
+  }
+  disc->n_harmonics = PetscMin(DISC_HARMONICS, BINS / widest / 3 + 1);
+  PetscFunctionReturn(0);
+}
+
 /* gram = basis' W basis; basis is row-major, hence column-major transposed */
 static PetscErrorCode DiscGram(Disc *disc, const PetscReal x[])
 {
@@ -158,6 +181,9 @@ PetscErrorCode DiscCreate(MPI_Comm comm, PetscInt n_vertices, const PetscReal x[
   if (!*is_disc) PetscFunctionReturn(0);
   FindPlane(disc, contact);
   PetscCall(DiscNodes(disc, n_vertices, x, mass));
+  *is_disc = disc->r_outer - disc->r_inner > 1e-6 * disc->r_outer ? PETSC_TRUE : PETSC_FALSE;
+  if (!*is_disc) PetscFunctionReturn(0);
+  PetscCall(DiscResolution(disc, x));
   PetscCall(DiscGram(disc, x));
   PetscCall(PetscCalloc1(disc->n_columns * DISC_TERMS, &disc->fit));
   PetscFunctionReturn(0);
@@ -186,7 +212,7 @@ PetscErrorCode DiscSolve(Disc *disc)
   PetscCall(PetscBLASIntCast(disc->n_columns, &columns));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, disc->fit, (PetscMPIInt)(disc->n_columns * DISC_TERMS), MPIU_REAL, MPI_SUM, disc->comm));
   for (int k = 0; k < DISC_TERMS; k++) trace += disc->gram[k * (DISC_TERMS + 1)];
-  for (int k = 0; k < DISC_TERMS; k++) disc->gram[k * (DISC_TERMS + 1)] += 1e-10 * trace / DISC_TERMS; /* coarse rings alias high harmonics */
+  for (int k = 0; k < DISC_TERMS; k++) disc->gram[k * (DISC_TERMS + 1)] += 1e-6 * trace / DISC_TERMS; /* coarse rings alias high harmonics */
   PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("U", &terms, disc->gram, &terms, &info));
   PetscCheck(!info, disc->comm, PETSC_ERR_LIB, "LAPACK potrf: info %d", (int)info);
   PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("U", &terms, &columns, disc->gram, &terms, disc->fit, &terms, &info));

@@ -84,7 +84,7 @@ static PetscErrorCode FamilyFind(const Disc *disc, PetscInt mode, Family *best)
   PetscReal most[DISC_POLYNOMIALS]   = {0};
 
   PetscFunctionBeginUser;
-  for (int m = 0; m < DISC_HARMONICS; m++) {
+  for (int m = 0; m < disc->n_harmonics; m++) {
     PetscReal       moments[16];
     const PetscReal energy = ProfileMoments(disc, mode, m, moments);
     int             n;

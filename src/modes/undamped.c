@@ -42,9 +42,10 @@ static PetscReal RadiusNeeded(const Window *window, PetscReal shift, const Spect
 /* Puts the converged pairs into a spectrum; reach = distance of the farthest from the shift, infinite when all n are there */
 static PetscErrorCode Collect(EPS eps, PetscReal shift, PetscInt n, Spectrum *s)
 {
-  PetscInt n_converged;
-  Vec      xr, xi;
-  Mat      K;
+  PetscInt           n_converged;
+  EPSConvergedReason reason;
+  Vec                xr, xi;
+  Mat                K;
 
   PetscFunctionBeginUser;
   PetscCall(EPSGetConverged(eps, &n_converged));
@@ -62,7 +63,8 @@ static PetscErrorCode Collect(EPS eps, PetscReal shift, PetscInt n, Spectrum *s)
     PetscCall(SpectrumAdd(s, creal(lambda), cimag(lambda), xr, ki != 0 ? xi : NULL));
     s->reach = PetscMax(s->reach, cabs(CMPLX(kr - shift, ki)));
   }
-  if (n_converged >= n) s->reach = PETSC_MAX_REAL;
+  PetscCall(EPSGetConvergedReason(eps, &reason));
+  if (n_converged >= n || reason == EPS_DIVERGED_BREAKDOWN) s->reach = PETSC_MAX_REAL; /* breakdown: M is singular, no more finite ones */
   PetscCall(VecDestroy(&xr));
   PetscCall(VecDestroy(&xi));
   PetscCall(SpectrumSort(s));
@@ -72,6 +74,7 @@ static PetscErrorCode Collect(EPS eps, PetscReal shift, PetscInt n, Spectrum *s)
 /* Solver for nev eigenvalues about the shift; the transposed problem starts from another random vector */
 static PetscErrorCode SolverCreate(const OperatorsPencil *pencil, ShiftInvert *si, PetscBool transposed, PetscInt nev, PetscInt n, EPS *eps)
 {
+  PetscMPIInt rank;
   PetscRandom random;
   BV          bv;
   ST          st;
@@ -89,7 +92,9 @@ static PetscErrorCode SolverCreate(const OperatorsPencil *pencil, ShiftInvert *s
   PetscCall(EPSSetFromOptions(*eps));
   PetscCall(EPSGetBV(*eps, &bv));
   PetscCall(BVGetRandomContext(bv, &random));
-  PetscCall(PetscRandomSetSeed(random, transposed ? 20051 : 2005));
+  PetscCallMPI(MPI_Comm_rank(si->comm, &rank));
+  /* a start vector alike on all ranks could miss what is not */
+  PetscCall(PetscRandomSetSeed(random, (transposed ? 20051 : 2005) + (unsigned long)rank));
   PetscCall(PetscRandomSeed(random));
   PetscFunctionReturn(0);
 }
