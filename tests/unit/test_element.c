@@ -6,6 +6,7 @@
 */
 #include <squeal/element.h>
 #include "check.h"
+#include "boxmesh.h"
 
 /* Smallest Jacobian measure over all cells, nodes taken in the element's order, and the sum of the volumes */
 static PetscErrorCode MeasureMesh(DM dm, const Element *element, double *quality, double *total)
@@ -50,7 +51,7 @@ static PetscErrorCode CreateBox(DM *dm)
   const PetscInt faces[3] = {2, 3, 2};
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexCreateBoxMesh(PETSC_COMM_SELF, 3, PETSC_FALSE, faces, NULL, NULL, NULL, PETSC_TRUE, dm));
+  PetscCall(BoxMeshCreate(PETSC_COMM_SELF, faces, dm));
   PetscFunctionReturn(0);
 }
 

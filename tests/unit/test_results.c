@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include "check.h"
+#include "boxmesh.h"
 
 #define N_KINDS 6
 
@@ -161,7 +162,7 @@ static PetscErrorCode CreateMesh(DM *dm)
   DM             distributed;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexCreateBoxMesh(PETSC_COMM_WORLD, 3, PETSC_FALSE, faces, NULL, NULL, NULL, PETSC_TRUE, dm));
+  PetscCall(BoxMeshCreate(PETSC_COMM_WORLD, faces, dm));
   PetscCall(DMPlexDistribute(*dm, 0, NULL, &distributed));
   if (distributed) {
     PetscCall(DMDestroy(dm));
