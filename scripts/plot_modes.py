@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws the modes that squeal computed: eigenvalues in the complex plane, and shapes.
 
-Above, growth rate (rad/s) against frequency (kHz); unstable modes are marked and named. Below, the chosen modes (the
+Above, growth rate (rad/s) against frequency (Hz or kHz); unstable modes are marked and named. Below, the chosen modes (the
 four of largest growth among the unstable ones, else the first four): the face of the disc seen along its axis from the
 side of the contact, coloured by out-of-plane displacement at the phase of its largest amplitude, nodal lines in black,
 the place of the other parts in green; under it those parts seen along the radius, undeformed in grey and deformed
@@ -108,9 +108,11 @@ def read_table(path):
     try:
         with path.open(newline="") as lines:
             rows = list(csv.DictReader(lines))
+        in_khz = max((float(row["freq_hz"]) for row in rows), default=0) >= 1000
         return [{
             "mode": int(row["mode"]),
-            "frequency": float(row["freq_hz"]) / 1e3,
+            "frequency": float(row["freq_hz"]) / (1e3 if in_khz else 1),
+            "unit": "kHz" if in_khz else "Hz",
             "growth": float(row["growth_rad_s"]),
             "unstable": row["unstable"] not in ("0", "false"),
             "label": row["label"],
@@ -142,7 +144,7 @@ def place_labels(axes, table):
     taken = [Bbox.from_bounds(x - 5, y - 5, 10, 10) for x, y in points]
     frame = axes.get_window_extent(renderer)
     for row in (row for row in table if row["unstable"]):
-        text = f"{row['frequency']:.3f} kHz  {row['label']}".rstrip()
+        text = f"{row['frequency']:.3f} {row['unit']}  {row['label']}".rstrip()
         for x, y in LABEL_OFFSETS:
             note = axes.annotate(text, (row["frequency"], row["growth"]), (x, y), textcoords="offset points",
                                  fontsize=12, ha="left" if x > 0 else "right", va="center", color=UNSTABLE,
@@ -168,7 +170,7 @@ def draw_eigenvalues(axes, table):
     if largest < 1e-3:
         axes.set_ylim(-1, 1)
     axes.margins(x=0.03, y=0.12)
-    axes.set_xlabel("frequency, kHz")
+    axes.set_xlabel(f"frequency, {table[0]['unit'] if table else 'Hz'}")
     axes.set_ylabel("growth rate, rad/s")
     axes.set_title("Eigenvalues: above the line a mode grows", loc="left")
     axes.grid(color="#E4E4E4", lw=0.6)
@@ -198,7 +200,7 @@ def draw_map(axes, scene, displacement, row):
     axes.set_aspect("equal")
     axes.set_xlabel("mm")
     growth = f"growth {row['growth']:+.3g} rad/s".replace("-", "\N{MINUS SIGN}")
-    axes.set_title(f"{row['mode']}:  {row['frequency']:.3f} kHz  {row['label']}\n{growth}", fontsize=13,
+    axes.set_title(f"{row['mode']}:  {row['frequency']:.3f} {row['unit']}  {row['label']}\n{growth}", fontsize=13,
                    color=UNSTABLE if row["unstable"] else "black")
     return surface
 
