@@ -62,7 +62,8 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parent.parent
 FINAL_SUFFIXES = {".csv", ".h5", ".xmf", ".bin", ".info"}
-MPIRUN_REMARK = re.compile(r"^-{40,}\n.*?^-{40,}$", re.MULTILINE | re.DOTALL)  # Open MPI 5 cannot be told to be quiet
+# Open MPI 5 cannot be told to be quiet: remarks between dashes, and now and then a line of its daemon, "[host:pid] PMIX ERROR"
+MPIRUN_REMARK = re.compile(r"^-{40,}\n.*?^-{40,}$|^\[\S+:\d+\] PMIX ERROR[^\n]*$", re.MULTILINE | re.DOTALL)
 SKIPPED = 77
 
 
