@@ -16,43 +16,41 @@ PetscErrorCode ComplexVecDot(ComplexVec x, ComplexVec z, PetscComplex *dot)
   PetscFunctionReturn(0);
 }
 
-/* z += a A x; z.i must be there */
-static PetscErrorCode ComplexVecMultAdd(Mat A, PetscComplex a, ComplexVec x, Vec work, ComplexVec z)
+PetscErrorCode ComplexVecAXPY(PetscComplex a, ComplexVec x, ComplexVec z)
 {
   PetscFunctionBeginUser;
-  PetscCall(MatMult(A, x.r, work));
-  PetscCall(VecAXPY(z.r, creal(a), work));
-  if (cimag(a) != 0) PetscCall(VecAXPY(z.i, cimag(a), work));
+  PetscCall(VecAXPY(z.r, creal(a), x.r));
+  if (cimag(a) != 0) PetscCall(VecAXPY(z.i, cimag(a), x.r));
   if (!x.i) PetscFunctionReturn(0);
-  PetscCall(MatMult(A, x.i, work));
-  PetscCall(VecAXPY(z.i, creal(a), work));
-  if (cimag(a) != 0) PetscCall(VecAXPY(z.r, -cimag(a), work));
+  PetscCall(VecAXPY(z.i, creal(a), x.i));
+  if (cimag(a) != 0) PetscCall(VecAXPY(z.r, -cimag(a), x.i));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ComplexVecZero(ComplexVec z)
+PetscErrorCode ComplexVecMult(Mat A, ComplexVec x, ComplexVec z)
 {
   PetscFunctionBeginUser;
-  PetscCall(VecSet(z.r, 0));
-  if (z.i) PetscCall(VecSet(z.i, 0));
+  PetscCall(MatMult(A, x.r, z.r));
+  if (x.i) PetscCall(MatMult(A, x.i, z.i));
+  else PetscCall(VecSet(z.i, 0));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ComplexVecMultAdd(Mat A, PetscComplex a, ComplexVec x, Vec work, ComplexVec z)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatMult(A, x.r, work));
+  PetscCall(ComplexVecAXPY(a, (ComplexVec){work, NULL}, z));
+  if (!x.i) PetscFunctionReturn(0);
+  PetscCall(MatMult(A, x.i, work));
+  PetscCall(ComplexVecAXPY(a * I, (ComplexVec){work, NULL}, z));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode PencilApplyD(const OperatorsPencil *pencil, PetscComplex lambda, ComplexVec x, Vec work, ComplexVec z)
 {
   PetscFunctionBeginUser;
-  PetscCall(ComplexVecZero(z));
-  PetscCall(ComplexVecMultAdd(pencil->M, 1, x, work, z));
+  PetscCall(ComplexVecMult(pencil->M, x, z));
   if (pencil->C && cabs(lambda) > 0) PetscCall(ComplexVecMultAdd(pencil->C, 1 / (2 * lambda), x, work, z));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode PencilApplyQ(const OperatorsPencil *pencil, PetscComplex lambda, ComplexVec x, Vec work, ComplexVec z)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ComplexVecZero(z));
-  PetscCall(ComplexVecMultAdd(pencil->K, 1, x, work, z));
-  PetscCall(ComplexVecMultAdd(pencil->M, lambda * lambda, x, work, z));
-  if (pencil->C) PetscCall(ComplexVecMultAdd(pencil->C, lambda, x, work, z));
   PetscFunctionReturn(0);
 }

@@ -1,6 +1,6 @@
 /*
-   Complex vectors as pairs of real ones, and Q(lambda) = lambda^2 M + lambda C + K and D(lambda) = M + C / (2 lambda), so that
-   Q' = 2 lambda D, applied to them.
+   Complex vectors as pairs of real ones. Q(lambda) = lambda^2 M + lambda C + K, and D(lambda) = M + C / (2 lambda), so that
+   Q' = 2 lambda D.
 */
 #pragma once
 
@@ -19,6 +19,9 @@ static inline PetscComplex SpectrumLambda(const Spectrum *s, PetscInt i)
 
 /* x^T z without conjugation */
 PETSC_INTERN PetscErrorCode ComplexVecDot(ComplexVec x, ComplexVec z, PetscComplex *dot);
-/* z = D(lambda) x, z = Q(lambda) x; z.i must be there */
+/* z += a x, z = A x, z += a A x; z.i must be there */
+PETSC_INTERN PetscErrorCode ComplexVecAXPY(PetscComplex a, ComplexVec x, ComplexVec z);
+PETSC_INTERN PetscErrorCode ComplexVecMult(Mat A, ComplexVec x, ComplexVec z);
+PETSC_INTERN PetscErrorCode ComplexVecMultAdd(Mat A, PetscComplex a, ComplexVec x, Vec work, ComplexVec z);
+/* z = D(lambda) x */
 PETSC_INTERN PetscErrorCode PencilApplyD(const OperatorsPencil *pencil, PetscComplex lambda, ComplexVec x, Vec work, ComplexVec z);
-PETSC_INTERN PetscErrorCode PencilApplyQ(const OperatorsPencil *pencil, PetscComplex lambda, ComplexVec x, Vec work, ComplexVec z);

@@ -10,19 +10,35 @@
 
 #define RIGID_NOISE 100 /* lambda^2 below this many times its error is a rigid mode */
 
-/* Norm sqrt(x^H M x) of a vector of all unknowns, and scales it to one */
-static PetscErrorCode NormaliseM(Mat M, ComplexVec x, Vec work, PetscReal *norm)
+/* What all modes share: matrices, their Frobenius norms (K, C, M), and work vectors */
+typedef struct {
+  const OperatorsPencil *pencil;
+  Mat        M;                 /* of all unknowns; the pencil's own without constraints */
+  PetscReal  norms[3];
+  Vec        diagonal, scratch; /* diagonal of K */
+  ComplexVec Mx, z;             /* unknowns of the pencil */
+  ComplexVec full;              /* all unknowns */
+} Quality;
+
+/* Length of a complex vector from the parts of a real quadratic form: x^H z for z = A x with A symmetric, or z = x */
+static PetscErrorCode ComplexVecSquare(ComplexVec x, ComplexVec z, PetscReal *square)
 {
-  PetscReal square, part = 0;
+  PetscReal part = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(MatMult(M, x.r, work));
-  PetscCall(VecDot(x.r, work, &square));
-  if (x.i) {
-    PetscCall(MatMult(M, x.i, work));
-    PetscCall(VecDot(x.i, work, &part));
-  }
-  *norm = PetscSqrtReal(square + part);
+  PetscCall(VecDot(x.r, z.r, square));
+  if (x.i) PetscCall(VecDot(x.i, z.i, &part));
+  *square += part;
+  PetscFunctionReturn(0);
+}
+
+/* Scales to norm one and returns the norm before: sqrt(x^H M x) of a vector of all unknowns */
+static PetscErrorCode NormaliseM(Quality *q, ComplexVec x, PetscReal *norm)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ComplexVecMult(q->M, x, q->full));
+  PetscCall(ComplexVecSquare(x, q->full, norm));
+  *norm = PetscSqrtReal(*norm);
   PetscCall(VecScale(x.r, 1 / *norm));
   if (x.i) PetscCall(VecScale(x.i, 1 / *norm));
   PetscFunctionReturn(0);
@@ -42,110 +58,123 @@ static PetscErrorCode Expand(Operators operators, PetscBool left, Vec *x)
   PetscFunctionReturn(0);
 }
 
-/* Frobenius norms of K, C, M */
-static PetscErrorCode PencilNorms(const OperatorsPencil *pencil, PetscReal norms[3])
-{
-  PetscFunctionBeginUser;
-  norms[1] = 0;
-  PetscCall(MatNorm(pencil->K, NORM_FROBENIUS, &norms[0]));
-  if (pencil->C) PetscCall(MatNorm(pencil->C, NORM_FROBENIUS, &norms[1]));
-  PetscCall(MatNorm(pencil->M, NORM_FROBENIUS, &norms[2]));
-  PetscFunctionReturn(0);
-}
-
 /* What rounding in K does to x'K x: machine epsilon times the energy without cancellation, sum_i K_ii |x_i|^2 */
-static PetscErrorCode RoundingNoise(ComplexVec x, Vec diagonal, Vec work, PetscReal *noise)
+static PetscErrorCode RoundingNoise(const Quality *q, ComplexVec x, PetscReal *noise)
 {
   PetscReal part = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(VecPointwiseMult(work, x.r, diagonal));
-  PetscCall(VecDot(work, x.r, noise));
+  PetscCall(VecPointwiseMult(q->scratch, x.r, q->diagonal));
+  PetscCall(VecDot(q->scratch, x.r, noise));
   if (x.i) {
-    PetscCall(VecPointwiseMult(work, x.i, diagonal));
-    PetscCall(VecDot(work, x.i, &part));
+    PetscCall(VecPointwiseMult(q->scratch, x.i, q->diagonal));
+    PetscCall(VecDot(q->scratch, x.i, &part));
   }
   *noise = PETSC_MACHINE_EPSILON * (*noise + part);
   PetscFunctionReturn(0);
 }
 
-/* Backward error of mode i, |y^T Q x| and |y^T D x| in the unknowns of the pencil; y_Dx is not touched without left vectors */
-static PetscErrorCode MeasureResidual(Modes modes, const OperatorsPencil *pencil, PetscInt i, const PetscReal norms[3], Vec work[4], Mode *mode,
-                                      PetscReal *y_Qx, PetscReal *y_Dx, PetscReal *noise)
+/* Backward error of an eigenpair, |y^T Q x|, |y^T D x|; the products with y are not touched without a left vector */
+static PetscErrorCode MeasureResidual(Quality *q, PetscComplex lambda, ComplexVec x, ComplexVec y, PetscReal *backward, PetscReal *y_Qx,
+                                      PetscReal *y_Dx)
 {
-  const Spectrum    *right = &modes->right, *left = &modes->left_spectrum;
-  const PetscComplex lambda = SpectrumLambda(right, i);
-  const ComplexVec         x = {right->xr[i], right->xi[i]}, z = {work[1], work[2]};
-  PetscReal          size, part, residual, bound;
-  PetscComplex       dot;
+  const OperatorsPencil *pencil = q->pencil;
+  const PetscReal        size   = cabs(lambda), bound = size * size * q->norms[2] + size * q->norms[1] + q->norms[0];
+  PetscReal              length, residual;
+  PetscComplex           dot;
 
   PetscFunctionBeginUser;
-  PetscCall(PencilApplyQ(pencil, lambda, x, work[0], z));
-  PetscCall(VecNorm(x.r, NORM_2, &size));
-  if (x.i) PetscCall(VecNorm(x.i, NORM_2, &part));
-  if (x.i) size = PetscSqrtReal(size * size + part * part);
-  PetscCall(VecNorm(z.r, NORM_2, &residual));
-  PetscCall(VecNorm(z.i, NORM_2, &part));
-  residual             = PetscSqrtReal(residual * residual + part * part);
-  bound                = cabs(lambda) * cabs(lambda) * norms[2] + cabs(lambda) * norms[1] + norms[0];
-  mode->backward_error = residual / (bound * size);
-  PetscCall(RoundingNoise(x, work[3], work[0], noise));
-  if (!left->n) PetscFunctionReturn(0);
-  PetscCall(ComplexVecDot((ComplexVec){left->xr[i], left->xi[i]}, z, &dot));
+  PetscCall(ComplexVecMult(pencil->M, x, q->Mx));
+  PetscCall(ComplexVecMult(pencil->K, x, q->z));
+  PetscCall(ComplexVecAXPY(lambda * lambda, q->Mx, q->z));
+  if (pencil->C) PetscCall(ComplexVecMultAdd(pencil->C, lambda, x, q->scratch, q->z));
+  PetscCall(ComplexVecSquare(x, x, &length));
+  PetscCall(ComplexVecSquare(q->z, q->z, &residual));
+  *backward = PetscSqrtReal(residual / length) / bound;
+  if (!y.r) PetscFunctionReturn(0);
+  PetscCall(ComplexVecDot(y, q->z, &dot));
   *y_Qx = cabs(dot);
-  PetscCall(PencilApplyD(pencil, lambda, x, work[0], z));
-  PetscCall(ComplexVecDot((ComplexVec){left->xr[i], left->xi[i]}, z, &dot));
+  if (pencil->C && size > 0) PetscCall(ComplexVecMultAdd(pencil->C, 1 / (2 * lambda), x, q->scratch, q->Mx));
+  PetscCall(ComplexVecDot(y, q->Mx, &dot));
   *y_Dx = cabs(dot);
   PetscFunctionReturn(0);
 }
 
-/* Condition, error, and what follows from them; the vectors become vectors of all unknowns with M-norm one */
-static PetscErrorCode MeasureMode(Modes modes, const OperatorsPencil *pencil, Mat M, PetscInt i, const PetscReal norms[3], Vec work[4], Vec full)
+/* Expands both parts of a vector to all unknowns in place, and normalises it */
+static PetscErrorCode Finish(Quality *q, Operators operators, PetscBool left, Vec *r, Vec *i, PetscReal *norm)
 {
-  Spectrum       *right = &modes->right, *left = &modes->left_spectrum;
-  Mode           *mode  = &modes->mode[i];
-  const PetscReal size  = cabs(SpectrumLambda(right, i));
-  PetscReal       y_Qx = 0, y_Dx = 1, norm_x, norm_y = 1, noise, kappa;
+  PetscFunctionBeginUser;
+  PetscCall(Expand(operators, left, r));
+  PetscCall(Expand(operators, left, i));
+  PetscCall(NormaliseM(q, (ComplexVec){*r, *i}, norm));
+  PetscFunctionReturn(0);
+}
+
+/* Condition, error, and what follows from them; the vectors become vectors of all unknowns with M-norm one */
+static PetscErrorCode MeasureMode(Modes modes, Quality *q, PetscInt i)
+{
+  Spectrum          *right = &modes->right, *left = &modes->left_spectrum;
+  Mode              *mode     = &modes->mode[i];
+  const PetscBool    has_left = left->n ? PETSC_TRUE : PETSC_FALSE;
+  const PetscComplex lambda   = SpectrumLambda(right, i);
+  const ComplexVec   x = {right->xr[i], right->xi[i]}, y = {has_left ? left->xr[i] : NULL, has_left ? left->xi[i] : NULL};
+  PetscReal          size = cabs(lambda), y_Qx = 0, y_Dx = 1, norm_x, norm_y = 1, noise, square;
 
   PetscFunctionBeginUser;
-  PetscCall(MeasureResidual(modes, pencil, i, norms, work, mode, &y_Qx, &y_Dx, &noise));
-  PetscCall(Expand(modes->operators, PETSC_FALSE, &right->xr[i]));
-  PetscCall(Expand(modes->operators, PETSC_FALSE, &right->xi[i]));
-  PetscCall(NormaliseM(M, (ComplexVec){right->xr[i], right->xi[i]}, full, &norm_x));
-  if (left->n) {
-    PetscCall(Expand(modes->operators, PETSC_TRUE, &left->xr[i]));
-    PetscCall(Expand(modes->operators, PETSC_TRUE, &left->xi[i]));
-    PetscCall(NormaliseM(M, (ComplexVec){left->xr[i], left->xi[i]}, full, &norm_y));
-  }
-  mode->sigma     = right->sigma[i];
-  mode->omega     = right->omega[i];
-  mode->condition = left->n ? norm_x * norm_y / y_Dx : NAN;
-  noise *= (left->n ? mode->condition : 1) / (norm_x * norm_x);
-  kappa       = PetscMax(noise, left->n ? y_Qx / y_Dx : 0); /* error of lambda^2 */
-  mode->rigid = size * size <= RIGID_NOISE * kappa ? PETSC_TRUE : PETSC_FALSE;
-  mode->error = mode->rigid ? PetscMax(size, PetscSqrtReal(kappa)) : kappa / (2 * size);
+  PetscCall(MeasureResidual(q, lambda, x, y, &mode->backward_error, &y_Qx, &y_Dx));
+  PetscCall(RoundingNoise(q, x, &noise));
+  PetscCall(Finish(q, modes->operators, PETSC_FALSE, &right->xr[i], &right->xi[i], &norm_x));
+  if (has_left) PetscCall(Finish(q, modes->operators, PETSC_TRUE, &left->xr[i], &left->xi[i], &norm_y));
+  mode->sigma     = creal(lambda);
+  mode->omega     = cimag(lambda);
+  mode->condition = has_left ? norm_x * norm_y / y_Dx : NAN;
+  noise *= (has_left ? mode->condition : 1) / (norm_x * norm_x);
+  square      = PetscMax(noise, has_left ? y_Qx / y_Dx : 0); /* error of lambda^2 */
+  mode->rigid = size * size <= RIGID_NOISE * square ? PETSC_TRUE : PETSC_FALSE;
+  mode->error = mode->rigid ? PetscMax(size, PetscSqrtReal(square)) : square / (2 * size);
   if (mode->rigid) mode->sigma = mode->omega = 0;
   mode->unstable = mode->sigma > 3 * mode->error && mode->sigma > 1e-9 * size ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode QualityMeasure(Modes modes, const OperatorsPencil *pencil)
+/* Norms and work vectors */
+static PetscErrorCode QualityCreate(Modes modes, const OperatorsPencil *pencil, Quality *q)
 {
-  PetscReal norms[3];
-  Vec       work[4], full; /* three for products, and the diagonal of K */
-  Mat       M;
+  Vec *const work[] = {&q->diagonal, &q->scratch, &q->Mx.r, &q->Mx.i, &q->z.r, &q->z.i};
 
   PetscFunctionBeginUser;
-  for (int k = 0; k < 4; k++) PetscCall(MatCreateVecs(pencil->K, &work[k], NULL));
-  PetscCall(MatGetDiagonal(pencil->K, work[3]));
-  PetscCall(OperatorsCreateVec(modes->operators, &full));
-  PetscCall(OperatorsGetMatrices(modes->operators, NULL, &M, NULL, NULL, NULL));
-  PetscCall(PencilNorms(pencil, norms));
-  if (modes->left_spectrum.n) PetscCall(LeftBiorthogonalise(modes, pencil, work));
+  q->pencil   = pencil;
+  q->norms[1] = 0;
+  PetscCall(MatNorm(pencil->K, NORM_FROBENIUS, &q->norms[0]));
+  if (pencil->C) PetscCall(MatNorm(pencil->C, NORM_FROBENIUS, &q->norms[1]));
+  PetscCall(MatNorm(pencil->M, NORM_FROBENIUS, &q->norms[2]));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(work); k++) PetscCall(MatCreateVecs(pencil->K, work[k], NULL));
+  PetscCall(MatGetDiagonal(pencil->K, q->diagonal));
+  PetscCall(OperatorsGetMatrices(modes->operators, NULL, &q->M, NULL, NULL, NULL));
+  PetscCall(OperatorsCreateVec(modes->operators, &q->full.r));
+  PetscCall(VecDuplicate(q->full.r, &q->full.i));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode QualityDestroy(Quality *q)
+{
+  Vec *const work[] = {&q->diagonal, &q->scratch, &q->Mx.r, &q->Mx.i, &q->z.r, &q->z.i, &q->full.r, &q->full.i};
+
+  PetscFunctionBeginUser;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(work); k++) PetscCall(VecDestroy(work[k]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode QualityMeasure(Modes modes, const OperatorsPencil *pencil)
+{
+  Quality q;
+
+  PetscFunctionBeginUser;
+  PetscCall(QualityCreate(modes, pencil, &q));
+  if (modes->left_spectrum.n) PetscCall(LeftBiorthogonalise(modes, pencil, (Vec[]){q.scratch, q.z.r, q.z.i}));
   modes->n = modes->right.n;
   PetscCall(PetscCalloc1(modes->n, &modes->mode));
-  for (PetscInt i = 0; i < modes->n; i++) PetscCall(MeasureMode(modes, pencil, M, i, norms, work, full));
-  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(&work[k]));
-  PetscCall(VecDestroy(&full));
+  for (PetscInt i = 0; i < modes->n; i++) PetscCall(MeasureMode(modes, &q, i));
+  PetscCall(QualityDestroy(&q));
   PetscFunctionReturn(0);
 }
