@@ -5,8 +5,9 @@
       undamped, friction   the same, K unsymmetric                     EPS GNHEP, LU
       damped               the quadratic problem                       PEP TOAR,  LU of K + s C + s^2 M
 
-   Left vectors solve the transposed problem with the transposed factors, from a start vector of their own, so that the two
-   spectra are found independently.
+   Left vectors solve the transposed problem with the transposed factors, from a start vector of their own; what one of the two
+   Krylov spaces misses inside the window shows in the other. Eigenvalues outside the window, |sigma| > -modes_growth, are no
+   part of the claim.
 */
 #pragma once
 
@@ -39,6 +40,7 @@ PetscErrorCode ModesSetOperators(Modes modes, Operators operators);
 +  -modes_band <f1,f2>       - all eigenvalues with frequency in this band, Hz
 .  -modes_target <0>         - instead of a band: the -modes_count modes nearest to this frequency, Hz
 .  -modes_count <20>         - how many; either of the two overrides a band
+.  -modes_growth <1/s>       - largest growth or decay that a band must cover; default a tenth of the angular frequency of f2
 .  -modes_left <true>        - compute left vectors (condition and error need them)
 -  -modes_disc <disc>        - part whose modes are labelled by nodal circles and diameters
    The solvers take -eps_*, -pep_*, -st_*.

@@ -33,7 +33,8 @@ PetscErrorCode OperatorsSetModel(Operators operators, Model model, Contact conta
 .  -operators_dense_k, _m, _c, _h <list> - small dense matrices inline, rows one after another
 .  -operators_mass <consistent|lumped>   - mass matrix of a model
 .  -contact_mu <mu>                      - friction coefficient of K + mu H for loaded or dense matrices
--  -operators_save <dir>                 - write K.bin, M.bin and, where there are any, C.bin and H.bin
+-  -operators_save <dir>                 - write K.bin, M.bin and, where there are any, C.bin and H.bin; with the contact
+                                          constraint the projected matrices, friction included in K.bin and M.bin
 @*/
 PetscErrorCode OperatorsSetFromOptions(Operators operators);
 
@@ -51,9 +52,6 @@ PetscErrorCode OperatorsGetPencil(Operators operators, OperatorsPencil *pencil);
 
 /*@ OperatorsGetFrictionless - the symmetric undamped pencil at mu = 0, of the same size. Collective at the first call. @*/
 PetscErrorCode OperatorsGetFrictionless(Operators operators, OperatorsPencil *pencil);
-
-/*@ OperatorsGetLumpedMass - row sums of M (kg), one per unknown (borrowed). Collective at the first call. @*/
-PetscErrorCode OperatorsGetLumpedMass(Operators operators, Vec *lumped);
 
 /*@ OperatorsExpand - unknowns of the pencil to all unknowns, u = Zr q (or Zl q for a left vector). Collective. @*/
 PetscErrorCode OperatorsExpand(Operators operators, PetscBool left, Vec q, Vec u);

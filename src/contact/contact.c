@@ -17,8 +17,8 @@ PetscErrorCode ContactCreate(Model model, Contact *contact)
 static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c)
 {
   static const char *const laws[] = {"penalty", "constraint"};
-  char     *surfaces[2] = {NULL, NULL}, prefix[128], title[160];
-  PetscInt  n = 2, law = CONTACT_PENALTY;
+  char     *surfaces[3] = {NULL, NULL, NULL}, prefix[128], title[160];
+  PetscInt  n = 3, law = CONTACT_PENALTY;
   PetscBool set;
 
   PetscFunctionBeginUser;
@@ -52,10 +52,12 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
   PetscFunctionBeginUser;
   PetscCheck(c->slave && c->master, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces must be given: slave,master", c->name);
   PetscCheck(PetscIsNormalReal(c->mu) || c->mu == 0, comm, PETSC_ERR_USER_INPUT, "-%s_mu %.6g must be a number", c->name, (double)c->mu);
-  PetscCheck(c->law == CONTACT_CONSTRAINT || c->kn > 0, comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(c->law == CONTACT_CONSTRAINT || (c->kn > 0 && !PetscIsInfReal(c->kn)), comm, PETSC_ERR_USER_INPUT,
              "-%s_kn %.6g must be given and positive (N/m), or choose -%s_law constraint", c->name, (double)c->kn, c->name);
   PetscCheck(c->tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-%s_tolerance %.6g must be positive (m)", c->name, (double)c->tolerance);
   PetscCheck(c->force >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_force %.6g must not be negative (N)", c->name, (double)c->force);
+  PetscCheck(c->damping || (c->mu_slope == 0 && c->force == 0 && c->speed == 0), comm, PETSC_ERR_USER_INPUT,
+             "-%s_mu_slope, _force and _speed do nothing without -%s_friction_damping", c->name, c->name);
   PetscCheck(!c->damping || c->force > 0, comm, PETSC_ERR_USER_INPUT, "-%s_friction_damping needs a positive -%s_force (N)", c->name,
              c->name);
   PetscCheck(!c->damping || c->speed > 0 || c->rotation[0] != 0 || c->rotation[1] != 0 || c->rotation[2] != 0, comm,

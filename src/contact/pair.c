@@ -137,6 +137,19 @@ static void PairSetMaster(const Facet *facet, const PetscReal natural[2], Contac
   (void)Normalise(pair->n);
 }
 
+/* A unit vector across n, where the direction of slip is not needed */
+static void AnyTangent(const PetscReal n[3], PetscReal t[3])
+{
+  PetscReal axis[3] = {0, 0, 0};
+  int       least   = 0;
+
+  for (int d = 1; d < 3; d++)
+    if (PetscAbsReal(n[d]) < PetscAbsReal(n[least])) least = d;
+  axis[least] = 1;
+  Cross(n, axis, t);
+  (void)Normalise(t);
+}
+
 /* Slip direction, transverse direction and speed; false when the slip has no part in the tangent plane */
 static PetscBool PairSetSlip(const ContactInterface *c, ContactPair *pair)
 {
@@ -150,6 +163,7 @@ static PetscBool PairSetSlip(const ContactInterface *c, ContactPair *pair)
   normal_part = Dot(pair->t, pair->n);
   for (int d = 0; d < 3; d++) pair->t[d] -= normal_part * pair->n[d];
   speed       = Normalise(pair->t);
+  if (!(speed > 1e-6 * full)) AnyTangent(pair->n, pair->t);
   pair->speed = turns ? speed : c->speed;
   Cross(pair->n, pair->t, pair->b);
   return speed > 1e-6 * full ? PETSC_TRUE : PETSC_FALSE;

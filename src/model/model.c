@@ -28,7 +28,9 @@ PetscErrorCode ModelSetFromOptions(Model model)
   PetscCall(PetscOptionsString("-model_element", "element formulation: incompatible (QM6) or full (trilinear)", NULL,
                                model->formulation, model->formulation, sizeof(model->formulation), NULL));
   PetscOptionsEnd();
-  if (!given && has_mesh) source = 1;
+  PetscCheck(!given || source == 1 || !has_mesh, model->comm, PETSC_ERR_USER_INPUT,
+             "-model_mesh %s does nothing with -model_source rig; choose -model_source file", model->mesh);
+  if (has_mesh) source = 1;
   model->given = given || has_mesh ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(PetscStrncpy(model->source, sources[source], sizeof(model->source)));
   if (source == 0) PetscCall(RigSetFromOptions(model->comm, &model->rig));

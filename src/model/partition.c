@@ -4,8 +4,9 @@
 
    The cells at the contact are contracted to one vertex of the graph, weighted by their number, so that they end on
    one rank: the cells with a node on a face of a `together` set that lies opposite another such set (of the disc's
-   whole face only the part under the pad), or on any of its faces when it is the only set. METIS is seeded: the
-   same mesh, the same partition.
+   whole face only the part under the pad), or on any of its faces when it is the only set. A contact of more cells
+   than a rank's share is cut like the rest; pairs are found across ranks. METIS is seeded: the same mesh, the same
+   partition.
 
    Karypis and Kumar, SIAM J. Sci. Comput. 20 (1998) 359-392.
 */
@@ -295,6 +296,10 @@ PetscErrorCode PartitionMesh(DM *dm, PetscInt n_together, char *const together[]
   if (size == 1) PetscFunctionReturn(0);
   PetscCall(DMPlexGetHeightStratum(*dm, 0, &cStart, &cEnd));
   if (cEnd > cStart) PetscCall(GraphCreate(*dm, n_together, together, &graph));
+  if (cEnd > cStart && graph.weight[0] * size > cEnd - cStart) { /* the contact is more than one rank's share: cut it too */
+    PetscCall(GraphDestroy(&graph));
+    PetscCall(GraphCreate(*dm, 0, NULL, &graph));
+  }
   n[0] = graph.n;
   n[1] = cEnd - cStart;
   PetscCallMPI(MPI_Bcast(n, 2, MPIU_INT, 0, comm));

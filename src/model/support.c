@@ -30,6 +30,7 @@ static PetscErrorCode SupportSetFromOptions(MPI_Comm comm, Support *support)
   PetscOptionsEnd();
   PetscCheck(fix[0] && strspn(fix, "xyz") == strlen(fix), comm, PETSC_ERR_USER_INPUT,
              "-%s_fix '%s' must be some of the letters x, y, z", support->name, fix);
+  PetscCheck(support->set[0], comm, PETSC_ERR_USER_INPUT, "-%s_set must be given: a named set of the mesh", support->name);
   for (int d = 0; d < 3; d++) support->fix[d] = strchr(fix, "xyz"[d]) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
@@ -46,6 +47,9 @@ static PetscErrorCode GroundedSetFromOptions(MPI_Comm comm, const char kind[], c
   PetscCall(SetNameFromOptions(PetscOptionsObject, &g->set));
   PetscCall(OptionsGetReals(PetscOptionsObject, option, help, 3, g->value, NULL));
   PetscOptionsEnd();
+  PetscCheck(g->set[0], comm, PETSC_ERR_USER_INPUT, "-%s_set must be given: a named set of the mesh", g->name);
+  PetscCheck(g->value[0] != 0 || g->value[1] != 0 || g->value[2] != 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_%s must be given: three values, not all zero", g->name, option + 1);
   for (int d = 0; d < 3; d++)
     PetscCheck(g->value[d] >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s value %.6g must not be negative", g->name, option + 1,
                (double)g->value[d]);

@@ -36,20 +36,21 @@ static PetscErrorCode Collect(PEP pep, PetscReal shift, PetscInt n, Spectrum *s)
   PetscFunctionReturn(0);
 }
 
-/* Distance from the shift that the converged eigenvalues must exceed */
+/* Distance from the shift that the converged eigenvalues must exceed: the farthest corner sigma + i omega of the window; for modes
+   near a target those at most as far from it as the count-th nearest */
 static PetscReal RadiusNeeded(const Window *window, PetscReal shift, const Spectrum *found)
 {
-  PetscReal high = window->high;
+  PetscReal d = 0;
 
-  if (window->count) {
-    PetscInt above = 0;
+  if (!window->count) return hypot(window->high, shift + window->growth);
+  if (found->n < window->count) return PETSC_MAX_REAL;
+  for (PetscInt i = 0; i < found->n; i++) {
+    PetscInt nearer = 0;
 
-    if (found->n < window->count) return PETSC_MAX_REAL;
-    for (PetscInt i = found->n - 1; i >= 0 && found->omega[i] > window->target; i--) above++;
-    high = window->target + (above >= window->count ? found->omega[found->n - 1 - above + window->count - 1] - window->target
-                                                    : window->target - found->omega[PetscMax(0, found->n - window->count)]);
+    for (PetscInt j = 0; j < found->n; j++) nearer += WindowDistance(window, found, j) < WindowDistance(window, found, i);
+    if (nearer < window->count) d = PetscMax(d, WindowDistance(window, found, i));
   }
-  return PetscSqrtReal(high * high + shift * shift);
+  return hypot(window->target, shift) + d;
 }
 
 /* Solver for nev eigenvalues about the shift; the transposed problem starts from another random vector */

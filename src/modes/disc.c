@@ -12,7 +12,7 @@ static PetscReal Dot(const PetscReal a[3], const PetscReal b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Mass (kg), centre (m) and inertia tensor sum m d d' (kg m^2) over all ranks */
+/* Centre (m) and second moments per mass, sum m d d' / sum m (m^2), over all ranks */
 static PetscErrorCode Moments(MPI_Comm comm, PetscInt n, const PetscReal x[], const PetscReal mass[], PetscReal centre[3], PetscReal inertia[9])
 {
   PetscReal sums[4] = {0, 0, 0, 0};
@@ -28,10 +28,11 @@ static PetscErrorCode Moments(MPI_Comm comm, PetscInt n, const PetscReal x[], co
   for (PetscInt v = 0; v < n; v++)
     for (int k = 0; k < 9; k++) inertia[k] += mass[v] * (x[3 * v + k / 3] - centre[k / 3]) * (x[3 * v + k % 3] - centre[k % 3]);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, inertia, 9, MPIU_REAL, MPI_SUM, comm));
+  for (int k = 0; k < 9; k++) inertia[k] /= sums[3];
   PetscFunctionReturn(0);
 }
 
-/* Axis = principal direction whose moment differs from the other two; these must agree within 5 % */
+/* Axis = principal direction whose second moment differs from the other two; these must agree within 5 % */
 static PetscErrorCode FindAxis(const PetscReal inertia[9], PetscReal axis[3], PetscBool *found)
 {
   PetscReal    a[9], values[3], work[32];
@@ -62,6 +63,11 @@ static void FindPlane(Disc *disc, const PetscReal to[])
   along = Dot(disc->e1, disc->axis);
   for (int d = 0; d < 3; d++) disc->e1[d] -= along * disc->axis[d];
   length = PetscSqrtReal(Dot(disc->e1, disc->e1));
+  if (to && length < 1e-3 * disc->size) { /* a contact all around the axis has no angle */
+    disc->has_contact = PETSC_FALSE;
+    FindPlane(disc, NULL);
+    return;
+  }
   for (int d = 0; d < 3; d++) disc->e1[d] /= length;
   for (int d = 0; d < 3; d++)
     disc->e2[d] = disc->axis[(d + 1) % 3] * disc->e1[(d + 2) % 3] - disc->axis[(d + 2) % 3] * disc->e1[(d + 1) % 3];
@@ -179,6 +185,7 @@ PetscErrorCode DiscCreate(MPI_Comm comm, PetscInt n_vertices, const PetscReal x[
   PetscCall(Moments(comm, n_vertices, x, mass, disc->centre, inertia));
   PetscCall(FindAxis(inertia, disc->axis, is_disc));
   if (!*is_disc) PetscFunctionReturn(0);
+  disc->size = PetscSqrtReal(inertia[0] + inertia[4] + inertia[8]);
   FindPlane(disc, contact);
   PetscCall(DiscNodes(disc, n_vertices, x, mass));
   *is_disc = disc->r_outer - disc->r_inner > 1e-6 * disc->r_outer ? PETSC_TRUE : PETSC_FALSE;

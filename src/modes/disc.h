@@ -12,6 +12,7 @@ typedef struct {
   PetscBool  has_contact;
   PetscReal  centre[3], axis[3], e1[3], e2[3]; /* e1 points to the contact */
   PetscReal  r_inner, r_outer;                 /* m */
+  PetscReal  size;                             /* radius of gyration, m */
   int        n_harmonics;                      /* of DISC_HARMONICS, those that the mesh resolves */
   PetscInt   n_nodes, n_columns;               /* nodes of the disc on this rank; two right-hand sides per mode: re, im */
   PetscInt  *node;                             /* their local vertices */

@@ -168,6 +168,8 @@ static PetscErrorCode LabelsCreate(Modes modes, Model model, Contact contact, Pe
     PetscCall(PetscStrcmp(parts[part].name, modes->disc, &same));
     if (same) l->disc = part;
   }
+  PetscCall(PetscStrcmp(modes->disc, "disc", &same));
+  PetscCheck(l->disc >= 0 || same, modes->comm, PETSC_ERR_USER_INPUT, "-modes_disc '%s' is none of the -parts", modes->disc);
   if (l->disc < 0) PetscFunctionReturn(0);
   PetscCall(ContactGetCentre(contact, centre, &found));
   PetscCall(DiscCreate(modes->comm, l->n_vertices, x, l->mass[l->disc], found ? centre : NULL, modes->n, &l->frame, &same));

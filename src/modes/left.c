@@ -43,10 +43,19 @@ static PetscReal LambdaDistance(PetscComplex a, PetscComplex b, PetscReal larges
   return cabs(a - b) / PetscMax(cabs(a), 1e-3 * largest);
 }
 
-PetscErrorCode LeftMatch(Modes modes, PetscReal zero, PetscReal *worst, PetscBool *complete)
+/* Whether a left eigenvalue that no right one matches lies well inside the window */
+static PetscBool LeftIsInside(const Window *window, const Spectrum *left, PetscInt j, PetscReal tiny)
+{
+  const PetscReal omega = left->omega[j];
+
+  if (window->count || omega < tiny || PetscAbsReal(left->sigma[j]) > window->growth) return PETSC_FALSE;
+  return omega > window->low * (1 + MATCH) && omega < window->high * (1 - MATCH) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode LeftMatch(Modes modes, const Window *window, PetscReal *worst, PetscBool *complete)
 {
   Spectrum *right = &modes->right, *left = &modes->left_spectrum, matched;
-  const PetscReal tiny = PetscMax(zero, RIGID * LambdaLargest(right)); /* rigid modes: zeros up to the root of rounding */
+  const PetscReal tiny = PetscMax(window->scale, RIGID * LambdaLargest(right)); /* rigid modes: zeros up to the root of rounding */
   PetscBool      *used;
 
   PetscFunctionBeginUser;
@@ -70,9 +79,8 @@ PetscErrorCode LeftMatch(Modes modes, PetscReal zero, PetscReal *worst, PetscBoo
     }
     PetscCall(SpectrumAdd(&matched, from->sigma[j], from->omega[j], from->xr[j], from->xi[j]));
   }
-  for (PetscInt j = 0; j < left->n && right->n; j++) /* a left eigenvalue inside the window without a right one */
-    if (!used[j] && left->omega[j] > PetscMax(tiny, right->omega[0] * (1 + MATCH)) && left->omega[j] < right->omega[right->n - 1] * (1 - MATCH))
-      *complete = PETSC_FALSE;
+  for (PetscInt j = 0; j < left->n; j++)
+    if (!used[j] && LeftIsInside(window, left, j, tiny)) *complete = PETSC_FALSE;
   PetscCall(PetscFree(used));
   PetscCall(SpectrumDestroy(left));
   *left = matched;
@@ -83,7 +91,7 @@ PetscErrorCode LeftMatch(Modes modes, PetscReal zero, PetscReal *worst, PetscBoo
 static PetscErrorCode ComplexInverse(PetscInt m, const PetscComplex G[], PetscComplex inverse[])
 {
   const PetscInt n2 = 2 * m;
-  PetscReal     *a, *b;
+  PetscReal     *a, *b, size_G = 0, size_inv = 0;
   PetscBLASInt   n, *pivots, info;
 
   PetscFunctionBeginUser;
@@ -99,7 +107,12 @@ static PetscErrorCode ComplexInverse(PetscInt m, const PetscComplex G[], PetscCo
     b[i + i * n2] = 1;
   }
   PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&n, &n, a, &n, pivots, b, &n, &info));
-  for (PetscInt i = 0; i < m * m; i++) inverse[i] = info ? (i % (m + 1) == 0) : CMPLX(b[i / m + (i % m) * n2], b[i / m + m + (i % m) * n2]);
+  for (PetscInt i = 0; i < m * m; i++) {
+    inverse[i] = CMPLX(b[i / m + (i % m) * n2], b[i / m + m + (i % m) * n2]);
+    size_G     = PetscMax(size_G, cabs(G[i]));
+    size_inv   = PetscMax(size_inv, cabs(inverse[i]));
+  }
+  for (PetscInt i = 0; i < m * m && (info || !(size_G * size_inv < 1e12)); i++) inverse[i] = i % (m + 1) == 0; /* defective: leave as is */
   PetscCall(PetscFree3(a, b, pivots));
   PetscFunctionReturn(0);
 }

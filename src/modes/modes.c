@@ -35,6 +35,8 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   PetscCall(PetscOptionsReal("-modes_target", "instead of a band: the modes nearest to this frequency, Hz", NULL, modes->target, &modes->target,
                              &has_target));
   PetscCall(PetscOptionsInt("-modes_count", "how many of them", NULL, modes->count, &modes->count, &has_count));
+  PetscCall(PetscOptionsReal("-modes_growth", "largest growth or decay that a band must cover, 1/s (0: a tenth of the angular frequency f2)", NULL,
+                             modes->growth, &modes->growth, NULL));
   PetscCall(PetscOptionsBool("-modes_left", "left vectors: condition and error of each eigenvalue", NULL, modes->left, &modes->left, NULL));
   PetscCall(PetscOptionsString("-modes_disc", "part whose shapes are named by nodal circles and diameters", NULL, modes->disc, modes->disc,
                                sizeof(modes->disc), NULL));
@@ -43,6 +45,7 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
              "-modes_band %.6g,%.6g must satisfy 0 <= f1 < f2 (Hz)", (double)modes->band[0], (double)modes->band[1]);
   if (has_target || has_count) modes->has_band = PETSC_FALSE;
   PetscCheck(modes->count > 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_count %" PetscInt_FMT " must be positive", modes->count);
+  PetscCheck(modes->growth >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_growth %.6g must not be negative (1/s)", (double)modes->growth);
   PetscCheck(modes->target >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_target %.6g must not be negative (Hz)", (double)modes->target);
   PetscCall(ProgressSetFromOptions(modes->comm, &modes->progress));
   PetscFunctionReturn(0);
@@ -77,14 +80,14 @@ static PetscErrorCode SolveBoth(Modes modes, const OperatorsPencil *pencil, Wind
   PetscFunctionBeginUser;
   for (int attempt = 0; attempt < 3; attempt++) {
     PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_FALSE, &modes->right));
-    if (pencil->C) PetscCall(WindowDropTwins(modes, window, &modes->right));
+    if (pencil->C) PetscCall(WindowCountRigid(modes, window, &modes->right));
     PetscCall(WindowSelect(window, &modes->right));
     if (proven) {
       PetscCall(WindowProve(modes, window, &modes->right, &complete));
       if (complete && modes->left) PetscCall(SpectrumCopy(&modes->right, &modes->left_spectrum));
     } else if (modes->left) {
       PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_TRUE, &modes->left_spectrum));
-      PetscCall(LeftMatch(modes, window->scale, &worst, &complete));
+      PetscCall(LeftMatch(modes, window, &worst, &complete));
     }
     if (complete) break;
     window->extra += 10 + modes->right.n / 2;
@@ -93,7 +96,7 @@ static PetscErrorCode SolveBoth(Modes modes, const OperatorsPencil *pencil, Wind
   }
   PetscCheck(complete, modes->comm, PETSC_ERR_NOT_CONVERGED,
              "modes are missing after three attempts (%s); narrow -modes_band or tighten -eps_tol", proven ? "inertia count" : "left and right differ");
-  PetscCall(WindowDescribe(window, &modes->right, proven, modes->left, worst, modes->completeness, sizeof(modes->completeness)));
+  PetscCall(WindowDescribe(window, proven, modes->left, worst, modes->completeness, sizeof(modes->completeness)));
   PetscFunctionReturn(0);
 }
 
@@ -116,6 +119,7 @@ PetscErrorCode ModesSolve(Modes modes)
   PetscCheck(modes->right.n, modes->comm, PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g Hz contains no mode; widen it", (double)modes->band[0],
              (double)modes->band[1]);
   PetscCall(QualityMeasure(modes, &pencil));
+  if (window.rigid) PetscCall(TwinsDrop(modes, &window));
   PetscCall(ModesLabel(modes));
   PetscFunctionReturn(0);
 }

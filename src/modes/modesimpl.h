@@ -54,6 +54,7 @@ struct _p_Modes {
   Operators  operators;
   /* set by options */
   PetscReal  band[2], target; /* Hz */
+  PetscReal  growth;                /* rad/s; 0: a tenth of the highest angular frequency */
   PetscBool  has_band, left;
   PetscInt   count;
   char       disc[64];
@@ -65,11 +66,12 @@ struct _p_Modes {
   char       completeness[512];
 };
 
-/* What to look for: all eigenvalues with |lambda| in [low, high] rad/s, and how many there are about */
+/* What to look for: all eigenvalues with omega in [low, high] and |sigma| <= growth, rad/s, and how many there are about */
 typedef struct {
-  PetscReal low, high;
+  PetscReal low, high, growth;
   PetscInt  expected, below; /* frictionless modes in the window and below it, by inertia; negative when not known */
   PetscInt  extra;           /* eigenvalues to compute beyond those expected */
+  PetscInt  rigid;           /* damped: rigid modes, each a double zero; listed once */
   PetscInt  count;           /* > 0: this many nearest to target instead, low and high unknown */
   PetscReal target;          /* rad/s */
   PetscReal scale;           /* far below any elastic mode yet above rounding: 1e-5 sqrt(|K| / |M|), rad/s */
@@ -78,11 +80,11 @@ typedef struct {
 /* window.c - the window, and the count of frictionless modes in it by Sylvester's law of inertia */
 PETSC_INTERN PetscErrorCode WindowFind(Modes modes, Window *window);
 PETSC_INTERN PetscErrorCode WindowReach(Modes modes, Window *window); /* sets high for the modes nearest to a target */
-PETSC_INTERN PetscErrorCode WindowDropTwins(Modes modes, const Window *window, Spectrum *spectrum);
+PETSC_INTERN PetscErrorCode WindowCountRigid(Modes modes, Window *window, const Spectrum *spectrum);
+PETSC_INTERN PetscReal      WindowDistance(const Window *window, const Spectrum *spectrum, PetscInt i); /* from i target */
 PETSC_INTERN PetscErrorCode WindowSelect(const Window *window, Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *spectrum, PetscBool *complete);
-PETSC_INTERN PetscErrorCode WindowDescribe(const Window *window, const Spectrum *spectrum, PetscBool proven, PetscBool left, PetscReal worst,
-                                           char text[], size_t size);
+PETSC_INTERN PetscErrorCode WindowDescribe(const Window *window, PetscBool proven, PetscBool left, PetscReal worst, char text[], size_t size);
 
 /* undamped.c, damped.c - all eigenvalues of the pencil in the window, right ones or those of the transposed problem */
 PETSC_INTERN PetscErrorCode UndampedSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si,
@@ -92,12 +94,15 @@ PETSC_INTERN PetscErrorCode DampedSolve(Modes modes, const OperatorsPencil *penc
 PETSC_INTERN PetscReal UndampedShift(const Window *window);
 PETSC_INTERN PetscReal DampedShift(const Window *window);
 
-/* left.c - left partners of the right eigenvalues, those below zero (rad/s) being all alike; biorthogonal left vectors in clusters, work[3] in the pencil's unknowns */
-PETSC_INTERN PetscErrorCode LeftMatch(Modes modes, PetscReal zero, PetscReal *worst, PetscBool *complete);
+/* left.c - left partners of the right eigenvalues; complete = the window holds the same ones in both; biorthogonal left vectors in clusters, work[3] in the pencil's unknowns */
+PETSC_INTERN PetscErrorCode LeftMatch(Modes modes, const Window *window, PetscReal *worst, PetscBool *complete);
 PETSC_INTERN PetscErrorCode LeftBiorthogonalise(Modes modes, const OperatorsPencil *pencil, Vec work[]);
 
 /* quality.c - measures the errors, expands the vectors to all unknowns and normalises them */
 PETSC_INTERN PetscErrorCode QualityMeasure(Modes modes, const OperatorsPencil *pencil);
+
+/* twins.c - lists a rigid mode of a damped system once, and trims the list to the modes asked for */
+PETSC_INTERN PetscErrorCode TwinsDrop(Modes modes, const Window *window);
 
 /* label.c - names of the shapes */
 PETSC_INTERN PetscErrorCode ModesLabel(Modes modes);

@@ -8,6 +8,7 @@
 */
 #include "complexvec.h"
 
+#define BACKWARD    1e-6 /* largest backward error that is a solution */
 #define RIGID_NOISE 100 /* lambda^2 below this many times its error is a rigid mode */
 
 /* What all modes share: matrices, their Frobenius norms (K, C, M), and work vectors */
@@ -127,13 +128,17 @@ static PetscErrorCode MeasureMode(Modes modes, Quality *q, PetscInt i)
   if (has_left) PetscCall(Finish(q, modes->operators, PETSC_TRUE, &left->xr[i], &left->xi[i], &norm_y));
   mode->sigma     = creal(lambda);
   mode->omega     = cimag(lambda);
-  mode->condition = has_left ? norm_x * norm_y / y_Dx : NAN;
-  noise *= (has_left ? mode->condition : 1) / (norm_x * norm_x);
-  square      = PetscMax(noise, has_left ? y_Qx / y_Dx : 0); /* error of lambda^2 */
+  mode->condition = !has_left ? NAN : y_Dx > 0 ? norm_x * norm_y / y_Dx : INFINITY;
+  noise *= (has_left && isfinite(mode->condition) ? PetscMax(1, mode->condition) : 1) / (norm_x * norm_x);
+  square      = PetscMax(noise, has_left && y_Dx > 0 ? y_Qx / y_Dx : 0); /* error of lambda^2 */
   mode->rigid = size * size <= RIGID_NOISE * square ? PETSC_TRUE : PETSC_FALSE;
   mode->error = mode->rigid ? PetscMax(size, PetscSqrtReal(square)) : square / (2 * size);
   if (mode->rigid) mode->sigma = mode->omega = 0;
-  mode->unstable = mode->sigma > 3 * mode->error && mode->sigma > 1e-9 * size ? PETSC_TRUE : PETSC_FALSE;
+  mode->unstable = mode->sigma > 3 * mode->error && mode->sigma > (has_left ? 1e-9 : 1e-6) * size ? PETSC_TRUE : PETSC_FALSE;
+  if (!has_left) mode->error = NAN;
+  PetscCheck(mode->rigid || mode->backward_error < BACKWARD, modes->comm, PETSC_ERR_NOT_CONVERGED,
+             "mode at %.6g Hz has a backward error of %.2g, more than %.0e: the matrices are too badly scaled", (double)(mode->omega / (2 * PETSC_PI)),
+             (double)mode->backward_error, BACKWARD);
   PetscFunctionReturn(0);
 }
 

@@ -1,9 +1,10 @@
 /*
    One factorisation for everything: a KSP with the user's -st_ksp_*, -st_pc_*, -st_mat_mumps_* options, which SLEPc's spectral
    transformations of the right and of the transposed problem both call. MUMPS is the default: LDL' for a symmetric pencil,
-   LU else. On one rank the LU gets METIS's order of the node graph: on the default rig 22.2 M entries and 8.9 Gflop against
-   23.6 M and 11.4 with PORD, the best of MUMPS' own, 14 % less numeric time. PETSc hands no order to MUMPS' LDL' (nor on several
-   ranks), where PORD stays.
+   LU else. On one rank the LU gets METIS's order of the node graph; against PORD, the best of MUMPS' own, it is a tie on the
+   default rig (23.9 M entries and 11.2 Gflop against 23.6 M and 10.9) and 6 % less fill and 16 % fewer operations at 94,491 unknowns
+   (82.6 M and 57.5 against 87.8 M and 68.6; scripts/benchmark_modes --part orderings). AMD, AMF and QAMD give 13 to 35 % more fill.
+   PETSc hands no order to MUMPS' LDL' nor on several ranks, where PORD stays.
 */
 #include "modesimpl.h"
 #include "operators/ordering.h"
@@ -56,9 +57,11 @@ static PetscErrorCode FactorCheck(MPI_Comm comm, PC pc, PetscBool *singular)
 /* Solver with MUMPS as default */
 static PetscErrorCode SolverCreate(MPI_Comm comm, Mat A, PetscBool symmetric, PetscBool want_inertia, KSP *ksp)
 {
-  PetscMPIInt size;
-  PC          pc;
-  Mat         F;
+  MatSolverType solver;
+  PetscBool     is_mumps = PETSC_FALSE, chosen;
+  PetscMPIInt   size;
+  PC            pc;
+  Mat           F;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(comm, &size));
@@ -69,8 +72,11 @@ static PetscErrorCode SolverCreate(MPI_Comm comm, Mat A, PetscBool symmetric, Pe
   PetscCall(KSPGetPC(*ksp, &pc));
   PetscCall(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
   PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  if (size == 1 && !symmetric) PetscCall(PCFactorSetMatOrderingType(pc, ORDERING_METIS));
   PetscCall(KSPSetFromOptions(*ksp));
+  PetscCall(PCFactorGetMatSolverType(pc, &solver));
+  if (solver) PetscCall(PetscStrcmp(solver, MATSOLVERMUMPS, &is_mumps)); /* METIS's inverse order is for MUMPS only */
+  PetscCall(PetscOptionsHasName(NULL, "st_", "-pc_factor_mat_ordering_type", &chosen));
+  if (size == 1 && !symmetric && is_mumps && !chosen) PetscCall(PCFactorSetMatOrderingType(pc, ORDERING_METIS));
   if (want_inertia) {
     PetscCall(PCFactorSetUpMatSolverType(pc));
     PetscCall(PCFactorGetMatrix(pc, &F));

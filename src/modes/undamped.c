@@ -17,26 +17,23 @@ PetscReal UndampedShift(const Window *window)
   return low + 0.25 * (high - low);
 }
 
-/* Radius about the shift that the converged eigenvalues must exceed */
+/* Radius about the shift, in the plane of kappa = -lambda^2, that the converged eigenvalues must exceed. Band: the farthest corner
+   sigma + i omega of the window. Target t: all |lambda - i t| <= d lie within |kappa - t^2| <= 2 t d + d^2. */
 static PetscReal RadiusNeeded(const Window *window, PetscReal shift, const Spectrum *found)
 {
-  PetscReal far[2] = {window->low, window->high};
+  const PetscReal low = window->low, high = window->high, s = window->growth, t = window->target;
+  PetscReal       d = 0;
 
-  if (window->count) { /* the count-th nearest to the target, on either side */
-    PetscReal distance[1] = {0};
+  if (!window->count)
+    return PetscMax(hypot(high * high - s * s - shift, 2 * s * high), hypot(low * low - s * s - shift, 2 * s * low));
+  if (found->n < window->count) return PETSC_MAX_REAL;
+  for (PetscInt i = 0; i < found->n; i++) { /* the count-th nearest to the target */
+    PetscInt nearer = 0;
 
-    for (PetscInt i = 0; i < found->n; i++) {
-      PetscInt nearer = 0;
-
-      for (PetscInt j = 0; j < found->n; j++)
-        if (PetscAbsReal(found->omega[j] - window->target) < PetscAbsReal(found->omega[i] - window->target)) nearer++;
-      if (nearer < window->count) distance[0] = PetscMax(distance[0], PetscAbsReal(found->omega[i] - window->target));
-    }
-    if (found->n < window->count) return PETSC_MAX_REAL;
-    far[0] = PetscMax(0, window->target - distance[0]);
-    far[1] = window->target + distance[0];
+    for (PetscInt j = 0; j < found->n; j++) nearer += WindowDistance(window, found, j) < WindowDistance(window, found, i);
+    if (nearer < window->count) d = PetscMax(d, WindowDistance(window, found, i));
   }
-  return PetscMax(PetscAbsReal(shift - far[0] * far[0]), PetscAbsReal(far[1] * far[1] - shift));
+  return 2 * t * d + d * d + PetscAbsReal(shift - t * t);
 }
 
 /* Puts the converged pairs into a spectrum; reach = distance of the farthest from the shift, infinite when all n are there */

@@ -5,6 +5,8 @@
 */
 #include "modesimpl.h"
 
+#define EDGE 1e-8 /* relative width of the band's ends, so that an eigenvalue on an end belongs to it */
+
 /* Frictionless modes with frequency below omega (rad/s) */
 static PetscErrorCode CountBelow(Modes modes, const OperatorsPencil *pencil, PetscReal omega, PetscInt *n)
 {
@@ -42,6 +44,8 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
   window->high     = 2 * PETSC_PI * modes->band[1];
   window->target   = 2 * PETSC_PI * modes->target;
   window->count    = modes->has_band ? 0 : modes->count;
+  window->growth   = modes->growth > 0 ? modes->growth : 0.1 * window->high;
+  window->rigid    = 0;
   window->expected = window->below = -1;
   window->extra    = 6;
   PetscCall(WindowScale(&frictionless, &window->scale));
@@ -50,8 +54,8 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
     PetscCall(CountBelow(modes, &frictionless, window->target, &window->below));
     PetscFunctionReturn(0);
   }
-  PetscCall(CountBelow(modes, &frictionless, window->low, &window->below));
-  PetscCall(CountBelow(modes, &frictionless, window->high, &below_high));
+  PetscCall(CountBelow(modes, &frictionless, window->low < window->scale ? 0 : window->low * (1 - EDGE), &window->below));
+  PetscCall(CountBelow(modes, &frictionless, window->high * (1 + EDGE), &below_high));
   window->expected = below_high - window->below;
   PetscFunctionReturn(0);
 }
@@ -75,20 +79,21 @@ PetscErrorCode WindowReach(Modes modes, Window *window)
   PetscFunctionReturn(0);
 }
 
-/* With damping a rigid mode is a double zero, which rounding splits into two tiny eigenvalues: as many are kept as the
-   frictionless system has rigid modes, so that each is listed once */
-PetscErrorCode WindowDropTwins(Modes modes, const Window *window, Spectrum *s)
+/* With damping a rigid mode is a double zero, which rounding splits into two tiny eigenvalues */
+PetscErrorCode WindowCountRigid(Modes modes, Window *window, const Spectrum *s)
 {
   OperatorsPencil frictionless;
-  PetscInt        n_zero = 0, n_rigid;
 
   PetscFunctionBeginUser;
-  while (n_zero < s->n && PetscAbsReal(s->sigma[n_zero]) < window->scale && s->omega[n_zero] < window->scale) n_zero++;
-  if (!n_zero || window->below < 0) PetscFunctionReturn(0);
+  if (!s->n || PetscAbsReal(s->sigma[0]) > window->scale || s->omega[0] > window->scale || window->below < 0) PetscFunctionReturn(0);
   PetscCall(OperatorsGetFrictionless(modes->operators, &frictionless));
-  PetscCall(CountBelow(modes, &frictionless, window->scale, &n_rigid));
-  if (n_rigid < n_zero) PetscCall(SpectrumKeep(s, n_zero - n_rigid, s->n - (n_zero - n_rigid)));
+  PetscCall(CountBelow(modes, &frictionless, window->scale, &window->rigid));
   PetscFunctionReturn(0);
+}
+
+PetscReal WindowDistance(const Window *window, const Spectrum *s, PetscInt i)
+{
+  return PetscSqrtReal(PetscSqr(s->omega[i] - window->target) + PetscSqr(s->sigma[i]));
 }
 
 PetscErrorCode WindowSelect(const Window *window, Spectrum *s)
@@ -97,15 +102,13 @@ PetscErrorCode WindowSelect(const Window *window, Spectrum *s)
 
   PetscFunctionBeginUser;
   if (window->count) { /* drop the farther end until the count is left; the spectrum is in order of frequency */
-    while (n > window->count) {
-      const PetscReal below = window->target - s->omega[first], above = s->omega[first + n - 1] - window->target;
-
-      if (below > above) first++;
+    while (n > window->count + window->rigid) {
+      if (WindowDistance(window, s, first) > WindowDistance(window, s, first + n - 1)) first++;
       n--;
     }
   } else {
-    while (n > 0 && s->omega[first] < window->low) first++, n--;
-    while (n > 0 && s->omega[first + n - 1] > window->high) n--;
+    while (n > 0 && s->omega[first] < window->low * (1 - EDGE)) first++, n--;
+    while (n > 0 && s->omega[first + n - 1] > window->high * (1 + EDGE)) n--;
   }
   PetscCall(SpectrumKeep(s, first, n));
   PetscFunctionReturn(0);
@@ -119,27 +122,29 @@ PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *s, Petsc
   PetscFunctionBeginUser;
   if (window->count && s->n) { /* just outside the outermost modes; an eigenvalue that close to the end belongs to them */
     PetscCall(OperatorsGetFrictionless(modes->operators, &frictionless));
-    PetscCall(CountBelow(modes, &frictionless, s->omega[0] * (1 - 1e-6), &below_low));
-    PetscCall(CountBelow(modes, &frictionless, s->omega[s->n - 1] * (1 + 1e-6), &below_high));
+    PetscCall(CountBelow(modes, &frictionless, s->omega[0] < window->scale ? 0 : s->omega[0] * (1 - 1e-6), &below_low));
+    PetscCall(CountBelow(modes, &frictionless, PetscMax(window->scale, s->omega[s->n - 1] * (1 + 1e-6)), &below_high));
     window->expected = below_high - below_low;
   }
   *complete = s->n == window->expected || (window->count && window->expected >= s->n && s->n == window->count) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode WindowDescribe(const Window *window, const Spectrum *s, PetscBool proven, PetscBool left, PetscReal worst, char text[], size_t size)
+PetscErrorCode WindowDescribe(const Window *window, PetscBool proven, PetscBool left, PetscReal worst, char text[], size_t size)
 {
-  char frictionless[96] = "";
+  char frictionless[96] = "", region[64] = "";
 
   PetscFunctionBeginUser;
   if (window->expected >= 0 && !window->count)
     PetscCall(PetscSNPrintf(frictionless, sizeof(frictionless), "; without friction and damping %" PetscInt_FMT " (inertia)", window->expected));
-  if (proven)
+  if (!window->count) PetscCall(PetscSNPrintf(region, sizeof(region), " with |growth| below %.6g 1/s", (double)window->growth));
+  if (proven && window->count)
+    PetscCall(PetscSNPrintf(text, size, "none is missing: inertia of K - s M counts %" PetscInt_FMT " up to the outermost", window->expected));
+  else if (proven)
     PetscCall(PetscSNPrintf(text, size, "none is missing: inertia of K - s M at the ends of the band counts %" PetscInt_FMT, window->expected));
   else if (left)
-    PetscCall(PetscSNPrintf(text, size,
-                            "none is missing: %" PetscInt_FMT " right and left eigenvalues, from independent starts, agree to %.1e%s", s->n,
-                            (double)worst, frictionless));
+    PetscCall(PetscSNPrintf(text, size, "none%s was missed by right or left alone: from different starts they agree to %.1e%s", region, (double)worst,
+                            frictionless));
   else PetscCall(PetscSNPrintf(text, size, "completeness was not checked, since -modes_left is off%s", frictionless));
   PetscFunctionReturn(0);
 }

@@ -26,7 +26,7 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
     const Mode *m = &modes->mode[i];
 
     if (m->unstable) n_unstable++;
-    PetscCall(PetscViewerASCIIPrintf(viewer, "%4" PetscInt_FMT " %10.3f %12.4f %10.5f %9.1e %10.4g %9.1e  %s%s\n", i + 1,
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%4" PetscInt_FMT " %10.3f %12.5g %10.5f %9.1e %10.4g %9.1e  %s%s\n", i + 1,
                                      (double)ModeFrequency(m), (double)m->sigma, (double)(100 * ModeDampingRatio(m)),
                                      (double)(m->error / (2 * PETSC_PI)), (double)m->condition, (double)m->backward_error, m->label,
                                      m->unstable ? "  UNSTABLE" : ""));

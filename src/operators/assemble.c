@@ -20,29 +20,32 @@ static PetscErrorCode ModelIsDamped(Model model, PetscBool *damped)
   PetscFunctionReturn(0);
 }
 
-/* Replaces the consistent mass of an element by its row sums within each direction; sums [n_dofs] receives them */
-static void ElementLump(PetscInt n_dofs, PetscBool replace, PetscReal mass[], PetscReal sums[])
+/* Replaces the consistent mass of an element by its row sums within each direction */
+static void ElementLump(PetscInt n, PetscReal mass[])
 {
-  for (PetscInt i = 0; i < n_dofs; i++) {
-    sums[i] = 0;
-    for (PetscInt j = i % 3; j < n_dofs; j += 3) sums[i] += mass[i * n_dofs + j];
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal sum = 0;
+
+    for (PetscInt j = 0; j < n; j++) {
+      if (j % 3 == i % 3) sum += mass[i * n + j];
+      mass[i * n + j] = 0;
+    }
+    mass[i * n + i] = sum;
   }
-  for (PetscInt i = 0; i < n_dofs * n_dofs && replace; i++) mass[i] = i / n_dofs == i % n_dofs ? sums[i % n_dofs] : 0;
 }
 
-/* Adds one cell of the given material to K, M, C and the lumped mass */
+/* Adds one cell of the given material to K, M and C */
 static PetscErrorCode CellAdd(Operators o, const Element *element, const Part *part, const PetscReal x[], const PetscInt rows[])
 {
   const PetscInt   n = 3 * element->n_nodes;
   const Elasticity material = ElasticityFromEngineering(part->young, part->poisson, part->density);
-  PetscReal        ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], sums[ELEMENT_MAX_DOFS];
+  PetscReal        ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
   PetscCheck(!element->matrices(x, &material, ke, me), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
-  ElementLump(n, o->lump, me, sums);
+  if (o->lump) ElementLump(n, me);
   PetscCall(MatSetValues(o->A[OPERATOR_K], n, rows, n, rows, ke, ADD_VALUES));
   PetscCall(MatSetValues(o->A[OPERATOR_M], n, rows, n, rows, me, ADD_VALUES));
-  PetscCall(VecSetValues(o->lumped, n, rows, sums, ADD_VALUES));
   if (!o->A[OPERATOR_C]) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < n * n; i++) me[i] = part->alpha * me[i] + part->beta * ke[i];
   PetscCall(MatSetValues(o->A[OPERATOR_C], n, rows, n, rows, me, ADD_VALUES));
@@ -101,16 +104,14 @@ static PetscErrorCode GroundedAdd(Model model, DM dm, PetscInt n, const Grounded
   PetscFunctionReturn(0);
 }
 
-/* Ends the assembly of all matrices and the lumped mass */
+/* Ends the assembly of all matrices */
 static PetscErrorCode AssemblyEnd(Operators o)
 {
   PetscFunctionBeginUser;
   for (int i = 0; i < N_OPERATORS; i++)
     if (o->A[i]) PetscCall(MatAssemblyBegin(o->A[i], MAT_FINAL_ASSEMBLY));
-  PetscCall(VecAssemblyBegin(o->lumped));
   for (int i = 0; i < N_OPERATORS; i++)
     if (o->A[i]) PetscCall(MatAssemblyEnd(o->A[i], MAT_FINAL_ASSEMBLY));
-  PetscCall(VecAssemblyEnd(o->lumped));
   PetscFunctionReturn(0);
 }
 
@@ -131,8 +132,6 @@ PetscErrorCode OperatorsAssemble(Operators o)
   PetscCheck(n_unknowns, o->comm, PETSC_ERR_USER_INPUT, "the -supports hold every node: nothing can vibrate");
   PetscCall(MatDuplicate(o->A[OPERATOR_K], MAT_DO_NOT_COPY_VALUES, &o->A[OPERATOR_M]));
   if (damped) PetscCall(MatDuplicate(o->A[OPERATOR_K], MAT_DO_NOT_COPY_VALUES, &o->A[OPERATOR_C]));
-  PetscCall(MatCreateVecs(o->A[OPERATOR_K], &o->lumped, NULL));
-  PetscCall(VecSetOption(o->lumped, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
   PetscCall(CellsAdd(o, dm));
   PetscCall(GroundedAdd(o->model, dm, n_springs, springs, o->A[OPERATOR_K]));
   if (damped) PetscCall(GroundedAdd(o->model, dm, n_dashpots, dashpots, o->A[OPERATOR_C]));

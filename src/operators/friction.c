@@ -2,7 +2,7 @@
    Contact in the matrices, linearised about steady sliding with normal force N0 and speed v per pair:
       K += k_n N'N                         normal stiffness, symmetric          (seed paper, eq. 1)
       H  = - sum_i (mu_i / mu) k_n T'N     friction per unit mu, unsymmetric     (seed paper, eq. 1)
-      C += (mu N0 / v) B'B + mu' N0 T'T    friction damping across and along the slip, mu' = d mu / d v
+      C += (|mu| N0 / v) B'B + mu' N0 T'T    friction damping across and along the slip, mu' = d mu / d v
    mu is the largest friction coefficient of all interfaces in absolute value. Signs: slip velocity of the slave relative to the
    master is v t - d/dt (T u) t - d/dt (B u) b, friction on the master acts along it, and internal forces stand on the left.
 */
@@ -44,7 +44,7 @@ static PetscErrorCode DampingAdd(Operators o, PetscInt interface, const ContactI
   PetscCall(ContactGetPairs(o->contact, &n, &n_all, &pairs));
   for (PetscInt p = 0; p < n; p++) {
     if (pairs[p].interface != interface) continue;
-    PetscCall(VecSetValue(across, row, c->mu * pairs[p].force / pairs[p].speed, INSERT_VALUES));
+    PetscCall(VecSetValue(across, row, PetscAbsReal(c->mu) * pairs[p].force / pairs[p].speed, INSERT_VALUES));
     PetscCall(VecSetValue(along, row, c->mu_slope * pairs[p].force, INSERT_VALUES));
     row++;
   }
@@ -52,7 +52,7 @@ static PetscErrorCode DampingAdd(Operators o, PetscInt interface, const ContactI
   PetscCall(VecAssemblyEnd(across));
   PetscCall(VecAssemblyBegin(along));
   PetscCall(VecAssemblyEnd(along));
-  PetscCall(ProductAdd(1, B, across, B, &o->A[OPERATOR_C]));
+  if (c->mu != 0) PetscCall(ProductAdd(1, B, across, B, &o->A[OPERATOR_C]));
   if (c->mu_slope != 0) PetscCall(ProductAdd(1, T, along, T, &o->A[OPERATOR_C]));
   PetscCall(VecDestroy(&across));
   PetscCall(VecDestroy(&along));

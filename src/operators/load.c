@@ -3,6 +3,7 @@
 */
 #include "operatorsimpl.h"
 #include <errno.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #define MAX_DENSE 10000 /* entries of an inline matrix: 100 x 100 */
@@ -101,7 +102,13 @@ PetscErrorCode OperatorsLoad(Operators o)
                "matrix %s is %" PetscInt_FMT " x %" PetscInt_FMT ", but K has %" PetscInt_FMT " rows: all must be square and alike", letters[i],
                rows, columns, n);
   }
-  PetscCall(MatIsSymmetric(o->A[OPERATOR_K], 0, &o->symmetric));
+  for (int i = OPERATOR_K; i <= OPERATOR_C && o->symmetric; i++) {
+    PetscReal largest;
+
+    if (!o->A[i]) continue;
+    PetscCall(MatNorm(o->A[i], NORM_FROBENIUS, &largest));
+    PetscCall(MatIsSymmetric(o->A[i], 1e-14 * largest, &o->symmetric));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -139,11 +146,13 @@ PetscErrorCode OperatorsSave(Operators o)
 {
   OperatorsPencil pencil;
   PetscMPIInt     rank;
+  int             failed = 0;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(o->comm, &rank));
-  if (rank == 0) PetscCall(PetscMkdir(o->save));
-  PetscCallMPI(MPI_Barrier(o->comm));
+  if (rank == 0 && mkdir(o->save, 0777) && errno != EEXIST) failed = errno;
+  PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
+  PetscCheck(!failed, o->comm, PETSC_ERR_FILE_OPEN, "cannot make the folder '%s' of -operators_save: %s", o->save, strerror(failed));
   PetscCall(OperatorsGetPencil(o, &pencil));
   PetscCall(FileSave(o, "K", o->Zr ? pencil.K : o->A[OPERATOR_K]));
   PetscCall(FileSave(o, "M", pencil.M));

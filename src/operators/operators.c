@@ -121,7 +121,7 @@ PetscErrorCode OperatorsGetPencil(Operators operators, OperatorsPencil *pencil)
     PetscCall(Project(operators->A[OPERATOR_C], operators->Zl, operators->Zr, &p->C));
     PetscCall(Project(operators->A[OPERATOR_M], operators->Zl, operators->Zr, &p->M));
     PetscCall(MatSetOption(p->K, MAT_SYMMETRIC, p->symmetric));
-    PetscCall(MatSetOption(p->M, MAT_SYMMETRIC, operators->Zl == operators->Zr ? PETSC_TRUE : PETSC_FALSE));
+    PetscCall(MatSetOption(p->M, MAT_SYMMETRIC, operators->symmetric && operators->Zl == operators->Zr ? PETSC_TRUE : PETSC_FALSE));
     PetscCall(MatDestroy(&K));
   }
   *pencil = *p;
@@ -138,16 +138,9 @@ PetscErrorCode OperatorsGetFrictionless(Operators operators, OperatorsPencil *pe
     PetscCall(Project(operators->A[OPERATOR_M], operators->Zr, operators->Zr, &p->M));
     p->symmetric = operators->symmetric;
     PetscCall(MatSetOption(p->K, MAT_SYMMETRIC, p->symmetric));
-    PetscCall(MatSetOption(p->M, MAT_SYMMETRIC, PETSC_TRUE));
+    PetscCall(MatSetOption(p->M, MAT_SYMMETRIC, p->symmetric));
   }
   *pencil = *p;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode OperatorsGetLumpedMass(Operators operators, Vec *lumped)
-{
-  PetscFunctionBeginUser;
-  *lumped = operators->lumped;
   PetscFunctionReturn(0);
 }
 
@@ -211,7 +204,6 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   PetscCall(MatDestroy(&o->frictionless.M));
   PetscCall(MatDestroy(&o->Zr));
   PetscCall(MatDestroy(&o->Zl));
-  PetscCall(VecDestroy(&o->lumped));
   PetscCall(PetscFree(*operators));
   PetscFunctionReturn(0);
 }

@@ -24,13 +24,12 @@ struct _p_Operators {
   /* built by OperatorsSetUp() */
   Mat       A[N_OPERATORS]; /* C and H may be NULL */
   PetscReal mu;
-  Vec       lumped;         /* row sums of the consistent mass, kg; NULL without a model */
   Mat       Zr, Zl;         /* right and left null spaces of the constraints; NULL without constraints */
-  PetscBool symmetric;      /* K is symmetric; always true for a model */
+  PetscBool symmetric;      /* K, M and C are symmetric; always true for a model */
   OperatorsPencil pencil, frictionless;
 };
 
-/* assemble.c - K, M, C and lumped mass of the bodies, springs and dashpots */
+/* assemble.c - K, M, C of the bodies, springs and dashpots */
 PETSC_INTERN PetscErrorCode OperatorsAssemble(Operators operators);
 
 /* pattern.c - empty matrix of all unknowns, preallocated for the couplings of all cells */

@@ -1,0 +1,49 @@
+/*
+   Rigid modes of a damped system. Such a mode is a double zero, lambda^2 M x + lambda C x = 0 with C x = 0, that rounding splits
+   into two tiny eigenvalues; with C x = alpha M x it is one zero and lambda = -alpha. Among the modes found to be rigid, as many
+   are kept as the frictionless system has.
+*/
+#include "modesimpl.h"
+
+/* Removes mode i */
+static PetscErrorCode ModeRemove(Modes modes, PetscInt i)
+{
+  Spectrum *const spectra[] = {&modes->right, &modes->left_spectrum};
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2; k++) {
+    Spectrum *s = spectra[k];
+
+    if (!s->n) continue;
+    PetscCall(VecDestroy(&s->xr[i]));
+    PetscCall(VecDestroy(&s->xi[i]));
+    for (PetscInt j = i; j + 1 < s->n; j++) {
+      s->sigma[j] = s->sigma[j + 1], s->omega[j] = s->omega[j + 1];
+      s->xr[j] = s->xr[j + 1], s->xi[j] = s->xi[j + 1];
+    }
+    s->n--;
+    s->xr[s->n] = s->xi[s->n] = NULL;
+  }
+  for (PetscInt j = i; j + 1 < modes->n; j++) modes->mode[j] = modes->mode[j + 1];
+  modes->n--;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TwinsDrop(Modes modes, const Window *window)
+{
+  PetscInt n_rigid = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < modes->n; i++) n_rigid += modes->mode[i].rigid;
+  for (PetscInt i = modes->n - 1; i >= 0 && n_rigid > window->rigid; i--) {
+    if (!modes->mode[i].rigid) continue;
+    PetscCall(ModeRemove(modes, i));
+    n_rigid--;
+  }
+  while (window->count && modes->n > window->count) {
+    const PetscInt last = modes->n - 1;
+
+    PetscCall(ModeRemove(modes, WindowDistance(window, &modes->right, 0) > WindowDistance(window, &modes->right, last) ? 0 : last));
+  }
+  PetscFunctionReturn(0);
+}
