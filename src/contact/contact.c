@@ -56,8 +56,8 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
              "-%s_kn %.6g must be given and positive (N/m), or choose -%s_law constraint", c->name, (double)c->kn, c->name);
   PetscCheck(c->tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-%s_tolerance %.6g must be positive (m)", c->name, (double)c->tolerance);
   PetscCheck(c->force >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_force %.6g must not be negative (N)", c->name, (double)c->force);
-  PetscCheck(c->damping || (c->mu_slope == 0 && c->force == 0 && c->speed == 0), comm, PETSC_ERR_USER_INPUT,
-             "-%s_mu_slope, _force and _speed do nothing without -%s_friction_damping", c->name, c->name);
+  PetscCheck(c->damping || c->mu_slope == 0, comm, PETSC_ERR_USER_INPUT, "-%s_mu_slope does nothing without -%s_friction_damping", c->name,
+             c->name);
   PetscCheck(!c->damping || c->force > 0, comm, PETSC_ERR_USER_INPUT, "-%s_friction_damping needs a positive -%s_force (N)", c->name,
              c->name);
   PetscCheck(!c->damping || c->speed > 0 || c->rotation[0] != 0 || c->rotation[1] != 0 || c->rotation[2] != 0, comm,
