@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws the modes that squeal computed: eigenvalues in the complex plane, and shapes.
 
 Above, growth rate (rad/s) against frequency (Hz or kHz); unstable modes are marked and named. Below, the chosen modes (the
