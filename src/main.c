@@ -1,14 +1,15 @@
 static const char help[] =
   "squeal: friction-induced vibration of bodies in sliding contact.\n"
   "  squeal -options_file options/massi2005.yaml [-analysis modes] [-output_dir DIR] [any option]\n"
-  "  mpirun -n 2 squeal ... uses two ranks. SI units everywhere. Options files are YAML; later options override earlier ones.\n";
+  "  mpirun -n 2 squeal ... uses two ranks. SI units everywhere. Options files are YAML; later options override "
+  "earlier ones.\n";
 
 #include <squeal/squeal.h>
 #include <squeal/options.h>
 
 /* The chain of a run: options -> model -> contact -> operators -> modes, and results */
 typedef struct {
-  Model     model;   /* NULL for matrices without a mesh */
+  Model     model; /* NULL for matrices without a mesh */
   Contact   contact;
   Operators operators;
   Modes     modes;
@@ -19,14 +20,14 @@ typedef struct {
 static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
 {
   static const char *const analyses[] = {"modes"};
-  PetscBool has_matrices;
-  PetscInt  analysis = 0;
+  PetscBool                has_matrices;
+  PetscInt                 analysis = 0;
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(comm, NULL, "squeal", NULL);
   PetscCall(PetscOptionsEList("-analysis", "what to compute", NULL, analyses, 1, analyses[0], &analysis, NULL));
-  PetscCall(PetscOptionsBool("-squeal_view", "print what was chosen and why, and the time of each stage", NULL, chain->view,
-                             &chain->view, NULL));
+  PetscCall(PetscOptionsBool("-squeal_view", "print what was chosen and why, and the time of each stage", NULL,
+                             chain->view, &chain->view, NULL));
   PetscOptionsEnd();
   PetscCall(OperatorsCreate(comm, &chain->operators));
   PetscCall(OperatorsSetFromOptions(chain->operators));

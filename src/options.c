@@ -1,10 +1,10 @@
 /*
    Lists of names and numbers, values that are no numbers, and unknown options.
 
-   An option that nobody read is an error unless its prefix is one of PETSc's or SLEPc's. The valid names are exactly those
-   that -help would print, so they are collected by reading all options once more with PETSc's help printer replaced; this
-   happens only when there is something to complain about. Nearest = smallest Damerau-Levenshtein distance (adjacent swaps
-   count once): F. J. Damerau, Comm. ACM 7, 1964.
+   An option that nobody read is an error unless its prefix is one of PETSc's or SLEPc's. The valid names are exactly
+   those that -help would print, so they are collected by reading all options once more with PETSc's help printer
+   replaced; this happens only when there is something to complain about. Nearest = smallest Damerau-Levenshtein
+   distance (adjacent swaps count once): F. J. Damerau, Comm. ACM 7, 1964.
 */
 #include <squeal/options.h>
 #include <ctype.h>
@@ -16,11 +16,15 @@
 
 /* Prefixes of options that PETSc and SLEPc read themselves, some of them only at the end */
 static const char *const library_prefixes[] = {
-  "bv_",     "checkstack", "citations", "debug",  "display", "dm_",   "draw",   "ds_",     "eps_",  "error_",
-  "fp_",     "get_total",  "help",      "info",   "is_",     "ksp_",  "log_",   "malloc",  "mat_",  "matptap",
-  "memory",  "mpi",        "no_signal", "objects", "on_error", "options_", "partitioner", "pc_", "pep_", "petscpartitioner",
-  "petscspace", "python",  "rg_",       "saws",   "sf_",     "shared_tmp", "slepc", "st_", "start_in", "stop_for",
-  "sub_",    "tmp",        "ts_",       "use_gpu", "vec_",   "vecscatter", "version", "viewer", "x_virtual", NULL};
+  "bv_",        "checkstack", "citations",   "debug",      "display",   "dm_",
+  "draw",       "ds_",        "eps_",        "error_",     "fp_",       "get_total",
+  "help",       "info",       "is_",         "ksp_",       "log_",      "malloc",
+  "mat_",       "matptap",    "memory",      "mpi",        "no_signal", "objects",
+  "on_error",   "options_",   "partitioner", "pc_",        "pep_",      "petscpartitioner",
+  "petscspace", "python",     "rg_",         "saws",       "sf_",       "shared_tmp",
+  "slepc",      "st_",        "start_in",    "stop_for",   "sub_",      "tmp",
+  "ts_",        "use_gpu",    "vec_",        "vecscatter", "version",   "viewer",
+  "x_virtual",  NULL};
 
 /* Whether a name can be a prefix: a letter, then letters, digits and underscores */
 static PetscBool NameIsIdentifier(const char name[])
@@ -46,8 +50,8 @@ static PetscErrorCode NamesSplit(const char initial[], PetscInt max, PetscInt *n
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], const char initial[], PetscInt max,
-                               PetscInt *n, char *names[])
+PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], const char initial[],
+                               PetscInt max, PetscInt *n, char *names[])
 {
   PetscBool set, same;
   PetscInt  count = max;
@@ -98,7 +102,8 @@ static PetscBool MessageSplit(const char message[], char value[MAX_NAME], const 
     message += strlen(starts[i]);
     end    = i ? NULL : strstr(message, " has no ");
     *wrong = end ? end : " is neither true nor false";
-    return snprintf(value, MAX_NAME, "%.*s", (int)(end ? end - message : (ptrdiff_t)strlen(message)), message) < MAX_NAME;
+    return snprintf(value, MAX_NAME, "%.*s", (int)(end ? end - message : (ptrdiff_t)strlen(message)), message) <
+           MAX_NAME;
   }
   return PETSC_FALSE;
 }
@@ -123,7 +128,8 @@ PetscErrorCode OptionsExplainValue(const char message[], char text[], size_t siz
   if (!MessageSplit(message, value, &wrong)) PetscFunctionReturn(0);
   PetscCall(PetscOptionsGetAll(NULL, &all));
   for (word = strtok_r(all, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
-    if (word[0] == '-' && isalpha((unsigned char)word[1])) name = word;
+    if (word[0] == '-' && isalpha((unsigned char)word[1]))
+      name = word;
     else if (name && ListHolds(word, value)) {
       PetscCall(PetscStrlcat(text, text[0] ? " or " : "", size));
       PetscCall(PetscStrlcat(text, name, size));
@@ -158,12 +164,12 @@ static int EditDistance(const char a[], const char b[])
   return d[la % 3][lb];
 }
 
-/* Names that the help printer saw. PETSc's printer is a bare function pointer without context: hence the one static record,
-   alive only inside CollectValid(). */
+/* Names that the help printer saw. PETSc's printer is a bare function pointer without context: hence the one static
+   record, alive only inside CollectValid(). */
 static struct {
   int  n;
   char name[MAX_VALID][MAX_NAME];
-} *collected;
+} * collected;
 
 /* Stands in for PetscHelpPrintf: keeps the names from lines such as "  -disc_young: <now ...>" */
 static PetscErrorCode CollectHelp(MPI_Comm comm, const char format[], ...)
@@ -218,8 +224,8 @@ static PetscErrorCode ComplainUnknown(MPI_Comm comm, const char name[], const ch
 
 PetscErrorCode OptionsCheckUnknown(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx)
 {
-  PetscInt    n, best = PETSC_MAX_INT;
-  char      **names, **values, unknown[MAX_NAME] = "", nearest[MAX_NAME] = "";
+  PetscInt n, best = PETSC_MAX_INT;
+  char   **names, **values, unknown[MAX_NAME] = "", nearest[MAX_NAME] = "";
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
@@ -245,8 +251,9 @@ PetscErrorCode OptionsCheckUnknown(MPI_Comm comm, PetscErrorCode (*read_again)(M
 /* Whether PETSc reads this option only at its end */
 static PetscBool OptionIsLate(const char name[])
 {
-  static const char *const late[] = {"log_", "malloc", "memory", "objects_dump", "options_left", "options_view", "citations",
-                                     "options_table", "get_total", "version", NULL};
+  static const char *const late[] = {"log_",         "malloc",       "memory",    "objects_dump",
+                                     "options_left", "options_view", "citations", "options_table",
+                                     "get_total",    "version",      NULL};
 
   for (const char *const *prefix = late; *prefix; prefix++)
     if (!strncmp(name, *prefix, strlen(*prefix))) return PETSC_TRUE;
@@ -263,7 +270,8 @@ PetscErrorCode OptionsWarnUnused(MPI_Comm comm)
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
   for (PetscInt i = 0; i < n && rank == 0; i++)
-    if (!OptionIsLate(names[i])) PetscCall(PetscFPrintf(PETSC_COMM_SELF, stderr, "squeal: warning: option -%s was not used\n", names[i]));
+    if (!OptionIsLate(names[i]))
+      PetscCall(PetscFPrintf(PETSC_COMM_SELF, stderr, "squeal: warning: option -%s was not used\n", names[i]));
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
   PetscFunctionReturn(0);
 }

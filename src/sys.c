@@ -1,9 +1,9 @@
 /*
    Life cycle: start, one-line errors, log stages, end.
 
-   The message of an error is kept until its rank leaves. When all ranks come, it was everybody's error: rank 0 prints it, and
-   all leave through MPI_Finalize. When some do not come within two seconds, it was this rank's own error: it prints, and aborts
-   the others, which know nothing of it.
+   The message of an error is kept until its rank leaves. When all ranks come, it was everybody's error: rank 0 prints
+   it, and all leave through MPI_Finalize. When some do not come within two seconds, it was this rank's own error: it
+   prints, and aborts the others, which know nothing of it.
 */
 #include <squeal/squeal.h>
 #include <squeal/options.h>
@@ -17,7 +17,7 @@ static const char *const stage_names[SQUEAL_N_STAGES] = {"Model", "Contact", "Op
 /* First error of this rank, printed by SquealFinalize() */
 static char error_message[MAX_MESSAGE];
 
-static PetscLogStage     stages[SQUEAL_N_STAGES];
+static PetscLogStage stages[SQUEAL_N_STAGES];
 
 /* Log handles of the stages: seconds spent and resident memory (bytes) at the end of each, on this rank */
 static struct {
@@ -52,7 +52,8 @@ static void NameOptionsFiles(int argc, char *const argv[], char message[MAX_MESS
   if (!strstr(message, "YAML") || strstr(message, "option file: ")) return;
   for (int i = 1; i + 1 < argc; i++) {
     if (strncmp(argv[i], "-options_file", 13)) continue;
-    (void)snprintf(&message[strlen(message)], MAX_MESSAGE - strlen(message), "%s-options_file %s", between, argv[i + 1]);
+    (void)snprintf(&message[strlen(message)], MAX_MESSAGE - strlen(message), "%s-options_file %s", between,
+                   argv[i + 1]);
     between = " or ";
   }
 }
@@ -64,7 +65,8 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Init(argc, argv));
   (void)H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  (void)signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit of `ulimit -f` is an error of the write, as a full disk is */
+  (void)signal(SIGXFSZ,
+               SIG_IGN); /* a file beyond the limit of `ulimit -f` is an error of the write, as a full disk is */
   PetscCall(PetscPushErrorHandler(KeepError, error_message));
   error = SlepcInitialize(argc, argv, NULL, help);
   if (error) NameOptionsFiles(*argc, *argv, error_message);

@@ -1,14 +1,15 @@
 /*
    Contact - frictional interfaces in steady sliding, linearised: pairs of facing nodes with gap and slip operators.
 
-   Pair p joins a slave node s and the point of the master surface that it faces, which moves as u_m = sum_i w_i u_i of the
-   corners of one master facet: one node of weight 1 where the meshes match, up to four where they do not. n is the master's
-   outward normal, t the direction of the slave's sliding velocity relative to the master, b = n x t. For displacements u (m)
+   Pair p joins a slave node s and the point of the master surface that it faces, which moves as u_m = sum_i w_i u_i
+   of the corners of one master facet: one node of weight 1 where the meshes match, up to four where they do not. n is
+   the master's outward normal, t the direction of the slave's sliding velocity relative to the master, b = n x t. For
+   displacements u (m)
       (N u)_p = n . (u_m - u_s)     closing of the gap
       (T u)_p = t . (u_m - u_s)     slip
       (B u)_p = b . (u_m - u_s)     transverse slip
-   Penalty (seed paper, eq. 1): internal forces k_n N'N u - mu k_n T'N u, that is along n on the master k_n (N u), along t on
-   the master -mu k_n (N u), and the opposite on the slave: friction drags the master along t.
+   Penalty (seed paper, eq. 1): internal forces k_n N'N u - mu k_n T'N u, that is along n on the master k_n (N u),
+   along t on the master -mu k_n (N u), and the opposite on the slave: friction drags the master along t.
    Constraint: N u = 0 with force directions N' - mu T'.
 */
 #pragma once
@@ -17,10 +18,7 @@
 
 typedef struct _p_Contact *Contact;
 
-typedef enum {
-  CONTACT_PENALTY,
-  CONTACT_CONSTRAINT
-} ContactLaw;
+typedef enum { CONTACT_PENALTY, CONTACT_CONSTRAINT } ContactLaw;
 
 /* One pair; the array of pairs is distributed, each pair lives on the rank that owns its slave node */
 typedef struct {
@@ -31,24 +29,24 @@ typedef struct {
   PetscReal x[3];                   /* position of the slave, m */
   PetscReal n[3], t[3], b[3];       /* unit vectors */
   PetscReal area;                   /* tributary area of the slave node, m^2 */
-  PetscReal force;                  /* normal force carried in the sliding state, N, compressive >= 0; 0 when not given */
-  PetscReal speed;                  /* sliding speed, m/s; 0 when not given */
+  PetscReal force; /* normal force carried in the sliding state, N, compressive >= 0; 0 when not given */
+  PetscReal speed; /* sliding speed, m/s; 0 when not given */
 } ContactPair;
 
 /* Parameters of an interface; SI units */
 typedef struct {
   char      *name, *slave, *master; /* surfaces */
   ContactLaw law;
-  PetscReal  mu;                    /* friction coefficient */
-  PetscReal  mu_slope;              /* d mu / d speed, s/m */
-  PetscReal  kn;                    /* stiffness per pair, N/m */
-  PetscReal  tolerance;             /* pairs farther apart than this are no pairs, m */
-  PetscBool  damping;               /* friction damping: mu N0 / v across the slip, mu_slope N0 along it */
-  PetscReal  force;                 /* total normal force in the sliding state, N */
-  PetscReal  speed;                 /* sliding speed, m/s */
-  PetscReal  slip[3];               /* direction, or 0,0,0 when it comes from the rotation */
-  PetscReal  rotation[3];           /* angular velocity of the master relative to the slave, rad/s */
-  PetscReal  center[3];             /* a point of its axis, m */
+  PetscReal  mu;          /* friction coefficient */
+  PetscReal  mu_slope;    /* d mu / d speed, s/m */
+  PetscReal  kn;          /* stiffness per pair, N/m */
+  PetscReal  tolerance;   /* pairs farther apart than this are no pairs, m */
+  PetscBool  damping;     /* friction damping: mu N0 / v across the slip, mu_slope N0 along it */
+  PetscReal  force;       /* total normal force in the sliding state, N */
+  PetscReal  speed;       /* sliding speed, m/s */
+  PetscReal  slip[3];     /* direction, or 0,0,0 when it comes from the rotation */
+  PetscReal  rotation[3]; /* angular velocity of the master relative to the slave, rad/s */
+  PetscReal  center[3];   /* a point of its axis, m */
 } ContactInterface;
 
 /*@ ContactCreate - makes the interfaces of a model; call before ModelSetUp(). Collective. @*/
@@ -58,7 +56,8 @@ PetscErrorCode ContactCreate(Model model, Contact *contact);
    ContactSetFromOptions - reads the interfaces and asks the model to keep their surfaces on one rank. Collective.
 
    Options Database Keys:
-+  -contacts <names>              - interfaces; each name is the prefix of the following, shown for a contact named `contact`
++  -contacts <names>              - interfaces; each name is the prefix of the following, shown for a contact named
+`contact`
 .  -contact_surfaces <slave,master> - named surfaces
 .  -contact_law <penalty|constraint> - k_n per pair, or k_n to infinity
 .  -contact_mu <0>                - friction coefficient
@@ -77,8 +76,8 @@ PetscErrorCode ContactSetFromOptions(Contact contact);
 /*@
    ContactSetUp - pairs facing nodes by position, across ranks. Collective; call after ModelSetUp().
 
-   Errors: PETSC_ERR_USER_INPUT when a slave node finds no master node within the tolerance: names the interface, the position
-   of the node and the distance to the nearest candidate; also when the slip direction vanishes in the surface.
+   Errors: PETSC_ERR_USER_INPUT when a slave node finds no master node within the tolerance: names the interface, the
+   position of the node and the distance to the nearest candidate; also when the slip direction vanishes in the surface.
 @*/
 PetscErrorCode ContactSetUp(Contact contact);
 

@@ -11,18 +11,18 @@
 #define ELEMENT_MAX_DOFS  (3 * ELEMENT_MAX_NODES)
 
 typedef struct {
-  const char    *formulation;                       /* value of -model_element */
-  const char    *description;                       /* for -squeal_view */
+  const char    *formulation; /* value of -model_element */
+  const char    *description; /* for -squeal_view */
   DMPolytopeType shape;
   PetscInt       n_nodes;
-  PetscInt       closure_order[ELEMENT_MAX_NODES];  /* element node i is vertex closure_order[i] of the DMPlex closure */
+  PetscInt       closure_order[ELEMENT_MAX_NODES]; /* element node i is vertex closure_order[i] of the DMPlex closure */
 
   /* Stiffness (N/m) and consistent mass (kg), row-major [3 n_nodes][3 n_nodes], of corners x[n_nodes][3] (m).
      Returns 0, or 1 when the Jacobian is not positive at some point: then nothing is written. */
   int (*matrices)(const double *x, const Elasticity *material, double *stiffness, double *mass);
 
-  /* Volume (m^3) and the smallest Jacobian over quadrature points and corners relative to the volume of the cell's bounding
-     box; not positive means inverted or flat. */
+  /* Volume (m^3) and the smallest Jacobian over quadrature points and corners relative to the volume of the cell's
+     bounding box; not positive means inverted or flat. */
   void (*measure)(const double *x, double *volume, double *min_jacobian);
 } Element;
 

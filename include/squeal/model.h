@@ -3,8 +3,8 @@
 
    The mesh comes from the built-in generator (-model_source rig) or from a Gmsh file (-model_source file). Every named
    set of the scene is a DMLabel of that name with value 1: parts on cells, surfaces on faces, points on vertices.
-   The DM's local section holds three displacements (m) per vertex in the order x, y, z; displacements fixed by a support
-   are constrained, hence absent from global vectors and matrices.
+   The DM's local section holds three displacements (m) per vertex in the order x, y, z; displacements fixed by a
+   support are constrained, hence absent from global vectors and matrices.
 */
 #pragma once
 
@@ -15,18 +15,18 @@ typedef struct _p_Model *Model;
 
 /* Material of one body; SI units */
 typedef struct {
-  char      *name;
-  PetscReal  young;   /* Young's modulus, Pa, > 0 */
-  PetscReal  poisson; /* Poisson's ratio, in (-1, 0.5) */
-  PetscReal  density; /* kg/m^3, > 0 */
-  PetscReal  alpha;   /* Rayleigh factor of the mass, 1/s: C = alpha M + beta K */
-  PetscReal  beta;    /* Rayleigh factor of the stiffness, s */
+  char     *name;
+  PetscReal young;   /* Young's modulus, Pa, > 0 */
+  PetscReal poisson; /* Poisson's ratio, in (-1, 0.5) */
+  PetscReal density; /* kg/m^3, > 0 */
+  PetscReal alpha;   /* Rayleigh factor of the mass, 1/s: C = alpha M + beta K */
+  PetscReal beta;    /* Rayleigh factor of the stiffness, s */
 } Part;
 
 /* Grounded spring (N/m) or dashpot (N s/m) at every node of a set, per node and direction */
 typedef struct {
-  char      *name, *set;
-  PetscReal  value[3];
+  char     *name, *set;
+  PetscReal value[3];
 } Grounded;
 
 /*@
@@ -71,7 +71,8 @@ PetscErrorCode ModelGetDM(Model model, DM *dm);
 /*@ ModelGetParts - the bodies (borrowed). Not collective. @*/
 PetscErrorCode ModelGetParts(Model model, PetscInt *n_parts, const Part **parts);
 
-/*@ ModelGetCellParts - index of the part of each local cell, shape [number of local cells] (borrowed). Not collective. @*/
+/*@ ModelGetCellParts - index of the part of each local cell, shape [number of local cells] (borrowed). Not
+    collective. @*/
 PetscErrorCode ModelGetCellParts(Model model, const PetscInt **cell_part);
 
 /*@ ModelGetElement - formulation of the cells. Not collective. @*/
@@ -81,8 +82,8 @@ PetscErrorCode ModelGetElement(Model model, const Element **element);
     coordinates [n_nodes][3] (m). Not collective. @*/
 PetscErrorCode ModelGetCell(Model model, PetscInt c, PetscInt vertices[], PetscReal coordinates[]);
 
-/*@ ModelGetUnknowns - global number of each displacement of each local vertex, shape [vEnd - vStart][3] in the order of the
-    DM's vertices; -1 where a support fixes it (borrowed). Not collective. @*/
+/*@ ModelGetUnknowns - global number of each displacement of each local vertex, shape [vEnd - vStart][3] in the order
+    of the DM's vertices; -1 where a support fixes it (borrowed). Not collective. @*/
 PetscErrorCode ModelGetUnknowns(Model model, const PetscInt **unknowns);
 
 /*@ ModelGetSprings - grounded springs (borrowed). Not collective. @*/
@@ -95,19 +96,22 @@ PetscErrorCode ModelGetDashpots(Model model, PetscInt *n, const Grounded **dashp
     Errors: PETSC_ERR_USER_INPUT when no rank has the set; the message lists the sets of the mesh. @*/
 PetscErrorCode ModelGetSetVertices(Model model, const char set[], IS *vertices);
 
-/*@ ModelGetOwnedVertices - as ModelGetSetVertices(), without ghosts: each vertex of the set on exactly one rank. Collective. @*/
+/*@ ModelGetOwnedVertices - as ModelGetSetVertices(), without ghosts: each vertex of the set on exactly one rank.
+    Collective. @*/
 PetscErrorCode ModelGetOwnedVertices(Model model, const char set[], IS *vertices);
 
-/*@ ModelGetSetFaces - quadrilaterals of a surface set on this rank: corners [n][4] (points of the DM), counter-clockwise seen
-    from outside the body; each face is on exactly one rank. Collective. The caller frees them. @*/
+/*@ ModelGetSetFaces - quadrilaterals of a surface set on this rank: corners [n][4] (points of the DM),
+    counter-clockwise seen from outside the body; each face is on exactly one rank. Collective. The caller frees them.
+    @*/
 PetscErrorCode ModelGetSetFaces(Model model, const char set[], PetscInt *n, PetscInt **corners);
 
-/*@ ModelGetSetNormals - for each local vertex, shape [vEnd - vStart][3], the outward normal of a surface set times the vertex's
-    share of its area (m^2), complete on every rank that has the vertex. Collective. The caller frees it. @*/
+/*@ ModelGetSetNormals - for each local vertex, shape [vEnd - vStart][3], the outward normal of a surface set times
+    the vertex's share of its area (m^2), complete on every rank that has the vertex. Collective. The caller frees it.
+    @*/
 PetscErrorCode ModelGetSetNormals(Model model, const char set[], PetscReal **area_normals);
 
-/*@ ModelSumShared - sums a local vector of three values per vertex (layout of the coordinates) over all ranks that share a
-    vertex; every one of them gets the sum. Collective. @*/
+/*@ ModelSumShared - sums a local vector of three values per vertex (layout of the coordinates) over all ranks that
+    share a vertex; every one of them gets the sum. Collective. @*/
 PetscErrorCode ModelSumShared(Model model, Vec local);
 
 /*@ ModelGetCoordinates - of the local vertices, shape [vEnd - vStart][3], m (borrowed). Not collective. @*/

@@ -1,13 +1,14 @@
 /*
-   Modes - eigenvalues lambda = sigma + i omega (rad/s) of (lambda^2 M + lambda C + K) x = 0 with their right and left vectors:
+   Modes - eigenvalues lambda = sigma + i omega (rad/s) of (lambda^2 M + lambda C + K) x = 0 with their right and left
+   vectors:
 
       undamped symmetric   K x = kappa M x, kappa = -lambda^2          EPS GHEP,  LDL' of K - s M
       undamped, friction   the same, K unsymmetric                     EPS GNHEP, LU
       damped               the quadratic problem                       PEP TOAR,  LU of K + s C + s^2 M
 
-   Left vectors solve the transposed problem with the transposed factors, from a start vector of their own; what one of the two
-   Krylov spaces misses inside the window shows in the other. Eigenvalues outside the window, |sigma| > -modes_growth, are no
-   part of the claim.
+   Left vectors solve the transposed problem with the transposed factors, from a start vector of their own; what one
+   of the two Krylov spaces misses inside the window shows in the other. Eigenvalues outside the window, |sigma| >
+   -modes_growth, are no part of the claim.
 */
 #pragma once
 
@@ -20,10 +21,12 @@ typedef struct _p_Modes *Modes;
 typedef struct {
   PetscReal sigma, omega;   /* rad/s; sigma > 0 is unstable */
   PetscReal backward_error; /* |Q(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|), Frobenius norms */
-  PetscReal condition;      /* 2 |lambda| |x|_M |y|_M / |y'(2 lambda M + C) x|: 1 for real modes, infinite at a defective pair */
-  PetscReal error;          /* first-order error of lambda from left and right vectors, |y'Q(lambda)x| / |y'Q'(lambda)x|, rad/s */
-  PetscBool unstable;       /* sigma exceeds its error */
-  PetscBool rigid;          /* zero within its error */
+  PetscReal
+    condition; /* 2 |lambda| |x|_M |y|_M / |y'(2 lambda M + C) x|: 1 for real modes, infinite at a defective pair */
+  PetscReal
+    error; /* first-order error of lambda from left and right vectors, |y'Q(lambda)x| / |y'Q'(lambda)x|, rad/s */
+  PetscBool unstable; /* sigma exceeds its error */
+  PetscBool rigid;    /* zero within its error */
   char      label[32];
 } Mode;
 
@@ -40,7 +43,8 @@ PetscErrorCode ModesSetOperators(Modes modes, Operators operators);
 +  -modes_band <f1,f2>       - all eigenvalues with frequency in this band, Hz
 .  -modes_target <0>         - instead of a band: the -modes_count modes nearest to this frequency, Hz
 .  -modes_count <20>         - how many; either of the two overrides a band
-.  -modes_growth <1/s>       - largest growth or decay that a band must cover; default a tenth of the angular frequency of f2
+.  -modes_growth <1/s>       - largest growth or decay that a band must cover; default a tenth of the angular
+frequency of f2
 .  -modes_left <true>        - compute left vectors (condition and error need them)
 -  -modes_disc <disc>        - part whose modes are labelled by nodal circles and diameters
    The solvers take -eps_*, -pep_*, -st_*.
@@ -53,8 +57,8 @@ PetscErrorCode ModesSolve(Modes modes);
 /*@ ModesGet - the modes in order of frequency (borrowed). Not collective. @*/
 PetscErrorCode ModesGet(Modes modes, PetscInt *n, const Mode **mode);
 
-/*@ ModesGetVectors - right (xr + i xi) and left (yr + i yi) vectors of mode i in all unknowns, |x|_M = |y|_M = 1 (borrowed;
-    xi, yi are NULL for a real vector, yr for a mode without left vector). Not collective. @*/
+/*@ ModesGetVectors - right (xr + i xi) and left (yr + i yi) vectors of mode i in all unknowns, |x|_M = |y|_M = 1
+    (borrowed; xi, yi are NULL for a real vector, yr for a mode without left vector). Not collective. @*/
 PetscErrorCode ModesGetVectors(Modes modes, PetscInt i, Vec *xr, Vec *xi, Vec *yr, Vec *yi);
 
 /*@ ModesGetCompleteness - one line that says how it was checked that no mode is missing (borrowed). Not collective. @*/

@@ -3,9 +3,10 @@
 
       M u'' + C u' + (K + mu H) u = 0
 
-   M, K symmetric; C damping; H the unsymmetric friction part per unit friction coefficient. They are assembled from a model
-   and its contact, or loaded, or given densely. Where an interface obeys the exact constraint N u = 0, the pencil is the
-   projection Zl' (.) Zr with N Zr = 0 and (N - mu T) Zl = 0; without constraints Zl = Zr = identity, and nothing is projected.
+   M, K symmetric; C damping; H the unsymmetric friction part per unit friction coefficient. They are assembled from a
+   model and its contact, or loaded, or given densely. Where an interface obeys the exact constraint N u = 0, the
+   pencil is the projection Zl' (.) Zr with N Zr = 0 and (N - mu T) Zl = 0; without constraints Zl = Zr = identity,
+   and nothing is projected.
 */
 #pragma once
 
@@ -33,12 +34,14 @@ PetscErrorCode OperatorsSetModel(Operators operators, Model model, Contact conta
 .  -operators_dense_k, _m, _c, _h <list> - small dense matrices inline, rows one after another
 .  -operators_mass <consistent|lumped>   - mass matrix of a model
 .  -contact_mu <mu>                      - friction coefficient of K + mu H for loaded or dense matrices
--  -operators_save <dir>                 - write K.bin, M.bin and, where there are any, C.bin and H.bin; with the contact
+-  -operators_save <dir>                 - write K.bin, M.bin and, where there are any, C.bin and H.bin; with the
+contact
                                           constraint the projected matrices, friction included in K.bin and M.bin
 @*/
 PetscErrorCode OperatorsSetFromOptions(Operators operators);
 
-/*@ OperatorsHaveMatrices - whether matrices are loaded or given densely, so that no model is needed. Not collective. @*/
+/*@ OperatorsHaveMatrices - whether matrices are loaded or given densely, so that no model is needed. Not collective.
+    @*/
 PetscErrorCode OperatorsHaveMatrices(Operators operators, PetscBool *have);
 
 /*@ OperatorsSetUp - assembles or loads the matrices. Collective. @*/
@@ -50,7 +53,8 @@ PetscErrorCode OperatorsGetMatrices(Operators operators, Mat *K, Mat *M, Mat *C,
 /*@ OperatorsGetPencil - the pencil with friction. Collective at the first call. @*/
 PetscErrorCode OperatorsGetPencil(Operators operators, OperatorsPencil *pencil);
 
-/*@ OperatorsGetFrictionless - the symmetric undamped pencil at mu = 0, of the same size. Collective at the first call. @*/
+/*@ OperatorsGetFrictionless - the symmetric undamped pencil at mu = 0, of the same size. Collective at the first
+    call. @*/
 PetscErrorCode OperatorsGetFrictionless(Operators operators, OperatorsPencil *pencil);
 
 /*@ OperatorsExpand - unknowns of the pencil to all unknowns, u = Zr q (or Zl q for a left vector). Collective. @*/

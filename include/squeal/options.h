@@ -1,6 +1,6 @@
 /*
-   Options - what PETSc's options do not offer: lists of names that become prefixes, arrays of a given length, and errors that
-   name the option.
+   Options - what PETSc's options do not offer: lists of names that become prefixes, arrays of a given length, and
+   errors that name the option.
 */
 #pragma once
 
@@ -20,8 +20,8 @@
 
    Errors: PETSC_ERR_USER_INPUT for a name that is no identifier or stands twice.
 @*/
-PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], const char initial[], PetscInt max,
-                               PetscInt *n, char *names[]);
+PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], const char initial[],
+                               PetscInt max, PetscInt *n, char *names[]);
 
 /*@
    OptionsGetReals - reads an array of exactly n numbers between PetscOptionsBegin() and PetscOptionsEnd(). Collective.
@@ -40,8 +40,8 @@ PetscErrorCode OptionsGetReals(PetscOptionItems *PetscOptionsObject, const char 
                                PetscReal values[], PetscBool *set);
 
 /*@
-   OptionsExplainValue - rewrites PETSc's message about a value that is no number, integer or logical so that it names the
-   option. Not collective.
+   OptionsExplainValue - rewrites PETSc's message about a value that is no number, integer or logical so that it names
+   the option. Not collective.
 
    Output Parameter:
 .  text - e.g. "-contact_mu: abc has no numeric value"; all options with that value; empty for other messages
@@ -49,8 +49,8 @@ PetscErrorCode OptionsGetReals(PetscOptionItems *PetscOptionsObject, const char 
 PetscErrorCode OptionsExplainValue(const char message[], char text[], size_t size);
 
 /*@
-   OptionsCheckUnknown - raises an error for an option that nobody read and that is not PETSc's or SLEPc's, naming the nearest
-   valid one. Collective; call when every room has read its options.
+   OptionsCheckUnknown - raises an error for an option that nobody read and that is not PETSc's or SLEPc's, naming the
+   nearest valid one. Collective; call when every room has read its options.
 
    Input Parameters:
 +  read_again - reads all options of all rooms on objects of its own, so that the valid names can be listed

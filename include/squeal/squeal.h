@@ -20,7 +20,8 @@ typedef enum {
 } SquealStage;
 
 /*@
-   SquealInitialize - starts MPI, PETSc and SLEPc, with one-line error messages, log stages and the citation. Collective.
+   SquealInitialize - starts MPI, PETSc and SLEPc, with one-line error messages, log stages and the citation.
+   Collective.
 
    Errors: an options file that cannot be read.
 @*/

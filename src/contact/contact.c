@@ -16,10 +16,10 @@ PetscErrorCode ContactCreate(Model model, Contact *contact)
 /* Parameters of one interface, whose name is set */
 static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c)
 {
-  static const char *const laws[] = {"penalty", "constraint"};
-  char     *surfaces[3] = {NULL, NULL, NULL}, prefix[128], title[160];
-  PetscInt  n = 3, law = CONTACT_PENALTY;
-  PetscBool set;
+  static const char *const laws[]      = {"penalty", "constraint"};
+  char                    *surfaces[3] = {NULL, NULL, NULL}, prefix[128], title[160];
+  PetscInt                 n = 3, law = CONTACT_PENALTY;
+  PetscBool                set;
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", c->name));
@@ -28,18 +28,22 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
   PetscCall(PetscOptionsStringArray("-surfaces", "slave,master: named surfaces (required)", NULL, surfaces, &n, &set));
   PetscCall(PetscOptionsEList("-law", "k_n per pair, or the exact constraint", NULL, laws, 2, laws[0], &law, NULL));
   PetscCall(PetscOptionsReal("-mu", "friction coefficient", NULL, c->mu, &c->mu, NULL));
-  PetscCall(PetscOptionsReal("-mu_slope", "its slope with the sliding speed, s/m", NULL, c->mu_slope, &c->mu_slope, NULL));
+  PetscCall(
+    PetscOptionsReal("-mu_slope", "its slope with the sliding speed, s/m", NULL, c->mu_slope, &c->mu_slope, NULL));
   PetscCall(PetscOptionsReal("-kn", "normal stiffness per pair, N/m (penalty)", NULL, c->kn, &c->kn, NULL));
   PetscCall(PetscOptionsReal("-tolerance", "largest distance of a pair, m", NULL, c->tolerance, &c->tolerance, NULL));
   PetscCall(PetscOptionsReal("-force", "total normal force in the sliding state, N", NULL, c->force, &c->force, NULL));
   PetscCall(PetscOptionsReal("-speed", "sliding speed, m/s", NULL, c->speed, &c->speed, NULL));
-  PetscCall(PetscOptionsBool("-friction_damping", "damping mu N/v across the slip, mu_slope N along it", NULL, c->damping,
-                             &c->damping, NULL));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-slip", "direction of the slave's velocity relative to the master", 3, c->slip, NULL));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-rotation", "or: angular velocity of the master, rad/s", 3, c->rotation, NULL));
+  PetscCall(PetscOptionsBool("-friction_damping", "damping mu N/v across the slip, mu_slope N along it", NULL,
+                             c->damping, &c->damping, NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-slip", "direction of the slave's velocity relative to the master", 3,
+                            c->slip, NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-rotation", "or: angular velocity of the master, rad/s", 3,
+                            c->rotation, NULL));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-center", "a point of its axis, m", 3, c->center, NULL));
   PetscOptionsEnd();
-  PetscCheck(!set || n == 2, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces has %" PetscInt_FMT " names; give two: slave,master", c->name, n);
+  PetscCheck(!set || n == 2, comm, PETSC_ERR_USER_INPUT,
+             "-%s_surfaces has %" PetscInt_FMT " names; give two: slave,master", c->name, n);
   c->law    = (ContactLaw)law;
   c->slave  = surfaces[0];
   c->master = surfaces[1];
@@ -51,18 +55,24 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
 {
   PetscFunctionBeginUser;
   PetscCheck(c->slave && c->master, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces must be given: slave,master", c->name);
-  PetscCheck(PetscIsNormalReal(c->mu) || c->mu == 0, comm, PETSC_ERR_USER_INPUT, "-%s_mu %.6g must be a number", c->name, (double)c->mu);
+  PetscCheck(PetscIsNormalReal(c->mu) || c->mu == 0, comm, PETSC_ERR_USER_INPUT, "-%s_mu %.6g must be a number",
+             c->name, (double)c->mu);
   PetscCheck(c->law == CONTACT_CONSTRAINT || (c->kn > 0 && !PetscIsInfReal(c->kn)), comm, PETSC_ERR_USER_INPUT,
-             "-%s_kn %.6g must be given and positive (N/m), or choose -%s_law constraint", c->name, (double)c->kn, c->name);
-  PetscCheck(c->tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-%s_tolerance %.6g must be positive (m)", c->name, (double)c->tolerance);
-  PetscCheck(c->force >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_force %.6g must not be negative (N)", c->name, (double)c->force);
-  PetscCheck(c->damping || c->mu_slope == 0, comm, PETSC_ERR_USER_INPUT, "-%s_mu_slope does nothing without -%s_friction_damping", c->name,
+             "-%s_kn %.6g must be given and positive (N/m), or choose -%s_law constraint", c->name, (double)c->kn,
              c->name);
-  PetscCheck(!c->damping || c->force > 0, comm, PETSC_ERR_USER_INPUT, "-%s_friction_damping needs a positive -%s_force (N)", c->name,
-             c->name);
+  PetscCheck(c->tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-%s_tolerance %.6g must be positive (m)", c->name,
+             (double)c->tolerance);
+  PetscCheck(c->force >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_force %.6g must not be negative (N)", c->name,
+             (double)c->force);
+  PetscCheck(c->damping || c->mu_slope == 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_mu_slope does nothing without -%s_friction_damping", c->name, c->name);
+  PetscCheck(!c->damping || c->force > 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_friction_damping needs a positive -%s_force (N)", c->name, c->name);
   PetscCheck(!c->damping || c->speed > 0 || c->rotation[0] != 0 || c->rotation[1] != 0 || c->rotation[2] != 0, comm,
-             PETSC_ERR_USER_INPUT, "-%s_friction_damping needs a positive -%s_speed (m/s) or a -%s_rotation", c->name, c->name, c->name);
-  PetscCheck(c->speed >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_speed %.6g must not be negative (m/s)", c->name, (double)c->speed);
+             PETSC_ERR_USER_INPUT, "-%s_friction_damping needs a positive -%s_speed (m/s) or a -%s_rotation", c->name,
+             c->name, c->name);
+  PetscCheck(c->speed >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_speed %.6g must not be negative (m/s)", c->name,
+             (double)c->speed);
   PetscFunctionReturn(0);
 }
 
@@ -71,8 +81,8 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   char *names[CONTACT_MAX];
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(contact->comm, "-contacts", "frictional interfaces, each the prefix of its options", "", CONTACT_MAX,
-                            &contact->n_interfaces, names));
+  PetscCall(OptionsGetNames(contact->comm, "-contacts", "frictional interfaces, each the prefix of its options", "",
+                            CONTACT_MAX, &contact->n_interfaces, names));
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
     ContactInterface *c = &contact->interfaces[i];
 
@@ -181,11 +191,15 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
     const ContactInterface *c = &contact->interfaces[i];
 
-    PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %s slides on %s, mu %.6g, ", c->name, c->slave, c->master, (double)c->mu));
-    if (c->law == CONTACT_PENALTY) PetscCall(PetscViewerASCIIPrintf(viewer, "penalty %.6g N/m per pair\n", (double)c->kn));
-    else PetscCall(PetscViewerASCIIPrintf(viewer, "exact constraint by elimination\n"));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %s slides on %s, mu %.6g, ", c->name, c->slave, c->master,
+                                     (double)c->mu));
+    if (c->law == CONTACT_PENALTY)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "penalty %.6g N/m per pair\n", (double)c->kn));
+    else
+      PetscCall(PetscViewerASCIIPrintf(viewer, "exact constraint by elimination\n"));
   }
-  if (contact->n_interfaces) PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " pairs\n", contact->n_pairs_all));
+  if (contact->n_interfaces)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " pairs\n", contact->n_pairs_all));
   PetscFunctionReturn(0);
 }
 

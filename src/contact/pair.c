@@ -1,7 +1,7 @@
 /*
-   Pairing by position. Every rank gets all facets of the master surface (a surface is small beside its body) and projects its own
-   slave nodes on them; the nearest facet wins. The master point moves with the facet's bilinear weights, so that matching
-   meshes give node-to-node pairs.
+   Pairing by position. Every rank gets all facets of the master surface (a surface is small beside its body) and
+   projects its own slave nodes on them; the nearest facet wins. The master point moves with the facet's bilinear
+   weights, so that matching meshes give node-to-node pairs.
 
    Slip: given, or the velocity of the slave relative to a master that turns with angular velocity w about c:
    v = -w x (x - c) in m/s. Both are projected on the tangent plane of the pair.
@@ -47,9 +47,9 @@ static PetscErrorCode FacetsLocal(Model model, const char set[], PetscInt *n, Fa
 /* All facets of the master surface, on every rank */
 static PetscErrorCode FacetsGather(MPI_Comm comm, Model model, const char set[], PetscInt *n, Facet **facets)
 {
-  PetscMPIInt  size, bytes, *counts, *starts;
-  PetscInt     n_local;
-  Facet       *local;
+  PetscMPIInt size, bytes, *counts, *starts;
+  PetscInt    n_local;
+  Facet      *local;
 
   PetscFunctionBeginUser;
   PetscCall(FacetsLocal(model, set, &n_local, &local));
@@ -80,7 +80,8 @@ static PetscBool FacetIsFar(const Facet *f, const PetscReal x[3], PetscReal reac
 }
 
 /* Nearest facet to x, with natural coordinates and distance */
-static PetscInt FacetNearest(PetscInt n, const Facet facets[], const PetscReal x[3], PetscReal natural[2], PetscReal *distance)
+static PetscInt FacetNearest(PetscInt n, const Facet facets[], const PetscReal x[3], PetscReal natural[2],
+                             PetscReal *distance)
 {
   PetscInt best = -1;
 
@@ -157,12 +158,14 @@ static PetscBool PairSetSlip(const ContactInterface *c, ContactPair *pair)
   const PetscBool turns  = Dot(c->rotation, c->rotation) > 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscReal       normal_part, full, speed;
 
-  if (turns) Cross(c->rotation, arm, pair->t);
-  else for (int d = 0; d < 3; d++) pair->t[d] = c->slip[d];
+  if (turns)
+    Cross(c->rotation, arm, pair->t);
+  else
+    for (int d = 0; d < 3; d++) pair->t[d] = c->slip[d];
   full        = PetscSqrtReal(Dot(pair->t, pair->t));
   normal_part = Dot(pair->t, pair->n);
   for (int d = 0; d < 3; d++) pair->t[d] -= normal_part * pair->n[d];
-  speed       = Normalise(pair->t);
+  speed = Normalise(pair->t);
   if (!(speed > 1e-6 * full)) AnyTangent(pair->n, pair->t);
   pair->speed = turns ? speed : c->speed;
   Cross(pair->n, pair->t, pair->b);
@@ -175,7 +178,8 @@ typedef struct {
 } PairFailure;
 
 /* Pairs the slave nodes that this rank owns; what fails is kept in *failure */
-static PetscErrorCode PairNodes(Contact contact, PetscInt interface, PetscInt n_facets, const Facet facets[], PairFailure *failure)
+static PetscErrorCode PairNodes(Contact contact, PetscInt interface, PetscInt n_facets, const Facet facets[],
+                                PairFailure *failure)
 {
   const ContactInterface *c = &contact->interfaces[interface];
   const PetscReal        *x;
@@ -196,8 +200,8 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, PetscInt n_
   PetscCall(ISGetIndices(is, &vertices));
   PetscCall(PetscRealloc(sizeof(ContactPair) * (size_t)(contact->n_pairs + n), &contact->pairs));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt v    = 3 * (vertices[i] - vStart);
-    ContactPair   *pair = &contact->pairs[contact->n_pairs++];
+    const PetscInt v          = 3 * (vertices[i] - vStart);
+    ContactPair   *pair       = &contact->pairs[contact->n_pairs++];
     PetscReal      natural[2] = {0, 0}, distance;
     PetscInt       f;
 
@@ -235,11 +239,14 @@ static PetscErrorCode PairCheck(MPI_Comm comm, const ContactInterface *c, PairFa
   PetscCallMPI(MPI_Bcast(failure->x, 3, MPIU_REAL, worst.rank, comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failure->no_slip, 1, MPIU_REAL, MPI_MAX, comm));
   PetscCheck(worst.distance <= c->tolerance, comm, PETSC_ERR_USER_INPUT,
-             "contact %s: the node of %s at %.6g, %.6g, %.6g m finds no partner on %s (nearest %.6g m away, -%s_tolerance is %.6g m)", c->name,
-             c->slave, (double)failure->x[0], (double)failure->x[1], (double)failure->x[2], c->master, worst.distance, c->name,
-             (double)c->tolerance);
-  PetscCheck(failure->no_slip == 0, comm, PETSC_ERR_USER_INPUT,
-             "contact %s: the sliding velocity vanishes in the surface at some pair; give -%s_slip x,y,z along the surface", c->name, c->name);
+             "contact %s: the node of %s at %.6g, %.6g, %.6g m finds no partner on %s (nearest %.6g m away, "
+             "-%s_tolerance is %.6g m)",
+             c->name, c->slave, (double)failure->x[0], (double)failure->x[1], (double)failure->x[2], c->master,
+             worst.distance, c->name, (double)c->tolerance);
+  PetscCheck(
+    failure->no_slip == 0, comm, PETSC_ERR_USER_INPUT,
+    "contact %s: the sliding velocity vanishes in the surface at some pair; give -%s_slip x,y,z along the surface",
+    c->name, c->name);
   PetscFunctionReturn(0);
 }
 
@@ -247,10 +254,13 @@ PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface)
 {
   const ContactInterface *c       = &contact->interfaces[interface];
   const PetscInt          first   = contact->n_pairs;
-  PairFailure             failure = {0, {0, 0, 0}, 0};
-  PetscInt                n_facets;
-  PetscReal               area = 0;
-  Facet                  *facets;
+  PairFailure             failure = {
+                0, {0, 0, 0},
+                 0
+  };
+  PetscInt  n_facets;
+  PetscReal area = 0;
+  Facet    *facets;
 
   PetscFunctionBeginUser;
   PetscCall(FacetsGather(contact->comm, contact->model, c->master, &n_facets, &facets));
@@ -259,6 +269,7 @@ PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface)
   PetscCall(PairCheck(contact->comm, c, &failure));
   for (PetscInt p = first; p < contact->n_pairs; p++) area += contact->pairs[p].area;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPI_SUM, contact->comm));
-  for (PetscInt p = first; p < contact->n_pairs; p++) contact->pairs[p].force = c->force * contact->pairs[p].area / area;
+  for (PetscInt p = first; p < contact->n_pairs; p++)
+    contact->pairs[p].force = c->force * contact->pairs[p].area / area;
   PetscFunctionReturn(0);
 }

@@ -7,8 +7,8 @@
    |y| <= size[1]/2. With X_i the ring's x in and beside the patch, R_i the uniform radii, theta_j the column's angle,
       rho    = v X_i + (1 - v) R_i                                          rings, a part `spread` of the way to uniform
       (x, y) = w (X_i, centre tan theta_j) + (1 - w) rho (cos theta_j, sin theta_j)
-   where v falls from 1 to 1 - spread over pi/2 in angle, and w = 1 in the patch falls to 0 at both rims and at three times
-   the patch's angle.
+   where v falls from 1 to 1 - spread over pi/2 in angle, and w = 1 in the patch falls to 0 at both rims and at three
+   times the patch's angle.
    Cell sizes beside the patch grow logistically from the patch's own size h to a limit s:
       ds/dt = s / (1 + (s/h - 1) exp(-k t)), t counted in cells, k such that the cells fill the length available.
    Lengths in m, angles in rad.
@@ -91,8 +91,8 @@ static inline void DiscGridGrade(DiscGrid *d)
     d->inward  = in;
     d->outward = out;
   }
-  d->around = DiscGradingFill(d->size[1] / d->ny / d->centre, 0.5 * (d->ntheta - d->ny), DISC_PI - half,
-                              DISC_COLUMN_PLATEAU);
+  d->around =
+    DiscGradingFill(d->size[1] / d->ny / d->centre, 0.5 * (d->ntheta - d->ny), DISC_PI - half, DISC_COLUMN_PLATEAU);
 }
 
 /* From 1 at u <= 0 to 0 at u >= 1 with zero slopes */

@@ -1,6 +1,6 @@
 /*
-   Bilinear quadrilateral facet of a surface in space: x(xi, eta) = sum_i w_i(xi, eta) x_i, corners counter-clockwise from
-   (-1, -1); w_i = (1 + xi xi_i)(1 + eta eta_i) / 4. Pure functions; lengths in m.
+   Bilinear quadrilateral facet of a surface in space: x(xi, eta) = sum_i w_i(xi, eta) x_i, corners counter-clockwise
+   from (-1, -1); w_i = (1 + xi xi_i)(1 + eta eta_i) / 4. Pure functions; lengths in m.
 */
 #pragma once
 
@@ -63,13 +63,14 @@ static inline double FacetSnap(double s)
   return fabs(s) < 1e-9 ? 0 : s;
 }
 
-/* Point of the facet nearest to p by projected Gauss-Newton steps; returns the distance (m) and its natural coordinates */
+/* Point of the facet nearest to p by projected Gauss-Newton steps; returns the distance (m) and its natural
+   coordinates */
 static inline double FacetProject(const double x[4][3], const double p[3], double natural[2])
 {
   double xi = 0, eta = 0, q[3], a[3], b[3], distance = 0;
 
   for (int it = 0; it < 20; it++) {
-    double aa = 0, ab = 0, bb = 0, ra = 0, rb = 0, det, step;
+    double       aa = 0, ab = 0, bb = 0, ra = 0, rb = 0, det, step;
     const double xi0 = xi, eta0 = eta;
 
     FacetTangents(x, xi, eta, q, a, b);

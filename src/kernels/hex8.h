@@ -220,8 +220,7 @@ static inline int Hex8Matrices(const double *x, const Elasticity *material, int 
 
    Returns 0, or 1 when the Jacobian is not positive at the centre or a Gauss point; then nothing is written.
 */
-static inline int Hex8IncompatibleMatrices(const double *x, const Elasticity *material, double *stiffness,
-                                           double *mass)
+static inline int Hex8IncompatibleMatrices(const double *x, const Elasticity *material, double *stiffness, double *mass)
 {
   return Hex8Matrices(x, material, HEX8_BUBBLES, stiffness, mass);
 }
@@ -255,7 +254,7 @@ static inline double Hex8BoxVolume(const double *x)
 */
 static inline void Hex8Measure(const double *x, double *volume, double *min_jacobian)
 {
-  const double box = Hex8BoxVolume(x);
+  const double box      = Hex8BoxVolume(x);
   double       smallest = HUGE_VAL, xi[3], N[HEX8_NODES], dN[HEX8_DOFS], c[9];
 
   *volume = 0;

@@ -1,6 +1,6 @@
 /*
-   Checks of the undistributed mesh on rank 0, where cells still have the numbers of their source: every cell must have a row
-   in the table of elements, and a positive Jacobian.
+   Checks of the undistributed mesh on rank 0, where cells still have the numbers of their source: every cell must
+   have a row in the table of elements, and a positive Jacobian.
 */
 #include "modelimpl.h"
 
@@ -58,16 +58,18 @@ static PetscErrorCode FindBadCell(Model model, char text[], size_t size)
     PetscCall(DMPlexGetCellType(model->dm, c, &shape));
     element = ElementFind(shape, model->formulation);
     if (!element) {
-      PetscCall(PetscSNPrintf(text, size, "element %" PetscInt_FMT " is a %s, for which there is no formulation '%s'; there are: %s",
-                              c - cStart + 1, DMPolytopeTypes[shape], model->formulation, ElementNames()));
+      PetscCall(PetscSNPrintf(
+        text, size, "element %" PetscInt_FMT " is a %s, for which there is no formulation '%s'; there are: %s",
+        c - cStart + 1, DMPolytopeTypes[shape], model->formulation, ElementNames()));
       break;
     }
     PetscCall(CellCorners(model->dm, element, c, x, centre));
     element->measure(x, &volume, &jacobian);
     if (jacobian > FLAT) continue;
     PetscCall(CellPartName(model, c, &part));
-    PetscCall(PetscSNPrintf(text, size, "element %" PetscInt_FMT " (part %s, centre %.6g, %.6g, %.6g m) is inverted or has no volume", c - cStart + 1,
-                            part, (double)centre[0], (double)centre[1], (double)centre[2]));
+    PetscCall(PetscSNPrintf(
+      text, size, "element %" PetscInt_FMT " (part %s, centre %.6g, %.6g, %.6g m) is inverted or has no volume",
+      c - cStart + 1, part, (double)centre[0], (double)centre[1], (double)centre[2]));
   }
   PetscFunctionReturn(0);
 }

@@ -12,24 +12,20 @@
 #define FULL         "full"
 
 static const Element elements[] = {
-  {
-    .formulation   = INCOMPATIBLE,
-    .description   = "8-node hexahedron with incompatible modes (QM6)",
-    .shape         = DM_POLYTOPE_HEXAHEDRON,
-    .n_nodes       = HEX8_NODES,
-    .closure_order = {0, 3, 2, 1, 4, 5, 6, 7},
-    .matrices      = Hex8IncompatibleMatrices,
-    .measure       = Hex8Measure
-  },
-  {
-    .formulation   = FULL,
-    .description   = "8-node hexahedron, fully integrated",
-    .shape         = DM_POLYTOPE_HEXAHEDRON,
-    .n_nodes       = HEX8_NODES,
-    .closure_order = {0, 3, 2, 1, 4, 5, 6, 7},
-    .matrices      = Hex8FullMatrices,
-    .measure       = Hex8Measure
-  }
+  {.formulation   = INCOMPATIBLE,
+   .description   = "8-node hexahedron with incompatible modes (QM6)",
+   .shape         = DM_POLYTOPE_HEXAHEDRON,
+   .n_nodes       = HEX8_NODES,
+   .closure_order = {0, 3, 2, 1, 4, 5, 6, 7},
+   .matrices      = Hex8IncompatibleMatrices,
+   .measure       = Hex8Measure},
+  {.formulation   = FULL,
+   .description   = "8-node hexahedron, fully integrated",
+   .shape         = DM_POLYTOPE_HEXAHEDRON,
+   .n_nodes       = HEX8_NODES,
+   .closure_order = {0, 3, 2, 1, 4, 5, 6, 7},
+   .matrices      = Hex8FullMatrices,
+   .measure       = Hex8Measure}
 };
 
 /*@

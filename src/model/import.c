@@ -158,8 +158,8 @@ static PetscErrorCode CreateLabels(DM dm, const char file[], const GmshMesh *mes
 }
 
 /* The points of the mesh that stand for an element: its cell, its face, or its vertices; n is 0 without any */
-static PetscErrorCode FindPoints(DM dm, const GmshElement *element, PetscInt cell, const PetscInt vertex[],
-                                 PetscInt *n, PetscInt points[])
+static PetscErrorCode FindPoints(DM dm, const GmshElement *element, PetscInt cell, const PetscInt vertex[], PetscInt *n,
+                                 PetscInt points[])
 {
   const PetscInt  n_nodes = element->shape->n_nodes;
   const PetscInt *face;

@@ -1,6 +1,6 @@
 /*
-   Model: life cycle, options, access. The mesh is made on rank 0 (generate.c, import.c), checked there (check.c), distributed
-   (partition.c), and then carries parts (part.c) and the layout of the unknowns (support.c).
+   Model: life cycle, options, access. The mesh is made on rank 0 (generate.c, import.c), checked there (check.c),
+   distributed (partition.c), and then carries parts (part.c) and the layout of the unknowns (support.c).
 */
 #include "modelimpl.h"
 
@@ -16,15 +16,15 @@ PetscErrorCode ModelCreate(MPI_Comm comm, Model *model)
 PetscErrorCode ModelSetFromOptions(Model model)
 {
   static const char *const sources[] = {"rig", "file"};
-  PetscInt  source = 0;
-  PetscBool given, has_mesh;
+  PetscInt                 source    = 0;
+  PetscBool                given, has_mesh;
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(model->comm, NULL, "Model", NULL);
-  PetscCall(PetscOptionsEList("-model_source", "mesh: the built-in disc-pad-beam rig, or a file", NULL, sources, 2, sources[0],
-                              &source, &given));
-  PetscCall(PetscOptionsString("-model_mesh", "Gmsh file, format 2.2 or 4.1, with physical names", NULL, model->mesh, model->mesh,
-                               sizeof(model->mesh), &has_mesh));
+  PetscCall(PetscOptionsEList("-model_source", "mesh: the built-in disc-pad-beam rig, or a file", NULL, sources, 2,
+                              sources[0], &source, &given));
+  PetscCall(PetscOptionsString("-model_mesh", "Gmsh file, format 2.2 or 4.1, with physical names", NULL, model->mesh,
+                               model->mesh, sizeof(model->mesh), &has_mesh));
   PetscCall(PetscOptionsString("-model_element", "element formulation: incompatible (QM6) or full (trilinear)", NULL,
                                model->formulation, model->formulation, sizeof(model->formulation), NULL));
   PetscOptionsEnd();
@@ -43,8 +43,8 @@ PetscErrorCode ModelKeepTogether(Model model, const char set[])
 {
   PetscFunctionBeginUser;
   PetscCheck(!model->dm, model->comm, PETSC_ERR_ARG_WRONGSTATE, "ModelKeepTogether() must come before ModelSetUp()");
-  PetscCheck(model->n_together < MODEL_MAX_NAMES, model->comm, PETSC_ERR_ARG_OUTOFRANGE, "more than %d sets to keep together",
-             MODEL_MAX_NAMES);
+  PetscCheck(model->n_together < MODEL_MAX_NAMES, model->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "more than %d sets to keep together", MODEL_MAX_NAMES);
   PetscCall(PetscStrallocpy(set, &model->together[model->n_together++]));
   PetscFunctionReturn(0);
 }
@@ -80,11 +80,14 @@ static PetscErrorCode ModelTabulate(Model model)
 PetscErrorCode ModelSetUp(Model model)
 {
   PetscFunctionBeginUser;
-  PetscCheck(model->given, model->comm, PETSC_ERR_USER_INPUT,
-             "nothing to compute: give -options_file FILE, -model_source rig, -model_mesh FILE or -operators_load_k FILE");
+  PetscCheck(
+    model->given, model->comm, PETSC_ERR_USER_INPUT,
+    "nothing to compute: give -options_file FILE, -model_source rig, -model_mesh FILE or -operators_load_k FILE");
   PetscCall(PartsCheck(model));
-  if (!strcmp(model->source, "rig")) PetscCall(RigGenerate(model->comm, &model->rig, &model->dm));
-  else PetscCall(ImportGmsh(model->comm, model->mesh, &model->dm));
+  if (!strcmp(model->source, "rig"))
+    PetscCall(RigGenerate(model->comm, &model->rig, &model->dm));
+  else
+    PetscCall(ImportGmsh(model->comm, model->mesh, &model->dm));
   PetscCall(MeshCheck(model));
   PetscCall(PartitionMesh(&model->dm, model->n_together, model->together));
   PetscCall(PartsFindCells(model));
@@ -174,7 +177,8 @@ PetscErrorCode ModelGetDashpots(Model model, PetscInt *n, const Grounded **dashp
 }
 
 /* Prints a list of grounded springs or dashpots */
-static PetscErrorCode GroundedView(const char kind[], const char unit[], PetscInt n, const Grounded g[], PetscViewer viewer)
+static PetscErrorCode GroundedView(const char kind[], const char unit[], PetscInt n, const Grounded g[],
+                                   PetscViewer viewer)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++)
@@ -197,14 +201,16 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
   PetscCall(DMGetGlobalVector(model->dm, &u));
   PetscCall(VecGetSize(u, &n_unknowns));
   PetscCall(DMRestoreGlobalVector(model->dm, &u));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "model: %s, %" PetscInt_FMT " cells, %" PetscInt_FMT " unknowns on %d ranks; %s\n",
-                                   !strcmp(model->source, "rig") ? "built-in rig" : model->mesh, n_cells, n_unknowns, size,
-                                   model->element->description));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "model: %s, %" PetscInt_FMT " cells, %" PetscInt_FMT " unknowns on %d ranks; %s\n",
+                                   !strcmp(model->source, "rig") ? "built-in rig" : model->mesh, n_cells, n_unknowns,
+                                   size, model->element->description));
   for (PetscInt i = 0; i < model->n_parts; i++) {
     const Part *p = &model->parts[i];
 
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  part %s: E %.6g Pa, nu %.6g, rho %.6g kg/m^3, alpha %.6g 1/s, beta %.6g s\n", p->name,
-                                     (double)p->young, (double)p->poisson, (double)p->density, (double)p->alpha, (double)p->beta));
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "  part %s: E %.6g Pa, nu %.6g, rho %.6g kg/m^3, alpha %.6g 1/s, beta %.6g s\n", p->name,
+      (double)p->young, (double)p->poisson, (double)p->density, (double)p->alpha, (double)p->beta));
   }
   for (PetscInt i = 0; i < model->n_supports; i++)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  support %s holds%s%s%s of %s\n", model->supports[i].name,

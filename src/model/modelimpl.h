@@ -8,17 +8,17 @@
 /* Dimensions (m) and counts of the built-in disc-pad-beam rig. z is the disc's axis; the pad stands on the disc's face
    z = 0 at angle 0 (centre x = pad_radius, y = 0), the beam on the pad; the disc lies in -disc_thickness < z < 0. */
 typedef struct {
-  PetscReal disc_inner, disc_outer, disc_thickness;  /* radii 50, 120 and thickness 10 mm */
-  PetscInt  disc_nr, disc_ntheta, disc_nz;           /* 21 x 100 x 3 */
-  PetscBool patch;                                   /* disc mesh with a Cartesian patch that matches the pad's grid */
-  PetscReal disc_spread;                             /* 0..1: how far rings even out away from the patch */
-  PetscBool with_pad;                                /* false: the disc alone */
-  PetscReal pad_radius;                              /* radius of the pad's centre, 110 mm */
-  PetscReal pad_size[3];                             /* 10, 10, 10 mm */
-  PetscInt  pad_n[3];                                /* 10, 10, 10 */
-  PetscReal beam_height;                             /* 100 mm; its section is the pad's */
-  PetscInt  beam_nz;                                 /* 20 */
-  PetscReal beam_rows[2];                            /* heights of the two spring rows above the beam's lower end, 20 and 80 mm */
+  PetscReal disc_inner, disc_outer, disc_thickness; /* radii 50, 120 and thickness 10 mm */
+  PetscInt  disc_nr, disc_ntheta, disc_nz;          /* 21 x 100 x 3 */
+  PetscBool patch;                                  /* disc mesh with a Cartesian patch that matches the pad's grid */
+  PetscReal disc_spread;                            /* 0..1: how far rings even out away from the patch */
+  PetscBool with_pad;                               /* false: the disc alone */
+  PetscReal pad_radius;                             /* radius of the pad's centre, 110 mm */
+  PetscReal pad_size[3];                            /* 10, 10, 10 mm */
+  PetscInt  pad_n[3];                               /* 10, 10, 10 */
+  PetscReal beam_height;                            /* 100 mm; its section is the pad's */
+  PetscInt  beam_nz;                                /* 20 */
+  PetscReal beam_rows[2]; /* heights of the two spring rows above the beam's lower end, 20 and 80 mm */
 } Rig;
 
 /* Essential condition: the flagged directions are fixed at every vertex of the set */
@@ -28,37 +28,38 @@ typedef struct {
 } Support;
 
 struct _p_Model {
-  MPI_Comm       comm;
+  MPI_Comm comm;
   /* set by options */
-  PetscBool      given;                     /* the scene names a mesh */
-  char           source[8], mesh[PETSC_MAX_PATH_LEN], formulation[32];
-  Rig            rig;
-  PetscInt       n_parts, n_supports, n_springs, n_dashpots, n_together;
-  Part          *parts;
-  Support       *supports;
-  Grounded      *springs, *dashpots;
-  char          *together[MODEL_MAX_NAMES]; /* sets whose cells stay on one rank */
+  PetscBool given; /* the scene names a mesh */
+  char      source[8], mesh[PETSC_MAX_PATH_LEN], formulation[32];
+  Rig       rig;
+  PetscInt  n_parts, n_supports, n_springs, n_dashpots, n_together;
+  Part     *parts;
+  Support  *supports;
+  Grounded *springs, *dashpots;
+  char     *together[MODEL_MAX_NAMES]; /* sets whose cells stay on one rank */
   /* built by ModelSetUp() */
   DM             dm;
   const Element *element;
   PetscInt      *cell_part;
-  PetscInt      *cell_vertices;             /* [local cells][n_nodes], in the element's order */
-  PetscReal     *coordinates;               /* [local vertices][3], m */
-  PetscInt      *unknowns;                  /* [local vertices][3], global numbers, -1 when fixed */
+  PetscInt      *cell_vertices; /* [local cells][n_nodes], in the element's order */
+  PetscReal     *coordinates;   /* [local vertices][3], m */
+  PetscInt      *unknowns;      /* [local vertices][3], global numbers, -1 when fixed */
 };
 
 /* rig.c - dimensions and counts of the rig; errors for impossible ones */
 PETSC_INTERN PetscErrorCode RigSetFromOptions(MPI_Comm comm, Rig *rig);
 
-/* generate.c - the rig on rank 0 as an interpolated DMPlex with the sets disc, pad, beam (cells), disc_inner, disc_face,
-   pad_face, beam_top (faces), beam_rows (vertices); error for a beam with too few node levels for its rows */
+/* generate.c - the rig on rank 0 as an interpolated DMPlex with the sets disc, pad, beam (cells), disc_inner,
+   disc_face, pad_face, beam_top (faces), beam_rows (vertices); error for a beam with too few node levels for its rows
+   */
 PETSC_INTERN PetscErrorCode RigGenerate(MPI_Comm comm, const Rig *rig, DM *dm);
 
 /* import.c - a Gmsh file (2.2, 4.1) on rank 0 as an interpolated DMPlex whose physical names are labels with value 1 */
 PETSC_INTERN PetscErrorCode ImportGmsh(MPI_Comm comm, const char file[], DM *dm);
 
-/* partition.c - distributes the mesh from rank 0 by METIS on the dual graph; the cells that touch the faces of the sets in
-   `together` end on one rank. Replaces *dm; with one rank it does nothing. */
+/* partition.c - distributes the mesh from rank 0 by METIS on the dual graph; the cells that touch the faces of the
+   sets in `together` end on one rank. Replaces *dm; with one rank it does nothing. */
 PETSC_INTERN PetscErrorCode PartitionMesh(DM *dm, PetscInt n_together, char *const together[]);
 
 /* part.c - bodies: their names and materials, and the part of each cell */
@@ -73,5 +74,6 @@ PETSC_INTERN PetscErrorCode SupportsLayOut(Model model);
 /* check.c - finds the element of the cells and raises an error for a bad one; before the mesh is distributed */
 PETSC_INTERN PetscErrorCode MeshCheck(Model model);
 
-/* set.c - raises the error for a name that the mesh does not have, with the names that it has; what = "volume" or "set" */
+/* set.c - raises the error for a name that the mesh does not have, with the names that it has; what = "volume" or
+   "set" */
 PETSC_INTERN PetscErrorCode ModelComplainSet(Model model, const char what[], const char name[]);

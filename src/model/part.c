@@ -28,8 +28,8 @@ PetscErrorCode PartsSetFromOptions(Model model)
   const char *initial = !strcmp(model->source, "rig") ? "disc,pad,beam" : "";
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(model->comm, "-parts", "bodies: volumes of the mesh, each the prefix of its material", initial,
-                            MODEL_MAX_NAMES, &model->n_parts, names));
+  PetscCall(OptionsGetNames(model->comm, "-parts", "bodies: volumes of the mesh, each the prefix of its material",
+                            initial, MODEL_MAX_NAMES, &model->n_parts, names));
   PetscCall(PetscCalloc1(model->n_parts, &model->parts));
   for (PetscInt i = 0; i < model->n_parts; i++) {
     model->parts[i].name    = names[i];
@@ -42,18 +42,20 @@ PetscErrorCode PartsSetFromOptions(Model model)
 PetscErrorCode PartsCheck(Model model)
 {
   PetscFunctionBeginUser;
-  PetscCheck(model->n_parts, model->comm, PETSC_ERR_USER_INPUT, "-parts is empty: name at least one volume of the mesh");
+  PetscCheck(model->n_parts, model->comm, PETSC_ERR_USER_INPUT,
+             "-parts is empty: name at least one volume of the mesh");
   for (PetscInt i = 0; i < model->n_parts; i++) {
     const Part *p = &model->parts[i];
 
-    PetscCheck(p->young > 0, model->comm, PETSC_ERR_USER_INPUT, "-%s_young %.6g must be given and positive (Pa)", p->name,
-               (double)p->young);
-    PetscCheck(p->density > 0, model->comm, PETSC_ERR_USER_INPUT, "-%s_density %.6g must be given and positive (kg/m^3)", p->name,
-               (double)p->density);
+    PetscCheck(p->young > 0, model->comm, PETSC_ERR_USER_INPUT, "-%s_young %.6g must be given and positive (Pa)",
+               p->name, (double)p->young);
+    PetscCheck(p->density > 0, model->comm, PETSC_ERR_USER_INPUT,
+               "-%s_density %.6g must be given and positive (kg/m^3)", p->name, (double)p->density);
     PetscCheck(p->poisson > -1 && p->poisson < 0.5, model->comm, PETSC_ERR_USER_INPUT,
                "-%s_poisson %.6g must lie between -1 and 0.5, ends excluded", p->name, (double)p->poisson);
     PetscCheck(p->alpha >= 0 && p->beta >= 0, model->comm, PETSC_ERR_USER_INPUT,
-               "-%s_alpha %.6g and -%s_beta %.6g must not be negative", p->name, (double)p->alpha, p->name, (double)p->beta);
+               "-%s_alpha %.6g and -%s_beta %.6g must not be negative", p->name, (double)p->alpha, p->name,
+               (double)p->beta);
   }
   PetscFunctionReturn(0);
 }
@@ -102,7 +104,8 @@ PetscErrorCode PartsFindCells(Model model)
   for (PetscInt c = 0; c < cEnd - cStart; c++)
     if (model->cell_part[c] < 0) bad[1] = c;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bad, 2, MPIU_INT, MPI_MAX, model->comm));
-  PetscCheck(bad[0] < 0, model->comm, PETSC_ERR_USER_INPUT, "a cell belongs to two of the -parts; volumes must not overlap");
+  PetscCheck(bad[0] < 0, model->comm, PETSC_ERR_USER_INPUT,
+             "a cell belongs to two of the -parts; volumes must not overlap");
   PetscCheck(bad[1] < 0, model->comm, PETSC_ERR_USER_INPUT,
              "some cells belong to none of the -parts; name every volume of the mesh that has cells");
   PetscFunctionReturn(0);

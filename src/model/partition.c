@@ -296,7 +296,8 @@ PetscErrorCode PartitionMesh(DM *dm, PetscInt n_together, char *const together[]
   if (size == 1) PetscFunctionReturn(0);
   PetscCall(DMPlexGetHeightStratum(*dm, 0, &cStart, &cEnd));
   if (cEnd > cStart) PetscCall(GraphCreate(*dm, n_together, together, &graph));
-  if (cEnd > cStart && graph.weight[0] * size > cEnd - cStart) { /* the contact is more than one rank's share: cut it too */
+  if (cEnd > cStart &&
+      graph.weight[0] * size > cEnd - cStart) { /* the contact is more than one rank's share: cut it too */
     PetscCall(GraphDestroy(&graph));
     PetscCall(GraphCreate(*dm, 0, NULL, &graph));
   }

@@ -53,11 +53,11 @@ static PetscErrorCode RigCheckFootprint(MPI_Comm comm, const Rig *rig)
     PetscSqrtReal(PetscSqr(rig->pad_radius + 0.5 * rig->pad_size[0]) + PetscSqr(0.5 * rig->pad_size[1]));
 
   PetscFunctionBeginUser;
-  PetscCheck(rig->pad_radius - 0.5 * rig->pad_size[0] > rig->disc_inner && reach < rig->disc_outer, comm,
-             PETSC_ERR_USER_INPUT,
-             "Pad at -rig_pad_radius %.6g with -rig_pad_size %.6g,%.6g does not lie on the disc's face, radii %.6g to %.6g m",
-             (double)rig->pad_radius, (double)rig->pad_size[0], (double)rig->pad_size[1], (double)rig->disc_inner,
-             (double)rig->disc_outer);
+  PetscCheck(
+    rig->pad_radius - 0.5 * rig->pad_size[0] > rig->disc_inner && reach < rig->disc_outer, comm, PETSC_ERR_USER_INPUT,
+    "Pad at -rig_pad_radius %.6g with -rig_pad_size %.6g,%.6g does not lie on the disc's face, radii %.6g to %.6g m",
+    (double)rig->pad_radius, (double)rig->pad_size[0], (double)rig->pad_size[1], (double)rig->disc_inner,
+    (double)rig->disc_outer);
   PetscCheck(!rig->patch || (rig->disc_nr >= rig->pad_n[0] + 2 && rig->disc_ntheta >= rig->pad_n[1] + 4), comm,
              PETSC_ERR_USER_INPUT,
              "Option -rig_disc_elements %" PetscInt_FMT ",%" PetscInt_FMT
@@ -104,7 +104,8 @@ static PetscErrorCode RigCheck(MPI_Comm comm, const Rig *rig)
   PetscCheck(rig->disc_ntheta >= 3, comm, PETSC_ERR_USER_INPUT,
              "Option -rig_disc_elements has %" PetscInt_FMT " columns, valid are 3 or more", rig->disc_ntheta);
   PetscCheck(0 <= rig->beam_rows[0] && rig->beam_rows[0] < rig->beam_rows[1] && rig->beam_rows[1] <= rig->beam_height,
-             comm, PETSC_ERR_USER_INPUT, "Option -rig_beam_rows %.6g,%.6g must ascend within 0 and the beam's height %.6g m",
+             comm, PETSC_ERR_USER_INPUT,
+             "Option -rig_beam_rows %.6g,%.6g must ascend within 0 and the beam's height %.6g m",
              (double)rig->beam_rows[0], (double)rig->beam_rows[1], (double)rig->beam_height);
   if (rig->with_pad || rig->patch) PetscCall(RigCheckFootprint(comm, rig));
   PetscFunctionReturn(0);
@@ -162,8 +163,8 @@ PetscErrorCode RigSetFromOptions(MPI_Comm comm, Rig *rig)
   rig->disc_nr     = elements[0];
   rig->disc_ntheta = elements[1];
   rig->disc_nz     = elements[2];
-  PetscCall(PetscOptionsReal("-disc_spread", "Rings away from the patch: 0 keep their radii, 1 become uniform (-)", NULL,
-                             rig->disc_spread, &rig->disc_spread, NULL));
+  PetscCall(PetscOptionsReal("-disc_spread", "Rings away from the patch: 0 keep their radii, 1 become uniform (-)",
+                             NULL, rig->disc_spread, &rig->disc_spread, NULL));
   PetscCall(PetscOptionsBool("-pad", "Pad and beam as well as the disc", NULL, rig->with_pad, &rig->with_pad, NULL));
   PetscCall(
     PetscOptionsReal("-pad_radius", "Radius of the pad's centre (m)", NULL, rig->pad_radius, &rig->pad_radius, NULL));

@@ -1,6 +1,6 @@
 /*
-   Named sets: vertices of a set and area-weighted normals of a surface, complete on every rank that has the vertex, also where
-   the set's own faces live on another rank.
+   Named sets: vertices of a set and area-weighted normals of a surface, complete on every rank that has the vertex,
+   also where the set's own faces live on another rank.
 */
 #include "modelimpl.h"
 #include "kernels/facet.h"
@@ -8,8 +8,8 @@
 /* The named sets of the mesh as "disc, pad", for messages; the same text on all ranks */
 static PetscErrorCode SetListNames(DM dm, char list[], size_t size)
 {
-  PetscInt    n;
-  const char *name;
+  PetscInt                 n;
+  const char              *name;
   static const char *const own[] = {"depth", "celltype", "dim", NULL};
 
   PetscFunctionBeginUser;
@@ -223,7 +223,8 @@ PetscErrorCode ModelGetSetNormals(Model model, const char set[], PetscReal **are
   for (PetscInt f = 0; f < n_faces; f++) {
     double x[4][3], share[4][3];
 
-    for (int i = 0; i < 4; i++) PetscCall(PetscArraycpy(x[i], &model->coordinates[3 * (corners[4 * f + i] - vStart)], 3));
+    for (int i = 0; i < 4; i++)
+      PetscCall(PetscArraycpy(x[i], &model->coordinates[3 * (corners[4 * f + i] - vStart)], 3));
     FacetAreaNormals((const double(*)[3])x, share);
     for (int i = 0; i < 4; i++)
       for (int d = 0; d < 3; d++) sum[3 * (corners[4 * f + i] - vStart) + d] += share[i][d];

@@ -1,6 +1,6 @@
 /*
-   Essential supports, grounded springs and dashpots by named sets, and the layout of the unknowns: three displacements per
-   vertex, of which those that a support fixes are constrained in the section.
+   Essential supports, grounded springs and dashpots by named sets, and the layout of the unknowns: three
+   displacements per vertex, of which those that a support fixes are constrained in the section.
 */
 #include "modelimpl.h"
 #include <squeal/options.h>
@@ -11,7 +11,8 @@ static PetscErrorCode SetNameFromOptions(PetscOptionItems *PetscOptionsObject, c
   char name[256] = "";
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsString("-set", "named surface, curve or point of the mesh (required)", NULL, name, name, sizeof(name), NULL));
+  PetscCall(PetscOptionsString("-set", "named surface, curve or point of the mesh (required)", NULL, name, name,
+                               sizeof(name), NULL));
   PetscCall(PetscStrallocpy(name, set));
   PetscFunctionReturn(0);
 }
@@ -30,13 +31,15 @@ static PetscErrorCode SupportSetFromOptions(MPI_Comm comm, Support *support)
   PetscOptionsEnd();
   PetscCheck(fix[0] && strspn(fix, "xyz") == strlen(fix), comm, PETSC_ERR_USER_INPUT,
              "-%s_fix '%s' must be some of the letters x, y, z", support->name, fix);
-  PetscCheck(support->set[0], comm, PETSC_ERR_USER_INPUT, "-%s_set must be given: a named set of the mesh", support->name);
+  PetscCheck(support->set[0], comm, PETSC_ERR_USER_INPUT, "-%s_set must be given: a named set of the mesh",
+             support->name);
   for (int d = 0; d < 3; d++) support->fix[d] = strchr(fix, "xyz"[d]) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
 /* Three values of a grounded spring or dashpot; option is "-stiffness" or "-viscosity" */
-static PetscErrorCode GroundedSetFromOptions(MPI_Comm comm, const char kind[], const char option[], const char help[], Grounded *g)
+static PetscErrorCode GroundedSetFromOptions(MPI_Comm comm, const char kind[], const char option[], const char help[],
+                                             Grounded *g)
 {
   char prefix[128], title[160];
 
@@ -51,8 +54,8 @@ static PetscErrorCode GroundedSetFromOptions(MPI_Comm comm, const char kind[], c
   PetscCheck(g->value[0] != 0 || g->value[1] != 0 || g->value[2] != 0, comm, PETSC_ERR_USER_INPUT,
              "-%s_%s must be given: three values, not all zero", g->name, option + 1);
   for (int d = 0; d < 3; d++)
-    PetscCheck(g->value[d] >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s value %.6g must not be negative", g->name, option + 1,
-               (double)g->value[d]);
+    PetscCheck(g->value[d] >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s value %.6g must not be negative", g->name,
+               option + 1, (double)g->value[d]);
   PetscFunctionReturn(0);
 }
 
@@ -86,12 +89,13 @@ PetscErrorCode SupportsSetFromOptions(Model model)
   }
   PetscCall(GroundedListFromOptions(model->comm, "-springs", "Spring", "-stiffness", "stiffness in x,y,z, N/m per node",
                                     &model->n_springs, &model->springs));
-  PetscCall(GroundedListFromOptions(model->comm, "-dashpots", "Dashpot", "-viscosity", "viscosity in x,y,z, N s/m per node",
-                                    &model->n_dashpots, &model->dashpots));
+  PetscCall(GroundedListFromOptions(model->comm, "-dashpots", "Dashpot", "-viscosity",
+                                    "viscosity in x,y,z, N s/m per node", &model->n_dashpots, &model->dashpots));
   PetscFunctionReturn(0);
 }
 
-/* Flags fixed[vertex - vStart][3]: by supports, and all three at vertices without a cell (points of a file's geometry) */
+/* Flags fixed[vertex - vStart][3]: by supports, and all three at vertices without a cell (points of a file's
+   geometry) */
 static PetscErrorCode SupportsFlag(Model model, PetscInt vStart, PetscInt vEnd, PetscBool fixed[][3])
 {
   PetscFunctionBeginUser;
@@ -144,7 +148,8 @@ static PetscErrorCode SectionCreate(DM dm, PetscInt vStart, PetscInt vEnd, Petsc
   }
   PetscCall(PetscSectionSetUp(*section));
   for (PetscInt v = vStart; v < vEnd; v++)
-    if (FixedDirections(fixed[v - vStart], directions)) PetscCall(PetscSectionSetConstraintIndices(*section, v, directions));
+    if (FixedDirections(fixed[v - vStart], directions))
+      PetscCall(PetscSectionSetConstraintIndices(*section, v, directions));
   PetscFunctionReturn(0);
 }
 
@@ -168,7 +173,7 @@ static PetscErrorCode UnknownsNumber(Model model, PetscInt vStart, PetscInt vEnd
 
 PetscErrorCode SupportsLayOut(Model model)
 {
-  PetscInt     vStart, vEnd;
+  PetscInt vStart, vEnd;
   PetscBool(*fixed)[3];
   PetscSection section;
 

@@ -31,8 +31,10 @@ PetscErrorCode ComplexVecMult(Mat A, ComplexVec x, ComplexVec z)
 {
   PetscFunctionBeginUser;
   PetscCall(MatMult(A, x.r, z.r));
-  if (x.i) PetscCall(MatMult(A, x.i, z.i));
-  else PetscCall(VecSet(z.i, 0));
+  if (x.i)
+    PetscCall(MatMult(A, x.i, z.i));
+  else
+    PetscCall(VecSet(z.i, 0));
   PetscFunctionReturn(0);
 }
 

@@ -1,6 +1,6 @@
 /*
-   Complex vectors as pairs of real ones. Q(lambda) = lambda^2 M + lambda C + K, and D(lambda) = M + C / (2 lambda), so that
-   Q' = 2 lambda D.
+   Complex vectors as pairs of real ones. Q(lambda) = lambda^2 M + lambda C + K, and D(lambda) = M + C / (2 lambda),
+   so that Q' = 2 lambda D.
 */
 #pragma once
 
@@ -24,4 +24,5 @@ PETSC_INTERN PetscErrorCode ComplexVecAXPY(PetscComplex a, ComplexVec x, Complex
 PETSC_INTERN PetscErrorCode ComplexVecMult(Mat A, ComplexVec x, ComplexVec z);
 PETSC_INTERN PetscErrorCode ComplexVecMultAdd(Mat A, PetscComplex a, ComplexVec x, Vec work, ComplexVec z);
 /* z = D(lambda) x */
-PETSC_INTERN PetscErrorCode PencilApplyD(const OperatorsPencil *pencil, PetscComplex lambda, ComplexVec x, Vec work, ComplexVec z);
+PETSC_INTERN PetscErrorCode PencilApplyD(const OperatorsPencil *pencil, PetscComplex lambda, ComplexVec x, Vec work,
+                                         ComplexVec z);

@@ -1,7 +1,8 @@
 /*
-   Damped problem (lambda^2 M + lambda C + K) x = 0: PEP TOAR with shift-and-invert about a real positive shift s. The modes lie
-   near the imaginary axis at +- i omega, at distances sqrt(omega^2 + s^2) from the shift, so they converge from low to high
-   frequency, and a window is reached by converging all below it. Of each conjugate pair the one with omega > 0 is kept.
+   Damped problem (lambda^2 M + lambda C + K) x = 0: PEP TOAR with shift-and-invert about a real positive shift s. The
+   modes lie near the imaginary axis at +- i omega, at distances sqrt(omega^2 + s^2) from the shift, so they converge
+   from low to high frequency, and a window is reached by converging all below it. Of each conjugate pair the one with
+   omega > 0 is kept.
 */
 #include "modesimpl.h"
 
@@ -36,8 +37,8 @@ static PetscErrorCode Collect(PEP pep, PetscReal shift, PetscInt n, Spectrum *s)
   PetscFunctionReturn(0);
 }
 
-/* Distance from the shift that the converged eigenvalues must exceed: the farthest corner sigma + i omega of the window; for modes
-   near a target those at most as far from it as the count-th nearest */
+/* Distance from the shift that the converged eigenvalues must exceed: the farthest corner sigma + i omega of the
+   window; for modes near a target those at most as far from it as the count-th nearest */
 static PetscReal RadiusNeeded(const Window *window, PetscReal shift, const Spectrum *found)
 {
   PetscReal d = 0;
@@ -47,14 +48,16 @@ static PetscReal RadiusNeeded(const Window *window, PetscReal shift, const Spect
   for (PetscInt i = 0; i < found->n; i++) {
     PetscInt nearer = 0;
 
-    for (PetscInt j = 0; j < found->n; j++) nearer += WindowDistance(window, found, j) < WindowDistance(window, found, i);
+    for (PetscInt j = 0; j < found->n; j++)
+      nearer += WindowDistance(window, found, j) < WindowDistance(window, found, i);
     if (nearer < window->count) d = PetscMax(d, WindowDistance(window, found, i));
   }
   return hypot(window->target, shift) + d;
 }
 
 /* Solver for nev eigenvalues about the shift; the transposed problem starts from another random vector */
-static PetscErrorCode SolverCreate(Mat problem[3], ShiftInvert *si, PetscBool transposed, PetscInt nev, PetscInt n, PEP *pep)
+static PetscErrorCode SolverCreate(Mat problem[3], ShiftInvert *si, PetscBool transposed, PetscInt nev, PetscInt n,
+                                   PEP *pep)
 {
   PetscMPIInt rank;
   PetscRandom random;
@@ -70,7 +73,8 @@ static PetscErrorCode SolverCreate(Mat problem[3], ShiftInvert *si, PetscBool tr
   PetscCall(PEPSetTarget(*pep, si->shift));
   PetscCall(PEPSetDimensions(*pep, nev, PetscMin(2 * n, nev + PetscMax(3 * nev / 5, 20)), PETSC_DEFAULT));
   PetscCall(PEPSetTolerances(*pep, 1e-11, 200));
-  /* lambda = scale * mu with |mu| <= 1 in the window; explicit, since the norms of transposed matrices are not at hand */
+  /* lambda = scale * mu with |mu| <= 1 in the window; explicit, since the norms of transposed matrices are not at
+     hand */
   PetscCall(PEPSetScale(*pep, PEP_SCALE_SCALAR, 3 * si->shift, NULL, NULL, PETSC_DECIDE, PETSC_DECIDE));
   PetscCall(PEPGetST(*pep, &st));
   PetscCall(ShiftInvertAttach(si, transposed, st));
@@ -84,8 +88,8 @@ static PetscErrorCode SolverCreate(Mat problem[3], ShiftInvert *si, PetscBool tr
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DampedSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si, PetscBool transposed,
-                           Spectrum *spectrum)
+PetscErrorCode DampedSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si,
+                           PetscBool transposed, Spectrum *spectrum)
 {
   Mat       problem[3] = {pencil->K, pencil->C, pencil->M};
   PetscInt  n, nev = 40;
@@ -110,8 +114,9 @@ PetscErrorCode DampedSolve(Modes modes, const OperatorsPencil *pencil, const Win
     PetscCall(PEPDestroy(&pep));
     if (nev == 2 * n) break;
   }
-  PetscCheck(covered, si->comm, PETSC_ERR_NOT_CONVERGED,
-             "the eigensolver did not converge all modes of the window; raise -pep_max_it or -pep_ncv, or narrow -modes_band");
+  PetscCheck(
+    covered, si->comm, PETSC_ERR_NOT_CONVERGED,
+    "the eigensolver did not converge all modes of the window; raise -pep_max_it or -pep_ncv, or narrow -modes_band");
   for (int i = 0; i < 3 && transposed; i++) PetscCall(MatDestroy(&problem[i]));
   PetscFunctionReturn(0);
 }

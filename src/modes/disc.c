@@ -1,6 +1,6 @@
 /*
-   Fit of a disc's out-of-plane displacement (see label.c for the formula): frame from the inertia tensor, and normal equations by
-   BLAS.
+   Fit of a disc's out-of-plane displacement (see label.c for the formula): frame from the inertia tensor, and normal
+   equations by BLAS.
 */
 #include "disc.h"
 #include <petscblaslapack.h>
@@ -13,7 +13,8 @@ static PetscReal Dot(const PetscReal a[3], const PetscReal b[3])
 }
 
 /* Centre (m) and second moments per mass, sum m d d' / sum m (m^2), over all ranks */
-static PetscErrorCode Moments(MPI_Comm comm, PetscInt n, const PetscReal x[], const PetscReal mass[], PetscReal centre[3], PetscReal inertia[9])
+static PetscErrorCode Moments(MPI_Comm comm, PetscInt n, const PetscReal x[], const PetscReal mass[],
+                              PetscReal centre[3], PetscReal inertia[9])
 {
   PetscReal sums[4] = {0, 0, 0, 0};
 
@@ -26,7 +27,8 @@ static PetscErrorCode Moments(MPI_Comm comm, PetscInt n, const PetscReal x[], co
   for (int d = 0; d < 3; d++) centre[d] = sums[d] / sums[3];
   PetscCall(PetscArrayzero(inertia, 9));
   for (PetscInt v = 0; v < n; v++)
-    for (int k = 0; k < 9; k++) inertia[k] += mass[v] * (x[3 * v + k / 3] - centre[k / 3]) * (x[3 * v + k % 3] - centre[k % 3]);
+    for (int k = 0; k < 9; k++)
+      inertia[k] += mass[v] * (x[3 * v + k / 3] - centre[k / 3]) * (x[3 * v + k % 3] - centre[k % 3]);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, inertia, 9, MPIU_REAL, MPI_SUM, comm));
   for (int k = 0; k < 9; k++) inertia[k] /= sums[3];
   PetscFunctionReturn(0);
@@ -126,8 +128,8 @@ static PetscErrorCode DiscNodes(Disc *disc, PetscInt n_vertices, const PetscReal
   PetscFunctionReturn(0);
 }
 
-/* Harmonics that the mesh resolves, three columns of nodes to a wave: the widest gap between columns at the rim decides, seen in
-   bins of half a degree */
+/* Harmonics that the mesh resolves, three columns of nodes to a wave: the widest gap between columns at the rim
+   decides, seen in bins of half a degree */
 static PetscErrorCode DiscResolution(Disc *disc, const PetscReal x[])
 {
   int       seen[BINS] = {0}, gap = 0, widest = 1;
@@ -167,14 +169,16 @@ static PetscErrorCode DiscGram(Disc *disc, const PetscReal x[])
     DiscTerms(disc, r, theta, row);
     for (int k = 0; k < DISC_TERMS; k++) scaled[i * DISC_TERMS + k] = disc->weight[i] * row[k];
   }
-  if (n) PetscCallBLAS("BLASgemm", BLASgemm_("N", "T", &terms, &terms, &n, &one, disc->basis, &terms, scaled, &terms, &zero, disc->gram, &terms));
+  if (n)
+    PetscCallBLAS("BLASgemm", BLASgemm_("N", "T", &terms, &terms, &n, &one, disc->basis, &terms, scaled, &terms, &zero,
+                                        disc->gram, &terms));
   PetscCall(PetscFree(scaled));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, disc->gram, DISC_TERMS * DISC_TERMS, MPIU_REAL, MPI_SUM, disc->comm));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DiscCreate(MPI_Comm comm, PetscInt n_vertices, const PetscReal x[], const PetscReal mass[], const PetscReal contact[], PetscInt n_modes,
-                          Disc *disc, PetscBool *is_disc)
+PetscErrorCode DiscCreate(MPI_Comm comm, PetscInt n_vertices, const PetscReal x[], const PetscReal mass[],
+                          const PetscReal contact[], PetscInt n_modes, Disc *disc, PetscBool *is_disc)
 {
   PetscReal inertia[9];
 
@@ -217,9 +221,11 @@ PetscErrorCode DiscSolve(Disc *disc)
 
   PetscFunctionBeginUser;
   PetscCall(PetscBLASIntCast(disc->n_columns, &columns));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, disc->fit, (PetscMPIInt)(disc->n_columns * DISC_TERMS), MPIU_REAL, MPI_SUM, disc->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, disc->fit, (PetscMPIInt)(disc->n_columns * DISC_TERMS), MPIU_REAL, MPI_SUM,
+                             disc->comm));
   for (int k = 0; k < DISC_TERMS; k++) trace += disc->gram[k * (DISC_TERMS + 1)];
-  for (int k = 0; k < DISC_TERMS; k++) disc->gram[k * (DISC_TERMS + 1)] += 1e-6 * trace / DISC_TERMS; /* coarse rings alias high harmonics */
+  for (int k = 0; k < DISC_TERMS; k++)
+    disc->gram[k * (DISC_TERMS + 1)] += 1e-6 * trace / DISC_TERMS; /* coarse rings alias high harmonics */
   PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("U", &terms, disc->gram, &terms, &info));
   PetscCheck(!info, disc->comm, PETSC_ERR_LIB, "LAPACK potrf: info %d", (int)info);
   PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("U", &terms, &columns, disc->gram, &terms, disc->fit, &terms, &info));

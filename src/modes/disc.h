@@ -3,8 +3,8 @@
 
 #include <petscsys.h>
 
-#define DISC_HARMONICS   17                       /* m = 0..16 */
-#define DISC_POLYNOMIALS 5                        /* Legendre, degree 0..4 */
+#define DISC_HARMONICS   17 /* m = 0..16 */
+#define DISC_POLYNOMIALS 5  /* Legendre, degree 0..4 */
 #define DISC_TERMS       ((2 * DISC_HARMONICS - 1) * DISC_POLYNOMIALS)
 
 typedef struct {
@@ -14,18 +14,19 @@ typedef struct {
   PetscReal  r_inner, r_outer;                 /* m */
   PetscReal  size;                             /* radius of gyration, m */
   int        n_harmonics;                      /* of DISC_HARMONICS, those that the mesh resolves */
-  PetscInt   n_nodes, n_columns;               /* nodes of the disc on this rank; two right-hand sides per mode: re, im */
-  PetscInt  *node;                             /* their local vertices */
-  PetscReal *weight;                           /* nodal mass, kg */
-  PetscReal *basis;                            /* [n_nodes][DISC_TERMS] */
-  PetscReal *gram;                             /* [DISC_TERMS][DISC_TERMS] */
-  PetscReal *fit;                              /* [n_columns][DISC_TERMS]: right-hand sides, then coefficients */
+  PetscInt   n_nodes, n_columns; /* nodes of the disc on this rank; two right-hand sides per mode: re, im */
+  PetscInt  *node;               /* their local vertices */
+  PetscReal *weight;             /* nodal mass, kg */
+  PetscReal *basis;              /* [n_nodes][DISC_TERMS] */
+  PetscReal *gram;               /* [DISC_TERMS][DISC_TERMS] */
+  PetscReal *fit;                /* [n_columns][DISC_TERMS]: right-hand sides, then coefficients */
 } Disc;
 
 /* is_disc = whether two of the three principal moments of inertia agree within 5 %, so that there is an axis */
-PETSC_INTERN PetscErrorCode DiscCreate(MPI_Comm comm, PetscInt n_vertices, const PetscReal x[], const PetscReal mass[], const PetscReal contact[],
-                                       PetscInt n_modes, Disc *disc, PetscBool *is_disc);
-/* Adds the displacements u[local vertices][3] to right-hand side `column`; returns their out-of-plane energy on this rank */
+PETSC_INTERN PetscErrorCode DiscCreate(MPI_Comm comm, PetscInt n_vertices, const PetscReal x[], const PetscReal mass[],
+                                       const PetscReal contact[], PetscInt n_modes, Disc *disc, PetscBool *is_disc);
+/* Adds the displacements u[local vertices][3] to right-hand side `column`; returns their out-of-plane energy on this
+   rank */
 PETSC_INTERN PetscReal      DiscProject(Disc *disc, PetscInt column, const PetscReal u[]);
 PETSC_INTERN PetscErrorCode DiscSolve(Disc *disc);
 /* P_0 .. P_4 of the radius r mapped to [-1, 1] */

@@ -4,8 +4,8 @@
 #include "disc.h"
 #include <petscblaslapack.h>
 
-#define SAMPLES 41   /* radii at which the profile is read */
-#define ANGLES  360  /* angles at which the rim is read */
+#define SAMPLES 41    /* radii at which the profile is read */
+#define ANGLES  360   /* angles at which the rim is read */
 #define RIPPLE  0.005 /* turns of the rim's displacement smaller than this part of the largest do not count */
 
 /* Radial profiles of harmonic m of one mode at a radius: cosine re, cosine im, sine re, sine im */
@@ -90,7 +90,7 @@ static PetscErrorCode FamilyFind(const Disc *disc, PetscInt mode, Family *best)
     int             n;
 
     PetscCall(NodalCircles(disc, mode, m, moments, &n));
-    n = PetscMin(n, DISC_POLYNOMIALS - 1);
+    n                 = PetscMin(n, DISC_POLYNOMIALS - 1);
     family[n].circles = n;
     family[n].energy += energy;
     family[n].even += moments[0] + moments[5];
@@ -113,7 +113,8 @@ static void RimValue(const Disc *disc, PetscInt mode, const Family *family, Pets
   for (int m = 0; m < DISC_HARMONICS; m++) {
     if (!family->has[m]) continue;
     DiscProfile(disc, mode, m, disc->r_outer, v);
-    for (int part = 0; part < 2; part++) w[part] += v[part] * PetscCosReal(m * theta) + v[2 + part] * PetscSinReal(m * theta);
+    for (int part = 0; part < 2; part++)
+      w[part] += v[part] * PetscCosReal(m * theta) + v[2 + part] * PetscSinReal(m * theta);
   }
 }
 
@@ -134,12 +135,13 @@ static PetscReal RimShape(const Disc *disc, PetscInt mode, const Family *family,
   return largest;
 }
 
-/* Nodal diameters = half the antinodes around the rim. Antinodes are extrema, not lobes between zeros: the antinode at a stiff
-   contact is so low that it need not cross zero. Two turns are walked; turning points are counted in the second one. */
+/* Nodal diameters = half the antinodes around the rim. Antinodes are extrema, not lobes between zeros: the antinode
+   at a stiff contact is so low that it need not cross zero. Two turns are walked; turning points are counted in the
+   second one. */
 static int NodalDiameters(const Disc *disc, PetscInt mode, const Family *family)
 {
   PetscReal       shape[ANGLES], extreme;
-  const PetscReal ripple = RIPPLE * RimShape(disc, mode, family, shape);
+  const PetscReal ripple    = RIPPLE * RimShape(disc, mode, family, shape);
   int             direction = 0, extrema = 0;
 
   extreme = shape[0];

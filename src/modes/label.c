@@ -1,19 +1,20 @@
 /*
-   Names of shapes. The out-of-plane displacement w of the disc's nodes is fitted, by least squares weighted with nodal mass, as
+   Names of shapes. The out-of-plane displacement w of the disc's nodes is fitted, by least squares weighted with
+   nodal mass, as
 
       w(r, theta) = sum_m sum_j P_j(rho) (a_mj cos m theta + b_mj sin m theta),   m = 0..16, j = 0..4,
 
-   P_j Legendre polynomials of the radius mapped to rho in [-1, 1], theta measured about the disc's axis from the contact. The
-   nodal circles are the sign changes of the harmonics' radial profiles (the family of harmonics with most energy decides), the
-   nodal diameters half the antinodes of that family around the rim, since a stiff contact mixes neighbouring harmonics, and
-   cosine against sine tells an antinode at the contact (+). Axis and centre are those of the part's inertia tensor, so any mesh in any
-   position serves.
+   P_j Legendre polynomials of the radius mapped to rho in [-1, 1], theta measured about the disc's axis from the
+   contact. The nodal circles are the sign changes of the harmonics' radial profiles (the family of harmonics with
+   most energy decides), the nodal diameters half the antinodes of that family around the rim, since a stiff contact
+   mixes neighbouring harmonics, and cosine against sine tells an antinode at the contact (+). Axis and centre are
+   those of the part's inertia tensor, so any mesh in any position serves.
 
-   A mode is named after the disc's shape when the disc takes part with at least a quarter and moves mostly out of plane, else
-   after the part that takes most part. Participation of part p is |y^T M_p x| from left and right vectors, the share of the
-   part's mass in the eigenvalue's sensitivity: for real modes the share of kinetic energy; at a lock-in, where the right vector
-   moves one body and the left one the other, about one half for each of the two (I. J. Perez-Arriaga et al., IEEE Trans. Power
-   Apparatus and Systems 101, 1982: participation factors).
+   A mode is named after the disc's shape when the disc takes part with at least a quarter and moves mostly out of
+   plane, else after the part that takes most part. Participation of part p is |y^T M_p x| from left and right
+   vectors, the share of the part's mass in the eigenvalue's sensitivity: for real modes the share of kinetic energy;
+   at a lock-in, where the right vector moves one body and the left one the other, about one half for each of the two
+   (I. J. Perez-Arriaga et al., IEEE Trans. Power Apparatus and Systems 101, 1982: participation factors).
 */
 #include "modesimpl.h"
 #include "disc.h"
@@ -21,7 +22,8 @@
 #define MAX_PARTS  64
 #define DISC_SHARE 0.25 /* participation from which on a mode is named after the disc's shape */
 
-/* Nodal mass (kg) of one part, shape [local vertices]: an eighth of each of its hexahedra; only what this rank's cells give */
+/* Nodal mass (kg) of one part, shape [local vertices]: an eighth of each of its hexahedra; only what this rank's
+   cells give */
 static PetscErrorCode PartMasses(Model model, PetscInt part, PetscReal **mass)
 {
   const Element  *element;
@@ -83,7 +85,8 @@ static PetscReal WeightedDot(PetscInt n, const PetscReal m[], const PetscReal a[
 {
   PetscReal sum = 0;
 
-  for (PetscInt v = 0; v < n; v++) sum += m[v] * (a[3 * v] * b[3 * v] + a[3 * v + 1] * b[3 * v + 1] + a[3 * v + 2] * b[3 * v + 2]);
+  for (PetscInt v = 0; v < n; v++)
+    sum += m[v] * (a[3 * v] * b[3 * v] + a[3 * v + 1] * b[3 * v + 1] + a[3 * v + 2] * b[3 * v + 2]);
   return sum;
 }
 
@@ -91,8 +94,10 @@ static PetscReal WeightedDot(PetscInt n, const PetscReal m[], const PetscReal a[
 static PetscErrorCode NodalValuesOrZero(DM dm, Vec global, PetscInt n_vertices, PetscReal values[])
 {
   PetscFunctionBeginUser;
-  if (global) PetscCall(NodalValues(dm, global, n_vertices, values));
-  else PetscCall(PetscArrayzero(values, 3 * n_vertices));
+  if (global)
+    PetscCall(NodalValues(dm, global, n_vertices, values));
+  else
+    PetscCall(PetscArrayzero(values, 3 * n_vertices));
   PetscFunctionReturn(0);
 }
 
@@ -109,8 +114,8 @@ static PetscErrorCode LabelsAdd(Modes modes, DM dm, PetscInt i, Labels *l)
   PetscCall(NodalValuesOrZero(dm, yr ? yi : xi, l->n_vertices, l->y[1]));
   for (PetscInt v = 0; v < 3 * l->n_vertices && !yr; v++) l->y[1][v] = -l->y[1][v];
   for (PetscInt part = 0; part < l->n_parts; part++) {
-    const PetscInt   n = l->n_vertices;
-    const PetscReal *m = l->mass[part];
+    const PetscInt   n     = l->n_vertices;
+    const PetscReal *m     = l->mass[part];
     PetscReal       *share = &l->share[2 * (i * l->n_parts + part)];
 
     share[0] = WeightedDot(n, m, l->y[0], l->x[0]) - WeightedDot(n, m, l->y[1], l->x[1]);
@@ -138,14 +143,17 @@ static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Part parts[
     total += share[part];
     if (share[part] > share[most]) most = part;
   }
-  if (l->disc >= 0 && share[l->disc] > DISC_SHARE * total && l->energy[2 * i + 1] > 0.5 * l->energy[2 * i] && !mode->rigid)
+  if (l->disc >= 0 && share[l->disc] > DISC_SHARE * total && l->energy[2 * i + 1] > 0.5 * l->energy[2 * i] &&
+      !mode->rigid)
     PetscCall(DiscName(&l->frame, i, mode->label, sizeof(mode->label)));
-  else PetscCall(PetscSNPrintf(mode->label, sizeof(mode->label), "%s%s", parts[most].name, mode->rigid ? " rigid" : ""));
+  else
+    PetscCall(PetscSNPrintf(mode->label, sizeof(mode->label), "%s%s", parts[most].name, mode->rigid ? " rigid" : ""));
   PetscFunctionReturn(0);
 }
 
 /* Masses, the disc's frame and fit; disc stays -1 where no part of that name exists or it is no disc */
-static PetscErrorCode LabelsCreate(Modes modes, Model model, Contact contact, PetscInt n_parts, const Part parts[], Labels *l)
+static PetscErrorCode LabelsCreate(Modes modes, Model model, Contact contact, PetscInt n_parts, const Part parts[],
+                                   Labels *l)
 {
   const PetscReal *x;
   PetscReal        centre[3];
@@ -162,17 +170,20 @@ static PetscErrorCode LabelsCreate(Modes modes, Model model, Contact contact, Pe
   l->disc       = -1;
   PetscCall(PetscMalloc1(n_parts, &l->mass));
   PetscCall(PetscCalloc2(2 * modes->n * n_parts, &l->share, 2 * modes->n, &l->energy));
-  PetscCall(PetscMalloc4(3 * l->n_vertices, &l->x[0], 3 * l->n_vertices, &l->x[1], 3 * l->n_vertices, &l->y[0], 3 * l->n_vertices, &l->y[1]));
+  PetscCall(PetscMalloc4(3 * l->n_vertices, &l->x[0], 3 * l->n_vertices, &l->x[1], 3 * l->n_vertices, &l->y[0],
+                         3 * l->n_vertices, &l->y[1]));
   for (PetscInt part = 0; part < n_parts; part++) {
     PetscCall(PartMasses(model, part, &l->mass[part]));
     PetscCall(PetscStrcmp(parts[part].name, modes->disc, &same));
     if (same) l->disc = part;
   }
   PetscCall(PetscStrcmp(modes->disc, "disc", &same));
-  PetscCheck(l->disc >= 0 || same, modes->comm, PETSC_ERR_USER_INPUT, "-modes_disc '%s' is none of the -parts", modes->disc);
+  PetscCheck(l->disc >= 0 || same, modes->comm, PETSC_ERR_USER_INPUT, "-modes_disc '%s' is none of the -parts",
+             modes->disc);
   if (l->disc < 0) PetscFunctionReturn(0);
   PetscCall(ContactGetCentre(contact, centre, &found));
-  PetscCall(DiscCreate(modes->comm, l->n_vertices, x, l->mass[l->disc], found ? centre : NULL, modes->n, &l->frame, &same));
+  PetscCall(
+    DiscCreate(modes->comm, l->n_vertices, x, l->mass[l->disc], found ? centre : NULL, modes->n, &l->frame, &same));
   if (!same) l->disc = -1;
   PetscFunctionReturn(0);
 }
@@ -233,7 +244,8 @@ PetscErrorCode ModesLabel(Modes modes)
   PetscCall(ModelGetParts(model, &n_parts, &parts));
   PetscCall(LabelsCreate(modes, model, contact, n_parts, parts, &l));
   for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelsAdd(modes, dm, i, &l));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.share, (PetscMPIInt)(2 * modes->n * n_parts), MPIU_REAL, MPI_SUM, modes->comm));
+  PetscCallMPI(
+    MPI_Allreduce(MPI_IN_PLACE, l.share, (PetscMPIInt)(2 * modes->n * n_parts), MPIU_REAL, MPI_SUM, modes->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.energy, (PetscMPIInt)(2 * modes->n), MPIU_REAL, MPI_SUM, modes->comm));
   if (l.disc >= 0) PetscCall(DiscSolve(&l.frame));
   for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelWrite(modes, &l, parts, i));

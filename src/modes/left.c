@@ -1,8 +1,8 @@
 /*
-   Left vectors for right ones. The two spectra were computed apart; here each right eigenvalue gets its left partner, or the
-   spectra are found to differ, so that a mode is missing in one of them. In a cluster of equal eigenvalues the left vectors are
-   made biorthogonal to the right ones with respect to D(lambda); without that neither condition nor error would mean anything
-   for a double mode.
+   Left vectors for right ones. The two spectra were computed apart; here each right eigenvalue gets its left partner,
+   or the spectra are found to differ, so that a mode is missing in one of them. In a cluster of equal eigenvalues the
+   left vectors are made biorthogonal to the right ones with respect to D(lambda); without that neither condition nor
+   error would mean anything for a double mode.
 */
 #include "complexvec.h"
 #include <petscblaslapack.h>
@@ -54,9 +54,10 @@ static PetscBool LeftIsInside(const Window *window, const Spectrum *left, PetscI
 
 PetscErrorCode LeftMatch(Modes modes, const Window *window, PetscReal *worst, PetscBool *complete)
 {
-  Spectrum *right = &modes->right, *left = &modes->left_spectrum, matched;
-  const PetscReal tiny = PetscMax(window->scale, RIGID * LambdaLargest(right)); /* rigid modes: zeros up to the root of rounding */
-  PetscBool      *used;
+  Spectrum       *right = &modes->right, *left = &modes->left_spectrum, matched;
+  const PetscReal tiny =
+    PetscMax(window->scale, RIGID * LambdaLargest(right)); /* rigid modes: zeros up to the root of rounding */
+  PetscBool *used;
 
   PetscFunctionBeginUser;
   *worst    = 0;
@@ -65,9 +66,9 @@ PetscErrorCode LeftMatch(Modes modes, const Window *window, PetscReal *worst, Pe
   PetscCall(SpectrumCreate(right->n, &matched));
   for (PetscInt i = 0; i < right->n; i++) {
     PetscReal       distance;
-    PetscInt        j     = NearestLeft(left, used, SpectrumLambda(right, i), &distance);
-    const PetscReal size  = cabs(SpectrumLambda(right, i));
-    const Spectrum *from  = left;
+    PetscInt        j    = NearestLeft(left, used, SpectrumLambda(right, i), &distance);
+    const PetscReal size = cabs(SpectrumLambda(right, i));
+    const Spectrum *from = left;
 
     if (j < 0 || distance > MATCH * size) {
       *complete = size < tiny ? PETSC_TRUE : PETSC_FALSE;
@@ -112,13 +113,15 @@ static PetscErrorCode ComplexInverse(PetscInt m, const PetscComplex G[], PetscCo
     size_G     = PetscMax(size_G, cabs(G[i]));
     size_inv   = PetscMax(size_inv, cabs(inverse[i]));
   }
-  for (PetscInt i = 0; i < m * m && (info || !(size_G * size_inv < 1e12)); i++) inverse[i] = i % (m + 1) == 0; /* defective: leave as is */
+  for (PetscInt i = 0; i < m * m && (info || !(size_G * size_inv < 1e12)); i++)
+    inverse[i] = i % (m + 1) == 0; /* defective: leave as is */
   PetscCall(PetscFree3(a, b, pivots));
   PetscFunctionReturn(0);
 }
 
 /* Replaces the left vectors first .. first + m - 1 by combinations with y_i^T D x_j = delta_ij */
-static PetscErrorCode Biorthogonalise(const OperatorsPencil *pencil, const Spectrum *right, PetscInt first, PetscInt m, Vec work[], Spectrum *left)
+static PetscErrorCode Biorthogonalise(const OperatorsPencil *pencil, const Spectrum *right, PetscInt first, PetscInt m,
+                                      Vec work[], Spectrum *left)
 {
   PetscComplex *G, *inverse;
   Vec          *yr, *yi;
@@ -129,7 +132,8 @@ static PetscErrorCode Biorthogonalise(const OperatorsPencil *pencil, const Spect
     const ComplexVec x = {right->xr[first + j], right->xi[first + j]}, z = {work[1], work[2]};
 
     PetscCall(PencilApplyD(pencil, SpectrumLambda(right, first), x, work[0], z));
-    for (PetscInt i = 0; i < m; i++) PetscCall(ComplexVecDot((ComplexVec){left->xr[first + i], left->xi[first + i]}, z, &G[i * m + j]));
+    for (PetscInt i = 0; i < m; i++)
+      PetscCall(ComplexVecDot((ComplexVec){left->xr[first + i], left->xi[first + i]}, z, &G[i * m + j]));
   }
   PetscCall(ComplexInverse(m, G, inverse));
   PetscCall(VecDuplicateVecs(work[0], m, &yr));
@@ -163,7 +167,8 @@ PetscErrorCode LeftBiorthogonalise(Modes modes, const OperatorsPencil *pencil, V
   PetscFunctionBeginUser;
   for (PetscInt first = 0, m; first < right->n; first += m) {
     for (m = 1; first + m < right->n; m++)
-      if (LambdaDistance(SpectrumLambda(right, first + m), SpectrumLambda(right, first + m - 1), largest) > CLUSTER) break;
+      if (LambdaDistance(SpectrumLambda(right, first + m), SpectrumLambda(right, first + m - 1), largest) > CLUSTER)
+        break;
     if (m > 1) PetscCall(Biorthogonalise(pencil, right, first, m, work, &modes->left_spectrum));
   }
   PetscFunctionReturn(0);

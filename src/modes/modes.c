@@ -1,6 +1,6 @@
 /*
-   Modes: life cycle, options, and the flow of a solution: window -> factorisation -> right vectors -> left vectors -> errors ->
-   labels, with the check that no mode is missing.
+   Modes: life cycle, options, and the flow of a solution: window -> factorisation -> right vectors -> left vectors ->
+   errors -> labels, with the check that no mode is missing.
 */
 #include "modesimpl.h"
 #include "operators/ordering.h"
@@ -31,33 +31,42 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(modes->comm, NULL, "Modes", NULL);
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-modes_band", "all modes with frequency in f1,f2, Hz", 2, modes->band, &modes->has_band));
-  PetscCall(PetscOptionsReal("-modes_target", "instead of a band: the modes nearest to this frequency, Hz", NULL, modes->target, &modes->target,
-                             &has_target));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-modes_band", "all modes with frequency in f1,f2, Hz", 2, modes->band,
+                            &modes->has_band));
+  PetscCall(PetscOptionsReal("-modes_target", "instead of a band: the modes nearest to this frequency, Hz", NULL,
+                             modes->target, &modes->target, &has_target));
   PetscCall(PetscOptionsInt("-modes_count", "how many of them", NULL, modes->count, &modes->count, &has_count));
-  PetscCall(PetscOptionsReal("-modes_growth", "largest growth or decay that a band must cover, 1/s (0: a tenth of the angular frequency f2)", NULL,
-                             modes->growth, &modes->growth, NULL));
-  PetscCall(PetscOptionsBool("-modes_left", "left vectors: condition and error of each eigenvalue", NULL, modes->left, &modes->left, NULL));
-  PetscCall(PetscOptionsString("-modes_disc", "part whose shapes are named by nodal circles and diameters", NULL, modes->disc, modes->disc,
-                               sizeof(modes->disc), NULL));
+  PetscCall(PetscOptionsReal(
+    "-modes_growth", "largest growth or decay that a band must cover, 1/s (0: a tenth of the angular frequency f2)",
+    NULL, modes->growth, &modes->growth, NULL));
+  PetscCall(PetscOptionsBool("-modes_left", "left vectors: condition and error of each eigenvalue", NULL, modes->left,
+                             &modes->left, NULL));
+  PetscCall(PetscOptionsString("-modes_disc", "part whose shapes are named by nodal circles and diameters", NULL,
+                               modes->disc, modes->disc, sizeof(modes->disc), NULL));
   PetscOptionsEnd();
-  PetscCheck(!modes->has_band || (modes->band[0] >= 0 && modes->band[1] > modes->band[0]), modes->comm, PETSC_ERR_USER_INPUT,
-             "-modes_band %.6g,%.6g must satisfy 0 <= f1 < f2 (Hz)", (double)modes->band[0], (double)modes->band[1]);
+  PetscCheck(!modes->has_band || (modes->band[0] >= 0 && modes->band[1] > modes->band[0]), modes->comm,
+             PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g must satisfy 0 <= f1 < f2 (Hz)", (double)modes->band[0],
+             (double)modes->band[1]);
   if (has_target || has_count) modes->has_band = PETSC_FALSE;
-  PetscCheck(modes->count > 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_count %" PetscInt_FMT " must be positive", modes->count);
-  PetscCheck(modes->growth >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_growth %.6g must not be negative (1/s)", (double)modes->growth);
-  PetscCheck(modes->target >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_target %.6g must not be negative (Hz)", (double)modes->target);
+  PetscCheck(modes->count > 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_count %" PetscInt_FMT " must be positive",
+             modes->count);
+  PetscCheck(modes->growth >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_growth %.6g must not be negative (1/s)",
+             (double)modes->growth);
+  PetscCheck(modes->target >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_target %.6g must not be negative (Hz)",
+             (double)modes->target);
   PetscCall(ProgressSetFromOptions(modes->comm, &modes->progress));
   PetscFunctionReturn(0);
 }
 
 /* Right or left spectrum by the solver that fits the pencil */
-static PetscErrorCode SpectrumSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si, PetscBool transposed,
-                                    Spectrum *spectrum)
+static PetscErrorCode SpectrumSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si,
+                                    PetscBool transposed, Spectrum *spectrum)
 {
   PetscFunctionBeginUser;
-  if (pencil->C) PetscCall(DampedSolve(modes, pencil, window, si, transposed, spectrum));
-  else PetscCall(UndampedSolve(modes, pencil, window, si, transposed, spectrum));
+  if (pencil->C)
+    PetscCall(DampedSolve(modes, pencil, window, si, transposed, spectrum));
+  else
+    PetscCall(UndampedSolve(modes, pencil, window, si, transposed, spectrum));
   PetscFunctionReturn(0);
 }
 
@@ -66,14 +75,15 @@ static PetscErrorCode SpectrumCopy(const Spectrum *from, Spectrum *to)
 {
   PetscFunctionBeginUser;
   PetscCall(SpectrumCreate(from->n, to));
-  for (PetscInt i = 0; i < from->n; i++) PetscCall(SpectrumAdd(to, from->sigma[i], from->omega[i], from->xr[i], from->xi[i]));
+  for (PetscInt i = 0; i < from->n; i++)
+    PetscCall(SpectrumAdd(to, from->sigma[i], from->omega[i], from->xr[i], from->xi[i]));
   PetscFunctionReturn(0);
 }
 
 /* Right and left spectra that agree; a second attempt asks for more eigenvalues */
 static PetscErrorCode SolveBoth(Modes modes, const OperatorsPencil *pencil, Window *window, ShiftInvert *si)
 {
-  const PetscBool proven = pencil->symmetric && !pencil->C ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool proven   = pencil->symmetric && !pencil->C ? PETSC_TRUE : PETSC_FALSE;
   PetscBool       complete = PETSC_TRUE;
   PetscReal       worst    = 0;
 
@@ -95,7 +105,8 @@ static PetscErrorCode SolveBoth(Modes modes, const OperatorsPencil *pencil, Wind
     PetscCall(SpectrumDestroy(&modes->left_spectrum));
   }
   PetscCheck(complete, modes->comm, PETSC_ERR_NOT_CONVERGED,
-             "modes are missing after three attempts (%s); narrow -modes_band or tighten -eps_tol", proven ? "inertia count" : "left and right differ");
+             "modes are missing after three attempts (%s); narrow -modes_band or tighten -eps_tol",
+             proven ? "inertia count" : "left and right differ");
   PetscCall(WindowDescribe(window, proven, modes->left, worst, modes->completeness, sizeof(modes->completeness)));
   PetscFunctionReturn(0);
 }
@@ -110,14 +121,15 @@ PetscErrorCode ModesSolve(Modes modes)
   PetscCall(OperatorsGetPencil(modes->operators, &pencil));
   PetscCall(WindowFind(modes, &window));
   PetscCheck(window.expected != 0 || !pencil.symmetric || pencil.C, modes->comm, PETSC_ERR_USER_INPUT,
-             "-modes_band %.6g,%.6g Hz contains no mode (%" PetscInt_FMT " lie below it); widen it", (double)modes->band[0], (double)modes->band[1],
-             window.below);
+             "-modes_band %.6g,%.6g Hz contains no mode (%" PetscInt_FMT " lie below it); widen it",
+             (double)modes->band[0], (double)modes->band[1], window.below);
   if (window.count && pencil.C) PetscCall(WindowReach(modes, &window));
-  PetscCall(ShiftInvertCreate(&pencil, pencil.C ? DampedShift(&window) : UndampedShift(&window), PETSC_FALSE, &modes->progress, &si));
+  PetscCall(ShiftInvertCreate(&pencil, pencil.C ? DampedShift(&window) : UndampedShift(&window), PETSC_FALSE,
+                              &modes->progress, &si));
   PetscCall(SolveBoth(modes, &pencil, &window, &si));
   PetscCall(ShiftInvertDestroy(&si));
-  PetscCheck(modes->right.n, modes->comm, PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g Hz contains no mode; widen it", (double)modes->band[0],
-             (double)modes->band[1]);
+  PetscCheck(modes->right.n, modes->comm, PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g Hz contains no mode; widen it",
+             (double)modes->band[0], (double)modes->band[1]);
   PetscCall(QualityMeasure(modes, &pencil));
   if (window.rigid) PetscCall(TwinsDrop(modes, &window));
   PetscCall(ModesLabel(modes));
@@ -135,7 +147,8 @@ PetscErrorCode ModesGet(Modes modes, PetscInt *n, const Mode **mode)
 PetscErrorCode ModesGetVectors(Modes modes, PetscInt i, Vec *xr, Vec *xi, Vec *yr, Vec *yi)
 {
   PetscFunctionBeginUser;
-  PetscCheck(i >= 0 && i < modes->n, modes->comm, PETSC_ERR_ARG_OUTOFRANGE, "mode %" PetscInt_FMT " of %" PetscInt_FMT, i, modes->n);
+  PetscCheck(i >= 0 && i < modes->n, modes->comm, PETSC_ERR_ARG_OUTOFRANGE, "mode %" PetscInt_FMT " of %" PetscInt_FMT,
+             i, modes->n);
   if (xr) *xr = modes->right.xr[i];
   if (xi) *xi = modes->right.xi[i];
   if (yr) *yr = modes->left_spectrum.n ? modes->left_spectrum.xr[i] : NULL;

@@ -6,13 +6,14 @@
 #include <slepceps.h>
 #include <slepcpep.h>
 
-/* Eigenvalues lambda = sigma + i omega (rad/s), omega >= 0, in order of frequency, with vectors x = xr + i xi in the unknowns of
-   the pencil; xi is NULL for a real vector */
+/* Eigenvalues lambda = sigma + i omega (rad/s), omega >= 0, in order of frequency, with vectors x = xr + i xi in the
+   unknowns of the pencil; xi is NULL for a real vector */
 typedef struct {
   PetscInt   n, capacity;
   PetscReal *sigma, *omega;
   Vec       *xr, *xi;
-  PetscReal  reach; /* all eigenvalues with |lambda| up to this were converged, rad/s (undamped: those around the shift) */
+  PetscReal
+    reach; /* all eigenvalues with |lambda| up to this were converged, rad/s (undamped: those around the shift) */
 } Spectrum;
 
 PETSC_INTERN PetscErrorCode SpectrumCreate(PetscInt capacity, Spectrum *spectrum);
@@ -34,7 +35,8 @@ PETSC_INTERN PetscErrorCode ProgressBegin(Progress *progress, const char what[],
 PETSC_INTERN PetscErrorCode ProgressStep(Progress *progress);
 PETSC_INTERN PetscErrorCode ProgressEnd(Progress *progress);
 
-/* Factorisation of K - s M (undamped) or K + s C + s^2 M (damped), shared by right and left vectors and by inertia counts */
+/* Factorisation of K - s M (undamped) or K + s C + s^2 M (damped), shared by right and left vectors and by inertia
+   counts */
 typedef struct {
   MPI_Comm  comm;
   KSP       ksp;
@@ -42,7 +44,8 @@ typedef struct {
   Progress *progress;
 } ShiftInvert;
 
-/* shiftinvert.c - prefix st_; a singular matrix moves the shift a little, want_inertia lets MUMPS count negative pivots */
+/* shiftinvert.c - prefix st_; a singular matrix moves the shift a little, want_inertia lets MUMPS count negative
+   pivots */
 PETSC_INTERN PetscErrorCode ShiftInvertCreate(const OperatorsPencil *pencil, PetscReal shift, PetscBool want_inertia,
                                               Progress *progress, ShiftInvert *si);
 PETSC_INTERN PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st);
@@ -50,23 +53,24 @@ PETSC_INTERN PetscErrorCode ShiftInvertGetInertia(const ShiftInvert *si, PetscIn
 PETSC_INTERN PetscErrorCode ShiftInvertDestroy(ShiftInvert *si);
 
 struct _p_Modes {
-  MPI_Comm   comm;
-  Operators  operators;
+  MPI_Comm  comm;
+  Operators operators;
   /* set by options */
-  PetscReal  band[2], target; /* Hz */
-  PetscReal  growth;                /* rad/s; 0: a tenth of the highest angular frequency */
-  PetscBool  has_band, left;
-  PetscInt   count;
-  char       disc[64];
-  Progress   progress;
+  PetscReal band[2], target; /* Hz */
+  PetscReal growth;          /* rad/s; 0: a tenth of the highest angular frequency */
+  PetscBool has_band, left;
+  PetscInt  count;
+  char      disc[64];
+  Progress  progress;
   /* results */
-  Spectrum   right, left_spectrum; /* in the unknowns of the pencil, later expanded to all unknowns */
-  Mode      *mode;
-  PetscInt   n;
-  char       completeness[512];
+  Spectrum right, left_spectrum; /* in the unknowns of the pencil, later expanded to all unknowns */
+  Mode    *mode;
+  PetscInt n;
+  char     completeness[512];
 };
 
-/* What to look for: all eigenvalues with omega in [low, high] and |sigma| <= growth, rad/s, and how many there are about */
+/* What to look for: all eigenvalues with omega in [low, high] and |sigma| <= growth, rad/s, and how many there are
+   about */
 typedef struct {
   PetscReal low, high, growth;
   PetscInt  expected, below; /* frictionless modes in the window and below it, by inertia; negative when not known */
@@ -81,20 +85,22 @@ typedef struct {
 PETSC_INTERN PetscErrorCode WindowFind(Modes modes, Window *window);
 PETSC_INTERN PetscErrorCode WindowReach(Modes modes, Window *window); /* sets high for the modes nearest to a target */
 PETSC_INTERN PetscErrorCode WindowCountRigid(Modes modes, Window *window, const Spectrum *spectrum);
-PETSC_INTERN PetscReal      WindowDistance(const Window *window, const Spectrum *spectrum, PetscInt i); /* from i target */
+PETSC_INTERN PetscReal WindowDistance(const Window *window, const Spectrum *spectrum, PetscInt i); /* from i target */
 PETSC_INTERN PetscErrorCode WindowSelect(const Window *window, Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *spectrum, PetscBool *complete);
-PETSC_INTERN PetscErrorCode WindowDescribe(const Window *window, PetscBool proven, PetscBool left, PetscReal worst, char text[], size_t size);
+PETSC_INTERN PetscErrorCode WindowDescribe(const Window *window, PetscBool proven, PetscBool left, PetscReal worst,
+                                           char text[], size_t size);
 
 /* undamped.c, damped.c - all eigenvalues of the pencil in the window, right ones or those of the transposed problem */
-PETSC_INTERN PetscErrorCode UndampedSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si,
-                                          PetscBool transposed, Spectrum *spectrum);
-PETSC_INTERN PetscErrorCode DampedSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si,
-                                        PetscBool transposed, Spectrum *spectrum);
-PETSC_INTERN PetscReal UndampedShift(const Window *window);
-PETSC_INTERN PetscReal DampedShift(const Window *window);
+PETSC_INTERN PetscErrorCode UndampedSolve(Modes modes, const OperatorsPencil *pencil, const Window *window,
+                                          ShiftInvert *si, PetscBool transposed, Spectrum *spectrum);
+PETSC_INTERN PetscErrorCode DampedSolve(Modes modes, const OperatorsPencil *pencil, const Window *window,
+                                        ShiftInvert *si, PetscBool transposed, Spectrum *spectrum);
+PETSC_INTERN PetscReal      UndampedShift(const Window *window);
+PETSC_INTERN PetscReal      DampedShift(const Window *window);
 
-/* left.c - left partners of the right eigenvalues; complete = the window holds the same ones in both; biorthogonal left vectors in clusters, work[3] in the pencil's unknowns */
+/* left.c - left partners of the right eigenvalues; complete = the window holds the same ones in both; biorthogonal
+   left vectors in clusters, work[3] in the pencil's unknowns */
 PETSC_INTERN PetscErrorCode LeftMatch(Modes modes, const Window *window, PetscReal *worst, PetscBool *complete);
 PETSC_INTERN PetscErrorCode LeftBiorthogonalise(Modes modes, const OperatorsPencil *pencil, Vec work[]);
 

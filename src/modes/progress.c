@@ -12,8 +12,8 @@ PetscErrorCode ProgressSetFromOptions(MPI_Comm comm, Progress *progress)
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   progress->on = isatty(STDERR_FILENO) ? PETSC_TRUE : PETSC_FALSE;
   PetscOptionsBegin(comm, NULL, "Progress", NULL);
-  PetscCall(PetscOptionsBool("-progress", "progress line on stderr; by default where it is a terminal", NULL, progress->on,
-                             &progress->on, NULL));
+  PetscCall(PetscOptionsBool("-progress", "progress line on stderr; by default where it is a terminal", NULL,
+                             progress->on, &progress->on, NULL));
   PetscOptionsEnd();
   if (rank) progress->on = PETSC_FALSE;
   PetscFunctionReturn(0);
@@ -40,9 +40,10 @@ PetscErrorCode ProgressStep(Progress *progress)
   if (now - progress->begun < 2) PetscFunctionReturn(0);
   progress->expected = PetscMax(progress->expected, progress->done);
   progress->shown    = PETSC_TRUE;
-  PetscCall(PetscFPrintf(PETSC_COMM_SELF, stderr, "\r%s: solve %" PetscInt_FMT " of about %" PetscInt_FMT ", %.0f s left   ",
-                         progress->what, progress->done, progress->expected,
-                         (now - progress->begun) * (double)(progress->expected - progress->done) / (double)progress->done));
+  PetscCall(
+    PetscFPrintf(PETSC_COMM_SELF, stderr, "\r%s: solve %" PetscInt_FMT " of about %" PetscInt_FMT ", %.0f s left   ",
+                 progress->what, progress->done, progress->expected,
+                 (now - progress->begun) * (double)(progress->expected - progress->done) / (double)progress->done));
   PetscFunctionReturn(0);
 }
 

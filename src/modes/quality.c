@@ -9,16 +9,16 @@
 #include "complexvec.h"
 
 #define BACKWARD    1e-6 /* largest backward error that is a solution */
-#define RIGID_NOISE 100 /* lambda^2 below this many times its error is a rigid mode */
+#define RIGID_NOISE 100  /* lambda^2 below this many times its error is a rigid mode */
 
 /* What all modes share: matrices, their Frobenius norms (K, C, M), and work vectors */
 typedef struct {
   const OperatorsPencil *pencil;
-  Mat        M;                 /* of all unknowns; the pencil's own without constraints */
-  PetscReal  norms[3];
-  Vec        diagonal, scratch; /* diagonal of K */
-  ComplexVec Mx, z;             /* unknowns of the pencil */
-  ComplexVec full;              /* all unknowns */
+  Mat                    M; /* of all unknowns; the pencil's own without constraints */
+  PetscReal              norms[3];
+  Vec                    diagonal, scratch; /* diagonal of K */
+  ComplexVec             Mx, z;             /* unknowns of the pencil */
+  ComplexVec             full;              /* all unknowns */
 } Quality;
 
 /* Length of a complex vector from the parts of a real quadratic form: x^H z for z = A x with A symmetric, or z = x */
@@ -76,11 +76,11 @@ static PetscErrorCode RoundingNoise(const Quality *q, ComplexVec x, PetscReal *n
 }
 
 /* Backward error of an eigenpair, |y^T Q x|, |y^T D x|; the products with y are not touched without a left vector */
-static PetscErrorCode MeasureResidual(Quality *q, PetscComplex lambda, ComplexVec x, ComplexVec y, PetscReal *backward, PetscReal *y_Qx,
-                                      PetscReal *y_Dx)
+static PetscErrorCode MeasureResidual(Quality *q, PetscComplex lambda, ComplexVec x, ComplexVec y, PetscReal *backward,
+                                      PetscReal *y_Qx, PetscReal *y_Dx)
 {
   const OperatorsPencil *pencil = q->pencil;
-  const PetscReal        size   = cabs(lambda), bound = size * size * q->norms[2] + size * q->norms[1] + q->norms[0];
+  const PetscReal        size = cabs(lambda), bound = size * size * q->norms[2] + size * q->norms[1] + q->norms[0];
   PetscReal              length, residual;
   PetscComplex           dot;
 
@@ -118,8 +118,8 @@ static PetscErrorCode MeasureMode(Modes modes, Quality *q, PetscInt i)
   Mode              *mode     = &modes->mode[i];
   const PetscBool    has_left = left->n ? PETSC_TRUE : PETSC_FALSE;
   const PetscComplex lambda   = SpectrumLambda(right, i);
-  const ComplexVec   x = {right->xr[i], right->xi[i]}, y = {has_left ? left->xr[i] : NULL, has_left ? left->xi[i] : NULL};
-  PetscReal          size = cabs(lambda), y_Qx = 0, y_Dx = 1, norm_x, norm_y = 1, noise, square;
+  const ComplexVec x = {right->xr[i], right->xi[i]}, y = {has_left ? left->xr[i] : NULL, has_left ? left->xi[i] : NULL};
+  PetscReal        size = cabs(lambda), y_Qx = 0, y_Dx = 1, norm_x, norm_y = 1, noise, square;
 
   PetscFunctionBeginUser;
   PetscCall(MeasureResidual(q, lambda, x, y, &mode->backward_error, &y_Qx, &y_Dx));
@@ -134,11 +134,12 @@ static PetscErrorCode MeasureMode(Modes modes, Quality *q, PetscInt i)
   mode->rigid = size * size <= RIGID_NOISE * square ? PETSC_TRUE : PETSC_FALSE;
   mode->error = mode->rigid ? PetscMax(size, PetscSqrtReal(square)) : square / (2 * size);
   if (mode->rigid) mode->sigma = mode->omega = 0;
-  mode->unstable = mode->sigma > 3 * mode->error && mode->sigma > (has_left ? 1e-9 : 1e-6) * size ? PETSC_TRUE : PETSC_FALSE;
+  mode->unstable =
+    mode->sigma > 3 * mode->error && mode->sigma > (has_left ? 1e-9 : 1e-6) * size ? PETSC_TRUE : PETSC_FALSE;
   if (!has_left) mode->error = NAN;
   PetscCheck(mode->rigid || mode->backward_error < BACKWARD, modes->comm, PETSC_ERR_NOT_CONVERGED,
-             "mode at %.6g Hz has a backward error of %.2g, more than %.0e: the matrices are too badly scaled", (double)(mode->omega / (2 * PETSC_PI)),
-             (double)mode->backward_error, BACKWARD);
+             "mode at %.6g Hz has a backward error of %.2g, more than %.0e: the matrices are too badly scaled",
+             (double)(mode->omega / (2 * PETSC_PI)), (double)mode->backward_error, BACKWARD);
   PetscFunctionReturn(0);
 }
 

@@ -1,10 +1,11 @@
 /*
-   One factorisation for everything: a KSP with the user's -st_ksp_*, -st_pc_*, -st_mat_mumps_* options, which SLEPc's spectral
-   transformations of the right and of the transposed problem both call. MUMPS is the default: LDL' for a symmetric pencil,
-   LU else. On one rank the LU gets METIS's order of the node graph; against PORD, the best of MUMPS' own, it is a tie on the
-   default rig (23.9 M entries and 11.2 Gflop against 23.6 M and 10.9) and 6 % less fill and 16 % fewer operations at 94,491 unknowns
-   (82.6 M and 57.5 against 87.8 M and 68.6; scripts/benchmark_modes --part orderings). AMD, AMF and QAMD give 13 to 35 % more fill.
-   PETSc hands no order to MUMPS' LDL' nor on several ranks, where PORD stays.
+   One factorisation for everything: a KSP with the user's -st_ksp_*, -st_pc_*, -st_mat_mumps_* options, which SLEPc's
+   spectral transformations of the right and of the transposed problem both call. MUMPS is the default: LDL' for a
+   symmetric pencil, LU else. On one rank the LU gets METIS's order of the node graph; against PORD, the best of
+   MUMPS' own, it is a tie on the default rig (23.9 M entries and 11.2 Gflop against 23.6 M and 10.9) and 6 % less
+   fill and 16 % fewer operations at 94,491 unknowns (82.6 M and 57.5 against 87.8 M and 68.6; scripts/benchmark_modes
+   --part orderings). AMD, AMF and QAMD give 13 to 35 % more fill. PETSc hands no order to MUMPS' LDL' nor on several
+   ranks, where PORD stays.
 */
 #include "modesimpl.h"
 #include "operators/ordering.h"
@@ -45,12 +46,16 @@ static PetscErrorCode FactorCheck(MPI_Comm comm, PC pc, PetscBool *singular)
   }
   PetscCheck(info != -8 && info != -9 && info != -14 && info != -15 && info != -17 && info != -20, comm, PETSC_ERR_MEM,
              "MUMPS' workspace is too small (INFOG(1) = %" PetscInt_FMT ", INFOG(2) = %" PetscInt_FMT
-             "): raise -st_mat_mumps_icntl_14 (percent of extra workspace) or -st_mat_mumps_icntl_23 (MB per rank)", info, extra);
+             "): raise -st_mat_mumps_icntl_14 (percent of extra workspace) or -st_mat_mumps_icntl_23 (MB per rank)",
+             info, extra);
   PetscCheck(info != -13 && info != -7 && info != -19 && info != -5, comm, PETSC_ERR_MEM,
              "MUMPS ran out of memory (INFOG(1) = %" PetscInt_FMT ", INFOG(2) = %" PetscInt_FMT
-             "): raise -st_mat_mumps_icntl_23 (MB per rank) if it limits, use more ranks or a coarser mesh", info, extra);
-  if (info == -10 || info == -6 || reason == PC_FACTOR_NUMERIC_ZEROPIVOT || reason == PC_FACTOR_STRUCT_ZEROPIVOT) *singular = PETSC_TRUE;
-  PetscCheck(*singular || !reason, comm, PETSC_ERR_NOT_CONVERGED, "factorisation failed (MUMPS INFOG(1) = %" PetscInt_FMT ")", info);
+             "): raise -st_mat_mumps_icntl_23 (MB per rank) if it limits, use more ranks or a coarser mesh",
+             info, extra);
+  if (info == -10 || info == -6 || reason == PC_FACTOR_NUMERIC_ZEROPIVOT || reason == PC_FACTOR_STRUCT_ZEROPIVOT)
+    *singular = PETSC_TRUE;
+  PetscCheck(*singular || !reason, comm, PETSC_ERR_NOT_CONVERGED,
+             "factorisation failed (MUMPS INFOG(1) = %" PetscInt_FMT ")", info);
   PetscFunctionReturn(0);
 }
 
@@ -86,7 +91,8 @@ static PetscErrorCode SolverCreate(MPI_Comm comm, Mat A, PetscBool symmetric, Pe
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ShiftInvertCreate(const OperatorsPencil *pencil, PetscReal shift, PetscBool want_inertia, Progress *progress, ShiftInvert *si)
+PetscErrorCode ShiftInvertCreate(const OperatorsPencil *pencil, PetscReal shift, PetscBool want_inertia,
+                                 Progress *progress, ShiftInvert *si)
 {
   PetscBool singular = PETSC_TRUE;
   Mat       A;
@@ -105,8 +111,10 @@ PetscErrorCode ShiftInvertCreate(const OperatorsPencil *pencil, PetscReal shift,
     PetscCall(MatDestroy(&A));
     if (singular) PetscCall(KSPDestroy(&si->ksp));
   }
-  PetscCheck(!singular, si->comm, PETSC_ERR_MAT_LU_ZRPVT,
-             "the problem is singular at every shift near %.6g: a part without mass or an unknown without stiffness and mass", (double)shift);
+  PetscCheck(
+    !singular, si->comm, PETSC_ERR_MAT_LU_ZRPVT,
+    "the problem is singular at every shift near %.6g: a part without mass or an unknown without stiffness and mass",
+    (double)shift);
   PetscFunctionReturn(0);
 }
 

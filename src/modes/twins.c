@@ -1,7 +1,7 @@
 /*
-   Rigid modes of a damped system. Such a mode is a double zero, lambda^2 M x + lambda C x = 0 with C x = 0, that rounding splits
-   into two tiny eigenvalues; with C x = alpha M x it is one zero and lambda = -alpha. Among the modes found to be rigid, as many
-   are kept as the frictionless system has.
+   Rigid modes of a damped system. Such a mode is a double zero, lambda^2 M x + lambda C x = 0 with C x = 0, that
+   rounding splits into two tiny eigenvalues; with C x = alpha M x it is one zero and lambda = -alpha. Among the modes
+   found to be rigid, as many are kept as the frictionless system has.
 */
 #include "modesimpl.h"
 
@@ -43,7 +43,8 @@ PetscErrorCode TwinsDrop(Modes modes, const Window *window)
   while (window->count && modes->n > window->count) {
     const PetscInt last = modes->n - 1;
 
-    PetscCall(ModeRemove(modes, WindowDistance(window, &modes->right, 0) > WindowDistance(window, &modes->right, last) ? 0 : last));
+    PetscCall(ModeRemove(
+      modes, WindowDistance(window, &modes->right, 0) > WindowDistance(window, &modes->right, last) ? 0 : last));
   }
   PetscFunctionReturn(0);
 }

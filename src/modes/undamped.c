@@ -1,10 +1,11 @@
 /*
-   Undamped problem K x = kappa M x, kappa = -lambda^2, half the size of the quadratic one: EPS Krylov-Schur with shift-and-invert
-   about a real shift, symmetric (GHEP) or not (GNHEP). A kappa in the complex plane stands for lambda = sqrt(-kappa) and
-   -lambda; the one with omega >= 0 is kept, so that a complex pair of kappa gives both members of a lock-in pair.
+   Undamped problem K x = kappa M x, kappa = -lambda^2, half the size of the quadratic one: EPS Krylov-Schur with
+   shift-and-invert about a real shift, symmetric (GHEP) or not (GNHEP). A kappa in the complex plane stands for
+   lambda = sqrt(-kappa) and -lambda; the one with omega >= 0 is kept, so that a complex pair of kappa gives both
+   members of a lock-in pair.
 
-   Krylov-Schur converges eigenvalues in the order of their distance from the shift, so the window is covered when the farthest
-   converged one lies outside the circle about the shift through the ends of the window.
+   Krylov-Schur converges eigenvalues in the order of their distance from the shift, so the window is covered when the
+   farthest converged one lies outside the circle about the shift through the ends of the window.
 */
 #include "modesimpl.h"
 #include <complex.h>
@@ -17,8 +18,9 @@ PetscReal UndampedShift(const Window *window)
   return low + 0.25 * (high - low);
 }
 
-/* Radius about the shift, in the plane of kappa = -lambda^2, that the converged eigenvalues must exceed. Band: the farthest corner
-   sigma + i omega of the window. Target t: all |lambda - i t| <= d lie within |kappa - t^2| <= 2 t d + d^2. */
+/* Radius about the shift, in the plane of kappa = -lambda^2, that the converged eigenvalues must exceed. Band: the
+   farthest corner sigma + i omega of the window. Target t: all |lambda - i t| <= d lie within |kappa - t^2| <= 2 t d
+   + d^2. */
 static PetscReal RadiusNeeded(const Window *window, PetscReal shift, const Spectrum *found)
 {
   const PetscReal low = window->low, high = window->high, s = window->growth, t = window->target;
@@ -30,13 +32,15 @@ static PetscReal RadiusNeeded(const Window *window, PetscReal shift, const Spect
   for (PetscInt i = 0; i < found->n; i++) { /* the count-th nearest to the target */
     PetscInt nearer = 0;
 
-    for (PetscInt j = 0; j < found->n; j++) nearer += WindowDistance(window, found, j) < WindowDistance(window, found, i);
+    for (PetscInt j = 0; j < found->n; j++)
+      nearer += WindowDistance(window, found, j) < WindowDistance(window, found, i);
     if (nearer < window->count) d = PetscMax(d, WindowDistance(window, found, i));
   }
   return 2 * t * d + d * d + PetscAbsReal(shift - t * t);
 }
 
-/* Puts the converged pairs into a spectrum; reach = distance of the farthest from the shift, infinite when all n are there */
+/* Puts the converged pairs into a spectrum; reach = distance of the farthest from the shift, infinite when all n are
+   there */
 static PetscErrorCode Collect(EPS eps, PetscReal shift, PetscInt n, Spectrum *s)
 {
   PetscInt           n_converged;
@@ -61,7 +65,8 @@ static PetscErrorCode Collect(EPS eps, PetscReal shift, PetscInt n, Spectrum *s)
     s->reach = PetscMax(s->reach, cabs(CMPLX(kr - shift, ki)));
   }
   PetscCall(EPSGetConvergedReason(eps, &reason));
-  if (n_converged >= n || reason == EPS_DIVERGED_BREAKDOWN) s->reach = PETSC_MAX_REAL; /* breakdown: M is singular, no more finite ones */
+  if (n_converged >= n || reason == EPS_DIVERGED_BREAKDOWN)
+    s->reach = PETSC_MAX_REAL; /* breakdown: M is singular, no more finite ones */
   PetscCall(VecDestroy(&xr));
   PetscCall(VecDestroy(&xi));
   PetscCall(SpectrumSort(s));
@@ -69,7 +74,8 @@ static PetscErrorCode Collect(EPS eps, PetscReal shift, PetscInt n, Spectrum *s)
 }
 
 /* Solver for nev eigenvalues about the shift; the transposed problem starts from another random vector */
-static PetscErrorCode SolverCreate(const OperatorsPencil *pencil, ShiftInvert *si, PetscBool transposed, PetscInt nev, PetscInt n, EPS *eps)
+static PetscErrorCode SolverCreate(const OperatorsPencil *pencil, ShiftInvert *si, PetscBool transposed, PetscInt nev,
+                                   PetscInt n, EPS *eps)
 {
   PetscMPIInt rank;
   PetscRandom random;
@@ -106,11 +112,13 @@ static PetscErrorCode PencilTranspose(const OperatorsPencil *pencil, OperatorsPe
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode UndampedSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si, PetscBool transposed,
-                             Spectrum *spectrum)
+PetscErrorCode UndampedSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si,
+                             PetscBool transposed, Spectrum *spectrum)
 {
   OperatorsPencil problem = *pencil;
-  PetscInt        n, nev = window->extra + (window->count ? window->count + window->count / 2 : window->expected >= 0 ? window->expected : 40);
+  PetscInt        n, nev = window->extra + (window->count           ? window->count + window->count / 2
+                                            : window->expected >= 0 ? window->expected
+                                                                    : 40);
   PetscBool       covered = PETSC_FALSE;
 
   PetscFunctionBeginUser;
@@ -125,13 +133,15 @@ PetscErrorCode UndampedSolve(Modes modes, const OperatorsPencil *pencil, const W
     PetscCall(EPSSolve(eps));
     PetscCall(ProgressEnd(&modes->progress));
     PetscCall(Collect(eps, si->shift, n, spectrum));
-    covered = spectrum->reach > RadiusNeeded(window, si->shift, spectrum) || spectrum->n == n ? PETSC_TRUE : PETSC_FALSE;
+    covered =
+      spectrum->reach > RadiusNeeded(window, si->shift, spectrum) || spectrum->n == n ? PETSC_TRUE : PETSC_FALSE;
     if (!covered && nev < n) PetscCall(SpectrumDestroy(spectrum));
     PetscCall(EPSDestroy(&eps));
     if (nev == n) break;
   }
-  PetscCheck(covered, si->comm, PETSC_ERR_NOT_CONVERGED,
-             "the eigensolver did not converge all modes of the window; raise -eps_max_it or -eps_ncv, or narrow -modes_band");
+  PetscCheck(
+    covered, si->comm, PETSC_ERR_NOT_CONVERGED,
+    "the eigensolver did not converge all modes of the window; raise -eps_max_it or -eps_ncv, or narrow -modes_band");
   if (transposed) {
     PetscCall(MatDestroy(&problem.K));
     PetscCall(MatDestroy(&problem.M));

@@ -1,7 +1,8 @@
 /*
-   The window of the eigenvalues asked for. With a symmetric pencil without damping and friction the number of eigenvalues
-   kappa = omega^2 below s is the number of negative pivots of K - s M (Sylvester's law of inertia; B. N. Parlett, The Symmetric
-   Eigenvalue Problem, SIAM 1998, sect. 3.3). It sizes the Krylov space, and proves that no real mode is missing.
+   The window of the eigenvalues asked for. With a symmetric pencil without damping and friction the number of
+   eigenvalues kappa = omega^2 below s is the number of negative pivots of K - s M (Sylvester's law of inertia; B. N.
+   Parlett, The Symmetric Eigenvalue Problem, SIAM 1998, sect. 3.3). It sizes the Krylov space, and proves that no
+   real mode is missing.
 */
 #include "modesimpl.h"
 
@@ -46,7 +47,8 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
   window->count    = modes->has_band ? 0 : modes->count;
   window->growth   = modes->growth > 0 ? modes->growth : 0.1 * window->high;
   window->rigid    = 0;
-  window->expected = window->below = -1;
+  window->expected = -1;
+  window->below    = -1;
   window->extra    = 6;
   PetscCall(WindowScale(&frictionless, &window->scale));
   if (!frictionless.symmetric) PetscFunctionReturn(0);
@@ -54,7 +56,8 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
     PetscCall(CountBelow(modes, &frictionless, window->target, &window->below));
     PetscFunctionReturn(0);
   }
-  PetscCall(CountBelow(modes, &frictionless, window->low < window->scale ? 0 : window->low * (1 - EDGE), &window->below));
+  PetscCall(
+    CountBelow(modes, &frictionless, window->low < window->scale ? 0 : window->low * (1 - EDGE), &window->below));
   PetscCall(CountBelow(modes, &frictionless, window->high * (1 + EDGE), &below_high));
   window->expected = below_high - window->below;
   PetscFunctionReturn(0);
@@ -85,7 +88,8 @@ PetscErrorCode WindowCountRigid(Modes modes, Window *window, const Spectrum *s)
   OperatorsPencil frictionless;
 
   PetscFunctionBeginUser;
-  if (!s->n || PetscAbsReal(s->sigma[0]) > window->scale || s->omega[0] > window->scale || window->below < 0) PetscFunctionReturn(0);
+  if (!s->n || PetscAbsReal(s->sigma[0]) > window->scale || s->omega[0] > window->scale || window->below < 0)
+    PetscFunctionReturn(0);
   PetscCall(OperatorsGetFrictionless(modes->operators, &frictionless));
   PetscCall(CountBelow(modes, &frictionless, window->scale, &window->rigid));
   PetscFunctionReturn(0);
@@ -120,31 +124,42 @@ PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *s, Petsc
   PetscInt        below_low, below_high;
 
   PetscFunctionBeginUser;
-  if (window->count && s->n) { /* just outside the outermost modes; an eigenvalue that close to the end belongs to them */
+  if (window->count && s->n) { /* just outside the outermost modes: what lies that close belongs to them */
     PetscCall(OperatorsGetFrictionless(modes->operators, &frictionless));
     PetscCall(CountBelow(modes, &frictionless, s->omega[0] < window->scale ? 0 : s->omega[0] * (1 - 1e-6), &below_low));
     PetscCall(CountBelow(modes, &frictionless, PetscMax(window->scale, s->omega[s->n - 1] * (1 + 1e-6)), &below_high));
     window->expected = below_high - below_low;
   }
-  *complete = s->n == window->expected || (window->count && window->expected >= s->n && s->n == window->count) ? PETSC_TRUE : PETSC_FALSE;
+  *complete = s->n == window->expected || (window->count && window->expected >= s->n && s->n == window->count)
+                ? PETSC_TRUE
+                : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode WindowDescribe(const Window *window, PetscBool proven, PetscBool left, PetscReal worst, char text[], size_t size)
+PetscErrorCode WindowDescribe(const Window *window, PetscBool proven, PetscBool left, PetscReal worst, char text[],
+                              size_t size)
 {
   char frictionless[96] = "", region[64] = "";
 
   PetscFunctionBeginUser;
   if (window->expected >= 0 && !window->count)
-    PetscCall(PetscSNPrintf(frictionless, sizeof(frictionless), "; without friction and damping %" PetscInt_FMT " (inertia)", window->expected));
-  if (!window->count) PetscCall(PetscSNPrintf(region, sizeof(region), " with |growth| below %.6g 1/s", (double)window->growth));
+    PetscCall(PetscSNPrintf(frictionless, sizeof(frictionless),
+                            "; without friction and damping %" PetscInt_FMT " (inertia)", window->expected));
+  if (!window->count)
+    PetscCall(PetscSNPrintf(region, sizeof(region), " with |growth| below %.6g 1/s", (double)window->growth));
   if (proven && window->count)
-    PetscCall(PetscSNPrintf(text, size, "none is missing: inertia of K - s M counts %" PetscInt_FMT " up to the outermost", window->expected));
+    PetscCall(PetscSNPrintf(text, size,
+                            "none is missing: inertia of K - s M counts %" PetscInt_FMT " up to the outermost",
+                            window->expected));
   else if (proven)
-    PetscCall(PetscSNPrintf(text, size, "none is missing: inertia of K - s M at the ends of the band counts %" PetscInt_FMT, window->expected));
+    PetscCall(PetscSNPrintf(text, size,
+                            "none is missing: inertia of K - s M at the ends of the band counts %" PetscInt_FMT,
+                            window->expected));
   else if (left)
-    PetscCall(PetscSNPrintf(text, size, "none%s was missed by right or left alone: from different starts they agree to %.1e%s", region, (double)worst,
-                            frictionless));
-  else PetscCall(PetscSNPrintf(text, size, "completeness was not checked, since -modes_left is off%s", frictionless));
+    PetscCall(PetscSNPrintf(text, size,
+                            "none%s was missed by right or left alone: from different starts they agree to %.1e%s",
+                            region, (double)worst, frictionless));
+  else
+    PetscCall(PetscSNPrintf(text, size, "completeness was not checked, since -modes_left is off%s", frictionless));
   PetscFunctionReturn(0);
 }

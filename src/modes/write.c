@@ -21,17 +21,19 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
   PetscInt n_unstable = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "mode    freq Hz   growth 1/s  damping %%  error Hz  condition  backward  label\n"));
+  PetscCall(
+    PetscViewerASCIIPrintf(viewer, "mode    freq Hz   growth 1/s  damping %%  error Hz  condition  backward  label\n"));
   for (PetscInt i = 0; i < modes->n; i++) {
     const Mode *m = &modes->mode[i];
 
     if (m->unstable) n_unstable++;
-    PetscCall(PetscViewerASCIIPrintf(viewer, "%4" PetscInt_FMT " %10.3f %12.5g %10.5f %9.1e %10.4g %9.1e  %s%s\n", i + 1,
-                                     (double)ModeFrequency(m), (double)m->sigma, (double)(100 * ModeDampingRatio(m)),
-                                     (double)(m->error / (2 * PETSC_PI)), (double)m->condition, (double)m->backward_error, m->label,
-                                     m->unstable ? "  UNSTABLE" : ""));
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "%4" PetscInt_FMT " %10.3f %12.5g %10.5f %9.1e %10.4g %9.1e  %s%s\n", i + 1, (double)ModeFrequency(m),
+      (double)m->sigma, (double)(100 * ModeDampingRatio(m)), (double)(m->error / (2 * PETSC_PI)), (double)m->condition,
+      (double)m->backward_error, m->label, m->unstable ? "  UNSTABLE" : ""));
   }
-  PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " modes, %" PetscInt_FMT " unstable; %s\n", modes->n, n_unstable, modes->completeness));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " modes, %" PetscInt_FMT " unstable; %s\n", modes->n,
+                                   n_unstable, modes->completeness));
   PetscFunctionReturn(0);
 }
 
@@ -41,12 +43,15 @@ static PetscErrorCode TableWrite(Modes modes, Results results)
   ResultsTable table;
 
   PetscFunctionBeginUser;
-  PetscCall(ResultsTableOpen(results, "modes", "mode,freq_hz,growth_rad_s,damping_ratio,backward_error,condition,unstable,label,error_hz", &table));
+  PetscCall(ResultsTableOpen(results, "modes",
+                             "mode,freq_hz,growth_rad_s,damping_ratio,backward_error,condition,unstable,label,error_hz",
+                             &table));
   for (PetscInt i = 0; i < modes->n; i++) {
     const Mode *m = &modes->mode[i];
 
-    PetscCall(ResultsTableRow(table, "%d,%.15g,%.15g,%.15g,%.15g,%.15g,%d,\"%s\",%.15g", (int)i + 1, (double)ModeFrequency(m), (double)m->sigma,
-                              (double)ModeDampingRatio(m), (double)m->backward_error, (double)m->condition, (int)m->unstable, m->label,
+    PetscCall(ResultsTableRow(table, "%d,%.15g,%.15g,%.15g,%.15g,%.15g,%d,\"%s\",%.15g", (int)i + 1,
+                              (double)ModeFrequency(m), (double)m->sigma, (double)ModeDampingRatio(m),
+                              (double)m->backward_error, (double)m->condition, (int)m->unstable, m->label,
                               (double)(m->error / (2 * PETSC_PI))));
   }
   PetscCall(ResultsTableClose(&table));
@@ -75,7 +80,8 @@ static PetscErrorCode ShapesWrite(Modes modes, Model model, Results results)
     char        key[32], title[128];
 
     PetscCall(PetscSNPrintf(key, sizeof(key), "mode_%03d", (int)i + 1));
-    PetscCall(PetscSNPrintf(title, sizeof(title), "%d: %.6g Hz, growth %.4g 1/s, %s", (int)i + 1, (double)ModeFrequency(m), (double)m->sigma, m->label));
+    PetscCall(PetscSNPrintf(title, sizeof(title), "%d: %.6g Hz, growth %.4g 1/s, %s", (int)i + 1,
+                            (double)ModeFrequency(m), (double)m->sigma, m->label));
     PetscCall(ResultsFieldWriteMode(field, key, title, modes->right.xr[i], modes->right.xi[i]));
   }
   PetscCall(ResultsFieldClose(&field));

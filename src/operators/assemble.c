@@ -1,6 +1,7 @@
 /*
-   Matrices of the bodies, summed over cells: K (N/m), M (kg), and C = sum over parts of alpha M + beta K (N s/m); grounded
-   springs on the diagonal of K, dashpots on that of C. C is made only where a part is damped or a dashpot exists.
+   Matrices of the bodies, summed over cells: K (N/m), M (kg), and C = sum over parts of alpha M + beta K (N s/m);
+   grounded springs on the diagonal of K, dashpots on that of C. C is made only where a part is damped or a dashpot
+   exists.
 */
 #include "operatorsimpl.h"
 
@@ -35,9 +36,10 @@ static void ElementLump(PetscInt n, PetscReal mass[])
 }
 
 /* Adds one cell of the given material to K, M and C */
-static PetscErrorCode CellAdd(Operators o, const Element *element, const Part *part, const PetscReal x[], const PetscInt rows[])
+static PetscErrorCode CellAdd(Operators o, const Element *element, const Part *part, const PetscReal x[],
+                              const PetscInt rows[])
 {
-  const PetscInt   n = 3 * element->n_nodes;
+  const PetscInt   n        = 3 * element->n_nodes;
   const Elasticity material = ElasticityFromEngineering(part->young, part->poisson, part->density);
   PetscReal        ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 

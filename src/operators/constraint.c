@@ -1,15 +1,16 @@
 /*
-   Exact contact constraint N u = 0 by elimination, with force directions N' - mu T'. In the frame (n, t, b) of a pair the slave
-   displacement is u_s = n alpha + t q1 + b q2, where
+   Exact contact constraint N u = 0 by elimination, with force directions N' - mu T'. In the frame (n, t, b) of a pair
+   the slave displacement is u_s = n alpha + t q1 + b q2, where
       right, N u = 0:            alpha = n . u_m
       left, (N - mu T) y = 0:    alpha = (n - mu t) . y_m + mu q1
-   so that Z = (I + G) E: E injects the kept unknowns and, at a slave, t q1 + b q2 (left: (t + mu n) q1 + b q2); G takes the part
-   of alpha that comes from the master. K, C, M become Zl' (.) Zr, and constraint forces drop out.
+   so that Z = (I + G) E: E injects the kept unknowns and, at a slave, t q1 + b q2 (left: (t + mu n) q1 + b q2); G
+   takes the part of alpha that comes from the master. K, C, M become Zl' (.) Zr, and constraint forces drop out.
 */
 #include "operatorsimpl.h"
 
 /* Eliminated pairs of this rank, by their interface's law; checks that elimination is possible */
-static PetscErrorCode ConstrainedPairs(Operators o, PetscInt *n, const ContactPair ***list, const ContactInterface **interfaces)
+static PetscErrorCode ConstrainedPairs(Operators o, PetscInt *n, const ContactPair ***list,
+                                       const ContactInterface **interfaces)
 {
   const ContactPair *pairs;
   PetscInt           n_pairs, n_all, n_interfaces;
@@ -28,11 +29,13 @@ static PetscErrorCode ConstrainedPairs(Operators o, PetscInt *n, const ContactPa
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &held, 1, MPIU_INT, MPI_MAX, o->comm));
   PetscCheck(!held, o->comm, PETSC_ERR_SUP,
-             "the contact constraint cannot eliminate a slave node that a support holds: swap -contact_surfaces or use -contact_law penalty");
+             "the contact constraint cannot eliminate a slave node that a support holds: swap -contact_surfaces or use "
+             "-contact_law penalty");
   PetscFunctionReturn(0);
 }
 
-/* Marks the unknowns of eliminated slaves and of their masters; an unknown that is both, or slave of two pairs, is an error */
+/* Marks the unknowns of eliminated slaves and of their masters; an unknown that is both, or slave of two pairs, is an
+   error */
 static PetscErrorCode ConstraintCheckChains(Operators o, PetscInt n, const ContactPair **list)
 {
   const PetscScalar one = 1, large = 1e6;
@@ -46,7 +49,8 @@ static PetscErrorCode ConstraintCheckChains(Operators o, PetscInt n, const Conta
   PetscCall(VecSetOption(masters, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
   for (PetscInt p = 0; p < n; p++) {
     PetscCall(VecSetValues(slaves, 1, list[p]->slave, &one, ADD_VALUES));
-    for (PetscInt i = 0; i < list[p]->n_master; i++) PetscCall(VecSetValues(masters, 1, list[p]->master[i], &large, INSERT_VALUES));
+    for (PetscInt i = 0; i < list[p]->n_master; i++)
+      PetscCall(VecSetValues(masters, 1, list[p]->master[i], &large, INSERT_VALUES));
   }
   PetscCall(VecAssemblyBegin(slaves));
   PetscCall(VecAssemblyEnd(slaves));
@@ -63,7 +67,8 @@ static PetscErrorCode ConstraintCheckChains(Operators o, PetscInt n, const Conta
   PetscCall(VecDestroy(&masters));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &chain, 1, MPIU_INT, MPI_MAX, o->comm));
   PetscCheck(!chain, o->comm, PETSC_ERR_SUP,
-             "a node belongs to two constrained contact pairs; the constraint needs interfaces without common nodes: use -contact_law penalty");
+             "a node belongs to two constrained contact pairs; the constraint needs interfaces without common nodes: "
+             "use -contact_law penalty");
   PetscFunctionReturn(0);
 }
 
@@ -82,7 +87,7 @@ static PetscErrorCode InjectionCreate(Operators o, PetscInt n, const ContactPair
     const ContactPair *pair = list[p];
 
     for (int d = 0; d < 3; d++) {
-      const PetscScalar values[2] = {pair->t[d] + mu[p] * pair->n[d], pair->b[d]};
+      const PetscScalar values[2]  = {pair->t[d] + mu[p] * pair->n[d], pair->b[d]};
       const PetscInt    columns[2] = {column, column + 1};
 
       PetscCall(MatSetValues(*E, 1, &pair->slave[d], 2, columns, values, INSERT_VALUES));
@@ -112,7 +117,8 @@ static PetscErrorCode CouplingCreate(Operators o, PetscInt n, const ContactPair 
     for (PetscInt i = 0; i < pair->n_master; i++) {
       PetscScalar block[9];
 
-      for (int k = 0; k < 9; k++) block[k] = pair->weight[i] * pair->n[k / 3] * (pair->n[k % 3] - mu[p] * pair->t[k % 3]);
+      for (int k = 0; k < 9; k++)
+        block[k] = pair->weight[i] * pair->n[k / 3] * (pair->n[k % 3] - mu[p] * pair->t[k % 3]);
       PetscCall(MatSetValues(*G, 3, pair->slave, 3, pair->master[i], block, INSERT_VALUES));
     }
   }

@@ -3,8 +3,9 @@
       K += k_n N'N                         normal stiffness, symmetric          (seed paper, eq. 1)
       H  = - sum_i (mu_i / mu) k_n T'N     friction per unit mu, unsymmetric     (seed paper, eq. 1)
       C += (|mu| N0 / v) B'B + mu' N0 T'T    friction damping across and along the slip, mu' = d mu / d v
-   mu is the largest friction coefficient of all interfaces in absolute value. Signs: slip velocity of the slave relative to the
-   master is v t - d/dt (T u) t - d/dt (B u) b, friction on the master acts along it, and internal forces stand on the left.
+   mu is the largest friction coefficient of all interfaces in absolute value. Signs: slip velocity of the slave
+   relative to the master is v t - d/dt (T u) t - d/dt (B u) b, friction on the master acts along it, and internal
+   forces stand on the left.
 */
 #include "operatorsimpl.h"
 

@@ -9,7 +9,8 @@
 #define MAX_DENSE 10000 /* entries of an inline matrix: 100 x 100 */
 
 static const char *const letters[N_OPERATORS]  = {"k", "m", "c", "h"};
-static const char *const meanings[N_OPERATORS] = {"stiffness, N/m", "mass, kg", "damping, N s/m", "friction part per unit mu, N/m"};
+static const char *const meanings[N_OPERATORS] = {"stiffness, N/m", "mass, kg", "damping, N s/m",
+                                                  "friction part per unit mu, N/m"};
 
 PetscErrorCode OperatorsLoadFromOptions(Operators o, PetscOptionItems *PetscOptionsObject)
 {
@@ -28,8 +29,8 @@ PetscErrorCode OperatorsLoadFromOptions(Operators o, PetscOptionItems *PetscOpti
     o->n_dense[i] = MAX_DENSE;
     PetscCall(PetscOptionsRealArray(name, help, NULL, o->dense[i], &o->n_dense[i], &set));
     if (!set) o->n_dense[i] = 0;
-    PetscCheck(!set || !o->load[i][0], o->comm, PETSC_ERR_USER_INPUT, "-operators_load_%s and -operators_dense_%s exclude each other",
-               letters[i], letters[i]);
+    PetscCheck(!set || !o->load[i][0], o->comm, PETSC_ERR_USER_INPUT,
+               "-operators_load_%s and -operators_dense_%s exclude each other", letters[i], letters[i]);
   }
   PetscFunctionReturn(0);
 }
@@ -44,20 +45,22 @@ static PetscErrorCode FileCheck(MPI_Comm comm, const char letter[], const char f
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   if (rank == 0) PetscCall(PetscTestFile(file, 'r', &readable));
   PetscCallMPI(MPI_Bcast(&readable, 1, MPIU_BOOL, 0, comm));
-  PetscCheck(readable, comm, PETSC_ERR_FILE_OPEN, "cannot read '%s' of -operators_load_%s: give a file written by -operators_save or MatView()",
-             file, letter);
+  PetscCheck(readable, comm, PETSC_ERR_FILE_OPEN,
+             "cannot read '%s' of -operators_load_%s: give a file written by -operators_save or MatView()", file,
+             letter);
   PetscFunctionReturn(0);
 }
 
 /* Sparse matrix from a dense list */
-static PetscErrorCode DenseCreate(MPI_Comm comm, const char letter[], PetscInt n_values, const PetscReal values[], Mat *A)
+static PetscErrorCode DenseCreate(MPI_Comm comm, const char letter[], PetscInt n_values, const PetscReal values[],
+                                  Mat *A)
 {
   const PetscInt n = (PetscInt)(PetscSqrtReal((PetscReal)n_values) + 0.5);
   PetscInt       first, last;
 
   PetscFunctionBeginUser;
-  PetscCheck(n * n == n_values, comm, PETSC_ERR_USER_INPUT, "-operators_dense_%s has %" PetscInt_FMT " values, which is no square number", letter,
-             n_values);
+  PetscCheck(n * n == n_values, comm, PETSC_ERR_USER_INPUT,
+             "-operators_dense_%s has %" PetscInt_FMT " values, which is no square number", letter, n_values);
   PetscCall(MatCreateAIJ(comm, PETSC_DECIDE, PETSC_DECIDE, n, n, n, NULL, n, NULL, A));
   PetscCall(MatGetOwnershipRange(*A, &first, &last));
   for (PetscInt i = first; i < last; i++)
@@ -88,20 +91,25 @@ PetscErrorCode OperatorsLoad(Operators o)
 
   PetscFunctionBeginUser;
   for (int i = 0; i < N_OPERATORS; i++) {
-    if (o->load[i][0]) PetscCall(FileLoad(o->comm, letters[i], o->load[i], &o->A[i]));
-    else if (o->n_dense[i]) PetscCall(DenseCreate(o->comm, letters[i], o->n_dense[i], o->dense[i], &o->A[i]));
+    if (o->load[i][0])
+      PetscCall(FileLoad(o->comm, letters[i], o->load[i], &o->A[i]));
+    else if (o->n_dense[i])
+      PetscCall(DenseCreate(o->comm, letters[i], o->n_dense[i], o->dense[i], &o->A[i]));
   }
   for (int i = OPERATOR_K; i <= OPERATOR_M; i++)
-    PetscCheck(o->A[i], o->comm, PETSC_ERR_USER_INPUT, "-operators_load_%s or -operators_dense_%s is missing: K and M are both needed",
-               letters[i], letters[i]);
+    PetscCheck(o->A[i], o->comm, PETSC_ERR_USER_INPUT,
+               "-operators_load_%s or -operators_dense_%s is missing: K and M are both needed", letters[i], letters[i]);
   PetscCall(MatGetSize(o->A[OPERATOR_K], &n, NULL));
   for (int i = 0; i < N_OPERATORS; i++) {
     if (!o->A[i]) continue;
     PetscCall(MatGetSize(o->A[i], &rows, &columns));
     PetscCheck(rows == n && columns == n, o->comm, PETSC_ERR_USER_INPUT,
-               "matrix %s is %" PetscInt_FMT " x %" PetscInt_FMT ", but K has %" PetscInt_FMT " rows: all must be square and alike", letters[i],
-               rows, columns, n);
+               "matrix %s is %" PetscInt_FMT " x %" PetscInt_FMT ", but K has %" PetscInt_FMT
+               " rows: all must be square and alike",
+               letters[i], rows, columns, n);
   }
+  PetscCheck(o->A[OPERATOR_H] || o->mu == 0, o->comm, PETSC_ERR_USER_INPUT,
+             "-contact_mu %.6g does nothing without -operators_load_h or -operators_dense_h", (double)o->mu);
   for (int i = OPERATOR_K; i <= OPERATOR_C && o->symmetric; i++) {
     PetscReal largest;
 
@@ -134,7 +142,8 @@ static PetscErrorCode FileSave(Operators o, const char name[], Mat A)
   error = MatView(A, viewer);
   PetscCall(PetscPopErrorHandler());
   if (error) (void)unlink(part);
-  PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write '%s' of -operators_save: %s", file, strerror(errno));
+  PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write '%s' of -operators_save: %s", file,
+             strerror(errno));
   PetscCall(PetscViewerDestroy(&viewer));
   if (rank == 0) failed = rename(part, file);
   PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
@@ -152,7 +161,8 @@ PetscErrorCode OperatorsSave(Operators o)
   PetscCallMPI(MPI_Comm_rank(o->comm, &rank));
   if (rank == 0 && mkdir(o->save, 0777) && errno != EEXIST) failed = errno;
   PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
-  PetscCheck(!failed, o->comm, PETSC_ERR_FILE_OPEN, "cannot make the folder '%s' of -operators_save: %s", o->save, strerror(failed));
+  PetscCheck(!failed, o->comm, PETSC_ERR_FILE_OPEN, "cannot make the folder '%s' of -operators_save: %s", o->save,
+             strerror(failed));
   PetscCall(OperatorsGetPencil(o, &pencil));
   PetscCall(FileSave(o, "K", o->Zr ? pencil.K : o->A[OPERATOR_K]));
   PetscCall(FileSave(o, "M", pencil.M));

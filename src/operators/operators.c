@@ -23,17 +23,20 @@ PetscErrorCode OperatorsSetModel(Operators operators, Model model, Contact conta
 PetscErrorCode OperatorsSetFromOptions(Operators operators)
 {
   static const char *const masses[] = {"consistent", "lumped"};
-  PetscInt  mass = 0;
-  PetscBool have;
+  PetscInt                 mass     = 0;
+  PetscBool                have;
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(operators->comm, NULL, "Operators", NULL);
   PetscCall(OperatorsLoadFromOptions(operators, PetscOptionsObject));
-  PetscCall(PetscOptionsEList("-operators_mass", "mass matrix of the bodies; lumped: row sums", NULL, masses, 2, masses[0], &mass, NULL));
-  PetscCall(PetscOptionsString("-operators_save", "folder for K.bin, M.bin, C.bin, H.bin (PETSc binary)", NULL, operators->save,
-                               operators->save, sizeof(operators->save), NULL));
+  PetscCall(PetscOptionsEList("-operators_mass", "mass matrix of the bodies; lumped: row sums", NULL, masses, 2,
+                              masses[0], &mass, NULL));
+  PetscCall(PetscOptionsString("-operators_save", "folder for K.bin, M.bin, C.bin, H.bin (PETSc binary)", NULL,
+                               operators->save, operators->save, sizeof(operators->save), NULL));
   PetscCall(OperatorsHaveMatrices(operators, &have));
-  if (have) PetscCall(PetscOptionsReal("-contact_mu", "friction coefficient of K + mu H", NULL, operators->mu, &operators->mu, NULL));
+  if (have)
+    PetscCall(
+      PetscOptionsReal("-contact_mu", "friction coefficient of K + mu H", NULL, operators->mu, &operators->mu, NULL));
   PetscOptionsEnd();
   operators->lump = mass == 1 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
@@ -116,12 +119,15 @@ PetscErrorCode OperatorsGetPencil(Operators operators, OperatorsPencil *pencil)
   PetscFunctionBeginUser;
   if (!p->K) {
     PetscCall(StiffnessCreate(operators, &K));
-    p->symmetric = operators->symmetric && K == operators->A[OPERATOR_K] && operators->Zl == operators->Zr ? PETSC_TRUE : PETSC_FALSE;
+    p->symmetric = operators->symmetric && K == operators->A[OPERATOR_K] && operators->Zl == operators->Zr
+                     ? PETSC_TRUE
+                     : PETSC_FALSE;
     PetscCall(Project(K, operators->Zl, operators->Zr, &p->K));
     PetscCall(Project(operators->A[OPERATOR_C], operators->Zl, operators->Zr, &p->C));
     PetscCall(Project(operators->A[OPERATOR_M], operators->Zl, operators->Zr, &p->M));
     PetscCall(MatSetOption(p->K, MAT_SYMMETRIC, p->symmetric));
-    PetscCall(MatSetOption(p->M, MAT_SYMMETRIC, operators->symmetric && operators->Zl == operators->Zr ? PETSC_TRUE : PETSC_FALSE));
+    PetscCall(MatSetOption(p->M, MAT_SYMMETRIC,
+                           operators->symmetric && operators->Zl == operators->Zr ? PETSC_TRUE : PETSC_FALSE));
     PetscCall(MatDestroy(&K));
   }
   *pencil = *p;
@@ -149,8 +155,10 @@ PetscErrorCode OperatorsExpand(Operators operators, PetscBool left, Vec q, Vec u
   const Mat Z = left ? operators->Zl : operators->Zr;
 
   PetscFunctionBeginUser;
-  if (Z) PetscCall(MatMult(Z, q, u));
-  else PetscCall(VecCopy(q, u));
+  if (Z)
+    PetscCall(MatMult(Z, q, u));
+  else
+    PetscCall(VecCopy(q, u));
   PetscFunctionReturn(0);
 }
 
@@ -179,11 +187,13 @@ PetscErrorCode OperatorsView(Operators operators, PetscViewer viewer)
   PetscCall(MatGetSize(operators->A[OPERATOR_K], &n, NULL));
   PetscCall(MatGetSize(operators->pencil.K, &n_pencil, NULL));
   PetscCall(MatGetInfo(operators->pencil.K, MAT_GLOBAL_SUM, &info));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "operators: %" PetscInt_FMT " unknowns, %.0f nonzeros, %s, %s, %s mass\n", n_pencil,
-                                   (double)info.nz_used, operators->pencil.symmetric ? "no friction: symmetric" : "friction: unsymmetric",
-                                   operators->pencil.C ? "damped: quadratic problem" : "undamped", operators->lump ? "lumped" : "consistent"));
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer, "operators: %" PetscInt_FMT " unknowns, %.0f nonzeros, %s, %s, %s mass\n", n_pencil, (double)info.nz_used,
+    operators->pencil.symmetric ? "no friction: symmetric" : "friction: unsymmetric",
+    operators->pencil.C ? "damped: quadratic problem" : "undamped", operators->lump ? "lumped" : "consistent"));
   if (n_pencil < n)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " unknowns eliminated by the contact constraint\n", n - n_pencil));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " unknowns eliminated by the contact constraint\n",
+                                     n - n_pencil));
   PetscFunctionReturn(0);
 }
 

@@ -4,28 +4,22 @@
 #include <squeal/operators.h>
 
 /* The four matrices, in the order of their option names */
-typedef enum {
-  OPERATOR_K,
-  OPERATOR_M,
-  OPERATOR_C,
-  OPERATOR_H,
-  N_OPERATORS
-} OperatorKind;
+typedef enum { OPERATOR_K, OPERATOR_M, OPERATOR_C, OPERATOR_H, N_OPERATORS } OperatorKind;
 
 struct _p_Operators {
-  MPI_Comm  comm;
-  Model     model;   /* NULL for loaded or dense matrices */
-  Contact   contact;
+  MPI_Comm comm;
+  Model    model; /* NULL for loaded or dense matrices */
+  Contact  contact;
   /* set by options */
   char       load[N_OPERATORS][PETSC_MAX_PATH_LEN], save[PETSC_MAX_PATH_LEN];
   PetscReal *dense[N_OPERATORS];
   PetscInt   n_dense[N_OPERATORS];
   PetscBool  lump;
   /* built by OperatorsSetUp() */
-  Mat       A[N_OPERATORS]; /* C and H may be NULL */
-  PetscReal mu;
-  Mat       Zr, Zl;         /* right and left null spaces of the constraints; NULL without constraints */
-  PetscBool symmetric;      /* K, M and C are symmetric; always true for a model */
+  Mat             A[N_OPERATORS]; /* C and H may be NULL */
+  PetscReal       mu;
+  Mat             Zr, Zl;    /* right and left null spaces of the constraints; NULL without constraints */
+  PetscBool       symmetric; /* K, M and C are symmetric; always true for a model */
   OperatorsPencil pencil, frictionless;
 };
 

@@ -1,14 +1,15 @@
 /*
-   Preallocation: couplings of the unknowns of two vertices of a common cell. Each rank counts, for every vertex that it has, the
-   distinct neighbours through its own cells, apart by whether the neighbour's unknowns live with the row's owner; the counts are
-   summed over the ranks that share the vertex. Neighbours that two ranks see count twice: an upper bound, exact in the interior,
-   at a fifth of the time of DMCreateMatrix(), which walks the closure of edges and faces too.
+   Preallocation: couplings of the unknowns of two vertices of a common cell. Each rank counts, for every vertex that
+   it has, the distinct neighbours through its own cells, apart by whether the neighbour's unknowns live with the
+   row's owner; the counts are summed over the ranks that share the vertex. Neighbours that two ranks see count twice:
+   an upper bound, exact in the interior, at a fifth of the time of DMCreateMatrix(), which walks the closure of edges
+   and faces too.
 */
 #include "operatorsimpl.h"
 
 /* Cells around each local vertex as lists: those of vertex v are cell[first[v]] .. cell[first[v + 1] - 1] */
 typedef struct {
-  PetscInt n_vertices, vStart, n_cells;
+  PetscInt  n_vertices, vStart, n_cells;
   PetscInt *first, *cell;
 } Star;
 
@@ -36,7 +37,8 @@ static PetscErrorCode StarCreate(Model model, DM dm, PetscInt n_nodes, Star *s)
 }
 
 /* Owner of each local vertex, by the first of its unknowns; -1 when all are fixed */
-static PetscErrorCode OwnersFind(MPI_Comm comm, const Star *s, const PetscInt unknowns[], PetscInt n_own, PetscMPIInt owner[])
+static PetscErrorCode OwnersFind(MPI_Comm comm, const Star *s, const PetscInt unknowns[], PetscInt n_own,
+                                 PetscMPIInt owner[])
 {
   PetscLayout layout;
 
@@ -54,7 +56,8 @@ static PetscErrorCode OwnersFind(MPI_Comm comm, const Star *s, const PetscInt un
 }
 
 /* Adds to count[v][0] the neighbours of v with the same owner, to count[v][1] the others */
-static PetscErrorCode NeighboursCount(Model model, const Star *s, PetscInt n_nodes, const PetscMPIInt owner[], PetscScalar count[])
+static PetscErrorCode NeighboursCount(Model model, const Star *s, PetscInt n_nodes, const PetscMPIInt owner[],
+                                      PetscScalar count[])
 {
   PetscInt *seen, vertices[ELEMENT_MAX_NODES];
   PetscReal x[ELEMENT_MAX_DOFS];
@@ -78,7 +81,8 @@ static PetscErrorCode NeighboursCount(Model model, const Star *s, PetscInt n_nod
 }
 
 /* Entries per owned row inside and outside the diagonal block */
-static PetscErrorCode RowsCount(MPI_Comm comm, Model model, DM dm, PetscInt n_own, PetscInt first_own, PetscInt inside[], PetscInt outside[])
+static PetscErrorCode RowsCount(MPI_Comm comm, Model model, DM dm, PetscInt n_own, PetscInt first_own,
+                                PetscInt inside[], PetscInt outside[])
 {
   const Element  *element;
   const PetscInt *unknowns;
