@@ -82,7 +82,7 @@ PetscErrorCode OptionsGetReals(PetscOptionItems *PetscOptionsObject, const char 
   PetscBool   given;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsRealArray(option, help, NULL, values, &count, NULL));
+  PetscCall(PetscOptionsRealArray(option, help, "options.h", values, &count, NULL));
   count = MAX_REALS; /* PetscOptionsRealArray() leaves out those beyond n */
   PetscCall(PetscOptionsGetRealArray(PetscOptionsObject->options, prefix, option, all, &count, &given));
   PetscCheck(!given || count == n, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,

@@ -25,16 +25,20 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", c->name));
   PetscCall(PetscSNPrintf(title, sizeof(title), "Contact %s", c->name));
   PetscOptionsBegin(comm, prefix, title, NULL);
-  PetscCall(PetscOptionsStringArray("-surfaces", "slave,master: named surfaces (required)", NULL, surfaces, &n, &set));
-  PetscCall(PetscOptionsEList("-law", "k_n per pair, or the exact constraint", NULL, laws, 2, laws[0], &law, NULL));
-  PetscCall(PetscOptionsReal("-mu", "friction coefficient", NULL, c->mu, &c->mu, NULL));
   PetscCall(
-    PetscOptionsReal("-mu_slope", "its slope with the sliding speed, s/m", NULL, c->mu_slope, &c->mu_slope, NULL));
-  PetscCall(PetscOptionsReal("-kn", "normal stiffness per pair, N/m (penalty)", NULL, c->kn, &c->kn, NULL));
-  PetscCall(PetscOptionsReal("-tolerance", "largest distance of a pair, m", NULL, c->tolerance, &c->tolerance, NULL));
-  PetscCall(PetscOptionsReal("-force", "total normal force in the sliding state, N", NULL, c->force, &c->force, NULL));
-  PetscCall(PetscOptionsReal("-speed", "sliding speed, m/s", NULL, c->speed, &c->speed, NULL));
-  PetscCall(PetscOptionsBool("-friction_damping", "damping mu N/v across the slip, mu_slope N along it", NULL,
+    PetscOptionsStringArray("-surfaces", "slave,master: named surfaces (required)", "contact.h", surfaces, &n, &set));
+  PetscCall(
+    PetscOptionsEList("-law", "k_n per pair, or the exact constraint", "contact.h", laws, 2, laws[0], &law, NULL));
+  PetscCall(PetscOptionsReal("-mu", "friction coefficient", "contact.h", c->mu, &c->mu, NULL));
+  PetscCall(PetscOptionsReal("-mu_slope", "its slope with the sliding speed, s/m", "contact.h", c->mu_slope,
+                             &c->mu_slope, NULL));
+  PetscCall(PetscOptionsReal("-kn", "normal stiffness per pair, N/m (penalty)", "contact.h", c->kn, &c->kn, NULL));
+  PetscCall(
+    PetscOptionsReal("-tolerance", "largest distance of a pair, m", "contact.h", c->tolerance, &c->tolerance, NULL));
+  PetscCall(
+    PetscOptionsReal("-force", "total normal force in the sliding state, N", "contact.h", c->force, &c->force, NULL));
+  PetscCall(PetscOptionsReal("-speed", "sliding speed, m/s", "contact.h", c->speed, &c->speed, NULL));
+  PetscCall(PetscOptionsBool("-friction_damping", "damping mu N/v across the slip, mu_slope N along it", "contact.h",
                              c->damping, &c->damping, NULL));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-slip", "direction of the slave's velocity relative to the master", 3,
                             c->slip, NULL));

@@ -21,12 +21,12 @@ PetscErrorCode ModelSetFromOptions(Model model)
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(model->comm, NULL, "Model", NULL);
-  PetscCall(PetscOptionsEList("-model_source", "mesh: the built-in disc-pad-beam rig, or a file", NULL, sources, 2,
+  PetscCall(PetscOptionsEList("-model_source", "mesh: the built-in disc-pad-beam rig, or a file", "model.h", sources, 2,
                               sources[0], &source, &given));
-  PetscCall(PetscOptionsString("-model_mesh", "Gmsh file, format 2.2 or 4.1, with physical names", NULL, model->mesh,
-                               model->mesh, sizeof(model->mesh), &has_mesh));
-  PetscCall(PetscOptionsString("-model_element", "element formulation: incompatible (QM6) or full (trilinear)", NULL,
-                               model->formulation, model->formulation, sizeof(model->formulation), NULL));
+  PetscCall(PetscOptionsString("-model_mesh", "Gmsh file, format 2.2 or 4.1, with physical names", "model.h",
+                               model->mesh, model->mesh, sizeof(model->mesh), &has_mesh));
+  PetscCall(PetscOptionsString("-model_element", "element formulation: incompatible (QM6) or full (trilinear)",
+                               "model.h", model->formulation, model->formulation, sizeof(model->formulation), NULL));
   PetscOptionsEnd();
   PetscCheck(!given || source == 1 || !has_mesh, model->comm, PETSC_ERR_USER_INPUT,
              "-model_mesh %s does nothing with -model_source rig; choose -model_source file", model->mesh);

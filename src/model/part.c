@@ -13,11 +13,12 @@ static PetscErrorCode PartSetFromOptions(MPI_Comm comm, Part *part)
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", part->name));
   PetscCall(PetscSNPrintf(title, sizeof(title), "Part %s", part->name));
   PetscOptionsBegin(comm, prefix, title, NULL);
-  PetscCall(PetscOptionsReal("-young", "Young's modulus, Pa (required)", NULL, part->young, &part->young, NULL));
-  PetscCall(PetscOptionsReal("-poisson", "Poisson's ratio, in (-1, 0.5)", NULL, part->poisson, &part->poisson, NULL));
-  PetscCall(PetscOptionsReal("-density", "density, kg/m^3 (required)", NULL, part->density, &part->density, NULL));
-  PetscCall(PetscOptionsReal("-alpha", "Rayleigh factor of the mass, 1/s", NULL, part->alpha, &part->alpha, NULL));
-  PetscCall(PetscOptionsReal("-beta", "Rayleigh factor of the stiffness, s", NULL, part->beta, &part->beta, NULL));
+  PetscCall(PetscOptionsReal("-young", "Young's modulus, Pa (required)", "model.h", part->young, &part->young, NULL));
+  PetscCall(
+    PetscOptionsReal("-poisson", "Poisson's ratio, in (-1, 0.5)", "model.h", part->poisson, &part->poisson, NULL));
+  PetscCall(PetscOptionsReal("-density", "density, kg/m^3 (required)", "model.h", part->density, &part->density, NULL));
+  PetscCall(PetscOptionsReal("-alpha", "Rayleigh factor of the mass, 1/s", "model.h", part->alpha, &part->alpha, NULL));
+  PetscCall(PetscOptionsReal("-beta", "Rayleigh factor of the stiffness, s", "model.h", part->beta, &part->beta, NULL));
   PetscOptionsEnd();
   PetscFunctionReturn(0);
 }

@@ -29,7 +29,7 @@ static PetscErrorCode OptionInts(PetscOptionItems *PetscOptionsObject, const cha
   PetscInt count = n;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsIntArray(option, help, NULL, value, &count, NULL));
+  PetscCall(PetscOptionsIntArray(option, help, "model.h", value, &count, NULL));
   PetscCall(OptionCheckCount(PetscOptionsObject->comm, option, n));
   PetscFunctionReturn(0);
 }
@@ -41,7 +41,7 @@ static PetscErrorCode OptionReals(PetscOptionItems *PetscOptionsObject, const ch
   PetscInt count = n;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsRealArray(option, help, NULL, value, &count, NULL));
+  PetscCall(PetscOptionsRealArray(option, help, "model.h", value, &count, NULL));
   PetscCall(OptionCheckCount(PetscOptionsObject->comm, option, n));
   PetscFunctionReturn(0);
 }
@@ -148,14 +148,14 @@ PetscErrorCode RigSetFromOptions(MPI_Comm comm, Rig *rig)
     .beam_rows      = {0.02,  0.08}
   };
   PetscOptionsBegin(comm, RIG_PREFIX, "Built-in disc, pad and beam", NULL);
-  PetscCall(
-    PetscOptionsReal("-disc_inner", "Inner radius of the disc (m)", NULL, rig->disc_inner, &rig->disc_inner, NULL));
-  PetscCall(
-    PetscOptionsReal("-disc_outer", "Outer radius of the disc (m)", NULL, rig->disc_outer, &rig->disc_outer, NULL));
-  PetscCall(PetscOptionsReal("-disc_thickness", "Thickness of the disc (m)", NULL, rig->disc_thickness,
+  PetscCall(PetscOptionsReal("-disc_inner", "Inner radius of the disc (m)", "model.h", rig->disc_inner,
+                             &rig->disc_inner, NULL));
+  PetscCall(PetscOptionsReal("-disc_outer", "Outer radius of the disc (m)", "model.h", rig->disc_outer,
+                             &rig->disc_outer, NULL));
+  PetscCall(PetscOptionsReal("-disc_thickness", "Thickness of the disc (m)", "model.h", rig->disc_thickness,
                              &rig->disc_thickness, NULL));
   PetscCall(PetscOptionsEList("-disc_mesh", "Grid of the disc: axisymmetric, or with a patch that matches the pad",
-                              NULL, meshes, 2, meshes[mesh], &mesh, NULL));
+                              "model.h", meshes, 2, meshes[mesh], &mesh, NULL));
   rig->patch = mesh ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(PetscArraycpy(elements, rig->patch ? ((PetscInt[]){21, 100, 3}) : ((PetscInt[]){16, 160, 4}), 3));
   PetscCall(OptionInts(PetscOptionsObject, "-disc_elements",
@@ -164,17 +164,18 @@ PetscErrorCode RigSetFromOptions(MPI_Comm comm, Rig *rig)
   rig->disc_ntheta = elements[1];
   rig->disc_nz     = elements[2];
   PetscCall(PetscOptionsReal("-disc_spread", "Rings away from the patch: 0 keep their radii, 1 become uniform (-)",
-                             NULL, rig->disc_spread, &rig->disc_spread, NULL));
-  PetscCall(PetscOptionsBool("-pad", "Pad and beam as well as the disc", NULL, rig->with_pad, &rig->with_pad, NULL));
+                             "model.h", rig->disc_spread, &rig->disc_spread, NULL));
   PetscCall(
-    PetscOptionsReal("-pad_radius", "Radius of the pad's centre (m)", NULL, rig->pad_radius, &rig->pad_radius, NULL));
+    PetscOptionsBool("-pad", "Pad and beam as well as the disc", "model.h", rig->with_pad, &rig->with_pad, NULL));
+  PetscCall(PetscOptionsReal("-pad_radius", "Radius of the pad's centre (m)", "model.h", rig->pad_radius,
+                             &rig->pad_radius, NULL));
   PetscCall(
     OptionReals(PetscOptionsObject, "-pad_size", "Size of the pad in x, y, z (m; 0.01,0.01,0.01)", 3, rig->pad_size));
   PetscCall(
     OptionInts(PetscOptionsObject, "-pad_elements", "Elements of the pad in x, y, z (10,10,10)", 3, rig->pad_n));
   PetscCall(
-    PetscOptionsReal("-beam_height", "Height of the beam (m)", NULL, rig->beam_height, &rig->beam_height, NULL));
-  PetscCall(PetscOptionsInt("-beam_elements", "Elements of the beam over its height (-)", NULL, rig->beam_nz,
+    PetscOptionsReal("-beam_height", "Height of the beam (m)", "model.h", rig->beam_height, &rig->beam_height, NULL));
+  PetscCall(PetscOptionsInt("-beam_elements", "Elements of the beam over its height (-)", "model.h", rig->beam_nz,
                             &rig->beam_nz, NULL));
   PetscCall(OptionReals(PetscOptionsObject, "-beam_rows",
                         "Heights of the spring rows above the beam's lower end (m; 0.02,0.08)", 2, rig->beam_rows));

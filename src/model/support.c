@@ -11,7 +11,7 @@ static PetscErrorCode SetNameFromOptions(PetscOptionItems *PetscOptionsObject, c
   char name[256] = "";
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsString("-set", "named surface, curve or point of the mesh (required)", NULL, name, name,
+  PetscCall(PetscOptionsString("-set", "named surface, curve or point of the mesh (required)", "model.h", name, name,
                                sizeof(name), NULL));
   PetscCall(PetscStrallocpy(name, set));
   PetscFunctionReturn(0);
@@ -27,7 +27,8 @@ static PetscErrorCode SupportSetFromOptions(MPI_Comm comm, Support *support)
   PetscCall(PetscSNPrintf(title, sizeof(title), "Support %s", support->name));
   PetscOptionsBegin(comm, prefix, title, NULL);
   PetscCall(SetNameFromOptions(PetscOptionsObject, &support->set));
-  PetscCall(PetscOptionsString("-fix", "directions that are held: some of x, y, z", NULL, fix, fix, sizeof(fix), NULL));
+  PetscCall(
+    PetscOptionsString("-fix", "directions that are held: some of x, y, z", "model.h", fix, fix, sizeof(fix), NULL));
   PetscOptionsEnd();
   PetscCheck(fix[0] && strspn(fix, "xyz") == strlen(fix), comm, PETSC_ERR_USER_INPUT,
              "-%s_fix '%s' must be some of the letters x, y, z", support->name, fix);

@@ -33,15 +33,15 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   PetscOptionsBegin(modes->comm, NULL, "Modes", NULL);
   PetscCall(OptionsGetReals(PetscOptionsObject, "-modes_band", "all modes with frequency in f1,f2, Hz", 2, modes->band,
                             &modes->has_band));
-  PetscCall(PetscOptionsReal("-modes_target", "instead of a band: the modes nearest to this frequency, Hz", NULL,
+  PetscCall(PetscOptionsReal("-modes_target", "instead of a band: the modes nearest to this frequency, Hz", "modes.h",
                              modes->target, &modes->target, &has_target));
-  PetscCall(PetscOptionsInt("-modes_count", "how many of them", NULL, modes->count, &modes->count, &has_count));
+  PetscCall(PetscOptionsInt("-modes_count", "how many of them", "modes.h", modes->count, &modes->count, &has_count));
   PetscCall(PetscOptionsReal(
     "-modes_growth", "largest growth or decay that a band must cover, 1/s (0: a tenth of the angular frequency f2)",
-    NULL, modes->growth, &modes->growth, NULL));
-  PetscCall(PetscOptionsBool("-modes_left", "left vectors: condition and error of each eigenvalue", NULL, modes->left,
-                             &modes->left, NULL));
-  PetscCall(PetscOptionsString("-modes_disc", "part whose shapes are named by nodal circles and diameters", NULL,
+    "modes.h", modes->growth, &modes->growth, NULL));
+  PetscCall(PetscOptionsBool("-modes_left", "left vectors: condition and error of each eigenvalue", "modes.h",
+                             modes->left, &modes->left, NULL));
+  PetscCall(PetscOptionsString("-modes_disc", "part whose shapes are named by nodal circles and diameters", "modes.h",
                                modes->disc, modes->disc, sizeof(modes->disc), NULL));
   PetscOptionsEnd();
   PetscCheck(!modes->has_band || (modes->band[0] >= 0 && modes->band[1] > modes->band[0]), modes->comm,

@@ -12,7 +12,7 @@ PetscErrorCode ProgressSetFromOptions(MPI_Comm comm, Progress *progress)
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   progress->on = isatty(STDERR_FILENO) ? PETSC_TRUE : PETSC_FALSE;
   PetscOptionsBegin(comm, NULL, "Progress", NULL);
-  PetscCall(PetscOptionsBool("-progress", "progress line on stderr; by default where it is a terminal", NULL,
+  PetscCall(PetscOptionsBool("-progress", "progress line on stderr; by default where it is a terminal", "modes.h",
                              progress->on, &progress->on, NULL));
   PetscOptionsEnd();
   if (rank) progress->on = PETSC_FALSE;

@@ -22,12 +22,12 @@ PetscErrorCode OperatorsLoadFromOptions(Operators o, PetscOptionItems *PetscOpti
 
     PetscCall(PetscSNPrintf(name, sizeof(name), "-operators_load_%s", letters[i]));
     PetscCall(PetscSNPrintf(help, sizeof(help), "PETSc binary file of the %s", meanings[i]));
-    PetscCall(PetscOptionsString(name, help, NULL, o->load[i], o->load[i], sizeof(o->load[i]), NULL));
+    PetscCall(PetscOptionsString(name, help, "operators.h", o->load[i], o->load[i], sizeof(o->load[i]), NULL));
     PetscCall(PetscSNPrintf(name, sizeof(name), "-operators_dense_%s", letters[i]));
     PetscCall(PetscSNPrintf(help, sizeof(help), "small dense matrix of the %s, rows one after another", meanings[i]));
     PetscCall(PetscMalloc1(MAX_DENSE, &o->dense[i]));
     o->n_dense[i] = MAX_DENSE;
-    PetscCall(PetscOptionsRealArray(name, help, NULL, o->dense[i], &o->n_dense[i], &set));
+    PetscCall(PetscOptionsRealArray(name, help, "operators.h", o->dense[i], &o->n_dense[i], &set));
     if (!set) o->n_dense[i] = 0;
     PetscCheck(!set || !o->load[i][0], o->comm, PETSC_ERR_USER_INPUT,
                "-operators_load_%s and -operators_dense_%s exclude each other", letters[i], letters[i]);

@@ -29,14 +29,14 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
   PetscFunctionBeginUser;
   PetscOptionsBegin(operators->comm, NULL, "Operators", NULL);
   PetscCall(OperatorsLoadFromOptions(operators, PetscOptionsObject));
-  PetscCall(PetscOptionsEList("-operators_mass", "mass matrix of the bodies; lumped: row sums", NULL, masses, 2,
-                              masses[0], &mass, NULL));
-  PetscCall(PetscOptionsString("-operators_save", "folder for K.bin, M.bin, C.bin, H.bin (PETSc binary)", NULL,
+  PetscCall(PetscOptionsEList("-operators_mass", "mass matrix of the bodies; lumped: row sums", "operators.h", masses,
+                              2, masses[0], &mass, NULL));
+  PetscCall(PetscOptionsString("-operators_save", "folder for K.bin, M.bin, C.bin, H.bin (PETSc binary)", "operators.h",
                                operators->save, operators->save, sizeof(operators->save), NULL));
   PetscCall(OperatorsHaveMatrices(operators, &have));
   if (have)
-    PetscCall(
-      PetscOptionsReal("-contact_mu", "friction coefficient of K + mu H", NULL, operators->mu, &operators->mu, NULL));
+    PetscCall(PetscOptionsReal("-contact_mu", "friction coefficient of K + mu H", "operators.h", operators->mu,
+                               &operators->mu, NULL));
   PetscOptionsEnd();
   operators->lump = mass == 1 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
