@@ -63,10 +63,9 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
   PetscErrorCode error;
 
   PetscFunctionBeginUser;
+  (void)signal(SIGXFSZ, SIG_IGN); /* a file beyond `ulimit -f` is an error of the write, as a full disk is */
   PetscCallMPI(MPI_Init(argc, argv));
   (void)H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  (void)signal(SIGXFSZ,
-               SIG_IGN); /* a file beyond the limit of `ulimit -f` is an error of the write, as a full disk is */
   PetscCall(PetscPushErrorHandler(KeepError, error_message));
   error = SlepcInitialize(argc, argv, NULL, help);
   if (error) NameOptionsFiles(*argc, *argv, error_message);

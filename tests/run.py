@@ -152,7 +152,7 @@ class Runner:
             raise
 
     def check_error(self, name, run, status, stderr):
-        lines = [line for line in MPIRUN_REMARK.sub("", stderr).splitlines() if line.strip()]
+        lines = [line for line in MPIRUN_REMARK.sub("", stderr).splitlines() if line.strip(" \0")]
         require(status != 0, "exit status 0, but an error was expected")
         require(len(lines) == 1, f"{len(lines)} lines on stderr, but one was expected")
         require(re.search(run["error"], lines[0]), f"the message does not match {run['error']!r}")
