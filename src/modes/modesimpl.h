@@ -20,6 +20,7 @@ PETSC_INTERN PetscErrorCode SpectrumCreate(PetscInt capacity, Spectrum *spectrum
 PETSC_INTERN PetscErrorCode SpectrumAdd(Spectrum *spectrum, PetscReal sigma, PetscReal omega, Vec xr, Vec xi);
 PETSC_INTERN PetscErrorCode SpectrumSort(Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode SpectrumKeep(Spectrum *spectrum, PetscInt first, PetscInt n);
+PETSC_INTERN PetscErrorCode SpectrumRemove(Spectrum *spectrum, PetscInt i);
 PETSC_INTERN PetscErrorCode SpectrumDestroy(Spectrum *spectrum);
 
 /* Progress line on stderr: what is done, of how much, and the time left */
@@ -87,6 +88,7 @@ PETSC_INTERN PetscErrorCode WindowReach(Modes modes, Window *window); /* sets hi
 PETSC_INTERN PetscErrorCode WindowCountRigid(Modes modes, Window *window, const Spectrum *spectrum);
 PETSC_INTERN PetscReal WindowDistance(const Window *window, const Spectrum *spectrum, PetscInt i); /* from i target */
 PETSC_INTERN PetscErrorCode WindowSelect(const Window *window, Spectrum *spectrum);
+PETSC_INTERN PetscInt       WindowFarthest(const Window *window, const Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *spectrum, PetscBool *complete);
 PETSC_INTERN PetscErrorCode WindowDescribe(const Window *window, PetscBool proven, PetscBool left, PetscReal worst,
                                            char text[], size_t size);

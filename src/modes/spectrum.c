@@ -58,6 +58,16 @@ PetscErrorCode SpectrumSort(Spectrum *s)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SpectrumRemove(Spectrum *s, PetscInt i)
+{
+  PetscFunctionBeginUser;
+  PetscCall(VecDestroy(&s->xr[i]));
+  PetscCall(VecDestroy(&s->xi[i]));
+  for (PetscInt j = i; j + 1 < s->n; j++) SpectrumSwap(s, j, j + 1);
+  s->n--;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SpectrumKeep(Spectrum *s, PetscInt first, PetscInt n)
 {
   PetscFunctionBeginUser;

@@ -8,22 +8,9 @@
 /* Removes mode i */
 static PetscErrorCode ModeRemove(Modes modes, PetscInt i)
 {
-  Spectrum *const spectra[] = {&modes->right, &modes->left_spectrum};
-
   PetscFunctionBeginUser;
-  for (int k = 0; k < 2; k++) {
-    Spectrum *s = spectra[k];
-
-    if (!s->n) continue;
-    PetscCall(VecDestroy(&s->xr[i]));
-    PetscCall(VecDestroy(&s->xi[i]));
-    for (PetscInt j = i; j + 1 < s->n; j++) {
-      s->sigma[j] = s->sigma[j + 1], s->omega[j] = s->omega[j + 1];
-      s->xr[j] = s->xr[j + 1], s->xi[j] = s->xi[j + 1];
-    }
-    s->n--;
-    s->xr[s->n] = s->xi[s->n] = NULL;
-  }
+  PetscCall(SpectrumRemove(&modes->right, i));
+  if (modes->left_spectrum.n) PetscCall(SpectrumRemove(&modes->left_spectrum, i));
   for (PetscInt j = i; j + 1 < modes->n; j++) modes->mode[j] = modes->mode[j + 1];
   modes->n--;
   PetscFunctionReturn(0);
@@ -40,11 +27,7 @@ PetscErrorCode TwinsDrop(Modes modes, const Window *window)
     PetscCall(ModeRemove(modes, i));
     n_rigid--;
   }
-  while (window->count && modes->n > window->count) {
-    const PetscInt last = modes->n - 1;
-
-    PetscCall(ModeRemove(
-      modes, WindowDistance(window, &modes->right, 0) > WindowDistance(window, &modes->right, last) ? 0 : last));
-  }
+  while (window->count && modes->n > window->count)
+    PetscCall(ModeRemove(modes, WindowFarthest(window, &modes->right)));
   PetscFunctionReturn(0);
 }

@@ -100,20 +100,27 @@ PetscReal WindowDistance(const Window *window, const Spectrum *s, PetscInt i)
   return PetscSqrtReal(PetscSqr(s->omega[i] - window->target) + PetscSqr(s->sigma[i]));
 }
 
+/* The eigenvalue farthest from the target; of a double one the last, so that the order of frequency decides */
+PetscInt WindowFarthest(const Window *window, const Spectrum *s)
+{
+  PetscInt farthest = 0;
+
+  for (PetscInt i = 1; i < s->n; i++)
+    if (WindowDistance(window, s, i) >= WindowDistance(window, s, farthest)) farthest = i;
+  return farthest;
+}
+
 PetscErrorCode WindowSelect(const Window *window, Spectrum *s)
 {
   PetscInt first = 0, n = s->n;
 
   PetscFunctionBeginUser;
-  if (window->count) { /* drop the farther end until the count is left; the spectrum is in order of frequency */
-    while (n > window->count + window->rigid) {
-      if (WindowDistance(window, s, first) > WindowDistance(window, s, first + n - 1)) first++;
-      n--;
-    }
-  } else {
-    while (n > 0 && s->omega[first] < window->low * (1 - EDGE)) first++, n--;
-    while (n > 0 && s->omega[first + n - 1] > window->high * (1 + EDGE)) n--;
+  if (window->count) {
+    while (s->n > window->count + window->rigid) PetscCall(SpectrumRemove(s, WindowFarthest(window, s)));
+    PetscFunctionReturn(0);
   }
+  while (n > 0 && s->omega[first] < window->low * (1 - EDGE)) first++, n--;
+  while (n > 0 && s->omega[first + n - 1] > window->high * (1 + EDGE)) n--;
   PetscCall(SpectrumKeep(s, first, n));
   PetscFunctionReturn(0);
 }
