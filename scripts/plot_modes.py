@@ -11,7 +11,6 @@ Reads modes.csv and modes.h5; without modes.h5 only the eigenvalues are drawn.
 """
 
 import argparse
-import csv
 import sys
 from pathlib import Path
 
@@ -25,9 +24,10 @@ from matplotlib.collections import PolyCollection
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 from matplotlib.tri import Triangulation
+from squeal_tables import BLUE, GREEN, GREY, MINUS, VERMILION, BadInput, flag, save_picture
+from squeal_tables import read_table as read_rows
 
-# Safe for colour-blind readers (Okabe and Ito)
-STABLE, UNSTABLE, CONTACT, SHADE = "#0072B2", "#D55E00", "#009E73", "#8A8A8A"
+STABLE, UNSTABLE, CONTACT, SHADE = BLUE, VERMILION, GREEN, GREY
 COLOURS = "RdBu_r"
 WIDTH, DPI = 16, 100  # inches, dots per inch
 MAX_SHAPES = 4
@@ -37,10 +37,6 @@ EXAGGERATION = 0.12  # largest displacement of the side view, in heights of the 
 
 # Faces of VTK's hexahedron, seen anticlockwise from outside
 HEX_FACES = numpy.array([[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]])
-
-
-class BadInput(Exception):
-    """One line for the user."""
 
 
 class Scene:
@@ -104,25 +100,17 @@ def boundary_faces(cells):
 
 
 def read_table(path):
-    """Rows of modes.csv as dictionaries with numbers."""
-    try:
-        with path.open(newline="") as lines:
-            rows = list(csv.DictReader(lines))
-        in_khz = max((float(row["freq_hz"]) for row in rows), default=0) >= 1000
-        return [{
-            "mode": int(row["mode"]),
-            "frequency": float(row["freq_hz"]) / (1e3 if in_khz else 1),
-            "unit": "kHz" if in_khz else "Hz",
-            "growth": float(row["growth_rad_s"]),
-            "unstable": row["unstable"] not in ("0", "false"),
-            "label": row["label"],
-        } for row in rows]
-    except FileNotFoundError:
-        raise BadInput(f"{path}: no such file; run squeal first, or name its -output_dir") from None
-    except KeyError as column:
-        raise BadInput(f"{path}: no column {column}") from None
-    except (ValueError, TypeError, csv.Error) as error:
-        raise BadInput(f"{path}: {error}") from None
+    """Rows of modes.csv, frequencies in the unit of the picture."""
+    rows = read_rows(path, {"mode": int, "freq_hz": float, "growth_rad_s": float, "unstable": flag, "label": str})
+    in_khz = max((row["freq_hz"] for row in rows), default=0) >= 1000
+    return [{
+        "mode": row["mode"],
+        "frequency": row["freq_hz"] / (1e3 if in_khz else 1),
+        "unit": "kHz" if in_khz else "Hz",
+        "growth": row["growth_rad_s"],
+        "unstable": row["unstable"],
+        "label": row["label"],
+    } for row in rows]
 
 
 def choose_modes(table, wanted):
@@ -199,7 +187,7 @@ def draw_map(axes, scene, displacement, row):
                   color=CONTACT, lw=1.8)
     axes.set_aspect("equal")
     axes.set_xlabel("mm")
-    growth = f"growth {row['growth']:+.3g} rad/s".replace("-", "\N{MINUS SIGN}")
+    growth = f"growth {row['growth']:+.3g} rad/s".replace("-", MINUS)
     axes.set_title(f"{row['mode']}:  {row['frequency']:.3f} {row['unit']}  {row['label']}\n{growth}", fontsize=13,
                    color=UNSTABLE if row["unstable"] else "black")
     return surface
@@ -267,10 +255,7 @@ def draw(table, scene, rows, output):
         draw_shapes(parts[1, 0], layout, scene, rows)
     figure.canvas.draw()
     place_labels(axes, table)
-    try:
-        figure.savefig(output)
-    except (OSError, ValueError) as error:
-        raise BadInput(f"cannot write {output}: {getattr(error, 'strerror', None) or error}") from None
+    save_picture(figure, output)
 
 
 def arguments():

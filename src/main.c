@@ -1,34 +1,40 @@
 static const char help[] =
   "squeal: friction-induced vibration of bodies in sliding contact.\n"
-  "  squeal -options_file options/massi2005.yaml [-analysis modes] [-output_dir DIR] [any option]\n"
+  "  squeal -options_file options/massi2005.yaml [-analysis modes|sweep] [-output_dir DIR] [any option]\n"
   "  mpirun -n 2 squeal ... uses two ranks. SI units everywhere. Options files are YAML; later options override "
   "earlier ones.\n";
 
 #include <squeal/squeal.h>
 #include <squeal/options.h>
 
-/* The chain of a run: options -> model -> contact -> operators -> modes, and results */
+typedef enum { ANALYSIS_MODES, ANALYSIS_SWEEP, N_ANALYSES } Analysis;
+
+/* The chain of a run: options -> model -> contact -> operators -> modes -> sweep, and results */
 typedef struct {
   Model     model; /* NULL for matrices without a mesh */
   Contact   contact;
   Operators operators;
   Modes     modes;
+  Sweep     sweep;
   Results   results;
+  Analysis  analysis;
   PetscBool view;
 } Chain;
 
 static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
 {
-  static const char *const analyses[] = {"modes"};
+  static const char *const analyses[N_ANALYSES] = {"modes", "sweep"};
   PetscBool                has_matrices;
-  PetscInt                 analysis = 0;
+  PetscInt                 analysis = ANALYSIS_MODES;
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(comm, NULL, "squeal", NULL);
-  PetscCall(PetscOptionsEList("-analysis", "what to compute", "squeal.h", analyses, 1, analyses[0], &analysis, NULL));
+  PetscCall(PetscOptionsEList("-analysis", "what to compute", "squeal.h", analyses, N_ANALYSES,
+                              analyses[0], &analysis, NULL));
   PetscCall(PetscOptionsBool("-squeal_view", "print what was chosen and why, and the time of each stage", "squeal.h",
                              chain->view, &chain->view, NULL));
   PetscOptionsEnd();
+  chain->analysis = (Analysis)analysis;
   PetscCall(OperatorsCreate(comm, &chain->operators));
   PetscCall(OperatorsSetFromOptions(chain->operators));
   PetscCall(OperatorsHaveMatrices(chain->operators, &has_matrices));
@@ -41,6 +47,8 @@ static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
   }
   PetscCall(ModesCreate(comm, &chain->modes));
   PetscCall(ModesSetFromOptions(chain->modes));
+  PetscCall(SweepCreate(comm, &chain->sweep));
+  PetscCall(SweepSetFromOptions(chain->sweep));
   PetscCall(ResultsCreate(comm, &chain->results));
   PetscCall(ResultsSetFromOptions(chain->results));
   PetscFunctionReturn(0);
@@ -50,6 +58,7 @@ static PetscErrorCode ChainDestroy(Chain *chain)
 {
   PetscFunctionBeginUser;
   PetscCall(ResultsDestroy(&chain->results));
+  PetscCall(SweepDestroy(&chain->sweep));
   PetscCall(ModesDestroy(&chain->modes));
   PetscCall(OperatorsDestroy(&chain->operators));
   PetscCall(ContactDestroy(&chain->contact));
@@ -95,6 +104,34 @@ static PetscErrorCode ChainView(Chain *chain, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode RunModes(Chain *chain, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SquealStageBegin(SQUEAL_MODES));
+  PetscCall(ModesSolve(chain->modes));
+  PetscCall(SquealStageEnd(SQUEAL_MODES));
+  PetscCall(ModesView(chain->modes, viewer));
+  PetscCall(SquealStageBegin(SQUEAL_RESULTS));
+  PetscCall(ModesWrite(chain->modes, chain->results));
+  PetscCall(SquealStageEnd(SQUEAL_RESULTS));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RunSweep(Chain *chain, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SweepSetOperators(chain->sweep, chain->operators));
+  PetscCall(SweepSetModes(chain->sweep, chain->modes));
+  PetscCall(SquealStageBegin(SQUEAL_SWEEP));
+  PetscCall(SweepSolve(chain->sweep, chain->results));
+  PetscCall(SquealStageEnd(SQUEAL_SWEEP));
+  PetscCall(SweepView(chain->sweep, viewer));
+  PetscCall(SquealStageBegin(SQUEAL_RESULTS));
+  PetscCall(SweepWrite(chain->sweep, chain->results));
+  PetscCall(SquealStageEnd(SQUEAL_RESULTS));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Run(MPI_Comm comm)
 {
   Chain       chain  = {0};
@@ -109,14 +146,8 @@ static PetscErrorCode Run(MPI_Comm comm)
     PetscCall(ResultsOpenDirectory(chain.results));
     PetscCall(ChainSetUp(&chain));
     if (chain.view) PetscCall(ChainView(&chain, viewer));
-    PetscCall(SquealStageBegin(SQUEAL_MODES));
     PetscCall(ModesSetOperators(chain.modes, chain.operators));
-    PetscCall(ModesSolve(chain.modes));
-    PetscCall(SquealStageEnd(SQUEAL_MODES));
-    PetscCall(ModesView(chain.modes, viewer));
-    PetscCall(SquealStageBegin(SQUEAL_RESULTS));
-    PetscCall(ModesWrite(chain.modes, chain.results));
-    PetscCall(SquealStageEnd(SQUEAL_RESULTS));
+    PetscCall(chain.analysis == ANALYSIS_SWEEP ? RunSweep(&chain, viewer) : RunModes(&chain, viewer));
     if (chain.view) PetscCall(SquealViewStages(comm, viewer));
     PetscCall(OptionsWarnUnused(comm));
   }

@@ -47,6 +47,7 @@ typedef struct {
   PetscReal  slip[3];     /* direction, or 0,0,0 when it comes from the rotation */
   PetscReal  rotation[3]; /* angular velocity of the master relative to the slave, rad/s */
   PetscReal  center[3];   /* a point of its axis, m */
+  PetscBool  slides;      /* every pair has a slip direction; known after ContactSetUp() */
 } ContactInterface;
 
 /*@ ContactCreate - makes the interfaces of a model; call before ModelSetUp(). Collective. @*/

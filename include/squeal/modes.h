@@ -51,6 +51,19 @@ frequency of f2
 @*/
 PetscErrorCode ModesSetFromOptions(Modes modes);
 
+/*@ ModesGetBand - the band of the options, Hz, and the largest growth that it covers, 1/s. Not collective.
+    Errors: PETSC_ERR_USER_INPUT without -modes_band. @*/
+PetscErrorCode ModesGetBand(Modes modes, PetscReal band[2], PetscReal *growth);
+
+/*@ ModesSetBand - another band, Hz. Not collective. @*/
+PetscErrorCode ModesSetBand(Modes modes, const PetscReal band[2]);
+
+/*@ ModesSetNearest - instead of a band the `count` modes nearest to `target` (Hz). Not collective. @*/
+PetscErrorCode ModesSetNearest(Modes modes, PetscReal target, PetscInt count);
+
+/*@ ModesSetLeft - whether left vectors are computed. Not collective. @*/
+PetscErrorCode ModesSetLeft(Modes modes, PetscBool left);
+
 /*@ ModesSolve - computes eigenvalues, vectors, errors and labels, and checks that none is missing. Collective. @*/
 PetscErrorCode ModesSolve(Modes modes);
 
@@ -60,6 +73,17 @@ PetscErrorCode ModesGet(Modes modes, PetscInt *n, const Mode **mode);
 /*@ ModesGetVectors - right (xr + i xi) and left (yr + i yi) vectors of mode i in all unknowns, |x|_M = |y|_M = 1
     (borrowed; xi, yi are NULL for a real vector, yr for a mode without left vector). Not collective. @*/
 PetscErrorCode ModesGetVectors(Modes modes, PetscInt i, Vec *xr, Vec *xi, Vec *yr, Vec *yi);
+
+/*@ ModesLabelVectors - names for n shapes from elsewhere, as in modes.csv. Collective.
+
+   Input Parameters:
++  rigid          - whether the shape is a rigid mode
+-  xr, xi, yr, yi - right and left vectors in the unknowns of the pencil
+   Output Parameter:
+.  label          - the names
+@*/
+PetscErrorCode ModesLabelVectors(Modes modes, PetscInt n, const PetscBool rigid[], Vec xr[], Vec xi[], Vec yr[],
+                                 Vec yi[], char label[][32]);
 
 /*@ ModesGetCompleteness - one line that says how it was checked that no mode is missing (borrowed). Not collective. @*/
 PetscErrorCode ModesGetCompleteness(Modes modes, const char **line);

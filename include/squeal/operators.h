@@ -14,6 +14,34 @@
 
 typedef struct _p_Operators *Operators;
 
+#define OPERATORS_MAX_FACTORS 4
+
+/* A number of the scene that the matrices depend on, named like the option that sets it (pad_young, contact_mu) */
+typedef struct {
+  char        name[128];
+  const char *unit;
+  PetscReal   value;
+  PetscReal   lower, upper; /* lower < value < upper; -infinity, infinity where there is no limit */
+  PetscBool   closed;       /* lower itself is a value: alpha, beta, stiffness, viscosity, force may be 0 */
+} OperatorsParameter;
+
+typedef enum { OPERATORS_STIFFNESS, OPERATORS_DAMPING, OPERATORS_MASS } OperatorsTermKind;
+
+/* A part of the pencil whose coefficient is a monomial of parameters: c(p) A, c = scale * prod_i p_i^power_i, where
+   |p_i| stands for p_i if absolute. K, C and M of the pencil are the sums of the terms of their kind. */
+typedef struct {
+  OperatorsTermKind kind;
+  Mat               A;         /* in the unknowns of the pencil (borrowed); several terms may share one */
+  PetscBool         symmetric; /* false for terms that vanish without friction */
+  PetscReal         scale;
+  PetscInt          n; /* factors */
+  struct {
+    PetscInt  parameter; /* index */
+    PetscInt  power;     /* 1 or -1 */
+    PetscBool absolute;
+  } factor[OPERATORS_MAX_FACTORS];
+} OperatorsTerm;
+
 /* Matrices of (lambda^2 M + lambda C + K) x = 0, friction included in K; borrowed */
 typedef struct {
   Mat       K, C, M;   /* C is NULL without damping */
@@ -47,18 +75,55 @@ PetscErrorCode OperatorsHaveMatrices(Operators operators, PetscBool *have);
 /*@ OperatorsSetUp - assembles or loads the matrices. Collective. @*/
 PetscErrorCode OperatorsSetUp(Operators operators);
 
-/*@ OperatorsGetMatrices - K, M, C, H of all unknowns (borrowed; C and H may be NULL) and mu. Not collective. @*/
+/*@ OperatorsGetMatrices - K, M, C, H of all unknowns (borrowed; C and H may be NULL) at the present values of the
+    parameters, and mu, the largest friction coefficient in absolute value; pass NULL for what is not needed.
+    Collective. @*/
 PetscErrorCode OperatorsGetMatrices(Operators operators, Mat *K, Mat *M, Mat *C, Mat *H, PetscReal *mu);
 
-/*@ OperatorsGetPencil - the pencil with friction. Collective at the first call. @*/
+/*@ OperatorsGetPencil - the pencil with friction at the present values of the parameters. Collective. @*/
 PetscErrorCode OperatorsGetPencil(Operators operators, OperatorsPencil *pencil);
 
-/*@ OperatorsGetFrictionless - the symmetric undamped pencil at mu = 0, of the same size. Collective at the first
-    call. @*/
+/*@
+   OperatorsGetParameters - the numbers that the matrices depend on, in the order of the scene: of each part young (Pa),
+   density (kg/m^3), alpha (1/s), beta (s); of each list of springs stiffness (N/m), of dashpots viscosity (N s/m), with
+   _x, _y, _z appended where the components that are not zero differ; of each contact mu, kn (N/m, penalty), and with
+   friction damping mu_slope (s/m), force (N) and speed (m/s), or rotation (rad/s) where that is what was given;
+   contact_mu for loaded or dense matrices with H (borrowed; values are the present ones). An interface without friction
+   of which nothing says along what it slides has no mu. Not collective.
+@*/
+PetscErrorCode OperatorsGetParameters(Operators operators, PetscInt *n, const OperatorsParameter **parameters);
+
+/*@ OperatorsCheckParameter - raises PETSC_ERR_USER_INPUT for a value outside the limits of its parameter, naming both.
+    Collective. @*/
+PetscErrorCode OperatorsCheckParameter(Operators operators, PetscInt parameter, PetscReal value);
+
+/*@ OperatorsSetParameters - gives all parameters new values; the matrices and pencils follow. Those got before are to
+    be got again: the call that gets one writes the new values into the same matrix, or makes another one where a
+    coefficient that was zero (mu, damping) is no more or has become zero. Collective.
+    Errors: PETSC_ERR_USER_INPUT for a value outside the limits of its parameter. @*/
+PetscErrorCode OperatorsSetParameters(Operators operators, const PetscReal value[]);
+
+/*@ OperatorsGetDensity - the present density of a part, kg/m^3. Not collective. @*/
+PetscErrorCode OperatorsGetDensity(Operators operators, PetscInt part, PetscReal *density);
+
+/*@ OperatorsGetTerms - the terms of the pencil (borrowed), valid for any values of the parameters. Collective at the
+    first call. @*/
+PetscErrorCode OperatorsGetTerms(Operators operators, PetscInt *n, const OperatorsTerm **terms);
+
+/*@ OperatorsTermCoefficient - c(p) for the values p of all parameters. Not collective. @*/
+PetscReal OperatorsTermCoefficient(const OperatorsTerm *term, const PetscReal p[]);
+
+/*@ OperatorsTermDerivative - the derivative of c(p) by one parameter. Not collective. @*/
+PetscReal OperatorsTermDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt parameter);
+
+/*@ OperatorsGetFrictionless - the symmetric undamped pencil at mu = 0, of the same size. Collective. @*/
 PetscErrorCode OperatorsGetFrictionless(Operators operators, OperatorsPencil *pencil);
 
 /*@ OperatorsExpand - unknowns of the pencil to all unknowns, u = Zr q (or Zl q for a left vector). Collective. @*/
 PetscErrorCode OperatorsExpand(Operators operators, PetscBool left, Vec q, Vec u);
+
+/*@ OperatorsRestrict - the inverse of OperatorsExpand() for a vector that obeys the constraints. Collective. @*/
+PetscErrorCode OperatorsRestrict(Operators operators, Vec u, Vec q);
 
 /*@ OperatorsCreateVec - a vector of all unknowns. Collective. @*/
 PetscErrorCode OperatorsCreateVec(Operators operators, Vec *u);

@@ -7,6 +7,7 @@
 #include <squeal/contact.h>
 #include <squeal/operators.h>
 #include <squeal/modes.h>
+#include <squeal/sweep.h>
 #include <squeal/results.h>
 
 /* Stages of the flow, registered by SquealInitialize() */
@@ -15,6 +16,7 @@ typedef enum {
   SQUEAL_CONTACT,
   SQUEAL_OPERATORS,
   SQUEAL_MODES,
+  SQUEAL_SWEEP,
   SQUEAL_RESULTS,
   SQUEAL_N_STAGES
 } SquealStage;

@@ -217,7 +217,7 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, PetscInt n_
     }
     if (f < 0) continue;
     PairSetMaster(&facets[f], natural, pair);
-    if (!PairSetSlip(c, pair) && (c->mu != 0 || c->damping)) failure->no_slip = 1;
+    if (!PairSetSlip(c, pair)) failure->no_slip = 1;
   }
   PetscCall(ISRestoreIndices(is, &vertices));
   PetscCall(ISDestroy(&is));
@@ -226,7 +226,7 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, PetscInt n_
 }
 
 /* Raises the error for a node without partner or without slip */
-static PetscErrorCode PairCheck(MPI_Comm comm, const ContactInterface *c, PairFailure *failure)
+static PetscErrorCode PairCheck(MPI_Comm comm, ContactInterface *c, PairFailure *failure)
 {
   struct {
     double distance;
@@ -243,8 +243,9 @@ static PetscErrorCode PairCheck(MPI_Comm comm, const ContactInterface *c, PairFa
              "-%s_tolerance is %.6g m)",
              c->name, c->slave, (double)failure->x[0], (double)failure->x[1], (double)failure->x[2], c->master,
              worst.distance, c->name, (double)c->tolerance);
+  c->slides = failure->no_slip == 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(
-    failure->no_slip == 0, comm, PETSC_ERR_USER_INPUT,
+    c->slides || (c->mu == 0 && !c->damping), comm, PETSC_ERR_USER_INPUT,
     "contact %s: the sliding velocity vanishes in the surface at some pair; give -%s_slip x,y,z along the surface",
     c->name, c->name);
   PetscFunctionReturn(0);
@@ -252,11 +253,11 @@ static PetscErrorCode PairCheck(MPI_Comm comm, const ContactInterface *c, PairFa
 
 PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface)
 {
-  const ContactInterface *c       = &contact->interfaces[interface];
-  const PetscInt          first   = contact->n_pairs;
-  PairFailure             failure = {
-                0, {0, 0, 0},
-                 0
+  ContactInterface *c       = &contact->interfaces[interface];
+  const PetscInt    first   = contact->n_pairs;
+  PairFailure       failure = {
+          0, {0, 0, 0},
+           0
   };
   PetscInt  n_facets;
   PetscReal area = 0;

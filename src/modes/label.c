@@ -24,18 +24,16 @@
 
 /* Nodal mass (kg) of one part, shape [local vertices]: an eighth of each of its hexahedra; only what this rank's
    cells give */
-static PetscErrorCode PartMasses(Model model, PetscInt part, PetscReal **mass)
+static PetscErrorCode PartMasses(Model model, PetscInt part, PetscReal density, PetscReal **mass)
 {
   const Element  *element;
-  const Part     *parts;
   const PetscInt *cell_part;
-  PetscInt        n_parts, cStart, cEnd, vStart, vEnd;
+  PetscInt        cStart, cEnd, vStart, vEnd;
   DM              dm;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetDM(model, &dm));
   PetscCall(ModelGetElement(model, &element));
-  PetscCall(ModelGetParts(model, &n_parts, &parts));
   PetscCall(ModelGetCellParts(model, &cell_part));
   PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
   PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
@@ -48,7 +46,7 @@ static PetscErrorCode PartMasses(Model model, PetscInt part, PetscReal **mass)
     PetscCall(ModelGetCell(model, c, vertices, x));
     element->measure(x, &volume, &jacobian);
     for (PetscInt i = 0; i < element->n_nodes; i++)
-      (*mass)[vertices[i] - vStart] += parts[part].density * volume / (PetscReal)element->n_nodes;
+      (*mass)[vertices[i] - vStart] += density * volume / (PetscReal)element->n_nodes;
   }
   PetscFunctionReturn(0);
 }
@@ -173,7 +171,10 @@ static PetscErrorCode LabelsCreate(Modes modes, Model model, Contact contact, Pe
   PetscCall(PetscMalloc4(3 * l->n_vertices, &l->x[0], 3 * l->n_vertices, &l->x[1], 3 * l->n_vertices, &l->y[0],
                          3 * l->n_vertices, &l->y[1]));
   for (PetscInt part = 0; part < n_parts; part++) {
-    PetscCall(PartMasses(model, part, &l->mass[part]));
+    PetscReal density;
+
+    PetscCall(OperatorsGetDensity(modes->operators, part, &density));
+    PetscCall(PartMasses(model, part, density, &l->mass[part]));
     PetscCall(PetscStrcmp(parts[part].name, modes->disc, &same));
     if (same) l->disc = part;
   }
@@ -250,5 +251,43 @@ PetscErrorCode ModesLabel(Modes modes)
   if (l.disc >= 0) PetscCall(DiscSolve(&l.frame));
   for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelWrite(modes, &l, parts, i));
   PetscCall(LabelsDestroy(&l));
+  PetscFunctionReturn(0);
+}
+
+/* Adds one complex vector of the pencil, expanded to all unknowns */
+static PetscErrorCode SpectrumAddExpanded(Operators operators, PetscBool left, Vec r, Vec i, Vec work[2], Spectrum *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsExpand(operators, left, r, work[0]));
+  PetscCall(OperatorsExpand(operators, left, i, work[1]));
+  PetscCall(SpectrumAdd(s, 0, 0, work[0], work[1]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesLabelVectors(Modes modes, PetscInt n, const PetscBool rigid[], Vec xr[], Vec xi[], Vec yr[],
+                                 Vec yi[], char label[][32])
+{
+  struct _p_Modes shapes = *modes;
+  Vec             work[2];
+
+  PetscFunctionBeginUser;
+  shapes.n = n;
+  PetscCall(SpectrumCreate(n, &shapes.right));
+  PetscCall(SpectrumCreate(n, &shapes.left_spectrum));
+  PetscCall(PetscCalloc1(n, &shapes.mode));
+  PetscCall(OperatorsCreateVec(modes->operators, &work[0]));
+  PetscCall(VecDuplicate(work[0], &work[1]));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(SpectrumAddExpanded(modes->operators, PETSC_FALSE, xr[i], xi[i], work, &shapes.right));
+    PetscCall(SpectrumAddExpanded(modes->operators, PETSC_TRUE, yr[i], yi[i], work, &shapes.left_spectrum));
+    shapes.mode[i].rigid = rigid[i];
+  }
+  PetscCall(ModesLabel(&shapes));
+  for (PetscInt i = 0; i < n; i++) PetscCall(PetscStrncpy(label[i], shapes.mode[i].label, 32));
+  PetscCall(VecDestroy(&work[0]));
+  PetscCall(VecDestroy(&work[1]));
+  PetscCall(SpectrumDestroy(&shapes.right));
+  PetscCall(SpectrumDestroy(&shapes.left_spectrum));
+  PetscCall(PetscFree(shapes.mode));
   PetscFunctionReturn(0);
 }

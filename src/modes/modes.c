@@ -58,6 +58,41 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModesGetBand(Modes modes, PetscReal band[2], PetscReal *growth)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(modes->has_band, modes->comm, PETSC_ERR_USER_INPUT, "-modes_band must be given for a sweep: f1,f2 in Hz");
+  band[0] = modes->band[0];
+  band[1] = modes->band[1];
+  *growth = modes->growth > 0 ? modes->growth : 0.1 * 2 * PETSC_PI * band[1];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesSetBand(Modes modes, const PetscReal band[2])
+{
+  PetscFunctionBeginUser;
+  modes->band[0]  = band[0];
+  modes->band[1]  = band[1];
+  modes->has_band = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesSetNearest(Modes modes, PetscReal target, PetscInt count)
+{
+  PetscFunctionBeginUser;
+  modes->target   = target;
+  modes->count    = count;
+  modes->has_band = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesSetLeft(Modes modes, PetscBool left)
+{
+  PetscFunctionBeginUser;
+  modes->left = left;
+  PetscFunctionReturn(0);
+}
+
 /* Right or left spectrum by the solver that fits the pencil */
 static PetscErrorCode SpectrumSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si,
                                     PetscBool transposed, Spectrum *spectrum)
@@ -111,6 +146,17 @@ static PetscErrorCode SolveBoth(Modes modes, const OperatorsPencil *pencil, Wind
   PetscFunctionReturn(0);
 }
 
+/* Forgets the last solution */
+static PetscErrorCode ModesReset(Modes modes)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SpectrumDestroy(&modes->right));
+  PetscCall(SpectrumDestroy(&modes->left_spectrum));
+  PetscCall(PetscFree(modes->mode));
+  modes->n = 0;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModesSolve(Modes modes)
 {
   OperatorsPencil pencil;
@@ -118,6 +164,7 @@ PetscErrorCode ModesSolve(Modes modes)
   Window          window;
 
   PetscFunctionBeginUser;
+  PetscCall(ModesReset(modes));
   PetscCall(OperatorsGetPencil(modes->operators, &pencil));
   PetscCall(WindowFind(modes, &window));
   PetscCheck(window.expected != 0 || !pencil.symmetric || pencil.C, modes->comm, PETSC_ERR_USER_INPUT,
@@ -167,9 +214,7 @@ PetscErrorCode ModesDestroy(Modes *modes)
 {
   PetscFunctionBeginUser;
   if (!*modes) PetscFunctionReturn(0);
-  PetscCall(SpectrumDestroy(&(*modes)->right));
-  PetscCall(SpectrumDestroy(&(*modes)->left_spectrum));
-  PetscCall(PetscFree((*modes)->mode));
+  PetscCall(ModesReset(*modes));
   PetscCall(PetscFree(*modes));
   PetscFunctionReturn(0);
 }

@@ -1,8 +1,8 @@
 /* Private to modes/: the record of the solver, and the pieces of a solution */
 #pragma once
 
+#include "shiftinvert.h"
 #include <squeal/modes.h>
-#include <petscksp.h>
 #include <slepceps.h>
 #include <slepcpep.h>
 
@@ -22,36 +22,6 @@ PETSC_INTERN PetscErrorCode SpectrumSort(Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode SpectrumKeep(Spectrum *spectrum, PetscInt first, PetscInt n);
 PETSC_INTERN PetscErrorCode SpectrumRemove(Spectrum *spectrum, PetscInt i);
 PETSC_INTERN PetscErrorCode SpectrumDestroy(Spectrum *spectrum);
-
-/* Progress line on stderr: what is done, of how much, and the time left */
-typedef struct {
-  PetscBool      on, shown;
-  const char    *what;
-  PetscInt       done, expected;
-  PetscLogDouble begun;
-} Progress;
-
-PETSC_INTERN PetscErrorCode ProgressSetFromOptions(MPI_Comm comm, Progress *progress);
-PETSC_INTERN PetscErrorCode ProgressBegin(Progress *progress, const char what[], PetscInt expected);
-PETSC_INTERN PetscErrorCode ProgressStep(Progress *progress);
-PETSC_INTERN PetscErrorCode ProgressEnd(Progress *progress);
-
-/* Factorisation of K - s M (undamped) or K + s C + s^2 M (damped), shared by right and left vectors and by inertia
-   counts */
-typedef struct {
-  MPI_Comm  comm;
-  KSP       ksp;
-  PetscReal shift; /* kappa (rad/s)^2 when undamped, lambda (rad/s) when damped */
-  Progress *progress;
-} ShiftInvert;
-
-/* shiftinvert.c - prefix st_; a singular matrix moves the shift a little, want_inertia lets MUMPS count negative
-   pivots */
-PETSC_INTERN PetscErrorCode ShiftInvertCreate(const OperatorsPencil *pencil, PetscReal shift, PetscBool want_inertia,
-                                              Progress *progress, ShiftInvert *si);
-PETSC_INTERN PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st);
-PETSC_INTERN PetscErrorCode ShiftInvertGetInertia(const ShiftInvert *si, PetscInt *n_negative);
-PETSC_INTERN PetscErrorCode ShiftInvertDestroy(ShiftInvert *si);
 
 struct _p_Modes {
   MPI_Comm  comm;

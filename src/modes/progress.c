@@ -1,7 +1,8 @@
 /*
    Progress line on stderr with the time left; quiet when stderr is no terminal, unless -progress 1.
 */
-#include "modesimpl.h"
+#include "progress.h"
+#include <petsctime.h>
 #include <unistd.h>
 
 PetscErrorCode ProgressSetFromOptions(MPI_Comm comm, Progress *progress)

@@ -8,20 +8,6 @@
 
 #define EDGE 1e-8 /* relative width of the band's ends, so that an eigenvalue on an end belongs to it */
 
-/* Frictionless modes with frequency below omega (rad/s) */
-static PetscErrorCode CountBelow(Modes modes, const OperatorsPencil *pencil, PetscReal omega, PetscInt *n)
-{
-  ShiftInvert si;
-
-  PetscFunctionBeginUser;
-  *n = 0;
-  if (omega <= 0) PetscFunctionReturn(0);
-  PetscCall(ShiftInvertCreate(pencil, omega * omega, PETSC_TRUE, &modes->progress, &si));
-  PetscCall(ShiftInvertGetInertia(&si, n));
-  PetscCall(ShiftInvertDestroy(&si));
-  PetscFunctionReturn(0);
-}
-
 /* A frequency (rad/s) that is small beside all elastic modes, from the size of the matrices */
 static PetscErrorCode WindowScale(const OperatorsPencil *pencil, PetscReal *scale)
 {
@@ -53,12 +39,12 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
   PetscCall(WindowScale(&frictionless, &window->scale));
   if (!frictionless.symmetric) PetscFunctionReturn(0);
   if (!modes->has_band) {
-    PetscCall(CountBelow(modes, &frictionless, window->target, &window->below));
+    PetscCall(ShiftInvertCountBelow(&frictionless, window->target, &modes->progress, &window->below));
     PetscFunctionReturn(0);
   }
-  PetscCall(
-    CountBelow(modes, &frictionless, window->low < window->scale ? 0 : window->low * (1 - EDGE), &window->below));
-  PetscCall(CountBelow(modes, &frictionless, window->high * (1 + EDGE), &below_high));
+  PetscCall(ShiftInvertCountBelow(&frictionless, window->low < window->scale ? 0 : window->low * (1 - EDGE),
+                                  &modes->progress, &window->below));
+  PetscCall(ShiftInvertCountBelow(&frictionless, window->high * (1 + EDGE), &modes->progress, &below_high));
   window->expected = below_high - window->below;
   PetscFunctionReturn(0);
 }
@@ -91,7 +77,7 @@ PetscErrorCode WindowCountRigid(Modes modes, Window *window, const Spectrum *s)
   if (!s->n || PetscAbsReal(s->sigma[0]) > window->scale || s->omega[0] > window->scale || window->below < 0)
     PetscFunctionReturn(0);
   PetscCall(OperatorsGetFrictionless(modes->operators, &frictionless));
-  PetscCall(CountBelow(modes, &frictionless, window->scale, &window->rigid));
+  PetscCall(ShiftInvertCountBelow(&frictionless, window->scale, &modes->progress, &window->rigid));
   PetscFunctionReturn(0);
 }
 
@@ -133,8 +119,10 @@ PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *s, Petsc
   PetscFunctionBeginUser;
   if (window->count && s->n) { /* just outside the outermost modes: what lies that close belongs to them */
     PetscCall(OperatorsGetFrictionless(modes->operators, &frictionless));
-    PetscCall(CountBelow(modes, &frictionless, s->omega[0] < window->scale ? 0 : s->omega[0] * (1 - 1e-6), &below_low));
-    PetscCall(CountBelow(modes, &frictionless, PetscMax(window->scale, s->omega[s->n - 1] * (1 + 1e-6)), &below_high));
+    PetscCall(ShiftInvertCountBelow(&frictionless, s->omega[0] < window->scale ? 0 : s->omega[0] * (1 - 1e-6),
+                                    &modes->progress, &below_low));
+    PetscCall(ShiftInvertCountBelow(&frictionless, PetscMax(window->scale, s->omega[s->n - 1] * (1 + 1e-6)),
+                                    &modes->progress, &below_high));
     window->expected = below_high - below_low;
   }
   *complete = s->n == window->expected || (window->count && window->expected >= s->n && s->n == window->count)

@@ -1,25 +1,10 @@
 /*
-   Matrices of the bodies, summed over cells: K (N/m), M (kg), and C = sum over parts of alpha M + beta K (N s/m);
-   grounded springs on the diagonal of K, dashpots on that of C. C is made only where a part is damped or a dashpot
-   exists.
+   Terms of the bodies, springs and dashpots. Of each part p, at its Poisson's ratio, K_p (m) per unit Young's modulus E
+   and M_p (m^3) per unit density rho; of each list of springs or dashpots the diagonal matrix of ones at its unknowns:
+      K = sum_p E_p K_p + sum_s k_s D_s,   M = sum_p rho_p M_p,
+      C = sum_p (alpha_p rho_p M_p + beta_p E_p K_p) + sum_d c_d D_d
 */
 #include "operatorsimpl.h"
-
-/* Whether anything of the model asks for a damping matrix */
-static PetscErrorCode ModelIsDamped(Model model, PetscBool *damped)
-{
-  const Part     *parts;
-  const Grounded *dashpots;
-  PetscInt        n_parts, n_dashpots;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelGetParts(model, &n_parts, &parts));
-  PetscCall(ModelGetDashpots(model, &n_dashpots, &dashpots));
-  *damped = n_dashpots ? PETSC_TRUE : PETSC_FALSE;
-  for (PetscInt i = 0; i < n_parts; i++)
-    if (parts[i].alpha > 0 || parts[i].beta > 0) *damped = PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
 
 /* Replaces the consistent mass of an element by its row sums within each direction */
 static void ElementLump(PetscInt n, PetscReal mass[])
@@ -35,108 +20,171 @@ static void ElementLump(PetscInt n, PetscReal mass[])
   }
 }
 
-/* Adds one cell of the given material to K, M and C */
-static PetscErrorCode CellAdd(Operators o, const Element *element, const Part *part, const PetscReal x[],
-                              const PetscInt rows[])
+/* Adds one cell to K_p and M_p */
+static PetscErrorCode CellAdd(const Element *element, const Elasticity *material, PetscBool lump, const PetscReal x[],
+                              const PetscInt rows[], Mat K, Mat M)
 {
-  const PetscInt   n        = 3 * element->n_nodes;
-  const Elasticity material = ElasticityFromEngineering(part->young, part->poisson, part->density);
-  PetscReal        ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  const PetscInt n = 3 * element->n_nodes;
+  PetscReal      ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
-  PetscCheck(!element->matrices(x, &material, ke, me), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
-  if (o->lump) ElementLump(n, me);
-  PetscCall(MatSetValues(o->A[OPERATOR_K], n, rows, n, rows, ke, ADD_VALUES));
-  PetscCall(MatSetValues(o->A[OPERATOR_M], n, rows, n, rows, me, ADD_VALUES));
-  if (!o->A[OPERATOR_C]) PetscFunctionReturn(0);
-  for (PetscInt i = 0; i < n * n; i++) me[i] = part->alpha * me[i] + part->beta * ke[i];
-  PetscCall(MatSetValues(o->A[OPERATOR_C], n, rows, n, rows, me, ADD_VALUES));
+  PetscCheck(!element->matrices(x, material, ke, me), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
+  if (lump) ElementLump(n, me);
+  PetscCall(MatSetValues(K, n, rows, n, rows, ke, ADD_VALUES));
+  PetscCall(MatSetValues(M, n, rows, n, rows, me, ADD_VALUES));
   PetscFunctionReturn(0);
 }
 
-/* Adds all local cells */
-static PetscErrorCode CellsAdd(Operators o, DM dm)
+/* Adds the local cells of a part */
+static PetscErrorCode CellsAdd(Operators o, PetscInt part, const Elasticity *material, Mat K, Mat M)
 {
   const Element  *element;
-  const Part     *parts;
   const PetscInt *cell_part, *unknowns;
-  PetscInt        cStart, cEnd, vStart, n_parts;
+  PetscInt        cStart, cEnd, vStart;
+  DM              dm;
 
   PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(o->model, &dm));
   PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
   PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
   PetscCall(ModelGetElement(o->model, &element));
-  PetscCall(ModelGetParts(o->model, &n_parts, &parts));
   PetscCall(ModelGetCellParts(o->model, &cell_part));
   PetscCall(ModelGetUnknowns(o->model, &unknowns));
   for (PetscInt c = 0; c < cEnd - cStart; c++) {
     PetscInt  vertices[ELEMENT_MAX_NODES], rows[ELEMENT_MAX_DOFS];
     PetscReal x[ELEMENT_MAX_DOFS];
 
+    if (cell_part[c] != part) continue;
     PetscCall(ModelGetCell(o->model, c, vertices, x));
     for (PetscInt i = 0; i < 3 * element->n_nodes; i++) rows[i] = unknowns[3 * (vertices[i / 3] - vStart) + i % 3];
-    PetscCall(CellAdd(o, element, &parts[cell_part[c]], x, rows));
+    PetscCall(CellAdd(element, material, o->lump, x, rows, K, M));
   }
   PetscFunctionReturn(0);
 }
 
-/* Adds grounded springs or dashpots to the diagonal of A */
-static PetscErrorCode GroundedAdd(Model model, DM dm, PetscInt n, const Grounded grounded[], Mat A)
+/* K_p and M_p of one part */
+static PetscErrorCode PartCreate(Operators o, PetscInt part, PetscReal poisson, Mat *K, Mat *M)
 {
-  const PetscInt *unknowns, *vertices;
-  PetscInt        vStart, n_vertices;
+  const Elasticity material = ElasticityFromEngineering(1, poisson, 1);
+  PetscInt         n_unknowns;
 
   PetscFunctionBeginUser;
+  PetscCall(PatternCreate(o->model, part, K));
+  PetscCall(MatGetSize(*K, &n_unknowns, NULL));
+  PetscCheck(n_unknowns, o->comm, PETSC_ERR_USER_INPUT, "the -supports hold every node: nothing can vibrate");
+  PetscCall(MatDuplicate(*K, MAT_DO_NOT_COPY_VALUES, M));
+  PetscCall(CellsAdd(o, part, &material, *K, *M));
+  PetscCall(MatAssemblyBegin(*K, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyBegin(*M, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*K, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*M, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+/* Parameters and terms of one part */
+static PetscErrorCode PartAdd(Operators o, PetscInt part, const Part *p)
+{
+  PetscInt i[N_PART_PARAMETERS];
+  Mat      K, M;
+
+  PetscFunctionBeginUser;
+  PetscCall(PartCreate(o, part, p->poisson, &K, &M));
+  PetscCall(ParameterAdd(o, p->name, "young", "Pa", p->young, 0, PETSC_FALSE, &i[PART_YOUNG]));
+  PetscCall(ParameterAdd(o, p->name, "density", "kg/m^3", p->density, 0, PETSC_FALSE, &i[PART_DENSITY]));
+  PetscCall(ParameterAdd(o, p->name, "alpha", "1/s", p->alpha, 0, PETSC_TRUE, &i[PART_ALPHA]));
+  PetscCall(ParameterAdd(o, p->name, "beta", "s", p->beta, 0, PETSC_TRUE, &i[PART_BETA]));
+  PetscCall(TermsAdd(&o->base, OPERATORS_STIFFNESS, K, PETSC_TRUE, 1, &i[PART_YOUNG]));
+  PetscCall(TermsAdd(&o->base, OPERATORS_MASS, M, PETSC_TRUE, 1, &i[PART_DENSITY]));
+  PetscCall(TermsAdd(&o->base, OPERATORS_DAMPING, M, PETSC_TRUE, 2, (PetscInt[]){i[PART_ALPHA], i[PART_DENSITY]}));
+  PetscCall(TermsAdd(&o->base, OPERATORS_DAMPING, K, PETSC_TRUE, 2, (PetscInt[]){i[PART_BETA], i[PART_YOUNG]}));
+  PetscCall(MatDestroy(&K));
+  PetscCall(MatDestroy(&M));
+  PetscFunctionReturn(0);
+}
+
+/* Diagonal matrix of ones at the nodes of a set, in the directions of the mask */
+static PetscErrorCode UnitDiagonalCreate(Operators o, const char set[], const PetscBool mask[3], Mat *D)
+{
+  const PetscScalar one = 1;
+  const PetscInt   *unknowns, *vertices;
+  PetscInt          vStart, n_vertices, n_own;
+  IS                is;
+  DM                dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(o->model, &dm));
   PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
-  PetscCall(ModelGetUnknowns(model, &unknowns));
-  for (PetscInt i = 0; i < n; i++) {
-    IS is;
+  PetscCall(ModelGetUnknowns(o->model, &unknowns));
+  PetscCall(MatGetLocalSize(o->base.term[0].A, &n_own, NULL));
+  PetscCall(MatCreateAIJ(o->comm, n_own, n_own, PETSC_DETERMINE, PETSC_DETERMINE, 1, NULL, 0, NULL, D));
+  PetscCall(ModelGetOwnedVertices(o->model, set, &is));
+  PetscCall(ISGetLocalSize(is, &n_vertices));
+  PetscCall(ISGetIndices(is, &vertices));
+  for (PetscInt j = 0; j < 3 * n_vertices; j++) {
+    const PetscInt row = unknowns[3 * (vertices[j / 3] - vStart) + j % 3];
 
-    PetscCall(ModelGetOwnedVertices(model, grounded[i].set, &is));
-    PetscCall(ISGetLocalSize(is, &n_vertices));
-    PetscCall(ISGetIndices(is, &vertices));
-    for (PetscInt j = 0; j < 3 * n_vertices; j++) {
-      const PetscInt row = unknowns[3 * (vertices[j / 3] - vStart) + j % 3];
-
-      PetscCall(MatSetValues(A, 1, &row, 1, &row, &grounded[i].value[j % 3], ADD_VALUES));
-    }
-    PetscCall(ISRestoreIndices(is, &vertices));
-    PetscCall(ISDestroy(&is));
+    if (mask[j % 3]) PetscCall(MatSetValues(*D, 1, &row, 1, &row, &one, ADD_VALUES));
   }
+  PetscCall(ISRestoreIndices(is, &vertices));
+  PetscCall(ISDestroy(&is));
+  PetscCall(MatAssemblyBegin(*D, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*D, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(0);
 }
 
-/* Ends the assembly of all matrices */
-static PetscErrorCode AssemblyEnd(Operators o)
+/* Parameter and term of the directions of the mask, which share one value */
+static PetscErrorCode GroundedAddOne(Operators o, OperatorsTermKind kind, const Grounded *g, const char what[],
+                                     PetscReal value, const PetscBool mask[3])
 {
+  const char *unit = kind == OPERATORS_STIFFNESS ? "N/m" : "N s/m";
+  PetscInt    index;
+  Mat         D;
+
   PetscFunctionBeginUser;
-  for (int i = 0; i < N_OPERATORS; i++)
-    if (o->A[i]) PetscCall(MatAssemblyBegin(o->A[i], MAT_FINAL_ASSEMBLY));
-  for (int i = 0; i < N_OPERATORS; i++)
-    if (o->A[i]) PetscCall(MatAssemblyEnd(o->A[i], MAT_FINAL_ASSEMBLY));
+  PetscCall(ParameterAdd(o, g->name, what, unit, value, 0, PETSC_TRUE, &index));
+  PetscCall(UnitDiagonalCreate(o, g->set, mask, &D));
+  PetscCall(TermsAdd(&o->base, kind, D, PETSC_TRUE, 1, &index));
+  PetscCall(MatDestroy(&D));
+  PetscFunctionReturn(0);
+}
+
+/* Parameters and terms of a list of springs or dashpots: one where all components that are not zero are equal, else one
+   for each of them */
+static PetscErrorCode GroundedAdd(Operators o, OperatorsTermKind kind, const Grounded *g, const char what[])
+{
+  PetscBool mask[3], uniform = PETSC_TRUE;
+  PetscReal value = 0;
+
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 3; d++) {
+    mask[d] = g->value[d] != 0 ? PETSC_TRUE : PETSC_FALSE;
+    if (mask[d] && value != 0 && g->value[d] != value) uniform = PETSC_FALSE;
+    if (mask[d]) value = g->value[d];
+  }
+  if (uniform) PetscCall(GroundedAddOne(o, kind, g, what, value, mask));
+  for (int d = 0; d < 3 && !uniform; d++) {
+    const PetscBool only[3] = {(PetscBool)(d == 0), (PetscBool)(d == 1), (PetscBool)(d == 2)};
+    char            name[32];
+
+    if (!mask[d]) continue;
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s_%c", what, "xyz"[d]));
+    PetscCall(GroundedAddOne(o, kind, g, name, g->value[d], only));
+  }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode OperatorsAssemble(Operators o)
 {
+  const Part     *parts;
   const Grounded *springs, *dashpots;
-  PetscInt        n_springs, n_dashpots, n_unknowns;
-  PetscBool       damped;
-  DM              dm;
+  PetscInt        n_parts, n_springs, n_dashpots;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(o->model, &dm));
+  PetscCall(ModelGetParts(o->model, &n_parts, &parts));
   PetscCall(ModelGetSprings(o->model, &n_springs, &springs));
   PetscCall(ModelGetDashpots(o->model, &n_dashpots, &dashpots));
-  PetscCall(ModelIsDamped(o->model, &damped));
-  PetscCall(PatternCreate(o->model, &o->A[OPERATOR_K]));
-  PetscCall(MatGetSize(o->A[OPERATOR_K], &n_unknowns, NULL));
-  PetscCheck(n_unknowns, o->comm, PETSC_ERR_USER_INPUT, "the -supports hold every node: nothing can vibrate");
-  PetscCall(MatDuplicate(o->A[OPERATOR_K], MAT_DO_NOT_COPY_VALUES, &o->A[OPERATOR_M]));
-  if (damped) PetscCall(MatDuplicate(o->A[OPERATOR_K], MAT_DO_NOT_COPY_VALUES, &o->A[OPERATOR_C]));
-  PetscCall(CellsAdd(o, dm));
-  PetscCall(GroundedAdd(o->model, dm, n_springs, springs, o->A[OPERATOR_K]));
-  if (damped) PetscCall(GroundedAdd(o->model, dm, n_dashpots, dashpots, o->A[OPERATOR_C]));
-  PetscCall(AssemblyEnd(o));
+  for (PetscInt i = 0; i < n_parts; i++) PetscCall(PartAdd(o, i, &parts[i]));
+  for (PetscInt i = 0; i < n_springs; i++) PetscCall(GroundedAdd(o, OPERATORS_STIFFNESS, &springs[i], "stiffness"));
+  for (PetscInt i = 0; i < n_dashpots; i++) PetscCall(GroundedAdd(o, OPERATORS_DAMPING, &dashpots[i], "viscosity"));
   PetscFunctionReturn(0);
 }

@@ -3,8 +3,13 @@
    the slave displacement is u_s = n alpha + t q1 + b q2, where
       right, N u = 0:            alpha = n . u_m
       left, (N - mu T) y = 0:    alpha = (n - mu t) . y_m + mu q1
-   so that Z = (I + G) E: E injects the kept unknowns and, at a slave, t q1 + b q2 (left: (t + mu n) q1 + b q2); G
-   takes the part of alpha that comes from the master. K, C, M become Zl' (.) Zr, and constraint forces drop out.
+   so that Zr = (I + G) E: E injects the kept unknowns and, at a slave, t q1 + b q2; G = n n' takes the part of alpha
+   that comes from the master. The left null space is affine in the friction coefficients mu_i of the interfaces,
+
+      Zl = Zr + sum_i mu_i Zl_i,   Zl_i = F_i + G_i E,   F_i: n q1 at a slave,   G_i = -n t' from its master,
+
+   no master being slave of another pair. A becomes Zl' A Zr, and constraint forces drop out: a term c A of all unknowns
+   makes the terms c (Zr' A Zr) and c mu_i (Zl_i' A Zr) of the pencil.
 */
 #include "operatorsimpl.h"
 
@@ -72,30 +77,31 @@ static PetscErrorCode ConstraintCheckChains(Operators o, PetscInt n, const Conta
   PetscFunctionReturn(0);
 }
 
-/* E: kept unknowns one to one, two columns (q1, q2) for each slave; mu = 0 gives the right one */
-static PetscErrorCode InjectionCreate(Operators o, PetscInt n, const ContactPair **list, const PetscReal mu[], Mat *E)
+/* E (interface < 0): kept unknowns one to one, columns q1, q2 with t and b at each slave. Else F_i: n in the columns q1
+   of the interface */
+static PetscErrorCode InjectionCreate(Operators o, PetscInt n, const ContactPair **list, PetscInt interface, Mat *E)
 {
   PetscInt n_local, first, last, column, *is_slave;
 
   PetscFunctionBeginUser;
-  PetscCall(MatGetOwnershipRange(o->A[OPERATOR_K], &first, &last));
+  PetscCall(MatGetOwnershipRange(o->base.term[0].A, &first, &last));
   n_local = last - first;
-  PetscCall(MatCreateAIJ(o->comm, n_local, n_local - n, PETSC_DETERMINE, PETSC_DETERMINE, 2, NULL, 2, NULL, E));
+  PetscCall(MatCreateAIJ(o->comm, n_local, n_local - n, PETSC_DETERMINE, PETSC_DETERMINE, 2, NULL, 0, NULL, E));
   PetscCall(MatGetOwnershipRangeColumn(*E, &column, NULL));
   PetscCall(PetscCalloc1(n_local, &is_slave));
-  for (PetscInt p = 0; p < n; p++) {
+  for (PetscInt p = 0; p < n; p++, column += 2) {
     const ContactPair *pair = list[p];
 
     for (int d = 0; d < 3; d++) {
-      const PetscScalar values[2]  = {pair->t[d] + mu[p] * pair->n[d], pair->b[d]};
-      const PetscInt    columns[2] = {column, column + 1};
+      const PetscScalar values[2]  = {interface < 0 ? pair->t[d] : pair->n[d], pair->b[d]};
+      const PetscInt    columns[2] = {column, column + 1}, n_columns = interface < 0 ? 2 : 1;
 
-      PetscCall(MatSetValues(*E, 1, &pair->slave[d], 2, columns, values, INSERT_VALUES));
       is_slave[pair->slave[d] - first] = 1;
+      if (interface >= 0 && pair->interface != interface) continue;
+      PetscCall(MatSetValues(*E, 1, &pair->slave[d], n_columns, columns, values, INSERT_VALUES));
     }
-    column += 2;
   }
-  for (PetscInt i = 0; i < n_local; i++)
+  for (PetscInt i = 0; i < n_local && interface < 0; i++)
     if (!is_slave[i]) PetscCall(MatSetValue(*E, first + i, column++, 1, INSERT_VALUES));
   PetscCall(PetscFree(is_slave));
   PetscCall(MatAssemblyBegin(*E, MAT_FINAL_ASSEMBLY));
@@ -103,22 +109,23 @@ static PetscErrorCode InjectionCreate(Operators o, PetscInt n, const ContactPair
   PetscFunctionReturn(0);
 }
 
-/* G: n (n - mu t)' w_i from each master corner to the slave; mu = 0 gives the right one */
-static PetscErrorCode CouplingCreate(Operators o, PetscInt n, const ContactPair **list, const PetscReal mu[], Mat *G)
+/* From each master corner to the slave: G = n n' w_i (interface < 0), or G_i = -n t' w_i of one interface */
+static PetscErrorCode CouplingCreate(Operators o, PetscInt n, const ContactPair **list, PetscInt interface, Mat *G)
 {
   PetscInt n_local;
 
   PetscFunctionBeginUser;
-  PetscCall(MatGetLocalSize(o->A[OPERATOR_K], &n_local, NULL));
+  PetscCall(MatGetLocalSize(o->base.term[0].A, &n_local, NULL));
   PetscCall(MatCreateAIJ(o->comm, n_local, n_local, PETSC_DETERMINE, PETSC_DETERMINE, 12, NULL, 12, NULL, G));
   for (PetscInt p = 0; p < n; p++) {
     const ContactPair *pair = list[p];
 
+    if (interface >= 0 && pair->interface != interface) continue;
     for (PetscInt i = 0; i < pair->n_master; i++) {
       PetscScalar block[9];
 
       for (int k = 0; k < 9; k++)
-        block[k] = pair->weight[i] * pair->n[k / 3] * (pair->n[k % 3] - mu[p] * pair->t[k % 3]);
+        block[k] = pair->weight[i] * pair->n[k / 3] * (interface < 0 ? pair->n[k % 3] : -pair->t[k % 3]);
       PetscCall(MatSetValues(*G, 3, pair->slave, 3, pair->master[i], block, INSERT_VALUES));
     }
   }
@@ -127,18 +134,19 @@ static PetscErrorCode CouplingCreate(Operators o, PetscInt n, const ContactPair 
   PetscFunctionReturn(0);
 }
 
-/* Z = (I + G) E with a friction coefficient per pair */
-static PetscErrorCode NullSpaceCreate(Operators o, PetscInt n, const ContactPair **list, const PetscReal mu[], Mat *Z)
+/* Zr = E + G E (interface < 0), or Zl_i = F_i + G_i E */
+static PetscErrorCode NullSpaceCreate(Operators o, PetscInt n, const ContactPair **list, PetscInt interface, Mat *Z)
 {
-  Mat E, G;
+  Mat F = o->E, G;
 
   PetscFunctionBeginUser;
-  PetscCall(InjectionCreate(o, n, list, mu, &E));
-  PetscCall(CouplingCreate(o, n, list, mu, &G));
-  PetscCall(MatMatMult(G, E, MAT_INITIAL_MATRIX, PETSC_DEFAULT, Z));
-  PetscCall(MatAXPY(*Z, 1, E, DIFFERENT_NONZERO_PATTERN));
+  if (interface >= 0) PetscCall(InjectionCreate(o, n, list, interface, &F));
+  PetscCall(CouplingCreate(o, n, list, interface, &G));
+  PetscCall(MatMatMult(G, o->E, MAT_INITIAL_MATRIX, PETSC_DEFAULT, Z));
+  PetscCall(MatProductClear(*Z));
+  PetscCall(MatAXPY(*Z, 1, F, DIFFERENT_NONZERO_PATTERN));
+  if (interface >= 0) PetscCall(MatDestroy(&F));
   PetscCall(MatDestroy(&G));
-  PetscCall(MatDestroy(&E));
   PetscFunctionReturn(0);
 }
 
@@ -146,25 +154,95 @@ PetscErrorCode OperatorsCreateNullSpaces(Operators o)
 {
   const ContactPair     **list;
   const ContactInterface *interfaces;
-  PetscReal              *mu;
-  PetscInt                n, n_all;
+  PetscInt                n, n_all, n_interfaces;
 
   PetscFunctionBeginUser;
   PetscCall(ConstrainedPairs(o, &n, &list, &interfaces));
   PetscCallMPI(MPI_Allreduce(&n, &n_all, 1, MPIU_INT, MPI_SUM, o->comm));
   if (n_all) {
     PetscCall(ConstraintCheckChains(o, n, list));
-    PetscCall(PetscCalloc1(n, &mu));
-    PetscCall(NullSpaceCreate(o, n, list, mu, &o->Zr));
-    for (PetscInt p = 0; p < n; p++) mu[p] = interfaces[list[p]->interface].mu;
-    if (o->mu != 0) {
-      PetscCall(NullSpaceCreate(o, n, list, mu, &o->Zl));
-    } else {
-      o->Zl = o->Zr;
-      PetscCall(PetscObjectReference((PetscObject)o->Zl));
+    PetscCall(ContactGetInterfaces(o->contact, &n_interfaces, &interfaces));
+    PetscCall(PetscCalloc2(n_interfaces, &o->left, n_interfaces, &o->left_mu));
+    PetscCall(InjectionCreate(o, n, list, -1, &o->E));
+    PetscCall(NullSpaceCreate(o, n, list, -1, &o->Zr));
+    for (PetscInt i = 0; i < n_interfaces; i++) {
+      if (interfaces[i].law != CONTACT_CONSTRAINT || o->interface_mu[i] < 0) continue;
+      PetscCall(NullSpaceCreate(o, n, list, i, &o->left[o->n_left]));
+      o->left_mu[o->n_left++] = o->interface_mu[i];
     }
-    PetscCall(PetscFree(mu));
   }
   PetscCall(PetscFree(list));
+  PetscFunctionReturn(0);
+}
+
+/* L' AZ; NULL where it is zero */
+static PetscErrorCode ProjectFromLeft(Mat L, Mat AZ, Mat *projected)
+{
+  PetscReal norm;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatTransposeMatMult(L, AZ, MAT_INITIAL_MATRIX, PETSC_DEFAULT, projected));
+  PetscCall(MatProductClear(*projected));
+  PetscCall(MatNorm(*projected, NORM_FROBENIUS, &norm));
+  if (norm == 0) PetscCall(MatDestroy(projected));
+  PetscFunctionReturn(0);
+}
+
+/* Zr' A Zr, Zl_1' A Zr, Zl_2' A Zr, ..., array [1 + n_left] */
+static PetscErrorCode Project(Operators o, Mat A, Mat image[])
+{
+  Mat AZ;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatMatMult(A, o->Zr, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &AZ));
+  PetscCall(MatProductClear(AZ));
+  PetscCall(ProjectFromLeft(o->Zr, AZ, &image[0]));
+  for (PetscInt i = 0; i < o->n_left; i++) PetscCall(ProjectFromLeft(o->left[i], AZ, &image[1 + i]));
+  PetscCall(MatDestroy(&AZ));
+  PetscFunctionReturn(0);
+}
+
+/* Adds the terms of the pencil that a base term with these images makes */
+static PetscErrorCode ImagesAdd(Operators o, const OperatorsTerm *base, const Mat image[])
+{
+  const PetscInt n = base->n;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i <= o->n_left; i++) {
+    OperatorsTerm *term;
+
+    if (!image[i]) continue;
+    PetscCall(TermsAdd(&o->projected, base->kind, image[i], i ? PETSC_FALSE : base->symmetric, 0, NULL));
+    term        = &o->projected.term[o->projected.n - 1];
+    term->scale = base->scale;
+    term->n     = n + (i ? 1 : 0);
+    PetscCheck(term->n <= OPERATORS_MAX_FACTORS, o->comm, PETSC_ERR_PLIB, "a term of %" PetscInt_FMT " factors",
+               term->n);
+    PetscCall(PetscArraycpy(term->factor, base->factor, n));
+    if (!i) continue;
+    term->factor[n].parameter = o->left_mu[i - 1];
+    term->factor[n].power     = 1;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsProjectTerms(Operators o)
+{
+  const PetscInt n_images = 1 + o->n_left;
+  Mat           *image;
+
+  PetscFunctionBeginUser;
+  if (!o->Zr || o->projected.n) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(o->base.n * n_images, &image));
+  for (PetscInt t = 0; t < o->base.n; t++) {
+    const OperatorsTerm *term   = &o->base.term[t];
+    PetscInt             shared = 0;
+
+    while (o->base.term[shared].A != term->A) shared++;
+    if (shared == t) PetscCall(Project(o, term->A, &image[t * n_images]));
+    PetscCall(ImagesAdd(o, term, &image[shared * n_images]));
+  }
+  for (PetscInt i = 0; i < o->base.n * n_images; i++) PetscCall(MatDestroy(&image[i]));
+  PetscCall(PetscFree(image));
   PetscFunctionReturn(0);
 }

@@ -1,5 +1,7 @@
 /*
-   Matrices without a mesh: PETSc binary files (MatLoad) or dense lists in the options, rows one after another.
+   Matrices without a mesh: PETSc binary files (MatLoad) or dense lists in the options, rows one after another. Each is
+   one term, H with the coefficient contact_mu, which is the only parameter. K, M and C count as terms that are there
+   without friction, symmetric or not.
 */
 #include "operatorsimpl.h"
 #include <errno.h>
@@ -85,38 +87,65 @@ static PetscErrorCode FileLoad(MPI_Comm comm, const char letter[], const char fi
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsLoad(Operators o)
+/* Adds the terms and the parameter */
+static PetscErrorCode TermsFromMatrices(Operators o, Mat A[N_OPERATORS])
+{
+  static const OperatorsTermKind kind[] = {OPERATORS_STIFFNESS, OPERATORS_MASS, OPERATORS_DAMPING};
+  PetscInt                       mu;
+
+  PetscFunctionBeginUser;
+  for (int i = OPERATOR_K; i <= OPERATOR_C; i++)
+    if (A[i]) PetscCall(TermsAdd(&o->base, kind[i], A[i], PETSC_TRUE, 0, NULL));
+  if (!A[OPERATOR_H]) PetscFunctionReturn(0);
+  PetscCall(ParameterAddMu(o, "contact", o->loaded_mu, &mu));
+  PetscCall(TermsAdd(&o->base, OPERATORS_STIFFNESS, A[OPERATOR_H], PETSC_FALSE, 1, &mu));
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for matrices that do not fit */
+static PetscErrorCode MatricesCheck(Operators o, Mat A[N_OPERATORS])
 {
   PetscInt n, rows, columns;
 
   PetscFunctionBeginUser;
-  for (int i = 0; i < N_OPERATORS; i++) {
-    if (o->load[i][0])
-      PetscCall(FileLoad(o->comm, letters[i], o->load[i], &o->A[i]));
-    else if (o->n_dense[i])
-      PetscCall(DenseCreate(o->comm, letters[i], o->n_dense[i], o->dense[i], &o->A[i]));
-  }
   for (int i = OPERATOR_K; i <= OPERATOR_M; i++)
-    PetscCheck(o->A[i], o->comm, PETSC_ERR_USER_INPUT,
+    PetscCheck(A[i], o->comm, PETSC_ERR_USER_INPUT,
                "-operators_load_%s or -operators_dense_%s is missing: K and M are both needed", letters[i], letters[i]);
-  PetscCall(MatGetSize(o->A[OPERATOR_K], &n, NULL));
+  PetscCall(MatGetSize(A[OPERATOR_K], &n, NULL));
   for (int i = 0; i < N_OPERATORS; i++) {
-    if (!o->A[i]) continue;
-    PetscCall(MatGetSize(o->A[i], &rows, &columns));
+    if (!A[i]) continue;
+    PetscCall(MatGetSize(A[i], &rows, &columns));
     PetscCheck(rows == n && columns == n, o->comm, PETSC_ERR_USER_INPUT,
                "matrix %s is %" PetscInt_FMT " x %" PetscInt_FMT ", but K has %" PetscInt_FMT
                " rows: all must be square and alike",
                letters[i], rows, columns, n);
   }
-  PetscCheck(o->A[OPERATOR_H] || o->mu == 0, o->comm, PETSC_ERR_USER_INPUT,
-             "-contact_mu %.6g does nothing without -operators_load_h or -operators_dense_h", (double)o->mu);
+  PetscCheck(A[OPERATOR_H] || o->loaded_mu == 0, o->comm, PETSC_ERR_USER_INPUT,
+             "-contact_mu %.6g does nothing without -operators_load_h or -operators_dense_h", (double)o->loaded_mu);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsLoad(Operators o)
+{
+  Mat A[N_OPERATORS] = {NULL};
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < N_OPERATORS; i++) {
+    if (o->load[i][0])
+      PetscCall(FileLoad(o->comm, letters[i], o->load[i], &A[i]));
+    else if (o->n_dense[i])
+      PetscCall(DenseCreate(o->comm, letters[i], o->n_dense[i], o->dense[i], &A[i]));
+  }
+  PetscCall(MatricesCheck(o, A));
   for (int i = OPERATOR_K; i <= OPERATOR_C && o->symmetric; i++) {
     PetscReal largest;
 
-    if (!o->A[i]) continue;
-    PetscCall(MatNorm(o->A[i], NORM_FROBENIUS, &largest));
-    PetscCall(MatIsSymmetric(o->A[i], 1e-14 * largest, &o->symmetric));
+    if (!A[i]) continue;
+    PetscCall(MatNorm(A[i], NORM_FROBENIUS, &largest));
+    PetscCall(MatIsSymmetric(A[i], 1e-14 * largest, &o->symmetric));
   }
+  PetscCall(TermsFromMatrices(o, A));
+  for (int i = 0; i < N_OPERATORS; i++) PetscCall(MatDestroy(&A[i]));
   PetscFunctionReturn(0);
 }
 
@@ -156,6 +185,7 @@ PetscErrorCode OperatorsSave(Operators o)
   OperatorsPencil pencil;
   PetscMPIInt     rank;
   int             failed = 0;
+  Mat             K = NULL, H = NULL;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(o->comm, &rank));
@@ -164,9 +194,10 @@ PetscErrorCode OperatorsSave(Operators o)
   PetscCheck(!failed, o->comm, PETSC_ERR_FILE_OPEN, "cannot make the folder '%s' of -operators_save: %s", o->save,
              strerror(failed));
   PetscCall(OperatorsGetPencil(o, &pencil));
-  PetscCall(FileSave(o, "K", o->Zr ? pencil.K : o->A[OPERATOR_K]));
+  if (!o->Zr) PetscCall(OperatorsGetMatrices(o, &K, NULL, NULL, &H, NULL));
+  PetscCall(FileSave(o, "K", K ? K : pencil.K));
   PetscCall(FileSave(o, "M", pencil.M));
   if (pencil.C) PetscCall(FileSave(o, "C", pencil.C));
-  if (o->A[OPERATOR_H] && !o->Zr) PetscCall(FileSave(o, "H", o->A[OPERATOR_H]));
+  if (H) PetscCall(FileSave(o, "H", H));
   PetscFunctionReturn(0);
 }

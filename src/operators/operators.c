@@ -1,5 +1,6 @@
 /*
-   Operators: life cycle, access, and the pencil that the modes are computed from.
+   Operators: life cycle, access, and the pencil that the modes are computed from. Everything that is handed out is a
+   sum of terms at the present values of the parameters, formed when it is asked for.
 */
 #include "operatorsimpl.h"
 
@@ -35,8 +36,8 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
                                operators->save, operators->save, sizeof(operators->save), NULL));
   PetscCall(OperatorsHaveMatrices(operators, &have));
   if (have)
-    PetscCall(PetscOptionsReal("-contact_mu", "friction coefficient of K + mu H", "operators.h", operators->mu,
-                               &operators->mu, NULL));
+    PetscCall(PetscOptionsReal("-contact_mu", "friction coefficient of K + mu H", "operators.h", operators->loaded_mu,
+                               &operators->loaded_mu, NULL));
   PetscOptionsEnd();
   operators->lump = mass == 1 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
@@ -53,6 +54,8 @@ PetscErrorCode OperatorsHaveMatrices(Operators operators, PetscBool *have)
 
 PetscErrorCode OperatorsSetUp(Operators operators)
 {
+  OperatorsPencil pencil;
+
   PetscFunctionBeginUser;
   if (operators->model) {
     PetscCall(OperatorsAssemble(operators));
@@ -61,111 +64,144 @@ PetscErrorCode OperatorsSetUp(Operators operators)
   } else {
     PetscCall(OperatorsLoad(operators));
   }
+  PetscCall(OperatorsGetPencil(operators, &pencil));
   if (operators->save[0]) PetscCall(OperatorsSave(operators));
+  PetscFunctionReturn(0);
+}
+
+/* What each sum is made of */
+static const struct {
+  OperatorsTermKind kind;
+  TermsChoice       choice;
+  PetscBool         symmetric;   /* without friction and damping */
+  SumKind           unprojected; /* the same sum when no constraint projects */
+} sums[N_SUMS] = {
+  [SUM_K]       = {OPERATORS_STIFFNESS, TERMS_SYMMETRIC,   PETSC_TRUE,  SUM_K   },
+  [SUM_M]       = {OPERATORS_MASS,      TERMS_ALL,         PETSC_TRUE,  SUM_M   },
+  [SUM_C]       = {OPERATORS_DAMPING,   TERMS_ALL,         PETSC_FALSE, SUM_C   },
+  [SUM_H]       = {OPERATORS_STIFFNESS, TERMS_UNSYMMETRIC, PETSC_FALSE, SUM_H   },
+  [PROJECTED_K] = {OPERATORS_STIFFNESS, TERMS_SYMMETRIC,   PETSC_TRUE,  SUM_K   },
+  [PROJECTED_M] = {OPERATORS_MASS,      TERMS_SYMMETRIC,   PETSC_TRUE,  SUM_M   },
+  [PENCIL_K]    = {OPERATORS_STIFFNESS, TERMS_ALL,         PETSC_FALSE, PENCIL_K},
+  [PENCIL_M]    = {OPERATORS_MASS,      TERMS_ALL,         PETSC_FALSE, SUM_M   },
+  [PENCIL_C]    = {OPERATORS_DAMPING,   TERMS_ALL,         PETSC_FALSE, SUM_C   },
+};
+
+/* One of the sums at the present values (borrowed); NULL when it vanishes */
+static PetscErrorCode SumGet(Operators o, SumKind which, Mat *A)
+{
+  const SumKind   at        = o->Zr ? which : sums[which].unprojected;
+  const PetscBool projected = o->Zr && at >= PROJECTED_K ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal mu        = OperatorsLargestMu(o);
+  TermsSum       *sum       = &o->sum[at];
+
+  PetscFunctionBeginUser;
+  if (!sum->current) {
+    if (projected) PetscCall(OperatorsProjectTerms(o));
+    PetscCall(TermsSumForm(projected ? &o->projected : &o->base, sums[at].kind, sums[at].choice,
+                           at == SUM_H && mu != 0 ? 1 / mu : 1, o->p, sum));
+    if (sum->A)
+      PetscCall(MatSetOption(sum->A, MAT_SYMMETRIC, sums[at].symmetric && o->symmetric ? PETSC_TRUE : PETSC_FALSE));
+  }
+  *A = sum->A;
+  PetscFunctionReturn(0);
+}
+
+/* H: the one given, at any mu, or that of a model, which vanishes with mu */
+static PetscErrorCode FrictionGet(Operators o, Mat *H)
+{
+  const OperatorsTerm *last = &o->base.term[o->base.n - 1];
+
+  PetscFunctionBeginUser;
+  if (o->model)
+    PetscCall(SumGet(o, SUM_H, H));
+  else
+    *H = last->symmetric ? NULL : last->A;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode OperatorsGetMatrices(Operators operators, Mat *K, Mat *M, Mat *C, Mat *H, PetscReal *mu)
 {
   PetscFunctionBeginUser;
-  if (K) *K = operators->A[OPERATOR_K];
-  if (M) *M = operators->A[OPERATOR_M];
-  if (C) *C = operators->A[OPERATOR_C];
-  if (H) *H = operators->A[OPERATOR_H];
-  if (mu) *mu = operators->mu;
+  if (K) PetscCall(SumGet(operators, SUM_K, K));
+  if (M) PetscCall(SumGet(operators, SUM_M, M));
+  if (C) PetscCall(SumGet(operators, SUM_C, C));
+  if (H) PetscCall(FrictionGet(operators, H));
+  if (mu) *mu = OperatorsLargestMu(operators);
   PetscFunctionReturn(0);
 }
 
-/* Zl' A Zr, or A itself (one more reference) without constraints; NULL stays NULL */
-static PetscErrorCode Project(Mat A, Mat Zl, Mat Zr, Mat *projected)
+PetscErrorCode OperatorsGetTerms(Operators operators, PetscInt *n, const OperatorsTerm **terms)
 {
-  Mat AZ;
+  const Terms *list = operators->Zr ? &operators->projected : &operators->base;
 
   PetscFunctionBeginUser;
-  *projected = A;
-  if (!A) PetscFunctionReturn(0);
-  if (!Zr) {
-    PetscCall(PetscObjectReference((PetscObject)A));
-    PetscFunctionReturn(0);
-  }
-  PetscCall(MatMatMult(A, Zr, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &AZ));
-  PetscCall(MatTransposeMatMult(Zl, AZ, MAT_INITIAL_MATRIX, PETSC_DEFAULT, projected));
-  PetscCall(MatDestroy(&AZ));
-  PetscFunctionReturn(0);
-}
-
-/* K + mu H; K itself (one more reference) when there is no friction */
-static PetscErrorCode StiffnessCreate(Operators operators, Mat *K)
-{
-  Mat *const A = operators->A;
-
-  PetscFunctionBeginUser;
-  *K = A[OPERATOR_K];
-  if (!A[OPERATOR_H] || operators->mu == 0) {
-    PetscCall(PetscObjectReference((PetscObject)*K));
-    PetscFunctionReturn(0);
-  }
-  PetscCall(MatDuplicate(A[OPERATOR_K], MAT_COPY_VALUES, K));
-  PetscCall(MatSetOption(*K, MAT_SYMMETRIC, PETSC_FALSE));
-  PetscCall(MatAXPY(*K, operators->mu, A[OPERATOR_H], DIFFERENT_NONZERO_PATTERN));
+  PetscCall(OperatorsProjectTerms(operators));
+  *n     = list->n;
+  *terms = list->term;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode OperatorsGetPencil(Operators operators, OperatorsPencil *pencil)
 {
-  OperatorsPencil *p = &operators->pencil;
-  Mat              K;
+  const Terms *terms = operators->Zr ? &operators->projected : &operators->base;
+  PetscBool    frictionless, same_mass;
 
   PetscFunctionBeginUser;
-  if (!p->K) {
-    PetscCall(StiffnessCreate(operators, &K));
-    p->symmetric = operators->symmetric && K == operators->A[OPERATOR_K] && operators->Zl == operators->Zr
-                     ? PETSC_TRUE
-                     : PETSC_FALSE;
-    PetscCall(Project(K, operators->Zl, operators->Zr, &p->K));
-    PetscCall(Project(operators->A[OPERATOR_C], operators->Zl, operators->Zr, &p->C));
-    PetscCall(Project(operators->A[OPERATOR_M], operators->Zl, operators->Zr, &p->M));
-    PetscCall(MatSetOption(p->K, MAT_SYMMETRIC, p->symmetric));
-    PetscCall(MatSetOption(p->M, MAT_SYMMETRIC,
-                           operators->symmetric && operators->Zl == operators->Zr ? PETSC_TRUE : PETSC_FALSE));
-    PetscCall(MatDestroy(&K));
-  }
-  *pencil = *p;
+  PetscCall(OperatorsProjectTerms(operators));
+  frictionless      = TermsVanish(terms, TERMS_UNSYMMETRIC, PETSC_FALSE, operators->p);
+  same_mass         = TermsVanish(terms, TERMS_UNSYMMETRIC, PETSC_TRUE, operators->p);
+  pencil->symmetric = operators->symmetric && frictionless ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(SumGet(operators, frictionless ? PROJECTED_K : PENCIL_K, &pencil->K));
+  PetscCall(SumGet(operators, same_mass ? PROJECTED_M : PENCIL_M, &pencil->M));
+  PetscCall(SumGet(operators, PENCIL_C, &pencil->C));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode OperatorsGetFrictionless(Operators operators, OperatorsPencil *pencil)
 {
-  OperatorsPencil *p = &operators->frictionless;
-
   PetscFunctionBeginUser;
-  if (!p->K) {
-    PetscCall(Project(operators->A[OPERATOR_K], operators->Zr, operators->Zr, &p->K));
-    PetscCall(Project(operators->A[OPERATOR_M], operators->Zr, operators->Zr, &p->M));
-    p->symmetric = operators->symmetric;
-    PetscCall(MatSetOption(p->K, MAT_SYMMETRIC, p->symmetric));
-    PetscCall(MatSetOption(p->M, MAT_SYMMETRIC, p->symmetric));
-  }
-  *pencil = *p;
+  PetscCall(SumGet(operators, PROJECTED_K, &pencil->K));
+  PetscCall(SumGet(operators, PROJECTED_M, &pencil->M));
+  pencil->C         = NULL;
+  pencil->symmetric = operators->symmetric;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode OperatorsExpand(Operators operators, PetscBool left, Vec q, Vec u)
 {
-  const Mat Z = left ? operators->Zl : operators->Zr;
+  Vec part;
 
   PetscFunctionBeginUser;
-  if (Z)
-    PetscCall(MatMult(Z, q, u));
-  else
+  if (!operators->Zr) {
     PetscCall(VecCopy(q, u));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(MatMult(operators->Zr, q, u));
+  if (!left) PetscFunctionReturn(0);
+  PetscCall(VecDuplicate(u, &part));
+  for (PetscInt i = 0; i < operators->n_left; i++) {
+    PetscCall(MatMult(operators->left[i], q, part));
+    PetscCall(VecAXPY(u, operators->p[operators->left_mu[i]], part));
+  }
+  PetscCall(VecDestroy(&part));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsRestrict(Operators operators, Vec u, Vec q)
+{
+  PetscFunctionBeginUser;
+  if (operators->E)
+    PetscCall(MatMultTranspose(operators->E, u, q));
+  else
+    PetscCall(VecCopy(u, q));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode OperatorsCreateVec(Operators operators, Vec *u)
 {
   PetscFunctionBeginUser;
-  PetscCall(MatCreateVecs(operators->A[OPERATOR_K], u, NULL));
+  PetscCall(MatCreateVecs(operators->base.term[0].A, u, NULL));
   PetscFunctionReturn(0);
 }
 
@@ -179,18 +215,19 @@ PetscErrorCode OperatorsGetModel(Operators operators, Model *model, Contact *con
 
 PetscErrorCode OperatorsView(Operators operators, PetscViewer viewer)
 {
-  PetscInt n, n_pencil;
-  MatInfo  info;
+  OperatorsPencil pencil;
+  PetscInt        n, n_pencil;
+  MatInfo         info;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetPencil(operators, &operators->pencil));
-  PetscCall(MatGetSize(operators->A[OPERATOR_K], &n, NULL));
-  PetscCall(MatGetSize(operators->pencil.K, &n_pencil, NULL));
-  PetscCall(MatGetInfo(operators->pencil.K, MAT_GLOBAL_SUM, &info));
+  PetscCall(OperatorsGetPencil(operators, &pencil));
+  PetscCall(MatGetSize(operators->base.term[0].A, &n, NULL));
+  PetscCall(MatGetSize(pencil.K, &n_pencil, NULL));
+  PetscCall(MatGetInfo(pencil.K, MAT_GLOBAL_SUM, &info));
   PetscCall(PetscViewerASCIIPrintf(
     viewer, "operators: %" PetscInt_FMT " unknowns, %.0f nonzeros, %s, %s, %s mass\n", n_pencil, (double)info.nz_used,
-    operators->pencil.symmetric ? "no friction: symmetric" : "friction: unsymmetric",
-    operators->pencil.C ? "damped: quadratic problem" : "undamped", operators->lump ? "lumped" : "consistent"));
+    pencil.symmetric ? "no friction: symmetric" : "friction: unsymmetric",
+    pencil.C ? "damped: quadratic problem" : "undamped", operators->lump ? "lumped" : "consistent"));
   if (n_pencil < n)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " unknowns eliminated by the contact constraint\n",
                                      n - n_pencil));
@@ -203,17 +240,18 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
 
   PetscFunctionBeginUser;
   if (!o) PetscFunctionReturn(0);
-  for (int i = 0; i < N_OPERATORS; i++) {
-    PetscCall(MatDestroy(&o->A[i]));
-    PetscCall(PetscFree(o->dense[i]));
-  }
-  PetscCall(MatDestroy(&o->pencil.K));
-  PetscCall(MatDestroy(&o->pencil.C));
-  PetscCall(MatDestroy(&o->pencil.M));
-  PetscCall(MatDestroy(&o->frictionless.K));
-  PetscCall(MatDestroy(&o->frictionless.M));
+  for (int i = 0; i < N_OPERATORS; i++) PetscCall(PetscFree(o->dense[i]));
+  for (int i = 0; i < N_SUMS; i++) PetscCall(TermsSumDestroy(&o->sum[i]));
+  for (PetscInt i = 0; i < o->n_left; i++) PetscCall(MatDestroy(&o->left[i]));
+  PetscCall(PetscFree2(o->left, o->left_mu));
   PetscCall(MatDestroy(&o->Zr));
-  PetscCall(MatDestroy(&o->Zl));
+  PetscCall(MatDestroy(&o->E));
+  PetscCall(TermsDestroy(&o->projected));
+  PetscCall(TermsDestroy(&o->base));
+  PetscCall(PetscFree(o->interface_mu));
+  PetscCall(PetscFree(o->mu));
+  PetscCall(PetscFree(o->parameter));
+  PetscCall(PetscFree(o->p));
   PetscCall(PetscFree(*operators));
   PetscFunctionReturn(0);
 }

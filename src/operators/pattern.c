@@ -1,35 +1,39 @@
 /*
-   Preallocation: couplings of the unknowns of two vertices of a common cell. Each rank counts, for every vertex that
-   it has, the distinct neighbours through its own cells, apart by whether the neighbour's unknowns live with the
-   row's owner; the counts are summed over the ranks that share the vertex. Neighbours that two ranks see count twice:
-   an upper bound, exact in the interior, at a fifth of the time of DMCreateMatrix(), which walks the closure of edges
-   and faces too.
+   Preallocation: couplings of the unknowns of two vertices of a common cell of one part. Each rank counts, for every
+   vertex that it has, the distinct neighbours through its own cells, apart by whether the neighbour's unknowns live
+   with the row's owner; the counts are summed over the ranks that share the vertex. Neighbours that two ranks see count
+   twice: an upper bound, exact in the interior, at a fifth of the time of DMCreateMatrix(), which walks the closure of
+   edges and faces too.
 */
 #include "operatorsimpl.h"
 
-/* Cells around each local vertex as lists: those of vertex v are cell[first[v]] .. cell[first[v + 1] - 1] */
+/* Cells of a part around each local vertex as lists: those of vertex v are cell[first[v]] .. cell[first[v + 1] - 1] */
 typedef struct {
   PetscInt  n_vertices, vStart, n_cells;
   PetscInt *first, *cell;
 } Star;
 
-static PetscErrorCode StarCreate(Model model, DM dm, PetscInt n_nodes, Star *s)
+static PetscErrorCode StarCreate(Model model, DM dm, PetscInt part, PetscInt n_nodes, Star *s)
 {
-  PetscInt  cStart, cEnd, vEnd, vertices[ELEMENT_MAX_NODES];
-  PetscReal x[ELEMENT_MAX_DOFS];
+  const PetscInt *cell_part;
+  PetscInt        cStart, cEnd, vEnd, vertices[ELEMENT_MAX_NODES];
+  PetscReal       x[ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
+  PetscCall(ModelGetCellParts(model, &cell_part));
   PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
   PetscCall(DMPlexGetDepthStratum(dm, 0, &s->vStart, &vEnd));
   s->n_cells    = cEnd - cStart;
   s->n_vertices = vEnd - s->vStart;
   PetscCall(PetscCalloc2(s->n_vertices + 2, &s->first, n_nodes * s->n_cells, &s->cell));
   for (PetscInt c = 0; c < s->n_cells; c++) {
+    if (cell_part[c] != part) continue;
     PetscCall(ModelGetCell(model, c, vertices, x));
     for (PetscInt i = 0; i < n_nodes; i++) s->first[vertices[i] - s->vStart + 2]++;
   }
   for (PetscInt v = 0; v < s->n_vertices; v++) s->first[v + 2] += s->first[v + 1];
   for (PetscInt c = 0; c < s->n_cells; c++) {
+    if (cell_part[c] != part) continue;
     PetscCall(ModelGetCell(model, c, vertices, x));
     for (PetscInt i = 0; i < n_nodes; i++) s->cell[s->first[vertices[i] - s->vStart + 1]++] = c;
   }
@@ -81,7 +85,7 @@ static PetscErrorCode NeighboursCount(Model model, const Star *s, PetscInt n_nod
 }
 
 /* Entries per owned row inside and outside the diagonal block */
-static PetscErrorCode RowsCount(MPI_Comm comm, Model model, DM dm, PetscInt n_own, PetscInt first_own,
+static PetscErrorCode RowsCount(MPI_Comm comm, Model model, DM dm, PetscInt part, PetscInt n_own, PetscInt first_own,
                                 PetscInt inside[], PetscInt outside[])
 {
   const Element  *element;
@@ -94,7 +98,7 @@ static PetscErrorCode RowsCount(MPI_Comm comm, Model model, DM dm, PetscInt n_ow
   PetscFunctionBeginUser;
   PetscCall(ModelGetElement(model, &element));
   PetscCall(ModelGetUnknowns(model, &unknowns));
-  PetscCall(StarCreate(model, dm, element->n_nodes, &star));
+  PetscCall(StarCreate(model, dm, part, element->n_nodes, &star));
   PetscCall(PetscMalloc1(star.n_vertices, &owner));
   PetscCall(OwnersFind(comm, &star, unknowns, n_own, owner));
   PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
@@ -119,7 +123,7 @@ static PetscErrorCode RowsCount(MPI_Comm comm, Model model, DM dm, PetscInt n_ow
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PatternCreate(Model model, Mat *A)
+PetscErrorCode PatternCreate(Model model, PetscInt part, Mat *A)
 {
   PetscInt n_own, n_all, first_own, *inside, *outside;
   MPI_Comm comm;
@@ -135,7 +139,7 @@ PetscErrorCode PatternCreate(Model model, Mat *A)
   PetscCall(VecGetOwnershipRange(u, &first_own, NULL));
   PetscCall(DMRestoreGlobalVector(dm, &u));
   PetscCall(PetscCalloc2(n_own, &inside, n_own, &outside));
-  PetscCall(RowsCount(comm, model, dm, n_own, first_own, inside, outside));
+  PetscCall(RowsCount(comm, model, dm, part, n_own, first_own, inside, outside));
   for (PetscInt i = 0; i < n_own; i++) outside[i] = PetscMin(n_all - n_own, outside[i]);
   PetscCall(MatCreateAIJ(comm, n_own, n_own, n_all, n_all, 0, inside, 0, outside, A));
   PetscCall(PetscFree2(inside, outside));

@@ -1,0 +1,59 @@
+/*
+   Sweep - complex modes over one or two parameters of the scene. The pencil is affine in monomials of the parameters,
+
+      Q(lambda; p) = lambda^2 M(p) + lambda C(p) + K(p),   each of M, C, K = sum_t c_t(p) A_t,
+
+   and is projected on a small basis V of right and left eigenvectors from full solutions at a few points (Galerkin, the
+   same V on both sides: the error of an eigenvalue is then the product of the errors of its right and left vector). A
+   point costs one dense problem of the size of V. The points of the full solutions are chosen where the estimated error
+   is largest, until it is below -sweep_rtol for every eigenvalue of the band at every point. The error is an estimate,
+   not a bound; -sweep_verify compares it with full solutions at points that the basis has never seen.
+*/
+#pragma once
+
+#include <squeal/modes.h>
+
+typedef struct _p_Sweep *Sweep;
+
+/*@ SweepCreate - makes a sweep. Collective. @*/
+PetscErrorCode SweepCreate(MPI_Comm comm, Sweep *sweep);
+
+/*@ SweepSetModes - the solver of the full problems, with its band (referenced until SweepDestroy()). Collective. @*/
+PetscErrorCode SweepSetModes(Sweep sweep, Modes modes);
+
+/*@ SweepSetOperators - the system, affine in its parameters (referenced until SweepDestroy()). Collective. @*/
+PetscErrorCode SweepSetOperators(Sweep sweep, Operators operators);
+
+/*@
+   SweepSetFromOptions - reads what to vary and how accurately. Collective.
+
+   Options Database Keys:
++  -sweep_parameter <name[,name]> - one or two options of the scene: young, density, alpha, beta of a part, stiffness of
+springs, viscosity of dashpots, mu, kn, speed, ... of a contact, e.g. pad_young,contact_mu
+.  -sweep_values <first:last:n>   - n equal steps; first:last:n:log for equal ratios; or a list v1,v2,...
+.  -sweep_values_2 <values>       - those of the second parameter
+.  -sweep_method <reduced>        - reduced; full solves every point in full; real projects on real modes
+.  -sweep_rtol <1e-6>             - largest estimated relative error of an eigenvalue
+.  -sweep_real_modes <80>         - number of frictionless modes that -sweep_method real projects on
+.  -sweep_max_samples <20>        - most full solutions
+.  -sweep_verify <0>              - full solutions at this many points between those of the sweep: true errors
+.  -sweep_onsets <true>           - critical values of the first parameter, confirmed on the full problem
+.  -sweep_sensitivities <false>   - derivatives of every eigenvalue by every parameter
+.  -sweep_uncertain <names>       - parameters known to -sweep_percent only: which modes can become unstable
+.  -sweep_percent <10>            - their uncertainty, percent; one value or one for each
+.  -sweep_groups <ranks>          - groups of ranks that share the points
+-  -sweep_restart <true>          - go on where a sweep of the same scene in -output_dir was stopped
+@*/
+PetscErrorCode SweepSetFromOptions(Sweep sweep);
+
+/*@ SweepSolve - all points, branches, onsets and what else was asked for. Collective. @*/
+PetscErrorCode SweepSolve(Sweep sweep, Results results);
+
+/*@ SweepView - what a person wants to know first. Collective. @*/
+PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer);
+
+/*@ SweepWrite - sweep.csv, onsets.csv, sensitivities.csv, robustness.csv. Collective. @*/
+PetscErrorCode SweepWrite(Sweep sweep, Results results);
+
+/*@ SweepDestroy - frees the sweep. Collective. @*/
+PetscErrorCode SweepDestroy(Sweep *sweep);

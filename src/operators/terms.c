@@ -1,0 +1,92 @@
+/*
+   Terms: matrices with monomials of the parameters for coefficients, c(p) = scale prod_i p_i^power_i, and the
+   derivative
+
+      dc/dp_j = sum over factors i of p_j:  scale power_i p_j^(power_i - 1) prod_{k != i} p_k^power_k
+
+   where |p| stands for p if the factor is absolute; d|p|/dp at p = 0 is taken as 0, the mean of both sides.
+*/
+#include "operatorsimpl.h"
+
+PetscErrorCode TermsAdd(Terms *terms, OperatorsTermKind kind, Mat A, PetscBool symmetric, PetscInt n,
+                        const PetscInt parameter[])
+{
+  OperatorsTerm *term;
+
+  PetscFunctionBeginUser;
+  PetscCheck(n <= OPERATORS_MAX_FACTORS, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a term of %" PetscInt_FMT " factors", n);
+  PetscCall(PetscRealloc((size_t)(terms->n + 1) * sizeof(*terms->term), &terms->term));
+  term = &terms->term[terms->n++];
+  PetscCall(PetscMemzero(term, sizeof(*term)));
+  PetscCall(PetscObjectReference((PetscObject)A));
+  term->kind      = kind;
+  term->A         = A;
+  term->symmetric = symmetric;
+  term->scale     = 1;
+  term->n         = n;
+  for (PetscInt i = 0; i < n; i++) {
+    term->factor[i].parameter = parameter[i];
+    term->factor[i].power     = 1;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Value of factor i */
+static PetscReal FactorValue(const OperatorsTerm *term, const PetscReal p[], PetscInt i)
+{
+  const PetscReal value = p[term->factor[i].parameter], base = term->factor[i].absolute ? PetscAbsReal(value) : value;
+
+  return term->factor[i].power < 0 ? 1 / base : base;
+}
+
+/* Derivative of factor i by its parameter */
+static PetscReal FactorDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt i)
+{
+  const PetscReal value = p[term->factor[i].parameter];
+  const PetscReal sign  = !term->factor[i].absolute ? 1 : (PetscReal)((value > 0) - (value < 0));
+
+  return term->factor[i].power < 0 ? -sign / (value * value) : sign;
+}
+
+PetscReal OperatorsTermCoefficient(const OperatorsTerm *term, const PetscReal p[])
+{
+  PetscReal c = term->scale;
+
+  for (PetscInt i = 0; i < term->n; i++) c *= FactorValue(term, p, i);
+  return c;
+}
+
+PetscReal OperatorsTermDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt parameter)
+{
+  PetscReal sum = 0;
+
+  for (PetscInt i = 0; i < term->n; i++) {
+    PetscReal c = term->scale;
+
+    if (term->factor[i].parameter != parameter) continue;
+    for (PetscInt k = 0; k < term->n; k++) c *= k == i ? FactorDerivative(term, p, k) : FactorValue(term, p, k);
+    sum += c;
+  }
+  return sum;
+}
+
+PetscBool TermsVanish(const Terms *terms, TermsChoice choice, PetscBool mass_only, const PetscReal p[])
+{
+  for (PetscInt t = 0; t < terms->n; t++) {
+    const OperatorsTerm *term = &terms->term[t];
+
+    if (mass_only && term->kind != OPERATORS_MASS) continue;
+    if (choice != TERMS_ALL && term->symmetric != (choice == TERMS_SYMMETRIC)) continue;
+    if (OperatorsTermCoefficient(term, p) != 0) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+PetscErrorCode TermsDestroy(Terms *terms)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt t = 0; t < terms->n; t++) PetscCall(MatDestroy(&terms->term[t].A));
+  PetscCall(PetscFree(terms->term));
+  terms->n = 0;
+  PetscFunctionReturn(0);
+}

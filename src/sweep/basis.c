@@ -1,0 +1,247 @@
+/*
+   The reduced basis. Blocks of vectors are made orthonormal in M block by block (A. Stathopoulos, K. Wu, SIAM J. Sci.
+   Comput. 23, 2002: SVQB): W -= V V' M W, G = W' M W = U D U', W := W U D^-1/2, where directions with D below the square
+   of the drop tolerance are left out. All of it is matrix-matrix work. The dense model V' A_t V is extended by the rows
+   and columns of the new vectors.
+*/
+#include "basis.h"
+#include <petscblaslapack.h>
+
+#define REORTHOGONALISE 1e-9 /* a direction smaller than this beside its block is rounding */
+
+PetscErrorCode BasisCreate(MPI_Comm comm, Operators operators, Basis *basis)
+{
+  const OperatorsParameter *parameters;
+  OperatorsPencil           frictionless;
+  Vec                       u;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(basis, sizeof(*basis)));
+  basis->comm      = comm;
+  basis->operators = operators;
+  PetscCall(OperatorsGetFrictionless(operators, &frictionless));
+  PetscCall(MatDuplicate(frictionless.M, MAT_COPY_VALUES, &basis->M));
+  PetscCall(MatSetOption(basis->M, MAT_SYMMETRIC, PETSC_TRUE));
+  PetscCall(MatCreateVecs(basis->M, &u, NULL));
+  PetscCall(BVCreate(comm, &basis->vectors));
+  PetscCall(BVSetType(basis->vectors, BVMAT));
+  PetscCall(BVSetSizesFromVec(basis->vectors, u, 1));
+  PetscCall(VecDestroy(&u));
+  PetscCall(OperatorsGetParameters(operators, &basis->reduced.n_parameters, &parameters));
+  PetscCall(OperatorsGetTerms(operators, &basis->reduced.n_terms, &basis->reduced.term));
+  PetscCall(PetscCalloc1(basis->reduced.n_terms, &basis->reduced.A));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BasisCreateBlock(const Basis *basis, PetscInt n, BV *block)
+{
+  PetscFunctionBeginUser;
+  PetscCall(BVDuplicateResize(basis->vectors, n, block));
+  PetscCall(BVSetActiveColumns(*block, 0, n));
+  PetscFunctionReturn(0);
+}
+
+/* H = X' A Y (A the identity where NULL) for the active columns of X and Y */
+static PetscErrorCode InnerProducts(BV X, Mat A, BV Y, Mat *H)
+{
+  PetscInt nx, ny;
+  BV       AY = Y;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetActiveColumns(X, NULL, &nx));
+  PetscCall(BVGetActiveColumns(Y, NULL, &ny));
+  if (A) {
+    PetscCall(BVDuplicateResize(Y, ny, &AY));
+    PetscCall(BVMatMult(Y, A, AY));
+  }
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, nx, ny, NULL, H));
+  PetscCall(BVDot(AY, X, *H));
+  if (A) PetscCall(BVDestroy(&AY));
+  PetscFunctionReturn(0);
+}
+
+/* W -= V V' M W */
+static PetscErrorCode Project(Basis *basis, BV W)
+{
+  Mat coefficients;
+
+  PetscFunctionBeginUser;
+  if (!basis->reduced.n) PetscFunctionReturn(0);
+  PetscCall(BVSetActiveColumns(basis->vectors, 0, basis->reduced.n));
+  PetscCall(InnerProducts(basis->vectors, basis->M, W, &coefficients));
+  PetscCall(BVMult(W, -1, 1, basis->vectors, coefficients));
+  PetscCall(MatDestroy(&coefficients));
+  PetscFunctionReturn(0);
+}
+
+/* Eigenvalues (ascending) and vectors of the symmetric m x m matrix G, overwritten by the vectors */
+static PetscErrorCode GramDecompose(PetscInt m, PetscScalar G[], PetscReal eigenvalue[])
+{
+  PetscBLASInt n, size, info;
+  PetscScalar *work;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(m, &n));
+  PetscCall(PetscBLASIntCast(40 * m + 64, &size));
+  PetscCall(PetscMalloc1(size, &work));
+  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "U", &n, G, &n, eigenvalue, work, &size, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev: info %d", (int)info);
+  PetscCall(PetscFree(work));
+  PetscFunctionReturn(0);
+}
+
+/* Makes the block orthonormal in M; its active columns become those above the drop tolerance */
+static PetscErrorCode Orthonormalise(const Basis *basis, BV W, PetscReal drop)
+{
+  PetscInt     m, kept = 0;
+  PetscReal   *eigenvalue;
+  PetscScalar *G;
+  Mat          gram;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetActiveColumns(W, NULL, &m));
+  if (!m) PetscFunctionReturn(0);
+  PetscCall(InnerProducts(W, basis->M, W, &gram));
+  PetscCall(PetscMalloc1(m, &eigenvalue));
+  PetscCall(MatDenseGetArray(gram, &G));
+  PetscCall(GramDecompose(m, G, eigenvalue));
+  drop = PetscMax(drop, REORTHOGONALISE * PetscSqrtReal(PetscMax(eigenvalue[m - 1], 0)));
+  for (PetscInt i = m - 1; i >= 0 && eigenvalue[i] > drop * drop; i--) kept++;
+  for (PetscInt k = 0; k < kept; k++)
+    for (PetscInt i = 0; i < m; i++)
+      G[k * m + i] = G[(m - kept + k) * m + i] / PetscSqrtReal(eigenvalue[m - kept + k]);
+  PetscCall(MatDenseRestoreArray(gram, &G));
+  PetscCall(BVMultInPlace(W, gram, 0, kept));
+  PetscCall(BVSetActiveColumns(W, 0, kept));
+  PetscCall(MatDestroy(&gram));
+  PetscCall(PetscFree(eigenvalue));
+  PetscFunctionReturn(0);
+}
+
+/* Copies H, or its transpose, into A (leading dimension n) from row i and column j on */
+static PetscErrorCode BlockCopy(Mat H, PetscBool transposed, PetscInt n, PetscInt i, PetscInt j, PetscReal A[])
+{
+  const PetscScalar *h;
+  PetscInt           rows, columns;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetSize(H, &rows, &columns));
+  PetscCall(MatDenseGetArrayRead(H, &h));
+  for (PetscInt c = 0; c < columns; c++)
+    for (PetscInt r = 0; r < rows; r++)
+      A[transposed ? (j + r) * n + i + c : (j + c) * n + i + r] = PetscRealPart(h[c * rows + r]);
+  PetscCall(MatDenseRestoreArrayRead(H, &h));
+  PetscFunctionReturn(0);
+}
+
+/* One V' A V, extended by the columns of `block`, which are columns first .. n - 1 of V */
+static PetscErrorCode TermExtend(const Basis *basis, const OperatorsTerm *term, BV block, PetscInt first, PetscInt n,
+                                 PetscReal **reduced)
+{
+  PetscReal *old = *reduced;
+  Mat        H, At;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n * n, reduced));
+  for (PetscInt j = 0; j < first; j++) PetscCall(PetscArraycpy(&(*reduced)[j * n], &old[j * first], first));
+  PetscCall(PetscFree(old));
+  PetscCall(InnerProducts(basis->vectors, term->A, block, &H));
+  PetscCall(BlockCopy(H, PETSC_FALSE, n, 0, first, *reduced));
+  if (!term->symmetric) {
+    PetscCall(MatDestroy(&H));
+    PetscCall(MatCreateTranspose(term->A, &At));
+    PetscCall(InnerProducts(basis->vectors, At, block, &H));
+    PetscCall(MatDestroy(&At));
+  }
+  PetscCall(BlockCopy(H, PETSC_TRUE, n, first, 0, *reduced));
+  PetscCall(MatDestroy(&H));
+  PetscFunctionReturn(0);
+}
+
+/* Every V' A_t V, extended by the columns of the block */
+static PetscErrorCode ReducedExtend(Basis *basis, BV block)
+{
+  Reduced *r = &basis->reduced;
+  PetscInt first = r->n, n;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetActiveColumns(block, NULL, &n));
+  n += first;
+  PetscCall(BVSetActiveColumns(basis->vectors, 0, n));
+  for (PetscInt t = 0; t < r->n_terms; t++)
+    PetscCall(TermExtend(basis, &r->term[t], block, first, n, &r->A[t]));
+  r->n = n;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BasisAdd(Basis *basis, BV block, PetscReal drop, PetscInt *n_added)
+{
+  const PetscInt first = basis->reduced.n;
+  PetscInt       n;
+
+  PetscFunctionBeginUser;
+  PetscCall(Project(basis, block));
+  PetscCall(Project(basis, block));
+  PetscCall(Orthonormalise(basis, block, drop));
+  PetscCall(BVGetActiveColumns(block, NULL, &n));
+  if (n) {
+    PetscCall(Project(basis, block));
+    PetscCall(Orthonormalise(basis, block, 0.1));
+    PetscCall(BVGetActiveColumns(block, NULL, &n));
+    PetscCall(BVResize(basis->vectors, first + n, PETSC_TRUE));
+    PetscCall(BVSetActiveColumns(basis->vectors, first, first + n));
+    PetscCall(BVCopy(block, basis->vectors));
+    PetscCall(ReducedExtend(basis, block));
+    PetscCheck(basis->n_blocks < BASIS_MAX_BLOCKS, basis->comm, PETSC_ERR_PLIB, "too many blocks of vectors");
+    basis->block_end[basis->n_blocks++] = first + n;
+  }
+  if (n_added) *n_added = n;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BasisRebuild(Basis *basis, PetscInt n_blocks)
+{
+  PetscFunctionBeginUser;
+  for (; basis->n_blocks < n_blocks; basis->n_blocks++) {
+    const PetscInt first = basis->reduced.n, n = basis->block_end[basis->n_blocks];
+    BV             block;
+
+    PetscCall(BasisCreateBlock(basis, n - first, &block));
+    PetscCall(BVSetActiveColumns(basis->vectors, first, n));
+    PetscCall(BVCopy(basis->vectors, block));
+    PetscCall(ReducedExtend(basis, block));
+    PetscCall(BVDestroy(&block));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BasisPromote(Basis *basis)
+{
+  PetscFunctionBeginUser;
+  basis->reduced.n_used = basis->reduced.n;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BasisLift(const Basis *basis, PetscInt size, PetscInt m, const PetscReal coordinates[], BV block)
+{
+  Mat C;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, size, m, (PetscScalar *)coordinates, &C));
+  PetscCall(BVSetActiveColumns(basis->vectors, 0, size));
+  PetscCall(BVSetActiveColumns(block, 0, m));
+  PetscCall(BVMult(block, 1, 0, basis->vectors, C));
+  PetscCall(BVSetActiveColumns(basis->vectors, 0, basis->reduced.n));
+  PetscCall(MatDestroy(&C));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BasisDestroy(Basis *basis)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt t = 0; t < basis->reduced.n_terms && basis->reduced.A; t++) PetscCall(PetscFree(basis->reduced.A[t]));
+  PetscCall(PetscFree(basis->reduced.A));
+  PetscCall(BVDestroy(&basis->vectors));
+  PetscCall(MatDestroy(&basis->M));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,102 @@
+/*
+   Full solutions: a sweep by brute force, one eigenvalue problem of the mesh per point, and the check of reduced results at
+   points that the basis has never seen, half way between those of the sweep.
+*/
+#include "sweepimpl.h"
+
+PetscErrorCode SweepBrute(Sweep sweep)
+{
+  const PetscInt n_points = GridSize(&sweep->grid);
+  PetscReal     *p;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
+  for (PetscInt i = 0; i < n_points; i++) {
+    SweepPoint *point = &sweep->point[i];
+    const Mode *mode;
+
+    GridPoint(&sweep->grid, i, p);
+    PetscCall(OperatorsSetParameters(sweep->operators, p));
+    PetscCall(ModesSolve(sweep->modes));
+    PetscCall(ModesGet(sweep->modes, &point->n, &mode));
+    PetscCall(PetscCalloc1(point->n, &point->mode));
+    for (PetscInt k = 0; k < point->n; k++) {
+      SweepMode *m = &point->mode[k];
+
+      m->sigma     = mode[k].sigma;
+      m->omega     = mode[k].omega;
+      m->error     = mode[k].error;
+      m->condition = mode[k].condition;
+      m->unstable  = mode[k].unstable;
+      m->branch    = -1;
+      PetscCall(PetscStrncpy(m->label, mode[k].label, sizeof(m->label)));
+    }
+  }
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
+}
+
+/* Largest distance of a full eigenvalue from the nearest reduced one, relative */
+static PetscReal LargestDistance(PetscInt n, const Mode full[], const ReducedModes *reduced)
+{
+  PetscReal largest = 0;
+
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscComplex lambda  = CMPLX(full[i].sigma, full[i].omega);
+    PetscReal          nearest = PETSC_MAX_REAL;
+
+    if (full[i].rigid) continue;
+    for (PetscInt k = 0; k < reduced->n; k++) nearest = PetscMin(nearest, cabs(reduced->lambda[k] - lambda));
+    largest = PetscMax(largest, nearest / cabs(lambda));
+  }
+  return largest;
+}
+
+/* Compares the two at the point of the check; the reduced window is a little wider, for modes on its edge */
+static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
+{
+  const ReducedWindow wide = {sweep->window.low * (1 - 1e-3), sweep->window.high * (1 + 1e-3), sweep->window.growth};
+  const Mode         *full;
+  ReducedModes        reduced;
+
+  PetscFunctionBeginUser;
+  PetscCall(PointsSolve(&sweep->groups, &sweep->basis.reduced, &wide, 1, check->p, &reduced));
+  PetscCall(OperatorsSetParameters(sweep->operators, check->p));
+  PetscCall(ModesSolve(sweep->modes));
+  PetscCall(ModesGet(sweep->modes, &check->n_full, &full));
+  for (PetscInt i = 0; i < check->n_full; i++) check->n_unstable_full += full[i].unstable;
+  for (PetscInt k = 0; k < reduced.n; k++) {
+    const PetscReal omega = cimag(reduced.lambda[k]);
+
+    if (omega < sweep->window.low || omega > sweep->window.high) continue;
+    check->n_reduced++;
+    check->n_unstable_reduced += SweepIsUnstable(reduced.lambda[k], reduced.error[k]);
+  }
+  check->error    = LargestDistance(check->n_full, full, &reduced);
+  check->estimate = sweep->method == SWEEP_REAL ? NAN : ModesWorst(&reduced, &sweep->window);
+  PetscCall(ReducedModesDestroy(&reduced));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepVerify(Sweep sweep)
+{
+  const Grid    *grid = &sweep->grid;
+  const PetscInt n    = sweep->n_verify;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n, &sweep->check));
+  for (PetscInt i = 0; i < n; i++) {
+    SweepCheck *check = &sweep->check[sweep->n_checks++];
+
+    PetscCall(PetscMalloc1(grid->n_parameters, &check->p));
+    PetscCall(PetscArraycpy(check->p, grid->base, grid->n_parameters));
+    for (PetscInt k = 0; k < grid->n_axes; k++) {
+      const PetscReal *value = grid->value[k];
+      const PetscInt   at    = ((2 * i + 1) * (grid->n[k] - 1)) / (2 * n), j = k ? (at * 7 + 3) % (grid->n[k] - 1) : at;
+
+      check->p[grid->parameter[k]] = grid->n[k] > 1 ? GridMiddle(grid, k, value[j], value[j + 1]) : value[0];
+    }
+    PetscCall(CheckPoint(sweep, check));
+  }
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,89 @@
+/*
+   Onsets: the critical values of the first parameter. Each is found on the reduced model by iteration (onset.c); then the
+   full pencil is factored at that value, the vectors of the pair are corrected with it, the basis takes the corrections
+   in, and the value is found again. It counts as confirmed when this no longer changes it.
+*/
+#include "sweepimpl.h"
+
+#define CONFIRMED 1e-8 /* relative change of the critical value by a further full correction */
+#define NEAR      1e-2 /* half width of the frequencies around the pair, relative */
+#define DROP      1e-9
+#define MAX_STEPS 5
+
+/* Finds the value on the reduced model; alike on all ranks */
+static PetscErrorCode OnsetReduced(Sweep sweep, const Line *line, Event *event)
+{
+  PetscFunctionBeginUser;
+  PetscCall(OnsetFind(&sweep->basis.reduced, &sweep->window, line, event));
+  PetscCallMPI(MPI_Bcast(&event->critical, 1, MPIU_REAL, 0, sweep->comm));
+  PetscCallMPI(MPI_Bcast(&event->omega, 1, MPIU_REAL, 0, sweep->comm));
+  PetscCallMPI(MPI_Bcast(&event->found, 1, MPIU_BOOL, 0, sweep->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Frequencies to correct about an onset: the pair's own without damping, else the whole window, whose shift is far from
+   them all */
+static ReducedWindow WindowNear(const ReducedWindow *window, PetscReal omega, PetscBool damped)
+{
+  ReducedWindow near = *window;
+
+  if (damped) return near;
+  near.low  = omega * (1 - NEAR);
+  near.high = PetscMax(omega * (1 + NEAR), NEAR * window->high);
+  return near;
+}
+
+/* The basis takes in corrections of the modes around the onset */
+static PetscErrorCode OnsetCorrect(Sweep sweep, const PetscReal p[], PetscReal omega)
+{
+  Correction    correction;
+  ReducedModes  modes;
+  ReducedWindow near;
+  PetscInt      n_added;
+  PetscBool     damped;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedSum(&sweep->basis.reduced, OPERATORS_DAMPING, p, 0, NULL, &damped));
+  near = WindowNear(&sweep->window, omega, damped);
+  PetscCall(CorrectionCreate(sweep->operators, p, &near, &sweep->progress, &correction));
+  PetscCall(ReducedSolve(&sweep->basis.reduced, p, &near, &modes));
+  PetscCall(CorrectionApply(&correction, &modes, DROP, &sweep->basis, &n_added));
+  PetscCall(BasisPromote(&sweep->basis));
+  PetscCall(ReducedModesDestroy(&modes));
+  PetscCall(CorrectionDestroy(&correction));
+  PetscFunctionReturn(0);
+}
+
+/* One onset to the end */
+static PetscErrorCode OnsetConfirm(Sweep sweep, PetscInt e)
+{
+  Event    *event = &sweep->events.event[e];
+  PetscReal before, change = PETSC_MAX_REAL, *p;
+  Line      line = {sweep->grid.parameter[0], sweep->grid.n[0], sweep->grid.value[0], NULL};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
+  GridPoint(&sweep->grid, sweep->event_line[e] * sweep->grid.n[0], p);
+  line.base = p;
+  PetscCall(OnsetReduced(sweep, &line, event));
+  for (int step = 0; step < MAX_STEPS && event->found && change > CONFIRMED * PetscAbsReal(event->critical); step++) {
+    before            = event->critical;
+    p[line.parameter] = before;
+    PetscCall(OnsetCorrect(sweep, p, event->omega));
+    PetscCall(OnsetReduced(sweep, &line, event));
+    change = PetscAbsReal(event->critical - before);
+  }
+  event->error = PetscMax(change, 1e-14 * PetscAbsReal(event->critical));
+  sweep->is_confirmed[e] =
+    event->found && change <= CONFIRMED * PetscAbsReal(event->critical) ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepOnsets(Sweep sweep)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(PetscMax(1, sweep->events.n), &sweep->is_confirmed));
+  for (PetscInt e = 0; e < sweep->events.n; e++) PetscCall(OnsetConfirm(sweep, e));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,199 @@
+/*
+   Corrections of reduced eigenpairs on the mesh. At a point p of the parameters the basis gives lambda, x, y with
+   residuals
+
+      r = Q(lambda; p) x,   s = Q(lambda; p)' y,     z_r = P^-1 r,   z_s = P^-T s,
+
+   where P = K - s M (damped: K + s C + s^2 M) is factored at p once. One solve of all right-hand sides together is a
+   step of shift-and-invert subspace iteration from the basis' own vectors (Galerkin on [V, z_r, z_s]; compare M. E.
+   Hochstenbach, G. L. G. Sleijpen, Linear Algebra Appl. 358, 2003, for two-sided subspace methods). The length of a
+   correction, beside |x|_M = 1, is the error of the vector; the error of the eigenvalue is of second order, y'r being
+   zero in Galerkin's method and s' Q^-1 r what remains.
+*/
+#include "correct.h"
+
+PetscErrorCode CorrectionCreate(Operators operators, const PetscReal p[], const ReducedWindow *window,
+                                Progress *progress, Correction *c)
+{
+  const PetscReal low = window->low * window->low, high = window->high * window->high;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsSetParameters(operators, p));
+  PetscCall(OperatorsGetPencil(operators, &c->pencil));
+  PetscCall(ShiftInvertCreate(&c->pencil, c->pencil.C ? 0.3 * window->high : low + 0.25 * (high - low), PETSC_FALSE,
+                              progress, &c->factor));
+  PetscFunctionReturn(0);
+}
+
+/* Whether mode i needs vectors of its own: of a pair of conjugates of kappa, one is enough */
+static PetscBool ModeCounts(const ReducedModes *modes, PetscInt i, PetscBool damped)
+{
+  const PetscReal close = 1e-7 * cabs(modes->lambda[i]);
+
+  if (damped || !i || creal(modes->lambda[i]) <= 0) return PETSC_TRUE;
+  return cabs(modes->lambda[i] + conj(modes->lambda[i - 1])) > close ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Vectors of several modes side by side as real columns: one for a real vector, else its real and imaginary part */
+typedef struct {
+  PetscInt      m, n_columns;
+  PetscInt     *column;      /* [m + 1] first column of each mode */
+  PetscComplex *lambda;      /* [m] */
+  PetscReal    *coordinates; /* [n_columns][size] */
+} Columns;
+
+static PetscErrorCode ColumnsCollect(const ReducedModes *modes, PetscBool damped, const PetscComplex vectors[],
+                                     Columns *c)
+{
+  const PetscInt size = modes->size;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(modes->n + 1, &c->column, modes->n, &c->lambda, 2 * modes->n * size, &c->coordinates));
+  c->m = c->column[0] = 0;
+  for (PetscInt i = 0; i < modes->n; i++) {
+    const PetscBool is_real = !damped && cimag(modes->lambda[i] * modes->lambda[i]) == 0 ? PETSC_TRUE : PETSC_FALSE;
+    PetscReal      *first   = &c->coordinates[c->column[c->m] * size];
+
+    if (!ModeCounts(modes, i, damped)) continue;
+    for (PetscInt k = 0; k < size; k++) {
+      first[k] = creal(vectors[i * size + k]);
+      if (!is_real) first[size + k] = cimag(vectors[i * size + k]);
+    }
+    c->lambda[c->m] = modes->lambda[i];
+    c->column[c->m + 1] = c->column[c->m] + (is_real ? 1 : 2);
+    c->m++;
+  }
+  c->n_columns = c->column[c->m];
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ColumnsDestroy(Columns *c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(c->column, c->lambda, c->coordinates));
+  PetscFunctionReturn(0);
+}
+
+/* R += lambda^power A X, or A' X, mode by mode */
+static PetscErrorCode ResidualAdd(Mat A, PetscBool transposed, const Columns *c, int power, Mat X, Mat R)
+{
+  const PetscScalar *ax;
+  PetscScalar       *r;
+  PetscInt           n, ldx, ldr;
+  Mat                AX;
+
+  PetscFunctionBeginUser;
+  if (transposed)
+    PetscCall(MatTransposeMatMult(A, X, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &AX));
+  else
+    PetscCall(MatMatMult(A, X, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &AX));
+  PetscCall(MatGetLocalSize(AX, &n, NULL));
+  PetscCall(MatDenseGetLDA(AX, &ldx));
+  PetscCall(MatDenseGetLDA(R, &ldr));
+  PetscCall(MatDenseGetArrayRead(AX, &ax));
+  PetscCall(MatDenseGetArray(R, &r));
+  for (PetscInt j = 0; j < c->m; j++) {
+    const PetscComplex a  = power == 2 ? c->lambda[j] * c->lambda[j] : power == 1 ? c->lambda[j] : 1;
+    const PetscReal    re = creal(a), im = cimag(a);
+    const PetscInt     at = c->column[j], two = c->column[j + 1] - at == 2;
+    const PetscScalar *xr = &ax[at * ldx], *xi = &ax[(at + 1) * ldx];
+
+    for (PetscInt k = 0; k < n; k++) r[at * ldr + k] += re * xr[k] - (two ? im * xi[k] : 0);
+    for (PetscInt k = 0; k < n && two; k++) r[(at + 1) * ldr + k] += re * xi[k] + im * xr[k];
+  }
+  PetscCall(MatDenseRestoreArray(R, &r));
+  PetscCall(MatDenseRestoreArrayRead(AX, &ax));
+  PetscCall(MatDestroy(&AX));
+  PetscFunctionReturn(0);
+}
+
+/* R = Q(lambda) X, or its transpose */
+static PetscErrorCode ResidualMake(const OperatorsPencil *pencil, PetscBool transposed, const Columns *c, Mat X, Mat R)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatZeroEntries(R));
+  PetscCall(ResidualAdd(pencil->K, transposed, c, 0, X, R));
+  if (pencil->C) PetscCall(ResidualAdd(pencil->C, transposed, c, 1, X, R));
+  PetscCall(ResidualAdd(pencil->M, transposed, c, 2, X, R));
+  PetscFunctionReturn(0);
+}
+
+/* Corrections of right or left vectors in the block's columns from *n on; *n grows */
+static PetscErrorCode CorrectionSide(const Correction *c, const ReducedModes *modes, PetscBool left, const Basis *basis,
+                                     BV block, PetscInt *n)
+{
+  Columns columns;
+  BV      vectors;
+  Mat     X, R, Z;
+
+  PetscFunctionBeginUser;
+  PetscCall(
+    ColumnsCollect(modes, c->pencil.C ? PETSC_TRUE : PETSC_FALSE, left ? modes->y : modes->x, &columns));
+  PetscCall(BasisCreateBlock(basis, columns.n_columns, &vectors));
+  PetscCall(BasisLift(basis, modes->size, columns.n_columns, columns.coordinates, vectors));
+  PetscCall(BVSetActiveColumns(block, *n, *n + columns.n_columns));
+  PetscCall(BVGetMat(vectors, &X));
+  PetscCall(MatDuplicate(X, MAT_DO_NOT_COPY_VALUES, &R));
+  PetscCall(ResidualMake(&c->pencil, left, &columns, X, R));
+  PetscCall(BVGetMat(block, &Z));
+  PetscCall(ShiftInvertApplyBlock(&c->factor, left, R, Z));
+  PetscCall(BVRestoreMat(block, &Z));
+  PetscCall(MatDestroy(&R));
+  PetscCall(BVRestoreMat(vectors, &X));
+  PetscCall(BVDestroy(&vectors));
+  *n += columns.n_columns;
+  PetscCall(ColumnsDestroy(&columns));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CorrectionApply(const Correction *c, const ReducedModes *modes, PetscReal drop, Basis *basis,
+                               PetscInt *n_added)
+{
+  PetscInt n = 0;
+  BV       block;
+
+  PetscFunctionBeginUser;
+  *n_added = 0;
+  if (!modes->n) PetscFunctionReturn(0);
+  PetscCall(BasisCreateBlock(basis, 4 * modes->n, &block));
+  PetscCall(CorrectionSide(c, modes, PETSC_FALSE, basis, block, &n));
+  PetscCall(CorrectionSide(c, modes, PETSC_TRUE, basis, block, &n));
+  PetscCall(BVSetActiveColumns(block, 0, n));
+  if (n) PetscCall(BasisAdd(basis, block, drop, n_added));
+  PetscCall(BVDestroy(&block));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CorrectionDestroy(Correction *c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ShiftInvertDestroy(&c->factor));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CorrectionCount(Operators operators, const Reduced *reduced, const PetscReal p[],
+                               const ReducedWindow *window, Progress *progress, PetscInt *full, PetscInt *by_basis)
+{
+  const ReducedWindow w = {window->low < 0.5 * window->high ? 0 : window->low, window->high, PETSC_MAX_REAL};
+  OperatorsPencil     frictionless;
+  ReducedModes        modes;
+  PetscReal          *p0;
+  PetscInt            below = 0;
+
+  PetscFunctionBeginUser;
+  *full = *by_basis = -1;
+  PetscCall(OperatorsSetParameters(operators, p));
+  PetscCall(OperatorsGetFrictionless(operators, &frictionless));
+  PetscCall(PetscMalloc1(reduced->n_parameters, &p0));
+  PetscCall(PetscArraycpy(p0, p, reduced->n_parameters));
+  if (frictionless.symmetric && ReducedFrictionless(reduced, p0)) {
+    PetscCall(ShiftInvertCountBelow(&frictionless, w.low, progress, &below));
+    PetscCall(ShiftInvertCountBelow(&frictionless, w.high, progress, full));
+    PetscCall(ReducedSolve(reduced, p0, &w, &modes));
+    *full -= below;
+    *by_basis = modes.n;
+    PetscCall(ReducedModesDestroy(&modes));
+  }
+  PetscCall(PetscFree(p0));
+  PetscFunctionReturn(0);
+}

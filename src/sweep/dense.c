@@ -1,0 +1,246 @@
+/*
+   Small dense problems by LAPACK: getrf, getrs, geev, sygv, ggev. PETSc with real scalars declares the real routines
+   only; the complex ones are declared here.
+*/
+#include "dense.h"
+#include <petscblaslapack.h>
+
+#define LAPACKzgetrf_ PETSCBLASCOMPLEX(getrf, GETRF)
+#define LAPACKzgetrs_ PETSCBLASCOMPLEX(getrs, GETRS)
+#define LAPACKzggev_  PETSCBLASCOMPLEX(ggev, GGEV)
+
+BLAS_EXTERN void LAPACKzgetrf_(const PetscBLASInt *, const PetscBLASInt *, PetscComplex *, const PetscBLASInt *,
+                               PetscBLASInt *, PetscBLASInt *);
+BLAS_EXTERN void LAPACKzgetrs_(const char *, const PetscBLASInt *, const PetscBLASInt *, const PetscComplex *,
+                               const PetscBLASInt *, const PetscBLASInt *, PetscComplex *, const PetscBLASInt *,
+                               PetscBLASInt *);
+BLAS_EXTERN void LAPACKzggev_(const char *, const char *, const PetscBLASInt *, PetscComplex *, const PetscBLASInt *,
+                              PetscComplex *, const PetscBLASInt *, PetscComplex *, PetscComplex *, PetscComplex *,
+                              const PetscBLASInt *, PetscComplex *, const PetscBLASInt *, PetscComplex *,
+                              const PetscBLASInt *, PetscReal *, PetscBLASInt *);
+
+/* Reports a zero pivot to the caller, or stops */
+static PetscErrorCode PivotCheck(PetscBLASInt info, PetscBool *singular)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(info >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK getrf: info %d", (int)info);
+  PetscCheck(!info || singular, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT, "Dense matrix is singular at row %d",
+             (int)info);
+  if (singular) *singular = info ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DenseFactor(PetscInt size, PetscReal A[], PetscBLASInt pivot[], PetscBool *singular)
+{
+  PetscBLASInt n, info;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(size, &n));
+  PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&n, &n, A, &n, pivot, &info));
+  PetscCall(PivotCheck(info, singular));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DenseSolve(PetscInt size, const PetscReal LU[], const PetscBLASInt pivot[], PetscBool transposed,
+                          PetscInt m, PetscReal B[])
+{
+  PetscBLASInt n, nrhs, info;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(size, &n));
+  PetscCall(PetscBLASIntCast(m, &nrhs));
+  PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_(transposed ? "T" : "N", &n, &nrhs, (PetscReal *)LU, &n,
+                                            (PetscBLASInt *)pivot, B, &n, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK getrs: info %d", (int)info);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ComplexFactor(PetscInt size, PetscComplex A[], PetscBLASInt pivot[], PetscBool *singular)
+{
+  PetscBLASInt n, info;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(size, &n));
+  PetscCallBLAS("LAPACKzgetrf", LAPACKzgetrf_(&n, &n, A, &n, pivot, &info));
+  PetscCall(PivotCheck(info, singular));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ComplexSolve(PetscInt size, const PetscComplex LU[], const PetscBLASInt pivot[], PetscBool transposed,
+                            PetscInt m, PetscComplex B[])
+{
+  PetscBLASInt n, nrhs, info;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(size, &n));
+  PetscCall(PetscBLASIntCast(m, &nrhs));
+  PetscCallBLAS("LAPACKzgetrs", LAPACKzgetrs_(transposed ? "T" : "N", &n, &nrhs, LU, &n, pivot, B, &n, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK getrs: info %d", (int)info);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DenseEigen(PetscInt size, PetscReal A[], PetscReal wr[], PetscReal wi[], PetscReal L[], PetscReal R[])
+{
+  PetscBLASInt n, work_size, info;
+  PetscReal   *work;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(size, &n));
+  PetscCall(PetscBLASIntCast(66 * size + 64, &work_size)); /* blocks of 64 columns */
+  PetscCall(PetscMalloc1(work_size, &work));
+  PetscCallBLAS("LAPACKgeev", LAPACKgeev_("V", "V", &n, A, &n, wr, wi, L, &n, R, &n, work, &work_size, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED, "LAPACK geev: info %d", (int)info);
+  PetscCall(PetscFree(work));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DenseSymmetricEigen(PetscInt size, PetscReal A[], PetscReal B[], PetscReal w[], PetscBool *definite)
+{
+  const PetscBLASInt type = 1;
+  PetscBLASInt       n, work_size, info;
+  PetscReal         *work;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(size, &n));
+  PetscCall(PetscBLASIntCast(66 * size + 64, &work_size));
+  PetscCall(PetscMalloc1(work_size, &work));
+  PetscCallBLAS("LAPACKsygv", LAPACKsygv_(&type, "V", "U", &n, A, &n, B, &n, w, work, &work_size, &info));
+  PetscCheck(info >= 0 && (info == 0 || info > n), PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED, "LAPACK sygv: info %d",
+             (int)info);
+  *definite = info ? PETSC_FALSE : PETSC_TRUE;
+  PetscCall(PetscFree(work));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ComplexEigenvalues(PetscInt size, PetscComplex A[], PetscComplex B[], PetscComplex w[])
+{
+  const PetscBLASInt one = 1;
+  PetscBLASInt       n, work_size, info;
+  PetscComplex      *beta, *work;
+  PetscReal         *work_real;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(size, &n));
+  PetscCall(PetscBLASIntCast(33 * size, &work_size));
+  PetscCall(PetscMalloc3(size, &beta, work_size, &work, 8 * size, &work_real));
+  PetscCallBLAS("LAPACKzggev", LAPACKzggev_("N", "N", &n, A, &n, B, &n, w, beta, NULL, &one, NULL, &one, work,
+                                            &work_size, work_real, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED, "LAPACK ggev: info %d", (int)info);
+  for (PetscInt i = 0; i < size; i++) w[i] = beta[i] == 0 ? CMPLX(INFINITY, 0) : w[i] / beta[i];
+  PetscCall(PetscFree3(beta, work, work_real));
+  PetscFunctionReturn(0);
+}
+
+/* parts [2 m][n] of X [m][n]: real parts, then imaginary ones */
+static void Split(PetscInt n, PetscInt m, const PetscComplex X[], PetscReal parts[])
+{
+  for (PetscInt i = 0; i < m * n; i++) {
+    parts[i]         = creal(X[i]);
+    parts[m * n + i] = cimag(X[i]);
+  }
+}
+
+PetscErrorCode DenseTimes(PetscInt rows, PetscInt columns, const PetscReal A[], PetscInt stride, PetscBool transposed,
+                          PetscInt m, const PetscComplex X[], PetscComplex Y[])
+{
+  const PetscReal one = 1, zero = 0;
+  PetscReal      *x, *y;
+  PetscBLASInt    r, c, lda, m2;
+
+  PetscFunctionBeginUser;
+  if (!rows || !columns || !m) PetscFunctionReturn(0);
+  PetscCall(PetscBLASIntCast(rows, &r));
+  PetscCall(PetscBLASIntCast(columns, &c));
+  PetscCall(PetscBLASIntCast(stride, &lda));
+  PetscCall(PetscBLASIntCast(2 * m, &m2));
+  PetscCall(PetscMalloc2(2 * m * columns, &x, 2 * m * rows, &y));
+  Split(columns, m, X, x);
+  PetscCallBLAS("BLASgemm", BLASgemm_(transposed ? "T" : "N", "N", &r, &m2, &c, &one, A, &lda, x, &c, &zero, y, &r));
+  for (PetscInt i = 0; i < m * rows; i++) Y[i] = CMPLX(y[i], y[m * rows + i]);
+  PetscCall(PetscFree2(x, y));
+  PetscFunctionReturn(0);
+}
+
+PetscComplex DenseDot(PetscInt n, const PetscComplex x[], const PetscComplex y[])
+{
+  PetscComplex sum = 0;
+
+  for (PetscInt i = 0; i < n; i++) sum += x[i] * y[i];
+  return sum;
+}
+
+static PetscReal Norm(PetscInt n, const PetscComplex x[])
+{
+  PetscReal sum = 0;
+
+  for (PetscInt i = 0; i < n; i++) sum += PetscSqr(creal(x[i])) + PetscSqr(cimag(x[i]));
+  return PetscSqrtReal(sum);
+}
+
+/* x -= q q^H x */
+static void Remove(PetscInt n, const PetscComplex q[], PetscComplex x[])
+{
+  PetscComplex c = 0;
+
+  for (PetscInt i = 0; i < n; i++) c += conj(q[i]) * x[i];
+  for (PetscInt i = 0; i < n; i++) x[i] -= c * q[i];
+}
+
+/* The longest of the columns first .. m - 1 comes to place first; its norm */
+static PetscReal Pivot(PetscInt n, PetscInt m, PetscInt first, PetscComplex X[])
+{
+  PetscInt  longest = first;
+  PetscReal norm    = 0;
+
+  for (PetscInt j = first; j < m; j++) {
+    const PetscReal here = Norm(n, X + j * n);
+
+    if (here > norm) norm = here, longest = j;
+  }
+  for (PetscInt i = 0; i < n && longest != first; i++) {
+    const PetscComplex swap = X[first * n + i];
+
+    X[first * n + i]   = X[longest * n + i];
+    X[longest * n + i] = swap;
+  }
+  return norm;
+}
+
+PetscErrorCode ComplexOrthonormalise(PetscInt n, PetscInt m, PetscReal drop, PetscComplex X[], PetscInt *kept)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < m; j++) {
+    const PetscReal norm = Norm(n, X + j * n);
+
+    for (PetscInt i = 0; i < n && norm > 0; i++) X[j * n + i] /= norm;
+  }
+  for (*kept = 0; *kept < m; ++*kept) {
+    PetscComplex *const q = X + *kept * n;
+    PetscReal           norm;
+
+    if (Pivot(n, m, *kept, X) <= drop) break;
+    for (PetscInt k = 0; k < *kept; k++) Remove(n, X + k * n, q);
+    norm = Norm(n, q);
+    for (PetscInt i = 0; i < n; i++) q[i] /= norm;
+    for (PetscInt j = *kept + 1; j < m; j++) Remove(n, q, X + j * n);
+  }
+  PetscCall(PetscArrayzero(X + *kept * n, (m - *kept) * n));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ComplexRealSpan(PetscInt n, PetscInt m, PetscReal drop, PetscComplex X[], PetscInt *kept)
+{
+  PetscComplex *both;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * m * n, &both));
+  for (PetscInt i = 0; i < m * n; i++) {
+    both[i]         = creal(X[i]);
+    both[m * n + i] = cimag(X[i]);
+  }
+  PetscCall(ComplexOrthonormalise(n, 2 * m, drop, both, kept));
+  *kept = PetscMin(*kept, m);
+  PetscCall(PetscArraycpy(X, both, *kept * n));
+  PetscCall(PetscFree(both));
+  PetscFunctionReturn(0);
+}

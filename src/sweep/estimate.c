@@ -1,0 +1,264 @@
+/*
+   Errors of the eigenvalues of the reduced model, estimated from vectors Z of the basis [V Z] that the model does not
+   use. With Q in blocks, elimination of the coordinates of Z leaves on V the exact
+
+      Q_eff(lambda) = Q_vv - Q_vz Q_zz^-1 Q_zv.
+
+   The model has Q_vv x = 0, y^T Q_vv = 0. With r = Q_zv(lambda) x, s = Q_vz(lambda)^T y and lambda + d in place of
+   lambda
+
+      0 = y^T Q_eff(lambda + d) x = d y^T Q_vv'(lambda) x - s^T Q_zz^-1 r + higher orders,
+      d = s^T Q_zz(lambda)^-1 r / (y^T Q'(lambda) x),    y^T Q' x = 2 lambda y^T D x.
+
+   This is the customary y^T (residual) / (y^T Q' x) with the left vector improved in Z, [y; -Q_zz^-T s]: with the left
+   vector of the model itself it is zero, since the residual is orthogonal to V (Galerkin). It is of second order, the
+   product of the errors of the right and the left vector, and it estimates what Z adds: what lies outside [V Z] it
+   cannot see. Without damping Q = K - kappa M is linear in kappa = -lambda^2, and
+
+      d kappa = -s^T Q_zz^-1 r / (y^T M x),    d lambda = -d kappa / (lambda_new + lambda).
+
+   Where eigenvalues are closer than NEAR times these changes (pairs close to defective, double modes), they are treated
+   together (cluster.c), as the first order means nothing there: y^T D x tends to zero. A rigid mode has x^T K x = 0,
+   and its error is the frequency that would turn it into, sqrt(|d kappa|).
+
+   To each estimate a floor is added: what rounding in K does, eps sqrt(sum |K_ii| |x_i|^2 sum |K_ii| |y_i|^2) in kappa.
+*/
+#include "estimate.h"
+#include "dense.h"
+
+#define NEAR     20   /* eigenvalues closer than this many changes belong together */
+#define FARTHEST 1e-2 /* but not if they are farther apart than this, relative: the basis is merely poor there */
+#define EQUAL    1e-9 /* closer than this, relative, they always do */
+
+PetscComplex EstimateValue(const Estimate *e, PetscComplex lambda)
+{
+  return e->damped ? lambda : -lambda * lambda;
+}
+
+PetscErrorCode EstimateCouple(const Estimate *e, PetscComplex lambda, PetscBool left, PetscInt m,
+                              const PetscComplex x[], PetscComplex r[])
+{
+  const PetscReal   *matrix[] = {e->K, e->C, e->M};
+  const PetscComplex power[]  = {1, lambda, lambda * lambda};
+  const PetscInt     n = e->n, block = left ? e->n_v * n : e->n_v; /* Q_vz : Q_zv */
+  PetscComplex      *part;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(m * e->n_z, &part));
+  PetscCall(PetscArrayzero(r, m * e->n_z));
+  for (int k = 0; k < 3; k++) {
+    if (k == 1 && !e->damped) continue;
+    PetscCall(DenseTimes(e->n_z, e->n_v, matrix[k] + block, n, left, m, x, part));
+    for (PetscInt i = 0; i < m * e->n_z; i++) r[i] += power[k] * part[i];
+  }
+  PetscCall(PetscFree(part));
+  PetscFunctionReturn(0);
+}
+
+/* The same with real lambda^2 = square and no damping */
+static PetscErrorCode SolveReal(const Estimate *e, PetscReal square, PetscInt m, PetscComplex r[], PetscBool *singular)
+{
+  const PetscInt n_z = e->n_z, first = e->n_v * (e->n + 1);
+  PetscReal     *Q, *parts;
+  PetscBLASInt  *pivot;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(n_z * n_z, &Q, 2 * m * n_z, &parts, n_z, &pivot));
+  for (PetscInt j = 0; j < n_z; j++)
+    for (PetscInt i = 0; i < n_z; i++)
+      Q[j * n_z + i] = e->K[first + j * e->n + i] + square * e->M[first + j * e->n + i];
+  for (PetscInt i = 0; i < m * n_z; i++) {
+    parts[i]           = creal(r[i]);
+    parts[m * n_z + i] = cimag(r[i]);
+  }
+  PetscCall(DenseFactor(n_z, Q, pivot, singular));
+  if (!*singular) PetscCall(DenseSolve(n_z, Q, pivot, PETSC_FALSE, 2 * m, parts));
+  for (PetscInt i = 0; i < m * n_z; i++) r[i] = CMPLX(parts[i], parts[m * n_z + i]);
+  PetscCall(PetscFree3(Q, parts, pivot));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EstimateSolve(const Estimate *e, PetscComplex lambda, PetscInt m, PetscComplex r[], PetscBool *singular)
+{
+  const PetscInt     n_z = e->n_z, first = e->n_v * (e->n + 1);
+  const PetscComplex square = lambda * lambda;
+  PetscComplex      *Q;
+  PetscBLASInt      *pivot;
+
+  PetscFunctionBeginUser;
+  if (!e->damped && cimag(square) == 0) {
+    PetscCall(SolveReal(e, creal(square), m, r, singular));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscMalloc2(n_z * n_z, &Q, n_z, &pivot));
+  for (PetscInt j = 0; j < n_z; j++)
+    for (PetscInt i = 0; i < n_z; i++) {
+      const PetscInt at = first + j * e->n + i;
+
+      Q[j * n_z + i] = e->K[at] + lambda * e->C[at] + square * e->M[at];
+    }
+  PetscCall(ComplexFactor(n_z, Q, pivot, singular));
+  if (!*singular) PetscCall(ComplexSolve(n_z, Q, pivot, PETSC_FALSE, m, r));
+  PetscCall(PetscFree2(Q, pivot));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode EstimateCreate(const Reduced *reduced, const PetscReal p[], const ReducedModes *modes,
+                                     Estimate *e)
+{
+  const PetscInt n = reduced->n;
+
+  PetscFunctionBeginUser;
+  e->modes = modes;
+  e->n     = n;
+  e->n_v   = reduced->n_used;
+  e->n_z   = n - e->n_v;
+  PetscCall(PetscMalloc3(n * n, &e->K, n * n, &e->C, n * n, &e->M));
+  PetscCall(ReducedSum(reduced, OPERATORS_STIFFNESS, p, n, e->K, NULL));
+  PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, n, e->C, &e->damped));
+  PetscCall(ReducedSum(reduced, OPERATORS_MASS, p, n, e->M, NULL));
+  PetscFunctionReturn(0);
+}
+
+/* f = s^T Q_zz^-1 r of mode i, in the unit of kappa; not finite where Q_zz is singular */
+static PetscErrorCode CoupleMode(const Estimate *e, PetscInt i, PetscComplex *f)
+{
+  const ReducedModes *modes  = e->modes;
+  const PetscComplex  lambda = modes->lambda[i];
+  PetscComplex       *r, *s;
+  PetscBool           singular;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(e->n_z, &r, e->n_z, &s));
+  PetscCall(EstimateCouple(e, lambda, PETSC_FALSE, 1, modes->x + i * e->n_v, r));
+  PetscCall(EstimateCouple(e, lambda, PETSC_TRUE, 1, modes->y + i * e->n_v, s));
+  PetscCall(EstimateSolve(e, lambda, 1, r, &singular));
+  *f = singular ? CMPLX(INFINITY, 0) : DenseDot(e->n_z, s, r);
+  PetscCall(PetscFree2(r, s));
+  PetscFunctionReturn(0);
+}
+
+/* |change| of kappa by a perturbation of size f of K: f / |y^T D x|, but at a defective pair the root */
+static PetscReal KappaChange(const ReducedModes *modes, PetscInt i, PetscReal f)
+{
+  const PetscReal size = cabs(modes->lambda[i]) * cabs(modes->lambda[i]), product = cabs(modes->product[i]);
+  const PetscReal root = PetscSqrtReal(f) * PetscSqrtReal(PetscMax(f, size));
+
+  return f < root * product ? f / product : root;
+}
+
+/* |change| of lambda from that of kappa */
+static PetscReal LambdaChange(const ReducedModes *modes, PetscInt i, PetscReal change)
+{
+  const PetscReal size = cabs(modes->lambda[i]);
+
+  return modes->rigid[i] || change > size * size ? PetscSqrtReal(change) : change / (2 * size);
+}
+
+/* change [modes] of each mode alone in the unit of mu, error of lambda */
+static PetscErrorCode Alone(const Estimate *e, ReducedModes *modes, PetscReal change[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < modes->n; i++) {
+    PetscComplex f;
+    PetscReal    kappa;
+
+    PetscCall(CoupleMode(e, i, &f));
+    kappa = isfinite(cabs(f)) ? KappaChange(modes, i, cabs(f)) : cabs(modes->lambda[i]) * cabs(modes->lambda[i]);
+    modes->error[i] = LambdaChange(modes, i, kappa);
+    change[i]       = e->damped ? modes->error[i] : kappa;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Whether modes i and j belong together */
+static PetscBool AreNear(const Estimate *e, const PetscReal change[], PetscInt i, PetscInt j)
+{
+  const ReducedModes *modes = e->modes;
+  const PetscComplex  a = EstimateValue(e, modes->lambda[i]), b = EstimateValue(e, modes->lambda[j]);
+  const PetscReal     reach = PetscMin(NEAR * PetscMax(change[i], change[j]), FARTHEST * cabs(a));
+
+  if (modes->rigid[i] || modes->rigid[j]) return PETSC_FALSE;
+  return cabs(a - b) <= PetscMax(reach, EQUAL * cabs(a)) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* cluster[i] = number of the first mode of that of mode i */
+static void Group(const Estimate *e, const PetscReal change[], PetscInt cluster[])
+{
+  const PetscInt n = e->modes->n;
+
+  for (PetscInt i = 0; i < n; i++) cluster[i] = i;
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = i + 1; j < n; j++) {
+      const PetscInt low = PetscMin(cluster[i], cluster[j]), high = PetscMax(cluster[i], cluster[j]);
+
+      if (low == high || !AreNear(e, change, i, j)) continue;
+      for (PetscInt k = 0; k < n; k++)
+        if (cluster[k] == high) cluster[k] = low;
+    }
+}
+
+/* |change| of lambda when mu becomes another */
+static PetscReal LambdaDistance(const Estimate *e, PetscComplex lambda, PetscComplex mu)
+{
+  const PetscComplex now = e->damped ? mu : csqrt(-mu), d = mu - EstimateValue(e, lambda);
+  const PetscReal    sum = PetscMax(cabs(now + lambda), cabs(now - lambda)); /* of the two roots the nearer */
+
+  if (e->damped) return cabs(mu - lambda);
+  return sum > 0 ? cabs(d) / sum : 0;
+}
+
+/* Errors of the modes of cluster number first, if it has more than one */
+static PetscErrorCode Together(const Estimate *e, PetscInt first, const PetscInt cluster[], ReducedModes *modes)
+{
+  PetscInt     *list, m = 0;
+  PetscComplex *mu;
+  PetscBool     singular = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(modes->n, &list, modes->n, &mu));
+  for (PetscInt i = first; i < modes->n; i++)
+    if (cluster[i] == first) list[m++] = i;
+  if (m > 1) PetscCall(EstimateCluster(e, m, list, mu, &singular));
+  for (PetscInt a = 0; a < m && m > 1 && !singular; a++)
+    modes->error[list[a]] = LambdaDistance(e, modes->lambda[list[a]], mu[a]);
+  PetscCall(PetscFree2(list, mu));
+  PetscFunctionReturn(0);
+}
+
+/* Adds what rounding does */
+static PetscErrorCode AddFloor(const Estimate *e, ReducedModes *modes)
+{
+  DensePencil pencil = {.n = e->n_v};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(e->n_v * e->n_v, &pencil.K));
+  for (PetscInt j = 0; j < e->n_v; j++) PetscCall(PetscArraycpy(pencil.K + j * e->n_v, e->K + j * e->n, e->n_v));
+  for (PetscInt i = 0; i < modes->n; i++) {
+    const PetscReal noise = PencilNoise(&pencil, modes->x + i * e->n_v, modes->y + i * e->n_v);
+
+    modes->error[i] += LambdaChange(modes, i, KappaChange(modes, i, noise));
+  }
+  PetscCall(PetscFree(pencil.K));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedEstimate(const Reduced *reduced, const PetscReal p[], ReducedModes *modes)
+{
+  Estimate   e;
+  PetscReal *change;
+  PetscInt  *cluster;
+
+  PetscFunctionBeginUser;
+  if (reduced->n == reduced->n_used || !modes->n) PetscFunctionReturn(0);
+  PetscCall(EstimateCreate(reduced, p, modes, &e));
+  PetscCall(PetscMalloc2(modes->n, &change, modes->n, &cluster));
+  PetscCall(Alone(&e, modes, change));
+  Group(&e, change, cluster);
+  for (PetscInt i = 0; i < modes->n; i++)
+    if (cluster[i] == i) PetscCall(Together(&e, i, cluster, modes));
+  PetscCall(AddFloor(&e, modes));
+  PetscCall(PetscFree2(change, cluster));
+  PetscCall(PetscFree3(e.K, e.C, e.M));
+  PetscFunctionReturn(0);
+}

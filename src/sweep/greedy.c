@@ -1,0 +1,258 @@
+/*
+   Greedy choice of the full solutions. The first point is solved by the eigensolver (Krylov, right and left), further
+   ones by corrections of what the basis gives there: a block solve with the factors of the full pencil, repeated until
+   the corrections no longer matter. At each of these points Sylvester's law of inertia counts the frictionless modes; when
+   the basis has fewer, the point is solved by the eigensolver too.
+
+   A point's first corrections z_r, z_s tell the error that the basis had there (estimate.c). The next point is the one
+   with the largest estimate above rtol, else the point farthest from all solved ones. It ends when the estimate at the
+   farthest point is below rtol, and with the corrections from there everywhere; a farthest point that passes by less than
+   a factor of SAFE asks for the next farthest to be looked at, too.
+*/
+#include "greedy.h"
+
+#define GUARD     0.03 /* relative width beyond the band of modes that the basis holds */
+#define SAFE      0.1
+#define WIDE      5    /* ends that differ by this factor: distances are ratios */
+#define MAX_STEPS 8
+
+/* What the run knows */
+typedef struct {
+  Greedy       *greedy;
+  const Groups *groups;
+  Modes         modes;
+  Basis        *basis;
+  ReducedWindow window, guarded;
+  PetscInt      n;
+  const PetscReal *points;
+  PetscReal    *estimate; /* [n] */
+  PetscReal    *scale;    /* [n_parameters] */
+  PetscReal     drop;
+} Run;
+
+/* New entry of the list of full solutions */
+static PetscErrorCode SampleAdd(Run *run, const PetscReal p[], PetscBool krylov, PetscInt n_vectors, PetscReal estimate)
+{
+  Greedy        *g            = run->greedy;
+  const PetscInt n_parameters = run->basis->reduced.n_parameters;
+  Sample        *sample       = &g->sample[g->n_samples++];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n_parameters, &sample->p));
+  PetscCall(PetscArraycpy(sample->p, p, n_parameters));
+  sample->krylov    = krylov;
+  sample->n_vectors = n_vectors;
+  sample->estimate  = estimate;
+  PetscFunctionReturn(0);
+}
+
+/* Right and left vectors of the eigensolver as a block in the unknowns of the pencil */
+static PetscErrorCode ModesToBlock(Run *run, PetscInt n, BV *block)
+{
+  Vec      part[4], q;
+  PetscInt m = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(BasisCreateBlock(run->basis, 4 * n, block));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(ModesGetVectors(run->modes, i, &part[0], &part[1], &part[2], &part[3]));
+    for (int k = 0; k < 4; k++) {
+      if (!part[k]) continue;
+      PetscCall(BVGetColumn(*block, m, &q));
+      PetscCall(OperatorsRestrict(run->basis->operators, part[k], q));
+      PetscCall(BVRestoreColumn(*block, m++, &q));
+    }
+  }
+  PetscCall(BVSetActiveColumns(*block, 0, m));
+  PetscFunctionReturn(0);
+}
+
+/* Solves point p by the eigensolver */
+static PetscErrorCode SampleKrylov(Run *run, const PetscReal p[], PetscReal estimate)
+{
+  const PetscReal wide[2] = {run->guarded.low / (2 * PETSC_PI), run->guarded.high / (2 * PETSC_PI)};
+  const Mode     *mode;
+  PetscReal       band[2], growth;
+  PetscInt        n, n_vectors;
+  BV              block;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsSetParameters(run->basis->operators, p));
+  PetscCall(ModesGetBand(run->modes, band, &growth));
+  PetscCall(ModesSetBand(run->modes, wide));
+  PetscCall(ModesSolve(run->modes));
+  PetscCall(ModesSetBand(run->modes, band));
+  PetscCall(ModesGet(run->modes, &n, &mode));
+  PetscCall(ModesToBlock(run, n, &block));
+  PetscCall(BasisAdd(run->basis, block, run->drop, &n_vectors));
+  PetscCall(BVDestroy(&block));
+  PetscCall(BasisPromote(run->basis));
+  PetscCall(SampleAdd(run, p, PETSC_TRUE, n_vectors, estimate));
+  PetscFunctionReturn(0);
+}
+
+/* One step of corrections at p; worst = what they tell about the model before */
+static PetscErrorCode StepApply(Run *run, const Correction *correction, const PetscReal p[], PetscInt *n_added,
+                                PetscReal *worst)
+{
+  ReducedModes modes;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedSolve(&run->basis->reduced, p, &run->guarded, &modes));
+  PetscCall(CorrectionApply(correction, &modes, run->drop, run->basis, n_added));
+  PetscCall(ReducedEstimate(&run->basis->reduced, p, &modes));
+  *worst = modes.n ? ModesWorst(&modes, &run->window) : 0;
+  PetscCall(ReducedModesDestroy(&modes));
+  PetscCallMPI(MPI_Bcast(worst, 1, MPIU_REAL, 0, run->basis->comm)); /* control flow must be alike on all ranks */
+  PetscFunctionReturn(0);
+}
+
+/* Whether the basis has as many frictionless modes at p as the full problem */
+static PetscErrorCode CheckCount(Run *run, const PetscReal p[], PetscBool *complete)
+{
+  PetscInt full, by_basis;
+
+  PetscFunctionBeginUser;
+  PetscCall(CorrectionCount(run->basis->operators, &run->basis->reduced, p, &run->window, run->greedy->progress, &full,
+                            &by_basis));
+  PetscCallMPI(MPI_Bcast(&by_basis, 1, MPIU_INT, 0, run->basis->comm));
+  *complete = full == by_basis ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Looks at point p: first = the estimate there before; where it exceeds rtol, the basis takes the point in */
+static PetscErrorCode SampleCorrect(Run *run, const PetscReal p[], PetscReal *first)
+{
+  Correction correction;
+  PetscReal  worst;
+  PetscInt   n_added, n_vectors = 0;
+  PetscBool  complete = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  PetscCall(CorrectionCreate(run->basis->operators, p, &run->guarded, run->greedy->progress, &correction));
+  PetscCall(StepApply(run, &correction, p, &n_added, first));
+  worst = *first;
+  for (int step = 1; step < MAX_STEPS && worst > SAFE * run->greedy->rtol; step++) {
+    if (step == 1 && *first <= run->greedy->rtol) break;
+    n_vectors += n_added;
+    PetscCall(BasisPromote(run->basis));
+    PetscCall(StepApply(run, &correction, p, &n_added, &worst));
+  }
+  PetscCall(CorrectionDestroy(&correction));
+  PetscCall(CheckCount(run, p, &complete));
+  PetscCall(SampleAdd(run, p, PETSC_FALSE, n_vectors, *first));
+  if (!complete && run->greedy->n_samples < run->greedy->max_samples) {
+    *first = PETSC_MAX_REAL;
+    PetscCall(SampleKrylov(run, p, *first));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Extent of the points along each parameter, scale[n_parameters]: the length of the range, or the negative logarithm of its
+   ratio where the ends differ by a factor of WIDE; 0 for a parameter that does not vary */
+static void ScaleFind(PetscInt n, PetscInt n_parameters, const PetscReal points[], PetscReal scale[])
+{
+  for (PetscInt k = 0; k < n_parameters; k++) {
+    PetscReal low = points[k], high = points[k];
+
+    for (PetscInt i = 0; i < n; i++) {
+      low  = PetscMin(low, points[i * n_parameters + k]);
+      high = PetscMax(high, points[i * n_parameters + k]);
+    }
+    scale[k] = low > 0 && high > WIDE * low ? -PetscLogReal(high / low) : high - low;
+  }
+}
+
+/* Distance of two points in parts of the extent */
+static PetscReal PointDistance(PetscInt n_parameters, const PetscReal scale[], const PetscReal a[], const PetscReal b[])
+{
+  PetscReal sum = 0;
+
+  for (PetscInt k = 0; k < n_parameters; k++) {
+    if (scale[k] > 0) sum += PetscSqr((a[k] - b[k]) / scale[k]);
+    if (scale[k] < 0) sum += PetscSqr(PetscLogReal(a[k] / b[k]) / scale[k]);
+  }
+  return PetscSqrtReal(sum);
+}
+
+/* The point farthest from all full solutions, and how far */
+static PetscInt PointFarthest(const Run *run, PetscReal *farthest)
+{
+  const Greedy  *g            = run->greedy;
+  const PetscInt n_parameters = run->basis->reduced.n_parameters;
+  PetscInt       best         = 0;
+
+  *farthest = -1;
+  for (PetscInt i = 0; i < run->n; i++) {
+    PetscReal nearest = PETSC_MAX_REAL;
+
+    for (PetscInt j = 0; j < g->n_samples; j++)
+      nearest = PetscMin(nearest,
+                         PointDistance(n_parameters, run->scale, &run->points[i * n_parameters], g->sample[j].p));
+    if (nearest <= *farthest + 1e-12) continue;
+    *farthest = nearest;
+    best      = i;
+  }
+  return best;
+}
+
+/* The next point to look at, or -1 */
+static PetscErrorCode PointNext(Run *run, PetscInt *next)
+{
+  Greedy   *g = run->greedy;
+  PetscReal farthest;
+  PetscInt  worst = 0;
+
+  PetscFunctionBeginUser;
+  *next = PointFarthest(run, &farthest);
+  if (farthest > 0 && (g->last > g->rtol || (g->last > SAFE * g->rtol && farthest > 0.9 * g->distance))) {
+    g->distance = farthest;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PointsEstimate(run->groups, &run->basis->reduced, &run->window, run->n, run->points, run->estimate));
+  for (PetscInt i = 0; i < run->n; i++)
+    if (run->estimate[i] > run->estimate[worst]) worst = i;
+  g->worst = run->estimate[worst];
+  *next    = g->worst > g->rtol ? worst : -1;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GreedyRun(Greedy *greedy, Modes modes, const ReducedWindow *window, PetscInt n, const PetscReal points[],
+                         const Groups *groups, Basis *basis)
+{
+  Run       run          = {.greedy = greedy, .groups = groups, .modes = modes, .basis = basis, .window = *window, .guarded = *window};
+  PetscInt  n_parameters = basis->reduced.n_parameters, next = 0;
+
+  PetscFunctionBeginUser;
+  run.n      = n;
+  run.points = points;
+  run.drop   = 0.01 * PetscSqrtReal(greedy->rtol);
+  run.guarded.low  = window->low < 0.5 * window->high ? 0 : window->low * (1 - GUARD);
+  run.guarded.high = window->high * (1 + GUARD);
+  PetscCall(PetscMalloc2(n, &run.estimate, n_parameters, &run.scale));
+  ScaleFind(n, n_parameters, points, run.scale);
+  if (!greedy->n_samples) {
+    PetscCall(SampleKrylov(&run, points, NAN));
+    if (greedy->keep) PetscCall(greedy->keep(greedy->keep_ctx));
+  }
+  PetscCall(PointNext(&run, &next));
+  while (next >= 0 && greedy->n_samples < greedy->max_samples) {
+    PetscCall(SampleCorrect(&run, &points[next * n_parameters], &greedy->last));
+    if (greedy->keep) PetscCall(greedy->keep(greedy->keep_ctx));
+    PetscCall(PointNext(&run, &next));
+  }
+  PetscCall(PetscFree2(run.estimate, run.scale));
+  PetscCheck(next < 0, basis->comm, PETSC_ERR_NOT_CONVERGED,
+             "-sweep_rtol %.6g was not reached with %" PetscInt_FMT
+             " full solutions, the estimate is %.2g; raise -sweep_max_samples or narrow the range",
+             (double)greedy->rtol, greedy->n_samples, (double)greedy->worst);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GreedyDestroy(Greedy *greedy)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < greedy->n_samples; i++) PetscCall(PetscFree(greedy->sample[i].p));
+  PetscCall(PetscFree(greedy->sample));
+  PetscFunctionReturn(0);
+}

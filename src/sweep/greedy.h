@@ -1,0 +1,31 @@
+/* Private to sweep/: which points are solved in full, and when the basis is good enough */
+#pragma once
+
+#include "correct.h"
+#include "points.h"
+#include <squeal/modes.h>
+
+/* A full solution */
+typedef struct {
+  PetscReal *p;         /* [n_parameters] */
+  PetscBool  krylov;    /* by the eigensolver from nothing; else by corrections from the basis */
+  PetscInt   n_vectors; /* gained */
+  PetscReal  estimate;  /* largest relative error before this solution as its corrections told; NaN for the first */
+} Sample;
+
+typedef struct {
+  PetscReal   rtol;
+  PetscInt    max_samples;
+  PetscInt    n_samples;
+  Sample     *sample;  /* [max_samples] */
+  PetscReal   worst;   /* largest estimated relative error at all points when it ended */
+  PetscReal   last, distance; /* estimate at the last point before it was taken in; distance of the farthest then */
+  Progress   *progress;
+  PetscErrorCode (*keep)(void *ctx); /* called after every full solution; may be NULL */
+  void *keep_ctx;
+} Greedy;
+
+/* Goes on with the samples there are, or begins. Enlarges the basis until every eigenvalue in the window at all points [n][n_parameters] is estimated below rtol */
+PetscErrorCode GreedyRun(Greedy *greedy, Modes modes, const ReducedWindow *window, PetscInt n, const PetscReal points[],
+                         const Groups *groups, Basis *basis);
+PetscErrorCode GreedyDestroy(Greedy *greedy);

@@ -1,0 +1,201 @@
+/*
+   The points of the grid, one line of the first parameter after the other: solutions on the reduced model, branches along
+   the line, the link to the line before, and names from the shapes on the mesh. Vectors are kept for one line only.
+*/
+#include "sweepimpl.h"
+
+/* The modes of a line and their branches */
+typedef struct {
+  PetscInt      n, first; /* points; index of the first of them in the grid */
+  PetscReal    *p;        /* [n][n_parameters] */
+  ReducedModes *modes;    /* [n] */
+  PetscInt    **branch;   /* [n][modes] */
+} Points;
+
+static PetscErrorCode PointsCreate(Sweep sweep, PetscInt line, Points *points)
+{
+  const Grid    *grid         = &sweep->grid;
+  const PetscInt n_parameters = grid->n_parameters;
+
+  PetscFunctionBeginUser;
+  points->n     = grid->n[0];
+  points->first = line * grid->n[0];
+  PetscCall(
+    PetscMalloc3(points->n * n_parameters, &points->p, points->n, &points->modes, points->n, &points->branch));
+  for (PetscInt i = 0; i < points->n; i++) GridPoint(grid, points->first + i, &points->p[i * n_parameters]);
+  PetscCall(
+    PointsSolve(&sweep->groups, &sweep->basis.reduced, &sweep->window, points->n, points->p, points->modes));
+  for (PetscInt i = 0; i < points->n; i++) PetscCall(PetscMalloc1(points->modes[i].n, &points->branch[i]));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PointsDestroy(Points *points)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < points->n; i++) {
+    PetscCall(ReducedModesDestroy(&points->modes[i]));
+    PetscCall(PetscFree(points->branch[i]));
+  }
+  PetscCall(PetscFree3(points->p, points->modes, points->branch));
+  points->n = 0;
+  PetscFunctionReturn(0);
+}
+
+/* Follows the branches along the line; the events found are marked with the line */
+static PetscErrorCode PointsTrack(Sweep sweep, PetscInt line, Points *points)
+{
+  const PetscInt before = sweep->events.n;
+  const Line     l      = {sweep->grid.parameter[0], points->n, sweep->grid.value[0], points->p};
+
+  PetscFunctionBeginUser;
+  PetscCall(TrackLine(&sweep->basis.reduced, &sweep->window, &l, points->modes, points->branch, &sweep->n_branches,
+                      &sweep->events));
+  PetscCall(PetscRealloc(sizeof(PetscInt) * (size_t)PetscMax(1, sweep->events.n), &sweep->event_line));
+  for (PetscInt e = before; e < sweep->events.n; e++) sweep->event_line[e] = line;
+  PetscFunctionReturn(0);
+}
+
+/* Gives branches of this line the numbers of those of the line before where their first points match; numbers from first_new
+   on are those of this line */
+static PetscErrorCode PointsLink(Sweep sweep, const Points *before, PetscInt first_new, Points *points)
+{
+  const PetscInt n_new = sweep->n_branches - first_new;
+  PetscInt      *match, *rename, next = first_new;
+  PetscBool      certain;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(points->modes[0].n, &match, n_new, &rename));
+  for (PetscInt b = 0; b < n_new; b++) rename[b] = -1;
+  PetscCall(TrackMatch(&sweep->basis.reduced, points->p, &before->modes[0], &points->modes[0], match, &certain));
+  for (PetscInt i = 0; i < points->modes[0].n; i++)
+    if (match[i] >= 0) rename[points->branch[0][i] - first_new] = before->branch[0][match[i]];
+  for (PetscInt b = 0; b < n_new; b++)
+    if (rename[b] < 0) rename[b] = next++;
+  for (PetscInt i = 0; i < points->n; i++)
+    for (PetscInt k = 0; k < points->modes[i].n; k++)
+      points->branch[i][k] = rename[points->branch[i][k] - first_new];
+  for (PetscInt e = 0; e < sweep->events.n; e++)
+    for (int k = 0; k < 2; k++)
+      if (sweep->events.event[e].branch[k] >= first_new && sweep->event_line[e] == points->first / points->n)
+        sweep->events.event[e].branch[k] = rename[sweep->events.event[e].branch[k] - first_new];
+  sweep->n_branches = next;
+  PetscCall(PetscFree2(match, rename));
+  PetscFunctionReturn(0);
+}
+
+/* The record of each point */
+static PetscErrorCode PointsKeep(Sweep sweep, const Points *points)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < points->n; i++) {
+    const ReducedModes *modes = &points->modes[i];
+    SweepPoint         *point = &sweep->point[points->first + i];
+
+    point->n = modes->n;
+    PetscCall(PetscCalloc1(modes->n, &point->mode));
+    for (PetscInt k = 0; k < modes->n; k++) {
+      point->mode[k].sigma     = creal(modes->lambda[k]);
+      point->mode[k].omega     = cimag(modes->lambda[k]);
+      point->mode[k].error     = sweep->method == SWEEP_REAL ? NAN : modes->error[k];
+      point->mode[k].condition = cabs(modes->product[k]) > 0 ? 1 / cabs(modes->product[k]) : INFINITY;
+      point->mode[k].branch    = points->branch[i][k];
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Real columns xr, xi, yr, yi of all modes, [4 n][size] */
+static void CoordinatesSplit(const ReducedModes *modes, PetscReal columns[])
+{
+  const PetscInt n = modes->n, size = modes->size;
+
+  for (PetscInt k = 0; k < n * size; k++) {
+    columns[k]                = creal(modes->x[k]);
+    columns[n * size + k]     = cimag(modes->x[k]);
+    columns[2 * n * size + k] = creal(modes->y[k]);
+    columns[3 * n * size + k] = cimag(modes->y[k]);
+  }
+}
+
+PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedModes *modes, char label[][32])
+{
+  const PetscInt n = modes->n;
+  PetscReal     *columns;
+  Vec           *shape;
+  BV             block;
+
+  PetscFunctionBeginUser;
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(4 * n * modes->size, &columns, 4 * n, &shape));
+  CoordinatesSplit(modes, columns);
+  PetscCall(BasisCreateBlock(&sweep->basis, 4 * n, &block));
+  PetscCall(BasisLift(&sweep->basis, modes->size, 4 * n, columns, block));
+  for (PetscInt i = 0; i < 4 * n; i++) {
+    Vec column;
+
+    PetscCall(BVGetColumn(block, i, &column));
+    PetscCall(VecDuplicate(column, &shape[i]));
+    PetscCall(VecCopy(column, shape[i]));
+    PetscCall(BVRestoreColumn(block, i, &column));
+  }
+  PetscCall(BVDestroy(&block));
+  PetscCall(OperatorsSetParameters(sweep->operators, p));
+  PetscCall(ModesLabelVectors(sweep->modes, n, modes->rigid, shape, shape + n, shape + 2 * n, shape + 3 * n, label));
+  for (PetscInt i = 0; i < 4 * n; i++) PetscCall(VecDestroy(&shape[i]));
+  PetscCall(PetscFree2(columns, shape));
+  PetscFunctionReturn(0);
+}
+
+/* Names the branches that have none yet: all that pass the middle of the line there, others where they begin */
+static PetscErrorCode PointsLabel(Sweep sweep, const Points *points)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt step = 0; step <= points->n; step++) {
+    const PetscInt      i         = step ? step - 1 : points->n / 2;
+    const ReducedModes *modes     = &points->modes[i];
+    PetscBool           is_needed = PETSC_FALSE;
+    char(*label)[32];
+
+    for (PetscInt k = 0; k < modes->n; k++)
+      if (!sweep->label[points->branch[i][k]][0]) is_needed = PETSC_TRUE;
+    if (!is_needed) continue;
+    PetscCall(PetscMalloc1(modes->n, &label));
+    PetscCall(SweepLabelModes(sweep, &points->p[i * sweep->grid.n_parameters], modes, label));
+    for (PetscInt k = 0; k < modes->n; k++)
+      if (!sweep->label[points->branch[i][k]][0])
+        PetscCall(PetscStrncpy(sweep->label[points->branch[i][k]], label[k], 32));
+    PetscCall(PetscFree(label));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Room for the names of all branches so far; those from n_before on are empty */
+static PetscErrorCode LabelsGrow(Sweep sweep, PetscInt n_before)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscRealloc(sizeof(*sweep->label) * (size_t)PetscMax(1, sweep->n_branches), &sweep->label));
+  for (PetscInt b = n_before; b < sweep->n_branches; b++) sweep->label[b][0] = '\0';
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepLines(Sweep sweep)
+{
+  const PetscInt n_lines = sweep->grid.n_axes == 2 ? sweep->grid.n[1] : 1;
+  Points         before = {0}, points;
+
+  PetscFunctionBeginUser;
+  for (PetscInt line = 0; line < n_lines; line++) {
+    const PetscInt n_before = sweep->n_branches;
+
+    PetscCall(PointsCreate(sweep, line, &points));
+    PetscCall(PointsTrack(sweep, line, &points));
+    if (line) PetscCall(PointsLink(sweep, &before, n_before, &points));
+    PetscCall(LabelsGrow(sweep, n_before));
+    PetscCall(PointsLabel(sweep, &points));
+    PetscCall(PointsKeep(sweep, &points));
+    PetscCall(PointsDestroy(&before));
+    before = points;
+  }
+  PetscCall(PointsDestroy(&before));
+  PetscFunctionReturn(0);
+}

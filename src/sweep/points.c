@@ -1,0 +1,90 @@
+/*
+   Many points on the reduced model. Each point is a dense problem of its own, so ranks share the points, not a point; the
+   results are then sent to all ranks, bit by bit the same.
+*/
+#include "points.h"
+
+PetscMPIInt GroupsOwner(const Groups *groups, PetscInt i)
+{
+  PetscMPIInt size;
+
+  MPI_Comm_size(groups->comm, &size);
+  return (PetscMPIInt)((i % groups->n_groups) * size / groups->n_groups);
+}
+
+PetscReal ModesWorst(const ReducedModes *modes, const ReducedWindow *window)
+{
+  PetscReal worst = 0;
+
+  for (PetscInt i = 0; i < modes->n; i++)
+    if (!modes->rigid[i] && cimag(modes->lambda[i]) >= window->low && cimag(modes->lambda[i]) <= window->high)
+      worst = PetscMax(worst, modes->error[i] / cabs(modes->lambda[i]));
+  return worst;
+}
+
+/* Solution with errors at one point */
+static PetscErrorCode PointSolve(const Reduced *reduced, const ReducedWindow *window, const PetscReal p[],
+                                 ReducedModes *modes)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReducedSolve(reduced, p, window, modes));
+  PetscCall(ReducedEstimate(reduced, p, modes));
+  PetscFunctionReturn(0);
+}
+
+/* Sends the modes of one point from its owner to all */
+static PetscErrorCode ModesBroadcast(MPI_Comm comm, PetscMPIInt owner, ReducedModes *modes)
+{
+  PetscInt    length[2] = {modes->n, modes->size};
+  PetscMPIInt rank, n, n_vector;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Bcast(length, 2, MPIU_INT, owner, comm));
+  if (rank != owner) PetscCall(ReducedModesCreate(length[0], length[1], modes));
+  PetscCall(PetscMPIIntCast(2 * length[0], &n));
+  PetscCall(PetscMPIIntCast(2 * length[0] * length[1], &n_vector));
+  PetscCallMPI(MPI_Bcast(modes->lambda, n, MPIU_REAL, owner, comm));
+  PetscCallMPI(MPI_Bcast(modes->product, n, MPIU_REAL, owner, comm));
+  PetscCallMPI(MPI_Bcast(modes->x, n_vector, MPIU_REAL, owner, comm));
+  PetscCallMPI(MPI_Bcast(modes->y, n_vector, MPIU_REAL, owner, comm));
+  PetscCallMPI(MPI_Bcast(modes->error, (PetscMPIInt)length[0], MPIU_REAL, owner, comm));
+  PetscCallMPI(MPI_Bcast(modes->rigid, (PetscMPIInt)length[0], MPIU_BOOL, owner, comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PointsSolve(const Groups *groups, const Reduced *reduced, const ReducedWindow *window, PetscInt n,
+                           const PetscReal points[], ReducedModes modes[])
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(groups->comm, &rank));
+  PetscCall(PetscMemzero(modes, (size_t)n * sizeof(*modes)));
+  for (PetscInt i = 0; i < n; i++)
+    if (GroupsOwner(groups, i) == rank)
+      PetscCall(PointSolve(reduced, window, &points[i * reduced->n_parameters], &modes[i]));
+  for (PetscInt i = 0; i < n; i++) PetscCall(ModesBroadcast(groups->comm, GroupsOwner(groups, i), &modes[i]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PointsEstimate(const Groups *groups, const Reduced *reduced, const ReducedWindow *window, PetscInt n,
+                              const PetscReal points[], PetscReal worst[])
+{
+  PetscMPIInt rank, count;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(groups->comm, &rank));
+  for (PetscInt i = 0; i < n; i++) {
+    ReducedModes modes;
+
+    worst[i] = 0;
+    if (GroupsOwner(groups, i) != rank) continue;
+    PetscCall(PointSolve(reduced, window, &points[i * reduced->n_parameters], &modes));
+    worst[i] = ModesWorst(&modes, window);
+    PetscCall(ReducedModesDestroy(&modes));
+  }
+  PetscCall(PetscMPIIntCast(n, &count));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, worst, count, MPIU_REAL, MPI_MAX, groups->comm));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,290 @@
+/*
+   The reduced model at one point p of the parameters: K, C, M = sum_t c_t(p) V' A_t V, its eigenvalues in the window
+   (eigen.c), and their vectors in a common form:
+
+      order        by omega; equal ones (within 1e-7, members of a lock-in pair) by sigma
+      clusters     eigenvalues equal within 1e-9: left vectors replaced by combinations with y_i^T D x_j = 0, i != j,
+                   where D = M + C / (2 lambda), Q'(lambda) = 2 lambda D; any vectors of such a plane are
+                   eigenvectors, and only these have conditions and sensitivities that mean something
+      length       x^H Ms x = y^H Ms y = 1, Ms the symmetric terms of M
+      product      y^T D x of the vectors so scaled (rigid modes, lambda = 0: y^T M x)
+
+   A cluster whose matrix y_i^T D x_j is singular is defective, and is left as it is.
+*/
+#include "eigen.h"
+#include "dense.h"
+
+#define PAIR     1e-7  /* relative difference of equal frequencies */
+#define CLUSTER  1e-9  /* relative difference of equal eigenvalues */
+#define SINGULAR 1e-10 /* least pivot, relative, of the products of a cluster that is not defective */
+
+PetscErrorCode ReducedModesCreate(PetscInt n, PetscInt size, ReducedModes *modes)
+{
+  PetscFunctionBeginUser;
+  modes->n    = n;
+  modes->size = size;
+  PetscCall(PetscCalloc1(n, &modes->lambda));
+  PetscCall(PetscCalloc1(n * size, &modes->x));
+  PetscCall(PetscCalloc1(n * size, &modes->y));
+  PetscCall(PetscCalloc1(n, &modes->product));
+  PetscCall(PetscCalloc1(n, &modes->error));
+  PetscCall(PetscCalloc1(n, &modes->rigid));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedModesCopy(const ReducedModes *from, ReducedModes *to)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReducedModesCreate(from->n, from->size, to));
+  PetscCall(PetscArraycpy(to->lambda, from->lambda, from->n));
+  PetscCall(PetscArraycpy(to->x, from->x, from->n * from->size));
+  PetscCall(PetscArraycpy(to->y, from->y, from->n * from->size));
+  PetscCall(PetscArraycpy(to->product, from->product, from->n));
+  PetscCall(PetscArraycpy(to->error, from->error, from->n));
+  PetscCall(PetscArraycpy(to->rigid, from->rigid, from->n));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedModesDestroy(ReducedModes *modes)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(modes->lambda));
+  PetscCall(PetscFree(modes->x));
+  PetscCall(PetscFree(modes->y));
+  PetscCall(PetscFree(modes->product));
+  PetscCall(PetscFree(modes->error));
+  PetscCall(PetscFree(modes->rigid));
+  modes->n = 0;
+  PetscFunctionReturn(0);
+}
+
+/* Adds c times the leading n x n block of A (column stride lda) */
+static void AddBlock(PetscInt n, PetscInt lda, PetscReal c, const PetscReal A[], PetscReal sum[])
+{
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) sum[j * n + i] += c * A[j * lda + i];
+}
+
+PetscErrorCode ReducedSum(const Reduced *reduced, OperatorsTermKind kind, const PetscReal p[], PetscInt n,
+                          PetscReal sum[], PetscBool *any_nonzero)
+{
+  PetscFunctionBeginUser;
+  if (n) PetscCall(PetscArrayzero(sum, n * n));
+  if (any_nonzero) *any_nonzero = PETSC_FALSE;
+  for (PetscInt t = 0; t < reduced->n_terms; t++) {
+    const PetscReal c = reduced->term[t].kind == kind ? OperatorsTermCoefficient(&reduced->term[t], p) : 0;
+
+    if (c == 0) continue;
+    if (any_nonzero) *any_nonzero = PETSC_TRUE;
+    AddBlock(n, reduced->n, c, reduced->A[t], sum);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Symmetric terms of M; symmetric = whether the pencil has no others */
+static PetscErrorCode SumSymmetric(const Reduced *reduced, const PetscReal p[], PetscReal Ms[], PetscBool *symmetric)
+{
+  const PetscInt n = reduced->n_used;
+
+  PetscFunctionBeginUser;
+  *symmetric = PETSC_TRUE;
+  PetscCall(PetscArrayzero(Ms, n * n));
+  for (PetscInt t = 0; t < reduced->n_terms; t++) {
+    const OperatorsTerm *term = &reduced->term[t];
+    const PetscReal      c    = OperatorsTermCoefficient(term, p);
+
+    if (c != 0 && (!term->symmetric || term->kind == OPERATORS_DAMPING)) *symmetric = PETSC_FALSE;
+    if (c != 0 && term->symmetric && term->kind == OPERATORS_MASS) AddBlock(n, reduced->n, c, reduced->A[t], Ms);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Whether mode a comes before b: by omega, or among equal frequencies by sigma */
+static PetscBool Precedes(const ReducedModes *m, PetscInt a, PetscInt b, PetscBool equal)
+{
+  const PetscReal difference =
+    equal ? creal(m->lambda[a]) - creal(m->lambda[b]) : cimag(m->lambda[a]) - cimag(m->lambda[b]);
+
+  return difference < 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Stable insertion sort of order[first .. last - 1] */
+static void SortRange(const ReducedModes *m, PetscInt first, PetscInt last, PetscBool equal, PetscInt order[])
+{
+  for (PetscInt i = first + 1; i < last; i++) {
+    const PetscInt here = order[i];
+    PetscInt       j    = i;
+
+    for (; j > first && Precedes(m, here, order[j - 1], equal); j--) order[j] = order[j - 1];
+    order[j] = here;
+  }
+}
+
+/* Sorts by frequency, equal ones by growth */
+static PetscErrorCode Sort(ReducedModes *modes)
+{
+  const PetscInt n = modes->n, size = modes->size;
+  ReducedModes   old;
+  PetscInt      *order;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedModesCopy(modes, &old));
+  PetscCall(PetscMalloc1(n, &order));
+  for (PetscInt i = 0; i < n; i++) order[i] = i;
+  SortRange(&old, 0, n, PETSC_FALSE, order);
+  for (PetscInt first = 0, last; first < n; first = last) {
+    for (last = first + 1; last < n; last++) {
+      const PetscReal low = cimag(old.lambda[order[last - 1]]), high = cimag(old.lambda[order[last]]);
+
+      if (high - low > PAIR * high) break;
+    }
+    SortRange(&old, first, last, PETSC_TRUE, order);
+  }
+  for (PetscInt i = 0; i < n; i++) {
+    modes->lambda[i] = old.lambda[order[i]];
+    modes->rigid[i]  = old.rigid[order[i]];
+    PetscCall(PetscArraycpy(modes->x + i * size, old.x + order[i] * size, size));
+    PetscCall(PetscArraycpy(modes->y + i * size, old.y + order[i] * size, size));
+  }
+  PetscCall(PetscFree(order));
+  PetscCall(ReducedModesDestroy(&old));
+  PetscFunctionReturn(0);
+}
+
+/* z [n] = D x of mode i; Mx, Cx [modes][n], Cx is NULL without damping */
+static void ApplyD(const ReducedModes *modes, PetscInt i, const PetscComplex Mx[], const PetscComplex Cx[],
+                   PetscComplex z[])
+{
+  const PetscInt     n = modes->size;
+  const PetscComplex c = Cx && modes->lambda[i] != 0 ? 1 / (2 * modes->lambda[i]) : 0;
+
+  for (PetscInt k = 0; k < n; k++) z[k] = Mx[i * n + k] + (Cx ? c * Cx[i * n + k] : 0);
+}
+
+/* LU factors of the products G [m * m] in place, and whether they are singular within rounding */
+static PetscErrorCode FactorProducts(PetscInt m, PetscComplex G[], PetscBLASInt pivot[], PetscBool *defective)
+{
+  PetscReal least = PETSC_MAX_REAL, largest = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(ComplexFactor(m, G, pivot, defective));
+  for (PetscInt i = 0; i < m * m; i++) largest = PetscMax(largest, cabs(G[i]));
+  for (PetscInt i = 0; i < m * m; i += m + 1) least = PetscMin(least, cabs(G[i]));
+  if (!(least > SINGULAR * largest)) *defective = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* Left vectors of the cluster list[m] := G^-1 y, G_ij = y_i^T D x_j, unless that is defective; Dx [modes][n] */
+static PetscErrorCode Biorthogonalise(PetscInt m, const PetscInt list[], const PetscComplex Dx[], ReducedModes *modes)
+{
+  const PetscInt n = modes->size;
+  PetscComplex  *G, *Y;
+  PetscBLASInt  *pivot;
+  PetscBool      defective;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(m * m, &G, m * n, &Y, m, &pivot));
+  for (PetscInt i = 0; i < m; i++)
+    for (PetscInt j = 0; j < m; j++) {
+      G[j * m + i] = DenseDot(n, modes->y + list[i] * n, Dx + list[j] * n);
+    }
+  for (PetscInt i = 0; i < m; i++)
+    for (PetscInt k = 0; k < n; k++) Y[k * m + i] = modes->y[list[i] * n + k];
+  PetscCall(FactorProducts(m, G, pivot, &defective));
+  if (!defective) {
+    PetscCall(ComplexSolve(m, G, pivot, PETSC_FALSE, n, Y));
+    for (PetscInt i = 0; i < m; i++)
+      for (PetscInt k = 0; k < n; k++) modes->y[list[i] * n + k] = Y[k * m + i];
+  }
+  PetscCall(PetscFree3(G, Y, pivot));
+  PetscFunctionReturn(0);
+}
+
+/* Treats all clusters; members need not be neighbours in the order, since both members of a pair have one frequency */
+static PetscErrorCode Clusters(const PetscComplex Dx[], ReducedModes *modes)
+{
+  PetscInt  *list, m;
+  PetscBool *done;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(modes->n, &list, modes->n, &done));
+  for (PetscInt first = 0; first < modes->n; first++) {
+    if (done[first]) continue;
+    list[0] = first, m = 1;
+    for (PetscInt j = first + 1; j < modes->n; j++) {
+      const PetscReal distance = cabs(modes->lambda[j] - modes->lambda[list[m - 1]]);
+
+      if (done[j] || distance > CLUSTER * cabs(modes->lambda[j])) continue;
+      list[m++] = j;
+      done[j]   = PETSC_TRUE;
+    }
+    if (m > 1) PetscCall(Biorthogonalise(m, list, Dx, modes));
+  }
+  PetscCall(PetscFree2(list, done));
+  PetscFunctionReturn(0);
+}
+
+/* Scales all vectors X [m][n] to X^H Ms X = 1 */
+static PetscErrorCode Normalise(PetscInt n, PetscInt m, const PetscReal Ms[], PetscComplex X[])
+{
+  PetscComplex *MX;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(m * n, &MX));
+  PetscCall(DenseTimes(n, n, Ms, n, PETSC_FALSE, m, X, MX));
+  for (PetscInt i = 0; i < m; i++) {
+    PetscReal square = 0;
+
+    for (PetscInt k = i * n; k < (i + 1) * n; k++) square += creal(conj(X[k]) * MX[k]);
+    PetscCheck(square > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "mode without mass: the mass matrix is not positive");
+    for (PetscInt k = i * n; k < (i + 1) * n; k++) X[k] /= PetscSqrtReal(square);
+  }
+  PetscCall(PetscFree(MX));
+  PetscFunctionReturn(0);
+}
+
+/* Clusters, lengths and products */
+static PetscErrorCode Finish(const DensePencil *pencil, const PetscReal Ms[], ReducedModes *modes)
+{
+  const PetscInt n = modes->size, m = modes->n;
+  PetscComplex  *Mx, *Cx            = NULL, *Dx;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(m * n, &Mx, m * n, &Dx));
+  PetscCall(Normalise(n, m, Ms, modes->x));
+  PetscCall(DenseTimes(n, n, pencil->M, n, PETSC_FALSE, m, modes->x, Mx));
+  if (pencil->C) {
+    PetscCall(PetscMalloc1(m * n, &Cx));
+    PetscCall(DenseTimes(n, n, pencil->C, n, PETSC_FALSE, m, modes->x, Cx));
+  }
+  for (PetscInt i = 0; i < m; i++) ApplyD(modes, i, Mx, Cx, Dx + i * n);
+  PetscCall(Clusters(Dx, modes));
+  PetscCall(Normalise(n, m, Ms, modes->y));
+  for (PetscInt i = 0; i < m; i++) modes->product[i] = DenseDot(n, modes->y + i * n, Dx + i * n);
+  PetscCall(PetscFree(Cx));
+  PetscCall(PetscFree2(Mx, Dx));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
+                            ReducedModes *modes)
+{
+  const PetscInt n      = reduced->n_used;
+  DensePencil    pencil = {.n = n};
+  PetscReal     *C, *Ms;
+  PetscBool      damped;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(n * n, &pencil.K, n * n, &C, n * n, &pencil.M, n * n, &Ms));
+  PetscCall(ReducedSum(reduced, OPERATORS_STIFFNESS, p, n, pencil.K, NULL));
+  PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, n, C, &damped));
+  PetscCall(ReducedSum(reduced, OPERATORS_MASS, p, n, pencil.M, NULL));
+  PetscCall(SumSymmetric(reduced, p, Ms, &pencil.symmetric));
+  pencil.C = damped ? C : NULL;
+  PetscCall(PencilEigen(&pencil, window, modes));
+  PetscCall(Sort(modes));
+  PetscCall(Finish(&pencil, Ms, modes));
+  PetscCall(PetscFree4(pencil.K, C, pencil.M, Ms));
+  PetscFunctionReturn(0);
+}

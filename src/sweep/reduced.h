@@ -1,0 +1,62 @@
+/*
+   Private to sweep/: the dense model on a basis V of size n, Vhat' Q(lambda; p) V, and what is computed from it at one
+   point p of the parameters. Pure functions on small arrays: no MPI, no options. All matrices are column-major.
+*/
+#pragma once
+
+#include <squeal/operators.h>
+#include <complex.h>
+
+/* V' A_t V of every term of the pencil. The leading n_used vectors make the model; the remaining ones, Z, only serve to
+   estimate its error. */
+typedef struct {
+  PetscInt             n, n_used;
+  PetscInt             n_terms, n_parameters;
+  const OperatorsTerm *term; /* coefficients (borrowed) */
+  PetscReal          **A;    /* [n_terms][n * n] */
+} Reduced;
+
+/* Eigenvalues to look for: omega in [low, high], |sigma| <= growth, rad/s */
+typedef struct {
+  PetscReal low, high, growth;
+} ReducedWindow;
+
+/* Eigenvalues of one point, omega >= 0, by frequency (members of a pair of equal frequency by growth, the stable one
+   first), with vectors in coordinates of the leading n_used vectors of the basis */
+typedef struct {
+  PetscInt      n, size;
+  PetscComplex *lambda;  /* [n] sigma + i omega, rad/s; exactly 0 for a rigid mode */
+  PetscComplex *x, *y;   /* [n][size] right and left vectors, x^H M x = y^H M y = 1 with the symmetric part of M;
+                            y^T Q(lambda) = 0, without conjugation */
+  PetscComplex *product; /* [n] y^T D(lambda) x, D = M + C / (2 lambda), rigid modes: M; 1 / |product| is the condition,
+                            0 if defective */
+  PetscReal    *error;   /* [n] estimated error of lambda, rad/s; 0 until ReducedEstimate() */
+  PetscBool    *rigid;   /* [n] zero within rounding */
+} ReducedModes;
+
+/* reduced.c - sums the terms at p; eigenvalues and vectors in the window, by dense shift-and-invert about a real shift
+   (eigen.c), damped ones in companion form. In clusters of equal eigenvalues the left vectors are biorthogonal to the
+   right ones. Undamped, a negative kappa is listed as lambda = +sqrt(-kappa) only; damped, all real eigenvalues are. */
+PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
+                            ReducedModes *modes);
+PetscErrorCode ReducedModesCreate(PetscInt n, PetscInt size, ReducedModes *modes);
+PetscErrorCode ReducedModesCopy(const ReducedModes *from, ReducedModes *to);
+PetscErrorCode ReducedModesDestroy(ReducedModes *modes);
+
+/* K(p) (or C, M) on the leading n x n block, array [n * n]; any_nonzero (may be NULL) = whether a coefficient is not
+   zero */
+PetscErrorCode ReducedSum(const Reduced *reduced, OperatorsTermKind kind, const PetscReal p[], PetscInt n,
+                          PetscReal sum[], PetscBool *any_nonzero);
+
+/* frictionless.c - sets to zero in p[] what friction and damping are proportional to; false where some of either
+   remains */
+PetscBool ReducedFrictionless(const Reduced *reduced, PetscReal p[]);
+
+/* estimate.c - errors of all modes from the part Z of the basis that the model does not use, close ones together (see
+   the file), and a floor for rounding; without Z they stay as they are */
+PetscErrorCode ReducedEstimate(const Reduced *reduced, const PetscReal p[], ReducedModes *modes);
+
+/* sensitivity.c - d lambda / d p_j = -y^T (dQ/dp_j) x / (y^T Q' x) of mode i for every parameter j, [n_parameters];
+   zero for a rigid mode, not finite at a defective pair */
+PetscErrorCode ReducedSensitivity(const Reduced *reduced, const PetscReal p[], const ReducedModes *modes, PetscInt i,
+                                  PetscComplex derivative[]);

@@ -1,0 +1,143 @@
+/*
+   Robustness: parameters known to some percent only. The reduced model is first made good at the corners of the box around
+   the scene's own values (the greedy choice takes in a corner only where the estimate asks for it); then the corners and
+   a Halton sequence inside the box are looked at, and the modes that become unstable anywhere are listed. Combinations
+   between those looked at are not excluded.
+*/
+#include "sweepimpl.h"
+
+#define MAX_CORNERS 64  /* of a box in many dimensions, only the first are looked at */
+#define N_INSIDE    200 /* points of the Halton sequence */
+
+/* The box: parameters, and half widths relative to their values */
+typedef struct {
+  PetscInt  n, parameter[16];
+  PetscReal half[16];
+} Box;
+
+static PetscErrorCode BoxRead(Sweep sweep, Box *box)
+{
+  const OperatorsParameter *parameters;
+  PetscInt                  n_parameters;
+  char                    **names;
+  int                       n;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetParameters(sweep->operators, &n_parameters, &parameters));
+  PetscCall(PetscStrToArray(sweep->uncertain, ',', &n, &names));
+  PetscCheck(n >= 1 && n <= 16, sweep->comm, PETSC_ERR_USER_INPUT, "-sweep_uncertain '%s' must name 1 to 16 parameters",
+             sweep->uncertain);
+  PetscCheck(sweep->n_percent == 1 || sweep->n_percent == n, sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_percent has %" PetscInt_FMT " values for %d parameters; give one, or one for each",
+             sweep->n_percent, n);
+  box->n = n;
+  for (int k = 0; k < n; k++) {
+    const PetscReal percent = sweep->percent[sweep->n_percent == 1 ? 0 : k];
+
+    PetscCall(
+      ParameterFind(sweep->comm, "-sweep_uncertain", names[k], n_parameters, parameters, &box->parameter[k]));
+    PetscCheck(percent > 0 && percent < 100, sweep->comm, PETSC_ERR_USER_INPUT,
+               "-sweep_percent %.6g must lie between 0 and 100", (double)percent);
+    box->half[k] = percent / 100;
+  }
+  PetscCall(PetscStrToArrayDestroy(n, names));
+  PetscFunctionReturn(0);
+}
+
+/* Element i of the van der Corput sequence in the given base, in [0, 1) */
+static PetscReal VanDerCorput(PetscInt i, PetscInt base)
+{
+  PetscReal value = 0, digit = 1;
+
+  for (; i > 0; i /= base) value += (PetscReal)(i % base) * (digit /= (PetscReal)base);
+  return value;
+}
+
+/* Point i: 0 the scene itself, then corners, then the inside */
+static void BoxPoint(const Box *box, const PetscReal base[], PetscInt n_parameters, PetscInt n_corners, PetscInt i,
+                     PetscReal p[])
+{
+  static const PetscInt primes[16] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53};
+
+  for (PetscInt k = 0; k < n_parameters; k++) p[k] = base[k];
+  for (PetscInt k = 0; k < box->n && i > 0; k++) {
+    const PetscReal side = i <= n_corners ? (((i - 1) >> k) & 1 ? 1 : -1) : 2 * VanDerCorput(i - n_corners, primes[k]) - 1;
+
+    p[box->parameter[k]] *= 1 + side * box->half[k];
+  }
+}
+
+/* Risks of the modes of the nominal point, by what they become at the others */
+static PetscErrorCode RisksCount(Sweep sweep, PetscInt n, const PetscReal points[], const ReducedModes modes[],
+                                 SweepRisk risk[])
+{
+  PetscInt *match;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscBool certain;
+
+    PetscCall(PetscMalloc1(modes[i].n, &match));
+    PetscCall(TrackMatch(&sweep->basis.reduced, points, &modes[0], &modes[i], match, &certain));
+    for (PetscInt k = 0; k < modes[i].n; k++) {
+      const PetscReal sigma = creal(modes[i].lambda[k]);
+      SweepRisk      *r     = match[k] >= 0 ? &risk[match[k]] : NULL;
+
+      if (!r || !SweepIsUnstable(modes[i].lambda[k], modes[i].error[k])) continue;
+      r->n_unstable++;
+      if (sigma <= r->largest) continue;
+      r->largest = sigma;
+      r->omega   = cimag(modes[i].lambda[k]);
+      r->error   = modes[i].error[k];
+    }
+    PetscCall(PetscFree(match));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Keeps the risks of modes that become unstable somewhere, with their names */
+static PetscErrorCode RisksKeep(Sweep sweep, const PetscReal p[], const ReducedModes *nominal, SweepRisk risk[])
+{
+  char(*label)[32];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(nominal->n, &label));
+  PetscCall(SweepLabelModes(sweep, p, nominal, label));
+  sweep->n_risks = 0;
+  for (PetscInt k = 0; k < nominal->n; k++) {
+    if (!risk[k].n_unstable) continue;
+    risk[k].nominal = creal(nominal->lambda[k]);
+    PetscCall(PetscStrncpy(risk[k].label, label[k], sizeof(risk[k].label)));
+    risk[sweep->n_risks++] = risk[k];
+  }
+  PetscCall(PetscFree(label));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepRobustness(Sweep sweep)
+{
+  const PetscInt n_parameters = sweep->grid.n_parameters;
+  PetscInt       n, n_corners;
+  PetscReal     *points;
+  ReducedModes  *modes;
+  Box            box;
+
+  PetscFunctionBeginUser;
+  PetscCall(BoxRead(sweep, &box));
+  n_corners = PetscMin(MAX_CORNERS, 1 << PetscMin(box.n, 10));
+  n         = 1 + n_corners + N_INSIDE;
+  PetscCall(PetscMalloc2(n * n_parameters, &points, n, &modes));
+  for (PetscInt i = 0; i < n; i++)
+    BoxPoint(&box, sweep->grid.base, n_parameters, n_corners, i, &points[i * n_parameters]);
+  sweep->greedy.last = sweep->greedy.distance = PETSC_MAX_REAL;
+  PetscCall(GreedyRun(&sweep->greedy, sweep->modes, &sweep->window, 1 + n_corners, points, &sweep->groups,
+                      &sweep->basis));
+  PetscCall(PointsSolve(&sweep->groups, &sweep->basis.reduced, &sweep->window, n, points, modes));
+  PetscCall(PetscCalloc1(PetscMax(1, modes[0].n), &sweep->risk));
+  PetscCall(RisksCount(sweep, n, points, modes, sweep->risk));
+  PetscCall(RisksKeep(sweep, points, &modes[0], sweep->risk));
+  sweep->n_combinations = n;
+  for (PetscInt i = 0; i < n; i++) PetscCall(ReducedModesDestroy(&modes[i]));
+  PetscCall(PetscFree2(points, modes));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,263 @@
+/*
+   Sweep: life cycle, options, and the flow: basis -> points and branches -> onsets -> classes -> checks.
+*/
+#include "sweepimpl.h"
+#include <squeal/options.h>
+#include <petsctime.h>
+#include <string.h>
+
+#define MAX_UNCERTAIN 16
+
+PetscErrorCode SweepCreate(MPI_Comm comm, Sweep *sweep)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, sweep));
+  (*sweep)->comm        = comm;
+  (*sweep)->rtol        = 1e-6;
+  (*sweep)->max_samples = 20;
+  (*sweep)->n_real      = 80;
+  (*sweep)->onsets      = PETSC_TRUE;
+  (*sweep)->restart     = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepSetModes(Sweep sweep, Modes modes)
+{
+  PetscFunctionBeginUser;
+  sweep->modes = modes;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepSetOperators(Sweep sweep, Operators operators)
+{
+  PetscFunctionBeginUser;
+  sweep->operators = operators;
+  PetscFunctionReturn(0);
+}
+
+/* What to vary, how, and how accurately */
+static PetscErrorCode ReadMethod(Sweep sweep, PetscOptionItems *PetscOptionsObject)
+{
+  static const char *const methods[] = {"reduced", "full", "real"};
+  PetscInt                 method    = SWEEP_REDUCED;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsString("-sweep_parameter", "one or two options of the scene to vary, e.g. pad_young,contact_mu",
+                               "sweep.h", sweep->parameter, sweep->parameter, sizeof(sweep->parameter), NULL));
+  PetscCall(PetscOptionsString("-sweep_values", "first:last:n, first:last:n:log, or v1,v2,... in the parameter's unit",
+                               "sweep.h", sweep->values[0], sweep->values[0], sizeof(sweep->values[0]), NULL));
+  PetscCall(PetscOptionsString("-sweep_values_2", "those of the second parameter", "sweep.h", sweep->values[1],
+                               sweep->values[1], sizeof(sweep->values[1]), NULL));
+  PetscCall(PetscOptionsEList("-sweep_method", "reduced basis with error estimate, every point in full, or a basis of real modes",
+                              "sweep.h", methods, 3, methods[0], &method, NULL));
+  PetscCall(PetscOptionsReal("-sweep_rtol", "largest estimated relative error of an eigenvalue (an estimate, no bound)",
+                             "sweep.h", sweep->rtol, &sweep->rtol, NULL));
+  PetscCall(PetscOptionsInt("-sweep_max_samples", "most full solutions", "sweep.h", sweep->max_samples,
+                            &sweep->max_samples, NULL));
+  PetscCall(PetscOptionsInt("-sweep_real_modes", "frictionless modes of -sweep_method real", "sweep.h", sweep->n_real,
+                            &sweep->n_real, NULL));
+  sweep->method = (SweepMethod)method;
+  PetscFunctionReturn(0);
+}
+
+/* What else to compute */
+static PetscErrorCode ReadExtras(Sweep sweep, PetscOptionItems *PetscOptionsObject)
+{
+  PetscBool set;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsInt("-sweep_verify", "compare with full solutions at this many points between those of the sweep",
+                            "sweep.h", sweep->n_verify, &sweep->n_verify, NULL));
+  PetscCall(PetscOptionsBool("-sweep_onsets", "critical values of the first parameter, confirmed on the full problem",
+                             "sweep.h", sweep->onsets, &sweep->onsets, NULL));
+  PetscCall(PetscOptionsBool("-sweep_sensitivities", "derivatives of every eigenvalue by every parameter", "sweep.h",
+                             sweep->sensitivities, &sweep->sensitivities, NULL));
+  PetscCall(PetscOptionsString("-sweep_uncertain", "parameters known to -sweep_percent only: what can become unstable",
+                               "sweep.h", sweep->uncertain, sweep->uncertain, sizeof(sweep->uncertain), NULL));
+  PetscCall(PetscMalloc1(MAX_UNCERTAIN, &sweep->percent));
+  sweep->n_percent = MAX_UNCERTAIN;
+  PetscCall(PetscOptionsRealArray("-sweep_percent", "their uncertainty, percent; one value (10) or one for each",
+                                  "sweep.h", sweep->percent, &sweep->n_percent, &set));
+  if (!set) sweep->n_percent = 1, sweep->percent[0] = 10;
+  PetscCall(PetscOptionsInt("-sweep_groups", "groups of ranks that share the points (0: every rank is one)", "sweep.h",
+                            sweep->n_groups, &sweep->n_groups, NULL));
+  PetscCall(PetscOptionsBool("-sweep_restart", "go on where a sweep of the same scene in -output_dir was stopped",
+                             "sweep.h", sweep->restart, &sweep->restart, NULL));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepSetFromOptions(Sweep sweep)
+{
+  PetscMPIInt size;
+
+  PetscFunctionBeginUser;
+  PetscOptionsBegin(sweep->comm, NULL, "Sweep", NULL);
+  PetscCall(ReadMethod(sweep, PetscOptionsObject));
+  PetscCall(ReadExtras(sweep, PetscOptionsObject));
+  PetscOptionsEnd();
+  PetscCallMPI(MPI_Comm_size(sweep->comm, &size));
+  PetscCheck(sweep->rtol > 0 && sweep->rtol < 1, sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_rtol %.6g must lie between 0 and 1", (double)sweep->rtol);
+  PetscCheck(sweep->max_samples > 0, sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_max_samples %" PetscInt_FMT " must be positive", sweep->max_samples);
+  PetscCheck(sweep->n_real > 0, sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_real_modes %" PetscInt_FMT " must be positive", sweep->n_real);
+  PetscCheck(sweep->n_verify >= 0, sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_verify %" PetscInt_FMT " must not be negative", sweep->n_verify);
+  PetscCheck(sweep->n_groups >= 0 && sweep->n_groups <= size, sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_groups %" PetscInt_FMT " must lie between 0 and the number of ranks, %d", sweep->n_groups,
+             (int)size);
+  sweep->groups.comm     = sweep->comm;
+  sweep->groups.n_groups = sweep->n_groups ? sweep->n_groups : size;
+  PetscCall(ProgressSetFromOptions(sweep->comm, &sweep->progress));
+  PetscFunctionReturn(0);
+}
+
+/* Parameters and values of the axes, checked against what each parameter may be */
+static PetscErrorCode GridSetUp(Sweep sweep)
+{
+  static const char *const  options[] = {"-sweep_values", "-sweep_values_2"};
+  const OperatorsParameter *parameters;
+  Grid                     *grid = &sweep->grid;
+  char                    **names;
+  int                       n_names;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetParameters(sweep->operators, &grid->n_parameters, &parameters));
+  PetscCall(PetscMalloc1(grid->n_parameters, &grid->base));
+  for (PetscInt i = 0; i < grid->n_parameters; i++) grid->base[i] = parameters[i].value;
+  PetscCall(PetscStrToArray(sweep->parameter, ',', &n_names, &names));
+  PetscCheck(n_names == 1 || n_names == 2, sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_parameter '%s' must name one or two options of the scene, e.g. pad_young", sweep->parameter);
+  PetscCheck((n_names == 2) == (sweep->values[1][0] != '\0'), sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_values_2 belongs to a second -sweep_parameter: give both or neither");
+  for (grid->n_axes = 0; grid->n_axes < n_names; grid->n_axes++) {
+    const PetscInt            k = grid->n_axes;
+    const OperatorsParameter *q;
+
+    PetscCall(ParameterFind(sweep->comm, "-sweep_parameter", names[k], grid->n_parameters, parameters,
+                            &grid->parameter[k]));
+    PetscCall(ValuesParse(sweep->comm, options[k], sweep->values[k], &grid->n[k], &grid->value[k], &grid->ratio[k]));
+    q = &parameters[grid->parameter[k]];
+    for (PetscInt i = 0; i < grid->n[k]; i++)
+      PetscCheck(grid->value[k][i] > q->lower && grid->value[k][i] < q->upper, sweep->comm, PETSC_ERR_USER_INPUT,
+                 "%s: %.6g is no value for %s, which must exceed %.6g %s", options[k], (double)grid->value[k][i],
+                 q->name, (double)q->lower, q->unit);
+  }
+  PetscCheck(n_names == 1 || grid->parameter[0] != grid->parameter[1], sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_parameter names '%s' twice", names[0]);
+  PetscCall(PetscStrToArrayDestroy(n_names, names));
+  PetscFunctionReturn(0);
+}
+
+/* The points that the basis is made for: all of a short sweep, every k-th of a long one */
+static PetscErrorCode BasisMake(Sweep sweep, PetscInt n_most)
+{
+  const PetscInt n_all = GridSize(&sweep->grid), n_parameters = sweep->grid.n_parameters;
+  const PetscInt n     = PetscMin(n_all, n_most);
+  PetscReal     *points;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n * n_parameters, &points));
+  for (PetscInt i = 0; i < n; i++)
+    GridPoint(&sweep->grid, n > 1 ? (i * (n_all - 1)) / (n - 1) : 0, &points[i * n_parameters]);
+  PetscCall(GreedyRun(&sweep->greedy, sweep->modes, &sweep->window, n, points, &sweep->groups, &sweep->basis));
+  PetscCall(PetscFree(points));
+  PetscFunctionReturn(0);
+}
+
+/* Reduced model, by the method chosen */
+static PetscErrorCode ModelMake(Sweep sweep)
+{
+  PetscReal *p;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
+  GridPoint(&sweep->grid, 0, p);
+  PetscCall(OperatorsSetParameters(sweep->operators, p));
+  PetscCall(PetscFree(p));
+  PetscCall(BasisCreate(sweep->comm, sweep->operators, &sweep->basis));
+  if (sweep->method == SWEEP_REAL) {
+    PetscCall(SweepRealBasis(sweep));
+    PetscFunctionReturn(0);
+  }
+  sweep->greedy.rtol        = sweep->rtol;
+  sweep->greedy.max_samples = sweep->max_samples;
+  sweep->greedy.progress    = &sweep->progress;
+  PetscCall(PetscCalloc1(sweep->max_samples + 1, &sweep->greedy.sample));
+  sweep->greedy.last = sweep->greedy.distance = PETSC_MAX_REAL;
+  if (sweep->restart) {
+    PetscCall(SweepResume(sweep));
+    sweep->greedy.keep     = SweepKeep;
+    sweep->greedy.keep_ctx = sweep;
+  }
+  PetscCall(BasisMake(sweep, 100));
+  sweep->greedy.keep = NULL;
+  PetscFunctionReturn(0);
+}
+
+/* Adds the time since *since to a phase */
+static PetscErrorCode Clock(Sweep sweep, int phase, PetscLogDouble *since)
+{
+  PetscLogDouble now;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&now));
+  sweep->seconds[phase] += now - *since;
+  *since = now;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepSolve(Sweep sweep, Results results)
+{
+  PetscReal      band[2];
+  PetscLogDouble since;
+
+  PetscFunctionBeginUser;
+  PetscCall(ResultsGetDirectory(results, &sweep->folder));
+  PetscCall(ModesGetBand(sweep->modes, band, &sweep->window.growth));
+  sweep->window.low  = 2 * PETSC_PI * band[0];
+  sweep->window.high = 2 * PETSC_PI * band[1];
+  PetscCall(GridSetUp(sweep));
+  PetscCall(PetscCalloc1(GridSize(&sweep->grid), &sweep->point));
+  PetscCall(PetscTime(&since));
+  if (sweep->method == SWEEP_FULL) {
+    PetscCall(SweepBrute(sweep));
+    PetscCall(Clock(sweep, 0, &since));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(ModelMake(sweep));
+  PetscCall(Clock(sweep, 0, &since));
+  PetscCall(SweepLines(sweep));
+  PetscCall(Clock(sweep, 1, &since));
+  if (sweep->n_verify) PetscCall(SweepVerify(sweep));
+  PetscCall(Clock(sweep, 3, &since));
+  if (sweep->onsets) PetscCall(SweepOnsets(sweep));
+  PetscCall(Clock(sweep, 2, &since));
+  PetscCall(SweepClassify(sweep));
+  if (sweep->uncertain[0]) PetscCall(SweepRobustness(sweep));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepDestroy(Sweep *sweep)
+{
+  Sweep s = *sweep;
+
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(0);
+  for (PetscInt i = 0; s->point && i < GridSize(&s->grid); i++) PetscCall(PetscFree(s->point[i].mode));
+  PetscCall(PetscFree(s->point));
+  for (PetscInt i = 0; i < s->n_checks; i++) PetscCall(PetscFree(s->check[i].p));
+  PetscCall(PetscFree(s->check));
+  PetscCall(PetscFree(s->risk));
+  PetscCall(PetscFree(s->percent));
+  PetscCall(PetscFree(s->label));
+  PetscCall(PetscFree(s->event_line));
+  PetscCall(PetscFree(s->is_confirmed));
+  PetscCall(EventListDestroy(&s->events));
+  PetscCall(GreedyDestroy(&s->greedy));
+  PetscCall(BasisDestroy(&s->basis));
+  PetscCall(GridDestroy(&s->grid));
+  PetscCall(PetscFree(*sweep));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,96 @@
+/* Private to sweep/: the record of a sweep */
+#pragma once
+
+#include <squeal/sweep.h>
+#include "greedy.h"
+#include "track.h"
+#include "values.h"
+
+typedef enum { SWEEP_REDUCED, SWEEP_FULL, SWEEP_REAL } SweepMethod;
+
+/* One eigenvalue at one point */
+typedef struct {
+  PetscReal sigma, omega; /* rad/s */
+  PetscReal error;        /* estimated error of lambda, rad/s; NaN where there is no estimate */
+  PetscReal condition;
+  PetscInt  branch; /* from 0 on; -1 where branches are not followed */
+  PetscBool unstable, numerical;
+  char      label[32];
+} SweepMode;
+
+/* All eigenvalues of a point */
+typedef struct {
+  PetscInt   n;
+  SweepMode *mode;
+} SweepPoint;
+
+/* True errors at a point that the basis has never seen */
+typedef struct {
+  PetscReal *p;
+  PetscInt   n_full, n_reduced, n_unstable_full, n_unstable_reduced;
+  PetscReal  error, estimate; /* largest relative ones */
+} SweepCheck;
+
+/* Which modes can become unstable when parameters are uncertain */
+typedef struct {
+  PetscInt  branch;
+  PetscReal nominal, largest; /* growth at the scene's own values, and the largest found, 1/s */
+  PetscReal omega, error;     /* rad/s, where growth is largest */
+  PetscInt  n_unstable;       /* of the combinations looked at */
+  char      label[32];
+} SweepRisk;
+
+struct _p_Sweep {
+  MPI_Comm  comm;
+  Operators operators;
+  Modes     modes;
+  Progress  progress;
+  /* set by options */
+  char        parameter[256], values[GRID_MAX_AXES][1024], uncertain[1024];
+  SweepMethod method;
+  PetscReal   rtol, *percent;
+  PetscInt    max_samples, n_real, n_verify, n_groups, n_percent;
+  PetscBool   onsets, sensitivities, restart;
+  /* results */
+  Grid          grid;
+  Groups        groups;
+  ReducedWindow window;
+  Basis         basis;
+  Greedy        greedy;
+  SweepPoint   *point;
+  PetscInt      n_branches;
+  char        (*label)[32]; /* of each branch */
+  EventList     events;
+  PetscInt     *event_line;   /* index along the second axis of each event */
+  PetscBool    *is_confirmed; /* on the full problem */
+  SweepCheck   *check;
+  SweepRisk    *risk;
+  PetscInt      n_checks, n_risks, n_combinations;
+  const char    *folder;    /* of the restart files */
+  PetscReal      print[10]; /* tells whether they belong to this sweep */
+  PetscInt       n_files, n_kept;
+  PetscLogDouble seconds[4]; /* basis, points, onsets, verification */
+};
+
+/* line.c - solves the points of the grid line by line, follows the branches, names them */
+PETSC_INTERN PetscErrorCode SweepLines(Sweep sweep);
+/* Names of all modes of a point from their shapes on the mesh */
+PETSC_INTERN PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedModes *modes,
+                                            char label[][32]);
+/* classify.c - whether growth exceeds its error bar; that for all points; distance of a point to the nearest onset of a branch, relative, or NaN */
+PETSC_INTERN PetscBool      SweepIsUnstable(PetscComplex lambda, PetscReal error);
+PETSC_INTERN PetscErrorCode SweepClassify(Sweep sweep);
+PETSC_INTERN PetscReal      SweepOnsetDistance(Sweep sweep, PetscInt point, PetscInt branch);
+/* confirm.c - onsets on the reduced model, then on the full problem */
+PETSC_INTERN PetscErrorCode SweepOnsets(Sweep sweep);
+/* brute.c - every point in full, without reduced model; and full solutions that check the reduced ones */
+PETSC_INTERN PetscErrorCode SweepBrute(Sweep sweep);
+PETSC_INTERN PetscErrorCode SweepVerify(Sweep sweep);
+/* realmodes.c - the basis of today's tools: frictionless real modes */
+PETSC_INTERN PetscErrorCode SweepRealBasis(Sweep sweep);
+/* robust.c - combinations of uncertain parameters */
+PETSC_INTERN PetscErrorCode SweepRobustness(Sweep sweep);
+/* restart.c - keeps the full solutions so far (ctx is the sweep), takes up what an earlier run kept, and deletes it */
+PETSC_INTERN PetscErrorCode SweepKeep(void *ctx);
+PETSC_INTERN PetscErrorCode SweepResume(Sweep sweep);
+PETSC_INTERN PetscErrorCode SweepForget(Sweep sweep);

@@ -1,0 +1,211 @@
+/*
+   Branches and events along a line. From each point to the next the modes are matched (match.c); where a component of
+   the match is not certain the interval is halved, and where two stable modes are predicted to be unstable between the
+   points (interval.c) it is divided there, up to DEPTH times and with at most BUDGET solutions between two points. What
+   is still ambiguous then (a mode that turns into another one within a thousandth of the step) is resolved by the
+   greedy assignment of match.c.
+
+   Events are the changes of stability of a branch between neighbouring points of this refined sequence.
+*/
+#include "branch.h"
+
+#define DEPTH  10
+#define BUDGET 200
+
+typedef struct {
+  FrameSource source;
+  BranchList  branches;
+  EventList  *events;
+  PetscInt    solved; /* in the present interval of the line */
+} Tracker;
+
+PetscErrorCode EventListAdd(EventList *events, const Event *event)
+{
+  PetscFunctionBeginUser;
+  if (events->n == events->capacity) {
+    events->capacity = 2 * events->capacity + 16;
+    PetscCall(PetscRealloc(events->capacity * sizeof(*events->event), &events->event));
+  }
+  events->event[events->n++] = *event;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EventListDestroy(EventList *events)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(events->event));
+  events->n = events->capacity = 0;
+  PetscFunctionReturn(0);
+}
+
+/* The branch with which mode i of an unstable point interacts: its partner of the pair, with damping the nearest
+   eigenvalue */
+static PetscInt EventPartner(const Frame *frame, PetscInt i)
+{
+  const PetscComplex lambda  = frame->modes.lambda[i];
+  PetscInt           partner = FramePartner(frame, i);
+  PetscReal          nearest = 0.1 * cabs(lambda);
+
+  for (PetscInt k = 0; k < frame->modes.n && frame->damped; k++) {
+    const PetscReal distance = cabs(frame->modes.lambda[k] - lambda);
+
+    if (k != i && distance <= nearest) partner = k, nearest = distance;
+  }
+  return partner < 0 ? -1 : frame->branch[partner];
+}
+
+/* Event of mode i of a, j of b, of which one is unstable */
+static PetscErrorCode EventMake(const Frame *a, PetscInt i, const Frame *b, PetscInt j, EventList *events)
+{
+  const PetscBool at_a = ModeIsUnstable(&a->modes, i), descending = a->value > b->value ? PETSC_TRUE : PETSC_FALSE;
+  const Frame    *unstable = at_a ? a : b;
+  const PetscInt  mode     = at_a ? i : j;
+  const PetscBool begins   = at_a == descending ? PETSC_TRUE : PETSC_FALSE;
+  Event           event    = {0};
+
+  PetscFunctionBeginUser;
+  event.lambda    = unstable->modes.lambda[mode];
+  event.lower     = PetscMin(a->value, b->value);
+  event.upper     = PetscMax(a->value, b->value);
+  event.omega     = cimag(event.lambda);
+  event.critical  = at_a ? a->value : b->value;
+  event.branch[0] = unstable->branch[mode];
+  event.branch[1] = EventPartner(unstable, mode);
+  if (cimag(event.lambda) == 0)
+    event.kind = begins ? EVENT_DIVERGENCE : EVENT_RESTABILISATION;
+  else
+    event.kind = begins ? EVENT_LOCK_IN : EVENT_LOCK_OUT;
+  PetscCall(EventListAdd(events, &event));
+  PetscFunctionReturn(0);
+}
+
+/* Takes the step from a to b as it is */
+static PetscErrorCode TrackerAdvance(Tracker *tracker, const Frame *a, Frame *b, Match *match)
+{
+  PetscFunctionBeginUser;
+  PetscCall(BranchListContinue(&tracker->branches, a, b, match));
+  for (PetscInt j = 0; j < b->modes.n; j++) {
+    const PetscInt i = match->from[j];
+
+    if (i >= 0 && ModeIsUnstable(&a->modes, i) != ModeIsUnstable(&b->modes, j))
+      PetscCall(EventMake(a, i, b, j, tracker->events));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Whether to divide the step, and where */
+static PetscErrorCode TrackerDivides(const Frame *a, const Frame *b, PetscInt depth, Match *match, PetscReal *value,
+                                     PetscBool *divides)
+{
+  PetscReal *omega, t = 0.5;
+
+  PetscFunctionBeginUser;
+  *divides = match->all_certain ? PETSC_FALSE : PETSC_TRUE;
+  if (match->all_certain) {
+    PetscCall(PetscMalloc1(a->modes.n, &omega));
+    for (PetscInt i = 0; i < a->modes.n; i++) omega[i] = cimag(a->modes.lambda[i]);
+    PetscCall(MatchAssign(a, b, match->strength, omega, match));
+    PetscCall(PetscFree(omega));
+    PetscCall(IntervalPredict(a, b, match, PetscPowRealInt(0.5, DEPTH - depth), &t, divides));
+  }
+  *value = a->value + t * (b->value - a->value);
+  if (*value == a->value || *value == b->value) *divides = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* From a, whose branches are known, to b */
+static PetscErrorCode TrackerStep(Tracker *tracker, const Frame *a, Frame *b, PetscInt depth)
+{
+  Match     match;
+  Frame    *middle;
+  PetscReal value;
+  PetscBool divides = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatchCreate(a, b, tracker->source.window, &match));
+  if (depth < DEPTH && tracker->solved < BUDGET) PetscCall(TrackerDivides(a, b, depth, &match, &value, &divides));
+  if (divides) {
+    tracker->solved++;
+    PetscCall(FrameSourceSolve(&tracker->source, value, &middle));
+    PetscCall(TrackerStep(tracker, a, middle, depth + 1));
+    PetscCall(TrackerStep(tracker, middle, b, depth + 1));
+    PetscCall(FrameDestroy(&middle));
+  } else {
+    PetscCall(TrackerAdvance(tracker, a, b, &match));
+  }
+  PetscCall(MatchDestroy(&match));
+  PetscFunctionReturn(0);
+}
+
+/* Errors of the points between are needed when those of the points are known: stability depends on them */
+static PetscBool HaveErrors(const ReducedModes modes[], PetscInt n)
+{
+  for (PetscInt k = 0; k < n; k++)
+    for (PetscInt i = 0; i < modes[k].n; i++)
+      if (modes[k].error[i] > 0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+PetscErrorCode TrackLine(const Reduced *reduced, const ReducedWindow *window, const Line *line,
+                         const ReducedModes modes[], PetscInt *branch[], PetscInt *n_branches, EventList *events)
+{
+  Tracker tracker = {.branches = {.first = *n_branches}, .events = events};
+  Frame  *frame   = NULL, *next;
+
+  PetscFunctionBeginUser;
+  if (!line->n) PetscFunctionReturn(0);
+  PetscCall(FrameSourceCreate(reduced, window, line, &tracker.source));
+  tracker.source.estimate = HaveErrors(modes, line->n);
+  for (PetscInt k = 0; k < line->n; k++) {
+    PetscCall(FrameSourceTake(&tracker.source, line->value[k], &modes[k], &next));
+    tracker.solved = 0;
+    if (k == 0)
+      PetscCall(BranchListBegin(&tracker.branches, next));
+    else
+      PetscCall(TrackerStep(&tracker, frame, next, 0));
+    PetscCall(PetscArraycpy(branch[k], next->branch, modes[k].n));
+    PetscCall(FrameDestroy(&frame));
+    frame = next;
+  }
+  PetscCall(FrameDestroy(&frame));
+  *n_branches += tracker.branches.n;
+  PetscCall(BranchListDestroy(&tracker.branches));
+  PetscCall(FrameSourceDestroy(&tracker.source));
+  PetscFunctionReturn(0);
+}
+
+/* Largest |lambda| of two points */
+static PetscReal ModesScale(const ReducedModes *a, const ReducedModes *b)
+{
+  PetscReal largest = 0;
+
+  for (PetscInt i = 0; i < a->n; i++) largest = PetscMax(largest, cabs(a->lambda[i]));
+  for (PetscInt i = 0; i < b->n; i++) largest = PetscMax(largest, cabs(b->lambda[i]));
+  return largest > 0 ? largest : 1;
+}
+
+PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const ReducedModes *a, const ReducedModes *b,
+                          PetscInt match[], PetscBool *certain)
+{
+  const PetscReal scale = ModesScale(a, b);
+  PetscReal      *C, *omega;
+  PetscBool       damped;
+  Frame          *frame_a, *frame_b;
+  Match           m;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(reduced->n_used * reduced->n_used, &C, a->n, &omega));
+  PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, reduced->n_used, C, &damped));
+  PetscCall(FrameCreate(reduced, p, 0, damped, scale, PETSC_FALSE, a, &frame_a));
+  PetscCall(FrameCreate(reduced, p, 0, damped, scale, PETSC_FALSE, b, &frame_b));
+  PetscCall(MatchCreate(frame_a, frame_b, NULL, &m));
+  for (PetscInt i = 0; i < a->n; i++) omega[i] = cimag(a->lambda[i]);
+  PetscCall(MatchAssign(frame_a, frame_b, m.strength, omega, &m));
+  PetscCall(PetscArraycpy(match, m.from, b->n));
+  *certain = m.all_certain;
+  PetscCall(MatchDestroy(&m));
+  PetscCall(FrameDestroy(&frame_a));
+  PetscCall(FrameDestroy(&frame_b));
+  PetscCall(PetscFree2(C, omega));
+  PetscFunctionReturn(0);
+}

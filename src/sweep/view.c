@@ -1,0 +1,160 @@
+/*
+   What a person wants to know of a sweep: how it was made, where it is stable, the onsets, the errors.
+*/
+#include "sweepimpl.h"
+
+static const char *const kinds[] = {"lock-in", "lock-out", "divergence", "stable again"};
+
+/* The full solutions behind the basis */
+static PetscErrorCode SamplesView(Sweep sweep, const OperatorsParameter parameters[], PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < sweep->greedy.n_samples; i++) {
+    const Sample *s = &sweep->greedy.sample[i];
+
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  full solution %" PetscInt_FMT " at", i + 1));
+    for (PetscInt k = 0; k < sweep->grid.n_axes; k++)
+      PetscCall(PetscViewerASCIIPrintf(viewer, " %s %.6g", parameters[sweep->grid.parameter[k]].name,
+                                       (double)s->p[sweep->grid.parameter[k]]));
+    if (s->krylov)
+      PetscCall(PetscViewerASCIIPrintf(viewer, ", eigensolver: %" PetscInt_FMT " vectors\n", s->n_vectors));
+    else
+      PetscCall(PetscViewerASCIIPrintf(viewer, ", corrections: estimate before %.1e, %" PetscInt_FMT " vectors\n",
+                                       (double)s->estimate, s->n_vectors));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* First and last point of each stretch of instability of each branch, on the first line */
+static PetscErrorCode BranchesView(Sweep sweep, PetscViewer viewer)
+{
+  const Grid *grid = &sweep->grid;
+
+  PetscFunctionBeginUser;
+  for (PetscInt b = 0; b < sweep->n_branches; b++) {
+    PetscReal largest = 0, omega = 0, first = 0, last = 0;
+    PetscInt  n = 0;
+
+    for (PetscInt i = 0; i < GridSize(grid); i++)
+      for (PetscInt k = 0; k < sweep->point[i].n; k++) {
+        const SweepMode *m = &sweep->point[i].mode[k];
+
+        if (m->branch != b || !m->unstable) continue;
+        if (!n++) first = grid->value[0][i % grid->n[0]];
+        last = grid->value[0][i % grid->n[0]];
+        if (m->sigma > largest) largest = m->sigma, omega = m->omega;
+      }
+    if (n)
+      PetscCall(PetscViewerASCIIPrintf(viewer,
+                                       "  branch %" PetscInt_FMT " %s: unstable at %" PetscInt_FMT
+                                       " points, %.6g to %.6g, up to %.5g 1/s at %.2f Hz\n",
+                                       b + 1, sweep->label[b], n, (double)first, (double)last, (double)largest,
+                                       (double)(omega / (2 * PETSC_PI))));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Onsets, and the answer in one line */
+static PetscErrorCode OnsetsView(Sweep sweep, const OperatorsParameter *parameter, PetscViewer viewer)
+{
+  const Event *first = NULL;
+
+  PetscFunctionBeginUser;
+  for (PetscInt e = 0; e < sweep->events.n; e++) {
+    const Event *event = &sweep->events.event[e];
+
+    if (!event->found) continue;
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "  %s at %s = %.10g %s +- %.1e, %.2f Hz, %s%s\n", kinds[event->kind], parameter->name,
+      (double)event->critical, parameter->unit, (double)event->error, (double)(event->omega / (2 * PETSC_PI)),
+      sweep->label[event->branch[0]], sweep->is_confirmed[e] ? "" : " (not confirmed on the full problem)"));
+    if (sweep->event_line[e] == 0 &&
+        (!first || PetscAbsReal(event->critical - sweep->grid.value[0][0]) <
+                     PetscAbsReal(first->critical - sweep->grid.value[0][0])))
+      first = event;
+  }
+  if (sweep->grid.n_axes > 1) PetscFunctionReturn(0);
+  if (!first)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "no onset between %s = %.6g and %.6g %s\n", parameter->name,
+                                     (double)sweep->grid.value[0][0],
+                                     (double)sweep->grid.value[0][sweep->grid.n[0] - 1], parameter->unit));
+  else if (first->kind == EVENT_LOCK_IN || first->kind == EVENT_DIVERGENCE)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "quiet from %s = %.6g to %.10g %s\n", parameter->name,
+                                     (double)sweep->grid.value[0][0], (double)first->critical, parameter->unit));
+  PetscFunctionReturn(0);
+}
+
+/* True errors beside their estimates */
+static PetscErrorCode ChecksView(Sweep sweep, PetscViewer viewer)
+{
+  PetscReal error = 0, estimate = 0;
+  PetscInt  missed = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < sweep->n_checks; i++) {
+    const SweepCheck *c = &sweep->check[i];
+
+    error    = PetscMax(error, c->error);
+    estimate = PetscMax(estimate, c->estimate);
+    if (c->n_full != c->n_reduced || c->n_unstable_full != c->n_unstable_reduced) missed++;
+  }
+  if (sweep->n_checks)
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "checked by %" PetscInt_FMT
+                                     " full solutions between the points: largest true error %.1e (estimate %.1e), "
+                                     "%" PetscInt_FMT " with another number of modes or instabilities\n",
+                                     sweep->n_checks, (double)error, (double)estimate, missed));
+  PetscFunctionReturn(0);
+}
+
+/* What becomes unstable within the uncertainty */
+static PetscErrorCode RisksView(Sweep sweep, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  if (!sweep->uncertain[0]) PetscFunctionReturn(0);
+  PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " combinations of %s: ", sweep->n_combinations,
+                                   sweep->uncertain));
+  PetscCall(PetscViewerASCIIPrintf(viewer, sweep->n_risks ? "these can become unstable\n" : "all stable\n"));
+  for (PetscInt i = 0; i < sweep->n_risks; i++) {
+    const SweepRisk *r = &sweep->risk[i];
+
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "  %s near %.2f Hz: in %" PetscInt_FMT
+                                     " of them, up to %.5g 1/s (%.5g at the scene's values)\n",
+                                     r->label, (double)(r->omega / (2 * PETSC_PI)), r->n_unstable, (double)r->largest,
+                                     (double)r->nominal));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer)
+{
+  const OperatorsParameter *parameters;
+  PetscInt                  n, n_unstable = 0, n_numerical = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetParameters(sweep->operators, &n, &parameters));
+  for (PetscInt i = 0; i < GridSize(&sweep->grid); i++)
+    for (PetscInt k = 0; k < sweep->point[i].n; k++) {
+      n_unstable += sweep->point[i].mode[k].unstable;
+      n_numerical += sweep->point[i].mode[k].numerical;
+    }
+  PetscCall(SamplesView(sweep, parameters, viewer));
+  PetscCall(BranchesView(sweep, viewer));
+  if (sweep->is_confirmed) PetscCall(OnsetsView(sweep, &parameters[sweep->grid.parameter[0]], viewer));
+  PetscCall(ChecksView(sweep, viewer));
+  PetscCall(RisksView(sweep, viewer));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "%" PetscInt_FMT " points, %" PetscInt_FMT " branches, %" PetscInt_FMT
+                                   " unstable eigenvalues, %" PetscInt_FMT " more numerical only\n",
+                                   GridSize(&sweep->grid), sweep->n_branches, n_unstable, n_numerical));
+  if (sweep->method == SWEEP_REDUCED)
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "basis of %" PetscInt_FMT " vectors; largest estimated error %.1e (an estimate, not a "
+                                     "bound)\n",
+                                     sweep->basis.reduced.n_used, (double)sweep->greedy.worst));
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer, "time: basis %.2f s, points %.2f s, onsets %.2f s, checks %.2f s\n", sweep->seconds[0], sweep->seconds[1],
+    sweep->seconds[2], sweep->seconds[3]));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,159 @@
+#!/usr/bin/env python3
+"""Draws made-up sweeps with scripts/plot_sweep.py and checks what the pictures show. Which modes of these sweeps are
+unstable, and where, follows from the closed form in made_up_sweep.py. Exit status: 0, or 1.
+"""
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import matplotlib.image
+import numpy
+from made_up_sweep import FIRST, LAST, PAIRS, POINTS, onsets, write_sweep
+
+SCRIPTS = Path(__file__).resolve().parent.parent / "scripts"
+sys.path.insert(0, str(SCRIPTS))
+import plot_sweep  # noqa: E402
+import sweep_lines  # noqa: E402
+import sweep_map  # noqa: E402
+from matplotlib.colors import to_hex, to_rgb  # noqa: E402
+from matplotlib.text import Annotation  # noqa: E402
+from squeal_tables import VERMILION  # noqa: E402
+
+VALUES = numpy.linspace(FIRST, LAST, POINTS)
+
+
+def require(condition, message):
+    if not condition:
+        raise SystemExit(f"test_sweep_picture: {message}")
+
+
+def picture(folder, *options):
+    """Draws; the points as [n][3] from 0 to 255, after the checks of every picture."""
+    file = folder / "picture.png"
+    subprocess.run([sys.executable, SCRIPTS / "plot_sweep.py", folder, "-o", file, *options], check=True,
+                   stdout=subprocess.DEVNULL)
+    points = numpy.rint(255 * matplotlib.image.imread(file)[:, :, :3]).astype(int)
+    colours = points.reshape(-1, 3)
+    share = numpy.unique(colours @ [1, 256, 65536], return_counts=True)[1].max() / len(colours)
+    height, width = points.shape[:2]
+    print(f"{folder.name} {' '.join(options)}: {width} x {height} points, most frequent colour on {share:.1%}")
+    require(width >= 1200 and height >= 600 and share < 0.98, "not a picture")
+    return colours
+
+
+def red_points(colours):
+    """How many points have the colour of what is unstable."""
+    return (abs(colours - 255 * numpy.array(to_rgb(VERMILION))) < 1.5).all(axis=1).sum()
+
+
+def flutters(pair, mu):
+    """Which of VALUES lie between the onsets of a pair."""
+    inside = numpy.zeros(POINTS, bool)
+    for value, kind in onsets(mu, pair):
+        inside ^= VALUES > value
+    return inside
+
+
+def lines(folder, band=None, labels="auto"):
+    """The axes of the picture of one parameter."""
+    with plot_sweep.plt.rc_context(plot_sweep.FONTS):
+        figure = sweep_lines.draw_lines(plot_sweep.Study(folder, band, None), ["frequency", "growth"], labels)
+        figure.canvas.draw()
+    return figure.axes
+
+
+def test_colours(root):
+    """Red is what flutters: breaks when stable modes are marked, when nothing is, or when --band is ignored."""
+    write_sweep(root / "flutter", mu=0.5)
+    write_sweep(root / "quiet", mu=0)
+    for options in ((), ("--band", "2500,6000"), ("--growth-only",), ("--frequency-only", "--labels", "all")):
+        require(red_points(picture(root / "flutter", *options)) > 500, f"nothing is marked with {options}")
+    require(red_points(picture(root / "quiet")) == 0, "a mode is marked although there is no friction")
+    require(red_points(picture(root / "flutter", "--band", "6000,13000")) == 0, "a mode is marked outside its band")
+
+
+def test_marks(root):
+    """The marked points of each panel are those between the onsets in closed form, `numerical` ones excepted, and one
+    branch with errors of 10 Hz has bars: breaks when rows are mixed up, classes ignored, or all or no bars drawn."""
+    write_sweep(root / "numerical", mu=0.5, error_hz={5: 60, 1: 10})
+    expected = numpy.sort(numpy.concatenate([VALUES[flutters(pair, 0.5)] / 1e9 for pair in PAIRS[:2]]))
+    for axes in lines(root / "numerical"):
+        red = [line for line in axes.lines if to_hex(line.get_color()) == VERMILION.lower() and line.get_lw() == 3]
+        x = numpy.concatenate([line.get_xdata()[~numpy.isnan(line.get_xdata())] for line in red])
+        unsure = numpy.concatenate([line.get_xdata() for line in axes.lines if line.get_mfc() == "white"
+                                    and line.get_mec() == VERMILION])
+        same = len(x) == len(expected) and numpy.allclose(numpy.sort(x), expected)
+        require(same, "other points are red than those that flutter")
+        expected_unsure = VALUES[flutters(PAIRS[2], 0.5)] / 1e9
+        same = len(unsure) == len(expected_unsure) and numpy.allclose(unsure, expected_unsure)
+        require(same, "other points are hollow than the numerical ones")
+    bars = len(lines(root / "numerical", band=[2500, 6000])[0].containers)
+    require(bars == 1, f"{bars} branches have error bars instead of one")
+
+
+def test_texts(root):
+    """No two labels overlap, and none leaves the picture: breaks when they are not spread."""
+    for labels in ("auto", "all"):
+        for axes in lines(root / "flutter", labels=labels):
+            texts = [text for text in axes.texts if isinstance(text, Annotation)]
+            require(len(texts) >= 3, f"{len(texts)} labels only")
+            boxes = [matplotlib.text.Text.get_window_extent(text) for text in texts]
+            overlaps = sum(a.overlaps(b.padded(-1)) for i, a in enumerate(boxes) for b in boxes[:i])
+            require(overlaps == 0, f"{overlaps} labels overlap")
+            require(all(axes.figure.bbox.containsx(box.x1) for box in boxes), "a label leaves the picture")
+
+
+def test_scale(root):
+    """Equal ratios give a logarithmic axis, equal steps a linear one."""
+    write_sweep(root / "ratios", values=numpy.geomspace(FIRST, LAST, 20))
+    scales = [lines(root / name)[0].get_xscale() for name in ("ratios", "flutter")]
+    require(scales == ["log", "linear"], f"scales {scales}")
+
+
+def test_map(root):
+    """Two parameters: the map is unstable exactly where the closed form is, and --at draws one line of it."""
+    mu = numpy.linspace(0, 1, 6)
+    write_sweep(root / "map", second=mu)
+    require(red_points(picture(root / "map", "--at", "0.61")) > 500, "nothing is marked on a line of the map")
+    require(red_points(picture(root / "map", "--at", "0")) == 0, "a mode is marked although there is no friction")
+    picture(root / "map")
+    grid = sweep_map.Grid(plot_sweep.Study(root / "map", None, None))
+    for pair in PAIRS:
+        expected = numpy.array([flutters(pair, value) for value in mu])
+        require((grid.families[pair[-1]] == expected).all(), f"the region of {pair[-1]} is another one")
+    require(((grid.border() > 0) == (grid.growth > 0)).all() and (grid.border() < 0).any(), "another border")
+
+
+def test_errors(root):
+    """What cannot be drawn ends in one line that names it."""
+    sweep = root / "quiet" / "sweep.csv"
+    text = sweep.read_text()
+    cases = [(text, "--band 90000,91000", "--band 90000,91000"), (text, "--at 0.5", "--at 0.5"),
+             (text[:-20], "", "line 3"), ("", "", "is empty"), (text.split("\n")[0] + "\n", "", "no rows"),
+             (text.replace("freq_hz", "hertz", 1), "", "no column freq_hz"),
+             (text.replace(",stable,", ",stable,x", 1), "", "line 2: error_hz")]
+    for content, options, expected in cases:
+        sweep.write_text(content)
+        fails(root / "quiet", options, expected)
+    sweep.unlink()
+    fails(root / "quiet", "", f"{sweep}: no such file")
+
+
+def fails(folder, options, expected):
+    """The script must fail with one line that holds the expected text."""
+    result = subprocess.run([sys.executable, SCRIPTS / "plot_sweep.py", folder, *options.split()], capture_output=True,
+                            text=True, check=False)
+    require(result.returncode == 1 and result.stderr.count("\n") == 1 and expected in result.stderr,
+            f"expected '{expected}', status {result.returncode}: {result.stderr}")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        for test in (test_colours, test_marks, test_texts, test_scale, test_map, test_errors):
+            test(Path(folder))
+
+
+if __name__ == "__main__":
+    main()

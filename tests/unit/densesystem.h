@@ -1,0 +1,118 @@
+/* Small dense systems for the unit tests of sweep/: matrices with coefficients, as reduced models without a mesh */
+#pragma once
+
+#include "sweep/reduced.h"
+
+#define SYSTEM_MAX 6 /* terms */
+
+typedef struct {
+  Reduced       reduced;
+  OperatorsTerm term[SYSTEM_MAX];
+  PetscReal    *A[SYSTEM_MAX];
+} System;
+
+/* n unknowns, of which n_used make the model */
+static inline void SystemCreate(PetscInt n, PetscInt n_used, PetscInt n_parameters, System *s)
+{
+  *s = (System){
+    .reduced = {.n = n, .n_used = n_used, .n_parameters = n_parameters}
+  };
+}
+
+/* Adds scale * p[parameter]^power * A, A [n * n] row by row; parameter -1: scale * A */
+static inline PetscErrorCode SystemAdd(System *s, OperatorsTermKind kind, PetscBool symmetric, PetscReal scale,
+                                       PetscInt parameter, PetscInt power, const PetscReal A[])
+{
+  const PetscInt n = s->reduced.n, t = s->reduced.n_terms++;
+  OperatorsTerm *term = &s->term[t];
+
+  PetscFunctionBeginUser;
+  *term = (OperatorsTerm){.kind = kind, .symmetric = symmetric, .scale = scale, .n = parameter < 0 ? 0 : 1};
+  term->factor[0].parameter = PetscMax(parameter, 0);
+  term->factor[0].power     = power;
+  PetscCall(PetscMalloc1(n * n, &s->A[t]));
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = 0; j < n; j++) s->A[t][j * n + i] = A[i * n + j];
+  s->reduced.term = s->term;
+  s->reduced.A    = s->A;
+  PetscFunctionReturn(0);
+}
+
+static inline PetscErrorCode SystemDestroy(System *s)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt t = 0; t < s->reduced.n_terms; t++) PetscCall(PetscFree(s->A[t]));
+  PetscFunctionReturn(0);
+}
+
+/* K = [[a, b - p0 c], [b, d]], M = I, C = diag(d1, d2) where not zero: two modes that friction p0 couples.
+   kappa = (a + d) / 2 +- sqrt((a - d)^2 / 4 + b (b - p0 c)) */
+static inline PetscErrorCode SystemTwo(PetscReal a, PetscReal b, PetscReal c, PetscReal d, PetscReal d1, PetscReal d2,
+                                       System *s)
+{
+  PetscFunctionBeginUser;
+  SystemCreate(2, 2, 1, s);
+  PetscCall(SystemAdd(s, OPERATORS_STIFFNESS, PETSC_TRUE, 1, -1, 1, (PetscReal[]){a, b, b, d}));
+  PetscCall(SystemAdd(s, OPERATORS_STIFFNESS, PETSC_FALSE, 1, 0, 1, (PetscReal[]){0, -c, 0, 0}));
+  PetscCall(SystemAdd(s, OPERATORS_MASS, PETSC_TRUE, 1, -1, 1, (PetscReal[]){1, 0, 0, 1}));
+  if (d1 != 0 || d2 != 0) PetscCall(SystemAdd(s, OPERATORS_DAMPING, PETSC_TRUE, 1, -1, 1, (PetscReal[]){d1, 0, 0, d2}));
+  PetscFunctionReturn(0);
+}
+
+/* Reproducible numbers in (-1, 1) */
+static inline PetscReal NextNumber(unsigned long long *state)
+{
+  *state = *state * 6364136223846793005ULL + 1442695040888963407ULL;
+  return (PetscReal)(*state >> 11) / 4503599627370496.0 - 1;
+}
+
+/* Largest |y_i^T B z_j| of different modes in the standard form, relative to the size of its parts:
+   (lambda_i + lambda_j) y_i^T M x_j + y_i^T C x_j */
+static inline PetscErrorCode LargestProduct(const System *s, const PetscReal p[], const ReducedModes *m,
+                                            PetscReal *largest)
+{
+  const PetscInt n = m->size;
+  PetscReal     *M, *C;
+
+  PetscFunctionBeginUser;
+  *largest = 0;
+  PetscCall(PetscMalloc2(n * n, &M, n * n, &C));
+  PetscCall(ReducedSum(&s->reduced, OPERATORS_MASS, p, n, M, NULL));
+  PetscCall(ReducedSum(&s->reduced, OPERATORS_DAMPING, p, n, C, NULL));
+  for (PetscInt i = 0; i < m->n; i++)
+    for (PetscInt j = 0; j < m->n; j++) {
+      const PetscComplex sum   = m->lambda[i] + m->lambda[j];
+      PetscComplex       value = 0;
+
+      for (PetscInt r = 0; r < n; r++)
+        for (PetscInt c = 0; c < n; c++)
+          value += m->y[i * n + r] * (sum * M[c * n + r] + C[c * n + r]) * m->x[j * n + c];
+      if (i != j) *largest = PetscMax(*largest, cabs(value) / cabs(sum));
+    }
+  PetscCall(PetscFree2(M, C));
+  PetscFunctionReturn(0);
+}
+
+/* Distance of lambda from the nearest eigenvalue */
+static inline PetscReal Nearest(const ReducedModes *m, PetscComplex lambda)
+{
+  PetscReal nearest = INFINITY;
+
+  for (PetscInt i = 0; i < m->n; i++) nearest = PetscMin(nearest, cabs(m->lambda[i] - lambda));
+  return nearest;
+}
+
+/* Modes and estimates of the model, and modes of all unknowns */
+static inline PetscErrorCode SolveBoth(System *s, const PetscReal p[], const ReducedWindow *window, ReducedModes *m,
+                                       ReducedModes *truth)
+{
+  const PetscInt used = s->reduced.n_used;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedSolve(&s->reduced, p, window, m));
+  PetscCall(ReducedEstimate(&s->reduced, p, m));
+  s->reduced.n_used = s->reduced.n;
+  PetscCall(ReducedSolve(&s->reduced, p, window, truth));
+  s->reduced.n_used = used;
+  PetscFunctionReturn(0);
+}

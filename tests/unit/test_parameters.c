@@ -1,0 +1,96 @@
+/*
+   Unit test of operators/parameter: limits of the values, and the parameter of loaded matrices, on one and on several
+   ranks.
+*/
+#include "brake.h"
+#include "check.h"
+#include <string.h>
+
+/* Keeps the first message */
+static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
+                                  PetscErrorType type, const char *message, void *ctx)
+{
+  char *text = ctx;
+
+  (void)comm, (void)line, (void)function, (void)file;
+  if (type == PETSC_ERROR_INITIAL) (void)snprintf(text, 256, "%s", message);
+  return code;
+}
+
+/* Breaks when: a bad value passes, or its message does not name parameter, value, limits and unit */
+static PetscErrorCode TestBad(Operators o, const char name[], PetscReal bad, const char expected[], int *failed)
+{
+  const OperatorsParameter *q;
+  PetscInt                  n;
+  PetscReal                 p[64];
+  PetscErrorCode            error;
+  char                      message[256] = "";
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetParameters(o, &n, &q));
+  for (PetscInt i = 0; i < n; i++) p[i] = strcmp(q[i].name, name) ? q[i].value : bad;
+  PetscCall(PetscPushErrorHandler(KeepMessage, message));
+  error = OperatorsSetParameters(o, p);
+  PetscCall(PetscPopErrorHandler());
+  *failed += CheckTrue(message, error == PETSC_ERR_USER_INPUT && !strcmp(message, expected), (double)error);
+  for (PetscInt i = 0; i < n; i++)
+    if (!strcmp(q[i].name, name)) *failed += CheckTrue("the value stays", q[i].value != bad, q[i].value);
+  PetscFunctionReturn(0);
+}
+
+/* Limits that are excluded, limits that are not, and no number */
+static PetscErrorCode TestLimits(int *failed)
+{
+  Chain chain;
+
+  PetscFunctionBeginUser;
+  PetscCall(ChainCreate(BRAKE SLIP DAMPED, BODIES_1 BEAM_1 "-contact_mu 0.5 -contact_speed 2 " ROLLING, &chain));
+  PetscCall(TestBad(chain.operators, "pad_young", 0, "pad_young 0 must lie between 0 (excluded) and inf Pa", failed));
+  PetscCall(TestBad(chain.operators, "pad_alpha", -1, "pad_alpha -1 must lie between 0 and inf 1/s", failed));
+  PetscCall(TestBad(chain.operators, "contact_mu", INFINITY, "contact_mu inf must lie between -inf and inf", failed));
+  PetscCall(ChainDestroy(&chain));
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: new values make a new matrix although nothing comes or goes, which costs a new symbolic factorisation.
+   Loaded matrices: K + mu H = [2, -mu; mu, 3] by hand */
+static PetscErrorCode TestDense(int *failed)
+{
+  const PetscReal mu[] = {0.25, -4, 0};
+  OperatorsPencil pencil, again;
+  PetscReal       norm;
+  Operators       o;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsClear(NULL));
+  PetscCall(PetscOptionsInsertString(
+    NULL, "-operators_dense_k 2,0,0,3 -operators_dense_m 1,0,0,1 -operators_dense_h 0,-1,1,0 -contact_mu 1"));
+  PetscCall(OperatorsCreate(PETSC_COMM_WORLD, &o));
+  PetscCall(OperatorsSetFromOptions(o));
+  PetscCall(OperatorsSetUp(o));
+  PetscCall(OperatorsGetPencil(o, &pencil));
+  for (int i = 0; i < 3; i++) {
+    PetscCall(OperatorsSetParameters(o, &mu[i]));
+    PetscCall(OperatorsGetPencil(o, &again));
+    PetscCall(MatNorm(again.K, NORM_FROBENIUS, &norm));
+    *failed += CheckClose("|K + mu H|", norm, sqrt(13 + 2 * mu[i] * mu[i]), 1e-15 * 10);
+    *failed += CheckTrue("the matrix is kept while mu is not zero", (again.K == pencil.K) == (mu[i] != 0), mu[i]);
+    *failed += CheckTrue("symmetric without friction", again.symmetric == (mu[i] == 0), mu[i]);
+  }
+  PetscCall(OperatorsDestroy(&o));
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  int failed = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
+  PetscCall(TestLimits(&failed));
+  PetscCall(TestDense(&failed));
+  PetscCall(PetscOptionsClear(NULL));
+  PetscCall(PetscFinalize());
+  printf("%d failed\n", failed);
+  return failed ? 1 : 0;
+}
