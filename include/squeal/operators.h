@@ -32,7 +32,8 @@ typedef enum { OPERATORS_STIFFNESS, OPERATORS_DAMPING, OPERATORS_MASS } Operator
 typedef struct {
   OperatorsTermKind kind;
   Mat               A;         /* in the unknowns of the pencil (borrowed); several terms may share one */
-  PetscBool         symmetric; /* false for terms that vanish without friction */
+  PetscBool         frictional; /* vanishes without friction */
+  PetscBool         symmetric;  /* A is; never so for a frictional term */
   PetscReal         scale;
   PetscInt          n; /* factors */
   struct {

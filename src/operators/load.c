@@ -145,6 +145,7 @@ PetscErrorCode OperatorsLoad(Operators o)
     PetscCall(MatIsSymmetric(A[i], 1e-14 * largest, &o->symmetric));
   }
   PetscCall(TermsFromMatrices(o, A));
+  for (PetscInt t = 0; t < o->base.n && !o->symmetric; t++) o->base.term[t].symmetric = PETSC_FALSE;
   for (int i = 0; i < N_OPERATORS; i++) PetscCall(MatDestroy(&A[i]));
   PetscFunctionReturn(0);
 }

@@ -116,7 +116,7 @@ static PetscErrorCode FrictionGet(Operators o, Mat *H)
   if (o->model)
     PetscCall(SumGet(o, SUM_H, H));
   else
-    *H = last->symmetric ? NULL : last->A;
+    *H = last->frictional ? last->A : NULL;
   PetscFunctionReturn(0);
 }
 

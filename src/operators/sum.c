@@ -113,7 +113,7 @@ static void CoefficientsFind(const Terms *terms, OperatorsTermKind kind, TermsCh
     const OperatorsTerm *term = &terms->term[t];
 
     c[t] = 0;
-    if (term->kind != kind || (choice != TERMS_ALL && term->symmetric != (choice == TERMS_SYMMETRIC))) continue;
+    if (term->kind != kind || (choice != TERMS_ALL && term->frictional == (choice == TERMS_SYMMETRIC))) continue;
     only = term;
     n_chosen++;
     c[t] = scale * OperatorsTermCoefficient(term, p);

@@ -19,11 +19,12 @@ PetscErrorCode TermsAdd(Terms *terms, OperatorsTermKind kind, Mat A, PetscBool s
   term = &terms->term[terms->n++];
   PetscCall(PetscMemzero(term, sizeof(*term)));
   PetscCall(PetscObjectReference((PetscObject)A));
-  term->kind      = kind;
-  term->A         = A;
-  term->symmetric = symmetric;
-  term->scale     = 1;
-  term->n         = n;
+  term->kind       = kind;
+  term->A          = A;
+  term->frictional = symmetric ? PETSC_FALSE : PETSC_TRUE;
+  term->symmetric  = symmetric;
+  term->scale      = 1;
+  term->n          = n;
   for (PetscInt i = 0; i < n; i++) {
     term->factor[i].parameter = parameter[i];
     term->factor[i].power     = 1;
@@ -76,7 +77,7 @@ PetscBool TermsVanish(const Terms *terms, TermsChoice choice, PetscBool mass_onl
     const OperatorsTerm *term = &terms->term[t];
 
     if (mass_only && term->kind != OPERATORS_MASS) continue;
-    if (choice != TERMS_ALL && term->symmetric != (choice == TERMS_SYMMETRIC)) continue;
+    if (choice != TERMS_ALL && term->frictional == (choice == TERMS_SYMMETRIC)) continue;
     if (OperatorsTermCoefficient(term, p) != 0) return PETSC_FALSE;
   }
   return PETSC_TRUE;

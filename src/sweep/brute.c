@@ -36,8 +36,8 @@ PetscErrorCode SweepBrute(Sweep sweep)
   PetscFunctionReturn(0);
 }
 
-/* Largest distance of a full eigenvalue from the nearest reduced one, relative */
-static PetscReal LargestDistance(PetscInt n, const Mode full[], const ReducedModes *reduced)
+/* Largest distance of a full eigenvalue from the nearest reduced one, relative, and the frequency where it is */
+static PetscReal LargestDistance(PetscInt n, const Mode full[], const ReducedModes *reduced, PetscReal *omega)
 {
   PetscReal largest = 0;
 
@@ -47,7 +47,9 @@ static PetscReal LargestDistance(PetscInt n, const Mode full[], const ReducedMod
 
     if (full[i].rigid) continue;
     for (PetscInt k = 0; k < reduced->n; k++) nearest = PetscMin(nearest, cabs(reduced->lambda[k] - lambda));
-    largest = PetscMax(largest, nearest / cabs(lambda));
+    if (nearest <= largest * cabs(lambda)) continue;
+    largest = nearest / cabs(lambda);
+    *omega  = full[i].omega;
   }
   return largest;
 }
@@ -72,7 +74,7 @@ static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
     check->n_reduced++;
     check->n_unstable_reduced += SweepIsUnstable(reduced.lambda[k], reduced.error[k]);
   }
-  check->error    = LargestDistance(check->n_full, full, &reduced);
+  check->error    = LargestDistance(check->n_full, full, &reduced, &check->omega);
   check->estimate = sweep->method == SWEEP_REAL ? NAN : ModesWorst(&reduced, &sweep->window);
   PetscCall(ReducedModesDestroy(&reduced));
   PetscFunctionReturn(0);

@@ -5,7 +5,7 @@
 */
 #include "sweepimpl.h"
 
-#define CONFIRMED 1e-8 /* relative change of the critical value by a further full correction */
+#define CONFIRMED 1e-7 /* relative change of the critical value by a further full correction */
 #define NEAR      1e-2 /* half width of the frequencies around the pair, relative */
 #define DROP      1e-9
 #define MAX_STEPS 5
@@ -33,23 +33,43 @@ static ReducedWindow WindowNear(const ReducedWindow *window, PetscReal omega, Pe
   return near;
 }
 
-/* The basis takes in corrections of the modes around the onset */
-static PetscErrorCode OnsetCorrect(Sweep sweep, const PetscReal p[], PetscReal omega)
+/* The basis takes in corrections of the modes in the window at p */
+static PetscErrorCode OnsetCorrect(Sweep sweep, const Correction *correction, const PetscReal p[],
+                                   const ReducedWindow *near)
+{
+  ReducedModes modes;
+  PetscInt     n_added;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedSolve(&sweep->basis.reduced, p, near, &modes));
+  PetscCall(CorrectionApply(correction, &modes, DROP, &sweep->basis, &n_added));
+  PetscCall(BasisPromote(&sweep->basis));
+  PetscCall(ReducedModesDestroy(&modes));
+  PetscFunctionReturn(0);
+}
+
+/* Alternates corrections by the full problem and the reduced iteration; change = the last one of the critical value */
+static PetscErrorCode OnsetIterate(Sweep sweep, const Line *line, PetscReal p[], Event *event, PetscReal *change)
 {
   Correction    correction;
-  ReducedModes  modes;
   ReducedWindow near;
-  PetscInt      n_added;
   PetscBool     damped;
 
   PetscFunctionBeginUser;
+  *change = PETSC_MAX_REAL;
+  p[line->parameter] = event->critical;
   PetscCall(ReducedSum(&sweep->basis.reduced, OPERATORS_DAMPING, p, 0, NULL, &damped));
-  near = WindowNear(&sweep->window, omega, damped);
+  near = WindowNear(&sweep->window, event->omega, damped);
   PetscCall(CorrectionCreate(sweep->operators, p, &near, &sweep->progress, &correction));
-  PetscCall(ReducedSolve(&sweep->basis.reduced, p, &near, &modes));
-  PetscCall(CorrectionApply(&correction, &modes, DROP, &sweep->basis, &n_added));
-  PetscCall(BasisPromote(&sweep->basis));
-  PetscCall(ReducedModesDestroy(&modes));
+  for (int step = 0; step < MAX_STEPS && event->found && *change > CONFIRMED * PetscAbsReal(event->critical); step++) {
+    const PetscReal before = event->critical;
+
+    p[line->parameter] = before;
+    if (step) PetscCall(CorrectionMove(sweep->operators, p, &correction));
+    PetscCall(OnsetCorrect(sweep, &correction, p, &near));
+    PetscCall(OnsetReduced(sweep, line, event));
+    *change = PetscAbsReal(event->critical - before);
+  }
   PetscCall(CorrectionDestroy(&correction));
   PetscFunctionReturn(0);
 }
@@ -57,25 +77,19 @@ static PetscErrorCode OnsetCorrect(Sweep sweep, const PetscReal p[], PetscReal o
 /* One onset to the end */
 static PetscErrorCode OnsetConfirm(Sweep sweep, PetscInt e)
 {
-  Event    *event = &sweep->events.event[e];
-  PetscReal before, change = PETSC_MAX_REAL, *p;
-  Line      line = {sweep->grid.parameter[0], sweep->grid.n[0], sweep->grid.value[0], NULL};
+  Event    *event  = &sweep->events.event[e];
+  PetscReal change = PETSC_MAX_REAL, *p;
+  Line      line   = {sweep->grid.parameter[0], sweep->grid.n[0], sweep->grid.value[0], NULL};
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
   GridPoint(&sweep->grid, sweep->event_line[e] * sweep->grid.n[0], p);
   line.base = p;
   PetscCall(OnsetReduced(sweep, &line, event));
-  for (int step = 0; step < MAX_STEPS && event->found && change > CONFIRMED * PetscAbsReal(event->critical); step++) {
-    before            = event->critical;
-    p[line.parameter] = before;
-    PetscCall(OnsetCorrect(sweep, p, event->omega));
-    PetscCall(OnsetReduced(sweep, &line, event));
-    change = PetscAbsReal(event->critical - before);
-  }
-  event->error = PetscMax(change, 1e-14 * PetscAbsReal(event->critical));
+  if (event->found && sweep->method == SWEEP_REDUCED) PetscCall(OnsetIterate(sweep, &line, p, event, &change));
   sweep->is_confirmed[e] =
     event->found && change <= CONFIRMED * PetscAbsReal(event->critical) ? PETSC_TRUE : PETSC_FALSE;
+  if (sweep->is_confirmed[e]) event->error = PetscMax(change, 1e-14 * PetscAbsReal(event->critical));
   PetscCall(PetscFree(p));
   PetscFunctionReturn(0);
 }

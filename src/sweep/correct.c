@@ -25,6 +25,14 @@ PetscErrorCode CorrectionCreate(Operators operators, const PetscReal p[], const 
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode CorrectionMove(Operators operators, const PetscReal p[], Correction *c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsSetParameters(operators, p));
+  PetscCall(OperatorsGetPencil(operators, &c->pencil));
+  PetscFunctionReturn(0);
+}
+
 /* Whether mode i needs vectors of its own: of a pair of conjugates of kappa, one is enough */
 static PetscBool ModeCounts(const ReducedModes *modes, PetscInt i, PetscBool damped)
 {

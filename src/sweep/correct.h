@@ -13,6 +13,8 @@ typedef struct {
 /* Sets the operators to p and factors the pencil near the window's modes */
 PetscErrorCode CorrectionCreate(Operators operators, const PetscReal p[], const ReducedWindow *window,
                                 Progress *progress, Correction *correction);
+/* Moves to other values p nearby: the pencil is made for them, the factorisation stays */
+PetscErrorCode CorrectionMove(Operators operators, const PetscReal p[], Correction *correction);
 /* Appends to the basis the corrections of all modes (right and left vectors) whose M-norm exceeds drop; n_added =
    vectors gained */
 PetscErrorCode CorrectionApply(const Correction *correction, const ReducedModes *modes, PetscReal drop, Basis *basis,

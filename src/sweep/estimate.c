@@ -21,13 +21,15 @@
    together (cluster.c), as the first order means nothing there: y^T D x tends to zero. A rigid mode has x^T K x = 0,
    and its error is the frequency that would turn it into, sqrt(|d kappa|).
 
-   To each estimate a floor is added: what rounding in K does, eps sqrt(sum |K_ii| |x_i|^2 sum |K_ii| |y_i|^2) in kappa.
+   To each estimate a floor is added: ROUNDING times what rounding in K does, eps sqrt(sum |K_ii| |x_i|^2 sum |K_ii| |y_i|^2) in kappa.
 */
 #include "estimate.h"
 #include "dense.h"
 
 #define NEAR     20   /* eigenvalues closer than this many changes belong together */
 #define FARTHEST 1e-2 /* but not if they are farther apart than this, relative: the basis is merely poor there */
+#define ROUNDING 8    /* errors of a dense solver beside rounding in its matrix */
+#define CLOSE    1e-4 /* modes closer than this, relative, may meet */
 #define EQUAL    1e-9 /* closer than this, relative, they always do */
 
 PetscComplex EstimateValue(const Estimate *e, PetscComplex lambda)
@@ -138,11 +140,23 @@ static PetscErrorCode CoupleMode(const Estimate *e, PetscInt i, PetscComplex *f)
   PetscFunctionReturn(0);
 }
 
-/* |change| of kappa by a perturbation of size f of K: f / |y^T D x|, but at a defective pair the root */
+/* Modes within CLOSE of mode i, itself included, at least 2: so many can meet at a defective point */
+static PetscInt ModesMeeting(const ReducedModes *modes, PetscInt i)
+{
+  PetscInt m = 0;
+
+  for (PetscInt j = 0; j < modes->n; j++)
+    if (cabs(modes->lambda[j] - modes->lambda[i]) <= CLOSE * cabs(modes->lambda[i])) m++;
+  return PetscMax(2, m);
+}
+
+/* |change| of kappa by a perturbation of size f of K: f / |y^T D x|, but not more than the m-th root that m modes meeting
+   at a defective point have */
 static PetscReal KappaChange(const ReducedModes *modes, PetscInt i, PetscReal f)
 {
   const PetscReal size = cabs(modes->lambda[i]) * cabs(modes->lambda[i]), product = cabs(modes->product[i]);
-  const PetscReal root = PetscSqrtReal(f) * PetscSqrtReal(PetscMax(f, size));
+  const PetscReal root =
+    f < size ? size * PetscPowReal(f / size, 1 / (PetscReal)ModesMeeting(modes, i)) : f;
 
   return f < root * product ? f / product : root;
 }
@@ -235,9 +249,10 @@ static PetscErrorCode AddFloor(const Estimate *e, ReducedModes *modes)
   PetscCall(PetscMalloc1(e->n_v * e->n_v, &pencil.K));
   for (PetscInt j = 0; j < e->n_v; j++) PetscCall(PetscArraycpy(pencil.K + j * e->n_v, e->K + j * e->n, e->n_v));
   for (PetscInt i = 0; i < modes->n; i++) {
-    const PetscReal noise = PencilNoise(&pencil, modes->x + i * e->n_v, modes->y + i * e->n_v);
+    const PetscReal noise = ROUNDING * PencilNoise(&pencil, modes->x + i * e->n_v, modes->y + i * e->n_v);
 
-    modes->error[i] += LambdaChange(modes, i, KappaChange(modes, i, noise));
+    modes->noise[i] = LambdaChange(modes, i, KappaChange(modes, i, noise));
+    modes->error[i] += modes->noise[i];
   }
   PetscCall(PetscFree(pencil.K));
   PetscFunctionReturn(0);
@@ -250,13 +265,16 @@ PetscErrorCode ReducedEstimate(const Reduced *reduced, const PetscReal p[], Redu
   PetscInt  *cluster;
 
   PetscFunctionBeginUser;
-  if (reduced->n == reduced->n_used || !modes->n) PetscFunctionReturn(0);
+  if (!modes->n) PetscFunctionReturn(0);
   PetscCall(EstimateCreate(reduced, p, modes, &e));
   PetscCall(PetscMalloc2(modes->n, &change, modes->n, &cluster));
-  PetscCall(Alone(&e, modes, change));
-  Group(&e, change, cluster);
-  for (PetscInt i = 0; i < modes->n; i++)
-    if (cluster[i] == i) PetscCall(Together(&e, i, cluster, modes));
+  PetscCall(PetscArrayzero(modes->error, modes->n));
+  if (e.n_z) {
+    PetscCall(Alone(&e, modes, change));
+    Group(&e, change, cluster);
+    for (PetscInt i = 0; i < modes->n; i++)
+      if (cluster[i] == i) PetscCall(Together(&e, i, cluster, modes));
+  }
   PetscCall(AddFloor(&e, modes));
   PetscCall(PetscFree2(change, cluster));
   PetscCall(PetscFree3(e.K, e.C, e.M));

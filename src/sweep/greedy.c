@@ -5,16 +5,16 @@
    the basis has fewer, the point is solved by the eigensolver too.
 
    A point's first corrections z_r, z_s tell the error that the basis had there (estimate.c). The next point is the one
-   with the largest estimate above rtol, else the point farthest from all solved ones. It ends when the estimate at the
-   farthest point is below rtol, and with the corrections from there everywhere; a farthest point that passes by less than
-   a factor of SAFE asks for the next farthest to be looked at, too.
+   farthest from all looked at, as long as the last one had to be taken in; else the one with the largest estimate. It ends
+   when the farthest point needs nothing, and no point does by the estimate with all corrections so far (points.c).
 */
 #include "greedy.h"
 
 #define GUARD     0.03 /* relative width beyond the band of modes that the basis holds */
-#define SAFE      0.1
+#define SAFE      0.1  /* what is asked at a point that corrections come from, beside rtol */
 #define WIDE      5    /* ends that differ by this factor: distances are ratios */
 #define MAX_STEPS 8
+#define DROP      3e-3 /* vectors shorter than this beside the root of rtol add nothing; errors go with their squares */
 
 /* What the run knows */
 typedef struct {
@@ -91,18 +91,63 @@ static PetscErrorCode SampleKrylov(Run *run, const PetscReal p[], PetscReal esti
   PetscFunctionReturn(0);
 }
 
-/* One step of corrections at p; worst = what they tell about the model before */
-static PetscErrorCode StepApply(Run *run, const Correction *correction, const PetscReal p[], PetscInt *n_added,
-                                PetscReal *worst)
+/* Copies mode `from` over mode `to` */
+static PetscErrorCode ModeMove(ReducedModes *modes, PetscInt from, PetscInt to)
 {
-  ReducedModes modes;
+  const PetscInt size = modes->size;
 
   PetscFunctionBeginUser;
-  PetscCall(ReducedSolve(&run->basis->reduced, p, &run->guarded, &modes));
-  PetscCall(CorrectionApply(correction, &modes, run->drop, run->basis, n_added));
-  PetscCall(ReducedEstimate(&run->basis->reduced, p, &modes));
-  *worst = modes.n ? ModesWorst(&modes, &run->window) : 0;
-  PetscCall(ReducedModesDestroy(&modes));
+  modes->lambda[to]  = modes->lambda[from];
+  modes->product[to] = modes->product[from];
+  modes->error[to]   = modes->error[from];
+  modes->noise[to]   = modes->noise[from];
+  modes->rigid[to]   = modes->rigid[from];
+  PetscCall(PetscArraymove(&modes->x[to * size], &modes->x[from * size], size));
+  PetscCall(PetscArraymove(&modes->y[to * size], &modes->y[from * size], size));
+  PetscFunctionReturn(0);
+}
+
+/* Relative error of the entry of `before` that is nearest to lambda; infinite where there is none */
+static PetscReal ErrorBefore(const ReducedModes *before, PetscComplex lambda)
+{
+  PetscReal nearest = PETSC_MAX_REAL, error = PETSC_MAX_REAL;
+
+  for (PetscInt i = 0; i < before->n; i++) {
+    const PetscReal distance = cabs(before->lambda[i] - lambda);
+
+    if (distance >= nearest) continue;
+    nearest = distance;
+    error   = before->rigid[i] ? 0 : (before->error[i] - before->noise[i]) / cabs(before->lambda[i]);
+  }
+  return error;
+}
+
+/* Leaves out the modes that the step before has settled */
+static PetscErrorCode ModesDropSettled(const ReducedModes *before, PetscReal tolerance, ReducedModes *modes)
+{
+  PetscInt kept = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < modes->n; i++)
+    if (ErrorBefore(before, modes->lambda[i]) > tolerance) PetscCall(ModeMove(modes, i, kept++));
+  modes->n = kept;
+  PetscFunctionReturn(0);
+}
+
+/* One step of corrections at p of the modes that the step before (modes, empty at first) has not settled; worst = what
+   they tell about the model before */
+static PetscErrorCode StepApply(Run *run, const Correction *correction, const PetscReal p[], ReducedModes *modes,
+                                PetscInt *n_added, PetscReal *worst)
+{
+  ReducedModes before = *modes;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedSolve(&run->basis->reduced, p, &run->guarded, modes));
+  PetscCall(ModesDropSettled(&before, 0.1 * SAFE * run->greedy->rtol, modes));
+  PetscCall(ReducedModesDestroy(&before));
+  PetscCall(CorrectionApply(correction, modes, run->drop, run->basis, n_added));
+  PetscCall(ReducedEstimate(&run->basis->reduced, p, modes));
+  *worst = ModesWorst(modes, &run->window);
   PetscCallMPI(MPI_Bcast(worst, 1, MPIU_REAL, 0, run->basis->comm)); /* control flow must be alike on all ranks */
   PetscFunctionReturn(0);
 }
@@ -123,23 +168,24 @@ static PetscErrorCode CheckCount(Run *run, const PetscReal p[], PetscBool *compl
 /* Looks at point p: first = the estimate there before; where it exceeds rtol, the basis takes the point in */
 static PetscErrorCode SampleCorrect(Run *run, const PetscReal p[], PetscReal *first)
 {
-  Correction correction;
-  PetscReal  worst;
-  PetscInt   n_added, n_vectors = 0;
-  PetscBool  complete = PETSC_TRUE;
+  Correction   correction;
+  ReducedModes modes = {0};
+  PetscReal    worst;
+  PetscInt     n_added, n_vectors = 0;
+  PetscBool    complete = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   PetscCall(CorrectionCreate(run->basis->operators, p, &run->guarded, run->greedy->progress, &correction));
-  PetscCall(StepApply(run, &correction, p, &n_added, first));
+  PetscCall(StepApply(run, &correction, p, &modes, &n_added, first));
   worst = *first;
   for (int step = 1; step < MAX_STEPS && worst > SAFE * run->greedy->rtol; step++) {
-    if (step == 1 && *first <= run->greedy->rtol) break;
     n_vectors += n_added;
     PetscCall(BasisPromote(run->basis));
-    PetscCall(StepApply(run, &correction, p, &n_added, &worst));
+    PetscCall(StepApply(run, &correction, p, &modes, &n_added, &worst));
   }
+  PetscCall(ReducedModesDestroy(&modes));
   PetscCall(CorrectionDestroy(&correction));
-  PetscCall(CheckCount(run, p, &complete));
+  if (n_vectors) PetscCall(CheckCount(run, p, &complete));
   PetscCall(SampleAdd(run, p, PETSC_FALSE, n_vectors, *first));
   if (!complete && run->greedy->n_samples < run->greedy->max_samples) {
     *first = PETSC_MAX_REAL;
@@ -205,10 +251,7 @@ static PetscErrorCode PointNext(Run *run, PetscInt *next)
 
   PetscFunctionBeginUser;
   *next = PointFarthest(run, &farthest);
-  if (farthest > 0 && (g->last > g->rtol || (g->last > SAFE * g->rtol && farthest > 0.9 * g->distance))) {
-    g->distance = farthest;
-    PetscFunctionReturn(0);
-  }
+  if (farthest > 0 && g->last > SAFE * g->rtol) PetscFunctionReturn(0);
   PetscCall(PointsEstimate(run->groups, &run->basis->reduced, &run->window, run->n, run->points, run->estimate));
   for (PetscInt i = 0; i < run->n; i++)
     if (run->estimate[i] > run->estimate[worst]) worst = i;
@@ -226,7 +269,7 @@ PetscErrorCode GreedyRun(Greedy *greedy, Modes modes, const ReducedWindow *windo
   PetscFunctionBeginUser;
   run.n      = n;
   run.points = points;
-  run.drop   = 0.01 * PetscSqrtReal(greedy->rtol);
+  run.drop   = DROP * PetscSqrtReal(greedy->rtol);
   run.guarded.low  = window->low < 0.5 * window->high ? 0 : window->low * (1 - GUARD);
   run.guarded.high = window->high * (1 + GUARD);
   PetscCall(PetscMalloc2(n, &run.estimate, n_parameters, &run.scale));

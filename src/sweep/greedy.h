@@ -19,7 +19,7 @@ typedef struct {
   PetscInt    n_samples;
   Sample     *sample;  /* [max_samples] */
   PetscReal   worst;   /* largest estimated relative error at all points when it ended */
-  PetscReal   last, distance; /* estimate at the last point before it was taken in; distance of the farthest then */
+  PetscReal   last; /* estimate at the last point before it was taken in */
   Progress   *progress;
   PetscErrorCode (*keep)(void *ctx); /* called after every full solution; may be NULL */
   void *keep_ctx;

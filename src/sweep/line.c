@@ -169,6 +169,44 @@ static PetscErrorCode PointsLabel(Sweep sweep, const Points *points)
   PetscFunctionReturn(0);
 }
 
+/* Whether a name is that of a disc's shape */
+static PetscBool LabelIsDisc(Sweep sweep, PetscInt branch)
+{
+  return branch >= 0 && sweep->label[branch][0] == '(' ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Whether modes k - 1 and k are the two members of a lock-in pair, mirror images in the growth */
+static PetscBool ModesArePair(const ReducedModes *modes, PetscInt k)
+{
+  const PetscComplex a = modes->lambda[k - 1], b = modes->lambda[k];
+
+  return creal(b) > 0 && cabs(a + conj(b)) <= 1e-7 * cabs(b) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Which of two branches takes the unstable member of a pair is a matter of choice: the one named after the disc does */
+static PetscErrorCode PairsByLabel(Sweep sweep, PetscInt line, const Points *points)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < points->n; i++)
+    for (PetscInt k = 1; k < points->modes[i].n; k++) {
+      PetscInt *a = &points->branch[i][k - 1], *b = &points->branch[i][k];
+      const PetscInt unstable = *b;
+
+      if (!ModesArePair(&points->modes[i], k) || LabelIsDisc(sweep, *b) || !LabelIsDisc(sweep, *a)) continue;
+      *b = *a;
+      *a = unstable;
+    }
+  for (PetscInt e = 0; e < sweep->events.n; e++) {
+    PetscInt *branch = sweep->events.event[e].branch, first = branch[0];
+
+    if (sweep->event_line[e] != line || branch[1] < 0 || LabelIsDisc(sweep, branch[0]) || !LabelIsDisc(sweep, branch[1]))
+      continue;
+    branch[0] = branch[1];
+    branch[1] = first;
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Room for the names of all branches so far; those from n_before on are empty */
 static PetscErrorCode LabelsGrow(Sweep sweep, PetscInt n_before)
 {
@@ -192,6 +230,7 @@ PetscErrorCode SweepLines(Sweep sweep)
     if (line) PetscCall(PointsLink(sweep, &before, n_before, &points));
     PetscCall(LabelsGrow(sweep, n_before));
     PetscCall(PointsLabel(sweep, &points));
+    PetscCall(PairsByLabel(sweep, line, &points));
     PetscCall(PointsKeep(sweep, &points));
     PetscCall(PointsDestroy(&before));
     before = points;

@@ -253,7 +253,12 @@ static PetscReal OnsetUncertainty(const Onset *onset, const Trial *trial, const 
   const PetscReal lambda = cabs(trial->frame->modes.lambda[trial->member[0]]);
   PetscReal       error  = 0, delta;
 
-  for (PetscInt r = 0; r < trial->k; r++) error = PetscMax(error, trial->frame->modes.error[trial->member[r]]);
+  for (PetscInt r = 0; r < trial->k; r++) {
+    const ReducedModes *modes = &trial->frame->modes;
+    const PetscInt      i     = trial->member[r];
+
+    error = PetscMax(error, modes->error[i] - modes->noise[i]); /* rounding of the critical value is added apart */
+  }
   delta = onset->kind == ONSET_PAIR ? PetscSqr(2 * event->omega * error) : 3 * error;
   if (onset->kind == ONSET_STIFFNESS) delta *= onset->source.damped ? onset->change : 2 * lambda + error;
   return delta + 10 * PETSC_MACHINE_EPSILON * unit;

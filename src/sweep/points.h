@@ -14,7 +14,7 @@ PetscMPIInt    GroupsOwner(const Groups *groups, PetscInt i);
 /* Modes with estimated errors at n points [n][n_parameters], alike on all ranks. Collective. */
 PetscErrorCode PointsSolve(const Groups *groups, const Reduced *reduced, const ReducedWindow *window, PetscInt n,
                            const PetscReal points[], ReducedModes modes[]);
-/* Largest estimated relative error of the modes in the window; rigid ones do not count */
+/* Largest estimated relative error of the modes in the window, but for rounding; rigid ones do not count */
 PetscReal      ModesWorst(const ReducedModes *modes, const ReducedWindow *window);
 /* The same at n points. Collective. */
 PetscErrorCode PointsEstimate(const Groups *groups, const Reduced *reduced, const ReducedWindow *window, PetscInt n,

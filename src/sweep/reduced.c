@@ -28,6 +28,7 @@ PetscErrorCode ReducedModesCreate(PetscInt n, PetscInt size, ReducedModes *modes
   PetscCall(PetscCalloc1(n * size, &modes->y));
   PetscCall(PetscCalloc1(n, &modes->product));
   PetscCall(PetscCalloc1(n, &modes->error));
+  PetscCall(PetscCalloc1(n, &modes->noise));
   PetscCall(PetscCalloc1(n, &modes->rigid));
   PetscFunctionReturn(0);
 }
@@ -41,6 +42,7 @@ PetscErrorCode ReducedModesCopy(const ReducedModes *from, ReducedModes *to)
   PetscCall(PetscArraycpy(to->y, from->y, from->n * from->size));
   PetscCall(PetscArraycpy(to->product, from->product, from->n));
   PetscCall(PetscArraycpy(to->error, from->error, from->n));
+  PetscCall(PetscArraycpy(to->noise, from->noise, from->n));
   PetscCall(PetscArraycpy(to->rigid, from->rigid, from->n));
   PetscFunctionReturn(0);
 }
@@ -53,6 +55,7 @@ PetscErrorCode ReducedModesDestroy(ReducedModes *modes)
   PetscCall(PetscFree(modes->y));
   PetscCall(PetscFree(modes->product));
   PetscCall(PetscFree(modes->error));
+  PetscCall(PetscFree(modes->noise));
   PetscCall(PetscFree(modes->rigid));
   modes->n = 0;
   PetscFunctionReturn(0);
@@ -94,7 +97,7 @@ static PetscErrorCode SumSymmetric(const Reduced *reduced, const PetscReal p[], 
     const PetscReal      c    = OperatorsTermCoefficient(term, p);
 
     if (c != 0 && (!term->symmetric || term->kind == OPERATORS_DAMPING)) *symmetric = PETSC_FALSE;
-    if (c != 0 && term->symmetric && term->kind == OPERATORS_MASS) AddBlock(n, reduced->n, c, reduced->A[t], Ms);
+    if (c != 0 && !term->frictional && term->kind == OPERATORS_MASS) AddBlock(n, reduced->n, c, reduced->A[t], Ms);
   }
   PetscFunctionReturn(0);
 }

@@ -31,6 +31,7 @@ typedef struct {
   PetscComplex *product; /* [n] y^T D(lambda) x, D = M + C / (2 lambda), rigid modes: M; 1 / |product| is the condition,
                             0 if defective */
   PetscReal    *error;   /* [n] estimated error of lambda, rad/s; 0 until ReducedEstimate() */
+  PetscReal    *noise;   /* [n] the part of the error that is rounding: no better basis lowers it */
   PetscBool    *rigid;   /* [n] zero within rounding */
 } ReducedModes;
 
@@ -53,7 +54,7 @@ PetscErrorCode ReducedSum(const Reduced *reduced, OperatorsTermKind kind, const 
 PetscBool ReducedFrictionless(const Reduced *reduced, PetscReal p[]);
 
 /* estimate.c - errors of all modes from the part Z of the basis that the model does not use, close ones together (see
-   the file), and a floor for rounding; without Z they stay as they are */
+   the file), and a floor for rounding, which alone remains without Z */
 PetscErrorCode ReducedEstimate(const Reduced *reduced, const PetscReal p[], ReducedModes *modes);
 
 /* sensitivity.c - d lambda / d p_j = -y^T (dQ/dp_j) x / (y^T Q' x) of mode i for every parameter j, [n_parameters];

@@ -15,7 +15,7 @@
 
 /* What stands before the vectors in each file */
 typedef struct {
-  PetscReal print[N_PRINTS], last, distance;
+  PetscReal print[N_PRINTS], last;
   PetscInt  n_samples, n_used, first, n, n_blocks, n_local;
 } Header;
 
@@ -129,7 +129,7 @@ PetscErrorCode SweepKeep(void *ctx)
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(&h, sizeof(h)));
   PetscCall(PetscArraycpy(h.print, sweep->print, N_PRINTS));
-  h.last = sweep->greedy.last, h.distance = sweep->greedy.distance;
+  h.last = sweep->greedy.last;
   h.n_samples = sweep->greedy.n_samples, h.n_used = basis->reduced.n_used;
   h.first = sweep->n_kept, h.n = basis->reduced.n, h.n_blocks = basis->n_blocks;
   PetscCall(BVGetSizes(basis->vectors, &h.n_local, NULL, NULL));
@@ -186,7 +186,6 @@ static PetscErrorCode FileResume(Sweep sweep, PetscInt k, PetscBool *good)
   basis->reduced.n_used   = h.n_used;
   sweep->greedy.n_samples = h.n_samples;
   sweep->greedy.last      = h.last;
-  sweep->greedy.distance  = h.distance;
   sweep->n_kept           = h.n;
   PetscFunctionReturn(0);
 }

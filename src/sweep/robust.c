@@ -129,7 +129,7 @@ PetscErrorCode SweepRobustness(Sweep sweep)
   PetscCall(PetscMalloc2(n * n_parameters, &points, n, &modes));
   for (PetscInt i = 0; i < n; i++)
     BoxPoint(&box, sweep->grid.base, n_parameters, n_corners, i, &points[i * n_parameters]);
-  sweep->greedy.last = sweep->greedy.distance = PETSC_MAX_REAL;
+  sweep->greedy.last = PETSC_MAX_REAL;
   PetscCall(GreedyRun(&sweep->greedy, sweep->modes, &sweep->window, 1 + n_corners, points, &sweep->groups,
                       &sweep->basis));
   PetscCall(PointsSolve(&sweep->groups, &sweep->basis.reduced, &sweep->window, n, points, modes));

@@ -132,17 +132,13 @@ static PetscErrorCode GridSetUp(Sweep sweep)
   PetscCheck((n_names == 2) == (sweep->values[1][0] != '\0'), sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_values_2 belongs to a second -sweep_parameter: give both or neither");
   for (grid->n_axes = 0; grid->n_axes < n_names; grid->n_axes++) {
-    const PetscInt            k = grid->n_axes;
-    const OperatorsParameter *q;
+    const PetscInt k = grid->n_axes;
 
     PetscCall(ParameterFind(sweep->comm, "-sweep_parameter", names[k], grid->n_parameters, parameters,
                             &grid->parameter[k]));
     PetscCall(ValuesParse(sweep->comm, options[k], sweep->values[k], &grid->n[k], &grid->value[k], &grid->ratio[k]));
-    q = &parameters[grid->parameter[k]];
     for (PetscInt i = 0; i < grid->n[k]; i++)
-      PetscCheck(grid->value[k][i] > q->lower && grid->value[k][i] < q->upper, sweep->comm, PETSC_ERR_USER_INPUT,
-                 "%s: %.6g is no value for %s, which must exceed %.6g %s", options[k], (double)grid->value[k][i],
-                 q->name, (double)q->lower, q->unit);
+      PetscCall(OperatorsCheckParameter(sweep->operators, grid->parameter[k], grid->value[k][i]));
   }
   PetscCheck(n_names == 1 || grid->parameter[0] != grid->parameter[1], sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_parameter names '%s' twice", names[0]);
@@ -185,7 +181,7 @@ static PetscErrorCode ModelMake(Sweep sweep)
   sweep->greedy.max_samples = sweep->max_samples;
   sweep->greedy.progress    = &sweep->progress;
   PetscCall(PetscCalloc1(sweep->max_samples + 1, &sweep->greedy.sample));
-  sweep->greedy.last = sweep->greedy.distance = PETSC_MAX_REAL;
+  sweep->greedy.last = PETSC_MAX_REAL;
   if (sweep->restart) {
     PetscCall(SweepResume(sweep));
     sweep->greedy.keep     = SweepKeep;

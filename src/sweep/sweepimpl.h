@@ -29,6 +29,7 @@ typedef struct {
   PetscReal *p;
   PetscInt   n_full, n_reduced, n_unstable_full, n_unstable_reduced;
   PetscReal  error, estimate; /* largest relative ones */
+  PetscReal  omega;           /* rad/s, where the true error is largest */
 } SweepCheck;
 
 /* Which modes can become unstable when parameters are uncertain */

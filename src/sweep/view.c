@@ -54,6 +54,28 @@ static PetscErrorCode BranchesView(Sweep sweep, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
+/* Up to which value is it quiet? first = the onset nearest to the first value, or NULL */
+static PetscErrorCode AnswerView(Sweep sweep, const OperatorsParameter *parameter, const Event *first,
+                                 PetscViewer viewer)
+{
+  const double begin = (double)sweep->grid.value[0][0], end = (double)sweep->grid.value[0][sweep->grid.n[0] - 1];
+  PetscBool    unstable = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < sweep->point[0].n; k++)
+    if (sweep->point[0].mode[k].unstable) unstable = PETSC_TRUE;
+  if (unstable)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "unstable already at %s = %.6g %s\n", parameter->name, begin,
+                                     parameter->unit));
+  else if (first)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "quiet from %s = %.6g to %.10g %s\n", parameter->name, begin,
+                                     (double)first->critical, parameter->unit));
+  else
+    PetscCall(PetscViewerASCIIPrintf(viewer, "quiet from %s = %.6g to %.6g %s: no onset in the band\n",
+                                     parameter->name, begin, end, parameter->unit));
+  PetscFunctionReturn(0);
+}
+
 /* Onsets, and the answer in one line */
 static PetscErrorCode OnsetsView(Sweep sweep, const OperatorsParameter *parameter, PetscViewer viewer)
 {
@@ -73,14 +95,7 @@ static PetscErrorCode OnsetsView(Sweep sweep, const OperatorsParameter *paramete
                      PetscAbsReal(first->critical - sweep->grid.value[0][0])))
       first = event;
   }
-  if (sweep->grid.n_axes > 1) PetscFunctionReturn(0);
-  if (!first)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "no onset between %s = %.6g and %.6g %s\n", parameter->name,
-                                     (double)sweep->grid.value[0][0],
-                                     (double)sweep->grid.value[0][sweep->grid.n[0] - 1], parameter->unit));
-  else if (first->kind == EVENT_LOCK_IN || first->kind == EVENT_DIVERGENCE)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "quiet from %s = %.6g to %.10g %s\n", parameter->name,
-                                     (double)sweep->grid.value[0][0], (double)first->critical, parameter->unit));
+  if (sweep->grid.n_axes == 1) PetscCall(AnswerView(sweep, parameter, first, viewer));
   PetscFunctionReturn(0);
 }
 

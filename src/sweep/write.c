@@ -112,7 +112,7 @@ static PetscErrorCode CheckTableWrite(Sweep sweep, Results results)
   PetscFunctionBeginUser;
   PetscCall(ResultsTableOpen(results, "verify",
                              "value,value_2,modes_full,modes_reduced,unstable_full,unstable_reduced,true_error,"
-                             "error_estimate",
+                             "error_estimate,freq_hz",
                              &table));
   for (PetscInt i = 0; i < sweep->n_checks; i++) {
     const SweepCheck *c = &sweep->check[i];
@@ -120,9 +120,10 @@ static PetscErrorCode CheckTableWrite(Sweep sweep, Results results)
 
     if (sweep->grid.n_axes == 2) PetscCall(NumberOrEmpty(c->p[sweep->grid.parameter[1]], second));
     PetscCall(NumberOrEmpty(c->estimate, estimate));
-    PetscCall(ResultsTableRow(table, "%.15g,%s,%d,%d,%d,%d,%.15g,%s", (double)c->p[sweep->grid.parameter[0]], second,
+    PetscCall(ResultsTableRow(table, "%.15g,%s,%d,%d,%d,%d,%.15g,%s,%.15g", (double)c->p[sweep->grid.parameter[0]], second,
                               (int)c->n_full, (int)c->n_reduced, (int)c->n_unstable_full, (int)c->n_unstable_reduced,
-                              (double)c->error, estimate));
+                              (double)c->error, estimate,
+                              (double)(c->omega / (2 * PETSC_PI))));
   }
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
