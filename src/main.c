@@ -29,8 +29,8 @@ static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(comm, NULL, "squeal", NULL);
-  PetscCall(PetscOptionsEList("-analysis", "what to compute", "squeal.h", analyses, N_ANALYSES,
-                              analyses[0], &analysis, NULL));
+  PetscCall(
+    PetscOptionsEList("-analysis", "what to compute", "squeal.h", analyses, N_ANALYSES, analyses[0], &analysis, NULL));
   PetscCall(PetscOptionsBool("-squeal_view", "print what was chosen and why, and the time of each stage", "squeal.h",
                              chain->view, &chain->view, NULL));
   PetscOptionsEnd();

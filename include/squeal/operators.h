@@ -31,7 +31,7 @@ typedef enum { OPERATORS_STIFFNESS, OPERATORS_DAMPING, OPERATORS_MASS } Operator
    |p_i| stands for p_i if absolute. K, C and M of the pencil are the sums of the terms of their kind. */
 typedef struct {
   OperatorsTermKind kind;
-  Mat               A;         /* in the unknowns of the pencil (borrowed); several terms may share one */
+  Mat               A;          /* in the unknowns of the pencil (borrowed); several terms may share one */
   PetscBool         frictional; /* vanishes without friction */
   PetscBool         symmetric;  /* A is; never so for a frictional term */
   PetscReal         scale;

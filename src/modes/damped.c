@@ -56,8 +56,8 @@ static PetscReal RadiusNeeded(const Window *window, PetscReal shift, const Spect
 }
 
 /* Solver for nev eigenvalues about the shift; the transposed problem starts from another random vector */
-static PetscErrorCode SolverCreate(Mat problem[3], ShiftInvert *si, PetscBool transposed, PetscInt nev, PetscInt n,
-                                   PEP *pep)
+static PetscErrorCode SolverCreate(Mat problem[3], ShiftInvert *si, PetscBool transposed, int start, PetscInt nev,
+                                   PetscInt n, PEP *pep)
 {
   PetscMPIInt rank;
   PetscRandom random;
@@ -83,8 +83,27 @@ static PetscErrorCode SolverCreate(Mat problem[3], ShiftInvert *si, PetscBool tr
   PetscCall(BVGetRandomContext(bv, &random));
   PetscCallMPI(MPI_Comm_rank(si->comm, &rank));
   /* a start vector alike on all ranks could miss what is not */
-  PetscCall(PetscRandomSetSeed(random, (transposed ? 20051 : 2005) + (unsigned long)rank));
+  PetscCall(
+    PetscRandomSetSeed(random, (transposed ? 20051 : 2005) + 1000 * (unsigned long)start + (unsigned long)rank));
   PetscCall(PetscRandomSeed(random));
+  PetscFunctionReturn(0);
+}
+
+/* Solves; failed = LAPACK could not reorder the Schur form (xTREXC: eigenvalues too close to swap), which depends on the
+   start vector and happens where the Krylov space is the whole space */
+static PetscErrorCode SolverRun(PEP pep, PetscBool *failed)
+{
+  PetscErrorCode error;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  error = PEPSolve(pep);
+  PetscCall(PetscPopErrorHandler());
+  *failed = error == PETSC_ERR_LIB ? PETSC_TRUE : PETSC_FALSE;
+  if (*failed)
+    PetscCall(PetscFPTrapPop()); /* the one that SLEPc left behind */
+  else
+    PetscCall(error);
   PetscFunctionReturn(0);
 }
 
@@ -93,21 +112,25 @@ PetscErrorCode DampedSolve(Modes modes, const OperatorsPencil *pencil, const Win
 {
   Mat       problem[3] = {pencil->K, pencil->C, pencil->M};
   PetscInt  n, nev = 40;
-  PetscBool covered = PETSC_FALSE;
+  PetscBool covered = PETSC_FALSE, failed = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(pencil->K, &n, NULL));
   if (window->expected >= 0) nev = 2 * (window->below + window->expected + window->extra);
   if (window->count) nev = 2 * (PetscMax(0, window->below) + window->count + window->extra);
   for (int i = 0; i < 3 && transposed; i++) PetscCall(MatCreateTranspose(problem[i], &problem[i]));
-  for (int attempt = 0; attempt < 8 && !covered; attempt++, nev += nev / 2) {
+  for (int attempt = 0; attempt < 8 && !covered; attempt++, nev += failed ? 0 : nev / 2) {
     PEP pep;
 
     nev = PetscMin(nev, 2 * n);
-    PetscCall(SolverCreate(problem, si, transposed, nev, n, &pep));
+    PetscCall(SolverCreate(problem, si, transposed, attempt, nev, n, &pep));
     PetscCall(ProgressBegin(&modes->progress, transposed ? "left vectors" : "right vectors", 2 * nev + nev / 4));
-    PetscCall(PEPSolve(pep));
+    PetscCall(SolverRun(pep, &failed));
     PetscCall(ProgressEnd(&modes->progress));
+    if (failed) {
+      PetscCall(PEPDestroy(&pep));
+      continue;
+    }
     PetscCall(Collect(pep, si->shift, n, spectrum));
     covered = spectrum->reach > RadiusNeeded(window, si->shift, spectrum) ? PETSC_TRUE : PETSC_FALSE;
     if (!covered && nev < 2 * n) PetscCall(SpectrumDestroy(spectrum));

@@ -30,6 +30,7 @@ PetscErrorCode BasisCreate(MPI_Comm comm, Operators operators, Basis *basis)
   PetscCall(OperatorsGetParameters(operators, &basis->reduced.n_parameters, &parameters));
   PetscCall(OperatorsGetTerms(operators, &basis->reduced.n_terms, &basis->reduced.term));
   PetscCall(PetscCalloc1(basis->reduced.n_terms, &basis->reduced.A));
+  PetscCall(PetscCalloc1(basis->reduced.n_terms, &basis->reduced.D));
   PetscFunctionReturn(0);
 }
 
@@ -108,8 +109,7 @@ static PetscErrorCode Orthonormalise(const Basis *basis, BV W, PetscReal drop)
   drop = PetscMax(drop, REORTHOGONALISE * PetscSqrtReal(PetscMax(eigenvalue[m - 1], 0)));
   for (PetscInt i = m - 1; i >= 0 && eigenvalue[i] > drop * drop; i--) kept++;
   for (PetscInt k = 0; k < kept; k++)
-    for (PetscInt i = 0; i < m; i++)
-      G[k * m + i] = G[(m - kept + k) * m + i] / PetscSqrtReal(eigenvalue[m - kept + k]);
+    for (PetscInt i = 0; i < m; i++) G[k * m + i] = G[(m - kept + k) * m + i] / PetscSqrtReal(eigenvalue[m - kept + k]);
   PetscCall(MatDenseRestoreArray(gram, &G));
   PetscCall(BVMultInPlace(W, gram, 0, kept));
   PetscCall(BVSetActiveColumns(W, 0, kept));
@@ -134,17 +134,26 @@ static PetscErrorCode BlockCopy(Mat H, PetscBool transposed, PetscInt n, PetscIn
   PetscFunctionReturn(0);
 }
 
+/* Room for an n x n matrix with the old one in its corner */
+static PetscErrorCode MatrixGrow(PetscInt first, PetscInt n, PetscReal **A)
+{
+  PetscReal *old = *A;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n * n, A));
+  for (PetscInt j = 0; j < first; j++) PetscCall(PetscArraycpy(&(*A)[j * n], &old[j * first], first));
+  PetscCall(PetscFree(old));
+  PetscFunctionReturn(0);
+}
+
 /* One V' A V, extended by the columns of `block`, which are columns first .. n - 1 of V */
 static PetscErrorCode TermExtend(const Basis *basis, const OperatorsTerm *term, BV block, PetscInt first, PetscInt n,
                                  PetscReal **reduced)
 {
-  PetscReal *old = *reduced;
-  Mat        H, At;
+  Mat H, At;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n * n, reduced));
-  for (PetscInt j = 0; j < first; j++) PetscCall(PetscArraycpy(&(*reduced)[j * n], &old[j * first], first));
-  PetscCall(PetscFree(old));
+  PetscCall(MatrixGrow(first, n, reduced));
   PetscCall(InnerProducts(basis->vectors, term->A, block, &H));
   PetscCall(BlockCopy(H, PETSC_FALSE, n, 0, first, *reduced));
   if (!term->symmetric) {
@@ -158,18 +167,53 @@ static PetscErrorCode TermExtend(const Basis *basis, const OperatorsTerm *term, 
   PetscFunctionReturn(0);
 }
 
+/* One V' |diag A| V, extended likewise */
+static PetscErrorCode DiagonalExtend(const Basis *basis, const OperatorsTerm *term, BV block, PetscInt first,
+                                     PetscInt n, PetscReal **reduced)
+{
+  BV  scaled;
+  Mat H;
+  Vec diagonal;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatrixGrow(first, n, reduced));
+  PetscCall(MatCreateVecs(term->A, &diagonal, NULL));
+  PetscCall(MatGetDiagonal(term->A, diagonal));
+  PetscCall(VecAbs(diagonal));
+  PetscCall(BVDuplicateResize(block, n - first, &scaled));
+  for (PetscInt j = 0; j < n - first; j++) {
+    Vec from, to;
+
+    PetscCall(BVGetColumn(block, j, &from));
+    PetscCall(BVGetColumn(scaled, j, &to));
+    PetscCall(VecPointwiseMult(to, from, diagonal));
+    PetscCall(BVRestoreColumn(scaled, j, &to));
+    PetscCall(BVRestoreColumn(block, j, &from));
+  }
+  PetscCall(InnerProducts(basis->vectors, NULL, scaled, &H));
+  PetscCall(BlockCopy(H, PETSC_FALSE, n, 0, first, *reduced));
+  PetscCall(BlockCopy(H, PETSC_TRUE, n, first, 0, *reduced));
+  PetscCall(MatDestroy(&H));
+  PetscCall(BVDestroy(&scaled));
+  PetscCall(VecDestroy(&diagonal));
+  PetscFunctionReturn(0);
+}
+
 /* Every V' A_t V, extended by the columns of the block */
 static PetscErrorCode ReducedExtend(Basis *basis, BV block)
 {
-  Reduced *r = &basis->reduced;
+  Reduced *r     = &basis->reduced;
   PetscInt first = r->n, n;
 
   PetscFunctionBeginUser;
   PetscCall(BVGetActiveColumns(block, NULL, &n));
   n += first;
   PetscCall(BVSetActiveColumns(basis->vectors, 0, n));
-  for (PetscInt t = 0; t < r->n_terms; t++)
+  for (PetscInt t = 0; t < r->n_terms; t++) {
     PetscCall(TermExtend(basis, &r->term[t], block, first, n, &r->A[t]));
+    if (r->term[t].kind == OPERATORS_STIFFNESS)
+      PetscCall(DiagonalExtend(basis, &r->term[t], block, first, n, &r->D[t]));
+  }
   r->n = n;
   PetscFunctionReturn(0);
 }
@@ -239,8 +283,12 @@ PetscErrorCode BasisLift(const Basis *basis, PetscInt size, PetscInt m, const Pe
 PetscErrorCode BasisDestroy(Basis *basis)
 {
   PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < basis->reduced.n_terms && basis->reduced.A; t++) PetscCall(PetscFree(basis->reduced.A[t]));
+  for (PetscInt t = 0; t < basis->reduced.n_terms && basis->reduced.A; t++) {
+    PetscCall(PetscFree(basis->reduced.A[t]));
+    PetscCall(PetscFree(basis->reduced.D[t]));
+  }
   PetscCall(PetscFree(basis->reduced.A));
+  PetscCall(PetscFree(basis->reduced.D));
   PetscCall(BVDestroy(&basis->vectors));
   PetscCall(MatDestroy(&basis->M));
   PetscFunctionReturn(0);

@@ -54,6 +54,17 @@ static PetscReal LargestDistance(PetscInt n, const Mode full[], const ReducedMod
   return largest;
 }
 
+/* Largest estimated relative error in the window, rounding included */
+static PetscReal LargestError(const ReducedModes *modes, const ReducedWindow *window)
+{
+  PetscReal largest = 0;
+
+  for (PetscInt i = 0; i < modes->n; i++)
+    if (!modes->rigid[i] && cimag(modes->lambda[i]) >= window->low && cimag(modes->lambda[i]) <= window->high)
+      largest = PetscMax(largest, modes->error[i] / cabs(modes->lambda[i]));
+  return largest;
+}
+
 /* Compares the two at the point of the check; the reduced window is a little wider, for modes on its edge */
 static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
 {
@@ -75,7 +86,9 @@ static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
     check->n_unstable_reduced += SweepIsUnstable(reduced.lambda[k], reduced.error[k]);
   }
   check->error    = LargestDistance(check->n_full, full, &reduced, &check->omega);
-  check->estimate = sweep->method == SWEEP_REAL ? NAN : ModesWorst(&reduced, &sweep->window);
+  check->estimate = sweep->method == SWEEP_REAL ? NAN : LargestError(&reduced, &sweep->window);
+  for (PetscInt i = 0; i < check->n_full; i++)
+    if (!full[i].rigid) check->full = PetscMax(check->full, full[i].error / hypot(full[i].sigma, full[i].omega));
   PetscCall(ReducedModesDestroy(&reduced));
   PetscFunctionReturn(0);
 }
@@ -94,7 +107,7 @@ PetscErrorCode SweepVerify(Sweep sweep)
     PetscCall(PetscArraycpy(check->p, grid->base, grid->n_parameters));
     for (PetscInt k = 0; k < grid->n_axes; k++) {
       const PetscReal *value = grid->value[k];
-      const PetscInt   at    = ((2 * i + 1) * (grid->n[k] - 1)) / (2 * n), j = k ? (at * 7 + 3) % (grid->n[k] - 1) : at;
+      const PetscInt   at = ((2 * i + 1) * (grid->n[k] - 1)) / (2 * n), j = k ? (at * 7 + 3) % (grid->n[k] - 1) : at;
 
       check->p[grid->parameter[k]] = grid->n[k] > 1 ? GridMiddle(grid, k, value[j], value[j + 1]) : value[0];
     }

@@ -32,7 +32,7 @@ PetscErrorCode SweepClassify(Sweep sweep)
 
 PetscReal SweepOnsetDistance(Sweep sweep, PetscInt point, PetscInt branch)
 {
-  const PetscReal value = sweep->grid.value[0][point % sweep->grid.n[0]];
+  const PetscReal value   = sweep->grid.value[0][point % sweep->grid.n[0]];
   PetscReal       nearest = NAN;
 
   for (PetscInt e = 0; e < sweep->events.n; e++) {

@@ -56,7 +56,7 @@ static PetscErrorCode OnsetIterate(Sweep sweep, const Line *line, PetscReal p[],
   PetscBool     damped;
 
   PetscFunctionBeginUser;
-  *change = PETSC_MAX_REAL;
+  *change            = PETSC_MAX_REAL;
   p[line->parameter] = event->critical;
   PetscCall(ReducedSum(&sweep->basis.reduced, OPERATORS_DAMPING, p, 0, NULL, &damped));
   near = WindowNear(&sweep->window, event->omega, damped);

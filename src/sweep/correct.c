@@ -67,7 +67,7 @@ static PetscErrorCode ColumnsCollect(const ReducedModes *modes, PetscBool damped
       first[k] = creal(vectors[i * size + k]);
       if (!is_real) first[size + k] = cimag(vectors[i * size + k]);
     }
-    c->lambda[c->m] = modes->lambda[i];
+    c->lambda[c->m]     = modes->lambda[i];
     c->column[c->m + 1] = c->column[c->m] + (is_real ? 1 : 2);
     c->m++;
   }
@@ -135,8 +135,7 @@ static PetscErrorCode CorrectionSide(const Correction *c, const ReducedModes *mo
   Mat     X, R, Z;
 
   PetscFunctionBeginUser;
-  PetscCall(
-    ColumnsCollect(modes, c->pencil.C ? PETSC_TRUE : PETSC_FALSE, left ? modes->y : modes->x, &columns));
+  PetscCall(ColumnsCollect(modes, c->pencil.C ? PETSC_TRUE : PETSC_FALSE, left ? modes->y : modes->x, &columns));
   PetscCall(BasisCreateBlock(basis, columns.n_columns, &vectors));
   PetscCall(BasisLift(basis, modes->size, columns.n_columns, columns.coordinates, vectors));
   PetscCall(BVSetActiveColumns(block, *n, *n + columns.n_columns));

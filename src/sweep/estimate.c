@@ -21,7 +21,9 @@
    together (cluster.c), as the first order means nothing there: y^T D x tends to zero. A rigid mode has x^T K x = 0,
    and its error is the frequency that would turn it into, sqrt(|d kappa|).
 
-   To each estimate a floor is added: ROUNDING times what rounding in K does, eps sqrt(sum |K_ii| |x_i|^2 sum |K_ii| |y_i|^2) in kappa.
+   To each estimate a floor is added: what rounding does in the dense problem, ROUNDING eps sqrt(sum |K_ii| |x_i|^2 sum
+   |K_ii| |y_i|^2) in kappa, and in the matrices of the mesh, eps sqrt(x^H E x y^H E y) with E = sum |c_t| V' |diag A_t| V,
+   the energy without cancellation between neighbouring nodes.
 */
 #include "estimate.h"
 #include "dense.h"
@@ -155,8 +157,7 @@ static PetscInt ModesMeeting(const ReducedModes *modes, PetscInt i)
 static PetscReal KappaChange(const ReducedModes *modes, PetscInt i, PetscReal f)
 {
   const PetscReal size = cabs(modes->lambda[i]) * cabs(modes->lambda[i]), product = cabs(modes->product[i]);
-  const PetscReal root =
-    f < size ? size * PetscPowReal(f / size, 1 / (PetscReal)ModesMeeting(modes, i)) : f;
+  const PetscReal root = f < size ? size * PetscPowReal(f / size, 1 / (PetscReal)ModesMeeting(modes, i)) : f;
 
   return f < root * product ? f / product : root;
 }
@@ -240,21 +241,54 @@ static PetscErrorCode Together(const Estimate *e, PetscInt first, const PetscInt
   PetscFunctionReturn(0);
 }
 
-/* Adds what rounding does */
-static PetscErrorCode AddFloor(const Estimate *e, ReducedModes *modes)
+/* E [n_v * n_v] = sum |c_t| V' |diag A_t| V of the stiffness terms; zero where they are not given */
+static void EnergyWithoutCancellation(const Reduced *reduced, const PetscReal p[], PetscInt n_v, PetscReal E[])
 {
-  DensePencil pencil = {.n = e->n_v};
+  const PetscInt n = reduced->n;
+
+  for (PetscInt i = 0; i < n_v * n_v; i++) E[i] = 0;
+  for (PetscInt t = 0; t < reduced->n_terms && reduced->D; t++) {
+    const PetscReal c = PetscAbsReal(OperatorsTermCoefficient(&reduced->term[t], p));
+
+    for (PetscInt j = 0; j < n_v && reduced->D[t] && c > 0; j++)
+      for (PetscInt i = 0; i < n_v; i++) E[j * n_v + i] += c * reduced->D[t][j * n + i];
+  }
+}
+
+/* sqrt(x^H E x) with real symmetric E [n * n]; work [n] */
+static PetscReal EnergyNorm(PetscInt n, const PetscReal E[], const PetscComplex x[], PetscComplex work[])
+{
+  PetscReal sum = 0;
+
+  for (PetscInt j = 0; j < n; j++) {
+    work[j] = 0;
+    for (PetscInt i = 0; i < n; i++) work[j] += E[j * n + i] * x[i];
+    sum += creal(conj(x[j]) * work[j]);
+  }
+  return PetscSqrtReal(PetscMax(sum, 0));
+}
+
+/* Adds what rounding does, in the matrices of the mesh and in the dense ones */
+static PetscErrorCode AddFloor(const Estimate *e, const Reduced *reduced, const PetscReal p[], ReducedModes *modes)
+{
+  const PetscInt n      = e->n_v;
+  DensePencil    pencil = {.n = n};
+  PetscComplex  *work;
+  PetscReal     *E;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(e->n_v * e->n_v, &pencil.K));
-  for (PetscInt j = 0; j < e->n_v; j++) PetscCall(PetscArraycpy(pencil.K + j * e->n_v, e->K + j * e->n, e->n_v));
+  PetscCall(PetscMalloc3(n * n, &pencil.K, n * n, &E, n, &work));
+  for (PetscInt j = 0; j < n; j++) PetscCall(PetscArraycpy(pencil.K + j * n, e->K + j * e->n, n));
+  EnergyWithoutCancellation(reduced, p, n, E);
   for (PetscInt i = 0; i < modes->n; i++) {
-    const PetscReal noise = ROUNDING * PencilNoise(&pencil, modes->x + i * e->n_v, modes->y + i * e->n_v);
+    const PetscComplex *x = modes->x + i * n, *y = modes->y + i * n;
+    const PetscReal     mesh  = EnergyNorm(n, E, x, work) * EnergyNorm(n, E, y, work);
+    const PetscReal     noise = ROUNDING * PencilNoise(&pencil, x, y) + PETSC_MACHINE_EPSILON * mesh;
 
     modes->noise[i] = LambdaChange(modes, i, KappaChange(modes, i, noise));
     modes->error[i] += modes->noise[i];
   }
-  PetscCall(PetscFree(pencil.K));
+  PetscCall(PetscFree3(pencil.K, E, work));
   PetscFunctionReturn(0);
 }
 
@@ -275,7 +309,7 @@ PetscErrorCode ReducedEstimate(const Reduced *reduced, const PetscReal p[], Redu
     for (PetscInt i = 0; i < modes->n; i++)
       if (cluster[i] == i) PetscCall(Together(&e, i, cluster, modes));
   }
-  PetscCall(AddFloor(&e, modes));
+  PetscCall(AddFloor(&e, reduced, p, modes));
   PetscCall(PetscFree2(change, cluster));
   PetscCall(PetscFree3(e.K, e.C, e.M));
   PetscFunctionReturn(0);

@@ -18,16 +18,16 @@
 
 /* What the run knows */
 typedef struct {
-  Greedy       *greedy;
-  const Groups *groups;
-  Modes         modes;
-  Basis        *basis;
-  ReducedWindow window, guarded;
-  PetscInt      n;
+  Greedy          *greedy;
+  const Groups    *groups;
+  Modes            modes;
+  Basis           *basis;
+  ReducedWindow    window, guarded;
+  PetscInt         n;
   const PetscReal *points;
-  PetscReal    *estimate; /* [n] */
-  PetscReal    *scale;    /* [n_parameters] */
-  PetscReal     drop;
+  PetscReal       *estimate; /* [n] */
+  PetscReal       *scale;    /* [n_parameters] */
+  PetscReal        drop;
 } Run;
 
 /* New entry of the list of full solutions */
@@ -233,8 +233,8 @@ static PetscInt PointFarthest(const Run *run, PetscReal *farthest)
     PetscReal nearest = PETSC_MAX_REAL;
 
     for (PetscInt j = 0; j < g->n_samples; j++)
-      nearest = PetscMin(nearest,
-                         PointDistance(n_parameters, run->scale, &run->points[i * n_parameters], g->sample[j].p));
+      nearest =
+        PetscMin(nearest, PointDistance(n_parameters, run->scale, &run->points[i * n_parameters], g->sample[j].p));
     if (nearest <= *farthest + 1e-12) continue;
     *farthest = nearest;
     best      = i;
@@ -263,13 +263,13 @@ static PetscErrorCode PointNext(Run *run, PetscInt *next)
 PetscErrorCode GreedyRun(Greedy *greedy, Modes modes, const ReducedWindow *window, PetscInt n, const PetscReal points[],
                          const Groups *groups, Basis *basis)
 {
-  Run       run          = {.greedy = greedy, .groups = groups, .modes = modes, .basis = basis, .window = *window, .guarded = *window};
-  PetscInt  n_parameters = basis->reduced.n_parameters, next = 0;
+  Run run = {.greedy = greedy, .groups = groups, .modes = modes, .basis = basis, .window = *window, .guarded = *window};
+  PetscInt n_parameters = basis->reduced.n_parameters, next = 0;
 
   PetscFunctionBeginUser;
-  run.n      = n;
-  run.points = points;
-  run.drop   = DROP * PetscSqrtReal(greedy->rtol);
+  run.n            = n;
+  run.points       = points;
+  run.drop         = DROP * PetscSqrtReal(greedy->rtol);
   run.guarded.low  = window->low < 0.5 * window->high ? 0 : window->low * (1 - GUARD);
   run.guarded.high = window->high * (1 + GUARD);
   PetscCall(PetscMalloc2(n, &run.estimate, n_parameters, &run.scale));

@@ -20,11 +20,9 @@ static PetscErrorCode PointsCreate(Sweep sweep, PetscInt line, Points *points)
   PetscFunctionBeginUser;
   points->n     = grid->n[0];
   points->first = line * grid->n[0];
-  PetscCall(
-    PetscMalloc3(points->n * n_parameters, &points->p, points->n, &points->modes, points->n, &points->branch));
+  PetscCall(PetscMalloc3(points->n * n_parameters, &points->p, points->n, &points->modes, points->n, &points->branch));
   for (PetscInt i = 0; i < points->n; i++) GridPoint(grid, points->first + i, &points->p[i * n_parameters]);
-  PetscCall(
-    PointsSolve(&sweep->groups, &sweep->basis.reduced, &sweep->window, points->n, points->p, points->modes));
+  PetscCall(PointsSolve(&sweep->groups, &sweep->basis.reduced, &sweep->window, points->n, points->p, points->modes));
   for (PetscInt i = 0; i < points->n; i++) PetscCall(PetscMalloc1(points->modes[i].n, &points->branch[i]));
   PetscFunctionReturn(0);
 }
@@ -72,8 +70,7 @@ static PetscErrorCode PointsLink(Sweep sweep, const Points *before, PetscInt fir
   for (PetscInt b = 0; b < n_new; b++)
     if (rename[b] < 0) rename[b] = next++;
   for (PetscInt i = 0; i < points->n; i++)
-    for (PetscInt k = 0; k < points->modes[i].n; k++)
-      points->branch[i][k] = rename[points->branch[i][k] - first_new];
+    for (PetscInt k = 0; k < points->modes[i].n; k++) points->branch[i][k] = rename[points->branch[i][k] - first_new];
   for (PetscInt e = 0; e < sweep->events.n; e++)
     for (int k = 0; k < 2; k++)
       if (sweep->events.event[e].branch[k] >= first_new && sweep->event_line[e] == points->first / points->n)
@@ -189,7 +186,7 @@ static PetscErrorCode PairsByLabel(Sweep sweep, PetscInt line, const Points *poi
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < points->n; i++)
     for (PetscInt k = 1; k < points->modes[i].n; k++) {
-      PetscInt *a = &points->branch[i][k - 1], *b = &points->branch[i][k];
+      PetscInt      *a = &points->branch[i][k - 1], *b = &points->branch[i][k];
       const PetscInt unstable = *b;
 
       if (!ModesArePair(&points->modes[i], k) || LabelIsDisc(sweep, *b) || !LabelIsDisc(sweep, *a)) continue;
@@ -199,7 +196,8 @@ static PetscErrorCode PairsByLabel(Sweep sweep, PetscInt line, const Points *poi
   for (PetscInt e = 0; e < sweep->events.n; e++) {
     PetscInt *branch = sweep->events.event[e].branch, first = branch[0];
 
-    if (sweep->event_line[e] != line || branch[1] < 0 || LabelIsDisc(sweep, branch[0]) || !LabelIsDisc(sweep, branch[1]))
+    if (sweep->event_line[e] != line || branch[1] < 0 || LabelIsDisc(sweep, branch[0]) ||
+        !LabelIsDisc(sweep, branch[1]))
       continue;
     branch[0] = branch[1];
     branch[1] = first;
@@ -219,7 +217,7 @@ static PetscErrorCode LabelsGrow(Sweep sweep, PetscInt n_before)
 PetscErrorCode SweepLines(Sweep sweep)
 {
   const PetscInt n_lines = sweep->grid.n_axes == 2 ? sweep->grid.n[1] : 1;
-  Points         before = {0}, points;
+  Points         before  = {0}, points;
 
   PetscFunctionBeginUser;
   for (PetscInt line = 0; line < n_lines; line++) {

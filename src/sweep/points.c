@@ -32,7 +32,8 @@ static PetscErrorCode PointSolve(const Reduced *reduced, const ReducedWindow *wi
   PetscFunctionBeginUser;
   PetscCall(ReducedSolve(reduced, p, window, modes));
   PetscCall(ReducedEstimate(reduced, p, modes));
-  for (PetscInt i = 0; i < modes->n; i++) modes->error[i] = MARGIN * (modes->error[i] - modes->noise[i]) + modes->noise[i];
+  for (PetscInt i = 0; i < modes->n; i++)
+    modes->error[i] = MARGIN * (modes->error[i] - modes->noise[i]) + modes->noise[i];
   PetscFunctionReturn(0);
 }
 

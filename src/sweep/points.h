@@ -10,12 +10,12 @@ typedef struct {
 } Groups;
 
 /* Whether this rank solves point i, and the rank that does */
-PetscMPIInt    GroupsOwner(const Groups *groups, PetscInt i);
+PetscMPIInt GroupsOwner(const Groups *groups, PetscInt i);
 /* Modes with estimated errors at n points [n][n_parameters], alike on all ranks. Collective. */
 PetscErrorCode PointsSolve(const Groups *groups, const Reduced *reduced, const ReducedWindow *window, PetscInt n,
                            const PetscReal points[], ReducedModes modes[]);
 /* Largest estimated relative error of the modes in the window, but for rounding; rigid ones do not count */
-PetscReal      ModesWorst(const ReducedModes *modes, const ReducedWindow *window);
+PetscReal ModesWorst(const ReducedModes *modes, const ReducedWindow *window);
 /* The same at n points. Collective. */
 PetscErrorCode PointsEstimate(const Groups *groups, const Reduced *reduced, const ReducedWindow *window, PetscInt n,
                               const PetscReal points[], PetscReal worst[]);

@@ -14,6 +14,8 @@ typedef struct {
   PetscInt             n_terms, n_parameters;
   const OperatorsTerm *term; /* coefficients (borrowed) */
   PetscReal          **A;    /* [n_terms][n * n] */
+  PetscReal **D; /* V' |diag A_t| V of the stiffness terms, for what rounding in A_t does; NULL, or NULL entries,
+                                where that is no more than rounding in the dense matrices */
 } Reduced;
 
 /* Eigenvalues to look for: omega in [low, high], |sigma| <= growth, rad/s */

@@ -69,9 +69,7 @@ static PetscErrorCode FileName(Sweep sweep, PetscInt k, const char ending[], cha
 /* Reads or writes n items; accumulates success */
 static void Transfer(FILE *file, PetscBool write, void *data, size_t size, PetscInt n, PetscBool *good)
 {
-  const size_t done = !*good ? 0
-                      : write ? fwrite(data, size, (size_t)n, file)
-                              : fread(data, size, (size_t)n, file);
+  const size_t done = !*good ? 0 : write ? fwrite(data, size, (size_t)n, file) : fread(data, size, (size_t)n, file);
 
   if (done != (size_t)n) *good = PETSC_FALSE;
 }
@@ -129,7 +127,7 @@ PetscErrorCode SweepKeep(void *ctx)
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(&h, sizeof(h)));
   PetscCall(PetscArraycpy(h.print, sweep->print, N_PRINTS));
-  h.last = sweep->greedy.last;
+  h.last      = sweep->greedy.last;
   h.n_samples = sweep->greedy.n_samples, h.n_used = basis->reduced.n_used;
   h.first = sweep->n_kept, h.n = basis->reduced.n, h.n_blocks = basis->n_blocks;
   PetscCall(BVGetSizes(basis->vectors, &h.n_local, NULL, NULL));
@@ -144,8 +142,8 @@ PetscErrorCode SweepKeep(void *ctx)
   if (file && fclose(file)) good = PETSC_FALSE;
   PetscCall(AllGood(sweep->comm, &good));
   if (!good) (void)unlink(part);
-  PetscCheck(good, sweep->comm, PETSC_ERR_FILE_WRITE,
-             "cannot write '%s': %s; -sweep_restart 0 does without it", name, strerror(errno ? errno : ENOSPC));
+  PetscCheck(good, sweep->comm, PETSC_ERR_FILE_WRITE, "cannot write '%s': %s; -sweep_restart 0 does without it", name,
+             strerror(errno ? errno : ENOSPC));
   if (rename(part, name)) good = PETSC_FALSE;
   PetscCall(AllGood(sweep->comm, &good));
   PetscCheck(good, sweep->comm, PETSC_ERR_FILE_WRITE, "cannot write '%s'; -sweep_restart 0 does without it", name);
@@ -157,10 +155,10 @@ PetscErrorCode SweepKeep(void *ctx)
 /* Reads file k into the basis; good = whether it exists, is whole and belongs to this sweep */
 static PetscErrorCode FileResume(Sweep sweep, PetscInt k, PetscBool *good)
 {
-  Basis  *basis = &sweep->basis;
-  char    name[PETSC_MAX_PATH_LEN];
-  Header  h;
-  FILE   *file;
+  Basis   *basis = &sweep->basis;
+  char     name[PETSC_MAX_PATH_LEN];
+  Header   h;
+  FILE    *file;
   PetscInt n_local;
 
   PetscFunctionBeginUser;

@@ -34,8 +34,7 @@ static PetscErrorCode BoxRead(Sweep sweep, Box *box)
   for (int k = 0; k < n; k++) {
     const PetscReal percent = sweep->percent[sweep->n_percent == 1 ? 0 : k];
 
-    PetscCall(
-      ParameterFind(sweep->comm, "-sweep_uncertain", names[k], n_parameters, parameters, &box->parameter[k]));
+    PetscCall(ParameterFind(sweep->comm, "-sweep_uncertain", names[k], n_parameters, parameters, &box->parameter[k]));
     PetscCheck(percent > 0 && percent < 100, sweep->comm, PETSC_ERR_USER_INPUT,
                "-sweep_percent %.6g must lie between 0 and 100", (double)percent);
     box->half[k] = percent / 100;
@@ -61,7 +60,8 @@ static void BoxPoint(const Box *box, const PetscReal base[], PetscInt n_paramete
 
   for (PetscInt k = 0; k < n_parameters; k++) p[k] = base[k];
   for (PetscInt k = 0; k < box->n && i > 0; k++) {
-    const PetscReal side = i <= n_corners ? (((i - 1) >> k) & 1 ? 1 : -1) : 2 * VanDerCorput(i - n_corners, primes[k]) - 1;
+    const PetscReal side =
+      i <= n_corners ? (((i - 1) >> k) & 1 ? 1 : -1) : 2 * VanDerCorput(i - n_corners, primes[k]) - 1;
 
     p[box->parameter[k]] *= 1 + side * box->half[k];
   }
@@ -130,8 +130,8 @@ PetscErrorCode SweepRobustness(Sweep sweep)
   for (PetscInt i = 0; i < n; i++)
     BoxPoint(&box, sweep->grid.base, n_parameters, n_corners, i, &points[i * n_parameters]);
   sweep->greedy.last = PETSC_MAX_REAL;
-  PetscCall(GreedyRun(&sweep->greedy, sweep->modes, &sweep->window, 1 + n_corners, points, &sweep->groups,
-                      &sweep->basis));
+  PetscCall(
+    GreedyRun(&sweep->greedy, sweep->modes, &sweep->window, 1 + n_corners, points, &sweep->groups, &sweep->basis));
   PetscCall(PointsSolve(&sweep->groups, &sweep->basis.reduced, &sweep->window, n, points, modes));
   PetscCall(PetscCalloc1(PetscMax(1, modes[0].n), &sweep->risk));
   PetscCall(RisksCount(sweep, n, points, modes, sweep->risk));

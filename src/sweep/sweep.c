@@ -48,7 +48,8 @@ static PetscErrorCode ReadMethod(Sweep sweep, PetscOptionItems *PetscOptionsObje
                                "sweep.h", sweep->values[0], sweep->values[0], sizeof(sweep->values[0]), NULL));
   PetscCall(PetscOptionsString("-sweep_values_2", "those of the second parameter", "sweep.h", sweep->values[1],
                                sweep->values[1], sizeof(sweep->values[1]), NULL));
-  PetscCall(PetscOptionsEList("-sweep_method", "reduced basis with error estimate, every point in full, or a basis of real modes",
+  PetscCall(PetscOptionsEList("-sweep_method",
+                              "reduced basis with error estimate, every point in full, or a basis of real modes",
                               "sweep.h", methods, 3, methods[0], &method, NULL));
   PetscCall(PetscOptionsReal("-sweep_rtol", "largest estimated relative error of an eigenvalue (an estimate, no bound)",
                              "sweep.h", sweep->rtol, &sweep->rtol, NULL));
@@ -66,8 +67,9 @@ static PetscErrorCode ReadExtras(Sweep sweep, PetscOptionItems *PetscOptionsObje
   PetscBool set;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsInt("-sweep_verify", "compare with full solutions at this many points between those of the sweep",
-                            "sweep.h", sweep->n_verify, &sweep->n_verify, NULL));
+  PetscCall(PetscOptionsInt("-sweep_verify",
+                            "compare with full solutions at this many points between those of the sweep", "sweep.h",
+                            sweep->n_verify, &sweep->n_verify, NULL));
   PetscCall(PetscOptionsBool("-sweep_onsets", "critical values of the first parameter, confirmed on the full problem",
                              "sweep.h", sweep->onsets, &sweep->onsets, NULL));
   PetscCall(PetscOptionsBool("-sweep_sensitivities", "derivatives of every eigenvalue by every parameter", "sweep.h",
@@ -134,8 +136,8 @@ static PetscErrorCode GridSetUp(Sweep sweep)
   for (grid->n_axes = 0; grid->n_axes < n_names; grid->n_axes++) {
     const PetscInt k = grid->n_axes;
 
-    PetscCall(ParameterFind(sweep->comm, "-sweep_parameter", names[k], grid->n_parameters, parameters,
-                            &grid->parameter[k]));
+    PetscCall(
+      ParameterFind(sweep->comm, "-sweep_parameter", names[k], grid->n_parameters, parameters, &grid->parameter[k]));
     PetscCall(ValuesParse(sweep->comm, options[k], sweep->values[k], &grid->n[k], &grid->value[k], &grid->ratio[k]));
     for (PetscInt i = 0; i < grid->n[k]; i++)
       PetscCall(OperatorsCheckParameter(sweep->operators, grid->parameter[k], grid->value[k][i]));
@@ -150,7 +152,7 @@ static PetscErrorCode GridSetUp(Sweep sweep)
 static PetscErrorCode BasisMake(Sweep sweep, PetscInt n_most)
 {
   const PetscInt n_all = GridSize(&sweep->grid), n_parameters = sweep->grid.n_parameters;
-  const PetscInt n     = PetscMin(n_all, n_most);
+  const PetscInt n = PetscMin(n_all, n_most);
   PetscReal     *points;
 
   PetscFunctionBeginUser;

@@ -28,7 +28,8 @@ typedef struct {
 typedef struct {
   PetscReal *p;
   PetscInt   n_full, n_reduced, n_unstable_full, n_unstable_reduced;
-  PetscReal  error, estimate; /* largest relative ones */
+  PetscReal  error, estimate; /* largest relative ones: distance, estimate of the reduced model */
+  PetscReal  full;            /* largest relative error that the full solution itself states */
   PetscReal  omega;           /* rad/s, where the true error is largest */
 } SweepCheck;
 
@@ -60,13 +61,13 @@ struct _p_Sweep {
   Greedy        greedy;
   SweepPoint   *point;
   PetscInt      n_branches;
-  char        (*label)[32]; /* of each branch */
-  EventList     events;
-  PetscInt     *event_line;   /* index along the second axis of each event */
-  PetscBool    *is_confirmed; /* on the full problem */
-  SweepCheck   *check;
-  SweepRisk    *risk;
-  PetscInt      n_checks, n_risks, n_combinations;
+  char (*label)[32]; /* of each branch */
+  EventList      events;
+  PetscInt      *event_line;   /* index along the second axis of each event */
+  PetscBool     *is_confirmed; /* on the full problem */
+  SweepCheck    *check;
+  SweepRisk     *risk;
+  PetscInt       n_checks, n_risks, n_combinations;
   const char    *folder;    /* of the restart files */
   PetscReal      print[10]; /* tells whether they belong to this sweep */
   PetscInt       n_files, n_kept;

@@ -30,7 +30,8 @@ static PetscErrorCode RangeParse(MPI_Comm comm, const char option[], const char 
              PETSC_ERR_USER_INPUT, "%s '%s' holds what is no number: give first:last:n or first:last:n:log", option,
              text);
   PetscCheck(count == PetscFloorReal(count) && count >= 2 && count <= MAX_VALUES, comm, PETSC_ERR_USER_INPUT,
-             "%s '%s' asks for %.6g values; n must be an integer from 2 to %d", option, text, (double)count, MAX_VALUES);
+             "%s '%s' asks for %.6g values; n must be an integer from 2 to %d", option, text, (double)count,
+             MAX_VALUES);
   PetscCheck(first != last, comm, PETSC_ERR_USER_INPUT, "%s '%s' begins where it ends", option, text);
   PetscCheck(!is_log || first * last > 0, comm, PETSC_ERR_USER_INPUT,
              "%s '%s': a logarithmic range needs ends of one sign, not zero", option, text);

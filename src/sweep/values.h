@@ -22,7 +22,7 @@ PetscErrorCode ParameterFind(MPI_Comm comm, const char option[], const char name
                              const OperatorsParameter parameters[], PetscInt *index);
 PetscInt       GridSize(const Grid *grid);
 /* Values p[n_parameters] of all parameters at a point */
-void           GridPoint(const Grid *grid, PetscInt point, PetscReal p[]);
+void GridPoint(const Grid *grid, PetscInt point, PetscReal p[]);
 /* The value half way between two */
 PetscReal      GridMiddle(const Grid *grid, PetscInt axis, PetscReal a, PetscReal b);
 PetscErrorCode GridDestroy(Grid *grid);

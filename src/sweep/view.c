@@ -65,14 +65,14 @@ static PetscErrorCode AnswerView(Sweep sweep, const OperatorsParameter *paramete
   for (PetscInt k = 0; k < sweep->point[0].n; k++)
     if (sweep->point[0].mode[k].unstable) unstable = PETSC_TRUE;
   if (unstable)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "unstable already at %s = %.6g %s\n", parameter->name, begin,
-                                     parameter->unit));
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer, "unstable already at %s = %.6g %s\n", parameter->name, begin, parameter->unit));
   else if (first)
     PetscCall(PetscViewerASCIIPrintf(viewer, "quiet from %s = %.6g to %.10g %s\n", parameter->name, begin,
                                      (double)first->critical, parameter->unit));
   else
-    PetscCall(PetscViewerASCIIPrintf(viewer, "quiet from %s = %.6g to %.6g %s: no onset in the band\n",
-                                     parameter->name, begin, end, parameter->unit));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "quiet from %s = %.6g to %.6g %s: no onset in the band\n", parameter->name,
+                                     begin, end, parameter->unit));
   PetscFunctionReturn(0);
 }
 
@@ -86,13 +86,12 @@ static PetscErrorCode OnsetsView(Sweep sweep, const OperatorsParameter *paramete
     const Event *event = &sweep->events.event[e];
 
     if (!event->found) continue;
-    PetscCall(PetscViewerASCIIPrintf(
-      viewer, "  %s at %s = %.10g %s +- %.1e, %.2f Hz, %s%s\n", kinds[event->kind], parameter->name,
-      (double)event->critical, parameter->unit, (double)event->error, (double)(event->omega / (2 * PETSC_PI)),
-      sweep->label[event->branch[0]], sweep->is_confirmed[e] ? "" : " (not confirmed on the full problem)"));
-    if (sweep->event_line[e] == 0 &&
-        (!first || PetscAbsReal(event->critical - sweep->grid.value[0][0]) <
-                     PetscAbsReal(first->critical - sweep->grid.value[0][0])))
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s at %s = %.10g %s +- %.1e, %.2f Hz, %s%s\n", kinds[event->kind],
+                                     parameter->name, (double)event->critical, parameter->unit, (double)event->error,
+                                     (double)(event->omega / (2 * PETSC_PI)), sweep->label[event->branch[0]],
+                                     sweep->is_confirmed[e] ? "" : " (not confirmed on the full problem)"));
+    if (sweep->event_line[e] == 0 && (!first || PetscAbsReal(event->critical - sweep->grid.value[0][0]) <
+                                                  PetscAbsReal(first->critical - sweep->grid.value[0][0])))
       first = event;
   }
   if (sweep->grid.n_axes == 1) PetscCall(AnswerView(sweep, parameter, first, viewer));
@@ -127,17 +126,15 @@ static PetscErrorCode RisksView(Sweep sweep, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
   if (!sweep->uncertain[0]) PetscFunctionReturn(0);
-  PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " combinations of %s: ", sweep->n_combinations,
-                                   sweep->uncertain));
+  PetscCall(
+    PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " combinations of %s: ", sweep->n_combinations, sweep->uncertain));
   PetscCall(PetscViewerASCIIPrintf(viewer, sweep->n_risks ? "these can become unstable\n" : "all stable\n"));
   for (PetscInt i = 0; i < sweep->n_risks; i++) {
     const SweepRisk *r = &sweep->risk[i];
 
-    PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "  %s near %.2f Hz: in %" PetscInt_FMT
-                                     " of them, up to %.5g 1/s (%.5g at the scene's values)\n",
-                                     r->label, (double)(r->omega / (2 * PETSC_PI)), r->n_unstable, (double)r->largest,
-                                     (double)r->nominal));
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "  %s near %.2f Hz: in %" PetscInt_FMT " of them, up to %.5g 1/s (%.5g at the scene's values)\n",
+      r->label, (double)(r->omega / (2 * PETSC_PI)), r->n_unstable, (double)r->largest, (double)r->nominal));
   }
   PetscFunctionReturn(0);
 }
@@ -165,11 +162,11 @@ PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer)
                                    GridSize(&sweep->grid), sweep->n_branches, n_unstable, n_numerical));
   if (sweep->method == SWEEP_REDUCED)
     PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "basis of %" PetscInt_FMT " vectors; largest estimated error %.1e (an estimate, not a "
+                                     "basis of %" PetscInt_FMT
+                                     " vectors; largest estimated error %.1e (an estimate, not a "
                                      "bound)\n",
                                      sweep->basis.reduced.n_used, (double)sweep->greedy.worst));
-  PetscCall(PetscViewerASCIIPrintf(
-    viewer, "time: basis %.2f s, points %.2f s, onsets %.2f s, checks %.2f s\n", sweep->seconds[0], sweep->seconds[1],
-    sweep->seconds[2], sweep->seconds[3]));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "time: basis %.2f s, points %.2f s, onsets %.2f s, checks %.2f s\n",
+                                   sweep->seconds[0], sweep->seconds[1], sweep->seconds[2], sweep->seconds[3]));
   PetscFunctionReturn(0);
 }

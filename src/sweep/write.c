@@ -44,13 +44,13 @@ static PetscErrorCode SweepTableWrite(Sweep sweep, Results results)
   ResultsTable table;
 
   PetscFunctionBeginUser;
-  PetscCall(ResultsTableOpen(results, "sweep",
-                             "point,value,branch,freq_hz,growth_rad_s,error_estimate,unstable,label,value_2,class,error_"
-                             "hz,condition,onset_distance",
-                             &table));
+  PetscCall(
+    ResultsTableOpen(results, "sweep",
+                     "point,value,branch,freq_hz,growth_rad_s,error_estimate,unstable,label,value_2,class,error_"
+                     "hz,condition,onset_distance",
+                     &table));
   for (PetscInt i = 0; i < GridSize(&sweep->grid); i++)
-    for (PetscInt k = 0; k < sweep->point[i].n; k++)
-      PetscCall(RowWrite(sweep, i, &sweep->point[i].mode[k], table));
+    for (PetscInt k = 0; k < sweep->point[i].n; k++) PetscCall(RowWrite(sweep, i, &sweep->point[i].mode[k], table));
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
 }
@@ -112,18 +112,18 @@ static PetscErrorCode CheckTableWrite(Sweep sweep, Results results)
   PetscFunctionBeginUser;
   PetscCall(ResultsTableOpen(results, "verify",
                              "value,value_2,modes_full,modes_reduced,unstable_full,unstable_reduced,true_error,"
-                             "error_estimate,freq_hz",
+                             "error_estimate,freq_hz,full_error",
                              &table));
   for (PetscInt i = 0; i < sweep->n_checks; i++) {
-    const SweepCheck *c = &sweep->check[i];
+    const SweepCheck *c          = &sweep->check[i];
     char              second[32] = "", estimate[32];
 
     if (sweep->grid.n_axes == 2) PetscCall(NumberOrEmpty(c->p[sweep->grid.parameter[1]], second));
     PetscCall(NumberOrEmpty(c->estimate, estimate));
-    PetscCall(ResultsTableRow(table, "%.15g,%s,%d,%d,%d,%d,%.15g,%s,%.15g", (double)c->p[sweep->grid.parameter[0]], second,
-                              (int)c->n_full, (int)c->n_reduced, (int)c->n_unstable_full, (int)c->n_unstable_reduced,
-                              (double)c->error, estimate,
-                              (double)(c->omega / (2 * PETSC_PI))));
+    PetscCall(ResultsTableRow(table, "%.15g,%s,%d,%d,%d,%d,%.15g,%s,%.15g,%.15g",
+                              (double)c->p[sweep->grid.parameter[0]], second, (int)c->n_full, (int)c->n_reduced,
+                              (int)c->n_unstable_full, (int)c->n_unstable_reduced, (double)c->error, estimate,
+                              (double)(c->omega / (2 * PETSC_PI)), (double)c->full));
   }
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
@@ -134,10 +134,11 @@ static PetscErrorCode RiskTableWrite(Sweep sweep, Results results)
   ResultsTable table;
 
   PetscFunctionBeginUser;
-  PetscCall(ResultsTableOpen(results, "robustness",
-                             "label,freq_hz,growth_nominal_rad_s,growth_largest_rad_s,error_rad_s,unstable_combinations,"
-                             "combinations",
-                             &table));
+  PetscCall(
+    ResultsTableOpen(results, "robustness",
+                     "label,freq_hz,growth_nominal_rad_s,growth_largest_rad_s,error_rad_s,unstable_combinations,"
+                     "combinations",
+                     &table));
   for (PetscInt i = 0; i < sweep->n_risks; i++) {
     const SweepRisk *r = &sweep->risk[i];
 
@@ -163,16 +164,15 @@ static PetscErrorCode SensitivityRows(Sweep sweep, PetscInt point, const PetscRe
   for (PetscInt k = 0; k < sweep->point[point].n; k++) {
     const SweepMode *m = &sweep->point[point].mode[k], *best = &sweep->point[point].mode[near];
 
-    if (cabs(CMPLX(m->sigma, m->omega) - modes->lambda[i]) <
-        cabs(CMPLX(best->sigma, best->omega) - modes->lambda[i]))
+    if (cabs(CMPLX(m->sigma, m->omega) - modes->lambda[i]) < cabs(CMPLX(best->sigma, best->omega) - modes->lambda[i]))
       near = k;
   }
   for (PetscInt j = 0; j < n; j++)
-    PetscCall(ResultsTableRow(table, "%d,%.15g,%d,%.15g,%s,%.15g,%.15g,%.15g,%.15g", (int)point + 1,
-                              (double)p[sweep->grid.parameter[0]], (int)sweep->point[point].mode[near].branch + 1,
-                              (double)(cimag(modes->lambda[i]) / (2 * PETSC_PI)), parameters[j].name,
-                              (double)(cimag(d[j]) / (2 * PETSC_PI)), (double)creal(d[j]),
-                              (double)(0.01 * p[j] * cimag(d[j]) / (2 * PETSC_PI)), (double)(0.01 * p[j] * creal(d[j]))));
+    PetscCall(ResultsTableRow(
+      table, "%d,%.15g,%d,%.15g,%s,%.15g,%.15g,%.15g,%.15g", (int)point + 1, (double)p[sweep->grid.parameter[0]],
+      (int)sweep->point[point].mode[near].branch + 1, (double)(cimag(modes->lambda[i]) / (2 * PETSC_PI)),
+      parameters[j].name, (double)(cimag(d[j]) / (2 * PETSC_PI)), (double)creal(d[j]),
+      (double)(0.01 * p[j] * cimag(d[j]) / (2 * PETSC_PI)), (double)(0.01 * p[j] * creal(d[j]))));
   PetscCall(PetscFree(d));
   PetscFunctionReturn(0);
 }
