@@ -91,22 +91,6 @@ static PetscErrorCode SampleKrylov(Run *run, const PetscReal p[], PetscReal esti
   PetscFunctionReturn(0);
 }
 
-/* Copies mode `from` over mode `to` */
-static PetscErrorCode ModeMove(ReducedModes *modes, PetscInt from, PetscInt to)
-{
-  const PetscInt size = modes->size;
-
-  PetscFunctionBeginUser;
-  modes->lambda[to]  = modes->lambda[from];
-  modes->product[to] = modes->product[from];
-  modes->error[to]   = modes->error[from];
-  modes->noise[to]   = modes->noise[from];
-  modes->rigid[to]   = modes->rigid[from];
-  PetscCall(PetscArraymove(&modes->x[to * size], &modes->x[from * size], size));
-  PetscCall(PetscArraymove(&modes->y[to * size], &modes->y[from * size], size));
-  PetscFunctionReturn(0);
-}
-
 /* Relative error of the entry of `before` that is nearest to lambda; infinite where there is none */
 static PetscReal ErrorBefore(const ReducedModes *before, PetscComplex lambda)
 {
@@ -125,12 +109,16 @@ static PetscReal ErrorBefore(const ReducedModes *before, PetscComplex lambda)
 /* Leaves out the modes that the step before has settled */
 static PetscErrorCode ModesDropSettled(const ReducedModes *before, PetscReal tolerance, ReducedModes *modes)
 {
-  PetscInt kept = 0;
+  ReducedModes all = *modes;
+  PetscInt    *kept, n = 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < modes->n; i++)
-    if (ErrorBefore(before, modes->lambda[i]) > tolerance) PetscCall(ModeMove(modes, i, kept++));
-  modes->n = kept;
+  PetscCall(PetscMalloc1(all.n, &kept));
+  for (PetscInt i = 0; i < all.n; i++)
+    if (ErrorBefore(before, all.lambda[i]) > tolerance) kept[n++] = i;
+  PetscCall(ReducedModesSelect(&all, n, kept, modes));
+  PetscCall(ReducedModesDestroy(&all));
+  PetscCall(PetscFree(kept));
   PetscFunctionReturn(0);
 }
 

@@ -143,26 +143,55 @@ PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedMo
   PetscFunctionReturn(0);
 }
 
-/* Names the branches that have none yet: all that pass the middle of the line there, others where they begin */
+/* Where each branch without a name is looked at, or -1: where it grows fastest, else nearest to the middle of the line */
+static void LabelPoints(Sweep sweep, const Points *points, PetscInt at[], PetscReal growth[])
+{
+  for (PetscInt b = 0; b < sweep->n_branches; b++) at[b] = -1, growth[b] = 0;
+  for (PetscInt i = 0; i < points->n; i++)
+    for (PetscInt k = 0; k < points->modes[i].n; k++) {
+      const PetscInt  b = points->branch[i][k], middle = points->n / 2;
+      const PetscReal sigma = PetscAbsReal(creal(points->modes[i].lambda[k]));
+
+      if (sweep->label[b][0]) continue;
+      if (at[b] >= 0 && sigma < growth[b]) continue;
+      if (at[b] >= 0 && sigma == growth[b] && PetscAbsInt(i - middle) >= PetscAbsInt(at[b] - middle)) continue;
+      at[b]     = i;
+      growth[b] = sigma;
+    }
+}
+
+/* Names the branches that are to be looked at at point i */
+static PetscErrorCode PointLabel(Sweep sweep, const Points *points, PetscInt i, const PetscInt at[])
+{
+  const ReducedModes *modes = &points->modes[i];
+  ReducedModes        some;
+  PetscInt           *list, n = 0;
+  char(*label)[32];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(modes->n, &list, modes->n, &label));
+  for (PetscInt k = 0; k < modes->n; k++)
+    if (at[points->branch[i][k]] == i) list[n++] = k;
+  if (n) {
+    PetscCall(ReducedModesSelect(modes, n, list, &some));
+    PetscCall(SweepLabelModes(sweep, &points->p[i * sweep->grid.n_parameters], &some, label));
+    for (PetscInt k = 0; k < n; k++) PetscCall(PetscStrncpy(sweep->label[points->branch[i][list[k]]], label[k], 32));
+    PetscCall(ReducedModesDestroy(&some));
+  }
+  PetscCall(PetscFree2(list, label));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode PointsLabel(Sweep sweep, const Points *points)
 {
-  PetscFunctionBeginUser;
-  for (PetscInt step = 0; step <= points->n; step++) {
-    const PetscInt      i         = step ? step - 1 : points->n / 2;
-    const ReducedModes *modes     = &points->modes[i];
-    PetscBool           is_needed = PETSC_FALSE;
-    char(*label)[32];
+  PetscReal *growth;
+  PetscInt  *at;
 
-    for (PetscInt k = 0; k < modes->n; k++)
-      if (!sweep->label[points->branch[i][k]][0]) is_needed = PETSC_TRUE;
-    if (!is_needed) continue;
-    PetscCall(PetscMalloc1(modes->n, &label));
-    PetscCall(SweepLabelModes(sweep, &points->p[i * sweep->grid.n_parameters], modes, label));
-    for (PetscInt k = 0; k < modes->n; k++)
-      if (!sweep->label[points->branch[i][k]][0])
-        PetscCall(PetscStrncpy(sweep->label[points->branch[i][k]], label[k], 32));
-    PetscCall(PetscFree(label));
-  }
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(sweep->n_branches, &at, sweep->n_branches, &growth));
+  LabelPoints(sweep, points, at, growth);
+  for (PetscInt i = 0; i < points->n; i++) PetscCall(PointLabel(sweep, points, i, at));
+  PetscCall(PetscFree2(at, growth));
   PetscFunctionReturn(0);
 }
 

@@ -33,17 +33,33 @@ PetscErrorCode ReducedModesCreate(PetscInt n, PetscInt size, ReducedModes *modes
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ReducedModesSelect(const ReducedModes *from, PetscInt n, const PetscInt list[], ReducedModes *to)
+{
+  const PetscInt size = from->size;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedModesCreate(n, size, to));
+  for (PetscInt i = 0; i < n; i++) {
+    to->lambda[i]  = from->lambda[list[i]];
+    to->product[i] = from->product[list[i]];
+    to->error[i]   = from->error[list[i]];
+    to->noise[i]   = from->noise[list[i]];
+    to->rigid[i]   = from->rigid[list[i]];
+    PetscCall(PetscArraycpy(&to->x[i * size], &from->x[list[i] * size], size));
+    PetscCall(PetscArraycpy(&to->y[i * size], &from->y[list[i] * size], size));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ReducedModesCopy(const ReducedModes *from, ReducedModes *to)
 {
+  PetscInt *all;
+
   PetscFunctionBeginUser;
-  PetscCall(ReducedModesCreate(from->n, from->size, to));
-  PetscCall(PetscArraycpy(to->lambda, from->lambda, from->n));
-  PetscCall(PetscArraycpy(to->x, from->x, from->n * from->size));
-  PetscCall(PetscArraycpy(to->y, from->y, from->n * from->size));
-  PetscCall(PetscArraycpy(to->product, from->product, from->n));
-  PetscCall(PetscArraycpy(to->error, from->error, from->n));
-  PetscCall(PetscArraycpy(to->noise, from->noise, from->n));
-  PetscCall(PetscArraycpy(to->rigid, from->rigid, from->n));
+  PetscCall(PetscMalloc1(from->n, &all));
+  for (PetscInt i = 0; i < from->n; i++) all[i] = i;
+  PetscCall(ReducedModesSelect(from, from->n, all, to));
+  PetscCall(PetscFree(all));
   PetscFunctionReturn(0);
 }
 

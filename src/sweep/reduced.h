@@ -44,6 +44,8 @@ PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const R
                             ReducedModes *modes);
 PetscErrorCode ReducedModesCreate(PetscInt n, PetscInt size, ReducedModes *modes);
 PetscErrorCode ReducedModesCopy(const ReducedModes *from, ReducedModes *to);
+/* A copy of some of the modes, list [n] */
+PetscErrorCode ReducedModesSelect(const ReducedModes *from, PetscInt n, const PetscInt list[], ReducedModes *to);
 PetscErrorCode ReducedModesDestroy(ReducedModes *modes);
 
 /* K(p) (or C, M) on the leading n x n block, array [n * n]; any_nonzero (may be NULL) = whether a coefficient is not
