@@ -108,8 +108,8 @@ def count_without_partner(of, to):
 
 
 def compare(run, full):
-    """Against a sweep in full at some of the values: largest error; counts of unstable ones missed, of those invented, of
-    modes too many or too few."""
+    """Against a sweep in full at some of the values: largest error, and counts of unstable ones missed, of those
+    invented, and of modes too many or too few."""
     error, missed, invented, modes = 0.0, 0, 0, 0
     for value in full.values:
         true, own = full.near(value), run.near(value)
