@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Draws the modes of a run with scripts/plot_modes.py and checks that the picture is one: a PNG of at least 800 x 600 points, of
-which no colour fills more than 98 %. Exit status: 0, or 1.
+"""Draws a run with scripts/plot_modes.py, or the script named after its folder, and checks that the picture is one: a PNG of at
+least 800 x 600 points, of which no colour fills more than 98 %. Exit status: 0, or 1.
 """
 
 import subprocess
@@ -10,13 +10,14 @@ from pathlib import Path
 import matplotlib.image
 import numpy
 
-PLOT = Path(__file__).resolve().parent.parent / "scripts" / "plot_modes.py"
+SCRIPTS = Path(__file__).resolve().parent.parent / "scripts"
 
 
 def main():
     folder = Path(sys.argv[1])
     picture = folder / "picture.png"
-    subprocess.run([sys.executable, PLOT, folder, "-o", picture], check=True)
+    script = SCRIPTS / (sys.argv[2] if len(sys.argv) > 2 else "plot_modes.py")
+    subprocess.run([sys.executable, script, folder, "-o", picture], check=True)
     points = (255 * matplotlib.image.imread(picture)[:, :, :3]).astype(int)
     colours = points.reshape(-1, 3) @ [1, 256, 65536]
     _, counts = numpy.unique(colours, return_counts=True)
