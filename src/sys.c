@@ -102,6 +102,7 @@ PetscErrorCode SquealViewStages(MPI_Comm comm, PetscViewer viewer)
   PetscFunctionBeginUser;
   PetscCall(PetscViewerASCIIPrintf(viewer, "stage       time s   memory MB\n"));
   for (PetscInt s = 0; s < SQUEAL_N_STAGES; s++) {
+    if (ledger[s].begun == 0) continue; /* never entered */
     PetscCallMPI(MPI_Allreduce(&ledger[s].seconds, &slowest, 1, MPI_DOUBLE, MPI_MAX, comm));
     PetscCallMPI(MPI_Allreduce(&ledger[s].memory, &memory, 1, MPI_DOUBLE, MPI_SUM, comm));
     PetscCall(PetscViewerASCIIPrintf(viewer, "%-10s %7.2f   %9.0f\n", stage_names[s], slowest, memory / 1e6));

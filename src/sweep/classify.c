@@ -25,7 +25,7 @@ PetscErrorCode SweepClassify(Sweep sweep)
 
       m->unstable  = SweepIsUnstable(lambda, m->error);
       m->numerical = !m->unstable && m->sigma > TINY * cabs(lambda) ? PETSC_TRUE : PETSC_FALSE;
-      PetscCall(PetscStrncpy(m->label, sweep->label[m->branch], sizeof(m->label)));
+      PetscCall(PetscStrncpy(m->label, sweep->label[m->branch].text, sizeof(m->label)));
     }
   PetscFunctionReturn(0);
 }

@@ -94,10 +94,38 @@ static PetscErrorCode OnsetConfirm(Sweep sweep, PetscInt e)
   PetscFunctionReturn(0);
 }
 
+/* Whether onset e comes after onset e + 1: by line, then by critical value */
+static PetscBool OnsetIsAfter(Sweep sweep, PetscInt e)
+{
+  const PetscInt *line  = &sweep->event_line[e];
+  const Event    *event = &sweep->events.event[e];
+
+  if (line[0] != line[1]) return line[0] > line[1] ? PETSC_TRUE : PETSC_FALSE;
+  return event[0].critical > event[1].critical ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static void OnsetsSort(Sweep sweep)
+{
+  for (PetscInt i = 1; i < sweep->events.n; i++)
+    for (PetscInt e = i - 1; e >= 0 && OnsetIsAfter(sweep, e); e--) {
+      const Event     event = sweep->events.event[e];
+      const PetscInt  line  = sweep->event_line[e];
+      const PetscBool yes   = sweep->is_confirmed[e];
+
+      sweep->events.event[e]     = sweep->events.event[e + 1];
+      sweep->event_line[e]       = sweep->event_line[e + 1];
+      sweep->is_confirmed[e]     = sweep->is_confirmed[e + 1];
+      sweep->events.event[e + 1] = event;
+      sweep->event_line[e + 1]   = line;
+      sweep->is_confirmed[e + 1] = yes;
+    }
+}
+
 PetscErrorCode SweepOnsets(Sweep sweep)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(PetscMax(1, sweep->events.n), &sweep->is_confirmed));
   for (PetscInt e = 0; e < sweep->events.n; e++) PetscCall(OnsetConfirm(sweep, e));
+  OnsetsSort(sweep);
   PetscFunctionReturn(0);
 }

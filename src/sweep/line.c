@@ -143,20 +143,22 @@ PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedMo
   PetscFunctionReturn(0);
 }
 
-/* Where each branch without a name is looked at, or -1: where it grows fastest, else nearest to the middle of the line */
-static void LabelPoints(Sweep sweep, const Points *points, PetscInt at[], PetscReal growth[])
+/* Where each branch is looked at for its name, or -1: where it grows faster than anywhere before, on this or on an earlier
+   line; a branch without a name and without growth nearest to the middle of the line */
+static void LabelPoints(Sweep sweep, const Points *points, PetscInt at[])
 {
-  for (PetscInt b = 0; b < sweep->n_branches; b++) at[b] = -1, growth[b] = 0;
+  for (PetscInt b = 0; b < sweep->n_branches; b++) at[b] = -1;
   for (PetscInt i = 0; i < points->n; i++)
     for (PetscInt k = 0; k < points->modes[i].n; k++) {
       const PetscInt  b = points->branch[i][k], middle = points->n / 2;
       const PetscReal sigma = PetscAbsReal(creal(points->modes[i].lambda[k]));
+      const PetscBool nearer =
+        at[b] < 0 || PetscAbsInt(i - middle) < PetscAbsInt(at[b] - middle) ? PETSC_TRUE : PETSC_FALSE;
+      const PetscBool unnamed = sweep->label[b].text[0] ? PETSC_FALSE : PETSC_TRUE;
 
-      if (sweep->label[b][0]) continue;
-      if (at[b] >= 0 && sigma < growth[b]) continue;
-      if (at[b] >= 0 && sigma == growth[b] && PetscAbsInt(i - middle) >= PetscAbsInt(at[b] - middle)) continue;
-      at[b]     = i;
-      growth[b] = sigma;
+      if (sigma < sweep->label[b].growth || (sigma == sweep->label[b].growth && !(unnamed && nearer))) continue;
+      at[b]                  = i;
+      sweep->label[b].growth = sigma;
     }
 }
 
@@ -175,7 +177,8 @@ static PetscErrorCode PointLabel(Sweep sweep, const Points *points, PetscInt i, 
   if (n) {
     PetscCall(ReducedModesSelect(modes, n, list, &some));
     PetscCall(SweepLabelModes(sweep, &points->p[i * sweep->grid.n_parameters], &some, label));
-    for (PetscInt k = 0; k < n; k++) PetscCall(PetscStrncpy(sweep->label[points->branch[i][list[k]]], label[k], 32));
+    for (PetscInt k = 0; k < n; k++)
+      PetscCall(PetscStrncpy(sweep->label[points->branch[i][list[k]]].text, label[k], 32));
     PetscCall(ReducedModesDestroy(&some));
   }
   PetscCall(PetscFree2(list, label));
@@ -184,21 +187,20 @@ static PetscErrorCode PointLabel(Sweep sweep, const Points *points, PetscInt i, 
 
 static PetscErrorCode PointsLabel(Sweep sweep, const Points *points)
 {
-  PetscReal *growth;
-  PetscInt  *at;
+  PetscInt *at;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(sweep->n_branches, &at, sweep->n_branches, &growth));
-  LabelPoints(sweep, points, at, growth);
+  PetscCall(PetscMalloc1(sweep->n_branches, &at));
+  LabelPoints(sweep, points, at);
   for (PetscInt i = 0; i < points->n; i++) PetscCall(PointLabel(sweep, points, i, at));
-  PetscCall(PetscFree2(at, growth));
+  PetscCall(PetscFree(at));
   PetscFunctionReturn(0);
 }
 
 /* Whether a name is that of a disc's shape */
 static PetscBool LabelIsDisc(Sweep sweep, PetscInt branch)
 {
-  return branch >= 0 && sweep->label[branch][0] == '(' ? PETSC_TRUE : PETSC_FALSE;
+  return branch >= 0 && sweep->label[branch].text[0] == '(' ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Whether modes k - 1 and k are the two members of a lock-in pair, mirror images in the growth */
@@ -239,7 +241,7 @@ static PetscErrorCode LabelsGrow(Sweep sweep, PetscInt n_before)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscRealloc(sizeof(*sweep->label) * (size_t)PetscMax(1, sweep->n_branches), &sweep->label));
-  for (PetscInt b = n_before; b < sweep->n_branches; b++) sweep->label[b][0] = '\0';
+  PetscCall(PetscArrayzero(sweep->label + n_before, sweep->n_branches - n_before));
   PetscFunctionReturn(0);
 }
 

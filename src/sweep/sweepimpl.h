@@ -24,6 +24,12 @@ typedef struct {
   SweepMode *mode;
 } SweepPoint;
 
+/* Name of a branch, and its growth or decay where it was looked at, 1/s */
+typedef struct {
+  char      text[32];
+  PetscReal growth;
+} BranchName;
+
 /* True errors at a point that the basis has never seen */
 typedef struct {
   PetscReal *p;
@@ -54,14 +60,14 @@ struct _p_Sweep {
   PetscInt    max_samples, n_real, n_verify, n_groups, n_percent;
   PetscBool   onsets, sensitivities, restart;
   /* results */
-  Grid          grid;
-  Groups        groups;
-  ReducedWindow window;
-  Basis         basis;
-  Greedy        greedy;
-  SweepPoint   *point;
-  PetscInt      n_branches;
-  char (*label)[32]; /* of each branch */
+  Grid           grid;
+  Groups         groups;
+  ReducedWindow  window;
+  Basis          basis;
+  Greedy         greedy;
+  SweepPoint    *point;
+  PetscInt       n_branches;
+  BranchName    *label; /* [n_branches] */
   EventList      events;
   PetscInt      *event_line;   /* index along the second axis of each event */
   PetscBool     *is_confirmed; /* on the full problem */

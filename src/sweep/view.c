@@ -25,7 +25,7 @@ static PetscErrorCode SamplesView(Sweep sweep, const OperatorsParameter paramete
   PetscFunctionReturn(0);
 }
 
-/* First and last point of each stretch of instability of each branch, on the first line */
+/* Where each branch is unstable: smallest and largest value of the first parameter, and its largest growth */
 static PetscErrorCode BranchesView(Sweep sweep, PetscViewer viewer)
 {
   const Grid *grid = &sweep->grid;
@@ -40,15 +40,15 @@ static PetscErrorCode BranchesView(Sweep sweep, PetscViewer viewer)
         const SweepMode *m = &sweep->point[i].mode[k];
 
         if (m->branch != b || !m->unstable) continue;
-        if (!n++) first = grid->value[0][i % grid->n[0]];
-        last = grid->value[0][i % grid->n[0]];
+        first = n ? PetscMin(first, grid->value[0][i % grid->n[0]]) : grid->value[0][i % grid->n[0]];
+        last  = n++ ? PetscMax(last, grid->value[0][i % grid->n[0]]) : first;
         if (m->sigma > largest) largest = m->sigma, omega = m->omega;
       }
     if (n)
       PetscCall(PetscViewerASCIIPrintf(viewer,
                                        "  branch %" PetscInt_FMT " %s: unstable at %" PetscInt_FMT
                                        " points, %.6g to %.6g, up to %.5g 1/s at %.2f Hz\n",
-                                       b + 1, sweep->label[b], n, (double)first, (double)last, (double)largest,
+                                       b + 1, sweep->label[b].text, n, (double)first, (double)last, (double)largest,
                                        (double)(omega / (2 * PETSC_PI))));
   }
   PetscFunctionReturn(0);
@@ -88,7 +88,7 @@ static PetscErrorCode OnsetsView(Sweep sweep, const OperatorsParameter *paramete
     if (!event->found) continue;
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %s at %s = %.10g %s +- %.1e, %.2f Hz, %s%s\n", kinds[event->kind],
                                      parameter->name, (double)event->critical, parameter->unit, (double)event->error,
-                                     (double)(event->omega / (2 * PETSC_PI)), sweep->label[event->branch[0]],
+                                     (double)(event->omega / (2 * PETSC_PI)), sweep->label[event->branch[0]].text,
                                      sweep->is_confirmed[e] ? "" : " (not confirmed on the full problem)"));
     if (sweep->event_line[e] == 0 && (!first || PetscAbsReal(event->critical - sweep->grid.value[0][0]) <
                                                   PetscAbsReal(first->critical - sweep->grid.value[0][0])))

@@ -77,8 +77,8 @@ static PetscErrorCode OnsetTableWrite(Sweep sweep, Results results)
     PetscCall(ResultsTableRow(table, "%s,%.15g,%.15g,%s,\"%s\",%.15g,%d,%s,%d,%s",
                               parameters[sweep->grid.parameter[0]].name, (double)event->critical,
                               (double)(event->omega / (2 * PETSC_PI)), kinds[event->kind],
-                              sweep->label[event->branch[0]], (double)event->error, (int)event->branch[0] + 1, partner,
-                              (int)sweep->is_confirmed[e], second));
+                              sweep->label[event->branch[0]].text, (double)event->error, (int)event->branch[0] + 1,
+                              partner, (int)sweep->is_confirmed[e], second));
   }
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
