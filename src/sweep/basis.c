@@ -199,6 +199,15 @@ static PetscErrorCode DiagonalExtend(const Basis *basis, const OperatorsTerm *te
   PetscFunctionReturn(0);
 }
 
+/* The first term with this matrix: damping shares those of stiffness and mass */
+static PetscInt TermWithMatrix(const Reduced *r, Mat A)
+{
+  PetscInt t = 0;
+
+  while (r->term[t].A != A) t++;
+  return t;
+}
+
 /* Every V' A_t V, extended by the columns of the block */
 static PetscErrorCode ReducedExtend(Basis *basis, BV block)
 {
@@ -210,7 +219,14 @@ static PetscErrorCode ReducedExtend(Basis *basis, BV block)
   n += first;
   PetscCall(BVSetActiveColumns(basis->vectors, 0, n));
   for (PetscInt t = 0; t < r->n_terms; t++) {
-    PetscCall(TermExtend(basis, &r->term[t], block, first, n, &r->A[t]));
+    const PetscInt same = TermWithMatrix(r, r->term[t].A);
+
+    if (same < t) {
+      PetscCall(MatrixGrow(first, n, &r->A[t]));
+      PetscCall(PetscArraycpy(r->A[t], r->A[same], n * n));
+    } else {
+      PetscCall(TermExtend(basis, &r->term[t], block, first, n, &r->A[t]));
+    }
     if (r->term[t].kind == OPERATORS_STIFFNESS)
       PetscCall(DiagonalExtend(basis, &r->term[t], block, first, n, &r->D[t]));
   }

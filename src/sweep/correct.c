@@ -4,7 +4,8 @@
 
       r = Q(lambda; p) x,   s = Q(lambda; p)' y,     z_r = P^-1 r,   z_s = P^-T s,
 
-   where P = K - s M (damped: K + s C + s^2 M) is factored at p once. One solve of all right-hand sides together is a
+   where P = K - s M is factored at p once. What the basis lacks lies above the window, next to it first, hence the shift s at
+   its upper end: a shift amid the window would let what is far above outweigh what is near. One solve of all right-hand sides together is a
    step of shift-and-invert subspace iteration from the basis' own vectors (Galerkin on [V, z_r, z_s]; compare M. E.
    Hochstenbach, G. L. G. Sleijpen, Linear Algebra Appl. 358, 2003, for two-sided subspace methods). The length of a
    correction, beside |x|_M = 1, is the error of the vector; the error of the eigenvalue is of second order, y'r being
@@ -15,13 +16,14 @@
 PetscErrorCode CorrectionCreate(Operators operators, const PetscReal p[], const ReducedWindow *window,
                                 Progress *progress, Correction *c)
 {
-  const PetscReal low = window->low * window->low, high = window->high * window->high;
+  OperatorsPencil undamped;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsSetParameters(operators, p));
   PetscCall(OperatorsGetPencil(operators, &c->pencil));
-  PetscCall(ShiftInvertCreate(&c->pencil, c->pencil.C ? 0.3 * window->high : low + 0.25 * (high - low), PETSC_FALSE,
-                              progress, &c->factor));
+  undamped   = c->pencil;
+  undamped.C = NULL;
+  PetscCall(ShiftInvertCreate(&undamped, window->high * window->high, PETSC_FALSE, progress, &c->factor));
   PetscFunctionReturn(0);
 }
 

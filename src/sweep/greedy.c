@@ -11,7 +11,8 @@
 #include "greedy.h"
 
 #define GUARD     0.03 /* relative width beyond the band of modes that the basis holds */
-#define SAFE      0.1  /* what is asked at a point that corrections come from, beside rtol */
+#define SAFE      0.03 /* what is asked at a point that corrections come from, beside rtol */
+#define SETTLED   1e-3 /* beside rtol: a mode that needs no more corrections at this point */
 #define WIDE      5    /* ends that differ by this factor: distances are ratios */
 #define MAX_STEPS 8
 #define DROP      3e-3 /* vectors shorter than this beside the root of rtol add nothing; errors go with their squares */
@@ -131,7 +132,7 @@ static PetscErrorCode StepApply(Run *run, const Correction *correction, const Pe
 
   PetscFunctionBeginUser;
   PetscCall(ReducedSolve(&run->basis->reduced, p, &run->guarded, modes));
-  PetscCall(ModesDropSettled(&before, 0.1 * SAFE * run->greedy->rtol, modes));
+  PetscCall(ModesDropSettled(&before, SETTLED * run->greedy->rtol, modes));
   PetscCall(ReducedModesDestroy(&before));
   PetscCall(CorrectionApply(correction, modes, run->drop, run->basis, n_added));
   PetscCall(ReducedEstimate(&run->basis->reduced, p, modes));

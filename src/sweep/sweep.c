@@ -138,6 +138,8 @@ static PetscErrorCode GridSetUp(Sweep sweep)
 
     PetscCall(
       ParameterFind(sweep->comm, "-sweep_parameter", names[k], grid->n_parameters, parameters, &grid->parameter[k]));
+    PetscCheck(strlen(sweep->values[k]) < SWEEP_MAX_TEXT - 1, sweep->comm, PETSC_ERR_USER_INPUT,
+               "%s is longer than %d characters; give a range first:last:n", options[k], SWEEP_MAX_TEXT);
     PetscCall(ValuesParse(sweep->comm, options[k], sweep->values[k], &grid->n[k], &grid->value[k], &grid->ratio[k]));
     for (PetscInt i = 0; i < grid->n[k]; i++)
       PetscCall(OperatorsCheckParameter(sweep->operators, grid->parameter[k], grid->value[k][i]));

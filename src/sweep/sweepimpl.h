@@ -6,6 +6,8 @@
 #include "track.h"
 #include "values.h"
 
+#define SWEEP_MAX_TEXT 65536 /* length of a list of values */
+
 typedef enum { SWEEP_REDUCED, SWEEP_FULL, SWEEP_REAL } SweepMethod;
 
 /* One eigenvalue at one point */
@@ -54,7 +56,7 @@ struct _p_Sweep {
   Modes     modes;
   Progress  progress;
   /* set by options */
-  char        parameter[256], values[GRID_MAX_AXES][1024], uncertain[1024];
+  char        parameter[256], values[GRID_MAX_AXES][SWEEP_MAX_TEXT], uncertain[1024];
   SweepMethod method;
   PetscReal   rtol, *percent;
   PetscInt    max_samples, n_real, n_verify, n_groups, n_percent;
