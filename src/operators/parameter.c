@@ -61,13 +61,15 @@ PetscErrorCode OperatorsGetDensity(Operators operators, PetscInt part, PetscReal
 
 PetscErrorCode OperatorsCheckParameter(Operators operators, PetscInt parameter, PetscReal value)
 {
-  const OperatorsParameter *q = &operators->parameter[parameter];
+  const OperatorsParameter *q     = &operators->parameter[parameter];
+  const char               *space = q->unit[0] ? " " : "";
 
   PetscFunctionBeginUser;
-  PetscCheck((value > q->lower || (q->closed && value == q->lower)) && value < q->upper, operators->comm,
-             PETSC_ERR_USER_INPUT, "%s %.6g must lie between %.6g%s and %.6g%s%s", q->name, (double)value,
-             (double)q->lower, q->closed || PetscIsInfReal(q->lower) ? "" : " (excluded)", (double)q->upper,
-             q->unit[0] ? " " : "", q->unit);
+  PetscCheck(value < q->upper && !PetscIsNanReal(value), operators->comm, PETSC_ERR_USER_INPUT,
+             "%s %.6g%s%s must be a finite number", q->name, (double)value, space, q->unit);
+  PetscCheck(value > q->lower || (q->closed && value == q->lower), operators->comm, PETSC_ERR_USER_INPUT,
+             "%s %.6g%s%s must %s %.6g", q->name, (double)value, space, q->unit, q->closed ? "be at least" : "exceed",
+             (double)q->lower);
   PetscFunctionReturn(0);
 }
 

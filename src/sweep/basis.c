@@ -106,6 +106,8 @@ static PetscErrorCode Orthonormalise(const Basis *basis, BV W, PetscReal drop)
   PetscCall(PetscMalloc1(m, &eigenvalue));
   PetscCall(MatDenseGetArray(gram, &G));
   PetscCall(GramDecompose(m, G, eigenvalue));
+  PetscCallMPI(MPI_Bcast(G, (PetscMPIInt)(m * m), MPIU_SCALAR, 0, basis->comm)); /* the same directions on all ranks */
+  PetscCallMPI(MPI_Bcast(eigenvalue, (PetscMPIInt)m, MPIU_REAL, 0, basis->comm));
   drop = PetscMax(drop, REORTHOGONALISE * PetscSqrtReal(PetscMax(eigenvalue[m - 1], 0)));
   for (PetscInt i = m - 1; i >= 0 && eigenvalue[i] > drop * drop; i--) kept++;
   for (PetscInt k = 0; k < kept; k++)

@@ -27,7 +27,7 @@ PetscErrorCode SweepBrute(Sweep sweep)
       m->omega     = mode[k].omega;
       m->error     = mode[k].error;
       m->condition = mode[k].condition;
-      m->unstable  = mode[k].unstable;
+      m->unstable  = ReducedIsUnstable(CMPLX(m->sigma, m->omega), PetscIsInfOrNanReal(m->error) ? 0 : m->error);
       m->branch    = -1;
       PetscCall(PetscStrncpy(m->label, mode[k].label, sizeof(m->label)));
     }
@@ -77,13 +77,14 @@ static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
   PetscCall(OperatorsSetParameters(sweep->operators, check->p));
   PetscCall(ModesSolve(sweep->modes));
   PetscCall(ModesGet(sweep->modes, &check->n_full, &full));
-  for (PetscInt i = 0; i < check->n_full; i++) check->n_unstable_full += full[i].unstable;
+  for (PetscInt i = 0; i < check->n_full; i++)
+    check->n_unstable_full += ReducedIsUnstable(CMPLX(full[i].sigma, full[i].omega), full[i].error);
   for (PetscInt k = 0; k < reduced.n; k++) {
     const PetscReal omega = cimag(reduced.lambda[k]);
 
     if (omega < sweep->window.low || omega > sweep->window.high) continue;
     check->n_reduced++;
-    check->n_unstable_reduced += SweepIsUnstable(reduced.lambda[k], reduced.error[k]);
+    check->n_unstable_reduced += ReducedIsUnstable(reduced.lambda[k], reduced.error[k]);
   }
   check->error    = LargestDistance(check->n_full, full, &reduced, &check->omega);
   check->estimate = sweep->method == SWEEP_REAL ? NAN : LargestError(&reduced, &sweep->window);
@@ -96,7 +97,7 @@ static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
 PetscErrorCode SweepVerify(Sweep sweep)
 {
   const Grid    *grid = &sweep->grid;
-  const PetscInt n    = sweep->n_verify;
+  const PetscInt n    = PetscMin(sweep->n_verify, grid->n[0] - 1); /* no value twice */
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n, &sweep->check));
@@ -107,9 +108,10 @@ PetscErrorCode SweepVerify(Sweep sweep)
     PetscCall(PetscArraycpy(check->p, grid->base, grid->n_parameters));
     for (PetscInt k = 0; k < grid->n_axes; k++) {
       const PetscReal *value = grid->value[k];
-      const PetscInt   at = ((2 * i + 1) * (grid->n[k] - 1)) / (2 * n), j = k ? (at * 7 + 3) % (grid->n[k] - 1) : at;
+      const PetscInt   gaps = grid->n[k] - 1, at = gaps ? ((2 * i + 1) * gaps) / (2 * n) : 0;
+      const PetscInt   j = k && gaps ? (at * 7 + 3) % gaps : at;
 
-      check->p[grid->parameter[k]] = grid->n[k] > 1 ? GridMiddle(grid, k, value[j], value[j + 1]) : value[0];
+      check->p[grid->parameter[k]] = gaps ? GridMiddle(grid, k, value[j], value[j + 1]) : value[0];
     }
     PetscCall(CheckPoint(sweep, check));
   }

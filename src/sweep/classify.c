@@ -5,15 +5,7 @@
 */
 #include "sweepimpl.h"
 
-#define BAR  3    /* widths of the error estimate */
 #define TINY 1e-9 /* growth below this, relative to |lambda|, is rounding */
-
-PetscBool SweepIsUnstable(PetscComplex lambda, PetscReal error)
-{
-  const PetscReal bar = PetscIsInfOrNanReal(error) ? 0 : BAR * error;
-
-  return creal(lambda) > PetscMax(bar, TINY * cabs(lambda)) ? PETSC_TRUE : PETSC_FALSE;
-}
 
 PetscErrorCode SweepClassify(Sweep sweep)
 {
@@ -23,7 +15,7 @@ PetscErrorCode SweepClassify(Sweep sweep)
       SweepMode         *m      = &sweep->point[i].mode[k];
       const PetscComplex lambda = CMPLX(m->sigma, m->omega);
 
-      m->unstable  = SweepIsUnstable(lambda, m->error);
+      m->unstable  = ReducedIsUnstable(lambda, PetscIsInfOrNanReal(m->error) ? 0 : m->error);
       m->numerical = !m->unstable && m->sigma > TINY * cabs(lambda) ? PETSC_TRUE : PETSC_FALSE;
       PetscCall(PetscStrncpy(m->label, sweep->label[m->branch].text, sizeof(m->label)));
     }

@@ -17,6 +17,7 @@ static PetscErrorCode OnsetReduced(Sweep sweep, const Line *line, Event *event)
   PetscCall(OnsetFind(&sweep->basis.reduced, &sweep->window, line, event));
   PetscCallMPI(MPI_Bcast(&event->critical, 1, MPIU_REAL, 0, sweep->comm));
   PetscCallMPI(MPI_Bcast(&event->omega, 1, MPIU_REAL, 0, sweep->comm));
+  PetscCallMPI(MPI_Bcast(&event->error, 1, MPIU_REAL, 0, sweep->comm));
   PetscCallMPI(MPI_Bcast(&event->found, 1, MPIU_BOOL, 0, sweep->comm));
   PetscFunctionReturn(0);
 }
@@ -42,6 +43,7 @@ static PetscErrorCode OnsetCorrect(Sweep sweep, const Correction *correction, co
 
   PetscFunctionBeginUser;
   PetscCall(ReducedSolve(&sweep->basis.reduced, p, near, &modes));
+  PetscCall(ReducedModesBroadcast(sweep->comm, 0, &modes));
   PetscCall(CorrectionApply(correction, &modes, DROP, &sweep->basis, &n_added));
   PetscCall(BasisPromote(&sweep->basis));
   PetscCall(ReducedModesDestroy(&modes));
@@ -89,7 +91,7 @@ static PetscErrorCode OnsetConfirm(Sweep sweep, PetscInt e)
   if (event->found && sweep->method == SWEEP_REDUCED) PetscCall(OnsetIterate(sweep, &line, p, event, &change));
   sweep->is_confirmed[e] =
     event->found && change <= CONFIRMED * PetscAbsReal(event->critical) ? PETSC_TRUE : PETSC_FALSE;
-  if (sweep->is_confirmed[e]) event->error = PetscMax(change, 1e-14 * PetscAbsReal(event->critical));
+  if (change < PETSC_MAX_REAL) event->error = PetscMax(change, 1e-14 * PetscAbsReal(event->critical));
   PetscCall(PetscFree(p));
   PetscFunctionReturn(0);
 }

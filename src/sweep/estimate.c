@@ -241,33 +241,6 @@ static PetscErrorCode Together(const Estimate *e, PetscInt first, const PetscInt
   PetscFunctionReturn(0);
 }
 
-/* E [n_v * n_v] = sum |c_t| V' |diag A_t| V of the stiffness terms; zero where they are not given */
-static void EnergyWithoutCancellation(const Reduced *reduced, const PetscReal p[], PetscInt n_v, PetscReal E[])
-{
-  const PetscInt n = reduced->n;
-
-  for (PetscInt i = 0; i < n_v * n_v; i++) E[i] = 0;
-  for (PetscInt t = 0; t < reduced->n_terms && reduced->D; t++) {
-    const PetscReal c = PetscAbsReal(OperatorsTermCoefficient(&reduced->term[t], p));
-
-    for (PetscInt j = 0; j < n_v && reduced->D[t] && c > 0; j++)
-      for (PetscInt i = 0; i < n_v; i++) E[j * n_v + i] += c * reduced->D[t][j * n + i];
-  }
-}
-
-/* sqrt(x^H E x) with real symmetric E [n * n]; work [n] */
-static PetscReal EnergyNorm(PetscInt n, const PetscReal E[], const PetscComplex x[], PetscComplex work[])
-{
-  PetscReal sum = 0;
-
-  for (PetscInt j = 0; j < n; j++) {
-    work[j] = 0;
-    for (PetscInt i = 0; i < n; i++) work[j] += E[j * n + i] * x[i];
-    sum += creal(conj(x[j]) * work[j]);
-  }
-  return PetscSqrtReal(PetscMax(sum, 0));
-}
-
 /* Adds what rounding does, in the matrices of the mesh and in the dense ones */
 static PetscErrorCode AddFloor(const Estimate *e, const Reduced *reduced, const PetscReal p[], ReducedModes *modes)
 {
@@ -279,11 +252,11 @@ static PetscErrorCode AddFloor(const Estimate *e, const Reduced *reduced, const 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(n * n, &pencil.K, n * n, &E, n, &work));
   for (PetscInt j = 0; j < n; j++) PetscCall(PetscArraycpy(pencil.K + j * n, e->K + j * e->n, n));
-  EnergyWithoutCancellation(reduced, p, n, E);
+  RoundingEnergy(reduced, p, E);
   for (PetscInt i = 0; i < modes->n; i++) {
     const PetscComplex *x = modes->x + i * n, *y = modes->y + i * n;
-    const PetscReal     mesh  = EnergyNorm(n, E, x, work) * EnergyNorm(n, E, y, work);
-    const PetscReal     noise = ROUNDING * PencilNoise(&pencil, x, y) + PETSC_MACHINE_EPSILON * mesh;
+    const PetscReal     mesh  = RoundingProduct(n, E, x, y, work);
+    const PetscReal     noise = ROUNDING * PencilNoise(&pencil, x, y) + mesh;
 
     modes->noise[i] = LambdaChange(modes, i, KappaChange(modes, i, noise));
     modes->error[i] += modes->noise[i];

@@ -30,9 +30,7 @@ PetscComplex FrameDot(PetscInt n, const PetscComplex a[], const PetscComplex b[]
 
 PetscBool ModeIsUnstable(const ReducedModes *modes, PetscInt i)
 {
-  const PetscReal limit = PetscMax(3 * modes->error[i], 1e-9 * cabs(modes->lambda[i]));
-
-  return creal(modes->lambda[i]) > limit ? PETSC_TRUE : PETSC_FALSE;
+  return ReducedIsUnstable(modes->lambda[i], modes->error[i]);
 }
 
 PetscComplex FrameEigenvalue(const Frame *frame, PetscComplex lambda)

@@ -6,7 +6,8 @@
 
    A point's first corrections z_r, z_s tell the error that the basis had there (estimate.c). The next point is the one
    farthest from all looked at, as long as the last one had to be taken in; else the one with the largest estimate. It ends
-   when the farthest point needs nothing, and no point does by the estimate with all corrections so far (points.c).
+   when the farthest point needs nothing (two of them while there are no corrections that could tell an error elsewhere),
+   and no point does by the estimate with all corrections so far (points.c).
 */
 #include "greedy.h"
 
@@ -132,12 +133,13 @@ static PetscErrorCode StepApply(Run *run, const Correction *correction, const Pe
 
   PetscFunctionBeginUser;
   PetscCall(ReducedSolve(&run->basis->reduced, p, &run->guarded, modes));
+  PetscCall(ReducedModesBroadcast(run->basis->comm, 0, modes)); /* control flow must be alike on all ranks */
   PetscCall(ModesDropSettled(&before, SETTLED * run->greedy->rtol, modes));
   PetscCall(ReducedModesDestroy(&before));
   PetscCall(CorrectionApply(correction, modes, run->drop, run->basis, n_added));
   PetscCall(ReducedEstimate(&run->basis->reduced, p, modes));
+  PetscCall(ReducedModesBroadcast(run->basis->comm, 0, modes));
   *worst = ModesWorst(modes, &run->window);
-  PetscCallMPI(MPI_Bcast(worst, 1, MPIU_REAL, 0, run->basis->comm)); /* control flow must be alike on all ranks */
   PetscFunctionReturn(0);
 }
 
@@ -174,7 +176,8 @@ static PetscErrorCode SampleCorrect(Run *run, const PetscReal p[], PetscReal *fi
   }
   PetscCall(ReducedModesDestroy(&modes));
   PetscCall(CorrectionDestroy(&correction));
-  if (n_vectors) PetscCall(CheckCount(run, p, &complete));
+  PetscCall(CheckCount(run, p, &complete));
+  run->greedy->n_passed = *first <= SAFE * run->greedy->rtol && complete ? run->greedy->n_passed + 1 : 0;
   PetscCall(SampleAdd(run, p, PETSC_FALSE, n_vectors, *first));
   if (!complete && run->greedy->n_samples < run->greedy->max_samples) {
     *first = PETSC_MAX_REAL;
@@ -231,20 +234,33 @@ static PetscInt PointFarthest(const Run *run, PetscReal *farthest)
   return best;
 }
 
+/* Whether no full solution is at the point */
+static PetscBool PointIsNew(const Run *run, PetscInt i)
+{
+  const PetscInt n_parameters = run->basis->reduced.n_parameters;
+
+  for (PetscInt j = 0; j < run->greedy->n_samples; j++)
+    if (PointDistance(n_parameters, run->scale, &run->points[i * n_parameters], run->greedy->sample[j].p) == 0)
+      return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
 /* The next point to look at, or -1 */
 static PetscErrorCode PointNext(Run *run, PetscInt *next)
 {
-  Greedy   *g = run->greedy;
-  PetscReal farthest;
-  PetscInt  worst = 0;
+  Greedy         *g = run->greedy;
+  PetscReal       farthest;
+  PetscInt        worst  = -1;
+  const PetscBool blind  = run->basis->reduced.n == run->basis->reduced.n_used ? PETSC_TRUE : PETSC_FALSE;
+  const PetscInt  enough = blind ? 2 : 1;
 
   PetscFunctionBeginUser;
   *next = PointFarthest(run, &farthest);
-  if (farthest > 0 && g->last > SAFE * g->rtol) PetscFunctionReturn(0);
+  if (g->n_passed < enough && (farthest > 0 || g->n_samples == 1)) PetscFunctionReturn(0);
   PetscCall(PointsEstimate(run->groups, &run->basis->reduced, &run->window, run->n, run->points, run->estimate));
   for (PetscInt i = 0; i < run->n; i++)
-    if (run->estimate[i] > run->estimate[worst]) worst = i;
-  g->worst = run->estimate[worst];
+    if (PointIsNew(run, i) && (worst < 0 || run->estimate[i] > run->estimate[worst])) worst = i;
+  g->worst = worst >= 0 ? run->estimate[worst] : 0;
   *next    = g->worst > g->rtol ? worst : -1;
   PetscFunctionReturn(0);
 }
@@ -276,8 +292,8 @@ PetscErrorCode GreedyRun(Greedy *greedy, Modes modes, const ReducedWindow *windo
   PetscCall(PetscFree2(run.estimate, run.scale));
   PetscCheck(next < 0, basis->comm, PETSC_ERR_NOT_CONVERGED,
              "-sweep_rtol %.6g was not reached with %" PetscInt_FMT
-             " full solutions, the estimate is %.2g; raise -sweep_max_samples or narrow the range",
-             (double)greedy->rtol, greedy->n_samples, (double)greedy->worst);
+             " full solutions, the estimate at the last one was %.2g; raise -sweep_max_samples or narrow the range",
+             (double)greedy->rtol, greedy->n_samples, (double)greedy->last);
   PetscFunctionReturn(0);
 }
 

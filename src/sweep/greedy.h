@@ -17,9 +17,10 @@ typedef struct {
   PetscReal rtol;
   PetscInt  max_samples;
   PetscInt  n_samples;
-  Sample   *sample; /* [max_samples] */
-  PetscReal worst;  /* largest estimated relative error at all points when it ended */
-  PetscReal last;   /* estimate at the last point before it was taken in */
+  Sample   *sample;   /* [max_samples] */
+  PetscReal worst;    /* largest estimated relative error at all points when it ended */
+  PetscReal last;     /* estimate at the last point before it was taken in */
+  PetscInt  n_passed; /* points in a row that needed nothing */
   Progress *progress;
   PetscErrorCode (*keep)(void *ctx); /* called after every full solution; may be NULL */
   void *keep_ctx;

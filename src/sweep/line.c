@@ -39,6 +39,28 @@ static PetscErrorCode PointsDestroy(Points *points)
   PetscFunctionReturn(0);
 }
 
+/* Gives all ranks the branches and events of rank 0, from event n_before on */
+static PetscErrorCode TrackBroadcast(Sweep sweep, PetscInt n_before, Points *points)
+{
+  EventList  *events = &sweep->events;
+  PetscInt    n[2]   = {sweep->n_branches, events->n};
+  PetscMPIInt bytes;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Bcast(n, 2, MPIU_INT, 0, sweep->comm));
+  sweep->n_branches = n[0];
+  for (PetscInt i = 0; i < points->n; i++)
+    PetscCallMPI(MPI_Bcast(points->branch[i], (PetscMPIInt)points->modes[i].n, MPIU_INT, 0, sweep->comm));
+  while (events->n < n[1])
+    PetscCall(EventListAdd(events, &(Event){
+                                     .branch = {-1, -1}
+    }));
+  events->n = n[1];
+  PetscCall(PetscMPIIntCast((PetscInt)sizeof(Event) * (n[1] - n_before), &bytes));
+  if (bytes) PetscCallMPI(MPI_Bcast(&events->event[n_before], bytes, MPI_BYTE, 0, sweep->comm));
+  PetscFunctionReturn(0);
+}
+
 /* Follows the branches along the line; the events found are marked with the line */
 static PetscErrorCode PointsTrack(Sweep sweep, PetscInt line, Points *points)
 {
@@ -48,6 +70,7 @@ static PetscErrorCode PointsTrack(Sweep sweep, PetscInt line, Points *points)
   PetscFunctionBeginUser;
   PetscCall(TrackLine(&sweep->basis.reduced, &sweep->window, &l, points->modes, points->branch, &sweep->n_branches,
                       &sweep->events));
+  PetscCall(TrackBroadcast(sweep, before, points));
   PetscCall(PetscRealloc(sizeof(PetscInt) * (size_t)PetscMax(1, sweep->events.n), &sweep->event_line));
   for (PetscInt e = before; e < sweep->events.n; e++) sweep->event_line[e] = line;
   PetscFunctionReturn(0);
@@ -94,6 +117,7 @@ static PetscErrorCode PointsKeep(Sweep sweep, const Points *points)
       point->mode[k].sigma     = creal(modes->lambda[k]);
       point->mode[k].omega     = cimag(modes->lambda[k]);
       point->mode[k].error     = sweep->method == SWEEP_REAL ? NAN : modes->error[k];
+      point->mode[k].noise     = modes->noise[k];
       point->mode[k].condition = cabs(modes->product[k]) > 0 ? 1 / cabs(modes->product[k]) : INFINITY;
       point->mode[k].branch    = points->branch[i][k];
     }
@@ -242,6 +266,37 @@ static PetscErrorCode LabelsGrow(Sweep sweep, PetscInt n_before)
   PetscFunctionBeginUser;
   PetscCall(PetscRealloc(sizeof(*sweep->label) * (size_t)PetscMax(1, sweep->n_branches), &sweep->label));
   PetscCall(PetscArrayzero(sweep->label + n_before, sweep->n_branches - n_before));
+  PetscFunctionReturn(0);
+}
+
+PetscReal SweepPointError(const SweepPoint *point)
+{
+  PetscReal worst = 0;
+
+  for (PetscInt k = 0; k < point->n; k++) {
+    const SweepMode *m = &point->mode[k];
+
+    if (hypot(m->sigma, m->omega) > 0) worst = PetscMax(worst, (m->error - m->noise) / hypot(m->sigma, m->omega));
+  }
+  return worst;
+}
+
+PetscReal SweepWorst(Sweep sweep)
+{
+  PetscReal worst = 0;
+
+  for (PetscInt i = 0; i < GridSize(&sweep->grid); i++) worst = PetscMax(worst, SweepPointError(&sweep->point[i]));
+  return worst;
+}
+
+PetscErrorCode SweepLinesForget(Sweep sweep)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < GridSize(&sweep->grid); i++) PetscCall(PetscFree(sweep->point[i].mode));
+  PetscCall(PetscFree(sweep->label));
+  PetscCall(PetscFree(sweep->event_line));
+  PetscCall(EventListDestroy(&sweep->events));
+  sweep->n_branches = 0;
   PetscFunctionReturn(0);
 }
 

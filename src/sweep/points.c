@@ -1,7 +1,8 @@
 /*
-   Many points on the reduced model. The errors handed on are MARGIN times those of estimate.c, which are sharp at the points
-   that the corrections come from and see less in between, up to 14 times on options/massi2005_sweep.yaml. Each point is a dense problem of its own, so ranks share the points, not a point; the
-   results are then sent to all ranks, bit by bit the same.
+   Many points on the reduced model. The errors handed on are MARGIN times those of estimate.c: these are sharp at the
+   points that the corrections come from, and see less in between (scripts/study_sweep compares them with the truth).
+   Each point is a dense problem of its own, so ranks share the points, not a point; the results are then sent to all
+   ranks, bit by bit the same.
 */
 #include "points.h"
 
@@ -37,8 +38,7 @@ static PetscErrorCode PointSolve(const Reduced *reduced, const ReducedWindow *wi
   PetscFunctionReturn(0);
 }
 
-/* Sends the modes of one point from its owner to all */
-static PetscErrorCode ModesBroadcast(MPI_Comm comm, PetscMPIInt owner, ReducedModes *modes)
+PetscErrorCode ReducedModesBroadcast(MPI_Comm comm, PetscMPIInt owner, ReducedModes *modes)
 {
   PetscInt    length[2] = {modes->n, modes->size};
   PetscMPIInt rank, n, n_vector;
@@ -46,7 +46,10 @@ static PetscErrorCode ModesBroadcast(MPI_Comm comm, PetscMPIInt owner, ReducedMo
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Bcast(length, 2, MPIU_INT, owner, comm));
-  if (rank != owner) PetscCall(ReducedModesCreate(length[0], length[1], modes));
+  if (rank != owner) {
+    PetscCall(ReducedModesDestroy(modes));
+    PetscCall(ReducedModesCreate(length[0], length[1], modes));
+  }
   PetscCall(PetscMPIIntCast(2 * length[0], &n));
   PetscCall(PetscMPIIntCast(2 * length[0] * length[1], &n_vector));
   PetscCallMPI(MPI_Bcast(modes->lambda, n, MPIU_REAL, owner, comm));
@@ -70,7 +73,7 @@ PetscErrorCode PointsSolve(const Groups *groups, const Reduced *reduced, const R
   for (PetscInt i = 0; i < n; i++)
     if (GroupsOwner(groups, i) == rank)
       PetscCall(PointSolve(reduced, window, &points[i * reduced->n_parameters], &modes[i]));
-  for (PetscInt i = 0; i < n; i++) PetscCall(ModesBroadcast(groups->comm, GroupsOwner(groups, i), &modes[i]));
+  for (PetscInt i = 0; i < n; i++) PetscCall(ReducedModesBroadcast(groups->comm, GroupsOwner(groups, i), &modes[i]));
   PetscFunctionReturn(0);
 }
 

@@ -14,9 +14,16 @@
 #include "eigen.h"
 #include "dense.h"
 
+#define BAR      3     /* widths of the error bar */
+#define TINY     1e-9  /* growth below this, relative to |lambda|, is rounding */
 #define PAIR     1e-7  /* relative difference of equal frequencies */
 #define CLUSTER  1e-9  /* relative difference of equal eigenvalues */
 #define SINGULAR 1e-10 /* least pivot, relative, of the products of a cluster that is not defective */
+
+PetscBool ReducedIsUnstable(PetscComplex lambda, PetscReal error)
+{
+  return creal(lambda) > PetscMax(BAR * error, TINY * cabs(lambda)) ? PETSC_TRUE : PETSC_FALSE;
+}
 
 PetscErrorCode ReducedModesCreate(PetscInt n, PetscInt size, ReducedModes *modes)
 {
@@ -304,6 +311,7 @@ PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const R
   PetscCall(PencilEigen(&pencil, window, modes));
   PetscCall(Sort(modes));
   PetscCall(Finish(&pencil, Ms, modes));
+  if (!damped) PetscCall(RoundingMarkRigid(reduced, p, window, modes));
   PetscCall(PetscFree4(pencil.K, C, pencil.M, Ms));
   PetscFunctionReturn(0);
 }

@@ -48,10 +48,23 @@ PetscErrorCode ReducedModesCopy(const ReducedModes *from, ReducedModes *to);
 PetscErrorCode ReducedModesSelect(const ReducedModes *from, PetscInt n, const PetscInt list[], ReducedModes *to);
 PetscErrorCode ReducedModesDestroy(ReducedModes *modes);
 
+/* Whether growth exceeds three times the error of its eigenvalue, and rounding, 1e-9 of it */
+PetscBool ReducedIsUnstable(PetscComplex lambda, PetscReal error);
+
 /* K(p) (or C, M) on the leading n x n block, array [n * n]; any_nonzero (may be NULL) = whether a coefficient is not
    zero */
 PetscErrorCode ReducedSum(const Reduced *reduced, OperatorsTermKind kind, const PetscReal p[], PetscInt n,
                           PetscReal sum[], PetscBool *any_nonzero);
+
+/* rounding.c - E [n_used * n_used] of the mesh's rounding; its effect on kappa, times |y^T D x|, work [n]; marks the modes
+   that are zero within it */
+#define ROUNDING_SMALL 1e-3 /* beside the window: frequencies that may be zeros */
+#define ROUNDING_RIGID 100  /* kappa below this many times its rounding is zero */
+void           RoundingEnergy(const Reduced *reduced, const PetscReal p[], PetscReal E[]);
+PetscReal      RoundingProduct(PetscInt n, const PetscReal E[], const PetscComplex x[], const PetscComplex y[],
+                               PetscComplex work[]);
+PetscErrorCode RoundingMarkRigid(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
+                                 ReducedModes *modes);
 
 /* frictionless.c - sets to zero in p[] what friction and damping are proportional to; false where some of either
    remains */

@@ -2,13 +2,11 @@
    Full solutions are kept in the output folder until the sweep is complete, so that a killed sweep goes on where it stopped.
    Each rank writes its part of the new vectors after every full solution, sweep_restart_<k>_rank<r>, under a temporary
    name that becomes final only when all ranks have written. The dense model is made again from the same blocks of
-   vectors, bit by bit the same. A fingerprint of matrices, window, points and ranks tells whether the files belong to this
+   vectors: on one rank bit by bit the same. A fingerprint of matrices, window, points and ranks tells whether the files belong to this
    sweep; files of another one are ignored and in the end replaced.
 */
 #include "sweepimpl.h"
-#include <errno.h>
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 #define N_PRINTS 10
@@ -16,7 +14,7 @@
 /* What stands before the vectors in each file */
 typedef struct {
   PetscReal print[N_PRINTS], last;
-  PetscInt  n_samples, n_used, first, n, n_blocks, n_local;
+  PetscInt  n_samples, n_passed, n_used, first, n, n_blocks, n_local;
 } Header;
 
 /* Numbers that differ between sweeps that must not be mixed */
@@ -47,7 +45,8 @@ static PetscErrorCode FingerprintMake(Sweep sweep, PetscReal print[N_PRINTS])
   PetscCall(PetscMalloc1(r->n_parameters, &p));
   for (PetscInt i = 0; i < GridSize(&sweep->grid); i++) {
     GridPoint(&sweep->grid, i, p);
-    for (PetscInt k = 0; k < r->n_parameters; k++) print[8] = 0.99 * print[8] + p[k];
+    for (PetscInt k = 0; k < r->n_parameters; k++)
+      print[8] = 0.99 * print[8] + asinh(p[k]); /* large and small ones count alike */
   }
   PetscCall(PetscFree(p));
   print[9] = (PetscReal)r->n_terms;
@@ -128,6 +127,7 @@ PetscErrorCode SweepKeep(void *ctx)
   PetscCall(PetscMemzero(&h, sizeof(h)));
   PetscCall(PetscArraycpy(h.print, sweep->print, N_PRINTS));
   h.last      = sweep->greedy.last;
+  h.n_passed  = sweep->greedy.n_passed;
   h.n_samples = sweep->greedy.n_samples, h.n_used = basis->reduced.n_used;
   h.first = sweep->n_kept, h.n = basis->reduced.n, h.n_blocks = basis->n_blocks;
   PetscCall(BVGetSizes(basis->vectors, &h.n_local, NULL, NULL));
@@ -141,15 +141,26 @@ PetscErrorCode SweepKeep(void *ctx)
   PetscCall(VectorsTransfer(file, PETSC_TRUE, basis->vectors, &h, &good));
   if (file && fclose(file)) good = PETSC_FALSE;
   PetscCall(AllGood(sweep->comm, &good));
+  if (good && rename(part, name)) good = PETSC_FALSE;
   if (!good) (void)unlink(part);
-  PetscCheck(good, sweep->comm, PETSC_ERR_FILE_WRITE, "cannot write '%s': %s; -sweep_restart 0 does without it", name,
-             strerror(errno ? errno : ENOSPC));
-  if (rename(part, name)) good = PETSC_FALSE;
   PetscCall(AllGood(sweep->comm, &good));
-  PetscCheck(good, sweep->comm, PETSC_ERR_FILE_WRITE, "cannot write '%s'; -sweep_restart 0 does without it", name);
+  if (!good) { /* the sweep itself needs no such file */
+    PetscCall(
+      PetscFPrintf(sweep->comm, stderr, "squeal: warning: cannot write '%s'; a killed sweep will begin anew\n", name));
+    sweep->greedy.keep = NULL;
+    PetscFunctionReturn(0);
+  }
   sweep->n_kept = basis->reduced.n;
   sweep->n_files++;
   PetscFunctionReturn(0);
+}
+
+/* Whether the fingerprints are those of one sweep: norms of matrices may differ in their last digits */
+static PetscBool PrintsAgree(const PetscReal a[N_PRINTS], const PetscReal b[N_PRINTS])
+{
+  for (int i = 0; i < N_PRINTS; i++)
+    if (PetscAbsReal(a[i] - b[i]) > 1e-12 * PetscAbsReal(a[i])) return PETSC_FALSE;
+  return PETSC_TRUE;
 }
 
 /* Reads file k into the basis; good = whether it exists, is whole and belongs to this sweep */
@@ -167,8 +178,8 @@ static PetscErrorCode FileResume(Sweep sweep, PetscInt k, PetscBool *good)
   *good = file ? PETSC_TRUE : PETSC_FALSE;
   Transfer(file, PETSC_FALSE, &h, sizeof(h), 1, good);
   PetscCall(BVGetSizes(basis->vectors, &n_local, NULL, NULL));
-  if (*good && (memcmp(h.print, sweep->print, sizeof(h.print)) || h.first != basis->reduced.n || h.n_local != n_local ||
-                h.n_samples > sweep->greedy.max_samples || h.n_blocks > BASIS_MAX_BLOCKS))
+  if (*good && (h.n < h.first || h.n_used > h.n || !PrintsAgree(h.print, sweep->print) || h.first != basis->reduced.n ||
+                h.n_local != n_local || h.n_samples > sweep->greedy.max_samples || h.n_blocks > BASIS_MAX_BLOCKS))
     *good = PETSC_FALSE;
   PetscCall(AllGood(sweep->comm, good));
   if (*good) {
@@ -184,6 +195,7 @@ static PetscErrorCode FileResume(Sweep sweep, PetscInt k, PetscBool *good)
   basis->reduced.n_used   = h.n_used;
   sweep->greedy.n_samples = h.n_samples;
   sweep->greedy.last      = h.last;
+  sweep->greedy.n_passed  = h.n_passed;
   sweep->n_kept           = h.n;
   PetscFunctionReturn(0);
 }
@@ -206,12 +218,14 @@ PetscErrorCode SweepResume(Sweep sweep)
 
 PetscErrorCode SweepForget(Sweep sweep)
 {
-  char name[PETSC_MAX_PATH_LEN];
+  char name[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < sweep->n_files; k++) {
+  for (PetscInt k = 0, left = 1; left && sweep->restart; k++) { /* also those of an earlier, longer sweep */
     PetscCall(FileName(sweep, k, "", name));
-    (void)unlink(name);
+    PetscCall(FileName(sweep, k, ".part", part));
+    (void)unlink(part);
+    left = unlink(name) == 0 || k < sweep->n_files;
   }
   PetscFunctionReturn(0);
 }

@@ -11,8 +11,8 @@
 
 /* The box: parameters, and half widths relative to their values */
 typedef struct {
-  PetscInt  n, parameter[16];
-  PetscReal half[16];
+  PetscInt  n, parameter[SWEEP_MAX_UNCERTAIN];
+  PetscReal half[SWEEP_MAX_UNCERTAIN];
 } Box;
 
 static PetscErrorCode BoxRead(Sweep sweep, Box *box)
@@ -25,8 +25,8 @@ static PetscErrorCode BoxRead(Sweep sweep, Box *box)
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetParameters(sweep->operators, &n_parameters, &parameters));
   PetscCall(PetscStrToArray(sweep->uncertain, ',', &n, &names));
-  PetscCheck(n >= 1 && n <= 16, sweep->comm, PETSC_ERR_USER_INPUT, "-sweep_uncertain '%s' must name 1 to 16 parameters",
-             sweep->uncertain);
+  PetscCheck(n >= 1 && n <= SWEEP_MAX_UNCERTAIN, sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_uncertain '%s' must name 1 to %d parameters", sweep->uncertain, SWEEP_MAX_UNCERTAIN);
   PetscCheck(sweep->n_percent == 1 || sweep->n_percent == n, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_percent has %" PetscInt_FMT " values for %d parameters; give one, or one for each",
              sweep->n_percent, n);
@@ -37,6 +37,9 @@ static PetscErrorCode BoxRead(Sweep sweep, Box *box)
     PetscCall(ParameterFind(sweep->comm, "-sweep_uncertain", names[k], n_parameters, parameters, &box->parameter[k]));
     PetscCheck(percent > 0 && percent < 100, sweep->comm, PETSC_ERR_USER_INPUT,
                "-sweep_percent %.6g must lie between 0 and 100", (double)percent);
+    PetscCheck(sweep->grid.base[box->parameter[k]] != 0, sweep->comm, PETSC_ERR_USER_INPUT,
+               "-sweep_uncertain %s is 0 in this scene, and so is any percentage of it; give -%s another value",
+               names[k], names[k]);
     box->half[k] = percent / 100;
   }
   PetscCall(PetscStrToArrayDestroy(n, names));
@@ -56,7 +59,7 @@ static PetscReal VanDerCorput(PetscInt i, PetscInt base)
 static void BoxPoint(const Box *box, const PetscReal base[], PetscInt n_parameters, PetscInt n_corners, PetscInt i,
                      PetscReal p[])
 {
-  static const PetscInt primes[16] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53};
+  static const PetscInt primes[SWEEP_MAX_UNCERTAIN] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53};
 
   for (PetscInt k = 0; k < n_parameters; k++) p[k] = base[k];
   for (PetscInt k = 0; k < box->n && i > 0; k++) {
@@ -67,7 +70,8 @@ static void BoxPoint(const Box *box, const PetscReal base[], PetscInt n_paramete
   }
 }
 
-/* Risks of the modes of the nominal point, by what they become at the others */
+/* Risks of the modes of the nominal point, by what they become at the others; the last entry is for modes that the nominal
+   point does not have in the band */
 static PetscErrorCode RisksCount(Sweep sweep, PetscInt n, const PetscReal points[], const ReducedModes modes[],
                                  SweepRisk risk[])
 {
@@ -77,13 +81,15 @@ static PetscErrorCode RisksCount(Sweep sweep, PetscInt n, const PetscReal points
   for (PetscInt i = 0; i < n; i++) {
     PetscBool certain;
 
+    sweep->worst_risk = PetscMax(sweep->worst_risk, ModesWorst(&modes[i], &sweep->window));
+
     PetscCall(PetscMalloc1(modes[i].n, &match));
     PetscCall(TrackMatch(&sweep->basis.reduced, points, &modes[0], &modes[i], match, &certain));
     for (PetscInt k = 0; k < modes[i].n; k++) {
       const PetscReal sigma = creal(modes[i].lambda[k]);
-      SweepRisk      *r     = match[k] >= 0 ? &risk[match[k]] : NULL;
+      SweepRisk      *r     = &risk[match[k] >= 0 ? match[k] : modes[0].n];
 
-      if (!r || !SweepIsUnstable(modes[i].lambda[k], modes[i].error[k])) continue;
+      if (!ReducedIsUnstable(modes[i].lambda[k], modes[i].error[k])) continue;
       r->n_unstable++;
       if (sigma <= r->largest) continue;
       r->largest = sigma;
@@ -104,10 +110,10 @@ static PetscErrorCode RisksKeep(Sweep sweep, const PetscReal p[], const ReducedM
   PetscCall(PetscMalloc1(nominal->n, &label));
   PetscCall(SweepLabelModes(sweep, p, nominal, label));
   sweep->n_risks = 0;
-  for (PetscInt k = 0; k < nominal->n; k++) {
+  for (PetscInt k = 0; k <= nominal->n; k++) {
     if (!risk[k].n_unstable) continue;
-    risk[k].nominal = creal(nominal->lambda[k]);
-    PetscCall(PetscStrncpy(risk[k].label, label[k], sizeof(risk[k].label)));
+    risk[k].nominal = k < nominal->n ? creal(nominal->lambda[k]) : NAN;
+    PetscCall(PetscStrncpy(risk[k].label, k < nominal->n ? label[k] : "not in the band before", sizeof(risk[k].label)));
     risk[sweep->n_risks++] = risk[k];
   }
   PetscCall(PetscFree(label));
@@ -129,11 +135,14 @@ PetscErrorCode SweepRobustness(Sweep sweep)
   PetscCall(PetscMalloc2(n * n_parameters, &points, n, &modes));
   for (PetscInt i = 0; i < n; i++)
     BoxPoint(&box, sweep->grid.base, n_parameters, n_corners, i, &points[i * n_parameters]);
-  sweep->greedy.last = PETSC_MAX_REAL;
-  PetscCall(
-    GreedyRun(&sweep->greedy, sweep->modes, &sweep->window, 1 + n_corners, points, &sweep->groups, &sweep->basis));
+  sweep->greedy.last        = PETSC_MAX_REAL;
+  sweep->greedy.n_passed    = 0;
+  sweep->greedy.max_samples = sweep->greedy.n_samples + sweep->max_samples;
+  if (!sweep->whole)
+    PetscCall(
+      GreedyRun(&sweep->greedy, sweep->modes, &sweep->window, 1 + n_corners, points, &sweep->groups, &sweep->basis));
   PetscCall(PointsSolve(&sweep->groups, &sweep->basis.reduced, &sweep->window, n, points, modes));
-  PetscCall(PetscCalloc1(PetscMax(1, modes[0].n), &sweep->risk));
+  PetscCall(PetscCalloc1(modes[0].n + 1, &sweep->risk));
   PetscCall(RisksCount(sweep, n, points, modes, sweep->risk));
   PetscCall(RisksKeep(sweep, points, &modes[0], sweep->risk));
   sweep->n_combinations = n;

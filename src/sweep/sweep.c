@@ -6,7 +6,10 @@
 #include <petsctime.h>
 #include <string.h>
 
-#define MAX_UNCERTAIN 16
+#define WHOLE      200     /* unknowns up to which the basis is the whole space */
+#define MAX_POINTS 1000000 /* of a grid */
+#define MAX_TRAIN  100     /* points that the greedy choice looks at */
+#define MAX_ROUNDS 4
 
 PetscErrorCode SweepCreate(MPI_Comm comm, Sweep *sweep)
 {
@@ -76,13 +79,15 @@ static PetscErrorCode ReadExtras(Sweep sweep, PetscOptionItems *PetscOptionsObje
                              sweep->sensitivities, &sweep->sensitivities, NULL));
   PetscCall(PetscOptionsString("-sweep_uncertain", "parameters known to -sweep_percent only: what can become unstable",
                                "sweep.h", sweep->uncertain, sweep->uncertain, sizeof(sweep->uncertain), NULL));
-  PetscCall(PetscMalloc1(MAX_UNCERTAIN, &sweep->percent));
-  sweep->n_percent = MAX_UNCERTAIN;
+  PetscCall(PetscCalloc1(SWEEP_MAX_UNCERTAIN + 1, &sweep->percent));
+  sweep->n_percent = SWEEP_MAX_UNCERTAIN + 1;
   PetscCall(PetscOptionsRealArray("-sweep_percent", "their uncertainty, percent; one value (10) or one for each",
                                   "sweep.h", sweep->percent, &sweep->n_percent, &set));
+  PetscCheck(!set || sweep->uncertain[0], sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_percent does nothing without -sweep_uncertain");
   if (!set) sweep->n_percent = 1, sweep->percent[0] = 10;
-  PetscCall(PetscOptionsInt("-sweep_groups", "groups of ranks that share the points (0: every rank is one)", "sweep.h",
-                            sweep->n_groups, &sweep->n_groups, NULL));
+  PetscCall(PetscOptionsInt("-sweep_groups", "ranks that share the points (0: all; the full solutions use all ranks)",
+                            "sweep.h", sweep->n_groups, &sweep->n_groups, NULL));
   PetscCall(PetscOptionsBool("-sweep_restart", "go on where a sweep of the same scene in -output_dir was stopped",
                              "sweep.h", sweep->restart, &sweep->restart, NULL));
   PetscFunctionReturn(0);
@@ -106,6 +111,12 @@ PetscErrorCode SweepSetFromOptions(Sweep sweep)
              "-sweep_real_modes %" PetscInt_FMT " must be positive", sweep->n_real);
   PetscCheck(sweep->n_verify >= 0, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_verify %" PetscInt_FMT " must not be negative", sweep->n_verify);
+  PetscCheck(sweep->n_percent <= SWEEP_MAX_UNCERTAIN, sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_percent has more than %d values", SWEEP_MAX_UNCERTAIN);
+  PetscCheck(sweep->method == SWEEP_REDUCED || (!sweep->uncertain[0] && !sweep->sensitivities), sweep->comm,
+             PETSC_ERR_USER_INPUT, "-sweep_uncertain and -sweep_sensitivities need -sweep_method reduced");
+  PetscCheck(sweep->method != SWEEP_FULL || !sweep->n_verify, sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_verify compares with full solutions; -sweep_method full has nothing else");
   PetscCheck(sweep->n_groups >= 0 && sweep->n_groups <= size, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_groups %" PetscInt_FMT " must lie between 0 and the number of ranks, %d", sweep->n_groups,
              (int)size);
@@ -144,25 +155,74 @@ static PetscErrorCode GridSetUp(Sweep sweep)
     for (PetscInt i = 0; i < grid->n[k]; i++)
       PetscCall(OperatorsCheckParameter(sweep->operators, grid->parameter[k], grid->value[k][i]));
   }
+  PetscCheck(n_names == 1 || grid->n[0] <= MAX_POINTS / grid->n[1], sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_values and -sweep_values_2 span more than %d points", MAX_POINTS);
+  PetscCheck(!sweep->n_verify || grid->n[0] > 1, sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_verify looks between the -sweep_values: give two or more");
   PetscCheck(n_names == 1 || grid->parameter[0] != grid->parameter[1], sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_parameter names '%s' twice", names[0]);
   PetscCall(PetscStrToArrayDestroy(n_names, names));
   PetscFunctionReturn(0);
 }
 
-/* The points that the basis is made for: all of a short sweep, every k-th of a long one */
-static PetscErrorCode BasisMake(Sweep sweep, PetscInt n_most)
+/* Enlarges the basis for some of the points: every k-th of a long sweep, or those whose error exceeds rtol */
+static PetscErrorCode BasisMake(Sweep sweep, PetscBool exceeding)
 {
   const PetscInt n_all = GridSize(&sweep->grid), n_parameters = sweep->grid.n_parameters;
-  const PetscInt n = PetscMin(n_all, n_most);
+  const PetscInt step = exceeding ? 1 : PetscMax(1, (n_all - 1) / (MAX_TRAIN - 1));
+  PetscInt       n    = 0;
   PetscReal     *points;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n * n_parameters, &points));
-  for (PetscInt i = 0; i < n; i++)
-    GridPoint(&sweep->grid, n > 1 ? (i * (n_all - 1)) / (n - 1) : 0, &points[i * n_parameters]);
+  PetscCall(PetscMalloc1((MAX_TRAIN + 2) * n_parameters, &points));
+  for (PetscInt i = 0; i < n_all && n <= MAX_TRAIN; i += step)
+    if (!exceeding || SweepPointError(&sweep->point[i]) > sweep->rtol)
+      GridPoint(&sweep->grid, i, &points[n++ * n_parameters]);
+  if (!exceeding && (n_all - 1) % step) GridPoint(&sweep->grid, n_all - 1, &points[n++ * n_parameters]);
   PetscCall(GreedyRun(&sweep->greedy, sweep->modes, &sweep->window, n, points, &sweep->groups, &sweep->basis));
   PetscCall(PetscFree(points));
+  PetscFunctionReturn(0);
+}
+
+/* A small system needs no reduction: all unit vectors; whole = whether the mass matrix allows it */
+static PetscErrorCode BasisWhole(Sweep sweep, PetscBool *whole)
+{
+  PetscInt n, first, last, n_added;
+  BV       block;
+
+  PetscFunctionBeginUser;
+  *whole = PETSC_FALSE;
+  PetscCall(MatGetSize(sweep->basis.M, &n, NULL));
+  if (n > WHOLE) PetscFunctionReturn(0);
+  PetscCall(BasisCreateBlock(&sweep->basis, n, &block));
+  for (PetscInt i = 0; i < n; i++) {
+    Vec unit;
+
+    PetscCall(BVGetColumn(block, i, &unit));
+    PetscCall(VecSet(unit, 0));
+    PetscCall(VecGetOwnershipRange(unit, &first, &last));
+    if (i >= first && i < last) PetscCall(VecSetValue(unit, i, 1, INSERT_VALUES));
+    PetscCall(VecAssemblyBegin(unit));
+    PetscCall(VecAssemblyEnd(unit));
+    PetscCall(BVRestoreColumn(block, i, &unit));
+  }
+  PetscCall(BasisAdd(&sweep->basis, block, 0, &n_added));
+  PetscCall(BVDestroy(&block));
+  PetscCall(BasisPromote(&sweep->basis));
+  *whole = n_added == n ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Greedy basis, kept in the output folder as it grows */
+static PetscErrorCode BasisGreedy(Sweep sweep)
+{
+  PetscFunctionBeginUser;
+  if (sweep->restart) {
+    PetscCall(SweepResume(sweep));
+    sweep->greedy.keep     = SweepKeep;
+    sweep->greedy.keep_ctx = sweep;
+  }
+  PetscCall(BasisMake(sweep, PETSC_FALSE));
   PetscFunctionReturn(0);
 }
 
@@ -177,22 +237,36 @@ static PetscErrorCode ModelMake(Sweep sweep)
   PetscCall(OperatorsSetParameters(sweep->operators, p));
   PetscCall(PetscFree(p));
   PetscCall(BasisCreate(sweep->comm, sweep->operators, &sweep->basis));
+  sweep->greedy.rtol        = sweep->rtol;
+  sweep->greedy.max_samples = sweep->max_samples;
+  sweep->greedy.progress    = &sweep->progress;
+  PetscCall(PetscCalloc1(2 * sweep->max_samples + 2, &sweep->greedy.sample));
+  sweep->greedy.last = PETSC_MAX_REAL;
   if (sweep->method == SWEEP_REAL) {
     PetscCall(SweepRealBasis(sweep));
     PetscFunctionReturn(0);
   }
-  sweep->greedy.rtol        = sweep->rtol;
-  sweep->greedy.max_samples = sweep->max_samples;
-  sweep->greedy.progress    = &sweep->progress;
-  PetscCall(PetscCalloc1(sweep->max_samples + 1, &sweep->greedy.sample));
-  sweep->greedy.last = PETSC_MAX_REAL;
-  if (sweep->restart) {
-    PetscCall(SweepResume(sweep));
-    sweep->greedy.keep     = SweepKeep;
-    sweep->greedy.keep_ctx = sweep;
+  PetscCall(BasisWhole(sweep, &sweep->whole));
+  if (!sweep->whole) PetscCall(BasisGreedy(sweep));
+  PetscFunctionReturn(0);
+}
+
+/* All points; the basis grows again where one of them exceeds rtol, which only some were asked for */
+static PetscErrorCode LinesSolve(Sweep sweep)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SweepLines(sweep));
+  for (int round = 1; round < MAX_ROUNDS && sweep->method == SWEEP_REDUCED && !sweep->whole; round++) {
+    if (SweepWorst(sweep) <= sweep->rtol) break;
+    PetscCall(BasisMake(sweep, PETSC_TRUE));
+    PetscCall(SweepLinesForget(sweep));
+    PetscCall(SweepLines(sweep));
   }
-  PetscCall(BasisMake(sweep, 100));
-  sweep->greedy.keep = NULL;
+  sweep->greedy.keep  = NULL;
+  sweep->greedy.worst = SweepWorst(sweep);
+  PetscCheck(sweep->method != SWEEP_REDUCED || sweep->whole || sweep->greedy.worst <= sweep->rtol, sweep->comm,
+             PETSC_ERR_NOT_CONVERGED, "-sweep_rtol %.6g was not reached, the estimate is %.2g; raise -sweep_rtol",
+             (double)sweep->rtol, (double)sweep->greedy.worst);
   PetscFunctionReturn(0);
 }
 
@@ -228,7 +302,7 @@ PetscErrorCode SweepSolve(Sweep sweep, Results results)
   }
   PetscCall(ModelMake(sweep));
   PetscCall(Clock(sweep, 0, &since));
-  PetscCall(SweepLines(sweep));
+  PetscCall(LinesSolve(sweep));
   PetscCall(Clock(sweep, 1, &since));
   if (sweep->n_verify) PetscCall(SweepVerify(sweep));
   PetscCall(Clock(sweep, 3, &since));

@@ -6,7 +6,8 @@
 #include "track.h"
 #include "values.h"
 
-#define SWEEP_MAX_TEXT 65536 /* length of a list of values */
+#define SWEEP_MAX_TEXT      65536 /* length of a list of values */
+#define SWEEP_MAX_UNCERTAIN 16
 
 typedef enum { SWEEP_REDUCED, SWEEP_FULL, SWEEP_REAL } SweepMethod;
 
@@ -14,6 +15,7 @@ typedef enum { SWEEP_REDUCED, SWEEP_FULL, SWEEP_REAL } SweepMethod;
 typedef struct {
   PetscReal sigma, omega; /* rad/s */
   PetscReal error;        /* estimated error of lambda, rad/s; NaN where there is no estimate */
+  PetscReal noise;        /* the part of it that is rounding */
   PetscReal condition;
   PetscInt  branch; /* from 0 on; -1 where branches are not followed */
   PetscBool unstable, numerical;
@@ -69,6 +71,7 @@ struct _p_Sweep {
   Greedy         greedy;
   SweepPoint    *point;
   PetscInt       n_branches;
+  PetscBool      whole; /* the basis is the whole space */
   BranchName    *label; /* [n_branches] */
   EventList      events;
   PetscInt      *event_line;   /* index along the second axis of each event */
@@ -76,19 +79,23 @@ struct _p_Sweep {
   SweepCheck    *check;
   SweepRisk     *risk;
   PetscInt       n_checks, n_risks, n_combinations;
-  const char    *folder;    /* of the restart files */
-  PetscReal      print[10]; /* tells whether they belong to this sweep */
+  PetscReal      worst_risk; /* largest estimated relative error of all combinations */
+  const char    *folder;     /* of the restart files */
+  PetscReal      print[10];  /* tells whether they belong to this sweep */
   PetscInt       n_files, n_kept;
   PetscLogDouble seconds[4]; /* basis, points, onsets, verification */
 };
 
 /* line.c - solves the points of the grid line by line, follows the branches, names them */
 PETSC_INTERN PetscErrorCode SweepLines(Sweep sweep);
+PETSC_INTERN PetscErrorCode SweepLinesForget(Sweep sweep);
+/* Largest estimated relative error of a point, and of all, but for rounding */
+PETSC_INTERN PetscReal SweepPointError(const SweepPoint *point);
+PETSC_INTERN PetscReal SweepWorst(Sweep sweep);
 /* Names of all modes of a point from their shapes on the mesh */
 PETSC_INTERN PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedModes *modes,
                                             char label[][32]);
-/* classify.c - whether growth exceeds its error bar; that for all points; distance of a point to the nearest onset of a branch, relative, or NaN */
-PETSC_INTERN PetscBool      SweepIsUnstable(PetscComplex lambda, PetscReal error);
+/* classify.c - which points are unstable, or numerically so; distance of a point to the nearest onset of a branch, relative, or NaN */
 PETSC_INTERN PetscErrorCode SweepClassify(Sweep sweep);
 PETSC_INTERN PetscReal      SweepOnsetDistance(Sweep sweep, PetscInt point, PetscInt branch);
 /* confirm.c - onsets on the reduced model, then on the full problem */

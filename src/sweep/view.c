@@ -54,25 +54,39 @@ static PetscErrorCode BranchesView(Sweep sweep, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
-/* Up to which value is it quiet? first = the onset nearest to the first value, or NULL */
+/* Whether a point has an unstable mode */
+static PetscBool PointIsUnstable(const SweepPoint *point)
+{
+  for (PetscInt k = 0; k < point->n; k++)
+    if (point->mode[k].unstable) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Up to which value is it quiet? first = the onset nearest to the first value, or NULL. An unstable point before any onset
+   means that its onset was not located. */
 static PetscErrorCode AnswerView(Sweep sweep, const OperatorsParameter *parameter, const Event *first,
                                  PetscViewer viewer)
 {
-  const double begin = (double)sweep->grid.value[0][0], end = (double)sweep->grid.value[0][sweep->grid.n[0] - 1];
-  PetscBool    unstable = PETSC_FALSE;
+  const PetscReal *value = sweep->grid.value[0];
+  const char      *unit = parameter->unit, *space = unit[0] ? " " : "";
+  PetscInt         i = 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < sweep->point[0].n; k++)
-    if (sweep->point[0].mode[k].unstable) unstable = PETSC_TRUE;
-  if (unstable)
-    PetscCall(
-      PetscViewerASCIIPrintf(viewer, "unstable already at %s = %.6g %s\n", parameter->name, begin, parameter->unit));
-  else if (first)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "quiet from %s = %.6g to %.10g %s\n", parameter->name, begin,
-                                     (double)first->critical, parameter->unit));
+  while (i < sweep->grid.n[0] && !PointIsUnstable(&sweep->point[i])) i++;
+  if (i == 0)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "unstable already at %s = %.6g%s%s\n", parameter->name, (double)value[0],
+                                     space, unit));
+  else if (first &&
+           (i == sweep->grid.n[0] || PetscAbsReal(first->critical - value[0]) <= PetscAbsReal(value[i] - value[0])))
+    PetscCall(PetscViewerASCIIPrintf(viewer, "quiet from %s = %.6g to %.10g%s%s\n", parameter->name, (double)value[0],
+                                     (double)first->critical, space, unit));
+  else if (i < sweep->grid.n[0])
+    PetscCall(PetscViewerASCIIPrintf(viewer, "unstable at %s = %.6g%s%s; where it becomes so was not located\n",
+                                     parameter->name, (double)value[i], space, unit));
   else
-    PetscCall(PetscViewerASCIIPrintf(viewer, "quiet from %s = %.6g to %.6g %s: no onset in the band\n", parameter->name,
-                                     begin, end, parameter->unit));
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "quiet from %s = %.6g to %.6g%s%s: no onset in the band with growth below %.6g 1/s\n", parameter->name,
+      (double)value[0], (double)value[i - 1], space, unit, (double)sweep->window.growth));
   PetscFunctionReturn(0);
 }
 
@@ -128,7 +142,8 @@ static PetscErrorCode RisksView(Sweep sweep, PetscViewer viewer)
   if (!sweep->uncertain[0]) PetscFunctionReturn(0);
   PetscCall(
     PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " combinations of %s: ", sweep->n_combinations, sweep->uncertain));
-  PetscCall(PetscViewerASCIIPrintf(viewer, sweep->n_risks ? "these can become unstable\n" : "all stable\n"));
+  PetscCall(PetscViewerASCIIPrintf(viewer, sweep->n_risks ? "these can become unstable" : "all stable"));
+  PetscCall(PetscViewerASCIIPrintf(viewer, " (largest estimated error %.1e)\n", (double)sweep->worst_risk));
   for (PetscInt i = 0; i < sweep->n_risks; i++) {
     const SweepRisk *r = &sweep->risk[i];
 
@@ -160,11 +175,13 @@ PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer)
                                    "%" PetscInt_FMT " points, %" PetscInt_FMT " branches, %" PetscInt_FMT
                                    " unstable eigenvalues, %" PetscInt_FMT " more numerical only\n",
                                    GridSize(&sweep->grid), sweep->n_branches, n_unstable, n_numerical));
-  if (sweep->method == SWEEP_REDUCED)
+  if (sweep->whole)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "basis of all %" PetscInt_FMT " unknowns: no error but rounding\n",
+                                     sweep->basis.reduced.n_used));
+  else if (sweep->method == SWEEP_REDUCED)
     PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "basis of %" PetscInt_FMT
-                                     " vectors; largest estimated error %.1e (an estimate, not a "
-                                     "bound)\n",
+                                     "basis of %" PetscInt_FMT " vectors; largest estimated error %.1e (an estimate, "
+                                     "not a bound); modes counted without friction at the full solutions\n",
                                      sweep->basis.reduced.n_used, (double)sweep->greedy.worst));
   PetscCall(PetscViewerASCIIPrintf(viewer, "time: basis %.2f s, points %.2f s, onsets %.2f s, checks %.2f s\n",
                                    sweep->seconds[0], sweep->seconds[1], sweep->seconds[2], sweep->seconds[3]));

@@ -141,10 +141,12 @@ static PetscErrorCode RiskTableWrite(Sweep sweep, Results results)
                      &table));
   for (PetscInt i = 0; i < sweep->n_risks; i++) {
     const SweepRisk *r = &sweep->risk[i];
+    char             nominal[32];
 
-    PetscCall(ResultsTableRow(table, "\"%s\",%.15g,%.15g,%.15g,%.15g,%d,%d", r->label,
-                              (double)(r->omega / (2 * PETSC_PI)), (double)r->nominal, (double)r->largest,
-                              (double)r->error, (int)r->n_unstable, (int)sweep->n_combinations));
+    PetscCall(NumberOrEmpty(r->nominal, nominal));
+    PetscCall(ResultsTableRow(table, "\"%s\",%.15g,%s,%.15g,%.15g,%d,%d", r->label, (double)(r->omega / (2 * PETSC_PI)),
+                              nominal, (double)r->largest, (double)r->error, (int)r->n_unstable,
+                              (int)sweep->n_combinations));
   }
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);

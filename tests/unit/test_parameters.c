@@ -45,9 +45,9 @@ static PetscErrorCode TestLimits(int *failed)
 
   PetscFunctionBeginUser;
   PetscCall(ChainCreate(BRAKE SLIP DAMPED, BODIES_1 BEAM_1 "-contact_mu 0.5 -contact_speed 2 " ROLLING, &chain));
-  PetscCall(TestBad(chain.operators, "pad_young", 0, "pad_young 0 must lie between 0 (excluded) and inf Pa", failed));
-  PetscCall(TestBad(chain.operators, "pad_alpha", -1, "pad_alpha -1 must lie between 0 and inf 1/s", failed));
-  PetscCall(TestBad(chain.operators, "contact_mu", INFINITY, "contact_mu inf must lie between -inf and inf", failed));
+  PetscCall(TestBad(chain.operators, "pad_young", 0, "pad_young 0 Pa must exceed 0", failed));
+  PetscCall(TestBad(chain.operators, "pad_alpha", -1, "pad_alpha -1 1/s must be at least 0", failed));
+  PetscCall(TestBad(chain.operators, "contact_mu", INFINITY, "contact_mu inf must be a finite number", failed));
   PetscCall(ChainDestroy(&chain));
   PetscFunctionReturn(0);
 }
