@@ -89,8 +89,8 @@ static PetscErrorCode SolverCreate(Mat problem[3], ShiftInvert *si, PetscBool tr
   PetscFunctionReturn(0);
 }
 
-/* Solves; failed = LAPACK could not reorder the Schur form (xTREXC: eigenvalues too close to swap), which depends on the
-   start vector and happens where the Krylov space is the whole space */
+/* Solves; failed = LAPACK could not reorder the Schur form (xTREXC: eigenvalues too close to swap), which depends on
+   the start vector and happens where the Krylov space is the whole space */
 static PetscErrorCode SolverRun(PEP pep, PetscBool *failed)
 {
   PetscErrorCode error;

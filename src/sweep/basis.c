@@ -1,8 +1,8 @@
 /*
    The reduced basis. Blocks of vectors are made orthonormal in M block by block (A. Stathopoulos, K. Wu, SIAM J. Sci.
-   Comput. 23, 2002: SVQB): W -= V V' M W, G = W' M W = U D U', W := W U D^-1/2, where directions with D below the square
-   of the drop tolerance are left out. All of it is matrix-matrix work. The dense model V' A_t V is extended by the rows
-   and columns of the new vectors.
+   Comput. 23, 2002: SVQB): W -= V V' M W, G = W' M W = U D U', W := W U D^-1/2, where directions with D below the
+   square of the drop tolerance are left out. All of it is matrix-matrix work. The dense model V' A_t V is extended by
+   the rows and columns of the new vectors.
 */
 #include "basis.h"
 #include <petscblaslapack.h>

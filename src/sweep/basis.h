@@ -4,8 +4,8 @@
 #include "reduced.h"
 #include <slepcbv.h>
 
-/* [V Z], orthonormal in the mass matrix of the scene's own parameters. The leading reduced.n_used vectors are the model,
-   the others estimate its error. */
+/* [V Z], orthonormal in the mass matrix of the scene's own parameters. The leading reduced.n_used vectors are the
+   model, the others estimate its error. */
 #define BASIS_MAX_BLOCKS 1024
 
 typedef struct {

@@ -1,6 +1,6 @@
 /*
-   Full solutions: a sweep by brute force, one eigenvalue problem of the mesh per point, and the check of reduced results at
-   points that the basis has never seen, half way between those of the sweep.
+   Full solutions: a sweep by brute force, one eigenvalue problem of the mesh per point, and the check of reduced
+   results at points that the basis has never seen, half way between those of the sweep.
 */
 #include "sweepimpl.h"
 

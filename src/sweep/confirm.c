@@ -1,7 +1,7 @@
 /*
-   Onsets: the critical values of the first parameter. Each is found on the reduced model by iteration (onset.c); then the
-   full pencil is factored at that value, the vectors of the pair are corrected with it, the basis takes the corrections
-   in, and the value is found again. It counts as confirmed when this no longer changes it.
+   Onsets: the critical values of the first parameter. Each is found on the reduced model by iteration (onset.c); then
+   the full pencil is factored at that value, the vectors of the pair are corrected with it, the basis takes the
+   corrections in, and the value is found again. It counts as confirmed when this no longer changes it.
 */
 #include "sweepimpl.h"
 

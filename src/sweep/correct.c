@@ -4,12 +4,12 @@
 
       r = Q(lambda; p) x,   s = Q(lambda; p)' y,     z_r = P^-1 r,   z_s = P^-T s,
 
-   where P = K - s M is factored at p once. What the basis lacks lies above the window, next to it first, hence the shift s at
-   its upper end: a shift amid the window would let what is far above outweigh what is near. One solve of all right-hand sides together is a
-   step of shift-and-invert subspace iteration from the basis' own vectors (Galerkin on [V, z_r, z_s]; compare M. E.
-   Hochstenbach, G. L. G. Sleijpen, Linear Algebra Appl. 358, 2003, for two-sided subspace methods). The length of a
-   correction, beside |x|_M = 1, is the error of the vector; the error of the eigenvalue is of second order, y'r being
-   zero in Galerkin's method and s' Q^-1 r what remains.
+   where P = K - s M is factored at p once. What the basis lacks lies above the window, next to it first, hence the
+   shift s at its upper end: a shift amid the window would let what is far above outweigh what is near. One solve of all
+   right-hand sides together is a step of shift-and-invert subspace iteration from the basis' own vectors (Galerkin on
+   [V, z_r, z_s]; compare M. E. Hochstenbach, G. L. G. Sleijpen, Linear Algebra Appl. 358, 2003, for two-sided subspace
+   methods). The length of a correction, beside |x|_M = 1, is the error of the vector; the error of the eigenvalue is of
+   second order, y'r being zero in Galerkin's method and s' Q^-1 r what remains.
 */
 #include "correct.h"
 

@@ -22,8 +22,8 @@
    and its error is the frequency that would turn it into, sqrt(|d kappa|).
 
    To each estimate a floor is added: what rounding does in the dense problem, ROUNDING eps sqrt(sum |K_ii| |x_i|^2 sum
-   |K_ii| |y_i|^2) in kappa, and in the matrices of the mesh, eps sqrt(x^H E x y^H E y) with E = sum |c_t| V' |diag A_t| V,
-   the energy without cancellation between neighbouring nodes.
+   |K_ii| |y_i|^2) in kappa, and in the matrices of the mesh, eps sqrt(x^H E x y^H E y) with E = sum |c_t| V' |diag A_t|
+   V, the energy without cancellation between neighbouring nodes.
 */
 #include "estimate.h"
 #include "dense.h"
@@ -152,8 +152,8 @@ static PetscInt ModesMeeting(const ReducedModes *modes, PetscInt i)
   return PetscMax(2, m);
 }
 
-/* |change| of kappa by a perturbation of size f of K: f / |y^T D x|, but not more than the m-th root that m modes meeting
-   at a defective point have */
+/* |change| of kappa by a perturbation of size f of K: f / |y^T D x|, but not more than the m-th root that m modes
+   meeting at a defective point have */
 static PetscReal KappaChange(const ReducedModes *modes, PetscInt i, PetscReal f)
 {
   const PetscReal size = cabs(modes->lambda[i]) * cabs(modes->lambda[i]), product = cabs(modes->product[i]);

@@ -1,6 +1,6 @@
 /*
-   The frictionless, undamped system among the values of the parameters: what friction and damping are proportional to (mu,
-   alpha, beta, viscosity, ...) is set to zero.
+   The frictionless, undamped system among the values of the parameters: what friction and damping are proportional to
+   (mu, alpha, beta, viscosity, ...) is set to zero.
 */
 #include "reduced.h"
 

@@ -1,13 +1,13 @@
 /*
    Greedy choice of the full solutions. The first point is solved by the eigensolver (Krylov, right and left), further
    ones by corrections of what the basis gives there: a block solve with the factors of the full pencil, repeated until
-   the corrections no longer matter. At each of these points Sylvester's law of inertia counts the frictionless modes; when
-   the basis has fewer, the point is solved by the eigensolver too.
+   the corrections no longer matter. At each of these points Sylvester's law of inertia counts the frictionless modes;
+   when the basis has fewer, the point is solved by the eigensolver too.
 
    A point's first corrections z_r, z_s tell the error that the basis had there (estimate.c). The next point is the one
-   farthest from all looked at, as long as the last one had to be taken in; else the one with the largest estimate. It ends
-   when the farthest point needs nothing (two of them while there are no corrections that could tell an error elsewhere),
-   and no point does by the estimate with all corrections so far (points.c).
+   farthest from all looked at, as long as the last one had to be taken in; else the one with the largest estimate. It
+   ends when the farthest point needs nothing (two of them while there are no corrections that could tell an error
+   elsewhere), and no point does by the estimate with all corrections so far (points.c).
 */
 #include "greedy.h"
 
@@ -186,8 +186,8 @@ static PetscErrorCode SampleCorrect(Run *run, const PetscReal p[], PetscReal *fi
   PetscFunctionReturn(0);
 }
 
-/* Extent of the points along each parameter, scale[n_parameters]: the length of the range, or the negative logarithm of its
-   ratio where the ends differ by a factor of WIDE; 0 for a parameter that does not vary */
+/* Extent of the points along each parameter, scale[n_parameters]: the length of the range, or the negative logarithm of
+   its ratio where the ends differ by a factor of WIDE; 0 for a parameter that does not vary */
 static void ScaleFind(PetscInt n, PetscInt n_parameters, const PetscReal points[], PetscReal scale[])
 {
   for (PetscInt k = 0; k < n_parameters; k++) {

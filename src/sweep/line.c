@@ -1,6 +1,7 @@
 /*
-   The points of the grid, one line of the first parameter after the other: solutions on the reduced model, branches along
-   the line, the link to the line before, and names from the shapes on the mesh. Vectors are kept for one line only.
+   The points of the grid, one line of the first parameter after the other: solutions on the reduced model, branches
+   along the line, the link to the line before, and names from the shapes on the mesh. Vectors are kept for one line
+   only.
 */
 #include "sweepimpl.h"
 
@@ -76,8 +77,8 @@ static PetscErrorCode PointsTrack(Sweep sweep, PetscInt line, Points *points)
   PetscFunctionReturn(0);
 }
 
-/* Gives branches of this line the numbers of those of the line before where their first points match; numbers from first_new
-   on are those of this line */
+/* Gives branches of this line the numbers of those of the line before where their first points match; numbers from
+   first_new on are those of this line */
 static PetscErrorCode PointsLink(Sweep sweep, const Points *before, PetscInt first_new, Points *points)
 {
   const PetscInt n_new = sweep->n_branches - first_new;
@@ -167,8 +168,8 @@ PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedMo
   PetscFunctionReturn(0);
 }
 
-/* Where each branch is looked at for its name, or -1: where it grows faster than anywhere before, on this or on an earlier
-   line; a branch without a name and without growth nearest to the middle of the line */
+/* Where each branch is looked at for its name, or -1: where it grows faster than anywhere before, on this or on an
+   earlier line; a branch without a name and without growth nearest to the middle of the line */
 static void LabelPoints(Sweep sweep, const Points *points, PetscInt at[])
 {
   for (PetscInt b = 0; b < sweep->n_branches; b++) at[b] = -1;

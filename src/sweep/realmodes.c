@@ -1,6 +1,6 @@
 /*
-   The basis of today's tools, for comparison: the lowest real modes of the frictionless, undamped system in the middle of
-   the sweep. It knows nothing of friction, and no estimate of its error is to be had.
+   The basis of today's tools, for comparison: the lowest real modes of the frictionless, undamped system in the middle
+   of the sweep. It knows nothing of friction, and no estimate of its error is to be had.
 */
 #include "sweepimpl.h"
 

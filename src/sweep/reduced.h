@@ -32,9 +32,9 @@ typedef struct {
                             y^T Q(lambda) = 0, without conjugation */
   PetscComplex *product; /* [n] y^T D(lambda) x, D = M + C / (2 lambda), rigid modes: M; 1 / |product| is the condition,
                             0 if defective */
-  PetscReal    *error;   /* [n] estimated error of lambda, rad/s; 0 until ReducedEstimate() */
-  PetscReal    *noise;   /* [n] the part of the error that is rounding: no better basis lowers it */
-  PetscBool    *rigid;   /* [n] zero within rounding */
+  PetscReal *error;      /* [n] estimated error of lambda, rad/s; 0 until ReducedEstimate() */
+  PetscReal *noise;      /* [n] the part of the error that is rounding: no better basis lowers it */
+  PetscBool *rigid;      /* [n] zero within rounding */
 } ReducedModes;
 
 /* reduced.c - sums the terms at p; eigenvalues and vectors in the window, by dense shift-and-invert about a real shift
@@ -56,8 +56,8 @@ PetscBool ReducedIsUnstable(PetscComplex lambda, PetscReal error);
 PetscErrorCode ReducedSum(const Reduced *reduced, OperatorsTermKind kind, const PetscReal p[], PetscInt n,
                           PetscReal sum[], PetscBool *any_nonzero);
 
-/* rounding.c - E [n_used * n_used] of the mesh's rounding; its effect on kappa, times |y^T D x|, work [n]; marks the modes
-   that are zero within it */
+/* rounding.c - E [n_used * n_used] of the mesh's rounding; its effect on kappa, times |y^T D x|, work [n]; marks the
+   modes that are zero within it */
 #define ROUNDING_SMALL 1e-3 /* beside the window: frequencies that may be zeros */
 #define ROUNDING_RIGID 100  /* kappa below this many times its rounding is zero */
 void           RoundingEnergy(const Reduced *reduced, const PetscReal p[], PetscReal E[]);

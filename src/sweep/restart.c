@@ -1,9 +1,9 @@
 /*
-   Full solutions are kept in the output folder until the sweep is complete, so that a killed sweep goes on where it stopped.
-   Each rank writes its part of the new vectors after every full solution, sweep_restart_<k>_rank<r>, under a temporary
-   name that becomes final only when all ranks have written. The dense model is made again from the same blocks of
-   vectors: on one rank bit by bit the same. A fingerprint of matrices, window, points and ranks tells whether the files belong to this
-   sweep; files of another one are ignored and in the end replaced.
+   Full solutions are kept in the output folder until the sweep is complete, so that a killed sweep goes on where it
+   stopped. Each rank writes its part of the new vectors after every full solution, sweep_restart_<k>_rank<r>, under a
+   temporary name that becomes final only when all ranks have written. The dense model is made again from the same
+   blocks of vectors: on one rank bit by bit the same. A fingerprint of matrices, window, points and ranks tells whether
+   the files belong to this sweep; files of another one are ignored and in the end replaced.
 */
 #include "sweepimpl.h"
 #include <stdio.h>

@@ -1,8 +1,8 @@
 /*
-   Robustness: parameters known to some percent only. The reduced model is first made good at the corners of the box around
-   the scene's own values (the greedy choice takes in a corner only where the estimate asks for it); then the corners and
-   a Halton sequence inside the box are looked at, and the modes that become unstable anywhere are listed. Combinations
-   between those looked at are not excluded.
+   Robustness: parameters known to some percent only. The reduced model is first made good at the corners of the box
+   around the scene's own values (the greedy choice takes in a corner only where the estimate asks for it); then the
+   corners and a Halton sequence inside the box are looked at, and the modes that become unstable anywhere are listed.
+   Combinations between those looked at are not excluded.
 */
 #include "sweepimpl.h"
 
@@ -70,8 +70,8 @@ static void BoxPoint(const Box *box, const PetscReal base[], PetscInt n_paramete
   }
 }
 
-/* Risks of the modes of the nominal point, by what they become at the others; the last entry is for modes that the nominal
-   point does not have in the band */
+/* Risks of the modes of the nominal point, by what they become at the others; the last entry is for modes that the
+   nominal point does not have in the band */
 static PetscErrorCode RisksCount(Sweep sweep, PetscInt n, const PetscReal points[], const ReducedModes modes[],
                                  SweepRisk risk[])
 {

@@ -3,7 +3,8 @@
 
       E = sum over stiffness terms of |c_t| V' |diag A_t| V
 
-   is the energy without the cancellation between neighbouring nodes. The dense matrices inherit it from the sparse ones.
+   is the energy without the cancellation between neighbouring nodes. The dense matrices inherit it from the sparse
+   ones.
 */
 #include "reduced.h"
 

@@ -95,7 +95,8 @@ PETSC_INTERN PetscReal SweepWorst(Sweep sweep);
 /* Names of all modes of a point from their shapes on the mesh */
 PETSC_INTERN PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedModes *modes,
                                             char label[][32]);
-/* classify.c - which points are unstable, or numerically so; distance of a point to the nearest onset of a branch, relative, or NaN */
+/* classify.c - which points are unstable, or numerically so; distance of a point to the nearest onset of a branch,
+ * relative, or NaN */
 PETSC_INTERN PetscErrorCode SweepClassify(Sweep sweep);
 PETSC_INTERN PetscReal      SweepOnsetDistance(Sweep sweep, PetscInt point, PetscInt branch);
 /* confirm.c - onsets on the reduced model, then on the full problem */

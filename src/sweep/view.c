@@ -62,8 +62,8 @@ static PetscBool PointIsUnstable(const SweepPoint *point)
   return PETSC_FALSE;
 }
 
-/* Up to which value is it quiet? first = the onset nearest to the first value, or NULL. An unstable point before any onset
-   means that its onset was not located. */
+/* Up to which value is it quiet? first = the onset nearest to the first value, or NULL. An unstable point before any
+   onset means that its onset was not located. */
 static PetscErrorCode AnswerView(Sweep sweep, const OperatorsParameter *parameter, const Event *first,
                                  PetscViewer viewer)
 {
