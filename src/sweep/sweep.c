@@ -80,12 +80,13 @@ static PetscErrorCode ReadExtras(Sweep sweep, PetscOptionItems *PetscOptionsObje
   PetscCall(PetscOptionsString("-sweep_uncertain", "parameters known to -sweep_percent only: what can become unstable",
                                "sweep.h", sweep->uncertain, sweep->uncertain, sizeof(sweep->uncertain), NULL));
   PetscCall(PetscCalloc1(SWEEP_MAX_UNCERTAIN + 1, &sweep->percent));
-  sweep->n_percent = SWEEP_MAX_UNCERTAIN + 1;
+  sweep->n_percent  = SWEEP_MAX_UNCERTAIN + 1;
+  sweep->percent[0] = 10;
   PetscCall(PetscOptionsRealArray("-sweep_percent", "their uncertainty, percent; one value (10) or one for each",
                                   "sweep.h", sweep->percent, &sweep->n_percent, &set));
   PetscCheck(!set || sweep->uncertain[0], sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_percent does nothing without -sweep_uncertain");
-  if (!set) sweep->n_percent = 1, sweep->percent[0] = 10;
+  if (!set) sweep->n_percent = 1;
   PetscCall(PetscOptionsInt("-sweep_groups", "ranks that share the points (0: all; the full solutions use all ranks)",
                             "sweep.h", sweep->n_groups, &sweep->n_groups, NULL));
   PetscCall(PetscOptionsBool("-sweep_restart", "go on where a sweep of the same scene in -output_dir was stopped",
