@@ -1,19 +1,21 @@
 static const char help[] =
   "squeal: friction-induced vibration of bodies in sliding contact.\n"
-  "  squeal -options_file options/massi2005.yaml [-analysis modes|sweep] [-output_dir DIR] [any option]\n"
+  "  squeal -options_file options/massi2005.yaml [-analysis modes|sweep|static] [-output_dir DIR] [any option]\n"
   "  mpirun -n 2 squeal ... uses two ranks. SI units everywhere. Options files are YAML; later options override "
   "earlier ones.\n";
 
 #include <squeal/squeal.h>
 #include <squeal/options.h>
 
-typedef enum { ANALYSIS_MODES, ANALYSIS_SWEEP, N_ANALYSES } Analysis;
+typedef enum { ANALYSIS_MODES, ANALYSIS_SWEEP, ANALYSIS_STATIC, N_ANALYSES } Analysis;
 
-/* The chain of a run: options -> model -> contact -> operators -> modes -> sweep, and results */
+/* The chain of a run: options -> model -> contact -> operators -> statics -> modes -> sweep, and
+   results */
 typedef struct {
   Model     model; /* NULL for matrices without a mesh */
   Contact   contact;
   Operators operators;
+  Statics   statics;
   Modes     modes;
   Sweep     sweep;
   Results   results;
@@ -23,7 +25,7 @@ typedef struct {
 
 static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
 {
-  static const char *const analyses[N_ANALYSES] = {"modes", "sweep"};
+  static const char *const analyses[N_ANALYSES] = {"modes", "sweep", "static"};
   PetscBool                has_matrices;
   PetscInt                 analysis = ANALYSIS_MODES;
 
@@ -45,6 +47,8 @@ static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
     PetscCall(ContactSetFromOptions(chain->contact));
     PetscCall(OperatorsSetModel(chain->operators, chain->model, chain->contact));
   }
+  PetscCall(StaticsCreate(comm, &chain->statics));
+  PetscCall(StaticsSetFromOptions(chain->statics));
   PetscCall(ModesCreate(comm, &chain->modes));
   PetscCall(ModesSetFromOptions(chain->modes));
   PetscCall(SweepCreate(comm, &chain->sweep));
@@ -60,6 +64,7 @@ static PetscErrorCode ChainDestroy(Chain *chain)
   PetscCall(ResultsDestroy(&chain->results));
   PetscCall(SweepDestroy(&chain->sweep));
   PetscCall(ModesDestroy(&chain->modes));
+  PetscCall(StaticsDestroy(&chain->statics));
   PetscCall(OperatorsDestroy(&chain->operators));
   PetscCall(ContactDestroy(&chain->contact));
   PetscCall(ModelDestroy(&chain->model));
@@ -104,6 +109,36 @@ static PetscErrorCode ChainView(Chain *chain, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
+/* What rooms need of each other, and the contact stiffness where pressing is to tell it */
+static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
+{
+  PetscBool is_static;
+
+  PetscFunctionBeginUser;
+  PetscCall(StaticsSetOperators(chain->statics, chain->operators));
+  PetscCall(ModesSetOperators(chain->modes, chain->operators));
+  PetscCall(SweepSetOperators(chain->sweep, chain->operators));
+  PetscCall(SweepSetModes(chain->sweep, chain->modes));
+  PetscCall(ModesGetContact(chain->modes, &is_static));
+  if (is_static) PetscCall(ModesSetStatics(chain->modes, chain->statics));
+  if (is_static) PetscCall(SweepSetStatics(chain->sweep, chain->statics));
+  PetscCall(StaticsIdentifyAll(chain->statics, viewer));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RunStatic(Chain *chain, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SquealStageBegin(SQUEAL_STATICS));
+  PetscCall(StaticsSolve(chain->statics));
+  PetscCall(SquealStageEnd(SQUEAL_STATICS));
+  PetscCall(StaticsView(chain->statics, viewer));
+  PetscCall(SquealStageBegin(SQUEAL_RESULTS));
+  PetscCall(StaticsWrite(chain->statics, chain->results));
+  PetscCall(SquealStageEnd(SQUEAL_RESULTS));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode RunModes(Chain *chain, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
@@ -120,8 +155,6 @@ static PetscErrorCode RunModes(Chain *chain, PetscViewer viewer)
 static PetscErrorCode RunSweep(Chain *chain, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
-  PetscCall(SweepSetOperators(chain->sweep, chain->operators));
-  PetscCall(SweepSetModes(chain->sweep, chain->modes));
   PetscCall(SquealStageBegin(SQUEAL_SWEEP));
   PetscCall(SweepSolve(chain->sweep, chain->results));
   PetscCall(SquealStageEnd(SQUEAL_SWEEP));
@@ -131,6 +164,11 @@ static PetscErrorCode RunSweep(Chain *chain, PetscViewer viewer)
   PetscCall(SquealStageEnd(SQUEAL_RESULTS));
   PetscFunctionReturn(0);
 }
+
+typedef PetscErrorCode (*RunAnalysis)(Chain *, PetscViewer);
+
+static const RunAnalysis run_analysis[N_ANALYSES] = {
+  [ANALYSIS_MODES] = RunModes, [ANALYSIS_SWEEP] = RunSweep, [ANALYSIS_STATIC] = RunStatic};
 
 static PetscErrorCode Run(MPI_Comm comm)
 {
@@ -145,9 +183,9 @@ static PetscErrorCode Run(MPI_Comm comm)
     PetscCall(OptionsCheckUnknown(comm, ReadAgain, NULL));
     PetscCall(ResultsOpenDirectory(chain.results));
     PetscCall(ChainSetUp(&chain));
+    PetscCall(ChainConnect(&chain, viewer));
     if (chain.view) PetscCall(ChainView(&chain, viewer));
-    PetscCall(ModesSetOperators(chain.modes, chain.operators));
-    PetscCall(chain.analysis == ANALYSIS_SWEEP ? RunSweep(&chain, viewer) : RunModes(&chain, viewer));
+    PetscCall(run_analysis[chain.analysis](&chain, viewer));
     if (chain.view) PetscCall(SquealViewStages(comm, viewer));
     PetscCall(OptionsWarnUnused(comm));
   }

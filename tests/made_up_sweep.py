@@ -59,14 +59,14 @@ def eigenvalues(young, mu):
     return modes
 
 
-def sweep_row(point, young, second, mode, damping, error_hz):
+def sweep_row(point, young, second, mode, damping, error_hz, jump):
     """One row of sweep.csv."""
     branch, value, label = mode
     value -= damping * abs(value) / TWO_PI
     error = error_hz.get(branch, 1e-8)
     kind = "stable" if value.real <= 1e-9 * abs(value) else "numerical" if value.real < TWO_PI * error else "unstable"
     return (point, young, branch, value.imag / TWO_PI, value.real, TWO_PI * error / abs(value), int(kind == "unstable"),
-            label, second, kind, error, 1.5, "")
+            label, second, kind, error, 1.5, "", 99, int(jump))
 
 
 def onset_rows(mu, second):
@@ -83,18 +83,21 @@ def write_table(path, header, rows):
         writer.writerows(rows)
 
 
-def write_sweep(folder, mu=0.5, damping=0.0, second=None, error_hz=None, values=None):
-    """The three tables. Second: values of mu, the second parameter; error_hz: errors by branch, Hz; else 1e-8."""
+def write_sweep(folder, mu=0.5, damping=0.0, second=None, error_hz=None, values=None, jumps=()):
+    """The three tables. Second: values of mu, the second parameter; error_hz: errors by branch, Hz; else 1e-8; jumps:
+    values after a change of contact status, and [critical value] of the onset there if there is one."""
     folder.mkdir(parents=True, exist_ok=True)
     values = numpy.linspace(FIRST, LAST, POINTS) if values is None else values
     others = [""] if second is None else second
     grid = [(young, other) for other in others for young in values]
-    rows = [sweep_row(point, young, other, mode, damping, error_hz or {})
+    rows = [sweep_row(point, young, other, mode, damping, error_hz or {}, young in dict(jumps))
             for point, (young, other) in enumerate(grid, 1)
             for mode in eigenvalues(young, mu if other == "" else other)]
     write_table(folder / "sweep.csv", "point,value,branch,freq_hz,growth_rad_s,error_estimate,unstable,label,value_2,"
-                "class,error_hz,condition,onset_distance", rows)
+                "class,error_hz,condition,onset_distance,n_closed,jump", rows)
     found = [row for other in others for row in onset_rows(mu if other == "" else other, other)]
+    found += [("pad_young", value, PAIRS[0][0], "jump", PAIRS[0][-1], 1e6, 1, 2, 0, "") for _, there in jumps
+              for value in there]
     write_table(folder / "onsets.csv", "parameter,critical_value,freq_hz,kind,label,error_estimate,branch,partner,"
                 "confirmed,value_2", [] if damping else found)
     write_table(folder / "parameters.csv", "parameter,value,unit,swept",

@@ -7,6 +7,10 @@
 beam  a bar of 100 x 10 x 5 mm along x: volume "beam", end x = 0 "root"
 rig   a ring and a block that stands on a sector of its face with nodes of its own: volumes "disc", "block", surfaces
       "disc_inner", "disc_face", "block_face", "block_top"
+blocks  a block of 100 x 100 x 100 mm (x, y around 0, z from 0) on a base that reaches two elements farther on each side and
+      20 mm down: volumes "base", "block", surfaces "base_bottom", "base_top", "block_bottom", "block_top", "block_left",
+      "block_right" (least and largest y). The nodes of both match; --lift moves the bottom of the block, more than its inside,
+      by gap + tilt (y / 100 mm + 1/2) + crown (2 y / 100 mm)^2
 
 --renumber draws new numbers of nodes and elements, a new order of both, and a new first node of each element.
 --move turns the mesh by MOVE_ROTATION, a quarter turn about (1, 2, 2), and shifts it; the direction y becomes
@@ -21,6 +25,7 @@ from pathlib import Path
 import numpy as np
 
 MOVE_ROTATION = np.array([[1, -4, 8], [8, 4, 1], [-4, 7, 4]]) / 9
+BLOCK_SIZE, BASE_HEIGHT, BASE_MARGIN = np.array([0.1, 0.1, 0.1]), 0.02, 2
 BEAM_SIZE = np.array([0.1, 0.01, 0.005])
 MOVE_SHIFT = np.array([0.3, -0.2, 0.5])
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
@@ -82,6 +87,23 @@ def rig():
     return np.concatenate(nodes), {
         "disc": disc.hexahedra(), "disc_inner": disc.side(0, 0), "disc_face": disc.side(2, 2),
         "block": block.hexahedra(), "block_face": block.side(2, 0), "block_top": block.side(2, 6)}
+
+
+def blocks(elements, lift):
+    """Block on a base; lift = gap, tilt, crown, m."""
+    n = np.array(elements)
+    base = Grid([*(n[:2] + 2 * BASE_MARGIN), max(1, n[2] // 4)])
+    block = Grid(n, first=int(np.prod(base.nodes)))
+    lower = (base.places(base.nodes) - [BASE_MARGIN, BASE_MARGIN, base.cells[2]]) / [*n[:2], base.cells[2]]
+    upper = block.places(block.nodes) / n
+    lower, upper = lower - [0.5, 0.5, 0], upper - [0.5, 0.5, 0]
+    rise = lift[0] + lift[1] * (upper[:, 1] + 0.5) + lift[2] * (2 * upper[:, 1])**2
+    nodes = [lower * [*BLOCK_SIZE[:2], BASE_HEIGHT], upper * BLOCK_SIZE]
+    nodes[1][:, 2] += rise * (1 - upper[:, 2])
+    return np.concatenate(nodes), {
+        "base": base.hexahedra(), "base_bottom": base.side(2, 0), "base_top": base.side(2, base.cells[2]),
+        "block": block.hexahedra(), "block_bottom": block.side(2, 0), "block_top": block.side(2, n[2]),
+        "block_left": block.side(1, 0), "block_right": block.side(1, n[1])}
 
 
 # --- changes that leave the physics alone
@@ -194,16 +216,20 @@ def write(path, version, binary, nodes, groups, node_tags, numbers):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("shape", choices=["beam", "rig"])
+    parser.add_argument("shape", choices=["beam", "rig", "blocks"])
     parser.add_argument("file", type=Path)
-    parser.add_argument("--elements", default="20,4,2", help="of the beam along x, y, z")
+    parser.add_argument("--elements", default="20,4,2", help="of the beam, or the block on its base, along x, y, z")
+    parser.add_argument("--lift", default="0,0,0", metavar="GAP,TILT,CROWN", help="of the block's bottom, m")
     parser.add_argument("--format", choices=["2.2", "4.1"], default="4.1")
     parser.add_argument("--binary", action="store_true")
     parser.add_argument("--renumber", type=int, metavar="SEED")
     parser.add_argument("--move", action="store_true")
     arguments = parser.parse_args()
+    elements = [int(n) for n in arguments.elements.split(",")]
     if arguments.shape == "beam":
-        nodes, groups = beam([int(n) for n in arguments.elements.split(",")])
+        nodes, groups = beam(elements)
+    elif arguments.shape == "blocks":
+        nodes, groups = blocks(elements, [float(length) for length in arguments.lift.split(",")])
     else:
         nodes, groups = rig()
     node_tags = list(range(1, len(nodes) + 1))

@@ -27,7 +27,7 @@ def command(arguments, folder, output, *options):
     """The sweep, writing to a folder."""
     return [arguments.launcher, "-n", str(arguments.ranks), arguments.squeal, "-options_file", SOURCE / "options/massi2005.yaml",
             "-options_file", folder / "small.yaml", "-analysis", "sweep", "-sweep_parameter", "pad_young",
-            "-sweep_values", "6.5e9:80e9:12", "-output_dir", folder / output, *options]
+            "-sweep_values", "6.5e9:80e9:12", "-output_dir", folder / output, "-modes_contact", arguments.contact, *options]
 
 
 def complete(arguments, folder, output, *options):
@@ -74,6 +74,7 @@ def main():
     parser.add_argument("squeal")
     parser.add_argument("launcher")
     parser.add_argument("--ranks", type=int, default=1)
+    parser.add_argument("--contact", default="all", help="all pairs closed, or static: those of the sliding state")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

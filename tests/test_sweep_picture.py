@@ -112,6 +112,20 @@ def test_scale(root):
     require(scales == ["log", "linear"], f"scales {scales}")
 
 
+def test_jumps(root):
+    """Grey lines stand where the contact status changes, at the onset if there is one, else half way from the point
+    before: breaks when the column is ignored, or a jump counts as an onset that was not confirmed."""
+    write_sweep(root / "jumps", jumps=[(VALUES[20], [VALUES[20] - 1e8]), (VALUES[50], [])])
+    expected = [(VALUES[20] - 1e8) / 1e9, (VALUES[49] + VALUES[50]) / 2e9]
+    for axes in lines(root / "jumps"):
+        upright = [line.get_xdata()[0] for line in axes.lines if list(line.get_ydata()) == [0, 1]
+                   and line.get_linestyle() == "-"]
+        require(numpy.allclose(upright, expected), f"lines at {upright} instead of {expected}")
+        require(not any("not confirmed" in text.get_text() for text in axes.texts), "a jump is called not confirmed")
+    legend = [text.get_text() for text in axes.get_legend().get_texts()]
+    require({"contact status changes", "jump of growth"} < set(legend), f"legend {legend}")
+
+
 def test_map(root):
     """Two parameters: the map is unstable exactly where the closed form is, and --at draws one line of it."""
     mu = numpy.linspace(0, 1, 6)
@@ -151,7 +165,7 @@ def fails(folder, options, expected):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        for test in (test_colours, test_marks, test_texts, test_scale, test_map, test_errors):
+        for test in (test_colours, test_marks, test_texts, test_scale, test_jumps, test_map, test_errors):
             test(Path(folder))
 
 

@@ -20,18 +20,44 @@ typedef struct _p_Contact *Contact;
 
 typedef enum { CONTACT_PENALTY, CONTACT_CONSTRAINT } ContactLaw;
 
+typedef enum { CONTACT_OPEN, CONTACT_STICK, CONTACT_SLIP, CONTACT_N_STATUS } ContactStatus;
+
+extern const char *const ContactStatusNames[CONTACT_N_STATUS]; /* "open", "stick", "slip" */
+
 /* One pair; the array of pairs is distributed, each pair lives on the rank that owns its slave node */
 typedef struct {
   PetscInt  interface;              /* index of the interface */
   PetscInt  n_master;               /* corners of the master facet that take part, 1 to 4 */
   PetscReal weight[4];              /* their weights, sum 1 */
   PetscInt  master[4][3], slave[3]; /* global unknowns x, y, z; -1 when fixed by a support */
+  PetscInt  corner[4];              /* global numbers of the master's vertices */
   PetscReal x[3];                   /* position of the slave, m */
   PetscReal n[3], t[3], b[3];       /* unit vectors */
   PetscReal area;                   /* tributary area of the slave node, m^2 */
+  PetscReal gap;                    /* n . (x_s - x_m) of the mesh as it is, m, positive open */
   PetscReal force; /* normal force carried in the sliding state, N, compressive >= 0; 0 when not given */
   PetscReal speed; /* sliding speed, m/s; 0 when not given */
 } ContactPair;
+
+/* State of one pair. Friction is given as the force on the master; in slip it has the direction of the slave's velocity
+   relative to the master, lambda_t = mu lambda_n */
+typedef struct {
+  ContactStatus status;
+  PetscReal     gap;         /* m, positive open; with the penalty law -lambda_n / k_n when closed */
+  PetscReal     slip[2];     /* displacement of the slave relative to the master along t and b, m */
+  PetscReal     lambda_n;    /* normal force, N, compressive >= 0 */
+  PetscReal     lambda_t[2]; /* friction on the master along t and b, N */
+} ContactState;
+
+/* How well states obey the laws of contact and friction; each number is relative, to the largest lambda_n or to the
+   largest displacement or gap at any pair. With the penalty law gap + lambda_n / k_n stands for the gap. */
+typedef struct {
+  PetscReal penetration;     /* max(0, -gap) */
+  PetscReal sign;            /* max(0, -lambda_n) */
+  PetscReal complementarity; /* min(lambda_n, gap), both relative */
+  PetscReal cone;            /* max(0, |lambda_t| - mu lambda_n) */
+  PetscReal dissipation;     /* slip: |lambda_t - mu lambda_n s / |s||, relative; stick: |s| of the last step */
+} ContactKKT;
 
 /* Parameters of an interface; SI units */
 typedef struct {
@@ -40,9 +66,11 @@ typedef struct {
   PetscReal  mu;          /* friction coefficient */
   PetscReal  mu_slope;    /* d mu / d speed, s/m */
   PetscReal  kn;          /* stiffness per pair, N/m */
+  PetscBool  identify;    /* kn is to be identified by pressing; until then it is 1 */
   PetscReal  tolerance;   /* pairs farther apart than this are no pairs, m */
   PetscBool  damping;     /* friction damping: mu N0 / v across the slip, mu_slope N0 along it */
   PetscReal  force;       /* total normal force in the sliding state, N */
+  PetscBool  preloaded;   /* that force is the one of ContactSetForces() */
   PetscReal  speed;       /* sliding speed, m/s */
   PetscReal  slip[3];     /* direction, or 0,0,0 when it comes from the rotation */
   PetscReal  rotation[3]; /* angular velocity of the master relative to the slave, rad/s */
@@ -63,7 +91,7 @@ PetscErrorCode ContactCreate(Model model, Contact *contact);
 .  -contact_law <penalty|constraint> - k_n per pair, or k_n to infinity
 .  -contact_mu <0>                - friction coefficient
 .  -contact_mu_slope <0>          - its slope with the sliding speed, s/m
-.  -contact_kn <N/m>              - penalty stiffness per pair
+.  -contact_kn <N/m|identify>     - penalty stiffness per pair, or found by pressing (statics.h)
 .  -contact_slip <x,y,z>          - direction of the slave's velocity relative to the master
 .  -contact_rotation <x,y,z>      - or: angular velocity of the master relative to the slave, rad/s
 .  -contact_center <0,0,0>        - a point of the axis of rotation, m
@@ -78,7 +106,8 @@ PetscErrorCode ContactSetFromOptions(Contact contact);
    ContactSetUp - pairs facing nodes by position, across ranks. Collective; call after ModelSetUp().
 
    Errors: PETSC_ERR_USER_INPUT when a slave node finds no master node within the tolerance: names the interface, the
-   position of the node and the distance to the nearest candidate; also when the slip direction vanishes in the surface.
+   position of the node and the distance to the nearest candidate; also when a slip that is given vanishes in the
+   surface at some pair, and friction needs it.
 @*/
 PetscErrorCode ContactSetUp(Contact contact);
 
@@ -93,6 +122,55 @@ PetscErrorCode ContactGetPairs(Contact contact, PetscInt *n_local, PetscInt *n_g
    The caller destroys them; pass NULL for what is not needed.
 @*/
 PetscErrorCode ContactCreateOperators(Contact contact, PetscInt interface, Mat *N, Mat *T, Mat *B);
+
+/*@
+   ContactCreateRows - sparse rows d . (u_m - u_s), shape [n][unknowns]: row i of this rank belongs to the local pair
+   pair[i] and the direction direction[i][3]. Collective. The caller destroys the matrix.
+@*/
+PetscErrorCode ContactCreateRows(Contact contact, PetscInt n, const PetscInt pair[], const PetscReal direction[][3],
+                                 Mat *rows);
+
+/*@
+   ContactCreateTilt - turning of the master's normal at the pairs, sparse, shape [all pairs][unknowns], rows of the
+   local pairs in their order: (tilt_t u)_p = t . delta n, (tilt_b u)_p = b . delta n with delta n the derivative of the
+   pair's normal n, which is the mean of the facets around the master's vertices, weighted by area. On a flat surface
+   delta n = - sum_i grad_s N_i (n . u_i). NULL without interfaces. Collective. The caller destroys them.
+@*/
+PetscErrorCode ContactCreateTilt(Contact contact, Mat *tilt_t, Mat *tilt_b);
+
+/*@
+   ContactCreateApproach - d such that d . u is the approach (m) of the second rows of nodes of slave and master of an
+   interface, the mean over its pairs of n . (u_m2 - u_s2). The second row is what lies one element below the surface:
+   of a vertex the other end of the mesh edge that leaves the surface most nearly along its normal. Collective. The
+   caller destroys it.
+@*/
+PetscErrorCode ContactCreateApproach(Contact contact, PetscInt interface, Vec *d);
+
+/*@ ContactNodalForces - forces of the contact on all nodes, N, from the states of the local pairs, into a local vector
+   of three values per vertex in the layout of the coordinates; held nodes included. Collective. @*/
+PetscErrorCode ContactNodalForces(Contact contact, const ContactState state[], Vec local);
+
+/*@ ContactSetForces - normal forces lambda_n (N) of the local pairs in the sliding state, in place of -contact_force.
+    Collective. @*/
+PetscErrorCode ContactSetForces(Contact contact, const PetscReal lambda_n[]);
+
+/*@
+   ContactGrow - moves the front between closed and open pairs by whole rows. Two pairs are neighbours when their slave
+   nodes are corners of one facet of the slave surface. Collective.
+
+   Input Parameters:
++  rows   - how many: > 0 closes the open neighbours of closed pairs, < 0 opens the closed neighbours of open pairs
+-  closed - of the local pairs, changed in place
+@*/
+PetscErrorCode ContactGrow(Contact contact, PetscInt rows, PetscBool closed[]);
+
+/*@ ContactComputeKKT - residuals of the states of the local pairs, with mu and kn (infinite for the constraint) of each
+    interface. Collective. @*/
+PetscErrorCode ContactComputeKKT(Contact contact, const ContactState state[], const PetscReal mu[],
+                                 const PetscReal kn[], ContactKKT *kkt);
+
+/*@ ContactViewKKT - the residuals in one line each. Collective. @*/
+PetscErrorCode ContactViewKKT(const ContactKKT *kkt, PetscViewer viewer);
 
 /*@ ContactGetCentre - mean position of all pairs, m; found is false without contact. Collective. @*/
 PetscErrorCode ContactGetCentre(Contact contact, PetscReal centre[3], PetscBool *found);

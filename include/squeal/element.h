@@ -21,6 +21,10 @@ typedef struct {
      Returns 0, or 1 when the Jacobian is not positive at some point: then nothing is written. */
   int (*matrices)(const double *x, const Elasticity *material, double *stiffness, double *mass);
 
+  /* Geometric stiffness (N/m), row-major [3 n_nodes][3 n_nodes], of the stress of displacements u[n_nodes][3] (m) of
+     corners x; returns as matrices() does. */
+  int (*geometric)(const double *x, const Elasticity *material, const double *u, double *stiffness);
+
   /* Volume (m^3) and the smallest Jacobian over quadrature points and corners relative to the volume of the cell's
      bounding box; not positive means inverted or flat. */
   void (*measure)(const double *x, double *volume, double *min_jacobian);

@@ -29,19 +29,32 @@ typedef struct {
   PetscReal value[3];
 } Grounded;
 
+/* Total force on a set, N, spread over a surface by its area, over other sets equally by node */
+typedef struct {
+  char     *name, *set;
+  PetscReal force[3];
+} Load;
+
+/* Essential condition: the flagged directions are fixed at every vertex of the set */
+typedef struct {
+  char     *name, *set;
+  PetscBool fix[3];
+} Support;
+
 /*@
    ModelCreate - makes an empty model. Collective.
 @*/
 PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
 
 /*@
-   ModelSetFromOptions - reads the scene: mesh source, parts and materials, supports, springs, dashpots. Collective.
+   ModelSetFromOptions - reads the scene: mesh source, parts and materials, supports, springs, dashpots, loads.
+   Collective.
 
    Options Database Keys:
 +  -model_source <rig|file> - where the mesh comes from
 .  -model_mesh <file>       - Gmsh file, format 2.2 or 4.1
 .  -model_element <incompatible|full> - element formulation
-.  -parts, -supports, -springs, -dashpots <names> - lists; each name is the prefix of its own options
+.  -parts, -supports, -springs, -dashpots, -loads <names> - lists; each name is the prefix of its own options
 -  -rig_*                   - dimensions (m) and counts of the built-in disc, pad and beam
 
    Errors: PETSC_ERR_USER_INPUT for a missing or invalid value, naming option, value and what is valid.
@@ -91,6 +104,26 @@ PetscErrorCode ModelGetSprings(Model model, PetscInt *n, const Grounded **spring
 
 /*@ ModelGetDashpots - grounded dashpots (borrowed). Not collective. @*/
 PetscErrorCode ModelGetDashpots(Model model, PetscInt *n, const Grounded **dashpots);
+
+/*@ ModelGetSupports - essential supports (borrowed). Not collective. @*/
+PetscErrorCode ModelGetSupports(Model model, PetscInt *n, const Support **supports);
+
+/*@ ModelGetLoads - total forces on sets (borrowed). Not collective. @*/
+PetscErrorCode ModelGetLoads(Model model, PetscInt *n, const Load **loads);
+
+/*@
+   ModelAddLoad - adds load i to a local vector of three forces per vertex, N, in the layout of the coordinates. On a
+   surface f_v = F int N_v dA / A, on a set of other vertices F / n. The sum over all vertices, held ones included, is
+   F; a vertex has its full force on every rank that shares it. Collective.
+@*/
+PetscErrorCode ModelAddLoad(Model model, PetscInt i, Vec local);
+
+/*@
+   ModelGetBodies - the pieces of the mesh that hang together by nodes: their number over all ranks, and that of each
+   local vertex, shape [vEnd - vStart], -1 for a vertex without cells. Numbers follow the least x, then y, then z of a
+   body's nodes, so that they do not depend on the ranks. Collective. The caller frees the array.
+@*/
+PetscErrorCode ModelGetBodies(Model model, PetscInt *n_bodies, PetscInt **body);
 
 /*@ ModelGetSetVertices - local vertices (points of the DM, ascending, ghosts included) of a named set. Collective.
     Errors: PETSC_ERR_USER_INPUT when no rank has the set; the message lists the sets of the mesh. @*/

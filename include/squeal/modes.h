@@ -14,6 +14,7 @@
 
 #include <squeal/operators.h>
 #include <squeal/results.h>
+#include <squeal/statics.h>
 
 typedef struct _p_Modes *Modes;
 
@@ -36,6 +37,10 @@ PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes);
 /*@ ModesSetOperators - the system to solve (referenced until ModesDestroy()). Collective. @*/
 PetscErrorCode ModesSetOperators(Modes modes, Operators operators);
 
+/*@ ModesSetStatics - lets ModesSolve() begin with StaticsLinearise(), so that the modes are about the sliding state at
+    the present parameters (referenced until ModesDestroy()); NULL: about what the operators are. Not collective. @*/
+PetscErrorCode ModesSetStatics(Modes modes, Statics statics);
+
 /*@
    ModesSetFromOptions - reads what to compute. Collective.
 
@@ -46,10 +51,14 @@ PetscErrorCode ModesSetOperators(Modes modes, Operators operators);
 .  -modes_growth <1/s>       - largest growth or decay that a band must cover; default a tenth of the angular
 frequency of f2
 .  -modes_left <true>        - compute left vectors (condition and error need them)
--  -modes_disc <disc>        - part whose modes are labelled by nodal circles and diameters
+.  -modes_disc <disc>        - part whose modes are labelled by nodal circles and diameters
+-  -modes_contact <all|static> - pairs that are closed: every one, or those of the sliding state (statics.h)
    The solvers take -eps_*, -pep_*, -st_*.
 @*/
 PetscErrorCode ModesSetFromOptions(Modes modes);
+
+/*@ ModesGetContact - whether the options ask for the pairs closed in the sliding state. Not collective. @*/
+PetscErrorCode ModesGetContact(Modes modes, PetscBool *is_static);
 
 /*@ ModesGetBand - the band of the options, Hz, and the largest growth that it covers, 1/s. Not collective.
     Errors: PETSC_ERR_USER_INPUT without -modes_band. @*/

@@ -14,7 +14,7 @@
 
 typedef struct _p_Operators *Operators;
 
-#define OPERATORS_MAX_FACTORS 4
+#define OPERATORS_MAX_FACTORS 5
 
 /* A number of the scene that the matrices depend on, named like the option that sets it (pad_young, contact_mu) */
 typedef struct {
@@ -23,6 +23,7 @@ typedef struct {
   PetscReal   value;
   PetscReal   lower, upper; /* lower < value < upper; -infinity, infinity where there is no limit */
   PetscBool   closed;       /* lower itself is a value: alpha, beta, stiffness, viscosity, force may be 0 */
+  PetscBool   internal;     /* no option of the scene: the status of a group of pairs, see OperatorsSetClosed() */
 } OperatorsParameter;
 
 typedef enum { OPERATORS_STIFFNESS, OPERATORS_DAMPING, OPERATORS_MASS } OperatorsTermKind;
@@ -81,7 +82,9 @@ PetscErrorCode OperatorsSetUp(Operators operators);
     Collective. @*/
 PetscErrorCode OperatorsGetMatrices(Operators operators, Mat *K, Mat *M, Mat *C, Mat *H, PetscReal *mu);
 
-/*@ OperatorsGetPencil - the pencil with friction at the present values of the parameters. Collective. @*/
+/*@ OperatorsGetPencil - the pencil with friction at the present values of the parameters. Collective.
+    Errors: PETSC_ERR_USER_INPUT for an interface with friction of which nothing says along what it slides, and for
+    friction damping without a normal force; so does OperatorsGetTerms(). @*/
 PetscErrorCode OperatorsGetPencil(Operators operators, OperatorsPencil *pencil);
 
 /*@
@@ -89,8 +92,8 @@ PetscErrorCode OperatorsGetPencil(Operators operators, OperatorsPencil *pencil);
    density (kg/m^3), alpha (1/s), beta (s); of each list of springs stiffness (N/m), of dashpots viscosity (N s/m), with
    _x, _y, _z appended where the components that are not zero differ; of each contact mu, kn (N/m, penalty), and with
    friction damping mu_slope (s/m), force (N) and speed (m/s), or rotation (rad/s) where that is what was given;
-   contact_mu for loaded or dense matrices with H (borrowed; values are the present ones). An interface without friction
-   of which nothing says along what it slides has no mu. Not collective.
+   contact_mu for loaded or dense matrices with H (borrowed; values are the present ones). An interface of
+   which nothing says along what it slides has no mu; internal parameters follow last. Not collective.
 @*/
 PetscErrorCode OperatorsGetParameters(Operators operators, PetscInt *n, const OperatorsParameter **parameters);
 
@@ -103,6 +106,9 @@ PetscErrorCode OperatorsCheckParameter(Operators operators, PetscInt parameter, 
     coefficient that was zero (mu, damping) is no more or has become zero. Collective.
     Errors: PETSC_ERR_USER_INPUT for a value outside the limits of its parameter. @*/
 PetscErrorCode OperatorsSetParameters(Operators operators, const PetscReal value[]);
+
+/*@ OperatorsGetYoung - the present Young's modulus of a part, Pa. Not collective. @*/
+PetscErrorCode OperatorsGetYoung(Operators operators, PetscInt part, PetscReal *young);
 
 /*@ OperatorsGetDensity - the present density of a part, kg/m^3. Not collective. @*/
 PetscErrorCode OperatorsGetDensity(Operators operators, PetscInt part, PetscReal *density);
@@ -119,6 +125,40 @@ PetscReal OperatorsTermDerivative(const OperatorsTerm *term, const PetscReal p[]
 
 /*@ OperatorsGetFrictionless - the symmetric undamped pencil at mu = 0, of the same size. Collective. @*/
 PetscErrorCode OperatorsGetFrictionless(Operators operators, OperatorsPencil *pencil);
+
+/*@ OperatorsGetBodies - the stiffness of parts and springs alone, without contact; symmetric (borrowed). Collective.
+ * @*/
+PetscErrorCode OperatorsGetBodies(Operators operators, Mat *K);
+
+/*@ OperatorsGetInterface - friction coefficient and stiffness per pair (N/m, infinite for the constraint) of an
+    interface at the present values of the parameters. Not collective. @*/
+PetscErrorCode OperatorsGetInterface(Operators operators, PetscInt interface, PetscReal *mu, PetscReal *kn);
+
+/*@
+   OperatorsSetClosed - which pairs of the contact take part; all of them until this is called. Terms, parameters and
+   pencils got before are void; the parameters of the scene keep their places and values. Collective.
+
+   Input Parameters:
++  n_groups - groups of pairs that are closed at some values of the parameters and open at others (penalty law only)
+-  group    - of each local pair: -1 open, 0 closed, g = 1 .. n_groups closed as far as the parameter closed_g is 1;
+              these parameters come last and are 1 until OperatorsSetParameters(); NULL for all closed
+   Errors: PETSC_ERR_SUP for groups with the exact constraint.
+@*/
+PetscErrorCode OperatorsSetClosed(Operators operators, PetscInt n_groups, const PetscInt group[]);
+
+/*@ OperatorsSetPreload - further stiffness of the sliding state in all unknowns: symmetric geometric stiffness, and the
+    unsymmetric one of forces that follow the surface; NULL for none. They stay until the next call, and take effect at
+    the next OperatorsSetClosed(). Collective. @*/
+PetscErrorCode OperatorsSetPreload(Operators operators, Mat geometric, Mat follower);
+
+/*@ OperatorsInternalForces - K_e u_e of all elements, summed over this rank's cells and then over ranks, N, into a
+   local vector of three values per vertex in the layout of the coordinates, held directions included: at a support they
+   are its reaction. Springs and contact are no part of it. Collective. @*/
+PetscErrorCode OperatorsInternalForces(Operators operators, Vec u, Vec local);
+
+/*@ OperatorsApplyBodies - f = K u of parts and springs, N, element by element: without the rounding of the assembled
+    matrix in rigid translations. Collective. @*/
+PetscErrorCode OperatorsApplyBodies(Operators operators, Vec u, Vec f);
 
 /*@ OperatorsExpand - unknowns of the pencil to all unknowns, u = Zr q (or Zl q for a left vector). Collective. @*/
 PetscErrorCode OperatorsExpand(Operators operators, PetscBool left, Vec q, Vec u);

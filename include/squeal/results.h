@@ -73,6 +73,17 @@ PetscErrorCode ResultsFieldOpen(Results results, const char name[], DM dm, Petsc
 @*/
 PetscErrorCode ResultsFieldWriteMode(ResultsField field, const char key[], const char title[], Vec re, Vec im);
 
+/* Values at the nodes: shape [local vertices of the DM][width], width 1 or 3 */
+typedef struct {
+  const char      *key; /* name of the array, with its unit: displacement_m */
+  PetscInt         width;
+  const PetscReal *values;
+} ResultsNodal;
+
+/*@ ResultsFieldWriteNodal - one real state of the body: n arrays under one title, which ParaView shows as one grid.
+    Collective. @*/
+PetscErrorCode ResultsFieldWriteNodal(ResultsField field, const char title[], PetscInt n, const ResultsNodal arrays[]);
+
 /*@ ResultsFieldClose - completes both files under their final names. Collective; the handle is freed in any case.
     Errors: as ResultsFieldOpen(). @*/
 PetscErrorCode ResultsFieldClose(ResultsField *field);

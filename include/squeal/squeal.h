@@ -6,6 +6,7 @@
 #include <squeal/model.h>
 #include <squeal/contact.h>
 #include <squeal/operators.h>
+#include <squeal/statics.h>
 #include <squeal/modes.h>
 #include <squeal/sweep.h>
 #include <squeal/results.h>
@@ -15,6 +16,7 @@ typedef enum {
   SQUEAL_MODEL,
   SQUEAL_CONTACT,
   SQUEAL_OPERATORS,
+  SQUEAL_STATICS,
   SQUEAL_MODES,
   SQUEAL_SWEEP,
   SQUEAL_RESULTS,

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <squeal/modes.h>
+#include <squeal/statics.h>
 
 typedef struct _p_Sweep *Sweep;
 
@@ -23,6 +24,18 @@ PetscErrorCode SweepSetModes(Sweep sweep, Modes modes);
 
 /*@ SweepSetOperators - the system, affine in its parameters (referenced until SweepDestroy()). Collective. @*/
 PetscErrorCode SweepSetOperators(Sweep sweep, Operators operators);
+
+/*@
+   SweepSetStatics - takes the closed pairs from the sliding state at each point (referenced until SweepDestroy());
+   NULL: all pairs are closed, as without this call. A change of status between two points is bracketed by further
+   static solutions, and modes that are unstable on one side of it only are onsets of the kind jump. The basis covers
+   all statuses: what is open at some points and closed at others are further affine terms. Robustness keeps the status
+   of the scene's own values. Collective.
+
+   Errors of SweepSolve(): PETSC_ERR_SUP, with -sweep_method reduced or real, where the pencil is not affine
+   (StaticsIsAffine()), or where the status changes and the contact is exact.
+@*/
+PetscErrorCode SweepSetStatics(Sweep sweep, Statics statics);
 
 /*@
    SweepSetFromOptions - reads what to vary and how accurately. Collective.

@@ -1,8 +1,12 @@
 /*
-   Contact: interfaces from the options, sparse gap and slip operators from the pairs.
+   Contact: interfaces from the options, access to them and their pairs.
 */
 #include "contactimpl.h"
 #include <squeal/options.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const ContactStatusNames[CONTACT_N_STATUS] = {"open", "stick", "slip"};
 
 PetscErrorCode ContactCreate(Model model, Contact *contact)
 {
@@ -10,6 +14,23 @@ PetscErrorCode ContactCreate(Model model, Contact *contact)
   PetscCall(PetscCalloc1(1, contact));
   (*contact)->model = model;
   PetscCall(ModelGetComm(model, &(*contact)->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Reads the stiffness: a number, or the word `identify` */
+static PetscErrorCode StiffnessRead(PetscOptionItems *PetscOptionsObject, ContactInterface *c)
+{
+  char      text[128] = "", *end;
+  PetscBool set;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsString("-kn", "normal stiffness per pair, N/m (penalty), or: identify", "contact.h", "0", text,
+                               sizeof(text), &set));
+  if (!set) PetscFunctionReturn(0);
+  c->identify = !strcmp(text, "identify") ? PETSC_TRUE : PETSC_FALSE;
+  c->kn       = c->identify ? 1 : strtod(text, &end);
+  PetscCheck(c->identify || (end != text && !*end), PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
+             "-%s_kn '%s' must be a positive number (N/m) or the word identify", c->name, text);
   PetscFunctionReturn(0);
 }
 
@@ -32,7 +53,7 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
   PetscCall(PetscOptionsReal("-mu", "friction coefficient", "contact.h", c->mu, &c->mu, NULL));
   PetscCall(PetscOptionsReal("-mu_slope", "its slope with the sliding speed, s/m", "contact.h", c->mu_slope,
                              &c->mu_slope, NULL));
-  PetscCall(PetscOptionsReal("-kn", "normal stiffness per pair, N/m (penalty)", "contact.h", c->kn, &c->kn, NULL));
+  PetscCall(StiffnessRead(PetscOptionsObject, c));
   PetscCall(
     PetscOptionsReal("-tolerance", "largest distance of a pair, m", "contact.h", c->tolerance, &c->tolerance, NULL));
   PetscCall(
@@ -64,14 +85,14 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
   PetscCheck(c->law == CONTACT_CONSTRAINT || (c->kn > 0 && !PetscIsInfReal(c->kn)), comm, PETSC_ERR_USER_INPUT,
              "-%s_kn %.6g must be given and positive (N/m), or choose -%s_law constraint", c->name, (double)c->kn,
              c->name);
+  PetscCheck(c->law == CONTACT_PENALTY || !c->identify, comm, PETSC_ERR_USER_INPUT,
+             "-%s_kn identify does nothing with -%s_law constraint; choose -%s_law penalty", c->name, c->name, c->name);
   PetscCheck(c->tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-%s_tolerance %.6g must be positive (m)", c->name,
              (double)c->tolerance);
   PetscCheck(c->force >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_force %.6g must not be negative (N)", c->name,
              (double)c->force);
   PetscCheck(c->damping || c->mu_slope == 0, comm, PETSC_ERR_USER_INPUT,
              "-%s_mu_slope does nothing without -%s_friction_damping", c->name, c->name);
-  PetscCheck(!c->damping || c->force > 0, comm, PETSC_ERR_USER_INPUT,
-             "-%s_friction_damping needs a positive -%s_force (N)", c->name, c->name);
   PetscCheck(!c->damping || c->speed > 0 || c->rotation[0] != 0 || c->rotation[1] != 0 || c->rotation[2] != 0, comm,
              PETSC_ERR_USER_INPUT, "-%s_friction_damping needs a positive -%s_speed (m/s) or a -%s_rotation", c->name,
              c->name, c->name);
@@ -127,53 +148,20 @@ PetscErrorCode ContactGetPairs(Contact contact, PetscInt *n_local, PetscInt *n_g
   PetscFunctionReturn(0);
 }
 
-/* Sets row of an operator: d . (u_m - u_s) */
-static PetscErrorCode OperatorSetRow(Mat op, PetscInt row, const ContactPair *pair, const PetscReal d[3])
+PetscErrorCode ContactSetForces(Contact contact, const PetscReal lambda_n[])
 {
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < pair->n_master; i++) {
-    const PetscScalar values[3] = {pair->weight[i] * d[0], pair->weight[i] * d[1], pair->weight[i] * d[2]};
+  PetscReal total[CONTACT_MAX] = {0};
 
-    PetscCall(MatSetValues(op, 1, &row, 3, pair->master[i], values, ADD_VALUES));
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    contact->pairs[p].force = lambda_n[p];
+    total[contact->pairs[p].interface] += lambda_n[p];
   }
-  const PetscScalar values[3] = {-d[0], -d[1], -d[2]};
-
-  PetscCall(MatSetValues(op, 1, &row, 3, pair->slave, values, ADD_VALUES));
-  PetscFunctionReturn(0);
-}
-
-/* Sparse operator of one interface along n, t or b, chosen by its offset in ContactPair */
-static PetscErrorCode OperatorCreate(Contact contact, PetscInt interface, size_t direction, Mat *op)
-{
-  PetscInt first = 0, n = 0, row, n_unknowns;
-  Vec      u;
-  DM       dm;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(contact->model, &dm));
-  PetscCall(DMGetGlobalVector(dm, &u));
-  PetscCall(VecGetLocalSize(u, &n_unknowns));
-  PetscCall(DMRestoreGlobalVector(dm, &u));
-  while (first < contact->n_pairs && contact->pairs[first].interface < interface) first++;
-  while (first + n < contact->n_pairs && contact->pairs[first + n].interface == interface) n++;
-  PetscCall(MatCreateAIJ(contact->comm, n, n_unknowns, PETSC_DETERMINE, PETSC_DETERMINE, 15, NULL, 15, NULL, op));
-  PetscCall(MatGetOwnershipRange(*op, &row, NULL));
-  for (PetscInt p = first; p < first + n; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-
-    PetscCall(OperatorSetRow(*op, row++, pair, (const PetscReal *)((const char *)pair + direction)));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, total, CONTACT_MAX, MPIU_REAL, MPI_SUM, contact->comm));
+  for (PetscInt i = 0; i < contact->n_interfaces; i++) {
+    contact->interfaces[i].force     = total[i];
+    contact->interfaces[i].preloaded = PETSC_TRUE;
   }
-  PetscCall(MatAssemblyBegin(*op, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(*op, MAT_FINAL_ASSEMBLY));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ContactCreateOperators(Contact contact, PetscInt interface, Mat *N, Mat *T, Mat *B)
-{
-  PetscFunctionBeginUser;
-  if (N) PetscCall(OperatorCreate(contact, interface, offsetof(ContactPair, n), N));
-  if (T) PetscCall(OperatorCreate(contact, interface, offsetof(ContactPair, t), T));
-  if (B) PetscCall(OperatorCreate(contact, interface, offsetof(ContactPair, b), B));
   PetscFunctionReturn(0);
 }
 
@@ -197,7 +185,9 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
 
     PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %s slides on %s, mu %.6g, ", c->name, c->slave, c->master,
                                      (double)c->mu));
-    if (c->law == CONTACT_PENALTY)
+    if (c->identify)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "penalty, stiffness identified by pressing\n"));
+    else if (c->law == CONTACT_PENALTY)
       PetscCall(PetscViewerASCIIPrintf(viewer, "penalty %.6g N/m per pair\n", (double)c->kn));
     else
       PetscCall(PetscViewerASCIIPrintf(viewer, "exact constraint by elimination\n"));
@@ -217,6 +207,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
     PetscCall(PetscFree((*contact)->interfaces[i].master));
   }
   PetscCall(PetscFree((*contact)->pairs));
+  PetscCall(PetscFree((*contact)->vertex));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(0);
 }

@@ -9,19 +9,13 @@
 #include "contactimpl.h"
 #include "kernels/facet.h"
 
-/* One facet of the master surface: corners, their normals (times area), their unknowns */
-typedef struct {
-  PetscReal x[4][3], normal[4][3];
-  PetscInt  unknowns[4][3];
-} Facet;
-
-/* Facets of the master surface on this rank */
-static PetscErrorCode FacetsLocal(Model model, const char set[], PetscInt *n, Facet **facets)
+PetscErrorCode FacetsLocal(Model model, const char set[], PetscInt *n, Facet **facets)
 {
   const PetscReal *x;
-  const PetscInt  *unknowns;
+  const PetscInt  *unknowns, *number;
   PetscReal       *normals;
   PetscInt        *corners, vStart;
+  IS               numbers;
   DM               dm;
 
   PetscFunctionBeginUser;
@@ -31,14 +25,18 @@ static PetscErrorCode FacetsLocal(Model model, const char set[], PetscInt *n, Fa
   PetscCall(ModelGetUnknowns(model, &unknowns));
   PetscCall(ModelGetSetNormals(model, set, &normals));
   PetscCall(ModelGetSetFaces(model, set, n, &corners));
+  PetscCall(DMPlexGetVertexNumbering(dm, &numbers));
+  PetscCall(ISGetIndices(numbers, &number));
   PetscCall(PetscMalloc1(*n, facets));
   for (PetscInt i = 0; i < 4 * *n; i++) {
-    const PetscInt v = 3 * (corners[i] - vStart);
+    const PetscInt v = 3 * (corners[i] - vStart), global = number[corners[i] - vStart];
 
     PetscCall(PetscArraycpy((*facets)[i / 4].x[i % 4], &x[v], 3));
     PetscCall(PetscArraycpy((*facets)[i / 4].normal[i % 4], &normals[v], 3));
     PetscCall(PetscArraycpy((*facets)[i / 4].unknowns[i % 4], &unknowns[v], 3));
+    (*facets)[i / 4].vertex[i % 4] = global < 0 ? -1 - global : global; /* negative: another rank owns the vertex */
   }
+  PetscCall(ISRestoreIndices(numbers, &number));
   PetscCall(PetscFree(normals));
   PetscCall(PetscFree(corners));
   PetscFunctionReturn(0);
@@ -121,7 +119,21 @@ static PetscReal Normalise(PetscReal a[3])
   return length;
 }
 
-/* Corners with their weights, and the interpolated normal */
+/* Gap n . (x_s - x_m); what is below 1e-9 of the facet's diagonal is rounding of the coordinates, and no gap */
+static PetscReal PairGap(const Facet *facet, const PetscReal weight[4], const ContactPair *pair)
+{
+  PetscReal apart[3], diagonal[3], gap;
+
+  for (int d = 0; d < 3; d++) {
+    apart[d] = pair->x[d];
+    for (int i = 0; i < 4; i++) apart[d] -= weight[i] * facet->x[i][d];
+    diagonal[d] = facet->x[2][d] - facet->x[0][d];
+  }
+  gap = Dot(pair->n, apart);
+  return PetscAbsReal(gap) < 1e-9 * PetscSqrtReal(Dot(diagonal, diagonal)) ? 0 : gap;
+}
+
+/* Corners with their weights, the interpolated normal and the gap along it */
 static void PairSetMaster(const Facet *facet, const PetscReal natural[2], ContactPair *pair)
 {
   PetscReal weight[4];
@@ -133,9 +145,11 @@ static void PairSetMaster(const Facet *facet, const PetscReal natural[2], Contac
       pair->n[d] += weight[i] * facet->normal[i][d];
       pair->master[pair->n_master][d] = facet->unknowns[i][d];
     }
+    pair->corner[pair->n_master]   = facet->vertex[i];
     pair->weight[pair->n_master++] = weight[i];
   }
   (void)Normalise(pair->n);
+  pair->gap = PairGap(facet, weight, pair);
 }
 
 /* A unit vector across n, where the direction of slip is not needed */
@@ -183,10 +197,10 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, PetscInt n_
 {
   const ContactInterface *c = &contact->interfaces[interface];
   const PetscReal        *x;
-  const PetscInt         *unknowns, *vertices;
+  const PetscInt         *unknowns, *vertices, *number;
   PetscReal              *normals;
   PetscInt                n, vStart;
-  IS                      is;
+  IS                      is, numbers;
   DM                      dm;
 
   PetscFunctionBeginUser;
@@ -198,13 +212,17 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, PetscInt n_
   PetscCall(ModelGetOwnedVertices(contact->model, c->slave, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
+  PetscCall(DMPlexGetVertexNumbering(dm, &numbers));
+  PetscCall(ISGetIndices(numbers, &number));
   PetscCall(PetscRealloc(sizeof(ContactPair) * (size_t)(contact->n_pairs + n), &contact->pairs));
+  PetscCall(PetscRealloc(sizeof(PetscInt) * (size_t)(contact->n_pairs + n), &contact->vertex));
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt v          = 3 * (vertices[i] - vStart);
     ContactPair   *pair       = &contact->pairs[contact->n_pairs++];
     PetscReal      natural[2] = {0, 0}, distance;
     PetscInt       f;
 
+    contact->vertex[contact->n_pairs - 1] = number[vertices[i] - vStart];
     PetscCall(PetscMemzero(pair, sizeof(*pair)));
     pair->interface = interface;
     PetscCall(PetscArraycpy(pair->x, &x[v], 3));
@@ -219,15 +237,17 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, PetscInt n_
     PairSetMaster(&facets[f], natural, pair);
     if (!PairSetSlip(c, pair)) failure->no_slip = 1;
   }
+  PetscCall(ISRestoreIndices(numbers, &number));
   PetscCall(ISRestoreIndices(is, &vertices));
   PetscCall(ISDestroy(&is));
   PetscCall(PetscFree(normals));
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for a node without partner or without slip */
+/* Raises the error for a node without partner, or where the slip that is given vanishes */
 static PetscErrorCode PairCheck(MPI_Comm comm, ContactInterface *c, PairFailure *failure)
 {
+  const PetscBool given = Dot(c->slip, c->slip) > 0 || Dot(c->rotation, c->rotation) > 0 ? PETSC_TRUE : PETSC_FALSE;
   struct {
     double distance;
     int    rank;
@@ -245,7 +265,7 @@ static PetscErrorCode PairCheck(MPI_Comm comm, ContactInterface *c, PairFailure 
              worst.distance, c->name, (double)c->tolerance);
   c->slides = failure->no_slip == 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(
-    c->slides || (c->mu == 0 && !c->damping), comm, PETSC_ERR_USER_INPUT,
+    c->slides || !given || (c->mu == 0 && !c->damping), comm, PETSC_ERR_USER_INPUT,
     "contact %s: the sliding velocity vanishes in the surface at some pair; give -%s_slip x,y,z along the surface",
     c->name, c->name);
   PetscFunctionReturn(0);

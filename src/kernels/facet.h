@@ -55,6 +55,33 @@ static inline void FacetAreaNormals(const double x[4][3], double share[4][3])
   }
 }
 
+/* Vectors c (m) that turn the corner shares of the area vector, d share_i = sum_j u_j x c_ij for displacements u_j of
+   the corners; of the derivative of int w_i (x_,xi x x_,eta), by the same quadrature */
+static inline void FacetTurning(const double x[4][3], double c[4][4][3])
+{
+  static const double g = 0.57735026918962576451, sign[4][2] = {
+                                                    {-1, -1},
+                                                    {1,  -1},
+                                                    {1,  1 },
+                                                    {-1, 1 }
+  };
+
+  for (int k = 0; k < 48; k++) c[k / 12][k / 3 % 4][k % 3] = 0;
+  for (int q = 0; q < 4; q++) {
+    const double xi = g * sign[q][0], eta = g * sign[q][1];
+    double       w[4], p[3], a[3], b[3];
+
+    FacetWeights(xi, eta, w);
+    FacetTangents(x, xi, eta, p, a, b);
+    for (int k = 0; k < 48; k++) {
+      const double *s = sign[k / 3 % 4];
+
+      c[k / 12][k / 3 % 4][k % 3] +=
+        w[k / 12] * (s[0] * (1 + s[1] * eta) * b[k % 3] - s[1] * (1 + s[0] * xi) * a[k % 3]) / 4;
+    }
+  }
+}
+
 /* Moves a natural coordinate into [-1, 1]; values within 1e-9 of an end or of the middle become exact */
 static inline double FacetSnap(double s)
 {

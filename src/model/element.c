@@ -6,7 +6,7 @@
 */
 #include <squeal/element.h>
 #include <string.h>
-#include "../kernels/hex8.h"
+#include "../kernels/geometric.h"
 
 #define INCOMPATIBLE "incompatible"
 #define FULL         "full"
@@ -18,6 +18,7 @@ static const Element elements[] = {
    .n_nodes       = HEX8_NODES,
    .closure_order = {0, 3, 2, 1, 4, 5, 6, 7},
    .matrices      = Hex8IncompatibleMatrices,
+   .geometric     = Hex8IncompatibleGeometric,
    .measure       = Hex8Measure},
   {.formulation   = FULL,
    .description   = "8-node hexahedron, fully integrated",
@@ -25,6 +26,7 @@ static const Element elements[] = {
    .n_nodes       = HEX8_NODES,
    .closure_order = {0, 3, 2, 1, 4, 5, 6, 7},
    .matrices      = Hex8FullMatrices,
+   .geometric     = Hex8FullGeometric,
    .measure       = Hex8Measure}
 };
 

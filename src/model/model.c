@@ -36,6 +36,7 @@ PetscErrorCode ModelSetFromOptions(Model model)
   if (source == 0) PetscCall(RigSetFromOptions(model->comm, &model->rig));
   PetscCall(PartsSetFromOptions(model));
   PetscCall(SupportsSetFromOptions(model));
+  PetscCall(LoadsSetFromOptions(model));
   PetscFunctionReturn(0);
 }
 
@@ -93,6 +94,7 @@ PetscErrorCode ModelSetUp(Model model)
   PetscCall(PartsFindCells(model));
   PetscCall(ModelTabulate(model));
   PetscCall(SupportsLayOut(model));
+  PetscCall(LoadsCheck(model));
   PetscFunctionReturn(0);
 }
 
@@ -160,6 +162,14 @@ PetscErrorCode ModelGetUnknowns(Model model, const PetscInt **unknowns)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModelGetSupports(Model model, PetscInt *n, const Support **supports)
+{
+  PetscFunctionBeginUser;
+  *n        = model->n_supports;
+  *supports = model->supports;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelGetSprings(Model model, PetscInt *n, const Grounded **springs)
 {
   PetscFunctionBeginUser;
@@ -218,6 +228,12 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
                                      model->supports[i].fix[2] ? " z" : "", model->supports[i].set));
   PetscCall(GroundedView("spring", "N/m", model->n_springs, model->springs, viewer));
   PetscCall(GroundedView("dashpot", "N s/m", model->n_dashpots, model->dashpots, viewer));
+  for (PetscInt i = 0; i < model->n_loads; i++) {
+    const Load *l = &model->loads[i];
+
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  load %s on %s: %.6g, %.6g, %.6g N in all\n", l->name, l->set,
+                                     (double)l->force[0], (double)l->force[1], (double)l->force[2]));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -244,11 +260,16 @@ PetscErrorCode ModelDestroy(Model *model)
     PetscCall(PetscFree(m->supports[i].name));
     PetscCall(PetscFree(m->supports[i].set));
   }
+  for (PetscInt i = 0; i < m->n_loads; i++) {
+    PetscCall(PetscFree(m->loads[i].name));
+    PetscCall(PetscFree(m->loads[i].set));
+  }
   for (PetscInt i = 0; i < m->n_together; i++) PetscCall(PetscFree(m->together[i]));
   PetscCall(GroundedDestroy(m->n_springs, &m->springs));
   PetscCall(GroundedDestroy(m->n_dashpots, &m->dashpots));
   PetscCall(PetscFree(m->parts));
   PetscCall(PetscFree(m->supports));
+  PetscCall(PetscFree(m->loads));
   PetscCall(PetscFree(m->cell_part));
   PetscCall(PetscFree(m->cell_vertices));
   PetscCall(PetscFree(m->coordinates));

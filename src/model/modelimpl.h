@@ -21,22 +21,17 @@ typedef struct {
   PetscReal beam_rows[2]; /* heights of the two spring rows above the beam's lower end, 20 and 80 mm */
 } Rig;
 
-/* Essential condition: the flagged directions are fixed at every vertex of the set */
-typedef struct {
-  char     *name, *set;
-  PetscBool fix[3];
-} Support;
-
 struct _p_Model {
   MPI_Comm comm;
   /* set by options */
   PetscBool given; /* the scene names a mesh */
   char      source[8], mesh[PETSC_MAX_PATH_LEN], formulation[32];
   Rig       rig;
-  PetscInt  n_parts, n_supports, n_springs, n_dashpots, n_together;
+  PetscInt  n_parts, n_supports, n_springs, n_dashpots, n_loads, n_together;
   Part     *parts;
   Support  *supports;
   Grounded *springs, *dashpots;
+  Load     *loads;
   char     *together[MODEL_MAX_NAMES]; /* sets whose cells stay on one rank */
   /* built by ModelSetUp() */
   DM             dm;
@@ -70,6 +65,14 @@ PETSC_INTERN PetscErrorCode PartsFindCells(Model model);
 /* support.c - essential supports, grounded springs and dashpots; the layout of the unknowns */
 PETSC_INTERN PetscErrorCode SupportsSetFromOptions(Model model);
 PETSC_INTERN PetscErrorCode SupportsLayOut(Model model);
+
+/* support.c - set name of a support, spring, dashpot or load, inside its PetscOptionsBegin() */
+PETSC_INTERN PetscErrorCode SetNameFromOptions(PetscOptionItems *PetscOptionsObject, char **set);
+
+/* load.c - total forces on sets; raises an error for a set that the mesh does not have, or that has no node of an
+   element */
+PETSC_INTERN PetscErrorCode LoadsSetFromOptions(Model model);
+PETSC_INTERN PetscErrorCode LoadsCheck(Model model);
 
 /* check.c - finds the element of the cells and raises an error for a bad one; before the mesh is distributed */
 PETSC_INTERN PetscErrorCode MeshCheck(Model model);

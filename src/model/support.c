@@ -5,8 +5,7 @@
 #include "modelimpl.h"
 #include <squeal/options.h>
 
-/* Set name of a support, spring or dashpot, inside its PetscOptionsBegin() */
-static PetscErrorCode SetNameFromOptions(PetscOptionItems *PetscOptionsObject, char **set)
+PetscErrorCode SetNameFromOptions(PetscOptionItems *PetscOptionsObject, char **set)
 {
   char name[256] = "";
 

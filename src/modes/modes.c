@@ -25,9 +25,18 @@ PetscErrorCode ModesSetOperators(Modes modes, Operators operators)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModesSetStatics(Modes modes, Statics statics)
+{
+  PetscFunctionBeginUser;
+  modes->statics = statics;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModesSetFromOptions(Modes modes)
 {
-  PetscBool has_target, has_count;
+  static const char *const contacts[] = {"all", "static"};
+  PetscBool                has_target, has_count;
+  PetscInt                 contact = 0;
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(modes->comm, NULL, "Modes", NULL);
@@ -43,7 +52,10 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
                              modes->left, &modes->left, NULL));
   PetscCall(PetscOptionsString("-modes_disc", "part whose shapes are named by nodal circles and diameters", "modes.h",
                                modes->disc, modes->disc, sizeof(modes->disc), NULL));
+  PetscCall(PetscOptionsEList("-modes_contact", "pairs that are closed: every one, or those of the sliding state",
+                              "modes.h", contacts, 2, contacts[0], &contact, NULL));
   PetscOptionsEnd();
+  modes->is_static = contact ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(!modes->has_band || (modes->band[0] >= 0 && modes->band[1] > modes->band[0]), modes->comm,
              PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g must satisfy 0 <= f1 < f2 (Hz)", (double)modes->band[0],
              (double)modes->band[1]);
@@ -55,6 +67,13 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   PetscCheck(modes->target >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_target %.6g must not be negative (Hz)",
              (double)modes->target);
   PetscCall(ProgressSetFromOptions(modes->comm, &modes->progress));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesGetContact(Modes modes, PetscBool *is_static)
+{
+  PetscFunctionBeginUser;
+  *is_static = modes->is_static;
   PetscFunctionReturn(0);
 }
 
@@ -165,6 +184,7 @@ PetscErrorCode ModesSolve(Modes modes)
 
   PetscFunctionBeginUser;
   PetscCall(ModesReset(modes));
+  if (modes->statics) PetscCall(StaticsLinearise(modes->statics));
   PetscCall(OperatorsGetPencil(modes->operators, &pencil));
   PetscCall(WindowFind(modes, &window));
   PetscCheck(window.expected != 0 || !pencil.symmetric || pencil.C, modes->comm, PETSC_ERR_USER_INPUT,

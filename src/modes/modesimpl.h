@@ -26,10 +26,11 @@ PETSC_INTERN PetscErrorCode SpectrumDestroy(Spectrum *spectrum);
 struct _p_Modes {
   MPI_Comm  comm;
   Operators operators;
+  Statics   statics; /* whose state the modes are about, or NULL */
   /* set by options */
   PetscReal band[2], target; /* Hz */
   PetscReal growth;          /* rad/s; 0: a tenth of the highest angular frequency */
-  PetscBool has_band, left;
+  PetscBool has_band, left, is_static;
   PetscInt  count;
   char      disc[64];
   Progress  progress;

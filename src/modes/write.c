@@ -16,6 +16,28 @@ static PetscReal ModeDampingRatio(const Mode *mode)
   return size > 0 && mode->sigma != 0 ? -mode->sigma / size : 0;
 }
 
+/* What the modes are about */
+static PetscErrorCode StateView(Modes modes, PetscViewer viewer)
+{
+  const ContactPair *pair;
+  Contact            contact;
+  PetscInt           n, n_all, n_closed = 0;
+  PetscBool         *closed;
+
+  PetscFunctionBeginUser;
+  if (!modes->statics) PetscFunctionReturn(0);
+  PetscCall(OperatorsGetModel(modes->operators, NULL, &contact));
+  PetscCall(ContactGetPairs(contact, &n, &n_all, &pair));
+  PetscCall(PetscMalloc1(n, &closed));
+  PetscCall(StaticsGetClosed(modes->statics, closed));
+  for (PetscInt p = 0; p < n; p++) n_closed += closed[p] ? 1 : 0;
+  PetscCall(PetscFree(closed));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_closed, 1, MPIU_INT, MPI_SUM, modes->comm));
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer, "about the sliding state: %" PetscInt_FMT " of %" PetscInt_FMT " pairs closed\n", n_closed, n_all));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
 {
   PetscInt n_unstable = 0;
@@ -34,6 +56,7 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
   }
   PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " modes, %" PetscInt_FMT " unstable; %s\n", modes->n,
                                    n_unstable, modes->completeness));
+  PetscCall(StateView(modes, viewer));
   PetscFunctionReturn(0);
 }
 

@@ -9,11 +9,11 @@
       Zl = Zr + sum_i mu_i Zl_i,   Zl_i = F_i + G_i E,   F_i: n q1 at a slave,   G_i = -n t' from its master,
 
    no master being slave of another pair. A becomes Zl' A Zr, and constraint forces drop out: a term c A of all unknowns
-   makes the terms c (Zr' A Zr) and c mu_i (Zl_i' A Zr) of the pencil.
+   makes the terms c (Zr' A Zr) and c mu_i (Zl_i' A Zr) of the pencil. Open pairs are no constraints.
 */
 #include "operatorsimpl.h"
 
-/* Eliminated pairs of this rank, by their interface's law; checks that elimination is possible */
+/* Eliminated pairs of this rank: closed, by their interface's law; checks that elimination is possible */
 static PetscErrorCode ConstrainedPairs(Operators o, PetscInt *n, const ContactPair ***list,
                                        const ContactInterface **interfaces)
 {
@@ -27,7 +27,7 @@ static PetscErrorCode ConstrainedPairs(Operators o, PetscInt *n, const ContactPa
   PetscCall(PetscMalloc1(n_pairs, list));
   *n = 0;
   for (PetscInt p = 0; p < n_pairs; p++) {
-    if ((*interfaces)[pairs[p].interface].law != CONTACT_CONSTRAINT) continue;
+    if ((*interfaces)[pairs[p].interface].law != CONTACT_CONSTRAINT || OperatorsPairGroup(o, p) < 0) continue;
     (*list)[(*n)++] = &pairs[p];
     for (int d = 0; d < 3; d++)
       if (pairs[p].slave[d] < 0) held = 1;
@@ -157,6 +157,7 @@ PetscErrorCode OperatorsCreateNullSpaces(Operators o)
   PetscInt                n, n_all, n_interfaces;
 
   PetscFunctionBeginUser;
+  if (!o->model || o->constrained) PetscFunctionReturn(0);
   PetscCall(ConstrainedPairs(o, &n, &list, &interfaces));
   PetscCallMPI(MPI_Allreduce(&n, &n_all, 1, MPIU_INT, MPI_SUM, o->comm));
   if (n_all) {
@@ -166,12 +167,26 @@ PetscErrorCode OperatorsCreateNullSpaces(Operators o)
     PetscCall(InjectionCreate(o, n, list, -1, &o->E));
     PetscCall(NullSpaceCreate(o, n, list, -1, &o->Zr));
     for (PetscInt i = 0; i < n_interfaces; i++) {
-      if (interfaces[i].law != CONTACT_CONSTRAINT || o->interface_mu[i] < 0) continue;
+      if (interfaces[i].law != CONTACT_CONSTRAINT || o->interface[i].mu < 0) continue;
       PetscCall(NullSpaceCreate(o, n, list, i, &o->left[o->n_left]));
-      o->left_mu[o->n_left++] = o->interface_mu[i];
+      o->left_mu[o->n_left++] = o->interface[i].mu;
     }
   }
+  o->constrained = PETSC_TRUE;
   PetscCall(PetscFree(list));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsDestroyNullSpaces(Operators o)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < o->n_left; i++) PetscCall(MatDestroy(&o->left[i]));
+  PetscCall(PetscFree2(o->left, o->left_mu));
+  PetscCall(MatDestroy(&o->Zr));
+  PetscCall(MatDestroy(&o->E));
+  PetscCall(TermsDestroy(&o->projected));
+  o->n_left      = 0;
+  o->constrained = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
@@ -228,11 +243,13 @@ static PetscErrorCode ImagesAdd(Operators o, const OperatorsTerm *base, const Ma
 
 PetscErrorCode OperatorsProjectTerms(Operators o)
 {
-  const PetscInt n_images = 1 + o->n_left;
-  Mat           *image;
+  PetscInt n_images;
+  Mat     *image;
 
   PetscFunctionBeginUser;
+  PetscCall(OperatorsCreateNullSpaces(o));
   if (!o->Zr || o->projected.n) PetscFunctionReturn(0);
+  n_images = 1 + o->n_left;
   PetscCall(PetscCalloc1(o->base.n * n_images, &image));
   for (PetscInt t = 0; t < o->base.n; t++) {
     const OperatorsTerm *term   = &o->base.term[t];

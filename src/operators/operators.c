@@ -3,6 +3,7 @@
    sum of terms at the present values of the parameters, formed when it is asked for.
 */
 #include "operatorsimpl.h"
+#include <math.h>
 
 PetscErrorCode OperatorsCreate(MPI_Comm comm, Operators *operators)
 {
@@ -54,17 +55,17 @@ PetscErrorCode OperatorsHaveMatrices(Operators operators, PetscBool *have)
 
 PetscErrorCode OperatorsSetUp(Operators operators)
 {
-  OperatorsPencil pencil;
-
   PetscFunctionBeginUser;
   if (operators->model) {
     PetscCall(OperatorsAssemble(operators));
+    operators->n_body_terms = operators->base.n;
+    PetscCall(OperatorsAddContactParameters(operators));
     PetscCall(OperatorsAddContact(operators));
-    PetscCall(OperatorsCreateNullSpaces(operators));
   } else {
     PetscCall(OperatorsLoad(operators));
+    operators->n_body_terms = operators->base.n;
   }
-  PetscCall(OperatorsGetPencil(operators, &pencil));
+  operators->n_scene = operators->n_parameters;
   if (operators->save[0]) PetscCall(OperatorsSave(operators));
   PetscFunctionReturn(0);
 }
@@ -76,20 +77,22 @@ static const struct {
   PetscBool         symmetric;   /* without friction and damping */
   SumKind           unprojected; /* the same sum when no constraint projects */
 } sums[N_SUMS] = {
-  [SUM_K]       = {OPERATORS_STIFFNESS, TERMS_SYMMETRIC,   PETSC_TRUE,  SUM_K   },
-  [SUM_M]       = {OPERATORS_MASS,      TERMS_ALL,         PETSC_TRUE,  SUM_M   },
-  [SUM_C]       = {OPERATORS_DAMPING,   TERMS_ALL,         PETSC_FALSE, SUM_C   },
-  [SUM_H]       = {OPERATORS_STIFFNESS, TERMS_UNSYMMETRIC, PETSC_FALSE, SUM_H   },
-  [PROJECTED_K] = {OPERATORS_STIFFNESS, TERMS_SYMMETRIC,   PETSC_TRUE,  SUM_K   },
-  [PROJECTED_M] = {OPERATORS_MASS,      TERMS_SYMMETRIC,   PETSC_TRUE,  SUM_M   },
-  [PENCIL_K]    = {OPERATORS_STIFFNESS, TERMS_ALL,         PETSC_FALSE, PENCIL_K},
-  [PENCIL_M]    = {OPERATORS_MASS,      TERMS_ALL,         PETSC_FALSE, SUM_M   },
-  [PENCIL_C]    = {OPERATORS_DAMPING,   TERMS_ALL,         PETSC_FALSE, SUM_C   },
+  [SUM_BODIES]  = {OPERATORS_STIFFNESS, TERMS_SYMMETRIC,   PETSC_TRUE,  SUM_BODIES},
+  [SUM_K]       = {OPERATORS_STIFFNESS, TERMS_SYMMETRIC,   PETSC_TRUE,  SUM_K     },
+  [SUM_M]       = {OPERATORS_MASS,      TERMS_ALL,         PETSC_TRUE,  SUM_M     },
+  [SUM_C]       = {OPERATORS_DAMPING,   TERMS_ALL,         PETSC_FALSE, SUM_C     },
+  [SUM_H]       = {OPERATORS_STIFFNESS, TERMS_UNSYMMETRIC, PETSC_FALSE, SUM_H     },
+  [PROJECTED_K] = {OPERATORS_STIFFNESS, TERMS_SYMMETRIC,   PETSC_TRUE,  SUM_K     },
+  [PROJECTED_M] = {OPERATORS_MASS,      TERMS_SYMMETRIC,   PETSC_TRUE,  SUM_M     },
+  [PENCIL_K]    = {OPERATORS_STIFFNESS, TERMS_ALL,         PETSC_FALSE, PENCIL_K  },
+  [PENCIL_M]    = {OPERATORS_MASS,      TERMS_ALL,         PETSC_FALSE, SUM_M     },
+  [PENCIL_C]    = {OPERATORS_DAMPING,   TERMS_ALL,         PETSC_FALSE, SUM_C     },
 };
 
 /* One of the sums at the present values (borrowed); NULL when it vanishes */
 static PetscErrorCode SumGet(Operators o, SumKind which, Mat *A)
 {
+  const Terms     bodies    = {o->n_body_terms, o->base.term};
   const SumKind   at        = o->Zr ? which : sums[which].unprojected;
   const PetscBool projected = o->Zr && at >= PROJECTED_K ? PETSC_TRUE : PETSC_FALSE;
   const PetscReal mu        = OperatorsLargestMu(o);
@@ -98,8 +101,8 @@ static PetscErrorCode SumGet(Operators o, SumKind which, Mat *A)
   PetscFunctionBeginUser;
   if (!sum->current) {
     if (projected) PetscCall(OperatorsProjectTerms(o));
-    PetscCall(TermsSumForm(projected ? &o->projected : &o->base, sums[at].kind, sums[at].choice,
-                           at == SUM_H && mu != 0 ? 1 / mu : 1, o->p, sum));
+    PetscCall(TermsSumForm(projected ? &o->projected : (at == SUM_BODIES ? &bodies : &o->base), sums[at].kind,
+                           sums[at].choice, at == SUM_H && mu != 0 ? 1 / mu : 1, o->p, sum));
     if (sum->A)
       PetscCall(MatSetOption(sum->A, MAT_SYMMETRIC, sums[at].symmetric && o->symmetric ? PETSC_TRUE : PETSC_FALSE));
   }
@@ -131,12 +134,34 @@ PetscErrorCode OperatorsGetMatrices(Operators operators, Mat *K, Mat *M, Mat *C,
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsGetTerms(Operators operators, PetscInt *n, const OperatorsTerm **terms)
+PetscErrorCode OperatorsGetBodies(Operators operators, Mat *K)
 {
-  const Terms *list = operators->Zr ? &operators->projected : &operators->base;
+  PetscFunctionBeginUser;
+  PetscCall(SumGet(operators, SUM_BODIES, K));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsGetInterface(Operators operators, PetscInt interface, PetscReal *mu, PetscReal *kn)
+{
+  const InterfaceParameters *q = &operators->interface[interface];
+  const ContactInterface    *c;
+  PetscInt                   n;
 
   PetscFunctionBeginUser;
+  PetscCall(ContactGetInterfaces(operators->contact, &n, &c));
+  *mu = q->mu < 0 ? c[interface].mu : operators->p[q->mu];
+  *kn = q->kn < 0 ? INFINITY : operators->p[q->kn];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsGetTerms(Operators operators, PetscInt *n, const OperatorsTerm **terms)
+{
+  const Terms *list;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsCheckLinear(operators));
   PetscCall(OperatorsProjectTerms(operators));
+  list   = operators->Zr ? &operators->projected : &operators->base;
   *n     = list->n;
   *terms = list->term;
   PetscFunctionReturn(0);
@@ -144,11 +169,13 @@ PetscErrorCode OperatorsGetTerms(Operators operators, PetscInt *n, const Operato
 
 PetscErrorCode OperatorsGetPencil(Operators operators, OperatorsPencil *pencil)
 {
-  const Terms *terms = operators->Zr ? &operators->projected : &operators->base;
+  const Terms *terms;
   PetscBool    frictionless, same_mass;
 
   PetscFunctionBeginUser;
+  PetscCall(OperatorsCheckLinear(operators));
   PetscCall(OperatorsProjectTerms(operators));
+  terms             = operators->Zr ? &operators->projected : &operators->base;
   frictionless      = TermsVanish(terms, TERMS_UNSYMMETRIC, PETSC_FALSE, operators->p);
   same_mass         = TermsVanish(terms, TERMS_UNSYMMETRIC, PETSC_TRUE, operators->p);
   pencil->symmetric = operators->symmetric && frictionless ? PETSC_TRUE : PETSC_FALSE;
@@ -161,6 +188,7 @@ PetscErrorCode OperatorsGetPencil(Operators operators, OperatorsPencil *pencil)
 PetscErrorCode OperatorsGetFrictionless(Operators operators, OperatorsPencil *pencil)
 {
   PetscFunctionBeginUser;
+  PetscCall(OperatorsCreateNullSpaces(operators));
   PetscCall(SumGet(operators, PROJECTED_K, &pencil->K));
   PetscCall(SumGet(operators, PROJECTED_M, &pencil->M));
   pencil->C         = NULL;
@@ -242,13 +270,12 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   if (!o) PetscFunctionReturn(0);
   for (int i = 0; i < N_OPERATORS; i++) PetscCall(PetscFree(o->dense[i]));
   for (int i = 0; i < N_SUMS; i++) PetscCall(TermsSumDestroy(&o->sum[i]));
-  for (PetscInt i = 0; i < o->n_left; i++) PetscCall(MatDestroy(&o->left[i]));
-  PetscCall(PetscFree2(o->left, o->left_mu));
-  PetscCall(MatDestroy(&o->Zr));
-  PetscCall(MatDestroy(&o->E));
-  PetscCall(TermsDestroy(&o->projected));
+  PetscCall(OperatorsDestroyNullSpaces(o));
   PetscCall(TermsDestroy(&o->base));
-  PetscCall(PetscFree(o->interface_mu));
+  PetscCall(MatDestroy(&o->geometric));
+  PetscCall(MatDestroy(&o->follower));
+  PetscCall(PetscFree(o->group));
+  PetscCall(PetscFree(o->interface));
   PetscCall(PetscFree(o->mu));
   PetscCall(PetscFree(o->parameter));
   PetscCall(PetscFree(o->p));

@@ -15,11 +15,12 @@ PetscErrorCode ParameterAdd(Operators o, const char owner[], const char what[], 
   PetscCall(PetscRealloc(size * sizeof(*o->p), &o->p));
   q = &o->parameter[o->n_parameters];
   PetscCall(PetscSNPrintf(q->name, sizeof(q->name), "%s_%s", owner, what));
-  q->unit   = unit;
-  q->value  = value;
-  q->lower  = lower;
-  q->upper  = INFINITY;
-  q->closed = closed;
+  q->unit     = unit;
+  q->value    = value;
+  q->lower    = lower;
+  q->upper    = INFINITY;
+  q->closed   = closed;
+  q->internal = PETSC_FALSE;
 
   o->p[o->n_parameters] = value;
   *index                = o->n_parameters++;
@@ -32,6 +33,19 @@ PetscErrorCode ParameterAddMu(Operators o, const char owner[], PetscReal value, 
   PetscCall(ParameterAdd(o, owner, "mu", "", value, -INFINITY, PETSC_FALSE, index));
   PetscCall(PetscRealloc((size_t)(o->n_mu + 1) * sizeof(*o->mu), &o->mu));
   o->mu[o->n_mu++] = *index;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ParameterAddClosed(Operators o, PetscInt group)
+{
+  char     number[16];
+  PetscInt index;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(number, sizeof(number), "%" PetscInt_FMT, group));
+  PetscCall(ParameterAdd(o, "closed", number, "", 1, 0, PETSC_TRUE, &index));
+  o->parameter[index].upper    = 1;
+  o->parameter[index].internal = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -52,6 +66,13 @@ PetscErrorCode OperatorsGetParameters(Operators operators, PetscInt *n, const Op
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OperatorsGetYoung(Operators operators, PetscInt part, PetscReal *young)
+{
+  PetscFunctionBeginUser;
+  *young = operators->p[N_PART_PARAMETERS * part + PART_YOUNG];
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OperatorsGetDensity(Operators operators, PetscInt part, PetscReal *density)
 {
   PetscFunctionBeginUser;
@@ -65,7 +86,9 @@ PetscErrorCode OperatorsCheckParameter(Operators operators, PetscInt parameter, 
   const char               *space = q->unit[0] ? " " : "";
 
   PetscFunctionBeginUser;
-  PetscCheck(value < q->upper && !PetscIsNanReal(value), operators->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(!q->internal || value <= q->upper, operators->comm, PETSC_ERR_USER_INPUT, "%s %.6g must be at most %.6g",
+             q->name, (double)value, (double)q->upper);
+  PetscCheck((q->internal || value < q->upper) && !PetscIsNanReal(value), operators->comm, PETSC_ERR_USER_INPUT,
              "%s %.6g%s%s must be a finite number", q->name, (double)value, space, q->unit);
   PetscCheck(value > q->lower || (q->closed && value == q->lower), operators->comm, PETSC_ERR_USER_INPUT,
              "%s %.6g%s%s must %s %.6g", q->name, (double)value, space, q->unit, q->closed ? "be at least" : "exceed",

@@ -176,5 +176,6 @@ PetscErrorCode TermsSumDestroy(TermsSum *sum)
   PetscFunctionBeginUser;
   PetscCall(MatDestroy(&sum->A));
   PetscCall(PetscFree(sum->has));
+  sum->current = PETSC_FALSE;
   PetscFunctionReturn(0);
 }

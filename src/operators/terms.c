@@ -83,11 +83,19 @@ PetscBool TermsVanish(const Terms *terms, TermsChoice choice, PetscBool mass_onl
   return PETSC_TRUE;
 }
 
+/* Drops all terms from n on */
+PetscErrorCode TermsTruncate(Terms *terms, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt t = n; t < terms->n; t++) PetscCall(MatDestroy(&terms->term[t].A));
+  terms->n = PetscMin(terms->n, n);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode TermsDestroy(Terms *terms)
 {
   PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < terms->n; t++) PetscCall(MatDestroy(&terms->term[t].A));
+  PetscCall(TermsTruncate(terms, 0));
   PetscCall(PetscFree(terms->term));
-  terms->n = 0;
   PetscFunctionReturn(0);
 }

@@ -1,9 +1,10 @@
 /*
-   Fields - mesh and complex shapes in one HDF5 file, laid out as VTK's VTKHDF unstructured grid:
+   Fields - mesh, complex shapes and states in one HDF5 file, laid out as VTK's VTKHDF unstructured grid:
 
       /VTKHDF  (Version, Type)    NumberOfPoints, NumberOfCells, NumberOfConnectivityIds    [1]
          Points [nodes][3] m      Connectivity [cells x corners]   Offsets [cells + 1]   Types [cells]
-         PointData/<key>_re, <key>_im [nodes][3] m, attribute title
+         PointData/<key>_re, <key>_im [nodes][3] m, attribute title       a shape
+         PointData/<key> [nodes] or [nodes][3], attribute title           an array of a state, its unit in the key
          CellData/part [cells], attribute names
 
    The XDMF file beside it (xdmf.c) points at the same datasets. Every node and cell appears once, in the order of the
@@ -16,15 +17,6 @@
 static const FieldShape field_shapes[] = {
   {DM_POLYTOPE_HEXAHEDRON, 12, "Hexahedron", 8, {0, 3, 2, 1, 4, 5, 6, 7}},
 };
-
-/* HDF5's types of PetscInt and PetscReal */
-static PetscErrorCode FieldTypes(hid_t *integer, hid_t *real)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscDataTypeToHDF5DataType(PETSC_INT, integer));
-  PetscCall(PetscDataTypeToHDF5DataType(PETSC_REAL, real));
-  PetscFunctionReturn(0);
-}
 
 /* The rows that belong to the points of a global numbering (negative where another rank owns the point) */
 static PetscErrorCode RowsFromNumbering(MPI_Comm comm, IS numbering, Rows *rows)
@@ -65,9 +57,10 @@ static PetscErrorCode FieldFindShape(ResultsField field)
   PetscFunctionReturn(0);
 }
 
-/* Gathers three values per owned vertex, values[n_local][3], from an array in the layout of a local section */
-static PetscErrorCode FieldGatherNodes(ResultsField field, PetscSection section, const PetscScalar array[],
-                                       PetscReal values[])
+/* Gathers values[n_local][width] of the owned vertices from an array in the layout of a local section; NULL: one row per
+   local vertex */
+static PetscErrorCode FieldGatherNodes(ResultsField field, PetscSection section, PetscInt width,
+                                       const PetscReal array[], PetscReal values[])
 {
   IS              numbering;
   const PetscInt *number;
@@ -79,28 +72,39 @@ static PetscErrorCode FieldGatherNodes(ResultsField field, PetscSection section,
   PetscCall(ISGetIndices(numbering, &number));
   for (PetscInt v = v_start; v < v_end; v++) {
     if (number[v - v_start] < 0) continue;
-    PetscCall(PetscSectionGetOffset(section, v, &offset));
-    for (int d = 0; d < 3; d++) values[n++] = PetscRealPart(array[offset + d]);
+    offset = width * (v - v_start);
+    if (section) PetscCall(PetscSectionGetOffset(section, v, &offset));
+    for (PetscInt d = 0; d < width; d++) values[n++] = array[offset + d];
   }
   PetscCall(ISRestoreIndices(numbering, &number));
   PetscFunctionReturn(0);
 }
 
-/* Writes a local vector as dataset `path`, three values per node */
-static PetscErrorCode FieldWriteNodes(ResultsField field, const char path[], PetscSection section, Vec local)
+/* Writes an array as dataset `path`, [nodes][width]; section as in FieldGatherNodes() */
+static PetscErrorCode FieldWriteNodes(ResultsField field, const char path[], PetscSection section, PetscInt width,
+                                      const PetscReal array[])
 {
-  const PetscScalar *array;
-  PetscReal         *values;
-  hid_t              integer, real;
+  PetscReal *values;
+  hid_t      real;
 
   PetscFunctionBeginUser;
-  PetscCall(FieldTypes(&integer, &real));
-  PetscCall(PetscMalloc1(3 * field->nodes.n_local, &values));
-  PetscCall(VecGetArrayRead(local, &array));
-  PetscCall(FieldGatherNodes(field, section, array, values));
-  PetscCall(VecRestoreArrayRead(local, &array));
-  PetscCall(OutFileH5Write(&field->h5, path, real, &field->nodes, 3, values));
+  PetscCall(PetscDataTypeToHDF5DataType(PETSC_REAL, &real));
+  PetscCall(PetscMalloc1(width * field->nodes.n_local, &values));
+  PetscCall(FieldGatherNodes(field, section, width, array, values));
+  PetscCall(OutFileH5Write(&field->h5, path, real, &field->nodes, width, values));
   PetscCall(PetscFree(values));
+  PetscFunctionReturn(0);
+}
+
+/* Writes a local vector as dataset `path`, three values per node */
+static PetscErrorCode FieldWriteVector(ResultsField field, const char path[], PetscSection section, Vec local)
+{
+  const PetscScalar *array;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(local, &array));
+  PetscCall(FieldWriteNodes(field, path, section, 3, array));
+  PetscCall(VecRestoreArrayRead(local, &array));
   PetscFunctionReturn(0);
 }
 
@@ -153,12 +157,12 @@ static PetscErrorCode FieldWriteShapes(ResultsField field)
 {
   const PetscInt last = field->cells.first + field->cells.n_local == field->cells.n_global ? 1 : 0;
   Rows           rows = {field->cells.first, field->cells.n_local, field->cells.n_global + 1};
-  hid_t          integer, real;
+  hid_t          integer;
   PetscInt      *offsets;
   unsigned char *types;
 
   PetscFunctionBeginUser;
-  PetscCall(FieldTypes(&integer, &real));
+  PetscCall(PetscDataTypeToHDF5DataType(PETSC_INT, &integer));
   rows.n_local += last; /* ranks without cells at the end write the same value */
   PetscCall(PetscMalloc2(rows.n_local, &offsets, rows.n_local, &types));
   for (PetscInt i = 0; i < rows.n_local; i++) {
@@ -177,10 +181,10 @@ static PetscErrorCode FieldWriteCells(ResultsField field, const PetscInt cell_pa
   const PetscInt n_nodes = field->shape->n_nodes;
   const Rows     ids = {field->cells.first * n_nodes, field->cells.n_local * n_nodes, field->cells.n_global * n_nodes};
   PetscInt      *connectivity, *part;
-  hid_t          integer, real;
+  hid_t          integer;
 
   PetscFunctionBeginUser;
-  PetscCall(FieldTypes(&integer, &real));
+  PetscCall(PetscDataTypeToHDF5DataType(PETSC_INT, &integer));
   PetscCall(PetscMalloc2(ids.n_local, &connectivity, field->cells.n_local, &part));
   PetscCall(FieldGatherCells(field, cell_part, connectivity, part));
   PetscCall(OutFileH5Write(&field->h5, "/VTKHDF/Connectivity", integer, &ids, 1, connectivity));
@@ -201,10 +205,10 @@ static PetscErrorCode FieldWriteHead(ResultsField field)
                                         field->cells.n_global * field->shape->n_nodes};
   Rows                     one       = {0, 0, 1};
   PetscMPIInt              rank;
-  hid_t                    integer, real;
+  hid_t                    integer;
 
   PetscFunctionBeginUser;
-  PetscCall(FieldTypes(&integer, &real));
+  PetscCall(PetscDataTypeToHDF5DataType(PETSC_INT, &integer));
   PetscCallMPI(MPI_Comm_rank(field->h5.comm, &rank));
   one.n_local = rank == 0 ? 1 : 0;
   for (int i = 0; i < 3; i++) PetscCall(OutFileH5Group(&field->h5, groups[i]));
@@ -265,7 +269,7 @@ PetscErrorCode ResultsFieldOpen(Results results, const char name[], DM dm, Petsc
   PetscCall(FieldWriteHead(f));
   PetscCall(DMGetCoordinateSection(dm, &section));
   PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
-  PetscCall(FieldWriteNodes(f, "/VTKHDF/Points", section, coordinates));
+  PetscCall(FieldWriteVector(f, "/VTKHDF/Points", section, coordinates));
   PetscCall(FieldWriteShapes(f));
   PetscCall(FieldWriteCells(f, cell_part));
   PetscCall(OutFileH5Strings(&f->h5, "/VTKHDF/CellData/part", "names", n_parts, parts));
@@ -288,7 +292,7 @@ static PetscErrorCode FieldWriteShape(ResultsField field, const char key[], cons
   PetscCall(DMGetLocalVector(field->dm, &local));
   PetscCall(VecSet(local, 0));
   if (x) PetscCall(DMGlobalToLocal(field->dm, x, INSERT_VALUES, local));
-  PetscCall(FieldWriteNodes(field, path, section, local));
+  PetscCall(FieldWriteVector(field, path, section, local));
   PetscCall(DMRestoreLocalVector(field->dm, &local));
   PetscCall(OutFileH5Strings(&field->h5, path, "title", 0, &title));
   PetscFunctionReturn(0);
@@ -297,10 +301,33 @@ static PetscErrorCode FieldWriteShape(ResultsField field, const char key[], cons
 PetscErrorCode ResultsFieldWriteMode(ResultsField field, const char key[], const char title[], Vec re, Vec im)
 {
   PetscFunctionBeginUser;
-  field->n_modes++;
   PetscCall(FieldWriteShape(field, key, "_re", title, re));
   PetscCall(FieldWriteShape(field, key, "_im", title, im));
-  PetscCall(XdmfGrid(field, key, title));
+  PetscCall(XdmfGridBegin(field, key, title));
+  PetscCall(XdmfNodal(field, "displacement_re", key, "_re", 3));
+  PetscCall(XdmfNodal(field, "displacement_im", key, "_im", 3));
+  PetscCall(XdmfGridEnd(field));
+  PetscCall(FieldCheck(field));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsFieldWriteNodal(ResultsField field, const char title[], PetscInt n, const ResultsNodal arrays[])
+{
+  char path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCheck(arrays[i].width == 1 || arrays[i].width == 3, field->h5.comm, PETSC_ERR_ARG_OUTOFRANGE,
+               "array %s has %" PetscInt_FMT " values per node, must be 1 or 3", arrays[i].key, arrays[i].width);
+  }
+  PetscCall(XdmfGridBegin(field, title, title));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/VTKHDF/PointData/%s", arrays[i].key));
+    PetscCall(FieldWriteNodes(field, path, NULL, arrays[i].width, arrays[i].values));
+    PetscCall(OutFileH5Strings(&field->h5, path, "title", 0, &title));
+    PetscCall(XdmfNodal(field, arrays[i].key, arrays[i].key, "", arrays[i].width));
+  }
+  PetscCall(XdmfGridEnd(field));
   PetscCall(FieldCheck(field));
   PetscFunctionReturn(0);
 }

@@ -48,7 +48,7 @@ struct _p_ResultsField {
   OutFile           h5, xmf;
   Rows              nodes, cells;
   const FieldShape *shape;
-  PetscInt          n_modes;
+  PetscInt          n_grids;
 };
 
 /* outfile.c */
@@ -73,5 +73,8 @@ PETSC_INTERN PetscErrorCode OutFileH5Close(OutFile *file);
 
 /* xdmf.c */
 PETSC_INTERN PetscErrorCode XdmfBegin(ResultsField field, PetscInt n_parts, const char *const parts[]);
-PETSC_INTERN PetscErrorCode XdmfGrid(ResultsField field, const char key[], const char title[]);
+PETSC_INTERN PetscErrorCode XdmfGridBegin(ResultsField field, const char name[], const char title[]);
+PETSC_INTERN PetscErrorCode XdmfNodal(ResultsField field, const char name[], const char key[], const char suffix[],
+                                      PetscInt width);
+PETSC_INTERN PetscErrorCode XdmfGridEnd(ResultsField field);
 PETSC_INTERN PetscErrorCode XdmfEnd(ResultsField field);

@@ -1,7 +1,7 @@
 /*
-   XDMF - the text beside the HDF5 file: a temporal collection with one grid per mode. Time is the number of the mode,
-   and the attributes have the same names in all grids, so that ParaView steps through the modes. All values are those
-   of the group /VTKHDF of the HDF5 file. Reference: XDMF Model and Format, version 2.
+   XDMF - the text beside the HDF5 file: a temporal collection with one grid per mode or state. Time is the number of the
+   grid, and the attributes of modes have the same names in all grids, so that ParaView steps through them. All values
+   are those of the group /VTKHDF of the HDF5 file. Reference: XDMF Model and Format, version 2.
 */
 #include "resultsimpl.h"
 #include <string.h>
@@ -41,9 +41,9 @@ static PetscErrorCode XdmfInformation(OutFile *file, const char indent[], const 
   PetscFunctionReturn(0);
 }
 
-/* Prints a <DataItem>: dataset `path``suffix` of the group /VTKHDF, of shape [n] (width 1) or [n][width] */
+/* Prints a <DataItem>: dataset `path` of the group /VTKHDF, of shape [n] (width 1) or [n][width] */
 static PetscErrorCode XdmfItem(ResultsField field, const char number[], size_t precision, PetscInt n, PetscInt width,
-                               const char path[], const char suffix[])
+                               const char path[])
 {
   OutFile *file = &field->xmf;
 
@@ -54,7 +54,7 @@ static PetscErrorCode XdmfItem(ResultsField field, const char number[], size_t p
   if (width > 1) PetscCall(OutFilePrint(file, " %" PetscInt_FMT, width));
   PetscCall(OutFilePrint(file, "\">"));
   PetscCall(XdmfText(file, field->h5_name));
-  PetscCall(OutFilePrint(file, ":/VTKHDF/%s%s</DataItem>\n", path, suffix));
+  PetscCall(OutFilePrint(file, ":/VTKHDF/%s</DataItem>\n", path));
   PetscFunctionReturn(0);
 }
 
@@ -82,37 +82,53 @@ static PetscErrorCode XdmfMesh(ResultsField field)
   PetscFunctionBeginUser;
   PetscCall(OutFilePrint(file, "        <Topology TopologyType=\"%s\" NumberOfElements=\"%" PetscInt_FMT "\">\n",
                          field->shape->xdmf, field->cells.n_global));
-  PetscCall(
-    XdmfItem(field, "Int", sizeof(PetscInt), field->cells.n_global * field->shape->n_nodes, 1, "Connectivity", ""));
+  PetscCall(XdmfItem(field, "Int", sizeof(PetscInt), field->cells.n_global * field->shape->n_nodes, 1, "Connectivity"));
   PetscCall(OutFilePrint(file, "        </Topology>\n        <Geometry GeometryType=\"XYZ\">\n"));
-  PetscCall(XdmfItem(field, "Float", sizeof(PetscReal), field->nodes.n_global, 3, "Points", ""));
+  PetscCall(XdmfItem(field, "Float", sizeof(PetscReal), field->nodes.n_global, 3, "Points"));
   PetscCall(OutFilePrint(
     file, "        </Geometry>\n        <Attribute Name=\"part\" AttributeType=\"Scalar\" Center=\"Cell\">\n"));
-  PetscCall(XdmfItem(field, "Int", sizeof(PetscInt), field->cells.n_global, 1, "CellData/part", ""));
+  PetscCall(XdmfItem(field, "Int", sizeof(PetscInt), field->cells.n_global, 1, "CellData/part"));
   PetscCall(OutFilePrint(file, "        </Attribute>\n"));
   PetscFunctionReturn(0);
 }
 
-/* Prints a grid; key is NULL for the mesh alone */
-PetscErrorCode XdmfGrid(ResultsField field, const char key[], const char title[])
+/* Prints the beginning of a grid, with the mesh; no title for the mesh alone */
+PetscErrorCode XdmfGridBegin(ResultsField field, const char name[], const char title[])
 {
-  static const char *const parts[] = {"_re", "_im"};
-  OutFile                 *file    = &field->xmf;
-  char                     path[PETSC_MAX_PATH_LEN];
+  OutFile *file = &field->xmf;
 
   PetscFunctionBeginUser;
-  PetscCall(OutFilePrint(file, "      <Grid Name=\"%s\" GridType=\"Uniform\">\n", key ? key : "mesh"));
-  if (key) PetscCall(XdmfInformation(file, "        ", "title", title));
-  PetscCall(OutFilePrint(file, "        <Time Value=\"%" PetscInt_FMT "\"/>\n", field->n_modes));
+  field->n_grids++;
+  PetscCall(OutFilePrint(file, "      <Grid Name=\""));
+  PetscCall(XdmfText(file, name));
+  PetscCall(OutFilePrint(file, "\" GridType=\"Uniform\">\n"));
+  if (title) PetscCall(XdmfInformation(file, "        ", "title", title));
+  PetscCall(OutFilePrint(file, "        <Time Value=\"%" PetscInt_FMT "\"/>\n", field->n_grids));
   PetscCall(XdmfMesh(field));
-  for (int i = 0; i < 2 && key; i++) {
-    PetscCall(PetscSNPrintf(path, sizeof(path), "PointData/%s", key));
-    PetscCall(OutFilePrint(
-      file, "        <Attribute Name=\"displacement%s\" AttributeType=\"Vector\" Center=\"Node\">\n", parts[i]));
-    PetscCall(XdmfItem(field, "Float", sizeof(PetscReal), field->nodes.n_global, 3, path, parts[i]));
-    PetscCall(OutFilePrint(file, "        </Attribute>\n"));
-  }
-  PetscCall(OutFilePrint(file, "      </Grid>\n"));
+  PetscFunctionReturn(0);
+}
+
+/* Prints an attribute at the nodes of the present grid: dataset PointData/`key``suffix`, width 1 or 3 */
+PetscErrorCode XdmfNodal(ResultsField field, const char name[], const char key[], const char suffix[], PetscInt width)
+{
+  OutFile *file = &field->xmf;
+  char     path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  PetscCall(OutFilePrint(file, "        <Attribute Name=\""));
+  PetscCall(XdmfText(file, name));
+  PetscCall(OutFilePrint(file, "\" AttributeType=\"%s\" Center=\"Node\">\n", width == 1 ? "Scalar" : "Vector"));
+  PetscCall(PetscSNPrintf(path, sizeof(path), "PointData/%s%s", key, suffix));
+  PetscCall(XdmfItem(field, "Float", sizeof(PetscReal), field->nodes.n_global, width, path));
+  PetscCall(OutFilePrint(file, "        </Attribute>\n"));
+  PetscFunctionReturn(0);
+}
+
+/* Prints the end of the present grid */
+PetscErrorCode XdmfGridEnd(ResultsField field)
+{
+  PetscFunctionBeginUser;
+  PetscCall(OutFilePrint(&field->xmf, "      </Grid>\n"));
   PetscFunctionReturn(0);
 }
 
@@ -120,7 +136,10 @@ PetscErrorCode XdmfGrid(ResultsField field, const char key[], const char title[]
 PetscErrorCode XdmfEnd(ResultsField field)
 {
   PetscFunctionBeginUser;
-  if (field->n_modes == 0) PetscCall(XdmfGrid(field, NULL, NULL));
+  if (field->n_grids == 0) {
+    PetscCall(XdmfGridBegin(field, "mesh", NULL));
+    PetscCall(XdmfGridEnd(field));
+  }
   PetscCall(OutFilePrint(&field->xmf, "    </Grid>\n  </Domain>\n</Xdmf>\n"));
   PetscFunctionReturn(0);
 }

@@ -18,6 +18,7 @@ PetscErrorCode SweepBrute(Sweep sweep)
     GridPoint(&sweep->grid, i, p);
     PetscCall(OperatorsSetParameters(sweep->operators, p));
     PetscCall(ModesSolve(sweep->modes));
+    if (sweep->statics) PetscCall(SweepStatusTake(sweep, &sweep->grid.place[i].status));
     PetscCall(ModesGet(sweep->modes, &point->n, &mode));
     PetscCall(PetscCalloc1(point->n, &point->mode));
     for (PetscInt k = 0; k < point->n; k++) {
@@ -71,10 +72,14 @@ static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
   const ReducedWindow wide = {sweep->window.low * (1 - 1e-3), sweep->window.high * (1 + 1e-3), sweep->window.growth};
   const Mode         *full;
   ReducedModes        reduced;
+  PetscReal          *p;
 
   PetscFunctionBeginUser;
-  PetscCall(PointsSolve(&sweep->groups, &sweep->basis.reduced, &wide, 1, check->p, &reduced));
-  PetscCall(OperatorsSetParameters(sweep->operators, check->p));
+  PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
+  GridFill(&sweep->grid, &check->at, p);
+  PetscCall(PointsSolve(&sweep->groups, &sweep->basis.reduced, &wide, 1, p, &reduced));
+  PetscCall(OperatorsSetParameters(sweep->operators, p));
+  PetscCall(PetscFree(p));
   PetscCall(ModesSolve(sweep->modes));
   PetscCall(ModesGet(sweep->modes, &check->n_full, &full));
   for (PetscInt i = 0; i < check->n_full; i++)
@@ -94,26 +99,31 @@ static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SweepVerify(Sweep sweep)
+PetscErrorCode SweepCheckPlaces(Sweep sweep)
 {
-  const Grid    *grid = &sweep->grid;
-  const PetscInt n    = PetscMin(sweep->n_verify, grid->n[0] - 1); /* no value twice */
+  const Grid *grid = &sweep->grid;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(n, &sweep->check));
-  for (PetscInt i = 0; i < n; i++) {
-    SweepCheck *check = &sweep->check[sweep->n_checks++];
+  sweep->n_checks = PetscMin(sweep->n_verify, grid->n[0] - 1); /* no value twice */
+  PetscCall(PetscCalloc1(sweep->n_checks, &sweep->check));
+  for (PetscInt i = 0; i < sweep->n_checks; i++) {
+    Place *at = &sweep->check[i].at;
 
-    PetscCall(PetscMalloc1(grid->n_parameters, &check->p));
-    PetscCall(PetscArraycpy(check->p, grid->base, grid->n_parameters));
+    at->point = -1;
     for (PetscInt k = 0; k < grid->n_axes; k++) {
       const PetscReal *value = grid->value[k];
-      const PetscInt   gaps = grid->n[k] - 1, at = gaps ? ((2 * i + 1) * gaps) / (2 * n) : 0;
-      const PetscInt   j = k && gaps ? (at * 7 + 3) % gaps : at;
+      const PetscInt   gaps = grid->n[k] - 1, step = gaps ? ((2 * i + 1) * gaps) / (2 * sweep->n_checks) : 0;
+      const PetscInt   j = k && gaps ? (step * 7 + 3) % gaps : step;
 
-      check->p[grid->parameter[k]] = gaps ? GridMiddle(grid, k, value[j], value[j + 1]) : value[0];
+      at->value[k] = gaps ? GridMiddle(grid, k, value[j], value[j + 1]) : value[0];
     }
-    PetscCall(CheckPoint(sweep, check));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepVerify(Sweep sweep)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < sweep->n_checks; i++) PetscCall(CheckPoint(sweep, &sweep->check[i]));
   PetscFunctionReturn(0);
 }

@@ -22,6 +22,11 @@ PetscErrorCode SweepClassify(Sweep sweep)
   PetscFunctionReturn(0);
 }
 
+PetscInt SweepEventLine(Sweep sweep, PetscInt e)
+{
+  return sweep->grid.place[sweep->events.event[e].place].line;
+}
+
 PetscReal SweepOnsetDistance(Sweep sweep, PetscInt point, PetscInt branch)
 {
   const PetscReal value   = sweep->grid.value[0][point % sweep->grid.n[0]];
@@ -32,7 +37,7 @@ PetscReal SweepOnsetDistance(Sweep sweep, PetscInt point, PetscInt branch)
     const PetscReal distance =
       PetscAbsReal(value - event->critical) / PetscMax(PetscAbsReal(event->critical), PETSC_MACHINE_EPSILON);
 
-    if (!event->found || sweep->event_line[e] != point / sweep->grid.n[0]) continue;
+    if (!event->found || SweepEventLine(sweep, e) != point / sweep->grid.n[0]) continue;
     if (event->branch[0] != branch && event->branch[1] != branch) continue;
     if (!(distance >= nearest)) nearest = distance;
   }

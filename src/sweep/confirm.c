@@ -76,6 +76,19 @@ static PetscErrorCode OnsetIterate(Sweep sweep, const Line *line, PetscReal p[],
   PetscFunctionReturn(0);
 }
 
+/* Whether the pairs closed at the critical value are those of the segment in which it was found */
+static PetscErrorCode OnsetCheckStatus(Sweep sweep, const Event *event, PetscBool *same)
+{
+  Place    place = sweep->grid.place[event->place];
+  PetscInt status;
+
+  PetscFunctionBeginUser;
+  place.value[0] = event->critical;
+  PetscCall(SweepStatusSolve(sweep, &place, &status));
+  *same = status == place.status ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 /* One onset to the end */
 static PetscErrorCode OnsetConfirm(Sweep sweep, PetscInt e)
 {
@@ -85,13 +98,14 @@ static PetscErrorCode OnsetConfirm(Sweep sweep, PetscInt e)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
-  GridPoint(&sweep->grid, sweep->event_line[e] * sweep->grid.n[0], p);
+  GridFill(&sweep->grid, &sweep->grid.place[event->place], p);
   line.base = p;
   PetscCall(OnsetReduced(sweep, &line, event));
   if (event->found && sweep->method == SWEEP_REDUCED) PetscCall(OnsetIterate(sweep, &line, p, event, &change));
   sweep->is_confirmed[e] =
     event->found && change <= CONFIRMED * PetscAbsReal(event->critical) ? PETSC_TRUE : PETSC_FALSE;
   if (change < PETSC_MAX_REAL) event->error = PetscMax(change, 1e-14 * PetscAbsReal(event->critical));
+  if (sweep->is_confirmed[e] && sweep->statics) PetscCall(OnsetCheckStatus(sweep, event, &sweep->is_confirmed[e]));
   PetscCall(PetscFree(p));
   PetscFunctionReturn(0);
 }
@@ -99,8 +113,8 @@ static PetscErrorCode OnsetConfirm(Sweep sweep, PetscInt e)
 /* Whether onset e comes after onset e + 1: by line, then by critical value */
 static PetscBool OnsetIsAfter(Sweep sweep, PetscInt e)
 {
-  const PetscInt *line  = &sweep->event_line[e];
-  const Event    *event = &sweep->events.event[e];
+  const Event   *event   = &sweep->events.event[e];
+  const PetscInt line[2] = {SweepEventLine(sweep, e), SweepEventLine(sweep, e + 1)};
 
   if (line[0] != line[1]) return line[0] > line[1] ? PETSC_TRUE : PETSC_FALSE;
   return event[0].critical > event[1].critical ? PETSC_TRUE : PETSC_FALSE;
@@ -111,14 +125,11 @@ static void OnsetsSort(Sweep sweep)
   for (PetscInt i = 1; i < sweep->events.n; i++)
     for (PetscInt e = i - 1; e >= 0 && OnsetIsAfter(sweep, e); e--) {
       const Event     event = sweep->events.event[e];
-      const PetscInt  line  = sweep->event_line[e];
       const PetscBool yes   = sweep->is_confirmed[e];
 
       sweep->events.event[e]     = sweep->events.event[e + 1];
-      sweep->event_line[e]       = sweep->event_line[e + 1];
       sweep->is_confirmed[e]     = sweep->is_confirmed[e + 1];
       sweep->events.event[e + 1] = event;
-      sweep->event_line[e + 1]   = line;
       sweep->is_confirmed[e + 1] = yes;
     }
 }
@@ -127,7 +138,8 @@ PetscErrorCode SweepOnsets(Sweep sweep)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(PetscMax(1, sweep->events.n), &sweep->is_confirmed));
-  for (PetscInt e = 0; e < sweep->events.n; e++) PetscCall(OnsetConfirm(sweep, e));
+  for (PetscInt e = 0; e < sweep->events.n; e++)
+    if (sweep->events.event[e].kind != EVENT_JUMP) PetscCall(OnsetConfirm(sweep, e));
   OnsetsSort(sweep);
   PetscFunctionReturn(0);
 }

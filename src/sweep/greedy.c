@@ -201,6 +201,21 @@ static void ScaleFind(PetscInt n, PetscInt n_parameters, const PetscReal points[
   }
 }
 
+/* Groups of pairs that open or close count as one parameter together: the distance of two statuses, squared, is the
+   share of the groups in which they differ */
+static PetscErrorCode ScaleGroups(const Run *run)
+{
+  const OperatorsParameter *parameters;
+  PetscInt                  n, n_groups = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetParameters(run->basis->operators, &n, &parameters));
+  for (PetscInt k = 0; k < n; k++) n_groups += parameters[k].internal ? 1 : 0;
+  for (PetscInt k = 0; k < n; k++)
+    if (parameters[k].internal) run->scale[k] *= PetscSqrtReal((PetscReal)n_groups);
+  PetscFunctionReturn(0);
+}
+
 /* Distance of two points in parts of the extent */
 static PetscReal PointDistance(PetscInt n_parameters, const PetscReal scale[], const PetscReal a[], const PetscReal b[])
 {
@@ -279,6 +294,7 @@ PetscErrorCode GreedyRun(Greedy *greedy, Modes modes, const ReducedWindow *windo
   run.guarded.high = window->high * (1 + GUARD);
   PetscCall(PetscMalloc2(n, &run.estimate, n_parameters, &run.scale));
   ScaleFind(n, n_parameters, points, run.scale);
+  PetscCall(ScaleGroups(&run));
   if (!greedy->n_samples) {
     PetscCall(SampleKrylov(&run, points, NAN));
     if (greedy->keep) PetscCall(greedy->keep(greedy->keep_ctx));

@@ -1,17 +1,9 @@
 /*
-   The points of the grid, one line of the first parameter after the other: solutions on the reduced model, branches
+   The places of the grid, one line of the first parameter after the other: solutions on the reduced model, branches
    along the line, the link to the line before, and names from the shapes on the mesh. Vectors are kept for one line
    only.
 */
-#include "sweepimpl.h"
-
-/* The modes of a line and their branches */
-typedef struct {
-  PetscInt      n, first; /* points; index of the first of them in the grid */
-  PetscReal    *p;        /* [n][n_parameters] */
-  ReducedModes *modes;    /* [n] */
-  PetscInt    **branch;   /* [n][modes] */
-} Points;
+#include "line.h"
 
 static PetscErrorCode PointsCreate(Sweep sweep, PetscInt line, Points *points)
 {
@@ -19,10 +11,14 @@ static PetscErrorCode PointsCreate(Sweep sweep, PetscInt line, Points *points)
   const PetscInt n_parameters = grid->n_parameters;
 
   PetscFunctionBeginUser;
-  points->n     = grid->n[0];
-  points->first = line * grid->n[0];
-  PetscCall(PetscMalloc3(points->n * n_parameters, &points->p, points->n, &points->modes, points->n, &points->branch));
-  for (PetscInt i = 0; i < points->n; i++) GridPoint(grid, points->first + i, &points->p[i * n_parameters]);
+  points->first = grid->at[line * grid->n[0]];
+  points->n     = grid->at[(line + 1) * grid->n[0] - 1] + 1 - points->first;
+  PetscCall(PetscMalloc4(points->n, &points->value, points->n * n_parameters, &points->p, points->n, &points->modes,
+                         points->n, &points->branch));
+  for (PetscInt i = 0; i < points->n; i++) {
+    points->value[i] = grid->place[points->first + i].value[0];
+    GridFill(grid, &grid->place[points->first + i], &points->p[i * n_parameters]);
+  }
   PetscCall(PointsSolve(&sweep->groups, &sweep->basis.reduced, &sweep->window, points->n, points->p, points->modes));
   for (PetscInt i = 0; i < points->n; i++) PetscCall(PetscMalloc1(points->modes[i].n, &points->branch[i]));
   PetscFunctionReturn(0);
@@ -35,7 +31,7 @@ static PetscErrorCode PointsDestroy(Points *points)
     PetscCall(ReducedModesDestroy(&points->modes[i]));
     PetscCall(PetscFree(points->branch[i]));
   }
-  PetscCall(PetscFree3(points->p, points->modes, points->branch));
+  PetscCall(PetscFree4(points->value, points->p, points->modes, points->branch));
   points->n = 0;
   PetscFunctionReturn(0);
 }
@@ -62,45 +58,34 @@ static PetscErrorCode TrackBroadcast(Sweep sweep, PetscInt n_before, Points *poi
   PetscFunctionReturn(0);
 }
 
-/* Follows the branches along the line; the events found are marked with the line */
-static PetscErrorCode PointsTrack(Sweep sweep, PetscInt line, Points *points)
+/* Follows the branches along the line */
+static PetscErrorCode PointsTrack(Sweep sweep, Points *points)
 {
   const PetscInt before = sweep->events.n;
-  const Line     l      = {sweep->grid.parameter[0], points->n, sweep->grid.value[0], points->p};
 
   PetscFunctionBeginUser;
-  PetscCall(TrackLine(&sweep->basis.reduced, &sweep->window, &l, points->modes, points->branch, &sweep->n_branches,
-                      &sweep->events));
+  PetscCall(SegmentsTrack(sweep, points));
   PetscCall(TrackBroadcast(sweep, before, points));
-  PetscCall(PetscRealloc(sizeof(PetscInt) * (size_t)PetscMax(1, sweep->events.n), &sweep->event_line));
-  for (PetscInt e = before; e < sweep->events.n; e++) sweep->event_line[e] = line;
   PetscFunctionReturn(0);
 }
 
 /* Gives branches of this line the numbers of those of the line before where their first points match; numbers from
-   first_new on are those of this line */
-static PetscErrorCode PointsLink(Sweep sweep, const Points *before, PetscInt first_new, Points *points)
+   first_new and events from first_event on are those of this line */
+static PetscErrorCode PointsLink(Sweep sweep, const Points *before, PetscInt first_new, PetscInt first_event,
+                                 Points *points)
 {
   const PetscInt n_new = sweep->n_branches - first_new;
-  PetscInt      *match, *rename, next = first_new;
+  PetscInt      *from, *rename;
   PetscBool      certain;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(points->modes[0].n, &match, n_new, &rename));
+  PetscCall(PetscMalloc2(points->modes[0].n, &from, n_new, &rename));
   for (PetscInt b = 0; b < n_new; b++) rename[b] = -1;
-  PetscCall(TrackMatch(&sweep->basis.reduced, points->p, &before->modes[0], &points->modes[0], match, &certain));
+  PetscCall(TrackMatch(&sweep->basis.reduced, points->p, &before->modes[0], &points->modes[0], from, &certain));
   for (PetscInt i = 0; i < points->modes[0].n; i++)
-    if (match[i] >= 0) rename[points->branch[0][i] - first_new] = before->branch[0][match[i]];
-  for (PetscInt b = 0; b < n_new; b++)
-    if (rename[b] < 0) rename[b] = next++;
-  for (PetscInt i = 0; i < points->n; i++)
-    for (PetscInt k = 0; k < points->modes[i].n; k++) points->branch[i][k] = rename[points->branch[i][k] - first_new];
-  for (PetscInt e = 0; e < sweep->events.n; e++)
-    for (int k = 0; k < 2; k++)
-      if (sweep->events.event[e].branch[k] >= first_new && sweep->event_line[e] == points->first / points->n)
-        sweep->events.event[e].branch[k] = rename[sweep->events.event[e].branch[k] - first_new];
-  sweep->n_branches = next;
-  PetscCall(PetscFree2(match, rename));
+    if (from[i] >= 0) rename[points->branch[0][i] - first_new] = before->branch[0][from[i]];
+  PetscCall(BranchesRename(sweep, first_new, rename, 0, points->n, first_event, points));
+  PetscCall(PetscFree2(from, rename));
   PetscFunctionReturn(0);
 }
 
@@ -110,8 +95,11 @@ static PetscErrorCode PointsKeep(Sweep sweep, const Points *points)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < points->n; i++) {
     const ReducedModes *modes = &points->modes[i];
-    SweepPoint         *point = &sweep->point[points->first + i];
+    const PetscInt      at    = sweep->grid.place[points->first + i].point;
+    SweepPoint         *point = &sweep->point[PetscMax(at, 0)];
 
+    sweep->worst[points->first + i] = ModesWorst(modes, &sweep->window);
+    if (at < 0) continue;
     point->n = modes->n;
     PetscCall(PetscCalloc1(modes->n, &point->mode));
     for (PetscInt k = 0; k < modes->n; k++) {
@@ -237,7 +225,7 @@ static PetscBool ModesArePair(const ReducedModes *modes, PetscInt k)
 }
 
 /* Which of two branches takes the unstable member of a pair is a matter of choice: the one named after the disc does */
-static PetscErrorCode PairsByLabel(Sweep sweep, PetscInt line, const Points *points)
+static PetscErrorCode PairsByLabel(Sweep sweep, PetscInt first_event, const Points *points)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < points->n; i++)
@@ -249,12 +237,10 @@ static PetscErrorCode PairsByLabel(Sweep sweep, PetscInt line, const Points *poi
       *b = *a;
       *a = unstable;
     }
-  for (PetscInt e = 0; e < sweep->events.n; e++) {
+  for (PetscInt e = first_event; e < sweep->events.n; e++) {
     PetscInt *branch = sweep->events.event[e].branch, first = branch[0];
 
-    if (sweep->event_line[e] != line || branch[1] < 0 || LabelIsDisc(sweep, branch[0]) ||
-        !LabelIsDisc(sweep, branch[1]))
-      continue;
+    if (branch[1] < 0 || LabelIsDisc(sweep, branch[0]) || !LabelIsDisc(sweep, branch[1])) continue;
     branch[0] = branch[1];
     branch[1] = first;
   }
@@ -270,23 +256,11 @@ static PetscErrorCode LabelsGrow(Sweep sweep, PetscInt n_before)
   PetscFunctionReturn(0);
 }
 
-PetscReal SweepPointError(const SweepPoint *point)
-{
-  PetscReal worst = 0;
-
-  for (PetscInt k = 0; k < point->n; k++) {
-    const SweepMode *m = &point->mode[k];
-
-    if (hypot(m->sigma, m->omega) > 0) worst = PetscMax(worst, (m->error - m->noise) / hypot(m->sigma, m->omega));
-  }
-  return worst;
-}
-
 PetscReal SweepWorst(Sweep sweep)
 {
   PetscReal worst = 0;
 
-  for (PetscInt i = 0; i < GridSize(&sweep->grid); i++) worst = PetscMax(worst, SweepPointError(&sweep->point[i]));
+  for (PetscInt k = 0; k < sweep->grid.n_places; k++) worst = PetscMax(worst, sweep->worst[k]);
   return worst;
 }
 
@@ -295,7 +269,7 @@ PetscErrorCode SweepLinesForget(Sweep sweep)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < GridSize(&sweep->grid); i++) PetscCall(PetscFree(sweep->point[i].mode));
   PetscCall(PetscFree(sweep->label));
-  PetscCall(PetscFree(sweep->event_line));
+  PetscCall(PetscFree(sweep->worst));
   PetscCall(EventListDestroy(&sweep->events));
   sweep->n_branches = 0;
   PetscFunctionReturn(0);
@@ -307,15 +281,16 @@ PetscErrorCode SweepLines(Sweep sweep)
   Points         before  = {0}, points;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(sweep->grid.n_places, &sweep->worst));
   for (PetscInt line = 0; line < n_lines; line++) {
-    const PetscInt n_before = sweep->n_branches;
+    const PetscInt n_before = sweep->n_branches, first_event = sweep->events.n;
 
     PetscCall(PointsCreate(sweep, line, &points));
-    PetscCall(PointsTrack(sweep, line, &points));
-    if (line) PetscCall(PointsLink(sweep, &before, n_before, &points));
+    PetscCall(PointsTrack(sweep, &points));
+    if (line) PetscCall(PointsLink(sweep, &before, n_before, first_event, &points));
     PetscCall(LabelsGrow(sweep, n_before));
     PetscCall(PointsLabel(sweep, &points));
-    PetscCall(PairsByLabel(sweep, line, &points));
+    PetscCall(PairsByLabel(sweep, first_event, &points));
     PetscCall(PointsKeep(sweep, &points));
     PetscCall(PointsDestroy(&before));
     before = points;

@@ -43,8 +43,8 @@ static PetscErrorCode FingerprintMake(Sweep sweep, PetscReal print[N_PRINTS])
     print[7] = 0.9 * print[7] + norm;
   }
   PetscCall(PetscMalloc1(r->n_parameters, &p));
-  for (PetscInt i = 0; i < GridSize(&sweep->grid); i++) {
-    GridPoint(&sweep->grid, i, p);
+  for (PetscInt i = 0; i < sweep->grid.n_places; i++) {
+    GridFill(&sweep->grid, &sweep->grid.place[i], p);
     for (PetscInt k = 0; k < r->n_parameters; k++)
       print[8] = 0.99 * print[8] + asinh(p[k]); /* large and small ones count alike */
   }

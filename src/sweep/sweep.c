@@ -1,5 +1,6 @@
 /*
-   Sweep: life cycle, options, and the flow: basis -> points and branches -> onsets -> classes -> checks.
+   Sweep: life cycle, options, and the flow: contact statuses -> basis -> points and branches -> checks -> onsets ->
+   classes -> robustness.
 */
 #include "sweepimpl.h"
 #include <squeal/options.h>
@@ -35,6 +36,13 @@ PetscErrorCode SweepSetOperators(Sweep sweep, Operators operators)
 {
   PetscFunctionBeginUser;
   sweep->operators = operators;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepSetStatics(Sweep sweep, Statics statics)
+{
+  PetscFunctionBeginUser;
+  sweep->statics = statics;
   PetscFunctionReturn(0);
 }
 
@@ -163,13 +171,15 @@ static PetscErrorCode GridSetUp(Sweep sweep)
   PetscCheck(n_names == 1 || grid->parameter[0] != grid->parameter[1], sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_parameter names '%s' twice", names[0]);
   PetscCall(PetscStrToArrayDestroy(n_names, names));
+  PetscCall(GridCreatePlaces(grid));
   PetscFunctionReturn(0);
 }
 
-/* Enlarges the basis for some of the points: every k-th of a long sweep, or those whose error exceeds rtol */
+/* Enlarges the basis for some of the places: every k-th of a long sweep, or those whose error exceeds rtol */
 static PetscErrorCode BasisMake(Sweep sweep, PetscBool exceeding)
 {
-  const PetscInt n_all = GridSize(&sweep->grid), n_parameters = sweep->grid.n_parameters;
+  const Grid    *grid  = &sweep->grid;
+  const PetscInt n_all = grid->n_places, n_parameters = grid->n_parameters;
   const PetscInt step = exceeding ? 1 : PetscMax(1, (n_all - 1) / (MAX_TRAIN - 1));
   PetscInt       n    = 0;
   PetscReal     *points;
@@ -177,9 +187,8 @@ static PetscErrorCode BasisMake(Sweep sweep, PetscBool exceeding)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1((MAX_TRAIN + 2) * n_parameters, &points));
   for (PetscInt i = 0; i < n_all && n <= MAX_TRAIN; i += step)
-    if (!exceeding || SweepPointError(&sweep->point[i]) > sweep->rtol)
-      GridPoint(&sweep->grid, i, &points[n++ * n_parameters]);
-  if (!exceeding && (n_all - 1) % step) GridPoint(&sweep->grid, n_all - 1, &points[n++ * n_parameters]);
+    if (!exceeding || sweep->worst[i] > sweep->rtol) GridFill(grid, &grid->place[i], &points[n++ * n_parameters]);
+  if (!exceeding && (n_all - 1) % step) GridFill(grid, &grid->place[n_all - 1], &points[n++ * n_parameters]);
   PetscCall(GreedyRun(&sweep->greedy, sweep->modes, &sweep->window, n, points, &sweep->groups, &sweep->basis));
   PetscCall(PetscFree(points));
   PetscFunctionReturn(0);
@@ -283,6 +292,23 @@ static PetscErrorCode Clock(Sweep sweep, int phase, PetscLogDouble *since)
   PetscFunctionReturn(0);
 }
 
+/* Basis, points and what is asked of them */
+static PetscErrorCode SolveReduced(Sweep sweep, PetscLogDouble *since)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelMake(sweep));
+  PetscCall(Clock(sweep, 0, since));
+  PetscCall(LinesSolve(sweep));
+  PetscCall(Clock(sweep, 1, since));
+  PetscCall(SweepVerify(sweep));
+  PetscCall(Clock(sweep, 3, since));
+  if (sweep->onsets) PetscCall(SweepOnsets(sweep));
+  PetscCall(Clock(sweep, 2, since));
+  PetscCall(SweepClassify(sweep));
+  if (sweep->uncertain[0]) PetscCall(SweepRobustness(sweep));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SweepSolve(Sweep sweep, Results results)
 {
   PetscReal      band[2];
@@ -294,23 +320,20 @@ PetscErrorCode SweepSolve(Sweep sweep, Results results)
   sweep->window.low  = 2 * PETSC_PI * band[0];
   sweep->window.high = 2 * PETSC_PI * band[1];
   PetscCall(GridSetUp(sweep));
+  PetscCall(SweepCheckPlaces(sweep));
   PetscCall(PetscCalloc1(GridSize(&sweep->grid), &sweep->point));
   PetscCall(PetscTime(&since));
+  PetscCall(SweepStatuses(sweep));
+  PetscCall(Clock(sweep, 4, &since));
   if (sweep->method == SWEEP_FULL) {
+    PetscCall(ModesSetStatics(sweep->modes, sweep->statics));
     PetscCall(SweepBrute(sweep));
     PetscCall(Clock(sweep, 0, &since));
-    PetscFunctionReturn(0);
+  } else { /* each point has its own status among the parameters */
+    PetscCall(ModesSetStatics(sweep->modes, NULL));
+    PetscCall(SolveReduced(sweep, &since));
+    PetscCall(ModesSetStatics(sweep->modes, sweep->statics));
   }
-  PetscCall(ModelMake(sweep));
-  PetscCall(Clock(sweep, 0, &since));
-  PetscCall(LinesSolve(sweep));
-  PetscCall(Clock(sweep, 1, &since));
-  if (sweep->n_verify) PetscCall(SweepVerify(sweep));
-  PetscCall(Clock(sweep, 3, &since));
-  if (sweep->onsets) PetscCall(SweepOnsets(sweep));
-  PetscCall(Clock(sweep, 2, &since));
-  PetscCall(SweepClassify(sweep));
-  if (sweep->uncertain[0]) PetscCall(SweepRobustness(sweep));
   PetscFunctionReturn(0);
 }
 
@@ -322,17 +345,17 @@ PetscErrorCode SweepDestroy(Sweep *sweep)
   if (!s) PetscFunctionReturn(0);
   for (PetscInt i = 0; s->point && i < GridSize(&s->grid); i++) PetscCall(PetscFree(s->point[i].mode));
   PetscCall(PetscFree(s->point));
-  for (PetscInt i = 0; i < s->n_checks; i++) PetscCall(PetscFree(s->check[i].p));
   PetscCall(PetscFree(s->check));
   PetscCall(PetscFree(s->risk));
   PetscCall(PetscFree(s->percent));
   PetscCall(PetscFree(s->label));
-  PetscCall(PetscFree(s->event_line));
+  PetscCall(PetscFree(s->worst));
   PetscCall(PetscFree(s->is_confirmed));
   PetscCall(EventListDestroy(&s->events));
   PetscCall(GreedyDestroy(&s->greedy));
   PetscCall(BasisDestroy(&s->basis));
   PetscCall(GridDestroy(&s->grid));
+  PetscCall(StatusListDestroy(&s->statuses));
   PetscCall(PetscFree(*sweep));
   PetscFunctionReturn(0);
 }

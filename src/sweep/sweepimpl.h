@@ -3,6 +3,7 @@
 
 #include <squeal/sweep.h>
 #include "greedy.h"
+#include "status.h"
 #include "track.h"
 #include "values.h"
 
@@ -36,11 +37,11 @@ typedef struct {
 
 /* True errors at a point that the basis has never seen */
 typedef struct {
-  PetscReal *p;
-  PetscInt   n_full, n_reduced, n_unstable_full, n_unstable_reduced;
-  PetscReal  error, estimate; /* largest relative ones: distance, estimate of the reduced model */
-  PetscReal  full;            /* largest relative error that the full solution itself states */
-  PetscReal  omega;           /* rad/s, where the true error is largest */
+  Place     at;
+  PetscInt  n_full, n_reduced, n_unstable_full, n_unstable_reduced;
+  PetscReal error, estimate; /* largest relative ones: distance, estimate of the reduced model */
+  PetscReal full;            /* largest relative error that the full solution itself states */
+  PetscReal omega;           /* rad/s, where the true error is largest */
 } SweepCheck;
 
 /* Which modes can become unstable when parameters are uncertain */
@@ -56,6 +57,7 @@ struct _p_Sweep {
   MPI_Comm  comm;
   Operators operators;
   Modes     modes;
+  Statics   statics; /* whose closed pairs are taken, or NULL: all are */
   Progress  progress;
   /* set by options */
   char        parameter[256], values[GRID_MAX_AXES][SWEEP_MAX_TEXT], uncertain[1024];
@@ -69,12 +71,14 @@ struct _p_Sweep {
   ReducedWindow  window;
   Basis          basis;
   Greedy         greedy;
+  StatusList     statuses;              /* empty without statics */
+  PetscInt       base_status, n_static; /* status of the scene's own values; static solutions */
   SweepPoint    *point;
+  PetscReal     *worst; /* [places] largest estimated relative error, but for rounding */
   PetscInt       n_branches;
   PetscBool      whole; /* the basis is the whole space */
   BranchName    *label; /* [n_branches] */
   EventList      events;
-  PetscInt      *event_line;   /* index along the second axis of each event */
   PetscBool     *is_confirmed; /* on the full problem */
   SweepCheck    *check;
   SweepRisk     *risk;
@@ -83,26 +87,37 @@ struct _p_Sweep {
   const char    *folder;     /* of the restart files */
   PetscReal      print[10];  /* tells whether they belong to this sweep */
   PetscInt       n_files, n_kept;
-  PetscLogDouble seconds[4]; /* basis, points, onsets, verification */
+  PetscLogDouble seconds[5]; /* basis, points, onsets, verification, contact statuses */
 };
 
 /* line.c - solves the points of the grid line by line, follows the branches, names them */
 PETSC_INTERN PetscErrorCode SweepLines(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepLinesForget(Sweep sweep);
-/* Largest estimated relative error of a point, and of all, but for rounding */
-PETSC_INTERN PetscReal SweepPointError(const SweepPoint *point);
+/* Largest estimated relative error of all places, but for rounding */
 PETSC_INTERN PetscReal SweepWorst(Sweep sweep);
 /* Names of all modes of a point from their shapes on the mesh */
 PETSC_INTERN PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedModes *modes,
                                             char label[][32]);
-/* classify.c - which points are unstable, or numerically so; distance of a point to the nearest onset of a branch,
- * relative, or NaN */
+/* classify.c - which points are unstable, or numerically so; index of an event along the second axis; distance of a
+   point to the nearest onset of a branch, relative, or NaN */
 PETSC_INTERN PetscErrorCode SweepClassify(Sweep sweep);
+PETSC_INTERN PetscInt       SweepEventLine(Sweep sweep, PetscInt e);
 PETSC_INTERN PetscReal      SweepOnsetDistance(Sweep sweep, PetscInt point, PetscInt branch);
+/* sliding.c - statuses of all places and checks from the sliding state, changes of status bracketed, groups of pairs as
+   further parameters; the status at a place, and that of the last static solution; pairs closed at a point of the grid
+   (-1 without contact), and whether the point before it has another status; fewest and most pairs closed at all
+   places, and whether their statuses differ */
+PETSC_INTERN PetscErrorCode SweepStatuses(Sweep sweep);
+PETSC_INTERN PetscErrorCode SweepStatusSolve(Sweep sweep, const Place *place, PetscInt *status);
+PETSC_INTERN PetscErrorCode SweepStatusTake(Sweep sweep, PetscInt *status);
+PETSC_INTERN PetscErrorCode SweepClosedAt(Sweep sweep, PetscInt point, PetscInt *n_closed, PetscBool *jump);
+PETSC_INTERN PetscBool      SweepClosedRange(Sweep sweep, PetscInt *least, PetscInt *most);
 /* confirm.c - onsets on the reduced model, then on the full problem */
 PETSC_INTERN PetscErrorCode SweepOnsets(Sweep sweep);
-/* brute.c - every point in full, without reduced model; and full solutions that check the reduced ones */
+/* brute.c - every point in full, without reduced model; the places of full solutions that check the reduced ones, and
+   these */
 PETSC_INTERN PetscErrorCode SweepBrute(Sweep sweep);
+PETSC_INTERN PetscErrorCode SweepCheckPlaces(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepVerify(Sweep sweep);
 /* realmodes.c - the basis of today's tools: frictionless real modes */
 PETSC_INTERN PetscErrorCode SweepRealBasis(Sweep sweep);

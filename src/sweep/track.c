@@ -5,12 +5,14 @@
    is still ambiguous then (a mode that turns into another one within a thousandth of the step) is resolved by the
    greedy assignment of match.c.
 
-   Events are the changes of stability of a branch between neighbouring points of this refined sequence.
+   Events are the changes of stability of a branch between neighbouring points of this refined sequence. Where the
+   contact status changes, eigenvalues jump: nothing is to be had in between, and a match that is not certain is none.
 */
 #include "branch.h"
 
 #define DEPTH  10
 #define BUDGET 200
+#define UNIQUE 0.5 /* strength of a match across a jump */
 
 typedef struct {
   FrameSource source;
@@ -184,28 +186,113 @@ static PetscReal ModesScale(const ReducedModes *a, const ReducedModes *b)
   return largest > 0 ? largest : 1;
 }
 
-PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const ReducedModes *a, const ReducedModes *b,
-                          PetscInt match[], PetscBool *certain)
+/* The two points as frames, and their match */
+static PetscErrorCode PointsMatch(const Reduced *reduced, const PetscReal p[], const PetscReal value[2],
+                                  const ReducedModes *a, const ReducedModes *b, Frame *frame[2], Match *match)
 {
   const PetscReal scale = ModesScale(a, b);
-  PetscReal      *C, *omega;
+  PetscReal      *omega;
   PetscBool       damped;
-  Frame          *frame_a, *frame_b;
-  Match           m;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(reduced->n_used * reduced->n_used, &C, a->n, &omega));
-  PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, reduced->n_used, C, &damped));
-  PetscCall(FrameCreate(reduced, p, 0, damped, scale, PETSC_FALSE, a, &frame_a));
-  PetscCall(FrameCreate(reduced, p, 0, damped, scale, PETSC_FALSE, b, &frame_b));
-  PetscCall(MatchCreate(frame_a, frame_b, NULL, &m));
+  PetscCall(PetscMalloc1(a->n, &omega));
+  PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, 0, NULL, &damped));
+  PetscCall(FrameCreate(reduced, p, value[0], damped, scale, PETSC_FALSE, a, &frame[0]));
+  PetscCall(FrameCreate(reduced, p, value[1], damped, scale, PETSC_FALSE, b, &frame[1]));
+  PetscCall(MatchCreate(frame[0], frame[1], NULL, match));
   for (PetscInt i = 0; i < a->n; i++) omega[i] = cimag(a->lambda[i]);
-  PetscCall(MatchAssign(frame_a, frame_b, m.strength, omega, &m));
-  PetscCall(PetscArraycpy(match, m.from, b->n));
-  *certain = m.all_certain;
-  PetscCall(MatchDestroy(&m));
-  PetscCall(FrameDestroy(&frame_a));
-  PetscCall(FrameDestroy(&frame_b));
-  PetscCall(PetscFree2(C, omega));
+  PetscCall(MatchAssign(frame[0], frame[1], match->strength, omega, match));
+  PetscCall(PetscFree(omega));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const ReducedModes *a, const ReducedModes *b,
+                          PetscInt from[], PetscBool *certain)
+{
+  const PetscReal none[2] = {0, 0};
+  Frame          *frame[2];
+  Match           match;
+
+  PetscFunctionBeginUser;
+  PetscCall(PointsMatch(reduced, p, none, a, b, frame, &match));
+  PetscCall(PetscArraycpy(from, match.from, b->n));
+  *certain = match.all_certain;
+  PetscCall(MatchDestroy(&match));
+  PetscCall(FrameDestroy(&frame[0]));
+  PetscCall(FrameDestroy(&frame[1]));
+  PetscFunctionReturn(0);
+}
+
+/* Ends the branches whose match is neither certain nor by more than half, which no second mode can have */
+static void MatchDropDoubtful(Match *match)
+{
+  for (PetscInt j = 0; j < match->nb; j++) {
+    const PetscInt i = match->from[j];
+
+    if (i >= 0 && !match->certain[match->component_a[i]] && match->strength[i * match->nb + j] < UNIQUE)
+      match->from[j] = -1;
+  }
+}
+
+/* Event of mode i, which is unstable at this frame and not at the other */
+static PetscErrorCode JumpMake(const Frame *frame, PetscInt i, const Frame *other, EventList *events)
+{
+  Event event = {.kind = EVENT_JUMP, .found = PETSC_TRUE};
+
+  PetscFunctionBeginUser;
+  event.lambda    = frame->modes.lambda[i];
+  event.omega     = cimag(event.lambda);
+  event.lower     = PetscMin(frame->value, other->value);
+  event.upper     = PetscMax(frame->value, other->value);
+  event.critical  = 0.5 * (event.lower + event.upper);
+  event.error     = 0.5 * (event.upper - event.lower);
+  event.above     = frame->value > other->value ? PETSC_TRUE : PETSC_FALSE;
+  event.branch[0] = frame->branch[i];
+  event.branch[1] = EventPartner(frame, i);
+  PetscCall(EventListAdd(events, &event));
+  PetscFunctionReturn(0);
+}
+
+/* Events of the modes that are unstable on one side only */
+static PetscErrorCode JumpsFind(const Frame *a, const Frame *b, const Match *match, EventList *events)
+{
+  PetscBool *goes_on;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(a->modes.n, &goes_on));
+  for (PetscInt j = 0; j < b->modes.n; j++) {
+    const PetscInt i = match->from[j];
+
+    if (!ModeIsUnstable(&b->modes, j)) continue;
+    if (i >= 0 && ModeIsUnstable(&a->modes, i))
+      goes_on[i] = PETSC_TRUE;
+    else
+      PetscCall(JumpMake(b, j, a, events));
+  }
+  for (PetscInt i = 0; i < a->modes.n; i++)
+    if (ModeIsUnstable(&a->modes, i) && !goes_on[i]) PetscCall(JumpMake(a, i, b, events));
+  PetscCall(PetscFree(goes_on));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], PetscReal value_a, const ReducedModes *a,
+                         const PetscInt branch_a[], PetscReal value_b, const ReducedModes *b, PetscInt branch_b[],
+                         EventList *events)
+{
+  const PetscReal value[2] = {value_a, value_b};
+  Frame          *frame[2];
+  Match           match;
+
+  PetscFunctionBeginUser;
+  PetscCall(PointsMatch(reduced, p, value, a, b, frame, &match));
+  MatchDropDoubtful(&match);
+  for (PetscInt j = 0; j < b->n; j++)
+    if (match.from[j] >= 0) branch_b[j] = branch_a[match.from[j]];
+  PetscCall(PetscArraycpy(frame[0]->branch, branch_a, a->n));
+  PetscCall(PetscArraycpy(frame[1]->branch, branch_b, b->n));
+  PetscCall(JumpsFind(frame[0], frame[1], &match, events));
+  PetscCall(MatchDestroy(&match));
+  PetscCall(FrameDestroy(&frame[0]));
+  PetscCall(FrameDestroy(&frame[1]));
   PetscFunctionReturn(0);
 }

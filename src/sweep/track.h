@@ -6,11 +6,12 @@
 
 #include "reduced.h"
 
-typedef enum { EVENT_LOCK_IN, EVENT_LOCK_OUT, EVENT_DIVERGENCE, EVENT_RESTABILISATION } EventKind;
+typedef enum { EVENT_LOCK_IN, EVENT_LOCK_OUT, EVENT_DIVERGENCE, EVENT_RESTABILISATION, EVENT_JUMP } EventKind;
 
 /* Between lower and upper (lower < upper) the modes of one or two branches change stability. Lock-in: a pair becomes
    unstable as the parameter grows, lock-out: it becomes stable again; divergence: a mode of frequency zero becomes
-   unstable, restabilisation: it becomes stable again */
+   unstable, restabilisation: it becomes stable again. Jump: pairs open or close between lower and upper, and a mode is
+   unstable on one side only */
 typedef struct {
   EventKind    kind;
   PetscReal    lower, upper; /* values of the parameter with the stability of before and after */
@@ -20,6 +21,8 @@ typedef struct {
   PetscReal    omega;        /* rad/s at the critical value */
   PetscReal    error;        /* estimated error of the critical value, in its unit */
   PetscBool    found;
+  PetscBool    above; /* of a jump: unstable at upper */
+  PetscInt     place; /* of the grid, whose other parameters hold; set by the caller */
 } Event;
 
 typedef struct {
@@ -39,10 +42,16 @@ typedef struct {
    grows. Where the match of two neighbouring points is ambiguous the interval is halved by further ReducedSolve(). */
 PetscErrorCode TrackLine(const Reduced *reduced, const ReducedWindow *window, const Line *line,
                          const ReducedModes modes[], PetscInt *branch[], PetscInt *n_branches, EventList *events);
-/* Match of the modes of two points a, b that may differ in any parameter: match[i of b] = mode of a or -1; certain =
+/* Match of the modes of two points a, b that may differ in any parameter: from[i of b] = mode of a or -1; certain =
    whether no match is ambiguous */
 PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const ReducedModes *a, const ReducedModes *b,
-                          PetscInt match[], PetscBool *certain);
+                          PetscInt from[], PetscBool *certain);
+/* Modes of two points a, b on the two sides of a change of contact status: branch_b of those that are certainly modes
+   of a becomes that of a, the others keep theirs; appends a jump for every mode that is unstable on one side only.
+   value = that of the line's parameter, p = all parameters at b */
+PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], PetscReal value_a, const ReducedModes *a,
+                         const PetscInt branch_a[], PetscReal value_b, const ReducedModes *b, PetscInt branch_b[],
+                         EventList *events);
 /* Appends to events; a list begins as {0} */
 PetscErrorCode EventListAdd(EventList *events, const Event *event);
 PetscErrorCode EventListDestroy(EventList *events);

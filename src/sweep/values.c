@@ -101,6 +101,7 @@ PetscErrorCode ParameterFind(MPI_Comm comm, const char option[], const char name
   PetscFunctionBeginUser;
   *index = -1;
   for (PetscInt i = 0; i < n; i++) {
+    if (parameters[i].internal) continue;
     if (!strcmp(parameters[i].name, name)) *index = i;
     PetscCall(PetscStrlcat(valid, i ? ", " : "", sizeof(valid)));
     PetscCall(PetscStrlcat(valid, parameters[i].name, sizeof(valid)));
@@ -115,11 +116,61 @@ PetscInt GridSize(const Grid *grid)
   return grid->n_axes == 2 ? grid->n[0] * grid->n[1] : grid->n[0];
 }
 
+PetscErrorCode GridCreatePlaces(Grid *grid)
+{
+  PetscFunctionBeginUser;
+  grid->n_places = GridSize(grid);
+  PetscCall(PetscCalloc1(grid->n_places, &grid->place));
+  PetscCall(PetscMalloc1(grid->n_places, &grid->at));
+  for (PetscInt i = 0; i < grid->n_places; i++) {
+    Place *place = &grid->place[i];
+
+    place->point    = i;
+    place->line     = i / grid->n[0];
+    place->value[0] = grid->value[0][i % grid->n[0]];
+    if (grid->n_axes == 2) place->value[1] = grid->value[1][place->line];
+    grid->at[i] = i;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Tells the points from place k on where they are */
+static void GridNumber(Grid *grid, PetscInt k)
+{
+  for (; k < grid->n_places; k++)
+    if (grid->place[k].point >= 0) grid->at[grid->place[k].point] = k;
+}
+
+PetscErrorCode GridInsert(Grid *grid, PetscInt k, const Place *place)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscRealloc((size_t)(grid->n_places + 1) * sizeof(*grid->place), &grid->place));
+  PetscCall(PetscArraymove(grid->place + k + 1, grid->place + k, grid->n_places - k));
+  grid->place[k] = *place;
+  grid->n_places++;
+  GridNumber(grid, k);
+  PetscFunctionReturn(0);
+}
+
+void GridRemove(Grid *grid, PetscInt k)
+{
+  grid->n_places--;
+  for (PetscInt i = k; i < grid->n_places; i++) grid->place[i] = grid->place[i + 1];
+  GridNumber(grid, k);
+}
+
+void GridFill(const Grid *grid, const Place *place, PetscReal p[])
+{
+  const PetscInt first = grid->n_parameters - grid->n_groups;
+
+  for (PetscInt i = 0; i < first; i++) p[i] = grid->base[i];
+  for (PetscInt g = 0; g < grid->n_groups; g++) p[first + g] = grid->closed[place->status * grid->n_groups + g];
+  for (PetscInt k = 0; k < grid->n_axes; k++) p[grid->parameter[k]] = place->value[k];
+}
+
 void GridPoint(const Grid *grid, PetscInt point, PetscReal p[])
 {
-  for (PetscInt i = 0; i < grid->n_parameters; i++) p[i] = grid->base[i];
-  p[grid->parameter[0]] = grid->value[0][point % grid->n[0]];
-  if (grid->n_axes == 2) p[grid->parameter[1]] = grid->value[1][point / grid->n[0]];
+  GridFill(grid, &grid->place[grid->at[point]], p);
 }
 
 PetscReal GridMiddle(const Grid *grid, PetscInt axis, PetscReal a, PetscReal b)
@@ -132,5 +183,8 @@ PetscErrorCode GridDestroy(Grid *grid)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < GRID_MAX_AXES; k++) PetscCall(PetscFree(grid->value[k]));
   PetscCall(PetscFree(grid->base));
+  PetscCall(PetscFree(grid->place));
+  PetscCall(PetscFree(grid->at));
+  PetscCall(PetscFree(grid->closed));
   PetscFunctionReturn(0);
 }

@@ -3,6 +3,8 @@
 */
 #include "sweepimpl.h"
 
+#define MAX_STRETCHES 12 /* of one contact status, that are listed */
+
 static const char *const kinds[] = {"lock-in", "lock-out", "divergence", "stable again"};
 
 /* The full solutions behind the basis */
@@ -62,6 +64,60 @@ static PetscBool PointIsUnstable(const SweepPoint *point)
   return PETSC_FALSE;
 }
 
+/* Stretches of a line with one contact status: how many, or, with a viewer, pairs closed and ends of each */
+static PetscErrorCode StretchesView(Sweep sweep, PetscViewer viewer, PetscInt *n)
+{
+  const Grid  *grid  = &sweep->grid;
+  const Place *place = grid->place;
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  for (PetscInt k = 0, last; k < grid->n_places; k = last + 1) {
+    for (last = k; last + 1 < grid->n_places && place[last + 1].status == place[k].status;) last++;
+    if (viewer)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "%s%" PetscInt_FMT "%s from %.6g to %.6g", k ? ", " : ": ",
+                                       sweep->statuses.n_closed[place[k].status], k ? "" : " pairs closed",
+                                       (double)place[k].value[0], (double)place[last].value[0]));
+    ++*n;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* How the contact status depends on the parameters */
+static PetscErrorCode StatusView(Sweep sweep, PetscViewer viewer)
+{
+  const StatusList *list = &sweep->statuses;
+  PetscInt          n    = 1, least, most;
+  PetscBool         changes;
+
+  PetscFunctionBeginUser;
+  if (!sweep->statics) PetscFunctionReturn(0);
+  changes = SweepClosedRange(sweep, &least, &most);
+  if (sweep->grid.n_axes == 1) PetscCall(StretchesView(sweep, NULL, &n));
+  if (!changes) {
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "sliding state: the same %" PetscInt_FMT " of %" PetscInt_FMT " pairs closed everywhere", least,
+      list->n_pairs));
+  } else if (sweep->grid.n_axes > 1 || n > MAX_STRETCHES) {
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "sliding state: contact status changes, %" PetscInt_FMT
+                                     " different ones with %" PetscInt_FMT " to %" PetscInt_FMT " of %" PetscInt_FMT
+                                     " pairs closed",
+                                     list->n, least, most, list->n_pairs));
+  } else {
+    PetscCall(PetscViewerASCIIPrintf(viewer, "sliding state: contact status changes %" PetscInt_FMT " time%s", n - 1,
+                                     n == 2 ? "" : "s"));
+    PetscCall(StretchesView(sweep, viewer, &n));
+    PetscCall(PetscViewerASCIIPrintf(viewer, " (of %" PetscInt_FMT ")", list->n_pairs));
+  }
+  if (sweep->method != SWEEP_FULL)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "; %" PetscInt_FMT " static solutions, %" PetscInt_FMT " groups of pairs as further parameters",
+      sweep->n_static, sweep->grid.n_groups));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+  PetscFunctionReturn(0);
+}
+
 /* Up to which value is it quiet? first = the onset nearest to the first value, or NULL. An unstable point before any
    onset means that its onset was not located. */
 static PetscErrorCode AnswerView(Sweep sweep, const OperatorsParameter *parameter, const Event *first,
@@ -78,8 +134,9 @@ static PetscErrorCode AnswerView(Sweep sweep, const OperatorsParameter *paramete
                                      space, unit));
   else if (first &&
            (i == sweep->grid.n[0] || PetscAbsReal(first->critical - value[0]) <= PetscAbsReal(value[i] - value[0])))
-    PetscCall(PetscViewerASCIIPrintf(viewer, "quiet from %s = %.6g to %.10g%s%s\n", parameter->name, (double)value[0],
-                                     (double)first->critical, space, unit));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "quiet from %s = %.6g to %.10g%s%s%s\n", parameter->name, (double)value[0],
+                                     (double)first->critical, space, unit,
+                                     first->kind == EVENT_JUMP ? ", where the contact status changes" : ""));
   else if (i < sweep->grid.n[0])
     PetscCall(PetscViewerASCIIPrintf(viewer, "unstable at %s = %.6g%s%s; where it becomes so was not located\n",
                                      parameter->name, (double)value[i], space, unit));
@@ -87,6 +144,25 @@ static PetscErrorCode AnswerView(Sweep sweep, const OperatorsParameter *paramete
     PetscCall(PetscViewerASCIIPrintf(
       viewer, "quiet from %s = %.6g to %.6g%s%s: no onset in the band with growth below %.6g 1/s\n", parameter->name,
       (double)value[0], (double)value[i - 1], space, unit, (double)sweep->window.growth));
+  PetscFunctionReturn(0);
+}
+
+/* One onset */
+static PetscErrorCode EventView(Sweep sweep, PetscInt e, const OperatorsParameter *parameter, PetscViewer viewer)
+{
+  const Event *event = &sweep->events.event[e];
+
+  PetscFunctionBeginUser;
+  if (event->kind == EVENT_JUMP)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "  jump at %s = %.6g %s +- %.1e: contact status changes, and %s at %.2f Hz is unstable %s it\n",
+      parameter->name, (double)event->critical, parameter->unit, (double)event->error,
+      sweep->label[event->branch[0]].text, (double)(event->omega / (2 * PETSC_PI)), event->above ? "above" : "below"));
+  else
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s at %s = %.10g %s +- %.1e, %.2f Hz, %s%s\n", kinds[event->kind],
+                                     parameter->name, (double)event->critical, parameter->unit, (double)event->error,
+                                     (double)(event->omega / (2 * PETSC_PI)), sweep->label[event->branch[0]].text,
+                                     sweep->is_confirmed[e] ? "" : " (not confirmed on the full problem)"));
   PetscFunctionReturn(0);
 }
 
@@ -100,12 +176,9 @@ static PetscErrorCode OnsetsView(Sweep sweep, const OperatorsParameter *paramete
     const Event *event = &sweep->events.event[e];
 
     if (!event->found) continue;
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s at %s = %.10g %s +- %.1e, %.2f Hz, %s%s\n", kinds[event->kind],
-                                     parameter->name, (double)event->critical, parameter->unit, (double)event->error,
-                                     (double)(event->omega / (2 * PETSC_PI)), sweep->label[event->branch[0]].text,
-                                     sweep->is_confirmed[e] ? "" : " (not confirmed on the full problem)"));
-    if (sweep->event_line[e] == 0 && (!first || PetscAbsReal(event->critical - sweep->grid.value[0][0]) <
-                                                  PetscAbsReal(first->critical - sweep->grid.value[0][0])))
+    PetscCall(EventView(sweep, e, parameter, viewer));
+    if (SweepEventLine(sweep, e) == 0 && (!first || PetscAbsReal(event->critical - sweep->grid.value[0][0]) <
+                                                      PetscAbsReal(first->critical - sweep->grid.value[0][0])))
       first = event;
   }
   if (sweep->grid.n_axes == 1) PetscCall(AnswerView(sweep, parameter, first, viewer));
@@ -143,6 +216,9 @@ static PetscErrorCode RisksView(Sweep sweep, PetscViewer viewer)
   PetscCall(
     PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " combinations of %s: ", sweep->n_combinations, sweep->uncertain));
   PetscCall(PetscViewerASCIIPrintf(viewer, sweep->n_risks ? "these can become unstable" : "all stable"));
+  if (sweep->statics)
+    PetscCall(PetscViewerASCIIPrintf(viewer, " with the %" PetscInt_FMT " pairs closed at the scene's own values",
+                                     sweep->statuses.n_closed[sweep->base_status]));
   PetscCall(PetscViewerASCIIPrintf(viewer, " (largest estimated error %.1e)\n", (double)sweep->worst_risk));
   for (PetscInt i = 0; i < sweep->n_risks; i++) {
     const SweepRisk *r = &sweep->risk[i];
@@ -166,6 +242,7 @@ PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer)
       n_unstable += sweep->point[i].mode[k].unstable;
       n_numerical += sweep->point[i].mode[k].numerical;
     }
+  PetscCall(StatusView(sweep, viewer));
   PetscCall(SamplesView(sweep, parameters, viewer));
   PetscCall(BranchesView(sweep, viewer));
   if (sweep->is_confirmed) PetscCall(OnsetsView(sweep, &parameters[sweep->grid.parameter[0]], viewer));
@@ -183,7 +260,9 @@ PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer)
                                      "basis of %" PetscInt_FMT " vectors; largest estimated error %.1e (an estimate, "
                                      "not a bound); modes counted without friction at the full solutions\n",
                                      sweep->basis.reduced.n_used, (double)sweep->greedy.worst));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "time: basis %.2f s, points %.2f s, onsets %.2f s, checks %.2f s\n",
+  PetscCall(PetscViewerASCIIPrintf(viewer, "time: basis %.2f s, points %.2f s, onsets %.2f s, checks %.2f s",
                                    sweep->seconds[0], sweep->seconds[1], sweep->seconds[2], sweep->seconds[3]));
+  if (sweep->statics) PetscCall(PetscViewerASCIIPrintf(viewer, ", contact status %.2f s", sweep->seconds[4]));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
   PetscFunctionReturn(0);
 }

@@ -4,7 +4,7 @@
 */
 #include "sweepimpl.h"
 
-static const char *const kinds[] = {"lock_in", "lock_out", "divergence", "restabilisation"};
+static const char *const kinds[] = {"lock_in", "lock_out", "divergence", "restabilisation", "jump"};
 
 /* Number as text, empty where there is none */
 static PetscErrorCode NumberOrEmpty(PetscReal value, char text[32])
@@ -20,7 +20,9 @@ static PetscErrorCode RowWrite(Sweep sweep, PetscInt i, const SweepMode *m, Resu
 {
   const Grid     *grid = &sweep->grid;
   const PetscReal size = hypot(m->sigma, m->omega);
-  char            error[32], error_hz[32], condition[32], distance[32], second[32] = "", branch[32] = "";
+  char      error[32], error_hz[32], condition[32], distance[32], closed[32] = "", second[32] = "", branch[32] = "";
+  PetscInt  n_closed;
+  PetscBool jump;
 
   PetscFunctionBeginUser;
   PetscCall(NumberOrEmpty(size > 0 ? m->error / size : NAN, error));
@@ -29,13 +31,15 @@ static PetscErrorCode RowWrite(Sweep sweep, PetscInt i, const SweepMode *m, Resu
   PetscCall(NumberOrEmpty(m->branch < 0 ? NAN : SweepOnsetDistance(sweep, i, m->branch), distance));
   if (grid->n_axes == 2) PetscCall(NumberOrEmpty(grid->value[1][i / grid->n[0]], second));
   if (m->branch >= 0) PetscCall(PetscSNPrintf(branch, sizeof(branch), "%" PetscInt_FMT, m->branch + 1));
-  PetscCall(ResultsTableRow(table, "%d,%.15g,%s,%.15g,%.15g,%s,%d,\"%s\",%s,%s,%s,%s,%s", (int)i + 1,
+  PetscCall(SweepClosedAt(sweep, i, &n_closed, &jump));
+  if (n_closed >= 0) PetscCall(PetscSNPrintf(closed, sizeof(closed), "%" PetscInt_FMT, n_closed));
+  PetscCall(ResultsTableRow(table, "%d,%.15g,%s,%.15g,%.15g,%s,%d,\"%s\",%s,%s,%s,%s,%s,%s,%d", (int)i + 1,
                             (double)grid->value[0][i % grid->n[0]], branch, (double)(m->omega / (2 * PETSC_PI)),
                             (double)m->sigma, error, (int)m->unstable, m->label, second,
                             m->unstable    ? "unstable"
                             : m->numerical ? "numerical"
                                            : "stable",
-                            error_hz, condition, distance));
+                            error_hz, condition, distance, closed, (int)jump));
   PetscFunctionReturn(0);
 }
 
@@ -47,7 +51,7 @@ static PetscErrorCode SweepTableWrite(Sweep sweep, Results results)
   PetscCall(
     ResultsTableOpen(results, "sweep",
                      "point,value,branch,freq_hz,growth_rad_s,error_estimate,unstable,label,value_2,class,error_"
-                     "hz,condition,onset_distance",
+                     "hz,condition,onset_distance,n_closed,jump",
                      &table));
   for (PetscInt i = 0; i < GridSize(&sweep->grid); i++)
     for (PetscInt k = 0; k < sweep->point[i].n; k++) PetscCall(RowWrite(sweep, i, &sweep->point[i].mode[k], table));
@@ -73,7 +77,7 @@ static PetscErrorCode OnsetTableWrite(Sweep sweep, Results results)
     if (!event->found) continue;
     if (event->branch[1] >= 0)
       PetscCall(PetscSNPrintf(partner, sizeof(partner), "%" PetscInt_FMT, event->branch[1] + 1));
-    if (sweep->grid.n_axes == 2) PetscCall(NumberOrEmpty(sweep->grid.value[1][sweep->event_line[e]], second));
+    if (sweep->grid.n_axes == 2) PetscCall(NumberOrEmpty(sweep->grid.value[1][SweepEventLine(sweep, e)], second));
     PetscCall(ResultsTableRow(table, "%s,%.15g,%.15g,%s,\"%s\",%.15g,%d,%s,%d,%s",
                               parameters[sweep->grid.parameter[0]].name, (double)event->critical,
                               (double)(event->omega / (2 * PETSC_PI)), kinds[event->kind],
@@ -96,6 +100,7 @@ static PetscErrorCode ParameterTableWrite(Sweep sweep, Results results)
   for (PetscInt i = 0; i < n; i++) {
     int swept = 0;
 
+    if (parameters[i].internal) continue;
     for (PetscInt k = 0; k < sweep->grid.n_axes; k++)
       if (sweep->grid.parameter[k] == i) swept = (int)k + 1;
     PetscCall(ResultsTableRow(table, "%s,%.15g,%s,%d", parameters[i].name, (double)sweep->grid.base[i],
@@ -118,12 +123,11 @@ static PetscErrorCode CheckTableWrite(Sweep sweep, Results results)
     const SweepCheck *c          = &sweep->check[i];
     char              second[32] = "", estimate[32];
 
-    if (sweep->grid.n_axes == 2) PetscCall(NumberOrEmpty(c->p[sweep->grid.parameter[1]], second));
+    if (sweep->grid.n_axes == 2) PetscCall(NumberOrEmpty(c->at.value[1], second));
     PetscCall(NumberOrEmpty(c->estimate, estimate));
-    PetscCall(ResultsTableRow(table, "%.15g,%s,%d,%d,%d,%d,%.15g,%s,%.15g,%.15g",
-                              (double)c->p[sweep->grid.parameter[0]], second, (int)c->n_full, (int)c->n_reduced,
-                              (int)c->n_unstable_full, (int)c->n_unstable_reduced, (double)c->error, estimate,
-                              (double)(c->omega / (2 * PETSC_PI)), (double)c->full));
+    PetscCall(ResultsTableRow(table, "%.15g,%s,%d,%d,%d,%d,%.15g,%s,%.15g,%.15g", (double)c->at.value[0], second,
+                              (int)c->n_full, (int)c->n_reduced, (int)c->n_unstable_full, (int)c->n_unstable_reduced,
+                              (double)c->error, estimate, (double)(c->omega / (2 * PETSC_PI)), (double)c->full));
   }
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
@@ -169,7 +173,7 @@ static PetscErrorCode SensitivityRows(Sweep sweep, PetscInt point, const PetscRe
     if (cabs(CMPLX(m->sigma, m->omega) - modes->lambda[i]) < cabs(CMPLX(best->sigma, best->omega) - modes->lambda[i]))
       near = k;
   }
-  for (PetscInt j = 0; j < n; j++)
+  for (PetscInt j = 0; j < n && !parameters[j].internal; j++)
     PetscCall(ResultsTableRow(
       table, "%d,%.15g,%d,%.15g,%s,%.15g,%.15g,%.15g,%.15g", (int)point + 1, (double)p[sweep->grid.parameter[0]],
       (int)sweep->point[point].mode[near].branch + 1, (double)(cimag(modes->lambda[i]) / (2 * PETSC_PI)),

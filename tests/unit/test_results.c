@@ -153,39 +153,14 @@ static int TestTableFull(Scratch *scratch, Results results)
   return failed;
 }
 
-/* Box of hexahedra, distributed, with three unknowns per vertex */
-static PetscErrorCode CreateMesh(DM *dm)
-{
-  const PetscInt faces[3] = {12, 10, 10};
-  PetscInt       start, end;
-  PetscSection   section;
-  DM             distributed;
-
-  PetscFunctionBeginUser;
-  PetscCall(BoxMeshCreate(PETSC_COMM_WORLD, faces, dm));
-  PetscCall(DMPlexDistribute(*dm, 0, NULL, &distributed));
-  if (distributed) {
-    PetscCall(DMDestroy(dm));
-    *dm = distributed;
-  }
-  PetscCall(PetscSectionCreate(PETSC_COMM_WORLD, &section));
-  PetscCall(DMPlexGetChart(*dm, &start, &end));
-  PetscCall(PetscSectionSetChart(section, start, end));
-  PetscCall(DMPlexGetDepthStratum(*dm, 0, &start, &end));
-  for (PetscInt v = start; v < end; v++) PetscCall(PetscSectionSetDof(section, v, 3));
-  PetscCall(PetscSectionSetUp(section));
-  PetscCall(DMSetLocalSection(*dm, section));
-  PetscCall(PetscSectionDestroy(&section));
-  PetscFunctionReturn(0);
-}
-
-/* Writes two shapes; returns the first error */
+/* Writes two shapes and a state of the local vertices; returns the first error */
 static PetscErrorCode WriteField(Results results, DM dm)
 {
   static const char *const keys[] = {"mode_001", "mode_002"}, *const parts[] = {"disc"};
   PetscErrorCode error, closing;
   ResultsField   field;
   PetscInt      *cell_part, start, end;
+  PetscReal     *values;
   Vec            x;
 
   PetscFunctionBeginUser;
@@ -198,6 +173,14 @@ static PetscErrorCode WriteField(Results results, DM dm)
   PetscCall(VecSet(x, 1));
   for (int i = 0; i < 2 && !error; i++) error = ResultsFieldWriteMode(field, keys[i], keys[i], x, i ? x : NULL);
   PetscCall(VecDestroy(&x));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &start, &end));
+  PetscCall(PetscCalloc1(3 * (end - start), &values));
+  const ResultsNodal arrays[] = {
+    {"pressure_pa",    1, values},
+    {"displacement_m", 3, values}
+  };
+  if (!error) error = ResultsFieldWriteNodal(field, "state", 2, arrays);
+  PetscCall(PetscFree(values));
   closing = ResultsFieldClose(&field);
   PetscFunctionReturn(error ? error : closing);
 }
@@ -256,16 +239,17 @@ static int ScratchDestroy(Scratch *scratch)
 
 int main(int argc, char **argv)
 {
-  Scratch      scratch = {0};
-  Results      results;
-  ResultsField field;
-  DM           dm;
-  int          failed = 0;
+  const PetscInt faces[3] = {12, 10, 10};
+  Scratch        scratch  = {0};
+  Results        results;
+  ResultsField   field;
+  DM             dm;
+  int            failed = 0;
 
   signal(SIGXFSZ, SIG_IGN);
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
   PetscCall(ScratchCreate(&scratch));
-  PetscCall(CreateMesh(&dm));
+  PetscCall(BoxMeshDistributed(PETSC_COMM_WORLD, faces, &dm));
   PetscCall(PetscPushErrorHandler(KeepMessage, &scratch));
   failed += TestFolder(&scratch);
   PetscCall(OpenResults(scratch.dir, &results));

@@ -1,0 +1,118 @@
+/*
+   Statics - the sliding state: static equilibrium of all bodies under the loads with frictional contact.
+
+   Unknown displacements u (m) and contact forces per pair, internal forces on the left:
+
+      K u + N' lambda_n - T' lambda_t - B' lambda_b = f
+
+   K of parts and springs; gap g = g0 - N u. Normal law: 0 <= lambda_n, 0 <= g, lambda_n g = 0 (constraint) or lambda_n
+   = k_n max(0, -g) (penalty). Friction: where an interface slides (-contact_slip or -contact_rotation), lambda_t = mu
+   lambda_n, lambda_b = 0 at every closed pair; else Coulomb's law, |(lambda_t, lambda_b)| <= mu lambda_n, with slip of
+   the slave along the friction on the master.
+
+   Method: one factorisation of K_a = K + kappa G'G (+ pins), G the rows of N (and T, B where Coulomb's law holds), and
+   from it the small problem of the pairs, w + W_mu l - kappa W w = G K_a^-1 f for contact displacements w = G u and
+   forces l, closed by one of the laws per pair; a primal-dual active set (semismooth Newton: M. Hintermueller, K. Ito,
+   K. Kunisch, SIAM J. Optim. 13, 2002; friction: P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991).
+   kappa is only a device: it drops out of the solution. Where the iteration does not settle, friction (or the load) is
+   raised in steps. Rigid motions that neither supports nor springs nor any pair resists are held at single unknowns,
+   whose reactions vanish in equilibrium; u has no part of them.
+*/
+#pragma once
+
+#include <squeal/operators.h>
+#include <squeal/results.h>
+
+typedef struct _p_Statics *Statics;
+
+/* Sums over the pairs of one interface */
+typedef struct {
+  PetscInt  n[CONTACT_N_STATUS]; /* pairs of each status */
+  PetscReal normal;              /* sum of lambda_n, N */
+  PetscReal force[3];            /* on the master, normal and friction, N */
+  PetscReal centre[3];           /* of the normal forces, m */
+} StaticsResultant;
+
+/* Line F = k d + c fitted to normal force against approach of the second rows of nodes */
+typedef struct {
+  PetscReal total, per_pair; /* k and k / number of pairs, N/m */
+  PetscReal residual;        /* largest distance from the line, relative to the largest force */
+  PetscReal range[2];        /* of the force, N */
+  PetscInt  n_steps;
+} StaticsStiffness;
+
+/*@ StaticsCreate - makes a solver. Collective. @*/
+PetscErrorCode StaticsCreate(MPI_Comm comm, Statics *statics);
+
+/*@ StaticsSetOperators - the bodies and their contact (referenced until StaticsDestroy()). Collective. @*/
+PetscErrorCode StaticsSetOperators(Statics statics, Operators operators);
+
+/*@
+   StaticsSetFromOptions - reads how to solve. Collective.
+
+   Options Database Keys:
++  -static_max_it <50>       - most iterations of the active set at one load
+.  -static_load_steps <1>    - equal steps of the loads; slip is counted from the step before (Coulomb's law)
+.  -static_dense <2000>      - most rows of the contact problem for a dense one; beyond, GMRES on the factorisation
+.  -static_rows <0>          - for modes: rows of pairs more (> 0) or less (< 0) than the sliding state closes
+.  -static_geometric <false> - for modes: geometric stiffness of the preload
+.  -static_follower <false>  - for modes: contact forces turn with the master surface
+.  -static_identify_steps <10> - steps of the force ramp that identifies the contact stiffness
+-  -static_view_kkt <false>  - print the residuals of the contact laws
+   The factorisation takes -st_pc_*, -st_mat_mumps_*, GMRES -st_pairs_ksp_*.
+@*/
+PetscErrorCode StaticsSetFromOptions(Statics statics);
+
+/*@
+   StaticsSolve - the equilibrium at the present values of the parameters. Starts from the status of the solution
+before, else with all pairs closed. Collective.
+
+   Errors: PETSC_ERR_USER_INPUT without loads or for a load that nothing resists; PETSC_ERR_NOT_CONVERGED where there is
+   no equilibrium: the message says how far friction or load could be raised and what then happened.
+@*/
+PetscErrorCode StaticsSolve(Statics statics);
+
+/*@ StaticsGetState - states of the local pairs, and displacements of all unknowns, m (borrowed). Not collective. @*/
+PetscErrorCode StaticsGetState(Statics statics, const ContactState **state, Vec *u);
+
+/*@ StaticsGetKKT - residuals of the laws, and |K u + ... - f| / |f|. Not collective. @*/
+PetscErrorCode StaticsGetKKT(Statics statics, ContactKKT *kkt, PetscReal *equilibrium);
+
+/*@ StaticsGetResultant - sums over an interface. Not collective. @*/
+PetscErrorCode StaticsGetResultant(Statics statics, PetscInt interface, StaticsResultant *resultant);
+
+/*@ StaticsGetClosed - whether each local pair is closed, -static_rows counted in, [local pairs]. Collective. @*/
+PetscErrorCode StaticsGetClosed(Statics statics, PetscBool closed[]);
+
+/*@ StaticsLinearise - solves, and gives the operators the closed pairs, their normal forces and the optional stiffness
+    of the preload, so that modes are those about the sliding state. Does nothing where the parameters are those of the
+    call before. Collective. @*/
+PetscErrorCode StaticsLinearise(Statics statics);
+
+/*@
+   StaticsIsAffine - whether the operators about the sliding state differ from those with all pairs closed by the pairs
+   that are open alone, so that they stay affine in the parameters. Friction damping (-contact_friction_damping),
+   -static_geometric and -static_follower depend on the forces and displacements of the state: with any of them they are
+   not. Not collective.
+@*/
+PetscErrorCode StaticsIsAffine(Statics statics, PetscBool *affine);
+
+/*@
+   StaticsIdentify - contact stiffness of an interface by pressing without friction, with exact contact: the load is
+   raised in equal steps, and a line is fitted to the normal force against the approach of the second rows of nodes of
+   slave and master (mean over the pairs). Seed paper, section 2.1. Collective.
+@*/
+PetscErrorCode StaticsIdentify(Statics statics, PetscInt interface, StaticsStiffness *stiffness);
+
+/*@ StaticsIdentifyAll - gives the operators the stiffness per pair of every interface with -contact_kn identify.
+    Collective. @*/
+PetscErrorCode StaticsIdentifyAll(Statics statics, PetscViewer viewer);
+
+/*@ StaticsView - status, forces, residuals in words. Collective. @*/
+PetscErrorCode StaticsView(Statics statics, PetscViewer viewer);
+
+/*@ StaticsWrite - static.csv, reactions.csv, and the displacements and pressure as fields. Collective. @*/
+PetscErrorCode StaticsWrite(Statics statics, Results results);
+
+/*@ StaticsDestroy - frees the solver. Collective. @*/
+PetscErrorCode StaticsDestroy(Statics *statics);

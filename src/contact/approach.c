@@ -1,0 +1,210 @@
+/*
+   Approach of the second rows of nodes of slave and master, one element below their surfaces:
+      d . u = mean over pairs of n . (u_m2 - u_s2)   (m)
+   Below a vertex of the surface lies the other end of its edge with the largest cosine to the inward normal. The master
+   side moves with the weights of the pair's facet, u_m2 = sum_i w_i u_i2. A corner of the master held in all three
+   directions has no unknown by which it could be found: the vertex below it counts as held too.
+*/
+#include "contactimpl.h"
+#include <stdlib.h>
+
+/* A vertex of the surface and one end of its edges into the body */
+typedef struct {
+  PetscInt  vertex;   /* largest unknown of the vertex of the surface, at least 0 */
+  PetscInt  below[3]; /* unknowns of the other end, -1 where held */
+  PetscReal cosine;   /* of the edge to the inward normal */
+  PetscReal x[3];     /* of the other end, m: decides between edges of equal cosine */
+} Below;
+
+/* The number by which a vertex is found, -1 when all its directions are held */
+static PetscInt VertexKey(const PetscInt unknowns[3])
+{
+  return PetscMax(unknowns[0], PetscMax(unknowns[1], unknowns[2]));
+}
+
+/* Whether a lies more nearly along the normal than b; position decides where rounding would */
+static PetscBool BelowIsBetter(const Below *a, const Below *b)
+{
+  if (PetscAbsReal(a->cosine - b->cosine) > 1e-9) return a->cosine > b->cosine ? PETSC_TRUE : PETSC_FALSE;
+  for (int d = 0; d < 3; d++)
+    if (a->x[d] != b->x[d]) return a->x[d] < b->x[d] ? PETSC_TRUE : PETSC_FALSE;
+  return PETSC_FALSE;
+}
+
+/* Ascending by vertex */
+static int BelowCompare(const void *a, const void *b)
+{
+  const Below *x = (const Below *)a, *y = (const Below *)b;
+
+  return (x->vertex > y->vertex) - (x->vertex < y->vertex);
+}
+
+/* Best edge of vertex v among those of this rank; normal is outward, of any length. best->vertex is -1 when the vertex
+   is held or no edge goes inward. */
+static PetscErrorCode BelowFind(Model model, DM dm, PetscInt v, const PetscReal normal[3], Below *best)
+{
+  const PetscReal  area = PetscSqrtReal(PetscSqr(normal[0]) + PetscSqr(normal[1]) + PetscSqr(normal[2]));
+  const PetscReal *x;
+  const PetscInt  *unknowns, *edges, *ends;
+  PetscInt         n_edges, vStart;
+
+  PetscFunctionBeginUser;
+  *best = (Below){.vertex = -1};
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
+  PetscCall(ModelGetCoordinates(model, &x));
+  PetscCall(ModelGetUnknowns(model, &unknowns));
+  PetscCall(DMPlexGetSupportSize(dm, v, &n_edges));
+  PetscCall(DMPlexGetSupport(dm, v, &edges));
+  for (PetscInt e = 0; e < n_edges; e++) {
+    Below     b   = {.vertex = VertexKey(&unknowns[3 * (v - vStart)])};
+    PetscReal dot = 0, length = 0;
+    PetscInt  end;
+
+    PetscCall(DMPlexGetCone(dm, edges[e], &ends));
+    end = 3 * (ends[0] == v ? ends[1] - vStart : ends[0] - vStart);
+    for (int d = 0; d < 3; d++) {
+      const PetscReal edge = x[end + d] - x[3 * (v - vStart) + d];
+
+      dot -= edge * normal[d];
+      length += PetscSqr(edge);
+      b.x[d]     = x[end + d];
+      b.below[d] = unknowns[end + d];
+    }
+    b.cosine = area > 0 ? dot / (area * PetscSqrtReal(length)) : 0;
+    if (b.cosine > 0 && (best->vertex < 0 || BelowIsBetter(&b, best))) *best = b;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The best local edges of all vertices of a surface on this rank that are not held */
+static PetscErrorCode BelowLocal(Model model, const char set[], PetscInt *n_found, Below **found)
+{
+  const PetscInt *vertices;
+  PetscReal      *normals;
+  PetscInt        n, vStart;
+  IS              is;
+  DM              dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(model, &dm));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
+  PetscCall(ModelGetSetNormals(model, set, &normals));
+  PetscCall(ModelGetSetVertices(model, set, &is));
+  PetscCall(ISGetLocalSize(is, &n));
+  PetscCall(ISGetIndices(is, &vertices));
+  PetscCall(PetscMalloc1(n, found));
+  *n_found = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(BelowFind(model, dm, vertices[i], &normals[3 * (vertices[i] - vStart)], &(*found)[*n_found]));
+    if ((*found)[*n_found].vertex >= 0) ++*n_found;
+  }
+  PetscCall(ISRestoreIndices(is, &vertices));
+  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(normals));
+  PetscFunctionReturn(0);
+}
+
+/* Keeps the best of each vertex, ordered by vertex */
+static void BelowReduce(PetscInt *n, Below below[])
+{
+  PetscInt last = -1;
+
+  qsort(below, (size_t)*n, sizeof(*below), BelowCompare);
+  for (PetscInt i = 0; i < *n; i++) {
+    if (last < 0 || below[i].vertex != below[last].vertex)
+      below[++last] = below[i];
+    else if (BelowIsBetter(&below[i], &below[last]))
+      below[last] = below[i];
+  }
+  *n = last + 1;
+}
+
+/* The edges of all vertices of a surface, on every rank, ordered by vertex */
+static PetscErrorCode BelowGather(Model model, MPI_Comm comm, const char set[], PetscInt *n, Below **below)
+{
+  PetscMPIInt size, bytes, *counts, *starts;
+  PetscInt    n_local;
+  Below      *local;
+
+  PetscFunctionBeginUser;
+  PetscCall(BelowLocal(model, set, &n_local, &local));
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc2(size, &counts, size + 1, &starts));
+  PetscCall(PetscMPIIntCast(n_local * (PetscInt)sizeof(Below), &bytes));
+  PetscCallMPI(MPI_Allgather(&bytes, 1, MPI_INT, counts, 1, MPI_INT, comm));
+  starts[0] = 0;
+  for (PetscMPIInt r = 0; r < size; r++) starts[r + 1] = starts[r] + counts[r];
+  *n = starts[size] / (PetscInt)sizeof(Below);
+  PetscCall(PetscMalloc1(*n, below));
+  PetscCallMPI(MPI_Allgatherv(local, bytes, MPI_BYTE, *below, counts, starts, MPI_BYTE, comm));
+  BelowReduce(n, *below);
+  PetscCall(PetscFree2(counts, starts));
+  PetscCall(PetscFree(local));
+  PetscFunctionReturn(0);
+}
+
+/* Adds scale n . u of the vertex below the one with these unknowns; counts it as missing when there is none */
+static PetscErrorCode RowAdd(PetscInt n, const Below below[], const PetscInt unknowns[3], PetscReal scale,
+                             const PetscReal normal[3], Vec d, PetscInt *missing)
+{
+  const PetscScalar values[3] = {scale * normal[0], scale * normal[1], scale * normal[2]};
+  const Below       wanted    = {.vertex = VertexKey(unknowns)};
+  const Below      *found;
+
+  PetscFunctionBeginUser;
+  if (wanted.vertex < 0) PetscFunctionReturn(0);
+  found = (const Below *)bsearch(&wanted, below, (size_t)n, sizeof(*below), BelowCompare);
+  if (found)
+    PetscCall(VecSetValues(d, 3, found->below, values, ADD_VALUES));
+  else
+    ++*missing;
+  PetscFunctionReturn(0);
+}
+
+/* Adds the local pairs of an interface: slave and master are the edges of the two surfaces */
+static PetscErrorCode PairsAdd(Contact contact, PetscInt interface, PetscInt n_slave, const Below slave[],
+                               PetscInt n_master, const Below master[], Vec d)
+{
+  const ContactInterface *c       = &contact->interfaces[interface];
+  PetscInt                n_pairs = 0, missing = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) n_pairs += contact->pairs[p].interface == interface;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_pairs, 1, MPIU_INT, MPI_SUM, contact->comm));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair  = &contact->pairs[p];
+    const PetscReal    share = 1 / (PetscReal)n_pairs;
+
+    if (pair->interface != interface) continue;
+    PetscCall(RowAdd(n_slave, slave, pair->slave, -share, pair->n, d, &missing));
+    for (PetscInt i = 0; i < pair->n_master; i++)
+      PetscCall(RowAdd(n_master, master, pair->master[i], pair->weight[i] * share, pair->n, d, &missing));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &missing, 1, MPIU_INT, MPI_SUM, contact->comm));
+  PetscCheck(!missing, contact->comm, PETSC_ERR_USER_INPUT,
+             "contact %s: %" PetscInt_FMT " nodes of %s or %s have no edge into their body, hence no second row",
+             c->name, missing, c->slave, c->master);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactCreateApproach(Contact contact, PetscInt interface, Vec *d)
+{
+  const ContactInterface *c = &contact->interfaces[interface];
+  PetscInt                n_slave, n_master;
+  Below                  *slave, *master;
+  DM                      dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(BelowGather(contact->model, contact->comm, c->slave, &n_slave, &slave));
+  PetscCall(BelowGather(contact->model, contact->comm, c->master, &n_master, &master));
+  PetscCall(ModelGetDM(contact->model, &dm));
+  PetscCall(DMCreateGlobalVector(dm, d));
+  PetscCall(VecSet(*d, 0));
+  PetscCall(VecSetOption(*d, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE)); /* held directions */
+  PetscCall(PairsAdd(contact, interface, n_slave, slave, n_master, master, *d));
+  PetscCall(VecAssemblyBegin(*d));
+  PetscCall(VecAssemblyEnd(*d));
+  PetscCall(PetscFree(slave));
+  PetscCall(PetscFree(master));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,120 @@
+/*
+   Residuals of the laws of contact and friction. Per pair, with F the largest |lambda_n| and L the largest gap, closing
+   or slip at any pair, g = gap + lambda_n / k_n, s the slip:
+      penetration      max(0, -g) / L
+      sign             max(0, -lambda_n) / F
+      complementarity  |min(lambda_n / F, g / L)|
+      cone             max(0, |lambda_t| - |mu| lambda_n) / F
+      dissipation      slip: |lambda_t - mu lambda_n d| / F, d = s / |s|, or t where the interface slides as it is told;
+                       stick: |s| / L
+   L is at least 1e-9 of the width of a pair: what is shorter is rounding of the coordinates.
+*/
+#include "contactimpl.h"
+#include <math.h>
+
+/* Force (N) and length (m) that the residuals are relative to */
+typedef struct {
+  PetscReal force, length;
+} Scale;
+
+static PetscReal Length2(const PetscReal a[2])
+{
+  return PetscSqrtReal(a[0] * a[0] + a[1] * a[1]);
+}
+
+static PetscErrorCode ScaleFind(Contact contact, const ContactState state[], Scale *scale)
+{
+  PetscReal largest[2] = {0, 0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    const PetscReal    move = PetscMax(PetscAbsReal(state[p].gap - pair->gap), Length2(state[p].slip));
+
+    largest[0] = PetscMax(largest[0], PetscAbsReal(state[p].lambda_n));
+    largest[1] = PetscMax(largest[1], PetscMax(move, PetscAbsReal(state[p].gap)));
+    largest[1] = PetscMax(largest[1], 1e-9 * PetscSqrtReal(pair->area));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPIU_REAL, MPI_MAX, contact->comm));
+  scale->force  = largest[0];
+  scale->length = largest[1];
+  PetscFunctionReturn(0);
+}
+
+/* a / b for a >= 0, where 0 / 0 is nothing to complain about */
+static PetscReal Relative(PetscReal a, PetscReal b)
+{
+  return a == 0 ? 0 : a / b;
+}
+
+/* |lambda_t - mu lambda_n d|; any direction d will do where there is no slip */
+static PetscReal SlipResidual(const ContactInterface *c, const ContactState *state, PetscReal mu)
+{
+  const PetscReal slip = Length2(state->slip), force = mu * state->lambda_n;
+  PetscReal       rest[2] = {state->lambda_t[0], state->lambda_t[1]};
+
+  if (!c->slides && slip == 0) return PetscAbsReal(Length2(rest) - PetscAbsReal(force));
+  rest[0] -= force * (c->slides ? 1 : state->slip[0] / slip);
+  rest[1] -= force * (c->slides ? 0 : state->slip[1] / slip);
+  return Length2(rest);
+}
+
+/* Raises the residuals to those of one pair; what is no number obeys no law */
+static void PairRaise(const ContactInterface *c, const ContactState *state, PetscReal mu, PetscReal kn,
+                      const Scale *scale, ContactKKT *kkt)
+{
+  const PetscReal gap   = Relative(state->gap + state->lambda_n / kn, scale->length);
+  const PetscReal force = Relative(state->lambda_n, scale->force);
+  const PetscReal over  = Length2(state->lambda_t) - PetscAbsReal(mu) * state->lambda_n;
+  PetscReal       rest  = 0;
+
+  if (state->status == CONTACT_SLIP) rest = Relative(SlipResidual(c, state, mu), scale->force);
+  if (state->status == CONTACT_STICK) rest = Relative(Length2(state->slip), scale->length);
+  if (PetscIsInfOrNanReal(gap + force + over + rest)) {
+    *kkt = (ContactKKT){INFINITY, INFINITY, INFINITY, INFINITY, INFINITY};
+    return;
+  }
+  kkt->penetration     = PetscMax(kkt->penetration, -gap);
+  kkt->sign            = PetscMax(kkt->sign, -force);
+  kkt->complementarity = PetscMax(kkt->complementarity, PetscAbsReal(PetscMin(force, gap)));
+  kkt->cone            = PetscMax(kkt->cone, Relative(PetscMax(0, over), scale->force));
+  kkt->dissipation     = PetscMax(kkt->dissipation, rest);
+}
+
+PetscErrorCode ContactComputeKKT(Contact contact, const ContactState state[], const PetscReal mu[],
+                                 const PetscReal kn[], ContactKKT *kkt)
+{
+  Scale      scale;
+  ContactKKT worst = {0, 0, 0, 0, 0};
+
+  PetscFunctionBeginUser;
+  PetscCall(ScaleFind(contact, state, &scale));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const PetscInt i = contact->pairs[p].interface;
+
+    PairRaise(&contact->interfaces[i], &state[p], mu[i], kn[i], &scale, &worst);
+  }
+  PetscCallMPI(
+    MPI_Allreduce(&worst, kkt, (PetscMPIInt)(sizeof(worst) / sizeof(PetscReal)), MPIU_REAL, MPI_MAX, contact->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactViewKKT(const ContactKKT *kkt, PetscViewer viewer)
+{
+  const struct {
+    const char *name, *meaning;
+    PetscReal   value;
+  } lines[] = {
+    {"penetration",     "pairs that overlap, to the largest displacement or gap",         kkt->penetration    },
+    {"sign",            "pairs that pull, to the largest normal force",                   kkt->sign           },
+    {"complementarity", "pairs that carry force across a gap",                            kkt->complementarity},
+    {"cone",            "friction beyond mu lambda_n, to the largest normal force",       kkt->cone           },
+    {"dissipation",     "friction off the direction of slip, or slip where a pair holds", kkt->dissipation    },
+  };
+
+  PetscFunctionBeginUser;
+  for (size_t i = 0; i < sizeof(lines) / sizeof(lines[0]); i++)
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer, "  %-15s %8.1e  %s\n", lines[i].name, (double)lines[i].value, lines[i].meaning));
+  PetscFunctionReturn(0);
+}

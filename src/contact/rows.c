@@ -1,0 +1,66 @@
+/*
+   Sparse rows d . (u_m - u_s) of pairs: N, T and B of an interface, and rows along any direction.
+*/
+#include "contactimpl.h"
+
+/* Sets one row: d . (u_m - u_s) */
+static PetscErrorCode RowSet(Mat rows, PetscInt row, const ContactPair *pair, const PetscReal d[3])
+{
+  const PetscScalar slave[3] = {-d[0], -d[1], -d[2]};
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < pair->n_master; i++) {
+    const PetscScalar master[3] = {pair->weight[i] * d[0], pair->weight[i] * d[1], pair->weight[i] * d[2]};
+
+    PetscCall(MatSetValues(rows, 1, &row, 3, pair->master[i], master, ADD_VALUES));
+  }
+  PetscCall(MatSetValues(rows, 1, &row, 3, pair->slave, slave, ADD_VALUES));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactCreateRows(Contact contact, PetscInt n, const PetscInt pair[], const PetscReal direction[][3],
+                                 Mat *rows)
+{
+  PetscInt row, n_unknowns;
+  Vec      u;
+  DM       dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(contact->model, &dm));
+  PetscCall(DMGetGlobalVector(dm, &u));
+  PetscCall(VecGetLocalSize(u, &n_unknowns));
+  PetscCall(DMRestoreGlobalVector(dm, &u));
+  PetscCall(MatCreateAIJ(contact->comm, n, n_unknowns, PETSC_DETERMINE, PETSC_DETERMINE, 15, NULL, 15, NULL, rows));
+  PetscCall(MatGetOwnershipRange(*rows, &row, NULL));
+  for (PetscInt i = 0; i < n; i++) PetscCall(RowSet(*rows, row + i, &contact->pairs[pair[i]], direction[i]));
+  PetscCall(MatAssemblyBegin(*rows, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*rows, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+/* Rows of one interface along n, t or b, chosen by its offset in ContactPair */
+static PetscErrorCode InterfaceRows(Contact contact, PetscInt interface, size_t offset, Mat *rows)
+{
+  PetscInt n = 0, *pair;
+  PetscReal(*direction)[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(contact->n_pairs, &pair, contact->n_pairs, &direction));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    if (contact->pairs[p].interface != interface) continue;
+    PetscCall(PetscMemcpy(direction[n], (const char *)&contact->pairs[p] + offset, sizeof(*direction)));
+    pair[n++] = p;
+  }
+  PetscCall(ContactCreateRows(contact, n, pair, (const PetscReal(*)[3])direction, rows));
+  PetscCall(PetscFree2(pair, direction));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactCreateOperators(Contact contact, PetscInt interface, Mat *N, Mat *T, Mat *B)
+{
+  PetscFunctionBeginUser;
+  if (N) PetscCall(InterfaceRows(contact, interface, offsetof(ContactPair, n), N));
+  if (T) PetscCall(InterfaceRows(contact, interface, offsetof(ContactPair, t), T));
+  if (B) PetscCall(InterfaceRows(contact, interface, offsetof(ContactPair, b), B));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,186 @@
+/*
+   Turning of the master's normal. The normal of a pair is n = a / |a|, a = sum_i w_i a_i (m^2), where a_i sums, over
+   the facets around the master's vertex i, their shares int N_i x_,xi x x_,eta of the area vector. With displacements u
+   of the surface
+
+      delta a_i = sum_j u_j x c_ij,   delta n = (I - n n') sum_i w_i delta a_i / |a|,
+
+   the derivative of the very normal that pairing makes: a rigid rotation w gives w x n to rounding, on any surface. The
+   tilt operators are its components along t and b; displacements within a flat surface do not tilt it.
+*/
+#include "contactimpl.h"
+#include "kernels/facet.h"
+
+/* Area vectors of a surface at its vertices: row 3 v + d belongs to component d of vertex v (global number) */
+typedef struct {
+  PetscInt n_rows;  /* of this rank */
+  Mat      turning; /* [rows][unknowns] */
+  Vec      area;    /* [rows] m^2 */
+} AreaNormals;
+
+/* Rows of this rank: three for each vertex that it owns */
+static PetscErrorCode CountRows(DM dm, PetscInt *n_rows)
+{
+  const PetscInt *number;
+  PetscInt        n;
+  IS              numbers;
+
+  PetscFunctionBeginUser;
+  *n_rows = 0;
+  PetscCall(DMPlexGetVertexNumbering(dm, &numbers));
+  PetscCall(ISGetLocalSize(numbers, &n));
+  PetscCall(ISGetIndices(numbers, &number));
+  for (PetscInt v = 0; v < n; v++) *n_rows += number[v] >= 0 ? 3 : 0;
+  PetscCall(ISRestoreIndices(numbers, &number));
+  PetscFunctionReturn(0);
+}
+
+/* The 96 entries of a facet that are not zero by nature: component d of u x c takes the others of u */
+static void FacetEntries(const Facet *facet, PetscInt row[96], PetscInt column[96], PetscScalar value[96])
+{
+  double c[4][4][3];
+  int    n = 0;
+
+  FacetTurning((const double(*)[3])facet->x, c);
+  for (int ij = 0; ij < 16; ij++) {
+    const int i = ij / 4, j = ij % 4;
+
+    for (int d = 0; d < 3; d++) {
+      for (int k = 1; k < 3; k++, n++) { /* (u x c)_d = u_(d+1) c_(d+2) - u_(d+2) c_(d+1) */
+        row[n]    = 3 * facet->vertex[i] + d;
+        column[n] = facet->unknowns[j][(d + k) % 3];
+        value[n]  = k == 1 ? c[i][j][(d + 2) % 3] : -c[i][j][(d + 1) % 3];
+      }
+    }
+  }
+}
+
+/* Matrix of the derivatives of the area vectors */
+static PetscErrorCode TurningCreate(PetscInt n_facets, const Facet facets[], Mat turning)
+{
+  PetscInt    *row, *column;
+  PetscScalar *value;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(96 * n_facets, &row, 96 * n_facets, &column, 96 * n_facets, &value));
+  for (PetscInt f = 0; f < n_facets; f++) FacetEntries(&facets[f], &row[96 * f], &column[96 * f], &value[96 * f]);
+  PetscCall(MatSetPreallocationCOO(turning, 96 * n_facets, row, column));
+  PetscCall(MatSetValuesCOO(turning, value, INSERT_VALUES));
+  PetscCall(PetscFree3(row, column, value));
+  PetscFunctionReturn(0);
+}
+
+/* Area vectors of a surface and their derivatives */
+static PetscErrorCode AreaNormalsCreate(Contact contact, const char set[], AreaNormals *a)
+{
+  PetscInt n_facets, n_unknowns;
+  Facet   *facets;
+  Vec      u;
+  DM       dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(contact->model, &dm));
+  PetscCall(DMGetGlobalVector(dm, &u));
+  PetscCall(VecGetLocalSize(u, &n_unknowns));
+  PetscCall(DMRestoreGlobalVector(dm, &u));
+  PetscCall(CountRows(dm, &a->n_rows));
+  PetscCall(FacetsLocal(contact->model, set, &n_facets, &facets));
+  PetscCall(MatCreate(contact->comm, &a->turning));
+  PetscCall(MatSetSizes(a->turning, a->n_rows, n_unknowns, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(a->turning, MATAIJ));
+  PetscCall(TurningCreate(n_facets, facets, a->turning));
+  PetscCall(MatCreateVecs(a->turning, NULL, &a->area));
+  for (PetscInt i = 0; i < 12 * n_facets; i++) {
+    const Facet   *facet = &facets[i / 12];
+    const PetscInt row   = 3 * facet->vertex[i / 3 % 4] + i % 3;
+
+    PetscCall(VecSetValue(a->area, row, facet->normal[i / 3 % 4][i % 3], INSERT_VALUES)); /* complete on every rank */
+  }
+  PetscCall(VecAssemblyBegin(a->area));
+  PetscCall(VecAssemblyEnd(a->area));
+  PetscCall(PetscFree(facets));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AreaNormalsDestroy(AreaNormals *a)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatDestroy(&a->turning));
+  PetscCall(VecDestroy(&a->area));
+  PetscFunctionReturn(0);
+}
+
+/* sum_i w_i d . a_i for the pairs of an interface, d = n, t or b by its offset in ContactPair; other rows are empty */
+static PetscErrorCode InterpolationCreate(Contact contact, PetscInt interface, size_t offset, PetscInt n_columns,
+                                          Mat *P)
+{
+  PetscInt row;
+
+  PetscFunctionBeginUser;
+  PetscCall(
+    MatCreateAIJ(contact->comm, contact->n_pairs, n_columns, PETSC_DETERMINE, PETSC_DETERMINE, 12, NULL, 12, NULL, P));
+  PetscCall(MatGetOwnershipRange(*P, &row, NULL));
+  for (PetscInt p = 0; p < contact->n_pairs; p++, row++) {
+    const ContactPair *pair = &contact->pairs[p];
+    const PetscReal   *d    = (const PetscReal *)((const char *)pair + offset);
+
+    if (pair->interface != interface) continue;
+    for (PetscInt i = 0; i < 3 * pair->n_master; i++)
+      PetscCall(MatSetValue(*P, row, 3 * pair->corner[i / 3] + i % 3, pair->weight[i / 3] * d[i % 3], ADD_VALUES));
+  }
+  PetscCall(MatAssemblyBegin(*P, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*P, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+/* 1 / |a| of the pairs of an interface, 0 for the others */
+static PetscErrorCode InverseAreas(Contact contact, PetscInt interface, const AreaNormals *a, Vec *inverse)
+{
+  Mat P;
+
+  PetscFunctionBeginUser;
+  PetscCall(InterpolationCreate(contact, interface, offsetof(ContactPair, n), a->n_rows, &P));
+  PetscCall(MatCreateVecs(P, NULL, inverse));
+  PetscCall(MatMult(P, a->area, *inverse));
+  PetscCall(VecReciprocal(*inverse));
+  PetscCall(MatDestroy(&P));
+  PetscFunctionReturn(0);
+}
+
+/* Adds the rows of an interface to one tilt operator, which is NULL before the first */
+static PetscErrorCode TiltAdd(Contact contact, PetscInt interface, size_t offset, const AreaNormals *a, Vec inverse,
+                              Mat *tilt)
+{
+  Mat P, rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(InterpolationCreate(contact, interface, offset, a->n_rows, &P));
+  PetscCall(MatDiagonalScale(P, inverse, NULL));
+  PetscCall(MatMatMult(P, a->turning, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &rows));
+  PetscCall(MatProductClear(rows));
+  PetscCall(MatDestroy(&P));
+  if (*tilt) {
+    PetscCall(MatAXPY(*tilt, 1, rows, DIFFERENT_NONZERO_PATTERN));
+    PetscCall(MatDestroy(&rows));
+  } else
+    *tilt = rows;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactCreateTilt(Contact contact, Mat *tilt_t, Mat *tilt_b)
+{
+  PetscFunctionBeginUser;
+  *tilt_t = *tilt_b = NULL;
+  for (PetscInt i = 0; i < contact->n_interfaces; i++) {
+    AreaNormals a;
+    Vec         inverse;
+
+    PetscCall(AreaNormalsCreate(contact, contact->interfaces[i].master, &a));
+    PetscCall(InverseAreas(contact, i, &a, &inverse));
+    PetscCall(TiltAdd(contact, i, offsetof(ContactPair, t), &a, inverse, tilt_t));
+    PetscCall(TiltAdd(contact, i, offsetof(ContactPair, b), &a, inverse, tilt_b));
+    PetscCall(AreaNormalsDestroy(&a));
+    PetscCall(VecDestroy(&inverse));
+  }
+  PetscFunctionReturn(0);
+}

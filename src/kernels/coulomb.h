@@ -1,0 +1,125 @@
+/*
+   Laws of one contact pair and their linearisation: pure functions, no MPI. All in metres: forces l are divided by a
+   stiffness kappa, and k = k_n / kappa.
+
+   With contact displacements w = (w_n, w_t, w_b) of the master relative to the slave, closing positive, and internal
+   forces l = (lambda_n, -lambda_t, -lambda_b), both in the frame (n, t, b):
+      normal   open: l_n = 0 <= g0 - w_n;   closed: l_n = k (w_n - g0) >= 0, or w_n = g0 for k infinite
+      slides   lambda_t = mu lambda_n is in the equilibrium itself; the pair has a normal row only (d = 1)
+      Coulomb  p = (lambda_t, lambda_b), slip of the slave s = -(w_T - w_T0):   p = Proj_C(p + s), C = {|p| <= mu l_n}
+   (natural map with unit factor; P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991, 353). Every status
+   makes the law linear in a parameter z of as many numbers as the pair has rows,
+
+      l = P z + p0,   w = Q z + q0.
+
+   Slip, linearised at q = p + s, e = q / |q|, E = I - e e', alpha = mu l_n / |q| < 1:
+      p = mu l_n e + alpha E (p + s)   hence   p = mu l_n e + beta E s,   beta = alpha / (1 - alpha).
+*/
+#pragma once
+
+#include <math.h>
+
+typedef enum { COULOMB_OPEN, COULOMB_STICK, COULOMB_SLIP } CoulombStatus;
+
+/* What does not change while a pair is iterated */
+typedef struct {
+  int    d;        /* rows: 1 (slides, or no friction) or 3 */
+  double mu, k;    /* k may be infinite */
+  double g0;       /* m */
+  double slip0[2]; /* w_t, w_b from which slip counts, m */
+} CoulombPair;
+
+/* Linear law of one status; only the leading d rows and columns are used */
+typedef struct {
+  double P[3][3], Q[3][3], p0[3], q0[3];
+} CoulombLaw;
+
+/* Friction that the natural map projects, p + s, and its length */
+static inline double CoulombTrial(const CoulombPair *pair, const double l[], const double w[], double q[2])
+{
+  for (int i = 0; i < 2; i++) q[i] = -l[1 + i] - (w[1 + i] - pair->slip0[i]);
+  return hypot(q[0], q[1]);
+}
+
+/* Normal row of a closed pair: the larger of force and displacement is the parameter */
+static inline void CoulombClosedNormal(const CoulombPair *pair, CoulombLaw *law)
+{
+  const int stiff = pair->k >= 1;
+
+  law->P[0][0] = stiff ? 1 : pair->k;
+  law->Q[0][0] = stiff ? 1 / pair->k : 1;
+  law->p0[0]   = stiff ? 0 : -pair->k * pair->g0;
+  law->q0[0]   = stiff ? pair->g0 : 0;
+}
+
+/* Tangential rows in slip, at the present l, w */
+static inline void CoulombSlipRows(const CoulombPair *pair, const double l[], const double w[], CoulombLaw *law)
+{
+  double       q[2], e[2] = {1, 0};
+  const double length = CoulombTrial(pair, l, w, q), cone = pair->mu * fmax(0, l[0]);
+  const double alpha = cone == 0 ? 0 : length > cone ? cone / length : 1 - 1e-8, beta = alpha / (1 - alpha);
+
+  for (int i = 0; i < 2 && length > 0; i++) e[i] = q[i] / length;
+  for (int i = 0; i < 2; i++) {
+    law->P[1 + i][0]     = -pair->mu * e[i] * law->P[0][0];
+    law->p0[1 + i]       = -pair->mu * e[i] * law->p0[0];
+    law->Q[1 + i][1 + i] = 1;
+    for (int j = 0; j < 2; j++) {
+      const double E = (i == j) - e[i] * e[j];
+
+      law->P[1 + i][1 + j] = beta * E;
+      law->p0[1 + i] -= beta * E * pair->slip0[j];
+    }
+  }
+}
+
+/* The law of a status at the present l, w */
+static inline void CoulombLinearise(const CoulombPair *pair, CoulombStatus status, const double l[], const double w[],
+                                    CoulombLaw *law)
+{
+  *law = (CoulombLaw){.p0 = {0}};
+  if (status == COULOMB_OPEN) {
+    for (int i = 0; i < pair->d; i++) law->Q[i][i] = 1;
+    return;
+  }
+  CoulombClosedNormal(pair, law);
+  if (pair->d == 1) return;
+  if (status == COULOMB_SLIP) {
+    CoulombSlipRows(pair, l, w, law);
+    return;
+  }
+  for (int i = 1; i < 3; i++) {
+    law->P[i][i] = 1;
+    law->q0[i]   = pair->slip0[i - 1];
+  }
+}
+
+/* How far a pair is from the border between open and closed: positive closed */
+static inline double CoulombClosing(const CoulombPair *pair, const double l[], const double w[])
+{
+  return isinf(pair->k) ? l[0] + w[0] - pair->g0
+         : pair->k < 1  ? w[0] - pair->g0
+                        : l[0] + w[0] - pair->g0 - l[0] / pair->k;
+}
+
+/* The status that l, w ask for; a pair on a border, within tol (m), stays what it was */
+static inline CoulombStatus CoulombDecide(const CoulombPair *pair, CoulombStatus before, const double l[],
+                                          const double w[], double tol)
+{
+  double q[2], beyond;
+
+  if (CoulombClosing(pair, l, w) <= (before == COULOMB_OPEN ? tol : -tol)) return COULOMB_OPEN;
+  if (pair->d == 1) return COULOMB_SLIP;
+  beyond = CoulombTrial(pair, l, w, q) - pair->mu * fmax(0, l[0]);
+  return beyond > (before == COULOMB_SLIP ? -tol : tol) ? COULOMB_SLIP : COULOMB_STICK;
+}
+
+/* Residual of the friction law, |p - Proj_C(p + s)|, m */
+static inline double CoulombResidual(const CoulombPair *pair, const double l[], const double w[])
+{
+  double       q[2];
+  const double length = pair->d == 3 ? CoulombTrial(pair, l, w, q) : 0, cone = pair->mu * fmax(0, l[0]);
+  const double factor = length > cone ? cone / length : 1;
+
+  return pair->d == 3 ? hypot(-l[1] - factor * q[0], -l[2] - factor * q[1]) : 0;
+}

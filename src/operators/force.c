@@ -1,0 +1,124 @@
+/*
+   Internal forces of a displacement: f = sum over cells of K_e u_e (N), with the present Young's moduli, at all
+   vertices. Where supports hold a direction f is the force that they exert, as far as no load acts there. Displacements
+   are taken relative to the first node of each cell: a translation gives no force, while in the assembled matrix its
+   rounding resists like a spring of some 1e-16 of the stiffness.
+*/
+#include "operatorsimpl.h"
+
+/* Adds the forces of local cell c; u and f hold three values per local vertex, the first of them vStart */
+static PetscErrorCode CellAddForce(Operators o, PetscInt c, const Elasticity *material, PetscInt vStart,
+                                   const PetscScalar u[], PetscScalar f[])
+{
+  const Element *element;
+  PetscInt       n, vertices[ELEMENT_MAX_NODES], at[ELEMENT_MAX_DOFS];
+  PetscReal      x[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetElement(o->model, &element));
+  PetscCall(ModelGetCell(o->model, c, vertices, x));
+  PetscCheck(!element->matrices(x, material, ke, me), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
+  n = 3 * element->n_nodes;
+  for (PetscInt i = 0; i < n; i++) at[i] = 3 * (vertices[i / 3] - vStart) + i % 3;
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = 3; j < n; j++) f[at[i]] += ke[n * i + j] * (u[at[j]] - u[at[j % 3]]);
+  PetscFunctionReturn(0);
+}
+
+/* Adds the forces of all local cells */
+static PetscErrorCode CellsAddForces(Operators o, const PetscScalar u[], PetscScalar f[])
+{
+  const Part     *parts;
+  const PetscInt *cell_part;
+  PetscInt        n_parts, cStart, cEnd, vStart;
+  DM              dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(o->model, &dm));
+  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
+  PetscCall(ModelGetParts(o->model, &n_parts, &parts));
+  PetscCall(ModelGetCellParts(o->model, &cell_part));
+  for (PetscInt c = 0; c < cEnd - cStart; c++) {
+    const PetscInt   part     = cell_part[c];
+    const PetscReal  young    = o->p[N_PART_PARAMETERS * part + PART_YOUNG];
+    const Elasticity material = ElasticityFromEngineering(young, parts[part].poisson, 1);
+
+    PetscCall(CellAddForce(o, c, &material, vStart, u, f));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsInternalForces(Operators operators, Vec u, Vec local)
+{
+  const PetscScalar *displacement;
+  PetscScalar       *force;
+  Vec                u_local;
+  DM                 dm;
+
+  PetscFunctionBeginUser;
+  PetscCheck(operators->model, operators->comm, PETSC_ERR_ARG_WRONGSTATE,
+             "internal forces need a model: loaded matrices have no elements");
+  PetscCall(ModelGetDM(operators->model, &dm));
+  PetscCall(DMGetLocalVector(dm, &u_local));
+  PetscCall(VecSet(u_local, 0)); /* the held displacements, which global vectors do not have */
+  PetscCall(DMGlobalToLocal(dm, u, INSERT_VALUES, u_local));
+  PetscCall(VecSet(local, 0));
+  PetscCall(VecGetArrayRead(u_local, &displacement));
+  PetscCall(VecGetArray(local, &force));
+  PetscCall(CellsAddForces(operators, displacement, force));
+  PetscCall(VecRestoreArray(local, &force));
+  PetscCall(VecRestoreArrayRead(u_local, &displacement));
+  PetscCall(DMRestoreLocalVector(dm, &u_local));
+  PetscCall(ModelSumShared(operators->model, local));
+  PetscFunctionReturn(0);
+}
+
+/* f += forces of the springs */
+static PetscErrorCode SpringsAddForces(Operators o, Vec u, Vec f)
+{
+  const Part *parts;
+  PetscInt    n_parts;
+  Vec         part;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetParts(o->model, &n_parts, &parts));
+  PetscCall(VecDuplicate(f, &part));
+  for (PetscInt t = 0; t < o->n_body_terms; t++) {
+    const OperatorsTerm *term = &o->base.term[t];
+
+    if (term->kind != OPERATORS_STIFFNESS || term->factor[0].parameter < N_PART_PARAMETERS * n_parts) continue;
+    PetscCall(MatMult(term->A, u, part));
+    PetscCall(VecAXPY(f, OperatorsTermCoefficient(term, o->p), part));
+  }
+  PetscCall(VecDestroy(&part));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsApplyBodies(Operators operators, Vec u, Vec f)
+{
+  const PetscScalar *force;
+  const PetscInt    *unknowns;
+  PetscScalar       *value;
+  PetscInt           n, begin, end;
+  Vec                coordinates, local;
+  DM                 dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(operators->model, &dm));
+  PetscCall(ModelGetUnknowns(operators->model, &unknowns));
+  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
+  PetscCall(VecDuplicate(coordinates, &local));
+  PetscCall(OperatorsInternalForces(operators, u, local));
+  PetscCall(VecGetLocalSize(local, &n));
+  PetscCall(VecGetOwnershipRange(f, &begin, &end));
+  PetscCall(VecGetArrayRead(local, &force));
+  PetscCall(VecGetArray(f, &value));
+  for (PetscInt i = 0; i < n; i++)
+    if (unknowns[i] >= begin && unknowns[i] < end) value[unknowns[i] - begin] = force[i];
+  PetscCall(VecRestoreArray(f, &value));
+  PetscCall(VecRestoreArrayRead(local, &force));
+  PetscCall(VecDestroy(&local));
+  PetscCall(SpringsAddForces(operators, u, f));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,248 @@
+/*
+   Compliance of the bodies seen from the contact. With contact displacements w = G u and internal forces l (N) of the
+   pairs, equilibrium K u + G'l - S' D l = f, D = mu in the rows of sliding pairs, is the same as
+
+      K_a u = f - G'(l - kappa w) + S' D l,   K_a = K + kappa G'G + pins,
+
+   where K_a can be factored although contact alone holds a body. Multiplied by G, with forces l / kappa (m):
+
+      w + (W - V D) l - W w = G K_a^-1 f,   W = kappa G K_a^-1 G',   V = kappa G K_a^-1 S'.
+
+   Eigenvalues of W lie in (0, 1]. kappa is the mean stiffness of a slave node against its neighbours along n.
+*/
+#include "staticsimpl.h"
+
+#define BLOCK 64 /* right-hand sides at once */
+
+/* Mean of n' diag(K) n at the slaves, N/m */
+static PetscErrorCode KappaFind(Mat K, const Rows *rows, PetscReal *kappa)
+{
+  PetscReal          sum[2] = {0, 0};
+  const PetscScalar *diagonal;
+  PetscInt           begin, end;
+  Vec                d;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateVecs(K, &d, NULL));
+  PetscCall(MatGetDiagonal(K, d));
+  PetscCall(VecGetOwnershipRange(d, &begin, &end));
+  PetscCall(VecGetArrayRead(d, &diagonal));
+  for (PetscInt p = 0; p < rows->n_pairs; p++) {
+    sum[1] += 1;
+    for (int i = 0; i < 3; i++) {
+      const PetscInt row = rows->pair[p].slave[i];
+
+      if (row >= begin && row < end) sum[0] += PetscSqr(rows->pair[p].n[i]) * PetscRealPart(diagonal[row - begin]);
+    }
+  }
+  PetscCall(VecRestoreArrayRead(d, &diagonal));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, rows->comm));
+  if (sum[0] == 0) PetscCall(VecSum(d, &sum[0])); /* every slave is held along n: any stiffness of the bodies will do */
+  *kappa = sum[0] / sum[1];
+  PetscCall(VecDestroy(&d));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ComplianceAugment(Mat K, const Rows *rows, PetscReal kappa, PetscBool some, const CoulombStatus status[],
+                                 Mat *A)
+{
+  PetscScalar *resists;
+  Mat          G = rows->G, GG;
+  Vec          weight;
+
+  PetscFunctionBeginUser;
+  if (some) {
+    PetscCall(MatCreateVecs(rows->G, NULL, &weight));
+    PetscCall(VecGetArray(weight, &resists));
+    for (PetscInt p = 0; p < rows->n_pairs; p++)
+      for (PetscInt i = rows->first[p]; i < rows->first[p + 1]; i++)
+        resists[i] = status[p] == COULOMB_STICK || (status[p] == COULOMB_SLIP && i == rows->first[p]) ? 1 : 0;
+    PetscCall(VecRestoreArray(weight, &resists));
+    PetscCall(MatDuplicate(rows->G, MAT_COPY_VALUES, &G));
+    PetscCall(MatDiagonalScale(G, weight, NULL));
+    PetscCall(VecDestroy(&weight));
+  }
+  PetscCall(MatTransposeMatMult(G, G, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &GG));
+  PetscCall(MatProductClear(GG));
+  PetscCall(MatDuplicate(K, MAT_COPY_VALUES, A));
+  PetscCall(MatAXPY(*A, kappa, GG, DIFFERENT_NONZERO_PATTERN));
+  PetscCall(MatSetOption(*A, MAT_SYMMETRIC, PETSC_TRUE));
+  PetscCall(MatDestroy(&GG));
+  if (some) PetscCall(MatDestroy(&G));
+  PetscFunctionReturn(0);
+}
+
+/* Columns first .. first + n - 1 of G', as a dense matrix; Gt = G' */
+static PetscErrorCode ColumnsSet(Mat Gt, PetscInt first, PetscInt n, Mat columns)
+{
+  PetscInt     begin, end, stride;
+  PetscScalar *value;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetOwnershipRange(Gt, &begin, &end));
+  PetscCall(MatZeroEntries(columns));
+  PetscCall(MatDenseGetLDA(columns, &stride));
+  PetscCall(MatDenseGetArray(columns, &value));
+  for (PetscInt i = begin; i < end; i++) {
+    const PetscInt    *column;
+    const PetscScalar *v;
+    PetscInt           n_row;
+
+    PetscCall(MatGetRow(Gt, i, &n_row, &column, &v));
+    for (PetscInt k = 0; k < n_row; k++)
+      if (column[k] >= first && column[k] < first + n) value[(column[k] - first) * stride + i - begin] = v[k];
+    PetscCall(MatRestoreRow(Gt, i, &n_row, &column, &v));
+  }
+  PetscCall(MatDenseRestoreArray(columns, &value));
+  PetscFunctionReturn(0);
+}
+
+/* Stores kappa R Y, n columns from `first` on, into local rows [rows][n_all] */
+static PetscErrorCode RowsTake(Mat R, Mat Y, const Compliance *c, const Rows *rows, PetscInt first, PetscInt n,
+                               PetscReal local[])
+{
+  const PetscScalar *value;
+  PetscInt           stride;
+  Mat                RY;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatMatMult(R, Y, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &RY));
+  PetscCall(MatDenseGetLDA(RY, &stride));
+  PetscCall(MatDenseGetArrayRead(RY, &value));
+  for (PetscInt k = 0; k < n; k++)
+    for (PetscInt i = 0; i < rows->n; i++)
+      local[i * rows->n_all + first + k] = c->kappa * PetscRealPart(value[k * stride + i]);
+  PetscCall(MatDenseRestoreArrayRead(RY, &value));
+  PetscCall(MatDestroy(&RY));
+  PetscFunctionReturn(0);
+}
+
+/* All rows [n_all][n_all] on every rank, from those of this rank */
+static PetscErrorCode RowsGather(const Rows *rows, const PetscReal local[], PetscReal **all)
+{
+  PetscMPIInt size, n, *count, *start;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(rows->comm, &size));
+  PetscCall(PetscMalloc2(size, &count, size + 1, &start));
+  PetscCall(PetscMPIIntCast(rows->n * rows->n_all, &n));
+  PetscCallMPI(MPI_Allgather(&n, 1, MPI_INT, count, 1, MPI_INT, rows->comm));
+  start[0] = 0;
+  for (PetscMPIInt r = 0; r < size; r++) start[r + 1] = start[r] + count[r];
+  PetscCall(PetscMalloc1(rows->n_all * rows->n_all, all));
+  PetscCallMPI(MPI_Allgatherv(local, n, MPIU_REAL, *all, count, start, MPIU_REAL, rows->comm));
+  PetscCall(PetscFree2(count, start));
+  PetscFunctionReturn(0);
+}
+
+/* W and V. K_a is symmetric: the rows of S K_a^-1 G' are the columns of V */
+static PetscErrorCode DenseCreate(const Rows *rows, Compliance *c)
+{
+  const PetscInt n_all = rows->n_all;
+  PetscInt       n_unknowns;
+  PetscReal     *local[2];
+  Mat            Gt;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(c->u, &n_unknowns));
+  PetscCall(MatTranspose(rows->G, MAT_INITIAL_MATRIX, &Gt));
+  PetscCall(PetscMalloc2(rows->n * n_all, &local[0], rows->n * n_all, &local[1]));
+  for (PetscInt first = 0; first < n_all; first += BLOCK) {
+    const PetscInt n = PetscMin(BLOCK, n_all - first);
+    Mat            B, Y;
+
+    PetscCall(MatCreateDense(rows->comm, n_unknowns, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &B));
+    PetscCall(ColumnsSet(Gt, first, n, B));
+    PetscCall(MatDuplicate(B, MAT_DO_NOT_COPY_VALUES, &Y));
+    PetscCall(ShiftInvertApplyBlock(&c->inverse, PETSC_FALSE, B, Y));
+    PetscCall(RowsTake(rows->G, Y, c, rows, first, n, local[0]));
+    if (rows->S) PetscCall(RowsTake(rows->S, Y, c, rows, first, n, local[1]));
+    PetscCall(MatDestroy(&B));
+    PetscCall(MatDestroy(&Y));
+  }
+  PetscCall(RowsGather(rows, local[0], &c->W));
+  if (rows->S) PetscCall(RowsGather(rows, local[1], &c->V));
+  PetscCall(PetscFree2(local[0], local[1]));
+  PetscCall(MatDestroy(&Gt));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ComplianceCreate(Operators operators, const Rows *rows, PetscInt max_rows, Progress *progress,
+                                Compliance *c)
+{
+  OperatorsPencil pencil = {.symmetric = PETSC_TRUE};
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetBodies(operators, &c->K));
+  PetscCall(OperatorsGetMatrices(operators, NULL, &pencil.M, NULL, NULL, NULL));
+  PetscCall(KappaFind(c->K, rows, &c->kappa));
+  PetscCall(ComplianceAugment(c->K, rows, c->kappa, PETSC_FALSE, NULL, &pencil.K));
+  PetscCall(HoldCreate(operators, pencil.K, &c->hold));
+  PetscCall(ShiftInvertCreate(&pencil, 0, PETSC_FALSE, progress, &c->inverse));
+  PetscCall(MatDestroy(&pencil.K));
+  PetscCall(MatCreateVecs(c->K, &c->u, &c->b));
+  PetscCall(MatCreateVecs(rows->G, NULL, &c->row));
+  if (rows->n_all <= max_rows) PetscCall(DenseCreate(rows, c));
+  PetscFunctionReturn(0);
+}
+
+/* b += kappa (S' (slide l) - G'(l - w)) */
+static PetscErrorCode AddForces(const Compliance *c, const Rows *rows, PetscReal friction, const PetscReal l[],
+                                const PetscReal w[], Vec b)
+{
+  PetscScalar *value;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(c->row, &value));
+  for (PetscInt i = 0; i < rows->n; i++) value[i] = c->kappa * (w[i] - l[i]);
+  PetscCall(VecRestoreArray(c->row, &value));
+  PetscCall(MatMultTransposeAdd(rows->G, c->row, b, b));
+  if (!rows->S || friction == 0) PetscFunctionReturn(0);
+  PetscCall(VecSet(c->row, 0));
+  PetscCall(VecGetArray(c->row, &value));
+  for (PetscInt p = 0; p < rows->n_pairs; p++)
+    value[rows->first[p]] = c->kappa * friction * rows->slide[p] * l[rows->first[p]];
+  PetscCall(VecRestoreArray(c->row, &value));
+  PetscCall(MatMultTransposeAdd(rows->S, c->row, b, b));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ComplianceSolve(const Compliance *c, const Rows *rows, PetscReal friction, Vec f, const PetscReal l[],
+                               const PetscReal w[], Vec u)
+{
+  PetscFunctionBeginUser;
+  if (f)
+    PetscCall(VecCopy(f, c->b));
+  else
+    PetscCall(VecSet(c->b, 0));
+  PetscCall(AddForces(c, rows, friction, l, w, c->b));
+  PetscCall(KSPSolve(c->inverse.ksp, c->b, u));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ComplianceApply(const Compliance *c, const Rows *rows, PetscReal friction, const PetscReal l[],
+                               const PetscReal w[], PetscReal y[])
+{
+  const PetscScalar *value;
+
+  PetscFunctionBeginUser;
+  PetscCall(ComplianceSolve(c, rows, friction, NULL, l, w, c->u));
+  PetscCall(MatMult(rows->G, c->u, c->row));
+  PetscCall(VecGetArrayRead(c->row, &value));
+  for (PetscInt i = 0; i < rows->n; i++) y[i] = w[i] - PetscRealPart(value[i]);
+  PetscCall(VecRestoreArrayRead(c->row, &value));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ComplianceDestroy(Compliance *c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ShiftInvertDestroy(&c->inverse));
+  PetscCall(HoldDestroy(&c->hold));
+  PetscCall(VecDestroy(&c->u));
+  PetscCall(VecDestroy(&c->b));
+  PetscCall(VecDestroy(&c->row));
+  PetscCall(PetscFree(c->W));
+  PetscCall(PetscFree(c->V));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,188 @@
+/*
+   Equilibrium of given forces: the contact problem, then displacements of all unknowns, then one step of iterative
+   refinement of both. With residuals of what was found,
+
+      r = f - K u - G'l + S' D l,   e = w - G u,
+
+   corrections obey the same small system with rhs = G K_a^-1 (r + kappa G'e) - e at the same status. Several load steps
+   matter for Coulomb's law only, where slip counts from the step before.
+*/
+#include "staticsimpl.h"
+
+#define N_REFINE 2
+
+/* y = G x */
+static PetscErrorCode RowsOf(const Compliance *c, const Rows *rows, Vec x, PetscReal y[])
+{
+  const PetscScalar *value;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatMult(rows->G, x, c->row));
+  PetscCall(VecGetArrayRead(c->row, &value));
+  for (PetscInt i = 0; i < rows->n; i++) y[i] = PetscRealPart(value[i]);
+  PetscCall(VecRestoreArrayRead(c->row, &value));
+  PetscFunctionReturn(0);
+}
+
+/* Pairs closed now, over all ranks */
+static PetscErrorCode CountClosed(const Active *a, PetscInt n[2])
+{
+  PetscFunctionBeginUser;
+  n[0] = 0;
+  n[1] = a->rows->n_pairs;
+  for (PetscInt p = 0; p < a->rows->n_pairs; p++) n[0] += a->status[p] != COULOMB_OPEN;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n, 2, MPIU_INT, MPI_SUM, a->rows->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error for what has no equilibrium */
+static PetscErrorCode Complain(const Active *a, ActiveOutcome outcome)
+{
+  static const char *const how[] = {[ACTIVE_CONVERGED] = "",
+                                    [ACTIVE_SINGULAR]  = "the bodies come off each other, and nothing else holds them",
+                                    [ACTIVE_CYCLES]    = "the pairs do not settle between open and closed",
+                                    [ACTIVE_SLOW]      = "the pairs do not settle within -static_max_it iterations",
+                                    [ACTIVE_JAMMED]    = "the bodies jam"};
+  PetscInt                 n[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(CountClosed(a, n));
+  PetscCheck(a->friction > 0, a->rows->comm, PETSC_ERR_NOT_CONVERGED,
+             "no equilibrium, even without friction: %s; the -loads must press the contacts together", how[outcome]);
+  SETERRQ(a->rows->comm, PETSC_ERR_NOT_CONVERGED,
+          "no sliding equilibrium: friction could be raised to %.4g of its value, where %" PetscInt_FMT
+          " of %" PetscInt_FMT " pairs are closed; beyond, %s; lower the friction coefficient",
+          (double)a->friction, n[0], n[1], how[outcome]);
+}
+
+/* r = f - K u - G'l + S' D l, forces l in m; NULL stands for u = 0 */
+static PetscErrorCode Residual(const Active *a, Vec f, Vec u, Vec r)
+{
+  const Compliance *c    = a->compliance;
+  const Rows       *rows = a->rows;
+  PetscScalar      *value;
+
+  PetscFunctionBeginUser;
+  if (u)
+    PetscCall(OperatorsApplyBodies(a->operators, u, r));
+  else
+    PetscCall(VecSet(r, 0));
+  PetscCall(VecAYPX(r, -1, f));
+  PetscCall(VecGetArray(c->row, &value));
+  for (PetscInt i = 0; i < rows->n; i++) value[i] = -c->kappa * a->l[i];
+  PetscCall(VecRestoreArray(c->row, &value));
+  PetscCall(MatMultTransposeAdd(rows->G, c->row, r, r));
+  if (!rows->S) PetscFunctionReturn(0);
+  PetscCall(VecSet(c->row, 0));
+  PetscCall(VecGetArray(c->row, &value));
+  for (PetscInt p = 0; p < rows->n_pairs; p++) value[rows->first[p]] = c->kappa * rows->slide[p] * a->l[rows->first[p]];
+  PetscCall(VecRestoreArray(c->row, &value));
+  PetscCall(MatMultTransposeAdd(rows->S, c->row, r, r));
+  PetscFunctionReturn(0);
+}
+
+/* K_a^-1 (r + kappa G'e) of the residuals at u, into the work vector of the compliance, and e [rows] */
+static PetscErrorCode Missing(const Active *a, Vec f, Vec u, PetscReal e[])
+{
+  Vec r;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(u, &r));
+  PetscCall(Residual(a, f, u, r));
+  PetscCall(RowsOf(a->compliance, a->rows, u, e));
+  for (PetscInt i = 0; i < a->rows->n; i++) e[i] = a->w[i] - e[i];
+  PetscCall(ComplianceSolve(a->compliance, a->rows, 0, r, a->zero, e, a->compliance->u));
+  PetscCall(VecDestroy(&r));
+  PetscFunctionReturn(0);
+}
+
+/* Displacements, and refinements of them and of the pairs */
+static PetscErrorCode Refine(Active *a, Vec f, Vec u)
+{
+  const Rows *rows = a->rows;
+  PetscReal  *e, *rhs;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(rows->n, &e, rows->n, &rhs));
+  for (int i = 0; i < N_REFINE; i++) {
+    PetscCall(ComplianceSolve(a->compliance, rows, 1, f, a->l, a->w, u));
+    PetscCall(Missing(a, f, u, e));
+    PetscCall(RowsOf(a->compliance, rows, a->compliance->u, rhs));
+    for (PetscInt k = 0; k < rows->n; k++) rhs[k] -= e[k];
+    PetscCall(ActiveCorrect(a, rhs));
+  }
+  PetscCall(ComplianceSolve(a->compliance, rows, 1, f, a->l, a->w, u));
+  PetscCall(HoldProject(&a->compliance->hold, u));
+  PetscCall(Missing(a, f, u, e));
+  PetscCall(VecAXPY(u, 1, a->compliance->u));
+  PetscCall(PetscFree2(e, rhs));
+  PetscFunctionReturn(0);
+}
+
+/* Forces must not push along a free motion, friction included */
+static PetscErrorCode FrictionCheck(const Active *a, Vec f, PetscReal size)
+{
+  Vec pushed;
+
+  PetscFunctionBeginUser;
+  if (!a->compliance->hold.n) PetscFunctionReturn(0);
+  PetscCall(VecDuplicate(f, &pushed));
+  PetscCall(Residual(a, f, NULL, pushed));
+  PetscCall(HoldCheck(a->operators, &a->compliance->hold, "loads and friction", pushed, size));
+  PetscCall(VecDestroy(&pushed));
+  PetscFunctionReturn(0);
+}
+
+/* The closed pairs must hold what all pairs could */
+static PetscErrorCode TippingCheck(const Active *a)
+{
+  PetscInt n[2];
+  Mat      A;
+
+  PetscFunctionBeginUser;
+  PetscCall(CountClosed(a, n));
+  if (n[0] == n[1] && a->rows->n_all == n[1]) PetscFunctionReturn(0);
+  PetscCall(ComplianceAugment(a->compliance->K, a->rows, a->compliance->kappa, PETSC_TRUE, a->status, &A));
+  PetscCall(HoldCheckClosed(a->operators, &a->compliance->hold, A, n[0]));
+  PetscCall(MatDestroy(&A));
+  PetscFunctionReturn(0);
+}
+
+/* One load step: f, from which u, l and w follow */
+static PetscErrorCode Step(Active *a, Vec f, Vec u)
+{
+  ActiveOutcome outcome;
+
+  PetscFunctionBeginUser;
+  PetscCall(ComplianceSolve(a->compliance, a->rows, 0, f, a->zero, a->zero, u));
+  PetscCall(RowsOf(a->compliance, a->rows, u, a->free));
+  PetscCall(ActiveSolve(a, &outcome));
+  if (outcome != ACTIVE_CONVERGED) PetscCall(Complain(a, outcome));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EquilibriumSolve(Statics s, Rows *rows, const Compliance *c, Vec f, PetscReal size, PetscInt load_steps,
+                                CoulombStatus status[], PetscReal l[], Vec u)
+{
+  Active a = {.operators = s->operators, .rows = rows, .compliance = c, .max_it = s->max_it, .status = status, .l = l};
+  Vec    part;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc3(rows->n, &a.free, rows->n, &a.w, rows->n, &a.zero));
+  PetscCall(VecDuplicate(f, &part));
+  for (PetscInt p = 0; p < rows->n_pairs; p++) rows->law[p].slip0[0] = rows->law[p].slip0[1] = 0;
+  for (PetscInt step = 1; step <= load_steps; step++) {
+    for (PetscInt p = 0; p < rows->n_pairs && step > 1; p++)
+      for (PetscInt i = 1; i < rows->law[p].d; i++) rows->law[p].slip0[i - 1] = a.w[rows->first[p] + i];
+    PetscCall(VecCopy(f, part));
+    PetscCall(VecScale(part, (PetscReal)step / (PetscReal)load_steps));
+    PetscCall(Step(&a, part, u));
+  }
+  s->n_it = a.n_it;
+  PetscCall(TippingCheck(&a));
+  PetscCall(Refine(&a, f, u));
+  PetscCall(FrictionCheck(&a, f, size));
+  PetscCall(VecDestroy(&part));
+  PetscCall(PetscFree3(a.free, a.w, a.zero));
+  PetscFunctionReturn(0);
+}

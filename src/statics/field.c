@@ -1,0 +1,114 @@
+/*
+   The state as fields on the mesh: displacement (m), force of the contact on each node (N), and its pressure on both
+   surfaces, p_v = -F_v . n_v / A_v with the outward normal and the node's share of the area (Pa).
+*/
+#include "staticsimpl.h"
+
+/* Adds the pressure on one surface; where it was given by an interface before, the two add up */
+static PetscErrorCode PressureAdd(Model model, const char set[], const PetscScalar force[], PetscReal pressure[])
+{
+  const PetscInt *v;
+  PetscInt        n, vStart;
+  PetscReal      *normals;
+  DM              dm;
+  IS              is;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(model, &dm));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
+  PetscCall(ModelGetSetNormals(model, set, &normals));
+  PetscCall(ModelGetSetVertices(model, set, &is));
+  PetscCall(ISGetLocalSize(is, &n));
+  PetscCall(ISGetIndices(is, &v));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt at   = 3 * (v[i] - vStart);
+    PetscReal      area = 0, along = 0;
+
+    for (int d = 0; d < 3; d++) {
+      area += PetscSqr(normals[at + d]);
+      along -= normals[at + d] * PetscRealPart(force[at + d]);
+    }
+    if (area > 0) pressure[at / 3] = along / area;
+  }
+  PetscCall(ISRestoreIndices(is, &v));
+  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(normals));
+  PetscFunctionReturn(0);
+}
+
+/* Pressure of all interfaces at the local vertices; the caller frees it */
+static PetscErrorCode PressureCreate(Model model, Contact contact, Vec force, PetscReal **pressure)
+{
+  const ContactInterface *interfaces;
+  const PetscScalar      *value;
+  PetscInt                n, n_interfaces;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetInterfaces(contact, &n_interfaces, &interfaces));
+  PetscCall(VecGetLocalSize(force, &n));
+  PetscCall(PetscCalloc1(n / 3, pressure));
+  PetscCall(VecGetArrayRead(force, &value));
+  for (PetscInt i = 0; i < n_interfaces; i++) {
+    PetscCall(PressureAdd(model, interfaces[i].slave, value, *pressure));
+    PetscCall(PressureAdd(model, interfaces[i].master, value, *pressure));
+  }
+  PetscCall(VecRestoreArrayRead(force, &value));
+  PetscFunctionReturn(0);
+}
+
+/* Names of the parts, for the file; the caller frees the list */
+static PetscErrorCode FieldBegin(Model model, Results results, ResultsField *field)
+{
+  const char    **names;
+  const Part     *parts;
+  const PetscInt *cell_part;
+  PetscInt        n;
+  DM              dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(model, &dm));
+  PetscCall(ModelGetParts(model, &n, &parts));
+  PetscCall(ModelGetCellParts(model, &cell_part));
+  PetscCall(PetscMalloc1(n, &names));
+  for (PetscInt i = 0; i < n; i++) names[i] = parts[i].name;
+  PetscCall(ResultsFieldOpen(results, "static", dm, n, names, cell_part, field));
+  PetscCall(PetscFree(names));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FieldsWrite(Statics s, Results results)
+{
+  const PetscScalar *u, *f;
+  PetscReal         *pressure;
+  PetscBool          wanted;
+  Contact            contact;
+  ResultsField       field;
+  Model              model;
+  Vec                displacement, force;
+
+  PetscFunctionBeginUser;
+  PetscCall(ResultsWantFields(results, &wanted));
+  if (!wanted) PetscFunctionReturn(0);
+  PetscCall(OperatorsGetModel(s->operators, &model, &contact));
+  PetscCall(DisplacementsCreate(s, model, &displacement));
+  PetscCall(VecDuplicate(displacement, &force));
+  PetscCall(ContactNodalForces(contact, s->state, force));
+  PetscCall(PressureCreate(model, contact, force, &pressure));
+  PetscCall(FieldBegin(model, results, &field));
+  PetscCall(VecGetArrayRead(displacement, &u));
+  PetscCall(VecGetArrayRead(force, &f));
+  PetscCall(ResultsFieldWriteNodal(
+    field, "static equilibrium", 3,
+    (const ResultsNodal[]){
+      {"displacement_m",      3, u       },
+      {"contact_force_n",     3, f       },
+      {"contact_pressure_pa", 1, pressure}
+  }));
+  PetscCall(VecRestoreArrayRead(force, &f));
+  PetscCall(VecRestoreArrayRead(displacement, &u));
+  PetscCall(ResultsFieldClose(&field));
+  PetscCall(PetscFree(pressure));
+  PetscCall(VecDestroy(&force));
+  PetscCall(VecDestroy(&displacement));
+  PetscFunctionReturn(0);
+}

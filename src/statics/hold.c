@@ -1,0 +1,213 @@
+/*
+   How rigid motions r that nothing resists (rigid.c) are held: each at one unknown by a pin, a grounded spring. This is
+   a statically determinate support, whose reaction is zero in equilibrium whatever its stiffness. Forces that would
+   move a body along r are an error, and u is made free of r (r'M u = 0).
+*/
+#include "staticsimpl.h"
+
+#define RESISTED 1e-8 /* force along a free motion beside all forces */
+
+/* Entry i of r, on all ranks */
+static PetscErrorCode EntryGet(Vec r, PetscInt i, PetscScalar *entry)
+{
+  PetscScalar here = 0;
+  PetscInt    begin, end;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetOwnershipRange(r, &begin, &end));
+  if (i >= begin && i < end) PetscCall(VecGetValues(r, 1, &i, &here));
+  PetscCallMPI(MPI_Allreduce(&here, entry, 1, MPIU_SCALAR, MPI_SUM, PetscObjectComm((PetscObject)r)));
+  PetscFunctionReturn(0);
+}
+
+/* The largest entry of n vectors: in which of them, and where */
+static PetscErrorCode LargestEntry(PetscInt n, const Vec r[], PetscInt *which, PetscInt *where)
+{
+  PetscReal largest = -1;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal high, low;
+    PetscInt  at_high, at_low;
+
+    PetscCall(VecMax(r[i], &at_high, &high));
+    PetscCall(VecMin(r[i], &at_low, &low));
+    if (PetscMax(high, -low) <= largest) continue;
+    largest = PetscMax(high, -low);
+    *which  = i;
+    *where  = high >= -low ? at_high : at_low;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Unknowns at which the free motions are held, by elimination with full pivoting */
+static PetscErrorCode PinsChoose(Hold *hold)
+{
+  Vec *r;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(hold->n, &hold->pin));
+  PetscCall(VecDuplicateVecs(hold->r[0], hold->n, &r));
+  for (PetscInt i = 0; i < hold->n; i++) PetscCall(VecCopy(hold->r[i], r[i]));
+  for (PetscInt j = 0; j < hold->n; j++) {
+    PetscScalar pivot, entry;
+    PetscInt    best = 0;
+
+    PetscCall(LargestEntry(hold->n - j, &r[j], &best, &hold->pin[j]));
+    if (best) PetscCall(VecSwap(r[j], r[j + best]));
+    PetscCall(EntryGet(r[j], hold->pin[j], &pivot));
+    for (PetscInt i = j + 1; i < hold->n; i++) {
+      PetscCall(EntryGet(r[i], hold->pin[j], &entry));
+      PetscCall(VecAXPY(r[i], -entry / pivot, r[j]));
+    }
+  }
+  PetscCall(VecDestroyVecs(hold->n, &r));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HoldCreate(Operators operators, Mat A, Hold *hold)
+{
+  PetscScalar sum;
+  PetscInt    n, begin, end;
+  Vec         diagonal;
+
+  PetscFunctionBeginUser;
+  PetscCall(FreeMotionsCreate(operators, A, hold));
+  if (!hold->n) PetscFunctionReturn(0);
+  PetscCall(PinsChoose(hold));
+  PetscCall(MatCreateVecs(A, &diagonal, NULL));
+  PetscCall(MatGetDiagonal(A, diagonal));
+  PetscCall(VecGetSize(diagonal, &n));
+  PetscCall(VecSum(diagonal, &sum));
+  PetscCall(VecGetOwnershipRange(diagonal, &begin, &end));
+  PetscCall(VecDestroy(&diagonal));
+  hold->stiffness = PetscRealPart(sum) / (PetscReal)n;
+  for (PetscInt i = 0; i < hold->n; i++)
+    if (hold->pin[i] >= begin && hold->pin[i] < end)
+      PetscCall(MatSetValue(A, hold->pin[i], hold->pin[i], hold->stiffness, ADD_VALUES));
+  PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+/* Where unknown i is: position, direction and part; on all ranks */
+static PetscErrorCode UnknownDescribe(Model model, PetscInt unknown, PetscReal x[3], int *direction, char part[64])
+{
+  struct {
+    PetscReal x[3];
+    int       direction, part;
+  } found = {
+    {-PETSC_MAX_REAL, -PETSC_MAX_REAL, -PETSC_MAX_REAL},
+    -1, -1
+  };
+  const PetscReal *coordinates;
+  const PetscInt  *unknowns, *cell_part;
+  const Element   *element;
+  const Part      *parts;
+  PetscInt         vStart, vEnd, cStart, cEnd, n_parts, at = -1;
+  MPI_Comm         comm;
+  DM               dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetComm(model, &comm));
+  PetscCall(ModelGetDM(model, &dm));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
+  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
+  PetscCall(ModelGetCoordinates(model, &coordinates));
+  PetscCall(ModelGetUnknowns(model, &unknowns));
+  PetscCall(ModelGetCellParts(model, &cell_part));
+  PetscCall(ModelGetElement(model, &element));
+  PetscCall(ModelGetParts(model, &n_parts, &parts));
+  for (PetscInt i = 0; i < 3 * (vEnd - vStart); i++)
+    if (unknowns[i] == unknown) at = i;
+  for (PetscInt c = 0; c < cEnd - cStart && at >= 0; c++) {
+    PetscInt  vertices[ELEMENT_MAX_NODES];
+    PetscReal corner[ELEMENT_MAX_DOFS];
+
+    PetscCall(ModelGetCell(model, c, vertices, corner));
+    for (PetscInt i = 0; i < element->n_nodes; i++)
+      if (vertices[i] - vStart == at / 3) found.part = (int)cell_part[c];
+  }
+  if (at >= 0) {
+    PetscCall(PetscArraycpy(found.x, &coordinates[at - at % 3], 3));
+    found.direction = (int)(at % 3);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found.x, 3, MPIU_REAL, MPI_MAX, comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &found.direction, 2, MPI_INT, MPI_MAX, comm));
+  PetscCall(PetscArraycpy(x, found.x, 3));
+  *direction = found.direction;
+  PetscCall(PetscStrncpy(part, found.part >= 0 ? parts[found.part].name : "?", 64));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HoldCheck(Operators operators, const Hold *hold, const char force[], Vec f, PetscReal size)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < hold->n; i++) {
+    char        part[64];
+    int         direction;
+    PetscReal   x[3], largest;
+    PetscScalar along;
+    Model       model;
+
+    PetscCall(VecDot(f, hold->r[i], &along));
+    PetscCall(VecNorm(hold->r[i], NORM_INFINITY, &largest));
+    if (PetscAbsScalar(along) <= RESISTED * size * largest) continue;
+    PetscCall(OperatorsGetModel(operators, &model, NULL));
+    PetscCall(UnknownDescribe(model, hold->pin[i], x, &direction, part));
+    SETERRQ(
+      PetscObjectComm((PetscObject)f), PETSC_ERR_USER_INPUT,
+      "no equilibrium: %s push part %s along a rigid motion that nothing resists (along %c at %.6g, %.6g, %.6g m, "
+      "with %.6g N); give -supports, -springs or other -loads",
+      force, part, "xyz"[direction], (double)x[0], (double)x[1], (double)x[2],
+      (double)(PetscAbsScalar(along) / largest));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HoldCheckClosed(Operators operators, const Hold *hold, Mat A, PetscInt n_closed)
+{
+  Hold left = {.n = 0};
+
+  PetscFunctionBeginUser;
+  PetscCall(FreeMotionsCreate(operators, A, &left));
+  if (left.n > hold->n) {
+    char      part[64];
+    int       direction;
+    PetscReal x[3];
+    Model     model;
+
+    PetscCall(PinsChoose(&left));
+    PetscCall(OperatorsGetModel(operators, &model, NULL));
+    PetscCall(UnknownDescribe(model, left.pin[0], x, &direction, part));
+    SETERRQ(PetscObjectComm((PetscObject)A), PETSC_ERR_NOT_CONVERGED,
+            "no stable equilibrium: only %" PetscInt_FMT
+            " pairs stay closed, and part %s can tip or slide on them without resistance; lower the friction "
+            "coefficient, move the -loads, or give -supports or -springs",
+            n_closed, part);
+  }
+  PetscCall(HoldDestroy(&left));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HoldProject(const Hold *hold, Vec u)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < hold->n; i++) {
+    PetscScalar dot;
+
+    PetscCall(VecDot(u, hold->mr[i], &dot));
+    PetscCall(VecAXPY(u, -dot, hold->r[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HoldDestroy(Hold *hold)
+{
+  PetscFunctionBeginUser;
+  if (hold->n) PetscCall(VecDestroyVecs(hold->n, &hold->r));
+  if (hold->n) PetscCall(VecDestroyVecs(hold->n, &hold->mr));
+  PetscCall(PetscFree(hold->pin));
+  hold->n = 0;
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,168 @@
+/*
+   Contact stiffness by pressing, after section 2.1 of the seed paper: the load is raised in equal steps, contact exact
+   and without friction; the normal force F of the interface is drawn against the approach d of the second rows of nodes
+   of slave and master, and F = k d + c is fitted by least squares. k is what springs in series between these rows
+   amount to: the two element layers, since exact contact itself is rigid. Per pair it is k / number of pairs.
+*/
+#include "staticsimpl.h"
+#include <math.h>
+
+/* Normal force (N) and approach (m) of one step */
+typedef struct {
+  PetscReal force, approach;
+} Reading;
+
+/* k, its residual and the range of the force */
+static void LineFit(PetscInt n, const Reading reading[], StaticsStiffness *k)
+{
+  PetscReal mean[2] = {0, 0}, product = 0, square = 0, offset;
+
+  for (PetscInt i = 0; i < n; i++) {
+    mean[0] += reading[i].approach / (PetscReal)n;
+    mean[1] += reading[i].force / (PetscReal)n;
+  }
+  for (PetscInt i = 0; i < n; i++) {
+    product += (reading[i].approach - mean[0]) * (reading[i].force - mean[1]);
+    square += PetscSqr(reading[i].approach - mean[0]);
+  }
+  k->total    = product / square;
+  offset      = mean[1] - k->total * mean[0];
+  k->residual = 0;
+  k->range[0] = reading[0].force;
+  k->range[1] = reading[n - 1].force;
+  for (PetscInt i = 0; i < n; i++)
+    k->residual = PetscMax(k->residual, PetscAbsReal(reading[i].force - k->total * reading[i].approach - offset));
+  k->residual /= PetscAbsReal(k->range[1]);
+}
+
+/* Exact contact without friction, every pair closed at first */
+static void LawsPressing(Rows *rows, CoulombStatus status[])
+{
+  for (PetscInt p = 0; p < rows->n_pairs; p++) {
+    rows->law[p].k  = INFINITY;
+    rows->law[p].mu = 0;
+    rows->slide[p]  = 0;
+    status[p]       = COULOMB_SLIP;
+  }
+}
+
+/* One step of the ramp: part of the load */
+static PetscErrorCode Press(Statics s, Rows *rows, const Compliance *c, Vec f, PetscReal size, PetscReal part,
+                            PetscInt interface, Vec d, CoulombStatus status[], PetscReal l[], Reading *reading)
+{
+  PetscScalar approach;
+  Vec         u, load;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(f, &u));
+  PetscCall(VecDuplicate(f, &load));
+  PetscCall(VecCopy(f, load));
+  PetscCall(VecScale(load, part));
+  PetscCall(EquilibriumSolve(s, rows, c, load, part * size, 1, status, l, u));
+  PetscCall(VecDot(d, u, &approach));
+  reading->approach = PetscRealPart(approach);
+  reading->force    = 0;
+  for (PetscInt p = 0; p < rows->n_pairs; p++)
+    if (rows->pair[p].interface == interface) reading->force += c->kappa * l[rows->first[p]];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &reading->force, 1, MPIU_REAL, MPI_SUM, s->comm));
+  PetscCall(VecDestroy(&load));
+  PetscCall(VecDestroy(&u));
+  PetscFunctionReturn(0);
+}
+
+/* All steps */
+static PetscErrorCode Ramp(Statics s, PetscInt interface, Vec d, Reading reading[])
+{
+  Compliance     c = {.kappa = 0};
+  PetscReal     *l, size;
+  CoulombStatus *status;
+  Vec            f;
+
+  PetscFunctionBeginUser;
+  PetscCall(LoadCreate(s->operators, &f, &size));
+  PetscCheck(size > 0, s->comm, PETSC_ERR_USER_INPUT, "-contact_kn identify presses with the -loads: give some");
+  PetscCall(PetscMalloc1(s->rows.n_pairs, &status));
+  PetscCall(PetscCalloc1(s->rows.n, &l));
+  PetscCall(ComplianceCreate(s->operators, &s->rows, s->dense, &s->progress, &c));
+  PetscCall(RowsSetLaws(s->operators, c.kappa, &s->rows));
+  LawsPressing(&s->rows, status);
+  PetscCall(HoldCheck(s->operators, &c.hold, "the loads", f, size));
+  for (PetscInt i = 0; i < s->identify_steps; i++)
+    PetscCall(Press(s, &s->rows, &c, f, size, (PetscReal)(i + 1) / (PetscReal)s->identify_steps, interface, d, status,
+                    l, &reading[i]));
+  PetscCall(ComplianceDestroy(&c));
+  PetscCall(PetscFree(l));
+  PetscCall(PetscFree(status));
+  PetscCall(VecDestroy(&f));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsIdentify(Statics s, PetscInt interface, StaticsStiffness *stiffness)
+{
+  const ContactInterface *interfaces;
+  PetscInt                n = 0, n_interfaces;
+  Reading                *reading;
+  Contact                 contact;
+  Vec                     d;
+
+  PetscFunctionBeginUser;
+  PetscCall(StaticsSetUp(s));
+  PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
+  PetscCall(ContactGetInterfaces(contact, &n_interfaces, &interfaces));
+  PetscCall(ContactCreateApproach(contact, interface, &d));
+  PetscCall(PetscMalloc1(s->identify_steps, &reading));
+  PetscCall(Ramp(s, interface, d, reading));
+  for (PetscInt p = 0; p < s->rows.n_pairs; p++) n += s->rows.pair[p].interface == interface;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT, MPI_SUM, s->comm));
+  LineFit(s->identify_steps, reading, stiffness);
+  stiffness->n_steps  = s->identify_steps;
+  stiffness->per_pair = stiffness->total / (PetscReal)n;
+  PetscCheck(stiffness->total > 0 && !PetscIsInfOrNanReal(stiffness->total), s->comm, PETSC_ERR_NOT_CONVERGED,
+             "-%s_kn identify: the -loads do not press this contact", interfaces[interface].name);
+  PetscCall(PetscFree(reading));
+  PetscCall(VecDestroy(&d));
+  PetscFunctionReturn(0);
+}
+
+/* Gives the parameter <contact>_kn its value */
+static PetscErrorCode StiffnessSet(Statics s, const char contact[], PetscReal value)
+{
+  const OperatorsParameter *parameters;
+  PetscReal                *p;
+  PetscInt                  n;
+  char                      name[160];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s_kn", contact));
+  PetscCall(OperatorsGetParameters(s->operators, &n, &parameters));
+  PetscCall(PetscMalloc1(n, &p));
+  for (PetscInt i = 0; i < n; i++) p[i] = strcmp(parameters[i].name, name) ? parameters[i].value : value;
+  PetscCall(OperatorsSetParameters(s->operators, p));
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsIdentifyAll(Statics s, PetscViewer viewer)
+{
+  const ContactInterface *interfaces;
+  PetscInt                n = 0;
+  Contact                 contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
+  if (contact) PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
+  for (PetscInt i = 0; i < n; i++) {
+    StaticsStiffness k;
+
+    if (!interfaces[i].identify) continue;
+    PetscCall(StaticsIdentify(s, i, &k));
+    PetscCall(StiffnessSet(s, interfaces[i].name, k.per_pair));
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer,
+                             "contact %s: k_n identified as %.6g N/m per pair, %.6g N/m in total, from %" PetscInt_FMT
+                             " steps of %.6g to %.6g N; largest distance from the line %.2g of the force\n",
+                             interfaces[i].name, (double)k.per_pair, (double)k.total, k.n_steps, (double)k.range[0],
+                             (double)k.range[1], (double)k.residual));
+  }
+  PetscFunctionReturn(0);
+}

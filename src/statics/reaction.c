@@ -1,0 +1,156 @@
+/*
+   Who carries the loads: reactions of supports and springs, loads, and contact forces. At a held direction of a vertex
+
+      reaction = sum K_e u_e - load - contact force,
+
+   and a spring pulls with -k u. In equilibrium reactions, springs and loads sum to zero; reactions.csv lists them all.
+*/
+#include "staticsimpl.h"
+
+/* Internal forces minus loads and contact forces at all local vertices, three values each */
+static PetscErrorCode UnbalanceCreate(Statics s, Model model, Contact contact, Vec *local)
+{
+  PetscInt    n;
+  Vec         coordinates, part;
+  const Load *loads;
+  DM          dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(model, &dm));
+  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
+  PetscCall(VecDuplicate(coordinates, local));
+  PetscCall(VecDuplicate(coordinates, &part));
+  PetscCall(OperatorsInternalForces(s->operators, s->u, *local));
+  PetscCall(ContactNodalForces(contact, s->state, part));
+  PetscCall(VecAXPY(*local, -1, part));
+  PetscCall(VecSet(part, 0));
+  PetscCall(ModelGetLoads(model, &n, &loads));
+  for (PetscInt i = 0; i < n; i++) PetscCall(ModelAddLoad(model, i, part));
+  PetscCall(VecAXPY(*local, -1, part));
+  PetscCall(VecDestroy(&part));
+  PetscFunctionReturn(0);
+}
+
+/* Sum of a local vector over the vertices of a set, each once, in some directions */
+static PetscErrorCode SetSum(Model model, const char set[], const PetscBool direction[3], Vec local, PetscReal sum[3])
+{
+  const PetscScalar *value;
+  const PetscInt    *v;
+  PetscInt           n, vStart;
+  MPI_Comm           comm;
+  DM                 dm;
+  IS                 is;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetComm(model, &comm));
+  PetscCall(ModelGetDM(model, &dm));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
+  PetscCall(ModelGetOwnedVertices(model, set, &is));
+  PetscCall(ISGetLocalSize(is, &n));
+  PetscCall(ISGetIndices(is, &v));
+  PetscCall(VecGetArrayRead(local, &value));
+  for (int d = 0; d < 3; d++) {
+    sum[d] = 0;
+    for (PetscInt i = 0; i < n && direction[d]; i++) sum[d] += PetscRealPart(value[3 * (v[i] - vStart) + d]);
+  }
+  PetscCall(VecRestoreArrayRead(local, &value));
+  PetscCall(ISRestoreIndices(is, &v));
+  PetscCall(ISDestroy(&is));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, comm));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Row(ResultsTable table, const char name[], const char kind[], const PetscReal force[3])
+{
+  PetscFunctionBeginUser;
+  PetscCall(ResultsTableRow(table, "%s,%s,%.15g,%.15g,%.15g", name, kind, (double)force[0], (double)force[1],
+                            (double)force[2]));
+  PetscFunctionReturn(0);
+}
+
+/* Displacements of all local vertices, three values each, zero where held */
+PetscErrorCode DisplacementsCreate(Statics s, Model model, Vec *local)
+{
+  DM dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(model, &dm));
+  PetscCall(DMCreateLocalVector(dm, local));
+  PetscCall(VecSet(*local, 0));
+  PetscCall(DMGlobalToLocal(dm, s->u, INSERT_VALUES, *local));
+  PetscFunctionReturn(0);
+}
+
+/* Springs pull with their present stiffness: the parameters are named after the list, one for all directions or one for
+   each */
+static PetscErrorCode SpringStiffness(Statics s, const Grounded *g, PetscReal stiffness[3])
+{
+  static const char *const  ending[] = {"stiffness_x", "stiffness_y", "stiffness_z"};
+  const OperatorsParameter *parameters;
+  PetscInt                  n;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetParameters(s->operators, &n, &parameters));
+  for (int d = 0; d < 3; d++) {
+    char all[160], one[160];
+
+    stiffness[d] = 0;
+    PetscCall(PetscSNPrintf(all, sizeof(all), "%s_stiffness", g->name));
+    PetscCall(PetscSNPrintf(one, sizeof(one), "%s_%s", g->name, ending[d]));
+    for (PetscInt i = 0; i < n && g->value[d] != 0; i++)
+      if (!strcmp(parameters[i].name, all) || !strcmp(parameters[i].name, one)) stiffness[d] = parameters[i].value;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Rows of supports and springs */
+static PetscErrorCode HoldersWrite(Statics s, Model model, Contact contact, ResultsTable table)
+{
+  const PetscBool all[3] = {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE};
+  const Support  *supports;
+  const Grounded *springs;
+  PetscInt        n_supports, n_springs;
+  PetscReal       force[3], stiffness[3];
+  Vec             unbalance, u;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetSupports(model, &n_supports, &supports));
+  PetscCall(ModelGetSprings(model, &n_springs, &springs));
+  PetscCall(UnbalanceCreate(s, model, contact, &unbalance));
+  PetscCall(DisplacementsCreate(s, model, &u));
+  for (PetscInt i = 0; i < n_supports; i++) {
+    PetscCall(SetSum(model, supports[i].set, supports[i].fix, unbalance, force));
+    PetscCall(Row(table, supports[i].name, "support", force));
+  }
+  for (PetscInt i = 0; i < n_springs; i++) {
+    PetscCall(SetSum(model, springs[i].set, all, u, force));
+    PetscCall(SpringStiffness(s, &springs[i], stiffness));
+    for (int d = 0; d < 3; d++) force[d] *= -stiffness[d];
+    PetscCall(Row(table, springs[i].name, "spring", force));
+  }
+  PetscCall(VecDestroy(&u));
+  PetscCall(VecDestroy(&unbalance));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReactionsWrite(Statics s, Results results)
+{
+  const ContactInterface *interfaces;
+  const Load             *loads;
+  PetscInt                n_loads, n_interfaces;
+  ResultsTable            table;
+  Contact                 contact;
+  Model                   model;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(s->operators, &model, &contact));
+  PetscCall(ModelGetLoads(model, &n_loads, &loads));
+  PetscCall(ContactGetInterfaces(contact, &n_interfaces, &interfaces));
+  PetscCall(ResultsTableOpen(results, "reactions", "name,kind,force_x_n,force_y_n,force_z_n", &table));
+  PetscCall(HoldersWrite(s, model, contact, table));
+  for (PetscInt i = 0; i < n_loads; i++) PetscCall(Row(table, loads[i].name, "load", loads[i].force));
+  for (PetscInt i = 0; i < n_interfaces; i++)
+    PetscCall(Row(table, interfaces[i].name, "contact on master", s->resultant[i].force));
+  PetscCall(ResultsTableClose(&table));
+  PetscFunctionReturn(0);
+}

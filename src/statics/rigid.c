@@ -1,0 +1,193 @@
+/*
+   Rigid motions that nothing resists. The candidates are the six rigid motions of every body, made orthonormal in
+   diag(A); a combination r of them is free when r'A r vanishes, A = K + kappa G'G: no support, no spring and no pair
+   resists it.
+*/
+#include "staticsimpl.h"
+#include <petscblaslapack.h>
+
+#define MAX_BODIES 64
+#define DEPENDENT  1e-6  /* norm left of a candidate that is one of the others */
+#define FREE       1e-11 /* energy beside that of the same motion with all its neighbours held */
+
+/* Displacement d of point x in rigid motion k of a body: translations, then rotations about c over length */
+static PetscReal RigidMotion(int k, int d, const PetscReal x[3], const PetscReal c[3], PetscReal length)
+{
+  const int axis = k - 3, a = (axis + 1) % 3, b = (axis + 2) % 3;
+
+  if (k < 3) return k == d ? 1 : 0;
+  return d == a ? -(x[b] - c[b]) / length : d == b ? (x[a] - c[a]) / length : 0;
+}
+
+/* Centre and half the extent of each body, from its boxes on all ranks */
+static PetscErrorCode BodiesMeasure(Model model, PetscInt n_bodies, const PetscInt body[], PetscReal centre[][3],
+                                    PetscReal length[])
+{
+  const PetscReal *x;
+  PetscReal       *box;
+  PetscInt         vStart, vEnd;
+  MPI_Comm         comm;
+  DM               dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetComm(model, &comm));
+  PetscCall(ModelGetDM(model, &dm));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
+  PetscCall(ModelGetCoordinates(model, &x));
+  PetscCall(PetscMalloc1(6 * n_bodies, &box)); /* upper ends, and lower ones with the other sign */
+  for (PetscInt i = 0; i < 6 * n_bodies; i++) box[i] = -PETSC_MAX_REAL;
+  for (PetscInt i = 0; i < 3 * (vEnd - vStart); i++) {
+    PetscReal *end = &box[6 * body[i / 3] + i % 3];
+
+    if (body[i / 3] < 0) continue;
+    end[0] = PetscMax(end[0], x[i]);
+    end[3] = PetscMax(end[3], -x[i]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, box, (PetscMPIInt)(6 * n_bodies), MPIU_REAL, MPI_MAX, comm));
+  for (PetscInt i = 0; i < n_bodies; i++) {
+    length[i] = 0;
+    for (int d = 0; d < 3; d++) {
+      centre[i][d] = (box[6 * i + d] - box[6 * i + 3 + d]) / 2;
+      length[i]    = PetscMax(length[i], (box[6 * i + d] + box[6 * i + 3 + d]) / 2);
+    }
+  }
+  PetscCall(PetscFree(box));
+  PetscFunctionReturn(0);
+}
+
+/* Rigid motion k of a body at its free unknowns */
+static PetscErrorCode MotionSet(Model model, const PetscInt body[], PetscInt b, int k, const PetscReal centre[3],
+                                PetscReal length, Vec r)
+{
+  const PetscReal *x;
+  const PetscInt  *unknowns;
+  PetscInt         vStart, vEnd, begin, end;
+  PetscScalar     *value;
+  DM               dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(model, &dm));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
+  PetscCall(ModelGetCoordinates(model, &x));
+  PetscCall(ModelGetUnknowns(model, &unknowns));
+  PetscCall(VecSet(r, 0));
+  PetscCall(VecGetOwnershipRange(r, &begin, &end));
+  PetscCall(VecGetArray(r, &value));
+  for (PetscInt i = 0; i < 3 * (vEnd - vStart); i++)
+    if (body[i / 3] == b && unknowns[i] >= begin && unknowns[i] < end)
+      value[unknowns[i] - begin] = RigidMotion(k, (int)(i % 3), &x[i - i % 3], centre, length);
+  PetscCall(VecRestoreArray(r, &value));
+  PetscFunctionReturn(0);
+}
+
+/* Makes r orthonormal to the n vectors before it in the inner product of the weights (D may be a diagonal, as Vec, or a
+   Mat); false when nothing is left */
+static PetscErrorCode Orthonormalise(Mat M, Vec weights, PetscInt n, const Vec before[], Vec r, PetscBool *good)
+{
+  PetscReal   norm[2];
+  PetscScalar dot;
+  Vec         image;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(r, &image));
+  for (int pass = 0; pass < 3; pass++) {
+    for (PetscInt i = 0; i < n && pass; i++) {
+      PetscCall(M ? MatMult(M, r, image) : VecPointwiseMult(image, weights, r));
+      PetscCall(VecDot(image, before[i], &dot));
+      PetscCall(VecAXPY(r, -dot, before[i]));
+    }
+    PetscCall(M ? MatMult(M, r, image) : VecPointwiseMult(image, weights, r));
+    PetscCall(VecDot(image, r, &dot));
+    norm[pass ? 1 : 0] = PetscSqrtReal(PetscMax(0, PetscRealPart(dot)));
+  }
+  *good = norm[1] > DEPENDENT * norm[0] ? PETSC_TRUE : PETSC_FALSE;
+  if (*good) PetscCall(VecScale(r, 1 / norm[1]));
+  PetscCall(VecDestroy(&image));
+  PetscFunctionReturn(0);
+}
+
+/* Rigid motions of all bodies, orthonormal in diag(A); motion[6 n_bodies] */
+static PetscErrorCode CandidatesCreate(Model model, Mat A, PetscInt *n, Vec **motion)
+{
+  PetscReal(*centre)[3], *length;
+  PetscInt  n_bodies, *body;
+  PetscBool good;
+  Vec       diagonal;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetBodies(model, &n_bodies, &body));
+  PetscCheck(n_bodies <= MAX_BODIES, PetscObjectComm((PetscObject)A), PETSC_ERR_SUP,
+             "the mesh falls into %" PetscInt_FMT " pieces, at most %d can be held in equilibrium", n_bodies,
+             MAX_BODIES);
+  PetscCall(PetscMalloc2(n_bodies, &centre, n_bodies, &length));
+  PetscCall(BodiesMeasure(model, n_bodies, body, centre, length));
+  PetscCall(MatCreateVecs(A, &diagonal, NULL));
+  PetscCall(MatGetDiagonal(A, diagonal));
+  PetscCall(VecDuplicateVecs(diagonal, 6 * n_bodies, motion));
+  *n = 0;
+  for (PetscInt i = 0; i < 6 * n_bodies; i++) {
+    PetscCall(MotionSet(model, body, i / 6, (int)(i % 6), centre[i / 6], length[i / 6], (*motion)[*n]));
+    PetscCall(Orthonormalise(NULL, diagonal, *n, *motion, (*motion)[*n], &good));
+    if (good) (*n)++;
+  }
+  for (PetscInt i = *n; i < 6 * n_bodies; i++) PetscCall(VecDestroy(&(*motion)[i]));
+  PetscCall(VecDestroy(&diagonal));
+  PetscCall(PetscFree2(centre, length));
+  PetscCall(PetscFree(body));
+  PetscFunctionReturn(0);
+}
+
+/* Eigenvalues ascending and vectors (in place) of the energies r_i'A r_j, [n * n] */
+static PetscErrorCode EnergiesSolve(Mat A, PetscInt n, const Vec motion[], PetscReal energy[], PetscReal vectors[])
+{
+  PetscBLASInt N, size, info;
+  PetscReal   *work;
+  Vec          image;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(motion[0], &image));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(MatMult(A, motion[i], image));
+    PetscCall(VecMDot(image, n, motion, &vectors[i * n]));
+  }
+  PetscCall(VecDestroy(&image));
+  PetscCall(PetscBLASIntCast(n, &N));
+  PetscCall(PetscBLASIntCast(4 * n, &size));
+  PetscCall(PetscMalloc1(4 * n, &work));
+  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "U", &N, vectors, &N, energy, work, &size, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev: info %d", (int)info);
+  PetscCall(PetscFree(work));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FreeMotionsCreate(Operators operators, Mat A, Hold *hold)
+{
+  PetscInt   n;
+  PetscReal *energy, *vectors;
+  PetscBool  good;
+  Vec       *motion;
+  Model      model;
+  Mat        M;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(operators, &model, NULL));
+  PetscCall(OperatorsGetMatrices(operators, NULL, &M, NULL, NULL, NULL));
+  PetscCall(CandidatesCreate(model, A, &n, &motion));
+  PetscCall(PetscMalloc2(n, &energy, n * n, &vectors));
+  PetscCall(EnergiesSolve(A, n, motion, energy, vectors));
+  while (hold->n < n && energy[hold->n] < FREE) hold->n++;
+  if (hold->n) {
+    PetscCall(VecDuplicateVecs(motion[0], hold->n, &hold->r));
+    PetscCall(VecDuplicateVecs(motion[0], hold->n, &hold->mr));
+  }
+  for (PetscInt i = 0; i < hold->n; i++) {
+    PetscCall(VecSet(hold->r[i], 0));
+    PetscCall(VecMAXPY(hold->r[i], n, &vectors[i * n], motion));
+    PetscCall(Orthonormalise(M, NULL, i, hold->r, hold->r[i], &good));
+    PetscCall(MatMult(M, hold->r[i], hold->mr[i]));
+  }
+  for (PetscInt i = 0; i < n; i++) PetscCall(VecDestroy(&motion[i]));
+  PetscCall(PetscFree(motion));
+  PetscCall(PetscFree2(energy, vectors));
+  PetscFunctionReturn(0);
+}

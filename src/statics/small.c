@@ -1,0 +1,220 @@
+/*
+   The small system of the pairs, w + (W - V D) l - W w = rhs with l = P z + p0, w = Q z + q0, for z:
+
+      [Q + (W - V D) P - W Q] z = rhs - q0 - (W - V D) p0 + W q0.
+
+   Dense, it is factored by LAPACK on every rank alike; too large for that, it is solved by GMRES, each application of W
+   and V one pair of triangular solves. The determinant is positive without friction whatever is open or closed (a
+   column is either one of W, whose eigenvalues lie in (0, 1], or one of I - W); where friction has turned its sign, the
+   equilibrium lies beyond one at which the bodies jam.
+*/
+#include "staticsimpl.h"
+#include <petscblaslapack.h>
+
+#define SINGULAR  1e-13 /* smallest pivot beside the largest */
+#define RTOL      1e-13 /* of GMRES */
+#define RESTART   100
+#define MAX_STEPS 300
+
+/* Laws and right-hand side of all rows, on every rank */
+static PetscErrorCode Gather(const Rows *rows, const LawRow law[], const PetscReal rhs[], LawRow all_law[],
+                             PetscReal all_rhs[])
+{
+  PetscMPIInt size, n, *count, *start;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(rows->comm, &size));
+  PetscCall(PetscMalloc2(size, &count, size + 1, &start));
+  PetscCall(PetscMPIIntCast(rows->n, &n));
+  PetscCallMPI(MPI_Allgather(&n, 1, MPI_INT, count, 1, MPI_INT, rows->comm));
+  start[0] = 0;
+  for (PetscMPIInt r = 0; r < size; r++) start[r + 1] = start[r] + count[r];
+  PetscCallMPI(MPI_Allgatherv(rhs, n, MPIU_REAL, all_rhs, count, start, MPIU_REAL, rows->comm));
+  for (PetscMPIInt r = 0; r <= size; r++) start[r] *= (PetscMPIInt)sizeof(LawRow);
+  for (PetscMPIInt r = 0; r < size; r++) count[r] *= (PetscMPIInt)sizeof(LawRow);
+  PetscCallMPI(
+    MPI_Allgatherv(law, n * (PetscMPIInt)sizeof(LawRow), MPI_BYTE, all_law, count, start, MPI_BYTE, rows->comm));
+  PetscCall(PetscFree2(count, start));
+  PetscFunctionReturn(0);
+}
+
+/* Adds column z_j, and with j < 0 the constants p0, q0 (subtracted): y += Q_j + (W - V D) P_j - W Q_j */
+static void ColumnAdd(const Compliance *c, PetscReal friction, PetscInt n, const LawRow law[], PetscInt j,
+                      PetscReal y[])
+{
+  const PetscInt from = j < 0 ? 0 : law[j].first, to = j < 0 ? n : from + law[j].d;
+
+  for (PetscInt r = from; r < to; r++) {
+    const PetscReal P = j < 0 ? -law[r].p0 : law[r].P[j - from], Q = j < 0 ? -law[r].q0 : law[r].Q[j - from];
+
+    y[r] += Q;
+    for (PetscInt i = 0; i < n && P != Q; i++) y[i] += c->W[r * n + i] * (P - Q);
+    for (PetscInt i = 0; i < n && c->V && P != 0 && law[r].slide != 0; i++)
+      y[i] -= friction * law[r].slide * P * c->V[r * n + i];
+  }
+}
+
+/* Factors A in place and solves; whether it is singular, and the sign of the determinant */
+static PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscReal z[], SmallOutcome *outcome, PetscBool *reversed)
+{
+  PetscReal    least = PETSC_MAX_REAL, largest = 0;
+  PetscBLASInt N, one                          = 1, info, *pivot;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n, &N));
+  PetscCall(PetscMalloc1(n, &pivot));
+  PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&N, &N, A, &N, pivot, &info));
+  PetscCheck(info >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK getrf: info %d", (int)info);
+  *reversed = PETSC_FALSE;
+  for (PetscInt i = 0; i < n; i++) {
+    least   = PetscMin(least, PetscAbsReal(A[i * n + i]));
+    largest = PetscMax(largest, PetscAbsReal(A[i * n + i]));
+    if ((A[i * n + i] < 0) != (pivot[i] != i + 1)) *reversed = (PetscBool) !*reversed;
+  }
+  *outcome = least > SINGULAR * largest ? SMALL_GOOD : SMALL_SINGULAR;
+  if (*outcome == SMALL_GOOD) PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &N, &one, A, &N, pivot, z, &N, &info));
+  PetscCall(PetscFree(pivot));
+  PetscFunctionReturn(0);
+}
+
+/* z of this rank's rows [rows] */
+static PetscErrorCode DenseSolve(const Compliance *c, const Rows *rows, PetscReal friction, const LawRow law[],
+                                 const PetscReal rhs[], PetscReal z[], SmallOutcome *outcome, PetscBool *reversed)
+{
+  const PetscInt n = rows->n_all;
+  LawRow        *all_law;
+  PetscReal     *A, *all;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n * n, &A));
+  PetscCall(PetscMalloc2(n, &all_law, n, &all));
+  PetscCall(Gather(rows, law, rhs, all_law, all));
+  ColumnAdd(c, friction, n, all_law, -1, all);
+  for (PetscInt j = 0; j < n; j++) ColumnAdd(c, friction, n, all_law, j, &A[j * n]);
+  PetscCall(DenseFactor(n, A, all, outcome, reversed));
+  PetscCall(PetscArraycpy(z, &all[rows->begin], rows->n));
+  PetscCall(PetscFree2(all_law, all));
+  PetscCall(PetscFree(A));
+  PetscFunctionReturn(0);
+}
+
+/* What the matrix-free system needs */
+typedef struct {
+  const Compliance *compliance;
+  const Rows       *rows;
+  const LawRow     *law;
+  PetscReal         friction, *l, *w;
+} Shell;
+
+/* l = P z, w = Q z; with p0, q0 when they are wanted */
+static void LawApply(const Rows *rows, const LawRow law[], PetscBool constants, const PetscReal z[], PetscReal l[],
+                     PetscReal w[])
+{
+  for (PetscInt i = 0; i < rows->n; i++) {
+    const LawRow *a = &law[i];
+
+    l[i] = constants ? a->p0 : 0;
+    w[i] = constants ? a->q0 : 0;
+    for (PetscInt k = 0; k < a->d; k++) {
+      l[i] += a->P[k] * z[a->first - rows->begin + k];
+      w[i] += a->Q[k] * z[a->first - rows->begin + k];
+    }
+  }
+}
+
+/* y = [Q + (W - V D) P - W Q] z */
+static PetscErrorCode ShellMult(Mat A, Vec z, Vec y)
+{
+  const PetscScalar *from;
+  PetscScalar       *to;
+  Shell             *s;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &s));
+  PetscCall(VecGetArrayRead(z, &from));
+  LawApply(s->rows, s->law, PETSC_FALSE, from, s->l, s->w);
+  PetscCall(VecRestoreArrayRead(z, &from));
+  PetscCall(VecGetArray(y, &to));
+  PetscCall(ComplianceApply(s->compliance, s->rows, s->friction, s->l, s->w, to));
+  PetscCall(VecRestoreArray(y, &to));
+  PetscFunctionReturn(0);
+}
+
+/* GMRES on the system; one that does not converge is called singular */
+static PetscErrorCode ShellSolve(Shell *s, Vec b, Vec z, SmallOutcome *outcome)
+{
+  KSPConvergedReason reason;
+  PetscInt           n;
+  KSP                ksp;
+  Mat                A;
+  PC                 pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(b, &n));
+  PetscCall(MatCreateShell(s->rows->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, s, &A));
+  PetscCall(MatShellSetOperation(A, MATOP_MULT, (void (*)(void))ShellMult));
+  PetscCall(KSPCreate(s->rows->comm, &ksp));
+  PetscCall(KSPSetOptionsPrefix(ksp, "st_pairs_"));
+  PetscCall(KSPSetOperators(ksp, A, A));
+  PetscCall(KSPSetType(ksp, KSPGMRES));
+  PetscCall(KSPGMRESSetRestart(ksp, RESTART));
+  PetscCall(KSPSetTolerances(ksp, RTOL, PETSC_DEFAULT, PETSC_DEFAULT, MAX_STEPS));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCNONE));
+  PetscCall(KSPSetFromOptions(ksp));
+  PetscCall(KSPSolve(ksp, b, z));
+  PetscCall(KSPGetConvergedReason(ksp, &reason));
+  *outcome = reason > 0 ? SMALL_GOOD : SMALL_SINGULAR;
+  PetscCall(KSPDestroy(&ksp));
+  PetscCall(MatDestroy(&A));
+  PetscFunctionReturn(0);
+}
+
+/* z of this rank's rows [rows] */
+static PetscErrorCode KrylovSolve(const Compliance *c, const Rows *rows, PetscReal friction, const LawRow law[],
+                                  const PetscReal rhs[], PetscReal z[], SmallOutcome *outcome)
+{
+  Shell        s = {c, rows, law, friction, NULL, NULL};
+  PetscScalar *value;
+  PetscReal   *y;
+  Vec          b, x;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(rows->n, &s.l, rows->n, &s.w, rows->n, &y));
+  PetscCall(VecDuplicate(c->row, &b));
+  PetscCall(VecDuplicate(c->row, &x));
+  for (PetscInt i = 0; i < rows->n; i++) {
+    s.l[i] = law[i].p0;
+    s.w[i] = law[i].q0;
+  }
+  PetscCall(ComplianceApply(c, rows, friction, s.l, s.w, y));
+  PetscCall(VecGetArray(b, &value));
+  for (PetscInt i = 0; i < rows->n; i++) value[i] = rhs[i] - y[i];
+  PetscCall(VecRestoreArray(b, &value));
+  PetscCall(ShellSolve(&s, b, x, outcome));
+  PetscCall(VecGetArray(x, &value));
+  PetscCall(PetscArraycpy(z, value, rows->n));
+  PetscCall(VecRestoreArray(x, &value));
+  PetscCall(VecDestroy(&b));
+  PetscCall(VecDestroy(&x));
+  PetscCall(PetscFree3(s.l, s.w, y));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SmallSolve(const Compliance *c, const Rows *rows, PetscReal friction, const LawRow law[],
+                          const PetscReal rhs[], PetscReal l[], PetscReal w[], SmallOutcome *outcome,
+                          PetscBool *reversed)
+{
+  PetscReal *z;
+
+  PetscFunctionBeginUser;
+  *reversed = PETSC_FALSE;
+  PetscCall(PetscMalloc1(rows->n, &z));
+  if (c->W)
+    PetscCall(DenseSolve(c, rows, friction, law, rhs, z, outcome, reversed));
+  else
+    PetscCall(KrylovSolve(c, rows, friction, law, rhs, z, outcome));
+  LawApply(rows, law, PETSC_TRUE, z, l, w);
+  PetscCall(PetscFree(z));
+  PetscFunctionReturn(0);
+}

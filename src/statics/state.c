@@ -1,0 +1,129 @@
+/*
+   What a solution says about the contact: states of the pairs, sums over each interface, and residuals, all from the
+   displacements as they are, not from the small system.
+*/
+#include "staticsimpl.h"
+
+/* States of all pairs from w = G u (m) and l (m) */
+static void StatesSet(const Rows *rows, PetscReal kappa, const CoulombStatus status[], const PetscReal l[],
+                      const PetscScalar w[], ContactState state[])
+{
+  static const ContactStatus names[] = {
+    [COULOMB_OPEN] = CONTACT_OPEN, [COULOMB_STICK] = CONTACT_STICK, [COULOMB_SLIP] = CONTACT_SLIP};
+
+  for (PetscInt p = 0; p < rows->n_pairs; p++) {
+    const PetscInt first = rows->first[p];
+    ContactState  *s     = &state[p];
+
+    *s             = (ContactState){.status = names[status[p]], .gap = rows->law[p].g0 - PetscRealPart(w[first])};
+    s->lambda_n    = kappa * l[first];
+    s->lambda_t[0] = rows->slide[p] * s->lambda_n;
+    for (PetscInt i = 1; i < rows->law[p].d; i++) {
+      s->lambda_t[i - 1] = -kappa * l[first + i];
+      s->slip[i - 1]     = -(PetscRealPart(w[first + i]) - rows->law[p].slip0[i - 1]);
+    }
+  }
+}
+
+/* Adds one pair to the sums of its interface */
+static void ResultantAdd(const ContactPair *pair, const ContactState *state, StaticsResultant *r)
+{
+  r->n[state->status]++;
+  r->normal += state->lambda_n;
+  for (int d = 0; d < 3; d++) {
+    r->force[d] += -state->lambda_n * pair->n[d] + state->lambda_t[0] * pair->t[d] + state->lambda_t[1] * pair->b[d];
+    r->centre[d] += state->lambda_n * pair->x[d];
+  }
+}
+
+static PetscErrorCode ResultantsSet(Statics s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(s->resultant, s->rows.n_interfaces));
+  for (PetscInt p = 0; p < s->rows.n_pairs; p++)
+    ResultantAdd(&s->rows.pair[p], &s->state[p], &s->resultant[s->rows.pair[p].interface]);
+  for (PetscInt i = 0; i < s->rows.n_interfaces; i++) {
+    StaticsResultant *r = &s->resultant[i];
+
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->n, CONTACT_N_STATUS, MPIU_INT, MPI_SUM, s->comm));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &r->normal, 1, MPIU_REAL, MPI_SUM, s->comm));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->force, 3, MPIU_REAL, MPI_SUM, s->comm));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->centre, 3, MPIU_REAL, MPI_SUM, s->comm));
+    for (int d = 0; d < 3 && r->normal != 0; d++) r->centre[d] /= r->normal;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StateForces(const Rows *rows, const ContactState state[], Vec b)
+{
+  PetscScalar *value;
+  Vec          row;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateVecs(rows->G, NULL, &row));
+  PetscCall(VecGetArray(row, &value));
+  for (PetscInt p = 0; p < rows->n_pairs; p++) {
+    value[rows->first[p]] = -state[p].lambda_n;
+    for (PetscInt i = 1; i < rows->law[p].d; i++) value[rows->first[p] + i] = state[p].lambda_t[i - 1];
+  }
+  PetscCall(VecRestoreArray(row, &value));
+  PetscCall(MatMultTransposeAdd(rows->G, row, b, b));
+  if (rows->S) {
+    PetscCall(VecSet(row, 0));
+    PetscCall(VecGetArray(row, &value));
+    for (PetscInt p = 0; p < rows->n_pairs; p++)
+      if (rows->law[p].d == 1) value[rows->first[p]] = state[p].lambda_t[0];
+    PetscCall(VecRestoreArray(row, &value));
+    PetscCall(MatMultTransposeAdd(rows->S, row, b, b));
+  }
+  PetscCall(VecDestroy(&row));
+  PetscFunctionReturn(0);
+}
+
+/* |f + contact forces - K u| over the load */
+static PetscErrorCode EquilibriumMeasure(Statics s, Vec f)
+{
+  PetscReal norm, load;
+  Vec       r;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(f, &r));
+  PetscCall(OperatorsApplyBodies(s->operators, s->u, r));
+  PetscCall(VecAYPX(r, -1, f));
+  PetscCall(StateForces(&s->rows, s->state, r));
+  PetscCall(VecNorm(r, NORM_2, &norm));
+  PetscCall(VecNorm(f, NORM_2, &load));
+  s->equilibrium = load > 0 ? norm / load : norm;
+  PetscCall(VecDestroy(&r));
+  PetscFunctionReturn(0);
+}
+
+/* Residuals of the contact laws */
+static PetscErrorCode KKTMeasure(Statics s)
+{
+  PetscReal *mu, *kn;
+  Contact    contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
+  PetscCall(PetscMalloc2(s->rows.n_interfaces, &mu, s->rows.n_interfaces, &kn));
+  for (PetscInt i = 0; i < s->rows.n_interfaces; i++) PetscCall(OperatorsGetInterface(s->operators, i, &mu[i], &kn[i]));
+  PetscCall(ContactComputeKKT(contact, s->state, mu, kn, &s->kkt));
+  PetscCall(PetscFree2(mu, kn));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StateSet(Statics s, const Compliance *c, Vec f, const PetscReal l[])
+{
+  const PetscScalar *w;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatMult(s->rows.G, s->u, c->row));
+  PetscCall(VecGetArrayRead(c->row, &w));
+  StatesSet(&s->rows, c->kappa, s->status, l, w, s->state);
+  PetscCall(VecRestoreArrayRead(c->row, &w));
+  PetscCall(ResultantsSet(s));
+  PetscCall(EquilibriumMeasure(s, f));
+  PetscCall(KKTMeasure(s));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,161 @@
+/*
+   Statics: life cycle, options, and the flow loads -> compliance -> pairs -> states.
+*/
+#include "staticsimpl.h"
+
+PetscErrorCode StaticsCreate(MPI_Comm comm, Statics *statics)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, statics));
+  (*statics)->comm           = comm;
+  (*statics)->max_it         = 50;
+  (*statics)->load_steps     = 1;
+  (*statics)->dense          = 2000;
+  (*statics)->identify_steps = 10;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsSetOperators(Statics statics, Operators operators)
+{
+  PetscFunctionBeginUser;
+  statics->operators = operators;
+  PetscFunctionReturn(0);
+}
+
+/* An option that is a count of at least `least` */
+static PetscErrorCode CountCheck(Statics s, const char option[], PetscInt value, PetscInt least)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(value >= least, s->comm, PETSC_ERR_USER_INPUT, "%s %" PetscInt_FMT " must be at least %" PetscInt_FMT,
+             option, value, least);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsSetFromOptions(Statics s)
+{
+  PetscFunctionBeginUser;
+  PetscOptionsBegin(s->comm, NULL, "Statics", NULL);
+  PetscCall(PetscOptionsInt("-static_max_it", "most iterations of the active set at one load", "statics.h", s->max_it,
+                            &s->max_it, NULL));
+  PetscCall(PetscOptionsInt("-static_load_steps", "equal steps of the loads (matter for sticking pairs)", "statics.h",
+                            s->load_steps, &s->load_steps, NULL));
+  PetscCall(PetscOptionsInt("-static_dense", "most rows of the contact problem for a dense one, beyond: GMRES",
+                            "statics.h", s->dense, &s->dense, NULL));
+  PetscCall(PetscOptionsInt("-static_rows", "for modes: rows of pairs more (> 0) or less (< 0) than are closed",
+                            "statics.h", s->rows_more, &s->rows_more, NULL));
+  PetscCall(PetscOptionsBool("-static_geometric", "for modes: geometric stiffness of the preload", "statics.h",
+                             s->geometric, &s->geometric, NULL));
+  PetscCall(PetscOptionsBool("-static_follower", "for modes: contact forces turn with the master surface", "statics.h",
+                             s->follower, &s->follower, NULL));
+  PetscCall(PetscOptionsInt("-static_identify_steps", "steps of the force ramp of -contact_kn identify", "statics.h",
+                            s->identify_steps, &s->identify_steps, NULL));
+  PetscCall(PetscOptionsBool("-static_view_kkt", "print the residuals of the contact laws", "statics.h", s->view_kkt,
+                             &s->view_kkt, NULL));
+  PetscOptionsEnd();
+  PetscCall(CountCheck(s, "-static_max_it", s->max_it, 1));
+  PetscCall(CountCheck(s, "-static_load_steps", s->load_steps, 1));
+  PetscCall(CountCheck(s, "-static_dense", s->dense, 0));
+  PetscCall(CountCheck(s, "-static_identify_steps", s->identify_steps, 2));
+  PetscCall(ProgressSetFromOptions(s->comm, &s->progress));
+  PetscFunctionReturn(0);
+}
+
+/* Pairs, rows and room for the results; all pairs closed */
+PetscErrorCode StaticsSetUp(Statics s)
+{
+  const OperatorsParameter *parameters;
+  Model                     model;
+  PetscInt                  n_pairs;
+
+  PetscFunctionBeginUser;
+  if (s->rows.G) PetscFunctionReturn(0);
+  PetscCall(OperatorsGetModel(s->operators, &model, NULL));
+  PetscCheck(model, s->comm, PETSC_ERR_USER_INPUT,
+             "-analysis static and -modes_contact static need a mesh and contact, "
+             "not loaded matrices");
+  PetscCall(RowsCreate(s->operators, &s->rows));
+  PetscCallMPI(MPI_Allreduce(&s->rows.n_pairs, &n_pairs, 1, MPIU_INT, MPI_SUM, s->comm));
+  PetscCheck(n_pairs, s->comm, PETSC_ERR_USER_INPUT, "-analysis static and -modes_contact static need -contacts");
+  PetscCall(OperatorsGetParameters(s->operators, &s->n_parameters, &parameters));
+  PetscCall(PetscMalloc3(s->rows.n_pairs, &s->status, s->rows.n_pairs, &s->state, s->rows.n_interfaces, &s->resultant));
+  for (PetscInt p = 0; p < s->rows.n_pairs; p++) s->status[p] = s->rows.law[p].d == 3 ? COULOMB_STICK : COULOMB_SLIP;
+  PetscCall(OperatorsCreateVec(s->operators, &s->u));
+  PetscFunctionReturn(0);
+}
+
+/* Nothing moves without loads, unless bodies interfere */
+static PetscErrorCode LoadCheck(Statics s, PetscReal size)
+{
+  PetscReal least = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < s->rows.n_pairs; p++) least = PetscMin(least, s->rows.law[p].g0);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPI_MIN, s->comm));
+  PetscCheck(size > 0 || least < 0, s->comm, PETSC_ERR_USER_INPUT,
+             "nothing presses the bodies together: give -loads, e.g. -loads press -press_set beam_top -press_force "
+             "0,0,-100");
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsSolve(Statics s)
+{
+  Compliance compliance = {.kappa = 0};
+  PetscReal *l, size;
+  Vec        f;
+
+  PetscFunctionBeginUser;
+  PetscCall(StaticsSetUp(s));
+  PetscCall(LoadCreate(s->operators, &f, &size));
+  PetscCall(LoadCheck(s, size));
+  PetscCall(PetscCalloc1(s->rows.n, &l));
+  PetscCall(ComplianceCreate(s->operators, &s->rows, s->dense, &s->progress, &compliance));
+  PetscCall(RowsSetLaws(s->operators, compliance.kappa, &s->rows));
+  PetscCall(HoldCheck(s->operators, &compliance.hold, "the loads", f, size));
+  PetscCall(EquilibriumSolve(s, &s->rows, &compliance, f, size, s->load_steps, s->status, l, s->u));
+  s->load   = size;
+  s->n_free = compliance.hold.n;
+  PetscCall(StateSet(s, &compliance, f, l));
+  s->solved = PETSC_TRUE;
+  PetscCall(ComplianceDestroy(&compliance));
+  PetscCall(PetscFree(l));
+  PetscCall(VecDestroy(&f));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsGetState(Statics statics, const ContactState **state, Vec *u)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(statics->solved, statics->comm, PETSC_ERR_ARG_WRONGSTATE, "StaticsSolve() comes first");
+  if (state) *state = statics->state;
+  if (u) *u = statics->u;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsGetKKT(Statics statics, ContactKKT *kkt, PetscReal *equilibrium)
+{
+  PetscFunctionBeginUser;
+  *kkt         = statics->kkt;
+  *equilibrium = statics->equilibrium;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsGetResultant(Statics statics, PetscInt interface, StaticsResultant *resultant)
+{
+  PetscFunctionBeginUser;
+  *resultant = statics->resultant[interface];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsDestroy(Statics *statics)
+{
+  Statics s = *statics;
+
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(0);
+  PetscCall(RowsDestroy(&s->rows));
+  PetscCall(PetscFree3(s->status, s->state, s->resultant));
+  PetscCall(PetscFree(s->linearised));
+  PetscCall(VecDestroy(&s->u));
+  PetscCall(PetscFree(*statics));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,151 @@
+/* Private to statics/: the contact problem, its small system, and the record of the solver */
+#pragma once
+
+#include <squeal/statics.h>
+#include "kernels/coulomb.h"
+#include "modes/shiftinvert.h"
+
+/* Rows of the contact problem: the normal one of a pair that slides or has no friction, else normal, t and b */
+typedef struct {
+  MPI_Comm           comm;
+  PetscInt           n_pairs, n_interfaces;
+  const ContactPair *pair;
+  CoulombPair       *law;   /* [n_pairs] mu, k, gap and rows of each pair; mu is 0 in the law of a sliding pair */
+  PetscReal         *slide; /* [n_pairs] friction coefficient of a sliding pair, else 0 */
+  PetscInt           n, n_all, begin; /* rows of this rank, of all, first of this rank */
+  PetscInt          *first;           /* [n_pairs + 1] first row of each pair, counted on this rank */
+  Mat                G;               /* [rows][unknowns] n, t, b */
+  Mat                S;               /* t in the rows of sliding pairs, else empty; NULL where nothing slides */
+} Rows;
+
+/* Rigid motions that nothing resists, r_i' M r_j = delta_ij, and the unknowns at which they are held */
+typedef struct {
+  PetscInt  n;
+  Vec      *r, *mr;
+  PetscInt *pin;
+  PetscReal stiffness; /* of a pin, N/m */
+} Hold;
+
+/* The factorisation of K_a = K + kappa G'G + pins, and W = kappa G K_a^-1 G', V = kappa G K_a^-1 S', by columns, on
+   every rank; NULL where they would be too large */
+typedef struct {
+  Mat         K;     /* of the bodies (borrowed) */
+  PetscReal   kappa; /* N/m */
+  Hold        hold;
+  ShiftInvert inverse;
+  PetscReal  *W, *V;
+  Vec         u, b; /* work: all unknowns */
+  Vec         row;  /* work: rows */
+} Compliance;
+
+/* What the laws of the pairs ask of the small system: row i has l_i = sum_k P[k] z_(first + k) + p0, w_i alike */
+typedef struct {
+  PetscInt  first, d; /* rows of the pair, counted over all ranks */
+  PetscReal P[3], Q[3], p0, q0, slide;
+} LawRow;
+
+typedef enum { SMALL_GOOD, SMALL_SINGULAR } SmallOutcome;
+
+typedef enum { ACTIVE_CONVERGED, ACTIVE_SINGULAR, ACTIVE_CYCLES, ACTIVE_SLOW, ACTIVE_JAMMED } ActiveOutcome;
+
+/* The contact problem at one load, and its iterate; forces divided by kappa, m */
+typedef struct {
+  Operators         operators;
+  const Rows       *rows;
+  const Compliance *compliance;
+  PetscInt          max_it, n_it;
+  PetscReal         friction; /* factor of all friction coefficients, 0 .. 1 */
+  PetscReal         scale;    /* m, of the contact displacements; what is below 1e-13 of it is rounding */
+  CoulombStatus    *status;   /* [n_pairs] */
+  PetscReal        *free;     /* [rows] w without contact forces, kappa-held: G K_a^-1 f */
+  PetscReal        *l, *w;    /* [rows] */
+  PetscReal        *zero;     /* [rows] */
+  PetscBool         reversed; /* the system of the last iteration has a determinant of the wrong sign */
+} Active;
+
+struct _p_Statics {
+  MPI_Comm  comm;
+  Operators operators;
+  Progress  progress;
+  /* set by options */
+  PetscInt  max_it, load_steps, dense, rows_more, identify_steps;
+  PetscBool geometric, follower, view_kkt;
+  /* the contact problem */
+  Rows rows;
+  /* the solution */
+  PetscBool         solved;
+  PetscInt          n_parameters, n_it;
+  PetscReal        *linearised; /* [n_parameters] those of the last StaticsLinearise(); NULL before */
+  CoulombStatus    *status;
+  ContactState     *state;
+  Vec               u;
+  ContactKKT        kkt;
+  PetscReal         equilibrium, load; /* relative residual; |f|, N */
+  PetscInt          n_free;            /* rigid motions held by pins */
+  StaticsResultant *resultant;         /* [interfaces] */
+};
+
+/* statics.c - pairs, rows and room for results, once */
+PETSC_INTERN PetscErrorCode StaticsSetUp(Statics statics);
+
+/* rows.c - pairs and rows; the present friction coefficients and stiffnesses of the interfaces */
+PETSC_INTERN PetscErrorCode RowsCreate(Operators operators, Rows *rows);
+PETSC_INTERN PetscErrorCode RowsSetLaws(Operators operators, PetscReal kappa, Rows *rows);
+PETSC_INTERN PetscErrorCode RowsDestroy(Rows *rows);
+
+/* rigid.c - the motions without energy in A (K + kappa G'G), r and mr only */
+PETSC_INTERN PetscErrorCode FreeMotionsCreate(Operators operators, Mat A, Hold *hold);
+
+/* hold.c - the free motions of A, held by pins that are added to A; errors for a load (or
+   any force on the bodies) along one of them; u without them */
+PETSC_INTERN PetscErrorCode HoldCreate(Operators operators, Mat A, Hold *hold);
+PETSC_INTERN PetscErrorCode HoldCheck(Operators operators, const Hold *hold, const char force[], Vec f, PetscReal size);
+/* Error where A, of the closed pairs only, has more free motions */
+PETSC_INTERN PetscErrorCode HoldCheckClosed(Operators operators, const Hold *hold, Mat A, PetscInt n_closed);
+PETSC_INTERN PetscErrorCode HoldProject(const Hold *hold, Vec u);
+PETSC_INTERN PetscErrorCode HoldDestroy(Hold *hold);
+
+/* compliance.c - factors, and forms W and V for up to max_rows rows; y = kappa G K_a^-1 (G'(l - w) - S' (slide l)) + w
+   for rows l, w, y; u = K_a^-1 (f - kappa (G'(l - w) - S' (slide l))), f may be NULL */
+PETSC_INTERN PetscErrorCode ComplianceCreate(Operators operators, const Rows *rows, PetscInt max_rows,
+                                             Progress *progress, Compliance *c);
+PETSC_INTERN PetscErrorCode ComplianceApply(const Compliance *c, const Rows *rows, PetscReal friction,
+                                            const PetscReal l[], const PetscReal w[], PetscReal y[]);
+PETSC_INTERN PetscErrorCode ComplianceSolve(const Compliance *c, const Rows *rows, PetscReal friction, Vec f,
+                                            const PetscReal l[], const PetscReal w[], Vec u);
+/* K + kappa G'G of all rows, or of some: those that resist at the status [pairs] */
+PETSC_INTERN PetscErrorCode ComplianceAugment(Mat K, const Rows *rows, PetscReal kappa, PetscBool some,
+                                              const CoulombStatus status[], Mat *A);
+PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *c);
+
+/* small.c - z of w + W_mu l - W w = rhs with the laws [rows]; l and w of it. reversed = whether the determinant is
+   negative */
+PETSC_INTERN PetscErrorCode SmallSolve(const Compliance *c, const Rows *rows, PetscReal friction, const LawRow law[],
+                                       const PetscReal rhs[], PetscReal l[], PetscReal w[], SmallOutcome *outcome,
+                                       PetscBool *reversed);
+
+/* activeset.c - status, l and w that obey all laws, from the status given; friction is raised in steps if need be.
+   outcome and active->friction tell where it ended. */
+PETSC_INTERN PetscErrorCode ActiveSolve(Active *active, ActiveOutcome *outcome);
+/* One correction of l and w at the status reached, for a residual rhs [rows] of the small system */
+PETSC_INTERN PetscErrorCode ActiveCorrect(Active *active, const PetscReal rhs[]);
+
+/* equilibrium.c - the whole solution for forces f of a size (N): status, l (m), u */
+PETSC_INTERN PetscErrorCode EquilibriumSolve(Statics statics, Rows *rows, const Compliance *compliance, Vec f,
+                                             PetscReal size, PetscInt load_steps, CoulombStatus status[], PetscReal l[],
+                                             Vec u);
+
+/* state.c - states, resultants and residuals of a solution */
+PETSC_INTERN PetscErrorCode StateSet(Statics statics, const Compliance *compliance, Vec f, const PetscReal l[]);
+/* b += forces of the contact on the unknowns, -N' lambda_n + T' lambda_t + B' lambda_b, N */
+PETSC_INTERN PetscErrorCode StateForces(const Rows *rows, const ContactState state[], Vec b);
+
+/* load.c - f of the loads, unknowns only, and its size by all of them, N */
+PETSC_INTERN PetscErrorCode LoadCreate(Operators operators, Vec *f, PetscReal *size);
+
+/* reaction.c - reactions.csv; u at all local vertices, zero where held */
+PETSC_INTERN PetscErrorCode ReactionsWrite(Statics statics, Results results);
+PETSC_INTERN PetscErrorCode DisplacementsCreate(Statics statics, Model model, Vec *local);
+
+/* field.c - static.h5 and static.xmf */
+PETSC_INTERN PetscErrorCode FieldsWrite(Statics statics, Results results);

@@ -1,0 +1,42 @@
+/*
+   The sliding state in words.
+*/
+#include "staticsimpl.h"
+
+/* One interface: pairs, forces, and where the normal force acts */
+static PetscErrorCode InterfaceView(const ContactInterface *c, const StaticsResultant *r, PetscViewer viewer)
+{
+  const PetscInt  open = r->n[CONTACT_OPEN], stick = r->n[CONTACT_STICK], slip = r->n[CONTACT_SLIP];
+  const PetscReal tangential = PetscSqrtReal(
+    PetscMax(0, PetscSqr(r->force[0]) + PetscSqr(r->force[1]) + PetscSqr(r->force[2]) - PetscSqr(r->normal)));
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %" PetscInt_FMT " of %" PetscInt_FMT " pairs closed", c->name,
+                                   stick + slip, open + stick + slip));
+  if (!c->slides && c->mu != 0)
+    PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " stick and %" PetscInt_FMT " slip", stick, slip));
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer, "; normal force %.9g N, friction %.6g N; centre of force %.6g, %.6g, %.6g m\n", (double)r->normal,
+    (double)tangential, (double)r->centre[0], (double)r->centre[1], (double)r->centre[2]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsView(Statics s, PetscViewer viewer)
+{
+  const ContactInterface *interfaces;
+  PetscInt                n;
+  Contact                 contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
+  PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
+  for (PetscInt i = 0; i < n; i++) PetscCall(InterfaceView(&interfaces[i], &s->resultant[i], viewer));
+  if (s->n_free)
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "%" PetscInt_FMT " rigid motion%s that nothing resists or loads %s left out\n",
+                                     s->n_free, s->n_free > 1 ? "s" : "", s->n_free > 1 ? "are" : "is"));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "equilibrium to %.2g of the load after %" PetscInt_FMT " iteration%s\n",
+                                   (double)s->equilibrium, s->n_it, s->n_it == 1 ? "" : "s"));
+  if (s->view_kkt) PetscCall(ContactViewKKT(&s->kkt, viewer));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,94 @@
+/*
+   Tables and fields. static.csv has one row a pair, ordered by interface and position, so that it does not depend on
+   the ranks.
+*/
+#include "staticsimpl.h"
+#include <stdlib.h>
+
+/* One row of the table */
+typedef struct {
+  PetscInt     interface;
+  PetscReal    x[3], t[3], area;
+  ContactState state;
+} Record;
+
+/* By interface, then by z, y, x of the slave */
+static int RecordCompare(const void *one, const void *other)
+{
+  const Record *a = one, *b = other;
+
+  if (a->interface != b->interface) return a->interface < b->interface ? -1 : 1;
+  for (int d = 2; d >= 0; d--)
+    if (a->x[d] != b->x[d]) return a->x[d] < b->x[d] ? -1 : 1;
+  return 0;
+}
+
+/* Records of all ranks on the first one, in order; n = 0 on the others */
+static PetscErrorCode RecordsGather(Statics s, PetscInt *n, Record **all)
+{
+  const Rows *rows = &s->rows;
+  PetscMPIInt size, bytes, *count, *start;
+  Record     *local;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(s->comm, &size));
+  PetscCall(PetscMalloc3(size, &count, size + 1, &start, rows->n_pairs, &local));
+  for (PetscInt p = 0; p < rows->n_pairs; p++) {
+    local[p] = (Record){.interface = rows->pair[p].interface, .area = rows->pair[p].area, .state = s->state[p]};
+    PetscCall(PetscArraycpy(local[p].x, rows->pair[p].x, 3));
+    PetscCall(PetscArraycpy(local[p].t, rows->pair[p].t, 3));
+  }
+  PetscCall(PetscMPIIntCast(rows->n_pairs * (PetscInt)sizeof(Record), &bytes));
+  PetscCallMPI(MPI_Allgather(&bytes, 1, MPI_INT, count, 1, MPI_INT, s->comm));
+  start[0] = 0;
+  for (PetscMPIInt r = 0; r < size; r++) start[r + 1] = start[r] + count[r];
+  *n = start[size] / (PetscInt)sizeof(Record);
+  PetscCall(PetscMalloc1(*n, all));
+  PetscCallMPI(MPI_Allgatherv(local, bytes, MPI_BYTE, *all, count, start, MPI_BYTE, s->comm));
+  qsort(*all, (size_t)*n, sizeof(Record), RecordCompare);
+  PetscCall(PetscFree3(count, start, local));
+  PetscFunctionReturn(0);
+}
+
+/* static.csv */
+static PetscErrorCode PairsWrite(Statics s, Results results)
+{
+  const ContactInterface *interfaces;
+  ResultsTable            table;
+  PetscInt                n, n_interfaces;
+  Contact                 contact;
+  Record                 *record;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
+  PetscCall(ContactGetInterfaces(contact, &n_interfaces, &interfaces));
+  PetscCall(RecordsGather(s, &n, &record));
+  PetscCall(ResultsTableOpen(results, "static",
+                             "pair,x_m,y_m,z_m,gap_m,lambda_n_n,lambda_t_n,status,interface,lambda_b_n,area_m2,"
+                             "pressure_pa,slip_t_m,slip_b_m,t_x,t_y,t_z",
+                             &table));
+  for (PetscInt i = 0; i < n; i++) {
+    const Record       *r = &record[i];
+    const ContactState *q = &r->state;
+
+    PetscCall(ResultsTableRow(
+      table,
+      "%" PetscInt_FMT ",%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g",
+      i + 1, (double)r->x[0], (double)r->x[1], (double)r->x[2], (double)q->gap, (double)q->lambda_n,
+      (double)q->lambda_t[0], ContactStatusNames[q->status], interfaces[r->interface].name, (double)q->lambda_t[1],
+      (double)r->area, (double)(q->lambda_n / r->area), (double)q->slip[0], (double)q->slip[1], (double)r->t[0],
+      (double)r->t[1], (double)r->t[2]));
+  }
+  PetscCall(ResultsTableClose(&table));
+  PetscCall(PetscFree(record));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsWrite(Statics s, Results results)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PairsWrite(s, results));
+  PetscCall(ReactionsWrite(s, results));
+  PetscCall(FieldsWrite(s, results));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,67 @@
+/*
+   Segments: parts of a line within which the contact status is one and the same. Branches are followed inside a
+   segment; at a jump the vectors on both sides are matched, and a branch whose partner is doubtful ends there.
+*/
+#include "line.h"
+
+PetscErrorCode BranchesRename(Sweep sweep, PetscInt first_new, PetscInt rename[], PetscInt k, PetscInt last,
+                              PetscInt first_event, Points *points)
+{
+  const PetscInt n_new = sweep->n_branches - first_new;
+  PetscInt       next  = first_new;
+
+  PetscFunctionBeginUser;
+  for (PetscInt b = 0; b < n_new; b++)
+    if (rename[b] < 0) rename[b] = next++;
+  for (; k < last; k++)
+    for (PetscInt i = 0; i < points->modes[k].n; i++)
+      if (points->branch[k][i] >= first_new) points->branch[k][i] = rename[points->branch[k][i] - first_new];
+  for (PetscInt e = first_event; e < sweep->events.n; e++)
+    for (int i = 0; i < 2; i++) {
+      PetscInt *branch = &sweep->events.event[e].branch[i];
+
+      if (*branch >= first_new) *branch = rename[*branch - first_new];
+    }
+  sweep->n_branches = next;
+  PetscFunctionReturn(0);
+}
+
+/* Links the segment k to last - 1, whose branches are those from first_new on, to the place before it */
+static PetscErrorCode SegmentLink(Sweep sweep, PetscInt first_new, PetscInt k, PetscInt last, PetscInt first_event,
+                                  Points *points)
+{
+  const PetscInt n = points->modes[k].n, n_new = sweep->n_branches - first_new;
+  PetscInt      *own, *rename;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &own, n_new, &rename));
+  PetscCall(PetscArraycpy(own, points->branch[k], n));
+  PetscCall(TrackJump(&sweep->basis.reduced, &points->p[k * sweep->grid.n_parameters], points->value[k - 1],
+                      &points->modes[k - 1], points->branch[k - 1], points->value[k], &points->modes[k],
+                      points->branch[k], &sweep->events));
+  for (PetscInt b = 0; b < n_new; b++) rename[b] = -1;
+  for (PetscInt i = 0; i < n; i++)
+    if (points->branch[k][i] < first_new) rename[own[i] - first_new] = points->branch[k][i];
+  PetscCall(BranchesRename(sweep, first_new, rename, k, last, first_event, points));
+  PetscCall(PetscFree2(own, rename));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SegmentsTrack(Sweep sweep, Points *points)
+{
+  const Place *place = &sweep->grid.place[points->first];
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0, last; k < points->n; k = last) {
+    const PetscInt first_new = sweep->n_branches, first_event = sweep->events.n;
+    Line           line = {sweep->grid.parameter[0], 0, &points->value[k], &points->p[k * sweep->grid.n_parameters]};
+
+    for (last = k + 1; last < points->n && place[last].status == place[k].status;) last++;
+    line.n = last - k;
+    PetscCall(TrackLine(&sweep->basis.reduced, &sweep->window, &line, &points->modes[k], &points->branch[k],
+                        &sweep->n_branches, &sweep->events));
+    if (k) PetscCall(SegmentLink(sweep, first_new, k, last, first_event, points));
+    for (PetscInt e = first_event; e < sweep->events.n; e++) sweep->events.event[e].place = points->first + k;
+  }
+  PetscFunctionReturn(0);
+}

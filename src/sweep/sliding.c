@@ -1,0 +1,207 @@
+/*
+   -modes_contact static: the contact status at every place of the sweep is that of the sliding state at the same values
+   of the parameters. All statuses are known before the reduced model is made. Pairs that are open at some places and
+   closed at others become groups with the parameters closed_g = 0 or 1, so that their stiffness, too, is an affine term
+   of the pencil: one basis then serves all statuses.
+
+   A change of status between two points is bracketed by bisection, the widest bracket first, and the ends of the
+   bracket become places of the sweep themselves. A further status found on the way becomes a segment of its own.
+*/
+#include "sweepimpl.h"
+
+#define MAX_BISECTIONS 30   /* of a sweep */
+#define NARROW         1e-4 /* relative width of a bracket that is not divided any more */
+
+PetscErrorCode SweepStatusTake(Sweep sweep, PetscInt *status)
+{
+  PetscBool *closed;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(sweep->statuses.n_local, &closed));
+  PetscCall(StaticsGetClosed(sweep->statics, closed));
+  PetscCall(StatusListAdd(&sweep->statuses, closed, status));
+  PetscCall(PetscFree(closed));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepStatusSolve(Sweep sweep, const Place *place, PetscInt *status)
+{
+  PetscReal *p;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
+  GridFill(&sweep->grid, place, p);
+  PetscCall(OperatorsSetParameters(sweep->operators, p));
+  PetscCall(StaticsSolve(sweep->statics));
+  PetscCall(SweepStatusTake(sweep, status));
+  sweep->n_static++;
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
+}
+
+/* Whether the contact status changes between places k and k + 1 of one line; width = their relative distance */
+static PetscBool PlaceChanges(const Grid *grid, PetscInt k, PetscReal *width)
+{
+  const Place *a = &grid->place[k], *b = a + 1;
+
+  if (a->line != b->line || a->status == b->status) return PETSC_FALSE;
+  *width = PetscAbsReal(b->value[0] - a->value[0]) / PetscMax(PetscAbsReal(a->value[0]), PetscAbsReal(b->value[0]));
+  return PETSC_TRUE;
+}
+
+/* The widest bracket of a change of status that is to be divided, or -1 */
+static PetscInt WidestChange(const Grid *grid)
+{
+  PetscReal width, widest = NARROW;
+  PetscInt  at = -1;
+
+  for (PetscInt k = 0; k + 1 < grid->n_places; k++)
+    if (PlaceChanges(grid, k, &width) && width > widest) widest = width, at = k;
+  return at;
+}
+
+/* Narrows the brackets */
+static PetscErrorCode ChangesBracket(Sweep sweep)
+{
+  Grid *grid = &sweep->grid;
+
+  PetscFunctionBeginUser;
+  for (PetscInt n = 0, k = WidestChange(grid); n < MAX_BISECTIONS && k >= 0; n++, k = WidestChange(grid)) {
+    Place middle = grid->place[k];
+
+    middle.point    = -1;
+    middle.value[0] = GridMiddle(grid, 0, middle.value[0], grid->place[k + 1].value[0]);
+    PetscCall(SweepStatusSolve(sweep, &middle, &middle.status));
+    PetscCall(GridInsert(grid, k + 1, &middle));
+  }
+  for (PetscInt k = grid->n_places - 2; k > 0; k--) { /* only the ends of the brackets are of use */
+    const Place *place = &grid->place[k];
+
+    if (place->point < 0 && place[-1].status == place->status && place[1].status == place->status) GridRemove(grid, k);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The scene's own values, about which robustness is asked for: what is swept has its own value there, too */
+static PetscErrorCode BaseSolve(Sweep sweep)
+{
+  Place base = {.point = -1};
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < sweep->grid.n_axes; k++) base.value[k] = sweep->grid.base[sweep->grid.parameter[k]];
+  PetscCall(SweepStatusSolve(sweep, &base, &sweep->base_status));
+  PetscFunctionReturn(0);
+}
+
+PetscBool SweepClosedRange(Sweep sweep, PetscInt *least, PetscInt *most)
+{
+  const Grid     *grid     = &sweep->grid;
+  const PetscInt *n_closed = sweep->statuses.n_closed;
+  PetscBool       changes  = PETSC_FALSE;
+
+  *least = *most = n_closed[grid->place[0].status];
+  for (PetscInt k = 1; k < grid->n_places; k++) {
+    *least = PetscMin(*least, n_closed[grid->place[k].status]);
+    *most  = PetscMax(*most, n_closed[grid->place[k].status]);
+    if (grid->place[k].status != grid->place[0].status) changes = PETSC_TRUE;
+  }
+  return changes;
+}
+
+/* Groups with the exact constraint are no affine terms */
+static PetscErrorCode GroupsCheck(Sweep sweep, const PetscInt group[])
+{
+  const PetscReal          *value = sweep->grid.value[0];
+  const OperatorsParameter *parameters;
+  const ContactPair        *pair;
+  Contact                   contact;
+  PetscInt                  n, n_all, least, most;
+  PetscBool                 exact = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(sweep->operators, NULL, &contact));
+  PetscCall(ContactGetPairs(contact, &n, &n_all, &pair));
+  for (PetscInt p = 0; p < n; p++) {
+    PetscReal mu, kn;
+
+    PetscCall(OperatorsGetInterface(sweep->operators, pair[p].interface, &mu, &kn));
+    if (group[p] > 0 && PetscIsInfReal(kn)) exact = PETSC_TRUE;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &exact, 1, MPIU_BOOL, MPI_LOR, sweep->comm));
+  (void)SweepClosedRange(sweep, &least, &most);
+  PetscCall(OperatorsGetParameters(sweep->operators, &n, &parameters));
+  PetscCheck(!exact, sweep->comm, PETSC_ERR_SUP,
+             "-modes_contact static with -contact_law constraint: which pairs are closed changes between %s %.6g and "
+             "%.6g (%" PetscInt_FMT " to %" PetscInt_FMT " of %" PetscInt_FMT
+             "); give -contact_law penalty or -sweep_method full",
+             parameters[sweep->grid.parameter[0]].name, (double)value[0], (double)value[sweep->grid.n[0] - 1], least,
+             most, n_all);
+  PetscFunctionReturn(0);
+}
+
+/* Gives the operators the groups, and the grid the values of their parameters */
+static PetscErrorCode GroupsSet(Sweep sweep)
+{
+  const OperatorsParameter *parameters;
+  Grid                     *grid = &sweep->grid;
+  PetscInt                 *group;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(sweep->statuses.n_local, &group));
+  PetscCall(StatusListGroup(&sweep->statuses, group, &grid->n_groups, &grid->closed));
+  if (grid->n_groups) PetscCall(GroupsCheck(sweep, group));
+  PetscCall(OperatorsSetClosed(sweep->operators, grid->n_groups, group));
+  PetscCall(PetscFree(group));
+  PetscCall(OperatorsGetParameters(sweep->operators, &grid->n_parameters, &parameters));
+  PetscCall(PetscRealloc((size_t)grid->n_parameters * sizeof(*grid->base), &grid->base));
+  for (PetscInt g = 0; g < grid->n_groups; g++)
+    grid->base[grid->n_parameters - grid->n_groups + g] = grid->closed[sweep->base_status * grid->n_groups + g];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepStatuses(Sweep sweep)
+{
+  const ContactPair *pair;
+  Grid              *grid = &sweep->grid;
+  Contact            contact;
+  PetscInt           n, n_all;
+  PetscBool          affine;
+
+  PetscFunctionBeginUser;
+  if (!sweep->statics) PetscFunctionReturn(0);
+  PetscCall(OperatorsGetModel(sweep->operators, NULL, &contact));
+  PetscCall(ContactGetPairs(contact, &n, &n_all, &pair));
+  PetscCall(StatusListCreate(sweep->comm, n, &sweep->statuses));
+  if (sweep->method == SWEEP_FULL) PetscFunctionReturn(0);
+  PetscCall(StaticsIsAffine(sweep->statics, &affine));
+  PetscCheck(affine, sweep->comm, PETSC_ERR_SUP,
+             "-modes_contact static: friction damping, -static_geometric and -static_follower change with the sliding "
+             "state from point to point; give -sweep_method full");
+  for (PetscInt k = 0; k < grid->n_places; k++)
+    PetscCall(SweepStatusSolve(sweep, &grid->place[k], &grid->place[k].status));
+  PetscCall(ChangesBracket(sweep));
+  for (PetscInt i = 0; i < sweep->n_checks; i++)
+    PetscCall(SweepStatusSolve(sweep, &sweep->check[i].at, &sweep->check[i].at.status));
+  if (sweep->uncertain[0]) PetscCall(BaseSolve(sweep));
+  PetscCall(GroupsSet(sweep));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepClosedAt(Sweep sweep, PetscInt point, PetscInt *n_closed, PetscBool *jump)
+{
+  const Grid        *grid  = &sweep->grid;
+  const Place       *place = &grid->place[grid->at[point]];
+  const ContactPair *pair;
+  Contact            contact;
+  PetscInt           n;
+
+  PetscFunctionBeginUser;
+  *n_closed = -1;
+  *jump     = PETSC_FALSE;
+  PetscCall(OperatorsGetModel(sweep->operators, NULL, &contact));
+  if (contact) PetscCall(ContactGetPairs(contact, &n, n_closed, &pair));
+  if (!sweep->statics) PetscFunctionReturn(0);
+  *n_closed = sweep->statuses.n_closed[place->status];
+  if (point % grid->n[0]) *jump = (PetscBool)(grid->place[grid->at[point - 1]].status != place->status);
+  PetscFunctionReturn(0);
+}
