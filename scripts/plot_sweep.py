@@ -26,7 +26,7 @@ from sweep_lines import draw_lines
 from sweep_map import draw_map
 
 SWEEP = {"value": float, "branch": int, "freq_hz": float, "growth_rad_s": float, "unstable": flag, "label": str,
-         "value_2": optional, "class": str, "error_hz": optional}
+         "value_2": optional, "class": str, "error_hz": optional, "jump": flag}
 ONSETS = {"critical_value": float, "freq_hz": float, "kind": str, "label": str, "branch": int, "partner": optional,
           "confirmed": flag, "value_2": optional}
 PARAMETERS = {"parameter": str, "value": float, "unit": str, "swept": int}

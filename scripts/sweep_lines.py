@@ -16,7 +16,7 @@ PALETTE = [BLUE, ORANGE, GREEN, PURPLE, SKY]
 QUIET, LEADER, INK = "#C4C4C4", "#9A9A9A", "#222222"
 WIDTH, HEIGHTS = 12, {"frequency": 5.6, "growth": 3.6}  # inches
 MARKERS = {"lock_in": ("^", "lock-in"), "lock_out": ("v", "lock-out"), "divergence": ("D", "divergence"),
-           "restabilisation": ("s", "restabilisation")}
+           "restabilisation": ("s", "restabilisation"), "jump": ("X", "jump of growth")}
 HALO = [matplotlib.patheffects.withStroke(linewidth=3, foreground="white")]
 # Places of a text about its point, tried in this order, points
 ACROSS = (0, 30, -30, 60, -60, 90, -90)
@@ -98,9 +98,23 @@ def draw_onsets(axes, study, quantity, scale):
     """A marker on the branch and a thin line through both panels."""
     for (x, y), row in zip(onset_points(study, quantity, scale), study.onsets):
         marker, _ = MARKERS.get(row["kind"], ("P", ""))
-        axes.axvline(x, color=LEADER, lw=0.7, ls=(0, (4, 3)), zorder=1)
+        if row["kind"] != "jump":
+            axes.axvline(x, color=LEADER, lw=0.7, ls=(0, (4, 3)), zorder=1)
         axes.plot([x], [y], marker, ms=8, zorder=7, mew=1.2, color=INK, mfc=INK if row["confirmed"] else "white",
                   mec="white" if row["confirmed"] else INK)
+
+
+def jump_places(study):
+    """Where the contact status changes: at the onset of kind jump between two points, else half way between them."""
+    values = list(dict.fromkeys(row["value"] for row in study.rows))
+    after = {row["value"] for row in study.rows if row["jump"]}
+    known = [row["critical_value"] for row in study.onsets if row["kind"] == "jump"]
+    places = []
+    for a, b in zip(values, values[1:]):
+        if b in after:
+            between = [value for value in known if min(a, b) <= value <= max(a, b)]
+            places += [value * study.axes[0].factor for value in dict.fromkeys(between) or [(a + b) / 2]]
+    return places
 
 
 def place_texts(axes, texts, places, taken, **style):
@@ -145,7 +159,7 @@ def name_onsets(axes, study, quantity, scale):
         return []
     points = onset_points(study, quantity, scale)
     taken = boxes_about(axes, points, 9)
-    texts = [f"{point[0]:.4g} {study.axes[0].unit}".rstrip() + ("" if row["confirmed"] else " (not confirmed)")
+    texts = [f"{point[0]:.4g} {study.axes[0].unit}".rstrip() + ("" if row["confirmed"] or row["kind"] == "jump" else " (not confirmed)")
              for point, row in zip(points, study.onsets)]
     place_texts(axes, zip(points, texts), BELOW, taken, color=INK)
     return taken
@@ -232,6 +246,8 @@ def legend(axes, study, branches, loud, bars):
             handles.append(Line2D([], [], ls="", marker=marker, ms=8, color=INK, mec="white", label=name))
     if bars:
         handles.append(Line2D([], [], ls="", marker="|", ms=10, color=INK, label="estimated error"))
+    if jump_places(study):
+        handles.append(Line2D([], [], color=LEADER, lw=0.7, label="contact status changes"))
     if len(branches) > len(loud):
         handles.append(Line2D([], [], color=QUIET, lw=1.2, label=f"{len(branches) - len(loud)} other modes"))
     axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.62 / axes.get_position().height /
@@ -262,6 +278,8 @@ def draw_panel(axes, study, branches, loud, quantity, scale):
         axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}".replace("-", MINUS)))
     bars = draw_branches(axes, branches, quantity, scale)
     draw_onsets(axes, study, quantity, scale)
+    for x in jump_places(study):
+        axes.axvline(x, color=LEADER, lw=0.7, zorder=1)
     return bars
 
 

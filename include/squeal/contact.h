@@ -165,9 +165,9 @@ PetscErrorCode ContactSetForces(Contact contact, const PetscReal lambda_n[]);
 PetscErrorCode ContactGrow(Contact contact, PetscInt rows, PetscBool closed[]);
 
 /*@ ContactComputeKKT - residuals of the states of the local pairs, with mu and kn (infinite for the constraint) of each
-    interface. Collective. @*/
+    interface; displacement is the largest of the local pairs, m. Collective. @*/
 PetscErrorCode ContactComputeKKT(Contact contact, const ContactState state[], const PetscReal mu[],
-                                 const PetscReal kn[], ContactKKT *kkt);
+                                 const PetscReal kn[], PetscReal displacement, ContactKKT *kkt);
 
 /*@ ContactViewKKT - the residuals in one line each. Collective. @*/
 PetscErrorCode ContactViewKKT(const ContactKKT *kkt, PetscViewer viewer);

@@ -1,6 +1,6 @@
 /*
-   Residuals of the laws of contact and friction. Per pair, with F the largest |lambda_n| and L the largest gap, closing
-   or slip at any pair, g = gap + lambda_n / k_n, s the slip:
+   Residuals of the laws of contact and friction. Per pair, with F the largest |lambda_n| and L the largest gap, closing,
+   slip or displacement at any pair (bodies that move far together have the gap between them no finer than that), g = gap + lambda_n / k_n, s the slip:
       penetration      max(0, -g) / L
       sign             max(0, -lambda_n) / F
       complementarity  |min(lambda_n / F, g / L)|
@@ -22,9 +22,9 @@ static PetscReal Length2(const PetscReal a[2])
   return PetscSqrtReal(a[0] * a[0] + a[1] * a[1]);
 }
 
-static PetscErrorCode ScaleFind(Contact contact, const ContactState state[], Scale *scale)
+static PetscErrorCode ScaleFind(Contact contact, const ContactState state[], PetscReal displacement, Scale *scale)
 {
-  PetscReal largest[2] = {0, 0};
+  PetscReal largest[2] = {0, displacement};
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
@@ -82,13 +82,13 @@ static void PairRaise(const ContactInterface *c, const ContactState *state, Pets
 }
 
 PetscErrorCode ContactComputeKKT(Contact contact, const ContactState state[], const PetscReal mu[],
-                                 const PetscReal kn[], ContactKKT *kkt)
+                                 const PetscReal kn[], PetscReal displacement, ContactKKT *kkt)
 {
   Scale      scale;
   ContactKKT worst = {0, 0, 0, 0, 0};
 
   PetscFunctionBeginUser;
-  PetscCall(ScaleFind(contact, state, &scale));
+  PetscCall(ScaleFind(contact, state, displacement, &scale));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const PetscInt i = contact->pairs[p].interface;
 

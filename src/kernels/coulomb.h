@@ -13,7 +13,9 @@
       l = P z + p0,   w = Q z + q0.
 
    Slip, linearised at q = p + s, e = q / |q|, E = I - e e', alpha = mu l_n / |q| < 1:
-      p = mu l_n e + alpha E (p + s)   hence   p = mu l_n e + beta E s,   beta = alpha / (1 - alpha).
+      p = mu l_n e + alpha E (p + s)   hence   p = mu l_n e - alpha E z,   s = - e e'z - (1 - alpha) E z
+
+   for any z in the plane, from slip without a direction of its own (alpha = 0) to the border of stick (alpha = 1).
 */
 #pragma once
 
@@ -57,18 +59,18 @@ static inline void CoulombSlipRows(const CoulombPair *pair, const double l[], co
 {
   double       q[2], e[2] = {1, 0};
   const double length = CoulombTrial(pair, l, w, q), cone = pair->mu * fmax(0, l[0]);
-  const double alpha = cone == 0 ? 0 : length > cone ? cone / length : 1 - 1e-8, beta = alpha / (1 - alpha);
+  const double alpha = cone == 0 ? 0 : length > cone ? cone / length : 1;
 
   for (int i = 0; i < 2 && length > 0; i++) e[i] = q[i] / length;
   for (int i = 0; i < 2; i++) {
-    law->P[1 + i][0]     = -pair->mu * e[i] * law->P[0][0];
-    law->p0[1 + i]       = -pair->mu * e[i] * law->p0[0];
-    law->Q[1 + i][1 + i] = 1;
+    law->P[1 + i][0] = -pair->mu * e[i] * law->P[0][0];
+    law->p0[1 + i]   = -pair->mu * e[i] * law->p0[0];
+    law->q0[1 + i]   = pair->slip0[i];
     for (int j = 0; j < 2; j++) {
       const double E = (i == j) - e[i] * e[j];
 
-      law->P[1 + i][1 + j] = beta * E;
-      law->p0[1 + i] -= beta * E * pair->slip0[j];
+      law->P[1 + i][1 + j] = alpha * E;
+      law->Q[1 + i][1 + j] = (i == j) - alpha * E;
     }
   }
 }

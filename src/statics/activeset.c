@@ -13,6 +13,7 @@
 #define ROUNDING   1e-13
 #define SLIPPING   1e-12 /* residual of Coulomb's law at convergence, relative */
 #define MIN_STEP   (1.0 / 1024)
+#define MIN_DAMP   (1.0 / 128)
 #define MAX_KEPT   64 /* statuses remembered, to see when they repeat */
 #define ONE_BY_ONE 10 /* times max_it, when single pairs change */
 
@@ -121,19 +122,42 @@ static PetscErrorCode StatusUpdate(Active *a, PetscBool single, PetscInt *n_chan
   PetscFunctionReturn(0);
 }
 
-/* Largest residual of Coulomb's law, relative */
+/* Largest residual of Coulomb's law, relative: of slip to the largest force, which may be far below the displacements
+   (soft springs), else to the largest of both */
 static PetscErrorCode SlipResidual(const Active *a, PetscReal *residual)
 {
+  PetscReal largest[3] = {0, 0, 0}; /* of slip, of the others, and force */
+
   PetscFunctionBeginUser;
-  *residual = 0;
   for (PetscInt p = 0; p < a->rows->n_pairs; p++) {
-    CoulombPair pair = a->rows->law[p];
+    const PetscReal *l = &a->l[a->rows->first[p]], *w = &a->w[a->rows->first[p]];
+    const int        kind = a->status[p] == COULOMB_SLIP ? 0 : 1;
+    CoulombPair      pair = a->rows->law[p];
 
     pair.mu *= a->friction;
-    *residual =
-      PetscMax(*residual, CoulombResidual(&pair, &a->l[a->rows->first[p]], &a->w[a->rows->first[p]]) / a->scale);
+    largest[kind] = PetscMax(largest[kind], CoulombResidual(&pair, l, w));
+    largest[2]    = PetscMax(largest[2], PetscAbsReal(l[0]));
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, residual, 1, MPIU_REAL, MPI_MAX, a->rows->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 3, MPIU_REAL, MPI_MAX, a->rows->comm));
+  *residual = PetscMax(largest[0] > 0 ? largest[0] / largest[2] : 0, largest[1] > 0 ? largest[1] / a->scale : 0);
+  PetscFunctionReturn(0);
+}
+
+/* Shortens a step from l0, w0 that keeps all statuses, yet does not lower the residual of Coulomb's law, `before`:
+   Newton's method may turn slip around for ever. Equilibrium and normal laws are linear and hold all the way. */
+static PetscErrorCode Damp(Active *a, const PetscReal l0[], const PetscReal w0[], PetscReal before)
+{
+  PetscReal residual;
+
+  PetscFunctionBeginUser;
+  for (PetscReal step = 1; step > MIN_DAMP; step /= 2) {
+    PetscCall(SlipResidual(a, &residual));
+    if (residual < before || before <= SLIPPING) break;
+    for (PetscInt i = 0; i < a->rows->n; i++) {
+      a->l[i] = (l0[i] + a->l[i]) / 2;
+      a->w[i] = (w0[i] + a->w[i]) / 2;
+    }
+  }
   PetscFunctionReturn(0);
 }
 
@@ -174,25 +198,30 @@ static PetscErrorCode StatusRepeats(const Active *a, PetscReal kept[MAX_KEPT], P
 static PetscErrorCode Iterate(Active *a, PetscBool single, ActiveOutcome *outcome)
 {
   const PetscInt max_it = single ? ONE_BY_ONE * a->max_it : a->max_it;
-  PetscReal      kept[MAX_KEPT], residual;
-  PetscInt       n_kept = 0, n_changed;
+  PetscReal      kept[MAX_KEPT], residual = 0, *l, *w;
+  PetscInt       n_kept = 0, n_changed = 1;
   PetscBool      repeats;
   SmallOutcome   small;
 
   PetscFunctionBeginUser;
   *outcome = ACTIVE_SLOW;
+  PetscCall(PetscMalloc2(a->rows->n, &l, a->rows->n, &w));
   for (PetscInt it = 0; it < max_it && *outcome == ACTIVE_SLOW; it++, a->n_it++) {
     PetscCall(StatusRepeats(a, kept, &n_kept, &repeats));
+    PetscCall(PetscArraycpy(l, a->l, a->rows->n));
+    PetscCall(PetscArraycpy(w, a->w, a->rows->n));
     PetscCall(Solve(a, PETSC_FALSE, a->free, a->l, a->w, &small));
     if (small == SMALL_SINGULAR || repeats) {
       *outcome = repeats ? ACTIVE_CYCLES : ACTIVE_SINGULAR;
       break;
     }
     PetscCall(ScaleFind(a));
+    if (!n_changed) PetscCall(Damp(a, l, w, residual));
     PetscCall(StatusUpdate(a, single, &n_changed));
     PetscCall(SlipResidual(a, &residual));
     if (!n_changed && residual <= SLIPPING) *outcome = a->reversed ? ACTIVE_JAMMED : ACTIVE_CONVERGED;
   }
+  PetscCall(PetscFree2(l, w));
   PetscFunctionReturn(0);
 }
 

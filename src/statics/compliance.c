@@ -55,8 +55,7 @@ PetscErrorCode ComplianceAugment(Mat K, const Rows *rows, PetscReal kappa, Petsc
     PetscCall(MatCreateVecs(rows->G, NULL, &weight));
     PetscCall(VecGetArray(weight, &resists));
     for (PetscInt p = 0; p < rows->n_pairs; p++)
-      for (PetscInt i = rows->first[p]; i < rows->first[p + 1]; i++)
-        resists[i] = status[p] == COULOMB_STICK || (status[p] == COULOMB_SLIP && i == rows->first[p]) ? 1 : 0;
+      for (PetscInt i = rows->first[p]; i < rows->first[p + 1]; i++) resists[i] = status[p] == COULOMB_OPEN ? 0 : 1;
     PetscCall(VecRestoreArray(weight, &resists));
     PetscCall(MatDuplicate(rows->G, MAT_COPY_VALUES, &G));
     PetscCall(MatDiagonalScale(G, weight, NULL));

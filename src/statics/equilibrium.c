@@ -47,8 +47,13 @@ static PetscErrorCode Complain(const Active *a, ActiveOutcome outcome)
 
   PetscFunctionBeginUser;
   PetscCall(CountClosed(a, n));
-  PetscCheck(a->friction > 0, a->rows->comm, PETSC_ERR_NOT_CONVERGED,
-             "no equilibrium, even without friction: %s; the -loads must press the contacts together", how[outcome]);
+  PetscCheck(a->friction > 0 || a->rows->n_all == n[1], a->rows->comm, PETSC_ERR_NOT_CONVERGED,
+             "no equilibrium: the -loads push the bodies along or off each other by more than friction holds, and "
+             "nothing else does; give other -loads, a higher friction coefficient, -supports or -springs");
+  PetscCheck(
+    a->friction > 0, a->rows->comm, PETSC_ERR_NOT_CONVERGED,
+    "no equilibrium, even without friction: %s; the -loads must press the contacts together, within their edges",
+    how[outcome]);
   SETERRQ(a->rows->comm, PETSC_ERR_NOT_CONVERGED,
           "no sliding equilibrium: friction could be raised to %.4g of its value, where %" PetscInt_FMT
           " of %" PetscInt_FMT " pairs are closed; beyond, %s; lower the friction coefficient",

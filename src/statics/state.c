@@ -98,17 +98,37 @@ static PetscErrorCode EquilibriumMeasure(Statics s, Vec f)
   PetscFunctionReturn(0);
 }
 
+/* Largest displacement of a slave of this rank, m */
+static PetscErrorCode DisplacementFind(Statics s, PetscReal *displacement)
+{
+  const PetscScalar *u;
+  PetscInt           begin, end;
+
+  PetscFunctionBeginUser;
+  *displacement = 0;
+  PetscCall(VecGetOwnershipRange(s->u, &begin, &end));
+  PetscCall(VecGetArrayRead(s->u, &u));
+  for (PetscInt i = 0; i < 3 * s->rows.n_pairs; i++) {
+    const PetscInt row = s->rows.pair[i / 3].slave[i % 3];
+
+    if (row >= begin && row < end) *displacement = PetscMax(*displacement, PetscAbsScalar(u[row - begin]));
+  }
+  PetscCall(VecRestoreArrayRead(s->u, &u));
+  PetscFunctionReturn(0);
+}
+
 /* Residuals of the contact laws */
 static PetscErrorCode KKTMeasure(Statics s)
 {
-  PetscReal *mu, *kn;
+  PetscReal *mu, *kn, displacement;
   Contact    contact;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
   PetscCall(PetscMalloc2(s->rows.n_interfaces, &mu, s->rows.n_interfaces, &kn));
   for (PetscInt i = 0; i < s->rows.n_interfaces; i++) PetscCall(OperatorsGetInterface(s->operators, i, &mu[i], &kn[i]));
-  PetscCall(ContactComputeKKT(contact, s->state, mu, kn, &s->kkt));
+  PetscCall(DisplacementFind(s, &displacement));
+  PetscCall(ContactComputeKKT(contact, s->state, mu, kn, displacement, &s->kkt));
   PetscCall(PetscFree2(mu, kn));
   PetscFunctionReturn(0);
 }

@@ -113,7 +113,8 @@ PETSC_INTERN PetscErrorCode ComplianceApply(const Compliance *c, const Rows *row
                                             const PetscReal l[], const PetscReal w[], PetscReal y[]);
 PETSC_INTERN PetscErrorCode ComplianceSolve(const Compliance *c, const Rows *rows, PetscReal friction, Vec f,
                                             const PetscReal l[], const PetscReal w[], Vec u);
-/* K + kappa G'G of all rows, or of some: those that resist at the status [pairs] */
+/* K + kappa G'G of all rows, or of some: those of pairs closed at the status [pairs]. Where Coulomb's pairs slip in
+   different directions they resist too; what slips in one direction makes the small system singular. */
 PETSC_INTERN PetscErrorCode ComplianceAugment(Mat K, const Rows *rows, PetscReal kappa, PetscBool some,
                                               const CoulombStatus status[], Mat *A);
 PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *c);

@@ -139,18 +139,22 @@ static PetscErrorCode GroupsCheck(Sweep sweep, const PetscInt group[])
   PetscFunctionReturn(0);
 }
 
-/* Gives the operators the groups, and the grid the values of their parameters */
+/* Gives the operators the groups, and the grid the values of their parameters. The matrices are first formed with all
+   groups closed, so that their pattern holds every term, whichever point comes first. */
 static PetscErrorCode GroupsSet(Sweep sweep)
 {
   const OperatorsParameter *parameters;
   Grid                     *grid = &sweep->grid;
   PetscInt                 *group;
+  OperatorsPencil           pencil;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(sweep->statuses.n_local, &group));
   PetscCall(StatusListGroup(&sweep->statuses, group, &grid->n_groups, &grid->closed));
   if (grid->n_groups) PetscCall(GroupsCheck(sweep, group));
   PetscCall(OperatorsSetClosed(sweep->operators, grid->n_groups, group));
+  PetscCall(OperatorsGetPencil(sweep->operators, &pencil));
+  PetscCall(OperatorsGetFrictionless(sweep->operators, &pencil));
   PetscCall(PetscFree(group));
   PetscCall(OperatorsGetParameters(sweep->operators, &grid->n_parameters, &parameters));
   PetscCall(PetscRealloc((size_t)grid->n_parameters * sizeof(*grid->base), &grid->base));

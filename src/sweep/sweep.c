@@ -7,7 +7,6 @@
 #include <petsctime.h>
 #include <string.h>
 
-#define WHOLE      200     /* unknowns up to which the basis is the whole space */
 #define MAX_POINTS 1000000 /* of a grid */
 #define MAX_TRAIN  100     /* points that the greedy choice looks at */
 #define MAX_ROUNDS 4
@@ -194,35 +193,6 @@ static PetscErrorCode BasisMake(Sweep sweep, PetscBool exceeding)
   PetscFunctionReturn(0);
 }
 
-/* A small system needs no reduction: all unit vectors; whole = whether the mass matrix allows it */
-static PetscErrorCode BasisWhole(Sweep sweep, PetscBool *whole)
-{
-  PetscInt n, first, last, n_added;
-  BV       block;
-
-  PetscFunctionBeginUser;
-  *whole = PETSC_FALSE;
-  PetscCall(MatGetSize(sweep->basis.M, &n, NULL));
-  if (n > WHOLE) PetscFunctionReturn(0);
-  PetscCall(BasisCreateBlock(&sweep->basis, n, &block));
-  for (PetscInt i = 0; i < n; i++) {
-    Vec unit;
-
-    PetscCall(BVGetColumn(block, i, &unit));
-    PetscCall(VecSet(unit, 0));
-    PetscCall(VecGetOwnershipRange(unit, &first, &last));
-    if (i >= first && i < last) PetscCall(VecSetValue(unit, i, 1, INSERT_VALUES));
-    PetscCall(VecAssemblyBegin(unit));
-    PetscCall(VecAssemblyEnd(unit));
-    PetscCall(BVRestoreColumn(block, i, &unit));
-  }
-  PetscCall(BasisAdd(&sweep->basis, block, 0, &n_added));
-  PetscCall(BVDestroy(&block));
-  PetscCall(BasisPromote(&sweep->basis));
-  *whole = n_added == n ? PETSC_TRUE : PETSC_FALSE;
-  PetscFunctionReturn(0);
-}
-
 /* Greedy basis, kept in the output folder as it grows */
 static PetscErrorCode BasisGreedy(Sweep sweep)
 {
@@ -256,7 +226,7 @@ static PetscErrorCode ModelMake(Sweep sweep)
     PetscCall(SweepRealBasis(sweep));
     PetscFunctionReturn(0);
   }
-  PetscCall(BasisWhole(sweep, &sweep->whole));
+  PetscCall(SweepWholeBasis(sweep, &sweep->whole));
   if (!sweep->whole) PetscCall(BasisGreedy(sweep));
   PetscFunctionReturn(0);
 }

@@ -119,6 +119,8 @@ PETSC_INTERN PetscErrorCode SweepOnsets(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepBrute(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepCheckPlaces(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepVerify(Sweep sweep);
+/* whole.c - all unit vectors, for a small system; whole = whether the mass matrix allows it */
+PETSC_INTERN PetscErrorCode SweepWholeBasis(Sweep sweep, PetscBool *whole);
 /* realmodes.c - the basis of today's tools: frictionless real modes */
 PETSC_INTERN PetscErrorCode SweepRealBasis(Sweep sweep);
 /* robust.c - combinations of uncertain parameters */

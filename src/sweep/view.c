@@ -75,9 +75,10 @@ static PetscErrorCode StretchesView(Sweep sweep, PetscViewer viewer, PetscInt *n
   for (PetscInt k = 0, last; k < grid->n_places; k = last + 1) {
     for (last = k; last + 1 < grid->n_places && place[last + 1].status == place[k].status;) last++;
     if (viewer)
-      PetscCall(PetscViewerASCIIPrintf(viewer, "%s%" PetscInt_FMT "%s from %.6g to %.6g", k ? ", " : ": ",
+      PetscCall(PetscViewerASCIIPrintf(viewer, "%s%" PetscInt_FMT "%s %s %.6g", k ? ", " : ": ",
                                        sweep->statuses.n_closed[place[k].status], k ? "" : " pairs closed",
-                                       (double)place[k].value[0], (double)place[last].value[0]));
+                                       last > k ? "from" : "at", (double)place[k].value[0]));
+    if (viewer && last > k) PetscCall(PetscViewerASCIIPrintf(viewer, " to %.6g", (double)place[last].value[0]));
     ++*n;
   }
   PetscFunctionReturn(0);

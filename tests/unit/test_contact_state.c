@@ -86,7 +86,7 @@ static PetscErrorCode TestState(Contact contact, const StateCase *c, int *failed
     if (PetscIsInfReal(c->kn) && place[p][0] == 1) state[p].gap = -2e-7;
     if (PetscIsInfReal(c->kn) && place[p][0] > 1 && place[p][1] != 2) state[p].gap = 0;
   }
-  PetscCall(ContactComputeKKT(contact, state, &mu, &c->kn, &kkt));
+  PetscCall(ContactComputeKKT(contact, state, &mu, &c->kn, 0, &kkt));
   printf("     %s\n", c->name);
   *failed += CheckSame("penetration", kkt.penetration, c->expected.penetration);
   *failed += CheckSame("sign", kkt.sign, c->expected.sign);

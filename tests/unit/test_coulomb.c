@@ -185,7 +185,7 @@ static int TestSlipFixed(void)
       w[1 + k] = pair.slip0[k] - s[k];
     }
     CoulombLinearise(&pair, COULOMB_SLIP, l, w, &law);
-    LawAt(&law, 3, (const double[3]){pair.k >= 1 ? l[0] : w[0], w[1], w[2]}, l1, w1);
+    LawAt(&law, 3, (const double[3]){pair.k >= 1 ? l[0] : w[0], -s[0], -s[1]}, l1, w1);
     for (int k = 0; k < 3; k++) worst = fmax(worst, fmax(fabs(l1[k] - l[k]), fabs(w1[k] - w[k]) / (1 + fabs(w[0]))));
     residual = fmax(residual, CoulombResidual(&pair, l, w));
   }
