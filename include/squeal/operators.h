@@ -23,6 +23,7 @@ typedef struct {
   PetscReal   value;
   PetscReal   lower, upper; /* lower < value < upper; -infinity, infinity where there is no limit */
   PetscBool   closed;       /* lower itself is a value: alpha, beta, stiffness, viscosity, force may be 0 */
+  PetscBool   body;         /* of parts, springs or dashpots, not of a contact */
   PetscBool   internal;     /* no option of the scene: the status of a group of pairs, see OperatorsSetClosed() */
 } OperatorsParameter;
 

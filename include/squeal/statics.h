@@ -72,6 +72,10 @@ before, else with all pairs closed. Collective.
 @*/
 PetscErrorCode StaticsSolve(Statics statics);
 
+/*@ StaticsRelease - frees the factorisation that StaticsSolve() keeps for the next call, at the same bodies. Collective.
+    @*/
+PetscErrorCode StaticsRelease(Statics statics);
+
 /*@ StaticsGetState - states of the local pairs, and displacements of all unknowns, m (borrowed). Not collective. @*/
 PetscErrorCode StaticsGetState(Statics statics, const ContactState **state, Vec *u);
 

@@ -21,6 +21,7 @@ typedef enum { TERMS_ALL, TERMS_SYMMETRIC, TERMS_UNSYMMETRIC } TermsChoice;
 typedef struct {
   Mat        A;       /* NULL when all coefficients are zero */
   PetscBool *has;     /* [terms] whether the pattern covers the term */
+  PetscReal *c;       /* [terms] coefficients that it was formed with */
   PetscBool  current; /* formed at the present values */
 } TermsSum;
 

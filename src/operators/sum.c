@@ -1,6 +1,7 @@
 /*
    Sums of terms, sum_t c_t(p) A_t, formed row by row into one matrix. Its pattern is the union of the terms that it was
-   first formed from; at other values of the parameters only the values are written again. A term that was left out, its
+   first formed from; at other values of the parameters only the values are written again, and nothing at all where the
+   coefficients are the same. A term that was left out, its
    coefficient having been zero, makes a new pattern when it comes.
 */
 #include "operatorsimpl.h"
@@ -147,12 +148,18 @@ PetscErrorCode TermsSumForm(const Terms *terms, OperatorsTermKind kind, TermsCho
                             const PetscReal p[], TermsSum *sum)
 {
   PetscReal *c;
-  PetscBool  all_zero;
+  PetscBool  all_zero, same = PETSC_FALSE;
   Mat        constant;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(terms->n, &c));
   CoefficientsFind(terms, kind, choice, scale, p, c, &all_zero, &constant);
+  if (sum->A && sum->c) PetscCall(PetscArraycmp(c, sum->c, terms->n, &same));
+  if (same) {
+    PetscCall(PetscFree(c));
+    sum->current = PETSC_TRUE;
+    PetscFunctionReturn(0);
+  }
   if (constant) {
     PetscCall(PetscObjectReference((PetscObject)constant));
     PetscCall(MatDestroy(&sum->A));
@@ -167,7 +174,8 @@ PetscErrorCode TermsSumForm(const Terms *terms, OperatorsTermKind kind, TermsCho
     PetscCall(MatAssemblyEnd(sum->A, MAT_FINAL_ASSEMBLY));
   }
   sum->current = PETSC_TRUE;
-  PetscCall(PetscFree(c));
+  PetscCall(PetscFree(sum->c));
+  sum->c = c;
   PetscFunctionReturn(0);
 }
 
@@ -176,6 +184,7 @@ PetscErrorCode TermsSumDestroy(TermsSum *sum)
   PetscFunctionBeginUser;
   PetscCall(MatDestroy(&sum->A));
   PetscCall(PetscFree(sum->has));
+  PetscCall(PetscFree(sum->c));
   sum->current = PETSC_FALSE;
   PetscFunctionReturn(0);
 }

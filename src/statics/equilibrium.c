@@ -47,6 +47,10 @@ static PetscErrorCode Complain(const Active *a, ActiveOutcome outcome)
 
   PetscFunctionBeginUser;
   PetscCall(CountClosed(a, n));
+  PetscCheck(a->friction > 0 || outcome != ACTIVE_SLOW, a->rows->comm, PETSC_ERR_NOT_CONVERGED,
+             "no equilibrium found: the pairs do not settle within -static_max_it %" PetscInt_FMT
+             " iterations; allow more",
+             a->max_it);
   PetscCheck(a->friction > 0 || a->rows->n_all == n[1], a->rows->comm, PETSC_ERR_NOT_CONVERGED,
              "no equilibrium: the -loads push the bodies along or off each other by more than friction holds, and "
              "nothing else does; give other -loads, a higher friction coefficient, -supports or -springs");

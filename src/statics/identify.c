@@ -73,7 +73,6 @@ static PetscErrorCode Press(Statics s, Rows *rows, const Compliance *c, Vec f, P
 /* All steps */
 static PetscErrorCode Ramp(Statics s, PetscInt interface, Vec d, Reading reading[])
 {
-  Compliance     c = {.kappa = 0};
   PetscReal     *l, size;
   CoulombStatus *status;
   Vec            f;
@@ -83,14 +82,12 @@ static PetscErrorCode Ramp(Statics s, PetscInt interface, Vec d, Reading reading
   PetscCheck(size > 0, s->comm, PETSC_ERR_USER_INPUT, "-contact_kn identify presses with the -loads: give some");
   PetscCall(PetscMalloc1(s->rows.n_pairs, &status));
   PetscCall(PetscCalloc1(s->rows.n, &l));
-  PetscCall(ComplianceCreate(s->operators, &s->rows, s->dense, &s->progress, &c));
-  PetscCall(RowsSetLaws(s->operators, c.kappa, &s->rows));
+  PetscCall(StaticsFactor(s));
   LawsPressing(&s->rows, status);
-  PetscCall(HoldCheck(s->operators, &c.hold, "the loads", f, size));
+  PetscCall(HoldCheck(s->operators, &s->compliance.hold, "the loads", f, size));
   for (PetscInt i = 0; i < s->identify_steps; i++)
-    PetscCall(Press(s, &s->rows, &c, f, size, (PetscReal)(i + 1) / (PetscReal)s->identify_steps, interface, d, status,
-                    l, &reading[i]));
-  PetscCall(ComplianceDestroy(&c));
+    PetscCall(Press(s, &s->rows, &s->compliance, f, size, (PetscReal)(i + 1) / (PetscReal)s->identify_steps, interface,
+                    d, status, l, &reading[i]));
   PetscCall(PetscFree(l));
   PetscCall(PetscFree(status));
   PetscCall(VecDestroy(&f));

@@ -104,6 +104,7 @@ PetscErrorCode StaticsLinearise(Statics s)
   if (!same) {
     PetscCall(StaticsSolve(s));
     PetscCall(HandOn(s));
+    PetscCall(StaticsRelease(s));
     PetscCall(ParametersTake(s, p)); /* the normal force is one of them, with friction damping */
   }
   PetscCall(PetscFree(s->linearised));

@@ -4,6 +4,8 @@
 */
 #include "staticsimpl.h"
 
+#define LOOSE 1e-6 /* of the loads, unbalanced */
+
 /* States of all pairs from w = G u (m) and l (m) */
 static void StatesSet(const Rows *rows, PetscReal kappa, const CoulombStatus status[], const PetscReal l[],
                       const PetscScalar w[], ContactState state[])
@@ -80,21 +82,30 @@ PetscErrorCode StateForces(const Rows *rows, const ContactState state[], Vec b)
   PetscFunctionReturn(0);
 }
 
-/* |f + contact forces - K u| over the load */
+/* |f + contact forces - K u| over the larger of |f| and |contact forces|; much of it is left where next to nothing
+   resists the loads, and displacements are so large that forces drown in their rounding */
 static PetscErrorCode EquilibriumMeasure(Statics s, Vec f)
 {
-  PetscReal norm, load;
+  PetscReal norm, load, contact;
   Vec       r;
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(f, &r));
+  PetscCall(VecSet(r, 0));
+  PetscCall(StateForces(&s->rows, s->state, r));
+  PetscCall(VecNorm(r, NORM_2, &contact));
   PetscCall(OperatorsApplyBodies(s->operators, s->u, r));
   PetscCall(VecAYPX(r, -1, f));
   PetscCall(StateForces(&s->rows, s->state, r));
   PetscCall(VecNorm(r, NORM_2, &norm));
   PetscCall(VecNorm(f, NORM_2, &load));
-  s->equilibrium = load > 0 ? norm / load : norm;
+  s->equilibrium = norm > 0 ? norm / PetscMax(load, contact) : 0;
   PetscCall(VecDestroy(&r));
+  PetscCheck(
+    s->equilibrium <= LOOSE, s->comm, PETSC_ERR_NOT_CONVERGED,
+    "no equilibrium: next to nothing resists the -loads, and %.2g of them is left unbalanced; give other -loads, "
+    "-supports or -springs",
+    (double)s->equilibrium);
   PetscFunctionReturn(0);
 }
 

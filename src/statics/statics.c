@@ -97,9 +97,38 @@ static PetscErrorCode LoadCheck(Statics s, PetscReal size)
   PetscFunctionReturn(0);
 }
 
+/* Keeps the factorisation of the call before where no parameter of the bodies has changed since */
+PetscErrorCode StaticsFactor(Statics s)
+{
+  const OperatorsParameter *parameters;
+  PetscInt                  n;
+  PetscBool                 same = s->factored ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetParameters(s->operators, &n, &parameters));
+  if (!s->factored) PetscCall(PetscMalloc1(s->n_parameters, &s->factored));
+  for (PetscInt i = 0; i < s->n_parameters; i++) {
+    if (same && parameters[i].body && parameters[i].value != s->factored[i]) same = PETSC_FALSE;
+    s->factored[i] = parameters[i].value;
+  }
+  if (!same) {
+    PetscCall(ComplianceDestroy(&s->compliance));
+    PetscCall(ComplianceCreate(s->operators, &s->rows, s->dense, &s->progress, &s->compliance));
+  }
+  PetscCall(RowsSetLaws(s->operators, s->compliance.kappa, &s->rows));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsRelease(Statics statics)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ComplianceDestroy(&statics->compliance));
+  PetscCall(PetscFree(statics->factored));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode StaticsSolve(Statics s)
 {
-  Compliance compliance = {.kappa = 0};
   PetscReal *l, size;
   Vec        f;
 
@@ -108,15 +137,13 @@ PetscErrorCode StaticsSolve(Statics s)
   PetscCall(LoadCreate(s->operators, &f, &size));
   PetscCall(LoadCheck(s, size));
   PetscCall(PetscCalloc1(s->rows.n, &l));
-  PetscCall(ComplianceCreate(s->operators, &s->rows, s->dense, &s->progress, &compliance));
-  PetscCall(RowsSetLaws(s->operators, compliance.kappa, &s->rows));
-  PetscCall(HoldCheck(s->operators, &compliance.hold, "the loads", f, size));
-  PetscCall(EquilibriumSolve(s, &s->rows, &compliance, f, size, s->load_steps, s->status, l, s->u));
+  PetscCall(StaticsFactor(s));
+  PetscCall(HoldCheck(s->operators, &s->compliance.hold, "the loads", f, size));
+  PetscCall(EquilibriumSolve(s, &s->rows, &s->compliance, f, size, s->load_steps, s->status, l, s->u));
   s->load   = size;
-  s->n_free = compliance.hold.n;
-  PetscCall(StateSet(s, &compliance, f, l));
+  s->n_free = s->compliance.hold.n;
+  PetscCall(StateSet(s, &s->compliance, f, l));
   s->solved = PETSC_TRUE;
-  PetscCall(ComplianceDestroy(&compliance));
   PetscCall(PetscFree(l));
   PetscCall(VecDestroy(&f));
   PetscFunctionReturn(0);
@@ -152,6 +179,7 @@ PetscErrorCode StaticsDestroy(Statics *statics)
 
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(0);
+  PetscCall(StaticsRelease(s));
   PetscCall(RowsDestroy(&s->rows));
   PetscCall(PetscFree3(s->status, s->state, s->resultant));
   PetscCall(PetscFree(s->linearised));

@@ -3,7 +3,7 @@
 
 #include <squeal/statics.h>
 #include "kernels/coulomb.h"
-#include "modes/shiftinvert.h"
+#include "operators/shiftinvert.h"
 
 /* Rows of the contact problem: the normal one of a pair that slides or has no friction, else normal, t and b */
 typedef struct {
@@ -70,8 +70,10 @@ struct _p_Statics {
   /* set by options */
   PetscInt  max_it, load_steps, dense, rows_more, identify_steps;
   PetscBool geometric, follower, view_kkt;
-  /* the contact problem */
-  Rows rows;
+  /* the contact problem, and the factorisation with the parameters that it was made with */
+  Rows       rows;
+  Compliance compliance;
+  PetscReal *factored; /* [n_parameters]; NULL before */
   /* the solution */
   PetscBool         solved;
   PetscInt          n_parameters, n_it;
@@ -87,6 +89,8 @@ struct _p_Statics {
 
 /* statics.c - pairs, rows and room for results, once */
 PETSC_INTERN PetscErrorCode StaticsSetUp(Statics statics);
+/* statics.c - the factorisation and the laws at the present values of the parameters */
+PETSC_INTERN PetscErrorCode StaticsFactor(Statics statics);
 
 /* rows.c - pairs and rows; the present friction coefficients and stiffnesses of the interfaces */
 PETSC_INTERN PetscErrorCode RowsCreate(Operators operators, Rows *rows);

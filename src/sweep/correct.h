@@ -2,7 +2,7 @@
 #pragma once
 
 #include "basis.h"
-#include "modes/shiftinvert.h"
+#include "operators/shiftinvert.h"
 
 /* The full pencil at a point and its factorisation */
 typedef struct {

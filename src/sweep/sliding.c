@@ -187,6 +187,7 @@ PetscErrorCode SweepStatuses(Sweep sweep)
   for (PetscInt i = 0; i < sweep->n_checks; i++)
     PetscCall(SweepStatusSolve(sweep, &sweep->check[i].at, &sweep->check[i].at.status));
   if (sweep->uncertain[0]) PetscCall(BaseSolve(sweep));
+  PetscCall(StaticsRelease(sweep->statics));
   PetscCall(GroupsSet(sweep));
   PetscFunctionReturn(0);
 }

@@ -8,7 +8,7 @@
    ranks, where PORD stays.
 */
 #include "shiftinvert.h"
-#include "operators/ordering.h"
+#include "ordering.h"
 #include <petscksp.h>
 
 /* K - s M, or K + s C + s^2 M with damping */

@@ -1,4 +1,4 @@
-/* Private to modes/ and sweep/: one factorisation at a shift, its solves, and its inertia */
+/* Private to the solvers in statics/, modes/ and sweep/: one factorisation at a shift, its solves, and its inertia */
 #pragma once
 
 #include "progress.h"
