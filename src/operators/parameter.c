@@ -20,6 +20,7 @@ PetscErrorCode ParameterAdd(Operators o, const char owner[], const char what[], 
   q->lower    = lower;
   q->upper    = INFINITY;
   q->closed   = closed;
+  q->body     = o->n_body_terms ? PETSC_FALSE : PETSC_TRUE;
   q->internal = PETSC_FALSE;
 
   o->p[o->n_parameters] = value;

@@ -1,8 +1,8 @@
 /*
    Sums of terms, sum_t c_t(p) A_t, formed row by row into one matrix. Its pattern is the union of the terms that it was
    first formed from; at other values of the parameters only the values are written again, and nothing at all where the
-   coefficients are the same. A term that was left out, its
-   coefficient having been zero, makes a new pattern when it comes.
+   coefficients are the same. A term that was left out, its coefficient having been zero, makes a new pattern when it
+   comes.
 */
 #include "operatorsimpl.h"
 

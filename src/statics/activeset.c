@@ -12,6 +12,9 @@
 
 #define ROUNDING   1e-13
 #define SLIPPING   1e-12 /* residual of Coulomb's law at convergence, relative */
+#define EXACT      1e-13 /* of GMRES */
+#define ROUGH      1e-6  /* of GMRES while statuses still change */
+#define CORRECT    1e-8  /* of GMRES for corrections */
 #define MIN_STEP   (1.0 / 1024)
 #define MIN_DAMP   (1.0 / 128)
 #define MAX_KEPT   64 /* statuses remembered, to see when they repeat */
@@ -55,7 +58,7 @@ static PetscErrorCode Solve(Active *a, PetscBool homogeneous, const PetscReal rh
   PetscCall(PetscMalloc1(a->rows->n, &law));
   LawsSet(a, law);
   for (PetscInt i = 0; i < a->rows->n && homogeneous; i++) law[i].p0 = law[i].q0 = 0;
-  PetscCall(SmallSolve(a->compliance, a->rows, a->friction, law, rhs, l, w, outcome, &a->reversed));
+  PetscCall(SmallSolve(a->compliance, a->rows, a->friction, law, rhs, a->rtol, l, w, outcome, &a->reversed));
   PetscCall(PetscFree(law));
   PetscFunctionReturn(0);
 }
@@ -177,16 +180,25 @@ static PetscErrorCode StatusPrint(const Active *a, PetscReal *print)
   PetscFunctionReturn(0);
 }
 
+/* Whether some pair follows Coulomb's law */
+static PetscErrorCode HasCoulomb(const Active *a, PetscBool *has)
+{
+  PetscFunctionBeginUser;
+  *has = a->rows->n > a->rows->n_pairs ? PETSC_TRUE : PETSC_FALSE;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, has, 1, MPIU_BOOL, MPI_LOR, a->rows->comm));
+  PetscFunctionReturn(0);
+}
+
 /* Whether the present status was there before; remembers it. With Coulomb pairs in slip, whose laws change with the
    iterate, a repeated status is no cycle. */
 static PetscErrorCode StatusRepeats(const Active *a, PetscReal kept[MAX_KEPT], PetscInt *n_kept, PetscBool *repeats)
 {
   PetscReal print;
-  PetscBool coulomb = a->rows->n_pairs && a->rows->n > a->rows->n_pairs ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool coulomb;
 
   PetscFunctionBeginUser;
   *repeats = PETSC_FALSE;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &coulomb, 1, MPIU_BOOL, MPI_LOR, a->rows->comm));
+  PetscCall(HasCoulomb(a, &coulomb));
   PetscCall(StatusPrint(a, &print));
   for (PetscInt i = 0; i < PetscMin(*n_kept, MAX_KEPT) && !coulomb; i++)
     if (kept[i] == print) *repeats = PETSC_TRUE;
@@ -200,14 +212,17 @@ static PetscErrorCode Iterate(Active *a, PetscBool single, ActiveOutcome *outcom
   const PetscInt max_it = single ? ONE_BY_ONE * a->max_it : a->max_it;
   PetscReal      kept[MAX_KEPT], residual = 0, *l, *w;
   PetscInt       n_kept = 0, n_changed = 1;
-  PetscBool      repeats;
+  PetscBool      repeats, coulomb;
   SmallOutcome   small;
 
   PetscFunctionBeginUser;
   *outcome = ACTIVE_SLOW;
   PetscCall(PetscMalloc2(a->rows->n, &l, a->rows->n, &w));
+  PetscCall(HasCoulomb(a, &coulomb));
+  a->rtol = single || coulomb ? EXACT : ROUGH;
   for (PetscInt it = 0; it < max_it && *outcome == ACTIVE_SLOW; it++, a->n_it++) {
-    PetscCall(StatusRepeats(a, kept, &n_kept, &repeats));
+    repeats = PETSC_FALSE;
+    if (n_changed) PetscCall(StatusRepeats(a, kept, &n_kept, &repeats));
     PetscCall(PetscArraycpy(l, a->l, a->rows->n));
     PetscCall(PetscArraycpy(w, a->w, a->rows->n));
     PetscCall(Solve(a, PETSC_FALSE, a->free, a->l, a->w, &small));
@@ -219,7 +234,9 @@ static PetscErrorCode Iterate(Active *a, PetscBool single, ActiveOutcome *outcom
     if (!n_changed) PetscCall(Damp(a, l, w, residual));
     PetscCall(StatusUpdate(a, single, &n_changed));
     PetscCall(SlipResidual(a, &residual));
-    if (!n_changed && residual <= SLIPPING) *outcome = a->reversed ? ACTIVE_JAMMED : ACTIVE_CONVERGED;
+    if (n_changed || residual > SLIPPING) continue;
+    if (a->rtol == EXACT || a->compliance->W) *outcome = a->reversed ? ACTIVE_JAMMED : ACTIVE_CONVERGED;
+    a->rtol = EXACT;
   }
   PetscCall(PetscFree2(l, w));
   PetscFunctionReturn(0);
@@ -288,6 +305,7 @@ PetscErrorCode ActiveCorrect(Active *a, const PetscReal rhs[])
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(a->rows->n, &l, a->rows->n, &w));
+  a->rtol = CORRECT;
   PetscCall(Solve(a, PETSC_TRUE, rhs, l, w, &outcome));
   for (PetscInt i = 0; i < a->rows->n && outcome == SMALL_GOOD; i++) {
     a->l[i] += l[i];

@@ -12,10 +12,9 @@
 #include <petscblaslapack.h>
 
 #define SINGULAR  1e-13 /* smallest pivot beside the largest */
-#define RTOL      1e-13 /* of GMRES */
 #define ENOUGH    1e-10 /* of GMRES that gets no farther; refinement of the whole does the rest */
-#define RESTART   100
-#define MAX_STEPS 300
+#define RESTART   300
+#define MAX_STEPS 1000
 
 /* Laws and right-hand side of all rows, on every rank */
 static PetscErrorCode Gather(const Rows *rows, const LawRow law[], const PetscReal rhs[], LawRow all_law[],
@@ -104,7 +103,7 @@ typedef struct {
   const Compliance *compliance;
   const Rows       *rows;
   const LawRow     *law;
-  PetscReal         friction, *l, *w;
+  PetscReal         friction, rtol, *l, *w;
 } Shell;
 
 /* l = P z, w = Q z; with p0, q0 when they are wanted */
@@ -161,7 +160,7 @@ static PetscErrorCode ShellSolve(Shell *s, Vec b, Vec z, SmallOutcome *outcome)
   PetscCall(KSPSetType(ksp, KSPGMRES));
   PetscCall(KSPGMRESSetRestart(ksp, RESTART));
   PetscCall(KSPGMRESSetCGSRefinementType(ksp, KSP_GMRES_CGS_REFINE_IFNEEDED));
-  PetscCall(KSPSetTolerances(ksp, RTOL, PETSC_DEFAULT, PETSC_DEFAULT, MAX_STEPS));
+  PetscCall(KSPSetTolerances(ksp, s->rtol, PETSC_DEFAULT, PETSC_DEFAULT, MAX_STEPS));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCNONE));
   PetscCall(KSPSetFromOptions(ksp));
@@ -177,9 +176,9 @@ static PetscErrorCode ShellSolve(Shell *s, Vec b, Vec z, SmallOutcome *outcome)
 
 /* z of this rank's rows [rows] */
 static PetscErrorCode KrylovSolve(const Compliance *c, const Rows *rows, PetscReal friction, const LawRow law[],
-                                  const PetscReal rhs[], PetscReal z[], SmallOutcome *outcome)
+                                  const PetscReal rhs[], PetscReal rtol, PetscReal z[], SmallOutcome *outcome)
 {
-  Shell        s = {c, rows, law, friction, NULL, NULL};
+  Shell        s = {c, rows, law, friction, rtol, NULL, NULL};
   PetscScalar *value;
   PetscReal   *y;
   Vec          b, x;
@@ -207,7 +206,7 @@ static PetscErrorCode KrylovSolve(const Compliance *c, const Rows *rows, PetscRe
 }
 
 PetscErrorCode SmallSolve(const Compliance *c, const Rows *rows, PetscReal friction, const LawRow law[],
-                          const PetscReal rhs[], PetscReal l[], PetscReal w[], SmallOutcome *outcome,
+                          const PetscReal rhs[], PetscReal rtol, PetscReal l[], PetscReal w[], SmallOutcome *outcome,
                           PetscBool *reversed)
 {
   PetscReal *z;
@@ -218,7 +217,7 @@ PetscErrorCode SmallSolve(const Compliance *c, const Rows *rows, PetscReal frict
   if (c->W)
     PetscCall(DenseSolve(c, rows, friction, law, rhs, z, outcome, reversed));
   else
-    PetscCall(KrylovSolve(c, rows, friction, law, rhs, z, outcome));
+    PetscCall(KrylovSolve(c, rows, friction, law, rhs, rtol, z, outcome));
   LawApply(rows, law, PETSC_TRUE, z, l, w);
   PetscCall(PetscFree(z));
   PetscFunctionReturn(0);

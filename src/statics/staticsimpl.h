@@ -55,6 +55,7 @@ typedef struct {
   const Compliance *compliance;
   PetscInt          max_it, n_it;
   PetscReal         friction; /* factor of all friction coefficients, 0 .. 1 */
+  PetscReal         rtol;     /* of GMRES on the small system */
   PetscReal         scale;    /* m, of the contact displacements; what is below 1e-13 of it is rounding */
   CoulombStatus    *status;   /* [n_pairs] */
   PetscReal        *free;     /* [rows] w without contact forces, kappa-held: G K_a^-1 f */
@@ -123,11 +124,11 @@ PETSC_INTERN PetscErrorCode ComplianceAugment(Mat K, const Rows *rows, PetscReal
                                               const CoulombStatus status[], Mat *A);
 PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *c);
 
-/* small.c - z of w + W_mu l - W w = rhs with the laws [rows]; l and w of it. reversed = whether the determinant is
+/* small.c - z of w + W_mu l - W w = rhs with the laws [rows]; l and w of it. GMRES to rtol where it is not dense. reversed = whether the determinant is
    negative */
 PETSC_INTERN PetscErrorCode SmallSolve(const Compliance *c, const Rows *rows, PetscReal friction, const LawRow law[],
-                                       const PetscReal rhs[], PetscReal l[], PetscReal w[], SmallOutcome *outcome,
-                                       PetscBool *reversed);
+                                       const PetscReal rhs[], PetscReal rtol, PetscReal l[], PetscReal w[],
+                                       SmallOutcome *outcome, PetscBool *reversed);
 
 /* activeset.c - status, l and w that obey all laws, from the status given; friction is raised in steps if need be.
    outcome and active->friction tell where it ended. */

@@ -15,15 +15,15 @@
 #define ENUMERATE_MAX 12 /* pairs */
 
 typedef struct {
-  int       n;             /* solutions */
-  PetscBool unique;        /* all principal minors are positive, hence n is 1 for any load */
-  PetscBool sharp;         /* nothing was decided by less than 1e-9 */
+  int       n;                       /* solutions */
+  PetscBool unique;                  /* all principal minors are positive, hence n is 1 for any load */
+  PetscBool sharp;                   /* nothing was decided by less than 1e-9 */
   PetscReal force[8][ENUMERATE_MAX]; /* lambda_n of the first of them, N */
 } Solutions;
 
 typedef struct {
-  int          n;                               /* pairs */
-  long double *K, *N, *T, *f;                   /* [unknowns][unknowns], [pairs][unknowns], [unknowns] */
+  int          n;                                       /* pairs */
+  long double *K, *N, *T, *f;                           /* [unknowns][unknowns], [pairs][unknowns], [unknowns] */
   long double  g0[ENUMERATE_MAX], slack[ENUMERATE_MAX]; /* 1 / k_n */
   int          n_unknowns;
 } DenseContact;

@@ -16,11 +16,11 @@ typedef struct {
   char      options[4096];
   PetscReal grid[2][3][6]; /* of base and block */
   Box       box[2];
-  PetscReal mu, kn, softest;  /* kn infinite for the constraint; softest modulus, Pa */
-  PetscBool slides, held;     /* held: springs in all directions at the block */
-  PetscBool pressed;          /* straight down on the middle of the block, and nothing else */
-  PetscReal gap;              /* m, largest of the initial gaps; they are drawn for each pair */
-  PetscInt  gaps;             /* 0 none, 1 open, 2 interference, 3 both */
+  PetscReal mu, kn, softest; /* kn infinite for the constraint; softest modulus, Pa */
+  PetscBool slides, held;    /* held: springs in all directions at the block */
+  PetscBool pressed;         /* straight down on the middle of the block, and nothing else */
+  PetscReal gap;             /* m, largest of the initial gaps; they are drawn for each pair */
+  PetscInt  gaps;            /* 0 none, 1 open, 2 interference, 3 both */
 } Scene;
 
 /* In [0, 1); M. O'Neill's multiplier, upper bits */
@@ -69,8 +69,12 @@ static inline void SceneDrawBoxes(Scene *s)
 {
   const PetscBool match = Draw(s) < 0.5 ? PETSC_TRUE : PETSC_FALSE;
 
-  s->box[0] = (Box){.name = "base", .n = {0, 0, 2}};
-  s->box[1] = (Box){.name = "block", .n = {2 + DrawInteger(s, 3), 2 + DrawInteger(s, 3), 2}};
+  s->box[0] = (Box){
+    .name = "base", .n = {0, 0, 2}
+  };
+  s->box[1] = (Box){
+    .name = "block", .n = {2 + DrawInteger(s, 3), 2 + DrawInteger(s, 3), 2}
+  };
   GridDraw(s, 2, -0.3 * SCENE_SIZE, 0, s->grid[0][2]);
   GridDraw(s, 2, 0, SCENE_SIZE * (0.3 + Draw(s)), s->grid[1][2]);
   for (int d = 0; d < 2; d++) {
@@ -108,8 +112,8 @@ static inline PetscErrorCode SceneDrawLoads(Scene *s)
   const PetscReal angle = 2 * PETSC_PI * Draw(s);
 
   PetscFunctionBeginUser;
-  PetscCall(SceneAdd(s, "-press_set block_top -press_force %.17g,%.17g,%.17g ", side * cos(angle), side * sin(angle),
-                     down));
+  PetscCall(
+    SceneAdd(s, "-press_set block_top -press_force %.17g,%.17g,%.17g ", side * cos(angle), side * sin(angle), down));
   if (Draw(s) < 0.67) {
     s->pressed = side == 0 && down < 0 ? PETSC_TRUE : PETSC_FALSE;
     PetscCall(SceneAdd(s, "-loads press "));
