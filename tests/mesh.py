@@ -7,10 +7,10 @@
 beam  a bar of 100 x 10 x 5 mm along x: volume "beam", end x = 0 "root"
 rig   a ring and a block that stands on a sector of its face with nodes of its own: volumes "disc", "block", surfaces
       "disc_inner", "disc_face", "block_face", "block_top"
-blocks  a block of 100 x 100 x 100 mm (x, y around 0, z from 0) on a base that reaches two elements farther on each side and
-      20 mm down: volumes "base", "block", surfaces "base_bottom", "base_top", "block_bottom", "block_top", "block_left",
-      "block_right" (least and largest y). The nodes of both match; --lift moves the bottom of the block, more than its inside,
-      by gap + tilt (y / 100 mm + 1/2) + crown (2 y / 100 mm)^2
+blocks  a block of 100 x 100 x 100 mm (x, y around 0, z from 0) on a base that reaches two elements farther on each side
+      and 20 mm down: volumes "base", "block", surfaces "base_bottom", "base_top", "block_bottom", "block_top",
+      "block_left", "block_right" (least and largest y). The nodes of both match; --lift moves the bottom of the block,
+      more than its inside, by gap + tilt (y / 100 mm + 1/2) + crown (2 y / 100 mm)^2
 
 --renumber draws new numbers of nodes and elements, a new order of both, and a new first node of each element.
 --move turns the mesh by MOVE_ROTATION, a quarter turn about (1, 2, 2), and shifts it; the direction y becomes

@@ -1,17 +1,18 @@
 #!/usr/bin/env python3
 """Contact forces in static.csv and reactions.csv against what statics alone demands.
 
-    verify_static.py press FOLDER FORCE AXES        pressed by FORCE (N): sum of lambda_n, forces alike where x or y or both
-                                                    (AXES) change sign, balance of all reactions
-    verify_static.py lean FOLDER FORCE RATIO OPEN   friction RATIO FORCE along y, balanced at the height 0.1 m, moves the resultant
-                                                    of lambda_n by RATIO times the height above the slave nodes that it acts
-                                                    on; whether part is "open", or all "closed"
-    verify_static.py bed FOLDER FORCE MU            forces of a rigid block of height 0.1 m on equal springs that only push
-    verify_static.py stiffer LIMIT K1 K2 K3         penalty forces of three folders, k_n a thousandfold each time, tend to
-                                                    those of the constraint
+    verify_static.py press FOLDER FORCE AXES        pressed by FORCE (N): sum of lambda_n, forces alike where x or y or
+                                                    both (AXES) change sign, balance of all reactions
+    verify_static.py lean FOLDER FORCE RATIO OPEN   friction RATIO FORCE along y, balanced at the height 0.1 m, moves
+                                                    the resultant of lambda_n by RATIO times the height above the slave
+                                                    nodes that it acts on; whether part is "open", or all "closed"
+    verify_static.py bed FOLDER FORCE MU            forces of a rigid block of height 0.1 m on equal springs that only
+                                                    push
+    verify_static.py stiffer LIMIT K1 K2 K3         penalty forces of three folders, k_n a thousandfold each time, tend
+                                                    to those of the constraint
     verify_static.py friction FOLDER MU FY STICK [TOLERANCE]
-                                                    sum of the friction on the slave along -y (N), 0 along x; the cone of every
-                                                    pair; which pairs stick: "all", "some" or "none"
+                                                    sum of the friction on the slave along -y (N), 0 along x; the cone
+                                                    of every pair; which pairs stick: "all", "some" or "none"
     verify_static.py column FOLDER FORCE AREA       even pressure
 """
 
@@ -24,7 +25,7 @@ import numpy as np
 from convergence import Judge
 
 NUMBERS = ("x_m", "y_m", "z_m", "lambda_n_n", "lambda_t_n", "lambda_b_n", "area_m2", "t_x", "t_y")
-SUM, PLACE, ALIKE = 1e-10, 1e-8, 1e-9  # relative: of forces, of a resultant to 0.1 m, of forces that symmetry makes equal
+SUM, PLACE, ALIKE = 1e-10, 1e-8, 1e-9  # relative: of forces, of a resultant to 0.1 m, of forces that are symmetric
 WIDTH = HEIGHT = 0.1  # m
 
 
@@ -35,7 +36,8 @@ class Pairs:
         with (Path(folder) / "static.csv").open(newline="") as file:
             rows = list(csv.DictReader(file))
         self.status = np.array([row["status"] for row in rows])
-        self.x, self.y, self.z, self.force, t, b, self.area, tx, ty = (np.array([float(row[c]) for row in rows]) for c in NUMBERS)
+        columns = (np.array([float(row[name]) for row in rows]) for name in NUMBERS)
+        self.x, self.y, self.z, self.force, t, b, self.area, tx, ty = columns
         self.friction = -np.array([t * tx - b * ty, t * ty + b * tx])
 
 
@@ -65,8 +67,8 @@ def press(judge, folder, force, axes):
     line(judge, "sum of reactions and loads / load", np.abs(reactions(folder)).max() / force, 0, SUM)
     for axis in axes:
         other = mirrored(pairs, -1 if axis == "x" else 1, -1 if axis == "y" else 1)
-        line(judge, f"lambda_n unlike its mirror image in {axis}", np.ptp([pairs.force, other], 0).max() / pairs.force.max(),
-             0, ALIKE)
+        apart = np.ptp([pairs.force, other], 0).max() / pairs.force.max()
+        line(judge, f"lambda_n unlike its mirror image in {axis}", apart, 0, ALIKE)
     line(judge, "largest over mean lambda_n: not even", pairs.force.max() / pairs.force.mean(), 1.01, 1e3)
 
 
@@ -92,7 +94,8 @@ def bed(judge, folder, force, mu):
         closed = ab @ shape > 0
         ab = np.linalg.solve(shape[:, closed] @ shape[:, closed].T, wanted)
     exact = np.maximum(0, ab @ shape)
-    line(judge, "lambda_n unlike those of a bed of springs / largest", np.abs(pairs.force - exact).max() / exact.max(), 0, 1e-6)
+    apart = np.abs(pairs.force - exact).max() / exact.max()
+    line(judge, "lambda_n unlike those of a bed of springs / largest", apart, 0, 1e-6)
     line(judge, "open pairs, less those of the bed", np.sum(pairs.status == "open") - np.sum(exact == 0), 0, 0)
 
 
@@ -109,12 +112,13 @@ def friction(judge, folder, mu, along, stick, tolerance=SUM):
     total, size = pairs.friction.sum(1), np.hypot(*pairs.friction)
     slipping, sticking = pairs.status == "slip", pairs.status == "stick"
     scale = pairs.force.max()
-    line(judge, "friction on the slave along y, error / N", (total[1] + along) / pairs.force.sum(), -tolerance, tolerance)
+    line(judge, "friction on the slave along y, error / N", (total[1] + along) / pairs.force.sum(), -tolerance,
+         tolerance)
     line(judge, "friction on the slave along x / N", total[0] / pairs.force.sum(), -SUM, SUM)
     line(judge, "friction beyond mu lambda_n / largest lambda_n", (size - mu * pairs.force).max() / scale, -1, SUM)
     if slipping.any():
-        line(judge, "friction of slipping pairs off mu lambda_n / largest", np.abs(size - mu * pairs.force)[slipping].max() / scale,
-             0, SUM)
+        off = np.abs(size - mu * pairs.force)[slipping].max() / scale
+        line(judge, "friction of slipping pairs off mu lambda_n / largest", off, 0, SUM)
     bounds = {"all": (len(size), len(size)), "some": (1, len(size) - 1), "none": (0, 0)}[stick]
     line(judge, "sticking pairs", sticking.sum(), *bounds)
     image = np.abs(np.ptp([pairs.force, mirrored(pairs, -1, 1)], 0)).max() / scale

@@ -79,7 +79,8 @@ PetscErrorCode StaticsRelease(Statics statics);
 /*@ StaticsGetState - states of the local pairs, and displacements of all unknowns, m (borrowed). Not collective. @*/
 PetscErrorCode StaticsGetState(Statics statics, const ContactState **state, Vec *u);
 
-/*@ StaticsGetKKT - residuals of the laws, and |K u + ... - f| / |f|. Not collective. @*/
+/*@ StaticsGetKKT - residuals of the laws, and |K u + ... - f| over |f|, or the contact forces where they are larger.
+    Not collective. @*/
 PetscErrorCode StaticsGetKKT(Statics statics, ContactKKT *kkt, PetscReal *equilibrium);
 
 /*@ StaticsGetResultant - sums over an interface. Not collective. @*/

@@ -8,9 +8,9 @@
 
       w + (W - V D) l - W w = G K_a^-1 f,   W = kappa G K_a^-1 G',   V = kappa G K_a^-1 S'.
 
-   Eigenvalues of W lie in (0, 1]. Closed pairs have columns of W in the small system, open ones of I - W: kappa, a tenth
-   of the mean stiffness of a slave node against its neighbours along n, keeps both off zero (GMRES then takes a third of
-   the steps that it takes with all of it).
+   Eigenvalues of W lie in (0, 1]. Closed pairs have columns of W in the small system, open ones of I - W: kappa, a
+   tenth of the mean stiffness of a slave node against its neighbours along n, keeps both off zero (GMRES then takes a
+   third of the steps that it takes with all of it).
 */
 #include "staticsimpl.h"
 

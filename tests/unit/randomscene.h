@@ -1,6 +1,6 @@
 /*
-   Scenes drawn at random for the statics: a block of 2 x 2 to 4 x 4 nodes across on a base, in SI units. Stiffness, law,
-   friction, slip, loads, springs and gaps vary over what users may give, and beyond.
+   Scenes drawn at random for the statics: a block of 2 x 2 to 4 x 4 nodes across on a base, in SI units. Stiffness,
+   law, friction, slip, loads, springs and gaps vary over what users may give, and beyond.
 */
 #pragma once
 

@@ -51,7 +51,7 @@ static double NormalError(const CoulombPair *pair, const double l[], const doubl
   return fabs(l[0] - pair->k * (w[0] - pair->g0)) / fmax(1, fmax(fabs(l[0]), pair->k * (fabs(w[0]) + fabs(pair->g0))));
 }
 
-/* Breaks when: a row of open or stick is missing or has an offset of the other, or a stiff pair is treated as a soft one */
+/* Breaks when: a row of open or stick is missing or has an offset of the other, or a stiff pair counts as soft */
 static int TestOpenAndStick(void)
 {
   uint64_t seed = 1;
@@ -129,9 +129,9 @@ static void DrawSlipping(const CoulombPair *pair, uint64_t *seed, double x[6])
   } while (CoulombTrial(pair, x, &x[3], q) < 1.05 * pair->mu * x[0]);
 }
 
-/* Breaks when: the tangent of slip lacks the turn of its direction (E), takes s with the wrong sign, or counts slip from
-   another place than slip0. F(x0) + F'(x0) (x - x0) = 0 for every x of the law, F' by central differences over 2e-5,
-   which leave 1e-10 of F's third derivatives (up to 1/|q|^2, |q| > 0.005) in units of |q|. */
+/* Breaks when: the tangent of slip lacks the turn of its direction (E), takes s with the wrong sign, or counts slip
+   from another place than slip0. F(x0) + F'(x0) (x - x0) = 0 for every x of the law, F' by central differences over
+   2e-5, which leave 1e-10 of F's third derivatives (up to 1/|q|^2, |q| > 0.005) in units of |q|. */
 static int TestSlipTangent(void)
 {
   const double step  = 1e-5;
@@ -166,7 +166,8 @@ static int TestSlipTangent(void)
   return CheckClose("slip: Newton's equation of the natural map", worst, 0, 1e-8);
 }
 
-/* Breaks when: a slipping equilibrium is no fixed point. p = mu l_n s / |s| made by hand obeys the law linearised at it */
+/* Breaks when: a slipping equilibrium is no fixed point. p = mu l_n s / |s| made by hand obeys the law linearised at
+   it */
 static int TestSlipFixed(void)
 {
   uint64_t seed  = 4;

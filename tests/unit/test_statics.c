@@ -1,6 +1,6 @@
 /*
-   The statics on 200 scenes drawn at random with a fixed seed: each ends with the laws of contact and equilibrium obeyed
-   or with an error of PETSC_ERR_NOT_CONVERGED or PETSC_ERR_USER_INPUT, and never goes on for ever.
+   The statics on 200 scenes drawn at random with a fixed seed: each ends with the laws of contact and equilibrium
+   obeyed or with an error of PETSC_ERR_NOT_CONVERGED or PETSC_ERR_USER_INPUT, and never goes on for ever.
 
    test_statics [-first <0>] [-count <200>] takes other scenes.
 */
@@ -70,8 +70,8 @@ static PetscErrorCode ForcesAdd(Mat rows, const ContactState state[], int compon
   PetscFunctionReturn(0);
 }
 
-/* |K u + N'lambda_n - T'lambda_t - B'lambda_b - f| over the larger of |f| and the contact forces, and what rounding of u
-   leaves of it, eps max|K| |u| */
+/* |K u + N'lambda_n - T'lambda_t - B'lambda_b - f| over the larger of |f| and the contact forces, and what rounding of
+   u leaves of it, eps max|K| |u| */
 static PetscErrorCode Imbalance(const Chain *chain, const ContactState state[], Vec u, PetscReal *error,
                                 PetscReal *rounding)
 {
@@ -257,8 +257,8 @@ static PetscErrorCode TestScene(PetscInt number, Tally *t)
   PetscFunctionReturn(0);
 }
 
-/* Breaks when: the active set gives up what has a solution or takes for one what is none, a rigid motion is held where it
-   must not be, or refinement is left out. */
+/* Breaks when: the active set gives up what has a solution or takes for one what is none, a rigid motion is held where
+   it must not be, or refinement is left out. */
 static PetscErrorCode TestScenes(PetscInt first, PetscInt n, int *failed)
 {
   Tally t = {0};
