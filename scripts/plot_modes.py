@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """Draws the modes that squeal computed: eigenvalues in the complex plane, and shapes.
 
-Above, growth rate (rad/s) against frequency (Hz or kHz); unstable modes are marked and named. Below, the chosen modes (the
-four of largest growth among the unstable ones, else the first four): the face of the disc seen along its axis from the
-side of the contact, coloured by out-of-plane displacement at the phase of its largest amplitude, nodal lines in black,
-the place of the other parts in green; under it those parts seen along the radius, undeformed in grey and deformed
-(exaggerated) in blue. Shapes have no scale of their own: colours are relative to the largest value.
+Above, growth rate (rad/s) against frequency (Hz or kHz); unstable modes are marked and named. Below, the chosen modes
+(the four of largest growth among the unstable ones, else the first four): the face of the disc seen along its axis
+from the side of the contact, coloured by out-of-plane displacement at the phase of its largest amplitude, nodal lines
+in black, the place of the other parts in green; under it those parts seen along the radius, undeformed in grey and
+deformed (exaggerated) in blue. Shapes have no scale of their own: colours are relative to the largest value.
 
 Reads modes.csv and modes.h5; without modes.h5 only the eigenvalues are drawn.
 """

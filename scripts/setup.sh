@@ -24,7 +24,8 @@ install_packages()
   wanted=$(sed 's/#.*//' "$root/scripts/packages.txt")
   # shellcheck disable=SC2086
   missing=$(LC_ALL=C comm -23 <(printf '%s\n' $wanted | LC_ALL=C sort) \
-    <(dpkg-query -W -f '${db:Status-Status} ${Package}\n' $wanted 2>/dev/null | sed -n 's/^installed //p' | LC_ALL=C sort))
+    <(dpkg-query -W -f '${db:Status-Status} ${Package}\n' $wanted 2>/dev/null | sed -n 's/^installed //p' |
+      LC_ALL=C sort))
   [ -n "$missing" ] || return 0
   missing=$(echo $missing)
   if [ "$(id -u)" -ne 0 ]; then
@@ -56,7 +57,8 @@ check_blas()
   blas=$(ldd "$build/squeal" | sed -n 's/.*libblas\.so[^ ]* => \([^ ]*\).*/\1/p')
   case $(readlink -f "$blas") in
     */blas/libblas.so*)
-      say "$blas is the reference BLAS, several times slower; see update-alternatives --display ${blas##*/}-$(uname -m)-linux-gnu"
+      say "$blas is the reference BLAS, several times slower;" \
+        "see update-alternatives --display ${blas##*/}-$(uname -m)-linux-gnu"
       ;;
   esac
 }

@@ -159,7 +159,8 @@ def name_onsets(axes, study, quantity, scale):
         return []
     points = onset_points(study, quantity, scale)
     taken = boxes_about(axes, points, 9)
-    texts = [f"{point[0]:.4g} {study.axes[0].unit}".rstrip() + ("" if row["confirmed"] or row["kind"] == "jump" else " (not confirmed)")
+    texts = [f"{point[0]:.4g} {study.axes[0].unit}".rstrip()
+             + ("" if row["confirmed"] or row["kind"] == "jump" else " (not confirmed)")
              for point, row in zip(points, study.onsets)]
     place_texts(axes, zip(points, texts), BELOW, taken, color=INK)
     return taken

@@ -109,10 +109,10 @@ static PetscErrorCode ChainView(Chain *chain, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
-/* What rooms need of each other, and the contact stiffness where pressing is to tell it */
+/* What rooms need of each other, the contact stiffness where pressing is to tell it, and the matrices for a file */
 static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
 {
-  PetscBool is_static;
+  PetscBool is_static, save;
 
   PetscFunctionBeginUser;
   PetscCall(StaticsSetOperators(chain->statics, chain->operators));
@@ -122,7 +122,11 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscCall(ModesGetContact(chain->modes, &is_static));
   if (is_static) PetscCall(ModesSetStatics(chain->modes, chain->statics));
   if (is_static) PetscCall(SweepSetStatics(chain->sweep, chain->statics));
+  PetscCall(StaticsCheckUse(chain->statics, is_static && chain->analysis != ANALYSIS_STATIC));
   PetscCall(StaticsIdentifyAll(chain->statics, viewer));
+  PetscCall(OperatorsGetSave(chain->operators, &save));
+  if (is_static && save) PetscCall(StaticsLinearise(chain->statics));
+  PetscCall(OperatorsSave(chain->operators));
   PetscFunctionReturn(0);
 }
 

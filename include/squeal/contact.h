@@ -124,6 +124,12 @@ PetscErrorCode ContactGetPairs(Contact contact, PetscInt *n_local, PetscInt *n_g
 PetscErrorCode ContactCreateOperators(Contact contact, PetscInt interface, Mat *N, Mat *T, Mat *B);
 
 /*@
+   ContactCreatePairOperators - the same of chosen local pairs: row i of this rank belongs to pair[i], i < n.
+   Collective. The caller destroys them; pass NULL for what is not needed.
+@*/
+PetscErrorCode ContactCreatePairOperators(Contact contact, PetscInt n, const PetscInt pair[], Mat *N, Mat *T, Mat *B);
+
+/*@
    ContactCreateRows - sparse rows d . (u_m - u_s), shape [n][unknowns]: row i of this rank belongs to the local pair
    pair[i] and the direction direction[i][3]. Collective. The caller destroys the matrix.
 @*/

@@ -78,6 +78,13 @@ PetscErrorCode OperatorsHaveMatrices(Operators operators, PetscBool *have);
 /*@ OperatorsSetUp - assembles or loads the matrices. Collective. @*/
 PetscErrorCode OperatorsSetUp(Operators operators);
 
+/*@ OperatorsGetSave - whether -operators_save is given. Not collective. @*/
+PetscErrorCode OperatorsGetSave(Operators operators, PetscBool *save);
+
+/*@ OperatorsSave - writes the matrices at the present values of the parameters where -operators_save asks for it.
+    Collective. @*/
+PetscErrorCode OperatorsSave(Operators operators);
+
 /*@ OperatorsGetMatrices - K, M, C, H of all unknowns (borrowed; C and H may be NULL) at the present values of the
     parameters, and mu, the largest friction coefficient in absolute value; pass NULL for what is not needed.
     Collective. @*/

@@ -30,6 +30,7 @@ typedef struct {
   PetscInt  n[CONTACT_N_STATUS]; /* pairs of each status */
   PetscReal normal;              /* sum of lambda_n, N */
   PetscReal force[3];            /* on the master, normal and friction, N */
+  PetscReal friction[3];         /* its part along the surface, N */
   PetscReal centre[3];           /* of the normal forces, m */
 } StaticsResultant;
 
@@ -63,17 +64,21 @@ PetscErrorCode StaticsSetOperators(Statics statics, Operators operators);
 @*/
 PetscErrorCode StaticsSetFromOptions(Statics statics);
 
+/*@ StaticsCheckUse - raises the error for options that do nothing: what concerns modes, unless they are asked for about
+    the sliding state. Collective. @*/
+PetscErrorCode StaticsCheckUse(Statics statics, PetscBool modes);
+
 /*@
    StaticsSolve - the equilibrium at the present values of the parameters. Starts from the status of the solution
-before, else with all pairs closed. Collective.
+   before, else with all pairs closed. Collective.
 
    Errors: PETSC_ERR_USER_INPUT without loads or for a load that nothing resists; PETSC_ERR_NOT_CONVERGED where there is
    no equilibrium: the message says how far friction or load could be raised and what then happened.
 @*/
 PetscErrorCode StaticsSolve(Statics statics);
 
-/*@ StaticsRelease - frees the factorisation that StaticsSolve() keeps for the next call, at the same bodies. Collective.
-    @*/
+/*@ StaticsRelease - frees the factorisation that StaticsSolve() keeps for the next call, at the same bodies.
+    Collective. @*/
 PetscErrorCode StaticsRelease(Statics statics);
 
 /*@ StaticsGetState - states of the local pairs, and displacements of all unknowns, m (borrowed). Not collective. @*/

@@ -6,6 +6,7 @@
    directions has no unknown by which it could be found: the vertex below it counts as held too.
 */
 #include "contactimpl.h"
+#include "gather.h"
 #include <stdlib.h>
 
 /* A vertex of the surface and one end of its edges into the body */
@@ -122,23 +123,13 @@ static void BelowReduce(PetscInt *n, Below below[])
 /* The edges of all vertices of a surface, on every rank, ordered by vertex */
 static PetscErrorCode BelowGather(Model model, MPI_Comm comm, const char set[], PetscInt *n, Below **below)
 {
-  PetscMPIInt size, bytes, *counts, *starts;
-  PetscInt    n_local;
-  Below      *local;
+  PetscInt n_local;
+  Below   *local;
 
   PetscFunctionBeginUser;
   PetscCall(BelowLocal(model, set, &n_local, &local));
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(PetscMalloc2(size, &counts, size + 1, &starts));
-  PetscCall(PetscMPIIntCast(n_local * (PetscInt)sizeof(Below), &bytes));
-  PetscCallMPI(MPI_Allgather(&bytes, 1, MPI_INT, counts, 1, MPI_INT, comm));
-  starts[0] = 0;
-  for (PetscMPIInt r = 0; r < size; r++) starts[r + 1] = starts[r] + counts[r];
-  *n = starts[size] / (PetscInt)sizeof(Below);
-  PetscCall(PetscMalloc1(*n, below));
-  PetscCallMPI(MPI_Allgatherv(local, bytes, MPI_BYTE, *below, counts, starts, MPI_BYTE, comm));
+  PetscCall(GatherRecords(comm, n_local, sizeof(Below), local, n, below));
   BelowReduce(n, *below);
-  PetscCall(PetscFree2(counts, starts));
   PetscCall(PetscFree(local));
   PetscFunctionReturn(0);
 }

@@ -4,6 +4,7 @@
    a surface do not matter.
 */
 #include "contactimpl.h"
+#include "gather.h"
 
 /* Status of a node of the slave surface; without pair where a rank has found none */
 typedef enum { NODE_WITHOUT_PAIR, NODE_OPEN, NODE_CLOSED } NodeStatus;
@@ -39,25 +40,6 @@ static PetscErrorCode CornersLocal(Model model, const char set[], PetscInt *n, P
   PetscFunctionReturn(0);
 }
 
-/* Concatenates the arrays of all ranks */
-static PetscErrorCode GatherAll(MPI_Comm comm, PetscInt n_local, const PetscInt local[], PetscInt *n, PetscInt **all)
-{
-  PetscMPIInt size, n_mine, *counts, *starts;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(PetscMalloc2(size, &counts, size + 1, &starts));
-  PetscCall(PetscMPIIntCast(n_local, &n_mine));
-  PetscCallMPI(MPI_Allgather(&n_mine, 1, MPI_INT, counts, 1, MPI_INT, comm));
-  starts[0] = 0;
-  for (PetscMPIInt r = 0; r < size; r++) starts[r + 1] = starts[r] + counts[r];
-  *n = starts[size];
-  PetscCall(PetscMalloc1(*n, all));
-  PetscCallMPI(MPI_Allgatherv(local, n_mine, MPIU_INT, *all, counts, starts, MPIU_INT, comm));
-  PetscCall(PetscFree2(counts, starts));
-  PetscFunctionReturn(0);
-}
-
 /* Facets and nodes of the slave surface of an interface, all without pair */
 static PetscErrorCode SurfaceCreate(Contact contact, PetscInt interface, Surface *s)
 {
@@ -65,7 +47,7 @@ static PetscErrorCode SurfaceCreate(Contact contact, PetscInt interface, Surface
 
   PetscFunctionBeginUser;
   PetscCall(CornersLocal(contact->model, contact->interfaces[interface].slave, &n_local, &local));
-  PetscCall(GatherAll(contact->comm, n_local, local, &n, &s->corner));
+  PetscCall(GatherRecords(contact->comm, n_local, sizeof(PetscInt), local, &n, &s->corner));
   PetscCall(PetscFree(local));
   PetscCall(PetscMalloc1(n, &s->number));
   PetscCall(PetscArraycpy(s->number, s->corner, n));

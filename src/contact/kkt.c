@@ -1,6 +1,7 @@
 /*
-   Residuals of the laws of contact and friction. Per pair, with F the largest |lambda_n| and L the largest gap, closing,
-   slip or displacement at any pair (bodies that move far together have the gap between them no finer than that), g = gap + lambda_n / k_n, s the slip:
+   Residuals of the laws of contact and friction. Per pair, with F the largest |lambda_n| and L the largest gap,
+   closing, slip or displacement at any pair (bodies that move far together have the gap between them no finer than
+   that), g = gap + lambda_n / k_n, s the slip:
       penetration      max(0, -g) / L
       sign             max(0, -lambda_n) / F
       complementarity  |min(lambda_n / F, g / L)|

@@ -7,6 +7,7 @@
    v = -w x (x - c) in m/s. Both are projected on the tangent plane of the pair.
 */
 #include "contactimpl.h"
+#include "gather.h"
 #include "kernels/facet.h"
 
 PetscErrorCode FacetsLocal(Model model, const char set[], PetscInt *n, Facet **facets)
@@ -45,22 +46,12 @@ PetscErrorCode FacetsLocal(Model model, const char set[], PetscInt *n, Facet **f
 /* All facets of the master surface, on every rank */
 static PetscErrorCode FacetsGather(MPI_Comm comm, Model model, const char set[], PetscInt *n, Facet **facets)
 {
-  PetscMPIInt size, bytes, *counts, *starts;
-  PetscInt    n_local;
-  Facet      *local;
+  PetscInt n_local;
+  Facet   *local;
 
   PetscFunctionBeginUser;
   PetscCall(FacetsLocal(model, set, &n_local, &local));
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(PetscMalloc2(size, &counts, size + 1, &starts));
-  PetscCall(PetscMPIIntCast(n_local * (PetscInt)sizeof(Facet), &bytes));
-  PetscCallMPI(MPI_Allgather(&bytes, 1, MPI_INT, counts, 1, MPI_INT, comm));
-  starts[0] = 0;
-  for (PetscMPIInt r = 0; r < size; r++) starts[r + 1] = starts[r] + counts[r];
-  *n = starts[size] / (PetscInt)sizeof(Facet);
-  PetscCall(PetscMalloc1(*n, facets));
-  PetscCallMPI(MPI_Allgatherv(local, bytes, MPI_BYTE, *facets, counts, starts, MPI_BYTE, comm));
-  PetscCall(PetscFree2(counts, starts));
+  PetscCall(GatherRecords(comm, n_local, sizeof(Facet), local, n, facets));
   PetscCall(PetscFree(local));
   PetscFunctionReturn(0);
 }
@@ -191,56 +182,81 @@ typedef struct {
   PetscReal distance, x[3], no_slip;
 } PairFailure;
 
-/* Pairs the slave nodes that this rank owns; what fails is kept in *failure */
+/* What is known of the slave nodes: arrays of the local vertices */
+typedef struct {
+  const PetscReal *x;        /* [vertex][3], m */
+  const PetscInt  *unknowns; /* [vertex][3] */
+  PetscReal       *normals;  /* [vertex][3], times area, m^2 */
+} SlaveNodes;
+
+/* The pair of local vertex v with the facet nearest to it; what fails is kept in *failure */
+static PetscErrorCode PairSet(const ContactInterface *c, const SlaveNodes *nodes, PetscInt v, PetscInt n_facets,
+                              const Facet facets[], ContactPair *pair, PairFailure *failure)
+{
+  const PetscReal *normal     = &nodes->normals[3 * v];
+  PetscReal        natural[2] = {0, 0}, distance;
+  PetscInt         f;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(pair->x, &nodes->x[3 * v], 3));
+  PetscCall(PetscArraycpy(pair->slave, &nodes->unknowns[3 * v], 3));
+  pair->area = PetscSqrtReal(Dot(normal, normal));
+  f          = FacetNearest(n_facets, facets, pair->x, natural, &distance);
+  if (distance > failure->distance) {
+    failure->distance = distance;
+    PetscCall(PetscArraycpy(failure->x, pair->x, 3));
+  }
+  if (f < 0) PetscFunctionReturn(0);
+  PairSetMaster(&facets[f], natural, pair);
+  if (!PairSetSlip(c, pair)) failure->no_slip = 1;
+  PetscFunctionReturn(0);
+}
+
+/* Appends n pairs of an interface, of which slave and master are to be found; first is the place of the first */
+static PetscErrorCode PairsAppend(Contact contact, PetscInt interface, PetscInt n, PetscInt *first)
+{
+  PetscFunctionBeginUser;
+  *first = contact->n_pairs;
+  contact->n_pairs += n;
+  PetscCall(PetscRealloc(sizeof(ContactPair) * (size_t)contact->n_pairs, &contact->pairs));
+  PetscCall(PetscRealloc(sizeof(PetscInt) * (size_t)contact->n_pairs, &contact->vertex));
+  for (PetscInt p = *first; p < contact->n_pairs; p++) contact->pairs[p] = (ContactPair){.interface = interface};
+  PetscFunctionReturn(0);
+}
+
+/* Pairs the slave nodes that this rank owns */
 static PetscErrorCode PairNodes(Contact contact, PetscInt interface, PetscInt n_facets, const Facet facets[],
                                 PairFailure *failure)
 {
   const ContactInterface *c = &contact->interfaces[interface];
-  const PetscReal        *x;
-  const PetscInt         *unknowns, *vertices, *number;
-  PetscReal              *normals;
-  PetscInt                n, vStart;
+  const PetscInt         *vertices, *number;
+  SlaveNodes              nodes;
+  PetscInt                n, first, vStart;
   IS                      is, numbers;
   DM                      dm;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetDM(contact->model, &dm));
   PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
-  PetscCall(ModelGetCoordinates(contact->model, &x));
-  PetscCall(ModelGetUnknowns(contact->model, &unknowns));
-  PetscCall(ModelGetSetNormals(contact->model, c->slave, &normals));
+  PetscCall(ModelGetCoordinates(contact->model, &nodes.x));
+  PetscCall(ModelGetUnknowns(contact->model, &nodes.unknowns));
+  PetscCall(ModelGetSetNormals(contact->model, c->slave, &nodes.normals));
   PetscCall(ModelGetOwnedVertices(contact->model, c->slave, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
   PetscCall(DMPlexGetVertexNumbering(dm, &numbers));
   PetscCall(ISGetIndices(numbers, &number));
-  PetscCall(PetscRealloc(sizeof(ContactPair) * (size_t)(contact->n_pairs + n), &contact->pairs));
-  PetscCall(PetscRealloc(sizeof(PetscInt) * (size_t)(contact->n_pairs + n), &contact->vertex));
+  PetscCall(PairsAppend(contact, interface, n, &first));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt v          = 3 * (vertices[i] - vStart);
-    ContactPair   *pair       = &contact->pairs[contact->n_pairs++];
-    PetscReal      natural[2] = {0, 0}, distance;
-    PetscInt       f;
+    const PetscInt v = vertices[i] - vStart;
 
-    contact->vertex[contact->n_pairs - 1] = number[vertices[i] - vStart];
-    PetscCall(PetscMemzero(pair, sizeof(*pair)));
-    pair->interface = interface;
-    PetscCall(PetscArraycpy(pair->x, &x[v], 3));
-    PetscCall(PetscArraycpy(pair->slave, &unknowns[v], 3));
-    pair->area = PetscSqrtReal(Dot(&normals[v], &normals[v]));
-    f          = FacetNearest(n_facets, facets, pair->x, natural, &distance);
-    if (distance > failure->distance) {
-      failure->distance = distance;
-      PetscCall(PetscArraycpy(failure->x, pair->x, 3));
-    }
-    if (f < 0) continue;
-    PairSetMaster(&facets[f], natural, pair);
-    if (!PairSetSlip(c, pair)) failure->no_slip = 1;
+    contact->vertex[first + i] = number[v];
+    PetscCall(PairSet(c, &nodes, v, n_facets, facets, &contact->pairs[first + i], failure));
   }
   PetscCall(ISRestoreIndices(numbers, &number));
   PetscCall(ISRestoreIndices(is, &vertices));
   PetscCall(ISDestroy(&is));
-  PetscCall(PetscFree(normals));
+  PetscCall(PetscFree(nodes.normals));
   PetscFunctionReturn(0);
 }
 

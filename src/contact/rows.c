@@ -38,29 +38,38 @@ PetscErrorCode ContactCreateRows(Contact contact, PetscInt n, const PetscInt pai
   PetscFunctionReturn(0);
 }
 
-/* Rows of one interface along n, t or b, chosen by its offset in ContactPair */
-static PetscErrorCode InterfaceRows(Contact contact, PetscInt interface, size_t offset, Mat *rows)
+/* Rows of local pairs along n, t or b, chosen by its offset in ContactPair */
+static PetscErrorCode RowsAlong(Contact contact, PetscInt n, const PetscInt pair[], size_t offset, Mat *rows)
 {
-  PetscInt n = 0, *pair;
   PetscReal(*direction)[3];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(contact->n_pairs, &pair, contact->n_pairs, &direction));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    if (contact->pairs[p].interface != interface) continue;
-    PetscCall(PetscMemcpy(direction[n], (const char *)&contact->pairs[p] + offset, sizeof(*direction)));
-    pair[n++] = p;
-  }
+  PetscCall(PetscMalloc1(n, &direction));
+  for (PetscInt i = 0; i < n; i++)
+    PetscCall(PetscMemcpy(direction[i], (const char *)&contact->pairs[pair[i]] + offset, sizeof(*direction)));
   PetscCall(ContactCreateRows(contact, n, pair, (const PetscReal(*)[3])direction, rows));
-  PetscCall(PetscFree2(pair, direction));
+  PetscCall(PetscFree(direction));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactCreatePairOperators(Contact contact, PetscInt n, const PetscInt pair[], Mat *N, Mat *T, Mat *B)
+{
+  PetscFunctionBeginUser;
+  if (N) PetscCall(RowsAlong(contact, n, pair, offsetof(ContactPair, n), N));
+  if (T) PetscCall(RowsAlong(contact, n, pair, offsetof(ContactPair, t), T));
+  if (B) PetscCall(RowsAlong(contact, n, pair, offsetof(ContactPair, b), B));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ContactCreateOperators(Contact contact, PetscInt interface, Mat *N, Mat *T, Mat *B)
 {
+  PetscInt n = 0, *pair;
+
   PetscFunctionBeginUser;
-  if (N) PetscCall(InterfaceRows(contact, interface, offsetof(ContactPair, n), N));
-  if (T) PetscCall(InterfaceRows(contact, interface, offsetof(ContactPair, t), T));
-  if (B) PetscCall(InterfaceRows(contact, interface, offsetof(ContactPair, b), B));
+  PetscCall(PetscMalloc1(contact->n_pairs, &pair));
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (contact->pairs[p].interface == interface) pair[n++] = p;
+  PetscCall(ContactCreatePairOperators(contact, n, pair, N, T, B));
+  PetscCall(PetscFree(pair));
   PetscFunctionReturn(0);
 }

@@ -6,6 +6,7 @@
    nothing changes, at most as often as there are ranks in a row along a body.
 */
 #include "modelimpl.h"
+#include "gather.h"
 #include <petscsf.h>
 #include <stdlib.h>
 
@@ -120,30 +121,22 @@ static PetscErrorCode LabelsGather(Model model, PetscInt vStart, PetscInt vEnd, 
                                    PetscInt *n_bodies, PetscInt **labels)
 {
   PetscInt     n = 0, *own;
-  PetscMPIInt  size, n_own, *counts, *starts;
   PetscSection global;
   DM           cdm;
 
   PetscFunctionBeginUser;
   PetscCall(DMGetCoordinateDM(model->dm, &cdm));
   PetscCall(DMGetGlobalSection(cdm, &global));
-  PetscCallMPI(MPI_Comm_size(model->comm, &size));
-  PetscCall(PetscMalloc3(vEnd - vStart, &own, size, &counts, size + 1, &starts));
+  PetscCall(PetscMalloc1(vEnd - vStart, &own));
   for (PetscInt v = vStart; v < vEnd; v++) {
     PetscInt offset;
 
     PetscCall(PetscSectionGetOffset(global, v, &offset));
     if (offset == label[v - vStart]) own[n++] = offset;
   }
-  PetscCall(PetscMPIIntCast(n, &n_own));
-  PetscCallMPI(MPI_Allgather(&n_own, 1, MPI_INT, counts, 1, MPI_INT, model->comm));
-  starts[0] = 0;
-  for (PetscMPIInt r = 0; r < size; r++) starts[r + 1] = starts[r] + counts[r];
-  *n_bodies = starts[size];
-  PetscCall(PetscMalloc1(*n_bodies, labels));
-  PetscCallMPI(MPI_Allgatherv(own, n_own, MPIU_INT, *labels, counts, starts, MPIU_INT, model->comm));
+  PetscCall(GatherRecords(model->comm, n, sizeof(PetscInt), own, n_bodies, labels));
   PetscCall(PetscSortInt(*n_bodies, *labels));
-  PetscCall(PetscFree3(own, counts, starts));
+  PetscCall(PetscFree(own));
   PetscFunctionReturn(0);
 }
 

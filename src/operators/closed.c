@@ -30,8 +30,7 @@ static PetscErrorCode GroupsCheck(Operators o, PetscInt n_groups, const PetscInt
   PetscCheck(!wrong[0], o->comm, PETSC_ERR_ARG_OUTOFRANGE, "a group of pairs is none of -1 .. %" PetscInt_FMT,
              n_groups);
   PetscCheck(!wrong[1], o->comm, PETSC_ERR_SUP,
-             "pairs of the exact contact constraint open within the range of the sweep, which one projection cannot "
-             "follow: use -contact_law penalty or -sweep_method full");
+             "a group of pairs has the exact contact constraint, which is no stiffness that closed_g could scale");
   PetscFunctionReturn(0);
 }
 

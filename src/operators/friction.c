@@ -42,23 +42,6 @@ typedef struct {
   Mat      N, T, B;
 } Rows;
 
-/* Rows of the pairs along n, t or b, chosen by its offset in ContactPair */
-static PetscErrorCode RowsCreateOne(Operators o, const Rows *rows, size_t offset, Mat *A)
-{
-  const ContactPair *pairs;
-  PetscInt           n, n_all;
-  PetscReal(*direction)[3];
-
-  PetscFunctionBeginUser;
-  PetscCall(ContactGetPairs(o->contact, &n, &n_all, &pairs));
-  PetscCall(PetscMalloc1(rows->n, &direction));
-  for (PetscInt i = 0; i < rows->n; i++)
-    PetscCall(PetscMemcpy(direction[i], (const char *)&pairs[rows->pair[i]] + offset, sizeof(*direction)));
-  PetscCall(ContactCreateRows(o->contact, rows->n, rows->pair, (const PetscReal(*)[3])direction, A));
-  PetscCall(PetscFree(direction));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode RowsCreate(Operators o, PetscInt interface, PetscInt group, Rows *rows)
 {
   const ContactPair *pairs;
@@ -70,9 +53,7 @@ static PetscErrorCode RowsCreate(Operators o, PetscInt interface, PetscInt group
   rows->n = 0;
   for (PetscInt p = 0; p < n; p++)
     if (pairs[p].interface == interface && OperatorsPairGroup(o, p) == group) rows->pair[rows->n++] = p;
-  PetscCall(RowsCreateOne(o, rows, offsetof(ContactPair, n), &rows->N));
-  PetscCall(RowsCreateOne(o, rows, offsetof(ContactPair, t), &rows->T));
-  PetscCall(RowsCreateOne(o, rows, offsetof(ContactPair, b), &rows->B));
+  PetscCall(ContactCreatePairOperators(o->contact, rows->n, rows->pair, &rows->N, &rows->T, &rows->B));
   PetscFunctionReturn(0);
 }
 

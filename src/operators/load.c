@@ -189,6 +189,7 @@ PetscErrorCode OperatorsSave(Operators o)
   Mat             K = NULL, H = NULL;
 
   PetscFunctionBeginUser;
+  if (!o->save[0]) PetscFunctionReturn(0);
   PetscCallMPI(MPI_Comm_rank(o->comm, &rank));
   if (rank == 0 && mkdir(o->save, 0777) && errno != EEXIST) failed = errno;
   PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));

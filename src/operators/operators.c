@@ -66,7 +66,6 @@ PetscErrorCode OperatorsSetUp(Operators operators)
     operators->n_body_terms = operators->base.n;
   }
   operators->n_scene = operators->n_parameters;
-  if (operators->save[0]) PetscCall(OperatorsSave(operators));
   PetscFunctionReturn(0);
 }
 
@@ -230,6 +229,13 @@ PetscErrorCode OperatorsCreateVec(Operators operators, Vec *u)
 {
   PetscFunctionBeginUser;
   PetscCall(MatCreateVecs(operators->base.term[0].A, u, NULL));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsGetSave(Operators operators, PetscBool *save)
+{
+  PetscFunctionBeginUser;
+  *save = operators->save[0] ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 

@@ -128,4 +128,3 @@ PETSC_INTERN PetscErrorCode OperatorsDestroyNullSpaces(Operators operators);
 /* load.c - matrices from files and options, and to files */
 PETSC_INTERN PetscErrorCode OperatorsLoadFromOptions(Operators operators, PetscOptionItems *PetscOptionsObject);
 PETSC_INTERN PetscErrorCode OperatorsLoad(Operators operators);
-PETSC_INTERN PetscErrorCode OperatorsSave(Operators operators);

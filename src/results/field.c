@@ -57,8 +57,8 @@ static PetscErrorCode FieldFindShape(ResultsField field)
   PetscFunctionReturn(0);
 }
 
-/* Gathers values[n_local][width] of the owned vertices from an array in the layout of a local section; NULL: one row per
-   local vertex */
+/* Gathers values[n_local][width] of the owned vertices from an array in the layout of a local section; NULL: one row
+   per local vertex */
 static PetscErrorCode FieldGatherNodes(ResultsField field, PetscSection section, PetscInt width,
                                        const PetscReal array[], PetscReal values[])
 {

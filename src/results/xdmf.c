@@ -1,7 +1,7 @@
 /*
-   XDMF - the text beside the HDF5 file: a temporal collection with one grid per mode or state. Time is the number of the
-   grid, and the attributes of modes have the same names in all grids, so that ParaView steps through them. All values
-   are those of the group /VTKHDF of the HDF5 file. Reference: XDMF Model and Format, version 2.
+   XDMF - the text beside the HDF5 file: a temporal collection with one grid per mode or state. Time is the number of
+   the grid, and the attributes of modes have the same names in all grids, so that ParaView steps through them. All
+   values are those of the group /VTKHDF of the HDF5 file. Reference: XDMF Model and Format, version 2.
 */
 #include "resultsimpl.h"
 #include <string.h>

@@ -17,8 +17,10 @@
 #define CORRECT    1e-8  /* of GMRES for corrections */
 #define MIN_STEP   (1.0 / 1024)
 #define MIN_DAMP   (1.0 / 128)
-#define MAX_KEPT   64 /* statuses remembered, to see when they repeat */
-#define ONE_BY_ONE 10 /* times max_it, when single pairs change */
+#define MAX_KEPT   64   /* statuses remembered, to see when they repeat */
+#define ONE_BY_ONE 10   /* times max_it, when single pairs change */
+#define FEW        1000 /* pairs up to which that, and small steps of friction, are worth the time */
+#define LARGE_STEP (1.0 / 32)
 
 /* Laws of all rows at the present status */
 static void LawsSet(const Active *a, LawRow law[])
@@ -255,21 +257,23 @@ static PetscErrorCode Restart(Active *a)
 /* Raises friction in steps from the equilibrium without it */
 static PetscErrorCode Raise(Active *a, ActiveOutcome *outcome)
 {
-  PetscReal      reached = 0, step = 0.25, *l, *w;
-  CoulombStatus *status;
+  const PetscBool few      = a->rows->n_all <= FEW ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal min_step = few ? MIN_STEP : LARGE_STEP;
+  PetscReal       reached = 0, step = 0.25, *l, *w;
+  CoulombStatus  *status;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(a->rows->n_pairs, &status, a->rows->n, &l, a->rows->n, &w));
   a->friction = 0;
   PetscCall(Restart(a));
-  PetscCall(Iterate(a, PETSC_TRUE, outcome));
-  while (reached < 1 && *outcome == ACTIVE_CONVERGED && step >= MIN_STEP) {
+  PetscCall(Iterate(a, few, outcome));
+  while (reached < 1 && *outcome == ACTIVE_CONVERGED && step >= min_step) {
     PetscCall(PetscArraycpy(status, a->status, a->rows->n_pairs));
     PetscCall(PetscArraycpy(l, a->l, a->rows->n));
     PetscCall(PetscArraycpy(w, a->w, a->rows->n));
     a->friction = PetscMin(1, reached + step);
     PetscCall(Iterate(a, PETSC_FALSE, outcome));
-    if (*outcome != ACTIVE_CONVERGED) PetscCall(Iterate(a, PETSC_TRUE, outcome));
+    if (*outcome != ACTIVE_CONVERGED && few) PetscCall(Iterate(a, PETSC_TRUE, outcome));
     if (*outcome == ACTIVE_CONVERGED) {
       reached = a->friction;
       step *= 1.5;
@@ -279,7 +283,7 @@ static PetscErrorCode Raise(Active *a, ActiveOutcome *outcome)
     PetscCall(PetscArraycpy(a->l, l, a->rows->n));
     PetscCall(PetscArraycpy(a->w, w, a->rows->n));
     step /= 2;
-    if (step >= MIN_STEP) *outcome = ACTIVE_CONVERGED;
+    if (step >= min_step) *outcome = ACTIVE_CONVERGED;
   }
   a->friction = reached;
   PetscCall(PetscFree3(status, l, w));
@@ -293,7 +297,7 @@ PetscErrorCode ActiveSolve(Active *a, ActiveOutcome *outcome)
   PetscCall(Iterate(a, PETSC_FALSE, outcome));
   if (*outcome == ACTIVE_CONVERGED) PetscFunctionReturn(0);
   PetscCall(Restart(a));
-  PetscCall(Iterate(a, PETSC_TRUE, outcome));
+  if (a->rows->n_all <= FEW) PetscCall(Iterate(a, PETSC_TRUE, outcome));
   if (*outcome != ACTIVE_CONVERGED) PetscCall(Raise(a, outcome));
   PetscFunctionReturn(0);
 }

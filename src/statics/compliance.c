@@ -13,6 +13,7 @@
    third of the steps that it takes with all of it).
 */
 #include "staticsimpl.h"
+#include "gather.h"
 
 #define SHARE 0.1 /* of the stiffness of a node */
 #define BLOCK 64  /* right-hand sides at once */
@@ -119,24 +120,6 @@ static PetscErrorCode RowsTake(Mat R, Mat Y, const Compliance *c, const Rows *ro
   PetscFunctionReturn(0);
 }
 
-/* All rows [n_all][n_all] on every rank, from those of this rank */
-static PetscErrorCode RowsGather(const Rows *rows, const PetscReal local[], PetscReal **all)
-{
-  PetscMPIInt size, n, *count, *start;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(rows->comm, &size));
-  PetscCall(PetscMalloc2(size, &count, size + 1, &start));
-  PetscCall(PetscMPIIntCast(rows->n * rows->n_all, &n));
-  PetscCallMPI(MPI_Allgather(&n, 1, MPI_INT, count, 1, MPI_INT, rows->comm));
-  start[0] = 0;
-  for (PetscMPIInt r = 0; r < size; r++) start[r + 1] = start[r] + count[r];
-  PetscCall(PetscMalloc1(rows->n_all * rows->n_all, all));
-  PetscCallMPI(MPI_Allgatherv(local, n, MPIU_REAL, *all, count, start, MPIU_REAL, rows->comm));
-  PetscCall(PetscFree2(count, start));
-  PetscFunctionReturn(0);
-}
-
 /* W and V. K_a is symmetric: the rows of S K_a^-1 G' are the columns of V */
 static PetscErrorCode DenseCreate(const Rows *rows, Compliance *c)
 {
@@ -162,8 +145,8 @@ static PetscErrorCode DenseCreate(const Rows *rows, Compliance *c)
     PetscCall(MatDestroy(&B));
     PetscCall(MatDestroy(&Y));
   }
-  PetscCall(RowsGather(rows, local[0], &c->W));
-  if (rows->S) PetscCall(RowsGather(rows, local[1], &c->V));
+  PetscCall(GatherRecords(rows->comm, rows->n, (size_t)n_all * sizeof(PetscReal), local[0], NULL, &c->W));
+  if (rows->S) PetscCall(GatherRecords(rows->comm, rows->n, (size_t)n_all * sizeof(PetscReal), local[1], NULL, &c->V));
   PetscCall(PetscFree2(local[0], local[1]));
   PetscCall(MatDestroy(&Gt));
   PetscFunctionReturn(0);

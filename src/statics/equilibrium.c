@@ -35,8 +35,27 @@ static PetscErrorCode CountClosed(const Active *a, PetscInt n[2])
   PetscFunctionReturn(0);
 }
 
+/* Raises the error for what has no equilibrium, even without friction */
+static PetscErrorCode ComplainFrictionless(const Active *a, ActiveOutcome outcome, const char place[],
+                                           PetscBool coulomb)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(outcome != ACTIVE_SLOW, a->rows->comm, PETSC_ERR_NOT_CONVERGED,
+             "no equilibrium found%s: the pairs do not settle within -static_max_it %" PetscInt_FMT
+             " iterations; allow more",
+             place, a->max_it);
+  PetscCheck(!coulomb, a->rows->comm, PETSC_ERR_NOT_CONVERGED,
+             "no equilibrium%s: the -loads push the bodies along or off each other by more than friction holds, and "
+             "nothing else does; give other -loads, a higher friction coefficient, -supports or -springs",
+             place);
+  SETERRQ(a->rows->comm, PETSC_ERR_NOT_CONVERGED,
+          "no equilibrium%s, even without friction: the bodies come off each other or tip over, and nothing else holds "
+          "them; the -loads must press the contacts together, within their edges",
+          place);
+}
+
 /* Raises the error for what has no equilibrium */
-static PetscErrorCode Complain(const Active *a, ActiveOutcome outcome)
+static PetscErrorCode Complain(const Active *a, const char place[], ActiveOutcome outcome)
 {
   static const char *const how[] = {[ACTIVE_CONVERGED] = "",
                                     [ACTIVE_SINGULAR]  = "the bodies come off each other, and nothing else holds them",
@@ -47,21 +66,12 @@ static PetscErrorCode Complain(const Active *a, ActiveOutcome outcome)
 
   PetscFunctionBeginUser;
   PetscCall(CountClosed(a, n));
-  PetscCheck(a->friction > 0 || outcome != ACTIVE_SLOW, a->rows->comm, PETSC_ERR_NOT_CONVERGED,
-             "no equilibrium found: the pairs do not settle within -static_max_it %" PetscInt_FMT
-             " iterations; allow more",
-             a->max_it);
-  PetscCheck(a->friction > 0 || a->rows->n_all == n[1], a->rows->comm, PETSC_ERR_NOT_CONVERGED,
-             "no equilibrium: the -loads push the bodies along or off each other by more than friction holds, and "
-             "nothing else does; give other -loads, a higher friction coefficient, -supports or -springs");
-  PetscCheck(
-    a->friction > 0, a->rows->comm, PETSC_ERR_NOT_CONVERGED,
-    "no equilibrium, even without friction: %s; the -loads must press the contacts together, within their edges",
-    how[outcome]);
+  if (a->friction == 0)
+    PetscCall(ComplainFrictionless(a, outcome, place, a->rows->n_all == n[1] ? PETSC_FALSE : PETSC_TRUE));
   SETERRQ(a->rows->comm, PETSC_ERR_NOT_CONVERGED,
-          "no sliding equilibrium: friction could be raised to %.4g of its value, where %" PetscInt_FMT
+          "no sliding equilibrium%s: friction could be raised to %.4g of its value, where %" PetscInt_FMT
           " of %" PetscInt_FMT " pairs are closed; beyond, %s; lower the friction coefficient",
-          (double)a->friction, n[0], n[1], how[outcome]);
+          place, (double)a->friction, n[0], n[1], how[outcome]);
 }
 
 /* r = f - K u - G'l + S' D l, forces l in m; NULL stands for u = 0 */
@@ -143,7 +153,7 @@ static PetscErrorCode FrictionCheck(const Active *a, Vec f, PetscReal size)
 }
 
 /* The closed pairs must hold what all pairs could */
-static PetscErrorCode TippingCheck(const Active *a)
+static PetscErrorCode TippingCheck(const Active *a, const char place[])
 {
   PetscInt n[2];
   Mat      A;
@@ -152,13 +162,13 @@ static PetscErrorCode TippingCheck(const Active *a)
   PetscCall(CountClosed(a, n));
   if (n[0] == n[1] && a->rows->n_all == n[1]) PetscFunctionReturn(0);
   PetscCall(ComplianceAugment(a->compliance->K, a->rows, a->compliance->kappa, PETSC_TRUE, a->status, &A));
-  PetscCall(HoldCheckClosed(a->operators, &a->compliance->hold, A, n[0]));
+  PetscCall(HoldCheckClosed(a->operators, &a->compliance->hold, place, A, n[0]));
   PetscCall(MatDestroy(&A));
   PetscFunctionReturn(0);
 }
 
 /* One load step: f, from which u, l and w follow */
-static PetscErrorCode Step(Active *a, Vec f, Vec u)
+static PetscErrorCode Step(Active *a, const char place[], Vec f, Vec u)
 {
   ActiveOutcome outcome;
 
@@ -166,7 +176,7 @@ static PetscErrorCode Step(Active *a, Vec f, Vec u)
   PetscCall(ComplianceSolve(a->compliance, a->rows, 0, f, a->zero, a->zero, u));
   PetscCall(RowsOf(a->compliance, a->rows, u, a->free));
   PetscCall(ActiveSolve(a, &outcome));
-  if (outcome != ACTIVE_CONVERGED) PetscCall(Complain(a, outcome));
+  if (outcome != ACTIVE_CONVERGED) PetscCall(Complain(a, place, outcome));
   PetscFunctionReturn(0);
 }
 
@@ -174,9 +184,11 @@ PetscErrorCode EquilibriumSolve(Statics s, Rows *rows, const Compliance *c, Vec 
                                 CoulombStatus status[], PetscReal l[], Vec u)
 {
   Active a = {.operators = s->operators, .rows = rows, .compliance = c, .max_it = s->max_it, .status = status, .l = l};
+  char   place[256];
   Vec    part;
 
   PetscFunctionBeginUser;
+  PetscCall(StaticsPlace(s, place, sizeof(place)));
   PetscCall(PetscCalloc3(rows->n, &a.free, rows->n, &a.w, rows->n, &a.zero));
   PetscCall(VecDuplicate(f, &part));
   for (PetscInt p = 0; p < rows->n_pairs; p++) rows->law[p].slip0[0] = rows->law[p].slip0[1] = 0;
@@ -185,10 +197,10 @@ PetscErrorCode EquilibriumSolve(Statics s, Rows *rows, const Compliance *c, Vec 
       for (PetscInt i = 1; i < rows->law[p].d; i++) rows->law[p].slip0[i - 1] = a.w[rows->first[p] + i];
     PetscCall(VecCopy(f, part));
     PetscCall(VecScale(part, (PetscReal)step / (PetscReal)load_steps));
-    PetscCall(Step(&a, part, u));
+    PetscCall(Step(&a, place, part, u));
   }
   s->n_it = a.n_it;
-  PetscCall(TippingCheck(&a));
+  PetscCall(TippingCheck(&a, place));
   PetscCall(Refine(&a, f, u));
   PetscCall(FrictionCheck(&a, f, size));
   PetscCall(VecDestroy(&part));

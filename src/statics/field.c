@@ -4,8 +4,9 @@
 */
 #include "staticsimpl.h"
 
-/* Adds the pressure on one surface; where it was given by an interface before, the two add up */
-static PetscErrorCode PressureAdd(Model model, const char set[], const PetscScalar force[], PetscReal pressure[])
+/* Sets the pressure on one surface. The force of a node is that of all interfaces, and so is its pressure: on a node of
+   several surfaces the last one counts, with its normal and area */
+static PetscErrorCode PressureSet(Model model, const char set[], const PetscScalar force[], PetscReal pressure[])
 {
   const PetscInt *v;
   PetscInt        n, vStart;
@@ -49,8 +50,8 @@ static PetscErrorCode PressureCreate(Model model, Contact contact, Vec force, Pe
   PetscCall(PetscCalloc1(n / 3, pressure));
   PetscCall(VecGetArrayRead(force, &value));
   for (PetscInt i = 0; i < n_interfaces; i++) {
-    PetscCall(PressureAdd(model, interfaces[i].slave, value, *pressure));
-    PetscCall(PressureAdd(model, interfaces[i].master, value, *pressure));
+    PetscCall(PressureSet(model, interfaces[i].slave, value, *pressure));
+    PetscCall(PressureSet(model, interfaces[i].master, value, *pressure));
   }
   PetscCall(VecRestoreArrayRead(force, &value));
   PetscFunctionReturn(0);

@@ -142,30 +142,38 @@ static PetscErrorCode UnknownDescribe(Model model, PetscInt unknown, PetscReal x
 
 PetscErrorCode HoldCheck(Operators operators, const Hold *hold, const char force[], Vec f, PetscReal size)
 {
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < hold->n; i++) {
-    char        part[64];
-    int         direction;
-    PetscReal   x[3], largest;
-    PetscScalar along;
-    Model       model;
+  char        part[64];
+  int         direction;
+  PetscInt    which, at;
+  PetscReal   x[3];
+  PetscScalar along, largest;
+  Model       model;
+  Vec         motion;
 
+  PetscFunctionBeginUser;
+  if (!hold->n) PetscFunctionReturn(0);
+  PetscCall(VecDuplicate(f, &motion)); /* what f would move: sum of (f . r) r */
+  PetscCall(VecSet(motion, 0));
+  for (PetscInt i = 0; i < hold->n; i++) {
     PetscCall(VecDot(f, hold->r[i], &along));
-    PetscCall(VecNorm(hold->r[i], NORM_INFINITY, &largest));
-    if (PetscAbsScalar(along) <= RESISTED * size * largest) continue;
-    PetscCall(OperatorsGetModel(operators, &model, NULL));
-    PetscCall(UnknownDescribe(model, hold->pin[i], x, &direction, part));
-    SETERRQ(
-      PetscObjectComm((PetscObject)f), PETSC_ERR_USER_INPUT,
-      "no equilibrium: %s push part %s along a rigid motion that nothing resists (along %c at %.6g, %.6g, %.6g m, "
-      "with %.6g N); give -supports, -springs or other -loads",
-      force, part, "xyz"[direction], (double)x[0], (double)x[1], (double)x[2],
-      (double)(PetscAbsScalar(along) / largest));
+    PetscCall(VecAXPY(motion, along, hold->r[i]));
   }
+  PetscCall(LargestEntry(1, &motion, &which, &at));
+  PetscCall(EntryGet(motion, at, &largest));
+  PetscCall(VecDot(f, motion, &along));
+  PetscCall(OperatorsGetModel(operators, &model, NULL));
+  PetscCall(UnknownDescribe(model, at, x, &direction, part));
+  PetscCall(VecDestroy(&motion));
+  PetscCheck(
+    PetscAbsScalar(along) <= RESISTED * size * PetscAbsScalar(largest), PetscObjectComm((PetscObject)f),
+    PETSC_ERR_USER_INPUT,
+    "no equilibrium: %s push part %s with %.6g N along a rigid motion that nothing resists, which moves it most along "
+    "%c, at %.6g, %.6g, %.6g m; give -supports, -springs or other -loads",
+    force, part, (double)PetscAbsScalar(along / largest), "xyz"[direction], (double)x[0], (double)x[1], (double)x[2]);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode HoldCheckClosed(Operators operators, const Hold *hold, Mat A, PetscInt n_closed)
+PetscErrorCode HoldCheckClosed(Operators operators, const Hold *hold, const char place[], Mat A, PetscInt n_closed)
 {
   Hold left = {.n = 0};
 
@@ -181,10 +189,10 @@ PetscErrorCode HoldCheckClosed(Operators operators, const Hold *hold, Mat A, Pet
     PetscCall(OperatorsGetModel(operators, &model, NULL));
     PetscCall(UnknownDescribe(model, left.pin[0], x, &direction, part));
     SETERRQ(PetscObjectComm((PetscObject)A), PETSC_ERR_NOT_CONVERGED,
-            "no stable equilibrium: only %" PetscInt_FMT
+            "no stable equilibrium%s: only %" PetscInt_FMT
             " pairs stay closed, and part %s can tip or slide on them without resistance; lower the friction "
             "coefficient, move the -loads, or give -supports or -springs",
-            n_closed, part);
+            place, n_closed, part);
   }
   PetscCall(HoldDestroy(&left));
   PetscFunctionReturn(0);

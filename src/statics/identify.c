@@ -70,9 +70,11 @@ static PetscErrorCode Press(Statics s, Rows *rows, const Compliance *c, Vec f, P
   PetscFunctionReturn(0);
 }
 
-/* All steps */
+/* All steps, on rows and a factorisation of their own: without friction nothing holds along the surface */
 static PetscErrorCode Ramp(Statics s, PetscInt interface, Vec d, Reading reading[])
 {
+  Rows           rows       = {.n = 0};
+  Compliance     compliance = {.kappa = 0};
   PetscReal     *l, size;
   CoulombStatus *status;
   Vec            f;
@@ -80,14 +82,17 @@ static PetscErrorCode Ramp(Statics s, PetscInt interface, Vec d, Reading reading
   PetscFunctionBeginUser;
   PetscCall(LoadCreate(s->operators, &f, &size));
   PetscCheck(size > 0, s->comm, PETSC_ERR_USER_INPUT, "-contact_kn identify presses with the -loads: give some");
-  PetscCall(PetscMalloc1(s->rows.n_pairs, &status));
-  PetscCall(PetscCalloc1(s->rows.n, &l));
-  PetscCall(StaticsFactor(s));
-  LawsPressing(&s->rows, status);
-  PetscCall(HoldCheck(s->operators, &s->compliance.hold, "the loads", f, size));
+  PetscCall(RowsCreate(s->operators, PETSC_TRUE, &rows));
+  PetscCall(PetscMalloc1(rows.n_pairs, &status));
+  PetscCall(PetscCalloc1(rows.n, &l));
+  PetscCall(ComplianceCreate(s->operators, &rows, s->dense, &s->progress, &compliance));
+  LawsPressing(&rows, status);
+  PetscCall(HoldCheck(s->operators, &compliance.hold, "the loads of -contact_kn identify", f, size));
   for (PetscInt i = 0; i < s->identify_steps; i++)
-    PetscCall(Press(s, &s->rows, &s->compliance, f, size, (PetscReal)(i + 1) / (PetscReal)s->identify_steps, interface,
-                    d, status, l, &reading[i]));
+    PetscCall(Press(s, &rows, &compliance, f, size, (PetscReal)(i + 1) / (PetscReal)s->identify_steps, interface, d,
+                    status, l, &reading[i]));
+  PetscCall(ComplianceDestroy(&compliance));
+  PetscCall(RowsDestroy(&rows));
   PetscCall(PetscFree(l));
   PetscCall(PetscFree(status));
   PetscCall(VecDestroy(&f));

@@ -44,6 +44,10 @@ static PetscErrorCode SlidingCheck(Statics s)
   PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
   PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
   for (PetscInt i = 0; i < n; i++)
+    PetscCheck(interfaces[i].preloaded || interfaces[i].force == 0, s->comm, PETSC_ERR_USER_INPUT,
+               "-%s_force %.6g does nothing with -modes_contact static, which takes the normal forces from the -loads",
+               interfaces[i].name, (double)interfaces[i].force);
+  for (PetscInt i = 0; i < n; i++)
     PetscCheck(interfaces[i].slides || interfaces[i].mu == 0, s->comm, PETSC_ERR_USER_INPUT,
                "-modes_contact static needs to know along what contact %s slides: give -%s_slip x,y,z or -%s_rotation",
                interfaces[i].name, interfaces[i].name, interfaces[i].name);

@@ -109,25 +109,6 @@ typedef struct {
   Vec normal, friction_t, friction_b;
 } Pairs;
 
-/* Rows along n, t or b of all pairs, chosen by the offset in ContactPair */
-static PetscErrorCode RowsCreateAll(Contact contact, size_t offset, Mat *rows)
-{
-  const ContactPair *pairs;
-  PetscInt           n, n_all, *pair;
-  PetscReal(*direction)[3];
-
-  PetscFunctionBeginUser;
-  PetscCall(ContactGetPairs(contact, &n, &n_all, &pairs));
-  PetscCall(PetscMalloc2(n, &pair, n, &direction));
-  for (PetscInt p = 0; p < n; p++) {
-    PetscCall(PetscMemcpy(direction[p], (const char *)&pairs[p] + offset, sizeof(*direction)));
-    pair[p] = p;
-  }
-  PetscCall(ContactCreateRows(contact, n, pair, (const PetscReal(*)[3])direction, rows));
-  PetscCall(PetscFree2(pair, direction));
-  PetscFunctionReturn(0);
-}
-
 /* Forces of the closed pairs */
 static PetscErrorCode ForcesCreate(PetscInt n, const ContactState state[], Pairs *p)
 {
@@ -156,13 +137,14 @@ static PetscErrorCode ForcesCreate(PetscInt n, const ContactState state[], Pairs
 static PetscErrorCode PairsCreate(Contact contact, const ContactState state[], Pairs *p)
 {
   const ContactPair *pairs;
-  PetscInt           n, n_all;
+  PetscInt           n, n_all, *pair;
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetPairs(contact, &n, &n_all, &pairs));
-  PetscCall(RowsCreateAll(contact, offsetof(ContactPair, n), &p->N));
-  PetscCall(RowsCreateAll(contact, offsetof(ContactPair, t), &p->T));
-  PetscCall(RowsCreateAll(contact, offsetof(ContactPair, b), &p->B));
+  PetscCall(PetscMalloc1(n, &pair));
+  for (PetscInt i = 0; i < n; i++) pair[i] = i;
+  PetscCall(ContactCreatePairOperators(contact, n, pair, &p->N, &p->T, &p->B));
+  PetscCall(PetscFree(pair));
   PetscCall(ContactCreateTilt(contact, &p->tilt_t, &p->tilt_b));
   PetscCall(ForcesCreate(n, state, p));
   PetscFunctionReturn(0);

@@ -31,15 +31,16 @@ static PetscErrorCode UnbalanceCreate(Statics s, Model model, Contact contact, V
   PetscFunctionReturn(0);
 }
 
-/* Sum of a local vector over the vertices of a set, each once, in some directions */
+/* Sum of a local vector over the vertices of a set, each once, in some directions; what was summed is set to zero, so
+   that a direction that two supports hold counts for the first */
 static PetscErrorCode SetSum(Model model, const char set[], const PetscBool direction[3], Vec local, PetscReal sum[3])
 {
-  const PetscScalar *value;
-  const PetscInt    *v;
-  PetscInt           n, vStart;
-  MPI_Comm           comm;
-  DM                 dm;
-  IS                 is;
+  PetscScalar    *value;
+  const PetscInt *v;
+  PetscInt        n, vStart;
+  MPI_Comm        comm;
+  DM              dm;
+  IS              is;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetComm(model, &comm));
@@ -48,12 +49,15 @@ static PetscErrorCode SetSum(Model model, const char set[], const PetscBool dire
   PetscCall(ModelGetOwnedVertices(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &v));
-  PetscCall(VecGetArrayRead(local, &value));
+  PetscCall(VecGetArray(local, &value));
   for (int d = 0; d < 3; d++) {
     sum[d] = 0;
-    for (PetscInt i = 0; i < n && direction[d]; i++) sum[d] += PetscRealPart(value[3 * (v[i] - vStart) + d]);
+    for (PetscInt i = 0; i < n && direction[d]; i++) {
+      sum[d] += PetscRealPart(value[3 * (v[i] - vStart) + d]);
+      value[3 * (v[i] - vStart) + d] = 0;
+    }
   }
-  PetscCall(VecRestoreArrayRead(local, &value));
+  PetscCall(VecRestoreArray(local, &value));
   PetscCall(ISRestoreIndices(is, &v));
   PetscCall(ISDestroy(&is));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, comm));
@@ -117,18 +121,18 @@ static PetscErrorCode HoldersWrite(Statics s, Model model, Contact contact, Resu
   PetscCall(ModelGetSupports(model, &n_supports, &supports));
   PetscCall(ModelGetSprings(model, &n_springs, &springs));
   PetscCall(UnbalanceCreate(s, model, contact, &unbalance));
-  PetscCall(DisplacementsCreate(s, model, &u));
   for (PetscInt i = 0; i < n_supports; i++) {
     PetscCall(SetSum(model, supports[i].set, supports[i].fix, unbalance, force));
     PetscCall(Row(table, supports[i].name, "support", force));
   }
   for (PetscInt i = 0; i < n_springs; i++) {
+    PetscCall(DisplacementsCreate(s, model, &u));
     PetscCall(SetSum(model, springs[i].set, all, u, force));
+    PetscCall(VecDestroy(&u));
     PetscCall(SpringStiffness(s, &springs[i], stiffness));
     for (int d = 0; d < 3; d++) force[d] *= -stiffness[d];
     PetscCall(Row(table, springs[i].name, "spring", force));
   }
-  PetscCall(VecDestroy(&u));
   PetscCall(VecDestroy(&unbalance));
   PetscFunctionReturn(0);
 }

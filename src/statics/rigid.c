@@ -8,7 +8,7 @@
 
 #define MAX_BODIES 64
 #define DEPENDENT  1e-6  /* norm left of a candidate that is one of the others */
-#define FREE       1e-11 /* energy beside that of the same motion with all its neighbours held */
+#define FREE       1e-13 /* energy beside that of the same motion with all its neighbours held */
 
 /* Displacement d of point x in rigid motion k of a body: translations, then rotations about c over length */
 static PetscReal RigidMotion(int k, int d, const PetscReal x[3], const PetscReal c[3], PetscReal length)

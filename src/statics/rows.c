@@ -6,7 +6,7 @@
 #include "staticsimpl.h"
 
 /* Rows per pair of each interface, and their sums */
-static PetscErrorCode RowsCount(const ContactInterface interfaces[], Rows *rows)
+static PetscErrorCode RowsCount(const ContactInterface interfaces[], PetscBool pressing, Rows *rows)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(rows->n_pairs + 1, &rows->first));
@@ -16,7 +16,7 @@ static PetscErrorCode RowsCount(const ContactInterface interfaces[], Rows *rows)
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     const ContactInterface *c = &interfaces[rows->pair[p].interface];
 
-    rows->law[p].d     = c->slides || c->mu == 0 ? 1 : 3;
+    rows->law[p].d     = pressing || c->slides || c->mu == 0 ? 1 : 3;
     rows->law[p].g0    = rows->pair[p].gap;
     rows->first[p + 1] = rows->first[p] + rows->law[p].d;
   }
@@ -54,7 +54,7 @@ static PetscErrorCode RowsCreateMatrices(Contact contact, const ContactInterface
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode RowsCreate(Operators operators, Rows *rows)
+PetscErrorCode RowsCreate(Operators operators, PetscBool pressing, Rows *rows)
 {
   const ContactInterface *interfaces;
   Contact                 contact;
@@ -66,7 +66,7 @@ PetscErrorCode RowsCreate(Operators operators, Rows *rows)
   PetscCall(ModelGetComm(model, &rows->comm));
   PetscCall(ContactGetInterfaces(contact, &rows->n_interfaces, &interfaces));
   PetscCall(ContactGetPairs(contact, &rows->n_pairs, &n_all, &rows->pair));
-  PetscCall(RowsCount(interfaces, rows));
+  PetscCall(RowsCount(interfaces, pressing, rows));
   PetscCall(RowsCreateMatrices(contact, interfaces, rows));
   PetscFunctionReturn(0);
 }

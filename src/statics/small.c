@@ -9,34 +9,13 @@
    equilibrium lies beyond one at which the bodies jam.
 */
 #include "staticsimpl.h"
+#include "gather.h"
 #include <petscblaslapack.h>
 
 #define SINGULAR  1e-13 /* smallest pivot beside the largest */
 #define ENOUGH    1e-10 /* of GMRES that gets no farther; refinement of the whole does the rest */
 #define RESTART   300
 #define MAX_STEPS 1000
-
-/* Laws and right-hand side of all rows, on every rank */
-static PetscErrorCode Gather(const Rows *rows, const LawRow law[], const PetscReal rhs[], LawRow all_law[],
-                             PetscReal all_rhs[])
-{
-  PetscMPIInt size, n, *count, *start;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(rows->comm, &size));
-  PetscCall(PetscMalloc2(size, &count, size + 1, &start));
-  PetscCall(PetscMPIIntCast(rows->n, &n));
-  PetscCallMPI(MPI_Allgather(&n, 1, MPI_INT, count, 1, MPI_INT, rows->comm));
-  start[0] = 0;
-  for (PetscMPIInt r = 0; r < size; r++) start[r + 1] = start[r] + count[r];
-  PetscCallMPI(MPI_Allgatherv(rhs, n, MPIU_REAL, all_rhs, count, start, MPIU_REAL, rows->comm));
-  for (PetscMPIInt r = 0; r <= size; r++) start[r] *= (PetscMPIInt)sizeof(LawRow);
-  for (PetscMPIInt r = 0; r < size; r++) count[r] *= (PetscMPIInt)sizeof(LawRow);
-  PetscCallMPI(
-    MPI_Allgatherv(law, n * (PetscMPIInt)sizeof(LawRow), MPI_BYTE, all_law, count, start, MPI_BYTE, rows->comm));
-  PetscCall(PetscFree2(count, start));
-  PetscFunctionReturn(0);
-}
 
 /* Adds column z_j, and with j < 0 the constants p0, q0 (subtracted): y += Q_j + (W - V D) P_j - W Q_j */
 static void ColumnAdd(const Compliance *c, PetscReal friction, PetscInt n, const LawRow law[], PetscInt j,
@@ -87,13 +66,14 @@ static PetscErrorCode DenseSolve(const Compliance *c, const Rows *rows, PetscRea
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n * n, &A));
-  PetscCall(PetscMalloc2(n, &all_law, n, &all));
-  PetscCall(Gather(rows, law, rhs, all_law, all));
+  PetscCall(GatherRecords(rows->comm, rows->n, sizeof(LawRow), law, NULL, &all_law));
+  PetscCall(GatherRecords(rows->comm, rows->n, sizeof(PetscReal), rhs, NULL, &all));
   ColumnAdd(c, friction, n, all_law, -1, all);
   for (PetscInt j = 0; j < n; j++) ColumnAdd(c, friction, n, all_law, j, &A[j * n]);
   PetscCall(DenseFactor(n, A, all, outcome, reversed));
   PetscCall(PetscArraycpy(z, &all[rows->begin], rows->n));
-  PetscCall(PetscFree2(all_law, all));
+  PetscCall(PetscFree(all_law));
+  PetscCall(PetscFree(all));
   PetscCall(PetscFree(A));
   PetscFunctionReturn(0);
 }

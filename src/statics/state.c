@@ -34,6 +34,7 @@ static void ResultantAdd(const ContactPair *pair, const ContactState *state, Sta
   r->normal += state->lambda_n;
   for (int d = 0; d < 3; d++) {
     r->force[d] += -state->lambda_n * pair->n[d] + state->lambda_t[0] * pair->t[d] + state->lambda_t[1] * pair->b[d];
+    r->friction[d] += state->lambda_t[0] * pair->t[d] + state->lambda_t[1] * pair->b[d];
     r->centre[d] += state->lambda_n * pair->x[d];
   }
 }
@@ -49,6 +50,7 @@ static PetscErrorCode ResultantsSet(Statics s)
 
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->n, CONTACT_N_STATUS, MPIU_INT, MPI_SUM, s->comm));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &r->normal, 1, MPIU_REAL, MPI_SUM, s->comm));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->friction, 3, MPIU_REAL, MPI_SUM, s->comm));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->force, 3, MPIU_REAL, MPI_SUM, s->comm));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->centre, 3, MPIU_REAL, MPI_SUM, s->comm));
     for (int d = 0; d < 3 && r->normal != 0; d++) r->centre[d] /= r->normal;

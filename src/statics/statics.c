@@ -3,6 +3,8 @@
 */
 #include "staticsimpl.h"
 
+#define MOST_DENSE 20000
+
 PetscErrorCode StaticsCreate(MPI_Comm comm, Statics *statics)
 {
   PetscFunctionBeginUser;
@@ -55,8 +57,23 @@ PetscErrorCode StaticsSetFromOptions(Statics s)
   PetscCall(CountCheck(s, "-static_max_it", s->max_it, 1));
   PetscCall(CountCheck(s, "-static_load_steps", s->load_steps, 1));
   PetscCall(CountCheck(s, "-static_dense", s->dense, 0));
+  PetscCheck(s->dense <= MOST_DENSE, s->comm, PETSC_ERR_USER_INPUT,
+             "-static_dense %" PetscInt_FMT " must be at most %d: more rows do not fit a dense matrix", s->dense,
+             MOST_DENSE);
   PetscCall(CountCheck(s, "-static_identify_steps", s->identify_steps, 2));
   PetscCall(ProgressSetFromOptions(s->comm, &s->progress));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsCheckUse(Statics s, PetscBool modes)
+{
+  const char *option = s->rows_more ? "-static_rows" : s->geometric ? "-static_geometric" : "-static_follower";
+
+  PetscFunctionBeginUser;
+  PetscCheck(
+    modes || (!s->rows_more && !s->geometric && !s->follower), s->comm, PETSC_ERR_USER_INPUT,
+    "%s does nothing without modes about the sliding state: give -modes_contact static, and no -analysis static",
+    option);
   PetscFunctionReturn(0);
 }
 
@@ -73,27 +90,49 @@ PetscErrorCode StaticsSetUp(Statics s)
   PetscCheck(model, s->comm, PETSC_ERR_USER_INPUT,
              "-analysis static and -modes_contact static need a mesh and contact, "
              "not loaded matrices");
-  PetscCall(RowsCreate(s->operators, &s->rows));
+  PetscCall(RowsCreate(s->operators, PETSC_FALSE, &s->rows));
   PetscCallMPI(MPI_Allreduce(&s->rows.n_pairs, &n_pairs, 1, MPIU_INT, MPI_SUM, s->comm));
   PetscCheck(n_pairs, s->comm, PETSC_ERR_USER_INPUT, "-analysis static and -modes_contact static need -contacts");
   PetscCall(OperatorsGetParameters(s->operators, &s->n_parameters, &parameters));
   PetscCall(PetscMalloc3(s->rows.n_pairs, &s->status, s->rows.n_pairs, &s->state, s->rows.n_interfaces, &s->resultant));
   for (PetscInt p = 0; p < s->rows.n_pairs; p++) s->status[p] = s->rows.law[p].d == 3 ? COULOMB_STICK : COULOMB_SLIP;
   PetscCall(OperatorsCreateVec(s->operators, &s->u));
+  PetscCall(PetscMalloc1(s->n_parameters, &s->initial));
+  for (PetscInt i = 0; i < s->n_parameters; i++) s->initial[i] = parameters[i].value;
   PetscFunctionReturn(0);
 }
 
-/* Nothing moves without loads, unless bodies interfere */
-static PetscErrorCode LoadCheck(Statics s, PetscReal size)
+PetscErrorCode StaticsPlace(Statics s, char text[], size_t size)
 {
-  PetscReal least = 0;
+  const OperatorsParameter *parameters;
+  const char               *between = " at ";
+  PetscInt                  n;
+  char                      one[192];
 
   PetscFunctionBeginUser;
+  text[0] = 0;
+  PetscCall(OperatorsGetParameters(s->operators, &n, &parameters));
+  for (PetscInt i = 0; i < s->n_parameters; i++) {
+    if (parameters[i].value == s->initial[i]) continue;
+    PetscCall(PetscSNPrintf(one, sizeof(one), "%s%s %.6g", between, parameters[i].name, (double)parameters[i].value));
+    PetscCall(PetscStrlcat(text, one, size));
+    between = ", ";
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Nothing moves without loads on what can move, unless bodies interfere */
+static PetscErrorCode LoadCheck(Statics s, Vec f)
+{
+  PetscReal least = 0, size;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecNorm(f, NORM_2, &size));
   for (PetscInt p = 0; p < s->rows.n_pairs; p++) least = PetscMin(least, s->rows.law[p].g0);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPI_MIN, s->comm));
   PetscCheck(size > 0 || least < 0, s->comm, PETSC_ERR_USER_INPUT,
-             "nothing presses the bodies together: give -loads, e.g. -loads press -press_set beam_top -press_force "
-             "0,0,-100");
+             "nothing presses the bodies together: give -loads on what -supports do not hold, e.g. -loads press "
+             "-press_set beam_top -press_force 0,0,-100");
   PetscFunctionReturn(0);
 }
 
@@ -135,7 +174,7 @@ PetscErrorCode StaticsSolve(Statics s)
   PetscFunctionBeginUser;
   PetscCall(StaticsSetUp(s));
   PetscCall(LoadCreate(s->operators, &f, &size));
-  PetscCall(LoadCheck(s, size));
+  PetscCall(LoadCheck(s, f));
   PetscCall(PetscCalloc1(s->rows.n, &l));
   PetscCall(StaticsFactor(s));
   PetscCall(HoldCheck(s->operators, &s->compliance.hold, "the loads", f, size));
@@ -182,6 +221,7 @@ PetscErrorCode StaticsDestroy(Statics *statics)
   PetscCall(StaticsRelease(s));
   PetscCall(RowsDestroy(&s->rows));
   PetscCall(PetscFree3(s->status, s->state, s->resultant));
+  PetscCall(PetscFree(s->initial));
   PetscCall(PetscFree(s->linearised));
   PetscCall(VecDestroy(&s->u));
   PetscCall(PetscFree(*statics));

@@ -78,6 +78,7 @@ struct _p_Statics {
   /* the solution */
   PetscBool         solved;
   PetscInt          n_parameters, n_it;
+  PetscReal        *initial;    /* [n_parameters] those of the scene */
   PetscReal        *linearised; /* [n_parameters] those of the last StaticsLinearise(); NULL before */
   CoulombStatus    *status;
   ContactState     *state;
@@ -90,11 +91,14 @@ struct _p_Statics {
 
 /* statics.c - pairs, rows and room for results, once */
 PETSC_INTERN PetscErrorCode StaticsSetUp(Statics statics);
+/* statics.c - " at contact_mu 0.7, pad_young 1e+10": parameters that differ from those of the scene, for messages */
+PETSC_INTERN PetscErrorCode StaticsPlace(Statics statics, char text[], size_t size);
 /* statics.c - the factorisation and the laws at the present values of the parameters */
 PETSC_INTERN PetscErrorCode StaticsFactor(Statics statics);
 
-/* rows.c - pairs and rows; the present friction coefficients and stiffnesses of the interfaces */
-PETSC_INTERN PetscErrorCode RowsCreate(Operators operators, Rows *rows);
+/* rows.c - pairs and rows, normal ones only for pressing without friction; the present friction coefficients and
+   stiffnesses of the interfaces */
+PETSC_INTERN PetscErrorCode RowsCreate(Operators operators, PetscBool pressing, Rows *rows);
 PETSC_INTERN PetscErrorCode RowsSetLaws(Operators operators, PetscReal kappa, Rows *rows);
 PETSC_INTERN PetscErrorCode RowsDestroy(Rows *rows);
 
@@ -106,7 +110,8 @@ PETSC_INTERN PetscErrorCode FreeMotionsCreate(Operators operators, Mat A, Hold *
 PETSC_INTERN PetscErrorCode HoldCreate(Operators operators, Mat A, Hold *hold);
 PETSC_INTERN PetscErrorCode HoldCheck(Operators operators, const Hold *hold, const char force[], Vec f, PetscReal size);
 /* Error where A, of the closed pairs only, has more free motions */
-PETSC_INTERN PetscErrorCode HoldCheckClosed(Operators operators, const Hold *hold, Mat A, PetscInt n_closed);
+PETSC_INTERN PetscErrorCode HoldCheckClosed(Operators operators, const Hold *hold, const char place[], Mat A,
+                                            PetscInt n_closed);
 PETSC_INTERN PetscErrorCode HoldProject(const Hold *hold, Vec u);
 PETSC_INTERN PetscErrorCode HoldDestroy(Hold *hold);
 
@@ -124,8 +129,8 @@ PETSC_INTERN PetscErrorCode ComplianceAugment(Mat K, const Rows *rows, PetscReal
                                               const CoulombStatus status[], Mat *A);
 PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *c);
 
-/* small.c - z of w + W_mu l - W w = rhs with the laws [rows]; l and w of it. GMRES to rtol where it is not dense. reversed = whether the determinant is
-   negative */
+/* small.c - z of w + W_mu l - W w = rhs with the laws [rows]; l and w of it. GMRES to rtol where it is not dense.
+   reversed = whether the determinant is negative */
 PETSC_INTERN PetscErrorCode SmallSolve(const Compliance *c, const Rows *rows, PetscReal friction, const LawRow law[],
                                        const PetscReal rhs[], PetscReal rtol, PetscReal l[], PetscReal w[],
                                        SmallOutcome *outcome, PetscBool *reversed);

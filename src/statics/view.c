@@ -6,9 +6,9 @@
 /* One interface: pairs, forces, and where the normal force acts */
 static PetscErrorCode InterfaceView(const ContactInterface *c, const StaticsResultant *r, PetscViewer viewer)
 {
-  const PetscInt  open = r->n[CONTACT_OPEN], stick = r->n[CONTACT_STICK], slip = r->n[CONTACT_SLIP];
-  const PetscReal tangential = PetscSqrtReal(
-    PetscMax(0, PetscSqr(r->force[0]) + PetscSqr(r->force[1]) + PetscSqr(r->force[2]) - PetscSqr(r->normal)));
+  const PetscInt   open = r->n[CONTACT_OPEN], stick = r->n[CONTACT_STICK], slip = r->n[CONTACT_SLIP];
+  const PetscReal *t          = r->friction;
+  const PetscReal  tangential = PetscSqrtReal(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
 
   PetscFunctionBeginUser;
   PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %" PetscInt_FMT " of %" PetscInt_FMT " pairs closed", c->name,

@@ -3,6 +3,7 @@
    the ranks.
 */
 #include "staticsimpl.h"
+#include "gather.h"
 #include <stdlib.h>
 
 /* One row of the table */
@@ -23,30 +24,22 @@ static int RecordCompare(const void *one, const void *other)
   return 0;
 }
 
-/* Records of all ranks on the first one, in order; n = 0 on the others */
+/* Records of all ranks, in order, on every rank */
 static PetscErrorCode RecordsGather(Statics s, PetscInt *n, Record **all)
 {
   const Rows *rows = &s->rows;
-  PetscMPIInt size, bytes, *count, *start;
   Record     *local;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(s->comm, &size));
-  PetscCall(PetscMalloc3(size, &count, size + 1, &start, rows->n_pairs, &local));
+  PetscCall(PetscMalloc1(rows->n_pairs, &local));
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     local[p] = (Record){.interface = rows->pair[p].interface, .area = rows->pair[p].area, .state = s->state[p]};
     PetscCall(PetscArraycpy(local[p].x, rows->pair[p].x, 3));
     PetscCall(PetscArraycpy(local[p].t, rows->pair[p].t, 3));
   }
-  PetscCall(PetscMPIIntCast(rows->n_pairs * (PetscInt)sizeof(Record), &bytes));
-  PetscCallMPI(MPI_Allgather(&bytes, 1, MPI_INT, count, 1, MPI_INT, s->comm));
-  start[0] = 0;
-  for (PetscMPIInt r = 0; r < size; r++) start[r + 1] = start[r] + count[r];
-  *n = start[size] / (PetscInt)sizeof(Record);
-  PetscCall(PetscMalloc1(*n, all));
-  PetscCallMPI(MPI_Allgatherv(local, bytes, MPI_BYTE, *all, count, start, MPI_BYTE, s->comm));
+  PetscCall(GatherRecords(s->comm, rows->n_pairs, sizeof(Record), local, n, all));
   qsort(*all, (size_t)*n, sizeof(Record), RecordCompare);
-  PetscCall(PetscFree3(count, start, local));
+  PetscCall(PetscFree(local));
   PetscFunctionReturn(0);
 }
 

@@ -1,11 +1,12 @@
 /*
-   Unit test of ContactCreateApproach() on two boxes, whose layers at the contact are 0.2 m (lower, master) and 0.3 m
-   (upper, slave) high.
+   Unit test of ContactCreateApproach() and StaticsIdentify() on two boxes, whose layers at the contact are 0.2 m
+   (lower, master) and 0.3 m (upper, slave) high.
 
    References: a displacement of which the approach is known, exactly since master points move by bilinear weights; the
    shortening F h / (E A) of bars in compression at Poisson's ratio 0, and F / (n k_n) of their contact.
 */
 #include <petscksp.h>
+#include <squeal/statics.h>
 #include "boxes.h"
 #include "brake.h"
 #include "check.h"
@@ -183,6 +184,36 @@ static PetscErrorCode TestPressed(int *failed)
   PetscFunctionReturn(0);
 }
 
+/* Breaks when: pressing keeps friction or the penalty's own stiffness, the slope is that of one pair, or the line goes
+   through other rows. The two layers in series: k = 1 / (h_1 / (E_1 A) + h_2 / (E_2 A)); asked within 0.1 % */
+static PetscErrorCode TestIdentify(int *failed)
+{
+  static const PetscReal side[] = {0, 0.2, 0.5};
+  const Box              box[]  = {
+                  {.name = "lower", .n = {3, 3, 4}, .x = {side, side, z_lower}},
+                  {.name = "upper", .n = {3, 3, 3}, .x = {side, side, z_upper}}
+  };
+  const PetscReal  k = 1 / (0.3 / (6 * 0.25) + 0.2 / (4 * 0.25));
+  StaticsStiffness stiffness;
+  Statics          statics;
+  Chain            chain;
+
+  PetscFunctionBeginUser;
+  PetscCall(SceneCreate(BOXES LOADED
+                        "-joint_mu 0.2 -supports base,head -base_set lower_bottom -head_set upper_top -head_fix xy",
+                        box, &chain));
+  PetscCall(StaticsCreate(PETSC_COMM_WORLD, &statics));
+  PetscCall(StaticsSetOperators(statics, chain.operators));
+  PetscCall(StaticsIdentify(statics, 0, &stiffness));
+  *failed += CheckClose("k of two layers in series, N/m", stiffness.total, k, 1e-10 * k);
+  *failed += CheckClose("k of each of nine pairs, N/m", stiffness.per_pair, k / 9, 1e-10 * k);
+  *failed += CheckClose("last force, N", stiffness.range[1], 3, 1e-10);
+  *failed += CheckClose("distance from the line", stiffness.residual, 0, 1e-10);
+  PetscCall(StaticsDestroy(&statics));
+  PetscCall(ChainDestroy(&chain));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
   int failed = 0;
@@ -191,6 +222,7 @@ int main(int argc, char **argv)
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
   PetscCall(TestLinear(&failed));
   PetscCall(TestPressed(&failed));
+  PetscCall(TestIdentify(&failed));
   PetscCall(PetscOptionsClear(NULL));
   PetscCall(PetscFinalize());
   printf("%d failed\n", failed);

@@ -1,0 +1,20 @@
+/* Private: arrays of records, pieced together on every rank from those of all */
+#pragma once
+
+#include <petscsys.h>
+
+/*@
+   GatherRecords - concatenates the records of all ranks, in the order of the ranks, on every rank. Counts are of
+   records, so that an int limits their number and not their bytes. Collective.
+
+   Input Parameters:
++  n_local - number of this rank's records, 0 allowed
+.  size    - of one record, bytes
+-  local   - this rank's records
+
+   Output Parameters:
++  n_all - number of all records, or NULL
+-  all   - address of the pointer to them, set for the caller, who frees it with PetscFree()
+@*/
+PETSC_INTERN PetscErrorCode GatherRecords(MPI_Comm comm, PetscInt n_local, size_t size, const void *local,
+                                          PetscInt *n_all, void *all);
