@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Eigenvalues of a sweep against single runs of -analysis modes: verify_points.py SWEEP RTOL VALUE[,VALUE_2]=FOLDER ...
+"""Eigenvalues of a sweep against single runs of -analysis modes.
 
-Every point of the sweep must be named. Each eigenvalue of a point is compared with the nearest one of the run, which must
-have as many; RTOL is relative to |lambda|.
+    verify_points.py SWEEP RTOL VALUE[,VALUE_2]=FOLDER ...
+
+Every point of the sweep must be named. Each eigenvalue of a point is compared with the nearest one of the run, which
+must have as many; RTOL is relative to |lambda|.
 """
 
 import csv

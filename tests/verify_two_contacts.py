@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""A block between a floor that slides and a ceiling that holds it by Coulomb friction: verify_two_contacts.py FOLDER N MU_FLOOR
-MU_CEILING HEIGHT, what balance of the block alone demands of static.csv, with contacts "lower" and "upper" (forces in N, m).
+"""What balance demands of static.csv for a block between a floor that slides and a ceiling that holds it by friction.
 
-    lower  friction on the block mu N along -y, mu lambda_n at every pair
-    upper  friction on the block mu N (of the lower contact) along y, at most mu lambda_n at every pair, equal where it slips
-    both   sum of lambda_n = N; moment about x: the resultants are mu N HEIGHT / N apart along y
+    verify_two_contacts.py FOLDER N MU_FLOOR MU_CEILING HEIGHT     (N, m)
+
+lower  the contact with the floor: friction on the block mu N along -y, mu lambda_n at every pair
+upper  the contact with the ceiling, under Coulomb's law: friction on the block mu N of the lower one along y, at most
+       mu lambda_n at every pair, and that where it slips
+both   sum of lambda_n = N; moments about x: the resultants are mu HEIGHT apart along y
 """
 
 import csv
@@ -19,7 +21,7 @@ SMALL = 1e-10  # of N, and of the height
 
 
 class Side:
-    """Pairs of one contact; friction as x and y of the force on the slave, the block. The normal is from master to slave."""
+    """Pairs of one contact; friction as x and y of the force on the slave, the block. The normal is up or down (-1)."""
 
     def __init__(self, rows, name, up):
         rows = [row for row in rows if row["interface"] == name]

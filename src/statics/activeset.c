@@ -19,8 +19,8 @@
 #define MIN_DAMP   (1.0 / 128)
 #define MAX_KEPT   64   /* statuses remembered, to see when they repeat */
 #define ONE_BY_ONE 10   /* times max_it, when single pairs change */
-#define FEW        1000 /* pairs up to which that, and small steps of friction, are worth the time */
-#define LARGE_STEP (1.0 / 32)
+#define FEW        1000 /* rows of a dense problem up to which that, and small steps of friction, are worth the time */
+#define LARGE_STEP (1.0 / 16)
 
 /* Laws of all rows at the present status */
 static void LawsSet(const Active *a, LawRow law[])
@@ -254,10 +254,16 @@ static PetscErrorCode Restart(Active *a)
   PetscFunctionReturn(0);
 }
 
+/* Whether many iterations are worth their time */
+static PetscBool IsFew(const Active *a)
+{
+  return a->compliance->W && a->rows->n_all <= FEW ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* Raises friction in steps from the equilibrium without it */
 static PetscErrorCode Raise(Active *a, ActiveOutcome *outcome)
 {
-  const PetscBool few      = a->rows->n_all <= FEW ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool few      = IsFew(a);
   const PetscReal min_step = few ? MIN_STEP : LARGE_STEP;
   PetscReal       reached = 0, step = 0.25, *l, *w;
   CoulombStatus  *status;
@@ -297,7 +303,7 @@ PetscErrorCode ActiveSolve(Active *a, ActiveOutcome *outcome)
   PetscCall(Iterate(a, PETSC_FALSE, outcome));
   if (*outcome == ACTIVE_CONVERGED) PetscFunctionReturn(0);
   PetscCall(Restart(a));
-  if (a->rows->n_all <= FEW) PetscCall(Iterate(a, PETSC_TRUE, outcome));
+  if (IsFew(a)) PetscCall(Iterate(a, PETSC_TRUE, outcome));
   if (*outcome != ACTIVE_CONVERGED) PetscCall(Raise(a, outcome));
   PetscFunctionReturn(0);
 }

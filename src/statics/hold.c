@@ -190,7 +190,7 @@ PetscErrorCode HoldCheckClosed(Operators operators, const Hold *hold, const char
     PetscCall(UnknownDescribe(model, left.pin[0], x, &direction, part));
     SETERRQ(PetscObjectComm((PetscObject)A), PETSC_ERR_NOT_CONVERGED,
             "no stable equilibrium%s: only %" PetscInt_FMT
-            " pairs stay closed, and part %s can tip or slide on them without resistance; lower the friction "
+            " of the pairs stay closed, and part %s can tip or slide on them without resistance; lower the friction "
             "coefficient, move the -loads, or give -supports or -springs",
             place, n_closed, part);
   }

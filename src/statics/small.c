@@ -15,7 +15,7 @@
 #define SINGULAR  1e-13 /* smallest pivot beside the largest */
 #define ENOUGH    1e-10 /* of GMRES that gets no farther; refinement of the whole does the rest */
 #define RESTART   300
-#define MAX_STEPS 1000
+#define MAX_STEPS 300
 
 /* Adds column z_j, and with j < 0 the constants p0, q0 (subtracted): y += Q_j + (W - V D) P_j - W Q_j */
 static void ColumnAdd(const Compliance *c, PetscReal friction, PetscInt n, const LawRow law[], PetscInt j,
