@@ -105,7 +105,8 @@ static PetscErrorCode ChainView(Chain *chain, PetscViewer viewer)
   PetscFunctionBeginUser;
   if (chain->model) PetscCall(ModelView(chain->model, viewer));
   if (chain->contact) PetscCall(ContactView(chain->contact, viewer));
-  PetscCall(OperatorsView(chain->operators, viewer));
+  if (chain->analysis != ANALYSIS_STATIC)
+    PetscCall(OperatorsView(chain->operators, viewer)); /* of the linearised pencil */
   PetscFunctionReturn(0);
 }
 

@@ -8,9 +8,33 @@
    bracket become places of the sweep themselves. A further status found on the way becomes a segment of its own.
 */
 #include "sweepimpl.h"
+#include <string.h>
 
 #define MAX_BISECTIONS 30   /* of a sweep */
 #define NARROW         1e-4 /* relative width of a bracket that is not divided any more */
+
+PetscErrorCode SweepAxisCheck(Sweep sweep, const char name[])
+{
+  const ContactInterface *interfaces;
+  PetscInt                n = 0;
+  Contact                 contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(sweep->operators, NULL, &contact));
+  if (contact) PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
+  for (PetscInt i = 0; i < n; i++) {
+    const size_t      length = strlen(interfaces[i].name);
+    const char *const what   = strncmp(name, interfaces[i].name, length) ? "" : name + length;
+
+    PetscCheck(!interfaces[i].identify || strcmp(what, "_kn"), sweep->comm, PETSC_ERR_USER_INPUT,
+               "-%s identify does nothing where -sweep_parameter %s gives its values", name, name);
+    PetscCheck(!sweep->statics || strcmp(what, "_force"), sweep->comm, PETSC_ERR_USER_INPUT,
+               "-sweep_parameter %s does nothing with -modes_contact static, which takes the normal forces from the "
+               "-loads",
+               name);
+  }
+  PetscFunctionReturn(0);
+}
 
 PetscErrorCode SweepStatusTake(Sweep sweep, PetscInt *status)
 {

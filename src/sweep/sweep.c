@@ -134,30 +134,6 @@ PetscErrorCode SweepSetFromOptions(Sweep sweep)
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for a contact's parameter that would be overwritten at every point */
-static PetscErrorCode AxisCheck(Sweep sweep, const char name[])
-{
-  const ContactInterface *interfaces;
-  PetscInt                n = 0;
-  Contact                 contact;
-
-  PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(sweep->operators, NULL, &contact));
-  if (contact) PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
-  for (PetscInt i = 0; i < n; i++) {
-    const size_t      length = strlen(interfaces[i].name);
-    const char *const what   = strncmp(name, interfaces[i].name, length) ? "" : name + length;
-
-    PetscCheck(!interfaces[i].identify || strcmp(what, "_kn"), sweep->comm, PETSC_ERR_USER_INPUT,
-               "-%s identify does nothing where -sweep_parameter %s gives its values", name, name);
-    PetscCheck(!sweep->statics || strcmp(what, "_force"), sweep->comm, PETSC_ERR_USER_INPUT,
-               "-sweep_parameter %s does nothing with -modes_contact static, which takes the normal forces from the "
-               "-loads",
-               name);
-  }
-  PetscFunctionReturn(0);
-}
-
 /* Parameters and values of the axes, checked against what each parameter may be */
 static PetscErrorCode GridSetUp(Sweep sweep)
 {
@@ -181,7 +157,7 @@ static PetscErrorCode GridSetUp(Sweep sweep)
 
     PetscCall(
       ParameterFind(sweep->comm, "-sweep_parameter", names[k], grid->n_parameters, parameters, &grid->parameter[k]));
-    PetscCall(AxisCheck(sweep, names[k]));
+    PetscCall(SweepAxisCheck(sweep, names[k]));
     PetscCheck(strlen(sweep->values[k]) < SWEEP_MAX_TEXT - 1, sweep->comm, PETSC_ERR_USER_INPUT,
                "%s is longer than %d characters; give a range first:last:n", options[k], SWEEP_MAX_TEXT);
     PetscCall(ValuesParse(sweep->comm, options[k], sweep->values[k], &grid->n[k], &grid->value[k], &grid->ratio[k]));

@@ -103,6 +103,8 @@ PETSC_INTERN PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], co
 PETSC_INTERN PetscErrorCode SweepClassify(Sweep sweep);
 PETSC_INTERN PetscInt       SweepEventLine(Sweep sweep, PetscInt e);
 PETSC_INTERN PetscReal      SweepOnsetDistance(Sweep sweep, PetscInt point, PetscInt branch);
+/* sliding.c - raises the error for a contact's parameter that would be overwritten at every point */
+PETSC_INTERN PetscErrorCode SweepAxisCheck(Sweep sweep, const char name[]);
 /* sliding.c - statuses of all places and checks from the sliding state, changes of status bracketed, groups of pairs as
    further parameters; the status at a place, and that of the last static solution; pairs closed at a point of the grid
    (-1 without contact), and whether the point before it has another status; fewest and most pairs closed at all
