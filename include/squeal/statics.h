@@ -88,9 +88,6 @@ PetscErrorCode StaticsGetState(Statics statics, const ContactState **state, Vec 
     Not collective. @*/
 PetscErrorCode StaticsGetKKT(Statics statics, ContactKKT *kkt, PetscReal *equilibrium);
 
-/*@ StaticsGetResultant - sums over an interface. Not collective. @*/
-PetscErrorCode StaticsGetResultant(Statics statics, PetscInt interface, StaticsResultant *resultant);
-
 /*@ StaticsGetClosed - whether each local pair is closed, -static_rows counted in, [local pairs]. Collective. @*/
 PetscErrorCode StaticsGetClosed(Statics statics, PetscBool closed[]);
 

@@ -179,7 +179,6 @@ PetscErrorCode StaticsSolve(Statics s)
   PetscCall(StaticsFactor(s));
   PetscCall(HoldCheck(s->operators, &s->compliance.hold, "the loads", f, size));
   PetscCall(EquilibriumSolve(s, &s->rows, &s->compliance, f, size, s->load_steps, s->status, l, s->u));
-  s->load   = size;
   s->n_free = s->compliance.hold.n;
   PetscCall(StateSet(s, &s->compliance, f, l));
   s->solved = PETSC_TRUE;
@@ -202,13 +201,6 @@ PetscErrorCode StaticsGetKKT(Statics statics, ContactKKT *kkt, PetscReal *equili
   PetscFunctionBeginUser;
   *kkt         = statics->kkt;
   *equilibrium = statics->equilibrium;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode StaticsGetResultant(Statics statics, PetscInt interface, StaticsResultant *resultant)
-{
-  PetscFunctionBeginUser;
-  *resultant = statics->resultant[interface];
   PetscFunctionReturn(0);
 }
 

@@ -84,9 +84,9 @@ struct _p_Statics {
   ContactState     *state;
   Vec               u;
   ContactKKT        kkt;
-  PetscReal         equilibrium, load; /* relative residual; |f|, N */
-  PetscInt          n_free;            /* rigid motions held by pins */
-  StaticsResultant *resultant;         /* [interfaces] */
+  PetscReal         equilibrium; /* relative residual */
+  PetscInt          n_free;      /* rigid motions held by pins */
+  StaticsResultant *resultant;   /* [interfaces] */
 };
 
 /* statics.c - pairs, rows and room for results, once */
