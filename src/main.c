@@ -1,16 +1,16 @@
 static const char help[] =
   "squeal: friction-induced vibration of bodies in sliding contact.\n"
-  "  squeal -options_file options/massi2005.yaml [-analysis modes|sweep|static] [-output_dir DIR] [any option]\n"
+  "  squeal -options_file options/massi2005.yaml [-analysis modes|sweep|static|transient] [-output_dir DIR] [any "
+  "option]\n"
   "  mpirun -n 2 squeal ... uses two ranks. SI units everywhere. Options files are YAML; later options override "
   "earlier ones.\n";
 
 #include <squeal/squeal.h>
 #include <squeal/options.h>
 
-typedef enum { ANALYSIS_MODES, ANALYSIS_SWEEP, ANALYSIS_STATIC, N_ANALYSES } Analysis;
+typedef enum { ANALYSIS_MODES, ANALYSIS_SWEEP, ANALYSIS_STATIC, ANALYSIS_TRANSIENT, N_ANALYSES } Analysis;
 
-/* The chain of a run: options -> model -> contact -> operators -> statics -> modes -> sweep, and
-   results */
+/* The chain of a run: options -> model -> contact -> operators -> statics -> modes -> sweep, or dynamics; and results */
 typedef struct {
   Model     model; /* NULL for matrices without a mesh */
   Contact   contact;
@@ -18,6 +18,7 @@ typedef struct {
   Statics   statics;
   Modes     modes;
   Sweep     sweep;
+  Dynamics  dynamics;
   Results   results;
   Analysis  analysis;
   PetscBool view;
@@ -25,7 +26,7 @@ typedef struct {
 
 static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
 {
-  static const char *const analyses[N_ANALYSES] = {"modes", "sweep", "static"};
+  static const char *const analyses[N_ANALYSES] = {"modes", "sweep", "static", "transient"};
   PetscBool                has_matrices;
   PetscInt                 analysis = ANALYSIS_MODES;
 
@@ -47,6 +48,9 @@ static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
     PetscCall(ContactSetFromOptions(chain->contact));
     PetscCall(OperatorsSetModel(chain->operators, chain->model, chain->contact));
   }
+  PetscCall(DynamicsCreate(comm, &chain->dynamics));
+  if (chain->model) PetscCall(DynamicsSetModel(chain->dynamics, chain->model, chain->contact));
+  PetscCall(DynamicsSetFromOptions(chain->dynamics));
   PetscCall(StaticsCreate(comm, &chain->statics));
   PetscCall(StaticsSetFromOptions(chain->statics));
   PetscCall(ModesCreate(comm, &chain->modes));
@@ -62,6 +66,7 @@ static PetscErrorCode ChainDestroy(Chain *chain)
 {
   PetscFunctionBeginUser;
   PetscCall(ResultsDestroy(&chain->results));
+  PetscCall(DynamicsDestroy(&chain->dynamics));
   PetscCall(SweepDestroy(&chain->sweep));
   PetscCall(ModesDestroy(&chain->modes));
   PetscCall(StaticsDestroy(&chain->statics));
@@ -85,13 +90,18 @@ static PetscErrorCode ReadAgain(MPI_Comm comm, void *ctx)
 
 static PetscErrorCode ChainSetUp(Chain *chain)
 {
+  const PetscBool transient = chain->analysis == ANALYSIS_TRANSIENT ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool       pairs     = PETSC_TRUE;
+
   PetscFunctionBeginUser;
+  if (transient) PetscCall(DynamicsNeedsPairs(chain->dynamics, &pairs));
   if (chain->model) {
+    if (transient) PetscCall(ModelKeepSlabs(chain->model));
     PetscCall(SquealStageBegin(SQUEAL_MODEL));
     PetscCall(ModelSetUp(chain->model));
     PetscCall(SquealStageEnd(SQUEAL_MODEL));
     PetscCall(SquealStageBegin(SQUEAL_CONTACT));
-    PetscCall(ContactSetUp(chain->contact));
+    if (pairs) PetscCall(ContactSetUp(chain->contact));
     PetscCall(SquealStageEnd(SQUEAL_CONTACT));
   }
   PetscCall(SquealStageBegin(SQUEAL_OPERATORS));
@@ -105,7 +115,7 @@ static PetscErrorCode ChainView(Chain *chain, PetscViewer viewer)
   PetscFunctionBeginUser;
   if (chain->model) PetscCall(ModelView(chain->model, viewer));
   if (chain->contact) PetscCall(ContactView(chain->contact, viewer));
-  if (chain->analysis != ANALYSIS_STATIC)
+  if (chain->analysis == ANALYSIS_MODES || chain->analysis == ANALYSIS_SWEEP)
     PetscCall(OperatorsView(chain->operators, viewer)); /* of the linearised pencil */
   PetscFunctionReturn(0);
 }
@@ -120,6 +130,7 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscCall(ModesSetOperators(chain->modes, chain->operators));
   PetscCall(SweepSetOperators(chain->sweep, chain->operators));
   PetscCall(SweepSetModes(chain->sweep, chain->modes));
+  PetscCall(DynamicsSetOperators(chain->dynamics, chain->operators, chain->statics));
   PetscCall(ModesGetContact(chain->modes, &is_static));
   if (is_static) PetscCall(ModesSetStatics(chain->modes, chain->statics));
   if (is_static) PetscCall(SweepSetStatics(chain->sweep, chain->statics));
@@ -170,10 +181,22 @@ static PetscErrorCode RunSweep(Chain *chain, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode RunTransient(Chain *chain, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SquealStageBegin(SQUEAL_DYNAMICS));
+  PetscCall(DynamicsSolve(chain->dynamics, chain->results));
+  PetscCall(SquealStageEnd(SQUEAL_DYNAMICS));
+  PetscCall(DynamicsView(chain->dynamics, viewer));
+  PetscFunctionReturn(0);
+}
+
 typedef PetscErrorCode (*RunAnalysis)(Chain *, PetscViewer);
 
-static const RunAnalysis run_analysis[N_ANALYSES] = {
-  [ANALYSIS_MODES] = RunModes, [ANALYSIS_SWEEP] = RunSweep, [ANALYSIS_STATIC] = RunStatic};
+static const RunAnalysis run_analysis[N_ANALYSES] = {[ANALYSIS_MODES]     = RunModes,
+                                                     [ANALYSIS_SWEEP]     = RunSweep,
+                                                     [ANALYSIS_STATIC]    = RunStatic,
+                                                     [ANALYSIS_TRANSIENT] = RunTransient};
 
 static PetscErrorCode Run(MPI_Comm comm)
 {

@@ -7,6 +7,7 @@
 */
 #include <squeal/squeal.h>
 #include <squeal/options.h>
+#include "events.h"
 #include <slepcsys.h>
 #include <hdf5.h>
 #include <signal.h>
@@ -14,11 +15,16 @@
 #define MAX_MESSAGE 1024
 
 static const char *const stage_names[SQUEAL_N_STAGES] = {"Model", "Contact", "Operators", "Statics",
-                                                         "Modes", "Sweep",   "Results"};
+                                                         "Modes", "Sweep",   "Dynamics",  "Results"};
 /* First error of this rank, printed by SquealFinalize() */
 static char error_message[MAX_MESSAGE];
 
 static PetscLogStage stages[SQUEAL_N_STAGES];
+
+static const char *const event_names[N_EVENTS] = {"BodiesAdvance", "BodiesExchange", "External",  "ContactProject",
+                                                  "KickAndDrift",  "HistoryRecord",  "Checkpoint"};
+
+PetscLogEvent squeal_events[N_EVENTS];
 
 /* Log handles of the stages: seconds spent and resident memory (bytes) at the end of each, on this rank */
 static struct {
@@ -62,6 +68,7 @@ static void NameOptionsFiles(int argc, char *const argv[], char message[MAX_MESS
 PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
 {
   PetscErrorCode error;
+  PetscClassId class;
 
   PetscFunctionBeginUser;
   (void)signal(SIGXFSZ, SIG_IGN); /* a file beyond `ulimit -f` is an error of the write, as a full disk is */
@@ -72,6 +79,8 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
   if (error) NameOptionsFiles(*argc, *argv, error_message);
   PetscCall(error);
   for (PetscInt s = 0; s < SQUEAL_N_STAGES; s++) PetscCall(PetscLogStageRegister(stage_names[s], &stages[s]));
+  PetscCall(PetscClassIdRegister("Squeal", &class));
+  for (PetscInt e = 0; e < N_EVENTS; e++) PetscCall(PetscLogEventRegister(event_names[e], class, &squeal_events[e]));
   PetscCall(PetscCitationsRegister(citation, &cited));
   PetscFunctionReturn(0);
 }

@@ -27,6 +27,8 @@ import numpy as np
 MOVE_ROTATION = np.array([[1, -4, 8], [8, 4, 1], [-4, 7, 4]]) / 9
 BLOCK_SIZE, BASE_HEIGHT, BASE_MARGIN = np.array([0.1, 0.1, 0.1]), 0.02, 2
 BEAM_SIZE = np.array([0.1, 0.01, 0.005])
+BAR_SIZE = np.array([0.1, 0.01, 0.01])
+RADIUS, CORE, GRADING = 0.01, 0.4, 4.5  # of the ball, m; half width of its cubic core / radius; see graded()
 MOVE_SHIFT = np.array([0.3, -0.2, 0.5])
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
 PHYSICAL = 40  # what the tag of a physical group exceeds that of its entity by
@@ -104,6 +106,68 @@ def blocks(elements, lift):
         "base": base.hexahedra(), "base_bottom": base.side(2, 0), "base_top": base.side(2, base.cells[2]),
         "block": block.hexahedra(), "block_bottom": block.side(2, 0), "block_top": block.side(2, n[2]),
         "block_left": block.side(1, 0), "block_right": block.side(1, n[1])}
+
+
+def bars(elements, gap):
+    grids = [Grid(elements), Grid(elements, first=int(np.prod(Grid(elements).nodes)))]
+    left, right = [(grid.places(grid.nodes) / grid.cells - [0, 0.5, 0.5]) * BAR_SIZE for grid in grids]
+    groups = {}
+    for name, grid in zip(("left", "right"), grids):
+        groups |= {name: grid.hexahedra(), f"{name}_start": grid.side(0, 0), f"{name}_end": grid.side(0, elements[0])}
+    return np.concatenate([left - [BAR_SIZE[0], 0, 0], right + [gap, 0, 0]]), groups
+
+
+def graded(n):
+    """n + 1 numbers from 0 to 1 that grow from steps of about 0.1 / n to steps of GRADING / n of themselves."""
+    return np.sinh(GRADING * np.arange(n + 1) / n) / np.sinh(GRADING)
+
+
+def merged(pieces):
+    """Nodes of pieces of one body, each with the elements of its groups, with those at the same place made one."""
+    nodes, first = np.concatenate([piece[0] for piece in pieces]), 0
+    _, kept, place = np.unique(np.round(nodes / 1e-9), axis=0, return_index=True, return_inverse=True)
+    groups = {}
+    for points, own in pieces:
+        for name, elements in own.items():
+            groups.setdefault(name, []).append(place.ravel()[elements + first])
+        first += len(points)
+    return nodes[kept], {name: np.concatenate(parts) for name, parts in groups.items()}
+
+
+def shell(axes, x, y, radial):
+    """Piece between a face of the core and the sphere: x, y on the face, axes their directions and the face's normal.
+    The nodes on the sphere are where tan(pi/4 x), tan(pi/4 y), 1 points."""
+    grid = Grid([len(x) - 1, len(y) - 1, len(radial) - 1])
+    i, j, k = grid.places(grid.nodes).T
+    face = np.stack([x[i], y[j], np.ones(len(i))], -1)
+    away = np.tan(np.pi / 4 * face)
+    away /= np.linalg.norm(away, axis=1)[:, None]
+    part = radial[k][:, None]
+    return grid, ((1 - part) * CORE * face + part * away) @ np.array(axes)
+
+
+def ball(n, gap):
+    """Core [0, 1]^2 x [-1, 1] and shells below, above, towards x and y; least first in all directions of a piece."""
+    along, up, radial = graded(n), np.linspace(-1, 1, n + 1), 1 - graded(n)[::-1]
+    ex, ey, ez = np.eye(3)
+    core = Grid([n, n, n])
+    i, j, k = core.places(core.nodes).T
+    pieces = [(CORE * np.stack([along[i], along[j], up[k]], -1),
+               {"ball": core.hexahedra(), "ball_x": core.side(0, 0), "ball_y": core.side(1, 0)})]
+    for axes, x, y in (((ey, ex, -ez), along, along), ((ex, ey, ez), along, along), ((ey, ez, ex), along, up),
+                       ((ez, ex, ey), up, along)):
+        grid, nodes = shell(axes, x, y, radial)
+        sides = {"ball": grid.hexahedra()}
+        for name, normal in (("ball_x", ex), ("ball_y", ey)):
+            sides |= {name: grid.side(d, 0) for d in range(2) if np.array_equal(axes[d], normal)}
+        if axes[2][2] < 0:
+            sides["ball_pole"] = grid.side(2, n)
+        pieces.append((nodes, sides))
+    nodes, groups = merged(pieces)
+    plate = Grid([1, 1, 1], first=len(nodes))
+    corners = plate.places(plate.nodes) * [2 * RADIUS, 2 * RADIUS, 0.002] - [RADIUS, RADIUS, 0.002]
+    groups |= {"plate": plate.hexahedra(), "plate_top": plate.side(2, 1)}
+    return np.concatenate([nodes * RADIUS + [0, 0, RADIUS + gap], corners]), groups
 
 
 # --- changes that leave the physics alone
@@ -216,20 +280,25 @@ def write(path, version, binary, nodes, groups, node_tags, numbers):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("shape", choices=["beam", "rig", "blocks"])
+    parser.add_argument("shape", choices=["beam", "rig", "blocks", "bars", "ball"])
     parser.add_argument("file", type=Path)
-    parser.add_argument("--elements", default="20,4,2", help="of the beam, or the block on its base, along x, y, z")
-    parser.add_argument("--lift", default="0,0,0", metavar="GAP,TILT,CROWN", help="of the block's bottom, m")
+    parser.add_argument("--elements", default="20,4,2", help="of the beam, the block on its base, or a bar, along x, y, z")
+    parser.add_argument("--lift", default="0,0,0", metavar="GAP,TILT,CROWN", help="of the block's bottom, m; others: GAP")
     parser.add_argument("--format", choices=["2.2", "4.1"], default="4.1")
     parser.add_argument("--binary", action="store_true")
     parser.add_argument("--renumber", type=int, metavar="SEED")
     parser.add_argument("--move", action="store_true")
     arguments = parser.parse_args()
     elements = [int(n) for n in arguments.elements.split(",")]
+    lift = [float(length) for length in arguments.lift.split(",")]
     if arguments.shape == "beam":
         nodes, groups = beam(elements)
     elif arguments.shape == "blocks":
-        nodes, groups = blocks(elements, [float(length) for length in arguments.lift.split(",")])
+        nodes, groups = blocks(elements, lift)
+    elif arguments.shape == "bars":
+        nodes, groups = bars(elements, lift[0])
+    elif arguments.shape == "ball":
+        nodes, groups = ball(elements[0], lift[0])
     else:
         nodes, groups = rig()
     node_tags = list(range(1, len(nodes) + 1))

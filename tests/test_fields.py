@@ -1,10 +1,14 @@
 #!/usr/bin/env python3
-"""Checks the shapes of a run (modes.h5, modes.xmf) against its table (modes.csv), as VTK and ParaView see them.
+"""Checks the shapes of a run (modes.h5, modes.xmf) against its table (modes.csv), or the frames of a film (--film
+transient: transient.xmf and the snapshots that it lists), as VTK and ParaView see them.
 
 VTK's HDF reader must see the hexahedra, none inverted, every node used, all parts, and for each mode of the table a
 finite shape that is not zero. The XDMF file must name datasets that exist, with their true sizes, and the same
 attributes at each step, since ParaView steps through them. A wrong order of corners, a node lost or doubled between
 ranks, a shape under the wrong mode and a stale path all fail here.
+
+The frames of a film must be numbered from 0, have growing times and the mesh, and displacements and velocities that
+are finite, and not all zero in the last one. A frame left out or listed twice fails.
 
 Exit status: 0, or 1 with the first difference on stderr.
 """
@@ -130,32 +134,64 @@ def check_xdmf(path, keys, hexahedra):
             check_item(grid.find(f"{place}/DataItem"), path.parent)
 
 
+def check_frame(grid, folder, hexahedra):
+    """A frame of a film names datasets of its own file; returns displacements and velocities of that file."""
+    file = folder / f"{grid.get('Name')}.h5"
+    items = [item.text for item in grid.iter("DataItem")]
+    expect(f"file of {grid.get('Name')}", {item.split(":")[0] for item in items}, {file.name})
+    for item in grid.iter("DataItem"):
+        check_item(item, folder)
+    names = [attribute.get("Name") for attribute in grid.findall("Attribute")]
+    expect(f"attributes of {grid.get('Name')}", names, ["part", "displacement_m", "velocity_m_s"])
+    expect(f"hexahedra of {grid.get('Name')}", grid.find("Topology").get("NumberOfElements"), str(hexahedra))
+    with h5py.File(file) as content:
+        return [content[f"VTKHDF/PointData/{name}"][:] for name in names[1:]]
+
+
+def check_film(path, hexahedra):
+    """Frames of a film: numbers, times, files, motions; returns their number."""
+    grids = xml.parse(path).findall("./Domain/Grid/Grid")
+    numbered = [f"snapshot_{k:06d}" for k in range(len(grids))]
+    expect("names of the frames", [grid.get("Name") for grid in grids], numbered)
+    times = [float(grid.find("Time").get("Value")) for grid in grids]
+    expect("frames at growing times", times, sorted(set(times)))
+    motions = [check_frame(grid, path.parent, hexahedra) for grid in grids]
+    expect("all motions finite", all(numpy.isfinite(m).all() for frame in motions for m in frame), True)
+    expect("the last frame moves", [bool(m.any()) for m in motions[-1]], [True, True])
+    return len(grids)
+
+
 def arguments():
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path, help="folder with modes.csv, modes.h5 and modes.xmf")
+    parser.add_argument("folder", type=Path, help="folder with modes.csv, modes.h5 and modes.xmf, or with a film")
     parser.add_argument("hexahedra", type=int, help="number of hexahedra of the mesh")
     parser.add_argument("parts", help="names of the parts in order, e.g. disc,pad,beam")
     parser.add_argument("--nodes", type=int, help="number of nodes of the mesh")
     parser.add_argument("--volume", type=float, help="volume of the mesh, m^3, to 1e-10")
+    parser.add_argument("--film", help="name of a film instead of modes")
     return parser.parse_args()
 
 
 def main():
     """Runs all checks; returns the exit status."""
     args = arguments()
-    fields = args.folder / "modes.h5"
+    fields = args.folder / ("snapshot_000000.h5" if args.film else "modes.h5")
     try:
-        keys = mode_keys(args.folder / "modes.csv")
         grid = read_grid(fields)
         check_mesh(grid, args.hexahedra, args.nodes, args.volume)
         check_parts(grid, fields, args.parts.split(","))
-        check_shapes(grid, fields, keys)
-        check_xdmf(args.folder / "modes.xmf", keys, args.hexahedra)
+        if args.film:
+            done = f"{check_film(args.folder / f'{args.film}.xmf', args.hexahedra)} frames"
+        else:
+            keys = mode_keys(args.folder / "modes.csv")
+            check_shapes(grid, fields, keys)
+            check_xdmf(args.folder / "modes.xmf", keys, args.hexahedra)
+            done = f"{len(keys)} modes"
     except (Difference, OSError, KeyError, xml.ParseError) as error:
         print(f"test_fields: {args.folder}: {error}", file=sys.stderr)
         return 1
-    print(f"{args.folder}: {grid.GetNumberOfPoints()} nodes, {args.hexahedra} hexahedra, {len(keys)} modes")
+    print(f"{args.folder}: {grid.GetNumberOfPoints()} nodes, {args.hexahedra} hexahedra, {done}")
     return 0
 
 

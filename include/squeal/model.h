@@ -35,6 +35,28 @@ typedef struct {
   PetscReal force[3];
 } Load;
 
+/* A place of a body that histories record: the nearest node of the part */
+typedef struct {
+  char     *name, *part; /* part is empty for any */
+  PetscReal at[3];       /* place asked for, m */
+  PetscReal x[3];        /* that of the node, m */
+  PetscInt  vertex;      /* local vertex from 0 on the rank that records it, -1 on all others */
+} Probe;
+
+/* Cells swept along an angle or an axis: each lies between two consecutive nodes of four lines. All lines have the same
+   number of nodes, five at least, equally spaced, and node k of every line has the same angle (or place along the
+   axis); the cells of a column between four lines are equal but for the sweep and have the same part. Lines that share
+   a cell are near each other in the list. On several ranks these are the local cells. */
+typedef struct {
+  PetscBool turned;           /* swept about the axis, else along it */
+  PetscInt  axis;             /* 0, 1, 2 for x, y, z */
+  PetscReal centre[3];        /* a point of the axis, m */
+  PetscReal begin, step;      /* angle (rad, from the axis + 1 towards axis + 2) or place (m) of node 0, and the step */
+  PetscInt  n_lines, n_nodes; /* lines, nodes of each */
+  PetscBool closed;           /* all around: node n_nodes is node 0 again */
+  PetscInt *vertex;           /* [n_lines][n_nodes] local vertices from 0 */
+} ModelLines;
+
 /* Essential condition: the flagged directions are fixed at every vertex of the set */
 typedef struct {
   char     *name, *set;
@@ -47,14 +69,14 @@ typedef struct {
 PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
 
 /*@
-   ModelSetFromOptions - reads the scene: mesh source, parts and materials, supports, springs, dashpots, loads.
+   ModelSetFromOptions - reads the scene: mesh source, parts and materials, supports, springs, dashpots, loads, probes.
    Collective.
 
    Options Database Keys:
 +  -model_source <rig|file> - where the mesh comes from
 .  -model_mesh <file>       - Gmsh file, format 2.2 or 4.1
 .  -model_element <incompatible|full> - element formulation
-.  -parts, -supports, -springs, -dashpots, -loads <names> - lists; each name is the prefix of its own options
+.  -parts, -supports, -springs, -dashpots, -loads, -probes <names> - lists; each name is the prefix of its own options
 -  -rig_*                   - dimensions (m) and counts of the built-in disc, pad and beam
 
    Errors: PETSC_ERR_USER_INPUT for a missing or invalid value, naming option, value and what is valid.
@@ -66,6 +88,11 @@ PetscErrorCode ModelSetFromOptions(Model model);
    ModelSetUp(). All sets named by any call end on the same rank. Not collective, same call on all ranks.
 @*/
 PetscErrorCode ModelKeepTogether(Model model, const char set[]);
+
+/*@ ModelKeepSlabs - asks the partition to cut swept bodies across their lines only, so that each rank has whole slabs
+    of them; bodies that fit into a rank's share of the cost stay whole. The sets of ModelKeepTogether() are then not
+    heeded. Call before ModelSetUp(). Not collective, same call on all ranks. @*/
+PetscErrorCode ModelKeepSlabs(Model model);
 
 /*@
    ModelSetUp - generates or reads the mesh, checks its elements, partitions it, and lays out the unknowns. Collective.
@@ -142,6 +169,19 @@ PetscErrorCode ModelGetSetFaces(Model model, const char set[], PetscInt *n, Pets
     the vertex's share of its area (m^2), complete on every rank that has the vertex. Collective. The caller frees it.
     @*/
 PetscErrorCode ModelGetSetNormals(Model model, const char set[], PetscReal **area_normals);
+
+/*@ ModelGetProbes - places that histories record (borrowed). Not collective. @*/
+PetscErrorCode ModelGetProbes(Model model, PetscInt *n, const Probe **probes);
+
+/*@ ModelFindNode - the node of a part (empty for any) nearest to a place (m): its local vertex from 0 on one rank that
+    has it, -1 on all others. Collective; after ModelSetUp(). @*/
+PetscErrorCode ModelFindNode(Model model, const char part[], const PetscReal at[3], PetscInt *vertex);
+
+/*@ ModelCreateLines - the lines along which the local cells of a body (of ModelGetBodies()) are swept; NULL where they
+    are not, or are none. Of several ways it is the one with the longest lines, rather about an axis than along it. Not
+    collective; the caller frees them with ModelDestroyLines(). @*/
+PetscErrorCode ModelCreateLines(Model model, PetscInt body, const PetscInt body_of_vertex[], ModelLines **lines);
+PetscErrorCode ModelDestroyLines(ModelLines **lines);
 
 /*@ ModelSumShared - sums a local vector of three values per vertex (layout of the coordinates) over all ranks that
     share a vertex; every one of them gets the sum. Collective. @*/

@@ -121,6 +121,9 @@ PetscErrorCode OperatorsGetYoung(Operators operators, PetscInt part, PetscReal *
 /*@ OperatorsGetDensity - the present density of a part, kg/m^3. Not collective. @*/
 PetscErrorCode OperatorsGetDensity(Operators operators, PetscInt part, PetscReal *density);
 
+/*@ OperatorsGetDamping - the present Rayleigh factors of a part: C = alpha M (1/s) + beta K (s). Not collective. @*/
+PetscErrorCode OperatorsGetDamping(Operators operators, PetscInt part, PetscReal *alpha, PetscReal *beta);
+
 /*@ OperatorsGetTerms - the terms of the pencil (borrowed), valid for any values of the parameters. Collective at the
     first call. @*/
 PetscErrorCode OperatorsGetTerms(Operators operators, PetscInt *n, const OperatorsTerm **terms);

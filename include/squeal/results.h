@@ -1,6 +1,7 @@
 /*
    Results - tables (CSV) and fields (HDF5 with an XDMF file beside it) in one folder. Every file is written under a
-   temporary name and renamed when it is complete, so that a final name always means a whole file.
+   temporary name (the final one and .part) and renamed when it is complete, so that a final name always means a whole
+   file.
 */
 #pragma once
 
@@ -9,6 +10,7 @@
 typedef struct _p_Results      *Results;
 typedef struct _p_ResultsTable *ResultsTable;
 typedef struct _p_ResultsField *ResultsField;
+typedef struct _p_ResultsFilm  *ResultsFilm;
 
 /*@ ResultsCreate - makes a writer. Collective. @*/
 PetscErrorCode ResultsCreate(MPI_Comm comm, Results *results);
@@ -39,6 +41,28 @@ PetscErrorCode ResultsTableOpen(Results results, const char name[], const char h
 /*@ ResultsTableRow - one record, printf-like, without the end of the line; %.15g for numbers, text that may hold a
     comma in double quotes. Collective, rank 0 writes. Failures are kept for ResultsTableClose(). @*/
 PetscErrorCode ResultsTableRow(ResultsTable table, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
+
+/*@ ResultsTableNumbers - one record of n numbers. As ResultsTableRow(). @*/
+PetscErrorCode ResultsTableNumbers(ResultsTable table, PetscInt n, const PetscReal values[]);
+
+/*@ ResultsTableCheck - raises what has failed so far, for runs too long to learn of it at the end. Rows are written
+    in blocks of some kilobytes, and failures show with them. Collective. Errors: as ResultsTableClose(). @*/
+PetscErrorCode ResultsTableCheck(ResultsTable table);
+
+/*@ ResultsTableFlush - brings all rows to the disk, and gives the length of the table on every rank, from which
+    ResultsTableReopen() goes on; from then on the temporary file is kept whatever fails. Collective.
+    Errors: as ResultsTableClose(). @*/
+PetscErrorCode ResultsTableFlush(ResultsTable table, PetscInt64 *bytes);
+
+/*@ ResultsTableReopen - goes on with table `name` of a run that was killed: cuts its temporary file, or where there
+    is none the complete one, back to the first `bytes`. Collective.
+    Errors: PETSC_ERR_FILE_UNEXPECTED for a file that is missing, shorter, or has another header. @*/
+PetscErrorCode ResultsTableReopen(Results results, const char name[], const char header[], PetscInt64 bytes,
+                                  ResultsTable *table);
+
+/*@ ResultsTableSuspend - closes the table under its temporary name, for ResultsTableReopen(). Collective; the handle is
+    freed in any case. Errors: as ResultsTableClose(). @*/
+PetscErrorCode ResultsTableSuspend(ResultsTable *table);
 
 /*@ ResultsTableClose - completes the table under its final name. Collective; the handle is freed in any case.
     Errors: PETSC_ERR_FILE_WRITE with the file and the reason, e.g. no space left on device; the temporary file is
@@ -87,6 +111,45 @@ PetscErrorCode ResultsFieldWriteNodal(ResultsField field, const char title[], Pe
 /*@ ResultsFieldClose - completes both files under their final names. Collective; the handle is freed in any case.
     Errors: as ResultsFieldOpen(). @*/
 PetscErrorCode ResultsFieldClose(ResultsField *field);
+
+/*@
+   ResultsFilmCreate - states of one mesh in time: each is a field of its own, `frame`_000000 and so on, and
+   `name`.xmf shows those that there are in time. Collective.
+
+   Input Parameters:
++  dm                        - mesh (referenced)
+-  n_parts, parts, cell_part - as of ResultsFieldOpen(); cell_part is borrowed
+@*/
+PetscErrorCode ResultsFilmCreate(Results results, const char name[], const char frame[], DM dm, PetscInt n_parts,
+                                 const char *const parts[], const PetscInt cell_part[], ResultsFilm *film);
+
+/*@ ResultsFilmSetTimes - times (s) of the n frames that an earlier run has written, after which this one goes on. Not
+    collective, same call on all ranks. @*/
+PetscErrorCode ResultsFilmSetTimes(ResultsFilm film, PetscInt n, const PetscReal times[]);
+
+/*@ ResultsFilmGetTimes - times of the frames so far, s (borrowed until the next frame). Not collective. @*/
+PetscErrorCode ResultsFilmGetTimes(ResultsFilm film, PetscInt *n, const PetscReal **times);
+
+/*@ ResultsFilmWrite - the next frame, and `name`.xmf anew; arrays of the same keys every time. Collective.
+    Errors: as ResultsFieldOpen(). @*/
+PetscErrorCode ResultsFilmWrite(ResultsFilm film, PetscReal time, const char title[], PetscInt n,
+                                const ResultsNodal arrays[]);
+
+/*@ ResultsFilmDestroy - frees it; all files stay. Collective. @*/
+PetscErrorCode ResultsFilmDestroy(ResultsFilm *film);
+
+/* Bytes that one rank adds to a file */
+typedef struct {
+  const void *bytes;
+  size_t      size;
+} ResultsPiece;
+
+/*@
+   ResultsBinaryWrite - file `name` of the pieces of all ranks one after the other, those of rank 0 first. They are on
+   the disk, under the final name, when it returns; until then a file of that name stays as it is. Collective.
+   Errors: PETSC_ERR_FILE_WRITE with the file and the reason; the temporary file is removed.
+@*/
+PetscErrorCode ResultsBinaryWrite(Results results, const char name[], PetscInt n, const ResultsPiece pieces[]);
 
 /*@ ResultsDestroy - frees the writer. Collective. @*/
 PetscErrorCode ResultsDestroy(Results *results);

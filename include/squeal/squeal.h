@@ -9,6 +9,8 @@
 #include <squeal/statics.h>
 #include <squeal/modes.h>
 #include <squeal/sweep.h>
+#include <squeal/projector.h>
+#include <squeal/dynamics.h>
 #include <squeal/results.h>
 
 /* Stages of the flow, registered by SquealInitialize() */
@@ -19,6 +21,7 @@ typedef enum {
   SQUEAL_STATICS,
   SQUEAL_MODES,
   SQUEAL_SWEEP,
+  SQUEAL_DYNAMICS,
   SQUEAL_RESULTS,
   SQUEAL_N_STAGES
 } SquealStage;

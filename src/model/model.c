@@ -37,6 +37,7 @@ PetscErrorCode ModelSetFromOptions(Model model)
   PetscCall(PartsSetFromOptions(model));
   PetscCall(SupportsSetFromOptions(model));
   PetscCall(LoadsSetFromOptions(model));
+  PetscCall(ProbesSetFromOptions(model));
   PetscFunctionReturn(0);
 }
 
@@ -50,8 +51,15 @@ PetscErrorCode ModelKeepTogether(Model model, const char set[])
   PetscFunctionReturn(0);
 }
 
-/* Coordinates [local vertices][3] and corners [local cells][n_nodes] in the element's order */
-static PetscErrorCode ModelTabulate(Model model)
+PetscErrorCode ModelKeepSlabs(Model model)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!model->dm, model->comm, PETSC_ERR_ARG_WRONGSTATE, "ModelKeepSlabs() must come before ModelSetUp()");
+  model->keep_slabs = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelTabulate(Model model)
 {
   const PetscInt     n_nodes = model->element->n_nodes;
   const PetscScalar *x;
@@ -90,11 +98,12 @@ PetscErrorCode ModelSetUp(Model model)
   else
     PetscCall(ImportGmsh(model->comm, model->mesh, &model->dm));
   PetscCall(MeshCheck(model));
-  PetscCall(PartitionMesh(&model->dm, model->n_together, model->together));
+  PetscCall(PartitionMesh(model));
   PetscCall(PartsFindCells(model));
   PetscCall(ModelTabulate(model));
   PetscCall(SupportsLayOut(model));
   PetscCall(LoadsCheck(model));
+  PetscCall(ProbesLocate(model));
   PetscFunctionReturn(0);
 }
 
@@ -234,6 +243,7 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  load %s on %s: %.6g, %.6g, %.6g N in all\n", l->name, l->set,
                                      (double)l->force[0], (double)l->force[1], (double)l->force[2]));
   }
+  PetscCall(ProbesView(model, viewer));
   PetscFunctionReturn(0);
 }
 
@@ -264,6 +274,7 @@ PetscErrorCode ModelDestroy(Model *model)
     PetscCall(PetscFree(m->loads[i].name));
     PetscCall(PetscFree(m->loads[i].set));
   }
+  PetscCall(ProbesDestroy(m));
   for (PetscInt i = 0; i < m->n_together; i++) PetscCall(PetscFree(m->together[i]));
   PetscCall(GroundedDestroy(m->n_springs, &m->springs));
   PetscCall(GroundedDestroy(m->n_dashpots, &m->dashpots));

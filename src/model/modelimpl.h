@@ -27,12 +27,14 @@ struct _p_Model {
   PetscBool given; /* the scene names a mesh */
   char      source[8], mesh[PETSC_MAX_PATH_LEN], formulation[32];
   Rig       rig;
-  PetscInt  n_parts, n_supports, n_springs, n_dashpots, n_loads, n_together;
+  PetscInt  n_parts, n_supports, n_springs, n_dashpots, n_loads, n_probes, n_together;
   Part     *parts;
   Support  *supports;
   Grounded *springs, *dashpots;
   Load     *loads;
+  Probe    *probes;
   char     *together[MODEL_MAX_NAMES]; /* sets whose cells stay on one rank */
+  PetscBool keep_slabs;                /* swept bodies are cut between slabs, and no set is kept together */
   /* built by ModelSetUp() */
   DM             dm;
   const Element *element;
@@ -53,9 +55,12 @@ PETSC_INTERN PetscErrorCode RigGenerate(MPI_Comm comm, const Rig *rig, DM *dm);
 /* import.c - a Gmsh file (2.2, 4.1) on rank 0 as an interpolated DMPlex whose physical names are labels with value 1 */
 PETSC_INTERN PetscErrorCode ImportGmsh(MPI_Comm comm, const char file[], DM *dm);
 
-/* partition.c - distributes the mesh from rank 0 by METIS on the dual graph; the cells that touch the faces of the
-   sets in `together` end on one rank. Replaces *dm; with one rank it does nothing. */
-PETSC_INTERN PetscErrorCode PartitionMesh(DM *dm, PetscInt n_together, char *const together[]);
+/* partition.c - distributes the mesh from rank 0 by METIS on the dual graph; the cells at the contact of the sets in
+   `together` end on one rank, or whole slabs of swept bodies do. Replaces model->dm; with one rank it does nothing. */
+PETSC_INTERN PetscErrorCode PartitionMesh(Model model);
+
+/* model.c - coordinates and corners of the local cells, now or after distribution */
+PETSC_INTERN PetscErrorCode ModelTabulate(Model model);
 
 /* part.c - bodies: their names and materials, and the part of each cell */
 PETSC_INTERN PetscErrorCode PartsSetFromOptions(Model model);
@@ -73,6 +78,12 @@ PETSC_INTERN PetscErrorCode SetNameFromOptions(PetscOptionItems *PetscOptionsObj
    element */
 PETSC_INTERN PetscErrorCode LoadsSetFromOptions(Model model);
 PETSC_INTERN PetscErrorCode LoadsCheck(Model model);
+
+/* probe.c - places that histories record: reads them, and finds their nodes */
+PETSC_INTERN PetscErrorCode ProbesSetFromOptions(Model model);
+PETSC_INTERN PetscErrorCode ProbesLocate(Model model);
+PETSC_INTERN PetscErrorCode ProbesView(Model model, PetscViewer viewer);
+PETSC_INTERN PetscErrorCode ProbesDestroy(Model model);
 
 /* check.c - finds the element of the cells and raises an error for a bad one; before the mesh is distributed */
 PETSC_INTERN PetscErrorCode MeshCheck(Model model);

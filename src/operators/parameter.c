@@ -81,6 +81,14 @@ PetscErrorCode OperatorsGetDensity(Operators operators, PetscInt part, PetscReal
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OperatorsGetDamping(Operators operators, PetscInt part, PetscReal *alpha, PetscReal *beta)
+{
+  PetscFunctionBeginUser;
+  *alpha = operators->p[N_PART_PARAMETERS * part + PART_ALPHA];
+  *beta  = operators->p[N_PART_PARAMETERS * part + PART_BETA];
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OperatorsCheckParameter(Operators operators, PetscInt parameter, PetscReal value)
 {
   const OperatorsParameter *q     = &operators->parameter[parameter];

@@ -51,9 +51,9 @@ static PetscErrorCode FieldFindShape(ResultsField field)
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 2, MPIU_INT, MPI_MAX, field->h5.comm));
   for (size_t i = 0; i < sizeof(field_shapes) / sizeof(field_shapes[0]); i++) {
-    if ((PetscInt)field_shapes[i].polytope == range[0] && range[0] == -range[1]) field->shape = &field_shapes[i];
+    if ((PetscInt)field_shapes[i].polytope == range[0] && range[0] == -range[1]) field->xdmf.shape = &field_shapes[i];
   }
-  PetscCheck(field->shape, field->h5.comm, PETSC_ERR_SUP, "fields need a mesh of hexahedra only");
+  PetscCheck(field->xdmf.shape, field->h5.comm, PETSC_ERR_SUP, "fields need a mesh of hexahedra only");
   PetscFunctionReturn(0);
 }
 
@@ -123,7 +123,7 @@ static PetscErrorCode FieldCellCorners(ResultsField field, PetscInt c, PetscInt 
       vertices[n++] = number[p - v_start] < 0 ? -(number[p - v_start] + 1) : number[p - v_start];
   }
   PetscCall(DMPlexRestoreTransitiveClosure(field->dm, c, PETSC_TRUE, &n_points, &closure));
-  for (PetscInt i = 0; i < field->shape->n_nodes; i++) corners[i] = vertices[field->shape->closure_order[i]];
+  for (PetscInt i = 0; i < field->xdmf.shape->n_nodes; i++) corners[i] = vertices[field->xdmf.shape->closure_order[i]];
   PetscFunctionReturn(0);
 }
 
@@ -144,7 +144,7 @@ static PetscErrorCode FieldGatherCells(ResultsField field, const PetscInt cell_p
   PetscCall(ISGetIndices(vertices, &number));
   for (PetscInt c = c_start; c < c_end; c++) {
     if (cell_number[c - c_start] < 0) continue;
-    PetscCall(FieldCellCorners(field, c, v_start, v_end, number, &connectivity[n * field->shape->n_nodes]));
+    PetscCall(FieldCellCorners(field, c, v_start, v_end, number, &connectivity[n * field->xdmf.shape->n_nodes]));
     part[n++] = cell_part[c - c_start];
   }
   PetscCall(ISRestoreIndices(cells, &cell_number));
@@ -166,8 +166,8 @@ static PetscErrorCode FieldWriteShapes(ResultsField field)
   rows.n_local += last; /* ranks without cells at the end write the same value */
   PetscCall(PetscMalloc2(rows.n_local, &offsets, rows.n_local, &types));
   for (PetscInt i = 0; i < rows.n_local; i++) {
-    offsets[i] = (rows.first + i) * field->shape->n_nodes;
-    types[i]   = field->shape->vtk;
+    offsets[i] = (rows.first + i) * field->xdmf.shape->n_nodes;
+    types[i]   = field->xdmf.shape->vtk;
   }
   PetscCall(OutFileH5Write(&field->h5, "/VTKHDF/Offsets", integer, &rows, 1, offsets));
   PetscCall(OutFileH5Write(&field->h5, "/VTKHDF/Types", H5T_NATIVE_UCHAR, &field->cells, 1, types));
@@ -178,7 +178,7 @@ static PetscErrorCode FieldWriteShapes(ResultsField field)
 /* Writes connectivity and the part of each cell */
 static PetscErrorCode FieldWriteCells(ResultsField field, const PetscInt cell_part[])
 {
-  const PetscInt n_nodes = field->shape->n_nodes;
+  const PetscInt n_nodes = field->xdmf.shape->n_nodes;
   const Rows     ids = {field->cells.first * n_nodes, field->cells.n_local * n_nodes, field->cells.n_global * n_nodes};
   PetscInt      *connectivity, *part;
   hid_t          integer;
@@ -202,7 +202,7 @@ static PetscErrorCode FieldWriteHead(ResultsField field)
                                         "/VTKHDF/NumberOfConnectivityIds"};
   static const int         version[] = {1, 0};
   const PetscInt           counts[]  = {field->nodes.n_global, field->cells.n_global,
-                                        field->cells.n_global * field->shape->n_nodes};
+                                        field->cells.n_global * field->xdmf.shape->n_nodes};
   Rows                     one       = {0, 0, 1};
   PetscMPIInt              rank;
   hid_t                    integer;
@@ -235,13 +235,15 @@ static PetscErrorCode FieldSetMesh(ResultsField field, DM dm)
   PetscCall(RowsFromNumbering(field->h5.comm, numbering, &field->nodes));
   PetscCall(DMPlexGetCellNumbering(dm, &numbering));
   PetscCall(RowsFromNumbering(field->h5.comm, numbering, &field->cells));
+  field->xdmf.n_nodes = field->nodes.n_global;
+  field->xdmf.n_cells = field->cells.n_global;
   PetscFunctionReturn(0);
 }
 
 /* Raises failures of either file on all ranks; both are then removed */
 static PetscErrorCode FieldCheck(ResultsField field)
 {
-  OutFile *const files[] = {&field->h5, &field->xmf};
+  OutFile *const files[] = {&field->h5, &field->xdmf.file};
 
   PetscFunctionBeginUser;
   PetscCall(OutFilesCheck(2, files));
@@ -259,12 +261,12 @@ PetscErrorCode ResultsFieldOpen(Results results, const char name[], DM dm, Petsc
   PetscCheck(dm, results->comm, PETSC_ERR_ARG_NULL, "fields need a mesh, and %s has none", name);
   PetscCall(PetscNew(&f));
   PetscCall(OutFileSetName(results, name, ".h5", &f->h5));
-  PetscCall(OutFileSetName(results, name, ".xmf", &f->xmf));
-  PetscCall(PetscSNPrintf(f->h5_name, sizeof(f->h5_name), "%s.h5", name));
+  PetscCall(OutFileSetName(results, name, ".xmf", &f->xdmf.file));
+  PetscCall(PetscSNPrintf(f->xdmf.h5_name, sizeof(f->xdmf.h5_name), "%s.h5", name));
   PetscCall(FieldSetMesh(f, dm));
   PetscCall(OutFileOpenH5(&f->h5));
-  PetscCall(OutFileOpenText(&f->xmf));
-  PetscCall(XdmfBegin(f, n_parts, parts));
+  PetscCall(OutFileOpenText(&f->xdmf.file));
+  PetscCall(XdmfBegin(&f->xdmf, n_parts, parts));
   PetscCall(FieldCheck(f));
   PetscCall(FieldWriteHead(f));
   PetscCall(DMGetCoordinateSection(dm, &section));
@@ -303,10 +305,10 @@ PetscErrorCode ResultsFieldWriteMode(ResultsField field, const char key[], const
   PetscFunctionBeginUser;
   PetscCall(FieldWriteShape(field, key, "_re", title, re));
   PetscCall(FieldWriteShape(field, key, "_im", title, im));
-  PetscCall(XdmfGridBegin(field, key, title));
-  PetscCall(XdmfNodal(field, "displacement_re", key, "_re", 3));
-  PetscCall(XdmfNodal(field, "displacement_im", key, "_im", 3));
-  PetscCall(XdmfGridEnd(field));
+  PetscCall(XdmfGridBegin(&field->xdmf, key, title, NULL));
+  PetscCall(XdmfNodal(&field->xdmf, "displacement_re", key, "_re", 3));
+  PetscCall(XdmfNodal(&field->xdmf, "displacement_im", key, "_im", 3));
+  PetscCall(XdmfGridEnd(&field->xdmf));
   PetscCall(FieldCheck(field));
   PetscFunctionReturn(0);
 }
@@ -320,14 +322,14 @@ PetscErrorCode ResultsFieldWriteNodal(ResultsField field, const char title[], Pe
     PetscCheck(arrays[i].width == 1 || arrays[i].width == 3, field->h5.comm, PETSC_ERR_ARG_OUTOFRANGE,
                "array %s has %" PetscInt_FMT " values per node, must be 1 or 3", arrays[i].key, arrays[i].width);
   }
-  PetscCall(XdmfGridBegin(field, title, title));
+  PetscCall(XdmfGridBegin(&field->xdmf, title, title, field->timed ? &field->time : NULL));
   for (PetscInt i = 0; i < n; i++) {
     PetscCall(PetscSNPrintf(path, sizeof(path), "/VTKHDF/PointData/%s", arrays[i].key));
     PetscCall(FieldWriteNodes(field, path, NULL, arrays[i].width, arrays[i].values));
     PetscCall(OutFileH5Strings(&field->h5, path, "title", 0, &title));
-    PetscCall(XdmfNodal(field, arrays[i].key, arrays[i].key, "", arrays[i].width));
+    PetscCall(XdmfNodal(&field->xdmf, arrays[i].key, arrays[i].key, "", arrays[i].width));
   }
-  PetscCall(XdmfGridEnd(field));
+  PetscCall(XdmfGridEnd(&field->xdmf));
   PetscCall(FieldCheck(field));
   PetscFunctionReturn(0);
 }
@@ -338,9 +340,9 @@ PetscErrorCode ResultsFieldClose(ResultsField *field)
 
   PetscFunctionBeginUser;
   if (!*field) PetscFunctionReturn(0);
-  OutFile *const files[] = {&(*field)->h5, &(*field)->xmf};
+  OutFile *const files[] = {&(*field)->h5, &(*field)->xdmf.file};
 
-  PetscCall(XdmfEnd(*field));
+  PetscCall(XdmfEnd(&(*field)->xdmf));
   failure = OutFilesPublish(2, files);
   PetscCall(DMDestroy(&(*field)->dm));
   PetscCall(PetscFree(*field));

@@ -117,23 +117,6 @@ static PetscErrorCode OutFileH5Dataset(OutFile *file, const char path[], hid_t t
   PetscFunctionReturn(0);
 }
 
-/* Writes `size` bytes at `offset`; the system may take them in pieces */
-static PetscErrorCode OutFileWriteAt(OutFile *file, const char *bytes, size_t size, off_t offset)
-{
-  PetscFunctionBeginUser;
-  while (size > 0 && !file->error) {
-    const ssize_t written = pwrite(file->fd, bytes, size, offset);
-
-    if (written < 0 && errno == EINTR) continue;
-    PetscCall(OutFileNote(file, written < 0 ? PETSC_TRUE : PETSC_FALSE));
-    if (written < 0) break;
-    bytes += written;
-    offset += written;
-    size -= (size_t)written;
-  }
-  PetscFunctionReturn(0);
-}
-
 /*
    Writes a dataset of shape [rows->n_global] (width 1) or [rows->n_global][width]; every rank gives its rows. The type
    is that of the values in memory. Collective; failures are noted.

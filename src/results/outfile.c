@@ -1,8 +1,11 @@
 /*
    Files under a temporary name: NAME.part becomes NAME when it is complete and every rank agrees, else it is removed.
+   Text that was flushed for a later run to go on from stays as NAME.part when this one fails.
 */
 #include "resultsimpl.h"
 #include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -11,6 +14,7 @@ PetscErrorCode OutFileSetName(Results results, const char name[], const char ext
 {
   PetscFunctionBeginUser;
   file->comm   = results->comm;
+  file->keep   = PETSC_FALSE;
   file->error  = 0;
   file->stream = NULL;
   file->h5     = H5I_INVALID_HID;
@@ -42,6 +46,79 @@ PetscErrorCode OutFileOpenText(OutFile *file)
   PetscFunctionReturn(0);
 }
 
+/* Why text of `bytes` with first line `head` cannot be continued, NULL when it can; then it is cut back to them */
+static const char *TextCut(int fd, const char head[], PetscInt64 bytes)
+{
+  const size_t length = strlen(head) + 1;
+  const off_t  end    = lseek(fd, 0, SEEK_END);
+  char        *found = malloc(length), last = 0;
+  const char  *reason = NULL;
+
+  if (!found || end < 0)
+    reason = strerror(errno);
+  else if (end < bytes)
+    reason = "it is shorter than when it was kept";
+  else if (pread(fd, found, length, 0) != (ssize_t)length || memcmp(found, head, length - 1) ||
+           found[length - 1] != '\n')
+    reason = "it has other columns";
+  else if (bytes < (PetscInt64)length || pread(fd, &last, 1, (off_t)bytes - 1) != 1 || last != '\n')
+    reason = "it is not the one that was kept";
+  else if (ftruncate(fd, (off_t)bytes))
+    reason = strerror(errno);
+  free(found);
+  return reason;
+}
+
+/* Opens the temporary file, or else the complete one, which then is temporary again, to append to its first bytes */
+static const char *TextReopen(OutFile *file, const char head[], PetscInt64 bytes)
+{
+  const char *path   = access(file->part, F_OK) ? file->name : file->part;
+  const int   fd     = open(path, O_RDWR);
+  const char *reason = fd < 0 ? strerror(errno) : TextCut(fd, head, bytes);
+
+  if (!reason && path == file->name && rename(file->name, file->part)) reason = strerror(errno);
+  if (!reason && lseek(fd, 0, SEEK_END) < 0) reason = strerror(errno);
+  if (!reason && !(file->stream = fdopen(fd, "w"))) reason = strerror(errno);
+  if (reason && fd >= 0) (void)close(fd);
+  return reason;
+}
+
+/* Opens text that an earlier run flushed, to continue it after `bytes`; raises its failures. Collective */
+PetscErrorCode OutFileReopenText(OutFile *file, const char head[], PetscInt64 bytes)
+{
+  char        reason[128] = "";
+  const char *why;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(file->comm, &rank));
+  file->keep = PETSC_TRUE;
+  why        = rank ? NULL : TextReopen(file, head, bytes);
+  if (why) PetscCall(PetscStrncpy(reason, why, sizeof(reason)));
+  PetscCallMPI(MPI_Bcast(reason, sizeof(reason), MPI_CHAR, 0, file->comm));
+  PetscCheck(!reason[0], file->comm, PETSC_ERR_FILE_UNEXPECTED, "cannot go on with %s: %s; start the run anew",
+             file->part, reason);
+  PetscFunctionReturn(0);
+}
+
+/* Brings the text to the disk, and keeps it from now on; bytes is its length on every rank. Raises failures.
+   Collective */
+PetscErrorCode OutFileFlushText(OutFile *file, PetscInt64 *bytes)
+{
+  PetscFunctionBeginUser;
+  *bytes = 0;
+  if (file->stream && !file->error) {
+    errno = 0;
+    PetscCall(OutFileNote(file, fflush(file->stream) || fsync(fileno(file->stream)) ? PETSC_TRUE : PETSC_FALSE));
+    *bytes = ftello(file->stream);
+    PetscCall(OutFileNote(file, *bytes < 0 ? PETSC_TRUE : PETSC_FALSE));
+  }
+  PetscCall(OutFilesCheck(1, &file));
+  file->keep = PETSC_TRUE;
+  PetscCallMPI(MPI_Bcast(bytes, 1, MPIU_INT64, 0, file->comm));
+  PetscFunctionReturn(0);
+}
+
 /* vprintf() on the first rank */
 PetscErrorCode OutFileVPrint(OutFile *file, const char format[], va_list values)
 {
@@ -63,8 +140,25 @@ PetscErrorCode OutFilePrint(OutFile *file, const char format[], ...)
   PetscFunctionReturn(0);
 }
 
+/* Writes `size` bytes at `offset`; the system may take them in pieces */
+PetscErrorCode OutFileWriteAt(OutFile *file, const char *bytes, size_t size, off_t offset)
+{
+  PetscFunctionBeginUser;
+  while (size > 0 && !file->error) {
+    const ssize_t written = pwrite(file->fd, bytes, size, offset);
+
+    if (written < 0 && errno == EINTR) continue;
+    PetscCall(OutFileNote(file, written < 0 ? PETSC_TRUE : PETSC_FALSE));
+    if (written < 0) break;
+    bytes += written;
+    offset += written;
+    size -= (size_t)written;
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Flushes and closes the text; a full disk often shows only here */
-static PetscErrorCode OutFileCloseText(OutFile *file)
+PetscErrorCode OutFileCloseText(OutFile *file)
 {
   PetscFunctionBeginUser;
   if (!file->stream) PetscFunctionReturn(0);
@@ -83,7 +177,7 @@ static PetscErrorCode OutFileDiscard(OutFile *file)
   PetscCallMPI(MPI_Comm_rank(file->comm, &rank));
   PetscCall(OutFileCloseText(file));
   PetscCall(OutFileH5Close(file));
-  if (rank == 0) (void)unlink(file->part); /* it may never have come to exist */
+  if (rank == 0 && !file->keep) (void)unlink(file->part); /* it may never have come to exist */
   PetscFunctionReturn(0);
 }
 

@@ -109,6 +109,60 @@ PetscErrorCode ResultsTableRow(ResultsTable table, const char format[], ...)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ResultsTableNumbers(ResultsTable table, PetscInt n, const PetscReal values[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++)
+    PetscCall(OutFilePrint(&table->file, "%.15g%s", (double)values[i], i + 1 < n ? "," : "\n"));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsTableCheck(ResultsTable table)
+{
+  OutFile *file = &table->file;
+
+  PetscFunctionBeginUser;
+  PetscCall(OutFilesCheck(1, &file));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsTableFlush(ResultsTable table, PetscInt64 *bytes)
+{
+  PetscFunctionBeginUser;
+  PetscCall(OutFileFlushText(&table->file, bytes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsTableReopen(Results results, const char name[], const char header[], PetscInt64 bytes,
+                                  ResultsTable *table)
+{
+  PetscErrorCode failure;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(table));
+  PetscCall(OutFileSetName(results, name, ".csv", &(*table)->file));
+  failure = OutFileReopenText(&(*table)->file, header, bytes);
+  if (failure) PetscCall(PetscFree(*table));
+  PetscCall(failure);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsTableSuspend(ResultsTable *table)
+{
+  OutFile       *file;
+  PetscErrorCode failure;
+
+  PetscFunctionBeginUser;
+  if (!*table) PetscFunctionReturn(0);
+  file       = &(*table)->file;
+  file->keep = PETSC_TRUE;
+  PetscCall(OutFileCloseText(file));
+  failure = OutFilesCheck(1, &file);
+  PetscCall(PetscFree(*table));
+  PetscCall(failure);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ResultsTableClose(ResultsTable *table)
 {
   OutFile       *file;

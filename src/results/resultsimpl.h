@@ -1,5 +1,6 @@
 /*
-   Private to results/: a file under its temporary name, text or HDF5, and the XDMF text that describes the fields.
+   Private to results/: a file under its temporary name, text, HDF5 or binary, and the XDMF text that describes the
+   fields.
 
    Errors of the system are noted per rank (errno) while writing, and raised on all ranks by OutFilesCheck() and
    OutFilesPublish(). HDF5 is driven by the first rank alone, with its serial driver, for groups, attributes and the
@@ -20,12 +21,13 @@ struct _p_Results {
 
 /* A file that is being written as `part`, to be renamed to `name` */
 typedef struct {
-  MPI_Comm comm;
-  char     name[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
-  int      error;  /* errno of the first failure on this rank; 0 = none */
-  FILE    *stream; /* text: open on the first rank */
-  hid_t    h5;     /* HDF5: open on the first rank, else H5I_INVALID_HID */
-  int      fd;     /* HDF5: for the rows of this rank, else -1 */
+  MPI_Comm  comm;
+  char      name[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
+  PetscBool keep;   /* a failure leaves `part`, since a run may go on from what is in it */
+  int       error;  /* errno of the first failure on this rank; 0 = none */
+  FILE     *stream; /* text: open on the first rank */
+  hid_t     h5;     /* HDF5: open on the first rank, else H5I_INVALID_HID */
+  int       fd;     /* HDF5, binary: for the rows or pieces of this rank, else -1 */
 } OutFile;
 
 /* Rows of a distributed table of values that this rank holds: [first, first + n_local) of n_global */
@@ -42,21 +44,33 @@ typedef struct {
   PetscInt       closure_order[8]; /* VTK corner i is vertex closure_order[i] of the DMPlex closure */
 } FieldShape;
 
-struct _p_ResultsField {
-  DM                dm;
-  char              h5_name[PETSC_MAX_PATH_LEN]; /* as the XDMF file names it: relative to its own folder */
-  OutFile           h5, xmf;
-  Rows              nodes, cells;
+/* XDMF text: grids on one mesh, whose values are in HDF5 files beside it */
+typedef struct {
+  OutFile           file;
+  char              h5_name[PETSC_MAX_PATH_LEN]; /* of the next grid: relative to the folder of the text */
   const FieldShape *shape;
-  PetscInt          n_grids;
+  PetscInt          n_nodes, n_cells, n_grids;
+} Xdmf;
+
+struct _p_ResultsField {
+  DM        dm;
+  OutFile   h5;
+  Xdmf      xdmf;
+  Rows      nodes, cells;
+  PetscBool timed; /* grids stand at `time`, else at their number */
+  PetscReal time;  /* s */
 };
 
 /* outfile.c */
 PETSC_INTERN PetscErrorCode OutFileSetName(Results results, const char name[], const char extension[], OutFile *file);
 PETSC_INTERN PetscErrorCode OutFileNote(OutFile *file, PetscBool failed);
 PETSC_INTERN PetscErrorCode OutFileOpenText(OutFile *file);
+PETSC_INTERN PetscErrorCode OutFileReopenText(OutFile *file, const char head[], PetscInt64 bytes);
+PETSC_INTERN PetscErrorCode OutFileFlushText(OutFile *file, PetscInt64 *bytes);
+PETSC_INTERN PetscErrorCode OutFileCloseText(OutFile *file);
 PETSC_INTERN PetscErrorCode OutFilePrint(OutFile *file, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 PETSC_INTERN PetscErrorCode OutFileVPrint(OutFile *file, const char format[], va_list values);
+PETSC_INTERN PetscErrorCode OutFileWriteAt(OutFile *file, const char *bytes, size_t size, off_t offset);
 PETSC_INTERN PetscErrorCode OutFilesCheck(PetscInt n, OutFile *const files[]);
 PETSC_INTERN PetscErrorCode OutFilesPublish(PetscInt n, OutFile *const files[]);
 
@@ -72,9 +86,9 @@ PETSC_INTERN PetscErrorCode OutFileH5Strings(OutFile *file, const char path[], c
 PETSC_INTERN PetscErrorCode OutFileH5Close(OutFile *file);
 
 /* xdmf.c */
-PETSC_INTERN PetscErrorCode XdmfBegin(ResultsField field, PetscInt n_parts, const char *const parts[]);
-PETSC_INTERN PetscErrorCode XdmfGridBegin(ResultsField field, const char name[], const char title[]);
-PETSC_INTERN PetscErrorCode XdmfNodal(ResultsField field, const char name[], const char key[], const char suffix[],
+PETSC_INTERN PetscErrorCode XdmfBegin(Xdmf *xdmf, PetscInt n_parts, const char *const parts[]);
+PETSC_INTERN PetscErrorCode XdmfGridBegin(Xdmf *xdmf, const char name[], const char title[], const PetscReal *time);
+PETSC_INTERN PetscErrorCode XdmfNodal(Xdmf *xdmf, const char name[], const char key[], const char suffix[],
                                       PetscInt width);
-PETSC_INTERN PetscErrorCode XdmfGridEnd(ResultsField field);
-PETSC_INTERN PetscErrorCode XdmfEnd(ResultsField field);
+PETSC_INTERN PetscErrorCode XdmfGridEnd(Xdmf *xdmf);
+PETSC_INTERN PetscErrorCode XdmfEnd(Xdmf *xdmf);

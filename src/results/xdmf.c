@@ -1,7 +1,8 @@
 /*
-   XDMF - the text beside the HDF5 file: a temporal collection with one grid per mode or state. Time is the number of
-   the grid, and the attributes of modes have the same names in all grids, so that ParaView steps through them. All
-   values are those of the group /VTKHDF of the HDF5 file. Reference: XDMF Model and Format, version 2.
+   XDMF - the text beside HDF5 files: a temporal collection with one grid per mode or state. Time is that of the state
+   (s), or the number of the grid, and the attributes of modes have the same names in all grids, so that ParaView
+   steps through them. All values are those of the group /VTKHDF of the HDF5 file. Reference: XDMF Model and Format,
+   version 2.
 */
 #include "resultsimpl.h"
 #include <string.h>
@@ -42,10 +43,10 @@ static PetscErrorCode XdmfInformation(OutFile *file, const char indent[], const 
 }
 
 /* Prints a <DataItem>: dataset `path` of the group /VTKHDF, of shape [n] (width 1) or [n][width] */
-static PetscErrorCode XdmfItem(ResultsField field, const char number[], size_t precision, PetscInt n, PetscInt width,
+static PetscErrorCode XdmfItem(Xdmf *xdmf, const char number[], size_t precision, PetscInt n, PetscInt width,
                                const char path[])
 {
-  OutFile *file = &field->xmf;
+  OutFile *file = &xdmf->file;
 
   PetscFunctionBeginUser;
   PetscCall(OutFilePrint(
@@ -53,15 +54,15 @@ static PetscErrorCode XdmfItem(ResultsField field, const char number[], size_t p
     (int)precision, n));
   if (width > 1) PetscCall(OutFilePrint(file, " %" PetscInt_FMT, width));
   PetscCall(OutFilePrint(file, "\">"));
-  PetscCall(XdmfText(file, field->h5_name));
+  PetscCall(XdmfText(file, xdmf->h5_name));
   PetscCall(OutFilePrint(file, ":/VTKHDF/%s</DataItem>\n", path));
   PetscFunctionReturn(0);
 }
 
 /* Prints the head of the file, with the names of the parts */
-PetscErrorCode XdmfBegin(ResultsField field, PetscInt n_parts, const char *const parts[])
+PetscErrorCode XdmfBegin(Xdmf *xdmf, PetscInt n_parts, const char *const parts[])
 {
-  OutFile *file = &field->xmf;
+  OutFile *file = &xdmf->file;
   char     number[16];
 
   PetscFunctionBeginUser;
@@ -75,43 +76,44 @@ PetscErrorCode XdmfBegin(ResultsField field, PetscInt n_parts, const char *const
 }
 
 /* Prints the mesh and the part of each cell */
-static PetscErrorCode XdmfMesh(ResultsField field)
+static PetscErrorCode XdmfMesh(Xdmf *xdmf)
 {
-  OutFile *file = &field->xmf;
+  OutFile *file = &xdmf->file;
 
   PetscFunctionBeginUser;
   PetscCall(OutFilePrint(file, "        <Topology TopologyType=\"%s\" NumberOfElements=\"%" PetscInt_FMT "\">\n",
-                         field->shape->xdmf, field->cells.n_global));
-  PetscCall(XdmfItem(field, "Int", sizeof(PetscInt), field->cells.n_global * field->shape->n_nodes, 1, "Connectivity"));
+                         xdmf->shape->xdmf, xdmf->n_cells));
+  PetscCall(XdmfItem(xdmf, "Int", sizeof(PetscInt), xdmf->n_cells * xdmf->shape->n_nodes, 1, "Connectivity"));
   PetscCall(OutFilePrint(file, "        </Topology>\n        <Geometry GeometryType=\"XYZ\">\n"));
-  PetscCall(XdmfItem(field, "Float", sizeof(PetscReal), field->nodes.n_global, 3, "Points"));
+  PetscCall(XdmfItem(xdmf, "Float", sizeof(PetscReal), xdmf->n_nodes, 3, "Points"));
   PetscCall(OutFilePrint(
     file, "        </Geometry>\n        <Attribute Name=\"part\" AttributeType=\"Scalar\" Center=\"Cell\">\n"));
-  PetscCall(XdmfItem(field, "Int", sizeof(PetscInt), field->cells.n_global, 1, "CellData/part"));
+  PetscCall(XdmfItem(xdmf, "Int", sizeof(PetscInt), xdmf->n_cells, 1, "CellData/part"));
   PetscCall(OutFilePrint(file, "        </Attribute>\n"));
   PetscFunctionReturn(0);
 }
 
-/* Prints the beginning of a grid, with the mesh; no title for the mesh alone */
-PetscErrorCode XdmfGridBegin(ResultsField field, const char name[], const char title[])
+/* Prints the beginning of a grid, with the mesh; no title for the mesh alone, time (s) NULL for the number of the
+   grid */
+PetscErrorCode XdmfGridBegin(Xdmf *xdmf, const char name[], const char title[], const PetscReal *time)
 {
-  OutFile *file = &field->xmf;
+  OutFile *file = &xdmf->file;
 
   PetscFunctionBeginUser;
-  field->n_grids++;
+  xdmf->n_grids++;
   PetscCall(OutFilePrint(file, "      <Grid Name=\""));
   PetscCall(XdmfText(file, name));
   PetscCall(OutFilePrint(file, "\" GridType=\"Uniform\">\n"));
   if (title) PetscCall(XdmfInformation(file, "        ", "title", title));
-  PetscCall(OutFilePrint(file, "        <Time Value=\"%" PetscInt_FMT "\"/>\n", field->n_grids));
-  PetscCall(XdmfMesh(field));
+  PetscCall(OutFilePrint(file, "        <Time Value=\"%.15g\"/>\n", time ? (double)*time : (double)xdmf->n_grids));
+  PetscCall(XdmfMesh(xdmf));
   PetscFunctionReturn(0);
 }
 
 /* Prints an attribute at the nodes of the present grid: dataset PointData/`key``suffix`, width 1 or 3 */
-PetscErrorCode XdmfNodal(ResultsField field, const char name[], const char key[], const char suffix[], PetscInt width)
+PetscErrorCode XdmfNodal(Xdmf *xdmf, const char name[], const char key[], const char suffix[], PetscInt width)
 {
-  OutFile *file = &field->xmf;
+  OutFile *file = &xdmf->file;
   char     path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
@@ -119,27 +121,27 @@ PetscErrorCode XdmfNodal(ResultsField field, const char name[], const char key[]
   PetscCall(XdmfText(file, name));
   PetscCall(OutFilePrint(file, "\" AttributeType=\"%s\" Center=\"Node\">\n", width == 1 ? "Scalar" : "Vector"));
   PetscCall(PetscSNPrintf(path, sizeof(path), "PointData/%s%s", key, suffix));
-  PetscCall(XdmfItem(field, "Float", sizeof(PetscReal), field->nodes.n_global, width, path));
+  PetscCall(XdmfItem(xdmf, "Float", sizeof(PetscReal), xdmf->n_nodes, width, path));
   PetscCall(OutFilePrint(file, "        </Attribute>\n"));
   PetscFunctionReturn(0);
 }
 
 /* Prints the end of the present grid */
-PetscErrorCode XdmfGridEnd(ResultsField field)
+PetscErrorCode XdmfGridEnd(Xdmf *xdmf)
 {
   PetscFunctionBeginUser;
-  PetscCall(OutFilePrint(&field->xmf, "      </Grid>\n"));
+  PetscCall(OutFilePrint(&xdmf->file, "      </Grid>\n"));
   PetscFunctionReturn(0);
 }
 
 /* Prints the end of the file */
-PetscErrorCode XdmfEnd(ResultsField field)
+PetscErrorCode XdmfEnd(Xdmf *xdmf)
 {
   PetscFunctionBeginUser;
-  if (field->n_grids == 0) {
-    PetscCall(XdmfGridBegin(field, "mesh", NULL));
-    PetscCall(XdmfGridEnd(field));
+  if (xdmf->n_grids == 0) {
+    PetscCall(XdmfGridBegin(xdmf, "mesh", NULL, NULL));
+    PetscCall(XdmfGridEnd(xdmf));
   }
-  PetscCall(OutFilePrint(&field->xmf, "    </Grid>\n  </Domain>\n</Xdmf>\n"));
+  PetscCall(OutFilePrint(&xdmf->file, "    </Grid>\n  </Domain>\n</Xdmf>\n"));
   PetscFunctionReturn(0);
 }

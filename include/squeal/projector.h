@@ -1,0 +1,134 @@
+/*
+   ContactProjector - contact and Coulomb friction in explicit dynamics, exactly, by Lagrange multipliers.
+
+   Forward increment (N. J. Carpenter, R. L. Taylor, M. G. Katona, Int. J. Numer. Methods Eng. 32, 1991; seed paper, eq.
+   2): the multipliers at t_n make contact hold at t_{n+1}. With predicted velocities v* of the nodes and v = v* + kick
+   M^-1 G'lambda, u_{n+1} = u_n + dt v, each pair of a slave node and the point of the master surface that it faces
+   obeys
+      normal    0 <= lambda_n,  0 <= gap_{n+1},  lambda_n gap_{n+1} = 0
+      Coulomb   |lambda_T| <= mu lambda_n; slip velocity 0 (stick), or lambda_T = mu lambda_n s / |s| on the master, s
+                the slave's slip velocity over the step (slip)
+   without regularisation. mu may depend on the slip speed (mu_slope). Block Gauss-Seidel on W = G M^-1 G', the cone of
+   each pair solved exactly; residual of the natural map; warm start. Each node has Cartesian components of its body's
+   frame.
+
+   Kinematics per interface, -contact_kinematics:
+      prescribed  meshes stay; the sliding velocity of -contact_slip/-contact_speed or -contact_rotation is added to the
+                  slip
+      turning     the master moves rigidly with that velocity; its nodes are described in the moving frame, and the
+                  slaves travel over its facets (search by bounding volumes); nodes beyond its edge are released, and
+                  taken up again
+   without either, only the displacements slide. In all cases a slave travels over the facets with its own
+   displacements. The normals are those of the undeformed master (small rotations), turned with it.
+*/
+#pragma once
+
+#include <squeal/contact.h>
+
+typedef struct _p_ContactProjector *ContactProjector;
+
+/* One step from t_n to t_{n+1} */
+typedef struct {
+  PetscReal time; /* t_n, s */
+  PetscReal dt;   /* t_{n+1} - t_n, s */
+  PetscReal kick; /* v = v* + kick M^-1 G'lambda, s */
+} ContactStep;
+
+/* Sums over all pairs of one interface at t_n; on every rank after ContactProjectorGetSums() */
+typedef struct {
+  PetscInt  n[CONTACT_N_STATUS]; /* pairs of each status */
+  PetscReal normal;              /* sum of lambda_n, N */
+  PetscReal friction;      /* component of the force on the master along the mean slip direction, or its size, N */
+  PetscReal force[3];      /* on the master, N */
+  PetscReal contact_work;  /* of the normal forces on the velocities of the nodes since the start, J */
+  PetscReal friction_work; /* of friction on the velocities of the nodes, J: what it feeds less what it takes */
+  PetscReal heat;          /* dissipated by slip, with the sliding velocity, J, >= 0 */
+  PetscReal residual;      /* natural map, relative to the largest impulse, worst step since the start */
+  PetscInt  sweeps, steps; /* of Gauss-Seidel since the start, and steps */
+} ContactSums;
+
+/*@
+   ContactProjectorCreate - reads surfaces and friction of all interfaces, and of each the options below. Collective;
+   after ContactSetUp() or, where meshes need not face each other, ContactSetFromOptions().
+
+   Options Database Keys:
++  -contact_kinematics <prescribed|turning> - see above
+.  -contact_ramp <0>, -contact_ramp_shape <smooth|linear>, -contact_delay <0> - of the sliding velocity, s
+.  -project_rtol <1e-10>  - natural map residual, relative to the largest impulse of the step before and of this one
+-  -project_max_it <1000> - sweeps; beyond, PETSC_ERR_NOT_CONVERGED with residual and pair
+@*/
+PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *projector);
+
+/*@ ContactProjectorReadOptions - reads and checks the options of ContactProjectorCreate() alone, before there is a
+    mesh, so that OptionsCheckUnknown() knows them. Call after ContactSetFromOptions(). Collective. @*/
+PetscErrorCode ContactProjectorReadOptions(Contact contact);
+
+/*@ ContactProjectorGetTurning - whether the master of an interface turns in its own frame, and its angular velocity,
+    rad/s. Errors: PETSC_ERR_USER_INPUT where that changes in time. Collective. @*/
+PetscErrorCode ContactProjectorGetTurning(ContactProjector projector, PetscInt interface, PetscBool *turns,
+                                          PetscReal rotation[3]);
+
+/*@ ContactProjectorGetNodes - local vertices (from 0) of contact surfaces on this rank, copies included, [n]
+    (borrowed). Not collective. @*/
+PetscErrorCode ContactProjectorGetNodes(ContactProjector projector, PetscInt *n, const PetscInt **vertex);
+
+/*@ ContactProjectorSetMass - 1/mass of every node and direction, [n][3], 0 where held. Collective. @*/
+PetscErrorCode ContactProjectorSetMass(ContactProjector projector, const PetscReal minv[]);
+
+/*@
+   ContactProjectorStart - finds pairs at displacements u [n][3] and time t; with states (local pairs of
+   ContactGetPairs(), NULL for none) their forces are the warm start. Collective.
+
+   Errors: PETSC_ERR_USER_INPUT where bodies interpenetrate by more than `slack` (m): depth, place and interface; where
+   a pair has no node that may move.
+@*/
+PetscErrorCode ContactProjectorStart(ContactProjector projector, PetscReal t, const PetscReal u[], PetscReal slack,
+                                     const ContactState states[]);
+
+/*@ ContactProjectorGetActive - nodes that may come into contact at this step: indices into the nodes, [n] (borrowed
+    until the next ContactProject()). Not collective. @*/
+PetscErrorCode ContactProjectorGetActive(ContactProjector projector, PetscInt *n, const PetscInt **active);
+
+/*@
+   ContactProject - the contact forces of a step. Arrays are [nodes][3] of which only the active ones are read or
+   written. Collective.
+
+   Input Parameters:
++  step   - times
+.  u      - displacements at t_n, m
+.  before - velocities v_{n-1/2}, m/s, for the works
+-  v      - predicted velocities v*, m/s
+
+   Output Parameter:
+.  force  - contact forces on the active nodes, N, complete on every rank that has the node
+
+   Errors: PETSC_ERR_NOT_CONVERGED.
+@*/
+PetscErrorCode ContactProject(ContactProjector projector, const ContactStep *step, const PetscReal u[],
+                              const PetscReal before[], const PetscReal v[], PetscReal force[]);
+
+/*@ ContactProjectorGetStates - states of the last step of the slaves (borrowed): n on this rank, their interface,
+    global vertex number and place (m, [n][3]); NULL for what is not needed. gap is that at t_{n+1}, slip the slip
+    velocity (m/s). Not collective. @*/
+PetscErrorCode ContactProjectorGetStates(ContactProjector projector, PetscInt *n, const ContactState **state,
+                                         const PetscInt **interface, const PetscInt **number, const PetscReal **x);
+
+/*@ ContactProjectorGetSums - sums of interface i, over all ranks. Collective. @*/
+PetscErrorCode ContactProjectorGetSums(ContactProjector projector, PetscInt interface, ContactSums *sums);
+
+/*@ ContactProjectorGetKKT - residuals of the laws in the last step, slip being the slip velocity times dt. Collective.
+    @*/
+PetscErrorCode ContactProjectorGetKKT(ContactProjector projector, ContactKKT *kkt);
+
+/*@ ContactProjectorGetMemory - what must be kept so that a run continues bitwise: n numbers on this rank; Set takes
+    them back at the same ranks and finds pairs again at displacements u, time t. Not collective, collective. The caller
+    frees values of Get. @*/
+PetscErrorCode ContactProjectorGetMemory(ContactProjector projector, PetscInt *n, PetscReal **values);
+PetscErrorCode ContactProjectorSetMemory(ContactProjector projector, PetscReal t, const PetscReal u[], PetscInt n,
+                                         const PetscReal values[]);
+
+/*@ ContactProjectorView - surfaces and kinematics in words. Collective. @*/
+PetscErrorCode ContactProjectorView(ContactProjector projector, PetscViewer viewer);
+
+/*@ ContactProjectorDestroy - frees all. Collective. @*/
+PetscErrorCode ContactProjectorDestroy(ContactProjector *projector);

@@ -1,0 +1,211 @@
+/*
+   Pairs at the beginning of a step: the facet that each slave faces at the predicted places, the directions n, t, b,
+   the compliance W_pp, gap and sliding velocity, the friction coefficient, and a guess of the impulse.
+
+   Where a sliding velocity is given, the displacements are small beside it: the place of the slave on the master is
+   that of the undeformed bodies, as in the linear model, moved by the sliding alone, and where the meshes stay it never
+   changes. Elsewhere the slave travels with the displacements.
+
+   The guess goes on with the forces of the last steps as a constant, a line or a parabola in time, whichever would have
+   guessed the last step best (record.c).
+
+   mu(s) = max(0, mu + mu_slope |s|) with the slip velocity s of v_{n-1/2}, that is one step before.
+*/
+#include "projectorimpl.h"
+
+void NodesPredict(ContactProjector p, PetscReal dt)
+{
+  const Nodes   *nodes = &p->nodes;
+  const PetscInt n     = ShareCountSent(&p->share);
+
+  for (PetscInt i = 0; i < n; i++)
+    for (int d = 0; d < 3; d++) {
+      const PetscInt at = 3 * p->share.send_node[i] + d;
+
+      nodes->predicted[at] = nodes->u[at] + dt * nodes->v[at];
+    }
+}
+
+/* n, t, b on the ground: turned = e R' = e + e D */
+static void PairTurn(const Frame *frame, Pair *pair)
+{
+  for (int i = 0; i < 3; i++)
+    for (int d = 0; d < 3; d++) {
+      pair->turned[i][d] = pair->e[i][d];
+      for (int j = 0; j < 3; j++) pair->turned[i][d] += pair->e[i][j] * frame->D[j][d];
+    }
+}
+
+/* Compliance W_pp */
+static void PairSetCompliance(const Nodes *nodes, Pair *pair)
+{
+  const PetscReal *slave = &nodes->minv[3 * pair->slave];
+  PetscBool        even  = nodes->even[pair->slave];
+
+  pair->w = slave[0];
+  for (int k = 0; k < 4; k++) {
+    pair->w += PetscSqr(pair->weight[k]) * nodes->minv[3 * pair->node[k]];
+    if (pair->weight[k] != 0 && !nodes->even[pair->node[k]]) even = PETSC_FALSE;
+  }
+  if (even) return;
+  pair->w = 0;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      pair->W[i][j] = 0;
+      for (int d = 0; d < 3; d++) {
+        PetscReal master = 0;
+
+        for (int k = 0; k < 4; k++) master += PetscSqr(pair->weight[k]) * nodes->minv[3 * pair->node[k] + d];
+        pair->W[i][j] += pair->turned[i][d] * slave[d] * pair->turned[j][d] + pair->e[i][d] * master * pair->e[j][d];
+      }
+    }
+}
+
+/* Sliding velocity along n, t, b in this step: prescribed, or that of the frame */
+static void PairSetDrift(const ContactProjector p, const ContactStep *step, const PetscReal d_old[3],
+                         const PetscReal d_new[3], Pair *pair)
+{
+  const Sliding  *sliding = &p->sliding[pair->interface];
+  const PetscReal ramp    = RampValue(&sliding->ramp, step->time + 0.5 * step->dt);
+  PetscReal       along   = sliding->speed;
+
+  for (int i = 0; i < 3; i++) pair->drift[i] = 0;
+  if (sliding->turning) {
+    for (int i = 0; i < 3; i++)
+      for (int d = 0; d < 3; d++) pair->drift[i] += pair->e[i][d] * (d_new[d] - d_old[d]) / step->dt;
+    return;
+  }
+  if (sliding->rotates) along = 0;
+  for (int d = 0; d < 3 && sliding->rotates; d++) along += pair->e[1][d] * pair->along[d];
+  if (sliding->slides) pair->drift[1] = ramp * along;
+}
+
+/* Friction coefficient at the slip velocity of v_{n-1/2} */
+static void PairSetFriction(const ContactProjector p, Pair *pair)
+{
+  const ContactInterface *c = &p->contact->interfaces[pair->interface];
+  PetscReal               q[3];
+
+  pair->mu = c->mu;
+  if (c->mu_slope == 0) return;
+  PairVelocity(pair, p->nodes.before, q);
+  pair->mu += c->mu_slope * hypot(q[1] + pair->drift[1], q[2] + pair->drift[2]);
+  pair->mu = PetscMax(0, pair->mu);
+}
+
+/* Facet that a slave faces at predicted displacements; one that faced none must have come to one at u already */
+static void PairFind(ContactProjector p, PetscInt k, const PetscReal u[], const PetscReal predicted[],
+                     PetscReal deepest)
+{
+  Pair            *pair  = &p->pair[k];
+  const Frame     *frame = &p->frame[pair->interface];
+  const PetscReal *x     = &p->nodes.x[3 * pair->slave];
+  PetscReal        d[3];
+
+  if (pair->facet < 0) {
+    FrameDisplacement(frame, x, &u[3 * pair->slave], d);
+    PairFollow(p, k, d, u, deepest);
+    if (pair->facet < 0) return;
+  }
+  FrameDisplacement(frame, x, &predicted[3 * pair->slave], d);
+  PairFollow(p, k, d, predicted, deepest);
+}
+
+PetscBool PairPlace(ContactProjector p, PetscInt k, const PetscReal u[], const PetscReal predicted[], PetscReal deepest)
+{
+  Pair            *pair    = &p->pair[k];
+  const Sliding   *sliding = &p->sliding[pair->interface];
+  const Frame     *frame   = &p->frame[pair->interface];
+  const PetscReal *x = &p->nodes.x[3 * pair->slave], *where = sliding->slides ? p->nodes.rest : predicted;
+  PetscReal        place[3];
+
+  for (int i = 0; i < 3; i++) pair->p[i] = pair->q[i] = 0;
+  pair->status = CONE_OPEN;
+  if (!pair->found) PairFind(p, k, sliding->slides ? p->nodes.rest : u, where, deepest);
+  pair->found = SlidingStays(sliding);
+  if (pair->facet < 0) return PETSC_FALSE;
+  if (pair->found && pair->ready) return PETSC_TRUE;
+  FrameDisplacement(frame, x, &where[3 * pair->slave], place);
+  for (int i = 0; i < 3; i++) place[i] += x[i];
+  SlidingDirection(&p->contact->interfaces[pair->interface], sliding, place, pair->along);
+  PairSetBasis(&p->surface[pair->interface], pair);
+  PairTurn(frame, pair);
+  PairSetCompliance(&p->nodes, pair);
+  pair->ready = PETSC_TRUE;
+  return PETSC_TRUE;
+}
+
+/* The same for Gauss-Seidel, without the directions */
+static void RowSet(const ContactProjector p, const Pair *pair, const PetscReal impulse[3], Row *row)
+{
+  const PetscReal *minv = p->nodes.minv;
+
+  *row = (Row){.mass = pair->w > 0 ? 1 / pair->w : 0, .mu = pair->mu};
+  if (p->sliding[pair->interface].turning) row->D = &p->frame[pair->interface].D[0][0];
+  for (int i = 0; i < 4; i++) {
+    row->node[i]   = (int)pair->node[i];
+    row->weight[i] = pair->weight[i];
+    row->push[i]   = pair->weight[i] * minv[3 * pair->node[i]];
+  }
+  row->node[4] = (int)pair->slave;
+  row->push[4] = minv[3 * pair->slave];
+  for (int d = 0; d < 3; d++) {
+    row->n[d] = pair->e[0][d];
+    row->p[d] = impulse[d];
+    for (int i = 0; i < 3; i++) row->offset[d] += pair->e[i][d] * pair->offset[i];
+  }
+}
+
+/* Guess of the impulse in the frame of the master, N s: none where it would pull */
+static void PairGuess(const Pair *pair, PetscInt order, PetscReal kick, PetscReal impulse[3])
+{
+  static const PetscReal factor[PROJECTOR_PAST][PROJECTOR_PAST] = {
+    {1, 0,  0},
+    {2, -1, 0},
+    {3, -3, 1}
+  };
+  PetscReal normal = 0;
+
+  for (int d = 0; d < 3; d++) {
+    impulse[d] = 0;
+    for (PetscInt i = 0; i <= order; i++) impulse[d] += kick * factor[order][i] * pair->lambda[i][d];
+    normal += impulse[d] * pair->e[0][d];
+  }
+  for (int d = 0; d < 3 && normal <= 0; d++) impulse[d] = 0;
+}
+
+/* One pair, k, at the beginning of a step */
+static void PairPrepare(ContactProjector p, PetscInt k, const ContactStep *step)
+{
+  Pair            *pair = &p->pair[k];
+  const PetscReal *x = &p->nodes.x[3 * pair->slave], *u = &p->nodes.u[3 * pair->slave];
+  PetscReal        before[3], after[3], impulse[3];
+
+  if (!PairPlace(p, k, p->nodes.u, p->nodes.predicted, PROJECTOR_DEEPEST)) return;
+  FrameDisplacement(&p->frame_old[pair->interface], x, u, before);
+  FrameDisplacement(&p->frame[pair->interface], x, u, after);
+  PairSetDrift(p, step, before, after, pair);
+  PairSetFriction(p, pair);
+  pair->offset[0] = PairGap(&p->surface[pair->interface], pair, x, after, p->nodes.u) / step->dt;
+  pair->offset[1] = pair->drift[1];
+  pair->offset[2] = pair->drift[2];
+  PairGuess(pair, p->order, step->kick, impulse);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) pair->p[i] += pair->e[i][j] * impulse[j];
+  RowSet(p, pair, impulse, &p->row[k]);
+}
+
+PetscErrorCode PairsPrepare(ContactProjector p, const ContactStep *step)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < p->n_interfaces; i++) {
+    const ContactInterface *c = &p->contact->interfaces[i];
+
+    SlidingFrame(c, &p->sliding[i], step->time, &p->frame_old[i]);
+    SlidingFrame(c, &p->sliding[i], step->time + step->dt, &p->frame[i]);
+  }
+  NodesPredict(p, step->dt);
+  if (p->search_next) PetscCall(ProjectorSearch(p, step->time + step->dt, 1, p->nodes.predicted));
+  for (PetscInt k = 0; k < p->n_pairs; k++) PairPrepare(p, k, step);
+  PetscFunctionReturn(0);
+}

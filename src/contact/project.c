@@ -1,0 +1,223 @@
+/*
+   Contact forces of a step: block Gauss-Seidel over the pairs on W = G M^-1 G', without forming W. Velocities of the
+   nodes are kept up to date; at a pair, with q the relative velocity that they give and p its impulse now,
+      q* = q - W_pp p,   p' = the solution of the pair alone with all others as they are (kernels/cone.h),
+      v_s += M_s^-1 (p' - p),   v_i -= w_i M_i^-1 (p' - p)
+   The normal velocity contains gap / dt, hence q_n dt is the gap at t_{n+1}; the tangential one the sliding velocity.
+   It begins with a guess from the forces of the steps before. Pairs that are open and that the motion without contact
+   leaves open are not visited; when the others have converged, all are looked at, and those that need force join.
+*/
+#include "projectorimpl.h"
+
+void PairVelocity(const Pair *pair, const PetscReal v[], PetscReal q[3])
+{
+  const PetscReal *slave = &v[3 * pair->slave], *w = pair->weight;
+  const PetscReal *a = &v[3 * pair->node[0]], *b = &v[3 * pair->node[1]], *c = &v[3 * pair->node[2]],
+                  *d = &v[3 * pair->node[3]];
+  PetscReal master[3];
+
+  for (int i = 0; i < 3; i++) master[i] = w[0] * a[i] + w[1] * b[i] + w[2] * c[i] + w[3] * d[i];
+  for (int i = 0; i < 3; i++) {
+    const PetscReal *s = pair->turned[i], *e = pair->e[i];
+
+    q[i] = (s[0] * slave[0] - e[0] * master[0]) + (s[1] * slave[1] - e[1] * master[1]) +
+           (s[2] * slave[2] - e[2] * master[2]);
+  }
+}
+
+/* With the offset: gap at t_{n+1} / dt, and slip velocity */
+static void PairSlip(const Pair *pair, const PetscReal v[], PetscReal q[3])
+{
+  PairVelocity(pair, v, q);
+  for (int i = 0; i < 3; i++) q[i] += pair->offset[i];
+}
+
+/* Velocities of the nodes after an impulse along n, t, b */
+static void PairPush(const Pair *pair, const PetscReal p[3], const PetscReal minv[], PetscReal v[])
+{
+  PetscReal slave[3], master[3];
+
+  for (int d = 0; d < 3; d++) {
+    slave[d]  = pair->turned[0][d] * p[0] + pair->turned[1][d] * p[1] + pair->turned[2][d] * p[2];
+    master[d] = pair->e[0][d] * p[0] + pair->e[1][d] * p[1] + pair->e[2][d] * p[2];
+  }
+  for (int d = 0; d < 3; d++) v[3 * pair->slave + d] += minv[3 * pair->slave + d] * slave[d];
+  for (int k = 0; k < 4; k++)
+    for (int d = 0; d < 3; d++) v[3 * pair->node[k] + d] -= pair->weight[k] * minv[3 * pair->node[k] + d] * master[d];
+}
+
+/* Solves one pair; returns the square of what its impulse has changed by, N s */
+static PetscReal PairSolve(Pair *pair, const PetscReal minv[], PetscReal v[])
+{
+  PetscReal q[3], p[3], change = 0;
+
+  PairSlip(pair, v, q);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) q[i] -= pair->W[i][j] * pair->p[j];
+  pair->status = ConeSolve((const double(*)[3])pair->W, q, pair->mu, p);
+  for (int i = 0; i < 3; i++) {
+    const PetscReal after = p[i];
+
+    p[i] -= pair->p[i];
+    pair->p[i] = after;
+    change += p[i] * p[i];
+  }
+  if (change > 0) PairPush(pair, p, minv, v);
+  return change;
+}
+
+/* The same for a pair whose directions are not coupled, where the cone is met by projection of z = p - q / w:
+   Cartesian, without turning to n, t, b and back. Returns the square of the change. */
+static PetscReal RowSolve(Row *row, PetscReal v[])
+{
+  PetscReal *a = &v[3 * row->node[0]], *b = &v[3 * row->node[1]], *c = &v[3 * row->node[2]], *d = &v[3 * row->node[3]];
+  PetscReal *s = &v[3 * row->node[4]], z[3], change[3], normal, square = 0, factor = 1;
+  const PetscReal *w = row->weight, *h = row->push, *D = row->D;
+
+  for (int i = 0; i < 3; i++) {
+    const PetscReal turned = D ? D[3 * i] * s[0] + D[3 * i + 1] * s[1] + D[3 * i + 2] * s[2] : 0;
+    const PetscReal master = (w[0] * a[i] + w[1] * b[i]) + (w[2] * c[i] + w[3] * d[i]);
+
+    z[i] = row->p[i] - row->mass * ((s[i] - master) + (turned + row->offset[i]));
+  }
+  normal      = z[0] * row->n[0] + z[1] * row->n[1] + z[2] * row->n[2];
+  row->status = CONE_OPEN;
+  if (normal > 0) {
+    for (int i = 0; i < 3; i++) {
+      z[i] -= normal * row->n[i];
+      square += z[i] * z[i];
+    }
+    factor      = row->mu * normal;
+    row->status = row->mu > 0 && square <= factor * factor ? CONE_STICK : CONE_SLIP;
+    factor      = row->status == CONE_STICK ? 1 : square > 0 ? factor / PetscSqrtReal(square) : 0;
+    for (int i = 0; i < 3; i++) z[i] = normal * row->n[i] + factor * z[i];
+  } else
+    for (int i = 0; i < 3; i++) z[i] = 0;
+  for (int i = 0; i < 3; i++) {
+    change[i] = z[i] - row->p[i];
+    row->p[i] = z[i];
+  }
+  for (int i = 0; i < 3; i++) {
+    const PetscReal turned = D ? D[i] * change[0] + D[3 + i] * change[1] + D[6 + i] * change[2] : 0;
+
+    s[i] += h[4] * (change[i] + turned);
+    a[i] -= h[0] * change[i];
+    b[i] -= h[1] * change[i];
+    c[i] -= h[2] * change[i];
+    d[i] -= h[3] * change[i];
+  }
+  return change[0] * change[0] + change[1] * change[1] + change[2] * change[2];
+}
+
+/* The guesses act; the pairs that have one, or that the motion closes, are to be visited */
+static PetscInt PairsBegin(ContactProjector p, PetscReal *scale)
+{
+  PetscInt n = 0;
+
+  *scale = 0;
+  for (PetscInt k = 0; k < p->n_pairs; k++) {
+    Pair *pair = &p->pair[k];
+
+    p->visited[k] = PETSC_FALSE;
+    if (pair->facet < 0) continue;
+    PairSlip(pair, p->nodes.v, pair->q);
+    *scale        = PetscMax(*scale, PetscAbsReal(pair->p[0]));
+    p->visited[k] = pair->p[0] > 0 || pair->q[0] < 0 ? PETSC_TRUE : PETSC_FALSE;
+    if (p->visited[k]) p->visit[n++] = k;
+  }
+  for (PetscInt i = 0; i < n; i++) PairPush(&p->pair[p->visit[i]], p->pair[p->visit[i]].p, p->nodes.minv, p->nodes.v);
+  return n;
+}
+
+PetscReal PairMass(const Pair *pair)
+{
+  if (pair->w > 0) return 1 / pair->w;
+  return pair->W[0][0] > 0 ? 1 / (pair->W[0][0] + pair->W[1][1] + pair->W[2][2]) : 0;
+}
+
+/* Impulse along n, t, b */
+static void RowGet(const Row *row, Pair *pair)
+{
+  if (row->mass == 0) return;
+  pair->status = row->status;
+  for (int i = 0; i < 3; i++)
+    pair->p[i] = pair->e[i][0] * row->p[0] + pair->e[i][1] * row->p[1] + pair->e[i][2] * row->p[2];
+}
+
+/* Slip velocities and largest residual (N s) of all pairs; pairs that need force join the visited ones */
+static PetscReal PairsCheck(ContactProjector p, PetscInt *n, PetscInt *worst)
+{
+  PetscReal largest = 0;
+
+  for (PetscInt k = 0; k < p->n_pairs; k++) {
+    Pair     *pair = &p->pair[k];
+    PetscReal residual;
+
+    if (pair->facet < 0) continue;
+    PairSlip(pair, p->nodes.v, pair->q);
+    if (p->visited[k]) {
+      RowGet(&p->row[k], pair);
+    } else {
+      if (pair->q[0] >= 0 || PairMass(pair) == 0) continue;
+      p->visited[k]    = PETSC_TRUE;
+      p->visit[(*n)++] = k;
+    }
+    residual = ConeResidual(PairMass(pair), pair->q, pair->mu, pair->p);
+    if (residual <= largest || PetscIsNanReal(largest)) continue;
+    largest = residual;
+    *worst  = k;
+  }
+  return largest;
+}
+
+/* Visits pair k; its impulse changes by `change`, at most, and the largest normal one is `scale` at least */
+static void PairVisit(ContactProjector p, PetscInt k, PetscReal *change, PetscReal *scale)
+{
+  Row      *row = &p->row[k];
+  PetscReal square, normal;
+
+  if (row->mass > 0) {
+    square = RowSolve(row, p->nodes.v);
+    normal = row->p[0] * row->n[0] + row->p[1] * row->n[1] + row->p[2] * row->n[2];
+  } else {
+    square = PairSolve(&p->pair[k], p->nodes.minv, p->nodes.v);
+    normal = p->pair[k].p[0];
+  }
+  *change = square > *change ? square : *change;
+  *scale  = normal > *scale ? normal : *scale;
+}
+
+/* Sweeps until the next one would change impulses by less than the tolerance, going by how fast the changes (squared)
+   decrease, or `left` are done; scale is the largest impulse, of the step before or now */
+static PetscInt PairsSweep(ContactProjector p, PetscInt n, PetscInt left, PetscReal before, PetscReal *scale)
+{
+  PetscInt  sweeps = 0;
+  PetscReal change = 0;
+
+  while (sweeps < left) {
+    const PetscReal last = sweeps ? change : PETSC_MAX_REAL;
+
+    change = 0;
+
+    *scale = before;
+    for (PetscInt i = 0; i < n; i++) PairVisit(p, p->visit[i], &change, scale);
+    sweeps++;
+    if (!(change * PetscMin(1, change / last) > PetscSqr(0.5 * p->rtol * *scale))) break;
+  }
+  return sweeps;
+}
+
+void PairsSolve(ContactProjector p, Convergence *c)
+{
+  PetscReal before, scale, residual;
+  PetscInt  n = PairsBegin(p, &before);
+
+  *c    = (Convergence){.worst = -1};
+  scale = before;
+  while (PETSC_TRUE) {
+    if (n > 0) c->sweeps += PairsSweep(p, n, p->max_it - c->sweeps, before, &scale);
+    residual    = PairsCheck(p, &n, &c->worst);
+    c->residual = residual > 0 ? residual / scale : 0;
+    if (!(residual > p->rtol * scale) || c->sweeps >= p->max_it) return;
+  }
+}

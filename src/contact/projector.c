@@ -1,0 +1,234 @@
+/*
+   ContactProjector: life cycle, start, and the step as all ranks see it: values of the active nodes go to the root,
+   which solves all pairs (project.c), and the forces come back. Whether the next step begins with a search comes with
+   them, so that all ranks know it; for that step all nodes are active.
+*/
+#include "projectorimpl.h"
+
+/* What the root says with the forces */
+enum { HEAD_SEARCH, HEAD_FAILED, HEAD_RESIDUAL, HEAD_SWEEPS, HEAD_X };
+
+static PetscErrorCode ProjectorSetFromOptions(ContactProjector p)
+{
+  PetscFunctionBeginUser;
+  p->rtol   = 1e-10;
+  p->max_it = 1000;
+  PetscOptionsBegin(p->contact->comm, NULL, "Contact forces in dynamics", NULL);
+  PetscCall(PetscOptionsReal("-project_rtol", "natural map residual, relative to the largest impulse", "projector.h",
+                             p->rtol, &p->rtol, NULL));
+  PetscCall(PetscOptionsInt("-project_max_it", "sweeps of Gauss-Seidel", "projector.h", p->max_it, &p->max_it, NULL));
+  PetscOptionsEnd();
+  PetscCheck(p->rtol > 0 && p->rtol < 1, p->contact->comm, PETSC_ERR_USER_INPUT,
+             "-project_rtol %.6g must lie between 0 and 1", (double)p->rtol);
+  PetscCheck(p->max_it > 0, p->contact->comm, PETSC_ERR_USER_INPUT,
+             "-project_max_it %" PetscInt_FMT " must be positive", p->max_it);
+  for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(SlidingSetFromOptions(p->contact, i, &p->sliding[i]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProjectorReadOptions(Contact contact)
+{
+  ContactProjector p;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, &p));
+  p->contact      = contact;
+  p->n_interfaces = contact->n_interfaces;
+  PetscCall(ProjectorSetFromOptions(p));
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for parameters that make no sense in dynamics */
+static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(c->slave && c->master, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces must be given: slave,master", c->name);
+  PetscCheck(c->mu >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_mu %.6g must not be negative", c->name, (double)c->mu);
+  PetscCheck(c->speed >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_speed %.6g must not be negative (m/s)", c->name,
+             (double)c->speed);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *projector)
+{
+  ContactProjector p;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, &p));
+  p->contact      = contact;
+  p->n_interfaces = contact->n_interfaces;
+  for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(InterfaceCheck(contact->comm, &contact->interfaces[i]));
+  PetscCall(ProjectorSetFromOptions(p));
+  for (PetscInt i = 0; i < p->n_interfaces; i++)
+    PetscCall(SlidingCheck(contact->comm, &contact->interfaces[i], &p->sliding[i]));
+  PetscCall(ProjectorSetUpSurfaces(p));
+  *projector = p;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProjectorGetTurning(ContactProjector p, PetscInt i, PetscBool *turns, PetscReal rotation[3])
+{
+  const Sliding *s = &p->sliding[i];
+
+  PetscFunctionBeginUser;
+  *turns = s->turning && s->rotates ? PETSC_TRUE : PETSC_FALSE;
+  for (int d = 0; d < 3; d++) rotation[d] = *turns ? s->speed * s->axis[d] : 0;
+  PetscCheck(!*turns || s->ramp.length == 0, p->share.comm, PETSC_ERR_USER_INPUT,
+             "-%s_ramp: inertial forces of a frame whose rotation changes are not offered; leave out the ramp, or "
+             "-dynamics_coriolis and -dynamics_centrifugal",
+             p->contact->interfaces[i].name);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProjectorGetNodes(ContactProjector p, PetscInt *n, const PetscInt **vertex)
+{
+  PetscFunctionBeginUser;
+  *n      = p->share.n;
+  *vertex = p->share.vertex;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ProjectorGatherAll(ContactProjector p, const PetscReal local[], PetscReal root[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(ShareSetActive(&p->share, NULL));
+  PetscCall(ShareGather(&p->share, 1, (const PetscReal *const[]){local}, (PetscReal *const[]){root}));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ProjectorActivate(ContactProjector p)
+{
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Bcast(p->is_active, (PetscMPIInt)p->share.n_nodes, MPIU_BOOL, p->share.root, p->share.comm));
+  PetscCall(ShareSetActive(&p->share, p->is_active));
+  PetscFunctionReturn(0);
+}
+
+/* Whether a node has one mass in all directions; what is rounding of turned components goes */
+static PetscBool MassIsEven(PetscReal m[3])
+{
+  const PetscReal largest = PetscMax(m[0], PetscMax(m[1], m[2])), least = PetscMin(m[0], PetscMin(m[1], m[2]));
+
+  if (largest - least > 1e-12 * largest) return PETSC_FALSE;
+  m[1] = m[2] = m[0];
+  return PETSC_TRUE;
+}
+
+PetscErrorCode ContactProjectorSetMass(ContactProjector p, const PetscReal minv[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(ProjectorGatherAll(p, minv, p->nodes.minv));
+  for (PetscInt i = 0; i < p->share.n_nodes && p->share.rank == p->share.root; i++)
+    p->nodes.even[i] = MassIsEven(&p->nodes.minv[3 * i]);
+  p->has_mass = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProjectorGetActive(ContactProjector p, PetscInt *n, const PetscInt **active)
+{
+  PetscFunctionBeginUser;
+  *n      = p->share.n_active;
+  *active = p->share.active;
+  PetscFunctionReturn(0);
+}
+
+/* The step on the root, from the values of the nodes to their forces */
+static PetscErrorCode RootProject(ContactProjector p, const ContactStep *step, PetscReal head[SHARE_HEAD])
+{
+  Convergence convergence;
+
+  PetscFunctionBeginUser;
+  if (p->share.rank != p->share.root) PetscFunctionReturn(0);
+  PetscCall(PairsPrepare(p, step));
+  PairsSolve(p, &convergence);
+  PairsRecord(p, step, &convergence);
+  NodesPredict(p, step->dt);
+  head[HEAD_SEARCH]   = ProjectorNeedsSearch(p, p->nodes.predicted) ? 1 : 0;
+  head[HEAD_RESIDUAL] = convergence.residual;
+  head[HEAD_SWEEPS]   = (PetscReal)convergence.sweeps;
+  head[HEAD_FAILED]   = convergence.residual > p->rtol ? 1 : 0;
+  for (int d = 0; d < 3 && convergence.worst >= 0; d++) head[HEAD_X + d] = p->slave_x[3 * convergence.worst + d];
+  PetscFunctionReturn(0);
+}
+
+/* Active nodes of the next step; those of this one stay as they are, for the caller to add the forces */
+static PetscErrorCode ProjectorAdvance(ContactProjector p, PetscBool search_next)
+{
+  const PetscBool searched = p->search_next;
+
+  PetscFunctionBeginUser;
+  p->search_next = search_next;
+  if (search_next && !searched) PetscCall(ShareSetActive(&p->share, NULL));
+  if (searched && !search_next) PetscCall(ProjectorActivate(p));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProject(ContactProjector p, const ContactStep *step, const PetscReal u[],
+                              const PetscReal before[], const PetscReal v[], PetscReal force[])
+{
+  PetscReal head[SHARE_HEAD] = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(ShareGather(&p->share, 3, (const PetscReal *const[]){u, before, v},
+                        (PetscReal *const[]){p->nodes.u, p->nodes.before, p->nodes.v}));
+  PetscCall(RootProject(p, step, head));
+  PetscCall(ShareReturn(&p->share, p->nodes.force, head, force));
+  PetscCheck(
+    head[HEAD_FAILED] == 0, p->share.comm, PETSC_ERR_NOT_CONVERGED,
+    "contact forces at %.6g s: residual %.6g after %.0f sweeps, worst at the slave node at %.6g, %.6g, %.6g m; "
+    "raise -project_max_it %" PetscInt_FMT " or -project_rtol %.6g",
+    (double)step->time, (double)head[HEAD_RESIDUAL], (double)head[HEAD_SWEEPS], (double)head[HEAD_X],
+    (double)head[HEAD_X + 1], (double)head[HEAD_X + 2], p->max_it, (double)p->rtol);
+  PetscCall(ProjectorAdvance(p, head[HEAD_SEARCH] != 0 ? PETSC_TRUE : PETSC_FALSE));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProjectorGetStates(ContactProjector p, PetscInt *n, const ContactState **state,
+                                         const PetscInt **interface, const PetscInt **number, const PetscReal **x)
+{
+  PetscFunctionBeginUser;
+  *n = p->n_pairs;
+  if (state) *state = p->state;
+  if (interface) *interface = p->interface;
+  if (number) *number = p->number;
+  if (x) *x = p->slave_x;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProjectorGetSums(ContactProjector p, PetscInt interface, ContactSums *sums)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(interface >= 0 && interface < p->n_interfaces, p->share.comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "interface %" PetscInt_FMT " must lie between 0 and %" PetscInt_FMT, interface, p->n_interfaces - 1);
+  *sums = p->sums[interface];
+  if (p->share.size > 1) PetscCallMPI(MPI_Bcast(sums, sizeof(*sums), MPI_BYTE, p->share.root, p->share.comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProjectorView(ContactProjector p, PetscViewer viewer)
+{
+  PetscInt n[CONTACT_MAX] = {0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < p->n_pairs; k++) n[p->pair[k].interface]++;
+  PetscCallMPI(MPI_Bcast(n, CONTACT_MAX, MPIU_INT, p->share.root, p->share.comm));
+  for (PetscInt i = 0; i < p->n_interfaces; i++) {
+    const ContactInterface *c = &p->contact->interfaces[i];
+
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "contact %s: %" PetscInt_FMT " nodes of %s on %" PetscInt_FMT " facets of %s, mu %.6g, multipliers\n",
+      c->name, n[i], c->slave, p->surface[i].n_facets, c->master, (double)c->mu));
+    PetscCall(SlidingView(c, &p->sliding[i], viewer));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProjectorDestroy(ContactProjector *projector)
+{
+  PetscFunctionBeginUser;
+  if (!*projector) PetscFunctionReturn(0);
+  PetscCall(ProjectorDestroySurfaces(*projector));
+  PetscCall(PetscFree(*projector));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,256 @@
+/*
+   Private to the projector: what its files share.
+
+   Nodes of all contact surfaces are numbered from 0 by their global vertex number; every rank knows which of them its
+   local vertices are. One rank, the root, which owns most slave nodes, knows the surfaces and solves for all pairs.
+   Values of nodes are Cartesian, masters that turn in their own frame (Frame), with which all of a pair is described.
+*/
+#pragma once
+
+#include <squeal/projector.h>
+#include "contactimpl.h"
+#include "kernels/cone.h"
+#include "kernels/ramp.h"
+
+/* Sliding of the master of one interface */
+typedef struct {
+  PetscBool turning; /* the master moves; else the velocity is added to the slip */
+  PetscBool rotates; /* by the angular velocity of the interface; else along its slip */
+  PetscBool slides;  /* the options say a direction */
+  PetscReal axis[3]; /* unit vector of the rotation, or of the slip; 0 where nothing slides */
+  PetscReal speed;   /* of the master about it, rad/s, or of the slave along it, m/s */
+  Ramp      ramp;
+} Sliding;
+
+/* Place of a master that moves: a point x of the ground is at x + d(x) in its frame, d(x) = D (x - centre) - shift, D =
+   R' - I. D and shift are exactly 0 at rest, and D e = 0 for the axis e, so that no rounding enters a gap along it. */
+typedef struct {
+  PetscReal D[3][3], centre[3], shift[3];
+} Frame;
+
+/* Facet of a master surface, undeformed */
+typedef struct {
+  PetscInt  node[4];
+  PetscInt  beside[4]; /* facet across the edge from corner i to i + 1, -1 at the border */
+  PetscReal x[4][3];   /* m */
+  PetscReal size;      /* square root of its area, m */
+  PetscBool flat;      /* the normal is the same everywhere */
+  PetscReal normal[3]; /* unit vector in the middle */
+} MasterFacet;
+
+/* Bounding volume: leaves hold facets order[first .. first + n), others have n = 0 and the boxes after it and `right`
+   */
+typedef struct {
+  PetscReal low[3], high[3];
+  PetscInt  first, n, right;
+} Bounds;
+
+/* Master surface of one interface, on the root */
+typedef struct {
+  PetscInt     n_facets, n_boxes, *order;
+  MasterFacet *facet;
+  Bounds      *box;
+  PetscBool   *live; /* the corners of the facet are active */
+  PetscInt     n_nodes, *node;
+  PetscInt     n_seen, *seen; /* nodes of it that are active */
+  PetscReal    size;          /* mean of the facets, m */
+} Surface;
+
+#define PROJECTOR_PAST 3 /* steps of which forces are kept, for the guess of the next */
+
+/* A slave node and the point of the master that it faces */
+typedef struct {
+  PetscInt   interface, slave;
+  PetscInt   facet;                     /* of the interface's surface, -1 where it faces none */
+  PetscReal  natural[2];                /* on the facet */
+  PetscReal  lambda[PROJECTOR_PAST][3]; /* forces on the slave in the frame of the master, N; [0] of the last step */
+  PetscReal  along[3];              /* that slip is measured along, in the frame of the master; 0 where any will do */
+  PetscReal  e[3][3], turned[3][3]; /* n, t, b in the frame of the master, and on the ground */
+  PetscInt   node[4];               /* corners */
+  PetscReal  weight[4];
+  PetscBool  found, ready; /* the facet will not change any more; directions and compliance are those of the facet */
+  PetscReal  W[3][3], w;   /* 1/kg; w = 0 where W is no multiple of the identity, else that */
+  PetscReal  offset[3];    /* added to the velocities of the nodes: gap at t_n / dt, and the sliding velocity, m/s */
+  PetscReal  drift[3];     /* sliding velocity along n, t, b, m/s */
+  PetscReal  mu;
+  PetscReal  p[3], q[3]; /* impulse on the slave, N s; relative velocity with the offset, m/s */
+  ConeStatus status;
+} Pair;
+
+/* What Gauss-Seidel needs of a pair without coupling of its directions, close together; Cartesian, in the frame of the
+   master */
+typedef struct {
+  int              node[5]; /* corners, slave */
+  ConeStatus       status;
+  PetscReal        weight[4], push[5]; /* of the corners; velocity of each node per impulse, 1/kg */
+  PetscReal        n[3], offset[3], p[3];
+  PetscReal        mass, mu; /* 1/w; 0 where the general way is needed */
+  const PetscReal *D;        /* of the frame, [3][3]; NULL where it stands still */
+} Row;
+
+/* Who has which node, and the exchange with the root */
+typedef struct {
+  MPI_Comm    comm;
+  PetscMPIInt rank, size, root;
+  PetscInt    n_nodes;           /* of all ranks */
+  PetscInt    n, *vertex;        /* of this rank: local vertices from 0, ascending, */
+  PetscInt   *node;              /* and their numbers */
+  PetscInt    n_active, *active; /* of these n; it is one of */
+  PetscInt   *list[2];           /* of which the other is that of the step before */
+  PetscInt *first, *holder; /* [size + 1] and all ranks' numbers one after the other; ~ number where another owns it */
+  PetscMPIInt *n_send, *send, *n_back, *back; /* counts and places of the messages, numbers */
+  PetscInt    *send_node, *back_node;         /* nodes in the order of the messages */
+  PetscReal   *buffer[2];                     /* of this rank, and of the root */
+} Share;
+
+#define PROJECTOR_DEEPEST 1e-3 /* sizes of a facet: a slave deeper below is not taken up */
+
+#define SHARE_HEAD 8 /* numbers that the root sends with the forces */
+
+/* Step at hand, as the root sees it; [n_nodes][3] each */
+typedef struct {
+  PetscReal *x, *minv, *u, *before, *v, *force;
+  PetscReal *predicted; /* displacement at t_{n+1} without contact, m */
+  PetscReal *rest;      /* displacement 0 */
+  PetscBool *even;      /* minv is equal in all directions */
+} Nodes;
+
+/* How Gauss-Seidel ended */
+typedef struct {
+  PetscInt  sweeps, worst; /* pair of the largest residual */
+  PetscReal residual;      /* natural map, relative to the largest impulse now or before */
+} Convergence;
+
+struct _p_ContactProjector {
+  Contact   contact;
+  PetscInt  n_interfaces;
+  PetscReal rtol;
+  PetscInt  max_it;
+  Sliding   sliding[CONTACT_MAX];
+  Share     share;
+  PetscBool has_mass;
+  /* on the root only */
+  Nodes         nodes;
+  Surface       surface[CONTACT_MAX];
+  Frame         frame[CONTACT_MAX], frame_old[CONTACT_MAX]; /* at t_{n+1} and t_n */
+  PetscInt      n_pairs;
+  Pair         *pair;
+  Row          *row;                                         /* [n_pairs] */
+  PetscInt     *first_candidate, *candidate, max_candidates; /* facets near each slave */
+  PetscReal    *place;     /* [n_pairs][3] displacement of the slave in the frame of the master at the last search, m */
+  PetscReal    *u_search;  /* [n_nodes][3] displacements at the last search, m */
+  PetscInt      order;     /* of the polynomial in time that guesses the next forces */
+  PetscReal     t_search;  /* and its time, s */
+  PetscBool    *is_active; /* [n_nodes] */
+  PetscReal     margin[CONTACT_MAX]; /* candidates lie within, m */
+  PetscBool    *visited;             /* [n_pairs] by Gauss-Seidel */
+  PetscInt     *visit;               /* these, in order */
+  ContactState *state;
+  PetscInt     *interface, *number; /* [n_pairs] of the slaves, and */
+  PetscReal    *slave_x;            /* [n_pairs][3] their places */
+  ContactSums   sums[CONTACT_MAX];
+  PetscReal     dt;
+  /* on all ranks */
+  PetscBool search_next; /* all nodes are active, and the next step begins with a search */
+};
+
+/* sliding.c - options of the sliding of interface i, after its own ones */
+PETSC_INTERN PetscErrorCode SlidingSetFromOptions(Contact contact, PetscInt i, Sliding *sliding);
+/* sliding.c - raises the error for a sliding that is not fully said */
+PETSC_INTERN PetscErrorCode SlidingCheck(MPI_Comm comm, const ContactInterface *c, const Sliding *sliding);
+PETSC_INTERN PetscErrorCode SlidingView(const ContactInterface *c, const Sliding *sliding, PetscViewer viewer);
+/* sliding.c - frame of the master at time t */
+PETSC_INTERN void SlidingFrame(const ContactInterface *c, const Sliding *sliding, PetscReal t, Frame *frame);
+/* sliding.c - direction in which a slave at x slides on the master: with rotation its velocity at full speed (m/s),
+   else a unit vector; 0 where nothing says one */
+PETSC_INTERN void SlidingDirection(const ContactInterface *c, const Sliding *sliding, const PetscReal x[3],
+                                   PetscReal v[3]);
+/* whether places on the master never change: sliding is prescribed, and the meshes stay */
+static inline PetscBool SlidingStays(const Sliding *sliding)
+{
+  return sliding->slides && !sliding->turning ? PETSC_TRUE : PETSC_FALSE;
+}
+/* displacement of a slave in the frame of the master: d(x) + R' u */
+static inline void FrameDisplacement(const Frame *f, const PetscReal x[3], const PetscReal u[3], PetscReal d[3])
+{
+  const PetscReal y[3] = {x[0] + u[0] - f->centre[0], x[1] + u[1] - f->centre[1], x[2] + u[2] - f->centre[2]};
+
+  for (int i = 0; i < 3; i++) d[i] = u[i] + f->D[i][0] * y[0] + f->D[i][1] * y[1] + f->D[i][2] * y[2] - f->shift[i];
+}
+
+/* By x, then y, then z */
+static inline int PlaceCompare(const PetscReal a[3], const PetscReal b[3])
+{
+  for (int d = 0; d < 3; d++)
+    if (a[d] != b[d]) return a[d] < b[d] ? -1 : 1;
+  return 0;
+}
+
+/* facets.c - master surface on a set; number[n_nodes] are the global vertex numbers of the nodes, ascending */
+PETSC_INTERN PetscErrorCode MasterCreate(Contact contact, const char set[], PetscInt n_nodes, const PetscInt number[],
+                                         Surface *surface);
+PETSC_INTERN PetscErrorCode MasterDestroy(Surface *surface);
+
+/* surface.c - surfaces of all interfaces, the nodes and who has them; pairs without partner */
+PETSC_INTERN PetscErrorCode ProjectorSetUpSurfaces(ContactProjector projector);
+PETSC_INTERN PetscErrorCode ProjectorDestroySurfaces(ContactProjector projector);
+
+/* share.c - the exchange between the root and all ranks; is_active [n_nodes] is read on the root, NULL on all ranks for
+   all */
+PETSC_INTERN PetscErrorCode ShareSetUp(MPI_Comm comm, PetscInt n, const PetscInt number[], Share *share);
+PETSC_INTERN PetscErrorCode ShareSetActive(Share *share, const PetscBool is_active[]);
+/* share.c - n <= 3 fields of three values per local node to the root, and forces from there with head[SHARE_HEAD] */
+PETSC_INTERN PetscErrorCode ShareGather(Share *share, PetscInt n, const PetscReal *const local[],
+                                        PetscReal *const root[]);
+PETSC_INTERN PetscErrorCode ShareReturn(Share *share, const PetscReal root[], PetscReal head[SHARE_HEAD],
+                                        PetscReal local[]);
+static inline PetscInt      ShareCountSent(const Share *share)
+{
+  return share->send[share->size - 1] + share->n_send[share->size - 1];
+}
+PETSC_INTERN PetscErrorCode ShareDestroy(Share *share);
+
+/* search.c - bounding volumes of a surface */
+PETSC_INTERN PetscErrorCode SurfaceBuildBoxes(Surface *surface);
+/* search.c - candidates of all slaves within `reach` margins, at displacements u of all nodes and the present frames,
+   of time t */
+PETSC_INTERN PetscErrorCode ProjectorSearch(ContactProjector projector, PetscReal t, PetscReal reach,
+                                            const PetscReal u[]);
+/* search.c - whether a slave has gone so far since the search that its candidates may soon not do any more */
+PETSC_INTERN PetscBool ProjectorNeedsSearch(ContactProjector projector, const PetscReal u[]);
+
+/* follow.c - facet and natural coordinates of a slave at displacement d (in the frame of the master), corners at
+   displacements u; -1 where it faces none. deepest: gaps below -deepest sizes of the facet are no contact where the
+   slave had no facet before */
+PETSC_INTERN void PairFollow(ContactProjector projector, PetscInt p, const PetscReal d[3], const PetscReal u[],
+                             PetscReal deepest);
+/* follow.c - weights, normal, tangents */
+PETSC_INTERN void PairSetBasis(const Surface *surface, Pair *pair);
+/* follow.c - n . (x_s - x_m) at these displacements, m */
+PETSC_INTERN PetscReal PairGap(const Surface *surface, const Pair *pair, const PetscReal x[3], const PetscReal d[3],
+                               const PetscReal u[]);
+
+/* prepare.c - everything of the pairs at the beginning of a step: facets, frames, compliances, gaps, friction
+   coefficients, and the impulses of the step before */
+PETSC_INTERN PetscErrorCode PairsPrepare(ContactProjector projector, const ContactStep *step);
+/* project.c - impulses, and velocities of the nodes with them */
+PETSC_INTERN void PairsSolve(ContactProjector projector, Convergence *convergence);
+/* prepare.c - facet, frame and compliance of one pair at the predicted displacements; false where the slave faces no
+   facet. One that has faced none is taken up where it is at displacements u not deeper below the master than `deepest`
+   sizes of the facet. */
+PETSC_INTERN PetscBool PairPlace(ContactProjector projector, PetscInt pair, const PetscReal u[],
+                                 const PetscReal predicted[], PetscReal deepest);
+/* project.c - inverse of a compliance for the natural map, kg; 0 where nothing moves along n */
+PETSC_INTERN PetscReal PairMass(const Pair *pair);
+/* prepare.c - predicted displacements of the active nodes, u + dt v */
+PETSC_INTERN void NodesPredict(ContactProjector projector, PetscReal dt);
+/* project.c - velocity of the slave relative to the master along n, t, b, m/s, of velocities v of the nodes */
+PETSC_INTERN void PairVelocity(const Pair *pair, const PetscReal v[], PetscReal q[3]);
+
+/* record.c - forces on the nodes, states and sums of a step */
+PETSC_INTERN void PairsRecord(ContactProjector projector, const ContactStep *step, const Convergence *convergence);
+
+/* projector.c - one field of all nodes to the root; all nodes are active after it */
+PETSC_INTERN PetscErrorCode ProjectorGatherAll(ContactProjector projector, const PetscReal local[], PetscReal root[]);
+/* projector.c - the nodes that the root's last search has found are active on all ranks */
+PETSC_INTERN PetscErrorCode ProjectorActivate(ContactProjector projector);

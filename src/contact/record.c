@@ -1,0 +1,200 @@
+/*
+   What a step leaves: forces on the nodes, states of the slaves, sums over each interface, residuals of the laws.
+
+   Works in the step around t_n, with V the velocity of the slave relative to the master that follows from those of the
+   nodes, the mean of v_{n-1/2} and v_{n+1/2}, and s = V_T + sliding velocity the slip (J):
+      contact   dt lambda_n V_n         friction  -dt lambda_T . V_T        heat  dt lambda_T . s
+   so that friction + heat is what the drive of the sliding feeds. lambda_T is the force on the master.
+*/
+#include "projectorimpl.h"
+
+/* How far a constant, a line and a parabola through the forces before miss this one, squares added to miss */
+static void GuessesMeasure(const Pair *pair, const PetscReal lambda[3], PetscReal miss[PROJECTOR_PAST])
+{
+  for (int d = 0; d < 3; d++) {
+    const PetscReal *a = &pair->lambda[0][d], *b = &pair->lambda[1][d], *c = &pair->lambda[2][d];
+
+    miss[0] += PetscSqr(lambda[d] - *a);
+    miss[1] += PetscSqr(lambda[d] - 2 * *a + *b);
+    miss[2] += PetscSqr(lambda[d] - 3 * (*a - *b) - *c);
+  }
+}
+
+/* Force of a pair from its impulse; the last ones become older */
+static void PairSetForce(Pair *pair, PetscReal kick, PetscReal miss[PROJECTOR_PAST])
+{
+  PetscReal lambda[3] = {0, 0, 0};
+
+  for (int i = 0; i < 3 && pair->facet >= 0; i++)
+    for (int d = 0; d < 3; d++) lambda[d] += pair->e[i][d] * (pair->p[i] / kick);
+  GuessesMeasure(pair, lambda, miss);
+  for (int i = PROJECTOR_PAST - 1; i > 0; i--)
+    for (int d = 0; d < 3; d++) pair->lambda[i][d] = pair->lambda[i - 1][d];
+  for (int d = 0; d < 3; d++) pair->lambda[0][d] = lambda[d];
+}
+
+/* Forces (N) on the nodes, which the root adds up in the order of the pairs */
+static void ForcesSet(ContactProjector p, PetscReal kick)
+{
+  const PetscInt n     = ShareCountSent(&p->share);
+  PetscReal     *force = p->nodes.force, miss[PROJECTOR_PAST] = {0};
+
+  for (PetscInt i = 0; i < n; i++)
+    for (int d = 0; d < 3; d++) force[3 * p->share.send_node[i] + d] = 0;
+  for (PetscInt k = 0; k < p->n_pairs; k++) {
+    Pair            *pair   = &p->pair[k];
+    const PetscReal *lambda = pair->lambda[0];
+
+    PairSetForce(pair, kick, miss);
+    if (pair->facet < 0 || pair->p[0] == 0) continue;
+    for (int d = 0; d < 3; d++) {
+      for (int i = 0; i < 3; i++) force[3 * pair->slave + d] += pair->turned[i][d] * (pair->p[i] / kick);
+      for (int j = 0; j < 4; j++) force[3 * pair->node[j] + d] -= pair->weight[j] * lambda[d];
+    }
+  }
+  p->order = 0;
+  for (int i = 1; i < PROJECTOR_PAST; i++)
+    if (miss[i] < miss[p->order]) p->order = i;
+}
+
+static void StateSet(const Pair *pair, const ContactStep *step, ContactState *state)
+{
+  static const ContactStatus names[] = {
+    [CONE_OPEN] = CONTACT_OPEN, [CONE_STICK] = CONTACT_STICK, [CONE_SLIP] = CONTACT_SLIP};
+
+  *state = (ContactState){.status = CONTACT_OPEN, .gap = PETSC_INFINITY};
+  if (pair->facet < 0) return;
+  state->status   = names[pair->status];
+  state->gap      = pair->q[0] * step->dt;
+  state->lambda_n = pair->p[0] / step->kick;
+  for (int i = 0; i < 2; i++) {
+    state->slip[i]     = pair->q[1 + i];
+    state->lambda_t[i] = -pair->p[1 + i] / step->kick;
+  }
+}
+
+/* Sums of one step that are vectors: directions of slip, and friction on the master, on the ground */
+typedef struct {
+  PetscReal along[3], friction[3];
+} Directions;
+
+/* Adds one closed pair to the sums of its interface */
+static void SumsAdd(const ContactProjector p, const Pair *pair, const ContactState *state, PetscReal dt,
+                    ContactSums *sums, Directions *directions)
+{
+  PetscReal old[3], velocity[3];
+
+  PairVelocity(pair, p->nodes.before, old);
+  for (int i = 0; i < 3; i++) velocity[i] = 0.5 * (old[i] + pair->q[i] - pair->offset[i]);
+  sums->normal += state->lambda_n;
+  sums->contact_work += dt * state->lambda_n * velocity[0];
+  for (int i = 0; i < 2; i++) {
+    sums->friction_work -= dt * state->lambda_t[i] * velocity[1 + i];
+    sums->heat += dt * state->lambda_t[i] * (velocity[1 + i] + pair->drift[1 + i]);
+  }
+  for (int d = 0; d < 3; d++) {
+    const PetscReal tangential = state->lambda_t[0] * pair->turned[1][d] + state->lambda_t[1] * pair->turned[2][d];
+
+    directions->friction[d] += tangential;
+    sums->force[d] += tangential - state->lambda_n * pair->turned[0][d];
+  }
+}
+
+/* What belongs to the last step alone begins anew */
+static void SumsBegin(ContactSums *sums, const Convergence *convergence)
+{
+  for (int i = 0; i < CONTACT_N_STATUS; i++) sums->n[i] = 0;
+  for (int d = 0; d < 3; d++) sums->force[d] = 0;
+  sums->normal = sums->friction = 0;
+  sums->residual                = PetscMax(sums->residual, convergence->residual);
+  sums->sweeps += convergence->sweeps;
+  sums->steps++;
+}
+
+/* Component of friction along the mean direction of slip, or its size where nothing says one */
+static PetscReal FrictionAlong(const Directions *d)
+{
+  const PetscReal *a = d->along, *f = d->friction;
+  const PetscReal  length = PetscSqrtReal(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+
+  if (length > 0) return (f[0] * a[0] + f[1] * a[1] + f[2] * a[2]) / length;
+  return PetscSqrtReal(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
+}
+
+void PairsRecord(ContactProjector p, const ContactStep *step, const Convergence *convergence)
+{
+  Directions directions[CONTACT_MAX] = {0};
+
+  ForcesSet(p, step->kick);
+  for (PetscInt i = 0; i < p->n_interfaces; i++) SumsBegin(&p->sums[i], convergence);
+  for (PetscInt k = 0; k < p->n_pairs; k++) {
+    const Pair    *pair  = &p->pair[k];
+    const PetscInt i     = pair->interface;
+    ContactState  *state = &p->state[k];
+
+    StateSet(pair, step, state);
+    p->sums[i].n[state->status]++;
+    if (pair->facet < 0) continue;
+    for (int d = 0; d < 3 && p->sliding[i].slides; d++) directions[i].along[d] += pair->turned[1][d];
+    if (state->lambda_n != 0) SumsAdd(p, pair, state, step->dt, &p->sums[i], &directions[i]);
+  }
+  for (PetscInt i = 0; i < p->n_interfaces; i++) p->sums[i].friction = FrictionAlong(&directions[i]);
+  p->dt = step->dt;
+}
+
+/* Force (N) and length (m) that the residuals are relative to: the largest lambda_n, and the largest gap, way or
+   displacement at any pair that faces a facet */
+static void ScaleFind(const ContactProjector p, PetscReal *force, PetscReal *length)
+{
+  *force = *length = 0;
+  for (PetscInt k = 0; k < p->n_pairs; k++) {
+    const ContactState *s = &p->state[k];
+    const PetscReal    *u = &p->nodes.u[3 * p->pair[k].slave];
+
+    if (p->pair[k].facet < 0) continue;
+    *force  = PetscMax(*force, s->lambda_n);
+    *length = PetscMax(*length, PetscMax(PetscAbsReal(s->gap), p->dt * hypot(s->slip[0], s->slip[1])));
+    for (int d = 0; d < 3; d++) *length = PetscMax(*length, PetscAbsReal(u[d]));
+    *length = PetscMax(*length, 1e-9 * p->surface[p->pair[k].interface].size);
+  }
+}
+
+/* a / b for a >= 0, where 0 / 0 is nothing to complain about */
+static PetscReal Relative(PetscReal a, PetscReal b)
+{
+  return a == 0 ? 0 : a / b;
+}
+
+/* Raises the residuals to those of one pair */
+static void KKTRaise(const ContactState *s, PetscReal mu, PetscReal dt, PetscReal force, PetscReal length,
+                     ContactKKT *kkt)
+{
+  const PetscReal slip = hypot(s->slip[0], s->slip[1]), friction = hypot(s->lambda_t[0], s->lambda_t[1]);
+  const PetscReal gap = s->gap / length, normal = Relative(s->lambda_n, force);
+  PetscReal       rest = 0;
+
+  if (s->status == CONTACT_STICK) rest = slip * dt / length;
+  if (s->status == CONTACT_SLIP && slip > 0)
+    rest = Relative(hypot(s->lambda_t[0] - mu * s->lambda_n * s->slip[0] / slip,
+                          s->lambda_t[1] - mu * s->lambda_n * s->slip[1] / slip),
+                    force);
+  kkt->penetration     = PetscMax(kkt->penetration, -gap);
+  kkt->sign            = PetscMax(kkt->sign, -normal);
+  kkt->complementarity = PetscMax(kkt->complementarity, PetscAbsReal(PetscMin(normal, gap)));
+  kkt->cone            = PetscMax(kkt->cone, Relative(PetscMax(0, friction - mu * s->lambda_n), force));
+  kkt->dissipation     = PetscMax(kkt->dissipation, rest);
+}
+
+PetscErrorCode ContactProjectorGetKKT(ContactProjector p, ContactKKT *kkt)
+{
+  PetscReal force, length;
+
+  PetscFunctionBeginUser;
+  *kkt = (ContactKKT){.sign = 0};
+  ScaleFind(p, &force, &length);
+  for (PetscInt k = 0; k < p->n_pairs; k++)
+    if (p->pair[k].facet >= 0) KKTRaise(&p->state[k], p->pair[k].mu, p->dt, force, length, kkt);
+  PetscCallMPI(
+    MPI_Bcast(kkt, (PetscMPIInt)(sizeof(*kkt) / sizeof(PetscReal)), MPIU_REAL, p->share.root, p->contact->comm));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,103 @@
+/*
+   What the contact forces must keep so that a run goes on bitwise: of each slave its facet, place on it and last
+   forces, the displacements and time of the last search, which is repeated, and the sums. All is of the root but
+   whether a search is due, which each rank knows.
+*/
+#include "projectorimpl.h"
+
+#define PER_PAIR (3 + 3 * PROJECTOR_PAST) /* facet, natural coordinates, forces */
+#define PER_SUMS 16
+
+/* Numbers of the root after the first */
+static PetscInt MemoryLength(const ContactProjector p)
+{
+  if (p->share.rank != p->share.root) return 1;
+  return 3 + PER_SUMS * p->n_interfaces + PER_PAIR * p->n_pairs + 3 * p->share.n_nodes;
+}
+
+static void SumsGet(const ContactSums *s, PetscReal value[PER_SUMS])
+{
+  const PetscReal all[PER_SUMS] = {
+    (PetscReal)s->n[0],   (PetscReal)s->n[1], (PetscReal)s->n[2], s->normal,        s->friction, s->force[0],
+    s->force[1],          s->force[2],        s->contact_work,    s->friction_work, s->heat,     s->residual,
+    (PetscReal)s->sweeps, (PetscReal)s->steps};
+
+  for (int i = 0; i < PER_SUMS; i++) value[i] = all[i];
+}
+
+static void SumsSet(const PetscReal value[PER_SUMS], ContactSums *s)
+{
+  for (int i = 0; i < CONTACT_N_STATUS; i++) s->n[i] = (PetscInt)value[i];
+  s->normal   = value[3];
+  s->friction = value[4];
+  for (int d = 0; d < 3; d++) s->force[d] = value[5 + d];
+  s->contact_work  = value[8];
+  s->friction_work = value[9];
+  s->heat          = value[10];
+  s->residual      = value[11];
+  s->sweeps        = (PetscInt)value[12];
+  s->steps         = (PetscInt)value[13];
+}
+
+PetscErrorCode ContactProjectorGetMemory(ContactProjector p, PetscInt *n, PetscReal **values)
+{
+  PetscReal *v;
+
+  PetscFunctionBeginUser;
+  *n = MemoryLength(p);
+  PetscCall(PetscMalloc1(*n, values));
+  v    = *values;
+  *v++ = (PetscReal)p->search_next;
+  if (p->share.rank != p->share.root) PetscFunctionReturn(0);
+  *v++ = p->t_search;
+  *v++ = (PetscReal)p->order;
+  for (PetscInt i = 0; i < p->n_interfaces; i++, v += PER_SUMS) SumsGet(&p->sums[i], v);
+  for (PetscInt k = 0; k < p->n_pairs; k++) {
+    const Pair *pair = &p->pair[k];
+
+    *v++ = (PetscReal)pair->facet;
+    for (int i = 0; i < 2; i++) *v++ = pair->natural[i];
+    for (int i = 0; i < 3 * PROJECTOR_PAST; i++) *v++ = pair->lambda[i / 3][i % 3];
+  }
+  PetscCall(PetscArraycpy(v, p->u_search, 3 * p->share.n_nodes));
+  PetscFunctionReturn(0);
+}
+
+/* The root's part; repeats the last search */
+static PetscErrorCode RootSetMemory(ContactProjector p, const PetscReal v[])
+{
+  const PetscReal t = *v++;
+
+  PetscFunctionBeginUser;
+  p->order = (PetscInt)*v++;
+  for (PetscInt i = 0; i < p->n_interfaces; i++, v += PER_SUMS) {
+    SumsSet(v, &p->sums[i]);
+    SlidingFrame(&p->contact->interfaces[i], &p->sliding[i], t, &p->frame[i]);
+  }
+  for (PetscInt k = 0; k < p->n_pairs; k++) {
+    Pair *pair = &p->pair[k];
+
+    pair->facet = (PetscInt)*v++;
+    pair->found = SlidingStays(&p->sliding[pair->interface]);
+    for (int i = 0; i < 2; i++) pair->natural[i] = *v++;
+    for (int i = 0; i < 3 * PROJECTOR_PAST; i++) pair->lambda[i / 3][i % 3] = *v++;
+  }
+  PetscCall(ProjectorSearch(p, t, 1, v));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProjectorSetMemory(ContactProjector p, PetscReal t, const PetscReal u[], PetscInt n,
+                                         const PetscReal values[])
+{
+  PetscInt wrong = n != MemoryLength(p);
+
+  PetscFunctionBeginUser;
+  (void)t, (void)u; /* the search that counts is the last one, with its own time and displacements */
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &wrong, 1, MPIU_INT, MPI_MAX, p->share.comm));
+  PetscCheck(!wrong, p->share.comm, PETSC_ERR_ARG_SIZ, "memory of the contact forces is of other surfaces or ranks");
+  if (p->share.rank == p->share.root) PetscCall(RootSetMemory(p, &values[1]));
+  PetscCall(ProjectorActivate(p));
+  p->search_next = values[0] != 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (p->search_next) PetscCall(ShareSetActive(&p->share, NULL));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,147 @@
+/*
+   Exchange between the ranks that have nodes of contact surfaces and the root that solves the contact. Every rank knows
+   which nodes each rank has and owns, so that the lists of a message are made without talking; the owner of a node
+   sends its values, and all that have it receive its force, hence the same bits. Two collective messages a step, of the
+   active nodes alone.
+*/
+#include "projectorimpl.h"
+#include "gather.h"
+
+PetscErrorCode ShareSetUp(MPI_Comm comm, PetscInt n, const PetscInt number[], Share *share)
+{
+  PetscInt *counts, total;
+
+  PetscFunctionBeginUser;
+  share->comm = comm;
+  share->n    = n;
+  PetscCallMPI(MPI_Comm_rank(comm, &share->rank));
+  PetscCallMPI(MPI_Comm_size(comm, &share->size));
+  PetscCall(GatherRecords(comm, 1, sizeof(PetscInt), &n, NULL, &counts));
+  PetscCall(GatherRecords(comm, n, sizeof(PetscInt), number, &total, &share->holder));
+  PetscCall(PetscCalloc1(share->size + 1, &share->first));
+  for (PetscMPIInt r = 0; r < share->size; r++) share->first[r + 1] = share->first[r] + counts[r];
+  PetscCall(PetscFree(counts));
+  PetscCall(PetscMalloc2(n, &share->list[0], n, &share->list[1]));
+  share->active = share->list[0];
+  PetscCall(PetscCalloc4(share->size, &share->n_send, share->size, &share->send, share->size, &share->n_back,
+                         share->size, &share->back));
+  PetscCall(PetscMalloc2(total, &share->send_node, total, &share->back_node));
+  PetscCall(
+    PetscMalloc2(9 * n + SHARE_HEAD, &share->buffer[0], 9 * total + SHARE_HEAD * share->size, &share->buffer[1]));
+  PetscFunctionReturn(0);
+}
+
+/* Number of the node at place i of holder[] */
+static inline PetscInt HolderNode(const Share *share, PetscInt i)
+{
+  return share->holder[i] < 0 ? ~share->holder[i] : share->holder[i];
+}
+
+PetscErrorCode ShareSetActive(Share *share, const PetscBool is_active[])
+{
+  PetscInt    n_send = 0, n_back = 0;
+  PetscMPIInt back = 0;
+
+  PetscFunctionBeginUser;
+  share->active   = share->active == share->list[0] ? share->list[1] : share->list[0];
+  share->n_active = 0;
+  for (PetscMPIInt r = 0; r < share->size; r++) {
+    const PetscInt first_send = n_send, first_back = n_back;
+
+    for (PetscInt i = share->first[r]; i < share->first[r + 1]; i++) {
+      const PetscInt node = HolderNode(share, i);
+
+      if (is_active && !is_active[node]) continue;
+      if (share->holder[i] >= 0) share->send_node[n_send++] = node;
+      share->back_node[n_back++] = node;
+      if (r == share->rank) share->active[share->n_active++] = i - share->first[r];
+    }
+    share->n_send[r] = (PetscMPIInt)(n_send - first_send);
+    share->send[r]   = (PetscMPIInt)first_send;
+    share->n_back[r] = (PetscMPIInt)(3 * (n_back - first_back) + SHARE_HEAD);
+    share->back[r]   = back;
+    back += share->n_back[r];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* From the message of all ranks into the arrays of the root */
+static void ShareUnpack(const Share *share, PetscInt n, const PetscReal message[], PetscReal *const root[])
+{
+  const PetscInt n_all = ShareCountSent(share);
+
+  for (PetscInt i = 0; i < n_all; i++)
+    for (PetscInt k = 0; k < n; k++)
+      for (int d = 0; d < 3; d++) root[k][3 * share->send_node[i] + d] = message[3 * (n * i + k) + d];
+}
+
+PetscErrorCode ShareGather(Share *share, PetscInt n, const PetscReal *const local[], PetscReal *const root[])
+{
+  PetscReal   *message = share->buffer[0];
+  PetscMPIInt  n_own   = 0;
+  MPI_Datatype record;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < share->n_active; i++) {
+    const PetscInt at = 3 * share->active[i];
+
+    if (share->holder[share->first[share->rank] + share->active[i]] < 0) continue;
+    for (PetscInt k = 0; k < n; k++)
+      for (int d = 0; d < 3; d++) message[3 * (n * n_own + k) + d] = local[k][at + d];
+    n_own++;
+  }
+  if (share->size > 1) {
+    PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)(3 * n), MPIU_REAL, &record));
+    PetscCallMPI(MPI_Type_commit(&record));
+    PetscCallMPI(MPI_Gatherv(message, n_own, record, share->buffer[1], share->n_send, share->send, record, share->root,
+                             share->comm));
+    PetscCallMPI(MPI_Type_free(&record));
+    message = share->buffer[1];
+  }
+  if (share->rank == share->root) ShareUnpack(share, n, message, root);
+  PetscFunctionReturn(0);
+}
+
+/* Head and forces of all ranks, one after the other */
+static void SharePack(const Share *share, const PetscReal root[], const PetscReal head[], PetscReal message[])
+{
+  PetscInt node = 0;
+
+  for (PetscMPIInt r = 0; r < share->size; r++) {
+    PetscReal     *to = &message[share->back[r]];
+    const PetscInt n  = (share->n_back[r] - SHARE_HEAD) / 3;
+
+    for (int k = 0; k < SHARE_HEAD; k++) *to++ = head[k];
+    for (PetscInt i = 0; i < n; i++, node++)
+      for (int d = 0; d < 3; d++) *to++ = root[3 * share->back_node[node] + d];
+  }
+}
+
+PetscErrorCode ShareReturn(Share *share, const PetscReal root[], PetscReal head[SHARE_HEAD], PetscReal local[])
+{
+  PetscReal *message = share->buffer[0];
+
+  PetscFunctionBeginUser;
+  if (share->rank == share->root) SharePack(share, root, head, share->size > 1 ? share->buffer[1] : message);
+  if (share->size > 1)
+    PetscCallMPI(MPI_Scatterv(share->buffer[1], share->n_back, share->back, MPIU_REAL, message,
+                              share->n_back[share->rank], MPIU_REAL, share->root, share->comm));
+  for (int k = 0; k < SHARE_HEAD; k++) head[k] = *message++;
+  for (PetscInt i = 0; i < share->n_active; i++)
+    for (int d = 0; d < 3; d++) local[3 * share->active[i] + d] = *message++;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShareDestroy(Share *share)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(share->vertex));
+  PetscCall(PetscFree(share->node));
+  PetscCall(PetscFree2(share->list[0], share->list[1]));
+  PetscCall(PetscFree(share->first));
+  PetscCall(PetscFree(share->holder));
+  PetscCall(PetscFree4(share->n_send, share->send, share->n_back, share->back));
+  PetscCall(PetscFree2(share->send_node, share->back_node));
+  PetscCall(PetscFree2(share->buffer[0], share->buffer[1]));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,121 @@
+/*
+   Kinematics of a sliding interface. With the ramp r(t), its integral R(t), and the given velocity of the slave
+   relative to the master, V s (s of -contact_slip, V of -contact_speed) or -w x (x - c) (-contact_rotation,
+   -contact_center):
+      prescribed  the part of r V s or -r w x (x - c) in the tangent plane is added to the slip velocity; of V s its
+                  direction alone, so that the speed is V
+      turning     the master, and the frame in which its nodes are described, is at x -> Q (x - c) + c, Q the rotation
+                  by |w| R(t) about w, or at x -> x - V s R(t)
+   Lengths in m, angles in rad, times in s.
+*/
+#include "projectorimpl.h"
+#include "ramp.h"
+#include <squeal/options.h>
+
+static PetscReal Length(const PetscReal a[3])
+{
+  return PetscSqrtReal(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+}
+
+/* Axis and speed from the parameters of the interface */
+static void SlidingSetAxis(const ContactInterface *c, Sliding *sliding)
+{
+  const PetscReal  omega  = Length(c->rotation);
+  const PetscReal *vector = omega > 0 ? c->rotation : c->slip, length = Length(vector);
+
+  sliding->slides  = length > 0 ? PETSC_TRUE : PETSC_FALSE;
+  sliding->rotates = omega > 0 ? PETSC_TRUE : PETSC_FALSE;
+  sliding->speed   = omega > 0 ? omega : c->speed;
+  for (int d = 0; d < 3; d++) sliding->axis[d] = length > 0 ? vector[d] / length : 0;
+}
+
+PetscErrorCode SlidingSetFromOptions(Contact contact, PetscInt i, Sliding *sliding)
+{
+  static const char *const kinds[] = {"prescribed", "turning"};
+  const ContactInterface  *c       = &contact->interfaces[i];
+  PetscInt                 kind    = 0;
+  char                     prefix[128], title[160];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", c->name));
+  PetscCall(PetscSNPrintf(title, sizeof(title), "Contact %s in dynamics", c->name));
+  PetscOptionsBegin(contact->comm, prefix, title, NULL);
+  PetscCall(PetscOptionsEList("-kinematics", "add the sliding velocity, or move the master", "projector.h", kinds, 2,
+                              kinds[0], &kind, NULL));
+  PetscCall(RampSetFromOptions(PetscOptionsObject, &sliding->ramp));
+  PetscOptionsEnd();
+  sliding->turning = kind == 1 ? PETSC_TRUE : PETSC_FALSE;
+  SlidingSetAxis(c, sliding);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SlidingCheck(MPI_Comm comm, const ContactInterface *c, const Sliding *sliding)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!sliding->slides || sliding->speed > 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_slip says where to, not how fast: give a positive -%s_speed (m/s), or leave it out where only the "
+             "displacements slide",
+             c->name, c->name);
+  PetscCheck(!sliding->turning || sliding->slides, comm, PETSC_ERR_USER_INPUT,
+             "-%s_kinematics turning needs a -%s_rotation (rad/s), or a -%s_slip with a -%s_speed (m/s)", c->name,
+             c->name, c->name, c->name);
+  PetscFunctionReturn(0);
+}
+
+/* D = R' - I for a turn of the master by `angle`: -sin K + (1 - cos) K^2, K a = axis x a */
+static void FrameTurn(const PetscReal axis[3], PetscReal angle, PetscReal D[3][3])
+{
+  const PetscReal K[3][3] = {
+    {0,        -axis[2], axis[1] },
+    {axis[2],  0,        -axis[0]},
+    {-axis[1], axis[0],  0       }
+  };
+  const PetscReal s = PetscSinReal(angle), half = PetscSinReal(0.5 * angle), c = 2 * half * half;
+
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      D[i][j] = -s * K[i][j] + c * (K[i][0] * K[0][j] + K[i][1] * K[1][j] + K[i][2] * K[2][j]);
+}
+
+void SlidingFrame(const ContactInterface *c, const Sliding *sliding, PetscReal t, Frame *frame)
+{
+  const PetscReal way = sliding->speed * RampIntegral(&sliding->ramp, t);
+
+  *frame = (Frame){.shift = {0}};
+  for (int d = 0; d < 3; d++) frame->centre[d] = c->center[d];
+  if (!sliding->turning) return;
+  if (sliding->rotates)
+    FrameTurn(sliding->axis, way, frame->D);
+  else
+    for (int d = 0; d < 3; d++) frame->shift[d] = -way * sliding->axis[d];
+}
+
+void SlidingDirection(const ContactInterface *c, const Sliding *sliding, const PetscReal x[3], PetscReal v[3])
+{
+  for (int d = 0; d < 3; d++) v[d] = sliding->axis[d];
+  if (!sliding->rotates) return;
+  for (int d = 0; d < 3; d++) {
+    const int e = (d + 1) % 3, f = (d + 2) % 3;
+
+    v[d] = -(c->rotation[e] * (x[f] - c->center[f]) - c->rotation[f] * (x[e] - c->center[e]));
+  }
+}
+
+PetscErrorCode SlidingView(const ContactInterface *c, const Sliding *sliding, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  if (!sliding->slides || sliding->speed == 0) {
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  nothing makes it slide but the displacements\n"));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer, sliding->turning ? "  %s moves, described in its own frame: " : "  meshes stay, %s slides as prescribed: ",
+    c->master));
+  PetscCall(PetscViewerASCIIPrintf(viewer, sliding->rotates ? "%.6g rad/s" : "%.6g m/s", (double)sliding->speed));
+  if (sliding->ramp.length > 0)
+    PetscCall(PetscViewerASCIIPrintf(viewer, ", %s ramp of %.6g s",
+                                     sliding->ramp.shape == RAMP_SMOOTH ? "smooth" : "linear", sliding->ramp.length));
+  if (sliding->ramp.delay > 0) PetscCall(PetscViewerASCIIPrintf(viewer, " from %.6g s on", sliding->ramp.delay));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,164 @@
+/*
+   Start of the contact forces at given displacements: bodies that interpenetrate are an error, the forces of a sliding
+   state are the warm start of the first step.
+*/
+#include "projectorimpl.h"
+#include "gather.h"
+#include <stdlib.h>
+
+#define START_REACH 10 /* margins within which bodies that interpenetrate are found */
+
+/* What is wrong at the start: the deepest pair, and one that nothing can move along its normal */
+typedef struct {
+  PetscReal depth, x[3];
+  PetscReal interface, stiff, stiff_x[3], stiff_interface;
+} StartFault;
+
+/* Finds the facets of all slaves, on the root */
+static void PairsFind(ContactProjector p, StartFault *fault)
+{
+  for (PetscInt k = 0; k < p->n_pairs; k++) {
+    Pair            *pair = &p->pair[k];
+    const PetscReal *x    = &p->nodes.x[3 * pair->slave];
+    PetscReal        d[3], gap;
+
+    pair->facet = -1;
+    pair->found = pair->ready = PETSC_FALSE;
+    p->state[k]               = (ContactState){.status = CONTACT_OPEN, .gap = PETSC_INFINITY};
+    if (!PairPlace(p, k, p->nodes.u, p->nodes.u, PETSC_MAX_REAL)) continue;
+    FrameDisplacement(&p->frame[pair->interface], x, &p->nodes.u[3 * pair->slave], d);
+    gap = p->state[k].gap = PairGap(&p->surface[pair->interface], pair, x, d, p->nodes.u);
+    if (-gap > fault->depth) {
+      fault->depth     = -gap;
+      fault->interface = (PetscReal)pair->interface;
+      for (int i = 0; i < 3; i++) fault->x[i] = x[i];
+    }
+    if (PairMass(pair) > 0) continue;
+    fault->stiff           = 1;
+    fault->stiff_interface = (PetscReal)pair->interface;
+    for (int i = 0; i < 3; i++) fault->stiff_x[i] = x[i];
+  }
+}
+
+/* Search in two steps: far, for bodies that interpenetrate, and near, for the candidates */
+static PetscErrorCode StartSearch(ContactProjector p, PetscReal t, StartFault *fault)
+{
+  PetscFunctionBeginUser;
+  if (p->share.rank != p->share.root) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < p->n_interfaces; i++)
+    SlidingFrame(&p->contact->interfaces[i], &p->sliding[i], t, &p->frame[i]);
+  PetscCall(ProjectorSearch(p, t, START_REACH, p->nodes.u));
+  PairsFind(p, fault);
+  PetscCall(ProjectorSearch(p, t, 1, p->nodes.u));
+  PairsFind(p, fault);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StartCheck(ContactProjector p, PetscReal slack, StartFault *fault)
+{
+  const ContactInterface *c;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(
+    MPI_Bcast(fault, (PetscMPIInt)(sizeof(*fault) / sizeof(PetscReal)), MPIU_REAL, p->share.root, p->share.comm));
+  c = &p->contact->interfaces[(PetscInt)fault->interface];
+  PetscCheck(
+    fault->depth <= slack, p->share.comm, PETSC_ERR_USER_INPUT,
+    "bodies interpenetrate at the start: %.6g m at %.6g, %.6g, %.6g m (contact %s: the node of %s is below %s; at most "
+    "%.6g m is allowed)",
+    (double)fault->depth, (double)fault->x[0], (double)fault->x[1], (double)fault->x[2], c->name, c->slave, c->master,
+    (double)slack);
+  c = &p->contact->interfaces[(PetscInt)fault->stiff_interface];
+  PetscCheck(
+    fault->stiff == 0, p->share.comm, PETSC_ERR_USER_INPUT,
+    "contact %s: at %.6g, %.6g, %.6g m both %s and %s are held along the normal, so that no force can keep them "
+    "apart; free one of them, or take it out of the surface",
+    c->name, (double)fault->stiff_x[0], (double)fault->stiff_x[1], (double)fault->stiff_x[2], c->slave, c->master);
+  PetscFunctionReturn(0);
+}
+
+/* A pair of the sliding state, by interface and vertex of its slave */
+typedef struct {
+  PetscInt     interface, number;
+  PetscReal    force[3]; /* on the slave, N */
+  ContactState state;
+} Given;
+
+static int GivenCompare(const void *left, const void *right)
+{
+  const Given *a = (const Given *)left, *b = (const Given *)right;
+
+  if (a->interface != b->interface) return a->interface < b->interface ? -1 : 1;
+  return (a->number > b->number) - (a->number < b->number);
+}
+
+/* The pairs of all ranks, on all ranks */
+static PetscErrorCode GivenGather(ContactProjector p, const ContactState states[], PetscInt *n, Given **all)
+{
+  const Contact  contact = p->contact;
+  const PetscInt n_local = states ? contact->n_pairs : 0;
+  Given         *local;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n_local, &local));
+  for (PetscInt k = 0; k < n_local; k++) {
+    const ContactPair  *pair = &contact->pairs[k];
+    const ContactState *s    = &states[k];
+
+    local[k] = (Given){pair->interface, contact->vertex[k], .state = *s};
+    for (int d = 0; d < 3; d++)
+      local[k].force[d] = s->lambda_n * pair->n[d] - s->lambda_t[0] * pair->t[d] - s->lambda_t[1] * pair->b[d];
+  }
+  PetscCall(GatherRecords(p->share.comm, n_local, sizeof(Given), local, n, all));
+  if (*n) qsort(*all, (size_t)*n, sizeof(Given), GivenCompare);
+  PetscCall(PetscFree(local));
+  PetscFunctionReturn(0);
+}
+
+/* Forces of the slaves that face a facet. They are given on the ground, and kept in the frame of the master */
+static PetscErrorCode StartForces(ContactProjector p, const ContactState states[])
+{
+  Given   *all;
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  PetscCall(GivenGather(p, states, &n, &all));
+  for (PetscInt k = 0; k < p->n_pairs; k++) {
+    const Given  wanted = {.interface = p->interface[k], .number = p->number[k]};
+    const Given *given  = n ? (const Given *)bsearch(&wanted, all, (size_t)n, sizeof(Given), GivenCompare) : NULL;
+    Pair        *pair   = &p->pair[k];
+
+    for (int i = 0; i < 3 * PROJECTOR_PAST; i++) pair->lambda[i / 3][i % 3] = 0;
+    if (!given || pair->facet < 0) continue;
+    for (int d = 0; d < 3; d++) {
+      const PetscReal *D = p->frame[pair->interface].D[d];
+
+      for (int i = 0; i < PROJECTOR_PAST; i++)
+        pair->lambda[i][d] = given->force[d] + D[0] * given->force[0] + D[1] * given->force[1] + D[2] * given->force[2];
+    }
+    p->state[k].status   = given->state.status;
+    p->state[k].lambda_n = given->state.lambda_n;
+    for (int i = 0; i < 2; i++) p->state[k].lambda_t[i] = given->state.lambda_t[i];
+  }
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProjectorStart(ContactProjector p, PetscReal t, const PetscReal u[], PetscReal slack,
+                                     const ContactState states[])
+{
+  StartFault fault = {.depth = 0};
+
+  PetscFunctionBeginUser;
+  PetscCheck(p->has_mass, p->share.comm, PETSC_ERR_ARG_WRONGSTATE,
+             "ContactProjectorSetMass() must be called before ContactProjectorStart()");
+  PetscCall(ProjectorGatherAll(p, u, p->nodes.u));
+  PetscCall(StartSearch(p, t, &fault));
+  PetscCall(StartCheck(p, slack, &fault));
+  PetscCall(StartForces(p, states));
+  PetscCall(ProjectorActivate(p));
+  PetscCall(PetscArrayzero(p->sums, p->n_interfaces));
+  p->search_next = PETSC_FALSE;
+  p->order       = 0;
+  PetscFunctionReturn(0);
+}

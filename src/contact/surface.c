@@ -1,0 +1,246 @@
+/*
+   Contact surfaces of a scene: their nodes with numbers of their own, the facets of the masters (facets.c), and the
+   slaves. All is made once from the mesh as it is; every rank sees the lists, the root keeps what it needs.
+*/
+#include "projectorimpl.h"
+#include "gather.h"
+#include <stdlib.h>
+
+/* A slave node as its owner knows it */
+typedef struct {
+  PetscInt  interface, number;
+  PetscReal x[3];
+} Slave;
+
+/* Marks the local vertices (from 0) of a set */
+static PetscErrorCode VerticesMark(Model model, const char set[], PetscBool mark[])
+{
+  const PetscInt *v;
+  PetscInt        n, vStart;
+  IS              is;
+  DM              dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(model, &dm));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
+  PetscCall(ModelGetSetVertices(model, set, &is));
+  PetscCall(ISGetLocalSize(is, &n));
+  PetscCall(ISGetIndices(is, &v));
+  for (PetscInt i = 0; i < n; i++) mark[v[i] - vStart] = PETSC_TRUE;
+  PetscCall(ISRestoreIndices(is, &v));
+  PetscCall(ISDestroy(&is));
+  PetscFunctionReturn(0);
+}
+
+/* All local vertices of contact surfaces, ascending */
+static PetscErrorCode VerticesFind(Contact contact, PetscInt *n, PetscInt **vertex)
+{
+  PetscBool *mark;
+  PetscInt   vStart, vEnd;
+  DM         dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(contact->model, &dm));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
+  PetscCall(PetscCalloc1(vEnd - vStart, &mark));
+  for (PetscInt i = 0; i < contact->n_interfaces; i++) {
+    PetscCall(VerticesMark(contact->model, contact->interfaces[i].slave, mark));
+    PetscCall(VerticesMark(contact->model, contact->interfaces[i].master, mark));
+  }
+  *n = 0;
+  for (PetscInt v = 0; v < vEnd - vStart; v++) *n += mark[v];
+  PetscCall(PetscMalloc1(*n, vertex));
+  for (PetscInt v = 0, k = 0; v < vEnd - vStart; v++)
+    if (mark[v]) (*vertex)[k++] = v;
+  PetscCall(PetscFree(mark));
+  PetscFunctionReturn(0);
+}
+
+/* The nodes of all ranks: unique[n] ascending global vertex numbers, and who has them */
+static PetscErrorCode NodesFind(ContactProjector p, PetscInt *n_unique, PetscInt **unique)
+{
+  Share          *share = &p->share;
+  const PetscInt *number;
+  PetscInt        n, *vertex, *local, total;
+  IS              numbers;
+  DM              dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(VerticesFind(p->contact, &n, &vertex));
+  PetscCall(ModelGetDM(p->contact->model, &dm));
+  PetscCall(DMPlexGetVertexNumbering(dm, &numbers));
+  PetscCall(ISGetIndices(numbers, &number));
+  PetscCall(PetscMalloc1(n, &local));
+  for (PetscInt i = 0; i < n; i++) local[i] = number[vertex[i]];
+  PetscCall(ISRestoreIndices(numbers, &number));
+  PetscCall(
+    ShareSetUp(p->contact->comm, n, local, share)); /* numbers of vertices for a while: negative where not owned */
+  total = share->first[share->size];
+  PetscCall(PetscMalloc1(total, unique));
+  for (PetscInt i = 0; i < total; i++) (*unique)[i] = PetscMax(share->holder[i], ~share->holder[i]);
+  *n_unique = total;
+  PetscCall(PetscSortRemoveDupsInt(n_unique, *unique));
+  for (PetscInt i = 0; i < total; i++) {
+    const PetscBool owned = share->holder[i] >= 0 ? PETSC_TRUE : PETSC_FALSE;
+    PetscInt        node;
+
+    PetscCall(PetscFindInt(owned ? share->holder[i] : ~share->holder[i], *n_unique, *unique, &node));
+    share->holder[i] = owned ? node : ~node;
+  }
+  share->n_nodes = *n_unique;
+  share->vertex  = vertex;
+  share->node    = local;
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt h = share->holder[share->first[share->rank] + i];
+
+    share->node[i] = h < 0 ? ~h : h;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Slaves of this rank of one interface, appended */
+static PetscErrorCode SlavesAppend(Contact contact, PetscInt interface, PetscInt *n_slaves, Slave **slave)
+{
+  const PetscReal *x;
+  const PetscInt  *v, *number;
+  PetscInt         n, vStart;
+  IS               is, numbers;
+  DM               dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(contact->model, &dm));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
+  PetscCall(ModelGetCoordinates(contact->model, &x));
+  PetscCall(ModelGetOwnedVertices(contact->model, contact->interfaces[interface].slave, &is));
+  PetscCall(DMPlexGetVertexNumbering(dm, &numbers));
+  PetscCall(ISGetIndices(numbers, &number));
+  PetscCall(ISGetLocalSize(is, &n));
+  PetscCall(ISGetIndices(is, &v));
+  PetscCall(PetscRealloc(sizeof(Slave) * (size_t)(*n_slaves + n), slave));
+  for (PetscInt i = 0; i < n; i++) {
+    Slave *s = &(*slave)[(*n_slaves)++];
+
+    *s = (Slave){.interface = interface, .number = number[v[i] - vStart]};
+    PetscCall(PetscArraycpy(s->x, &x[3 * (v[i] - vStart)], 3));
+  }
+  PetscCall(ISRestoreIndices(is, &v));
+  PetscCall(ISRestoreIndices(numbers, &number));
+  PetscCall(ISDestroy(&is));
+  PetscFunctionReturn(0);
+}
+
+/* The rank with most slaves, the first of them */
+static PetscErrorCode RootFind(MPI_Comm comm, PetscInt n_slaves, PetscMPIInt *root)
+{
+  struct {
+    int n, rank;
+  } most = {(int)n_slaves, 0};
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &most.rank));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_2INT, MPI_MAXLOC, comm));
+  *root = most.rank;
+  PetscFunctionReturn(0);
+}
+
+/* By interface, then place, so that the order does not depend on the ranks */
+static int SlaveCompare(const void *left, const void *right)
+{
+  const Slave *a = (const Slave *)left, *b = (const Slave *)right;
+
+  if (a->interface != b->interface) return a->interface < b->interface ? -1 : 1;
+  return PlaceCompare(a->x, b->x);
+}
+
+/* One pair per slave, without partner as yet */
+static PetscErrorCode PairsCreate(ContactProjector p, PetscInt n, const Slave slave[], const PetscInt unique[])
+{
+  PetscFunctionBeginUser;
+  p->n_pairs = n;
+  PetscCall(PetscCalloc1(n, &p->pair));
+  PetscCall(PetscCalloc1(n, &p->row));
+  PetscCall(PetscCalloc1(n, &p->state));
+  PetscCall(PetscMalloc5(n, &p->interface, n, &p->number, 3 * n, &p->slave_x, n, &p->visited, n, &p->visit));
+  PetscCall(PetscCalloc2(n + 1, &p->first_candidate, 3 * n, &p->place));
+  for (PetscInt i = 0; i < n; i++) {
+    p->pair[i].interface = p->interface[i] = slave[i].interface;
+    p->pair[i].facet                       = -1;
+    p->number[i]                           = slave[i].number;
+    PetscCall(PetscFindInt(slave[i].number, p->share.n_nodes, unique, &p->pair[i].slave));
+    PetscCall(PetscArraycpy(&p->slave_x[3 * i], slave[i].x, 3));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Slaves of all ranks to the root, and the root itself */
+static PetscErrorCode SlavesFind(ContactProjector p, const PetscInt unique[])
+{
+  PetscInt n_local = 0, n;
+  Slave   *local   = NULL, *all;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(SlavesAppend(p->contact, i, &n_local, &local));
+  PetscCall(RootFind(p->contact->comm, n_local, &p->share.root));
+  PetscCall(GatherRecords(p->contact->comm, n_local, sizeof(Slave), local, &n, &all));
+  qsort(all, (size_t)n, sizeof(Slave), SlaveCompare);
+  PetscCall(PairsCreate(p, p->share.rank == p->share.root ? n : 0, all, unique));
+  PetscCall(PetscFree(local));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
+/* Arrays of the nodes on the root, with their places */
+static PetscErrorCode NodesCreate(ContactProjector p)
+{
+  Nodes           *nodes = &p->nodes;
+  const PetscInt   n     = p->share.rank == p->share.root ? p->share.n_nodes : 0;
+  const PetscReal *x;
+  PetscReal       *local;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc7(3 * n, &nodes->x, 3 * n, &nodes->minv, 3 * n, &nodes->u, 3 * n, &nodes->before, 3 * n,
+                         &nodes->v, 3 * n, &nodes->force, 3 * n, &nodes->predicted));
+  PetscCall(PetscCalloc1(3 * n, &nodes->rest));
+  PetscCall(PetscCalloc2(n, &nodes->even, 3 * n, &p->u_search));
+  PetscCall(PetscCalloc1(p->share.n_nodes, &p->is_active));
+  PetscCall(ModelGetCoordinates(p->contact->model, &x));
+  PetscCall(PetscMalloc1(3 * p->share.n, &local));
+  for (PetscInt i = 0; i < 3 * p->share.n; i++) local[i] = x[3 * p->share.vertex[i / 3] + i % 3];
+  PetscCall(ShareGather(&p->share, 1, (const PetscReal *const[]){local}, (PetscReal *const[]){nodes->x}));
+  PetscCall(PetscFree(local));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ProjectorSetUpSurfaces(ContactProjector p)
+{
+  PetscInt *unique, n;
+
+  PetscFunctionBeginUser;
+  PetscCall(NodesFind(p, &n, &unique));
+  PetscCall(SlavesFind(p, unique));
+  PetscCall(ShareSetActive(&p->share, NULL));
+  PetscCall(NodesCreate(p));
+  for (PetscInt i = 0; i < p->n_interfaces; i++)
+    PetscCall(MasterCreate(p->contact, p->contact->interfaces[i].master, n, unique, &p->surface[i]));
+  PetscCall(PetscFree(unique));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ProjectorDestroySurfaces(ContactProjector p)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(MasterDestroy(&p->surface[i]));
+  PetscCall(PetscFree(p->pair));
+  PetscCall(PetscFree(p->row));
+  PetscCall(PetscFree(p->state));
+  PetscCall(PetscFree5(p->interface, p->number, p->slave_x, p->visited, p->visit));
+  PetscCall(PetscFree2(p->first_candidate, p->place));
+  PetscCall(PetscFree(p->candidate));
+  PetscCall(
+    PetscFree7(p->nodes.x, p->nodes.minv, p->nodes.u, p->nodes.before, p->nodes.v, p->nodes.force, p->nodes.predicted));
+  PetscCall(PetscFree(p->nodes.rest));
+  PetscCall(PetscFree2(p->nodes.even, p->u_search));
+  PetscCall(PetscFree(p->is_active));
+  PetscCall(ShareDestroy(&p->share));
+  PetscFunctionReturn(0);
+}

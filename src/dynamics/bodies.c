@@ -1,0 +1,224 @@
+/*
+   Bodies: life cycle, masses, and the order of work in a step: what touches shared vertices first, then its exchange
+   while the rest is done.
+*/
+#include "bodiesimpl.h"
+
+/* Masses of this rank's cells, then complete ones; held directions have no inverse */
+static PetscErrorCode MassesSet(Bodies b)
+{
+  const Layout   *l = &b->layout;
+  const PetscInt *unknowns;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetUnknowns(b->model, &unknowns));
+  PetscCall(PetscCalloc3(l->n, &b->part, l->n, &b->total, l->n, &b->minv));
+  for (PetscInt i = 0; i < b->n_swept; i++) {
+    const Swept *s = &b->swept[i];
+
+    for (PetscInt row = 0; row < 3 * s->lines->n_lines; row++)
+      PetscCall(PetscArraycpy(&b->part[s->begin + row * s->stride], &s->mass[row / 3 * s->stride], s->stride));
+  }
+  for (PetscInt i = 0; i < 3 * b->general.n; i++) b->part[b->general.begin + i] = b->general.mass[i / 3];
+  PetscCall(PetscArraycpy(b->total, b->part, l->n));
+  PetscCall(SharedBegin(&b->share, l, b->total));
+  PetscCall(SharedEnd(&b->share, l, b->total));
+  for (PetscInt v = 0; v < l->n_vertices; v++) {
+    if (l->at[v] < 0) continue;
+    for (PetscInt j = 0; j < 3; j++) {
+      const PetscInt at   = l->at[v] + j * l->step[v];
+      PetscBool      held = PETSC_FALSE;
+
+      for (int d = 0; d < 3; d++)
+        if (unknowns[3 * v + d] < 0 && l->basis[9 * v + 3 * j + d] != 0) held = PETSC_TRUE;
+      b->minv[at] = held ? 0 : 1 / b->total[at];
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Whether any rank has damping, and then room for its forces */
+static PetscErrorCode DampingSetUp(Bodies b)
+{
+  const Part *parts;
+  PetscInt    n_parts;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetParts(b->model, &n_parts, &parts));
+  for (PetscInt i = 0; i < n_parts; i++) {
+    PetscReal alpha, beta;
+
+    PetscCall(OperatorsGetDamping(b->operators, i, &alpha, &beta));
+    if (alpha != 0 || beta != 0) b->damped = PETSC_TRUE;
+  }
+  for (PetscInt i = 0; i < b->n_points; i++)
+    for (int j = 0; j < 9; j++)
+      if (b->point[i].damping[j] != 0) b->damped = PETSC_TRUE;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &b->damped, 1, MPIU_BOOL, MPI_LOR, b->comm));
+  if (b->damped) PetscCall(PetscCalloc1(b->layout.n, &b->d));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesReadOptions(MPI_Comm comm, PetscBool *general)
+{
+  static const char *const kernels[] = {"auto", "general"};
+  PetscInt                 kernel    = 0;
+
+  PetscFunctionBeginUser;
+  PetscOptionsBegin(comm, NULL, "Bodies in time", NULL);
+  PetscCall(PetscOptionsEList("-dynamics_kernel", "internal forces; general: one matrix of blocks for every body",
+                              "dynamics.h", kernels, 2, kernels[0], &kernel, NULL));
+  PetscOptionsEnd();
+  *general = kernel == 1 ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesCreate(Operators operators, Bodies *bodies)
+{
+  Bodies   b;
+  PetscInt vStart, vEnd;
+  DM       dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, &b));
+  *bodies      = b;
+  b->operators = operators;
+  PetscCall(OperatorsGetModel(operators, &b->model, NULL));
+  PetscCheck(b->model, PETSC_COMM_WORLD, PETSC_ERR_ARG_WRONGSTATE, "bodies need a model: loaded matrices have none");
+  PetscCall(ModelGetComm(b->model, &b->comm));
+  PetscCall(BodiesReadOptions(b->comm, &b->no_sweep));
+  PetscCall(ModelGetDM(b->model, &dm));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
+  b->layout.n_vertices = vEnd - vStart;
+  b->share.comm        = MPI_COMM_NULL;
+  PetscCall(ModelGetBodies(b->model, &b->n_bodies, &b->body));
+  PetscCall(SharedSetUp(b));
+  PetscCall(BodiesFindSwept(b));
+  PetscCall(BodiesLayOut(b));
+  PetscCall(GeneralSetUp(b));
+  PetscCall(PointsSetUp(b));
+  PetscCall(MassesSet(b));
+  PetscCall(DampingSetUp(b));
+  for (int i = 0; i < 2; i++) PetscCall(PetscCalloc1(b->layout.n, &b->work[i]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesGetLayout(Bodies b, const Layout **layout)
+{
+  PetscFunctionBeginUser;
+  *layout = &b->layout;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesGetMass(Bodies b, const PetscReal **part, const PetscReal **total, const PetscReal **minv)
+{
+  PetscFunctionBeginUser;
+  if (part) *part = b->part;
+  if (total) *total = b->total;
+  if (minv) *minv = b->minv;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesHold(Bodies b, PetscInt vertex, PetscInt j)
+{
+  PetscFunctionBeginUser;
+  if (b->layout.at[vertex] >= 0) b->minv[b->layout.at[vertex] + j * b->layout.step[vertex]] = 0;
+  PetscFunctionReturn(0);
+}
+
+/* The kernels on the vertices that ranks share, or on the others */
+static PetscErrorCode KernelsAdvance(Bodies b, PetscBool early, BodiesWork *w)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < b->n_swept; i++) PetscCall(SweptAdvance(&b->swept[i], early, w));
+  PetscCall(GeneralAdvance(&b->general, early, w));
+  PointsAdvance(b, early, w);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesAdvance(Bodies b, PetscReal dt, const PetscReal u[], const PetscReal v[], PetscReal ku[],
+                             PetscReal f[], BodiesSums *sums)
+{
+  /* v is written to at its padding alone, which is as before in the end */
+  BodiesWork w = {.dt = dt, .u = u, .v = (PetscReal *)v, .ku = ku, .f = f, .d = b->d};
+
+  PetscFunctionBeginUser;
+  PetscCall(KernelsAdvance(b, PETSC_TRUE, &w));
+  PetscCall(SharedBegin(&b->share, &b->layout, f));
+  PetscCall(KernelsAdvance(b, PETSC_FALSE, &w));
+  PetscCall(SharedEnd(&b->share, &b->layout, f));
+  *sums = w.sums;
+  PetscFunctionReturn(0);
+}
+
+/* Zeros in held directions and padding */
+static void HeldClear(Bodies b, PetscReal x[])
+{
+  for (PetscInt i = 0; i < b->layout.n; i++)
+    if (b->minv[i] == 0) x[i] = 0;
+}
+
+PetscErrorCode BodiesApply(Bodies b, const PetscReal x[], PetscReal kx[], PetscReal cx[])
+{
+  PetscReal *const k = kx ? kx : b->work[0], *const c = cx && b->damped ? cx : NULL;
+  BodiesWork w = {.dt = 1, .u = x, .v = (PetscReal *)x, .ku = k, .f = b->work[1], .d = c};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(k, b->layout.n));
+  if (cx) PetscCall(PetscArrayzero(cx, b->layout.n));
+  for (int early = 1; early >= 0; early--) PetscCall(KernelsAdvance(b, (PetscBool)early, &w));
+  for (int i = 0; i < 2; i++) {
+    PetscReal *y = i ? cx : kx;
+
+    if (!y) continue;
+    PetscCall(SharedBegin(&b->share, &b->layout, y));
+    PetscCall(SharedEnd(&b->share, &b->layout, y));
+    HeldClear(b, y);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesSetState(Bodies b, const PetscReal u[], const PetscReal v[], PetscReal ku[])
+{
+  BodiesWork w = {.dt = 0, .u = u, .v = (PetscReal *)v, .ku = b->work[0], .f = b->work[1], .d = b->d};
+
+  PetscFunctionBeginUser;
+  if (b->d) {
+    PetscCall(PetscArrayzero(b->work[0], b->layout.n));
+    for (int early = 1; early >= 0; early--) PetscCall(KernelsAdvance(b, (PetscBool)early, &w));
+  }
+  PetscCall(PetscArrayzero(ku, b->layout.n));
+  PetscCall(BodiesCellsAddForces(b, u, ku));
+  PointsAddForces(b, u, ku);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesGetDampingForce(Bodies b, PetscReal **d)
+{
+  PetscFunctionBeginUser;
+  *d = b->d;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesDestroy(Bodies *bodies)
+{
+  Bodies b = *bodies;
+
+  PetscFunctionBeginUser;
+  if (!b) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < b->n_swept; i++) PetscCall(SweptDestroy(&b->swept[i]));
+  PetscCall(GeneralDestroy(&b->general));
+  PetscCall(SharedDestroy(&b->share));
+  PetscCall(PetscFree(b->swept));
+  PetscCall(PetscFree(b->point));
+  PetscCall(PetscFree(b->frame));
+  PetscCall(PetscFree(b->body));
+  PetscCall(PetscFree2(b->layout.at, b->layout.step));
+  PetscCall(PetscFree(b->layout.basis));
+  PetscCall(PetscFree(b->layout.owned));
+  PetscCall(PetscFree3(b->part, b->total, b->minv));
+  for (int i = 0; i < 2; i++) PetscCall(PetscFree(b->work[i]));
+  PetscCall(PetscFree(b->d));
+  PetscCall(PetscFree(*bodies));
+  PetscFunctionReturn(0);
+}

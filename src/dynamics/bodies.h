@@ -1,0 +1,115 @@
+/*
+   Bodies (private to dynamics/) - where the nodes stand in the state vectors, their lumped masses, and the internal
+   forces: f = -K u - C v of parts, springs and dashpots.
+
+   Layout: a state vector is a local array of n numbers on every rank. Vertex i (from 0, all local ones, copies of other
+   ranks' vertices included) has its components at at[i], at[i] + step[i], at[i] + 2 step[i], along the orthonormal
+   local basis basis[i] (rows). Bodies swept along an angle have cylindrical components, all others Cartesian ones.
+   Numbers that belong to no vertex are padding: their minv is 0, and they stay 0.
+*/
+#pragma once
+
+#include <squeal/operators.h>
+
+typedef struct _p_Bodies *Bodies;
+
+typedef struct {
+  PetscInt   n;          /* length of a state vector on this rank */
+  PetscInt   n_vertices; /* local vertices */
+  PetscInt  *at, *step;  /* [n_vertices]; at = -1 for a vertex without cells */
+  PetscReal *basis;      /* [n_vertices][3][3], row j is the direction of component j */
+  PetscBool *owned;      /* [n_vertices] exactly one rank owns each vertex */
+} Layout;
+
+/* Sums over this rank (a number shared by ranks is counted once over all of them), at the call of BodiesAdvance() with
+   u_{n+1}, v = v_{n+1/2} */
+typedef struct {
+  PetscReal kinetic;     /* 1/2 v'M v, J */
+  PetscReal strain;      /* 1/2 u_{n+1}'K u_n, springs included, J */
+  PetscReal damping_old; /* v_{n+1/2}' d_n, W, d_n = C v_{n-1/2} of the call before */
+  PetscReal damping;     /* v_{n+1/2}' d_{n+1}, W */
+} BodiesSums;
+
+/* Vector of three Cartesian numbers at vertex i, from and to a state vector; Set, or Add */
+static inline void LayoutGet(const Layout *l, PetscInt i, const PetscReal x[], PetscReal cartesian[3])
+{
+  const PetscReal *q = &l->basis[9 * i];
+
+  for (int d = 0; d < 3; d++) cartesian[d] = 0;
+  for (int j = 0; j < 3; j++)
+    for (int d = 0; d < 3; d++) cartesian[d] += q[3 * j + d] * x[l->at[i] + j * l->step[i]];
+}
+
+static inline void LayoutAdd(const Layout *l, PetscInt i, const PetscReal cartesian[3], PetscReal x[])
+{
+  const PetscReal *q = &l->basis[9 * i];
+
+  for (int j = 0; j < 3; j++)
+    x[l->at[i] + j * l->step[i]] += q[3 * j] * cartesian[0] + q[3 * j + 1] * cartesian[1] + q[3 * j + 2] * cartesian[2];
+}
+
+static inline void LayoutSet(const Layout *l, PetscInt i, const PetscReal cartesian[3], PetscReal x[])
+{
+  for (int j = 0; j < 3; j++) x[l->at[i] + j * l->step[i]] = 0;
+  LayoutAdd(l, i, cartesian, x);
+}
+
+/*@
+   BodiesCreate - finds bodies swept along an angle or an axis, lays out the nodes, and makes the masses and kernels
+   from the present values of the parameters of the operators. Collective.
+
+   Options Database Keys:
+.  -dynamics_kernel <auto|general> - general: one sparse matrix of 3 x 3 blocks for every body
+@*/
+PetscErrorCode BodiesCreate(Operators operators, Bodies *bodies);
+
+/*@ BodiesReadOptions - reads the options of BodiesCreate(), before there is a mesh: whether all bodies shall be
+ general. Collective.
+ @*/
+PetscErrorCode BodiesReadOptions(MPI_Comm comm, PetscBool *general);
+
+/*@ BodiesGetLayout - where the nodes stand (borrowed). Not collective. @*/
+PetscErrorCode BodiesGetLayout(Bodies bodies, const Layout **layout);
+
+/*@ BodiesGetMass - masses [n] (kg): `part` of this rank's cells alone (its sum over ranks is the mass), `total`
+    complete on every rank; 1 / total, 0 in held directions and padding, in `minv` (borrowed; NULL for what is not
+    needed). Not collective. @*/
+PetscErrorCode BodiesGetMass(Bodies bodies, const PetscReal **part, const PetscReal **total, const PetscReal **minv);
+
+/*@ BodiesHold - makes a direction of a vertex held: minv = 0, so that only its prescribed velocity moves it. j is the
+    component in the local basis. Same call on all ranks that have the vertex. @*/
+PetscErrorCode BodiesHold(Bodies bodies, PetscInt vertex, PetscInt j);
+
+/*@ BodiesApply - kx = K x and cx = C x (NULL where not needed), complete at shared vertices. Collective. @*/
+PetscErrorCode BodiesApply(Bodies bodies, const PetscReal x[], PetscReal kx[], PetscReal cx[]);
+
+/*@ BodiesSetState - ku = K u anew of this rank's cells, element by element relative to the first node of each, and
+    the damping forces of v for the sums of the next BodiesAdvance(). Collective. @*/
+PetscErrorCode BodiesSetState(Bodies bodies, const PetscReal u[], const PetscReal v[], PetscReal ku[]);
+
+/*@
+   BodiesAdvance - ku += dt K v, then f = -ku - C v, complete at shared vertices; the sums use ku before. ku holds the
+   forces of this rank's cells alone. dt = 0 leaves ku as it is (first step). The exchange of shared vertices overlaps
+   with the work on the others. Collective.
+
+   Input Parameters:
++  dt - of the step that led to u, s
+.  u  - displacements at t_{n+1}, m
+-  v  - velocities v_{n+1/2}, m/s
+@*/
+PetscErrorCode BodiesAdvance(Bodies bodies, PetscReal dt, const PetscReal u[], const PetscReal v[], PetscReal ku[],
+                             PetscReal f[], BodiesSums *sums);
+
+/*@ BodiesGetDampingForce - d of the last BodiesAdvance(), [n], for a checkpoint (borrowed; NULL without damping). Not
+    collective. @*/
+PetscErrorCode BodiesGetDampingForce(Bodies bodies, PetscReal **d);
+
+/*@ BodiesGetElementBound - largest omega^2 (1/s^2) of any single element with its own lumped mass, with stiffness
+    K_e + s C_e (and of springs and dashpots with their nodes), an upper bound of the assembled one. Collective. @*/
+PetscErrorCode BodiesGetElementBound(Bodies bodies, PetscReal s, PetscReal *bound);
+
+/*@ BodiesView - which kernel serves which body, in words. Collective. @*/
+PetscErrorCode BodiesView(Bodies bodies, PetscViewer viewer);
+
+/*@ BodiesDestroy - frees all. Collective. @*/
+PetscErrorCode BodiesDestroy(Bodies *bodies);

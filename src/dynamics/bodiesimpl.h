@@ -1,0 +1,156 @@
+/* Private to the files of Bodies: the kernels, what ranks share, and springs and dashpots at nodes */
+#pragma once
+
+#include "bodies.h"
+#include "kernels/stencil.h"
+
+/* Axis about which a body is swept, at least on some rank; the same on all ranks */
+typedef struct {
+  PetscBool turned;
+  PetscInt  axis;
+  PetscReal centre[3];
+} BodiesFrame;
+
+/* Consecutive nodes k of all lines (from a multiple of STENCIL_WIDTH, to one of its half); `early` ones have vertices
+   that ranks share, `first` and `last` ones the ends of open lines */
+typedef struct {
+  PetscInt  begin, end;
+  PetscBool early, first, last;
+} SweptRange;
+
+/* One swept body on this rank: row (component) j of line l has node k at begin + (3 l + j) stride + k */
+typedef struct {
+  PetscInt     body;
+  ModelLines  *lines;
+  PetscInt     begin, stride;
+  PetscInt     along;     /* the component along the sweep; the two others follow it cyclically */
+  StencilLine *stiffness; /* [n_lines] */
+  StencilLine *damping;   /* [n_lines], n = 0 but for lines of cells with different beta */
+  ptrdiff_t   *at;        /* what the lines point to */
+  double (*coefficient)[STENCIL_COEFFICIENTS], (*before)[9];
+  PetscReal  *beta, *alpha;          /* [n_lines] */
+  PetscReal  *mass;                  /* [n_lines][stride] of this rank's cells, kg */
+  PetscReal  *inside, *first, *last; /* [stride]: 1 at nodes, at node 0, at the last node, else 0 */
+  PetscInt    n_ranges;
+  SweptRange *range;
+} Swept;
+
+/* Rows of 3 x 3 blocks, each block row after row */
+typedef struct {
+  PetscInt   n;
+  PetscBool  upper;  /* a symmetric matrix: the diagonal, which comes first in a row, and what is behind it */
+  PetscInt  *start;  /* [n + 1] */
+  PetscInt  *column; /* [start[n]] ascending in each row */
+  PetscReal *value;  /* [start[n]][9], one more number at the end */
+} BlockRows;
+
+/* All bodies that are not swept, node after node from `begin` on; the first n_early nodes are shared with other ranks
+   */
+typedef struct {
+  PetscInt   n, n_early, begin;
+  PetscInt  *vertex;       /* [n] local vertex */
+  PetscReal *mass, *alpha; /* [n] of this rank's cells, kg; alpha (1/s) times mass */
+  PetscReal *beta;         /* [n], 0 where the cells differ */
+  PetscReal *product;      /* [n][4] K v as far as it is summed, zero between the calls; the last number is void */
+  BlockRows  stiffness;
+  BlockRows  damping; /* of the nodes whose cells have different beta, else empty rows */
+} General;
+
+/* A spring and dashpot at a node, in its local basis */
+typedef struct {
+  PetscInt  vertex;
+  PetscBool early;
+  PetscReal stiffness[9], damping[9]; /* N/m, N s/m; symmetric */
+} Point;
+
+/* Sums over ranks at shared vertices, in ascending order of the ranks, so that all copies are bitwise equal */
+typedef struct {
+  MPI_Comm     comm;
+  PetscMPIInt  n_ranks, *rank; /* neighbours, ascending */
+  PetscInt    *start;          /* [n_ranks + 1] */
+  PetscInt    *vertex;         /* [start[n_ranks]] local vertices shared with each, in the same order on both */
+  PetscInt     n;              /* shared vertices */
+  PetscInt    *shared;         /* [n] local vertices */
+  PetscInt    *source_start;   /* [n + 1] */
+  PetscInt    *source;         /* [] places among the received, -1 for this rank's own, by ascending rank */
+  PetscReal   *send, *receive; /* [start[n_ranks]][3] */
+  MPI_Request *request;        /* [2 n_ranks], receiving first */
+} Shared;
+
+struct _p_Bodies {
+  MPI_Comm     comm;
+  Operators    operators;
+  Model        model;
+  PetscBool    no_sweep; /* -dynamics_kernel general */
+  PetscInt     n_bodies, *body;
+  BodiesFrame *frame; /* [n_bodies] */
+  Layout       layout;
+  PetscInt     n_swept;
+  Swept       *swept;
+  General      general;
+  PetscInt     n_points;
+  Point       *point;
+  Shared       share;
+  PetscBool    damped;              /* there is damping on some rank */
+  PetscReal   *part, *total, *minv; /* [layout.n] */
+  PetscReal   *d;                   /* [layout.n], NULL without damping */
+  PetscReal   *work[2];             /* [layout.n] each, for BodiesApply() and BodiesSetState() */
+};
+
+/* One call of the kernels; d NULL without damping */
+typedef struct {
+  PetscReal        dt;
+  const PetscReal *u;
+  PetscReal       *v; /* as it was when the call returns */
+  PetscReal       *ku, *f, *d;
+  BodiesSums       sums;
+} BodiesWork;
+
+/* A cell of this rank with its matrices */
+typedef struct {
+  PetscInt  part, n_nodes;
+  PetscInt  vertex[ELEMENT_MAX_NODES];                      /* local, from 0 */
+  PetscReal alpha, beta;                                    /* 1/s, s */
+  PetscReal mass[ELEMENT_MAX_NODES];                        /* lumped, kg */
+  PetscReal stiffness[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS]; /* N/m, [3 n_nodes][3 n_nodes], Cartesian */
+} BodiesCell;
+
+/* cell.c */
+PETSC_INTERN PetscErrorCode BodiesCountCells(Bodies bodies, PetscInt *n_cells);
+PETSC_INTERN PetscErrorCode BodiesGetCell(Bodies bodies, PetscInt c, BodiesCell *cell);
+/* body and local vertices of a cell, without its matrices */
+PETSC_INTERN PetscErrorCode BodiesGetCellVertices(Bodies bodies, PetscInt c, PetscInt *body, PetscInt *n_nodes,
+                                                  PetscInt vertex[]);
+/* turns the stiffness to the local bases of its nodes */
+PETSC_INTERN void BodiesTurnCell(const Layout *layout, BodiesCell *cell);
+/* ku += K u cell by cell */
+PETSC_INTERN PetscErrorCode BodiesCellsAddForces(Bodies bodies, const PetscReal u[], PetscReal ku[]);
+
+/* layout.c - lines and frames of the bodies, then where the vertices stand */
+PETSC_INTERN PetscErrorCode BodiesFindSwept(Bodies bodies);
+PETSC_INTERN PetscErrorCode BodiesLayOut(Bodies bodies);
+
+/* column.c - `mirrored` is whether the stencil describes the cells; the caller falls back on rows of blocks where not
+   */
+PETSC_INTERN PetscErrorCode SweptSetUp(Bodies bodies, Swept *swept, PetscBool *mirrored);
+
+/* swept.c - ranges once it is known which vertices ranks share, shared [n_vertices] */
+PETSC_INTERN PetscErrorCode SweptSetRanges(Swept *swept, const PetscBool shared[]);
+PETSC_INTERN PetscErrorCode SweptAdvance(const Swept *swept, PetscBool early, BodiesWork *work);
+PETSC_INTERN PetscErrorCode SweptDestroy(Swept *swept);
+
+/* general.c, blockrows.c */
+PETSC_INTERN PetscErrorCode GeneralSetUp(Bodies bodies);
+PETSC_INTERN PetscErrorCode GeneralDestroy(General *general);
+PETSC_INTERN PetscErrorCode GeneralAdvance(const General *general, PetscBool early, BodiesWork *work);
+
+/* point.c */
+PETSC_INTERN PetscErrorCode PointsSetUp(Bodies bodies);
+PETSC_INTERN void           PointsAdvance(Bodies bodies, PetscBool early, BodiesWork *work);
+PETSC_INTERN void           PointsAddForces(Bodies bodies, const PetscReal u[], PetscReal ku[]);
+
+/* shared.c - Begin sends what x has at shared vertices, End replaces it by the sums */
+PETSC_INTERN PetscErrorCode SharedSetUp(Bodies bodies);
+PETSC_INTERN PetscErrorCode SharedBegin(Shared *share, const Layout *layout, const PetscReal x[]);
+PETSC_INTERN PetscErrorCode SharedEnd(Shared *share, const Layout *layout, PetscReal x[]);
+PETSC_INTERN PetscErrorCode SharedDestroy(Shared *share);

@@ -1,0 +1,49 @@
+/*
+   View of the bodies: which kernel serves how many elements.
+*/
+#include "bodiesimpl.h"
+
+/* Cells of each body [n_bodies] that the swept kernel serves, over all ranks, and all of them */
+static PetscErrorCode CellsCount(Bodies b, PetscInt n_swept[], PetscInt n_all[])
+{
+  PetscInt n_cells;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(n_swept, b->n_bodies));
+  PetscCall(PetscArrayzero(n_all, b->n_bodies));
+  PetscCall(BodiesCountCells(b, &n_cells));
+  for (PetscInt c = 0; c < n_cells; c++) {
+    PetscInt body, n_nodes, vertex[ELEMENT_MAX_NODES];
+
+    PetscCall(BodiesGetCellVertices(b, c, &body, &n_nodes, vertex));
+    n_all[body]++;
+    for (PetscInt i = 0; i < b->n_swept; i++) n_swept[body] += b->swept[i].body == body;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n_swept, (PetscMPIInt)b->n_bodies, MPIU_INT, MPI_SUM, b->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n_all, (PetscMPIInt)b->n_bodies, MPIU_INT, MPI_SUM, b->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesView(Bodies b, PetscViewer viewer)
+{
+  PetscInt *n_swept, *n_all;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(b->n_bodies, &n_swept, b->n_bodies, &n_all));
+  PetscCall(CellsCount(b, n_swept, n_all));
+  for (PetscInt i = 0; i < b->n_bodies; i++) {
+    const PetscInt n_rows = n_all[i] - n_swept[i];
+
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  body %" PetscInt_FMT ": %" PetscInt_FMT " elements", i + 1, n_all[i]));
+    if (b->frame[i].turned)
+      PetscCall(PetscViewerASCIIPrintf(viewer, ", swept about %c", "xyz"[b->frame[i].axis]));
+    else if (n_swept[i])
+      PetscCall(PetscViewerASCIIPrintf(viewer, ", swept along an axis"));
+    if (n_swept[i])
+      PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " by a stencil along lines", n_swept[i]));
+    if (n_rows) PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " by rows of 3 x 3 blocks", n_rows));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+  }
+  PetscCall(PetscFree2(n_swept, n_all));
+  PetscFunctionReturn(0);
+}

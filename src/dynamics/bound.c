@@ -1,0 +1,96 @@
+/*
+   Bound of the largest omega^2 from single elements (B. M. Irons and G. Treharne, 1971): with K and M sums over cells,
+   max x'Kx / x'Mx <= max over cells of the same quotient; with C_e = alpha M_e + beta K_e the quotient of K_e + s C_e
+   is (1 + s beta) lambda_e + s alpha. Springs and dashpots add at most (k + s c) / m of a node.
+*/
+#include "bodiesimpl.h"
+#include <petscblaslapack.h>
+
+/* Largest eigenvalue (1/s^2) of M_e^-1/2 K_e M_e^-1/2 */
+static PetscErrorCode CellGetLargest(const BodiesCell *cell, PetscReal *largest)
+{
+  const PetscInt n = 3 * cell->n_nodes;
+  PetscReal      a[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], w[ELEMENT_MAX_DOFS], work[8 * ELEMENT_MAX_DOFS];
+  PetscBLASInt   size, n_work = 8 * ELEMENT_MAX_DOFS, info;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n, &size));
+  for (PetscInt i = 0; i < n * n; i++)
+    a[i] = cell->stiffness[i] / PetscSqrtReal(cell->mass[i / n / 3] * cell->mass[i % n / 3]);
+  LAPACKsyev_("N", "U", &size, a, &size, w, work, &n_work, &info);
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK's syev failed with info %d", (int)info);
+  *largest = w[n - 1];
+  PetscFunctionReturn(0);
+}
+
+/* Whether another cell of the same column stands for this one: swept bodies are looked at at node 0 alone. first
+   [n_vertices] flags the nodes 0 of lines, swept the vertices of swept bodies */
+static PetscBool CellIsRepeated(PetscInt n_nodes, const PetscInt vertex[], const PetscBool first[],
+                                const PetscBool swept[])
+{
+  if (!swept[vertex[0]]) return PETSC_FALSE;
+  for (PetscInt a = 0; a < n_nodes; a++)
+    if (first[vertex[a]]) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+static void SweptFlag(Bodies b, PetscBool first[], PetscBool swept[])
+{
+  for (PetscInt i = 0; i < b->n_swept; i++) {
+    const ModelLines *lines = b->swept[i].lines;
+
+    for (PetscInt j = 0; j < lines->n_lines * lines->n_nodes; j++) swept[lines->vertex[j]] = PETSC_TRUE;
+    for (PetscInt l = 0; l < lines->n_lines; l++) first[lines->vertex[lines->n_nodes * l]] = PETSC_TRUE;
+  }
+}
+
+static PetscErrorCode CellsGetLargest(Bodies b, PetscReal s, PetscReal *largest)
+{
+  PetscBool *first, *swept;
+  PetscInt   n_cells;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(b->layout.n_vertices, &first, b->layout.n_vertices, &swept));
+  SweptFlag(b, first, swept);
+  PetscCall(BodiesCountCells(b, &n_cells));
+  *largest = 0;
+  for (PetscInt c = 0; c < n_cells; c++) {
+    PetscInt   body, n_nodes, vertex[ELEMENT_MAX_NODES];
+    PetscReal  lambda;
+    BodiesCell cell;
+
+    PetscCall(BodiesGetCellVertices(b, c, &body, &n_nodes, vertex));
+    if (CellIsRepeated(n_nodes, vertex, first, swept)) continue;
+    PetscCall(BodiesGetCell(b, c, &cell));
+    PetscCall(CellGetLargest(&cell, &lambda));
+    *largest = PetscMax(*largest, (1 + s * cell.beta) * lambda + s * cell.alpha);
+  }
+  PetscCall(PetscFree2(first, swept));
+  PetscFunctionReturn(0);
+}
+
+/* Largest (k + s c) / m of the nodes; the trace bounds the largest direction */
+static void PointsGetLargest(Bodies b, PetscReal s, PetscReal *largest)
+{
+  *largest = 0;
+  for (PetscInt i = 0; i < b->n_points; i++) {
+    const Point    *point = &b->point[i];
+    const PetscReal m     = b->total[b->layout.at[point->vertex]];
+    PetscReal       trace = 0;
+
+    for (int j = 0; j < 9; j += 4) trace += point->stiffness[j] + s * point->damping[j];
+    *largest = PetscMax(*largest, trace / m);
+  }
+}
+
+PetscErrorCode BodiesGetElementBound(Bodies b, PetscReal s, PetscReal *bound)
+{
+  PetscReal largest[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(CellsGetLargest(b, s, &largest[0]));
+  PointsGetLargest(b, s, &largest[1]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPIU_REAL, MPI_MAX, b->comm));
+  *bound = largest[0] + largest[1];
+  PetscFunctionReturn(0);
+}

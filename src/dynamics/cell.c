@@ -1,0 +1,129 @@
+/*
+   Cells of the bodies: stiffness K_e (N/m) with the present Young's modulus, lumped mass (row sums of the consistent
+   one, kg) and
+   Rayleigh factors of their part, C_e = alpha M_e + beta K_e; and forces K_e u_e cell by cell, with displacements
+   relative to the first node of each, so that a translation gives none.
+*/
+#include "bodiesimpl.h"
+
+PetscErrorCode BodiesCountCells(Bodies bodies, PetscInt *n_cells)
+{
+  PetscInt cStart, cEnd;
+  DM       dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(bodies->model, &dm));
+  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
+  *n_cells = cEnd - cStart;
+  PetscFunctionReturn(0);
+}
+
+/* Vertices of a local cell, from 0, and their coordinates (m) */
+static PetscErrorCode CellGetVertices(Bodies bodies, PetscInt c, PetscInt *n_nodes, PetscInt vertex[], PetscReal x[])
+{
+  const Element *element;
+  PetscInt       vStart;
+  DM             dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(bodies->model, &dm));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
+  PetscCall(ModelGetElement(bodies->model, &element));
+  PetscCall(ModelGetCell(bodies->model, c, vertex, x));
+  *n_nodes = element->n_nodes;
+  for (PetscInt a = 0; a < *n_nodes; a++) vertex[a] -= vStart;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesGetCellVertices(Bodies bodies, PetscInt c, PetscInt *body, PetscInt *n_nodes, PetscInt vertex[])
+{
+  PetscReal x[ELEMENT_MAX_DOFS];
+
+  PetscFunctionBeginUser;
+  PetscCall(CellGetVertices(bodies, c, n_nodes, vertex, x));
+  *body = bodies->body[vertex[0]];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesGetCell(Bodies bodies, PetscInt c, BodiesCell *cell)
+{
+  const Element  *element;
+  const Part     *parts;
+  const PetscInt *cell_part;
+  PetscInt        n_parts;
+  Elasticity      material;
+  PetscReal       x[ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], young, density;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetElement(bodies->model, &element));
+  PetscCall(ModelGetParts(bodies->model, &n_parts, &parts));
+  PetscCall(ModelGetCellParts(bodies->model, &cell_part));
+  PetscCall(CellGetVertices(bodies, c, &cell->n_nodes, cell->vertex, x));
+  cell->part = cell_part[c];
+  PetscCall(OperatorsGetYoung(bodies->operators, cell->part, &young));
+  PetscCall(OperatorsGetDensity(bodies->operators, cell->part, &density));
+  PetscCall(OperatorsGetDamping(bodies->operators, cell->part, &cell->alpha, &cell->beta));
+  material = ElasticityFromEngineering(young, parts[cell->part].poisson, density);
+  PetscCheck(!element->matrices(x, &material, cell->stiffness, me), PETSC_COMM_SELF, PETSC_ERR_PLIB,
+             "element is inverted");
+  for (PetscInt a = 0; a < cell->n_nodes; a++) {
+    cell->mass[a] = 0;
+    for (PetscInt b = 0; b < cell->n_nodes; b++) cell->mass[a] += me[3 * a * (3 * cell->n_nodes) + 3 * b];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Block of nodes a and b in their bases: Q_a A Q_b' */
+static void BlockTurn(const PetscReal qa[9], const PetscReal qb[9], PetscInt n, PetscReal block[])
+{
+  PetscReal half[9];
+
+  for (int i = 0; i < 3; i++)
+    for (int e = 0; e < 3; e++)
+      half[3 * i + e] = qa[3 * i] * block[e] + qa[3 * i + 1] * block[n + e] + qa[3 * i + 2] * block[2 * n + e];
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      block[n * i + j] = half[3 * i] * qb[3 * j] + half[3 * i + 1] * qb[3 * j + 1] + half[3 * i + 2] * qb[3 * j + 2];
+}
+
+void BodiesTurnCell(const Layout *layout, BodiesCell *cell)
+{
+  const PetscInt n = 3 * cell->n_nodes;
+
+  for (PetscInt a = 0; a < cell->n_nodes; a++)
+    for (PetscInt b = 0; b < cell->n_nodes; b++)
+      BlockTurn(&layout->basis[9 * cell->vertex[a]], &layout->basis[9 * cell->vertex[b]], n,
+                &cell->stiffness[3 * a * n + 3 * b]);
+}
+
+/* ku += K_e u_e */
+static void CellAddForces(const Layout *layout, const BodiesCell *cell, const PetscReal u[], PetscReal ku[])
+{
+  const PetscInt n = 3 * cell->n_nodes;
+  PetscReal      relative[ELEMENT_MAX_DOFS];
+
+  for (PetscInt a = 0; a < cell->n_nodes; a++) LayoutGet(layout, cell->vertex[a], u, &relative[3 * a]);
+  for (PetscInt i = n - 1; i >= 0; i--) relative[i] -= relative[i % 3];
+  for (PetscInt a = 0; a < cell->n_nodes; a++) {
+    PetscReal force[3] = {0, 0, 0};
+
+    for (PetscInt i = 0; i < 3; i++)
+      for (PetscInt j = 3; j < n; j++) force[i] += cell->stiffness[(3 * a + i) * n + j] * relative[j];
+    LayoutAdd(layout, cell->vertex[a], force, ku);
+  }
+}
+
+PetscErrorCode BodiesCellsAddForces(Bodies bodies, const PetscReal u[], PetscReal ku[])
+{
+  PetscInt n_cells;
+
+  PetscFunctionBeginUser;
+  PetscCall(BodiesCountCells(bodies, &n_cells));
+  for (PetscInt c = 0; c < n_cells; c++) {
+    BodiesCell cell;
+
+    PetscCall(BodiesGetCell(bodies, c, &cell));
+    CellAddForces(&bodies->layout, &cell, u, ku);
+  }
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,370 @@
+/*
+   Checkpoint: one file of all ranks,
+
+      head       magic word, byte order, its own length and checksum, version, sizes, fingerprint
+      names      [items][32] characters
+      table      [ranks][items + 1] numbers of values of each item, then the checksum of the rank's values
+      values     of rank 0: item 0, item 1, ...; of rank 1; ...
+
+   Each rank writes and reads its own values. Nothing of a file is used before all ranks have found all of it good.
+*/
+#include "checkpoint.h"
+#include "agree.h"
+#include "kernels/checksum.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <stdint.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define CHECKPOINT_FILE    "checkpoint.bin"
+#define CHECKPOINT_MAGIC   "squealCP"
+#define CHECKPOINT_ORDER   UINT64_C(0x0102030405060708)
+#define CHECKPOINT_VERSION 1
+#define NAME_LENGTH        32
+#define MAX_PRINT          16
+
+/* The first five members keep their places in every version */
+typedef struct {
+  char      magic[8];
+  uint64_t  order;    /* CHECKPOINT_ORDER as the writer's machine stores it */
+  uint64_t  size;     /* of head, names and table, bytes */
+  uint64_t  checksum; /* of these, with this word 0 */
+  uint64_t  version;
+  uint64_t  real_size; /* bytes */
+  uint64_t  n_ranks, n_items, n_print;
+  uint64_t  total; /* length of the file, bytes */
+  PetscReal print[MAX_PRINT];
+} Head;
+
+/* A file that is being read, and what is wrong with it */
+typedef struct {
+  char  name[PETSC_MAX_PATH_LEN];
+  int   fd;
+  Head *head; /* with names and table behind it; NULL until read */
+  Fault fault;
+} Reader;
+
+/* Keep what is wrong with the file, printf-like: it is damaged, or of another program, run or model */
+#define NoteDamage(reader, ...) FaultNote(&(reader)->fault, PETSC_ERR_FILE_READ, __VA_ARGS__)
+#define NoteOther(reader, ...)  FaultNote(&(reader)->fault, PETSC_ERR_FILE_UNEXPECTED, __VA_ARGS__)
+
+static size_t HeadSize(uint64_t n_ranks, uint64_t n_items)
+{
+  return sizeof(Head) + NAME_LENGTH * n_items + sizeof(uint64_t) * n_ranks * (n_items + 1);
+}
+
+static char *HeadName(const Head *head, PetscInt i)
+{
+  return (char *)(head + 1) + NAME_LENGTH * i;
+}
+
+/* Row of a rank in the table */
+static uint64_t *HeadRow(const Head *head, PetscInt rank)
+{
+  return (uint64_t *)((char *)(head + 1) + NAME_LENGTH * head->n_items) + (uint64_t)rank * (head->n_items + 1);
+}
+
+static uint64_t HeadChecksum(const Head *head)
+{
+  const uint64_t kept = head->checksum;
+  uint64_t       sum;
+
+  ((Head *)head)->checksum = 0;
+  sum                      = ChecksumAdd(CHECKSUM_BEGIN, head, head->size);
+  ((Head *)head)->checksum = kept;
+  return sum;
+}
+
+/* Head, names and the table of all ranks, complete on rank 0, where row [n + 1] of each rank is gathered */
+static PetscErrorCode HeadCreate(MPI_Comm comm, const CheckpointPrint *print, PetscInt n, const CheckpointItem item[],
+                                 uint64_t row[], Head **head)
+{
+  PetscMPIInt size, width;
+  uint64_t    n_values = 0;
+  Head       *h;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMPIIntCast(n + 1, &width));
+  for (PetscInt i = 0; i < n; i++) n_values += row[i];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_values, 1, MPI_UINT64_T, MPI_SUM, comm));
+  PetscCall(PetscCalloc(HeadSize((uint64_t)size, (uint64_t)n), &h));
+  PetscCall(PetscMemcpy(h->magic, CHECKPOINT_MAGIC, sizeof(h->magic)));
+  h->order     = CHECKPOINT_ORDER;
+  h->size      = HeadSize((uint64_t)size, (uint64_t)n);
+  h->version   = CHECKPOINT_VERSION;
+  h->real_size = sizeof(PetscReal);
+  h->n_ranks   = (uint64_t)size;
+  h->n_items   = (uint64_t)n;
+  h->n_print   = (uint64_t)print->n_print;
+  h->total     = h->size + sizeof(PetscReal) * n_values;
+  PetscCall(PetscArraycpy(h->print, print->print, print->n_print));
+  for (PetscInt i = 0; i < n; i++) PetscCall(PetscStrncpy(HeadName(h, i), item[i].name, NAME_LENGTH));
+  PetscCallMPI(MPI_Gather(row, width, MPI_UINT64_T, HeadRow(h, 0), width, MPI_UINT64_T, 0, comm));
+  h->checksum = HeadChecksum(h);
+  *head       = h;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CheckpointWrite(MPI_Comm comm, Results results, const CheckpointPrint *print, PetscInt n,
+                               const CheckpointItem item[])
+{
+  ResultsPiece  *piece;
+  uint64_t      *row;
+  Head          *head;
+  PetscMPIInt    rank;
+  PetscErrorCode failure;
+
+  PetscFunctionBeginUser;
+  PetscCheck(print->n_print >= 0 && print->n_print <= MAX_PRINT, comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "a fingerprint of %" PetscInt_FMT " numbers, at most %d", print->n_print, MAX_PRINT);
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(PetscCalloc2(n + 1, &row, n + 1, &piece));
+  row[n] = CHECKSUM_BEGIN;
+  for (PetscInt i = 0; i < n; i++) {
+    piece[i + 1] = (ResultsPiece){item[i].values, sizeof(PetscReal) * (size_t)item[i].n};
+    row[i]       = (uint64_t)item[i].n;
+    row[n]       = ChecksumAdd(row[n], item[i].values, piece[i + 1].size);
+  }
+  PetscCall(HeadCreate(comm, print, n, item, row, &head));
+  piece[0] = (ResultsPiece){head, rank == 0 ? (size_t)head->size : 0};
+  failure  = ResultsBinaryWrite(results, CHECKPOINT_FILE, n + 1, piece);
+  PetscCall(PetscFree(head));
+  PetscCall(PetscFree2(row, piece));
+  PetscCall(failure);
+  PetscFunctionReturn(0);
+}
+
+/* Reads bytes [offset, offset + size) */
+static PetscErrorCode ReaderRead(Reader *reader, void *bytes, uint64_t size, uint64_t offset)
+{
+  char *at = bytes;
+
+  PetscFunctionBeginUser;
+  while (size > 0 && !reader->fault.code) {
+    const ssize_t n = pread(reader->fd, at, (size_t)size, (off_t)offset);
+
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) PetscCall(NoteDamage(reader, "cannot read %s: %s", reader->name, strerror(errno)));
+    if (n == 0) PetscCall(NoteDamage(reader, "%s is truncated: it ends while it is read", reader->name));
+    if (n <= 0) break;
+    at += n, offset += (uint64_t)n, size -= (uint64_t)n;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Opens the file on this rank */
+static PetscErrorCode ReaderOpen(Reader *reader, const char dir[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(reader->name, sizeof(reader->name), "%s/%s", dir, CHECKPOINT_FILE));
+  reader->fd = open(reader->name, O_RDONLY);
+  if (reader->fd < 0 && errno == ENOENT)
+    PetscCall(FaultNote(&reader->fault, PETSC_ERR_FILE_OPEN,
+                        "there is no %s in the folder -output_dir %s, from which -dynamics_restart goes on",
+                        CHECKPOINT_FILE, dir));
+  if (reader->fd < 0)
+    PetscCall(FaultNote(&reader->fault, PETSC_ERR_FILE_OPEN, "cannot read %s for -dynamics_restart: %s", reader->name,
+                        strerror(errno)));
+  PetscFunctionReturn(0);
+}
+
+/* Checks what is the same in all versions and the length of the file; head is the first part of one */
+static PetscErrorCode ReaderCheckKind(Reader *reader, const Head *head, uint64_t length)
+{
+  uint64_t other = 0;
+
+  PetscFunctionBeginUser;
+  for (unsigned i = 0; i < 64; i += 8) other |= (CHECKPOINT_ORDER >> i & 0xff) << (56 - i);
+  if (length < sizeof(*head))
+    PetscCall(NoteDamage(reader, "%s is truncated: %llu bytes are less than its head", reader->name,
+                         (unsigned long long)length));
+  else if (memcmp(head->magic, CHECKPOINT_MAGIC, sizeof(head->magic)))
+    PetscCall(NoteOther(reader, "%s is no checkpoint of squeal, or damaged", reader->name));
+  else if (head->order == other)
+    PetscCall(NoteOther(reader, "%s was written by a machine with the other order of bytes", reader->name));
+  else if (head->order != CHECKPOINT_ORDER || head->size < offsetof(Head, real_size))
+    PetscCall(NoteDamage(reader, "%s is damaged: its head is wrong", reader->name));
+  else if (head->size > length)
+    PetscCall(NoteDamage(reader, "%s is truncated or damaged: %llu bytes, its head says more", reader->name,
+                         (unsigned long long)length));
+  PetscFunctionReturn(0);
+}
+
+/* Reads the head with names and table on this rank, and checks it in itself */
+static PetscErrorCode ReaderReadHead(Reader *reader)
+{
+  struct stat status;
+  uint64_t    length;
+  Head        head = {.size = 0};
+
+  PetscFunctionBeginUser;
+  if (reader->fault.code) PetscFunctionReturn(0);
+  if (fstat(reader->fd, &status)) PetscCall(NoteDamage(reader, "cannot read %s: %s", reader->name, strerror(errno)));
+  length = (uint64_t)status.st_size;
+  PetscCall(ReaderRead(reader, &head, PetscMin(length, sizeof(head)), 0));
+  PetscCall(ReaderCheckKind(reader, &head, length));
+  if (reader->fault.code) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc(PetscMax((size_t)head.size, sizeof(head)), &reader->head));
+  PetscCall(ReaderRead(reader, reader->head, head.size, 0));
+  if (reader->head->size != head.size || HeadChecksum(reader->head) != head.checksum)
+    PetscCall(NoteDamage(reader, "%s is damaged: the checksum of its head differs", reader->name));
+  else if (head.version != CHECKPOINT_VERSION)
+    PetscCall(NoteOther(reader, "%s has version %llu of the format, this program reads version %d", reader->name,
+                        (unsigned long long)head.version, CHECKPOINT_VERSION));
+  else if (length != head.total)
+    PetscCall(NoteDamage(reader, "%s is %s: %llu bytes instead of %llu", reader->name,
+                         length < head.total ? "truncated" : "too long", (unsigned long long)length,
+                         (unsigned long long)head.total));
+  PetscFunctionReturn(0);
+}
+
+/* Checks that the file is one of this program on these ranks */
+static PetscErrorCode ReaderCheckRun(Reader *reader, PetscMPIInt size)
+{
+  const Head *h = reader->head;
+
+  PetscFunctionBeginUser;
+  if (reader->fault.code) PetscFunctionReturn(0);
+  if (h->real_size != sizeof(PetscReal))
+    PetscCall(NoteOther(reader, "%s has real numbers of %llu bytes, those of this program have %d", reader->name,
+                        (unsigned long long)h->real_size, (int)sizeof(PetscReal)));
+  else if (h->n_ranks != (uint64_t)size)
+    PetscCall(NoteOther(reader, "%s was written by %llu rank%s, this run has %d", reader->name,
+                        (unsigned long long)h->n_ranks, h->n_ranks == 1 ? "" : "s", size));
+  else if (h->size != HeadSize(h->n_ranks, h->n_items))
+    PetscCall(NoteDamage(reader, "%s is damaged: its head has a wrong length", reader->name));
+  PetscFunctionReturn(0);
+}
+
+/* Checks the fingerprint, bit by bit */
+static PetscErrorCode ReaderCheckPrint(Reader *reader, const CheckpointPrint *print)
+{
+  const Head *h = reader->head;
+
+  PetscFunctionBeginUser;
+  if (reader->fault.code) PetscFunctionReturn(0);
+  if (h->n_print != (uint64_t)print->n_print)
+    PetscCall(NoteOther(
+      reader, "%s is of another model or other parameters: a fingerprint of %llu numbers, here %" PetscInt_FMT,
+      reader->name, (unsigned long long)h->n_print, print->n_print));
+  for (PetscInt i = 0; i < print->n_print && !reader->fault.code; i++) {
+    if (!memcmp(&h->print[i], &print->print[i], sizeof(PetscReal))) continue;
+    PetscCall(NoteOther(reader,
+                        "%s is of another model or other parameters: number %" PetscInt_FMT
+                        " of its fingerprint is %.17g, here %.17g",
+                        reader->name, i + 1, (double)h->print[i], (double)print->print[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Checks names of the items, and their lengths on this rank */
+static PetscErrorCode ReaderCheckItems(Reader *reader, PetscMPIInt rank, PetscInt n, const CheckpointItem item[])
+{
+  const Head     *h = reader->head;
+  const uint64_t *row;
+  char            name[NAME_LENGTH];
+
+  PetscFunctionBeginUser;
+  if (reader->fault.code) PetscFunctionReturn(0);
+  if (h->n_items != (uint64_t)n)
+    PetscCall(NoteOther(
+      reader, "%s has %llu arrays, this run has %" PetscInt_FMT ": it is of another model or other parameters",
+      reader->name, (unsigned long long)h->n_items, n));
+  row = HeadRow(h, rank);
+  for (PetscInt i = 0; i < n && !reader->fault.code; i++) {
+    PetscCall(PetscStrncpy(name, item[i].name, sizeof(name)));
+    if (strncmp(HeadName(h, i), name, NAME_LENGTH))
+      PetscCall(NoteOther(reader, "%s has '%.32s' where this run has '%s': it is of another model or other parameters",
+                          reader->name, HeadName(h, i), name));
+    else if (item[i].n >= 0 && row[i] != (uint64_t)item[i].n)
+      PetscCall(NoteOther(reader,
+                          "%s has %llu numbers of '%s' on rank %d, this run has %" PetscInt_FMT
+                          ": it is of another model or other parameters",
+                          reader->name, (unsigned long long)row[i], name, rank, item[i].n));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Where the values of a rank begin, and how many bytes they have */
+static PetscErrorCode ReaderFindValues(Reader *reader, PetscMPIInt rank, uint64_t *begin, uint64_t *size)
+{
+  const Head *h = reader->head;
+  uint64_t    at, end = 0;
+
+  PetscFunctionBeginUser;
+  *begin = *size = 0;
+  if (reader->fault.code) PetscFunctionReturn(0);
+  end = h->size;
+  for (uint64_t r = 0; r < h->n_ranks; r++) {
+    at = end;
+    for (uint64_t i = 0; i < h->n_items; i++) end += sizeof(PetscReal) * HeadRow(h, (PetscInt)r)[i];
+    if (r == (uint64_t)rank) *begin = at, *size = end - at;
+  }
+  if (end != h->total || *begin + *size > h->total)
+    PetscCall(NoteDamage(reader, "%s is damaged: its lengths contradict each other", reader->name));
+  PetscFunctionReturn(0);
+}
+
+/* Reads the values of this rank, which the caller frees */
+static PetscErrorCode ReaderReadValues(Reader *reader, PetscMPIInt rank, PetscReal **values)
+{
+  uint64_t         begin, size, sum = CHECKSUM_BEGIN;
+  const uint64_t  *row;
+  const PetscReal *at;
+
+  PetscFunctionBeginUser;
+  *values = NULL;
+  PetscCall(ReaderFindValues(reader, rank, &begin, &size));
+  if (reader->fault.code) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc((size_t)size, values));
+  PetscCall(ReaderRead(reader, *values, size, begin));
+  if (reader->fault.code) PetscFunctionReturn(0);
+  row = HeadRow(reader->head, rank);
+  at  = *values;
+  for (uint64_t i = 0; i < reader->head->n_items; at += row[i++])
+    sum = ChecksumAdd(sum, at, sizeof(PetscReal) * row[i]);
+  if (sum != row[reader->head->n_items])
+    PetscCall(NoteDamage(reader, "%s is damaged: the checksum of the values of rank %d differs", reader->name, rank));
+  PetscFunctionReturn(0);
+}
+
+/* Hands the values to the items */
+static PetscErrorCode ItemsFill(const uint64_t row[], const PetscReal values[], PetscInt n, CheckpointItem item[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; values += row[i++]) {
+    if (item[i].n < 0) PetscCall(PetscMalloc1((size_t)row[i], &item[i].values));
+    item[i].n = (PetscInt)row[i];
+    PetscCall(PetscArraycpy(item[i].values, values, item[i].n));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CheckpointRead(MPI_Comm comm, Results results, const CheckpointPrint *print, PetscInt n,
+                              CheckpointItem item[])
+{
+  Reader      reader = {.fd = -1};
+  const char *dir;
+  PetscReal  *values;
+  PetscMPIInt size, rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(ResultsGetDirectory(results, &dir));
+  PetscCall(ReaderOpen(&reader, dir));
+  PetscCall(ReaderReadHead(&reader));
+  PetscCall(ReaderCheckRun(&reader, size));
+  PetscCall(ReaderCheckPrint(&reader, print));
+  PetscCall(ReaderCheckItems(&reader, rank, n, item));
+  PetscCall(ReaderReadValues(&reader, rank, &values));
+  PetscCall(FaultsAgree(comm, &reader.fault));
+  if (!reader.fault.code) PetscCall(ItemsFill(HeadRow(reader.head, rank), values, n, item));
+  PetscCall(PetscFree(values));
+  PetscCall(PetscFree(reader.head));
+  if (reader.fd >= 0) (void)close(reader.fd);
+  PetscCall(FaultsRaise(comm, &reader.fault));
+  PetscFunctionReturn(0);
+}

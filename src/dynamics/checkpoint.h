@@ -1,0 +1,44 @@
+/*
+   Checkpoint (private to dynamics/) - arrays of a run on disk, so that a run killed at any moment goes on bitwise.
+*/
+#pragma once
+
+#include <squeal/model.h>
+#include <squeal/results.h>
+
+/* Array of this rank; n and values are of the writer, at reading n must agree (n < 0: any, the reader allocates values)
+ */
+typedef struct {
+  const char *name;
+  PetscInt    n;
+  PetscReal  *values;
+} CheckpointItem;
+
+/* What a checkpoint must agree in */
+typedef struct {
+  PetscReal print[16]; /* fingerprint of model, materials, contact, integrator, step */
+  PetscInt  n_print;
+} CheckpointPrint;
+
+/*
+   CheckpointWrite - writes `checkpoint.bin` in the folder of the results under a temporary name, flushes it to the disk
+   and renames it, so that at any moment the last complete one is there. Collective. Errors: PETSC_ERR_FILE_WRITE with
+   the file and the reason (no space left on device); the last good one is kept.
+*/
+PETSC_INTERN PetscErrorCode CheckpointWrite(MPI_Comm comm, Results results, const CheckpointPrint *print, PetscInt n,
+                                            const CheckpointItem item[]);
+
+/*
+   CheckpointRead - reads it back; items in the same order. Collective.
+   Errors: PETSC_ERR_FILE_OPEN without a file; PETSC_ERR_FILE_READ for one that is truncated or damaged (length,
+   checksum), PETSC_ERR_FILE_UNEXPECTED for one of another version, number of ranks, or model: what differs is said.
+*/
+PETSC_INTERN PetscErrorCode CheckpointRead(MPI_Comm comm, Results results, const CheckpointPrint *print, PetscInt n,
+                                           CheckpointItem item[]);
+
+/* shape.c - mode `mode` of modes.csv and modes.h5 in folder dir at the local vertices [n_vertices][3] of the model:
+   real and imaginary part, and lambda = sigma + i omega, 1/s. Nodes are found by position, so that the ranks of the
+   runs may differ. Collective. Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_USER_INPUT for a mode or mesh that does not
+   agree. */
+PETSC_INTERN PetscErrorCode ShapeRead(MPI_Comm comm, Model model, const char dir[], PetscInt mode, PetscReal re[],
+                                      PetscReal im[], PetscReal lambda[2]);

@@ -1,0 +1,375 @@
+/*
+   Dynamics: life cycle, options, and the run: bodies -> critical step -> state at the start -> TS -> history.
+*/
+#include "dynamicsimpl.h"
+#include "stop.h"
+#include <squeal/options.h>
+
+#define STOP_INTERVAL 50 /* steps between two looks at signals */
+
+PetscErrorCode DynamicsCreate(MPI_Comm comm, Dynamics *dynamics)
+{
+  PetscFunctionBeginUser;
+  PetscCall(TSCentralRegister());
+  PetscCall(PetscCalloc1(1, dynamics));
+  (*dynamics)->comm            = comm;
+  (*dynamics)->fraction        = 0.9;
+  (*dynamics)->shape_mode      = 1;
+  (*dynamics)->shape_amplitude = 1e-9;
+  PetscCall(TSCreate(comm, &(*dynamics)->ts));
+  PetscCall(TSSetType((*dynamics)->ts, TSCENTRAL));
+  PetscCall(TSSetExactFinalTime((*dynamics)->ts, TS_EXACTFINALTIME_STEPOVER));
+  PetscCall(HistoryCreate(comm, &(*dynamics)->history));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsSetModel(Dynamics d, Model model, Contact contact)
+{
+  PetscFunctionBeginUser;
+  d->model   = model;
+  d->contact = contact;
+  PetscCall(ExternalCreate(d->comm, model, &d->external));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StepSetFromOptions(Dynamics d, PetscOptionItems *PetscOptionsObject)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsReal("-dynamics_step_fraction", "step, where -ts_dt is not given, of the critical one (-)",
+                             "dynamics.h", d->fraction, &d->fraction, NULL));
+  PetscCheck(d->fraction > 0 && d->fraction <= 1, d->comm, PETSC_ERR_USER_INPUT,
+             "-dynamics_step_fraction %.6g must be in (0, 1]", (double)d->fraction);
+  PetscCall(PetscOptionsBool("-dynamics_step_force", "integrate with a -ts_dt above the critical step", "dynamics.h",
+                             d->step_force, &d->step_force, NULL));
+  PetscCall(PetscOptionsReal("-ts_time_step", "the same as -ts_dt, s", "dynamics.h", d->dt_asked, &d->dt_asked, NULL));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StartSetFromOptions(Dynamics d, PetscOptionItems *PetscOptionsObject)
+{
+  static const char *const starts[N_STARTS] = {[START_REST] = "rest", [START_STATIC] = "static"};
+  PetscInt                 start            = d->start;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsEList("-dynamics_start", "at rest, or the sliding state under the loads", "dynamics.h", starts,
+                              N_STARTS, starts[start], &start, NULL));
+  PetscCall(PetscOptionsString("-dynamics_shape", "folder of a run of modes: one of them is added to the start",
+                               "dynamics.h", d->shape, d->shape, sizeof(d->shape), NULL));
+  PetscCall(PetscOptionsInt("-dynamics_shape_mode", "its number in modes.csv", "dynamics.h", d->shape_mode,
+                            &d->shape_mode, NULL));
+  PetscCall(PetscOptionsReal("-dynamics_shape_amplitude", "its largest displacement, m", "dynamics.h",
+                             d->shape_amplitude, &d->shape_amplitude, NULL));
+  d->start = (DynamicsStart)start;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RunSetFromOptions(Dynamics d, PetscOptionItems *PetscOptionsObject)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsBool("-dynamics_coriolis", "Coriolis forces in parts that turn", "dynamics.h", d->coriolis,
+                             &d->coriolis, NULL));
+  PetscCall(PetscOptionsBool("-dynamics_centrifugal", "centrifugal forces in parts that turn", "dynamics.h",
+                             d->centrifugal, &d->centrifugal, NULL));
+  PetscCall(PetscOptionsBool("-contact_view_kkt", "print the residuals of the contact laws at the end", "dynamics.h",
+                             d->view_kkt, &d->view_kkt, NULL));
+  PetscCall(PetscOptionsInt("-checkpoint_interval", "steps between checkpoints, 0 for none", "dynamics.h",
+                            d->checkpoint_interval, &d->checkpoint_interval, NULL));
+  PetscCheck(d->checkpoint_interval >= 0, d->comm, PETSC_ERR_USER_INPUT,
+             "-checkpoint_interval %" PetscInt_FMT " must be a number of steps, 0 for none", d->checkpoint_interval);
+  PetscCall(PetscOptionsBool("-dynamics_restart", "go on from the checkpoint in the output folder", "dynamics.h",
+                             d->restart, &d->restart, NULL));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsSetFromOptions(Dynamics d)
+{
+  PetscReal dt;
+  PetscBool set, general;
+
+  PetscFunctionBeginUser;
+  PetscOptionsBegin(d->comm, NULL, "Dynamics", NULL);
+  PetscCall(StepSetFromOptions(d, PetscOptionsObject));
+  PetscCall(StartSetFromOptions(d, PetscOptionsObject));
+  PetscCall(RunSetFromOptions(d, PetscOptionsObject));
+  PetscOptionsEnd();
+  PetscCall(TSSetFromOptions(d->ts));
+  PetscCall(PetscObjectTypeCompare((PetscObject)d->ts, TSCENTRAL, &set));
+  PetscCheck(set, d->comm, PETSC_ERR_USER_INPUT, "-ts_type must be " TSCENTRAL ", the only one that knows contact");
+  PetscCall(PetscOptionsGetReal(NULL, NULL, "-ts_dt", &dt, &set));
+  if (set) d->dt_asked = dt;
+  PetscCheck(!PetscIsInfOrNanReal(d->dt_asked) && d->dt_asked >= 0, d->comm, PETSC_ERR_USER_INPUT,
+             "-ts_dt %.6g must be a positive time (s)", (double)d->dt_asked);
+  PetscCall(TSCentralGetB(d->ts, &d->b));
+  PetscCall(HistorySetFromOptions(d->history));
+  if (d->external) PetscCall(ExternalSetFromOptions(d->external));
+  if (d->contact) PetscCall(ContactProjectorReadOptions(d->contact));
+  PetscCall(BodiesReadOptions(d->comm, &general));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsNeedsPairs(Dynamics d, PetscBool *needs)
+{
+  PetscFunctionBeginUser;
+  *needs = d->start == START_STATIC ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsSetOperators(Dynamics d, Operators operators, Statics statics)
+{
+  PetscFunctionBeginUser;
+  d->operators = operators;
+  d->statics   = statics;
+  PetscFunctionReturn(0);
+}
+
+/* Nodes of the contact surfaces, their work arrays and masses */
+static PetscErrorCode SurfaceSetUp(Dynamics d)
+{
+  Surface         *s = &d->surface;
+  const PetscReal *minv;
+  PetscReal       *inverse;
+
+  PetscFunctionBeginUser;
+  PetscCall(BodiesGetMass(d->bodies, NULL, NULL, &minv));
+  PetscCall(ContactProjectorGetNodes(d->projector, &s->n, &s->vertex));
+  PetscCall(PetscCalloc4(3 * s->n, &s->u, 3 * s->n, &s->before, 3 * s->n, &s->v, 3 * s->n, &s->force));
+  PetscCall(PetscCalloc1(3 * s->n, &inverse));
+  for (PetscInt i = 0; i < s->n; i++) {
+    const PetscInt   vertex = s->vertex[i];
+    const PetscReal *q      = &d->layout->basis[9 * vertex];
+
+    for (int j = 0; j < 3; j++)
+      for (int c = 0; c < 3; c++)
+        inverse[3 * i + c] += PetscSqr(q[3 * j + c]) * minv[d->layout->at[vertex] + j * d->layout->step[vertex]];
+  }
+  PetscCall(ContactProjectorSetMass(d->projector, inverse));
+  PetscCall(PetscFree(inverse));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ContactSetUpDynamics(Dynamics d)
+{
+  const ContactInterface *interfaces;
+
+  PetscFunctionBeginUser;
+  if (d->contact) PetscCall(ContactGetInterfaces(d->contact, &d->n_interfaces, &interfaces));
+  if (d->n_interfaces == 0) PetscFunctionReturn(0);
+  PetscCall(ContactProjectorCreate(d->contact, &d->projector));
+  PetscCall(PetscCalloc1(d->n_interfaces, &d->sums));
+  PetscFunctionReturn(0);
+}
+
+/* State vectors and the integrator's masses */
+static PetscErrorCode StateCreate(Dynamics d)
+{
+  const PetscReal *minv;
+  const PetscInt   n = d->layout->n;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecCreateMPI(d->comm, n, PETSC_DETERMINE, &d->u));
+  PetscCall(VecDuplicate(d->u, &d->v));
+  PetscCall(VecSet(d->u, 0));
+  PetscCall(VecSet(d->v, 0));
+  PetscCall(PetscCalloc1(n, &d->ku));
+  PetscCall(BodiesGetMass(d->bodies, NULL, NULL, &minv));
+  PetscCall(VecCreateMPIWithArray(d->comm, 1, n, PETSC_DETERMINE, minv, &d->minv));
+  PetscCall(TS2SetSolution(d->ts, d->u, d->v));
+  PetscCall(TSCentralSetForces(d->ts, d->minv, DynamicsForce, DynamicsConstrain, d));
+  PetscFunctionReturn(0);
+}
+
+/* The step asked for, or the stated fraction of the critical one; a larger one is refused */
+static PetscErrorCode ChooseStep(Dynamics d)
+{
+  const PetscReal critical = d->critical.assembled, dt = d->dt_asked > 0 ? d->dt_asked : d->fraction * critical;
+
+  PetscFunctionBeginUser;
+  PetscCheck(
+    dt <= critical || d->step_force, d->comm, PETSC_ERR_USER_INPUT,
+    "-ts_dt %.6g is above the critical step %.6g s: the fastest oscillations would grow; take at most %.6g, or "
+    "-dynamics_step_force",
+    (double)dt, (double)critical, (double)(d->fraction * critical));
+  PetscCall(TSSetTimeStep(d->ts, dt));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckEnd(Dynamics d, PetscReal *end)
+{
+  PetscInt max_steps;
+
+  PetscFunctionBeginUser;
+  PetscCall(TSGetMaxTime(d->ts, end));
+  PetscCall(TSGetMaxSteps(d->ts, &max_steps));
+  PetscCheck(*end < PETSC_MAX_REAL || max_steps < PETSC_MAX_INT, d->comm, PETSC_ERR_USER_INPUT,
+             "-ts_max_time must be given: how long to integrate (s); or -ts_max_steps");
+  PetscCheck(*end > 0, d->comm, PETSC_ERR_USER_INPUT, "-ts_max_time %.6g must be a positive time (s)", (double)*end);
+  if (*end >= PETSC_MAX_REAL) {
+    PetscReal dt;
+
+    PetscCall(TSGetTimeStep(d->ts, &dt));
+    *end = dt * (PetscReal)max_steps;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
+{
+  PetscReal end, dt;
+  PetscInt  cStart, cEnd;
+  DM        dm;
+
+  PetscFunctionBeginUser;
+  PetscCheck(d->model, d->comm, PETSC_ERR_USER_INPUT,
+             "-analysis transient needs a mesh: loaded matrices have no contact surfaces");
+  d->results = results;
+  PetscCall(ModelGetDM(d->model, &dm));
+  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
+  d->n_elements = cEnd - cStart;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &d->n_elements, 1, MPIU_INT, MPI_SUM, d->comm));
+  PetscCall(BodiesCreate(d->operators, &d->bodies));
+  PetscCall(BodiesGetLayout(d->bodies, &d->layout));
+  PetscCall(ExternalSetUp(d->external, d->bodies));
+  PetscCall(ContactSetUpDynamics(d));
+  if (d->projector) PetscCall(SurfaceSetUp(d));
+  PetscCall(DynamicsSetFrames(d));
+  PetscCall(StateCreate(d));
+  PetscCall(DynamicsFindCriticalStep(d));
+  PetscCall(ChooseStep(d));
+  PetscCall(CheckEnd(d, &end));
+  if (d->contact) PetscCall(HistorySetContact(d->history, d->contact));
+  PetscCall(TSGetTimeStep(d->ts, &dt));
+  PetscCall(HistorySetUp(d->history, d->model, d->layout, d->projector, results, end, dt));
+  PetscCall(TSSetUp(d->ts));
+  PetscCall(d->restart ? DynamicsGoOn(d) : DynamicsStartState(d));
+  PetscFunctionReturn(0);
+}
+
+/* After every step: checkpoints where they are due, and the end where a signal asks for it */
+static PetscErrorCode AfterStep(TS ts)
+{
+  Dynamics  d;
+  PetscInt  n;
+  PetscBool due, stop = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(TSGetApplicationContext(ts, &d));
+  PetscCall(TSGetStepNumber(ts, &n));
+  d->n_steps++;
+  if (n % STOP_INTERVAL == 0) {
+    stop = StopRequested();
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPIU_BOOL, MPI_LOR, d->comm));
+  }
+  due = d->checkpoint_interval > 0 && (stop || n % d->checkpoint_interval == 0) ? PETSC_TRUE : PETSC_FALSE;
+  if (due) PetscCall(DynamicsKeep(d));
+  if (stop) PetscCall(TSSetConvergedReason(ts, TS_CONVERGED_USER));
+  d->stopped = stop;
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error of a run that a signal ended */
+static PetscErrorCode ComplainStopped(Dynamics d)
+{
+  PetscReal time;
+  PetscInt  n;
+
+  PetscFunctionBeginUser;
+  PetscCall(TSGetTime(d->ts, &time));
+  PetscCall(TSGetStepNumber(d->ts, &n));
+  SETERRQ(d->comm, PETSC_ERR_USER, "stopped by a signal after step %" PetscInt_FMT ", %.6g s; %s", n, (double)time,
+          d->checkpoint_interval > 0 ? "-dynamics_restart goes on from there"
+                                     : "transient.csv holds the rows until then");
+}
+
+PetscErrorCode DynamicsSolve(Dynamics d, Results results)
+{
+  PetscLogDouble begin, end;
+
+  PetscFunctionBeginUser;
+  PetscCall(DynamicsSetUp(d, results));
+  PetscCall(TSSetApplicationContext(d->ts, d));
+  PetscCall(TSSetPostStep(d->ts, AfterStep));
+  PetscCall(StopInstall());
+  PetscCall(PetscTime(&begin));
+  PetscCall(TSSolve(d->ts, NULL));
+  PetscCall(PetscTime(&end));
+  PetscCall(StopRemove());
+  d->seconds = end - begin;
+  if (d->stopped && d->checkpoint_interval > 0) PetscCall(ComplainStopped(d));
+  PetscCall(TSCentralEvaluate(d->ts)); /* the forces of the last time, for its row */
+  PetscCall(HistoryClose(d->history));
+  if (d->stopped) PetscCall(ComplainStopped(d));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode LedgerView(const Ledger *l, PetscViewer viewer)
+{
+  const struct {
+    const char *name;
+    PetscReal   value;
+  } line[] = {
+    {"kinetic",            l->kinetic   },
+    {"strain",             l->strain    },
+    {"work of loads",      l->external  },
+    {"work of friction",   l->friction  },
+    {"work of contact",    l->contact   },
+    {"work of damping",    l->damping   },
+    {"work of integrator", l->integrator},
+    {"heat of friction",   l->heat      },
+  };
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "energy in J at the end\n"));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(line); i++)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-18s %13.6e\n", line[i].name, (double)line[i].value));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  %-18s %13.6e  %.1e of the largest\n", "left over", (double)l->error,
+                                   (double)(l->throughput > 0 ? PetscAbsReal(l->error) / l->throughput : 0)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsView(Dynamics d, PetscViewer viewer)
+{
+  PetscReal  dt, time;
+  ContactKKT kkt;
+
+  PetscFunctionBeginUser;
+  PetscCall(TSGetTimeStep(d->ts, &dt));
+  PetscCall(TSGetTime(d->ts, &time));
+  PetscCall(BodiesView(d->bodies, viewer));
+  PetscCall(ExternalView(d->external, viewer));
+  if (d->projector) PetscCall(ContactProjectorView(d->projector, viewer));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "step %.6g s, %.3g of the critical one %.6g s (single elements: %.6g s)\n",
+                                   (double)dt, (double)(dt / d->critical.assembled), (double)d->critical.assembled,
+                                   (double)d->critical.element));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "%" PetscInt_FMT " steps to %.6g s in %.4g s: %.4g us per step, %.4g ns per "
+                                   "element and step\n",
+                                   d->n_steps, (double)time, d->seconds, 1e6 * d->seconds / PetscMax(1, d->n_steps),
+                                   1e9 * d->seconds / PetscMax(1, d->n_steps) / d->n_elements));
+  PetscCall(LedgerView(&d->ledger, viewer));
+  if (d->projector && d->view_kkt) {
+    PetscCall(ContactProjectorGetKKT(d->projector, &kkt));
+    PetscCall(ContactViewKKT(&kkt, viewer));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsDestroy(Dynamics *dynamics)
+{
+  Dynamics d = *dynamics;
+
+  PetscFunctionBeginUser;
+  if (!d) PetscFunctionReturn(0);
+  PetscCall(HistoryDestroy(&d->history));
+  PetscCall(ContactProjectorDestroy(&d->projector));
+  PetscCall(PetscFree4(d->surface.u, d->surface.before, d->surface.v, d->surface.force));
+  PetscCall(TSDestroy(&d->ts));
+  PetscCall(VecDestroy(&d->minv));
+  PetscCall(VecDestroy(&d->u));
+  PetscCall(VecDestroy(&d->v));
+  PetscCall(PetscFree(d->ku));
+  PetscCall(PetscFree(d->sums));
+  PetscCall(ExternalDestroy(&d->external));
+  PetscCall(BodiesDestroy(&d->bodies));
+  PetscCall(PetscFree(*dynamics));
+  PetscFunctionReturn(0);
+}

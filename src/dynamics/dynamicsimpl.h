@@ -1,0 +1,85 @@
+/* Private to dynamics/: the record of a run and the files that fill it */
+#pragma once
+
+#include <squeal/dynamics.h>
+#include <squeal/projector.h>
+#include "checkpoint.h"
+#include "external.h"
+#include "history.h"
+#include "ledger.h"
+#include "tscentral.h"
+
+typedef enum { START_REST, START_STATIC, N_STARTS } DynamicsStart;
+
+/* The largest stable steps, s */
+typedef struct {
+  PetscReal assembled; /* by Lanczos iteration on the assembled model */
+  PetscReal element;   /* of the stiffest element alone: below the assembled one */
+  PetscInt  its;       /* eigenproblems solved */
+} CriticalStep;
+
+/* Contact surfaces, [nodes][3] in Cartesian components; only the active ones are filled */
+typedef struct {
+  PetscInt        n;
+  const PetscInt *vertex; /* local vertices from 0 */
+  PetscReal      *u, *before, *v, *force;
+} Surface;
+
+struct _p_Dynamics {
+  MPI_Comm comm;
+  Model    model;
+  Contact  contact; /* NULL for none */
+  /* set by options */
+  PetscReal     fraction, dt_asked; /* of the critical step; -ts_dt, 0 for none */
+  PetscBool     step_force, coriolis, centrifugal, view_kkt, restart;
+  DynamicsStart start;
+  char          shape[PETSC_MAX_PATH_LEN]; /* folder of a run of modes; empty for none */
+  PetscInt      shape_mode, checkpoint_interval;
+  PetscReal     shape_amplitude, b;
+  /* children */
+  Operators        operators;
+  Statics          statics;
+  TS               ts;
+  Bodies           bodies;
+  External         external;
+  ContactProjector projector; /* NULL without contacts */
+  History          history;
+  Results          results;
+  /* state and work */
+  const Layout *layout;
+  Vec           u, v, minv; /* state vectors of the layout */
+  PetscReal    *ku;         /* K u of this rank's cells, N */
+  Surface       surface;
+  ContactSums  *sums; /* [interfaces] */
+  PetscInt      n_interfaces;
+  Ledger        ledger;
+  LedgerPart    part;
+  LedgerOrigin  origin;
+  CriticalStep  critical;
+  /* statistics */
+  PetscInt       n_elements, n_steps; /* of this call */
+  PetscLogDouble seconds;
+  PetscBool      stopped; /* by a signal */
+};
+
+/* forces.c - callbacks of the TS: forces, contact, and what is recorded when they are complete */
+PETSC_INTERN PetscErrorCode DynamicsForce(TS ts, const CentralStep *step, Vec u, Vec v, Vec f_old, Vec f, void *ctx);
+PETSC_INTERN PetscErrorCode DynamicsConstrain(TS ts, const CentralStep *step, Vec u, Vec v, Vec f_old, Vec f,
+                                              void *ctx);
+
+/* critical.c - the critical steps of the bodies */
+PETSC_INTERN PetscErrorCode DynamicsFindCriticalStep(Dynamics dynamics);
+
+/* frame.c - inertial forces in parts that turn */
+PETSC_INTERN PetscErrorCode DynamicsSetFrames(Dynamics dynamics);
+
+/* state.c - between vectors of all unknowns and state vectors (held directions 0) */
+PETSC_INTERN PetscErrorCode StateFromVec(Model model, const Layout *layout, Vec x, PetscReal state[]);
+PETSC_INTERN PetscErrorCode StateToVec(Model model, const Layout *layout, const PetscReal state[], Vec x);
+
+/* start.c - displacements and velocities at the start */
+PETSC_INTERN PetscErrorCode DynamicsStartState(Dynamics dynamics);
+
+/* keep.c - checkpoints */
+PETSC_INTERN PetscErrorCode DynamicsKeep(Dynamics dynamics);
+PETSC_INTERN PetscErrorCode DynamicsGoOn(Dynamics dynamics);

@@ -1,0 +1,125 @@
+/*
+   What the scene prescribes in time: life cycle, and the order in which the kinds act in a step. Energy: see
+   external.h.
+*/
+#include "externalimpl.h"
+
+PetscErrorCode ExternalCreate(MPI_Comm comm, Model model, External *external)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(external));
+  (*external)->comm  = comm;
+  (*external)->model = model;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExternalSetFromOptions(External external)
+{
+  PetscFunctionBeginUser;
+  PetscCall(TimedLoadsSetFromOptions(external));
+  PetscCall(InertiaSetFromOptions(external));
+  PetscCall(MotionsSetFromOptions(external));
+  PetscCall(ImpulsesSetFromOptions(external));
+  PetscCall(VelocitySetFromOptions(external));
+  PetscCall(PetscCalloc1(external->n_parts, &external->frames));
+  PetscFunctionReturn(0);
+}
+
+/* The next n numbers of the memory */
+static PetscReal *MemoryTake(PetscReal **next, PetscInt n)
+{
+  PetscReal *const here = *next;
+
+  *next += n;
+  return here;
+}
+
+PetscErrorCode ExternalLayMemory(External external)
+{
+  const PetscInt n_before = external->n_memory;
+  PetscInt       n        = 2 + external->n_loads + 2 * external->n_impulses;
+  PetscReal     *next;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < external->n_frames; i++) n += 3 * external->frames[i].n;
+  PetscCall(PetscRealloc((size_t)n * sizeof(PetscReal), &external->memory));
+  if (n > n_before) PetscCall(PetscArrayzero(&external->memory[n_before], n - n_before));
+  external->n_memory = n;
+  next               = external->memory;
+  external->begun    = MemoryTake(&next, 1);
+  external->drives   = MemoryTake(&next, 1);
+  for (PetscInt i = 0; i < external->n_loads; i++) external->loads[i].last = MemoryTake(&next, 1);
+  for (PetscInt i = 0; i < external->n_impulses; i++) external->impulses[i].last = MemoryTake(&next, 2);
+  for (PetscInt i = 0; i < external->n_frames; i++)
+    external->frames[i].last = MemoryTake(&next, 3 * external->frames[i].n);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExternalSetUp(External external, Bodies bodies)
+{
+  PetscFunctionBeginUser;
+  PetscCall(BodiesGetLayout(bodies, &external->layout));
+  PetscCall(BodiesGetMass(bodies, NULL, &external->mass, &external->minv));
+  PetscCall(TimedLoadsSetUp(external));
+  PetscCall(InertiaSetUp(external));
+  PetscCall(MotionsSetUp(external, bodies));
+  PetscCall(ImpulsesSetUp(external));
+  PetscCall(ExternalLayMemory(external));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExternalAdvance(External external, PetscReal t, PetscReal dt, const PetscReal u[], PetscReal v[],
+                               PetscReal f[], ExternalPower *power)
+{
+  PetscFunctionBeginUser;
+  power->old        = *external->drives;
+  power->now        = 0;
+  *external->drives = 0;
+  PetscCall(TimedLoadsAdvance(external, t, v, f, power));
+  PetscCall(InertiaAdvance(external, u, v, f, power));
+  PetscCall(ImpulsesAdvance(external, t, dt, v, f, power));
+  PetscCall(MotionsAdvance(external, t, dt, v));
+  *external->begun = 1;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExternalFinish(External external, PetscReal dt, const PetscReal f[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(MotionsFinish(external, dt, f));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExternalGetMemory(External external, PetscInt *n, PetscReal **values)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(external->memory, external->comm, PETSC_ERR_ARG_WRONGSTATE, "ExternalSetUp() must come first");
+  *n      = external->n_memory;
+  *values = external->memory;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExternalView(External external, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(TimedLoadsView(external, viewer));
+  PetscCall(InertiaView(external, viewer));
+  PetscCall(MotionsView(external, viewer));
+  PetscCall(ImpulsesView(external, viewer));
+  PetscCall(VelocityView(external, viewer));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExternalDestroy(External *external)
+{
+  PetscFunctionBeginUser;
+  if (!*external) PetscFunctionReturn(0);
+  PetscCall(TimedLoadsDestroy(*external));
+  PetscCall(InertiaDestroy(*external));
+  PetscCall(MotionsDestroy(*external));
+  PetscCall(ImpulsesDestroy(*external));
+  PetscCall(PetscFree((*external)->velocity));
+  PetscCall(PetscFree((*external)->memory));
+  PetscCall(PetscFree(*external));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,84 @@
+/*
+   External (private to dynamics/) - forces and motions that the scene prescribes in time: ramped loads, gravity,
+   impulses, prescribed displacements of sets, initial velocities, inertial forces of a turning frame.
+
+   Energy. With the external forces and those of the drives F_n at t_n, the work in the step around t_n is
+      W_n = dt/2 F_n . (v_{n-1/2} + v_{n+1/2}) = dt/2 (now_n + old_{n+1}).
+   A direction with a prescribed displacement has a force R_n = m (v_{n+1/2} - v_{n-1/2}) / dt - f_n of its drive, f_n
+   being the sum of all other forces, contact included; hence m (v_{n+1/2} - v_{n-1/2}) . (v_{n-1/2} + v_{n+1/2}) / 2,
+   the change of its kinetic energy, is the work of f_n + R_n exactly, and with the energies of dynamics.h
+      kinetic_{n+1/2} + strain_{n+1/2} = kinetic_{n-1/2} + strain_{n-1/2} + W_n + works of contact, friction, damping
+   holds to rounding, prescribed nodes counted with their lumped mass.
+*/
+#pragma once
+
+#include "bodies.h"
+
+typedef struct _p_External *External;
+
+/* Power of the external forces and of the drives of prescribed motions, W, sums over this rank (shared vertices counted
+   once): `old` of the forces at t_{n-1} on the velocities v_{n-1/2}, `now` of the forces at t_n on v_{n-1/2}; so that
+   the work in step n is dt/2 (now_n + old_{n+1}). The drives' share of both is in old_{n+1}, since R_n is known at the
+   end of the step only. `old` of the first step is 0. */
+typedef struct {
+  PetscReal old, now;
+} ExternalPower;
+
+PETSC_INTERN PetscErrorCode ExternalCreate(MPI_Comm comm, Model model, External *external);
+
+/*
+   ExternalSetFromOptions - reads what the scene prescribes; after ModelSetFromOptions(). Collective.
+
+   Options Database Keys:
++  -press_ramp <0>, -press_ramp_shape <smooth|linear>, -press_delay <0> - of the load `press`: length, shape, begin, s
+.  -gravity <0,0,0>       - m/s^2
+.  -motions <names>       - prescribed displacements, each the prefix of its own options
+.  -lift_set, -lift_displacement x,y,z, -lift_directions <those of the displacement> - named set, m, some of x, y, z
+.  -lift_ramp, -lift_ramp_shape <smooth|linear>, -lift_delay <0> - as of loads; the length must be positive
+.  -impulses <names>      - at nodes, each the prefix of its own options
+.  -hit_at x,y,z, -hit_part, -hit_impulse x,y,z, -hit_time <0> - place (m) whose nearest node is hit, its part, N s, s
+-  -disc_velocity <0,0,0> - of the part `disc` at the start, m/s
+
+   Errors: PETSC_ERR_USER_INPUT for a missing or invalid value.
+*/
+PETSC_INTERN PetscErrorCode ExternalSetFromOptions(External external);
+
+/*
+   ExternalSetUp - gathers the nodes of the loads, holds the directions of prescribed motions by BodiesHold().
+   Collective; after BodiesCreate().
+
+   Errors: PETSC_ERR_USER_INPUT for an unknown set; for motions whose directions a swept body cannot express, that
+   prescribe the same direction of a node twice or only what supports hold; for an impulse on a node that is held.
+*/
+PETSC_INTERN PetscErrorCode ExternalSetUp(External external, Bodies bodies);
+
+/* ExternalSetVelocity - adds the initial velocities of the parts to state vector v (the mean of the parts' where they
+   share a node); directions that are held or prescribed start with 0. Collective. */
+PETSC_INTERN PetscErrorCode ExternalSetVelocity(External external, PetscReal v[]);
+
+/* ExternalSetFrame - turning frame of a part: angular velocity (rad/s) about a centre (m);
+   f -= m (2 Omega x v + Omega x (Omega x (x - centre))), each where asked for, x = X + u. Collective; after
+   ExternalSetUp(), and again whenever the velocity changes (what its rate adds is left out). */
+PETSC_INTERN PetscErrorCode ExternalSetFrame(External external, const char part[], const PetscReal omega[3],
+                                             const PetscReal centre[3], PetscBool coriolis, PetscBool centrifugal);
+
+/*
+   ExternalAdvance - adds the forces at t_n to f, complete at every copy of a vertex, and gives the directions of
+   prescribed motions the velocity (d(t_n + dt) - d(t_n)) / dt. An impulse J at time T acts as J / dt in the step with
+   t_n <= T < t_n + dt, of the first two steps in the second: the first is half a step and would give half of J. On
+   entry v is v_{n-1/2}, f the internal forces. Call at every step. dt is that of the step from t_n. Not collective.
+*/
+PETSC_INTERN PetscErrorCode ExternalAdvance(External external, PetscReal t, PetscReal dt, const PetscReal u[],
+                                            PetscReal v[], PetscReal f[], ExternalPower *power);
+
+/* ExternalFinish - ends the step that ExternalAdvance() began, when f holds all forces at t_n, contact included: from
+   it follows the power of the drives. Not collective. */
+PETSC_INTERN PetscErrorCode ExternalFinish(External external, PetscReal dt, const PetscReal f[]);
+
+/* ExternalGetMemory - what must be kept between two steps for a bitwise restart: n numbers of this rank (borrowed, and
+   written in place; valid until the next ExternalSetFrame() of another part). Not collective. */
+PETSC_INTERN PetscErrorCode ExternalGetMemory(External external, PetscInt *n, PetscReal **values);
+
+/* ExternalView - in words, such as "load press: 100 N, smooth ramp over 0.002 s". Collective. */
+PETSC_INTERN PetscErrorCode ExternalView(External external, PetscViewer viewer);
+PETSC_INTERN PetscErrorCode ExternalDestroy(External *external);

@@ -1,0 +1,117 @@
+/*
+   Private to the files of External: the record of what the scene prescribes, and the files that fill it.
+
+   Each kind of force reads its options, finds its nodes in SetUp, and in each step adds its forces at t_n, their power
+   on v_{n-1/2} to `now`, and that of its forces at t_{n-1} to `old`.
+*/
+#pragma once
+
+#include "external.h"
+#include "forcepattern.h"
+#include "ramp.h"
+
+#define EXTERNAL_MAX_NAMES 64 /* names in one list of the scene */
+
+/* A load of the model: F(t) = r(t) F */
+typedef struct {
+  char        *name;
+  PetscReal    force[3]; /* N */
+  Ramp         ramp;
+  ForcePattern pattern;
+  PetscReal   *last; /* r(t_{n-1}) */
+} TimedLoad;
+
+/* Displacement of a set, d(t) = r(t) d */
+typedef struct {
+  char      *name, *set;
+  PetscReal  displacement[3]; /* d, m */
+  PetscBool  direction[3];    /* that are prescribed */
+  Ramp       ramp;
+  PetscInt   n, n_owned; /* prescribed numbers of a state vector, those of owned vertices first */
+  PetscInt  *index;
+  PetscReal *full;           /* d along each, m */
+  PetscReal *before, *after; /* work: v_{n-1/2} and v_{n+1/2}, m/s */
+} Drive;
+
+/* Momentum J given to a node at a time */
+typedef struct {
+  char        *name, *part; /* part is empty for any */
+  PetscReal    at[3], x[3]; /* place asked for and that of the node, m */
+  PetscReal    impulse[3];  /* J, N s */
+  PetscReal    time;        /* s */
+  ForcePattern pattern;     /* of J */
+  PetscReal   *last;        /* factor of J in the last step, 1/s, and 1 when it has acted */
+} Impulse;
+
+/* Inertial forces of a part described in a turning frame */
+typedef struct {
+  PetscInt   part;
+  PetscReal  omega[3];  /* rad/s */
+  PetscReal  centre[3]; /* m */
+  PetscBool  coriolis, centrifugal;
+  PetscInt   n, n_owned;
+  PetscInt  *vertex; /* local vertices from 0, owned ones first */
+  PetscReal *last;   /* [n][3] forces of the last step, Cartesian, N */
+} Frame;
+
+struct _p_External {
+  MPI_Comm comm;
+  Model    model;
+  /* set by options */
+  PetscInt   n_loads, n_motions, n_impulses, n_parts, n_frames;
+  TimedLoad *loads;
+  Drive     *motions;
+  Impulse   *impulses;
+  PetscReal *velocity;   /* [n_parts][3], m/s */
+  PetscReal  gravity[3]; /* m/s^2 */
+  Frame     *frames;     /* [n_parts] */
+  /* built by ExternalSetUp() */
+  const Layout    *layout;
+  const PetscReal *mass, *minv; /* kg, 1/kg; borrowed */
+  PetscReal       *weight;      /* [layout n] m g along each number, N; NULL without gravity */
+  PetscReal       *own_weight;  /* the same where this rank owns the vertex, else 0 */
+  /* status: what a restart needs, in one array to which all the `last` point */
+  PetscInt   n_memory;
+  PetscReal *memory;
+  PetscReal *begun;  /* 1 when a step has been made */
+  PetscReal *drives; /* power of the drives in the step before, on v_{n-1/2} + v_{n+1/2}, W */
+};
+
+/* external.c - makes the memory as long as what is there needs; new numbers are 0 */
+PETSC_INTERN PetscErrorCode ExternalLayMemory(External external);
+
+/* load.c */
+PETSC_INTERN PetscErrorCode TimedLoadsSetFromOptions(External external);
+PETSC_INTERN PetscErrorCode TimedLoadsSetUp(External external);
+PETSC_INTERN PetscErrorCode TimedLoadsAdvance(External external, PetscReal t, const PetscReal v[], PetscReal f[],
+                                              ExternalPower *power);
+PETSC_INTERN PetscErrorCode TimedLoadsView(External external, PetscViewer viewer);
+PETSC_INTERN PetscErrorCode TimedLoadsDestroy(External external);
+
+/* motion.c - SetUp holds the directions; Advance gives them v_{n+1/2}, Finish counts the power of their drives */
+PETSC_INTERN PetscErrorCode MotionsSetFromOptions(External external);
+PETSC_INTERN PetscErrorCode MotionsSetUp(External external, Bodies bodies);
+PETSC_INTERN PetscErrorCode MotionsAdvance(External external, PetscReal t, PetscReal dt, PetscReal v[]);
+PETSC_INTERN PetscErrorCode MotionsFinish(External external, PetscReal dt, const PetscReal f[]);
+PETSC_INTERN PetscErrorCode MotionsView(External external, PetscViewer viewer);
+PETSC_INTERN PetscErrorCode MotionsDestroy(External external);
+
+/* impulse.c - SetUp after that of the motions, since an impulse on a prescribed node does nothing */
+PETSC_INTERN PetscErrorCode ImpulsesSetFromOptions(External external);
+PETSC_INTERN PetscErrorCode ImpulsesSetUp(External external);
+PETSC_INTERN PetscErrorCode ImpulsesAdvance(External external, PetscReal t, PetscReal dt, const PetscReal v[],
+                                            PetscReal f[], ExternalPower *power);
+PETSC_INTERN PetscErrorCode ImpulsesView(External external, PetscViewer viewer);
+PETSC_INTERN PetscErrorCode ImpulsesDestroy(External external);
+
+/* inertia.c - gravity and turning frames */
+PETSC_INTERN PetscErrorCode InertiaSetFromOptions(External external);
+PETSC_INTERN PetscErrorCode InertiaSetUp(External external);
+PETSC_INTERN PetscErrorCode InertiaAdvance(External external, const PetscReal u[], const PetscReal v[], PetscReal f[],
+                                           ExternalPower *power);
+PETSC_INTERN PetscErrorCode InertiaView(External external, PetscViewer viewer);
+PETSC_INTERN PetscErrorCode InertiaDestroy(External external);
+
+/* velocity.c - initial velocities of parts */
+PETSC_INTERN PetscErrorCode VelocitySetFromOptions(External external);
+PETSC_INTERN PetscErrorCode VelocityView(External external, PetscViewer viewer);

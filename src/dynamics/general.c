@@ -1,0 +1,206 @@
+/*
+   Bodies that are not swept: K in rows of 3 x 3 blocks, one for each pair of vertices of this rank that share a cell;
+   memory limits the speed, hence the symmetric half alone is kept. C = alpha M + beta K; rows between parts of
+   different beta have blocks of their own for the second term, whole rows of them.
+*/
+#include "bodiesimpl.h"
+
+/* The cells of these bodies, and places of their vertices among the nodes */
+typedef struct {
+  PetscInt  n, *of_vertex; /* [n_vertices] node, -1 of vertices elsewhere */
+  PetscInt *cell;          /* [n] cells with such nodes */
+} Cells;
+
+static PetscErrorCode CellsFind(Bodies b, Cells *cells)
+{
+  const General *g = &b->general;
+  PetscInt       n_cells;
+
+  PetscFunctionBeginUser;
+  PetscCall(BodiesCountCells(b, &n_cells));
+  PetscCall(PetscMalloc2(b->layout.n_vertices, &cells->of_vertex, n_cells, &cells->cell));
+  for (PetscInt v = 0; v < b->layout.n_vertices; v++) cells->of_vertex[v] = -1;
+  for (PetscInt i = 0; i < g->n; i++) cells->of_vertex[g->vertex[i]] = i;
+  for (PetscInt c = 0; c < n_cells; c++) {
+    PetscInt body, n_nodes, vertex[ELEMENT_MAX_NODES];
+
+    PetscCall(BodiesGetCellVertices(b, c, &body, &n_nodes, vertex));
+    if (cells->of_vertex[vertex[0]] >= 0) cells->cell[cells->n++] = c;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Rows with all nodes that share a cell with each, or `upper` with those that are not before it */
+static PetscErrorCode RowsCreate(Bodies b, const Cells *cells, PetscBool upper, BlockRows *rows)
+{
+  PetscInt n_all = 0, *first, *all;
+
+  PetscFunctionBeginUser;
+  rows->n     = b->general.n;
+  rows->upper = upper;
+  PetscCall(PetscCalloc1(rows->n + 1, &rows->start));
+  PetscCall(PetscCalloc1(rows->n + 1, &first));
+  for (int pass = 0; pass < 2; pass++) {
+    for (PetscInt i = 0; i < cells->n; i++) {
+      PetscInt body, n_nodes, vertex[ELEMENT_MAX_NODES];
+
+      PetscCall(BodiesGetCellVertices(b, cells->cell[i], &body, &n_nodes, vertex));
+      for (PetscInt a = 0; a < n_nodes; a++)
+        for (PetscInt e = 0; e < n_nodes; e++) {
+          const PetscInt row = cells->of_vertex[vertex[a]], column = cells->of_vertex[vertex[e]];
+
+          if (upper && column < row) continue;
+          if (pass) all[first[row]] = column;
+          first[row]++;
+        }
+    }
+    if (pass) break;
+    for (PetscInt row = 0; row <= rows->n; row++) {
+      const PetscInt count = first[row];
+
+      first[row] = n_all;
+      n_all += count;
+    }
+    PetscCall(PetscMalloc1(n_all, &all));
+  }
+  for (PetscInt row = 0; row < rows->n; row++) {
+    const PetscInt begin = row ? first[row - 1] : 0;
+    PetscInt       n     = first[row] - begin;
+
+    PetscCall(PetscSortRemoveDupsInt(&n, &all[begin]));
+    PetscCall(PetscArraymove(&all[rows->start[row]], &all[begin], n));
+    rows->start[row + 1] = rows->start[row] + n;
+  }
+  PetscCall(PetscMalloc1(rows->start[rows->n], &rows->column));
+  PetscCall(PetscArraycpy(rows->column, all, rows->start[rows->n]));
+  PetscCall(PetscCalloc1(9 * rows->start[rows->n] + 1, &rows->value));
+  PetscCall(PetscFree(first));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
+/* Adds scale times the stiffness of a cell */
+static PetscErrorCode RowsAdd(const Cells *cells, const BodiesCell *cell, PetscReal scale, BlockRows *rows)
+{
+  const PetscInt n = cell->n_nodes;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n * n; i++) {
+    const PetscInt a = i / n, e = i % n, row = cells->of_vertex[cell->vertex[a]];
+    const PetscInt column = cells->of_vertex[cell->vertex[e]];
+    PetscInt       k;
+
+    if (rows->upper && column < row) continue;
+    PetscCall(PetscFindInt(column, rows->start[row + 1] - rows->start[row], &rows->column[rows->start[row]], &k));
+    for (int j = 0; j < 9; j++)
+      rows->value[9 * (rows->start[row] + k) + j] += scale * cell->stiffness[(3 * a + j / 3) * 3 * n + 3 * e + j % 3];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Stiffness, masses and damping factors of all cells; beta is -1 where no cell was yet, and -2 where cells differ */
+static PetscErrorCode GeneralSum(Bodies b, const Cells *cells)
+{
+  General *g = &b->general;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < g->n; i++) g->beta[i] = -1;
+  for (PetscInt c = 0; c < cells->n; c++) {
+    BodiesCell cell;
+
+    PetscCall(BodiesGetCell(b, cells->cell[c], &cell));
+    BodiesTurnCell(&b->layout, &cell);
+    PetscCall(RowsAdd(cells, &cell, 1, &g->stiffness));
+    for (PetscInt a = 0; a < cell.n_nodes; a++) {
+      const PetscInt i = cells->of_vertex[cell.vertex[a]];
+
+      g->mass[i] += cell.mass[a];
+      g->alpha[i] += cell.alpha * cell.mass[a];
+      g->beta[i] = g->beta[i] == -1 || g->beta[i] == cell.beta ? cell.beta : -2;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Whether a node of the cell has cells of different beta */
+static PetscBool CellIsMixed(const General *g, const Cells *cells, PetscInt n_nodes, const PetscInt vertex[])
+{
+  for (PetscInt a = 0; a < n_nodes; a++)
+    if (g->beta[cells->of_vertex[vertex[a]]] == -2) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Empties rows but for those of nodes with different beta */
+static PetscErrorCode RowsKeepMixed(const General *g, BlockRows *rows)
+{
+  PetscInt end = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < rows->n; i++) {
+    const PetscInt begin = rows->start[i], n = g->beta[i] == -2 ? rows->start[i + 1] - begin : 0;
+
+    PetscCall(PetscArraymove(&rows->column[end], &rows->column[begin], n));
+    PetscCall(PetscArraymove(&rows->value[9 * end], &rows->value[9 * begin], 9 * n));
+    rows->start[i] = end;
+    end += n;
+  }
+  rows->start[rows->n] = end;
+  PetscFunctionReturn(0);
+}
+
+/* Blocks of the second term of C for the nodes of which the cells have different beta */
+static PetscErrorCode DampingSum(Bodies b, const Cells *cells)
+{
+  General *g     = &b->general;
+  PetscInt mixed = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < g->n; i++) mixed += g->beta[i] == -2;
+  if (!mixed) {
+    PetscCall(PetscCalloc1(g->n + 1, &g->damping.start));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(RowsCreate(b, cells, PETSC_FALSE, &g->damping));
+  for (PetscInt c = 0; c < cells->n; c++) {
+    PetscInt   body, n_nodes, vertex[ELEMENT_MAX_NODES];
+    BodiesCell cell;
+
+    PetscCall(BodiesGetCellVertices(b, cells->cell[c], &body, &n_nodes, vertex));
+    if (!CellIsMixed(g, cells, n_nodes, vertex)) continue;
+    PetscCall(BodiesGetCell(b, cells->cell[c], &cell));
+    BodiesTurnCell(&b->layout, &cell);
+    PetscCall(RowsAdd(cells, &cell, cell.beta, &g->damping));
+  }
+  PetscCall(RowsKeepMixed(g, &g->damping));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GeneralSetUp(Bodies b)
+{
+  General *g     = &b->general;
+  Cells    cells = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc4(g->n, &g->mass, g->n, &g->alpha, g->n, &g->beta, 4 * g->n, &g->product));
+  PetscCall(CellsFind(b, &cells));
+  PetscCall(RowsCreate(b, &cells, PETSC_TRUE, &g->stiffness));
+  PetscCall(GeneralSum(b, &cells));
+  PetscCall(DampingSum(b, &cells));
+  PetscCall(PetscFree2(cells.of_vertex, cells.cell));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GeneralDestroy(General *general)
+{
+  BlockRows *rows[] = {&general->stiffness, &general->damping};
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 2; i++) {
+    PetscCall(PetscFree(rows[i]->start));
+    PetscCall(PetscFree(rows[i]->column));
+    PetscCall(PetscFree(rows[i]->value));
+  }
+  PetscCall(PetscFree(general->vertex));
+  PetscCall(PetscFree4(general->mass, general->alpha, general->beta, general->product));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,243 @@
+/*
+   History - life cycle, what is due, and what a restart needs. Tables are opened when they get their first row, so
+   that a restart finds those of the run before.
+*/
+#include "historyimpl.h"
+
+/* What a restart needs, before the times of the snapshots: reals alone */
+typedef struct {
+  Schedule  rows, pairs, frames;
+  Growth    growth;
+  PetscReal sweeps, steps;
+  PetscReal bytes, pair_bytes; /* lengths of the tables */
+  PetscReal n_frames;
+} Kept;
+
+#define N_KEPT (PetscInt)(sizeof(Kept) / sizeof(PetscReal))
+
+void HistoryMotion(const Layout *layout, const HistoryState *state, PetscInt i, PetscReal u[3], PetscReal v[3],
+                   PetscReal a[3])
+{
+  const Layout    one  = {.at = (PetscInt[]){0}, .step = (PetscInt[]){1}, .basis = &layout->basis[9 * i]};
+  const PetscReal kick = state->dt * state->b, kick_old = state->dt * (0.5 - state->b);
+  PetscReal       local_u[3] = {0}, local_v[3] = {0}, local_a[3] = {0};
+
+  for (PetscInt j = 0; layout->at[i] >= 0 && j < 3; j++) {
+    const PetscInt  k    = layout->at[i] + j * layout->step[i];
+    const PetscReal push = kick * state->f[k] + (state->f_old ? kick_old * state->f_old[k] : 0);
+
+    local_u[j] = state->u[k];
+    local_v[j] = state->before[k] + state->minv[k] * push;
+    local_a[j] = state->minv[k] * state->f[k];
+  }
+  LayoutGet(&one, 0, local_u, u);
+  LayoutGet(&one, 0, local_v, v);
+  LayoutGet(&one, 0, local_a, a);
+}
+
+PetscErrorCode HistoryCreate(MPI_Comm comm, History *history)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(history));
+  (*history)->comm          = comm;
+  (*history)->rows.interval = 5e-6;
+  (*history)->live.interval = 1;
+  PetscFunctionReturn(0);
+}
+
+/* Checks an interval; 0 only where it means none */
+static PetscErrorCode IntervalCheck(MPI_Comm comm, const char option[], PetscReal interval, PetscBool none)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(interval > 0 || (none && interval == 0), comm, PETSC_ERR_USER_INPUT, "%s %.6g s must be positive%s",
+             option, (double)interval, none ? ", or 0 for none" : "");
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HistorySetFromOptions(History h)
+{
+  PetscFunctionBeginUser;
+  PetscOptionsBegin(h->comm, NULL, "History", "Dynamics");
+  PetscCall(PetscOptionsReal("-dynamics_history_interval", "s between rows of transient.csv", "dynamics.h",
+                             h->rows.interval, &h->rows.interval, NULL));
+  PetscCall(PetscOptionsReal("-dynamics_pairs_interval", "s between the states in contact_pairs.csv, 0 for none",
+                             "dynamics.h", h->pairs.interval, &h->pairs.interval, NULL));
+  PetscCall(PetscOptionsReal("-dynamics_snapshot_interval", "s between fields, 0 for none", "dynamics.h",
+                             h->frames.interval, &h->frames.interval, NULL));
+  PetscCall(PetscOptionsReal("-dynamics_live", "s of the clock between live lines, 0 for none", "dynamics.h",
+                             h->live.interval, &h->live.interval, NULL));
+  PetscOptionsEnd();
+  PetscCall(IntervalCheck(h->comm, "-dynamics_history_interval", h->rows.interval, PETSC_FALSE));
+  PetscCall(IntervalCheck(h->comm, "-dynamics_pairs_interval", h->pairs.interval, PETSC_TRUE));
+  PetscCall(IntervalCheck(h->comm, "-dynamics_snapshot_interval", h->frames.interval, PETSC_TRUE));
+  PetscCall(IntervalCheck(h->comm, "-dynamics_live", h->live.interval, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HistorySetContact(History history, Contact contact)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetInterfaces(contact, &history->n_interfaces, &history->interfaces));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HistorySetUp(History history, Model model, const Layout *layout, ContactProjector projector,
+                            Results results, PetscReal end_time, PetscReal dt)
+{
+  PetscBool fields;
+
+  PetscFunctionBeginUser;
+  history->model     = model;
+  history->layout    = layout;
+  history->projector = projector;
+  history->results   = results;
+  history->live.end  = end_time;
+  ScheduleRound(&history->rows, dt);
+  ScheduleRound(&history->pairs, dt);
+  ScheduleRound(&history->frames, dt);
+  history->growth.window = end_time > 0 ? PetscMin(end_time / 20, 1e-3) : 1e-3;
+  PetscCall(ModelGetProbes(model, &history->n_probes, &history->probes));
+  PetscCall(ResultsWantFields(results, &fields));
+  if (!fields) history->frames.interval = 0;
+  if (!projector) history->pairs.interval = 0;
+  PetscCheck(history->pairs.interval == 0 || history->interfaces, history->comm, PETSC_ERR_ARG_WRONGSTATE,
+             "states of pairs need the names of their interfaces: call HistorySetContact()");
+  if (history->frames.interval > 0) PetscCall(SnapshotsCreate(history));
+  PetscFunctionReturn(0);
+}
+
+PetscBool HistoryIsDue(History history, PetscReal t, PetscReal dt)
+{
+  return ScheduleIsDue(&history->rows, t, dt) || ScheduleIsDue(&history->pairs, t, dt) ||
+             ScheduleIsDue(&history->frames, t, dt)
+           ? PETSC_TRUE
+           : PETSC_FALSE;
+}
+
+/* Opens a table; bytes > 0: goes on with that of the run before, of that length */
+static PetscErrorCode TableBegin(Results results, const char name[], const char header[], PetscReal bytes,
+                                 ResultsTable *table)
+{
+  PetscFunctionBeginUser;
+  if (*table) PetscFunctionReturn(0);
+  if (bytes > 0)
+    PetscCall(ResultsTableReopen(results, name, header, (PetscInt64)bytes, table));
+  else
+    PetscCall(ResultsTableOpen(results, name, header, table));
+  PetscFunctionReturn(0);
+}
+
+/* Opens the tables that are wanted, if they are not open */
+static PetscErrorCode TablesBegin(History history, PetscReal bytes, PetscReal pair_bytes)
+{
+  char *header;
+
+  PetscFunctionBeginUser;
+  if (!history->table) {
+    PetscCall(RowCreateHeader(history, &header));
+    PetscCall(TableBegin(history->results, "transient", header, bytes, &history->table));
+    PetscCall(PetscFree(header));
+  }
+  if (history->pairs.interval > 0)
+    PetscCall(TableBegin(history->results, "contact_pairs", PAIRS_HEADER, pair_bytes, &history->pair_table));
+  PetscFunctionReturn(0);
+}
+
+/* States of the pairs in the step from t_n */
+static PetscErrorCode RecordPairs(History history, const HistoryState *state)
+{
+  const ContactState *pair;
+  const PetscInt     *interface, *number;
+  const PetscReal    *x;
+  PetscInt            n;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactProjectorGetStates(history->projector, &n, &pair, &interface, &number, &x));
+  PetscCall(
+    PairsWrite(history->pair_table, history->comm, history->interfaces, state->time, n, pair, interface, number, x));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HistoryRecord(History history, const HistoryState *state)
+{
+  PetscFunctionBeginUser;
+  PetscCall(TablesBegin(history, 0, 0));
+  if (ScheduleMeet(&history->rows, state->time, state->dt)) {
+    GrowthAdd(&history->growth, state->time, state->ledger->kinetic);
+    PetscCall(RowWrite(history, state));
+    PetscCall(LiveShow(history, state));
+  }
+  if (ScheduleMeet(&history->pairs, state->time, state->dt)) PetscCall(RecordPairs(history, state));
+  if (ScheduleMeet(&history->frames, state->time, state->dt)) PetscCall(SnapshotWrite(history, state));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HistoryGetMemory(History h, PetscInt *n, PetscReal **values)
+{
+  PetscInt64       bytes, pair_bytes = 0;
+  PetscInt         n_frames = 0;
+  const PetscReal *times    = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCall(TablesBegin(h, 0, 0));
+  PetscCall(ResultsTableFlush(h->table, &bytes));
+  if (h->pair_table) PetscCall(ResultsTableFlush(h->pair_table, &pair_bytes));
+  if (h->film) PetscCall(ResultsFilmGetTimes(h->film, &n_frames, &times));
+  const Kept kept = {.rows       = h->rows,
+                     .pairs      = h->pairs,
+                     .frames     = h->frames,
+                     .growth     = h->growth,
+                     .sweeps     = h->sweeps,
+                     .steps      = h->steps,
+                     .bytes      = (PetscReal)bytes,
+                     .pair_bytes = (PetscReal)pair_bytes,
+                     .n_frames   = (PetscReal)n_frames};
+
+  *n = N_KEPT + n_frames;
+  PetscCall(PetscMalloc1(*n, values));
+  PetscCall(PetscMemcpy(*values, &kept, sizeof(kept)));
+  PetscCall(PetscArraycpy(*values + N_KEPT, times, n_frames));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HistorySetMemory(History h, PetscInt n, const PetscReal values[])
+{
+  Kept kept;
+
+  PetscFunctionBeginUser;
+  PetscCheck(n >= N_KEPT, h->comm, PETSC_ERR_ARG_SIZ, "memory of %" PetscInt_FMT " numbers, must be %" PetscInt_FMT, n,
+             N_KEPT);
+  PetscCall(PetscMemcpy(&kept, values, sizeof(kept)));
+  PetscCheck(n == N_KEPT + (PetscInt)kept.n_frames, h->comm, PETSC_ERR_ARG_SIZ,
+             "memory of %" PetscInt_FMT " numbers, must be %" PetscInt_FMT, n, N_KEPT + (PetscInt)kept.n_frames);
+  kept.growth.window = h->growth.window;
+  h->growth          = kept.growth;
+  h->sweeps          = kept.sweeps;
+  h->steps           = kept.steps;
+  ScheduleRestore(&h->rows, &kept.rows);
+  ScheduleRestore(&h->pairs, &kept.pairs);
+  ScheduleRestore(&h->frames, &kept.frames);
+  if (h->film) PetscCall(ResultsFilmSetTimes(h->film, n - N_KEPT, &values[N_KEPT]));
+  PetscCall(TablesBegin(h, kept.bytes, kept.pair_bytes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HistoryClose(History history)
+{
+  PetscFunctionBeginUser;
+  PetscCall(TablesBegin(history, 0, 0));
+  PetscCall(ResultsTableClose(&history->table));
+  PetscCall(ResultsTableClose(&history->pair_table));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HistoryDestroy(History *history)
+{
+  PetscFunctionBeginUser;
+  if (!*history) PetscFunctionReturn(0);
+  PetscCall(ResultsTableSuspend(&(*history)->table));
+  PetscCall(ResultsTableSuspend(&(*history)->pair_table));
+  PetscCall(ResultsFilmDestroy(&(*history)->film));
+  PetscCall(PetscFree(*history));
+  PetscFunctionReturn(0);
+}

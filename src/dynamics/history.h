@@ -1,0 +1,52 @@
+/*
+   History (private to dynamics/) - transient.csv, contact_pairs.csv, the live line, and snapshots with transient.xmf.
+*/
+#pragma once
+
+#include <squeal/projector.h>
+#include <squeal/results.h>
+#include "ledger.h"
+
+typedef struct _p_History *History;
+
+/* State at t_n, when the forces are complete: velocity v_n = before + dt minv ((1/2 - b) f_old + b f), acceleration a
+   = minv f; b = 0 and f_old NULL in the first step, where before is v_0 */
+typedef struct {
+  PetscInt           step;
+  PetscReal          time, dt, b;
+  const PetscReal   *u, *before, *f, *minv, *f_old; /* state vectors; f_old NULL for b = 1/2 */
+  const Ledger      *ledger;                        /* of the half step before t_n */
+  PetscInt           n_interfaces;
+  const ContactSums *sums; /* [n_interfaces] of the step from t_n */
+} HistoryState;
+
+PETSC_INTERN PetscErrorCode HistoryCreate(MPI_Comm comm, History *history);
+
+/* -dynamics_history_interval, -dynamics_pairs_interval, -dynamics_snapshot_interval, -dynamics_live */
+PETSC_INTERN PetscErrorCode HistorySetFromOptions(History history);
+
+/* Names of the interfaces, for columns and pairs; before HistorySetUp(). Not collective */
+PETSC_INTERN PetscErrorCode HistorySetContact(History history, Contact contact);
+
+/* Intervals are rounded to whole steps dt (0 for not). Collective. */
+PETSC_INTERN PetscErrorCode HistorySetUp(History history, Model model, const Layout *layout, ContactProjector projector,
+                                         Results results, PetscReal end_time, PetscReal dt);
+
+/* Whether a row (or a snapshot) is due at step n, time t: the same answer on every rank, and cheap; multiples k of
+   the interval are met at the first t >= k interval - dt / 2 */
+PETSC_INTERN PetscBool HistoryIsDue(History history, PetscReal t, PetscReal dt);
+
+/* writes what is due: row, snapshot, live line (step, time, time left, open/stick/slip, growth of the vibration).
+   Collective. */
+PETSC_INTERN PetscErrorCode HistoryRecord(History history, const HistoryState *state);
+
+/* what must be kept for a restart: rows written so far (the table is flushed, and cut back to them at the restart),
+   next times, what the live line needs; n numbers, the same on every rank. Get flushes. The caller frees values. */
+PETSC_INTERN PetscErrorCode HistoryGetMemory(History history, PetscInt *n, PetscReal **values);
+PETSC_INTERN PetscErrorCode HistorySetMemory(History history, PetscInt n, const PetscReal values[]);
+
+/* completes transient.csv under its final name. Collective. */
+PETSC_INTERN PetscErrorCode HistoryClose(History history);
+
+/* frees it; without HistoryClose() the tables stay under their temporary names, for a restart. Collective. */
+PETSC_INTERN PetscErrorCode HistoryDestroy(History *history);

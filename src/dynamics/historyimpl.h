@@ -1,0 +1,81 @@
+/* Private to the history: its record and the files that fill it. What a restart needs is made of reals alone, to be
+   kept as an array of them */
+#pragma once
+
+#include "history.h"
+
+#define PAIRS_HEADER "time_s,pair,interface,x_m,y_m,z_m,gap_m,lambda_n_n,lambda_t_n,status"
+
+/* Multiples of an interval, each met at the first t >= k interval - dt / 2 */
+typedef struct {
+  PetscReal interval; /* s, 0 for never */
+  PetscReal next;     /* k of the one that comes next */
+} Schedule;
+
+/* Growth of the vibration, from the largest rises of the kinetic energy in consecutive windows of time */
+typedef struct {
+  PetscReal window;             /* length, s */
+  PetscReal index;              /* of the present one */
+  PetscReal rise, at;           /* its largest rise so far (J), with the peak at this time (s); 0 for none */
+  PetscReal last_rise, last_at; /* those of the complete one before */
+  PetscReal n;                  /* complete windows with a rise, one after the other, at most 2 */
+  PetscReal rate;               /* half the logarithmic rate of the last two, 1/s; known for n = 2 */
+  PetscReal energy[2], time;    /* kinetic energies of the last two rows, and time of the last */
+  PetscReal trough;             /* the last one, J */
+} Growth;
+
+/* Live line; the times of the wall are of rank 0 */
+typedef struct {
+  PetscReal      interval; /* least time between two lines, s of the wall; 0 for none */
+  PetscReal      end;      /* of the run, s */
+  PetscReal      start;    /* first time seen, s */
+  PetscLogDouble begun, shown;
+} Live;
+
+struct _p_History {
+  MPI_Comm  comm;
+  Schedule  rows, pairs, frames;
+  Growth    growth;
+  Live      live;
+  PetscReal sweeps, steps; /* of the projector at the last row */
+  /* what is recorded */
+  Model                   model;
+  const Layout           *layout;
+  ContactProjector        projector;  /* NULL without contacts */
+  const ContactInterface *interfaces; /* [n_interfaces] those with names; none without HistorySetContact() */
+  PetscInt                n_interfaces, n_probes;
+  const Probe            *probes;
+  /* where */
+  Results      results;
+  ResultsTable table, pair_table;
+  ResultsFilm  film; /* NULL for none */
+};
+
+/* history.c - Cartesian displacement (m), velocity (m/s) and acceleration (m/s^2) of local vertex i at t_n; zero for
+   a vertex without cells */
+PETSC_INTERN void HistoryMotion(const Layout *layout, const HistoryState *state, PetscInt i, PetscReal u[3],
+                                PetscReal v[3], PetscReal a[3]);
+
+/* schedule.c - rounds the interval to whole steps; whether one is due; Meet then goes on to the next. Restore takes
+   over from a run that may have had another interval */
+PETSC_INTERN void      ScheduleRound(Schedule *schedule, PetscReal dt);
+PETSC_INTERN PetscBool ScheduleIsDue(const Schedule *schedule, PetscReal t, PetscReal dt);
+PETSC_INTERN PetscBool ScheduleMeet(Schedule *schedule, PetscReal t, PetscReal dt);
+PETSC_INTERN void      ScheduleRestore(Schedule *schedule, const Schedule *kept);
+
+/* row.c - header of transient.csv, which the caller frees, and a row */
+PETSC_INTERN PetscErrorCode RowCreateHeader(History history, char **header);
+PETSC_INTERN PetscErrorCode RowWrite(History history, const HistoryState *state);
+
+/* pairs.c - rows of the states of all ranks, by interface and number of the slave */
+PETSC_INTERN PetscErrorCode PairsWrite(ResultsTable table, MPI_Comm comm, const ContactInterface interfaces[],
+                                       PetscReal time, PetscInt n, const ContactState state[],
+                                       const PetscInt interface[], const PetscInt number[], const PetscReal x[]);
+
+/* live.c */
+PETSC_INTERN void           GrowthAdd(Growth *growth, PetscReal t, PetscReal kinetic);
+PETSC_INTERN PetscErrorCode LiveShow(History history, const HistoryState *state);
+
+/* snapshot.c */
+PETSC_INTERN PetscErrorCode SnapshotsCreate(History history);
+PETSC_INTERN PetscErrorCode SnapshotWrite(History history, const HistoryState *state);

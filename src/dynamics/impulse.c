@@ -1,0 +1,191 @@
+/*
+   Impulses J (N s) at nodes: a force J / dt in one step, so that the node's momentum grows by J. The step is the one
+   with t_n <= T < t_n + dt, except the first, v_{1/2} = v_0 + dt/2 a_0, which would give half of it: there the second
+   takes over.
+*/
+#include "externalimpl.h"
+#include <squeal/options.h>
+
+/* Raises an error for a part that the scene does not name */
+static PetscErrorCode ImpulseCheckPart(External external, const Impulse *hit)
+{
+  const Part *parts;
+  char        names[1024] = "";
+  PetscInt    n;
+  PetscBool   found = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (!hit->part[0]) PetscFunctionReturn(0);
+  PetscCall(ModelGetParts(external->model, &n, &parts));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(PetscStrlcat(names, i ? ", " : "", sizeof(names)));
+    PetscCall(PetscStrlcat(names, parts[i].name, sizeof(names)));
+    if (!strcmp(hit->part, parts[i].name)) found = PETSC_TRUE;
+  }
+  PetscCheck(found, external->comm, PETSC_ERR_USER_INPUT, "-%s_part %s is none of the -parts: %s", hit->name, hit->part,
+             names);
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for an impulse that is not complete */
+static PetscErrorCode ImpulseCheck(External external, const Impulse *hit, PetscBool placed)
+{
+  const PetscReal *J    = hit->impulse;
+  const MPI_Comm   comm = external->comm;
+
+  PetscFunctionBeginUser;
+  PetscCheck(placed, comm, PETSC_ERR_USER_INPUT, "-%s_at must be given: the place x,y,z (m)", hit->name);
+  for (int d = 0; d < 3; d++) {
+    PetscCheck(!PetscIsInfOrNanReal(hit->at[d]), comm, PETSC_ERR_USER_INPUT,
+               "-%s_at value %.6g must be a finite number (m)", hit->name, (double)hit->at[d]);
+    PetscCheck(!PetscIsInfOrNanReal(J[d]), comm, PETSC_ERR_USER_INPUT,
+               "-%s_impulse value %.6g must be a finite number (N s)", hit->name, (double)J[d]);
+  }
+  PetscCheck(J[0] != 0 || J[1] != 0 || J[2] != 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_impulse must be given: three values, not all zero (N s)", hit->name);
+  PetscCheck(hit->time >= 0 && !PetscIsInfOrNanReal(hit->time), comm, PETSC_ERR_USER_INPUT,
+             "-%s_time %.6g must be a time of at least 0 (s)", hit->name, (double)hit->time);
+  PetscCall(ImpulseCheckPart(external, hit));
+  PetscFunctionReturn(0);
+}
+
+/* One impulse, whose name is set */
+static PetscErrorCode ImpulseSetFromOptions(External external, Impulse *hit)
+{
+  char      prefix[128], title[160], part[256] = "";
+  PetscBool placed;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", hit->name));
+  PetscCall(PetscSNPrintf(title, sizeof(title), "Impulse %s", hit->name));
+  PetscOptionsBegin(external->comm, prefix, title, NULL);
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-at", "place x,y,z whose nearest node is hit, m (required)", 3,
+                            hit->at, &placed));
+  PetscCall(
+    PetscOptionsString("-part", "body of the node; any without it", "dynamics.h", part, part, sizeof(part), NULL));
+  PetscCall(
+    OptionsGetReals(PetscOptionsObject, "-impulse", "momentum in x,y,z, N s (required)", 3, hit->impulse, NULL));
+  PetscCall(PetscOptionsReal("-time", "when, s", "dynamics.h", hit->time, &hit->time, NULL));
+  PetscOptionsEnd();
+  PetscCall(PetscStrallocpy(part, &hit->part));
+  PetscCall(ImpulseCheck(external, hit, placed));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ImpulsesSetFromOptions(External external)
+{
+  char *names[EXTERNAL_MAX_NAMES];
+
+  PetscFunctionBeginUser;
+  PetscCall(OptionsGetNames(external->comm, "-impulses", "at nodes, each the prefix of its -at and -impulse", "",
+                            EXTERNAL_MAX_NAMES, &external->n_impulses, names));
+  PetscCall(PetscCalloc1(external->n_impulses, &external->impulses));
+  for (PetscInt i = 0; i < external->n_impulses; i++) external->impulses[i].name = names[i];
+  for (PetscInt i = 0; i < external->n_impulses; i++)
+    PetscCall(ImpulseSetFromOptions(external, &external->impulses[i]));
+  PetscFunctionReturn(0);
+}
+
+/* This rank's copy of the vertex that one rank names by a number >= 0, else -1 */
+static PetscErrorCode VertexFindCopy(Model model, PetscInt *vertex)
+{
+  const PetscInt *number;
+  PetscInt        n, global = -1;
+  DM              dm;
+  IS              numbering;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(model, &dm));
+  PetscCall(DMPlexGetVertexNumbering(dm, &numbering)); /* -(g + 1) for vertices of other ranks */
+  PetscCall(ISGetLocalSize(numbering, &n));
+  PetscCall(ISGetIndices(numbering, &number));
+  if (*vertex >= 0) global = number[*vertex] < 0 ? -(number[*vertex] + 1) : number[*vertex];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &global, 1, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)dm)));
+  *vertex = -1;
+  for (PetscInt i = 0; i < n && *vertex < 0; i++)
+    if (number[i] == global || number[i] == -(global + 1)) *vertex = i;
+  PetscCall(ISRestoreIndices(numbering, &number));
+  PetscFunctionReturn(0);
+}
+
+/* The place of the node that is hit on every rank, and whether it moves in a direction of J */
+static PetscErrorCode ImpulsePlace(External external, PetscInt vertex, Impulse *hit, PetscBool *moves)
+{
+  const ForcePattern *p = &hit->pattern;
+  const PetscReal    *x;
+  PetscReal           here[4] = {0, 0, 0, 0};
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetCoordinates(external->model, &x));
+  if (vertex >= 0 && external->layout->owned[vertex]) PetscCall(PetscArraycpy(here, &x[3 * vertex], 3));
+  for (PetscInt i = 0; i < p->n; i++) here[3] += PetscAbsReal(external->minv[p->index[i]] * p->value[i]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, here, 4, MPIU_REAL, MPI_SUM, external->comm));
+  PetscCall(PetscArraycpy(hit->x, here, 3));
+  *moves = here[3] > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ImpulsesSetUp(External external)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < external->n_impulses; i++) {
+    Impulse  *hit = &external->impulses[i];
+    PetscInt  vertex;
+    PetscBool moves;
+
+    PetscCall(ModelFindNode(external->model, hit->part, hit->at, &vertex));
+    PetscCall(VertexFindCopy(external->model, &vertex));
+    PetscCall(ForcePatternCreate(external->layout, vertex >= 0, &vertex, hit->impulse, &hit->pattern));
+    PetscCall(ImpulsePlace(external, vertex, hit, &moves));
+    PetscCheck(moves, external->comm, PETSC_ERR_USER_INPUT,
+               "-%s_impulse does nothing: the node at %.6g, %.6g, %.6g m is held in its direction", hit->name,
+               (double)hit->x[0], (double)hit->x[1], (double)hit->x[2]);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ImpulsesAdvance(External external, PetscReal t, PetscReal dt, const PetscReal v[], PetscReal f[],
+                               ExternalPower *power)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < external->n_impulses; i++) {
+    Impulse        *hit  = &external->impulses[i];
+    const PetscBool acts = *external->begun != 0 && hit->last[1] == 0 && hit->time < t + dt ? PETSC_TRUE : PETSC_FALSE;
+    PetscReal       full;
+
+    if (!acts && hit->last[0] == 0) continue;
+    full = ForcePatternPower(&hit->pattern, v);
+    power->old += hit->last[0] * full;
+    hit->last[0] = acts ? 1 / dt : 0;
+    power->now += hit->last[0] * full;
+    ForcePatternAdd(&hit->pattern, hit->last[0], f);
+    if (acts) hit->last[1] = 1;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ImpulsesView(External external, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < external->n_impulses; i++) {
+    const Impulse   *hit = &external->impulses[i];
+    const PetscReal *J = hit->impulse, *x = hit->x;
+
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "  impulse %s: %.6g, %.6g, %.6g N s on the node at %.6g, %.6g, %.6g m at %.6g s\n", hit->name,
+      (double)J[0], (double)J[1], (double)J[2], (double)x[0], (double)x[1], (double)x[2], (double)hit->time));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ImpulsesDestroy(External external)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < external->n_impulses; i++) {
+    PetscCall(PetscFree(external->impulses[i].name));
+    PetscCall(PetscFree(external->impulses[i].part));
+    PetscCall(ForcePatternDestroy(&external->impulses[i].pattern));
+  }
+  PetscCall(PetscFree(external->impulses));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,216 @@
+/*
+   Forces on masses: gravity f = m g, and the inertial forces of a part that is described in a frame turning with Omega
+   (rad/s) about a centre c,
+      f = -m (2 Omega x v + Omega x (Omega x (X + u - c))),
+   Coriolis force and centrifugal force, each where asked for, at t_n with v = v_{n-1/2}: the Coriolis force is lagged
+   by half a step like damping, so that it does no power on v_{n-1/2} and a little on v_{n+1/2}. m is the whole lumped
+   mass of a node; a node of two parts belongs to the frame that was set first.
+*/
+#include "externalimpl.h"
+#include <squeal/options.h>
+
+PetscErrorCode InertiaSetFromOptions(External external)
+{
+  PetscReal *g = external->gravity;
+
+  PetscFunctionBeginUser;
+  PetscOptionsBegin(external->comm, NULL, "Gravity", NULL);
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-gravity", "acceleration in x,y,z, m/s^2", 3, g, NULL));
+  PetscOptionsEnd();
+  for (int d = 0; d < 3; d++)
+    PetscCheck(!PetscIsInfOrNanReal(g[d]), external->comm, PETSC_ERR_USER_INPUT,
+               "-gravity value %.6g must be a finite number (m/s^2)", (double)g[d]);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode InertiaSetUp(External external)
+{
+  const Layout    *layout = external->layout;
+  const PetscReal *g      = external->gravity;
+
+  PetscFunctionBeginUser;
+  if (g[0] == 0 && g[1] == 0 && g[2] == 0) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc2(layout->n, &external->weight, layout->n, &external->own_weight));
+  for (PetscInt i = 0; i < layout->n_vertices; i++) {
+    PetscReal force[3];
+
+    if (layout->at[i] < 0) continue;
+    for (int d = 0; d < 3; d++) force[d] = external->mass[layout->at[i]] * g[d];
+    LayoutSet(layout, i, force, external->weight);
+    if (layout->owned[i]) LayoutSet(layout, i, force, external->own_weight);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Constant, hence the same power for `old` and `now`; no `old` before the first step */
+static void GravityAdvance(External external, const PetscReal v[], PetscReal f[], ExternalPower *power)
+{
+  const PetscReal *weight = external->weight, *own = external->own_weight;
+  PetscReal        sum = 0;
+
+  for (PetscInt i = 0; i < external->layout->n; i++) {
+    sum += own[i] * v[i];
+    f[i] += weight[i];
+  }
+  power->now += sum;
+  if (*external->begun != 0) power->old += sum;
+}
+
+static inline void Cross(const PetscReal a[3], const PetscReal b[3], PetscReal c[3])
+{
+  for (int d = 0; d < 3; d++) c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
+}
+
+/* Inertial force on mass m at place x (m) with velocity v, N */
+static void FrameForce(const Frame *frame, PetscReal m, const PetscReal x[3], const PetscReal v[3], PetscReal force[3])
+{
+  PetscReal arm[3], turn[3], centrifugal[3], coriolis[3];
+
+  for (int d = 0; d < 3; d++) arm[d] = x[d] - frame->centre[d];
+  Cross(frame->omega, arm, turn);
+  Cross(frame->omega, turn, centrifugal);
+  Cross(frame->omega, v, coriolis);
+  for (int d = 0; d < 3; d++)
+    force[d] = -m * ((frame->coriolis ? 2 * coriolis[d] : 0) + (frame->centrifugal ? centrifugal[d] : 0));
+}
+
+static void FrameAdvance(External external, Frame *frame, const PetscReal X[], const PetscReal u[], const PetscReal v[],
+                         PetscReal f[], ExternalPower *power)
+{
+  const Layout *layout = external->layout;
+
+  for (PetscInt k = 0; k < frame->n; k++) {
+    const PetscInt i    = frame->vertex[k];
+    PetscReal     *last = &frame->last[3 * k], x[3], velocity[3];
+
+    LayoutGet(layout, i, u, x);
+    LayoutGet(layout, i, v, velocity);
+    for (int d = 0; d < 3; d++) {
+      x[d] += X[3 * i + d];
+      power->old += k < frame->n_owned ? last[d] * velocity[d] : 0;
+    }
+    FrameForce(frame, external->mass[layout->at[i]], x, velocity, last);
+    for (int d = 0; d < 3 && k < frame->n_owned; d++) power->now += last[d] * velocity[d];
+    LayoutAdd(layout, i, last, f);
+  }
+}
+
+PetscErrorCode InertiaAdvance(External external, const PetscReal u[], const PetscReal v[], PetscReal f[],
+                              ExternalPower *power)
+{
+  const PetscReal *X;
+
+  PetscFunctionBeginUser;
+  if (external->weight) GravityAdvance(external, v, f, power);
+  if (external->n_frames) PetscCall(ModelGetCoordinates(external->model, &X));
+  for (PetscInt i = 0; i < external->n_frames; i++) FrameAdvance(external, &external->frames[i], X, u, v, f, power);
+  PetscFunctionReturn(0);
+}
+
+/* Vertices of the part, owned ones first, without those of the frames before */
+static PetscErrorCode FrameFindVertices(External external, const char part[], Frame *frame)
+{
+  const Layout   *layout = external->layout;
+  const PetscInt *vertex;
+  PetscInt        n, vStart;
+  PetscBool      *taken;
+  DM              dm;
+  IS              is;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(external->model, &dm));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
+  PetscCall(ModelGetSetVertices(external->model, part, &is));
+  PetscCall(ISGetLocalSize(is, &n));
+  PetscCall(PetscMalloc1(n, &frame->vertex));
+  PetscCall(PetscCalloc1(layout->n_vertices, &taken));
+  for (const Frame *before = external->frames; before < frame; before++)
+    for (PetscInt k = 0; k < before->n; k++) taken[before->vertex[k]] = PETSC_TRUE;
+  PetscCall(ISGetIndices(is, &vertex));
+  for (int pass = 0; pass < 2; pass++) {
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscInt i = vertex[k] - vStart;
+
+      if (layout->at[i] >= 0 && !taken[i] && layout->owned[i] == (pass == 0)) frame->vertex[frame->n++] = i;
+    }
+    if (pass == 0) frame->n_owned = frame->n;
+  }
+  PetscCall(ISRestoreIndices(is, &vertex));
+  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(taken));
+  PetscFunctionReturn(0);
+}
+
+/* The frame of a part, a new one where it has none; an error for no part */
+static PetscErrorCode FrameFind(External external, const char part[], Frame **frame)
+{
+  const Part *parts;
+  PetscInt    n, i;
+  PetscBool   same = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetParts(external->model, &n, &parts));
+  for (i = 0; i < n; i++) {
+    PetscCall(PetscStrcmp(part, parts[i].name, &same));
+    if (same) break;
+  }
+  PetscCheck(same, external->comm, PETSC_ERR_ARG_OUTOFRANGE, "'%s' is none of the -parts: it has no frame", part);
+  for (PetscInt k = 0; k < external->n_frames; k++) {
+    *frame = &external->frames[k];
+    if ((*frame)->part == i) PetscFunctionReturn(0);
+  }
+  *frame         = &external->frames[external->n_frames];
+  (*frame)->part = i;
+  PetscCall(FrameFindVertices(external, part, *frame));
+  external->n_frames++;
+  PetscCall(ExternalLayMemory(external));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExternalSetFrame(External external, const char part[], const PetscReal omega[3],
+                                const PetscReal centre[3], PetscBool coriolis, PetscBool centrifugal)
+{
+  Frame *frame = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCheck(external->layout, external->comm, PETSC_ERR_ARG_WRONGSTATE,
+             "ExternalSetUp() must come before the frame of %s", part);
+  PetscCall(FrameFind(external, part, &frame));
+  PetscCall(PetscArraycpy(frame->omega, omega, 3));
+  PetscCall(PetscArraycpy(frame->centre, centre, 3));
+  frame->coriolis    = coriolis;
+  frame->centrifugal = centrifugal;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode InertiaView(External external, PetscViewer viewer)
+{
+  const PetscReal *g = external->gravity;
+  const Part      *parts;
+  PetscInt         n;
+
+  PetscFunctionBeginUser;
+  if (g[0] != 0 || g[1] != 0 || g[2] != 0)
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer, "  gravity: %.6g, %.6g, %.6g m/s^2\n", (double)g[0], (double)g[1], (double)g[2]));
+  PetscCall(ModelGetParts(external->model, &n, &parts));
+  for (PetscInt i = 0; i < external->n_frames; i++) {
+    const Frame     *frame = &external->frames[i];
+    const PetscReal *w     = frame->omega;
+
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer, "  part %s turns with %.6g rad/s: Coriolis force %s, centrifugal force %s\n",
+                             parts[frame->part].name, (double)PetscSqrtReal(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]),
+                             frame->coriolis ? "counted" : "left out", frame->centrifugal ? "counted" : "left out"));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode InertiaDestroy(External external)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < external->n_frames; i++) PetscCall(PetscFree(external->frames[i].vertex));
+  PetscCall(PetscFree(external->frames));
+  PetscCall(PetscFree2(external->weight, external->own_weight));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,251 @@
+/*
+   Layout of the state vectors. A body has cylindrical components, on all ranks, where some rank finds its cells swept
+   about an axis, no other one about another, and its supports can be said in them: along the axis, and in the plane
+   either both directions or none. On each rank a body whose cells are swept there stands line after line, padded so
+   that blocks of nodes can be loaded with their neighbours; all other vertices follow node after node, those that ranks
+   share first.
+*/
+#include "bodiesimpl.h"
+
+#define SAME_AXIS 1e-8 /* of centres that ranks find, relative to the mesh */
+
+static PetscInt RoundUp(PetscInt n)
+{
+  return (n + STENCIL_WIDTH - 1) / STENCIL_WIDTH * STENCIL_WIDTH;
+}
+
+/* Whether this rank has each body's cells */
+static PetscErrorCode BodiesFlagLocal(Bodies b, PetscBool local[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(local, b->n_bodies));
+  for (PetscInt v = 0; v < b->layout.n_vertices; v++)
+    if (b->body[v] >= 0) local[b->body[v]] = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* Whether the directions held at the vertices of a body, and their places, allow components about an axis */
+static PetscErrorCode FrameCheck(Bodies b, PetscInt body, const BodiesFrame *frame, PetscBool *suits)
+{
+  const PetscInt  *unknowns, j = (frame->axis + 1) % 3, k = (frame->axis + 2) % 3;
+  const PetscReal *x;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetUnknowns(b->model, &unknowns));
+  PetscCall(ModelGetCoordinates(b->model, &x));
+  *suits = PETSC_TRUE;
+  for (PetscInt v = 0; v < b->layout.n_vertices; v++) {
+    if (b->body[v] != body) continue;
+    if ((unknowns[3 * v + j] < 0) != (unknowns[3 * v + k] < 0)) *suits = PETSC_FALSE;
+    if (x[3 * v + j] == frame->centre[j] && x[3 * v + k] == frame->centre[k]) *suits = PETSC_FALSE;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Whether two centres are the same but for rounding; scale (m) */
+static PetscBool FrameAgrees(const BodiesFrame *a, const ModelLines *lines, PetscReal scale)
+{
+  if (a->axis != lines->axis) return PETSC_FALSE;
+  for (int d = 0; d < 3; d++)
+    if (d != a->axis && PetscAbsReal(a->centre[d] - lines->centre[d]) > SAME_AXIS * scale) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* Largest coordinate of the mesh, m */
+static PetscErrorCode ModelScale(Bodies b, PetscReal *scale)
+{
+  const PetscReal *x;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetCoordinates(b->model, &x));
+  *scale = 0;
+  for (PetscInt i = 0; i < 3 * b->layout.n_vertices; i++) *scale = PetscMax(*scale, PetscAbsReal(x[i]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, scale, 1, MPIU_REAL, MPI_MAX, b->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Axis + 1, 0 for none, and centre [n_bodies][4] that the lowest rank with turned lines of each body finds */
+static PetscErrorCode FramesPropose(Bodies b, ModelLines *const lines[], PetscReal axes[])
+{
+  PetscMPIInt rank, size, *first;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(b->comm, &rank));
+  PetscCallMPI(MPI_Comm_size(b->comm, &size));
+  PetscCall(PetscMalloc1(b->n_bodies, &first));
+  for (PetscInt i = 0; i < b->n_bodies; i++) first[i] = lines[i] && lines[i]->turned ? rank : size;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, first, (PetscMPIInt)b->n_bodies, MPI_INT, MPI_MIN, b->comm));
+  PetscCall(PetscArrayzero(axes, 4 * b->n_bodies));
+  for (PetscInt i = 0; i < b->n_bodies; i++) {
+    if (first[i] != rank) continue;
+    axes[4 * i] = lines[i]->axis + 1;
+    for (int d = 0; d < 3; d++) axes[4 * i + 1 + d] = lines[i]->centre[d];
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, axes, (PetscMPIInt)(4 * b->n_bodies), MPIU_REAL, MPI_SUM, b->comm));
+  PetscCall(PetscFree(first));
+  PetscFunctionReturn(0);
+}
+
+/* Frames of all bodies, the same on every rank */
+static PetscErrorCode FramesFind(Bodies b, ModelLines *const lines[])
+{
+  PetscReal *axes, scale;
+  PetscBool *turned;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelScale(b, &scale));
+  PetscCall(PetscMalloc2(4 * b->n_bodies, &axes, b->n_bodies, &turned));
+  PetscCall(FramesPropose(b, lines, axes));
+  for (PetscInt i = 0; i < b->n_bodies; i++) {
+    BodiesFrame *frame = &b->frame[i];
+
+    turned[i] = axes[4 * i] > 0 ? PETSC_TRUE : PETSC_FALSE;
+    if (!turned[i]) continue;
+    frame->axis = (PetscInt)axes[4 * i] - 1;
+    for (int d = 0; d < 3; d++) frame->centre[d] = axes[4 * i + 1 + d];
+    PetscCall(FrameCheck(b, i, frame, &turned[i]));
+    if (lines[i] && lines[i]->turned && !FrameAgrees(frame, lines[i], scale)) turned[i] = PETSC_FALSE;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, turned, (PetscMPIInt)b->n_bodies, MPIU_BOOL, MPI_LAND, b->comm));
+  for (PetscInt i = 0; i < b->n_bodies; i++) b->frame[i].turned = turned[i];
+  PetscCall(PetscFree2(axes, turned));
+  PetscFunctionReturn(0);
+}
+
+/* Bases of the vertices: along the axis, radial, tangential; or x, y, z */
+static PetscErrorCode BasesFind(Bodies b)
+{
+  const PetscReal *coordinates;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetCoordinates(b->model, &coordinates));
+  PetscCall(PetscCalloc1(9 * b->layout.n_vertices, &b->layout.basis));
+  for (PetscInt v = 0; v < b->layout.n_vertices; v++) {
+    const PetscReal   *x = &coordinates[3 * v];
+    PetscReal         *q = &b->layout.basis[9 * v], r[2], length;
+    const BodiesFrame *frame;
+    PetscInt           i, j, k;
+
+    q[0] = q[4] = q[8] = 1;
+    if (b->body[v] < 0 || !b->frame[b->body[v]].turned) continue;
+    frame = &b->frame[b->body[v]];
+    i     = frame->axis;
+    j     = (i + 1) % 3;
+    k     = (i + 2) % 3;
+    PetscCall(PetscArrayzero(q, 9));
+    r[0]     = x[j] - frame->centre[j];
+    r[1]     = x[k] - frame->centre[k];
+    length   = PetscSqrtReal(r[0] * r[0] + r[1] * r[1]);
+    q[i]     = 1;
+    q[3 + j] = r[0] / length;
+    q[3 + k] = r[1] / length;
+    q[6 + j] = -r[1] / length;
+    q[6 + k] = r[0] / length;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Keeps the lines of a body as swept ones where the stencil serves them */
+static PetscErrorCode SweptKeep(Bodies b, PetscInt body, ModelLines **lines)
+{
+  Swept    *swept    = &b->swept[b->n_swept];
+  PetscBool mirrored = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (!*lines) PetscFunctionReturn(0);
+  if ((*lines)->turned == b->frame[body].turned) {
+    *swept        = (Swept){.body = body, .lines = *lines, .along = (*lines)->turned ? 2 : (*lines)->axis};
+    *lines        = NULL;
+    swept->stride = RoundUp(swept->lines->n_nodes + 2);
+    PetscCall(SweptSetUp(b, swept, &mirrored));
+    if (mirrored)
+      b->n_swept++;
+    else
+      PetscCall(SweptDestroy(swept));
+  }
+  PetscCall(ModelDestroyLines(lines));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesFindSwept(Bodies b)
+{
+  ModelLines **lines;
+  PetscBool   *local;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(b->n_bodies, &lines, b->n_bodies, &local));
+  PetscCall(PetscCalloc1(b->n_bodies, &b->frame));
+  PetscCall(PetscCalloc1(b->n_bodies, &b->swept));
+  PetscCall(BodiesFlagLocal(b, local));
+  for (PetscInt i = 0; i < b->n_bodies && !b->no_sweep; i++)
+    if (local[i]) PetscCall(ModelCreateLines(b->model, i, b->body, &lines[i]));
+  PetscCall(FramesFind(b, lines));
+  PetscCall(BasesFind(b));
+  for (PetscInt i = 0; i < b->n_bodies; i++) PetscCall(SweptKeep(b, i, &lines[i]));
+  PetscCall(PetscFree2(lines, local));
+  PetscFunctionReturn(0);
+}
+
+/* Places of the vertices of a swept body */
+static void SweptLayOut(const Swept *swept, Layout *layout)
+{
+  const ModelLines *lines = swept->lines;
+
+  for (PetscInt l = 0; l < lines->n_lines; l++)
+    for (PetscInt k = 0; k < lines->n_nodes; k++) {
+      const PetscInt v = lines->vertex[lines->n_nodes * l + k];
+
+      layout->at[v]   = swept->begin + 3 * l * swept->stride + k;
+      layout->step[v] = swept->stride;
+    }
+}
+
+/* Places of all other vertices with cells: those that ranks share, then the rest */
+static PetscErrorCode GeneralLayOut(Bodies b, const PetscBool shared[])
+{
+  General *g = &b->general;
+  Layout  *l = &b->layout;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(l->n_vertices, &g->vertex));
+  for (int pass = 0; pass < 2; pass++) {
+    for (PetscInt v = 0; v < l->n_vertices; v++) {
+      if (b->body[v] < 0 || l->at[v] >= 0 || shared[v] == (PetscBool)pass) continue;
+      g->vertex[g->n++] = v;
+    }
+    if (pass == 0) g->n_early = g->n;
+    for (PetscInt i = pass ? g->n_early : 0; i < g->n; i++) {
+      l->at[g->vertex[i]]   = g->begin + 3 * i;
+      l->step[g->vertex[i]] = 1;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesLayOut(Bodies b)
+{
+  Layout    *l = &b->layout;
+  PetscBool *shared;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(l->n_vertices, &l->at, l->n_vertices, &l->step));
+  PetscCall(PetscCalloc1(l->n_vertices, &shared));
+  for (PetscInt v = 0; v < l->n_vertices; v++) {
+    l->at[v]   = -1;
+    l->step[v] = 0;
+  }
+  for (PetscInt i = 0; i < b->share.n; i++) shared[b->share.shared[i]] = PETSC_TRUE;
+  l->n = STENCIL_WIDTH;
+  for (PetscInt i = 0; i < b->n_swept; i++) {
+    b->swept[i].begin = l->n;
+    SweptLayOut(&b->swept[i], l);
+    l->n += 3 * b->swept[i].lines->n_lines * b->swept[i].stride;
+  }
+  l->n += STENCIL_WIDTH;
+  b->general.begin = l->n;
+  PetscCall(GeneralLayOut(b, shared));
+  l->n += RoundUp(3 * b->general.n + 1);
+  for (PetscInt i = 0; i < b->n_swept; i++) PetscCall(SweptSetRanges(&b->swept[i], shared));
+  PetscCall(PetscFree(shared));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,109 @@
+/*
+   The energy ledger. With v = v_{n-1/2}, v+ = v_{n+1/2}, f the sum of all forces at t_n, b = 1/2:
+
+      1/2 v+'M v+ - 1/2 v'M v = dt 1/2 (v + v+)'f                       kinetic energy
+      1/2 u_{n+1}'K u_n - 1/2 u_n'K u_{n-1} = dt 1/2 (v + v+)'K u_n     strain energy: K is symmetric
+
+   exactly. So the work of each force in the step around t_n is dt 1/2 (v + v+)'force; it is gathered in two halves,
+   when v and when v+ is at hand. For b > 1/2 the integrator itself does the work dt (b - 1/2) 1/2 (v + v+)'(f_n -
+   f_{n-1}). All J.
+*/
+#include "ledger.h"
+
+#define LEDGER_RTOL 1e-6 /* of the throughput */
+
+void LedgerAddBodies(LedgerPart *part, const BodiesSums *sums, PetscReal dt_old)
+{
+  part->kinetic = sums->kinetic;
+  part->strain  = sums->strain;
+  part->damping -= 0.5 * dt_old * (part->damping_now + sums->damping_old);
+  part->damping_now = sums->damping;
+}
+
+void LedgerAddExternal(LedgerPart *part, const ExternalPower *power, PetscReal dt_old)
+{
+  part->external += 0.5 * dt_old * (part->external_now + power->old);
+  part->external_now = power->now;
+}
+
+void LedgerAddIntegrator(LedgerPart *part, PetscReal b, PetscReal power, PetscBool complete, PetscReal dt_old)
+{
+  if (complete)
+    part->integrator += 0.5 * dt_old * (b - 0.5) * (part->integrator_now + power);
+  else
+    part->integrator_now = power;
+}
+
+/* Works of contact since the first half step */
+static void LedgerSetContact(Ledger *ledger, PetscInt n, const ContactSums sums[], PetscBool first,
+                             LedgerOrigin *origin)
+{
+  LedgerOrigin now = {0};
+
+  for (PetscInt i = 0; i < n; i++) {
+    now.contact += sums[i].contact_work;
+    now.friction += sums[i].friction_work;
+    now.heat += sums[i].heat;
+  }
+  if (first) *origin = now;
+  ledger->contact  = now.contact - origin->contact;
+  ledger->friction = now.friction - origin->friction;
+  ledger->heat     = now.heat - origin->heat;
+}
+
+static void LedgerRaiseThroughput(Ledger *l)
+{
+  const PetscReal term[] = {l->kinetic, l->strain,  l->external,   l->friction,
+                            l->contact, l->damping, l->integrator, l->start};
+
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(term); i++)
+    l->throughput = PetscMax(l->throughput, PetscAbsReal(term[i]));
+}
+
+PetscErrorCode LedgerClose(MPI_Comm comm, LedgerPart *part, PetscInt n, const ContactSums sums[], PetscBool first,
+                           LedgerOrigin *origin, Ledger *ledger)
+{
+  PetscReal sum[5];
+
+  PetscFunctionBeginUser;
+  if (first) part->external = part->damping = part->integrator = 0;
+  sum[0] = part->kinetic;
+  sum[1] = part->strain;
+  sum[2] = part->external;
+  sum[3] = part->damping;
+  sum[4] = part->integrator;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 5, MPIU_REAL, MPI_SUM, comm));
+  ledger->kinetic    = sum[0];
+  ledger->strain     = sum[1];
+  ledger->external   = sum[2];
+  ledger->damping    = sum[3];
+  ledger->integrator = sum[4];
+  if (first) ledger->start = sum[0] + sum[1];
+  LedgerSetContact(ledger, n, sums, first, origin);
+  ledger->error = ledger->kinetic + ledger->strain - ledger->start - ledger->external - ledger->contact -
+                  ledger->friction - ledger->damping - ledger->integrator;
+  LedgerRaiseThroughput(ledger);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LedgerJudge(MPI_Comm comm, const Ledger *l, PetscReal fraction, PetscInt step, PetscReal time)
+{
+  const PetscReal scale = LEDGER_RTOL * l->throughput;
+  const PetscReal least = PetscMax(0.5 * (1 - fraction * fraction), 1e-3); /* a forced step leaves a bound, too */
+
+  PetscFunctionBeginUser;
+  PetscCheck(PetscAbsReal(l->error) <= scale, comm, PETSC_ERR_FP,
+             "energy grows without a reason: %.3g J of a throughput of %.3g J at step %" PetscInt_FMT
+             ", %.6g s; take a smaller -ts_dt",
+             (double)l->error, (double)l->throughput, step, (double)time);
+  PetscCheck(l->damping <= scale, comm, PETSC_ERR_FP,
+             "damping feeds %.3g J into the motion at step %" PetscInt_FMT
+             ", %.6g s: the step is too large for it; take "
+             "a smaller -ts_dt",
+             (double)l->damping, step, (double)time);
+  PetscCheck(l->kinetic + l->strain >= least * l->kinetic - scale, comm, PETSC_ERR_FP,
+             "the fastest oscillations of the mesh grow (kinetic %.3g J, strain %.3g J) at step %" PetscInt_FMT
+             ", %.6g s: the step is above the critical one; take a smaller -ts_dt",
+             (double)l->kinetic, (double)l->strain, step, (double)time);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,108 @@
+/*
+   Loads of the model in time: F(t) = r(t) F with a ramp r, distributed by the model once for all.
+*/
+#include "externalimpl.h"
+
+PetscErrorCode TimedLoadsSetFromOptions(External external)
+{
+  const Load *loads;
+  char        prefix[128], title[160];
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetLoads(external->model, &external->n_loads, &loads));
+  PetscCall(PetscCalloc1(external->n_loads, &external->loads));
+  for (PetscInt i = 0; i < external->n_loads; i++) {
+    TimedLoad *load = &external->loads[i];
+
+    PetscCall(PetscStrallocpy(loads[i].name, &load->name));
+    PetscCall(PetscArraycpy(load->force, loads[i].force, 3));
+    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", load->name));
+    PetscCall(PetscSNPrintf(title, sizeof(title), "Load %s in time", load->name));
+    PetscOptionsBegin(external->comm, prefix, title, NULL);
+    PetscCall(RampSetFromOptions(PetscOptionsObject, &load->ramp));
+    PetscOptionsEnd();
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Full forces of load i at the nodes that have some; local is work */
+static PetscErrorCode LoadGather(External external, PetscInt i, Vec local)
+{
+  const Layout    *layout = external->layout;
+  const PetscReal *force;
+  PetscInt         n = 0, *vertex;
+  PetscReal       *f;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(local, 0));
+  PetscCall(ModelAddLoad(external->model, i, local));
+  PetscCall(PetscMalloc2(layout->n_vertices, &vertex, 3 * layout->n_vertices, &f));
+  PetscCall(VecGetArrayRead(local, &force));
+  for (PetscInt v = 0; v < layout->n_vertices; v++) {
+    if (force[3 * v] == 0 && force[3 * v + 1] == 0 && force[3 * v + 2] == 0) continue;
+    PetscCall(PetscArraycpy(&f[3 * n], &force[3 * v], 3));
+    vertex[n++] = v;
+  }
+  PetscCall(VecRestoreArrayRead(local, &force));
+  PetscCall(ForcePatternCreate(layout, n, vertex, f, &external->loads[i].pattern));
+  PetscCall(PetscFree2(vertex, f));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TimedLoadsSetUp(External external)
+{
+  Vec coordinates, local;
+  DM  dm;
+
+  PetscFunctionBeginUser;
+  if (!external->n_loads) PetscFunctionReturn(0);
+  PetscCall(ModelGetDM(external->model, &dm));
+  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
+  PetscCall(VecDuplicate(coordinates, &local));
+  for (PetscInt i = 0; i < external->n_loads; i++) PetscCall(LoadGather(external, i, local));
+  PetscCall(VecDestroy(&local));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TimedLoadsAdvance(External external, PetscReal t, const PetscReal v[], PetscReal f[],
+                                 ExternalPower *power)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < external->n_loads; i++) {
+    TimedLoad      *load   = &external->loads[i];
+    const PetscReal factor = RampValue(&load->ramp, t), full = ForcePatternPower(&load->pattern, v);
+
+    power->old += *load->last * full;
+    power->now += factor * full;
+    ForcePatternAdd(&load->pattern, factor, f);
+    *load->last = factor;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TimedLoadsView(External external, PetscViewer viewer)
+{
+  char words[160];
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < external->n_loads; i++) {
+    const TimedLoad *load = &external->loads[i];
+    const PetscReal *f    = load->force;
+
+    PetscCall(RampDescribe(&load->ramp, sizeof(words), words));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  load %s: %.6g N, %s\n", load->name,
+                                     (double)PetscSqrtReal(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]), words));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TimedLoadsDestroy(External external)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < external->n_loads; i++) {
+    PetscCall(PetscFree(external->loads[i].name));
+    PetscCall(ForcePatternDestroy(&external->loads[i].pattern));
+  }
+  PetscCall(PetscFree(external->loads));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,262 @@
+/*
+   Prescribed displacements d(t) = r(t) d of sets, in some directions. The directions have no inertia of their own in
+   the integrator (minv = 0); the step from t_n gives them
+      v_{n+1/2} = (d(t_n + dt) - d(t_n)) / dt
+   and the drive exerts what the other forces f_n leave over, R_n = m (v_{n+1/2} - v_{n-1/2}) / dt - f_n, m the lumped
+   mass, with the power R_n . (v_{n-1/2} + v_{n+1/2}) / 2: then the kinetic energy of the prescribed nodes is accounted
+   for exactly.
+
+   Along a component j of a node's basis q_j the directions D that are prescribed have the share s = sum_{d in D}
+   q_jd^2. It must be 0 or 1: a body with radial and circumferential components cannot be prescribed in one direction
+   across its axis alone.
+*/
+#include "externalimpl.h"
+#include <petscbt.h>
+#include <squeal/options.h>
+
+#define SHARE_TOLERANCE 1e-8 /* of s, from 0 and 1 */
+
+/* The flagged directions as a word such as "xz" */
+static void DirectionsWord(const PetscBool direction[3], char word[4])
+{
+  for (int d = 0; d < 3; d++)
+    if (direction[d]) *word++ = "xyz"[d];
+  *word = '\0';
+}
+
+/* Directions from a word, and by default those in which something moves */
+static PetscErrorCode MotionSetDirections(MPI_Comm comm, Drive *motion, const char word[], PetscBool set)
+{
+  const PetscReal *x = motion->displacement;
+
+  PetscFunctionBeginUser;
+  PetscCheck(!set || (word[0] && strspn(word, "xyz") == strlen(word)), comm, PETSC_ERR_USER_INPUT,
+             "-%s_directions '%s' must be some of the letters x, y, z", motion->name, word);
+  PetscCheck(set || x[0] != 0 || x[1] != 0 || x[2] != 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_displacement is zero: give it (m), or -%s_directions to hold", motion->name, motion->name);
+  for (int d = 0; d < 3; d++) {
+    motion->direction[d] = (set ? !!strchr(word, "xyz"[d]) : x[d] != 0) ? PETSC_TRUE : PETSC_FALSE;
+    PetscCheck(motion->direction[d] || x[d] == 0, comm, PETSC_ERR_USER_INPUT,
+               "-%s_displacement has %.6g m along %c, which -%s_directions %s leaves out", motion->name, (double)x[d],
+               "xyz"[d], motion -> name, word);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MotionCheck(MPI_Comm comm, const Drive *motion)
+{
+  PetscBool moves = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCheck(motion->set[0], comm, PETSC_ERR_USER_INPUT, "-%s_set must be given: a named set of the mesh",
+             motion->name);
+  for (int d = 0; d < 3; d++) {
+    PetscCheck(!PetscIsInfOrNanReal(motion->displacement[d]), comm, PETSC_ERR_USER_INPUT,
+               "-%s_displacement value %.6g must be a finite number (m)", motion->name,
+               (double)motion->displacement[d]);
+    if (motion->displacement[d] != 0) moves = PETSC_TRUE;
+  }
+  PetscCheck(!moves || motion->ramp.length > 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_ramp %.6g must be given and positive (s): a displacement cannot jump", motion->name,
+             motion->ramp.length);
+  PetscFunctionReturn(0);
+}
+
+/* One motion, whose name is set */
+static PetscErrorCode MotionSetFromOptions(MPI_Comm comm, Drive *motion)
+{
+  char      prefix[128], title[160], set[256] = "", word[16] = "";
+  PetscBool given;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", motion->name));
+  PetscCall(PetscSNPrintf(title, sizeof(title), "Motion %s", motion->name));
+  PetscOptionsBegin(comm, prefix, title, NULL);
+  PetscCall(PetscOptionsString("-set", "named set of the mesh that moves (required)", "dynamics.h", set, set,
+                               sizeof(set), NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-displacement", "in x,y,z, m", 3, motion->displacement, NULL));
+  PetscCall(PetscOptionsString("-directions",
+                               "that are prescribed: some of x, y, z; by default those of the displacement",
+                               "dynamics.h", word, word, sizeof(word), &given));
+  PetscCall(RampSetFromOptions(PetscOptionsObject, &motion->ramp));
+  PetscOptionsEnd();
+  PetscCall(PetscStrallocpy(set, &motion->set));
+  PetscCall(MotionCheck(comm, motion));
+  PetscCall(MotionSetDirections(comm, motion, word, given));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MotionsSetFromOptions(External external)
+{
+  char *names[EXTERNAL_MAX_NAMES];
+
+  PetscFunctionBeginUser;
+  PetscCall(OptionsGetNames(external->comm, "-motions", "prescribed displacements, each the prefix of its -set", "",
+                            EXTERNAL_MAX_NAMES, &external->n_motions, names));
+  PetscCall(PetscCalloc1(external->n_motions, &external->motions));
+  for (PetscInt i = 0; i < external->n_motions; i++) external->motions[i].name = names[i];
+  for (PetscInt i = 0; i < external->n_motions; i++)
+    PetscCall(MotionSetFromOptions(external->comm, &external->motions[i]));
+  PetscFunctionReturn(0);
+}
+
+/* Share of the prescribed directions in component j of a vertex */
+static PetscReal MotionShare(const Drive *motion, const Layout *layout, PetscInt vertex, int j)
+{
+  const PetscReal *q     = &layout->basis[9 * vertex + 3 * j];
+  PetscReal        share = 0;
+
+  for (int d = 0; d < 3; d++) share += motion->direction[d] ? q[d] * q[d] : 0;
+  return share;
+}
+
+/* Appends the free prescribed components of a vertex and holds them; trouble[0] counts components that the directions
+   split, trouble[1] those that another motion prescribes */
+static PetscErrorCode MotionAddVertex(External external, Bodies bodies, PetscInt vertex, PetscBT taken, Drive *motion,
+                                      PetscInt trouble[2])
+{
+  const Layout    *layout = external->layout;
+  const PetscReal *x      = motion->displacement;
+
+  PetscFunctionBeginUser;
+  for (int j = 0; j < 3; j++) {
+    const PetscInt   index = layout->at[vertex] + j * layout->step[vertex];
+    const PetscReal *q     = &layout->basis[9 * vertex + 3 * j];
+    const PetscReal  share = MotionShare(motion, layout, vertex, j);
+
+    if (share < SHARE_TOLERANCE) continue;
+    trouble[0] += share < 1 - SHARE_TOLERANCE;
+    trouble[1] += PetscBTLookup(taken, index) ? 1 : 0;
+    if (external->minv[index] == 0) continue;
+    motion->index[motion->n]  = index;
+    motion->full[motion->n++] = q[0] * x[0] + q[1] * x[1] + q[2] * x[2];
+    PetscCall(BodiesHold(bodies, vertex, j));
+    PetscCall(PetscBTSet(taken, index));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Prescribed numbers of the set's vertices, those of owned vertices first */
+static PetscErrorCode MotionFindNumbers(External external, Bodies bodies, PetscBT taken, Drive *motion,
+                                        PetscInt trouble[2])
+{
+  const Layout   *layout = external->layout;
+  const PetscInt *vertex;
+  PetscInt        n, vStart;
+  DM              dm;
+  IS              is;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(external->model, &dm));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
+  PetscCall(ModelGetSetVertices(external->model, motion->set, &is));
+  PetscCall(ISGetLocalSize(is, &n));
+  PetscCall(PetscMalloc4(3 * n, &motion->index, 3 * n, &motion->full, 3 * n, &motion->before, 3 * n, &motion->after));
+  PetscCall(ISGetIndices(is, &vertex));
+  for (int pass = 0; pass < 2; pass++) {
+    for (PetscInt i = 0; i < n; i++)
+      if (layout->at[vertex[i] - vStart] >= 0 && layout->owned[vertex[i] - vStart] == (pass == 0))
+        PetscCall(MotionAddVertex(external, bodies, vertex[i] - vStart, taken, motion, trouble));
+    if (pass == 0) motion->n_owned = motion->n;
+  }
+  PetscCall(ISRestoreIndices(is, &vertex));
+  PetscCall(ISDestroy(&is));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MotionsSetUp(External external, Bodies bodies)
+{
+  PetscBT taken;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBTCreate(external->layout->n, &taken));
+  for (PetscInt i = 0; i < external->n_motions; i++) {
+    Drive   *motion   = &external->motions[i];
+    PetscInt count[3] = {0, 0, 0};
+    char     word[4];
+
+    PetscCall(MotionFindNumbers(external, bodies, taken, motion, &count[1]));
+    count[0] = motion->n;
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, external->comm));
+    DirectionsWord(motion->direction, word);
+    PetscCheck(
+      !count[1], external->comm, PETSC_ERR_USER_INPUT,
+      "-%s_directions %s splits the radial and circumferential components of a swept body on %s: prescribe both "
+      "directions across its axis, or neither",
+      motion->name, word, motion->set);
+    PetscCheck(!count[2], external->comm, PETSC_ERR_USER_INPUT,
+               "-%s_set %s has nodes that another of the -motions prescribes in the same direction", motion->name,
+               motion->set);
+    PetscCheck(count[0], external->comm, PETSC_ERR_USER_INPUT,
+               "-%s_set %s is held by supports in all of the directions %s: the motion does nothing", motion->name,
+               motion->set, word);
+  }
+  PetscCall(PetscBTDestroy(&taken));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MotionsAdvance(External external, PetscReal t, PetscReal dt, PetscReal v[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt m = 0; m < external->n_motions; m++) {
+    Drive          *motion = &external->motions[m];
+    const PetscReal rate   = (RampValue(&motion->ramp, t + dt) - RampValue(&motion->ramp, t)) / dt;
+
+    for (PetscInt i = 0; i < motion->n; i++) {
+      motion->before[i] = v[motion->index[i]];
+      motion->after[i] = v[motion->index[i]] = rate * motion->full[i];
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MotionsFinish(External external, PetscReal dt, const PetscReal f[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt m = 0; m < external->n_motions; m++) {
+    const Drive *motion = &external->motions[m];
+
+    for (PetscInt i = 0; i < motion->n_owned; i++) {
+      const PetscReal before = motion->before[i], after = motion->after[i];
+      const PetscReal drive = external->mass[motion->index[i]] * (after - before) / dt - f[motion->index[i]];
+
+      *external->drives += drive * (before + after);
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MotionsView(External external, PetscViewer viewer)
+{
+  char word[4], words[160];
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < external->n_motions; i++) {
+    const Drive     *motion = &external->motions[i];
+    const PetscReal *x      = motion->displacement;
+
+    DirectionsWord(motion->direction, word);
+    PetscCall(RampDescribe(&motion->ramp, sizeof(words), words));
+    if (x[0] != 0 || x[1] != 0 || x[2] != 0)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "  motion %s: %s moved by %.6g, %.6g, %.6g m (%s prescribed), %s\n",
+                                       motion->name, motion->set, (double)x[0], (double)x[1], (double)x[2], word,
+                                       words));
+    else
+      PetscCall(PetscViewerASCIIPrintf(viewer, "  motion %s: %s held in %s\n", motion->name, motion->set, word));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MotionsDestroy(External external)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < external->n_motions; i++) {
+    Drive *motion = &external->motions[i];
+
+    PetscCall(PetscFree(motion->name));
+    PetscCall(PetscFree(motion->set));
+    PetscCall(PetscFree4(motion->index, motion->full, motion->before, motion->after));
+  }
+  PetscCall(PetscFree(external->motions));
+  PetscFunctionReturn(0);
+}

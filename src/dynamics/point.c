@@ -1,0 +1,151 @@
+/*
+   Springs and dashpots at nodes: a 3 x 3 block each in the basis of the node, Q diag(k) Q', on the rank that owns the
+   node. Several at one node are added.
+*/
+#include "bodiesimpl.h"
+
+/* The point of a vertex, new if need be; of_vertex [n_vertices], -1 without */
+static PetscErrorCode PointGet(Bodies b, PetscInt vertex, PetscInt of_vertex[], Point **point)
+{
+  PetscFunctionBeginUser;
+  if (of_vertex[vertex] < 0) {
+    PetscCall(PetscRealloc((size_t)(b->n_points + 1) * sizeof(Point), &b->point));
+    b->point[b->n_points] = (Point){.vertex = vertex};
+    of_vertex[vertex]     = b->n_points++;
+  }
+  *point = &b->point[of_vertex[vertex]];
+  PetscFunctionReturn(0);
+}
+
+/* block += Q diag(value) Q' */
+static void BlockAdd(const PetscReal q[9], const PetscReal value[3], PetscReal block[9])
+{
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      for (int d = 0; d < 3; d++) block[3 * i + j] += q[3 * i + d] * value[d] * q[3 * j + d];
+}
+
+/* The present value of a parameter; `found` is whether there is one of that name */
+static PetscErrorCode ParameterFind(Bodies b, const char name[], PetscReal *value, PetscBool *found)
+{
+  const OperatorsParameter *parameters;
+  PetscInt                  n;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetParameters(b->operators, &n, &parameters));
+  *found = PETSC_FALSE;
+  for (PetscInt i = 0; i < n && !*found; i++) {
+    PetscCall(PetscStrcmp(parameters[i].name, name, found));
+    if (*found) *value = parameters[i].value;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Present values in x, y, z of a list of springs or dashpots: one parameter for all that are not zero, or one for
+   each */
+static PetscErrorCode GroundedGetValues(Bodies b, const Grounded *grounded, PetscBool is_dashpot, PetscReal value[3])
+{
+  const char *what = is_dashpot ? "viscosity" : "stiffness";
+  char        name[128];
+  PetscBool   found;
+
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 3; d++) {
+    value[d] = 0;
+    if (grounded->value[d] == 0) continue;
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s_%s", grounded->name, what));
+    PetscCall(ParameterFind(b, name, &value[d], &found));
+    if (found) continue;
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s_%s_%c", grounded->name, what, "xyz"[d]));
+    PetscCall(ParameterFind(b, name, &value[d], &found));
+    PetscCheck(found, b->comm, PETSC_ERR_PLIB, "no parameter %s", name);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Adds the springs or the dashpots of a list */
+static PetscErrorCode GroundedAdd(Bodies b, const Grounded *grounded, PetscBool is_dashpot, PetscInt of_vertex[])
+{
+  const PetscInt *vertices;
+  PetscInt        vStart, n;
+  PetscReal       value[3];
+  IS              is;
+  DM              dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(b->model, &dm));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
+  PetscCall(GroundedGetValues(b, grounded, is_dashpot, value));
+  PetscCall(ModelGetOwnedVertices(b->model, grounded->set, &is));
+  PetscCall(ISGetLocalSize(is, &n));
+  PetscCall(ISGetIndices(is, &vertices));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt v = vertices[i] - vStart;
+    Point         *point;
+
+    if (b->layout.at[v] < 0) continue;
+    PetscCall(PointGet(b, v, of_vertex, &point));
+    BlockAdd(&b->layout.basis[9 * v], value, is_dashpot ? point->damping : point->stiffness);
+  }
+  PetscCall(ISRestoreIndices(is, &vertices));
+  PetscCall(ISDestroy(&is));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PointsSetUp(Bodies b)
+{
+  const Grounded *springs, *dashpots;
+  PetscInt        n_springs, n_dashpots, *of_vertex;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(b->layout.n_vertices, &of_vertex));
+  for (PetscInt v = 0; v < b->layout.n_vertices; v++) of_vertex[v] = -1;
+  PetscCall(ModelGetSprings(b->model, &n_springs, &springs));
+  PetscCall(ModelGetDashpots(b->model, &n_dashpots, &dashpots));
+  for (PetscInt i = 0; i < n_springs; i++) PetscCall(GroundedAdd(b, &springs[i], PETSC_FALSE, of_vertex));
+  for (PetscInt i = 0; i < n_dashpots; i++) PetscCall(GroundedAdd(b, &dashpots[i], PETSC_TRUE, of_vertex));
+  for (PetscInt i = 0; i < b->share.n; i++)
+    if (of_vertex[b->share.shared[i]] >= 0) b->point[of_vertex[b->share.shared[i]]].early = PETSC_TRUE;
+  PetscCall(PetscFree(of_vertex));
+  PetscFunctionReturn(0);
+}
+
+/* y = A x in the places of a vertex */
+static void BlockApply(const PetscReal a[9], const PetscReal x[], PetscInt at, PetscInt step, PetscReal y[3])
+{
+  for (int i = 0; i < 3; i++) y[i] = a[3 * i] * x[at] + a[3 * i + 1] * x[at + step] + a[3 * i + 2] * x[at + 2 * step];
+}
+
+void PointsAdvance(Bodies b, PetscBool early, BodiesWork *w)
+{
+  for (PetscInt i = 0; i < b->n_points; i++) {
+    const Point   *point = &b->point[i];
+    const PetscInt at = b->layout.at[point->vertex], step = b->layout.step[point->vertex];
+    PetscReal      g[3], h[3];
+
+    if (point->early != early) continue;
+    BlockApply(point->stiffness, w->v, at, step, g);
+    BlockApply(point->damping, w->v, at, step, h);
+    for (PetscInt j = 0; j < 3; j++) {
+      const PetscInt k = at + j * step;
+
+      w->ku[k] += w->dt * g[j];
+      w->f[k] -= w->dt * g[j];
+      if (!w->d) continue;
+      w->d[k] += h[j];
+      w->f[k] -= h[j];
+      w->sums.damping += w->v[k] * h[j];
+    }
+  }
+}
+
+void PointsAddForces(Bodies b, const PetscReal u[], PetscReal ku[])
+{
+  for (PetscInt i = 0; i < b->n_points; i++) {
+    const PetscInt at = b->layout.at[b->point[i].vertex], step = b->layout.step[b->point[i].vertex];
+    PetscReal      g[3];
+
+    BlockApply(b->point[i].stiffness, u, at, step, g);
+    for (PetscInt j = 0; j < 3; j++) ku[at + j * step] += g[j];
+  }
+}

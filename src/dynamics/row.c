@@ -1,0 +1,139 @@
+/*
+   Rows of transient.csv. Forces are the sums over all pairs of the step from t_n, energies those of the half step
+   before t_n; motions of probes are those at t_n.
+*/
+#include "historyimpl.h"
+
+#define N_FIRST     17 /* columns before those of interfaces and probes */
+#define N_PER_FACE  2
+#define N_PER_PROBE 9
+#define NAME_ROOM   40 /* characters of a column besides the name of its interface or probe */
+
+static const char first_columns[] =
+  "time_s,normal_force_n,friction_force_n,n_closed,n_stick,kinetic_j,strain_j,external_work_j,friction_work_j,"
+  "contact_work_j,damping_work_j,energy_error_j,integrator_work_j,friction_heat_j,n_open,projector_residual,"
+  "projector_sweeps";
+static const char *const face_columns[N_PER_FACE]   = {"normal_force_n", "friction_force_n"};
+static const char *const probe_columns[N_PER_PROBE] = {"x_m",    "y_m",     "z_m",     "vx_m_s", "vy_m_s",
+                                                       "vz_m_s", "ax_m_s2", "ay_m_s2", "az_m_s2"};
+
+/* Interfaces with columns of their own: where there are several */
+static PetscInt RowCountFaces(History history)
+{
+  return history->n_interfaces > 1 ? history->n_interfaces : 0;
+}
+
+/* Adds the columns `name`_`column` to a header that has room for them */
+static PetscErrorCode HeaderAdd(char header[], size_t room, const char name[], PetscInt n, const char *const columns[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(PetscStrlcat(header, ",", room));
+    PetscCall(PetscStrlcat(header, name, room));
+    PetscCall(PetscStrlcat(header, "_", room));
+    PetscCall(PetscStrlcat(header, columns[i], room));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RowCreateHeader(History history, char **header)
+{
+  const PetscInt n_faces = RowCountFaces(history);
+  size_t         room    = sizeof(first_columns), length;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n_faces; i++) {
+    PetscCall(PetscStrlen(history->interfaces[i].name, &length));
+    room += N_PER_FACE * (length + NAME_ROOM);
+  }
+  for (PetscInt i = 0; i < history->n_probes; i++) {
+    PetscCall(PetscStrlen(history->probes[i].name, &length));
+    room += N_PER_PROBE * (length + NAME_ROOM);
+  }
+  PetscCall(PetscMalloc1(room, header));
+  PetscCall(PetscStrncpy(*header, first_columns, room));
+  for (PetscInt i = 0; i < n_faces; i++)
+    PetscCall(HeaderAdd(*header, room, history->interfaces[i].name, N_PER_FACE, face_columns));
+  for (PetscInt i = 0; i < history->n_probes; i++)
+    PetscCall(HeaderAdd(*header, room, history->probes[i].name, N_PER_PROBE, probe_columns));
+  PetscFunctionReturn(0);
+}
+
+/* Sums over the interfaces; mean sweeps per step since the last row */
+static void RowContact(History history, const HistoryState *state, PetscReal row[N_FIRST])
+{
+  PetscReal sweeps = 0, steps = 0;
+
+  for (PetscInt i = 0; i < state->n_interfaces; i++) {
+    const ContactSums *s = &state->sums[i];
+
+    row[1] += s->normal;
+    row[2] += s->friction;
+    row[3] += (PetscReal)(s->n[CONTACT_STICK] + s->n[CONTACT_SLIP]);
+    row[4] += (PetscReal)s->n[CONTACT_STICK];
+    row[14] += (PetscReal)s->n[CONTACT_OPEN];
+    row[15] = PetscMax(row[15], s->residual);
+    sweeps += (PetscReal)s->sweeps;
+    steps += (PetscReal)s->steps;
+  }
+  row[16]         = steps > history->steps ? (sweeps - history->sweeps) / (steps - history->steps) : 0;
+  history->sweeps = sweeps;
+  history->steps  = steps;
+}
+
+static void RowLedger(const Ledger *ledger, PetscReal row[N_FIRST])
+{
+  row[5]  = ledger->kinetic;
+  row[6]  = ledger->strain;
+  row[7]  = ledger->external;
+  row[8]  = ledger->friction;
+  row[9]  = ledger->contact;
+  row[10] = ledger->damping;
+  row[11] = ledger->error;
+  row[12] = ledger->integrator;
+  row[13] = ledger->heat;
+}
+
+/* Motions of the probes, [n_probes][9], on rank 0; each is known to one rank */
+static PetscErrorCode RowProbes(History history, const HistoryState *state, PetscReal motions[])
+{
+  const PetscInt n = N_PER_PROBE * history->n_probes;
+  PetscReal     *mine;
+
+  PetscFunctionBeginUser;
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(n, &mine));
+  for (PetscInt i = 0; i < history->n_probes; i++) {
+    PetscReal *const m = &mine[N_PER_PROBE * i];
+
+    if (history->probes[i].vertex >= 0)
+      HistoryMotion(history->layout, state, history->probes[i].vertex, m, m + 3, m + 6);
+  }
+  PetscCallMPI(MPI_Reduce(mine, motions, (PetscMPIInt)n, MPIU_REAL, MPI_SUM, 0, history->comm));
+  PetscCall(PetscFree(mine));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RowWrite(History history, const HistoryState *state)
+{
+  const PetscInt n_faces = RowCountFaces(history), n_motions = N_PER_PROBE * history->n_probes;
+  const PetscInt n = N_FIRST + N_PER_FACE * n_faces + n_motions;
+  PetscReal     *row;
+
+  PetscFunctionBeginUser;
+  PetscCheck(n_faces <= state->n_interfaces, history->comm, PETSC_ERR_ARG_SIZ,
+             "sums of %" PetscInt_FMT " interfaces, must be %" PetscInt_FMT, state->n_interfaces, n_faces);
+  PetscCall(PetscCalloc1(n, &row));
+  row[0] = state->time;
+  RowContact(history, state, row);
+  RowLedger(state->ledger, row);
+  for (PetscInt i = 0; i < n_faces; i++) {
+    row[N_FIRST + N_PER_FACE * i]     = state->sums[i].normal;
+    row[N_FIRST + N_PER_FACE * i + 1] = state->sums[i].friction;
+  }
+  PetscCall(RowProbes(history, state, &row[n - n_motions]));
+  PetscCall(ResultsTableNumbers(history->table, n, row));
+  PetscCall(ResultsTableCheck(history->table));
+  PetscCall(PetscFree(row));
+  PetscFunctionReturn(0);
+}

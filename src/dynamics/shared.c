@@ -1,0 +1,258 @@
+/*
+   Sums at the vertices that ranks share. Each rank sends what it has to all others that have the vertex, and each
+   adds up what it received and its own in the ascending order of the ranks: the copies stay bitwise equal without any
+   owner.
+*/
+#include "bodiesimpl.h"
+#include "gather.h"
+#include <petscsf.h>
+#include <stdlib.h>
+
+#define SHARED_TAG 5501
+
+/* A vertex on one of the ranks that share it */
+typedef struct {
+  PetscInt    number; /* global */
+  PetscMPIInt rank;
+  PetscInt    vertex; /* local on that rank */
+} Copy;
+
+static int CopyCompare(const void *a, const void *b)
+{
+  const Copy *x = a, *y = b;
+
+  if (x->number != y->number) return x->number < y->number ? -1 : 1;
+  return (x->rank > y->rank) - (x->rank < y->rank);
+}
+
+/* Flags of the local vertices that other ranks have too, and of those that another rank owns */
+static PetscErrorCode VerticesFlag(Bodies b, PetscBool shared[], PetscBool owned[])
+{
+  const PetscInt *degree, *leaf;
+  PetscInt        n_roots, n_leaves, vStart, vEnd;
+  PetscSF         sf;
+  DM              dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(b->model, &dm));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
+  for (PetscInt v = 0; v < vEnd - vStart; v++) {
+    shared[v] = PETSC_FALSE;
+    owned[v]  = PETSC_TRUE;
+  }
+  PetscCall(DMGetPointSF(dm, &sf));
+  PetscCall(PetscSFGetGraph(sf, &n_roots, &n_leaves, &leaf, NULL));
+  if (n_roots < 0) PetscFunctionReturn(0); /* a mesh on one rank shares nothing */
+  PetscCall(PetscSFComputeDegreeBegin(sf, &degree));
+  PetscCall(PetscSFComputeDegreeEnd(sf, &degree));
+  for (PetscInt v = vStart; v < PetscMin(vEnd, n_roots); v++) shared[v - vStart] = degree[v] > 0;
+  for (PetscInt i = 0; i < n_leaves; i++) {
+    const PetscInt v = leaf ? leaf[i] : i;
+
+    if (v < vStart || v >= vEnd) continue;
+    shared[v - vStart] = PETSC_TRUE;
+    owned[v - vStart]  = PETSC_FALSE;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* All copies of all shared vertices, sorted by number, then rank */
+static PetscErrorCode CopiesGather(Bodies b, const PetscBool shared[], PetscInt *n_all, Copy **all)
+{
+  Copy        *own;
+  PetscInt     n = 0, vStart, vEnd;
+  PetscMPIInt  rank;
+  PetscSection global;
+  DM           dm, cdm;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(b->comm, &rank));
+  PetscCall(ModelGetDM(b->model, &dm));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
+  PetscCall(DMGetCoordinateDM(dm, &cdm));
+  PetscCall(DMGetGlobalSection(cdm, &global));
+  PetscCall(PetscCalloc1(vEnd - vStart, &own));
+  for (PetscInt v = vStart; v < vEnd; v++) {
+    PetscInt offset;
+
+    if (!shared[v - vStart]) continue;
+    PetscCall(PetscSectionGetOffset(global, v, &offset));
+    own[n].number = offset < 0 ? -(offset + 1) : offset;
+    own[n].rank   = rank;
+    own[n].vertex = v - vStart;
+    n++;
+  }
+  PetscCall(GatherRecords(b->comm, n, sizeof(Copy), own, n_all, all));
+  if (*n_all) qsort(*all, (size_t)*n_all, sizeof(Copy), CopyCompare);
+  PetscCall(PetscFree(own));
+  PetscFunctionReturn(0);
+}
+
+/* End of the copies of one vertex that begin at i */
+static PetscInt CopiesEnd(PetscInt n_all, const Copy all[], PetscInt i)
+{
+  PetscInt end = i + 1;
+
+  while (end < n_all && all[end].number == all[i].number) end++;
+  return end;
+}
+
+/* This rank's copy among those from begin to end, -1 without */
+static PetscInt CopiesFind(const Copy all[], PetscInt begin, PetscInt end, PetscMPIInt rank)
+{
+  for (PetscInt i = begin; i < end; i++)
+    if (all[i].rank == rank) return i;
+  return -1;
+}
+
+/* Neighbours, and how many vertices are shared with each */
+static PetscErrorCode NeighboursFind(Shared *share, PetscInt n_all, const Copy all[], PetscMPIInt rank,
+                                     PetscMPIInt size)
+{
+  PetscInt *count;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(size, &count));
+  for (PetscInt i = 0, end; i < n_all; i = end) {
+    end = CopiesEnd(n_all, all, i);
+    if (CopiesFind(all, i, end, rank) < 0) continue;
+    share->n++;
+    for (PetscInt j = i; j < end; j++) count[all[j].rank]++;
+  }
+  count[rank] = 0;
+  for (PetscMPIInt r = 0; r < size; r++) share->n_ranks += count[r] > 0;
+  PetscCall(PetscMalloc1(share->n_ranks, &share->rank));
+  PetscCall(PetscCalloc1(share->n_ranks + 1, &share->start));
+  for (PetscMPIInt r = 0, i = 0; r < size; r++) {
+    if (!count[r]) continue;
+    share->rank[i]      = r;
+    share->start[i + 1] = share->start[i] + count[r];
+    i++;
+  }
+  PetscCall(PetscFree(count));
+  PetscFunctionReturn(0);
+}
+
+/* Places of the shared vertices in the messages, the same on both sides: by global number */
+static PetscErrorCode SourcesFind(Shared *share, PetscInt n_all, const Copy all[], PetscMPIInt rank)
+{
+  PetscInt *filled, n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(share->n, &share->shared, share->n + 1, &share->source_start, n_all, &share->source));
+  PetscCall(PetscMalloc1(share->start[share->n_ranks], &share->vertex));
+  PetscCall(PetscMalloc1(share->n_ranks, &filled));
+  PetscCall(PetscArraycpy(filled, share->start, share->n_ranks));
+  share->source_start[0] = 0;
+  for (PetscInt i = 0, end; i < n_all; i = end) {
+    PetscInt own, m = share->source_start[n];
+
+    end = CopiesEnd(n_all, all, i);
+    own = CopiesFind(all, i, end, rank);
+    if (own < 0) continue;
+    for (PetscInt j = i; j < end; j++) {
+      PetscInt r;
+
+      if (j == own) {
+        share->source[m++] = -1;
+        continue;
+      }
+      PetscCall(PetscFindMPIInt(all[j].rank, share->n_ranks, share->rank, &r));
+      share->source[m++]         = filled[r];
+      share->vertex[filled[r]++] = all[own].vertex;
+    }
+    share->shared[n]         = all[own].vertex;
+    share->source_start[++n] = m;
+  }
+  PetscCall(PetscFree(filled));
+  PetscFunctionReturn(0);
+}
+
+/* Persistent requests, receiving first */
+static PetscErrorCode RequestsCreate(Shared *share)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(3 * share->start[share->n_ranks], &share->send, 3 * share->start[share->n_ranks],
+                         &share->receive, 2 * share->n_ranks, &share->request));
+  for (PetscMPIInt i = 0; i < share->n_ranks; i++) {
+    const PetscInt begin = 3 * share->start[i];
+    PetscMPIInt    n;
+
+    PetscCall(PetscMPIIntCast(3 * share->start[i + 1] - begin, &n));
+    PetscCallMPI(
+      MPI_Recv_init(share->receive + begin, n, MPIU_REAL, share->rank[i], SHARED_TAG, share->comm, &share->request[i]));
+    PetscCallMPI(MPI_Send_init(share->send + begin, n, MPIU_REAL, share->rank[i], SHARED_TAG, share->comm,
+                               &share->request[share->n_ranks + i]));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SharedSetUp(Bodies b)
+{
+  Shared     *share = &b->share;
+  PetscBool  *shared;
+  PetscInt    n_all;
+  Copy       *all;
+  PetscMPIInt rank, size;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(b->comm, &rank));
+  PetscCallMPI(MPI_Comm_size(b->comm, &size));
+  PetscCall(PetscMalloc1(b->layout.n_vertices, &shared));
+  PetscCall(PetscMalloc1(b->layout.n_vertices, &b->layout.owned));
+  PetscCall(VerticesFlag(b, shared, b->layout.owned));
+  PetscCall(CopiesGather(b, shared, &n_all, &all));
+  PetscCall(NeighboursFind(share, n_all, all, rank, size));
+  PetscCall(SourcesFind(share, n_all, all, rank));
+  PetscCallMPI(MPI_Comm_dup(b->comm, &share->comm));
+  PetscCall(RequestsCreate(share));
+  PetscCall(PetscFree(shared));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SharedBegin(Shared *share, const Layout *layout, const PetscReal x[])
+{
+  PetscFunctionBeginUser;
+  if (!share->n_ranks) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Startall(share->n_ranks, share->request));
+  for (PetscInt i = 0; i < share->start[share->n_ranks]; i++) {
+    const PetscInt at = layout->at[share->vertex[i]], step = layout->step[share->vertex[i]];
+
+    for (PetscInt j = 0; j < 3; j++) share->send[3 * i + j] = x[at + j * step];
+  }
+  PetscCallMPI(MPI_Startall(share->n_ranks, share->request + share->n_ranks));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SharedEnd(Shared *share, const Layout *layout, PetscReal x[])
+{
+  PetscFunctionBeginUser;
+  if (!share->n_ranks) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Waitall(2 * share->n_ranks, share->request, MPI_STATUSES_IGNORE));
+  for (PetscInt i = 0; i < share->n; i++) {
+    const PetscInt at = layout->at[share->shared[i]], step = layout->step[share->shared[i]];
+
+    for (PetscInt j = 0; j < 3; j++) {
+      PetscReal sum = 0;
+
+      for (PetscInt s = share->source_start[i]; s < share->source_start[i + 1]; s++)
+        sum += share->source[s] < 0 ? x[at + j * step] : share->receive[3 * share->source[s] + j];
+      x[at + j * step] = sum;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SharedDestroy(Shared *share)
+{
+  PetscFunctionBeginUser;
+  for (PetscMPIInt i = 0; i < 2 * share->n_ranks; i++) PetscCallMPI(MPI_Request_free(&share->request[i]));
+  PetscCall(PetscFree3(share->send, share->receive, share->request));
+  PetscCall(PetscFree3(share->shared, share->source_start, share->source));
+  PetscCall(PetscFree(share->vertex));
+  PetscCall(PetscFree(share->rank));
+  PetscCall(PetscFree(share->start));
+  if (share->comm != MPI_COMM_NULL) PetscCallMPI(MPI_Comm_free(&share->comm));
+  PetscFunctionReturn(0);
+}

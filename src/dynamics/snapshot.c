@@ -1,0 +1,44 @@
+/*
+   Snapshots: displacement (m) and velocity (m/s) of all nodes at t_n, Cartesian, and transient.xmf which shows them
+   in time.
+*/
+#include "historyimpl.h"
+
+PetscErrorCode SnapshotsCreate(History history)
+{
+  const char    **names;
+  const Part     *parts;
+  const PetscInt *cell_part;
+  PetscInt        n;
+  DM              dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(history->model, &dm));
+  PetscCall(ModelGetParts(history->model, &n, &parts));
+  PetscCall(ModelGetCellParts(history->model, &cell_part));
+  PetscCall(PetscMalloc1(n, &names));
+  for (PetscInt i = 0; i < n; i++) names[i] = parts[i].name;
+  PetscCall(ResultsFilmCreate(history->results, "transient", "snapshot", dm, n, names, cell_part, &history->film));
+  PetscCall(PetscFree(names));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SnapshotWrite(History history, const HistoryState *state)
+{
+  const PetscInt n = history->layout->n_vertices;
+  PetscReal     *u, *v, a[3];
+  char           title[64];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(3 * n, &u, 3 * n, &v));
+  for (PetscInt i = 0; i < n; i++) HistoryMotion(history->layout, state, i, &u[3 * i], &v[3 * i], a);
+  PetscCall(PetscSNPrintf(title, sizeof(title), "step %" PetscInt_FMT ", t = %.6g ms", state->step,
+                          (double)(1e3 * state->time)));
+  PetscCall(ResultsFilmWrite(history->film, state->time, title, 2,
+                             (const ResultsNodal[]){
+                               {"displacement_m", 3, u},
+                               {"velocity_m_s",   3, v}
+  }));
+  PetscCall(PetscFree2(u, v));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,138 @@
+/*
+   The state at t = 0: displacements u_0 and velocities v_0.
+      rest    u_0 = 0, v_0 the initial velocities of the parts
+      static  u_0 of the sliding state under the loads (statics.h) and its contact forces; v_0 as at rest. Then nothing
+              moves until something disturbs it: all loads and sliding speeds are in force from the first step.
+   On top of either a mode x of an earlier run, lambda = sigma + i omega: u_0 += A Re(x), v_0 += A Re(lambda x), with A
+   such that the largest component of Re(x) is the amplitude asked for. m, m/s.
+*/
+#include "dynamicsimpl.h"
+
+/* Raises the error for an option that the sliding state does not know; a time of 0 is none */
+static PetscErrorCode CheckAbsent(Dynamics d, const char name[], const char what[], PetscBool time)
+{
+  char      option[160];
+  PetscReal length = 1;
+  PetscBool set;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s%s", name, what));
+  if (time)
+    PetscCall(PetscOptionsGetReal(NULL, NULL, option, &length, &set));
+  else
+    PetscCall(PetscOptionsHasName(NULL, NULL, option, &set));
+  PetscCheck(
+    !set || length == 0, d->comm, PETSC_ERR_USER_INPUT,
+    "%s has no place with -dynamics_start static, the steady state under the whole loads: leave it out, or take "
+    "-dynamics_start rest",
+    option);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckStatic(Dynamics d)
+{
+  static const char *const ramps[] = {"_ramp", "_delay"}, *const others[] = {"gravity", "motions"};
+  const ContactInterface *interfaces;
+  const Load             *loads;
+  PetscInt                n_loads, n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetLoads(d->model, &n_loads, &loads));
+  if (d->contact) PetscCall(ContactGetInterfaces(d->contact, &n, &interfaces));
+  for (int r = 0; r < 2; r++) {
+    PetscCall(CheckAbsent(d, others[r], "", PETSC_FALSE));
+    for (PetscInt i = 0; i < n_loads; i++) PetscCall(CheckAbsent(d, loads[i].name, ramps[r], PETSC_TRUE));
+    for (PetscInt i = 0; i < n; i++) PetscCall(CheckAbsent(d, interfaces[i].name, ramps[r], PETSC_TRUE));
+  }
+  for (PetscInt i = 0; i < n; i++)
+    PetscCheck(interfaces[i].law == CONTACT_CONSTRAINT, d->comm, PETSC_ERR_USER_INPUT,
+               "-%s_law penalty: -dynamics_start static needs -%s_law constraint, the law of the dynamics",
+               interfaces[i].name, interfaces[i].name);
+  PetscFunctionReturn(0);
+}
+
+/* u += A re, v += A (sigma re - omega im) */
+static PetscErrorCode AddShape(Dynamics d, PetscReal u[], PetscReal v[])
+{
+  const PetscInt n = d->layout->n_vertices;
+  PetscReal     *re, *im, lambda[2], largest = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(3 * n, &re, 3 * n, &im));
+  PetscCall(ShapeRead(d->comm, d->model, d->shape, d->shape_mode, re, im, lambda));
+  for (PetscInt i = 0; i < 3 * n; i++) largest = PetscMax(largest, PetscAbsReal(re[i]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPI_MAX, d->comm));
+  PetscCheck(largest > 0, d->comm, PETSC_ERR_USER_INPUT,
+             "-dynamics_shape_mode %" PetscInt_FMT " of -dynamics_shape %s has no real part", d->shape_mode, d->shape);
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal scale = d->shape_amplitude / largest;
+    PetscReal       du[3], dv[3];
+
+    for (int c = 0; c < 3; c++) {
+      du[c] = scale * re[3 * i + c];
+      dv[c] = scale * (lambda[0] * re[3 * i + c] - lambda[1] * im[3 * i + c]);
+    }
+    if (d->layout->at[i] < 0) continue;
+    LayoutAdd(d->layout, i, du, u);
+    LayoutAdd(d->layout, i, dv, v);
+  }
+  PetscCall(PetscFree2(re, im));
+  PetscFunctionReturn(0);
+}
+
+/* 1e-10 of the model's size, m: rounding of coordinates is no penetration */
+static PetscErrorCode FindSlack(Dynamics d, PetscReal *slack)
+{
+  const PetscReal *x;
+  PetscReal        range[2] = {0, 0}; /* largest and smallest coordinate, as maxima */
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetCoordinates(d->model, &x));
+  for (PetscInt i = 0; i < 3 * d->layout->n_vertices; i++) {
+    range[0] = PetscMax(range[0], x[i]);
+    range[1] = PetscMax(range[1], -x[i]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 2, MPIU_REAL, MPI_MAX, d->comm));
+  *slack = 1e-10 * (range[0] + range[1]);
+  PetscFunctionReturn(0);
+}
+
+/* Contact surfaces at displacements u: pairs, and forces of the sliding state where it is the start */
+static PetscErrorCode StartContact(Dynamics d, const PetscReal u[])
+{
+  const ContactState *states = NULL;
+  PetscReal           slack;
+
+  PetscFunctionBeginUser;
+  if (!d->projector) PetscFunctionReturn(0);
+  if (d->start == START_STATIC) PetscCall(StaticsGetState(d->statics, &states, NULL));
+  for (PetscInt i = 0; i < d->surface.n; i++) LayoutGet(d->layout, d->surface.vertex[i], u, &d->surface.u[3 * i]);
+  PetscCall(FindSlack(d, &slack));
+  if (d->shape[0]) slack += PetscAbsReal(d->shape_amplitude);
+  PetscCall(ContactProjectorStart(d->projector, 0, d->surface.u, slack, states));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsStartState(Dynamics d)
+{
+  PetscScalar *u, *v;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(d->u, &u));
+  PetscCall(VecGetArray(d->v, &v));
+  PetscCall(ExternalSetVelocity(d->external, v));
+  if (d->start == START_STATIC) {
+    Vec displacement;
+
+    PetscCall(CheckStatic(d));
+    PetscCall(StaticsSolve(d->statics));
+    PetscCall(StaticsGetState(d->statics, NULL, &displacement));
+    PetscCall(StateFromVec(d->model, d->layout, displacement, u));
+  }
+  if (d->shape[0]) PetscCall(AddShape(d, u, v));
+  PetscCall(StartContact(d, u));
+  PetscCall(BodiesSetState(d->bodies, u, v, d->ku));
+  PetscCall(VecRestoreArray(d->v, &v));
+  PetscCall(VecRestoreArray(d->u, &u));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,50 @@
+/*
+   State vectors (bodies.h) and vectors of all unknowns: the former hold every direction of every local vertex in the
+   bodies' local components, the latter the free directions in Cartesian ones, each once.
+*/
+#include "dynamicsimpl.h"
+
+PetscErrorCode StateFromVec(Model model, const Layout *layout, Vec x, PetscReal state[])
+{
+  const PetscScalar *value;
+  Vec                local;
+  DM                 dm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(model, &dm));
+  PetscCall(DMGetLocalVector(dm, &local));
+  PetscCall(VecSet(local, 0)); /* held directions, which global vectors do not have */
+  PetscCall(DMGlobalToLocal(dm, x, INSERT_VALUES, local));
+  PetscCall(VecGetArrayRead(local, &value));
+  PetscCall(PetscArrayzero(state, layout->n));
+  for (PetscInt i = 0; i < layout->n_vertices; i++)
+    if (layout->at[i] >= 0) LayoutSet(layout, i, &value[3 * i], state);
+  PetscCall(VecRestoreArrayRead(local, &value));
+  PetscCall(DMRestoreLocalVector(dm, &local));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StateToVec(Model model, const Layout *layout, const PetscReal state[], Vec x)
+{
+  const PetscInt *unknowns;
+  PetscInt        begin, end;
+  PetscScalar    *value;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetUnknowns(model, &unknowns));
+  PetscCall(VecGetOwnershipRange(x, &begin, &end));
+  PetscCall(VecGetArray(x, &value));
+  for (PetscInt i = 0; i < layout->n_vertices; i++) {
+    PetscReal here[3];
+
+    if (layout->at[i] < 0) continue;
+    LayoutGet(layout, i, state, here);
+    for (int d = 0; d < 3; d++) {
+      const PetscInt row = unknowns[3 * i + d];
+
+      if (row >= begin && row < end) value[row - begin] = here[d];
+    }
+  }
+  PetscCall(VecRestoreArray(x, &value));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,198 @@
+/*
+   Advance of a swept body, a block of nodes of a line at a time and without further passes over memory:
+      g = K v;  strain += u.ku / 2;  kinetic += v.M v / 2;  damping_old += v.d;
+      ku += dt g;  d = beta g + alpha M v;  damping += v.d;  f = -ku - d
+   On lines between parts of different beta the first term of d is a stencil of its own.
+*/
+#include "versions.h"
+
+typedef struct {
+  StencilVector kinetic, strain, damping_old, damping;
+} SweptSums;
+
+/* Stores eight numbers, or four; the compiler drops what leads to numbers that are not stored */
+STENCIL_INLINE void RowStore(int n, StencilVector y, PetscReal x[])
+{
+  if (n == STENCIL_WIDTH)
+    StencilStore(y, x);
+  else
+    *(StencilLanes *)x = y.a;
+}
+
+/* Eight (or four) nodes of a row, with g = K v and h = C v without the part of the mass */
+STENCIL_INLINE void RowAdvance(int n, const BodiesWork *w, PetscInt at, PetscReal alpha, StencilVector mass,
+                               StencilVector g, StencilVector h, SweptSums *sums)
+{
+  const StencilVector v  = StencilLoad(w->v + at);
+  StencilVector       ku = StencilLoad(w->ku + at), f, momentum = StencilTimes(mass, v);
+
+  StencilAddProduct(StencilLoad(w->u + at), ku, &sums->strain);
+  StencilAddProduct(momentum, v, &sums->kinetic);
+  StencilAdd(w->dt, g, &ku);
+  RowStore(n, ku, w->ku + at);
+  f = (StencilVector){-ku.a, -ku.b};
+  if (w->d) {
+    StencilAddProduct(v, StencilLoad(w->d + at), &sums->damping_old);
+    StencilAdd(alpha, momentum, &h);
+    StencilAddProduct(v, h, &sums->damping);
+    RowStore(n, h, w->d + at);
+    f = StencilMinus(f, h);
+  }
+  RowStore(n, f, w->f + at);
+}
+
+/* Takes `missing` off at the node where `at` is 1 */
+STENCIL_INLINE void VectorsTake(const double missing[3], const double at[], StencilVector g[3])
+{
+  for (int i = 0; i < 3; i++) StencilAdd(-missing[i], StencilLoad(at), &g[i]);
+}
+
+/* g = K v, or likewise with other coefficients, at nodes k .. k + 7 of a line, zero in the padding */
+STENCIL_INLINE void BlockApply(const Swept *s, const StencilLine *line, const SweptRange *range, PetscBool ends,
+                               const ptrdiff_t row[3], PetscInt k, const PetscReal v[], StencilVector g[3])
+{
+  double missing[3];
+
+  StencilApply(line, k, row, v, g);
+  if (ends && range->first) {
+    StencilMissing(line, 0, 1, row, v, missing);
+    VectorsTake(missing, &s->first[k], g);
+  }
+  if (ends && range->last) {
+    StencilMissing(line, s->lines->n_nodes - 1, -1, row, v, missing);
+    VectorsTake(missing, &s->last[k], g);
+  }
+  for (int i = 0; i < 3; i++) g[i] = StencilTimes(g[i], StencilLoad(s->inside + k));
+}
+
+/* Nodes k .. k + n - 1 of line l */
+STENCIL_INLINE void BlockAdvance(int n, const Swept *s, const SweptRange *range, PetscBool ends, PetscInt l, PetscInt k,
+                                 const BodiesWork *w, SweptSums *sums)
+{
+  const PetscInt      at = s->begin + 3 * l * s->stride + k, p = (s->along + 1) % 3, q = (s->along + 2) % 3;
+  const ptrdiff_t     row[3] = {p * s->stride, q * s->stride, s->along * s->stride};
+  const PetscReal    *v      = w->v + s->begin;
+  const StencilVector mass   = StencilLoad(s->mass + l * s->stride + k);
+  const PetscBool     own    = w->d && s->damping[l].n ? PETSC_TRUE : PETSC_FALSE;
+  StencilVector       g[3], h[3];
+
+  BlockApply(s, &s->stiffness[l], range, ends, row, k, v, g);
+  if (own)
+    BlockApply(s, &s->damping[l], range, ends, row, k, v, h);
+  else
+    for (int i = 0; i < 3; i++) h[i] = (StencilVector){s->beta[l] * g[i].a, s->beta[l] * g[i].b};
+  for (int i = 0; i < 3; i++) RowAdvance(n, w, at + (PetscInt)row[i], s->alpha[l], mass, g[i], h[i], sums);
+}
+
+/* Adds the energies of a line; of its last four nodes the first half of the vectors */
+STENCIL_INLINE void SumsAdd(const SweptSums *line, const SweptSums *tail, BodiesSums *sums)
+{
+  sums->kinetic += 0.5 * (StencilSum(line->kinetic) + StencilSumLanes(&tail->kinetic.a));
+  sums->strain += 0.5 * (StencilSum(line->strain) + StencilSumLanes(&tail->strain.a));
+  sums->damping_old += StencilSum(line->damping_old) + StencilSumLanes(&tail->damping_old.a);
+  sums->damping += StencilSum(line->damping) + StencilSumLanes(&tail->damping.a);
+}
+
+/* A range of all lines; `ends` is known at each call, so that blocks without ends have no code for them */
+STENCIL_INLINE void LinesAdvance(const Swept *s, const SweptRange *range, PetscBool ends, BodiesWork *w)
+{
+  const PetscInt half = (range->end - range->begin) % STENCIL_WIDTH, end = range->end - half;
+
+  for (PetscInt l = 0; l < s->lines->n_lines; l++) {
+    SweptSums sums = {0}, tail = {0};
+
+    for (PetscInt k = range->begin; k < end; k += STENCIL_WIDTH)
+      BlockAdvance(STENCIL_WIDTH, s, range, ends, l, k, w, &sums);
+    if (half) BlockAdvance(STENCIL_WIDTH / 2, s, range, ends, l, end, w, &tail);
+    SumsAdd(&sums, &tail, &w->sums);
+  }
+}
+
+VERSIONS
+static void RangeAdvance(const Swept *s, const SweptRange *range, BodiesWork *w)
+{
+  if (range->first || range->last)
+    LinesAdvance(s, range, PETSC_TRUE, w);
+  else
+    LinesAdvance(s, range, PETSC_FALSE, w);
+}
+
+/* Ghosts of a closed body: the last node before the first one and the reverse; or zeros */
+static void GhostsSet(const Swept *s, PetscBool zero, PetscReal v[])
+{
+  const PetscInt n = s->lines->n_nodes;
+
+  for (PetscInt i = 0; i < 3 * s->lines->n_lines && s->lines->closed; i++) {
+    PetscReal *row = v + s->begin + i * s->stride;
+
+    row[-1] = zero ? 0 : row[n - 1];
+    row[n]  = zero ? 0 : row[0];
+  }
+}
+
+PetscErrorCode SweptAdvance(const Swept *s, PetscBool early, BodiesWork *w)
+{
+  PetscFunctionBeginUser;
+  if (early) GhostsSet(s, PETSC_FALSE, w->v);
+  for (PetscInt i = 0; i < s->n_ranges; i++)
+    if (s->range[i].early == early) RangeAdvance(s, &s->range[i], w);
+  if (!early) GhostsSet(s, PETSC_TRUE, w->v);
+  PetscFunctionReturn(0);
+}
+
+/* Flags along the lines as numbers */
+static PetscErrorCode FlagsSet(Swept *s)
+{
+  const PetscInt n = s->lines->n_nodes;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc3(s->stride, &s->inside, s->stride, &s->first, s->stride, &s->last));
+  for (PetscInt k = 0; k < n; k++) s->inside[k] = 1;
+  s->first[0]    = 1;
+  s->last[n - 1] = 1;
+  PetscFunctionReturn(0);
+}
+
+/* Whether the lines have shared vertices at nodes begin .. end - 1 */
+static PetscBool NodesShared(const ModelLines *lines, PetscInt begin, PetscInt end, const PetscBool shared[])
+{
+  for (PetscInt l = 0; l < lines->n_lines; l++)
+    for (PetscInt k = begin; k < PetscMin(end, lines->n_nodes); k++)
+      if (shared[lines->vertex[lines->n_nodes * l + k]]) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+PetscErrorCode SweptSetRanges(Swept *s, const PetscBool shared[])
+{
+  const PetscInt  n = s->lines->n_nodes, n_blocks = (n + STENCIL_WIDTH - 1) / STENCIL_WIDTH;
+  const PetscBool open = s->lines->closed ? PETSC_FALSE : PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  PetscCall(FlagsSet(s));
+  PetscCall(PetscMalloc1(n_blocks, &s->range));
+  for (PetscInt k = 0; k < n; k += STENCIL_WIDTH) {
+    SweptRange *last  = s->n_ranges ? &s->range[s->n_ranges - 1] : NULL;
+    SweptRange  range = {.begin = k, .end = k + (n - k <= STENCIL_WIDTH / 2 ? STENCIL_WIDTH / 2 : STENCIL_WIDTH)};
+
+    range.early = NodesShared(s->lines, k, range.end, shared);
+    range.first = open && k == 0 ? PETSC_TRUE : PETSC_FALSE;
+    range.last  = open && range.end >= n ? PETSC_TRUE : PETSC_FALSE;
+    if (last && last->early == range.early && last->first == range.first && last->last == range.last)
+      last->end = range.end;
+    else
+      s->range[s->n_ranges++] = range;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweptDestroy(Swept *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelDestroyLines(&s->lines));
+  PetscCall(PetscFree2(s->stiffness, s->damping));
+  PetscCall(PetscFree3(s->at, s->coefficient, s->before));
+  PetscCall(PetscFree3(s->beta, s->alpha, s->mass));
+  PetscCall(PetscFree3(s->inside, s->first, s->last));
+  PetscCall(PetscFree(s->range));
+  PetscFunctionReturn(0);
+}

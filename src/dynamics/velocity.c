@@ -1,0 +1,112 @@
+/*
+   Initial velocities of parts: uniform in a part, the mean of the parts' where they share a node, nothing in directions
+   that are held or prescribed.
+*/
+#include "externalimpl.h"
+#include <squeal/options.h>
+
+PetscErrorCode VelocitySetFromOptions(External external)
+{
+  const Part *parts;
+  char        prefix[128], title[160];
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetParts(external->model, &external->n_parts, &parts));
+  PetscCall(PetscCalloc1(3 * external->n_parts, &external->velocity));
+  for (PetscInt i = 0; i < external->n_parts; i++) {
+    PetscReal *v = &external->velocity[3 * i];
+
+    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", parts[i].name));
+    PetscCall(PetscSNPrintf(title, sizeof(title), "Start of part %s", parts[i].name));
+    PetscOptionsBegin(external->comm, prefix, title, NULL);
+    PetscCall(OptionsGetReals(PetscOptionsObject, "-velocity", "at the start in x,y,z, m/s", 3, v, NULL));
+    PetscOptionsEnd();
+    for (int d = 0; d < 3; d++)
+      PetscCheck(!PetscIsInfOrNanReal(v[d]), external->comm, PETSC_ERR_USER_INPUT,
+                 "-%s_velocity value %.6g must be a finite number (m/s)", parts[i].name, (double)v[d]);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscBool VelocityIsZero(const PetscReal v[3])
+{
+  return v[0] == 0 && v[1] == 0 && v[2] == 0;
+}
+
+/* Adds a part's velocity to sum[vertex][3] and 1 to count[vertex] */
+static PetscErrorCode VelocityAddPart(External external, const char part[], const PetscReal velocity[3],
+                                      PetscReal sum[], PetscInt count[])
+{
+  const PetscInt *vertex;
+  PetscInt        n, vStart;
+  DM              dm;
+  IS              is;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetDM(external->model, &dm));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
+  PetscCall(ModelGetSetVertices(external->model, part, &is));
+  PetscCall(ISGetLocalSize(is, &n));
+  PetscCall(ISGetIndices(is, &vertex));
+  for (PetscInt k = 0; k < n; k++) {
+    for (int d = 0; d < 3; d++) sum[3 * (vertex[k] - vStart) + d] += velocity[d];
+    count[vertex[k] - vStart]++;
+  }
+  PetscCall(ISRestoreIndices(is, &vertex));
+  PetscCall(ISDestroy(&is));
+  PetscFunctionReturn(0);
+}
+
+/* Adds the means to v where nothing is held */
+static void VelocityAddMeans(External external, PetscReal sum[], const PetscInt count[], PetscReal v[])
+{
+  const Layout *layout = external->layout;
+
+  for (PetscInt i = 0; i < layout->n_vertices; i++) {
+    if (layout->at[i] < 0 || !count[i]) continue;
+    for (int d = 0; d < 3; d++) sum[3 * i + d] /= (PetscReal)count[i];
+    LayoutAdd(layout, i, &sum[3 * i], v);
+    for (int j = 0; j < 3; j++) {
+      const PetscInt index = layout->at[i] + j * layout->step[i];
+
+      if (external->minv[index] == 0) v[index] = 0;
+    }
+  }
+}
+
+PetscErrorCode ExternalSetVelocity(External external, PetscReal v[])
+{
+  const Part *parts;
+  PetscInt    n, *count;
+  PetscReal  *sum;
+  PetscBool   moves = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetParts(external->model, &n, &parts));
+  for (PetscInt i = 0; i < external->n_parts; i++)
+    if (!VelocityIsZero(&external->velocity[3 * i])) moves = PETSC_TRUE;
+  if (!moves) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc2(3 * external->layout->n_vertices, &sum, external->layout->n_vertices, &count));
+  for (PetscInt i = 0; i < external->n_parts; i++)
+    PetscCall(VelocityAddPart(external, parts[i].name, &external->velocity[3 * i], sum, count));
+  VelocityAddMeans(external, sum, count, v);
+  PetscCall(PetscFree2(sum, count));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode VelocityView(External external, PetscViewer viewer)
+{
+  const Part *parts;
+  PetscInt    n;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetParts(external->model, &n, &parts));
+  for (PetscInt i = 0; i < external->n_parts; i++) {
+    const PetscReal *v = &external->velocity[3 * i];
+
+    if (!VelocityIsZero(v))
+      PetscCall(PetscViewerASCIIPrintf(viewer, "  part %s starts with %.6g, %.6g, %.6g m/s\n", parts[i].name,
+                                       (double)v[0], (double)v[1], (double)v[2]));
+  }
+  PetscFunctionReturn(0);
+}

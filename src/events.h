@@ -1,0 +1,20 @@
+/* Log events: the hot functions, registered by SquealInitialize(); -log_view attributes time to them */
+#pragma once
+
+#include <petscsys.h>
+
+typedef enum {
+  EVENT_BODIES_ADVANCE,
+  EVENT_EXCHANGE,
+  EVENT_EXTERNAL,
+  EVENT_PROJECT,
+  EVENT_MOVE,
+  EVENT_RECORD,
+  EVENT_CHECKPOINT,
+  N_EVENTS
+} SquealEvent;
+
+extern PetscLogEvent squeal_events[N_EVENTS]; /* 0 until they are registered */
+
+#define EventBegin(event) PetscLogEventBegin(squeal_events[event], 0, 0, 0, 0)
+#define EventEnd(event)   PetscLogEventEnd(squeal_events[event], 0, 0, 0, 0)

@@ -1,0 +1,21 @@
+/* Private to model/: the test whether the cells of a body are swept by a motion */
+#pragma once
+
+#include <squeal/model.h>
+#include "kernels/motion.h"
+
+#define LINES_TOLERANCE 1e-9 /* largest difference of coordinates that are meant to be equal, of the size of the body */
+#define LINES_CORNERS   8
+
+/* The cells of a body, and the nodes that they have */
+typedef struct {
+  PetscInt   n_nodes, n_cells;
+  PetscInt  *vertex;  /* [n_nodes] local vertices from 0 */
+  PetscInt  *corners; /* [n_cells][LINES_CORNERS] nodes */
+  PetscInt  *part;    /* [n_cells] */
+  PetscReal *x;       /* [n_nodes][3], m */
+  PetscReal  size;    /* diagonal of the bounding box, m */
+} Piece;
+
+/* swept.c - the lines of a body that the motion sweeps, NULL where it does not. Not collective. */
+PETSC_INTERN PetscErrorCode SweptCreateLines(const Piece *piece, const Motion *motion, ModelLines **lines);

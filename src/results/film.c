@@ -1,0 +1,138 @@
+/*
+   Films - states of one mesh in time. Each frame has its own HDF5 and XDMF files, so that it is whole as soon as it is
+   written; the XDMF file of the film lists all frames with their times, and is replaced by a longer one after each.
+*/
+#include "resultsimpl.h"
+
+struct _p_ResultsFilm {
+  Results         results;
+  char            name[64], frame[64];
+  DM              dm;
+  PetscInt        n_parts, n_frames, room; /* frames so far, and times that there is room for */
+  char          **parts;
+  const PetscInt *cell_part;
+  PetscReal      *time; /* [n_frames], s */
+};
+
+PetscErrorCode ResultsFilmCreate(Results results, const char name[], const char frame[], DM dm, PetscInt n_parts,
+                                 const char *const parts[], const PetscInt cell_part[], ResultsFilm *film)
+{
+  ResultsFilm f;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&f));
+  f->results   = results;
+  f->n_parts   = n_parts;
+  f->cell_part = cell_part;
+  f->dm        = dm;
+  PetscCall(PetscObjectReference((PetscObject)dm));
+  PetscCall(PetscStrncpy(f->name, name, sizeof(f->name)));
+  PetscCall(PetscStrncpy(f->frame, frame, sizeof(f->frame)));
+  PetscCall(PetscStrNArrayallocpy(n_parts, parts, &f->parts));
+  *film = f;
+  PetscFunctionReturn(0);
+}
+
+/* Makes room for n times */
+static PetscErrorCode FilmReserve(ResultsFilm film, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  if (n <= film->room) PetscFunctionReturn(0);
+  film->room = PetscMax(2 * film->room, PetscMax(n, 16));
+  PetscCall(PetscRealloc((size_t)film->room * sizeof(*film->time), &film->time));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsFilmSetTimes(ResultsFilm film, PetscInt n, const PetscReal times[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(FilmReserve(film, n));
+  PetscCall(PetscArraycpy(film->time, times, n));
+  film->n_frames = n;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsFilmGetTimes(ResultsFilm film, PetscInt *n, const PetscReal **times)
+{
+  PetscFunctionBeginUser;
+  *n     = film->n_frames;
+  *times = film->time;
+  PetscFunctionReturn(0);
+}
+
+/* Name of frame k without an extension */
+static PetscErrorCode FrameName(ResultsFilm film, PetscInt k, char name[80])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(name, 80, "%s_%06d", film->frame, (int)k));
+  PetscFunctionReturn(0);
+}
+
+/* Writes frame k, and describes its mesh in xdmf */
+static PetscErrorCode FrameWrite(ResultsFilm film, PetscInt k, const char title[], PetscInt n,
+                                 const ResultsNodal arrays[], Xdmf *xdmf)
+{
+  char         name[80];
+  ResultsField field;
+
+  PetscFunctionBeginUser;
+  PetscCall(FrameName(film, k, name));
+  PetscCall(ResultsFieldOpen(film->results, name, film->dm, film->n_parts, (const char *const *)film->parts,
+                             film->cell_part, &field));
+  field->timed = PETSC_TRUE;
+  field->time  = film->time[k];
+  PetscCall(ResultsFieldWriteNodal(field, title, n, arrays));
+  xdmf->shape   = field->xdmf.shape;
+  xdmf->n_nodes = field->xdmf.n_nodes;
+  xdmf->n_cells = field->xdmf.n_cells;
+  PetscCall(ResultsFieldClose(&field));
+  PetscFunctionReturn(0);
+}
+
+/* Writes the list of the frames in place of the last one */
+static PetscErrorCode FramesList(ResultsFilm film, PetscInt n, const ResultsNodal arrays[], Xdmf *xdmf)
+{
+  OutFile *const file = &xdmf->file;
+
+  PetscFunctionBeginUser;
+  PetscCall(OutFileSetName(film->results, film->name, ".xmf", file));
+  PetscCall(OutFileOpenText(file));
+  PetscCall(XdmfBegin(xdmf, film->n_parts, (const char *const *)film->parts));
+  for (PetscInt k = 0; k < film->n_frames; k++) {
+    char name[80];
+
+    PetscCall(FrameName(film, k, name));
+    PetscCall(PetscSNPrintf(xdmf->h5_name, sizeof(xdmf->h5_name), "%s.h5", name));
+    PetscCall(XdmfGridBegin(xdmf, name, NULL, &film->time[k]));
+    for (PetscInt i = 0; i < n; i++) PetscCall(XdmfNodal(xdmf, arrays[i].key, arrays[i].key, "", arrays[i].width));
+    PetscCall(XdmfGridEnd(xdmf));
+  }
+  PetscCall(XdmfEnd(xdmf));
+  PetscCall(OutFilesPublish(1, &file));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsFilmWrite(ResultsFilm film, PetscReal time, const char title[], PetscInt n,
+                                const ResultsNodal arrays[])
+{
+  Xdmf xdmf = {.n_grids = 0};
+
+  PetscFunctionBeginUser;
+  PetscCall(FilmReserve(film, film->n_frames + 1));
+  film->time[film->n_frames] = time;
+  PetscCall(FrameWrite(film, film->n_frames, title, n, arrays, &xdmf));
+  film->n_frames++;
+  PetscCall(FramesList(film, n, arrays, &xdmf));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsFilmDestroy(ResultsFilm *film)
+{
+  PetscFunctionBeginUser;
+  if (!*film) PetscFunctionReturn(0);
+  PetscCall(DMDestroy(&(*film)->dm));
+  PetscCall(PetscStrNArrayDestroy((*film)->n_parts, &(*film)->parts));
+  PetscCall(PetscFree((*film)->time));
+  PetscCall(PetscFree(*film));
+  PetscFunctionReturn(0);
+}
