@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-from pathlib import Path
 from typing import NamedTuple
 
 from benchmark_run import ROOT
@@ -106,7 +105,7 @@ def follow(program, args, rise):
     mode = max(rows, key=lambda row: row["growth_rad_s"])
     time = run(program, args.ranks, args.runs / f"rise{name}",
                f"{scene} -dynamics_start static -dynamics_shape {modes} -dynamics_shape_mode {mode['mode']} "
-               f"-dynamics_shape_amplitude {LITTLE} -ts_max_time {RISE} -dynamics_live 0 -press_ramp 0")
+               f"-dynamics_shape_amplitude {LITTLE} -ts_max_time {RISE} -dynamics_live 0 -press_ramp 0 -tap_time 1")  # after the end
     table = Run(time)
     signal = table.probe("edge", "vy")
     found = min(fit_modes(table.time, signal - signal.mean(), rise.band, 2),
@@ -123,6 +122,37 @@ def part_growth(program, args):
     print_row(*["--:"] * 8)
     for rise in RISES:
         follow(program, args, rise)
+
+
+# growth of the families in time
+
+SETS = {"23.5/86": "", "20/80": "-rig_beam_rows 0.020,0.080 -contact_speed 2 -disc_alpha 0 -pad_alpha 0 -beam_alpha 0 "
+                                "-disc_beta 5e-7 -pad_beta 1e-7 -beam_beta 0"}
+FAMILIES = {"A": (3300, 3800), "B": (4600, 5600), "C": (12500, 14300)}  # Hz
+WINDOW = (3e-3, 12e-3)  # s, after the ramp and the tap
+
+
+def family_growth(table, band):
+    """Growth of the strongest line of a band while it is small, 1/s, at its frequency, Hz."""
+    chosen = (table.time >= WINDOW[0]) & (table.time <= WINDOW[1])
+    signal = table.probe("edge", "ay")[chosen]
+    found = fit_modes(table.time[chosen], signal - signal.mean(), band, 2)
+    return f"{found[0].growth:.0f} +- {found[0].error:.0f} at {found[0].freq:.0f}" if found else "-"
+
+
+def part_rise(program, args):
+    """Growth of the families in time, both sets and three moduli, from 3 to 12 ms."""
+    print(f"\ngrowth in time, 1/s, at Hz, from {1e3 * WINDOW[0]:g} to {1e3 * WINDOW[1]:g} ms; mean number of closed pairs\n")
+    print_row("rows, mm", "E, GPa", *FAMILIES, "closed")
+    print_row("---", *["--:"] * 5)
+    for name, options in SETS.items():
+        for young in MODULI:
+            folder = run(program, args.ranks, args.runs / f"rise-{name.replace('/', '-')}-{young:g}GPa",
+                         f"-pad_young {young}e9 -dynamics_live 0 -ts_max_time {WINDOW[1]} {options}")
+            table = Run(folder)
+            late = table.time >= WINDOW[0]
+            print_row(name, f"{young:g}", *(family_growth(table, band) for band in FAMILIES.values()),
+                      f"{table.columns['n_closed'][late].mean():.1f}")
 
 
 # agreement of kinematics and of ranks
@@ -220,10 +250,6 @@ def part_drift(program, args):
           f"{abs(energy[-1] - energy[0]) / scale:.1e}")
 
 
-PARTS = {"cases": part_cases, "growth": part_growth, "kinematics": part_kinematics, "ranks": part_ranks,
+PARTS = {"cases": part_cases, "growth": part_growth, "rise": part_rise, "kinematics": part_kinematics, "ranks": part_ranks,
          "chatter": part_chatter, "drift": part_drift}
 
-
-def runs_folder(text):
-    """Folder of the runs, absolute, since runs are made in other ones."""
-    return Path(text).resolve()

@@ -11,6 +11,7 @@
 
    mu(s) = max(0, mu + mu_slope |s|) with the slip velocity s of v_{n-1/2}, that is one step before.
 */
+#include "versions.h"
 #include "projectorimpl.h"
 
 void NodesPredict(ContactProjector p, PetscReal dt)
@@ -131,12 +132,13 @@ PetscBool PairPlace(ContactProjector p, PetscInt k, const PetscReal u[], const P
   PairSetBasis(&p->surface[pair->interface], pair);
   PairTurn(frame, pair);
   PairSetCompliance(&p->nodes, pair);
+  if (pair->found) pair->gap = PairGap(&p->surface[pair->interface], pair, x, p->nodes.rest, p->nodes.rest);
   pair->ready = PETSC_TRUE;
   return PETSC_TRUE;
 }
 
 /* The same for Gauss-Seidel, without the directions */
-static void RowSet(const ContactProjector p, const Pair *pair, const PetscReal impulse[3], Row *row)
+INTO_VERSIONS void RowSet(const ContactProjector p, const Pair *pair, const PetscReal impulse[3], Row *row)
 {
   const PetscReal *minv = p->nodes.minv;
 
@@ -157,7 +159,7 @@ static void RowSet(const ContactProjector p, const Pair *pair, const PetscReal i
 }
 
 /* Guess of the impulse in the frame of the master, N s: none where it would pull */
-static void PairGuess(const Pair *pair, PetscInt order, PetscReal kick, PetscReal impulse[3])
+INTO_VERSIONS void PairGuess(const Pair *pair, PetscInt order, PetscReal kick, PetscReal impulse[3])
 {
   static const PetscReal factor[PROJECTOR_PAST][PROJECTOR_PAST] = {
     {1, 0,  0},
@@ -174,25 +176,49 @@ static void PairGuess(const Pair *pair, PetscInt order, PetscReal kick, PetscRea
   for (int d = 0; d < 3 && normal <= 0; d++) impulse[d] = 0;
 }
 
+/* n . (u_s - sum w_i u_i) of displacements in a frame that stands still, m */
+INTO_VERSIONS PetscReal NormalDisplacement(const Pair *pair, const PetscReal u[])
+{
+  PetscReal sum = 0;
+
+  for (int d = 0; d < 3; d++) {
+    PetscReal master = 0;
+
+    for (int i = 0; i < 4; i++) master += pair->weight[i] * u[3 * pair->node[i] + d];
+    sum += pair->e[0][d] * (u[3 * pair->slave + d] - master);
+  }
+  return sum;
+}
+
 /* One pair, k, at the beginning of a step */
-static void PairPrepare(ContactProjector p, PetscInt k, const ContactStep *step)
+INTO_VERSIONS void PairPrepare(ContactProjector p, PetscInt k, const ContactStep *step)
 {
   Pair            *pair = &p->pair[k];
   const PetscReal *x = &p->nodes.x[3 * pair->slave], *u = &p->nodes.u[3 * pair->slave];
   PetscReal        before[3], after[3], impulse[3];
 
   if (!PairPlace(p, k, p->nodes.u, p->nodes.predicted, PROJECTOR_DEEPEST)) return;
-  FrameDisplacement(&p->frame_old[pair->interface], x, u, before);
-  FrameDisplacement(&p->frame[pair->interface], x, u, after);
-  PairSetDrift(p, step, before, after, pair);
+  if (pair->found) {
+    PairSetDrift(p, step, u, u, pair);
+    pair->offset[0] = (pair->gap + NormalDisplacement(pair, p->nodes.u)) / step->dt;
+  } else {
+    FrameDisplacement(&p->frame_old[pair->interface], x, u, before);
+    FrameDisplacement(&p->frame[pair->interface], x, u, after);
+    PairSetDrift(p, step, before, after, pair);
+    pair->offset[0] = PairGap(&p->surface[pair->interface], pair, x, after, p->nodes.u) / step->dt;
+  }
   PairSetFriction(p, pair);
-  pair->offset[0] = PairGap(&p->surface[pair->interface], pair, x, after, p->nodes.u) / step->dt;
   pair->offset[1] = pair->drift[1];
   pair->offset[2] = pair->drift[2];
   PairGuess(pair, p->order, step->kick, impulse);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) pair->p[i] += pair->e[i][j] * impulse[j];
   RowSet(p, pair, impulse, &p->row[k]);
+}
+
+static VERSIONS void PairsPrepareAll(ContactProjector p, const ContactStep *step)
+{
+  for (PetscInt k = 0; k < p->n_pairs; k++) PairPrepare(p, k, step);
 }
 
 PetscErrorCode PairsPrepare(ContactProjector p, const ContactStep *step)
@@ -206,6 +232,6 @@ PetscErrorCode PairsPrepare(ContactProjector p, const ContactStep *step)
   }
   NodesPredict(p, step->dt);
   if (p->search_next) PetscCall(ProjectorSearch(p, step->time + step->dt, 1, p->nodes.predicted));
-  for (PetscInt k = 0; k < p->n_pairs; k++) PairPrepare(p, k, step);
+  PairsPrepareAll(p, step);
   PetscFunctionReturn(0);
 }

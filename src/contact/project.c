@@ -7,6 +7,7 @@
    It begins with a guess from the forces of the steps before. Pairs that are open and that the motion without contact
    leaves open are not visited; when the others have converged, all are looked at, and those that need force join.
 */
+#include "versions.h"
 #include "projectorimpl.h"
 
 void PairVelocity(const Pair *pair, const PetscReal v[], PetscReal q[3])
@@ -66,66 +67,118 @@ static PetscReal PairSolve(Pair *pair, const PetscReal minv[], PetscReal v[])
   return change;
 }
 
-/* The same for a pair whose directions are not coupled, where the cone is met by projection of z = p - q / w:
-   Cartesian, without turning to n, t, b and back. Returns the square of the change. */
-static PetscReal RowSolve(Row *row, PetscReal v[])
+/*
+   The same for a pair whose directions are not coupled: Cartesian, without turning to n, t, b and back. With the relative
+   velocity q, offset included, the impulse that solves the pair alone is the projection of z = p - q / w on the cone.
+*/
+INTO_VERSIONS void RowVelocity(const Row *row, const PetscReal v[], PetscReal q[3])
+{
+  const PetscReal *a = &v[3 * row->node[0]], *b = &v[3 * row->node[1]], *c = &v[3 * row->node[2]],
+                  *d = &v[3 * row->node[3]], *s = &v[3 * row->node[4]], *w = row->weight, *D = row->D;
+
+  for (int i = 0; i < 3; i++)
+    q[i] = (s[i] - ((w[0] * a[i] + w[1] * b[i]) + (w[2] * c[i] + w[3] * d[i]))) + row->offset[i];
+  if (!D) return;
+  for (int i = 0; i < 3; i++) q[i] += D[3 * i] * s[0] + D[3 * i + 1] * s[1] + D[3 * i + 2] * s[2];
+}
+
+/* Velocities of the nodes after an impulse */
+INTO_VERSIONS void RowPush(const Row *row, const PetscReal p[3], PetscReal v[])
 {
   PetscReal *a = &v[3 * row->node[0]], *b = &v[3 * row->node[1]], *c = &v[3 * row->node[2]], *d = &v[3 * row->node[3]];
-  PetscReal *s = &v[3 * row->node[4]], z[3], change[3], normal, square = 0, factor = 1;
-  const PetscReal *w = row->weight, *h = row->push, *D = row->D;
+  PetscReal *s       = &v[3 * row->node[4]];
+  const PetscReal *h = row->push, *D = row->D;
 
   for (int i = 0; i < 3; i++) {
-    const PetscReal turned = D ? D[3 * i] * s[0] + D[3 * i + 1] * s[1] + D[3 * i + 2] * s[2] : 0;
-    const PetscReal master = (w[0] * a[i] + w[1] * b[i]) + (w[2] * c[i] + w[3] * d[i]);
-
-    z[i] = row->p[i] - row->mass * ((s[i] - master) + (turned + row->offset[i]));
+    s[i] += h[4] * p[i];
+    a[i] -= h[0] * p[i];
+    b[i] -= h[1] * p[i];
+    c[i] -= h[2] * p[i];
+    d[i] -= h[3] * p[i];
   }
-  normal      = z[0] * row->n[0] + z[1] * row->n[1] + z[2] * row->n[2];
-  row->status = CONE_OPEN;
-  if (normal > 0) {
-    for (int i = 0; i < 3; i++) {
-      z[i] -= normal * row->n[i];
-      square += z[i] * z[i];
-    }
-    factor      = row->mu * normal;
-    row->status = row->mu > 0 && square <= factor * factor ? CONE_STICK : CONE_SLIP;
-    factor      = row->status == CONE_STICK ? 1 : square > 0 ? factor / PetscSqrtReal(square) : 0;
-    for (int i = 0; i < 3; i++) z[i] = normal * row->n[i] + factor * z[i];
-  } else
-    for (int i = 0; i < 3; i++) z[i] = 0;
-  for (int i = 0; i < 3; i++) {
-    change[i] = z[i] - row->p[i];
-    row->p[i] = z[i];
+  if (!D) return;
+  for (int i = 0; i < 3; i++) s[i] += h[4] * (D[i] * p[0] + D[3 + i] * p[1] + D[6 + i] * p[2]);
+}
+
+/* Projects z on the cone */
+INTO_VERSIONS ConeStatus RowProject(const Row *row, PetscReal z[3])
+{
+  const PetscReal normal = row->n[0] * z[0] + row->n[1] * z[1] + row->n[2] * z[2], cone = row->mu * normal;
+  PetscReal       square = 0, factor;
+
+  if (!(normal > 0)) {
+    z[0] = z[1] = z[2] = 0;
+    return CONE_OPEN;
   }
   for (int i = 0; i < 3; i++) {
-    const PetscReal turned = D ? D[i] * change[0] + D[3 + i] * change[1] + D[6 + i] * change[2] : 0;
-
-    s[i] += h[4] * (change[i] + turned);
-    a[i] -= h[0] * change[i];
-    b[i] -= h[1] * change[i];
-    c[i] -= h[2] * change[i];
-    d[i] -= h[3] * change[i];
+    z[i] -= normal * row->n[i];
+    square += z[i] * z[i];
   }
+  factor = square <= cone * cone ? 1 : cone / PetscSqrtReal(square);
+  for (int i = 0; i < 3; i++) z[i] = normal * row->n[i] + factor * z[i];
+  return row->mu > 0 && factor == 1 ? CONE_STICK : CONE_SLIP;
+}
+
+/* What the impulse would have to change by, the residual of the natural map, N s; z is the impulse then */
+INTO_VERSIONS ConeStatus RowChange(const Row *row, const PetscReal q[3], PetscReal z[3], PetscReal change[3])
+{
+  ConeStatus status;
+
+  for (int i = 0; i < 3; i++) z[i] = row->p[i] - row->mass * q[i];
+  status = RowProject(row, z);
+  for (int i = 0; i < 3; i++) change[i] = z[i] - row->p[i];
+  return status;
+}
+
+/* Returns the square of the change */
+INTO_VERSIONS PetscReal RowSolve(Row *row, PetscReal v[])
+{
+  PetscReal q[3], z[3], change[3];
+
+  RowVelocity(row, v, q);
+  row->status = RowChange(row, q, z, change);
+  for (int i = 0; i < 3; i++) row->p[i] = z[i];
+  RowPush(row, change, v);
   return change[0] * change[0] + change[1] * change[1] + change[2] * change[2];
 }
 
+/* Velocity of the slave relative to the master along its normal, offset included */
+INTO_VERSIONS PetscReal NormalVelocity(const ContactProjector p, PetscInt k)
+{
+  const Row *row = &p->row[k];
+  PetscReal  q[3];
+
+  if (row->mass > 0) {
+    RowVelocity(row, p->nodes.v, q);
+    return q[0] * row->n[0] + q[1] * row->n[1] + q[2] * row->n[2];
+  }
+  PairSlip(&p->pair[k], p->nodes.v, q);
+  return q[0];
+}
+
 /* The guesses act; the pairs that have one, or that the motion closes, are to be visited */
-static PetscInt PairsBegin(ContactProjector p, PetscReal *scale)
+static VERSIONS PetscInt PairsBegin(ContactProjector p, PetscReal *scale)
 {
   PetscInt n = 0;
 
   *scale = 0;
   for (PetscInt k = 0; k < p->n_pairs; k++) {
-    Pair *pair = &p->pair[k];
+    const Pair *pair = &p->pair[k];
 
     p->visited[k] = PETSC_FALSE;
     if (pair->facet < 0) continue;
-    PairSlip(pair, p->nodes.v, pair->q);
     *scale        = PetscMax(*scale, PetscAbsReal(pair->p[0]));
-    p->visited[k] = pair->p[0] > 0 || pair->q[0] < 0 ? PETSC_TRUE : PETSC_FALSE;
+    p->visited[k] = pair->p[0] > 0 || NormalVelocity(p, k) < 0 ? PETSC_TRUE : PETSC_FALSE;
     if (p->visited[k]) p->visit[n++] = k;
   }
-  for (PetscInt i = 0; i < n; i++) PairPush(&p->pair[p->visit[i]], p->pair[p->visit[i]].p, p->nodes.minv, p->nodes.v);
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt k = p->visit[i];
+
+    if (p->row[k].mass > 0)
+      RowPush(&p->row[k], p->row[k].p, p->nodes.v);
+    else
+      PairPush(&p->pair[k], p->pair[k].p, p->nodes.minv, p->nodes.v);
+  }
   return n;
 }
 
@@ -135,34 +188,47 @@ PetscReal PairMass(const Pair *pair)
   return pair->W[0][0] > 0 ? 1 / (pair->W[0][0] + pair->W[1][1] + pair->W[2][2]) : 0;
 }
 
-/* Impulse along n, t, b */
-static void RowGet(const Row *row, Pair *pair)
+/* A vector along n, t, b */
+INTO_VERSIONS void PairTurnIn(const Pair *pair, const PetscReal x[3], PetscReal y[3])
 {
-  if (row->mass == 0) return;
+  for (int i = 0; i < 3; i++) y[i] = pair->e[i][0] * x[0] + pair->e[i][1] * x[1] + pair->e[i][2] * x[2];
+}
+
+/* Residual of one pair, N s; its velocity and impulse along n, t, b */
+INTO_VERSIONS PetscReal PairCheck(ContactProjector p, PetscInt k)
+{
+  Pair      *pair = &p->pair[k];
+  const Row *row  = &p->row[k];
+  PetscReal  q[3], z[3], change[3];
+
+  if (row->mass == 0) {
+    PairSlip(pair, p->nodes.v, pair->q);
+    return ConeResidual(PairMass(pair), pair->q, pair->mu, pair->p);
+  }
+  RowVelocity(row, p->nodes.v, q);
+  (void)RowChange(row, q, z, change);
+  PairTurnIn(pair, q, pair->q);
+  PairTurnIn(pair, row->p, pair->p);
   pair->status = row->status;
-  for (int i = 0; i < 3; i++)
-    pair->p[i] = pair->e[i][0] * row->p[0] + pair->e[i][1] * row->p[1] + pair->e[i][2] * row->p[2];
+  return PetscSqrtReal(change[0] * change[0] + change[1] * change[1] + change[2] * change[2]);
 }
 
 /* Slip velocities and largest residual (N s) of all pairs; pairs that need force join the visited ones */
-static PetscReal PairsCheck(ContactProjector p, PetscInt *n, PetscInt *worst)
+static VERSIONS PetscReal PairsCheck(ContactProjector p, PetscInt *n, PetscInt *worst)
 {
   PetscReal largest = 0;
 
   for (PetscInt k = 0; k < p->n_pairs; k++) {
-    Pair     *pair = &p->pair[k];
-    PetscReal residual;
+    const Pair *pair = &p->pair[k];
+    PetscReal   residual;
 
     if (pair->facet < 0) continue;
-    PairSlip(pair, p->nodes.v, pair->q);
-    if (p->visited[k]) {
-      RowGet(&p->row[k], pair);
-    } else {
+    residual = PairCheck(p, k);
+    if (!p->visited[k]) {
       if (pair->q[0] >= 0 || PairMass(pair) == 0) continue;
       p->visited[k]    = PETSC_TRUE;
       p->visit[(*n)++] = k;
     }
-    residual = ConeResidual(PairMass(pair), pair->q, pair->mu, pair->p);
     if (residual <= largest || PetscIsNanReal(largest)) continue;
     largest = residual;
     *worst  = k;
@@ -171,7 +237,7 @@ static PetscReal PairsCheck(ContactProjector p, PetscInt *n, PetscInt *worst)
 }
 
 /* Visits pair k; its impulse changes by `change`, at most, and the largest normal one is `scale` at least */
-static void PairVisit(ContactProjector p, PetscInt k, PetscReal *change, PetscReal *scale)
+INTO_VERSIONS void PairVisit(ContactProjector p, PetscInt k, PetscReal *change, PetscReal *scale)
 {
   Row      *row = &p->row[k];
   PetscReal square, normal;
@@ -189,7 +255,7 @@ static void PairVisit(ContactProjector p, PetscInt k, PetscReal *change, PetscRe
 
 /* Sweeps until the next one would change impulses by less than the tolerance, going by how fast the changes (squared)
    decrease, or `left` are done; scale is the largest impulse, of the step before or now */
-static PetscInt PairsSweep(ContactProjector p, PetscInt n, PetscInt left, PetscReal before, PetscReal *scale)
+static VERSIONS PetscInt PairsSweep(ContactProjector p, PetscInt n, PetscInt left, PetscReal before, PetscReal *scale)
 {
   PetscInt  sweeps = 0;
   PetscReal change = 0;

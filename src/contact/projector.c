@@ -133,6 +133,14 @@ PetscErrorCode ContactProjectorGetActive(ContactProjector p, PetscInt *n, const 
   PetscFunctionReturn(0);
 }
 
+/* Whether any slave may come to another place on its master */
+static PetscBool ProjectorTravels(const ContactProjector p)
+{
+  for (PetscInt i = 0; i < p->n_interfaces; i++)
+    if (!SlidingStays(&p->sliding[i])) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* The step on the root, from the values of the nodes to their forces */
 static PetscErrorCode RootProject(ContactProjector p, const ContactStep *step, PetscReal head[SHARE_HEAD])
 {
@@ -143,8 +151,10 @@ static PetscErrorCode RootProject(ContactProjector p, const ContactStep *step, P
   PetscCall(PairsPrepare(p, step));
   PairsSolve(p, &convergence);
   PairsRecord(p, step, &convergence);
-  NodesPredict(p, step->dt);
-  head[HEAD_SEARCH]   = ProjectorNeedsSearch(p, p->nodes.predicted) ? 1 : 0;
+  if (ProjectorTravels(p)) {
+    NodesPredict(p, step->dt);
+    head[HEAD_SEARCH] = ProjectorNeedsSearch(p, p->nodes.predicted) ? 1 : 0;
+  }
   head[HEAD_RESIDUAL] = convergence.residual;
   head[HEAD_SWEEPS]   = (PetscReal)convergence.sweeps;
   head[HEAD_FAILED]   = convergence.residual > p->rtol ? 1 : 0;

@@ -68,6 +68,7 @@ typedef struct {
   PetscReal  e[3][3], turned[3][3]; /* n, t, b in the frame of the master, and on the ground */
   PetscInt   node[4];               /* corners */
   PetscReal  weight[4];
+  PetscReal  gap;          /* of the undeformed bodies, where the facet will not change any more, m */
   PetscBool  found, ready; /* the facet will not change any more; directions and compliance are those of the facet */
   PetscReal  W[3][3], w;   /* 1/kg; w = 0 where W is no multiple of the identity, else that */
   PetscReal  offset[3];    /* added to the velocities of the nodes: gap at t_n / dt, and the sliding velocity, m/s */

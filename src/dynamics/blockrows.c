@@ -5,6 +5,7 @@
    summed at once. Nodes that ranks share come first, so that the rows of these alone complete g there.
 */
 #include "versions.h"
+#include "bodiesimpl.h"
 
 /* Sum of the first three numbers */
 STENCIL_INLINE PetscReal LanesSum(const StencilLanes *x)

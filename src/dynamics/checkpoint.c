@@ -17,7 +17,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define CHECKPOINT_FILE    "checkpoint.bin"
 #define CHECKPOINT_MAGIC   "squealCP"
 #define CHECKPOINT_ORDER   UINT64_C(0x0102030405060708)
 #define CHECKPOINT_VERSION 1

@@ -6,6 +6,8 @@
 #include <squeal/model.h>
 #include <squeal/results.h>
 
+#define CHECKPOINT_FILE "checkpoint.bin"
+
 /* Array of this rank; n and values are of the writer, at reading n must agree (n < 0: any, the reader allocates values)
  */
 typedef struct {

@@ -84,7 +84,7 @@ static PetscErrorCode RunSetFromOptions(Dynamics d, PetscOptionItems *PetscOptio
 PetscErrorCode DynamicsSetFromOptions(Dynamics d)
 {
   PetscReal dt;
-  PetscBool set, general;
+  PetscBool set, general, central;
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(d->comm, NULL, "Dynamics", NULL);
@@ -93,8 +93,9 @@ PetscErrorCode DynamicsSetFromOptions(Dynamics d)
   PetscCall(RunSetFromOptions(d, PetscOptionsObject));
   PetscOptionsEnd();
   PetscCall(TSSetFromOptions(d->ts));
-  PetscCall(PetscObjectTypeCompare((PetscObject)d->ts, TSCENTRAL, &set));
-  PetscCheck(set, d->comm, PETSC_ERR_USER_INPUT, "-ts_type must be " TSCENTRAL ", the only one that knows contact");
+  PetscCall(PetscObjectTypeCompare((PetscObject)d->ts, TSCENTRAL, &central));
+  PetscCheck(central, d->comm, PETSC_ERR_USER_INPUT,
+             "-ts_type does not suit exact contact: leave it out, it is " TSCENTRAL);
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-ts_dt", &dt, &set));
   if (set) d->dt_asked = dt;
   PetscCheck(!PetscIsInfOrNanReal(d->dt_asked) && d->dt_asked >= 0, d->comm, PETSC_ERR_USER_INPUT,
@@ -241,6 +242,7 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscCall(HistorySetUp(d->history, d->model, d->layout, d->projector, results, end, dt));
   PetscCall(TSSetUp(d->ts));
   PetscCall(d->restart ? DynamicsGoOn(d) : DynamicsStartState(d));
+  if (!d->restart) PetscCall(DynamicsForget(d));
   PetscFunctionReturn(0);
 }
 
@@ -295,6 +297,7 @@ PetscErrorCode DynamicsSolve(Dynamics d, Results results)
   PetscCall(StopRemove());
   d->seconds = end - begin;
   if (d->stopped && d->checkpoint_interval > 0) PetscCall(ComplainStopped(d));
+  d->ended = PETSC_TRUE;
   PetscCall(TSCentralEvaluate(d->ts)); /* the forces of the last time, for its row */
   PetscCall(HistoryClose(d->history));
   if (d->stopped) PetscCall(ComplainStopped(d));

@@ -60,6 +60,7 @@ struct _p_Dynamics {
   PetscInt       n_elements, n_steps; /* of this call */
   PetscLogDouble seconds;
   PetscBool      stopped; /* by a signal */
+  PetscBool      ended;   /* all steps are done: the last balance is due */
 };
 
 /* forces.c - callbacks of the TS: forces, contact, and what is recorded when they are complete */
@@ -83,3 +84,7 @@ PETSC_INTERN PetscErrorCode DynamicsStartState(Dynamics dynamics);
 /* keep.c - checkpoints */
 PETSC_INTERN PetscErrorCode DynamicsKeep(Dynamics dynamics);
 PETSC_INTERN PetscErrorCode DynamicsGoOn(Dynamics dynamics);
+
+/* takes away the checkpoint of an earlier run, whose tables a run that starts anew replaces: nothing must go on from it
+   with these. Collective. */
+PETSC_INTERN PetscErrorCode DynamicsForget(Dynamics dynamics);

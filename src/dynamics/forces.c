@@ -129,6 +129,21 @@ static void SurfacePredict(const Surface *s, const Layout *l, const CentralStep 
   }
 }
 
+/* Kinetic energy of the predicted velocities, of this rank's vertices, J */
+static PetscReal SurfaceEnergy(const Surface *s, const Layout *l, PetscInt n, const PetscInt active[],
+                               const PetscReal minv[])
+{
+  PetscReal sum = 0;
+
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt   vertex = s->vertex[active[i]];
+    const PetscReal *v = &s->v[3 * active[i]], m = l->owned[vertex] ? minv[l->at[vertex]] : 0;
+
+    if (m > 0) sum += 0.5 * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / m;
+  }
+  return sum;
+}
+
 /* Contact forces of the step on all copies of the active nodes */
 static PetscErrorCode AddContact(Dynamics d, const CentralStep *step, const PetscReal u[], const PetscReal v[],
                                  const PetscReal f_old[], PetscReal f[])
@@ -145,6 +160,7 @@ static PetscErrorCode AddContact(Dynamics d, const CentralStep *step, const Pets
   PetscCall(ContactProjectorGetActive(d->projector, &n, &active));
   SurfaceGet(s, d->layout, n, active, u, s->u);
   SurfacePredict(s, d->layout, step, n, active, minv, f, f_old, v);
+  d->part.predicted = PetscMax(d->part.predicted, SurfaceEnergy(s, d->layout, n, active, minv));
   PetscCall(ContactProject(d->projector, &contact, s->u, s->before, s->v, s->force));
   for (PetscInt i = 0; i < n; i++) LayoutAdd(d->layout, s->vertex[active[i]], &s->force[3 * active[i]], f);
   PetscCall(EventEnd(EVENT_PROJECT));
@@ -207,7 +223,7 @@ PetscErrorCode DynamicsConstrain(TS ts, const CentralStep *step, Vec u, Vec v, V
   PetscFunctionBeginUser;
   PetscCall(TSGetStepNumber(ts, &n));
   due = HistoryIsDue(d->history, step->time, step->dt);
-  if (due || n <= 1 || n % CHECK_INTERVAL == 0) PetscCall(Balance(d, step, n));
+  if (due || d->ended || n <= 1 || n % CHECK_INTERVAL == 0) PetscCall(Balance(d, step, n));
   PetscCall(VecGetArrayRead(u, &displacement));
   PetscCall(VecGetArrayRead(v, &velocity));
   if (f_old) PetscCall(VecGetArrayRead(f_old, &last));

@@ -4,6 +4,8 @@
 */
 #include "dynamicsimpl.h"
 #include "events.h"
+#include <errno.h>
+#include <unistd.h>
 
 #define N_REALS(type) ((PetscInt)(sizeof(type) / sizeof(PetscReal)))
 
@@ -15,7 +17,13 @@ typedef struct {
   LedgerOrigin origin;
 } Scalars;
 
-typedef enum { SCALARS, U, V, KU, DAMPING, FORCE, PROJECTOR, EXTERNAL, HISTORY, N_ITEMS } Item;
+/* Arrays of the state vectors; forces of the last two steps for b > 1/2, else NULL: the next step needs those of the
+   last, the work of the integrator in the last one those before */
+typedef struct {
+  PetscScalar *u, *v, *f, *f_old;
+} Arrays;
+
+typedef enum { SCALARS, U, V, KU, DAMPING, FORCE, FORCE_OLD, PROJECTOR, EXTERNAL, HISTORY, N_ITEMS } Item;
 
 /* Numbers that differ between runs that must not be mixed */
 static PetscErrorCode MakePrint(Dynamics d, CheckpointPrint *print)
@@ -47,9 +55,8 @@ static PetscErrorCode MakePrint(Dynamics d, CheckpointPrint *print)
   PetscFunctionReturn(0);
 }
 
-/* The arrays of the state vectors; those of the rooms are the caller's */
-static PetscErrorCode ItemsFill(Dynamics d, Scalars *scalars, PetscScalar *u, PetscScalar *v, PetscScalar *f,
-                                CheckpointItem item[N_ITEMS])
+/* What is kept; contact and history are the caller's */
+static PetscErrorCode ItemsFill(Dynamics d, Scalars *scalars, const Arrays *a, CheckpointItem item[N_ITEMS])
 {
   const PetscInt n = d->layout->n;
   PetscReal     *damping, *external;
@@ -59,24 +66,26 @@ static PetscErrorCode ItemsFill(Dynamics d, Scalars *scalars, PetscScalar *u, Pe
   PetscCall(BodiesGetDampingForce(d->bodies, &damping));
   PetscCall(ExternalGetMemory(d->external, &n_external, &external));
   item[SCALARS]   = (CheckpointItem){"scalars", N_REALS(Scalars), (PetscReal *)scalars};
-  item[U]         = (CheckpointItem){"displacements", n, u};
-  item[V]         = (CheckpointItem){"velocities", n, v};
+  item[U]         = (CheckpointItem){"displacements", n, a->u};
+  item[V]         = (CheckpointItem){"velocities", n, a->v};
   item[KU]        = (CheckpointItem){"stiffness forces", n, d->ku};
   item[DAMPING]   = (CheckpointItem){"damping forces", damping ? n : 0, damping};
-  item[FORCE]     = (CheckpointItem){"forces", f ? n : 0, f};
+  item[FORCE]     = (CheckpointItem){"forces", a->f ? n : 0, a->f};
+  item[FORCE_OLD] = (CheckpointItem){"forces before", a->f_old ? n : 0, a->f_old};
   item[PROJECTOR] = (CheckpointItem){"contact", 0, NULL};
   item[EXTERNAL]  = (CheckpointItem){"external", n_external, external};
   item[HISTORY]   = (CheckpointItem){"history", 0, NULL};
   PetscFunctionReturn(0);
 }
 
-/* Every velocity is a number: a spoilt state must not replace a good checkpoint */
+/* Every velocity is a number: a spoilt state must not replace a good checkpoint. A sum passes NaN on to all ranks, where
+   a maximum may lose it. */
 static PetscErrorCode CheckNumbers(Dynamics d)
 {
   PetscReal norm;
 
   PetscFunctionBeginUser;
-  PetscCall(VecNorm(d->v, NORM_INFINITY, &norm));
+  PetscCall(VecNorm(d->v, NORM_1, &norm));
   PetscCheck(!PetscIsInfOrNanReal(norm), d->comm, PETSC_ERR_FP,
              "velocities are no numbers: the checkpoint before is kept");
   PetscFunctionReturn(0);
@@ -101,6 +110,10 @@ static PetscErrorCode ScalarsGet(Dynamics d, Scalars *s)
 static PetscErrorCode ScalarsSet(Dynamics d, const Scalars *s)
 {
   PetscFunctionBeginUser;
+  PetscCheck(
+    d->dt_asked == 0 || d->dt_asked == s->dt || d->dt_asked == s->dt_old, d->comm, PETSC_ERR_USER_INPUT,
+    "-ts_dt %.6g is another step than that of the run that -dynamics_restart goes on with, %.6g s: leave it out",
+    (double)d->dt_asked, (double)s->dt);
   PetscCall(TSSetTime(d->ts, s->time));
   if (d->dt_asked == 0) PetscCall(TSSetTimeStep(d->ts, s->dt));
   PetscCall(TSCentralSetLastStep(d->ts, s->dt_old));
@@ -111,17 +124,30 @@ static PetscErrorCode ScalarsSet(Dynamics d, const Scalars *s)
   PetscFunctionReturn(0);
 }
 
-/* Arrays of u, v and, for b > 1/2, of the forces */
-static PetscErrorCode StateArrays(Dynamics d, PetscBool restore, PetscScalar **u, PetscScalar **v, PetscScalar **f)
+static PetscErrorCode ArraysGet(Dynamics d, Arrays *a)
 {
-  Vec force, force_old;
+  Vec f, f_old;
 
   PetscFunctionBeginUser;
-  PetscCall(TSCentralGetForces(d->ts, &force, &force_old));
-  if (!restore) *f = NULL;
-  PetscCall(restore ? VecRestoreArray(d->u, u) : VecGetArray(d->u, u));
-  PetscCall(restore ? VecRestoreArray(d->v, v) : VecGetArray(d->v, v));
-  if (force_old) PetscCall(restore ? VecRestoreArray(force, f) : VecGetArray(force, f));
+  *a = (Arrays){NULL};
+  PetscCall(TSCentralGetForces(d->ts, &f, &f_old));
+  PetscCall(VecGetArray(d->u, &a->u));
+  PetscCall(VecGetArray(d->v, &a->v));
+  if (f_old) PetscCall(VecGetArray(f, &a->f));
+  if (f_old) PetscCall(VecGetArray(f_old, &a->f_old));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ArraysRestore(Dynamics d, Arrays *a)
+{
+  Vec f, f_old;
+
+  PetscFunctionBeginUser;
+  PetscCall(TSCentralGetForces(d->ts, &f, &f_old));
+  if (f_old) PetscCall(VecRestoreArray(f_old, &a->f_old));
+  if (f_old) PetscCall(VecRestoreArray(f, &a->f));
+  PetscCall(VecRestoreArray(d->v, &a->v));
+  PetscCall(VecRestoreArray(d->u, &a->u));
   PetscFunctionReturn(0);
 }
 
@@ -129,7 +155,7 @@ PetscErrorCode DynamicsKeep(Dynamics d)
 {
   CheckpointItem  item[N_ITEMS];
   CheckpointPrint print;
-  PetscScalar    *u, *v, *f;
+  Arrays          arrays;
   Scalars         scalars;
 
   PetscFunctionBeginUser;
@@ -137,14 +163,14 @@ PetscErrorCode DynamicsKeep(Dynamics d)
   PetscCall(CheckNumbers(d));
   PetscCall(MakePrint(d, &print));
   PetscCall(ScalarsGet(d, &scalars));
-  PetscCall(StateArrays(d, PETSC_FALSE, &u, &v, &f));
-  PetscCall(ItemsFill(d, &scalars, u, v, f, item));
+  PetscCall(ArraysGet(d, &arrays));
+  PetscCall(ItemsFill(d, &scalars, &arrays, item));
   if (d->projector) PetscCall(ContactProjectorGetMemory(d->projector, &item[PROJECTOR].n, &item[PROJECTOR].values));
   PetscCall(HistoryGetMemory(d->history, &item[HISTORY].n, &item[HISTORY].values));
   PetscCall(CheckpointWrite(d->comm, d->results, &print, N_ITEMS, item));
   PetscCall(PetscFree(item[HISTORY].values));
   PetscCall(PetscFree(item[PROJECTOR].values));
-  PetscCall(StateArrays(d, PETSC_TRUE, &u, &v, &f));
+  PetscCall(ArraysRestore(d, &arrays));
   PetscCall(EventEnd(EVENT_CHECKPOINT));
   PetscFunctionReturn(0);
 }
@@ -163,20 +189,37 @@ PetscErrorCode DynamicsGoOn(Dynamics d)
 {
   CheckpointItem  item[N_ITEMS];
   CheckpointPrint print;
-  PetscScalar    *u, *v, *f;
+  Arrays          arrays;
   Scalars         scalars;
 
   PetscFunctionBeginUser;
   PetscCall(MakePrint(d, &print));
-  PetscCall(StateArrays(d, PETSC_FALSE, &u, &v, &f));
-  PetscCall(ItemsFill(d, &scalars, u, v, f, item));
+  PetscCall(ArraysGet(d, &arrays));
+  PetscCall(ItemsFill(d, &scalars, &arrays, item));
   item[PROJECTOR].n = item[HISTORY].n = -1;
   PetscCall(CheckpointRead(d->comm, d->results, &print, N_ITEMS, item));
   PetscCall(ScalarsSet(d, &scalars));
-  PetscCall(ProjectorGoOn(d, scalars.time, u, &item[PROJECTOR]));
+  PetscCall(ProjectorGoOn(d, scalars.time, arrays.u, &item[PROJECTOR]));
   PetscCall(HistorySetMemory(d->history, item[HISTORY].n, item[HISTORY].values));
   PetscCall(PetscFree(item[HISTORY].values));
   PetscCall(PetscFree(item[PROJECTOR].values));
-  PetscCall(StateArrays(d, PETSC_TRUE, &u, &v, &f));
+  PetscCall(ArraysRestore(d, &arrays));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsForget(Dynamics d)
+{
+  char        path[PETSC_MAX_PATH_LEN];
+  const char *dir;
+  PetscMPIInt rank, error = 0;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(d->comm, &rank));
+  PetscCall(ResultsGetDirectory(d->results, &dir));
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", dir, CHECKPOINT_FILE));
+  if (rank == 0 && unlink(path) && errno != ENOENT) error = errno;
+  PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, d->comm));
+  PetscCheck(!error, d->comm, PETSC_ERR_FILE_WRITE,
+             "cannot remove %s of the run before: %s; choose another -output_dir", path, strerror(error));
   PetscFunctionReturn(0);
 }

@@ -51,10 +51,11 @@ static void LedgerSetContact(Ledger *ledger, PetscInt n, const ContactSums sums[
   ledger->heat     = now.heat - origin->heat;
 }
 
-static void LedgerRaiseThroughput(Ledger *l)
+/* `predicted`: what contact takes and gives within a step is rounded, even where nothing moves in the end */
+static void LedgerRaiseThroughput(Ledger *l, PetscReal predicted)
 {
-  const PetscReal term[] = {l->kinetic, l->strain,  l->external,   l->friction,
-                            l->contact, l->damping, l->integrator, l->start};
+  const PetscReal term[] = {l->kinetic, l->strain,     l->external, l->friction, l->contact,
+                            l->damping, l->integrator, l->start,    predicted};
 
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(term); i++)
     l->throughput = PetscMax(l->throughput, PetscAbsReal(term[i]));
@@ -63,7 +64,7 @@ static void LedgerRaiseThroughput(Ledger *l)
 PetscErrorCode LedgerClose(MPI_Comm comm, LedgerPart *part, PetscInt n, const ContactSums sums[], PetscBool first,
                            LedgerOrigin *origin, Ledger *ledger)
 {
-  PetscReal sum[5];
+  PetscReal sum[6];
 
   PetscFunctionBeginUser;
   if (first) part->external = part->damping = part->integrator = 0;
@@ -72,7 +73,8 @@ PetscErrorCode LedgerClose(MPI_Comm comm, LedgerPart *part, PetscInt n, const Co
   sum[2] = part->external;
   sum[3] = part->damping;
   sum[4] = part->integrator;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 5, MPIU_REAL, MPI_SUM, comm));
+  sum[5] = part->predicted;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 6, MPIU_REAL, MPI_SUM, comm));
   ledger->kinetic    = sum[0];
   ledger->strain     = sum[1];
   ledger->external   = sum[2];
@@ -82,7 +84,7 @@ PetscErrorCode LedgerClose(MPI_Comm comm, LedgerPart *part, PetscInt n, const Co
   LedgerSetContact(ledger, n, sums, first, origin);
   ledger->error = ledger->kinetic + ledger->strain - ledger->start - ledger->external - ledger->contact -
                   ledger->friction - ledger->damping - ledger->integrator;
-  LedgerRaiseThroughput(ledger);
+  LedgerRaiseThroughput(ledger, sum[5]);
   PetscFunctionReturn(0);
 }
 

@@ -22,6 +22,7 @@ typedef struct {
   PetscReal kinetic, strain;
   PetscReal external, damping, integrator;
   PetscReal external_now, damping_now, integrator_now; /* W, of the step that is not complete yet */
+  PetscReal predicted; /* largest kinetic energy of the surfaces before contact acts, which it takes from what rests */
 } LedgerPart;
 
 /* Works of contact up to the first half step, where the ledger begins */

@@ -5,6 +5,7 @@
    On lines between parts of different beta the first term of d is a stencil of its own.
 */
 #include "versions.h"
+#include "bodiesimpl.h"
 
 typedef struct {
   StencilVector kinetic, strain, damping_old, damping;
