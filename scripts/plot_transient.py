@@ -3,7 +3,7 @@
 
   transient_forces.png        sums of normal and friction force, status of the pairs (open, stick, slip), error of the
                               ledger of energy relative to the energy turned over
-  transient_acceleration.png  acceleration of a probe
+  transient_acceleration.png  acceleration of a probe, mean from the row before to the row after
   transient_psd.png           its power spectral density, with the main line and the levels of its harmonics
   transient_growth.png        amplitude and frequency of the main line over time, with the exponential fitted
   transient_shape.png         velocity of the disc's face at its largest, and the nodal diameters (from snapshots)
@@ -112,7 +112,7 @@ def draw(args):
     """Reads, draws, prints; returns the summary's name."""
     run = Run(args.folder)
     probe = run.choose_probe(args.probe)
-    signal = run.probe(probe, f"a{args.component}") if probe else run.friction
+    signal = run.acceleration(probe, args.component) if probe else run.friction
     name = f"of {probe} in {args.component}" if probe else ""
     out, case = args.out or args.folder, f", {args.case}" if args.case else ""
     if not out.is_dir():

@@ -105,6 +105,11 @@ class Run:
             raise BadInput(f"{self.path}: no column {column}")
         return self.columns[column]
 
+    def acceleration(self, name, component):
+        """Mean acceleration from the row before to the row after, by the velocities: the blow that stops a single node
+        lasts one step and would fill the spectrum of the samples."""
+        return numpy.gradient(self.probe(name, f"v{component}"), self.time[1] - self.time[0])
+
     def status(self):
         """Numbers of open, sticking and sliding pairs; None where the table does not have them."""
         if any(name not in self.columns for name in ("n_closed", "n_stick")):

@@ -112,11 +112,15 @@ static PetscErrorCode ChainSetUp(Chain *chain)
 
 static PetscErrorCode ChainView(Chain *chain, PetscViewer viewer)
 {
+  PetscBool is_static;
+
   PetscFunctionBeginUser;
   if (chain->model) PetscCall(ModelView(chain->model, viewer));
-  if (chain->contact) PetscCall(ContactView(chain->contact, viewer));
-  if (chain->analysis == ANALYSIS_MODES || chain->analysis == ANALYSIS_SWEEP)
-    PetscCall(OperatorsView(chain->operators, viewer)); /* of the linearised pencil */
+  if (chain->contact && chain->analysis != ANALYSIS_TRANSIENT) PetscCall(ContactView(chain->contact, viewer));
+  if (chain->analysis != ANALYSIS_MODES && chain->analysis != ANALYSIS_SWEEP) PetscFunctionReturn(0);
+  PetscCall(ModesGetContact(chain->modes, &is_static));
+  if (is_static) PetscCall(StaticsLinearise(chain->statics));
+  PetscCall(OperatorsView(chain->operators, viewer)); /* of the linearised pencil */
   PetscFunctionReturn(0);
 }
 

@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
-"""A run of explicit dynamics that is killed at random moments, also while it writes a checkpoint, or stopped by signals, and
-goes on each time from its last checkpoint, ends with the tables and fields of a run that nobody disturbed, to the last bit: of
-a brake whose pad chatters, on a mesh that stays and on one that turns, with central differences and the dissipative scheme.
-Breaks when something that the next step or the next row depends on is not kept, is kept at another moment than the rest, a
-row is written twice or lost, or a checkpoint that is not whole takes the place of a whole one."""
+"""A run of explicit dynamics that is killed at random moments, also while it writes a checkpoint, stopped by signals, or
+out of room on the disk, and goes on each time from its last checkpoint, ends with the tables and fields of a run that
+nobody disturbed, to the last bit: of a brake whose pad chatters, on a mesh that stays and on one that turns, with central
+differences and the dissipative scheme. Breaks when something that the next step or the next row depends on is not kept,
+is kept at another moment than the rest, a row is written twice or lost, or a checkpoint that is not whole, or of another
+run, is taken."""
 
 import argparse
 import csv
 import os
 import random
+import resource
 import signal
 import subprocess
 import sys
@@ -31,13 +33,13 @@ nudge: {set: beam_top, displacement: "0,1e-7,0", directions: y, ramp: 5e-4}
 contact: {speed: 0.02}
 dynamics: {history_interval: 1e-6, pairs_interval: 1e-5, snapshot_interval: 2e-4, live: 0}
 """
+TURNS = "-contact_kinematics turning -contact_slip 0,0,0 -contact_speed 0 -contact_rotation 0,0,-2 -contact_mu 0.9" \
+        " -gravity 0,-9.81,0 -dynamics_coriolis -dynamics_centrifugal"
 SCENES = {
     "stays": "-contact_ramp 1e-3 -ts_central_b 0.5",
     "stays dissipative": "-contact_ramp 1e-3 -ts_central_b 0.8",
-    "turns": "-contact_kinematics turning -contact_slip 0,0,0 -contact_speed 0 -contact_rotation 0,0,-2 -contact_mu 0.9 -gravity 0,-9.81,0"
-             " -dynamics_coriolis -dynamics_centrifugal",
-    "turns dissipative": "-contact_kinematics turning -contact_slip 0,0,0 -contact_speed 0 -contact_rotation 0,0,-2"
-                         " -contact_mu 0.9 -gravity 0,-9.81,0 -dynamics_coriolis -dynamics_centrifugal -ts_central_b 0.8",
+    "turns": TURNS,
+    "turns dissipative": TURNS + " -ts_central_b 0.8",
 }
 TABLES = ("transient.csv", "contact_pairs.csv", "transient.xmf")
 RESTART = "-dynamics_restart"
@@ -63,8 +65,8 @@ class Runs:
                 *options]
 
     def start(self, name, *options):
-        return subprocess.Popen(self.command(name, *options), start_new_session=True, text=True, stdin=subprocess.DEVNULL,
-                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        return subprocess.Popen(self.command(name, *options), start_new_session=True, text=True,
+                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
     def complete(self, name, *options):
         """Runs to the end; seconds that it took."""
@@ -84,9 +86,10 @@ class Runs:
 
 def arrays(path):
     """All datasets of a file, as bytes."""
-    found = {}
     with h5py.File(path) as file:
-        file.visititems(lambda key, item: found.update({key: item[()].tobytes()}) if isinstance(item, h5py.Dataset) else None)
+        keys = []
+        file.visit(keys.append)
+        found = {key: file[key][()].tobytes() for key in keys if isinstance(file[key], h5py.Dataset)}
     return found
 
 
@@ -94,7 +97,8 @@ def compare(runs, one, other):
     """Tables by bytes, fields by the bytes of their values; nothing temporary is left."""
     for table in TABLES:
         if runs.path(one, table).read_bytes() != runs.path(other, table).read_bytes():
-            fail(f"{runs.scene}: {table} of {other} differs from that of {one}: {first_difference(runs, one, other, table)}")
+            difference = first_difference(runs, one, other, table)
+            fail(f"{runs.scene}: {table} of {other} differs from that of {one}: {difference}")
     frames = [sorted(path.name for path in (runs.folder / name).glob("snapshot_*.h5")) for name in (one, other)]
     if frames[0] != frames[1] or len(frames[0]) < 3:
         fail(f"{runs.scene}: snapshots {frames[1]} of {other}, {frames[0]} of {one}")
@@ -180,7 +184,7 @@ def wait(process, happened):
     return True
 
 
-def steps_at(path):
+def time_at(path):
     """Simulated time of the last whole row, s."""
     rows = path.read_text().splitlines()[1:-1] if path.exists() else []
     return float(rows[-1].split(",")[0]) if rows else 0.0
@@ -192,8 +196,8 @@ def go_on(runs, name):
 
 
 def kill_once(runs, name, interval, delay, of_checkpoint):
-    """Starts or goes on, waits for a sign of life and then for `delay` seconds, and kills. What the kill met, None when the
-    run was over before."""
+    """Starts or goes on, waits for a sign of life and then for `delay` seconds, and kills. What the kill met: time of the
+    last row, and whether a checkpoint was being written; None when the run was over before."""
     sign = runs.path(name, "checkpoint.bin" if of_checkpoint else "transient.csv.part")
     before = stamp(sign)
     process = runs.start(name, "-checkpoint_interval", str(interval), *go_on(runs, name))
@@ -207,7 +211,7 @@ def kill_once(runs, name, interval, delay, of_checkpoint):
     kill(runs, name, process)
     if runs.path(name, "transient.csv").exists() and not runs.path(name, "transient.csv.part").exists():
         return None
-    return steps_at(runs.path(name, "transient.csv.part")), runs.path(name, "checkpoint.bin.part").exists()
+    return time_at(runs.path(name, "transient.csv.part")), runs.path(name, "checkpoint.bin.part").exists()
 
 
 def kill_often(runs, name, chance, n, interval, longest):
@@ -286,6 +290,86 @@ def check_anew(runs):
     print(f"{runs.scene}: started anew beside another run's checkpoint: bitwise the same", flush=True)
 
 
+# --- what is refused
+
+
+def refuse(runs, name, expected, *options):
+    """A restart that must fail with one line, and leave the checkpoint as it is."""
+    before = runs.path(name, "checkpoint.bin").read_bytes()
+    process = runs.start(name, RESTART, *options)
+    stderr = process.communicate(timeout=PATIENCE)[1]
+    lines = [line for line in stderr.splitlines() if line.startswith("squeal:")]
+    if not process.returncode or len(lines) != 1 or expected not in lines[0]:
+        fail(f"{runs.scene}: restart with {' '.join(options)}: exit status {process.returncode}: {stderr}")
+    if runs.path(name, "checkpoint.bin").read_bytes() != before:
+        fail(f"{runs.scene}: a restart that was refused changed the checkpoint")
+
+
+def check_refused(runs):
+    """Another model, load, step, kinematics, number of ranks, and a file that is cut short; last of all the right one."""
+    name, other = "refused", "is of another model or other parameters: "
+    runs.complete(name, "-ts_max_time", "1e-3", "-checkpoint_interval", str(OFTEN))
+    refuse(runs, name, other, "-pad_young", "20e9")
+    refuse(runs, name, other, "-press_force", "0,0,-50")
+    refuse(runs, name, other, "-tap_time", "2e-3")
+    refuse(runs, name, other, "-contact_delay", "1e-3")
+    refuse(runs, name, "-ts_dt 1e-07 is another step than that of the run", "-ts_dt", "1e-7")
+    ranks = runs.arguments.ranks
+    runs.arguments.ranks = 3 - ranks
+    refuse(runs, name, f"was written by {ranks} rank{'s' * (ranks > 1)}, this run has {3 - ranks}")
+    runs.arguments.ranks = ranks
+    file = runs.path(name, "checkpoint.bin")
+    whole = file.read_bytes()
+    file.write_bytes(whole[:-1])
+    refuse(runs, name, "is truncated")
+    file.write_bytes(whole)
+    runs.complete(name, RESTART)
+    compare(runs, "undisturbed", name)
+    print(f"{runs.scene}: seven restarts refused, then gone on: bitwise the same", flush=True)
+
+
+# --- full disks
+
+
+def limit_table(runs, name, process):
+    """Lets no file of the ranks grow beyond what the table has, and a little more."""
+    room = runs.path(name, "transient.csv.part").stat().st_size + 20000
+    for rank in ranks_of(runs.folder / name):
+        if rank != process.pid:
+            resource.prlimit(rank, resource.RLIMIT_FSIZE, (room, resource.RLIM_INFINITY))
+
+
+def fill(runs, name, file):
+    """Puts a full disk in place of the file that is to be written, once it is not being written."""
+    while True:
+        try:
+            runs.path(name, f"{file}.part").symlink_to("/dev/full")
+            return
+        except FileExistsError:
+            time.sleep(0.0005)
+
+
+def check_full(runs):
+    """A row of the table, a checkpoint or a snapshot finds no room: one line; the last checkpoint serves, with more."""
+    for file in ("transient.csv", "checkpoint.bin", "snapshot_000012.h5"):
+        name = f"full_{file.split('.')[0]}"
+        process = runs.start(name, "-checkpoint_interval", str(OFTEN))
+        wait(process, lambda: runs.path(name, "checkpoint.bin").exists())
+        if file == "transient.csv":
+            table = runs.path(name, "transient.csv.part")
+            wait(process, lambda: table.stat().st_size > 200000)  # more than a checkpoint has
+            limit_table(runs, name, process)
+        else:
+            fill(runs, name, file)
+        stderr = process.communicate(timeout=PATIENCE)[1]
+        lines = [line for line in stderr.splitlines() if line.startswith("squeal:")]
+        if not process.returncode or len(lines) != 1 or f"cannot write {runs.path(name, file)}: " not in lines[0]:
+            fail(f"{runs.scene}: no room for {file}: exit status {process.returncode}: {stderr}")
+        runs.complete(name, "-checkpoint_interval", str(OFTEN), RESTART)
+        compare(runs, "undisturbed", name)
+    print(f"{runs.scene}: no room for a row, a checkpoint, a snapshot, gone on with more: bitwise the same", flush=True)
+
+
 # --- signals
 
 
@@ -294,9 +378,8 @@ def ask(runs, name, number, whom, *options):
     process = runs.start(name, *options)
     sign = runs.path(name, "transient.csv.part")
     wait(process, lambda: sign.exists() and sign.stat().st_size > 100000)
-    asked = [process.pid] if whom == "launcher" else [rank for rank in ranks_of(runs.folder / name) if rank != process.pid]
-    for rank in asked[:1]:
-        os.kill(rank, number)
+    ranks = [rank for rank in ranks_of(runs.folder / name) if rank != process.pid]
+    os.kill(process.pid if whom == "launcher" else ranks[0], number)
     stderr = process.communicate(timeout=PATIENCE)[1]
     lines = [line for line in stderr.splitlines() if line.startswith("squeal:")]
     if not process.returncode or len(lines) != 1 or "stopped by a signal after step" not in lines[0]:
@@ -343,8 +426,10 @@ def main():
             if scene == scenes[-1]:
                 check_torn(runs, chance)
                 check_longer(runs)
+                check_full(runs)
             if scene == scenes[0]:
                 check_signals(runs)
+                check_refused(runs)
                 check_anew(runs)
     return 0
 

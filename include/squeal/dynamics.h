@@ -61,7 +61,7 @@ PetscErrorCode DynamicsSetFromOptions(Dynamics dynamics);
  * collective. @*/
 PetscErrorCode DynamicsNeedsPairs(Dynamics dynamics, PetscBool *needs);
 
-/*@ DynamicsSetOperators - bodies and contact, and the solver of the sliding state (referenced). Collective. @*/
+/*@ DynamicsSetOperators - bodies and contact, and the solver of the sliding state (borrowed). Collective. @*/
 PetscErrorCode DynamicsSetOperators(Dynamics dynamics, Operators operators, Statics statics);
 
 /*@

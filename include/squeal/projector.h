@@ -127,6 +127,10 @@ PetscErrorCode ContactProjectorGetMemory(ContactProjector projector, PetscInt *n
 PetscErrorCode ContactProjectorSetMemory(ContactProjector projector, PetscReal t, const PetscReal u[], PetscInt n,
                                          const PetscReal values[]);
 
+/*@ ContactProjectorGetPrint - a number that differs, for all that can be expected, where surfaces, kinematics or ramps
+    differ; the same on every rank. Not collective. @*/
+PetscErrorCode ContactProjectorGetPrint(ContactProjector projector, PetscReal *print);
+
 /*@ ContactProjectorView - surfaces and kinematics in words. Collective. @*/
 PetscErrorCode ContactProjectorView(ContactProjector projector, PetscViewer viewer);
 

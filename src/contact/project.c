@@ -6,9 +6,12 @@
    The normal velocity contains gap / dt, hence q_n dt is the gap at t_{n+1}; the tangential one the sliding velocity.
    It begins with a guess from the forces of the steps before. Pairs that are open and that the motion without contact
    leaves open are not visited; when the others have converged, all are looked at, and those that need force join.
+   Bodies that touch and move together without force leave impulses that are rounding: the tolerance is never below that.
 */
 #include "versions.h"
 #include "projectorimpl.h"
+
+#define NOISE 16 /* roundings of a relative velocity, by its terms */
 
 void PairVelocity(const Pair *pair, const PetscReal v[], PetscReal q[3])
 {
@@ -142,6 +145,12 @@ INTO_VERSIONS PetscReal RowSolve(Row *row, PetscReal v[])
   return change[0] * change[0] + change[1] * change[1] + change[2] * change[2];
 }
 
+PetscReal PairMass(const Pair *pair)
+{
+  if (pair->w > 0) return 1 / pair->w;
+  return pair->W[0][0] > 0 ? 1 / (pair->W[0][0] + pair->W[1][1] + pair->W[2][2]) : 0;
+}
+
 /* Velocity of the slave relative to the master along its normal, offset included */
 INTO_VERSIONS PetscReal NormalVelocity(const ContactProjector p, PetscInt k)
 {
@@ -156,18 +165,32 @@ INTO_VERSIONS PetscReal NormalVelocity(const ContactProjector p, PetscInt k)
   return q[0];
 }
 
+/* Rounding of the relative velocity of a pair as an impulse, N s */
+INTO_VERSIONS PetscReal PairNoise(ContactProjector p, PetscInt k)
+{
+  const Pair *pair = &p->pair[k];
+  PetscReal   sum  = 0;
+
+  for (int d = 0; d < 3; d++) {
+    sum += PetscAbsReal(p->nodes.v[3 * pair->slave + d]) + PetscAbsReal(pair->offset[d]);
+    for (int i = 0; i < 4; i++) sum += PetscAbsReal(pair->weight[i] * p->nodes.v[3 * pair->node[i] + d]);
+  }
+  return NOISE * PETSC_MACHINE_EPSILON * PairMass(pair) * sum;
+}
+
 /* The guesses act; the pairs that have one, or that the motion closes, are to be visited */
-static VERSIONS PetscInt PairsBegin(ContactProjector p, PetscReal *scale)
+static VERSIONS PetscInt PairsBegin(ContactProjector p, PetscReal *scale, PetscReal *noise)
 {
   PetscInt n = 0;
 
-  *scale = 0;
+  *scale = *noise = 0;
   for (PetscInt k = 0; k < p->n_pairs; k++) {
     const Pair *pair = &p->pair[k];
 
     p->visited[k] = PETSC_FALSE;
     if (pair->facet < 0) continue;
     *scale        = PetscMax(*scale, PetscAbsReal(pair->p[0]));
+    *noise        = PetscMax(*noise, PairNoise(p, k));
     p->visited[k] = pair->p[0] > 0 || NormalVelocity(p, k) < 0 ? PETSC_TRUE : PETSC_FALSE;
     if (p->visited[k]) p->visit[n++] = k;
   }
@@ -180,12 +203,6 @@ static VERSIONS PetscInt PairsBegin(ContactProjector p, PetscReal *scale)
       PairPush(&p->pair[k], p->pair[k].p, p->nodes.minv, p->nodes.v);
   }
   return n;
-}
-
-PetscReal PairMass(const Pair *pair)
-{
-  if (pair->w > 0) return 1 / pair->w;
-  return pair->W[0][0] > 0 ? 1 / (pair->W[0][0] + pair->W[1][1] + pair->W[2][2]) : 0;
 }
 
 /* A vector along n, t, b */
@@ -255,7 +272,8 @@ INTO_VERSIONS void PairVisit(ContactProjector p, PetscInt k, PetscReal *change, 
 
 /* Sweeps until the next one would change impulses by less than the tolerance, going by how fast the changes (squared)
    decrease, or `left` are done; scale is the largest impulse, of the step before or now */
-static VERSIONS PetscInt PairsSweep(ContactProjector p, PetscInt n, PetscInt left, PetscReal before, PetscReal *scale)
+static VERSIONS PetscInt PairsSweep(ContactProjector p, PetscInt n, PetscInt left, PetscReal before, PetscReal noise,
+                                    PetscReal *scale)
 {
   PetscInt  sweeps = 0;
   PetscReal change = 0;
@@ -264,11 +282,10 @@ static VERSIONS PetscInt PairsSweep(ContactProjector p, PetscInt n, PetscInt lef
     const PetscReal last = sweeps ? change : PETSC_MAX_REAL;
 
     change = 0;
-
     *scale = before;
     for (PetscInt i = 0; i < n; i++) PairVisit(p, p->visit[i], &change, scale);
     sweeps++;
-    if (!(change * PetscMin(1, change / last) > PetscSqr(0.5 * p->rtol * *scale))) break;
+    if (!(change * PetscMin(1, change / last) > PetscSqr(0.5 * (p->rtol * *scale + noise)))) break;
   }
   return sweeps;
 }
@@ -276,14 +293,15 @@ static VERSIONS PetscInt PairsSweep(ContactProjector p, PetscInt n, PetscInt lef
 void PairsSolve(ContactProjector p, Convergence *c)
 {
   PetscReal before, scale, residual;
-  PetscInt  n = PairsBegin(p, &before);
+  PetscInt  n;
 
   *c    = (Convergence){.worst = -1};
+  n     = PairsBegin(p, &before, &c->noise);
   scale = before;
-  while (PETSC_TRUE) {
-    if (n > 0) c->sweeps += PairsSweep(p, n, p->max_it - c->sweeps, before, &scale);
-    residual    = PairsCheck(p, &n, &c->worst);
-    c->residual = residual > 0 ? residual / scale : 0;
-    if (!(residual > p->rtol * scale) || c->sweeps >= p->max_it) return;
-  }
+  do {
+    if (n > 0) c->sweeps += PairsSweep(p, n, p->max_it - c->sweeps, before, c->noise, &scale);
+    residual     = PairsCheck(p, &n, &c->worst);
+    c->residual  = residual == 0 ? 0 : residual / (scale + c->noise / p->rtol);
+    c->converged = residual <= p->rtol * scale + c->noise ? PETSC_TRUE : PETSC_FALSE; /* not where it is no number */
+  } while (!c->converged && c->sweeps < p->max_it && !PetscIsNanReal(residual));
 }

@@ -42,8 +42,13 @@ PetscErrorCode ContactProjectorReadOptions(Contact contact)
 /* Raises an error for parameters that make no sense in dynamics */
 static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
 {
+  PetscBool same;
+
   PetscFunctionBeginUser;
   PetscCheck(c->slave && c->master, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces must be given: slave,master", c->name);
+  PetscCall(PetscStrcmp(c->slave, c->master, &same));
+  PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces %s,%s: a surface does not slide on itself; give two",
+             c->name, c->slave, c->master);
   PetscCheck(c->mu >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_mu %.6g must not be negative", c->name, (double)c->mu);
   PetscCheck(c->speed >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_speed %.6g must not be negative (m/s)", c->name,
              (double)c->speed);
@@ -157,7 +162,7 @@ static PetscErrorCode RootProject(ContactProjector p, const ContactStep *step, P
   }
   head[HEAD_RESIDUAL] = convergence.residual;
   head[HEAD_SWEEPS]   = (PetscReal)convergence.sweeps;
-  head[HEAD_FAILED]   = convergence.residual > p->rtol ? 1 : 0;
+  head[HEAD_FAILED]   = convergence.converged ? 0 : 1;
   for (int d = 0; d < 3 && convergence.worst >= 0; d++) head[HEAD_X + d] = p->slave_x[3 * convergence.worst + d];
   PetscFunctionReturn(0);
 }
@@ -184,6 +189,8 @@ PetscErrorCode ContactProject(ContactProjector p, const ContactStep *step, const
                         (PetscReal *const[]){p->nodes.u, p->nodes.before, p->nodes.v}));
   PetscCall(RootProject(p, step, head));
   PetscCall(ShareReturn(&p->share, p->nodes.force, head, force));
+  PetscCheck(!PetscIsNanReal(head[HEAD_RESIDUAL]), p->share.comm, PETSC_ERR_FP,
+             "velocities at the contact surfaces are no numbers at %.6g s", (double)step->time);
   PetscCheck(
     head[HEAD_FAILED] == 0, p->share.comm, PETSC_ERR_NOT_CONVERGED,
     "contact forces at %.6g s: residual %.6g after %.0f sweeps, worst at the slave node at %.6g, %.6g, %.6g m; "

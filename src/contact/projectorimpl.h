@@ -119,7 +119,9 @@ typedef struct {
 /* How Gauss-Seidel ended */
 typedef struct {
   PetscInt  sweeps, worst; /* pair of the largest residual */
-  PetscReal residual;      /* natural map, relative to the largest impulse now or before */
+  PetscReal residual;      /* natural map, relative to the largest impulse now or before, or rounding */
+  PetscReal noise;         /* rounding of the impulses that stop and drag the nodes, N s */
+  PetscBool converged;
 } Convergence;
 
 struct _p_ContactProjector {

@@ -4,6 +4,7 @@
    whether a search is due, which each rank knows.
 */
 #include "projectorimpl.h"
+#include "kernels/checksum.h"
 
 #define PER_PAIR (3 + 3 * PROJECTOR_PAST) /* facet, natural coordinates, forces */
 #define PER_SUMS 16
@@ -99,5 +100,25 @@ PetscErrorCode ContactProjectorSetMemory(ContactProjector p, PetscReal t, const 
   PetscCall(ProjectorActivate(p));
   p->search_next = values[0] != 0 ? PETSC_TRUE : PETSC_FALSE;
   if (p->search_next) PetscCall(ShareSetActive(&p->share, NULL));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProjectorGetPrint(ContactProjector p, PetscReal *print)
+{
+  uint64_t h = CHECKSUM_BEGIN;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < p->n_interfaces; i++) {
+    const ContactInterface *c     = &p->contact->interfaces[i];
+    const Sliding          *s     = &p->sliding[i];
+    const PetscReal         all[] = {s->turning,    s->rotates,    s->slides, s->axis[0],
+                                     s->axis[1],    s->axis[2],    s->speed,  (PetscReal)s->ramp.shape,
+                                     s->ramp.delay, s->ramp.length};
+
+    h = ChecksumAdd(h, c->slave, strlen(c->slave));
+    h = ChecksumAdd(h, c->master, strlen(c->master));
+    h = ChecksumAdd(h, all, sizeof(all));
+  }
+  *print = (PetscReal)(h >> 12); /* 52 bits, which a real number holds exactly */
   PetscFunctionReturn(0);
 }

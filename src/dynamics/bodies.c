@@ -3,6 +3,7 @@
    while the rest is done.
 */
 #include "bodiesimpl.h"
+#include "events.h"
 
 /* Masses of this rank's cells, then complete ones; held directions have no inverse */
 static PetscErrorCode MassesSet(Bodies b)
@@ -146,7 +147,9 @@ PetscErrorCode BodiesAdvance(Bodies b, PetscReal dt, const PetscReal u[], const 
   PetscCall(KernelsAdvance(b, PETSC_TRUE, &w));
   PetscCall(SharedBegin(&b->share, &b->layout, f));
   PetscCall(KernelsAdvance(b, PETSC_FALSE, &w));
+  PetscCall(EventBegin(EVENT_EXCHANGE));
   PetscCall(SharedEnd(&b->share, &b->layout, f));
+  PetscCall(EventEnd(EVENT_EXCHANGE));
   *sums = w.sums;
   PetscFunctionReturn(0);
 }

@@ -34,6 +34,15 @@ static PetscBool CellIsRepeated(PetscInt n_nodes, const PetscInt vertex[], const
   return PETSC_TRUE;
 }
 
+/* Whether nothing of a cell may move */
+static PetscBool CellIsHeld(Bodies b, PetscInt n_nodes, const PetscInt vertex[])
+{
+  for (PetscInt a = 0; a < n_nodes; a++)
+    for (int j = 0; j < 3; j++)
+      if (b->minv[b->layout.at[vertex[a]] + j * b->layout.step[vertex[a]]] > 0) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
 static void SweptFlag(Bodies b, PetscBool first[], PetscBool swept[])
 {
   for (PetscInt i = 0; i < b->n_swept; i++) {
@@ -60,7 +69,7 @@ static PetscErrorCode CellsGetLargest(Bodies b, PetscReal s, PetscReal *largest)
     BodiesCell cell;
 
     PetscCall(BodiesGetCellVertices(b, c, &body, &n_nodes, vertex));
-    if (CellIsRepeated(n_nodes, vertex, first, swept)) continue;
+    if (CellIsRepeated(n_nodes, vertex, first, swept) || CellIsHeld(b, n_nodes, vertex)) continue;
     PetscCall(BodiesGetCell(b, c, &cell));
     PetscCall(CellGetLargest(&cell, &lambda));
     *largest = PetscMax(*largest, (1 + s * cell.beta) * lambda + s * cell.alpha);

@@ -252,8 +252,9 @@ static PetscErrorCode ReaderCheckPrint(Reader *reader, const CheckpointPrint *pr
     if (!memcmp(&h->print[i], &print->print[i], sizeof(PetscReal))) continue;
     PetscCall(NoteOther(reader,
                         "%s is of another model or other parameters: number %" PetscInt_FMT
-                        " of its fingerprint is %.17g, here %.17g",
-                        reader->name, i + 1, (double)h->print[i], (double)print->print[i]));
+                        " of its fingerprint is %.17g, here %.17g%s%s%s",
+                        reader->name, i + 1, (double)h->print[i], (double)print->print[i], print->name[i] ? " (" : "",
+                        print->name[i] ? print->name[i] : "", print->name[i] ? ")" : ""));
   }
   PetscFunctionReturn(0);
 }

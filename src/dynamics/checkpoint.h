@@ -18,8 +18,9 @@ typedef struct {
 
 /* What a checkpoint must agree in */
 typedef struct {
-  PetscReal print[16]; /* fingerprint of model, materials, contact, integrator, step */
-  PetscInt  n_print;
+  PetscReal   print[16]; /* fingerprint of model, materials, contact, integrator */
+  PetscInt    n_print;
+  const char *name[16]; /* what each stands for, for messages; NULL for unsaid */
 } CheckpointPrint;
 
 /*

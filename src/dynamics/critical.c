@@ -168,6 +168,10 @@ static PetscErrorCode ElementStep(Dynamics d, CriticalStep *critical)
     PetscCall(BodiesGetElementBound(d->bodies, 2 / last, &bound));
     critical->element = PetscSqrtReal(2 / (d->b * bound));
   }
+  PetscCheck(critical->element <= (1 + 1e-6) * critical->assembled, d->comm, PETSC_ERR_NOT_CONVERGED,
+             "critical step %.6g s by Lanczos iteration, but the stiffest element alone allows %.6g s: raise "
+             "-dynamics_eps_max_it or lower -dynamics_eps_tol",
+             (double)critical->assembled, (double)critical->element);
   PetscFunctionReturn(0);
 }
 

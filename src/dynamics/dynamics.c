@@ -179,10 +179,29 @@ static PetscErrorCode StateCreate(Dynamics d)
   PetscFunctionReturn(0);
 }
 
+/* A step that divides the time that is left, where the run shall end exactly at -ts_max_time */
+static PetscErrorCode MatchEnd(Dynamics d, PetscReal *dt)
+{
+  TSExactFinalTimeOption end;
+  PetscReal              begin, time;
+
+  PetscFunctionBeginUser;
+  PetscCall(TSGetExactFinalTime(d->ts, &end));
+  PetscCheck(end != TS_EXACTFINALTIME_INTERPOLATE, d->comm, PETSC_ERR_USER_INPUT,
+             "-ts_exact_final_time interpolate is not offered: stepover or matchstep");
+  PetscCall(TSGetTime(d->ts, &begin));
+  PetscCall(TSGetMaxTime(d->ts, &time));
+  PetscCheck(begin == 0, d->comm, PETSC_ERR_USER_INPUT, "-ts_init_time %.6g must be 0: ramps and motions begin there",
+             (double)begin);
+  if (end == TS_EXACTFINALTIME_MATCHSTEP && time < PETSC_MAX_REAL) *dt = time / PetscCeilReal(time / *dt * (1 - 1e-12));
+  PetscFunctionReturn(0);
+}
+
 /* The step asked for, or the stated fraction of the critical one; a larger one is refused */
 static PetscErrorCode ChooseStep(Dynamics d)
 {
-  const PetscReal critical = d->critical.assembled, dt = d->dt_asked > 0 ? d->dt_asked : d->fraction * critical;
+  const PetscReal critical = d->critical.assembled;
+  PetscReal       dt       = d->dt_asked > 0 ? d->dt_asked : d->fraction * critical;
 
   PetscFunctionBeginUser;
   PetscCheck(
@@ -190,6 +209,7 @@ static PetscErrorCode ChooseStep(Dynamics d)
     "-ts_dt %.6g is above the critical step %.6g s: the fastest oscillations would grow; take at most %.6g, or "
     "-dynamics_step_force",
     (double)dt, (double)critical, (double)(d->fraction * critical));
+  PetscCall(MatchEnd(d, &dt));
   PetscCall(TSSetTimeStep(d->ts, dt));
   PetscFunctionReturn(0);
 }

@@ -3,6 +3,7 @@
    external.h.
 */
 #include "externalimpl.h"
+#include "kernels/checksum.h"
 
 PetscErrorCode ExternalCreate(MPI_Comm comm, Model model, External *external)
 {
@@ -96,6 +97,47 @@ PetscErrorCode ExternalGetMemory(External external, PetscInt *n, PetscReal **val
   PetscCheck(external->memory, external->comm, PETSC_ERR_ARG_WRONGSTATE, "ExternalSetUp() must come first");
   *n      = external->n_memory;
   *values = external->memory;
+  PetscFunctionReturn(0);
+}
+
+static uint64_t PrintReals(uint64_t h, PetscInt n, const PetscReal values[])
+{
+  return ChecksumAdd(h, values, (size_t)n * sizeof(*values));
+}
+
+static uint64_t PrintRamp(uint64_t h, const Ramp *ramp)
+{
+  const PetscReal all[] = {(PetscReal)ramp->shape, ramp->delay, ramp->length};
+
+  return PrintReals(h, PETSC_STATIC_ARRAY_LENGTH(all), all);
+}
+
+PetscErrorCode ExternalGetPrint(External external, PetscReal *print)
+{
+  uint64_t    h = PrintReals(CHECKSUM_BEGIN, 3, external->gravity);
+  PetscInt    n;
+  const Load *loads;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetLoads(external->model, &n, &loads));
+  for (PetscInt i = 0; i < external->n_loads; i++) {
+    h = ChecksumAdd(h, loads[i].set, strlen(loads[i].set));
+    h = PrintReals(PrintRamp(h, &external->loads[i].ramp), 3, external->loads[i].force);
+  }
+  for (PetscInt i = 0; i < external->n_motions; i++) {
+    const Drive *m = &external->motions[i];
+
+    h = ChecksumAdd(h, m->set, strlen(m->set));
+    h = PrintReals(PrintRamp(h, &m->ramp), 3, m->displacement);
+    h = ChecksumAdd(h, m->direction, sizeof(m->direction));
+  }
+  for (PetscInt i = 0; i < external->n_impulses; i++) {
+    const Impulse *hit = &external->impulses[i];
+
+    h = PrintReals(PrintReals(h, 3, hit->x), 3, hit->impulse);
+    h = PrintReals(h, 1, &hit->time);
+  }
+  *print = (PetscReal)(h >> 12); /* 52 bits, which a real number holds exactly */
   PetscFunctionReturn(0);
 }
 

@@ -1,7 +1,6 @@
 /*
    Inertial forces of parts that are described in the turning frame of a contact surface (-contact_kinematics turning):
-   Coriolis -2 m Omega x v and centrifugal -m Omega x (Omega x x), each where it is asked for; N. Displacements are
-   small: x is the place of the undeformed body, and Omega x (Omega x u) is left out.
+   Coriolis -2 m Omega x v and centrifugal -m Omega x (Omega x (x + u)), each where it is asked for; N (inertia.c).
 */
 #include "dynamicsimpl.h"
 

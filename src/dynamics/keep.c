@@ -34,7 +34,12 @@ static PetscErrorCode MakePrint(Dynamics d, CheckpointPrint *print)
   PetscReal                *p = print->print;
 
   PetscFunctionBeginUser;
-  *print = (CheckpointPrint){.n_print = 8};
+  *print = (CheckpointPrint){
+    .n_print = 10,
+    .name = {"masses", "materials and springs", "friction and sliding speeds", "directions of sliding", "-ts_central_b",
+             "number of elements", "-dynamics_coriolis", "-dynamics_centrifugal", "loads, gravity, motions, impulses",
+             "surfaces and kinematics of contacts"}
+  };
   PetscCall(BodiesGetMass(d->bodies, &mass, NULL, NULL));
   for (PetscInt i = 0; i < d->layout->n; i++) p[0] += mass[i] * (1 + i % 7);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &p[0], 1, MPIU_REAL, MPI_SUM, d->comm));
@@ -52,6 +57,8 @@ static PetscErrorCode MakePrint(Dynamics d, CheckpointPrint *print)
   p[5] = (PetscReal)d->n_elements;
   p[6] = d->coriolis;
   p[7] = d->centrifugal;
+  PetscCall(ExternalGetPrint(d->external, &p[8]));
+  if (d->projector) PetscCall(ContactProjectorGetPrint(d->projector, &p[9]));
   PetscFunctionReturn(0);
 }
 

@@ -15,6 +15,7 @@ typedef struct {
   PetscReal start;                       /* kinetic + strain at the first half step */
   PetscReal error;                       /* kinetic + strain - start - works */
   PetscReal throughput;                  /* the largest of all the above so far, that errors are relative to */
+  PetscReal predicted; /* what contact took within one step, at most: rounding of it is left where nothing moves */
 } Ledger;
 
 /* This rank's part, gathered step by step: works since the start */

@@ -21,13 +21,14 @@ static PetscErrorCode CentralDescribe(TS ts, CentralStep *step)
 {
   const TS_Central *c     = (TS_Central *)ts->data;
   const PetscBool   first = c->dt_old == 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal   mean  = 0.5 * (c->dt_old + ts->time_step); /* between the middles of the two steps */
 
   PetscFunctionBegin;
   step->time     = ts->ptime;
   step->dt       = ts->time_step;
   step->dt_old   = c->dt_old;
-  step->kick     = first ? 0.5 * step->dt : (0.5 + c->b) * step->dt;
-  step->kick_old = first ? 0 : (0.5 - c->b) * step->dt;
+  step->kick     = first ? 0.5 * step->dt : (0.5 + c->b) * mean;
+  step->kick_old = first ? 0 : (0.5 - c->b) * mean;
   PetscFunctionReturn(0);
 }
 

@@ -173,6 +173,8 @@ static PetscErrorCode TestOptions(int *failed)
   *failed += CheckTrue("-ts_dt 0.05", steps == 20, (double)steps);
   PetscCall(Integrate("-ts_exact_final_time matchstep", &o, 0.3, 1, 1, 0, &u, &v, &time, &steps));
   *failed += CheckClose("-ts_exact_final_time matchstep", time, 1, 1e-14);
+  PetscCall(Integrate("-ts_exact_final_time matchstep", &o, 0.0015, 1, 1, 0, &u, &v, &time, &steps));
+  *failed += CheckClose("a shorter last step keeps the order", u, PetscCosReal(1), 2e-7);
   PetscFunctionReturn(0);
 }
 
