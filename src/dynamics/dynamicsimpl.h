@@ -4,8 +4,8 @@
 #include <squeal/dynamics.h>
 #include <squeal/projector.h>
 #include "checkpoint.h"
-#include "external.h"
-#include "history.h"
+#include "dynamics/external/external.h"
+#include "dynamics/history/history.h"
 #include "ledger.h"
 #include "tscentral.h"
 

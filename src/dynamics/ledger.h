@@ -3,7 +3,7 @@
 */
 #pragma once
 
-#include "external.h"
+#include "dynamics/external/external.h"
 #include <squeal/projector.h>
 
 /* Over all ranks */

@@ -8,7 +8,7 @@
 
 #include "boxes.h"
 #include "brake.h"
-#include "dynamics/external.h"
+#include "dynamics/external/external.h"
 
 #define BAR                                                                                                            \
   "-parts foot,head -foot_young 3 -foot_density 2 -head_young 5 -head_density 3 -supports clamp "                      \

@@ -6,7 +6,7 @@
 */
 #pragma once
 
-#include "dynamics/historyimpl.h"
+#include "dynamics/history/historyimpl.h"
 #include "boxes.h"
 #include "check.h"
 #include <string.h>

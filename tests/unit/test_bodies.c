@@ -7,7 +7,7 @@
 #include <petscksp.h>
 #include "brake.h"
 #include "check.h"
-#include "dynamics/bodies.h"
+#include "dynamics/bodies/bodies.h"
 
 #define LUMPED "-operators_mass lumped -contact_kn 1e8 "
 #define SMALL_DISC                                                                                                     \

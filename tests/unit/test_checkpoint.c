@@ -296,8 +296,8 @@ int main(int argc, char **argv)
   PetscCall(ResultsCreate(PETSC_COMM_WORLD, &t.results));
   PetscCall(ResultsSetFromOptions(t.results));
   t.print = (CheckpointPrint){
-    {0.1, 1 + PETSC_MACHINE_EPSILON, 0},
-    3
+    .print   = {0.1, 1 + PETSC_MACHINE_EPSILON, 0},
+    .n_print = 3
   };
   failed = TestSame(&t);
   failed += TestTruncated(&t);

@@ -6,7 +6,7 @@
    Reference: the balance of energies in external.h, an identity of the discrete equations that holds to rounding.
 */
 #include "check.h"
-#include "dynamics/externalimpl.h"
+#include "dynamics/external/externalimpl.h"
 
 #define N       6 /* numbers of the state vectors */
 #define N_STEPS 1000

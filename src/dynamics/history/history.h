@@ -5,7 +5,7 @@
 
 #include <squeal/projector.h>
 #include <squeal/results.h>
-#include "ledger.h"
+#include "dynamics/ledger.h"
 
 typedef struct _p_History *History;
 

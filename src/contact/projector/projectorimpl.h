@@ -8,7 +8,7 @@
 #pragma once
 
 #include <squeal/projector.h>
-#include "contactimpl.h"
+#include "contact/contactimpl.h"
 #include "kernels/cone.h"
 #include "kernels/ramp.h"
 

@@ -5,7 +5,7 @@
 */
 #pragma once
 
-#include "bodies.h"
+#include "dynamics/bodies/bodies.h"
 
 typedef struct {
   PetscInt   n, n_owned;

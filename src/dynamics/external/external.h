@@ -12,7 +12,7 @@
 */
 #pragma once
 
-#include "bodies.h"
+#include "dynamics/bodies/bodies.h"
 
 typedef struct _p_External *External;
 
