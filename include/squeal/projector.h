@@ -120,12 +120,12 @@ PetscErrorCode ContactProjectorGetSums(ContactProjector projector, PetscInt inte
     @*/
 PetscErrorCode ContactProjectorGetKKT(ContactProjector projector, ContactKKT *kkt);
 
-/*@ ContactProjectorGetMemory - what must be kept so that a run continues bitwise: n numbers on this rank; Set takes
-    them back at the same ranks and finds pairs again at displacements u, time t. Not collective, collective. The caller
-    frees values of Get. @*/
+/*@ ContactProjectorGetMemory - what must be kept so that a run continues bitwise: n numbers on this rank. Not
+    collective. The caller frees them. @*/
 PetscErrorCode ContactProjectorGetMemory(ContactProjector projector, PetscInt *n, PetscReal **values);
-PetscErrorCode ContactProjectorSetMemory(ContactProjector projector, PetscReal t, const PetscReal u[], PetscInt n,
-                                         const PetscReal values[]);
+
+/*@ ContactProjectorSetMemory - takes them back, on the same ranks, and repeats the last search. Collective. @*/
+PetscErrorCode ContactProjectorSetMemory(ContactProjector projector, PetscInt n, const PetscReal values[]);
 
 /*@ ContactProjectorGetPrint - a number that differs, for all that can be expected, where surfaces, kinematics or ramps
     differ; the same on every rank. Not collective. @*/

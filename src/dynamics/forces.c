@@ -144,9 +144,9 @@ static PetscReal SurfaceEnergy(const Surface *s, const Layout *l, PetscInt n, co
   return sum;
 }
 
-/* Contact forces of the step on all copies of the active nodes */
-static PetscErrorCode AddContact(Dynamics d, const CentralStep *step, const PetscReal u[], const PetscReal v[],
-                                 const PetscReal f_old[], PetscReal f[])
+/* Contact forces of the step on all copies of the active nodes; balanced: the ledger is looked at in this step */
+static PetscErrorCode AddContact(Dynamics d, const CentralStep *step, PetscBool balanced, const PetscReal u[],
+                                 const PetscReal v[], const PetscReal f_old[], PetscReal f[])
 {
   const ContactStep contact = {.time = step->time, .dt = step->dt, .kick = step->kick};
   const Surface    *s       = &d->surface;
@@ -160,7 +160,7 @@ static PetscErrorCode AddContact(Dynamics d, const CentralStep *step, const Pets
   PetscCall(ContactProjectorGetActive(d->projector, &n, &active));
   SurfaceGet(s, d->layout, n, active, u, s->u);
   SurfacePredict(s, d->layout, step, n, active, minv, f, f_old, v);
-  d->part.predicted = PetscMax(d->part.predicted, SurfaceEnergy(s, d->layout, n, active, minv));
+  if (balanced) d->part.predicted = PetscMax(d->part.predicted, SurfaceEnergy(s, d->layout, n, active, minv));
   PetscCall(ContactProject(d->projector, &contact, s->u, s->before, s->v, s->force));
   for (PetscInt i = 0; i < n; i++) LayoutAdd(d->layout, s->vertex[active[i]], &s->force[3 * active[i]], f);
   PetscCall(EventEnd(EVENT_PROJECT));
@@ -217,18 +217,19 @@ PetscErrorCode DynamicsConstrain(TS ts, const CentralStep *step, Vec u, Vec v, V
   const PetscScalar *displacement, *velocity, *last = NULL;
   const PetscReal   *minv;
   PetscScalar       *force;
-  PetscBool          due;
+  PetscBool          due, balanced;
   PetscInt           n;
 
   PetscFunctionBeginUser;
   PetscCall(TSGetStepNumber(ts, &n));
-  due = HistoryIsDue(d->history, step->time, step->dt);
-  if (due || d->ended || n <= 1 || n % CHECK_INTERVAL == 0) PetscCall(Balance(d, step, n));
+  due      = HistoryIsDue(d->history, step->time, step->dt);
+  balanced = due || d->ended || n <= 1 || n % CHECK_INTERVAL == 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (balanced) PetscCall(Balance(d, step, n));
   PetscCall(VecGetArrayRead(u, &displacement));
   PetscCall(VecGetArrayRead(v, &velocity));
   if (f_old) PetscCall(VecGetArrayRead(f_old, &last));
   PetscCall(VecGetArray(f, &force));
-  if (d->projector) PetscCall(AddContact(d, step, displacement, velocity, last, force));
+  if (d->projector) PetscCall(AddContact(d, step, balanced, displacement, velocity, last, force));
   PetscCall(ExternalFinish(d->external, step->dt, force));
   PetscCall(BodiesGetMass(d->bodies, NULL, NULL, &minv));
   if (last)

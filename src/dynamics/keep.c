@@ -182,16 +182,6 @@ PetscErrorCode DynamicsKeep(Dynamics d)
   PetscFunctionReturn(0);
 }
 
-/* Contact from its memory, at the displacements that were read */
-static PetscErrorCode ProjectorGoOn(Dynamics d, PetscReal time, const PetscReal u[], const CheckpointItem *item)
-{
-  PetscFunctionBeginUser;
-  if (!d->projector) PetscFunctionReturn(0);
-  for (PetscInt i = 0; i < d->surface.n; i++) LayoutGet(d->layout, d->surface.vertex[i], u, &d->surface.u[3 * i]);
-  PetscCall(ContactProjectorSetMemory(d->projector, time, d->surface.u, item->n, item->values));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode DynamicsGoOn(Dynamics d)
 {
   CheckpointItem  item[N_ITEMS];
@@ -206,7 +196,8 @@ PetscErrorCode DynamicsGoOn(Dynamics d)
   item[PROJECTOR].n = item[HISTORY].n = -1;
   PetscCall(CheckpointRead(d->comm, d->results, &print, N_ITEMS, item));
   PetscCall(ScalarsSet(d, &scalars));
-  PetscCall(ProjectorGoOn(d, scalars.time, arrays.u, &item[PROJECTOR]));
+  if (d->projector)
+    PetscCall(ContactProjectorSetMemory(d->projector, item[PROJECTOR].n, item[PROJECTOR].values));
   PetscCall(HistorySetMemory(d->history, item[HISTORY].n, item[HISTORY].values));
   PetscCall(PetscFree(item[HISTORY].values));
   PetscCall(PetscFree(item[PROJECTOR].values));

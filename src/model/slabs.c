@@ -14,8 +14,8 @@
 #include "modelimpl.h"
 #include "partition.h"
 
-/* Cost of a cell relative to half of one turned about an axis, whose kernel takes about 25 ns: lines along an axis are
-   shorter, hence vectorise less well, and blocks of a sparse matrix take 114 ns (bound by memory) */
+/* Cost of a cell relative to half of one turned about an axis, whose kernel takes about 13 ns: lines along an axis are
+   shorter, hence vectorise less well, and blocks of a sparse matrix take 50 to 60 ns (bound by memory) */
 enum { COST_TURNED = 2, COST_ALONG = 3, COST_GENERAL = 8 };
 
 /* Bodies of the undistributed mesh */

@@ -268,7 +268,7 @@ static PetscErrorCode TestMemory(int *failed)
       PetscCall(PetscArraycpy(two.u, one.u, 3 * one.n));
       PetscCall(PetscArraycpy(two.v, one.v, 3 * one.n));
       PetscCall(ContactProjectorGetMemory(one.projector, &n, &memory));
-      PetscCall(ContactProjectorSetMemory(two.projector, 301 * DT, two.u, n, memory));
+      PetscCall(ContactProjectorSetMemory(two.projector, n, memory));
       PetscCall(PetscFree(memory));
     }
     PetscCall(SliderPull(&one, a, k));

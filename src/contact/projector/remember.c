@@ -87,13 +87,11 @@ static PetscErrorCode RootSetMemory(ContactProjector p, const PetscReal v[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactProjectorSetMemory(ContactProjector p, PetscReal t, const PetscReal u[], PetscInt n,
-                                         const PetscReal values[])
+PetscErrorCode ContactProjectorSetMemory(ContactProjector p, PetscInt n, const PetscReal values[])
 {
   PetscInt wrong = n != MemoryLength(p);
 
   PetscFunctionBeginUser;
-  (void)t, (void)u; /* the search that counts is the last one, with its own time and displacements */
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &wrong, 1, MPIU_INT, MPI_MAX, p->share.comm));
   PetscCheck(!wrong, p->share.comm, PETSC_ERR_ARG_SIZ, "memory of the contact forces is of other surfaces or ranks");
   if (p->share.rank == p->share.root) PetscCall(RootSetMemory(p, &values[1]));
