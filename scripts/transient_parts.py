@@ -1,7 +1,10 @@
-"""Parts of study_transient in time: every run is kept in a folder of its own and taken from there when it is complete."""
+"""Parts of study_transient in time: every run is kept in a folder of its own and taken from there as long as program
+and command are the same."""
 
+import hashlib
 import subprocess
 import sys
+from pathlib import Path
 from typing import NamedTuple
 
 from benchmark_run import ROOT
@@ -34,17 +37,24 @@ RISES = (Rise(25.1, "", "(0,4+)", (3300, 3700)), Rise(39.8, "", "(0,4+)", (3300,
          Rise(25.1, "-contact_mu 0.2", "(0,4+)", (3300, 3700)))
 
 
+def key_of(program, words):
+    """What a kept run must agree in: program and command."""
+    key = hashlib.sha256(Path(program).read_bytes())
+    key.update("\0".join(map(str, words)).encode())
+    return key.hexdigest()
+
+
 def run(program, ranks, folder, options, scene=SCENE):
-    """Folder with the tables of a run; runs it where they are not there yet."""
+    """Folder with the tables of a run, made anew where it is not there or was made by another program or command."""
     folder.mkdir(parents=True, exist_ok=True)
-    done = folder / "log.txt"
-    if not done.exists():
-        command = [ROOT / "scripts/mpirun", "-n", ranks, program, "-options_file", scene, "-progress", 0, "-output_dir",
-                   folder, *options.split()]
+    words = ["-n", ranks, program, "-options_file", scene, "-progress", 0, *options.split()]
+    log, key = folder / "log.txt", key_of(program, words)
+    if not log.exists() or not log.read_text(encoding="utf-8").startswith(key):
+        command = [ROOT / "scripts/mpirun", *words, "-output_dir", folder]
         process = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
         if process.returncode:
             raise BadInput(f"{folder}, options {options}: {process.stderr.strip()}")
-        done.write_text(process.stdout, encoding="utf-8")
+        log.write_text(f"{key}\n{process.stdout}", encoding="utf-8")
     return folder
 
 
@@ -105,7 +115,8 @@ def follow(program, args, rise):
     mode = max(rows, key=lambda row: row["growth_rad_s"])
     time = run(program, args.ranks, args.runs / f"rise{name}",
                f"{scene} -dynamics_start static -dynamics_shape {modes} -dynamics_shape_mode {mode['mode']} "
-               f"-dynamics_shape_amplitude {LITTLE} -ts_max_time {RISE} -dynamics_live 0 -press_ramp 0 -tap_time 1")  # after the end
+               f"-dynamics_shape_amplitude {LITTLE} -ts_max_time {RISE} -dynamics_live 0 -press_ramp 0 "
+               "-tap_time 1")  # after the end
     table = Run(time)
     signal = table.probe("edge", "vy")
     found = min(fit_modes(table.time, signal - signal.mean(), rise.band, 2),
@@ -236,10 +247,11 @@ def part_chatter(program, args):
           f"closed pairs ({closed.min():g} to {closed.max():g}); ledger closes to {ledger_error(folder):.1e}")
 
 
+BLOWS = ("-impulses e,w,n,s -e_at 0.12,0,0 -e_impulse 1e-3,0,3e-3 -w_at -0.12,0,0 -w_impulse -1e-3,0,3e-3 "
+         "-n_at 0,0.12,0 -n_impulse 0,1e-3,-3e-3 -s_at 0,-0.12,0 -s_impulse 0,-1e-3,-3e-3")  # N s, in balance
 DISCS = {"clamped disc": ("plate", "-impulses hit -hit_at 0.12,0,0 -hit_impulse 1e-3,2e-3,-3e-3"),
-         "free disc": ("free_ring", "-impulses hit,back -hit_at 0.12,0,0 -hit_impulse 1e-3,2e-3,-3e-3 "
-                                    "-back_at -0.12,0,0 -back_impulse -1e-3,-2e-3,3e-3"),
-         "free disc that flies": ("free_ring", "-impulses hit -hit_at 0.12,0,0 -hit_impulse 1e-3,2e-3,-3e-3")}
+         "free disc": ("free_ring", BLOWS),
+         "free disc that flies and spins": ("free_ring", "-impulses hit -hit_at 0.12,0,0 -hit_impulse 1e-3,2e-3,-3e-3")}
 
 
 def drift_run(program, args, name, impulses):
@@ -263,6 +275,5 @@ def part_drift(program, args):
         print_row(name, f"{drift:.1e}", f"{abs(energy[-1] - energy[0]) / stored[5:].mean():.1e}")
 
 
-PARTS = {"cases": part_cases, "growth": part_growth, "rise": part_rise, "kinematics": part_kinematics, "ranks": part_ranks,
-         "chatter": part_chatter, "drift": part_drift}
-
+PARTS = {"cases": part_cases, "growth": part_growth, "rise": part_rise, "kinematics": part_kinematics,
+         "ranks": part_ranks, "chatter": part_chatter, "drift": part_drift}
