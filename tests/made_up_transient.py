@@ -60,7 +60,18 @@ class Transient:
         if probe:
             columns.update({f"{probe}_{name}": zero for name in PROBE})
             columns[f"{probe}_ay_m_s2"] = self.acceleration
+            columns[f"{probe}_vy_m_s"] = self.velocity()
         return columns
+
+    def velocity(self):
+        """Whose central differences are the acceleration, m/s."""
+        step = self.time[1] - self.time[0]
+        velocity = numpy.zeros_like(self.time)
+        velocity[1] = step * self.acceleration[0]
+        for first in (0, 1):
+            jumps = 2 * step * self.acceleration[first + 1:len(velocity) - 1:2]
+            velocity[first + 2::2] = velocity[first] + numpy.cumsum(jumps)
+        return velocity
 
 
 def write_table(folder, columns, name="transient.csv"):

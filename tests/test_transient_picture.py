@@ -243,7 +243,7 @@ def test_errors(root):
     cases = [("".join(lines)[:-30], f"line {len(lines)} does not have as many columns"), ("", "is empty"),
              ("".join(lines[:9]), "has 8 rows"),
              (text.replace("normal_force_n", "force", 1), "no column normal_force_n"), ("\udcff", "cannot be read"),
-             (text.replace("pad_edge_ay_m_s2", "pad_edge_b", 1), "no column pad_edge_ay_m_s2"),
+             (text.replace("pad_edge_vy_m_s", "pad_edge_b", 1), "no column pad_edge_vy_m_s"),
              *(("".join([*lines[:5], word + lines[5][lines[5].index(","):], *lines[6:]]), f"line 6: time_s is '{word}'")
                for word in ("nan", "many")),
              ("".join([*lines[:5], *lines[7:9], *lines[5:]]), "line 8: time_s does not increase")]
