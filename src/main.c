@@ -10,7 +10,8 @@ static const char help[] =
 
 typedef enum { ANALYSIS_MODES, ANALYSIS_SWEEP, ANALYSIS_STATIC, ANALYSIS_TRANSIENT, N_ANALYSES } Analysis;
 
-/* The chain of a run: options -> model -> contact -> operators -> statics -> modes -> sweep, or dynamics; and results */
+/* The chain of a run: options -> model -> contact -> operators -> statics -> modes -> sweep, or dynamics; and
+   results */
 typedef struct {
   Model     model; /* NULL for matrices without a mesh */
   Contact   contact;

@@ -85,8 +85,8 @@ static PetscErrorCode ItemsFill(Dynamics d, Scalars *scalars, const Arrays *a, C
   PetscFunctionReturn(0);
 }
 
-/* Every velocity is a number: a spoilt state must not replace a good checkpoint. A sum passes NaN on to all ranks, where
-   a maximum may lose it. */
+/* Every velocity is a number: a spoilt state must not replace a good checkpoint. A sum passes NaN on to all ranks,
+   where a maximum may lose it. */
 static PetscErrorCode CheckNumbers(Dynamics d)
 {
   PetscReal norm;
@@ -196,8 +196,7 @@ PetscErrorCode DynamicsGoOn(Dynamics d)
   item[PROJECTOR].n = item[HISTORY].n = -1;
   PetscCall(CheckpointRead(d->comm, d->results, &print, N_ITEMS, item));
   PetscCall(ScalarsSet(d, &scalars));
-  if (d->projector)
-    PetscCall(ContactProjectorSetMemory(d->projector, item[PROJECTOR].n, item[PROJECTOR].values));
+  if (d->projector) PetscCall(ContactProjectorSetMemory(d->projector, item[PROJECTOR].n, item[PROJECTOR].values));
   PetscCall(HistorySetMemory(d->history, item[HISTORY].n, item[HISTORY].values));
   PetscCall(PetscFree(item[HISTORY].values));
   PetscCall(PetscFree(item[PROJECTOR].values));

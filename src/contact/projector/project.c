@@ -6,7 +6,8 @@
    The normal velocity contains gap / dt, hence q_n dt is the gap at t_{n+1}; the tangential one the sliding velocity.
    It begins with a guess from the forces of the steps before. Pairs that are open and that the motion without contact
    leaves open are not visited; when the others have converged, all are looked at, and those that need force join.
-   Bodies that touch and move together without force leave impulses that are rounding: the tolerance is never below that.
+   Bodies that touch and move together without force leave impulses that are rounding: the tolerance is never below
+   that.
 */
 #include "versions.h"
 #include "projectorimpl.h"
@@ -71,8 +72,9 @@ static PetscReal PairSolve(Pair *pair, const PetscReal minv[], PetscReal v[])
 }
 
 /*
-   The same for a pair whose directions are not coupled: Cartesian, without turning to n, t, b and back. With the relative
-   velocity q, offset included, the impulse that solves the pair alone is the projection of z = p - q / w on the cone.
+   The same for a pair whose directions are not coupled: Cartesian, without turning to n, t, b and back. With the
+   relative velocity q, offset included, the impulse that solves the pair alone is the projection of z = p - q / w on
+   the cone.
 */
 INTO_VERSIONS void RowVelocity(const Row *row, const PetscReal v[], PetscReal q[3])
 {
