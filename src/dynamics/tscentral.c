@@ -3,6 +3,7 @@
    Newmark's family with beta = 0 and gamma = b (N. M. Newmark, J. Eng. Mech. Div. ASCE 85, 1959), written with the
    velocities of the half steps.
 */
+#include "versions.h"
 #include "tscentral.h"
 #include "events.h"
 #include <petsc/private/tsimpl.h>
@@ -50,8 +51,8 @@ static PetscErrorCode CentralComputeForces(TS ts, const CentralStep *step)
 }
 
 /* v += kick minv f, u += dt v */
-static void KickAndDrift(PetscInt n, const CentralStep *step, const PetscScalar *restrict minv,
-                         const PetscScalar *restrict f, PetscScalar *restrict v, PetscScalar *restrict u)
+static VERSIONS void KickAndDrift(PetscInt n, const CentralStep *step, const PetscScalar *restrict minv,
+                                  const PetscScalar *restrict f, PetscScalar *restrict v, PetscScalar *restrict u)
 {
   const PetscReal kick = step->kick, dt = step->dt;
 
@@ -62,9 +63,9 @@ static void KickAndDrift(PetscInt n, const CentralStep *step, const PetscScalar 
 }
 
 /* v += minv (kick f + kick_old f_old), u += dt v */
-static void KickAndDriftTwo(PetscInt n, const CentralStep *step, const PetscScalar *restrict minv,
-                            const PetscScalar *restrict f, const PetscScalar *restrict f_old, PetscScalar *restrict v,
-                            PetscScalar *restrict u)
+static VERSIONS void KickAndDriftTwo(PetscInt n, const CentralStep *step, const PetscScalar *restrict minv,
+                                     const PetscScalar *restrict f, const PetscScalar *restrict f_old,
+                                     PetscScalar *restrict v, PetscScalar *restrict u)
 {
   for (PetscInt i = 0; i < n; i++) {
     v[i] += minv[i] * (step->kick * f[i] + step->kick_old * f_old[i]);

@@ -89,15 +89,18 @@ typedef struct {
   const PetscReal *D;        /* of the frame, [3][3]; NULL where it stands still */
 } Row;
 
+#define SHARE_FIELDS 3 /* sent at once, at most */
+
 /* Who has which node, and the exchange with the root */
 typedef struct {
-  MPI_Comm    comm;
-  PetscMPIInt rank, size, root;
-  PetscInt    n_nodes;           /* of all ranks */
-  PetscInt    n, *vertex;        /* of this rank: local vertices from 0, ascending, */
-  PetscInt   *node;              /* and their numbers */
-  PetscInt    n_active, *active; /* of these n; it is one of */
-  PetscInt   *list[2];           /* of which the other is that of the step before */
+  MPI_Comm     comm;
+  MPI_Datatype record[SHARE_FIELDS]; /* of a node: 1 to SHARE_FIELDS fields of three values */
+  PetscMPIInt  rank, size, root;
+  PetscInt     n_nodes;           /* of all ranks */
+  PetscInt     n, *vertex;        /* of this rank: local vertices from 0, ascending, */
+  PetscInt    *node;              /* and their numbers */
+  PetscInt     n_active, *active; /* of these n; it is one of */
+  PetscInt    *list[2];           /* of which the other is that of the step before */
   PetscInt *first, *holder; /* [size + 1] and all ranks' numbers one after the other; ~ number where another owns it */
   PetscMPIInt *n_send, *send, *n_back, *back; /* counts and places of the messages, numbers */
   PetscInt    *send_node, *back_node;         /* nodes in the order of the messages */
@@ -202,7 +205,7 @@ PETSC_INTERN PetscErrorCode ProjectorDestroySurfaces(ContactProjector projector)
    all */
 PETSC_INTERN PetscErrorCode ShareSetUp(MPI_Comm comm, PetscInt n, const PetscInt number[], Share *share);
 PETSC_INTERN PetscErrorCode ShareSetActive(Share *share, const PetscBool is_active[]);
-/* share.c - n <= 3 fields of three values per local node to the root, and forces from there with head[SHARE_HEAD] */
+/* share.c - n <= SHARE_FIELDS fields of three values per local node to the root, and forces from there with head[SHARE_HEAD] */
 PETSC_INTERN PetscErrorCode ShareGather(Share *share, PetscInt n, const PetscReal *const local[],
                                         PetscReal *const root[]);
 PETSC_INTERN PetscErrorCode ShareReturn(Share *share, const PetscReal root[], PetscReal head[SHARE_HEAD],

@@ -6,10 +6,11 @@
       contact   dt lambda_n V_n         friction  -dt lambda_T . V_T        heat  dt lambda_T . s
    so that friction + heat is what the drive of the sliding feeds. lambda_T is the force on the master.
 */
+#include "versions.h"
 #include "projectorimpl.h"
 
 /* How far a constant, a line and a parabola through the forces before miss this one, squares added to miss */
-static void GuessesMeasure(const Pair *pair, const PetscReal lambda[3], PetscReal miss[PROJECTOR_PAST])
+INTO_VERSIONS void GuessesMeasure(const Pair *pair, const PetscReal lambda[3], PetscReal miss[PROJECTOR_PAST])
 {
   for (int d = 0; d < 3; d++) {
     const PetscReal *a = &pair->lambda[0][d], *b = &pair->lambda[1][d], *c = &pair->lambda[2][d];
@@ -21,7 +22,7 @@ static void GuessesMeasure(const Pair *pair, const PetscReal lambda[3], PetscRea
 }
 
 /* Force of a pair from its impulse; the last ones become older */
-static void PairSetForce(Pair *pair, PetscReal kick, PetscReal miss[PROJECTOR_PAST])
+INTO_VERSIONS void PairSetForce(Pair *pair, PetscReal kick, PetscReal miss[PROJECTOR_PAST])
 {
   PetscReal lambda[3] = {0, 0, 0};
 
@@ -34,7 +35,7 @@ static void PairSetForce(Pair *pair, PetscReal kick, PetscReal miss[PROJECTOR_PA
 }
 
 /* Forces (N) on the nodes, which the root adds up in the order of the pairs */
-static void ForcesSet(ContactProjector p, PetscReal kick)
+INTO_VERSIONS void ForcesSet(ContactProjector p, PetscReal kick)
 {
   const PetscInt n     = ShareCountSent(&p->share);
   PetscReal     *force = p->nodes.force, miss[PROJECTOR_PAST] = {0};
@@ -57,7 +58,7 @@ static void ForcesSet(ContactProjector p, PetscReal kick)
     if (miss[i] < miss[p->order]) p->order = i;
 }
 
-static void StateSet(const Pair *pair, const ContactStep *step, ContactState *state)
+INTO_VERSIONS void StateSet(const Pair *pair, const ContactStep *step, ContactState *state)
 {
   static const ContactStatus names[] = {
     [CONE_OPEN] = CONTACT_OPEN, [CONE_STICK] = CONTACT_STICK, [CONE_SLIP] = CONTACT_SLIP};
@@ -79,8 +80,8 @@ typedef struct {
 } Directions;
 
 /* Adds one closed pair to the sums of its interface */
-static void SumsAdd(const ContactProjector p, const Pair *pair, const ContactState *state, PetscReal dt,
-                    ContactSums *sums, Directions *directions)
+INTO_VERSIONS void SumsAdd(const ContactProjector p, const Pair *pair, const ContactState *state, PetscReal dt,
+                           ContactSums *sums, Directions *directions)
 {
   PetscReal old[3], velocity[3];
 
@@ -121,7 +122,7 @@ static PetscReal FrictionAlong(const Directions *d)
   return PetscSqrtReal(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
 }
 
-void PairsRecord(ContactProjector p, const ContactStep *step, const Convergence *convergence)
+VERSIONS void PairsRecord(ContactProjector p, const ContactStep *step, const Convergence *convergence)
 {
   Directions directions[CONTACT_MAX] = {0};
 

@@ -12,6 +12,10 @@ PetscErrorCode ShareSetUp(MPI_Comm comm, PetscInt n, const PetscInt number[], Sh
   PetscInt *counts, total;
 
   PetscFunctionBeginUser;
+  for (int k = 0; k < SHARE_FIELDS; k++) {
+    PetscCallMPI(MPI_Type_contiguous(3 * (k + 1), MPIU_REAL, &share->record[k]));
+    PetscCallMPI(MPI_Type_commit(&share->record[k]));
+  }
   share->comm = comm;
   share->n    = n;
   PetscCallMPI(MPI_Comm_rank(comm, &share->rank));
@@ -77,9 +81,9 @@ static void ShareUnpack(const Share *share, PetscInt n, const PetscReal message[
 
 PetscErrorCode ShareGather(Share *share, PetscInt n, const PetscReal *const local[], PetscReal *const root[])
 {
-  PetscReal   *message = share->buffer[0];
-  PetscMPIInt  n_own   = 0;
-  MPI_Datatype record;
+  const MPI_Datatype record  = share->record[n - 1];
+  PetscReal         *message = share->buffer[0];
+  PetscMPIInt        n_own   = 0;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < share->n_active; i++) {
@@ -91,11 +95,8 @@ PetscErrorCode ShareGather(Share *share, PetscInt n, const PetscReal *const loca
     n_own++;
   }
   if (share->size > 1) {
-    PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)(3 * n), MPIU_REAL, &record));
-    PetscCallMPI(MPI_Type_commit(&record));
     PetscCallMPI(MPI_Gatherv(message, n_own, record, share->buffer[1], share->n_send, share->send, record, share->root,
                              share->comm));
-    PetscCallMPI(MPI_Type_free(&record));
     message = share->buffer[1];
   }
   if (share->rank == share->root) ShareUnpack(share, n, message, root);
@@ -135,6 +136,8 @@ PetscErrorCode ShareReturn(Share *share, const PetscReal root[], PetscReal head[
 PetscErrorCode ShareDestroy(Share *share)
 {
   PetscFunctionBeginUser;
+  for (int k = 0; k < SHARE_FIELDS; k++)
+    if (share->record[k]) PetscCallMPI(MPI_Type_free(&share->record[k]));
   PetscCall(PetscFree(share->vertex));
   PetscCall(PetscFree(share->node));
   PetscCall(PetscFree2(share->list[0], share->list[1]));
