@@ -200,10 +200,10 @@ static PetscErrorCode TestFlight(int *failed)
   PetscFunctionReturn(0);
 }
 
-/* Springs (4000 N/m) that hold the slaves in the plane, and a press of 5 N each */
+/* Springs (64000 N/m) that hold the slaves in the plane, and a press of 5 N each */
 static void Pull(const Slider *s, PetscReal a[])
 {
-  for (PetscInt i = 0; i < 3 * s->n; i++) a[i] = IsSlave(s, i / 3) ? (i % 3 == 2 ? -5 : -4000 * s->u[i]) : 0;
+  for (PetscInt i = 0; i < 3 * s->n; i++) a[i] = IsSlave(s, i / 3) ? (i % 3 == 2 ? -5 : -64000 * s->u[i]) : 0;
 }
 
 /* A step with those forces; the largest displacement since the start goes up */
@@ -216,9 +216,9 @@ static PetscErrorCode SliderPull(Slider *s, PetscReal a[], PetscInt step)
 }
 
 /* Breaks when: the frame of the turning master, its sliding velocity, or the direction of the prescribed one is wrong:
-   on a rigid plane both move the slaves alike, but for the velocity being that at the end of a step or its mean, |w| DT
-   = 2e-3 of it, the direction being that at the undeformed place, way over radius 2e-3, and the step in which sticking
-   ends as the velocity rises */
+   on a rigid plane both move the slaves alike, but for the direction being that at the undeformed place, which acts like
+   a spring of friction over radius: the difference relative to the way was 1.2, 0.6, 0.3 % with springs of 4, 16 and
+   64 kN/m, whatever the step */
 static PetscErrorCode TestKinematics(int *failed)
 {
   PetscReal  *a, worst = 0, largest = 0;
@@ -242,8 +242,8 @@ static PetscErrorCode TestKinematics(int *failed)
   PetscCall(ContactProjectorGetSums(still.projector, 0, &sums[1]));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
-  *failed += CheckTrue("slaves are dragged by more than 0.2 mm", largest > 2e-4, largest);
-  *failed += CheckClose("way by turning and by prescribed velocity, m", worst, 0, 2e-2 * largest);
+  *failed += CheckTrue("slaves are dragged by more than 0.02 mm", largest > 2e-5, largest);
+  *failed += CheckClose("way by turning and by prescribed velocity, m", worst, 0, 4e-3 * largest);
   *failed += CheckClose("heat, J", sums[0].heat, sums[1].heat, 5e-3 * sums[1].heat);
   *failed += CheckTrue("heat is positive", sums[1].heat > 0, sums[1].heat);
   PetscCall(PetscFree(a));
