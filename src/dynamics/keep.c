@@ -116,11 +116,23 @@ static PetscErrorCode ScalarsGet(Dynamics d, Scalars *s)
 
 static PetscErrorCode ScalarsSet(Dynamics d, const Scalars *s)
 {
+  TSExactFinalTimeOption match;
+  PetscReal              end, left;
+
   PetscFunctionBeginUser;
   PetscCheck(
     d->dt_asked == 0 || d->dt_asked == s->dt || d->dt_asked == s->dt_old, d->comm, PETSC_ERR_USER_INPUT,
     "-ts_dt %.6g is another step than that of the run that -dynamics_restart goes on with, %.6g s: leave it out",
     (double)d->dt_asked, (double)s->dt);
+  PetscCall(TSGetExactFinalTime(d->ts, &match));
+  PetscCall(TSGetMaxTime(d->ts, &end));
+  left = (end - s->time) / s->dt;
+  PetscCheck(
+    match != TS_EXACTFINALTIME_MATCHSTEP || PetscAbsReal(left - PetscFloorReal(left + 0.5)) < 1e-6, d->comm,
+    PETSC_ERR_USER_INPUT,
+    "-ts_max_time %.6g is no whole number of steps %.6g s after the checkpoint: leave out -ts_exact_final_time "
+    "matchstep",
+    (double)end, (double)s->dt);
   PetscCall(TSSetTime(d->ts, s->time));
   if (d->dt_asked == 0) PetscCall(TSSetTimeStep(d->ts, s->dt));
   PetscCall(TSCentralSetLastStep(d->ts, s->dt_old));
