@@ -6,7 +6,7 @@
    directions has no unknown by which it could be found: the vertex below it counts as held too.
 */
 #include "contactimpl.h"
-#include "gather.h"
+#include "base/gather.h"
 #include <stdlib.h>
 
 /* A vertex of the surface and one end of its edges into the body */

@@ -4,7 +4,7 @@
    a surface do not matter.
 */
 #include "contactimpl.h"
-#include "gather.h"
+#include "base/gather.h"
 
 /* Status of a node of the slave surface; without pair where a rank has found none */
 typedef enum { NODE_WITHOUT_PAIR, NODE_OPEN, NODE_CLOSED } NodeStatus;

@@ -7,7 +7,7 @@
    v = -w x (x - c) in m/s. Both are projected on the tangent plane of the pair.
 */
 #include "contactimpl.h"
-#include "gather.h"
+#include "base/gather.h"
 #include "kernels/facet.h"
 
 PetscErrorCode FacetsLocal(Model model, const char set[], PetscInt *n, Facet **facets)

@@ -9,8 +9,8 @@
    Each rank writes and reads its own values. Nothing of a file is used before all ranks have found all of it good.
 */
 #include "checkpoint.h"
-#include "agree.h"
-#include "kernels/checksum.h"
+#include "base/fault.h"
+#include "base/checksum.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdint.h>
@@ -42,7 +42,7 @@ typedef struct {
   int   fd;
   Head *head; /* with names and table behind it; NULL until read */
   Fault fault;
-} Reader;
+} CheckpointReader;
 
 /* Keep what is wrong with the file, printf-like: it is damaged, or of another program, run or model */
 #define NoteDamage(reader, ...) FaultNote(&(reader)->fault, PETSC_ERR_FILE_READ, __VA_ARGS__)
@@ -136,7 +136,7 @@ PetscErrorCode CheckpointWrite(MPI_Comm comm, Results results, const CheckpointP
 }
 
 /* Reads bytes [offset, offset + size) */
-static PetscErrorCode ReaderRead(Reader *reader, void *bytes, uint64_t size, uint64_t offset)
+static PetscErrorCode ReaderRead(CheckpointReader *reader, void *bytes, uint64_t size, uint64_t offset)
 {
   char *at = bytes;
 
@@ -154,7 +154,7 @@ static PetscErrorCode ReaderRead(Reader *reader, void *bytes, uint64_t size, uin
 }
 
 /* Opens the file on this rank */
-static PetscErrorCode ReaderOpen(Reader *reader, const char dir[])
+static PetscErrorCode ReaderOpen(CheckpointReader *reader, const char dir[])
 {
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(reader->name, sizeof(reader->name), "%s/%s", dir, CHECKPOINT_FILE));
@@ -170,7 +170,7 @@ static PetscErrorCode ReaderOpen(Reader *reader, const char dir[])
 }
 
 /* Checks what is the same in all versions and the length of the file; head is the first part of one */
-static PetscErrorCode ReaderCheckKind(Reader *reader, const Head *head, uint64_t length)
+static PetscErrorCode ReaderCheckKind(CheckpointReader *reader, const Head *head, uint64_t length)
 {
   uint64_t other = 0;
 
@@ -192,7 +192,7 @@ static PetscErrorCode ReaderCheckKind(Reader *reader, const Head *head, uint64_t
 }
 
 /* Reads the head with names and table on this rank, and checks it in itself */
-static PetscErrorCode ReaderReadHead(Reader *reader)
+static PetscErrorCode ReaderReadHead(CheckpointReader *reader)
 {
   struct stat status;
   uint64_t    length;
@@ -220,7 +220,7 @@ static PetscErrorCode ReaderReadHead(Reader *reader)
 }
 
 /* Checks that the file is one of this program on these ranks */
-static PetscErrorCode ReaderCheckRun(Reader *reader, PetscMPIInt size)
+static PetscErrorCode ReaderCheckRun(CheckpointReader *reader, PetscMPIInt size)
 {
   const Head *h = reader->head;
 
@@ -238,7 +238,7 @@ static PetscErrorCode ReaderCheckRun(Reader *reader, PetscMPIInt size)
 }
 
 /* Checks the fingerprint, bit by bit */
-static PetscErrorCode ReaderCheckPrint(Reader *reader, const CheckpointPrint *print)
+static PetscErrorCode ReaderCheckPrint(CheckpointReader *reader, const CheckpointPrint *print)
 {
   const Head *h = reader->head;
 
@@ -260,7 +260,8 @@ static PetscErrorCode ReaderCheckPrint(Reader *reader, const CheckpointPrint *pr
 }
 
 /* Checks names of the items, and their lengths on this rank */
-static PetscErrorCode ReaderCheckItems(Reader *reader, PetscMPIInt rank, PetscInt n, const CheckpointItem item[])
+static PetscErrorCode ReaderCheckItems(CheckpointReader *reader, PetscMPIInt rank, PetscInt n,
+                                       const CheckpointItem item[])
 {
   const Head     *h = reader->head;
   const uint64_t *row;
@@ -288,7 +289,7 @@ static PetscErrorCode ReaderCheckItems(Reader *reader, PetscMPIInt rank, PetscIn
 }
 
 /* Where the values of a rank begin, and how many bytes they have */
-static PetscErrorCode ReaderFindValues(Reader *reader, PetscMPIInt rank, uint64_t *begin, uint64_t *size)
+static PetscErrorCode ReaderFindValues(CheckpointReader *reader, PetscMPIInt rank, uint64_t *begin, uint64_t *size)
 {
   const Head *h = reader->head;
   uint64_t    at, end = 0;
@@ -308,7 +309,7 @@ static PetscErrorCode ReaderFindValues(Reader *reader, PetscMPIInt rank, uint64_
 }
 
 /* Reads the values of this rank, which the caller frees */
-static PetscErrorCode ReaderReadValues(Reader *reader, PetscMPIInt rank, PetscReal **values)
+static PetscErrorCode ReaderReadValues(CheckpointReader *reader, PetscMPIInt rank, PetscReal **values)
 {
   uint64_t         begin, size, sum = CHECKSUM_BEGIN;
   const uint64_t  *row;
@@ -345,10 +346,10 @@ static PetscErrorCode ItemsFill(const uint64_t row[], const PetscReal values[], 
 PetscErrorCode CheckpointRead(MPI_Comm comm, Results results, const CheckpointPrint *print, PetscInt n,
                               CheckpointItem item[])
 {
-  Reader      reader = {.fd = -1};
-  const char *dir;
-  PetscReal  *values;
-  PetscMPIInt size, rank;
+  CheckpointReader reader = {.fd = -1};
+  const char      *dir;
+  PetscReal       *values;
+  PetscMPIInt      size, rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(comm, &size));

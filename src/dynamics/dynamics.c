@@ -126,7 +126,7 @@ PetscErrorCode DynamicsSetOperators(Dynamics d, Operators operators, Statics sta
 /* Nodes of the contact surfaces, their work arrays and masses */
 static PetscErrorCode SurfaceSetUp(Dynamics d)
 {
-  Surface         *s = &d->surface;
+  DynamicsSurface *s = &d->surface;
   const PetscReal *minv;
   PetscReal       *inverse;
 

@@ -7,7 +7,7 @@
 #include "dynamics/external/external.h"
 #include "dynamics/history/history.h"
 #include "ledger.h"
-#include "tscentral.h"
+#include "dynamics/central/tscentral.h"
 
 typedef enum { START_REST, START_STATIC, N_STARTS } DynamicsStart;
 
@@ -23,7 +23,7 @@ typedef struct {
   PetscInt        n;
   const PetscInt *vertex; /* local vertices from 0 */
   PetscReal      *u, *before, *v, *force;
-} Surface;
+} DynamicsSurface;
 
 struct _p_Dynamics {
   MPI_Comm comm;
@@ -46,16 +46,16 @@ struct _p_Dynamics {
   History          history;
   Results          results;
   /* state and work */
-  const Layout *layout;
-  Vec           u, v, minv; /* state vectors of the layout */
-  PetscReal    *ku;         /* K u of this rank's cells, N */
-  Surface       surface;
-  ContactSums  *sums; /* [interfaces] */
-  PetscInt      n_interfaces;
-  Ledger        ledger;
-  LedgerPart    part;
-  LedgerOrigin  origin;
-  CriticalStep  critical;
+  const Layout   *layout;
+  Vec             u, v, minv; /* state vectors of the layout */
+  PetscReal      *ku;         /* K u of this rank's cells, N */
+  DynamicsSurface surface;
+  ContactSums    *sums; /* [interfaces] */
+  PetscInt        n_interfaces;
+  Ledger          ledger;
+  LedgerPart      part;
+  LedgerOrigin    origin;
+  CriticalStep    critical;
   /* statistics */
   PetscInt       n_elements, n_steps; /* of this call */
   PetscLogDouble seconds;

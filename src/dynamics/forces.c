@@ -7,7 +7,7 @@
    With f complete, t_n is recorded where a row is due. Forces in N, velocities in m/s.
 */
 #include "dynamicsimpl.h"
-#include "events.h"
+#include "base/events.h"
 
 #define CHECK_INTERVAL 200 /* steps between two looks at the ledger where no row is due */
 
@@ -68,8 +68,8 @@ static PetscErrorCode CompleteIntegrator(Dynamics d, const CentralStep *step, co
 }
 
 /* Cartesian values of a state vector at the active nodes */
-static void SurfaceGet(const Surface *s, const Layout *l, PetscInt n, const PetscInt active[], const PetscReal x[],
-                       PetscReal cartesian[])
+static void SurfaceGet(const DynamicsSurface *s, const Layout *l, PetscInt n, const PetscInt active[],
+                       const PetscReal x[], PetscReal cartesian[])
 {
   for (PetscInt i = 0; i < n; i++) LayoutGet(l, s->vertex[active[i]], x, &cartesian[3 * active[i]]);
 }
@@ -110,7 +110,7 @@ PetscErrorCode DynamicsForce(TS ts, const CentralStep *step, Vec u, Vec v, Vec f
 }
 
 /* Predicted velocities of the active nodes, Cartesian */
-static void SurfacePredict(const Surface *s, const Layout *l, const CentralStep *step, PetscInt n,
+static void SurfacePredict(const DynamicsSurface *s, const Layout *l, const CentralStep *step, PetscInt n,
                            const PetscInt active[], const PetscReal minv[], const PetscReal f[],
                            const PetscReal f_old[], const PetscReal v[])
 {
@@ -130,7 +130,7 @@ static void SurfacePredict(const Surface *s, const Layout *l, const CentralStep 
 }
 
 /* Kinetic energy of the predicted velocities, of this rank's vertices, J */
-static PetscReal SurfaceEnergy(const Surface *s, const Layout *l, PetscInt n, const PetscInt active[],
+static PetscReal SurfaceEnergy(const DynamicsSurface *s, const Layout *l, PetscInt n, const PetscInt active[],
                                const PetscReal minv[])
 {
   PetscReal sum = 0;
@@ -148,11 +148,11 @@ static PetscReal SurfaceEnergy(const Surface *s, const Layout *l, PetscInt n, co
 static PetscErrorCode AddContact(Dynamics d, const CentralStep *step, PetscBool balanced, const PetscReal u[],
                                  const PetscReal v[], const PetscReal f_old[], PetscReal f[])
 {
-  const ContactStep contact = {.time = step->time, .dt = step->dt, .kick = step->kick};
-  const Surface    *s       = &d->surface;
-  const PetscInt   *active;
-  const PetscReal  *minv;
-  PetscInt          n;
+  const ContactStep      contact = {.time = step->time, .dt = step->dt, .kick = step->kick};
+  const DynamicsSurface *s       = &d->surface;
+  const PetscInt        *active;
+  const PetscReal       *minv;
+  PetscInt               n;
 
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_PROJECT));

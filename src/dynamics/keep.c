@@ -3,7 +3,7 @@
    ranks. Which numbers must agree between writer and reader: model, materials, contact, integrator.
 */
 #include "dynamicsimpl.h"
-#include "events.h"
+#include "base/events.h"
 #include <errno.h>
 #include <unistd.h>
 

@@ -7,7 +7,7 @@
    one.
 */
 #include "checkpoint.h"
-#include "agree.h"
+#include "base/fault.h"
 #include <errno.h>
 #include <hdf5.h>
 #include <math.h>

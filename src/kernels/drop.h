@@ -6,7 +6,7 @@
 */
 #pragma once
 
-#include "kernels/facet.h"
+#include "facet.h"
 
 #define DROP_FAR 3.0
 

@@ -6,7 +6,7 @@
 */
 #include <squeal/element.h>
 #include <string.h>
-#include "../kernels/geometric.h"
+#include "kernels/geometric.h"
 
 #define INCOMPATIBLE "incompatible"
 #define FULL         "full"

@@ -3,7 +3,7 @@
    errors -> labels, with the check that no mode is missing.
 */
 #include "modesimpl.h"
-#include "operators/ordering.h"
+#include "solver/ordering.h"
 #include <squeal/options.h>
 
 PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)

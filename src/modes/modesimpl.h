@@ -1,7 +1,7 @@
 /* Private to modes/: the record of the solver, and the pieces of a solution */
 #pragma once
 
-#include "operators/shiftinvert.h"
+#include "solver/shiftinvert.h"
 #include <squeal/modes.h>
 #include <slepceps.h>
 #include <slepcpep.h>

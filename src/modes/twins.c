@@ -27,7 +27,6 @@ PetscErrorCode TwinsDrop(Modes modes, const Window *window)
     PetscCall(ModeRemove(modes, i));
     n_rigid--;
   }
-  while (window->count && modes->n > window->count)
-    PetscCall(ModeRemove(modes, WindowFarthest(window, &modes->right)));
+  while (window->count && modes->n > window->count) PetscCall(ModeRemove(modes, WindowFarthest(window, &modes->right)));
   PetscFunctionReturn(0);
 }

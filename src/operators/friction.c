@@ -40,9 +40,9 @@ static PetscReal AngularVelocity(const ContactInterface *c)
 typedef struct {
   PetscInt n, *pair; /* of this rank */
   Mat      N, T, B;
-} Rows;
+} FrictionRows;
 
-static PetscErrorCode RowsCreate(Operators o, PetscInt interface, PetscInt group, Rows *rows)
+static PetscErrorCode FrictionRowsCreate(Operators o, PetscInt interface, PetscInt group, FrictionRows *rows)
 {
   const ContactPair *pairs;
   PetscInt           n, n_all;
@@ -57,7 +57,7 @@ static PetscErrorCode RowsCreate(Operators o, PetscInt interface, PetscInt group
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode RowsDestroy(Rows *rows)
+static PetscErrorCode FrictionRowsDestroy(FrictionRows *rows)
 {
   PetscFunctionBeginUser;
   PetscCall(MatDestroy(&rows->N));
@@ -68,7 +68,8 @@ static PetscErrorCode RowsDestroy(Rows *rows)
 }
 
 /* Weights of the pairs: along = N0 / N, across = N0 / N V / v */
-static PetscErrorCode WeightsSet(Operators o, const ContactInterface *c, const Rows *rows, Vec across, Vec along)
+static PetscErrorCode WeightsSet(Operators o, const ContactInterface *c, const FrictionRows *rows, Vec across,
+                                 Vec along)
 {
   const PetscReal    speed = AngularVelocity(c) > 0 ? AngularVelocity(c) : c->speed;
   const ContactPair *pairs;
@@ -92,8 +93,8 @@ static PetscErrorCode WeightsSet(Operators o, const ContactInterface *c, const R
 }
 
 /* Terms of the friction damping; closed = index of the parameter of the group, not read for group 0 */
-static PetscErrorCode DampingAdd(Operators o, const ContactInterface *c, const InterfaceParameters *q, const Rows *rows,
-                                 PetscInt group, PetscInt closed)
+static PetscErrorCode DampingAdd(Operators o, const ContactInterface *c, const InterfaceParameters *q,
+                                 const FrictionRows *rows, PetscInt group, PetscInt closed)
 {
   const PetscInt more = group > 0 ? 1 : 0;
   OperatorsTerm *term;
@@ -120,7 +121,7 @@ static PetscErrorCode DampingAdd(Operators o, const ContactInterface *c, const I
 }
 
 /* Terms of the penalty law; without friction where nothing says along what the interface slides */
-static PetscErrorCode PenaltyAdd(Operators o, const InterfaceParameters *q, const Rows *rows, PetscInt group,
+static PetscErrorCode PenaltyAdd(Operators o, const InterfaceParameters *q, const FrictionRows *rows, PetscInt group,
                                  PetscInt closed)
 {
   const PetscInt more = group > 0 ? 1 : 0;
@@ -174,14 +175,14 @@ static PetscErrorCode GroupAdd(Operators o, const ContactInterface *c, PetscInt 
   const InterfaceParameters *q      = &o->interface[interface];
   const PetscInt             closed = o->n_scene + group - 1;
   PetscInt                   n_rows;
-  Rows                       rows;
+  FrictionRows               rows;
 
   PetscFunctionBeginUser;
-  PetscCall(RowsCreate(o, interface, group, &rows));
+  PetscCall(FrictionRowsCreate(o, interface, group, &rows));
   PetscCall(MatGetSize(rows.N, &n_rows, NULL));
   if (n_rows && c->law == CONTACT_PENALTY) PetscCall(PenaltyAdd(o, q, &rows, group, closed));
   if (n_rows && c->damping && c->slides && c->force > 0) PetscCall(DampingAdd(o, c, q, &rows, group, closed));
-  PetscCall(RowsDestroy(&rows));
+  PetscCall(FrictionRowsDestroy(&rows));
   PetscFunctionReturn(0);
 }
 

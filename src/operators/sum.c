@@ -11,9 +11,9 @@ typedef struct {
   PetscInt     size, n;
   PetscInt    *column;
   PetscScalar *value;
-} Row;
+} SumRow;
 
-static PetscErrorCode RowReserve(Row *row, PetscInt size)
+static PetscErrorCode RowReserve(SumRow *row, PetscInt size)
 {
   PetscFunctionBeginUser;
   if (size <= row->size) PetscFunctionReturn(0);
@@ -23,7 +23,7 @@ static PetscErrorCode RowReserve(Row *row, PetscInt size)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode RowDestroy(Row *row)
+static PetscErrorCode RowDestroy(SumRow *row)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(row->column));
@@ -32,7 +32,7 @@ static PetscErrorCode RowDestroy(Row *row)
 }
 
 /* Distinct columns of row i of all terms that the sum has */
-static PetscErrorCode RowUnite(const Terms *terms, const PetscBool has[], PetscInt i, Row *row)
+static PetscErrorCode RowUnite(const Terms *terms, const PetscBool has[], PetscInt i, SumRow *row)
 {
   PetscInt n_terms = 0;
 
@@ -59,7 +59,7 @@ static PetscErrorCode UnionCreate(const Terms *terms, const PetscBool has[], Mat
 {
   const Mat like = terms->term[0].A;
   PetscInt  first, last, left, right, *inside, *outside;
-  Row       row = {0};
+  SumRow    row = {0};
 
   PetscFunctionBeginUser;
   PetscCall(MatGetOwnershipRange(like, &first, &last));
@@ -82,7 +82,7 @@ static PetscErrorCode UnionCreate(const Terms *terms, const PetscBool has[], Mat
 static PetscErrorCode RowsAdd(PetscReal scale, Mat X, Mat A)
 {
   PetscInt first, last;
-  Row      row = {0};
+  SumRow   row = {0};
 
   PetscFunctionBeginUser;
   PetscCall(MatGetOwnershipRange(X, &first, &last));

@@ -19,7 +19,7 @@ static const FieldShape field_shapes[] = {
 };
 
 /* The rows that belong to the points of a global numbering (negative where another rank owns the point) */
-static PetscErrorCode RowsFromNumbering(MPI_Comm comm, IS numbering, Rows *rows)
+static PetscErrorCode RowsFromNumbering(MPI_Comm comm, IS numbering, ResultsRows *rows)
 {
   const PetscInt *number;
   PetscInt        n;
@@ -156,7 +156,7 @@ static PetscErrorCode FieldGatherCells(ResultsField field, const PetscInt cell_p
 static PetscErrorCode FieldWriteShapes(ResultsField field)
 {
   const PetscInt last = field->cells.first + field->cells.n_local == field->cells.n_global ? 1 : 0;
-  Rows           rows = {field->cells.first, field->cells.n_local, field->cells.n_global + 1};
+  ResultsRows    rows = {field->cells.first, field->cells.n_local, field->cells.n_global + 1};
   hid_t          integer;
   PetscInt      *offsets;
   unsigned char *types;
@@ -178,10 +178,11 @@ static PetscErrorCode FieldWriteShapes(ResultsField field)
 /* Writes connectivity and the part of each cell */
 static PetscErrorCode FieldWriteCells(ResultsField field, const PetscInt cell_part[])
 {
-  const PetscInt n_nodes = field->xdmf.shape->n_nodes;
-  const Rows     ids = {field->cells.first * n_nodes, field->cells.n_local * n_nodes, field->cells.n_global * n_nodes};
-  PetscInt      *connectivity, *part;
-  hid_t          integer;
+  const PetscInt    n_nodes = field->xdmf.shape->n_nodes;
+  const ResultsRows ids     = {field->cells.first * n_nodes, field->cells.n_local * n_nodes,
+                               field->cells.n_global * n_nodes};
+  PetscInt         *connectivity, *part;
+  hid_t             integer;
 
   PetscFunctionBeginUser;
   PetscCall(PetscDataTypeToHDF5DataType(PETSC_INT, &integer));
@@ -203,7 +204,7 @@ static PetscErrorCode FieldWriteHead(ResultsField field)
   static const int         version[] = {1, 0};
   const PetscInt           counts[]  = {field->nodes.n_global, field->cells.n_global,
                                         field->cells.n_global * field->xdmf.shape->n_nodes};
-  Rows                     one       = {0, 0, 1};
+  ResultsRows              one       = {0, 0, 1};
   PetscMPIInt              rank;
   hid_t                    integer;
 

@@ -121,7 +121,7 @@ static PetscErrorCode OutFileH5Dataset(OutFile *file, const char path[], hid_t t
    Writes a dataset of shape [rows->n_global] (width 1) or [rows->n_global][width]; every rank gives its rows. The type
    is that of the values in memory. Collective; failures are noted.
 */
-PetscErrorCode OutFileH5Write(OutFile *file, const char path[], hid_t type, const Rows *rows, PetscInt width,
+PetscErrorCode OutFileH5Write(OutFile *file, const char path[], hid_t type, const ResultsRows *rows, PetscInt width,
                               const void *values)
 {
   const hsize_t dims[2] = {(hsize_t)rows->n_global, (hsize_t)width};

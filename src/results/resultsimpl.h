@@ -33,7 +33,7 @@ typedef struct {
 /* Rows of a distributed table of values that this rank holds: [first, first + n_local) of n_global */
 typedef struct {
   PetscInt first, n_local, n_global;
-} Rows;
+} ResultsRows;
 
 /* How a cell is described to VTK and XDMF */
 typedef struct {
@@ -53,12 +53,12 @@ typedef struct {
 } Xdmf;
 
 struct _p_ResultsField {
-  DM        dm;
-  OutFile   h5;
-  Xdmf      xdmf;
-  Rows      nodes, cells;
-  PetscBool timed; /* grids stand at `time`, else at their number */
-  PetscReal time;  /* s */
+  DM          dm;
+  OutFile     h5;
+  Xdmf        xdmf;
+  ResultsRows nodes, cells;
+  PetscBool   timed; /* grids stand at `time`, else at their number */
+  PetscReal   time;  /* s */
 };
 
 /* outfile.c */
@@ -77,7 +77,7 @@ PETSC_INTERN PetscErrorCode OutFilesPublish(PetscInt n, OutFile *const files[]);
 /* h5file.c */
 PETSC_INTERN PetscErrorCode OutFileOpenH5(OutFile *file);
 PETSC_INTERN PetscErrorCode OutFileH5Group(OutFile *file, const char path[]);
-PETSC_INTERN PetscErrorCode OutFileH5Write(OutFile *file, const char path[], hid_t type, const Rows *rows,
+PETSC_INTERN PetscErrorCode OutFileH5Write(OutFile *file, const char path[], hid_t type, const ResultsRows *rows,
                                            PetscInt width, const void *values);
 PETSC_INTERN PetscErrorCode OutFileH5Integers(OutFile *file, const char path[], const char attribute[], PetscInt n,
                                               const int values[]);

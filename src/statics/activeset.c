@@ -25,7 +25,7 @@
 /* Laws of all rows at the present status */
 static void LawsSet(const Active *a, LawRow law[])
 {
-  const Rows *rows = a->rows;
+  const PairRows *rows = a->rows;
 
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     const PetscInt first = rows->first[p], d = rows->law[p].d;

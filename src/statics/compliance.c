@@ -13,13 +13,13 @@
    third of the steps that it takes with all of it).
 */
 #include "staticsimpl.h"
-#include "gather.h"
+#include "base/gather.h"
 
 #define SHARE 0.1 /* of the stiffness of a node */
 #define BLOCK 64  /* right-hand sides at once */
 
 /* Mean of n' diag(K) n at the slaves, N/m */
-static PetscErrorCode KappaFind(Mat K, const Rows *rows, PetscReal *kappa)
+static PetscErrorCode KappaFind(Mat K, const PairRows *rows, PetscReal *kappa)
 {
   PetscReal          sum[2] = {0, 0};
   const PetscScalar *diagonal;
@@ -47,8 +47,8 @@ static PetscErrorCode KappaFind(Mat K, const Rows *rows, PetscReal *kappa)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ComplianceAugment(Mat K, const Rows *rows, PetscReal kappa, PetscBool some, const CoulombStatus status[],
-                                 Mat *A)
+PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, PetscBool some,
+                                 const CoulombStatus status[], Mat *A)
 {
   PetscScalar *resists;
   Mat          G = rows->G, GG;
@@ -101,7 +101,7 @@ static PetscErrorCode ColumnsSet(Mat Gt, PetscInt first, PetscInt n, Mat columns
 }
 
 /* Stores kappa R Y, n columns from `first` on, into local rows [rows][n_all] */
-static PetscErrorCode RowsTake(Mat R, Mat Y, const Compliance *c, const Rows *rows, PetscInt first, PetscInt n,
+static PetscErrorCode RowsTake(Mat R, Mat Y, const Compliance *c, const PairRows *rows, PetscInt first, PetscInt n,
                                PetscReal local[])
 {
   const PetscScalar *value;
@@ -121,7 +121,7 @@ static PetscErrorCode RowsTake(Mat R, Mat Y, const Compliance *c, const Rows *ro
 }
 
 /* W and V. K_a is symmetric: the rows of S K_a^-1 G' are the columns of V */
-static PetscErrorCode DenseCreate(const Rows *rows, Compliance *c)
+static PetscErrorCode DenseCreate(const PairRows *rows, Compliance *c)
 {
   const PetscInt n_all = rows->n_all;
   PetscInt       n_unknowns;
@@ -152,7 +152,7 @@ static PetscErrorCode DenseCreate(const Rows *rows, Compliance *c)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ComplianceCreate(Operators operators, const Rows *rows, PetscInt max_rows, Progress *progress,
+PetscErrorCode ComplianceCreate(Operators operators, const PairRows *rows, PetscInt max_rows, Progress *progress,
                                 Compliance *c)
 {
   OperatorsPencil pencil = {.symmetric = PETSC_TRUE};
@@ -172,7 +172,7 @@ PetscErrorCode ComplianceCreate(Operators operators, const Rows *rows, PetscInt 
 }
 
 /* b += kappa (S' (slide l) - G'(l - w)) */
-static PetscErrorCode AddForces(const Compliance *c, const Rows *rows, PetscReal friction, const PetscReal l[],
+static PetscErrorCode AddForces(const Compliance *c, const PairRows *rows, PetscReal friction, const PetscReal l[],
                                 const PetscReal w[], Vec b)
 {
   PetscScalar *value;
@@ -192,8 +192,8 @@ static PetscErrorCode AddForces(const Compliance *c, const Rows *rows, PetscReal
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ComplianceSolve(const Compliance *c, const Rows *rows, PetscReal friction, Vec f, const PetscReal l[],
-                               const PetscReal w[], Vec u)
+PetscErrorCode ComplianceSolve(const Compliance *c, const PairRows *rows, PetscReal friction, Vec f,
+                               const PetscReal l[], const PetscReal w[], Vec u)
 {
   PetscFunctionBeginUser;
   if (f)
@@ -205,7 +205,7 @@ PetscErrorCode ComplianceSolve(const Compliance *c, const Rows *rows, PetscReal 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ComplianceApply(const Compliance *c, const Rows *rows, PetscReal friction, const PetscReal l[],
+PetscErrorCode ComplianceApply(const Compliance *c, const PairRows *rows, PetscReal friction, const PetscReal l[],
                                const PetscReal w[], PetscReal y[])
 {
   const PetscScalar *value;

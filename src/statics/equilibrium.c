@@ -12,7 +12,7 @@
 #define N_REFINE 2
 
 /* y = G x */
-static PetscErrorCode RowsOf(const Compliance *c, const Rows *rows, Vec x, PetscReal y[])
+static PetscErrorCode RowsOf(const Compliance *c, const PairRows *rows, Vec x, PetscReal y[])
 {
   const PetscScalar *value;
 
@@ -78,7 +78,7 @@ static PetscErrorCode Complain(const Active *a, const char place[], ActiveOutcom
 static PetscErrorCode Residual(const Active *a, Vec f, Vec u, Vec r)
 {
   const Compliance *c    = a->compliance;
-  const Rows       *rows = a->rows;
+  const PairRows   *rows = a->rows;
   PetscScalar      *value;
 
   PetscFunctionBeginUser;
@@ -118,8 +118,8 @@ static PetscErrorCode Missing(const Active *a, Vec f, Vec u, PetscReal e[])
 /* Displacements, and refinements of them and of the pairs */
 static PetscErrorCode Refine(Active *a, Vec f, Vec u)
 {
-  const Rows *rows = a->rows;
-  PetscReal  *e, *rhs;
+  const PairRows *rows = a->rows;
+  PetscReal      *e, *rhs;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(rows->n, &e, rows->n, &rhs));
@@ -180,8 +180,8 @@ static PetscErrorCode Step(Active *a, const char place[], Vec f, Vec u)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EquilibriumSolve(Statics s, Rows *rows, const Compliance *c, Vec f, PetscReal size, PetscInt load_steps,
-                                CoulombStatus status[], PetscReal l[], Vec u)
+PetscErrorCode EquilibriumSolve(Statics s, PairRows *rows, const Compliance *c, Vec f, PetscReal size,
+                                PetscInt load_steps, CoulombStatus status[], PetscReal l[], Vec u)
 {
   Active a = {.operators = s->operators, .rows = rows, .compliance = c, .max_it = s->max_it, .status = status, .l = l};
   char   place[256];

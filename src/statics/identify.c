@@ -36,7 +36,7 @@ static void LineFit(PetscInt n, const Reading reading[], StaticsStiffness *k)
 }
 
 /* Exact contact without friction, every pair closed at first */
-static void LawsPressing(Rows *rows, CoulombStatus status[])
+static void LawsPressing(PairRows *rows, CoulombStatus status[])
 {
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     rows->law[p].k  = INFINITY;
@@ -47,7 +47,7 @@ static void LawsPressing(Rows *rows, CoulombStatus status[])
 }
 
 /* One step of the ramp: part of the load */
-static PetscErrorCode Press(Statics s, Rows *rows, const Compliance *c, Vec f, PetscReal size, PetscReal part,
+static PetscErrorCode Press(Statics s, PairRows *rows, const Compliance *c, Vec f, PetscReal size, PetscReal part,
                             PetscInt interface, Vec d, CoulombStatus status[], PetscReal l[], Reading *reading)
 {
   PetscScalar approach;
@@ -73,7 +73,7 @@ static PetscErrorCode Press(Statics s, Rows *rows, const Compliance *c, Vec f, P
 /* All steps, on rows and a factorisation of their own: without friction nothing holds along the surface */
 static PetscErrorCode Ramp(Statics s, PetscInt interface, Vec d, Reading reading[])
 {
-  Rows           rows       = {.n = 0};
+  PairRows       rows       = {.n = 0};
   Compliance     compliance = {.kappa = 0};
   PetscReal     *l, size;
   CoulombStatus *status;
@@ -82,7 +82,7 @@ static PetscErrorCode Ramp(Statics s, PetscInt interface, Vec d, Reading reading
   PetscFunctionBeginUser;
   PetscCall(LoadCreate(s->operators, &f, &size));
   PetscCheck(size > 0, s->comm, PETSC_ERR_USER_INPUT, "-contact_kn identify presses with the -loads: give some");
-  PetscCall(RowsCreate(s->operators, PETSC_TRUE, &rows));
+  PetscCall(PairRowsCreate(s->operators, PETSC_TRUE, &rows));
   PetscCall(PetscMalloc1(rows.n_pairs, &status));
   PetscCall(PetscCalloc1(rows.n, &l));
   PetscCall(ComplianceCreate(s->operators, &rows, s->dense, &s->progress, &compliance));
@@ -92,7 +92,7 @@ static PetscErrorCode Ramp(Statics s, PetscInt interface, Vec d, Reading reading
     PetscCall(Press(s, &rows, &compliance, f, size, (PetscReal)(i + 1) / (PetscReal)s->identify_steps, interface, d,
                     status, l, &reading[i]));
   PetscCall(ComplianceDestroy(&compliance));
-  PetscCall(RowsDestroy(&rows));
+  PetscCall(PairRowsDestroy(&rows));
   PetscCall(PetscFree(l));
   PetscCall(PetscFree(status));
   PetscCall(VecDestroy(&f));

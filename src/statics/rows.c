@@ -1,12 +1,12 @@
 /*
-   Rows of the contact problem: contact displacements w = G u of every pair, closing positive. Where the interface
+   PairRows of the contact problem: contact displacements w = G u of every pair, closing positive. Where the interface
    slides the direction of friction is known, lambda_t = mu lambda_n along t, so that a pair has its normal row only,
    and S holds t beside it; so has a pair without friction, without S.
 */
 #include "staticsimpl.h"
 
 /* Rows per pair of each interface, and their sums */
-static PetscErrorCode RowsCount(const ContactInterface interfaces[], PetscBool pressing, Rows *rows)
+static PetscErrorCode PairRowsCount(const ContactInterface interfaces[], PetscBool pressing, PairRows *rows)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(rows->n_pairs + 1, &rows->first));
@@ -26,7 +26,7 @@ static PetscErrorCode RowsCount(const ContactInterface interfaces[], PetscBool p
 }
 
 /* G, and S where some interface slides */
-static PetscErrorCode RowsCreateMatrices(Contact contact, const ContactInterface interfaces[], Rows *rows)
+static PetscErrorCode PairRowsCreateMatrices(Contact contact, const ContactInterface interfaces[], PairRows *rows)
 {
   PetscInt *pair;
   PetscReal(*across)[3], (*along)[3];
@@ -54,7 +54,7 @@ static PetscErrorCode RowsCreateMatrices(Contact contact, const ContactInterface
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode RowsCreate(Operators operators, PetscBool pressing, Rows *rows)
+PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, PairRows *rows)
 {
   const ContactInterface *interfaces;
   Contact                 contact;
@@ -66,12 +66,12 @@ PetscErrorCode RowsCreate(Operators operators, PetscBool pressing, Rows *rows)
   PetscCall(ModelGetComm(model, &rows->comm));
   PetscCall(ContactGetInterfaces(contact, &rows->n_interfaces, &interfaces));
   PetscCall(ContactGetPairs(contact, &rows->n_pairs, &n_all, &rows->pair));
-  PetscCall(RowsCount(interfaces, pressing, rows));
-  PetscCall(RowsCreateMatrices(contact, interfaces, rows));
+  PetscCall(PairRowsCount(interfaces, pressing, rows));
+  PetscCall(PairRowsCreateMatrices(contact, interfaces, rows));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode RowsSetLaws(Operators operators, PetscReal kappa, Rows *rows)
+PetscErrorCode PairRowsSetLaws(Operators operators, PetscReal kappa, PairRows *rows)
 {
   const ContactInterface *interfaces;
   PetscInt                n;
@@ -92,7 +92,7 @@ PetscErrorCode RowsSetLaws(Operators operators, PetscReal kappa, Rows *rows)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode RowsDestroy(Rows *rows)
+PetscErrorCode PairRowsDestroy(PairRows *rows)
 {
   PetscFunctionBeginUser;
   PetscCall(MatDestroy(&rows->G));

@@ -9,7 +9,7 @@
    equilibrium lies beyond one at which the bodies jam.
 */
 #include "staticsimpl.h"
-#include "gather.h"
+#include "base/gather.h"
 #include <petscblaslapack.h>
 
 #define SINGULAR  1e-13 /* smallest pivot beside the largest */
@@ -57,7 +57,7 @@ static PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscReal z[], Smal
 }
 
 /* z of this rank's rows [rows] */
-static PetscErrorCode DenseSolve(const Compliance *c, const Rows *rows, PetscReal friction, const LawRow law[],
+static PetscErrorCode DenseSolve(const Compliance *c, const PairRows *rows, PetscReal friction, const LawRow law[],
                                  const PetscReal rhs[], PetscReal z[], SmallOutcome *outcome, PetscBool *reversed)
 {
   const PetscInt n = rows->n_all;
@@ -81,13 +81,13 @@ static PetscErrorCode DenseSolve(const Compliance *c, const Rows *rows, PetscRea
 /* What the matrix-free system needs */
 typedef struct {
   const Compliance *compliance;
-  const Rows       *rows;
+  const PairRows   *rows;
   const LawRow     *law;
   PetscReal         friction, rtol, *l, *w;
 } Shell;
 
 /* l = P z, w = Q z; with p0, q0 when they are wanted */
-static void LawApply(const Rows *rows, const LawRow law[], PetscBool constants, const PetscReal z[], PetscReal l[],
+static void LawApply(const PairRows *rows, const LawRow law[], PetscBool constants, const PetscReal z[], PetscReal l[],
                      PetscReal w[])
 {
   for (PetscInt i = 0; i < rows->n; i++) {
@@ -155,7 +155,7 @@ static PetscErrorCode ShellSolve(Shell *s, Vec b, Vec z, SmallOutcome *outcome)
 }
 
 /* z of this rank's rows [rows] */
-static PetscErrorCode KrylovSolve(const Compliance *c, const Rows *rows, PetscReal friction, const LawRow law[],
+static PetscErrorCode KrylovSolve(const Compliance *c, const PairRows *rows, PetscReal friction, const LawRow law[],
                                   const PetscReal rhs[], PetscReal rtol, PetscReal z[], SmallOutcome *outcome)
 {
   Shell        s = {c, rows, law, friction, rtol, NULL, NULL};
@@ -185,7 +185,7 @@ static PetscErrorCode KrylovSolve(const Compliance *c, const Rows *rows, PetscRe
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SmallSolve(const Compliance *c, const Rows *rows, PetscReal friction, const LawRow law[],
+PetscErrorCode SmallSolve(const Compliance *c, const PairRows *rows, PetscReal friction, const LawRow law[],
                           const PetscReal rhs[], PetscReal rtol, PetscReal l[], PetscReal w[], SmallOutcome *outcome,
                           PetscBool *reversed)
 {

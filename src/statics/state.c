@@ -7,7 +7,7 @@
 #define LOOSE 1e-6 /* of the loads, unbalanced */
 
 /* States of all pairs from w = G u (m) and l (m) */
-static void StatesSet(const Rows *rows, PetscReal kappa, const CoulombStatus status[], const PetscReal l[],
+static void StatesSet(const PairRows *rows, PetscReal kappa, const CoulombStatus status[], const PetscReal l[],
                       const PetscScalar w[], ContactState state[])
 {
   static const ContactStatus names[] = {
@@ -58,7 +58,7 @@ static PetscErrorCode ResultantsSet(Statics s)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StateForces(const Rows *rows, const ContactState state[], Vec b)
+PetscErrorCode StateForces(const PairRows *rows, const ContactState state[], Vec b)
 {
   PetscScalar *value;
   Vec          row;

@@ -90,7 +90,7 @@ PetscErrorCode StaticsSetUp(Statics s)
   PetscCheck(model, s->comm, PETSC_ERR_USER_INPUT,
              "-analysis static and -modes_contact static need a mesh and contact, "
              "not loaded matrices");
-  PetscCall(RowsCreate(s->operators, PETSC_FALSE, &s->rows));
+  PetscCall(PairRowsCreate(s->operators, PETSC_FALSE, &s->rows));
   PetscCallMPI(MPI_Allreduce(&s->rows.n_pairs, &n_pairs, 1, MPIU_INT, MPI_SUM, s->comm));
   PetscCheck(n_pairs, s->comm, PETSC_ERR_USER_INPUT, "-analysis static and -modes_contact static need -contacts");
   PetscCall(OperatorsGetParameters(s->operators, &s->n_parameters, &parameters));
@@ -154,7 +154,7 @@ PetscErrorCode StaticsFactor(Statics s)
     PetscCall(ComplianceDestroy(&s->compliance));
     PetscCall(ComplianceCreate(s->operators, &s->rows, s->dense, &s->progress, &s->compliance));
   }
-  PetscCall(RowsSetLaws(s->operators, s->compliance.kappa, &s->rows));
+  PetscCall(PairRowsSetLaws(s->operators, s->compliance.kappa, &s->rows));
   PetscFunctionReturn(0);
 }
 
@@ -211,7 +211,7 @@ PetscErrorCode StaticsDestroy(Statics *statics)
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(0);
   PetscCall(StaticsRelease(s));
-  PetscCall(RowsDestroy(&s->rows));
+  PetscCall(PairRowsDestroy(&s->rows));
   PetscCall(PetscFree3(s->status, s->state, s->resultant));
   PetscCall(PetscFree(s->initial));
   PetscCall(PetscFree(s->linearised));

@@ -3,7 +3,7 @@
 
 #include <squeal/statics.h>
 #include "kernels/coulomb.h"
-#include "operators/shiftinvert.h"
+#include "solver/shiftinvert.h"
 
 /* Rows of the contact problem: the normal one of a pair that slides or has no friction, else normal, t and b */
 typedef struct {
@@ -16,7 +16,7 @@ typedef struct {
   PetscInt          *first;           /* [n_pairs + 1] first row of each pair, counted on this rank */
   Mat                G;               /* [rows][unknowns] n, t, b */
   Mat                S;               /* t in the rows of sliding pairs, else empty; NULL where nothing slides */
-} Rows;
+} PairRows;
 
 /* Rigid motions that nothing resists, r_i' M r_j = delta_ij, and the unknowns at which they are held */
 typedef struct {
@@ -51,7 +51,7 @@ typedef enum { ACTIVE_CONVERGED, ACTIVE_SINGULAR, ACTIVE_CYCLES, ACTIVE_SLOW, AC
 /* The contact problem at one load, and its iterate; forces divided by kappa, m */
 typedef struct {
   Operators         operators;
-  const Rows       *rows;
+  const PairRows   *rows;
   const Compliance *compliance;
   PetscInt          max_it, n_it;
   PetscReal         friction; /* factor of all friction coefficients, 0 .. 1 */
@@ -72,7 +72,7 @@ struct _p_Statics {
   PetscInt  max_it, load_steps, dense, rows_more, identify_steps;
   PetscBool geometric, follower, view_kkt;
   /* the contact problem, and the factorisation with the parameters that it was made with */
-  Rows       rows;
+  PairRows   rows;
   Compliance compliance;
   PetscReal *factored; /* [n_parameters]; NULL before */
   /* the solution */
@@ -98,9 +98,9 @@ PETSC_INTERN PetscErrorCode StaticsFactor(Statics statics);
 
 /* rows.c - pairs and rows, normal ones only for pressing without friction; the present friction coefficients and
    stiffnesses of the interfaces */
-PETSC_INTERN PetscErrorCode RowsCreate(Operators operators, PetscBool pressing, Rows *rows);
-PETSC_INTERN PetscErrorCode RowsSetLaws(Operators operators, PetscReal kappa, Rows *rows);
-PETSC_INTERN PetscErrorCode RowsDestroy(Rows *rows);
+PETSC_INTERN PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, PairRows *rows);
+PETSC_INTERN PetscErrorCode PairRowsSetLaws(Operators operators, PetscReal kappa, PairRows *rows);
+PETSC_INTERN PetscErrorCode PairRowsDestroy(PairRows *rows);
 
 /* rigid.c - the motions without energy in A (K + kappa G'G), r and mr only */
 PETSC_INTERN PetscErrorCode FreeMotionsCreate(Operators operators, Mat A, Hold *hold);
@@ -117,23 +117,23 @@ PETSC_INTERN PetscErrorCode HoldDestroy(Hold *hold);
 
 /* compliance.c - factors, and forms W and V for up to max_rows rows; y = kappa G K_a^-1 (G'(l - w) - S' (slide l)) + w
    for rows l, w, y; u = K_a^-1 (f - kappa (G'(l - w) - S' (slide l))), f may be NULL */
-PETSC_INTERN PetscErrorCode ComplianceCreate(Operators operators, const Rows *rows, PetscInt max_rows,
+PETSC_INTERN PetscErrorCode ComplianceCreate(Operators operators, const PairRows *rows, PetscInt max_rows,
                                              Progress *progress, Compliance *c);
-PETSC_INTERN PetscErrorCode ComplianceApply(const Compliance *c, const Rows *rows, PetscReal friction,
+PETSC_INTERN PetscErrorCode ComplianceApply(const Compliance *c, const PairRows *rows, PetscReal friction,
                                             const PetscReal l[], const PetscReal w[], PetscReal y[]);
-PETSC_INTERN PetscErrorCode ComplianceSolve(const Compliance *c, const Rows *rows, PetscReal friction, Vec f,
+PETSC_INTERN PetscErrorCode ComplianceSolve(const Compliance *c, const PairRows *rows, PetscReal friction, Vec f,
                                             const PetscReal l[], const PetscReal w[], Vec u);
 /* K + kappa G'G of all rows, or of some: those of pairs closed at the status [pairs]. Where Coulomb's pairs slip in
    different directions they resist too; what slips in one direction makes the small system singular. */
-PETSC_INTERN PetscErrorCode ComplianceAugment(Mat K, const Rows *rows, PetscReal kappa, PetscBool some,
+PETSC_INTERN PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, PetscBool some,
                                               const CoulombStatus status[], Mat *A);
 PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *c);
 
 /* small.c - z of w + W_mu l - W w = rhs with the laws [rows]; l and w of it. GMRES to rtol where it is not dense.
    reversed = whether the determinant is negative */
-PETSC_INTERN PetscErrorCode SmallSolve(const Compliance *c, const Rows *rows, PetscReal friction, const LawRow law[],
-                                       const PetscReal rhs[], PetscReal rtol, PetscReal l[], PetscReal w[],
-                                       SmallOutcome *outcome, PetscBool *reversed);
+PETSC_INTERN PetscErrorCode SmallSolve(const Compliance *c, const PairRows *rows, PetscReal friction,
+                                       const LawRow law[], const PetscReal rhs[], PetscReal rtol, PetscReal l[],
+                                       PetscReal w[], SmallOutcome *outcome, PetscBool *reversed);
 
 /* activeset.c - status, l and w that obey all laws, from the status given; friction is raised in steps if need be.
    outcome and active->friction tell where it ended. */
@@ -142,14 +142,14 @@ PETSC_INTERN PetscErrorCode ActiveSolve(Active *active, ActiveOutcome *outcome);
 PETSC_INTERN PetscErrorCode ActiveCorrect(Active *active, const PetscReal rhs[]);
 
 /* equilibrium.c - the whole solution for forces f of a size (N): status, l (m), u */
-PETSC_INTERN PetscErrorCode EquilibriumSolve(Statics statics, Rows *rows, const Compliance *compliance, Vec f,
+PETSC_INTERN PetscErrorCode EquilibriumSolve(Statics statics, PairRows *rows, const Compliance *compliance, Vec f,
                                              PetscReal size, PetscInt load_steps, CoulombStatus status[], PetscReal l[],
                                              Vec u);
 
 /* state.c - states, resultants and residuals of a solution */
 PETSC_INTERN PetscErrorCode StateSet(Statics statics, const Compliance *compliance, Vec f, const PetscReal l[]);
 /* b += forces of the contact on the unknowns, -N' lambda_n + T' lambda_t + B' lambda_b, N */
-PETSC_INTERN PetscErrorCode StateForces(const Rows *rows, const ContactState state[], Vec b);
+PETSC_INTERN PetscErrorCode StateForces(const PairRows *rows, const ContactState state[], Vec b);
 
 /* load.c - f of the loads, unknowns only, and its size by all of them, N */
 PETSC_INTERN PetscErrorCode LoadCreate(Operators operators, Vec *f, PetscReal *size);

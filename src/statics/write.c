@@ -3,7 +3,7 @@
    the ranks.
 */
 #include "staticsimpl.h"
-#include "gather.h"
+#include "base/gather.h"
 #include <stdlib.h>
 
 /* One row of the table */
@@ -27,8 +27,8 @@ static int RecordCompare(const void *one, const void *other)
 /* Records of all ranks, in order, on every rank */
 static PetscErrorCode RecordsGather(Statics s, PetscInt *n, Record **all)
 {
-  const Rows *rows = &s->rows;
-  Record     *local;
+  const PairRows *rows = &s->rows;
+  Record         *local;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(rows->n_pairs, &local));

@@ -101,13 +101,13 @@ static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
 
 PetscErrorCode SweepCheckPlaces(Sweep sweep)
 {
-  const Grid *grid = &sweep->grid;
+  const SweepGrid *grid = &sweep->grid;
 
   PetscFunctionBeginUser;
   sweep->n_checks = PetscMin(sweep->n_verify, grid->n[0] - 1); /* no value twice */
   PetscCall(PetscCalloc1(sweep->n_checks, &sweep->check));
   for (PetscInt i = 0; i < sweep->n_checks; i++) {
-    Place *at = &sweep->check[i].at;
+    SweepPlace *at = &sweep->check[i].at;
 
     at->point = -1;
     for (PetscInt k = 0; k < grid->n_axes; k++) {

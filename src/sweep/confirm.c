@@ -79,8 +79,8 @@ static PetscErrorCode OnsetIterate(Sweep sweep, const Line *line, PetscReal p[],
 /* Whether the pairs closed at the critical value are those of the segment in which it was found */
 static PetscErrorCode OnsetCheckStatus(Sweep sweep, const Event *event, PetscBool *same)
 {
-  Place    place = sweep->grid.place[event->place];
-  PetscInt status;
+  SweepPlace place = sweep->grid.place[event->place];
+  PetscInt   status;
 
   PetscFunctionBeginUser;
   place.value[0] = event->critical;

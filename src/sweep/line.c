@@ -7,8 +7,8 @@
 
 static PetscErrorCode PointsCreate(Sweep sweep, PetscInt line, Points *points)
 {
-  const Grid    *grid         = &sweep->grid;
-  const PetscInt n_parameters = grid->n_parameters;
+  const SweepGrid *grid         = &sweep->grid;
+  const PetscInt   n_parameters = grid->n_parameters;
 
   PetscFunctionBeginUser;
   points->first = grid->at[line * grid->n[0]];

@@ -13,9 +13,9 @@
 typedef struct {
   PetscInt  n, parameter[SWEEP_MAX_UNCERTAIN];
   PetscReal half[SWEEP_MAX_UNCERTAIN];
-} Box;
+} ParameterBox;
 
-static PetscErrorCode BoxRead(Sweep sweep, Box *box)
+static PetscErrorCode BoxRead(Sweep sweep, ParameterBox *box)
 {
   const OperatorsParameter *parameters;
   PetscInt                  n_parameters;
@@ -56,8 +56,8 @@ static PetscReal VanDerCorput(PetscInt i, PetscInt base)
 }
 
 /* Point i: 0 the scene itself, then corners, then the inside */
-static void BoxPoint(const Box *box, const PetscReal base[], PetscInt n_parameters, PetscInt n_corners, PetscInt i,
-                     PetscReal p[])
+static void BoxPoint(const ParameterBox *box, const PetscReal base[], PetscInt n_parameters, PetscInt n_corners,
+                     PetscInt i, PetscReal p[])
 {
   static const PetscInt primes[SWEEP_MAX_UNCERTAIN] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53};
 
@@ -126,7 +126,7 @@ PetscErrorCode SweepRobustness(Sweep sweep)
   PetscInt       n, n_corners;
   PetscReal     *points;
   ReducedModes  *modes;
-  Box            box;
+  ParameterBox   box;
 
   PetscFunctionBeginUser;
   PetscCall(BoxRead(sweep, &box));

@@ -49,7 +49,7 @@ static PetscErrorCode SegmentLink(Sweep sweep, PetscInt first_new, PetscInt k, P
 
 PetscErrorCode SegmentsTrack(Sweep sweep, Points *points)
 {
-  const Place *place = &sweep->grid.place[points->first];
+  const SweepPlace *place = &sweep->grid.place[points->first];
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0, last; k < points->n; k = last) {

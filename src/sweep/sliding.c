@@ -48,7 +48,7 @@ PetscErrorCode SweepStatusTake(Sweep sweep, PetscInt *status)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SweepStatusSolve(Sweep sweep, const Place *place, PetscInt *status)
+PetscErrorCode SweepStatusSolve(Sweep sweep, const SweepPlace *place, PetscInt *status)
 {
   PetscReal *p;
 
@@ -64,9 +64,9 @@ PetscErrorCode SweepStatusSolve(Sweep sweep, const Place *place, PetscInt *statu
 }
 
 /* Whether the contact status changes between places k and k + 1 of one line; width = their relative distance */
-static PetscBool PlaceChanges(const Grid *grid, PetscInt k, PetscReal *width)
+static PetscBool PlaceChanges(const SweepGrid *grid, PetscInt k, PetscReal *width)
 {
-  const Place *a = &grid->place[k], *b = a + 1;
+  const SweepPlace *a = &grid->place[k], *b = a + 1;
 
   if (a->line != b->line || a->status == b->status) return PETSC_FALSE;
   *width = PetscAbsReal(b->value[0] - a->value[0]) / PetscMax(PetscAbsReal(a->value[0]), PetscAbsReal(b->value[0]));
@@ -74,7 +74,7 @@ static PetscBool PlaceChanges(const Grid *grid, PetscInt k, PetscReal *width)
 }
 
 /* The widest bracket of a change of status that is to be divided, or -1 */
-static PetscInt WidestChange(const Grid *grid)
+static PetscInt WidestChange(const SweepGrid *grid)
 {
   PetscReal width, widest = NARROW;
   PetscInt  at = -1;
@@ -87,11 +87,11 @@ static PetscInt WidestChange(const Grid *grid)
 /* Narrows the brackets */
 static PetscErrorCode ChangesBracket(Sweep sweep)
 {
-  Grid *grid = &sweep->grid;
+  SweepGrid *grid = &sweep->grid;
 
   PetscFunctionBeginUser;
   for (PetscInt n = 0, k = WidestChange(grid); n < MAX_BISECTIONS && k >= 0; n++, k = WidestChange(grid)) {
-    Place middle = grid->place[k];
+    SweepPlace middle = grid->place[k];
 
     middle.point    = -1;
     middle.value[0] = GridMiddle(grid, 0, middle.value[0], grid->place[k + 1].value[0]);
@@ -99,7 +99,7 @@ static PetscErrorCode ChangesBracket(Sweep sweep)
     PetscCall(GridInsert(grid, k + 1, &middle));
   }
   for (PetscInt k = grid->n_places - 2; k > 0; k--) { /* only the ends of the brackets are of use */
-    const Place *place = &grid->place[k];
+    const SweepPlace *place = &grid->place[k];
 
     if (place->point < 0 && place[-1].status == place->status && place[1].status == place->status) GridRemove(grid, k);
   }
@@ -109,7 +109,7 @@ static PetscErrorCode ChangesBracket(Sweep sweep)
 /* The scene's own values, about which robustness is asked for: what is swept has its own value there, too */
 static PetscErrorCode BaseSolve(Sweep sweep)
 {
-  Place base = {.point = -1};
+  SweepPlace base = {.point = -1};
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < sweep->grid.n_axes; k++) base.value[k] = sweep->grid.base[sweep->grid.parameter[k]];
@@ -119,9 +119,9 @@ static PetscErrorCode BaseSolve(Sweep sweep)
 
 PetscBool SweepClosedRange(Sweep sweep, PetscInt *least, PetscInt *most)
 {
-  const Grid     *grid     = &sweep->grid;
-  const PetscInt *n_closed = sweep->statuses.n_closed;
-  PetscBool       changes  = PETSC_FALSE;
+  const SweepGrid *grid     = &sweep->grid;
+  const PetscInt  *n_closed = sweep->statuses.n_closed;
+  PetscBool        changes  = PETSC_FALSE;
 
   *least = *most = n_closed[grid->place[0].status];
   for (PetscInt k = 1; k < grid->n_places; k++) {
@@ -168,7 +168,7 @@ static PetscErrorCode GroupsCheck(Sweep sweep, const PetscInt group[])
 static PetscErrorCode GroupsSet(Sweep sweep)
 {
   const OperatorsParameter *parameters;
-  Grid                     *grid = &sweep->grid;
+  SweepGrid                *grid = &sweep->grid;
   PetscInt                 *group;
   OperatorsPencil           pencil;
 
@@ -190,7 +190,7 @@ static PetscErrorCode GroupsSet(Sweep sweep)
 PetscErrorCode SweepStatuses(Sweep sweep)
 {
   const ContactPair *pair;
-  Grid              *grid = &sweep->grid;
+  SweepGrid         *grid = &sweep->grid;
   Contact            contact;
   PetscInt           n, n_all;
   PetscBool          affine;
@@ -218,8 +218,8 @@ PetscErrorCode SweepStatuses(Sweep sweep)
 
 PetscErrorCode SweepClosedAt(Sweep sweep, PetscInt point, PetscInt *n_closed, PetscBool *jump)
 {
-  const Grid        *grid  = &sweep->grid;
-  const Place       *place = &grid->place[grid->at[point]];
+  const SweepGrid   *grid  = &sweep->grid;
+  const SweepPlace  *place = &grid->place[grid->at[point]];
   const ContactPair *pair;
   Contact            contact;
   PetscInt           n;

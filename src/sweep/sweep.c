@@ -139,7 +139,7 @@ static PetscErrorCode GridSetUp(Sweep sweep)
 {
   static const char *const  options[] = {"-sweep_values", "-sweep_values_2"};
   const OperatorsParameter *parameters;
-  Grid                     *grid = &sweep->grid;
+  SweepGrid                *grid = &sweep->grid;
   char                    **names;
   int                       n_names;
 
@@ -178,11 +178,11 @@ static PetscErrorCode GridSetUp(Sweep sweep)
 /* Enlarges the basis for some of the places: every k-th of a long sweep, or those whose error exceeds rtol */
 static PetscErrorCode BasisMake(Sweep sweep, PetscBool exceeding)
 {
-  const Grid    *grid  = &sweep->grid;
-  const PetscInt n_all = grid->n_places, n_parameters = grid->n_parameters;
-  const PetscInt step = exceeding ? 1 : PetscMax(1, (n_all - 1) / (MAX_TRAIN - 1));
-  PetscInt       n    = 0;
-  PetscReal     *points;
+  const SweepGrid *grid  = &sweep->grid;
+  const PetscInt   n_all = grid->n_places, n_parameters = grid->n_parameters;
+  const PetscInt   step = exceeding ? 1 : PetscMax(1, (n_all - 1) / (MAX_TRAIN - 1));
+  PetscInt         n    = 0;
+  PetscReal       *points;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1((MAX_TRAIN + 2) * n_parameters, &points));

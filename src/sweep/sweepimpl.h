@@ -2,9 +2,9 @@
 #pragma once
 
 #include <squeal/sweep.h>
-#include "greedy.h"
+#include "sweep/basis/greedy.h"
 #include "status.h"
-#include "track.h"
+#include "sweep/track/track.h"
 #include "values.h"
 
 #define SWEEP_MAX_TEXT      65536 /* length of a list of values */
@@ -37,11 +37,11 @@ typedef struct {
 
 /* True errors at a point that the basis has never seen */
 typedef struct {
-  Place     at;
-  PetscInt  n_full, n_reduced, n_unstable_full, n_unstable_reduced;
-  PetscReal error, estimate; /* largest relative ones: distance, estimate of the reduced model */
-  PetscReal full;            /* largest relative error that the full solution itself states */
-  PetscReal omega;           /* rad/s, where the true error is largest */
+  SweepPlace at;
+  PetscInt   n_full, n_reduced, n_unstable_full, n_unstable_reduced;
+  PetscReal  error, estimate; /* largest relative ones: distance, estimate of the reduced model */
+  PetscReal  full;            /* largest relative error that the full solution itself states */
+  PetscReal  omega;           /* rad/s, where the true error is largest */
 } SweepCheck;
 
 /* Which modes can become unstable when parameters are uncertain */
@@ -66,7 +66,7 @@ struct _p_Sweep {
   PetscInt    max_samples, n_real, n_verify, n_groups, n_percent;
   PetscBool   onsets, sensitivities, restart;
   /* results */
-  Grid           grid;
+  SweepGrid      grid;
   Groups         groups;
   ReducedWindow  window;
   Basis          basis;
@@ -110,7 +110,7 @@ PETSC_INTERN PetscErrorCode SweepAxisCheck(Sweep sweep, const char name[]);
    (-1 without contact), and whether the point before it has another status; fewest and most pairs closed at all
    places, and whether their statuses differ */
 PETSC_INTERN PetscErrorCode SweepStatuses(Sweep sweep);
-PETSC_INTERN PetscErrorCode SweepStatusSolve(Sweep sweep, const Place *place, PetscInt *status);
+PETSC_INTERN PetscErrorCode SweepStatusSolve(Sweep sweep, const SweepPlace *place, PetscInt *status);
 PETSC_INTERN PetscErrorCode SweepStatusTake(Sweep sweep, PetscInt *status);
 PETSC_INTERN PetscErrorCode SweepClosedAt(Sweep sweep, PetscInt point, PetscInt *n_closed, PetscBool *jump);
 PETSC_INTERN PetscBool      SweepClosedRange(Sweep sweep, PetscInt *least, PetscInt *most);

@@ -111,19 +111,19 @@ PetscErrorCode ParameterFind(MPI_Comm comm, const char option[], const char name
   PetscFunctionReturn(0);
 }
 
-PetscInt GridSize(const Grid *grid)
+PetscInt GridSize(const SweepGrid *grid)
 {
   return grid->n_axes == 2 ? grid->n[0] * grid->n[1] : grid->n[0];
 }
 
-PetscErrorCode GridCreatePlaces(Grid *grid)
+PetscErrorCode GridCreatePlaces(SweepGrid *grid)
 {
   PetscFunctionBeginUser;
   grid->n_places = GridSize(grid);
   PetscCall(PetscCalloc1(grid->n_places, &grid->place));
   PetscCall(PetscMalloc1(grid->n_places, &grid->at));
   for (PetscInt i = 0; i < grid->n_places; i++) {
-    Place *place = &grid->place[i];
+    SweepPlace *place = &grid->place[i];
 
     place->point    = i;
     place->line     = i / grid->n[0];
@@ -135,13 +135,13 @@ PetscErrorCode GridCreatePlaces(Grid *grid)
 }
 
 /* Tells the points from place k on where they are */
-static void GridNumber(Grid *grid, PetscInt k)
+static void GridNumber(SweepGrid *grid, PetscInt k)
 {
   for (; k < grid->n_places; k++)
     if (grid->place[k].point >= 0) grid->at[grid->place[k].point] = k;
 }
 
-PetscErrorCode GridInsert(Grid *grid, PetscInt k, const Place *place)
+PetscErrorCode GridInsert(SweepGrid *grid, PetscInt k, const SweepPlace *place)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscRealloc((size_t)(grid->n_places + 1) * sizeof(*grid->place), &grid->place));
@@ -152,14 +152,14 @@ PetscErrorCode GridInsert(Grid *grid, PetscInt k, const Place *place)
   PetscFunctionReturn(0);
 }
 
-void GridRemove(Grid *grid, PetscInt k)
+void GridRemove(SweepGrid *grid, PetscInt k)
 {
   grid->n_places--;
   for (PetscInt i = k; i < grid->n_places; i++) grid->place[i] = grid->place[i + 1];
   GridNumber(grid, k);
 }
 
-void GridFill(const Grid *grid, const Place *place, PetscReal p[])
+void GridFill(const SweepGrid *grid, const SweepPlace *place, PetscReal p[])
 {
   const PetscInt first = grid->n_parameters - grid->n_groups;
 
@@ -168,17 +168,17 @@ void GridFill(const Grid *grid, const Place *place, PetscReal p[])
   for (PetscInt k = 0; k < grid->n_axes; k++) p[grid->parameter[k]] = place->value[k];
 }
 
-void GridPoint(const Grid *grid, PetscInt point, PetscReal p[])
+void GridPoint(const SweepGrid *grid, PetscInt point, PetscReal p[])
 {
   GridFill(grid, &grid->place[grid->at[point]], p);
 }
 
-PetscReal GridMiddle(const Grid *grid, PetscInt axis, PetscReal a, PetscReal b)
+PetscReal GridMiddle(const SweepGrid *grid, PetscInt axis, PetscReal a, PetscReal b)
 {
   return grid->ratio[axis] ? (a < 0 ? -1 : 1) * PetscSqrtReal(a * b) : 0.5 * (a + b);
 }
 
-PetscErrorCode GridDestroy(Grid *grid)
+PetscErrorCode GridDestroy(SweepGrid *grid)
 {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < GRID_MAX_AXES; k++) PetscCall(PetscFree(grid->value[k]));

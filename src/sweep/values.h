@@ -10,22 +10,22 @@
 typedef struct {
   PetscReal value[GRID_MAX_AXES];
   PetscInt  point, line; /* of the grid, point -1 for none; index along the second axis */
-  PetscInt  status;      /* which pairs are closed there, a row of Grid.closed; 0 where all are everywhere */
-} Place;
+  PetscInt  status;      /* which pairs are closed there, a row of SweepGrid.closed; 0 where all are everywhere */
+} SweepPlace;
 
 typedef struct {
-  PetscInt   n_axes, n_parameters;
-  PetscInt   parameter[GRID_MAX_AXES]; /* indices of OperatorsGetParameters() */
-  PetscInt   n[GRID_MAX_AXES];
-  PetscReal *value[GRID_MAX_AXES];
-  PetscBool  ratio[GRID_MAX_AXES]; /* distances along this axis are ratios: geometric mean, logarithmic plots */
-  PetscReal *base;                 /* [n_parameters] values of the scene */
-  PetscInt   n_places;
-  Place     *place;    /* one line after the other */
-  PetscInt  *at;       /* [points] index of the place */
-  PetscInt   n_groups; /* of pairs that are closed at some places only; their parameters closed_g come last */
-  PetscReal *closed;   /* [statuses][n_groups] 1 closed, 0 open */
-} Grid;
+  PetscInt    n_axes, n_parameters;
+  PetscInt    parameter[GRID_MAX_AXES]; /* indices of OperatorsGetParameters() */
+  PetscInt    n[GRID_MAX_AXES];
+  PetscReal  *value[GRID_MAX_AXES];
+  PetscBool   ratio[GRID_MAX_AXES]; /* distances along this axis are ratios: geometric mean, logarithmic plots */
+  PetscReal  *base;                 /* [n_parameters] values of the scene */
+  PetscInt    n_places;
+  SweepPlace *place;    /* one line after the other */
+  PetscInt   *at;       /* [points] index of the place */
+  PetscInt    n_groups; /* of pairs that are closed at some places only; their parameters closed_g come last */
+  PetscReal  *closed;   /* [statuses][n_groups] 1 closed, 0 open */
+} SweepGrid;
 
 /* values.c - "first:last:n", "first:last:n:log" or "v1,v2,..."; errors name the option */
 PetscErrorCode ValuesParse(MPI_Comm comm, const char option[], const char text[], PetscInt *n, PetscReal *value[],
@@ -33,15 +33,15 @@ PetscErrorCode ValuesParse(MPI_Comm comm, const char option[], const char text[]
 /* The parameter of that name; errors list the valid ones */
 PetscErrorCode ParameterFind(MPI_Comm comm, const char option[], const char name[], PetscInt n,
                              const OperatorsParameter parameters[], PetscInt *index);
-PetscInt       GridSize(const Grid *grid);
+PetscInt       GridSize(const SweepGrid *grid);
 /* The points of the grid as places, all of status 0 */
-PetscErrorCode GridCreatePlaces(Grid *grid);
+PetscErrorCode GridCreatePlaces(SweepGrid *grid);
 /* Makes `place` the k-th; leaves out the k-th, which is no point of the grid */
-PetscErrorCode GridInsert(Grid *grid, PetscInt k, const Place *place);
-void           GridRemove(Grid *grid, PetscInt k);
+PetscErrorCode GridInsert(SweepGrid *grid, PetscInt k, const SweepPlace *place);
+void           GridRemove(SweepGrid *grid, PetscInt k);
 /* Values p[n_parameters] of all parameters at a place, and at a point */
-void GridFill(const Grid *grid, const Place *place, PetscReal p[]);
-void GridPoint(const Grid *grid, PetscInt point, PetscReal p[]);
+void GridFill(const SweepGrid *grid, const SweepPlace *place, PetscReal p[]);
+void GridPoint(const SweepGrid *grid, PetscInt point, PetscReal p[]);
 /* The value half way between two */
-PetscReal      GridMiddle(const Grid *grid, PetscInt axis, PetscReal a, PetscReal b);
-PetscErrorCode GridDestroy(Grid *grid);
+PetscReal      GridMiddle(const SweepGrid *grid, PetscInt axis, PetscReal a, PetscReal b);
+PetscErrorCode GridDestroy(SweepGrid *grid);

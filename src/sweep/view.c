@@ -30,7 +30,7 @@ static PetscErrorCode SamplesView(Sweep sweep, const OperatorsParameter paramete
 /* Where each branch is unstable: smallest and largest value of the first parameter, and its largest growth */
 static PetscErrorCode BranchesView(Sweep sweep, PetscViewer viewer)
 {
-  const Grid *grid = &sweep->grid;
+  const SweepGrid *grid = &sweep->grid;
 
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < sweep->n_branches; b++) {
@@ -67,8 +67,8 @@ static PetscBool PointIsUnstable(const SweepPoint *point)
 /* Stretches of a line with one contact status: how many, or, with a viewer, pairs closed and ends of each */
 static PetscErrorCode StretchesView(Sweep sweep, PetscViewer viewer, PetscInt *n)
 {
-  const Grid  *grid  = &sweep->grid;
-  const Place *place = grid->place;
+  const SweepGrid  *grid  = &sweep->grid;
+  const SweepPlace *place = grid->place;
 
   PetscFunctionBeginUser;
   *n = 0;

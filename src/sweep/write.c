@@ -18,8 +18,8 @@ static PetscErrorCode NumberOrEmpty(PetscReal value, char text[32])
 /* One row of sweep.csv */
 static PetscErrorCode RowWrite(Sweep sweep, PetscInt i, const SweepMode *m, ResultsTable table)
 {
-  const Grid     *grid = &sweep->grid;
-  const PetscReal size = hypot(m->sigma, m->omega);
+  const SweepGrid *grid = &sweep->grid;
+  const PetscReal  size = hypot(m->sigma, m->omega);
   char      error[32], error_hz[32], condition[32], distance[32], closed[32] = "", second[32] = "", branch[32] = "";
   PetscInt  n_closed;
   PetscBool jump;

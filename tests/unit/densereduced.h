@@ -6,7 +6,7 @@
 
 #include <petscsys.h>
 #include <string.h>
-#include "sweep/track.h"
+#include "sweep/track/track.h"
 
 #define DENSE_MAX   12
 #define DENSE_TERMS 6

@@ -1,7 +1,7 @@
 /* Small dense systems for the unit tests of sweep/: matrices with coefficients, as reduced models without a mesh */
 #pragma once
 
-#include "sweep/reduced.h"
+#include "sweep/dense/reduced.h"
 
 #define SYSTEM_MAX 6 /* terms */
 

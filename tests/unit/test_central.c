@@ -4,7 +4,7 @@
    solutions.
 */
 #include "check.h"
-#include "dynamics/tscentral.h"
+#include "dynamics/central/tscentral.h"
 
 /* Masses 1, stiffness omega^2, viscosity c (1/s), a wall that x >= 0 must not pass where asked for */
 typedef struct {

@@ -4,7 +4,7 @@
    changed by hand (with the checksum made anew). A full disk is played by the limit of the size of a file.
 */
 #include "dynamics/checkpoint.h"
-#include "kernels/checksum.h"
+#include "base/checksum.h"
 #include "check.h"
 #include "scratch.h"
 #include <math.h>
@@ -296,8 +296,8 @@ int main(int argc, char **argv)
   PetscCall(ResultsCreate(PETSC_COMM_WORLD, &t.results));
   PetscCall(ResultsSetFromOptions(t.results));
   t.print = (CheckpointPrint){
-    .print   = {0.1, 1 + PETSC_MACHINE_EPSILON, 0},
-    .n_print = 3
+    .print = {0.1, 1 + PETSC_MACHINE_EPSILON, 0},
+      .n_print = 3
   };
   failed = TestSame(&t);
   failed += TestTruncated(&t);

@@ -4,7 +4,7 @@
    shifted, or a rank without records is skipped.
 */
 #include "check.h"
-#include "gather.h"
+#include "base/gather.h"
 
 /* Padding after `mark` included: the datatype has to span it */
 typedef struct {

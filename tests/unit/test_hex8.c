@@ -67,7 +67,7 @@ static int TestRigidModes(const Formulation *f, const Elasticity *e)
    V = int x . n dA / 3, int x_i dV = int x_i^2 n_i dA / 2 */
 static void VolumeByFaces(const double x[N], double *volume, double moment[3])
 {
-  static const int    faces[6][4] = {
+  static const int faces[6][4] = {
     {0, 3, 2, 1},
     {4, 5, 6, 7},
     {0, 1, 5, 4},

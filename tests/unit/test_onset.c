@@ -4,7 +4,7 @@
 */
 #include "check.h"
 #include "densereduced.h"
-#include "sweep/frame.h"
+#include "sweep/track/frame.h"
 
 static const ReducedWindow everything = {0, 100, 100};
 
@@ -67,7 +67,7 @@ static void Friction(Dense *dense, PetscInt n, PetscReal d, PetscReal d1, PetscR
 }
 
 /* |A X - M X S| of a plane X [2][n] with S = (Y' M X)^-1 Y' K X; transposed: of Y, with the roles exchanged */
-static PetscReal PlaneResidual(const Frame *f, const PetscReal X[], const PetscReal Y[], PetscBool transposed)
+static PetscReal PlaneResidual(const ModeFrame *f, const PetscReal X[], const PetscReal Y[], PetscBool transposed)
 {
   const PetscInt n = f->size;
   PetscReal      P[2][2][DENSE_MAX], G[2][2][2], S[2][2], worst = 0; /* K, M times X */
@@ -108,7 +108,7 @@ static PetscErrorCode TestPlane(int *failed)
   const PetscInt member[2] = {1, 2}; /* kappa 1.4, 1.5, 1.5, ... */
   PetscReal      X[2 * DENSE_MAX], Y[2 * DENSE_MAX];
   ReducedModes   modes = {0};
-  Frame         *frame;
+  ModeFrame     *frame;
   Dense          dense;
 
   PetscFunctionBeginUser;

@@ -7,7 +7,7 @@
 #include <petscksp.h>
 #include "check.h"
 #include "kernels/hex8.h"
-#include "operators/ordering.h"
+#include "solver/ordering.h"
 
 #define NX      13
 #define NY      13

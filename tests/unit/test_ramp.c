@@ -5,7 +5,7 @@
    at the ends for the integral, central differences for the rate.
 */
 #include "check.h"
-#include "ramp.h"
+#include "base/rampoptions.h"
 
 /* Breaks when: a ramp begins or ends elsewhere, is not 0 before and 1 after, or a shape is another curve */
 static int TestValues(void)

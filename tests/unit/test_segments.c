@@ -86,7 +86,7 @@ static PetscErrorCode PlacesCreate(const Dense *dense, Sweep sweep, Points *poin
   static PetscReal value[N_PLACES], p[2 * N_PLACES], closed[2] = {1, 0}, base[2];
 
   PetscFunctionBeginUser;
-  sweep->grid = (Grid){.n_axes = 1, .n_parameters = 2, .n_groups = 1, .closed = closed, .base = base};
+  sweep->grid = (SweepGrid){.n_axes = 1, .n_parameters = 2, .n_groups = 1, .closed = closed, .base = base};
   PetscCall(PetscCalloc1(N_PLACES, &sweep->grid.place));
   sweep->grid.n_places = N_PLACES;
   sweep->basis.reduced = dense->reduced;
@@ -96,7 +96,7 @@ static PetscErrorCode PlacesCreate(const Dense *dense, Sweep sweep, Points *poin
   points->p            = p;
   PetscCall(PetscCalloc2(N_PLACES, &points->modes, N_PLACES, &points->branch));
   for (PetscInt k = 0; k < N_PLACES; k++) {
-    Place *place = &sweep->grid.place[k];
+    SweepPlace *place = &sweep->grid.place[k];
 
     value[k] = k < 5 ? 0.05 + 0.1 * (double)k : 0.05 + 0.1 * (double)(k - 2);
     if (k == 5 || k == 6) value[k] = k == 5 ? 0.4999 : 0.5001;

@@ -3,7 +3,7 @@
    have those of all, ordered by place.
 */
 #include "projectorimpl.h"
-#include "gather.h"
+#include "base/gather.h"
 #include "kernels/facet.h"
 #include <stdlib.h>
 

@@ -11,7 +11,7 @@
 
    mu(s) = max(0, mu + mu_slope |s|) with the slip velocity s of v_{n-1/2}, that is one step before.
 */
-#include "versions.h"
+#include "base/versions.h"
 #include "projectorimpl.h"
 
 void NodesPredict(ContactProjector p, PetscReal dt)

@@ -9,7 +9,7 @@
    Bodies that touch and move together without force leave impulses that are rounding: the tolerance is never below
    that.
 */
-#include "versions.h"
+#include "base/versions.h"
 #include "projectorimpl.h"
 
 #define NOISE 16 /* roundings of a relative velocity, by its terms */

@@ -6,7 +6,7 @@
       contact   dt lambda_n V_n         friction  -dt lambda_T . V_T        heat  dt lambda_T . s
    so that friction + heat is what the drive of the sliding feeds. lambda_T is the force on the master.
 */
-#include "versions.h"
+#include "base/versions.h"
 #include "projectorimpl.h"
 
 /* How far a constant, a line and a parabola through the forces before miss this one, squares added to miss */

@@ -4,7 +4,7 @@
    whether a search is due, which each rank knows.
 */
 #include "projectorimpl.h"
-#include "kernels/checksum.h"
+#include "base/checksum.h"
 
 #define PER_PAIR (3 + 3 * PROJECTOR_PAST) /* facet, natural coordinates, forces */
 #define PER_SUMS 16

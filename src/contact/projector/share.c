@@ -5,7 +5,7 @@
    active nodes alone.
 */
 #include "projectorimpl.h"
-#include "gather.h"
+#include "base/gather.h"
 
 PetscErrorCode ShareSetUp(MPI_Comm comm, PetscInt n, const PetscInt number[], Share *share)
 {

@@ -3,7 +3,7 @@
    state are the warm start of the first step.
 */
 #include "projectorimpl.h"
-#include "gather.h"
+#include "base/gather.h"
 #include <stdlib.h>
 
 #define START_REACH 10 /* margins within which bodies that interpenetrate are found */

@@ -3,7 +3,7 @@
    slaves. All is made once from the mesh as it is; every rank sees the lists, the root keeps what it needs.
 */
 #include "projectorimpl.h"
-#include "gather.h"
+#include "base/gather.h"
 #include <stdlib.h>
 
 /* A slave node as its owner knows it */

@@ -4,7 +4,7 @@
    the products of rows with v_j are summed over j and their components at the end, those with components of v_i are
    summed at once. Nodes that ranks share come first, so that the rows of these alone complete g there.
 */
-#include "versions.h"
+#include "base/versions.h"
 #include "bodiesimpl.h"
 
 /* Sum of the first three numbers */

@@ -3,7 +3,7 @@
    while the rest is done.
 */
 #include "bodiesimpl.h"
-#include "events.h"
+#include "base/events.h"
 
 /* Masses of this rank's cells, then complete ones; held directions have no inverse */
 static PetscErrorCode MassesSet(Bodies b)
@@ -15,7 +15,7 @@ static PetscErrorCode MassesSet(Bodies b)
   PetscCall(ModelGetUnknowns(b->model, &unknowns));
   PetscCall(PetscCalloc3(l->n, &b->part, l->n, &b->total, l->n, &b->minv));
   for (PetscInt i = 0; i < b->n_swept; i++) {
-    const Swept *s = &b->swept[i];
+    const SweptBody *s = &b->swept[i];
 
     for (PetscInt row = 0; row < 3 * s->lines->n_lines; row++)
       PetscCall(PetscArraycpy(&b->part[s->begin + row * s->stride], &s->mass[row / 3 * s->stride], s->stride));

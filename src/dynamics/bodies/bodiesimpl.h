@@ -33,7 +33,7 @@ typedef struct {
   PetscReal  *inside, *first, *last; /* [stride]: 1 at nodes, at node 0, at the last node, else 0 */
   PetscInt    n_ranges;
   SweptRange *range;
-} Swept;
+} SweptBody;
 
 /* Rows of 3 x 3 blocks, each block row after row */
 typedef struct {
@@ -86,7 +86,7 @@ struct _p_Bodies {
   BodiesFrame *frame; /* [n_bodies] */
   Layout       layout;
   PetscInt     n_swept;
-  Swept       *swept;
+  SweptBody   *swept;
   General      general;
   PetscInt     n_points;
   Point       *point;
@@ -132,12 +132,12 @@ PETSC_INTERN PetscErrorCode BodiesLayOut(Bodies bodies);
 
 /* column.c - `mirrored` is whether the stencil describes the cells; the caller falls back on rows of blocks where not
    */
-PETSC_INTERN PetscErrorCode SweptSetUp(Bodies bodies, Swept *swept, PetscBool *mirrored);
+PETSC_INTERN PetscErrorCode SweptSetUp(Bodies bodies, SweptBody *swept, PetscBool *mirrored);
 
 /* swept.c - ranges once it is known which vertices ranks share, shared [n_vertices] */
-PETSC_INTERN PetscErrorCode SweptSetRanges(Swept *swept, const PetscBool shared[]);
-PETSC_INTERN PetscErrorCode SweptAdvance(const Swept *swept, PetscBool early, BodiesWork *work);
-PETSC_INTERN PetscErrorCode SweptDestroy(Swept *swept);
+PETSC_INTERN PetscErrorCode SweptSetRanges(SweptBody *swept, const PetscBool shared[]);
+PETSC_INTERN PetscErrorCode SweptAdvance(const SweptBody *swept, PetscBool early, BodiesWork *work);
+PETSC_INTERN PetscErrorCode SweptDestroy(SweptBody *swept);
 
 /* general.c, blockrows.c */
 PETSC_INTERN PetscErrorCode GeneralSetUp(Bodies bodies);

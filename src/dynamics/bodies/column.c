@@ -28,7 +28,7 @@ typedef struct {
 } Section;
 
 /* Line and node along it of each local vertex, -1 of vertices elsewhere */
-static PetscErrorCode VerticesFind(const Swept *s, PetscInt n_vertices, PetscInt line[], PetscInt node[])
+static PetscErrorCode VerticesFind(const SweptBody *s, PetscInt n_vertices, PetscInt line[], PetscInt node[])
 {
   const ModelLines *lines = s->lines;
 
@@ -58,7 +58,7 @@ static PetscBool ColumnBegins(PetscInt n_nodes, const PetscInt vertex[], const P
 }
 
 /* The columns; `complete` is whether they hold all local cells of the body */
-static PetscErrorCode ColumnsFind(Bodies b, const Swept *s, Section *section, PetscBool *complete)
+static PetscErrorCode ColumnsFind(Bodies b, const SweptBody *s, Section *section, PetscBool *complete)
 {
   const PetscInt n_along = s->lines->n_nodes - (s->lines->closed ? 0 : 1);
   PetscInt       n_cells, n_own = 0, size = 0, *line, *node;
@@ -116,7 +116,7 @@ static void BlocksAdd(const Column *column, PetscInt a, PetscInt b, const PetscI
       sum[3 * i + j] += scale * column->cell.stiffness[24 * (3 * a + pqc[i]) + 3 * b + pqc[j]];
 }
 
-static PetscErrorCode SectionSum(const Swept *s, Section *section)
+static PetscErrorCode SectionSum(const SweptBody *s, Section *section)
 {
   const PetscInt pqc[3] = {(s->along + 1) % 3, (s->along + 2) % 3, s->along};
 
@@ -176,7 +176,7 @@ static void CoefficientsSet(const Blocks *blocks, double c[STENCIL_COEFFICIENTS]
 }
 
 /* The neighbours of the lines, in the order of the keys */
-static PetscErrorCode LinesSet(Swept *s, const Section *section)
+static PetscErrorCode LinesSet(SweptBody *s, const Section *section)
 {
   const PetscInt n_lines = s->lines->n_lines, n = section->n_keys;
 
@@ -199,7 +199,7 @@ static PetscErrorCode LinesSet(Swept *s, const Section *section)
 }
 
 /* Makes the damping of a line a stencil of its own, whose coefficients follow all those of the stiffness */
-static void LineDamp(Swept *s, PetscInt n_keys, PetscInt l)
+static void LineDamp(SweptBody *s, PetscInt n_keys, PetscInt l)
 {
   s->damping[l] = s->stiffness[l];
   s->damping[l].coefficient += n_keys;
@@ -208,7 +208,7 @@ static void LineDamp(Swept *s, PetscInt n_keys, PetscInt l)
 
 /* Masses of the nodes (kg), and damping factors of the lines: alpha weighted by mass, beta where all cells have the
    same */
-static PetscErrorCode MassesSet(Swept *s, const Section *section)
+static PetscErrorCode MassesSet(SweptBody *s, const Section *section)
 {
   const PetscInt n_lines = s->lines->n_lines, last = s->lines->n_nodes - 1;
   PetscReal     *whole;
@@ -235,7 +235,7 @@ static PetscErrorCode MassesSet(Swept *s, const Section *section)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SweptSetUp(Bodies b, Swept *s, PetscBool *mirrored)
+PetscErrorCode SweptSetUp(Bodies b, SweptBody *s, PetscBool *mirrored)
 {
   Section section = {0};
 

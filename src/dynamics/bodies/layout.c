@@ -148,13 +148,13 @@ static PetscErrorCode BasesFind(Bodies b)
 /* Keeps the lines of a body as swept ones where the stencil serves them */
 static PetscErrorCode SweptKeep(Bodies b, PetscInt body, ModelLines **lines)
 {
-  Swept    *swept    = &b->swept[b->n_swept];
-  PetscBool mirrored = PETSC_FALSE;
+  SweptBody *swept    = &b->swept[b->n_swept];
+  PetscBool  mirrored = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   if (!*lines) PetscFunctionReturn(0);
   if ((*lines)->turned == b->frame[body].turned) {
-    *swept        = (Swept){.body = body, .lines = *lines, .along = (*lines)->turned ? 2 : (*lines)->axis};
+    *swept        = (SweptBody){.body = body, .lines = *lines, .along = (*lines)->turned ? 2 : (*lines)->axis};
     *lines        = NULL;
     swept->stride = RoundUp(swept->lines->n_nodes + 2);
     PetscCall(SweptSetUp(b, swept, &mirrored));
@@ -187,7 +187,7 @@ PetscErrorCode BodiesFindSwept(Bodies b)
 }
 
 /* Places of the vertices of a swept body */
-static void SweptLayOut(const Swept *swept, Layout *layout)
+static void SweptLayOut(const SweptBody *swept, Layout *layout)
 {
   const ModelLines *lines = swept->lines;
 

@@ -4,7 +4,7 @@
    owner.
 */
 #include "bodiesimpl.h"
-#include "gather.h"
+#include "base/gather.h"
 #include <petscsf.h>
 #include <stdlib.h>
 

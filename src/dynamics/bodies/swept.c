@@ -4,7 +4,7 @@
       ku += dt g;  d = beta g + alpha M v;  damping += v.d;  f = -ku - d
    On lines between parts of different beta the first term of d is a stencil of its own.
 */
-#include "versions.h"
+#include "base/versions.h"
 #include "bodiesimpl.h"
 
 typedef struct {
@@ -49,7 +49,7 @@ STENCIL_INLINE void VectorsTake(const double missing[3], const double at[], Sten
 }
 
 /* g = K v, or likewise with other coefficients, at nodes k .. k + 7 of a line, zero in the padding */
-STENCIL_INLINE void BlockApply(const Swept *s, const StencilLine *line, const SweptRange *range, PetscBool ends,
+STENCIL_INLINE void BlockApply(const SweptBody *s, const StencilLine *line, const SweptRange *range, PetscBool ends,
                                const ptrdiff_t row[3], PetscInt k, const PetscReal v[], StencilVector g[3])
 {
   double missing[3];
@@ -67,8 +67,8 @@ STENCIL_INLINE void BlockApply(const Swept *s, const StencilLine *line, const Sw
 }
 
 /* Nodes k .. k + n - 1 of line l */
-STENCIL_INLINE void BlockAdvance(int n, const Swept *s, const SweptRange *range, PetscBool ends, PetscInt l, PetscInt k,
-                                 const BodiesWork *w, SweptSums *sums)
+STENCIL_INLINE void BlockAdvance(int n, const SweptBody *s, const SweptRange *range, PetscBool ends, PetscInt l,
+                                 PetscInt k, const BodiesWork *w, SweptSums *sums)
 {
   const PetscInt      at = s->begin + 3 * l * s->stride + k, p = (s->along + 1) % 3, q = (s->along + 2) % 3;
   const ptrdiff_t     row[3] = {p * s->stride, q * s->stride, s->along * s->stride};
@@ -95,7 +95,7 @@ STENCIL_INLINE void SumsAdd(const SweptSums *line, const SweptSums *tail, Bodies
 }
 
 /* A range of all lines; `ends` is known at each call, so that blocks without ends have no code for them */
-STENCIL_INLINE void LinesAdvance(const Swept *s, const SweptRange *range, PetscBool ends, BodiesWork *w)
+STENCIL_INLINE void LinesAdvance(const SweptBody *s, const SweptRange *range, PetscBool ends, BodiesWork *w)
 {
   const PetscInt half = (range->end - range->begin) % STENCIL_WIDTH, end = range->end - half;
 
@@ -110,7 +110,7 @@ STENCIL_INLINE void LinesAdvance(const Swept *s, const SweptRange *range, PetscB
 }
 
 VERSIONS
-static void RangeAdvance(const Swept *s, const SweptRange *range, BodiesWork *w)
+static void RangeAdvance(const SweptBody *s, const SweptRange *range, BodiesWork *w)
 {
   if (range->first || range->last)
     LinesAdvance(s, range, PETSC_TRUE, w);
@@ -119,7 +119,7 @@ static void RangeAdvance(const Swept *s, const SweptRange *range, BodiesWork *w)
 }
 
 /* Ghosts of a closed body: the last node before the first one and the reverse; or zeros */
-static void GhostsSet(const Swept *s, PetscBool zero, PetscReal v[])
+static void GhostsSet(const SweptBody *s, PetscBool zero, PetscReal v[])
 {
   const PetscInt n = s->lines->n_nodes;
 
@@ -131,7 +131,7 @@ static void GhostsSet(const Swept *s, PetscBool zero, PetscReal v[])
   }
 }
 
-PetscErrorCode SweptAdvance(const Swept *s, PetscBool early, BodiesWork *w)
+PetscErrorCode SweptAdvance(const SweptBody *s, PetscBool early, BodiesWork *w)
 {
   PetscFunctionBeginUser;
   if (early) GhostsSet(s, PETSC_FALSE, w->v);
@@ -142,7 +142,7 @@ PetscErrorCode SweptAdvance(const Swept *s, PetscBool early, BodiesWork *w)
 }
 
 /* Flags along the lines as numbers */
-static PetscErrorCode FlagsSet(Swept *s)
+static PetscErrorCode FlagsSet(SweptBody *s)
 {
   const PetscInt n = s->lines->n_nodes;
 
@@ -163,7 +163,7 @@ static PetscBool NodesShared(const ModelLines *lines, PetscInt begin, PetscInt e
   return PETSC_FALSE;
 }
 
-PetscErrorCode SweptSetRanges(Swept *s, const PetscBool shared[])
+PetscErrorCode SweptSetRanges(SweptBody *s, const PetscBool shared[])
 {
   const PetscInt  n = s->lines->n_nodes, n_blocks = (n + STENCIL_WIDTH - 1) / STENCIL_WIDTH;
   const PetscBool open = s->lines->closed ? PETSC_FALSE : PETSC_TRUE;
@@ -186,7 +186,7 @@ PetscErrorCode SweptSetRanges(Swept *s, const PetscBool shared[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SweptDestroy(Swept *s)
+PetscErrorCode SweptDestroy(SweptBody *s)
 {
   PetscFunctionBeginUser;
   PetscCall(ModelDestroyLines(&s->lines));

@@ -3,7 +3,7 @@
    external.h.
 */
 #include "externalimpl.h"
-#include "kernels/checksum.h"
+#include "base/checksum.h"
 
 PetscErrorCode ExternalCreate(MPI_Comm comm, Model model, External *external)
 {

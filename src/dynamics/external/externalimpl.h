@@ -8,7 +8,7 @@
 
 #include "external.h"
 #include "forcepattern.h"
-#include "ramp.h"
+#include "base/rampoptions.h"
 
 #define EXTERNAL_MAX_NAMES 64 /* names in one list of the scene */
 
@@ -52,19 +52,19 @@ typedef struct {
   PetscInt   n, n_owned;
   PetscInt  *vertex; /* local vertices from 0, owned ones first */
   PetscReal *last;   /* [n][3] forces of the last step, Cartesian, N */
-} Frame;
+} InertiaFrame;
 
 struct _p_External {
   MPI_Comm comm;
   Model    model;
   /* set by options */
-  PetscInt   n_loads, n_motions, n_impulses, n_parts, n_frames;
-  TimedLoad *loads;
-  Drive     *motions;
-  Impulse   *impulses;
-  PetscReal *velocity;   /* [n_parts][3], m/s */
-  PetscReal  gravity[3]; /* m/s^2 */
-  Frame     *frames;     /* [n_parts] */
+  PetscInt      n_loads, n_motions, n_impulses, n_parts, n_frames;
+  TimedLoad    *loads;
+  Drive        *motions;
+  Impulse      *impulses;
+  PetscReal    *velocity;   /* [n_parts][3], m/s */
+  PetscReal     gravity[3]; /* m/s^2 */
+  InertiaFrame *frames;     /* [n_parts] */
   /* built by ExternalSetUp() */
   const Layout    *layout;
   const PetscReal *mass, *minv; /* kg, 1/kg; borrowed */

@@ -62,7 +62,8 @@ static inline void Cross(const PetscReal a[3], const PetscReal b[3], PetscReal c
 }
 
 /* Inertial force on mass m at place x (m) with velocity v, N */
-static void FrameForce(const Frame *frame, PetscReal m, const PetscReal x[3], const PetscReal v[3], PetscReal force[3])
+static void FrameForce(const InertiaFrame *frame, PetscReal m, const PetscReal x[3], const PetscReal v[3],
+                       PetscReal force[3])
 {
   PetscReal arm[3], turn[3], centrifugal[3], coriolis[3];
 
@@ -74,8 +75,8 @@ static void FrameForce(const Frame *frame, PetscReal m, const PetscReal x[3], co
     force[d] = -m * ((frame->coriolis ? 2 * coriolis[d] : 0) + (frame->centrifugal ? centrifugal[d] : 0));
 }
 
-static void FrameAdvance(External external, Frame *frame, const PetscReal X[], const PetscReal u[], const PetscReal v[],
-                         PetscReal f[], ExternalPower *power)
+static void FrameAdvance(External external, InertiaFrame *frame, const PetscReal X[], const PetscReal u[],
+                         const PetscReal v[], PetscReal f[], ExternalPower *power)
 {
   const Layout *layout = external->layout;
 
@@ -108,7 +109,7 @@ PetscErrorCode InertiaAdvance(External external, const PetscReal u[], const Pets
 }
 
 /* Vertices of the part, owned ones first, without those of the frames before */
-static PetscErrorCode FrameFindVertices(External external, const char part[], Frame *frame)
+static PetscErrorCode FrameFindVertices(External external, const char part[], InertiaFrame *frame)
 {
   const Layout   *layout = external->layout;
   const PetscInt *vertex;
@@ -124,7 +125,7 @@ static PetscErrorCode FrameFindVertices(External external, const char part[], Fr
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(PetscMalloc1(n, &frame->vertex));
   PetscCall(PetscCalloc1(layout->n_vertices, &taken));
-  for (const Frame *before = external->frames; before < frame; before++)
+  for (const InertiaFrame *before = external->frames; before < frame; before++)
     for (PetscInt k = 0; k < before->n; k++) taken[before->vertex[k]] = PETSC_TRUE;
   PetscCall(ISGetIndices(is, &vertex));
   for (int pass = 0; pass < 2; pass++) {
@@ -142,7 +143,7 @@ static PetscErrorCode FrameFindVertices(External external, const char part[], Fr
 }
 
 /* The frame of a part, a new one where it has none; an error for no part */
-static PetscErrorCode FrameFind(External external, const char part[], Frame **frame)
+static PetscErrorCode FrameFind(External external, const char part[], InertiaFrame **frame)
 {
   const Part *parts;
   PetscInt    n, i;
@@ -170,7 +171,7 @@ static PetscErrorCode FrameFind(External external, const char part[], Frame **fr
 PetscErrorCode ExternalSetFrame(External external, const char part[], const PetscReal omega[3],
                                 const PetscReal centre[3], PetscBool coriolis, PetscBool centrifugal)
 {
-  Frame *frame = NULL;
+  InertiaFrame *frame = NULL;
 
   PetscFunctionBeginUser;
   PetscCheck(external->layout, external->comm, PETSC_ERR_ARG_WRONGSTATE,
@@ -195,8 +196,8 @@ PetscErrorCode InertiaView(External external, PetscViewer viewer)
       PetscViewerASCIIPrintf(viewer, "  gravity: %.6g, %.6g, %.6g m/s^2\n", (double)g[0], (double)g[1], (double)g[2]));
   PetscCall(ModelGetParts(external->model, &n, &parts));
   for (PetscInt i = 0; i < external->n_frames; i++) {
-    const Frame     *frame = &external->frames[i];
-    const PetscReal *w     = frame->omega;
+    const InertiaFrame *frame = &external->frames[i];
+    const PetscReal    *w     = frame->omega;
 
     PetscCall(
       PetscViewerASCIIPrintf(viewer, "  part %s turns with %.6g rad/s: Coriolis force %s, centrifugal force %s\n",

@@ -3,7 +3,7 @@
    and global number of the slave, so that a pair keeps its number during the run.
 */
 #include "historyimpl.h"
-#include "gather.h"
+#include "base/gather.h"
 #include <stdlib.h>
 
 typedef struct {

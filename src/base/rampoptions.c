@@ -1,0 +1,48 @@
+/*
+   Ramps in time (kernels/ramp.h) from the options of their owner, and in words.
+*/
+#include "rampoptions.h"
+
+static const char *const shapes[RAMP_N_SHAPES] = {[RAMP_LINEAR] = "linear", [RAMP_SMOOTH] = "smooth"};
+
+/* A time of at least 0, s */
+static PetscErrorCode TimeSetFromOptions(PetscOptionItems *PetscOptionsObject, const char option[], const char help[],
+                                         double *time)
+{
+  const char *prefix = PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "";
+  PetscReal   value  = *time;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsReal(option, help, "rampoptions.h", value, &value, NULL));
+  PetscCheck(value >= 0 && !PetscIsInfOrNanReal(value), PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
+             "-%s%s %.6g must be a time of at least 0 (s)", prefix, option + 1, (double)value);
+  *time = value;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RampSetFromOptions(PetscOptionItems *PetscOptionsObject, Ramp *ramp)
+{
+  PetscInt shape = RAMP_SMOOTH;
+
+  PetscFunctionBeginUser;
+  *ramp = (Ramp){.shape = RAMP_SMOOTH};
+  PetscCall(TimeSetFromOptions(PetscOptionsObject, "-ramp", "time from nothing to all of it, s", &ramp->length));
+  PetscCall(PetscOptionsEList("-ramp_shape", "how it grows", "rampoptions.h", shapes, RAMP_N_SHAPES, shapes[shape],
+                              &shape, NULL));
+  PetscCall(TimeSetFromOptions(PetscOptionsObject, "-delay", "time at which it begins, s", &ramp->delay));
+  ramp->shape = (RampShape)shape;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RampDescribe(const Ramp *ramp, size_t size, char words[])
+{
+  char from[64] = "";
+
+  PetscFunctionBeginUser;
+  if (ramp->delay > 0) PetscCall(PetscSNPrintf(from, sizeof(from), " from %.6g s", ramp->delay));
+  if (ramp->length > 0)
+    PetscCall(PetscSNPrintf(words, size, "%s ramp over %.6g s%s", shapes[ramp->shape], ramp->length, from));
+  else
+    PetscCall(PetscSNPrintf(words, size, "at once%s", from));
+  PetscFunctionReturn(0);
+}

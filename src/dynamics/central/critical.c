@@ -1,0 +1,198 @@
+/*
+   The critical step: the largest dt with
+
+      dt^2 lambda_max(M^-1 (K + 2 C / dt)) <= 2 / b
+
+   at which the fastest oscillation changes its sign in every step (z = -1 in the recursion of tscentral.h with damping
+   lagged by half a step; for b = 1/2 and C = beta K it is dt = -beta + sqrt(beta^2 + 4 / omega^2)). Contact only
+   restricts the motion, which lowers the frequencies.
+
+   Lanczos iteration (SLEPc) on the symmetric M^-1/2 (K + s C) M^-1/2 at s = 2 / dt. With its largest eigenvector x,
+   x'Mx = 1, k = x'Kx, c = x'Cx, the next dt solves dt^2 k + 2 dt c = 2 / b: from above, since another vector may be
+   worse at the new dt. Upper bound of lambda_max for the check: that of the single elements.
+*/
+#include "dynamics/dynamicsimpl.h"
+#include <slepceps.h>
+
+#define CRITICAL_MAX_IT 50
+#define CRITICAL_RTOL   1e-6 /* of dt */
+
+/* The operator: s, and work: scale = M^-1/2, state vectors x, kx, cx */
+typedef struct {
+  Dynamics   dynamics;
+  PetscReal  s;
+  PetscReal *scale, *x, *kx, *cx;
+} Pencil;
+
+static PetscErrorCode PencilCreate(Dynamics d, Pencil *p)
+{
+  const PetscReal *minv;
+  const PetscInt   n = d->layout->n;
+
+  PetscFunctionBeginUser;
+  *p = (Pencil){.dynamics = d};
+  PetscCall(BodiesGetMass(d->bodies, NULL, NULL, &minv));
+  PetscCall(PetscMalloc4(n, &p->scale, n, &p->x, n, &p->kx, n, &p->cx));
+  for (PetscInt i = 0; i < n; i++) p->scale[i] = PetscSqrtReal(minv[i]);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PencilDestroy(Pencil *p)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree4(p->scale, p->x, p->kx, p->cx));
+  PetscFunctionReturn(0);
+}
+
+/* kx = M^-1/2 K M^-1/2 x and the same of C, for the vector x */
+static PetscErrorCode PencilApply(Pencil *p, Vec x)
+{
+  const Dynamics d = p->dynamics;
+
+  PetscFunctionBeginUser;
+  PetscCall(StateFromVec(d->model, d->layout, x, p->x));
+  for (PetscInt i = 0; i < d->layout->n; i++) p->x[i] *= p->scale[i];
+  PetscCall(BodiesApply(d->bodies, p->x, p->kx, p->cx));
+  for (PetscInt i = 0; i < d->layout->n; i++) {
+    p->kx[i] *= p->scale[i];
+    p->cx[i] *= p->scale[i];
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PencilMult(Mat A, Vec x, Vec y)
+{
+  Pencil *p;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &p));
+  PetscCall(PencilApply(p, x));
+  for (PetscInt i = 0; i < p->dynamics->layout->n; i++) p->kx[i] += p->s * p->cx[i];
+  PetscCall(StateToVec(p->dynamics->model, p->dynamics->layout, p->kx, y));
+  PetscFunctionReturn(0);
+}
+
+/* x'Kx and x'Cx of the eigenvector x of unit length */
+static PetscErrorCode PencilRayleigh(Pencil *p, Vec x, PetscReal *k, PetscReal *c)
+{
+  const Dynamics d = p->dynamics;
+  Vec            y;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(x, &y));
+  PetscCall(PencilApply(p, x));
+  PetscCall(StateToVec(d->model, d->layout, p->kx, y));
+  PetscCall(VecDot(x, y, k));
+  PetscCall(StateToVec(d->model, d->layout, p->cx, y));
+  PetscCall(VecDot(x, y, c));
+  PetscCall(VecDestroy(&y));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PencilCreateSolver(Pencil *p, Mat *A, EPS *eps)
+{
+  const Dynamics d = p->dynamics;
+  PetscInt       n;
+  Vec            x;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsCreateVec(d->operators, &x));
+  PetscCall(VecGetLocalSize(x, &n));
+  PetscCall(VecDestroy(&x));
+  PetscCall(MatCreateShell(d->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, p, A));
+  PetscCall(MatShellSetOperation(*A, MATOP_MULT, (void (*)(void))PencilMult));
+  PetscCall(EPSCreate(d->comm, eps));
+  PetscCall(EPSSetOptionsPrefix(*eps, "dynamics_"));
+  PetscCall(EPSSetOperators(*eps, *A, NULL));
+  PetscCall(EPSSetProblemType(*eps, EPS_HEP));
+  PetscCall(EPSSetWhichEigenpairs(*eps, EPS_LARGEST_REAL));
+  PetscCall(EPSSetTolerances(*eps, 1e-7, 1000));
+  PetscFunctionReturn(0);
+}
+
+/* Largest eigenvalue at s = 2 / dt (s = 0 for dt infinite); x starts the iteration and becomes the eigenvector */
+static PetscErrorCode PencilLargest(Pencil *p, EPS eps, PetscReal s, Vec x, PetscReal *lambda)
+{
+  PetscInt  converged;
+  PetscReal error;
+
+  PetscFunctionBeginUser;
+  p->s = s;
+  PetscCall(EPSSetInitialSpace(eps, 1, &x));
+  PetscCall(EPSSolve(eps));
+  PetscCall(EPSGetConverged(eps, &converged));
+  PetscCheck(converged > 0, p->dynamics->comm, PETSC_ERR_NOT_CONVERGED,
+             "largest frequency of the mesh did not converge: give -ts_dt, or more iterations by -dynamics_eps_max_it");
+  PetscCall(EPSGetEigenpair(eps, 0, lambda, NULL, x, NULL));
+  PetscCall(EPSComputeError(eps, 0, EPS_ERROR_ABSOLUTE, &error));
+  *lambda += error;
+  PetscFunctionReturn(0);
+}
+
+/* The dt at which an eigenvector with k, c is critical: dt^2 k + 2 dt c = 2 / b */
+static PetscReal VectorStep(PetscReal b, PetscReal k, PetscReal c)
+{
+  return (2 / b) / (c + PetscSqrtReal(c * c + 2 * k / b));
+}
+
+static PetscErrorCode PencilFindStep(Pencil *p, EPS eps, Vec x, PetscReal b, CriticalStep *critical)
+{
+  PetscReal lambda, k, c, dt, last = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilLargest(p, eps, 0, x, &lambda));
+  dt            = PetscSqrtReal(2 / (b * lambda));
+  critical->its = 1;
+  for (PetscInt i = 0; i < CRITICAL_MAX_IT && PetscAbsReal(dt - last) > CRITICAL_RTOL * dt; i++) {
+    last = dt;
+    PetscCall(PencilRayleigh(p, x, &k, &c));
+    if (c == 0) break;
+    dt = VectorStep(b, k + PetscMax(0, lambda - k - p->s * c), c);
+    PetscCall(PencilLargest(p, eps, 2 / dt, x, &lambda));
+    critical->its++;
+  }
+  critical->assembled = dt;
+  PetscFunctionReturn(0);
+}
+
+/* Largest dt that the elements allow each by itself, dt^2 bound(2 / dt) = 2 / b, from the assembled one downwards:
+   every iteration halves the error at least, since bound(s) is linear in s at most */
+static PetscErrorCode ElementStep(Dynamics d, CriticalStep *critical)
+{
+  PetscReal last = 0, bound;
+
+  PetscFunctionBeginUser;
+  critical->element = critical->assembled;
+  for (PetscInt i = 0; i < CRITICAL_MAX_IT && PetscAbsReal(critical->element - last) > 1e-3 * last; i++) {
+    last = critical->element;
+    PetscCall(BodiesGetElementBound(d->bodies, 2 / last, &bound));
+    critical->element = PetscSqrtReal(2 / (d->b * bound));
+  }
+  PetscCheck(critical->element <= (1 + 1e-6) * critical->assembled, d->comm, PETSC_ERR_NOT_CONVERGED,
+             "critical step %.6g s by Lanczos iteration, but the stiffest element alone allows %.6g s: raise "
+             "-dynamics_eps_max_it or lower -dynamics_eps_tol",
+             (double)critical->assembled, (double)critical->element);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsFindCriticalStep(Dynamics d)
+{
+  Pencil pencil;
+  Mat    A;
+  EPS    eps;
+  Vec    x;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilCreate(d, &pencil));
+  PetscCall(PencilCreateSolver(&pencil, &A, &eps));
+  PetscCall(EPSSetFromOptions(eps));
+  PetscCall(OperatorsCreateVec(d->operators, &x));
+  PetscCall(VecSetRandom(x, NULL));
+  PetscCall(PencilFindStep(&pencil, eps, x, d->b, &d->critical));
+  PetscCall(ElementStep(d, &d->critical));
+  PetscCall(VecDestroy(&x));
+  PetscCall(EPSDestroy(&eps));
+  PetscCall(MatDestroy(&A));
+  PetscCall(PencilDestroy(&pencil));
+  PetscFunctionReturn(0);
+}

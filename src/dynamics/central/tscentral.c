@@ -1,0 +1,272 @@
+/*
+   TS of type "central", see tscentral.h. The type knows no physics: forces and constraint are callbacks. It is
+   Newmark's family with beta = 0 and gamma = b (N. M. Newmark, J. Eng. Mech. Div. ASCE 85, 1959), written with the
+   velocities of the half steps.
+*/
+#include "base/versions.h"
+#include "tscentral.h"
+#include "base/events.h"
+#include <petsc/private/tsimpl.h>
+
+typedef struct {
+  PetscReal    b;          /* 1/2 to 1 */
+  CentralForce force;      /* fills the forces */
+  CentralForce constraint; /* adds those of the constraint, or NULL */
+  void        *ctx;        /* of both */
+  PetscReal    dt_old;     /* of the last step, 0 before the first */
+  Vec          minv;       /* inverse masses */
+  Vec          f, f_old;   /* forces of this step and the last; f_old NULL for b = 1/2 */
+} TS_Central;
+
+static PetscErrorCode CentralDescribe(TS ts, CentralStep *step)
+{
+  const TS_Central *c     = (TS_Central *)ts->data;
+  const PetscBool   first = c->dt_old == 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal   mean  = 0.5 * (c->dt_old + ts->time_step); /* between the middles of the two steps */
+
+  PetscFunctionBegin;
+  step->time     = ts->ptime;
+  step->dt       = ts->time_step;
+  step->dt_old   = c->dt_old;
+  step->kick     = first ? 0.5 * step->dt : (0.5 + c->b) * mean;
+  step->kick_old = first ? 0 : (0.5 - c->b) * mean;
+  PetscFunctionReturn(0);
+}
+
+/* f_n with the forces of the constraint; f_{n-1} is kept where the scheme needs it */
+static PetscErrorCode CentralComputeForces(TS ts, const CentralStep *step)
+{
+  TS_Central *c = (TS_Central *)ts->data;
+
+  PetscFunctionBegin;
+  if (c->f_old && c->dt_old > 0) {
+    Vec last = c->f;
+
+    c->f     = c->f_old;
+    c->f_old = last;
+  }
+  PetscCall((*c->force)(ts, step, ts->vec_sol, ts->vec_dot, c->f_old, c->f, c->ctx));
+  if (c->constraint) PetscCall((*c->constraint)(ts, step, ts->vec_sol, ts->vec_dot, c->f_old, c->f, c->ctx));
+  PetscFunctionReturn(0);
+}
+
+/* v += kick minv f, u += dt v */
+static VERSIONS void KickAndDrift(PetscInt n, const CentralStep *step, const PetscScalar *restrict minv,
+                                  const PetscScalar *restrict f, PetscScalar *restrict v, PetscScalar *restrict u)
+{
+  const PetscReal kick = step->kick, dt = step->dt;
+
+  for (PetscInt i = 0; i < n; i++) {
+    v[i] += kick * minv[i] * f[i];
+    u[i] += dt * v[i];
+  }
+}
+
+/* v += minv (kick f + kick_old f_old), u += dt v */
+static VERSIONS void KickAndDriftTwo(PetscInt n, const CentralStep *step, const PetscScalar *restrict minv,
+                                     const PetscScalar *restrict f, const PetscScalar *restrict f_old,
+                                     PetscScalar *restrict v, PetscScalar *restrict u)
+{
+  for (PetscInt i = 0; i < n; i++) {
+    v[i] += minv[i] * (step->kick * f[i] + step->kick_old * f_old[i]);
+    u[i] += step->dt * v[i];
+  }
+}
+
+static PetscErrorCode CentralMove(TS ts, const CentralStep *step)
+{
+  TS_Central        *c = (TS_Central *)ts->data;
+  const PetscScalar *minv, *f, *f_old;
+  PetscScalar       *u, *v;
+  PetscInt           n;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetLocalSize(ts->vec_sol, &n));
+  PetscCall(VecGetArrayRead(c->minv, &minv));
+  PetscCall(VecGetArrayRead(c->f, &f));
+  PetscCall(VecGetArray(ts->vec_dot, &v));
+  PetscCall(VecGetArray(ts->vec_sol, &u));
+  if (c->f_old) {
+    PetscCall(VecGetArrayRead(c->f_old, &f_old));
+    KickAndDriftTwo(n, step, minv, f, f_old, v, u);
+    PetscCall(VecRestoreArrayRead(c->f_old, &f_old));
+  } else {
+    KickAndDrift(n, step, minv, f, v, u);
+  }
+  PetscCall(VecRestoreArray(ts->vec_sol, &u));
+  PetscCall(VecRestoreArray(ts->vec_dot, &v));
+  PetscCall(VecRestoreArrayRead(c->f, &f));
+  PetscCall(VecRestoreArrayRead(c->minv, &minv));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TSStep_Central(TS ts)
+{
+  TS_Central *c    = (TS_Central *)ts->data;
+  PetscReal   next = ts->time_step;
+  PetscBool   accept;
+  CentralStep step;
+
+  PetscFunctionBegin;
+  PetscCall(CentralDescribe(ts, &step));
+  PetscCall(CentralComputeForces(ts, &step));
+  PetscCall(EventBegin(EVENT_MOVE));
+  PetscCall(CentralMove(ts, &step));
+  PetscCall(EventEnd(EVENT_MOVE));
+  PetscCall(
+    TSAdaptChoose(ts->adapt, ts, ts->time_step, NULL, &next, &accept)); /* the last step may have to be shorter */
+  c->dt_old = step.dt;
+  ts->ptime += step.dt;
+  ts->time_step = next;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TSSetUp_Central(TS ts)
+{
+  TS_Central *c = (TS_Central *)ts->data;
+
+  PetscFunctionBegin;
+  PetscCheck(ts->vec_sol && ts->vec_dot, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE,
+             "TS of type " TSCENTRAL " needs displacements and velocities: call TS2SetSolution()");
+  PetscCheck(c->force, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE,
+             "TS of type " TSCENTRAL " needs forces: call TSCentralSetForces()");
+  if (!c->f) PetscCall(VecDuplicate(ts->vec_sol, &c->f));
+  if (!c->f_old && c->b != 0.5) PetscCall(VecDuplicate(ts->vec_sol, &c->f_old));
+  if (c->f_old) PetscCall(VecSet(c->f_old, 0));
+  PetscCall(TSGetAdapt(ts, &ts->adapt));
+  PetscCall(TSAdaptCandidatesClear(ts->adapt));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TSReset_Central(TS ts)
+{
+  TS_Central *c = (TS_Central *)ts->data;
+
+  PetscFunctionBegin;
+  PetscCall(VecDestroy(&c->minv));
+  PetscCall(VecDestroy(&c->f));
+  PetscCall(VecDestroy(&c->f_old));
+  c->dt_old = 0;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TSDestroy_Central(TS ts)
+{
+  PetscFunctionBegin;
+  PetscCall(TSReset_Central(ts));
+  PetscCall(PetscFree(ts->data));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TSSetFromOptions_Central(TS ts, PetscOptionItems *PetscOptionsObject)
+{
+  TS_Central *c = (TS_Central *)ts->data;
+
+  PetscFunctionBegin;
+  PetscOptionsHeadBegin(PetscOptionsObject, "Central differences");
+  PetscCall(PetscOptionsReal("-ts_central_b", "1/2: central differences; up to 1: dissipative", "tscentral.h", c->b,
+                             &c->b, NULL));
+  PetscOptionsHeadEnd();
+  PetscCheck(c->b >= 0.5 && c->b <= 1, PetscObjectComm((PetscObject)ts), PETSC_ERR_USER_INPUT,
+             "-ts_central_b %.6g must lie between 0.5 (central differences) and 1", (double)c->b);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TSView_Central(TS ts, PetscViewer viewer)
+{
+  const TS_Central *c = (TS_Central *)ts->data;
+
+  PetscFunctionBegin;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  b=%.6g%s\n", (double)c->b, c->b == 0.5 ? " (central differences)" : ""));
+  PetscFunctionReturn(0);
+}
+
+/* Between the last two displacements, from the velocity that led from one to the other */
+static PetscErrorCode TSInterpolate_Central(TS ts, PetscReal t, Vec u)
+{
+  PetscFunctionBegin;
+  PetscCall(VecWAXPY(u, t - ts->ptime, ts->vec_dot, ts->vec_sol));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TSCentralSetForces(TS ts, Vec minv, CentralForce force, CentralForce constraint, void *ctx)
+{
+  TS_Central *c = (TS_Central *)ts->data;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectReference((PetscObject)minv));
+  PetscCall(VecDestroy(&c->minv));
+  c->minv       = minv;
+  c->force      = force;
+  c->constraint = constraint;
+  c->ctx        = ctx;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TSCentralGetB(TS ts, PetscReal *b)
+{
+  PetscFunctionBegin;
+  *b = ((TS_Central *)ts->data)->b;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TSCentralGetForces(TS ts, Vec *f, Vec *f_old)
+{
+  const TS_Central *c = (TS_Central *)ts->data;
+
+  PetscFunctionBegin;
+  *f     = c->f;
+  *f_old = c->f_old;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TSCentralGetLastStep(TS ts, PetscReal *dt_old)
+{
+  PetscFunctionBegin;
+  *dt_old = ((TS_Central *)ts->data)->dt_old;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TSCentralSetLastStep(TS ts, PetscReal dt_old)
+{
+  PetscFunctionBegin;
+  ((TS_Central *)ts->data)->dt_old = dt_old;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TSCentralEvaluate(TS ts)
+{
+  CentralStep step;
+
+  PetscFunctionBegin;
+  PetscCall(CentralDescribe(ts, &step));
+  PetscCall(CentralComputeForces(ts, &step));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TSCreate_Central(TS ts)
+{
+  TS_Central *c;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&c));
+  c->b                    = 0.5;
+  ts->data                = c;
+  ts->ops->setup          = TSSetUp_Central;
+  ts->ops->step           = TSStep_Central;
+  ts->ops->reset          = TSReset_Central;
+  ts->ops->destroy        = TSDestroy_Central;
+  ts->ops->setfromoptions = TSSetFromOptions_Central;
+  ts->ops->view           = TSView_Central;
+  ts->ops->interpolate    = TSInterpolate_Central;
+  ts->usessnes            = PETSC_FALSE;
+  ts->default_adapt_type  = TSADAPTNONE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TSCentralRegister(void)
+{
+  PetscFunctionBegin;
+  PetscCall(TSRegister(TSCENTRAL, TSCreate_Central));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,218 @@
+/*
+   Bodies: the pieces of the mesh that hang together by nodes.
+
+   On each rank a union-find over the corners of its cells (R. E. Tarjan, J. ACM 22, 1975) joins the local vertices into
+   pieces. Each piece takes the least global number of its vertices; shared vertices carry it from rank to rank until
+   nothing changes, at most as often as there are ranks in a row along a body.
+*/
+#include "model/modelimpl.h"
+#include "base/gather.h"
+#include <petscsf.h>
+#include <stdlib.h>
+
+#define NO_BODY PETSC_MAX_INT
+
+/* What orders bodies: their lexicographically first node, then, where two bodies share that place, the negative of the
+   last one; m */
+typedef struct {
+  PetscReal at[6];
+  PetscInt  body;
+} BodyKey;
+
+/* First vertex of the piece, with the path to it halved */
+static PetscInt PieceFind(PetscInt parent[], PetscInt v)
+{
+  while (parent[v] != v) v = parent[v] = parent[parent[v]];
+  return v;
+}
+
+/* A vertex of the same piece for each local vertex, one for the whole piece, itself where it has no cells */
+static PetscErrorCode PiecesFind(Model model, PetscInt n_vertices, PetscInt piece[])
+{
+  const PetscInt n_nodes = model->element->n_nodes;
+  PetscInt       cStart, cEnd, vStart;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, &cEnd));
+  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, NULL));
+  for (PetscInt v = 0; v < n_vertices; v++) piece[v] = v;
+  for (PetscInt c = 0; c < cEnd - cStart; c++) {
+    const PetscInt *const corners = &model->cell_vertices[n_nodes * c];
+
+    for (PetscInt i = 1; i < n_nodes; i++)
+      piece[PieceFind(piece, corners[i] - vStart)] = PieceFind(piece, corners[0] - vStart);
+  }
+  for (PetscInt v = 0; v < n_vertices; v++) piece[v] = PieceFind(piece, v);
+  PetscFunctionReturn(0);
+}
+
+/* Global number of each local vertex that has cells, else NO_BODY */
+static PetscErrorCode VerticesNumber(Model model, PetscInt vStart, PetscInt vEnd, PetscInt number[])
+{
+  PetscSection global;
+  DM           cdm;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMGetCoordinateDM(model->dm, &cdm));
+  PetscCall(DMGetGlobalSection(cdm, &global));
+  for (PetscInt v = vStart; v < vEnd; v++) {
+    PetscInt n_edges;
+
+    PetscCall(PetscSectionGetOffset(global, v, &number[v - vStart]));
+    if (number[v - vStart] < 0) number[v - vStart] = -(number[v - vStart] + 1);
+    PetscCall(DMPlexGetSupportSize(model->dm, v, &n_edges));
+    if (!n_edges) number[v - vStart] = NO_BODY;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Least label of the vertices of each local piece */
+static void LabelsSpread(PetscInt n, const PetscInt piece[], PetscInt label[])
+{
+  for (PetscInt v = 0; v < n; v++) label[piece[v]] = PetscMin(label[piece[v]], label[v]);
+  for (PetscInt v = 0; v < n; v++) label[v] = label[piece[v]];
+}
+
+/* Least label of each shared point over its ranks; label and work [points of the DM] */
+static PetscErrorCode LabelsShare(DM dm, PetscInt n_points, PetscInt label[], PetscInt work[])
+{
+  PetscSF  sf;
+  PetscInt n_roots;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMGetPointSF(dm, &sf));
+  PetscCall(PetscSFGetGraph(sf, &n_roots, NULL, NULL, NULL));
+  if (n_roots < 0) PetscFunctionReturn(0); /* a mesh on one rank shares nothing */
+  PetscCall(PetscArraycpy(work, label, n_points));
+  PetscCall(PetscSFReduceBegin(sf, MPIU_INT, work, label, MPI_MIN));
+  PetscCall(PetscSFReduceEnd(sf, MPIU_INT, work, label, MPI_MIN));
+  PetscCall(PetscArraycpy(work, label, n_points));
+  PetscCall(PetscSFBcastBegin(sf, MPIU_INT, work, label, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(sf, MPIU_INT, work, label, MPI_REPLACE));
+  PetscFunctionReturn(0);
+}
+
+/* The least global number of the vertices of its body for each local vertex, NO_BODY without cells */
+static PetscErrorCode BodiesLabel(Model model, PetscInt vStart, PetscInt vEnd, PetscInt label_of_vertex[])
+{
+  const PetscInt n = vEnd - vStart;
+  PetscInt       n_points, *label, *work, *piece;
+  PetscBool      same;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetChart(model->dm, NULL, &n_points));
+  PetscCall(PetscMalloc3(n_points, &label, n_points, &work, n, &piece));
+  for (PetscInt p = 0; p < n_points; p++) label[p] = NO_BODY;
+  PetscCall(PiecesFind(model, n, piece));
+  PetscCall(VerticesNumber(model, vStart, vEnd, &label[vStart]));
+  do {
+    PetscCall(PetscArraycpy(label_of_vertex, &label[vStart], n));
+    LabelsSpread(n, piece, &label[vStart]);
+    PetscCall(LabelsShare(model->dm, n_points, label, work));
+    PetscCall(PetscArraycmp(label_of_vertex, &label[vStart], n, &same));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPIU_BOOL, MPI_LAND, model->comm));
+  } while (!same);
+  PetscCall(PetscFree3(label, work, piece));
+  PetscFunctionReturn(0);
+}
+
+/* All labels, ascending, on every rank: each is the number of one vertex, listed by the rank that owns it */
+static PetscErrorCode LabelsGather(Model model, PetscInt vStart, PetscInt vEnd, const PetscInt label[],
+                                   PetscInt *n_bodies, PetscInt **labels)
+{
+  PetscInt     n = 0, *own;
+  PetscSection global;
+  DM           cdm;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMGetCoordinateDM(model->dm, &cdm));
+  PetscCall(DMGetGlobalSection(cdm, &global));
+  PetscCall(PetscMalloc1(vEnd - vStart, &own));
+  for (PetscInt v = vStart; v < vEnd; v++) {
+    PetscInt offset;
+
+    PetscCall(PetscSectionGetOffset(global, v, &offset));
+    if (offset == label[v - vStart]) own[n++] = offset;
+  }
+  PetscCall(GatherRecords(model->comm, n, sizeof(PetscInt), own, n_bodies, labels));
+  PetscCall(PetscSortInt(*n_bodies, *labels));
+  PetscCall(PetscFree(own));
+  PetscFunctionReturn(0);
+}
+
+/* Keys of the bodies, component by component: the least value among the vertices that attain those before. body [local
+   vertices], -1 without */
+static PetscErrorCode BodyKeysFind(Model model, PetscInt n_vertices, const PetscInt body[], PetscInt n_bodies,
+                                   BodyKey key[])
+{
+  PetscMPIInt count;
+  PetscReal  *least;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMPIIntCast(n_bodies, &count));
+  PetscCall(PetscMalloc1(n_bodies, &least));
+  for (int k = 0; k < 6; k++) {
+    const PetscReal sign = k < 3 ? 1 : -1;
+
+    for (PetscInt b = 0; b < n_bodies; b++) least[b] = PETSC_MAX_REAL;
+    for (PetscInt v = 0; v < n_vertices; v++) {
+      const PetscReal *x       = &model->coordinates[3 * v];
+      PetscBool        attains = body[v] >= 0 ? PETSC_TRUE : PETSC_FALSE;
+
+      for (int j = k - k % 3; j < k && attains; j++)
+        attains = sign * x[j % 3] == key[body[v]].at[j] ? PETSC_TRUE : PETSC_FALSE;
+      if (attains) least[body[v]] = PetscMin(least[body[v]], sign * x[k % 3]);
+    }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, least, count, MPIU_REAL, MPI_MIN, model->comm));
+    for (PetscInt b = 0; b < n_bodies; b++) key[b].at[k] = least[b];
+  }
+  PetscCall(PetscFree(least));
+  PetscFunctionReturn(0);
+}
+
+static int BodyKeyCompare(const void *a, const void *b)
+{
+  const PetscReal *x = ((const BodyKey *)a)->at, *y = ((const BodyKey *)b)->at;
+  int              k = 0;
+
+  while (k < 5 && x[k] == y[k]) k++;
+  return (x[k] > y[k]) - (x[k] < y[k]);
+}
+
+/* Renumbers bodies in the order of their keys */
+static PetscErrorCode BodiesSort(Model model, PetscInt n_vertices, PetscInt n_bodies, PetscInt body[])
+{
+  PetscInt *place;
+  BodyKey  *key;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n_bodies, &place, n_bodies, &key));
+  for (PetscInt b = 0; b < n_bodies; b++) key[b].body = b;
+  PetscCall(BodyKeysFind(model, n_vertices, body, n_bodies, key));
+  qsort(key, (size_t)n_bodies, sizeof(*key), BodyKeyCompare);
+  for (PetscInt b = 0; b < n_bodies; b++) place[key[b].body] = b;
+  for (PetscInt v = 0; v < n_vertices; v++)
+    if (body[v] >= 0) body[v] = place[body[v]];
+  PetscCall(PetscFree2(place, key));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelGetBodies(Model model, PetscInt *n_bodies, PetscInt **body)
+{
+  PetscInt vStart, vEnd, *labels;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, &vEnd));
+  PetscCall(PetscMalloc1(vEnd - vStart, body));
+  PetscCall(BodiesLabel(model, vStart, vEnd, *body));
+  PetscCall(LabelsGather(model, vStart, vEnd, *body, n_bodies, &labels));
+  for (PetscInt v = 0; v < vEnd - vStart; v++) {
+    const PetscInt label = (*body)[v];
+
+    (*body)[v] = -1;
+    if (label != NO_BODY) PetscCall(PetscFindInt(label, *n_bodies, labels, &(*body)[v]));
+  }
+  PetscCall(PetscFree(labels));
+  PetscCall(BodiesSort(model, vEnd - vStart, *n_bodies, *body));
+  PetscFunctionReturn(0);
+}

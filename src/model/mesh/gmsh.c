@@ -1,0 +1,299 @@
+/*
+   MeshReader of Gmsh files, formats 2.2 and 4.1, text and binary (Gmsh reference manual, "MSH file format").
+
+   A file is a row of sections $Name ... $EndName. Formats differ in how an element finds its physical groups: 2.2
+   writes one group with each element, and an element of two groups twice; 4.1 writes the groups with the geometric
+   entity. Labels of PETSc's own reader are not used: it takes the elementary tag of 2.2 for a physical one, and in
+   3.18 knows no curves.
+*/
+#include "gmsh.h"
+
+#include <errno.h>
+
+static const GmshShape shapes[] = {
+  {15, 0, 1, DM_POLYTOPE_POINT        },
+  {1,  1, 2, DM_POLYTOPE_SEGMENT      },
+  {2,  2, 3, DM_POLYTOPE_TRIANGLE     },
+  {3,  2, 4, DM_POLYTOPE_QUADRILATERAL},
+  {4,  3, 4, DM_POLYTOPE_TETRAHEDRON  },
+  {5,  3, 8, DM_POLYTOPE_HEXAHEDRON   },
+  {6,  3, 6, DM_POLYTOPE_TRI_PRISM    },
+  {7,  3, 5, DM_POLYTOPE_PYRAMID      },
+};
+
+/* What opens $Nodes and $Elements: the number of items, and in format 4.1 of blocks (then smallest and largest tag)
+   */
+static PetscInt ReadHeader(MeshReader *r, PetscInt *n_blocks)
+{
+  PetscInt n;
+
+  *n_blocks = 0;
+  if (r->version == 22) return ReadCountLine(r);
+  *n_blocks = ReadCount(r, SIZE_BYTES);
+  n         = ReadCount(r, SIZE_BYTES);
+  for (int skip = 0; skip < 2; skip++) (void)ReadInteger(r, SIZE_BYTES);
+  return n;
+}
+
+static const GmshShape *ReadShape(MeshReader *r)
+{
+  const PetscInt type = ReadTag(r, INT_BYTES);
+
+  for (size_t s = 0; s < PETSC_STATIC_ARRAY_LENGTH(shapes); s++) {
+    if (shapes[s].type == type) return &shapes[s];
+  }
+  ReaderErrorSet(r->error, PETSC_ERR_SUP,
+                 "elements of type %" PetscInt_FMT " are not supported; elements of first order are", type);
+  return &shapes[0];
+}
+
+static PetscInt FindEntity(const GmshMesh *mesh, PetscInt dim, PetscInt tag)
+{
+  for (PetscInt e = 0; e < mesh->n_entities; e++) {
+    if (mesh->entities[e].dim == dim && mesh->entities[e].tag == tag) return e;
+  }
+  return -1;
+}
+
+/* $MeshFormat: version, kind and size of numbers; binary files add the integer 1 */
+static PetscErrorCode ReadFormat(MeshReader *r, GmshMesh *mesh)
+{
+  char   line[64] = "";
+  double version  = 0;
+  int    binary = 0, bytes = 0;
+
+  PetscFunctionBeginUser;
+  (void)mesh;
+  if (!fgets(line, sizeof(line), r->file) || sscanf(line, "%lf %d %d", &version, &binary, &bytes) != 3) {
+    ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "the file has no valid $MeshFormat");
+  }
+  r->version = (PetscInt)(10 * version + 0.5);
+  r->binary  = binary ? PETSC_TRUE : PETSC_FALSE;
+  if ((r->version != 22 && r->version != 41) || bytes != SIZE_BYTES) {
+    ReaderErrorSet(r->error, PETSC_ERR_SUP,
+                   "format %.6g with numbers of %d bytes is unsupported; 2.2 and 4.1 with 8 bytes are", version, bytes);
+  }
+  if (r->binary && ReadInteger(r, INT_BYTES) != 1) {
+    ReaderErrorSet(r->error, PETSC_ERR_SUP, "the file was written with another byte order; write it here, or as text");
+  }
+  PetscFunctionReturn(0);
+}
+
+/* $PhysicalNames: dimension, tag and name of each group; in format 2.2 the groups are the entities */
+static PetscErrorCode ReadNames(MeshReader *r, GmshMesh *mesh)
+{
+  char line[512];
+
+  PetscFunctionBeginUser;
+  mesh->n_groups = ReadCountLine(r);
+  PetscCall(PetscCalloc1(mesh->n_groups, &mesh->groups));
+  for (PetscInt g = 0; g < mesh->n_groups && !r->error->code; g++) {
+    GmshGroup *group = &mesh->groups[g];
+    int        dim, tag;
+
+    if (!fgets(line, sizeof(line), r->file) || sscanf(line, "%d %d \"%127[^\"]\"", &dim, &tag, group->name) != 3) {
+      ReaderErrorSet(r->error, PETSC_ERR_FILE_READ,
+                     "line %" PetscInt_FMT " of $PhysicalNames is not: dimension tag \"name\"", g + 2);
+      break;
+    }
+    group->dim = dim;
+    group->tag = tag;
+  }
+  if (r->version == 41) PetscFunctionReturn(0);
+  mesh->n_entities = mesh->n_groups;
+  PetscCall(PetscCalloc1(mesh->n_entities, &mesh->entities));
+  for (PetscInt g = 0; g < mesh->n_groups; g++) {
+    mesh->entities[g] = (GmshEntity){mesh->groups[g].dim, mesh->groups[g].tag, 1, {mesh->groups[g].tag}};
+  }
+  PetscFunctionReturn(0);
+}
+
+/* $Entities (4.1): tag, box (a point for dimension 0), physical groups, bounding entities */
+static PetscErrorCode ReadEntities(MeshReader *r, GmshMesh *mesh)
+{
+  PetscInt  count[4], e = 0;
+  PetscReal box[6];
+
+  PetscFunctionBeginUser;
+  for (PetscInt dim = 0; dim < 4; dim++) mesh->n_entities += count[dim] = ReadCount(r, SIZE_BYTES);
+  PetscCall(PetscCalloc1(mesh->n_entities, &mesh->entities));
+  for (PetscInt dim = 0; dim < 4; dim++) {
+    for (PetscInt i = 0; i < count[dim] && !r->error->code; i++, e++) {
+      GmshEntity *entity = &mesh->entities[e];
+
+      entity->dim = dim;
+      entity->tag = ReadTag(r, INT_BYTES);
+      ReadReals(r, dim ? 6 : 3, box);
+      entity->n_physical = ReadCount(r, SIZE_BYTES);
+      if (entity->n_physical > GMSH_MAX_PHYSICAL) {
+        ReaderErrorSet(r->error, PETSC_ERR_SUP,
+                       "entity %" PetscInt_FMT " is in %" PetscInt_FMT " physical groups; at most %d are supported",
+                       entity->tag, entity->n_physical, GMSH_MAX_PHYSICAL);
+        break;
+      }
+      for (PetscInt p = 0; p < entity->n_physical; p++) entity->physical[p] = ReadTag(r, INT_BYTES);
+      for (PetscInt n = dim ? ReadCount(r, SIZE_BYTES) : 0; n > 0; n--) (void)ReadTag(r, INT_BYTES);
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Nodes of one entity (4.1): dimension and tag of the entity, whether parameters follow x, y, z, count, all tags,
+   all coordinates */
+static PetscInt ReadNodeBlock(MeshReader *r, GmshMesh *mesh, PetscInt first)
+{
+  const PetscInt dim = ReadTag(r, INT_BYTES), tag = ReadTag(r, INT_BYTES), parametric = ReadTag(r, INT_BYTES);
+  const PetscInt n = ReadCount(r, SIZE_BYTES);
+  PetscReal      parameter[3];
+
+  if (n > mesh->n_nodes - first || dim < 0 || dim > 3) {
+    ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "entity %" PetscInt_FMT " exceeds the number of $Nodes", tag);
+    return first;
+  }
+  for (PetscInt i = first; i < first + n; i++) mesh->node_tags[i] = ReadTag(r, SIZE_BYTES);
+  for (PetscInt i = first; i < first + n; i++) {
+    ReadReals(r, 3, mesh->x + 3 * i);
+    ReadReals(r, parametric ? dim : 0, parameter);
+  }
+  return first + n;
+}
+
+static PetscErrorCode ReadNodes(MeshReader *r, GmshMesh *mesh)
+{
+  PetscInt n_blocks, read = 0;
+
+  PetscFunctionBeginUser;
+  mesh->n_nodes = ReadHeader(r, &n_blocks);
+  PetscCall(PetscMalloc2(mesh->n_nodes, &mesh->node_tags, 3 * mesh->n_nodes, &mesh->x));
+  for (PetscInt b = 0; b < n_blocks && !r->error->code; b++) read = ReadNodeBlock(r, mesh, read);
+  for (; r->version == 22 && read < mesh->n_nodes && !r->error->code; read++) {
+    mesh->node_tags[read] = ReadTag(r, INT_BYTES);
+    ReadReals(r, 3, mesh->x + 3 * read);
+  }
+  if (read < mesh->n_nodes) ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "$Nodes holds less than it announces");
+  PetscFunctionReturn(0);
+}
+
+/* Elements of format 2.2: number, type, tags (the first is the physical group), nodes; binary files hold blocks of
+   one type */
+static void ReadElements22(MeshReader *r, GmshMesh *mesh)
+{
+  for (PetscInt e = 0; e < mesh->n_elements && !r->error->code;) {
+    PetscInt         number = r->binary ? 0 : ReadTag(r, INT_BYTES);
+    const GmshShape *shape  = ReadShape(r);
+    const PetscInt   last = e + (r->binary ? ReadCount(r, INT_BYTES) : 1), n_tags = ReadCount(r, INT_BYTES);
+
+    if (last == e || last > mesh->n_elements) {
+      ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "a block of $Elements is empty or longer than announced");
+    }
+    for (; e < last && !r->error->code; e++) {
+      GmshElement *element  = &mesh->elements[e];
+      PetscInt     physical = 0;
+
+      if (r->binary) number = ReadTag(r, INT_BYTES);
+      for (PetscInt t = 0; t < n_tags; t++) {
+        const PetscInt tag = ReadTag(r, INT_BYTES);
+
+        if (t == 0) physical = tag;
+      }
+      *element = (GmshElement){.shape = shape, .number = number, .entity = FindEntity(mesh, shape->dim, physical)};
+      for (PetscInt v = 0; v < shape->n_nodes; v++) element->node[v] = ReadTag(r, INT_BYTES);
+    }
+  }
+}
+
+/* Elements of format 4.1: blocks of one entity and type; number and nodes of each */
+static void ReadElements41(MeshReader *r, GmshMesh *mesh, PetscInt n_blocks)
+{
+  PetscInt e = 0;
+
+  for (PetscInt b = 0; b < n_blocks && !r->error->code; b++) {
+    const PetscInt   dim = ReadTag(r, INT_BYTES), entity = FindEntity(mesh, dim, ReadTag(r, INT_BYTES));
+    const GmshShape *shape = ReadShape(r);
+    const PetscInt   last  = e + ReadCount(r, SIZE_BYTES);
+
+    if (last > mesh->n_elements)
+      ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "$Elements holds more than it announces");
+    for (; e < last && !r->error->code; e++) {
+      mesh->elements[e] = (GmshElement){.shape = shape, .number = ReadTag(r, SIZE_BYTES), .entity = entity};
+      for (PetscInt v = 0; v < shape->n_nodes; v++) mesh->elements[e].node[v] = ReadTag(r, SIZE_BYTES);
+    }
+  }
+  if (e < mesh->n_elements) ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "$Elements holds less than it announces");
+}
+
+static PetscErrorCode ReadElements(MeshReader *r, GmshMesh *mesh)
+{
+  PetscInt n_blocks;
+
+  PetscFunctionBeginUser;
+  mesh->n_elements = ReadHeader(r, &n_blocks);
+  PetscCall(PetscMalloc1(mesh->n_elements, &mesh->elements));
+  if (r->version == 41)
+    ReadElements41(r, mesh, n_blocks);
+  else
+    ReadElements22(r, mesh);
+  PetscFunctionReturn(0);
+}
+
+/* Reads the section whose first line has just been read, up to its end */
+static PetscErrorCode ReadSection(MeshReader *r, const char line[], GmshMesh *mesh)
+{
+  static const struct {
+    const char *name;
+    PetscErrorCode (*read)(MeshReader *, GmshMesh *);
+  } sections[] = {
+    {"MeshFormat",    ReadFormat  },
+    {"PhysicalNames", ReadNames   },
+    {"Entities",      ReadEntities},
+    {"Nodes",         ReadNodes   },
+    {"Elements",      ReadElements},
+  };
+  char rest[512] = "";
+
+  PetscFunctionBeginUser;
+  sscanf(line, "$%31s", r->section);
+  for (size_t s = 0; s < PETSC_STATIC_ARRAY_LENGTH(sections); s++) {
+    if (!strcmp(r->section, sections[s].name)) PetscCall(sections[s].read(r, mesh));
+  }
+  while (!r->error->code && strncmp(rest, "$End", 4)) {
+    if (!fgets(rest, sizeof(rest), r->file))
+      ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "the file ends within $%s", r->section);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GmshMeshRead(const char file[], GmshMesh *mesh, ReaderError *error)
+{
+  MeshReader r        = {.error = error};
+  char       line[64] = "";
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(mesh, sizeof(*mesh)));
+  PetscCall(PetscMemzero(error, sizeof(*error)));
+  r.file = fopen(file, "rb");
+  if (!r.file || fseek(r.file, 0, SEEK_END))
+    ReaderErrorSet(error, PETSC_ERR_FILE_OPEN, "%s", strerror(errno));
+  else
+    r.most = PetscMin(ftell(r.file), PETSC_MAX_INT / 32);
+  if (r.file) rewind(r.file);
+  while (!error->code && !mesh->elements && fgets(line, sizeof(line), r.file)) {
+    if (line[0] == '$')
+      PetscCall(ReadSection(&r, line, mesh));
+    else if (!r.version)
+      ReaderErrorSet(error, PETSC_ERR_FILE_READ, "the file does not begin with $MeshFormat");
+  }
+  if (r.file) fclose(r.file);
+  if (!mesh->n_elements) ReaderErrorSet(error, PETSC_ERR_FILE_READ, "the file holds no elements");
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GmshMeshDestroy(GmshMesh *mesh)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(mesh->groups));
+  PetscCall(PetscFree(mesh->entities));
+  PetscCall(PetscFree2(mesh->node_tags, mesh->x));
+  PetscCall(PetscFree(mesh->elements));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,270 @@
+/*
+   Import: a Gmsh file as a DMPlex of its volume elements. A physical group becomes a label of its name with value
+   1: on cells for volumes, on faces for surfaces, on vertices for curves and points.
+
+   Nodes that belong to no volume element (centres of arcs, say) are left out; a named group that needs one is an
+   error, and so is a named surface element that is no face of a cell. Elements of lower dimension without a named
+   group do nothing.
+*/
+#include "gmsh.h"
+#include "model/modelimpl.h"
+
+/* Raises on all ranks what rank 0 found wrong */
+static PetscErrorCode RaiseError(MPI_Comm comm, const char file[], ReaderError *error)
+{
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Bcast(error, (PetscMPIInt)sizeof(*error), MPI_BYTE, 0, comm));
+  PetscCheck(!error->code, comm, error->code, "Option -model_mesh %s: %s", file, error->text);
+  PetscFunctionReturn(0);
+}
+
+/* Shape of the volume elements and their number; they must be of one shape and some of them be in a named group */
+static const GmshShape *FindCells(const GmshMesh *mesh, PetscInt *n_cells, ReaderError *error)
+{
+  const GmshShape *shape  = NULL;
+  PetscBool        volume = PETSC_FALSE;
+
+  *n_cells = 0;
+  for (PetscInt e = 0; e < mesh->n_elements && !error->code; e++) {
+    const GmshShape *s = mesh->elements[e].shape;
+
+    if (s->dim < 3) continue;
+    if (shape && shape != s) {
+      ReaderErrorSet(error, PETSC_ERR_SUP, "the volumes mix %s and %s elements; one shape is supported",
+                     DMPolytopeTypes[shape->polytope], DMPolytopeTypes[s->polytope]);
+    }
+    shape = s;
+    (*n_cells)++;
+  }
+  for (PetscInt g = 0; g < mesh->n_groups; g++) volume = mesh->groups[g].dim == 3 ? PETSC_TRUE : volume;
+  if (!shape)
+    ReaderErrorSet(error, PETSC_ERR_USER_INPUT,
+                   "there is no volume element; mesh the volumes and put them into physical volumes");
+  if (!volume) {
+    ReaderErrorSet(error, PETSC_ERR_USER_INPUT,
+                   "no physical volume has a name; name every body, as in Physical Volume(\"disc\") = {1};");
+  }
+  return shape;
+}
+
+/* Replaces the tags of the elements' nodes by their places in the file */
+static PetscErrorCode FindNodes(GmshMesh *mesh, ReaderError *error)
+{
+  PetscInt *tags, *index;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(mesh->n_nodes, &tags, mesh->n_nodes, &index));
+  PetscCall(PetscArraycpy(tags, mesh->node_tags, mesh->n_nodes));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) index[n] = n;
+  PetscCall(PetscSortIntWithArray(mesh->n_nodes, tags, index));
+  for (PetscInt e = 0; e < mesh->n_elements; e++) {
+    GmshElement *element = &mesh->elements[e];
+
+    for (PetscInt v = 0; v < element->shape->n_nodes && !error->code; v++) {
+      PetscInt at;
+
+      PetscCall(PetscFindInt(element->node[v], mesh->n_nodes, tags, &at));
+      if (at < 0) {
+        ReaderErrorSet(error, PETSC_ERR_FILE_READ,
+                       "element %" PetscInt_FMT " has node %" PetscInt_FMT ", which $Nodes does not hold",
+                       element->number, element->node[v]);
+      } else
+        element->node[v] = index[at];
+    }
+  }
+  PetscCall(PetscFree2(tags, index));
+  PetscFunctionReturn(0);
+}
+
+/* Vertex of each node in the order of the file, -1 where no volume element has it; vertex [n_nodes] */
+static PetscInt NumberVertices(const GmshMesh *mesh, PetscInt vertex[])
+{
+  PetscInt n = 0;
+
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) vertex[i] = -1;
+  for (PetscInt e = 0; e < mesh->n_elements; e++) {
+    const GmshElement *element = &mesh->elements[e];
+
+    for (PetscInt v = 0; element->shape->dim == 3 && v < element->shape->n_nodes; v++) vertex[element->node[v]] = 0;
+  }
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) vertex[i] = vertex[i] < 0 ? -1 : n++;
+  return n;
+}
+
+/* The mesh from the volume elements on rank 0; `shape` is NULL and `vertex` unused on the others */
+static PetscErrorCode CreateCells(MPI_Comm comm, const GmshMesh *mesh, const GmshShape *shape, PetscInt n_cells,
+                                  const PetscInt vertex[], PetscInt n_vertices, DM *dm)
+{
+  const PetscInt n_corners = shape ? shape->n_nodes : 0;
+  PetscInt      *cells, n = 0;
+  PetscReal     *x;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n_cells * n_corners, &cells, 3 * n_vertices, &x));
+  for (PetscInt e = 0; e < mesh->n_elements; e++) {
+    PetscInt *cell = cells + n_corners * n;
+
+    if (mesh->elements[e].shape->dim < 3) continue;
+    for (PetscInt v = 0; v < n_corners; v++) cell[v] = vertex[mesh->elements[e].node[v]];
+    PetscCall(DMPlexInvertCell(shape->polytope, cell));
+    n++;
+  }
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
+    if (vertex[i] >= 0) PetscCall(PetscArraycpy(x + 3 * vertex[i], mesh->x + 3 * i, 3));
+  }
+  PetscCall(DMPlexCreateFromCellListPetsc(comm, 3, n_cells, n_vertices, n_corners, PETSC_TRUE, cells, 3, x, dm));
+  PetscCall(PetscFree2(cells, x));
+  PetscFunctionReturn(0);
+}
+
+/* Two cells in one place give a face more than two cells */
+static PetscErrorCode CheckOverlap(DM dm, ReaderError *error)
+{
+  PetscInt fStart, fEnd, n;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetHeightStratum(dm, 1, &fStart, &fEnd));
+  for (PetscInt f = fStart; f < fEnd; f++) {
+    PetscCall(DMPlexGetSupportSize(dm, f, &n));
+    if (n > 2) {
+      ReaderErrorSet(error, PETSC_ERR_USER_INPUT,
+                     "%" PetscInt_FMT " volume elements share one face; is a volume in two physical volumes?", n);
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Labels of all groups, on every rank */
+static PetscErrorCode CreateLabels(DM dm, const char file[], const GmshMesh *mesh)
+{
+  const MPI_Comm comm = PetscObjectComm((PetscObject)dm);
+  PetscInt       n    = mesh->n_groups;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Bcast(&n, 1, MPIU_INT, 0, comm));
+  for (PetscInt g = 0; g < n; g++) {
+    char      name[sizeof(mesh->groups->name)] = "";
+    PetscBool taken;
+
+    if (g < mesh->n_groups) PetscCall(PetscStrncpy(name, mesh->groups[g].name, sizeof(name)));
+    PetscCallMPI(MPI_Bcast(name, (PetscMPIInt)sizeof(name), MPI_CHAR, 0, comm));
+    PetscCall(DMHasLabel(dm, name, &taken));
+    PetscCheck(!taken, comm, PETSC_ERR_USER_INPUT,
+               "Option -model_mesh %s: the physical name \"%s\" stands for two groups or is reserved; choose another",
+               file, name);
+    PetscCall(DMCreateLabel(dm, name));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The points of the mesh that stand for an element: its cell, its face, or its vertices; n is 0 without any */
+static PetscErrorCode FindPoints(DM dm, const GmshElement *element, PetscInt cell, const PetscInt vertex[], PetscInt *n,
+                                 PetscInt points[])
+{
+  const PetscInt  n_nodes = element->shape->n_nodes;
+  const PetscInt *face;
+  PetscInt        vStart, vertices[GMSH_MAX_NODES], n_faces;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
+  *n = 0;
+  for (PetscInt v = 0; v < n_nodes; v++) {
+    if (vertex[element->node[v]] < 0) PetscFunctionReturn(0);
+    vertices[v] = vStart + vertex[element->node[v]];
+  }
+  if (element->shape->dim == 3) {
+    *n        = 1;
+    points[0] = cell;
+  } else if (element->shape->dim == 2) {
+    PetscCall(DMPlexGetFullJoin(dm, n_nodes, vertices, &n_faces, &face));
+    *n = n_faces;
+    if (n_faces) points[0] = face[0];
+    PetscCall(DMPlexRestoreJoin(dm, n_nodes, vertices, &n_faces, &face));
+  } else {
+    *n = n_nodes;
+    PetscCall(PetscArraycpy(points, vertices, n_nodes));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Marks what stands for an element in each of its groups */
+static PetscErrorCode LabelElement(DM dm, const GmshMesh *mesh, const GmshElement *element, PetscInt cell,
+                                   const PetscInt vertex[], ReaderError *error)
+{
+  const GmshEntity *entity = &mesh->entities[element->entity];
+  PetscInt          n      = 0, points[GMSH_MAX_NODES];
+
+  PetscFunctionBeginUser;
+  PetscCall(FindPoints(dm, element, cell, vertex, &n, points));
+  for (PetscInt g = 0; g < mesh->n_groups; g++) {
+    const GmshGroup *group = &mesh->groups[g];
+
+    for (PetscInt p = 0; p < entity->n_physical; p++) {
+      if (group->dim != entity->dim || group->tag != entity->physical[p]) continue;
+      if (!n) {
+        ReaderErrorSet(error, PETSC_ERR_USER_INPUT,
+                       "element %" PetscInt_FMT " of physical group \"%s\" is no part of a volume element",
+                       element->number, group->name);
+      }
+      for (PetscInt i = 0; i < n; i++) PetscCall(DMSetLabelValue(dm, group->name, points[i], 1));
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Fills the labels; a group without elements is an error, since a support or contact on it would do nothing */
+static PetscErrorCode FillLabels(DM dm, const GmshMesh *mesh, const PetscInt vertex[], ReaderError *error)
+{
+  PetscInt cell = 0, n;
+
+  PetscFunctionBeginUser;
+  for (PetscInt e = 0; e < mesh->n_elements; e++) {
+    const GmshElement *element = &mesh->elements[e];
+
+    if (element->entity >= 0) PetscCall(LabelElement(dm, mesh, element, cell, vertex, error));
+    if (element->shape->dim == 3) cell++;
+  }
+  for (PetscInt g = 0; g < mesh->n_groups; g++) {
+    PetscCall(DMGetStratumSize(dm, mesh->groups[g].name, 1, &n));
+    if (n) continue;
+    ReaderErrorSet(error, PETSC_ERR_USER_INPUT,
+                   "physical group \"%s\" has no elements (format 2.2 loses them with Mesh.SaveAll)",
+                   mesh->groups[g].name);
+  }
+  PetscFunctionReturn(0);
+}
+
+/*
+   ImportGmsh - a Gmsh file of format 2.2 or 4.1, text or binary, as an interpolated DMPlex, all of it on rank 0.
+   Collective.
+
+   Errors: PETSC_ERR_FILE_OPEN; PETSC_ERR_FILE_READ for a damaged file; PETSC_ERR_SUP for other formats, elements of
+   higher order and mixed shapes; PETSC_ERR_USER_INPUT without named physical volumes, for overlapping ones, for a
+   named group off the volumes and for a name that stands twice.
+*/
+PetscErrorCode ImportGmsh(MPI_Comm comm, const char file[], DM *dm)
+{
+  GmshMesh         mesh    = {0};
+  ReaderError      error   = {0};
+  const GmshShape *shape   = NULL;
+  PetscInt         n_cells = 0, n_vertices = 0, *vertex;
+  PetscMPIInt      rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0) PetscCall(GmshMeshRead(file, &mesh, &error));
+  if (rank == 0 && !error.code) PetscCall(FindNodes(&mesh, &error));
+  if (rank == 0) shape = FindCells(&mesh, &n_cells, &error);
+  PetscCall(RaiseError(comm, file, &error));
+  PetscCall(PetscMalloc1(mesh.n_nodes, &vertex));
+  if (rank == 0) n_vertices = NumberVertices(&mesh, vertex);
+  PetscCall(CreateCells(comm, &mesh, shape, n_cells, vertex, n_vertices, dm));
+  PetscCall(CheckOverlap(*dm, &error));
+  PetscCall(RaiseError(comm, file, &error));
+  PetscCall(CreateLabels(*dm, file, &mesh));
+  PetscCall(FillLabels(*dm, &mesh, vertex, &error));
+  PetscCall(RaiseError(comm, file, &error));
+  PetscCall(PetscFree(vertex));
+  PetscCall(GmshMeshDestroy(&mesh));
+  PetscFunctionReturn(0);
+}

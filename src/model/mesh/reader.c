@@ -1,0 +1,86 @@
+/*
+   Numbers from a file that is text or binary in the byte order of this machine.
+*/
+#include "reader.h"
+
+#include <stdarg.h>
+
+void ReaderErrorSet(ReaderError *error, PetscErrorCode code, const char format[], ...)
+{
+  va_list values;
+
+  if (error->code) return;
+  error->code = code;
+  va_start(values, format);
+  vsnprintf(error->text, sizeof(error->text), format, values);
+  va_end(values);
+}
+
+/* The next integer of INT_BYTES or SIZE_BYTES; 0 after an error */
+int64_t ReadInteger(MeshReader *r, int bytes)
+{
+  long long text  = 0;
+  int32_t   small = 0;
+  int64_t   value = 0;
+  int       n;
+
+  if (r->error->code) return 0;
+  if (!r->binary) {
+    n     = fscanf(r->file, "%lld", &text);
+    value = text;
+  } else if (bytes == INT_BYTES) {
+    n     = (int)fread(&small, INT_BYTES, 1, r->file);
+    value = small;
+  } else
+    n = (int)fread(&value, SIZE_BYTES, 1, r->file);
+  if (n == 1) return value;
+  ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "section $%s ends or holds no integer at some place", r->section);
+  return 0;
+}
+
+/* A tag, which fits into PetscInt */
+PetscInt ReadTag(MeshReader *r, int bytes)
+{
+  const int64_t value = ReadInteger(r, bytes);
+
+  if (value >= -PETSC_MAX_INT && value <= PETSC_MAX_INT) return (PetscInt)value;
+  ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "number %lld in section $%s is too large", (long long)value,
+                 r->section);
+  return 0;
+}
+
+/* A count that the file can hold and that leaves room for arrays of some words per item */
+static PetscInt CheckCount(MeshReader *r, int64_t count)
+{
+  if (count >= 0 && count <= r->most) return (PetscInt)count;
+  ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "section $%s announces %lld items", r->section, (long long)count);
+  return 0;
+}
+
+PetscInt ReadCount(MeshReader *r, int bytes)
+{
+  return CheckCount(r, ReadInteger(r, bytes));
+}
+
+/* A count on a line of its own, which is text in binary files too */
+PetscInt ReadCountLine(MeshReader *r)
+{
+  char line[64];
+
+  if (r->error->code) return 0;
+  if (fgets(line, sizeof(line), r->file)) return CheckCount(r, strtoll(line, NULL, 10));
+  ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "section $%s is empty", r->section);
+  return 0;
+}
+
+void ReadReals(MeshReader *r, PetscInt n, PetscReal value[])
+{
+  for (PetscInt i = 0; i < n; i++) {
+    double    x = 0;
+    const int m = r->error->code ? 0 : r->binary ? (int)fread(&x, sizeof(x), 1, r->file) : fscanf(r->file, "%lf", &x);
+
+    if (m != 1)
+      ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "section $%s ends or holds no number at some place", r->section);
+    value[i] = x;
+  }
+}

@@ -1,0 +1,113 @@
+/*
+   Bodies: names and materials from the options, and the part of each cell from the labels of the mesh.
+*/
+#include "model/modelimpl.h"
+#include <squeal/options.h>
+
+/* Material of one part; nothing has a default that could pass unnoticed except Rayleigh factors of zero */
+static PetscErrorCode PartSetFromOptions(MPI_Comm comm, Part *part)
+{
+  char prefix[128], title[160];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", part->name));
+  PetscCall(PetscSNPrintf(title, sizeof(title), "Part %s", part->name));
+  PetscOptionsBegin(comm, prefix, title, NULL);
+  PetscCall(PetscOptionsReal("-young", "Young's modulus, Pa (required)", "model.h", part->young, &part->young, NULL));
+  PetscCall(
+    PetscOptionsReal("-poisson", "Poisson's ratio, in (-1, 0.5)", "model.h", part->poisson, &part->poisson, NULL));
+  PetscCall(PetscOptionsReal("-density", "density, kg/m^3 (required)", "model.h", part->density, &part->density, NULL));
+  PetscCall(PetscOptionsReal("-alpha", "Rayleigh factor of the mass, 1/s", "model.h", part->alpha, &part->alpha, NULL));
+  PetscCall(PetscOptionsReal("-beta", "Rayleigh factor of the stiffness, s", "model.h", part->beta, &part->beta, NULL));
+  PetscOptionsEnd();
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PartsSetFromOptions(Model model)
+{
+  char       *names[MODEL_MAX_NAMES];
+  const char *initial = !strcmp(model->source, "rig") ? "disc,pad,beam" : "";
+
+  PetscFunctionBeginUser;
+  PetscCall(OptionsGetNames(model->comm, "-parts", "bodies: volumes of the mesh, each the prefix of its material",
+                            initial, MODEL_MAX_NAMES, &model->n_parts, names));
+  PetscCall(PetscCalloc1(model->n_parts, &model->parts));
+  for (PetscInt i = 0; i < model->n_parts; i++) {
+    model->parts[i].name    = names[i];
+    model->parts[i].poisson = 0.3;
+    PetscCall(PartSetFromOptions(model->comm, &model->parts[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PartsCheck(Model model)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(model->n_parts, model->comm, PETSC_ERR_USER_INPUT,
+             "-parts is empty: name at least one volume of the mesh");
+  for (PetscInt i = 0; i < model->n_parts; i++) {
+    const Part *p = &model->parts[i];
+
+    PetscCheck(p->young > 0, model->comm, PETSC_ERR_USER_INPUT, "-%s_young %.6g must be given and positive (Pa)",
+               p->name, (double)p->young);
+    PetscCheck(p->density > 0, model->comm, PETSC_ERR_USER_INPUT,
+               "-%s_density %.6g must be given and positive (kg/m^3)", p->name, (double)p->density);
+    PetscCheck(p->poisson > -1 && p->poisson < 0.5, model->comm, PETSC_ERR_USER_INPUT,
+               "-%s_poisson %.6g must lie between -1 and 0.5, ends excluded", p->name, (double)p->poisson);
+    PetscCheck(p->alpha >= 0 && p->beta >= 0, model->comm, PETSC_ERR_USER_INPUT,
+               "-%s_alpha %.6g and -%s_beta %.6g must not be negative", p->name, (double)p->alpha, p->name,
+               (double)p->beta);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Writes the part into cells of one label; a cell that has one already makes `twice` that cell */
+static PetscErrorCode PartMarkCells(Model model, PetscInt part, PetscInt *n_marked, PetscInt *twice)
+{
+  PetscInt        cStart, cEnd, n = 0;
+  const PetscInt *points;
+  IS              is;
+  DMLabel         label;
+
+  PetscFunctionBeginUser;
+  *n_marked = 0;
+  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, &cEnd));
+  PetscCall(DMGetLabel(model->dm, model->parts[part].name, &label));
+  if (!label) PetscFunctionReturn(0);
+  PetscCall(DMLabelGetStratumIS(label, 1, &is));
+  if (!is) PetscFunctionReturn(0);
+  PetscCall(ISGetLocalSize(is, &n));
+  PetscCall(ISGetIndices(is, &points));
+  for (PetscInt i = 0; i < n; i++) {
+    if (points[i] < cStart || points[i] >= cEnd) continue;
+    if (model->cell_part[points[i] - cStart] >= 0) *twice = points[i] - cStart;
+    model->cell_part[points[i] - cStart] = part;
+    ++*n_marked;
+  }
+  PetscCall(ISRestoreIndices(is, &points));
+  PetscCall(ISDestroy(&is));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PartsFindCells(Model model)
+{
+  PetscInt cStart, cEnd, bad[2] = {-1, -1}, n_local, n_cells;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, &cEnd));
+  PetscCall(PetscMalloc1(cEnd - cStart, &model->cell_part));
+  for (PetscInt c = 0; c < cEnd - cStart; c++) model->cell_part[c] = -1;
+  for (PetscInt part = 0; part < model->n_parts; part++) {
+    PetscCall(PartMarkCells(model, part, &n_local, &bad[0]));
+    PetscCallMPI(MPI_Allreduce(&n_local, &n_cells, 1, MPIU_INT, MPI_SUM, model->comm));
+    if (!n_cells) PetscCall(ModelComplainSet(model, "volume", model->parts[part].name));
+  }
+  for (PetscInt c = 0; c < cEnd - cStart; c++)
+    if (model->cell_part[c] < 0) bad[1] = c;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bad, 2, MPIU_INT, MPI_MAX, model->comm));
+  PetscCheck(bad[0] < 0, model->comm, PETSC_ERR_USER_INPUT,
+             "a cell belongs to two of the -parts; volumes must not overlap");
+  PetscCheck(bad[1] < 0, model->comm, PETSC_ERR_USER_INPUT,
+             "some cells belong to none of the -parts; name every volume of the mesh that has cells");
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,217 @@
+/*
+   Probes: places of bodies that histories record. Each is the nearest node of a part, or of any.
+
+   Of several nodes at the same distance the one with the least x, then y, then z is taken, of coincident nodes that of
+   the first part, then the least global number: the same place on any ranks. Of the ranks that share the node
+   the first records it.
+*/
+#include "model/modelimpl.h"
+#include "base/gather.h"
+#include <squeal/options.h>
+#include <stdlib.h>
+
+/* A node that may be the nearest, by what decides */
+typedef struct {
+  PetscReal distance, x[3]; /* m */
+  PetscInt  part, number, rank, vertex;
+} Candidate;
+
+/* The part of this name, or -1 for an empty one; an error when there is none */
+static PetscErrorCode ProbeFindPart(Model model, const Probe *probe, PetscInt *part)
+{
+  char names[1024] = "";
+
+  PetscFunctionBeginUser;
+  *part = -1;
+  if (!probe->part[0]) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < model->n_parts; i++) {
+    PetscCall(PetscStrlcat(names, i ? ", " : "", sizeof(names)));
+    PetscCall(PetscStrlcat(names, model->parts[i].name, sizeof(names)));
+    if (!strcmp(model->parts[i].name, probe->part)) *part = i;
+  }
+  PetscCheck(*part >= 0, model->comm, PETSC_ERR_USER_INPUT, "-%s_part %s is none of the -parts: %s", probe->name,
+             probe->part, names);
+  PetscFunctionReturn(0);
+}
+
+/* Place and part of one probe, whose name is set */
+static PetscErrorCode ProbeSetFromOptions(Model model, Probe *probe)
+{
+  char      prefix[128], title[160], part[256] = "";
+  PetscInt  index;
+  PetscBool given;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", probe->name));
+  PetscCall(PetscSNPrintf(title, sizeof(title), "Probe %s", probe->name));
+  PetscOptionsBegin(model->comm, prefix, title, NULL);
+  PetscCall(
+    OptionsGetReals(PetscOptionsObject, "-at", "place x,y,z, m: the nearest node (required)", 3, probe->at, &given));
+  PetscCall(
+    PetscOptionsString("-part", "part that has the node; default any", "model.h", part, part, sizeof(part), NULL));
+  PetscOptionsEnd();
+  PetscCall(PetscStrallocpy(part, &probe->part));
+  PetscCheck(given, model->comm, PETSC_ERR_USER_INPUT, "-%s_at must be given: the place x,y,z (m)", probe->name);
+  for (int d = 0; d < 3; d++)
+    PetscCheck(!PetscIsInfOrNanReal(probe->at[d]), model->comm, PETSC_ERR_USER_INPUT,
+               "-%s_at value %.6g must be a finite number (m)", probe->name, (double)probe->at[d]);
+  PetscCall(ProbeFindPart(model, probe, &index));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ProbesSetFromOptions(Model model)
+{
+  char *names[MODEL_MAX_NAMES];
+
+  PetscFunctionBeginUser;
+  PetscCall(OptionsGetNames(model->comm, "-probes",
+                            "places that histories record, each the prefix of its -at and -part", "", MODEL_MAX_NAMES,
+                            &model->n_probes, names));
+  PetscCall(PetscCalloc1(model->n_probes, &model->probes));
+  for (PetscInt i = 0; i < model->n_probes; i++) {
+    model->probes[i].name   = names[i];
+    model->probes[i].vertex = -1;
+    PetscCall(ProbeSetFromOptions(model, &model->probes[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
+static int CandidateCompare(const void *a, const void *b)
+{
+  const Candidate *x = a, *y = b;
+  const PetscReal  real[][2] = {
+     {x->distance, y->distance},
+     {x->x[0],     y->x[0]    },
+     {x->x[1],     y->x[1]    },
+     {x->x[2],     y->x[2]    }
+  };
+  const PetscInt integer[][2] = {
+    {x->part,   y->part  },
+    {x->number, y->number},
+    {x->rank,   y->rank  }
+  };
+
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(real); i++)
+    if (real[i][0] != real[i][1]) return real[i][0] < real[i][1] ? -1 : 1;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(integer); i++)
+    if (integer[i][0] != integer[i][1]) return integer[i][0] < integer[i][1] ? -1 : 1;
+  return 0;
+}
+
+/* Vertex v of the local mesh as a candidate of a probe */
+static PetscErrorCode CandidateSet(Model model, const Probe *probe, PetscInt part, PetscInt v, Candidate *candidate)
+{
+  PetscInt     vStart;
+  PetscMPIInt  rank;
+  PetscSection global;
+  DM           cdm;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(model->comm, &rank));
+  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, NULL));
+  PetscCall(DMGetCoordinateDM(model->dm, &cdm));
+  PetscCall(DMGetGlobalSection(cdm, &global));
+  *candidate = (Candidate){.part = part, .rank = rank, .vertex = v - vStart};
+  PetscCall(PetscSectionGetOffset(global, v, &candidate->number));
+  if (candidate->number < 0) candidate->number = -(candidate->number + 1);
+  PetscCall(PetscArraycpy(candidate->x, &model->coordinates[3 * (v - vStart)], 3));
+  for (int d = 0; d < 3; d++) candidate->distance += PetscSqr(candidate->x[d] - probe->at[d]);
+  candidate->distance = PetscSqrtReal(candidate->distance);
+  PetscFunctionReturn(0);
+}
+
+/* The best local candidate; n = 0 when this rank has no cell of the part */
+static PetscErrorCode ProbeFindLocal(Model model, const Probe *probe, PetscInt *n, Candidate *best)
+{
+  const PetscInt n_nodes = model->element->n_nodes;
+  PetscInt       cStart, cEnd, part;
+  Candidate      candidate;
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  PetscCall(ProbeFindPart(model, probe, &part));
+  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, &cEnd));
+  for (PetscInt i = 0; i < n_nodes * (cEnd - cStart); i++) {
+    if (part >= 0 && model->cell_part[i / n_nodes] != part) continue;
+    PetscCall(CandidateSet(model, probe, model->cell_part[i / n_nodes], model->cell_vertices[i], &candidate));
+    if (!*n || CandidateCompare(&candidate, best) < 0) *best = candidate;
+    *n = 1;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The node of one probe: its place on every rank, its vertex on the rank that records it */
+static PetscErrorCode ProbeLocate(Model model, Probe *probe)
+{
+  PetscMPIInt  rank;
+  PetscInt     n, n_all;
+  Candidate    best, *all;
+  PetscSection global;
+  DM           cdm;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(model->comm, &rank));
+  PetscCall(DMGetCoordinateDM(model->dm, &cdm));
+  PetscCall(DMGetGlobalSection(cdm, &global)); /* the first call is collective, and not every rank has candidates */
+  PetscCall(ProbeFindLocal(model, probe, &n, &best));
+  PetscCall(GatherRecords(model->comm, n, sizeof(best), &best, &n_all, &all));
+  qsort(all, (size_t)n_all, sizeof(*all), CandidateCompare);
+  probe->vertex = all[0].rank == rank ? all[0].vertex : -1;
+  PetscCall(PetscArraycpy(probe->x, all[0].x, 3));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ProbesLocate(Model model)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < model->n_probes; i++) PetscCall(ProbeLocate(model, &model->probes[i]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelFindNode(Model model, const char part[], const PetscReal at[3], PetscInt *vertex)
+{
+  char  name[] = "node", part_name[256];
+  Probe probe  = {
+     .name = name, .part = part_name, .at = {at[0], at[1], at[2]}
+  };
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrncpy(part_name, part, sizeof(part_name)));
+  PetscCall(ProbeLocate(model, &probe));
+  *vertex = probe.vertex;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelGetProbes(Model model, PetscInt *n, const Probe **probes)
+{
+  PetscFunctionBeginUser;
+  *n      = model->n_probes;
+  *probes = model->probes;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ProbesView(Model model, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < model->n_probes; i++) {
+    const Probe *p = &model->probes[i];
+
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer, "  probe %s: node at %.6g, %.6g, %.6g m%s%s, asked for %.6g, %.6g, %.6g m\n",
+                             p->name, (double)p->x[0], (double)p->x[1], (double)p->x[2], p->part[0] ? " of " : "",
+                             p->part, (double)p->at[0], (double)p->at[1], (double)p->at[2]));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ProbesDestroy(Model model)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < model->n_probes; i++) {
+    PetscCall(PetscFree(model->probes[i].name));
+    PetscCall(PetscFree(model->probes[i].part));
+  }
+  PetscCall(PetscFree(model->probes));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,28 @@
+/* Private to the solvers in statics/, modes/ and sweep/: one factorisation at a shift, its solves, and its inertia */
+#pragma once
+
+#include "base/progress.h"
+#include <squeal/operators.h>
+#include <slepcst.h>
+
+/* Factorisation of K - s M (undamped) or K + s C + s^2 M (damped), shared by right and left vectors and by inertia
+   counts */
+typedef struct {
+  MPI_Comm  comm;
+  KSP       ksp;
+  PetscReal shift; /* kappa (rad/s)^2 when undamped, lambda (rad/s) when damped */
+  Progress *progress;
+} ShiftInvert;
+
+/* shiftinvert.c - prefix st_; a singular matrix moves the shift a little, want_inertia lets MUMPS count negative
+   pivots */
+PETSC_INTERN PetscErrorCode ShiftInvertCreate(const OperatorsPencil *pencil, PetscReal shift, PetscBool want_inertia,
+                                              Progress *progress, ShiftInvert *si);
+PETSC_INTERN PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st);
+PETSC_INTERN PetscErrorCode ShiftInvertGetInertia(const ShiftInvert *si, PetscInt *n_negative);
+PETSC_INTERN PetscErrorCode ShiftInvertDestroy(ShiftInvert *si);
+/* X = A^-1 B, or A^-T B, for dense B, X of the same size: many right-hand sides at once */
+PETSC_INTERN PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X);
+/* Frictionless modes with frequency below omega (rad/s) by Sylvester's law of inertia; symmetric undamped pencil */
+PETSC_INTERN PetscErrorCode ShiftInvertCountBelow(const OperatorsPencil *pencil, PetscReal omega, Progress *progress,
+                                                  PetscInt *n);

@@ -1,0 +1,32 @@
+/* Private to sweep/: the reduced basis on the mesh and its dense model */
+#pragma once
+
+#include "sweep/dense/reduced.h"
+#include <slepcbv.h>
+
+/* [V Z], orthonormal in the mass matrix of the scene's own parameters. The leading reduced.n_used vectors are the
+   model, the others estimate its error. */
+#define BASIS_MAX_BLOCKS 1024
+
+typedef struct {
+  MPI_Comm  comm;
+  Operators operators;
+  BV        vectors;
+  Mat       M;
+  Reduced   reduced;
+  PetscInt  n_blocks, block_end[BASIS_MAX_BLOCKS]; /* vectors after each BasisAdd() */
+} Basis;
+
+PetscErrorCode BasisCreate(MPI_Comm comm, Operators operators, Basis *basis);
+/* Block of n columns in the unknowns of the pencil, to fill and to hand to BasisAdd() */
+PetscErrorCode BasisCreateBlock(const Basis *basis, PetscInt n, BV *block);
+/* Appends what the block holds beyond the basis, leaving out directions whose M-norm is below drop; the block is
+   overwritten, n_added (may be NULL) = vectors gained. The dense model follows. */
+PetscErrorCode BasisAdd(Basis *basis, BV block, PetscReal drop, PetscInt *n_added);
+/* Makes the dense model of vectors read from elsewhere, block by block as BasisAdd() did */
+PetscErrorCode BasisRebuild(Basis *basis, PetscInt n_blocks);
+/* The model now uses all vectors */
+PetscErrorCode BasisPromote(Basis *basis);
+/* block = V coordinates, coordinates [m][size] with size <= n, real */
+PetscErrorCode BasisLift(const Basis *basis, PetscInt size, PetscInt m, const PetscReal coordinates[], BV block);
+PetscErrorCode BasisDestroy(Basis *basis);

@@ -1,0 +1,28 @@
+/* Private to sweep/: the full problem at one point of the parameters, solved by improving what the basis gives */
+#pragma once
+
+#include "basis.h"
+#include "solver/shiftinvert.h"
+
+/* The full pencil at a point and its factorisation */
+typedef struct {
+  OperatorsPencil pencil;
+  ShiftInvert     factor;
+} Correction;
+
+/* Sets the operators to p and factors the pencil near the window's modes */
+PetscErrorCode CorrectionCreate(Operators operators, const PetscReal p[], const ReducedWindow *window,
+                                Progress *progress, Correction *correction);
+/* Moves to other values p nearby: the pencil is made for them, the factorisation stays */
+PetscErrorCode CorrectionMove(Operators operators, const PetscReal p[], Correction *correction);
+/* Appends to the basis the corrections of all modes (right and left vectors) whose M-norm exceeds drop; n_added =
+   vectors gained */
+PetscErrorCode CorrectionApply(const Correction *correction, const ReducedModes *modes, PetscReal drop, Basis *basis,
+                               PetscInt *n_added);
+PetscErrorCode CorrectionDestroy(Correction *correction);
+
+/* Frictionless modes in the window (from zero on where its lower end is below half of the upper one) by Sylvester's law
+   of inertia with the operators at p, and by the basis; alike where the basis lacks none. Both are -1 where the
+   matrices cannot be made frictionless. */
+PetscErrorCode CorrectionCount(Operators operators, const Reduced *reduced, const PetscReal p[],
+                               const ReducedWindow *window, Progress *progress, PetscInt *full, PetscInt *by_basis);

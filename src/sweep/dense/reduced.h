@@ -1,0 +1,80 @@
+/*
+   Private to sweep/: the dense model on a basis V of size n, Vhat' Q(lambda; p) V, and what is computed from it at one
+   point p of the parameters. Pure functions on small arrays: no MPI, no options. All matrices are column-major.
+*/
+#pragma once
+
+#include <squeal/operators.h>
+#include <complex.h>
+
+/* V' A_t V of every term of the pencil. The leading n_used vectors make the model; the remaining ones, Z, only serve to
+   estimate its error. */
+typedef struct {
+  PetscInt             n, n_used;
+  PetscInt             n_terms, n_parameters;
+  const OperatorsTerm *term; /* coefficients (borrowed) */
+  PetscReal          **A;    /* [n_terms][n * n] */
+  PetscReal **D; /* V' |diag A_t| V of the stiffness terms, for what rounding in A_t does; NULL, or NULL entries,
+                                where that is no more than rounding in the dense matrices */
+} Reduced;
+
+/* Eigenvalues to look for: omega in [low, high], |sigma| <= growth, rad/s */
+typedef struct {
+  PetscReal low, high, growth;
+} ReducedWindow;
+
+/* Eigenvalues of one point, omega >= 0, by frequency (members of a pair of equal frequency by growth, the stable one
+   first), with vectors in coordinates of the leading n_used vectors of the basis */
+typedef struct {
+  PetscInt      n, size;
+  PetscComplex *lambda;  /* [n] sigma + i omega, rad/s; exactly 0 for a rigid mode */
+  PetscComplex *x, *y;   /* [n][size] right and left vectors, x^H M x = y^H M y = 1 with the symmetric part of M;
+                            y^T Q(lambda) = 0, without conjugation */
+  PetscComplex *product; /* [n] y^T D(lambda) x, D = M + C / (2 lambda), rigid modes: M; 1 / |product| is the condition,
+                            0 if defective */
+  PetscReal    *error;   /* [n] estimated error of lambda, rad/s; 0 until ReducedEstimate() */
+  PetscReal    *noise;   /* [n] the part of the error that is rounding: no better basis lowers it */
+  PetscBool    *rigid;   /* [n] zero within rounding */
+} ReducedModes;
+
+/* reduced.c - sums the terms at p; eigenvalues and vectors in the window, by dense shift-and-invert about a real shift
+   (eigen.c), damped ones in companion form. In clusters of equal eigenvalues the left vectors are biorthogonal to the
+   right ones. Undamped, a negative kappa is listed as lambda = +sqrt(-kappa) only; damped, all real eigenvalues are. */
+PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
+                            ReducedModes *modes);
+PetscErrorCode ReducedModesCreate(PetscInt n, PetscInt size, ReducedModes *modes);
+PetscErrorCode ReducedModesCopy(const ReducedModes *from, ReducedModes *to);
+/* A copy of some of the modes, list [n] */
+PetscErrorCode ReducedModesSelect(const ReducedModes *from, PetscInt n, const PetscInt list[], ReducedModes *to);
+PetscErrorCode ReducedModesDestroy(ReducedModes *modes);
+
+/* Whether growth exceeds three times the error of its eigenvalue, and rounding, 1e-9 of it */
+PetscBool ReducedIsUnstable(PetscComplex lambda, PetscReal error);
+
+/* K(p) (or C, M) on the leading n x n block, array [n * n]; any_nonzero (may be NULL) = whether a coefficient is not
+   zero */
+PetscErrorCode ReducedSum(const Reduced *reduced, OperatorsTermKind kind, const PetscReal p[], PetscInt n,
+                          PetscReal sum[], PetscBool *any_nonzero);
+
+/* rounding.c - E [n_used * n_used] of the mesh's rounding; its effect on kappa, times |y^T D x|, work [n]; marks the
+   modes that are zero within it */
+#define ROUNDING_SMALL 1e-3 /* beside the window: frequencies that may be zeros */
+#define ROUNDING_RIGID 100  /* kappa below this many times its rounding is zero */
+void           RoundingEnergy(const Reduced *reduced, const PetscReal p[], PetscReal E[]);
+PetscReal      RoundingProduct(PetscInt n, const PetscReal E[], const PetscComplex x[], const PetscComplex y[],
+                               PetscComplex work[]);
+PetscErrorCode RoundingMarkRigid(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
+                                 ReducedModes *modes);
+
+/* frictionless.c - sets to zero in p[] what friction and damping are proportional to; false where some of either
+   remains */
+PetscBool ReducedFrictionless(const Reduced *reduced, PetscReal p[]);
+
+/* estimate.c - errors of all modes from the part Z of the basis that the model does not use, close ones together (see
+   the file), and a floor for rounding, which alone remains without Z */
+PetscErrorCode ReducedEstimate(const Reduced *reduced, const PetscReal p[], ReducedModes *modes);
+
+/* sensitivity.c - d lambda / d p_j = -y^T (dQ/dp_j) x / (y^T Q' x) of mode i for every parameter j, [n_parameters];
+   zero for a rigid mode, not finite at a defective pair */
+PetscErrorCode ReducedSensitivity(const Reduced *reduced, const PetscReal p[], const ReducedModes *modes, PetscInt i,
+                                  PetscComplex derivative[]);

@@ -1,0 +1,125 @@
+/*
+   Branches. A mode that is alone in its cluster, or whose cluster stays what it is (a doublet), hands its vectors on
+   from point to point. When modes join (two lock in, several meet at a point) their branches live on in the common
+   plane, each with the vectors that it had before; when the plane falls apart again, branches go where their remembered
+   vectors lie,
+
+      score(r, Q) = sum_{j in Q} (w_r^T x_j) (w_j^T x_r),
+
+   the coefficient of branch r in itself after a detour over the modes of Q. Where this does not decide, the order of
+   frequency is kept. Of an unstable pair the branch that was the lower one takes the unstable member.
+*/
+#include "branch.h"
+
+/* Takes the vectors of mode i */
+static PetscErrorCode BranchRemember(Branch *branch, const ModeFrame *frame, PetscInt i)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(branch->x, frame->X + i * frame->N, frame->N));
+  PetscCall(PetscArraycpy(branch->w, frame->W + i * frame->N, frame->N));
+  branch->omega  = cimag(frame->modes.lambda[i]);
+  branch->joined = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* A new branch that begins with mode i */
+static PetscErrorCode BranchListAdd(BranchList *list, ModeFrame *frame, PetscInt i)
+{
+  PetscFunctionBeginUser;
+  if (list->n == list->capacity) {
+    list->capacity = 2 * list->capacity + 32;
+    PetscCall(PetscRealloc(list->capacity * sizeof(*list->branch), &list->branch));
+  }
+  PetscCall(PetscMalloc2(frame->N, &list->branch[list->n].x, frame->N, &list->branch[list->n].w));
+  PetscCall(BranchRemember(&list->branch[list->n], frame, i));
+  frame->branch[i] = list->first + list->n++;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BranchListBegin(BranchList *list, ModeFrame *frame)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < frame->modes.n; i++) PetscCall(BranchListAdd(list, frame, i));
+  PetscFunctionReturn(0);
+}
+
+/* score [nb] of a branch with the modes of b */
+static PetscErrorCode BranchScore(const Branch *branch, const ModeFrame *b, PetscReal score[])
+{
+  const PetscInt nb = b->modes.n, N = b->N;
+  PetscComplex  *sum;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(nb, &sum));
+  for (PetscInt j = 0; j < nb; j++)
+    sum[b->cluster[j]] += FrameDot(N, branch->w, b->X + j * N) * FrameDot(N, b->W + j * N, branch->x);
+  for (PetscInt j = 0; j < nb; j++) score[j] = b->damped ? cabs(sum[b->cluster[j]]) : creal(sum[b->cluster[j]]);
+  PetscCall(PetscFree(sum));
+  PetscFunctionReturn(0);
+}
+
+/* Clusters of a frame in each component, count [n_components] */
+static void ClustersCount(const ModeFrame *frame, const PetscInt component[], PetscInt count[])
+{
+  for (PetscInt i = 0; i < frame->modes.n; i++) count[component[i]] += frame->cluster[i] == i;
+}
+
+static PetscInt ClusterSize(const ModeFrame *frame, PetscInt i)
+{
+  PetscInt size = 0;
+
+  for (PetscInt k = 0; k < frame->modes.n; k++) size += frame->cluster[k] == frame->cluster[i];
+  return size;
+}
+
+/* Hands the vectors on; count [n_components] clusters of a */
+static PetscErrorCode BranchListUpdate(BranchList *list, const ModeFrame *b, const Match *match, const PetscInt count[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < b->modes.n; j++) {
+    Branch        *branch = list->branch + b->branch[j] - list->first;
+    const PetscInt size   = ClusterSize(b, j);
+
+    if (match->from[j] < 0) continue;
+    if (size > 1 && count[match->component_b[j]] > 1) branch->joined = PETSC_TRUE;
+    if (size == 1 || !branch->joined) PetscCall(BranchRemember(branch, b, j));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BranchListContinue(BranchList *list, const ModeFrame *a, ModeFrame *b, Match *match)
+{
+  const PetscInt na = a->modes.n, nb = b->modes.n;
+  PetscReal     *score, *order;
+  PetscInt      *count;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc3(na * nb, &score, na, &order, match->n_components, &count));
+  PetscCall(PetscArraycpy(score, match->strength, na * nb));
+  for (PetscInt i = 0; i < na; i++) {
+    const Branch *branch = list->branch + a->branch[i] - list->first;
+
+    order[i] = branch->omega;
+    if (branch->joined) PetscCall(BranchScore(branch, b, score + i * nb));
+  }
+  PetscCall(MatchAssign(a, b, score, order, match));
+  for (PetscInt j = 0; j < nb; j++) {
+    if (match->from[j] < 0)
+      PetscCall(BranchListAdd(list, b, j));
+    else
+      b->branch[j] = a->branch[match->from[j]];
+  }
+  ClustersCount(a, match->component_a, count);
+  PetscCall(BranchListUpdate(list, b, match, count));
+  PetscCall(PetscFree3(score, order, count));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BranchListDestroy(BranchList *list)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt r = 0; r < list->n; r++) PetscCall(PetscFree2(list->branch[r].x, list->branch[r].w));
+  PetscCall(PetscFree(list->branch));
+  list->n = list->capacity = 0;
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,304 @@
+/*
+   Modes of one point as a biorthogonal system. The standard form A z = s B z is
+
+      undamped  z = x,                      s = kappa = -lambda^2, A = K,  B = M
+      damped    z = [x; lambda x / scale],  s = lambda,            A = [-K / scale, 0; 0, scale M],
+                                                                   B = [C / scale, M; M, 0]
+
+   so that w^T B z = (lambda_w + lambda_z) y^T M x + y^T C x over scale, twice the product with D = M + C / (2 lambda)
+   when the two eigenvalues agree, and exactly zero between different modes of one point. With w^T B z = 1 the product
+   C_ij of the modes of two points is the coefficient of mode j of the one in the expansion by the modes i of the other.
+
+   Modes of equal eigenvalues (within 1e-6, or within their errors) and pairs lambda, -conj(lambda) of an undamped
+   system form a cluster. Their vectors are replaced by any basis of their plane and its dual: what is computed from the
+   plane, sum_ij C_ij C'_ji = tr(P Q) with the spectral projectors P, Q, neither depends on the basis nor suffers from
+   nearly parallel vectors at lock-in.
+*/
+#include "frame.h"
+#include <petscblaslapack.h>
+
+#define CLOSE     1e-6 /* relative difference of eigenvalues of one cluster */
+#define CONJUGATE 1e-7 /* relative difference of frequencies of a pair */
+
+PetscComplex FrameDot(PetscInt n, const PetscComplex a[], const PetscComplex b[])
+{
+  PetscComplex sum = 0;
+
+  for (PetscInt i = 0; i < n; i++) sum += a[i] * b[i];
+  return sum;
+}
+
+PetscBool ModeIsUnstable(const ReducedModes *modes, PetscInt i)
+{
+  return ReducedIsUnstable(modes->lambda[i], modes->error[i]);
+}
+
+PetscComplex FrameEigenvalue(const ModeFrame *frame, PetscComplex lambda)
+{
+  return frame->damped ? lambda : -lambda * lambda;
+}
+
+PetscComplex FrameLambda(const ModeFrame *frame, PetscComplex s)
+{
+  PetscComplex lambda = frame->damped ? s : csqrt(-s);
+
+  return cimag(lambda) < 0 ? -lambda : lambda;
+}
+
+/* y = factor op(A) x + add y, A real [n * n] column-major; a complex vector is a real 2 x n matrix */
+static PetscErrorCode RealTimes(PetscInt size, const PetscReal A[], PetscBool transposed, PetscReal factor,
+                                const PetscComplex x[], PetscReal add, PetscComplex y[])
+{
+  const PetscBLASInt two = 2;
+  PetscBLASInt       n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(size, &n));
+  PetscCallBLAS("BLASgemm", BLASgemm_("N", transposed ? "N" : "T", &two, &n, &n, &factor, (const PetscReal *)x, &two, A,
+                                      &n, &add, (PetscReal *)y, &two));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrameApply(const ModeFrame *f, FrameMatrix matrix, PetscBool transposed, const PetscComplex x[],
+                          PetscComplex y[])
+{
+  const PetscInt n = f->size;
+
+  PetscFunctionBeginUser;
+  if (!f->damped) {
+    PetscCall(RealTimes(n, matrix == FRAME_A ? f->K : f->M, transposed, 1, x, 0, y));
+  } else if (matrix == FRAME_A) {
+    PetscCall(RealTimes(n, f->K, transposed, -1 / f->scale, x, 0, y));
+    PetscCall(RealTimes(n, f->M, transposed, f->scale, x + n, 0, y + n));
+  } else {
+    PetscCall(RealTimes(n, f->C, transposed, 1 / f->scale, x, 0, y));
+    PetscCall(RealTimes(n, f->M, transposed, 1, x + n, 1, y));
+    PetscCall(RealTimes(n, f->M, transposed, 1, x, 0, y + n));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscInt FramePartner(const ModeFrame *f, PetscInt i)
+{
+  const PetscComplex lambda = f->modes.lambda[i];
+  PetscInt           best   = -1;
+  PetscReal          least  = CONJUGATE * cabs(lambda);
+
+  if (f->damped || creal(lambda) == 0 || cimag(lambda) == 0) return -1;
+  for (PetscInt j = 0; j < f->modes.n; j++) {
+    const PetscReal distance = cabs(f->modes.lambda[j] + conj(lambda));
+
+    if (j != i && distance <= least) best = j, least = distance;
+  }
+  return best;
+}
+
+/* Whether the vectors of modes i and j mean nothing one by one */
+static PetscBool ModesAreClose(const ReducedModes *modes, PetscInt i, PetscInt j)
+{
+  const PetscReal distance = cabs(modes->lambda[i] - modes->lambda[j]);
+
+  return distance <= CLOSE * cabs(modes->lambda[i]) + modes->error[i] + modes->error[j] ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Puts j and all of its cluster into the cluster of i */
+static void ClusterJoin(ModeFrame *f, PetscInt i, PetscInt j)
+{
+  const PetscInt first = PetscMin(f->cluster[i], f->cluster[j]), last = PetscMax(f->cluster[i], f->cluster[j]);
+
+  for (PetscInt k = 0; k < f->modes.n; k++)
+    if (f->cluster[k] == last) f->cluster[k] = first;
+}
+
+static void FrameCluster(ModeFrame *f)
+{
+  for (PetscInt i = 0; i < f->modes.n; i++) f->cluster[i] = i;
+  for (PetscInt i = 0; i < f->modes.n; i++) {
+    const PetscInt partner = FramePartner(f, i);
+
+    if (partner >= 0) ClusterJoin(f, i, partner);
+    for (PetscInt j = i + 1; j < f->modes.n; j++)
+      if (ModesAreClose(&f->modes, i, j)) ClusterJoin(f, i, j);
+  }
+}
+
+/* z of x; a rigid mode of a damped system is a double zero, of which [x; 0] is one vector and [0; y], from the left,
+   the dual of it with respect to B */
+static void FrameVector(const ModeFrame *f, const PetscComplex x[], PetscInt i, PetscBool left, PetscComplex z[])
+{
+  const PetscBool swap = left && f->modes.rigid[i] ? PETSC_TRUE : PETSC_FALSE;
+
+  for (PetscInt k = 0; k < f->size; k++) {
+    if (!f->damped) {
+      z[k] = x[k];
+    } else {
+      z[k]           = swap ? 0 : x[k];
+      z[f->size + k] = swap ? x[k] : f->modes.lambda[i] * x[k] / f->scale;
+    }
+  }
+}
+
+/* Bases of the plane of k modes of an undamped system */
+static PetscErrorCode ClusterRefine(ModeFrame *f, PetscInt k, const PetscInt member[])
+{
+  PetscReal *X, *Y;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(k * f->N, &X, k * f->N, &Y));
+  PetscCall(PlaneRefine(f, k, member, X, Y));
+  for (PetscInt a = 0; a < k; a++) {
+    for (PetscInt r = 0; r < f->N; r++) {
+      f->X[member[a] * f->N + r] = X[a * f->N + r];
+      f->Y[member[a] * f->N + r] = Y[a * f->N + r];
+    }
+  }
+  PetscCall(PetscFree2(X, Y));
+  PetscFunctionReturn(0);
+}
+
+/* Orthonormal basis of the plane of k modes of a damped system, in place in Z (X or Y) */
+static PetscErrorCode ClusterOrthonormalise(ModeFrame *f, PetscInt k, const PetscInt member[], PetscComplex Z[])
+{
+  PetscComplex *plane;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(k * f->N, &plane));
+  for (PetscInt a = 0; a < k; a++) PetscCall(PetscArraycpy(plane + a * f->N, Z + member[a] * f->N, f->N));
+  PetscCall(PlaneOrthonormalise(f->N, k, plane));
+  for (PetscInt a = 0; a < k; a++) PetscCall(PetscArraycpy(Z + member[a] * f->N, plane + a * f->N, f->N));
+  PetscCall(PetscFree(plane));
+  PetscFunctionReturn(0);
+}
+
+/* Row operations that make the Gram matrix W^T X of the cluster the identity: Gauss-Jordan with pivoting on the rows of
+   W and Y. A plane that is defective beyond the cluster leaves zero rows, which match nothing. */
+static PetscErrorCode ClusterDualise(ModeFrame *f, PetscInt k, const PetscInt member[])
+{
+  const PetscInt N = f->N;
+
+  PetscFunctionBeginUser;
+  for (PetscInt a = 0; a < k; a++) {
+    PetscComplex *const Xa = f->X + member[a] * N, *const Wa = f->W + member[a] * N, *const Ya = f->Y + member[a] * N;
+    PetscInt     pivot   = a;
+    PetscReal    largest = 0;
+    PetscComplex g;
+
+    for (PetscInt b = a; b < k; b++) {
+      const PetscReal size = cabs(FrameDot(N, f->W + member[b] * N, Xa));
+
+      if (size > largest) largest = size, pivot = b;
+    }
+    for (PetscInt r = 0; r < N && pivot != a; r++) {
+      PetscComplex *const Wp = f->W + member[pivot] * N, *const Yp = f->Y + member[pivot] * N;
+      const PetscComplex w = Wa[r], y = Ya[r];
+
+      Wa[r] = Wp[r], Ya[r] = Yp[r], Wp[r] = w, Yp[r] = y;
+    }
+    g = FrameDot(N, Wa, Xa);
+    for (PetscInt r = 0; r < N; r++) {
+      Wa[r] = largest > 0 ? Wa[r] / g : 0;
+      Ya[r] = largest > 0 ? Ya[r] / g : 0;
+    }
+    for (PetscInt b = 0; b < k; b++) {
+      PetscComplex *const Wb = f->W + member[b] * N, *const Yb = f->Y + member[b] * N;
+      const PetscComplex c = b == a ? 0 : FrameDot(N, Wb, Xa);
+
+      for (PetscInt r = 0; r < N; r++) Wb[r] -= c * Wa[r], Yb[r] -= c * Ya[r];
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Dual bases of the cluster that begins with mode first */
+static PetscErrorCode ClusterBases(ModeFrame *f, PetscInt first)
+{
+  PetscInt *member, k = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(f->modes.n, &member));
+  for (PetscInt i = first; i < f->modes.n; i++)
+    if (f->cluster[i] == first) member[k++] = i;
+  if (k > 1 && !f->damped) {
+    PetscCall(ClusterRefine(f, k, member));
+  } else if (k > 1 && !f->modes.rigid[first]) {
+    PetscCall(ClusterOrthonormalise(f, k, member, f->X));
+    PetscCall(ClusterOrthonormalise(f, k, member, f->Y));
+  }
+  for (PetscInt a = 0; a < k; a++)
+    PetscCall(FrameApply(f, FRAME_B, PETSC_TRUE, f->Y + member[a] * f->N, f->W + member[a] * f->N));
+  PetscCall(ClusterDualise(f, k, member));
+  PetscCall(PetscFree(member));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrameCreate(const Reduced *reduced, const PetscReal p[], PetscReal value, PetscBool damped,
+                           PetscReal scale, PetscBool refine, const ReducedModes *modes, ModeFrame **frame)
+{
+  const PetscInt n = modes->n, size = reduced->n_used;
+  ModeFrame     *f;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&f));
+  f->value  = value;
+  f->scale  = scale;
+  f->damped = damped;
+  f->refine = refine;
+  f->size   = size;
+  f->N      = damped ? 2 * size : size;
+  PetscCall(ReducedModesCopy(modes, &f->modes));
+  PetscCall(PetscMalloc3(size * size, &f->K, size * size, &f->C, size * size, &f->M));
+  PetscCall(PetscMalloc5(n, &f->cluster, n, &f->branch, n * f->N, &f->X, n * f->N, &f->Y, n * f->N, &f->W));
+  PetscCall(ReducedSum(reduced, OPERATORS_STIFFNESS, p, size, f->K, NULL));
+  PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, size, f->C, NULL));
+  PetscCall(ReducedSum(reduced, OPERATORS_MASS, p, size, f->M, NULL));
+  FrameCluster(f);
+  for (PetscInt i = 0; i < n; i++) {
+    f->branch[i] = -1;
+    FrameVector(f, f->modes.x + i * size, i, PETSC_FALSE, f->X + i * f->N);
+    FrameVector(f, f->modes.y + i * size, i, PETSC_TRUE, f->Y + i * f->N);
+  }
+  for (PetscInt i = 0; i < n; i++)
+    if (f->cluster[i] == i) PetscCall(ClusterBases(f, i));
+  *frame = f;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrameDestroy(ModeFrame **frame)
+{
+  ModeFrame *f = *frame;
+
+  PetscFunctionBeginUser;
+  if (!f) PetscFunctionReturn(0);
+  PetscCall(ReducedModesDestroy(&f->modes));
+  PetscCall(PetscFree3(f->K, f->C, f->M));
+  PetscCall(PetscFree5(f->cluster, f->branch, f->X, f->Y, f->W));
+  PetscCall(PetscFree(*frame));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrameProject(const ModeFrame *a, const ModeFrame *b, PetscComplex C[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < a->modes.n; i++)
+    for (PetscInt j = 0; j < b->modes.n; j++) C[i * b->modes.n + j] = FrameDot(a->N, a->W + i * a->N, b->X + j * b->N);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FramePencil(const ModeFrame *a, const ModeFrame *b, PetscComplex H[], PetscComplex G[])
+{
+  const PetscInt n = a->modes.n, N = a->N;
+  PetscComplex  *AX, *BX;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(N, &AX, N, &BX));
+  for (PetscInt j = 0; j < n; j++) {
+    PetscCall(FrameApply(b, FRAME_A, PETSC_FALSE, a->X + j * N, AX));
+    PetscCall(FrameApply(b, FRAME_B, PETSC_FALSE, a->X + j * N, BX));
+    for (PetscInt i = 0; i < n; i++) {
+      H[i * n + j] = FrameDot(N, a->Y + i * N, AX);
+      G[i * n + j] = FrameDot(N, a->Y + i * N, BX);
+    }
+  }
+  PetscCall(PetscFree2(AX, BX));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,250 @@
+/*
+   Match of the modes of two points by biorthogonal products. With C_ij the coefficient of mode j of b in the expansion
+   by the modes of a, and C'_ji that of mode i of a in the expansion by the modes of b (each with D of its own point), C
+   C' = I for complete sets, so that the numbers C_ij C'_ji of a mode add up to one, whatever the scale of the vectors:
+
+      strength(P, Q) = sum_{i in P, j in Q} C_ij C'_ji = trace of the product of the spectral projectors of P and Q
+
+   for clusters P of a and Q of b, over the size of the smaller one. It is 1 when the smaller plane lies in the larger
+   one and 0 when they have nothing in common; single modes near lock-in exceed 1.
+
+   Clusters are connected when their strength is neither small (0.3) nor small beside that of a competitor (0.4). A
+   component is certain when it is one cluster on one side at least, the numbers of modes agree, and nothing is lost
+   (0.7): a mode that stays itself, a doublet that stays a doublet, two modes that lock in or a pair that locks out,
+   modes that meet at the point. A mode without partner is certain when it left the window: its Rayleigh quotient y^T A
+   x / y^T B x in the pencil of the other point is outside, or nearer to an end than it moved.
+   Within a component modes are assigned greedily, the largest score first.
+*/
+#include "match.h"
+
+#define SMALL  0.3
+#define BESIDE 0.4
+#define LOST   0.7
+#define PLACE  0.1 /* score for keeping the place in the order of frequency */
+#define LEAST  0.1 /* score below which modes of an uncertain component are not matched */
+
+/* strength[i, j] from the products C [na * nb], D [nb * na] */
+static PetscErrorCode StrengthFind(const ModeFrame *a, const ModeFrame *b, Match *match)
+{
+  const PetscInt na = match->na, nb = match->nb;
+  PetscInt      *size_a, *size_b;
+  PetscComplex  *C, *D, *sum;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc5(na * nb, &C, na * nb, &D, na * nb, &sum, na, &size_a, nb, &size_b));
+  PetscCall(FrameProject(a, b, C));
+  PetscCall(FrameProject(b, a, D));
+  for (PetscInt i = 0; i < na; i++) size_a[a->cluster[i]]++;
+  for (PetscInt j = 0; j < nb; j++) size_b[b->cluster[j]]++;
+  for (PetscInt i = 0; i < na; i++)
+    for (PetscInt j = 0; j < nb; j++) sum[a->cluster[i] * nb + b->cluster[j]] += C[i * nb + j] * D[j * na + i];
+  for (PetscInt i = 0; i < na; i++) {
+    for (PetscInt j = 0; j < nb; j++) {
+      const PetscInt P = a->cluster[i], Q = b->cluster[j];
+
+      match->strength[i * nb + j] = cabs(sum[P * nb + Q]) / PetscMin(size_a[P], size_b[Q]);
+    }
+  }
+  PetscCall(PetscFree5(C, D, sum, size_a, size_b));
+  PetscFunctionReturn(0);
+}
+
+/* Root of the tree of a node; every node points at one of a smaller number or at itself */
+static PetscInt Root(const PetscInt parent[], PetscInt node)
+{
+  while (parent[node] != node) node = parent[node];
+  return node;
+}
+
+static void Join(PetscInt parent[], PetscInt u, PetscInt v)
+{
+  const PetscInt ru = Root(parent, u), rv = Root(parent, v);
+
+  parent[PetscMax(ru, rv)] = PetscMin(ru, rv);
+}
+
+/* Whether the modes i of a and j of b belong together */
+static PetscBool MatchConnects(const Match *match, PetscInt i, PetscInt j)
+{
+  const PetscReal s    = match->strength[i * match->nb + j];
+  PetscReal       best = 0;
+
+  for (PetscInt k = 0; k < match->nb; k++) best = PetscMax(best, match->strength[i * match->nb + k]);
+  for (PetscInt k = 0; k < match->na; k++) best = PetscMax(best, match->strength[k * match->nb + j]);
+  return s >= SMALL && s >= BESIDE * best ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Components of the graph of connections, numbered from 0 */
+static PetscErrorCode ComponentsFind(const ModeFrame *a, const ModeFrame *b, Match *match)
+{
+  const PetscInt na = match->na, nb = match->nb;
+  PetscInt      *parent, *number;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(na + nb, &parent, na + nb, &number));
+  for (PetscInt u = 0; u < na + nb; u++) parent[u] = u;
+  for (PetscInt i = 0; i < na; i++) Join(parent, i, a->cluster[i]);
+  for (PetscInt j = 0; j < nb; j++) Join(parent, na + j, na + b->cluster[j]);
+  for (PetscInt i = 0; i < na; i++)
+    for (PetscInt j = 0; j < nb; j++)
+      if (MatchConnects(match, i, j)) Join(parent, i, na + j);
+  match->n_components = 0;
+  for (PetscInt u = 0; u < na + nb; u++) number[u] = parent[u] == u ? match->n_components++ : number[Root(parent, u)];
+  PetscCall(PetscArraycpy(match->component_a, number, na));
+  PetscCall(PetscArraycpy(match->component_b, number + na, nb));
+  PetscCall(PetscFree2(parent, number));
+  PetscFunctionReturn(0);
+}
+
+/* Whether mode i of a, of which b has no partner, is outside the window there: first-order eigenvalue from the mean of
+   its cluster, diagonals of H and G [na * na] of FramePencil() */
+static PetscBool ModeHasLeft(const ModeFrame *a, PetscInt i, const ReducedWindow *window, const PetscComplex H[],
+                             const PetscComplex G[])
+{
+  const PetscInt n    = a->modes.n;
+  PetscComplex   move = 0, lambda = a->modes.lambda[i];
+  PetscReal      inside, size     = 0;
+
+  for (PetscInt k = 0; k < n; k++) {
+    if (a->cluster[k] != a->cluster[i]) continue;
+    move += H[k * n + k] / G[k * n + k] - FrameEigenvalue(a, a->modes.lambda[k]);
+    size += 1;
+  }
+  if (a->modes.rigid[i] && a->damped) move = 0;
+  lambda = FrameLambda(a, FrameEigenvalue(a, lambda) + move / size);
+  inside = PetscMin(cimag(lambda) - window->low, window->high - cimag(lambda));
+  if (window->low <= 0) inside = window->high - cimag(lambda);
+  inside = PetscMin(inside, window->growth - PetscAbsReal(creal(lambda)));
+  return inside <= cabs(lambda - a->modes.lambda[i]) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Modes of a without partner in b: certain when they have left the window */
+static PetscErrorCode LonelyCheck(const ModeFrame *a, const ModeFrame *b, const ReducedWindow *window,
+                                  const PetscInt component[], const PetscInt partners[], PetscBool certain[])
+{
+  const PetscInt n    = a->modes.n;
+  PetscBool      need = PETSC_FALSE;
+  PetscComplex  *H, *G;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++)
+    if (!partners[component[i]]) need = PETSC_TRUE;
+  if (!need) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(n * n, &H, n * n, &G));
+  PetscCall(FramePencil(a, b, H, G));
+  for (PetscInt i = 0; i < n; i++)
+    if (!partners[component[i]]) certain[component[i]] = window ? ModeHasLeft(a, i, window, H, G) : PETSC_TRUE;
+  PetscCall(PetscFree2(H, G));
+  PetscFunctionReturn(0);
+}
+
+/* Judges each component */
+static PetscErrorCode ComponentsJudge(const ModeFrame *a, const ModeFrame *b, const ReducedWindow *window, Match *match)
+{
+  const PetscInt na = match->na, nb = match->nb, n = match->n_components;
+  PetscInt      *modes_a, *modes_b, *clusters_a, *clusters_b;
+  PetscReal     *sum;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc5(n, &modes_a, n, &modes_b, n, &clusters_a, n, &clusters_b, n, &sum));
+  for (PetscInt i = 0; i < na; i++) {
+    modes_a[match->component_a[i]]++;
+    clusters_a[match->component_a[i]] += a->cluster[i] == i;
+    for (PetscInt j = 0; j < nb; j++)
+      if (a->cluster[i] == i && b->cluster[j] == j && match->component_a[i] == match->component_b[j])
+        sum[match->component_a[i]] += match->strength[i * nb + j];
+  }
+  for (PetscInt j = 0; j < nb; j++) {
+    modes_b[match->component_b[j]]++;
+    clusters_b[match->component_b[j]] += b->cluster[j] == j;
+  }
+  for (PetscInt c = 0; c < n; c++) {
+    const PetscInt pieces = PetscMax(clusters_a[c], clusters_b[c]);
+
+    match->certain[c] = PETSC_FALSE;
+    if (modes_a[c] == modes_b[c] && PetscMin(clusters_a[c], clusters_b[c]) == 1 && sum[c] >= LOST * pieces)
+      match->certain[c] = PETSC_TRUE;
+  }
+  PetscCall(LonelyCheck(a, b, window, match->component_a, modes_b, match->certain));
+  PetscCall(LonelyCheck(b, a, window, match->component_b, modes_a, match->certain));
+  match->all_certain = PETSC_TRUE;
+  for (PetscInt c = 0; c < n; c++) match->all_certain = (PetscBool)(match->all_certain && match->certain[c]);
+  PetscCall(PetscFree5(modes_a, modes_b, clusters_a, clusters_b, sum));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MatchCreate(const ModeFrame *a, const ModeFrame *b, const ReducedWindow *window, Match *match)
+{
+  PetscFunctionBeginUser;
+  match->na = a->modes.n;
+  match->nb = b->modes.n;
+  PetscCall(PetscMalloc5(match->na * match->nb, &match->strength, match->na, &match->component_a, match->nb,
+                         &match->component_b, match->na + match->nb, &match->certain, match->nb, &match->from));
+  PetscCall(StrengthFind(a, b, match));
+  PetscCall(ComponentsFind(a, b, match));
+  PetscCall(ComponentsJudge(a, b, window, match));
+  PetscFunctionReturn(0);
+}
+
+/* Place of mode i in its component by ascending order[]; among equals the less stable is first */
+static PetscInt ComponentPlace(const ReducedModes *modes, const PetscInt component[], const PetscReal order[],
+                               PetscInt i)
+{
+  PetscInt place = 0;
+
+  for (PetscInt k = 0; k < modes->n; k++) {
+    const PetscReal close = 1e-6 * PetscAbsReal(order[i]), growth = creal(modes->lambda[k]) - creal(modes->lambda[i]);
+
+    if (k == i || component[k] != component[i]) continue;
+    if (PetscAbsReal(order[k] - order[i]) > close)
+      place += order[k] < order[i];
+    else
+      place += growth > 0 || (growth == 0 && k < i);
+  }
+  return place;
+}
+
+/* The next pair to assign, the one of the largest score; false when there is none left */
+static PetscBool BestPair(const Match *match, const PetscReal score[], const PetscInt place_a[],
+                          const PetscInt place_b[], const PetscBool taken[], PetscInt *best_i, PetscInt *best_j)
+{
+  PetscReal best = PETSC_MIN_REAL;
+
+  for (PetscInt i = 0; i < match->na; i++) {
+    for (PetscInt j = 0; j < match->nb && !taken[i]; j++) {
+      const PetscReal s = score[i * match->nb + j] + (place_a[i] == place_b[j] ? PLACE : 0);
+
+      if (match->from[j] >= 0 || match->component_a[i] != match->component_b[j] || s <= best) continue;
+      if (s - PLACE < LEAST && !match->certain[match->component_a[i]]) continue;
+      best = s, *best_i = i, *best_j = j;
+    }
+  }
+  return best > PETSC_MIN_REAL ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode MatchAssign(const ModeFrame *a, const ModeFrame *b, const PetscReal score[], const PetscReal order[],
+                           Match *match)
+{
+  PetscInt  *place_a, *place_b, i, j;
+  PetscReal *omega;
+  PetscBool *taken;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc4(match->na, &place_a, match->nb, &place_b, match->nb, &omega, match->na, &taken));
+  for (j = 0; j < match->nb; j++) omega[j] = cimag(b->modes.lambda[j]), match->from[j] = -1;
+  for (i = 0; i < match->na; i++) place_a[i] = ComponentPlace(&a->modes, match->component_a, order, i);
+  for (j = 0; j < match->nb; j++) place_b[j] = ComponentPlace(&b->modes, match->component_b, omega, j);
+  while (BestPair(match, score, place_a, place_b, taken, &i, &j)) {
+    match->from[j] = i;
+    taken[i]       = PETSC_TRUE;
+  }
+  PetscCall(PetscFree4(place_a, place_b, omega, taken));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MatchDestroy(Match *match)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree5(match->strength, match->component_a, match->component_b, match->certain, match->from));
+  PetscFunctionReturn(0);
+}

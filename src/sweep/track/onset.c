@@ -1,0 +1,339 @@
+/*
+   The value of the parameter p at which an event happens, as the zero of a smooth function g(p) that is positive where
+   the mode is unstable.
+
+   Lock-in, undamped: two real kappa = -lambda^2 meet and become a complex pair. Each of them behaves like a square root
+   there, and rounding moves them by the root of the machine precision, but their discriminant is smooth: on orthonormal
+   real bases X, Y of the plane of the pair (plane.c)
+
+      S = (Y^T M X)^-1 Y^T K X,   m = tr S / k,   g = -d,   d = tr (S - m I)^2 / k
+
+   is ((kappa_1 - kappa_2) / 2)^2 for k = 2, and the same for two such pairs at once (a doublet that locks in with a
+   doublet, k = 4). At lock-in omega = sqrt(m).
+   Damped: g = sigma of the mode, which is simple. Divergence: g = -kappa = -y^T K x / (y^T M x).
+
+   The zero is bracketed by the points of the event and found by Brent's method (R. P. Brent, Algorithms for
+   Minimization without Derivatives, Prentice-Hall 1973, chapter 4). At each trial value the mode, or the plane, is the
+   one with the largest product with those of the nearer end of the bracket.
+
+   Error of the critical value: |delta g| / |g'|, where sigma carries three times the estimated error of the eigenvalue,
+   kappa that times 2 |lambda| + error, with damping times kappa / lambda at the unstable end, and d the square of 2
+   omega times the error, the splitting that the error makes of a double eigenvalue; and rounding.
+*/
+#include "match.h"
+#include <petscblaslapack.h>
+
+typedef enum { ONSET_PAIR, ONSET_GROWTH, ONSET_STIFFNESS } OnsetKind;
+
+/* A trial value with the modes that take part */
+typedef struct {
+  ModeFrame *frame;
+  PetscInt   k, *member; /* [k] */
+  PetscReal  g, m;
+} Trial;
+
+typedef struct {
+  FrameSource source;
+  OnsetKind   kind;
+  Trial       end[2]; /* unstable, stable */
+  PetscReal   change; /* of g with |lambda| at the unstable end */
+} Onset;
+
+static PetscErrorCode TrialDestroy(Trial *trial)
+{
+  PetscFunctionBeginUser;
+  PetscCall(FrameDestroy(&trial->frame));
+  PetscCall(PetscFree(trial->member));
+  PetscFunctionReturn(0);
+}
+
+/* -d and m of the plane of the trial's members */
+static PetscErrorCode PlaneDiscriminant(Trial *trial)
+{
+  const ModeFrame *f = trial->frame;
+  const PetscInt   N = f->size, k = trial->k;
+  PetscBLASInt     n, columns, info, *pivots;
+  PetscReal       *X, *Y, *Z, *G, *S, one = 1, zero = 0, d = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(N, &n));
+  PetscCall(PetscBLASIntCast(k, &columns));
+  PetscCall(PetscMalloc6(k * N, &X, k * N, &Y, k * N, &Z, k * k, &G, k * k, &S, k, &pivots));
+  PetscCall(PlaneRefine(f, k, trial->member, X, Y));
+  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &n, &columns, &n, &one, f->M, &n, X, &n, &zero, Z, &n));
+  PetscCallBLAS("BLASgemm", BLASgemm_("T", "N", &columns, &columns, &n, &one, Y, &n, Z, &n, &zero, G, &columns));
+  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &n, &columns, &n, &one, f->K, &n, X, &n, &zero, Z, &n));
+  PetscCallBLAS("BLASgemm", BLASgemm_("T", "N", &columns, &columns, &n, &one, Y, &n, Z, &n, &zero, S, &columns));
+  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&columns, &columns, G, &columns, pivots, S, &columns, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gesv: info %d", (int)info);
+  trial->m = 0;
+  for (PetscInt a = 0; a < k; a++) trial->m += S[a * k + a] / k;
+  for (PetscInt a = 0; a < k; a++) S[a * k + a] -= trial->m;
+  for (PetscInt a = 0; a < k; a++)
+    for (PetscInt b = 0; b < k; b++) d += S[a * k + b] * S[b * k + a] / k;
+  trial->g = -d;
+  PetscCall(PetscFree6(X, Y, Z, G, S, pivots));
+  PetscFunctionReturn(0);
+}
+
+/* -kappa of a single mode, kappa = y^T K x / (y^T M x), which is -lambda^2 without damping and of the sign of -lambda
+   near lambda = 0 with it; lambda itself is rounded to zero there */
+static PetscErrorCode ModeStiffness(Trial *trial)
+{
+  const ModeFrame    *f = trial->frame;
+  const PetscComplex *x = f->modes.x + trial->member[0] * f->size, *y = f->modes.y + trial->member[0] * f->size;
+  PetscComplex        k = 0, m = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < f->size; c++) {
+    for (PetscInt r = 0; r < f->size; r++) {
+      k += y[r] * f->K[c * f->size + r] * x[c];
+      m += y[r] * f->M[c * f->size + r] * x[c];
+    }
+  }
+  trial->g = -creal(k / m);
+  PetscFunctionReturn(0);
+}
+
+/* g of the members */
+static PetscErrorCode TrialValue(OnsetKind kind, Trial *trial)
+{
+  PetscFunctionBeginUser;
+  if (kind == ONSET_PAIR)
+    PetscCall(PlaneDiscriminant(trial));
+  else if (kind == ONSET_GROWTH)
+    trial->g = creal(trial->frame->modes.lambda[trial->member[0]]);
+  else
+    PetscCall(ModeStiffness(trial));
+  PetscFunctionReturn(0);
+}
+
+/* The k modes of the trial that have most in common with the plane of the reference */
+static PetscErrorCode TrialIdentify(const Trial *reference, Trial *trial, PetscBool *found)
+{
+  const ModeFrame *a = reference->frame, *b = trial->frame;
+  const PetscInt   na = a->modes.n, nb = b->modes.n, k = reference->k;
+  PetscComplex    *C, *D, *sum;
+  PetscBool       *taken;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc4(na * nb, &C, na * nb, &D, nb, &sum, nb, &taken));
+  PetscCall(PetscMalloc1(k, &trial->member));
+  PetscCall(FrameProject(a, b, C));
+  PetscCall(FrameProject(b, a, D));
+  for (PetscInt r = 0; r < k; r++)
+    for (PetscInt j = 0; j < nb; j++)
+      sum[b->cluster[j]] += C[reference->member[r] * nb + j] * D[j * na + reference->member[r]];
+  *found = nb >= k ? PETSC_TRUE : PETSC_FALSE;
+  for (trial->k = 0; trial->k < k && *found; trial->k++) {
+    PetscInt best = -1;
+
+    for (PetscInt j = 0; j < nb; j++)
+      if (!taken[j] && (best < 0 || cabs(sum[b->cluster[j]]) > cabs(sum[b->cluster[best]]))) best = j;
+    if (cabs(sum[b->cluster[best]]) < 0.2) *found = PETSC_FALSE;
+    taken[best]             = PETSC_TRUE;
+    trial->member[trial->k] = best;
+  }
+  PetscCall(PetscFree4(C, D, sum, taken));
+  PetscFunctionReturn(0);
+}
+
+/* The trial at a value, by the nearer end of the bracket */
+static PetscErrorCode OnsetTry(Onset *onset, PetscReal value, Trial *trial, PetscBool *found)
+{
+  const PetscReal to_0 = PetscAbsReal(value - onset->end[0].frame->value);
+  const PetscReal to_1 = onset->end[1].frame ? PetscAbsReal(value - onset->end[1].frame->value) : PETSC_MAX_REAL;
+
+  PetscFunctionBeginUser;
+  PetscCall(FrameSourceSolve(&onset->source, value, &trial->frame));
+  PetscCall(TrialIdentify(&onset->end[to_1 < to_0 ? 1 : 0], trial, found));
+  if (*found) PetscCall(TrialValue(onset->kind, trial));
+  PetscFunctionReturn(0);
+}
+
+/* The unstable end: the mode of eigenvalue lambda, with the others of its cluster for a pair */
+static PetscErrorCode OnsetBegin(Onset *onset, PetscReal value, PetscComplex lambda, PetscBool *found)
+{
+  Trial     *trial = &onset->end[0];
+  ModeFrame *f;
+  PetscInt   mode = -1;
+
+  PetscFunctionBeginUser;
+  PetscCall(FrameSourceSolve(&onset->source, value, &trial->frame));
+  f = trial->frame;
+  PetscCall(PetscMalloc1(f->modes.n, &trial->member));
+  for (PetscInt i = 0; i < f->modes.n; i++)
+    if (mode < 0 || cabs(f->modes.lambda[i] - lambda) < cabs(f->modes.lambda[mode] - lambda)) mode = i;
+  *found = mode >= 0 && cabs(f->modes.lambda[mode] - lambda) <= 1e-5 * cabs(lambda) ? PETSC_TRUE : PETSC_FALSE;
+  if (!*found) PetscFunctionReturn(0);
+  trial->member[trial->k++] = mode;
+  for (PetscInt i = 0; i < f->modes.n; i++)
+    if (onset->kind == ONSET_PAIR && i != mode && f->cluster[i] == f->cluster[mode]) trial->member[trial->k++] = i;
+  *found = onset->kind != ONSET_PAIR || trial->k > 1 ? PETSC_TRUE : PETSC_FALSE;
+  if (*found) PetscCall(TrialValue(onset->kind, trial));
+  onset->change = PetscAbsReal(trial->g) / cabs(lambda);
+  PetscFunctionReturn(0);
+}
+
+/* Replaces the end of the bracket on whose side the trial is */
+static PetscErrorCode OnsetShrink(Onset *onset, Trial *trial)
+{
+  const int side = trial->g > 0 ? 0 : 1;
+
+  PetscFunctionBeginUser;
+  PetscCall(TrialDestroy(&onset->end[side]));
+  onset->end[side] = *trial;
+  PetscFunctionReturn(0);
+}
+
+/* Brent's method for the zero of g between the ends */
+static PetscErrorCode OnsetIterate(Onset *onset, PetscReal *critical, PetscBool *found)
+{
+  PetscReal a = onset->end[0].frame->value, b = onset->end[1].frame->value, c = a, d = b - a, e = d;
+  PetscReal ga = onset->end[0].g, gb = onset->end[1].g, gc = ga;
+
+  PetscFunctionBeginUser;
+  for (int iteration = 0; iteration < 100 && *found; iteration++) {
+    Trial     trial = {0};
+    PetscReal tolerance, half;
+
+    if (PetscAbsReal(gc) < PetscAbsReal(gb)) a = b, b = c, c = a, ga = gb, gb = gc, gc = ga;
+    tolerance = 2 * PETSC_MACHINE_EPSILON * PetscAbsReal(b);
+    half      = 0.5 * (c - b);
+    *critical = b;
+    if (PetscAbsReal(half) <= tolerance || gb == 0) break;
+    if (PetscAbsReal(e) >= tolerance && PetscAbsReal(ga) > PetscAbsReal(gb)) {
+      const PetscReal s = gb / ga, q = ga / gc, r = gb / gc;
+      PetscReal       u = a == c ? 2 * half * s : s * (2 * half * q * (q - r) - (b - a) * (r - 1));
+      PetscReal       v = a == c ? 1 - s : (q - 1) * (r - 1) * (s - 1);
+
+      if (u > 0) v = -v;
+      u = PetscAbsReal(u);
+      if (2 * u < PetscMin(3 * half * v - PetscAbsReal(tolerance * v), PetscAbsReal(e * v)))
+        e = d, d = u / v;
+      else
+        d = half, e = half;
+    } else {
+      d = half, e = half;
+    }
+    a = b, ga = gb;
+    b += PetscAbsReal(d) > tolerance ? d : PetscSign(half) * tolerance;
+    PetscCall(OnsetTry(onset, b, &trial, found));
+    gb = trial.g;
+    if (*found)
+      PetscCall(OnsetShrink(onset, &trial));
+    else
+      PetscCall(TrialDestroy(&trial));
+    if ((gb > 0) == (gc > 0)) c = a, gc = ga, d = b - a, e = d;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* |g'| at the trial, from a difference towards the farther end of [lower, upper] */
+static PetscErrorCode OnsetSlope(Onset *onset, const Trial *trial, const Event *event, PetscReal *slope)
+{
+  const PetscReal p = trial->frame->value, up = event->upper - p, down = p - event->lower;
+  const PetscReal h    = up > down ? 1e-3 * up : -1e-3 * down;
+  Trial           next = {0};
+  PetscBool       found;
+
+  PetscFunctionBeginUser;
+  PetscCall(OnsetTry(onset, p + h, &next, &found));
+  *slope = found ? PetscAbsReal((next.g - trial->g) / h) : 0;
+  PetscCall(TrialDestroy(&next));
+  PetscFunctionReturn(0);
+}
+
+/* Error of g at the critical trial, from those of the eigenvalues and rounding */
+static PetscReal OnsetUncertainty(const Onset *onset, const Trial *trial, const Event *event)
+{
+  const PetscReal size = PetscMax(cabs(event->lambda), event->omega);
+  const PetscReal unit =
+    onset->kind == ONSET_GROWTH ? size : (onset->kind == ONSET_PAIR ? PetscSqr(size * size) : size * onset->change);
+  const PetscReal lambda = cabs(trial->frame->modes.lambda[trial->member[0]]);
+  PetscReal       error  = 0, delta;
+
+  for (PetscInt r = 0; r < trial->k; r++) {
+    const ReducedModes *modes = &trial->frame->modes;
+    const PetscInt      i     = trial->member[r];
+
+    error = PetscMax(error, modes->error[i] - modes->noise[i]); /* rounding of the critical value is added apart */
+  }
+  delta = onset->kind == ONSET_PAIR ? PetscSqr(2 * event->omega * error) : 3 * error;
+  if (onset->kind == ONSET_STIFFNESS) delta *= onset->source.damped ? onset->change : 2 * lambda + error;
+  return delta + 10 * PETSC_MACHINE_EPSILON * unit;
+}
+
+/* Frequency and error at the critical value */
+static PetscErrorCode OnsetFinish(Onset *onset, Event *event)
+{
+  const PetscReal width = event->upper - event->lower;
+  Trial           trial = {0};
+  PetscReal       slope, delta;
+
+  PetscFunctionBeginUser;
+  onset->source.estimate = PETSC_TRUE;
+  PetscCall(OnsetTry(onset, event->critical, &trial, &event->found));
+  onset->source.estimate = PETSC_FALSE;
+  if (event->found) {
+    if (onset->kind == ONSET_PAIR)
+      event->omega = PetscSqrtReal(PetscMax(trial.m, 0));
+    else if (onset->kind == ONSET_GROWTH)
+      event->omega = cimag(trial.frame->modes.lambda[trial.member[0]]);
+    else
+      event->omega = 0;
+    PetscCall(OnsetSlope(onset, &trial, event, &slope));
+    delta        = OnsetUncertainty(onset, &trial, event);
+    event->error = delta < slope * width ? delta / slope : width;
+    event->error += 4 * PETSC_MACHINE_EPSILON * PetscAbsReal(event->critical);
+  }
+  PetscCall(TrialDestroy(&trial));
+  PetscFunctionReturn(0);
+}
+
+/* The unstable and the stable end; an end on which the other sign is due to rounding is the critical value */
+static PetscErrorCode OnsetBracket(Onset *onset, const Event *event, PetscReal *critical, PetscBool *found)
+{
+  const PetscBool unstable_above =
+    event->kind == EVENT_LOCK_IN || event->kind == EVENT_DIVERGENCE ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal unstable = unstable_above ? event->upper : event->lower;
+  const PetscReal stable   = unstable_above ? event->lower : event->upper;
+  PetscReal       g0, g1;
+
+  PetscFunctionBeginUser;
+  PetscCall(OnsetBegin(onset, unstable, event->lambda, found));
+  if (*found) PetscCall(OnsetTry(onset, stable, &onset->end[1], found));
+  if (!*found) PetscFunctionReturn(0);
+  g0 = onset->end[0].g, g1 = onset->end[1].g;
+  if (g0 > 0 && g1 < 0) {
+    PetscCall(OnsetIterate(onset, critical, found));
+  } else {
+    *critical = PetscAbsReal(g0) < PetscAbsReal(g1) ? unstable : stable;
+    *found    = PetscMin(PetscAbsReal(g0), PetscAbsReal(g1)) <= 1e-6 * PetscMax(PetscAbsReal(g0), PetscAbsReal(g1))
+                  ? PETSC_TRUE
+                  : PETSC_FALSE;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OnsetFind(const Reduced *reduced, const ReducedWindow *window, const Line *line, Event *event)
+{
+  Onset     onset = {0};
+  PetscReal critical;
+  PetscBool divergence = event->kind == EVENT_DIVERGENCE || event->kind == EVENT_RESTABILISATION;
+  PetscBool found;
+
+  PetscFunctionBeginUser;
+  PetscCall(FrameSourceCreate(reduced, window, line, &onset.source));
+  onset.kind = divergence ? ONSET_STIFFNESS : (onset.source.damped ? ONSET_GROWTH : ONSET_PAIR);
+  PetscCall(OnsetBracket(&onset, event, &critical, &found));
+  event->found = found;
+  if (found) {
+    event->critical = critical;
+    PetscCall(OnsetFinish(&onset, event));
+  }
+  PetscCall(TrialDestroy(&onset.end[0]));
+  PetscCall(TrialDestroy(&onset.end[1]));
+  PetscCall(FrameSourceDestroy(&onset.source));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,298 @@
+/*
+   Branches and events along a line. From each point to the next the modes are matched (match.c); where a component of
+   the match is not certain the interval is halved, and where two stable modes are predicted to be unstable between the
+   points (interval.c) it is divided there, up to DEPTH times and with at most BUDGET solutions between two points. What
+   is still ambiguous then (a mode that turns into another one within a thousandth of the step) is resolved by the
+   greedy assignment of match.c.
+
+   Events are the changes of stability of a branch between neighbouring points of this refined sequence. Where the
+   contact status changes, eigenvalues jump: nothing is to be had in between, and a match that is not certain is none.
+*/
+#include "branch.h"
+
+#define DEPTH  10
+#define BUDGET 200
+#define UNIQUE 0.5 /* strength of a match across a jump */
+
+typedef struct {
+  FrameSource source;
+  BranchList  branches;
+  EventList  *events;
+  PetscInt    solved; /* in the present interval of the line */
+} Tracker;
+
+PetscErrorCode EventListAdd(EventList *events, const Event *event)
+{
+  PetscFunctionBeginUser;
+  if (events->n == events->capacity) {
+    events->capacity = 2 * events->capacity + 16;
+    PetscCall(PetscRealloc(events->capacity * sizeof(*events->event), &events->event));
+  }
+  events->event[events->n++] = *event;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EventListDestroy(EventList *events)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(events->event));
+  events->n = events->capacity = 0;
+  PetscFunctionReturn(0);
+}
+
+/* The branch with which mode i of an unstable point interacts: its partner of the pair, with damping the nearest
+   eigenvalue */
+static PetscInt EventPartner(const ModeFrame *frame, PetscInt i)
+{
+  const PetscComplex lambda  = frame->modes.lambda[i];
+  PetscInt           partner = FramePartner(frame, i);
+  PetscReal          nearest = 0.1 * cabs(lambda);
+
+  for (PetscInt k = 0; k < frame->modes.n && frame->damped; k++) {
+    const PetscReal distance = cabs(frame->modes.lambda[k] - lambda);
+
+    if (k != i && distance <= nearest) partner = k, nearest = distance;
+  }
+  return partner < 0 ? -1 : frame->branch[partner];
+}
+
+/* Event of mode i of a, j of b, of which one is unstable */
+static PetscErrorCode EventMake(const ModeFrame *a, PetscInt i, const ModeFrame *b, PetscInt j, EventList *events)
+{
+  const PetscBool  at_a = ModeIsUnstable(&a->modes, i), descending = a->value > b->value ? PETSC_TRUE : PETSC_FALSE;
+  const ModeFrame *unstable = at_a ? a : b;
+  const PetscInt   mode     = at_a ? i : j;
+  const PetscBool  begins   = at_a == descending ? PETSC_TRUE : PETSC_FALSE;
+  Event            event    = {0};
+
+  PetscFunctionBeginUser;
+  event.lambda    = unstable->modes.lambda[mode];
+  event.lower     = PetscMin(a->value, b->value);
+  event.upper     = PetscMax(a->value, b->value);
+  event.omega     = cimag(event.lambda);
+  event.critical  = at_a ? a->value : b->value;
+  event.branch[0] = unstable->branch[mode];
+  event.branch[1] = EventPartner(unstable, mode);
+  if (cimag(event.lambda) == 0)
+    event.kind = begins ? EVENT_DIVERGENCE : EVENT_RESTABILISATION;
+  else
+    event.kind = begins ? EVENT_LOCK_IN : EVENT_LOCK_OUT;
+  PetscCall(EventListAdd(events, &event));
+  PetscFunctionReturn(0);
+}
+
+/* Takes the step from a to b as it is */
+static PetscErrorCode TrackerAdvance(Tracker *tracker, const ModeFrame *a, ModeFrame *b, Match *match)
+{
+  PetscFunctionBeginUser;
+  PetscCall(BranchListContinue(&tracker->branches, a, b, match));
+  for (PetscInt j = 0; j < b->modes.n; j++) {
+    const PetscInt i = match->from[j];
+
+    if (i >= 0 && ModeIsUnstable(&a->modes, i) != ModeIsUnstable(&b->modes, j))
+      PetscCall(EventMake(a, i, b, j, tracker->events));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Whether to divide the step, and where */
+static PetscErrorCode TrackerDivides(const ModeFrame *a, const ModeFrame *b, PetscInt depth, Match *match,
+                                     PetscReal *value, PetscBool *divides)
+{
+  PetscReal *omega, t = 0.5;
+
+  PetscFunctionBeginUser;
+  *divides = match->all_certain ? PETSC_FALSE : PETSC_TRUE;
+  if (match->all_certain) {
+    PetscCall(PetscMalloc1(a->modes.n, &omega));
+    for (PetscInt i = 0; i < a->modes.n; i++) omega[i] = cimag(a->modes.lambda[i]);
+    PetscCall(MatchAssign(a, b, match->strength, omega, match));
+    PetscCall(PetscFree(omega));
+    PetscCall(IntervalPredict(a, b, match, PetscPowRealInt(0.5, DEPTH - depth), &t, divides));
+  }
+  *value = a->value + t * (b->value - a->value);
+  if (*value == a->value || *value == b->value) *divides = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* From a, whose branches are known, to b */
+static PetscErrorCode TrackerStep(Tracker *tracker, const ModeFrame *a, ModeFrame *b, PetscInt depth)
+{
+  Match      match;
+  ModeFrame *middle;
+  PetscReal  value;
+  PetscBool  divides = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatchCreate(a, b, tracker->source.window, &match));
+  if (depth < DEPTH && tracker->solved < BUDGET) PetscCall(TrackerDivides(a, b, depth, &match, &value, &divides));
+  if (divides) {
+    tracker->solved++;
+    PetscCall(FrameSourceSolve(&tracker->source, value, &middle));
+    PetscCall(TrackerStep(tracker, a, middle, depth + 1));
+    PetscCall(TrackerStep(tracker, middle, b, depth + 1));
+    PetscCall(FrameDestroy(&middle));
+  } else {
+    PetscCall(TrackerAdvance(tracker, a, b, &match));
+  }
+  PetscCall(MatchDestroy(&match));
+  PetscFunctionReturn(0);
+}
+
+/* Errors of the points between are needed when those of the points are known: stability depends on them */
+static PetscBool HaveErrors(const ReducedModes modes[], PetscInt n)
+{
+  for (PetscInt k = 0; k < n; k++)
+    for (PetscInt i = 0; i < modes[k].n; i++)
+      if (modes[k].error[i] > 0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+PetscErrorCode TrackLine(const Reduced *reduced, const ReducedWindow *window, const Line *line,
+                         const ReducedModes modes[], PetscInt *branch[], PetscInt *n_branches, EventList *events)
+{
+  Tracker    tracker = {.branches = {.first = *n_branches}, .events = events};
+  ModeFrame *frame   = NULL, *next;
+
+  PetscFunctionBeginUser;
+  if (!line->n) PetscFunctionReturn(0);
+  PetscCall(FrameSourceCreate(reduced, window, line, &tracker.source));
+  tracker.source.estimate = HaveErrors(modes, line->n);
+  for (PetscInt k = 0; k < line->n; k++) {
+    PetscCall(FrameSourceTake(&tracker.source, line->value[k], &modes[k], &next));
+    tracker.solved = 0;
+    if (k == 0)
+      PetscCall(BranchListBegin(&tracker.branches, next));
+    else
+      PetscCall(TrackerStep(&tracker, frame, next, 0));
+    PetscCall(PetscArraycpy(branch[k], next->branch, modes[k].n));
+    PetscCall(FrameDestroy(&frame));
+    frame = next;
+  }
+  PetscCall(FrameDestroy(&frame));
+  *n_branches += tracker.branches.n;
+  PetscCall(BranchListDestroy(&tracker.branches));
+  PetscCall(FrameSourceDestroy(&tracker.source));
+  PetscFunctionReturn(0);
+}
+
+/* Largest |lambda| of two points */
+static PetscReal ModesScale(const ReducedModes *a, const ReducedModes *b)
+{
+  PetscReal largest = 0;
+
+  for (PetscInt i = 0; i < a->n; i++) largest = PetscMax(largest, cabs(a->lambda[i]));
+  for (PetscInt i = 0; i < b->n; i++) largest = PetscMax(largest, cabs(b->lambda[i]));
+  return largest > 0 ? largest : 1;
+}
+
+/* The two points as frames, and their match */
+static PetscErrorCode PointsMatch(const Reduced *reduced, const PetscReal p[], const PetscReal value[2],
+                                  const ReducedModes *a, const ReducedModes *b, ModeFrame *frame[2], Match *match)
+{
+  const PetscReal scale = ModesScale(a, b);
+  PetscReal      *omega;
+  PetscBool       damped;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(a->n, &omega));
+  PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, 0, NULL, &damped));
+  PetscCall(FrameCreate(reduced, p, value[0], damped, scale, PETSC_FALSE, a, &frame[0]));
+  PetscCall(FrameCreate(reduced, p, value[1], damped, scale, PETSC_FALSE, b, &frame[1]));
+  PetscCall(MatchCreate(frame[0], frame[1], NULL, match));
+  for (PetscInt i = 0; i < a->n; i++) omega[i] = cimag(a->lambda[i]);
+  PetscCall(MatchAssign(frame[0], frame[1], match->strength, omega, match));
+  PetscCall(PetscFree(omega));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const ReducedModes *a, const ReducedModes *b,
+                          PetscInt from[], PetscBool *certain)
+{
+  const PetscReal none[2] = {0, 0};
+  ModeFrame      *frame[2];
+  Match           match;
+
+  PetscFunctionBeginUser;
+  PetscCall(PointsMatch(reduced, p, none, a, b, frame, &match));
+  PetscCall(PetscArraycpy(from, match.from, b->n));
+  *certain = match.all_certain;
+  PetscCall(MatchDestroy(&match));
+  PetscCall(FrameDestroy(&frame[0]));
+  PetscCall(FrameDestroy(&frame[1]));
+  PetscFunctionReturn(0);
+}
+
+/* Ends the branches whose match is neither certain nor by more than half, which no second mode can have */
+static void MatchDropDoubtful(Match *match)
+{
+  for (PetscInt j = 0; j < match->nb; j++) {
+    const PetscInt i = match->from[j];
+
+    if (i >= 0 && !match->certain[match->component_a[i]] && match->strength[i * match->nb + j] < UNIQUE)
+      match->from[j] = -1;
+  }
+}
+
+/* Event of mode i, which is unstable at this frame and not at the other */
+static PetscErrorCode JumpMake(const ModeFrame *frame, PetscInt i, const ModeFrame *other, EventList *events)
+{
+  Event event = {.kind = EVENT_JUMP, .found = PETSC_TRUE};
+
+  PetscFunctionBeginUser;
+  event.lambda    = frame->modes.lambda[i];
+  event.omega     = cimag(event.lambda);
+  event.lower     = PetscMin(frame->value, other->value);
+  event.upper     = PetscMax(frame->value, other->value);
+  event.critical  = 0.5 * (event.lower + event.upper);
+  event.error     = 0.5 * (event.upper - event.lower);
+  event.above     = frame->value > other->value ? PETSC_TRUE : PETSC_FALSE;
+  event.branch[0] = frame->branch[i];
+  event.branch[1] = EventPartner(frame, i);
+  PetscCall(EventListAdd(events, &event));
+  PetscFunctionReturn(0);
+}
+
+/* Events of the modes that are unstable on one side only */
+static PetscErrorCode JumpsFind(const ModeFrame *a, const ModeFrame *b, const Match *match, EventList *events)
+{
+  PetscBool *goes_on;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(a->modes.n, &goes_on));
+  for (PetscInt j = 0; j < b->modes.n; j++) {
+    const PetscInt i = match->from[j];
+
+    if (!ModeIsUnstable(&b->modes, j)) continue;
+    if (i >= 0 && ModeIsUnstable(&a->modes, i))
+      goes_on[i] = PETSC_TRUE;
+    else
+      PetscCall(JumpMake(b, j, a, events));
+  }
+  for (PetscInt i = 0; i < a->modes.n; i++)
+    if (ModeIsUnstable(&a->modes, i) && !goes_on[i]) PetscCall(JumpMake(a, i, b, events));
+  PetscCall(PetscFree(goes_on));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], PetscReal value_a, const ReducedModes *a,
+                         const PetscInt branch_a[], PetscReal value_b, const ReducedModes *b, PetscInt branch_b[],
+                         EventList *events)
+{
+  const PetscReal value[2] = {value_a, value_b};
+  ModeFrame      *frame[2];
+  Match           match;
+
+  PetscFunctionBeginUser;
+  PetscCall(PointsMatch(reduced, p, value, a, b, frame, &match));
+  MatchDropDoubtful(&match);
+  for (PetscInt j = 0; j < b->n; j++)
+    if (match.from[j] >= 0) branch_b[j] = branch_a[match.from[j]];
+  PetscCall(PetscArraycpy(frame[0]->branch, branch_a, a->n));
+  PetscCall(PetscArraycpy(frame[1]->branch, branch_b, b->n));
+  PetscCall(JumpsFind(frame[0], frame[1], &match, events));
+  PetscCall(MatchDestroy(&match));
+  PetscCall(FrameDestroy(&frame[0]));
+  PetscCall(FrameDestroy(&frame[1]));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,62 @@
+/*
+   Private to sweep/: branches over the points of a line, i.e. over the values of one parameter, and the events on them.
+   Pure functions on the reduced model: no MPI, no options.
+*/
+#pragma once
+
+#include "sweep/dense/reduced.h"
+
+typedef enum { EVENT_LOCK_IN, EVENT_LOCK_OUT, EVENT_DIVERGENCE, EVENT_RESTABILISATION, EVENT_JUMP } EventKind;
+
+/* Between lower and upper (lower < upper) the modes of one or two branches change stability. Lock-in: a pair becomes
+   unstable as the parameter grows, lock-out: it becomes stable again; divergence: a mode of frequency zero becomes
+   unstable, restabilisation: it becomes stable again. Jump: pairs open or close between lower and upper, and a mode is
+   unstable on one side only */
+typedef struct {
+  EventKind    kind;
+  PetscReal    lower, upper; /* values of the parameter with the stability of before and after */
+  PetscComplex lambda;       /* the unstable eigenvalue where it is unstable, at lower or upper, rad/s */
+  PetscInt     branch[2];    /* the branch that is unstable and its partner, -1 for none */
+  PetscReal    critical;     /* value where sigma = 0; set by OnsetFind() */
+  PetscReal    omega;        /* rad/s at the critical value */
+  PetscReal    error;        /* estimated error of the critical value, in its unit */
+  PetscBool    found;
+  PetscBool    above; /* of a jump: unstable at upper */
+  PetscInt     place; /* of the grid, whose other parameters hold; set by the caller */
+} Event;
+
+typedef struct {
+  PetscInt n, capacity;
+  Event   *event;
+} EventList;
+
+/* The line: parameter index, values [n] ascending or descending, all other parameters from base[n_parameters] */
+typedef struct {
+  PetscInt         parameter;
+  PetscInt         n;
+  const PetscReal *value;
+  const PetscReal *base;
+} Line;
+
+/* track.c - branch[point][mode] for the modes already solved at the points, numbered from *n_branches on; *n_branches
+   grows. Where the match of two neighbouring points is ambiguous the interval is halved by further ReducedSolve(). */
+PetscErrorCode TrackLine(const Reduced *reduced, const ReducedWindow *window, const Line *line,
+                         const ReducedModes modes[], PetscInt *branch[], PetscInt *n_branches, EventList *events);
+/* Match of the modes of two points a, b that may differ in any parameter: from[i of b] = mode of a or -1; certain =
+   whether no match is ambiguous */
+PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const ReducedModes *a, const ReducedModes *b,
+                          PetscInt from[], PetscBool *certain);
+/* Modes of two points a, b on the two sides of a change of contact status: branch_b of those that are certainly modes
+   of a becomes that of a, the others keep theirs; appends a jump for every mode that is unstable on one side only.
+   value = that of the line's parameter, p = all parameters at b */
+PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], PetscReal value_a, const ReducedModes *a,
+                         const PetscInt branch_a[], PetscReal value_b, const ReducedModes *b, PetscInt branch_b[],
+                         EventList *events);
+/* Appends to events; a list begins as {0} */
+PetscErrorCode EventListAdd(EventList *events, const Event *event);
+PetscErrorCode EventListDestroy(EventList *events);
+/* Whether sigma of mode i is positive beyond its error: sigma > max(3 error, 1e-9 |lambda|) */
+PetscBool ModeIsUnstable(const ReducedModes *modes, PetscInt i);
+
+/* onset.c - the critical value of an event on the reduced model, to rounding, and its estimated error */
+PetscErrorCode OnsetFind(const Reduced *reduced, const ReducedWindow *window, const Line *line, Event *event);
