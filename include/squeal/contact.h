@@ -14,13 +14,12 @@
 */
 #pragma once
 
+#include <squeal/contactstatus.h>
 #include <squeal/model.h>
 
 typedef struct _p_Contact *Contact;
 
 typedef enum { CONTACT_PENALTY, CONTACT_CONSTRAINT } ContactLaw;
-
-typedef enum { CONTACT_OPEN, CONTACT_STICK, CONTACT_SLIP, CONTACT_N_STATUS } ContactStatus;
 
 extern const char *const ContactStatusNames[CONTACT_N_STATUS]; /* "open", "stick", "slip" */
 
@@ -44,7 +43,7 @@ typedef struct {
 typedef struct {
   ContactStatus status;
   PetscReal     gap;         /* m, positive open; with the penalty law -lambda_n / k_n when closed */
-  PetscReal     slip[2];     /* displacement of the slave relative to the master along t and b, m */
+  PetscReal     slip[2];     /* displacement of the slave relative to the master along t and b, in time in a step, m */
   PetscReal     lambda_n;    /* normal force, N, compressive >= 0 */
   PetscReal     lambda_t[2]; /* friction on the master along t and b, N */
 } ContactState;

@@ -108,16 +108,15 @@ PetscErrorCode ContactProject(ContactProjector projector, const ContactStep *ste
                               const PetscReal before[], const PetscReal v[], PetscReal force[]);
 
 /*@ ContactProjectorGetStates - states of the last step of the slaves (borrowed): n on this rank, their interface,
-    global vertex number and place (m, [n][3]); NULL for what is not needed. gap is that at t_{n+1}, slip the slip
-    velocity (m/s). Not collective. @*/
+    global vertex number and place (m, [n][3]); NULL for what is not needed. gap is that at t_{n+1}, slip that
+    of the step. Not collective. @*/
 PetscErrorCode ContactProjectorGetStates(ContactProjector projector, PetscInt *n, const ContactState **state,
                                          const PetscInt **interface, const PetscInt **number, const PetscReal **x);
 
 /*@ ContactProjectorGetSums - sums of interface i, over all ranks. Collective. @*/
 PetscErrorCode ContactProjectorGetSums(ContactProjector projector, PetscInt interface, ContactSums *sums);
 
-/*@ ContactProjectorGetKKT - residuals of the laws in the last step, slip being the slip velocity times dt. Collective.
-    @*/
+/*@ ContactProjectorGetKKT - residuals of the laws in the last step. Collective. @*/
 PetscErrorCode ContactProjectorGetKKT(ContactProjector projector, ContactKKT *kkt);
 
 /*@ ContactProjectorGetMemory - what must be kept so that a run continues bitwise: n numbers on this rank. Not

@@ -23,20 +23,21 @@ static PetscReal Length2(const PetscReal a[2])
   return PetscSqrtReal(a[0] * a[0] + a[1] * a[1]);
 }
 
-static PetscErrorCode ScaleFind(Contact contact, const ContactState state[], PetscReal displacement, Scale *scale)
+static PetscErrorCode ScaleFind(MPI_Comm comm, PetscInt n, const ContactJudged pair[], PetscReal displacement,
+                                Scale *scale)
 {
   PetscReal largest[2] = {0, displacement};
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    const PetscReal    move = PetscMax(PetscAbsReal(state[p].gap - pair->gap), Length2(state[p].slip));
+  for (PetscInt p = 0; p < n; p++) {
+    const ContactState *s    = pair[p].state;
+    const PetscReal     move = PetscMax(PetscAbsReal(s->gap - pair[p].gap), Length2(s->slip));
 
-    largest[0] = PetscMax(largest[0], PetscAbsReal(state[p].lambda_n));
-    largest[1] = PetscMax(largest[1], PetscMax(move, PetscAbsReal(state[p].gap)));
-    largest[1] = PetscMax(largest[1], 1e-9 * PetscSqrtReal(pair->area));
+    largest[0] = PetscMax(largest[0], PetscAbsReal(s->lambda_n));
+    largest[1] = PetscMax(largest[1], PetscMax(move, PetscAbsReal(s->gap)));
+    largest[1] = PetscMax(largest[1], 1e-9 * pair[p].width);
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPIU_REAL, MPI_MAX, contact->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPIU_REAL, MPI_MAX, comm));
   scale->force  = largest[0];
   scale->length = largest[1];
   PetscFunctionReturn(0);
@@ -49,27 +50,28 @@ static PetscReal Relative(PetscReal a, PetscReal b)
 }
 
 /* |lambda_t - mu lambda_n d|; any direction d will do where there is no slip */
-static PetscReal SlipResidual(const ContactInterface *c, const ContactState *state, PetscReal mu)
+static PetscReal SlipResidual(const ContactJudged *pair)
 {
-  const PetscReal slip = Length2(state->slip), force = mu * state->lambda_n;
-  PetscReal       rest[2] = {state->lambda_t[0], state->lambda_t[1]};
+  const ContactState *state = pair->state;
+  const PetscReal     slip = Length2(state->slip), force = pair->mu * state->lambda_n;
+  PetscReal           rest[2] = {state->lambda_t[0], state->lambda_t[1]};
 
-  if (!c->slides && slip == 0) return PetscAbsReal(Length2(rest) - PetscAbsReal(force));
-  rest[0] -= force * (c->slides ? 1 : state->slip[0] / slip);
-  rest[1] -= force * (c->slides ? 0 : state->slip[1] / slip);
+  if (!pair->told && slip == 0) return PetscAbsReal(Length2(rest) - PetscAbsReal(force));
+  rest[0] -= force * (pair->told ? 1 : state->slip[0] / slip);
+  rest[1] -= force * (pair->told ? 0 : state->slip[1] / slip);
   return Length2(rest);
 }
 
 /* Raises the residuals to those of one pair; what is no number obeys no law */
-static void PairRaise(const ContactInterface *c, const ContactState *state, PetscReal mu, PetscReal kn,
-                      const Scale *scale, ContactKKT *kkt)
+static void PairRaise(const ContactJudged *pair, const Scale *scale, ContactKKT *kkt)
 {
-  const PetscReal gap   = Relative(state->gap + state->lambda_n / kn, scale->length);
-  const PetscReal force = Relative(state->lambda_n, scale->force);
-  const PetscReal over  = Length2(state->lambda_t) - PetscAbsReal(mu) * state->lambda_n;
-  PetscReal       rest  = 0;
+  const ContactState *state = pair->state;
+  const PetscReal     gap   = Relative(state->gap + state->lambda_n / pair->kn, scale->length);
+  const PetscReal     force = Relative(state->lambda_n, scale->force);
+  const PetscReal     over  = Length2(state->lambda_t) - PetscAbsReal(pair->mu) * state->lambda_n;
+  PetscReal           rest  = 0;
 
-  if (state->status == CONTACT_SLIP) rest = Relative(SlipResidual(c, state, mu), scale->force);
+  if (state->status == CONTACT_SLIP) rest = Relative(SlipResidual(pair), scale->force);
   if (state->status == CONTACT_STICK) rest = Relative(Length2(state->slip), scale->length);
   if (PetscIsInfOrNanReal(gap + force + over + rest)) {
     *kkt = (ContactKKT){INFINITY, INFINITY, INFINITY, INFINITY, INFINITY};
@@ -82,21 +84,35 @@ static void PairRaise(const ContactInterface *c, const ContactState *state, Pets
   kkt->dissipation     = PetscMax(kkt->dissipation, rest);
 }
 
-PetscErrorCode ContactComputeKKT(Contact contact, const ContactState state[], const PetscReal mu[],
-                                 const PetscReal kn[], PetscReal displacement, ContactKKT *kkt)
+PetscErrorCode ContactJudge(MPI_Comm comm, PetscInt n, const ContactJudged pair[], PetscReal displacement,
+                            ContactKKT *kkt)
 {
   Scale      scale;
   ContactKKT worst = {0, 0, 0, 0, 0};
 
   PetscFunctionBeginUser;
-  PetscCall(ScaleFind(contact, state, displacement, &scale));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const PetscInt i = contact->pairs[p].interface;
+  PetscCall(ScaleFind(comm, n, pair, displacement, &scale));
+  for (PetscInt p = 0; p < n; p++) PairRaise(&pair[p], &scale, &worst);
+  PetscCallMPI(MPI_Allreduce(&worst, kkt, (PetscMPIInt)(sizeof(worst) / sizeof(PetscReal)), MPIU_REAL, MPI_MAX, comm));
+  PetscFunctionReturn(0);
+}
 
-    PairRaise(&contact->interfaces[i], &state[p], mu[i], kn[i], &scale, &worst);
+PetscErrorCode ContactComputeKKT(Contact contact, const ContactState state[], const PetscReal mu[],
+                                 const PetscReal kn[], PetscReal displacement, ContactKKT *kkt)
+{
+  ContactJudged *judged;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(contact->n_pairs, &judged));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    const PetscInt     i    = pair->interface;
+
+    judged[p] =
+      (ContactJudged){&state[p], mu[i], kn[i], pair->gap, PetscSqrtReal(pair->area), contact->interfaces[i].slides};
   }
-  PetscCallMPI(
-    MPI_Allreduce(&worst, kkt, (PetscMPIInt)(sizeof(worst) / sizeof(PetscReal)), MPIU_REAL, MPI_MAX, contact->comm));
+  PetscCall(ContactJudge(contact->comm, contact->n_pairs, judged, displacement, kkt));
+  PetscCall(PetscFree(judged));
   PetscFunctionReturn(0);
 }
 

@@ -15,9 +15,8 @@
 */
 #pragma once
 
-#include <math.h>
-
-typedef enum { CONE_OPEN, CONE_STICK, CONE_SLIP } ConeStatus;
+#include "friction.h"
+#include <squeal/contactstatus.h>
 
 #define CONE_HELD 1e-14 /* compliance below this part of the trace of W: direction held on both sides */
 
@@ -111,18 +110,18 @@ static inline int ConeStick(const ConePlane *f, double p[3])
 }
 
 /* Any W, of which W[0][0] = 0 means that nothing moves along n: p = 0 then */
-static inline ConeStatus ConeSolve(const double W[3][3], const double q[3], double mu, double p[3])
+static inline ContactStatus ConeSolve(const double W[3][3], const double q[3], double mu, double p[3])
 {
   double    a[2], length;
   ConePlane f;
 
   p[0] = p[1] = p[2] = 0;
-  if (q[0] >= 0 || W[0][0] <= CONE_HELD * (W[1][1] + W[2][2])) return CONE_OPEN;
+  if (q[0] >= 0 || W[0][0] <= CONE_HELD * (W[1][1] + W[2][2])) return CONTACT_OPEN;
   ConePlaneSet(W, q, mu, &f);
-  if (mu > 0 && ConeStick(&f, p)) return CONE_STICK;
+  if (mu > 0 && ConeStick(&f, p)) return CONTACT_STICK;
   p[0] = f.pn0;
   p[1] = p[2] = 0;
-  if (mu == 0 || (f.c[0] == 0 && f.c[1] == 0)) return CONE_SLIP;
+  if (mu == 0 || (f.c[0] == 0 && f.c[1] == 0)) return CONTACT_SLIP;
   ConeSlipForce(&f, a);
   length = sqrt(a[0] * a[0] + a[1] * a[1]);
   p[1]   = (f.axis[0] * a[0] - f.axis[1] * a[1]) / length;
@@ -131,19 +130,15 @@ static inline ConeStatus ConeSolve(const double W[3][3], const double q[3], doub
   if (!(p[0] > 0)) p[0] = f.pn0, p[1] = p[2] = 0;
   p[1] *= mu * p[0];
   p[2] *= mu * p[0];
-  return CONE_SLIP;
+  return CONTACT_SLIP;
 }
 
 /* Residual of the natural map, N s: p_n - max(0, p_n - rho q_n) and p_T - Proj(p_T - rho q_T) on the disc of radius
    mu p_n, at q = q* + W p; rho (kg) is the inverse of a compliance of the pair */
 static inline double ConeResidual(double rho, const double q[3], double mu, const double p[3])
 {
-  const double normal = fabs(p[0] - fmax(0, p[0] - rho * q[0])), radius = mu * fmax(0, p[0]);
-  double       z[2], length, factor;
+  const double normal = fabs(p[0] - fmax(0, p[0] - rho * q[0]));
+  const double z[2]   = {p[1] - rho * q[1], p[2] - rho * q[2]};
 
-  for (int i = 0; i < 2; i++) z[i] = p[1 + i] - rho * q[1 + i];
-  length = sqrt(z[0] * z[0] + z[1] * z[1]);
-  factor = length > radius ? radius / length : 1;
-  for (int i = 0; i < 2; i++) z[i] = p[1 + i] - factor * z[i];
-  return fmax(normal, sqrt(z[0] * z[0] + z[1] * z[1]));
+  return fmax(normal, FrictionMiss(&p[1], z, mu * fmax(0, p[0])));
 }

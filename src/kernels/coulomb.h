@@ -19,9 +19,8 @@
 */
 #pragma once
 
-#include <math.h>
-
-typedef enum { COULOMB_OPEN, COULOMB_STICK, COULOMB_SLIP } CoulombStatus;
+#include "friction.h"
+#include <squeal/contactstatus.h>
 
 /* What does not change while a pair is iterated */
 typedef struct {
@@ -76,17 +75,17 @@ static inline void CoulombSlipRows(const CoulombPair *pair, const double l[], co
 }
 
 /* The law of a status at the present l, w */
-static inline void CoulombLinearise(const CoulombPair *pair, CoulombStatus status, const double l[], const double w[],
+static inline void CoulombLinearise(const CoulombPair *pair, ContactStatus status, const double l[], const double w[],
                                     CoulombLaw *law)
 {
   *law = (CoulombLaw){.p0 = {0}};
-  if (status == COULOMB_OPEN) {
+  if (status == CONTACT_OPEN) {
     for (int i = 0; i < pair->d; i++) law->Q[i][i] = 1;
     return;
   }
   CoulombClosedNormal(pair, law);
   if (pair->d == 1) return;
-  if (status == COULOMB_SLIP) {
+  if (status == CONTACT_SLIP) {
     CoulombSlipRows(pair, l, w, law);
     return;
   }
@@ -105,23 +104,24 @@ static inline double CoulombClosing(const CoulombPair *pair, const double l[], c
 }
 
 /* The status that l, w ask for; a pair on a border, within tol (m), stays what it was */
-static inline CoulombStatus CoulombDecide(const CoulombPair *pair, CoulombStatus before, const double l[],
+static inline ContactStatus CoulombDecide(const CoulombPair *pair, ContactStatus before, const double l[],
                                           const double w[], double tol)
 {
   double q[2], beyond;
 
-  if (CoulombClosing(pair, l, w) <= (before == COULOMB_OPEN ? tol : -tol)) return COULOMB_OPEN;
-  if (pair->d == 1) return COULOMB_SLIP;
+  if (CoulombClosing(pair, l, w) <= (before == CONTACT_OPEN ? tol : -tol)) return CONTACT_OPEN;
+  if (pair->d == 1) return CONTACT_SLIP;
   beyond = CoulombTrial(pair, l, w, q) - pair->mu * fmax(0, l[0]);
-  return beyond > (before == COULOMB_SLIP ? -tol : tol) ? COULOMB_SLIP : COULOMB_STICK;
+  return beyond > (before == CONTACT_SLIP ? -tol : tol) ? CONTACT_SLIP : CONTACT_STICK;
 }
 
 /* Residual of the friction law, |p - Proj_C(p + s)|, m */
 static inline double CoulombResidual(const CoulombPair *pair, const double l[], const double w[])
 {
+  const double p[2] = {-l[1], -l[2]};
   double       q[2];
-  const double length = pair->d == 3 ? CoulombTrial(pair, l, w, q) : 0, cone = pair->mu * fmax(0, l[0]);
-  const double factor = length > cone ? cone / length : 1;
 
-  return pair->d == 3 ? hypot(-l[1] - factor * q[0], -l[2] - factor * q[1]) : 0;
+  if (pair->d == 1) return 0;
+  (void)CoulombTrial(pair, l, w, q);
+  return FrictionMiss(p, q, pair->mu * fmax(0, l[0]));
 }

@@ -80,7 +80,7 @@ static PetscErrorCode ScaleFind(Active *a)
 }
 
 /* How wrong the status of pair p is, m; *next = what it should be */
-static PetscReal Wrongness(const Active *a, PetscInt p, CoulombStatus *next)
+static PetscReal Wrongness(const Active *a, PetscInt p, ContactStatus *next)
 {
   const PetscInt   first = a->rows->first[p];
   const PetscReal *l = &a->l[first], *w = &a->w[first];
@@ -89,7 +89,7 @@ static PetscReal Wrongness(const Active *a, PetscInt p, CoulombStatus *next)
   pair.mu *= a->friction;
   *next = CoulombDecide(&pair, a->status[p], l, w, ROUNDING * a->scale);
   if (*next == a->status[p]) return 0;
-  if (*next == COULOMB_OPEN || a->status[p] == COULOMB_OPEN) return PetscAbsReal(CoulombClosing(&pair, l, w));
+  if (*next == CONTACT_OPEN || a->status[p] == CONTACT_OPEN) return PetscAbsReal(CoulombClosing(&pair, l, w));
   return CoulombResidual(&pair, l, w);
 }
 
@@ -101,7 +101,7 @@ static PetscErrorCode StatusUpdate(Active *a, PetscBool single, PetscInt *n_chan
     int    rank;
   } worst          = {0, 0};
   PetscInt      at = -1;
-  CoulombStatus next, best = COULOMB_OPEN;
+  ContactStatus next, best = CONTACT_OPEN;
   PetscMPIInt   rank;
 
   PetscFunctionBeginUser;
@@ -136,7 +136,7 @@ static PetscErrorCode SlipResidual(const Active *a, PetscReal *residual)
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < a->rows->n_pairs; p++) {
     const PetscReal *l = &a->l[a->rows->first[p]], *w = &a->w[a->rows->first[p]];
-    const int        kind = a->status[p] == COULOMB_SLIP ? 0 : 1;
+    const int        kind = a->status[p] == CONTACT_SLIP ? 0 : 1;
     CoulombPair      pair = a->rows->law[p];
 
     pair.mu *= a->friction;
@@ -248,7 +248,7 @@ static PetscErrorCode Iterate(Active *a, PetscBool single, ActiveOutcome *outcom
 static PetscErrorCode Restart(Active *a)
 {
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < a->rows->n_pairs; p++) a->status[p] = a->rows->law[p].d == 3 ? COULOMB_STICK : COULOMB_SLIP;
+  for (PetscInt p = 0; p < a->rows->n_pairs; p++) a->status[p] = a->rows->law[p].d == 3 ? CONTACT_STICK : CONTACT_SLIP;
   PetscCall(PetscArrayzero(a->l, a->rows->n));
   PetscCall(PetscArrayzero(a->w, a->rows->n));
   PetscFunctionReturn(0);
@@ -266,7 +266,7 @@ static PetscErrorCode Raise(Active *a, ActiveOutcome *outcome)
   const PetscBool few      = IsFew(a);
   const PetscReal min_step = few ? MIN_STEP : LARGE_STEP;
   PetscReal       reached = 0, step = 0.25, *l, *w;
-  CoulombStatus  *status;
+  ContactStatus  *status;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(a->rows->n_pairs, &status, a->rows->n, &l, a->rows->n, &w));

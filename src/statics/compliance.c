@@ -48,7 +48,7 @@ static PetscErrorCode KappaFind(Mat K, const PairRows *rows, PetscReal *kappa)
 }
 
 PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, PetscBool some,
-                                 const CoulombStatus status[], Mat *A)
+                                 const ContactStatus status[], Mat *A)
 {
   PetscScalar *resists;
   Mat          G = rows->G, GG;
@@ -59,7 +59,7 @@ PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, P
     PetscCall(MatCreateVecs(rows->G, NULL, &weight));
     PetscCall(VecGetArray(weight, &resists));
     for (PetscInt p = 0; p < rows->n_pairs; p++)
-      for (PetscInt i = rows->first[p]; i < rows->first[p + 1]; i++) resists[i] = status[p] == COULOMB_OPEN ? 0 : 1;
+      for (PetscInt i = rows->first[p]; i < rows->first[p + 1]; i++) resists[i] = status[p] == CONTACT_OPEN ? 0 : 1;
     PetscCall(VecRestoreArray(weight, &resists));
     PetscCall(MatDuplicate(rows->G, MAT_COPY_VALUES, &G));
     PetscCall(MatDiagonalScale(G, weight, NULL));

@@ -30,7 +30,7 @@ static PetscErrorCode CountClosed(const Active *a, PetscInt n[2])
   PetscFunctionBeginUser;
   n[0] = 0;
   n[1] = a->rows->n_pairs;
-  for (PetscInt p = 0; p < a->rows->n_pairs; p++) n[0] += a->status[p] != COULOMB_OPEN;
+  for (PetscInt p = 0; p < a->rows->n_pairs; p++) n[0] += a->status[p] != CONTACT_OPEN;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n, 2, MPIU_INT, MPI_SUM, a->rows->comm));
   PetscFunctionReturn(0);
 }
@@ -181,7 +181,7 @@ static PetscErrorCode Step(Active *a, const char place[], Vec f, Vec u)
 }
 
 PetscErrorCode EquilibriumSolve(Statics s, PairRows *rows, const Compliance *c, Vec f, PetscReal size,
-                                PetscInt load_steps, CoulombStatus status[], PetscReal l[], Vec u)
+                                PetscInt load_steps, ContactStatus status[], PetscReal l[], Vec u)
 {
   Active a = {.operators = s->operators, .rows = rows, .compliance = c, .max_it = s->max_it, .status = status, .l = l};
   char   place[256];

@@ -36,19 +36,19 @@ static void LineFit(PetscInt n, const Reading reading[], StaticsStiffness *k)
 }
 
 /* Exact contact without friction, every pair closed at first */
-static void LawsPressing(PairRows *rows, CoulombStatus status[])
+static void LawsPressing(PairRows *rows, ContactStatus status[])
 {
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     rows->law[p].k  = INFINITY;
     rows->law[p].mu = 0;
     rows->slide[p]  = 0;
-    status[p]       = COULOMB_SLIP;
+    status[p]       = CONTACT_SLIP;
   }
 }
 
 /* One step of the ramp: part of the load */
 static PetscErrorCode Press(Statics s, PairRows *rows, const Compliance *c, Vec f, PetscReal size, PetscReal part,
-                            PetscInt interface, Vec d, CoulombStatus status[], PetscReal l[], Reading *reading)
+                            PetscInt interface, Vec d, ContactStatus status[], PetscReal l[], Reading *reading)
 {
   PetscScalar approach;
   Vec         u, load;
@@ -76,7 +76,7 @@ static PetscErrorCode Ramp(Statics s, PetscInt interface, Vec d, Reading reading
   PairRows       rows       = {.n = 0};
   Compliance     compliance = {.kappa = 0};
   PetscReal     *l, size;
-  CoulombStatus *status;
+  ContactStatus *status;
   Vec            f;
 
   PetscFunctionBeginUser;

@@ -7,17 +7,14 @@
 #define LOOSE 1e-6 /* of the loads, unbalanced */
 
 /* States of all pairs from w = G u (m) and l (m) */
-static void StatesSet(const PairRows *rows, PetscReal kappa, const CoulombStatus status[], const PetscReal l[],
+static void StatesSet(const PairRows *rows, PetscReal kappa, const ContactStatus status[], const PetscReal l[],
                       const PetscScalar w[], ContactState state[])
 {
-  static const ContactStatus names[] = {
-    [COULOMB_OPEN] = CONTACT_OPEN, [COULOMB_STICK] = CONTACT_STICK, [COULOMB_SLIP] = CONTACT_SLIP};
-
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     const PetscInt first = rows->first[p];
     ContactState  *s     = &state[p];
 
-    *s             = (ContactState){.status = names[status[p]], .gap = rows->law[p].g0 - PetscRealPart(w[first])};
+    *s             = (ContactState){.status = status[p], .gap = rows->law[p].g0 - PetscRealPart(w[first])};
     s->lambda_n    = kappa * l[first];
     s->lambda_t[0] = rows->slide[p] * s->lambda_n;
     for (PetscInt i = 1; i < rows->law[p].d; i++) {

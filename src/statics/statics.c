@@ -95,7 +95,7 @@ PetscErrorCode StaticsSetUp(Statics s)
   PetscCheck(n_pairs, s->comm, PETSC_ERR_USER_INPUT, "-analysis static and -modes_contact static need -contacts");
   PetscCall(OperatorsGetParameters(s->operators, &s->n_parameters, &parameters));
   PetscCall(PetscMalloc3(s->rows.n_pairs, &s->status, s->rows.n_pairs, &s->state, s->rows.n_interfaces, &s->resultant));
-  for (PetscInt p = 0; p < s->rows.n_pairs; p++) s->status[p] = s->rows.law[p].d == 3 ? COULOMB_STICK : COULOMB_SLIP;
+  for (PetscInt p = 0; p < s->rows.n_pairs; p++) s->status[p] = s->rows.law[p].d == 3 ? CONTACT_STICK : CONTACT_SLIP;
   PetscCall(OperatorsCreateVec(s->operators, &s->u));
   PetscCall(PetscMalloc1(s->n_parameters, &s->initial));
   for (PetscInt i = 0; i < s->n_parameters; i++) s->initial[i] = parameters[i].value;

@@ -57,7 +57,7 @@ typedef struct {
   PetscReal         friction; /* factor of all friction coefficients, 0 .. 1 */
   PetscReal         rtol;     /* of GMRES on the small system */
   PetscReal         scale;    /* m, of the contact displacements; what is below 1e-13 of it is rounding */
-  CoulombStatus    *status;   /* [n_pairs] */
+  ContactStatus    *status;   /* [n_pairs] */
   PetscReal        *free;     /* [rows] w without contact forces, kappa-held: G K_a^-1 f */
   PetscReal        *l, *w;    /* [rows] */
   PetscReal        *zero;     /* [rows] */
@@ -80,7 +80,7 @@ struct _p_Statics {
   PetscInt          n_parameters, n_it;
   PetscReal        *initial;    /* [n_parameters] those of the scene */
   PetscReal        *linearised; /* [n_parameters] those of the last StaticsLinearise(); NULL before */
-  CoulombStatus    *status;
+  ContactStatus    *status;
   ContactState     *state;
   Vec               u;
   ContactKKT        kkt;
@@ -126,7 +126,7 @@ PETSC_INTERN PetscErrorCode ComplianceSolve(const Compliance *c, const PairRows 
 /* K + kappa G'G of all rows, or of some: those of pairs closed at the status [pairs]. Where Coulomb's pairs slip in
    different directions they resist too; what slips in one direction makes the small system singular. */
 PETSC_INTERN PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, PetscBool some,
-                                              const CoulombStatus status[], Mat *A);
+                                              const ContactStatus status[], Mat *A);
 PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *c);
 
 /* small.c - z of w + W_mu l - W w = rhs with the laws [rows]; l and w of it. GMRES to rtol where it is not dense.
@@ -143,7 +143,7 @@ PETSC_INTERN PetscErrorCode ActiveCorrect(Active *active, const PetscReal rhs[])
 
 /* equilibrium.c - the whole solution for forces f of a size (N): status, l (m), u */
 PETSC_INTERN PetscErrorCode EquilibriumSolve(Statics statics, PairRows *rows, const Compliance *compliance, Vec f,
-                                             PetscReal size, PetscInt load_steps, CoulombStatus status[], PetscReal l[],
+                                             PetscReal size, PetscInt load_steps, ContactStatus status[], PetscReal l[],
                                              Vec u);
 
 /* state.c - states, resultants and residuals of a solution */

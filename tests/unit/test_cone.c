@@ -28,7 +28,7 @@ static double Scale(const double W[3][3], const double q[3], const double p[3])
 }
 
 /* Largest violation of the laws by p, impulses and velocities made comparable by the trace of W */
-static double Violation(const double W[3][3], const double q[3], double mu, const double p[3], ConeStatus status)
+static double Violation(const double W[3][3], const double q[3], double mu, const double p[3], ContactStatus status)
 {
   const double trace = W[0][0] + W[1][1] + W[2][2], friction = hypot(p[1], p[2]);
   double       v[3], slip, worst;
@@ -37,8 +37,8 @@ static double Violation(const double W[3][3], const double q[3], double mu, cons
   slip  = hypot(v[1], v[2]);
   worst = fmax(-p[0], fmax(-v[0], fabs(fmin(p[0], v[0]))));
   worst = fmax(worst, friction - mu * p[0]);
-  if (status == CONE_STICK) worst = fmax(worst, slip);
-  if (status == CONE_SLIP && slip > 0)
+  if (status == CONTACT_STICK) worst = fmax(worst, slip);
+  if (status == CONTACT_SLIP && slip > 0)
     worst = fmax(worst, hypot(p[1] + mu * p[0] * v[1] / slip, p[2] + mu * p[0] * v[2] / slip) *
                           fmin(1, slip / Scale(W, q, p)));
   return worst / Scale(W, q, p);
@@ -65,7 +65,7 @@ static double Worst(int n, const int held[3], double largest_mu, int count[3])
   for (int k = 0; k < n; k++) {
     double       W[3][3], p[3], q[3];
     const double mu = largest_mu * fabs(Random());
-    ConeStatus   status;
+    ContactStatus   status;
 
     Compliance(2, held, W);
     for (int i = 0; i < 3; i++) q[i] = Random() * pow(10, Random());
@@ -110,10 +110,10 @@ static int TestHeld(void)
                           {0, 1, 0},
                           {0, 0, 1}
   },
-                        (double[3]){-1, 1, 1}, 0.5, p) == CONE_OPEN &&
+                        (double[3]){-1, 1, 1}, 0.5, p) == CONTACT_OPEN &&
                         p[0] == 0 && p[1] == 0,
                       p[0]);
-  failed += CheckTrue("held and at rest: stick", ConeSolve(W, (double[3]){-1, 0, 0.1}, 0.5, p) == CONE_STICK, p[0]);
+  failed += CheckTrue("held and at rest: stick", ConeSolve(W, (double[3]){-1, 0, 0.1}, 0.5, p) == CONTACT_STICK, p[0]);
   failed += CheckClose("friction that stops the free tangent", p[2], -0.1 / 3, 1e-15);
   return failed;
 }

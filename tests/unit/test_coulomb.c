@@ -63,10 +63,10 @@ static int TestOpenAndStick(void)
     CoulombLaw        law;
 
     for (int k = 0; k < 3; k++) z[k] = DrawSigned(&seed);
-    CoulombLinearise(&pair, COULOMB_OPEN, z, z, &law);
+    CoulombLinearise(&pair, CONTACT_OPEN, z, z, &law);
     LawAt(&law, 3, z, l, w);
     for (int k = 0; k < 3; k++) open = fmax(open, fabs(l[k]) + fabs(w[k] - z[k]));
-    CoulombLinearise(&pair, COULOMB_STICK, z, z, &law);
+    CoulombLinearise(&pair, CONTACT_STICK, z, z, &law);
     LawAt(&law, 3, z, l, w);
     normal = fmax(normal, NormalError(&pair, l, w));
     for (int k = 1; k < 3; k++) stick = fmax(stick, fabs(w[k] - pair.slip0[k - 1]) + fabs(l[k] - z[k]));
@@ -93,7 +93,7 @@ static int TestOneRow(void)
 
     pair.d  = 1;
     pair.mu = 0;
-    CoulombLinearise(&pair, i % 2 ? COULOMB_SLIP : COULOMB_STICK, z, z, &law);
+    CoulombLinearise(&pair, i % 2 ? CONTACT_SLIP : CONTACT_STICK, z, z, &law);
     LawAt(&law, 1, z, l, w);
     error = fmax(error, NormalError(&pair, l, w));
     for (int k = 1; k < 3; k++)
@@ -146,7 +146,7 @@ static int TestSlipTangent(void)
     pair.mu = 0.05 + pair.mu;
     DrawSlipping(&pair, &seed, x0);
     length = CoulombTrial(&pair, x0, &x0[3], q);
-    CoulombLinearise(&pair, COULOMB_SLIP, x0, &x0[3], &law);
+    CoulombLinearise(&pair, CONTACT_SLIP, x0, &x0[3], &law);
     for (int k = 0; k < 3; k++) z[k] = DrawSigned(&seed);
     LawAt(&law, 3, z, x, &x[3]);
     FrictionFunction(&pair, x0, F);
@@ -185,7 +185,7 @@ static int TestSlipFixed(void)
       l[1 + k] = -pair.mu * l[0] * s[k] / size;
       w[1 + k] = pair.slip0[k] - s[k];
     }
-    CoulombLinearise(&pair, COULOMB_SLIP, l, w, &law);
+    CoulombLinearise(&pair, CONTACT_SLIP, l, w, &law);
     LawAt(&law, 3, (const double[3]){pair.k >= 1 ? l[0] : w[0], -s[0], -s[1]}, l1, w1);
     for (int k = 0; k < 3; k++) worst = fmax(worst, fmax(fabs(l1[k] - l[k]), fabs(w1[k] - w[k]) / (1 + fabs(w[0]))));
     residual = fmax(residual, CoulombResidual(&pair, l, w));
@@ -205,17 +205,17 @@ static int TestFrictionless(void)
   int          failed = 0;
 
   failed += CheckTrue("mu = 0: what does not slip but carries friction slips",
-                      CoulombDecide(&pair, COULOMB_STICK, l, w, 1e-13) == COULOMB_SLIP, 0);
-  CoulombLinearise(&pair, COULOMB_SLIP, l, none, &law);
+                      CoulombDecide(&pair, CONTACT_STICK, l, w, 1e-13) == CONTACT_SLIP, 0);
+  CoulombLinearise(&pair, CONTACT_SLIP, l, none, &law);
   LawAt(&law, 3, (const double[3]){1, -0.3, 0.4}, l1, w1);
   failed += CheckClose("mu = 0: friction in slip", hypot(l1[1], l1[2]), 0, 0);
   failed += CheckClose("mu = 0: slip is free", hypot(w1[1] + 0.3, w1[2] - 0.4), 0, 0);
-  CoulombLinearise(&pair, COULOMB_SLIP, none, none, &law);
+  CoulombLinearise(&pair, CONTACT_SLIP, none, none, &law);
   LawAt(&law, 3, (const double[3]){1, -0.3, 0.4}, l1, w1);
   failed += CheckClose("mu = 0: friction in slip, from nothing", hypot(l1[1], l1[2]), 0, 0);
   failed += CheckClose("mu = 0: residual without slip", CoulombResidual(&pair, (const double[3]){1, 0, 0}, w), 0, 0);
   pair.mu = 0.5;
-  CoulombLinearise(&pair, COULOMB_SLIP, none, none, &law);
+  CoulombLinearise(&pair, CONTACT_SLIP, none, none, &law);
   LawAt(&law, 3, (const double[3]){1, -0.3, 0.4}, l1, w1);
   failed += CheckTrue("mu > 0, no force and no slip yet: finite numbers", isfinite(l1[1] + l1[2] + w1[1] + w1[2]), 0);
   failed += CheckClose("mu > 0, no force and no slip yet: |p| = mu l_n", hypot(l1[1], l1[2]), 0.5, 1e-15);
@@ -234,10 +234,10 @@ static int TestBorders(void)
     const double      far     = isinf(ks[i]) ? 0 : off / ks[i];
     const double      zero[1] = {0}, pull[1] = {-off}, on[1] = {0.25}, over[1] = {0.25 + off}, apart[1] = {0.25 - far};
 
-    kept += CoulombDecide(&pair, COULOMB_OPEN, zero, on, tol) == COULOMB_OPEN;
-    kept += CoulombDecide(&pair, COULOMB_SLIP, zero, on, tol) == COULOMB_SLIP;
-    closed += CoulombDecide(&pair, COULOMB_OPEN, zero, over, tol) == COULOMB_SLIP;
-    opened += CoulombDecide(&pair, COULOMB_SLIP, pull, apart, tol) == COULOMB_OPEN;
+    kept += CoulombDecide(&pair, CONTACT_OPEN, zero, on, tol) == CONTACT_OPEN;
+    kept += CoulombDecide(&pair, CONTACT_SLIP, zero, on, tol) == CONTACT_SLIP;
+    closed += CoulombDecide(&pair, CONTACT_OPEN, zero, over, tol) == CONTACT_SLIP;
+    opened += CoulombDecide(&pair, CONTACT_SLIP, pull, apart, tol) == CONTACT_OPEN;
   }
   failed += CheckClose("on the border a pair stays open, or closed, for any k", kept, 12, 0);
   failed += CheckClose("what overlaps closes, for any k", closed, 6, 0);
@@ -255,13 +255,13 @@ static int TestStickBorder(void)
   const double back[3] = {0, 0.5 + 0.06, -0.5 - 0.08}; /* slipped against the friction by 0.1 */
   int          failed  = 0;
 
-  failed += CheckTrue("on the cone stick stays", CoulombDecide(&pair, COULOMB_STICK, on, w, 1e-13) == COULOMB_STICK, 0);
-  failed += CheckTrue("on the cone slip stays", CoulombDecide(&pair, COULOMB_SLIP, on, w, 1e-13) == COULOMB_SLIP, 0);
-  failed += CheckTrue("within, it sticks", CoulombDecide(&pair, COULOMB_SLIP, in, w, 1e-13) == COULOMB_STICK, 0);
-  failed += CheckTrue("beyond, it slips", CoulombDecide(&pair, COULOMB_STICK, out, w, 1e-13) == COULOMB_SLIP, 0);
+  failed += CheckTrue("on the cone stick stays", CoulombDecide(&pair, CONTACT_STICK, on, w, 1e-13) == CONTACT_STICK, 0);
+  failed += CheckTrue("on the cone slip stays", CoulombDecide(&pair, CONTACT_SLIP, on, w, 1e-13) == CONTACT_SLIP, 0);
+  failed += CheckTrue("within, it sticks", CoulombDecide(&pair, CONTACT_SLIP, in, w, 1e-13) == CONTACT_STICK, 0);
+  failed += CheckTrue("beyond, it slips", CoulombDecide(&pair, CONTACT_STICK, out, w, 1e-13) == CONTACT_SLIP, 0);
   failed +=
-    CheckTrue("slip against friction sticks", CoulombDecide(&pair, COULOMB_SLIP, on, back, 1e-13) == COULOMB_STICK, 0);
-  failed += CheckTrue("open first, then stick", CoulombDecide(&pair, COULOMB_OPEN, on, w, 1e-13) == COULOMB_STICK, 0);
+    CheckTrue("slip against friction sticks", CoulombDecide(&pair, CONTACT_SLIP, on, back, 1e-13) == CONTACT_STICK, 0);
+  failed += CheckTrue("open first, then stick", CoulombDecide(&pair, CONTACT_OPEN, on, w, 1e-13) == CONTACT_STICK, 0);
   failed += CheckClose("residual of slip against friction, its length", CoulombResidual(&pair, on, back), 0.1, 1e-15);
   failed += CheckClose("residual beyond the cone, what is too much", CoulombResidual(&pair, out, w),
                        hypot(0.6, 0.81) - 1, 1e-15);

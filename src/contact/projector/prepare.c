@@ -121,7 +121,7 @@ PetscBool PairPlace(ContactProjector p, PetscInt k, const PetscReal u[], const P
   PetscReal        place[3];
 
   for (int i = 0; i < 3; i++) pair->p[i] = pair->q[i] = 0;
-  pair->status = CONE_OPEN;
+  pair->status = CONTACT_OPEN;
   if (!pair->found) PairFind(p, k, sliding->slides ? p->nodes.rest : u, where, deepest);
   pair->found = SlidingStays(sliding);
   if (pair->facet < 0) return PETSC_FALSE;

@@ -106,28 +106,28 @@ INTO_VERSIONS void RowPush(const Row *row, const PetscReal p[3], PetscReal v[])
 }
 
 /* Projects z on the cone */
-INTO_VERSIONS ConeStatus RowProject(const Row *row, PetscReal z[3])
+INTO_VERSIONS ContactStatus RowProject(const Row *row, PetscReal z[3])
 {
   const PetscReal normal = row->n[0] * z[0] + row->n[1] * z[1] + row->n[2] * z[2], cone = row->mu * normal;
   PetscReal       square = 0, factor;
 
   if (!(normal > 0)) {
     z[0] = z[1] = z[2] = 0;
-    return CONE_OPEN;
+    return CONTACT_OPEN;
   }
   for (int i = 0; i < 3; i++) {
     z[i] -= normal * row->n[i];
     square += z[i] * z[i];
   }
-  factor = square <= cone * cone ? 1 : cone / PetscSqrtReal(square);
+  factor = FrictionShorten(square, cone);
   for (int i = 0; i < 3; i++) z[i] = normal * row->n[i] + factor * z[i];
-  return row->mu > 0 && factor == 1 ? CONE_STICK : CONE_SLIP;
+  return row->mu > 0 && factor == 1 ? CONTACT_STICK : CONTACT_SLIP;
 }
 
 /* What the impulse would have to change by, the residual of the natural map, N s; z is the impulse then */
-INTO_VERSIONS ConeStatus RowChange(const Row *row, const PetscReal q[3], PetscReal z[3], PetscReal change[3])
+INTO_VERSIONS ContactStatus RowChange(const Row *row, const PetscReal q[3], PetscReal z[3], PetscReal change[3])
 {
-  ConeStatus status;
+  ContactStatus status;
 
   for (int i = 0; i < 3; i++) z[i] = row->p[i] - row->mass * q[i];
   status = RowProject(row, z);

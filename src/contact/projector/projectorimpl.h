@@ -60,29 +60,29 @@ typedef struct {
 
 /* A slave node and the point of the master that it faces */
 typedef struct {
-  PetscInt   interface, slave;
-  PetscInt   facet;                     /* of the interface's surface, -1 where it faces none */
-  PetscReal  natural[2];                /* on the facet */
-  PetscReal  lambda[PROJECTOR_PAST][3]; /* forces on the slave in the frame of the master, N; [0] of the last step */
-  PetscReal  along[3];              /* that slip is measured along, in the frame of the master; 0 where any will do */
-  PetscReal  e[3][3], turned[3][3]; /* n, t, b in the frame of the master, and on the ground */
-  PetscInt   node[4];               /* corners */
-  PetscReal  weight[4];
-  PetscReal  gap;          /* of the undeformed bodies, where the facet will not change any more, m */
-  PetscBool  found, ready; /* the facet will not change any more; directions and compliance are those of the facet */
-  PetscReal  W[3][3], w;   /* 1/kg; w = 0 where W is no multiple of the identity, else that */
-  PetscReal  offset[3];    /* added to the velocities of the nodes: gap at t_n / dt, and the sliding velocity, m/s */
-  PetscReal  drift[3];     /* sliding velocity along n, t, b, m/s */
-  PetscReal  mu;
-  PetscReal  p[3], q[3]; /* impulse on the slave, N s; relative velocity with the offset, m/s */
-  ConeStatus status;
+  PetscInt      interface, slave;
+  PetscInt      facet;                     /* of the interface's surface, -1 where it faces none */
+  PetscReal     natural[2];                /* on the facet */
+  PetscReal     lambda[PROJECTOR_PAST][3]; /* forces on the slave in the frame of the master, N; [0] of the last step */
+  PetscReal     along[3]; /* that slip is measured along, in the frame of the master; 0 where any will do */
+  PetscReal     e[3][3], turned[3][3]; /* n, t, b in the frame of the master, and on the ground */
+  PetscInt      node[4];               /* corners */
+  PetscReal     weight[4];
+  PetscReal     gap;          /* of the undeformed bodies, where the facet will not change any more, m */
+  PetscBool     found, ready; /* the facet will not change any more; directions and compliance are those of the facet */
+  PetscReal     W[3][3], w;   /* 1/kg; w = 0 where W is no multiple of the identity, else that */
+  PetscReal     offset[3];    /* added to the velocities of the nodes: gap at t_n / dt, and the sliding velocity, m/s */
+  PetscReal     drift[3];     /* sliding velocity along n, t, b, m/s */
+  PetscReal     mu;
+  PetscReal     p[3], q[3]; /* impulse on the slave, N s; relative velocity with the offset, m/s */
+  ContactStatus status;
 } Pair;
 
 /* What Gauss-Seidel needs of a pair without coupling of its directions, close together; Cartesian, in the frame of the
    master */
 typedef struct {
   int              node[5]; /* corners, slave */
-  ConeStatus       status;
+  ContactStatus    status;
   PetscReal        weight[4], push[5]; /* of the corners; velocity of each node per impulse, 1/kg */
   PetscReal        n[3], offset[3], p[3];
   PetscReal        mass, mu; /* 1/w; 0 where the general way is needed */

@@ -60,16 +60,13 @@ INTO_VERSIONS void ForcesSet(ContactProjector p, PetscReal kick)
 
 INTO_VERSIONS void StateSet(const Pair *pair, const ContactStep *step, ContactState *state)
 {
-  static const ContactStatus names[] = {
-    [CONE_OPEN] = CONTACT_OPEN, [CONE_STICK] = CONTACT_STICK, [CONE_SLIP] = CONTACT_SLIP};
-
   *state = (ContactState){.status = CONTACT_OPEN, .gap = PETSC_INFINITY};
   if (pair->facet < 0) return;
-  state->status   = names[pair->status];
+  state->status   = pair->status;
   state->gap      = pair->q[0] * step->dt;
   state->lambda_n = pair->p[0] / step->kick;
   for (int i = 0; i < 2; i++) {
-    state->slip[i]     = pair->q[1 + i];
+    state->slip[i]     = pair->q[1 + i] * step->dt;
     state->lambda_t[i] = -pair->p[1 + i] / step->kick;
   }
 }
@@ -143,59 +140,23 @@ VERSIONS void PairsRecord(ContactProjector p, const ContactStep *step, const Con
   p->dt = step->dt;
 }
 
-/* Force (N) and length (m) that the residuals are relative to: the largest lambda_n, and the largest gap, way or
-   displacement at any pair that faces a facet */
-static void ScaleFind(const ContactProjector p, PetscReal *force, PetscReal *length)
-{
-  *force = *length = 0;
-  for (PetscInt k = 0; k < p->n_pairs; k++) {
-    const ContactState *s = &p->state[k];
-    const PetscReal    *u = &p->nodes.u[3 * p->pair[k].slave];
-
-    if (p->pair[k].facet < 0) continue;
-    *force  = PetscMax(*force, s->lambda_n);
-    *length = PetscMax(*length, PetscMax(PetscAbsReal(s->gap), p->dt * hypot(s->slip[0], s->slip[1])));
-    for (int d = 0; d < 3; d++) *length = PetscMax(*length, PetscAbsReal(u[d]));
-    *length = PetscMax(*length, 1e-9 * p->surface[p->pair[k].interface].size);
-  }
-}
-
-/* a / b for a >= 0, where 0 / 0 is nothing to complain about */
-static PetscReal Relative(PetscReal a, PetscReal b)
-{
-  return a == 0 ? 0 : a / b;
-}
-
-/* Raises the residuals to those of one pair */
-static void KKTRaise(const ContactState *s, PetscReal mu, PetscReal dt, PetscReal force, PetscReal length,
-                     ContactKKT *kkt)
-{
-  const PetscReal slip = hypot(s->slip[0], s->slip[1]), friction = hypot(s->lambda_t[0], s->lambda_t[1]);
-  const PetscReal gap = s->gap / length, normal = Relative(s->lambda_n, force);
-  PetscReal       rest = 0;
-
-  if (s->status == CONTACT_STICK) rest = slip * dt / length;
-  if (s->status == CONTACT_SLIP && slip > 0)
-    rest = Relative(hypot(s->lambda_t[0] - mu * s->lambda_n * s->slip[0] / slip,
-                          s->lambda_t[1] - mu * s->lambda_n * s->slip[1] / slip),
-                    force);
-  kkt->penetration     = PetscMax(kkt->penetration, -gap);
-  kkt->sign            = PetscMax(kkt->sign, -normal);
-  kkt->complementarity = PetscMax(kkt->complementarity, PetscAbsReal(PetscMin(normal, gap)));
-  kkt->cone            = PetscMax(kkt->cone, Relative(PetscMax(0, friction - mu * s->lambda_n), force));
-  kkt->dissipation     = PetscMax(kkt->dissipation, rest);
-}
-
 PetscErrorCode ContactProjectorGetKKT(ContactProjector p, ContactKKT *kkt)
 {
-  PetscReal force, length;
+  ContactJudged *judged;
+  PetscReal      displacement = 0;
+  PetscInt       n            = 0;
 
   PetscFunctionBeginUser;
-  *kkt = (ContactKKT){.sign = 0};
-  ScaleFind(p, &force, &length);
-  for (PetscInt k = 0; k < p->n_pairs; k++)
-    if (p->pair[k].facet >= 0) KKTRaise(&p->state[k], p->pair[k].mu, p->dt, force, length, kkt);
-  PetscCallMPI(
-    MPI_Bcast(kkt, (PetscMPIInt)(sizeof(*kkt) / sizeof(PetscReal)), MPIU_REAL, p->share.root, p->contact->comm));
+  PetscCall(PetscMalloc1(p->n_pairs, &judged));
+  for (PetscInt k = 0; k < p->n_pairs; k++) {
+    const Pair         *pair  = &p->pair[k];
+    const ContactState *state = &p->state[k];
+
+    if (pair->facet < 0) continue;
+    judged[n++] = (ContactJudged){state, pair->mu, PETSC_INFINITY, state->gap, p->surface[pair->interface].size};
+    for (int d = 0; d < 3; d++) displacement = PetscMax(displacement, PetscAbsReal(p->nodes.u[3 * pair->slave + d]));
+  }
+  PetscCall(ContactJudge(p->share.comm, n, judged, displacement, kkt));
+  PetscCall(PetscFree(judged));
   PetscFunctionReturn(0);
 }
