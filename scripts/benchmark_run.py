@@ -66,7 +66,7 @@ class Run:
 
     def __init__(self, program, ranks, options):
         with tempfile.TemporaryDirectory() as folder:
-            command = [ROOT / "scripts/mpirun", "-n", ranks, program, "-squeal_view", "-progress", 0,
+            command = [ROOT / "scripts/mpirun", "-n", ranks, program, "-squeal_view", "-squeal_progress", 0,
                        "-options_file", ROOT / "options/massi2005.yaml", "-st_mat_mumps_icntl_4", 2,
                        "-output_dir", folder, "-log_view", f":{folder}/log.csv:ascii_csv", *options.split()]
             begun = time.perf_counter()

@@ -19,7 +19,7 @@ NODE = 1e-6  # m, two places within this are one
 
 def run_squeal(program, ranks, files, options, folder):
     """Writes the tables into the folder; returns the output. The options files of options/ stack in their order."""
-    command = [ROOT / "scripts/mpirun", "-n", ranks, program, "-progress", 0, "-output_fields", 0]
+    command = [ROOT / "scripts/mpirun", "-n", ranks, program, "-squeal_progress", 0, "-output_fields", 0]
     for name in files:
         command += ["-options_file", ROOT / f"options/{name}.yaml"]
     command += ["-output_dir", folder, *options.split()]

@@ -29,7 +29,7 @@ class SweepRun:
 
     def __init__(self, program, ranks, files, options):
         with tempfile.TemporaryDirectory() as folder:
-            command = [ROOT / "scripts/mpirun", "-n", ranks, program, "-squeal_view", "-progress", 0]
+            command = [ROOT / "scripts/mpirun", "-n", ranks, program, "-squeal_view", "-squeal_progress", 0]
             for name in files:
                 command += ["-options_file", ROOT / f"options/{name}.yaml"]
             command += ["-output_dir", folder, *options.split()]

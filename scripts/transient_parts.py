@@ -47,7 +47,7 @@ def key_of(program, words):
 def run(program, ranks, folder, options, scene=SCENE):
     """Folder with the tables of a run, made anew where it is not there or was made by another program or command."""
     folder.mkdir(parents=True, exist_ok=True)
-    words = ["-n", ranks, program, "-options_file", scene, "-progress", 0, *options.split()]
+    words = ["-n", ranks, program, "-options_file", scene, "-squeal_progress", 0, *options.split()]
     log, key = folder / "log.txt", key_of(program, words)
     if not log.exists() or not log.read_text(encoding="utf-8").startswith(key):
         command = [ROOT / "scripts/mpirun", *words, "-output_dir", folder]

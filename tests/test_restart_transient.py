@@ -34,7 +34,7 @@ contact: {speed: 0.02}
 dynamics: {history_interval: 1e-6, pairs_interval: 1e-5, snapshot_interval: 2e-4, live: 0}
 """
 TURNS = "-contact_kinematics turning -contact_slip 0,0,0 -contact_speed 0 -contact_rotation 0,0,-2 -contact_mu 0.9" \
-        " -gravity 0,-9.81,0 -dynamics_coriolis -dynamics_centrifugal"
+        " -dynamics_gravity 0,-9.81,0 -dynamics_coriolis -dynamics_centrifugal"
 SCENES = {
     "stays": "-contact_ramp 1e-3 -ts_central_b 0.5",
     "stays dissipative": "-contact_ramp 1e-3 -ts_central_b 0.8",
@@ -200,7 +200,7 @@ def kill_once(runs, name, interval, delay, of_checkpoint):
     last row, and whether a checkpoint was being written; None when the run was over before."""
     sign = runs.path(name, "checkpoint.bin" if of_checkpoint else "transient.csv.part")
     before = stamp(sign)
-    process = runs.start(name, "-checkpoint_interval", str(interval), *go_on(runs, name))
+    process = runs.start(name, "-dynamics_checkpoint_interval", str(interval), *go_on(runs, name))
     met = wait(process, lambda: stamp(sign) != before)
     time.sleep(delay)
     if not met or process.poll() is not None:
@@ -232,7 +232,7 @@ def check_kills(runs, chance):
     if n < 100:
         fail(f"{runs.scene}: only {n} changes of status")
     moments = kill_often(runs, "killed", chance, 5, OFTEN, 0.25 * seconds)
-    runs.complete("killed", "-checkpoint_interval", str(OFTEN), *go_on(runs, "killed"))
+    runs.complete("killed", "-dynamics_checkpoint_interval", str(OFTEN), *go_on(runs, "killed"))
     compare(runs, "undisturbed", "killed")
     if len(moments) < 2 or len({moment for moment, _ in moments}) < 2:
         fail(f"{runs.scene}: {len(moments)} kills came before the end")
@@ -251,7 +251,7 @@ def check_torn(runs, chance):
             break
         torn += met[1]
         tries += 1
-    runs.complete("torn", "-checkpoint_interval", str(OFTEN), *go_on(runs, "torn"))
+    runs.complete("torn", "-dynamics_checkpoint_interval", str(OFTEN), *go_on(runs, "torn"))
     compare(runs, "undisturbed", "torn")
     if not torn:
         fail(f"{runs.scene}: none of {tries} kills met a checkpoint that was being written")
@@ -264,7 +264,7 @@ def check_torn(runs, chance):
 def check_longer(runs):
     """A run that is over goes on to a later end; its last row, of a shorter run, is taken back."""
     short = str(0.4371 * runs.arguments.end)
-    runs.complete("longer", "-ts_max_time", short, "-checkpoint_interval", str(OFTEN))
+    runs.complete("longer", "-ts_max_time", short, "-dynamics_checkpoint_interval", str(OFTEN))
     shorter = runs.path("longer", "transient.csv").read_bytes()
     runs.complete("longer", "-ts_max_time", short, RESTART)
     if runs.path("longer", "transient.csv").read_bytes() != shorter:
@@ -277,7 +277,7 @@ def check_longer(runs):
 def check_anew(runs):
     """Without the option a run starts anew, and what is there of an earlier one, of another load, has no effect: neither now
     nor on a later restart."""
-    runs.complete("anew", "-press_force", "0,0,-50", "-checkpoint_interval", str(OFTEN))
+    runs.complete("anew", "-press_force", "0,0,-50", "-dynamics_checkpoint_interval", str(OFTEN))
     other = runs.path("anew", "transient.csv").read_bytes()
     if other == runs.path("undisturbed", "transient.csv").read_bytes():
         fail(f"{runs.scene}: another load has no effect")
@@ -308,7 +308,7 @@ def refuse(runs, name, expected, *options):
 def check_refused(runs):
     """Another model, load, step, kinematics, number of ranks, and a file that is cut short; last of all the right one."""
     name, other = "refused", "is of another model or other parameters: "
-    runs.complete(name, "-ts_max_time", "1e-3", "-checkpoint_interval", str(OFTEN))
+    runs.complete(name, "-ts_max_time", "1e-3", "-dynamics_checkpoint_interval", str(OFTEN))
     refuse(runs, name, other, "-pad_young", "20e9")
     refuse(runs, name, other, "-press_force", "0,0,-50")
     refuse(runs, name, other, "-tap_time", "2e-3")
@@ -353,7 +353,7 @@ def check_full(runs):
     """A row of the table, a checkpoint or a snapshot finds no room: one line; the last checkpoint serves, with more."""
     for file in ("transient.csv", "checkpoint.bin", "snapshot_000012.h5"):
         name = f"full_{file.split('.')[0]}"
-        process = runs.start(name, "-checkpoint_interval", str(OFTEN))
+        process = runs.start(name, "-dynamics_checkpoint_interval", str(OFTEN))
         wait(process, lambda: runs.path(name, "checkpoint.bin").exists())
         if file == "transient.csv":
             table = runs.path(name, "transient.csv.part")
@@ -365,7 +365,7 @@ def check_full(runs):
         lines = [line for line in stderr.splitlines() if line.startswith("squeal:")]
         if not process.returncode or len(lines) != 1 or f"cannot write {runs.path(name, file)}: " not in lines[0]:
             fail(f"{runs.scene}: no room for {file}: exit status {process.returncode}: {stderr}")
-        runs.complete(name, "-checkpoint_interval", str(OFTEN), RESTART)
+        runs.complete(name, "-dynamics_checkpoint_interval", str(OFTEN), RESTART)
         compare(runs, "undisturbed", name)
     print(f"{runs.scene}: no room for a row, a checkpoint, a snapshot, gone on with more: bitwise the same", flush=True)
 
@@ -391,7 +391,7 @@ def check_signals(runs):
     """One rank is asked, all stop at one step: with a checkpoint, from which the run goes on; or with the rows so far."""
     cases = [(signal.SIGUSR1, "launcher"), (signal.SIGINT, "rank"), (signal.SIGTERM, "rank")]
     for i, (number, whom) in enumerate(cases):
-        line = ask(runs, f"stopped_{i}", number, whom, "-checkpoint_interval", "1000000000")
+        line = ask(runs, f"stopped_{i}", number, whom, "-dynamics_checkpoint_interval", "1000000000")
         if "-dynamics_restart goes on from there" not in line or runs.path(f"stopped_{i}", "transient.csv").exists():
             fail(f"{runs.scene}: stopped with a checkpoint: {line}")
     for i in range(len(cases)):

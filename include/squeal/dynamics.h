@@ -44,12 +44,12 @@ PetscErrorCode DynamicsSetModel(Dynamics dynamics, Model model, Contact contact)
 .  -dynamics_snapshot_interval <0> - between fields, s; 0 for none
 .  -dynamics_live <1>            - between live lines, s of the wall; 0 for none
 .  -contact_view_kkt <false>     - print the residuals of the contact laws in the last step
-.  -checkpoint_interval <0>      - between checkpoints, steps; 0 for none
+.  -dynamics_checkpoint_interval <0> - between checkpoints, steps; 0 for none
 -  -dynamics_restart <false>     - go on from the checkpoint in the output folder
    and of the scene
 +  -press_ramp <0>, -press_ramp_shape <smooth|linear>, -press_delay <0> - ramp of the load `press`, s
 .  -disc_velocity <0,0,0>        - of the part `disc` at the start, m/s
-.  -gravity <0,0,0>              - m/s^2
+.  -dynamics_gravity <0,0,0>     - m/s^2
 .  -motions <names>              - prescribed displacements of sets: -lift_set, -lift_displacement x,y,z (m),
                                    -lift_directions xyz, and a ramp, which must be given
 -  -impulses <names>             - at nodes: -hit_at x,y,z (m), -hit_part, -hit_impulse x,y,z (N s), -hit_time (s)

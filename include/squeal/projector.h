@@ -54,8 +54,8 @@ typedef struct {
    Options Database Keys:
 +  -contact_kinematics <prescribed|turning> - see above
 .  -contact_ramp <0>, -contact_ramp_shape <smooth|linear>, -contact_delay <0> - of the sliding velocity, s
-.  -project_rtol <1e-10>  - natural map residual, relative to the largest impulse of the step before and of this one
--  -project_max_it <1000> - sweeps; beyond, PETSC_ERR_NOT_CONVERGED with residual and pair
+.  -projector_rtol <1e-10> - natural map residual, relative to the largest impulse of the step before and of this one
+-  -projector_max_it <1000> - sweeps; beyond, PETSC_ERR_NOT_CONVERGED with residual and pair
 @*/
 PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *projector);
 

@@ -4,7 +4,7 @@
    An option that nobody read is an error unless its prefix is one of PETSc's or SLEPc's. The valid names are exactly
    those that -help would print, so they are collected by reading all options once more with PETSc's help printer
    replaced; this happens only when there is something to complain about. Nearest = smallest Damerau-Levenshtein
-   distance (adjacent swaps count once): F. J. Damerau, Comm. ACM 7, 1964.
+   distance (adjacent swaps count once): F. J. Damerau, Comm. ACM 7, 1964; a prefix left out counts as one edit.
 */
 #include <squeal/options.h>
 #include <ctype.h>
@@ -164,6 +164,15 @@ static int EditDistance(const char a[], const char b[])
   return d[la % 3][lb];
 }
 
+/* How far a valid name is from an unknown one: a prefix left out, as of -contact_mu in -mu, is one edit */
+static int NameDistance(const char unknown[], const char valid[])
+{
+  const size_t lu = strlen(unknown), lv = strlen(valid);
+
+  if (lv > lu && valid[lv - lu - 1] == '_' && !strcmp(valid + lv - lu, unknown)) return 1;
+  return EditDistance(unknown, valid);
+}
+
 /* Names that the help printer saw. PETSc's printer is a bare function pointer without context: hence the one static
    record, alive only inside CollectValid(). */
 static struct {
@@ -237,7 +246,7 @@ PetscErrorCode OptionsCheckUnknown(MPI_Comm comm, PetscErrorCode (*read_again)(M
   PetscCall(PetscCalloc1(1, &collected));
   PetscCall(CollectValid(comm, read_again, ctx));
   for (int i = 0; i < collected->n; i++) {
-    const int distance = EditDistance(unknown, collected->name[i]);
+    const int distance = NameDistance(unknown, collected->name[i]);
 
     if (distance >= best) continue;
     best = distance;

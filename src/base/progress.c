@@ -1,5 +1,5 @@
 /*
-   Progress line on stderr with the time left; quiet when stderr is no terminal, unless -progress 1.
+   Progress line on stderr with the time left; quiet when stderr is no terminal, unless -squeal_progress 1.
 */
 #include "progress.h"
 #include <petsctime.h>
@@ -13,8 +13,8 @@ PetscErrorCode ProgressSetFromOptions(MPI_Comm comm, Progress *progress)
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   progress->on = isatty(STDERR_FILENO) ? PETSC_TRUE : PETSC_FALSE;
   PetscOptionsBegin(comm, NULL, "Progress", NULL);
-  PetscCall(PetscOptionsBool("-progress", "progress line on stderr; by default where it is a terminal", "modes.h",
-                             progress->on, &progress->on, NULL));
+  PetscCall(PetscOptionsBool("-squeal_progress", "progress line on stderr; by default where it is a terminal",
+                             "modes.h", progress->on, &progress->on, NULL));
   PetscOptionsEnd();
   if (rank) progress->on = PETSC_FALSE;
   PetscFunctionReturn(0);

@@ -72,10 +72,11 @@ static PetscErrorCode RunSetFromOptions(Dynamics d, PetscOptionItems *PetscOptio
                              d->centrifugal, &d->centrifugal, NULL));
   PetscCall(PetscOptionsBool("-contact_view_kkt", "print the residuals of the contact laws at the end", "dynamics.h",
                              d->view_kkt, &d->view_kkt, NULL));
-  PetscCall(PetscOptionsInt("-checkpoint_interval", "steps between checkpoints, 0 for none", "dynamics.h",
+  PetscCall(PetscOptionsInt("-dynamics_checkpoint_interval", "steps between checkpoints, 0 for none", "dynamics.h",
                             d->checkpoint_interval, &d->checkpoint_interval, NULL));
   PetscCheck(d->checkpoint_interval >= 0, d->comm, PETSC_ERR_USER_INPUT,
-             "-checkpoint_interval %" PetscInt_FMT " must be a number of steps, 0 for none", d->checkpoint_interval);
+             "-dynamics_checkpoint_interval %" PetscInt_FMT " must be a number of steps, 0 for none",
+             d->checkpoint_interval);
   PetscCall(PetscOptionsBool("-dynamics_restart", "go on from the checkpoint in the output folder", "dynamics.h",
                              d->restart, &d->restart, NULL));
   PetscFunctionReturn(0);

@@ -31,7 +31,7 @@ static PetscErrorCode CheckAbsent(Dynamics d, const char name[], const char what
 
 static PetscErrorCode CheckStatic(Dynamics d)
 {
-  static const char *const ramps[] = {"_ramp", "_delay"}, *const others[] = {"gravity", "motions"};
+  static const char *const ramps[] = {"_ramp", "_delay"}, *const others[] = {"dynamics_gravity", "motions"};
   const ContactInterface *interfaces;
   const Load             *loads;
   PetscInt                n_loads, n = 0;

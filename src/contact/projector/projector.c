@@ -14,14 +14,14 @@ static PetscErrorCode ProjectorSetFromOptions(ContactProjector p)
   p->rtol   = 1e-10;
   p->max_it = 1000;
   PetscOptionsBegin(p->contact->comm, NULL, "Contact forces in dynamics", NULL);
-  PetscCall(PetscOptionsReal("-project_rtol", "natural map residual, relative to the largest impulse", "projector.h",
+  PetscCall(PetscOptionsReal("-projector_rtol", "natural map residual, relative to the largest impulse", "projector.h",
                              p->rtol, &p->rtol, NULL));
-  PetscCall(PetscOptionsInt("-project_max_it", "sweeps of Gauss-Seidel", "projector.h", p->max_it, &p->max_it, NULL));
+  PetscCall(PetscOptionsInt("-projector_max_it", "sweeps of Gauss-Seidel", "projector.h", p->max_it, &p->max_it, NULL));
   PetscOptionsEnd();
   PetscCheck(p->rtol > 0 && p->rtol < 1, p->contact->comm, PETSC_ERR_USER_INPUT,
-             "-project_rtol %.6g must lie between 0 and 1", (double)p->rtol);
+             "-projector_rtol %.6g must lie between 0 and 1", (double)p->rtol);
   PetscCheck(p->max_it > 0, p->contact->comm, PETSC_ERR_USER_INPUT,
-             "-project_max_it %" PetscInt_FMT " must be positive", p->max_it);
+             "-projector_max_it %" PetscInt_FMT " must be positive", p->max_it);
   for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(SlidingSetFromOptions(p->contact, i, &p->sliding[i]));
   PetscFunctionReturn(0);
 }
@@ -194,7 +194,7 @@ PetscErrorCode ContactProject(ContactProjector p, const ContactStep *step, const
   PetscCheck(
     head[HEAD_FAILED] == 0, p->share.comm, PETSC_ERR_NOT_CONVERGED,
     "contact forces at %.6g s: residual %.6g after %.0f sweeps, worst at the slave node at %.6g, %.6g, %.6g m; "
-    "raise -project_max_it %" PetscInt_FMT " or -project_rtol %.6g",
+    "raise -projector_max_it %" PetscInt_FMT " or -projector_rtol %.6g",
     (double)step->time, (double)head[HEAD_RESIDUAL], (double)head[HEAD_SWEEPS], (double)head[HEAD_X],
     (double)head[HEAD_X + 1], (double)head[HEAD_X + 2], p->max_it, (double)p->rtol);
   PetscCall(ProjectorAdvance(p, head[HEAD_SEARCH] != 0 ? PETSC_TRUE : PETSC_FALSE));

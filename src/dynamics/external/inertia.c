@@ -15,11 +15,11 @@ PetscErrorCode InertiaSetFromOptions(External external)
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(external->comm, NULL, "Gravity", NULL);
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-gravity", "acceleration in x,y,z, m/s^2", 3, g, NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-dynamics_gravity", "acceleration in x,y,z, m/s^2", 3, g, NULL));
   PetscOptionsEnd();
   for (int d = 0; d < 3; d++)
     PetscCheck(!PetscIsInfOrNanReal(g[d]), external->comm, PETSC_ERR_USER_INPUT,
-               "-gravity value %.6g must be a finite number (m/s^2)", (double)g[d]);
+               "-dynamics_gravity value %.6g must be a finite number (m/s^2)", (double)g[d]);
   PetscFunctionReturn(0);
 }
 
