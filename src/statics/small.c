@@ -34,7 +34,7 @@ static void ColumnAdd(const Compliance *c, PetscReal friction, PetscInt n, const
 }
 
 /* Factors A in place and solves; whether it is singular, and the sign of the determinant */
-static PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscReal z[], SmallOutcome *outcome, PetscBool *reversed)
+static PetscErrorCode SmallFactor(PetscInt n, PetscReal A[], PetscReal z[], SmallOutcome *outcome, PetscBool *reversed)
 {
   PetscReal    least = PETSC_MAX_REAL, largest = 0;
   PetscBLASInt N, one                          = 1, info, *pivot;
@@ -57,8 +57,8 @@ static PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscReal z[], Smal
 }
 
 /* z of this rank's rows [rows] */
-static PetscErrorCode DenseSolve(const Compliance *c, const PairRows *rows, PetscReal friction, const LawRow law[],
-                                 const PetscReal rhs[], PetscReal z[], SmallOutcome *outcome, PetscBool *reversed)
+static PetscErrorCode SmallSolveDense(const Compliance *c, const PairRows *rows, PetscReal friction, const LawRow law[],
+                                      const PetscReal rhs[], PetscReal z[], SmallOutcome *outcome, PetscBool *reversed)
 {
   const PetscInt n = rows->n_all;
   LawRow        *all_law;
@@ -70,7 +70,7 @@ static PetscErrorCode DenseSolve(const Compliance *c, const PairRows *rows, Pets
   PetscCall(GatherRecords(rows->comm, rows->n, sizeof(PetscReal), rhs, NULL, &all));
   ColumnAdd(c, friction, n, all_law, -1, all);
   for (PetscInt j = 0; j < n; j++) ColumnAdd(c, friction, n, all_law, j, &A[j * n]);
-  PetscCall(DenseFactor(n, A, all, outcome, reversed));
+  PetscCall(SmallFactor(n, A, all, outcome, reversed));
   PetscCall(PetscArraycpy(z, &all[rows->begin], rows->n));
   PetscCall(PetscFree(all_law));
   PetscCall(PetscFree(all));
@@ -195,7 +195,7 @@ PetscErrorCode SmallSolve(const Compliance *c, const PairRows *rows, PetscReal f
   *reversed = PETSC_FALSE;
   PetscCall(PetscMalloc1(rows->n, &z));
   if (c->W)
-    PetscCall(DenseSolve(c, rows, friction, law, rhs, z, outcome, reversed));
+    PetscCall(SmallSolveDense(c, rows, friction, law, rhs, z, outcome, reversed));
   else
     PetscCall(KrylovSolve(c, rows, friction, law, rhs, rtol, z, outcome));
   LawApply(rows, law, PETSC_TRUE, z, l, w);

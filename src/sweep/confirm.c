@@ -5,10 +5,10 @@
 */
 #include "sweepimpl.h"
 
-#define CONFIRMED 1e-7 /* relative change of the critical value by a further full correction */
-#define NEAR      1e-2 /* half width of the frequencies around the pair, relative */
-#define DROP      1e-9
-#define MAX_STEPS 5
+#define CONFIRMED   1e-7 /* relative change of the critical value by a further full correction */
+#define ONSET_WIDTH 1e-2 /* half width of the frequencies around the pair, relative */
+#define ONSET_DROP  1e-9
+#define ONSET_STEPS 5
 
 /* Finds the value on the reduced model; alike on all ranks */
 static PetscErrorCode OnsetReduced(Sweep sweep, const Line *line, Event *event)
@@ -29,8 +29,8 @@ static ReducedWindow WindowNear(const ReducedWindow *window, PetscReal omega, Pe
   ReducedWindow near = *window;
 
   if (damped) return near;
-  near.low  = omega * (1 - NEAR);
-  near.high = PetscMax(omega * (1 + NEAR), NEAR * window->high);
+  near.low  = omega * (1 - ONSET_WIDTH);
+  near.high = PetscMax(omega * (1 + ONSET_WIDTH), ONSET_WIDTH * window->high);
   return near;
 }
 
@@ -44,14 +44,14 @@ static PetscErrorCode OnsetCorrect(Sweep sweep, const Correction *correction, co
   PetscFunctionBeginUser;
   PetscCall(ReducedSolve(&sweep->basis.reduced, p, near, &modes));
   PetscCall(ReducedModesBroadcast(sweep->comm, 0, &modes));
-  PetscCall(CorrectionApply(correction, &modes, DROP, &sweep->basis, &n_added));
+  PetscCall(CorrectionApply(correction, &modes, ONSET_DROP, &sweep->basis, &n_added));
   PetscCall(BasisPromote(&sweep->basis));
   PetscCall(ReducedModesDestroy(&modes));
   PetscFunctionReturn(0);
 }
 
 /* Alternates corrections by the full problem and the reduced iteration; change = the last one of the critical value */
-static PetscErrorCode OnsetIterate(Sweep sweep, const Line *line, PetscReal p[], Event *event, PetscReal *change)
+static PetscErrorCode OnsetConverge(Sweep sweep, const Line *line, PetscReal p[], Event *event, PetscReal *change)
 {
   Correction    correction;
   ReducedWindow near;
@@ -63,7 +63,8 @@ static PetscErrorCode OnsetIterate(Sweep sweep, const Line *line, PetscReal p[],
   PetscCall(ReducedSum(&sweep->basis.reduced, OPERATORS_DAMPING, p, 0, NULL, &damped));
   near = WindowNear(&sweep->window, event->omega, damped);
   PetscCall(CorrectionCreate(sweep->operators, p, &near, &sweep->progress, &correction));
-  for (int step = 0; step < MAX_STEPS && event->found && *change > CONFIRMED * PetscAbsReal(event->critical); step++) {
+  for (int step = 0; step < ONSET_STEPS && event->found && *change > CONFIRMED * PetscAbsReal(event->critical);
+       step++) {
     const PetscReal before = event->critical;
 
     p[line->parameter] = before;
@@ -101,13 +102,18 @@ static PetscErrorCode OnsetConfirm(Sweep sweep, PetscInt e)
   GridFill(&sweep->grid, &sweep->grid.place[event->place], p);
   line.base = p;
   PetscCall(OnsetReduced(sweep, &line, event));
-  if (event->found && sweep->method == SWEEP_REDUCED) PetscCall(OnsetIterate(sweep, &line, p, event, &change));
+  if (event->found && sweep->method == SWEEP_REDUCED) PetscCall(OnsetConverge(sweep, &line, p, event, &change));
   sweep->is_confirmed[e] =
     event->found && change <= CONFIRMED * PetscAbsReal(event->critical) ? PETSC_TRUE : PETSC_FALSE;
   if (change < PETSC_MAX_REAL) event->error = PetscMax(change, 1e-14 * PetscAbsReal(event->critical));
   if (sweep->is_confirmed[e] && sweep->statics) PetscCall(OnsetCheckStatus(sweep, event, &sweep->is_confirmed[e]));
   PetscCall(PetscFree(p));
   PetscFunctionReturn(0);
+}
+
+PetscInt SweepEventLine(Sweep sweep, PetscInt e)
+{
+  return sweep->grid.place[sweep->events.event[e].place].line;
 }
 
 /* Whether onset e comes after onset e + 1: by line, then by critical value */

@@ -64,7 +64,7 @@ static PetscErrorCode PointsTrack(Sweep sweep, Points *points)
   const PetscInt before = sweep->events.n;
 
   PetscFunctionBeginUser;
-  PetscCall(SegmentsTrack(sweep, points));
+  PetscCall(LineTrackSegments(sweep, points));
   PetscCall(TrackBroadcast(sweep, before, points));
   PetscFunctionReturn(0);
 }
@@ -84,7 +84,7 @@ static PetscErrorCode PointsLink(Sweep sweep, const Points *before, PetscInt fir
   PetscCall(TrackMatch(&sweep->basis.reduced, points->p, &before->modes[0], &points->modes[0], from, &certain));
   for (PetscInt i = 0; i < points->modes[0].n; i++)
     if (from[i] >= 0) rename[points->branch[0][i] - first_new] = before->branch[0][from[i]];
-  PetscCall(BranchesRename(sweep, first_new, rename, 0, points->n, first_event, points));
+  PetscCall(LineRename(sweep, first_new, rename, 0, points->n, first_event, points));
   PetscCall(PetscFree2(from, rename));
   PetscFunctionReturn(0);
 }
@@ -98,7 +98,7 @@ static PetscErrorCode PointsKeep(Sweep sweep, const Points *points)
     const PetscInt      at    = sweep->grid.place[points->first + i].point;
     SweepPoint         *point = &sweep->point[PetscMax(at, 0)];
 
-    sweep->worst[points->first + i] = ModesWorst(modes, &sweep->window);
+    sweep->worst[points->first + i] = ReducedModesWorst(modes, &sweep->window);
     if (at < 0) continue;
     point->n = modes->n;
     PetscCall(PetscCalloc1(modes->n, &point->mode));
@@ -207,6 +207,21 @@ static PetscErrorCode PointsLabel(Sweep sweep, const Points *points)
   LabelPoints(sweep, points, at);
   for (PetscInt i = 0; i < points->n; i++) PetscCall(PointLabel(sweep, points, i, at));
   PetscCall(PetscFree(at));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepClassify(Sweep sweep)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < GridSize(&sweep->grid); i++)
+    for (PetscInt k = 0; k < sweep->point[i].n; k++) {
+      SweepMode         *m      = &sweep->point[i].mode[k];
+      const PetscComplex lambda = CMPLX(m->sigma, m->omega);
+
+      m->unstable  = ReducedIsUnstable(lambda, PetscIsInfOrNanReal(m->error) ? 0 : m->error);
+      m->numerical = !m->unstable && m->sigma > REDUCED_TINY * cabs(lambda) ? PETSC_TRUE : PETSC_FALSE;
+      PetscCall(PetscStrncpy(m->label, sweep->label[m->branch].text, sizeof(m->label)));
+    }
   PetscFunctionReturn(0);
 }
 

@@ -34,7 +34,8 @@ static PetscErrorCode BoxRead(Sweep sweep, ParameterBox *box)
   for (int k = 0; k < n; k++) {
     const PetscReal percent = sweep->percent[sweep->n_percent == 1 ? 0 : k];
 
-    PetscCall(ParameterFind(sweep->comm, "-sweep_uncertain", names[k], n_parameters, parameters, &box->parameter[k]));
+    PetscCall(
+      GridParameterFind(sweep->comm, "-sweep_uncertain", names[k], n_parameters, parameters, &box->parameter[k]));
     PetscCheck(percent > 0 && percent < 100, sweep->comm, PETSC_ERR_USER_INPUT,
                "-sweep_percent %.6g must lie between 0 and 100", (double)percent);
     PetscCheck(sweep->grid.base[box->parameter[k]] != 0, sweep->comm, PETSC_ERR_USER_INPUT,
@@ -81,7 +82,7 @@ static PetscErrorCode RisksCount(Sweep sweep, PetscInt n, const PetscReal points
   for (PetscInt i = 0; i < n; i++) {
     PetscBool certain;
 
-    sweep->worst_risk = PetscMax(sweep->worst_risk, ModesWorst(&modes[i], &sweep->window));
+    sweep->worst_risk = PetscMax(sweep->worst_risk, ReducedModesWorst(&modes[i], &sweep->window));
 
     PetscCall(PetscMalloc1(modes[i].n, &match));
     PetscCall(TrackMatch(&sweep->basis.reduced, points, &modes[0], &modes[i], match, &certain));

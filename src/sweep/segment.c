@@ -4,8 +4,8 @@
 */
 #include "line.h"
 
-PetscErrorCode BranchesRename(Sweep sweep, PetscInt first_new, PetscInt rename[], PetscInt k, PetscInt last,
-                              PetscInt first_event, Points *points)
+PetscErrorCode LineRename(Sweep sweep, PetscInt first_new, PetscInt rename[], PetscInt k, PetscInt last,
+                          PetscInt first_event, Points *points)
 {
   const PetscInt n_new = sweep->n_branches - first_new;
   PetscInt       next  = first_new;
@@ -42,12 +42,12 @@ static PetscErrorCode SegmentLink(Sweep sweep, PetscInt first_new, PetscInt k, P
   for (PetscInt b = 0; b < n_new; b++) rename[b] = -1;
   for (PetscInt i = 0; i < n; i++)
     if (points->branch[k][i] < first_new) rename[own[i] - first_new] = points->branch[k][i];
-  PetscCall(BranchesRename(sweep, first_new, rename, k, last, first_event, points));
+  PetscCall(LineRename(sweep, first_new, rename, k, last, first_event, points));
   PetscCall(PetscFree2(own, rename));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SegmentsTrack(Sweep sweep, Points *points)
+PetscErrorCode LineTrackSegments(Sweep sweep, Points *points)
 {
   const SweepPlace *place = &sweep->grid.place[points->first];
 

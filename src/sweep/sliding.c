@@ -11,7 +11,7 @@
 #include <string.h>
 
 #define MAX_BISECTIONS 30   /* of a sweep */
-#define NARROW         1e-4 /* relative width of a bracket that is not divided any more */
+#define BRACKET_WIDTH  1e-4 /* relative width of a bracket that is not divided any more */
 
 PetscErrorCode SweepAxisCheck(Sweep sweep, const char name[])
 {
@@ -76,7 +76,7 @@ static PetscBool PlaceChanges(const SweepGrid *grid, PetscInt k, PetscReal *widt
 /* The widest bracket of a change of status that is to be divided, or -1 */
 static PetscInt WidestChange(const SweepGrid *grid)
 {
-  PetscReal width, widest = NARROW;
+  PetscReal width, widest = BRACKET_WIDTH;
   PetscInt  at = -1;
 
   for (PetscInt k = 0; k + 1 < grid->n_places; k++)
@@ -133,7 +133,7 @@ PetscBool SweepClosedRange(Sweep sweep, PetscInt *least, PetscInt *most)
 }
 
 /* Groups with the exact constraint are no affine terms */
-static PetscErrorCode GroupsCheck(Sweep sweep, const PetscInt group[])
+static PetscErrorCode StatusGroupsCheck(Sweep sweep, const PetscInt group[])
 {
   const PetscReal          *value = sweep->grid.value[0];
   const OperatorsParameter *parameters;
@@ -165,7 +165,7 @@ static PetscErrorCode GroupsCheck(Sweep sweep, const PetscInt group[])
 
 /* Gives the operators the groups, and the grid the values of their parameters. The matrices are first formed with all
    groups closed, so that their pattern holds every term, whichever point comes first. */
-static PetscErrorCode GroupsSet(Sweep sweep)
+static PetscErrorCode StatusGroupsSet(Sweep sweep)
 {
   const OperatorsParameter *parameters;
   SweepGrid                *grid = &sweep->grid;
@@ -175,7 +175,7 @@ static PetscErrorCode GroupsSet(Sweep sweep)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(sweep->statuses.n_local, &group));
   PetscCall(StatusListGroup(&sweep->statuses, group, &grid->n_groups, &grid->closed));
-  if (grid->n_groups) PetscCall(GroupsCheck(sweep, group));
+  if (grid->n_groups) PetscCall(StatusGroupsCheck(sweep, group));
   PetscCall(OperatorsSetClosed(sweep->operators, grid->n_groups, group));
   PetscCall(OperatorsGetPencil(sweep->operators, &pencil));
   PetscCall(OperatorsGetFrictionless(sweep->operators, &pencil));
@@ -212,7 +212,7 @@ PetscErrorCode SweepStatuses(Sweep sweep)
     PetscCall(SweepStatusSolve(sweep, &sweep->check[i].at, &sweep->check[i].at.status));
   if (sweep->uncertain[0]) PetscCall(BaseSolve(sweep));
   PetscCall(StaticsRelease(sweep->statics));
-  PetscCall(GroupsSet(sweep));
+  PetscCall(StatusGroupsSet(sweep));
   PetscFunctionReturn(0);
 }
 

@@ -155,12 +155,13 @@ static PetscErrorCode GridSetUp(Sweep sweep)
   for (grid->n_axes = 0; grid->n_axes < n_names; grid->n_axes++) {
     const PetscInt k = grid->n_axes;
 
-    PetscCall(
-      ParameterFind(sweep->comm, "-sweep_parameter", names[k], grid->n_parameters, parameters, &grid->parameter[k]));
+    PetscCall(GridParameterFind(sweep->comm, "-sweep_parameter", names[k], grid->n_parameters, parameters,
+                                &grid->parameter[k]));
     PetscCall(SweepAxisCheck(sweep, names[k]));
     PetscCheck(strlen(sweep->values[k]) < SWEEP_MAX_TEXT - 1, sweep->comm, PETSC_ERR_USER_INPUT,
                "%s is longer than %d characters; give a range first:last:n", options[k], SWEEP_MAX_TEXT);
-    PetscCall(ValuesParse(sweep->comm, options[k], sweep->values[k], &grid->n[k], &grid->value[k], &grid->ratio[k]));
+    PetscCall(
+      GridValuesParse(sweep->comm, options[k], sweep->values[k], &grid->n[k], &grid->value[k], &grid->ratio[k]));
     for (PetscInt i = 0; i < grid->n[k]; i++)
       PetscCall(OperatorsCheckParameter(sweep->operators, grid->parameter[k], grid->value[k][i]));
   }
@@ -216,7 +217,6 @@ static PetscErrorCode ModelMake(Sweep sweep)
   PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
   GridPoint(&sweep->grid, 0, p);
   PetscCall(OperatorsSetParameters(sweep->operators, p));
-  PetscCall(PetscFree(p));
   PetscCall(BasisCreate(sweep->comm, sweep->operators, &sweep->basis));
   sweep->greedy.rtol        = sweep->rtol;
   sweep->greedy.max_samples = sweep->max_samples;
@@ -224,11 +224,13 @@ static PetscErrorCode ModelMake(Sweep sweep)
   PetscCall(PetscCalloc1(2 * sweep->max_samples + 2, &sweep->greedy.sample));
   sweep->greedy.last = PETSC_MAX_REAL;
   if (sweep->method == SWEEP_REAL) {
-    PetscCall(SweepRealBasis(sweep));
-    PetscFunctionReturn(0);
+    GridPoint(&sweep->grid, GridSize(&sweep->grid) / 2, p);
+    PetscCall(BasisFillReal(&sweep->basis, sweep->modes, sweep->n_real, p));
+  } else {
+    PetscCall(BasisFillWhole(&sweep->basis, &sweep->whole));
+    if (!sweep->whole) PetscCall(BasisGreedy(sweep));
   }
-  PetscCall(SweepWholeBasis(sweep, &sweep->whole));
-  if (!sweep->whole) PetscCall(BasisGreedy(sweep));
+  PetscCall(PetscFree(p));
   PetscFunctionReturn(0);
 }
 

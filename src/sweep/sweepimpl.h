@@ -5,7 +5,7 @@
 #include "sweep/basis/greedy.h"
 #include "status.h"
 #include "sweep/track/track.h"
-#include "values.h"
+#include "grid.h"
 
 #define SWEEP_MAX_TEXT      65536 /* length of a list of values */
 #define SWEEP_MAX_UNCERTAIN 16
@@ -67,7 +67,7 @@ struct _p_Sweep {
   PetscBool   onsets, sensitivities, restart;
   /* results */
   SweepGrid      grid;
-  Groups         groups;
+  PointGroups    groups;
   ReducedWindow  window;
   Basis          basis;
   Greedy         greedy;
@@ -98,11 +98,9 @@ PETSC_INTERN PetscReal SweepWorst(Sweep sweep);
 /* Names of all modes of a point from their shapes on the mesh */
 PETSC_INTERN PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedModes *modes,
                                             char label[][32]);
-/* classify.c - which points are unstable, or numerically so; index of an event along the second axis; distance of a
-   point to the nearest onset of a branch, relative, or NaN */
+/* Which eigenvalues are unstable, or numerically so: growth is `unstable` when it exceeds three times the estimated error
+   of its eigenvalue, and `numerical` when the error bar covers zero */
 PETSC_INTERN PetscErrorCode SweepClassify(Sweep sweep);
-PETSC_INTERN PetscInt       SweepEventLine(Sweep sweep, PetscInt e);
-PETSC_INTERN PetscReal      SweepOnsetDistance(Sweep sweep, PetscInt point, PetscInt branch);
 /* sliding.c - raises the error for a contact's parameter that would be overwritten at every point */
 PETSC_INTERN PetscErrorCode SweepAxisCheck(Sweep sweep, const char name[]);
 /* sliding.c - statuses of all places and checks from the sliding state, changes of status bracketed, groups of pairs as
@@ -116,15 +114,13 @@ PETSC_INTERN PetscErrorCode SweepClosedAt(Sweep sweep, PetscInt point, PetscInt 
 PETSC_INTERN PetscBool      SweepClosedRange(Sweep sweep, PetscInt *least, PetscInt *most);
 /* confirm.c - onsets on the reduced model, then on the full problem */
 PETSC_INTERN PetscErrorCode SweepOnsets(Sweep sweep);
+/* Index of an event along the second axis */
+PETSC_INTERN PetscInt SweepEventLine(Sweep sweep, PetscInt e);
 /* brute.c - every point in full, without reduced model; the places of full solutions that check the reduced ones, and
    these */
 PETSC_INTERN PetscErrorCode SweepBrute(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepCheckPlaces(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepVerify(Sweep sweep);
-/* whole.c - all unit vectors, for a small system; whole = whether the mass matrix allows it */
-PETSC_INTERN PetscErrorCode SweepWholeBasis(Sweep sweep, PetscBool *whole);
-/* realmodes.c - the basis of today's tools: frictionless real modes */
-PETSC_INTERN PetscErrorCode SweepRealBasis(Sweep sweep);
 /* robust.c - combinations of uncertain parameters */
 PETSC_INTERN PetscErrorCode SweepRobustness(Sweep sweep);
 /* restart.c - keeps the full solutions so far (ctx is the sweep), takes up what an earlier run kept, and deletes it */

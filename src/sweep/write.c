@@ -4,7 +4,7 @@
 */
 #include "sweepimpl.h"
 
-static const char *const kinds[] = {"lock_in", "lock_out", "divergence", "restabilisation", "jump"};
+static const char *const table_kinds[] = {"lock_in", "lock_out", "divergence", "restabilisation", "jump"};
 
 /* Number as text, empty where there is none */
 static PetscErrorCode NumberOrEmpty(PetscReal value, char text[32])
@@ -15,8 +15,27 @@ static PetscErrorCode NumberOrEmpty(PetscReal value, char text[32])
   PetscFunctionReturn(0);
 }
 
+/* Distance of a point to the nearest onset of a branch, relative, or NaN. Growth near a lock-in goes as the square root
+   of the distance of the parameter from its critical value, and so does the error bar there: hence it is listed. */
+static PetscReal OnsetDistance(Sweep sweep, PetscInt point, PetscInt branch)
+{
+  const PetscReal value   = sweep->grid.value[0][point % sweep->grid.n[0]];
+  PetscReal       nearest = NAN;
+
+  for (PetscInt e = 0; e < sweep->events.n; e++) {
+    const Event    *event = &sweep->events.event[e];
+    const PetscReal distance =
+      PetscAbsReal(value - event->critical) / PetscMax(PetscAbsReal(event->critical), PETSC_MACHINE_EPSILON);
+
+    if (!event->found || SweepEventLine(sweep, e) != point / sweep->grid.n[0]) continue;
+    if (event->branch[0] != branch && event->branch[1] != branch) continue;
+    if (!(distance >= nearest)) nearest = distance;
+  }
+  return nearest;
+}
+
 /* One row of sweep.csv */
-static PetscErrorCode RowWrite(Sweep sweep, PetscInt i, const SweepMode *m, ResultsTable table)
+static PetscErrorCode SweepRowWrite(Sweep sweep, PetscInt i, const SweepMode *m, ResultsTable table)
 {
   const SweepGrid *grid = &sweep->grid;
   const PetscReal  size = hypot(m->sigma, m->omega);
@@ -28,7 +47,7 @@ static PetscErrorCode RowWrite(Sweep sweep, PetscInt i, const SweepMode *m, Resu
   PetscCall(NumberOrEmpty(size > 0 ? m->error / size : NAN, error));
   PetscCall(NumberOrEmpty(m->error / (2 * PETSC_PI), error_hz));
   PetscCall(NumberOrEmpty(m->condition, condition));
-  PetscCall(NumberOrEmpty(m->branch < 0 ? NAN : SweepOnsetDistance(sweep, i, m->branch), distance));
+  PetscCall(NumberOrEmpty(m->branch < 0 ? NAN : OnsetDistance(sweep, i, m->branch), distance));
   if (grid->n_axes == 2) PetscCall(NumberOrEmpty(grid->value[1][i / grid->n[0]], second));
   if (m->branch >= 0) PetscCall(PetscSNPrintf(branch, sizeof(branch), "%" PetscInt_FMT, m->branch + 1));
   PetscCall(SweepClosedAt(sweep, i, &n_closed, &jump));
@@ -54,7 +73,8 @@ static PetscErrorCode SweepTableWrite(Sweep sweep, Results results)
                      "hz,condition,onset_distance,n_closed,jump",
                      &table));
   for (PetscInt i = 0; i < GridSize(&sweep->grid); i++)
-    for (PetscInt k = 0; k < sweep->point[i].n; k++) PetscCall(RowWrite(sweep, i, &sweep->point[i].mode[k], table));
+    for (PetscInt k = 0; k < sweep->point[i].n; k++)
+      PetscCall(SweepRowWrite(sweep, i, &sweep->point[i].mode[k], table));
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
 }
@@ -80,7 +100,7 @@ static PetscErrorCode OnsetTableWrite(Sweep sweep, Results results)
     if (sweep->grid.n_axes == 2) PetscCall(NumberOrEmpty(sweep->grid.value[1][SweepEventLine(sweep, e)], second));
     PetscCall(ResultsTableRow(table, "%s,%.15g,%.15g,%s,\"%s\",%.15g,%d,%s,%d,%s",
                               parameters[sweep->grid.parameter[0]].name, (double)event->critical,
-                              (double)(event->omega / (2 * PETSC_PI)), kinds[event->kind],
+                              (double)(event->omega / (2 * PETSC_PI)), table_kinds[event->kind],
                               sweep->label[event->branch[0]].text, (double)event->error, (int)event->branch[0] + 1,
                               partner, (int)sweep->is_confirmed[e], second));
   }

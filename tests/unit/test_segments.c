@@ -141,7 +141,7 @@ static PetscErrorCode TestSegments(int *failed)
   PetscCall(PetscMemzero(&points, sizeof(points)));
   ModelCreateJump(&dense);
   PetscCall(PlacesCreate(&dense, &sweep, &points));
-  PetscCall(SegmentsTrack(&sweep, &points));
+  PetscCall(LineTrackSegments(&sweep, &points));
   *failed += CheckTrue("branches", sweep.n_branches == 4, (double)sweep.n_branches);
   for (PetscInt k = 0; k < N_PLACES; k++)
     for (PetscInt i = 2; i < 4; i++) wrong += points.branch[k][i] != points.branch[0][i];

@@ -62,7 +62,7 @@ static PetscErrorCode InnerProducts(BV X, Mat A, BV Y, Mat *H)
 }
 
 /* W -= V V' M W */
-static PetscErrorCode Project(Basis *basis, BV W)
+static PetscErrorCode BlockProject(Basis *basis, BV W)
 {
   Mat coefficients;
 
@@ -92,7 +92,7 @@ static PetscErrorCode GramDecompose(PetscInt m, PetscScalar G[], PetscReal eigen
 }
 
 /* Makes the block orthonormal in M; its active columns become those above the drop tolerance */
-static PetscErrorCode Orthonormalise(const Basis *basis, BV W, PetscReal drop)
+static PetscErrorCode BlockOrthonormalise(const Basis *basis, BV W, PetscReal drop)
 {
   PetscInt     m, kept = 0;
   PetscReal   *eigenvalue;
@@ -242,13 +242,13 @@ PetscErrorCode BasisAdd(Basis *basis, BV block, PetscReal drop, PetscInt *n_adde
   PetscInt       n;
 
   PetscFunctionBeginUser;
-  PetscCall(Project(basis, block));
-  PetscCall(Project(basis, block));
-  PetscCall(Orthonormalise(basis, block, drop));
+  PetscCall(BlockProject(basis, block));
+  PetscCall(BlockProject(basis, block));
+  PetscCall(BlockOrthonormalise(basis, block, drop));
   PetscCall(BVGetActiveColumns(block, NULL, &n));
   if (n) {
-    PetscCall(Project(basis, block));
-    PetscCall(Orthonormalise(basis, block, 0.1));
+    PetscCall(BlockProject(basis, block));
+    PetscCall(BlockOrthonormalise(basis, block, 0.1));
     PetscCall(BVGetActiveColumns(block, NULL, &n));
     PetscCall(BVResize(basis->vectors, first + n, PETSC_TRUE));
     PetscCall(BVSetActiveColumns(basis->vectors, first, first + n));

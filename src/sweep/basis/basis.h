@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sweep/dense/reduced.h"
+#include <squeal/modes.h>
 #include <slepcbv.h>
 
 /* [V Z], orthonormal in the mass matrix of the scene's own parameters. The leading reduced.n_used vectors are the
@@ -30,3 +31,10 @@ PetscErrorCode BasisPromote(Basis *basis);
 /* block = V coordinates, coordinates [m][size] with size <= n, real */
 PetscErrorCode BasisLift(const Basis *basis, PetscInt size, PetscInt m, const PetscReal coordinates[], BV block);
 PetscErrorCode BasisDestroy(Basis *basis);
+
+/* fill.c - all unit vectors, for a small system; whole = whether the basis now is the whole space, which the mass matrix
+   must allow */
+PetscErrorCode BasisFillWhole(Basis *basis, PetscBool *whole);
+/* The lowest n_modes real modes of the frictionless, undamped system at p; sets to zero in p[] what friction and damping
+   are proportional to. PETSC_ERR_USER_INPUT where some of either remains. */
+PetscErrorCode BasisFillReal(Basis *basis, Modes modes, PetscInt n_modes, PetscReal p[]);

@@ -11,25 +11,25 @@
 */
 #include "greedy.h"
 
-#define GUARD     0.03 /* relative width beyond the band of modes that the basis holds */
-#define SAFE      0.03 /* what is asked at a point that corrections come from, beside rtol */
-#define SETTLED   1e-3 /* beside rtol: a mode that needs no more corrections at this point */
-#define WIDE      5    /* ends that differ by this factor: distances are ratios */
-#define MAX_STEPS 8
-#define DROP      3e-3 /* vectors shorter than this beside the root of rtol add nothing; errors go with their squares */
+#define GUARD        0.03 /* relative width beyond the band of modes that the basis holds */
+#define SAFE         0.03 /* what is asked at a point that corrections come from, beside rtol */
+#define SETTLED      1e-3 /* beside rtol: a mode that needs no more corrections at this point */
+#define GREEDY_STEPS 8
+#define GREEDY_DROP                                                                                                    \
+  3e-3 /* vectors shorter than this beside the root of rtol add nothing; errors go with their squares */
 
 /* What the run knows */
 typedef struct {
-  Greedy          *greedy;
-  const Groups    *groups;
-  Modes            modes;
-  Basis           *basis;
-  ReducedWindow    window, guarded;
-  PetscInt         n;
-  const PetscReal *points;
-  PetscReal       *estimate; /* [n] */
-  PetscReal       *scale;    /* [n_parameters] */
-  PetscReal        drop;
+  Greedy            *greedy;
+  const PointGroups *groups;
+  Modes              modes;
+  Basis             *basis;
+  ReducedWindow      window, guarded;
+  PetscInt           n;
+  const PetscReal   *points;
+  PetscReal         *estimate; /* [n] */
+  PetscReal         *scale;    /* [n_parameters] */
+  PetscReal          drop;
 } Run;
 
 /* New entry of the list of full solutions */
@@ -139,12 +139,12 @@ static PetscErrorCode StepApply(Run *run, const Correction *correction, const Pe
   PetscCall(CorrectionApply(correction, modes, run->drop, run->basis, n_added));
   PetscCall(ReducedEstimate(&run->basis->reduced, p, modes));
   PetscCall(ReducedModesBroadcast(run->basis->comm, 0, modes));
-  *worst = ModesWorst(modes, &run->window);
+  *worst = ReducedModesWorst(modes, &run->window);
   PetscFunctionReturn(0);
 }
 
 /* Whether the basis has as many frictionless modes at p as the full problem */
-static PetscErrorCode CheckCount(Run *run, const PetscReal p[], PetscBool *complete)
+static PetscErrorCode SampleCount(Run *run, const PetscReal p[], PetscBool *complete)
 {
   PetscInt full, by_basis;
 
@@ -169,14 +169,14 @@ static PetscErrorCode SampleCorrect(Run *run, const PetscReal p[], PetscReal *fi
   PetscCall(CorrectionCreate(run->basis->operators, p, &run->guarded, run->greedy->progress, &correction));
   PetscCall(StepApply(run, &correction, p, &modes, &n_added, first));
   worst = *first;
-  for (int step = 1; step < MAX_STEPS && worst > SAFE * run->greedy->rtol; step++) {
+  for (int step = 1; step < GREEDY_STEPS && worst > SAFE * run->greedy->rtol; step++) {
     n_vectors += n_added;
     PetscCall(BasisPromote(run->basis));
     PetscCall(StepApply(run, &correction, p, &modes, &n_added, &worst));
   }
   PetscCall(ReducedModesDestroy(&modes));
   PetscCall(CorrectionDestroy(&correction));
-  PetscCall(CheckCount(run, p, &complete));
+  PetscCall(SampleCount(run, p, &complete));
   run->greedy->n_passed = *first <= SAFE * run->greedy->rtol && complete ? run->greedy->n_passed + 1 : 0;
   PetscCall(SampleAdd(run, p, PETSC_FALSE, n_vectors, *first));
   if (!complete && run->greedy->n_samples < run->greedy->max_samples) {
@@ -187,8 +187,8 @@ static PetscErrorCode SampleCorrect(Run *run, const PetscReal p[], PetscReal *fi
 }
 
 /* Extent of the points along each parameter, scale[n_parameters]: the length of the range, or the negative logarithm of
-   its ratio where the ends differ by a factor of WIDE; 0 for a parameter that does not vary */
-static void ScaleFind(PetscInt n, PetscInt n_parameters, const PetscReal points[], PetscReal scale[])
+   its ratio where the ends differ by a factor of RATIO_FROM; 0 for a parameter that does not vary */
+static void ScalePoints(PetscInt n, PetscInt n_parameters, const PetscReal points[], PetscReal scale[])
 {
   for (PetscInt k = 0; k < n_parameters; k++) {
     PetscReal low = points[k], high = points[k];
@@ -197,7 +197,7 @@ static void ScaleFind(PetscInt n, PetscInt n_parameters, const PetscReal points[
       low  = PetscMin(low, points[i * n_parameters + k]);
       high = PetscMax(high, points[i * n_parameters + k]);
     }
-    scale[k] = low > 0 && high > WIDE * low ? -PetscLogReal(high / low) : high - low;
+    scale[k] = low > 0 && high > RATIO_FROM * low ? -PetscLogReal(high / low) : high - low;
   }
 }
 
@@ -281,7 +281,7 @@ static PetscErrorCode PointNext(Run *run, PetscInt *next)
 }
 
 PetscErrorCode GreedyRun(Greedy *greedy, Modes modes, const ReducedWindow *window, PetscInt n, const PetscReal points[],
-                         const Groups *groups, Basis *basis)
+                         const PointGroups *groups, Basis *basis)
 {
   Run run = {.greedy = greedy, .groups = groups, .modes = modes, .basis = basis, .window = *window, .guarded = *window};
   PetscInt n_parameters = basis->reduced.n_parameters, next = 0;
@@ -289,11 +289,11 @@ PetscErrorCode GreedyRun(Greedy *greedy, Modes modes, const ReducedWindow *windo
   PetscFunctionBeginUser;
   run.n            = n;
   run.points       = points;
-  run.drop         = DROP * PetscSqrtReal(greedy->rtol);
+  run.drop         = GREEDY_DROP * PetscSqrtReal(greedy->rtol);
   run.guarded.low  = window->low < 0.5 * window->high ? 0 : window->low * (1 - GUARD);
   run.guarded.high = window->high * (1 + GUARD);
   PetscCall(PetscMalloc2(n, &run.estimate, n_parameters, &run.scale));
-  ScaleFind(n, n_parameters, points, run.scale);
+  ScalePoints(n, n_parameters, points, run.scale);
   PetscCall(ScaleGroups(&run));
   if (!greedy->n_samples) {
     PetscCall(SampleKrylov(&run, points, NAN));

@@ -29,5 +29,5 @@ typedef struct {
 /* Goes on with the samples there are, or begins. Enlarges the basis until every eigenvalue in the window at all points
  * [n][n_parameters] is estimated below rtol */
 PetscErrorCode GreedyRun(Greedy *greedy, Modes modes, const ReducedWindow *window, PetscInt n, const PetscReal points[],
-                         const Groups *groups, Basis *basis);
+                         const PointGroups *groups, Basis *basis);
 PetscErrorCode GreedyDestroy(Greedy *greedy);

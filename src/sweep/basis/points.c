@@ -1,14 +1,15 @@
 /*
-   Many points on the reduced model. The errors handed on are MARGIN times those of estimate.c: these are sharp at the
+   Many points on the reduced model. The errors handed on are POINTS_MARGIN times those of estimate.c: these are sharp at the
    points that the corrections come from, and see less in between (scripts/study_sweep compares them with the truth).
    Each point is a dense problem of its own, so ranks share the points, not a point; the results are then sent to all
    ranks, bit by bit the same.
 */
 #include "points.h"
 
-#define MARGIN 10 /* between the estimate at the corrected points and elsewhere */
+#define POINTS_MARGIN 10 /* between the estimate at the corrected points and elsewhere */
 
-PetscMPIInt GroupsOwner(const Groups *groups, PetscInt i)
+/* The rank that solves point i */
+static PetscMPIInt PointGroupsOwner(const PointGroups *groups, PetscInt i)
 {
   PetscMPIInt size;
 
@@ -16,7 +17,7 @@ PetscMPIInt GroupsOwner(const Groups *groups, PetscInt i)
   return (PetscMPIInt)((i % groups->n_groups) * size / groups->n_groups);
 }
 
-PetscReal ModesWorst(const ReducedModes *modes, const ReducedWindow *window)
+PetscReal ReducedModesWorst(const ReducedModes *modes, const ReducedWindow *window)
 {
   PetscReal worst = 0;
 
@@ -34,7 +35,7 @@ static PetscErrorCode PointSolve(const Reduced *reduced, const ReducedWindow *wi
   PetscCall(ReducedSolve(reduced, p, window, modes));
   PetscCall(ReducedEstimate(reduced, p, modes));
   for (PetscInt i = 0; i < modes->n; i++)
-    modes->error[i] = MARGIN * (modes->error[i] - modes->noise[i]) + modes->noise[i];
+    modes->error[i] = POINTS_MARGIN * (modes->error[i] - modes->noise[i]) + modes->noise[i];
   PetscFunctionReturn(0);
 }
 
@@ -62,7 +63,7 @@ PetscErrorCode ReducedModesBroadcast(MPI_Comm comm, PetscMPIInt owner, ReducedMo
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PointsSolve(const Groups *groups, const Reduced *reduced, const ReducedWindow *window, PetscInt n,
+PetscErrorCode PointsSolve(const PointGroups *groups, const Reduced *reduced, const ReducedWindow *window, PetscInt n,
                            const PetscReal points[], ReducedModes modes[])
 {
   PetscMPIInt rank;
@@ -71,14 +72,15 @@ PetscErrorCode PointsSolve(const Groups *groups, const Reduced *reduced, const R
   PetscCallMPI(MPI_Comm_rank(groups->comm, &rank));
   PetscCall(PetscMemzero(modes, (size_t)n * sizeof(*modes)));
   for (PetscInt i = 0; i < n; i++)
-    if (GroupsOwner(groups, i) == rank)
+    if (PointGroupsOwner(groups, i) == rank)
       PetscCall(PointSolve(reduced, window, &points[i * reduced->n_parameters], &modes[i]));
-  for (PetscInt i = 0; i < n; i++) PetscCall(ReducedModesBroadcast(groups->comm, GroupsOwner(groups, i), &modes[i]));
+  for (PetscInt i = 0; i < n; i++)
+    PetscCall(ReducedModesBroadcast(groups->comm, PointGroupsOwner(groups, i), &modes[i]));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PointsEstimate(const Groups *groups, const Reduced *reduced, const ReducedWindow *window, PetscInt n,
-                              const PetscReal points[], PetscReal worst[])
+PetscErrorCode PointsEstimate(const PointGroups *groups, const Reduced *reduced, const ReducedWindow *window,
+                              PetscInt n, const PetscReal points[], PetscReal worst[])
 {
   PetscMPIInt rank, count;
 
@@ -88,9 +90,9 @@ PetscErrorCode PointsEstimate(const Groups *groups, const Reduced *reduced, cons
     ReducedModes modes;
 
     worst[i] = 0;
-    if (GroupsOwner(groups, i) != rank) continue;
+    if (PointGroupsOwner(groups, i) != rank) continue;
     PetscCall(PointSolve(reduced, window, &points[i * reduced->n_parameters], &modes));
-    worst[i] = ModesWorst(&modes, window);
+    worst[i] = ReducedModesWorst(&modes, window);
     PetscCall(ReducedModesDestroy(&modes));
   }
   PetscCall(PetscMPIIntCast(n, &count));

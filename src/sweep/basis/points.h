@@ -3,21 +3,21 @@
 
 #include "sweep/dense/reduced.h"
 
+#define RATIO_FROM 5 /* a range whose ends differ by this factor is measured in ratios */
+
 /* Groups of ranks, each of which takes its share of the points */
 typedef struct {
   MPI_Comm comm;
   PetscInt n_groups;
-} Groups;
+} PointGroups;
 
-/* Whether this rank solves point i, and the rank that does */
-PetscMPIInt GroupsOwner(const Groups *groups, PetscInt i);
 /* Modes with estimated errors at n points [n][n_parameters], alike on all ranks. Collective. */
-PetscErrorCode PointsSolve(const Groups *groups, const Reduced *reduced, const ReducedWindow *window, PetscInt n,
+PetscErrorCode PointsSolve(const PointGroups *groups, const Reduced *reduced, const ReducedWindow *window, PetscInt n,
                            const PetscReal points[], ReducedModes modes[]);
 /* Gives all ranks the modes of one of them, freeing what they had. Collective. */
 PetscErrorCode ReducedModesBroadcast(MPI_Comm comm, PetscMPIInt owner, ReducedModes *modes);
 /* Largest estimated relative error of the modes in the window, but for rounding; rigid ones do not count */
-PetscReal ModesWorst(const ReducedModes *modes, const ReducedWindow *window);
+PetscReal ReducedModesWorst(const ReducedModes *modes, const ReducedWindow *window);
 /* The same at n points. Collective. */
-PetscErrorCode PointsEstimate(const Groups *groups, const Reduced *reduced, const ReducedWindow *window, PetscInt n,
-                              const PetscReal points[], PetscReal worst[]);
+PetscErrorCode PointsEstimate(const PointGroups *groups, const Reduced *reduced, const ReducedWindow *window,
+                              PetscInt n, const PetscReal points[], PetscReal worst[]);

@@ -19,10 +19,10 @@
 #include "eigen.h"
 #include "dense.h"
 
-#define RIGID_NOISE 100  /* kappa below this many times its rounding error is a rigid mode */
+#define RIGID_FLOOR 100  /* kappa below this many times its rounding error is a rigid mode */
 #define ON_SHIFT    1e3  /* an eigenvalue nearer to the shift than 1 / this of it spoils the others: another shift */
 #define SAME_VECTOR 1e-3 /* a vector closer than this to those before is the second one of a double zero */
-#define EDGE        1e-8 /* relative tolerance on the ends of the window */
+#define WINDOW_EDGE 1e-8 /* relative tolerance on the ends of the window */
 
 /* Work of one solution */
 typedef struct {
@@ -143,7 +143,7 @@ static PetscBool IsOnShift(const Work *w)
 }
 
 /* Solves about the shift, moved away from eigenvalues (unstable real ones) where necessary */
-static PetscErrorCode Solve(Work *w, PetscBool symmetric)
+static PetscErrorCode WorkSolve(Work *w, PetscBool symmetric)
 {
   PetscBool bad = PETSC_TRUE;
 
@@ -245,7 +245,7 @@ static PetscErrorCode IsRigid(const Work *w, PetscComplex lambda, const PetscCom
   PetscCall(DenseTimes(n, n, w->pencil->M, n, PETSC_FALSE, 1, x, Mx));
   for (PetscInt k = 0; k < n; k++) mass += creal(conj(x[k]) * Mx[k]);
   PetscCall(PetscFree(Mx));
-  if (square * mass <= RIGID_NOISE * (PencilNoise(w->pencil, x, x) + own * mass)) *rigid = PETSC_TRUE;
+  if (square * mass <= RIGID_FLOOR * (PencilNoise(w->pencil, x, x) + own * mass)) *rigid = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -254,8 +254,8 @@ static PetscBool IsInside(const ReducedWindow *window, PetscComplex lambda)
 {
   const PetscReal sigma = PetscAbsReal(creal(lambda)), omega = cimag(lambda);
 
-  if (omega < window->low * (1 - EDGE) || sigma > window->growth) return PETSC_FALSE;
-  return omega <= window->high * (1 + EDGE) ? PETSC_TRUE : PETSC_FALSE;
+  if (omega < window->low * (1 - WINDOW_EDGE) || sigma > window->growth) return PETSC_FALSE;
+  return omega <= window->high * (1 + WINDOW_EDGE) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Rigid modes of a damped system, listed first: a double zero gives twice the same vector */
@@ -330,7 +330,7 @@ PetscErrorCode PencilEigen(const DensePencil *pencil, const ReducedWindow *windo
 
   PetscFunctionBeginUser;
   PetscCall(WorkCreate(pencil, ShiftChoose(pencil, window), &w));
-  PetscCall(Solve(&w, pencil->symmetric));
+  PetscCall(WorkSolve(&w, pencil->symmetric));
   PetscCall(PetscMalloc2(w.N, &list, w.N, &lambda));
   PetscCall(List(&w, window, list, lambda, &n, &n_rigid));
   PetscCall(ReducedModesCreate(n, w.n, modes));

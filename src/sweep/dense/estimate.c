@@ -17,22 +17,22 @@
 
       d kappa = -s^T Q_zz^-1 r / (y^T M x),    d lambda = -d kappa / (lambda_new + lambda).
 
-   Where eigenvalues are closer than NEAR times these changes (pairs close to defective, double modes), they are treated
+   Where eigenvalues are closer than NEAR_CHANGES times these changes (pairs close to defective, double modes), they are treated
    together (cluster.c), as the first order means nothing there: y^T D x tends to zero. A rigid mode has x^T K x = 0,
    and its error is the frequency that would turn it into, sqrt(|d kappa|).
 
-   To each estimate a floor is added: what rounding does in the dense problem, ROUNDING eps sqrt(sum |K_ii| |x_i|^2 sum
+   To each estimate a floor is added: what rounding does in the dense problem, SOLVER_ROUNDING eps sqrt(sum |K_ii| |x_i|^2 sum
    |K_ii| |y_i|^2) in kappa, and in the matrices of the mesh, eps sqrt(x^H E x y^H E y) with E = sum |c_t| V' |diag A_t|
    V, the energy without cancellation between neighbouring nodes.
 */
 #include "estimate.h"
 #include "dense.h"
 
-#define NEAR     20   /* eigenvalues closer than this many changes belong together */
-#define FARTHEST 1e-2 /* but not if they are farther apart than this, relative: the basis is merely poor there */
-#define ROUNDING 8    /* errors of a dense solver beside rounding in its matrix */
-#define CLOSE    1e-4 /* modes closer than this, relative, may meet */
-#define EQUAL    1e-9 /* closer than this, relative, they always do */
+#define NEAR_CHANGES    20   /* eigenvalues closer than this many changes belong together */
+#define FARTHEST        1e-2 /* but not if they are farther apart than this, relative: the basis is merely poor there */
+#define SOLVER_ROUNDING 8    /* errors of a dense solver beside rounding in its matrix */
+#define MEETING         1e-4 /* modes closer than this, relative, may meet */
+#define EQUAL           1e-9 /* closer than this, relative, they always do */
 
 PetscComplex EstimateValue(const Estimate *e, PetscComplex lambda)
 {
@@ -142,13 +142,13 @@ static PetscErrorCode CoupleMode(const Estimate *e, PetscInt i, PetscComplex *f)
   PetscFunctionReturn(0);
 }
 
-/* Modes within CLOSE of mode i, itself included, at least 2: so many can meet at a defective point */
+/* Modes within MEETING of mode i, itself included, at least 2: so many can meet at a defective point */
 static PetscInt ModesMeeting(const ReducedModes *modes, PetscInt i)
 {
   PetscInt m = 0;
 
   for (PetscInt j = 0; j < modes->n; j++)
-    if (cabs(modes->lambda[j] - modes->lambda[i]) <= CLOSE * cabs(modes->lambda[i])) m++;
+    if (cabs(modes->lambda[j] - modes->lambda[i]) <= MEETING * cabs(modes->lambda[i])) m++;
   return PetscMax(2, m);
 }
 
@@ -191,7 +191,7 @@ static PetscBool AreNear(const Estimate *e, const PetscReal change[], PetscInt i
 {
   const ReducedModes *modes = e->modes;
   const PetscComplex  a = EstimateValue(e, modes->lambda[i]), b = EstimateValue(e, modes->lambda[j]);
-  const PetscReal     reach = PetscMin(NEAR * PetscMax(change[i], change[j]), FARTHEST * cabs(a));
+  const PetscReal     reach = PetscMin(NEAR_CHANGES * PetscMax(change[i], change[j]), FARTHEST * cabs(a));
 
   if (modes->rigid[i] || modes->rigid[j]) return PETSC_FALSE;
   return cabs(a - b) <= PetscMax(reach, EQUAL * cabs(a)) ? PETSC_TRUE : PETSC_FALSE;
@@ -214,7 +214,7 @@ static void Group(const Estimate *e, const PetscReal change[], PetscInt cluster[
 }
 
 /* |change| of lambda when mu becomes another */
-static PetscReal LambdaDistance(const Estimate *e, PetscComplex lambda, PetscComplex mu)
+static PetscReal EstimateDistance(const Estimate *e, PetscComplex lambda, PetscComplex mu)
 {
   const PetscComplex now = e->damped ? mu : csqrt(-mu), d = mu - EstimateValue(e, lambda);
   const PetscReal    sum = PetscMax(cabs(now + lambda), cabs(now - lambda)); /* of the two roots the nearer */
@@ -236,7 +236,7 @@ static PetscErrorCode Together(const Estimate *e, PetscInt first, const PetscInt
     if (cluster[i] == first) list[m++] = i;
   if (m > 1) PetscCall(EstimateCluster(e, m, list, mu, &singular));
   for (PetscInt a = 0; a < m && m > 1 && !singular; a++)
-    modes->error[list[a]] = LambdaDistance(e, modes->lambda[list[a]], mu[a]);
+    modes->error[list[a]] = EstimateDistance(e, modes->lambda[list[a]], mu[a]);
   PetscCall(PetscFree2(list, mu));
   PetscFunctionReturn(0);
 }
@@ -256,7 +256,7 @@ static PetscErrorCode AddFloor(const Estimate *e, const Reduced *reduced, const 
   for (PetscInt i = 0; i < modes->n; i++) {
     const PetscComplex *x = modes->x + i * n, *y = modes->y + i * n;
     const PetscReal     mesh  = RoundingProduct(n, E, x, y, work);
-    const PetscReal     noise = ROUNDING * PencilNoise(&pencil, x, y) + mesh;
+    const PetscReal     noise = SOLVER_ROUNDING * PencilNoise(&pencil, x, y) + mesh;
 
     modes->noise[i] = LambdaChange(modes, i, KappaChange(modes, i, noise));
     modes->error[i] += modes->noise[i];

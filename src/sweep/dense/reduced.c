@@ -14,15 +14,19 @@
 #include "eigen.h"
 #include "dense.h"
 
-#define BAR      3     /* widths of the error bar */
-#define TINY     1e-9  /* growth below this, relative to |lambda|, is rounding */
-#define PAIR     1e-7  /* relative difference of equal frequencies */
-#define CLUSTER  1e-9  /* relative difference of equal eigenvalues */
-#define SINGULAR 1e-10 /* least pivot, relative, of the products of a cluster that is not defective */
+#define BAR        3     /* widths of the error bar */
+#define PAIR       1e-7  /* relative difference of equal frequencies */
+#define SAME_VALUE 1e-9  /* relative difference of equal eigenvalues */
+#define DEFECTIVE  1e-10 /* least pivot, relative, of the products of a cluster that is not defective */
 
 PetscBool ReducedIsUnstable(PetscComplex lambda, PetscReal error)
 {
-  return creal(lambda) > PetscMax(BAR * error, TINY * cabs(lambda)) ? PETSC_TRUE : PETSC_FALSE;
+  return creal(lambda) > PetscMax(BAR * error, REDUCED_TINY * cabs(lambda)) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscBool ReducedModeIsUnstable(const ReducedModes *modes, PetscInt i)
+{
+  return ReducedIsUnstable(modes->lambda[i], modes->error[i]);
 }
 
 PetscErrorCode ReducedModesCreate(PetscInt n, PetscInt size, ReducedModes *modes)
@@ -147,7 +151,7 @@ static void SortRange(const ReducedModes *m, PetscInt first, PetscInt last, Pets
 }
 
 /* Sorts by frequency, equal ones by growth */
-static PetscErrorCode Sort(ReducedModes *modes)
+static PetscErrorCode ModesSort(ReducedModes *modes)
 {
   const PetscInt n = modes->n, size = modes->size;
   ReducedModes   old;
@@ -196,12 +200,13 @@ static PetscErrorCode FactorProducts(PetscInt m, PetscComplex G[], PetscBLASInt 
   PetscCall(ComplexFactor(m, G, pivot, defective));
   for (PetscInt i = 0; i < m * m; i++) largest = PetscMax(largest, cabs(G[i]));
   for (PetscInt i = 0; i < m * m; i += m + 1) least = PetscMin(least, cabs(G[i]));
-  if (!(least > SINGULAR * largest)) *defective = PETSC_TRUE;
+  if (!(least > DEFECTIVE * largest)) *defective = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
 /* Left vectors of the cluster list[m] := G^-1 y, G_ij = y_i^T D x_j, unless that is defective; Dx [modes][n] */
-static PetscErrorCode Biorthogonalise(PetscInt m, const PetscInt list[], const PetscComplex Dx[], ReducedModes *modes)
+static PetscErrorCode ClusterBiorthogonalise(PetscInt m, const PetscInt list[], const PetscComplex Dx[],
+                                             ReducedModes *modes)
 {
   const PetscInt n = modes->size;
   PetscComplex  *G, *Y;
@@ -227,7 +232,7 @@ static PetscErrorCode Biorthogonalise(PetscInt m, const PetscInt list[], const P
 }
 
 /* Treats all clusters; members need not be neighbours in the order, since both members of a pair have one frequency */
-static PetscErrorCode Clusters(const PetscComplex Dx[], ReducedModes *modes)
+static PetscErrorCode ClustersTreat(const PetscComplex Dx[], ReducedModes *modes)
 {
   PetscInt  *list, m;
   PetscBool *done;
@@ -240,18 +245,18 @@ static PetscErrorCode Clusters(const PetscComplex Dx[], ReducedModes *modes)
     for (PetscInt j = first + 1; j < modes->n; j++) {
       const PetscReal distance = cabs(modes->lambda[j] - modes->lambda[list[m - 1]]);
 
-      if (done[j] || distance > CLUSTER * cabs(modes->lambda[j])) continue;
+      if (done[j] || distance > SAME_VALUE * cabs(modes->lambda[j])) continue;
       list[m++] = j;
       done[j]   = PETSC_TRUE;
     }
-    if (m > 1) PetscCall(Biorthogonalise(m, list, Dx, modes));
+    if (m > 1) PetscCall(ClusterBiorthogonalise(m, list, Dx, modes));
   }
   PetscCall(PetscFree2(list, done));
   PetscFunctionReturn(0);
 }
 
 /* Scales all vectors X [m][n] to X^H Ms X = 1 */
-static PetscErrorCode Normalise(PetscInt n, PetscInt m, const PetscReal Ms[], PetscComplex X[])
+static PetscErrorCode VectorsNormalise(PetscInt n, PetscInt m, const PetscReal Ms[], PetscComplex X[])
 {
   PetscComplex *MX;
 
@@ -270,23 +275,23 @@ static PetscErrorCode Normalise(PetscInt n, PetscInt m, const PetscReal Ms[], Pe
   PetscFunctionReturn(0);
 }
 
-/* Clusters, lengths and products */
-static PetscErrorCode Finish(const DensePencil *pencil, const PetscReal Ms[], ReducedModes *modes)
+/* ClustersTreat, lengths and products */
+static PetscErrorCode ModesFinish(const DensePencil *pencil, const PetscReal Ms[], ReducedModes *modes)
 {
   const PetscInt n = modes->size, m = modes->n;
   PetscComplex  *Mx, *Cx            = NULL, *Dx;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(m * n, &Mx, m * n, &Dx));
-  PetscCall(Normalise(n, m, Ms, modes->x));
+  PetscCall(VectorsNormalise(n, m, Ms, modes->x));
   PetscCall(DenseTimes(n, n, pencil->M, n, PETSC_FALSE, m, modes->x, Mx));
   if (pencil->C) {
     PetscCall(PetscMalloc1(m * n, &Cx));
     PetscCall(DenseTimes(n, n, pencil->C, n, PETSC_FALSE, m, modes->x, Cx));
   }
   for (PetscInt i = 0; i < m; i++) ApplyD(modes, i, Mx, Cx, Dx + i * n);
-  PetscCall(Clusters(Dx, modes));
-  PetscCall(Normalise(n, m, Ms, modes->y));
+  PetscCall(ClustersTreat(Dx, modes));
+  PetscCall(VectorsNormalise(n, m, Ms, modes->y));
   for (PetscInt i = 0; i < m; i++) modes->product[i] = DenseDot(n, modes->y + i * n, Dx + i * n);
   PetscCall(PetscFree(Cx));
   PetscCall(PetscFree2(Mx, Dx));
@@ -309,8 +314,8 @@ PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const R
   PetscCall(SumSymmetric(reduced, p, Ms, &pencil.symmetric));
   pencil.C = damped ? C : NULL;
   PetscCall(PencilEigen(&pencil, window, modes));
-  PetscCall(Sort(modes));
-  PetscCall(Finish(&pencil, Ms, modes));
+  PetscCall(ModesSort(modes));
+  PetscCall(ModesFinish(&pencil, Ms, modes));
   if (!damped) PetscCall(RoundingMarkRigid(reduced, p, window, modes));
   PetscCall(PetscFree4(pencil.K, C, pencil.M, Ms));
   PetscFunctionReturn(0);

@@ -48,8 +48,10 @@ PetscErrorCode ReducedModesCopy(const ReducedModes *from, ReducedModes *to);
 PetscErrorCode ReducedModesSelect(const ReducedModes *from, PetscInt n, const PetscInt list[], ReducedModes *to);
 PetscErrorCode ReducedModesDestroy(ReducedModes *modes);
 
-/* Whether growth exceeds three times the error of its eigenvalue, and rounding, 1e-9 of it */
+/* Whether sigma exceeds three times the error of its eigenvalue, and rounding, REDUCED_TINY |lambda|; the same of mode i */
+#define REDUCED_TINY 1e-9
 PetscBool ReducedIsUnstable(PetscComplex lambda, PetscReal error);
+PetscBool ReducedModeIsUnstable(const ReducedModes *modes, PetscInt i);
 
 /* K(p) (or C, M) on the leading n x n block, array [n * n]; any_nonzero (may be NULL) = whether a coefficient is not
    zero */

@@ -28,17 +28,12 @@ PetscComplex FrameDot(PetscInt n, const PetscComplex a[], const PetscComplex b[]
   return sum;
 }
 
-PetscBool ModeIsUnstable(const ReducedModes *modes, PetscInt i)
-{
-  return ReducedIsUnstable(modes->lambda[i], modes->error[i]);
-}
-
-PetscComplex FrameEigenvalue(const ModeFrame *frame, PetscComplex lambda)
+PetscComplex ModeFrameEigenvalue(const ModeFrame *frame, PetscComplex lambda)
 {
   return frame->damped ? lambda : -lambda * lambda;
 }
 
-PetscComplex FrameLambda(const ModeFrame *frame, PetscComplex s)
+PetscComplex ModeFrameLambda(const ModeFrame *frame, PetscComplex s)
 {
   PetscComplex lambda = frame->damped ? s : csqrt(-s);
 
@@ -59,8 +54,8 @@ static PetscErrorCode RealTimes(PetscInt size, const PetscReal A[], PetscBool tr
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrameApply(const ModeFrame *f, FrameMatrix matrix, PetscBool transposed, const PetscComplex x[],
-                          PetscComplex y[])
+PetscErrorCode ModeFrameApply(const ModeFrame *f, ModeFrameMatrix matrix, PetscBool transposed, const PetscComplex x[],
+                              PetscComplex y[])
 {
   const PetscInt n = f->size;
 
@@ -78,7 +73,7 @@ PetscErrorCode FrameApply(const ModeFrame *f, FrameMatrix matrix, PetscBool tran
   PetscFunctionReturn(0);
 }
 
-PetscInt FramePartner(const ModeFrame *f, PetscInt i)
+PetscInt ModeFramePartner(const ModeFrame *f, PetscInt i)
 {
   const PetscComplex lambda = f->modes.lambda[i];
   PetscInt           best   = -1;
@@ -114,7 +109,7 @@ static void FrameCluster(ModeFrame *f)
 {
   for (PetscInt i = 0; i < f->modes.n; i++) f->cluster[i] = i;
   for (PetscInt i = 0; i < f->modes.n; i++) {
-    const PetscInt partner = FramePartner(f, i);
+    const PetscInt partner = ModeFramePartner(f, i);
 
     if (partner >= 0) ClusterJoin(f, i, partner);
     for (PetscInt j = i + 1; j < f->modes.n; j++)
@@ -145,7 +140,7 @@ static PetscErrorCode ClusterRefine(ModeFrame *f, PetscInt k, const PetscInt mem
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(k * f->N, &X, k * f->N, &Y));
-  PetscCall(PlaneRefine(f, k, member, X, Y));
+  PetscCall(ModePlaneRefine(f, k, member, X, Y));
   for (PetscInt a = 0; a < k; a++) {
     for (PetscInt r = 0; r < f->N; r++) {
       f->X[member[a] * f->N + r] = X[a * f->N + r];
@@ -164,7 +159,7 @@ static PetscErrorCode ClusterOrthonormalise(ModeFrame *f, PetscInt k, const Pets
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(k * f->N, &plane));
   for (PetscInt a = 0; a < k; a++) PetscCall(PetscArraycpy(plane + a * f->N, Z + member[a] * f->N, f->N));
-  PetscCall(PlaneOrthonormalise(f->N, k, plane));
+  PetscCall(ModePlaneOrthonormalise(f->N, k, plane));
   for (PetscInt a = 0; a < k; a++) PetscCall(PetscArraycpy(Z + member[a] * f->N, plane + a * f->N, f->N));
   PetscCall(PetscFree(plane));
   PetscFunctionReturn(0);
@@ -225,14 +220,14 @@ static PetscErrorCode ClusterBases(ModeFrame *f, PetscInt first)
     PetscCall(ClusterOrthonormalise(f, k, member, f->Y));
   }
   for (PetscInt a = 0; a < k; a++)
-    PetscCall(FrameApply(f, FRAME_B, PETSC_TRUE, f->Y + member[a] * f->N, f->W + member[a] * f->N));
+    PetscCall(ModeFrameApply(f, FRAME_B, PETSC_TRUE, f->Y + member[a] * f->N, f->W + member[a] * f->N));
   PetscCall(ClusterDualise(f, k, member));
   PetscCall(PetscFree(member));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrameCreate(const Reduced *reduced, const PetscReal p[], PetscReal value, PetscBool damped,
-                           PetscReal scale, PetscBool refine, const ReducedModes *modes, ModeFrame **frame)
+PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], PetscReal value, PetscBool damped,
+                               PetscReal scale, PetscBool refine, const ReducedModes *modes, ModeFrame **frame)
 {
   const PetscInt n = modes->n, size = reduced->n_used;
   ModeFrame     *f;
@@ -263,7 +258,7 @@ PetscErrorCode FrameCreate(const Reduced *reduced, const PetscReal p[], PetscRea
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrameDestroy(ModeFrame **frame)
+PetscErrorCode ModeFrameDestroy(ModeFrame **frame)
 {
   ModeFrame *f = *frame;
 
@@ -276,7 +271,7 @@ PetscErrorCode FrameDestroy(ModeFrame **frame)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrameProject(const ModeFrame *a, const ModeFrame *b, PetscComplex C[])
+PetscErrorCode ModeFrameProject(const ModeFrame *a, const ModeFrame *b, PetscComplex C[])
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < a->modes.n; i++)
@@ -284,7 +279,7 @@ PetscErrorCode FrameProject(const ModeFrame *a, const ModeFrame *b, PetscComplex
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FramePencil(const ModeFrame *a, const ModeFrame *b, PetscComplex H[], PetscComplex G[])
+PetscErrorCode ModeFramePencil(const ModeFrame *a, const ModeFrame *b, PetscComplex H[], PetscComplex G[])
 {
   const PetscInt n = a->modes.n, N = a->N;
   PetscComplex  *AX, *BX;
@@ -292,8 +287,8 @@ PetscErrorCode FramePencil(const ModeFrame *a, const ModeFrame *b, PetscComplex 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(N, &AX, N, &BX));
   for (PetscInt j = 0; j < n; j++) {
-    PetscCall(FrameApply(b, FRAME_A, PETSC_FALSE, a->X + j * N, AX));
-    PetscCall(FrameApply(b, FRAME_B, PETSC_FALSE, a->X + j * N, BX));
+    PetscCall(ModeFrameApply(b, FRAME_A, PETSC_FALSE, a->X + j * N, AX));
+    PetscCall(ModeFrameApply(b, FRAME_B, PETSC_FALSE, a->X + j * N, BX));
     for (PetscInt i = 0; i < n; i++) {
       H[i * n + j] = FrameDot(N, a->Y + i * N, AX);
       G[i * n + j] = FrameDot(N, a->Y + i * N, BX);

@@ -29,44 +29,45 @@ typedef struct {
   PetscReal           *p; /* [n_parameters] of the last solution */
   PetscReal            scale;
   PetscBool            damped, estimate; /* whether errors of the eigenvalues are estimated */
-} FrameSource;
+} ModeSource;
 
 /* source.c - the parameters and the solution at a value of the line */
-PetscErrorCode FrameSourceCreate(const Reduced *reduced, const ReducedWindow *window, const Line *line,
-                                 FrameSource *source);
-PetscErrorCode FrameSourceSolve(FrameSource *source, PetscReal value, ModeFrame **frame);
+PetscErrorCode ModeSourceCreate(const Reduced *reduced, const ReducedWindow *window, const Line *line,
+                                ModeSource *source);
+PetscErrorCode ModeSourceSolve(ModeSource *source, PetscReal value, ModeFrame **frame);
 /* The same from modes that are known already */
-PetscErrorCode FrameSourceTake(FrameSource *source, PetscReal value, const ReducedModes *modes, ModeFrame **frame);
-PetscErrorCode FrameSourceDestroy(FrameSource *source);
+PetscErrorCode ModeSourceTake(ModeSource *source, PetscReal value, const ReducedModes *modes, ModeFrame **frame);
+PetscErrorCode ModeSourceDestroy(ModeSource *source);
 
-typedef enum { FRAME_A, FRAME_B } FrameMatrix;
+typedef enum { FRAME_A, FRAME_B } ModeFrameMatrix;
 
 /* frame.c - p [n_parameters]; value = that of the line's parameter; refine = whether the modes are those of the pencil
    at p, so that planes may be refined */
-PetscErrorCode FrameCreate(const Reduced *reduced, const PetscReal p[], PetscReal value, PetscBool damped,
-                           PetscReal scale, PetscBool refine, const ReducedModes *modes, ModeFrame **frame);
-PetscErrorCode FrameApply(const ModeFrame *frame, FrameMatrix matrix, PetscBool transposed, const PetscComplex x[],
-                          PetscComplex y[]);
-PetscErrorCode FrameDestroy(ModeFrame **frame);
+PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], PetscReal value, PetscBool damped,
+                               PetscReal scale, PetscBool refine, const ReducedModes *modes, ModeFrame **frame);
+PetscErrorCode ModeFrameApply(const ModeFrame *frame, ModeFrameMatrix matrix, PetscBool transposed,
+                              const PetscComplex x[], PetscComplex y[]);
+PetscErrorCode ModeFrameDestroy(ModeFrame **frame);
 /* The other member of the pair lambda, -conj(lambda) of an undamped system in flutter, else -1 */
-PetscInt FramePartner(const ModeFrame *frame, PetscInt i);
+PetscInt ModeFramePartner(const ModeFrame *frame, PetscInt i);
 /* a^T b without conjugation */
 PetscComplex FrameDot(PetscInt n, const PetscComplex a[], const PetscComplex b[]);
 /* C_ij = W_i(a)^T X_j(b), [a->modes.n * b->modes.n], b fastest: coefficients of the modes of b in those of a */
-PetscErrorCode FrameProject(const ModeFrame *a, const ModeFrame *b, PetscComplex C[]);
+PetscErrorCode ModeFrameProject(const ModeFrame *a, const ModeFrame *b, PetscComplex C[]);
 /* S = (Y_i^T B(b) X_j)^-1 (Y_i^T A(b) X_j) on modes i, j of a: the pencil of another point b on the vectors of a; H =
    Y^T A X, G = Y^T B X, [a->modes.n^2], second index fastest */
-PetscErrorCode FramePencil(const ModeFrame *a, const ModeFrame *b, PetscComplex H[], PetscComplex G[]);
+PetscErrorCode ModeFramePencil(const ModeFrame *a, const ModeFrame *b, PetscComplex H[], PetscComplex G[]);
 /* s of the frame's standard form to lambda with omega >= 0, and back */
-PetscComplex FrameLambda(const ModeFrame *frame, PetscComplex s);
-PetscComplex FrameEigenvalue(const ModeFrame *frame, PetscComplex lambda);
+PetscComplex ModeFrameLambda(const ModeFrame *frame, PetscComplex s);
+PetscComplex ModeFrameEigenvalue(const ModeFrame *frame, PetscComplex lambda);
 
 /* plane.c - orthonormal basis of the k columns of X [k][N], pivoted; columns that depend on the others within
    1e-12 become zero */
-PetscErrorCode PlaneOrthonormalise(PetscInt N, PetscInt k, PetscComplex X[]);
+PetscErrorCode ModePlaneOrthonormalise(PetscInt N, PetscInt k, PetscComplex X[]);
 /* Undamped: real orthonormal bases of the right and left invariant planes of K x = kappa M x about the shift, from
    starting bases X, Y [k][size], by inverse iteration of the plane, which a defective pair does not disturb */
-PetscErrorCode PlaneIterate(const ModeFrame *frame, PetscReal shift, PetscInt k, PetscReal X[], PetscReal Y[]);
-/* Undamped: the plane of the modes member[k] as real bases X, Y [k][size], refined by PlaneIterate() if
+PetscErrorCode ModePlaneIterate(const ModeFrame *frame, PetscReal shift, PetscInt k, PetscReal X[], PetscReal Y[]);
+/* Undamped: the plane of the modes member[k] as real bases X, Y [k][size], refined by ModePlaneIterate() if
    frame->refine */
-PetscErrorCode PlaneRefine(const ModeFrame *frame, PetscInt k, const PetscInt member[], PetscReal X[], PetscReal Y[]);
+PetscErrorCode ModePlaneRefine(const ModeFrame *frame, PetscInt k, const PetscInt member[], PetscReal X[],
+                               PetscReal Y[]);

@@ -22,9 +22,9 @@
 */
 #include "match.h"
 
-#define NARROW 1e-12 /* |d| relative to kappa^2 below which a coalescence is not distinguished from a crossing */
-#define STEPS  32
-#define MIXED  0.1 /* |t^2 c| over |delta / 2|^2 from which vectors of crossing modes mix */
+#define NARROW       1e-12 /* |d| relative to kappa^2 below which a coalescence is not distinguished from a crossing */
+#define GROWTH_STEPS 32
+#define MIXED        0.1 /* |t^2 c| over |delta / 2|^2 from which vectors of crossing modes mix */
 
 /* S_b of modes i, k [2 * 2], row by row */
 static PetscBool PairMatrix(const PetscComplex H[], const PetscComplex G[], PetscInt n, PetscInt i, PetscInt k,
@@ -72,8 +72,9 @@ static PetscBool PredictDamped(const PetscComplex s[], const PetscComplex S[], P
   PetscReal       largest = limit;
 
   *t = -1;
-  for (PetscInt step = 0; step <= STEPS; step++) {
-    const PetscReal at     = step ? (PetscReal)step / STEPS : (delta_a != delta_b ? delta_a / (delta_a - delta_b) : 0);
+  for (PetscInt step = 0; step <= GROWTH_STEPS; step++) {
+    const PetscReal at =
+      step ? (PetscReal)step / GROWTH_STEPS : (delta_a != delta_b ? delta_a / (delta_a - delta_b) : 0);
     const PetscReal growth = at > 0 && at <= 1 ? PairGrowth(s, S, at) : PETSC_MIN_REAL;
 
     if (growth > largest) largest = growth, *t = at;
@@ -105,7 +106,7 @@ static PetscBool ModeTakesPart(const ModeFrame *a, const PetscInt other[], Petsc
 
   if (other[i] < 0 || a->modes.rigid[i] || cimag(a->modes.lambda[i]) == 0) return PETSC_FALSE;
   for (PetscInt k = 0; k < a->modes.n; k++) together += a->cluster[k] == a->cluster[i];
-  return together == 1 && !ModeIsUnstable(&a->modes, i) ? PETSC_TRUE : PETSC_FALSE;
+  return together == 1 && !ReducedModeIsUnstable(&a->modes, i) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Whether the match exchanges the frequencies of modes i and k */
@@ -121,11 +122,11 @@ static PetscBool PredictPair(const ModeFrame *a, const ModeFrame *b, const Petsc
                              const PetscComplex S[], PetscReal resolution, PetscReal *t)
 {
   const ReducedModes *modes   = &a->modes;
-  const PetscComplex  s[2]    = {FrameEigenvalue(a, modes->lambda[i]), FrameEigenvalue(a, modes->lambda[k])};
+  const PetscComplex  s[2]    = {ModeFrameEigenvalue(a, modes->lambda[i]), ModeFrameEigenvalue(a, modes->lambda[k])};
   const PetscComplex  delta_a = s[0] - s[1], delta_b = S[0] - S[3], coupling = S[1] * S[2];
   const PetscReal     limit = PetscMax(1e-9 * cabs(s[0]), 3 * (modes->error[i] + modes->error[k]));
 
-  if (!ModeIsUnstable(&b->modes, other[i]) && !ModeIsUnstable(&b->modes, other[k])) {
+  if (!ReducedModeIsUnstable(&b->modes, other[i]) && !ReducedModeIsUnstable(&b->modes, other[k])) {
     if (a->damped && PredictDamped(s, S, limit, t)) return PETSC_TRUE;
     if (!a->damped && PredictUndamped(creal(delta_a), creal(delta_b), creal(coupling), cabs(s[0]), t))
       return PETSC_TRUE;
@@ -143,7 +144,7 @@ static PetscErrorCode PredictFrom(const ModeFrame *a, const ModeFrame *b, const 
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n * n, &H, n * n, &G));
-  PetscCall(FramePencil(a, b, H, G));
+  PetscCall(ModeFramePencil(a, b, H, G));
   for (PetscInt i = 0; i < n && !*found; i++) {
     for (PetscInt k = i + 1; k < n && !*found && ModeTakesPart(a, other, i); k++) {
       if (ModeTakesPart(a, other, k) && PairMatrix(H, G, n, i, k, S))

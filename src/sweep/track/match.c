@@ -32,8 +32,8 @@ static PetscErrorCode StrengthFind(const ModeFrame *a, const ModeFrame *b, Match
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc5(na * nb, &C, na * nb, &D, na * nb, &sum, na, &size_a, nb, &size_b));
-  PetscCall(FrameProject(a, b, C));
-  PetscCall(FrameProject(b, a, D));
+  PetscCall(ModeFrameProject(a, b, C));
+  PetscCall(ModeFrameProject(b, a, D));
   for (PetscInt i = 0; i < na; i++) size_a[a->cluster[i]]++;
   for (PetscInt j = 0; j < nb; j++) size_b[b->cluster[j]]++;
   for (PetscInt i = 0; i < na; i++)
@@ -97,7 +97,7 @@ static PetscErrorCode ComponentsFind(const ModeFrame *a, const ModeFrame *b, Mat
 }
 
 /* Whether mode i of a, of which b has no partner, is outside the window there: first-order eigenvalue from the mean of
-   its cluster, diagonals of H and G [na * na] of FramePencil() */
+   its cluster, diagonals of H and G [na * na] of ModeFramePencil() */
 static PetscBool ModeHasLeft(const ModeFrame *a, PetscInt i, const ReducedWindow *window, const PetscComplex H[],
                              const PetscComplex G[])
 {
@@ -107,11 +107,11 @@ static PetscBool ModeHasLeft(const ModeFrame *a, PetscInt i, const ReducedWindow
 
   for (PetscInt k = 0; k < n; k++) {
     if (a->cluster[k] != a->cluster[i]) continue;
-    move += H[k * n + k] / G[k * n + k] - FrameEigenvalue(a, a->modes.lambda[k]);
+    move += H[k * n + k] / G[k * n + k] - ModeFrameEigenvalue(a, a->modes.lambda[k]);
     size += 1;
   }
   if (a->modes.rigid[i] && a->damped) move = 0;
-  lambda = FrameLambda(a, FrameEigenvalue(a, lambda) + move / size);
+  lambda = ModeFrameLambda(a, ModeFrameEigenvalue(a, lambda) + move / size);
   inside = PetscMin(cimag(lambda) - window->low, window->high - cimag(lambda));
   if (window->low <= 0) inside = window->high - cimag(lambda);
   inside = PetscMin(inside, window->growth - PetscAbsReal(creal(lambda)));
@@ -131,7 +131,7 @@ static PetscErrorCode LonelyCheck(const ModeFrame *a, const ModeFrame *b, const 
     if (!partners[component[i]]) need = PETSC_TRUE;
   if (!need) PetscFunctionReturn(0);
   PetscCall(PetscMalloc2(n * n, &H, n * n, &G));
-  PetscCall(FramePencil(a, b, H, G));
+  PetscCall(ModeFramePencil(a, b, H, G));
   for (PetscInt i = 0; i < n; i++)
     if (!partners[component[i]]) certain[component[i]] = window ? ModeHasLeft(a, i, window, H, G) : PETSC_TRUE;
   PetscCall(PetscFree2(H, G));

@@ -33,16 +33,16 @@ typedef struct {
 } Trial;
 
 typedef struct {
-  FrameSource source;
-  OnsetKind   kind;
-  Trial       end[2]; /* unstable, stable */
-  PetscReal   change; /* of g with |lambda| at the unstable end */
+  ModeSource source;
+  OnsetKind  kind;
+  Trial      end[2]; /* unstable, stable */
+  PetscReal  change; /* of g with |lambda| at the unstable end */
 } Onset;
 
 static PetscErrorCode TrialDestroy(Trial *trial)
 {
   PetscFunctionBeginUser;
-  PetscCall(FrameDestroy(&trial->frame));
+  PetscCall(ModeFrameDestroy(&trial->frame));
   PetscCall(PetscFree(trial->member));
   PetscFunctionReturn(0);
 }
@@ -59,7 +59,7 @@ static PetscErrorCode PlaneDiscriminant(Trial *trial)
   PetscCall(PetscBLASIntCast(N, &n));
   PetscCall(PetscBLASIntCast(k, &columns));
   PetscCall(PetscMalloc6(k * N, &X, k * N, &Y, k * N, &Z, k * k, &G, k * k, &S, k, &pivots));
-  PetscCall(PlaneRefine(f, k, trial->member, X, Y));
+  PetscCall(ModePlaneRefine(f, k, trial->member, X, Y));
   PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &n, &columns, &n, &one, f->M, &n, X, &n, &zero, Z, &n));
   PetscCallBLAS("BLASgemm", BLASgemm_("T", "N", &columns, &columns, &n, &one, Y, &n, Z, &n, &zero, G, &columns));
   PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &n, &columns, &n, &one, f->K, &n, X, &n, &zero, Z, &n));
@@ -119,8 +119,8 @@ static PetscErrorCode TrialIdentify(const Trial *reference, Trial *trial, PetscB
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc4(na * nb, &C, na * nb, &D, nb, &sum, nb, &taken));
   PetscCall(PetscMalloc1(k, &trial->member));
-  PetscCall(FrameProject(a, b, C));
-  PetscCall(FrameProject(b, a, D));
+  PetscCall(ModeFrameProject(a, b, C));
+  PetscCall(ModeFrameProject(b, a, D));
   for (PetscInt r = 0; r < k; r++)
     for (PetscInt j = 0; j < nb; j++)
       sum[b->cluster[j]] += C[reference->member[r] * nb + j] * D[j * na + reference->member[r]];
@@ -145,7 +145,7 @@ static PetscErrorCode OnsetTry(Onset *onset, PetscReal value, Trial *trial, Pets
   const PetscReal to_1 = onset->end[1].frame ? PetscAbsReal(value - onset->end[1].frame->value) : PETSC_MAX_REAL;
 
   PetscFunctionBeginUser;
-  PetscCall(FrameSourceSolve(&onset->source, value, &trial->frame));
+  PetscCall(ModeSourceSolve(&onset->source, value, &trial->frame));
   PetscCall(TrialIdentify(&onset->end[to_1 < to_0 ? 1 : 0], trial, found));
   if (*found) PetscCall(TrialValue(onset->kind, trial));
   PetscFunctionReturn(0);
@@ -159,7 +159,7 @@ static PetscErrorCode OnsetBegin(Onset *onset, PetscReal value, PetscComplex lam
   PetscInt   mode = -1;
 
   PetscFunctionBeginUser;
-  PetscCall(FrameSourceSolve(&onset->source, value, &trial->frame));
+  PetscCall(ModeSourceSolve(&onset->source, value, &trial->frame));
   f = trial->frame;
   PetscCall(PetscMalloc1(f->modes.n, &trial->member));
   for (PetscInt i = 0; i < f->modes.n; i++)
@@ -324,7 +324,7 @@ PetscErrorCode OnsetFind(const Reduced *reduced, const ReducedWindow *window, co
   PetscBool found;
 
   PetscFunctionBeginUser;
-  PetscCall(FrameSourceCreate(reduced, window, line, &onset.source));
+  PetscCall(ModeSourceCreate(reduced, window, line, &onset.source));
   onset.kind = divergence ? ONSET_STIFFNESS : (onset.source.damped ? ONSET_GROWTH : ONSET_PAIR);
   PetscCall(OnsetBracket(&onset, event, &critical, &found));
   event->found = found;
@@ -334,6 +334,6 @@ PetscErrorCode OnsetFind(const Reduced *reduced, const ReducedWindow *window, co
   }
   PetscCall(TrialDestroy(&onset.end[0]));
   PetscCall(TrialDestroy(&onset.end[1]));
-  PetscCall(FrameSourceDestroy(&onset.source));
+  PetscCall(ModeSourceDestroy(&onset.source));
   PetscFunctionReturn(0);
 }

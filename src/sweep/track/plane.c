@@ -33,7 +33,7 @@ static void ColumnsSwap(PetscInt N, PetscComplex a[], PetscComplex b[])
   }
 }
 
-PetscErrorCode PlaneOrthonormalise(PetscInt N, PetscInt k, PetscComplex X[])
+PetscErrorCode ModePlaneOrthonormalise(PetscInt N, PetscInt k, PetscComplex X[])
 {
   PetscReal largest = 0;
 
@@ -74,7 +74,7 @@ static PetscErrorCode PlaneReal(PetscInt N, PetscInt k, const PetscInt member[],
       Z[(2 * a + 1) * N + r] = cimag(vectors[member[a] * N + r]);
     }
   }
-  PetscCall(PlaneOrthonormalise(N, 2 * k, Z));
+  PetscCall(ModePlaneOrthonormalise(N, 2 * k, Z));
   for (PetscInt a = 0; a < k; a++) {
     for (PetscInt r = 0; r < N; r++)
       X[a * N + r] = ColumnNorm(N, Z + a * N) > 0 ? creal(Z[a * N + r]) : sin(1.0 + (a + 1.3) * (r + 1.7) * (r + 0.9));
@@ -116,7 +116,7 @@ static PetscErrorCode PlaneStep(const ModeFrame *f, const PetscReal LU[], const 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PlaneIterate(const ModeFrame *f, PetscReal shift, PetscInt k, PetscReal X[], PetscReal Y[])
+PetscErrorCode ModePlaneIterate(const ModeFrame *f, PetscReal shift, PetscInt k, PetscReal X[], PetscReal Y[])
 {
   const PetscInt size = f->size;
   PetscReal     *LU, *work, change_x = 1, change_y = 1;
@@ -145,9 +145,9 @@ static PetscBool PlaneShift(const ModeFrame *f, PetscInt k, const PetscInt membe
 {
   PetscReal mean = 0, distance = PETSC_MAX_REAL, spread = 0, offset;
 
-  for (PetscInt a = 0; a < k; a++) mean += creal(FrameEigenvalue(f, f->modes.lambda[member[a]])) / k;
+  for (PetscInt a = 0; a < k; a++) mean += creal(ModeFrameEigenvalue(f, f->modes.lambda[member[a]])) / k;
   for (PetscInt i = 0; i < f->modes.n; i++) {
-    const PetscReal from_mean = cabs(FrameEigenvalue(f, f->modes.lambda[i]) - mean);
+    const PetscReal from_mean = cabs(ModeFrameEigenvalue(f, f->modes.lambda[i]) - mean);
     PetscBool       inside    = PETSC_FALSE;
 
     for (PetscInt a = 0; a < k; a++) inside = (PetscBool)(inside || member[a] == i);
@@ -162,13 +162,13 @@ static PetscBool PlaneShift(const ModeFrame *f, PetscInt k, const PetscInt membe
   return spread + offset < 0.3 * distance ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscErrorCode PlaneRefine(const ModeFrame *f, PetscInt k, const PetscInt member[], PetscReal X[], PetscReal Y[])
+PetscErrorCode ModePlaneRefine(const ModeFrame *f, PetscInt k, const PetscInt member[], PetscReal X[], PetscReal Y[])
 {
   PetscReal shift;
 
   PetscFunctionBeginUser;
   PetscCall(PlaneReal(f->size, k, member, f->modes.x, X));
   PetscCall(PlaneReal(f->size, k, member, f->modes.y, Y));
-  if (f->refine && PlaneShift(f, k, member, &shift)) PetscCall(PlaneIterate(f, shift, k, X, Y));
+  if (f->refine && PlaneShift(f, k, member, &shift)) PetscCall(ModePlaneIterate(f, shift, k, X, Y));
   PetscFunctionReturn(0);
 }

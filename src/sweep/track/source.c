@@ -4,14 +4,14 @@
 */
 #include "frame.h"
 
-static void SourceSetValue(FrameSource *source, PetscReal value)
+static void SourceSetValue(ModeSource *source, PetscReal value)
 {
   for (PetscInt i = 0; i < source->reduced->n_parameters; i++) source->p[i] = source->line->base[i];
   source->p[source->line->parameter] = value;
 }
 
-PetscErrorCode FrameSourceCreate(const Reduced *reduced, const ReducedWindow *window, const Line *line,
-                                 FrameSource *source)
+PetscErrorCode ModeSourceCreate(const Reduced *reduced, const ReducedWindow *window, const Line *line,
+                                ModeSource *source)
 {
   const PetscReal first = line->value[0], last = line->value[line->n - 1];
   const PetscReal value[3] = {first, last, first + 0.5 * (last - first)};
@@ -38,15 +38,16 @@ PetscErrorCode FrameSourceCreate(const Reduced *reduced, const ReducedWindow *wi
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrameSourceTake(FrameSource *source, PetscReal value, const ReducedModes *modes, ModeFrame **frame)
+PetscErrorCode ModeSourceTake(ModeSource *source, PetscReal value, const ReducedModes *modes, ModeFrame **frame)
 {
   PetscFunctionBeginUser;
   SourceSetValue(source, value);
-  PetscCall(FrameCreate(source->reduced, source->p, value, source->damped, source->scale, PETSC_TRUE, modes, frame));
+  PetscCall(
+    ModeFrameCreate(source->reduced, source->p, value, source->damped, source->scale, PETSC_TRUE, modes, frame));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrameSourceSolve(FrameSource *source, PetscReal value, ModeFrame **frame)
+PetscErrorCode ModeSourceSolve(ModeSource *source, PetscReal value, ModeFrame **frame)
 {
   ReducedModes modes = {0};
 
@@ -54,12 +55,12 @@ PetscErrorCode FrameSourceSolve(FrameSource *source, PetscReal value, ModeFrame 
   SourceSetValue(source, value);
   PetscCall(ReducedSolve(source->reduced, source->p, source->window, &modes));
   if (source->estimate) PetscCall(ReducedEstimate(source->reduced, source->p, &modes));
-  PetscCall(FrameSourceTake(source, value, &modes, frame));
+  PetscCall(ModeSourceTake(source, value, &modes, frame));
   PetscCall(ReducedModesDestroy(&modes));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrameSourceDestroy(FrameSource *source)
+PetscErrorCode ModeSourceDestroy(ModeSource *source)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(source->p));

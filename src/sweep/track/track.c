@@ -15,10 +15,10 @@
 #define UNIQUE 0.5 /* strength of a match across a jump */
 
 typedef struct {
-  FrameSource source;
-  BranchList  branches;
-  EventList  *events;
-  PetscInt    solved; /* in the present interval of the line */
+  ModeSource source;
+  BranchList branches;
+  EventList *events;
+  PetscInt   solved; /* in the present interval of the line */
 } Tracker;
 
 PetscErrorCode EventListAdd(EventList *events, const Event *event)
@@ -45,7 +45,7 @@ PetscErrorCode EventListDestroy(EventList *events)
 static PetscInt EventPartner(const ModeFrame *frame, PetscInt i)
 {
   const PetscComplex lambda  = frame->modes.lambda[i];
-  PetscInt           partner = FramePartner(frame, i);
+  PetscInt           partner = ModeFramePartner(frame, i);
   PetscReal          nearest = 0.1 * cabs(lambda);
 
   for (PetscInt k = 0; k < frame->modes.n && frame->damped; k++) {
@@ -59,11 +59,12 @@ static PetscInt EventPartner(const ModeFrame *frame, PetscInt i)
 /* Event of mode i of a, j of b, of which one is unstable */
 static PetscErrorCode EventMake(const ModeFrame *a, PetscInt i, const ModeFrame *b, PetscInt j, EventList *events)
 {
-  const PetscBool  at_a = ModeIsUnstable(&a->modes, i), descending = a->value > b->value ? PETSC_TRUE : PETSC_FALSE;
-  const ModeFrame *unstable = at_a ? a : b;
-  const PetscInt   mode     = at_a ? i : j;
-  const PetscBool  begins   = at_a == descending ? PETSC_TRUE : PETSC_FALSE;
-  Event            event    = {0};
+  const PetscBool at_a       = ReducedModeIsUnstable(&a->modes, i),
+                  descending = a->value > b->value ? PETSC_TRUE : PETSC_FALSE;
+  const ModeFrame *unstable  = at_a ? a : b;
+  const PetscInt   mode      = at_a ? i : j;
+  const PetscBool  begins    = at_a == descending ? PETSC_TRUE : PETSC_FALSE;
+  Event            event     = {0};
 
   PetscFunctionBeginUser;
   event.lambda    = unstable->modes.lambda[mode];
@@ -89,7 +90,7 @@ static PetscErrorCode TrackerAdvance(Tracker *tracker, const ModeFrame *a, ModeF
   for (PetscInt j = 0; j < b->modes.n; j++) {
     const PetscInt i = match->from[j];
 
-    if (i >= 0 && ModeIsUnstable(&a->modes, i) != ModeIsUnstable(&b->modes, j))
+    if (i >= 0 && ReducedModeIsUnstable(&a->modes, i) != ReducedModeIsUnstable(&b->modes, j))
       PetscCall(EventMake(a, i, b, j, tracker->events));
   }
   PetscFunctionReturn(0);
@@ -128,10 +129,10 @@ static PetscErrorCode TrackerStep(Tracker *tracker, const ModeFrame *a, ModeFram
   if (depth < DEPTH && tracker->solved < BUDGET) PetscCall(TrackerDivides(a, b, depth, &match, &value, &divides));
   if (divides) {
     tracker->solved++;
-    PetscCall(FrameSourceSolve(&tracker->source, value, &middle));
+    PetscCall(ModeSourceSolve(&tracker->source, value, &middle));
     PetscCall(TrackerStep(tracker, a, middle, depth + 1));
     PetscCall(TrackerStep(tracker, middle, b, depth + 1));
-    PetscCall(FrameDestroy(&middle));
+    PetscCall(ModeFrameDestroy(&middle));
   } else {
     PetscCall(TrackerAdvance(tracker, a, b, &match));
   }
@@ -156,23 +157,23 @@ PetscErrorCode TrackLine(const Reduced *reduced, const ReducedWindow *window, co
 
   PetscFunctionBeginUser;
   if (!line->n) PetscFunctionReturn(0);
-  PetscCall(FrameSourceCreate(reduced, window, line, &tracker.source));
+  PetscCall(ModeSourceCreate(reduced, window, line, &tracker.source));
   tracker.source.estimate = HaveErrors(modes, line->n);
   for (PetscInt k = 0; k < line->n; k++) {
-    PetscCall(FrameSourceTake(&tracker.source, line->value[k], &modes[k], &next));
+    PetscCall(ModeSourceTake(&tracker.source, line->value[k], &modes[k], &next));
     tracker.solved = 0;
     if (k == 0)
       PetscCall(BranchListBegin(&tracker.branches, next));
     else
       PetscCall(TrackerStep(&tracker, frame, next, 0));
     PetscCall(PetscArraycpy(branch[k], next->branch, modes[k].n));
-    PetscCall(FrameDestroy(&frame));
+    PetscCall(ModeFrameDestroy(&frame));
     frame = next;
   }
-  PetscCall(FrameDestroy(&frame));
+  PetscCall(ModeFrameDestroy(&frame));
   *n_branches += tracker.branches.n;
   PetscCall(BranchListDestroy(&tracker.branches));
-  PetscCall(FrameSourceDestroy(&tracker.source));
+  PetscCall(ModeSourceDestroy(&tracker.source));
   PetscFunctionReturn(0);
 }
 
@@ -197,8 +198,8 @@ static PetscErrorCode PointsMatch(const Reduced *reduced, const PetscReal p[], c
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(a->n, &omega));
   PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, 0, NULL, &damped));
-  PetscCall(FrameCreate(reduced, p, value[0], damped, scale, PETSC_FALSE, a, &frame[0]));
-  PetscCall(FrameCreate(reduced, p, value[1], damped, scale, PETSC_FALSE, b, &frame[1]));
+  PetscCall(ModeFrameCreate(reduced, p, value[0], damped, scale, PETSC_FALSE, a, &frame[0]));
+  PetscCall(ModeFrameCreate(reduced, p, value[1], damped, scale, PETSC_FALSE, b, &frame[1]));
   PetscCall(MatchCreate(frame[0], frame[1], NULL, match));
   for (PetscInt i = 0; i < a->n; i++) omega[i] = cimag(a->lambda[i]);
   PetscCall(MatchAssign(frame[0], frame[1], match->strength, omega, match));
@@ -218,8 +219,8 @@ PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const Red
   PetscCall(PetscArraycpy(from, match.from, b->n));
   *certain = match.all_certain;
   PetscCall(MatchDestroy(&match));
-  PetscCall(FrameDestroy(&frame[0]));
-  PetscCall(FrameDestroy(&frame[1]));
+  PetscCall(ModeFrameDestroy(&frame[0]));
+  PetscCall(ModeFrameDestroy(&frame[1]));
   PetscFunctionReturn(0);
 }
 
@@ -263,14 +264,14 @@ static PetscErrorCode JumpsFind(const ModeFrame *a, const ModeFrame *b, const Ma
   for (PetscInt j = 0; j < b->modes.n; j++) {
     const PetscInt i = match->from[j];
 
-    if (!ModeIsUnstable(&b->modes, j)) continue;
-    if (i >= 0 && ModeIsUnstable(&a->modes, i))
+    if (!ReducedModeIsUnstable(&b->modes, j)) continue;
+    if (i >= 0 && ReducedModeIsUnstable(&a->modes, i))
       goes_on[i] = PETSC_TRUE;
     else
       PetscCall(JumpMake(b, j, a, events));
   }
   for (PetscInt i = 0; i < a->modes.n; i++)
-    if (ModeIsUnstable(&a->modes, i) && !goes_on[i]) PetscCall(JumpMake(a, i, b, events));
+    if (ReducedModeIsUnstable(&a->modes, i) && !goes_on[i]) PetscCall(JumpMake(a, i, b, events));
   PetscCall(PetscFree(goes_on));
   PetscFunctionReturn(0);
 }
@@ -292,7 +293,7 @@ PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], PetscReal 
   PetscCall(PetscArraycpy(frame[1]->branch, branch_b, b->n));
   PetscCall(JumpsFind(frame[0], frame[1], &match, events));
   PetscCall(MatchDestroy(&match));
-  PetscCall(FrameDestroy(&frame[0]));
-  PetscCall(FrameDestroy(&frame[1]));
+  PetscCall(ModeFrameDestroy(&frame[0]));
+  PetscCall(ModeFrameDestroy(&frame[1]));
   PetscFunctionReturn(0);
 }

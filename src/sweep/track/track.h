@@ -55,8 +55,6 @@ PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], PetscReal 
 /* Appends to events; a list begins as {0} */
 PetscErrorCode EventListAdd(EventList *events, const Event *event);
 PetscErrorCode EventListDestroy(EventList *events);
-/* Whether sigma of mode i is positive beyond its error: sigma > max(3 error, 1e-9 |lambda|) */
-PetscBool ModeIsUnstable(const ReducedModes *modes, PetscInt i);
 
 /* onset.c - the critical value of an event on the reduced model, to rounding, and its estimated error */
 PetscErrorCode OnsetFind(const Reduced *reduced, const ReducedWindow *window, const Line *line, Event *event);

@@ -28,11 +28,11 @@ typedef struct {
 } SweepGrid;
 
 /* values.c - "first:last:n", "first:last:n:log" or "v1,v2,..."; errors name the option */
-PetscErrorCode ValuesParse(MPI_Comm comm, const char option[], const char text[], PetscInt *n, PetscReal *value[],
-                           PetscBool *ratio);
+PetscErrorCode GridValuesParse(MPI_Comm comm, const char option[], const char text[], PetscInt *n, PetscReal *value[],
+                               PetscBool *ratio);
 /* The parameter of that name; errors list the valid ones */
-PetscErrorCode ParameterFind(MPI_Comm comm, const char option[], const char name[], PetscInt n,
-                             const OperatorsParameter parameters[], PetscInt *index);
+PetscErrorCode GridParameterFind(MPI_Comm comm, const char option[], const char name[], PetscInt n,
+                                 const OperatorsParameter parameters[], PetscInt *index);
 PetscInt       GridSize(const SweepGrid *grid);
 /* The points of the grid as places, all of status 0 */
 PetscErrorCode GridCreatePlaces(SweepGrid *grid);

@@ -1,11 +1,11 @@
 /*
    The values of a sweep: ranges and lists from the options, and the grid that one or two of them span.
 */
-#include "values.h"
+#include "grid.h"
+#include "sweep/basis/points.h"
 #include <string.h>
 
 #define MAX_VALUES 100000
-#define WIDE       5 /* a range whose ends differ by this factor is measured in ratios */
 
 /* Reads one number; false where the word is none */
 static PetscBool NumberParse(const char word[], PetscReal *value)
@@ -72,8 +72,8 @@ static PetscErrorCode ListParse(MPI_Comm comm, const char option[], const char t
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ValuesParse(MPI_Comm comm, const char option[], const char text[], PetscInt *n, PetscReal *value[],
-                           PetscBool *ratio)
+PetscErrorCode GridValuesParse(MPI_Comm comm, const char option[], const char text[], PetscInt *n, PetscReal *value[],
+                               PetscBool *ratio)
 {
   char    **words;
   int       n_words;
@@ -89,12 +89,12 @@ PetscErrorCode ValuesParse(MPI_Comm comm, const char option[], const char text[]
     PetscCall(ListParse(comm, option, text, n, value));
   }
   a = (*value)[0], b = (*value)[*n - 1];
-  if (a * b > 0 && PetscMax(a / b, b / a) > WIDE) *ratio = PETSC_TRUE;
+  if (a * b > 0 && PetscMax(a / b, b / a) > RATIO_FROM) *ratio = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ParameterFind(MPI_Comm comm, const char option[], const char name[], PetscInt n,
-                             const OperatorsParameter parameters[], PetscInt *index)
+PetscErrorCode GridParameterFind(MPI_Comm comm, const char option[], const char name[], PetscInt n,
+                                 const OperatorsParameter parameters[], PetscInt *index)
 {
   char valid[2048] = "";
 
