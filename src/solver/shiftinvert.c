@@ -3,7 +3,7 @@
    spectral transformations of the right and of the transposed problem both call. MUMPS is the default: LDL' for a
    symmetric pencil, LU else. On one rank the LU gets METIS's order of the node graph; against PORD, the best of
    MUMPS' own, it is a tie on the default rig (23.9 M entries and 11.2 Gflop against 23.6 M and 10.9) and 6 % less
-   fill and 16 % fewer operations at 94,491 unknowns (82.6 M and 57.5 against 87.8 M and 68.6; scripts/benchmark_modes
+   fill and 16 % fewer operations at 94,491 unknowns (82.6 M and 57.5 against 87.8 M and 68.6; scripts/bench/modes
    --part orderings). AMD, AMF and QAMD give 13 to 35 % more fill. PETSc hands no order to MUMPS' LDL' nor on several
    ranks, where PORD stays.
 */

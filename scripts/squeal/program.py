@@ -1,0 +1,72 @@
+"""squeal as the studies and benchmarks run it: compiled where it is not, each run checked, parts chosen by --part."""
+
+import argparse
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from .tables import BadInput
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def compiled_program():
+    """Sets up and compiles as scripts/run does."""
+    command = ["bash", "-c", 'source "$0" && set_up squeal >&2 && echo "$build/squeal"', ROOT / "scripts/setup.sh"]
+    process = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
+    if process.returncode:
+        raise SystemExit(process.returncode)
+    return Path(process.stdout.strip())
+
+
+def scene(*names):
+    """Words of the options files of options/, named without their ending, in their order."""
+    return [word for name in names for word in ("-options_file", ROOT / f"options/{name}.yaml")]
+
+
+def launch(program, ranks, words, about):
+    """What squeal prints. A run that fails ends the script with its message, after what it is `about`."""
+    command = [ROOT / "scripts/mpirun", "-n", ranks, program, *words]
+    process = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
+    if process.returncode:
+        raise SystemExit(f"{about}: {process.stderr.strip()}")
+    return process.stdout
+
+
+def parts_parser(doc, parts):
+    """Command line with --part and --program."""
+    parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--part", action="append", choices=parts, help="only this one; may be repeated")
+    parser.add_argument("--program", type=Path, metavar="FILE", help="squeal; default: compiled as by scripts/run")
+    return parser
+
+
+def parse(parser, **least):
+    """The command line; numbers have a least value."""
+    args = parser.parse_args()
+    for name, low in least.items():
+        if getattr(args, name) < low:
+            parser.error(f"--{name.replace('_', '-')} {getattr(args, name)}: must be {low} or more")
+    args.program = args.program or compiled_program()
+    return args
+
+
+def machine_text():
+    """Cores, and how busy they are."""
+    return f"machine: {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}"
+
+
+def do_parts(name, parts, chosen, *given):
+    """The chosen parts, or all, each with what is given; bad input ends the script `name` with one line."""
+    for part in chosen or parts:
+        try:
+            parts[part](*given)
+        except BadInput as error:
+            raise SystemExit(f"{name}: {error}") from None
+        sys.stdout.flush()
+
+
+def met(kept):
+    """The word for it."""
+    return "met" if kept else "MISSED"

@@ -1,0 +1,78 @@
+"""Tables: those that squeal wrote, read with one-line errors, and those that the scripts print."""
+
+import csv
+import math
+import sys
+
+
+class BadInput(Exception):
+    """One line for the user."""
+
+
+def flag(text):
+    """Truth of 0, 1, false, true."""
+    return {"0": False, "1": True, "false": False, "true": True}[text.lower()]
+
+
+def optional(text):
+    """A number, or nan where there is none."""
+    return float(text) if text.strip() else math.nan
+
+
+def read_table(path, kinds):
+    """Rows of a table as dictionaries with the columns of `kinds`, each converted by its function."""
+    try:
+        with path.open(newline="") as lines:
+            reader = csv.DictReader(lines)
+            missing = [name for name in kinds if name not in (reader.fieldnames or [])]
+            if missing:
+                raise BadInput(f"{path}: no column {missing[0]}" if reader.fieldnames else f"{path}: is empty")
+            return [convert(path, reader.line_num, row, kinds) for row in reader]
+    except FileNotFoundError:
+        raise BadInput(f"{path}: no such file; run squeal first, or name its -output_dir") from None
+    except (OSError, ValueError, csv.Error) as error:
+        raise BadInput(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+
+
+def convert(path, line, row, kinds):
+    """The wanted columns of one row."""
+    if None in row or None in row.values():
+        raise BadInput(f"{path}: line {line} does not have as many columns as the header; was the file cut off?")
+    values = {}
+    for name, kind in kinds.items():
+        try:
+            values[name] = kind(row[name])
+        except (ValueError, KeyError):
+            raise BadInput(f"{path}: line {line}: {name} is '{row[name]}'") from None
+    return values
+
+
+def prefixed(value, unit):
+    """Factor and name of the unit in which a value is easily read."""
+    for factor, prefix in ((1e-9, "G"), (1e-6, "M"), (1e-3, "k")):
+        if value * factor >= 1:
+            return factor, prefix + unit
+    return 1.0, unit
+
+
+def print_table(title, *rows):
+    """Text in the first column, numbers in the others."""
+    print(f"\n{title}")
+    widths = [max(len(cell) for cell in column) for column in zip(*rows)]
+    for first, *others in rows:
+        print("  ".join([first.ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(others, widths[1:]))]))
+
+
+def print_row(*cells):
+    """A row of a markdown table, at once, since each costs a run."""
+    print(f"| {' | '.join(cells)} |", flush=True)
+
+
+def run(name, work):
+    """Does the work and prints the file that it returns; returns the exit status."""
+    try:
+        print(work())
+    except BadInput as error:
+        print(f"{name}: {error}", file=sys.stderr)
+        return 1
+    return 0

@@ -1,0 +1,112 @@
+"""Timed runs of the modes: PETSc's log, MUMPS' figures and the modes of each, and the limits of the
+machine. What is not correct is not timed: a failed run, or runs that disagree, end the benchmark."""
+
+import csv
+import functools
+import multiprocessing
+import re
+import tempfile
+import time
+from pathlib import Path
+
+import numpy
+
+from .program import launch, scene
+
+SOLVES = ("MatSolve", "MatSolveTranspos")  # events of one solution with the factors
+SAME = 1e-9  # frequencies of two runs, relative
+
+
+def best_time(work, tries):
+    """Shortest time of a function, s."""
+    times = []
+    for _ in range(tries):
+        begun = time.perf_counter()
+        work()
+        times.append(time.perf_counter() - begun)
+    return min(times)
+
+
+def triad(_):
+    """Bandwidth of a = b + s c in GB/s, 24 bytes an entry, on 480 MB in blocks whose product stays in cache."""
+    block = 8192
+    n = 2441 * block
+    a, b, c, product = numpy.zeros(n), numpy.ones(n), numpy.ones(n), numpy.empty(block)
+
+    def work():
+        for i in range(0, n, block):
+            numpy.multiply(c[i:i + block], 3.0, out=product)
+            numpy.add(b[i:i + block], product, out=a[i:i + block])
+
+    return 24e-9 * n / best_time(work, 5)
+
+
+@functools.cache
+def machine_limits():
+    """Triad on one and two cores, GB/s, and the BLAS's product of matrices of order 1500 on one core, Gflop/s."""
+    with multiprocessing.Pool(2) as pool:
+        bandwidth = [triad(0), sum(pool.map(triad, range(2), chunksize=1))]
+    a = numpy.ones((1500, 1500))
+    return bandwidth, 2e-9 * 1500**3 / best_time(lambda: a.dot(a), 6)
+
+
+class Run:
+    """One run: wall time of the process (s), PETSc's log, MUMPS' last factorisation, memory (MB), modes."""
+
+    def __init__(self, program, ranks, options):
+        with tempfile.TemporaryDirectory() as folder:
+            words = ["-squeal_view", "-squeal_progress", 0, *scene("massi2005"), "-st_mat_mumps_icntl_4", 2,
+                     "-output_dir", folder, "-log_view", f":{folder}/log.csv:ascii_csv", *options.split()]
+            begun = time.perf_counter()
+            self.text = launch(program, ranks, words, f"options {options}")
+            self.wall, self.ranks, self.options = time.perf_counter() - begun, ranks, options
+            self.read_log(Path(folder) / "log.csv")
+            with (Path(folder) / "modes.csv").open(newline="") as file:
+                self.modes = [(float(row["freq_hz"]), row["label"]) for row in csv.DictReader(file)]
+        self.unknowns = int(self.last(r"operators: (\d+) unknowns"))
+        self.entries = self.last(r"INFOG\(29\).*= *(\S+)")
+        self.flops = self.last(r"\(3\) +Operations in node elimination.*= *(\S+)")
+        self.memory = [(name, float(mb)) for name, mb in re.findall(r"^(\w+) +[\d.]+ +(\d+)$", self.text, re.MULTILINE)]
+        self.n_solves = sum(count for (_, event), (_, count) in self.log.items() if event in SOLVES)
+        self.ms_solve = 1e3 * self.seconds(*SOLVES) / self.n_solves
+
+    def read_log(self, path):
+        """Time of the slowest rank, and count, by stage and event; the event "summary" is the whole stage."""
+        self.log = {}
+        with path.open(newline="") as file:
+            next(file)
+            for stage, event, _, count, seconds in (row[:5] for row in csv.reader(file)):
+                old = self.log.get((stage, event.strip()), (0, 0))
+                self.log[stage, event.strip()] = max(old[0], float(seconds)), max(old[1], int(count))
+
+    def last(self, pattern):
+        """The last number of the output that a pattern finds."""
+        found = re.findall(pattern, self.text)
+        if not found:
+            raise SystemExit(f"options {self.options}: the output lacks {pattern}")
+        return float(found[-1].replace("D", "e"))
+
+    def seconds(self, *events, stage=None):
+        """Time in events, of one stage or of all."""
+        return sum(value[0] for (s, e), value in self.log.items() if e in events and stage in (None, s))
+
+
+def require_same(first, other):
+    """Largest relative difference of the frequencies; rigid modes are exact zeros."""
+    if len(first.modes) != len(other.modes):
+        raise SystemExit(f"{len(first.modes)} modes on {first.ranks} ranks, {len(other.modes)} on {other.ranks}")
+    worst = max(abs(a - b) / max(a, 1e-3) for (a, _), (b, _) in zip(first.modes, other.modes))
+    if worst > SAME:
+        raise SystemExit(f"options {first.options}: two runs on {first.ranks} and {other.ranks} ranks give frequencies "
+                         f"that differ by {worst:.1e}, more than {SAME:g}")
+    return worst
+
+
+def median_run(program, n_runs, ranks=1, options="", complete=True):
+    """The run of median wall time, when all agree and, where asked for, confirm that no mode is missing."""
+    runs = [Run(program, ranks, options) for _ in range(n_runs)]
+    for run in runs:
+        require_same(runs[0], run)
+        if complete and "none is missing" not in run.text and "was missed by right or left" not in run.text:
+            raise SystemExit(f"options {options}: modes may be missing")
+    return sorted(runs, key=lambda run: run.wall)[n_runs // 2]

@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""A sweep that is killed goes on where it stopped, with the same result: kills it after each full solution that it has kept,
+and compares all tables with those of a sweep that nobody disturbed: to the last digit on one rank, to 1e-9 on two, where
+the order of sums in the factorisation depends on the moment. Breaks when what is kept lacks something, is read in another
+order, or is taken for that of another sweep."""
+
+import argparse
+import csv
+import filecmp
+import math
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[2]
+SMALL = 'rig: {disc: {elements: "8,24,1"}, pad: {elements: "4,4,2"}, beam: {elements: 10}}\nmodes: {band: "100,12000"}\n'
+TABLES = ("sweep.csv", "onsets.csv", "parameters.csv")
+PATIENCE = 100  # seconds
+
+
+def command(arguments, folder, output, *options):
+    """The sweep, writing to a folder."""
+    return [arguments.launcher, "-n", str(arguments.ranks), arguments.squeal, "-options_file", SOURCE / "options/massi2005.yaml",
+            "-options_file", folder / "small.yaml", "-analysis", "sweep", "-sweep_parameter", "pad_young",
+            "-sweep_values", "6.5e9:80e9:12", "-output_dir", folder / output, "-modes_contact", arguments.contact, *options]
+
+
+def complete(arguments, folder, output, *options):
+    """Runs to the end; what it printed."""
+    process = subprocess.run(command(arguments, folder, output, *options), capture_output=True, text=True,
+                             timeout=PATIENCE, check=False)
+    if process.returncode:
+        raise SystemExit(f"FAILED: exit status {process.returncode}: {process.stderr}")
+    return process.stdout
+
+
+def kept(arguments, folder, output):
+    """Full solutions that the sweep has kept, all ranks."""
+    return len(list((folder / output).glob("sweep_restart_*_rank[01]"))) // arguments.ranks
+
+
+def same(arguments, one, other):
+    """Whether two tables agree."""
+    if arguments.ranks == 1:
+        return filecmp.cmp(one, other, shallow=False)
+    rows = [list(csv.DictReader(path.open(newline=""))) for path in (one, other)]
+    keys = [key for key in ("freq_hz", "critical_value", "value") if key in rows[0][0]]
+    close = [math.isclose(float(a[key]), float(b[key]), rel_tol=1e-9) for a, b in zip(*rows) for key in keys]
+    return len(rows[0]) == len(rows[1]) and all(close)
+
+
+def kill_after(arguments, folder, output, n):
+    """Starts the sweep and kills it as soon as it has kept n full solutions."""
+    process = subprocess.Popen(command(arguments, folder, output), start_new_session=True, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
+    begun = time.monotonic()
+    while kept(arguments, folder, output) < n and process.poll() is None and time.monotonic() - begun < PATIENCE:
+        time.sleep(0.002)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    if kept(arguments, folder, output) < n:
+        raise SystemExit(f"FAILED: no {n} solutions were kept before the end")
+    if any((folder / output / table).exists() for table in TABLES):
+        raise SystemExit("FAILED: a killed sweep left a table")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("squeal")
+    parser.add_argument("launcher")
+    parser.add_argument("--ranks", type=int, default=1)
+    parser.add_argument("--contact", default="all", help="all pairs closed, or static: those of the sliding state")
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "small.yaml").write_text(SMALL)
+        complete(arguments, folder, "undisturbed")
+        for n in (1, 2, 3):
+            kill_after(arguments, folder, "killed", n)
+        printed = complete(arguments, folder, "killed")
+        if not re.search("^going on with [3-9] full solutions", printed):
+            raise SystemExit(f"FAILED: did not go on where it stopped:\n{printed}")
+        for table in TABLES:
+            if not same(arguments, folder / "undisturbed" / table, folder / "killed" / table):
+                raise SystemExit(f"FAILED: {table} differs")
+        if kept(arguments, folder, "killed"):
+            raise SystemExit("FAILED: solutions are still kept after the end")
+
+        kill_after(arguments, folder, "other", 2)
+        printed = complete(arguments, folder, "other", "-contact_mu", "0.4")
+        if "going on" in printed:
+            raise SystemExit("FAILED: took up the solutions of another scene")
+    print("ok: killed three times, all tables alike")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,48 @@
+"""What the tests of the scripts share: running one, what it must say when it fails, and whether a picture is one."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib.image
+import numpy
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+sys.path.insert(0, str(SCRIPTS))  # for squeal
+
+
+def require(condition, message):
+    """Ends the test with a message."""
+    if not condition:
+        raise SystemExit(f"{Path(sys.argv[0]).stem}: {message}")
+
+
+def script(name, *arguments):
+    """Runs a script of scripts/."""
+    command = [sys.executable, SCRIPTS / name, *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def fails(name, folder, options, expected):
+    """The script must fail with one line that holds the expected text."""
+    result = script(name, folder, *options)
+    require(result.returncode == 1 and result.stderr.count("\n") == 1 and expected in result.stderr,
+            f"expected '{expected}', status {result.returncode}: {result.stderr}")
+
+
+def points_of(file, title, least=(1200, 600)):
+    """The points [n][3] of a PNG, from 0 to 255: at least so many across and down, no colour on more than 98 % of them."""
+    points = numpy.rint(255 * matplotlib.image.imread(file)[:, :, :3]).astype(int)
+    colours = points.reshape(-1, 3)
+    share = numpy.unique(colours @ [1, 256, 65536], return_counts=True)[1].max() / len(colours)
+    height, width = points.shape[:2]
+    print(f"{title}: {width} x {height} points, most frequent colour on {share:.1%}")
+    require(width >= least[0] and height >= least[1] and share < 0.98, f"{title} is not a picture")
+    return colours
+
+
+def drawn(name, folder, *options):
+    """Points of the picture that a script draws of a folder."""
+    result = script(name, folder, "-o", folder / "picture.png", *options)
+    require(result.returncode == 0, result.stderr)
+    return points_of(folder / "picture.png", f"{folder.name} {' '.join(options)}".rstrip())

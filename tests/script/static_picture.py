@@ -1,0 +1,141 @@
+#!/usr/bin/env python3
+"""Draws made-up sliding states with scripts/plot/static and checks what the pictures show. Which pairs are closed,
+and the pressure of each, follows from the closed form in made_up_static.py. Exit status: 0, or 1.
+"""
+
+import tempfile
+from pathlib import Path
+
+import numpy
+from drawing import drawn, fails, require
+from made_up_static import FORCE, MU, SIDE, State, write_rows
+from matplotlib.colors import to_rgb
+from squeal import static_pairs  # found by drawing
+from squeal.picture import BLUE, GREEN
+
+
+def close(found, expected, message, tolerance=1e-12):
+    """Equal to within the rounding of %.17g numbers and a few sums."""
+    same = numpy.shape(found) == numpy.shape(expected) and numpy.allclose(found, expected, rtol=tolerance, atol=1e-9)
+    require(same, f"{message}: {found} instead of {expected}")
+
+
+def picture(folder):
+    """Draws; how many points have each of the two colours."""
+    colours = drawn("plot/static", folder)
+    return [(abs(colours - 255 * numpy.array(to_rgb(c))) < 1.5).all(axis=1).sum() for c in (BLUE, GREEN)]
+
+
+def surface_of(folder, rows, columns=None):
+    """The only surface of a table."""
+    write_rows(folder, rows, columns)
+    surfaces = static_pairs.read_surfaces(folder / "static.csv")
+    require(len(surfaces) == 1, f"{len(surfaces)} surfaces")
+    return surfaces[0]
+
+
+def test_colours(root):
+    """Blue is the arrow (2000 points and more) and the names of the edges, or sticking pairs; green the centre of force:
+    breaks when they are drawn without friction or force, or not drawn."""
+    cases = [("slides", State(), 2000), ("presses", State(mu=0), 0), ("sticks", State(mu=0, stuck=9), 1000),
+             ("free", State(tilt=0), 2000)]
+    for name, state, least in cases:
+        write_rows(root / name, state.rows())
+        blue, green = picture(root / name)
+        require(blue >= least and (blue > 150) == (least > 0) and green > 150, f"{name}: {blue} blue, {green} green points")
+    nothing = [(*row[:5], 0, 0, "open", *row[8:10], 0, *row[11:]) for row in State().rows()]
+    write_rows(root / "nothing", nothing)
+    require(picture(root / "nothing") == [0, 0], "a force is drawn where there is none")
+
+
+def test_numbers(root):
+    """Sums, cells and rows against the closed form: breaks when places, areas or pairs are mixed up, or open pairs
+    coloured. Centre of force of 1 + tilt s when all are closed, by the trapezoidal rule with spacing h: tilt (1/3 +
+    h^2/6)."""
+    state = State(tilt=0.8)
+    surface = surface_of(root / "numbers", state.rows())
+    close(surface.lead(), 0.8 * (1 / 3 + 0.2**2 / 6) * 1e3 * SIDE / 2, "centre of force")
+    state = State()
+    surface = surface_of(root / "numbers", state.rows()[:-11])
+    close(surface.middle, numpy.average(state.x[:-11], axis=0, weights=state.area[:-11]), "middle, weighted by area")
+    surface = surface_of(root / "numbers", state.rows())
+    expected = (f"99 of 121 pairs closed, normal force {FORCE:g} N, friction {MU * FORCE:g} N, largest pressure "
+                f"{1e-3 * state.pressure.max():.3g} kPa")
+    require(surface.summary().startswith(expected), surface.summary())
+    x, y, values = static_pairs.grid_cells(surface)
+    close(numpy.outer(numpy.diff(y), numpy.diff(x)).ravel(), 1e6 * state.area, "cells are the areas")
+    close(values.filled(0).ravel(), 1e-3 * state.pressure, "pressures of the cells")
+    require((values.mask.ravel() == (state.pressure == 0)).all(), "other cells are blank than the open ones")
+    borders, mean, closed, pairs = static_pairs.profile(surface)
+    close(borders, y, "borders of the rows")
+    close(mean, 1e-3 * state.pressure[::11], "mean pressures of the rows")
+    require(list(closed) == [0, 0] + 9 * [11] and list(pairs) == 11 * [11], f"closed pairs of the rows: {closed}")
+
+
+def test_orientation(root):
+    """x to the right and y up where z is constant, whatever the order of the pairs; any other plane without distortion,
+    and the arrow along the sliding direction."""
+    state = State(middle=(0.11, 0.02, -0.3), along=(0, -1, 0))
+    surface = surface_of(root / "plane", state.rows()[::-1])
+    close(surface.place, 1e3 * state.x[::-1, :2], "places")
+    close(surface.direction, [0, -1], "direction")
+    require([surface.axis_title(i) for i in (0, 1)] == ["x, mm", "y, mm"], "titles of the axes")
+    surface = surface_of(root / "plane", State(across=(0, 1, 0), along=(0, 0, 1)).rows())
+    require([surface.axis_title(i) for i in (0, 1)] == ["y, mm", "z, mm"], "titles of the axes where x is constant")
+    state = State(across=(1, 0, 0), along=(0, 0, 1))
+    close(surface_of(root / "plane", state.rows()).place, 1e3 * state.x[:, [0, 2]], "places where y is constant")
+    across, along = numpy.array([0.48, 0.6, -0.64]), numpy.array([0.8, 0, 0.6])
+    surface = surface_of(root / "plane", State(across=across, along=along).rows())
+    apart = numpy.linalg.norm(surface.place[:, None] - surface.place, axis=2)
+    close(apart, 1e3 * numpy.linalg.norm(surface.x[:, None] - surface.x, axis=2), "distances in an oblique plane")
+    close(surface.direction @ surface.axes, along, "direction in an oblique plane", 1e-9)
+    tail, head = surface.arrow()
+    close((head - tail) / numpy.linalg.norm(head - tail), surface.direction, "arrow", 1e-9)
+
+
+def test_old_columns(root):
+    """A table that ends with the status: forces instead of pressures, all pairs one surface, no arrow."""
+    state = State()
+    surface = surface_of(root / "old", state.rows(), 8)
+    require(surface.unit == "N" and surface.direction is None and not surface.name, "columns that are not there")
+    close(surface.value, state.normal, "forces per pair")
+    close(static_pairs.profile(surface)[1], state.normal.reshape(11, 11).sum(axis=1), "forces of the rows")
+    picture(root / "old")
+
+
+def test_several(root):
+    """Two interfaces, one of them a line of pairs, and pairs that form no grid."""
+    ragged = [row for i, row in enumerate(State(n=15).rows()) if i % 7]
+    rows = [*State().rows("front"), *State().rows("rear", 121)[::11], *[(*r[:8], "ragged", *r[9:]) for r in ragged]]
+    write_rows(root / "several", rows)
+    surfaces = static_pairs.read_surfaces(root / "several" / "static.csv")
+    require([surface.name for surface in surfaces] == ["front", "rear", "ragged"], "other interfaces")
+    require([static_pairs.grid_cells(surface) is None for surface in surfaces] == [False, False, True], "other grids")
+    picture(root / "several")
+
+
+def test_errors(root):
+    """What cannot be drawn ends in one line that names it."""
+    write_rows(root / "bad", State().rows())
+    table = root / "bad" / "static.csv"
+    text = table.read_text()
+    cases = [(text[:-20], "line 122"), ("", "is empty"), (text.split("\n")[0] + "\n", "no rows"),
+             (text.replace("lambda_n_n", "force", 1), "no column lambda_n_n"),
+             (text.replace(",open,", ",ajar,", 1), "line 2: status is 'ajar'"), ("\udcff", "cannot be read")]
+    for content, expected in cases:
+        table.write_bytes(content.encode("utf-8", "surrogateescape"))
+        fails("plot/static", root / "bad", [], expected)
+    table.write_text(text)
+    fails("plot/static", root / "bad", ["-o", root / "bad" / "none" / "a.png"], "cannot write")
+    table.unlink()
+    fails("plot/static", root / "bad", [], f"{table}: no such file")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        for test in (test_colours, test_numbers, test_orientation, test_old_columns, test_several, test_errors):
+            test(Path(folder))
+
+
+if __name__ == "__main__":
+    main()
