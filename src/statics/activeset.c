@@ -3,8 +3,8 @@
    linear; one small system gives all forces and displacements; they decide the next status. Without Coulomb pairs it
    ends exactly when no status changes. What is smaller than ROUNDING of the largest displacement decides nothing.
 
-   Where the statuses repeat or the system becomes singular, first only the pair that errs most changes per iteration;
-   if that does not settle either, all friction coefficients are raised from 0 in steps, each begun from the equilibrium
+   Where the statuses repeat or the system becomes singular, those of sliding pairs are found by pivoting (pivot.c); with
+   Coulomb pairs only the pair that errs most changes per iteration. If that does not settle either, all friction coefficients are raised from 0 in steps, each begun from the equilibrium
    before it, with half the step after a failure. Equilibrium without friction is a convex problem. An equilibrium whose
    system has a determinant of the wrong sign (small.c) is none that can be reached from there, hence a failure too.
 */
@@ -296,14 +296,31 @@ static PetscErrorCode Raise(Active *a, ActiveOutcome *outcome)
   PetscFunctionReturn(0);
 }
 
+/* Statuses by pivoting, or with Coulomb pairs by single changes, confirmed by the iteration */
+static PetscErrorCode IterateSurely(Active *a, ActiveOutcome *outcome)
+{
+  PetscBool coulomb, found;
+
+  PetscFunctionBeginUser;
+  PetscCall(Restart(a));
+  PetscCall(HasCoulomb(a, &coulomb));
+  if (!coulomb) {
+    PetscCall(PivotSolve(a->compliance, a->rows, a->friction, a->free, a->status, &found));
+    if (found) PetscCall(Iterate(a, PETSC_FALSE, outcome));
+    if (*outcome == ACTIVE_CONVERGED) PetscFunctionReturn(0);
+    PetscCall(Restart(a));
+  }
+  PetscCall(Iterate(a, PETSC_TRUE, outcome));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ActiveSolve(Active *a, ActiveOutcome *outcome)
 {
   PetscFunctionBeginUser;
   a->friction = 1;
   PetscCall(Iterate(a, PETSC_FALSE, outcome));
   if (*outcome == ACTIVE_CONVERGED) PetscFunctionReturn(0);
-  PetscCall(Restart(a));
-  if (IsFew(a)) PetscCall(Iterate(a, PETSC_TRUE, outcome));
+  if (IsFew(a)) PetscCall(IterateSurely(a, outcome));
   if (*outcome != ACTIVE_CONVERGED) PetscCall(Raise(a, outcome));
   PetscFunctionReturn(0);
 }

@@ -47,7 +47,7 @@ static PetscErrorCode KappaFind(Mat K, const PairRows *rows, PetscReal *kappa)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, PetscBool some,
+PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, AugmentRows which,
                                  const ContactStatus status[], Mat *A)
 {
   PetscScalar *resists;
@@ -55,11 +55,12 @@ PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, P
   Vec          weight;
 
   PetscFunctionBeginUser;
-  if (some) {
+  if (which != AUGMENT_ALL) {
     PetscCall(MatCreateVecs(rows->G, NULL, &weight));
     PetscCall(VecGetArray(weight, &resists));
     for (PetscInt p = 0; p < rows->n_pairs; p++)
-      for (PetscInt i = rows->first[p]; i < rows->first[p + 1]; i++) resists[i] = status[p] == CONTACT_OPEN ? 0 : 1;
+      for (PetscInt i = rows->first[p]; i < rows->first[p + 1]; i++)
+        resists[i] = which == AUGMENT_NORMAL ? i == rows->first[p] : status[p] != CONTACT_OPEN;
     PetscCall(VecRestoreArray(weight, &resists));
     PetscCall(MatDuplicate(rows->G, MAT_COPY_VALUES, &G));
     PetscCall(MatDiagonalScale(G, weight, NULL));
@@ -71,7 +72,7 @@ PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, P
   PetscCall(MatAXPY(*A, kappa, GG, DIFFERENT_NONZERO_PATTERN));
   PetscCall(MatSetOption(*A, MAT_SYMMETRIC, PETSC_TRUE));
   PetscCall(MatDestroy(&GG));
-  if (some) PetscCall(MatDestroy(&G));
+  if (which != AUGMENT_ALL) PetscCall(MatDestroy(&G));
   PetscFunctionReturn(0);
 }
 
@@ -161,7 +162,7 @@ PetscErrorCode ComplianceCreate(Operators operators, const PairRows *rows, Petsc
   PetscCall(OperatorsGetBodies(operators, &c->K));
   PetscCall(OperatorsGetMatrices(operators, NULL, &pencil.M, NULL, NULL, NULL));
   PetscCall(KappaFind(c->K, rows, &c->kappa));
-  PetscCall(ComplianceAugment(c->K, rows, c->kappa, PETSC_FALSE, NULL, &pencil.K));
+  PetscCall(ComplianceAugment(c->K, rows, c->kappa, AUGMENT_ALL, NULL, &pencil.K));
   PetscCall(HoldCreate(operators, pencil.K, &c->hold));
   PetscCall(ShiftInvertCreate(&pencil, 0, PETSC_FALSE, progress, &c->inverse));
   PetscCall(MatDestroy(&pencil.K));

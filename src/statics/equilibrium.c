@@ -54,6 +54,22 @@ static PetscErrorCode ComplainFrictionless(const Active *a, ActiveOutcome outcom
           place);
 }
 
+/* Raises the error for loads along a motion that friction alone resists: it has been tried, and does not hold them */
+static PetscErrorCode SlidingOffCheck(const Active *a, Vec f, PetscReal size)
+{
+  const Compliance *c    = a->compliance;
+  Hold              free = {.n = 0};
+  Mat               A;
+
+  PetscFunctionBeginUser;
+  PetscCall(ComplianceAugment(c->K, a->rows, c->kappa, AUGMENT_NORMAL, NULL, &A));
+  PetscCall(FreeMotionsCreate(a->operators, A, &free));
+  PetscCall(HoldCheck(a->operators, &free, "loads, by more than friction is found to hold,", f, size));
+  PetscCall(HoldDestroy(&free));
+  PetscCall(MatDestroy(&A));
+  PetscFunctionReturn(0);
+}
+
 /* Raises the error for what has no equilibrium */
 static PetscErrorCode Complain(const Active *a, const char place[], ActiveOutcome outcome)
 {
@@ -161,22 +177,26 @@ static PetscErrorCode TippingCheck(const Active *a, const char place[])
   PetscFunctionBeginUser;
   PetscCall(CountClosed(a, n));
   if (n[0] == n[1] && a->rows->n_all == n[1]) PetscFunctionReturn(0);
-  PetscCall(ComplianceAugment(a->compliance->K, a->rows, a->compliance->kappa, PETSC_TRUE, a->status, &A));
+  PetscCall(ComplianceAugment(a->compliance->K, a->rows, a->compliance->kappa, AUGMENT_CLOSED, a->status, &A));
   PetscCall(HoldCheckClosed(a->operators, &a->compliance->hold, place, A, n[0]));
   PetscCall(MatDestroy(&A));
   PetscFunctionReturn(0);
 }
 
 /* One load step: f, from which u, l and w follow */
-static PetscErrorCode Step(Active *a, const char place[], Vec f, Vec u)
+static PetscErrorCode Step(Active *a, const char place[], Vec f, PetscReal size, Vec u)
 {
   ActiveOutcome outcome;
+  PetscInt      n[2];
 
   PetscFunctionBeginUser;
   PetscCall(ComplianceSolve(a->compliance, a->rows, 0, f, a->zero, a->zero, u));
   PetscCall(RowsOf(a->compliance, a->rows, u, a->free));
   PetscCall(ActiveSolve(a, &outcome));
-  if (outcome != ACTIVE_CONVERGED) PetscCall(Complain(a, place, outcome));
+  if (outcome == ACTIVE_CONVERGED) PetscFunctionReturn(0);
+  PetscCall(CountClosed(a, n));
+  if (a->friction == 0 && a->rows->n_all != n[1]) PetscCall(SlidingOffCheck(a, f, size));
+  PetscCall(Complain(a, place, outcome));
   PetscFunctionReturn(0);
 }
 
@@ -197,7 +217,7 @@ PetscErrorCode EquilibriumSolve(Statics s, PairRows *rows, const Compliance *c, 
       for (PetscInt i = 1; i < rows->law[p].d; i++) rows->law[p].slip0[i - 1] = a.w[rows->first[p] + i];
     PetscCall(VecCopy(f, part));
     PetscCall(VecScale(part, (PetscReal)step / (PetscReal)load_steps));
-    PetscCall(Step(&a, place, part, u));
+    PetscCall(Step(&a, place, part, size, u));
   }
   s->n_it = a.n_it;
   PetscCall(TippingCheck(&a, place));

@@ -123,9 +123,10 @@ PETSC_INTERN PetscErrorCode ComplianceApply(const Compliance *c, const PairRows 
                                             const PetscReal l[], const PetscReal w[], PetscReal y[]);
 PETSC_INTERN PetscErrorCode ComplianceSolve(const Compliance *c, const PairRows *rows, PetscReal friction, Vec f,
                                             const PetscReal l[], const PetscReal w[], Vec u);
-/* K + kappa G'G of all rows, or of some: those of pairs closed at the status [pairs]. Where Coulomb's pairs slip in
-   different directions they resist too; what slips in one direction makes the small system singular. */
-PETSC_INTERN PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, PetscBool some,
+/* K + kappa G'G of all rows, of those of pairs closed at the status [pairs], or of the normal ones. Where Coulomb's pairs
+   slip in different directions they resist too; what slips in one direction makes the small system singular. */
+typedef enum { AUGMENT_ALL, AUGMENT_CLOSED, AUGMENT_NORMAL } AugmentRows;
+PETSC_INTERN PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, AugmentRows which,
                                               const ContactStatus status[], Mat *A);
 PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *c);
 
@@ -134,6 +135,11 @@ PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *c);
 PETSC_INTERN PetscErrorCode SmallSolve(const Compliance *c, const PairRows *rows, PetscReal friction,
                                        const LawRow law[], const PetscReal rhs[], PetscReal rtol, PetscReal l[],
                                        PetscReal w[], SmallOutcome *outcome, PetscBool *reversed);
+
+/* pivot.c - statuses of sliding pairs by complementary pivoting on the dense small system; found is false where there
+   is no solution or none is found */
+PETSC_INTERN PetscErrorCode PivotSolve(const Compliance *c, const PairRows *rows, PetscReal friction,
+                                       const PetscReal rhs[], ContactStatus status[], PetscBool *found);
 
 /* activeset.c - status, l and w that obey all laws, from the status given; friction is raised in steps if need be.
    outcome and active->friction tell where it ended. */
