@@ -195,7 +195,7 @@ static PetscErrorCode Step(Active *a, const char place[], Vec f, PetscReal size,
   PetscCall(ActiveSolve(a, &outcome));
   if (outcome == ACTIVE_CONVERGED) PetscFunctionReturn(0);
   PetscCall(CountClosed(a, n));
-  if (a->friction == 0 && a->rows->n_all != n[1]) PetscCall(SlidingOffCheck(a, f, size));
+  if (outcome == ACTIVE_SLOW && a->friction == 0 && a->rows->n_all != n[1]) PetscCall(SlidingOffCheck(a, f, size));
   PetscCall(Complain(a, place, outcome));
   PetscFunctionReturn(0);
 }
