@@ -9,6 +9,7 @@
 #include "dynamics/history/historyimpl.h"
 #include "boxes.h"
 #include "check.h"
+#include "scratch.h"
 #include <string.h>
 
 #define MADE_DT 1e-6
@@ -29,7 +30,7 @@ typedef struct {
   Results          results;
   Layout           layout;
   PetscReal       *u, *before, *f, *f_old, *minv; /* state vectors */
-  char             dir[64];
+  char             dir[PETSC_MAX_PATH_LEN];
   PetscMPIInt      rank;
 } Made;
 
@@ -139,10 +140,7 @@ static inline PetscErrorCode MadeCreate(Made *m)
   PetscCall(BoxesCreateModel(PETSC_COMM_WORLD, BOX_LENGTH(made_boxes), made_boxes, MADE_SCENE, &m->model));
   PetscCall(ModelGetCoordinates(m->model, &m->x));
   PetscCall(MadeLayOut(m));
-  PetscCall(PetscStrncpy(m->dir, "/tmp/squealXXXXXX", sizeof(m->dir)));
-  if (m->rank == 0 && !mkdtemp(m->dir)) m->dir[0] = '\0';
-  PetscCallMPI(MPI_Bcast(m->dir, sizeof(m->dir), MPI_CHAR, 0, PETSC_COMM_WORLD));
-  PetscCheck(m->dir[0], PETSC_COMM_WORLD, PETSC_ERR_FILE_OPEN, "no scratch folder could be made");
+  PetscCall(ScratchMakeFolder(m->dir));
   PetscCall(PetscOptionsSetValue(NULL, "-output_dir", m->dir));
   PetscCall(ResultsCreate(PETSC_COMM_WORLD, &m->results));
   PetscCall(ResultsSetFromOptions(m->results));
@@ -164,7 +162,7 @@ static inline PetscErrorCode MadeDestroy(Made *m, int *failed)
 /* Content of a file of the folder, or NULL where there is none, on rank 0 alone; the caller frees it with free() */
 static inline char *MadeRead(const Made *m, const char name[])
 {
-  char  path[128], *text;
+  char  path[PETSC_MAX_PATH_LEN + 32], *text;
   long  size;
   FILE *file;
 
@@ -183,7 +181,7 @@ static inline char *MadeRead(const Made *m, const char name[])
 /* Removes a file of the folder on rank 0, returns on all ranks whether it was there */
 static inline int MadeRemove(const Made *m, const char name[])
 {
-  char path[128];
+  char path[PETSC_MAX_PATH_LEN + 32];
   int  removed = 0;
 
   snprintf(path, sizeof(path), "%s/%s", m->dir, name);

@@ -26,17 +26,28 @@ static inline PetscErrorCode ScratchKeepError(MPI_Comm comm, int line, const cha
   return code;
 }
 
-/* Makes the folder, the same on all ranks, and begins to keep errors */
+/* Makes a folder for one test, its name the same on all ranks */
+static inline PetscErrorCode ScratchMakeFolder(char dir[PETSC_MAX_PATH_LEN])
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  PetscCall(PetscGetTmp(PETSC_COMM_WORLD, dir, PETSC_MAX_PATH_LEN - 32));
+  PetscCall(PetscStrlcat(dir, "/squealXXXXXX", PETSC_MAX_PATH_LEN));
+  if (rank == 0 && !mkdtemp(dir)) dir[0] = '\0';
+  PetscCallMPI(MPI_Bcast(dir, PETSC_MAX_PATH_LEN, MPI_CHAR, 0, PETSC_COMM_WORLD));
+  PetscCheck(dir[0], PETSC_COMM_WORLD, PETSC_ERR_FILE_OPEN, "no scratch folder could be made");
+  PetscFunctionReturn(0);
+}
+
+/* Makes the folder and begins to keep errors */
 static inline PetscErrorCode ScratchCreate(Scratch *s)
 {
   PetscFunctionBeginUser;
   *s = (Scratch){.code = 0};
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &s->rank));
-  PetscCall(PetscGetTmp(PETSC_COMM_WORLD, s->dir, sizeof(s->dir) - 32));
-  PetscCall(PetscStrlcat(s->dir, "/squealXXXXXX", sizeof(s->dir)));
-  if (s->rank == 0 && !mkdtemp(s->dir)) s->dir[0] = '\0';
-  PetscCallMPI(MPI_Bcast(s->dir, sizeof(s->dir), MPI_CHAR, 0, PETSC_COMM_WORLD));
-  PetscCheck(s->dir[0], PETSC_COMM_WORLD, PETSC_ERR_FILE_OPEN, "no scratch folder could be made");
+  PetscCall(ScratchMakeFolder(s->dir));
   PetscCall(PetscPushErrorHandler(ScratchKeepError, s));
   PetscFunctionReturn(0);
 }

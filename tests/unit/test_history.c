@@ -175,7 +175,7 @@ static PetscErrorCode TestPairs(Made *m, int *failed)
 static double FieldDifference(const Made *m, const char file_name[], const char key[], PetscReal t)
 {
   static double points[24][3], values[24][3];
-  char          path[128], key_path[64];
+  char          path[PETSC_MAX_PATH_LEN + 32], key_path[64];
   double        worst = 0;
   hid_t         file, set;
 

@@ -4,30 +4,11 @@
 */
 #include "madehistory.h"
 #include <signal.h>
-#include <sys/resource.h>
 
 #define N_STEPS 40
 #define OPTIONS "-dynamics_history_interval 3e-6 -dynamics_snapshot_interval 1.6e-5 -dynamics_live 0"
 
-static char message[1024]; /* of the last error */
-
-static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
-                                  PetscErrorType type, const char *text, void *ctx)
-{
-  (void)comm, (void)line, (void)function, (void)file, (void)ctx;
-  if (type == PETSC_ERROR_INITIAL) snprintf(message, sizeof(message), "%s", text ? text : "");
-  return code;
-}
-
-/* Limits the size of files that this process writes, bytes; negative = no limit */
-static void LimitFiles(long bytes)
-{
-  struct rlimit limit;
-
-  getrlimit(RLIMIT_FSIZE, &limit);
-  limit.rlim_cur = bytes < 0 ? limit.rlim_max : (rlim_t)bytes;
-  setrlimit(RLIMIT_FSIZE, &limit);
-}
+static Scratch errors; /* keeps the last message */
 
 /* Steps [first, end) */
 static PetscErrorCode Steps(Made *m, History history, PetscInt first, PetscInt end)
@@ -128,7 +109,7 @@ static PetscErrorCode TestKilled(Made *m, const Files *unbroken, int *failed)
 /* Makes the temporary table on rank 0 */
 static PetscErrorCode WritePart(const Made *m, const char text[])
 {
-  char  path[128];
+  char  path[PETSC_MAX_PATH_LEN + 32];
   FILE *file;
 
   PetscFunctionBeginUser;
@@ -162,10 +143,11 @@ static PetscErrorCode TestForeign(Made *m, int *failed)
     (void)MadeRemove(m, "transient.csv.part");
     (void)MadeRemove(m, "transient.csv");
     if (text) PetscCall(WritePart(m, text));
-    PetscCall(PetscPushErrorHandler(KeepMessage, NULL));
+    PetscCall(PetscPushErrorHandler(ScratchKeepError, &errors));
     *failed += CheckTrue("a foreign table is refused", GoOn(m, 17, n, memory) == PETSC_ERR_FILE_UNEXPECTED, i);
     PetscCall(PetscPopErrorHandler());
-    *failed += CheckTrue("message", strstr(message, "/transient.csv.part: ") && strstr(message, expected[i]), i);
+    *failed +=
+      CheckTrue("message", strstr(errors.message, "/transient.csv.part: ") && strstr(errors.message, expected[i]), i);
     left = MadeRead(m, "transient.csv.part");
     if (m->rank == 0) *failed += CheckTrue("it is as it was", text ? SameText(left, text) : !left, i);
     free(left);
@@ -190,13 +172,14 @@ static PetscErrorCode TestFull(Made *m, const Files *unbroken, int *failed)
   PetscCall(Steps(m, history, 0, step));
   PetscCall(HistoryGetMemory(history, &n, &memory));
   LimitFiles(6000);
-  PetscCall(PetscPushErrorHandler(KeepMessage, NULL));
+  PetscCall(PetscPushErrorHandler(ScratchKeepError, &errors));
   for (; step < 3000 && !error; step++) error = MadeRecord(m, history, step);
   PetscCall(PetscPopErrorHandler());
   LimitFiles(-1);
   *failed += CheckTrue("a full disk stops the run at a row", error == PETSC_ERR_FILE_WRITE && step < 300, (double)step);
-  *failed += CheckTrue("message", strstr(message, "/transient.csv: File too large; free some space or ") != NULL, 0);
-  PetscCall(PetscPushErrorHandler(KeepMessage, NULL));
+  *failed +=
+    CheckTrue("message", strstr(errors.message, "/transient.csv: File too large; free some space or ") != NULL, 0);
+  PetscCall(PetscPushErrorHandler(ScratchKeepError, &errors));
   (void)HistoryDestroy(&history);
   PetscCall(PetscPopErrorHandler());
   PetscCall(GoOn(m, 17, n, memory));

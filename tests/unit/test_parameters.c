@@ -4,18 +4,8 @@
 */
 #include "brake.h"
 #include "check.h"
+#include "scratch.h"
 #include <string.h>
-
-/* Keeps the first message */
-static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
-                                  PetscErrorType type, const char *message, void *ctx)
-{
-  char *text = ctx;
-
-  (void)comm, (void)line, (void)function, (void)file;
-  if (type == PETSC_ERROR_INITIAL) (void)snprintf(text, 256, "%s", message);
-  return code;
-}
 
 /* Breaks when: a bad value passes, or its message does not name parameter, value, limits and unit */
 static PetscErrorCode TestBad(Operators o, const char name[], PetscReal bad, const char expected[], int *failed)
@@ -24,15 +14,15 @@ static PetscErrorCode TestBad(Operators o, const char name[], PetscReal bad, con
   PetscInt                  n;
   PetscReal                 p[64];
   PetscErrorCode            error;
-  char                      message[256] = "";
+  Scratch                   keep = {.code = 0};
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetParameters(o, &n, &q));
   for (PetscInt i = 0; i < n; i++) p[i] = strcmp(q[i].name, name) ? q[i].value : bad;
-  PetscCall(PetscPushErrorHandler(KeepMessage, message));
+  PetscCall(PetscPushErrorHandler(ScratchKeepError, &keep));
   error = OperatorsSetParameters(o, p);
   PetscCall(PetscPopErrorHandler());
-  *failed += CheckTrue(message, error == PETSC_ERR_USER_INPUT && !strcmp(message, expected), (double)error);
+  *failed += CheckTrue(keep.message, error == PETSC_ERR_USER_INPUT && !strcmp(keep.message, expected), (double)error);
   for (PetscInt i = 0; i < n; i++)
     if (!strcmp(q[i].name, name)) *failed += CheckTrue("the value stays", q[i].value != bad, q[i].value);
   PetscFunctionReturn(0);

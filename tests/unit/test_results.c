@@ -7,38 +7,12 @@
 */
 #include <squeal/results.h>
 #include <signal.h>
-#include <stdlib.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
-#include <unistd.h>
-#include "check.h"
 #include "boxmesh.h"
+#include "check.h"
+#include "scratch.h"
 
 #define N_KINDS 6
-
-/* Scratch folder and the last error message */
-typedef struct {
-  char        top[PETSC_MAX_PATH_LEN], dir[PETSC_MAX_PATH_LEN], message[PETSC_MAX_PATH_LEN];
-  PetscMPIInt rank;
-} Scratch;
-
-/* Error handler that keeps the message */
-static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
-                                  PetscErrorType type, const char *message, void *ctx)
-{
-  Scratch *scratch = ctx;
-
-  (void)comm, (void)line, (void)function, (void)file;
-  if (type == PETSC_ERROR_INITIAL) snprintf(scratch->message, sizeof(scratch->message), "%s", message ? message : "");
-  return code;
-}
-
-/* Path of a file of the folder; the buffer is large enough for the short names used here */
-static const char *PathOf(const Scratch *scratch, const char name[], char path[PETSC_MAX_PATH_LEN + 32])
-{
-  snprintf(path, PETSC_MAX_PATH_LEN + 32, "%s/%s", scratch->dir, name);
-  return path;
-}
 
 /* Size of a file of the folder in bytes, -1 when there is none */
 static long SizeOf(const Scratch *scratch, const char name[])
@@ -46,7 +20,7 @@ static long SizeOf(const Scratch *scratch, const char name[])
   char        path[PETSC_MAX_PATH_LEN + 32];
   struct stat status;
 
-  return stat(PathOf(scratch, name, path), &status) ? -1 : (long)status.st_size;
+  return stat(ScratchPath(scratch, name, path), &status) ? -1 : (long)status.st_size;
 }
 
 /* Number of the files of a field or table of this name, temporary ones included; all are removed */
@@ -59,20 +33,10 @@ static int RemoveFiles(const Scratch *scratch, const char name[])
   MPI_Barrier(PETSC_COMM_WORLD);
   for (int i = 0; i < N_KINDS && scratch->rank == 0; i++) {
     snprintf(file, sizeof(file), "%s%s", name, kinds[i]);
-    n += unlink(PathOf(scratch, file, path)) ? 0 : 1;
+    n += unlink(ScratchPath(scratch, file, path)) ? 0 : 1;
   }
   MPI_Bcast(&n, 1, MPI_INT, 0, PETSC_COMM_WORLD);
   return n;
-}
-
-/* Limits the size of files that this process writes, bytes; negative = no limit */
-static void LimitFiles(long bytes)
-{
-  struct rlimit limit;
-
-  getrlimit(RLIMIT_FSIZE, &limit);
-  limit.rlim_cur = bytes < 0 ? limit.rlim_max : (rlim_t)bytes;
-  setrlimit(RLIMIT_FSIZE, &limit);
 }
 
 /* Makes a writer into a folder; returns the code of ResultsOpenDirectory() */
@@ -95,13 +59,13 @@ static int TestFolder(Scratch *scratch)
   failed += CheckTrue("folder with parents is made", !OpenResults(scratch->dir, &results), 0);
   failed += CheckTrue("folder exists", !access(scratch->dir, W_OK), 0);
   (void)ResultsDestroy(&results);
-  if (scratch->rank == 0) fclose(fopen(PathOf(scratch, "file", path), "w"));
+  if (scratch->rank == 0) fclose(fopen(ScratchPath(scratch, "file", path), "w"));
   MPI_Barrier(PETSC_COMM_WORLD);
-  PathOf(scratch, "file/below", path);
+  ScratchPath(scratch, "file/below", path);
   failed += CheckTrue("no folder below a file", OpenResults(path, &results) == PETSC_ERR_FILE_OPEN, 0);
   failed += CheckTrue("message names the folder", strstr(scratch->message, path) != NULL, 0);
   (void)ResultsDestroy(&results);
-  if (scratch->rank == 0) unlink(PathOf(scratch, "file", path));
+  if (scratch->rank == 0) unlink(ScratchPath(scratch, "file", path));
   return failed;
 }
 
@@ -125,7 +89,7 @@ static int TestTable(Scratch *scratch, Results results)
   FILE      *file;
 
   failed += CheckTrue("table is written", !WriteTable(results, 2), 0);
-  file = fopen(PathOf(scratch, "table.csv", path), "r");
+  file = fopen(ScratchPath(scratch, "table.csv", path), "r");
   if (file) text[fread(text, 1, sizeof(text) - 1, file)] = '\0';
   if (file) fclose(file);
   failed += CheckTrue("content of the table", !strcmp(text, expected), 0);
@@ -211,46 +175,40 @@ static int TestFieldFull(Scratch *scratch, Results results, DM dm)
   return failed;
 }
 
-/* Makes the names of a scratch folder, two levels deep, the same on all ranks */
-static PetscErrorCode ScratchCreate(Scratch *scratch)
+/* Puts the folder two levels below the scratch folder, top */
+static void MoveDown(Scratch *scratch, char top[PETSC_MAX_PATH_LEN])
 {
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &scratch->rank));
-  PetscCall(PetscGetTmp(PETSC_COMM_WORLD, scratch->top, sizeof(scratch->top) - 32));
-  PetscCall(PetscStrlcat(scratch->top, "/squealXXXXXX", sizeof(scratch->top)));
-  if (scratch->rank == 0 && !mkdtemp(scratch->top)) scratch->top[0] = '\0';
-  PetscCallMPI(MPI_Bcast(scratch->top, sizeof(scratch->top), MPI_CHAR, 0, PETSC_COMM_WORLD));
-  PetscCheck(scratch->top[0], PETSC_COMM_WORLD, PETSC_ERR_FILE_OPEN, "no scratch folder could be made");
-  snprintf(scratch->dir, sizeof(scratch->dir), "%.1000s/a/b", scratch->top);
-  PetscFunctionReturn(0);
+  snprintf(top, PETSC_MAX_PATH_LEN, "%s", scratch->dir);
+  snprintf(scratch->dir, sizeof(scratch->dir), "%.1000s/a/b", top);
 }
 
-/* Removes the scratch folder, which must be empty */
-static int ScratchDestroy(Scratch *scratch)
+/* Puts it back; the folders between must be empty */
+static int MoveUp(Scratch *scratch, const char top[])
 {
   char parent[PETSC_MAX_PATH_LEN];
   int  kept;
 
-  if (scratch->rank) return 0;
-  snprintf(parent, sizeof(parent), "%.1000s/a", scratch->top);
-  kept = rmdir(scratch->dir) || rmdir(parent) || rmdir(scratch->top);
+  snprintf(parent, sizeof(parent), "%.1000s/a", top);
+  kept = scratch->rank == 0 && (rmdir(scratch->dir) || rmdir(parent));
+  snprintf(scratch->dir, sizeof(scratch->dir), "%s", top);
   return CheckTrue("no other file is left in the folder", !kept, 0);
 }
 
 int main(int argc, char **argv)
 {
   const PetscInt faces[3] = {12, 10, 10};
-  Scratch        scratch  = {0};
+  Scratch        scratch;
   Results        results;
   ResultsField   field;
   DM             dm;
+  char           top[PETSC_MAX_PATH_LEN];
   int            failed = 0;
 
   signal(SIGXFSZ, SIG_IGN);
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
   PetscCall(ScratchCreate(&scratch));
+  MoveDown(&scratch, top);
   PetscCall(BoxMeshDistributed(PETSC_COMM_WORLD, faces, &dm));
-  PetscCall(PetscPushErrorHandler(KeepMessage, &scratch));
   failed += TestFolder(&scratch);
   PetscCall(OpenResults(scratch.dir, &results));
   failed += TestTable(&scratch, results);
@@ -258,10 +216,10 @@ int main(int argc, char **argv)
   failed += TestFieldFull(&scratch, results, dm);
   failed += CheckTrue("no field without a mesh",
                       ResultsFieldOpen(results, "field", NULL, 0, NULL, NULL, &field) == PETSC_ERR_ARG_NULL, 0);
-  PetscCall(PetscPopErrorHandler());
   PetscCall(ResultsDestroy(&results));
   PetscCall(DMDestroy(&dm));
-  failed += ScratchDestroy(&scratch);
+  failed += MoveUp(&scratch, top);
+  failed += CheckTrue("nor above it", ScratchDestroy(&scratch), 0);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD));
   PetscCall(PetscFinalize());
   return failed ? 1 : 0;

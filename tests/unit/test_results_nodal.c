@@ -7,12 +7,11 @@
 #include <squeal/results.h>
 #include <hdf5.h>
 #include <petscsf.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
-#include "check.h"
 #include "boxmesh.h"
+#include "check.h"
+#include "scratch.h"
 
 #define N_NODES ((5 + 1) * (4 + 1) * (3 + 1))
 #define SPOILT  -1e300
@@ -169,7 +168,7 @@ static int TestWidth(Results results, DM dm)
 int main(int argc, char **argv)
 {
   const PetscInt faces[3] = {5, 4, 3};
-  char           dir[64]  = "", h5[80], xmf[80];
+  char           dir[PETSC_MAX_PATH_LEN], h5[PETSC_MAX_PATH_LEN + 16], xmf[PETSC_MAX_PATH_LEN + 16];
   PetscMPIInt    rank;
   Results        results;
   DM             dm;
@@ -177,10 +176,7 @@ int main(int argc, char **argv)
 
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
-  strcpy(dir, "/tmp/squealXXXXXX");
-  if (rank == 0 && !mkdtemp(dir)) dir[0] = '\0';
-  PetscCallMPI(MPI_Bcast(dir, sizeof(dir), MPI_CHAR, 0, PETSC_COMM_WORLD));
-  PetscCheck(dir[0], PETSC_COMM_WORLD, PETSC_ERR_FILE_OPEN, "no scratch folder could be made");
+  PetscCall(ScratchMakeFolder(dir));
   snprintf(h5, sizeof(h5), "%s/states.h5", dir);
   snprintf(xmf, sizeof(xmf), "%s/states.xmf", dir);
   PetscCall(BoxMeshDistributed(PETSC_COMM_WORLD, faces, &dm));
