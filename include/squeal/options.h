@@ -6,6 +6,14 @@
 
 #include <petscsys.h>
 
+/* What PetscOptionsBegin() declares as PetscOptionsObject: a pointer to PetscOptionItems until 3.22, where the pointer
+   itself got that name in 3.23 */
+#if PETSC_VERSION_LT(3, 23, 0)
+typedef PetscOptionItems *OptionsItems;
+#else
+typedef PetscOptionItems OptionsItems;
+#endif
+
 /*@
    OptionsGetNames - reads a list of names, each of which becomes the prefix of its own options. Collective.
 
@@ -36,7 +44,7 @@ PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char he
 
    Errors: PETSC_ERR_USER_INPUT for more or fewer values.
 @*/
-PetscErrorCode OptionsGetReals(PetscOptionItems *PetscOptionsObject, const char option[], const char help[], PetscInt n,
+PetscErrorCode OptionsGetReals(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
                                PetscReal values[], PetscBool *set);
 
 /*@

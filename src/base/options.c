@@ -73,7 +73,7 @@ PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char he
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsGetReals(PetscOptionItems *PetscOptionsObject, const char option[], const char help[], PetscInt n,
+PetscErrorCode OptionsGetReals(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
                                PetscReal values[], PetscBool *set)
 {
   const char *prefix = PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "";

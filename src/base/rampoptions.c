@@ -6,7 +6,7 @@
 static const char *const shapes[RAMP_N_SHAPES] = {[RAMP_LINEAR] = "linear", [RAMP_SMOOTH] = "smooth"};
 
 /* A time of at least 0, s */
-static PetscErrorCode TimeSetFromOptions(PetscOptionItems *PetscOptionsObject, const char option[], const char help[],
+static PetscErrorCode TimeSetFromOptions(OptionsItems PetscOptionsObject, const char option[], const char help[],
                                          double *time)
 {
   const char *prefix = PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "";
@@ -20,7 +20,7 @@ static PetscErrorCode TimeSetFromOptions(PetscOptionItems *PetscOptionsObject, c
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode RampSetFromOptions(PetscOptionItems *PetscOptionsObject, Ramp *ramp)
+PetscErrorCode RampSetFromOptions(OptionsItems PetscOptionsObject, Ramp *ramp)
 {
   PetscInt shape = RAMP_SMOOTH;
 

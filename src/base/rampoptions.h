@@ -1,7 +1,7 @@
 /* Private: options of ramps in time */
 #pragma once
 
-#include <petscsys.h>
+#include <squeal/options.h>
 #include "kernels/ramp.h"
 
 /*@
@@ -18,7 +18,7 @@
 
    Errors: PETSC_ERR_USER_INPUT for a length or delay that is negative or not finite.
 @*/
-PETSC_INTERN PetscErrorCode RampSetFromOptions(PetscOptionItems *PetscOptionsObject, Ramp *ramp);
+PETSC_INTERN PetscErrorCode RampSetFromOptions(OptionsItems PetscOptionsObject, Ramp *ramp);
 
 /*@ RampDescribe - words that follow a load or motion, such as "smooth ramp over 0.002 s from 0.001 s" or "at once". Not
     collective. @*/

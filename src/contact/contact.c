@@ -18,7 +18,7 @@ PetscErrorCode ContactCreate(Model model, Contact *contact)
 }
 
 /* Reads the stiffness: a number, or the word `identify` */
-static PetscErrorCode StiffnessRead(PetscOptionItems *PetscOptionsObject, ContactInterface *c)
+static PetscErrorCode StiffnessRead(OptionsItems PetscOptionsObject, ContactInterface *c)
 {
   char      text[128] = "", *end;
   PetscBool set;

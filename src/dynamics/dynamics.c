@@ -32,7 +32,7 @@ PetscErrorCode DynamicsSetModel(Dynamics d, Model model, Contact contact)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode StepSetFromOptions(Dynamics d, PetscOptionItems *PetscOptionsObject)
+static PetscErrorCode StepSetFromOptions(Dynamics d, OptionsItems PetscOptionsObject)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsReal("-dynamics_step_fraction", "step, where -ts_dt is not given, of the critical one (-)",
@@ -45,7 +45,7 @@ static PetscErrorCode StepSetFromOptions(Dynamics d, PetscOptionItems *PetscOpti
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode StartSetFromOptions(Dynamics d, PetscOptionItems *PetscOptionsObject)
+static PetscErrorCode StartSetFromOptions(Dynamics d, OptionsItems PetscOptionsObject)
 {
   static const char *const starts[N_STARTS] = {[START_REST] = "rest", [START_STATIC] = "static"};
   PetscInt                 start            = d->start;
@@ -63,7 +63,7 @@ static PetscErrorCode StartSetFromOptions(Dynamics d, PetscOptionItems *PetscOpt
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode RunSetFromOptions(Dynamics d, PetscOptionItems *PetscOptionsObject)
+static PetscErrorCode RunSetFromOptions(Dynamics d, OptionsItems PetscOptionsObject)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsBool("-dynamics_coriolis", "Coriolis forces in parts that turn", "dynamics.h", d->coriolis,

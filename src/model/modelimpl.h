@@ -2,6 +2,7 @@
 #pragma once
 
 #include <squeal/model.h>
+#include <squeal/options.h>
 
 #define MODEL_MAX_NAMES 64 /* names in one list of the scene */
 
@@ -72,7 +73,7 @@ PETSC_INTERN PetscErrorCode SupportsSetFromOptions(Model model);
 PETSC_INTERN PetscErrorCode SupportsLayOut(Model model);
 
 /* support.c - set name of a support, spring, dashpot or load, inside its PetscOptionsBegin() */
-PETSC_INTERN PetscErrorCode SetNameFromOptions(PetscOptionItems *PetscOptionsObject, char **set);
+PETSC_INTERN PetscErrorCode SetNameFromOptions(OptionsItems PetscOptionsObject, char **set);
 
 /* load.c - total forces on sets; raises an error for a set that the mesh does not have, or that has no node of an
    element */

@@ -14,7 +14,7 @@ static const char *const letters[N_OPERATORS]  = {"k", "m", "c", "h"};
 static const char *const meanings[N_OPERATORS] = {"stiffness, N/m", "mass, kg", "damping, N s/m",
                                                   "friction part per unit mu, N/m"};
 
-PetscErrorCode OperatorsLoadFromOptions(Operators o, PetscOptionItems *PetscOptionsObject)
+PetscErrorCode OperatorsLoadFromOptions(Operators o, OptionsItems PetscOptionsObject)
 {
   char name[64], help[160];
 

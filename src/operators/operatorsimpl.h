@@ -2,6 +2,7 @@
 #pragma once
 
 #include <squeal/operators.h>
+#include <squeal/options.h>
 
 /* The four matrices, in the order of their option names */
 typedef enum { OPERATOR_K, OPERATOR_M, OPERATOR_C, OPERATOR_H, N_OPERATORS } OperatorKind;
@@ -126,5 +127,5 @@ PETSC_INTERN PetscErrorCode OperatorsProjectTerms(Operators operators);
 PETSC_INTERN PetscErrorCode OperatorsDestroyNullSpaces(Operators operators);
 
 /* load.c - matrices from files and options, and to files */
-PETSC_INTERN PetscErrorCode OperatorsLoadFromOptions(Operators operators, PetscOptionItems *PetscOptionsObject);
+PETSC_INTERN PetscErrorCode OperatorsLoadFromOptions(Operators operators, OptionsItems PetscOptionsObject);
 PETSC_INTERN PetscErrorCode OperatorsLoad(Operators operators);

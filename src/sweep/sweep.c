@@ -46,7 +46,7 @@ PetscErrorCode SweepSetStatics(Sweep sweep, Statics statics)
 }
 
 /* What to vary, how, and how accurately */
-static PetscErrorCode ReadMethod(Sweep sweep, PetscOptionItems *PetscOptionsObject)
+static PetscErrorCode ReadMethod(Sweep sweep, OptionsItems PetscOptionsObject)
 {
   static const char *const methods[] = {"reduced", "full", "real"};
   PetscInt                 method    = SWEEP_REDUCED;
@@ -72,7 +72,7 @@ static PetscErrorCode ReadMethod(Sweep sweep, PetscOptionItems *PetscOptionsObje
 }
 
 /* What else to compute */
-static PetscErrorCode ReadExtras(Sweep sweep, PetscOptionItems *PetscOptionsObject)
+static PetscErrorCode ReadExtras(Sweep sweep, OptionsItems PetscOptionsObject)
 {
   PetscBool set;
 

@@ -102,7 +102,7 @@ static PetscErrorCode TestConstraint(int *failed)
   *failed += CheckTrue("all open: symmetric", pencil.symmetric, pencil.symmetric);
   PetscCall(TestSame(chain.operators, K, NULL, failed));
   for (PetscInt p = 0; p < n; p++) group[p] = 1;
-  PetscCall(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
   error = OperatorsSetClosed(chain.operators, 1, group);
   PetscCall(PetscPopErrorHandler());
   *failed += CheckTrue("groups are refused", error == PETSC_ERR_SUP, error);

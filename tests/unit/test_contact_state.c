@@ -253,7 +253,7 @@ static PetscErrorCode TestWithoutSlip(Chain *chain, int *failed)
   Mat                  K;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
   error[0] = OperatorsGetPencil(chain->operators, &pencil);
   error[1] = OperatorsGetTerms(chain->operators, &n, &terms);
   PetscCall(PetscPopErrorHandler());

@@ -110,7 +110,7 @@ static PetscErrorCode TestBad(int *failed)
   for (int i = 0; i < 4; i++) {
     PetscErrorCode error;
 
-    PetscCall(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
+    PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
     error = Read(bad[i], &ramp, words);
     PetscCall(PetscPopErrorHandler());
     *failed += CheckTrue(bad[i], error == PETSC_ERR_USER_INPUT, error);

@@ -157,7 +157,7 @@ static int TestWidth(Results results, DM dm)
   (void)DMPlexGetHeightStratum(dm, 0, &start, &end);
   if (PetscCalloc1(end - start, &cell_part)) return 1;
   if (ResultsFieldOpen(results, "states", dm, 1, parts, cell_part, &field)) return 1;
-  (void)PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL);
+  (void)PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
   failed = CheckTrue("two values per node are refused",
                      ResultsFieldWriteNodal(field, "wide", 1, &wide) == PETSC_ERR_ARG_OUTOFRANGE, 0);
   (void)PetscPopErrorHandler();

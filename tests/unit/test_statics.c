@@ -248,7 +248,7 @@ static PetscErrorCode TestScene(PetscInt number, Tally *t)
   PetscCall(StaticsCreate(PETSC_COMM_WORLD, &statics));
   PetscCall(StaticsSetFromOptions(statics));
   PetscCall(StaticsSetOperators(statics, chain.operators));
-  PetscCall(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
   error = StaticsSolve(statics);
   PetscCall(PetscPopErrorHandler());
   PetscCall(Count(number, &scene, &chain, statics, error, t));

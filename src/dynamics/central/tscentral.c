@@ -6,6 +6,7 @@
 #include "base/versions.h"
 #include "tscentral.h"
 #include "base/events.h"
+#include <squeal/options.h>
 #include <petsc/private/tsimpl.h>
 
 typedef struct {
@@ -158,7 +159,7 @@ static PetscErrorCode TSDestroy_Central(TS ts)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TSSetFromOptions_Central(TS ts, PetscOptionItems *PetscOptionsObject)
+static PetscErrorCode TSSetFromOptions_Central(TS ts, OptionsItems PetscOptionsObject)
 {
   TS_Central *c = (TS_Central *)ts->data;
 

@@ -23,8 +23,8 @@ static PetscErrorCode OptionCheckCount(MPI_Comm comm, const char option[], Petsc
 }
 
 /* Reads an array of n numbers (-) */
-static PetscErrorCode OptionInts(PetscOptionItems *PetscOptionsObject, const char option[], const char help[],
-                                 PetscInt n, PetscInt value[])
+static PetscErrorCode OptionInts(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
+                                 PetscInt value[])
 {
   PetscInt count = n;
 
@@ -35,8 +35,8 @@ static PetscErrorCode OptionInts(PetscOptionItems *PetscOptionsObject, const cha
 }
 
 /* Reads an array of n lengths (m) */
-static PetscErrorCode OptionReals(PetscOptionItems *PetscOptionsObject, const char option[], const char help[],
-                                  PetscInt n, PetscReal value[])
+static PetscErrorCode OptionReals(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
+                                  PetscReal value[])
 {
   PetscInt count = n;
 

@@ -5,7 +5,7 @@
 #include "model/modelimpl.h"
 #include <squeal/options.h>
 
-PetscErrorCode SetNameFromOptions(PetscOptionItems *PetscOptionsObject, char **set)
+PetscErrorCode SetNameFromOptions(OptionsItems PetscOptionsObject, char **set)
 {
   char name[256] = "";
 
