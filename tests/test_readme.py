@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""What the READMEs say of the repository is so: every path that they name exists, every test of the table in tests/README.md
+is one, and README.md has at most 200 lines. Breaks when a file is moved and a README is forgotten. Exit status: 0, or 1.
+
+A path is a word between backticks, or in an indented block, that begins with a folder of the top; NAME in it stands for
+anything. Names of C and Python files without a folder are looked for below the README's own. Links are relative to it."""
+
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+FOLDERS = ("include/", "options/", "scripts/", "src/", "tests/")
+MOST_LINES = 200
+CODE = re.compile(r"`([^`]+)`|^    (.*)$", re.MULTILINE)
+LINK = re.compile(r"\]\(([^)#]+)\)")
+
+
+def readmes():
+    """Those of the top and of its folders, without what is built."""
+    return [ROOT / "README.md", *(path for folder in FOLDERS for path in sorted((ROOT / folder).rglob("README.md")))]
+
+
+def words(text):
+    """Words of code, without punctuation about them."""
+    for one, line in CODE.findall(text):
+        yield from (word.strip("\"'.,;:()") for word in (one or line).split())
+
+
+def is_there(folder, word):
+    """Whether a word that looks like a path names something; one that does not is taken to."""
+    if word.startswith(FOLDERS):
+        return any(ROOT.glob(word.replace("NAME", "*")))
+    if re.fullmatch(r"\w+\.[ch]|\w+\.py", word):
+        return any(folder.rglob(word))
+    return True
+
+
+def faults(readme):
+    """What a README names that is not there."""
+    text = readme.read_text()
+    for word in words(text):
+        if not is_there(readme.parent, word):
+            yield f"there is no {word}"
+    for link in LINK.findall(text):
+        if "://" not in link and not (readme.parent / link).exists():
+            yield f"the link to {link} leads nowhere"
+
+
+def unknown_tests():
+    """Names in the last column of the table of accuracy that are neither a case, a unit test nor one of meson.build."""
+    accuracy = (ROOT / "tests/README.md").read_text().split("## How accurate")[1]
+    table = re.findall(r"^\|.*\|([^|]+)\|$", accuracy, re.MULTILINE)
+    known = {path.stem for path in (ROOT / "tests/cases").glob("*.toml")}
+    known |= {path.stem.removeprefix("test_") for path in (ROOT / "tests/unit").glob("test_*.c")}
+    known |= set(re.findall(r"test\('(\w+)-'", (ROOT / "tests/meson.build").read_text()))
+    names = {name for cell in table for name in re.findall(r"`(\w+)`", cell)}
+    return sorted(names - known)
+
+
+def main():
+    found = [f"{readme.relative_to(ROOT)}: {fault}" for readme in readmes() for fault in faults(readme)]
+    found += [f"tests/README.md: there is no test {name}" for name in unknown_tests()]
+    n_lines = len((ROOT / "README.md").read_text().splitlines())
+    if n_lines > MOST_LINES:
+        found.append(f"README.md: {n_lines} lines, more than {MOST_LINES}")
+    n_words = sum(word.startswith(FOLDERS) for readme in readmes() for word in words(readme.read_text()))
+    if n_words < 50:
+        found.append(f"only {n_words} paths found in {len(readmes())} READMEs: are they still read as they are written?")
+    print("\n".join(found) or f"{len(readmes())} READMEs, {n_words} paths, all there; README.md has {n_lines} lines")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
