@@ -32,6 +32,7 @@ static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
   PetscInt                 analysis = ANALYSIS_MODES;
 
   PetscFunctionBeginUser;
+  PetscCall(SquealSetFromOptions(comm));
   PetscOptionsBegin(comm, NULL, "squeal", NULL);
   PetscCall(
     PetscOptionsEList("-analysis", "what to compute", "squeal.h", analyses, N_ANALYSES, analyses[0], &analysis, NULL));

@@ -1,8 +1,9 @@
 /*
-   squeal - all rooms, the life cycle of the program, and its log stages (-log_view reports time and memory of each).
+   squeal - all rooms.
 */
 #pragma once
 
+#include <squeal/sys.h>
 #include <squeal/model.h>
 #include <squeal/contact.h>
 #include <squeal/operators.h>
@@ -12,37 +13,3 @@
 #include <squeal/projector.h>
 #include <squeal/dynamics.h>
 #include <squeal/results.h>
-
-/* Stages of the flow, registered by SquealInitialize() */
-typedef enum {
-  SQUEAL_MODEL,
-  SQUEAL_CONTACT,
-  SQUEAL_OPERATORS,
-  SQUEAL_STATICS,
-  SQUEAL_MODES,
-  SQUEAL_SWEEP,
-  SQUEAL_DYNAMICS,
-  SQUEAL_RESULTS,
-  SQUEAL_N_STAGES
-} SquealStage;
-
-/*@
-   SquealInitialize - starts MPI, PETSc and SLEPc, with one-line error messages, log stages and the citation.
-   Collective.
-
-   Errors: an options file that cannot be read.
-@*/
-PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[]);
-
-/*@ SquealStageBegin - enters a stage of the flow; time and memory are kept for SquealViewStages(). Collective. @*/
-PetscErrorCode SquealStageBegin(SquealStage stage);
-
-/*@ SquealStageEnd - leaves it. Collective. @*/
-PetscErrorCode SquealStageEnd(SquealStage stage);
-
-/*@ SquealViewStages - prints time (s, slowest rank) and memory (MB, sum of ranks) of each stage. Collective. @*/
-PetscErrorCode SquealViewStages(MPI_Comm comm, PetscViewer viewer);
-
-/*@ SquealFinalize - ends all ranks; returns the exit status of the program: 0 when error is 0, else 1. Collective; when
-    other ranks are not on their way here (an error of one rank) they are aborted. @*/
-int SquealFinalize(PetscErrorCode error);

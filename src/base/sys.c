@@ -5,11 +5,12 @@
    it, and all leave through MPI_Finalize. When some do not come within two seconds, it was this rank's own error: it
    prints, and aborts the others, which know nothing of it.
 */
-#include <squeal/squeal.h>
+#include <squeal/sys.h>
 #include <squeal/options.h>
 #include "events.h"
 #include <slepcsys.h>
 #include <hdf5.h>
+#include <petsctime.h>
 #include <signal.h>
 
 #define MAX_MESSAGE 1024
@@ -33,9 +34,11 @@ static struct {
 
 static const char citation[] =
   "@inproceedings{massi2005,\n  title = {Numerical analysis of squeal instability},\n  year = {2005}\n}\n";
-static PetscBool cited = PETSC_FALSE;
+static PetscBool cited  = PETSC_FALSE;
+static PetscBool traced = PETSC_FALSE; /* -squeal_traceback */
 
-/* Keeps the first line of the first message; the codes of the callers above add nothing for a user */
+/* Keeps the first line of the first message; the codes of the callers above add nothing for a user. The traceback is
+   that of PETSC_COMM_SELF, since PETSc aborts the higher ranks of another communicator. */
 static PetscErrorCode KeepError(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
                                 PetscErrorType type, const char *message, void *ctx)
 {
@@ -43,7 +46,8 @@ static PetscErrorCode KeepError(MPI_Comm comm, int line, const char *function, c
   const char *text = message;
   char        better[MAX_MESSAGE];
 
-  (void)comm, (void)line, (void)function, (void)file;
+  (void)comm;
+  if (traced) (void)PetscTraceBackErrorHandler(PETSC_COMM_SELF, line, function, file, code, type, message, NULL);
   if (type != PETSC_ERROR_INITIAL || kept[0]) return code;
   if (!text || !text[0]) (void)PetscErrorMessage(code, &text, NULL);
   (void)snprintf(kept, MAX_MESSAGE, "%.*s", text ? (int)strcspn(text, "\n") : 13, text ? text : "unknown error");
@@ -82,6 +86,16 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
   PetscCall(PetscClassIdRegister("Squeal", &class));
   for (PetscInt e = 0; e < N_EVENTS; e++) PetscCall(PetscLogEventRegister(event_names[e], class, &squeal_events[e]));
   PetscCall(PetscCitationsRegister(citation, &cited));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SquealSetFromOptions(MPI_Comm comm)
+{
+  PetscFunctionBeginUser;
+  PetscOptionsBegin(comm, NULL, "squeal", NULL);
+  PetscCall(PetscOptionsBool("-squeal_traceback", "show PETSc's traceback of an error, for developers", "sys.h", traced,
+                             &traced, NULL));
+  PetscOptionsEnd();
   PetscFunctionReturn(0);
 }
 

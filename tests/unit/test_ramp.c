@@ -1,11 +1,11 @@
 /*
-   Unit test of kernels/ramp.h and of the options of a ramp.
+   Unit test of base/ramp.h and of the options of a ramp.
 
    References: the definitions, their values at places where they are rational, the trapezoidal rule with its correction
    at the ends for the integral, central differences for the rate.
 */
 #include "check.h"
-#include "base/rampoptions.h"
+#include "base/ramp.h"
 
 /* Breaks when: a ramp begins or ends elsewhere, is not 0 before and 1 after, or a shape is another curve */
 static int TestValues(void)

@@ -10,7 +10,7 @@
 #include <squeal/projector.h>
 #include "contact/contactimpl.h"
 #include "kernels/cone.h"
-#include "kernels/ramp.h"
+#include "base/ramp.h"
 
 /* Sliding of the master of one interface */
 typedef struct {

@@ -9,7 +9,7 @@
    Lengths in m, angles in rad, times in s.
 */
 #include "projectorimpl.h"
-#include "base/rampoptions.h"
+#include "base/ramp.h"
 #include <squeal/options.h>
 
 static PetscReal Length(const PetscReal a[3])

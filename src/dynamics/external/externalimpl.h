@@ -8,7 +8,7 @@
 
 #include "external.h"
 #include "forcepattern.h"
-#include "base/rampoptions.h"
+#include "base/ramp.h"
 
 #define EXTERNAL_MAX_NAMES 64 /* names in one list of the scene */
 

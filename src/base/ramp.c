@@ -1,7 +1,7 @@
 /*
-   Ramps in time (kernels/ramp.h) from the options of their owner, and in words.
+   Ramps in time from the options of their owner, and in words.
 */
-#include "rampoptions.h"
+#include "ramp.h"
 
 static const char *const shapes[RAMP_N_SHAPES] = {[RAMP_LINEAR] = "linear", [RAMP_SMOOTH] = "smooth"};
 
@@ -13,7 +13,7 @@ static PetscErrorCode TimeSetFromOptions(OptionsItems PetscOptionsObject, const 
   PetscReal   value  = *time;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsReal(option, help, "rampoptions.h", value, &value, NULL));
+  PetscCall(PetscOptionsReal(option, help, "ramp.h", value, &value, NULL));
   PetscCheck(value >= 0 && !PetscIsInfOrNanReal(value), PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
              "-%s%s %.6g must be a time of at least 0 (s)", prefix, option + 1, (double)value);
   *time = value;
@@ -27,8 +27,8 @@ PetscErrorCode RampSetFromOptions(OptionsItems PetscOptionsObject, Ramp *ramp)
   PetscFunctionBeginUser;
   *ramp = (Ramp){.shape = RAMP_SMOOTH};
   PetscCall(TimeSetFromOptions(PetscOptionsObject, "-ramp", "time from nothing to all of it, s", &ramp->length));
-  PetscCall(PetscOptionsEList("-ramp_shape", "how it grows", "rampoptions.h", shapes, RAMP_N_SHAPES, shapes[shape],
-                              &shape, NULL));
+  PetscCall(
+    PetscOptionsEList("-ramp_shape", "how it grows", "ramp.h", shapes, RAMP_N_SHAPES, shapes[shape], &shape, NULL));
   PetscCall(TimeSetFromOptions(PetscOptionsObject, "-delay", "time at which it begins, s", &ramp->delay));
   ramp->shape = (RampShape)shape;
   PetscFunctionReturn(0);
