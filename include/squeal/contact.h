@@ -11,6 +11,9 @@
    Penalty (seed paper, eq. 1): internal forces k_n N'N u - mu k_n T'N u, that is along n on the master k_n (N u),
    along t on the master -mu k_n (N u), and the opposite on the slave: friction drags the master along t.
    Constraint: N u = 0 with force directions N' - mu T'.
+   Friction, in every analysis: mu(s) = max(0, mu + mu_slope (|s| - speed)) at the slip velocity s; mu is the value at
+   the stated sliding speed of the pair, 0 m/s where nothing slides as told. A law that would fall below 0 stays at 0;
+   linearised about the stated speed it is mu + mu_slope (|s| - speed).
 */
 #pragma once
 
@@ -35,7 +38,7 @@ typedef struct {
   PetscReal area;                   /* tributary area of the slave node, m^2 */
   PetscReal gap;                    /* n . (x_s - x_m) of the mesh as it is, m, positive open */
   PetscReal force; /* normal force carried in the sliding state, N, compressive >= 0; 0 when not given */
-  PetscReal speed; /* sliding speed, m/s; 0 when not given */
+  PetscReal speed; /* stated sliding speed, m/s; 0 where nothing slides as told */
 } ContactPair;
 
 /* State of one pair. Friction is given as the force on the master; in slip it has the direction of the slave's velocity
@@ -62,8 +65,8 @@ typedef struct {
 typedef struct {
   char      *name, *slave, *master; /* surfaces */
   ContactLaw law;
-  PetscReal  mu;          /* friction coefficient */
-  PetscReal  mu_slope;    /* d mu / d speed, s/m */
+  PetscReal  mu;          /* friction coefficient at the stated sliding speed */
+  PetscReal  mu_slope;    /* d mu / d slip speed, s/m */
   PetscReal  kn;          /* stiffness per pair, N/m */
   PetscBool  identify;    /* kn is to be identified by pressing; until then it is 1 */
   PetscReal  tolerance;   /* pairs farther apart than this are no pairs, m */
@@ -88,8 +91,8 @@ PetscErrorCode ContactCreate(Model model, Contact *contact);
 `contact`
 .  -contact_surfaces <slave,master> - named surfaces
 .  -contact_law <penalty|constraint> - k_n per pair, or k_n to infinity
-.  -contact_mu <0>                - friction coefficient
-.  -contact_mu_slope <0>          - its slope with the sliding speed, s/m
+.  -contact_mu <0>                - friction coefficient at the stated sliding speed
+.  -contact_mu_slope <0>          - its slope with the slip speed, s/m
 .  -contact_kn <N/m|identify>     - penalty stiffness per pair, or found by pressing (statics.h)
 .  -contact_slip <x,y,z>          - direction of the slave's velocity relative to the master
 .  -contact_rotation <x,y,z>      - or: angular velocity of the master relative to the slave, rad/s

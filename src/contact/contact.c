@@ -51,8 +51,8 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
   PetscCall(
     PetscOptionsEList("-law", "k_n per pair, or the exact constraint", "contact.h", laws, 2, laws[0], &law, NULL));
   PetscCall(PetscOptionsReal("-mu", "friction coefficient", "contact.h", c->mu, &c->mu, NULL));
-  PetscCall(PetscOptionsReal("-mu_slope", "its slope with the sliding speed, s/m", "contact.h", c->mu_slope,
-                             &c->mu_slope, NULL));
+  PetscCall(PetscOptionsReal("-mu_slope", "its slope with the slip speed about the stated one, s/m", "contact.h",
+                             c->mu_slope, &c->mu_slope, NULL));
   PetscCall(StiffnessRead(PetscOptionsObject, c));
   PetscCall(
     PetscOptionsReal("-tolerance", "largest distance of a pair, m", "contact.h", c->tolerance, &c->tolerance, NULL));
@@ -91,8 +91,6 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
              (double)c->tolerance);
   PetscCheck(c->force >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_force %.6g must not be negative (N)", c->name,
              (double)c->force);
-  PetscCheck(c->damping || c->mu_slope == 0, comm, PETSC_ERR_USER_INPUT,
-             "-%s_mu_slope does nothing without -%s_friction_damping", c->name, c->name);
   PetscCheck(!c->damping || c->speed > 0 || c->rotation[0] != 0 || c->rotation[1] != 0 || c->rotation[2] != 0, comm,
              PETSC_ERR_USER_INPUT, "-%s_friction_damping needs a positive -%s_speed (m/s) or a -%s_rotation", c->name,
              c->name, c->name);

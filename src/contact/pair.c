@@ -172,7 +172,7 @@ static PetscBool PairSetSlip(const ContactInterface *c, ContactPair *pair)
   for (int d = 0; d < 3; d++) pair->t[d] -= normal_part * pair->n[d];
   speed = Normalise(pair->t);
   if (!(speed > 1e-6 * full)) AnyTangent(pair->n, pair->t);
-  pair->speed = turns ? speed : c->speed;
+  pair->speed = turns ? speed : full > 0 ? c->speed : 0;
   Cross(pair->n, pair->t, pair->b);
   return speed > 1e-6 * full ? PETSC_TRUE : PETSC_FALSE;
 }

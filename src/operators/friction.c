@@ -213,6 +213,8 @@ PetscErrorCode OperatorsCheckLinear(Operators o)
                c[i].name, c[i].name);
     PetscCheck(!c[i].damping || c[i].force > 0 || c[i].preloaded, o->comm, PETSC_ERR_USER_INPUT,
                "-%s_friction_damping needs a positive -%s_force (N), or -modes_contact static", c[i].name, c[i].name);
+    PetscCheck(c[i].damping || c[i].mu_slope == 0, o->comm, PETSC_ERR_USER_INPUT,
+               "-%s_mu_slope does nothing without -%s_friction_damping", c[i].name, c[i].name);
   }
   PetscFunctionReturn(0);
 }

@@ -269,10 +269,22 @@ static int TestStickBorder(void)
   return failed;
 }
 
+/* Breaks when: the slope is not taken about the stated speed, or a falling law goes below 0. By hand */
+static int TestCoefficient(void)
+{
+  int failed = CheckClose("mu at the stated speed", FrictionCoefficient(0.3, -0.01, 20, 20), 0.3, 0);
+
+  failed += CheckClose("faster", FrictionCoefficient(0.3, -0.01, 20, 30), 0.2, 1e-15);
+  failed += CheckClose("at rest", FrictionCoefficient(0.3, -0.01, 20, 0), 0.5, 1e-15);
+  failed += CheckClose("never below 0", FrictionCoefficient(0.3, -0.01, 20, 60), 0, 0);
+  failed += CheckClose("constant", FrictionCoefficient(0.3, 0, 20, 60), 0.3, 0);
+  return failed;
+}
+
 int main(void)
 {
   const int failed = TestOpenAndStick() + TestOneRow() + TestSlipTangent() + TestSlipFixed() + TestFrictionless() +
-                     TestBorders() + TestStickBorder();
+                     TestBorders() + TestStickBorder() + TestCoefficient();
 
   printf("%d failed\n", failed);
   return failed ? 1 : 0;

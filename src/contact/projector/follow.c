@@ -174,24 +174,25 @@ static void AnyTangent(const PetscReal n[3], PetscReal t[3])
   t[(least + 2) % 3] = -n[(least + 1) % 3] / length;
 }
 
-/* Tangents: t along the slip, b = n x t */
-static void TangentsSet(const PetscReal along[3], PetscReal e[3][3])
+/* Tangents: t along the slip, b = n x t; returns the length of the slip in the tangent plane */
+static PetscReal TangentsSet(const PetscReal along[3], PetscReal e[3][3])
 {
   const PetscReal dot  = along[0] * e[0][0] + along[1] * e[0][1] + along[2] * e[0][2];
-  PetscReal       full = 0, length = 0;
+  PetscReal       full = 0, square = 0, length;
 
   for (int d = 0; d < 3; d++) {
     e[1][d] = along[d] - dot * e[0][d];
     full += along[d] * along[d];
-    length += e[1][d] * e[1][d];
+    square += e[1][d] * e[1][d];
   }
-  if (length > 1e-12 * full) {
-    length = 1 / PetscSqrtReal(length);
-    for (int d = 0; d < 3; d++) e[1][d] *= length;
+  length = PetscSqrtReal(square);
+  if (square > 1e-12 * full) {
+    for (int d = 0; d < 3; d++) e[1][d] *= 1 / length;
   } else {
     AnyTangent(e[0], e[1]);
   }
   for (int d = 0; d < 3; d++) e[2][d] = e[0][(d + 1) % 3] * e[1][(d + 2) % 3] - e[0][(d + 2) % 3] * e[1][(d + 1) % 3];
+  return length;
 }
 
 /* Unit normal at natural coordinates */
@@ -206,14 +207,14 @@ static void NormalSet(const MasterFacet *f, const PetscReal natural[2], PetscRea
   for (int d = 0; d < 3; d++) n[d] *= inverse;
 }
 
-void PairSetBasis(const Surface *s, Pair *pair)
+PetscReal PairSetBasis(const Surface *s, Pair *pair)
 {
   const MasterFacet *f = &s->facet[pair->facet];
 
   FacetWeights(pair->natural[0], pair->natural[1], pair->weight);
   NormalSet(f, pair->natural, pair->e[0]);
   for (int i = 0; i < 4; i++) pair->node[i] = f->node[i];
-  TangentsSet(pair->along, pair->e);
+  return TangentsSet(pair->along, pair->e);
 }
 
 PetscReal PairGap(const Surface *s, const Pair *pair, const PetscReal x[3], const PetscReal d[3], const PetscReal u[])

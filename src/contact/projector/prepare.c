@@ -9,7 +9,7 @@
    The guess goes on with the forces of the last steps as a constant, a line or a parabola in time, whichever would have
    guessed the last step best (record.c).
 
-   mu(s) = max(0, mu + mu_slope |s|) with the slip velocity s of v_{n-1/2}, that is one step before.
+   The friction coefficient is that of the slip speed at t_n, on the line through those of v_{n-1/2} and v_{n-3/2}.
 */
 #include "base/versions.h"
 #include "projectorimpl.h"
@@ -66,9 +66,7 @@ static void PairSetCompliance(const Nodes *nodes, Pair *pair)
 static void PairSetDrift(const ContactProjector p, const ContactStep *step, const PetscReal d_old[3],
                          const PetscReal d_new[3], Pair *pair)
 {
-  const Sliding  *sliding = &p->sliding[pair->interface];
-  const PetscReal ramp    = RampValue(&sliding->ramp, step->time + 0.5 * step->dt);
-  PetscReal       along   = sliding->speed;
+  const Sliding *sliding = &p->sliding[pair->interface];
 
   for (int i = 0; i < 3; i++) pair->drift[i] = 0;
   if (sliding->turning) {
@@ -76,22 +74,22 @@ static void PairSetDrift(const ContactProjector p, const ContactStep *step, cons
       for (int d = 0; d < 3; d++) pair->drift[i] += pair->e[i][d] * (d_new[d] - d_old[d]) / step->dt;
     return;
   }
-  if (sliding->rotates) along = 0;
-  for (int d = 0; d < 3 && sliding->rotates; d++) along += pair->e[1][d] * pair->along[d];
-  if (sliding->slides) pair->drift[1] = ramp * along;
+  pair->drift[1] = pair->speed * RampValue(&sliding->ramp, step->time + 0.5 * step->dt);
 }
 
-/* Friction coefficient at the slip velocity of v_{n-1/2} */
+/* Friction coefficient at the slip speed at t_n */
 static void PairSetFriction(const ContactProjector p, Pair *pair)
 {
   const ContactInterface *c = &p->contact->interfaces[pair->interface];
-  PetscReal               q[3];
+  PetscReal               q[3], last;
 
   pair->mu = c->mu;
   if (c->mu_slope == 0) return;
   PairVelocity(pair, p->nodes.before, q);
-  pair->mu += c->mu_slope * hypot(q[1] + pair->drift[1], q[2] + pair->drift[2]);
-  pair->mu = PetscMax(0, pair->mu);
+  last       = pair->slip;
+  pair->slip = hypot(q[1] + pair->drift[1], q[2] + pair->drift[2]);
+  if (last < 0) last = pair->slip;
+  pair->mu = FrictionCoefficient(c->mu, c->mu_slope, pair->speed, PetscMax(0, 1.5 * pair->slip - 0.5 * last));
 }
 
 /* Facet that a slave faces at predicted displacements; one that faced none must have come to one at u already */
@@ -124,12 +122,16 @@ PetscBool PairPlace(ContactProjector p, PetscInt k, const PetscReal u[], const P
   pair->status = CONTACT_OPEN;
   if (!pair->found) PairFind(p, k, sliding->slides ? p->nodes.rest : u, where, deepest);
   pair->found = SlidingStays(sliding);
-  if (pair->facet < 0) return PETSC_FALSE;
+  if (pair->facet < 0) {
+    pair->slip = -1;
+    return PETSC_FALSE;
+  }
   if (pair->found && pair->ready) return PETSC_TRUE;
   FrameDisplacement(frame, x, &where[3 * pair->slave], place);
   for (int i = 0; i < 3; i++) place[i] += x[i];
   SlidingDirection(&p->contact->interfaces[pair->interface], sliding, place, pair->along);
-  PairSetBasis(&p->surface[pair->interface], pair);
+  pair->speed = PairSetBasis(&p->surface[pair->interface], pair);
+  if (!sliding->rotates) pair->speed = sliding->slides ? sliding->speed : 0;
   PairTurn(frame, pair);
   PairSetCompliance(&p->nodes, pair);
   if (pair->found) pair->gap = PairGap(&p->surface[pair->interface], pair, x, p->nodes.rest, p->nodes.rest);

@@ -73,8 +73,9 @@ typedef struct {
   PetscReal     W[3][3], w;   /* 1/kg; w = 0 where W is no multiple of the identity, else that */
   PetscReal     offset[3];    /* added to the velocities of the nodes: gap at t_n / dt, and the sliding velocity, m/s */
   PetscReal     drift[3];     /* sliding velocity along n, t, b, m/s */
-  PetscReal     mu;
-  PetscReal     p[3], q[3]; /* impulse on the slave, N s; relative velocity with the offset, m/s */
+  PetscReal     speed;        /* stated sliding speed, 0 where nothing slides as told, m/s */
+  PetscReal     mu, slip;     /* slip speed of v_{n-1/2}, m/s, -1 where it is not known: for mu */
+  PetscReal     p[3], q[3];   /* impulse on the slave, N s; relative velocity with the offset, m/s */
   ContactStatus status;
 } Pair;
 
@@ -230,8 +231,8 @@ PETSC_INTERN PetscBool ProjectorNeedsSearch(ContactProjector projector, const Pe
    slave had no facet before */
 PETSC_INTERN void PairFollow(ContactProjector projector, PetscInt p, const PetscReal d[3], const PetscReal u[],
                              PetscReal deepest);
-/* follow.c - weights, normal, tangents */
-PETSC_INTERN void PairSetBasis(const Surface *surface, Pair *pair);
+/* follow.c - weights, normal, tangents; returns the length of what slip is measured along in the tangent plane */
+PETSC_INTERN PetscReal PairSetBasis(const Surface *surface, Pair *pair);
 /* follow.c - n . (x_s - x_m) at these displacements, m */
 PETSC_INTERN PetscReal PairGap(const Surface *surface, const Pair *pair, const PetscReal x[3], const PetscReal d[3],
                                const PetscReal u[]);

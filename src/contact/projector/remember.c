@@ -6,7 +6,7 @@
 #include "projectorimpl.h"
 #include "base/checksum.h"
 
-#define PER_PAIR (3 + 3 * PROJECTOR_PAST) /* facet, natural coordinates, forces */
+#define PER_PAIR (4 + 3 * PROJECTOR_PAST) /* facet, natural coordinates, slip speed, forces */
 #define PER_SUMS 16
 
 /* Numbers of the root after the first */
@@ -58,6 +58,7 @@ PetscErrorCode ContactProjectorGetMemory(ContactProjector p, PetscInt *n, PetscR
 
     *v++ = (PetscReal)pair->facet;
     for (int i = 0; i < 2; i++) *v++ = pair->natural[i];
+    *v++ = pair->slip;
     for (int i = 0; i < 3 * PROJECTOR_PAST; i++) *v++ = pair->lambda[i / 3][i % 3];
   }
   PetscCall(PetscArraycpy(v, p->u_search, 3 * p->share.n_nodes));
@@ -81,6 +82,7 @@ static PetscErrorCode RootSetMemory(ContactProjector p, const PetscReal v[])
     pair->facet = (PetscInt)*v++;
     pair->found = SlidingStays(&p->sliding[pair->interface]);
     for (int i = 0; i < 2; i++) pair->natural[i] = *v++;
+    pair->slip = *v++;
     for (int i = 0; i < 3 * PROJECTOR_PAST; i++) pair->lambda[i / 3][i % 3] = *v++;
   }
   PetscCall(ProjectorSearch(p, t, 1, v));

@@ -23,6 +23,7 @@ static void PairsFind(ContactProjector p, StartFault *fault)
     PetscReal        d[3], gap;
 
     pair->facet = -1;
+    pair->slip  = -1;
     pair->found = pair->ready = PETSC_FALSE;
     p->state[k]               = (ContactState){.status = CONTACT_OPEN, .gap = PETSC_INFINITY};
     if (!PairPlace(p, k, p->nodes.u, p->nodes.u, PETSC_MAX_REAL)) continue;
