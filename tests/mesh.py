@@ -283,7 +283,8 @@ def main():
     parser.add_argument("shape", choices=["beam", "rig", "blocks", "bars", "ball"])
     parser.add_argument("file", type=Path)
     parser.add_argument("--elements", default="20,4,2", help="of the beam, the block on its base, a bar, along x, y, z")
-    parser.add_argument("--lift", default="0,0,0", metavar="GAP,TILT,CROWN", help="of the block's bottom; GAP of others; m")
+    parser.add_argument("--lift", default="0,0,0", metavar="GAP,TILT,CROWN",
+                        help="of the block's bottom; GAP of others; m")
     parser.add_argument("--format", choices=["2.2", "4.1"], default="4.1")
     parser.add_argument("--binary", action="store_true")
     parser.add_argument("--renumber", type=int, metavar="SEED")

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""What the READMEs say of the repository is so: every path that they name exists, every test of the table in tests/README.md
-is one, and README.md has at most 200 lines. Breaks when a file is moved and a README is forgotten. Exit status: 0, or 1.
+"""What the READMEs say of the repository is so: every path that they name exists, every test of the table in
+tests/README.md is one, and README.md has at most 200 lines. Breaks when a file is moved and a README is forgotten. Exit
+status: 0, or 1.
 
 A path is a word between backticks, or in an indented block, that begins with a folder of the top; NAME in it stands for
-anything. Names of C and Python files without a folder are looked for below the README's own. Links are relative to it."""
+anything. Names of C and Python files without a folder are looked for below the README's own. Links are relative to
+it."""
 
 import re
 import sys
@@ -66,7 +68,7 @@ def main():
         found.append(f"README.md: {n_lines} lines, more than {MOST_LINES}")
     n_words = sum(word.startswith(FOLDERS) for readme in readmes() for word in words(readme.read_text()))
     if n_words < 50:
-        found.append(f"only {n_words} paths found in {len(readmes())} READMEs: are they still read as they are written?")
+        found.append(f"only {n_words} paths in {len(readmes())} READMEs: are they read as they are written?")
     print("\n".join(found) or f"{len(readmes())} READMEs, {n_words} paths, all there; README.md has {n_lines} lines")
     return 1 if found else 0
 

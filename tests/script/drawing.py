@@ -31,7 +31,8 @@ def fails(name, folder, options, expected):
 
 
 def points_of(file, title, least=(1200, 600)):
-    """The points [n][3] of a PNG, from 0 to 255: at least so many across and down, no colour on more than 98 % of them."""
+    """The points [n][3] of a PNG, from 0 to 255: at least so many across and down, no colour on more than 98 % of
+    them."""
     points = numpy.rint(255 * matplotlib.image.imread(file)[:, :, :3]).astype(int)
     colours = points.reshape(-1, 3)
     share = numpy.unique(colours @ [1, 256, 65536], return_counts=True)[1].max() / len(colours)

@@ -35,14 +35,15 @@ def surface_of(folder, rows, columns=None):
 
 
 def test_colours(root):
-    """Blue is the arrow (2000 points and more) and the names of the edges, or sticking pairs; green the centre of force:
-    breaks when they are drawn without friction or force, or not drawn."""
+    """Blue is the arrow (2000 points and more) and the names of the edges, or sticking pairs; green the centre of
+    force: breaks when they are drawn without friction or force, or not drawn."""
     cases = [("slides", State(), 2000), ("presses", State(mu=0), 0), ("sticks", State(mu=0, stuck=9), 1000),
              ("free", State(tilt=0), 2000)]
     for name, state, least in cases:
         write_rows(root / name, state.rows())
         blue, green = picture(root / name)
-        require(blue >= least and (blue > 150) == (least > 0) and green > 150, f"{name}: {blue} blue, {green} green points")
+        require(blue >= least and (blue > 150) == (least > 0) and green > 150,
+                f"{name}: {blue} blue, {green} green points")
     nothing = [(*row[:5], 0, 0, "open", *row[8:10], 0, *row[11:]) for row in State().rows()]
     write_rows(root / "nothing", nothing)
     require(picture(root / "nothing") == [0, 0], "a force is drawn where there is none")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs scripts/study/job.slurm with a stand-in for the program that writes made-up tables, and checks what
-scripts/study/collect_sweeps makes of them: without Slurm, as a task of a job array, after a killed run, and with stand-ins
-for Slurm's commands. The values come from the tables that were written. Exit status: 0, or 1.
+scripts/study/collect_sweeps makes of them: without Slurm, as a task of a job array, after a killed run, and with
+stand-ins for Slurm's commands. The values come from the tables that were written. Exit status: 0, or 1.
 """
 
 import csv
@@ -11,10 +11,10 @@ import sys
 import tempfile
 from pathlib import Path
 
+from drawing import SCRIPTS, fails, require
 from made_up_sweep import PAIRS, onsets
 
 TESTS = Path(__file__).resolve().parent
-SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 VALUES = ["0.6", "0.3", "0.5", "0.45"]
 
 # Writes the tables for -contact_mu to -output_dir; is killed at `fatal` the first time
@@ -32,11 +32,6 @@ if option["-contact_mu"] == os.environ.get("FATAL") and not killed.exists():
     os.kill(os.getpid(), signal.SIGKILL)
 write_sweep(folder, float(option["-contact_mu"]), values=[20e9, 30e9, 60e9])
 """
-
-
-def require(condition, message):
-    if not condition:
-        raise SystemExit(f"study: {message}")
 
 
 class Study:
@@ -139,10 +134,7 @@ def test_errors(root):
              (study.folder / "contact_mu_0.3", text, [], "none of its 0 folders")]
     for folder, content, options, expected in cases:
         sweep.write_text(content)
-        result = subprocess.run([sys.executable, SCRIPTS / "study/collect_sweeps", folder, *options], capture_output=True,
-                                text=True, check=False)
-        require(result.returncode == 1 and result.stderr.count("\n") == 1 and expected in result.stderr,
-                f"expected '{expected}', status {result.returncode}: {result.stderr}")
+        fails("study/collect_sweeps", folder, options, expected)
 
 
 def main():

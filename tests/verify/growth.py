@@ -3,9 +3,9 @@
 
     verify/growth.py MODES MODE TRANSIENT PROBE [--band 0.1] [--growth 1e-3] [--frequency 1e-4]
 
-MODES and TRANSIENT are output folders, of `-analysis modes` and of a transient that starts from the sliding state with a
-little of that mode; PROBE names the column of transient.csv, less its mean. The status must be that of the modes all the
-time: no pair changes between open and closed. The tolerances are relative.
+MODES and TRANSIENT are output folders, of `-analysis modes` and of a transient that starts from the sliding state with
+a little of that mode; PROBE names the column of transient.csv, less its mean. The status must be that of the modes all
+the time: no pair changes between open and closed. The tolerances are relative.
 """
 
 import argparse

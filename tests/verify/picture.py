@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Draws a run with scripts/plot/modes, or the script named after its folder, and checks that the picture is one: a PNG of
-at least 800 x 600 points, of which no colour fills more than 98 %. Exit status: 0, or 1.
+"""Draws a run with scripts/plot/modes, or the script named after its folder, and checks that the picture is one: a PNG
+of at least 800 x 600 points, of which no colour fills more than 98 %. Exit status: 0, or 1.
 
     picture.py FOLDER [plot/SCRIPT]
 """

@@ -96,7 +96,8 @@ def main(arguments):
             for row in csv.DictReader(file):
                 value = float(row["growth_rad_s"]) + 2j * math.pi * float(row["freq_hz"])
                 error = np.min(abs(exact - value)) / abs(value)
-                print(f"{value.real:13.4f} {value.imag / (2 * math.pi):13.4f}  {error:.1e}{judge.within(error, 0, LIMIT)}")
+                fault = judge.within(error, 0, LIMIT)
+                print(f"{value.real:13.4f} {value.imag / (2 * math.pi):13.4f}  {error:.1e}{fault}")
     return judge.failed
 
 

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Compares the modes of two runs, without damping and with the same Rayleigh factors on all parts (C = alpha M + beta K).
+"""Compares the modes of two runs, without damping and with the same Rayleigh factors on all parts (C = alpha M + beta
+K).
 
-Each undamped omega must turn into lambda = -c/2 + i sqrt(omega^2 - c^2/4), c = alpha + beta omega^2, to `--tolerance` relative to
-|lambda|; rigid modes are left out. Exact only without friction, and for beta only without springs and contact, which have no
-beta. Exit status: 0, or 1.
+Each undamped omega must turn into lambda = -c/2 + i sqrt(omega^2 - c^2/4), c = alpha + beta omega^2, to `--tolerance`
+relative to |lambda|; rigid modes are left out. Exact only without friction, and for beta only without springs and
+contact, which have no beta. Exit status: 0, or 1.
 """
 
 import argparse

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Derivatives of a sweep against central differences of full solutions: verify/sensitivities.py SWEEP POINT PARAMETER LESS MORE.
-LESS and MORE are folders of modes at half a percent to both sides, so that the differences err by some 1e-5 of a change; modes
-within a percent of each other are left out, since their frequencies are no smooth functions of a parameter alone."""
+"""Derivatives of a sweep against central differences of full solutions: verify/sensitivities.py SWEEP POINT PARAMETER
+LESS MORE. LESS and MORE are folders of modes at half a percent to both sides, so that the differences err by some 1e-5
+of a change; modes within a percent of each other are left out, since their frequencies are no smooth functions of a
+parameter alone."""
 
 import csv
 import math

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Checks the disc's shape in the one unstable mode of a run (modes.csv, modes.h5): its nodal diameters, counted on the disc's rim
-at the phase of largest displacement, independently of the label, and an antinode at the contact: the part of the rim's
-displacement that is even about the pad's radius (angle 0) exceeds the odd part. Exit status: 0, or 1.
+"""Checks the disc's shape in the one unstable mode of a run (modes.csv, modes.h5): its nodal diameters, counted on the
+disc's rim at the phase of largest displacement, independently of the label, and an antinode at the contact: the part of
+the rim's displacement that is even about the pad's radius (angle 0) exceeds the odd part. Exit status: 0, or 1.
 """
 
 import argparse
@@ -45,7 +45,8 @@ def main():
     diameters = numpy.count_nonzero(numpy.sign(w) != numpy.sign(numpy.roll(w, 1))) / 2
     mirrored = numpy.interp(-angle, angle, w, period=2 * numpy.pi)
     even = numpy.linalg.norm(w + mirrored) / numpy.linalg.norm(w - mirrored)
-    print(f"{frequency:.1f} Hz: {diameters:g} nodal diameters on {len(nodes)} nodes of the rim, even over odd part {even:.2f}")
+    print(f"{frequency:.1f} Hz: {diameters:g} nodal diameters on {len(nodes)} nodes of the rim, "
+          f"even over odd part {even:.2f}")
     return 0 if diameters == args.diameters and even > 1 else 1
 
 
