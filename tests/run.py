@@ -42,7 +42,7 @@ A case is a TOML file. Only `run` is required.
 
     [[check]]
     run = "NAME"
-    command = "{source}/tests/open_fields.py {NAME}/modes.xmf"   # a Python script that must succeed
+    command = "{source}/tests/verify/fields.py {NAME}/modes.xmf"   # a Python script that must succeed
 
 Every run that succeeds must leave no memory allocated and no option unused. Exit status: 0, 1 failed, 77 skipped.
 """
