@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""A sweep that is killed goes on where it stopped, with the same result: kills it after each full solution that it has
-kept, and compares all tables with those of a sweep that nobody disturbed: to the last digit on one rank, to 1e-9 on
-two, where the order of sums in the factorisation depends on the moment. Breaks when what is kept lacks something, is
-read in another order, or is taken for that of another sweep."""
+"""A sweep that is killed goes on where it stopped, with the same result: kills it after each full solution that it has kept,
+and compares all tables with those of a sweep that nobody disturbed: to the last digit on one rank, to 1e-9 on two, where
+the order of sums in the factorisation depends on the moment. Breaks when what is kept lacks something, is read in another
+order, or is taken for that of another sweep."""
 
 import argparse
 import csv
@@ -18,20 +18,16 @@ import time
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
-SMALL = """
-rig: {disc: {elements: "8,24,1"}, pad: {elements: "4,4,2"}, beam: {elements: 10}}
-modes: {band: "100,12000"}
-"""
+SMALL = 'rig: {disc: {elements: "8,24,1"}, pad: {elements: "4,4,2"}, beam: {elements: 10}}\nmodes: {band: "100,12000"}\n'
 TABLES = ("sweep.csv", "onsets.csv", "parameters.csv")
 PATIENCE = 100  # seconds
 
 
 def command(arguments, folder, output, *options):
     """The sweep, writing to a folder."""
-    return [arguments.launcher, "-n", str(arguments.ranks), arguments.squeal, "-options_file",
-            SOURCE / "options/massi2005.yaml", "-options_file", folder / "small.yaml", "-analysis", "sweep",
-            "-sweep_parameter", "pad_young", "-sweep_values", "6.5e9:80e9:12", "-output_dir", folder / output,
-            "-modes_contact", arguments.contact, *options]
+    return [arguments.launcher, "-n", str(arguments.ranks), arguments.squeal, "-options_file", SOURCE / "options/massi2005.yaml",
+            "-options_file", folder / "small.yaml", "-analysis", "sweep", "-sweep_parameter", "pad_young",
+            "-sweep_values", "6.5e9:80e9:12", "-output_dir", folder / output, "-modes_contact", arguments.contact, *options]
 
 
 def complete(arguments, folder, output, *options):
