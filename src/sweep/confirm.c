@@ -14,7 +14,7 @@
 static PetscErrorCode OnsetReduced(Sweep sweep, const Line *line, Event *event)
 {
   PetscFunctionBeginUser;
-  PetscCall(OnsetFind(&sweep->basis.reduced, &sweep->window, line, event));
+  PetscCall(OnsetFind(&sweep->basis.reduced, line, event));
   PetscCallMPI(MPI_Bcast(&event->critical, 1, MPIU_REAL, 0, sweep->comm));
   PetscCallMPI(MPI_Bcast(&event->omega, 1, MPIU_REAL, 0, sweep->comm));
   PetscCallMPI(MPI_Bcast(&event->error, 1, MPIU_REAL, 0, sweep->comm));
@@ -95,7 +95,7 @@ static PetscErrorCode OnsetConfirm(Sweep sweep, PetscInt e)
 {
   Event    *event  = &sweep->events.event[e];
   PetscReal change = PETSC_MAX_REAL, *p;
-  Line      line   = {sweep->grid.parameter[0], sweep->grid.n[0], sweep->grid.value[0], NULL};
+  Line      line   = {sweep->grid.parameter[0], sweep->grid.n[0], sweep->grid.value[0], NULL, &sweep->window};
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));

@@ -31,14 +31,15 @@ static PetscErrorCode SegmentLink(Sweep sweep, PetscInt first_new, PetscInt k, P
                                   Points *points)
 {
   const PetscInt n = points->modes[k].n, n_new = sweep->n_branches - first_new;
+  BranchPoint    before = {points->value[k - 1], &points->modes[k - 1], points->branch[k - 1]};
+  BranchPoint    after  = {points->value[k], &points->modes[k], points->branch[k]};
   PetscInt      *own, *rename;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &own, n_new, &rename));
   PetscCall(PetscArraycpy(own, points->branch[k], n));
-  PetscCall(TrackJump(&sweep->basis.reduced, &points->p[k * sweep->grid.n_parameters], points->value[k - 1],
-                      &points->modes[k - 1], points->branch[k - 1], points->value[k], &points->modes[k],
-                      points->branch[k], &sweep->events));
+  PetscCall(
+    TrackJump(&sweep->basis.reduced, &points->p[k * sweep->grid.n_parameters], &before, &after, &sweep->events));
   for (PetscInt b = 0; b < n_new; b++) rename[b] = -1;
   for (PetscInt i = 0; i < n; i++)
     if (points->branch[k][i] < first_new) rename[own[i] - first_new] = points->branch[k][i];
@@ -54,12 +55,13 @@ PetscErrorCode LineTrackSegments(Sweep sweep, Points *points)
   PetscFunctionBeginUser;
   for (PetscInt k = 0, last; k < points->n; k = last) {
     const PetscInt first_new = sweep->n_branches, first_event = sweep->events.n;
-    Line           line = {sweep->grid.parameter[0], 0, &points->value[k], &points->p[k * sweep->grid.n_parameters]};
+    Line           line = {sweep->grid.parameter[0], 0, &points->value[k], &points->p[k * sweep->grid.n_parameters],
+                           &sweep->window};
 
     for (last = k + 1; last < points->n && place[last].status == place[k].status;) last++;
     line.n = last - k;
-    PetscCall(TrackLine(&sweep->basis.reduced, &sweep->window, &line, &points->modes[k], &points->branch[k],
-                        &sweep->n_branches, &sweep->events));
+    PetscCall(TrackLine(&sweep->basis.reduced, &line, &points->modes[k], &points->branch[k], &sweep->n_branches,
+                        &sweep->events));
     if (k) PetscCall(SegmentLink(sweep, first_new, k, last, first_event, points));
     for (PetscInt e = first_event; e < sweep->events.n; e++) sweep->events.event[e].place = points->first + k;
   }

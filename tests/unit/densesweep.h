@@ -21,15 +21,16 @@ static inline PetscErrorCode RunSweep(const Dense *dense, const ReducedWindow *w
 {
   PetscFunctionBeginUser;
   memset(run, 0, sizeof(*run));
-  run->line.n     = n;
-  run->line.value = run->value;
-  run->line.base  = run->base;
+  run->line.n      = n;
+  run->line.value  = run->value;
+  run->line.base   = run->base;
+  run->line.window = window;
   for (PetscInt k = 0; k < n; k++) {
     run->value[k] = first + (last - first) * k / (n - 1);
     PetscCall(ReducedSolve(&dense->reduced, &run->value[k], window, &run->modes[k]));
     PetscCall(PetscMalloc1(run->modes[k].n, &run->branch[k]));
   }
-  PetscCall(TrackLine(&dense->reduced, window, &run->line, run->modes, run->branch, &run->n_branches, &run->events));
+  PetscCall(TrackLine(&dense->reduced, &run->line, run->modes, run->branch, &run->n_branches, &run->events));
   PetscFunctionReturn(0);
 }
 

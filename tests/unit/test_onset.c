@@ -15,7 +15,7 @@ static PetscErrorCode FindOnsets(const Dense *dense, const ReducedWindow *window
   PetscReal    value[101], base[1] = {0};
   ReducedModes modes[101] = {0};
   PetscInt    *branch[101], n_branches = 0;
-  const Line   line = {0, n, value, base};
+  const Line   line = {0, n, value, base, window};
 
   PetscFunctionBeginUser;
   memset(events, 0, sizeof(*events));
@@ -24,8 +24,8 @@ static PetscErrorCode FindOnsets(const Dense *dense, const ReducedWindow *window
     PetscCall(ReducedSolve(&dense->reduced, &value[k], window, &modes[k]));
     PetscCall(PetscMalloc1(modes[k].n, &branch[k]));
   }
-  PetscCall(TrackLine(&dense->reduced, window, &line, modes, branch, &n_branches, events));
-  for (PetscInt e = 0; e < events->n; e++) PetscCall(OnsetFind(&dense->reduced, window, &line, &events->event[e]));
+  PetscCall(TrackLine(&dense->reduced, &line, modes, branch, &n_branches, events));
+  for (PetscInt e = 0; e < events->n; e++) PetscCall(OnsetFind(&dense->reduced, &line, &events->event[e]));
   for (PetscInt k = 0; k < n; k++) {
     PetscCall(ReducedModesDestroy(&modes[k]));
     PetscCall(PetscFree(branch[k]));
@@ -69,7 +69,7 @@ static void Friction(Dense *dense, PetscInt n, PetscReal d, PetscReal d1, PetscR
 /* |A X - M X S| of a plane X [2][n] with S = (Y' M X)^-1 Y' K X; transposed: of Y, with the roles exchanged */
 static PetscReal PlaneResidual(const ModeFrame *f, const PetscReal X[], const PetscReal Y[], PetscBool transposed)
 {
-  const PetscInt n = f->size;
+  const PetscInt n = f->form.n;
   PetscReal      P[2][2][DENSE_MAX], G[2][2][2], S[2][2], worst = 0; /* K, M times X */
 
   for (int matrix = 0; matrix < 2; matrix++) {
@@ -77,7 +77,7 @@ static PetscReal PlaneResidual(const ModeFrame *f, const PetscReal X[], const Pe
       for (PetscInt r = 0; r < n; r++) {
         P[matrix][j][r] = 0;
         for (PetscInt c = 0; c < n; c++)
-          P[matrix][j][r] += (matrix ? f->M : f->K)[transposed ? r * n + c : c * n + r] * X[j * n + c];
+          P[matrix][j][r] += (matrix ? f->pencil.M : f->pencil.K)[transposed ? r * n + c : c * n + r] * X[j * n + c];
       }
       for (int i = 0; i < 2; i++) {
         G[matrix][i][j] = 0;
@@ -118,7 +118,7 @@ static PetscErrorCode TestPlane(int *failed)
                         -creal(modes.lambda[1] * modes.lambda[1] + modes.lambda[2] * modes.lambda[2]) / 2, 1.5, 1e-9);
   PetscCall(PetscArraycpy(modes.x + 2 * 6, modes.x + 6, 6));
   PetscCall(PetscArraycpy(modes.y + 2 * 6, modes.y + 6, 6));
-  PetscCall(ModeFrameCreate(&dense.reduced, &p, p, PETSC_FALSE, 1, PETSC_TRUE, &modes, &frame));
+  PetscCall(ModeFrameCreate(&dense.reduced, &p, &(StandardForm){.scale = 1}, PETSC_TRUE, &modes, &frame));
   PetscCall(ModePlaneRefine(frame, 2, member, X, Y));
   *failed += CheckClose("right plane is invariant", PlaneResidual(frame, X, Y, PETSC_FALSE), 0, 1e-13);
   *failed += CheckClose("left plane is invariant", PlaneResidual(frame, Y, X, PETSC_TRUE), 0, 1e-13);

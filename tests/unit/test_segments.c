@@ -115,13 +115,13 @@ static PetscErrorCode CheckOnset(Sweep sweep, PetscInt e, EventKind kind, PetscR
   const PetscReal ends[2] = {0.05, 0.95};
   Event           event;
   PetscReal       p[2];
-  const Line      line = {0, 2, ends, p};
+  const Line      line = {0, 2, ends, p, &everything};
 
   PetscFunctionBeginUser;
   if (e >= sweep->events.n) PetscFunctionReturn(0);
   event = sweep->events.event[e];
   GridFill(&sweep->grid, &sweep->grid.place[event.place], p);
-  PetscCall(OnsetFind(&sweep->basis.reduced, &everything, &line, &event));
+  PetscCall(OnsetFind(&sweep->basis.reduced, &line, &event));
   *failed += CheckTrue("kind of the onset", event.kind == kind && event.found, (double)event.kind);
   *failed += CheckClose("onset within a segment", event.critical, expected, 1e-10);
   PetscFunctionReturn(0);
@@ -194,7 +194,8 @@ static PetscErrorCode TestDoubt(int *failed)
   DenseAdd(&dense, OPERATORS_STIFFNESS, PETSC_FALSE, before);
   DenseAdd(&dense, OPERATORS_STIFFNESS, PETSC_TRUE, change);
   for (int k = 0; k < 2; k++) PetscCall(ReducedSolve(&dense.reduced, &p[k], &everything, &modes[k]));
-  PetscCall(TrackJump(&dense.reduced, &p[1], 0, &modes[0], branch[0], 1, &modes[1], branch[1], &events));
+  PetscCall(TrackJump(&dense.reduced, &p[1], &(BranchPoint){0, &modes[0], branch[0]},
+                      &(BranchPoint){1, &modes[1], branch[1]}, &events));
   *failed += CheckTrue("branches that begin anew", branch[1][0] == 4 && branch[1][1] == 5 && branch[1][2] == 6,
                        (double)branch[1][0]);
   *failed += CheckTrue("a branch that goes on", branch[1][3] == 3, (double)branch[1][3]);

@@ -5,7 +5,7 @@
    the rows and columns of the new vectors.
 */
 #include "basis.h"
-#include <petscblaslapack.h>
+#include "sweep/dense/dense.h"
 
 #define REORTHOGONALISE 1e-9 /* a direction smaller than this beside its block is rounding */
 
@@ -75,22 +75,6 @@ static PetscErrorCode BlockProject(Basis *basis, BV W)
   PetscFunctionReturn(0);
 }
 
-/* Eigenvalues (ascending) and vectors of the symmetric m x m matrix G, overwritten by the vectors */
-static PetscErrorCode GramDecompose(PetscInt m, PetscScalar G[], PetscReal eigenvalue[])
-{
-  PetscBLASInt n, size, info;
-  PetscScalar *work;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(m, &n));
-  PetscCall(PetscBLASIntCast(40 * m + 64, &size));
-  PetscCall(PetscMalloc1(size, &work));
-  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "U", &n, G, &n, eigenvalue, work, &size, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev: info %d", (int)info);
-  PetscCall(PetscFree(work));
-  PetscFunctionReturn(0);
-}
-
 /* Makes the block orthonormal in M; its active columns become those above the drop tolerance */
 static PetscErrorCode BlockOrthonormalise(const Basis *basis, BV W, PetscReal drop)
 {
@@ -105,7 +89,7 @@ static PetscErrorCode BlockOrthonormalise(const Basis *basis, BV W, PetscReal dr
   PetscCall(InnerProducts(W, basis->M, W, &gram));
   PetscCall(PetscMalloc1(m, &eigenvalue));
   PetscCall(MatDenseGetArray(gram, &G));
-  PetscCall(GramDecompose(m, G, eigenvalue));
+  PetscCall(DenseSymmetricEigen(m, G, NULL, eigenvalue, NULL));
   PetscCallMPI(MPI_Bcast(G, (PetscMPIInt)(m * m), MPIU_SCALAR, 0, basis->comm)); /* the same directions on all ranks */
   PetscCallMPI(MPI_Bcast(eigenvalue, (PetscMPIInt)m, MPIU_REAL, 0, basis->comm));
   drop = PetscMax(drop, REORTHOGONALISE * PetscSqrtReal(PetscMax(eigenvalue[m - 1], 0)));

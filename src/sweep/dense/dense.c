@@ -1,5 +1,5 @@
 /*
-   Small dense problems by LAPACK: getrf, getrs, geev, sygv, ggev. PETSc with real scalars declares the real routines
+   Small dense problems by LAPACK: getrf, getrs, geev, syev, sygv, ggev. PETSc with real scalars declares the real routines
    only; the complex ones are declared here.
 */
 #include "dense.h"
@@ -104,10 +104,13 @@ PetscErrorCode DenseSymmetricEigen(PetscInt size, PetscReal A[], PetscReal B[], 
   PetscCall(PetscBLASIntCast(size, &n));
   PetscCall(PetscBLASIntCast(66 * size + 64, &work_size));
   PetscCall(PetscMalloc1(work_size, &work));
-  PetscCallBLAS("LAPACKsygv", LAPACKsygv_(&type, "V", "U", &n, A, &n, B, &n, w, work, &work_size, &info));
-  PetscCheck(info >= 0 && (info == 0 || info > n), PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED, "LAPACK sygv: info %d",
-             (int)info);
-  *definite = info ? PETSC_FALSE : PETSC_TRUE;
+  if (B)
+    PetscCallBLAS("LAPACKsygv", LAPACKsygv_(&type, "V", "U", &n, A, &n, B, &n, w, work, &work_size, &info));
+  else
+    PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "U", &n, A, &n, w, work, &work_size, &info));
+  PetscCheck(info >= 0 && (info == 0 || (B && info > n)), PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED,
+             "LAPACK syev, sygv: info %d", (int)info);
+  if (definite) *definite = info ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(PetscFree(work));
   PetscFunctionReturn(0);
 }
@@ -131,18 +134,20 @@ PetscErrorCode ComplexEigenvalues(PetscInt size, PetscComplex A[], PetscComplex 
   PetscFunctionReturn(0);
 }
 
-/* parts [2 m][n] of X [m][n]: real parts, then imaginary ones */
-static void Split(PetscInt n, PetscInt m, const PetscComplex X[], PetscReal parts[])
+void DenseSplit(PetscInt n, const PetscComplex x[], PetscReal parts[])
 {
-  for (PetscInt i = 0; i < m * n; i++) {
-    parts[i]         = creal(X[i]);
-    parts[m * n + i] = cimag(X[i]);
-  }
+  for (PetscInt i = 0; i < n; i++) parts[i] = creal(x[i]), parts[n + i] = cimag(x[i]);
 }
 
-PetscErrorCode DenseTimes(PetscInt rows, PetscInt columns, const PetscReal A[], PetscInt stride, PetscBool transposed,
-                          PetscInt m, const PetscComplex X[], PetscComplex Y[])
+void DenseUnite(PetscInt n, const PetscReal parts[], PetscComplex x[])
 {
+  for (PetscInt i = 0; i < n; i++) x[i] = CMPLX(parts[i], parts[n + i]);
+}
+
+PetscErrorCode DenseTimes(const DenseBlock *block, PetscBool transposed, PetscInt m, const PetscComplex X[],
+                          PetscComplex Y[])
+{
+  const PetscInt  rows = block->rows, columns = block->columns;
   const PetscReal one = 1, zero = 0;
   PetscReal      *x, *y;
   PetscBLASInt    r, c, lda, m2;
@@ -151,12 +156,13 @@ PetscErrorCode DenseTimes(PetscInt rows, PetscInt columns, const PetscReal A[], 
   if (!rows || !columns || !m) PetscFunctionReturn(0);
   PetscCall(PetscBLASIntCast(rows, &r));
   PetscCall(PetscBLASIntCast(columns, &c));
-  PetscCall(PetscBLASIntCast(stride, &lda));
+  PetscCall(PetscBLASIntCast(block->stride, &lda));
   PetscCall(PetscBLASIntCast(2 * m, &m2));
   PetscCall(PetscMalloc2(2 * m * columns, &x, 2 * m * rows, &y));
-  Split(columns, m, X, x);
-  PetscCallBLAS("BLASgemm", BLASgemm_(transposed ? "T" : "N", "N", &r, &m2, &c, &one, A, &lda, x, &c, &zero, y, &r));
-  for (PetscInt i = 0; i < m * rows; i++) Y[i] = CMPLX(y[i], y[m * rows + i]);
+  DenseSplit(m * columns, X, x);
+  PetscCallBLAS("BLASgemm",
+                BLASgemm_(transposed ? "T" : "N", "N", &r, &m2, &c, &one, block->A, &lda, x, &c, &zero, y, &r));
+  DenseUnite(m * rows, y, Y);
   PetscCall(PetscFree2(x, y));
   PetscFunctionReturn(0);
 }
@@ -208,20 +214,20 @@ static PetscReal Pivot(PetscInt n, PetscInt m, PetscInt first, PetscComplex X[])
 
 PetscErrorCode ComplexOrthonormalise(PetscInt n, PetscInt m, PetscReal drop, PetscComplex X[], PetscInt *kept)
 {
+  PetscReal longest = 0;
+
   PetscFunctionBeginUser;
-  for (PetscInt j = 0; j < m; j++) {
-    const PetscReal norm = Norm(n, X + j * n);
-
-    for (PetscInt i = 0; i < n && norm > 0; i++) X[j * n + i] /= norm;
-  }
   for (*kept = 0; *kept < m; ++*kept) {
-    PetscComplex *const q = X + *kept * n;
-    PetscReal           norm;
+    PetscComplex *const q    = X + *kept * n;
+    PetscReal           norm = Pivot(n, m, *kept, X);
 
-    if (Pivot(n, m, *kept, X) <= drop) break;
-    for (PetscInt k = 0; k < *kept; k++) Remove(n, X + k * n, q);
-    norm = Norm(n, q);
-    for (PetscInt i = 0; i < n; i++) q[i] /= norm;
+    longest = PetscMax(longest, norm);
+    if (norm <= drop * longest) break;
+    for (int twice = 0; twice < 2; twice++) { /* once leaves the rounding of what was subtracted from q before */
+      norm = Norm(n, q);
+      for (PetscInt i = 0; i < n; i++) q[i] /= norm;
+      for (PetscInt k = 0; k < *kept && !twice; k++) Remove(n, X + k * n, q);
+    }
     for (PetscInt j = *kept + 1; j < m; j++) Remove(n, q, X + j * n);
   }
   PetscCall(PetscArrayzero(X + *kept * n, (m - *kept) * n));
@@ -235,6 +241,9 @@ PetscErrorCode ComplexRealSpan(PetscInt n, PetscInt m, PetscReal drop, PetscComp
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * m * n, &both));
   for (PetscInt i = 0; i < m * n; i++) {
+    const PetscReal norm = i % n ? 0 : Norm(n, X + i);
+
+    for (PetscInt k = i; k < i + n && norm > 0; k++) X[k] /= norm;
     both[i]         = creal(X[i]);
     both[m * n + i] = cimag(X[i]);
   }

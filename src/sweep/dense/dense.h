@@ -15,16 +15,27 @@ PetscErrorCode ComplexSolve(PetscInt n, const PetscComplex LU[], const PetscBLAS
                             PetscInt m, PetscComplex B[]);
 /* Eigenvalues wr + i wi of A (overwritten), right vectors R and left ones L in LAPACK's real storage, u^H A = w u^H */
 PetscErrorCode DenseEigen(PetscInt n, PetscReal A[], PetscReal wr[], PetscReal wi[], PetscReal L[], PetscReal R[]);
-/* A x = w B x, A symmetric, B positive definite (else *definite is false): w ascending, vectors in place of A */
+/* A x = w B x, A symmetric, B positive definite (else *definite is false) or NULL for the identity: w ascending, vectors
+   in place of A */
 PetscErrorCode DenseSymmetricEigen(PetscInt n, PetscReal A[], PetscReal B[], PetscReal w[], PetscBool *definite);
 /* Eigenvalues of A x = w B x, both overwritten; infinite ones are returned as infinity */
 PetscErrorCode ComplexEigenvalues(PetscInt n, PetscComplex A[], PetscComplex B[], PetscComplex w[]);
-/* Y = op(A) X for the leading block op(A) [rows][columns] of A (column stride lda), X [m][columns], Y [m][rows] */
-PetscErrorCode DenseTimes(PetscInt rows, PetscInt columns, const PetscReal A[], PetscInt lda, PetscBool transposed,
-                          PetscInt m, const PetscComplex X[], PetscComplex Y[]);
+/* A block of a matrix whose columns are stride apart; op(A) has rows x columns entries */
+typedef struct {
+  const PetscReal *A;
+  PetscInt         rows, columns, stride;
+} DenseBlock;
+/* Y = op(A) X, X [m][columns], Y [m][rows] */
+PetscErrorCode DenseTimes(const DenseBlock *block, PetscBool transposed, PetscInt m, const PetscComplex X[],
+                          PetscComplex Y[]);
+/* Real parts, then imaginary parts [2 n] of x [n], and back */
+void DenseSplit(PetscInt n, const PetscComplex x[], PetscReal parts[]);
+void DenseUnite(PetscInt n, const PetscReal parts[], PetscComplex x[]);
 /* x^T y without conjugation */
 PetscComplex DenseDot(PetscInt n, const PetscComplex x[], const PetscComplex y[]);
-/* Orthonormal basis of the columns of X [m][n]; *kept of them exceed drop, the others are left at the end as zeros */
+/* Orthonormal basis of the columns of X [m][n]; *kept of them exceed drop times the longest, the others are left at the
+   end as zeros */
 PetscErrorCode ComplexOrthonormalise(PetscInt n, PetscInt m, PetscReal drop, PetscComplex X[], PetscInt *kept);
-/* Replaces the m vectors X [m][n] by *kept <= m real orthonormal ones that span the same space */
+/* Replaces the m vectors X [m][n], whatever their lengths, by *kept <= m real orthonormal ones that span the same space
+   within drop */
 PetscErrorCode ComplexRealSpan(PetscInt n, PetscInt m, PetscReal drop, PetscComplex X[], PetscInt *kept);

@@ -17,7 +17,6 @@
    given K does, see PencilNoise().
 */
 #include "eigen.h"
-#include "dense.h"
 
 #define RIGID_FLOOR 100  /* kappa below this many times its rounding error is a rigid mode */
 #define ON_SHIFT    1e3  /* an eigenvalue nearer to the shift than 1 / this of it spoils the others: another shift */
@@ -59,7 +58,7 @@ static PetscErrorCode WorkCreate(const DensePencil *pencil, PetscReal shift, Wor
   PetscFunctionBeginUser;
   w->pencil = pencil;
   w->n      = pencil->n;
-  w->N      = pencil->C ? 2 * w->n : w->n;
+  w->N      = pencil->damped ? 2 * w->n : w->n;
   w->shift  = shift;
   PetscCall(PetscMalloc3(w->n * w->n, &w->P, w->N * w->N, &w->B, w->n, &w->pivot));
   PetscCall(PetscCalloc4(w->N, &w->wr, w->N, &w->wi, w->N * w->N, &w->R, w->N * w->N, &w->L));
@@ -79,7 +78,7 @@ static void FormP(Work *w)
 {
   const DensePencil *q = w->pencil;
 
-  for (PetscInt i = 0; i < w->n * w->n; i++) w->P[i] = q->K[i] + w->shift * (w->shift * q->M[i] + (q->C ? q->C[i] : 0));
+  for (PetscInt i = 0; i < w->n * w->n; i++) w->P[i] = q->K[i] + w->shift * (w->shift * q->M[i] + q->C[i]);
 }
 
 /* Symmetric: M x = theta P x; definite is false where P is not */
@@ -122,7 +121,7 @@ static PetscErrorCode SolveGeneral(Work *w, PetscBool *singular)
   FormP(w);
   PetscCall(DenseFactor(w->n, w->P, w->pivot, singular));
   if (*singular) PetscFunctionReturn(0);
-  if (w->pencil->C) {
+  if (w->pencil->damped) {
     PetscCall(FormCompanion(w));
   } else {
     PetscCall(PetscArraycpy(w->B, w->pencil->M, w->n * w->n));
@@ -135,7 +134,7 @@ static PetscErrorCode SolveGeneral(Work *w, PetscBool *singular)
 /* Whether an eigenvalue lies on the shift: |theta| s^2 (undamped), |theta| (damped) are about one otherwise */
 static PetscBool IsOnShift(const Work *w)
 {
-  const PetscReal unit = w->pencil->C ? 1 : w->shift * w->shift;
+  const PetscReal unit = w->pencil->damped ? 1 : w->shift * w->shift;
 
   for (PetscInt i = 0; i < w->N; i++)
     if (hypot(w->wr[i], w->wi[i]) * unit > ON_SHIFT) return PETSC_TRUE;
@@ -171,7 +170,7 @@ static PetscBool LambdaGet(const Work *w, PetscInt i, PetscComplex *lambda)
   PetscComplex       kappa;
 
   if (theta == 0) return PETSC_FALSE;
-  if (w->pencil->C) {
+  if (w->pencil->damped) {
     *lambda = w->wi[i] == 0 ? CMPLX(w->shift * (1 + 1 / w->wr[i]), 0) : w->shift * (1 + 1 / theta);
     return cimag(*lambda) >= 0 ? PETSC_TRUE : PETSC_FALSE;
   }
@@ -207,21 +206,18 @@ static PetscErrorCode LeftGet(const Work *w, PetscInt i, PetscComplex y[])
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * n, &parts));
   VectorGet(w, w->L, i, w->N - n, PETSC_TRUE, y);
-  for (PetscInt k = 0; k < n; k++) {
-    parts[k]     = creal(y[k]);
-    parts[n + k] = cimag(y[k]);
-  }
+  DenseSplit(n, y, parts);
   PetscCall(DenseSolve(n, w->P, w->pivot, PETSC_TRUE, 2, parts));
-  for (PetscInt k = 0; k < n; k++) y[k] = CMPLX(parts[k], parts[n + k]);
+  DenseUnite(n, parts, y);
   PetscCall(PetscFree(parts));
   PetscFunctionReturn(0);
 }
 
-PetscReal PencilNoise(const DensePencil *q, const PetscComplex x[], const PetscComplex y[])
+PetscReal PencilNoise(const DensePencil *q, PetscInt n, const PetscComplex x[], const PetscComplex y[])
 {
   PetscReal sum_x = 0, sum_y = 0;
 
-  for (PetscInt i = 0; i < q->n; i++) {
+  for (PetscInt i = 0; i < n; i++) {
     const PetscReal k = PetscAbsReal(q->K[i * (q->n + 1)]);
 
     sum_x += k * (PetscSqr(creal(x[i])) + PetscSqr(cimag(x[i])));
@@ -242,10 +238,10 @@ static PetscErrorCode IsRigid(const Work *w, PetscComplex lambda, const PetscCom
   *rigid = PETSC_FALSE;
   if (square > w->shift * w->shift) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(n, &Mx));
-  PetscCall(DenseTimes(n, n, w->pencil->M, n, PETSC_FALSE, 1, x, Mx));
+  PetscCall(DenseTimes(&(DenseBlock){w->pencil->M, n, n, n}, PETSC_FALSE, 1, x, Mx));
   for (PetscInt k = 0; k < n; k++) mass += creal(conj(x[k]) * Mx[k]);
   PetscCall(PetscFree(Mx));
-  if (square * mass <= RIGID_FLOOR * (PencilNoise(w->pencil, x, x) + own * mass)) *rigid = PETSC_TRUE;
+  if (square * mass <= RIGID_FLOOR * (PencilNoise(w->pencil, n, x, x) + own * mass)) *rigid = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -339,7 +335,7 @@ PetscErrorCode PencilEigen(const DensePencil *pencil, const ReducedWindow *windo
     modes->rigid[k]  = k < n_rigid ? PETSC_TRUE : PETSC_FALSE;
     PetscCall(Take(&w, list[k], pencil->symmetric, k, modes));
   }
-  if (pencil->C) PetscCall(RigidOnce(n_rigid, modes));
+  if (pencil->damped) PetscCall(RigidOnce(n_rigid, modes));
   PetscCall(PetscFree2(list, lambda));
   PetscCall(WorkDestroy(&w));
   PetscFunctionReturn(0);

@@ -26,7 +26,6 @@
    V, the energy without cancellation between neighbouring nodes.
 */
 #include "estimate.h"
-#include "dense.h"
 
 #define NEAR_CHANGES    20   /* eigenvalues closer than this many changes belong together */
 #define FARTHEST        1e-2 /* but not if they are farther apart than this, relative: the basis is merely poor there */
@@ -34,25 +33,20 @@
 #define MEETING         1e-4 /* modes closer than this, relative, may meet */
 #define EQUAL           1e-9 /* closer than this, relative, they always do */
 
-PetscComplex EstimateValue(const Estimate *e, PetscComplex lambda)
-{
-  return e->damped ? lambda : -lambda * lambda;
-}
-
 PetscErrorCode EstimateCouple(const Estimate *e, PetscComplex lambda, PetscBool left, PetscInt m,
                               const PetscComplex x[], PetscComplex r[])
 {
-  const PetscReal   *matrix[] = {e->K, e->C, e->M};
+  const PetscReal   *matrix[] = {e->pencil.K, e->pencil.C, e->pencil.M};
   const PetscComplex power[]  = {1, lambda, lambda * lambda};
-  const PetscInt     n = e->n, block = left ? e->n_v * n : e->n_v; /* Q_vz : Q_zv */
+  const PetscInt     n = e->pencil.n, block = left ? e->n_v * n : e->n_v; /* Q_vz : Q_zv */
   PetscComplex      *part;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(m * e->n_z, &part));
   PetscCall(PetscArrayzero(r, m * e->n_z));
   for (int k = 0; k < 3; k++) {
-    if (k == 1 && !e->damped) continue;
-    PetscCall(DenseTimes(e->n_z, e->n_v, matrix[k] + block, n, left, m, x, part));
+    if (k == 1 && !e->pencil.damped) continue;
+    PetscCall(DenseTimes(&(DenseBlock){matrix[k] + block, e->n_z, e->n_v, n}, left, m, x, part));
     for (PetscInt i = 0; i < m * e->n_z; i++) r[i] += power[k] * part[i];
   }
   PetscCall(PetscFree(part));
@@ -62,7 +56,7 @@ PetscErrorCode EstimateCouple(const Estimate *e, PetscComplex lambda, PetscBool 
 /* The same with real lambda^2 = square and no damping */
 static PetscErrorCode SolveReal(const Estimate *e, PetscReal square, PetscInt m, PetscComplex r[], PetscBool *singular)
 {
-  const PetscInt n_z = e->n_z, first = e->n_v * (e->n + 1);
+  const PetscInt n_z = e->n_z, n = e->pencil.n, first = e->n_v * (n + 1);
   PetscReal     *Q, *parts;
   PetscBLASInt  *pivot;
 
@@ -70,37 +64,29 @@ static PetscErrorCode SolveReal(const Estimate *e, PetscReal square, PetscInt m,
   PetscCall(PetscMalloc3(n_z * n_z, &Q, 2 * m * n_z, &parts, n_z, &pivot));
   for (PetscInt j = 0; j < n_z; j++)
     for (PetscInt i = 0; i < n_z; i++)
-      Q[j * n_z + i] = e->K[first + j * e->n + i] + square * e->M[first + j * e->n + i];
-  for (PetscInt i = 0; i < m * n_z; i++) {
-    parts[i]           = creal(r[i]);
-    parts[m * n_z + i] = cimag(r[i]);
-  }
+      Q[j * n_z + i] = e->pencil.K[first + j * n + i] + square * e->pencil.M[first + j * n + i];
+  DenseSplit(m * n_z, r, parts);
   PetscCall(DenseFactor(n_z, Q, pivot, singular));
   if (!*singular) PetscCall(DenseSolve(n_z, Q, pivot, PETSC_FALSE, 2 * m, parts));
-  for (PetscInt i = 0; i < m * n_z; i++) r[i] = CMPLX(parts[i], parts[m * n_z + i]);
+  DenseUnite(m * n_z, parts, r);
   PetscCall(PetscFree3(Q, parts, pivot));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode EstimateSolve(const Estimate *e, PetscComplex lambda, PetscInt m, PetscComplex r[], PetscBool *singular)
 {
-  const PetscInt     n_z = e->n_z, first = e->n_v * (e->n + 1);
+  const PetscInt     n_z    = e->n_z;
   const PetscComplex square = lambda * lambda;
   PetscComplex      *Q;
   PetscBLASInt      *pivot;
 
   PetscFunctionBeginUser;
-  if (!e->damped && cimag(square) == 0) {
+  if (!e->pencil.damped && cimag(square) == 0) {
     PetscCall(SolveReal(e, creal(square), m, r, singular));
     PetscFunctionReturn(0);
   }
   PetscCall(PetscMalloc2(n_z * n_z, &Q, n_z, &pivot));
-  for (PetscInt j = 0; j < n_z; j++)
-    for (PetscInt i = 0; i < n_z; i++) {
-      const PetscInt at = first + j * e->n + i;
-
-      Q[j * n_z + i] = e->K[at] + lambda * e->C[at] + square * e->M[at];
-    }
+  DensePencilEvaluate(&e->pencil, lambda, e->n_v, n_z, Q);
   PetscCall(ComplexFactor(n_z, Q, pivot, singular));
   if (!*singular) PetscCall(ComplexSolve(n_z, Q, pivot, PETSC_FALSE, m, r));
   PetscCall(PetscFree2(Q, pivot));
@@ -110,17 +96,12 @@ PetscErrorCode EstimateSolve(const Estimate *e, PetscComplex lambda, PetscInt m,
 static PetscErrorCode EstimateCreate(const Reduced *reduced, const PetscReal p[], const ReducedModes *modes,
                                      Estimate *e)
 {
-  const PetscInt n = reduced->n;
-
   PetscFunctionBeginUser;
   e->modes = modes;
-  e->n     = n;
   e->n_v   = reduced->n_used;
-  e->n_z   = n - e->n_v;
-  PetscCall(PetscMalloc3(n * n, &e->K, n * n, &e->C, n * n, &e->M));
-  PetscCall(ReducedSum(reduced, OPERATORS_STIFFNESS, p, n, e->K, NULL));
-  PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, n, e->C, &e->damped));
-  PetscCall(ReducedSum(reduced, OPERATORS_MASS, p, n, e->M, NULL));
+  e->n_z   = reduced->n - e->n_v;
+  PetscCall(ReducedPencil(reduced, p, reduced->n, &e->pencil));
+  e->form = (StandardForm){&e->pencil, e->n_v, e->pencil.damped, 1};
   PetscFunctionReturn(0);
 }
 
@@ -170,7 +151,7 @@ static PetscReal LambdaChange(const ReducedModes *modes, PetscInt i, PetscReal c
   return modes->rigid[i] || change > size * size ? PetscSqrtReal(change) : change / (2 * size);
 }
 
-/* change [modes] of each mode alone in the unit of mu, error of lambda */
+/* change [modes] of each mode alone in the unit of s, error of lambda */
 static PetscErrorCode Alone(const Estimate *e, ReducedModes *modes, PetscReal change[])
 {
   PetscFunctionBeginUser;
@@ -181,7 +162,7 @@ static PetscErrorCode Alone(const Estimate *e, ReducedModes *modes, PetscReal ch
     PetscCall(CoupleMode(e, i, &f));
     kappa = isfinite(cabs(f)) ? KappaChange(modes, i, cabs(f)) : cabs(modes->lambda[i]) * cabs(modes->lambda[i]);
     modes->error[i] = LambdaChange(modes, i, kappa);
-    change[i]       = e->damped ? modes->error[i] : kappa;
+    change[i]       = e->pencil.damped ? modes->error[i] : kappa;
   }
   PetscFunctionReturn(0);
 }
@@ -190,7 +171,7 @@ static PetscErrorCode Alone(const Estimate *e, ReducedModes *modes, PetscReal ch
 static PetscBool AreNear(const Estimate *e, const PetscReal change[], PetscInt i, PetscInt j)
 {
   const ReducedModes *modes = e->modes;
-  const PetscComplex  a = EstimateValue(e, modes->lambda[i]), b = EstimateValue(e, modes->lambda[j]);
+  const PetscComplex  a = StandardValue(&e->form, modes->lambda[i]), b = StandardValue(&e->form, modes->lambda[j]);
   const PetscReal     reach = PetscMin(NEAR_CHANGES * PetscMax(change[i], change[j]), FARTHEST * cabs(a));
 
   if (modes->rigid[i] || modes->rigid[j]) return PETSC_FALSE;
@@ -204,22 +185,17 @@ static void Group(const Estimate *e, const PetscReal change[], PetscInt cluster[
 
   for (PetscInt i = 0; i < n; i++) cluster[i] = i;
   for (PetscInt i = 0; i < n; i++)
-    for (PetscInt j = i + 1; j < n; j++) {
-      const PetscInt low = PetscMin(cluster[i], cluster[j]), high = PetscMax(cluster[i], cluster[j]);
-
-      if (low == high || !AreNear(e, change, i, j)) continue;
-      for (PetscInt k = 0; k < n; k++)
-        if (cluster[k] == high) cluster[k] = low;
-    }
+    for (PetscInt j = i + 1; j < n; j++)
+      if (cluster[i] != cluster[j] && AreNear(e, change, i, j)) ReducedClusterJoin(n, i, j, cluster);
 }
 
-/* |change| of lambda when mu becomes another */
-static PetscReal EstimateDistance(const Estimate *e, PetscComplex lambda, PetscComplex mu)
+/* |change| of lambda when s becomes another */
+static PetscReal EstimateDistance(const Estimate *e, PetscComplex lambda, PetscComplex s)
 {
-  const PetscComplex now = e->damped ? mu : csqrt(-mu), d = mu - EstimateValue(e, lambda);
+  const PetscComplex now = e->pencil.damped ? s : csqrt(-s), d = s - StandardValue(&e->form, lambda);
   const PetscReal    sum = PetscMax(cabs(now + lambda), cabs(now - lambda)); /* of the two roots the nearer */
 
-  if (e->damped) return cabs(mu - lambda);
+  if (e->pencil.damped) return cabs(s - lambda);
   return sum > 0 ? cabs(d) / sum : 0;
 }
 
@@ -227,41 +203,39 @@ static PetscReal EstimateDistance(const Estimate *e, PetscComplex lambda, PetscC
 static PetscErrorCode Together(const Estimate *e, PetscInt first, const PetscInt cluster[], ReducedModes *modes)
 {
   PetscInt     *list, m = 0;
-  PetscComplex *mu;
+  PetscComplex *s;
   PetscBool     singular = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(modes->n, &list, modes->n, &mu));
+  PetscCall(PetscMalloc2(modes->n, &list, modes->n, &s));
   for (PetscInt i = first; i < modes->n; i++)
     if (cluster[i] == first) list[m++] = i;
-  if (m > 1) PetscCall(EstimateCluster(e, m, list, mu, &singular));
+  if (m > 1) PetscCall(EstimateCluster(e, m, list, s, &singular));
   for (PetscInt a = 0; a < m && m > 1 && !singular; a++)
-    modes->error[list[a]] = EstimateDistance(e, modes->lambda[list[a]], mu[a]);
-  PetscCall(PetscFree2(list, mu));
+    modes->error[list[a]] = EstimateDistance(e, modes->lambda[list[a]], s[a]);
+  PetscCall(PetscFree2(list, s));
   PetscFunctionReturn(0);
 }
 
 /* Adds what rounding does, in the matrices of the mesh and in the dense ones */
 static PetscErrorCode AddFloor(const Estimate *e, const Reduced *reduced, const PetscReal p[], ReducedModes *modes)
 {
-  const PetscInt n      = e->n_v;
-  DensePencil    pencil = {.n = n};
+  const PetscInt n = e->n_v;
   PetscComplex  *work;
   PetscReal     *E;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(n * n, &pencil.K, n * n, &E, n, &work));
-  for (PetscInt j = 0; j < n; j++) PetscCall(PetscArraycpy(pencil.K + j * n, e->K + j * e->n, n));
+  PetscCall(PetscMalloc2(n * n, &E, n, &work));
   RoundingEnergy(reduced, p, E);
   for (PetscInt i = 0; i < modes->n; i++) {
     const PetscComplex *x = modes->x + i * n, *y = modes->y + i * n;
     const PetscReal     mesh  = RoundingProduct(n, E, x, y, work);
-    const PetscReal     noise = SOLVER_ROUNDING * PencilNoise(&pencil, x, y) + mesh;
+    const PetscReal     noise = SOLVER_ROUNDING * PencilNoise(&e->pencil, n, x, y) + mesh;
 
     modes->noise[i] = LambdaChange(modes, i, KappaChange(modes, i, noise));
     modes->error[i] += modes->noise[i];
   }
-  PetscCall(PetscFree3(pencil.K, E, work));
+  PetscCall(PetscFree2(E, work));
   PetscFunctionReturn(0);
 }
 
@@ -284,6 +258,6 @@ PetscErrorCode ReducedEstimate(const Reduced *reduced, const PetscReal p[], Redu
   }
   PetscCall(AddFloor(&e, reduced, p, modes));
   PetscCall(PetscFree2(change, cluster));
-  PetscCall(PetscFree3(e.K, e.C, e.M));
+  PetscCall(DensePencilDestroy(&e.pencil));
   PetscFunctionReturn(0);
 }

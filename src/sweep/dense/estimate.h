@@ -5,9 +5,9 @@
 
 typedef struct {
   const ReducedModes *modes;
-  PetscInt            n, n_v, n_z;
-  PetscBool           damped;
-  PetscReal          *K, *C, *M; /* [n * n], V first */
+  PetscInt            n_v, n_z;
+  DensePencil         pencil; /* V first */
+  StandardForm        form;   /* on V */
 } Estimate;
 
 /* estimate.c - r [m][n_z] = Q_zv(lambda) x (left false) or Q_vz(lambda)^T x of m vectors x [m][n_v] */
@@ -15,9 +15,7 @@ PetscErrorCode EstimateCouple(const Estimate *e, PetscComplex lambda, PetscBool 
                               const PetscComplex x[], PetscComplex r[]);
 /* r := Q_zz(lambda)^-1 r, [m][n_z]; singular where lambda is an eigenvalue of Z */
 PetscErrorCode EstimateSolve(const Estimate *e, PetscComplex lambda, PetscInt m, PetscComplex r[], PetscBool *singular);
-/* mu = kappa = -lambda^2 without damping, else lambda */
-PetscComplex EstimateValue(const Estimate *e, PetscComplex lambda);
 
-/* cluster.c - new values mu[m] of the modes list[m], whose vectors mean nothing one by one, matched to the old ones */
-PetscErrorCode EstimateCluster(const Estimate *e, PetscInt m, const PetscInt list[], PetscComplex mu[],
+/* cluster.c - new values s[m] of the modes list[m], whose vectors mean nothing one by one, matched to the old ones */
+PetscErrorCode EstimateCluster(const Estimate *e, PetscInt m, const PetscInt list[], PetscComplex s[],
                                PetscBool *singular);

@@ -12,7 +12,6 @@
    A cluster whose matrix y_i^T D x_j is singular is defective, and is left as it is.
 */
 #include "eigen.h"
-#include "dense.h"
 
 #define BAR        3     /* widths of the error bar */
 #define PAIR       1e-7  /* relative difference of equal frequencies */
@@ -27,6 +26,14 @@ PetscBool ReducedIsUnstable(PetscComplex lambda, PetscReal error)
 PetscBool ReducedModeIsUnstable(const ReducedModes *modes, PetscInt i)
 {
   return ReducedIsUnstable(modes->lambda[i], modes->error[i]);
+}
+
+void ReducedClusterJoin(PetscInt n, PetscInt i, PetscInt j, PetscInt cluster[])
+{
+  const PetscInt first = PetscMin(cluster[i], cluster[j]), last = PetscMax(cluster[i], cluster[j]);
+
+  for (PetscInt k = 0; k < n; k++)
+    if (cluster[k] == last) cluster[k] = first;
 }
 
 PetscErrorCode ReducedModesCreate(PetscInt n, PetscInt size, ReducedModes *modes)
@@ -262,7 +269,7 @@ static PetscErrorCode VectorsNormalise(PetscInt n, PetscInt m, const PetscReal M
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(m * n, &MX));
-  PetscCall(DenseTimes(n, n, Ms, n, PETSC_FALSE, m, X, MX));
+  PetscCall(DenseTimes(&(DenseBlock){Ms, n, n, n}, PETSC_FALSE, m, X, MX));
   for (PetscInt i = 0; i < m; i++) {
     PetscReal square = 0;
 
@@ -284,10 +291,10 @@ static PetscErrorCode ModesFinish(const DensePencil *pencil, const PetscReal Ms[
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(m * n, &Mx, m * n, &Dx));
   PetscCall(VectorsNormalise(n, m, Ms, modes->x));
-  PetscCall(DenseTimes(n, n, pencil->M, n, PETSC_FALSE, m, modes->x, Mx));
-  if (pencil->C) {
+  PetscCall(DenseTimes(&(DenseBlock){pencil->M, n, n, n}, PETSC_FALSE, m, modes->x, Mx));
+  if (pencil->damped) {
     PetscCall(PetscMalloc1(m * n, &Cx));
-    PetscCall(DenseTimes(n, n, pencil->C, n, PETSC_FALSE, m, modes->x, Cx));
+    PetscCall(DenseTimes(&(DenseBlock){pencil->C, n, n, n}, PETSC_FALSE, m, modes->x, Cx));
   }
   for (PetscInt i = 0; i < m; i++) ApplyD(modes, i, Mx, Cx, Dx + i * n);
   PetscCall(ClustersTreat(Dx, modes));
@@ -298,25 +305,33 @@ static PetscErrorCode ModesFinish(const DensePencil *pencil, const PetscReal Ms[
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ReducedPencil(const Reduced *reduced, const PetscReal p[], PetscInt n, DensePencil *pencil)
+{
+  PetscFunctionBeginUser;
+  pencil->n = n;
+  PetscCall(PetscMalloc3(n * n, &pencil->K, n * n, &pencil->C, n * n, &pencil->M));
+  PetscCall(ReducedSum(reduced, OPERATORS_STIFFNESS, p, n, pencil->K, NULL));
+  PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, n, pencil->C, &pencil->damped));
+  PetscCall(ReducedSum(reduced, OPERATORS_MASS, p, n, pencil->M, NULL));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
                             ReducedModes *modes)
 {
-  const PetscInt n      = reduced->n_used;
-  DensePencil    pencil = {.n = n};
-  PetscReal     *C, *Ms;
-  PetscBool      damped;
+  const PetscInt n = reduced->n_used;
+  DensePencil    pencil;
+  PetscReal     *Ms;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(n * n, &pencil.K, n * n, &C, n * n, &pencil.M, n * n, &Ms));
-  PetscCall(ReducedSum(reduced, OPERATORS_STIFFNESS, p, n, pencil.K, NULL));
-  PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, n, C, &damped));
-  PetscCall(ReducedSum(reduced, OPERATORS_MASS, p, n, pencil.M, NULL));
+  PetscCall(PetscMalloc1(n * n, &Ms));
+  PetscCall(ReducedPencil(reduced, p, n, &pencil));
   PetscCall(SumSymmetric(reduced, p, Ms, &pencil.symmetric));
-  pencil.C = damped ? C : NULL;
   PetscCall(PencilEigen(&pencil, window, modes));
   PetscCall(ModesSort(modes));
   PetscCall(ModesFinish(&pencil, Ms, modes));
-  if (!damped) PetscCall(RoundingMarkRigid(reduced, p, window, modes));
-  PetscCall(PetscFree4(pencil.K, C, pencil.M, Ms));
+  if (!pencil.damped) PetscCall(RoundingMarkRigid(reduced, p, window, modes));
+  PetscCall(DensePencilDestroy(&pencil));
+  PetscCall(PetscFree(Ms));
   PetscFunctionReturn(0);
 }

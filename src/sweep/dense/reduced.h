@@ -58,6 +58,9 @@ PetscBool ReducedModeIsUnstable(const ReducedModes *modes, PetscInt i);
 PetscErrorCode ReducedSum(const Reduced *reduced, OperatorsTermKind kind, const PetscReal p[], PetscInt n,
                           PetscReal sum[], PetscBool *any_nonzero);
 
+/* Labels cluster [n] = first member: puts j and all of its cluster into the cluster of i */
+void ReducedClusterJoin(PetscInt n, PetscInt i, PetscInt j, PetscInt cluster[]);
+
 /* rounding.c - E [n_used * n_used] of the mesh's rounding; its effect on kappa, times |y^T D x|, work [n]; marks the
    modes that are zero within it */
 #define ROUNDING_SMALL 1e-3 /* beside the window: frequencies that may be zeros */

@@ -20,7 +20,7 @@ static PetscErrorCode TermDerivative(const Reduced *reduced, PetscInt t, const R
     [OPERATORS_STIFFNESS] = 1, [OPERATORS_DAMPING] = lambda, [OPERATORS_MASS] = lambda * lambda};
 
   PetscFunctionBeginUser;
-  PetscCall(DenseTimes(n, n, reduced->A[t], reduced->n, PETSC_FALSE, 1, x, Ax));
+  PetscCall(DenseTimes(&(DenseBlock){reduced->A[t], n, n, reduced->n}, PETSC_FALSE, 1, x, Ax));
   *derivative = -powers[reduced->term[t].kind] * DenseDot(n, y, Ax) / (2 * lambda * modes->product[i]);
   PetscFunctionReturn(0);
 }

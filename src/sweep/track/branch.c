@@ -52,8 +52,8 @@ static PetscErrorCode BranchScore(const Branch *branch, const ModeFrame *b, Pets
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(nb, &sum));
   for (PetscInt j = 0; j < nb; j++)
-    sum[b->cluster[j]] += FrameDot(N, branch->w, b->X + j * N) * FrameDot(N, b->W + j * N, branch->x);
-  for (PetscInt j = 0; j < nb; j++) score[j] = b->damped ? cabs(sum[b->cluster[j]]) : creal(sum[b->cluster[j]]);
+    sum[b->cluster[j]] += DenseDot(N, branch->w, b->X + j * N) * DenseDot(N, b->W + j * N, branch->x);
+  for (PetscInt j = 0; j < nb; j++) score[j] = b->form.damped ? cabs(sum[b->cluster[j]]) : creal(sum[b->cluster[j]]);
   PetscCall(PetscFree(sum));
   PetscFunctionReturn(0);
 }

@@ -1,13 +1,8 @@
 /*
-   Modes of one point as a biorthogonal system. The standard form A z = s B z is
-
-      undamped  z = x,                      s = kappa = -lambda^2, A = K,  B = M
-      damped    z = [x; lambda x / scale],  s = lambda,            A = [-K / scale, 0; 0, scale M],
-                                                                   B = [C / scale, M; M, 0]
-
-   so that w^T B z = (lambda_w + lambda_z) y^T M x + y^T C x over scale, twice the product with D = M + C / (2 lambda)
-   when the two eigenvalues agree, and exactly zero between different modes of one point. With w^T B z = 1 the product
-   C_ij of the modes of two points is the coefficient of mode j of the one in the expansion by the modes i of the other.
+   Modes of one point as a biorthogonal system. With the standard form A z = s B z (dense/standard.c) w^T B z is, when the
+   two eigenvalues agree, twice the product with D = M + C / (2 lambda) over the scale, and exactly zero between different
+   modes of one point. With w^T B z = 1 the product C_ij of the modes of two points is the coefficient of mode j of the
+   one in the expansion by the modes i of the other.
 
    Modes of equal eigenvalues (within 1e-6, or within their errors) and pairs lambda, -conj(lambda) of an undamped
    system form a cluster. Their vectors are replaced by any basis of their plane and its dual: what is computed from the
@@ -15,63 +10,9 @@
    nearly parallel vectors at lock-in.
 */
 #include "frame.h"
-#include <petscblaslapack.h>
 
 #define CLOSE     1e-6 /* relative difference of eigenvalues of one cluster */
 #define CONJUGATE 1e-7 /* relative difference of frequencies of a pair */
-
-PetscComplex FrameDot(PetscInt n, const PetscComplex a[], const PetscComplex b[])
-{
-  PetscComplex sum = 0;
-
-  for (PetscInt i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}
-
-PetscComplex ModeFrameEigenvalue(const ModeFrame *frame, PetscComplex lambda)
-{
-  return frame->damped ? lambda : -lambda * lambda;
-}
-
-PetscComplex ModeFrameLambda(const ModeFrame *frame, PetscComplex s)
-{
-  PetscComplex lambda = frame->damped ? s : csqrt(-s);
-
-  return cimag(lambda) < 0 ? -lambda : lambda;
-}
-
-/* y = factor op(A) x + add y, A real [n * n] column-major; a complex vector is a real 2 x n matrix */
-static PetscErrorCode RealTimes(PetscInt size, const PetscReal A[], PetscBool transposed, PetscReal factor,
-                                const PetscComplex x[], PetscReal add, PetscComplex y[])
-{
-  const PetscBLASInt two = 2;
-  PetscBLASInt       n;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(size, &n));
-  PetscCallBLAS("BLASgemm", BLASgemm_("N", transposed ? "N" : "T", &two, &n, &n, &factor, (const PetscReal *)x, &two, A,
-                                      &n, &add, (PetscReal *)y, &two));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModeFrameApply(const ModeFrame *f, ModeFrameMatrix matrix, PetscBool transposed, const PetscComplex x[],
-                              PetscComplex y[])
-{
-  const PetscInt n = f->size;
-
-  PetscFunctionBeginUser;
-  if (!f->damped) {
-    PetscCall(RealTimes(n, matrix == FRAME_A ? f->K : f->M, transposed, 1, x, 0, y));
-  } else if (matrix == FRAME_A) {
-    PetscCall(RealTimes(n, f->K, transposed, -1 / f->scale, x, 0, y));
-    PetscCall(RealTimes(n, f->M, transposed, f->scale, x + n, 0, y + n));
-  } else {
-    PetscCall(RealTimes(n, f->C, transposed, 1 / f->scale, x, 0, y));
-    PetscCall(RealTimes(n, f->M, transposed, 1, x + n, 1, y));
-    PetscCall(RealTimes(n, f->M, transposed, 1, x, 0, y + n));
-  }
-  PetscFunctionReturn(0);
-}
 
 PetscInt ModeFramePartner(const ModeFrame *f, PetscInt i)
 {
@@ -79,7 +20,7 @@ PetscInt ModeFramePartner(const ModeFrame *f, PetscInt i)
   PetscInt           best   = -1;
   PetscReal          least  = CONJUGATE * cabs(lambda);
 
-  if (f->damped || creal(lambda) == 0 || cimag(lambda) == 0) return -1;
+  if (f->form.damped || creal(lambda) == 0 || cimag(lambda) == 0) return -1;
   for (PetscInt j = 0; j < f->modes.n; j++) {
     const PetscReal distance = cabs(f->modes.lambda[j] + conj(lambda));
 
@@ -96,24 +37,15 @@ static PetscBool ModesAreClose(const ReducedModes *modes, PetscInt i, PetscInt j
   return distance <= CLOSE * cabs(modes->lambda[i]) + modes->error[i] + modes->error[j] ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Puts j and all of its cluster into the cluster of i */
-static void ClusterJoin(ModeFrame *f, PetscInt i, PetscInt j)
-{
-  const PetscInt first = PetscMin(f->cluster[i], f->cluster[j]), last = PetscMax(f->cluster[i], f->cluster[j]);
-
-  for (PetscInt k = 0; k < f->modes.n; k++)
-    if (f->cluster[k] == last) f->cluster[k] = first;
-}
-
 static void FrameCluster(ModeFrame *f)
 {
   for (PetscInt i = 0; i < f->modes.n; i++) f->cluster[i] = i;
   for (PetscInt i = 0; i < f->modes.n; i++) {
     const PetscInt partner = ModeFramePartner(f, i);
 
-    if (partner >= 0) ClusterJoin(f, i, partner);
+    if (partner >= 0) ReducedClusterJoin(f->modes.n, i, partner, f->cluster);
     for (PetscInt j = i + 1; j < f->modes.n; j++)
-      if (ModesAreClose(&f->modes, i, j)) ClusterJoin(f, i, j);
+      if (ModesAreClose(&f->modes, i, j)) ReducedClusterJoin(f->modes.n, i, j, f->cluster);
   }
 }
 
@@ -121,16 +53,10 @@ static void FrameCluster(ModeFrame *f)
    the dual of it with respect to B */
 static void FrameVector(const ModeFrame *f, const PetscComplex x[], PetscInt i, PetscBool left, PetscComplex z[])
 {
-  const PetscBool swap = left && f->modes.rigid[i] ? PETSC_TRUE : PETSC_FALSE;
+  const PetscInt n = f->form.n;
 
-  for (PetscInt k = 0; k < f->size; k++) {
-    if (!f->damped) {
-      z[k] = x[k];
-    } else {
-      z[k]           = swap ? 0 : x[k];
-      z[f->size + k] = swap ? x[k] : f->modes.lambda[i] * x[k] / f->scale;
-    }
-  }
+  StandardVector(&f->form, f->modes.lambda[i], x, z);
+  for (PetscInt k = 0; k < n && f->form.damped && left && f->modes.rigid[i]; k++) z[n + k] = x[k], z[k] = 0;
 }
 
 /* Bases of the plane of k modes of an undamped system */
@@ -155,11 +81,12 @@ static PetscErrorCode ClusterRefine(ModeFrame *f, PetscInt k, const PetscInt mem
 static PetscErrorCode ClusterOrthonormalise(ModeFrame *f, PetscInt k, const PetscInt member[], PetscComplex Z[])
 {
   PetscComplex *plane;
+  PetscInt      kept;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(k * f->N, &plane));
   for (PetscInt a = 0; a < k; a++) PetscCall(PetscArraycpy(plane + a * f->N, Z + member[a] * f->N, f->N));
-  PetscCall(ModePlaneOrthonormalise(f->N, k, plane));
+  PetscCall(ComplexOrthonormalise(f->N, k, FRAME_PARALLEL, plane, &kept));
   for (PetscInt a = 0; a < k; a++) PetscCall(PetscArraycpy(Z + member[a] * f->N, plane + a * f->N, f->N));
   PetscCall(PetscFree(plane));
   PetscFunctionReturn(0);
@@ -179,7 +106,7 @@ static PetscErrorCode ClusterDualise(ModeFrame *f, PetscInt k, const PetscInt me
     PetscComplex g;
 
     for (PetscInt b = a; b < k; b++) {
-      const PetscReal size = cabs(FrameDot(N, f->W + member[b] * N, Xa));
+      const PetscReal size = cabs(DenseDot(N, f->W + member[b] * N, Xa));
 
       if (size > largest) largest = size, pivot = b;
     }
@@ -189,14 +116,14 @@ static PetscErrorCode ClusterDualise(ModeFrame *f, PetscInt k, const PetscInt me
 
       Wa[r] = Wp[r], Ya[r] = Yp[r], Wp[r] = w, Yp[r] = y;
     }
-    g = FrameDot(N, Wa, Xa);
+    g = DenseDot(N, Wa, Xa);
     for (PetscInt r = 0; r < N; r++) {
       Wa[r] = largest > 0 ? Wa[r] / g : 0;
       Ya[r] = largest > 0 ? Ya[r] / g : 0;
     }
     for (PetscInt b = 0; b < k; b++) {
       PetscComplex *const Wb = f->W + member[b] * N, *const Yb = f->Y + member[b] * N;
-      const PetscComplex c = b == a ? 0 : FrameDot(N, Wb, Xa);
+      const PetscComplex c = b == a ? 0 : DenseDot(N, Wb, Xa);
 
       for (PetscInt r = 0; r < N; r++) Wb[r] -= c * Wa[r], Yb[r] -= c * Ya[r];
     }
@@ -213,39 +140,33 @@ static PetscErrorCode ClusterBases(ModeFrame *f, PetscInt first)
   PetscCall(PetscMalloc1(f->modes.n, &member));
   for (PetscInt i = first; i < f->modes.n; i++)
     if (f->cluster[i] == first) member[k++] = i;
-  if (k > 1 && !f->damped) {
+  if (k > 1 && !f->form.damped) {
     PetscCall(ClusterRefine(f, k, member));
   } else if (k > 1 && !f->modes.rigid[first]) {
     PetscCall(ClusterOrthonormalise(f, k, member, f->X));
     PetscCall(ClusterOrthonormalise(f, k, member, f->Y));
   }
   for (PetscInt a = 0; a < k; a++)
-    PetscCall(ModeFrameApply(f, FRAME_B, PETSC_TRUE, f->Y + member[a] * f->N, f->W + member[a] * f->N));
+    PetscCall(StandardApply(&f->form, STANDARD_B, PETSC_TRUE, 1, f->Y + member[a] * f->N, f->W + member[a] * f->N));
   PetscCall(ClusterDualise(f, k, member));
   PetscCall(PetscFree(member));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], PetscReal value, PetscBool damped,
-                               PetscReal scale, PetscBool refine, const ReducedModes *modes, ModeFrame **frame)
+PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], const StandardForm *form, PetscBool refine,
+                               const ReducedModes *modes, ModeFrame **frame)
 {
   const PetscInt n = modes->n, size = reduced->n_used;
   ModeFrame     *f;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&f));
-  f->value  = value;
-  f->scale  = scale;
-  f->damped = damped;
   f->refine = refine;
-  f->size   = size;
-  f->N      = damped ? 2 * size : size;
+  f->form   = (StandardForm){&f->pencil, size, form->damped, form->scale};
+  f->N      = StandardSize(&f->form);
   PetscCall(ReducedModesCopy(modes, &f->modes));
-  PetscCall(PetscMalloc3(size * size, &f->K, size * size, &f->C, size * size, &f->M));
+  PetscCall(ReducedPencil(reduced, p, size, &f->pencil));
   PetscCall(PetscMalloc5(n, &f->cluster, n, &f->branch, n * f->N, &f->X, n * f->N, &f->Y, n * f->N, &f->W));
-  PetscCall(ReducedSum(reduced, OPERATORS_STIFFNESS, p, size, f->K, NULL));
-  PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, size, f->C, NULL));
-  PetscCall(ReducedSum(reduced, OPERATORS_MASS, p, size, f->M, NULL));
   FrameCluster(f);
   for (PetscInt i = 0; i < n; i++) {
     f->branch[i] = -1;
@@ -265,7 +186,7 @@ PetscErrorCode ModeFrameDestroy(ModeFrame **frame)
   PetscFunctionBeginUser;
   if (!f) PetscFunctionReturn(0);
   PetscCall(ReducedModesDestroy(&f->modes));
-  PetscCall(PetscFree3(f->K, f->C, f->M));
+  PetscCall(DensePencilDestroy(&f->pencil));
   PetscCall(PetscFree5(f->cluster, f->branch, f->X, f->Y, f->W));
   PetscCall(PetscFree(*frame));
   PetscFunctionReturn(0);
@@ -275,7 +196,7 @@ PetscErrorCode ModeFrameProject(const ModeFrame *a, const ModeFrame *b, PetscCom
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < a->modes.n; i++)
-    for (PetscInt j = 0; j < b->modes.n; j++) C[i * b->modes.n + j] = FrameDot(a->N, a->W + i * a->N, b->X + j * b->N);
+    for (PetscInt j = 0; j < b->modes.n; j++) C[i * b->modes.n + j] = DenseDot(a->N, a->W + i * a->N, b->X + j * b->N);
   PetscFunctionReturn(0);
 }
 
@@ -285,15 +206,14 @@ PetscErrorCode ModeFramePencil(const ModeFrame *a, const ModeFrame *b, PetscComp
   PetscComplex  *AX, *BX;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(N, &AX, N, &BX));
-  for (PetscInt j = 0; j < n; j++) {
-    PetscCall(ModeFrameApply(b, FRAME_A, PETSC_FALSE, a->X + j * N, AX));
-    PetscCall(ModeFrameApply(b, FRAME_B, PETSC_FALSE, a->X + j * N, BX));
-    for (PetscInt i = 0; i < n; i++) {
-      H[i * n + j] = FrameDot(N, a->Y + i * N, AX);
-      G[i * n + j] = FrameDot(N, a->Y + i * N, BX);
+  PetscCall(PetscMalloc2(n * N, &AX, n * N, &BX));
+  PetscCall(StandardApply(&b->form, STANDARD_A, PETSC_FALSE, n, a->X, AX));
+  PetscCall(StandardApply(&b->form, STANDARD_B, PETSC_FALSE, n, a->X, BX));
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = 0; j < n; j++) {
+      H[i * n + j] = DenseDot(N, a->Y + i * N, AX + j * N);
+      G[i * n + j] = DenseDot(N, a->Y + i * N, BX + j * N);
     }
-  }
   PetscCall(PetscFree2(AX, BX));
   PetscFunctionReturn(0);
 }

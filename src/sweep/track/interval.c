@@ -98,57 +98,64 @@ static PetscBool PredictVeering(PetscComplex delta_a, PetscComplex delta_b, Pets
   return 2 * cabs(csqrt(half * half + mixing)) > resolution * PetscAbsReal(to - from) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Modes that take part: vibrating, with a partner at the other end, stable and alone in their cluster; other = mode at
-   the other end or -1 */
-static PetscBool ModeTakesPart(const ModeFrame *a, const PetscInt other[], PetscInt i)
-{
-  PetscInt together = 0;
+/* From point a towards b */
+typedef struct {
+  const ModeFrame *a, *b;
+  const PetscInt  *other; /* [modes of a] mode of b or -1 */
+  PetscReal        resolution;
+} Step;
 
-  if (other[i] < 0 || a->modes.rigid[i] || cimag(a->modes.lambda[i]) == 0) return PETSC_FALSE;
+/* Modes that take part: vibrating, with a partner at the other end, stable and alone in their cluster */
+static PetscBool ModeTakesPart(const Step *step, PetscInt i)
+{
+  const ModeFrame *a        = step->a;
+  PetscInt         together = 0;
+
+  if (step->other[i] < 0 || a->modes.rigid[i] || cimag(a->modes.lambda[i]) == 0) return PETSC_FALSE;
   for (PetscInt k = 0; k < a->modes.n; k++) together += a->cluster[k] == a->cluster[i];
   return together == 1 && !ReducedModeIsUnstable(&a->modes, i) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Whether the match exchanges the frequencies of modes i and k */
-static PetscBool ModesSwap(const ModeFrame *a, const ModeFrame *b, const PetscInt other[], PetscInt i, PetscInt k)
+static PetscBool ModesSwap(const Step *step, PetscInt i, PetscInt k)
 {
-  const PetscComplex *p = a->modes.lambda, *q = b->modes.lambda;
+  const PetscComplex *p = step->a->modes.lambda, *q = step->b->modes.lambda;
+  const PetscInt     *other = step->other;
 
   return cimag(p[i] - p[k]) * cimag(q[other[i]] - q[other[k]]) < 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Looks at modes i and k, S [2 * 2], from a towards b */
-static PetscBool PredictPair(const ModeFrame *a, const ModeFrame *b, const PetscInt other[], PetscInt i, PetscInt k,
-                             const PetscComplex S[], PetscReal resolution, PetscReal *t)
+/* Looks at modes i and k, S [2 * 2] */
+static PetscBool PredictPair(const Step *step, PetscInt i, PetscInt k, const PetscComplex S[], PetscReal *t)
 {
+  const ModeFrame    *a = step->a, *b = step->b;
+  const PetscInt     *other   = step->other;
   const ReducedModes *modes   = &a->modes;
-  const PetscComplex  s[2]    = {ModeFrameEigenvalue(a, modes->lambda[i]), ModeFrameEigenvalue(a, modes->lambda[k])};
+  const PetscComplex  s[2]    = {StandardValue(&a->form, modes->lambda[i]), StandardValue(&a->form, modes->lambda[k])};
   const PetscComplex  delta_a = s[0] - s[1], delta_b = S[0] - S[3], coupling = S[1] * S[2];
-  const PetscReal     limit = PetscMax(1e-9 * cabs(s[0]), 3 * (modes->error[i] + modes->error[k]));
+  const PetscReal     limit = PetscMax(REDUCED_TINY * cabs(s[0]), 3 * (modes->error[i] + modes->error[k]));
 
   if (!ReducedModeIsUnstable(&b->modes, other[i]) && !ReducedModeIsUnstable(&b->modes, other[k])) {
-    if (a->damped && PredictDamped(s, S, limit, t)) return PETSC_TRUE;
-    if (!a->damped && PredictUndamped(creal(delta_a), creal(delta_b), creal(coupling), cabs(s[0]), t))
+    if (a->form.damped && PredictDamped(s, S, limit, t)) return PETSC_TRUE;
+    if (!a->form.damped && PredictUndamped(creal(delta_a), creal(delta_b), creal(coupling), cabs(s[0]), t))
       return PETSC_TRUE;
   }
-  if (!ModesSwap(a, b, other, i, k)) return PETSC_FALSE;
-  return PredictVeering(delta_a, delta_b, coupling, a->damped, resolution, t);
+  if (!ModesSwap(step, i, k)) return PETSC_FALSE;
+  return PredictVeering(delta_a, delta_b, coupling, a->form.damped, step->resolution, t);
 }
 
-/* Looks from a towards b; other = modes of b */
-static PetscErrorCode PredictFrom(const ModeFrame *a, const ModeFrame *b, const PetscInt other[], PetscReal resolution,
-                                  PetscReal *t, PetscBool *found)
+/* Looks at all pairs */
+static PetscErrorCode PredictStep(const Step *step, PetscReal *t, PetscBool *found)
 {
-  const PetscInt n = a->modes.n;
+  const PetscInt n = step->a->modes.n;
   PetscComplex  *H, *G, S[4];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n * n, &H, n * n, &G));
-  PetscCall(ModeFramePencil(a, b, H, G));
+  PetscCall(ModeFramePencil(step->a, step->b, H, G));
   for (PetscInt i = 0; i < n && !*found; i++) {
-    for (PetscInt k = i + 1; k < n && !*found && ModeTakesPart(a, other, i); k++) {
-      if (ModeTakesPart(a, other, k) && PairMatrix(H, G, n, i, k, S))
-        *found = PredictPair(a, b, other, i, k, S, resolution, t);
+    for (PetscInt k = i + 1; k < n && !*found && ModeTakesPart(step, i); k++) {
+      if (ModeTakesPart(step, k) && PairMatrix(H, G, n, i, k, S)) *found = PredictPair(step, i, k, S, t);
     }
   }
   PetscCall(PetscFree2(H, G));
@@ -166,9 +173,9 @@ PetscErrorCode IntervalPredict(const ModeFrame *a, const ModeFrame *b, const Mat
   for (PetscInt i = 0; i < match->na; i++) to[i] = -1;
   for (PetscInt j = 0; j < match->nb; j++)
     if (match->from[j] >= 0) to[match->from[j]] = j;
-  PetscCall(PredictFrom(a, b, to, resolution, t, found));
+  PetscCall(PredictStep(&(Step){a, b, to, resolution}, t, found));
   if (!*found) {
-    PetscCall(PredictFrom(b, a, match->from, resolution, t, found));
+    PetscCall(PredictStep(&(Step){b, a, match->from, resolution}, t, found));
     *t = 1 - *t;
   }
   PetscCall(PetscFree(to));

@@ -49,20 +49,6 @@ static PetscErrorCode StrengthFind(const ModeFrame *a, const ModeFrame *b, Match
   PetscFunctionReturn(0);
 }
 
-/* Root of the tree of a node; every node points at one of a smaller number or at itself */
-static PetscInt Root(const PetscInt parent[], PetscInt node)
-{
-  while (parent[node] != node) node = parent[node];
-  return node;
-}
-
-static void Join(PetscInt parent[], PetscInt u, PetscInt v)
-{
-  const PetscInt ru = Root(parent, u), rv = Root(parent, v);
-
-  parent[PetscMax(ru, rv)] = PetscMin(ru, rv);
-}
-
 /* Whether the modes i of a and j of b belong together */
 static PetscBool MatchConnects(const Match *match, PetscInt i, PetscInt j)
 {
@@ -78,21 +64,19 @@ static PetscBool MatchConnects(const Match *match, PetscInt i, PetscInt j)
 static PetscErrorCode ComponentsFind(const ModeFrame *a, const ModeFrame *b, Match *match)
 {
   const PetscInt na = match->na, nb = match->nb;
-  PetscInt      *parent, *number;
+  PetscInt      *label, *number;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(na + nb, &parent, na + nb, &number));
-  for (PetscInt u = 0; u < na + nb; u++) parent[u] = u;
-  for (PetscInt i = 0; i < na; i++) Join(parent, i, a->cluster[i]);
-  for (PetscInt j = 0; j < nb; j++) Join(parent, na + j, na + b->cluster[j]);
+  PetscCall(PetscMalloc2(na + nb, &label, na + nb, &number));
+  for (PetscInt u = 0; u < na + nb; u++) label[u] = u < na ? a->cluster[u] : na + b->cluster[u - na];
   for (PetscInt i = 0; i < na; i++)
     for (PetscInt j = 0; j < nb; j++)
-      if (MatchConnects(match, i, j)) Join(parent, i, na + j);
+      if (label[i] != label[na + j] && MatchConnects(match, i, j)) ReducedClusterJoin(na + nb, i, na + j, label);
   match->n_components = 0;
-  for (PetscInt u = 0; u < na + nb; u++) number[u] = parent[u] == u ? match->n_components++ : number[Root(parent, u)];
+  for (PetscInt u = 0; u < na + nb; u++) number[u] = label[u] == u ? match->n_components++ : number[label[u]];
   PetscCall(PetscArraycpy(match->component_a, number, na));
   PetscCall(PetscArraycpy(match->component_b, number + na, nb));
-  PetscCall(PetscFree2(parent, number));
+  PetscCall(PetscFree2(label, number));
   PetscFunctionReturn(0);
 }
 
@@ -107,11 +91,11 @@ static PetscBool ModeHasLeft(const ModeFrame *a, PetscInt i, const ReducedWindow
 
   for (PetscInt k = 0; k < n; k++) {
     if (a->cluster[k] != a->cluster[i]) continue;
-    move += H[k * n + k] / G[k * n + k] - ModeFrameEigenvalue(a, a->modes.lambda[k]);
+    move += H[k * n + k] / G[k * n + k] - StandardValue(&a->form, a->modes.lambda[k]);
     size += 1;
   }
-  if (a->modes.rigid[i] && a->damped) move = 0;
-  lambda = ModeFrameLambda(a, ModeFrameEigenvalue(a, lambda) + move / size);
+  if (a->modes.rigid[i] && a->form.damped) move = 0;
+  lambda = StandardLambda(&a->form, StandardValue(&a->form, lambda) + move / size);
   inside = PetscMin(cimag(lambda) - window->low, window->high - cimag(lambda));
   if (window->low <= 0) inside = window->high - cimag(lambda);
   inside = PetscMin(inside, window->growth - PetscAbsReal(creal(lambda)));
@@ -204,19 +188,27 @@ static PetscInt ComponentPlace(const ReducedModes *modes, const PetscInt compone
   return place;
 }
 
+/* An assignment while it is made */
+typedef struct {
+  const Match     *match;
+  const PetscReal *score; /* [na * nb] */
+  PetscInt        *place_a, *place_b;
+  PetscBool       *taken; /* [na] */
+} Assignment;
+
 /* The next pair to assign, the one of the largest score; false when there is none left */
-static PetscBool BestPair(const Match *match, const PetscReal score[], const PetscInt place_a[],
-                          const PetscInt place_b[], const PetscBool taken[], PetscInt *best_i, PetscInt *best_j)
+static PetscBool BestPair(const Assignment *s, PetscInt *best_i, PetscInt *best_j)
 {
-  PetscReal best = PETSC_MIN_REAL;
+  const Match *match = s->match;
+  PetscReal    best  = PETSC_MIN_REAL;
 
   for (PetscInt i = 0; i < match->na; i++) {
-    for (PetscInt j = 0; j < match->nb && !taken[i]; j++) {
-      const PetscReal s = score[i * match->nb + j] + (place_a[i] == place_b[j] ? PLACE : 0);
+    for (PetscInt j = 0; j < match->nb && !s->taken[i]; j++) {
+      const PetscReal score = s->score[i * match->nb + j] + (s->place_a[i] == s->place_b[j] ? PLACE : 0);
 
-      if (match->from[j] >= 0 || match->component_a[i] != match->component_b[j] || s <= best) continue;
-      if (s - PLACE < LEAST && !match->certain[match->component_a[i]]) continue;
-      best = s, *best_i = i, *best_j = j;
+      if (match->from[j] >= 0 || match->component_a[i] != match->component_b[j] || score <= best) continue;
+      if (score - PLACE < LEAST && !match->certain[match->component_a[i]]) continue;
+      best = score, *best_i = i, *best_j = j;
     }
   }
   return best > PETSC_MIN_REAL ? PETSC_TRUE : PETSC_FALSE;
@@ -225,20 +217,23 @@ static PetscBool BestPair(const Match *match, const PetscReal score[], const Pet
 PetscErrorCode MatchAssign(const ModeFrame *a, const ModeFrame *b, const PetscReal score[], const PetscReal order[],
                            Match *match)
 {
-  PetscInt  *place_a, *place_b, i, j;
+  Assignment s = {.match = match, .score = score};
+  PetscInt   i, j;
   PetscReal *omega;
-  PetscBool *taken;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc4(match->na, &place_a, match->nb, &place_b, match->nb, &omega, match->na, &taken));
+  PetscCall(
+    PetscCalloc4(match->na, &s.place_a, match->nb, &s.place_b, match->na + match->nb, &omega, match->na, &s.taken));
+  for (i = 0; i < match->na; i++) omega[i] = cimag(a->modes.lambda[i]);
+  for (i = 0; i < match->na; i++)
+    s.place_a[i] = ComponentPlace(&a->modes, match->component_a, order ? order : omega, i);
   for (j = 0; j < match->nb; j++) omega[j] = cimag(b->modes.lambda[j]), match->from[j] = -1;
-  for (i = 0; i < match->na; i++) place_a[i] = ComponentPlace(&a->modes, match->component_a, order, i);
-  for (j = 0; j < match->nb; j++) place_b[j] = ComponentPlace(&b->modes, match->component_b, omega, j);
-  while (BestPair(match, score, place_a, place_b, taken, &i, &j)) {
+  for (j = 0; j < match->nb; j++) s.place_b[j] = ComponentPlace(&b->modes, match->component_b, omega, j);
+  while (BestPair(&s, &i, &j)) {
     match->from[j] = i;
-    taken[i]       = PETSC_TRUE;
+    s.taken[i]     = PETSC_TRUE;
   }
-  PetscCall(PetscFree4(place_a, place_b, omega, taken));
+  PetscCall(PetscFree4(s.place_a, s.place_b, omega, s.taken));
   PetscFunctionReturn(0);
 }
 

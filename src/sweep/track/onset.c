@@ -51,7 +51,7 @@ static PetscErrorCode TrialDestroy(Trial *trial)
 static PetscErrorCode PlaneDiscriminant(Trial *trial)
 {
   const ModeFrame *f = trial->frame;
-  const PetscInt   N = f->size, k = trial->k;
+  const PetscInt   N = f->form.n, k = trial->k;
   PetscBLASInt     n, columns, info, *pivots;
   PetscReal       *X, *Y, *Z, *G, *S, one = 1, zero = 0, d = 0;
 
@@ -60,9 +60,9 @@ static PetscErrorCode PlaneDiscriminant(Trial *trial)
   PetscCall(PetscBLASIntCast(k, &columns));
   PetscCall(PetscMalloc6(k * N, &X, k * N, &Y, k * N, &Z, k * k, &G, k * k, &S, k, &pivots));
   PetscCall(ModePlaneRefine(f, k, trial->member, X, Y));
-  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &n, &columns, &n, &one, f->M, &n, X, &n, &zero, Z, &n));
+  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &n, &columns, &n, &one, f->pencil.M, &n, X, &n, &zero, Z, &n));
   PetscCallBLAS("BLASgemm", BLASgemm_("T", "N", &columns, &columns, &n, &one, Y, &n, Z, &n, &zero, G, &columns));
-  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &n, &columns, &n, &one, f->K, &n, X, &n, &zero, Z, &n));
+  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &n, &columns, &n, &one, f->pencil.K, &n, X, &n, &zero, Z, &n));
   PetscCallBLAS("BLASgemm", BLASgemm_("T", "N", &columns, &columns, &n, &one, Y, &n, Z, &n, &zero, S, &columns));
   PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&columns, &columns, G, &columns, pivots, S, &columns, &info));
   PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gesv: info %d", (int)info);
@@ -81,14 +81,14 @@ static PetscErrorCode PlaneDiscriminant(Trial *trial)
 static PetscErrorCode ModeStiffness(Trial *trial)
 {
   const ModeFrame    *f = trial->frame;
-  const PetscComplex *x = f->modes.x + trial->member[0] * f->size, *y = f->modes.y + trial->member[0] * f->size;
+  const PetscComplex *x = f->modes.x + trial->member[0] * f->form.n, *y = f->modes.y + trial->member[0] * f->form.n;
   PetscComplex        k = 0, m = 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < f->size; c++) {
-    for (PetscInt r = 0; r < f->size; r++) {
-      k += y[r] * f->K[c * f->size + r] * x[c];
-      m += y[r] * f->M[c * f->size + r] * x[c];
+  for (PetscInt c = 0; c < f->form.n; c++) {
+    for (PetscInt r = 0; r < f->form.n; r++) {
+      k += y[r] * f->pencil.K[c * f->form.n + r] * x[c];
+      m += y[r] * f->pencil.M[c * f->form.n + r] * x[c];
     }
   }
   trial->g = -creal(k / m);
@@ -260,7 +260,7 @@ static PetscReal OnsetUncertainty(const Onset *onset, const Trial *trial, const 
     error = PetscMax(error, modes->error[i] - modes->noise[i]); /* rounding of the critical value is added apart */
   }
   delta = onset->kind == ONSET_PAIR ? PetscSqr(2 * event->omega * error) : 3 * error;
-  if (onset->kind == ONSET_STIFFNESS) delta *= onset->source.damped ? onset->change : 2 * lambda + error;
+  if (onset->kind == ONSET_STIFFNESS) delta *= onset->source.form.damped ? onset->change : 2 * lambda + error;
   return delta + 10 * PETSC_MACHINE_EPSILON * unit;
 }
 
@@ -316,7 +316,7 @@ static PetscErrorCode OnsetBracket(Onset *onset, const Event *event, PetscReal *
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OnsetFind(const Reduced *reduced, const ReducedWindow *window, const Line *line, Event *event)
+PetscErrorCode OnsetFind(const Reduced *reduced, const Line *line, Event *event)
 {
   Onset     onset = {0};
   PetscReal critical;
@@ -324,8 +324,8 @@ PetscErrorCode OnsetFind(const Reduced *reduced, const ReducedWindow *window, co
   PetscBool found;
 
   PetscFunctionBeginUser;
-  PetscCall(ModeSourceCreate(reduced, window, line, &onset.source));
-  onset.kind = divergence ? ONSET_STIFFNESS : (onset.source.damped ? ONSET_GROWTH : ONSET_PAIR);
+  PetscCall(ModeSourceCreate(reduced, line, &onset.source));
+  onset.kind = divergence ? ONSET_STIFFNESS : (onset.source.form.damped ? ONSET_GROWTH : ONSET_PAIR);
   PetscCall(OnsetBracket(&onset, event, &critical, &found));
   event->found = found;
   if (found) {

@@ -10,31 +10,21 @@ static void SourceSetValue(ModeSource *source, PetscReal value)
   source->p[source->line->parameter] = value;
 }
 
-PetscErrorCode ModeSourceCreate(const Reduced *reduced, const ReducedWindow *window, const Line *line,
-                                ModeSource *source)
+PetscErrorCode ModeSourceCreate(const Reduced *reduced, const Line *line, ModeSource *source)
 {
-  const PetscReal first = line->value[0], last = line->value[line->n - 1];
+  const PetscReal first = line->value[0], last = line->value[line->n - 1], high = line->window->high;
   const PetscReal value[3] = {first, last, first + 0.5 * (last - first)};
-  const PetscInt  n        = reduced->n_used;
-  PetscReal      *C;
 
   PetscFunctionBeginUser;
-  source->reduced  = reduced;
-  source->window   = window;
-  source->line     = line;
-  source->scale    = window->high > 0 && window->high < 1e100 ? window->high : 1;
-  source->damped   = PETSC_FALSE;
-  source->estimate = PETSC_FALSE;
+  *source = (ModeSource){.reduced = reduced, .line = line, .form = {.scale = high > 0 && high < 1e100 ? high : 1}};
   PetscCall(PetscMalloc1(reduced->n_parameters, &source->p));
-  PetscCall(PetscMalloc1(n * n, &C));
   for (int i = 0; i < 3; i++) {
     PetscBool any;
 
     SourceSetValue(source, value[i]);
-    PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, source->p, n, C, &any));
-    source->damped = (PetscBool)(source->damped || any);
+    PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, source->p, 0, NULL, &any));
+    source->form.damped = (PetscBool)(source->form.damped || any);
   }
-  PetscCall(PetscFree(C));
   PetscFunctionReturn(0);
 }
 
@@ -42,8 +32,8 @@ PetscErrorCode ModeSourceTake(ModeSource *source, PetscReal value, const Reduced
 {
   PetscFunctionBeginUser;
   SourceSetValue(source, value);
-  PetscCall(
-    ModeFrameCreate(source->reduced, source->p, value, source->damped, source->scale, PETSC_TRUE, modes, frame));
+  PetscCall(ModeFrameCreate(source->reduced, source->p, &source->form, PETSC_TRUE, modes, frame));
+  (*frame)->value = value;
   PetscFunctionReturn(0);
 }
 
@@ -53,7 +43,7 @@ PetscErrorCode ModeSourceSolve(ModeSource *source, PetscReal value, ModeFrame **
 
   PetscFunctionBeginUser;
   SourceSetValue(source, value);
-  PetscCall(ReducedSolve(source->reduced, source->p, source->window, &modes));
+  PetscCall(ReducedSolve(source->reduced, source->p, source->line->window, &modes));
   if (source->estimate) PetscCall(ReducedEstimate(source->reduced, source->p, &modes));
   PetscCall(ModeSourceTake(source, value, &modes, frame));
   PetscCall(ReducedModesDestroy(&modes));

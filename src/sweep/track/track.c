@@ -48,7 +48,7 @@ static PetscInt EventPartner(const ModeFrame *frame, PetscInt i)
   PetscInt           partner = ModeFramePartner(frame, i);
   PetscReal          nearest = 0.1 * cabs(lambda);
 
-  for (PetscInt k = 0; k < frame->modes.n && frame->damped; k++) {
+  for (PetscInt k = 0; k < frame->modes.n && frame->form.damped; k++) {
     const PetscReal distance = cabs(frame->modes.lambda[k] - lambda);
 
     if (k != i && distance <= nearest) partner = k, nearest = distance;
@@ -100,15 +100,12 @@ static PetscErrorCode TrackerAdvance(Tracker *tracker, const ModeFrame *a, ModeF
 static PetscErrorCode TrackerDivides(const ModeFrame *a, const ModeFrame *b, PetscInt depth, Match *match,
                                      PetscReal *value, PetscBool *divides)
 {
-  PetscReal *omega, t = 0.5;
+  PetscReal t = 0.5;
 
   PetscFunctionBeginUser;
   *divides = match->all_certain ? PETSC_FALSE : PETSC_TRUE;
   if (match->all_certain) {
-    PetscCall(PetscMalloc1(a->modes.n, &omega));
-    for (PetscInt i = 0; i < a->modes.n; i++) omega[i] = cimag(a->modes.lambda[i]);
-    PetscCall(MatchAssign(a, b, match->strength, omega, match));
-    PetscCall(PetscFree(omega));
+    PetscCall(MatchAssign(a, b, match->strength, NULL, match));
     PetscCall(IntervalPredict(a, b, match, PetscPowRealInt(0.5, DEPTH - depth), &t, divides));
   }
   *value = a->value + t * (b->value - a->value);
@@ -125,7 +122,7 @@ static PetscErrorCode TrackerStep(Tracker *tracker, const ModeFrame *a, ModeFram
   PetscBool  divides = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  PetscCall(MatchCreate(a, b, tracker->source.window, &match));
+  PetscCall(MatchCreate(a, b, tracker->source.line->window, &match));
   if (depth < DEPTH && tracker->solved < BUDGET) PetscCall(TrackerDivides(a, b, depth, &match, &value, &divides));
   if (divides) {
     tracker->solved++;
@@ -149,15 +146,15 @@ static PetscBool HaveErrors(const ReducedModes modes[], PetscInt n)
   return PETSC_FALSE;
 }
 
-PetscErrorCode TrackLine(const Reduced *reduced, const ReducedWindow *window, const Line *line,
-                         const ReducedModes modes[], PetscInt *branch[], PetscInt *n_branches, EventList *events)
+PetscErrorCode TrackLine(const Reduced *reduced, const Line *line, const ReducedModes modes[], PetscInt *branch[],
+                         PetscInt *n_branches, EventList *events)
 {
   Tracker    tracker = {.branches = {.first = *n_branches}, .events = events};
   ModeFrame *frame   = NULL, *next;
 
   PetscFunctionBeginUser;
   if (!line->n) PetscFunctionReturn(0);
-  PetscCall(ModeSourceCreate(reduced, window, line, &tracker.source));
+  PetscCall(ModeSourceCreate(reduced, line, &tracker.source));
   tracker.source.estimate = HaveErrors(modes, line->n);
   for (PetscInt k = 0; k < line->n; k++) {
     PetscCall(ModeSourceTake(&tracker.source, line->value[k], &modes[k], &next));
@@ -187,40 +184,36 @@ static PetscReal ModesScale(const ReducedModes *a, const ReducedModes *b)
   return largest > 0 ? largest : 1;
 }
 
-/* The two points as frames, and their match */
-static PetscErrorCode PointsMatch(const Reduced *reduced, const PetscReal p[], const PetscReal value[2],
-                                  const ReducedModes *a, const ReducedModes *b, ModeFrame *frame[2], Match *match)
+/* The two points as frames, and their match; p = parameters at b */
+static PetscErrorCode PointsMatch(const Reduced *reduced, const PetscReal p[], const BranchPoint *const point[2],
+                                  ModeFrame *frame[2], Match *match)
 {
-  const PetscReal scale = ModesScale(a, b);
-  PetscReal      *omega;
-  PetscBool       damped;
+  StandardForm form = {.scale = ModesScale(point[0]->modes, point[1]->modes)};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(a->n, &omega));
-  PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, 0, NULL, &damped));
-  PetscCall(ModeFrameCreate(reduced, p, value[0], damped, scale, PETSC_FALSE, a, &frame[0]));
-  PetscCall(ModeFrameCreate(reduced, p, value[1], damped, scale, PETSC_FALSE, b, &frame[1]));
+  PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, 0, NULL, &form.damped));
+  for (int k = 0; k < 2; k++) {
+    PetscCall(ModeFrameCreate(reduced, p, &form, PETSC_FALSE, point[k]->modes, &frame[k]));
+    frame[k]->value = point[k]->value;
+  }
   PetscCall(MatchCreate(frame[0], frame[1], NULL, match));
-  for (PetscInt i = 0; i < a->n; i++) omega[i] = cimag(a->lambda[i]);
-  PetscCall(MatchAssign(frame[0], frame[1], match->strength, omega, match));
-  PetscCall(PetscFree(omega));
+  PetscCall(MatchAssign(frame[0], frame[1], match->strength, NULL, match));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const ReducedModes *a, const ReducedModes *b,
                           PetscInt from[], PetscBool *certain)
 {
-  const PetscReal none[2] = {0, 0};
-  ModeFrame      *frame[2];
-  Match           match;
+  const BranchPoint *const point[2] = {&(BranchPoint){.modes = a}, &(BranchPoint){.modes = b}};
+  ModeFrame               *frame[2];
+  Match                    match;
 
   PetscFunctionBeginUser;
-  PetscCall(PointsMatch(reduced, p, none, a, b, frame, &match));
+  PetscCall(PointsMatch(reduced, p, point, frame, &match));
   PetscCall(PetscArraycpy(from, match.from, b->n));
   *certain = match.all_certain;
   PetscCall(MatchDestroy(&match));
-  PetscCall(ModeFrameDestroy(&frame[0]));
-  PetscCall(ModeFrameDestroy(&frame[1]));
+  for (int k = 0; k < 2; k++) PetscCall(ModeFrameDestroy(&frame[k]));
   PetscFunctionReturn(0);
 }
 
@@ -276,24 +269,21 @@ static PetscErrorCode JumpsFind(const ModeFrame *a, const ModeFrame *b, const Ma
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], PetscReal value_a, const ReducedModes *a,
-                         const PetscInt branch_a[], PetscReal value_b, const ReducedModes *b, PetscInt branch_b[],
+PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], const BranchPoint *a, BranchPoint *b,
                          EventList *events)
 {
-  const PetscReal value[2] = {value_a, value_b};
-  ModeFrame      *frame[2];
-  Match           match;
+  const BranchPoint *const point[2] = {a, b};
+  ModeFrame               *frame[2];
+  Match                    match;
 
   PetscFunctionBeginUser;
-  PetscCall(PointsMatch(reduced, p, value, a, b, frame, &match));
+  PetscCall(PointsMatch(reduced, p, point, frame, &match));
   MatchDropDoubtful(&match);
-  for (PetscInt j = 0; j < b->n; j++)
-    if (match.from[j] >= 0) branch_b[j] = branch_a[match.from[j]];
-  PetscCall(PetscArraycpy(frame[0]->branch, branch_a, a->n));
-  PetscCall(PetscArraycpy(frame[1]->branch, branch_b, b->n));
+  for (PetscInt j = 0; j < b->modes->n; j++)
+    if (match.from[j] >= 0) b->branch[j] = a->branch[match.from[j]];
+  for (int k = 0; k < 2; k++) PetscCall(PetscArraycpy(frame[k]->branch, point[k]->branch, point[k]->modes->n));
   PetscCall(JumpsFind(frame[0], frame[1], &match, events));
   PetscCall(MatchDestroy(&match));
-  PetscCall(ModeFrameDestroy(&frame[0]));
-  PetscCall(ModeFrameDestroy(&frame[1]));
+  for (int k = 0; k < 2; k++) PetscCall(ModeFrameDestroy(&frame[k]));
   PetscFunctionReturn(0);
 }

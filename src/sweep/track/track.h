@@ -30,31 +30,39 @@ typedef struct {
   Event   *event;
 } EventList;
 
-/* The line: parameter index, values [n] ascending or descending, all other parameters from base[n_parameters] */
+/* The line: parameter index, values [n] ascending or descending, all other parameters from base[n_parameters]; modes in
+   the window are followed */
 typedef struct {
-  PetscInt         parameter;
-  PetscInt         n;
-  const PetscReal *value;
-  const PetscReal *base;
+  PetscInt             parameter;
+  PetscInt             n;
+  const PetscReal     *value;
+  const PetscReal     *base;
+  const ReducedWindow *window;
 } Line;
+
+/* A point of a line with its modes and their branches */
+typedef struct {
+  PetscReal           value; /* of the line's parameter */
+  const ReducedModes *modes;
+  PetscInt           *branch; /* [modes->n] */
+} BranchPoint;
 
 /* track.c - branch[point][mode] for the modes already solved at the points, numbered from *n_branches on; *n_branches
    grows. Where the match of two neighbouring points is ambiguous the interval is halved by further ReducedSolve(). */
-PetscErrorCode TrackLine(const Reduced *reduced, const ReducedWindow *window, const Line *line,
-                         const ReducedModes modes[], PetscInt *branch[], PetscInt *n_branches, EventList *events);
+PetscErrorCode TrackLine(const Reduced *reduced, const Line *line, const ReducedModes modes[], PetscInt *branch[],
+                         PetscInt *n_branches, EventList *events);
 /* Match of the modes of two points a, b that may differ in any parameter: from[i of b] = mode of a or -1; certain =
    whether no match is ambiguous */
 PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const ReducedModes *a, const ReducedModes *b,
                           PetscInt from[], PetscBool *certain);
-/* Modes of two points a, b on the two sides of a change of contact status: branch_b of those that are certainly modes
-   of a becomes that of a, the others keep theirs; appends a jump for every mode that is unstable on one side only.
-   value = that of the line's parameter, p = all parameters at b */
-PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], PetscReal value_a, const ReducedModes *a,
-                         const PetscInt branch_a[], PetscReal value_b, const ReducedModes *b, PetscInt branch_b[],
+/* Modes of two points a, b on the two sides of a change of contact status: branches of b that are certainly
+   modes of a become those of a, the others keep theirs; appends a jump for every mode that is unstable on one side only.
+   p = all parameters at b */
+PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], const BranchPoint *a, BranchPoint *b,
                          EventList *events);
 /* Appends to events; a list begins as {0} */
 PetscErrorCode EventListAdd(EventList *events, const Event *event);
 PetscErrorCode EventListDestroy(EventList *events);
 
 /* onset.c - the critical value of an event on the reduced model, to rounding, and its estimated error */
-PetscErrorCode OnsetFind(const Reduced *reduced, const ReducedWindow *window, const Line *line, Event *event);
+PetscErrorCode OnsetFind(const Reduced *reduced, const Line *line, Event *event);

@@ -1,0 +1,89 @@
+/*
+   The quadratic problem (lambda^2 M + lambda C + K) x = 0 in its standard form A z = s B z:
+
+      undamped  z = x,                      s = kappa = -lambda^2, A = K,  B = M
+      damped    z = [x; lambda x / scale],  s = lambda,            A = [-K / scale, 0; 0, scale M],
+                                                                   B = [C / scale, M; M, 0]
+
+   so that w^T B z = (lambda_w + lambda_z) y^T M x + y^T C x over scale, which is zero between different modes. Left
+   vectors have the same form, [y; lambda y / scale].
+*/
+#include "standard.h"
+
+void DensePencilEvaluate(const DensePencil *q, PetscComplex lambda, PetscInt first, PetscInt n, PetscComplex Q[])
+{
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscInt at = (first + j) * q->n + first + i;
+
+      Q[j * n + i] = q->K[at] + (q->damped ? lambda * q->C[at] : 0) + lambda * lambda * q->M[at];
+    }
+}
+
+PetscErrorCode DensePencilDestroy(DensePencil *pencil)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(pencil->K, pencil->C, pencil->M));
+  PetscFunctionReturn(0);
+}
+
+PetscInt StandardSize(const StandardForm *f)
+{
+  return f->damped ? 2 * f->n : f->n;
+}
+
+PetscComplex StandardValue(const StandardForm *f, PetscComplex lambda)
+{
+  return f->damped ? lambda : -lambda * lambda;
+}
+
+PetscComplex StandardLambda(const StandardForm *f, PetscComplex s)
+{
+  const PetscComplex lambda = f->damped ? s : csqrt(-s);
+
+  return cimag(lambda) < 0 ? -lambda : lambda;
+}
+
+void StandardVector(const StandardForm *f, PetscComplex lambda, const PetscComplex x[], PetscComplex z[])
+{
+  for (PetscInt i = 0; i < f->n; i++) {
+    z[i] = x[i];
+    if (f->damped) z[f->n + i] = lambda * x[i] / f->scale;
+  }
+}
+
+/* y += factor op(A) x, [n] */
+static PetscErrorCode AddTimes(const StandardForm *f, const PetscReal A[], PetscBool transposed, PetscReal factor,
+                               const PetscComplex x[], PetscComplex y[])
+{
+  PetscComplex *Ax;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(f->n, &Ax));
+  PetscCall(DenseTimes(&(DenseBlock){A, f->n, f->n, f->pencil->n}, transposed, 1, x, Ax));
+  for (PetscInt i = 0; i < f->n; i++) y[i] += factor * Ax[i];
+  PetscCall(PetscFree(Ax));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StandardApply(const StandardForm *f, StandardMatrix matrix, PetscBool transposed, PetscInt m,
+                             const PetscComplex X[], PetscComplex Y[])
+{
+  const PetscInt n = f->n, N = StandardSize(f);
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(Y, m * N));
+  for (PetscInt a = 0; a < m; a++, X += N, Y += N) {
+    if (!f->damped) {
+      PetscCall(AddTimes(f, matrix == STANDARD_A ? f->pencil->K : f->pencil->M, transposed, 1, X, Y));
+    } else if (matrix == STANDARD_A) {
+      PetscCall(AddTimes(f, f->pencil->K, transposed, -1 / f->scale, X, Y));
+      PetscCall(AddTimes(f, f->pencil->M, transposed, f->scale, X + n, Y + n));
+    } else {
+      PetscCall(AddTimes(f, f->pencil->C, transposed, 1 / f->scale, X, Y));
+      PetscCall(AddTimes(f, f->pencil->M, transposed, 1, X + n, Y));
+      PetscCall(AddTimes(f, f->pencil->M, transposed, 1, X, Y + n));
+    }
+  }
+  PetscFunctionReturn(0);
+}
