@@ -55,17 +55,6 @@ static PetscReal LargestDistance(PetscInt n, const Mode full[], const ReducedMod
   return largest;
 }
 
-/* Largest estimated relative error in the window, rounding included */
-static PetscReal LargestError(const ReducedModes *modes, const ReducedWindow *window)
-{
-  PetscReal largest = 0;
-
-  for (PetscInt i = 0; i < modes->n; i++)
-    if (!modes->rigid[i] && cimag(modes->lambda[i]) >= window->low && cimag(modes->lambda[i]) <= window->high)
-      largest = PetscMax(largest, modes->error[i] / cabs(modes->lambda[i]));
-  return largest;
-}
-
 /* Compares the two at the point of the check; the reduced window is a little wider, for modes on its edge */
 static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
 {
@@ -92,7 +81,7 @@ static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
     check->n_unstable_reduced += ReducedIsUnstable(reduced.lambda[k], reduced.error[k]);
   }
   check->error    = LargestDistance(check->n_full, full, &reduced, &check->omega);
-  check->estimate = sweep->method == SWEEP_REAL ? NAN : LargestError(&reduced, &sweep->window);
+  check->estimate = sweep->method == SWEEP_REAL ? NAN : ReducedModesWorst(&reduced, &sweep->window, PETSC_TRUE);
   for (PetscInt i = 0; i < check->n_full; i++)
     if (!full[i].rigid) check->full = PetscMax(check->full, full[i].error / hypot(full[i].sigma, full[i].omega));
   PetscCall(ReducedModesDestroy(&reduced));

@@ -16,25 +16,32 @@ static PetscBool NumberParse(const char word[], PetscReal *value)
   return end != word && !*end && !PetscIsInfOrNanReal(*value) ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* What names the option in errors */
+typedef struct {
+  MPI_Comm    comm;
+  const char *name, *text;
+} ValuesOption;
+
 /* first:last:n[:log] */
-static PetscErrorCode RangeParse(MPI_Comm comm, const char option[], const char text[], int n_words, char *words[],
-                                 PetscInt *n, PetscReal *value[], PetscBool *ratio)
+static PetscErrorCode RangeParse(const ValuesOption *option, int n_words, char *words[], PetscInt *n,
+                                 PetscReal *value[], PetscBool *ratio)
 {
   const PetscBool is_log = n_words == 4 && !strcmp(words[3], "log") ? PETSC_TRUE : PETSC_FALSE;
   PetscReal       first, last, count;
 
   PetscFunctionBeginUser;
-  PetscCheck(n_words == 3 || is_log, comm, PETSC_ERR_USER_INPUT,
-             "%s '%s' is no range: give first:last:n or first:last:n:log", option, text);
-  PetscCheck(NumberParse(words[0], &first) && NumberParse(words[1], &last) && NumberParse(words[2], &count), comm,
-             PETSC_ERR_USER_INPUT, "%s '%s' holds what is no number: give first:last:n or first:last:n:log", option,
-             text);
-  PetscCheck(count == PetscFloorReal(count) && count >= 2 && count <= MAX_VALUES, comm, PETSC_ERR_USER_INPUT,
-             "%s '%s' asks for %.6g values; n must be an integer from 2 to %d", option, text, (double)count,
-             MAX_VALUES);
-  PetscCheck(first != last, comm, PETSC_ERR_USER_INPUT, "%s '%s' begins where it ends", option, text);
-  PetscCheck(!is_log || first * last > 0, comm, PETSC_ERR_USER_INPUT,
-             "%s '%s': a logarithmic range needs ends of one sign, not zero", option, text);
+  PetscCheck(n_words == 3 || is_log, option->comm, PETSC_ERR_USER_INPUT,
+             "%s '%s' is no range: give first:last:n or first:last:n:log", option->name, option->text);
+  PetscCheck(NumberParse(words[0], &first) && NumberParse(words[1], &last) && NumberParse(words[2], &count),
+             option->comm, PETSC_ERR_USER_INPUT,
+             "%s '%s' holds what is no number: give first:last:n or first:last:n:log", option->name, option->text);
+  PetscCheck(count == PetscFloorReal(count) && count >= 2 && count <= MAX_VALUES, option->comm, PETSC_ERR_USER_INPUT,
+             "%s '%s' asks for %.6g values; n must be an integer from 2 to %d", option->name, option->text,
+             (double)count, MAX_VALUES);
+  PetscCheck(first != last, option->comm, PETSC_ERR_USER_INPUT, "%s '%s' begins where it ends", option->name,
+             option->text);
+  PetscCheck(!is_log || first * last > 0, option->comm, PETSC_ERR_USER_INPUT,
+             "%s '%s': a logarithmic range needs ends of one sign, not zero", option->name, option->text);
   *n     = (PetscInt)count;
   *ratio = is_log;
   PetscCall(PetscMalloc1(*n, value));
@@ -48,26 +55,26 @@ static PetscErrorCode RangeParse(MPI_Comm comm, const char option[], const char 
 }
 
 /* v1,v2,... */
-static PetscErrorCode ListParse(MPI_Comm comm, const char option[], const char text[], PetscInt *n, PetscReal *value[])
+static PetscErrorCode ListParse(const ValuesOption *option, PetscInt *n, PetscReal *value[])
 {
   char **words;
   int    n_words;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscStrToArray(text, ',', &n_words, &words));
-  PetscCheck(n_words > 0, comm, PETSC_ERR_USER_INPUT, "%s is empty: give first:last:n, first:last:n:log or v1,v2,...",
-             option);
+  PetscCall(PetscStrToArray(option->text, ',', &n_words, &words));
+  PetscCheck(n_words > 0, option->comm, PETSC_ERR_USER_INPUT,
+             "%s is empty: give first:last:n, first:last:n:log or v1,v2,...", option->name);
   *n = n_words;
   PetscCall(PetscMalloc1(*n, value));
   for (PetscInt i = 0; i < *n; i++) {
-    PetscCheck(NumberParse(words[i], &(*value)[i]), comm, PETSC_ERR_USER_INPUT, "%s: '%s' is no number", option,
-               words[i]);
-    PetscCheck(i < 2 || ((*value)[i] - (*value)[i - 1]) * ((*value)[1] - (*value)[0]) > 0, comm, PETSC_ERR_USER_INPUT,
-               "%s: values must ascend or descend, and %.6g follows %.6g", option, (double)(*value)[i],
-               (double)(*value)[i - 1]);
+    PetscCheck(NumberParse(words[i], &(*value)[i]), option->comm, PETSC_ERR_USER_INPUT, "%s: '%s' is no number",
+               option->name, words[i]);
+    PetscCheck(i < 2 || ((*value)[i] - (*value)[i - 1]) * ((*value)[1] - (*value)[0]) > 0, option->comm,
+               PETSC_ERR_USER_INPUT, "%s: values must ascend or descend, and %.6g follows %.6g", option->name,
+               (double)(*value)[i], (double)(*value)[i - 1]);
   }
-  PetscCheck(*n < 2 || (*value)[0] != (*value)[1], comm, PETSC_ERR_USER_INPUT, "%s: value %.6g stands twice", option,
-             (double)(*value)[0]);
+  PetscCheck(*n < 2 || (*value)[0] != (*value)[1], option->comm, PETSC_ERR_USER_INPUT, "%s: value %.6g stands twice",
+             option->name, (double)(*value)[0]);
   PetscCall(PetscStrToArrayDestroy(n_words, words));
   PetscFunctionReturn(0);
 }
@@ -75,18 +82,19 @@ static PetscErrorCode ListParse(MPI_Comm comm, const char option[], const char t
 PetscErrorCode GridValuesParse(MPI_Comm comm, const char option[], const char text[], PetscInt *n, PetscReal *value[],
                                PetscBool *ratio)
 {
-  char    **words;
-  int       n_words;
-  PetscReal a, b;
+  const ValuesOption given = {comm, option, text};
+  char             **words;
+  int                n_words;
+  PetscReal          a, b;
 
   PetscFunctionBeginUser;
   *ratio = PETSC_FALSE;
   if (strchr(text, ':')) {
     PetscCall(PetscStrToArray(text, ':', &n_words, &words));
-    PetscCall(RangeParse(comm, option, text, n_words, words, n, value, ratio));
+    PetscCall(RangeParse(&given, n_words, words, n, value, ratio));
     PetscCall(PetscStrToArrayDestroy(n_words, words));
   } else {
-    PetscCall(ListParse(comm, option, text, n, value));
+    PetscCall(ListParse(&given, n, value));
   }
   a = (*value)[0], b = (*value)[*n - 1];
   if (a * b > 0 && PetscMax(a / b, b / a) > RATIO_FROM) *ratio = PETSC_TRUE;

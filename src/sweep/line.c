@@ -84,7 +84,7 @@ static PetscErrorCode PointsLink(Sweep sweep, const Points *before, PetscInt fir
   PetscCall(TrackMatch(&sweep->basis.reduced, points->p, &before->modes[0], &points->modes[0], from, &certain));
   for (PetscInt i = 0; i < points->modes[0].n; i++)
     if (from[i] >= 0) rename[points->branch[0][i] - first_new] = before->branch[0][from[i]];
-  PetscCall(LineRename(sweep, first_new, rename, 0, points->n, first_event, points));
+  PetscCall(LineRename(sweep, first_new, rename, points->n, first_event, points));
   PetscCall(PetscFree2(from, rename));
   PetscFunctionReturn(0);
 }
@@ -98,7 +98,7 @@ static PetscErrorCode PointsKeep(Sweep sweep, const Points *points)
     const PetscInt      at    = sweep->grid.place[points->first + i].point;
     SweepPoint         *point = &sweep->point[PetscMax(at, 0)];
 
-    sweep->worst[points->first + i] = ReducedModesWorst(modes, &sweep->window);
+    sweep->worst[points->first + i] = ReducedModesWorst(modes, &sweep->window, PETSC_FALSE);
     if (at < 0) continue;
     point->n = modes->n;
     PetscCall(PetscCalloc1(modes->n, &point->mode));

@@ -15,7 +15,7 @@ typedef struct {
 /* segment.c - follows the branches along the line, from one change of contact status to the next, and across it.
    Not collective. */
 PETSC_INTERN PetscErrorCode LineTrackSegments(Sweep sweep, Points *points);
-/* Gives branch b >= first_new the number rename[b - first_new] at places k to last - 1 and in the events from
+/* Gives branch b >= first_new the number rename[b - first_new] at places before last and in the events from
    first_event on; those for which that is -1 are numbered from first_new on, in their order */
-PETSC_INTERN PetscErrorCode LineRename(Sweep sweep, PetscInt first_new, PetscInt rename[], PetscInt k, PetscInt last,
+PETSC_INTERN PetscErrorCode LineRename(Sweep sweep, PetscInt first_new, PetscInt rename[], PetscInt last,
                                        PetscInt first_event, Points *points);

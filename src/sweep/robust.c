@@ -82,7 +82,7 @@ static PetscErrorCode RisksCount(Sweep sweep, PetscInt n, const PetscReal points
   for (PetscInt i = 0; i < n; i++) {
     PetscBool certain;
 
-    sweep->worst_risk = PetscMax(sweep->worst_risk, ReducedModesWorst(&modes[i], &sweep->window));
+    sweep->worst_risk = PetscMax(sweep->worst_risk, ReducedModesWorst(&modes[i], &sweep->window, PETSC_FALSE));
 
     PetscCall(PetscMalloc1(modes[i].n, &match));
     PetscCall(TrackMatch(&sweep->basis.reduced, points, &modes[0], &modes[i], match, &certain));
@@ -139,9 +139,7 @@ PetscErrorCode SweepRobustness(Sweep sweep)
   sweep->greedy.last        = PETSC_MAX_REAL;
   sweep->greedy.n_passed    = 0;
   sweep->greedy.max_samples = sweep->greedy.n_samples + sweep->max_samples;
-  if (!sweep->whole)
-    PetscCall(
-      GreedyRun(&sweep->greedy, sweep->modes, &sweep->window, 1 + n_corners, points, &sweep->groups, &sweep->basis));
+  if (!sweep->whole) PetscCall(GreedyRun(&sweep->greedy, 1 + n_corners, points, &sweep->basis));
   PetscCall(PointsSolve(&sweep->groups, &sweep->basis.reduced, &sweep->window, n, points, modes));
   PetscCall(PetscCalloc1(modes[0].n + 1, &sweep->risk));
   PetscCall(RisksCount(sweep, n, points, modes, sweep->risk));

@@ -4,8 +4,8 @@
 */
 #include "line.h"
 
-PetscErrorCode LineRename(Sweep sweep, PetscInt first_new, PetscInt rename[], PetscInt k, PetscInt last,
-                          PetscInt first_event, Points *points)
+PetscErrorCode LineRename(Sweep sweep, PetscInt first_new, PetscInt rename[], PetscInt last, PetscInt first_event,
+                          Points *points)
 {
   const PetscInt n_new = sweep->n_branches - first_new;
   PetscInt       next  = first_new;
@@ -13,7 +13,7 @@ PetscErrorCode LineRename(Sweep sweep, PetscInt first_new, PetscInt rename[], Pe
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < n_new; b++)
     if (rename[b] < 0) rename[b] = next++;
-  for (; k < last; k++)
+  for (PetscInt k = 0; k < last; k++)
     for (PetscInt i = 0; i < points->modes[k].n; i++)
       if (points->branch[k][i] >= first_new) points->branch[k][i] = rename[points->branch[k][i] - first_new];
   for (PetscInt e = first_event; e < sweep->events.n; e++)
@@ -43,7 +43,7 @@ static PetscErrorCode SegmentLink(Sweep sweep, PetscInt first_new, PetscInt k, P
   for (PetscInt b = 0; b < n_new; b++) rename[b] = -1;
   for (PetscInt i = 0; i < n; i++)
     if (points->branch[k][i] < first_new) rename[own[i] - first_new] = points->branch[k][i];
-  PetscCall(LineRename(sweep, first_new, rename, k, last, first_event, points));
+  PetscCall(LineRename(sweep, first_new, rename, last, first_event, points));
   PetscCall(PetscFree2(own, rename));
   PetscFunctionReturn(0);
 }

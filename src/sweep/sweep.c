@@ -190,7 +190,7 @@ static PetscErrorCode BasisMake(Sweep sweep, PetscBool exceeding)
   for (PetscInt i = 0; i < n_all && n <= MAX_TRAIN; i += step)
     if (!exceeding || sweep->worst[i] > sweep->rtol) GridFill(grid, &grid->place[i], &points[n++ * n_parameters]);
   if (!exceeding && (n_all - 1) % step) GridFill(grid, &grid->place[n_all - 1], &points[n++ * n_parameters]);
-  PetscCall(GreedyRun(&sweep->greedy, sweep->modes, &sweep->window, n, points, &sweep->groups, &sweep->basis));
+  PetscCall(GreedyRun(&sweep->greedy, n, points, &sweep->basis));
   PetscCall(PetscFree(points));
   PetscFunctionReturn(0);
 }
@@ -218,6 +218,9 @@ static PetscErrorCode ModelMake(Sweep sweep)
   GridPoint(&sweep->grid, 0, p);
   PetscCall(OperatorsSetParameters(sweep->operators, p));
   PetscCall(BasisCreate(sweep->comm, sweep->operators, &sweep->basis));
+  sweep->greedy.modes       = sweep->modes;
+  sweep->greedy.window      = sweep->window;
+  sweep->greedy.groups      = &sweep->groups;
   sweep->greedy.rtol        = sweep->rtol;
   sweep->greedy.max_samples = sweep->max_samples;
   sweep->greedy.progress    = &sweep->progress;

@@ -178,13 +178,14 @@ static PetscErrorCode RiskTableWrite(Sweep sweep, Results results)
 
 /* Rows of one mode: derivatives by every parameter, per unit and per percent of its value */
 static PetscErrorCode SensitivityRows(Sweep sweep, PetscInt point, const PetscReal p[], const ReducedModes *modes,
-                                      PetscInt i, const OperatorsParameter parameters[], ResultsTable table)
+                                      PetscInt i, ResultsTable table)
 {
-  const PetscInt n    = sweep->grid.n_parameters;
-  PetscInt       near = 0;
-  PetscComplex  *d;
+  const OperatorsParameter *parameters;
+  PetscInt                  n, near = 0;
+  PetscComplex             *d;
 
   PetscFunctionBeginUser;
+  PetscCall(OperatorsGetParameters(sweep->operators, &n, &parameters));
   PetscCall(PetscMalloc1(n, &d));
   PetscCall(ReducedSensitivity(&sweep->basis.reduced, p, modes, i, d));
   for (PetscInt k = 0; k < sweep->point[point].n; k++) {
@@ -205,14 +206,11 @@ static PetscErrorCode SensitivityRows(Sweep sweep, PetscInt point, const PetscRe
 
 static PetscErrorCode SensitivityTableWrite(Sweep sweep, Results results)
 {
-  const OperatorsParameter *parameters;
-  PetscReal                *p;
-  PetscInt                  n;
-  ResultsTable              table;
+  PetscReal   *p;
+  ResultsTable table;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetParameters(sweep->operators, &n, &parameters));
-  PetscCall(PetscMalloc1(n, &p));
+  PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
   PetscCall(ResultsTableOpen(results, "sensitivities",
                              "point,value,branch,freq_hz,parameter,freq_hz_per_unit,growth_rad_s_per_unit,freq_hz_per_"
                              "percent,growth_rad_s_per_percent",
@@ -223,7 +221,7 @@ static PetscErrorCode SensitivityTableWrite(Sweep sweep, Results results)
     GridPoint(&sweep->grid, i, p);
     PetscCall(ReducedSolve(&sweep->basis.reduced, p, &sweep->window, &modes));
     for (PetscInt k = 0; k < modes.n && sweep->point[i].n; k++)
-      PetscCall(SensitivityRows(sweep, i, p, &modes, k, parameters, table));
+      PetscCall(SensitivityRows(sweep, i, p, &modes, k, table));
     PetscCall(ReducedModesDestroy(&modes));
   }
   PetscCall(ResultsTableClose(&table));

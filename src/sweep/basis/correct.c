@@ -180,10 +180,11 @@ PetscErrorCode CorrectionDestroy(Correction *c)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CorrectionCount(Operators operators, const Reduced *reduced, const PetscReal p[],
-                               const ReducedWindow *window, Progress *progress, PetscInt *full, PetscInt *by_basis)
+PetscErrorCode CorrectionCount(const Basis *basis, const PetscReal p[], const ReducedWindow *window, Progress *progress,
+                               PetscInt *full, PetscInt *by_basis)
 {
-  const ReducedWindow w = {window->low < 0.5 * window->high ? 0 : window->low, window->high, PETSC_MAX_REAL};
+  const Reduced      *reduced = &basis->reduced;
+  const ReducedWindow w       = {window->low < 0.5 * window->high ? 0 : window->low, window->high, PETSC_MAX_REAL};
   OperatorsPencil     frictionless;
   ReducedModes        modes;
   PetscReal          *p0;
@@ -191,8 +192,8 @@ PetscErrorCode CorrectionCount(Operators operators, const Reduced *reduced, cons
 
   PetscFunctionBeginUser;
   *full = *by_basis = -1;
-  PetscCall(OperatorsSetParameters(operators, p));
-  PetscCall(OperatorsGetFrictionless(operators, &frictionless));
+  PetscCall(OperatorsSetParameters(basis->operators, p));
+  PetscCall(OperatorsGetFrictionless(basis->operators, &frictionless));
   PetscCall(PetscMalloc1(reduced->n_parameters, &p0));
   PetscCall(PetscArraycpy(p0, p, reduced->n_parameters));
   if (frictionless.symmetric && ReducedFrictionless(reduced, p0)) {

@@ -24,5 +24,5 @@ PetscErrorCode CorrectionDestroy(Correction *correction);
 /* Frictionless modes in the window (from zero on where its lower end is below half of the upper one) by Sylvester's law
    of inertia with the operators at p, and by the basis; alike where the basis lacks none. Both are -1 where the
    matrices cannot be made frictionless. */
-PetscErrorCode CorrectionCount(Operators operators, const Reduced *reduced, const PetscReal p[],
-                               const ReducedWindow *window, Progress *progress, PetscInt *full, PetscInt *by_basis);
+PetscErrorCode CorrectionCount(const Basis *basis, const PetscReal p[], const ReducedWindow *window, Progress *progress,
+                               PetscInt *full, PetscInt *by_basis);

@@ -20,16 +20,14 @@
 
 /* What the run knows */
 typedef struct {
-  Greedy            *greedy;
-  const PointGroups *groups;
-  Modes              modes;
-  Basis             *basis;
-  ReducedWindow      window, guarded;
-  PetscInt           n;
-  const PetscReal   *points;
-  PetscReal         *estimate; /* [n] */
-  PetscReal         *scale;    /* [n_parameters] */
-  PetscReal          drop;
+  Greedy          *greedy;
+  Basis           *basis;
+  ReducedWindow    guarded; /* a little wider */
+  PetscInt         n;
+  const PetscReal *points;
+  PetscReal       *estimate; /* [n] */
+  PetscReal       *scale;    /* [n_parameters] */
+  PetscReal        drop;
 } Run;
 
 /* New entry of the list of full solutions */
@@ -57,7 +55,7 @@ static PetscErrorCode ModesToBlock(Run *run, PetscInt n, BV *block)
   PetscFunctionBeginUser;
   PetscCall(BasisCreateBlock(run->basis, 4 * n, block));
   for (PetscInt i = 0; i < n; i++) {
-    PetscCall(ModesGetVectors(run->modes, i, &part[0], &part[1], &part[2], &part[3]));
+    PetscCall(ModesGetVectors(run->greedy->modes, i, &part[0], &part[1], &part[2], &part[3]));
     for (int k = 0; k < 4; k++) {
       if (!part[k]) continue;
       PetscCall(BVGetColumn(*block, m, &q));
@@ -80,11 +78,11 @@ static PetscErrorCode SampleKrylov(Run *run, const PetscReal p[], PetscReal esti
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsSetParameters(run->basis->operators, p));
-  PetscCall(ModesGetBand(run->modes, band, &growth));
-  PetscCall(ModesSetBand(run->modes, wide));
-  PetscCall(ModesSolve(run->modes));
-  PetscCall(ModesSetBand(run->modes, band));
-  PetscCall(ModesGet(run->modes, &n, &mode));
+  PetscCall(ModesGetBand(run->greedy->modes, band, &growth));
+  PetscCall(ModesSetBand(run->greedy->modes, wide));
+  PetscCall(ModesSolve(run->greedy->modes));
+  PetscCall(ModesSetBand(run->greedy->modes, band));
+  PetscCall(ModesGet(run->greedy->modes, &n, &mode));
   PetscCall(ModesToBlock(run, n, &block));
   PetscCall(BasisAdd(run->basis, block, run->drop, &n_vectors));
   PetscCall(BVDestroy(&block));
@@ -139,7 +137,7 @@ static PetscErrorCode StepApply(Run *run, const Correction *correction, const Pe
   PetscCall(CorrectionApply(correction, modes, run->drop, run->basis, n_added));
   PetscCall(ReducedEstimate(&run->basis->reduced, p, modes));
   PetscCall(ReducedModesBroadcast(run->basis->comm, 0, modes));
-  *worst = ReducedModesWorst(modes, &run->window);
+  *worst = ReducedModesWorst(modes, &run->greedy->window, PETSC_FALSE);
   PetscFunctionReturn(0);
 }
 
@@ -149,8 +147,7 @@ static PetscErrorCode SampleCount(Run *run, const PetscReal p[], PetscBool *comp
   PetscInt full, by_basis;
 
   PetscFunctionBeginUser;
-  PetscCall(CorrectionCount(run->basis->operators, &run->basis->reduced, p, &run->window, run->greedy->progress, &full,
-                            &by_basis));
+  PetscCall(CorrectionCount(run->basis, p, &run->greedy->window, run->greedy->progress, &full, &by_basis));
   PetscCallMPI(MPI_Bcast(&by_basis, 1, MPIU_INT, 0, run->basis->comm));
   *complete = full == by_basis ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
@@ -272,7 +269,8 @@ static PetscErrorCode PointNext(Run *run, PetscInt *next)
   PetscFunctionBeginUser;
   *next = PointFarthest(run, &farthest);
   if (g->n_passed < enough && (farthest > 0 || g->n_samples == 1)) PetscFunctionReturn(0);
-  PetscCall(PointsEstimate(run->groups, &run->basis->reduced, &run->window, run->n, run->points, run->estimate));
+  PetscCall(PointsEstimate(run->greedy->groups, &run->basis->reduced, &run->greedy->window, run->n, run->points,
+                           run->estimate));
   for (PetscInt i = 0; i < run->n; i++)
     if (PointIsNew(run, i) && (worst < 0 || run->estimate[i] > run->estimate[worst])) worst = i;
   g->worst = worst >= 0 ? run->estimate[worst] : 0;
@@ -280,18 +278,16 @@ static PetscErrorCode PointNext(Run *run, PetscInt *next)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GreedyRun(Greedy *greedy, Modes modes, const ReducedWindow *window, PetscInt n, const PetscReal points[],
-                         const PointGroups *groups, Basis *basis)
+PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], Basis *basis)
 {
-  Run run = {.greedy = greedy, .groups = groups, .modes = modes, .basis = basis, .window = *window, .guarded = *window};
-  PetscInt n_parameters = basis->reduced.n_parameters, next = 0;
+  const PetscReal low = greedy->window.low, high = greedy->window.high;
+  Run             run = {.greedy = greedy, .basis = basis, .n = n, .points = points, .guarded = greedy->window};
+  PetscInt        n_parameters = basis->reduced.n_parameters, next = 0;
 
   PetscFunctionBeginUser;
-  run.n            = n;
-  run.points       = points;
   run.drop         = GREEDY_DROP * PetscSqrtReal(greedy->rtol);
-  run.guarded.low  = window->low < 0.5 * window->high ? 0 : window->low * (1 - GUARD);
-  run.guarded.high = window->high * (1 + GUARD);
+  run.guarded.low  = low < 0.5 * high ? 0 : low * (1 - GUARD);
+  run.guarded.high = high * (1 + GUARD);
   PetscCall(PetscMalloc2(n, &run.estimate, n_parameters, &run.scale));
   ScalePoints(n, n_parameters, points, run.scale);
   PetscCall(ScaleGroups(&run));

@@ -14,20 +14,22 @@ typedef struct {
 } Sample;
 
 typedef struct {
-  PetscReal rtol;
-  PetscInt  max_samples;
-  PetscInt  n_samples;
-  Sample   *sample;   /* [max_samples] */
-  PetscReal worst;    /* largest estimated relative error at all points when it ended */
-  PetscReal last;     /* estimate at the last point before it was taken in */
-  PetscInt  n_passed; /* points in a row that needed nothing */
-  Progress *progress;
+  Modes              modes;  /* the eigensolver */
+  ReducedWindow      window; /* of the eigenvalues asked for */
+  const PointGroups *groups;
+  PetscReal          rtol;
+  PetscInt           max_samples;
+  PetscInt           n_samples;
+  Sample            *sample;   /* [max_samples] */
+  PetscReal          worst;    /* largest estimated relative error at all points when it ended */
+  PetscReal          last;     /* estimate at the last point before it was taken in */
+  PetscInt           n_passed; /* points in a row that needed nothing */
+  Progress          *progress;
   PetscErrorCode (*keep)(void *ctx); /* called after every full solution; may be NULL */
   void *keep_ctx;
 } Greedy;
 
 /* Goes on with the samples there are, or begins. Enlarges the basis until every eigenvalue in the window at all points
  * [n][n_parameters] is estimated below rtol */
-PetscErrorCode GreedyRun(Greedy *greedy, Modes modes, const ReducedWindow *window, PetscInt n, const PetscReal points[],
-                         const PointGroups *groups, Basis *basis);
+PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], Basis *basis);
 PetscErrorCode GreedyDestroy(Greedy *greedy);

@@ -17,13 +17,13 @@ static PetscMPIInt PointGroupsOwner(const PointGroups *groups, PetscInt i)
   return (PetscMPIInt)((i % groups->n_groups) * size / groups->n_groups);
 }
 
-PetscReal ReducedModesWorst(const ReducedModes *modes, const ReducedWindow *window)
+PetscReal ReducedModesWorst(const ReducedModes *modes, const ReducedWindow *window, PetscBool rounding)
 {
   PetscReal worst = 0;
 
   for (PetscInt i = 0; i < modes->n; i++)
     if (!modes->rigid[i] && cimag(modes->lambda[i]) >= window->low && cimag(modes->lambda[i]) <= window->high)
-      worst = PetscMax(worst, (modes->error[i] - modes->noise[i]) / cabs(modes->lambda[i]));
+      worst = PetscMax(worst, (modes->error[i] - (rounding ? 0 : modes->noise[i])) / cabs(modes->lambda[i]));
   return worst;
 }
 
@@ -92,7 +92,7 @@ PetscErrorCode PointsEstimate(const PointGroups *groups, const Reduced *reduced,
     worst[i] = 0;
     if (PointGroupsOwner(groups, i) != rank) continue;
     PetscCall(PointSolve(reduced, window, &points[i * reduced->n_parameters], &modes));
-    worst[i] = ReducedModesWorst(&modes, window);
+    worst[i] = ReducedModesWorst(&modes, window, PETSC_FALSE);
     PetscCall(ReducedModesDestroy(&modes));
   }
   PetscCall(PetscMPIIntCast(n, &count));

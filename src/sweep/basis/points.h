@@ -16,8 +16,8 @@ PetscErrorCode PointsSolve(const PointGroups *groups, const Reduced *reduced, co
                            const PetscReal points[], ReducedModes modes[]);
 /* Gives all ranks the modes of one of them, freeing what they had. Collective. */
 PetscErrorCode ReducedModesBroadcast(MPI_Comm comm, PetscMPIInt owner, ReducedModes *modes);
-/* Largest estimated relative error of the modes in the window, but for rounding; rigid ones do not count */
-PetscReal ReducedModesWorst(const ReducedModes *modes, const ReducedWindow *window);
-/* The same at n points. Collective. */
+/* Largest estimated relative error of the modes in the window, with or without rounding; rigid ones do not count */
+PetscReal ReducedModesWorst(const ReducedModes *modes, const ReducedWindow *window, PetscBool rounding);
+/* The same at n points, without rounding. Collective. */
 PetscErrorCode PointsEstimate(const PointGroups *groups, const Reduced *reduced, const ReducedWindow *window,
                               PetscInt n, const PetscReal points[], PetscReal worst[]);

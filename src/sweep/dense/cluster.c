@@ -11,9 +11,9 @@
 */
 #include "estimate.h"
 
-#define DEPENDENT  1e-11 /* least independent part of a vector that is more than rounding */
-#define OFF_CENTRE 1e-4  /* shift of the inverse iteration beside the mean, relative */
-#define ITERATIONS 4
+#define PLANE_PARALLEL 1e-11 /* least independent part of a vector that is more than rounding */
+#define OFF_CENTRE     1e-4  /* shift of the inverse iteration beside the mean, relative */
+#define ITERATIONS     4
 
 /* The plane of m modes */
 typedef struct {
@@ -82,7 +82,7 @@ static PetscErrorCode PlaneFill(const Plane *plane, const PetscInt list[], const
   PetscFunctionBeginUser;
   for (PetscInt a = 0; a < plane->m; a++)
     StandardVector(&plane->form, plane->e->modes->lambda[list[a]], x + list[a] * n, X + a * N);
-  PetscCall(ComplexOrthonormalise(N, plane->m, DEPENDENT, X, &kept));
+  PetscCall(ComplexOrthonormalise(N, plane->m, PLANE_PARALLEL, X, &kept));
   if (kept < plane->m) PetscCall(InverseIterate(plane, left, kept, X));
   PetscFunctionReturn(0);
 }
