@@ -15,10 +15,7 @@ static PetscErrorCode OnsetReduced(Sweep sweep, const Line *line, Event *event)
 {
   PetscFunctionBeginUser;
   PetscCall(OnsetFind(&sweep->basis.reduced, line, event));
-  PetscCallMPI(MPI_Bcast(&event->critical, 1, MPIU_REAL, 0, sweep->comm));
-  PetscCallMPI(MPI_Bcast(&event->omega, 1, MPIU_REAL, 0, sweep->comm));
-  PetscCallMPI(MPI_Bcast(&event->error, 1, MPIU_REAL, 0, sweep->comm));
-  PetscCallMPI(MPI_Bcast(&event->found, 1, MPIU_BOOL, 0, sweep->comm));
+  PetscCallMPI(MPI_Bcast(event, (PetscMPIInt)sizeof(*event), MPI_BYTE, 0, sweep->comm));
   PetscFunctionReturn(0);
 }
 

@@ -27,10 +27,10 @@ static inline PetscErrorCode RunSweep(const Dense *dense, const ReducedWindow *w
   run->line.window = window;
   for (PetscInt k = 0; k < n; k++) {
     run->value[k] = first + (last - first) * k / (n - 1);
-    PetscCall(ReducedSolve(&dense->reduced, &run->value[k], window, &run->modes[k]));
+    PetscCall(ReducedSolve(&dense->system.reduced, &run->value[k], window, &run->modes[k]));
     PetscCall(PetscMalloc1(run->modes[k].n, &run->branch[k]));
   }
-  PetscCall(TrackLine(&dense->reduced, &run->line, run->modes, run->branch, &run->n_branches, &run->events));
+  PetscCall(TrackLine(&dense->system.reduced, &run->line, run->modes, run->branch, &run->n_branches, &run->events));
   PetscFunctionReturn(0);
 }
 

@@ -2,61 +2,47 @@
 #pragma once
 
 #include "sweep/dense/reduced.h"
+#include <string.h>
 
-#define SYSTEM_MAX 6 /* terms */
+#define SYSTEM_TERMS 6
+#define SYSTEM_SIZE  52 /* unknowns */
 
 typedef struct {
   Reduced       reduced;
-  OperatorsTerm term[SYSTEM_MAX];
-  PetscReal    *A[SYSTEM_MAX];
+  OperatorsTerm term[SYSTEM_TERMS];
+  PetscReal     A[SYSTEM_TERMS][SYSTEM_SIZE * SYSTEM_SIZE], *pointer[SYSTEM_TERMS];
 } System;
 
 /* n unknowns, of which n_used make the model */
 static inline void SystemCreate(PetscInt n, PetscInt n_used, PetscInt n_parameters, System *s)
 {
-  *s = (System){
-    .reduced = {.n = n, .n_used = n_used, .n_parameters = n_parameters}
-  };
+  memset(s, 0, sizeof(*s));
+  s->reduced = (Reduced){.n = n, .n_used = n_used, .n_parameters = n_parameters, .term = s->term, .A = s->pointer};
 }
 
-/* Adds scale * p[parameter]^power * A, A [n * n] row by row; parameter -1: scale * A */
-static inline PetscErrorCode SystemAdd(System *s, OperatorsTermKind kind, PetscBool symmetric, PetscReal scale,
-                                       PetscInt parameter, PetscInt power, const PetscReal A[])
+/* Adds p[parameter] A, A [n * n] row by row; parameter -1: A */
+static inline void SystemAdd(System *s, OperatorsTermKind kind, PetscBool symmetric, PetscInt parameter,
+                             const PetscReal A[])
 {
   const PetscInt n = s->reduced.n, t = s->reduced.n_terms++;
-  OperatorsTerm *term = &s->term[t];
 
-  PetscFunctionBeginUser;
-  *term = (OperatorsTerm){.kind = kind, .symmetric = symmetric, .scale = scale, .n = parameter < 0 ? 0 : 1};
-  term->factor[0].parameter = PetscMax(parameter, 0);
-  term->factor[0].power     = power;
-  PetscCall(PetscMalloc1(n * n, &s->A[t]));
+  s->term[t] = (OperatorsTerm){.kind = kind, .symmetric = symmetric, .scale = 1, .n = parameter < 0 ? 0 : 1};
+  s->term[t].factor[0].parameter = PetscMax(parameter, 0);
+  s->term[t].factor[0].power     = 1;
+  s->pointer[t]                  = s->A[t];
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt j = 0; j < n; j++) s->A[t][j * n + i] = A[i * n + j];
-  s->reduced.term = s->term;
-  s->reduced.A    = s->A;
-  PetscFunctionReturn(0);
-}
-
-static inline PetscErrorCode SystemDestroy(System *s)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < s->reduced.n_terms; t++) PetscCall(PetscFree(s->A[t]));
-  PetscFunctionReturn(0);
 }
 
 /* K = [[a, b - p0 c], [b, d]], M = I, C = diag(d1, d2) where not zero: two modes that friction p0 couples.
    kappa = (a + d) / 2 +- sqrt((a - d)^2 / 4 + b (b - p0 c)) */
-static inline PetscErrorCode SystemTwo(PetscReal a, PetscReal b, PetscReal c, PetscReal d, PetscReal d1, PetscReal d2,
-                                       System *s)
+static inline void SystemTwo(PetscReal a, PetscReal b, PetscReal c, PetscReal d, const PetscReal damping[2], System *s)
 {
-  PetscFunctionBeginUser;
   SystemCreate(2, 2, 1, s);
-  PetscCall(SystemAdd(s, OPERATORS_STIFFNESS, PETSC_TRUE, 1, -1, 1, (PetscReal[]){a, b, b, d}));
-  PetscCall(SystemAdd(s, OPERATORS_STIFFNESS, PETSC_FALSE, 1, 0, 1, (PetscReal[]){0, -c, 0, 0}));
-  PetscCall(SystemAdd(s, OPERATORS_MASS, PETSC_TRUE, 1, -1, 1, (PetscReal[]){1, 0, 0, 1}));
-  if (d1 != 0 || d2 != 0) PetscCall(SystemAdd(s, OPERATORS_DAMPING, PETSC_TRUE, 1, -1, 1, (PetscReal[]){d1, 0, 0, d2}));
-  PetscFunctionReturn(0);
+  SystemAdd(s, OPERATORS_STIFFNESS, PETSC_TRUE, -1, (PetscReal[]){a, b, b, d});
+  SystemAdd(s, OPERATORS_STIFFNESS, PETSC_FALSE, 0, (PetscReal[]){0, -c, 0, 0});
+  SystemAdd(s, OPERATORS_MASS, PETSC_TRUE, -1, (PetscReal[]){1, 0, 0, 1});
+  if (damping) SystemAdd(s, OPERATORS_DAMPING, PETSC_TRUE, -1, (PetscReal[]){damping[0], 0, 0, damping[1]});
 }
 
 /* Reproducible numbers in (-1, 1) */

@@ -21,11 +21,11 @@ static PetscErrorCode FindOnsets(const Dense *dense, const ReducedWindow *window
   memset(events, 0, sizeof(*events));
   for (PetscInt k = 0; k < n; k++) {
     value[k] = first + (last - first) * k / (n - 1);
-    PetscCall(ReducedSolve(&dense->reduced, &value[k], window, &modes[k]));
+    PetscCall(ReducedSolve(&dense->system.reduced, &value[k], window, &modes[k]));
     PetscCall(PetscMalloc1(modes[k].n, &branch[k]));
   }
-  PetscCall(TrackLine(&dense->reduced, &line, modes, branch, &n_branches, events));
-  for (PetscInt e = 0; e < events->n; e++) PetscCall(OnsetFind(&dense->reduced, &line, &events->event[e]));
+  PetscCall(TrackLine(&dense->system.reduced, &line, modes, branch, &n_branches, events));
+  for (PetscInt e = 0; e < events->n; e++) PetscCall(OnsetFind(&dense->system.reduced, &line, &events->event[e]));
   for (PetscInt k = 0; k < n; k++) {
     PetscCall(ReducedModesDestroy(&modes[k]));
     PetscCall(PetscFree(branch[k]));
@@ -61,9 +61,9 @@ static void Friction(Dense *dense, PetscInt n, PetscReal d, PetscReal d1, PetscR
   C[0] = d1, C[n + 1] = d2;
   DenseBegin(dense, n, n > 2 ? PETSC_TRUE : PETSC_FALSE);
   DenseAddUnitMass(dense);
-  DenseAdd(dense, OPERATORS_STIFFNESS, PETSC_FALSE, K);
-  DenseAdd(dense, OPERATORS_STIFFNESS, PETSC_TRUE, H);
-  if (d1 > 0) DenseAdd(dense, OPERATORS_DAMPING, PETSC_FALSE, C);
+  DenseAdd(dense, OPERATORS_STIFFNESS, -1, K);
+  DenseAdd(dense, OPERATORS_STIFFNESS, 0, H);
+  if (d1 > 0) DenseAdd(dense, OPERATORS_DAMPING, -1, C);
 }
 
 /* |A X - M X S| of a plane X [2][n] with S = (Y' M X)^-1 Y' K X; transposed: of Y, with the roles exchanged */
@@ -113,12 +113,12 @@ static PetscErrorCode TestPlane(int *failed)
 
   PetscFunctionBeginUser;
   DenseDiagonal(&dense, 6, kappa, slope, 2, entry);
-  PetscCall(ReducedSolve(&dense.reduced, &p, &everything, &modes));
+  PetscCall(ReducedSolve(&dense.system.reduced, &p, &everything, &modes));
   *failed += CheckClose("mean of the pair",
                         -creal(modes.lambda[1] * modes.lambda[1] + modes.lambda[2] * modes.lambda[2]) / 2, 1.5, 1e-9);
   PetscCall(PetscArraycpy(modes.x + 2 * 6, modes.x + 6, 6));
   PetscCall(PetscArraycpy(modes.y + 2 * 6, modes.y + 6, 6));
-  PetscCall(ModeFrameCreate(&dense.reduced, &p, &(StandardForm){.scale = 1}, PETSC_TRUE, &modes, &frame));
+  PetscCall(ModeFrameCreate(&dense.system.reduced, &p, &(StandardForm){.scale = 1}, PETSC_TRUE, &modes, &frame));
   PetscCall(ModePlaneRefine(frame, 2, member, X, Y));
   *failed += CheckClose("right plane is invariant", PlaneResidual(frame, X, Y, PETSC_FALSE), 0, 1e-13);
   *failed += CheckClose("left plane is invariant", PlaneResidual(frame, Y, X, PETSC_TRUE), 0, 1e-13);
@@ -248,9 +248,9 @@ static PetscErrorCode TestDivergence(int *failed)
 
     DenseBegin(&dense, 4, PETSC_TRUE);
     DenseAddUnitMass(&dense);
-    DenseAdd(&dense, OPERATORS_STIFFNESS, PETSC_FALSE, K);
-    DenseAdd(&dense, OPERATORS_STIFFNESS, PETSC_TRUE, K1);
-    if (damped) DenseAdd(&dense, OPERATORS_DAMPING, PETSC_FALSE, C);
+    DenseAdd(&dense, OPERATORS_STIFFNESS, -1, K);
+    DenseAdd(&dense, OPERATORS_STIFFNESS, 0, K1);
+    if (damped) DenseAdd(&dense, OPERATORS_DAMPING, -1, C);
     PetscCall(FindOnsets(&dense, &everything, 0, 3, 8, &events));
     printf("     %s\n", damped ? "damped" : "undamped");
     *failed += CheckTrue("events", events.n == 2, (double)events.n);

@@ -75,9 +75,9 @@ static void ModelCreateJump(Dense *dense)
   const PetscReal by_c[16] = {[0] = 0.5, [15] = 0.3};
 
   DenseDiagonal(dense, 4, kappa, slope, 2, flutter);
-  DenseAdd(dense, OPERATORS_STIFFNESS, PETSC_TRUE, by_c);
-  dense->term[dense->reduced.n_terms - 1].factor[0].parameter = 1;
-  dense->reduced.n_parameters                                 = 2;
+  DenseAdd(dense, OPERATORS_STIFFNESS, 0, by_c);
+  dense->system.term[dense->system.reduced.n_terms - 1].factor[0].parameter = 1;
+  dense->system.reduced.n_parameters                                        = 2;
 }
 
 /* Places 0.05, 0.15, ... 0.95 and the ends of a bracket about 0.5, above which c = 0 */
@@ -89,7 +89,7 @@ static PetscErrorCode PlacesCreate(const Dense *dense, Sweep sweep, Points *poin
   sweep->grid = (SweepGrid){.n_axes = 1, .n_parameters = 2, .n_groups = 1, .closed = closed, .base = base};
   PetscCall(PetscCalloc1(N_PLACES, &sweep->grid.place));
   sweep->grid.n_places = N_PLACES;
-  sweep->basis.reduced = dense->reduced;
+  sweep->basis.reduced = dense->system.reduced;
   sweep->window        = everything;
   points->n            = N_PLACES;
   points->value        = value;
@@ -103,7 +103,7 @@ static PetscErrorCode PlacesCreate(const Dense *dense, Sweep sweep, Points *poin
     place->value[0] = value[k];
     place->status   = k > 5;
     GridFill(&sweep->grid, place, p + 2 * k);
-    PetscCall(ReducedSolve(&dense->reduced, p + 2 * k, &everything, &points->modes[k]));
+    PetscCall(ReducedSolve(&dense->system.reduced, p + 2 * k, &everything, &points->modes[k]));
     PetscCall(PetscMalloc1(points->modes[k].n, &points->branch[k]));
   }
   PetscFunctionReturn(0);
@@ -191,10 +191,10 @@ static PetscErrorCode TestDoubt(int *failed)
   }
   DenseBegin(&dense, 4, PETSC_TRUE);
   DenseAddUnitMass(&dense);
-  DenseAdd(&dense, OPERATORS_STIFFNESS, PETSC_FALSE, before);
-  DenseAdd(&dense, OPERATORS_STIFFNESS, PETSC_TRUE, change);
-  for (int k = 0; k < 2; k++) PetscCall(ReducedSolve(&dense.reduced, &p[k], &everything, &modes[k]));
-  PetscCall(TrackJump(&dense.reduced, &p[1], &(BranchPoint){0, &modes[0], branch[0]},
+  DenseAdd(&dense, OPERATORS_STIFFNESS, -1, before);
+  DenseAdd(&dense, OPERATORS_STIFFNESS, 0, change);
+  for (int k = 0; k < 2; k++) PetscCall(ReducedSolve(&dense.system.reduced, &p[k], &everything, &modes[k]));
+  PetscCall(TrackJump(&dense.system.reduced, &p[1], &(BranchPoint){0, &modes[0], branch[0]},
                       &(BranchPoint){1, &modes[1], branch[1]}, &events));
   *failed += CheckTrue("branches that begin anew", branch[1][0] == 4 && branch[1][1] == 5 && branch[1][2] == 6,
                        (double)branch[1][0]);

@@ -142,8 +142,8 @@ static PetscErrorCode TestFriction(int *failed)
   PetscFunctionBeginUser;
   DenseBegin(&dense, 3, PETSC_TRUE);
   DenseAddUnitMass(&dense);
-  DenseAdd(&dense, OPERATORS_STIFFNESS, PETSC_FALSE, K);
-  DenseAdd(&dense, OPERATORS_STIFFNESS, PETSC_TRUE, H);
+  DenseAdd(&dense, OPERATORS_STIFFNESS, -1, K);
+  DenseAdd(&dense, OPERATORS_STIFFNESS, 0, H);
   for (int down = 0; down < 2; down++) {
     PetscCall(RunSweep(&dense, &everything, down ? 2 : 0, down ? 0 : 2, 14, &run));
     *failed += CheckTrue("events", run.events.n == 2, (double)run.events.n);
@@ -189,8 +189,8 @@ static PetscErrorCode TestPoints(int *failed)
 
   PetscFunctionBeginUser;
   DenseDiagonal(&dense, 4, kappa, slope, 0, NULL);
-  for (int k = 0; k < 2; k++) PetscCall(ReducedSolve(&dense.reduced, &p[k], &everything, &modes[k]));
-  PetscCall(TrackMatch(&dense.reduced, &p[0], &modes[0], &modes[1], match, &certain));
+  for (int k = 0; k < 2; k++) PetscCall(ReducedSolve(&dense.system.reduced, &p[k], &everything, &modes[k]));
+  PetscCall(TrackMatch(&dense.system.reduced, &p[0], &modes[0], &modes[1], match, &certain));
   /* order at 0.1: doublet, 1.67, 1.9; at 0.9: 1.1, 1.43, doublet */
   wrong = (match[0] != 3) + (match[1] != 2) + !((match[2] == 0 && match[3] == 1) || (match[2] == 1 && match[3] == 0));
   *failed += CheckTrue("modes of two points matched wrongly", wrong == 0, (double)wrong);

@@ -28,8 +28,8 @@ static PetscErrorCode TestDefective(int *failed)
 
       DenseBegin(&dense, 3, PETSC_FALSE);
       DenseAddUnitMass(&dense);
-      DenseAdd(&dense, OPERATORS_STIFFNESS, PETSC_FALSE, K);
-      DenseAdd(&dense, OPERATORS_STIFFNESS, PETSC_TRUE, K1);
+      DenseAdd(&dense, OPERATORS_STIFFNESS, -1, K);
+      DenseAdd(&dense, OPERATORS_STIFFNESS, 0, K1);
     }
     PetscCall(RunSweep(&dense, &everything, 0, 1, 11, &run));
     *failed += CheckTrue("events", run.events.n == 2, (double)run.events.n);
@@ -149,9 +149,9 @@ static PetscErrorCode TestDampedDefective(int *failed)
   for (int hidden = 0; hidden < 2; hidden++) {
     DenseBegin(&dense, 3, hidden ? PETSC_TRUE : PETSC_FALSE);
     DenseAddUnitMass(&dense);
-    DenseAdd(&dense, OPERATORS_STIFFNESS, PETSC_FALSE, K);
-    DenseAdd(&dense, OPERATORS_STIFFNESS, PETSC_TRUE, H);
-    DenseAdd(&dense, OPERATORS_DAMPING, PETSC_FALSE, C);
+    DenseAdd(&dense, OPERATORS_STIFFNESS, -1, K);
+    DenseAdd(&dense, OPERATORS_STIFFNESS, 0, H);
+    DenseAdd(&dense, OPERATORS_DAMPING, -1, C);
     PetscCall(RunSweep(&dense, &everything, 0.58, 0.98, 5, &run));
     *failed += CheckTrue("events", run.events.n == 1, (double)run.events.n);
     *failed += CheckEvent("flutter", &run, 0, EVENT_LOCK_IN, 0.78066);
@@ -178,9 +178,9 @@ static PetscErrorCode TestRigid(int *failed)
 
     DenseBegin(&dense, 4, PETSC_TRUE);
     DenseAddUnitMass(&dense);
-    DenseAdd(&dense, OPERATORS_STIFFNESS, PETSC_FALSE, K);
-    DenseAdd(&dense, OPERATORS_STIFFNESS, PETSC_TRUE, K1);
-    if (c) DenseAdd(&dense, OPERATORS_DAMPING, PETSC_TRUE, C);
+    DenseAdd(&dense, OPERATORS_STIFFNESS, -1, K);
+    DenseAdd(&dense, OPERATORS_STIFFNESS, 0, K1);
+    if (c) DenseAdd(&dense, OPERATORS_DAMPING, 0, C);
     printf("     %s\n", c ? "damping grows from zero" : "undamped");
     PetscCall(RunSweep(&dense, &everything, 0, 1.9, 9, &run));
     own = run.branch[0][2]; /* 0, 0, 1.2, 2 at p = 0 */

@@ -41,13 +41,8 @@ PetscErrorCode ReducedModesCreate(PetscInt n, PetscInt size, ReducedModes *modes
   PetscFunctionBeginUser;
   modes->n    = n;
   modes->size = size;
-  PetscCall(PetscCalloc1(n, &modes->lambda));
-  PetscCall(PetscCalloc1(n * size, &modes->x));
-  PetscCall(PetscCalloc1(n * size, &modes->y));
-  PetscCall(PetscCalloc1(n, &modes->product));
-  PetscCall(PetscCalloc1(n, &modes->error));
-  PetscCall(PetscCalloc1(n, &modes->noise));
-  PetscCall(PetscCalloc1(n, &modes->rigid));
+  PetscCall(PetscCalloc7(n, &modes->lambda, n * size, &modes->x, n * size, &modes->y, n, &modes->product, n,
+                         &modes->error, n, &modes->noise, n, &modes->rigid));
   PetscFunctionReturn(0);
 }
 
@@ -84,13 +79,7 @@ PetscErrorCode ReducedModesCopy(const ReducedModes *from, ReducedModes *to)
 PetscErrorCode ReducedModesDestroy(ReducedModes *modes)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(modes->lambda));
-  PetscCall(PetscFree(modes->x));
-  PetscCall(PetscFree(modes->y));
-  PetscCall(PetscFree(modes->product));
-  PetscCall(PetscFree(modes->error));
-  PetscCall(PetscFree(modes->noise));
-  PetscCall(PetscFree(modes->rigid));
+  PetscCall(PetscFree7(modes->lambda, modes->x, modes->y, modes->product, modes->error, modes->noise, modes->rigid));
   modes->n = 0;
   PetscFunctionReturn(0);
 }
@@ -160,12 +149,11 @@ static void SortRange(const ReducedModes *m, PetscInt first, PetscInt last, Pets
 /* Sorts by frequency, equal ones by growth */
 static PetscErrorCode ModesSort(ReducedModes *modes)
 {
-  const PetscInt n = modes->n, size = modes->size;
-  ReducedModes   old;
+  const PetscInt n   = modes->n;
+  ReducedModes   old = *modes;
   PetscInt      *order;
 
   PetscFunctionBeginUser;
-  PetscCall(ReducedModesCopy(modes, &old));
   PetscCall(PetscMalloc1(n, &order));
   for (PetscInt i = 0; i < n; i++) order[i] = i;
   SortRange(&old, 0, n, PETSC_FALSE, order);
@@ -177,12 +165,7 @@ static PetscErrorCode ModesSort(ReducedModes *modes)
     }
     SortRange(&old, first, last, PETSC_TRUE, order);
   }
-  for (PetscInt i = 0; i < n; i++) {
-    modes->lambda[i] = old.lambda[order[i]];
-    modes->rigid[i]  = old.rigid[order[i]];
-    PetscCall(PetscArraycpy(modes->x + i * size, old.x + order[i] * size, size));
-    PetscCall(PetscArraycpy(modes->y + i * size, old.y + order[i] * size, size));
-  }
+  PetscCall(ReducedModesSelect(&old, n, order, modes));
   PetscCall(PetscFree(order));
   PetscCall(ReducedModesDestroy(&old));
   PetscFunctionReturn(0);

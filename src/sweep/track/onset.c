@@ -47,32 +47,43 @@ static PetscErrorCode TrialDestroy(Trial *trial)
   PetscFunctionReturn(0);
 }
 
+/* S = Y' A X [k * k] with real A of the frame; Z [k][size] is work */
+static PetscErrorCode PlaneProduct(const Trial *trial, const PetscReal A[], const PetscReal X[], const PetscReal Y[],
+                                   PetscReal Z[], PetscReal S[])
+{
+  const PetscReal one = 1, zero = 0;
+  PetscBLASInt    n, k;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(trial->frame->form.n, &n));
+  PetscCall(PetscBLASIntCast(trial->k, &k));
+  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &n, &k, &n, &one, A, &n, X, &n, &zero, Z, &n));
+  PetscCallBLAS("BLASgemm", BLASgemm_("T", "N", &k, &k, &n, &one, Y, &n, Z, &n, &zero, S, &k));
+  PetscFunctionReturn(0);
+}
+
 /* -d and m of the plane of the trial's members */
 static PetscErrorCode PlaneDiscriminant(Trial *trial)
 {
   const ModeFrame *f = trial->frame;
-  const PetscInt   N = f->form.n, k = trial->k;
-  PetscBLASInt     n, columns, info, *pivots;
-  PetscReal       *X, *Y, *Z, *G, *S, one = 1, zero = 0, d = 0;
+  const PetscInt   n = f->form.n, k = trial->k;
+  PetscBLASInt    *pivot;
+  PetscReal       *X, *Y, *Z, *G, *S, d = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(N, &n));
-  PetscCall(PetscBLASIntCast(k, &columns));
-  PetscCall(PetscMalloc6(k * N, &X, k * N, &Y, k * N, &Z, k * k, &G, k * k, &S, k, &pivots));
+  PetscCall(PetscMalloc6(k * n, &X, k * n, &Y, k * n, &Z, k * k, &G, k * k, &S, k, &pivot));
   PetscCall(ModePlaneRefine(f, k, trial->member, X, Y));
-  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &n, &columns, &n, &one, f->pencil.M, &n, X, &n, &zero, Z, &n));
-  PetscCallBLAS("BLASgemm", BLASgemm_("T", "N", &columns, &columns, &n, &one, Y, &n, Z, &n, &zero, G, &columns));
-  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &n, &columns, &n, &one, f->pencil.K, &n, X, &n, &zero, Z, &n));
-  PetscCallBLAS("BLASgemm", BLASgemm_("T", "N", &columns, &columns, &n, &one, Y, &n, Z, &n, &zero, S, &columns));
-  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&columns, &columns, G, &columns, pivots, S, &columns, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gesv: info %d", (int)info);
+  PetscCall(PlaneProduct(trial, f->pencil.M, X, Y, Z, G));
+  PetscCall(PlaneProduct(trial, f->pencil.K, X, Y, Z, S));
+  PetscCall(DenseFactor(k, G, pivot, NULL));
+  PetscCall(DenseSolve(k, G, pivot, PETSC_FALSE, k, S));
   trial->m = 0;
   for (PetscInt a = 0; a < k; a++) trial->m += S[a * k + a] / k;
   for (PetscInt a = 0; a < k; a++) S[a * k + a] -= trial->m;
   for (PetscInt a = 0; a < k; a++)
     for (PetscInt b = 0; b < k; b++) d += S[a * k + b] * S[b * k + a] / k;
   trial->g = -d;
-  PetscCall(PetscFree6(X, Y, Z, G, S, pivots));
+  PetscCall(PetscFree6(X, Y, Z, G, S, pivot));
   PetscFunctionReturn(0);
 }
 
