@@ -11,7 +11,7 @@
 #define ONSET_STEPS 5
 
 /* Finds the value on the reduced model; alike on all ranks */
-static PetscErrorCode OnsetReduced(Sweep sweep, const Line *line, Event *event)
+static PetscErrorCode OnsetReduced(Sweep sweep, const BranchLine *line, BranchEvent *event)
 {
   PetscFunctionBeginUser;
   PetscCall(OnsetFind(&sweep->basis.reduced, line, event));
@@ -48,7 +48,8 @@ static PetscErrorCode OnsetCorrect(Sweep sweep, const Correction *correction, co
 }
 
 /* Alternates corrections by the full problem and the reduced iteration; change = the last one of the critical value */
-static PetscErrorCode OnsetConverge(Sweep sweep, const Line *line, PetscReal p[], Event *event, PetscReal *change)
+static PetscErrorCode OnsetConverge(Sweep sweep, const BranchLine *line, PetscReal p[], BranchEvent *event,
+                                    PetscReal *change)
 {
   Correction    correction;
   ReducedWindow near;
@@ -75,7 +76,7 @@ static PetscErrorCode OnsetConverge(Sweep sweep, const Line *line, PetscReal p[]
 }
 
 /* Whether the pairs closed at the critical value are those of the segment in which it was found */
-static PetscErrorCode OnsetCheckStatus(Sweep sweep, const Event *event, PetscBool *same)
+static PetscErrorCode OnsetCheckStatus(Sweep sweep, const BranchEvent *event, PetscBool *same)
 {
   SweepPlace place = sweep->grid.place[event->place];
   PetscInt   status;
@@ -90,9 +91,9 @@ static PetscErrorCode OnsetCheckStatus(Sweep sweep, const Event *event, PetscBoo
 /* One onset to the end */
 static PetscErrorCode OnsetConfirm(Sweep sweep, PetscInt e)
 {
-  Event    *event  = &sweep->events.event[e];
-  PetscReal change = PETSC_MAX_REAL, *p;
-  Line      line   = {sweep->grid.parameter[0], sweep->grid.n[0], sweep->grid.value[0], NULL, &sweep->window};
+  BranchEvent *event  = &sweep->events.event[e];
+  PetscReal    change = PETSC_MAX_REAL, *p;
+  BranchLine   line   = {sweep->grid.parameter[0], sweep->grid.n[0], sweep->grid.value[0], NULL, &sweep->window};
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
@@ -116,8 +117,8 @@ PetscInt SweepEventLine(Sweep sweep, PetscInt e)
 /* Whether onset e comes after onset e + 1: by line, then by critical value */
 static PetscBool OnsetIsAfter(Sweep sweep, PetscInt e)
 {
-  const Event   *event   = &sweep->events.event[e];
-  const PetscInt line[2] = {SweepEventLine(sweep, e), SweepEventLine(sweep, e + 1)};
+  const BranchEvent *event   = &sweep->events.event[e];
+  const PetscInt     line[2] = {SweepEventLine(sweep, e), SweepEventLine(sweep, e + 1)};
 
   if (line[0] != line[1]) return line[0] > line[1] ? PETSC_TRUE : PETSC_FALSE;
   return event[0].critical > event[1].critical ? PETSC_TRUE : PETSC_FALSE;
@@ -127,8 +128,8 @@ static void OnsetsSort(Sweep sweep)
 {
   for (PetscInt i = 1; i < sweep->events.n; i++)
     for (PetscInt e = i - 1; e >= 0 && OnsetIsAfter(sweep, e); e--) {
-      const Event     event = sweep->events.event[e];
-      const PetscBool yes   = sweep->is_confirmed[e];
+      const BranchEvent event = sweep->events.event[e];
+      const PetscBool   yes   = sweep->is_confirmed[e];
 
       sweep->events.event[e]     = sweep->events.event[e + 1];
       sweep->is_confirmed[e]     = sweep->is_confirmed[e + 1];

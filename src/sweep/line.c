@@ -5,7 +5,7 @@
 */
 #include "line.h"
 
-static PetscErrorCode PointsCreate(Sweep sweep, PetscInt line, Points *points)
+static PetscErrorCode PointsCreate(Sweep sweep, PetscInt line, LinePoints *points)
 {
   const SweepGrid *grid         = &sweep->grid;
   const PetscInt   n_parameters = grid->n_parameters;
@@ -24,7 +24,7 @@ static PetscErrorCode PointsCreate(Sweep sweep, PetscInt line, Points *points)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode PointsDestroy(Points *points)
+static PetscErrorCode PointsDestroy(LinePoints *points)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < points->n; i++) {
@@ -37,11 +37,11 @@ static PetscErrorCode PointsDestroy(Points *points)
 }
 
 /* Gives all ranks the branches and events of rank 0, from event n_before on */
-static PetscErrorCode TrackBroadcast(Sweep sweep, PetscInt n_before, Points *points)
+static PetscErrorCode TrackBroadcast(Sweep sweep, PetscInt n_before, LinePoints *points)
 {
-  EventList  *events = &sweep->events;
-  PetscInt    n[2]   = {sweep->n_branches, events->n};
-  PetscMPIInt bytes;
+  BranchEvents *events = &sweep->events;
+  PetscInt      n[2]   = {sweep->n_branches, events->n};
+  PetscMPIInt   bytes;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Bcast(n, 2, MPIU_INT, 0, sweep->comm));
@@ -49,17 +49,17 @@ static PetscErrorCode TrackBroadcast(Sweep sweep, PetscInt n_before, Points *poi
   for (PetscInt i = 0; i < points->n; i++)
     PetscCallMPI(MPI_Bcast(points->branch[i], (PetscMPIInt)points->modes[i].n, MPIU_INT, 0, sweep->comm));
   while (events->n < n[1])
-    PetscCall(EventListAdd(events, &(Event){
-                                     .branch = {-1, -1}
+    PetscCall(BranchEventsAdd(events, &(BranchEvent){
+                                        .branch = {-1, -1}
     }));
   events->n = n[1];
-  PetscCall(PetscMPIIntCast((PetscInt)sizeof(Event) * (n[1] - n_before), &bytes));
+  PetscCall(PetscMPIIntCast((PetscInt)sizeof(BranchEvent) * (n[1] - n_before), &bytes));
   if (bytes) PetscCallMPI(MPI_Bcast(&events->event[n_before], bytes, MPI_BYTE, 0, sweep->comm));
   PetscFunctionReturn(0);
 }
 
 /* Follows the branches along the line */
-static PetscErrorCode PointsTrack(Sweep sweep, Points *points)
+static PetscErrorCode PointsTrack(Sweep sweep, LinePoints *points)
 {
   const PetscInt before = sweep->events.n;
 
@@ -71,8 +71,8 @@ static PetscErrorCode PointsTrack(Sweep sweep, Points *points)
 
 /* Gives branches of this line the numbers of those of the line before where their first points match; numbers from
    first_new and events from first_event on are those of this line */
-static PetscErrorCode PointsLink(Sweep sweep, const Points *before, PetscInt first_new, PetscInt first_event,
-                                 Points *points)
+static PetscErrorCode PointsLink(Sweep sweep, const LinePoints *before, PetscInt first_new, PetscInt first_event,
+                                 LinePoints *points)
 {
   const PetscInt n_new = sweep->n_branches - first_new;
   PetscInt      *from, *rename;
@@ -90,7 +90,7 @@ static PetscErrorCode PointsLink(Sweep sweep, const Points *before, PetscInt fir
 }
 
 /* The record of each point */
-static PetscErrorCode PointsKeep(Sweep sweep, const Points *points)
+static PetscErrorCode PointsKeep(Sweep sweep, const LinePoints *points)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < points->n; i++) {
@@ -158,7 +158,7 @@ PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedMo
 
 /* Where each branch is looked at for its name, or -1: where it grows faster than anywhere before, on this or on an
    earlier line; a branch without a name and without growth nearest to the middle of the line */
-static void LabelPoints(Sweep sweep, const Points *points, PetscInt at[])
+static void LabelPoints(Sweep sweep, const LinePoints *points, PetscInt at[])
 {
   for (PetscInt b = 0; b < sweep->n_branches; b++) at[b] = -1;
   for (PetscInt i = 0; i < points->n; i++)
@@ -176,7 +176,7 @@ static void LabelPoints(Sweep sweep, const Points *points, PetscInt at[])
 }
 
 /* Names the branches that are to be looked at at point i */
-static PetscErrorCode PointLabel(Sweep sweep, const Points *points, PetscInt i, const PetscInt at[])
+static PetscErrorCode PointLabel(Sweep sweep, const LinePoints *points, PetscInt i, const PetscInt at[])
 {
   const ReducedModes *modes = &points->modes[i];
   ReducedModes        some;
@@ -198,7 +198,7 @@ static PetscErrorCode PointLabel(Sweep sweep, const Points *points, PetscInt i, 
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode PointsLabel(Sweep sweep, const Points *points)
+static PetscErrorCode PointsLabel(Sweep sweep, const LinePoints *points)
 {
   PetscInt *at;
 
@@ -240,7 +240,7 @@ static PetscBool ModesArePair(const ReducedModes *modes, PetscInt k)
 }
 
 /* Which of two branches takes the unstable member of a pair is a matter of choice: the one named after the disc does */
-static PetscErrorCode PairsByLabel(Sweep sweep, PetscInt first_event, const Points *points)
+static PetscErrorCode PairsByLabel(Sweep sweep, PetscInt first_event, const LinePoints *points)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < points->n; i++)
@@ -285,7 +285,7 @@ PetscErrorCode SweepLinesForget(Sweep sweep)
   for (PetscInt i = 0; i < GridSize(&sweep->grid); i++) PetscCall(PetscFree(sweep->point[i].mode));
   PetscCall(PetscFree(sweep->label));
   PetscCall(PetscFree(sweep->worst));
-  PetscCall(EventListDestroy(&sweep->events));
+  PetscCall(BranchEventsDestroy(&sweep->events));
   sweep->n_branches = 0;
   PetscFunctionReturn(0);
 }
@@ -293,7 +293,7 @@ PetscErrorCode SweepLinesForget(Sweep sweep)
 PetscErrorCode SweepLines(Sweep sweep)
 {
   const PetscInt n_lines = sweep->grid.n_axes == 2 ? sweep->grid.n[1] : 1;
-  Points         before  = {0}, points;
+  LinePoints     before  = {0}, points;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(sweep->grid.n_places, &sweep->worst));

@@ -10,12 +10,12 @@ typedef struct {
   PetscReal    *p;        /* [n][n_parameters] */
   ReducedModes *modes;    /* [n] */
   PetscInt    **branch;   /* [n][modes] */
-} Points;
+} LinePoints;
 
 /* segment.c - follows the branches along the line, from one change of contact status to the next, and across it.
    Not collective. */
-PETSC_INTERN PetscErrorCode LineTrackSegments(Sweep sweep, Points *points);
+PETSC_INTERN PetscErrorCode LineTrackSegments(Sweep sweep, LinePoints *points);
 /* Gives branch b >= first_new the number rename[b - first_new] at places before last and in the events from
    first_event on; those for which that is -1 are numbered from first_new on, in their order */
 PETSC_INTERN PetscErrorCode LineRename(Sweep sweep, PetscInt first_new, PetscInt rename[], PetscInt last,
-                                       PetscInt first_event, Points *points);
+                                       PetscInt first_event, LinePoints *points);

@@ -95,7 +95,7 @@ static PetscErrorCode RecordsTransfer(Sweep sweep, FILE *file, PetscBool write, 
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < h->n_samples && *good; i++) {
-    Sample *s = &sweep->greedy.sample[i];
+    GreedySample *s = &sweep->greedy.sample[i];
 
     if (!s->p) PetscCall(PetscMalloc1(sweep->grid.n_parameters, &s->p));
     Transfer(file, write, s->p, sizeof(PetscReal), sweep->grid.n_parameters, good);

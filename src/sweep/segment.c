@@ -5,7 +5,7 @@
 #include "line.h"
 
 PetscErrorCode LineRename(Sweep sweep, PetscInt first_new, PetscInt rename[], PetscInt last, PetscInt first_event,
-                          Points *points)
+                          LinePoints *points)
 {
   const PetscInt n_new = sweep->n_branches - first_new;
   PetscInt       next  = first_new;
@@ -28,7 +28,7 @@ PetscErrorCode LineRename(Sweep sweep, PetscInt first_new, PetscInt rename[], Pe
 
 /* Links the segment k to last - 1, whose branches are those from first_new on, to the place before it */
 static PetscErrorCode SegmentLink(Sweep sweep, PetscInt first_new, PetscInt k, PetscInt last, PetscInt first_event,
-                                  Points *points)
+                                  LinePoints *points)
 {
   const PetscInt n = points->modes[k].n, n_new = sweep->n_branches - first_new;
   BranchPoint    before = {points->value[k - 1], &points->modes[k - 1], points->branch[k - 1]};
@@ -48,14 +48,14 @@ static PetscErrorCode SegmentLink(Sweep sweep, PetscInt first_new, PetscInt k, P
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LineTrackSegments(Sweep sweep, Points *points)
+PetscErrorCode LineTrackSegments(Sweep sweep, LinePoints *points)
 {
   const SweepPlace *place = &sweep->grid.place[points->first];
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0, last; k < points->n; k = last) {
     const PetscInt first_new = sweep->n_branches, first_event = sweep->events.n;
-    Line           line = {sweep->grid.parameter[0], 0, &points->value[k], &points->p[k * sweep->grid.n_parameters],
+    BranchLine     line = {sweep->grid.parameter[0], 0, &points->value[k], &points->p[k * sweep->grid.n_parameters],
                            &sweep->window};
 
     for (last = k + 1; last < points->n && place[last].status == place[k].status;) last++;

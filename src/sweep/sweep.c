@@ -327,7 +327,7 @@ PetscErrorCode SweepDestroy(Sweep *sweep)
   PetscCall(PetscFree(s->label));
   PetscCall(PetscFree(s->worst));
   PetscCall(PetscFree(s->is_confirmed));
-  PetscCall(EventListDestroy(&s->events));
+  PetscCall(BranchEventsDestroy(&s->events));
   PetscCall(GreedyDestroy(&s->greedy));
   PetscCall(BasisDestroy(&s->basis));
   PetscCall(GridDestroy(&s->grid));

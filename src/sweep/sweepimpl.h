@@ -78,7 +78,7 @@ struct _p_Sweep {
   PetscInt       n_branches;
   PetscBool      whole; /* the basis is the whole space */
   BranchName    *label; /* [n_branches] */
-  EventList      events;
+  BranchEvents   events;
   PetscBool     *is_confirmed; /* on the full problem */
   SweepCheck    *check;
   SweepRisk     *risk;

@@ -12,7 +12,7 @@ static PetscErrorCode SamplesView(Sweep sweep, const OperatorsParameter paramete
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < sweep->greedy.n_samples; i++) {
-    const Sample *s = &sweep->greedy.sample[i];
+    const GreedySample *s = &sweep->greedy.sample[i];
 
     PetscCall(PetscViewerASCIIPrintf(viewer, "  full solution %" PetscInt_FMT " at", i + 1));
     for (PetscInt k = 0; k < sweep->grid.n_axes; k++)
@@ -121,7 +121,7 @@ static PetscErrorCode StatusView(Sweep sweep, PetscViewer viewer)
 
 /* Up to which value is it quiet? first = the onset nearest to the first value, or NULL. An unstable point before any
    onset means that its onset was not located. */
-static PetscErrorCode AnswerView(Sweep sweep, const OperatorsParameter *parameter, const Event *first,
+static PetscErrorCode AnswerView(Sweep sweep, const OperatorsParameter *parameter, const BranchEvent *first,
                                  PetscViewer viewer)
 {
   const PetscReal *value = sweep->grid.value[0];
@@ -151,7 +151,7 @@ static PetscErrorCode AnswerView(Sweep sweep, const OperatorsParameter *paramete
 /* One onset */
 static PetscErrorCode EventView(Sweep sweep, PetscInt e, const OperatorsParameter *parameter, PetscViewer viewer)
 {
-  const Event *event = &sweep->events.event[e];
+  const BranchEvent *event = &sweep->events.event[e];
 
   PetscFunctionBeginUser;
   if (event->kind == EVENT_JUMP)
@@ -170,11 +170,11 @@ static PetscErrorCode EventView(Sweep sweep, PetscInt e, const OperatorsParamete
 /* Onsets, and the answer in one line */
 static PetscErrorCode OnsetsView(Sweep sweep, const OperatorsParameter *parameter, PetscViewer viewer)
 {
-  const Event *first = NULL;
+  const BranchEvent *first = NULL;
 
   PetscFunctionBeginUser;
   for (PetscInt e = 0; e < sweep->events.n; e++) {
-    const Event *event = &sweep->events.event[e];
+    const BranchEvent *event = &sweep->events.event[e];
 
     if (!event->found) continue;
     PetscCall(EventView(sweep, e, parameter, viewer));

@@ -23,8 +23,8 @@ static PetscReal OnsetDistance(Sweep sweep, PetscInt point, PetscInt branch)
   PetscReal       nearest = NAN;
 
   for (PetscInt e = 0; e < sweep->events.n; e++) {
-    const Event    *event = &sweep->events.event[e];
-    const PetscReal distance =
+    const BranchEvent *event = &sweep->events.event[e];
+    const PetscReal    distance =
       PetscAbsReal(value - event->critical) / PetscMax(PetscAbsReal(event->critical), PETSC_MACHINE_EPSILON);
 
     if (!event->found || SweepEventLine(sweep, e) != point / sweep->grid.n[0]) continue;
@@ -91,8 +91,8 @@ static PetscErrorCode OnsetTableWrite(Sweep sweep, Results results)
     results, "onsets", "parameter,critical_value,freq_hz,kind,label,error_estimate,branch,partner,confirmed,value_2",
     &table));
   for (PetscInt e = 0; e < sweep->events.n; e++) {
-    const Event *event       = &sweep->events.event[e];
-    char         partner[32] = "", second[32] = "";
+    const BranchEvent *event       = &sweep->events.event[e];
+    char               partner[32] = "", second[32] = "";
 
     if (!event->found) continue;
     if (event->branch[1] >= 0)

@@ -8,11 +8,11 @@
 
 /* A sweep with its results */
 typedef struct {
-  Line         line;
+  BranchLine   line;
   PetscReal    value[MAX_POINTS], base[1];
   ReducedModes modes[MAX_POINTS];
   PetscInt    *branch[MAX_POINTS], n_branches;
-  EventList    events;
+  BranchEvents events;
 } Run;
 
 /* n equal steps from first to last */
@@ -41,7 +41,7 @@ static inline PetscErrorCode RunDestroy(Run *run)
     PetscCall(ReducedModesDestroy(&run->modes[k]));
     PetscCall(PetscFree(run->branch[k]));
   }
-  PetscCall(EventListDestroy(&run->events));
+  PetscCall(BranchEventsDestroy(&run->events));
   PetscFunctionReturn(0);
 }
 
@@ -62,9 +62,9 @@ static inline PetscReal RunKappa(const Run *run, PetscInt point, PetscInt branch
 }
 
 /* Event e: kind, and a bracket about the expected value that is not wider than the step */
-static inline int CheckEvent(const char name[], const Run *run, PetscInt e, EventKind kind, PetscReal value)
+static inline int CheckEvent(const char name[], const Run *run, PetscInt e, BranchEventKind kind, PetscReal value)
 {
-  const Event *event = &run->events.event[e];
+  const BranchEvent *event = &run->events.event[e];
 
   if (e >= run->events.n) return CheckTrue(name, 0, (double)run->events.n);
   return CheckTrue(name, event->kind == kind, (double)event->kind) +

@@ -10,12 +10,12 @@ static const ReducedWindow everything = {0, 100, 100};
 
 /* Events of n equal steps, with their onsets */
 static PetscErrorCode FindOnsets(const Dense *dense, const ReducedWindow *window, PetscReal first, PetscReal last,
-                                 PetscInt n, EventList *events)
+                                 PetscInt n, BranchEvents *events)
 {
-  PetscReal    value[101], base[1] = {0};
-  ReducedModes modes[101] = {0};
-  PetscInt    *branch[101], n_branches = 0;
-  const Line   line = {0, n, value, base, window};
+  PetscReal        value[101], base[1] = {0};
+  ReducedModes     modes[101] = {0};
+  PetscInt        *branch[101], n_branches = 0;
+  const BranchLine line = {0, n, value, base, window};
 
   PetscFunctionBeginUser;
   memset(events, 0, sizeof(*events));
@@ -34,9 +34,9 @@ static PetscErrorCode FindOnsets(const Dense *dense, const ReducedWindow *window
 }
 
 /* Event e has the critical value, within rtol, and its own error is of the same order at most */
-static int CheckOnset(const char name[], const EventList *events, PetscInt e, PetscReal value, PetscReal rtol)
+static int CheckOnset(const char name[], const BranchEvents *events, PetscInt e, PetscReal value, PetscReal rtol)
 {
-  const Event *event = &events->event[e];
+  const BranchEvent *event = &events->event[e];
 
   if (e >= events->n) return CheckTrue(name, 0, (double)events->n);
   return CheckTrue(name, event->found, event->found) +
@@ -133,7 +133,7 @@ static PetscErrorCode TestPlane(int *failed)
 static PetscErrorCode TestUndamped(int *failed)
 {
   static const PetscInt sizes[3] = {2, 7, 12}, points[3] = {4, 6, 9}; /* 9: 0.75 is a point */
-  EventList             events;
+  BranchEvents          events;
   Dense                 dense;
 
   PetscFunctionBeginUser;
@@ -144,11 +144,11 @@ static PetscErrorCode TestUndamped(int *failed)
     *failed += CheckTrue("events", events.n == 1, (double)events.n);
     *failed += CheckOnset("lock-in at 0.75", &events, 0, 0.75, 1e-12);
     if (events.n) *failed += CheckClose("  omega^2 = (a + d) / 2", PetscSqr(events.event[0].omega), 2, 1e-10);
-    PetscCall(EventListDestroy(&events));
+    PetscCall(BranchEventsDestroy(&events));
     Friction(&dense, sizes[c / 3], 2.4, 0, 0);
     PetscCall(FindOnsets(&dense, &everything, 0, 1, points[c % 3], &events));
     *failed += CheckOnset("lock-in at 0.78", &events, 0, 0.78, 1e-12);
-    PetscCall(EventListDestroy(&events));
+    PetscCall(BranchEventsDestroy(&events));
   }
   PetscFunctionReturn(0);
 }
@@ -165,7 +165,7 @@ static PetscErrorCode TestDamped(int *failed)
     {0.2,  0.02, 0.7670082645}
   };
   static const PetscInt sizes[2] = {2, 9};
-  EventList             events;
+  BranchEvents          events;
   Dense                 dense;
 
   PetscFunctionBeginUser;
@@ -178,7 +178,7 @@ static PetscErrorCode TestDamped(int *failed)
     *failed += CheckTrue("events", events.n == 1, (double)events.n);
     if (events.n) *failed += CheckTrue("found", events.event[0].found, events.event[0].error);
     if (events.n) *failed += CheckClose("critical value", events.event[0].critical, d[2], 1e-10);
-    PetscCall(EventListDestroy(&events));
+    PetscCall(BranchEventsDestroy(&events));
   }
   PetscFunctionReturn(0);
 }
@@ -189,7 +189,7 @@ static PetscErrorCode TestBothEnds(int *failed)
 {
   const PetscReal  kappa[6] = {1, 2, 4, 1.4, 3, 7}, slope[6] = {1, -1, 0.1, 0, 0.3, 0};
   static const int points[2] = {6, 11};
-  EventList        events;
+  BranchEvents     events;
   Dense            dense;
 
   PetscFunctionBeginUser;
@@ -206,7 +206,7 @@ static PetscErrorCode TestBothEnds(int *failed)
     *failed += CheckTrue("events", events.n == 2, (double)events.n);
     *failed += CheckOnset("lock-in", &events, 0, 0.5 - g, g > 1e-3 ? 1e-12 : 1e-10);
     *failed += CheckOnset("lock-out", &events, 1, 0.5 + g, g > 1e-3 ? 1e-12 : 1e-10);
-    PetscCall(EventListDestroy(&events));
+    PetscCall(BranchEventsDestroy(&events));
   }
   PetscFunctionReturn(0);
 }
@@ -221,15 +221,15 @@ static PetscErrorCode TestDoublets(int *failed)
     {2, 0, -0.1},
     {3, 1, -0.1}
   };
-  EventList events;
-  Dense     dense;
+  BranchEvents events;
+  Dense        dense;
 
   PetscFunctionBeginUser;
   DenseDiagonal(&dense, 5, kappa, slope, 4, entry);
   PetscCall(FindOnsets(&dense, &everything, 0, 1, 8, &events));
   for (PetscInt e = 0; e < 4; e++)
     *failed += CheckOnset("doublet locks with a doublet", &events, e, e < 2 ? 0.4 : 0.6, 1e-12);
-  PetscCall(EventListDestroy(&events));
+  PetscCall(BranchEventsDestroy(&events));
   PetscFunctionReturn(0);
 }
 
@@ -237,8 +237,8 @@ static PetscErrorCode TestDoublets(int *failed)
    lost. Reference: 0.5 p - 0.6 = 0 at p = 1.2; det [[1 - p / 2, 0.3], [0.3, 2]] = 0 at p = 1.91; damped or not */
 static PetscErrorCode TestDivergence(int *failed)
 {
-  EventList events;
-  Dense     dense;
+  BranchEvents events;
+  Dense        dense;
 
   PetscFunctionBeginUser;
   for (int damped = 0; damped < 2; damped++) {
@@ -261,7 +261,7 @@ static PetscErrorCode TestDivergence(int *failed)
     }
     *failed += CheckOnset("0.5 p - 0.6 = 0", &events, 0, 1.2, 1e-12);
     *failed += CheckOnset("det K = 0", &events, 1, 1.91, 1e-12);
-    PetscCall(EventListDestroy(&events));
+    PetscCall(BranchEventsDestroy(&events));
   }
   PetscFunctionReturn(0);
 }

@@ -81,7 +81,7 @@ static void ModelCreateJump(Dense *dense)
 }
 
 /* Places 0.05, 0.15, ... 0.95 and the ends of a bracket about 0.5, above which c = 0 */
-static PetscErrorCode PlacesCreate(const Dense *dense, Sweep sweep, Points *points)
+static PetscErrorCode PlacesCreate(const Dense *dense, Sweep sweep, LinePoints *points)
 {
   static PetscReal value[N_PLACES], p[2 * N_PLACES], closed[2] = {1, 0}, base[2];
 
@@ -110,12 +110,12 @@ static PetscErrorCode PlacesCreate(const Dense *dense, Sweep sweep, Points *poin
 }
 
 /* The onset of event e is found with the status of its own segment */
-static PetscErrorCode CheckOnset(Sweep sweep, PetscInt e, EventKind kind, PetscReal expected, int *failed)
+static PetscErrorCode CheckOnset(Sweep sweep, PetscInt e, BranchEventKind kind, PetscReal expected, int *failed)
 {
-  const PetscReal ends[2] = {0.05, 0.95};
-  Event           event;
-  PetscReal       p[2];
-  const Line      line = {0, 2, ends, p, &everything};
+  const PetscReal  ends[2] = {0.05, 0.95};
+  BranchEvent      event;
+  PetscReal        p[2];
+  const BranchLine line = {0, 2, ends, p, &everything};
 
   PetscFunctionBeginUser;
   if (e >= sweep->events.n) PetscFunctionReturn(0);
@@ -132,7 +132,7 @@ static PetscErrorCode CheckOnset(Sweep sweep, PetscInt e, EventKind kind, PetscR
 static PetscErrorCode TestSegments(int *failed)
 {
   struct _p_Sweep sweep;
-  Points          points;
+  LinePoints      points;
   Dense           dense;
   PetscInt        wrong = 0;
 
@@ -148,7 +148,7 @@ static PetscErrorCode TestSegments(int *failed)
   *failed += CheckTrue("single modes that changed their branch", wrong == 0, (double)wrong);
   *failed += CheckTrue("events", sweep.events.n == 3, (double)sweep.events.n);
   if (sweep.events.n == 3) {
-    const Event *jump = &sweep.events.event[2]; /* found when the segments on both sides are known */
+    const BranchEvent *jump = &sweep.events.event[2]; /* found when the segments on both sides are known */
 
     *failed += CheckTrue("a jump, unstable below", jump->kind == EVENT_JUMP && !jump->above, (double)jump->kind);
     *failed += CheckClose("its place", jump->critical, 0.5, 1e-12);
@@ -164,7 +164,7 @@ static PetscErrorCode TestSegments(int *failed)
   }
   PetscCall(PetscFree2(points.modes, points.branch));
   PetscCall(PetscFree(sweep.grid.place));
-  PetscCall(EventListDestroy(&sweep.events));
+  PetscCall(BranchEventsDestroy(&sweep.events));
   PetscFunctionReturn(0);
 }
 
@@ -179,7 +179,7 @@ static PetscErrorCode TestDoubt(int *failed)
            {4, 5, 6, 7}
   };
   ReducedModes modes[2];
-  EventList    events = {0};
+  BranchEvents events = {0};
   Dense        dense;
 
   PetscFunctionBeginUser;
@@ -201,7 +201,7 @@ static PetscErrorCode TestDoubt(int *failed)
   *failed += CheckTrue("a branch that goes on", branch[1][3] == 3, (double)branch[1][3]);
   *failed += CheckTrue("no event of stable modes", events.n == 0, (double)events.n);
   for (int k = 0; k < 2; k++) PetscCall(ReducedModesDestroy(&modes[k]));
-  PetscCall(EventListDestroy(&events));
+  PetscCall(BranchEventsDestroy(&events));
   PetscFunctionReturn(0);
 }
 

@@ -96,10 +96,10 @@ static void RandomSystem(Dense *dense, unsigned seed, PetscReal friction, PetscB
 }
 
 /* Whether an event of the run has the kind and branch of another event, and brackets that overlap */
-static PetscInt HasEvent(const Run *run, const Event *other)
+static PetscInt HasEvent(const Run *run, const BranchEvent *other)
 {
   for (PetscInt e = 0; e < run->events.n; e++) {
-    const Event *event = &run->events.event[e];
+    const BranchEvent *event = &run->events.event[e];
 
     if (event->kind == other->kind && event->branch[0] == other->branch[0] && event->lower <= other->upper &&
         other->lower <= event->upper)

@@ -35,7 +35,7 @@ static PetscErrorCode SampleAdd(Run *run, const PetscReal p[], PetscBool krylov,
 {
   Greedy        *g            = run->greedy;
   const PetscInt n_parameters = run->basis->reduced.n_parameters;
-  Sample        *sample       = &g->sample[g->n_samples++];
+  GreedySample  *sample       = &g->sample[g->n_samples++];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n_parameters, &sample->p));

@@ -11,7 +11,7 @@ typedef struct {
   PetscBool  krylov;    /* by the eigensolver from nothing; else by corrections from the basis */
   PetscInt   n_vectors; /* gained */
   PetscReal  estimate;  /* largest relative error before this solution as its corrections told; NaN for the first */
-} Sample;
+} GreedySample;
 
 typedef struct {
   Modes              modes;  /* the eigensolver */
@@ -20,7 +20,7 @@ typedef struct {
   PetscReal          rtol;
   PetscInt           max_samples;
   PetscInt           n_samples;
-  Sample            *sample;   /* [max_samples] */
+  GreedySample      *sample;   /* [max_samples] */
   PetscReal          worst;    /* largest estimated relative error at all points when it ended */
   PetscReal          last;     /* estimate at the last point before it was taken in */
   PetscInt           n_passed; /* points in a row that needed nothing */

@@ -41,7 +41,7 @@ static PetscErrorCode InverseStep(const Plane *plane, PetscComplex lambda, const
     PetscComplex *const b = BX + a * N, *const x = X + a * N;
 
     for (PetscInt i = 0; i < n && damped; i++) b[i] = -scale * b[i] - lambda * b[n + i];
-    PetscCall(ComplexSolve(n, Q, pivot, transposed, 1, b));
+    PetscCall(DenseComplexSolve(n, Q, pivot, transposed, 1, b));
     for (PetscInt i = 0; i < n; i++) {
       if (damped) x[n + i] = (x[i] + lambda * b[i]) / scale;
       x[i] = b[i];
@@ -62,11 +62,11 @@ static PetscErrorCode InverseIterate(const Plane *plane, PetscBool transposed, P
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n * n, &Q, n, &pivot));
   DensePencilEvaluate(&plane->e->pencil, lambda, 0, n, Q);
-  PetscCall(ComplexFactor(n, Q, pivot, NULL));
+  PetscCall(DenseComplexFactor(n, Q, pivot, NULL));
   for (PetscInt i = kept * N; i < plane->m * N; i++) X[i] = cos(1.0 + i * (PetscReal)i); /* any other */
   for (int k = 0; k < ITERATIONS; k++) {
     PetscCall(InverseStep(plane, lambda, Q, pivot, transposed, X));
-    PetscCall(ComplexOrthonormalise(N, plane->m, 0, X, &kept));
+    PetscCall(DenseOrthonormalise(N, plane->m, 0, X, &kept));
   }
   PetscCall(PetscFree2(Q, pivot));
   PetscFunctionReturn(0);
@@ -82,7 +82,7 @@ static PetscErrorCode PlaneFill(const Plane *plane, const PetscInt list[], const
   PetscFunctionBeginUser;
   for (PetscInt a = 0; a < plane->m; a++)
     StandardVector(&plane->form, plane->e->modes->lambda[list[a]], x + list[a] * n, X + a * N);
-  PetscCall(ComplexOrthonormalise(N, plane->m, PLANE_PARALLEL, X, &kept));
+  PetscCall(DenseOrthonormalise(N, plane->m, PLANE_PARALLEL, X, &kept));
   if (kept < plane->m) PetscCall(InverseIterate(plane, left, kept, X));
   PetscFunctionReturn(0);
 }
@@ -145,7 +145,7 @@ static PetscErrorCode PlaneEigenvalues(const Plane *plane, PetscComplex F[], Pet
       F[j * m + i] = DenseDot(N, plane->Y + i * N, AX + j * N) + unit * F[j * m + i];
       B[j * m + i] = DenseDot(N, plane->Y + i * N, BX + j * N);
     }
-  PetscCall(ComplexEigenvalues(m, F, B, s));
+  PetscCall(DenseComplexEigenvalues(m, F, B, s));
   PetscCall(PetscFree3(AX, BX, B));
   PetscFunctionReturn(0);
 }

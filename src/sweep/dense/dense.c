@@ -55,7 +55,7 @@ PetscErrorCode DenseSolve(PetscInt size, const PetscReal LU[], const PetscBLASIn
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ComplexFactor(PetscInt size, PetscComplex A[], PetscBLASInt pivot[], PetscBool *singular)
+PetscErrorCode DenseComplexFactor(PetscInt size, PetscComplex A[], PetscBLASInt pivot[], PetscBool *singular)
 {
   PetscBLASInt n, info;
 
@@ -66,8 +66,8 @@ PetscErrorCode ComplexFactor(PetscInt size, PetscComplex A[], PetscBLASInt pivot
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ComplexSolve(PetscInt size, const PetscComplex LU[], const PetscBLASInt pivot[], PetscBool transposed,
-                            PetscInt m, PetscComplex B[])
+PetscErrorCode DenseComplexSolve(PetscInt size, const PetscComplex LU[], const PetscBLASInt pivot[],
+                                 PetscBool transposed, PetscInt m, PetscComplex B[])
 {
   PetscBLASInt n, nrhs, info;
 
@@ -115,7 +115,7 @@ PetscErrorCode DenseSymmetricEigen(PetscInt size, PetscReal A[], PetscReal B[], 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ComplexEigenvalues(PetscInt size, PetscComplex A[], PetscComplex B[], PetscComplex w[])
+PetscErrorCode DenseComplexEigenvalues(PetscInt size, PetscComplex A[], PetscComplex B[], PetscComplex w[])
 {
   const PetscBLASInt one = 1;
   PetscBLASInt       n, work_size, info;
@@ -212,7 +212,7 @@ static PetscReal Pivot(PetscInt n, PetscInt m, PetscInt first, PetscComplex X[])
   return norm;
 }
 
-PetscErrorCode ComplexOrthonormalise(PetscInt n, PetscInt m, PetscReal drop, PetscComplex X[], PetscInt *kept)
+PetscErrorCode DenseOrthonormalise(PetscInt n, PetscInt m, PetscReal drop, PetscComplex X[], PetscInt *kept)
 {
   PetscReal longest = 0;
 
@@ -234,7 +234,7 @@ PetscErrorCode ComplexOrthonormalise(PetscInt n, PetscInt m, PetscReal drop, Pet
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ComplexRealSpan(PetscInt n, PetscInt m, PetscReal drop, PetscComplex X[], PetscInt *kept)
+PetscErrorCode DenseRealSpan(PetscInt n, PetscInt m, PetscReal drop, PetscComplex X[], PetscInt *kept)
 {
   PetscComplex *both;
 
@@ -247,7 +247,7 @@ PetscErrorCode ComplexRealSpan(PetscInt n, PetscInt m, PetscReal drop, PetscComp
     both[i]         = creal(X[i]);
     both[m * n + i] = cimag(X[i]);
   }
-  PetscCall(ComplexOrthonormalise(n, 2 * m, drop, both, kept));
+  PetscCall(DenseOrthonormalise(n, 2 * m, drop, both, kept));
   *kept = PetscMin(*kept, m);
   PetscCall(PetscArraycpy(X, both, *kept * n));
   PetscCall(PetscFree(both));

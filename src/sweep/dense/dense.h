@@ -10,16 +10,16 @@ PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscBLASInt pivot[], Pets
 PetscErrorCode DenseSolve(PetscInt n, const PetscReal LU[], const PetscBLASInt pivot[], PetscBool transposed,
                           PetscInt m, PetscReal B[]);
 /* The same for complex matrices */
-PetscErrorCode ComplexFactor(PetscInt n, PetscComplex A[], PetscBLASInt pivot[], PetscBool *singular);
-PetscErrorCode ComplexSolve(PetscInt n, const PetscComplex LU[], const PetscBLASInt pivot[], PetscBool transposed,
-                            PetscInt m, PetscComplex B[]);
+PetscErrorCode DenseComplexFactor(PetscInt n, PetscComplex A[], PetscBLASInt pivot[], PetscBool *singular);
+PetscErrorCode DenseComplexSolve(PetscInt n, const PetscComplex LU[], const PetscBLASInt pivot[], PetscBool transposed,
+                                 PetscInt m, PetscComplex B[]);
 /* Eigenvalues wr + i wi of A (overwritten), right vectors R and left ones L in LAPACK's real storage, u^H A = w u^H */
 PetscErrorCode DenseEigen(PetscInt n, PetscReal A[], PetscReal wr[], PetscReal wi[], PetscReal L[], PetscReal R[]);
 /* A x = w B x, A symmetric, B positive definite (else *definite is false) or NULL for the identity: w ascending, vectors
    in place of A */
 PetscErrorCode DenseSymmetricEigen(PetscInt n, PetscReal A[], PetscReal B[], PetscReal w[], PetscBool *definite);
 /* Eigenvalues of A x = w B x, both overwritten; infinite ones are returned as infinity */
-PetscErrorCode ComplexEigenvalues(PetscInt n, PetscComplex A[], PetscComplex B[], PetscComplex w[]);
+PetscErrorCode DenseComplexEigenvalues(PetscInt n, PetscComplex A[], PetscComplex B[], PetscComplex w[]);
 /* A block of a matrix whose columns are stride apart; op(A) has rows x columns entries */
 typedef struct {
   const PetscReal *A;
@@ -35,7 +35,7 @@ void DenseUnite(PetscInt n, const PetscReal parts[], PetscComplex x[]);
 PetscComplex DenseDot(PetscInt n, const PetscComplex x[], const PetscComplex y[]);
 /* Orthonormal basis of the columns of X [m][n]; *kept of them exceed drop times the longest, the others are left at the
    end as zeros */
-PetscErrorCode ComplexOrthonormalise(PetscInt n, PetscInt m, PetscReal drop, PetscComplex X[], PetscInt *kept);
+PetscErrorCode DenseOrthonormalise(PetscInt n, PetscInt m, PetscReal drop, PetscComplex X[], PetscInt *kept);
 /* Replaces the m vectors X [m][n], whatever their lengths, by *kept <= m real orthonormal ones that span the same space
    within drop */
-PetscErrorCode ComplexRealSpan(PetscInt n, PetscInt m, PetscReal drop, PetscComplex X[], PetscInt *kept);
+PetscErrorCode DenseRealSpan(PetscInt n, PetscInt m, PetscReal drop, PetscComplex X[], PetscInt *kept);

@@ -14,7 +14,7 @@
    Contact makes K stiff: largest eigenvalues of K x = kappa M x may be 1e14 times those looked for, and QR iterations
    on M^-1 K leave errors of eps times the largest. Here they are eps (kappa + s^2)^2 / (kappa_min + s^2), whatever the
    largest; s^2 between the ends of the window makes that small for all of it. What remains is what rounding in the
-   given K does, see PencilNoise().
+   given K does, see DensePencilNoise().
 */
 #include "eigen.h"
 
@@ -213,7 +213,7 @@ static PetscErrorCode LeftGet(const Work *w, PetscInt i, PetscComplex y[])
   PetscFunctionReturn(0);
 }
 
-PetscReal PencilNoise(const DensePencil *q, PetscInt n, const PetscComplex x[], const PetscComplex y[])
+PetscReal DensePencilNoise(const DensePencil *q, PetscInt n, const PetscComplex x[], const PetscComplex y[])
 {
   PetscReal sum_x = 0, sum_y = 0;
 
@@ -241,7 +241,7 @@ static PetscErrorCode IsRigid(const Work *w, PetscComplex lambda, const PetscCom
   PetscCall(DenseTimes(&(DenseBlock){w->pencil->M, n, n, n}, PETSC_FALSE, 1, x, Mx));
   for (PetscInt k = 0; k < n; k++) mass += creal(conj(x[k]) * Mx[k]);
   PetscCall(PetscFree(Mx));
-  if (square * mass <= RIGID_FLOOR * (PencilNoise(w->pencil, n, x, x) + own * mass)) *rigid = PETSC_TRUE;
+  if (square * mass <= RIGID_FLOOR * (DensePencilNoise(w->pencil, n, x, x) + own * mass)) *rigid = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -262,8 +262,8 @@ static PetscErrorCode RigidOnce(PetscInt n_rigid, ReducedModes *modes)
 
   PetscFunctionBeginUser;
   if (!n_rigid) PetscFunctionReturn(0);
-  PetscCall(ComplexRealSpan(size, n_rigid, SAME_VECTOR, modes->x, &right));
-  PetscCall(ComplexRealSpan(size, n_rigid, SAME_VECTOR, modes->y, &left));
+  PetscCall(DenseRealSpan(size, n_rigid, SAME_VECTOR, modes->x, &right));
+  PetscCall(DenseRealSpan(size, n_rigid, SAME_VECTOR, modes->y, &left));
   drop = n_rigid - PetscMin(right, left);
   modes->n -= drop;
   for (PetscInt i = n_rigid - drop; i < modes->n; i++) {
@@ -318,7 +318,7 @@ static PetscErrorCode List(const Work *w, const ReducedWindow *window, PetscInt 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PencilEigen(const DensePencil *pencil, const ReducedWindow *window, ReducedModes *modes)
+PetscErrorCode DensePencilEigen(const DensePencil *pencil, const ReducedWindow *window, ReducedModes *modes)
 {
   PetscInt      n, n_rigid, *list;
   PetscComplex *lambda;

@@ -87,8 +87,8 @@ PetscErrorCode EstimateSolve(const Estimate *e, PetscComplex lambda, PetscInt m,
   }
   PetscCall(PetscMalloc2(n_z * n_z, &Q, n_z, &pivot));
   DensePencilEvaluate(&e->pencil, lambda, e->n_v, n_z, Q);
-  PetscCall(ComplexFactor(n_z, Q, pivot, singular));
-  if (!*singular) PetscCall(ComplexSolve(n_z, Q, pivot, PETSC_FALSE, m, r));
+  PetscCall(DenseComplexFactor(n_z, Q, pivot, singular));
+  if (!*singular) PetscCall(DenseComplexSolve(n_z, Q, pivot, PETSC_FALSE, m, r));
   PetscCall(PetscFree2(Q, pivot));
   PetscFunctionReturn(0);
 }
@@ -230,7 +230,7 @@ static PetscErrorCode AddFloor(const Estimate *e, const Reduced *reduced, const 
   for (PetscInt i = 0; i < modes->n; i++) {
     const PetscComplex *x = modes->x + i * n, *y = modes->y + i * n;
     const PetscReal     mesh  = RoundingProduct(n, E, x, y, work);
-    const PetscReal     noise = SOLVER_ROUNDING * PencilNoise(&e->pencil, n, x, y) + mesh;
+    const PetscReal     noise = SOLVER_ROUNDING * DensePencilNoise(&e->pencil, n, x, y) + mesh;
 
     modes->noise[i] = LambdaChange(modes, i, KappaChange(modes, i, noise));
     modes->error[i] += modes->noise[i];

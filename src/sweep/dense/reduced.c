@@ -187,7 +187,7 @@ static PetscErrorCode FactorProducts(PetscInt m, PetscComplex G[], PetscBLASInt 
   PetscReal least = PETSC_MAX_REAL, largest = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(ComplexFactor(m, G, pivot, defective));
+  PetscCall(DenseComplexFactor(m, G, pivot, defective));
   for (PetscInt i = 0; i < m * m; i++) largest = PetscMax(largest, cabs(G[i]));
   for (PetscInt i = 0; i < m * m; i += m + 1) least = PetscMin(least, cabs(G[i]));
   if (!(least > DEFECTIVE * largest)) *defective = PETSC_TRUE;
@@ -213,7 +213,7 @@ static PetscErrorCode ClusterBiorthogonalise(PetscInt m, const PetscInt list[], 
     for (PetscInt k = 0; k < n; k++) Y[k * m + i] = modes->y[list[i] * n + k];
   PetscCall(FactorProducts(m, G, pivot, &defective));
   if (!defective) {
-    PetscCall(ComplexSolve(m, G, pivot, PETSC_FALSE, n, Y));
+    PetscCall(DenseComplexSolve(m, G, pivot, PETSC_FALSE, n, Y));
     for (PetscInt i = 0; i < m; i++)
       for (PetscInt k = 0; k < n; k++) modes->y[list[i] * n + k] = Y[k * m + i];
   }
@@ -310,7 +310,7 @@ PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const R
   PetscCall(PetscMalloc1(n * n, &Ms));
   PetscCall(ReducedPencil(reduced, p, n, &pencil));
   PetscCall(SumSymmetric(reduced, p, Ms, &pencil.symmetric));
-  PetscCall(PencilEigen(&pencil, window, modes));
+  PetscCall(DensePencilEigen(&pencil, window, modes));
   PetscCall(ModesSort(modes));
   PetscCall(ModesFinish(&pencil, Ms, modes));
   if (!pencil.damped) PetscCall(RoundingMarkRigid(reduced, p, window, modes));

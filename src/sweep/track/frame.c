@@ -86,7 +86,7 @@ static PetscErrorCode ClusterOrthonormalise(ModeFrame *f, PetscInt k, const Pets
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(k * f->N, &plane));
   for (PetscInt a = 0; a < k; a++) PetscCall(PetscArraycpy(plane + a * f->N, Z + member[a] * f->N, f->N));
-  PetscCall(ComplexOrthonormalise(f->N, k, FRAME_PARALLEL, plane, &kept));
+  PetscCall(DenseOrthonormalise(f->N, k, FRAME_PARALLEL, plane, &kept));
   for (PetscInt a = 0; a < k; a++) PetscCall(PetscArraycpy(Z + member[a] * f->N, plane + a * f->N, f->N));
   PetscCall(PetscFree(plane));
   PetscFunctionReturn(0);

@@ -25,15 +25,15 @@ typedef struct {
 
 /* Solves at values of the line */
 typedef struct {
-  const Reduced *reduced;
-  const Line    *line;
-  PetscReal     *p; /* [n_parameters] of the last solution */
-  StandardForm   form;
-  PetscBool      estimate; /* whether errors of the eigenvalues are estimated */
+  const Reduced    *reduced;
+  const BranchLine *line;
+  PetscReal        *p; /* [n_parameters] of the last solution */
+  StandardForm      form;
+  PetscBool         estimate; /* whether errors of the eigenvalues are estimated */
 } ModeSource;
 
 /* source.c - the parameters and the solution at a value of the line */
-PetscErrorCode ModeSourceCreate(const Reduced *reduced, const Line *line, ModeSource *source);
+PetscErrorCode ModeSourceCreate(const Reduced *reduced, const BranchLine *line, ModeSource *source);
 PetscErrorCode ModeSourceSolve(ModeSource *source, PetscReal value, ModeFrame **frame);
 /* The same from modes that are known already */
 PetscErrorCode ModeSourceTake(ModeSource *source, PetscReal value, const ReducedModes *modes, ModeFrame **frame);

@@ -241,7 +241,7 @@ static PetscErrorCode OnsetIterate(Onset *onset, PetscReal *critical, PetscBool 
 }
 
 /* |g'| at the trial, from a difference towards the farther end of [lower, upper] */
-static PetscErrorCode OnsetSlope(Onset *onset, const Trial *trial, const Event *event, PetscReal *slope)
+static PetscErrorCode OnsetSlope(Onset *onset, const Trial *trial, const BranchEvent *event, PetscReal *slope)
 {
   const PetscReal p = trial->frame->value, up = event->upper - p, down = p - event->lower;
   const PetscReal h    = up > down ? 1e-3 * up : -1e-3 * down;
@@ -256,7 +256,7 @@ static PetscErrorCode OnsetSlope(Onset *onset, const Trial *trial, const Event *
 }
 
 /* Error of g at the critical trial, from those of the eigenvalues and rounding */
-static PetscReal OnsetUncertainty(const Onset *onset, const Trial *trial, const Event *event)
+static PetscReal OnsetUncertainty(const Onset *onset, const Trial *trial, const BranchEvent *event)
 {
   const PetscReal size = PetscMax(cabs(event->lambda), event->omega);
   const PetscReal unit =
@@ -276,7 +276,7 @@ static PetscReal OnsetUncertainty(const Onset *onset, const Trial *trial, const 
 }
 
 /* Frequency and error at the critical value */
-static PetscErrorCode OnsetFinish(Onset *onset, Event *event)
+static PetscErrorCode OnsetFinish(Onset *onset, BranchEvent *event)
 {
   const PetscReal width = event->upper - event->lower;
   Trial           trial = {0};
@@ -303,7 +303,7 @@ static PetscErrorCode OnsetFinish(Onset *onset, Event *event)
 }
 
 /* The unstable and the stable end; an end on which the other sign is due to rounding is the critical value */
-static PetscErrorCode OnsetBracket(Onset *onset, const Event *event, PetscReal *critical, PetscBool *found)
+static PetscErrorCode OnsetBracket(Onset *onset, const BranchEvent *event, PetscReal *critical, PetscBool *found)
 {
   const PetscBool unstable_above =
     event->kind == EVENT_LOCK_IN || event->kind == EVENT_DIVERGENCE ? PETSC_TRUE : PETSC_FALSE;
@@ -327,7 +327,7 @@ static PetscErrorCode OnsetBracket(Onset *onset, const Event *event, PetscReal *
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OnsetFind(const Reduced *reduced, const Line *line, Event *event)
+PetscErrorCode OnsetFind(const Reduced *reduced, const BranchLine *line, BranchEvent *event)
 {
   Onset     onset = {0};
   PetscReal critical;

@@ -10,7 +10,7 @@ static void SourceSetValue(ModeSource *source, PetscReal value)
   source->p[source->line->parameter] = value;
 }
 
-PetscErrorCode ModeSourceCreate(const Reduced *reduced, const Line *line, ModeSource *source)
+PetscErrorCode ModeSourceCreate(const Reduced *reduced, const BranchLine *line, ModeSource *source)
 {
   const PetscReal first = line->value[0], last = line->value[line->n - 1], high = line->window->high;
   const PetscReal value[3] = {first, last, first + 0.5 * (last - first)};

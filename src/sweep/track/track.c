@@ -15,13 +15,13 @@
 #define UNIQUE 0.5 /* strength of a match across a jump */
 
 typedef struct {
-  ModeSource source;
-  BranchList branches;
-  EventList *events;
-  PetscInt   solved; /* in the present interval of the line */
+  ModeSource    source;
+  BranchList    branches;
+  BranchEvents *events;
+  PetscInt      solved; /* in the present interval of the line */
 } Tracker;
 
-PetscErrorCode EventListAdd(EventList *events, const Event *event)
+PetscErrorCode BranchEventsAdd(BranchEvents *events, const BranchEvent *event)
 {
   PetscFunctionBeginUser;
   if (events->n == events->capacity) {
@@ -32,7 +32,7 @@ PetscErrorCode EventListAdd(EventList *events, const Event *event)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EventListDestroy(EventList *events)
+PetscErrorCode BranchEventsDestroy(BranchEvents *events)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(events->event));
@@ -57,14 +57,14 @@ static PetscInt EventPartner(const ModeFrame *frame, PetscInt i)
 }
 
 /* Event of mode i of a, j of b, of which one is unstable */
-static PetscErrorCode EventMake(const ModeFrame *a, PetscInt i, const ModeFrame *b, PetscInt j, EventList *events)
+static PetscErrorCode EventMake(const ModeFrame *a, PetscInt i, const ModeFrame *b, PetscInt j, BranchEvents *events)
 {
   const PetscBool at_a       = ReducedModeIsUnstable(&a->modes, i),
                   descending = a->value > b->value ? PETSC_TRUE : PETSC_FALSE;
   const ModeFrame *unstable  = at_a ? a : b;
   const PetscInt   mode      = at_a ? i : j;
   const PetscBool  begins    = at_a == descending ? PETSC_TRUE : PETSC_FALSE;
-  Event            event     = {0};
+  BranchEvent      event     = {0};
 
   PetscFunctionBeginUser;
   event.lambda    = unstable->modes.lambda[mode];
@@ -78,7 +78,7 @@ static PetscErrorCode EventMake(const ModeFrame *a, PetscInt i, const ModeFrame 
     event.kind = begins ? EVENT_DIVERGENCE : EVENT_RESTABILISATION;
   else
     event.kind = begins ? EVENT_LOCK_IN : EVENT_LOCK_OUT;
-  PetscCall(EventListAdd(events, &event));
+  PetscCall(BranchEventsAdd(events, &event));
   PetscFunctionReturn(0);
 }
 
@@ -146,8 +146,8 @@ static PetscBool HaveErrors(const ReducedModes modes[], PetscInt n)
   return PETSC_FALSE;
 }
 
-PetscErrorCode TrackLine(const Reduced *reduced, const Line *line, const ReducedModes modes[], PetscInt *branch[],
-                         PetscInt *n_branches, EventList *events)
+PetscErrorCode TrackLine(const Reduced *reduced, const BranchLine *line, const ReducedModes modes[], PetscInt *branch[],
+                         PetscInt *n_branches, BranchEvents *events)
 {
   Tracker    tracker = {.branches = {.first = *n_branches}, .events = events};
   ModeFrame *frame   = NULL, *next;
@@ -229,9 +229,9 @@ static void MatchDropDoubtful(Match *match)
 }
 
 /* Event of mode i, which is unstable at this frame and not at the other */
-static PetscErrorCode JumpMake(const ModeFrame *frame, PetscInt i, const ModeFrame *other, EventList *events)
+static PetscErrorCode JumpMake(const ModeFrame *frame, PetscInt i, const ModeFrame *other, BranchEvents *events)
 {
-  Event event = {.kind = EVENT_JUMP, .found = PETSC_TRUE};
+  BranchEvent event = {.kind = EVENT_JUMP, .found = PETSC_TRUE};
 
   PetscFunctionBeginUser;
   event.lambda    = frame->modes.lambda[i];
@@ -243,12 +243,12 @@ static PetscErrorCode JumpMake(const ModeFrame *frame, PetscInt i, const ModeFra
   event.above     = frame->value > other->value ? PETSC_TRUE : PETSC_FALSE;
   event.branch[0] = frame->branch[i];
   event.branch[1] = EventPartner(frame, i);
-  PetscCall(EventListAdd(events, &event));
+  PetscCall(BranchEventsAdd(events, &event));
   PetscFunctionReturn(0);
 }
 
 /* Events of the modes that are unstable on one side only */
-static PetscErrorCode JumpsFind(const ModeFrame *a, const ModeFrame *b, const Match *match, EventList *events)
+static PetscErrorCode JumpsFind(const ModeFrame *a, const ModeFrame *b, const Match *match, BranchEvents *events)
 {
   PetscBool *goes_on;
 
@@ -270,7 +270,7 @@ static PetscErrorCode JumpsFind(const ModeFrame *a, const ModeFrame *b, const Ma
 }
 
 PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], const BranchPoint *a, BranchPoint *b,
-                         EventList *events)
+                         BranchEvents *events)
 {
   const BranchPoint *const point[2] = {a, b};
   ModeFrame               *frame[2];

@@ -6,29 +6,29 @@
 
 #include "sweep/dense/reduced.h"
 
-typedef enum { EVENT_LOCK_IN, EVENT_LOCK_OUT, EVENT_DIVERGENCE, EVENT_RESTABILISATION, EVENT_JUMP } EventKind;
+typedef enum { EVENT_LOCK_IN, EVENT_LOCK_OUT, EVENT_DIVERGENCE, EVENT_RESTABILISATION, EVENT_JUMP } BranchEventKind;
 
 /* Between lower and upper (lower < upper) the modes of one or two branches change stability. Lock-in: a pair becomes
    unstable as the parameter grows, lock-out: it becomes stable again; divergence: a mode of frequency zero becomes
    unstable, restabilisation: it becomes stable again. Jump: pairs open or close between lower and upper, and a mode is
    unstable on one side only */
 typedef struct {
-  EventKind    kind;
-  PetscReal    lower, upper; /* values of the parameter with the stability of before and after */
-  PetscComplex lambda;       /* the unstable eigenvalue where it is unstable, at lower or upper, rad/s */
-  PetscInt     branch[2];    /* the branch that is unstable and its partner, -1 for none */
-  PetscReal    critical;     /* value where sigma = 0; set by OnsetFind() */
-  PetscReal    omega;        /* rad/s at the critical value */
-  PetscReal    error;        /* estimated error of the critical value, in its unit */
-  PetscBool    found;
-  PetscBool    above; /* of a jump: unstable at upper */
-  PetscInt     place; /* of the grid, whose other parameters hold; set by the caller */
-} Event;
+  BranchEventKind kind;
+  PetscReal       lower, upper; /* values of the parameter with the stability of before and after */
+  PetscComplex    lambda;       /* the unstable eigenvalue where it is unstable, at lower or upper, rad/s */
+  PetscInt        branch[2];    /* the branch that is unstable and its partner, -1 for none */
+  PetscReal       critical;     /* value where sigma = 0; set by OnsetFind() */
+  PetscReal       omega;        /* rad/s at the critical value */
+  PetscReal       error;        /* estimated error of the critical value, in its unit */
+  PetscBool       found;
+  PetscBool       above; /* of a jump: unstable at upper */
+  PetscInt        place; /* of the grid, whose other parameters hold; set by the caller */
+} BranchEvent;
 
 typedef struct {
-  PetscInt n, capacity;
-  Event   *event;
-} EventList;
+  PetscInt     n, capacity;
+  BranchEvent *event;
+} BranchEvents;
 
 /* The line: parameter index, values [n] ascending or descending, all other parameters from base[n_parameters]; modes in
    the window are followed */
@@ -38,7 +38,7 @@ typedef struct {
   const PetscReal     *value;
   const PetscReal     *base;
   const ReducedWindow *window;
-} Line;
+} BranchLine;
 
 /* A point of a line with its modes and their branches */
 typedef struct {
@@ -49,8 +49,8 @@ typedef struct {
 
 /* track.c - branch[point][mode] for the modes already solved at the points, numbered from *n_branches on; *n_branches
    grows. Where the match of two neighbouring points is ambiguous the interval is halved by further ReducedSolve(). */
-PetscErrorCode TrackLine(const Reduced *reduced, const Line *line, const ReducedModes modes[], PetscInt *branch[],
-                         PetscInt *n_branches, EventList *events);
+PetscErrorCode TrackLine(const Reduced *reduced, const BranchLine *line, const ReducedModes modes[], PetscInt *branch[],
+                         PetscInt *n_branches, BranchEvents *events);
 /* Match of the modes of two points a, b that may differ in any parameter: from[i of b] = mode of a or -1; certain =
    whether no match is ambiguous */
 PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const ReducedModes *a, const ReducedModes *b,
@@ -59,10 +59,10 @@ PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const Red
    modes of a become those of a, the others keep theirs; appends a jump for every mode that is unstable on one side only.
    p = all parameters at b */
 PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], const BranchPoint *a, BranchPoint *b,
-                         EventList *events);
+                         BranchEvents *events);
 /* Appends to events; a list begins as {0} */
-PetscErrorCode EventListAdd(EventList *events, const Event *event);
-PetscErrorCode EventListDestroy(EventList *events);
+PetscErrorCode BranchEventsAdd(BranchEvents *events, const BranchEvent *event);
+PetscErrorCode BranchEventsDestroy(BranchEvents *events);
 
 /* onset.c - the critical value of an event on the reduced model, to rounding, and its estimated error */
-PetscErrorCode OnsetFind(const Reduced *reduced, const Line *line, Event *event);
+PetscErrorCode OnsetFind(const Reduced *reduced, const BranchLine *line, BranchEvent *event);
