@@ -27,7 +27,7 @@ typedef struct {
   PetscReal  *closed;   /* [statuses][n_groups] 1 closed, 0 open */
 } SweepGrid;
 
-/* values.c - "first:last:n", "first:last:n:log" or "v1,v2,..."; errors name the option */
+/* "first:last:n", "first:last:n:log" or "v1,v2,..."; errors name the option */
 PetscErrorCode GridValuesParse(MPI_Comm comm, const char option[], const char text[], PetscInt *n, PetscReal *value[],
                                PetscBool *ratio);
 /* The parameter of that name; errors list the valid ones */
