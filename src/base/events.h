@@ -1,9 +1,22 @@
-/* Log events: the hot functions, registered by SquealInitialize(); -log_view attributes time to them */
+/*
+   Log events: the hot functions, registered by SquealInitialize() in the class of their room; -log_view attributes time
+   to them.
+*/
 #pragma once
 
 #include <petscsys.h>
 
 typedef enum {
+  EVENT_PAIR,
+  EVENT_SEARCH,
+  EVENT_ASSEMBLE,
+  EVENT_STATICS,
+  EVENT_FACTOR,
+  EVENT_SOLVE,
+  EVENT_CORRECT,
+  EVENT_ORTHOGONALISE,
+  EVENT_REDUCED,
+  EVENT_TRACK,
   EVENT_BODIES_ADVANCE,
   EVENT_EXCHANGE,
   EVENT_EXTERNAL,

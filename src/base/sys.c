@@ -22,8 +22,28 @@ static char error_message[MAX_MESSAGE];
 
 static PetscLogStage stages[SQUEAL_N_STAGES];
 
-static const char *const event_names[N_EVENTS] = {"BodiesAdvance", "BodiesExchange", "External",  "ContactProject",
-                                                  "KickAndDrift",  "HistoryRecord",  "Checkpoint"};
+static const struct {
+  const char *name;
+  SquealStage room;
+} events[N_EVENTS] = {
+  [EVENT_PAIR]           = {"ContactPair",    SQUEAL_CONTACT  },
+  [EVENT_SEARCH]         = {"ContactSearch",  SQUEAL_CONTACT  },
+  [EVENT_ASSEMBLE]       = {"Assemble",       SQUEAL_OPERATORS},
+  [EVENT_STATICS]        = {"StaticsSolve",   SQUEAL_STATICS  },
+  [EVENT_FACTOR]         = {"ShiftInvFactor", SQUEAL_MODES    },
+  [EVENT_SOLVE]          = {"ShiftInvSolve",  SQUEAL_MODES    },
+  [EVENT_CORRECT]        = {"BasisCorrect",   SQUEAL_SWEEP    },
+  [EVENT_ORTHOGONALISE]  = {"BasisOrthonorm", SQUEAL_SWEEP    },
+  [EVENT_REDUCED]        = {"ReducedEigen",   SQUEAL_SWEEP    },
+  [EVENT_TRACK]          = {"TrackLine",      SQUEAL_SWEEP    },
+  [EVENT_BODIES_ADVANCE] = {"BodiesAdvance",  SQUEAL_DYNAMICS },
+  [EVENT_EXCHANGE]       = {"BodiesExchange", SQUEAL_DYNAMICS },
+  [EVENT_EXTERNAL]       = {"External",       SQUEAL_DYNAMICS },
+  [EVENT_PROJECT]        = {"ContactProject", SQUEAL_CONTACT  },
+  [EVENT_MOVE]           = {"KickAndDrift",   SQUEAL_DYNAMICS },
+  [EVENT_RECORD]         = {"HistoryRecord",  SQUEAL_RESULTS  },
+  [EVENT_CHECKPOINT]     = {"Checkpoint",     SQUEAL_RESULTS  },
+};
 
 PetscLogEvent squeal_events[N_EVENTS];
 
@@ -72,7 +92,7 @@ static void NameOptionsFiles(int argc, char *const argv[], char message[MAX_MESS
 PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
 {
   PetscErrorCode error;
-  PetscClassId class;
+  PetscClassId class[SQUEAL_N_STAGES];
 
   PetscFunctionBeginUser;
   (void)signal(SIGXFSZ, SIG_IGN); /* a file beyond `ulimit -f` is an error of the write, as a full disk is */
@@ -82,9 +102,12 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
   error = SlepcInitialize(argc, argv, NULL, help);
   if (error) NameOptionsFiles(*argc, *argv, error_message);
   PetscCall(error);
-  for (PetscInt s = 0; s < SQUEAL_N_STAGES; s++) PetscCall(PetscLogStageRegister(stage_names[s], &stages[s]));
-  PetscCall(PetscClassIdRegister("Squeal", &class));
-  for (PetscInt e = 0; e < N_EVENTS; e++) PetscCall(PetscLogEventRegister(event_names[e], class, &squeal_events[e]));
+  for (PetscInt s = 0; s < SQUEAL_N_STAGES; s++) {
+    PetscCall(PetscLogStageRegister(stage_names[s], &stages[s]));
+    PetscCall(PetscClassIdRegister(stage_names[s], &class[s]));
+  }
+  for (PetscInt e = 0; e < N_EVENTS; e++)
+    PetscCall(PetscLogEventRegister(events[e].name, class[events[e].room], &squeal_events[e]));
   PetscCall(PetscCitationsRegister(citation, &cited));
   PetscFunctionReturn(0);
 }

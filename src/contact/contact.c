@@ -2,6 +2,7 @@
    Contact: interfaces from the options, access to them and their pairs.
 */
 #include "contactimpl.h"
+#include "base/events.h"
 #include <squeal/options.h>
 #include <stdlib.h>
 #include <string.h>
@@ -121,11 +122,13 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
 PetscErrorCode ContactSetUp(Contact contact)
 {
   PetscFunctionBeginUser;
+  PetscCall(EventBegin(EVENT_PAIR));
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
     PetscCall(InterfaceCheck(contact->comm, &contact->interfaces[i]));
     PetscCall(ContactPairInterface(contact, i));
   }
   PetscCallMPI(MPI_Allreduce(&contact->n_pairs, &contact->n_pairs_all, 1, MPIU_INT, MPI_SUM, contact->comm));
+  PetscCall(EventEnd(EVENT_PAIR));
   PetscFunctionReturn(0);
 }
 

@@ -3,6 +3,7 @@
    sum of terms at the present values of the parameters, formed when it is asked for.
 */
 #include "operatorsimpl.h"
+#include "base/events.h"
 #include <math.h>
 
 PetscErrorCode OperatorsCreate(MPI_Comm comm, Operators *operators)
@@ -56,6 +57,7 @@ PetscErrorCode OperatorsHaveMatrices(Operators operators, PetscBool *have)
 PetscErrorCode OperatorsSetUp(Operators operators)
 {
   PetscFunctionBeginUser;
+  PetscCall(EventBegin(EVENT_ASSEMBLE));
   if (operators->model) {
     PetscCall(OperatorsAssemble(operators));
     operators->n_body_terms = operators->base.n;
@@ -66,6 +68,7 @@ PetscErrorCode OperatorsSetUp(Operators operators)
     operators->n_body_terms = operators->base.n;
   }
   operators->n_scene = operators->n_parameters;
+  PetscCall(EventEnd(EVENT_ASSEMBLE));
   PetscFunctionReturn(0);
 }
 

@@ -8,6 +8,7 @@
    ranks, where PORD stays.
 */
 #include "shiftinvert.h"
+#include "base/events.h"
 #include "ordering.h"
 #include <petscksp.h>
 
@@ -100,6 +101,7 @@ PetscErrorCode ShiftInvertCreate(const OperatorsPencil *pencil, PetscReal shift,
   PC        pc;
 
   PetscFunctionBeginUser;
+  PetscCall(EventBegin(EVENT_FACTOR));
   si->progress = progress;
   si->shift    = shift;
   PetscCall(PetscObjectGetComm((PetscObject)pencil->K, &si->comm));
@@ -116,6 +118,7 @@ PetscErrorCode ShiftInvertCreate(const OperatorsPencil *pencil, PetscReal shift,
     !singular, si->comm, PETSC_ERR_MAT_LU_ZRPVT,
     "the problem is singular at every shift near %.6g: a part without mass or an unknown without stiffness and mass",
     (double)shift);
+  PetscCall(EventEnd(EVENT_FACTOR));
   PetscFunctionReturn(0);
 }
 
@@ -126,7 +129,9 @@ static PetscErrorCode ApplyInverse(PC pc, Vec x, Vec y)
 
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(pc, &si));
+  PetscCall(EventBegin(EVENT_SOLVE));
   PetscCall(KSPSolve(si->ksp, x, y));
+  PetscCall(EventEnd(EVENT_SOLVE));
   PetscCall(ProgressStep(si->progress));
   PetscFunctionReturn(0);
 }
@@ -138,7 +143,9 @@ static PetscErrorCode ApplyInverseTranspose(PC pc, Vec x, Vec y)
 
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(pc, &si));
+  PetscCall(EventBegin(EVENT_SOLVE));
   PetscCall(KSPSolveTranspose(si->ksp, x, y));
+  PetscCall(EventEnd(EVENT_SOLVE));
   PetscCall(ProgressStep(si->progress));
   PetscFunctionReturn(0);
 }
@@ -202,12 +209,14 @@ PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed
   PetscCall(KSPGetPC(si->ksp, &pc));
   PetscCall(PetscObjectTypeCompare((PetscObject)si->ksp, KSPPREONLY, &direct));
   PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, &factored, PCLU, PCCHOLESKY, ""));
-  if (!direct || !factored) {
+  PetscCall(EventBegin(EVENT_SOLVE));
+  if (direct && factored) {
+    PetscCall(PCFactorGetMatrix(pc, &F));
+    PetscCall(transposed ? MatMatSolveTranspose(F, B, X) : MatMatSolve(F, B, X));
+  } else {
     PetscCall(ApplyColumns(si, transposed, B, X));
-    PetscFunctionReturn(0);
   }
-  PetscCall(PCFactorGetMatrix(pc, &F));
-  PetscCall(transposed ? MatMatSolveTranspose(F, B, X) : MatMatSolve(F, B, X));
+  PetscCall(EventEnd(EVENT_SOLVE));
   PetscFunctionReturn(0);
 }
 

@@ -2,6 +2,7 @@
    Statics: life cycle, options, and the flow loads -> compliance -> pairs -> states.
 */
 #include "staticsimpl.h"
+#include "base/events.h"
 
 #define MOST_DENSE 20000
 
@@ -172,6 +173,7 @@ PetscErrorCode StaticsSolve(Statics s)
   Vec        f;
 
   PetscFunctionBeginUser;
+  PetscCall(EventBegin(EVENT_STATICS));
   PetscCall(StaticsSetUp(s));
   PetscCall(LoadCreate(s->operators, &f, &size));
   PetscCall(LoadCheck(s, f));
@@ -184,6 +186,7 @@ PetscErrorCode StaticsSolve(Statics s)
   s->solved = PETSC_TRUE;
   PetscCall(PetscFree(l));
   PetscCall(VecDestroy(&f));
+  PetscCall(EventEnd(EVENT_STATICS));
   PetscFunctionReturn(0);
 }
 

@@ -10,6 +10,7 @@
    master, in m.
 */
 #include "projectorimpl.h"
+#include "base/events.h"
 
 #define LEAF       4   /* facets of a leaf, at most */
 #define MARGIN     1.0 /* mean sizes of the facets */
@@ -192,6 +193,7 @@ PetscErrorCode ProjectorSearch(ContactProjector p, PetscReal t, PetscReal reach,
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
+  PetscCall(EventBegin(EVENT_SEARCH));
   PetscCall(PetscArrayzero(p->is_active, p->share.n_nodes));
   for (PetscInt i = 0; i < p->n_interfaces; i++) {
     SurfaceFitBoxes(&p->surface[i], u);
@@ -214,6 +216,7 @@ PetscErrorCode ProjectorSearch(ContactProjector p, PetscReal t, PetscReal reach,
   for (PetscInt i = 0; i < p->n_interfaces; i++) SurfaceSee(&p->surface[i], p->is_active);
   PetscCall(PetscArraycpy(p->u_search, u, 3 * p->share.n_nodes));
   p->t_search = t;
+  PetscCall(EventEnd(EVENT_SEARCH));
   PetscFunctionReturn(0);
 }
 

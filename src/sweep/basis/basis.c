@@ -5,6 +5,7 @@
    the rows and columns of the new vectors.
 */
 #include "basis.h"
+#include "base/events.h"
 #include "sweep/dense/dense.h"
 
 #define REORTHOGONALISE 1e-9 /* a direction smaller than this beside its block is rounding */
@@ -226,6 +227,7 @@ PetscErrorCode BasisAdd(Basis *basis, BV block, PetscReal drop, PetscInt *n_adde
   PetscInt       n;
 
   PetscFunctionBeginUser;
+  PetscCall(EventBegin(EVENT_ORTHOGONALISE));
   PetscCall(BlockProject(basis, block));
   PetscCall(BlockProject(basis, block));
   PetscCall(BlockOrthonormalise(basis, block, drop));
@@ -242,6 +244,7 @@ PetscErrorCode BasisAdd(Basis *basis, BV block, PetscReal drop, PetscInt *n_adde
     basis->block_end[basis->n_blocks++] = first + n;
   }
   if (n_added) *n_added = n;
+  PetscCall(EventEnd(EVENT_ORTHOGONALISE));
   PetscFunctionReturn(0);
 }
 

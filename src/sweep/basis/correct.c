@@ -12,6 +12,7 @@
    second order, y'r being zero in Galerkin's method and s' Q^-1 r what remains.
 */
 #include "correct.h"
+#include "base/events.h"
 
 PetscErrorCode CorrectionCreate(Operators operators, const PetscReal p[], const ReducedWindow *window,
                                 Progress *progress, Correction *c)
@@ -164,12 +165,14 @@ PetscErrorCode CorrectionApply(const Correction *c, const ReducedModes *modes, P
   PetscFunctionBeginUser;
   *n_added = 0;
   if (!modes->n) PetscFunctionReturn(0);
+  PetscCall(EventBegin(EVENT_CORRECT));
   PetscCall(BasisCreateBlock(basis, 4 * modes->n, &block));
   PetscCall(CorrectionSide(c, modes, PETSC_FALSE, basis, block, &n));
   PetscCall(CorrectionSide(c, modes, PETSC_TRUE, basis, block, &n));
   PetscCall(BVSetActiveColumns(block, 0, n));
   if (n) PetscCall(BasisAdd(basis, block, drop, n_added));
   PetscCall(BVDestroy(&block));
+  PetscCall(EventEnd(EVENT_CORRECT));
   PetscFunctionReturn(0);
 }
 

@@ -17,6 +17,7 @@
    given K does, see DensePencilNoise().
 */
 #include "eigen.h"
+#include "base/events.h"
 
 #define RIGID_FLOOR 100  /* kappa below this many times its rounding error is a rigid mode */
 #define ON_SHIFT    1e3  /* an eigenvalue nearer to the shift than 1 / this of it spoils the others: another shift */
@@ -325,6 +326,7 @@ PetscErrorCode DensePencilEigen(const DensePencil *pencil, const ReducedWindow *
   Work          w;
 
   PetscFunctionBeginUser;
+  PetscCall(EventBegin(EVENT_REDUCED));
   PetscCall(WorkCreate(pencil, ShiftChoose(pencil, window), &w));
   PetscCall(WorkSolve(&w, pencil->symmetric));
   PetscCall(PetscMalloc2(w.N, &list, w.N, &lambda));
@@ -338,5 +340,6 @@ PetscErrorCode DensePencilEigen(const DensePencil *pencil, const ReducedWindow *
   if (pencil->damped) PetscCall(RigidOnce(n_rigid, modes));
   PetscCall(PetscFree2(list, lambda));
   PetscCall(WorkDestroy(&w));
+  PetscCall(EventEnd(EVENT_REDUCED));
   PetscFunctionReturn(0);
 }

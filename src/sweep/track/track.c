@@ -9,6 +9,7 @@
    contact status changes, eigenvalues jump: nothing is to be had in between, and a match that is not certain is none.
 */
 #include "branch.h"
+#include "base/events.h"
 
 #define DEPTH  10
 #define BUDGET 200
@@ -154,6 +155,7 @@ PetscErrorCode TrackLine(const Reduced *reduced, const BranchLine *line, const R
 
   PetscFunctionBeginUser;
   if (!line->n) PetscFunctionReturn(0);
+#include "base/events.h"
   PetscCall(ModeSourceCreate(reduced, line, &tracker.source));
   tracker.source.estimate = HaveErrors(modes, line->n);
   for (PetscInt k = 0; k < line->n; k++) {
@@ -171,6 +173,7 @@ PetscErrorCode TrackLine(const Reduced *reduced, const BranchLine *line, const R
   *n_branches += tracker.branches.n;
   PetscCall(BranchListDestroy(&tracker.branches));
   PetscCall(ModeSourceDestroy(&tracker.source));
+  PetscCall(EventEnd(EVENT_TRACK));
   PetscFunctionReturn(0);
 }
 
