@@ -155,7 +155,7 @@ PetscErrorCode TrackLine(const Reduced *reduced, const BranchLine *line, const R
 
   PetscFunctionBeginUser;
   if (!line->n) PetscFunctionReturn(0);
-#include "base/events.h"
+  PetscCall(EventBegin(EVENT_TRACK));
   PetscCall(ModeSourceCreate(reduced, line, &tracker.source));
   tracker.source.estimate = HaveErrors(modes, line->n);
   for (PetscInt k = 0; k < line->n; k++) {
