@@ -10,6 +10,7 @@
 
 #include <petscdmplex.h>
 #include <squeal/element.h>
+#include <squeal/mesh.h>
 
 typedef struct _p_Model *Model;
 
@@ -105,8 +106,12 @@ PetscErrorCode ModelSetUp(Model model);
 /*@ ModelGetComm - the ranks that share the model. Not collective. @*/
 PetscErrorCode ModelGetComm(Model model, MPI_Comm *comm);
 
-/*@ ModelGetDM - the mesh with its layout of unknowns (borrowed). Not collective. @*/
+/*@ ModelGetDM - the mesh with its layout of unknowns (borrowed). Rooms hand it to PETSc, and take what is in it from
+    ModelGetMesh(). Not collective. @*/
 PetscErrorCode ModelGetDM(Model model, DM *dm);
+
+/*@ ModelGetMesh - what this rank has of the mesh, after ModelSetUp() (borrowed). Not collective. @*/
+PetscErrorCode ModelGetMesh(Model model, const Mesh **mesh);
 
 /*@ ModelGetParts - the bodies (borrowed). Not collective. @*/
 PetscErrorCode ModelGetParts(Model model, PetscInt *n_parts, const Part **parts);
@@ -118,12 +123,12 @@ PetscErrorCode ModelGetCellParts(Model model, const PetscInt **cell_part);
 /*@ ModelGetElement - formulation of the cells. Not collective. @*/
 PetscErrorCode ModelGetElement(Model model, const Element **element);
 
-/*@ ModelGetCell - corners of local cell c in the element's node order: vertices [n_nodes] (points of the DM) and
-    coordinates [n_nodes][3] (m). Not collective. @*/
+/*@ ModelGetCell - corners of local cell c in the element's node order: vertices [n_nodes] and coordinates [n_nodes][3]
+    (m). Not collective. @*/
 PetscErrorCode ModelGetCell(Model model, PetscInt c, PetscInt vertices[], PetscReal coordinates[]);
 
-/*@ ModelGetUnknowns - global number of each displacement of each local vertex, shape [vEnd - vStart][3] in the order
-    of the DM's vertices; -1 where a support fixes it (borrowed). Not collective. @*/
+/*@ ModelGetUnknowns - global number of each displacement of each local vertex, shape [vertices][3]; -1 where a support
+    fixes it (borrowed). Not collective. @*/
 PetscErrorCode ModelGetUnknowns(Model model, const PetscInt **unknowns);
 
 /*@ ModelGetSprings - grounded springs (borrowed). Not collective. @*/
@@ -139,7 +144,7 @@ PetscErrorCode ModelGetSupports(Model model, PetscInt *n, const Support **suppor
 PetscErrorCode ModelGetLoads(Model model, PetscInt *n, const Load **loads);
 
 /*@
-   ModelAddLoad - adds load i to a local vector of three forces per vertex, N, in the layout of the coordinates. On a
+   ModelAddLoad - adds load i to a vector of ModelCreateNodal(), N. On a
    surface f_v = F int N_v dA / A, on a set of other vertices F / n. The sum over all vertices, held ones included, is
    F; a vertex has its full force on every rank that shares it. Collective.
 @*/
@@ -147,25 +152,25 @@ PetscErrorCode ModelAddLoad(Model model, PetscInt i, Vec local);
 
 /*@
    ModelGetBodies - the pieces of the mesh that hang together by nodes: their number over all ranks, and that of each
-   local vertex, shape [vEnd - vStart], -1 for a vertex without cells. Numbers follow the least x, then y, then z of a
+   local vertex, shape [vertices], -1 for a vertex without cells. Numbers follow the least x, then y, then z of a
    body's nodes, so that they do not depend on the ranks. Collective. The caller frees the array.
 @*/
 PetscErrorCode ModelGetBodies(Model model, PetscInt *n_bodies, PetscInt **body);
 
-/*@ ModelGetSetVertices - local vertices (points of the DM, ascending, ghosts included) of a named set. Collective.
+/*@ ModelGetSetVertices - local vertices of a named set, ascending, also those that other ranks own. Collective.
     Errors: PETSC_ERR_USER_INPUT when no rank has the set; the message lists the sets of the mesh. @*/
 PetscErrorCode ModelGetSetVertices(Model model, const char set[], IS *vertices);
 
-/*@ ModelGetOwnedVertices - as ModelGetSetVertices(), without ghosts: each vertex of the set on exactly one rank.
-    Collective. @*/
+/*@ ModelGetOwnedVertices - as ModelGetSetVertices(), those that this rank owns: each vertex of the set on exactly one
+    rank. Collective. @*/
 PetscErrorCode ModelGetOwnedVertices(Model model, const char set[], IS *vertices);
 
-/*@ ModelGetSetFaces - quadrilaterals of a surface set on this rank: corners [n][4] (points of the DM),
+/*@ ModelGetSetFaces - quadrilaterals of a surface set on this rank: corners [n][4] (local vertices),
     counter-clockwise seen from outside the body; each face is on exactly one rank. Collective. The caller frees them.
     @*/
 PetscErrorCode ModelGetSetFaces(Model model, const char set[], PetscInt *n, PetscInt **corners);
 
-/*@ ModelGetSetNormals - for each local vertex, shape [vEnd - vStart][3], the outward normal of a surface set times
+/*@ ModelGetSetNormals - for each local vertex, shape [vertices][3], the outward normal of a surface set times
     the vertex's share of its area (m^2), complete on every rank that has the vertex. Collective. The caller frees it.
     @*/
 PetscErrorCode ModelGetSetNormals(Model model, const char set[], PetscReal **area_normals);
@@ -183,11 +188,26 @@ PetscErrorCode ModelFindNode(Model model, const char part[], const PetscReal at[
 PetscErrorCode ModelCreateLines(Model model, PetscInt body, const PetscInt body_of_vertex[], ModelLines **lines);
 PetscErrorCode ModelDestroyLines(ModelLines **lines);
 
-/*@ ModelSumShared - sums a local vector of three values per vertex (layout of the coordinates) over all ranks that
-    share a vertex; every one of them gets the sum. Collective. @*/
+/*@ ModelGetNeighbours - the n vertices at the other ends of the edges of local vertex v that this rank has. Not
+    collective. The caller frees them. @*/
+PetscErrorCode ModelGetNeighbours(Model model, PetscInt v, PetscInt *n, PetscInt **neighbours);
+
+/*@ ModelGetShared - for each local vertex, shape [vertices], whether other ranks have it too. Collective. The caller
+    frees it. @*/
+PetscErrorCode ModelGetShared(Model model, PetscBool **shared);
+
+/*@ ModelCreateNodal - a vector of three zeros for each local vertex. Not collective. The caller destroys it. @*/
+PetscErrorCode ModelCreateNodal(Model model, Vec *nodal);
+
+/*@ ModelGetNodal - the displacements of a vector of the unknowns (NULL: zeros) at the local vertices, shape
+    [vertices][3]; zero where a support fixes them. Collective. @*/
+PetscErrorCode ModelGetNodal(Model model, Vec u, PetscReal nodal[]);
+
+/*@ ModelSumShared - sums a vector of ModelCreateNodal() over all ranks that share a vertex; every one of them gets the
+    sum. Collective. @*/
 PetscErrorCode ModelSumShared(Model model, Vec local);
 
-/*@ ModelGetCoordinates - of the local vertices, shape [vEnd - vStart][3], m (borrowed). Not collective. @*/
+/*@ ModelGetCoordinates - of the local vertices, shape [vertices][3], m (borrowed). Not collective. @*/
 PetscErrorCode ModelGetCoordinates(Model model, const PetscReal **coordinates);
 
 /*@ ModelView - prints in words what the scene needs: counts, parts, supports, springs. Collective. @*/

@@ -5,7 +5,8 @@
 */
 #pragma once
 
-#include <petscdmplex.h>
+#include <petscsys.h>
+#include <squeal/mesh.h>
 
 typedef struct _p_Results      *Results;
 typedef struct _p_ResultsTable *ResultsTable;
@@ -70,21 +71,14 @@ PetscErrorCode ResultsTableSuspend(ResultsTable *table);
 PetscErrorCode ResultsTableClose(ResultsTable *table);
 
 /*@
-   ResultsFieldOpen - begins `name`.h5 and `name`.xmf with the mesh. Collective.
-
-   Input Parameters:
-+  dm        - mesh with three displacements per vertex
-.  n_parts   - number of parts
-.  parts     - their names
--  cell_part - part of each local cell
+   ResultsFieldOpen - begins `name`.h5 and `name`.xmf with the mesh (borrowed until the end). Collective.
 
    The HDF5 file is also a VTKHDF unstructured grid, which VTK's own reader opens; nodes and cells are ordered by rank.
 
    Errors: PETSC_ERR_ARG_NULL without a mesh, PETSC_ERR_SUP for cells other than hexahedra, PETSC_ERR_FILE_WRITE
    as for tables: neither file is then left, under its temporary or its final name.
 @*/
-PetscErrorCode ResultsFieldOpen(Results results, const char name[], DM dm, PetscInt n_parts, const char *const parts[],
-                                const PetscInt cell_part[], ResultsField *field);
+PetscErrorCode ResultsFieldOpen(Results results, const char name[], const Mesh *mesh, ResultsField *field);
 
 /*@
    ResultsFieldWriteMode - one complex shape: arrays `<key>_re` and `<key>_im` (m) at all nodes, zero where a support
@@ -93,11 +87,12 @@ PetscErrorCode ResultsFieldOpen(Results results, const char name[], DM dm, Petsc
    Input Parameters:
 +  key    - short unique name: mode_007 for the mode that modes.csv lists as 7
 .  title  - a line for people, e.g. "7: 3458.21 Hz, growth 298 1/s, (0,4+)"
--  re, im - global vectors of the DM; im may be NULL (then zero)
+-  re, im - shape [local vertices][3]
 @*/
-PetscErrorCode ResultsFieldWriteMode(ResultsField field, const char key[], const char title[], Vec re, Vec im);
+PetscErrorCode ResultsFieldWriteMode(ResultsField field, const char key[], const char title[], const PetscReal re[],
+                                     const PetscReal im[]);
 
-/* Values at the nodes: shape [local vertices of the DM][width], width 1 or 3 */
+/* Values at the nodes: shape [local vertices][width], width 1 or 3 */
 typedef struct {
   const char      *key; /* name of the array, with its unit: displacement_m */
   PetscInt         width;
@@ -114,14 +109,10 @@ PetscErrorCode ResultsFieldClose(ResultsField *field);
 
 /*@
    ResultsFilmCreate - states of one mesh in time: each is a field of its own, `frame`_000000 and so on, and
-   `name`.xmf shows those that there are in time. Collective.
-
-   Input Parameters:
-+  dm                        - mesh (referenced)
--  n_parts, parts, cell_part - as of ResultsFieldOpen(); cell_part is borrowed
+   `name`.xmf shows those that there are in time. The mesh is borrowed. Collective.
 @*/
-PetscErrorCode ResultsFilmCreate(Results results, const char name[], const char frame[], DM dm, PetscInt n_parts,
-                                 const char *const parts[], const PetscInt cell_part[], ResultsFilm *film);
+PetscErrorCode ResultsFilmCreate(Results results, const char name[], const char frame[], const Mesh *mesh,
+                                 ResultsFilm *film);
 
 /*@ ResultsFilmSetTimes - times (s) of the n frames that an earlier run has written, after which this one goes on. Not
     collective, same call on all ranks. @*/

@@ -42,29 +42,25 @@ static int BelowCompare(const void *a, const void *b)
 
 /* Best edge of vertex v among those of this rank; normal is outward, of any length. best->vertex is -1 when the vertex
    is held or no edge goes inward. */
-static PetscErrorCode BelowFind(Model model, DM dm, PetscInt v, const PetscReal normal[3], Below *best)
+static PetscErrorCode BelowFind(Model model, PetscInt v, const PetscReal normal[3], Below *best)
 {
   const PetscReal  area = PetscSqrtReal(PetscSqr(normal[0]) + PetscSqr(normal[1]) + PetscSqr(normal[2]));
   const PetscReal *x;
-  const PetscInt  *unknowns, *edges, *ends;
-  PetscInt         n_edges, vStart;
+  const PetscInt  *unknowns;
+  PetscInt         n_edges, *ends;
 
   PetscFunctionBeginUser;
   *best = (Below){.vertex = -1};
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
   PetscCall(ModelGetCoordinates(model, &x));
   PetscCall(ModelGetUnknowns(model, &unknowns));
-  PetscCall(DMPlexGetSupportSize(dm, v, &n_edges));
-  PetscCall(DMPlexGetSupport(dm, v, &edges));
+  PetscCall(ModelGetNeighbours(model, v, &n_edges, &ends));
   for (PetscInt e = 0; e < n_edges; e++) {
-    Below     b   = {.vertex = VertexKey(&unknowns[3 * (v - vStart)])};
+    Below     b   = {.vertex = VertexKey(&unknowns[3 * v])};
     PetscReal dot = 0, length = 0;
-    PetscInt  end;
+    PetscInt  end = 3 * ends[e];
 
-    PetscCall(DMPlexGetCone(dm, edges[e], &ends));
-    end = 3 * (ends[0] == v ? ends[1] - vStart : ends[0] - vStart);
     for (int d = 0; d < 3; d++) {
-      const PetscReal edge = x[end + d] - x[3 * (v - vStart) + d];
+      const PetscReal edge = x[end + d] - x[3 * v + d];
 
       dot -= edge * normal[d];
       length += PetscSqr(edge);
@@ -74,6 +70,7 @@ static PetscErrorCode BelowFind(Model model, DM dm, PetscInt v, const PetscReal 
     b.cosine = area > 0 ? dot / (area * PetscSqrtReal(length)) : 0;
     if (b.cosine > 0 && (best->vertex < 0 || BelowIsBetter(&b, best))) *best = b;
   }
+  PetscCall(PetscFree(ends));
   PetscFunctionReturn(0);
 }
 
@@ -82,13 +79,10 @@ static PetscErrorCode BelowLocal(Model model, const char set[], PetscInt *n_foun
 {
   const PetscInt *vertices;
   PetscReal      *normals;
-  PetscInt        n, vStart;
+  PetscInt        n;
   IS              is;
-  DM              dm;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
   PetscCall(ModelGetSetNormals(model, set, &normals));
   PetscCall(ModelGetSetVertices(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
@@ -96,7 +90,7 @@ static PetscErrorCode BelowLocal(Model model, const char set[], PetscInt *n_foun
   PetscCall(PetscMalloc1(n, found));
   *n_found = 0;
   for (PetscInt i = 0; i < n; i++) {
-    PetscCall(BelowFind(model, dm, vertices[i], &normals[3 * (vertices[i] - vStart)], &(*found)[*n_found]));
+    PetscCall(BelowFind(model, vertices[i], &normals[3 * vertices[i]], &(*found)[*n_found]));
     if ((*found)[*n_found].vertex >= 0) ++*n_found;
   }
   PetscCall(ISRestoreIndices(is, &vertices));

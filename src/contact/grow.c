@@ -19,24 +19,14 @@ typedef struct {
 /* Global numbers of the corners of this rank's facets, array [n] */
 static PetscErrorCode CornersLocal(Model model, const char set[], PetscInt *n, PetscInt **corner)
 {
-  const PetscInt *number;
-  PetscInt        n_facets, vStart;
-  IS              numbers;
-  DM              dm;
+  const Mesh *mesh;
+  PetscInt    n_facets;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
-  PetscCall(DMPlexGetVertexNumbering(dm, &numbers));
-  PetscCall(ISGetIndices(numbers, &number));
+  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(ModelGetSetFaces(model, set, &n_facets, corner));
   *n = 4 * n_facets;
-  for (PetscInt i = 0; i < *n; i++) {
-    const PetscInt here = number[(*corner)[i] - vStart];
-
-    (*corner)[i] = here < 0 ? -(here + 1) : here; /* a vertex of another rank */
-  }
-  PetscCall(ISRestoreIndices(numbers, &number));
+  for (PetscInt i = 0; i < *n; i++) (*corner)[i] = mesh->number[(*corner)[i]];
   PetscFunctionReturn(0);
 }
 

@@ -39,7 +39,7 @@ static PetscErrorCode NumbersToLocal(const PetscInt number[], PetscInt n, Vec fo
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(3 * n, &place));
-  for (PetscInt v = 0; v < n; v++) Places(number[v] < 0 ? -1 - number[v] : number[v], &place[3 * v]);
+  for (PetscInt v = 0; v < n; v++) Places(number[v], &place[3 * v]);
   PetscCall(ISCreateGeneral(PETSC_COMM_SELF, 3 * n, place, PETSC_OWN_POINTER, &from));
   PetscCall(VecScatterCreate(forces, from, local, NULL, &scatter));
   PetscCall(VecScatterBegin(scatter, forces, local, INSERT_VALUES, SCATTER_FORWARD));
@@ -51,25 +51,19 @@ static PetscErrorCode NumbersToLocal(const PetscInt number[], PetscInt n, Vec fo
 
 PetscErrorCode ContactNodalForces(Contact contact, const ContactState state[], Vec local)
 {
-  const PetscInt *number;
-  PetscInt        n, n_own = 0;
-  IS              numbers;
-  Vec             forces;
-  DM              dm;
+  const Mesh *mesh;
+  PetscInt    n_own = 0;
+  Vec         forces;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(contact->model, &dm));
-  PetscCall(DMPlexGetVertexNumbering(dm, &numbers));
-  PetscCall(ISGetLocalSize(numbers, &n));
-  PetscCall(ISGetIndices(numbers, &number));
-  for (PetscInt v = 0; v < n; v++) n_own += number[v] >= 0;
+  PetscCall(ModelGetMesh(contact->model, &mesh));
+  for (PetscInt v = 0; v < mesh->n_vertices; v++) n_own += mesh->owned[v];
   PetscCall(VecCreateMPI(contact->comm, 3 * n_own, PETSC_DETERMINE, &forces));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     PetscCall(PairAddForce(&contact->pairs[p], contact->vertex[p], &state[p], forces));
   PetscCall(VecAssemblyBegin(forces));
   PetscCall(VecAssemblyEnd(forces));
-  PetscCall(NumbersToLocal(number, n, forces, local));
-  PetscCall(ISRestoreIndices(numbers, &number));
+  PetscCall(NumbersToLocal(mesh->number, mesh->n_vertices, forces, local));
   PetscCall(VecDestroy(&forces));
   PetscFunctionReturn(0);
 }

@@ -12,32 +12,23 @@
 
 PetscErrorCode FacetsLocal(Model model, const char set[], PetscInt *n, Facet **facets)
 {
-  const PetscReal *x;
-  const PetscInt  *unknowns, *number;
-  PetscReal       *normals;
-  PetscInt        *corners, vStart;
-  IS               numbers;
-  DM               dm;
+  const Mesh *mesh;
+  PetscReal  *normals;
+  PetscInt   *corners;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
-  PetscCall(ModelGetCoordinates(model, &x));
-  PetscCall(ModelGetUnknowns(model, &unknowns));
+  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(ModelGetSetNormals(model, set, &normals));
   PetscCall(ModelGetSetFaces(model, set, n, &corners));
-  PetscCall(DMPlexGetVertexNumbering(dm, &numbers));
-  PetscCall(ISGetIndices(numbers, &number));
   PetscCall(PetscMalloc1(*n, facets));
   for (PetscInt i = 0; i < 4 * *n; i++) {
-    const PetscInt v = 3 * (corners[i] - vStart), global = number[corners[i] - vStart];
+    const PetscInt v = 3 * corners[i];
 
-    PetscCall(PetscArraycpy((*facets)[i / 4].x[i % 4], &x[v], 3));
+    PetscCall(PetscArraycpy((*facets)[i / 4].x[i % 4], &mesh->x[v], 3));
     PetscCall(PetscArraycpy((*facets)[i / 4].normal[i % 4], &normals[v], 3));
-    PetscCall(PetscArraycpy((*facets)[i / 4].unknowns[i % 4], &unknowns[v], 3));
-    (*facets)[i / 4].vertex[i % 4] = global < 0 ? -1 - global : global; /* negative: another rank owns the vertex */
+    PetscCall(PetscArraycpy((*facets)[i / 4].unknowns[i % 4], &mesh->unknown[v], 3));
+    (*facets)[i / 4].vertex[i % 4] = mesh->number[corners[i]];
   }
-  PetscCall(ISRestoreIndices(numbers, &number));
   PetscCall(PetscFree(normals));
   PetscCall(PetscFree(corners));
   PetscFunctionReturn(0);
@@ -229,31 +220,25 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, PetscInt n_
                                 PairFailure *failure)
 {
   const ContactInterface *c = &contact->interfaces[interface];
-  const PetscInt         *vertices, *number;
+  const PetscInt         *vertices;
+  const Mesh             *mesh;
   SlaveNodes              nodes;
-  PetscInt                n, first, vStart;
-  IS                      is, numbers;
-  DM                      dm;
+  PetscInt                n, first;
+  IS                      is;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(contact->model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
+  PetscCall(ModelGetMesh(contact->model, &mesh));
   PetscCall(ModelGetCoordinates(contact->model, &nodes.x));
   PetscCall(ModelGetUnknowns(contact->model, &nodes.unknowns));
   PetscCall(ModelGetSetNormals(contact->model, c->slave, &nodes.normals));
   PetscCall(ModelGetOwnedVertices(contact->model, c->slave, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
-  PetscCall(DMPlexGetVertexNumbering(dm, &numbers));
-  PetscCall(ISGetIndices(numbers, &number));
   PetscCall(PairsAppend(contact, interface, n, &first));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt v = vertices[i] - vStart;
-
-    contact->vertex[first + i] = number[v];
-    PetscCall(PairSet(c, &nodes, v, n_facets, facets, &contact->pairs[first + i], failure));
+    contact->vertex[first + i] = mesh->number[vertices[i]];
+    PetscCall(PairSet(c, &nodes, vertices[i], n_facets, facets, &contact->pairs[first + i], failure));
   }
-  PetscCall(ISRestoreIndices(numbers, &number));
   PetscCall(ISRestoreIndices(is, &vertices));
   PetscCall(ISDestroy(&is));
   PetscCall(PetscFree(nodes.normals));

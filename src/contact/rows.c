@@ -21,16 +21,12 @@ static PetscErrorCode RowSet(Mat rows, PetscInt row, const ContactPair *pair, co
 PetscErrorCode ContactCreateRows(Contact contact, PetscInt n, const PetscInt pair[], const PetscReal direction[][3],
                                  Mat *rows)
 {
-  PetscInt row, n_unknowns;
-  Vec      u;
-  DM       dm;
+  const Mesh *mesh;
+  PetscInt    row;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(contact->model, &dm));
-  PetscCall(DMGetGlobalVector(dm, &u));
-  PetscCall(VecGetLocalSize(u, &n_unknowns));
-  PetscCall(DMRestoreGlobalVector(dm, &u));
-  PetscCall(MatCreateAIJ(contact->comm, n, n_unknowns, PETSC_DETERMINE, PETSC_DETERMINE, 15, NULL, 15, NULL, rows));
+  PetscCall(ModelGetMesh(contact->model, &mesh));
+  PetscCall(MatCreateAIJ(contact->comm, n, mesh->n_own, PETSC_DETERMINE, PETSC_DETERMINE, 15, NULL, 15, NULL, rows));
   PetscCall(MatGetOwnershipRange(*rows, &row, NULL));
   for (PetscInt i = 0; i < n; i++) PetscCall(RowSet(*rows, row + i, &contact->pairs[pair[i]], direction[i]));
   PetscCall(MatAssemblyBegin(*rows, MAT_FINAL_ASSEMBLY));

@@ -18,23 +18,6 @@ typedef struct {
   Vec      area;    /* [rows] m^2 */
 } AreaNormals;
 
-/* Rows of this rank: three for each vertex that it owns */
-static PetscErrorCode CountRows(DM dm, PetscInt *n_rows)
-{
-  const PetscInt *number;
-  PetscInt        n;
-  IS              numbers;
-
-  PetscFunctionBeginUser;
-  *n_rows = 0;
-  PetscCall(DMPlexGetVertexNumbering(dm, &numbers));
-  PetscCall(ISGetLocalSize(numbers, &n));
-  PetscCall(ISGetIndices(numbers, &number));
-  for (PetscInt v = 0; v < n; v++) *n_rows += number[v] >= 0 ? 3 : 0;
-  PetscCall(ISRestoreIndices(numbers, &number));
-  PetscFunctionReturn(0);
-}
-
 /* The 96 entries of a facet that are not zero by nature: component d of u x c takes the others of u */
 static void FacetEntries(const Facet *facet, PetscInt row[96], PetscInt column[96], PetscScalar value[96])
 {
@@ -73,20 +56,17 @@ static PetscErrorCode TurningCreate(PetscInt n_facets, const Facet facets[], Mat
 /* Area vectors of a surface and their derivatives */
 static PetscErrorCode AreaNormalsCreate(Contact contact, const char set[], AreaNormals *a)
 {
-  PetscInt n_facets, n_unknowns;
-  Facet   *facets;
-  Vec      u;
-  DM       dm;
+  const Mesh *mesh;
+  PetscInt    n_facets;
+  Facet      *facets;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(contact->model, &dm));
-  PetscCall(DMGetGlobalVector(dm, &u));
-  PetscCall(VecGetLocalSize(u, &n_unknowns));
-  PetscCall(DMRestoreGlobalVector(dm, &u));
-  PetscCall(CountRows(dm, &a->n_rows));
+  PetscCall(ModelGetMesh(contact->model, &mesh));
+  a->n_rows = 0;
+  for (PetscInt v = 0; v < mesh->n_vertices; v++) a->n_rows += mesh->owned[v] ? 3 : 0;
   PetscCall(FacetsLocal(contact->model, set, &n_facets, &facets));
   PetscCall(MatCreate(contact->comm, &a->turning));
-  PetscCall(MatSetSizes(a->turning, a->n_rows, n_unknowns, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetSizes(a->turning, a->n_rows, mesh->n_own, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(a->turning, MATAIJ));
   PetscCall(TurningCreate(n_facets, facets, a->turning));
   PetscCall(MatCreateVecs(a->turning, NULL, &a->area));

@@ -236,17 +236,15 @@ static PetscErrorCode CheckEnd(Dynamics d, PetscReal *end)
 
 static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
 {
-  PetscReal end, dt;
-  PetscInt  cStart, cEnd;
-  DM        dm;
+  PetscReal   end, dt;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
   PetscCheck(d->model, d->comm, PETSC_ERR_USER_INPUT,
              "-analysis transient needs a mesh: loaded matrices have no contact surfaces");
   d->results = results;
-  PetscCall(ModelGetDM(d->model, &dm));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
-  d->n_elements = cEnd - cStart;
+  PetscCall(ModelGetMesh(d->model, &mesh));
+  d->n_elements = mesh->n_cells;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &d->n_elements, 1, MPIU_INT, MPI_SUM, d->comm));
   PetscCall(BodiesCreate(d->operators, &d->bodies));
   PetscCall(BodiesGetLayout(d->bodies, &d->layout));

@@ -278,8 +278,8 @@ static PetscInt ShapeFindCorner(const Shape *shape, PetscInt n_nodes, PetscInt c
 }
 
 /* Lays the shape on the corners of local cell c */
-static PetscErrorCode CellFill(Model model, const Shape *shape, PetscInt c, PetscInt n_nodes, PetscInt v_start,
-                               PetscReal re[], PetscReal im[], Fault *fault)
+static PetscErrorCode CellFill(Model model, const Shape *shape, PetscInt c, PetscInt n_nodes, PetscReal re[],
+                               PetscReal im[], Fault *fault)
 {
   PetscInt  vertices[ELEMENT_MAX_NODES], cell;
   PetscReal x[3 * ELEMENT_MAX_NODES], centre[3] = {0, 0, 0};
@@ -289,7 +289,7 @@ static PetscErrorCode CellFill(Model model, const Shape *shape, PetscInt c, Pets
   for (PetscInt i = 0; i < 3 * n_nodes; i++) centre[i % 3] += x[i] / (PetscReal)n_nodes;
   cell = ShapeFindCell(shape, centre);
   for (PetscInt i = 0; i < n_nodes && !fault->code; i++) {
-    const PetscInt v = vertices[i] - v_start, p = ShapeFindCorner(shape, n_nodes, cell, &x[3 * i]);
+    const PetscInt v = vertices[i], p = ShapeFindCorner(shape, n_nodes, cell, &x[3 * i]);
 
     if (p < 0)
       PetscCall(
@@ -307,19 +307,17 @@ static PetscErrorCode CellFill(Model model, const Shape *shape, PetscInt c, Pets
 static PetscErrorCode CellsFill(MPI_Comm comm, Model model, const Shape *shape, PetscInt n_nodes, PetscReal re[],
                                 PetscReal im[], Fault *fault)
 {
-  PetscInt c_start, c_end, v_start, v_end, n_cells;
-  DM       dm;
+  const Mesh *mesh;
+  PetscInt    n_cells;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &c_start, &c_end));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &v_start, &v_end));
-  PetscCall(PetscArrayzero(re, 3 * (v_end - v_start)));
-  PetscCall(PetscArrayzero(im, 3 * (v_end - v_start)));
-  n_cells = c_end - c_start;
+  PetscCall(ModelGetMesh(model, &mesh));
+  PetscCall(PetscArrayzero(re, 3 * mesh->n_vertices));
+  PetscCall(PetscArrayzero(im, 3 * mesh->n_vertices));
+  n_cells = mesh->n_cells;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_cells, 1, MPIU_INT, MPI_SUM, comm));
-  for (PetscInt c = 0; c < c_end - c_start && !fault->code; c++)
-    PetscCall(CellFill(model, shape, c, n_nodes, v_start, re, im, fault));
+  for (PetscInt c = 0; c < mesh->n_cells && !fault->code; c++)
+    PetscCall(CellFill(model, shape, c, n_nodes, re, im, fault));
   PetscCall(FaultsAgree(comm, fault)); /* a place says more than numbers */
   if (n_cells != shape->n_cells)
     PetscCall(FaultNote(fault, PETSC_ERR_USER_INPUT,

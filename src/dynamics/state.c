@@ -6,21 +6,15 @@
 
 PetscErrorCode StateFromVec(Model model, const Layout *layout, Vec x, PetscReal state[])
 {
-  const PetscScalar *value;
-  Vec                local;
-  DM                 dm;
+  PetscReal *value;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMGetLocalVector(dm, &local));
-  PetscCall(VecSet(local, 0)); /* held directions, which global vectors do not have */
-  PetscCall(DMGlobalToLocal(dm, x, INSERT_VALUES, local));
-  PetscCall(VecGetArrayRead(local, &value));
+  PetscCall(PetscMalloc1(3 * layout->n_vertices, &value));
+  PetscCall(ModelGetNodal(model, x, value));
   PetscCall(PetscArrayzero(state, layout->n));
   for (PetscInt i = 0; i < layout->n_vertices; i++)
     if (layout->at[i] >= 0) LayoutSet(layout, i, &value[3 * i], state);
-  PetscCall(VecRestoreArrayRead(local, &value));
-  PetscCall(DMRestoreLocalVector(dm, &local));
+  PetscCall(PetscFree(value));
   PetscFunctionReturn(0);
 }
 

@@ -7,37 +7,28 @@
 /* Part that has most cells at a surface: the one that the surface belongs to */
 static PetscErrorCode SurfacePart(Dynamics d, const char set[], PetscInt *part)
 {
-  const PetscInt *cell_part, *vertices;
-  PetscInt        n, cStart, cEnd, *count;
-  PetscInt        n_parts;
-  const Part     *parts;
+  const PetscInt *vertices;
+  const Mesh     *mesh;
+  PetscInt        n, *count;
+  PetscBool      *in_set;
   IS              is;
-  DM              dm;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(d->model, &dm));
-  PetscCall(ModelGetParts(d->model, &n_parts, &parts));
-  PetscCall(ModelGetCellParts(d->model, &cell_part));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
-  PetscCall(PetscCalloc1(n_parts, &count));
+  PetscCall(ModelGetMesh(d->model, &mesh));
+  PetscCall(PetscCalloc2(mesh->n_parts, &count, mesh->n_vertices, &in_set));
   PetscCall(ModelGetSetVertices(d->model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
-  for (PetscInt i = 0; i < n; i++) {
-    PetscInt size, *star = NULL;
-
-    PetscCall(DMPlexGetTransitiveClosure(dm, vertices[i], PETSC_FALSE, &size, &star));
-    for (PetscInt k = 0; k < 2 * size; k += 2)
-      if (star[k] >= cStart && star[k] < cEnd) count[cell_part[star[k] - cStart]]++;
-    PetscCall(DMPlexRestoreTransitiveClosure(dm, vertices[i], PETSC_FALSE, &size, &star));
-  }
+  for (PetscInt i = 0; i < n; i++) in_set[vertices[i]] = PETSC_TRUE;
   PetscCall(ISRestoreIndices(is, &vertices));
   PetscCall(ISDestroy(&is));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, (PetscMPIInt)n_parts, MPIU_INT, MPI_SUM, d->comm));
+  for (PetscInt i = 0; i < mesh->n_nodes * mesh->n_cells; i++)
+    count[mesh->cell_part[i / mesh->n_nodes]] += in_set[mesh->corner[i]];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, (PetscMPIInt)mesh->n_parts, MPIU_INT, MPI_SUM, d->comm));
   *part = 0;
-  for (PetscInt i = 1; i < n_parts; i++)
+  for (PetscInt i = 1; i < mesh->n_parts; i++)
     if (count[i] > count[*part]) *part = i;
-  PetscCall(PetscFree(count));
+  PetscCall(PetscFree2(count, in_set));
   PetscFunctionReturn(0);
 }
 

@@ -1,6 +1,6 @@
 /*
    Model: life cycle, options, access. The mesh is made on rank 0 (generate.c, import.c), checked there (check.c),
-   distributed (partition.c), and then carries parts (part.c) and the layout of the unknowns (support.c).
+   distributed (partition.c), and then carries its tables (tabulate.c) and the layout of the unknowns (support.c).
 */
 #include "modelimpl.h"
 
@@ -24,12 +24,12 @@ PetscErrorCode ModelSetFromOptions(Model model)
   PetscCall(PetscOptionsEList("-model_source", "mesh: the built-in disc-pad-beam rig, or a file", "model.h", sources, 2,
                               sources[0], &source, &given));
   PetscCall(PetscOptionsString("-model_mesh", "Gmsh file, format 2.2 or 4.1, with physical names", "model.h",
-                               model->mesh, model->mesh, sizeof(model->mesh), &has_mesh));
+                               model->file, model->file, sizeof(model->file), &has_mesh));
   PetscCall(PetscOptionsString("-model_element", "element formulation: incompatible (QM6) or full (trilinear)",
                                "model.h", model->formulation, model->formulation, sizeof(model->formulation), NULL));
   PetscOptionsEnd();
   PetscCheck(!given || source == 1 || !has_mesh, model->comm, PETSC_ERR_USER_INPUT,
-             "-model_mesh %s does nothing with -model_source rig; choose -model_source file", model->mesh);
+             "-model_mesh %s does nothing with -model_source rig; choose -model_source file", model->file);
   if (has_mesh) source = 1;
   model->given = given || has_mesh ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(PetscStrncpy(model->source, sources[source], sizeof(model->source)));
@@ -59,33 +59,6 @@ PetscErrorCode ModelKeepSlabs(Model model)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelTabulate(Model model)
-{
-  const PetscInt     n_nodes = model->element->n_nodes;
-  const PetscScalar *x;
-  PetscInt           cStart, cEnd, vStart, vEnd, n_points, *closure = NULL;
-  Vec                coordinates;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, &cEnd));
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, &vEnd));
-  PetscCall(DMGetCoordinatesLocal(model->dm, &coordinates));
-  PetscCall(PetscMalloc1(3 * (vEnd - vStart), &model->coordinates));
-  PetscCall(VecGetArrayRead(coordinates, &x));
-  PetscCall(PetscArraycpy(model->coordinates, x, 3 * (vEnd - vStart)));
-  PetscCall(VecRestoreArrayRead(coordinates, &x));
-  PetscCall(PetscMalloc1(n_nodes * (cEnd - cStart), &model->cell_vertices));
-  for (PetscInt c = cStart; c < cEnd; c++) {
-    PetscInt *const corners = &model->cell_vertices[n_nodes * (c - cStart)], first = 0;
-
-    PetscCall(DMPlexGetTransitiveClosure(model->dm, c, PETSC_TRUE, &n_points, &closure));
-    while (closure[2 * first] < vStart || closure[2 * first] >= vEnd) first++;
-    for (PetscInt i = 0; i < n_nodes; i++) corners[i] = closure[2 * (first + model->element->closure_order[i])];
-  }
-  if (closure) PetscCall(DMPlexRestoreTransitiveClosure(model->dm, cStart, PETSC_TRUE, &n_points, &closure));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ModelSetUp(Model model)
 {
   PetscFunctionBeginUser;
@@ -96,11 +69,10 @@ PetscErrorCode ModelSetUp(Model model)
   if (!strcmp(model->source, "rig"))
     PetscCall(RigGenerate(model->comm, &model->rig, &model->dm));
   else
-    PetscCall(ImportGmsh(model->comm, model->mesh, &model->dm));
+    PetscCall(ImportGmsh(model->comm, model->file, &model->dm));
   PetscCall(MeshCheck(model));
   PetscCall(PartitionMesh(model));
-  PetscCall(PartsFindCells(model));
-  PetscCall(ModelTabulate(model));
+  PetscCall(MeshTabulate(model));
   PetscCall(SupportsLayOut(model));
   PetscCall(LoadsCheck(model));
   PetscCall(ProbesLocate(model));
@@ -121,6 +93,13 @@ PetscErrorCode ModelGetDM(Model model, DM *dm)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModelGetMesh(Model model, const Mesh **mesh)
+{
+  PetscFunctionBeginUser;
+  *mesh = &model->mesh;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelGetParts(Model model, PetscInt *n_parts, const Part **parts)
 {
   PetscFunctionBeginUser;
@@ -132,7 +111,7 @@ PetscErrorCode ModelGetParts(Model model, PetscInt *n_parts, const Part **parts)
 PetscErrorCode ModelGetCellParts(Model model, const PetscInt **cell_part)
 {
   PetscFunctionBeginUser;
-  *cell_part = model->cell_part;
+  *cell_part = model->mesh.cell_part;
   PetscFunctionReturn(0);
 }
 
@@ -145,14 +124,12 @@ PetscErrorCode ModelGetElement(Model model, const Element **element)
 
 PetscErrorCode ModelGetCell(Model model, PetscInt c, PetscInt vertices[], PetscReal coordinates[])
 {
-  const PetscInt n_nodes = model->element->n_nodes;
-  PetscInt       vStart;
+  const PetscInt n_nodes = model->mesh.n_nodes;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, NULL));
   for (PetscInt i = 0; i < n_nodes; i++) {
-    vertices[i] = model->cell_vertices[n_nodes * c + i];
-    for (int d = 0; d < 3; d++) coordinates[3 * i + d] = model->coordinates[3 * (vertices[i] - vStart) + d];
+    vertices[i] = model->mesh.corner[n_nodes * c + i];
+    for (int d = 0; d < 3; d++) coordinates[3 * i + d] = model->mesh.x[3 * vertices[i] + d];
   }
   PetscFunctionReturn(0);
 }
@@ -160,14 +137,14 @@ PetscErrorCode ModelGetCell(Model model, PetscInt c, PetscInt vertices[], PetscR
 PetscErrorCode ModelGetCoordinates(Model model, const PetscReal **coordinates)
 {
   PetscFunctionBeginUser;
-  *coordinates = model->coordinates;
+  *coordinates = model->mesh.x;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ModelGetUnknowns(Model model, const PetscInt **unknowns)
 {
   PetscFunctionBeginUser;
-  *unknowns = model->unknowns;
+  *unknowns = model->mesh.unknown;
   PetscFunctionReturn(0);
 }
 
@@ -208,22 +185,16 @@ static PetscErrorCode GroundedView(const char kind[], const char unit[], PetscIn
 
 PetscErrorCode ModelView(Model model, PetscViewer viewer)
 {
-  PetscInt    cStart, cEnd, n_cells, n_unknowns;
+  PetscInt    n_cells = model->mesh.n_cells;
   PetscMPIInt size;
-  Vec         u;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(model->comm, &size));
-  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, &cEnd));
-  n_cells = cEnd - cStart;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_cells, 1, MPIU_INT, MPI_SUM, model->comm));
-  PetscCall(DMGetGlobalVector(model->dm, &u));
-  PetscCall(VecGetSize(u, &n_unknowns));
-  PetscCall(DMRestoreGlobalVector(model->dm, &u));
   PetscCall(PetscViewerASCIIPrintf(viewer,
                                    "model: %s, %" PetscInt_FMT " cells, %" PetscInt_FMT " unknowns on %d ranks; %s\n",
-                                   !strcmp(model->source, "rig") ? "built-in rig" : model->mesh, n_cells, n_unknowns,
-                                   size, model->element->description));
+                                   !strcmp(model->source, "rig") ? "built-in rig" : model->file, n_cells,
+                                   model->mesh.n_unknowns, size, model->element->description));
   for (PetscInt i = 0; i < model->n_parts; i++) {
     const Part *p = &model->parts[i];
 
@@ -281,10 +252,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(PetscFree(m->parts));
   PetscCall(PetscFree(m->supports));
   PetscCall(PetscFree(m->loads));
-  PetscCall(PetscFree(m->cell_part));
-  PetscCall(PetscFree(m->cell_vertices));
-  PetscCall(PetscFree(m->coordinates));
-  PetscCall(PetscFree(m->unknowns));
+  PetscCall(MeshReset(m));
   PetscCall(DMDestroy(&m->dm));
   PetscCall(PetscFree(*model));
   PetscFunctionReturn(0);

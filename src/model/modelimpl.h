@@ -26,7 +26,7 @@ struct _p_Model {
   MPI_Comm comm;
   /* set by options */
   PetscBool given; /* the scene names a mesh */
-  char      source[8], mesh[PETSC_MAX_PATH_LEN], formulation[32];
+  char      source[8], file[PETSC_MAX_PATH_LEN], formulation[32];
   Rig       rig;
   PetscInt  n_parts, n_supports, n_springs, n_dashpots, n_loads, n_probes, n_together;
   Part     *parts;
@@ -39,10 +39,7 @@ struct _p_Model {
   /* built by ModelSetUp() */
   DM             dm;
   const Element *element;
-  PetscInt      *cell_part;
-  PetscInt      *cell_vertices; /* [local cells][n_nodes], in the element's order */
-  PetscReal     *coordinates;   /* [local vertices][3], m */
-  PetscInt      *unknowns;      /* [local vertices][3], global numbers, -1 when fixed */
+  Mesh           mesh;
 };
 
 /* rig.c - dimensions and counts of the rig; errors for impossible ones */
@@ -60,13 +57,15 @@ PETSC_INTERN PetscErrorCode ImportGmsh(MPI_Comm comm, const char file[], DM *dm)
    `together` end on one rank, or whole slabs of swept bodies do. Replaces model->dm; with one rank it does nothing. */
 PETSC_INTERN PetscErrorCode PartitionMesh(Model model);
 
-/* model.c - coordinates and corners of the local cells, now or after distribution */
-PETSC_INTERN PetscErrorCode ModelTabulate(Model model);
+/* tabulate.c - the tables of the local mesh but for its unknowns, now or after distribution; and frees all of them.
+   Collective. */
+PETSC_INTERN PetscErrorCode MeshTabulate(Model model);
+PETSC_INTERN PetscErrorCode MeshReset(Model model);
 
 /* part.c - bodies: their names and materials, and the part of each cell */
 PETSC_INTERN PetscErrorCode PartsSetFromOptions(Model model);
 PETSC_INTERN PetscErrorCode PartsCheck(Model model);
-PETSC_INTERN PetscErrorCode PartsFindCells(Model model);
+PETSC_INTERN PetscErrorCode PartsFindCells(Model model, PetscInt cell_part[]);
 
 /* support.c - essential supports, grounded springs and dashpots; the layout of the unknowns */
 PETSC_INTERN PetscErrorCode SupportsSetFromOptions(Model model);

@@ -72,42 +72,24 @@ static PetscErrorCode MarkClosure(DM dm, IS points, PetscScalar mark[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelSumShared(Model model, Vec local)
-{
-  DM  cdm;
-  Vec global;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMGetCoordinateDM(model->dm, &cdm));
-  PetscCall(DMGetGlobalVector(cdm, &global));
-  PetscCall(VecSet(global, 0));
-  PetscCall(DMLocalToGlobal(cdm, local, ADD_VALUES, global));
-  PetscCall(DMGlobalToLocal(cdm, global, INSERT_VALUES, local));
-  PetscCall(DMRestoreGlobalVector(cdm, &global));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ModelGetSetVertices(Model model, const char set[], IS *vertices)
 {
   PetscScalar *mark;
-  PetscInt     vStart, vEnd, n = 0, *list;
-  Vec          marks, coordinates;
+  PetscInt     n = 0, *list;
+  Vec          marks;
   IS           points;
 
   PetscFunctionBeginUser;
   PetscCall(SetGetPoints(model, set, &points));
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, &vEnd));
-  PetscCall(DMGetCoordinatesLocal(model->dm, &coordinates));
-  PetscCall(VecDuplicate(coordinates, &marks));
-  PetscCall(VecSet(marks, 0));
+  PetscCall(ModelCreateNodal(model, &marks));
   PetscCall(VecGetArray(marks, &mark));
   if (points) PetscCall(MarkClosure(model->dm, points, mark));
   PetscCall(VecRestoreArray(marks, &mark));
   PetscCall(ModelSumShared(model, marks));
-  PetscCall(PetscMalloc1(vEnd - vStart, &list));
+  PetscCall(PetscMalloc1(model->mesh.n_vertices, &list));
   PetscCall(VecGetArray(marks, &mark));
-  for (PetscInt v = vStart; v < vEnd; v++)
-    if (PetscRealPart(mark[3 * (v - vStart)]) > 0) list[n++] = v;
+  for (PetscInt v = 0; v < model->mesh.n_vertices; v++)
+    if (PetscRealPart(mark[3 * v]) > 0) list[n++] = v;
   PetscCall(VecRestoreArray(marks, &mark));
   PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, list, PETSC_COPY_VALUES, vertices));
   PetscCall(PetscFree(list));
@@ -120,23 +102,15 @@ PetscErrorCode ModelGetOwnedVertices(Model model, const char set[], IS *vertices
 {
   const PetscInt *v;
   PetscInt        n, n_owned = 0, *owned;
-  PetscSection    global;
   IS              all;
-  DM              cdm;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetSetVertices(model, set, &all));
-  PetscCall(DMGetCoordinateDM(model->dm, &cdm));
-  PetscCall(DMGetGlobalSection(cdm, &global));
   PetscCall(ISGetLocalSize(all, &n));
   PetscCall(ISGetIndices(all, &v));
   PetscCall(PetscMalloc1(n, &owned));
-  for (PetscInt i = 0; i < n; i++) {
-    PetscInt offset;
-
-    PetscCall(PetscSectionGetOffset(global, v[i], &offset));
-    if (offset >= 0) owned[n_owned++] = v[i];
-  }
+  for (PetscInt i = 0; i < n; i++)
+    if (model->mesh.owned[v[i]]) owned[n_owned++] = v[i];
   PetscCall(ISRestoreIndices(all, &v));
   PetscCall(ISDestroy(&all));
   PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n_owned, owned, PETSC_COPY_VALUES, vertices));
@@ -149,15 +123,14 @@ static PetscErrorCode FaceOrient(Model model, PetscInt face, PetscInt corners[4]
 {
   const PetscInt  n_nodes = model->element->n_nodes;
   const PetscInt *cells;
-  PetscInt        cStart, vStart, vertices[ELEMENT_MAX_NODES];
+  PetscInt        cStart, vertices[ELEMENT_MAX_NODES];
   PetscReal       cell_x[ELEMENT_MAX_DOFS], x[4][3], normal[3], outward[3] = {0, 0, 0}, side = 0;
 
   PetscFunctionBeginUser;
   PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, NULL));
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, NULL));
   PetscCall(DMPlexGetSupport(model->dm, face, &cells));
   PetscCall(ModelGetCell(model, cells[0] - cStart, vertices, cell_x));
-  for (int i = 0; i < 4; i++) PetscCall(PetscArraycpy(x[i], &model->coordinates[3 * (corners[i] - vStart)], 3));
+  for (int i = 0; i < 4; i++) PetscCall(PetscArraycpy(x[i], &model->mesh.x[3 * corners[i]], 3));
   for (int d = 0; d < 3; d++) {
     for (int i = 0; i < 4; i++) outward[d] += x[i][d] / 4;
     for (PetscInt i = 0; i < n_nodes; i++) outward[d] -= cell_x[3 * i + d] / (PetscReal)n_nodes;
@@ -195,7 +168,7 @@ PetscErrorCode ModelGetSetFaces(Model model, const char set[], PetscInt *n, Pets
     if (!n_cells) continue;
     PetscCall(DMPlexGetTransitiveClosure(model->dm, p[i], PETSC_TRUE, &n_closure, &closure));
     for (PetscInt j = 0; j < n_closure; j++)
-      if (closure[2 * j] >= vStart && closure[2 * j] < vEnd && k < 4) face[k++] = closure[2 * j];
+      if (closure[2 * j] >= vStart && closure[2 * j] < vEnd && k < 4) face[k++] = closure[2 * j] - vStart;
     PetscCall(DMPlexRestoreTransitiveClosure(model->dm, p[i], PETSC_TRUE, &n_closure, &closure));
     PetscCall(FaceOrient(model, p[i], face));
     ++*n;
@@ -209,32 +182,29 @@ PetscErrorCode ModelGetSetFaces(Model model, const char set[], PetscInt *n, Pets
 
 PetscErrorCode ModelGetSetNormals(Model model, const char set[], PetscReal **area_normals)
 {
-  PetscInt     vStart, vEnd, n_faces, *corners;
-  PetscScalar *sum;
-  Vec          sums, coordinates;
+  const PetscInt n = 3 * model->mesh.n_vertices;
+  PetscInt       n_faces, *corners;
+  PetscScalar   *sum;
+  Vec            sums;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, &vEnd));
-  PetscCall(DMGetCoordinatesLocal(model->dm, &coordinates));
-  PetscCall(VecDuplicate(coordinates, &sums));
-  PetscCall(VecSet(sums, 0));
+  PetscCall(ModelCreateNodal(model, &sums));
   PetscCall(ModelGetSetFaces(model, set, &n_faces, &corners));
   PetscCall(VecGetArray(sums, &sum));
   for (PetscInt f = 0; f < n_faces; f++) {
     double x[4][3], share[4][3];
 
-    for (int i = 0; i < 4; i++)
-      PetscCall(PetscArraycpy(x[i], &model->coordinates[3 * (corners[4 * f + i] - vStart)], 3));
+    for (int i = 0; i < 4; i++) PetscCall(PetscArraycpy(x[i], &model->mesh.x[3 * corners[4 * f + i]], 3));
     FacetAreaNormals((const double(*)[3])x, share);
     for (int i = 0; i < 4; i++)
-      for (int d = 0; d < 3; d++) sum[3 * (corners[4 * f + i] - vStart) + d] += share[i][d];
+      for (int d = 0; d < 3; d++) sum[3 * corners[4 * f + i] + d] += share[i][d];
   }
   PetscCall(VecRestoreArray(sums, &sum));
   PetscCall(PetscFree(corners));
   PetscCall(ModelSumShared(model, sums));
-  PetscCall(PetscMalloc1(3 * (vEnd - vStart), area_normals));
+  PetscCall(PetscMalloc1(n, area_normals));
   PetscCall(VecGetArray(sums, &sum));
-  PetscCall(PetscArraycpy(*area_normals, sum, 3 * (vEnd - vStart)));
+  PetscCall(PetscArraycpy(*area_normals, sum, n));
   PetscCall(VecRestoreArray(sums, &sum));
   PetscCall(VecDestroy(&sums));
   PetscFunctionReturn(0);

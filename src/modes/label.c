@@ -26,45 +26,22 @@
    cells give */
 static PetscErrorCode PartMasses(Model model, PetscInt part, PetscReal density, PetscReal **mass)
 {
-  const Element  *element;
-  const PetscInt *cell_part;
-  PetscInt        cStart, cEnd, vStart, vEnd;
-  DM              dm;
+  const Element *element;
+  const Mesh    *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
   PetscCall(ModelGetElement(model, &element));
-  PetscCall(ModelGetCellParts(model, &cell_part));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
-  PetscCall(PetscCalloc1(vEnd - vStart, mass));
-  for (PetscInt c = 0; c < cEnd - cStart; c++) {
+  PetscCall(ModelGetMesh(model, &mesh));
+  PetscCall(PetscCalloc1(mesh->n_vertices, mass));
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
     PetscInt  vertices[ELEMENT_MAX_NODES];
     PetscReal x[ELEMENT_MAX_DOFS], volume, jacobian;
 
-    if (cell_part[c] != part) continue;
+    if (mesh->cell_part[c] != part) continue;
     PetscCall(ModelGetCell(model, c, vertices, x));
     element->measure(x, &volume, &jacobian);
-    for (PetscInt i = 0; i < element->n_nodes; i++)
-      (*mass)[vertices[i] - vStart] += density * volume / (PetscReal)element->n_nodes;
+    for (PetscInt i = 0; i < mesh->n_nodes; i++) (*mass)[vertices[i]] += density * volume / (PetscReal)mesh->n_nodes;
   }
-  PetscFunctionReturn(0);
-}
-
-/* Displacements of a global vector at the local vertices, zeros at supports; array [local vertices][3] */
-static PetscErrorCode NodalValues(DM dm, Vec global, PetscInt n_vertices, PetscReal values[])
-{
-  const PetscScalar *array;
-  Vec                local;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMGetLocalVector(dm, &local));
-  PetscCall(VecSet(local, 0));
-  PetscCall(DMGlobalToLocal(dm, global, INSERT_VALUES, local));
-  PetscCall(VecGetArrayRead(local, &array));
-  PetscCall(PetscArraycpy(values, array, 3 * n_vertices));
-  PetscCall(VecRestoreArrayRead(local, &array));
-  PetscCall(DMRestoreLocalVector(dm, &local));
   PetscFunctionReturn(0);
 }
 
@@ -88,28 +65,17 @@ static PetscReal WeightedDot(PetscInt n, const PetscReal m[], const PetscReal a[
   return sum;
 }
 
-/* Nodal values of a vector that may be NULL, which stands for zero */
-static PetscErrorCode NodalValuesOrZero(DM dm, Vec global, PetscInt n_vertices, PetscReal values[])
-{
-  PetscFunctionBeginUser;
-  if (global)
-    PetscCall(NodalValues(dm, global, n_vertices, values));
-  else
-    PetscCall(PetscArrayzero(values, 3 * n_vertices));
-  PetscFunctionReturn(0);
-}
-
 /* Adds participation and the disc's right-hand sides of mode i; without left vectors y = conj(x) */
-static PetscErrorCode LabelsAdd(Modes modes, DM dm, PetscInt i, Labels *l)
+static PetscErrorCode LabelsAdd(Modes modes, Model model, PetscInt i, Labels *l)
 {
   Vec xr, xi, yr, yi;
 
   PetscFunctionBeginUser;
   PetscCall(ModesGetVectors(modes, i, &xr, &xi, &yr, &yi));
-  PetscCall(NodalValuesOrZero(dm, xr, l->n_vertices, l->x[0]));
-  PetscCall(NodalValuesOrZero(dm, xi, l->n_vertices, l->x[1]));
-  PetscCall(NodalValuesOrZero(dm, yr ? yr : xr, l->n_vertices, l->y[0]));
-  PetscCall(NodalValuesOrZero(dm, yr ? yi : xi, l->n_vertices, l->y[1]));
+  PetscCall(ModelGetNodal(model, xr, l->x[0]));
+  PetscCall(ModelGetNodal(model, xi, l->x[1]));
+  PetscCall(ModelGetNodal(model, yr ? yr : xr, l->y[0]));
+  PetscCall(ModelGetNodal(model, yr ? yi : xi, l->y[1]));
   for (PetscInt v = 0; v < 3 * l->n_vertices && !yr; v++) l->y[1][v] = -l->y[1][v];
   for (PetscInt part = 0; part < l->n_parts; part++) {
     const PetscInt   n     = l->n_vertices;
@@ -155,16 +121,14 @@ static PetscErrorCode LabelsCreate(Modes modes, Model model, Contact contact, Pe
 {
   const PetscReal *x;
   PetscReal        centre[3];
-  PetscInt         vStart, vEnd;
+  const Mesh      *mesh;
   PetscBool        same, found;
-  DM               dm;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(ModelGetCoordinates(model, &x));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
+  PetscCall(ModelGetMesh(model, &mesh));
+  x             = mesh->x;
   l->n_parts    = n_parts;
-  l->n_vertices = vEnd - vStart;
+  l->n_vertices = mesh->n_vertices;
   l->disc       = -1;
   PetscCall(PetscMalloc1(n_parts, &l->mass));
   PetscCall(PetscCalloc2(2 * modes->n * n_parts, &l->share, 2 * modes->n, &l->energy));
@@ -233,7 +197,6 @@ PetscErrorCode ModesLabel(Modes modes)
   PetscInt    n_parts;
   Model       model;
   Contact     contact;
-  DM          dm;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(modes->operators, &model, &contact));
@@ -241,10 +204,9 @@ PetscErrorCode ModesLabel(Modes modes)
     PetscCall(LabelUnknown(modes));
     PetscFunctionReturn(0);
   }
-  PetscCall(ModelGetDM(model, &dm));
   PetscCall(ModelGetParts(model, &n_parts, &parts));
   PetscCall(LabelsCreate(modes, model, contact, n_parts, parts, &l));
-  for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelsAdd(modes, dm, i, &l));
+  for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelsAdd(modes, model, i, &l));
   PetscCallMPI(
     MPI_Allreduce(MPI_IN_PLACE, l.share, (PetscMPIInt)(2 * modes->n * n_parts), MPIU_REAL, MPI_SUM, modes->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.energy, (PetscMPIInt)(2 * modes->n), MPIU_REAL, MPI_SUM, modes->comm));

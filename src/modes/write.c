@@ -84,20 +84,14 @@ static PetscErrorCode TableWrite(Modes modes, Results results)
 /* modes.h5 and modes.xmf */
 static PetscErrorCode ShapesWrite(Modes modes, Model model, Results results)
 {
-  const Part     *parts;
-  const PetscInt *cell_part;
-  const char    **names;
-  PetscInt        n_parts;
-  ResultsField    field;
-  DM              dm;
+  const Mesh  *mesh;
+  PetscReal   *re, *im;
+  ResultsField field;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(ModelGetParts(model, &n_parts, &parts));
-  PetscCall(ModelGetCellParts(model, &cell_part));
-  PetscCall(PetscMalloc1(n_parts, &names));
-  for (PetscInt i = 0; i < n_parts; i++) names[i] = parts[i].name;
-  PetscCall(ResultsFieldOpen(results, "modes", dm, n_parts, names, cell_part, &field));
+  PetscCall(ModelGetMesh(model, &mesh));
+  PetscCall(PetscMalloc2(3 * mesh->n_vertices, &re, 3 * mesh->n_vertices, &im));
+  PetscCall(ResultsFieldOpen(results, "modes", mesh, &field));
   for (PetscInt i = 0; i < modes->n; i++) {
     const Mode *m = &modes->mode[i];
     char        key[32], title[128];
@@ -105,10 +99,12 @@ static PetscErrorCode ShapesWrite(Modes modes, Model model, Results results)
     PetscCall(PetscSNPrintf(key, sizeof(key), "mode_%03d", (int)i + 1));
     PetscCall(PetscSNPrintf(title, sizeof(title), "%d: %.6g Hz, growth %.4g 1/s, %s", (int)i + 1,
                             (double)ModeFrequency(m), (double)m->sigma, m->label));
-    PetscCall(ResultsFieldWriteMode(field, key, title, modes->right.xr[i], modes->right.xi[i]));
+    PetscCall(ModelGetNodal(model, modes->right.xr[i], re));
+    PetscCall(ModelGetNodal(model, modes->right.xi[i], im));
+    PetscCall(ResultsFieldWriteMode(field, key, title, re, im));
   }
   PetscCall(ResultsFieldClose(&field));
-  PetscCall(PetscFree(names));
+  PetscCall(PetscFree2(re, im));
   PetscFunctionReturn(0);
 }
 

@@ -38,25 +38,19 @@ static PetscErrorCode CellAdd(const Element *element, const Elasticity *material
 /* Adds the local cells of a part */
 static PetscErrorCode CellsAdd(Operators o, PetscInt part, const Elasticity *material, Mat K, Mat M)
 {
-  const Element  *element;
-  const PetscInt *cell_part, *unknowns;
-  PetscInt        cStart, cEnd, vStart;
-  DM              dm;
+  const Element *element;
+  const Mesh    *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(o->model, &dm));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
+  PetscCall(ModelGetMesh(o->model, &mesh));
   PetscCall(ModelGetElement(o->model, &element));
-  PetscCall(ModelGetCellParts(o->model, &cell_part));
-  PetscCall(ModelGetUnknowns(o->model, &unknowns));
-  for (PetscInt c = 0; c < cEnd - cStart; c++) {
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
     PetscInt  vertices[ELEMENT_MAX_NODES], rows[ELEMENT_MAX_DOFS];
     PetscReal x[ELEMENT_MAX_DOFS];
 
-    if (cell_part[c] != part) continue;
+    if (mesh->cell_part[c] != part) continue;
     PetscCall(ModelGetCell(o->model, c, vertices, x));
-    for (PetscInt i = 0; i < 3 * element->n_nodes; i++) rows[i] = unknowns[3 * (vertices[i / 3] - vStart) + i % 3];
+    for (PetscInt i = 0; i < 3 * element->n_nodes; i++) rows[i] = mesh->unknown[3 * vertices[i / 3] + i % 3];
     PetscCall(CellAdd(element, material, o->lump, x, rows, K, M));
   }
   PetscFunctionReturn(0);
@@ -107,13 +101,10 @@ static PetscErrorCode UnitDiagonalCreate(Operators o, const char set[], const Pe
 {
   const PetscScalar one = 1;
   const PetscInt   *unknowns, *vertices;
-  PetscInt          vStart, n_vertices, n_own;
+  PetscInt          n_vertices, n_own;
   IS                is;
-  DM                dm;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(o->model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
   PetscCall(ModelGetUnknowns(o->model, &unknowns));
   PetscCall(MatGetLocalSize(o->base.term[0].A, &n_own, NULL));
   PetscCall(MatCreateAIJ(o->comm, n_own, n_own, PETSC_DETERMINE, PETSC_DETERMINE, 1, NULL, 0, NULL, D));
@@ -121,7 +112,7 @@ static PetscErrorCode UnitDiagonalCreate(Operators o, const char set[], const Pe
   PetscCall(ISGetLocalSize(is, &n_vertices));
   PetscCall(ISGetIndices(is, &vertices));
   for (PetscInt j = 0; j < 3 * n_vertices; j++) {
-    const PetscInt row = unknowns[3 * (vertices[j / 3] - vStart) + j % 3];
+    const PetscInt row = unknowns[3 * vertices[j / 3] + j % 3];
 
     if (mask[j % 3]) PetscCall(MatSetValues(*D, 1, &row, 1, &row, &one, ADD_VALUES));
   }

@@ -6,9 +6,9 @@
 */
 #include "operatorsimpl.h"
 
-/* Adds the forces of local cell c; u and f hold three values per local vertex, the first of them vStart */
-static PetscErrorCode CellAddForce(Operators o, PetscInt c, const Elasticity *material, PetscInt vStart,
-                                   const PetscScalar u[], PetscScalar f[])
+/* Adds the forces of local cell c; u and f hold three values per local vertex */
+static PetscErrorCode CellAddForce(Operators o, PetscInt c, const Elasticity *material, const PetscScalar u[],
+                                   PetscScalar f[])
 {
   const Element *element;
   PetscInt       n, vertices[ELEMENT_MAX_NODES], at[ELEMENT_MAX_DOFS];
@@ -19,7 +19,7 @@ static PetscErrorCode CellAddForce(Operators o, PetscInt c, const Elasticity *ma
   PetscCall(ModelGetCell(o->model, c, vertices, x));
   PetscCheck(!element->matrices(x, material, ke, me), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
   n = 3 * element->n_nodes;
-  for (PetscInt i = 0; i < n; i++) at[i] = 3 * (vertices[i / 3] - vStart) + i % 3;
+  for (PetscInt i = 0; i < n; i++) at[i] = 3 * vertices[i / 3] + i % 3;
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt j = 3; j < n; j++) f[at[i]] += ke[n * i + j] * (u[at[j]] - u[at[j % 3]]);
   PetscFunctionReturn(0);
@@ -28,48 +28,40 @@ static PetscErrorCode CellAddForce(Operators o, PetscInt c, const Elasticity *ma
 /* Adds the forces of all local cells */
 static PetscErrorCode CellsAddForces(Operators o, const PetscScalar u[], PetscScalar f[])
 {
-  const Part     *parts;
-  const PetscInt *cell_part;
-  PetscInt        n_parts, cStart, cEnd, vStart;
-  DM              dm;
+  const Part *parts;
+  const Mesh *mesh;
+  PetscInt    n_parts;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(o->model, &dm));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
+  PetscCall(ModelGetMesh(o->model, &mesh));
   PetscCall(ModelGetParts(o->model, &n_parts, &parts));
-  PetscCall(ModelGetCellParts(o->model, &cell_part));
-  for (PetscInt c = 0; c < cEnd - cStart; c++) {
-    const PetscInt   part     = cell_part[c];
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const PetscInt   part     = mesh->cell_part[c];
     const PetscReal  young    = o->p[N_PART_PARAMETERS * part + PART_YOUNG];
     const Elasticity material = ElasticityFromEngineering(young, parts[part].poisson, 1);
 
-    PetscCall(CellAddForce(o, c, &material, vStart, u, f));
+    PetscCall(CellAddForce(o, c, &material, u, f));
   }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode OperatorsInternalForces(Operators operators, Vec u, Vec local)
 {
-  const PetscScalar *displacement;
-  PetscScalar       *force;
-  Vec                u_local;
-  DM                 dm;
+  const Mesh  *mesh;
+  PetscReal   *displacement;
+  PetscScalar *force;
 
   PetscFunctionBeginUser;
   PetscCheck(operators->model, operators->comm, PETSC_ERR_ARG_WRONGSTATE,
              "internal forces need a model: loaded matrices have no elements");
-  PetscCall(ModelGetDM(operators->model, &dm));
-  PetscCall(DMGetLocalVector(dm, &u_local));
-  PetscCall(VecSet(u_local, 0)); /* the held displacements, which global vectors do not have */
-  PetscCall(DMGlobalToLocal(dm, u, INSERT_VALUES, u_local));
+  PetscCall(ModelGetMesh(operators->model, &mesh));
+  PetscCall(PetscMalloc1(3 * mesh->n_vertices, &displacement));
+  PetscCall(ModelGetNodal(operators->model, u, displacement));
   PetscCall(VecSet(local, 0));
-  PetscCall(VecGetArrayRead(u_local, &displacement));
   PetscCall(VecGetArray(local, &force));
   PetscCall(CellsAddForces(operators, displacement, force));
   PetscCall(VecRestoreArray(local, &force));
-  PetscCall(VecRestoreArrayRead(u_local, &displacement));
-  PetscCall(DMRestoreLocalVector(dm, &u_local));
+  PetscCall(PetscFree(displacement));
   PetscCall(ModelSumShared(operators->model, local));
   PetscFunctionReturn(0);
 }
@@ -101,14 +93,11 @@ PetscErrorCode OperatorsApplyBodies(Operators operators, Vec u, Vec f)
   const PetscInt    *unknowns;
   PetscScalar       *value;
   PetscInt           n, begin, end;
-  Vec                coordinates, local;
-  DM                 dm;
+  Vec                local;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(operators->model, &dm));
   PetscCall(ModelGetUnknowns(operators->model, &unknowns));
-  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
-  PetscCall(VecDuplicate(coordinates, &local));
+  PetscCall(ModelCreateNodal(operators->model, &local));
   PetscCall(OperatorsInternalForces(operators, u, local));
   PetscCall(VecGetLocalSize(local, &n));
   PetscCall(VecGetOwnershipRange(f, &begin, &end));

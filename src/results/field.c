@@ -15,140 +15,34 @@
 
 /* A further shape of cells is one more row */
 static const FieldShape field_shapes[] = {
-  {DM_POLYTOPE_HEXAHEDRON, 12, "Hexahedron", 8, {0, 3, 2, 1, 4, 5, 6, 7}},
+  {DM_POLYTOPE_HEXAHEDRON, 12, "Hexahedron", 8},
 };
 
-/* The rows that belong to the points of a global numbering (negative where another rank owns the point) */
-static PetscErrorCode RowsFromNumbering(MPI_Comm comm, IS numbering, ResultsRows *rows)
+/* The rows of this rank, n_local of them, after those of the ranks before */
+static PetscErrorCode RowsSet(MPI_Comm comm, PetscInt n_local, ResultsRows *rows)
 {
-  const PetscInt *number;
-  PetscInt        n;
-
   PetscFunctionBeginUser;
-  rows->n_local = 0;
-  rows->first   = 0;
-  PetscCall(ISGetLocalSize(numbering, &n));
-  PetscCall(ISGetIndices(numbering, &number));
-  for (PetscInt i = 0; i < n; i++) rows->n_local += number[i] >= 0 ? 1 : 0;
-  PetscCall(ISRestoreIndices(numbering, &number));
+  *rows = (ResultsRows){.n_local = n_local};
   PetscCallMPI(MPI_Exscan(&rows->n_local, &rows->first, 1, MPIU_INT, MPI_SUM, comm));
   PetscCallMPI(MPI_Allreduce(&rows->n_local, &rows->n_global, 1, MPIU_INT, MPI_SUM, comm));
   PetscFunctionReturn(0);
 }
 
-/* Finds the one shape of all cells */
-static PetscErrorCode FieldFindShape(ResultsField field)
+/* Writes an array [local vertices][width] as dataset `path`, [nodes][width] */
+static PetscErrorCode FieldWriteNodes(ResultsField field, const char path[], PetscInt width, const PetscReal array[])
 {
-  PetscInt       c_start, c_end, range[2] = {-1, -DM_NUM_POLYTOPES};
-  DMPolytopeType type;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexGetHeightStratum(field->dm, 0, &c_start, &c_end));
-  for (PetscInt c = c_start; c < c_end; c++) {
-    PetscCall(DMPlexGetCellType(field->dm, c, &type));
-    range[0] = PetscMax(range[0], (PetscInt)type);
-    range[1] = PetscMax(range[1], -(PetscInt)type);
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 2, MPIU_INT, MPI_MAX, field->h5.comm));
-  for (size_t i = 0; i < sizeof(field_shapes) / sizeof(field_shapes[0]); i++) {
-    if ((PetscInt)field_shapes[i].polytope == range[0] && range[0] == -range[1]) field->xdmf.shape = &field_shapes[i];
-  }
-  PetscCheck(field->xdmf.shape, field->h5.comm, PETSC_ERR_SUP, "fields need a mesh of hexahedra only");
-  PetscFunctionReturn(0);
-}
-
-/* Gathers values[n_local][width] of the owned vertices from an array in the layout of a local section; NULL: one row
-   per local vertex */
-static PetscErrorCode FieldGatherNodes(ResultsField field, PetscSection section, PetscInt width,
-                                       const PetscReal array[], PetscReal values[])
-{
-  IS              numbering;
-  const PetscInt *number;
-  PetscInt        v_start, v_end, offset, n = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexGetDepthStratum(field->dm, 0, &v_start, &v_end));
-  PetscCall(DMPlexGetVertexNumbering(field->dm, &numbering));
-  PetscCall(ISGetIndices(numbering, &number));
-  for (PetscInt v = v_start; v < v_end; v++) {
-    if (number[v - v_start] < 0) continue;
-    offset = width * (v - v_start);
-    if (section) PetscCall(PetscSectionGetOffset(section, v, &offset));
-    for (PetscInt d = 0; d < width; d++) values[n++] = array[offset + d];
-  }
-  PetscCall(ISRestoreIndices(numbering, &number));
-  PetscFunctionReturn(0);
-}
-
-/* Writes an array as dataset `path`, [nodes][width]; section as in FieldGatherNodes() */
-static PetscErrorCode FieldWriteNodes(ResultsField field, const char path[], PetscSection section, PetscInt width,
-                                      const PetscReal array[])
-{
-  PetscReal *values;
-  hid_t      real;
+  const Mesh *mesh = field->mesh;
+  PetscReal  *values;
+  PetscInt    n = 0;
+  hid_t       real;
 
   PetscFunctionBeginUser;
   PetscCall(PetscDataTypeToHDF5DataType(PETSC_REAL, &real));
   PetscCall(PetscMalloc1(width * field->nodes.n_local, &values));
-  PetscCall(FieldGatherNodes(field, section, width, array, values));
+  for (PetscInt i = 0; i < width * mesh->n_vertices; i++)
+    if (mesh->owned[i / width]) values[n++] = array[i];
   PetscCall(OutFileH5Write(&field->h5, path, real, &field->nodes, width, values));
   PetscCall(PetscFree(values));
-  PetscFunctionReturn(0);
-}
-
-/* Writes a local vector as dataset `path`, three values per node */
-static PetscErrorCode FieldWriteVector(ResultsField field, const char path[], PetscSection section, Vec local)
-{
-  const PetscScalar *array;
-
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(local, &array));
-  PetscCall(FieldWriteNodes(field, path, section, 3, array));
-  PetscCall(VecRestoreArrayRead(local, &array));
-  PetscFunctionReturn(0);
-}
-
-/* Global numbers of the corners of local cell c in VTK's order */
-static PetscErrorCode FieldCellCorners(ResultsField field, PetscInt c, PetscInt v_start, PetscInt v_end,
-                                       const PetscInt number[], PetscInt corners[])
-{
-  PetscInt *closure = NULL, n_points, vertices[8], n = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexGetTransitiveClosure(field->dm, c, PETSC_TRUE, &n_points, &closure));
-  for (PetscInt i = 0; i < n_points; i++) {
-    const PetscInt p = closure[2 * i];
-
-    if (p >= v_start && p < v_end)
-      vertices[n++] = number[p - v_start] < 0 ? -(number[p - v_start] + 1) : number[p - v_start];
-  }
-  PetscCall(DMPlexRestoreTransitiveClosure(field->dm, c, PETSC_TRUE, &n_points, &closure));
-  for (PetscInt i = 0; i < field->xdmf.shape->n_nodes; i++) corners[i] = vertices[field->xdmf.shape->closure_order[i]];
-  PetscFunctionReturn(0);
-}
-
-/* Fills connectivity[n_local][n_nodes] and part[n_local] of the owned cells */
-static PetscErrorCode FieldGatherCells(ResultsField field, const PetscInt cell_part[], PetscInt connectivity[],
-                                       PetscInt part[])
-{
-  IS              cells, vertices;
-  const PetscInt *cell_number, *number;
-  PetscInt        c_start, c_end, v_start, v_end, n = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexGetHeightStratum(field->dm, 0, &c_start, &c_end));
-  PetscCall(DMPlexGetDepthStratum(field->dm, 0, &v_start, &v_end));
-  PetscCall(DMPlexGetCellNumbering(field->dm, &cells));
-  PetscCall(DMPlexGetVertexNumbering(field->dm, &vertices));
-  PetscCall(ISGetIndices(cells, &cell_number));
-  PetscCall(ISGetIndices(vertices, &number));
-  for (PetscInt c = c_start; c < c_end; c++) {
-    if (cell_number[c - c_start] < 0) continue;
-    PetscCall(FieldCellCorners(field, c, v_start, v_end, number, &connectivity[n * field->xdmf.shape->n_nodes]));
-    part[n++] = cell_part[c - c_start];
-  }
-  PetscCall(ISRestoreIndices(cells, &cell_number));
-  PetscCall(ISRestoreIndices(vertices, &number));
   PetscFunctionReturn(0);
 }
 
@@ -176,21 +70,22 @@ static PetscErrorCode FieldWriteShapes(ResultsField field)
 }
 
 /* Writes connectivity and the part of each cell */
-static PetscErrorCode FieldWriteCells(ResultsField field, const PetscInt cell_part[])
+static PetscErrorCode FieldWriteCells(ResultsField field)
 {
-  const PetscInt    n_nodes = field->xdmf.shape->n_nodes;
+  const Mesh       *mesh    = field->mesh;
+  const PetscInt    n_nodes = mesh->n_nodes;
   const ResultsRows ids     = {field->cells.first * n_nodes, field->cells.n_local * n_nodes,
                                field->cells.n_global * n_nodes};
-  PetscInt         *connectivity, *part;
+  PetscInt         *connectivity;
   hid_t             integer;
 
   PetscFunctionBeginUser;
   PetscCall(PetscDataTypeToHDF5DataType(PETSC_INT, &integer));
-  PetscCall(PetscMalloc2(ids.n_local, &connectivity, field->cells.n_local, &part));
-  PetscCall(FieldGatherCells(field, cell_part, connectivity, part));
+  PetscCall(PetscMalloc1(ids.n_local, &connectivity));
+  for (PetscInt i = 0; i < ids.n_local; i++) connectivity[i] = mesh->number[mesh->corner[i]];
   PetscCall(OutFileH5Write(&field->h5, "/VTKHDF/Connectivity", integer, &ids, 1, connectivity));
-  PetscCall(OutFileH5Write(&field->h5, "/VTKHDF/CellData/part", integer, &field->cells, 1, part));
-  PetscCall(PetscFree2(connectivity, part));
+  PetscCall(OutFileH5Write(&field->h5, "/VTKHDF/CellData/part", integer, &field->cells, 1, mesh->cell_part));
+  PetscCall(PetscFree(connectivity));
   PetscFunctionReturn(0);
 }
 
@@ -220,22 +115,18 @@ static PetscErrorCode FieldWriteHead(ResultsField field)
 }
 
 /* Checks that the mesh is one that can be written, and counts its nodes and cells */
-static PetscErrorCode FieldSetMesh(ResultsField field, DM dm)
+static PetscErrorCode FieldSetMesh(ResultsField field, const Mesh *mesh)
 {
-  PetscInt dim;
-  IS       numbering;
+  PetscInt n_nodes = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(DMGetCoordinateDim(dm, &dim));
-  PetscCheck(dim == 3, field->h5.comm, PETSC_ERR_SUP, "fields need a mesh in three dimensions, not %" PetscInt_FMT,
-             dim);
-  PetscCall(PetscObjectReference((PetscObject)dm));
-  field->dm = dm;
-  PetscCall(FieldFindShape(field));
-  PetscCall(DMPlexGetVertexNumbering(dm, &numbering));
-  PetscCall(RowsFromNumbering(field->h5.comm, numbering, &field->nodes));
-  PetscCall(DMPlexGetCellNumbering(dm, &numbering));
-  PetscCall(RowsFromNumbering(field->h5.comm, numbering, &field->cells));
+  field->mesh = mesh;
+  for (size_t i = 0; i < sizeof(field_shapes) / sizeof(field_shapes[0]); i++)
+    if (field_shapes[i].polytope == mesh->shape) field->xdmf.shape = &field_shapes[i];
+  PetscCheck(field->xdmf.shape, field->h5.comm, PETSC_ERR_SUP, "fields need a mesh of hexahedra only");
+  for (PetscInt v = 0; v < mesh->n_vertices; v++) n_nodes += mesh->owned[v];
+  PetscCall(RowsSet(field->h5.comm, n_nodes, &field->nodes));
+  PetscCall(RowsSet(field->h5.comm, mesh->n_cells, &field->cells));
   field->xdmf.n_nodes = field->nodes.n_global;
   field->xdmf.n_cells = field->cells.n_global;
   PetscFunctionReturn(0);
@@ -251,61 +142,50 @@ static PetscErrorCode FieldCheck(ResultsField field)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ResultsFieldOpen(Results results, const char name[], DM dm, PetscInt n_parts, const char *const parts[],
-                                const PetscInt cell_part[], ResultsField *field)
+PetscErrorCode ResultsFieldOpen(Results results, const char name[], const Mesh *mesh, ResultsField *field)
 {
   ResultsField f;
-  PetscSection section;
-  Vec          coordinates;
 
   PetscFunctionBeginUser;
-  PetscCheck(dm, results->comm, PETSC_ERR_ARG_NULL, "fields need a mesh, and %s has none", name);
+  PetscCheck(mesh, results->comm, PETSC_ERR_ARG_NULL, "fields need a mesh, and %s has none", name);
   PetscCall(PetscNew(&f));
   PetscCall(OutFileSetName(results, name, ".h5", &f->h5));
   PetscCall(OutFileSetName(results, name, ".xmf", &f->xdmf.file));
   PetscCall(PetscSNPrintf(f->xdmf.h5_name, sizeof(f->xdmf.h5_name), "%s.h5", name));
-  PetscCall(FieldSetMesh(f, dm));
+  PetscCall(FieldSetMesh(f, mesh));
   PetscCall(OutFileOpenH5(&f->h5));
   PetscCall(OutFileOpenText(&f->xdmf.file));
-  PetscCall(XdmfBegin(&f->xdmf, n_parts, parts));
+  PetscCall(XdmfBegin(&f->xdmf, mesh->n_parts, mesh->part));
   PetscCall(FieldCheck(f));
   PetscCall(FieldWriteHead(f));
-  PetscCall(DMGetCoordinateSection(dm, &section));
-  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
-  PetscCall(FieldWriteVector(f, "/VTKHDF/Points", section, coordinates));
+  PetscCall(FieldWriteNodes(f, "/VTKHDF/Points", 3, mesh->x));
   PetscCall(FieldWriteShapes(f));
-  PetscCall(FieldWriteCells(f, cell_part));
-  PetscCall(OutFileH5Strings(&f->h5, "/VTKHDF/CellData/part", "names", n_parts, parts));
+  PetscCall(FieldWriteCells(f));
+  PetscCall(OutFileH5Strings(&f->h5, "/VTKHDF/CellData/part", "names", mesh->n_parts, mesh->part));
   PetscCall(FieldCheck(f));
   *field = f;
   PetscFunctionReturn(0);
 }
 
-/* Writes the dataset `key``suffix` with its title; zero for x = NULL and where a support fixes the displacement */
-static PetscErrorCode FieldWriteShape(ResultsField field, const char key[], const char suffix[], const char title[],
-                                      Vec x)
+/* Writes the dataset `key``suffix` with its title */
+static PetscErrorCode FieldWriteArray(ResultsField field, const char key[], const char suffix[], const char title[],
+                                      PetscInt width, const PetscReal array[])
 {
-  char         path[PETSC_MAX_PATH_LEN];
-  PetscSection section;
-  Vec          local;
+  char path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(path, sizeof(path), "/VTKHDF/PointData/%s%s", key, suffix));
-  PetscCall(DMGetLocalSection(field->dm, &section));
-  PetscCall(DMGetLocalVector(field->dm, &local));
-  PetscCall(VecSet(local, 0));
-  if (x) PetscCall(DMGlobalToLocal(field->dm, x, INSERT_VALUES, local));
-  PetscCall(FieldWriteVector(field, path, section, local));
-  PetscCall(DMRestoreLocalVector(field->dm, &local));
+  PetscCall(FieldWriteNodes(field, path, width, array));
   PetscCall(OutFileH5Strings(&field->h5, path, "title", 0, &title));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ResultsFieldWriteMode(ResultsField field, const char key[], const char title[], Vec re, Vec im)
+PetscErrorCode ResultsFieldWriteMode(ResultsField field, const char key[], const char title[], const PetscReal re[],
+                                     const PetscReal im[])
 {
   PetscFunctionBeginUser;
-  PetscCall(FieldWriteShape(field, key, "_re", title, re));
-  PetscCall(FieldWriteShape(field, key, "_im", title, im));
+  PetscCall(FieldWriteArray(field, key, "_re", title, 3, re));
+  PetscCall(FieldWriteArray(field, key, "_im", title, 3, im));
   PetscCall(XdmfGridBegin(&field->xdmf, key, title, NULL));
   PetscCall(XdmfNodal(&field->xdmf, "displacement_re", key, "_re", 3));
   PetscCall(XdmfNodal(&field->xdmf, "displacement_im", key, "_im", 3));
@@ -316,8 +196,6 @@ PetscErrorCode ResultsFieldWriteMode(ResultsField field, const char key[], const
 
 PetscErrorCode ResultsFieldWriteNodal(ResultsField field, const char title[], PetscInt n, const ResultsNodal arrays[])
 {
-  char path[PETSC_MAX_PATH_LEN];
-
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
     PetscCheck(arrays[i].width == 1 || arrays[i].width == 3, field->h5.comm, PETSC_ERR_ARG_OUTOFRANGE,
@@ -325,9 +203,7 @@ PetscErrorCode ResultsFieldWriteNodal(ResultsField field, const char title[], Pe
   }
   PetscCall(XdmfGridBegin(&field->xdmf, title, title, field->timed ? &field->time : NULL));
   for (PetscInt i = 0; i < n; i++) {
-    PetscCall(PetscSNPrintf(path, sizeof(path), "/VTKHDF/PointData/%s", arrays[i].key));
-    PetscCall(FieldWriteNodes(field, path, NULL, arrays[i].width, arrays[i].values));
-    PetscCall(OutFileH5Strings(&field->h5, path, "title", 0, &title));
+    PetscCall(FieldWriteArray(field, arrays[i].key, "", title, arrays[i].width, arrays[i].values));
     PetscCall(XdmfNodal(&field->xdmf, arrays[i].key, arrays[i].key, "", arrays[i].width));
   }
   PetscCall(XdmfGridEnd(&field->xdmf));
@@ -345,7 +221,6 @@ PetscErrorCode ResultsFieldClose(ResultsField *field)
 
   PetscCall(XdmfEnd(&(*field)->xdmf));
   failure = OutFilesPublish(2, files);
-  PetscCall(DMDestroy(&(*field)->dm));
   PetscCall(PetscFree(*field));
   PetscCall(failure);
   PetscFunctionReturn(0);

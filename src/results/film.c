@@ -5,30 +5,24 @@
 #include "resultsimpl.h"
 
 struct _p_ResultsFilm {
-  Results         results;
-  char            name[64], frame[64];
-  DM              dm;
-  PetscInt        n_parts, n_frames, room; /* frames so far, and times that there is room for */
-  char          **parts;
-  const PetscInt *cell_part;
-  PetscReal      *time; /* [n_frames], s */
+  Results     results;
+  char        name[64], frame[64];
+  const Mesh *mesh;           /* borrowed */
+  PetscInt    n_frames, room; /* frames so far, and times that there is room for */
+  PetscReal  *time;           /* [n_frames], s */
 };
 
-PetscErrorCode ResultsFilmCreate(Results results, const char name[], const char frame[], DM dm, PetscInt n_parts,
-                                 const char *const parts[], const PetscInt cell_part[], ResultsFilm *film)
+PetscErrorCode ResultsFilmCreate(Results results, const char name[], const char frame[], const Mesh *mesh,
+                                 ResultsFilm *film)
 {
   ResultsFilm f;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&f));
-  f->results   = results;
-  f->n_parts   = n_parts;
-  f->cell_part = cell_part;
-  f->dm        = dm;
-  PetscCall(PetscObjectReference((PetscObject)dm));
+  f->results = results;
+  f->mesh    = mesh;
   PetscCall(PetscStrncpy(f->name, name, sizeof(f->name)));
   PetscCall(PetscStrncpy(f->frame, frame, sizeof(f->frame)));
-  PetscCall(PetscStrNArrayallocpy(n_parts, parts, &f->parts));
   *film = f;
   PetscFunctionReturn(0);
 }
@@ -77,8 +71,7 @@ static PetscErrorCode FrameWrite(ResultsFilm film, PetscInt k, const char title[
 
   PetscFunctionBeginUser;
   PetscCall(FrameName(film, k, name));
-  PetscCall(ResultsFieldOpen(film->results, name, film->dm, film->n_parts, (const char *const *)film->parts,
-                             film->cell_part, &field));
+  PetscCall(ResultsFieldOpen(film->results, name, film->mesh, &field));
   field->timed = PETSC_TRUE;
   field->time  = film->time[k];
   PetscCall(ResultsFieldWriteNodal(field, title, n, arrays));
@@ -97,7 +90,7 @@ static PetscErrorCode FramesList(ResultsFilm film, PetscInt n, const ResultsNoda
   PetscFunctionBeginUser;
   PetscCall(OutFileSetName(film->results, film->name, ".xmf", file));
   PetscCall(OutFileOpenText(file));
-  PetscCall(XdmfBegin(xdmf, film->n_parts, (const char *const *)film->parts));
+  PetscCall(XdmfBegin(xdmf, film->mesh->n_parts, film->mesh->part));
   for (PetscInt k = 0; k < film->n_frames; k++) {
     char name[80];
 
@@ -130,8 +123,6 @@ PetscErrorCode ResultsFilmDestroy(ResultsFilm *film)
 {
   PetscFunctionBeginUser;
   if (!*film) PetscFunctionReturn(0);
-  PetscCall(DMDestroy(&(*film)->dm));
-  PetscCall(PetscStrNArrayDestroy((*film)->n_parts, &(*film)->parts));
   PetscCall(PetscFree((*film)->time));
   PetscCall(PetscFree(*film));
   PetscFunctionReturn(0);

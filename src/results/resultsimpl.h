@@ -41,7 +41,6 @@ typedef struct {
   unsigned char  vtk;  /* VTK cell type */
   const char    *xdmf; /* XDMF TopologyType */
   PetscInt       n_nodes;
-  PetscInt       closure_order[8]; /* VTK corner i is vertex closure_order[i] of the DMPlex closure */
 } FieldShape;
 
 /* XDMF text: grids on one mesh, whose values are in HDF5 files beside it */
@@ -53,7 +52,7 @@ typedef struct {
 } Xdmf;
 
 struct _p_ResultsField {
-  DM          dm;
+  const Mesh *mesh; /* borrowed */
   OutFile     h5;
   Xdmf        xdmf;
   ResultsRows nodes, cells;

@@ -9,20 +9,17 @@
 static PetscErrorCode PressureSet(Model model, const char set[], const PetscScalar force[], PetscReal pressure[])
 {
   const PetscInt *v;
-  PetscInt        n, vStart;
+  PetscInt        n;
   PetscReal      *normals;
-  DM              dm;
   IS              is;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
   PetscCall(ModelGetSetNormals(model, set, &normals));
   PetscCall(ModelGetSetVertices(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &v));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt at   = 3 * (v[i] - vStart);
+    const PetscInt at   = 3 * v[i];
     PetscReal      area = 0, along = 0;
 
     for (int d = 0; d < 3; d++) {
@@ -57,30 +54,11 @@ static PetscErrorCode PressureCreate(Model model, Contact contact, Vec force, Pe
   PetscFunctionReturn(0);
 }
 
-/* Names of the parts, for the file; the caller frees the list */
-static PetscErrorCode FieldBegin(Model model, Results results, ResultsField *field)
-{
-  const char    **names;
-  const Part     *parts;
-  const PetscInt *cell_part;
-  PetscInt        n;
-  DM              dm;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(ModelGetParts(model, &n, &parts));
-  PetscCall(ModelGetCellParts(model, &cell_part));
-  PetscCall(PetscMalloc1(n, &names));
-  for (PetscInt i = 0; i < n; i++) names[i] = parts[i].name;
-  PetscCall(ResultsFieldOpen(results, "static", dm, n, names, cell_part, field));
-  PetscCall(PetscFree(names));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode FieldsWrite(Statics s, Results results)
 {
   const PetscScalar *u, *f;
   PetscReal         *pressure;
+  const Mesh        *mesh;
   PetscBool          wanted;
   Contact            contact;
   ResultsField       field;
@@ -95,7 +73,8 @@ PetscErrorCode FieldsWrite(Statics s, Results results)
   PetscCall(VecDuplicate(displacement, &force));
   PetscCall(ContactNodalForces(contact, s->state, force));
   PetscCall(PressureCreate(model, contact, force, &pressure));
-  PetscCall(FieldBegin(model, results, &field));
+  PetscCall(ModelGetMesh(model, &mesh));
+  PetscCall(ResultsFieldOpen(results, "static", mesh, &field));
   PetscCall(VecGetArrayRead(displacement, &u));
   PetscCall(VecGetArrayRead(force, &f));
   PetscCall(ResultsFieldWriteNodal(

@@ -100,43 +100,26 @@ static PetscErrorCode UnknownDescribe(Model model, PetscInt unknown, PetscReal x
     {-PETSC_MAX_REAL, -PETSC_MAX_REAL, -PETSC_MAX_REAL},
     -1, -1
   };
-  const PetscReal *coordinates;
-  const PetscInt  *unknowns, *cell_part;
-  const Element   *element;
-  const Part      *parts;
-  PetscInt         vStart, vEnd, cStart, cEnd, n_parts, at = -1;
-  MPI_Comm         comm;
-  DM               dm;
+  const Mesh *mesh;
+  PetscInt    at = -1;
+  MPI_Comm    comm;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetComm(model, &comm));
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
-  PetscCall(ModelGetCoordinates(model, &coordinates));
-  PetscCall(ModelGetUnknowns(model, &unknowns));
-  PetscCall(ModelGetCellParts(model, &cell_part));
-  PetscCall(ModelGetElement(model, &element));
-  PetscCall(ModelGetParts(model, &n_parts, &parts));
-  for (PetscInt i = 0; i < 3 * (vEnd - vStart); i++)
-    if (unknowns[i] == unknown) at = i;
-  for (PetscInt c = 0; c < cEnd - cStart && at >= 0; c++) {
-    PetscInt  vertices[ELEMENT_MAX_NODES];
-    PetscReal corner[ELEMENT_MAX_DOFS];
-
-    PetscCall(ModelGetCell(model, c, vertices, corner));
-    for (PetscInt i = 0; i < element->n_nodes; i++)
-      if (vertices[i] - vStart == at / 3) found.part = (int)cell_part[c];
-  }
+  PetscCall(ModelGetMesh(model, &mesh));
+  for (PetscInt i = 0; i < 3 * mesh->n_vertices; i++)
+    if (mesh->unknown[i] == unknown) at = i;
+  for (PetscInt i = 0; i < mesh->n_nodes * mesh->n_cells && at >= 0; i++)
+    if (mesh->corner[i] == at / 3) found.part = (int)mesh->cell_part[i / mesh->n_nodes];
   if (at >= 0) {
-    PetscCall(PetscArraycpy(found.x, &coordinates[at - at % 3], 3));
+    PetscCall(PetscArraycpy(found.x, &mesh->x[at - at % 3], 3));
     found.direction = (int)(at % 3);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found.x, 3, MPIU_REAL, MPI_MAX, comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &found.direction, 2, MPI_INT, MPI_MAX, comm));
   PetscCall(PetscArraycpy(x, found.x, 3));
   *direction = found.direction;
-  PetscCall(PetscStrncpy(part, found.part >= 0 ? parts[found.part].name : "?", 64));
+  PetscCall(PetscStrncpy(part, found.part >= 0 ? mesh->part[found.part] : "?", 64));
   PetscFunctionReturn(0);
 }
 

@@ -28,17 +28,13 @@ PetscErrorCode LoadCreate(Operators operators, Vec *f, PetscReal *size)
 {
   const Load *loads;
   PetscInt    n;
-  Vec         coordinates, local;
+  Vec         local;
   Model       model;
-  DM          dm;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(operators, &model, NULL));
   PetscCall(ModelGetLoads(model, &n, &loads));
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
-  PetscCall(VecDuplicate(coordinates, &local));
-  PetscCall(VecSet(local, 0));
+  PetscCall(ModelCreateNodal(model, &local));
   *size = 0;
   for (PetscInt i = 0; i < n; i++) {
     PetscCall(ModelAddLoad(model, i, local));

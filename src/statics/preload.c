@@ -28,9 +28,8 @@
 */
 #include "preload.h"
 
-/* Adds local cell c with displacements u, three values per local vertex, the first of them vStart */
-static PetscErrorCode CellAdd(Model model, PetscInt c, const Elasticity *material, PetscInt vStart,
-                              const PetscScalar u[], Mat K)
+/* Adds local cell c with displacements u, three values per local vertex */
+static PetscErrorCode CellAdd(Model model, PetscInt c, const Elasticity *material, const PetscReal u[], Mat K)
 {
   const Element  *element;
   const PetscInt *unknowns;
@@ -43,7 +42,7 @@ static PetscErrorCode CellAdd(Model model, PetscInt c, const Elasticity *materia
   PetscCall(ModelGetCell(model, c, vertices, x));
   n = 3 * element->n_nodes;
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt at = 3 * (vertices[i / 3] - vStart) + i % 3;
+    const PetscInt at = 3 * vertices[i / 3] + i % 3;
 
     rows[i] = unknowns[at];
     ue[i]   = u[at];
@@ -54,50 +53,44 @@ static PetscErrorCode CellAdd(Model model, PetscInt c, const Elasticity *materia
 }
 
 /* Adds all local cells */
-static PetscErrorCode CellsAdd(Operators operators, Model model, DM dm, const PetscScalar u[], Mat K)
+static PetscErrorCode CellsAdd(Operators operators, Model model, const PetscReal u[], Mat K)
 {
-  const Part     *parts;
-  const PetscInt *cell_part;
-  PetscInt        n_parts, cStart, cEnd, vStart;
+  const Part *parts;
+  const Mesh *mesh;
+  PetscInt    n_parts;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
+  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(ModelGetParts(model, &n_parts, &parts));
-  PetscCall(ModelGetCellParts(model, &cell_part));
-  for (PetscInt c = 0; c < cEnd - cStart; c++) {
-    const Part *part = &parts[cell_part[c]];
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const Part *part = &parts[mesh->cell_part[c]];
     PetscReal   young;
     Elasticity  material;
 
-    PetscCall(OperatorsGetYoung(operators, cell_part[c], &young));
+    PetscCall(OperatorsGetYoung(operators, mesh->cell_part[c], &young));
     material = ElasticityFromEngineering(young, part->poisson, part->density);
-    PetscCall(CellAdd(model, c, &material, vStart, u, K));
+    PetscCall(CellAdd(model, c, &material, u, K));
   }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode GeometricStiffnessCreate(Operators operators, Vec u, Mat *K)
 {
-  const PetscScalar *displacement;
-  Model              model;
-  Mat                bodies;
-  Vec                local;
-  DM                 dm;
+  const Mesh *mesh;
+  PetscReal  *displacement;
+  Model       model;
+  Mat         bodies;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(operators, &model, NULL));
   PetscCall(OperatorsGetBodies(operators, &bodies)); /* couples the same unknowns */
   PetscCall(MatDuplicate(bodies, MAT_DO_NOT_COPY_VALUES, K));
   PetscCall(MatSetOption(*K, MAT_NO_OFF_PROC_ENTRIES, PETSC_FALSE)); /* which sums of matrices set */
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMGetLocalVector(dm, &local));
-  PetscCall(VecSet(local, 0)); /* the held displacements, which global vectors do not have */
-  PetscCall(DMGlobalToLocal(dm, u, INSERT_VALUES, local));
-  PetscCall(VecGetArrayRead(local, &displacement));
-  PetscCall(CellsAdd(operators, model, dm, displacement, *K));
-  PetscCall(VecRestoreArrayRead(local, &displacement));
-  PetscCall(DMRestoreLocalVector(dm, &local));
+  PetscCall(ModelGetMesh(model, &mesh));
+  PetscCall(PetscMalloc1(3 * mesh->n_vertices, &displacement));
+  PetscCall(ModelGetNodal(model, u, displacement));
+  PetscCall(CellsAdd(operators, model, displacement, *K));
+  PetscCall(PetscFree(displacement));
   PetscCall(MatAssemblyBegin(*K, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*K, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(0);

@@ -11,15 +11,12 @@
 static PetscErrorCode UnbalanceCreate(Statics s, Model model, Contact contact, Vec *local)
 {
   PetscInt    n;
-  Vec         coordinates, part;
+  Vec         part;
   const Load *loads;
-  DM          dm;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
-  PetscCall(VecDuplicate(coordinates, local));
-  PetscCall(VecDuplicate(coordinates, &part));
+  PetscCall(ModelCreateNodal(model, local));
+  PetscCall(ModelCreateNodal(model, &part));
   PetscCall(OperatorsInternalForces(s->operators, s->u, *local));
   PetscCall(ContactNodalForces(contact, s->state, part));
   PetscCall(VecAXPY(*local, -1, part));
@@ -37,15 +34,12 @@ static PetscErrorCode SetSum(Model model, const char set[], const PetscBool dire
 {
   PetscScalar    *value;
   const PetscInt *v;
-  PetscInt        n, vStart;
+  PetscInt        n;
   MPI_Comm        comm;
-  DM              dm;
   IS              is;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetComm(model, &comm));
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
   PetscCall(ModelGetOwnedVertices(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &v));
@@ -53,8 +47,8 @@ static PetscErrorCode SetSum(Model model, const char set[], const PetscBool dire
   for (int d = 0; d < 3; d++) {
     sum[d] = 0;
     for (PetscInt i = 0; i < n && direction[d]; i++) {
-      sum[d] += PetscRealPart(value[3 * (v[i] - vStart) + d]);
-      value[3 * (v[i] - vStart) + d] = 0;
+      sum[d] += PetscRealPart(value[3 * v[i] + d]);
+      value[3 * v[i] + d] = 0;
     }
   }
   PetscCall(VecRestoreArray(local, &value));
@@ -75,13 +69,13 @@ static PetscErrorCode Row(ResultsTable table, const char name[], const char kind
 /* Displacements of all local vertices, three values each, zero where held */
 PetscErrorCode DisplacementsCreate(Statics s, Model model, Vec *local)
 {
-  DM dm;
+  PetscScalar *nodal;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMCreateLocalVector(dm, local));
-  PetscCall(VecSet(*local, 0));
-  PetscCall(DMGlobalToLocal(dm, s->u, INSERT_VALUES, *local));
+  PetscCall(ModelCreateNodal(model, local));
+  PetscCall(VecGetArray(*local, &nodal));
+  PetscCall(ModelGetNodal(model, s->u, nodal));
+  PetscCall(VecRestoreArray(*local, &nodal));
   PetscFunctionReturn(0);
 }
 

@@ -23,25 +23,21 @@ static PetscReal RigidMotion(int k, int d, const PetscReal x[3], const PetscReal
 static PetscErrorCode BodiesMeasure(Model model, PetscInt n_bodies, const PetscInt body[], PetscReal centre[][3],
                                     PetscReal length[])
 {
-  const PetscReal *x;
-  PetscReal       *box;
-  PetscInt         vStart, vEnd;
-  MPI_Comm         comm;
-  DM               dm;
+  const Mesh *mesh;
+  PetscReal  *box;
+  MPI_Comm    comm;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetComm(model, &comm));
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
-  PetscCall(ModelGetCoordinates(model, &x));
+  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(PetscMalloc1(6 * n_bodies, &box)); /* upper ends, and lower ones with the other sign */
   for (PetscInt i = 0; i < 6 * n_bodies; i++) box[i] = -PETSC_MAX_REAL;
-  for (PetscInt i = 0; i < 3 * (vEnd - vStart); i++) {
+  for (PetscInt i = 0; i < 3 * mesh->n_vertices; i++) {
     PetscReal *end = &box[6 * body[i / 3] + i % 3];
 
     if (body[i / 3] < 0) continue;
-    end[0] = PetscMax(end[0], x[i]);
-    end[3] = PetscMax(end[3], -x[i]);
+    end[0] = PetscMax(end[0], mesh->x[i]);
+    end[3] = PetscMax(end[3], -mesh->x[i]);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, box, (PetscMPIInt)(6 * n_bodies), MPIU_REAL, MPI_MAX, comm));
   for (PetscInt i = 0; i < n_bodies; i++) {
@@ -59,23 +55,18 @@ static PetscErrorCode BodiesMeasure(Model model, PetscInt n_bodies, const PetscI
 static PetscErrorCode MotionSet(Model model, const PetscInt body[], PetscInt b, int k, const PetscReal centre[3],
                                 PetscReal length, Vec r)
 {
-  const PetscReal *x;
-  const PetscInt  *unknowns;
-  PetscInt         vStart, vEnd, begin, end;
-  PetscScalar     *value;
-  DM               dm;
+  const Mesh  *mesh;
+  PetscInt     begin, end;
+  PetscScalar *value;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
-  PetscCall(ModelGetCoordinates(model, &x));
-  PetscCall(ModelGetUnknowns(model, &unknowns));
+  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(VecSet(r, 0));
   PetscCall(VecGetOwnershipRange(r, &begin, &end));
   PetscCall(VecGetArray(r, &value));
-  for (PetscInt i = 0; i < 3 * (vEnd - vStart); i++)
-    if (body[i / 3] == b && unknowns[i] >= begin && unknowns[i] < end)
-      value[unknowns[i] - begin] = RigidMotion(k, (int)(i % 3), &x[i - i % 3], centre, length);
+  for (PetscInt i = 0; i < 3 * mesh->n_vertices; i++)
+    if (body[i / 3] == b && mesh->unknown[i] >= begin && mesh->unknown[i] < end)
+      value[mesh->unknown[i] - begin] = RigidMotion(k, (int)(i % 3), &mesh->x[i - i % 3], centre, length);
   PetscCall(VecRestoreArray(r, &value));
   PetscFunctionReturn(0);
 }

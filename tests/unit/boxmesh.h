@@ -2,6 +2,7 @@
 #pragma once
 
 #include <petscdmplex.h>
+#include <squeal/mesh.h>
 
 /* A box of hexahedra, whose constructor got two more arguments in PETSc 3.22 */
 static inline PetscErrorCode BoxMeshCreate(MPI_Comm comm, const PetscInt faces[3], DM *dm)
@@ -15,27 +16,51 @@ static inline PetscErrorCode BoxMeshCreate(MPI_Comm comm, const PetscInt faces[3
   PetscFunctionReturn(0);
 }
 
-/* Box of hexahedra, distributed, with three unknowns per vertex */
-static inline PetscErrorCode BoxMeshDistributed(MPI_Comm comm, const PetscInt faces[3], DM *dm)
+/* Tables of a unit cube of n[0] x n[1] x n[2] hexahedra of one part, each rank with layers of equal z; the lower rank
+   owns the vertices between two. Needs a layer for each rank. */
+static inline PetscErrorCode BoxMeshTabulate(MPI_Comm comm, const PetscInt n[3], Mesh *mesh)
 {
-  PetscInt     start, end;
-  PetscSection section;
-  DM           distributed;
+  static const char *const part[]  = {"disc"};
+  const PetscInt           step[3] = {1, n[0] + 1, (n[0] + 1) * (n[1] + 1)};
+  PetscMPIInt              rank, size;
+  PetscInt                 first, layers, *number, *corner, *cell_part;
+  PetscReal               *x;
+  PetscBool               *owned;
 
   PetscFunctionBeginUser;
-  PetscCall(BoxMeshCreate(comm, faces, dm));
-  PetscCall(DMPlexDistribute(*dm, 0, NULL, &distributed));
-  if (distributed) {
-    PetscCall(DMDestroy(dm));
-    *dm = distributed;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  first  = n[2] * rank / size;
+  layers = n[2] * (rank + 1) / size - first;
+  *mesh  = (Mesh){.shape      = DM_POLYTOPE_HEXAHEDRON,
+                  .n_vertices = step[2] * (layers + 1),
+                  .n_cells    = n[0] * n[1] * layers,
+                  .n_nodes    = 8,
+                  .n_parts    = 1,
+                  .part       = part};
+  PetscCall(PetscMalloc3(3 * mesh->n_vertices, &x, mesh->n_vertices, &number, mesh->n_vertices, &owned));
+  PetscCall(PetscCalloc2(8 * mesh->n_cells, &corner, mesh->n_cells, &cell_part));
+  for (PetscInt v = 0; v < mesh->n_vertices; v++) {
+    number[v] = v + step[2] * first;
+    owned[v]  = rank == 0 || v >= step[2] ? PETSC_TRUE : PETSC_FALSE;
+    for (int d = 0; d < 3; d++) x[3 * v + d] = (PetscReal)(number[v] / step[d] % (n[d] + 1)) / (PetscReal)n[d];
   }
-  PetscCall(PetscSectionCreate(comm, &section));
-  PetscCall(DMPlexGetChart(*dm, &start, &end));
-  PetscCall(PetscSectionSetChart(section, start, end));
-  PetscCall(DMPlexGetDepthStratum(*dm, 0, &start, &end));
-  for (PetscInt v = start; v < end; v++) PetscCall(PetscSectionSetDof(section, v, 3));
-  PetscCall(PetscSectionSetUp(section));
-  PetscCall(DMSetLocalSection(*dm, section));
-  PetscCall(PetscSectionDestroy(&section));
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    for (PetscInt i = 0; i < 8; i++)
+      corner[8 * c + i] = c % n[0] + (i % 4 == 1 || i % 4 == 2) + step[1] * (c / n[0] % n[1] + i % 4 / 2) +
+                          step[2] * (c / (n[0] * n[1]) + i / 4);
+  mesh->x         = x;
+  mesh->number    = number;
+  mesh->owned     = owned;
+  mesh->corner    = corner;
+  mesh->cell_part = cell_part;
+  PetscFunctionReturn(0);
+}
+
+static inline PetscErrorCode BoxMeshDestroy(Mesh *mesh)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(mesh->x, mesh->number, mesh->owned));
+  PetscCall(PetscFree2(mesh->corner, mesh->cell_part));
   PetscFunctionReturn(0);
 }

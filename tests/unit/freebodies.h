@@ -37,33 +37,29 @@ static inline void Rotation(const PetscReal x[3], const PetscReal value[3], Pets
 /* A field as a vector of the unknowns, at the vertices of a set or, where it is NULL, at all */
 static inline PetscErrorCode FieldCreate(const Chain *chain, Field field, const char set[], Vec local, Vec *u)
 {
-  const PetscReal   *x;
+  const Mesh        *mesh;
   const PetscScalar *value = NULL;
-  const PetscInt    *unknowns, *vertices;
-  PetscInt           n, vStart, vEnd;
+  const PetscInt    *vertices;
+  PetscInt           n;
   IS                 is;
-  DM                 dm;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsCreateVec(chain->operators, u));
   PetscCall(VecSetOption(*u, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
-  PetscCall(ModelGetDM(chain->model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
-  PetscCall(ModelGetCoordinates(chain->model, &x));
-  PetscCall(ModelGetUnknowns(chain->model, &unknowns));
+  PetscCall(ModelGetMesh(chain->model, &mesh));
   if (set)
     PetscCall(ModelGetSetVertices(chain->model, set, &is));
   else
-    PetscCall(ISCreateStride(PETSC_COMM_SELF, vEnd - vStart, vStart, 1, &is));
+    PetscCall(ISCreateStride(PETSC_COMM_SELF, mesh->n_vertices, 0, 1, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
   if (local) PetscCall(VecGetArrayRead(local, &value));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt v = 3 * (vertices[i] - vStart);
+    const PetscInt v = 3 * vertices[i];
     PetscReal      here[3];
 
-    field(&x[v], value ? &value[v] : NULL, here);
-    PetscCall(VecSetValues(*u, 3, &unknowns[v], here, INSERT_VALUES));
+    field(&mesh->x[v], value ? &value[v] : NULL, here);
+    PetscCall(VecSetValues(*u, 3, &mesh->unknown[v], here, INSERT_VALUES));
   }
   if (local) PetscCall(VecRestoreArrayRead(local, &value));
   PetscCall(ISRestoreIndices(is, &vertices));

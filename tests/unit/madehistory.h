@@ -47,14 +47,12 @@ static inline void MadeMotion(const PetscReal x[3], PetscReal t, PetscReal u[3],
 /* Basis turned about z by an angle that depends on the place, and strides of n_vertices + 1 */
 static inline PetscErrorCode MadeLayOut(Made *m)
 {
-  Layout  *l = &m->layout;
-  PetscInt start, end;
-  DM       dm;
+  Layout     *l = &m->layout;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(m->model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &start, &end));
-  l->n_vertices = end - start;
+  PetscCall(ModelGetMesh(m->model, &mesh));
+  l->n_vertices = mesh->n_vertices;
   l->n          = 3 * (l->n_vertices + 1);
   PetscCall(PetscMalloc3(l->n_vertices, &l->at, l->n_vertices, &l->step, 9 * l->n_vertices, &l->basis));
   PetscCall(PetscCalloc5(l->n, &m->u, l->n, &m->before, l->n, &m->f, l->n, &m->f_old, l->n, &m->minv));

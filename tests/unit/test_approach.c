@@ -36,27 +36,21 @@ static PetscErrorCode SceneCreate(const char scene[], const Box box[2], Chain *c
    hence the cells tell which is which */
 static PetscErrorCode VecSetLinear(Model model, const PetscReal coefficient[5], Vec u)
 {
-  const PetscInt *cell_part, *unknowns;
-  PetscInt        cStart, cEnd, vStart;
-  DM              dm;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
-  PetscCall(ModelGetCellParts(model, &cell_part));
-  PetscCall(ModelGetUnknowns(model, &unknowns));
+  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(VecSetOption(u, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
-  for (PetscInt c = 0; c < cEnd - cStart; c++) {
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
     PetscInt  vertices[ELEMENT_MAX_NODES];
     PetscReal x[ELEMENT_MAX_DOFS];
 
     PetscCall(ModelGetCell(model, c, vertices, x));
     for (int i = 0; i < 8; i++) {
       const PetscReal *at = &x[3 * i], *q = coefficient;
-      const PetscReal  value = cell_part[c] ? q[0] + q[1] * at[2] : q[2] + q[3] * at[2] + q[4] * at[0];
+      const PetscReal  value = mesh->cell_part[c] ? q[0] + q[1] * at[2] : q[2] + q[3] * at[2] + q[4] * at[0];
 
-      PetscCall(VecSetValue(u, unknowns[3 * (vertices[i] - vStart) + 2], value, INSERT_VALUES));
+      PetscCall(VecSetValue(u, mesh->unknown[3 * vertices[i] + 2], value, INSERT_VALUES));
     }
   }
   PetscCall(VecAssemblyBegin(u));
@@ -112,14 +106,10 @@ static PetscErrorCode LoadCreate(Model model, Operators operators, Vec *f)
   const PetscScalar *value;
   const PetscInt    *unknowns;
   PetscInt           n;
-  Vec                coordinates, local;
-  DM                 dm;
+  Vec                local;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
-  PetscCall(VecDuplicate(coordinates, &local));
-  PetscCall(VecSet(local, 0));
+  PetscCall(ModelCreateNodal(model, &local));
   PetscCall(ModelAddLoad(model, 0, local));
   PetscCall(ModelGetUnknowns(model, &unknowns));
   PetscCall(OperatorsCreateVec(operators, f));

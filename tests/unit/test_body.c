@@ -11,25 +11,18 @@
 static PetscErrorCode CountWrong(Model model, const char part[], const PetscInt body[], PetscInt expected,
                                  PetscInt *n_wrong, PetscInt *n_cells)
 {
-  const Part     *parts;
-  const PetscInt *cell_part;
-  PetscInt        n_parts, cStart, cEnd, vStart;
-  DM              dm;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
-  PetscCall(ModelGetParts(model, &n_parts, &parts));
-  PetscCall(ModelGetCellParts(model, &cell_part));
+  PetscCall(ModelGetMesh(model, &mesh));
   *n_wrong = *n_cells = 0;
-  for (PetscInt c = 0; c < cEnd - cStart; c++) {
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
     PetscInt  vertices[ELEMENT_MAX_NODES];
     PetscReal x[ELEMENT_MAX_DOFS];
 
-    if (strcmp(parts[cell_part[c]].name, part)) continue;
+    if (strcmp(mesh->part[mesh->cell_part[c]], part)) continue;
     PetscCall(ModelGetCell(model, c, vertices, x));
-    for (int i = 0; i < 8; i++) *n_wrong += body[vertices[i] - vStart] != expected;
+    for (int i = 0; i < 8; i++) *n_wrong += body[vertices[i]] != expected;
     ++*n_cells;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n_wrong, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));

@@ -181,29 +181,26 @@ static PetscErrorCode TestShared(Contact contact, int *failed)
    0.3 about y, in place */
 static PetscErrorCode MeshMove(Model model, PetscReal lift)
 {
-  const PetscInt  *vertex;
-  const PetscReal *coordinates;
-  PetscReal       *x;
-  PetscInt         n, vStart, vEnd;
-  IS               is;
-  DM               dm;
+  const PetscInt *vertex;
+  const Mesh     *mesh;
+  PetscReal      *x;
+  PetscInt        n;
+  IS              is;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
-  PetscCall(ModelGetCoordinates(model, &coordinates));
-  x = (PetscReal *)coordinates;
+  PetscCall(ModelGetMesh(model, &mesh));
+  x = (PetscReal *)mesh->x;
   PetscCall(ModelGetSetVertices(model, "pad_face", &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertex));
   for (PetscInt i = 0; i < n; i++) {
-    x[3 * (vertex[i] - vStart)] += 1e-3;
-    x[3 * (vertex[i] - vStart) + 1] += 7e-4;
-    x[3 * (vertex[i] - vStart) + 2] += lift;
+    x[3 * vertex[i]] += 1e-3;
+    x[3 * vertex[i] + 1] += 7e-4;
+    x[3 * vertex[i] + 2] += lift;
   }
   PetscCall(ISRestoreIndices(is, &vertex));
   PetscCall(ISDestroy(&is));
-  for (PetscInt v = 0; v < vEnd - vStart; v++) {
+  for (PetscInt v = 0; v < mesh->n_vertices; v++) {
     const PetscReal y = x[3 * v + 1], z = x[3 * v + 2], x0 = x[3 * v], z1 = sin(0.7) * y + cos(0.7) * z;
 
     x[3 * v]     = cos(0.3) * x0 + sin(0.3) * z1;

@@ -18,14 +18,10 @@ static void SceneFill(const Scene *s, const PetscReal value[3], PetscReal x[])
 static PetscErrorCode SceneSum(const Scene *s, const PetscReal x[], PetscReal sum[3], PetscReal *spread)
 {
   PetscScalar *owner;
-  Vec          coordinates, local;
-  DM           dm;
+  Vec          local;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(s->chain.model, &dm));
-  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
-  PetscCall(VecDuplicate(coordinates, &local));
-  PetscCall(VecSet(local, 0));
+  PetscCall(ModelCreateNodal(s->chain.model, &local));
   PetscCall(VecGetArray(local, &owner));
   for (int d = 0; d < 3; d++) sum[d] = 0;
   for (PetscInt i = 0; i < s->layout->n_vertices; i++) {

@@ -34,20 +34,6 @@ static PetscErrorCode BarCreate(Chain *chain)
   PetscFunctionReturn(0);
 }
 
-/* A local vector of zeros, three values per vertex */
-static PetscErrorCode LocalCreate(Model model, Vec *local)
-{
-  Vec coordinates;
-  DM  dm;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
-  PetscCall(VecDuplicate(coordinates, local));
-  PetscCall(VecSet(*local, 0));
-  PetscFunctionReturn(0);
-}
-
 /* The values of a local vector at the unknowns */
 static PetscErrorCode LocalRestrict(Model model, Vec local, Vec u)
 {
@@ -96,7 +82,7 @@ static PetscErrorCode TestProduct(Chain *chain, int *failed)
   for (PetscInt i = 0; i < n; i++) value[i] = parameter[i].value * (i == 0 ? 2 : 1);
   PetscCall(OperatorsSetParameters(chain->operators, value));
   PetscCall(OperatorsGetPencil(chain->operators, &pencil));
-  PetscCall(LocalCreate(chain->model, &local));
+  PetscCall(ModelCreateNodal(chain->model, &local));
   PetscCall(OperatorsCreateVec(chain->operators, &u));
   PetscCall(VecDuplicate(u, &Ku));
   PetscCall(VecDuplicate(u, &f));
@@ -122,14 +108,11 @@ static PetscErrorCode SetSum(Model model, const char set[], Vec local, PetscReal
   const PetscScalar *f;
   const PetscReal   *x;
   const PetscInt    *vertices;
-  PetscInt           n, vStart;
+  PetscInt           n;
   IS                 is;
-  DM                 dm;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(sum, 6));
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
   PetscCall(ModelGetCoordinates(model, &x));
   PetscCall(ModelGetOwnedVertices(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
@@ -137,7 +120,7 @@ static PetscErrorCode SetSum(Model model, const char set[], Vec local, PetscReal
   PetscCall(VecGetArrayRead(local, &f));
   for (PetscInt i = 0; i < n; i++)
     for (int d = 0; d < 3; d++) {
-      const PetscInt v = 3 * (vertices[i] - vStart), d1 = (d + 1) % 3, d2 = (d + 2) % 3;
+      const PetscInt v = 3 * vertices[i], d1 = (d + 1) % 3, d2 = (d + 2) % 3;
 
       sum[d] += f[v + d];
       sum[3 + d] += x[v + d1] * f[v + d2] - x[v + d2] * f[v + d1];
@@ -176,8 +159,8 @@ static PetscErrorCode TestReaction(Chain *chain, int *failed)
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetPencil(chain->operators, &pencil));
-  PetscCall(LocalCreate(chain->model, &external));
-  PetscCall(LocalCreate(chain->model, &internal));
+  PetscCall(ModelCreateNodal(chain->model, &external));
+  PetscCall(ModelCreateNodal(chain->model, &internal));
   PetscCall(OperatorsCreateVec(chain->operators, &u));
   PetscCall(VecDuplicate(u, &f));
   PetscCall(ModelAddLoad(chain->model, 0, external));

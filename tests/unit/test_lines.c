@@ -84,27 +84,25 @@ static PetscErrorCode LinesError(Model model, const ModelLines *lines, PetscReal
 static PetscErrorCode LinesCells(Model model, const ModelLines *lines, PetscInt *n_cells, PetscInt *n_wrong,
                                  PetscInt *apart)
 {
-  PetscInt cStart, cEnd, vStart, vEnd, *place;
-  DM       dm;
+  const Mesh *mesh;
+  PetscInt   *place;
 
   PetscFunctionBeginUser;
   *n_cells = *n_wrong = *apart = 0;
   if (!lines) PetscFunctionReturn(0);
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
-  PetscCall(PetscMalloc1(vEnd - vStart, &place));
-  for (PetscInt v = 0; v < vEnd - vStart; v++) place[v] = -1;
+  PetscCall(ModelGetMesh(model, &mesh));
+  PetscCall(PetscMalloc1(mesh->n_vertices, &place));
+  for (PetscInt v = 0; v < mesh->n_vertices; v++) place[v] = -1;
   for (PetscInt i = 0; i < lines->n_lines * lines->n_nodes; i++) place[lines->vertex[i]] = i;
-  for (PetscInt c = 0; c < cEnd - cStart; c++) {
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
     PetscInt  vertices[ELEMENT_MAX_NODES], k[2] = {-1, -1}, count[2] = {0, 0}, line[2] = {PETSC_MAX_INT, 0};
     PetscReal x[ELEMENT_MAX_DOFS];
 
     PetscCall(ModelGetCell(model, c, vertices, x));
-    if (place[vertices[0] - vStart] < 0) continue;
+    if (place[vertices[0]] < 0) continue;
     ++*n_cells;
     for (int i = 0; i < 8; i++) {
-      const PetscInt at = place[vertices[i] - vStart], here = at % lines->n_nodes;
+      const PetscInt at = place[vertices[i]], here = at % lines->n_nodes;
 
       for (int e = 0; e < 2; e++) {
         if (k[e] < 0) k[e] = here;
@@ -227,16 +225,12 @@ static void ChangeNode(Change change, PetscInt v, PetscReal x[3])
 /* Lines of the changed ring, which the caller destroys with the model */
 static PetscErrorCode RingLines(Change change, Model *model, ModelLines **lines)
 {
-  const PetscReal *x;
-  PetscInt         vStart, vEnd;
-  DM               dm;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
   PetscCall(RigCreateModel(RING, model));
-  PetscCall(ModelGetDM(*model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
-  PetscCall(ModelGetCoordinates(*model, &x));
-  for (PetscInt v = 0; v < vEnd - vStart; v++) ChangeNode(change, v, (PetscReal *)&x[3 * v]);
+  PetscCall(ModelGetMesh(*model, &mesh));
+  for (PetscInt v = 0; v < mesh->n_vertices; v++) ChangeNode(change, v, (PetscReal *)&mesh->x[3 * v]);
   PetscCall(LinesOfBody(*model, 0, lines));
   PetscFunctionReturn(0);
 }

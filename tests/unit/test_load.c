@@ -30,13 +30,10 @@ static Box Bar(PetscReal taper)
 static PetscErrorCode LoadGet(Model model, PetscInt i, PetscReal before, PetscInt *n_vertices, PetscReal **f)
 {
   const PetscScalar *values;
-  Vec                coordinates, local;
-  DM                 dm;
+  Vec                local;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
-  PetscCall(VecDuplicate(coordinates, &local));
+  PetscCall(ModelCreateNodal(model, &local));
   PetscCall(VecSet(local, before));
   PetscCall(ModelAddLoad(model, i, local));
   PetscCall(VecGetLocalSize(local, n_vertices));
@@ -54,25 +51,17 @@ static PetscErrorCode LoadGet(Model model, PetscInt i, PetscReal before, PetscIn
 static PetscErrorCode LoadSum(Model model, PetscInt n_vertices, const PetscReal f[], PetscReal sum[3],
                               PetscReal moment[3][3], PetscReal *count)
 {
-  const PetscReal *x;
-  PetscInt         vStart, offset;
-  PetscReal        total[13] = {0};
-  PetscSection     global;
-  DM               dm, cdm;
+  const Mesh *mesh;
+  PetscReal   total[13] = {0};
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMGetCoordinateDM(dm, &cdm));
-  PetscCall(DMGetGlobalSection(cdm, &global));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
-  PetscCall(ModelGetCoordinates(model, &x));
+  PetscCall(ModelGetMesh(model, &mesh));
   for (PetscInt v = 0; v < n_vertices; v++) {
-    PetscCall(PetscSectionGetOffset(global, vStart + v, &offset));
-    for (int d = 0; d < 3 && offset >= 0; d++) {
+    for (int d = 0; d < 3 && mesh->owned[v]; d++) {
       total[d] += f[3 * v + d];
-      for (int e = 0; e < 3; e++) total[3 + 3 * e + d] += x[3 * v + e] * f[3 * v + d];
+      for (int e = 0; e < 3; e++) total[3 + 3 * e + d] += mesh->x[3 * v + e] * f[3 * v + d];
     }
-    if (offset >= 0 && (f[3 * v] != 0 || f[3 * v + 1] != 0 || f[3 * v + 2] != 0)) total[12] += 1;
+    if (mesh->owned[v] && (f[3 * v] != 0 || f[3 * v + 1] != 0 || f[3 * v + 2] != 0)) total[12] += 1;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, total, 13, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD));
   PetscCall(PetscArraycpy(sum, total, 3));

@@ -24,14 +24,11 @@ static void Turned(const PetscReal x[3], const PetscReal value[3], PetscReal u[3
 static PetscErrorCode TestGeometric(const Chain *chain, int *failed)
 {
   PetscReal error, largest, asymmetry;
-  Vec       u, x, y, local, coordinates;
+  Vec       u, x, y, local;
   Mat       K, transposed;
-  DM        dm;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(chain->model, &dm));
-  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
-  PetscCall(VecDuplicate(coordinates, &local));
+  PetscCall(ModelCreateNodal(chain->model, &local));
   PetscCall(FieldCreate(chain, Wave, NULL, NULL, &u));
   PetscCall(GeometricStiffnessCreate(chain->operators, u, &K));
   PetscCall(OperatorsInternalForces(chain->operators, u, local));

@@ -28,24 +28,18 @@ static const char *const expected_part[N_PROBES] = {"b", "a", "a", "a", "b"};
 static PetscErrorCode VertexIsOf(Model model, PetscInt vertex, const char part[], const PetscReal place[3],
                                  PetscBool *is)
 {
-  const Part     *parts;
-  const PetscInt *cell_part;
-  PetscInt        n_parts, cStart, cEnd, vStart, vertices[ELEMENT_MAX_NODES];
-  PetscReal       x[ELEMENT_MAX_DOFS];
-  DM              dm;
+  const Mesh *mesh;
+  PetscInt    vertices[ELEMENT_MAX_NODES];
+  PetscReal   x[ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
   *is = PETSC_FALSE;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
-  PetscCall(ModelGetParts(model, &n_parts, &parts));
-  PetscCall(ModelGetCellParts(model, &cell_part));
-  for (PetscInt c = 0; c < cEnd - cStart && !*is; c++) {
-    if (strcmp(parts[cell_part[c]].name, part)) continue;
+  PetscCall(ModelGetMesh(model, &mesh));
+  for (PetscInt c = 0; c < mesh->n_cells && !*is; c++) {
+    if (strcmp(mesh->part[mesh->cell_part[c]], part)) continue;
     PetscCall(ModelGetCell(model, c, vertices, x));
     for (int i = 0; i < 8 && !*is; i++)
-      if (vertices[i] - vStart == vertex) PetscCall(PetscArraycmp(&x[3 * i], place, 3, is));
+      if (vertices[i] == vertex) PetscCall(PetscArraycmp(&x[3 * i], place, 3, is));
   }
   PetscFunctionReturn(0);
 }

@@ -118,27 +118,18 @@ static int TestTableFull(Scratch *scratch, Results results)
 }
 
 /* Writes two shapes and a state of the local vertices; returns the first error */
-static PetscErrorCode WriteField(Results results, DM dm)
+static PetscErrorCode WriteField(Results results, const Mesh *mesh)
 {
-  static const char *const keys[] = {"mode_001", "mode_002"}, *const parts[] = {"disc"};
-  PetscErrorCode error, closing;
-  ResultsField   field;
-  PetscInt      *cell_part, start, end;
-  PetscReal     *values;
-  Vec            x;
+  static const char *const keys[] = {"mode_001", "mode_002"};
+  PetscErrorCode           error, closing;
+  ResultsField             field;
+  PetscReal               *values;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &start, &end));
-  PetscCall(PetscCalloc1(end - start, &cell_part));
-  error = ResultsFieldOpen(results, "field", dm, 1, parts, cell_part, &field);
-  PetscCall(PetscFree(cell_part));
+  error = ResultsFieldOpen(results, "field", mesh, &field);
   if (error) PetscFunctionReturn(error);
-  PetscCall(DMCreateGlobalVector(dm, &x));
-  PetscCall(VecSet(x, 1));
-  for (int i = 0; i < 2 && !error; i++) error = ResultsFieldWriteMode(field, keys[i], keys[i], x, i ? x : NULL);
-  PetscCall(VecDestroy(&x));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &start, &end));
-  PetscCall(PetscCalloc1(3 * (end - start), &values));
+  PetscCall(PetscCalloc1(3 * mesh->n_vertices, &values));
+  for (int i = 0; i < 2 && !error; i++) error = ResultsFieldWriteMode(field, keys[i], keys[i], mesh->x, values);
   const ResultsNodal arrays[] = {
     {"pressure_pa",    1, values},
     {"displacement_m", 3, values}
@@ -150,25 +141,25 @@ static PetscErrorCode WriteField(Results results, DM dm)
 }
 
 /* Breaks when: a failure to write goes unnoticed at any place of the file, or leaves one of the two files */
-static int TestFieldFull(Scratch *scratch, Results results, DM dm)
+static int TestFieldFull(Scratch *scratch, Results results, const Mesh *mesh)
 {
   long limits[6] = {0, 70000}, size;
   int  failed    = 0;
 
-  failed += CheckTrue("field is written", !WriteField(results, dm), 0);
+  failed += CheckTrue("field is written", !WriteField(results, mesh), 0);
   size = SizeOf(scratch, "field.h5");
   failed += CheckTrue("field and its description are the only files", RemoveFiles(scratch, "field") == 2, 0);
   for (int i = 2; i < 6; i++) limits[i] = size * (i - 1) / 4;
   for (int i = 0; i < 6; i++) {
     LimitFiles(limits[i]);
-    failed += CheckTrue("full disk stops the field", WriteField(results, dm) == PETSC_ERR_FILE_WRITE, limits[i]);
+    failed += CheckTrue("full disk stops the field", WriteField(results, mesh) == PETSC_ERR_FILE_WRITE, limits[i]);
     LimitFiles(-1);
     failed += CheckTrue("message names the file", strstr(scratch->message, "/field.") != NULL, limits[i]);
     failed += CheckTrue("message gives the reason", strstr(scratch->message, ": File too large; ") != NULL, limits[i]);
     failed += CheckTrue("no field is left", RemoveFiles(scratch, "field") == 0, limits[i]);
   }
   LimitFiles(size + 65536);
-  failed += CheckTrue("64 KiB more than the size suffice", !WriteField(results, dm), size);
+  failed += CheckTrue("64 KiB more than the size suffice", !WriteField(results, mesh), size);
   failed += CheckTrue("size does not depend on the limit", SizeOf(scratch, "field.h5") == size, size);
   LimitFiles(-1);
   RemoveFiles(scratch, "field");
@@ -200,7 +191,7 @@ int main(int argc, char **argv)
   Scratch        scratch;
   Results        results;
   ResultsField   field;
-  DM             dm;
+  Mesh           mesh;
   char           top[PETSC_MAX_PATH_LEN];
   int            failed = 0;
 
@@ -208,16 +199,16 @@ int main(int argc, char **argv)
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
   PetscCall(ScratchCreate(&scratch));
   MoveDown(&scratch, top);
-  PetscCall(BoxMeshDistributed(PETSC_COMM_WORLD, faces, &dm));
+  PetscCall(BoxMeshTabulate(PETSC_COMM_WORLD, faces, &mesh));
   failed += TestFolder(&scratch);
   PetscCall(OpenResults(scratch.dir, &results));
   failed += TestTable(&scratch, results);
   failed += TestTableFull(&scratch, results);
-  failed += TestFieldFull(&scratch, results, dm);
-  failed += CheckTrue("no field without a mesh",
-                      ResultsFieldOpen(results, "field", NULL, 0, NULL, NULL, &field) == PETSC_ERR_ARG_NULL, 0);
+  failed += TestFieldFull(&scratch, results, &mesh);
+  failed +=
+    CheckTrue("no field without a mesh", ResultsFieldOpen(results, "field", NULL, &field) == PETSC_ERR_ARG_NULL, 0);
   PetscCall(ResultsDestroy(&results));
-  PetscCall(DMDestroy(&dm));
+  PetscCall(BoxMeshDestroy(&mesh));
   failed += MoveUp(&scratch, top);
   failed += CheckTrue("nor above it", ScratchDestroy(&scratch), 0);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD));

@@ -6,7 +6,6 @@
 */
 #include <squeal/results.h>
 #include <hdf5.h>
-#include <petscsf.h>
 #include <string.h>
 #include <sys/stat.h>
 #include "boxmesh.h"
@@ -17,52 +16,28 @@
 #define SPOILT  -1e300
 
 /* Values at the local vertices: position [n][3] and a scalar [n]; SPOILT where another rank owns the vertex */
-static PetscErrorCode CreateValues(DM dm, PetscReal **position, PetscReal **scalar)
+static PetscErrorCode CreateValues(const Mesh *mesh, PetscReal **position, PetscReal **scalar)
 {
-  PetscInt           start, end, n_leaves, offset;
-  const PetscInt    *leaves;
-  const PetscScalar *x;
-  PetscSection       section;
-  PetscSF            sf;
-  Vec                coordinates;
-
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &start, &end));
-  PetscCall(PetscMalloc2(3 * (end - start), position, end - start, scalar));
-  PetscCall(DMGetCoordinateSection(dm, &section));
-  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
-  PetscCall(VecGetArrayRead(coordinates, &x));
-  for (PetscInt v = start, i = 0; v < end; v++, i++) {
-    PetscCall(PetscSectionGetOffset(section, v, &offset));
-    for (int d = 0; d < 3; d++) (*position)[3 * i + d] = x[offset + d];
-    (*scalar)[i] = x[offset] + 2 * x[offset + 1] + 4 * x[offset + 2];
-  }
-  PetscCall(VecRestoreArrayRead(coordinates, &x));
-  PetscCall(DMGetPointSF(dm, &sf));
-  PetscCall(PetscSFGetGraph(sf, NULL, &n_leaves, &leaves, NULL));
-  for (PetscInt l = 0; l < n_leaves; l++) {
-    const PetscInt i = (leaves ? leaves[l] : l) - start;
+  PetscCall(PetscMalloc2(3 * mesh->n_vertices, position, mesh->n_vertices, scalar));
+  for (PetscInt v = 0; v < mesh->n_vertices; v++) {
+    const PetscReal *x = &mesh->x[3 * v];
 
-    if (i < 0 || i >= end - start) continue;
-    for (int d = 0; d < 3; d++) (*position)[3 * i + d] = SPOILT;
-    (*scalar)[i] = SPOILT;
+    for (int d = 0; d < 3; d++) (*position)[3 * v + d] = mesh->owned[v] ? x[d] : SPOILT;
+    (*scalar)[v] = mesh->owned[v] ? x[0] + 2 * x[1] + 4 * x[2] : SPOILT;
   }
   PetscFunctionReturn(0);
 }
 
 /* Writes two states, of two arrays and of one */
-static PetscErrorCode WriteStates(Results results, DM dm)
+static PetscErrorCode WriteStates(Results results, const Mesh *mesh)
 {
-  static const char *const parts[] = {"disc"};
-  ResultsField             field;
-  PetscInt                *cell_part, start, end;
-  PetscReal               *position, *scalar;
+  ResultsField field;
+  PetscReal   *position, *scalar;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &start, &end));
-  PetscCall(PetscCalloc1(end - start, &cell_part));
-  PetscCall(CreateValues(dm, &position, &scalar));
-  PetscCall(ResultsFieldOpen(results, "states", dm, 1, parts, cell_part, &field));
+  PetscCall(CreateValues(mesh, &position, &scalar));
+  PetscCall(ResultsFieldOpen(results, "states", mesh, &field));
   const ResultsNodal two[] = {
     {"pressure_pa",    1, scalar  },
     {"displacement_m", 3, position}
@@ -73,7 +48,6 @@ static PetscErrorCode WriteStates(Results results, DM dm)
   PetscCall(ResultsFieldWriteNodal(field, "last", 1, &one));
   PetscCall(ResultsFieldClose(&field));
   PetscCall(PetscFree2(position, scalar));
-  PetscCall(PetscFree(cell_part));
   PetscFunctionReturn(0);
 }
 
@@ -146,22 +120,17 @@ static int TestText(const char name[])
 }
 
 /* Breaks when: the width is not checked before anything is written */
-static int TestWidth(Results results, DM dm)
+static int TestWidth(Results results, const Mesh *mesh)
 {
-  static const char *const parts[] = {"disc"};
-  const ResultsNodal       wide    = {"strain", 2, NULL};
-  ResultsField             field;
-  PetscInt                *cell_part, start, end;
-  int                      failed;
+  const ResultsNodal wide = {"strain", 2, NULL};
+  ResultsField       field;
+  int                failed;
 
-  (void)DMPlexGetHeightStratum(dm, 0, &start, &end);
-  if (PetscCalloc1(end - start, &cell_part)) return 1;
-  if (ResultsFieldOpen(results, "states", dm, 1, parts, cell_part, &field)) return 1;
+  if (ResultsFieldOpen(results, "states", mesh, &field)) return 1;
   (void)PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
   failed = CheckTrue("two values per node are refused",
                      ResultsFieldWriteNodal(field, "wide", 1, &wide) == PETSC_ERR_ARG_OUTOFRANGE, 0);
   (void)PetscPopErrorHandler();
-  (void)PetscFree(cell_part);
   return failed + CheckTrue("the field can be closed after it", !ResultsFieldClose(&field), 0);
 }
 
@@ -171,7 +140,7 @@ int main(int argc, char **argv)
   char           dir[PETSC_MAX_PATH_LEN], h5[PETSC_MAX_PATH_LEN + 16], xmf[PETSC_MAX_PATH_LEN + 16];
   PetscMPIInt    rank;
   Results        results;
-  DM             dm;
+  Mesh           mesh;
   int            failed = 0;
 
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
@@ -179,18 +148,18 @@ int main(int argc, char **argv)
   PetscCall(ScratchMakeFolder(dir));
   snprintf(h5, sizeof(h5), "%s/states.h5", dir);
   snprintf(xmf, sizeof(xmf), "%s/states.xmf", dir);
-  PetscCall(BoxMeshDistributed(PETSC_COMM_WORLD, faces, &dm));
+  PetscCall(BoxMeshTabulate(PETSC_COMM_WORLD, faces, &mesh));
   PetscCall(PetscOptionsSetValue(NULL, "-output_dir", dir));
   PetscCall(ResultsCreate(PETSC_COMM_WORLD, &results));
   PetscCall(ResultsSetFromOptions(results));
-  PetscCall(WriteStates(results, dm));
+  PetscCall(WriteStates(results, &mesh));
   if (rank == 0) failed += TestValues(h5);
   if (rank == 0) failed += TestText(xmf);
   PetscCallMPI(MPI_Barrier(PETSC_COMM_WORLD));
-  failed += TestWidth(results, dm);
+  failed += TestWidth(results, &mesh);
   if (rank == 0) failed += CheckTrue("no other file is left", !unlink(h5) && !unlink(xmf) && !rmdir(dir), 0);
   PetscCall(ResultsDestroy(&results));
-  PetscCall(DMDestroy(&dm));
+  PetscCall(BoxMeshDestroy(&mesh));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD));
   PetscCall(PetscFinalize());
   return failed ? 1 : 0;

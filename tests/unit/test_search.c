@@ -71,19 +71,15 @@ static PetscErrorCode Moments(const Slider *s, PetscReal angle, PetscReal master
 {
   PetscReal       sums[6] = {0};
   const PetscReal c = PetscCosReal(angle), r = PetscSinReal(angle);
-  const PetscInt *number;
-  IS              numbers;
-  DM              dm;
+  const Mesh     *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(s->model, &dm));
-  PetscCall(DMPlexGetVertexNumbering(dm, &numbers));
-  PetscCall(ISGetIndices(numbers, &number));
+  PetscCall(ModelGetMesh(s->model, &mesh));
   for (PetscInt i = 0; i < s->n; i++) {
     const PetscReal f = s->force[3 * i + 2], x = s->x[3 * i], y = s->x[3 * i + 1];
     const PetscReal a = x + s->u[3 * i] - 0.05, b = y + s->u[3 * i + 1] + 0.1;
 
-    if (number[s->vertex[i]] < 0) continue;
+    if (!mesh->owned[s->vertex[i]]) continue;
     if (IsSlave(s, i)) {
       sums[3] += f;
       sums[4] += f * (c * a + r * b + 0.05);
@@ -94,7 +90,6 @@ static PetscErrorCode Moments(const Slider *s, PetscReal angle, PetscReal master
       sums[2] -= f * y;
     }
   }
-  PetscCall(ISRestoreIndices(numbers, &number));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD));
   for (int k = 0; k < 3; k++) {
     master[k] = sums[k];

@@ -21,24 +21,23 @@
 /* A model of the scene on some ranks, and the local vertices */
 typedef struct {
   Model            model;
-  DM               dm;
+  const Mesh      *mesh;
   PetscInt         n, *body;
   const PetscInt  *unknown;
   const PetscReal *x;
   PetscReal       *re, *im;
-} Mesh;
+} ModelOnRanks;
 
-static PetscErrorCode MeshCreate(MPI_Comm comm, Mesh *m)
+static PetscErrorCode ModelOnRanksCreate(MPI_Comm comm, ModelOnRanks *m)
 {
-  PetscInt start, end, n_bodies;
+  PetscInt n_bodies;
 
   PetscFunctionBeginUser;
   PetscCall(ModelCreate(comm, &m->model));
   PetscCall(ModelSetFromOptions(m->model));
   PetscCall(ModelSetUp(m->model));
-  PetscCall(ModelGetDM(m->model, &m->dm));
-  PetscCall(DMPlexGetDepthStratum(m->dm, 0, &start, &end));
-  m->n = end - start;
+  PetscCall(ModelGetMesh(m->model, &m->mesh));
+  m->n = m->mesh->n_vertices;
   PetscCall(ModelGetBodies(m->model, &n_bodies, &m->body));
   PetscCall(ModelGetUnknowns(m->model, &m->unknown));
   PetscCall(ModelGetCoordinates(m->model, &m->x));
@@ -46,7 +45,7 @@ static PetscErrorCode MeshCreate(MPI_Comm comm, Mesh *m)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode MeshDestroy(Mesh *m)
+static PetscErrorCode ModelOnRanksDestroy(ModelOnRanks *m)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(m->body));
@@ -56,7 +55,7 @@ static PetscErrorCode MeshDestroy(Mesh *m)
 }
 
 /* Displacement d of vertex v, 0 where it is held; the imaginary part is -3 times as large */
-static PetscReal Known(const Mesh *m, PetscInt v, int d)
+static PetscReal Known(const ModelOnRanks *m, PetscInt v, int d)
 {
   const PetscReal *x = &m->x[3 * v];
 
@@ -78,39 +77,31 @@ static PetscErrorCode WriteTable(Results results, PetscInt n, PetscReal frequenc
 }
 
 /* Files of a run of modes whose second mode has the known shape */
-static PetscErrorCode WriteShape(Results results, const Mesh *m)
+static PetscErrorCode WriteShape(Results results, const ModelOnRanks *m)
 {
-  const char *const names[] = {"all"};
-  PetscInt         *part, start, end;
-  ResultsField      field;
-  char              title[64];
-  Vec               re, im;
+  ResultsField field;
+  char         title[64];
+  PetscReal   *re, *im;
 
   PetscFunctionBeginUser;
   PetscCall(WriteTable(results, 2, FREQUENCY));
-  PetscCall(DMPlexGetHeightStratum(m->dm, 0, &start, &end));
-  PetscCall(PetscCalloc1(end - start, &part));
-  PetscCall(DMCreateGlobalVector(m->dm, &re));
-  for (PetscInt i = 0; i < 3 * m->n; i++)
-    if (m->unknown[i] >= 0) PetscCall(VecSetValue(re, m->unknown[i], Known(m, i / 3, (int)(i % 3)), INSERT_VALUES));
-  PetscCall(VecAssemblyBegin(re));
-  PetscCall(VecAssemblyEnd(re));
-  PetscCall(VecDuplicate(re, &im));
-  PetscCall(VecAXPBY(im, -3, 0, re));
+  PetscCall(PetscMalloc2(3 * m->n, &re, 3 * m->n, &im));
+  for (PetscInt i = 0; i < 3 * m->n; i++) {
+    re[i] = Known(m, i / 3, (int)(i % 3));
+    im[i] = -3 * re[i];
+  }
   PetscCall(PetscSNPrintf(title, sizeof(title), "2: %.6g Hz, growth 1 1/s, (0,2+)", 2 * FREQUENCY));
-  PetscCall(ResultsFieldOpen(results, "modes", m->dm, 1, names, part, &field));
-  PetscCall(ResultsFieldWriteMode(field, "mode_001", title, im, NULL));
+  PetscCall(ResultsFieldOpen(results, "modes", m->mesh, &field));
+  PetscCall(ResultsFieldWriteMode(field, "mode_001", title, im, im));
   PetscCall(ResultsFieldWriteMode(field, "mode_002", title, re, im));
   PetscCall(ResultsFieldClose(&field));
-  PetscCall(VecDestroy(&re));
-  PetscCall(VecDestroy(&im));
-  PetscCall(PetscFree(part));
+  PetscCall(PetscFree2(re, im));
   PetscFunctionReturn(0);
 }
 
 /* Breaks when: a node gets the value of another one, of the node of another body at its place, or none. Expected: the
    formula, to the last bit at the file's own coordinates, which are those of the model */
-static int CheckKnown(MPI_Comm comm, const char dir[], Mesh *m, const char name[])
+static int CheckKnown(MPI_Comm comm, const char dir[], ModelOnRanks *m, const char name[])
 {
   PetscReal lambda[2];
   int       wrong = 0, failed;
@@ -129,7 +120,7 @@ static int CheckKnown(MPI_Comm comm, const char dir[], Mesh *m, const char name[
 }
 
 /* Places at which two bodies have nodes */
-static int CountMatching(const Mesh *m)
+static int CountMatching(const ModelOnRanks *m)
 {
   int n = 0;
 
@@ -149,7 +140,7 @@ static PetscErrorCode WriterCreate(MPI_Comm comm, Results *results)
 }
 
 /* All ranks write, all and one read; one writes, all read */
-static int TestRanks(Scratch *s, Mesh *all, Mesh *own)
+static int TestRanks(Scratch *s, ModelOnRanks *all, ModelOnRanks *own)
 {
   Results results;
   int     failed = CheckTrue("nodes of two bodies at one place", CountMatching(own) == N_MATCHING, CountMatching(own));
@@ -165,7 +156,8 @@ static int TestRanks(Scratch *s, Mesh *all, Mesh *own)
 }
 
 /* Whether a mode is refused on all ranks with a line that has these words */
-static int Refused(Scratch *s, const char dir[], Mesh *m, PetscInt mode, PetscErrorCode code, const char words[])
+static int Refused(Scratch *s, const char dir[], ModelOnRanks *m, PetscInt mode, PetscErrorCode code,
+                   const char words[])
 {
   PetscReal      lambda[2];
   PetscErrorCode error;
@@ -179,27 +171,27 @@ static int Refused(Scratch *s, const char dir[], Mesh *m, PetscInt mode, PetscEr
 }
 
 /* Breaks when: files that are not of this mesh or of one run are taken, or the message does not say what is wrong */
-static PetscErrorCode TestRefused(Scratch *s, Mesh *all, int *failed)
+static PetscErrorCode TestRefused(Scratch *s, ModelOnRanks *all, int *failed)
 {
-  Results results;
-  char    nowhere[PETSC_MAX_PATH_LEN + 32], missing[PETSC_MAX_PATH_LEN + 32];
-  Mesh    other;
+  Results      results;
+  char         nowhere[PETSC_MAX_PATH_LEN + 32], missing[PETSC_MAX_PATH_LEN + 32];
+  ModelOnRanks other;
 
   PetscFunctionBeginUser;
   *failed += Refused(s, ScratchPath(s, "nowhere", nowhere), all, 2, PETSC_ERR_FILE_OPEN, "needs the folder of a run");
   *failed += Refused(s, s->dir, all, 3, PETSC_ERR_USER_INPUT, "-dynamics_shape_mode 3 is none of the modes 1 to 2 of");
   *failed += Refused(s, s->dir, all, 0, PETSC_ERR_USER_INPUT, "-dynamics_shape_mode 0 is none of the modes 1 to 2 of");
   PetscCall(PetscOptionsSetValue(NULL, "-rig_pad_elements", "4,4,3"));
-  PetscCall(MeshCreate(PETSC_COMM_WORLD, &other));
+  PetscCall(ModelOnRanksCreate(PETSC_COMM_WORLD, &other));
   *failed += Refused(s, s->dir, &other, 2, PETSC_ERR_USER_INPUT, "the mesh of -dynamics_shape has no node at ");
-  PetscCall(MeshDestroy(&other));
+  PetscCall(ModelOnRanksDestroy(&other));
   PetscCall(PetscOptionsSetValue(NULL, "-rig_pad_elements", "4,4,2"));
   PetscCall(PetscOptionsSetValue(NULL, "-rig_pad", "false"));
   PetscCall(PetscOptionsSetValue(NULL, "-parts", "disc"));
   PetscCall(PetscOptionsClearValue(NULL, "-springs"));
-  PetscCall(MeshCreate(PETSC_COMM_WORLD, &other));
+  PetscCall(ModelOnRanksCreate(PETSC_COMM_WORLD, &other));
   *failed += Refused(s, s->dir, &other, 2, PETSC_ERR_USER_INPUT, " cells, that of this run ");
-  PetscCall(MeshDestroy(&other));
+  PetscCall(ModelOnRanksDestroy(&other));
   PetscCall(WriterCreate(PETSC_COMM_WORLD, &results));
   PetscCall(WriteTable(results, 3, FREQUENCY));
   *failed += Refused(s, s->dir, all, 3, PETSC_ERR_USER_INPUT, "no fitting array /VTKHDF/PointData/mode_003_re");
@@ -218,23 +210,18 @@ static PetscErrorCode TestRefused(Scratch *s, Mesh *all, int *failed)
 }
 
 /* Largest difference between a shape and the local values of a vector (NULL: 0), relative to the largest value */
-static PetscErrorCode Compare(DM dm, Vec x, PetscInt n, const PetscReal shape[], PetscReal *difference)
+static PetscErrorCode Compare(Model model, Vec x, PetscInt n, const PetscReal shape[], PetscReal *difference)
 {
-  const PetscScalar *value;
-  PetscReal          largest[2] = {0, PETSC_SMALL};
-  Vec                local;
+  PetscReal largest[2] = {0, PETSC_SMALL}, *value;
 
   PetscFunctionBeginUser;
-  PetscCall(DMGetLocalVector(dm, &local));
-  PetscCall(VecSet(local, 0));
-  if (x) PetscCall(DMGlobalToLocal(dm, x, INSERT_VALUES, local));
-  PetscCall(VecGetArrayRead(local, &value));
+  PetscCall(PetscMalloc1(n, &value));
+  PetscCall(ModelGetNodal(model, x, value));
   for (PetscInt i = 0; i < n; i++) {
     largest[0] = PetscMax(largest[0], PetscAbsReal(value[i] - shape[i]));
     largest[1] = PetscMax(largest[1], PetscAbsReal(value[i]));
   }
-  PetscCall(VecRestoreArrayRead(local, &value));
-  PetscCall(DMRestoreLocalVector(dm, &local));
+  PetscCall(PetscFree(value));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
   *difference = largest[0] / largest[1];
   PetscFunctionReturn(0);
@@ -248,9 +235,9 @@ static PetscErrorCode TestModes(Scratch *s, int *failed)
   Chain       chain;
   Modes       modes;
   Results     results;
-  DM          dm;
+  const Mesh *mesh;
   PetscReal  *re, *im;
-  PetscInt    n, start, end, n_complex = 0;
+  PetscInt    n, n_values, n_complex = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ChainCreate(
@@ -263,9 +250,9 @@ static PetscErrorCode TestModes(Scratch *s, int *failed)
   PetscCall(ModesSolve(modes));
   PetscCall(WriterCreate(PETSC_COMM_WORLD, &results));
   PetscCall(ModesWrite(modes, results));
-  PetscCall(ModelGetDM(chain.model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &start, &end));
-  PetscCall(PetscMalloc2(3 * (end - start), &re, 3 * (end - start), &im));
+  PetscCall(ModelGetMesh(chain.model, &mesh));
+  n_values = 3 * mesh->n_vertices;
+  PetscCall(PetscMalloc2(n_values, &re, n_values, &im));
   PetscCall(ModesGet(modes, &n, &mode));
   for (PetscInt i = 0; i < n; i++) {
     PetscReal lambda[2], difference[2];
@@ -273,8 +260,8 @@ static PetscErrorCode TestModes(Scratch *s, int *failed)
 
     PetscCall(ModesGetVectors(modes, i, &xr, &xi, &yr, &yi));
     PetscCall(ShapeRead(PETSC_COMM_WORLD, chain.model, s->dir, i + 1, re, im, lambda));
-    PetscCall(Compare(dm, xr, 3 * (end - start), re, &difference[0]));
-    PetscCall(Compare(dm, xi, 3 * (end - start), im, &difference[1]));
+    PetscCall(Compare(chain.model, xr, n_values, re, &difference[0]));
+    PetscCall(Compare(chain.model, xi, n_values, im, &difference[1]));
     *failed += CheckClose("shape of a mode", difference[0] + difference[1], 0, 0);
     *failed += CheckClose("sigma, 1/s", lambda[0], mode[i].sigma, 1e-14 * PetscAbsReal(mode[i].sigma));
     *failed += CheckClose("omega, 1/s", lambda[1], mode[i].omega, 1e-14 * mode[i].omega);
@@ -290,21 +277,21 @@ static PetscErrorCode TestModes(Scratch *s, int *failed)
 
 int main(int argc, char **argv)
 {
-  Scratch scratch;
-  Mesh    all, own;
-  int     failed = 0;
+  Scratch      scratch;
+  ModelOnRanks all, own;
+  int          failed = 0;
 
   PetscCall(SlepcInitialize(&argc, &argv, NULL, NULL));
   (void)H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   PetscCall(ScratchCreate(&scratch));
   PetscCall(PetscOptionsInsertString(NULL, BRAKE SLIP BODIES_1 BEAM_1));
   PetscCall(PetscOptionsSetValue(NULL, "-output_dir", scratch.dir));
-  PetscCall(MeshCreate(PETSC_COMM_WORLD, &all));
-  PetscCall(MeshCreate(PETSC_COMM_SELF, &own));
+  PetscCall(ModelOnRanksCreate(PETSC_COMM_WORLD, &all));
+  PetscCall(ModelOnRanksCreate(PETSC_COMM_SELF, &own));
   failed += TestRanks(&scratch, &all, &own);
   PetscCall(TestRefused(&scratch, &all, &failed));
-  PetscCall(MeshDestroy(&own));
-  PetscCall(MeshDestroy(&all));
+  PetscCall(ModelOnRanksDestroy(&own));
+  PetscCall(ModelOnRanksDestroy(&all));
   PetscCall(TestModes(&scratch, &failed));
   failed += CheckTrue("three files",
                       ScratchRemove(&scratch, "modes.csv") && ScratchRemove(&scratch, "modes.h5") &&

@@ -30,21 +30,18 @@ static PetscErrorCode RigCreateModel(const char scene[], Model *model)
 /* Local cells of the disc in each slab, count [N_SLABS], and all others */
 static PetscErrorCode CountCells(Model model, PetscInt count[], PetscInt *n_disc, PetscInt *n_others)
 {
-  const PetscInt *cell_part;
-  PetscInt        cStart, cEnd, vertices[ELEMENT_MAX_NODES];
-  PetscReal       x[ELEMENT_MAX_DOFS];
-  DM              dm;
+  const Mesh *mesh;
+  PetscInt    vertices[ELEMENT_MAX_NODES];
+  PetscReal   x[ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < N_SLABS; k++) count[k] = 0;
   *n_disc = *n_others = 0;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
-  PetscCall(ModelGetCellParts(model, &cell_part));
-  for (PetscInt c = 0; c < cEnd - cStart; c++) {
+  PetscCall(ModelGetMesh(model, &mesh));
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
     PetscReal centre[2] = {0, 0}, turns;
 
-    if (cell_part[c] > 0) {
+    if (mesh->cell_part[c] > 0) {
       ++*n_others;
       continue;
     }
@@ -147,8 +144,8 @@ static PetscErrorCode TestBars(PetscMPIInt size, int *failed)
                {.name = "b", .n = {3, 3, 13}, .x = {far, y, z}}
   };
   char        path[PETSC_MAX_PATH_LEN];
-  PetscInt    cStart, cEnd, n_bodies, n_here = 0, *body;
-  DM          dm;
+  PetscInt    n_bodies, n_here = 0, *body;
+  const Mesh *mesh;
   Model       model;
   ModelLines *lines;
 
@@ -162,15 +159,14 @@ static PetscErrorCode TestBars(PetscMPIInt size, int *failed)
   PetscCall(ModelKeepSlabs(model));
   PetscCall(ModelSetUp(model));
   PetscCall(BoxesRemove(PETSC_COMM_WORLD, path));
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
+  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(ModelGetBodies(model, &n_bodies, &body));
   for (PetscInt b = 0; b < n_bodies; b++) {
     PetscCall(ModelCreateLines(model, b, body, &lines));
     n_here += lines ? 4 * (lines->n_nodes - 1) : 0;
     PetscCall(ModelDestroyLines(&lines));
   }
-  *failed += CheckClose("bars: cells of a rank", (double)(cEnd - cStart), 96.0 / size, 0);
+  *failed += CheckClose("bars: cells of a rank", (double)mesh->n_cells, 96.0 / size, 0);
   *failed += CheckClose("bars: cells of the lines of a rank", (double)n_here, 96.0 / size, 0);
   PetscCall(PetscFree(body));
   PetscCall(ModelDestroy(&model));

@@ -28,16 +28,12 @@ static PetscErrorCode LoadsCreate(const Chain *chain, Vec *f)
   const PetscScalar *value;
   const Load        *loads;
   PetscInt           n, n_loads;
-  Vec                coordinates, local;
-  DM                 dm;
+  Vec                local;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsCreateVec(chain->operators, f));
   PetscCall(VecSetOption(*f, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
-  PetscCall(ModelGetDM(chain->model, &dm));
-  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
-  PetscCall(VecDuplicate(coordinates, &local));
-  PetscCall(VecSet(local, 0));
+  PetscCall(ModelCreateNodal(chain->model, &local));
   PetscCall(ModelGetLoads(chain->model, &n_loads, &loads));
   for (PetscInt i = 0; i < n_loads; i++) PetscCall(ModelAddLoad(chain->model, i, local));
   PetscCall(ModelGetUnknowns(chain->model, &unknowns));

@@ -7,15 +7,13 @@
 /* Moves every vertex by z += 2 (x - 0.1)^2 - 3 x y, so that the surfaces are curved and still touch */
 static PetscErrorCode Bend(Model model)
 {
+  const Mesh      *mesh;
   const PetscReal *x;
-  PetscInt         vStart, vEnd;
-  DM               dm;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
-  PetscCall(ModelGetCoordinates(model, &x));
-  for (PetscInt v = 0; v < 3 * (vEnd - vStart); v += 3) {
+  PetscCall(ModelGetMesh(model, &mesh));
+  x = mesh->x;
+  for (PetscInt v = 0; v < 3 * mesh->n_vertices; v += 3) {
     PetscReal *z = (PetscReal *)&x[v + 2];
 
     *z += 2 * (x[v] - 0.1) * (x[v] - 0.1) - 3 * x[v] * x[v + 1];

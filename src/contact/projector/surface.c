@@ -16,17 +16,14 @@ typedef struct {
 static PetscErrorCode VerticesMark(Model model, const char set[], PetscBool mark[])
 {
   const PetscInt *v;
-  PetscInt        n, vStart;
+  PetscInt        n;
   IS              is;
-  DM              dm;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
   PetscCall(ModelGetSetVertices(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &v));
-  for (PetscInt i = 0; i < n; i++) mark[v[i] - vStart] = PETSC_TRUE;
+  for (PetscInt i = 0; i < n; i++) mark[v[i]] = PETSC_TRUE;
   PetscCall(ISRestoreIndices(is, &v));
   PetscCall(ISDestroy(&is));
   PetscFunctionReturn(0);
@@ -35,22 +32,20 @@ static PetscErrorCode VerticesMark(Model model, const char set[], PetscBool mark
 /* All local vertices of contact surfaces, ascending */
 static PetscErrorCode VerticesFind(Contact contact, PetscInt *n, PetscInt **vertex)
 {
-  PetscBool *mark;
-  PetscInt   vStart, vEnd;
-  DM         dm;
+  const Mesh *mesh;
+  PetscBool  *mark;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(contact->model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
-  PetscCall(PetscCalloc1(vEnd - vStart, &mark));
+  PetscCall(ModelGetMesh(contact->model, &mesh));
+  PetscCall(PetscCalloc1(mesh->n_vertices, &mark));
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
     PetscCall(VerticesMark(contact->model, contact->interfaces[i].slave, mark));
     PetscCall(VerticesMark(contact->model, contact->interfaces[i].master, mark));
   }
   *n = 0;
-  for (PetscInt v = 0; v < vEnd - vStart; v++) *n += mark[v];
+  for (PetscInt v = 0; v < mesh->n_vertices; v++) *n += mark[v];
   PetscCall(PetscMalloc1(*n, vertex));
-  for (PetscInt v = 0, k = 0; v < vEnd - vStart; v++)
+  for (PetscInt v = 0, k = 0; v < mesh->n_vertices; v++)
     if (mark[v]) (*vertex)[k++] = v;
   PetscCall(PetscFree(mark));
   PetscFunctionReturn(0);
@@ -59,20 +54,16 @@ static PetscErrorCode VerticesFind(Contact contact, PetscInt *n, PetscInt **vert
 /* The nodes of all ranks: unique[n] ascending global vertex numbers, and who has them */
 static PetscErrorCode NodesFind(ContactProjector p, PetscInt *n_unique, PetscInt **unique)
 {
-  Share          *share = &p->share;
-  const PetscInt *number;
-  PetscInt        n, *vertex, *local, total;
-  IS              numbers;
-  DM              dm;
+  Share      *share = &p->share;
+  const Mesh *mesh;
+  PetscInt    n, *vertex, *local, total;
 
   PetscFunctionBeginUser;
   PetscCall(VerticesFind(p->contact, &n, &vertex));
-  PetscCall(ModelGetDM(p->contact->model, &dm));
-  PetscCall(DMPlexGetVertexNumbering(dm, &numbers));
-  PetscCall(ISGetIndices(numbers, &number));
+  PetscCall(ModelGetMesh(p->contact->model, &mesh));
   PetscCall(PetscMalloc1(n, &local));
-  for (PetscInt i = 0; i < n; i++) local[i] = number[vertex[i]];
-  PetscCall(ISRestoreIndices(numbers, &number));
+  for (PetscInt i = 0; i < n; i++)
+    local[i] = mesh->owned[vertex[i]] ? mesh->number[vertex[i]] : ~mesh->number[vertex[i]];
   PetscCall(
     ShareSetUp(p->contact->comm, n, local, share)); /* numbers of vertices for a while: negative where not owned */
   total = share->first[share->size];
@@ -101,30 +92,24 @@ static PetscErrorCode NodesFind(ContactProjector p, PetscInt *n_unique, PetscInt
 /* Slaves of this rank of one interface, appended */
 static PetscErrorCode SlavesAppend(Contact contact, PetscInt interface, PetscInt *n_slaves, Slave **slave)
 {
-  const PetscReal *x;
-  const PetscInt  *v, *number;
-  PetscInt         n, vStart;
-  IS               is, numbers;
-  DM               dm;
+  const Mesh     *mesh;
+  const PetscInt *v;
+  PetscInt        n;
+  IS              is;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(contact->model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
-  PetscCall(ModelGetCoordinates(contact->model, &x));
+  PetscCall(ModelGetMesh(contact->model, &mesh));
   PetscCall(ModelGetOwnedVertices(contact->model, contact->interfaces[interface].slave, &is));
-  PetscCall(DMPlexGetVertexNumbering(dm, &numbers));
-  PetscCall(ISGetIndices(numbers, &number));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &v));
   PetscCall(PetscRealloc(sizeof(Slave) * (size_t)(*n_slaves + n), slave));
   for (PetscInt i = 0; i < n; i++) {
     Slave *s = &(*slave)[(*n_slaves)++];
 
-    *s = (Slave){.interface = interface, .number = number[v[i] - vStart]};
-    PetscCall(PetscArraycpy(s->x, &x[3 * (v[i] - vStart)], 3));
+    *s = (Slave){.interface = interface, .number = mesh->number[v[i]]};
+    PetscCall(PetscArraycpy(s->x, &mesh->x[3 * v[i]], 3));
   }
   PetscCall(ISRestoreIndices(is, &v));
-  PetscCall(ISRestoreIndices(numbers, &number));
   PetscCall(ISDestroy(&is));
   PetscFunctionReturn(0);
 }

@@ -76,9 +76,8 @@ PetscErrorCode BodiesReadOptions(MPI_Comm comm, PetscBool *general)
 
 PetscErrorCode BodiesCreate(Operators operators, Bodies *bodies)
 {
-  Bodies   b;
-  PetscInt vStart, vEnd;
-  DM       dm;
+  Bodies      b;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, &b));
@@ -88,9 +87,8 @@ PetscErrorCode BodiesCreate(Operators operators, Bodies *bodies)
   PetscCheck(b->model, PETSC_COMM_WORLD, PETSC_ERR_ARG_WRONGSTATE, "bodies need a model: loaded matrices have none");
   PetscCall(ModelGetComm(b->model, &b->comm));
   PetscCall(BodiesReadOptions(b->comm, &b->no_sweep));
-  PetscCall(ModelGetDM(b->model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
-  b->layout.n_vertices = vEnd - vStart;
+  PetscCall(ModelGetMesh(b->model, &mesh));
+  b->layout.n_vertices = mesh->n_vertices;
   b->share.comm        = MPI_COMM_NULL;
   PetscCall(ModelGetBodies(b->model, &b->n_bodies, &b->body));
   PetscCall(SharedSetUp(b));

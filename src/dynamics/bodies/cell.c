@@ -8,39 +8,22 @@
 
 PetscErrorCode BodiesCountCells(Bodies bodies, PetscInt *n_cells)
 {
-  PetscInt cStart, cEnd;
-  DM       dm;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(bodies->model, &dm));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
-  *n_cells = cEnd - cStart;
-  PetscFunctionReturn(0);
-}
-
-/* Vertices of a local cell, from 0, and their coordinates (m) */
-static PetscErrorCode CellGetVertices(Bodies bodies, PetscInt c, PetscInt *n_nodes, PetscInt vertex[], PetscReal x[])
-{
-  const Element *element;
-  PetscInt       vStart;
-  DM             dm;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(bodies->model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
-  PetscCall(ModelGetElement(bodies->model, &element));
-  PetscCall(ModelGetCell(bodies->model, c, vertex, x));
-  *n_nodes = element->n_nodes;
-  for (PetscInt a = 0; a < *n_nodes; a++) vertex[a] -= vStart;
+  PetscCall(ModelGetMesh(bodies->model, &mesh));
+  *n_cells = mesh->n_cells;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode BodiesGetCellVertices(Bodies bodies, PetscInt c, PetscInt *body, PetscInt *n_nodes, PetscInt vertex[])
 {
-  PetscReal x[ELEMENT_MAX_DOFS];
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(CellGetVertices(bodies, c, n_nodes, vertex, x));
+  PetscCall(ModelGetMesh(bodies->model, &mesh));
+  *n_nodes = mesh->n_nodes;
+  PetscCall(PetscArraycpy(vertex, &mesh->corner[mesh->n_nodes * c], mesh->n_nodes));
   *body = bodies->body[vertex[0]];
   PetscFunctionReturn(0);
 }
@@ -58,8 +41,9 @@ PetscErrorCode BodiesGetCell(Bodies bodies, PetscInt c, BodiesCell *cell)
   PetscCall(ModelGetElement(bodies->model, &element));
   PetscCall(ModelGetParts(bodies->model, &n_parts, &parts));
   PetscCall(ModelGetCellParts(bodies->model, &cell_part));
-  PetscCall(CellGetVertices(bodies, c, &cell->n_nodes, cell->vertex, x));
-  cell->part = cell_part[c];
+  PetscCall(ModelGetCell(bodies->model, c, cell->vertex, x));
+  cell->n_nodes = element->n_nodes;
+  cell->part    = cell_part[c];
   PetscCall(OperatorsGetYoung(bodies->operators, cell->part, &young));
   PetscCall(OperatorsGetDensity(bodies->operators, cell->part, &density));
   PetscCall(OperatorsGetDamping(bodies->operators, cell->part, &cell->alpha, &cell->beta));

@@ -67,20 +67,17 @@ static PetscErrorCode GroundedGetValues(Bodies b, const Grounded *grounded, Pets
 static PetscErrorCode GroundedAdd(Bodies b, const Grounded *grounded, PetscBool is_dashpot, PetscInt of_vertex[])
 {
   const PetscInt *vertices;
-  PetscInt        vStart, n;
+  PetscInt        n;
   PetscReal       value[3];
   IS              is;
-  DM              dm;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(b->model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
   PetscCall(GroundedGetValues(b, grounded, is_dashpot, value));
   PetscCall(ModelGetOwnedVertices(b->model, grounded->set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt v = vertices[i] - vStart;
+    const PetscInt v = vertices[i];
     Point         *point;
 
     if (b->layout.at[v] < 0) continue;

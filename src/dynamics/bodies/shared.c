@@ -5,7 +5,6 @@
 */
 #include "bodiesimpl.h"
 #include "base/gather.h"
-#include <petscsf.h>
 #include <stdlib.h>
 
 #define SHARED_TAG 5501
@@ -25,61 +24,23 @@ static int CopyCompare(const void *a, const void *b)
   return (x->rank > y->rank) - (x->rank < y->rank);
 }
 
-/* Flags of the local vertices that other ranks have too, and of those that another rank owns */
-static PetscErrorCode VerticesFlag(Bodies b, PetscBool shared[], PetscBool owned[])
-{
-  const PetscInt *degree, *leaf;
-  PetscInt        n_roots, n_leaves, vStart, vEnd;
-  PetscSF         sf;
-  DM              dm;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(b->model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
-  for (PetscInt v = 0; v < vEnd - vStart; v++) {
-    shared[v] = PETSC_FALSE;
-    owned[v]  = PETSC_TRUE;
-  }
-  PetscCall(DMGetPointSF(dm, &sf));
-  PetscCall(PetscSFGetGraph(sf, &n_roots, &n_leaves, &leaf, NULL));
-  if (n_roots < 0) PetscFunctionReturn(0); /* a mesh on one rank shares nothing */
-  PetscCall(PetscSFComputeDegreeBegin(sf, &degree));
-  PetscCall(PetscSFComputeDegreeEnd(sf, &degree));
-  for (PetscInt v = vStart; v < PetscMin(vEnd, n_roots); v++) shared[v - vStart] = degree[v] > 0;
-  for (PetscInt i = 0; i < n_leaves; i++) {
-    const PetscInt v = leaf ? leaf[i] : i;
-
-    if (v < vStart || v >= vEnd) continue;
-    shared[v - vStart] = PETSC_TRUE;
-    owned[v - vStart]  = PETSC_FALSE;
-  }
-  PetscFunctionReturn(0);
-}
-
 /* All copies of all shared vertices, sorted by number, then rank */
 static PetscErrorCode CopiesGather(Bodies b, const PetscBool shared[], PetscInt *n_all, Copy **all)
 {
-  Copy        *own;
-  PetscInt     n = 0, vStart, vEnd;
-  PetscMPIInt  rank;
-  PetscSection global;
-  DM           dm, cdm;
+  Copy       *own;
+  const Mesh *mesh;
+  PetscInt    n = 0;
+  PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(b->comm, &rank));
-  PetscCall(ModelGetDM(b->model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
-  PetscCall(DMGetCoordinateDM(dm, &cdm));
-  PetscCall(DMGetGlobalSection(cdm, &global));
-  PetscCall(PetscCalloc1(vEnd - vStart, &own));
-  for (PetscInt v = vStart; v < vEnd; v++) {
-    PetscInt offset;
-
-    if (!shared[v - vStart]) continue;
-    PetscCall(PetscSectionGetOffset(global, v, &offset));
-    own[n].number = offset < 0 ? -(offset + 1) : offset;
+  PetscCall(ModelGetMesh(b->model, &mesh));
+  PetscCall(PetscCalloc1(mesh->n_vertices, &own));
+  for (PetscInt v = 0; v < mesh->n_vertices; v++) {
+    if (!shared[v]) continue;
+    own[n].number = mesh->number[v];
     own[n].rank   = rank;
-    own[n].vertex = v - vStart;
+    own[n].vertex = v;
     n++;
   }
   PetscCall(GatherRecords(b->comm, n, sizeof(Copy), own, n_all, all));
@@ -190,6 +151,7 @@ static PetscErrorCode RequestsCreate(Shared *share)
 PetscErrorCode SharedSetUp(Bodies b)
 {
   Shared     *share = &b->share;
+  const Mesh *mesh;
   PetscBool  *shared;
   PetscInt    n_all;
   Copy       *all;
@@ -198,9 +160,10 @@ PetscErrorCode SharedSetUp(Bodies b)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(b->comm, &rank));
   PetscCallMPI(MPI_Comm_size(b->comm, &size));
-  PetscCall(PetscMalloc1(b->layout.n_vertices, &shared));
-  PetscCall(PetscMalloc1(b->layout.n_vertices, &b->layout.owned));
-  PetscCall(VerticesFlag(b, shared, b->layout.owned));
+  PetscCall(ModelGetMesh(b->model, &mesh));
+  PetscCall(ModelGetShared(b->model, &shared));
+  PetscCall(PetscMalloc1(mesh->n_vertices, &b->layout.owned));
+  PetscCall(PetscArraycpy(b->layout.owned, mesh->owned, mesh->n_vertices));
   PetscCall(CopiesGather(b, shared, &n_all, &all));
   PetscCall(NeighboursFind(share, n_all, all, rank, size));
   PetscCall(SourcesFind(share, n_all, all, rank));

@@ -89,22 +89,18 @@ PetscErrorCode ImpulsesSetFromOptions(External external)
 /* This rank's copy of the vertex that one rank names by a number >= 0, else -1 */
 static PetscErrorCode VertexFindCopy(Model model, PetscInt *vertex)
 {
-  const PetscInt *number;
-  PetscInt        n, global = -1;
-  DM              dm;
-  IS              numbering;
+  const Mesh *mesh;
+  PetscInt    global = -1;
+  MPI_Comm    comm;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(model, &dm));
-  PetscCall(DMPlexGetVertexNumbering(dm, &numbering)); /* -(g + 1) for vertices of other ranks */
-  PetscCall(ISGetLocalSize(numbering, &n));
-  PetscCall(ISGetIndices(numbering, &number));
-  if (*vertex >= 0) global = number[*vertex] < 0 ? -(number[*vertex] + 1) : number[*vertex];
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &global, 1, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)dm)));
+  PetscCall(ModelGetComm(model, &comm));
+  PetscCall(ModelGetMesh(model, &mesh));
+  if (*vertex >= 0) global = mesh->number[*vertex];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &global, 1, MPIU_INT, MPI_MAX, comm));
   *vertex = -1;
-  for (PetscInt i = 0; i < n && *vertex < 0; i++)
-    if (number[i] == global || number[i] == -(global + 1)) *vertex = i;
-  PetscCall(ISRestoreIndices(numbering, &number));
+  for (PetscInt i = 0; i < mesh->n_vertices && *vertex < 0; i++)
+    if (mesh->number[i] == global) *vertex = i;
   PetscFunctionReturn(0);
 }
 

@@ -113,14 +113,11 @@ static PetscErrorCode FrameFindVertices(External external, const char part[], In
 {
   const Layout   *layout = external->layout;
   const PetscInt *vertex;
-  PetscInt        n, vStart;
+  PetscInt        n;
   PetscBool      *taken;
-  DM              dm;
   IS              is;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(external->model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
   PetscCall(ModelGetSetVertices(external->model, part, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(PetscMalloc1(n, &frame->vertex));
@@ -130,7 +127,7 @@ static PetscErrorCode FrameFindVertices(External external, const char part[], In
   PetscCall(ISGetIndices(is, &vertex));
   for (int pass = 0; pass < 2; pass++) {
     for (PetscInt k = 0; k < n; k++) {
-      const PetscInt i = vertex[k] - vStart;
+      const PetscInt i = vertex[k];
 
       if (layout->at[i] >= 0 && !taken[i] && layout->owned[i] == (pass == 0)) frame->vertex[frame->n++] = i;
     }

@@ -51,14 +51,11 @@ static PetscErrorCode LoadGather(External external, PetscInt i, Vec local)
 
 PetscErrorCode TimedLoadsSetUp(External external)
 {
-  Vec coordinates, local;
-  DM  dm;
+  Vec local;
 
   PetscFunctionBeginUser;
   if (!external->n_loads) PetscFunctionReturn(0);
-  PetscCall(ModelGetDM(external->model, &dm));
-  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
-  PetscCall(VecDuplicate(coordinates, &local));
+  PetscCall(ModelCreateNodal(external->model, &local));
   for (PetscInt i = 0; i < external->n_loads; i++) PetscCall(LoadGather(external, i, local));
   PetscCall(VecDestroy(&local));
   PetscFunctionReturn(0);

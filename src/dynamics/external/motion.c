@@ -142,21 +142,18 @@ static PetscErrorCode MotionFindNumbers(External external, Bodies bodies, PetscB
 {
   const Layout   *layout = external->layout;
   const PetscInt *vertex;
-  PetscInt        n, vStart;
-  DM              dm;
+  PetscInt        n;
   IS              is;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(external->model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
   PetscCall(ModelGetSetVertices(external->model, motion->set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(PetscMalloc4(3 * n, &motion->index, 3 * n, &motion->full, 3 * n, &motion->before, 3 * n, &motion->after));
   PetscCall(ISGetIndices(is, &vertex));
   for (int pass = 0; pass < 2; pass++) {
     for (PetscInt i = 0; i < n; i++)
-      if (layout->at[vertex[i] - vStart] >= 0 && layout->owned[vertex[i] - vStart] == (pass == 0))
-        PetscCall(MotionAddVertex(external, bodies, vertex[i] - vStart, taken, motion, trouble));
+      if (layout->at[vertex[i]] >= 0 && layout->owned[vertex[i]] == (pass == 0))
+        PetscCall(MotionAddVertex(external, bodies, vertex[i], taken, motion, trouble));
     if (pass == 0) motion->n_owned = motion->n;
   }
   PetscCall(ISRestoreIndices(is, &vertex));

@@ -38,19 +38,16 @@ static PetscErrorCode VelocityAddPart(External external, const char part[], cons
                                       PetscReal sum[], PetscInt count[])
 {
   const PetscInt *vertex;
-  PetscInt        n, vStart;
-  DM              dm;
+  PetscInt        n;
   IS              is;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(external->model, &dm));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
   PetscCall(ModelGetSetVertices(external->model, part, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertex));
   for (PetscInt k = 0; k < n; k++) {
-    for (int d = 0; d < 3; d++) sum[3 * (vertex[k] - vStart) + d] += velocity[d];
-    count[vertex[k] - vStart]++;
+    for (int d = 0; d < 3; d++) sum[3 * vertex[k] + d] += velocity[d];
+    count[vertex[k]]++;
   }
   PetscCall(ISRestoreIndices(is, &vertex));
   PetscCall(ISDestroy(&is));

@@ -6,20 +6,11 @@
 
 PetscErrorCode SnapshotsCreate(History history)
 {
-  const char    **names;
-  const Part     *parts;
-  const PetscInt *cell_part;
-  PetscInt        n;
-  DM              dm;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetDM(history->model, &dm));
-  PetscCall(ModelGetParts(history->model, &n, &parts));
-  PetscCall(ModelGetCellParts(history->model, &cell_part));
-  PetscCall(PetscMalloc1(n, &names));
-  for (PetscInt i = 0; i < n; i++) names[i] = parts[i].name;
-  PetscCall(ResultsFilmCreate(history->results, "transient", "snapshot", dm, n, names, cell_part, &history->film));
-  PetscCall(PetscFree(names));
+  PetscCall(ModelGetMesh(history->model, &mesh));
+  PetscCall(ResultsFilmCreate(history->results, "transient", "snapshot", mesh, &history->film));
   PetscFunctionReturn(0);
 }
 

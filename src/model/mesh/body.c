@@ -27,43 +27,22 @@ static PetscInt PieceFind(PetscInt parent[], PetscInt v)
 }
 
 /* A vertex of the same piece for each local vertex, one for the whole piece, itself where it has no cells */
-static PetscErrorCode PiecesFind(Model model, PetscInt n_vertices, PetscInt piece[])
+static void PiecesFind(const Mesh *mesh, PetscInt piece[])
 {
-  const PetscInt n_nodes = model->element->n_nodes;
-  PetscInt       cStart, cEnd, vStart;
+  for (PetscInt v = 0; v < mesh->n_vertices; v++) piece[v] = v;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const PetscInt *const corners = &mesh->corner[mesh->n_nodes * c];
 
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, &cEnd));
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, NULL));
-  for (PetscInt v = 0; v < n_vertices; v++) piece[v] = v;
-  for (PetscInt c = 0; c < cEnd - cStart; c++) {
-    const PetscInt *const corners = &model->cell_vertices[n_nodes * c];
-
-    for (PetscInt i = 1; i < n_nodes; i++)
-      piece[PieceFind(piece, corners[i] - vStart)] = PieceFind(piece, corners[0] - vStart);
+    for (PetscInt i = 1; i < mesh->n_nodes; i++) piece[PieceFind(piece, corners[i])] = PieceFind(piece, corners[0]);
   }
-  for (PetscInt v = 0; v < n_vertices; v++) piece[v] = PieceFind(piece, v);
-  PetscFunctionReturn(0);
+  for (PetscInt v = 0; v < mesh->n_vertices; v++) piece[v] = PieceFind(piece, v);
 }
 
 /* Global number of each local vertex that has cells, else NO_BODY */
-static PetscErrorCode VerticesNumber(Model model, PetscInt vStart, PetscInt vEnd, PetscInt number[])
+static void VerticesNumber(const Mesh *mesh, PetscInt number[])
 {
-  PetscSection global;
-  DM           cdm;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMGetCoordinateDM(model->dm, &cdm));
-  PetscCall(DMGetGlobalSection(cdm, &global));
-  for (PetscInt v = vStart; v < vEnd; v++) {
-    PetscInt n_edges;
-
-    PetscCall(PetscSectionGetOffset(global, v, &number[v - vStart]));
-    if (number[v - vStart] < 0) number[v - vStart] = -(number[v - vStart] + 1);
-    PetscCall(DMPlexGetSupportSize(model->dm, v, &n_edges));
-    if (!n_edges) number[v - vStart] = NO_BODY;
-  }
-  PetscFunctionReturn(0);
+  for (PetscInt v = 0; v < mesh->n_vertices; v++) number[v] = NO_BODY;
+  for (PetscInt i = 0; i < mesh->n_nodes * mesh->n_cells; i++) number[mesh->corner[i]] = mesh->number[mesh->corner[i]];
 }
 
 /* Least label of the vertices of each local piece */
@@ -93,9 +72,9 @@ static PetscErrorCode LabelsShare(DM dm, PetscInt n_points, PetscInt label[], Pe
 }
 
 /* The least global number of the vertices of its body for each local vertex, NO_BODY without cells */
-static PetscErrorCode BodiesLabel(Model model, PetscInt vStart, PetscInt vEnd, PetscInt label_of_vertex[])
+static PetscErrorCode BodiesLabel(Model model, PetscInt vStart, PetscInt label_of_vertex[])
 {
-  const PetscInt n = vEnd - vStart;
+  const PetscInt n = model->mesh.n_vertices;
   PetscInt       n_points, *label, *work, *piece;
   PetscBool      same;
 
@@ -103,8 +82,8 @@ static PetscErrorCode BodiesLabel(Model model, PetscInt vStart, PetscInt vEnd, P
   PetscCall(DMPlexGetChart(model->dm, NULL, &n_points));
   PetscCall(PetscMalloc3(n_points, &label, n_points, &work, n, &piece));
   for (PetscInt p = 0; p < n_points; p++) label[p] = NO_BODY;
-  PetscCall(PiecesFind(model, n, piece));
-  PetscCall(VerticesNumber(model, vStart, vEnd, &label[vStart]));
+  PiecesFind(&model->mesh, piece);
+  VerticesNumber(&model->mesh, &label[vStart]);
   do {
     PetscCall(PetscArraycpy(label_of_vertex, &label[vStart], n));
     LabelsSpread(n, piece, &label[vStart]);
@@ -117,23 +96,15 @@ static PetscErrorCode BodiesLabel(Model model, PetscInt vStart, PetscInt vEnd, P
 }
 
 /* All labels, ascending, on every rank: each is the number of one vertex, listed by the rank that owns it */
-static PetscErrorCode LabelsGather(Model model, PetscInt vStart, PetscInt vEnd, const PetscInt label[],
-                                   PetscInt *n_bodies, PetscInt **labels)
+static PetscErrorCode LabelsGather(Model model, const PetscInt label[], PetscInt *n_bodies, PetscInt **labels)
 {
-  PetscInt     n = 0, *own;
-  PetscSection global;
-  DM           cdm;
+  const Mesh *mesh = &model->mesh;
+  PetscInt    n    = 0, *own;
 
   PetscFunctionBeginUser;
-  PetscCall(DMGetCoordinateDM(model->dm, &cdm));
-  PetscCall(DMGetGlobalSection(cdm, &global));
-  PetscCall(PetscMalloc1(vEnd - vStart, &own));
-  for (PetscInt v = vStart; v < vEnd; v++) {
-    PetscInt offset;
-
-    PetscCall(PetscSectionGetOffset(global, v, &offset));
-    if (offset == label[v - vStart]) own[n++] = offset;
-  }
+  PetscCall(PetscMalloc1(mesh->n_vertices, &own));
+  for (PetscInt v = 0; v < mesh->n_vertices; v++)
+    if (mesh->owned[v] && mesh->number[v] == label[v]) own[n++] = label[v];
   PetscCall(GatherRecords(model->comm, n, sizeof(PetscInt), own, n_bodies, labels));
   PetscCall(PetscSortInt(*n_bodies, *labels));
   PetscCall(PetscFree(own));
@@ -156,7 +127,7 @@ static PetscErrorCode BodyKeysFind(Model model, PetscInt n_vertices, const Petsc
 
     for (PetscInt b = 0; b < n_bodies; b++) least[b] = PETSC_MAX_REAL;
     for (PetscInt v = 0; v < n_vertices; v++) {
-      const PetscReal *x       = &model->coordinates[3 * v];
+      const PetscReal *x       = &model->mesh.x[3 * v];
       PetscBool        attains = body[v] >= 0 ? PETSC_TRUE : PETSC_FALSE;
 
       for (int j = k - k % 3; j < k && attains; j++)
@@ -199,20 +170,21 @@ static PetscErrorCode BodiesSort(Model model, PetscInt n_vertices, PetscInt n_bo
 
 PetscErrorCode ModelGetBodies(Model model, PetscInt *n_bodies, PetscInt **body)
 {
-  PetscInt vStart, vEnd, *labels;
+  const PetscInt n = model->mesh.n_vertices;
+  PetscInt       vStart, *labels;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, &vEnd));
-  PetscCall(PetscMalloc1(vEnd - vStart, body));
-  PetscCall(BodiesLabel(model, vStart, vEnd, *body));
-  PetscCall(LabelsGather(model, vStart, vEnd, *body, n_bodies, &labels));
-  for (PetscInt v = 0; v < vEnd - vStart; v++) {
+  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, NULL));
+  PetscCall(PetscMalloc1(n, body));
+  PetscCall(BodiesLabel(model, vStart, *body));
+  PetscCall(LabelsGather(model, *body, n_bodies, &labels));
+  for (PetscInt v = 0; v < n; v++) {
     const PetscInt label = (*body)[v];
 
     (*body)[v] = -1;
     if (label != NO_BODY) PetscCall(PetscFindInt(label, *n_bodies, labels, &(*body)[v]));
   }
   PetscCall(PetscFree(labels));
-  PetscCall(BodiesSort(model, vEnd - vStart, *n_bodies, *body));
+  PetscCall(BodiesSort(model, n, *n_bodies, *body));
   PetscFunctionReturn(0);
 }

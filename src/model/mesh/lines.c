@@ -23,7 +23,7 @@ static PetscErrorCode PieceMeasure(Model model, Piece *piece)
   PetscCall(PetscMalloc1(3 * piece->n_nodes, &piece->x));
   for (PetscInt i = 0; i < piece->n_nodes; i++)
     for (int d = 0; d < 3; d++) {
-      const PetscReal x = piece->x[3 * i + d] = model->coordinates[3 * piece->vertex[i] + d];
+      const PetscReal x = piece->x[3 * i + d] = model->mesh.x[3 * piece->vertex[i] + d];
 
       lower[d] = i ? PetscMin(lower[d], x) : x;
       upper[d] = i ? PetscMax(upper[d], x) : x;
@@ -36,19 +36,18 @@ static PetscErrorCode PieceMeasure(Model model, Piece *piece)
 /* Local cells of the body and their nodes */
 static PetscErrorCode PieceCreate(Model model, PetscInt body, const PetscInt body_of_vertex[], Piece *piece)
 {
-  PetscInt cStart, cEnd, vStart, vEnd, *node;
+  const Mesh *mesh = &model->mesh;
+  PetscInt   *node;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, &cEnd));
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, &vEnd));
-  PetscCall(PetscMalloc2(LINES_CORNERS * (cEnd - cStart), &piece->corners, cEnd - cStart, &piece->part));
-  PetscCall(PetscMalloc1(vEnd - vStart, &piece->vertex));
-  PetscCall(PetscMalloc1(vEnd - vStart, &node));
-  for (PetscInt v = 0; v < vEnd - vStart; v++) node[v] = -1;
-  for (PetscInt c = 0; c < cEnd - cStart; c++) {
-    if (body_of_vertex[model->cell_vertices[LINES_CORNERS * c] - vStart] != body) continue;
+  PetscCall(PetscMalloc2(LINES_CORNERS * mesh->n_cells, &piece->corners, mesh->n_cells, &piece->part));
+  PetscCall(PetscMalloc1(mesh->n_vertices, &piece->vertex));
+  PetscCall(PetscMalloc1(mesh->n_vertices, &node));
+  for (PetscInt v = 0; v < mesh->n_vertices; v++) node[v] = -1;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    if (body_of_vertex[mesh->corner[LINES_CORNERS * c]] != body) continue;
     for (int i = 0; i < LINES_CORNERS; i++) {
-      const PetscInt v = model->cell_vertices[LINES_CORNERS * c + i] - vStart;
+      const PetscInt v = mesh->corner[LINES_CORNERS * c + i];
 
       if (node[v] < 0) {
         node[v]                         = piece->n_nodes;
@@ -56,7 +55,7 @@ static PetscErrorCode PieceCreate(Model model, PetscInt body, const PetscInt bod
       }
       piece->corners[LINES_CORNERS * piece->n_cells + i] = node[v];
     }
-    piece->part[piece->n_cells++] = model->cell_part[c];
+    piece->part[piece->n_cells++] = mesh->cell_part[c];
   }
   PetscCall(PetscFree(node));
   PetscCall(PieceMeasure(model, piece));

@@ -37,15 +37,13 @@ static PetscErrorCode BodyListDestroy(BodyList *bodies)
 /* Finds which bodies are swept, and the costs of cells and bodies */
 static PetscErrorCode BodyListCreate(Model model, Clusters *clusters, BodyList *bodies)
 {
-  const PetscInt n_nodes = model->element->n_nodes, n = bodies->n;
-  PetscInt       vStart;
+  const PetscInt n = bodies->n;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, NULL));
   PetscCall(PetscCalloc4(clusters->n_cells, &bodies->of_cell, n, &bodies->cost, n, &bodies->whole, n, &bodies->lines));
   for (PetscInt b = 0; b < n; b++) PetscCall(ModelCreateLines(model, b, bodies->of_vertex, &bodies->lines[b]));
   for (PetscInt c = 0; c < clusters->n_cells; c++) {
-    const PetscInt    b     = bodies->of_vertex[model->cell_vertices[n_nodes * c] - vStart];
+    const PetscInt    b     = bodies->of_vertex[model->mesh.corner[model->mesh.n_nodes * c]];
     const ModelLines *lines = bodies->lines[b];
 
     bodies->of_cell[c] = b;
@@ -82,13 +80,11 @@ static PetscErrorCode BodyListChooseWhole(PetscInt n_ranks, BodyList *bodies)
 static PetscErrorCode ChainAdd(Model model, BodyList *bodies, PetscInt body, PetscInt node[], Clusters *clusters,
                                Slabs *slabs)
 {
-  const PetscInt    n_nodes = model->element->n_nodes;
+  const PetscInt    n_nodes = model->mesh.n_nodes;
   ModelLines *const lines   = bodies->lines[body];
   SlabChain *const  chain   = &slabs->chain[slabs->n++];
-  PetscInt          vStart;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, NULL));
   *chain      = (SlabChain){.first = clusters->n, .n_slabs = lines->n_nodes - (lines->closed ? 0 : 1), .lines = lines};
   chain->cost = bodies->cost[body] / chain->n_slabs;
   bodies->lines[body] = NULL;
@@ -98,7 +94,7 @@ static PetscErrorCode ChainAdd(Model model, BodyList *bodies, PetscInt body, Pet
 
     if (bodies->of_cell[c] != body) continue;
     for (PetscInt i = 0; i < n_nodes; i++) {
-      const PetscInt k = node[model->cell_vertices[n_nodes * c + i] - vStart];
+      const PetscInt k = node[model->mesh.corner[n_nodes * c + i]];
 
       least = PetscMin(least, k);
       most  = PetscMax(most, k);
@@ -128,12 +124,11 @@ static PetscErrorCode CellsCentres(Model model, PetscInt n_cells, PetscReal cent
 /* Clusters of all bodies, on the rank of the mesh */
 static PetscErrorCode BodiesCluster(Model model, PetscInt n_ranks, BodyList *bodies, Clusters *clusters, Slabs *slabs)
 {
-  PetscInt vStart, vEnd, *node;
+  PetscInt *node;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, &vEnd));
   PetscCall(PetscMalloc2(bodies->n, &slabs->chain, 3 * clusters->n_cells, &slabs->centre));
-  PetscCall(PetscMalloc1(vEnd - vStart, &node));
+  PetscCall(PetscMalloc1(model->mesh.n_vertices, &node));
   PetscCall(CellsCentres(model, clusters->n_cells, slabs->centre));
   PetscCall(BodyListCreate(model, clusters, bodies));
   PetscCall(BodyListChooseWhole(n_ranks, bodies));
@@ -154,14 +149,11 @@ PetscErrorCode SlabsFind(Model model, PetscInt n_ranks, Clusters *clusters, Slab
   BodyList bodies = {0};
 
   PetscFunctionBeginUser;
-  PetscCall(PartsFindCells(model));
-  PetscCall(ModelTabulate(model));
+  PetscCall(MeshTabulate(model));
   PetscCall(ModelGetBodies(model, &bodies.n, &bodies.of_vertex));
   if (clusters->n_cells) PetscCall(BodiesCluster(model, n_ranks, &bodies, clusters, slabs));
   PetscCall(PetscFree(bodies.of_vertex));
-  PetscCall(PetscFree(model->cell_part));
-  PetscCall(PetscFree(model->coordinates));
-  PetscCall(PetscFree(model->cell_vertices));
+  PetscCall(MeshReset(model));
   PetscFunctionReturn(0);
 }
 

@@ -77,27 +77,25 @@ static void FacetAreaShares(const double x[4][3], double share[4])
   }
 }
 
-/* Adds int N_v dA (m^2) of the faces on this rank to weight[3 (v - vStart)] */
+/* Adds int N_v dA (m^2) of the faces on this rank to weight[3 v] */
 static PetscErrorCode SurfaceAddWeights(Model model, const char set[], PetscScalar weight[])
 {
-  PetscInt vStart, n_faces, *corners;
+  PetscInt n_faces, *corners;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, NULL));
   PetscCall(ModelGetSetFaces(model, set, &n_faces, &corners));
   for (PetscInt f = 0; f < n_faces; f++) {
     double x[4][3], share[4];
 
-    for (int i = 0; i < 4; i++)
-      PetscCall(PetscArraycpy(x[i], &model->coordinates[3 * (corners[4 * f + i] - vStart)], 3));
+    for (int i = 0; i < 4; i++) PetscCall(PetscArraycpy(x[i], &model->mesh.x[3 * corners[4 * f + i]], 3));
     FacetAreaShares((const double(*)[3])x, share);
-    for (int i = 0; i < 4; i++) weight[3 * (corners[4 * f + i] - vStart)] += share[i];
+    for (int i = 0; i < 4; i++) weight[3 * corners[4 * f + i]] += share[i];
   }
   PetscCall(PetscFree(corners));
   PetscFunctionReturn(0);
 }
 
-/* Adds 1 at the vertices of the set that this rank owns and that have cells to weight[3 (v - vStart)] */
+/* Adds 1 at the vertices of the set that this rank owns and that have cells to weight[3 v] */
 static PetscErrorCode VerticesAddWeights(Model model, const char set[], PetscScalar weight[])
 {
   const PetscInt *vertices;
@@ -110,8 +108,8 @@ static PetscErrorCode VerticesAddWeights(Model model, const char set[], PetscSca
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
   for (PetscInt j = 0; j < n; j++) {
-    PetscCall(DMPlexGetSupportSize(model->dm, vertices[j], &n_edges));
-    if (n_edges) weight[3 * (vertices[j] - vStart)] += 1;
+    PetscCall(DMPlexGetSupportSize(model->dm, vStart + vertices[j], &n_edges));
+    if (n_edges) weight[3 * vertices[j]] += 1;
   }
   PetscCall(ISRestoreIndices(is, &vertices));
   PetscCall(ISDestroy(&is));
@@ -126,12 +124,9 @@ static PetscErrorCode LoadCreateWeights(Model model, const Load *load, Vec *weig
   PetscReal    total = 0;
   PetscInt     n;
   PetscBool    faces;
-  Vec          coordinates;
 
   PetscFunctionBeginUser;
-  PetscCall(DMGetCoordinatesLocal(model->dm, &coordinates));
-  PetscCall(VecDuplicate(coordinates, weights));
-  PetscCall(VecSet(*weights, 0));
+  PetscCall(ModelCreateNodal(model, weights));
   PetscCall(SetHasFaces(model, load->set, &faces));
   PetscCall(VecGetLocalSize(*weights, &n));
   PetscCall(VecGetArray(*weights, &weight));

@@ -62,7 +62,8 @@ PetscErrorCode PartsCheck(Model model)
 }
 
 /* Writes the part into cells of one label; a cell that has one already makes `twice` that cell */
-static PetscErrorCode PartMarkCells(Model model, PetscInt part, PetscInt *n_marked, PetscInt *twice)
+static PetscErrorCode PartMarkCells(Model model, PetscInt part, PetscInt cell_part[], PetscInt *n_marked,
+                                    PetscInt *twice)
 {
   PetscInt        cStart, cEnd, n = 0;
   const PetscInt *points;
@@ -80,8 +81,8 @@ static PetscErrorCode PartMarkCells(Model model, PetscInt part, PetscInt *n_mark
   PetscCall(ISGetIndices(is, &points));
   for (PetscInt i = 0; i < n; i++) {
     if (points[i] < cStart || points[i] >= cEnd) continue;
-    if (model->cell_part[points[i] - cStart] >= 0) *twice = points[i] - cStart;
-    model->cell_part[points[i] - cStart] = part;
+    if (cell_part[points[i] - cStart] >= 0) *twice = points[i] - cStart;
+    cell_part[points[i] - cStart] = part;
     ++*n_marked;
   }
   PetscCall(ISRestoreIndices(is, &points));
@@ -89,21 +90,19 @@ static PetscErrorCode PartMarkCells(Model model, PetscInt part, PetscInt *n_mark
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PartsFindCells(Model model)
+PetscErrorCode PartsFindCells(Model model, PetscInt cell_part[])
 {
-  PetscInt cStart, cEnd, bad[2] = {-1, -1}, n_local, n_cells;
+  PetscInt bad[2] = {-1, -1}, n_local, n_cells;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, &cEnd));
-  PetscCall(PetscMalloc1(cEnd - cStart, &model->cell_part));
-  for (PetscInt c = 0; c < cEnd - cStart; c++) model->cell_part[c] = -1;
+  for (PetscInt c = 0; c < model->mesh.n_cells; c++) cell_part[c] = -1;
   for (PetscInt part = 0; part < model->n_parts; part++) {
-    PetscCall(PartMarkCells(model, part, &n_local, &bad[0]));
+    PetscCall(PartMarkCells(model, part, cell_part, &n_local, &bad[0]));
     PetscCallMPI(MPI_Allreduce(&n_local, &n_cells, 1, MPIU_INT, MPI_SUM, model->comm));
     if (!n_cells) PetscCall(ModelComplainSet(model, "volume", model->parts[part].name));
   }
-  for (PetscInt c = 0; c < cEnd - cStart; c++)
-    if (model->cell_part[c] < 0) bad[1] = c;
+  for (PetscInt c = 0; c < model->mesh.n_cells; c++)
+    if (cell_part[c] < 0) bad[1] = c;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bad, 2, MPIU_INT, MPI_MAX, model->comm));
   PetscCheck(bad[0] < 0, model->comm, PETSC_ERR_USER_INPUT,
              "a cell belongs to two of the -parts; volumes must not overlap");

@@ -101,20 +101,12 @@ static int CandidateCompare(const void *a, const void *b)
 /* Vertex v of the local mesh as a candidate of a probe */
 static PetscErrorCode CandidateSet(Model model, const Probe *probe, PetscInt part, PetscInt v, Candidate *candidate)
 {
-  PetscInt     vStart;
-  PetscMPIInt  rank;
-  PetscSection global;
-  DM           cdm;
+  PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(model->comm, &rank));
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, NULL));
-  PetscCall(DMGetCoordinateDM(model->dm, &cdm));
-  PetscCall(DMGetGlobalSection(cdm, &global));
-  *candidate = (Candidate){.part = part, .rank = rank, .vertex = v - vStart};
-  PetscCall(PetscSectionGetOffset(global, v, &candidate->number));
-  if (candidate->number < 0) candidate->number = -(candidate->number + 1);
-  PetscCall(PetscArraycpy(candidate->x, &model->coordinates[3 * (v - vStart)], 3));
+  *candidate = (Candidate){.part = part, .number = model->mesh.number[v], .rank = rank, .vertex = v};
+  PetscCall(PetscArraycpy(candidate->x, &model->mesh.x[3 * v], 3));
   for (int d = 0; d < 3; d++) candidate->distance += PetscSqr(candidate->x[d] - probe->at[d]);
   candidate->distance = PetscSqrtReal(candidate->distance);
   PetscFunctionReturn(0);
@@ -123,17 +115,16 @@ static PetscErrorCode CandidateSet(Model model, const Probe *probe, PetscInt par
 /* The best local candidate; n = 0 when this rank has no cell of the part */
 static PetscErrorCode ProbeFindLocal(Model model, const Probe *probe, PetscInt *n, Candidate *best)
 {
-  const PetscInt n_nodes = model->element->n_nodes;
-  PetscInt       cStart, cEnd, part;
-  Candidate      candidate;
+  const Mesh *mesh = &model->mesh;
+  PetscInt    part;
+  Candidate   candidate;
 
   PetscFunctionBeginUser;
   *n = 0;
   PetscCall(ProbeFindPart(model, probe, &part));
-  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, &cEnd));
-  for (PetscInt i = 0; i < n_nodes * (cEnd - cStart); i++) {
-    if (part >= 0 && model->cell_part[i / n_nodes] != part) continue;
-    PetscCall(CandidateSet(model, probe, model->cell_part[i / n_nodes], model->cell_vertices[i], &candidate));
+  for (PetscInt i = 0; i < mesh->n_nodes * mesh->n_cells; i++) {
+    if (part >= 0 && mesh->cell_part[i / mesh->n_nodes] != part) continue;
+    PetscCall(CandidateSet(model, probe, mesh->cell_part[i / mesh->n_nodes], mesh->corner[i], &candidate));
     if (!*n || CandidateCompare(&candidate, best) < 0) *best = candidate;
     *n = 1;
   }
@@ -143,16 +134,12 @@ static PetscErrorCode ProbeFindLocal(Model model, const Probe *probe, PetscInt *
 /* The node of one probe: its place on every rank, its vertex on the rank that records it */
 static PetscErrorCode ProbeLocate(Model model, Probe *probe)
 {
-  PetscMPIInt  rank;
-  PetscInt     n, n_all;
-  Candidate    best, *all;
-  PetscSection global;
-  DM           cdm;
+  PetscMPIInt rank;
+  PetscInt    n, n_all;
+  Candidate   best, *all;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(model->comm, &rank));
-  PetscCall(DMGetCoordinateDM(model->dm, &cdm));
-  PetscCall(DMGetGlobalSection(cdm, &global)); /* the first call is collective, and not every rank has candidates */
   PetscCall(ProbeFindLocal(model, probe, &n, &best));
   PetscCall(GatherRecords(model->comm, n, sizeof(best), &best, &n_all, &all));
   qsort(all, (size_t)n_all, sizeof(*all), CandidateCompare);

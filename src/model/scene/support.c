@@ -94,7 +94,7 @@ PetscErrorCode SupportsSetFromOptions(Model model)
   PetscFunctionReturn(0);
 }
 
-/* Flags fixed[vertex - vStart][3]: by supports, and all three at vertices without a cell (points of a file's
+/* Flags fixed[vertex][3]: by supports, and all three at vertices without a cell (points of a file's
    geometry) */
 static PetscErrorCode SupportsFlag(Model model, PetscInt vStart, PetscInt vEnd, PetscBool fixed[][3])
 {
@@ -110,7 +110,7 @@ static PetscErrorCode SupportsFlag(Model model, PetscInt vStart, PetscInt vEnd, 
     PetscCall(ISGetIndices(is, &vertices));
     for (PetscInt j = 0; j < n; j++)
       for (int d = 0; d < 3; d++)
-        if (support->fix[d]) fixed[vertices[j] - vStart][d] = PETSC_TRUE;
+        if (support->fix[d]) fixed[vertices[j]][d] = PETSC_TRUE;
     PetscCall(ISRestoreIndices(is, &vertices));
     PetscCall(ISDestroy(&is));
   }
@@ -153,21 +153,29 @@ static PetscErrorCode SectionCreate(DM dm, PetscInt vStart, PetscInt vEnd, Petsc
   PetscFunctionReturn(0);
 }
 
-/* Global number of each displacement of each local vertex, -1 where fixed */
+/* Global number of each displacement of each local vertex, -1 where fixed, and how many this rank has */
 static PetscErrorCode UnknownsNumber(Model model, PetscInt vStart, PetscInt vEnd, PetscBool fixed[][3])
 {
+  PetscInt    *unknown;
   PetscSection global;
+  Vec          u;
 
   PetscFunctionBeginUser;
   PetscCall(DMGetGlobalSection(model->dm, &global));
-  PetscCall(PetscMalloc1(3 * (vEnd - vStart), &model->unknowns));
+  PetscCall(PetscMalloc1(3 * (vEnd - vStart), &unknown));
   for (PetscInt v = vStart; v < vEnd; v++) {
     PetscInt offset;
 
     PetscCall(PetscSectionGetOffset(global, v, &offset));
     if (offset < 0) offset = -(offset + 1);
-    for (int d = 0; d < 3; d++) model->unknowns[3 * (v - vStart) + d] = fixed[v - vStart][d] ? -1 : offset++;
+    for (int d = 0; d < 3; d++) unknown[3 * (v - vStart) + d] = fixed[v - vStart][d] ? -1 : offset++;
   }
+  model->mesh.unknown = unknown;
+  PetscCall(DMGetGlobalVector(model->dm, &u));
+  PetscCall(VecGetLocalSize(u, &model->mesh.n_own));
+  PetscCall(VecGetSize(u, &model->mesh.n_unknowns));
+  PetscCall(VecGetOwnershipRange(u, &model->mesh.first_own, NULL));
+  PetscCall(DMRestoreGlobalVector(model->dm, &u));
   PetscFunctionReturn(0);
 }
 
