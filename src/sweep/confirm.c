@@ -53,13 +53,11 @@ static PetscErrorCode OnsetConverge(Sweep sweep, const BranchLine *line, PetscRe
 {
   Correction    correction;
   ReducedWindow near;
-  PetscBool     damped;
 
   PetscFunctionBeginUser;
   *change            = PETSC_MAX_REAL;
   p[line->parameter] = event->critical;
-  PetscCall(ReducedSum(&sweep->basis.reduced, OPERATORS_DAMPING, p, 0, NULL, &damped));
-  near = WindowNear(&sweep->window, event->omega, damped);
+  near               = WindowNear(&sweep->window, event->omega, ReducedIsDamped(&sweep->basis.reduced, p));
   PetscCall(CorrectionCreate(sweep->operators, p, &near, &sweep->progress, &correction));
   for (int step = 0; step < ONSET_STEPS && event->found && *change > CONFIRMED * PetscAbsReal(event->critical);
        step++) {

@@ -1,7 +1,7 @@
 /* Small dense systems for the unit tests of sweep/: matrices with coefficients, as reduced models without a mesh */
 #pragma once
 
-#include "sweep/dense/reduced.h"
+#include "sweep/dense/eigen.h"
 #include <string.h>
 
 #define SYSTEM_TERMS 6
@@ -58,13 +58,11 @@ static inline PetscErrorCode LargestProduct(const System *s, const PetscReal p[]
                                             PetscReal *largest)
 {
   const PetscInt n = m->size;
-  PetscReal     *M, *C;
+  DensePencil    pencil;
 
   PetscFunctionBeginUser;
   *largest = 0;
-  PetscCall(PetscMalloc2(n * n, &M, n * n, &C));
-  PetscCall(ReducedSum(&s->reduced, OPERATORS_MASS, p, n, M, NULL));
-  PetscCall(ReducedSum(&s->reduced, OPERATORS_DAMPING, p, n, C, NULL));
+  PetscCall(ReducedPencil(&s->reduced, p, n, &pencil));
   for (PetscInt i = 0; i < m->n; i++)
     for (PetscInt j = 0; j < m->n; j++) {
       const PetscComplex sum   = m->lambda[i] + m->lambda[j];
@@ -72,10 +70,10 @@ static inline PetscErrorCode LargestProduct(const System *s, const PetscReal p[]
 
       for (PetscInt r = 0; r < n; r++)
         for (PetscInt c = 0; c < n; c++)
-          value += m->y[i * n + r] * (sum * M[c * n + r] + C[c * n + r]) * m->x[j * n + c];
+          value += m->y[i * n + r] * (sum * pencil.M[c * n + r] + pencil.C[c * n + r]) * m->x[j * n + c];
       if (i != j) *largest = PetscMax(*largest, cabs(value) / cabs(sum));
     }
-  PetscCall(PetscFree2(M, C));
+  PetscCall(DensePencilDestroy(&pencil));
   PetscFunctionReturn(0);
 }
 

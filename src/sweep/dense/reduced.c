@@ -91,20 +91,26 @@ static void AddBlock(PetscInt n, PetscInt lda, PetscReal c, const PetscReal A[],
     for (PetscInt i = 0; i < n; i++) sum[j * n + i] += c * A[j * lda + i];
 }
 
-PetscErrorCode ReducedSum(const Reduced *reduced, OperatorsTermKind kind, const PetscReal p[], PetscInt n,
-                          PetscReal sum[], PetscBool *any_nonzero)
+/* K(p) (or C, M) on the leading n x n block */
+static PetscErrorCode ReducedSum(const Reduced *reduced, OperatorsTermKind kind, const PetscReal p[], PetscInt n,
+                                 PetscReal sum[])
 {
   PetscFunctionBeginUser;
-  if (n) PetscCall(PetscArrayzero(sum, n * n));
-  if (any_nonzero) *any_nonzero = PETSC_FALSE;
+  PetscCall(PetscArrayzero(sum, n * n));
   for (PetscInt t = 0; t < reduced->n_terms; t++) {
     const PetscReal c = reduced->term[t].kind == kind ? OperatorsTermCoefficient(&reduced->term[t], p) : 0;
 
-    if (c == 0) continue;
-    if (any_nonzero) *any_nonzero = PETSC_TRUE;
-    AddBlock(n, reduced->n, c, reduced->A[t], sum);
+    if (c != 0) AddBlock(n, reduced->n, c, reduced->A[t], sum);
   }
   PetscFunctionReturn(0);
+}
+
+PetscBool ReducedIsDamped(const Reduced *reduced, const PetscReal p[])
+{
+  for (PetscInt t = 0; t < reduced->n_terms; t++)
+    if (reduced->term[t].kind == OPERATORS_DAMPING && OperatorsTermCoefficient(&reduced->term[t], p) != 0)
+      return PETSC_TRUE;
+  return PETSC_FALSE;
 }
 
 /* Symmetric terms of M; symmetric = whether the pencil has no others */
@@ -291,11 +297,12 @@ static PetscErrorCode ModesFinish(const DensePencil *pencil, const PetscReal Ms[
 PetscErrorCode ReducedPencil(const Reduced *reduced, const PetscReal p[], PetscInt n, DensePencil *pencil)
 {
   PetscFunctionBeginUser;
-  pencil->n = n;
+  pencil->n      = n;
+  pencil->damped = ReducedIsDamped(reduced, p);
   PetscCall(PetscMalloc3(n * n, &pencil->K, n * n, &pencil->C, n * n, &pencil->M));
-  PetscCall(ReducedSum(reduced, OPERATORS_STIFFNESS, p, n, pencil->K, NULL));
-  PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, n, pencil->C, &pencil->damped));
-  PetscCall(ReducedSum(reduced, OPERATORS_MASS, p, n, pencil->M, NULL));
+  PetscCall(ReducedSum(reduced, OPERATORS_STIFFNESS, p, n, pencil->K));
+  PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, n, pencil->C));
+  PetscCall(ReducedSum(reduced, OPERATORS_MASS, p, n, pencil->M));
   PetscFunctionReturn(0);
 }
 

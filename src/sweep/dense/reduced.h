@@ -53,10 +53,8 @@ PetscErrorCode ReducedModesDestroy(ReducedModes *modes);
 PetscBool ReducedIsUnstable(PetscComplex lambda, PetscReal error);
 PetscBool ReducedModeIsUnstable(const ReducedModes *modes, PetscInt i);
 
-/* K(p) (or C, M) on the leading n x n block, array [n * n]; any_nonzero (may be NULL) = whether a coefficient is not
-   zero */
-PetscErrorCode ReducedSum(const Reduced *reduced, OperatorsTermKind kind, const PetscReal p[], PetscInt n,
-                          PetscReal sum[], PetscBool *any_nonzero);
+/* Whether a damping term has a coefficient that is not zero */
+PetscBool ReducedIsDamped(const Reduced *reduced, const PetscReal p[]);
 
 /* Labels cluster [n] = first member: puts j and all of its cluster into the cluster of i */
 void ReducedClusterJoin(PetscInt n, PetscInt i, PetscInt j, PetscInt cluster[]);

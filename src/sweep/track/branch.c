@@ -46,13 +46,12 @@ PetscErrorCode BranchListBegin(BranchList *list, ModeFrame *frame)
 /* score [nb] of a branch with the modes of b */
 static PetscErrorCode BranchScore(const Branch *branch, const ModeFrame *b, PetscReal score[])
 {
-  const PetscInt nb = b->modes.n, N = b->N;
+  const PetscInt nb = b->modes.n;
   PetscComplex  *sum;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(nb, &sum));
-  for (PetscInt j = 0; j < nb; j++)
-    sum[b->cluster[j]] += DenseDot(N, branch->w, b->X + j * N) * DenseDot(N, b->W + j * N, branch->x);
+  ModeFrameOverlap(b, branch->w, branch->x, sum);
   for (PetscInt j = 0; j < nb; j++) score[j] = b->form.damped ? cabs(sum[b->cluster[j]]) : creal(sum[b->cluster[j]]);
   PetscCall(PetscFree(sum));
   PetscFunctionReturn(0);
@@ -64,21 +63,13 @@ static void ClustersCount(const ModeFrame *frame, const PetscInt component[], Pe
   for (PetscInt i = 0; i < frame->modes.n; i++) count[component[i]] += frame->cluster[i] == i;
 }
 
-static PetscInt ClusterSize(const ModeFrame *frame, PetscInt i)
-{
-  PetscInt size = 0;
-
-  for (PetscInt k = 0; k < frame->modes.n; k++) size += frame->cluster[k] == frame->cluster[i];
-  return size;
-}
-
 /* Hands the vectors on; count [n_components] clusters of a */
 static PetscErrorCode BranchListUpdate(BranchList *list, const ModeFrame *b, const Match *match, const PetscInt count[])
 {
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < b->modes.n; j++) {
     Branch        *branch = list->branch + b->branch[j] - list->first;
-    const PetscInt size   = ClusterSize(b, j);
+    const PetscInt size   = ModeFrameClusterSize(b, j);
 
     if (match->from[j] < 0) continue;
     if (size > 1 && count[match->component_b[j]] > 1) branch->joined = PETSC_TRUE;

@@ -192,12 +192,18 @@ PetscErrorCode ModeFrameDestroy(ModeFrame **frame)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModeFrameProject(const ModeFrame *a, const ModeFrame *b, PetscComplex C[])
+PetscInt ModeFrameClusterSize(const ModeFrame *f, PetscInt i)
 {
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < a->modes.n; i++)
-    for (PetscInt j = 0; j < b->modes.n; j++) C[i * b->modes.n + j] = DenseDot(a->N, a->W + i * a->N, b->X + j * b->N);
-  PetscFunctionReturn(0);
+  PetscInt size = 0;
+
+  for (PetscInt k = 0; k < f->modes.n; k++) size += f->cluster[k] == f->cluster[i];
+  return size;
+}
+
+void ModeFrameOverlap(const ModeFrame *f, const PetscComplex w[], const PetscComplex x[], PetscComplex sum[])
+{
+  for (PetscInt j = 0; j < f->modes.n; j++)
+    sum[f->cluster[j]] += DenseDot(f->N, w, f->X + j * f->N) * DenseDot(f->N, f->W + j * f->N, x);
 }
 
 PetscErrorCode ModeFramePencil(const ModeFrame *a, const ModeFrame *b, PetscComplex H[], PetscComplex G[])

@@ -45,8 +45,11 @@ PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], cons
 PetscErrorCode ModeFrameDestroy(ModeFrame **frame);
 /* The other member of the pair lambda, -conj(lambda) of an undamped system in flutter, else -1 */
 PetscInt ModeFramePartner(const ModeFrame *frame, PetscInt i);
-/* C_ij = W_i(a)^T X_j(b), [a->modes.n * b->modes.n], b fastest: coefficients of the modes of b in those of a */
-PetscErrorCode ModeFrameProject(const ModeFrame *a, const ModeFrame *b, PetscComplex C[]);
+/* Number of modes of the cluster of mode i */
+PetscInt ModeFrameClusterSize(const ModeFrame *frame, PetscInt i);
+/* What x with its dual w has in common with each cluster Q: adds sum_{j in Q} (w^T x_j) (w_j^T x) to sum [modes.n] at the
+   first mode of Q. The factors are the coefficients of mode j in x and of x in mode j. */
+void ModeFrameOverlap(const ModeFrame *frame, const PetscComplex w[], const PetscComplex x[], PetscComplex sum[]);
 /* S = (Y_i^T B(b) X_j)^-1 (Y_i^T A(b) X_j) on modes i, j of a: the pencil of another point b on the vectors of a; H =
    Y^T A X, G = Y^T B X, [a->modes.n^2], second index fastest */
 PetscErrorCode ModeFramePencil(const ModeFrame *a, const ModeFrame *b, PetscComplex H[], PetscComplex G[]);

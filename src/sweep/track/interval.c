@@ -108,12 +108,10 @@ typedef struct {
 /* Modes that take part: vibrating, with a partner at the other end, stable and alone in their cluster */
 static PetscBool ModeTakesPart(const Step *step, PetscInt i)
 {
-  const ModeFrame *a        = step->a;
-  PetscInt         together = 0;
+  const ModeFrame *a = step->a;
 
   if (step->other[i] < 0 || a->modes.rigid[i] || cimag(a->modes.lambda[i]) == 0) return PETSC_FALSE;
-  for (PetscInt k = 0; k < a->modes.n; k++) together += a->cluster[k] == a->cluster[i];
-  return together == 1 && !ReducedModeIsUnstable(&a->modes, i) ? PETSC_TRUE : PETSC_FALSE;
+  return ModeFrameClusterSize(a, i) == 1 && !ReducedModeIsUnstable(&a->modes, i) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Whether the match exchanges the frequencies of modes i and k */

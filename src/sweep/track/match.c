@@ -23,29 +23,24 @@
 #define PLACE  0.1 /* score for keeping the place in the order of frequency */
 #define LEAST  0.1 /* score below which modes of an uncertain component are not matched */
 
-/* strength[i, j] from the products C [na * nb], D [nb * na] */
+/* strength[i, j] of all modes */
 static PetscErrorCode StrengthFind(const ModeFrame *a, const ModeFrame *b, Match *match)
 {
   const PetscInt na = match->na, nb = match->nb;
-  PetscInt      *size_a, *size_b;
-  PetscComplex  *C, *D, *sum;
+  PetscInt      *size;
+  PetscComplex  *sum;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc5(na * nb, &C, na * nb, &D, na * nb, &sum, na, &size_a, nb, &size_b));
-  PetscCall(ModeFrameProject(a, b, C));
-  PetscCall(ModeFrameProject(b, a, D));
-  for (PetscInt i = 0; i < na; i++) size_a[a->cluster[i]]++;
-  for (PetscInt j = 0; j < nb; j++) size_b[b->cluster[j]]++;
-  for (PetscInt i = 0; i < na; i++)
-    for (PetscInt j = 0; j < nb; j++) sum[a->cluster[i] * nb + b->cluster[j]] += C[i * nb + j] * D[j * na + i];
+  PetscCall(PetscCalloc2(na * nb, &sum, nb, &size));
+  for (PetscInt j = 0; j < nb; j++) size[j] = ModeFrameClusterSize(b, j);
+  for (PetscInt i = 0; i < na; i++) ModeFrameOverlap(b, a->W + i * a->N, a->X + i * a->N, sum + a->cluster[i] * nb);
   for (PetscInt i = 0; i < na; i++) {
-    for (PetscInt j = 0; j < nb; j++) {
-      const PetscInt P = a->cluster[i], Q = b->cluster[j];
+    const PetscInt own = ModeFrameClusterSize(a, i);
 
-      match->strength[i * nb + j] = cabs(sum[P * nb + Q]) / PetscMin(size_a[P], size_b[Q]);
-    }
+    for (PetscInt j = 0; j < nb; j++)
+      match->strength[i * nb + j] = cabs(sum[a->cluster[i] * nb + b->cluster[j]]) / PetscMin(own, size[j]);
   }
-  PetscCall(PetscFree5(C, D, sum, size_a, size_b));
+  PetscCall(PetscFree2(sum, size));
   PetscFunctionReturn(0);
 }
 

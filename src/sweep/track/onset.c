@@ -123,18 +123,14 @@ static PetscErrorCode TrialValue(OnsetKind kind, Trial *trial)
 static PetscErrorCode TrialIdentify(const Trial *reference, Trial *trial, PetscBool *found)
 {
   const ModeFrame *a = reference->frame, *b = trial->frame;
-  const PetscInt   na = a->modes.n, nb = b->modes.n, k = reference->k;
-  PetscComplex    *C, *D, *sum;
+  const PetscInt   nb = b->modes.n, k = reference->k, *member = reference->member;
+  PetscComplex    *sum;
   PetscBool       *taken;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc4(na * nb, &C, na * nb, &D, nb, &sum, nb, &taken));
+  PetscCall(PetscCalloc2(nb, &sum, nb, &taken));
   PetscCall(PetscMalloc1(k, &trial->member));
-  PetscCall(ModeFrameProject(a, b, C));
-  PetscCall(ModeFrameProject(b, a, D));
-  for (PetscInt r = 0; r < k; r++)
-    for (PetscInt j = 0; j < nb; j++)
-      sum[b->cluster[j]] += C[reference->member[r] * nb + j] * D[j * na + reference->member[r]];
+  for (PetscInt r = 0; r < k; r++) ModeFrameOverlap(b, a->W + member[r] * a->N, a->X + member[r] * a->N, sum);
   *found = nb >= k ? PETSC_TRUE : PETSC_FALSE;
   for (trial->k = 0; trial->k < k && *found; trial->k++) {
     PetscInt best = -1;
@@ -145,7 +141,7 @@ static PetscErrorCode TrialIdentify(const Trial *reference, Trial *trial, PetscB
     taken[best]             = PETSC_TRUE;
     trial->member[trial->k] = best;
   }
-  PetscCall(PetscFree4(C, D, sum, taken));
+  PetscCall(PetscFree2(sum, taken));
   PetscFunctionReturn(0);
 }
 

@@ -19,11 +19,8 @@ PetscErrorCode ModeSourceCreate(const Reduced *reduced, const BranchLine *line, 
   *source = (ModeSource){.reduced = reduced, .line = line, .form = {.scale = high > 0 && high < 1e100 ? high : 1}};
   PetscCall(PetscMalloc1(reduced->n_parameters, &source->p));
   for (int i = 0; i < 3; i++) {
-    PetscBool any;
-
     SourceSetValue(source, value[i]);
-    PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, source->p, 0, NULL, &any));
-    source->form.damped = (PetscBool)(source->form.damped || any);
+    if (ReducedIsDamped(reduced, source->p)) source->form.damped = PETSC_TRUE;
   }
   PetscFunctionReturn(0);
 }

@@ -191,10 +191,10 @@ static PetscReal ModesScale(const ReducedModes *a, const ReducedModes *b)
 static PetscErrorCode PointsMatch(const Reduced *reduced, const PetscReal p[], const BranchPoint *const point[2],
                                   ModeFrame *frame[2], Match *match)
 {
-  StandardForm form = {.scale = ModesScale(point[0]->modes, point[1]->modes)};
+  const StandardForm form = {.scale  = ModesScale(point[0]->modes, point[1]->modes),
+                             .damped = ReducedIsDamped(reduced, p)};
 
   PetscFunctionBeginUser;
-  PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, 0, NULL, &form.damped));
   for (int k = 0; k < 2; k++) {
     PetscCall(ModeFrameCreate(reduced, p, &form, PETSC_FALSE, point[k]->modes, &frame[k]));
     frame[k]->value = point[k]->value;
