@@ -4,7 +4,7 @@
 */
 #pragma once
 
-#include <petscsys.h>
+#include <petscviewer.h>
 
 /* What PetscOptionsBegin() declares as PetscOptionsObject: a pointer to PetscOptionItems until 3.22, where the pointer
    itself got that name in 3.23 */
@@ -46,6 +46,21 @@ PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char he
 @*/
 PetscErrorCode OptionsGetReals(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
                                PetscReal values[], PetscBool *set);
+
+/*@ OptionsGetInts - as OptionsGetReals(), integers. Collective. @*/
+PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
+                              PetscInt values[]);
+
+/*@
+   OptionsGetViewer - reads where something is to be shown, in PETSc's words: "-modes_view" is stdout,
+   "-modes_view ascii:modes.txt" a file, "-modes_view ascii:modes.txt::append" its end. Collective.
+
+   Output Parameter:
+.  viewer - NULL where the option is not given; else the caller destroys it
+
+   Errors: PETSC_ERR_USER_INPUT for a viewer that is no text.
+@*/
+PetscErrorCode OptionsGetViewer(MPI_Comm comm, const char option[], const char help[], PetscViewer *viewer);
 
 /*@
    OptionsExplainValue - rewrites PETSc's message about a value that is no number, integer or logical so that it names

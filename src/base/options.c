@@ -73,17 +73,16 @@ PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char he
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsGetReals(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
-                               PetscReal values[], PetscBool *set)
+/* Raises the error for an option of more or fewer than n values, of which PETSc leaves out those beyond n */
+static PetscErrorCode OptionsCheckCount(OptionsItems PetscOptionsObject, const char option[], PetscInt n,
+                                        PetscBool *set)
 {
   const char *prefix = PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "";
   PetscReal   all[MAX_REALS];
-  PetscInt    count = n;
+  PetscInt    count = MAX_REALS;
   PetscBool   given;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsRealArray(option, help, "options.h", values, &count, NULL));
-  count = MAX_REALS; /* PetscOptionsRealArray() leaves out those beyond n */
   PetscCall(PetscOptionsGetRealArray(PetscOptionsObject->options, prefix, option, all, &count, &given));
   PetscCheck(!given || count == n, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
              "-%s%s has %" PetscInt_FMT " values; give %" PetscInt_FMT, prefix, option + 1, count, n);
@@ -91,17 +90,64 @@ PetscErrorCode OptionsGetReals(OptionsItems PetscOptionsObject, const char optio
   PetscFunctionReturn(0);
 }
 
-/* Splits a message such as "Input string abc has no numeric value" into the value and what is wrong with it */
+PetscErrorCode OptionsGetReals(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
+                               PetscReal values[], PetscBool *set)
+{
+  PetscInt count = n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsRealArray(option, help, "options.h", values, &count, NULL));
+  PetscCall(OptionsCheckCount(PetscOptionsObject, option, n, set));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
+                              PetscInt values[])
+{
+  PetscInt count = n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsIntArray(option, help, "options.h", values, &count, NULL));
+  PetscCall(OptionsCheckCount(PetscOptionsObject, option, n, NULL));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsGetViewer(MPI_Comm comm, const char option[], const char help[], PetscViewer *viewer)
+{
+  PetscViewerFormat format;
+  PetscBool         ascii;
+
+  PetscFunctionBeginUser;
+  *viewer = NULL;
+  PetscOptionsBegin(comm, NULL, "What is shown, and where: ascii[:FILE[:FORMAT[:append]]]", NULL);
+  PetscCall(PetscOptionsViewer(option, help, "options.h", viewer, &format, NULL));
+  PetscOptionsEnd();
+  if (!*viewer) PetscFunctionReturn(0);
+  PetscCall(PetscObjectTypeCompare((PetscObject)*viewer, PETSCVIEWERASCII, &ascii));
+  PetscCheck(ascii, comm, PETSC_ERR_USER_INPUT, "%s shows text: give ascii, or ascii:FILE, or ascii:FILE::append",
+             option);
+  PetscFunctionReturn(0);
+}
+
+/* Splits a message such as "Input string abc has no numeric value" into the value and what is wrong with it. PETSc 3.22
+   refuses what is not finite as "Newly set value nan less than allowed bound ..." */
 static PetscBool MessageSplit(const char message[], char value[MAX_NAME], const char **wrong)
 {
-  static const char *const starts[] = {"Input string ", "Unknown logical value: "};
-  const char              *end;
+  static const struct {
+    const char *start, *end, *wrong; /* wrong NULL: the end says it */
+  } forms[] = {
+    {"Input string ",           " has no ",  NULL                        },
+    {"Newly set value ",        " less ",    " must be a finite number"  },
+    {"Newly set value ",        " greater ", " must be a finite number"  },
+    {"Unknown logical value: ", NULL,        " is neither true nor false"},
+  };
 
-  for (int i = 0; i < 2; i++) {
-    if (strncmp(message, starts[i], strlen(starts[i]))) continue;
-    message += strlen(starts[i]);
-    end    = i ? NULL : strstr(message, " has no ");
-    *wrong = end ? end : " is neither true nor false";
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(forms); i++) {
+    const char *end = forms[i].end ? strstr(message, forms[i].end) : NULL;
+
+    if (strncmp(message, forms[i].start, strlen(forms[i].start)) || (forms[i].end && !end)) continue;
+    message += strlen(forms[i].start);
+    *wrong = forms[i].wrong ? forms[i].wrong : end;
     return snprintf(value, MAX_NAME, "%.*s", (int)(end ? end - message : (ptrdiff_t)strlen(message)), message) <
            MAX_NAME;
   }

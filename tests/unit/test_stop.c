@@ -23,6 +23,8 @@ static int EndedBy(int a, int b)
   int         status = 0;
 
   if (child == 0) {
+    (void)signal(a, SIG_DFL); /* libraries that are loaded with PETSc may have set their own */
+    (void)signal(b, SIG_DFL);
     if (StopInstall()) _exit(1);
     raise(a);
     if (!StopRequested()) _exit(2);

@@ -6,46 +6,6 @@
 */
 #include "model/modelimpl.h"
 
-#define RIG_PREFIX "rig_"
-
-/* More or fewer values than an option takes are an error, which PetscOptionsRealArray() would let pass */
-static PetscErrorCode OptionCheckCount(MPI_Comm comm, const char option[], PetscInt n)
-{
-  PetscReal value[16];
-  PetscInt  count = PETSC_STATIC_ARRAY_LENGTH(value);
-  PetscBool set;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsGetRealArray(NULL, RIG_PREFIX, option, value, &count, &set));
-  PetscCheck(!set || count == n, comm, PETSC_ERR_USER_INPUT,
-             "Option -" RIG_PREFIX "%s has %" PetscInt_FMT " values, valid are %" PetscInt_FMT, option + 1, count, n);
-  PetscFunctionReturn(0);
-}
-
-/* Reads an array of n numbers (-) */
-static PetscErrorCode OptionInts(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
-                                 PetscInt value[])
-{
-  PetscInt count = n;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsIntArray(option, help, "model.h", value, &count, NULL));
-  PetscCall(OptionCheckCount(PetscOptionsObject->comm, option, n));
-  PetscFunctionReturn(0);
-}
-
-/* Reads an array of n lengths (m) */
-static PetscErrorCode OptionReals(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
-                                  PetscReal value[])
-{
-  PetscInt count = n;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsRealArray(option, help, "model.h", value, &count, NULL));
-  PetscCall(OptionCheckCount(PetscOptionsObject->comm, option, n));
-  PetscFunctionReturn(0);
-}
-
 /* The pad stands on the disc's face and the patch leaves rings and columns beside it */
 static PetscErrorCode RigCheckFootprint(MPI_Comm comm, const Rig *rig)
 {
@@ -93,7 +53,10 @@ static PetscErrorCode RigCheck(MPI_Comm comm, const Rig *rig)
 
   PetscFunctionBeginUser;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(positive); i++) {
-    PetscCheck(positive[i].smallest > 0, comm, PETSC_ERR_USER_INPUT, "Option -" RIG_PREFIX "%s %.6g must be positive",
+    PetscCheck(positive[i].smallest > 0, comm, PETSC_ERR_USER_INPUT,
+               "Option -"
+               "rig_"
+               "%s %.6g must be positive",
                positive[i].option, (double)positive[i].smallest);
   }
   PetscCheck(rig->disc_outer > rig->disc_inner, comm, PETSC_ERR_USER_INPUT,
@@ -147,7 +110,7 @@ PetscErrorCode RigSetFromOptions(MPI_Comm comm, Rig *rig)
     .beam_nz        = 20,
     .beam_rows      = {0.02,  0.08}
   };
-  PetscOptionsBegin(comm, RIG_PREFIX, "Built-in disc, pad and beam", NULL);
+  PetscOptionsBegin(comm, "rig_", "Built-in disc, pad and beam", NULL);
   PetscCall(PetscOptionsReal("-disc_inner", "Inner radius of the disc (m)", "model.h", rig->disc_inner,
                              &rig->disc_inner, NULL));
   PetscCall(PetscOptionsReal("-disc_outer", "Outer radius of the disc (m)", "model.h", rig->disc_outer,
@@ -158,8 +121,9 @@ PetscErrorCode RigSetFromOptions(MPI_Comm comm, Rig *rig)
                               "model.h", meshes, 2, meshes[mesh], &mesh, NULL));
   rig->patch = mesh ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(PetscArraycpy(elements, rig->patch ? ((PetscInt[]){21, 100, 3}) : ((PetscInt[]){16, 160, 4}), 3));
-  PetscCall(OptionInts(PetscOptionsObject, "-disc_elements",
-                       "Elements of the disc: rings, columns, layers (21,100,3, axisymmetric 16,160,4)", 3, elements));
+  PetscCall(OptionsGetInts(PetscOptionsObject, "-disc_elements",
+                           "Elements of the disc: rings, columns, layers (21,100,3, axisymmetric 16,160,4)", 3,
+                           elements));
   rig->disc_nr     = elements[0];
   rig->disc_ntheta = elements[1];
   rig->disc_nz     = elements[2];
@@ -169,16 +133,17 @@ PetscErrorCode RigSetFromOptions(MPI_Comm comm, Rig *rig)
     PetscOptionsBool("-pad", "Pad and beam as well as the disc", "model.h", rig->with_pad, &rig->with_pad, NULL));
   PetscCall(PetscOptionsReal("-pad_radius", "Radius of the pad's centre (m)", "model.h", rig->pad_radius,
                              &rig->pad_radius, NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-pad_size", "Size of the pad in x, y, z (m; 0.01,0.01,0.01)", 3,
+                            rig->pad_size, NULL));
   PetscCall(
-    OptionReals(PetscOptionsObject, "-pad_size", "Size of the pad in x, y, z (m; 0.01,0.01,0.01)", 3, rig->pad_size));
-  PetscCall(
-    OptionInts(PetscOptionsObject, "-pad_elements", "Elements of the pad in x, y, z (10,10,10)", 3, rig->pad_n));
+    OptionsGetInts(PetscOptionsObject, "-pad_elements", "Elements of the pad in x, y, z (10,10,10)", 3, rig->pad_n));
   PetscCall(
     PetscOptionsReal("-beam_height", "Height of the beam (m)", "model.h", rig->beam_height, &rig->beam_height, NULL));
   PetscCall(PetscOptionsInt("-beam_elements", "Elements of the beam over its height (-)", "model.h", rig->beam_nz,
                             &rig->beam_nz, NULL));
-  PetscCall(OptionReals(PetscOptionsObject, "-beam_rows",
-                        "Heights of the spring rows above the beam's lower end (m; 0.02,0.08)", 2, rig->beam_rows));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-beam_rows",
+                            "Heights of the spring rows above the beam's lower end (m; 0.02,0.08)", 2, rig->beam_rows,
+                            NULL));
   PetscOptionsEnd();
   PetscCall(RigCheck(comm, rig));
   PetscFunctionReturn(0);
