@@ -98,8 +98,8 @@ PETSC_INTERN PetscReal SweepWorst(Sweep sweep);
 /* Names of all modes of a point from their shapes on the mesh */
 PETSC_INTERN PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedModes *modes,
                                             char label[][32]);
-/* Which eigenvalues are unstable, or numerically so: growth is `unstable` when it exceeds three times the estimated error
-   of its eigenvalue, and `numerical` when the error bar covers zero */
+/* Which eigenvalues are unstable, or numerically so: growth is `unstable` when it exceeds three times the estimated
+   error of its eigenvalue, and `numerical` when the error bar covers zero */
 PETSC_INTERN PetscErrorCode SweepClassify(Sweep sweep);
 /* sliding.c - raises the error for a contact's parameter that would be overwritten at every point */
 PETSC_INTERN PetscErrorCode SweepAxisCheck(Sweep sweep, const char name[]);

@@ -32,9 +32,9 @@ PetscErrorCode BasisPromote(Basis *basis);
 PetscErrorCode BasisLift(const Basis *basis, PetscInt size, PetscInt m, const PetscReal coordinates[], BV block);
 PetscErrorCode BasisDestroy(Basis *basis);
 
-/* fill.c - all unit vectors, for a small system; whole = whether the basis now is the whole space, which the mass matrix
-   must allow */
+/* fill.c - all unit vectors, for a small system; whole = whether the basis now is the whole space, which the mass
+   matrix must allow */
 PetscErrorCode BasisFillWhole(Basis *basis, PetscBool *whole);
-/* The lowest n_modes real modes of the frictionless, undamped system at p; sets to zero in p[] what friction and damping
-   are proportional to. PETSC_ERR_USER_INPUT where some of either remains. */
+/* The lowest n_modes real modes of the frictionless, undamped system at p; sets to zero in p[] what friction and
+   damping are proportional to. PETSC_ERR_USER_INPUT where some of either remains. */
 PetscErrorCode BasisFillReal(Basis *basis, Modes modes, PetscInt n_modes, PetscReal p[]);

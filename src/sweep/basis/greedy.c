@@ -28,10 +28,11 @@ typedef struct {
   PetscReal       *estimate; /* [n] */
   PetscReal       *scale;    /* [n_parameters] */
   PetscReal        drop;
-} Run;
+} GreedyWork;
 
 /* New entry of the list of full solutions */
-static PetscErrorCode SampleAdd(Run *run, const PetscReal p[], PetscBool krylov, PetscInt n_vectors, PetscReal estimate)
+static PetscErrorCode SampleAdd(GreedyWork *run, const PetscReal p[], PetscBool krylov, PetscInt n_vectors,
+                                PetscReal estimate)
 {
   Greedy        *g            = run->greedy;
   const PetscInt n_parameters = run->basis->reduced.n_parameters;
@@ -47,7 +48,7 @@ static PetscErrorCode SampleAdd(Run *run, const PetscReal p[], PetscBool krylov,
 }
 
 /* Right and left vectors of the eigensolver as a block in the unknowns of the pencil */
-static PetscErrorCode ModesToBlock(Run *run, PetscInt n, BV *block)
+static PetscErrorCode ModesToBlock(GreedyWork *run, PetscInt n, BV *block)
 {
   Vec      part[4], q;
   PetscInt m = 0;
@@ -68,7 +69,7 @@ static PetscErrorCode ModesToBlock(Run *run, PetscInt n, BV *block)
 }
 
 /* Solves point p by the eigensolver */
-static PetscErrorCode SampleKrylov(Run *run, const PetscReal p[], PetscReal estimate)
+static PetscErrorCode SampleKrylov(GreedyWork *run, const PetscReal p[], PetscReal estimate)
 {
   const PetscReal wide[2] = {run->guarded.low / (2 * PETSC_PI), run->guarded.high / (2 * PETSC_PI)};
   const Mode     *mode;
@@ -124,7 +125,7 @@ static PetscErrorCode ModesDropSettled(const ReducedModes *before, PetscReal tol
 
 /* One step of corrections at p of the modes that the step before (modes, empty at first) has not settled; worst = what
    they tell about the model before */
-static PetscErrorCode StepApply(Run *run, const Correction *correction, const PetscReal p[], ReducedModes *modes,
+static PetscErrorCode StepApply(GreedyWork *run, const Correction *correction, const PetscReal p[], ReducedModes *modes,
                                 PetscInt *n_added, PetscReal *worst)
 {
   ReducedModes before = *modes;
@@ -142,7 +143,7 @@ static PetscErrorCode StepApply(Run *run, const Correction *correction, const Pe
 }
 
 /* Whether the basis has as many frictionless modes at p as the full problem */
-static PetscErrorCode SampleCount(Run *run, const PetscReal p[], PetscBool *complete)
+static PetscErrorCode SampleCount(GreedyWork *run, const PetscReal p[], PetscBool *complete)
 {
   PetscInt full, by_basis;
 
@@ -154,7 +155,7 @@ static PetscErrorCode SampleCount(Run *run, const PetscReal p[], PetscBool *comp
 }
 
 /* Looks at point p: first = the estimate there before; where it exceeds rtol, the basis takes the point in */
-static PetscErrorCode SampleCorrect(Run *run, const PetscReal p[], PetscReal *first)
+static PetscErrorCode SampleCorrect(GreedyWork *run, const PetscReal p[], PetscReal *first)
 {
   Correction   correction;
   ReducedModes modes = {0};
@@ -200,7 +201,7 @@ static void ScalePoints(PetscInt n, PetscInt n_parameters, const PetscReal point
 
 /* Groups of pairs that open or close count as one parameter together: the distance of two statuses, squared, is the
    share of the groups in which they differ */
-static PetscErrorCode ScaleGroups(const Run *run)
+static PetscErrorCode ScaleGroups(const GreedyWork *run)
 {
   const OperatorsParameter *parameters;
   PetscInt                  n, n_groups = 0;
@@ -226,7 +227,7 @@ static PetscReal PointDistance(PetscInt n_parameters, const PetscReal scale[], c
 }
 
 /* The point farthest from all full solutions, and how far */
-static PetscInt PointFarthest(const Run *run, PetscReal *farthest)
+static PetscInt PointFarthest(const GreedyWork *run, PetscReal *farthest)
 {
   const Greedy  *g            = run->greedy;
   const PetscInt n_parameters = run->basis->reduced.n_parameters;
@@ -247,7 +248,7 @@ static PetscInt PointFarthest(const Run *run, PetscReal *farthest)
 }
 
 /* Whether no full solution is at the point */
-static PetscBool PointIsNew(const Run *run, PetscInt i)
+static PetscBool PointIsNew(const GreedyWork *run, PetscInt i)
 {
   const PetscInt n_parameters = run->basis->reduced.n_parameters;
 
@@ -258,7 +259,7 @@ static PetscBool PointIsNew(const Run *run, PetscInt i)
 }
 
 /* The next point to look at, or -1 */
-static PetscErrorCode PointNext(Run *run, PetscInt *next)
+static PetscErrorCode PointNext(GreedyWork *run, PetscInt *next)
 {
   Greedy         *g = run->greedy;
   PetscReal       farthest;
@@ -281,7 +282,7 @@ static PetscErrorCode PointNext(Run *run, PetscInt *next)
 PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], Basis *basis)
 {
   const PetscReal low = greedy->window.low, high = greedy->window.high;
-  Run             run = {.greedy = greedy, .basis = basis, .n = n, .points = points, .guarded = greedy->window};
+  GreedyWork      run = {.greedy = greedy, .basis = basis, .n = n, .points = points, .guarded = greedy->window};
   PetscInt        n_parameters = basis->reduced.n_parameters, next = 0;
 
   PetscFunctionBeginUser;

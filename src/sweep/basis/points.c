@@ -1,8 +1,8 @@
 /*
-   Many points on the reduced model. The errors handed on are POINTS_MARGIN times those of estimate.c: these are sharp at the
-   points that the corrections come from, and see less in between (scripts/study/sweep compares them with the truth).
-   Each point is a dense problem of its own, so ranks share the points, not a point; the results are then sent to all
-   ranks, bit by bit the same.
+   Many points on the reduced model. The errors handed on are POINTS_MARGIN times those of estimate.c: these are sharp
+   at the points that the corrections come from, and see less in between (scripts/study/sweep compares them with the
+   truth). Each point is a dense problem of its own, so ranks share the points, not a point; the results are then sent
+   to all ranks, bit by bit the same.
 */
 #include "points.h"
 

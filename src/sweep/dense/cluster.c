@@ -1,7 +1,8 @@
 /*
-   Modes with close eigenvalues, treated together by the plane that their vectors span. With the standard form A z = s B z
-   (standard.c) and orthonormal bases X of the right and Y of the left plane, the modes are the eigenvalues of (Y^T A X,
-   Y^T B X). What Z adds, Q_eff - Q_vv = -Q_vz Q_zz^-1 Q_zv at the mean eigenvalue (see estimate.c), changes Y^T A X by
+   Modes with close eigenvalues, treated together by the plane that their vectors span. With the standard form
+   A z = s B z (standard.c) and orthonormal bases X of the right and Y of the left plane, the modes are the eigenvalues
+   of (Y^T A X, Y^T B X). What Z adds, Q_eff - Q_vv = -Q_vz Q_zz^-1 Q_zv at the mean eigenvalue (see estimate.c),
+   changes Y^T A X by
 
       -F (undamped), +F / scale (damped),   F = Y_1^T Q_vz Q_zz^-1 Q_zv X_1,   X_1 the first block of X;
 

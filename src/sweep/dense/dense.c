@@ -1,6 +1,6 @@
 /*
-   Small dense problems by LAPACK: getrf, getrs, geev, syev, sygv, ggev. PETSc with real scalars declares the real routines
-   only; the complex ones are declared here.
+   Small dense problems by LAPACK: getrf, getrs, geev, syev, sygv, ggev. PETSc with real scalars declares the real
+   routines only; the complex ones are declared here.
 */
 #include "dense.h"
 #include <petscblaslapack.h>

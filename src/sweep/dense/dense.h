@@ -15,8 +15,8 @@ PetscErrorCode DenseComplexSolve(PetscInt n, const PetscComplex LU[], const Pets
                                  PetscInt m, PetscComplex B[]);
 /* Eigenvalues wr + i wi of A (overwritten), right vectors R and left ones L in LAPACK's real storage, u^H A = w u^H */
 PetscErrorCode DenseEigen(PetscInt n, PetscReal A[], PetscReal wr[], PetscReal wi[], PetscReal L[], PetscReal R[]);
-/* A x = w B x, A symmetric, B positive definite (else *definite is false) or NULL for the identity: w ascending, vectors
-   in place of A */
+/* A x = w B x, A symmetric, B positive definite (else *definite is false) or NULL for the identity: w ascending,
+   vectors in place of A */
 PetscErrorCode DenseSymmetricEigen(PetscInt n, PetscReal A[], PetscReal B[], PetscReal w[], PetscBool *definite);
 /* Eigenvalues of A x = w B x, both overwritten; infinite ones are returned as infinity */
 PetscErrorCode DenseComplexEigenvalues(PetscInt n, PetscComplex A[], PetscComplex B[], PetscComplex w[]);

@@ -17,13 +17,13 @@
 
       d kappa = -s^T Q_zz^-1 r / (y^T M x),    d lambda = -d kappa / (lambda_new + lambda).
 
-   Where eigenvalues are closer than NEAR_CHANGES times these changes (pairs close to defective, double modes), they are treated
-   together (cluster.c), as the first order means nothing there: y^T D x tends to zero. A rigid mode has x^T K x = 0,
-   and its error is the frequency that would turn it into, sqrt(|d kappa|).
+   Where eigenvalues are closer than NEAR_CHANGES times these changes (pairs close to defective, double modes), they
+   are treated together (cluster.c), as the first order means nothing there: y^T D x tends to zero. A rigid mode has
+   x^T K x = 0, and its error is the frequency that would turn it into, sqrt(|d kappa|).
 
-   To each estimate a floor is added: what rounding does in the dense problem, SOLVER_ROUNDING eps sqrt(sum |K_ii| |x_i|^2 sum
-   |K_ii| |y_i|^2) in kappa, and in the matrices of the mesh, eps sqrt(x^H E x y^H E y) with E = sum |c_t| V' |diag A_t|
-   V, the energy without cancellation between neighbouring nodes.
+   To each estimate a floor is added: what rounding does in the dense problem, SOLVER_ROUNDING eps sqrt(sum |K_ii|
+   |x_i|^2 sum |K_ii| |y_i|^2) in kappa, and in the matrices of the mesh, eps sqrt(x^H E x y^H E y) with E = sum |c_t|
+   V' |diag A_t| V, the energy without cancellation between neighbouring nodes.
 */
 #include "estimate.h"
 

@@ -48,7 +48,8 @@ PetscErrorCode ReducedModesCopy(const ReducedModes *from, ReducedModes *to);
 PetscErrorCode ReducedModesSelect(const ReducedModes *from, PetscInt n, const PetscInt list[], ReducedModes *to);
 PetscErrorCode ReducedModesDestroy(ReducedModes *modes);
 
-/* Whether sigma exceeds three times the error of its eigenvalue, and rounding, REDUCED_TINY |lambda|; the same of mode i */
+/* Whether sigma exceeds three times the error of its eigenvalue, and rounding, REDUCED_TINY |lambda|; the same of
+   mode i */
 #define REDUCED_TINY 1e-9
 PetscBool ReducedIsUnstable(PetscComplex lambda, PetscReal error);
 PetscBool ReducedModeIsUnstable(const ReducedModes *modes, PetscInt i);

@@ -1,8 +1,8 @@
 /*
-   Modes of one point as a biorthogonal system. With the standard form A z = s B z (dense/standard.c) w^T B z is, when the
-   two eigenvalues agree, twice the product with D = M + C / (2 lambda) over the scale, and exactly zero between different
-   modes of one point. With w^T B z = 1 the product C_ij of the modes of two points is the coefficient of mode j of the
-   one in the expansion by the modes i of the other.
+   Modes of one point as a biorthogonal system. With the standard form A z = s B z (dense/standard.c) w^T B z is, when
+   the two eigenvalues agree, twice the product with D = M + C / (2 lambda) over the scale, and exactly zero between
+   different modes of one point. With w^T B z = 1 the product C_ij of the modes of two points is the coefficient of
+   mode j of the one in the expansion by the modes i of the other.
 
    Modes of equal eigenvalues (within 1e-6, or within their errors) and pairs lambda, -conj(lambda) of an undamped
    system form a cluster. Their vectors are replaced by any basis of their plane and its dual: what is computed from the

@@ -9,8 +9,8 @@
 
 #define FRAME_PARALLEL 1e-12 /* least independent part of a vector of a plane, beside the longest */
 
-/* Modes of one point in the standard form A z = s B z (dense/standard.c). A cluster is a set of modes whose vectors mean
-   nothing one by one, only the plane that they span does */
+/* Modes of one point in the standard form A z = s B z (dense/standard.c). A cluster is a set of modes whose vectors
+   mean nothing one by one, only the plane that they span does */
 typedef struct {
   PetscReal     value;  /* of the parameter of the line */
   PetscBool     refine; /* whether planes may be refined: the modes are those of the pencil */
@@ -47,8 +47,8 @@ PetscErrorCode ModeFrameDestroy(ModeFrame **frame);
 PetscInt ModeFramePartner(const ModeFrame *frame, PetscInt i);
 /* Number of modes of the cluster of mode i */
 PetscInt ModeFrameClusterSize(const ModeFrame *frame, PetscInt i);
-/* What x with its dual w has in common with each cluster Q: adds sum_{j in Q} (w^T x_j) (w_j^T x) to sum [modes.n] at the
-   first mode of Q. The factors are the coefficients of mode j in x and of x in mode j. */
+/* What x with its dual w has in common with each cluster Q: adds sum_{j in Q} (w^T x_j) (w_j^T x) to sum [modes.n] at
+   the first mode of Q. The factors are the coefficients of mode j in x and of x in mode j. */
 void ModeFrameOverlap(const ModeFrame *frame, const PetscComplex w[], const PetscComplex x[], PetscComplex sum[]);
 /* S = (Y_i^T B(b) X_j)^-1 (Y_i^T A(b) X_j) on modes i, j of a: the pencil of another point b on the vectors of a; H =
    Y^T A X, G = Y^T B X, [a->modes.n^2], second index fastest */

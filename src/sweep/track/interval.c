@@ -103,10 +103,10 @@ typedef struct {
   const ModeFrame *a, *b;
   const PetscInt  *other; /* [modes of a] mode of b or -1 */
   PetscReal        resolution;
-} Step;
+} IntervalStep;
 
 /* Modes that take part: vibrating, with a partner at the other end, stable and alone in their cluster */
-static PetscBool ModeTakesPart(const Step *step, PetscInt i)
+static PetscBool ModeTakesPart(const IntervalStep *step, PetscInt i)
 {
   const ModeFrame *a = step->a;
 
@@ -115,7 +115,7 @@ static PetscBool ModeTakesPart(const Step *step, PetscInt i)
 }
 
 /* Whether the match exchanges the frequencies of modes i and k */
-static PetscBool ModesSwap(const Step *step, PetscInt i, PetscInt k)
+static PetscBool ModesSwap(const IntervalStep *step, PetscInt i, PetscInt k)
 {
   const PetscComplex *p = step->a->modes.lambda, *q = step->b->modes.lambda;
   const PetscInt     *other = step->other;
@@ -124,7 +124,7 @@ static PetscBool ModesSwap(const Step *step, PetscInt i, PetscInt k)
 }
 
 /* Looks at modes i and k, S [2 * 2] */
-static PetscBool PredictPair(const Step *step, PetscInt i, PetscInt k, const PetscComplex S[], PetscReal *t)
+static PetscBool PredictPair(const IntervalStep *step, PetscInt i, PetscInt k, const PetscComplex S[], PetscReal *t)
 {
   const ModeFrame    *a = step->a, *b = step->b;
   const PetscInt     *other   = step->other;
@@ -143,7 +143,7 @@ static PetscBool PredictPair(const Step *step, PetscInt i, PetscInt k, const Pet
 }
 
 /* Looks at all pairs */
-static PetscErrorCode PredictStep(const Step *step, PetscReal *t, PetscBool *found)
+static PetscErrorCode PredictStep(const IntervalStep *step, PetscReal *t, PetscBool *found)
 {
   const PetscInt n = step->a->modes.n;
   PetscComplex  *H, *G, S[4];
@@ -171,9 +171,9 @@ PetscErrorCode IntervalPredict(const ModeFrame *a, const ModeFrame *b, const Mat
   for (PetscInt i = 0; i < match->na; i++) to[i] = -1;
   for (PetscInt j = 0; j < match->nb; j++)
     if (match->from[j] >= 0) to[match->from[j]] = j;
-  PetscCall(PredictStep(&(Step){a, b, to, resolution}, t, found));
+  PetscCall(PredictStep(&(IntervalStep){a, b, to, resolution}, t, found));
   if (!*found) {
-    PetscCall(PredictStep(&(Step){b, a, match->from, resolution}, t, found));
+    PetscCall(PredictStep(&(IntervalStep){b, a, match->from, resolution}, t, found));
     *t = 1 - *t;
   }
   PetscCall(PetscFree(to));

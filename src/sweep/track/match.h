@@ -18,8 +18,8 @@ typedef struct {
 /* match.c - window (may be NULL): a mode without partner is certain only when it left or entered the window */
 PetscErrorCode MatchCreate(const ModeFrame *a, const ModeFrame *b, const ReducedWindow *window, Match *match);
 /* Fills from; score [na * nb] (match->strength or better) of i, j of one component; order [na] frequency (rad/s), NULL
-   for that of a, by which the modes of a take their places where scores do not decide: in a pair the lower one takes the unstable member
-   */
+   for that of a, by which the modes of a take their places where scores do not decide: in a pair the lower one takes
+   the unstable member */
 PetscErrorCode MatchAssign(const ModeFrame *a, const ModeFrame *b, const PetscReal score[], const PetscReal order[],
                            Match *match);
 PetscErrorCode MatchDestroy(Match *match);

@@ -56,8 +56,8 @@ PetscErrorCode TrackLine(const Reduced *reduced, const BranchLine *line, const R
 PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const ReducedModes *a, const ReducedModes *b,
                           PetscInt from[], PetscBool *certain);
 /* Modes of two points a, b on the two sides of a change of contact status: branches of b that are certainly
-   modes of a become those of a, the others keep theirs; appends a jump for every mode that is unstable on one side only.
-   p = all parameters at b */
+   modes of a become those of a, the others keep theirs; appends a jump for every mode that is unstable on one side
+   only. p = all parameters at b */
 PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], const BranchPoint *a, BranchPoint *b,
                          BranchEvents *events);
 /* Appends to events; a list begins as {0} */
