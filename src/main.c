@@ -10,19 +10,21 @@ static const char help[] =
 
 typedef enum { ANALYSIS_MODES, ANALYSIS_SWEEP, ANALYSIS_STATIC, ANALYSIS_TRANSIENT, N_ANALYSES } Analysis;
 
-/* The chain of a run: options -> model -> contact -> operators -> statics -> modes -> sweep, or dynamics; and
+/* The chain of a run: options -> model -> contact -> operators -> statics -> pencil -> modes -> sweep, or dynamics; and
    results */
 typedef struct {
-  Model     model; /* NULL for matrices without a mesh */
-  Contact   contact;
-  Operators operators;
-  Statics   statics;
-  Modes     modes;
-  Sweep     sweep;
-  Dynamics  dynamics;
-  Results   results;
-  Analysis  analysis;
-  PetscBool view;
+  Model      model; /* NULL for matrices without a mesh */
+  Contact    contact;
+  Operators  operators;
+  PetscReal *p; /* values of the parameters: those of the scene, and what statics identify */
+  Statics    statics;
+  Pencil     pencil; /* at p, where modes, a file or a view ask for it */
+  Modes      modes;
+  Sweep      sweep;
+  Dynamics   dynamics;
+  Results    results;
+  Analysis   analysis;
+  PetscBool  view;
 } Chain;
 
 static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
@@ -71,7 +73,9 @@ static PetscErrorCode ChainDestroy(Chain *chain)
   PetscCall(DynamicsDestroy(&chain->dynamics));
   PetscCall(SweepDestroy(&chain->sweep));
   PetscCall(ModesDestroy(&chain->modes));
+  PetscCall(PencilDestroy(&chain->pencil));
   PetscCall(StaticsDestroy(&chain->statics));
+  PetscCall(PetscFree(chain->p));
   PetscCall(OperatorsDestroy(&chain->operators));
   PetscCall(ContactDestroy(&chain->contact));
   PetscCall(ModelDestroy(&chain->model));
@@ -112,39 +116,60 @@ static PetscErrorCode ChainSetUp(Chain *chain)
   PetscFunctionReturn(0);
 }
 
+/* The pencil at p: about the sliding state there, or with all pairs closed */
+static PetscErrorCode ChainLinearise(Chain *chain)
+{
+  SlidingState state;
+  PetscBool    is_static;
+
+  PetscFunctionBeginUser;
+  if (chain->pencil) PetscFunctionReturn(0);
+  PetscCall(ModesGetContact(chain->modes, &is_static));
+  if (is_static) {
+    PetscCall(SquealStageBegin(SQUEAL_STATICS));
+    PetscCall(StaticsSolveSliding(chain->statics, chain->p, &state));
+    PetscCall(StaticsRelease(chain->statics));
+    PetscCall(SquealStageEnd(SQUEAL_STATICS));
+  }
+  PetscCall(SquealStageBegin(SQUEAL_OPERATORS));
+  PetscCall(OperatorsLinearise(chain->operators, is_static ? &state : NULL, &chain->pencil));
+  if (!is_static) PetscCall(PencilSetParameters(chain->pencil, chain->p));
+  PetscCall(SquealStageEnd(SQUEAL_OPERATORS));
+  if (is_static) PetscCall(SlidingStateDestroy(&state));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ChainView(Chain *chain, PetscViewer viewer)
 {
-  PetscBool is_static;
-
   PetscFunctionBeginUser;
   if (chain->model) PetscCall(ModelView(chain->model, viewer));
   if (chain->contact && chain->analysis != ANALYSIS_TRANSIENT) PetscCall(ContactView(chain->contact, viewer));
   if (chain->analysis != ANALYSIS_MODES && chain->analysis != ANALYSIS_SWEEP) PetscFunctionReturn(0);
-  PetscCall(ModesGetContact(chain->modes, &is_static));
-  if (is_static) PetscCall(StaticsLinearise(chain->statics));
-  PetscCall(OperatorsView(chain->operators, viewer)); /* of the linearised pencil */
+  PetscCall(ChainLinearise(chain));
+  PetscCall(PencilView(chain->pencil, viewer));
   PetscFunctionReturn(0);
 }
 
 /* What rooms need of each other, the contact stiffness where pressing is to tell it, and the matrices for a file */
 static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
 {
-  PetscBool is_static, save;
+  const char *folder;
+  PetscBool   is_static;
 
   PetscFunctionBeginUser;
   PetscCall(StaticsSetOperators(chain->statics, chain->operators));
-  PetscCall(ModesSetOperators(chain->modes, chain->operators));
-  PetscCall(SweepSetOperators(chain->sweep, chain->operators));
-  PetscCall(SweepSetModes(chain->sweep, chain->modes));
   PetscCall(DynamicsSetOperators(chain->dynamics, chain->operators, chain->statics));
   PetscCall(ModesGetContact(chain->modes, &is_static));
-  if (is_static) PetscCall(ModesSetStatics(chain->modes, chain->statics));
-  if (is_static) PetscCall(SweepSetStatics(chain->sweep, chain->statics));
   PetscCall(StaticsCheckUse(chain->statics, is_static && chain->analysis != ANALYSIS_STATIC));
-  PetscCall(StaticsIdentifyAll(chain->statics, viewer));
-  PetscCall(OperatorsGetSave(chain->operators, &save));
-  if (is_static && save) PetscCall(StaticsLinearise(chain->statics));
-  PetscCall(OperatorsSave(chain->operators));
+  PetscCall(OperatorsCreatePoint(chain->operators, &chain->p));
+  PetscCall(StaticsIdentifyAll(chain->statics, chain->p, viewer));
+  PetscCall(SweepSetOperators(chain->sweep, chain->operators, chain->p));
+  PetscCall(SweepSetModes(chain->sweep, chain->modes));
+  if (is_static) PetscCall(SweepSetStatics(chain->sweep, chain->statics));
+  PetscCall(OperatorsGetSave(chain->operators, &folder));
+  if (!folder[0]) PetscFunctionReturn(0);
+  PetscCall(ChainLinearise(chain));
+  PetscCall(PencilSave(chain->pencil));
   PetscFunctionReturn(0);
 }
 
@@ -152,7 +177,7 @@ static PetscErrorCode RunStatic(Chain *chain, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
   PetscCall(SquealStageBegin(SQUEAL_STATICS));
-  PetscCall(StaticsSolve(chain->statics));
+  PetscCall(StaticsSolve(chain->statics, chain->p));
   PetscCall(SquealStageEnd(SQUEAL_STATICS));
   PetscCall(StaticsView(chain->statics, viewer));
   PetscCall(SquealStageBegin(SQUEAL_RESULTS));
@@ -164,6 +189,8 @@ static PetscErrorCode RunStatic(Chain *chain, PetscViewer viewer)
 static PetscErrorCode RunModes(Chain *chain, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
+  PetscCall(ChainLinearise(chain));
+  PetscCall(ModesSetPencil(chain->modes, chain->pencil));
   PetscCall(SquealStageBegin(SQUEAL_MODES));
   PetscCall(ModesSolve(chain->modes));
   PetscCall(SquealStageEnd(SQUEAL_MODES));
@@ -177,6 +204,7 @@ static PetscErrorCode RunModes(Chain *chain, PetscViewer viewer)
 static PetscErrorCode RunSweep(Chain *chain, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
+  PetscCall(PencilDestroy(&chain->pencil)); /* a sweep makes its own */
   PetscCall(SquealStageBegin(SQUEAL_SWEEP));
   PetscCall(SweepSolve(chain->sweep, chain->results));
   PetscCall(SquealStageEnd(SQUEAL_SWEEP));

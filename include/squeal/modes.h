@@ -12,9 +12,8 @@
 */
 #pragma once
 
-#include <squeal/operators.h>
+#include <squeal/pencil.h>
 #include <squeal/results.h>
-#include <squeal/statics.h>
 
 typedef struct _p_Modes *Modes;
 
@@ -34,12 +33,9 @@ typedef struct {
 /*@ ModesCreate - makes a solver. Collective. @*/
 PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes);
 
-/*@ ModesSetOperators - the system to solve (referenced until ModesDestroy()). Collective. @*/
-PetscErrorCode ModesSetOperators(Modes modes, Operators operators);
-
-/*@ ModesSetStatics - lets ModesSolve() begin with StaticsLinearise(), so that the modes are about the sliding state at
-    the present parameters (referenced until ModesDestroy()); NULL: about what the operators are. Not collective. @*/
-PetscErrorCode ModesSetStatics(Modes modes, Statics statics);
+/*@ ModesSetPencil - the system to solve, at the point that it has when ModesSolve() is called; it must stay until the
+    modes are written or another pencil is set. Not collective. @*/
+PetscErrorCode ModesSetPencil(Modes modes, Pencil pencil);
 
 /*@
    ModesSetFromOptions - reads what to compute. Collective.
@@ -52,7 +48,8 @@ PetscErrorCode ModesSetStatics(Modes modes, Statics statics);
 frequency of f2
 .  -modes_left <true>        - compute left vectors (condition and error need them)
 .  -modes_disc <disc>        - part whose modes are labelled by nodal circles and diameters
--  -modes_contact <all|static> - pairs that are closed: every one, or those of the sliding state (statics.h)
+-  -modes_contact <all|static> - whether the pencil that is set is to be one with all pairs closed, or
+about the sliding state (statics.h)
    The solvers take -eps_*, -pep_*, -st_*.
 @*/
 PetscErrorCode ModesSetFromOptions(Modes modes);

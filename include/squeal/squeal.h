@@ -7,6 +7,7 @@
 #include <squeal/model.h>
 #include <squeal/contact.h>
 #include <squeal/operators.h>
+#include <squeal/pencil.h>
 #include <squeal/statics.h>
 #include <squeal/modes.h>
 #include <squeal/sweep.h>

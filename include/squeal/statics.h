@@ -20,7 +20,7 @@
 */
 #pragma once
 
-#include <squeal/operators.h>
+#include <squeal/pencil.h>
 #include <squeal/results.h>
 
 typedef struct _p_Statics *Statics;
@@ -69,13 +69,23 @@ PetscErrorCode StaticsSetFromOptions(Statics statics);
 PetscErrorCode StaticsCheckUse(Statics statics, PetscBool modes);
 
 /*@
-   StaticsSolve - the equilibrium at the present values of the parameters. Starts from the status of the solution
-   before, else with all pairs closed. Collective.
+   StaticsSolve - the equilibrium at a point p of the operators' parameters, NULL for the values of the scene. Starts
+   from the status of the solution before, else with all pairs closed. Collective.
 
    Errors: PETSC_ERR_USER_INPUT without loads or for a load that nothing resists; PETSC_ERR_NOT_CONVERGED where there is
    no equilibrium: the message says how far friction or load could be raised and what then happened.
 @*/
-PetscErrorCode StaticsSolve(Statics statics);
+PetscErrorCode StaticsSolve(Statics statics, const PetscReal p[]);
+
+/*@
+   StaticsSolveSliding - the same, and the sliding state as a value: the closed pairs, with rows of pairs more or less
+   where -static_rows asks for it, the normal forces, the optional stiffness of the preload, and p. The caller destroys
+   it. Collective.
+
+   Errors: also PETSC_ERR_USER_INPUT for an interface with friction of which nothing says along what it slides, and for
+   a normal force that is given although the loads tell it.
+@*/
+PetscErrorCode StaticsSolveSliding(Statics statics, const PetscReal p[], SlidingState *state);
 
 /*@ StaticsRelease - frees the factorisation that StaticsSolve() keeps for the next call, at the same bodies.
     Collective. @*/
@@ -88,16 +98,8 @@ PetscErrorCode StaticsGetState(Statics statics, const ContactState **state, Vec 
     Not collective. @*/
 PetscErrorCode StaticsGetKKT(Statics statics, ContactKKT *kkt, PetscReal *equilibrium);
 
-/*@ StaticsGetClosed - whether each local pair is closed, -static_rows counted in, [local pairs]. Collective. @*/
-PetscErrorCode StaticsGetClosed(Statics statics, PetscBool closed[]);
-
-/*@ StaticsLinearise - solves, and gives the operators the closed pairs, their normal forces and the optional stiffness
-    of the preload, so that modes are those about the sliding state. Does nothing where the parameters are those of the
-    call before. Collective. @*/
-PetscErrorCode StaticsLinearise(Statics statics);
-
 /*@
-   StaticsIsAffine - whether the operators about the sliding state differ from those with all pairs closed by the pairs
+   StaticsIsAffine - whether pencils about the sliding state differ from those with all pairs closed by the pairs
    that are open alone, so that they stay affine in the parameters. Friction damping (-contact_friction_damping),
    -static_geometric and -static_follower depend on the forces and displacements of the state: with any of them they are
    not. Not collective.
@@ -107,13 +109,13 @@ PetscErrorCode StaticsIsAffine(Statics statics, PetscBool *affine);
 /*@
    StaticsIdentify - contact stiffness of an interface by pressing without friction, with exact contact: the load is
    raised in equal steps, and a line is fitted to the normal force against the approach of the second rows of nodes of
-   slave and master (mean over the pairs). Seed paper, section 2.1. Collective.
+   slave and master (mean over the pairs), with the bodies at p. Seed paper, section 2.1. Collective.
 @*/
-PetscErrorCode StaticsIdentify(Statics statics, PetscInt interface, StaticsStiffness *stiffness);
+PetscErrorCode StaticsIdentify(Statics statics, const PetscReal p[], PetscInt interface, StaticsStiffness *stiffness);
 
-/*@ StaticsIdentifyAll - gives the operators the stiffness per pair of every interface with -contact_kn identify.
-    Collective. @*/
-PetscErrorCode StaticsIdentifyAll(Statics statics, PetscViewer viewer);
+/*@ StaticsIdentifyAll - puts into p the stiffness per pair of every interface with -contact_kn identify. Collective.
+    @*/
+PetscErrorCode StaticsIdentifyAll(Statics statics, PetscReal p[], PetscViewer viewer);
 
 /*@ StaticsView - status, forces, residuals in words. Collective. @*/
 PetscErrorCode StaticsView(Statics statics, PetscViewer viewer);

@@ -22,8 +22,10 @@ PetscErrorCode SweepCreate(MPI_Comm comm, Sweep *sweep);
 /*@ SweepSetModes - the solver of the full problems, with its band (referenced until SweepDestroy()). Collective. @*/
 PetscErrorCode SweepSetModes(Sweep sweep, Modes modes);
 
-/*@ SweepSetOperators - the system, affine in its parameters (referenced until SweepDestroy()). Collective. @*/
-PetscErrorCode SweepSetOperators(Sweep sweep, Operators operators);
+/*@ SweepSetOperators - the system, affine in its parameters, from which the sweep makes the pencils that it needs
+    (referenced until SweepDestroy()), and the point p of its parameters that is swept through, or NULL for the values
+    of the scene. Collective. @*/
+PetscErrorCode SweepSetOperators(Sweep sweep, Operators operators, const PetscReal p[]);
 
 /*@
    SweepSetStatics - takes the closed pairs from the sliding state at each point (referenced until SweepDestroy());

@@ -125,7 +125,7 @@ PetscErrorCode DynamicsStartState(Dynamics d)
     Vec displacement;
 
     PetscCall(CheckStatic(d));
-    PetscCall(StaticsSolve(d->statics));
+    PetscCall(StaticsSolve(d->statics, NULL));
     PetscCall(StaticsGetState(d->statics, NULL, &displacement));
     PetscCall(StateFromVec(d->model, d->layout, displacement, u));
   }

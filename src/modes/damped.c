@@ -107,7 +107,7 @@ static PetscErrorCode SolverRun(PEP pep, PetscBool *failed)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DampedSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si,
+PetscErrorCode DampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
                            PetscBool transposed, Spectrum *spectrum)
 {
   Mat       problem[3] = {pencil->K, pencil->C, pencil->M};

@@ -120,11 +120,15 @@ static PetscErrorCode LabelsCreate(Modes modes, Model model, Contact contact, Pe
                                    Labels *l)
 {
   const PetscReal *x;
+  const PetscReal *p;
   PetscReal        centre[3];
   const Mesh      *mesh;
   PetscBool        same, found;
+  Operators        operators;
 
   PetscFunctionBeginUser;
+  PetscCall(PencilGetOperators(modes->pencil, &operators));
+  PetscCall(PencilGetParameters(modes->pencil, NULL, NULL, &p));
   PetscCall(ModelGetMesh(model, &mesh));
   x             = mesh->x;
   l->n_parts    = n_parts;
@@ -135,10 +139,10 @@ static PetscErrorCode LabelsCreate(Modes modes, Model model, Contact contact, Pe
   PetscCall(PetscMalloc4(3 * l->n_vertices, &l->x[0], 3 * l->n_vertices, &l->x[1], 3 * l->n_vertices, &l->y[0],
                          3 * l->n_vertices, &l->y[1]));
   for (PetscInt part = 0; part < n_parts; part++) {
-    PetscReal density;
+    OperatorsMaterial material;
 
-    PetscCall(OperatorsGetDensity(modes->operators, part, &density));
-    PetscCall(PartMasses(model, part, density, &l->mass[part]));
+    PetscCall(OperatorsGetMaterial(operators, p, part, &material));
+    PetscCall(PartMasses(model, part, material.density, &l->mass[part]));
     PetscCall(PetscStrcmp(parts[part].name, modes->disc, &same));
     if (same) l->disc = part;
   }
@@ -197,9 +201,11 @@ PetscErrorCode ModesLabel(Modes modes)
   PetscInt    n_parts;
   Model       model;
   Contact     contact;
+  Operators   operators;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(modes->operators, &model, &contact));
+  PetscCall(PencilGetOperators(modes->pencil, &operators));
+  PetscCall(OperatorsGetModel(operators, &model, &contact));
   if (!model) {
     PetscCall(LabelUnknown(modes));
     PetscFunctionReturn(0);
@@ -217,11 +223,11 @@ PetscErrorCode ModesLabel(Modes modes)
 }
 
 /* Adds one complex vector of the pencil, expanded to all unknowns */
-static PetscErrorCode SpectrumAddExpanded(Operators operators, PetscBool left, Vec r, Vec i, Vec work[2], Spectrum *s)
+static PetscErrorCode SpectrumAddExpanded(Pencil pencil, PetscBool left, Vec r, Vec i, Vec work[2], Spectrum *s)
 {
   PetscFunctionBeginUser;
-  PetscCall(OperatorsExpand(operators, left, r, work[0]));
-  PetscCall(OperatorsExpand(operators, left, i, work[1]));
+  PetscCall(PencilExpand(pencil, left, r, work[0]));
+  PetscCall(PencilExpand(pencil, left, i, work[1]));
   PetscCall(SpectrumAdd(s, 0, 0, work[0], work[1]));
   PetscFunctionReturn(0);
 }
@@ -230,6 +236,7 @@ PetscErrorCode ModesLabelVectors(Modes modes, PetscInt n, const PetscBool rigid[
                                  Vec yi[], char label[][32])
 {
   struct _p_Modes shapes = *modes;
+  Operators       operators;
   Vec             work[2];
 
   PetscFunctionBeginUser;
@@ -237,11 +244,12 @@ PetscErrorCode ModesLabelVectors(Modes modes, PetscInt n, const PetscBool rigid[
   PetscCall(SpectrumCreate(n, &shapes.right));
   PetscCall(SpectrumCreate(n, &shapes.left_spectrum));
   PetscCall(PetscCalloc1(n, &shapes.mode));
-  PetscCall(OperatorsCreateVec(modes->operators, &work[0]));
+  PetscCall(PencilGetOperators(modes->pencil, &operators));
+  PetscCall(OperatorsCreateVec(operators, &work[0]));
   PetscCall(VecDuplicate(work[0], &work[1]));
   for (PetscInt i = 0; i < n; i++) {
-    PetscCall(SpectrumAddExpanded(modes->operators, PETSC_FALSE, xr[i], xi[i], work, &shapes.right));
-    PetscCall(SpectrumAddExpanded(modes->operators, PETSC_TRUE, yr[i], yi[i], work, &shapes.left_spectrum));
+    PetscCall(SpectrumAddExpanded(modes->pencil, PETSC_FALSE, xr[i], xi[i], work, &shapes.right));
+    PetscCall(SpectrumAddExpanded(modes->pencil, PETSC_TRUE, yr[i], yi[i], work, &shapes.left_spectrum));
     shapes.mode[i].rigid = rigid[i];
   }
   PetscCall(ModesLabel(&shapes));

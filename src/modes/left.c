@@ -120,7 +120,7 @@ static PetscErrorCode ComplexInverse(PetscInt m, const PetscComplex G[], PetscCo
 }
 
 /* Replaces the left vectors first .. first + m - 1 by combinations with y_i^T D x_j = delta_ij */
-static PetscErrorCode Biorthogonalise(const OperatorsPencil *pencil, const Spectrum *right, PetscInt first, PetscInt m,
+static PetscErrorCode Biorthogonalise(const PencilMatrices *pencil, const Spectrum *right, PetscInt first, PetscInt m,
                                       Vec work[], Spectrum *left)
 {
   PetscComplex *G, *inverse;
@@ -159,7 +159,7 @@ static PetscErrorCode Biorthogonalise(const OperatorsPencil *pencil, const Spect
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LeftBiorthogonalise(Modes modes, const OperatorsPencil *pencil, Vec work[])
+PetscErrorCode LeftBiorthogonalise(Modes modes, const PencilMatrices *pencil, Vec work[])
 {
   const Spectrum *right   = &modes->right;
   const PetscReal largest = LambdaLargest(right);

@@ -18,17 +18,10 @@ PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModesSetOperators(Modes modes, Operators operators)
+PetscErrorCode ModesSetPencil(Modes modes, Pencil pencil)
 {
   PetscFunctionBeginUser;
-  modes->operators = operators;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModesSetStatics(Modes modes, Statics statics)
-{
-  PetscFunctionBeginUser;
-  modes->statics = statics;
+  modes->pencil = pencil;
   PetscFunctionReturn(0);
 }
 
@@ -113,7 +106,7 @@ PetscErrorCode ModesSetLeft(Modes modes, PetscBool left)
 }
 
 /* Right or left spectrum by the solver that fits the pencil */
-static PetscErrorCode SpectrumSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si,
+static PetscErrorCode SpectrumSolve(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
                                     PetscBool transposed, Spectrum *spectrum)
 {
   PetscFunctionBeginUser;
@@ -135,7 +128,7 @@ static PetscErrorCode SpectrumCopy(const Spectrum *from, Spectrum *to)
 }
 
 /* Right and left spectra that agree; a second attempt asks for more eigenvalues */
-static PetscErrorCode SolveBoth(Modes modes, const OperatorsPencil *pencil, Window *window, ShiftInvert *si)
+static PetscErrorCode SolveBoth(Modes modes, const PencilMatrices *pencil, Window *window, ShiftInvert *si)
 {
   const PetscBool proven   = pencil->symmetric && !pencil->C ? PETSC_TRUE : PETSC_FALSE;
   PetscBool       complete = PETSC_TRUE;
@@ -178,14 +171,13 @@ static PetscErrorCode ModesReset(Modes modes)
 
 PetscErrorCode ModesSolve(Modes modes)
 {
-  OperatorsPencil pencil;
-  ShiftInvert     si;
-  Window          window;
+  PencilMatrices pencil;
+  ShiftInvert    si;
+  Window         window;
 
   PetscFunctionBeginUser;
   PetscCall(ModesReset(modes));
-  if (modes->statics) PetscCall(StaticsLinearise(modes->statics));
-  PetscCall(OperatorsGetPencil(modes->operators, &pencil));
+  PetscCall(PencilGetMatrices(modes->pencil, &pencil));
   PetscCall(WindowFind(modes, &window));
   PetscCheck(window.expected != 0 || !pencil.symmetric || pencil.C, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_band %.6g,%.6g Hz contains no mode (%" PetscInt_FMT " lie below it); widen it",

@@ -24,9 +24,8 @@ PETSC_INTERN PetscErrorCode SpectrumRemove(Spectrum *spectrum, PetscInt i);
 PETSC_INTERN PetscErrorCode SpectrumDestroy(Spectrum *spectrum);
 
 struct _p_Modes {
-  MPI_Comm  comm;
-  Operators operators;
-  Statics   statics; /* whose state the modes are about, or NULL */
+  MPI_Comm comm;
+  Pencil   pencil;
   /* set by options */
   PetscReal band[2], target; /* Hz */
   PetscReal growth;          /* rad/s; 0: a tenth of the highest angular frequency */
@@ -65,9 +64,9 @@ PETSC_INTERN PetscErrorCode WindowDescribe(const Window *window, PetscBool prove
                                            char text[], size_t size);
 
 /* undamped.c, damped.c - all eigenvalues of the pencil in the window, right ones or those of the transposed problem */
-PETSC_INTERN PetscErrorCode UndampedSolve(Modes modes, const OperatorsPencil *pencil, const Window *window,
+PETSC_INTERN PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window,
                                           ShiftInvert *si, PetscBool transposed, Spectrum *spectrum);
-PETSC_INTERN PetscErrorCode DampedSolve(Modes modes, const OperatorsPencil *pencil, const Window *window,
+PETSC_INTERN PetscErrorCode DampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window,
                                         ShiftInvert *si, PetscBool transposed, Spectrum *spectrum);
 PETSC_INTERN PetscReal      UndampedShift(const Window *window);
 PETSC_INTERN PetscReal      DampedShift(const Window *window);
@@ -75,10 +74,10 @@ PETSC_INTERN PetscReal      DampedShift(const Window *window);
 /* left.c - left partners of the right eigenvalues; complete = the window holds the same ones in both; biorthogonal
    left vectors in clusters, work[3] in the pencil's unknowns */
 PETSC_INTERN PetscErrorCode LeftMatch(Modes modes, const Window *window, PetscReal *worst, PetscBool *complete);
-PETSC_INTERN PetscErrorCode LeftBiorthogonalise(Modes modes, const OperatorsPencil *pencil, Vec work[]);
+PETSC_INTERN PetscErrorCode LeftBiorthogonalise(Modes modes, const PencilMatrices *pencil, Vec work[]);
 
 /* quality.c - measures the errors, expands the vectors to all unknowns and normalises them */
-PETSC_INTERN PetscErrorCode QualityMeasure(Modes modes, const OperatorsPencil *pencil);
+PETSC_INTERN PetscErrorCode QualityMeasure(Modes modes, const PencilMatrices *pencil);
 
 /* twins.c - lists a rigid mode of a damped system once, and trims the list to the modes asked for */
 PETSC_INTERN PetscErrorCode TwinsDrop(Modes modes, const Window *window);

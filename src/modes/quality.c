@@ -13,12 +13,12 @@
 
 /* What all modes share: matrices, their Frobenius norms (K, C, M), and work vectors */
 typedef struct {
-  const OperatorsPencil *pencil;
-  Mat                    M; /* of all unknowns; the pencil's own without constraints */
-  PetscReal              norms[3];
-  Vec                    diagonal, scratch; /* diagonal of K */
-  ComplexVec             Mx, z;             /* unknowns of the pencil */
-  ComplexVec             full;              /* all unknowns */
+  const PencilMatrices *pencil;
+  Mat                   M; /* of all unknowns; the pencil's own without constraints */
+  PetscReal             norms[3];
+  Vec                   diagonal, scratch; /* diagonal of K */
+  ComplexVec            Mx, z;             /* unknowns of the pencil */
+  ComplexVec            full;              /* all unknowns */
 } Quality;
 
 /* Length of a complex vector from the parts of a real quadratic form: x^H z for z = A x with A symmetric, or z = x */
@@ -46,14 +46,14 @@ static PetscErrorCode NormaliseM(Quality *q, ComplexVec x, PetscReal *norm)
 }
 
 /* Expands a vector of the pencil to all unknowns in place */
-static PetscErrorCode Expand(Operators operators, PetscBool left, Vec *x)
+static PetscErrorCode Expand(Quality *q, Pencil pencil, PetscBool left, Vec *x)
 {
   Vec u;
 
   PetscFunctionBeginUser;
   if (!*x) PetscFunctionReturn(0);
-  PetscCall(OperatorsCreateVec(operators, &u));
-  PetscCall(OperatorsExpand(operators, left, *x, u));
+  PetscCall(VecDuplicate(q->full.r, &u));
+  PetscCall(PencilExpand(pencil, left, *x, u));
   PetscCall(VecDestroy(x));
   *x = u;
   PetscFunctionReturn(0);
@@ -79,10 +79,10 @@ static PetscErrorCode RoundingNoise(const Quality *q, ComplexVec x, PetscReal *n
 static PetscErrorCode MeasureResidual(Quality *q, PetscComplex lambda, ComplexVec x, ComplexVec y, PetscReal *backward,
                                       PetscReal *y_Qx, PetscReal *y_Dx)
 {
-  const OperatorsPencil *pencil = q->pencil;
-  const PetscReal        size = cabs(lambda), bound = size * size * q->norms[2] + size * q->norms[1] + q->norms[0];
-  PetscReal              length, residual;
-  PetscComplex           dot;
+  const PencilMatrices *pencil = q->pencil;
+  const PetscReal       size = cabs(lambda), bound = size * size * q->norms[2] + size * q->norms[1] + q->norms[0];
+  PetscReal             length, residual;
+  PetscComplex          dot;
 
   PetscFunctionBeginUser;
   PetscCall(ComplexVecMult(pencil->M, x, q->Mx));
@@ -102,11 +102,11 @@ static PetscErrorCode MeasureResidual(Quality *q, PetscComplex lambda, ComplexVe
 }
 
 /* Expands both parts of a vector to all unknowns in place, and normalises it */
-static PetscErrorCode Finish(Quality *q, Operators operators, PetscBool left, Vec *r, Vec *i, PetscReal *norm)
+static PetscErrorCode Finish(Quality *q, Pencil pencil, PetscBool left, Vec *r, Vec *i, PetscReal *norm)
 {
   PetscFunctionBeginUser;
-  PetscCall(Expand(operators, left, r));
-  PetscCall(Expand(operators, left, i));
+  PetscCall(Expand(q, pencil, left, r));
+  PetscCall(Expand(q, pencil, left, i));
   PetscCall(NormaliseM(q, (ComplexVec){*r, *i}, norm));
   PetscFunctionReturn(0);
 }
@@ -124,8 +124,8 @@ static PetscErrorCode MeasureMode(Modes modes, Quality *q, PetscInt i)
   PetscFunctionBeginUser;
   PetscCall(MeasureResidual(q, lambda, x, y, &mode->backward_error, &y_Qx, &y_Dx));
   PetscCall(RoundingNoise(q, x, &noise));
-  PetscCall(Finish(q, modes->operators, PETSC_FALSE, &right->xr[i], &right->xi[i], &norm_x));
-  if (has_left) PetscCall(Finish(q, modes->operators, PETSC_TRUE, &left->xr[i], &left->xi[i], &norm_y));
+  PetscCall(Finish(q, modes->pencil, PETSC_FALSE, &right->xr[i], &right->xi[i], &norm_x));
+  if (has_left) PetscCall(Finish(q, modes->pencil, PETSC_TRUE, &left->xr[i], &left->xi[i], &norm_y));
   mode->sigma     = creal(lambda);
   mode->omega     = cimag(lambda);
   mode->condition = !has_left ? NAN : y_Dx > 0 ? norm_x * norm_y / y_Dx : INFINITY;
@@ -144,7 +144,7 @@ static PetscErrorCode MeasureMode(Modes modes, Quality *q, PetscInt i)
 }
 
 /* Norms and work vectors */
-static PetscErrorCode QualityCreate(Modes modes, const OperatorsPencil *pencil, Quality *q)
+static PetscErrorCode QualityCreate(Modes modes, const PencilMatrices *pencil, Quality *q)
 {
   Vec *const work[] = {&q->diagonal, &q->scratch, &q->Mx.r, &q->Mx.i, &q->z.r, &q->z.i};
 
@@ -156,8 +156,8 @@ static PetscErrorCode QualityCreate(Modes modes, const OperatorsPencil *pencil, 
   PetscCall(MatNorm(pencil->M, NORM_FROBENIUS, &q->norms[2]));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(work); k++) PetscCall(MatCreateVecs(pencil->K, work[k], NULL));
   PetscCall(MatGetDiagonal(pencil->K, q->diagonal));
-  PetscCall(OperatorsGetMatrices(modes->operators, NULL, &q->M, NULL, NULL, NULL));
-  PetscCall(OperatorsCreateVec(modes->operators, &q->full.r));
+  PetscCall(PencilGetMass(modes->pencil, &q->M));
+  PetscCall(MatCreateVecs(q->M, &q->full.r, NULL));
   PetscCall(VecDuplicate(q->full.r, &q->full.i));
   PetscFunctionReturn(0);
 }
@@ -171,7 +171,7 @@ static PetscErrorCode QualityDestroy(Quality *q)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode QualityMeasure(Modes modes, const OperatorsPencil *pencil)
+PetscErrorCode QualityMeasure(Modes modes, const PencilMatrices *pencil)
 {
   Quality q;
 

@@ -74,7 +74,7 @@ static PetscErrorCode Collect(EPS eps, PetscReal shift, PetscInt n, Spectrum *s)
 }
 
 /* Solver for nev eigenvalues about the shift; the transposed problem starts from another random vector */
-static PetscErrorCode SolverCreate(const OperatorsPencil *pencil, ShiftInvert *si, PetscBool transposed, PetscInt nev,
+static PetscErrorCode SolverCreate(const PencilMatrices *pencil, ShiftInvert *si, PetscBool transposed, PetscInt nev,
                                    PetscInt n, EPS *eps)
 {
   PetscMPIInt rank;
@@ -103,7 +103,7 @@ static PetscErrorCode SolverCreate(const OperatorsPencil *pencil, ShiftInvert *s
 }
 
 /* K', M' for left vectors */
-static PetscErrorCode PencilTranspose(const OperatorsPencil *pencil, OperatorsPencil *transposed)
+static PetscErrorCode PencilTranspose(const PencilMatrices *pencil, PencilMatrices *transposed)
 {
   PetscFunctionBeginUser;
   *transposed = *pencil;
@@ -112,14 +112,14 @@ static PetscErrorCode PencilTranspose(const OperatorsPencil *pencil, OperatorsPe
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode UndampedSolve(Modes modes, const OperatorsPencil *pencil, const Window *window, ShiftInvert *si,
+PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
                              PetscBool transposed, Spectrum *spectrum)
 {
-  OperatorsPencil problem = *pencil;
-  PetscInt        n, nev = window->extra + (window->count           ? window->count + window->count / 2
-                                            : window->expected >= 0 ? window->expected
-                                                                    : 40);
-  PetscBool       covered = PETSC_FALSE;
+  PencilMatrices problem = *pencil;
+  PetscInt       n, nev = window->extra + (window->count           ? window->count + window->count / 2
+                                           : window->expected >= 0 ? window->expected
+                                                                   : 40);
+  PetscBool      covered = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(pencil->K, &n, NULL));

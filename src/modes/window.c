@@ -9,7 +9,7 @@
 #define EDGE 1e-8 /* relative width of the band's ends, so that an eigenvalue on an end belongs to it */
 
 /* A frequency (rad/s) that is small beside all elastic modes, from the size of the matrices */
-static PetscErrorCode WindowScale(const OperatorsPencil *pencil, PetscReal *scale)
+static PetscErrorCode WindowScale(const PencilMatrices *pencil, PetscReal *scale)
 {
   PetscReal K, M;
 
@@ -22,11 +22,11 @@ static PetscErrorCode WindowScale(const OperatorsPencil *pencil, PetscReal *scal
 
 PetscErrorCode WindowFind(Modes modes, Window *window)
 {
-  OperatorsPencil frictionless;
-  PetscInt        below_high;
+  PencilMatrices frictionless;
+  PetscInt       below_high;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetFrictionless(modes->operators, &frictionless));
+  PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
   window->low      = 2 * PETSC_PI * modes->band[0];
   window->high     = 2 * PETSC_PI * modes->band[1];
   window->target   = 2 * PETSC_PI * modes->target;
@@ -52,12 +52,12 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
 /* The damped problem converges from zero upwards and must know how far: the frictionless, undamped modes tell */
 PetscErrorCode WindowReach(Modes modes, Window *window)
 {
-  OperatorsPencil frictionless;
-  ShiftInvert     si;
-  Spectrum        nearest;
+  PencilMatrices frictionless;
+  ShiftInvert    si;
+  Spectrum       nearest;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetFrictionless(modes->operators, &frictionless));
+  PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
   PetscCall(ShiftInvertCreate(&frictionless, UndampedShift(window), PETSC_FALSE, &modes->progress, &si));
   PetscCall(UndampedSolve(modes, &frictionless, window, &si, PETSC_FALSE, &nearest));
   PetscCall(WindowSelect(window, &nearest));
@@ -71,12 +71,12 @@ PetscErrorCode WindowReach(Modes modes, Window *window)
 /* With damping a rigid mode is a double zero, which rounding splits into two tiny eigenvalues */
 PetscErrorCode WindowCountRigid(Modes modes, Window *window, const Spectrum *s)
 {
-  OperatorsPencil frictionless;
+  PencilMatrices frictionless;
 
   PetscFunctionBeginUser;
   if (!s->n || PetscAbsReal(s->sigma[0]) > window->scale || s->omega[0] > window->scale || window->below < 0)
     PetscFunctionReturn(0);
-  PetscCall(OperatorsGetFrictionless(modes->operators, &frictionless));
+  PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
   PetscCall(ShiftInvertCountBelow(&frictionless, window->scale, &modes->progress, &window->rigid));
   PetscFunctionReturn(0);
 }
@@ -113,12 +113,12 @@ PetscErrorCode WindowSelect(const Window *window, Spectrum *s)
 
 PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *s, PetscBool *complete)
 {
-  OperatorsPencil frictionless;
-  PetscInt        below_low, below_high;
+  PencilMatrices frictionless;
+  PetscInt       below_low, below_high;
 
   PetscFunctionBeginUser;
   if (window->count && s->n) { /* just outside the outermost modes: what lies that close belongs to them */
-    PetscCall(OperatorsGetFrictionless(modes->operators, &frictionless));
+    PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
     PetscCall(ShiftInvertCountBelow(&frictionless, s->omega[0] < window->scale ? 0 : s->omega[0] * (1 - 1e-6),
                                     &modes->progress, &below_low));
     PetscCall(ShiftInvertCountBelow(&frictionless, PetscMax(window->scale, s->omega[s->n - 1] * (1 + 1e-6)),

@@ -16,23 +16,30 @@ static PetscReal ModeDampingRatio(const Mode *mode)
   return size > 0 && mode->sigma != 0 ? -mode->sigma / size : 0;
 }
 
+/* The model of the pencil, NULL for loaded matrices, and its contact */
+static PetscErrorCode ModelFind(Modes modes, Model *model, Contact *contact)
+{
+  Operators operators;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetOperators(modes->pencil, &operators));
+  PetscCall(OperatorsGetModel(operators, model, contact));
+  PetscFunctionReturn(0);
+}
+
 /* What the modes are about */
 static PetscErrorCode StateView(Modes modes, PetscViewer viewer)
 {
   const ContactPair *pair;
   Contact            contact;
-  PetscInt           n, n_all, n_closed = 0;
-  PetscBool         *closed;
+  PetscInt           n, n_all, n_closed;
+  PetscBool          from_state;
 
   PetscFunctionBeginUser;
-  if (!modes->statics) PetscFunctionReturn(0);
-  PetscCall(OperatorsGetModel(modes->operators, NULL, &contact));
+  PetscCall(PencilGetClosed(modes->pencil, &n_closed, &from_state));
+  if (!from_state) PetscFunctionReturn(0);
+  PetscCall(ModelFind(modes, NULL, &contact));
   PetscCall(ContactGetPairs(contact, &n, &n_all, &pair));
-  PetscCall(PetscMalloc1(n, &closed));
-  PetscCall(StaticsGetClosed(modes->statics, closed));
-  for (PetscInt p = 0; p < n; p++) n_closed += closed[p] ? 1 : 0;
-  PetscCall(PetscFree(closed));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_closed, 1, MPIU_INT, MPI_SUM, modes->comm));
   PetscCall(PetscViewerASCIIPrintf(
     viewer, "about the sliding state: %" PetscInt_FMT " of %" PetscInt_FMT " pairs closed\n", n_closed, n_all));
   PetscFunctionReturn(0);
@@ -115,7 +122,7 @@ PetscErrorCode ModesWrite(Modes modes, Results results)
 
   PetscFunctionBeginUser;
   PetscCall(TableWrite(modes, results));
-  PetscCall(OperatorsGetModel(modes->operators, &model, NULL));
+  PetscCall(ModelFind(modes, &model, NULL));
   PetscCall(ResultsWantFields(results, &wanted));
   if (model && wanted) PetscCall(ShapesWrite(modes, model, results));
   PetscFunctionReturn(0);

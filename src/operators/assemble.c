@@ -78,19 +78,29 @@ static PetscErrorCode PartCreate(Operators o, PetscInt part, PetscReal poisson, 
 /* Parameters and terms of one part */
 static PetscErrorCode PartAdd(Operators o, PetscInt part, const Part *p)
 {
+  const struct {
+    const char *name, *unit;
+    PetscReal   value;
+  } what[N_PART_PARAMETERS] = {
+    {"young",   "Pa",     p->young  },
+    {"density", "kg/m^3", p->density},
+    {"alpha",   "1/s",    p->alpha  },
+    {"beta",    "s",      p->beta   }
+  };
   PetscInt i[N_PART_PARAMETERS];
   Mat      K, M;
 
   PetscFunctionBeginUser;
   PetscCall(PartCreate(o, part, p->poisson, &K, &M));
-  PetscCall(ParameterAdd(o, p->name, "young", "Pa", p->young, 0, PETSC_FALSE, &i[PART_YOUNG]));
-  PetscCall(ParameterAdd(o, p->name, "density", "kg/m^3", p->density, 0, PETSC_FALSE, &i[PART_DENSITY]));
-  PetscCall(ParameterAdd(o, p->name, "alpha", "1/s", p->alpha, 0, PETSC_TRUE, &i[PART_ALPHA]));
-  PetscCall(ParameterAdd(o, p->name, "beta", "s", p->beta, 0, PETSC_TRUE, &i[PART_BETA]));
-  PetscCall(TermsAdd(&o->base, OPERATORS_STIFFNESS, K, PETSC_TRUE, 1, &i[PART_YOUNG]));
-  PetscCall(TermsAdd(&o->base, OPERATORS_MASS, M, PETSC_TRUE, 1, &i[PART_DENSITY]));
-  PetscCall(TermsAdd(&o->base, OPERATORS_DAMPING, M, PETSC_TRUE, 2, (PetscInt[]){i[PART_ALPHA], i[PART_DENSITY]}));
-  PetscCall(TermsAdd(&o->base, OPERATORS_DAMPING, K, PETSC_TRUE, 2, (PetscInt[]){i[PART_BETA], i[PART_YOUNG]}));
+  for (int k = 0; k < N_PART_PARAMETERS; k++) {
+    const OperatorsParameter q = {.unit = what[k].unit, .value = what[k].value, .closed = (PetscBool)(k >= PART_ALPHA)};
+
+    PetscCall(ParametersAdd(&o->parameters, p->name, what[k].name, &q, &i[k]));
+  }
+  PetscCall(TermsAdd(&o->terms, OPERATORS_STIFFNESS, K, PETSC_TRUE, 1, &i[PART_YOUNG]));
+  PetscCall(TermsAdd(&o->terms, OPERATORS_MASS, M, PETSC_TRUE, 1, &i[PART_DENSITY]));
+  PetscCall(TermsAdd(&o->terms, OPERATORS_DAMPING, M, PETSC_TRUE, 2, (PetscInt[]){i[PART_ALPHA], i[PART_DENSITY]}));
+  PetscCall(TermsAdd(&o->terms, OPERATORS_DAMPING, K, PETSC_TRUE, 2, (PetscInt[]){i[PART_BETA], i[PART_YOUNG]}));
   PetscCall(MatDestroy(&K));
   PetscCall(MatDestroy(&M));
   PetscFunctionReturn(0);
@@ -106,7 +116,7 @@ static PetscErrorCode UnitDiagonalCreate(Operators o, const char set[], const Pe
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetUnknowns(o->model, &unknowns));
-  PetscCall(MatGetLocalSize(o->base.term[0].A, &n_own, NULL));
+  PetscCall(MatGetLocalSize(o->terms.term[0].A, &n_own, NULL));
   PetscCall(MatCreateAIJ(o->comm, n_own, n_own, PETSC_DETERMINE, PETSC_DETERMINE, 1, NULL, 0, NULL, D));
   PetscCall(ModelGetOwnedVertices(o->model, set, &is));
   PetscCall(ISGetLocalSize(is, &n_vertices));
@@ -132,9 +142,10 @@ static PetscErrorCode GroundedAddOne(Operators o, OperatorsTermKind kind, const 
   Mat         D;
 
   PetscFunctionBeginUser;
-  PetscCall(ParameterAdd(o, g->name, what, unit, value, 0, PETSC_TRUE, &index));
+  PetscCall(ParametersAdd(&o->parameters, g->name, what,
+                          &(OperatorsParameter){.unit = unit, .value = value, .closed = PETSC_TRUE}, &index));
   PetscCall(UnitDiagonalCreate(o, g->set, mask, &D));
-  PetscCall(TermsAdd(&o->base, kind, D, PETSC_TRUE, 1, &index));
+  PetscCall(TermsAdd(&o->terms, kind, D, PETSC_TRUE, 1, &index));
   PetscCall(MatDestroy(&D));
   PetscFunctionReturn(0);
 }

@@ -11,10 +11,10 @@
    no master being slave of another pair. A becomes Zl' A Zr, and constraint forces drop out: a term c A of all unknowns
    makes the terms c (Zr' A Zr) and c mu_i (Zl_i' A Zr) of the pencil. Open pairs are no constraints.
 */
-#include "operatorsimpl.h"
+#include "pencilimpl.h"
 
 /* Eliminated pairs of this rank: closed, by their interface's law; checks that elimination is possible */
-static PetscErrorCode ConstrainedPairs(Operators o, PetscInt *n, const ContactPair ***list,
+static PetscErrorCode ConstrainedPairs(Pencil pencil, PetscInt *n, const ContactPair ***list,
                                        const ContactInterface **interfaces)
 {
   const ContactPair *pairs;
@@ -22,18 +22,18 @@ static PetscErrorCode ConstrainedPairs(Operators o, PetscInt *n, const ContactPa
   PetscInt           held = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(ContactGetPairs(o->contact, &n_pairs, &n_all, &pairs));
-  PetscCall(ContactGetInterfaces(o->contact, &n_interfaces, interfaces));
+  PetscCall(ContactGetPairs(pencil->operators->contact, &n_pairs, &n_all, &pairs));
+  PetscCall(ContactGetInterfaces(pencil->operators->contact, &n_interfaces, interfaces));
   PetscCall(PetscMalloc1(n_pairs, list));
   *n = 0;
   for (PetscInt p = 0; p < n_pairs; p++) {
-    if ((*interfaces)[pairs[p].interface].law != CONTACT_CONSTRAINT || OperatorsPairGroup(o, p) < 0) continue;
+    if ((*interfaces)[pairs[p].interface].law != CONTACT_CONSTRAINT || pencil->group[p] < 0) continue;
     (*list)[(*n)++] = &pairs[p];
     for (int d = 0; d < 3; d++)
       if (pairs[p].slave[d] < 0) held = 1;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &held, 1, MPIU_INT, MPI_MAX, o->comm));
-  PetscCheck(!held, o->comm, PETSC_ERR_SUP,
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &held, 1, MPIU_INT, MPI_MAX, pencil->comm));
+  PetscCheck(!held, pencil->comm, PETSC_ERR_SUP,
              "the contact constraint cannot eliminate a slave node that a support holds: swap -contact_surfaces or use "
              "-contact_law penalty");
   PetscFunctionReturn(0);
@@ -41,7 +41,7 @@ static PetscErrorCode ConstrainedPairs(Operators o, PetscInt *n, const ContactPa
 
 /* Marks the unknowns of eliminated slaves and of their masters; an unknown that is both, or slave of two pairs, is an
    error */
-static PetscErrorCode ConstraintCheckChains(Operators o, PetscInt n, const ContactPair **list)
+static PetscErrorCode ConstraintCheckChains(Pencil pencil, PetscInt n, const ContactPair **list)
 {
   const PetscScalar one = 1, large = 1e6;
   PetscScalar      *value;
@@ -49,7 +49,7 @@ static PetscErrorCode ConstraintCheckChains(Operators o, PetscInt n, const Conta
   Vec               slaves, masters;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsCreateVec(o, &slaves));
+  PetscCall(OperatorsCreateVec(pencil->operators, &slaves));
   PetscCall(VecDuplicate(slaves, &masters));
   PetscCall(VecSetOption(masters, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
   for (PetscInt p = 0; p < n; p++) {
@@ -70,8 +70,8 @@ static PetscErrorCode ConstraintCheckChains(Operators o, PetscInt n, const Conta
   PetscCall(VecRestoreArray(masters, &value));
   PetscCall(VecDestroy(&slaves));
   PetscCall(VecDestroy(&masters));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &chain, 1, MPIU_INT, MPI_MAX, o->comm));
-  PetscCheck(!chain, o->comm, PETSC_ERR_SUP,
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &chain, 1, MPIU_INT, MPI_MAX, pencil->comm));
+  PetscCheck(!chain, pencil->comm, PETSC_ERR_SUP,
              "a node belongs to two constrained contact pairs; the constraint needs interfaces without common nodes: "
              "use -contact_law penalty");
   PetscFunctionReturn(0);
@@ -79,14 +79,14 @@ static PetscErrorCode ConstraintCheckChains(Operators o, PetscInt n, const Conta
 
 /* E (interface < 0): kept unknowns one to one, columns q1, q2 with t and b at each slave. Else F_i: n in the columns q1
    of the interface */
-static PetscErrorCode InjectionCreate(Operators o, PetscInt n, const ContactPair **list, PetscInt interface, Mat *E)
+static PetscErrorCode InjectionCreate(Pencil pencil, PetscInt n, const ContactPair **list, PetscInt interface, Mat *E)
 {
   PetscInt n_local, first, last, column, *is_slave;
 
   PetscFunctionBeginUser;
-  PetscCall(MatGetOwnershipRange(o->base.term[0].A, &first, &last));
+  PetscCall(MatGetOwnershipRange(pencil->base.term[0].A, &first, &last));
   n_local = last - first;
-  PetscCall(MatCreateAIJ(o->comm, n_local, n_local - n, PETSC_DETERMINE, PETSC_DETERMINE, 2, NULL, 0, NULL, E));
+  PetscCall(MatCreateAIJ(pencil->comm, n_local, n_local - n, PETSC_DETERMINE, PETSC_DETERMINE, 2, NULL, 0, NULL, E));
   PetscCall(MatGetOwnershipRangeColumn(*E, &column, NULL));
   PetscCall(PetscCalloc1(n_local, &is_slave));
   for (PetscInt p = 0; p < n; p++, column += 2) {
@@ -110,13 +110,13 @@ static PetscErrorCode InjectionCreate(Operators o, PetscInt n, const ContactPair
 }
 
 /* From each master corner to the slave: G = n n' w_i (interface < 0), or G_i = -n t' w_i of one interface */
-static PetscErrorCode CouplingCreate(Operators o, PetscInt n, const ContactPair **list, PetscInt interface, Mat *G)
+static PetscErrorCode CouplingCreate(Pencil pencil, PetscInt n, const ContactPair **list, PetscInt interface, Mat *G)
 {
   PetscInt n_local;
 
   PetscFunctionBeginUser;
-  PetscCall(MatGetLocalSize(o->base.term[0].A, &n_local, NULL));
-  PetscCall(MatCreateAIJ(o->comm, n_local, n_local, PETSC_DETERMINE, PETSC_DETERMINE, 12, NULL, 12, NULL, G));
+  PetscCall(MatGetLocalSize(pencil->base.term[0].A, &n_local, NULL));
+  PetscCall(MatCreateAIJ(pencil->comm, n_local, n_local, PETSC_DETERMINE, PETSC_DETERMINE, 12, NULL, 12, NULL, G));
   for (PetscInt p = 0; p < n; p++) {
     const ContactPair *pair = list[p];
 
@@ -135,14 +135,14 @@ static PetscErrorCode CouplingCreate(Operators o, PetscInt n, const ContactPair 
 }
 
 /* Zr = E + G E (interface < 0), or Zl_i = F_i + G_i E */
-static PetscErrorCode NullSpaceCreate(Operators o, PetscInt n, const ContactPair **list, PetscInt interface, Mat *Z)
+static PetscErrorCode NullSpaceCreate(Pencil pencil, PetscInt n, const ContactPair **list, PetscInt interface, Mat *Z)
 {
-  Mat F = o->E, G;
+  Mat F = pencil->E, G;
 
   PetscFunctionBeginUser;
-  if (interface >= 0) PetscCall(InjectionCreate(o, n, list, interface, &F));
-  PetscCall(CouplingCreate(o, n, list, interface, &G));
-  PetscCall(MatMatMult(G, o->E, MAT_INITIAL_MATRIX, PETSC_DEFAULT, Z));
+  if (interface >= 0) PetscCall(InjectionCreate(pencil, n, list, interface, &F));
+  PetscCall(CouplingCreate(pencil, n, list, interface, &G));
+  PetscCall(MatMatMult(G, pencil->E, MAT_INITIAL_MATRIX, PETSC_DEFAULT, Z));
   PetscCall(MatProductClear(*Z));
   PetscCall(MatAXPY(*Z, 1, F, DIFFERENT_NONZERO_PATTERN));
   if (interface >= 0) PetscCall(MatDestroy(&F));
@@ -150,43 +150,39 @@ static PetscErrorCode NullSpaceCreate(Operators o, PetscInt n, const ContactPair
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsCreateNullSpaces(Operators o)
+PetscErrorCode PencilCreateNullSpaces(Pencil pencil)
 {
   const ContactPair     **list;
   const ContactInterface *interfaces;
   PetscInt                n, n_all, n_interfaces;
 
   PetscFunctionBeginUser;
-  if (!o->model || o->constrained) PetscFunctionReturn(0);
-  PetscCall(ConstrainedPairs(o, &n, &list, &interfaces));
-  PetscCallMPI(MPI_Allreduce(&n, &n_all, 1, MPIU_INT, MPI_SUM, o->comm));
+  PetscCall(ConstrainedPairs(pencil, &n, &list, &interfaces));
+  PetscCallMPI(MPI_Allreduce(&n, &n_all, 1, MPIU_INT, MPI_SUM, pencil->comm));
   if (n_all) {
-    PetscCall(ConstraintCheckChains(o, n, list));
-    PetscCall(ContactGetInterfaces(o->contact, &n_interfaces, &interfaces));
-    PetscCall(PetscCalloc2(n_interfaces, &o->left, n_interfaces, &o->left_mu));
-    PetscCall(InjectionCreate(o, n, list, -1, &o->E));
-    PetscCall(NullSpaceCreate(o, n, list, -1, &o->Zr));
+    PetscCall(ConstraintCheckChains(pencil, n, list));
+    PetscCall(ContactGetInterfaces(pencil->operators->contact, &n_interfaces, &interfaces));
+    PetscCall(PetscCalloc2(n_interfaces, &pencil->left, n_interfaces, &pencil->left_mu));
+    PetscCall(InjectionCreate(pencil, n, list, -1, &pencil->E));
+    PetscCall(NullSpaceCreate(pencil, n, list, -1, &pencil->Zr));
     for (PetscInt i = 0; i < n_interfaces; i++) {
-      if (interfaces[i].law != CONTACT_CONSTRAINT || o->interface[i].mu < 0) continue;
-      PetscCall(NullSpaceCreate(o, n, list, i, &o->left[o->n_left]));
-      o->left_mu[o->n_left++] = o->interface[i].mu;
+      if (interfaces[i].law != CONTACT_CONSTRAINT || pencil->operators->interface[i].mu < 0) continue;
+      PetscCall(NullSpaceCreate(pencil, n, list, i, &pencil->left[pencil->n_left]));
+      pencil->left_mu[pencil->n_left++] = pencil->operators->interface[i].mu;
     }
   }
-  o->constrained = PETSC_TRUE;
   PetscCall(PetscFree(list));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsDestroyNullSpaces(Operators o)
+PetscErrorCode PencilDestroyNullSpaces(Pencil pencil)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < o->n_left; i++) PetscCall(MatDestroy(&o->left[i]));
-  PetscCall(PetscFree2(o->left, o->left_mu));
-  PetscCall(MatDestroy(&o->Zr));
-  PetscCall(MatDestroy(&o->E));
-  PetscCall(TermsDestroy(&o->projected));
-  o->n_left      = 0;
-  o->constrained = PETSC_FALSE;
+  for (PetscInt i = 0; i < pencil->n_left; i++) PetscCall(MatDestroy(&pencil->left[i]));
+  PetscCall(PetscFree2(pencil->left, pencil->left_mu));
+  PetscCall(MatDestroy(&pencil->Zr));
+  PetscCall(MatDestroy(&pencil->E));
+  PetscCall(TermsDestroy(&pencil->projected));
   PetscFunctionReturn(0);
 }
 
@@ -204,62 +200,61 @@ static PetscErrorCode ProjectFromLeft(Mat L, Mat AZ, Mat *projected)
 }
 
 /* Zr' A Zr, Zl_1' A Zr, Zl_2' A Zr, ..., array [1 + n_left] */
-static PetscErrorCode Project(Operators o, Mat A, Mat image[])
+static PetscErrorCode TermProject(Pencil pencil, Mat A, Mat image[])
 {
   Mat AZ;
 
   PetscFunctionBeginUser;
-  PetscCall(MatMatMult(A, o->Zr, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &AZ));
+  PetscCall(MatMatMult(A, pencil->Zr, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &AZ));
   PetscCall(MatProductClear(AZ));
-  PetscCall(ProjectFromLeft(o->Zr, AZ, &image[0]));
-  for (PetscInt i = 0; i < o->n_left; i++) PetscCall(ProjectFromLeft(o->left[i], AZ, &image[1 + i]));
+  PetscCall(ProjectFromLeft(pencil->Zr, AZ, &image[0]));
+  for (PetscInt i = 0; i < pencil->n_left; i++) PetscCall(ProjectFromLeft(pencil->left[i], AZ, &image[1 + i]));
   PetscCall(MatDestroy(&AZ));
   PetscFunctionReturn(0);
 }
 
 /* Adds the terms of the pencil that a base term with these images makes */
-static PetscErrorCode ImagesAdd(Operators o, const OperatorsTerm *base, const Mat image[])
+static PetscErrorCode ImagesAdd(Pencil pencil, const OperatorsTerm *base, const Mat image[])
 {
   const PetscInt n = base->n;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i <= o->n_left; i++) {
+  for (PetscInt i = 0; i <= pencil->n_left; i++) {
     OperatorsTerm *term;
 
     if (!image[i]) continue;
-    PetscCall(TermsAdd(&o->projected, base->kind, image[i], i ? PETSC_FALSE : base->symmetric, 0, NULL));
-    term        = &o->projected.term[o->projected.n - 1];
+    PetscCall(TermsAdd(&pencil->projected, base->kind, image[i], i ? PETSC_FALSE : base->symmetric, 0, NULL));
+    term        = &pencil->projected.term[pencil->projected.n - 1];
     term->scale = base->scale;
     term->n     = n + (i ? 1 : 0);
-    PetscCheck(term->n <= OPERATORS_MAX_FACTORS, o->comm, PETSC_ERR_PLIB, "a term of %" PetscInt_FMT " factors",
+    PetscCheck(term->n <= OPERATORS_MAX_FACTORS, pencil->comm, PETSC_ERR_PLIB, "a term of %" PetscInt_FMT " factors",
                term->n);
     PetscCall(PetscArraycpy(term->factor, base->factor, n));
     if (!i) continue;
-    term->factor[n].parameter = o->left_mu[i - 1];
+    term->factor[n].parameter = pencil->left_mu[i - 1];
     term->factor[n].power     = 1;
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsProjectTerms(Operators o)
+PetscErrorCode PencilProjectTerms(Pencil pencil)
 {
   PetscInt n_images;
   Mat     *image;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsCreateNullSpaces(o));
-  if (!o->Zr || o->projected.n) PetscFunctionReturn(0);
-  n_images = 1 + o->n_left;
-  PetscCall(PetscCalloc1(o->base.n * n_images, &image));
-  for (PetscInt t = 0; t < o->base.n; t++) {
-    const OperatorsTerm *term   = &o->base.term[t];
+  if (!pencil->Zr || pencil->projected.n) PetscFunctionReturn(0);
+  n_images = 1 + pencil->n_left;
+  PetscCall(PetscCalloc1(pencil->base.n * n_images, &image));
+  for (PetscInt t = 0; t < pencil->base.n; t++) {
+    const OperatorsTerm *term   = &pencil->base.term[t];
     PetscInt             shared = 0;
 
-    while (o->base.term[shared].A != term->A) shared++;
-    if (shared == t) PetscCall(Project(o, term->A, &image[t * n_images]));
-    PetscCall(ImagesAdd(o, term, &image[shared * n_images]));
+    while (pencil->base.term[shared].A != term->A) shared++;
+    if (shared == t) PetscCall(TermProject(pencil, term->A, &image[t * n_images]));
+    PetscCall(ImagesAdd(pencil, term, &image[shared * n_images]));
   }
-  for (PetscInt i = 0; i < o->base.n * n_images; i++) PetscCall(MatDestroy(&image[i]));
+  for (PetscInt i = 0; i < pencil->base.n * n_images; i++) PetscCall(MatDestroy(&image[i]));
   PetscCall(PetscFree(image));
   PetscFunctionReturn(0);
 }

@@ -3,7 +3,7 @@
    one term, H with the coefficient contact_mu, which is the only parameter. K, M and C count as terms that are there
    without friction, symmetric or not.
 */
-#include "operatorsimpl.h"
+#include "pencilimpl.h"
 #include <errno.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -95,10 +95,10 @@ static PetscErrorCode TermsFromMatrices(Operators o, Mat A[N_OPERATORS])
 
   PetscFunctionBeginUser;
   for (int i = OPERATOR_K; i <= OPERATOR_C; i++)
-    if (A[i]) PetscCall(TermsAdd(&o->base, kind[i], A[i], PETSC_TRUE, 0, NULL));
+    if (A[i]) PetscCall(TermsAdd(&o->terms, kind[i], A[i], PETSC_TRUE, 0, NULL));
   if (!A[OPERATOR_H]) PetscFunctionReturn(0);
-  PetscCall(ParameterAddMu(o, "contact", o->loaded_mu, &mu));
-  PetscCall(TermsAdd(&o->base, OPERATORS_STIFFNESS, A[OPERATOR_H], PETSC_FALSE, 1, &mu));
+  PetscCall(OperatorsAddMu(o, "contact", o->loaded_mu, &mu));
+  PetscCall(TermsAdd(&o->terms, OPERATORS_STIFFNESS, A[OPERATOR_H], PETSC_FALSE, 1, &mu));
   PetscFunctionReturn(0);
 }
 
@@ -145,7 +145,7 @@ PetscErrorCode OperatorsLoad(Operators o)
     PetscCall(MatIsSymmetric(A[i], 1e-14 * largest, &o->symmetric));
   }
   PetscCall(TermsFromMatrices(o, A));
-  for (PetscInt t = 0; t < o->base.n && !o->symmetric; t++) o->base.term[t].symmetric = PETSC_FALSE;
+  for (PetscInt t = 0; t < o->terms.n && !o->symmetric; t++) o->terms.term[t].symmetric = PETSC_FALSE;
   for (int i = 0; i < N_OPERATORS; i++) PetscCall(MatDestroy(&A[i]));
   PetscFunctionReturn(0);
 }
@@ -181,25 +181,25 @@ static PetscErrorCode FileSave(Operators o, const char name[], Mat A)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsSave(Operators o)
+PetscErrorCode PencilSave(Pencil pencil)
 {
-  OperatorsPencil pencil;
-  PetscMPIInt     rank;
-  int             failed = 0;
-  Mat             K = NULL, H = NULL;
+  Operators      o = pencil->operators;
+  PencilMatrices m;
+  PencilParts    parts = {.K = NULL};
+  PetscMPIInt    rank;
+  int            failed = 0;
 
   PetscFunctionBeginUser;
-  if (!o->save[0]) PetscFunctionReturn(0);
   PetscCallMPI(MPI_Comm_rank(o->comm, &rank));
   if (rank == 0 && mkdir(o->save, 0777) && errno != EEXIST) failed = errno;
   PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
   PetscCheck(!failed, o->comm, PETSC_ERR_FILE_OPEN, "cannot make the folder '%s' of -operators_save: %s", o->save,
              strerror(failed));
-  PetscCall(OperatorsGetPencil(o, &pencil));
-  if (!o->Zr) PetscCall(OperatorsGetMatrices(o, &K, NULL, NULL, &H, NULL));
-  PetscCall(FileSave(o, "K", K ? K : pencil.K));
-  PetscCall(FileSave(o, "M", pencil.M));
-  if (pencil.C) PetscCall(FileSave(o, "C", pencil.C));
-  if (H) PetscCall(FileSave(o, "H", H));
+  PetscCall(PencilGetMatrices(pencil, &m));
+  if (!pencil->Zr) PetscCall(PencilGetParts(pencil, &parts));
+  PetscCall(FileSave(o, "K", parts.K ? parts.K : m.K));
+  PetscCall(FileSave(o, "M", m.M));
+  if (m.C) PetscCall(FileSave(o, "C", m.C));
+  if (parts.H) PetscCall(FileSave(o, "H", parts.H));
   PetscFunctionReturn(0);
 }

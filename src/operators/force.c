@@ -1,6 +1,6 @@
 /*
-   Internal forces of a displacement: f = sum over cells of K_e u_e (N), with the present Young's moduli, at all
-   vertices. Where supports hold a direction f is the force that they exert, as far as no load acts there. Displacements
+   Internal forces of a displacement: f = sum over cells of K_e u_e (N), with Young's moduli at the
+   point p, at all vertices. Where supports hold a direction f is the force that they exert, as far as no load acts there. Displacements
    are taken relative to the first node of each cell: a translation gives no force, while in the assembled matrix its
    rounding resists like a spring of some 1e-16 of the stiffness.
 */
@@ -26,7 +26,7 @@ static PetscErrorCode CellAddForce(Operators o, PetscInt c, const Elasticity *ma
 }
 
 /* Adds the forces of all local cells */
-static PetscErrorCode CellsAddForces(Operators o, const PetscScalar u[], PetscScalar f[])
+static PetscErrorCode CellsAddForces(Operators o, const PetscReal p[], const PetscScalar u[], PetscScalar f[])
 {
   const Part *parts;
   const Mesh *mesh;
@@ -37,7 +37,7 @@ static PetscErrorCode CellsAddForces(Operators o, const PetscScalar u[], PetscSc
   PetscCall(ModelGetParts(o->model, &n_parts, &parts));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     const PetscInt   part     = mesh->cell_part[c];
-    const PetscReal  young    = o->p[N_PART_PARAMETERS * part + PART_YOUNG];
+    const PetscReal  young    = p[N_PART_PARAMETERS * part + PART_YOUNG];
     const Elasticity material = ElasticityFromEngineering(young, parts[part].poisson, 1);
 
     PetscCall(CellAddForce(o, c, &material, u, f));
@@ -45,7 +45,7 @@ static PetscErrorCode CellsAddForces(Operators o, const PetscScalar u[], PetscSc
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsInternalForces(Operators operators, Vec u, Vec local)
+PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[], Vec u, Vec local)
 {
   const Mesh  *mesh;
   PetscReal   *displacement;
@@ -59,7 +59,7 @@ PetscErrorCode OperatorsInternalForces(Operators operators, Vec u, Vec local)
   PetscCall(ModelGetNodal(operators->model, u, displacement));
   PetscCall(VecSet(local, 0));
   PetscCall(VecGetArray(local, &force));
-  PetscCall(CellsAddForces(operators, displacement, force));
+  PetscCall(CellsAddForces(operators, OperatorsPoint(operators, p), displacement, force));
   PetscCall(VecRestoreArray(local, &force));
   PetscCall(PetscFree(displacement));
   PetscCall(ModelSumShared(operators->model, local));
@@ -67,7 +67,7 @@ PetscErrorCode OperatorsInternalForces(Operators operators, Vec u, Vec local)
 }
 
 /* f += forces of the springs */
-static PetscErrorCode SpringsAddForces(Operators o, Vec u, Vec f)
+static PetscErrorCode SpringsAddForces(Operators o, const PetscReal p[], Vec u, Vec f)
 {
   const Part *parts;
   PetscInt    n_parts;
@@ -76,18 +76,18 @@ static PetscErrorCode SpringsAddForces(Operators o, Vec u, Vec f)
   PetscFunctionBeginUser;
   PetscCall(ModelGetParts(o->model, &n_parts, &parts));
   PetscCall(VecDuplicate(f, &part));
-  for (PetscInt t = 0; t < o->n_body_terms; t++) {
-    const OperatorsTerm *term = &o->base.term[t];
+  for (PetscInt t = 0; t < o->terms.n; t++) {
+    const OperatorsTerm *term = &o->terms.term[t];
 
     if (term->kind != OPERATORS_STIFFNESS || term->factor[0].parameter < N_PART_PARAMETERS * n_parts) continue;
     PetscCall(MatMult(term->A, u, part));
-    PetscCall(VecAXPY(f, OperatorsTermCoefficient(term, o->p), part));
+    PetscCall(VecAXPY(f, OperatorsTermCoefficient(term, p), part));
   }
   PetscCall(VecDestroy(&part));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsApplyBodies(Operators operators, Vec u, Vec f)
+PetscErrorCode OperatorsApplyBodies(Operators operators, const PetscReal p[], Vec u, Vec f)
 {
   const PetscScalar *force;
   const PetscInt    *unknowns;
@@ -98,7 +98,7 @@ PetscErrorCode OperatorsApplyBodies(Operators operators, Vec u, Vec f)
   PetscFunctionBeginUser;
   PetscCall(ModelGetUnknowns(operators->model, &unknowns));
   PetscCall(ModelCreateNodal(operators->model, &local));
-  PetscCall(OperatorsInternalForces(operators, u, local));
+  PetscCall(OperatorsInternalForces(operators, p, u, local));
   PetscCall(VecGetLocalSize(local, &n));
   PetscCall(VecGetOwnershipRange(f, &begin, &end));
   PetscCall(VecGetArrayRead(local, &force));
@@ -108,6 +108,6 @@ PetscErrorCode OperatorsApplyBodies(Operators operators, Vec u, Vec f)
   PetscCall(VecRestoreArray(f, &value));
   PetscCall(VecRestoreArrayRead(local, &force));
   PetscCall(VecDestroy(&local));
-  PetscCall(SpringsAddForces(operators, u, f));
+  PetscCall(SpringsAddForces(operators, OperatorsPoint(operators, p), u, f));
   PetscFunctionReturn(0);
 }

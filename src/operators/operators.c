@@ -1,6 +1,5 @@
 /*
-   Operators: life cycle, access, and the pencil that the modes are computed from. Everything that is handed out is a
-   sum of terms at the present values of the parameters, formed when it is asked for.
+   Operators: life cycle, parameters, and the matrices of the bodies alone.
 */
 #include "operatorsimpl.h"
 #include "base/events.h"
@@ -60,185 +59,115 @@ PetscErrorCode OperatorsSetUp(Operators operators)
   PetscCall(EventBegin(EVENT_ASSEMBLE));
   if (operators->model) {
     PetscCall(OperatorsAssemble(operators));
-    operators->n_body_terms = operators->base.n;
+    for (PetscInt i = 0; i < operators->parameters.n; i++) operators->parameters.list[i].body = PETSC_TRUE;
     PetscCall(OperatorsAddContactParameters(operators));
-    PetscCall(OperatorsAddContact(operators));
   } else {
     PetscCall(OperatorsLoad(operators));
-    operators->n_body_terms = operators->base.n;
   }
-  operators->n_scene = operators->n_parameters;
   PetscCall(EventEnd(EVENT_ASSEMBLE));
   PetscFunctionReturn(0);
 }
 
-/* What each sum is made of */
-static const struct {
-  OperatorsTermKind kind;
-  TermsChoice       choice;
-  PetscBool         symmetric;   /* without friction and damping */
-  SumKind           unprojected; /* the same sum when no constraint projects */
-} sums[N_SUMS] = {
-  [SUM_BODIES]  = {OPERATORS_STIFFNESS, TERMS_SYMMETRIC,   PETSC_TRUE,  SUM_BODIES},
-  [SUM_K]       = {OPERATORS_STIFFNESS, TERMS_SYMMETRIC,   PETSC_TRUE,  SUM_K     },
-  [SUM_M]       = {OPERATORS_MASS,      TERMS_ALL,         PETSC_TRUE,  SUM_M     },
-  [SUM_C]       = {OPERATORS_DAMPING,   TERMS_ALL,         PETSC_FALSE, SUM_C     },
-  [SUM_H]       = {OPERATORS_STIFFNESS, TERMS_UNSYMMETRIC, PETSC_FALSE, SUM_H     },
-  [PROJECTED_K] = {OPERATORS_STIFFNESS, TERMS_SYMMETRIC,   PETSC_TRUE,  SUM_K     },
-  [PROJECTED_M] = {OPERATORS_MASS,      TERMS_SYMMETRIC,   PETSC_TRUE,  SUM_M     },
-  [PENCIL_K]    = {OPERATORS_STIFFNESS, TERMS_ALL,         PETSC_FALSE, PENCIL_K  },
-  [PENCIL_M]    = {OPERATORS_MASS,      TERMS_ALL,         PETSC_FALSE, SUM_M     },
-  [PENCIL_C]    = {OPERATORS_DAMPING,   TERMS_ALL,         PETSC_FALSE, SUM_C     },
-};
-
-/* One of the sums at the present values (borrowed); NULL when it vanishes */
-static PetscErrorCode SumGet(Operators o, SumKind which, Mat *A)
+PetscErrorCode OperatorsAddMu(Operators o, const char owner[], PetscReal value, PetscInt *index)
 {
-  const Terms     bodies    = {o->n_body_terms, o->base.term};
-  const SumKind   at        = o->Zr ? which : sums[which].unprojected;
-  const PetscBool projected = o->Zr && at >= PROJECTED_K ? PETSC_TRUE : PETSC_FALSE;
-  const PetscReal mu        = OperatorsLargestMu(o);
-  TermsSum       *sum       = &o->sum[at];
-
   PetscFunctionBeginUser;
-  if (!sum->current) {
-    if (projected) PetscCall(OperatorsProjectTerms(o));
-    PetscCall(TermsSumForm(projected ? &o->projected : (at == SUM_BODIES ? &bodies : &o->base), sums[at].kind,
-                           sums[at].choice, at == SUM_H && mu != 0 ? 1 / mu : 1, o->p, sum));
-    if (sum->A)
-      PetscCall(MatSetOption(sum->A, MAT_SYMMETRIC, sums[at].symmetric && o->symmetric ? PETSC_TRUE : PETSC_FALSE));
-  }
-  *A = sum->A;
+  PetscCall(ParametersAdd(&o->parameters, owner, "mu",
+                          &(OperatorsParameter){.unit = "", .value = value, .lower = -INFINITY}, index));
+  PetscCall(PetscRealloc((size_t)(o->n_mu + 1) * sizeof(*o->mu), &o->mu));
+  o->mu[o->n_mu++] = *index;
   PetscFunctionReturn(0);
 }
 
-/* H: the one given, at any mu, or that of a model, which vanishes with mu */
-static PetscErrorCode FrictionGet(Operators o, Mat *H)
+PetscReal OperatorsLargestMu(Operators o, const PetscReal p[])
 {
-  const OperatorsTerm *last = &o->base.term[o->base.n - 1];
+  PetscReal mu = 0;
 
+  for (PetscInt i = 0; i < o->n_mu; i++)
+    if (PetscAbsReal(p[o->mu[i]]) > PetscAbsReal(mu)) mu = p[o->mu[i]];
+  return mu;
+}
+
+PetscErrorCode OperatorsGetParameters(Operators operators, PetscInt *n, const OperatorsParameter **parameters)
+{
   PetscFunctionBeginUser;
-  if (o->model)
-    PetscCall(SumGet(o, SUM_H, H));
-  else
-    *H = last->frictional ? last->A : NULL;
+  *n          = operators->parameters.n;
+  *parameters = operators->parameters.list;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsGetMatrices(Operators operators, Mat *K, Mat *M, Mat *C, Mat *H, PetscReal *mu)
+PetscErrorCode OperatorsCreatePoint(Operators operators, PetscReal **p)
 {
   PetscFunctionBeginUser;
-  if (K) PetscCall(SumGet(operators, SUM_K, K));
-  if (M) PetscCall(SumGet(operators, SUM_M, M));
-  if (C) PetscCall(SumGet(operators, SUM_C, C));
-  if (H) PetscCall(FrictionGet(operators, H));
-  if (mu) *mu = OperatorsLargestMu(operators);
+  PetscCall(PetscMalloc1(operators->parameters.n, p));
+  PetscCall(PetscArraycpy(*p, operators->parameters.p, operators->parameters.n));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsGetBodies(Operators operators, Mat *K)
+PetscErrorCode OperatorsCheckParameter(Operators operators, PetscInt parameter, PetscReal value)
 {
   PetscFunctionBeginUser;
-  PetscCall(SumGet(operators, SUM_BODIES, K));
+  PetscCall(ParameterCheck(operators->comm, &operators->parameters.list[parameter], value));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsGetInterface(Operators operators, PetscInt interface, PetscReal *mu, PetscReal *kn)
+PetscErrorCode OperatorsGetMaterial(Operators operators, const PetscReal p[], PetscInt part,
+                                    OperatorsMaterial *material)
 {
-  const InterfaceParameters *q = &operators->interface[interface];
+  const PetscReal *value = &OperatorsPoint(operators, p)[N_PART_PARAMETERS * part];
+
+  PetscFunctionBeginUser;
+  material->young   = value[PART_YOUNG];
+  material->density = value[PART_DENSITY];
+  material->alpha   = value[PART_ALPHA];
+  material->beta    = value[PART_BETA];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsGetInterface(Operators operators, const PetscReal p[], PetscInt interface, PetscReal *mu,
+                                     PetscReal *kn)
+{
+  const InterfaceParameters *q     = &operators->interface[interface];
+  const PetscReal           *value = OperatorsPoint(operators, p);
   const ContactInterface    *c;
   PetscInt                   n;
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetInterfaces(operators->contact, &n, &c));
-  *mu = q->mu < 0 ? c[interface].mu : operators->p[q->mu];
-  *kn = q->kn < 0 ? INFINITY : operators->p[q->kn];
+  *mu = q->mu < 0 ? c[interface].mu : value[q->mu];
+  *kn = q->kn < 0 ? INFINITY : value[q->kn];
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsGetTerms(Operators operators, PetscInt *n, const OperatorsTerm **terms)
+PetscErrorCode OperatorsGetBodies(Operators operators, const PetscReal p[], Mat *K, Mat *M, Mat *C)
 {
-  const Terms *list;
+  static const TermsSumKind kinds[N_BODIES_SUMS] = {
+    [BODIES_K] = {OPERATORS_STIFFNESS, TERMS_SYMMETRIC, 1},
+    [BODIES_M] = {OPERATORS_MASS,      TERMS_SYMMETRIC, 1},
+    [BODIES_C] = {OPERATORS_DAMPING,   TERMS_SYMMETRIC, 1},
+  };
+  Mat *const wanted[N_BODIES_SUMS] = {K, M, C};
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsCheckLinear(operators));
-  PetscCall(OperatorsProjectTerms(operators));
-  list   = operators->Zr ? &operators->projected : &operators->base;
-  *n     = list->n;
-  *terms = list->term;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode OperatorsGetPencil(Operators operators, OperatorsPencil *pencil)
-{
-  const Terms *terms;
-  PetscBool    frictionless, same_mass;
-
-  PetscFunctionBeginUser;
-  PetscCall(OperatorsCheckLinear(operators));
-  PetscCall(OperatorsProjectTerms(operators));
-  terms             = operators->Zr ? &operators->projected : &operators->base;
-  frictionless      = TermsVanish(terms, TERMS_UNSYMMETRIC, PETSC_FALSE, operators->p);
-  same_mass         = TermsVanish(terms, TERMS_UNSYMMETRIC, PETSC_TRUE, operators->p);
-  pencil->symmetric = operators->symmetric && frictionless ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(SumGet(operators, frictionless ? PROJECTED_K : PENCIL_K, &pencil->K));
-  PetscCall(SumGet(operators, same_mass ? PROJECTED_M : PENCIL_M, &pencil->M));
-  PetscCall(SumGet(operators, PENCIL_C, &pencil->C));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode OperatorsGetFrictionless(Operators operators, OperatorsPencil *pencil)
-{
-  PetscFunctionBeginUser;
-  PetscCall(OperatorsCreateNullSpaces(operators));
-  PetscCall(SumGet(operators, PROJECTED_K, &pencil->K));
-  PetscCall(SumGet(operators, PROJECTED_M, &pencil->M));
-  pencil->C         = NULL;
-  pencil->symmetric = operators->symmetric;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode OperatorsExpand(Operators operators, PetscBool left, Vec q, Vec u)
-{
-  Vec part;
-
-  PetscFunctionBeginUser;
-  if (!operators->Zr) {
-    PetscCall(VecCopy(q, u));
-    PetscFunctionReturn(0);
+  for (int i = 0; i < N_BODIES_SUMS; i++) {
+    if (!wanted[i]) continue;
+    PetscCall(TermsSumForm(&operators->terms, &kinds[i], OperatorsPoint(operators, p), &operators->sum[i]));
+    *wanted[i] = operators->sum[i].A;
+    if (*wanted[i]) PetscCall(MatSetOption(*wanted[i], MAT_SYMMETRIC, operators->symmetric));
   }
-  PetscCall(MatMult(operators->Zr, q, u));
-  if (!left) PetscFunctionReturn(0);
-  PetscCall(VecDuplicate(u, &part));
-  for (PetscInt i = 0; i < operators->n_left; i++) {
-    PetscCall(MatMult(operators->left[i], q, part));
-    PetscCall(VecAXPY(u, operators->p[operators->left_mu[i]], part));
-  }
-  PetscCall(VecDestroy(&part));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode OperatorsRestrict(Operators operators, Vec u, Vec q)
-{
-  PetscFunctionBeginUser;
-  if (operators->E)
-    PetscCall(MatMultTranspose(operators->E, u, q));
-  else
-    PetscCall(VecCopy(u, q));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode OperatorsCreateVec(Operators operators, Vec *u)
 {
   PetscFunctionBeginUser;
-  PetscCall(MatCreateVecs(operators->base.term[0].A, u, NULL));
+  PetscCall(MatCreateVecs(operators->terms.term[0].A, u, NULL));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsGetSave(Operators operators, PetscBool *save)
+PetscErrorCode OperatorsGetSave(Operators operators, const char **folder)
 {
   PetscFunctionBeginUser;
-  *save = operators->save[0] ? PETSC_TRUE : PETSC_FALSE;
+  *folder = operators->save;
   PetscFunctionReturn(0);
 }
 
@@ -250,27 +179,6 @@ PetscErrorCode OperatorsGetModel(Operators operators, Model *model, Contact *con
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsView(Operators operators, PetscViewer viewer)
-{
-  OperatorsPencil pencil;
-  PetscInt        n, n_pencil;
-  MatInfo         info;
-
-  PetscFunctionBeginUser;
-  PetscCall(OperatorsGetPencil(operators, &pencil));
-  PetscCall(MatGetSize(operators->base.term[0].A, &n, NULL));
-  PetscCall(MatGetSize(pencil.K, &n_pencil, NULL));
-  PetscCall(MatGetInfo(pencil.K, MAT_GLOBAL_SUM, &info));
-  PetscCall(PetscViewerASCIIPrintf(
-    viewer, "operators: %" PetscInt_FMT " unknowns, %.0f nonzeros, %s, %s, %s mass\n", n_pencil, (double)info.nz_used,
-    pencil.symmetric ? "no friction: symmetric" : "friction: unsymmetric",
-    pencil.C ? "damped: quadratic problem" : "undamped", operators->lump ? "lumped" : "consistent"));
-  if (n_pencil < n)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " unknowns eliminated by the contact constraint\n",
-                                     n - n_pencil));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode OperatorsDestroy(Operators *operators)
 {
   Operators o = *operators;
@@ -278,16 +186,11 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   PetscFunctionBeginUser;
   if (!o) PetscFunctionReturn(0);
   for (int i = 0; i < N_OPERATORS; i++) PetscCall(PetscFree(o->dense[i]));
-  for (int i = 0; i < N_SUMS; i++) PetscCall(TermsSumDestroy(&o->sum[i]));
-  PetscCall(OperatorsDestroyNullSpaces(o));
-  PetscCall(TermsDestroy(&o->base));
-  PetscCall(MatDestroy(&o->geometric));
-  PetscCall(MatDestroy(&o->follower));
-  PetscCall(PetscFree(o->group));
+  for (int i = 0; i < N_BODIES_SUMS; i++) PetscCall(TermsSumDestroy(&o->sum[i]));
+  PetscCall(TermsDestroy(&o->terms));
   PetscCall(PetscFree(o->interface));
   PetscCall(PetscFree(o->mu));
-  PetscCall(PetscFree(o->parameter));
-  PetscCall(PetscFree(o->p));
+  PetscCall(ParametersDestroy(&o->parameters));
   PetscCall(PetscFree(*operators));
   PetscFunctionReturn(0);
 }

@@ -4,7 +4,7 @@
    coefficients are the same. A term that was left out, its coefficient having been zero, makes a new pattern when it
    comes.
 */
-#include "operatorsimpl.h"
+#include "terms.h"
 
 /* Columns of one row from several matrices, and room for scaled values */
 typedef struct {
@@ -13,7 +13,7 @@ typedef struct {
   PetscScalar *value;
 } SumRow;
 
-static PetscErrorCode RowReserve(SumRow *row, PetscInt size)
+static PetscErrorCode SumRowReserve(SumRow *row, PetscInt size)
 {
   PetscFunctionBeginUser;
   if (size <= row->size) PetscFunctionReturn(0);
@@ -23,7 +23,7 @@ static PetscErrorCode RowReserve(SumRow *row, PetscInt size)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode RowDestroy(SumRow *row)
+static PetscErrorCode SumRowDestroy(SumRow *row)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(row->column));
@@ -32,7 +32,7 @@ static PetscErrorCode RowDestroy(SumRow *row)
 }
 
 /* Distinct columns of row i of all terms that the sum has */
-static PetscErrorCode RowUnite(const Terms *terms, const PetscBool has[], PetscInt i, SumRow *row)
+static PetscErrorCode SumRowUnite(const Terms *terms, const PetscBool has[], PetscInt i, SumRow *row)
 {
   PetscInt n_terms = 0;
 
@@ -44,7 +44,7 @@ static PetscErrorCode RowUnite(const Terms *terms, const PetscBool has[], PetscI
 
     if (!has[t]) continue;
     PetscCall(MatGetRow(terms->term[t].A, i, &n, &columns, NULL));
-    PetscCall(RowReserve(row, row->n + n));
+    PetscCall(SumRowReserve(row, row->n + n));
     PetscCall(PetscArraycpy(&row->column[row->n], columns, n));
     row->n += n;
     n_terms += n > 0;
@@ -55,7 +55,7 @@ static PetscErrorCode RowUnite(const Terms *terms, const PetscBool has[], PetscI
 }
 
 /* Empty matrix, preallocated exactly for the union of the terms that the sum has */
-static PetscErrorCode UnionCreate(const Terms *terms, const PetscBool has[], Mat *A)
+static PetscErrorCode SumCreateUnion(const Terms *terms, const PetscBool has[], Mat *A)
 {
   const Mat like = terms->term[0].A;
   PetscInt  first, last, left, right, *inside, *outside;
@@ -66,7 +66,7 @@ static PetscErrorCode UnionCreate(const Terms *terms, const PetscBool has[], Mat
   PetscCall(MatGetOwnershipRangeColumn(like, &left, &right));
   PetscCall(PetscCalloc2(last - first, &inside, last - first, &outside));
   for (PetscInt i = 0; i < last - first; i++) {
-    PetscCall(RowUnite(terms, has, first + i, &row));
+    PetscCall(SumRowUnite(terms, has, first + i, &row));
     for (PetscInt k = 0; k < row.n; k++) inside[i] += row.column[k] >= left && row.column[k] < right;
     outside[i] = row.n - inside[i];
   }
@@ -74,12 +74,12 @@ static PetscErrorCode UnionCreate(const Terms *terms, const PetscBool has[], Mat
                          PETSC_DETERMINE, 0, inside, 0, outside, A));
   PetscCall(MatSetOption(*A, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
   PetscCall(PetscFree2(inside, outside));
-  PetscCall(RowDestroy(&row));
+  PetscCall(SumRowDestroy(&row));
   PetscFunctionReturn(0);
 }
 
 /* A += scale X */
-static PetscErrorCode RowsAdd(PetscReal scale, Mat X, Mat A)
+static PetscErrorCode SumAddRows(PetscReal scale, Mat X, Mat A)
 {
   PetscInt first, last;
   SumRow   row = {0};
@@ -92,19 +92,19 @@ static PetscErrorCode RowsAdd(PetscReal scale, Mat X, Mat A)
     PetscInt           n;
 
     PetscCall(MatGetRow(X, i, &n, &columns, &values));
-    PetscCall(RowReserve(&row, n));
+    PetscCall(SumRowReserve(&row, n));
     for (PetscInt k = 0; k < n; k++) row.value[k] = scale * values[k];
     if (n) PetscCall(MatSetValues(A, 1, &i, n, columns, row.value, ADD_VALUES));
     PetscCall(MatRestoreRow(X, i, &n, &columns, &values));
   }
-  PetscCall(RowDestroy(&row));
+  PetscCall(SumRowDestroy(&row));
   PetscFunctionReturn(0);
 }
 
 /* Coefficients [terms] of the chosen terms, zero for others; all_zero = whether none remains, constant = the only
    chosen term if it never changes, else NULL */
-static void CoefficientsFind(const Terms *terms, OperatorsTermKind kind, TermsChoice choice, PetscReal scale,
-                             const PetscReal p[], PetscReal c[], PetscBool *all_zero, Mat *constant)
+static void SumCoefficients(const Terms *terms, const TermsSumKind *kind, const PetscReal p[], PetscReal c[],
+                            PetscBool *all_zero, Mat *constant)
 {
   const OperatorsTerm *only     = NULL;
   PetscInt             n_chosen = 0;
@@ -114,17 +114,18 @@ static void CoefficientsFind(const Terms *terms, OperatorsTermKind kind, TermsCh
     const OperatorsTerm *term = &terms->term[t];
 
     c[t] = 0;
-    if (term->kind != kind || (choice != TERMS_ALL && term->frictional == (choice == TERMS_SYMMETRIC))) continue;
+    if (term->kind != kind->kind) continue;
+    if (kind->choice != TERMS_ALL && term->frictional == (kind->choice == TERMS_SYMMETRIC)) continue;
     only = term;
     n_chosen++;
-    c[t] = scale * OperatorsTermCoefficient(term, p);
+    c[t] = kind->scale * OperatorsTermCoefficient(term, p);
     if (c[t] != 0) *all_zero = PETSC_FALSE;
   }
-  *constant = n_chosen == 1 && !only->n && only->scale * scale == 1 ? only->A : NULL;
+  *constant = n_chosen == 1 && !only->n && only->scale * kind->scale == 1 ? only->A : NULL;
 }
 
 /* Makes the pattern cover all terms that are not zero; A stays when it does already */
-static PetscErrorCode PatternCover(const Terms *terms, const PetscReal c[], TermsSum *sum)
+static PetscErrorCode SumCoverPattern(const Terms *terms, const PetscReal c[], TermsSum *sum)
 {
   PetscBool covered = sum->A ? PETSC_TRUE : PETSC_FALSE;
 
@@ -140,12 +141,11 @@ static PetscErrorCode PatternCover(const Terms *terms, const PetscReal c[], Term
     PetscFunctionReturn(0);
   }
   PetscCall(MatDestroy(&sum->A));
-  PetscCall(UnionCreate(terms, sum->has, &sum->A));
+  PetscCall(SumCreateUnion(terms, sum->has, &sum->A));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode TermsSumForm(const Terms *terms, OperatorsTermKind kind, TermsChoice choice, PetscReal scale,
-                            const PetscReal p[], TermsSum *sum)
+PetscErrorCode TermsSumForm(const Terms *terms, const TermsSumKind *kind, const PetscReal p[], TermsSum *sum)
 {
   PetscReal *c;
   PetscBool  all_zero, same = PETSC_FALSE;
@@ -153,7 +153,7 @@ PetscErrorCode TermsSumForm(const Terms *terms, OperatorsTermKind kind, TermsCho
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(terms->n, &c));
-  CoefficientsFind(terms, kind, choice, scale, p, c, &all_zero, &constant);
+  SumCoefficients(terms, kind, p, c, &all_zero, &constant);
   if (sum->A && sum->c) PetscCall(PetscArraycmp(c, sum->c, terms->n, &same));
   if (same) {
     PetscCall(PetscFree(c));
@@ -167,9 +167,9 @@ PetscErrorCode TermsSumForm(const Terms *terms, OperatorsTermKind kind, TermsCho
   } else if (all_zero) {
     PetscCall(TermsSumDestroy(sum));
   } else {
-    PetscCall(PatternCover(terms, c, sum));
+    PetscCall(SumCoverPattern(terms, c, sum));
     for (PetscInt t = 0; t < terms->n; t++)
-      if (sum->has[t]) PetscCall(RowsAdd(c[t], terms->term[t].A, sum->A));
+      if (sum->has[t]) PetscCall(SumAddRows(c[t], terms->term[t].A, sum->A));
     PetscCall(MatAssemblyBegin(sum->A, MAT_FINAL_ASSEMBLY));
     PetscCall(MatAssemblyEnd(sum->A, MAT_FINAL_ASSEMBLY));
   }

@@ -6,7 +6,7 @@
 
    where |p| stands for p if the factor is absolute; d|p|/dp at p = 0 is taken as 0, the mean of both sides.
 */
-#include "operatorsimpl.h"
+#include "terms.h"
 
 PetscErrorCode TermsAdd(Terms *terms, OperatorsTermKind kind, Mat A, PetscBool symmetric, PetscInt n,
                         const PetscInt parameter[])
@@ -83,19 +83,22 @@ PetscBool TermsVanish(const Terms *terms, TermsChoice choice, PetscBool mass_onl
   return PETSC_TRUE;
 }
 
-/* Drops all terms from n on */
-PetscErrorCode TermsTruncate(Terms *terms, PetscInt n)
+PetscErrorCode TermsAppend(Terms *terms, const Terms *more)
 {
   PetscFunctionBeginUser;
-  for (PetscInt t = n; t < terms->n; t++) PetscCall(MatDestroy(&terms->term[t].A));
-  terms->n = PetscMin(terms->n, n);
+  PetscCall(PetscRealloc((size_t)(terms->n + more->n) * sizeof(*terms->term), &terms->term));
+  for (PetscInt t = 0; t < more->n; t++) {
+    terms->term[terms->n++] = more->term[t];
+    PetscCall(PetscObjectReference((PetscObject)more->term[t].A));
+  }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode TermsDestroy(Terms *terms)
 {
   PetscFunctionBeginUser;
-  PetscCall(TermsTruncate(terms, 0));
+  for (PetscInt t = 0; t < terms->n; t++) PetscCall(MatDestroy(&terms->term[t].A));
   PetscCall(PetscFree(terms->term));
+  terms->n = 0;
   PetscFunctionReturn(0);
 }

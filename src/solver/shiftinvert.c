@@ -13,7 +13,7 @@
 #include <petscksp.h>
 
 /* K - s M, or K + s C + s^2 M with damping */
-static PetscErrorCode ShiftedMatrix(const OperatorsPencil *pencil, PetscReal shift, Mat *A)
+static PetscErrorCode ShiftedMatrix(const PencilMatrices *pencil, PetscReal shift, Mat *A)
 {
   PetscFunctionBeginUser;
   PetscCall(MatDuplicate(pencil->K, MAT_COPY_VALUES, A));
@@ -93,7 +93,7 @@ static PetscErrorCode SolverCreate(MPI_Comm comm, Mat A, PetscBool symmetric, Pe
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ShiftInvertCreate(const OperatorsPencil *pencil, PetscReal shift, PetscBool want_inertia,
+PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, PetscReal shift, PetscBool want_inertia,
                                  Progress *progress, ShiftInvert *si)
 {
   PetscBool singular = PETSC_TRUE;
@@ -220,7 +220,7 @@ PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ShiftInvertCountBelow(const OperatorsPencil *pencil, PetscReal omega, Progress *progress, PetscInt *n)
+PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal omega, Progress *progress, PetscInt *n)
 {
   ShiftInvert si;
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/progress.h"
-#include <squeal/operators.h>
+#include <squeal/pencil.h>
 #include <slepcst.h>
 
 /* Factorisation of K - s M (undamped) or K + s C + s^2 M (damped), shared by right and left vectors and by inertia
@@ -16,7 +16,7 @@ typedef struct {
 
 /* shiftinvert.c - prefix st_; a singular matrix moves the shift a little, want_inertia lets MUMPS count negative
    pivots */
-PETSC_INTERN PetscErrorCode ShiftInvertCreate(const OperatorsPencil *pencil, PetscReal shift, PetscBool want_inertia,
+PETSC_INTERN PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, PetscReal shift, PetscBool want_inertia,
                                               Progress *progress, ShiftInvert *si);
 PETSC_INTERN PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st);
 PETSC_INTERN PetscErrorCode ShiftInvertGetInertia(const ShiftInvert *si, PetscInt *n_negative);
@@ -24,5 +24,5 @@ PETSC_INTERN PetscErrorCode ShiftInvertDestroy(ShiftInvert *si);
 /* X = A^-1 B, or A^-T B, for dense B, X of the same size: many right-hand sides at once */
 PETSC_INTERN PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X);
 /* Frictionless modes with frequency below omega (rad/s) by Sylvester's law of inertia; symmetric undamped pencil */
-PETSC_INTERN PetscErrorCode ShiftInvertCountBelow(const OperatorsPencil *pencil, PetscReal omega, Progress *progress,
+PETSC_INTERN PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal omega, Progress *progress,
                                                   PetscInt *n);

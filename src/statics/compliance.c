@@ -153,20 +153,20 @@ static PetscErrorCode DenseCreate(const PairRows *rows, Compliance *c)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ComplianceCreate(Operators operators, const PairRows *rows, PetscInt max_rows, Progress *progress,
-                                Compliance *c)
+PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const PairRows *rows, PetscInt max_rows,
+                                Progress *progress, Compliance *c)
 {
-  OperatorsPencil pencil = {.symmetric = PETSC_TRUE};
+  PencilMatrices pencil = {.symmetric = PETSC_TRUE};
+  Mat            K;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetBodies(operators, &c->K));
-  PetscCall(OperatorsGetMatrices(operators, NULL, &pencil.M, NULL, NULL, NULL));
-  PetscCall(KappaFind(c->K, rows, &c->kappa));
-  PetscCall(ComplianceAugment(c->K, rows, c->kappa, AUGMENT_ALL, NULL, &pencil.K));
-  PetscCall(HoldCreate(operators, pencil.K, &c->hold));
+  PetscCall(OperatorsGetBodies(operators, p, &K, &pencil.M, NULL));
+  PetscCall(KappaFind(K, rows, &c->kappa));
+  PetscCall(ComplianceAugment(K, rows, c->kappa, AUGMENT_ALL, NULL, &pencil.K));
+  PetscCall(HoldCreate(operators, p, pencil.K, &c->hold));
   PetscCall(ShiftInvertCreate(&pencil, 0, PETSC_FALSE, progress, &c->inverse));
   PetscCall(MatDestroy(&pencil.K));
-  PetscCall(MatCreateVecs(c->K, &c->u, &c->b));
+  PetscCall(MatCreateVecs(K, &c->u, &c->b));
   PetscCall(MatCreateVecs(rows->G, NULL, &c->row));
   if (rows->n_all <= max_rows) PetscCall(DenseCreate(rows, c));
   PetscFunctionReturn(0);

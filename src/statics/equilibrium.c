@@ -59,11 +59,12 @@ static PetscErrorCode SlidingOffCheck(const Active *a, Vec f, PetscReal size)
 {
   const Compliance *c    = a->compliance;
   Hold              free = {.n = 0};
-  Mat               A;
+  Mat               K, A;
 
   PetscFunctionBeginUser;
-  PetscCall(ComplianceAugment(c->K, a->rows, c->kappa, AUGMENT_NORMAL, NULL, &A));
-  PetscCall(FreeMotionsCreate(a->operators, A, &free));
+  PetscCall(OperatorsGetBodies(a->operators, a->p, &K, NULL, NULL));
+  PetscCall(ComplianceAugment(K, a->rows, c->kappa, AUGMENT_NORMAL, NULL, &A));
+  PetscCall(FreeMotionsCreate(a->operators, a->p, A, &free));
   PetscCall(HoldCheck(a->operators, &free, "loads, by more than friction is found to hold,", f, size));
   PetscCall(HoldDestroy(&free));
   PetscCall(MatDestroy(&A));
@@ -99,7 +100,7 @@ static PetscErrorCode Residual(const Active *a, Vec f, Vec u, Vec r)
 
   PetscFunctionBeginUser;
   if (u)
-    PetscCall(OperatorsApplyBodies(a->operators, u, r));
+    PetscCall(OperatorsApplyBodies(a->operators, a->p, u, r));
   else
     PetscCall(VecSet(r, 0));
   PetscCall(VecAYPX(r, -1, f));
@@ -172,13 +173,14 @@ static PetscErrorCode FrictionCheck(const Active *a, Vec f, PetscReal size)
 static PetscErrorCode TippingCheck(const Active *a, const char place[])
 {
   PetscInt n[2];
-  Mat      A;
+  Mat      K, A;
 
   PetscFunctionBeginUser;
   PetscCall(CountClosed(a, n));
   if (n[0] == n[1] && a->rows->n_all == n[1]) PetscFunctionReturn(0);
-  PetscCall(ComplianceAugment(a->compliance->K, a->rows, a->compliance->kappa, AUGMENT_CLOSED, a->status, &A));
-  PetscCall(HoldCheckClosed(a->operators, &a->compliance->hold, place, A, n[0]));
+  PetscCall(OperatorsGetBodies(a->operators, a->p, &K, NULL, NULL));
+  PetscCall(ComplianceAugment(K, a->rows, a->compliance->kappa, AUGMENT_CLOSED, a->status, &A));
+  PetscCall(HoldCheckClosed(a->operators, a->p, &a->compliance->hold, place, A, n[0]));
   PetscCall(MatDestroy(&A));
   PetscFunctionReturn(0);
 }
@@ -203,9 +205,10 @@ static PetscErrorCode Step(Active *a, const char place[], Vec f, PetscReal size,
 PetscErrorCode EquilibriumSolve(Statics s, PairRows *rows, const Compliance *c, Vec f, PetscReal size,
                                 PetscInt load_steps, ContactStatus status[], PetscReal l[], Vec u)
 {
-  Active a = {.operators = s->operators, .rows = rows, .compliance = c, .max_it = s->max_it, .status = status, .l = l};
-  char   place[256];
-  Vec    part;
+  Active a = {
+    .operators = s->operators, .p = s->p, .rows = rows, .compliance = c, .max_it = s->max_it, .status = status, .l = l};
+  char place[256];
+  Vec  part;
 
   PetscFunctionBeginUser;
   PetscCall(StaticsPlace(s, place, sizeof(place)));

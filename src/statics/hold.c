@@ -65,14 +65,14 @@ static PetscErrorCode PinsChoose(Hold *hold)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode HoldCreate(Operators operators, Mat A, Hold *hold)
+PetscErrorCode HoldCreate(Operators operators, const PetscReal p[], Mat A, Hold *hold)
 {
   PetscScalar sum;
   PetscInt    n, begin, end;
   Vec         diagonal;
 
   PetscFunctionBeginUser;
-  PetscCall(FreeMotionsCreate(operators, A, hold));
+  PetscCall(FreeMotionsCreate(operators, p, A, hold));
   if (!hold->n) PetscFunctionReturn(0);
   PetscCall(PinsChoose(hold));
   PetscCall(MatCreateVecs(A, &diagonal, NULL));
@@ -156,12 +156,13 @@ PetscErrorCode HoldCheck(Operators operators, const Hold *hold, const char force
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode HoldCheckClosed(Operators operators, const Hold *hold, const char place[], Mat A, PetscInt n_closed)
+PetscErrorCode HoldCheckClosed(Operators operators, const PetscReal p[], const Hold *hold, const char place[], Mat A,
+                               PetscInt n_closed)
 {
   Hold left = {.n = 0};
 
   PetscFunctionBeginUser;
-  PetscCall(FreeMotionsCreate(operators, A, &left));
+  PetscCall(FreeMotionsCreate(operators, p, A, &left));
   if (left.n > hold->n) {
     char      part[64];
     int       direction;

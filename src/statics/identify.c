@@ -85,7 +85,7 @@ static PetscErrorCode Ramp(Statics s, PetscInt interface, Vec d, Reading reading
   PetscCall(PairRowsCreate(s->operators, PETSC_TRUE, &rows));
   PetscCall(PetscMalloc1(rows.n_pairs, &status));
   PetscCall(PetscCalloc1(rows.n, &l));
-  PetscCall(ComplianceCreate(s->operators, &rows, s->dense, &s->progress, &compliance));
+  PetscCall(ComplianceCreate(s->operators, s->p, &rows, s->dense, &s->progress, &compliance));
   LawsPressing(&rows, status);
   PetscCall(HoldCheck(s->operators, &compliance.hold, "the loads of -contact_kn identify", f, size));
   for (PetscInt i = 0; i < s->identify_steps; i++)
@@ -99,7 +99,7 @@ static PetscErrorCode Ramp(Statics s, PetscInt interface, Vec d, Reading reading
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StaticsIdentify(Statics s, PetscInt interface, StaticsStiffness *stiffness)
+PetscErrorCode StaticsIdentify(Statics s, const PetscReal p[], PetscInt interface, StaticsStiffness *stiffness)
 {
   const ContactInterface *interfaces;
   PetscInt                n = 0, n_interfaces;
@@ -108,13 +108,13 @@ PetscErrorCode StaticsIdentify(Statics s, PetscInt interface, StaticsStiffness *
   Vec                     d;
 
   PetscFunctionBeginUser;
-  PetscCall(StaticsSetUp(s));
+  PetscCall(StaticsSetUp(s, p));
   PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
   PetscCall(ContactGetInterfaces(contact, &n_interfaces, &interfaces));
   PetscCall(ContactCreateApproach(contact, interface, &d));
   PetscCall(PetscMalloc1(s->identify_steps, &reading));
   PetscCall(Ramp(s, interface, d, reading));
-  for (PetscInt p = 0; p < s->rows.n_pairs; p++) n += s->rows.pair[p].interface == interface;
+  for (PetscInt i = 0; i < s->rows.n_pairs; i++) n += s->rows.pair[i].interface == interface;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT, MPI_SUM, s->comm));
   LineFit(s->identify_steps, reading, stiffness);
   stiffness->n_steps  = s->identify_steps;
@@ -127,24 +127,21 @@ PetscErrorCode StaticsIdentify(Statics s, PetscInt interface, StaticsStiffness *
 }
 
 /* Gives the parameter <contact>_kn its value */
-static PetscErrorCode StiffnessSet(Statics s, const char contact[], PetscReal value)
+static PetscErrorCode StiffnessSet(Statics s, const char contact[], PetscReal value, PetscReal p[])
 {
   const OperatorsParameter *parameters;
-  PetscReal                *p;
   PetscInt                  n;
   char                      name[160];
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s_kn", contact));
   PetscCall(OperatorsGetParameters(s->operators, &n, &parameters));
-  PetscCall(PetscMalloc1(n, &p));
-  for (PetscInt i = 0; i < n; i++) p[i] = strcmp(parameters[i].name, name) ? parameters[i].value : value;
-  PetscCall(OperatorsSetParameters(s->operators, p));
-  PetscCall(PetscFree(p));
+  for (PetscInt i = 0; i < n; i++)
+    if (!strcmp(parameters[i].name, name)) p[i] = value;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StaticsIdentifyAll(Statics s, PetscViewer viewer)
+PetscErrorCode StaticsIdentifyAll(Statics s, PetscReal p[], PetscViewer viewer)
 {
   const ContactInterface *interfaces;
   PetscInt                n = 0;
@@ -157,8 +154,8 @@ PetscErrorCode StaticsIdentifyAll(Statics s, PetscViewer viewer)
     StaticsStiffness k;
 
     if (!interfaces[i].identify) continue;
-    PetscCall(StaticsIdentify(s, i, &k));
-    PetscCall(StiffnessSet(s, interfaces[i].name, k.per_pair));
+    PetscCall(StaticsIdentify(s, p, i, &k));
+    PetscCall(StiffnessSet(s, interfaces[i].name, k.per_pair, p));
     PetscCall(
       PetscViewerASCIIPrintf(viewer,
                              "contact %s: k_n identified as %.6g N/m per pair, %.6g N/m in total, from %" PetscInt_FMT

@@ -53,7 +53,7 @@ static PetscErrorCode CellAdd(Model model, PetscInt c, const Elasticity *materia
 }
 
 /* Adds all local cells */
-static PetscErrorCode CellsAdd(Operators operators, Model model, const PetscReal u[], Mat K)
+static PetscErrorCode CellsAdd(Operators operators, const PetscReal p[], Model model, const PetscReal u[], Mat K)
 {
   const Part *parts;
   const Mesh *mesh;
@@ -63,18 +63,18 @@ static PetscErrorCode CellsAdd(Operators operators, Model model, const PetscReal
   PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(ModelGetParts(model, &n_parts, &parts));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const Part *part = &parts[mesh->cell_part[c]];
-    PetscReal   young;
-    Elasticity  material;
+    const Part       *part = &parts[mesh->cell_part[c]];
+    OperatorsMaterial values;
+    Elasticity        material;
 
-    PetscCall(OperatorsGetYoung(operators, mesh->cell_part[c], &young));
-    material = ElasticityFromEngineering(young, part->poisson, part->density);
+    PetscCall(OperatorsGetMaterial(operators, p, mesh->cell_part[c], &values));
+    material = ElasticityFromEngineering(values.young, part->poisson, part->density);
     PetscCall(CellAdd(model, c, &material, u, K));
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GeometricStiffnessCreate(Operators operators, Vec u, Mat *K)
+PetscErrorCode GeometricStiffnessCreate(Operators operators, const PetscReal p[], Vec u, Mat *K)
 {
   const Mesh *mesh;
   PetscReal  *displacement;
@@ -83,13 +83,13 @@ PetscErrorCode GeometricStiffnessCreate(Operators operators, Vec u, Mat *K)
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(operators, &model, NULL));
-  PetscCall(OperatorsGetBodies(operators, &bodies)); /* couples the same unknowns */
+  PetscCall(OperatorsGetBodies(operators, p, &bodies, NULL, NULL)); /* couples the same unknowns */
   PetscCall(MatDuplicate(bodies, MAT_DO_NOT_COPY_VALUES, K));
   PetscCall(MatSetOption(*K, MAT_NO_OFF_PROC_ENTRIES, PETSC_FALSE)); /* which sums of matrices set */
   PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(PetscMalloc1(3 * mesh->n_vertices, &displacement));
   PetscCall(ModelGetNodal(model, u, displacement));
-  PetscCall(CellsAdd(operators, model, displacement, *K));
+  PetscCall(CellsAdd(operators, p, model, displacement, *K));
   PetscCall(PetscFree(displacement));
   PetscCall(MatAssemblyBegin(*K, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*K, MAT_FINAL_ASSEMBLY));

@@ -8,10 +8,10 @@
    stress sigma of a static displacement, symmetric; tension stiffens. Collective. The caller destroys it.
 
    Input Parameters:
-+  operators - their present Young's moduli give the stress
++  p - the point, whose Young's moduli give the stress
 -  u         - displacements of all unknowns, m
 @*/
-PETSC_INTERN PetscErrorCode GeometricStiffnessCreate(Operators operators, Vec u, Mat *K);
+PETSC_INTERN PetscErrorCode GeometricStiffnessCreate(Operators operators, const PetscReal p[], Vec u, Mat *K);
 
 /*@
    FollowerStiffnessCreate - the stiffness (N/m) of contact forces that turn with the master's surface and move over it

@@ -17,7 +17,7 @@ static PetscErrorCode UnbalanceCreate(Statics s, Model model, Contact contact, V
   PetscFunctionBeginUser;
   PetscCall(ModelCreateNodal(model, local));
   PetscCall(ModelCreateNodal(model, &part));
-  PetscCall(OperatorsInternalForces(s->operators, s->u, *local));
+  PetscCall(OperatorsInternalForces(s->operators, s->p, s->u, *local));
   PetscCall(ContactNodalForces(contact, s->state, part));
   PetscCall(VecAXPY(*local, -1, part));
   PetscCall(VecSet(part, 0));
@@ -96,7 +96,7 @@ static PetscErrorCode SpringStiffness(Statics s, const Grounded *g, PetscReal st
     PetscCall(PetscSNPrintf(all, sizeof(all), "%s_stiffness", g->name));
     PetscCall(PetscSNPrintf(one, sizeof(one), "%s_%s", g->name, ending[d]));
     for (PetscInt i = 0; i < n && g->value[d] != 0; i++)
-      if (!strcmp(parameters[i].name, all) || !strcmp(parameters[i].name, one)) stiffness[d] = parameters[i].value;
+      if (!strcmp(parameters[i].name, all) || !strcmp(parameters[i].name, one)) stiffness[d] = s->p[i];
   }
   PetscFunctionReturn(0);
 }

@@ -151,7 +151,7 @@ static PetscErrorCode EnergiesSolve(Mat A, PetscInt n, const Vec motion[], Petsc
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FreeMotionsCreate(Operators operators, Mat A, Hold *hold)
+PetscErrorCode FreeMotionsCreate(Operators operators, const PetscReal p[], Mat A, Hold *hold)
 {
   PetscInt   n;
   PetscReal *energy, *vectors;
@@ -162,7 +162,7 @@ PetscErrorCode FreeMotionsCreate(Operators operators, Mat A, Hold *hold)
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(operators, &model, NULL));
-  PetscCall(OperatorsGetMatrices(operators, NULL, &M, NULL, NULL, NULL));
+  PetscCall(OperatorsGetBodies(operators, p, NULL, &M, NULL));
   PetscCall(CandidatesCreate(model, A, &n, &motion));
   PetscCall(PetscMalloc2(n, &energy, n * n, &vectors));
   PetscCall(EnergiesSolve(A, n, motion, energy, vectors));

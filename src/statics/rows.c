@@ -71,7 +71,7 @@ PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, PairRows 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PairRowsSetLaws(Operators operators, PetscReal kappa, PairRows *rows)
+PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscReal kappa, PairRows *rows)
 {
   const ContactInterface *interfaces;
   PetscInt                n;
@@ -80,14 +80,14 @@ PetscErrorCode PairRowsSetLaws(Operators operators, PetscReal kappa, PairRows *r
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(operators, NULL, &contact));
   PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
-  for (PetscInt p = 0; p < rows->n_pairs; p++) {
-    const PetscInt i = rows->pair[p].interface;
+  for (PetscInt k = 0; k < rows->n_pairs; k++) {
+    const PetscInt i = rows->pair[k].interface;
     PetscReal      mu, kn;
 
-    PetscCall(OperatorsGetInterface(operators, i, &mu, &kn));
-    rows->law[p].k  = kn / kappa;
-    rows->law[p].mu = rows->law[p].d == 3 ? PetscAbsReal(mu) : 0;
-    rows->slide[p]  = interfaces[i].slides ? mu : 0;
+    PetscCall(OperatorsGetInterface(operators, p, i, &mu, &kn));
+    rows->law[k].k  = kn / kappa;
+    rows->law[k].mu = rows->law[k].d == 3 ? PetscAbsReal(mu) : 0;
+    rows->slide[k]  = interfaces[i].slides ? mu : 0;
   }
   PetscFunctionReturn(0);
 }

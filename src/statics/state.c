@@ -93,7 +93,7 @@ static PetscErrorCode EquilibriumMeasure(Statics s, Vec f)
   PetscCall(VecSet(r, 0));
   PetscCall(StateForces(&s->rows, s->state, r));
   PetscCall(VecNorm(r, NORM_2, &contact));
-  PetscCall(OperatorsApplyBodies(s->operators, s->u, r));
+  PetscCall(OperatorsApplyBodies(s->operators, s->p, s->u, r));
   PetscCall(VecAYPX(r, -1, f));
   PetscCall(StateForces(&s->rows, s->state, r));
   PetscCall(VecNorm(r, NORM_2, &norm));
@@ -136,7 +136,8 @@ static PetscErrorCode KKTMeasure(Statics s)
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
   PetscCall(PetscMalloc2(s->rows.n_interfaces, &mu, s->rows.n_interfaces, &kn));
-  for (PetscInt i = 0; i < s->rows.n_interfaces; i++) PetscCall(OperatorsGetInterface(s->operators, i, &mu[i], &kn[i]));
+  for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
+    PetscCall(OperatorsGetInterface(s->operators, s->p, i, &mu[i], &kn[i]));
   PetscCall(DisplacementFind(s, &displacement));
   PetscCall(ContactComputeKKT(contact, s->state, mu, kn, displacement, &s->kkt));
   PetscCall(PetscFree2(mu, kn));

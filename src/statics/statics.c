@@ -79,14 +79,13 @@ PetscErrorCode StaticsCheckUse(Statics s, PetscBool modes)
 }
 
 /* Pairs, rows and room for the results; all pairs closed */
-PetscErrorCode StaticsSetUp(Statics s)
+static PetscErrorCode StaticsCreateRows(Statics s)
 {
   const OperatorsParameter *parameters;
   Model                     model;
   PetscInt                  n_pairs;
 
   PetscFunctionBeginUser;
-  if (s->rows.G) PetscFunctionReturn(0);
   PetscCall(OperatorsGetModel(s->operators, &model, NULL));
   PetscCheck(model, s->comm, PETSC_ERR_USER_INPUT,
              "-analysis static and -modes_contact static need a mesh and contact, "
@@ -98,8 +97,20 @@ PetscErrorCode StaticsSetUp(Statics s)
   PetscCall(PetscMalloc3(s->rows.n_pairs, &s->status, s->rows.n_pairs, &s->state, s->rows.n_interfaces, &s->resultant));
   for (PetscInt p = 0; p < s->rows.n_pairs; p++) s->status[p] = s->rows.law[p].d == 3 ? CONTACT_STICK : CONTACT_SLIP;
   PetscCall(OperatorsCreateVec(s->operators, &s->u));
-  PetscCall(PetscMalloc1(s->n_parameters, &s->initial));
-  for (PetscInt i = 0; i < s->n_parameters; i++) s->initial[i] = parameters[i].value;
+  PetscCall(OperatorsCreatePoint(s->operators, &s->p));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsSetUp(Statics s, const PetscReal p[])
+{
+  const OperatorsParameter *parameters;
+  PetscInt                  n;
+
+  PetscFunctionBeginUser;
+  if (!s->rows.G) PetscCall(StaticsCreateRows(s));
+  PetscCall(OperatorsGetParameters(s->operators, &n, &parameters));
+  for (PetscInt i = 0; i < n; i++) s->p[i] = p ? p[i] : parameters[i].value;
+  for (PetscInt i = 0; i < n; i++) PetscCall(OperatorsCheckParameter(s->operators, i, s->p[i]));
   PetscFunctionReturn(0);
 }
 
@@ -114,8 +125,8 @@ PetscErrorCode StaticsPlace(Statics s, char text[], size_t size)
   text[0] = 0;
   PetscCall(OperatorsGetParameters(s->operators, &n, &parameters));
   for (PetscInt i = 0; i < s->n_parameters; i++) {
-    if (parameters[i].value == s->initial[i]) continue;
-    PetscCall(PetscSNPrintf(one, sizeof(one), "%s%s %.6g", between, parameters[i].name, (double)parameters[i].value));
+    if (s->p[i] == parameters[i].value) continue;
+    PetscCall(PetscSNPrintf(one, sizeof(one), "%s%s %.6g", between, parameters[i].name, (double)s->p[i]));
     PetscCall(PetscStrlcat(text, one, size));
     between = ", ";
   }
@@ -138,7 +149,7 @@ static PetscErrorCode LoadCheck(Statics s, Vec f)
 }
 
 /* Keeps the factorisation of the call before where no parameter of the bodies has changed since */
-PetscErrorCode StaticsFactor(Statics s)
+static PetscErrorCode StaticsFactor(Statics s)
 {
   const OperatorsParameter *parameters;
   PetscInt                  n;
@@ -148,14 +159,14 @@ PetscErrorCode StaticsFactor(Statics s)
   PetscCall(OperatorsGetParameters(s->operators, &n, &parameters));
   if (!s->factored) PetscCall(PetscMalloc1(s->n_parameters, &s->factored));
   for (PetscInt i = 0; i < s->n_parameters; i++) {
-    if (same && parameters[i].body && parameters[i].value != s->factored[i]) same = PETSC_FALSE;
-    s->factored[i] = parameters[i].value;
+    if (same && parameters[i].body && s->p[i] != s->factored[i]) same = PETSC_FALSE;
+    s->factored[i] = s->p[i];
   }
   if (!same) {
     PetscCall(ComplianceDestroy(&s->compliance));
-    PetscCall(ComplianceCreate(s->operators, &s->rows, s->dense, &s->progress, &s->compliance));
+    PetscCall(ComplianceCreate(s->operators, s->p, &s->rows, s->dense, &s->progress, &s->compliance));
   }
-  PetscCall(PairRowsSetLaws(s->operators, s->compliance.kappa, &s->rows));
+  PetscCall(PairRowsSetLaws(s->operators, s->p, s->compliance.kappa, &s->rows));
   PetscFunctionReturn(0);
 }
 
@@ -167,14 +178,14 @@ PetscErrorCode StaticsRelease(Statics statics)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StaticsSolve(Statics s)
+PetscErrorCode StaticsSolve(Statics s, const PetscReal p[])
 {
   PetscReal *l, size;
   Vec        f;
 
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_STATICS));
-  PetscCall(StaticsSetUp(s));
+  PetscCall(StaticsSetUp(s, p));
   PetscCall(LoadCreate(s->operators, &f, &size));
   PetscCall(LoadCheck(s, f));
   PetscCall(PetscCalloc1(s->rows.n, &l));
@@ -216,8 +227,7 @@ PetscErrorCode StaticsDestroy(Statics *statics)
   PetscCall(StaticsRelease(s));
   PetscCall(PairRowsDestroy(&s->rows));
   PetscCall(PetscFree3(s->status, s->state, s->resultant));
-  PetscCall(PetscFree(s->initial));
-  PetscCall(PetscFree(s->linearised));
+  PetscCall(PetscFree(s->p));
   PetscCall(VecDestroy(&s->u));
   PetscCall(PetscFree(*statics));
   PetscFunctionReturn(0);

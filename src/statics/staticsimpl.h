@@ -29,7 +29,6 @@ typedef struct {
 /* The factorisation of K_a = K + kappa G'G + pins, and W = kappa G K_a^-1 G', V = kappa G K_a^-1 S', by columns, on
    every rank; NULL where they would be too large */
 typedef struct {
-  Mat         K;     /* of the bodies (borrowed) */
   PetscReal   kappa; /* N/m */
   Hold        hold;
   ShiftInvert inverse;
@@ -51,6 +50,7 @@ typedef enum { ACTIVE_CONVERGED, ACTIVE_SINGULAR, ACTIVE_CYCLES, ACTIVE_SLOW, AC
 /* The contact problem at one load, and its iterate; forces divided by kappa, m */
 typedef struct {
   Operators         operators;
+  const PetscReal  *p; /* the point */
   const PairRows   *rows;
   const Compliance *compliance;
   PetscInt          max_it, n_it;
@@ -71,15 +71,13 @@ struct _p_Statics {
   /* set by options */
   PetscInt  max_it, load_steps, dense, rows_more, identify_steps;
   PetscBool geometric, follower, view_kkt;
-  /* the contact problem, and the factorisation with the parameters that it was made with */
+  /* the contact problem and the factorisation */
   PairRows   rows;
   Compliance compliance;
-  PetscReal *factored; /* [n_parameters]; NULL before */
+  PetscReal *p, *factored; /* [n_parameters] the point of the solution, and that of the factorisation or NULL */
   /* the solution */
   PetscBool         solved;
   PetscInt          n_parameters, n_it;
-  PetscReal        *initial;    /* [n_parameters] those of the scene */
-  PetscReal        *linearised; /* [n_parameters] those of the last StaticsLinearise(); NULL before */
   ContactStatus    *status;
   ContactState     *state;
   Vec               u;
@@ -89,36 +87,33 @@ struct _p_Statics {
   StaticsResultant *resultant;   /* [interfaces] */
 };
 
-/* statics.c - pairs, rows and room for results, once */
-PETSC_INTERN PetscErrorCode StaticsSetUp(Statics statics);
+/* statics.c - pairs, rows and room for results, once; the point of what follows, NULL for the values of the scene */
+PETSC_INTERN PetscErrorCode StaticsSetUp(Statics statics, const PetscReal p[]);
 /* statics.c - " at contact_mu 0.7, pad_young 1e+10": parameters that differ from those of the scene, for messages */
 PETSC_INTERN PetscErrorCode StaticsPlace(Statics statics, char text[], size_t size);
-/* statics.c - the factorisation and the laws at the present values of the parameters */
-PETSC_INTERN PetscErrorCode StaticsFactor(Statics statics);
-
-/* rows.c - pairs and rows, normal ones only for pressing without friction; the present friction coefficients and
-   stiffnesses of the interfaces */
+/* rows.c - pairs and rows, normal ones only for pressing without friction; friction coefficients and stiffnesses of the
+   interfaces at p */
 PETSC_INTERN PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, PairRows *rows);
-PETSC_INTERN PetscErrorCode PairRowsSetLaws(Operators operators, PetscReal kappa, PairRows *rows);
+PETSC_INTERN PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscReal kappa, PairRows *rows);
 PETSC_INTERN PetscErrorCode PairRowsDestroy(PairRows *rows);
 
 /* rigid.c - the motions without energy in A (K + kappa G'G), r and mr only */
-PETSC_INTERN PetscErrorCode FreeMotionsCreate(Operators operators, Mat A, Hold *hold);
+PETSC_INTERN PetscErrorCode FreeMotionsCreate(Operators operators, const PetscReal p[], Mat A, Hold *hold);
 
 /* hold.c - the free motions of A, held by pins that are added to A; errors for a load (or
    any force on the bodies) along one of them; u without them */
-PETSC_INTERN PetscErrorCode HoldCreate(Operators operators, Mat A, Hold *hold);
+PETSC_INTERN PetscErrorCode HoldCreate(Operators operators, const PetscReal p[], Mat A, Hold *hold);
 PETSC_INTERN PetscErrorCode HoldCheck(Operators operators, const Hold *hold, const char force[], Vec f, PetscReal size);
 /* Error where A, of the closed pairs only, has more free motions */
-PETSC_INTERN PetscErrorCode HoldCheckClosed(Operators operators, const Hold *hold, const char place[], Mat A,
-                                            PetscInt n_closed);
+PETSC_INTERN PetscErrorCode HoldCheckClosed(Operators operators, const PetscReal p[], const Hold *hold,
+                                            const char place[], Mat A, PetscInt n_closed);
 PETSC_INTERN PetscErrorCode HoldProject(const Hold *hold, Vec u);
 PETSC_INTERN PetscErrorCode HoldDestroy(Hold *hold);
 
 /* compliance.c - factors, and forms W and V for up to max_rows rows; y = kappa G K_a^-1 (G'(l - w) - S' (slide l)) + w
    for rows l, w, y; u = K_a^-1 (f - kappa (G'(l - w) - S' (slide l))), f may be NULL */
-PETSC_INTERN PetscErrorCode ComplianceCreate(Operators operators, const PairRows *rows, PetscInt max_rows,
-                                             Progress *progress, Compliance *c);
+PETSC_INTERN PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const PairRows *rows,
+                                             PetscInt max_rows, Progress *progress, Compliance *c);
 PETSC_INTERN PetscErrorCode ComplianceApply(const Compliance *c, const PairRows *rows, PetscReal friction,
                                             const PetscReal l[], const PetscReal w[], PetscReal y[]);
 PETSC_INTERN PetscErrorCode ComplianceSolve(const Compliance *c, const PairRows *rows, PetscReal friction, Vec f,

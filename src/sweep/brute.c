@@ -4,6 +4,30 @@
 */
 #include "sweepimpl.h"
 
+/* Modes at point i, about the sliding state there where statics tell it */
+static PetscErrorCode PointSolve(Sweep sweep, PetscInt i, const PetscReal p[])
+{
+  SlidingState state;
+  Pencil       pencil;
+
+  PetscFunctionBeginUser;
+  if (!sweep->statics) {
+    PetscCall(PencilSetParameters(sweep->pencil, p));
+    PetscCall(ModesSolve(sweep->modes));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(StaticsSolveSliding(sweep->statics, p, &state));
+  PetscCall(StaticsRelease(sweep->statics));
+  PetscCall(SweepStatusTake(sweep, &state, &sweep->grid.place[i].status));
+  PetscCall(OperatorsLinearise(sweep->operators, &state, &pencil));
+  PetscCall(SlidingStateDestroy(&state));
+  PetscCall(ModesSetPencil(sweep->modes, pencil));
+  PetscCall(ModesSolve(sweep->modes));
+  PetscCall(ModesSetPencil(sweep->modes, NULL));
+  PetscCall(PencilDestroy(&pencil));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SweepBrute(Sweep sweep)
 {
   const PetscInt n_points = GridSize(&sweep->grid);
@@ -16,9 +40,7 @@ PetscErrorCode SweepBrute(Sweep sweep)
     const Mode *mode;
 
     GridPoint(&sweep->grid, i, p);
-    PetscCall(OperatorsSetParameters(sweep->operators, p));
-    PetscCall(ModesSolve(sweep->modes));
-    if (sweep->statics) PetscCall(SweepStatusTake(sweep, &sweep->grid.place[i].status));
+    PetscCall(PointSolve(sweep, i, p));
     PetscCall(ModesGet(sweep->modes, &point->n, &mode));
     PetscCall(PetscCalloc1(point->n, &point->mode));
     for (PetscInt k = 0; k < point->n; k++) {
@@ -67,7 +89,7 @@ static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
   PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
   GridFill(&sweep->grid, &check->at, p);
   PetscCall(PointsSolve(&sweep->groups, &sweep->basis.reduced, &wide, 1, p, &reduced));
-  PetscCall(OperatorsSetParameters(sweep->operators, p));
+  PetscCall(PencilSetParameters(sweep->pencil, p));
   PetscCall(PetscFree(p));
   PetscCall(ModesSolve(sweep->modes));
   PetscCall(ModesGet(sweep->modes, &check->n_full, &full));

@@ -58,13 +58,13 @@ static PetscErrorCode OnsetConverge(Sweep sweep, const BranchLine *line, PetscRe
   *change            = PETSC_MAX_REAL;
   p[line->parameter] = event->critical;
   near               = WindowNear(&sweep->window, event->omega, ReducedIsDamped(&sweep->basis.reduced, p));
-  PetscCall(CorrectionCreate(sweep->operators, p, &near, &sweep->progress, &correction));
+  PetscCall(CorrectionCreate(sweep->pencil, p, &near, &sweep->progress, &correction));
   for (int step = 0; step < ONSET_STEPS && event->found && *change > CONFIRMED * PetscAbsReal(event->critical);
        step++) {
     const PetscReal before = event->critical;
 
     p[line->parameter] = before;
-    if (step) PetscCall(CorrectionMove(sweep->operators, p, &correction));
+    if (step) PetscCall(CorrectionMove(sweep->pencil, p, &correction));
     PetscCall(OnsetCorrect(sweep, &correction, p, &near));
     PetscCall(OnsetReduced(sweep, line, event));
     *change = PetscAbsReal(event->critical - before);

@@ -109,7 +109,6 @@ PetscErrorCode GridParameterFind(MPI_Comm comm, const char option[], const char 
   PetscFunctionBeginUser;
   *index = -1;
   for (PetscInt i = 0; i < n; i++) {
-    if (parameters[i].internal) continue;
     if (!strcmp(parameters[i].name, name)) *index = i;
     PetscCall(PetscStrlcat(valid, i ? ", " : "", sizeof(valid)));
     PetscCall(PetscStrlcat(valid, parameters[i].name, sizeof(valid)));

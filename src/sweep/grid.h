@@ -1,7 +1,7 @@
 /* Private to sweep/: the points of a sweep, a grid over one or two parameters */
 #pragma once
 
-#include <squeal/operators.h>
+#include <squeal/pencil.h>
 
 #define GRID_MAX_AXES 2
 
@@ -15,11 +15,11 @@ typedef struct {
 
 typedef struct {
   PetscInt    n_axes, n_parameters;
-  PetscInt    parameter[GRID_MAX_AXES]; /* indices of OperatorsGetParameters() */
+  PetscInt    parameter[GRID_MAX_AXES]; /* indices */
   PetscInt    n[GRID_MAX_AXES];
   PetscReal  *value[GRID_MAX_AXES];
   PetscBool   ratio[GRID_MAX_AXES]; /* distances along this axis are ratios: geometric mean, logarithmic plots */
-  PetscReal  *base;                 /* [n_parameters] values of the scene */
+  PetscReal  *base;                 /* [n_parameters] the point that is swept through */
   PetscInt    n_places;
   SweepPlace *place;    /* one line after the other */
   PetscInt   *at;       /* [points] index of the place */

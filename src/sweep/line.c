@@ -149,7 +149,7 @@ PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedMo
     PetscCall(BVRestoreColumn(block, i, &column));
   }
   PetscCall(BVDestroy(&block));
-  PetscCall(OperatorsSetParameters(sweep->operators, p));
+  PetscCall(PencilSetParameters(sweep->pencil, p));
   PetscCall(ModesLabelVectors(sweep->modes, n, modes->rigid, shape, shape + n, shape + 2 * n, shape + 3 * n, label));
   for (PetscInt i = 0; i < 4 * n; i++) PetscCall(VecDestroy(&shape[i]));
   PetscCall(PetscFree2(columns, shape));

@@ -36,13 +36,13 @@ PetscErrorCode SweepAxisCheck(Sweep sweep, const char name[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SweepStatusTake(Sweep sweep, PetscInt *status)
+PetscErrorCode SweepStatusTake(Sweep sweep, const SlidingState *state, PetscInt *status)
 {
   PetscBool *closed;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(sweep->statuses.n_local, &closed));
-  PetscCall(StaticsGetClosed(sweep->statics, closed));
+  PetscCall(PetscMalloc1(state->n_pairs, &closed));
+  for (PetscInt i = 0; i < state->n_pairs; i++) closed[i] = state->group[i] >= 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(StatusListAdd(&sweep->statuses, closed, status));
   PetscCall(PetscFree(closed));
   PetscFunctionReturn(0);
@@ -50,14 +50,15 @@ PetscErrorCode SweepStatusTake(Sweep sweep, PetscInt *status)
 
 PetscErrorCode SweepStatusSolve(Sweep sweep, const SweepPlace *place, PetscInt *status)
 {
-  PetscReal *p;
+  SlidingState state;
+  PetscReal   *p;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
   GridFill(&sweep->grid, place, p);
-  PetscCall(OperatorsSetParameters(sweep->operators, p));
-  PetscCall(StaticsSolve(sweep->statics));
-  PetscCall(SweepStatusTake(sweep, status));
+  PetscCall(StaticsSolveSliding(sweep->statics, p, &state));
+  PetscCall(SweepStatusTake(sweep, &state, status));
+  PetscCall(SlidingStateDestroy(&state));
   sweep->n_static++;
   PetscCall(PetscFree(p));
   PetscFunctionReturn(0);
@@ -148,7 +149,7 @@ static PetscErrorCode StatusGroupsCheck(Sweep sweep, const PetscInt group[])
   for (PetscInt p = 0; p < n; p++) {
     PetscReal mu, kn;
 
-    PetscCall(OperatorsGetInterface(sweep->operators, pair[p].interface, &mu, &kn));
+    PetscCall(OperatorsGetInterface(sweep->operators, NULL, pair[p].interface, &mu, &kn));
     if (group[p] > 0 && PetscIsInfReal(kn)) exact = PETSC_TRUE;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &exact, 1, MPIU_BOOL, MPI_LOR, sweep->comm));
@@ -163,27 +164,44 @@ static PetscErrorCode StatusGroupsCheck(Sweep sweep, const PetscInt group[])
   PetscFunctionReturn(0);
 }
 
-/* Gives the operators the groups, and the grid the values of their parameters. The matrices are first formed with all
-   groups closed, so that their pattern holds every term, whichever point comes first. */
+/* Forms the matrices with all groups closed, so that their pattern holds every term, whichever point comes first */
+static PetscErrorCode StatusGroupsFormPattern(Sweep sweep)
+{
+  const SweepGrid *grid = &sweep->grid;
+  PencilMatrices   matrices;
+  PetscReal       *p;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(grid->n_parameters, &p));
+  GridFill(grid, &grid->place[grid->n_places - 1], p);
+  for (PetscInt g = 1; g <= grid->n_groups; g++) p[grid->n_parameters - g] = 1;
+  PetscCall(PencilSetParameters(sweep->pencil, p));
+  PetscCall(PencilGetMatrices(sweep->pencil, &matrices));
+  PetscCall(PencilGetFrictionless(sweep->pencil, &matrices));
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
+}
+
+/* Makes the pencil with the groups, and gives the grid the values of their parameters */
 static PetscErrorCode StatusGroupsSet(Sweep sweep)
 {
-  const OperatorsParameter *parameters;
-  SweepGrid                *grid = &sweep->grid;
-  PetscInt                 *group;
-  OperatorsPencil           pencil;
+  SweepGrid   *grid = &sweep->grid;
+  PetscInt    *group;
+  SlidingState state;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(sweep->statuses.n_local, &group));
   PetscCall(StatusListGroup(&sweep->statuses, group, &grid->n_groups, &grid->closed));
   if (grid->n_groups) PetscCall(StatusGroupsCheck(sweep, group));
-  PetscCall(OperatorsSetClosed(sweep->operators, grid->n_groups, group));
-  PetscCall(OperatorsGetPencil(sweep->operators, &pencil));
-  PetscCall(OperatorsGetFrictionless(sweep->operators, &pencil));
+  PetscCall(SlidingStateCreate(sweep->statuses.n_local, grid->n_groups, group, &state));
+  PetscCall(OperatorsLinearise(sweep->operators, &state, &sweep->pencil));
+  PetscCall(SlidingStateDestroy(&state));
   PetscCall(PetscFree(group));
-  PetscCall(OperatorsGetParameters(sweep->operators, &grid->n_parameters, &parameters));
+  PetscCall(PencilGetParameters(sweep->pencil, &grid->n_parameters, NULL, NULL));
   PetscCall(PetscRealloc((size_t)grid->n_parameters * sizeof(*grid->base), &grid->base));
   for (PetscInt g = 0; g < grid->n_groups; g++)
     grid->base[grid->n_parameters - grid->n_groups + g] = grid->closed[sweep->base_status * grid->n_groups + g];
+  PetscCall(StatusGroupsFormPattern(sweep));
   PetscFunctionReturn(0);
 }
 
@@ -196,7 +214,10 @@ PetscErrorCode SweepStatuses(Sweep sweep)
   PetscBool          affine;
 
   PetscFunctionBeginUser;
-  if (!sweep->statics) PetscFunctionReturn(0);
+  if (!sweep->statics) {
+    PetscCall(OperatorsLinearise(sweep->operators, NULL, &sweep->pencil));
+    PetscFunctionReturn(0);
+  }
   PetscCall(OperatorsGetModel(sweep->operators, NULL, &contact));
   PetscCall(ContactGetPairs(contact, &n, &n_all, &pair));
   PetscCall(StatusListCreate(sweep->comm, n, &sweep->statuses));

@@ -31,10 +31,17 @@ PetscErrorCode SweepSetModes(Sweep sweep, Modes modes)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SweepSetOperators(Sweep sweep, Operators operators)
+PetscErrorCode SweepSetOperators(Sweep sweep, Operators operators, const PetscReal p[])
 {
+  const OperatorsParameter *parameters;
+  SweepGrid                *grid = &sweep->grid;
+
   PetscFunctionBeginUser;
   sweep->operators = operators;
+  PetscCall(OperatorsGetParameters(operators, &grid->n_parameters, &parameters));
+  PetscCall(PetscFree(grid->base));
+  PetscCall(OperatorsCreatePoint(operators, &grid->base));
+  if (p) PetscCall(PetscArraycpy(grid->base, p, grid->n_parameters));
   PetscFunctionReturn(0);
 }
 
@@ -145,8 +152,6 @@ static PetscErrorCode GridSetUp(Sweep sweep)
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetParameters(sweep->operators, &grid->n_parameters, &parameters));
-  PetscCall(PetscMalloc1(grid->n_parameters, &grid->base));
-  for (PetscInt i = 0; i < grid->n_parameters; i++) grid->base[i] = parameters[i].value;
   PetscCall(PetscStrToArray(sweep->parameter, ',', &n_names, &names));
   PetscCheck(n_names == 1 || n_names == 2, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_parameter '%s' must name one or two options of the scene, e.g. pad_young", sweep->parameter);
@@ -216,8 +221,8 @@ static PetscErrorCode ModelMake(Sweep sweep)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
   GridPoint(&sweep->grid, 0, p);
-  PetscCall(OperatorsSetParameters(sweep->operators, p));
-  PetscCall(BasisCreate(sweep->comm, sweep->operators, &sweep->basis));
+  PetscCall(PencilSetParameters(sweep->pencil, p));
+  PetscCall(BasisCreate(sweep->comm, sweep->pencil, &sweep->basis));
   sweep->greedy.modes       = sweep->modes;
   sweep->greedy.window      = sweep->window;
   sweep->greedy.groups      = &sweep->groups;
@@ -301,14 +306,12 @@ PetscErrorCode SweepSolve(Sweep sweep, Results results)
   PetscCall(PetscTime(&since));
   PetscCall(SweepStatuses(sweep));
   PetscCall(Clock(sweep, 4, &since));
+  PetscCall(ModesSetPencil(sweep->modes, sweep->pencil));
   if (sweep->method == SWEEP_FULL) {
-    PetscCall(ModesSetStatics(sweep->modes, sweep->statics));
     PetscCall(SweepBrute(sweep));
     PetscCall(Clock(sweep, 0, &since));
   } else { /* each point has its own status among the parameters */
-    PetscCall(ModesSetStatics(sweep->modes, NULL));
     PetscCall(SolveReduced(sweep, &since));
-    PetscCall(ModesSetStatics(sweep->modes, sweep->statics));
   }
   PetscFunctionReturn(0);
 }
@@ -332,6 +335,7 @@ PetscErrorCode SweepDestroy(Sweep *sweep)
   PetscCall(BasisDestroy(&s->basis));
   PetscCall(GridDestroy(&s->grid));
   PetscCall(StatusListDestroy(&s->statuses));
+  PetscCall(PencilDestroy(&s->pencil));
   PetscCall(PetscFree(*sweep));
   PetscFunctionReturn(0);
 }

@@ -58,6 +58,7 @@ struct _p_Sweep {
   Operators operators;
   Modes     modes;
   Statics   statics; /* whose closed pairs are taken, or NULL: all are */
+  Pencil    pencil;  /* of all points; NULL where each has its own sliding state */
   Progress  progress;
   /* set by options */
   char        parameter[256], values[GRID_MAX_AXES][SWEEP_MAX_TEXT], uncertain[1024];
@@ -104,12 +105,12 @@ PETSC_INTERN PetscErrorCode SweepClassify(Sweep sweep);
 /* sliding.c - raises the error for a contact's parameter that would be overwritten at every point */
 PETSC_INTERN PetscErrorCode SweepAxisCheck(Sweep sweep, const char name[]);
 /* sliding.c - statuses of all places and checks from the sliding state, changes of status bracketed, groups of pairs as
-   further parameters; the status at a place, and that of the last static solution; pairs closed at a point of the grid
+   further parameters of the pencil; the status at a place, and that of a sliding state; pairs closed at a point
    (-1 without contact), and whether the point before it has another status; fewest and most pairs closed at all
    places, and whether their statuses differ */
 PETSC_INTERN PetscErrorCode SweepStatuses(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepStatusSolve(Sweep sweep, const SweepPlace *place, PetscInt *status);
-PETSC_INTERN PetscErrorCode SweepStatusTake(Sweep sweep, PetscInt *status);
+PETSC_INTERN PetscErrorCode SweepStatusTake(Sweep sweep, const SlidingState *state, PetscInt *status);
 PETSC_INTERN PetscErrorCode SweepClosedAt(Sweep sweep, PetscInt point, PetscInt *n_closed, PetscBool *jump);
 PETSC_INTERN PetscBool      SweepClosedRange(Sweep sweep, PetscInt *least, PetscInt *most);
 /* confirm.c - onsets on the reduced model, then on the full problem */

@@ -120,7 +120,6 @@ static PetscErrorCode ParameterTableWrite(Sweep sweep, Results results)
   for (PetscInt i = 0; i < n; i++) {
     int swept = 0;
 
-    if (parameters[i].internal) continue;
     for (PetscInt k = 0; k < sweep->grid.n_axes; k++)
       if (sweep->grid.parameter[k] == i) swept = (int)k + 1;
     PetscCall(ResultsTableRow(table, "%s,%.15g,%s,%d", parameters[i].name, (double)sweep->grid.base[i],
@@ -185,7 +184,7 @@ static PetscErrorCode SensitivityRows(Sweep sweep, PetscInt point, const PetscRe
   PetscComplex             *d;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetParameters(sweep->operators, &n, &parameters));
+  PetscCall(PencilGetParameters(sweep->pencil, &n, &parameters, NULL));
   PetscCall(PetscMalloc1(n, &d));
   PetscCall(ReducedSensitivity(&sweep->basis.reduced, p, modes, i, d));
   for (PetscInt k = 0; k < sweep->point[point].n; k++) {

@@ -1,7 +1,7 @@
 /* A coarse brake (disc, pad, beam; 2127 unknowns) as options, and the chain that is set up from options */
 #pragma once
 
-#include <squeal/operators.h>
+#include <squeal/pencil.h>
 
 #define BRAKE                                                                                                          \
   "-model_source rig -rig_disc_elements 8,24,1 -rig_pad_elements 4,4,2 -rig_beam_elements 10 -supports hub "           \
@@ -21,6 +21,7 @@ typedef struct {
   Model     model;
   Contact   contact;
   Operators operators;
+  Pencil    pencil; /* NULL before ChainLinearise() */
 } Chain;
 
 /* Sets up a scene with a set of values */
@@ -40,12 +41,23 @@ static inline PetscErrorCode ChainCreate(const char scene[], const char values[]
   PetscCall(ModelSetUp(chain->model));
   PetscCall(ContactSetUp(chain->contact));
   PetscCall(OperatorsSetUp(chain->operators));
+  chain->pencil = NULL;
+  PetscFunctionReturn(0);
+}
+
+/* Another pencil in place of the one before */
+static inline PetscErrorCode ChainLinearise(Chain *chain, const SlidingState *state)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PencilDestroy(&chain->pencil));
+  PetscCall(OperatorsLinearise(chain->operators, state, &chain->pencil));
   PetscFunctionReturn(0);
 }
 
 static inline PetscErrorCode ChainDestroy(Chain *chain)
 {
   PetscFunctionBeginUser;
+  PetscCall(PencilDestroy(&chain->pencil));
   PetscCall(OperatorsDestroy(&chain->operators));
   PetscCall(ContactDestroy(&chain->contact));
   PetscCall(ModelDestroy(&chain->model));

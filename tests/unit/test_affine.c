@@ -42,19 +42,18 @@ static const Scene scenes[] = {
 };
 /* clang-format on */
 
-/* Everything that operators hand out */
+/* Everything that a pencil hands out */
 typedef struct {
-  Mat             K, M, C, H;
-  PetscReal       mu;
-  OperatorsPencil pencil, frictionless;
+  PencilParts    all;
+  PencilMatrices pencil, frictionless;
 } Matrices;
 
-static PetscErrorCode MatricesGet(Operators o, Matrices *m)
+static PetscErrorCode MatricesGet(Pencil o, Matrices *m)
 {
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetMatrices(o, &m->K, &m->M, &m->C, &m->H, &m->mu));
-  PetscCall(OperatorsGetPencil(o, &m->pencil));
-  PetscCall(OperatorsGetFrictionless(o, &m->frictionless));
+  PetscCall(PencilGetParts(o, &m->all));
+  PetscCall(PencilGetMatrices(o, &m->pencil));
+  PetscCall(PencilGetFrictionless(o, &m->frictionless));
   PetscFunctionReturn(0);
 }
 
@@ -78,7 +77,7 @@ static PetscErrorCode MatDistance(Mat A, Mat B, PetscReal *distance)
 
 /* Breaks when: a matrix keeps a part at the old values, a pattern lacks a part that comes, or C, H or the symmetry do
    not come and go with damping and friction. Reference: the same scene from its options */
-static PetscErrorCode TestSame(Operators o, Operators reference, int *failed)
+static PetscErrorCode TestSame(Pencil o, Pencil reference, int *failed)
 {
   static const char *const names[] = {"K",
                                       "M",
@@ -94,8 +93,10 @@ static PetscErrorCode TestSame(Operators o, Operators reference, int *failed)
   PetscFunctionBeginUser;
   PetscCall(MatricesGet(o, &a));
   PetscCall(MatricesGet(reference, &b));
-  const Mat A[] = {a.K, a.M, a.C, a.H, a.pencil.K, a.pencil.M, a.pencil.C, a.frictionless.K, a.frictionless.M};
-  const Mat B[] = {b.K, b.M, b.C, b.H, b.pencil.K, b.pencil.M, b.pencil.C, b.frictionless.K, b.frictionless.M};
+  const Mat A[] = {a.all.K,    a.all.M,    a.all.C,          a.all.H,         a.pencil.K,
+                   a.pencil.M, a.pencil.C, a.frictionless.K, a.frictionless.M};
+  const Mat B[] = {b.all.K,    b.all.M,    b.all.C,          b.all.H,         b.pencil.K,
+                   b.pencil.M, b.pencil.C, b.frictionless.K, b.frictionless.M};
 
   for (size_t i = 0; i < sizeof(A) / sizeof(A[0]); i++) {
     PetscReal distance;
@@ -103,27 +104,26 @@ static PetscErrorCode TestSame(Operators o, Operators reference, int *failed)
     PetscCall(MatDistance(A[i], B[i], &distance));
     *failed += CheckClose(names[i], distance, 0, 1e-14);
   }
-  *failed += CheckClose("mu", a.mu, b.mu, 0);
+  *failed += CheckClose("mu", a.all.mu, b.all.mu, 0);
   *failed += CheckTrue("symmetric alike", a.pencil.symmetric == b.pencil.symmetric, a.pencil.symmetric);
-  *failed += CheckTrue("unsymmetric with mu", a.pencil.symmetric == (a.mu == 0), a.mu);
+  *failed += CheckTrue("unsymmetric with mu", a.pencil.symmetric == (a.all.mu == 0), a.all.mu);
   PetscFunctionReturn(0);
 }
 
 /* Breaks when: the sums or the projection differ from the definition of the terms. Reference: sum_t c_t A_t by
    MatAXPY */
-static PetscErrorCode TestTerms(Operators o, int *failed)
+static PetscErrorCode TestTerms(Pencil o, int *failed)
 {
-  const OperatorsParameter *q;
-  const OperatorsTerm      *term;
-  PetscInt                  n_parameters, n;
-  PetscReal                 p[64], distance;
-  OperatorsPencil           pencil;
+  const OperatorsTerm *term;
+  const PetscReal     *p;
+  PetscInt             n;
+  PetscReal            distance;
+  PencilMatrices       pencil;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetParameters(o, &n_parameters, &q));
-  PetscCall(OperatorsGetTerms(o, &n, &term));
-  PetscCall(OperatorsGetPencil(o, &pencil));
-  for (PetscInt i = 0; i < n_parameters; i++) p[i] = q[i].value;
+  PetscCall(PencilGetParameters(o, NULL, NULL, &p));
+  PetscCall(PencilGetTerms(o, &n, &term));
+  PetscCall(PencilGetMatrices(o, &pencil));
   for (int kind = 0; kind < 3; kind++) {
     const Mat reference = kind == OPERATORS_STIFFNESS ? pencil.K : (kind == OPERATORS_MASS ? pencil.M : pencil.C);
     Mat       sum;
@@ -142,17 +142,17 @@ static PetscErrorCode TestTerms(Operators o, int *failed)
 }
 
 /* Breaks when: a factor, its power or its sign is left out of a derivative. Reference: central differences */
-static PetscErrorCode TestDerivatives(Operators o, int *failed)
+static PetscErrorCode TestDerivatives(Pencil o, int *failed)
 {
-  const OperatorsParameter *q;
-  const OperatorsTerm      *term;
-  PetscInt                  n_parameters, n, n_tested = 0;
-  PetscReal                 p[64], worst = 0;
+  const OperatorsTerm *term;
+  const PetscReal     *present;
+  PetscInt             n_parameters, n, n_tested = 0;
+  PetscReal            p[64], worst = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetParameters(o, &n_parameters, &q));
-  PetscCall(OperatorsGetTerms(o, &n, &term));
-  for (PetscInt i = 0; i < n_parameters; i++) p[i] = q[i].value;
+  PetscCall(PencilGetParameters(o, &n_parameters, NULL, &present));
+  PetscCall(PencilGetTerms(o, &n, &term));
+  PetscCall(PetscArraycpy(p, present, n_parameters));
   for (PetscInt t = 0; t < n; t++)
     for (PetscInt j = 0; j < n_parameters; j++) {
       const PetscReal value = p[j], step = 1e-5 * (value != 0 ? PetscAbsReal(value) : 1);
@@ -216,26 +216,26 @@ static PetscErrorCode TestProjection(Chain *chain, PetscBool constrained, int *f
   Vec       q[2], u[2], back;
 
   PetscFunctionBeginUser;
-  PetscCall(MatricesGet(chain->operators, &m));
+  PetscCall(MatricesGet(chain->pencil, &m));
   PetscCall(MatCreateVecs(m.pencil.K, &back, NULL));
   for (int left = 0; left < 2; left++) {
     PetscCall(VecDuplicate(back, &q[left]));
     PetscCall(VecSetRandom(q[left], NULL));
     PetscCall(OperatorsCreateVec(chain->operators, &u[left]));
-    PetscCall(OperatorsExpand(chain->operators, (PetscBool)left, q[left], u[left]));
-    PetscCall(OperatorsRestrict(chain->operators, u[left], back));
+    PetscCall(PencilExpand(chain->pencil, (PetscBool)left, q[left], u[left]));
+    PetscCall(PencilRestrict(chain->pencil, u[left], back));
     PetscCall(VecAXPY(back, -1, q[left]));
     PetscCall(VecNorm(back, NORM_INFINITY, &residual));
     *failed += CheckClose("unknowns of the pencil back from their expansion", residual, 0, 1e-14);
     if (!constrained) continue;
-    PetscCall(ConstraintResidual(chain->contact, left ? m.mu : 0, u[left], &residual));
+    PetscCall(ConstraintResidual(chain->contact, left ? m.all.mu : 0, u[left], &residual));
     *failed += CheckClose(left ? "(N - mu T) y = 0" : "N u = 0", residual, 0, 1e-15);
   }
-  PetscCall(Bilinear(m.K, u[1], u[0], &full));
-  if (m.H) PetscCall(Bilinear(m.H, u[1], u[0], &friction));
+  PetscCall(Bilinear(m.all.K, u[1], u[0], &full));
+  if (m.all.H) PetscCall(Bilinear(m.all.H, u[1], u[0], &friction));
   PetscCall(Bilinear(m.pencil.K, q[1], q[0], &reduced));
-  PetscCall(Bilinear(m.K, u[0], u[0], &size));
-  *failed += CheckClose("y' (K + mu H) u", (reduced - full - m.mu * friction) / size, 0, 1e-13);
+  PetscCall(Bilinear(m.all.K, u[0], u[0], &size));
+  *failed += CheckClose("y' (K + mu H) u", (reduced - full - m.all.mu * friction) / size, 0, 1e-13);
   for (int left = 0; left < 2; left++) {
     PetscCall(VecDestroy(&q[left]));
     PetscCall(VecDestroy(&u[left]));
@@ -255,7 +255,8 @@ static PetscErrorCode TestScene(const Scene *scene, int *failed)
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) {
     PetscCall(ChainCreate(scene->scene, scene->values[k], &chain[k]));
-    PetscCall(MatricesGet(chain[k].operators, &before));
+    PetscCall(ChainLinearise(&chain[k], NULL));
+    PetscCall(MatricesGet(chain[k].pencil, &before));
     PetscCall(OperatorsGetParameters(chain[k].operators, &n[k], &q[k]));
   }
   *failed += CheckTrue("parameters alike, at most 64", n[0] == n[1] && n[0] <= 64, (double)n[0]);
@@ -268,12 +269,12 @@ static PetscErrorCode TestScene(const Scene *scene, int *failed)
     for (PetscInt i = 0; i < n[0]; i++) second[i] = q[other][i].value;
     for (PetscInt i = 0; i < n[0]; i++)
       if (strcmp(q[0][i].name, q[1][i].name)) *failed += CheckTrue(q[0][i].name, 0, (double)i);
-    PetscCall(OperatorsSetParameters(chain[k].operators, second));
-    PetscCall(TestSame(chain[k].operators, chain[other].operators, failed));
-    PetscCall(TestTerms(chain[k].operators, failed));
-    PetscCall(TestDerivatives(chain[k].operators, failed));
+    PetscCall(PencilSetParameters(chain[k].pencil, second));
+    PetscCall(TestSame(chain[k].pencil, chain[other].pencil, failed));
+    PetscCall(TestTerms(chain[k].pencil, failed));
+    PetscCall(TestDerivatives(chain[k].pencil, failed));
     PetscCall(TestProjection(&chain[k], strstr(scene->scene, "constraint") ? PETSC_TRUE : PETSC_FALSE, failed));
-    PetscCall(OperatorsSetParameters(chain[k].operators, first));
+    PetscCall(PencilSetParameters(chain[k].pencil, first));
   }
   for (int k = 0; k < 2; k++) PetscCall(ChainDestroy(&chain[k]));
   PetscFunctionReturn(0);

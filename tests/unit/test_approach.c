@@ -127,13 +127,14 @@ static PetscErrorCode LoadCreate(Model model, Operators operators, Vec *f)
 /* Approach of the rows under the load */
 static PetscErrorCode PressedApproach(Chain *chain, PetscReal *approach)
 {
-  OperatorsPencil pencil;
-  Vec             d, f, u;
-  KSP             ksp;
-  PC              pc;
+  PencilMatrices pencil;
+  Vec            d, f, u;
+  KSP            ksp;
+  PC             pc;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetPencil(chain->operators, &pencil));
+  PetscCall(ChainLinearise(chain, NULL));
+  PetscCall(PencilGetMatrices(chain->pencil, &pencil));
   PetscCall(LoadCreate(chain->model, chain->operators, &f));
   PetscCall(VecDuplicate(f, &u));
   PetscCall(ContactCreateApproach(chain->contact, 0, &d));
@@ -194,7 +195,7 @@ static PetscErrorCode TestIdentify(int *failed)
                         box, &chain));
   PetscCall(StaticsCreate(PETSC_COMM_WORLD, &statics));
   PetscCall(StaticsSetOperators(statics, chain.operators));
-  PetscCall(StaticsIdentify(statics, 0, &stiffness));
+  PetscCall(StaticsIdentify(statics, NULL, 0, &stiffness));
   *failed += CheckClose("k of two layers in series, N/m", stiffness.total, k, 1e-10 * k);
   *failed += CheckClose("k of each of nine pairs, N/m", stiffness.per_pair, k / 9, 1e-10 * k);
   *failed += CheckClose("last force, N", stiffness.range[1], 3, 1e-10);

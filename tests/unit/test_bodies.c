@@ -189,8 +189,7 @@ static PetscErrorCode CheckApply(const Case *c, int *failed)
   PetscCall(PetscCalloc3(c->layout->n, &x, c->layout->n, &kx, c->layout->n, &cx));
   PetscCall(FieldSet(c, 0, x));
   PetscCall(BodiesApply(c->bodies, x, kx, cx));
-  PetscCall(OperatorsGetBodies(c->operators, &K));
-  PetscCall(OperatorsGetMatrices(c->operators, NULL, NULL, &C, NULL, NULL));
+  PetscCall(OperatorsGetBodies(c->operators, NULL, &K, NULL, &C));
   PetscCall(StateCompare(c, K, x, kx, &error));
   *failed += CheckClose("  K x, relative", error, 0, 1e-12);
   PetscCall(StateCompare(c, C, x, cx, &error));
@@ -211,7 +210,7 @@ static PetscErrorCode CheckMass(const Case *c, int *failed)
   PetscCall(FieldSet(c, 1, x));
   PetscCall(BodiesGetMass(c->bodies, &part, &total, &minv));
   for (PetscInt i = 0; i < c->layout->n; i++) mx[i] = total[i] * x[i];
-  PetscCall(OperatorsGetMatrices(c->operators, NULL, &M, NULL, NULL, NULL));
+  PetscCall(OperatorsGetBodies(c->operators, NULL, NULL, &M, NULL));
   PetscCall(StateCompare(c, M, x, mx, &error));
   *failed += CheckClose("  M x, relative", error, 0, 1e-13);
   for (PetscInt v = 0; v < c->layout->n_vertices; v++) {
@@ -253,8 +252,7 @@ static PetscErrorCode CheckSums(const Case *c, const PetscReal u[], const PetscR
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s, 4, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD));
-  PetscCall(OperatorsGetBodies(c->operators, &K));
-  PetscCall(OperatorsGetMatrices(c->operators, NULL, &M, &C, NULL, NULL));
+  PetscCall(OperatorsGetBodies(c->operators, NULL, &K, &M, &C));
   PetscCall(Product(c, M, v, v, &expected[0]));
   PetscCall(Product(c, K, u, u, &expected[1]));
   PetscCall(Product(c, C, v, old, &expected[2]));
@@ -275,8 +273,7 @@ static PetscErrorCode ForceCompare(const Case *c, PetscReal dt, const PetscReal 
   Mat       K, C;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetBodies(c->operators, &K));
-  PetscCall(OperatorsGetMatrices(c->operators, NULL, NULL, &C, NULL, NULL));
+  PetscCall(OperatorsGetBodies(c->operators, NULL, &K, NULL, &C));
   PetscCall(OperatorsCreateVec(c->operators, &vec));
   PetscCall(VecDuplicate(vec, &sum));
   PetscCall(VecDuplicate(vec, &part));
@@ -411,31 +408,6 @@ static PetscErrorCode CheckHold(const Case *c, int *failed)
   PetscFunctionReturn(0);
 }
 
-/* Breaks when: stiffness, damping or a spring are taken from the options instead of the present values */
-static PetscErrorCode TestParameters(int *failed)
-{
-  const OperatorsParameter *parameters;
-  PetscReal                *value;
-  PetscInt                  n;
-  Case                      c = {0};
-
-  PetscFunctionBeginUser;
-  printf("values changed after the set-up\n");
-  PetscCall(CaseCreate(RIG_SWEPT, "", &c));
-  PetscCall(BodiesDestroy(&c.bodies));
-  PetscCall(OperatorsGetParameters(c.operators, &n, &parameters));
-  PetscCall(PetscMalloc1(n, &value));
-  for (PetscInt i = 0; i < n; i++) value[i] = parameters[i].internal ? 1 : parameters[i].value * (1 + 0.1 * (double)i);
-  PetscCall(OperatorsSetParameters(c.operators, value));
-  PetscCall(PetscFree(value));
-  PetscCall(BodiesCreate(c.operators, &c.bodies));
-  PetscCall(BodiesGetLayout(c.bodies, &c.layout));
-  PetscCall(CheckApply(&c, failed));
-  PetscCall(CheckMass(&c, failed));
-  PetscCall(CaseDestroy(&c));
-  PetscFunctionReturn(0);
-}
-
 /* Whether some body has rows of nodes on some rank */
 static PetscErrorCode CaseIsSwept(const Case *c, PetscBool *swept)
 {
@@ -485,7 +457,6 @@ int main(int argc, char **argv)
     PetscCall(CheckScene(&scene[i], "", scene[i].swept, &failed));
     PetscCall(CheckScene(&scene[i], "-dynamics_kernel general", PETSC_FALSE, &failed));
   }
-  PetscCall(TestParameters(&failed));
   PetscCall(PetscFinalize());
   return failed ? 1 : 0;
 }

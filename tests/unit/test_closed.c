@@ -47,17 +47,19 @@ static PetscErrorCode AddProduct(PetscReal scale, Mat L, const PetscReal weight[
 static PetscErrorCode ReferenceStiffness(Chain *chain, const PetscReal factor[], Vec x, Vec y)
 {
   const ContactInterface *c;
+  const PetscReal        *point;
   PetscInt                n_interfaces, first = 0, n;
   Mat                     bodies, N, T;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetBodies(chain->operators, &bodies));
+  PetscCall(PencilGetParameters(chain->pencil, NULL, NULL, &point));
+  PetscCall(OperatorsGetBodies(chain->operators, point, &bodies, NULL, NULL));
   PetscCall(MatMult(bodies, x, y));
   PetscCall(ContactGetInterfaces(chain->contact, &n_interfaces, &c));
   for (PetscInt i = 0; i < n_interfaces; i++, first += n) {
     PetscReal mu, kn;
 
-    PetscCall(OperatorsGetInterface(chain->operators, i, &mu, &kn));
+    PetscCall(OperatorsGetInterface(chain->operators, point, i, &mu, &kn));
     PetscCall(ContactCreateOperators(chain->contact, i, &N, &T, NULL));
     PetscCall(MatGetLocalSize(N, &n, NULL));
     PetscCall(AddProduct(kn, N, &factor[first], N, x, y));
@@ -68,58 +70,90 @@ static PetscErrorCode ReferenceStiffness(Chain *chain, const PetscReal factor[],
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ParameterSet(Operators o, const char name[], PetscReal value)
+static PetscErrorCode ParameterGet(Pencil o, const char name[], PetscReal *value)
 {
   const OperatorsParameter *q;
-  PetscReal                 p[64];
-  PetscInt                  n, found = -1;
-
-  PetscFunctionBeginUser;
-  PetscCall(OperatorsGetParameters(o, &n, &q));
-  for (PetscInt i = 0; i < n; i++) {
-    p[i] = q[i].value;
-    if (!strcmp(q[i].name, name)) found = i;
-  }
-  PetscCheck(found >= 0, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "no parameter %s", name);
-  p[found] = value;
-  PetscCall(OperatorsSetParameters(o, p));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ParameterGet(Operators o, const char name[], PetscReal *value)
-{
-  const OperatorsParameter *q;
+  const PetscReal          *p;
   PetscInt                  n;
 
   PetscFunctionBeginUser;
   *value = NAN;
-  PetscCall(OperatorsGetParameters(o, &n, &q));
+  PetscCall(PencilGetParameters(o, &n, &q, &p));
   for (PetscInt i = 0; i < n; i++)
-    if (!strcmp(q[i].name, name)) *value = q[i].value;
+    if (!strcmp(q[i].name, name)) *value = p[i];
   PetscFunctionReturn(0);
 }
 
-/* C x: what remains without normal force, and |mu| / v B'(N0) B + mu' T'(N0) T of the pairs; one interface */
-static PetscErrorCode ReferenceDamping(Chain *chain, const PetscReal factor[], Vec x, Vec y)
+static PetscErrorCode ParameterSet(Pencil o, const char name[], PetscReal value)
+{
+  const OperatorsParameter *q;
+  const PetscReal          *present;
+  PetscReal                 p[64];
+  PetscInt                  n, found = -1;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetParameters(o, &n, &q, &present));
+  PetscCall(PetscArraycpy(p, present, n));
+  for (PetscInt i = 0; i < n; i++)
+    if (!strcmp(q[i].name, name)) found = i;
+  PetscCheck(found >= 0, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "no parameter %s", name);
+  p[found] = value;
+  PetscCall(PencilSetParameters(o, p));
+  PetscFunctionReturn(0);
+}
+
+/* A state with these pairs closed, at the present point of the pencil */
+static PetscErrorCode StateMake(Chain *chain, PetscInt n_groups, const PetscInt group[], SlidingState *state)
+{
+  const ContactPair        *pair;
+  const OperatorsParameter *q;
+  const PetscReal          *p;
+  PetscInt                  n, n_all;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetPairs(chain->contact, &n, &n_all, &pair));
+  PetscCall(SlidingStateCreate(n, n_groups, group, state));
+  PetscCall(OperatorsGetParameters(chain->operators, &state->n_parameters, &q));
+  PetscCall(PencilGetParameters(chain->pencil, NULL, NULL, &p));
+  PetscCall(PetscMalloc1(state->n_parameters, &state->p));
+  PetscCall(PetscArraycpy(state->p, p, state->n_parameters));
+  PetscFunctionReturn(0);
+}
+
+/* A pencil about it */
+static PetscErrorCode ClosedSet(Chain *chain, PetscInt n_groups, const PetscInt group[])
+{
+  SlidingState state;
+
+  PetscFunctionBeginUser;
+  PetscCall(StateMake(chain, n_groups, group, &state));
+  PetscCall(ChainLinearise(chain, &state));
+  PetscCall(SlidingStateDestroy(&state));
+  PetscFunctionReturn(0);
+}
+
+/* C x: that of the bodies, and |mu| / v B'(N0) B + mu' T'(N0) T of the pairs, N0 as lambda_n or, where it is NULL, as
+   -contact_force shared by area; one interface */
+static PetscErrorCode ReferenceDamping(Chain *chain, const PetscReal factor[], const PetscReal lambda_n[], Vec x, Vec y)
 {
   const ContactPair *pair;
+  const PetscReal   *point;
   PetscInt           n, n_all;
   PetscReal          force, mu, kn, slope, speed, total = 0, weight[MAX_PAIRS];
   Mat                C, T, B;
 
   PetscFunctionBeginUser;
-  PetscCall(ParameterGet(chain->operators, "contact_force", &force));
-  PetscCall(ParameterSet(chain->operators, "contact_force", 0));
-  PetscCall(OperatorsGetMatrices(chain->operators, NULL, NULL, &C, NULL, NULL));
+  PetscCall(PencilGetParameters(chain->pencil, NULL, NULL, &point));
+  PetscCall(OperatorsGetBodies(chain->operators, point, NULL, NULL, &C));
   PetscCall(MatMult(C, x, y));
-  PetscCall(ParameterSet(chain->operators, "contact_force", force));
-  PetscCall(ParameterGet(chain->operators, "contact_mu_slope", &slope));
-  PetscCall(ParameterGet(chain->operators, "contact_speed", &speed));
-  PetscCall(OperatorsGetInterface(chain->operators, 0, &mu, &kn));
+  PetscCall(ParameterGet(chain->pencil, "contact_force", &force));
+  PetscCall(ParameterGet(chain->pencil, "contact_mu_slope", &slope));
+  PetscCall(ParameterGet(chain->pencil, "contact_speed", &speed));
+  PetscCall(OperatorsGetInterface(chain->operators, point, 0, &mu, &kn));
   PetscCall(ContactGetPairs(chain->contact, &n, &n_all, &pair));
-  for (PetscInt p = 0; p < n; p++) total += pair[p].force;
+  for (PetscInt p = 0; p < n; p++) total += pair[p].area;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &total, 1, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD));
-  for (PetscInt p = 0; p < n; p++) weight[p] = factor[p] * force * pair[p].force / total;
+  for (PetscInt p = 0; p < n; p++) weight[p] = factor[p] * (lambda_n ? lambda_n[p] : force * pair[p].area / total);
   PetscCall(ContactCreateOperators(chain->contact, 0, NULL, &T, &B));
   PetscCall(AddProduct(PetscAbsReal(mu) / speed, B, weight, B, x, y));
   PetscCall(AddProduct(slope, T, weight, T, x, y));
@@ -147,25 +181,25 @@ static PetscErrorCode ActionDistance(Mat A, Vec x, Vec y, PetscReal *distance)
 
 /* Breaks when: an open pair leaves something behind, a closed one is lost, a group lacks its factor, or a sum keeps an
    old pattern. Reference: bodies and rows of the contact */
-static PetscErrorCode TestPencil(Chain *chain, const char name[], const PetscReal factor[], int *failed)
+static PetscErrorCode TestPencil(Chain *chain, const char name[], const PetscReal factor[], const PetscReal lambda_n[],
+                                 int *failed)
 {
-  PetscReal       distance;
-  OperatorsPencil pencil;
-  Vec             x, y;
+  PetscReal      distance;
+  PencilMatrices pencil;
+  Vec            x, y;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsCreateVec(chain->operators, &x));
   PetscCall(VecDuplicate(x, &y));
   PetscCall(VecSetRandom(x, NULL));
   PetscCall(ReferenceStiffness(chain, factor, x, y));
-  PetscCall(OperatorsGetPencil(chain->operators, &pencil));
+  PetscCall(PencilGetMatrices(chain->pencil, &pencil));
   PetscCall(ActionDistance(pencil.K, x, y, &distance));
   printf("     %s\n", name);
   *failed += CheckClose("K x", distance, 0, 1e-14);
   *failed += CheckTrue("damped", pencil.C != NULL, 1);
   if (pencil.C) {
-    PetscCall(ReferenceDamping(chain, factor, x, y));
-    PetscCall(OperatorsGetPencil(chain->operators, &pencil));
+    PetscCall(ReferenceDamping(chain, factor, lambda_n, x, y));
     PetscCall(ActionDistance(pencil.C, x, y, &distance));
     *failed += CheckClose("C x", distance, 0, 1e-14);
   }
@@ -174,30 +208,30 @@ static PetscErrorCode TestPencil(Chain *chain, const char name[], const PetscRea
   PetscFunctionReturn(0);
 }
 
-/* Breaks when: parameters of the scene move, lose their values in a sweep, or those of groups can be taken for options.
+/* Breaks when: parameters of the scene move, the point of the state is lost, or those of groups can be taken for options.
    Reference: the values set before */
-static PetscErrorCode TestParameters(Operators o, PetscInt n_before, int *failed)
+static PetscErrorCode TestParameters(Pencil o, PetscInt n_before, int *failed)
 {
   const OperatorsParameter *q;
+  const PetscReal          *p;
   PetscReal                 mu, force;
   PetscInt                  n;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetParameters(o, &n, &q));
+  PetscCall(PencilGetParameters(o, &n, &q, &p));
   *failed += CheckTrue("two parameters more", n == n_before + 2, (double)(n - n_before));
   for (PetscInt i = 0; i < n; i++) {
     const PetscBool last = i >= n_before ? PETSC_TRUE : PETSC_FALSE;
 
     if (q[i].internal != last) *failed += CheckTrue(q[i].name, 0, (double)i);
-    if (last && (q[i].value != 1 || q[i].lower != 0 || q[i].upper != 1))
-      *failed += CheckTrue(q[i].name, 0, (double)q[i].value);
+    if (last && (p[i] != 1 || q[i].lower != 0 || q[i].upper != 1)) *failed += CheckTrue(q[i].name, 0, (double)p[i]);
   }
   *failed += CheckTrue("closed_1, closed_2", !strcmp(q[n - 2].name, "closed_1") && !strcmp(q[n - 1].name, "closed_2"),
                        (double)n);
   PetscCall(ParameterGet(o, "contact_mu", &mu));
   PetscCall(ParameterGet(o, "contact_force", &force));
-  *failed += CheckClose("mu of the sweep", mu, -0.3, 0);
-  *failed += CheckClose("force of the sweep", force, 70, 0);
+  *failed += CheckClose("mu of the state's point", mu, -0.3, 0);
+  *failed += CheckClose("force of the state's point", force, 70, 0);
   PetscFunctionReturn(0);
 }
 
@@ -205,54 +239,62 @@ static PetscErrorCode TestParameters(Operators o, PetscInt n_before, int *failed
 static PetscErrorCode TestForces(Chain *chain, PetscInt n, const PetscInt group[], const PetscReal factor[],
                                  int *failed)
 {
-  PetscReal lambda_n[MAX_PAIRS], sum = 0, force;
+  PetscReal    lambda_n[MAX_PAIRS], sum = 0, force;
+  SlidingState state;
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < n; p++) lambda_n[p] = factor[p] * (3 + (PetscReal)(group[p] + 1));
+  PetscCall(StateMake(chain, 0, group, &state));
+  state.has_forces = PETSC_TRUE;
+  PetscCall(PetscMalloc1(n, &state.lambda_n));
+  for (PetscInt p = 0; p < n; p++) lambda_n[p] = state.lambda_n[p] = factor[p] * (3 + (PetscReal)(p % 4));
   for (PetscInt p = 0; p < n; p++) sum += lambda_n[p];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD));
-  PetscCall(ContactSetForces(chain->contact, lambda_n));
-  PetscCall(OperatorsSetClosed(chain->operators, 0, group));
-  PetscCall(ParameterGet(chain->operators, "contact_force", &force));
+  PetscCall(ChainLinearise(chain, &state));
+  PetscCall(SlidingStateDestroy(&state));
+  PetscCall(ParameterGet(chain->pencil, "contact_force", &force));
   *failed += CheckClose("force of the sliding state", force, sum, 1e-13 * sum);
-  PetscCall(TestPencil(chain, "forces of the sliding state", factor, failed));
+  PetscCall(TestPencil(chain, "forces of the sliding state", factor, lambda_n, failed));
   PetscFunctionReturn(0);
 }
 
-/* Breaks when: preload comes too early, too late, not at all, or its unsymmetric part makes a symmetric pencil.
+/* Breaks when: preload is lost, goes with the state that brought it, or its unsymmetric part makes a symmetric pencil.
    Reference: the matrices given, G and F, beside those of the bodies and the contact, at mu = 0 */
 static PetscErrorCode TestPreload(Chain *chain, Mat unsymmetric, int *failed)
 {
-  PetscReal       distance, all[MAX_PAIRS];
-  OperatorsPencil pencil, frictionless;
-  Mat             bodies, G, F;
-  Vec             x, y;
+  PetscInt       group[MAX_PAIRS] = {0};
+  PetscReal      distance, all[MAX_PAIRS];
+  PencilMatrices pencil, frictionless;
+  SlidingState   state;
+  Mat            bodies, G, F;
+  Vec            x, y;
 
   PetscFunctionBeginUser;
   FactorsMake(MAX_PAIRS, NULL, 1, 1, all);
-  PetscCall(OperatorsGetBodies(chain->operators, &bodies));
+  PetscCall(OperatorsGetBodies(chain->operators, NULL, &bodies, NULL, NULL));
   PetscCall(MatDuplicate(bodies, MAT_COPY_VALUES, &G));
   PetscCall(MatScale(G, 1e-3));
   PetscCall(MatDuplicate(unsymmetric, MAT_COPY_VALUES, &F));
   PetscCall(MatScale(F, 1e-4));
   PetscCall(MatCreateVecs(G, &x, &y));
   PetscCall(VecSetRandom(x, NULL));
-  PetscCall(ParameterSet(chain->operators, "contact_mu", 0));
-  PetscCall(OperatorsSetPreload(chain->operators, G, F));
-  PetscCall(OperatorsGetPencil(chain->operators, &pencil));
-  *failed += CheckTrue("no preload before the next status", pencil.symmetric, pencil.symmetric);
-  PetscCall(OperatorsSetClosed(chain->operators, 0, NULL));
+  PetscCall(ParameterSet(chain->pencil, "contact_mu", 0));
+  PetscCall(StateMake(chain, 0, group, &state));
+  state.geometric = G;
+  state.follower  = F;
+  PetscCall(PetscObjectReference((PetscObject)G));
+  PetscCall(PetscObjectReference((PetscObject)F));
+  PetscCall(ChainLinearise(chain, &state));
+  PetscCall(SlidingStateDestroy(&state));
   PetscCall(ReferenceStiffness(chain, all, x, y));
   PetscCall(MatMultAdd(G, x, y, y));
-  PetscCall(OperatorsGetFrictionless(chain->operators, &frictionless));
+  PetscCall(PencilGetFrictionless(chain->pencil, &frictionless));
   PetscCall(ActionDistance(frictionless.K, x, y, &distance));
   *failed += CheckClose("geometric stiffness", distance, 0, 1e-14);
   PetscCall(MatMultAdd(F, x, y, y));
-  PetscCall(OperatorsGetPencil(chain->operators, &pencil));
+  PetscCall(PencilGetMatrices(chain->pencil, &pencil));
   PetscCall(ActionDistance(pencil.K, x, y, &distance));
   *failed += CheckClose("geometric stiffness and follower forces", distance, 0, 1e-14);
   *failed += CheckTrue("unsymmetric with follower forces", !pencil.symmetric, !pencil.symmetric);
-  PetscCall(OperatorsSetPreload(chain->operators, NULL, NULL));
   PetscCall(MatDestroy(&G));
   PetscCall(MatDestroy(&F));
   PetscCall(VecDestroy(&x));
@@ -266,8 +308,8 @@ static PetscErrorCode TestPenalty(int *failed)
   const OperatorsParameter *q;
   const ContactPair        *pair;
   PetscInt                  n_before, n, n_all, group[MAX_PAIRS], plain[MAX_PAIRS];
-  PetscReal                 factor[MAX_PAIRS], first[64];
-  OperatorsPencil           pencil;
+  PetscReal                 factor[MAX_PAIRS];
+  PencilMatrices            pencil;
   Chain                     chain;
   Mat                       K, C;
 
@@ -275,33 +317,31 @@ static PetscErrorCode TestPenalty(int *failed)
   PetscCall(ChainCreate(BRAKE SLIP DAMPED, VALUES, &chain));
   PetscCall(ContactGetPairs(chain.contact, &n, &n_all, &pair));
   PetscCall(OperatorsGetParameters(chain.operators, &n_before, &q));
-  for (PetscInt i = 0; i < n_before; i++) first[i] = q[i].value;
-  PetscCall(OperatorsGetPencil(chain.operators, &pencil));
+  PetscCall(ChainLinearise(&chain, NULL));
+  PetscCall(PencilGetMatrices(chain.pencil, &pencil));
   PetscCall(MatDuplicate(pencil.K, MAT_COPY_VALUES, &K));
   PetscCall(MatDuplicate(pencil.C, MAT_COPY_VALUES, &C));
-  PetscCall(ParameterSet(chain.operators, "contact_mu", -0.3));
-  PetscCall(ParameterSet(chain.operators, "contact_force", 70));
+  PetscCall(ParameterSet(chain.pencil, "contact_mu", -0.3));
+  PetscCall(ParameterSet(chain.pencil, "contact_force", 70));
   PetscCall(GroupsMake(chain.contact, 0, plain));
   PetscCall(GroupsMake(chain.contact, 2, group));
   FactorsMake(n, plain, 0, 0, factor);
-  PetscCall(OperatorsSetClosed(chain.operators, 0, plain));
-  PetscCall(TestPencil(&chain, "some open", factor, failed));
-  PetscCall(OperatorsSetClosed(chain.operators, 2, group));
-  PetscCall(TestParameters(chain.operators, n_before, failed));
+  PetscCall(ClosedSet(&chain, 0, plain));
+  PetscCall(TestPencil(&chain, "some open", factor, NULL, failed));
+  PetscCall(ClosedSet(&chain, 2, group));
+  PetscCall(TestParameters(chain.pencil, n_before, failed));
   FactorsMake(n, group, 1, 1, factor);
-  PetscCall(TestPencil(&chain, "both groups closed", factor, failed));
-  PetscCall(ParameterSet(chain.operators, "closed_1", 0));
+  PetscCall(TestPencil(&chain, "both groups closed", factor, NULL, failed));
+  PetscCall(ParameterSet(chain.pencil, "closed_1", 0));
   FactorsMake(n, group, 0, 1, factor);
-  PetscCall(TestPencil(&chain, "group 1 open", factor, failed));
-  PetscCall(ParameterSet(chain.operators, "closed_2", 0.25));
+  PetscCall(TestPencil(&chain, "group 1 open", factor, NULL, failed));
+  PetscCall(ParameterSet(chain.pencil, "closed_2", 0.25));
   FactorsMake(n, group, 0, 0.25, factor);
-  PetscCall(TestPencil(&chain, "group 2 closed to a quarter", factor, failed));
-  PetscCall(OperatorsSetClosed(chain.operators, 0, NULL));
-  PetscCall(OperatorsSetParameters(chain.operators, first));
+  PetscCall(TestPencil(&chain, "group 2 closed to a quarter", factor, NULL, failed));
+  PetscCall(ChainLinearise(&chain, NULL));
   PetscCall(TestSame(chain.operators, K, C, failed));
   PetscCall(TestPreload(&chain, K, failed));
-  PetscCall(OperatorsSetClosed(chain.operators, 0, NULL));
-  PetscCall(OperatorsSetParameters(chain.operators, first));
+  PetscCall(ChainLinearise(&chain, NULL));
   PetscCall(TestSame(chain.operators, K, C, failed));
   FactorsMake(n, plain, 0, 0, factor);
   PetscCall(TestForces(&chain, n, plain, factor, failed));
@@ -317,7 +357,7 @@ static PetscErrorCode TestTwoInterfaces(int *failed)
   const ContactPair *pair;
   PetscInt           n, n_all, group[MAX_PAIRS];
   PetscReal          factor[MAX_PAIRS], distance;
-  OperatorsPencil    pencil;
+  PencilMatrices     pencil;
   Chain              chain;
   Vec                x, y;
 
@@ -327,14 +367,15 @@ static PetscErrorCode TestTwoInterfaces(int *failed)
   PetscCall(GroupsMake(chain.contact, 2, group));
   for (PetscInt p = 0; p < n; p++)
     if (pair[p].interface == 1) group[p] = group[p] == 2 ? -1 : group[p];
-  PetscCall(OperatorsSetClosed(chain.operators, 2, group));
-  PetscCall(ParameterSet(chain.operators, "closed_1", 0.5));
+  PetscCall(ChainLinearise(&chain, NULL));
+  PetscCall(ClosedSet(&chain, 2, group));
+  PetscCall(ParameterSet(chain.pencil, "closed_1", 0.5));
   FactorsMake(n, group, 0.5, 1, factor);
   PetscCall(OperatorsCreateVec(chain.operators, &x));
   PetscCall(VecDuplicate(x, &y));
   PetscCall(VecSetRandom(x, NULL));
   PetscCall(ReferenceStiffness(&chain, factor, x, y));
-  PetscCall(OperatorsGetPencil(chain.operators, &pencil));
+  PetscCall(PencilGetMatrices(chain.pencil, &pencil));
   PetscCall(ActionDistance(pencil.K, x, y, &distance));
   *failed += CheckClose("two interfaces, K x", distance, 0, 1e-14);
   PetscCall(VecDestroy(&x));

@@ -43,20 +43,20 @@ static PetscErrorCode RowsCompare(Contact contact, PetscReal mu, Vec u, const Pe
    contact at the closed pairs, anything else at the open ones; as many unknowns less as there are closed pairs */
 static PetscErrorCode TestNullSpace(Chain *chain, const PetscInt group[], int *failed)
 {
-  PetscReal       mu, kn, closed, open;
-  PetscInt        n, n_all, n_closed = 0, size, reduced;
-  OperatorsPencil pencil;
-  Vec             q, u;
+  PetscReal      mu, kn, closed, open;
+  PetscInt       n, n_all, n_closed = 0, size, reduced;
+  PencilMatrices pencil;
+  Vec            q, u;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetInterface(chain->operators, 0, &mu, &kn));
+  PetscCall(OperatorsGetInterface(chain->operators, NULL, 0, &mu, &kn));
   *failed += CheckTrue("k_n of the constraint is infinite", PetscIsInfReal(kn), (double)kn);
-  PetscCall(OperatorsGetPencil(chain->operators, &pencil));
+  PetscCall(PencilGetMatrices(chain->pencil, &pencil));
   PetscCall(MatCreateVecs(pencil.K, &q, NULL));
   PetscCall(OperatorsCreateVec(chain->operators, &u));
   PetscCall(VecSetRandom(q, NULL));
   for (int left = 0; left < 2; left++) {
-    PetscCall(OperatorsExpand(chain->operators, (PetscBool)left, q, u));
+    PetscCall(PencilExpand(chain->pencil, (PetscBool)left, q, u));
     PetscCall(RowsCompare(chain->contact, left ? mu : 0, u, group, &closed, &open));
     *failed += CheckClose(left ? "(N - mu T) y = 0 where closed" : "N u = 0 where closed", closed, 0, 1e-15);
     *failed += CheckTrue("not so where open", open > 1e-8, (double)open);
@@ -74,28 +74,41 @@ static PetscErrorCode TestNullSpace(Chain *chain, const PetscInt group[], int *f
   PetscFunctionReturn(0);
 }
 
+/* A pencil with these pairs closed */
+static PetscErrorCode ClosedSet(Chain *chain, PetscInt n, PetscInt n_groups, const PetscInt group[])
+{
+  SlidingState state;
+
+  PetscFunctionBeginUser;
+  PetscCall(SlidingStateCreate(n, n_groups, group, &state));
+  PetscCall(ChainLinearise(chain, &state));
+  PetscCall(SlidingStateDestroy(&state));
+  PetscFunctionReturn(0);
+}
+
 /* All that the exact constraint can do; groups it cannot */
 static PetscErrorCode TestConstraint(int *failed)
 {
   const ContactPair *pair;
   PetscInt           n, n_all, size, reduced, group[MAX_PAIRS];
   PetscErrorCode     error;
-  OperatorsPencil    pencil;
+  PencilMatrices    pencil;
   Chain              chain;
   Mat                K, bodies;
 
   PetscFunctionBeginUser;
   PetscCall(ChainCreate(BRAKE SLIP CONSTRAINED, BODIES_1 BEAM_1 COARSE, &chain));
   PetscCall(ContactGetPairs(chain.contact, &n, &n_all, &pair));
-  PetscCall(OperatorsGetPencil(chain.operators, &pencil));
+  PetscCall(ChainLinearise(&chain, NULL));
+  PetscCall(PencilGetMatrices(chain.pencil, &pencil));
   PetscCall(MatDuplicate(pencil.K, MAT_COPY_VALUES, &K));
   PetscCall(GroupsMake(chain.contact, 0, group));
-  PetscCall(OperatorsSetClosed(chain.operators, 0, group));
+  PetscCall(ClosedSet(&chain, n, 0, group));
   PetscCall(TestNullSpace(&chain, group, failed));
   for (PetscInt p = 0; p < n; p++) group[p] = -1;
-  PetscCall(OperatorsSetClosed(chain.operators, 0, group));
-  PetscCall(OperatorsGetPencil(chain.operators, &pencil));
-  PetscCall(OperatorsGetBodies(chain.operators, &bodies));
+  PetscCall(ClosedSet(&chain, n, 0, group));
+  PetscCall(PencilGetMatrices(chain.pencil, &pencil));
+  PetscCall(OperatorsGetBodies(chain.operators, NULL, &bodies, NULL, NULL));
   PetscCall(MatGetSize(bodies, &size, NULL));
   PetscCall(MatGetSize(pencil.K, &reduced, NULL));
   *failed += CheckTrue("all open: nothing is eliminated", size == reduced, (double)reduced);
@@ -103,7 +116,7 @@ static PetscErrorCode TestConstraint(int *failed)
   PetscCall(TestSame(chain.operators, K, NULL, failed));
   for (PetscInt p = 0; p < n; p++) group[p] = 1;
   PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
-  error = OperatorsSetClosed(chain.operators, 1, group);
+  error = ClosedSet(&chain, n, 1, group);
   PetscCall(PetscPopErrorHandler());
   *failed += CheckTrue("groups are refused", error == PETSC_ERR_SUP, error);
   PetscCall(MatDestroy(&K));

@@ -71,8 +71,8 @@ static PetscErrorCode VecSetAny(Vec u)
 static PetscErrorCode TestProduct(Chain *chain, int *failed)
 {
   const OperatorsParameter *parameter;
-  OperatorsPencil           pencil;
   PetscInt                  n;
+  Mat                       K;
   PetscReal                 value[16], norm, error;
   Vec                       u, Ku, f, local;
 
@@ -80,16 +80,15 @@ static PetscErrorCode TestProduct(Chain *chain, int *failed)
   PetscCall(OperatorsGetParameters(chain->operators, &n, &parameter));
   PetscCheck(n <= 16, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "%d parameters", (int)n);
   for (PetscInt i = 0; i < n; i++) value[i] = parameter[i].value * (i == 0 ? 2 : 1);
-  PetscCall(OperatorsSetParameters(chain->operators, value));
-  PetscCall(OperatorsGetPencil(chain->operators, &pencil));
+  PetscCall(OperatorsGetBodies(chain->operators, value, &K, NULL, NULL));
   PetscCall(ModelCreateNodal(chain->model, &local));
   PetscCall(OperatorsCreateVec(chain->operators, &u));
   PetscCall(VecDuplicate(u, &Ku));
   PetscCall(VecDuplicate(u, &f));
   PetscCall(VecSetAny(u));
-  PetscCall(MatMult(pencil.K, u, Ku));
+  PetscCall(MatMult(K, u, Ku));
   PetscCall(VecSet(local, 1e3)); /* is to be replaced */
-  PetscCall(OperatorsInternalForces(chain->operators, u, local));
+  PetscCall(OperatorsInternalForces(chain->operators, value, u, local));
   PetscCall(LocalRestrict(chain->model, local, f));
   PetscCall(VecNorm(Ku, NORM_INFINITY, &norm));
   PetscCall(VecAXPY(f, -1, Ku));
@@ -153,20 +152,20 @@ static PetscErrorCode Solve(Mat K, Vec f, Vec u)
 /* Breaks when: held directions get no force, or half of it where ranks share them */
 static PetscErrorCode TestReaction(Chain *chain, int *failed)
 {
-  OperatorsPencil pencil;
-  PetscReal       load[6], reaction[6];
-  Vec             u, f, external, internal;
+  PetscReal load[6], reaction[6];
+  Vec       u, f, external, internal;
+  Mat       K;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetPencil(chain->operators, &pencil));
+  PetscCall(OperatorsGetBodies(chain->operators, NULL, &K, NULL, NULL));
   PetscCall(ModelCreateNodal(chain->model, &external));
   PetscCall(ModelCreateNodal(chain->model, &internal));
   PetscCall(OperatorsCreateVec(chain->operators, &u));
   PetscCall(VecDuplicate(u, &f));
   PetscCall(ModelAddLoad(chain->model, 0, external));
   PetscCall(LocalRestrict(chain->model, external, f));
-  PetscCall(Solve(pencil.K, f, u));
-  PetscCall(OperatorsInternalForces(chain->operators, u, internal));
+  PetscCall(Solve(K, f, u));
+  PetscCall(OperatorsInternalForces(chain->operators, NULL, u, internal));
   PetscCall(SetSum(chain->model, "head_top", external, load));
   PetscCall(SetSum(chain->model, "foot_bottom", internal, reaction));
   for (int d = 0; d < 3; d++) *failed += CheckClose("reaction of the clamp, N", reaction[d], -force[d], 1e-11);

@@ -8,23 +8,24 @@
 #include <string.h>
 
 /* Breaks when: a bad value passes, or its message does not name parameter, value, limits and unit */
-static PetscErrorCode TestBad(Operators o, const char name[], PetscReal bad, const char expected[], int *failed)
+static PetscErrorCode TestBad(Pencil o, const char name[], PetscReal bad, const char expected[], int *failed)
 {
   const OperatorsParameter *q;
+  const PetscReal          *present;
   PetscInt                  n;
   PetscReal                 p[64];
   PetscErrorCode            error;
   Scratch                   keep = {.code = 0};
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetParameters(o, &n, &q));
+  PetscCall(PencilGetParameters(o, &n, &q, &present));
   for (PetscInt i = 0; i < n; i++) p[i] = strcmp(q[i].name, name) ? q[i].value : bad;
   PetscCall(PetscPushErrorHandler(ScratchKeepError, &keep));
-  error = OperatorsSetParameters(o, p);
+  error = PencilSetParameters(o, p);
   PetscCall(PetscPopErrorHandler());
   *failed += CheckTrue(keep.message, error == PETSC_ERR_USER_INPUT && !strcmp(keep.message, expected), (double)error);
   for (PetscInt i = 0; i < n; i++)
-    if (!strcmp(q[i].name, name)) *failed += CheckTrue("the value stays", q[i].value != bad, q[i].value);
+    if (!strcmp(q[i].name, name)) *failed += CheckTrue("the value stays", present[i] == q[i].value, present[i]);
   PetscFunctionReturn(0);
 }
 
@@ -35,9 +36,10 @@ static PetscErrorCode TestLimits(int *failed)
 
   PetscFunctionBeginUser;
   PetscCall(ChainCreate(BRAKE SLIP DAMPED, BODIES_1 BEAM_1 "-contact_mu 0.5 -contact_speed 2 " ROLLING, &chain));
-  PetscCall(TestBad(chain.operators, "pad_young", 0, "pad_young 0 Pa must exceed 0", failed));
-  PetscCall(TestBad(chain.operators, "pad_alpha", -1, "pad_alpha -1 1/s must be at least 0", failed));
-  PetscCall(TestBad(chain.operators, "contact_mu", INFINITY, "contact_mu inf must be a finite number", failed));
+  PetscCall(ChainLinearise(&chain, NULL));
+  PetscCall(TestBad(chain.pencil, "pad_young", 0, "pad_young 0 Pa must exceed 0", failed));
+  PetscCall(TestBad(chain.pencil, "pad_alpha", -1, "pad_alpha -1 1/s must be at least 0", failed));
+  PetscCall(TestBad(chain.pencil, "contact_mu", INFINITY, "contact_mu inf must be a finite number", failed));
   PetscCall(ChainDestroy(&chain));
   PetscFunctionReturn(0);
 }
@@ -47,9 +49,10 @@ static PetscErrorCode TestLimits(int *failed)
 static PetscErrorCode TestDense(int *failed)
 {
   const PetscReal mu[] = {0.25, -4, 0};
-  OperatorsPencil pencil, again;
+  PencilMatrices  first, again;
   PetscReal       norm;
   Operators       o;
+  Pencil          pencil;
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsClear(NULL));
@@ -58,15 +61,17 @@ static PetscErrorCode TestDense(int *failed)
   PetscCall(OperatorsCreate(PETSC_COMM_WORLD, &o));
   PetscCall(OperatorsSetFromOptions(o));
   PetscCall(OperatorsSetUp(o));
-  PetscCall(OperatorsGetPencil(o, &pencil));
+  PetscCall(OperatorsLinearise(o, NULL, &pencil));
+  PetscCall(PencilGetMatrices(pencil, &first));
   for (int i = 0; i < 3; i++) {
-    PetscCall(OperatorsSetParameters(o, &mu[i]));
-    PetscCall(OperatorsGetPencil(o, &again));
+    PetscCall(PencilSetParameters(pencil, &mu[i]));
+    PetscCall(PencilGetMatrices(pencil, &again));
     PetscCall(MatNorm(again.K, NORM_FROBENIUS, &norm));
     *failed += CheckClose("|K + mu H|", norm, sqrt(13 + 2 * mu[i] * mu[i]), 1e-15 * 10);
-    *failed += CheckTrue("the matrix is kept while mu is not zero", (again.K == pencil.K) == (mu[i] != 0), mu[i]);
+    *failed += CheckTrue("the matrix is kept while mu is not zero", (again.K == first.K) == (mu[i] != 0), mu[i]);
     *failed += CheckTrue("symmetric without friction", again.symmetric == (mu[i] == 0), mu[i]);
   }
+  PetscCall(PencilDestroy(&pencil));
   PetscCall(OperatorsDestroy(&o));
   PetscFunctionReturn(0);
 }

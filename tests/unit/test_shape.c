@@ -246,7 +246,8 @@ static PetscErrorCode TestModes(Scratch *s, int *failed)
   PetscCall(PetscOptionsSetValue(NULL, "-output_dir", s->dir));
   PetscCall(ModesCreate(PETSC_COMM_WORLD, &modes));
   PetscCall(ModesSetFromOptions(modes));
-  PetscCall(ModesSetOperators(modes, chain.operators));
+  PetscCall(ChainLinearise(&chain, NULL));
+  PetscCall(ModesSetPencil(modes, chain.pencil));
   PetscCall(ModesSolve(modes));
   PetscCall(WriterCreate(PETSC_COMM_WORLD, &results));
   PetscCall(ModesWrite(modes, results));

@@ -88,7 +88,7 @@ static PetscErrorCode Imbalance(const Chain *chain, const ContactState state[], 
   PetscCall(VecNorm(r, NORM_2, &contact));
   PetscCall(VecNorm(f, NORM_2, &load));
   PetscCall(VecAXPY(r, -1, f));
-  PetscCall(OperatorsGetBodies(chain->operators, &K));
+  PetscCall(OperatorsGetBodies(chain->operators, NULL, &K, NULL, NULL));
   PetscCall(MatMultAdd(K, u, r, r));
   PetscCall(VecNorm(r, NORM_2, &norm));
   PetscCall(MatGetDiagonal(K, diagonal));
@@ -116,7 +116,7 @@ static PetscErrorCode DenseContactCreate(const Scene *scene, const Chain *chain,
   PetscCall(ContactGetPairs(chain->contact, &n, &n_all, &pairs));
   if (n > ENUMERATE_MAX) PetscFunctionReturn(0);
   c->n = (int)n;
-  PetscCall(OperatorsGetBodies(chain->operators, &K));
+  PetscCall(OperatorsGetBodies(chain->operators, NULL, &K, NULL, NULL));
   PetscCall(MatGetSize(K, &n_unknowns, NULL));
   c->n_unknowns = (int)n_unknowns;
   PetscCall(ContactCreateOperators(chain->contact, 0, &N, &T, NULL));
@@ -245,7 +245,7 @@ static PetscErrorCode TestScene(PetscInt number, Tally *t)
   PetscCall(StaticsSetFromOptions(statics));
   PetscCall(StaticsSetOperators(statics, chain.operators));
   PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
-  error = StaticsSolve(statics);
+  error = StaticsSolve(statics, NULL);
   PetscCall(PetscPopErrorHandler());
   PetscCall(Count(number, &scene, &chain, statics, error, t));
   PetscCall(StaticsDestroy(&statics));

@@ -59,7 +59,7 @@ static PetscErrorCode TestTilt(const Chain *chain, int *failed)
 /* The tilt on flat or curved surfaces: vertices are moved before pairing */
 static PetscErrorCode TestSurfaces(const char title[], const char scene[], PetscBool curved, int *failed)
 {
-  Chain chain;
+  Chain chain = {0};
 
   PetscFunctionBeginUser;
   printf("--- %s\n", title);

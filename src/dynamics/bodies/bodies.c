@@ -46,12 +46,8 @@ static PetscErrorCode DampingSetUp(Bodies b)
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetParts(b->model, &n_parts, &parts));
-  for (PetscInt i = 0; i < n_parts; i++) {
-    PetscReal alpha, beta;
-
-    PetscCall(OperatorsGetDamping(b->operators, i, &alpha, &beta));
-    if (alpha != 0 || beta != 0) b->damped = PETSC_TRUE;
-  }
+  for (PetscInt i = 0; i < n_parts; i++)
+    if (parts[i].alpha != 0 || parts[i].beta != 0) b->damped = PETSC_TRUE;
   for (PetscInt i = 0; i < b->n_points; i++)
     for (int j = 0; j < 9; j++)
       if (b->point[i].damping[j] != 0) b->damped = PETSC_TRUE;

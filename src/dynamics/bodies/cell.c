@@ -31,11 +31,11 @@ PetscErrorCode BodiesGetCellVertices(Bodies bodies, PetscInt c, PetscInt *body, 
 PetscErrorCode BodiesGetCell(Bodies bodies, PetscInt c, BodiesCell *cell)
 {
   const Element  *element;
-  const Part     *parts;
+  const Part     *parts, *part;
   const PetscInt *cell_part;
   PetscInt        n_parts;
   Elasticity      material;
-  PetscReal       x[ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], young, density;
+  PetscReal       x[ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetElement(bodies->model, &element));
@@ -44,10 +44,10 @@ PetscErrorCode BodiesGetCell(Bodies bodies, PetscInt c, BodiesCell *cell)
   PetscCall(ModelGetCell(bodies->model, c, cell->vertex, x));
   cell->n_nodes = element->n_nodes;
   cell->part    = cell_part[c];
-  PetscCall(OperatorsGetYoung(bodies->operators, cell->part, &young));
-  PetscCall(OperatorsGetDensity(bodies->operators, cell->part, &density));
-  PetscCall(OperatorsGetDamping(bodies->operators, cell->part, &cell->alpha, &cell->beta));
-  material = ElasticityFromEngineering(young, parts[cell->part].poisson, density);
+  part          = &parts[cell->part];
+  cell->alpha   = part->alpha;
+  cell->beta    = part->beta;
+  material      = ElasticityFromEngineering(part->young, part->poisson, part->density);
   PetscCheck(!element->matrices(x, &material, cell->stiffness, me), PETSC_COMM_SELF, PETSC_ERR_PLIB,
              "element is inverted");
   for (PetscInt a = 0; a < cell->n_nodes; a++) {

@@ -25,54 +25,14 @@ static void BlockAdd(const PetscReal q[9], const PetscReal value[3], PetscReal b
       for (int d = 0; d < 3; d++) block[3 * i + j] += q[3 * i + d] * value[d] * q[3 * j + d];
 }
 
-/* The present value of a parameter; `found` is whether there is one of that name */
-static PetscErrorCode ParameterFind(Bodies b, const char name[], PetscReal *value, PetscBool *found)
-{
-  const OperatorsParameter *parameters;
-  PetscInt                  n;
-
-  PetscFunctionBeginUser;
-  PetscCall(OperatorsGetParameters(b->operators, &n, &parameters));
-  *found = PETSC_FALSE;
-  for (PetscInt i = 0; i < n && !*found; i++) {
-    PetscCall(PetscStrcmp(parameters[i].name, name, found));
-    if (*found) *value = parameters[i].value;
-  }
-  PetscFunctionReturn(0);
-}
-
-/* Present values in x, y, z of a list of springs or dashpots: one parameter for all that are not zero, or one for
-   each */
-static PetscErrorCode GroundedGetValues(Bodies b, const Grounded *grounded, PetscBool is_dashpot, PetscReal value[3])
-{
-  const char *what = is_dashpot ? "viscosity" : "stiffness";
-  char        name[128];
-  PetscBool   found;
-
-  PetscFunctionBeginUser;
-  for (int d = 0; d < 3; d++) {
-    value[d] = 0;
-    if (grounded->value[d] == 0) continue;
-    PetscCall(PetscSNPrintf(name, sizeof(name), "%s_%s", grounded->name, what));
-    PetscCall(ParameterFind(b, name, &value[d], &found));
-    if (found) continue;
-    PetscCall(PetscSNPrintf(name, sizeof(name), "%s_%s_%c", grounded->name, what, "xyz"[d]));
-    PetscCall(ParameterFind(b, name, &value[d], &found));
-    PetscCheck(found, b->comm, PETSC_ERR_PLIB, "no parameter %s", name);
-  }
-  PetscFunctionReturn(0);
-}
-
 /* Adds the springs or the dashpots of a list */
 static PetscErrorCode GroundedAdd(Bodies b, const Grounded *grounded, PetscBool is_dashpot, PetscInt of_vertex[])
 {
   const PetscInt *vertices;
   PetscInt        n;
-  PetscReal       value[3];
   IS              is;
 
   PetscFunctionBeginUser;
-  PetscCall(GroundedGetValues(b, grounded, is_dashpot, value));
   PetscCall(ModelGetOwnedVertices(b->model, grounded->set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
@@ -82,7 +42,7 @@ static PetscErrorCode GroundedAdd(Bodies b, const Grounded *grounded, PetscBool 
 
     if (b->layout.at[v] < 0) continue;
     PetscCall(PointGet(b, v, of_vertex, &point));
-    BlockAdd(&b->layout.basis[9 * v], value, is_dashpot ? point->damping : point->stiffness);
+    BlockAdd(&b->layout.basis[9 * v], grounded->value, is_dashpot ? point->damping : point->stiffness);
   }
   PetscCall(ISRestoreIndices(is, &vertices));
   PetscCall(ISDestroy(&is));

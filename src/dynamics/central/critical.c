@@ -22,22 +22,22 @@ typedef struct {
   Dynamics   dynamics;
   PetscReal  s;
   PetscReal *scale, *x, *kx, *cx;
-} Pencil;
+} StepPencil;
 
-static PetscErrorCode PencilCreate(Dynamics d, Pencil *p)
+static PetscErrorCode StepPencilCreate(Dynamics d, StepPencil *p)
 {
   const PetscReal *minv;
   const PetscInt   n = d->layout->n;
 
   PetscFunctionBeginUser;
-  *p = (Pencil){.dynamics = d};
+  *p = (StepPencil){.dynamics = d};
   PetscCall(BodiesGetMass(d->bodies, NULL, NULL, &minv));
   PetscCall(PetscMalloc4(n, &p->scale, n, &p->x, n, &p->kx, n, &p->cx));
   for (PetscInt i = 0; i < n; i++) p->scale[i] = PetscSqrtReal(minv[i]);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode PencilDestroy(Pencil *p)
+static PetscErrorCode StepPencilDestroy(StepPencil *p)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree4(p->scale, p->x, p->kx, p->cx));
@@ -45,7 +45,7 @@ static PetscErrorCode PencilDestroy(Pencil *p)
 }
 
 /* kx = M^-1/2 K M^-1/2 x and the same of C, for the vector x */
-static PetscErrorCode PencilApply(Pencil *p, Vec x)
+static PetscErrorCode StepPencilApply(StepPencil *p, Vec x)
 {
   const Dynamics d = p->dynamics;
 
@@ -60,27 +60,27 @@ static PetscErrorCode PencilApply(Pencil *p, Vec x)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode PencilMult(Mat A, Vec x, Vec y)
+static PetscErrorCode StepPencilMult(Mat A, Vec x, Vec y)
 {
-  Pencil *p;
+  StepPencil *p;
 
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &p));
-  PetscCall(PencilApply(p, x));
+  PetscCall(StepPencilApply(p, x));
   for (PetscInt i = 0; i < p->dynamics->layout->n; i++) p->kx[i] += p->s * p->cx[i];
   PetscCall(StateToVec(p->dynamics->model, p->dynamics->layout, p->kx, y));
   PetscFunctionReturn(0);
 }
 
 /* x'Kx and x'Cx of the eigenvector x of unit length */
-static PetscErrorCode PencilRayleigh(Pencil *p, Vec x, PetscReal *k, PetscReal *c)
+static PetscErrorCode StepPencilRayleigh(StepPencil *p, Vec x, PetscReal *k, PetscReal *c)
 {
   const Dynamics d = p->dynamics;
   Vec            y;
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(x, &y));
-  PetscCall(PencilApply(p, x));
+  PetscCall(StepPencilApply(p, x));
   PetscCall(StateToVec(d->model, d->layout, p->kx, y));
   PetscCall(VecDot(x, y, k));
   PetscCall(StateToVec(d->model, d->layout, p->cx, y));
@@ -89,7 +89,7 @@ static PetscErrorCode PencilRayleigh(Pencil *p, Vec x, PetscReal *k, PetscReal *
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode PencilCreateSolver(Pencil *p, Mat *A, EPS *eps)
+static PetscErrorCode StepPencilCreateSolver(StepPencil *p, Mat *A, EPS *eps)
 {
   const Dynamics d = p->dynamics;
   PetscInt       n;
@@ -100,7 +100,7 @@ static PetscErrorCode PencilCreateSolver(Pencil *p, Mat *A, EPS *eps)
   PetscCall(VecGetLocalSize(x, &n));
   PetscCall(VecDestroy(&x));
   PetscCall(MatCreateShell(d->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, p, A));
-  PetscCall(MatShellSetOperation(*A, MATOP_MULT, (void (*)(void))PencilMult));
+  PetscCall(MatShellSetOperation(*A, MATOP_MULT, (void (*)(void))StepPencilMult));
   PetscCall(EPSCreate(d->comm, eps));
   PetscCall(EPSSetOptionsPrefix(*eps, "dynamics_"));
   PetscCall(EPSSetOperators(*eps, *A, NULL));
@@ -111,7 +111,7 @@ static PetscErrorCode PencilCreateSolver(Pencil *p, Mat *A, EPS *eps)
 }
 
 /* Largest eigenvalue at s = 2 / dt (s = 0 for dt infinite); x starts the iteration and becomes the eigenvector */
-static PetscErrorCode PencilLargest(Pencil *p, EPS eps, PetscReal s, Vec x, PetscReal *lambda)
+static PetscErrorCode StepPencilLargest(StepPencil *p, EPS eps, PetscReal s, Vec x, PetscReal *lambda)
 {
   PetscInt  converged;
   PetscReal error;
@@ -135,20 +135,20 @@ static PetscReal VectorStep(PetscReal b, PetscReal k, PetscReal c)
   return (2 / b) / (c + PetscSqrtReal(c * c + 2 * k / b));
 }
 
-static PetscErrorCode PencilFindStep(Pencil *p, EPS eps, Vec x, PetscReal b, CriticalStep *critical)
+static PetscErrorCode StepPencilFindStep(StepPencil *p, EPS eps, Vec x, PetscReal b, CriticalStep *critical)
 {
   PetscReal lambda, k, c, dt, last = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PencilLargest(p, eps, 0, x, &lambda));
+  PetscCall(StepPencilLargest(p, eps, 0, x, &lambda));
   dt            = PetscSqrtReal(2 / (b * lambda));
   critical->its = 1;
   for (PetscInt i = 0; i < CRITICAL_MAX_IT && PetscAbsReal(dt - last) > CRITICAL_RTOL * dt; i++) {
     last = dt;
-    PetscCall(PencilRayleigh(p, x, &k, &c));
+    PetscCall(StepPencilRayleigh(p, x, &k, &c));
     if (c == 0) break;
     dt = VectorStep(b, k + PetscMax(0, lambda - k - p->s * c), c);
-    PetscCall(PencilLargest(p, eps, 2 / dt, x, &lambda));
+    PetscCall(StepPencilLargest(p, eps, 2 / dt, x, &lambda));
     critical->its++;
   }
   critical->assembled = dt;
@@ -177,22 +177,22 @@ static PetscErrorCode ElementStep(Dynamics d, CriticalStep *critical)
 
 PetscErrorCode DynamicsFindCriticalStep(Dynamics d)
 {
-  Pencil pencil;
-  Mat    A;
-  EPS    eps;
-  Vec    x;
+  StepPencil pencil;
+  Mat        A;
+  EPS        eps;
+  Vec        x;
 
   PetscFunctionBeginUser;
-  PetscCall(PencilCreate(d, &pencil));
-  PetscCall(PencilCreateSolver(&pencil, &A, &eps));
+  PetscCall(StepPencilCreate(d, &pencil));
+  PetscCall(StepPencilCreateSolver(&pencil, &A, &eps));
   PetscCall(EPSSetFromOptions(eps));
   PetscCall(OperatorsCreateVec(d->operators, &x));
   PetscCall(VecSetRandom(x, NULL));
-  PetscCall(PencilFindStep(&pencil, eps, x, d->b, &d->critical));
+  PetscCall(StepPencilFindStep(&pencil, eps, x, d->b, &d->critical));
   PetscCall(ElementStep(d, &d->critical));
   PetscCall(VecDestroy(&x));
   PetscCall(EPSDestroy(&eps));
   PetscCall(MatDestroy(&A));
-  PetscCall(PencilDestroy(&pencil));
+  PetscCall(StepPencilDestroy(&pencil));
   PetscFunctionReturn(0);
 }

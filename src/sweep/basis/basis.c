@@ -10,17 +10,16 @@
 
 #define REORTHOGONALISE 1e-9 /* a direction smaller than this beside its block is rounding */
 
-PetscErrorCode BasisCreate(MPI_Comm comm, Operators operators, Basis *basis)
+PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis)
 {
-  const OperatorsParameter *parameters;
-  OperatorsPencil           frictionless;
-  Vec                       u;
+  PencilMatrices frictionless;
+  Vec            u;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(basis, sizeof(*basis)));
-  basis->comm      = comm;
-  basis->operators = operators;
-  PetscCall(OperatorsGetFrictionless(operators, &frictionless));
+  basis->comm   = comm;
+  basis->pencil = pencil;
+  PetscCall(PencilGetFrictionless(pencil, &frictionless));
   PetscCall(MatDuplicate(frictionless.M, MAT_COPY_VALUES, &basis->M));
   PetscCall(MatSetOption(basis->M, MAT_SYMMETRIC, PETSC_TRUE));
   PetscCall(MatCreateVecs(basis->M, &u, NULL));
@@ -28,8 +27,8 @@ PetscErrorCode BasisCreate(MPI_Comm comm, Operators operators, Basis *basis)
   PetscCall(BVSetType(basis->vectors, BVMAT));
   PetscCall(BVSetSizesFromVec(basis->vectors, u, 1));
   PetscCall(VecDestroy(&u));
-  PetscCall(OperatorsGetParameters(operators, &basis->reduced.n_parameters, &parameters));
-  PetscCall(OperatorsGetTerms(operators, &basis->reduced.n_terms, &basis->reduced.term));
+  PetscCall(PencilGetParameters(pencil, &basis->reduced.n_parameters, NULL, NULL));
+  PetscCall(PencilGetTerms(pencil, &basis->reduced.n_terms, &basis->reduced.term));
   PetscCall(PetscCalloc1(basis->reduced.n_terms, &basis->reduced.A));
   PetscCall(PetscCalloc1(basis->reduced.n_terms, &basis->reduced.D));
   PetscFunctionReturn(0);

@@ -10,15 +10,15 @@
 #define BASIS_MAX_BLOCKS 1024
 
 typedef struct {
-  MPI_Comm  comm;
-  Operators operators;
-  BV        vectors;
-  Mat       M;
-  Reduced   reduced;
-  PetscInt  n_blocks, block_end[BASIS_MAX_BLOCKS]; /* vectors after each BasisAdd() */
+  MPI_Comm comm;
+  Pencil   pencil;
+  BV       vectors;
+  Mat      M;
+  Reduced  reduced;
+  PetscInt n_blocks, block_end[BASIS_MAX_BLOCKS]; /* vectors after each BasisAdd() */
 } Basis;
 
-PetscErrorCode BasisCreate(MPI_Comm comm, Operators operators, Basis *basis);
+PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis);
 /* Block of n columns in the unknowns of the pencil, to fill and to hand to BasisAdd() */
 PetscErrorCode BasisCreateBlock(const Basis *basis, PetscInt n, BV *block);
 /* Appends what the block holds beyond the basis, leaving out directions whose M-norm is below drop; the block is

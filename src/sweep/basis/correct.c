@@ -14,25 +14,25 @@
 #include "correct.h"
 #include "base/events.h"
 
-PetscErrorCode CorrectionCreate(Operators operators, const PetscReal p[], const ReducedWindow *window,
-                                Progress *progress, Correction *c)
+PetscErrorCode CorrectionCreate(Pencil pencil, const PetscReal p[], const ReducedWindow *window, Progress *progress,
+                                Correction *c)
 {
-  OperatorsPencil undamped;
+  PencilMatrices undamped;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsSetParameters(operators, p));
-  PetscCall(OperatorsGetPencil(operators, &c->pencil));
-  undamped   = c->pencil;
+  PetscCall(PencilSetParameters(pencil, p));
+  PetscCall(PencilGetMatrices(pencil, &c->matrices));
+  undamped   = c->matrices;
   undamped.C = NULL;
   PetscCall(ShiftInvertCreate(&undamped, window->high * window->high, PETSC_FALSE, progress, &c->factor));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CorrectionMove(Operators operators, const PetscReal p[], Correction *c)
+PetscErrorCode CorrectionMove(Pencil pencil, const PetscReal p[], Correction *c)
 {
   PetscFunctionBeginUser;
-  PetscCall(OperatorsSetParameters(operators, p));
-  PetscCall(OperatorsGetPencil(operators, &c->pencil));
+  PetscCall(PencilSetParameters(pencil, p));
+  PetscCall(PencilGetMatrices(pencil, &c->matrices));
   PetscFunctionReturn(0);
 }
 
@@ -119,7 +119,7 @@ static PetscErrorCode ResidualAdd(Mat A, PetscBool transposed, const Columns *c,
 }
 
 /* R = Q(lambda) X, or its transpose */
-static PetscErrorCode ResidualMake(const OperatorsPencil *pencil, PetscBool transposed, const Columns *c, Mat X, Mat R)
+static PetscErrorCode ResidualMake(const PencilMatrices *pencil, PetscBool transposed, const Columns *c, Mat X, Mat R)
 {
   PetscFunctionBeginUser;
   PetscCall(MatZeroEntries(R));
@@ -138,13 +138,13 @@ static PetscErrorCode CorrectionSide(const Correction *c, const ReducedModes *mo
   Mat     X, R, Z;
 
   PetscFunctionBeginUser;
-  PetscCall(ColumnsCollect(modes, c->pencil.C ? PETSC_TRUE : PETSC_FALSE, left ? modes->y : modes->x, &columns));
+  PetscCall(ColumnsCollect(modes, c->matrices.C ? PETSC_TRUE : PETSC_FALSE, left ? modes->y : modes->x, &columns));
   PetscCall(BasisCreateBlock(basis, columns.n_columns, &vectors));
   PetscCall(BasisLift(basis, modes->size, columns.n_columns, columns.coordinates, vectors));
   PetscCall(BVSetActiveColumns(block, *n, *n + columns.n_columns));
   PetscCall(BVGetMat(vectors, &X));
   PetscCall(MatDuplicate(X, MAT_DO_NOT_COPY_VALUES, &R));
-  PetscCall(ResidualMake(&c->pencil, left, &columns, X, R));
+  PetscCall(ResidualMake(&c->matrices, left, &columns, X, R));
   PetscCall(BVGetMat(block, &Z));
   PetscCall(ShiftInvertApplyBlock(&c->factor, left, R, Z));
   PetscCall(BVRestoreMat(block, &Z));
@@ -188,15 +188,15 @@ PetscErrorCode CorrectionCount(const Basis *basis, const PetscReal p[], const Re
 {
   const Reduced      *reduced = &basis->reduced;
   const ReducedWindow w       = {window->low < 0.5 * window->high ? 0 : window->low, window->high, PETSC_MAX_REAL};
-  OperatorsPencil     frictionless;
+  PencilMatrices      frictionless;
   ReducedModes        modes;
   PetscReal          *p0;
   PetscInt            below = 0;
 
   PetscFunctionBeginUser;
   *full = *by_basis = -1;
-  PetscCall(OperatorsSetParameters(basis->operators, p));
-  PetscCall(OperatorsGetFrictionless(basis->operators, &frictionless));
+  PetscCall(PencilSetParameters(basis->pencil, p));
+  PetscCall(PencilGetFrictionless(basis->pencil, &frictionless));
   PetscCall(PetscMalloc1(reduced->n_parameters, &p0));
   PetscCall(PetscArraycpy(p0, p, reduced->n_parameters));
   if (frictionless.symmetric && ReducedFrictionless(reduced, p0)) {

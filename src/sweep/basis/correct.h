@@ -6,15 +6,15 @@
 
 /* The full pencil at a point and its factorisation */
 typedef struct {
-  OperatorsPencil pencil;
-  ShiftInvert     factor;
+  PencilMatrices matrices;
+  ShiftInvert    factor;
 } Correction;
 
-/* Sets the operators to p and factors the pencil near the window's modes */
-PetscErrorCode CorrectionCreate(Operators operators, const PetscReal p[], const ReducedWindow *window,
-                                Progress *progress, Correction *correction);
+/* Sets the pencil to p and factors it near the window's modes */
+PetscErrorCode CorrectionCreate(Pencil pencil, const PetscReal p[], const ReducedWindow *window, Progress *progress,
+                                Correction *correction);
 /* Moves to other values p nearby: the pencil is made for them, the factorisation stays */
-PetscErrorCode CorrectionMove(Operators operators, const PetscReal p[], Correction *correction);
+PetscErrorCode CorrectionMove(Pencil pencil, const PetscReal p[], Correction *correction);
 /* Appends to the basis the corrections of all modes (right and left vectors) whose M-norm exceeds drop; n_added =
    vectors gained */
 PetscErrorCode CorrectionApply(const Correction *correction, const ReducedModes *modes, PetscReal drop, Basis *basis,
@@ -22,7 +22,7 @@ PetscErrorCode CorrectionApply(const Correction *correction, const ReducedModes 
 PetscErrorCode CorrectionDestroy(Correction *correction);
 
 /* Frictionless modes in the window (from zero on where its lower end is below half of the upper one) by Sylvester's law
-   of inertia with the operators at p, and by the basis; alike where the basis lacks none. Both are -1 where the
+   of inertia with the pencil at p, and by the basis; alike where the basis lacks none. Both are -1 where the
    matrices cannot be made frictionless. */
 PetscErrorCode CorrectionCount(const Basis *basis, const PetscReal p[], const ReducedWindow *window, Progress *progress,
                                PetscInt *full, PetscInt *by_basis);

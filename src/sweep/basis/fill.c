@@ -53,7 +53,7 @@ PetscErrorCode BasisFillReal(Basis *basis, Modes modes, PetscInt n_modes, PetscR
   PetscFunctionBeginUser;
   PetscCheck(ReducedFrictionless(&basis->reduced, p), basis->comm, PETSC_ERR_USER_INPUT,
              "-sweep_method real: the matrices cannot be made frictionless; use reduced");
-  PetscCall(OperatorsSetParameters(basis->operators, p));
+  PetscCall(PencilSetParameters(basis->pencil, p));
   PetscCall(ModesGetBand(modes, band, &growth));
   PetscCall(ModesSetNearest(modes, 0, n_modes));
   PetscCall(ModesSolve(modes));
@@ -65,7 +65,7 @@ PetscErrorCode BasisFillReal(Basis *basis, Modes modes, PetscInt n_modes, PetscR
 
     PetscCall(ModesGetVectors(modes, i, &u, NULL, NULL, NULL));
     PetscCall(BVGetColumn(block, i, &q));
-    PetscCall(OperatorsRestrict(basis->operators, u, q));
+    PetscCall(PencilRestrict(basis->pencil, u, q));
     PetscCall(BVRestoreColumn(block, i, &q));
   }
   PetscCall(BasisTake(basis, &block, NULL));

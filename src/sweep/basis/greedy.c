@@ -60,7 +60,7 @@ static PetscErrorCode ModesToBlock(GreedyWork *run, PetscInt n, BV *block)
     for (int k = 0; k < 4; k++) {
       if (!part[k]) continue;
       PetscCall(BVGetColumn(*block, m, &q));
-      PetscCall(OperatorsRestrict(run->basis->operators, part[k], q));
+      PetscCall(PencilRestrict(run->basis->pencil, part[k], q));
       PetscCall(BVRestoreColumn(*block, m++, &q));
     }
   }
@@ -78,7 +78,7 @@ static PetscErrorCode SampleKrylov(GreedyWork *run, const PetscReal p[], PetscRe
   BV              block;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsSetParameters(run->basis->operators, p));
+  PetscCall(PencilSetParameters(run->basis->pencil, p));
   PetscCall(ModesGetBand(run->greedy->modes, band, &growth));
   PetscCall(ModesSetBand(run->greedy->modes, wide));
   PetscCall(ModesSolve(run->greedy->modes));
@@ -164,7 +164,7 @@ static PetscErrorCode SampleCorrect(GreedyWork *run, const PetscReal p[], PetscR
   PetscBool    complete = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  PetscCall(CorrectionCreate(run->basis->operators, p, &run->guarded, run->greedy->progress, &correction));
+  PetscCall(CorrectionCreate(run->basis->pencil, p, &run->guarded, run->greedy->progress, &correction));
   PetscCall(StepApply(run, &correction, p, &modes, &n_added, first));
   worst = *first;
   for (int step = 1; step < GREEDY_STEPS && worst > SAFE * run->greedy->rtol; step++) {
@@ -207,7 +207,7 @@ static PetscErrorCode ScaleGroups(const GreedyWork *run)
   PetscInt                  n, n_groups = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetParameters(run->basis->operators, &n, &parameters));
+  PetscCall(PencilGetParameters(run->basis->pencil, &n, &parameters, NULL));
   for (PetscInt k = 0; k < n; k++) n_groups += parameters[k].internal ? 1 : 0;
   for (PetscInt k = 0; k < n; k++)
     if (parameters[k].internal) run->scale[k] *= PetscSqrtReal((PetscReal)n_groups);

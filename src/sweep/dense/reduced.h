@@ -4,7 +4,7 @@
 */
 #pragma once
 
-#include <squeal/operators.h>
+#include <squeal/pencil.h>
 #include <complex.h>
 
 /* V' A_t V of every term of the pencil. The leading n_used vectors make the model; the remaining ones, Z, only serve to

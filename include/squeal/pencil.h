@@ -1,0 +1,137 @@
+/*
+   Pencil - the matrices of the system linearised about steady sliding
+
+      M u'' + C u' + (K + mu H) u = 0
+
+   M, K symmetric; C damping; H the unsymmetric friction part per unit friction coefficient; all are sums of fixed
+   matrices with monomials of the parameters for coefficients. Where an interface obeys the exact constraint N u = 0, the
+   pencil is the projection Zl' (.) Zr with N Zr = 0 and (N - mu T) Zl = 0; without constraints Zl = Zr = identity, and
+   nothing is projected.
+
+   A pencil has a point p of its own, as a PETSc object has its values: matrices that are handed out are formed at p when
+   they are asked for, in place where the pattern allows, so that many points cost no new symbolic work. It owns the
+   terms of the contact; those of the bodies it shares with the operators. Whoever needs two pencils makes two.
+*/
+#pragma once
+
+#include <squeal/operators.h>
+
+typedef struct _p_Pencil *Pencil;
+
+#define OPERATORS_MAX_FACTORS 5
+
+typedef enum { OPERATORS_STIFFNESS, OPERATORS_DAMPING, OPERATORS_MASS } OperatorsTermKind;
+
+/* A part of the pencil whose coefficient is a monomial of parameters: c(p) A, c = scale * prod_i p_i^power_i, where
+   |p_i| stands for p_i if absolute. K, C and M of the pencil are the sums of the terms of their kind. */
+typedef struct {
+  OperatorsTermKind kind;
+  Mat               A;          /* in the unknowns of the pencil (borrowed); several terms may share one */
+  PetscBool         frictional; /* vanishes without friction */
+  PetscBool         symmetric;  /* A is; never so for a frictional term */
+  PetscReal         scale;
+  PetscInt          n; /* factors */
+  struct {
+    PetscInt  parameter; /* index */
+    PetscInt  power;     /* 1 or -1 */
+    PetscBool absolute;
+  } factor[OPERATORS_MAX_FACTORS];
+} OperatorsTerm;
+
+/* Matrices of (lambda^2 M + lambda C + K) x = 0, friction included in K; borrowed */
+typedef struct {
+  Mat       K, C, M;   /* C is NULL without damping */
+  PetscBool symmetric; /* K, M (and C) symmetric */
+} PencilMatrices;
+
+/* Matrices of all unknowns, before any projection: K + mu H, M, C; borrowed; C and H may be NULL */
+typedef struct {
+  Mat       K, M, C, H;
+  PetscReal mu; /* the largest friction coefficient in absolute value */
+} PencilParts;
+
+/* What a pencil is linearised about. Made by statics, by a sweep for groups of pairs, or by hand; a value that nobody
+   else refers to. */
+typedef struct {
+  PetscInt   n_pairs;  /* local pairs */
+  PetscInt   n_groups; /* groups that are closed at some points and open at others (penalty law only) */
+  PetscInt  *group;    /* [n_pairs] -1 open, 0 closed, g = 1 .. n_groups closed as far as the parameter closed_g is 1 */
+  PetscBool  has_forces; /* alike on all ranks: lambda_n is known; else -contact_force counts */
+  PetscReal *lambda_n;   /* [n_pairs] normal forces, N, for the friction damping */
+  Mat        geometric;  /* stiffness of all unknowns that the stress adds, symmetric; NULL for none */
+  Mat        follower;   /* that of forces that follow the surface, unsymmetric; NULL for none */
+  PetscInt   n_parameters;
+  PetscReal *p; /* [n_parameters] the point that it was made for; NULL: the values of the scene */
+} SlidingState;
+
+/*@ SlidingStateCreate - a state in which the local pairs have these groups (copied), without forces, preload or point;
+    PETSc memory and references are put into the other fields directly. Not collective. @*/
+PetscErrorCode SlidingStateCreate(PetscInt n_pairs, PetscInt n_groups, const PetscInt group[], SlidingState *state);
+
+/*@ SlidingStateDestroy - frees what a state holds. Collective. @*/
+PetscErrorCode SlidingStateDestroy(SlidingState *state);
+
+/*@
+   OperatorsLinearise - makes a pencil about a sliding state, or, where it is NULL, with all pairs closed. Its point is
+   that of the state, or the scene, but that the total normal forces are those of the state where it has forces.
+   Collective. The state may be destroyed; the operators are referenced until PencilDestroy().
+
+   Errors: PETSC_ERR_USER_INPUT for an interface with friction of which nothing says along what it slides, and for
+   friction damping without a normal force; PETSC_ERR_SUP for groups with the exact constraint, and where it cannot be
+   eliminated.
+@*/
+PetscErrorCode OperatorsLinearise(Operators operators, const SlidingState *state, Pencil *pencil);
+
+/*@ PencilGetParameters - the parameters of the operators, then closed_1, closed_2, ... of the groups, and the present
+    point (borrowed); pass NULL for what is not needed. Not collective. @*/
+PetscErrorCode PencilGetParameters(Pencil pencil, PetscInt *n, const OperatorsParameter **parameters,
+                                   const PetscReal **p);
+
+/*@ PencilSetParameters - moves the pencil to another point p. Matrices got before are to be got again: the call that
+    gets one writes the new values into the same matrix, or makes another one where a coefficient that was zero (mu,
+    damping) is no more or has become zero. Collective.
+    Errors: PETSC_ERR_USER_INPUT for a value outside the limits of its parameter. @*/
+PetscErrorCode PencilSetParameters(Pencil pencil, const PetscReal p[]);
+
+/*@ PencilGetTerms - the terms (borrowed), valid at any point. Collective at the first call. @*/
+PetscErrorCode PencilGetTerms(Pencil pencil, PetscInt *n, const OperatorsTerm **terms);
+
+/*@ OperatorsTermCoefficient - c(p) for the values p of all parameters. Not collective. @*/
+PetscReal OperatorsTermCoefficient(const OperatorsTerm *term, const PetscReal p[]);
+
+/*@ OperatorsTermDerivative - the derivative of c(p) by one parameter. Not collective. @*/
+PetscReal OperatorsTermDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt parameter);
+
+/*@ PencilGetMatrices - the matrices with friction. Collective. @*/
+PetscErrorCode PencilGetMatrices(Pencil pencil, PencilMatrices *matrices);
+
+/*@ PencilGetFrictionless - the symmetric undamped matrices at mu = 0, of the same size. Collective. @*/
+PetscErrorCode PencilGetFrictionless(Pencil pencil, PencilMatrices *matrices);
+
+/*@ PencilGetParts - the matrices of all unknowns, friction apart. Collective. @*/
+PetscErrorCode PencilGetParts(Pencil pencil, PencilParts *parts);
+
+/*@ PencilGetMass - the mass matrix of all unknowns (borrowed). Collective. @*/
+PetscErrorCode PencilGetMass(Pencil pencil, Mat *M);
+
+/*@ PencilGetClosed - over all ranks the pairs that are closed, those of groups included, and whether a sliding state
+    told so. Collective. @*/
+PetscErrorCode PencilGetClosed(Pencil pencil, PetscInt *n_closed, PetscBool *from_state);
+
+/*@ PencilExpand - unknowns of the pencil to all unknowns, u = Zr q (or Zl q for a left vector). Collective. @*/
+PetscErrorCode PencilExpand(Pencil pencil, PetscBool left, Vec q, Vec u);
+
+/*@ PencilRestrict - the inverse of PencilExpand() for a vector that obeys the constraints. Collective. @*/
+PetscErrorCode PencilRestrict(Pencil pencil, Vec u, Vec q);
+
+/*@ PencilGetOperators - what it was made from (borrowed). Not collective. @*/
+PetscErrorCode PencilGetOperators(Pencil pencil, Operators *operators);
+
+/*@ PencilSave - writes the matrices into the folder of -operators_save. Collective. @*/
+PetscErrorCode PencilSave(Pencil pencil);
+
+/*@ PencilView - sizes and kinds in words. Collective. @*/
+PetscErrorCode PencilView(Pencil pencil, PetscViewer viewer);
+
+/*@ PencilDestroy - frees the pencil. Collective. @*/
+PetscErrorCode PencilDestroy(Pencil *pencil);

@@ -1,0 +1,241 @@
+/*
+   Pencil: life cycle, point, and access. Everything that is handed out is a sum of terms at the present point, formed
+   when it is asked for.
+*/
+#include "pencilimpl.h"
+
+PetscErrorCode OperatorsLinearise(Operators operators, const SlidingState *state, Pencil *pencil)
+{
+  Pencil s;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, &s));
+  *pencil      = s;
+  s->comm      = operators->comm;
+  s->operators = operators;
+  PetscCall(PencilTakeState(s, state));
+  PetscCall(PencilCheckSliding(s));
+  PetscCall(TermsAppend(&s->base, &operators->terms));
+  if (operators->model) PetscCall(PencilAddContact(s));
+  if (state && state->geometric)
+    PetscCall(TermsAdd(&s->base, OPERATORS_STIFFNESS, state->geometric, PETSC_TRUE, 0, NULL));
+  if (state && state->follower)
+    PetscCall(TermsAdd(&s->base, OPERATORS_STIFFNESS, state->follower, PETSC_FALSE, 0, NULL));
+  if (operators->model) PetscCall(PencilCreateNullSpaces(s));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilGetParameters(Pencil pencil, PetscInt *n, const OperatorsParameter **parameters,
+                                   const PetscReal **p)
+{
+  PetscFunctionBeginUser;
+  if (n) *n = pencil->parameters.n;
+  if (parameters) *parameters = pencil->parameters.list;
+  if (p) *p = pencil->parameters.p;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilSetParameters(Pencil pencil, const PetscReal p[])
+{
+  const PetscInt n = pencil->parameters.n;
+  PetscBool      same;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) PetscCall(ParameterCheck(pencil->comm, &pencil->parameters.list[i], p[i]));
+  PetscCall(PetscArraycmp(pencil->parameters.p, p, n, &same));
+  if (same) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(pencil->parameters.p, p, n));
+  for (int i = 0; i < N_PENCIL_SUMS; i++) pencil->sum[i].current = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* What each sum is made of */
+static const struct {
+  TermsSumKind kind;
+  PetscBool    symmetric;   /* without friction and damping */
+  PencilSum    unprojected; /* the same sum when no constraint projects */
+} sums[N_PENCIL_SUMS] = {
+  [SUM_K]       = {{OPERATORS_STIFFNESS, TERMS_SYMMETRIC, 1},   PETSC_TRUE,  SUM_K   },
+  [SUM_M]       = {{OPERATORS_MASS, TERMS_ALL, 1},              PETSC_TRUE,  SUM_M   },
+  [SUM_C]       = {{OPERATORS_DAMPING, TERMS_ALL, 1},           PETSC_FALSE, SUM_C   },
+  [SUM_H]       = {{OPERATORS_STIFFNESS, TERMS_UNSYMMETRIC, 1}, PETSC_FALSE, SUM_H   },
+  [PROJECTED_K] = {{OPERATORS_STIFFNESS, TERMS_SYMMETRIC, 1},   PETSC_TRUE,  SUM_K   },
+  [PROJECTED_M] = {{OPERATORS_MASS, TERMS_SYMMETRIC, 1},        PETSC_TRUE,  SUM_M   },
+  [PENCIL_K]    = {{OPERATORS_STIFFNESS, TERMS_ALL, 1},         PETSC_FALSE, PENCIL_K},
+  [PENCIL_M]    = {{OPERATORS_MASS, TERMS_ALL, 1},              PETSC_FALSE, SUM_M   },
+  [PENCIL_C]    = {{OPERATORS_DAMPING, TERMS_ALL, 1},           PETSC_FALSE, SUM_C   },
+};
+
+/* One of the sums at the present point (borrowed); NULL when it vanishes */
+static PetscErrorCode PencilFormSum(Pencil pencil, PencilSum which, Mat *A)
+{
+  const PencilSum  at        = pencil->Zr ? which : sums[which].unprojected;
+  const PetscBool  projected = pencil->Zr && at >= PROJECTED_K ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal *p = pencil->parameters.p, mu = OperatorsLargestMu(pencil->operators, p);
+  TermsSum        *sum  = &pencil->sum[at];
+  TermsSumKind     kind = sums[at].kind;
+
+  PetscFunctionBeginUser;
+  if (!sum->current) {
+    if (projected) PetscCall(PencilProjectTerms(pencil));
+    if (at == SUM_H && mu != 0) kind.scale = 1 / mu;
+    PetscCall(TermsSumForm(projected ? &pencil->projected : &pencil->base, &kind, p, sum));
+    if (sum->A) PetscCall(MatSetOption(sum->A, MAT_SYMMETRIC, sums[at].symmetric && pencil->operators->symmetric));
+  }
+  *A = sum->A;
+  PetscFunctionReturn(0);
+}
+
+/* H: the one given, at any mu, or that of a model, which vanishes with mu */
+static PetscErrorCode PencilFormFriction(Pencil pencil, Mat *H)
+{
+  const OperatorsTerm *last = &pencil->base.term[pencil->base.n - 1];
+
+  PetscFunctionBeginUser;
+  if (pencil->operators->model)
+    PetscCall(PencilFormSum(pencil, SUM_H, H));
+  else
+    *H = last->frictional ? last->A : NULL;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilGetParts(Pencil pencil, PencilParts *parts)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PencilFormSum(pencil, SUM_K, &parts->K));
+  PetscCall(PencilFormSum(pencil, SUM_M, &parts->M));
+  PetscCall(PencilFormSum(pencil, SUM_C, &parts->C));
+  PetscCall(PencilFormFriction(pencil, &parts->H));
+  parts->mu = OperatorsLargestMu(pencil->operators, pencil->parameters.p);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilGetMass(Pencil pencil, Mat *M)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PencilFormSum(pencil, SUM_M, M));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilGetTerms(Pencil pencil, PetscInt *n, const OperatorsTerm **terms)
+{
+  const Terms *list = pencil->Zr ? &pencil->projected : &pencil->base;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilProjectTerms(pencil));
+  *n     = list->n;
+  *terms = list->term;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilGetMatrices(Pencil pencil, PencilMatrices *m)
+{
+  const Terms     *terms = pencil->Zr ? &pencil->projected : &pencil->base;
+  const PetscReal *p     = pencil->parameters.p;
+  PetscBool        frictionless, same_mass;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilProjectTerms(pencil));
+  frictionless = TermsVanish(terms, TERMS_UNSYMMETRIC, PETSC_FALSE, p);
+  same_mass    = TermsVanish(terms, TERMS_UNSYMMETRIC, PETSC_TRUE, p);
+  m->symmetric = pencil->operators->symmetric && frictionless ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(PencilFormSum(pencil, frictionless ? PROJECTED_K : PENCIL_K, &m->K));
+  PetscCall(PencilFormSum(pencil, same_mass ? PROJECTED_M : PENCIL_M, &m->M));
+  PetscCall(PencilFormSum(pencil, PENCIL_C, &m->C));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilGetFrictionless(Pencil pencil, PencilMatrices *m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PencilFormSum(pencil, PROJECTED_K, &m->K));
+  PetscCall(PencilFormSum(pencil, PROJECTED_M, &m->M));
+  m->C         = NULL;
+  m->symmetric = pencil->operators->symmetric;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilGetClosed(Pencil pencil, PetscInt *n_closed, PetscBool *from_state)
+{
+  PetscFunctionBeginUser;
+  *from_state = pencil->from_state;
+  *n_closed   = 0;
+  for (PetscInt p = 0; p < pencil->n_pairs; p++) *n_closed += pencil->group[p] >= 0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n_closed, 1, MPIU_INT, MPI_SUM, pencil->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilExpand(Pencil pencil, PetscBool left, Vec q, Vec u)
+{
+  Vec part;
+
+  PetscFunctionBeginUser;
+  if (!pencil->Zr) {
+    PetscCall(VecCopy(q, u));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(MatMult(pencil->Zr, q, u));
+  if (!left) PetscFunctionReturn(0);
+  PetscCall(VecDuplicate(u, &part));
+  for (PetscInt i = 0; i < pencil->n_left; i++) {
+    PetscCall(MatMult(pencil->left[i], q, part));
+    PetscCall(VecAXPY(u, pencil->parameters.p[pencil->left_mu[i]], part));
+  }
+  PetscCall(VecDestroy(&part));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilRestrict(Pencil pencil, Vec u, Vec q)
+{
+  PetscFunctionBeginUser;
+  if (pencil->E)
+    PetscCall(MatMultTranspose(pencil->E, u, q));
+  else
+    PetscCall(VecCopy(u, q));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilGetOperators(Pencil pencil, Operators *operators)
+{
+  PetscFunctionBeginUser;
+  *operators = pencil->operators;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilView(Pencil pencil, PetscViewer viewer)
+{
+  PencilMatrices m;
+  PetscInt       n, n_pencil;
+  MatInfo        info;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetMatrices(pencil, &m));
+  PetscCall(MatGetSize(pencil->base.term[0].A, &n, NULL));
+  PetscCall(MatGetSize(m.K, &n_pencil, NULL));
+  PetscCall(MatGetInfo(m.K, MAT_GLOBAL_SUM, &info));
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer, "operators: %" PetscInt_FMT " unknowns, %.0f nonzeros, %s, %s, %s mass\n", n_pencil, (double)info.nz_used,
+    m.symmetric ? "no friction: symmetric" : "friction: unsymmetric", m.C ? "damped: quadratic problem" : "undamped",
+    pencil->operators->lump ? "lumped" : "consistent"));
+  if (n_pencil < n)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " unknowns eliminated by the contact constraint\n",
+                                     n - n_pencil));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilDestroy(Pencil *pencil)
+{
+  Pencil s = *pencil;
+
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(0);
+  for (int i = 0; i < N_PENCIL_SUMS; i++) PetscCall(TermsSumDestroy(&s->sum[i]));
+  PetscCall(PencilDestroyNullSpaces(s));
+  PetscCall(TermsDestroy(&s->base));
+  PetscCall(ParametersDestroy(&s->parameters));
+  PetscCall(PetscFree(s->group));
+  PetscCall(PetscFree(s->force));
+  PetscCall(PetscFree(s->total));
+  PetscCall(PetscFree(*pencil));
+  PetscFunctionReturn(0);
+}

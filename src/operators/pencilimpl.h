@@ -1,0 +1,54 @@
+/* Private to operators/: the record of a pencil */
+#pragma once
+
+#include "operatorsimpl.h"
+
+/* Sums in all unknowns, K symmetric and H = unsymmetric / mu; then those in the unknowns of the pencil, PROJECTED from
+   the symmetric terms, PENCIL from all */
+typedef enum {
+  SUM_K,
+  SUM_M,
+  SUM_C,
+  SUM_H,
+  PROJECTED_K,
+  PROJECTED_M,
+  PENCIL_K,
+  PENCIL_M,
+  PENCIL_C,
+  N_PENCIL_SUMS
+} PencilSum;
+
+struct _p_Pencil {
+  MPI_Comm   comm;
+  Operators  operators;
+  PetscInt   n_scene;    /* parameters of the operators */
+  Parameters parameters; /* those, then closed_g; at the present point */
+  /* the sliding state */
+  PetscBool  from_state, has_forces; /* there is one, with normal forces */
+  PetscInt   n_pairs, n_groups;
+  PetscInt  *group; /* [n_pairs] of each local pair as in SlidingState */
+  PetscReal *force; /* [n_pairs] normal force, N: of the state, or of -contact_force shared by area */
+  PetscReal *total; /* [interfaces] their sums over all ranks */
+  /* matrices */
+  Terms     base;   /* in all unknowns: those of the bodies, of the contact, of the preload */
+  Mat       Zr, E;  /* right null space of the constraints and its injection; NULL without constraints */
+  PetscInt  n_left; /* Zl = Zr + sum_i p[left_mu[i]] left[i] */
+  Mat      *left;
+  PetscInt *left_mu;
+  Terms     projected; /* in the unknowns of the pencil, made when asked for; empty without constraints: base serves */
+  TermsSum  sum[N_PENCIL_SUMS];
+};
+
+/* slidingstate.c - takes the groups and forces of a state, or those of the scene; its parameters and point */
+PETSC_INTERN PetscErrorCode PencilTakeState(Pencil pencil, const SlidingState *state);
+
+/* friction.c - terms of the closed pairs; raises an error where the scene does not say what sliding state the pencil
+   would be linearised about */
+PETSC_INTERN PetscErrorCode PencilAddContact(Pencil pencil);
+PETSC_INTERN PetscErrorCode PencilCheckSliding(Pencil pencil);
+
+/* constraint.c - null spaces of the closed pairs that obey the exact constraint; terms between them, where they are not
+   there yet */
+PETSC_INTERN PetscErrorCode PencilCreateNullSpaces(Pencil pencil);
+PETSC_INTERN PetscErrorCode PencilProjectTerms(Pencil pencil);
+PETSC_INTERN PetscErrorCode PencilDestroyNullSpaces(Pencil pencil);

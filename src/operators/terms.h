@@ -1,0 +1,55 @@
+/* Private to operators/: lists of terms, their sums, and lists of parameters */
+#pragma once
+
+#include <squeal/pencil.h>
+
+typedef struct {
+  PetscInt       n;
+  OperatorsTerm *term; /* each holds a reference of its matrix */
+} Terms;
+
+/* Which terms of a kind make a sum */
+typedef enum { TERMS_ALL, TERMS_SYMMETRIC, TERMS_UNSYMMETRIC } TermsChoice;
+
+/* scale sum_t c_t(p) A_t of the chosen terms of a kind */
+typedef struct {
+  OperatorsTermKind kind;
+  TermsChoice       choice;
+  PetscReal         scale;
+} TermsSumKind;
+
+/* Such a sum; its pattern is the union of those terms that it has been formed from */
+typedef struct {
+  Mat        A;       /* NULL when all coefficients are zero */
+  PetscBool *has;     /* [terms] whether the pattern covers the term */
+  PetscReal *c;       /* [terms] coefficients that it was formed with */
+  PetscBool  current; /* formed at the present point, where its owner has one */
+} TermsSum;
+
+/* terms.c - adds A (one more reference) with a product of n parameters for coefficient, whose powers may be changed
+   after; adds copies of all terms of another list; whether all coefficients of the chosen terms, of the mass or of all
+   kinds, are zero at p */
+PETSC_INTERN PetscErrorCode TermsAdd(Terms *terms, OperatorsTermKind kind, Mat A, PetscBool symmetric, PetscInt n,
+                                     const PetscInt parameter[]);
+PETSC_INTERN PetscErrorCode TermsAppend(Terms *terms, const Terms *more);
+PETSC_INTERN PetscBool TermsVanish(const Terms *terms, TermsChoice choice, PetscBool mass_only, const PetscReal p[]);
+PETSC_INTERN PetscErrorCode TermsDestroy(Terms *terms);
+
+/* sum.c - forms a sum at p: values in place where the pattern allows, nothing where the coefficients are the same */
+PETSC_INTERN PetscErrorCode TermsSumForm(const Terms *terms, const TermsSumKind *kind, const PetscReal p[],
+                                         TermsSum *sum);
+PETSC_INTERN PetscErrorCode TermsSumDestroy(TermsSum *sum);
+
+/* Parameters and a point of them */
+typedef struct {
+  PetscInt            n;
+  OperatorsParameter *list;
+  PetscReal          *p; /* [n] */
+} Parameters;
+
+/* parameter.c - adds the parameter <owner>_<what> with the unit, value, limits and marks of `like`, upper INFINITY where
+   it is 0; raises the error for a value outside its limits */
+PETSC_INTERN PetscErrorCode ParametersAdd(Parameters *parameters, const char owner[], const char what[],
+                                          const OperatorsParameter *like, PetscInt *index);
+PETSC_INTERN PetscErrorCode ParameterCheck(MPI_Comm comm, const OperatorsParameter *parameter, PetscReal value);
+PETSC_INTERN PetscErrorCode ParametersDestroy(Parameters *parameters);

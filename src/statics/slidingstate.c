@@ -1,0 +1,71 @@
+/*
+   From an equilibrium to the sliding state that a pencil is made about: the closed pairs, with rows of pairs more or
+   less where -static_rows asks for it, the normal forces that friction damping needs, and the optional stiffness of the
+   preload.
+*/
+#include "preload.h"
+#include "staticsimpl.h"
+
+PetscErrorCode StaticsIsAffine(Statics s, PetscBool *affine)
+{
+  const ContactInterface *interfaces;
+  PetscInt                n;
+  Contact                 contact;
+
+  PetscFunctionBeginUser;
+  *affine = s->geometric || s->follower ? PETSC_FALSE : PETSC_TRUE;
+  PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
+  PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
+  for (PetscInt i = 0; i < n; i++)
+    if (interfaces[i].damping) *affine = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Modes about the sliding state need one: every pair slides or is open */
+static PetscErrorCode StaticsCheckSliding(Statics s)
+{
+  const ContactInterface *interfaces;
+  PetscInt                n;
+  Contact                 contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
+  PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
+  for (PetscInt i = 0; i < n; i++)
+    PetscCheck(interfaces[i].force == 0, s->comm, PETSC_ERR_USER_INPUT,
+               "-%s_force %.6g does nothing with -modes_contact static, which takes the normal forces from the -loads",
+               interfaces[i].name, (double)interfaces[i].force);
+  for (PetscInt i = 0; i < n; i++)
+    PetscCheck(interfaces[i].slides || interfaces[i].mu == 0, s->comm, PETSC_ERR_USER_INPUT,
+               "-modes_contact static needs to know along what contact %s slides: give -%s_slip x,y,z or -%s_rotation",
+               interfaces[i].name, interfaces[i].name, interfaces[i].name);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsSolveSliding(Statics s, const PetscReal p[], SlidingState *state)
+{
+  PetscBool *closed;
+  PetscInt  *group;
+  Contact    contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(StaticsSetUp(s, p));
+  PetscCall(StaticsCheckSliding(s));
+  PetscCall(StaticsSolve(s, p));
+  PetscCall(PetscMalloc2(s->rows.n_pairs, &closed, s->rows.n_pairs, &group));
+  for (PetscInt i = 0; i < s->rows.n_pairs; i++) closed[i] = (PetscBool)(s->state[i].status != CONTACT_OPEN);
+  PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
+  if (s->rows_more) PetscCall(ContactGrow(contact, s->rows_more, closed));
+  for (PetscInt i = 0; i < s->rows.n_pairs; i++) group[i] = closed[i] ? 0 : -1;
+  PetscCall(SlidingStateCreate(s->rows.n_pairs, 0, group, state));
+  PetscCall(PetscFree2(closed, group));
+  state->has_forces = PETSC_TRUE;
+  PetscCall(PetscMalloc1(state->n_pairs, &state->lambda_n));
+  for (PetscInt i = 0; i < state->n_pairs; i++) state->lambda_n[i] = s->state[i].lambda_n;
+  state->n_parameters = s->n_parameters;
+  PetscCall(PetscMalloc1(state->n_parameters, &state->p));
+  PetscCall(PetscArraycpy(state->p, s->p, state->n_parameters));
+  if (s->geometric) PetscCall(GeometricStiffnessCreate(s->operators, s->p, s->u, &state->geometric));
+  if (s->follower) PetscCall(FollowerStiffnessCreate(s->operators, s->state, &state->follower));
+  PetscFunctionReturn(0);
+}
