@@ -4,6 +4,7 @@
 */
 #pragma once
 
+#include "base/vec3.h"
 #include <math.h>
 
 /* Weights of the four corners at (xi, eta) */
@@ -34,9 +35,7 @@ static inline void FacetNormal(const double x[4][3], double xi, double eta, doub
   double p[3], a[3], b[3];
 
   FacetTangents(x, xi, eta, p, a, b);
-  n[0] = a[1] * b[2] - a[2] * b[1];
-  n[1] = a[2] * b[0] - a[0] * b[2];
-  n[2] = a[0] * b[1] - a[1] * b[0];
+  Vec3Cross(a, b, n);
 }
 
 /* Corner shares of the area vector, integral of w_i n dA (m^2); 2 x 2 Gauss points are exact */

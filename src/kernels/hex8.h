@@ -21,6 +21,7 @@
 */
 #pragma once
 
+#include "base/vec3.h"
 #include <math.h>
 #include <string.h>
 #include <squeal/elasticity.h>
@@ -69,14 +70,6 @@ static inline void Hex8Shape(const double xi[3], double N[HEX8_NODES], double dN
   }
 }
 
-/* c = a x b */
-static inline void Hex8Cross(const double a[3], const double b[3], double c[3])
-{
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* Jacobian j (m^3) and cofactors c[k][i] (m^2) */
 static inline double Hex8Jacobian(const double *x, const double dN[HEX8_DOFS], double c[9])
 {
@@ -87,10 +80,10 @@ static inline double Hex8Jacobian(const double *x, const double dN[HEX8_DOFS], d
       for (int i = 0; i < 3; i++) t[3 * k + i] += dN[3 * a + k] * x[3 * a + i];
     }
   }
-  Hex8Cross(t + 3, t + 6, c);
-  Hex8Cross(t + 6, t, c + 3);
-  Hex8Cross(t, t + 3, c + 6);
-  return t[0] * c[0] + t[1] * c[1] + t[2] * c[2];
+  Vec3Cross(t + 3, t + 6, c);
+  Vec3Cross(t + 6, t, c + 3);
+  Vec3Cross(t, t + 3, c + 6);
+  return Vec3Dot(t, c);
 }
 
 /* j times the gradients, g[3 (n_bubbles + 8)]: bubbles with the centre's cofactors c0, then shape functions with c */

@@ -3,14 +3,10 @@
    equations by BLAS.
 */
 #include "disc.h"
+#include "base/vec3.h"
 #include <petscblaslapack.h>
 
 #define BINS 720 /* of the rim, to find gaps between columns of nodes */
-
-static PetscReal Dot(const PetscReal a[3], const PetscReal b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /* Centre (m) and second moments per mass, sum m d d' / sum m (m^2), over all ranks */
 static PetscErrorCode Moments(MPI_Comm comm, PetscInt n, const PetscReal x[], const PetscReal mass[],
@@ -62,17 +58,16 @@ static void FindPlane(Disc *disc, const PetscReal to[])
     disc->e1[d] = to ? to[d] - disc->centre[d] : 0;
   }
   if (!to) disc->e1[least] = 1;
-  along = Dot(disc->e1, disc->axis);
+  along = Vec3Dot(disc->e1, disc->axis);
   for (int d = 0; d < 3; d++) disc->e1[d] -= along * disc->axis[d];
-  length = PetscSqrtReal(Dot(disc->e1, disc->e1));
+  length = Vec3Length(disc->e1);
   if (to && length < 1e-3 * disc->size) { /* a contact all around the axis has no angle */
     disc->has_contact = PETSC_FALSE;
     FindPlane(disc, NULL);
     return;
   }
   for (int d = 0; d < 3; d++) disc->e1[d] /= length;
-  for (int d = 0; d < 3; d++)
-    disc->e2[d] = disc->axis[(d + 1) % 3] * disc->e1[(d + 2) % 3] - disc->axis[(d + 2) % 3] * disc->e1[(d + 1) % 3];
+  Vec3Cross(disc->axis, disc->e1, disc->e2);
 }
 
 void DiscLegendre(const Disc *disc, PetscReal r, PetscReal p[DISC_POLYNOMIALS])
@@ -88,7 +83,7 @@ void DiscLegendre(const Disc *disc, PetscReal r, PetscReal p[DISC_POLYNOMIALS])
 static void DiscPolar(const Disc *disc, const PetscReal x[3], PetscReal *r, PetscReal *theta)
 {
   const PetscReal d[3] = {x[0] - disc->centre[0], x[1] - disc->centre[1], x[2] - disc->centre[2]};
-  const PetscReal a = Dot(d, disc->e1), b = Dot(d, disc->e2);
+  const PetscReal a = Vec3Dot(d, disc->e1), b = Vec3Dot(d, disc->e2);
 
   *r     = PetscSqrtReal(a * a + b * b);
   *theta = atan2(b, a);
@@ -205,7 +200,7 @@ PetscReal DiscProject(Disc *disc, PetscInt column, const PetscReal u[])
   PetscReal *const rhs = &disc->fit[column * DISC_TERMS], energy = 0;
 
   for (PetscInt i = 0; i < disc->n_nodes; i++) {
-    const PetscReal w = Dot(&u[3 * disc->node[i]], disc->axis), weighted = w * disc->weight[i];
+    const PetscReal w = Vec3Dot(&u[3 * disc->node[i]], disc->axis), weighted = w * disc->weight[i];
 
     energy += weighted * w;
     for (int k = 0; k < DISC_TERMS; k++) rhs[k] += weighted * disc->basis[i * DISC_TERMS + k];

@@ -5,6 +5,7 @@
 */
 #pragma once
 
+#include "base/vec3.h"
 #include "brake.h"
 
 #define FREE                                                                                                           \
@@ -15,23 +16,13 @@
 
 static const PetscReal turn[3] = {0.3, -0.7, 0.5}; /* a rotation, rad */
 
-static inline void Cross(const PetscReal a[3], const PetscReal b[3], PetscReal c[3])
-{
-  for (int d = 0; d < 3; d++) c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
-}
-
-static inline PetscReal Dot(const PetscReal a[3], const PetscReal b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* A field over the vertices at x; from any local vector of three values per vertex where it is given */
 typedef void (*Field)(const PetscReal x[3], const PetscReal value[3], PetscReal u[3]);
 
 static inline void Rotation(const PetscReal x[3], const PetscReal value[3], PetscReal u[3])
 {
   (void)value;
-  Cross(turn, x, u);
+  Vec3Cross(turn, x, u);
 }
 
 /* A field as a vector of the unknowns, at the vertices of a set or, where it is NULL, at all */

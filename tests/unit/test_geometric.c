@@ -79,7 +79,7 @@ static int TestRigid(int f, const Elasticity *e)
 
   PatchCell(2, x);
   for (int i = 0; i < N; i++) u[i] = 1e-3 * sin(1 + 7.0 * i * i);
-  for (int i = 0; i < N; i += 3) Hex8Cross(w, x + i, turn + i);
+  for (int i = 0; i < N; i += 3) Vec3Cross(w, x + i, turn + i);
   failed = formulations[f].matrices(x, e, K, M) + geometric[f](x, e, u, k);
   for (int i = 0; i < N; i += 3) {
     double force[3] = {0, 0, 0}, expected[3], moved[3] = {0, 0, 0}, sum[3] = {0, 0, 0};
@@ -89,7 +89,7 @@ static int TestRigid(int f, const Elasticity *e)
       moved[s / N] += k[N * (i + s / N) + s % N] * turn[s % N];
       sum[s / N] += k[N * (i + s / N) + s % N];
     }
-    Hex8Cross(w, force, expected);
+    Vec3Cross(w, force, expected);
     for (int d = 0; d < 3; d++) {
       scale = fmax(scale, fabs(expected[d]));
       error = fmax(error, fabs(moved[d] - expected[d]));

@@ -86,7 +86,7 @@ static void VolumeByFaces(const double x[N], double *volume, double moment[3])
       double point[3], a[3], b[3], n[3];
 
       FacetTangents((const double(*)[3])corner, p[q % 3], p[q / 3], point, a, b);
-      Hex8Cross(a, b, n);
+      Vec3Cross(a, b, n);
       for (int i = 0; i < 3; i++) {
         *volume += w[q % 3] * w[q / 3] * point[i] * n[i] / 3;
         moment[i] += w[q % 3] * w[q / 3] * point[i] * point[i] * n[i] / 2;

@@ -15,7 +15,7 @@ static void Wave(const PetscReal x[3], const PetscReal value[3], PetscReal u[3])
 static void Turned(const PetscReal x[3], const PetscReal value[3], PetscReal u[3])
 {
   (void)x;
-  Cross(turn, value, u);
+  Vec3Cross(turn, value, u);
 }
 
 /* Breaks when: a rank takes no displacements of its neighbours' vertices, or the stress is that of another Young's
@@ -73,7 +73,7 @@ static PetscErrorCode StatesCreate(Contact contact, PetscReal friction, ContactS
 /* Unit vector along the projection of fixed d on the plane across n */
 static void Project(const PetscReal d[3], const PetscReal n[3], PetscReal t[3])
 {
-  const PetscReal along = Dot(d, n);
+  const PetscReal along = Vec3Dot(d, n);
 
   for (int k = 0; k < 3; k++) t[k] = d[k] - along * n[k];
   for (int k = 0; k < 3; k++) t[k] /= PetscSqrtReal(1 - along * along);
@@ -92,13 +92,13 @@ static PetscErrorCode ForcesAdd(Contact contact, const ContactState state[], Pet
   PetscCall(ContactGetPairs(contact, &n, &n_all, &pairs));
   PetscCall(PetscCalloc2(n, &pair, n, &force));
   for (PetscInt p = 0; p < n; p++) {
-    const PetscReal length = PetscSqrtReal(Dot(turn, turn)), a = angle * length;
+    const PetscReal length = PetscSqrtReal(Vec3Dot(turn, turn)), a = angle * length;
     PetscReal       side[3], turned[3], t[3], b[3];
 
-    Cross(turn, pairs[p].n, side);
+    Vec3Cross(turn, pairs[p].n, side);
     for (int d = 0; d < 3; d++) /* Rodrigues */
       turned[d] = cos(a) * pairs[p].n[d] + sin(a) * side[d] / length +
-                  (1 - cos(a)) * Dot(turn, pairs[p].n) * turn[d] / (length * length);
+                  (1 - cos(a)) * Vec3Dot(turn, pairs[p].n) * turn[d] / (length * length);
     Project(pairs[p].t, turned, t);
     Project(pairs[p].b, turned, b);
     pair[p] = p;
@@ -148,7 +148,7 @@ static void Slope(const PetscReal x[3], const PetscReal value[3], PetscReal u[3]
   const PetscReal axis[3] = {-0.8, 0.6, 0};
 
   (void)value;
-  Cross(axis, x, u);
+  Vec3Cross(axis, x, u);
 }
 
 /* Translation of the slave by 2 m along (3, 4, 0) / 5 = t */

@@ -42,8 +42,8 @@ static PetscErrorCode TestTilt(const Chain *chain, int *failed)
     for (PetscInt p = 0; p < n; p++) {
       PetscReal change[3];
 
-      Cross(turn, pairs[p].n, change);
-      value[k][p] = Dot(change, k ? pairs[p].b : pairs[p].t);
+      Vec3Cross(turn, pairs[p].n, change);
+      value[k][p] = Vec3Dot(change, k ? pairs[p].b : pairs[p].t);
     }
     PetscCall(VecRestoreArray(expected[k], &value[k]));
     PetscCall(Mismatch(tilt[k], x, expected[k], &error[k]));

@@ -7,6 +7,7 @@
    mass of a node; a node of two parts belongs to the frame that was set first.
 */
 #include "externalimpl.h"
+#include "base/vec3.h"
 #include <squeal/options.h>
 
 PetscErrorCode InertiaSetFromOptions(External external)
@@ -56,11 +57,6 @@ static void GravityAdvance(External external, const PetscReal v[], PetscReal f[]
   if (*external->begun != 0) power->old += sum;
 }
 
-static inline void Cross(const PetscReal a[3], const PetscReal b[3], PetscReal c[3])
-{
-  for (int d = 0; d < 3; d++) c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
-}
-
 /* Inertial force on mass m at place x (m) with velocity v, N */
 static void FrameForce(const InertiaFrame *frame, PetscReal m, const PetscReal x[3], const PetscReal v[3],
                        PetscReal force[3])
@@ -68,9 +64,9 @@ static void FrameForce(const InertiaFrame *frame, PetscReal m, const PetscReal x
   PetscReal arm[3], turn[3], centrifugal[3], coriolis[3];
 
   for (int d = 0; d < 3; d++) arm[d] = x[d] - frame->centre[d];
-  Cross(frame->omega, arm, turn);
-  Cross(frame->omega, turn, centrifugal);
-  Cross(frame->omega, v, coriolis);
+  Vec3Cross(frame->omega, arm, turn);
+  Vec3Cross(frame->omega, turn, centrifugal);
+  Vec3Cross(frame->omega, v, coriolis);
   for (int d = 0; d < 3; d++)
     force[d] = -m * ((frame->coriolis ? 2 * coriolis[d] : 0) + (frame->centrifugal ? centrifugal[d] : 0));
 }
@@ -196,10 +192,9 @@ PetscErrorCode InertiaView(External external, PetscViewer viewer)
     const InertiaFrame *frame = &external->frames[i];
     const PetscReal    *w     = frame->omega;
 
-    PetscCall(
-      PetscViewerASCIIPrintf(viewer, "  part %s turns with %.6g rad/s: Coriolis force %s, centrifugal force %s\n",
-                             parts[frame->part].name, (double)PetscSqrtReal(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]),
-                             frame->coriolis ? "counted" : "left out", frame->centrifugal ? "counted" : "left out"));
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "  part %s turns with %.6g rad/s: Coriolis force %s, centrifugal force %s\n", parts[frame->part].name,
+      (double)Vec3Length(w), frame->coriolis ? "counted" : "left out", frame->centrifugal ? "counted" : "left out"));
   }
   PetscFunctionReturn(0);
 }

@@ -2,6 +2,7 @@
    Loads of the model in time: F(t) = r(t) F with a ramp r, distributed by the model once for all.
 */
 #include "externalimpl.h"
+#include "base/vec3.h"
 
 PetscErrorCode TimedLoadsSetFromOptions(External external)
 {
@@ -87,8 +88,7 @@ PetscErrorCode TimedLoadsView(External external, PetscViewer viewer)
     const PetscReal *f    = load->force;
 
     PetscCall(RampDescribe(&load->ramp, sizeof(words), words));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  load %s: %.6g N, %s\n", load->name,
-                                     (double)PetscSqrtReal(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]), words));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  load %s: %.6g N, %s\n", load->name, (double)Vec3Length(f), words));
   }
   PetscFunctionReturn(0);
 }
