@@ -44,7 +44,7 @@ typedef struct {
   PetscReal friction_work; /* of friction on the velocities of the nodes, J: what it feeds less what it takes */
   PetscReal heat;          /* dissipated by slip, with the sliding velocity, J, >= 0 */
   PetscReal residual;      /* natural map, relative to the largest impulse, worst step since the start */
-  PetscInt  sweeps, steps; /* of Gauss-Seidel since the start, and steps */
+  PetscInt  sweeps, checks, steps; /* since the start: of Gauss-Seidel, looks at all pairs, steps */
 } ContactSums;
 
 /*@

@@ -273,23 +273,20 @@ INTO_VERSIONS void PairVisit(ContactProjector p, PetscInt k, PetscReal *change, 
 }
 
 /* Sweeps until the next one would change impulses by less than the tolerance, going by how fast the changes (squared)
-   decrease, or `left` are done; scale is the largest impulse, of the step before or now */
-static VERSIONS PetscInt PairsSweep(ContactProjector p, PetscInt n, PetscInt left, PetscReal before, PetscReal noise,
-                                    PetscReal *scale)
+   decrease, in the step before where this one has not shown it yet, or max_it are done; scale is the largest impulse, of
+   the step before or now */
+static VERSIONS void PairsSweep(ContactProjector p, PetscInt n, PetscReal before, PetscReal *scale, Convergence *c)
 {
-  PetscInt  sweeps = 0;
-  PetscReal change = 0;
+  while (c->sweeps < p->max_it) {
+    const PetscReal last = c->change;
 
-  while (sweeps < left) {
-    const PetscReal last = sweeps ? change : PETSC_MAX_REAL;
-
-    change = 0;
-    *scale = before;
-    for (PetscInt i = 0; i < n; i++) PairVisit(p, p->visit[i], &change, scale);
-    sweeps++;
-    if (!(change * PetscMin(1, change / last) > PetscSqr(0.5 * (p->rtol * *scale + noise)))) break;
+    c->change = 0;
+    *scale    = before;
+    for (PetscInt i = 0; i < n; i++) PairVisit(p, p->visit[i], &c->change, scale);
+    c->sweeps++;
+    if (last > 0) p->rate = PetscMin(1, c->change / last);
+    if (!(c->change * p->rate > PetscSqr(0.5 * (p->rtol * *scale + c->noise)))) break;
   }
-  return sweeps;
 }
 
 void PairsSolve(ContactProjector p, Convergence *c)
@@ -301,8 +298,9 @@ void PairsSolve(ContactProjector p, Convergence *c)
   n     = PairsBegin(p, &before, &c->noise);
   scale = before;
   do {
-    if (n > 0) c->sweeps += PairsSweep(p, n, p->max_it - c->sweeps, before, c->noise, &scale);
-    residual     = PairsCheck(p, &n, &c->worst);
+    if (n > 0) PairsSweep(p, n, before, &scale, c);
+    residual = PairsCheck(p, &n, &c->worst);
+    c->checks++;
     c->residual  = residual == 0 ? 0 : residual / (scale + c->noise / p->rtol);
     c->converged = residual <= p->rtol * scale + c->noise ? PETSC_TRUE : PETSC_FALSE; /* not where it is no number */
   } while (!c->converged && c->sweeps < p->max_it && !PetscIsNanReal(residual));

@@ -225,7 +225,8 @@ PetscErrorCode ContactProjectorGetSums(ContactProjector p, PetscInt interface, C
 
 PetscErrorCode ContactProjectorView(ContactProjector p, PetscViewer viewer)
 {
-  PetscInt n[CONTACT_MAX] = {0};
+  PetscInt    n[CONTACT_MAX] = {0};
+  ContactSums sums           = {.steps = 0};
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < p->n_pairs; k++) n[p->pair[k].interface]++;
@@ -238,6 +239,11 @@ PetscErrorCode ContactProjectorView(ContactProjector p, PetscViewer viewer)
       c->name, n[i], c->slave, p->surface[i].n_facets, c->master, (double)c->mu));
     PetscCall(SlidingView(c, &p->sliding[i], viewer));
   }
+  if (p->n_interfaces) PetscCall(ContactProjectorGetSums(p, 0, &sums));
+  if (sums.steps)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %.4g sweeps and %.4g looks at all pairs per step\n",
+                                     (double)sums.sweeps / (double)sums.steps,
+                                     (double)sums.checks / (double)sums.steps));
   PetscFunctionReturn(0);
 }
 

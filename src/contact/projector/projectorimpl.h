@@ -122,9 +122,10 @@ typedef struct {
 
 /* How Gauss-Seidel ended */
 typedef struct {
-  PetscInt  sweeps, worst; /* pair of the largest residual */
-  PetscReal residual;      /* natural map, relative to the largest impulse now or before, or rounding */
-  PetscReal noise;         /* rounding of the impulses that stop and drag the nodes, N s */
+  PetscInt  sweeps, checks, worst; /* pair of the largest residual */
+  PetscReal residual;              /* natural map, relative to the largest impulse now or before, or rounding */
+  PetscReal change;                /* of the impulses in the last sweep, squared, N^2 s^2 */
+  PetscReal noise;                 /* rounding of the impulses that stop and drag the nodes, N s */
   PetscBool converged;
 } Convergence;
 
@@ -147,6 +148,7 @@ struct _p_ContactProjector {
   PetscReal    *place;     /* [n_pairs][3] displacement of the slave in the frame of the master at the last search, m */
   PetscReal    *u_search;  /* [n_nodes][3] displacements at the last search, m */
   PetscInt      order;     /* of the polynomial in time that guesses the next forces */
+  PetscReal     rate;      /* by which a sweep's change (squared) was less than the one before, last time */
   PetscReal     t_search;  /* and its time, s */
   PetscBool    *is_active; /* [n_nodes] */
   PetscReal     margin[CONTACT_MAX]; /* candidates lie within, m */

@@ -106,6 +106,7 @@ static void SumsBegin(ContactSums *sums, const Convergence *convergence)
   sums->normal = sums->friction = 0;
   sums->residual                = PetscMax(sums->residual, convergence->residual);
   sums->sweeps += convergence->sweeps;
+  sums->checks += convergence->checks;
   sums->steps++;
 }
 

@@ -13,15 +13,15 @@
 static PetscInt MemoryLength(const ContactProjector p)
 {
   if (p->share.rank != p->share.root) return 1;
-  return 3 + PER_SUMS * p->n_interfaces + PER_PAIR * p->n_pairs + 3 * p->share.n_nodes;
+  return 4 + PER_SUMS * p->n_interfaces + PER_PAIR * p->n_pairs + 3 * p->share.n_nodes;
 }
 
 static void SumsGet(const ContactSums *s, PetscReal value[PER_SUMS])
 {
   const PetscReal all[PER_SUMS] = {
-    (PetscReal)s->n[0],   (PetscReal)s->n[1], (PetscReal)s->n[2], s->normal,        s->friction, s->force[0],
-    s->force[1],          s->force[2],        s->contact_work,    s->friction_work, s->heat,     s->residual,
-    (PetscReal)s->sweeps, (PetscReal)s->steps};
+    (PetscReal)s->n[0],   (PetscReal)s->n[1],   (PetscReal)s->n[2], s->normal,        s->friction, s->force[0],
+    s->force[1],          s->force[2],          s->contact_work,    s->friction_work, s->heat,     s->residual,
+    (PetscReal)s->sweeps, (PetscReal)s->checks, (PetscReal)s->steps};
 
   for (int i = 0; i < PER_SUMS; i++) value[i] = all[i];
 }
@@ -37,7 +37,8 @@ static void SumsSet(const PetscReal value[PER_SUMS], ContactSums *s)
   s->heat          = value[10];
   s->residual      = value[11];
   s->sweeps        = (PetscInt)value[12];
-  s->steps         = (PetscInt)value[13];
+  s->checks        = (PetscInt)value[13];
+  s->steps         = (PetscInt)value[14];
 }
 
 PetscErrorCode ContactProjectorGetMemory(ContactProjector p, PetscInt *n, PetscReal **values)
@@ -52,6 +53,7 @@ PetscErrorCode ContactProjectorGetMemory(ContactProjector p, PetscInt *n, PetscR
   if (p->share.rank != p->share.root) PetscFunctionReturn(0);
   *v++ = p->t_search;
   *v++ = (PetscReal)p->order;
+  *v++ = p->rate;
   for (PetscInt i = 0; i < p->n_interfaces; i++, v += PER_SUMS) SumsGet(&p->sums[i], v);
   for (PetscInt k = 0; k < p->n_pairs; k++) {
     const Pair *pair = &p->pair[k];
@@ -72,6 +74,7 @@ static PetscErrorCode RootSetMemory(ContactProjector p, const PetscReal v[])
 
   PetscFunctionBeginUser;
   p->order = (PetscInt)*v++;
+  p->rate  = *v++;
   for (PetscInt i = 0; i < p->n_interfaces; i++, v += PER_SUMS) {
     SumsSet(v, &p->sums[i]);
     SlidingFrame(&p->contact->interfaces[i], &p->sliding[i], t, &p->frame[i]);

@@ -161,5 +161,6 @@ PetscErrorCode ContactProjectorStart(ContactProjector p, PetscReal t, const Pets
   PetscCall(PetscArrayzero(p->sums, p->n_interfaces));
   p->search_next = PETSC_FALSE;
   p->order       = 0;
+  p->rate        = 1;
   PetscFunctionReturn(0);
 }
