@@ -12,6 +12,10 @@ blocks  a block of 100 x 100 x 100 mm (x, y around 0, z from 0) on a base that r
       "block_left", "block_right" (least and largest y). The nodes of both match; --lift moves the bottom of the block,
       more than its inside, by gap + tilt (y / 100 mm + 1/2) + crown (2 y / 100 mm)^2
 
+cylinders  a shoe on a shaft, both parts of rings about z: volumes "shaft", "shoe", surfaces "shaft_inner", "shaft_face"
+      (outward, 80 mm from the axis), "shoe_face", "shoe_top"; --elements along r, around and along z of the shaft. Its
+      facets turn by 160 degrees / the second. The nodes of the faces do not match, and lie on the same cylinder.
+
 --renumber draws new numbers of nodes and elements, a new order of both, and a new first node of each element.
 --move turns the mesh by MOVE_ROTATION, a quarter turn about (1, 2, 2), and shifts it; the direction y becomes
 (-4, 4, 7) / 9. Lengths in m.
@@ -115,6 +119,20 @@ def bars(elements, gap):
     for name, grid in zip(("left", "right"), grids):
         groups |= {name: grid.hexahedra(), f"{name}_start": grid.side(0, 0), f"{name}_end": grid.side(0, elements[0])}
     return np.concatenate([left - [BAR_SIZE[0], 0, 0], right + [gap, 0, 0]]), groups
+
+
+def cylinders(elements):
+    """Shaft r 60..80 mm, 160 degrees, 40 mm long; shoe r 80..95 mm, 70 degrees, 24 mm long, of larger elements."""
+    shaft = Grid([elements[0], elements[1], elements[2]])
+    shoe = Grid([elements[0], elements[1] * 3 // 8, max(1, elements[2] // 2)], first=int(np.prod(shaft.nodes)))
+    nodes = []
+    for grid, radii, half, length in ((shaft, (0.06, 0.08), 80, 0.04), (shoe, (0.08, 0.095), 35, 0.024)):
+        theta = np.pi / 2 + np.radians(np.linspace(-half, half, grid.cells[1] + 1))
+        z = np.linspace(-length / 2, length / 2, grid.cells[2] + 1)
+        nodes.append(polar(grid.places(grid.nodes), np.linspace(*radii, grid.cells[0] + 1), theta, z))
+    return np.concatenate(nodes), {
+        "shaft": shaft.hexahedra(), "shaft_inner": shaft.side(0, 0), "shaft_face": shaft.side(0, elements[0]),
+        "shoe": shoe.hexahedra(), "shoe_face": shoe.side(0, 0), "shoe_top": shoe.side(0, elements[0])}
 
 
 def graded(n):
@@ -280,7 +298,7 @@ def write(path, version, binary, nodes, groups, node_tags, numbers):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("shape", choices=["beam", "rig", "blocks", "bars", "ball"])
+    parser.add_argument("shape", choices=["beam", "rig", "blocks", "bars", "ball", "cylinders"])
     parser.add_argument("file", type=Path)
     parser.add_argument("--elements", default="20,4,2", help="of the beam, the block on its base, a bar, along x, y, z")
     parser.add_argument("--lift", default="0,0,0", metavar="GAP,TILT,CROWN",
@@ -298,6 +316,8 @@ def main():
         nodes, groups = blocks(elements, lift)
     elif arguments.shape == "bars":
         nodes, groups = bars(elements, lift[0])
+    elif arguments.shape == "cylinders":
+        nodes, groups = cylinders(elements)
     elif arguments.shape == "ball":
         nodes, groups = ball(elements[0], lift[0])
     else:

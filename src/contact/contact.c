@@ -206,6 +206,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
     PetscCall(PetscFree((*contact)->interfaces[i].name));
     PetscCall(PetscFree((*contact)->interfaces[i].slave));
     PetscCall(PetscFree((*contact)->interfaces[i].master));
+    PetscCall(ContactSurfaceDestroy(&(*contact)->surface[i]));
   }
   PetscCall(PetscFree((*contact)->pairs));
   PetscCall(PetscFree((*contact)->vertex));

@@ -1,7 +1,7 @@
 /* Private to contact/: the record of the interfaces */
 #pragma once
 
-#include <squeal/contact.h>
+#include "surface.h"
 
 #define CONTACT_MAX 16 /* interfaces of one scene */
 
@@ -13,16 +13,8 @@ struct _p_Contact {
   PetscInt         n_pairs, n_pairs_all; /* on this rank, on all ranks */
   ContactPair     *pairs;                /* ordered by interface */
   PetscInt        *vertex;               /* [n_pairs] global number of the slave's vertex */
+  ContactSurface   surface[CONTACT_MAX]; /* of the masters, made when they are asked for first */
 };
-
-/* One facet of a surface: corners, their normals (times area), unknowns and global numbers */
-typedef struct {
-  PetscReal x[4][3], normal[4][3];
-  PetscInt  unknowns[4][3], vertex[4];
-} Facet;
-
-/* pair.c - facets of a surface on this rank; the caller frees them */
-PETSC_INTERN PetscErrorCode FacetsLocal(Model model, const char set[], PetscInt *n, Facet **facets);
 
 /* pair.c - appends the pairs of one interface to contact->pairs */
 PETSC_INTERN PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface);

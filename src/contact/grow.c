@@ -14,7 +14,7 @@ typedef struct {
   PetscInt  n_facets, *corner; /* [n_facets][4] places in number */
   PetscInt  n_nodes, *number;  /* global numbers of the vertices, ascending */
   PetscInt *status, *before;   /* NodeStatus of each node, and what it was a row ago */
-} Surface;
+} GrowSurface;
 
 /* Global numbers of the corners of this rank's facets, array [n] */
 static PetscErrorCode CornersLocal(Model model, const char set[], PetscInt *n, PetscInt **corner)
@@ -31,7 +31,7 @@ static PetscErrorCode CornersLocal(Model model, const char set[], PetscInt *n, P
 }
 
 /* Facets and nodes of the slave surface of an interface, all without pair */
-static PetscErrorCode SurfaceCreate(Contact contact, PetscInt interface, Surface *s)
+static PetscErrorCode GrowSurfaceCreate(Contact contact, PetscInt interface, GrowSurface *s)
 {
   PetscInt n_local, n, *local;
 
@@ -49,7 +49,7 @@ static PetscErrorCode SurfaceCreate(Contact contact, PetscInt interface, Surface
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SurfaceDestroy(Surface *s)
+static PetscErrorCode GrowSurfaceDestroy(GrowSurface *s)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree2(s->status, s->before));
@@ -59,7 +59,7 @@ static PetscErrorCode SurfaceDestroy(Surface *s)
 }
 
 /* Place of the slave node of a local pair among the nodes of the surface */
-static PetscErrorCode NodeFind(Contact contact, PetscInt pair, const Surface *s, PetscInt *node)
+static PetscErrorCode NodeFind(Contact contact, PetscInt pair, const GrowSurface *s, PetscInt *node)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFindInt(contact->vertex[pair], s->n_nodes, s->number, node));
@@ -68,7 +68,7 @@ static PetscErrorCode NodeFind(Contact contact, PetscInt pair, const Surface *s,
 }
 
 /* Status of all nodes from the pairs of all ranks */
-static PetscErrorCode SurfaceGather(Contact contact, PetscInt interface, const PetscBool closed[], Surface *s)
+static PetscErrorCode SurfaceGather(Contact contact, PetscInt interface, const PetscBool closed[], GrowSurface *s)
 {
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
@@ -83,7 +83,7 @@ static PetscErrorCode SurfaceGather(Contact contact, PetscInt interface, const P
 }
 
 /* One row: nodes with status `from` that share a facet with one of status `to` get that one */
-static PetscErrorCode SurfaceGrow(Surface *s, NodeStatus from, NodeStatus to)
+static PetscErrorCode SurfaceGrow(GrowSurface *s, NodeStatus from, NodeStatus to)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(s->before, s->status, s->n_nodes));
@@ -100,7 +100,7 @@ static PetscErrorCode SurfaceGrow(Surface *s, NodeStatus from, NodeStatus to)
 }
 
 /* Status of this rank's pairs */
-static PetscErrorCode SurfaceScatter(Contact contact, PetscInt interface, const Surface *s, PetscBool closed[])
+static PetscErrorCode SurfaceScatter(Contact contact, PetscInt interface, const GrowSurface *s, PetscBool closed[])
 {
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
@@ -119,13 +119,13 @@ PetscErrorCode ContactGrow(Contact contact, PetscInt rows, PetscBool closed[])
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < contact->n_interfaces && rows; i++) {
-    Surface s;
+    GrowSurface s;
 
-    PetscCall(SurfaceCreate(contact, i, &s));
+    PetscCall(GrowSurfaceCreate(contact, i, &s));
     PetscCall(SurfaceGather(contact, i, closed, &s));
     for (PetscInt k = 0; k < PetscAbsInt(rows); k++) PetscCall(SurfaceGrow(&s, from, to));
     PetscCall(SurfaceScatter(contact, i, &s, closed));
-    PetscCall(SurfaceDestroy(&s));
+    PetscCall(GrowSurfaceDestroy(&s));
   }
   PetscFunctionReturn(0);
 }

@@ -19,7 +19,7 @@ typedef struct {
 } AreaNormals;
 
 /* The 96 entries of a facet that are not zero by nature: component d of u x c takes the others of u */
-static void FacetEntries(const Facet *facet, PetscInt row[96], PetscInt column[96], PetscScalar value[96])
+static void FacetEntries(const ContactFacet *facet, PetscInt row[96], PetscInt column[96], PetscScalar value[96])
 {
   double c[4][4][3];
   int    n = 0;
@@ -30,7 +30,7 @@ static void FacetEntries(const Facet *facet, PetscInt row[96], PetscInt column[9
 
     for (int d = 0; d < 3; d++) {
       for (int k = 1; k < 3; k++, n++) { /* (u x c)_d = u_(d+1) c_(d+2) - u_(d+2) c_(d+1) */
-        row[n]    = 3 * facet->vertex[i] + d;
+        row[n]    = 3 * facet->node[i] + d;
         column[n] = facet->unknowns[j][(d + k) % 3];
         value[n]  = k == 1 ? c[i][j][(d + 2) % 3] : -c[i][j][(d + 1) % 3];
       }
@@ -39,7 +39,7 @@ static void FacetEntries(const Facet *facet, PetscInt row[96], PetscInt column[9
 }
 
 /* Matrix of the derivatives of the area vectors */
-static PetscErrorCode TurningCreate(PetscInt n_facets, const Facet facets[], Mat turning)
+static PetscErrorCode TurningCreate(PetscInt n_facets, const ContactFacet facets[], Mat turning)
 {
   PetscInt    *row, *column;
   PetscScalar *value;
@@ -56,25 +56,25 @@ static PetscErrorCode TurningCreate(PetscInt n_facets, const Facet facets[], Mat
 /* Area vectors of a surface and their derivatives */
 static PetscErrorCode AreaNormalsCreate(Contact contact, const char set[], AreaNormals *a)
 {
-  const Mesh *mesh;
-  PetscInt    n_facets;
-  Facet      *facets;
+  const Mesh   *mesh;
+  PetscInt      n_facets;
+  ContactFacet *facets;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
   a->n_rows = 0;
   for (PetscInt v = 0; v < mesh->n_vertices; v++) a->n_rows += mesh->owned[v] ? 3 : 0;
-  PetscCall(FacetsLocal(contact->model, set, &n_facets, &facets));
+  PetscCall(ContactFacetsLocal(contact->model, set, &n_facets, &facets));
   PetscCall(MatCreate(contact->comm, &a->turning));
   PetscCall(MatSetSizes(a->turning, a->n_rows, mesh->n_own, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(a->turning, MATAIJ));
   PetscCall(TurningCreate(n_facets, facets, a->turning));
   PetscCall(MatCreateVecs(a->turning, NULL, &a->area));
   for (PetscInt i = 0; i < 12 * n_facets; i++) {
-    const Facet   *facet = &facets[i / 12];
-    const PetscInt row   = 3 * facet->vertex[i / 3 % 4] + i % 3;
+    const ContactFacet *facet = &facets[i / 12];
+    const PetscInt      row   = 3 * facet->node[i / 3 % 4] + i % 3;
 
-    PetscCall(VecSetValue(a->area, row, facet->normal[i / 3 % 4][i % 3], INSERT_VALUES)); /* complete on every rank */
+    PetscCall(VecSetValue(a->area, row, facet->area[i / 3 % 4][i % 3], INSERT_VALUES)); /* complete on every rank */
   }
   PetscCall(VecAssemblyBegin(a->area));
   PetscCall(VecAssemblyEnd(a->area));

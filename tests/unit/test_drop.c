@@ -48,7 +48,7 @@ static double Worst(double warp, double reach, double height)
     FacetNormal((const double(*)[3])x, at[0], at[1], n);
     FacetTangents((const double(*)[3])y, at[0], at[1], p, a, b);
     for (int d = 0; d < 3; d++) p[d] += h * n[d];
-    if (!FacetDrop((const double(*)[3])x, (const double(*)[3])y, p, found)) return 1;
+    if (!FacetDrop((const double(*)[3])x, NULL, (const double(*)[3])y, p, found)) return 1;
     worst = fmax(worst, fmax(fabs(found[0] - at[0]), fabs(found[1] - at[1])));
   }
   return worst;

@@ -16,8 +16,8 @@
 
 void NodesPredict(ContactProjector p, PetscReal dt)
 {
-  const Nodes   *nodes = &p->nodes;
-  const PetscInt n     = ShareCountSent(&p->share);
+  const ProjectorNodes *nodes = &p->nodes;
+  const PetscInt        n     = ShareCountSent(&p->share);
 
   for (PetscInt i = 0; i < n; i++)
     for (int d = 0; d < 3; d++) {
@@ -28,7 +28,7 @@ void NodesPredict(ContactProjector p, PetscReal dt)
 }
 
 /* n, t, b on the ground: turned = e R' = e + e D */
-static void PairTurn(const Frame *frame, Pair *pair)
+static void PairTurn(const ContactFrame *frame, ProjectorPair *pair)
 {
   for (int i = 0; i < 3; i++)
     for (int d = 0; d < 3; d++) {
@@ -38,7 +38,7 @@ static void PairTurn(const Frame *frame, Pair *pair)
 }
 
 /* Compliance W_pp */
-static void PairSetCompliance(const Nodes *nodes, Pair *pair)
+static void PairSetCompliance(const ProjectorNodes *nodes, ProjectorPair *pair)
 {
   const PetscReal *slave = &nodes->minv[3 * pair->slave];
   PetscBool        even  = nodes->even[pair->slave];
@@ -64,9 +64,9 @@ static void PairSetCompliance(const Nodes *nodes, Pair *pair)
 
 /* Sliding velocity along n, t, b in this step: prescribed, or that of the frame */
 static void PairSetDrift(const ContactProjector p, const ContactStep *step, const PetscReal d_old[3],
-                         const PetscReal d_new[3], Pair *pair)
+                         const PetscReal d_new[3], ProjectorPair *pair)
 {
-  const Sliding *sliding = &p->sliding[pair->interface];
+  const ContactSliding *sliding = &p->sliding[pair->interface];
 
   for (int i = 0; i < 3; i++) pair->drift[i] = 0;
   if (sliding->turning) {
@@ -78,7 +78,7 @@ static void PairSetDrift(const ContactProjector p, const ContactStep *step, cons
 }
 
 /* Friction coefficient at the slip speed at t_n */
-static void PairSetFriction(const ContactProjector p, Pair *pair)
+static void PairSetFriction(const ContactProjector p, ProjectorPair *pair)
 {
   const ContactInterface *c = &p->contact->interfaces[pair->interface];
   PetscReal               q[3], last;
@@ -92,14 +92,63 @@ static void PairSetFriction(const ContactProjector p, Pair *pair)
   pair->mu = FrictionCoefficient(c->mu, c->mu_slope, pair->speed, PetscMax(0, 1.5 * pair->slip - 0.5 * last));
 }
 
+/*
+   Facet of slave k at displacement d in the frame of the master, the nodes at u: on from the facet where it was, else
+   the nearest of the candidates. One that comes to the surface anew is taken up above it, or at most `deepest` sizes of
+   a facet below: one that comes from the side deeper than that is left alone until it has come up, since making the gap
+   good in one step would throw it out.
+*/
+static void PairFollow(ContactProjector p, PetscInt k, const PetscReal d[3], const PetscReal u[], PetscReal deepest)
+{
+  ProjectorPair         *pair  = &p->pair[k];
+  const ProjectorMaster *m     = &p->master[pair->interface];
+  const ContactShape     shape = {.surface = m->surface, .node = m->node, .u = u, .live = m->live};
+  const PetscReal       *X     = &p->nodes.x[3 * pair->slave];
+  const PetscReal        x[3]  = {X[0] + d[0], X[1] + d[1], X[2] + d[2]};
+  ContactFoot            foot =
+                {
+                  pair->facet, {pair->natural[0], pair->natural[1]},
+                   PETSC_MAX_REAL, 0
+  },
+              walk;
+
+  if (foot.facet >= 0) {
+    ContactFootWalk(&shape, x, &foot);
+    deepest = PETSC_MAX_REAL; /* it was above: what is below now has been pressed there */
+  }
+  if (foot.facet < 0) {
+    foot = (ContactFoot){.facet = -1, .distance = PETSC_MAX_REAL};
+    for (PetscInt c = p->first_candidate[k]; c < p->first_candidate[k + 1]; c++)
+      ContactFootTry(&shape, p->candidates.facet[c], x, deepest, &foot);
+    if (foot.beyond > CONTACT_EDGE) foot.facet = -1;
+    walk = foot;
+    if (foot.facet >= 0) ContactFootWalk(&shape, x, &walk);
+    if (walk.facet >= 0) foot = walk;
+  }
+  pair->facet = foot.facet;
+  for (int i = 0; i < 2; i++) pair->natural[i] = foot.natural[i];
+}
+
+PetscReal PairGap(ContactProjector p, const ProjectorPair *pair, const PetscReal d[3], const PetscReal u[])
+{
+  const ContactFacet *f = &p->master[pair->interface].surface->facet[pair->facet];
+  const PetscReal    *w = pair->weight, *u0 = &u[3 * pair->node[0]], *u1 = &u[3 * pair->node[1]],
+                  *u2 = &u[3 * pair->node[2]], *u3 = &u[3 * pair->node[3]];
+  PetscReal gap = ContactGap(f, w, pair->e[0], &p->nodes.x[3 * pair->slave]);
+
+  for (int j = 0; j < 3; j++)
+    gap += pair->e[0][j] * ((d[j] - u0[j]) - w[1] * (u1[j] - u0[j]) - w[2] * (u2[j] - u0[j]) - w[3] * (u3[j] - u0[j]));
+  return gap;
+}
+
 /* Facet that a slave faces at predicted displacements; one that faced none must have come to one at u already */
 static void PairFind(ContactProjector p, PetscInt k, const PetscReal u[], const PetscReal predicted[],
                      PetscReal deepest)
 {
-  Pair            *pair  = &p->pair[k];
-  const Frame     *frame = &p->frame[pair->interface];
-  const PetscReal *x     = &p->nodes.x[3 * pair->slave];
-  PetscReal        d[3];
+  ProjectorPair      *pair  = &p->pair[k];
+  const ContactFrame *frame = &p->frame[pair->interface];
+  const PetscReal    *x     = &p->nodes.x[3 * pair->slave];
+  PetscReal           d[3];
 
   if (pair->facet < 0) {
     FrameDisplacement(frame, x, &u[3 * pair->slave], d);
@@ -112,11 +161,13 @@ static void PairFind(ContactProjector p, PetscInt k, const PetscReal u[], const 
 
 PetscBool PairPlace(ContactProjector p, PetscInt k, const PetscReal u[], const PetscReal predicted[], PetscReal deepest)
 {
-  Pair            *pair    = &p->pair[k];
-  const Sliding   *sliding = &p->sliding[pair->interface];
-  const Frame     *frame   = &p->frame[pair->interface];
-  const PetscReal *x = &p->nodes.x[3 * pair->slave], *where = sliding->slides ? p->nodes.rest : predicted;
-  PetscReal        place[3];
+  ProjectorPair         *pair    = &p->pair[k];
+  const ContactSliding  *sliding = &p->sliding[pair->interface];
+  const ContactFrame    *frame   = &p->frame[pair->interface];
+  const PetscReal       *x = &p->nodes.x[3 * pair->slave], *where = sliding->slides ? p->nodes.rest : predicted;
+  const ProjectorMaster *master = &p->master[pair->interface];
+  const ContactFacet    *facet;
+  PetscReal              place[3], along[3];
 
   for (int i = 0; i < 3; i++) pair->p[i] = pair->q[i] = 0;
   pair->status = CONTACT_OPEN;
@@ -129,22 +180,25 @@ PetscBool PairPlace(ContactProjector p, PetscInt k, const PetscReal u[], const P
   if (pair->found && pair->ready) return PETSC_TRUE;
   FrameDisplacement(frame, x, &where[3 * pair->slave], place);
   for (int i = 0; i < 3; i++) place[i] += x[i];
-  SlidingDirection(&p->contact->interfaces[pair->interface], sliding, place, pair->along);
-  pair->speed = PairSetBasis(&p->surface[pair->interface], pair);
+  facet = &master->surface->facet[pair->facet];
+  for (int i = 0; i < 4; i++) pair->node[i] = master->node[facet->node[i]];
+  ContactSlideAlong(&p->contact->interfaces[pair->interface], place, along);
+  pair->speed = ContactBasis(facet, pair->natural, along, pair->weight, pair->e);
   if (!sliding->rotates) pair->speed = sliding->slides ? sliding->speed : 0;
   PairTurn(frame, pair);
   PairSetCompliance(&p->nodes, pair);
-  if (pair->found) pair->gap = PairGap(&p->surface[pair->interface], pair, x, p->nodes.rest, p->nodes.rest);
+  if (pair->found) pair->gap = PairGap(p, pair, p->nodes.rest, p->nodes.rest);
   pair->ready = PETSC_TRUE;
   return PETSC_TRUE;
 }
 
 /* The same for Gauss-Seidel, without the directions */
-INTO_VERSIONS void RowSet(const ContactProjector p, const Pair *pair, const PetscReal impulse[3], Row *row)
+INTO_VERSIONS void RowSet(const ContactProjector p, const ProjectorPair *pair, const PetscReal impulse[3],
+                          ProjectorRow *row)
 {
   const PetscReal *minv = p->nodes.minv;
 
-  *row = (Row){.mass = pair->w > 0 ? 1 / pair->w : 0, .mu = pair->mu};
+  *row = (ProjectorRow){.mass = pair->w > 0 ? 1 / pair->w : 0, .mu = pair->mu};
   if (p->sliding[pair->interface].turning) row->D = &p->frame[pair->interface].D[0][0];
   for (int i = 0; i < 4; i++) {
     row->node[i]   = (int)pair->node[i];
@@ -161,7 +215,7 @@ INTO_VERSIONS void RowSet(const ContactProjector p, const Pair *pair, const Pets
 }
 
 /* Guess of the impulse in the frame of the master, N s: none where it would pull */
-INTO_VERSIONS void PairGuess(const Pair *pair, PetscInt order, PetscReal kick, PetscReal impulse[3])
+INTO_VERSIONS void PairGuess(const ProjectorPair *pair, PetscInt order, PetscReal kick, PetscReal impulse[3])
 {
   static const PetscReal factor[PROJECTOR_PAST][PROJECTOR_PAST] = {
     {1, 0,  0},
@@ -179,7 +233,7 @@ INTO_VERSIONS void PairGuess(const Pair *pair, PetscInt order, PetscReal kick, P
 }
 
 /* n . (u_s - sum w_i u_i) of displacements in a frame that stands still, m */
-INTO_VERSIONS PetscReal NormalDisplacement(const Pair *pair, const PetscReal u[])
+INTO_VERSIONS PetscReal NormalDisplacement(const ProjectorPair *pair, const PetscReal u[])
 {
   PetscReal sum = 0;
 
@@ -195,7 +249,7 @@ INTO_VERSIONS PetscReal NormalDisplacement(const Pair *pair, const PetscReal u[]
 /* One pair, k, at the beginning of a step */
 INTO_VERSIONS void PairPrepare(ContactProjector p, PetscInt k, const ContactStep *step)
 {
-  Pair            *pair = &p->pair[k];
+  ProjectorPair   *pair = &p->pair[k];
   const PetscReal *x = &p->nodes.x[3 * pair->slave], *u = &p->nodes.u[3 * pair->slave];
   PetscReal        before[3], after[3], impulse[3];
 
@@ -207,7 +261,7 @@ INTO_VERSIONS void PairPrepare(ContactProjector p, PetscInt k, const ContactStep
     FrameDisplacement(&p->frame_old[pair->interface], x, u, before);
     FrameDisplacement(&p->frame[pair->interface], x, u, after);
     PairSetDrift(p, step, before, after, pair);
-    pair->offset[0] = PairGap(&p->surface[pair->interface], pair, x, after, p->nodes.u) / step->dt;
+    pair->offset[0] = PairGap(p, pair, after, p->nodes.u) / step->dt;
   }
   PairSetFriction(p, pair);
   pair->offset[1] = pair->drift[1];

@@ -14,7 +14,7 @@
 
 #define NOISE 16 /* roundings of a relative velocity, by its terms */
 
-void PairVelocity(const Pair *pair, const PetscReal v[], PetscReal q[3])
+void PairVelocity(const ProjectorPair *pair, const PetscReal v[], PetscReal q[3])
 {
   const PetscReal *slave = &v[3 * pair->slave], *w = pair->weight;
   const PetscReal *a = &v[3 * pair->node[0]], *b = &v[3 * pair->node[1]], *c = &v[3 * pair->node[2]],
@@ -31,14 +31,14 @@ void PairVelocity(const Pair *pair, const PetscReal v[], PetscReal q[3])
 }
 
 /* With the offset: gap at t_{n+1} / dt, and slip velocity */
-static void PairSlip(const Pair *pair, const PetscReal v[], PetscReal q[3])
+static void PairSlip(const ProjectorPair *pair, const PetscReal v[], PetscReal q[3])
 {
   PairVelocity(pair, v, q);
   for (int i = 0; i < 3; i++) q[i] += pair->offset[i];
 }
 
 /* Velocities of the nodes after an impulse along n, t, b */
-static void PairPush(const Pair *pair, const PetscReal p[3], const PetscReal minv[], PetscReal v[])
+static void PairPush(const ProjectorPair *pair, const PetscReal p[3], const PetscReal minv[], PetscReal v[])
 {
   PetscReal slave[3], master[3];
 
@@ -52,7 +52,7 @@ static void PairPush(const Pair *pair, const PetscReal p[3], const PetscReal min
 }
 
 /* Solves one pair; returns the square of what its impulse has changed by, N s */
-static PetscReal PairSolve(Pair *pair, const PetscReal minv[], PetscReal v[])
+static PetscReal PairSolve(ProjectorPair *pair, const PetscReal minv[], PetscReal v[])
 {
   PetscReal q[3], p[3], change = 0;
 
@@ -76,7 +76,7 @@ static PetscReal PairSolve(Pair *pair, const PetscReal minv[], PetscReal v[])
    relative velocity q, offset included, the impulse that solves the pair alone is the projection of z = p - q / w on
    the cone.
 */
-INTO_VERSIONS void RowVelocity(const Row *row, const PetscReal v[], PetscReal q[3])
+INTO_VERSIONS void RowVelocity(const ProjectorRow *row, const PetscReal v[], PetscReal q[3])
 {
   const PetscReal *a = &v[3 * row->node[0]], *b = &v[3 * row->node[1]], *c = &v[3 * row->node[2]],
                   *d = &v[3 * row->node[3]], *s = &v[3 * row->node[4]], *w = row->weight, *D = row->D;
@@ -88,7 +88,7 @@ INTO_VERSIONS void RowVelocity(const Row *row, const PetscReal v[], PetscReal q[
 }
 
 /* Velocities of the nodes after an impulse */
-INTO_VERSIONS void RowPush(const Row *row, const PetscReal p[3], PetscReal v[])
+INTO_VERSIONS void RowPush(const ProjectorRow *row, const PetscReal p[3], PetscReal v[])
 {
   PetscReal *a = &v[3 * row->node[0]], *b = &v[3 * row->node[1]], *c = &v[3 * row->node[2]], *d = &v[3 * row->node[3]];
   PetscReal *s       = &v[3 * row->node[4]];
@@ -106,7 +106,7 @@ INTO_VERSIONS void RowPush(const Row *row, const PetscReal p[3], PetscReal v[])
 }
 
 /* Projects z on the cone */
-INTO_VERSIONS ContactStatus RowProject(const Row *row, PetscReal z[3])
+INTO_VERSIONS ContactStatus RowProject(const ProjectorRow *row, PetscReal z[3])
 {
   const PetscReal normal = row->n[0] * z[0] + row->n[1] * z[1] + row->n[2] * z[2], cone = row->mu * normal;
   PetscReal       square = 0, factor;
@@ -125,7 +125,8 @@ INTO_VERSIONS ContactStatus RowProject(const Row *row, PetscReal z[3])
 }
 
 /* What the impulse would have to change by, the residual of the natural map, N s; z is the impulse then */
-INTO_VERSIONS ContactStatus RowChange(const Row *row, const PetscReal q[3], PetscReal z[3], PetscReal change[3])
+INTO_VERSIONS ContactStatus RowChange(const ProjectorRow *row, const PetscReal q[3], PetscReal z[3],
+                                      PetscReal change[3])
 {
   ContactStatus status;
 
@@ -136,7 +137,7 @@ INTO_VERSIONS ContactStatus RowChange(const Row *row, const PetscReal q[3], Pets
 }
 
 /* Returns the square of the change */
-INTO_VERSIONS PetscReal RowSolve(Row *row, PetscReal v[])
+INTO_VERSIONS PetscReal RowSolve(ProjectorRow *row, PetscReal v[])
 {
   PetscReal q[3], z[3], change[3];
 
@@ -147,7 +148,7 @@ INTO_VERSIONS PetscReal RowSolve(Row *row, PetscReal v[])
   return change[0] * change[0] + change[1] * change[1] + change[2] * change[2];
 }
 
-PetscReal PairMass(const Pair *pair)
+PetscReal PairMass(const ProjectorPair *pair)
 {
   if (pair->w > 0) return 1 / pair->w;
   return pair->W[0][0] > 0 ? 1 / (pair->W[0][0] + pair->W[1][1] + pair->W[2][2]) : 0;
@@ -156,8 +157,8 @@ PetscReal PairMass(const Pair *pair)
 /* Velocity of the slave relative to the master along its normal, offset included */
 INTO_VERSIONS PetscReal NormalVelocity(const ContactProjector p, PetscInt k)
 {
-  const Row *row = &p->row[k];
-  PetscReal  q[3];
+  const ProjectorRow *row = &p->row[k];
+  PetscReal           q[3];
 
   if (row->mass > 0) {
     RowVelocity(row, p->nodes.v, q);
@@ -170,8 +171,8 @@ INTO_VERSIONS PetscReal NormalVelocity(const ContactProjector p, PetscInt k)
 /* Rounding of the relative velocity of a pair as an impulse, N s */
 INTO_VERSIONS PetscReal PairNoise(ContactProjector p, PetscInt k)
 {
-  const Pair *pair = &p->pair[k];
-  PetscReal   sum  = 0;
+  const ProjectorPair *pair = &p->pair[k];
+  PetscReal            sum  = 0;
 
   for (int d = 0; d < 3; d++) {
     sum += PetscAbsReal(p->nodes.v[3 * pair->slave + d]) + PetscAbsReal(pair->offset[d]);
@@ -187,7 +188,7 @@ static VERSIONS PetscInt PairsBegin(ContactProjector p, PetscReal *scale, PetscR
 
   *scale = *noise = 0;
   for (PetscInt k = 0; k < p->n_pairs; k++) {
-    const Pair *pair = &p->pair[k];
+    const ProjectorPair *pair = &p->pair[k];
 
     p->visited[k] = PETSC_FALSE;
     if (pair->facet < 0) continue;
@@ -208,7 +209,7 @@ static VERSIONS PetscInt PairsBegin(ContactProjector p, PetscReal *scale, PetscR
 }
 
 /* A vector along n, t, b */
-INTO_VERSIONS void PairTurnIn(const Pair *pair, const PetscReal x[3], PetscReal y[3])
+INTO_VERSIONS void PairTurnIn(const ProjectorPair *pair, const PetscReal x[3], PetscReal y[3])
 {
   for (int i = 0; i < 3; i++) y[i] = pair->e[i][0] * x[0] + pair->e[i][1] * x[1] + pair->e[i][2] * x[2];
 }
@@ -216,9 +217,9 @@ INTO_VERSIONS void PairTurnIn(const Pair *pair, const PetscReal x[3], PetscReal 
 /* Residual of one pair, N s; its velocity and impulse along n, t, b */
 INTO_VERSIONS PetscReal PairCheck(ContactProjector p, PetscInt k)
 {
-  Pair      *pair = &p->pair[k];
-  const Row *row  = &p->row[k];
-  PetscReal  q[3], z[3], change[3];
+  ProjectorPair      *pair = &p->pair[k];
+  const ProjectorRow *row  = &p->row[k];
+  PetscReal           q[3], z[3], change[3];
 
   if (row->mass == 0) {
     PairSlip(pair, p->nodes.v, pair->q);
@@ -238,8 +239,8 @@ static VERSIONS PetscReal PairsCheck(ContactProjector p, PetscInt *n, PetscInt *
   PetscReal largest = 0;
 
   for (PetscInt k = 0; k < p->n_pairs; k++) {
-    const Pair *pair = &p->pair[k];
-    PetscReal   residual;
+    const ProjectorPair *pair = &p->pair[k];
+    PetscReal            residual;
 
     if (pair->facet < 0) continue;
     residual = PairCheck(p, k);
@@ -258,8 +259,8 @@ static VERSIONS PetscReal PairsCheck(ContactProjector p, PetscInt *n, PetscInt *
 /* Visits pair k; its impulse changes by `change`, at most, and the largest normal one is `scale` at least */
 INTO_VERSIONS void PairVisit(ContactProjector p, PetscInt k, PetscReal *change, PetscReal *scale)
 {
-  Row      *row = &p->row[k];
-  PetscReal square, normal;
+  ProjectorRow *row = &p->row[k];
+  PetscReal     square, normal;
 
   if (row->mass > 0) {
     square = RowSolve(row, p->nodes.v);
@@ -275,7 +276,8 @@ INTO_VERSIONS void PairVisit(ContactProjector p, PetscInt k, PetscReal *change, 
 /* Sweeps until the next one would change impulses by less than the tolerance, going by how fast the changes (squared)
    decrease, in the step before where this one has not shown it yet, or max_it are done; scale is the largest impulse, of
    the step before or now */
-static VERSIONS void PairsSweep(ContactProjector p, PetscInt n, PetscReal before, PetscReal *scale, Convergence *c)
+static VERSIONS void PairsSweep(ContactProjector p, PetscInt n, PetscReal before, PetscReal *scale,
+                                ProjectorConvergence *c)
 {
   while (c->sweeps < p->max_it) {
     const PetscReal last = c->change;
@@ -289,12 +291,12 @@ static VERSIONS void PairsSweep(ContactProjector p, PetscInt n, PetscReal before
   }
 }
 
-void PairsSolve(ContactProjector p, Convergence *c)
+void PairsSolve(ContactProjector p, ProjectorConvergence *c)
 {
   PetscReal before, scale, residual;
   PetscInt  n;
 
-  *c    = (Convergence){.worst = -1};
+  *c    = (ProjectorConvergence){.worst = -1};
   n     = PairsBegin(p, &before, &c->noise);
   scale = before;
   do {

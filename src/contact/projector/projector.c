@@ -74,7 +74,7 @@ PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *project
 
 PetscErrorCode ContactProjectorGetTurning(ContactProjector p, PetscInt i, PetscBool *turns, PetscReal rotation[3])
 {
-  const Sliding *s = &p->sliding[i];
+  const ContactSliding *s = &p->sliding[i];
 
   PetscFunctionBeginUser;
   *turns = s->turning && s->rotates ? PETSC_TRUE : PETSC_FALSE;
@@ -149,7 +149,7 @@ static PetscBool ProjectorTravels(const ContactProjector p)
 /* The step on the root, from the values of the nodes to their forces */
 static PetscErrorCode RootProject(ContactProjector p, const ContactStep *step, PetscReal head[SHARE_HEAD])
 {
-  Convergence convergence;
+  ProjectorConvergence convergence;
 
   PetscFunctionBeginUser;
   if (p->share.rank != p->share.root) PetscFunctionReturn(0);
@@ -236,7 +236,7 @@ PetscErrorCode ContactProjectorView(ContactProjector p, PetscViewer viewer)
 
     PetscCall(PetscViewerASCIIPrintf(
       viewer, "contact %s: %" PetscInt_FMT " nodes of %s on %" PetscInt_FMT " facets of %s, mu %.6g, multipliers\n",
-      c->name, n[i], c->slave, p->surface[i].n_facets, c->master, (double)c->mu));
+      c->name, n[i], c->slave, p->master[i].surface->n_facets, c->master, (double)c->mu));
     PetscCall(SlidingView(c, &p->sliding[i], viewer));
   }
   if (p->n_interfaces) PetscCall(ContactProjectorGetSums(p, 0, &sums));

@@ -20,41 +20,22 @@ typedef struct {
   PetscReal axis[3]; /* unit vector of the rotation, or of the slip; 0 where nothing slides */
   PetscReal speed;   /* of the master about it, rad/s, or of the slave along it, m/s */
   Ramp      ramp;
-} Sliding;
+} ContactSliding;
 
 /* Place of a master that moves: a point x of the ground is at x + d(x) in its frame, d(x) = D (x - centre) - shift, D =
    R' - I. D and shift are exactly 0 at rest, and D e = 0 for the axis e, so that no rounding enters a gap along it. */
 typedef struct {
   PetscReal D[3][3], centre[3], shift[3];
-} Frame;
-
-/* Facet of a master surface, undeformed */
-typedef struct {
-  PetscInt  node[4];
-  PetscInt  beside[4]; /* facet across the edge from corner i to i + 1, -1 at the border */
-  PetscReal x[4][3];   /* m */
-  PetscReal size;      /* square root of its area, m */
-  PetscBool flat;      /* the normal is the same everywhere */
-  PetscReal normal[3]; /* unit vector in the middle */
-} MasterFacet;
-
-/* Bounding volume: leaves hold facets order[first .. first + n), others have n = 0 and the boxes after it and `right`
-   */
-typedef struct {
-  PetscReal low[3], high[3];
-  PetscInt  first, n, right;
-} Bounds;
+} ContactFrame;
 
 /* Master surface of one interface, on the root */
 typedef struct {
-  PetscInt     n_facets, n_boxes, *order;
-  MasterFacet *facet;
-  Bounds      *box;
-  PetscBool   *live; /* the corners of the facet are active */
-  PetscInt     n_nodes, *node;
-  PetscInt     n_seen, *seen; /* nodes of it that are active */
-  PetscReal    size;          /* mean of the facets, m */
-} Surface;
+  const ContactSurface *surface;
+  PetscInt             *node;          /* [n_nodes] numbers of its nodes */
+  ContactBox           *box;           /* at the last search */
+  PetscBool            *live;          /* the corners of the facet are active */
+  PetscInt              n_seen, *seen; /* nodes of it that are active */
+} ProjectorMaster;
 
 #define PROJECTOR_PAST 3 /* steps of which forces are kept, for the guess of the next */
 
@@ -64,9 +45,8 @@ typedef struct {
   PetscInt      facet;                     /* of the interface's surface, -1 where it faces none */
   PetscReal     natural[2];                /* on the facet */
   PetscReal     lambda[PROJECTOR_PAST][3]; /* forces on the slave in the frame of the master, N; [0] of the last step */
-  PetscReal     along[3]; /* that slip is measured along, in the frame of the master; 0 where any will do */
-  PetscReal     e[3][3], turned[3][3]; /* n, t, b in the frame of the master, and on the ground */
-  PetscInt      node[4];               /* corners */
+  PetscReal     e[3][3], turned[3][3];     /* n, t, b in the frame of the master, and on the ground */
+  PetscInt      node[4];                   /* corners */
   PetscReal     weight[4];
   PetscReal     gap;          /* of the undeformed bodies, where the facet will not change any more, m */
   PetscBool     found, ready; /* the facet will not change any more; directions and compliance are those of the facet */
@@ -77,7 +57,7 @@ typedef struct {
   PetscReal     mu, slip;     /* slip speed of v_{n-1/2}, m/s, -1 where it is not known: for mu */
   PetscReal     p[3], q[3];   /* impulse on the slave, N s; relative velocity with the offset, m/s */
   ContactStatus status;
-} Pair;
+} ProjectorPair;
 
 /* What Gauss-Seidel needs of a pair without coupling of its directions, close together; Cartesian, in the frame of the
    master */
@@ -88,7 +68,7 @@ typedef struct {
   PetscReal        n[3], offset[3], p[3];
   PetscReal        mass, mu; /* 1/w; 0 where the general way is needed */
   const PetscReal *D;        /* of the frame, [3][3]; NULL where it stands still */
-} Row;
+} ProjectorRow;
 
 #define SHARE_FIELDS 3 /* sent at once, at most */
 
@@ -106,7 +86,7 @@ typedef struct {
   PetscMPIInt *n_send, *send, *n_back, *back; /* counts and places of the messages, numbers */
   PetscInt    *send_node, *back_node;         /* nodes in the order of the messages */
   PetscReal   *buffer[2];                     /* of this rank, and of the root */
-} Share;
+} ProjectorShare;
 
 #define PROJECTOR_DEEPEST 1e-3 /* sizes of a facet: a slave deeper below is not taken up */
 
@@ -118,7 +98,7 @@ typedef struct {
   PetscReal *predicted; /* displacement at t_{n+1} without contact, m */
   PetscReal *rest;      /* displacement 0 */
   PetscBool *even;      /* minv is equal in all directions */
-} Nodes;
+} ProjectorNodes;
 
 /* How Gauss-Seidel ended */
 typedef struct {
@@ -127,78 +107,63 @@ typedef struct {
   PetscReal change;                /* of the impulses in the last sweep, squared, N^2 s^2 */
   PetscReal noise;                 /* rounding of the impulses that stop and drag the nodes, N s */
   PetscBool converged;
-} Convergence;
+} ProjectorConvergence;
 
 struct _p_ContactProjector {
-  Contact   contact;
-  PetscInt  n_interfaces;
-  PetscReal rtol;
-  PetscInt  max_it;
-  Sliding   sliding[CONTACT_MAX];
-  Share     share;
-  PetscBool has_mass;
+  Contact        contact;
+  PetscInt       n_interfaces;
+  PetscReal      rtol;
+  PetscInt       max_it;
+  ContactSliding sliding[CONTACT_MAX];
+  ProjectorShare share;
+  PetscBool      has_mass;
   /* on the root only */
-  Nodes         nodes;
-  Surface       surface[CONTACT_MAX];
-  Frame         frame[CONTACT_MAX], frame_old[CONTACT_MAX]; /* at t_{n+1} and t_n */
-  PetscInt      n_pairs;
-  Pair         *pair;
-  Row          *row;                                         /* [n_pairs] */
-  PetscInt     *first_candidate, *candidate, max_candidates; /* facets near each slave */
-  PetscReal    *place;     /* [n_pairs][3] displacement of the slave in the frame of the master at the last search, m */
-  PetscReal    *u_search;  /* [n_nodes][3] displacements at the last search, m */
-  PetscInt      order;     /* of the polynomial in time that guesses the next forces */
-  PetscReal     rate;      /* by which a sweep's change (squared) was less than the one before, last time */
-  PetscReal     t_search;  /* and its time, s */
-  PetscBool    *is_active; /* [n_nodes] */
-  PetscReal     margin[CONTACT_MAX]; /* candidates lie within, m */
-  PetscBool    *visited;             /* [n_pairs] by Gauss-Seidel */
-  PetscInt     *visit;               /* these, in order */
-  ContactState *state;
-  PetscInt     *interface, *number; /* [n_pairs] of the slaves, and */
-  PetscReal    *slave_x;            /* [n_pairs][3] their places */
-  ContactSums   sums[CONTACT_MAX];
-  PetscReal     dt;
+  ProjectorNodes   nodes;
+  ProjectorMaster  master[CONTACT_MAX];
+  ContactFrame     frame[CONTACT_MAX], frame_old[CONTACT_MAX]; /* at t_{n+1} and t_n */
+  PetscInt         n_pairs;
+  ProjectorPair   *pair;
+  ProjectorRow    *row; /* [n_pairs] */
+  PetscInt        *first_candidate;
+  ContactFacetList candidates; /* facets near each slave */
+  PetscReal       *place; /* [n_pairs][3] displacement of the slave in the frame of the master at the last search, m */
+  PetscReal       *u_search;  /* [n_nodes][3] displacements at the last search, m */
+  PetscInt         order;     /* of the polynomial in time that guesses the next forces */
+  PetscReal        rate;      /* by which a sweep's change (squared) was less than the one before, last time */
+  PetscReal        t_search;  /* and its time, s */
+  PetscBool       *is_active; /* [n_nodes] */
+  PetscReal        margin[CONTACT_MAX]; /* candidates lie within, m */
+  PetscBool       *visited;             /* [n_pairs] by Gauss-Seidel */
+  PetscInt        *visit;               /* these, in order */
+  ContactState    *state;
+  PetscInt        *interface, *number; /* [n_pairs] of the slaves, and */
+  PetscReal       *slave_x;            /* [n_pairs][3] their places */
+  ContactSums      sums[CONTACT_MAX];
+  PetscReal        dt;
   /* on all ranks */
   PetscBool search_next; /* all nodes are active, and the next step begins with a search */
 };
 
 /* sliding.c - options of the sliding of interface i, after its own ones */
-PETSC_INTERN PetscErrorCode SlidingSetFromOptions(Contact contact, PetscInt i, Sliding *sliding);
+PETSC_INTERN PetscErrorCode SlidingSetFromOptions(Contact contact, PetscInt i, ContactSliding *sliding);
 /* sliding.c - raises the error for a sliding that is not fully said */
-PETSC_INTERN PetscErrorCode SlidingCheck(MPI_Comm comm, const ContactInterface *c, const Sliding *sliding);
-PETSC_INTERN PetscErrorCode SlidingView(const ContactInterface *c, const Sliding *sliding, PetscViewer viewer);
+PETSC_INTERN PetscErrorCode SlidingCheck(MPI_Comm comm, const ContactInterface *c, const ContactSliding *sliding);
+PETSC_INTERN PetscErrorCode SlidingView(const ContactInterface *c, const ContactSliding *sliding, PetscViewer viewer);
 /* sliding.c - frame of the master at time t */
-PETSC_INTERN void SlidingFrame(const ContactInterface *c, const Sliding *sliding, PetscReal t, Frame *frame);
-/* sliding.c - direction in which a slave at x slides on the master: with rotation its velocity at full speed (m/s),
-   else a unit vector; 0 where nothing says one */
-PETSC_INTERN void SlidingDirection(const ContactInterface *c, const Sliding *sliding, const PetscReal x[3],
-                                   PetscReal v[3]);
+PETSC_INTERN void SlidingFrame(const ContactInterface *c, const ContactSliding *sliding, PetscReal t,
+                               ContactFrame *frame);
 /* whether places on the master never change: sliding is prescribed, and the meshes stay */
-static inline PetscBool SlidingStays(const Sliding *sliding)
+static inline PetscBool SlidingStays(const ContactSliding *sliding)
 {
   return sliding->slides && !sliding->turning ? PETSC_TRUE : PETSC_FALSE;
 }
 /* displacement of a slave in the frame of the master: d(x) + R' u */
-static inline void FrameDisplacement(const Frame *f, const PetscReal x[3], const PetscReal u[3], PetscReal d[3])
+static inline void FrameDisplacement(const ContactFrame *f, const PetscReal x[3], const PetscReal u[3], PetscReal d[3])
 {
   const PetscReal y[3] = {x[0] + u[0] - f->centre[0], x[1] + u[1] - f->centre[1], x[2] + u[2] - f->centre[2]};
 
   for (int i = 0; i < 3; i++) d[i] = u[i] + f->D[i][0] * y[0] + f->D[i][1] * y[1] + f->D[i][2] * y[2] - f->shift[i];
 }
-
-/* By x, then y, then z */
-static inline int PlaceCompare(const PetscReal a[3], const PetscReal b[3])
-{
-  for (int d = 0; d < 3; d++)
-    if (a[d] != b[d]) return a[d] < b[d] ? -1 : 1;
-  return 0;
-}
-
-/* facets.c - master surface on a set; number[n_nodes] are the global vertex numbers of the nodes, ascending */
-PETSC_INTERN PetscErrorCode MasterCreate(Contact contact, const char set[], PetscInt n_nodes, const PetscInt number[],
-                                         Surface *surface);
-PETSC_INTERN PetscErrorCode MasterDestroy(Surface *surface);
 
 /* surface.c - surfaces of all interfaces, the nodes and who has them; pairs without partner */
 PETSC_INTERN PetscErrorCode ProjectorSetUpSurfaces(ContactProjector projector);
@@ -206,58 +171,49 @@ PETSC_INTERN PetscErrorCode ProjectorDestroySurfaces(ContactProjector projector)
 
 /* share.c - the exchange between the root and all ranks; is_active [n_nodes] is read on the root, NULL on all ranks for
    all */
-PETSC_INTERN PetscErrorCode ShareSetUp(MPI_Comm comm, PetscInt n, const PetscInt number[], Share *share);
-PETSC_INTERN PetscErrorCode ShareSetActive(Share *share, const PetscBool is_active[]);
+PETSC_INTERN PetscErrorCode ShareSetUp(MPI_Comm comm, PetscInt n, const PetscInt number[], ProjectorShare *share);
+PETSC_INTERN PetscErrorCode ShareSetActive(ProjectorShare *share, const PetscBool is_active[]);
 /* share.c - n <= SHARE_FIELDS fields of three values per local node to the root, and forces from there with head[SHARE_HEAD] */
-PETSC_INTERN PetscErrorCode ShareGather(Share *share, PetscInt n, const PetscReal *const local[],
+PETSC_INTERN PetscErrorCode ShareGather(ProjectorShare *share, PetscInt n, const PetscReal *const local[],
                                         PetscReal *const root[]);
-PETSC_INTERN PetscErrorCode ShareReturn(Share *share, const PetscReal root[], PetscReal head[SHARE_HEAD],
+PETSC_INTERN PetscErrorCode ShareReturn(ProjectorShare *share, const PetscReal root[], PetscReal head[SHARE_HEAD],
                                         PetscReal local[]);
-static inline PetscInt      ShareCountSent(const Share *share)
+static inline PetscInt      ShareCountSent(const ProjectorShare *share)
 {
   return share->send[share->size - 1] + share->n_send[share->size - 1];
 }
-PETSC_INTERN PetscErrorCode ShareDestroy(Share *share);
+PETSC_INTERN PetscErrorCode ShareDestroy(ProjectorShare *share);
 
-/* search.c - bounding volumes of a surface */
-PETSC_INTERN PetscErrorCode SurfaceBuildBoxes(Surface *surface);
-/* search.c - candidates of all slaves within `reach` margins, at displacements u of all nodes and the present frames,
+/* candidates.c - candidates of all slaves within `reach` margins, at displacements u of all nodes and the present frames,
    of time t */
 PETSC_INTERN PetscErrorCode ProjectorSearch(ContactProjector projector, PetscReal t, PetscReal reach,
                                             const PetscReal u[]);
-/* search.c - whether a slave has gone so far since the search that its candidates may soon not do any more */
+/* candidates.c - whether a slave has gone so far since the search that its candidates may soon not do any more */
 PETSC_INTERN PetscBool ProjectorNeedsSearch(ContactProjector projector, const PetscReal u[]);
-
-/* follow.c - facet and natural coordinates of a slave at displacement d (in the frame of the master), corners at
-   displacements u; -1 where it faces none. deepest: gaps below -deepest sizes of the facet are no contact where the
-   slave had no facet before */
-PETSC_INTERN void PairFollow(ContactProjector projector, PetscInt p, const PetscReal d[3], const PetscReal u[],
-                             PetscReal deepest);
-/* follow.c - weights, normal, tangents; returns the length of what slip is measured along in the tangent plane */
-PETSC_INTERN PetscReal PairSetBasis(const Surface *surface, Pair *pair);
-/* follow.c - n . (x_s - x_m) at these displacements, m */
-PETSC_INTERN PetscReal PairGap(const Surface *surface, const Pair *pair, const PetscReal x[3], const PetscReal d[3],
-                               const PetscReal u[]);
 
 /* prepare.c - everything of the pairs at the beginning of a step: facets, frames, compliances, gaps, friction
    coefficients, and the impulses of the step before */
 PETSC_INTERN PetscErrorCode PairsPrepare(ContactProjector projector, const ContactStep *step);
 /* project.c - impulses, and velocities of the nodes with them */
-PETSC_INTERN void PairsSolve(ContactProjector projector, Convergence *convergence);
+PETSC_INTERN void PairsSolve(ContactProjector projector, ProjectorConvergence *convergence);
 /* prepare.c - facet, frame and compliance of one pair at the predicted displacements; false where the slave faces no
    facet. One that has faced none is taken up where it is at displacements u not deeper below the master than `deepest`
    sizes of the facet. */
 PETSC_INTERN PetscBool PairPlace(ContactProjector projector, PetscInt pair, const PetscReal u[],
                                  const PetscReal predicted[], PetscReal deepest);
+/* prepare.c - n . (x_s - x_m), the slave at displacement d in the frame of the master and the nodes at u, m */
+PETSC_INTERN PetscReal PairGap(ContactProjector projector, const ProjectorPair *pair, const PetscReal d[3],
+                               const PetscReal u[]);
 /* project.c - inverse of a compliance for the natural map, kg; 0 where nothing moves along n */
-PETSC_INTERN PetscReal PairMass(const Pair *pair);
+PETSC_INTERN PetscReal PairMass(const ProjectorPair *pair);
 /* prepare.c - predicted displacements of the active nodes, u + dt v */
 PETSC_INTERN void NodesPredict(ContactProjector projector, PetscReal dt);
 /* project.c - velocity of the slave relative to the master along n, t, b, m/s, of velocities v of the nodes */
-PETSC_INTERN void PairVelocity(const Pair *pair, const PetscReal v[], PetscReal q[3]);
+PETSC_INTERN void PairVelocity(const ProjectorPair *pair, const PetscReal v[], PetscReal q[3]);
 
 /* record.c - forces on the nodes, states and sums of a step */
-PETSC_INTERN void PairsRecord(ContactProjector projector, const ContactStep *step, const Convergence *convergence);
+PETSC_INTERN void PairsRecord(ContactProjector projector, const ContactStep *step,
+                              const ProjectorConvergence *convergence);
 
 /* projector.c - one field of all nodes to the root; all nodes are active after it */
 PETSC_INTERN PetscErrorCode ProjectorGatherAll(ContactProjector projector, const PetscReal local[], PetscReal root[]);

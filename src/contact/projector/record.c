@@ -10,7 +10,7 @@
 #include "projectorimpl.h"
 
 /* How far a constant, a line and a parabola through the forces before miss this one, squares added to miss */
-INTO_VERSIONS void GuessesMeasure(const Pair *pair, const PetscReal lambda[3], PetscReal miss[PROJECTOR_PAST])
+INTO_VERSIONS void GuessesMeasure(const ProjectorPair *pair, const PetscReal lambda[3], PetscReal miss[PROJECTOR_PAST])
 {
   for (int d = 0; d < 3; d++) {
     const PetscReal *a = &pair->lambda[0][d], *b = &pair->lambda[1][d], *c = &pair->lambda[2][d];
@@ -22,7 +22,7 @@ INTO_VERSIONS void GuessesMeasure(const Pair *pair, const PetscReal lambda[3], P
 }
 
 /* Force of a pair from its impulse; the last ones become older */
-INTO_VERSIONS void PairSetForce(Pair *pair, PetscReal kick, PetscReal miss[PROJECTOR_PAST])
+INTO_VERSIONS void PairSetForce(ProjectorPair *pair, PetscReal kick, PetscReal miss[PROJECTOR_PAST])
 {
   PetscReal lambda[3] = {0, 0, 0};
 
@@ -43,7 +43,7 @@ INTO_VERSIONS void ForcesSet(ContactProjector p, PetscReal kick)
   for (PetscInt i = 0; i < n; i++)
     for (int d = 0; d < 3; d++) force[3 * p->share.send_node[i] + d] = 0;
   for (PetscInt k = 0; k < p->n_pairs; k++) {
-    Pair            *pair   = &p->pair[k];
+    ProjectorPair   *pair   = &p->pair[k];
     const PetscReal *lambda = pair->lambda[0];
 
     PairSetForce(pair, kick, miss);
@@ -58,7 +58,7 @@ INTO_VERSIONS void ForcesSet(ContactProjector p, PetscReal kick)
     if (miss[i] < miss[p->order]) p->order = i;
 }
 
-INTO_VERSIONS void StateSet(const Pair *pair, const ContactStep *step, ContactState *state)
+INTO_VERSIONS void StateSet(const ProjectorPair *pair, const ContactStep *step, ContactState *state)
 {
   *state = (ContactState){.status = CONTACT_OPEN, .gap = PETSC_INFINITY};
   if (pair->facet < 0) return;
@@ -77,7 +77,7 @@ typedef struct {
 } Directions;
 
 /* Adds one closed pair to the sums of its interface */
-INTO_VERSIONS void SumsAdd(const ContactProjector p, const Pair *pair, const ContactState *state, PetscReal dt,
+INTO_VERSIONS void SumsAdd(const ContactProjector p, const ProjectorPair *pair, const ContactState *state, PetscReal dt,
                            ContactSums *sums, Directions *directions)
 {
   PetscReal old[3], velocity[3];
@@ -99,7 +99,7 @@ INTO_VERSIONS void SumsAdd(const ContactProjector p, const Pair *pair, const Con
 }
 
 /* What belongs to the last step alone begins anew */
-static void SumsBegin(ContactSums *sums, const Convergence *convergence)
+static void SumsBegin(ContactSums *sums, const ProjectorConvergence *convergence)
 {
   for (int i = 0; i < CONTACT_N_STATUS; i++) sums->n[i] = 0;
   for (int d = 0; d < 3; d++) sums->force[d] = 0;
@@ -120,16 +120,16 @@ static PetscReal FrictionAlong(const Directions *d)
   return PetscSqrtReal(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
 }
 
-VERSIONS void PairsRecord(ContactProjector p, const ContactStep *step, const Convergence *convergence)
+VERSIONS void PairsRecord(ContactProjector p, const ContactStep *step, const ProjectorConvergence *convergence)
 {
   Directions directions[CONTACT_MAX] = {0};
 
   ForcesSet(p, step->kick);
   for (PetscInt i = 0; i < p->n_interfaces; i++) SumsBegin(&p->sums[i], convergence);
   for (PetscInt k = 0; k < p->n_pairs; k++) {
-    const Pair    *pair  = &p->pair[k];
-    const PetscInt i     = pair->interface;
-    ContactState  *state = &p->state[k];
+    const ProjectorPair *pair  = &p->pair[k];
+    const PetscInt       i     = pair->interface;
+    ContactState        *state = &p->state[k];
 
     StateSet(pair, step, state);
     p->sums[i].n[state->status]++;
@@ -150,12 +150,12 @@ PetscErrorCode ContactProjectorGetKKT(ContactProjector p, ContactKKT *kkt)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(p->n_pairs, &judged));
   for (PetscInt k = 0; k < p->n_pairs; k++) {
-    const Pair         *pair  = &p->pair[k];
-    const ContactState *state = &p->state[k];
+    const ProjectorPair *pair  = &p->pair[k];
+    const ContactState  *state = &p->state[k];
 
     if (pair->facet < 0) continue;
-    judged[n++] =
-      (ContactJudged){state, pair->mu, PETSC_INFINITY, state->gap, p->surface[pair->interface].size, PETSC_FALSE};
+    judged[n++] = (ContactJudged){
+      state, pair->mu, PETSC_INFINITY, state->gap, p->master[pair->interface].surface->size, PETSC_FALSE};
     for (int d = 0; d < 3; d++) displacement = PetscMax(displacement, PetscAbsReal(p->nodes.u[3 * pair->slave + d]));
   }
   PetscCall(ContactJudge(p->share.comm, n, judged, displacement, kkt));

@@ -56,7 +56,7 @@ PetscErrorCode ContactProjectorGetMemory(ContactProjector p, PetscInt *n, PetscR
   *v++ = p->rate;
   for (PetscInt i = 0; i < p->n_interfaces; i++, v += PER_SUMS) SumsGet(&p->sums[i], v);
   for (PetscInt k = 0; k < p->n_pairs; k++) {
-    const Pair *pair = &p->pair[k];
+    const ProjectorPair *pair = &p->pair[k];
 
     *v++ = (PetscReal)pair->facet;
     for (int i = 0; i < 2; i++) *v++ = pair->natural[i];
@@ -80,7 +80,7 @@ static PetscErrorCode RootSetMemory(ContactProjector p, const PetscReal v[])
     SlidingFrame(&p->contact->interfaces[i], &p->sliding[i], t, &p->frame[i]);
   }
   for (PetscInt k = 0; k < p->n_pairs; k++) {
-    Pair *pair = &p->pair[k];
+    ProjectorPair *pair = &p->pair[k];
 
     pair->facet = (PetscInt)*v++;
     pair->found = SlidingStays(&p->sliding[pair->interface]);
@@ -113,7 +113,7 @@ PetscErrorCode ContactProjectorGetPrint(ContactProjector p, PetscReal *print)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < p->n_interfaces; i++) {
     const ContactInterface *c     = &p->contact->interfaces[i];
-    const Sliding          *s     = &p->sliding[i];
+    const ContactSliding   *s     = &p->sliding[i];
     const PetscReal         all[] = {s->turning,    s->rotates,    s->slides, s->axis[0],
                                      s->axis[1],    s->axis[2],    s->speed,  (PetscReal)s->ramp.shape,
                                      s->ramp.delay, s->ramp.length};

@@ -7,7 +7,7 @@
 #include "projectorimpl.h"
 #include "base/gather.h"
 
-PetscErrorCode ShareSetUp(MPI_Comm comm, PetscInt n, const PetscInt number[], Share *share)
+PetscErrorCode ShareSetUp(MPI_Comm comm, PetscInt n, const PetscInt number[], ProjectorShare *share)
 {
   PetscInt *counts, total;
 
@@ -36,12 +36,12 @@ PetscErrorCode ShareSetUp(MPI_Comm comm, PetscInt n, const PetscInt number[], Sh
 }
 
 /* Number of the node at place i of holder[] */
-static inline PetscInt HolderNode(const Share *share, PetscInt i)
+static inline PetscInt HolderNode(const ProjectorShare *share, PetscInt i)
 {
   return share->holder[i] < 0 ? ~share->holder[i] : share->holder[i];
 }
 
-PetscErrorCode ShareSetActive(Share *share, const PetscBool is_active[])
+PetscErrorCode ShareSetActive(ProjectorShare *share, const PetscBool is_active[])
 {
   PetscInt    n_send = 0, n_back = 0;
   PetscMPIInt back = 0;
@@ -70,7 +70,7 @@ PetscErrorCode ShareSetActive(Share *share, const PetscBool is_active[])
 }
 
 /* From the message of all ranks into the arrays of the root */
-static void ShareUnpack(const Share *share, PetscInt n, const PetscReal message[], PetscReal *const root[])
+static void ShareUnpack(const ProjectorShare *share, PetscInt n, const PetscReal message[], PetscReal *const root[])
 {
   const PetscInt n_all = ShareCountSent(share);
 
@@ -79,7 +79,7 @@ static void ShareUnpack(const Share *share, PetscInt n, const PetscReal message[
       for (int d = 0; d < 3; d++) root[k][3 * share->send_node[i] + d] = message[3 * (n * i + k) + d];
 }
 
-PetscErrorCode ShareGather(Share *share, PetscInt n, const PetscReal *const local[], PetscReal *const root[])
+PetscErrorCode ShareGather(ProjectorShare *share, PetscInt n, const PetscReal *const local[], PetscReal *const root[])
 {
   const MPI_Datatype record  = share->record[n - 1];
   PetscReal         *message = share->buffer[0];
@@ -104,7 +104,7 @@ PetscErrorCode ShareGather(Share *share, PetscInt n, const PetscReal *const loca
 }
 
 /* Head and forces of all ranks, one after the other */
-static void SharePack(const Share *share, const PetscReal root[], const PetscReal head[], PetscReal message[])
+static void SharePack(const ProjectorShare *share, const PetscReal root[], const PetscReal head[], PetscReal message[])
 {
   PetscInt node = 0;
 
@@ -118,7 +118,7 @@ static void SharePack(const Share *share, const PetscReal root[], const PetscRea
   }
 }
 
-PetscErrorCode ShareReturn(Share *share, const PetscReal root[], PetscReal head[SHARE_HEAD], PetscReal local[])
+PetscErrorCode ShareReturn(ProjectorShare *share, const PetscReal root[], PetscReal head[SHARE_HEAD], PetscReal local[])
 {
   PetscReal *message = share->buffer[0];
 
@@ -133,7 +133,7 @@ PetscErrorCode ShareReturn(Share *share, const PetscReal root[], PetscReal head[
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ShareDestroy(Share *share)
+PetscErrorCode ShareDestroy(ProjectorShare *share)
 {
   PetscFunctionBeginUser;
   for (int k = 0; k < SHARE_FIELDS; k++)

@@ -18,7 +18,7 @@ static PetscReal Length(const PetscReal a[3])
 }
 
 /* Axis and speed from the parameters of the interface */
-static void SlidingSetAxis(const ContactInterface *c, Sliding *sliding)
+static void SlidingSetAxis(const ContactInterface *c, ContactSliding *sliding)
 {
   const PetscReal  omega  = Length(c->rotation);
   const PetscReal *vector = omega > 0 ? c->rotation : c->slip, length = Length(vector);
@@ -29,7 +29,7 @@ static void SlidingSetAxis(const ContactInterface *c, Sliding *sliding)
   for (int d = 0; d < 3; d++) sliding->axis[d] = length > 0 ? vector[d] / length : 0;
 }
 
-PetscErrorCode SlidingSetFromOptions(Contact contact, PetscInt i, Sliding *sliding)
+PetscErrorCode SlidingSetFromOptions(Contact contact, PetscInt i, ContactSliding *sliding)
 {
   static const char *const kinds[] = {"prescribed", "turning"};
   const ContactInterface  *c       = &contact->interfaces[i];
@@ -49,7 +49,7 @@ PetscErrorCode SlidingSetFromOptions(Contact contact, PetscInt i, Sliding *slidi
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SlidingCheck(MPI_Comm comm, const ContactInterface *c, const Sliding *sliding)
+PetscErrorCode SlidingCheck(MPI_Comm comm, const ContactInterface *c, const ContactSliding *sliding)
 {
   PetscFunctionBeginUser;
   PetscCheck(!sliding->slides || sliding->speed > 0, comm, PETSC_ERR_USER_INPUT,
@@ -77,11 +77,11 @@ static void FrameTurn(const PetscReal axis[3], PetscReal angle, PetscReal D[3][3
       D[i][j] = -s * K[i][j] + c * (K[i][0] * K[0][j] + K[i][1] * K[1][j] + K[i][2] * K[2][j]);
 }
 
-void SlidingFrame(const ContactInterface *c, const Sliding *sliding, PetscReal t, Frame *frame)
+void SlidingFrame(const ContactInterface *c, const ContactSliding *sliding, PetscReal t, ContactFrame *frame)
 {
   const PetscReal way = sliding->speed * RampIntegral(&sliding->ramp, t);
 
-  *frame = (Frame){.shift = {0}};
+  *frame = (ContactFrame){.shift = {0}};
   for (int d = 0; d < 3; d++) frame->centre[d] = c->center[d];
   if (!sliding->turning) return;
   if (sliding->rotates)
@@ -90,18 +90,7 @@ void SlidingFrame(const ContactInterface *c, const Sliding *sliding, PetscReal t
     for (int d = 0; d < 3; d++) frame->shift[d] = -way * sliding->axis[d];
 }
 
-void SlidingDirection(const ContactInterface *c, const Sliding *sliding, const PetscReal x[3], PetscReal v[3])
-{
-  for (int d = 0; d < 3; d++) v[d] = sliding->axis[d];
-  if (!sliding->rotates) return;
-  for (int d = 0; d < 3; d++) {
-    const int e = (d + 1) % 3, f = (d + 2) % 3;
-
-    v[d] = -(c->rotation[e] * (x[f] - c->center[f]) - c->rotation[f] * (x[e] - c->center[e]));
-  }
-}
-
-PetscErrorCode SlidingView(const ContactInterface *c, const Sliding *sliding, PetscViewer viewer)
+PetscErrorCode SlidingView(const ContactInterface *c, const ContactSliding *sliding, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
   if (!sliding->slides || sliding->speed == 0) {

@@ -18,7 +18,7 @@ typedef struct {
 static void PairsFind(ContactProjector p, StartFault *fault)
 {
   for (PetscInt k = 0; k < p->n_pairs; k++) {
-    Pair            *pair = &p->pair[k];
+    ProjectorPair   *pair = &p->pair[k];
     const PetscReal *x    = &p->nodes.x[3 * pair->slave];
     PetscReal        d[3], gap;
 
@@ -28,7 +28,7 @@ static void PairsFind(ContactProjector p, StartFault *fault)
     p->state[k]               = (ContactState){.status = CONTACT_OPEN, .gap = PETSC_INFINITY};
     if (!PairPlace(p, k, p->nodes.u, p->nodes.u, PETSC_MAX_REAL)) continue;
     FrameDisplacement(&p->frame[pair->interface], x, &p->nodes.u[3 * pair->slave], d);
-    gap = p->state[k].gap = PairGap(&p->surface[pair->interface], pair, x, d, p->nodes.u);
+    gap = p->state[k].gap = PairGap(p, pair, d, p->nodes.u);
     if (-gap > fault->depth) {
       fault->depth     = -gap;
       fault->interface = (PetscReal)pair->interface;
@@ -125,9 +125,9 @@ static PetscErrorCode StartForces(ContactProjector p, const ContactState states[
   PetscFunctionBeginUser;
   PetscCall(GivenGather(p, states, &n, &all));
   for (PetscInt k = 0; k < p->n_pairs; k++) {
-    const Given  wanted = {.interface = p->interface[k], .number = p->number[k]};
-    const Given *given  = n ? (const Given *)bsearch(&wanted, all, (size_t)n, sizeof(Given), GivenCompare) : NULL;
-    Pair        *pair   = &p->pair[k];
+    const Given    wanted = {.interface = p->interface[k], .number = p->number[k]};
+    const Given   *given  = n ? (const Given *)bsearch(&wanted, all, (size_t)n, sizeof(Given), GivenCompare) : NULL;
+    ProjectorPair *pair   = &p->pair[k];
 
     for (int i = 0; i < 3 * PROJECTOR_PAST; i++) pair->lambda[i / 3][i % 3] = 0;
     if (!given || pair->facet < 0) continue;

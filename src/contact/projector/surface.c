@@ -1,5 +1,5 @@
 /*
-   Contact surfaces of a scene: their nodes with numbers of their own, the facets of the masters (facets.c), and the
+   Nodes of the contact surfaces of a scene, with numbers of their own, those of the masters (contact/surface.h), and the
    slaves. All is made once from the mesh as it is; every rank sees the lists, the root keeps what it needs.
 */
 #include "projectorimpl.h"
@@ -54,9 +54,9 @@ static PetscErrorCode VerticesFind(Contact contact, PetscInt *n, PetscInt **vert
 /* The nodes of all ranks: unique[n] ascending global vertex numbers, and who has them */
 static PetscErrorCode NodesFind(ContactProjector p, PetscInt *n_unique, PetscInt **unique)
 {
-  Share      *share = &p->share;
-  const Mesh *mesh;
-  PetscInt    n, *vertex, *local, total;
+  ProjectorShare *share = &p->share;
+  const Mesh     *mesh;
+  PetscInt        n, *vertex, *local, total;
 
   PetscFunctionBeginUser;
   PetscCall(VerticesFind(p->contact, &n, &vertex));
@@ -177,7 +177,7 @@ static PetscErrorCode SlavesFind(ContactProjector p, const PetscInt unique[])
 /* Arrays of the nodes on the root, with their places */
 static PetscErrorCode NodesCreate(ContactProjector p)
 {
-  Nodes           *nodes = &p->nodes;
+  ProjectorNodes  *nodes = &p->nodes;
   const PetscInt   n     = p->share.rank == p->share.root ? p->share.n_nodes : 0;
   const PetscReal *x;
   PetscReal       *local;
@@ -196,6 +196,30 @@ static PetscErrorCode NodesCreate(ContactProjector p)
   PetscFunctionReturn(0);
 }
 
+/* The master of interface i, whose nodes are among the n of unique[] */
+static PetscErrorCode MasterCreate(ContactProjector p, PetscInt i, PetscInt n, const PetscInt unique[])
+{
+  ProjectorMaster *m = &p->master[i];
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetSurface(p->contact, i, &m->surface));
+  PetscCall(PetscMalloc2(m->surface->n_nodes, &m->node, m->surface->n_nodes, &m->seen));
+  PetscCall(PetscCalloc1(m->surface->n_facets, &m->live));
+  PetscCall(PetscMalloc1(m->surface->n_boxes, &m->box));
+  for (PetscInt k = 0; k < m->surface->n_nodes; k++)
+    PetscCall(PetscFindInt(m->surface->vertex[k], n, unique, &m->node[k]));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MasterDestroy(ProjectorMaster *m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree2(m->node, m->seen));
+  PetscCall(PetscFree(m->live));
+  PetscCall(PetscFree(m->box));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ProjectorSetUpSurfaces(ContactProjector p)
 {
   PetscInt *unique, n;
@@ -205,8 +229,7 @@ PetscErrorCode ProjectorSetUpSurfaces(ContactProjector p)
   PetscCall(SlavesFind(p, unique));
   PetscCall(ShareSetActive(&p->share, NULL));
   PetscCall(NodesCreate(p));
-  for (PetscInt i = 0; i < p->n_interfaces; i++)
-    PetscCall(MasterCreate(p->contact, p->contact->interfaces[i].master, n, unique, &p->surface[i]));
+  for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(MasterCreate(p, i, n, unique));
   PetscCall(PetscFree(unique));
   PetscFunctionReturn(0);
 }
@@ -214,13 +237,13 @@ PetscErrorCode ProjectorSetUpSurfaces(ContactProjector p)
 PetscErrorCode ProjectorDestroySurfaces(ContactProjector p)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(MasterDestroy(&p->surface[i]));
+  for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(MasterDestroy(&p->master[i]));
   PetscCall(PetscFree(p->pair));
   PetscCall(PetscFree(p->row));
   PetscCall(PetscFree(p->state));
   PetscCall(PetscFree5(p->interface, p->number, p->slave_x, p->visited, p->visit));
   PetscCall(PetscFree2(p->first_candidate, p->place));
-  PetscCall(PetscFree(p->candidate));
+  PetscCall(PetscFree(p->candidates.facet));
   PetscCall(
     PetscFree7(p->nodes.x, p->nodes.minv, p->nodes.u, p->nodes.before, p->nodes.v, p->nodes.force, p->nodes.predicted));
   PetscCall(PetscFree(p->nodes.rest));
