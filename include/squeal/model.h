@@ -116,6 +116,10 @@ PetscErrorCode ModelGetMesh(Model model, const Mesh **mesh);
 /*@ ModelGetParts - the bodies (borrowed). Not collective. @*/
 PetscErrorCode ModelGetParts(Model model, PetscInt *n_parts, const Part **parts);
 
+/*@ ModelFindPart - index of the part that -`name`_part gives, -1 for an empty one. Not collective, same call on all
+    ranks. Errors: PETSC_ERR_USER_INPUT for none of the parts. @*/
+PetscErrorCode ModelFindPart(Model model, const char name[], const char part[], PetscInt *index);
+
 /*@ ModelGetCellParts - index of the part of each local cell, shape [number of local cells] (borrowed). Not
     collective. @*/
 PetscErrorCode ModelGetCellParts(Model model, const PetscInt **cell_part);

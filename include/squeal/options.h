@@ -15,21 +15,22 @@ typedef PetscOptionItems OptionsItems;
 #endif
 
 /*@
-   OptionsGetNames - reads a list of names, each of which becomes the prefix of its own options. Collective.
+   OptionsGetNames - reads a list of names, each of which becomes the prefix of its own options. All lists of a scene
+   share the prefixes: the table in options.c has them all, whichever room reads them. Collective.
 
    Input Parameters:
 +  option - e.g. "-parts"
 .  help   - one line
-.  initial - comma separated default, "" for none
 -  max    - most names
    Output Parameters:
 +  n      - number of names
 -  names  - array [max] to fill; free each with PetscFree()
 
-   Errors: PETSC_ERR_USER_INPUT for a name that is no identifier or stands twice.
+   Errors: PETSC_ERR_USER_INPUT for a name that is no identifier, stands twice, also in two lists, or is the prefix of
+   other options.
 @*/
-PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], const char initial[],
-                               PetscInt max, PetscInt *n, char *names[]);
+PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], PetscInt max, PetscInt *n,
+                               char *names[]);
 
 /*@
    OptionsGetReals - reads an array of exactly n numbers between PetscOptionsBegin() and PetscOptionsEnd(). Collective.
@@ -61,6 +62,15 @@ PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option
    Errors: PETSC_ERR_USER_INPUT for a viewer that is no text.
 @*/
 PetscErrorCode OptionsGetViewer(MPI_Comm comm, const char option[], const char help[], PetscViewer *viewer);
+
+/*@ OptionsGetSet - reads the required "-set" of a name, a set of the mesh, between PetscOptionsBegin() and
+    PetscOptionsEnd(). Collective. The caller frees it. Errors: PETSC_ERR_USER_INPUT when it is not given. @*/
+PetscErrorCode OptionsGetSet(OptionsItems PetscOptionsObject, char **set);
+
+/*@ OptionsCheckFinite - raises an error for a value of -`name`_`option` that is infinite or no number; unit for the
+    message. Collective. @*/
+PetscErrorCode OptionsCheckFinite(MPI_Comm comm, const char name[], const char option[], const char unit[],
+                                  const PetscReal value[3]);
 
 /*@
    OptionsExplainValue - rewrites PETSc's message about a value that is no number, integer or logical so that it names

@@ -13,6 +13,7 @@
 #define MAX_VALID 1024
 #define MAX_NAME  128
 #define MAX_REALS 16
+#define MAX_LIST  4096 /* characters of a list of names */
 
 /* Prefixes of options that PETSc and SLEPc read themselves, some of them only at the end */
 static const char *const library_prefixes[] = {
@@ -35,32 +36,53 @@ static PetscBool NameIsIdentifier(const char name[])
   return PETSC_TRUE;
 }
 
-/* Splits a comma separated default into names */
-static PetscErrorCode NamesSplit(const char initial[], PetscInt max, PetscInt *n, char *names[])
+/* Whether a comma separated list holds the value */
+static PetscBool ListHolds(const char list[], const char value[])
 {
-  char **words;
-  int    n_words;
+  const size_t length = strlen(value);
+
+  for (const char *c = list; c; c = strchr(c, ',') ? strchr(c, ',') + 1 : NULL)
+    if (!strncmp(c, value, length) && (c[length] == ',' || !c[length])) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Raises an error for a name that the program's own options begin with, or that another list of the scene has too */
+static PetscErrorCode NameCheckFree(MPI_Comm comm, const char option[], const char name[])
+{
+  static const char *const own[]   = {"dynamics",  "model", "modes",  "operators", "output",
+                                      "projector", "rig",   "squeal", "static",    "sweep"};
+  static const char *const lists[] = {"-parts",    "-supports", "-springs", "-dashpots", "-loads",
+                                      "-contacts", "-probes",   "-motions", "-impulses"};
+  const size_t             length  = strlen(name);
+  char                     list[MAX_LIST];
+  PetscBool                taken = PETSC_FALSE, set;
 
   PetscFunctionBeginUser;
-  *n = 0;
-  if (!initial[0]) PetscFunctionReturn(0);
-  PetscCall(PetscStrToArray(initial, ',', &n_words, &words));
-  for (int i = 0; i < n_words && i < max; i++) PetscCall(PetscStrallocpy(words[i], &names[(*n)++]));
-  PetscCall(PetscStrToArrayDestroy(n_words, words));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(own) && !taken; i++) PetscCall(PetscStrcmp(name, own[i], &taken));
+  for (const char *const *p = library_prefixes; *p && !taken; p++)
+    taken = !strncmp(*p, name, length) && !strcmp(*p + length, "_") ? PETSC_TRUE : PETSC_FALSE;
+  PetscCheck(!taken, comm, PETSC_ERR_USER_INPUT, "%s '%s' is no name: other options begin with -%s_; choose another",
+             option, name, name);
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(lists); i++) {
+    PetscCall(PetscOptionsGetString(NULL, NULL, lists[i], list, sizeof(list), &set));
+    PetscCheck(!set || !strcmp(lists[i], option) || !ListHolds(list, name), comm, PETSC_ERR_USER_INPUT,
+               "%s and %s both name '%s', whose options begin with -%s_: choose another name in one of them", lists[i],
+               option, name, name);
+  }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], const char initial[],
-                               PetscInt max, PetscInt *n, char *names[])
+PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], PetscInt max, PetscInt *n,
+                               char *names[])
 {
   PetscBool set, same;
   PetscInt  count = max;
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(comm, NULL, "Names in the scene", NULL);
-  PetscCall(PetscOptionsStringArray(option, help, initial[0] ? initial : "none", names, &count, &set));
+  PetscCall(PetscOptionsStringArray(option, help, "none", names, &count, &set));
   PetscOptionsEnd();
-  if (!set) PetscCall(NamesSplit(initial, max, &count, names));
+  if (!set) count = 0;
   for (PetscInt i = 0; i < count; i++) {
     PetscCheck(NameIsIdentifier(names[i]), comm, PETSC_ERR_USER_INPUT,
                "%s '%s' is no name: use letters, digits and underscores, a letter first", option, names[i]);
@@ -68,6 +90,7 @@ PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char he
       PetscCall(PetscStrcmp(names[i], names[j], &same));
       PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "%s names '%s' twice", option, names[i]);
     }
+    PetscCall(NameCheckFree(comm, option, names[i]));
   }
   *n = count;
   PetscFunctionReturn(0);
@@ -129,6 +152,29 @@ PetscErrorCode OptionsGetViewer(MPI_Comm comm, const char option[], const char h
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OptionsGetSet(OptionsItems PetscOptionsObject, char **set)
+{
+  char name[256] = "";
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsString("-set", "named surface, curve, point or volume of the mesh (required)", "options.h",
+                               name, name, sizeof(name), NULL));
+  PetscCheck(name[0], PetscOptionsObject->comm, PETSC_ERR_USER_INPUT, "-%sset must be given: a named set of the mesh",
+             PetscOptionsObject->prefix);
+  PetscCall(PetscStrallocpy(name, set));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsCheckFinite(MPI_Comm comm, const char name[], const char option[], const char unit[],
+                                  const PetscReal value[3])
+{
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 3; d++)
+    PetscCheck(!PetscIsInfOrNanReal(value[d]), comm, PETSC_ERR_USER_INPUT,
+               "-%s_%s value %.6g must be a finite number (%s)", name, option, (double)value[d], unit);
+  PetscFunctionReturn(0);
+}
+
 /* Splits a message such as "Input string abc has no numeric value" into the value and what is wrong with it. PETSc 3.22
    refuses what is not finite as "Newly set value nan less than allowed bound ..." */
 static PetscBool MessageSplit(const char message[], char value[MAX_NAME], const char **wrong)
@@ -151,16 +197,6 @@ static PetscBool MessageSplit(const char message[], char value[MAX_NAME], const 
     return snprintf(value, MAX_NAME, "%.*s", (int)(end ? end - message : (ptrdiff_t)strlen(message)), message) <
            MAX_NAME;
   }
-  return PETSC_FALSE;
-}
-
-/* Whether a comma separated list holds the value */
-static PetscBool ListHolds(const char list[], const char value[])
-{
-  const size_t length = strlen(value);
-
-  for (const char *c = list; c; c = strchr(c, ',') ? strchr(c, ',') + 1 : NULL)
-    if (!strncmp(c, value, length) && (c[length] == ',' || !c[length])) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 

@@ -105,7 +105,7 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   char *names[CONTACT_MAX];
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(contact->comm, "-contacts", "frictional interfaces, each the prefix of its options", "",
+  PetscCall(OptionsGetNames(contact->comm, "-contacts", "frictional interfaces, each the prefix of its options",
                             CONTACT_MAX, &contact->n_interfaces, names));
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
     ContactInterface *c = &contact->interfaces[i];

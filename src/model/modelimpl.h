@@ -71,9 +71,6 @@ PETSC_INTERN PetscErrorCode PartsFindCells(Model model, PetscInt cell_part[]);
 PETSC_INTERN PetscErrorCode SupportsSetFromOptions(Model model);
 PETSC_INTERN PetscErrorCode SupportsLayOut(Model model);
 
-/* support.c - set name of a support, spring, dashpot or load, inside its PetscOptionsBegin() */
-PETSC_INTERN PetscErrorCode SetNameFromOptions(OptionsItems PetscOptionsObject, char **set);
-
 /* load.c - total forces on sets; raises an error for a set that the mesh does not have, or that has no node of an
    element */
 PETSC_INTERN PetscErrorCode LoadsSetFromOptions(Model model);

@@ -6,46 +6,22 @@
 #include "externalimpl.h"
 #include <squeal/options.h>
 
-/* Raises an error for a part that the scene does not name */
-static PetscErrorCode ImpulseCheckPart(External external, const Impulse *hit)
-{
-  const Part *parts;
-  char        names[1024] = "";
-  PetscInt    n;
-  PetscBool   found = PETSC_FALSE;
-
-  PetscFunctionBeginUser;
-  if (!hit->part[0]) PetscFunctionReturn(0);
-  PetscCall(ModelGetParts(external->model, &n, &parts));
-  for (PetscInt i = 0; i < n; i++) {
-    PetscCall(PetscStrlcat(names, i ? ", " : "", sizeof(names)));
-    PetscCall(PetscStrlcat(names, parts[i].name, sizeof(names)));
-    if (!strcmp(hit->part, parts[i].name)) found = PETSC_TRUE;
-  }
-  PetscCheck(found, external->comm, PETSC_ERR_USER_INPUT, "-%s_part %s is none of the -parts: %s", hit->name, hit->part,
-             names);
-  PetscFunctionReturn(0);
-}
-
 /* Raises an error for an impulse that is not complete */
 static PetscErrorCode ImpulseCheck(External external, const Impulse *hit, PetscBool placed)
 {
   const PetscReal *J    = hit->impulse;
   const MPI_Comm   comm = external->comm;
+  PetscInt         part;
 
   PetscFunctionBeginUser;
   PetscCheck(placed, comm, PETSC_ERR_USER_INPUT, "-%s_at must be given: the place x,y,z (m)", hit->name);
-  for (int d = 0; d < 3; d++) {
-    PetscCheck(!PetscIsInfOrNanReal(hit->at[d]), comm, PETSC_ERR_USER_INPUT,
-               "-%s_at value %.6g must be a finite number (m)", hit->name, (double)hit->at[d]);
-    PetscCheck(!PetscIsInfOrNanReal(J[d]), comm, PETSC_ERR_USER_INPUT,
-               "-%s_impulse value %.6g must be a finite number (N s)", hit->name, (double)J[d]);
-  }
+  PetscCall(OptionsCheckFinite(comm, hit->name, "at", "m", hit->at));
+  PetscCall(OptionsCheckFinite(comm, hit->name, "impulse", "N s", J));
   PetscCheck(J[0] != 0 || J[1] != 0 || J[2] != 0, comm, PETSC_ERR_USER_INPUT,
              "-%s_impulse must be given: three values, not all zero (N s)", hit->name);
   PetscCheck(hit->time >= 0 && !PetscIsInfOrNanReal(hit->time), comm, PETSC_ERR_USER_INPUT,
              "-%s_time %.6g must be a time of at least 0 (s)", hit->name, (double)hit->time);
-  PetscCall(ImpulseCheckPart(external, hit));
+  PetscCall(ModelFindPart(external->model, hit->name, hit->part, &part));
   PetscFunctionReturn(0);
 }
 
@@ -77,7 +53,7 @@ PetscErrorCode ImpulsesSetFromOptions(External external)
   char *names[EXTERNAL_MAX_NAMES];
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(external->comm, "-impulses", "at nodes, each the prefix of its -at and -impulse", "",
+  PetscCall(OptionsGetNames(external->comm, "-impulses", "at nodes, each the prefix of its -at and -impulse",
                             EXTERNAL_MAX_NAMES, &external->n_impulses, names));
   PetscCall(PetscCalloc1(external->n_impulses, &external->impulses));
   for (PetscInt i = 0; i < external->n_impulses; i++) external->impulses[i].name = names[i];

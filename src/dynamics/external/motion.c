@@ -48,14 +48,8 @@ static PetscErrorCode MotionCheck(MPI_Comm comm, const Drive *motion)
   PetscBool moves = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  PetscCheck(motion->set[0], comm, PETSC_ERR_USER_INPUT, "-%s_set must be given: a named set of the mesh",
-             motion->name);
-  for (int d = 0; d < 3; d++) {
-    PetscCheck(!PetscIsInfOrNanReal(motion->displacement[d]), comm, PETSC_ERR_USER_INPUT,
-               "-%s_displacement value %.6g must be a finite number (m)", motion->name,
-               (double)motion->displacement[d]);
-    if (motion->displacement[d] != 0) moves = PETSC_TRUE;
-  }
+  PetscCall(OptionsCheckFinite(comm, motion->name, "displacement", "m", motion->displacement));
+  for (int d = 0; d < 3; d++) moves = motion->displacement[d] != 0 ? PETSC_TRUE : moves;
   PetscCheck(!moves || motion->ramp.length > 0, comm, PETSC_ERR_USER_INPUT,
              "-%s_ramp %.6g must be given and positive (s): a displacement cannot jump", motion->name,
              motion->ramp.length);
@@ -65,22 +59,20 @@ static PetscErrorCode MotionCheck(MPI_Comm comm, const Drive *motion)
 /* One motion, whose name is set */
 static PetscErrorCode MotionSetFromOptions(MPI_Comm comm, Drive *motion)
 {
-  char      prefix[128], title[160], set[256] = "", word[16] = "";
+  char      prefix[128], title[160], word[16] = "";
   PetscBool given;
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", motion->name));
   PetscCall(PetscSNPrintf(title, sizeof(title), "Motion %s", motion->name));
   PetscOptionsBegin(comm, prefix, title, NULL);
-  PetscCall(PetscOptionsString("-set", "named set of the mesh that moves (required)", "dynamics.h", set, set,
-                               sizeof(set), NULL));
+  PetscCall(OptionsGetSet(PetscOptionsObject, &motion->set));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-displacement", "in x,y,z, m", 3, motion->displacement, NULL));
   PetscCall(PetscOptionsString("-directions",
                                "that are prescribed: some of x, y, z; by default those of the displacement",
                                "dynamics.h", word, word, sizeof(word), &given));
   PetscCall(RampSetFromOptions(PetscOptionsObject, &motion->ramp));
   PetscOptionsEnd();
-  PetscCall(PetscStrallocpy(set, &motion->set));
   PetscCall(MotionCheck(comm, motion));
   PetscCall(MotionSetDirections(comm, motion, word, given));
   PetscFunctionReturn(0);
@@ -91,7 +83,7 @@ PetscErrorCode MotionsSetFromOptions(External external)
   char *names[EXTERNAL_MAX_NAMES];
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(external->comm, "-motions", "prescribed displacements, each the prefix of its -set", "",
+  PetscCall(OptionsGetNames(external->comm, "-motions", "prescribed displacements, each the prefix of its -set",
                             EXTERNAL_MAX_NAMES, &external->n_motions, names));
   PetscCall(PetscCalloc1(external->n_motions, &external->motions));
   for (PetscInt i = 0; i < external->n_motions; i++) external->motions[i].name = names[i];

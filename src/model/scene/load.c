@@ -18,15 +18,11 @@ static PetscErrorCode LoadSetFromOptions(MPI_Comm comm, Load *load)
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", load->name));
   PetscCall(PetscSNPrintf(title, sizeof(title), "Load %s", load->name));
   PetscOptionsBegin(comm, prefix, title, NULL);
-  PetscCall(SetNameFromOptions(PetscOptionsObject, &load->set));
+  PetscCall(OptionsGetSet(PetscOptionsObject, &load->set));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-force", "total force in x,y,z, N", 3, load->force, NULL));
   PetscOptionsEnd();
-  PetscCheck(load->set[0], comm, PETSC_ERR_USER_INPUT, "-%s_set must be given: a named set of the mesh", load->name);
-  for (int d = 0; d < 3; d++) {
-    PetscCheck(!PetscIsInfOrNanReal(load->force[d]), comm, PETSC_ERR_USER_INPUT,
-               "-%s_force value %.6g must be a finite number (N)", load->name, (double)load->force[d]);
-    sum += PetscAbsReal(load->force[d]);
-  }
+  PetscCall(OptionsCheckFinite(comm, load->name, "force", "N", load->force));
+  for (int d = 0; d < 3; d++) sum += PetscAbsReal(load->force[d]);
   PetscCheck(sum > 0, comm, PETSC_ERR_USER_INPUT, "-%s_force must be given: three values, not all zero (N)",
              load->name);
   PetscFunctionReturn(0);
@@ -37,8 +33,8 @@ PetscErrorCode LoadsSetFromOptions(Model model)
   char *names[MODEL_MAX_NAMES];
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(model->comm, "-loads", "forces, each the prefix of its -set and -force", "",
-                            MODEL_MAX_NAMES, &model->n_loads, names));
+  PetscCall(OptionsGetNames(model->comm, "-loads", "forces, each the prefix of its -set and -force", MODEL_MAX_NAMES,
+                            &model->n_loads, names));
   PetscCall(PetscCalloc1(model->n_loads, &model->loads));
   for (PetscInt i = 0; i < model->n_loads; i++) {
     model->loads[i].name = names[i];

@@ -25,18 +25,37 @@ static PetscErrorCode PartSetFromOptions(MPI_Comm comm, Part *part)
 
 PetscErrorCode PartsSetFromOptions(Model model)
 {
-  char       *names[MODEL_MAX_NAMES];
-  const char *initial = !strcmp(model->source, "rig") ? "disc,pad,beam" : "";
+  char     *names[MODEL_MAX_NAMES];
+  PetscBool given;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-parts", &given));
+  if (!given && !strcmp(model->source, "rig")) PetscCall(PetscOptionsSetValue(NULL, "-parts", "disc,pad,beam"));
   PetscCall(OptionsGetNames(model->comm, "-parts", "bodies: volumes of the mesh, each the prefix of its material",
-                            initial, MODEL_MAX_NAMES, &model->n_parts, names));
+                            MODEL_MAX_NAMES, &model->n_parts, names));
   PetscCall(PetscCalloc1(model->n_parts, &model->parts));
   for (PetscInt i = 0; i < model->n_parts; i++) {
     model->parts[i].name    = names[i];
     model->parts[i].poisson = 0.3;
     PetscCall(PartSetFromOptions(model->comm, &model->parts[i]));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelFindPart(Model model, const char name[], const char part[], PetscInt *index)
+{
+  char names[1024] = "";
+
+  PetscFunctionBeginUser;
+  *index = -1;
+  if (!part[0]) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < model->n_parts; i++) {
+    PetscCall(PetscStrlcat(names, i ? ", " : "", sizeof(names)));
+    PetscCall(PetscStrlcat(names, model->parts[i].name, sizeof(names)));
+    if (!strcmp(model->parts[i].name, part)) *index = i;
+  }
+  PetscCheck(*index >= 0, model->comm, PETSC_ERR_USER_INPUT, "-%s_part %s is none of the -parts: %s", name, part,
+             names);
   PetscFunctionReturn(0);
 }
 

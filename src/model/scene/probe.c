@@ -16,24 +16,6 @@ typedef struct {
   PetscInt  part, number, rank, vertex;
 } Candidate;
 
-/* The part of this name, or -1 for an empty one; an error when there is none */
-static PetscErrorCode ProbeFindPart(Model model, const Probe *probe, PetscInt *part)
-{
-  char names[1024] = "";
-
-  PetscFunctionBeginUser;
-  *part = -1;
-  if (!probe->part[0]) PetscFunctionReturn(0);
-  for (PetscInt i = 0; i < model->n_parts; i++) {
-    PetscCall(PetscStrlcat(names, i ? ", " : "", sizeof(names)));
-    PetscCall(PetscStrlcat(names, model->parts[i].name, sizeof(names)));
-    if (!strcmp(model->parts[i].name, probe->part)) *part = i;
-  }
-  PetscCheck(*part >= 0, model->comm, PETSC_ERR_USER_INPUT, "-%s_part %s is none of the -parts: %s", probe->name,
-             probe->part, names);
-  PetscFunctionReturn(0);
-}
-
 /* Place and part of one probe, whose name is set */
 static PetscErrorCode ProbeSetFromOptions(Model model, Probe *probe)
 {
@@ -52,10 +34,8 @@ static PetscErrorCode ProbeSetFromOptions(Model model, Probe *probe)
   PetscOptionsEnd();
   PetscCall(PetscStrallocpy(part, &probe->part));
   PetscCheck(given, model->comm, PETSC_ERR_USER_INPUT, "-%s_at must be given: the place x,y,z (m)", probe->name);
-  for (int d = 0; d < 3; d++)
-    PetscCheck(!PetscIsInfOrNanReal(probe->at[d]), model->comm, PETSC_ERR_USER_INPUT,
-               "-%s_at value %.6g must be a finite number (m)", probe->name, (double)probe->at[d]);
-  PetscCall(ProbeFindPart(model, probe, &index));
+  PetscCall(OptionsCheckFinite(model->comm, probe->name, "at", "m", probe->at));
+  PetscCall(ModelFindPart(model, probe->name, probe->part, &index));
   PetscFunctionReturn(0);
 }
 
@@ -65,7 +45,7 @@ PetscErrorCode ProbesSetFromOptions(Model model)
 
   PetscFunctionBeginUser;
   PetscCall(OptionsGetNames(model->comm, "-probes",
-                            "places that histories record, each the prefix of its -at and -part", "", MODEL_MAX_NAMES,
+                            "places that histories record, each the prefix of its -at and -part", MODEL_MAX_NAMES,
                             &model->n_probes, names));
   PetscCall(PetscCalloc1(model->n_probes, &model->probes));
   for (PetscInt i = 0; i < model->n_probes; i++) {
@@ -121,7 +101,7 @@ static PetscErrorCode ProbeFindLocal(Model model, const Probe *probe, PetscInt *
 
   PetscFunctionBeginUser;
   *n = 0;
-  PetscCall(ProbeFindPart(model, probe, &part));
+  PetscCall(ModelFindPart(model, probe->name, probe->part, &part));
   for (PetscInt i = 0; i < mesh->n_nodes * mesh->n_cells; i++) {
     if (part >= 0 && mesh->cell_part[i / mesh->n_nodes] != part) continue;
     PetscCall(CandidateSet(model, probe, mesh->cell_part[i / mesh->n_nodes], mesh->corner[i], &candidate));

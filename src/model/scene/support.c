@@ -5,17 +5,6 @@
 #include "model/modelimpl.h"
 #include <squeal/options.h>
 
-PetscErrorCode SetNameFromOptions(OptionsItems PetscOptionsObject, char **set)
-{
-  char name[256] = "";
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsString("-set", "named surface, curve or point of the mesh (required)", "model.h", name, name,
-                               sizeof(name), NULL));
-  PetscCall(PetscStrallocpy(name, set));
-  PetscFunctionReturn(0);
-}
-
 /* Directions of a support from a word such as "xz" */
 static PetscErrorCode SupportSetFromOptions(MPI_Comm comm, Support *support)
 {
@@ -25,14 +14,12 @@ static PetscErrorCode SupportSetFromOptions(MPI_Comm comm, Support *support)
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", support->name));
   PetscCall(PetscSNPrintf(title, sizeof(title), "Support %s", support->name));
   PetscOptionsBegin(comm, prefix, title, NULL);
-  PetscCall(SetNameFromOptions(PetscOptionsObject, &support->set));
+  PetscCall(OptionsGetSet(PetscOptionsObject, &support->set));
   PetscCall(
     PetscOptionsString("-fix", "directions that are held: some of x, y, z", "model.h", fix, fix, sizeof(fix), NULL));
   PetscOptionsEnd();
   PetscCheck(fix[0] && strspn(fix, "xyz") == strlen(fix), comm, PETSC_ERR_USER_INPUT,
              "-%s_fix '%s' must be some of the letters x, y, z", support->name, fix);
-  PetscCheck(support->set[0], comm, PETSC_ERR_USER_INPUT, "-%s_set must be given: a named set of the mesh",
-             support->name);
   for (int d = 0; d < 3; d++) support->fix[d] = strchr(fix, "xyz"[d]) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
@@ -47,10 +34,9 @@ static PetscErrorCode GroundedSetFromOptions(MPI_Comm comm, const char kind[], c
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", g->name));
   PetscCall(PetscSNPrintf(title, sizeof(title), "%s %s", kind, g->name));
   PetscOptionsBegin(comm, prefix, title, NULL);
-  PetscCall(SetNameFromOptions(PetscOptionsObject, &g->set));
+  PetscCall(OptionsGetSet(PetscOptionsObject, &g->set));
   PetscCall(OptionsGetReals(PetscOptionsObject, option, help, 3, g->value, NULL));
   PetscOptionsEnd();
-  PetscCheck(g->set[0], comm, PETSC_ERR_USER_INPUT, "-%s_set must be given: a named set of the mesh", g->name);
   PetscCheck(g->value[0] != 0 || g->value[1] != 0 || g->value[2] != 0, comm, PETSC_ERR_USER_INPUT,
              "-%s_%s must be given: three values, not all zero", g->name, option + 1);
   for (int d = 0; d < 3; d++)
@@ -66,7 +52,7 @@ static PetscErrorCode GroundedListFromOptions(MPI_Comm comm, const char list[], 
   char *names[MODEL_MAX_NAMES];
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(comm, list, "each the prefix of its -set and value", "", MODEL_MAX_NAMES, n, names));
+  PetscCall(OptionsGetNames(comm, list, "each the prefix of its -set and value", MODEL_MAX_NAMES, n, names));
   PetscCall(PetscCalloc1(*n, grounded));
   for (PetscInt i = 0; i < *n; i++) {
     (*grounded)[i].name = names[i];
@@ -80,7 +66,7 @@ PetscErrorCode SupportsSetFromOptions(Model model)
   char *names[MODEL_MAX_NAMES];
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(model->comm, "-supports", "essential conditions, each the prefix of its -set and -fix", "",
+  PetscCall(OptionsGetNames(model->comm, "-supports", "essential conditions, each the prefix of its -set and -fix",
                             MODEL_MAX_NAMES, &model->n_supports, names));
   PetscCall(PetscCalloc1(model->n_supports, &model->supports));
   for (PetscInt i = 0; i < model->n_supports; i++) {
