@@ -69,20 +69,23 @@ static PetscErrorCode AddTimes(const StandardForm *f, const PetscReal A[], Petsc
 PetscErrorCode StandardApply(const StandardForm *f, StandardMatrix matrix, PetscBool transposed, PetscInt m,
                              const PetscComplex X[], PetscComplex Y[])
 {
-  const PetscInt n = f->n, N = StandardSize(f);
+  const DensePencil *q = f->pencil;
+  const PetscInt     n = f->n, N = StandardSize(f);
 
   PetscFunctionBeginUser;
+  if (!f->damped) {
+    PetscCall(DenseTimes(&(DenseBlock){matrix == STANDARD_A ? q->K : q->M, n, n, q->n}, transposed, m, X, Y));
+    PetscFunctionReturn(0);
+  }
   PetscCall(PetscArrayzero(Y, m * N));
   for (PetscInt a = 0; a < m; a++, X += N, Y += N) {
-    if (!f->damped) {
-      PetscCall(AddTimes(f, matrix == STANDARD_A ? f->pencil->K : f->pencil->M, transposed, 1, X, Y));
-    } else if (matrix == STANDARD_A) {
-      PetscCall(AddTimes(f, f->pencil->K, transposed, -1 / f->scale, X, Y));
-      PetscCall(AddTimes(f, f->pencil->M, transposed, f->scale, X + n, Y + n));
+    if (matrix == STANDARD_A) {
+      PetscCall(AddTimes(f, q->K, transposed, -1 / f->scale, X, Y));
+      PetscCall(AddTimes(f, q->M, transposed, f->scale, X + n, Y + n));
     } else {
-      PetscCall(AddTimes(f, f->pencil->C, transposed, 1 / f->scale, X, Y));
-      PetscCall(AddTimes(f, f->pencil->M, transposed, 1, X + n, Y));
-      PetscCall(AddTimes(f, f->pencil->M, transposed, 1, X, Y + n));
+      PetscCall(AddTimes(f, q->C, transposed, 1 / f->scale, X, Y));
+      PetscCall(AddTimes(f, q->M, transposed, 1, X + n, Y));
+      PetscCall(AddTimes(f, q->M, transposed, 1, X, Y + n));
     }
   }
   PetscFunctionReturn(0);
