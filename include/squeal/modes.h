@@ -80,16 +80,15 @@ PetscErrorCode ModesGet(Modes modes, PetscInt *n, const Mode **mode);
     (borrowed; xi, yi are NULL for a real vector, yr for a mode without left vector). Not collective. @*/
 PetscErrorCode ModesGetVectors(Modes modes, PetscInt i, Vec *xr, Vec *xi, Vec *yr, Vec *yi);
 
-/*@ ModesLabelVectors - names for n shapes from elsewhere, as in modes.csv. Collective.
+/* Shapes from elsewhere: right (xr + i xi) and left vectors in the unknowns of the pencil, [n] each */
+typedef struct {
+  PetscInt         n;
+  const PetscBool *rigid; /* whether the shape is a rigid mode */
+  Vec             *xr, *xi, *yr, *yi;
+} ModesShapes;
 
-   Input Parameters:
-+  rigid          - whether the shape is a rigid mode
--  xr, xi, yr, yi - right and left vectors in the unknowns of the pencil
-   Output Parameter:
-.  label          - the names
-@*/
-PetscErrorCode ModesLabelVectors(Modes modes, PetscInt n, const PetscBool rigid[], Vec xr[], Vec xi[], Vec yr[],
-                                 Vec yi[], char label[][32]);
+/*@ ModesLabelShapes - names for shapes from elsewhere, as in modes.csv, label[n]. Collective. @*/
+PetscErrorCode ModesLabelShapes(Modes modes, const ModesShapes *shapes, char label[][32]);
 
 /*@ ModesGetCompleteness - one line that says how it was checked that no mode is missing (borrowed). Not collective. @*/
 PetscErrorCode ModesGetCompleteness(Modes modes, const char **line);

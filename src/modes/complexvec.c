@@ -49,7 +49,7 @@ PetscErrorCode ComplexVecMultAdd(Mat A, PetscComplex a, ComplexVec x, Vec work, 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PencilApplyD(const PencilMatrices *pencil, PetscComplex lambda, ComplexVec x, Vec work, ComplexVec z)
+PetscErrorCode ComplexVecApplyD(const PencilMatrices *pencil, PetscComplex lambda, ComplexVec x, Vec work, ComplexVec z)
 {
   PetscFunctionBeginUser;
   PetscCall(ComplexVecMult(pencil->M, x, z));

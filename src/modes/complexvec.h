@@ -24,5 +24,5 @@ PETSC_INTERN PetscErrorCode ComplexVecAXPY(PetscComplex a, ComplexVec x, Complex
 PETSC_INTERN PetscErrorCode ComplexVecMult(Mat A, ComplexVec x, ComplexVec z);
 PETSC_INTERN PetscErrorCode ComplexVecMultAdd(Mat A, PetscComplex a, ComplexVec x, Vec work, ComplexVec z);
 /* z = D(lambda) x */
-PETSC_INTERN PetscErrorCode PencilApplyD(const PencilMatrices *pencil, PetscComplex lambda, ComplexVec x, Vec work,
-                                         ComplexVec z);
+PETSC_INTERN PetscErrorCode ComplexVecApplyD(const PencilMatrices *pencil, PetscComplex lambda, ComplexVec x, Vec work,
+                                             ComplexVec z);

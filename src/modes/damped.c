@@ -12,7 +12,7 @@ PetscReal DampedShift(const Window *window)
 }
 
 /* Puts the converged eigenvalues of the upper half plane into a spectrum; reach = largest distance from the shift */
-static PetscErrorCode Collect(PEP pep, PetscReal shift, PetscInt n, Spectrum *s)
+static PetscErrorCode DampedCollect(PEP pep, PetscReal shift, PetscInt n, Spectrum *s)
 {
   PetscInt n_converged;
   Vec      xr, xi;
@@ -39,7 +39,7 @@ static PetscErrorCode Collect(PEP pep, PetscReal shift, PetscInt n, Spectrum *s)
 
 /* Distance from the shift that the converged eigenvalues must exceed: the farthest corner sigma + i omega of the
    window; for modes near a target those at most as far from it as the count-th nearest */
-static PetscReal RadiusNeeded(const Window *window, PetscReal shift, const Spectrum *found)
+static PetscReal DampedRadius(const Window *window, PetscReal shift, const Spectrum *found)
 {
   PetscReal d = 0;
 
@@ -56,15 +56,17 @@ static PetscReal RadiusNeeded(const Window *window, PetscReal shift, const Spect
 }
 
 /* Solver for nev eigenvalues about the shift; the transposed problem starts from another random vector */
-static PetscErrorCode SolverCreate(Mat problem[3], ShiftInvert *si, PetscBool transposed, int start, PetscInt nev,
-                                   PetscInt n, PEP *pep)
+static PetscErrorCode DampedCreateSolver(Mat problem[3], ShiftInvert *si, PetscBool transposed, int start, PetscInt nev,
+                                         PEP *pep)
 {
   PetscMPIInt rank;
+  PetscInt    n;
   PetscRandom random;
   BV          bv;
   ST          st;
 
   PetscFunctionBeginUser;
+  PetscCall(MatGetSize(problem[0], &n, NULL));
   PetscCall(PEPCreate(si->comm, pep));
   PetscCall(PEPSetOperators(*pep, 3, problem));
   PetscCall(PEPSetProblemType(*pep, PEP_GENERAL));
@@ -91,7 +93,7 @@ static PetscErrorCode SolverCreate(Mat problem[3], ShiftInvert *si, PetscBool tr
 
 /* Solves; failed = LAPACK could not reorder the Schur form (xTREXC: eigenvalues too close to swap), which depends on
    the start vector and happens where the Krylov space is the whole space */
-static PetscErrorCode SolverRun(PEP pep, PetscBool *failed)
+static PetscErrorCode DampedRunSolver(PEP pep, PetscBool *failed)
 {
   PetscErrorCode error;
 
@@ -123,16 +125,16 @@ PetscErrorCode DampedSolve(Modes modes, const PencilMatrices *pencil, const Wind
     PEP pep;
 
     nev = PetscMin(nev, 2 * n);
-    PetscCall(SolverCreate(problem, si, transposed, attempt, nev, n, &pep));
+    PetscCall(DampedCreateSolver(problem, si, transposed, attempt, nev, &pep));
     PetscCall(ProgressBegin(&modes->progress, transposed ? "left vectors" : "right vectors", 2 * nev + nev / 4));
-    PetscCall(SolverRun(pep, &failed));
+    PetscCall(DampedRunSolver(pep, &failed));
     PetscCall(ProgressEnd(&modes->progress));
     if (failed) {
       PetscCall(PEPDestroy(&pep));
       continue;
     }
-    PetscCall(Collect(pep, si->shift, n, spectrum));
-    covered = spectrum->reach > RadiusNeeded(window, si->shift, spectrum) ? PETSC_TRUE : PETSC_FALSE;
+    PetscCall(DampedCollect(pep, si->shift, n, spectrum));
+    covered = spectrum->reach > DampedRadius(window, si->shift, spectrum) ? PETSC_TRUE : PETSC_FALSE;
     if (!covered && nev < 2 * n) PetscCall(SpectrumDestroy(spectrum));
     PetscCall(PEPDestroy(&pep));
     if (nev == 2 * n) break;

@@ -6,11 +6,11 @@
 #include "base/vec3.h"
 #include <petscblaslapack.h>
 
-#define BINS 720 /* of the rim, to find gaps between columns of nodes */
+#define DISC_BINS 720 /* of the rim, to find gaps between columns of nodes */
 
 /* Centre (m) and second moments per mass, sum m d d' / sum m (m^2), over all ranks */
-static PetscErrorCode Moments(MPI_Comm comm, PetscInt n, const PetscReal x[], const PetscReal mass[],
-                              PetscReal centre[3], PetscReal inertia[9])
+static PetscErrorCode DiscMoments(MPI_Comm comm, PetscInt n, const PetscReal x[], const PetscReal mass[],
+                                  PetscReal centre[3], PetscReal inertia[9])
 {
   PetscReal sums[4] = {0, 0, 0, 0};
 
@@ -31,7 +31,7 @@ static PetscErrorCode Moments(MPI_Comm comm, PetscInt n, const PetscReal x[], co
 }
 
 /* Axis = principal direction whose second moment differs from the other two; these must agree within 5 % */
-static PetscErrorCode FindAxis(const PetscReal inertia[9], PetscReal axis[3], PetscBool *found)
+static PetscErrorCode DiscFindAxis(const PetscReal inertia[9], PetscReal axis[3], PetscBool *found)
 {
   PetscReal    a[9], values[3], work[32];
   PetscBLASInt n = 3, n_work = 32, info;
@@ -127,20 +127,20 @@ static PetscErrorCode DiscNodes(Disc *disc, PetscInt n_vertices, const PetscReal
    decides, seen in bins of half a degree */
 static PetscErrorCode DiscResolution(Disc *disc, const PetscReal x[])
 {
-  int       seen[BINS] = {0}, gap = 0, widest = 1;
+  int       seen[DISC_BINS] = {0}, gap = 0, widest = 1;
   PetscReal r, theta;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < disc->n_nodes; i++) {
     DiscPolar(disc, &x[3 * disc->node[i]], &r, &theta);
-    if (r > 0.98 * disc->r_outer) seen[(int)((theta + PETSC_PI) / (2 * PETSC_PI) * BINS) % BINS] = 1;
+    if (r > 0.98 * disc->r_outer) seen[(int)((theta + PETSC_PI) / (2 * PETSC_PI) * DISC_BINS) % DISC_BINS] = 1;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, seen, BINS, MPI_INT, MPI_MAX, disc->comm));
-  for (int a = 0; a < 2 * BINS; a++) {
-    gap    = seen[a % BINS] ? 1 : gap + 1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, seen, DISC_BINS, MPI_INT, MPI_MAX, disc->comm));
+  for (int a = 0; a < 2 * DISC_BINS; a++) {
+    gap    = seen[a % DISC_BINS] ? 1 : gap + 1;
     widest = PetscMax(widest, gap);
   }
-  disc->n_harmonics = PetscMin(DISC_HARMONICS, BINS / widest / 3 + 1);
+  disc->n_harmonics = PetscMin(DISC_HARMONICS, DISC_BINS / widest / 3 + 1);
   PetscFunctionReturn(0);
 }
 
@@ -172,25 +172,24 @@ static PetscErrorCode DiscGram(Disc *disc, const PetscReal x[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DiscCreate(MPI_Comm comm, PetscInt n_vertices, const PetscReal x[], const PetscReal mass[],
-                          const PetscReal contact[], PetscInt n_modes, Disc *disc, PetscBool *is_disc)
+PetscErrorCode DiscCreate(MPI_Comm comm, const DiscPart *part, PetscInt n_modes, Disc *disc, PetscBool *is_disc)
 {
   PetscReal inertia[9];
 
   PetscFunctionBeginUser;
   disc->comm        = comm;
-  disc->has_contact = contact ? PETSC_TRUE : PETSC_FALSE;
+  disc->has_contact = part->contact ? PETSC_TRUE : PETSC_FALSE;
   disc->n_columns   = 2 * n_modes;
-  PetscCall(Moments(comm, n_vertices, x, mass, disc->centre, inertia));
-  PetscCall(FindAxis(inertia, disc->axis, is_disc));
+  PetscCall(DiscMoments(comm, part->n_vertices, part->x, part->mass, disc->centre, inertia));
+  PetscCall(DiscFindAxis(inertia, disc->axis, is_disc));
   if (!*is_disc) PetscFunctionReturn(0);
   disc->size = PetscSqrtReal(inertia[0] + inertia[4] + inertia[8]);
-  FindPlane(disc, contact);
-  PetscCall(DiscNodes(disc, n_vertices, x, mass));
+  FindPlane(disc, part->contact);
+  PetscCall(DiscNodes(disc, part->n_vertices, part->x, part->mass));
   *is_disc = disc->r_outer - disc->r_inner > 1e-6 * disc->r_outer ? PETSC_TRUE : PETSC_FALSE;
   if (!*is_disc) PetscFunctionReturn(0);
-  PetscCall(DiscResolution(disc, x));
-  PetscCall(DiscGram(disc, x));
+  PetscCall(DiscResolution(disc, part->x));
+  PetscCall(DiscGram(disc, part->x));
   PetscCall(PetscCalloc1(disc->n_columns * DISC_TERMS, &disc->fit));
   PetscFunctionReturn(0);
 }

@@ -22,9 +22,16 @@ typedef struct {
   PetscReal *fit;                /* [n_columns][DISC_TERMS]: right-hand sides, then coefficients */
 } Disc;
 
+/* A part that may be a disc */
+typedef struct {
+  PetscInt         n_vertices; /* local ones */
+  const PetscReal *x, *mass;   /* [n_vertices][3] m, [n_vertices] kg */
+  const PetscReal *contact;    /* centre of the contact, m; NULL without */
+} DiscPart;
+
 /* is_disc = whether two of the three principal moments of inertia agree within 5 %, so that there is an axis */
-PETSC_INTERN PetscErrorCode DiscCreate(MPI_Comm comm, PetscInt n_vertices, const PetscReal x[], const PetscReal mass[],
-                                       const PetscReal contact[], PetscInt n_modes, Disc *disc, PetscBool *is_disc);
+PETSC_INTERN PetscErrorCode DiscCreate(MPI_Comm comm, const DiscPart *part, PetscInt n_modes, Disc *disc,
+                                       PetscBool *is_disc);
 /* Adds the displacements u[local vertices][3] to right-hand side `column`; returns their out-of-plane energy on this
    rank */
 PETSC_INTERN PetscReal      DiscProject(Disc *disc, PetscInt column, const PetscReal u[]);

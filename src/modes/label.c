@@ -151,8 +151,8 @@ static PetscErrorCode LabelsCreate(Modes modes, Model model, Contact contact, Pe
              modes->disc);
   if (l->disc < 0) PetscFunctionReturn(0);
   PetscCall(ContactGetCentre(contact, centre, &found));
-  PetscCall(
-    DiscCreate(modes->comm, l->n_vertices, x, l->mass[l->disc], found ? centre : NULL, modes->n, &l->frame, &same));
+  PetscCall(DiscCreate(modes->comm, &(DiscPart){l->n_vertices, x, l->mass[l->disc], found ? centre : NULL}, modes->n,
+                       &l->frame, &same));
   if (!same) l->disc = -1;
   PetscFunctionReturn(0);
 }
@@ -232,9 +232,9 @@ static PetscErrorCode SpectrumAddExpanded(Pencil pencil, PetscBool left, Vec r, 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModesLabelVectors(Modes modes, PetscInt n, const PetscBool rigid[], Vec xr[], Vec xi[], Vec yr[],
-                                 Vec yi[], char label[][32])
+PetscErrorCode ModesLabelShapes(Modes modes, const ModesShapes *given, char label[][32])
 {
+  const PetscInt  n      = given->n;
   struct _p_Modes shapes = *modes;
   Operators       operators;
   Vec             work[2];
@@ -248,9 +248,9 @@ PetscErrorCode ModesLabelVectors(Modes modes, PetscInt n, const PetscBool rigid[
   PetscCall(OperatorsCreateVec(operators, &work[0]));
   PetscCall(VecDuplicate(work[0], &work[1]));
   for (PetscInt i = 0; i < n; i++) {
-    PetscCall(SpectrumAddExpanded(modes->pencil, PETSC_FALSE, xr[i], xi[i], work, &shapes.right));
-    PetscCall(SpectrumAddExpanded(modes->pencil, PETSC_TRUE, yr[i], yi[i], work, &shapes.left_spectrum));
-    shapes.mode[i].rigid = rigid[i];
+    PetscCall(SpectrumAddExpanded(modes->pencil, PETSC_FALSE, given->xr[i], given->xi[i], work, &shapes.right));
+    PetscCall(SpectrumAddExpanded(modes->pencil, PETSC_TRUE, given->yr[i], given->yi[i], work, &shapes.left_spectrum));
+    shapes.mode[i].rigid = given->rigid[i];
   }
   PetscCall(ModesLabel(&shapes));
   for (PetscInt i = 0; i < n; i++) PetscCall(PetscStrncpy(label[i], shapes.mode[i].label, 32));

@@ -7,12 +7,12 @@
 #include "complexvec.h"
 #include <petscblaslapack.h>
 
-#define MATCH   1e-5 /* left and right eigenvalues farther apart than this, relative, are different ones */
-#define RIGID   1e-5 /* both smaller than this beside the largest of the window: zeros */
-#define CLUSTER 1e-7 /* eigenvalues nearer than this, relative, are treated as one cluster */
+#define LEFT_MATCH   1e-5 /* left and right eigenvalues farther apart than this, relative, are different ones */
+#define LEFT_RIGID   1e-5 /* both smaller than this beside the largest of the window: zeros */
+#define LEFT_CLUSTER 1e-7 /* eigenvalues nearer than this, relative, are treated as one cluster */
 
 /* Nearest entry of the left spectrum that is not used yet */
-static PetscInt NearestLeft(const Spectrum *left, const PetscBool used[], PetscComplex lambda, PetscReal *distance)
+static PetscInt LeftNearest(const Spectrum *left, const PetscBool used[], PetscComplex lambda, PetscReal *distance)
 {
   PetscInt best = -1;
 
@@ -28,7 +28,7 @@ static PetscInt NearestLeft(const Spectrum *left, const PetscBool used[], PetscC
 }
 
 /* Largest |lambda| of a spectrum */
-static PetscReal LambdaLargest(const Spectrum *s)
+static PetscReal LeftLargest(const Spectrum *s)
 {
   PetscReal largest = 0;
 
@@ -37,9 +37,9 @@ static PetscReal LambdaLargest(const Spectrum *s)
 }
 
 /* Relative distance of two eigenvalues; rigid modes are zeros up to the square root of rounding, hence all alike */
-static PetscReal LambdaDistance(PetscComplex a, PetscComplex b, PetscReal largest)
+static PetscReal LeftDistance(PetscComplex a, PetscComplex b, PetscReal largest)
 {
-  if (PetscMax(cabs(a), cabs(b)) < RIGID * largest) return 0;
+  if (PetscMax(cabs(a), cabs(b)) < LEFT_RIGID * largest) return 0;
   return cabs(a - b) / PetscMax(cabs(a), 1e-3 * largest);
 }
 
@@ -49,14 +49,14 @@ static PetscBool LeftIsInside(const Window *window, const Spectrum *left, PetscI
   const PetscReal omega = left->omega[j];
 
   if (window->count || omega < tiny || PetscAbsReal(left->sigma[j]) > window->growth) return PETSC_FALSE;
-  return omega > window->low * (1 + MATCH) && omega < window->high * (1 - MATCH) ? PETSC_TRUE : PETSC_FALSE;
+  return omega > window->low * (1 + LEFT_MATCH) && omega < window->high * (1 - LEFT_MATCH) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode LeftMatch(Modes modes, const Window *window, PetscReal *worst, PetscBool *complete)
 {
   Spectrum       *right = &modes->right, *left = &modes->left_spectrum, matched;
   const PetscReal tiny =
-    PetscMax(window->scale, RIGID * LambdaLargest(right)); /* rigid modes: zeros up to the root of rounding */
+    PetscMax(window->scale, LEFT_RIGID * LeftLargest(right)); /* rigid modes: zeros up to the root of rounding */
   PetscBool *used;
 
   PetscFunctionBeginUser;
@@ -66,11 +66,11 @@ PetscErrorCode LeftMatch(Modes modes, const Window *window, PetscReal *worst, Pe
   PetscCall(SpectrumCreate(right->n, &matched));
   for (PetscInt i = 0; i < right->n; i++) {
     PetscReal       distance;
-    PetscInt        j    = NearestLeft(left, used, SpectrumLambda(right, i), &distance);
+    PetscInt        j    = LeftNearest(left, used, SpectrumLambda(right, i), &distance);
     const PetscReal size = cabs(SpectrumLambda(right, i));
     const Spectrum *from = left;
 
-    if (j < 0 || distance > MATCH * size) {
+    if (j < 0 || distance > LEFT_MATCH * size) {
       *complete = size < tiny ? PETSC_TRUE : PETSC_FALSE;
       if (!*complete) break;
       from = right, j = i; /* a zero pairs with any zero; it stays rigid whatever its left vector */
@@ -120,8 +120,8 @@ static PetscErrorCode ComplexInverse(PetscInt m, const PetscComplex G[], PetscCo
 }
 
 /* Replaces the left vectors first .. first + m - 1 by combinations with y_i^T D x_j = delta_ij */
-static PetscErrorCode Biorthogonalise(const PencilMatrices *pencil, const Spectrum *right, PetscInt first, PetscInt m,
-                                      Vec work[], Spectrum *left)
+static PetscErrorCode LeftBiorthogonaliseCluster(const PencilMatrices *pencil, const Spectrum *right, PetscInt first,
+                                                 PetscInt m, Vec work[], Spectrum *left)
 {
   PetscComplex *G, *inverse;
   Vec          *yr, *yi;
@@ -131,7 +131,7 @@ static PetscErrorCode Biorthogonalise(const PencilMatrices *pencil, const Spectr
   for (PetscInt j = 0; j < m; j++) {
     const ComplexVec x = {right->xr[first + j], right->xi[first + j]}, z = {work[1], work[2]};
 
-    PetscCall(PencilApplyD(pencil, SpectrumLambda(right, first), x, work[0], z));
+    PetscCall(ComplexVecApplyD(pencil, SpectrumLambda(right, first), x, work[0], z));
     for (PetscInt i = 0; i < m; i++)
       PetscCall(ComplexVecDot((ComplexVec){left->xr[first + i], left->xi[first + i]}, z, &G[i * m + j]));
   }
@@ -162,14 +162,14 @@ static PetscErrorCode Biorthogonalise(const PencilMatrices *pencil, const Spectr
 PetscErrorCode LeftBiorthogonalise(Modes modes, const PencilMatrices *pencil, Vec work[])
 {
   const Spectrum *right   = &modes->right;
-  const PetscReal largest = LambdaLargest(right);
+  const PetscReal largest = LeftLargest(right);
 
   PetscFunctionBeginUser;
   for (PetscInt first = 0, m; first < right->n; first += m) {
     for (m = 1; first + m < right->n; m++)
-      if (LambdaDistance(SpectrumLambda(right, first + m), SpectrumLambda(right, first + m - 1), largest) > CLUSTER)
+      if (LeftDistance(SpectrumLambda(right, first + m), SpectrumLambda(right, first + m - 1), largest) > LEFT_CLUSTER)
         break;
-    if (m > 1) PetscCall(Biorthogonalise(pencil, right, first, m, work, &modes->left_spectrum));
+    if (m > 1) PetscCall(LeftBiorthogonaliseCluster(pencil, right, first, m, work, &modes->left_spectrum));
   }
   PetscFunctionReturn(0);
 }

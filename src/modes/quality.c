@@ -8,8 +8,8 @@
 */
 #include "complexvec.h"
 
-#define BACKWARD    1e-6 /* largest backward error that is a solution */
-#define RIGID_NOISE 100  /* lambda^2 below this many times its error is a rigid mode */
+#define QUALITY_BACKWARD 1e-6 /* largest backward error that is a solution */
+#define QUALITY_NOISE    100  /* lambda^2 below this many times its error is a rigid mode */
 
 /* What all modes share: matrices, their Frobenius norms (K, C, M), and work vectors */
 typedef struct {
@@ -34,7 +34,7 @@ static PetscErrorCode ComplexVecSquare(ComplexVec x, ComplexVec z, PetscReal *sq
 }
 
 /* Scales to norm one and returns the norm before: sqrt(x^H M x) of a vector of all unknowns */
-static PetscErrorCode NormaliseM(Quality *q, ComplexVec x, PetscReal *norm)
+static PetscErrorCode QualityNormalise(Quality *q, ComplexVec x, PetscReal *norm)
 {
   PetscFunctionBeginUser;
   PetscCall(ComplexVecMult(q->M, x, q->full));
@@ -46,7 +46,7 @@ static PetscErrorCode NormaliseM(Quality *q, ComplexVec x, PetscReal *norm)
 }
 
 /* Expands a vector of the pencil to all unknowns in place */
-static PetscErrorCode Expand(Quality *q, Pencil pencil, PetscBool left, Vec *x)
+static PetscErrorCode QualityExpand(Quality *q, Pencil pencil, PetscBool left, Vec *x)
 {
   Vec u;
 
@@ -60,7 +60,7 @@ static PetscErrorCode Expand(Quality *q, Pencil pencil, PetscBool left, Vec *x)
 }
 
 /* What rounding in K does to x'K x: machine epsilon times the energy without cancellation, sum_i K_ii |x_i|^2 */
-static PetscErrorCode RoundingNoise(const Quality *q, ComplexVec x, PetscReal *noise)
+static PetscErrorCode QualityNoise(const Quality *q, ComplexVec x, PetscReal *noise)
 {
   PetscReal part = 0;
 
@@ -75,9 +75,13 @@ static PetscErrorCode RoundingNoise(const Quality *q, ComplexVec x, PetscReal *n
   PetscFunctionReturn(0);
 }
 
-/* Backward error of an eigenpair, |y^T Q x|, |y^T D x|; the products with y are not touched without a left vector */
-static PetscErrorCode MeasureResidual(Quality *q, PetscComplex lambda, ComplexVec x, ComplexVec y, PetscReal *backward,
-                                      PetscReal *y_Qx, PetscReal *y_Dx)
+/* Backward error of an eigenpair, |y^T Q x|, |y^T D x| */
+typedef struct {
+  PetscReal backward, y_Qx, y_Dx;
+} QualityProducts;
+
+/* The products with y are not touched without a left vector */
+static PetscErrorCode QualityResidual(Quality *q, PetscComplex lambda, ComplexVec x, ComplexVec y, QualityProducts *p)
 {
   const PencilMatrices *pencil = q->pencil;
   const PetscReal       size = cabs(lambda), bound = size * size * q->norms[2] + size * q->norms[1] + q->norms[0];
@@ -91,55 +95,57 @@ static PetscErrorCode MeasureResidual(Quality *q, PetscComplex lambda, ComplexVe
   if (pencil->C) PetscCall(ComplexVecMultAdd(pencil->C, lambda, x, q->scratch, q->z));
   PetscCall(ComplexVecSquare(x, x, &length));
   PetscCall(ComplexVecSquare(q->z, q->z, &residual));
-  *backward = PetscSqrtReal(residual / length) / bound;
+  p->backward = PetscSqrtReal(residual / length) / bound;
   if (!y.r) PetscFunctionReturn(0);
   PetscCall(ComplexVecDot(y, q->z, &dot));
-  *y_Qx = cabs(dot);
+  p->y_Qx = cabs(dot);
   if (pencil->C && size > 0) PetscCall(ComplexVecMultAdd(pencil->C, 1 / (2 * lambda), x, q->scratch, q->Mx));
   PetscCall(ComplexVecDot(y, q->Mx, &dot));
-  *y_Dx = cabs(dot);
+  p->y_Dx = cabs(dot);
   PetscFunctionReturn(0);
 }
 
 /* Expands both parts of a vector to all unknowns in place, and normalises it */
-static PetscErrorCode Finish(Quality *q, Pencil pencil, PetscBool left, Vec *r, Vec *i, PetscReal *norm)
+static PetscErrorCode QualityFinish(Quality *q, Pencil pencil, PetscBool left, Vec *r, Vec *i, PetscReal *norm)
 {
   PetscFunctionBeginUser;
-  PetscCall(Expand(q, pencil, left, r));
-  PetscCall(Expand(q, pencil, left, i));
-  PetscCall(NormaliseM(q, (ComplexVec){*r, *i}, norm));
+  PetscCall(QualityExpand(q, pencil, left, r));
+  PetscCall(QualityExpand(q, pencil, left, i));
+  PetscCall(QualityNormalise(q, (ComplexVec){*r, *i}, norm));
   PetscFunctionReturn(0);
 }
 
 /* Condition, error, and what follows from them; the vectors become vectors of all unknowns with M-norm one */
-static PetscErrorCode MeasureMode(Modes modes, Quality *q, PetscInt i)
+static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
 {
   Spectrum          *right = &modes->right, *left = &modes->left_spectrum;
   Mode              *mode     = &modes->mode[i];
   const PetscBool    has_left = left->n ? PETSC_TRUE : PETSC_FALSE;
   const PetscComplex lambda   = SpectrumLambda(right, i);
   const ComplexVec x = {right->xr[i], right->xi[i]}, y = {has_left ? left->xr[i] : NULL, has_left ? left->xi[i] : NULL};
-  PetscReal        size = cabs(lambda), y_Qx = 0, y_Dx = 1, norm_x, norm_y = 1, noise, square;
+  PetscReal        size = cabs(lambda), norm_x, norm_y = 1, noise, square;
+  QualityProducts  p = {.y_Dx = 1};
 
   PetscFunctionBeginUser;
-  PetscCall(MeasureResidual(q, lambda, x, y, &mode->backward_error, &y_Qx, &y_Dx));
-  PetscCall(RoundingNoise(q, x, &noise));
-  PetscCall(Finish(q, modes->pencil, PETSC_FALSE, &right->xr[i], &right->xi[i], &norm_x));
-  if (has_left) PetscCall(Finish(q, modes->pencil, PETSC_TRUE, &left->xr[i], &left->xi[i], &norm_y));
-  mode->sigma     = creal(lambda);
-  mode->omega     = cimag(lambda);
-  mode->condition = !has_left ? NAN : y_Dx > 0 ? norm_x * norm_y / y_Dx : INFINITY;
+  PetscCall(QualityResidual(q, lambda, x, y, &p));
+  PetscCall(QualityNoise(q, x, &noise));
+  PetscCall(QualityFinish(q, modes->pencil, PETSC_FALSE, &right->xr[i], &right->xi[i], &norm_x));
+  if (has_left) PetscCall(QualityFinish(q, modes->pencil, PETSC_TRUE, &left->xr[i], &left->xi[i], &norm_y));
+  mode->backward_error = p.backward;
+  mode->sigma          = creal(lambda);
+  mode->omega          = cimag(lambda);
+  mode->condition      = !has_left ? NAN : p.y_Dx > 0 ? norm_x * norm_y / p.y_Dx : INFINITY;
   noise *= (has_left && isfinite(mode->condition) ? PetscMax(1, mode->condition) : 1) / (norm_x * norm_x);
-  square      = PetscMax(noise, has_left && y_Dx > 0 ? y_Qx / y_Dx : 0); /* error of lambda^2 */
-  mode->rigid = size * size <= RIGID_NOISE * square ? PETSC_TRUE : PETSC_FALSE;
+  square      = PetscMax(noise, has_left && p.y_Dx > 0 ? p.y_Qx / p.y_Dx : 0); /* error of lambda^2 */
+  mode->rigid = size * size <= QUALITY_NOISE * square ? PETSC_TRUE : PETSC_FALSE;
   mode->error = mode->rigid ? PetscMax(size, PetscSqrtReal(square)) : square / (2 * size);
   if (mode->rigid) mode->sigma = mode->omega = 0;
   mode->unstable =
     mode->sigma > 3 * mode->error && mode->sigma > (has_left ? 1e-9 : 1e-6) * size ? PETSC_TRUE : PETSC_FALSE;
   if (!has_left) mode->error = NAN;
-  PetscCheck(mode->rigid || mode->backward_error < BACKWARD, modes->comm, PETSC_ERR_NOT_CONVERGED,
+  PetscCheck(mode->rigid || mode->backward_error < QUALITY_BACKWARD, modes->comm, PETSC_ERR_NOT_CONVERGED,
              "mode at %.6g Hz has a backward error of %.2g, more than %.0e: the matrices are too badly scaled",
-             (double)(mode->omega / (2 * PETSC_PI)), (double)mode->backward_error, BACKWARD);
+             (double)(mode->omega / (2 * PETSC_PI)), (double)mode->backward_error, QUALITY_BACKWARD);
   PetscFunctionReturn(0);
 }
 
@@ -180,7 +186,7 @@ PetscErrorCode QualityMeasure(Modes modes, const PencilMatrices *pencil)
   if (modes->left_spectrum.n) PetscCall(LeftBiorthogonalise(modes, pencil, (Vec[]){q.scratch, q.z.r, q.z.i}));
   modes->n = modes->right.n;
   PetscCall(PetscCalloc1(modes->n, &modes->mode));
-  for (PetscInt i = 0; i < modes->n; i++) PetscCall(MeasureMode(modes, &q, i));
+  for (PetscInt i = 0; i < modes->n; i++) PetscCall(QualityMeasureMode(modes, &q, i));
   PetscCall(QualityDestroy(&q));
   PetscFunctionReturn(0);
 }

@@ -21,7 +21,7 @@ PetscReal UndampedShift(const Window *window)
 /* Radius about the shift, in the plane of kappa = -lambda^2, that the converged eigenvalues must exceed. Band: the
    farthest corner sigma + i omega of the window. Target t: all |lambda - i t| <= d lie within |kappa - t^2| <= 2 t d
    + d^2. */
-static PetscReal RadiusNeeded(const Window *window, PetscReal shift, const Spectrum *found)
+static PetscReal UndampedRadius(const Window *window, PetscReal shift, const Spectrum *found)
 {
   const PetscReal low = window->low, high = window->high, s = window->growth, t = window->target;
   PetscReal       d = 0;
@@ -41,7 +41,7 @@ static PetscReal RadiusNeeded(const Window *window, PetscReal shift, const Spect
 
 /* Puts the converged pairs into a spectrum; reach = distance of the farthest from the shift, infinite when all n are
    there */
-static PetscErrorCode Collect(EPS eps, PetscReal shift, PetscInt n, Spectrum *s)
+static PetscErrorCode UndampedCollect(EPS eps, PetscReal shift, PetscInt n, Spectrum *s)
 {
   PetscInt           n_converged;
   EPSConvergedReason reason;
@@ -74,8 +74,8 @@ static PetscErrorCode Collect(EPS eps, PetscReal shift, PetscInt n, Spectrum *s)
 }
 
 /* Solver for nev eigenvalues about the shift; the transposed problem starts from another random vector */
-static PetscErrorCode SolverCreate(const PencilMatrices *pencil, ShiftInvert *si, PetscBool transposed, PetscInt nev,
-                                   PetscInt n, EPS *eps)
+static PetscErrorCode UndampedCreateSolver(const PencilMatrices *pencil, ShiftInvert *si, PetscBool transposed,
+                                           PetscInt nev, PetscInt n, EPS *eps)
 {
   PetscMPIInt rank;
   PetscRandom random;
@@ -103,7 +103,7 @@ static PetscErrorCode SolverCreate(const PencilMatrices *pencil, ShiftInvert *si
 }
 
 /* K', M' for left vectors */
-static PetscErrorCode PencilTranspose(const PencilMatrices *pencil, PencilMatrices *transposed)
+static PetscErrorCode UndampedTranspose(const PencilMatrices *pencil, PencilMatrices *transposed)
 {
   PetscFunctionBeginUser;
   *transposed = *pencil;
@@ -123,18 +123,18 @@ PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Wi
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(pencil->K, &n, NULL));
-  if (transposed) PetscCall(PencilTranspose(pencil, &problem));
+  if (transposed) PetscCall(UndampedTranspose(pencil, &problem));
   for (int attempt = 0; attempt < 8 && !covered; attempt++, nev += nev / 2) {
     EPS eps;
 
     nev = PetscMin(nev, n);
-    PetscCall(SolverCreate(&problem, si, transposed, nev, n, &eps));
+    PetscCall(UndampedCreateSolver(&problem, si, transposed, nev, n, &eps));
     PetscCall(ProgressBegin(&modes->progress, transposed ? "left vectors" : "right vectors", 2 * nev + nev / 4));
     PetscCall(EPSSolve(eps));
     PetscCall(ProgressEnd(&modes->progress));
-    PetscCall(Collect(eps, si->shift, n, spectrum));
+    PetscCall(UndampedCollect(eps, si->shift, n, spectrum));
     covered =
-      spectrum->reach > RadiusNeeded(window, si->shift, spectrum) || spectrum->n == n ? PETSC_TRUE : PETSC_FALSE;
+      spectrum->reach > UndampedRadius(window, si->shift, spectrum) || spectrum->n == n ? PETSC_TRUE : PETSC_FALSE;
     if (!covered && nev < n) PetscCall(SpectrumDestroy(spectrum));
     PetscCall(EPSDestroy(&eps));
     if (nev == n) break;

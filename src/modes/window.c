@@ -6,7 +6,7 @@
 */
 #include "modesimpl.h"
 
-#define EDGE 1e-8 /* relative width of the band's ends, so that an eigenvalue on an end belongs to it */
+#define MODES_EDGE 1e-8 /* relative width of the band's ends, so that an eigenvalue on an end belongs to it */
 
 /* A frequency (rad/s) that is small beside all elastic modes, from the size of the matrices */
 static PetscErrorCode WindowScale(const PencilMatrices *pencil, PetscReal *scale)
@@ -42,9 +42,9 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
     PetscCall(ShiftInvertCountBelow(&frictionless, window->target, &modes->progress, &window->below));
     PetscFunctionReturn(0);
   }
-  PetscCall(ShiftInvertCountBelow(&frictionless, window->low < window->scale ? 0 : window->low * (1 - EDGE),
+  PetscCall(ShiftInvertCountBelow(&frictionless, window->low < window->scale ? 0 : window->low * (1 - MODES_EDGE),
                                   &modes->progress, &window->below));
-  PetscCall(ShiftInvertCountBelow(&frictionless, window->high * (1 + EDGE), &modes->progress, &below_high));
+  PetscCall(ShiftInvertCountBelow(&frictionless, window->high * (1 + MODES_EDGE), &modes->progress, &below_high));
   window->expected = below_high - window->below;
   PetscFunctionReturn(0);
 }
@@ -105,8 +105,8 @@ PetscErrorCode WindowSelect(const Window *window, Spectrum *s)
     while (s->n > window->count + window->rigid) PetscCall(SpectrumRemove(s, WindowFarthest(window, s)));
     PetscFunctionReturn(0);
   }
-  while (n > 0 && s->omega[first] < window->low * (1 - EDGE)) first++, n--;
-  while (n > 0 && s->omega[first + n - 1] > window->high * (1 + EDGE)) n--;
+  while (n > 0 && s->omega[first] < window->low * (1 - MODES_EDGE)) first++, n--;
+  while (n > 0 && s->omega[first + n - 1] > window->high * (1 + MODES_EDGE)) n--;
   PetscCall(SpectrumKeep(s, first, n));
   PetscFunctionReturn(0);
 }

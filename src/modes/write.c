@@ -17,7 +17,7 @@ static PetscReal ModeDampingRatio(const Mode *mode)
 }
 
 /* The model of the pencil, NULL for loaded matrices, and its contact */
-static PetscErrorCode ModelFind(Modes modes, Model *model, Contact *contact)
+static PetscErrorCode ModesGetModel(Modes modes, Model *model, Contact *contact)
 {
   Operators operators;
 
@@ -28,7 +28,7 @@ static PetscErrorCode ModelFind(Modes modes, Model *model, Contact *contact)
 }
 
 /* What the modes are about */
-static PetscErrorCode StateView(Modes modes, PetscViewer viewer)
+static PetscErrorCode ModesViewState(Modes modes, PetscViewer viewer)
 {
   const ContactPair *pair;
   Contact            contact;
@@ -38,7 +38,7 @@ static PetscErrorCode StateView(Modes modes, PetscViewer viewer)
   PetscFunctionBeginUser;
   PetscCall(PencilGetClosed(modes->pencil, &n_closed, &from_state));
   if (!from_state) PetscFunctionReturn(0);
-  PetscCall(ModelFind(modes, NULL, &contact));
+  PetscCall(ModesGetModel(modes, NULL, &contact));
   PetscCall(ContactGetPairs(contact, &n, &n_all, &pair));
   PetscCall(PetscViewerASCIIPrintf(
     viewer, "about the sliding state: %" PetscInt_FMT " of %" PetscInt_FMT " pairs closed\n", n_closed, n_all));
@@ -63,12 +63,12 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
   }
   PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " modes, %" PetscInt_FMT " unstable; %s\n", modes->n,
                                    n_unstable, modes->completeness));
-  PetscCall(StateView(modes, viewer));
+  PetscCall(ModesViewState(modes, viewer));
   PetscFunctionReturn(0);
 }
 
 /* modes.csv */
-static PetscErrorCode TableWrite(Modes modes, Results results)
+static PetscErrorCode ModesWriteTable(Modes modes, Results results)
 {
   ResultsTable table;
 
@@ -89,7 +89,7 @@ static PetscErrorCode TableWrite(Modes modes, Results results)
 }
 
 /* modes.h5 and modes.xmf */
-static PetscErrorCode ShapesWrite(Modes modes, Model model, Results results)
+static PetscErrorCode ModesWriteShapes(Modes modes, Model model, Results results)
 {
   const Mesh  *mesh;
   PetscReal   *re, *im;
@@ -121,9 +121,9 @@ PetscErrorCode ModesWrite(Modes modes, Results results)
   Model     model;
 
   PetscFunctionBeginUser;
-  PetscCall(TableWrite(modes, results));
-  PetscCall(ModelFind(modes, &model, NULL));
+  PetscCall(ModesWriteTable(modes, results));
+  PetscCall(ModesGetModel(modes, &model, NULL));
   PetscCall(ResultsWantFields(results, &wanted));
-  if (model && wanted) PetscCall(ShapesWrite(modes, model, results));
+  if (model && wanted) PetscCall(ModesWriteShapes(modes, model, results));
   PetscFunctionReturn(0);
 }

@@ -20,54 +20,42 @@ static void ElementLump(PetscInt n, PetscReal mass[])
   }
 }
 
-/* Adds one cell to K_p and M_p */
-static PetscErrorCode CellAdd(const Element *element, const Elasticity *material, PetscBool lump, const PetscReal x[],
-                              const PetscInt rows[], Mat K, Mat M)
+/* Adds local cell c to K_p and M_p */
+static PetscErrorCode OperatorsAddCell(Operators o, PetscInt c, const Elasticity *material, Mat K, Mat M)
 {
-  const PetscInt n = 3 * element->n_nodes;
-  PetscReal      ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  const Element *element;
+  const Mesh    *mesh;
+  PetscInt       n, vertices[ELEMENT_MAX_NODES], rows[ELEMENT_MAX_DOFS];
+  PetscReal      x[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(o->model, &mesh));
+  PetscCall(ModelGetElement(o->model, &element));
+  PetscCall(ModelGetCell(o->model, c, vertices, x));
+  n = 3 * element->n_nodes;
+  for (PetscInt i = 0; i < n; i++) rows[i] = mesh->unknown[3 * vertices[i / 3] + i % 3];
   PetscCheck(!element->matrices(x, material, ke, me), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
-  if (lump) ElementLump(n, me);
+  if (o->lump) ElementLump(n, me);
   PetscCall(MatSetValues(K, n, rows, n, rows, ke, ADD_VALUES));
   PetscCall(MatSetValues(M, n, rows, n, rows, me, ADD_VALUES));
   PetscFunctionReturn(0);
 }
 
-/* Adds the local cells of a part */
-static PetscErrorCode CellsAdd(Operators o, PetscInt part, const Elasticity *material, Mat K, Mat M)
-{
-  const Element *element;
-  const Mesh    *mesh;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(o->model, &mesh));
-  PetscCall(ModelGetElement(o->model, &element));
-  for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    PetscInt  vertices[ELEMENT_MAX_NODES], rows[ELEMENT_MAX_DOFS];
-    PetscReal x[ELEMENT_MAX_DOFS];
-
-    if (mesh->cell_part[c] != part) continue;
-    PetscCall(ModelGetCell(o->model, c, vertices, x));
-    for (PetscInt i = 0; i < 3 * element->n_nodes; i++) rows[i] = mesh->unknown[3 * vertices[i / 3] + i % 3];
-    PetscCall(CellAdd(element, material, o->lump, x, rows, K, M));
-  }
-  PetscFunctionReturn(0);
-}
-
 /* K_p and M_p of one part */
-static PetscErrorCode PartCreate(Operators o, PetscInt part, PetscReal poisson, Mat *K, Mat *M)
+static PetscErrorCode OperatorsCreatePart(Operators o, PetscInt part, PetscReal poisson, Mat *K, Mat *M)
 {
   const Elasticity material = ElasticityFromEngineering(1, poisson, 1);
+  const Mesh      *mesh;
   PetscInt         n_unknowns;
 
   PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(o->model, &mesh));
   PetscCall(PatternCreate(o->model, part, K));
   PetscCall(MatGetSize(*K, &n_unknowns, NULL));
   PetscCheck(n_unknowns, o->comm, PETSC_ERR_USER_INPUT, "the -supports hold every node: nothing can vibrate");
   PetscCall(MatDuplicate(*K, MAT_DO_NOT_COPY_VALUES, M));
-  PetscCall(CellsAdd(o, part, &material, *K, *M));
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    if (mesh->cell_part[c] == part) PetscCall(OperatorsAddCell(o, c, &material, *K, *M));
   PetscCall(MatAssemblyBegin(*K, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyBegin(*M, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*K, MAT_FINAL_ASSEMBLY));
@@ -76,7 +64,7 @@ static PetscErrorCode PartCreate(Operators o, PetscInt part, PetscReal poisson, 
 }
 
 /* Parameters and terms of one part */
-static PetscErrorCode PartAdd(Operators o, PetscInt part, const Part *p)
+static PetscErrorCode OperatorsAddPart(Operators o, PetscInt part, const Part *p)
 {
   const struct {
     const char *name, *unit;
@@ -91,7 +79,7 @@ static PetscErrorCode PartAdd(Operators o, PetscInt part, const Part *p)
   Mat      K, M;
 
   PetscFunctionBeginUser;
-  PetscCall(PartCreate(o, part, p->poisson, &K, &M));
+  PetscCall(OperatorsCreatePart(o, part, p->poisson, &K, &M));
   for (int k = 0; k < N_PART_PARAMETERS; k++) {
     const OperatorsParameter q = {.unit = what[k].unit, .value = what[k].value, .closed = (PetscBool)(k >= PART_ALPHA)};
 
@@ -134,8 +122,8 @@ static PetscErrorCode UnitDiagonalCreate(Operators o, const char set[], const Pe
 }
 
 /* Parameter and term of the directions of the mask, which share one value */
-static PetscErrorCode GroundedAddOne(Operators o, OperatorsTermKind kind, const Grounded *g, const char what[],
-                                     PetscReal value, const PetscBool mask[3])
+static PetscErrorCode OperatorsAddDirections(Operators o, OperatorsTermKind kind, const Grounded *g, const char what[],
+                                             PetscReal value, const PetscBool mask[3])
 {
   const char *unit = kind == OPERATORS_STIFFNESS ? "N/m" : "N s/m";
   PetscInt    index;
@@ -152,7 +140,7 @@ static PetscErrorCode GroundedAddOne(Operators o, OperatorsTermKind kind, const 
 
 /* Parameters and terms of a list of springs or dashpots: one where all components that are not zero are equal, else one
    for each of them */
-static PetscErrorCode GroundedAdd(Operators o, OperatorsTermKind kind, const Grounded *g, const char what[])
+static PetscErrorCode OperatorsAddGrounded(Operators o, OperatorsTermKind kind, const Grounded *g, const char what[])
 {
   PetscBool mask[3], uniform = PETSC_TRUE;
   PetscReal value = 0;
@@ -163,14 +151,14 @@ static PetscErrorCode GroundedAdd(Operators o, OperatorsTermKind kind, const Gro
     if (mask[d] && value != 0 && g->value[d] != value) uniform = PETSC_FALSE;
     if (mask[d]) value = g->value[d];
   }
-  if (uniform) PetscCall(GroundedAddOne(o, kind, g, what, value, mask));
+  if (uniform) PetscCall(OperatorsAddDirections(o, kind, g, what, value, mask));
   for (int d = 0; d < 3 && !uniform; d++) {
     const PetscBool only[3] = {(PetscBool)(d == 0), (PetscBool)(d == 1), (PetscBool)(d == 2)};
     char            name[32];
 
     if (!mask[d]) continue;
     PetscCall(PetscSNPrintf(name, sizeof(name), "%s_%c", what, "xyz"[d]));
-    PetscCall(GroundedAddOne(o, kind, g, name, g->value[d], only));
+    PetscCall(OperatorsAddDirections(o, kind, g, name, g->value[d], only));
   }
   PetscFunctionReturn(0);
 }
@@ -185,8 +173,10 @@ PetscErrorCode OperatorsAssemble(Operators o)
   PetscCall(ModelGetParts(o->model, &n_parts, &parts));
   PetscCall(ModelGetSprings(o->model, &n_springs, &springs));
   PetscCall(ModelGetDashpots(o->model, &n_dashpots, &dashpots));
-  for (PetscInt i = 0; i < n_parts; i++) PetscCall(PartAdd(o, i, &parts[i]));
-  for (PetscInt i = 0; i < n_springs; i++) PetscCall(GroundedAdd(o, OPERATORS_STIFFNESS, &springs[i], "stiffness"));
-  for (PetscInt i = 0; i < n_dashpots; i++) PetscCall(GroundedAdd(o, OPERATORS_DAMPING, &dashpots[i], "viscosity"));
+  for (PetscInt i = 0; i < n_parts; i++) PetscCall(OperatorsAddPart(o, i, &parts[i]));
+  for (PetscInt i = 0; i < n_springs; i++)
+    PetscCall(OperatorsAddGrounded(o, OPERATORS_STIFFNESS, &springs[i], "stiffness"));
+  for (PetscInt i = 0; i < n_dashpots; i++)
+    PetscCall(OperatorsAddGrounded(o, OPERATORS_DAMPING, &dashpots[i], "viscosity"));
   PetscFunctionReturn(0);
 }

@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define MAX_DENSE 10000 /* entries of an inline matrix: 100 x 100 */
+#define OPERATORS_MAX_DENSE 10000 /* entries of an inline matrix: 100 x 100 */
 
 static const char *const letters[N_OPERATORS]  = {"k", "m", "c", "h"};
 static const char *const meanings[N_OPERATORS] = {"stiffness, N/m", "mass, kg", "damping, N s/m",
@@ -27,8 +27,8 @@ PetscErrorCode OperatorsLoadFromOptions(Operators o, OptionsItems PetscOptionsOb
     PetscCall(PetscOptionsString(name, help, "operators.h", o->load[i], o->load[i], sizeof(o->load[i]), NULL));
     PetscCall(PetscSNPrintf(name, sizeof(name), "-operators_dense_%s", letters[i]));
     PetscCall(PetscSNPrintf(help, sizeof(help), "small dense matrix of the %s, rows one after another", meanings[i]));
-    PetscCall(PetscMalloc1(MAX_DENSE, &o->dense[i]));
-    o->n_dense[i] = MAX_DENSE;
+    PetscCall(PetscMalloc1(OPERATORS_MAX_DENSE, &o->dense[i]));
+    o->n_dense[i] = OPERATORS_MAX_DENSE;
     PetscCall(PetscOptionsRealArray(name, help, "operators.h", o->dense[i], &o->n_dense[i], &set));
     if (!set) o->n_dense[i] = 0;
     PetscCheck(!set || !o->load[i][0], o->comm, PETSC_ERR_USER_INPUT,
@@ -38,7 +38,7 @@ PetscErrorCode OperatorsLoadFromOptions(Operators o, OptionsItems PetscOptionsOb
 }
 
 /* Raises an error when the file cannot be read, alike on all ranks */
-static PetscErrorCode FileCheck(MPI_Comm comm, const char letter[], const char file[])
+static PetscErrorCode OperatorsCheckFile(MPI_Comm comm, const char letter[], const char file[])
 {
   PetscBool   readable;
   PetscMPIInt rank;
@@ -54,8 +54,8 @@ static PetscErrorCode FileCheck(MPI_Comm comm, const char letter[], const char f
 }
 
 /* Sparse matrix from a dense list */
-static PetscErrorCode DenseCreate(MPI_Comm comm, const char letter[], PetscInt n_values, const PetscReal values[],
-                                  Mat *A)
+static PetscErrorCode OperatorsReadDense(MPI_Comm comm, const char letter[], PetscInt n_values,
+                                         const PetscReal values[], Mat *A)
 {
   const PetscInt n = (PetscInt)(PetscSqrtReal((PetscReal)n_values) + 0.5);
   PetscInt       first, last;
@@ -73,12 +73,12 @@ static PetscErrorCode DenseCreate(MPI_Comm comm, const char letter[], PetscInt n
 }
 
 /* One matrix from its file */
-static PetscErrorCode FileLoad(MPI_Comm comm, const char letter[], const char file[], Mat *A)
+static PetscErrorCode OperatorsReadFile(MPI_Comm comm, const char letter[], const char file[], Mat *A)
 {
   PetscViewer viewer;
 
   PetscFunctionBeginUser;
-  PetscCall(FileCheck(comm, letter, file));
+  PetscCall(OperatorsCheckFile(comm, letter, file));
   PetscCall(PetscViewerBinaryOpen(comm, file, FILE_MODE_READ, &viewer));
   PetscCall(MatCreate(comm, A));
   PetscCall(MatSetType(*A, MATAIJ));
@@ -88,7 +88,7 @@ static PetscErrorCode FileLoad(MPI_Comm comm, const char letter[], const char fi
 }
 
 /* Adds the terms and the parameter */
-static PetscErrorCode TermsFromMatrices(Operators o, Mat A[N_OPERATORS])
+static PetscErrorCode OperatorsAddMatrices(Operators o, Mat A[N_OPERATORS])
 {
   static const OperatorsTermKind kind[] = {OPERATORS_STIFFNESS, OPERATORS_MASS, OPERATORS_DAMPING};
   PetscInt                       mu;
@@ -103,7 +103,7 @@ static PetscErrorCode TermsFromMatrices(Operators o, Mat A[N_OPERATORS])
 }
 
 /* Raises an error for matrices that do not fit */
-static PetscErrorCode MatricesCheck(Operators o, Mat A[N_OPERATORS])
+static PetscErrorCode OperatorsCheckMatrices(Operators o, Mat A[N_OPERATORS])
 {
   PetscInt n, rows, columns;
 
@@ -132,11 +132,11 @@ PetscErrorCode OperatorsLoad(Operators o)
   PetscFunctionBeginUser;
   for (int i = 0; i < N_OPERATORS; i++) {
     if (o->load[i][0])
-      PetscCall(FileLoad(o->comm, letters[i], o->load[i], &A[i]));
+      PetscCall(OperatorsReadFile(o->comm, letters[i], o->load[i], &A[i]));
     else if (o->n_dense[i])
-      PetscCall(DenseCreate(o->comm, letters[i], o->n_dense[i], o->dense[i], &A[i]));
+      PetscCall(OperatorsReadDense(o->comm, letters[i], o->n_dense[i], o->dense[i], &A[i]));
   }
-  PetscCall(MatricesCheck(o, A));
+  PetscCall(OperatorsCheckMatrices(o, A));
   for (int i = OPERATOR_K; i <= OPERATOR_C && o->symmetric; i++) {
     PetscReal largest;
 
@@ -144,14 +144,14 @@ PetscErrorCode OperatorsLoad(Operators o)
     PetscCall(MatNorm(A[i], NORM_FROBENIUS, &largest));
     PetscCall(MatIsSymmetric(A[i], 1e-14 * largest, &o->symmetric));
   }
-  PetscCall(TermsFromMatrices(o, A));
+  PetscCall(OperatorsAddMatrices(o, A));
   for (PetscInt t = 0; t < o->terms.n && !o->symmetric; t++) o->terms.term[t].symmetric = PETSC_FALSE;
   for (int i = 0; i < N_OPERATORS; i++) PetscCall(MatDestroy(&A[i]));
   PetscFunctionReturn(0);
 }
 
 /* Writes one matrix under a temporary name, then renames it */
-static PetscErrorCode FileSave(Operators o, const char name[], Mat A)
+static PetscErrorCode PencilSaveMatrix(Operators o, const char name[], Mat A)
 {
   char           file[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
   PetscViewer    viewer;
@@ -197,9 +197,9 @@ PetscErrorCode PencilSave(Pencil pencil)
              strerror(failed));
   PetscCall(PencilGetMatrices(pencil, &m));
   if (!pencil->Zr) PetscCall(PencilGetParts(pencil, &parts));
-  PetscCall(FileSave(o, "K", parts.K ? parts.K : m.K));
-  PetscCall(FileSave(o, "M", m.M));
-  if (m.C) PetscCall(FileSave(o, "C", m.C));
-  if (parts.H) PetscCall(FileSave(o, "H", parts.H));
+  PetscCall(PencilSaveMatrix(o, "K", parts.K ? parts.K : m.K));
+  PetscCall(PencilSaveMatrix(o, "M", m.M));
+  if (m.C) PetscCall(PencilSaveMatrix(o, "C", m.C));
+  if (parts.H) PetscCall(PencilSaveMatrix(o, "H", parts.H));
   PetscFunctionReturn(0);
 }

@@ -7,8 +7,8 @@
 #include "operatorsimpl.h"
 
 /* Adds the forces of local cell c; u and f hold three values per local vertex */
-static PetscErrorCode CellAddForce(Operators o, PetscInt c, const Elasticity *material, const PetscScalar u[],
-                                   PetscScalar f[])
+static PetscErrorCode OperatorsAddCellForce(Operators o, PetscInt c, const Elasticity *material, const PetscScalar u[],
+                                            PetscScalar f[])
 {
   const Element *element;
   PetscInt       n, vertices[ELEMENT_MAX_NODES], at[ELEMENT_MAX_DOFS];
@@ -26,7 +26,7 @@ static PetscErrorCode CellAddForce(Operators o, PetscInt c, const Elasticity *ma
 }
 
 /* Adds the forces of all local cells */
-static PetscErrorCode CellsAddForces(Operators o, const PetscReal p[], const PetscScalar u[], PetscScalar f[])
+static PetscErrorCode OperatorsAddCellForces(Operators o, const PetscReal p[], const PetscScalar u[], PetscScalar f[])
 {
   const Part *parts;
   const Mesh *mesh;
@@ -40,7 +40,7 @@ static PetscErrorCode CellsAddForces(Operators o, const PetscReal p[], const Pet
     const PetscReal  young    = p[N_PART_PARAMETERS * part + PART_YOUNG];
     const Elasticity material = ElasticityFromEngineering(young, parts[part].poisson, 1);
 
-    PetscCall(CellAddForce(o, c, &material, u, f));
+    PetscCall(OperatorsAddCellForce(o, c, &material, u, f));
   }
   PetscFunctionReturn(0);
 }
@@ -59,7 +59,7 @@ PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[],
   PetscCall(ModelGetNodal(operators->model, u, displacement));
   PetscCall(VecSet(local, 0));
   PetscCall(VecGetArray(local, &force));
-  PetscCall(CellsAddForces(operators, OperatorsPoint(operators, p), displacement, force));
+  PetscCall(OperatorsAddCellForces(operators, OperatorsPoint(operators, p), displacement, force));
   PetscCall(VecRestoreArray(local, &force));
   PetscCall(PetscFree(displacement));
   PetscCall(ModelSumShared(operators->model, local));
@@ -67,7 +67,7 @@ PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[],
 }
 
 /* f += forces of the springs */
-static PetscErrorCode SpringsAddForces(Operators o, const PetscReal p[], Vec u, Vec f)
+static PetscErrorCode OperatorsAddSpringForces(Operators o, const PetscReal p[], Vec u, Vec f)
 {
   const Part *parts;
   PetscInt    n_parts;
@@ -108,6 +108,6 @@ PetscErrorCode OperatorsApplyBodies(Operators operators, const PetscReal p[], Ve
   PetscCall(VecRestoreArray(f, &value));
   PetscCall(VecRestoreArrayRead(local, &force));
   PetscCall(VecDestroy(&local));
-  PetscCall(SpringsAddForces(operators, OperatorsPoint(operators, p), u, f));
+  PetscCall(OperatorsAddSpringForces(operators, OperatorsPoint(operators, p), u, f));
   PetscFunctionReturn(0);
 }

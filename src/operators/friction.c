@@ -12,7 +12,7 @@
 #include <math.h>
 
 /* scale L' W R with W = diag(weights), or the identity where weights is NULL */
-static PetscErrorCode ProductCreate(PetscReal scale, Mat L, Vec weights, Mat R, Mat *A)
+static PetscErrorCode FrictionProduct(PetscReal scale, Mat L, Vec weights, Mat R, Mat *A)
 {
   Mat WR = R;
 
@@ -114,8 +114,8 @@ static PetscErrorCode DampingAdd(Pencil pencil, const FrictionGroup *g)
   PetscCall(MatCreateVecs(g->T, NULL, &across));
   PetscCall(VecDuplicate(across, &along));
   PetscCall(DampingSetWeights(pencil, g, across, along));
-  PetscCall(ProductCreate(1, g->B, across, g->B, &BB));
-  PetscCall(ProductCreate(1, g->T, along, g->T, &TT));
+  PetscCall(FrictionProduct(1, g->B, across, g->B, &BB));
+  PetscCall(FrictionProduct(1, g->T, along, g->T, &TT));
   PetscCall(TermsAdd(&pencil->base, OPERATORS_DAMPING, TT, PETSC_TRUE, 2 + g->more, slope));
   PetscCall(TermsAdd(&pencil->base, OPERATORS_DAMPING, BB, PETSC_TRUE, 3 + g->more, mu));
   term                     = &pencil->base.term[pencil->base.n - 1];
@@ -135,11 +135,11 @@ static PetscErrorCode PenaltyAdd(Pencil pencil, const FrictionGroup *g)
   Mat            NN, TN;
 
   PetscFunctionBeginUser;
-  PetscCall(ProductCreate(1, g->N, NULL, g->N, &NN));
+  PetscCall(FrictionProduct(1, g->N, NULL, g->N, &NN));
   PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, NN, PETSC_TRUE, 1 + g->more, kn));
   PetscCall(MatDestroy(&NN));
   if (g->q.mu < 0) PetscFunctionReturn(0);
-  PetscCall(ProductCreate(-1, g->T, NULL, g->N, &TN));
+  PetscCall(FrictionProduct(-1, g->T, NULL, g->N, &TN));
   PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, TN, PETSC_FALSE, 2 + g->more, mu));
   PetscCall(MatDestroy(&TN));
   PetscFunctionReturn(0);

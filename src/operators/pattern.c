@@ -10,9 +10,9 @@
 /* Cells of a part around each local vertex as lists: those of vertex v are cell[first[v]] .. cell[first[v + 1] - 1] */
 typedef struct {
   PetscInt *first, *cell;
-} Star;
+} PatternStar;
 
-static PetscErrorCode StarCreate(const Mesh *mesh, PetscInt part, Star *s)
+static PetscErrorCode PatternCreateStar(const Mesh *mesh, PetscInt part, PatternStar *s)
 {
   const PetscInt n = mesh->n_nodes * mesh->n_cells;
 
@@ -27,7 +27,7 @@ static PetscErrorCode StarCreate(const Mesh *mesh, PetscInt part, Star *s)
 }
 
 /* Owner of each local vertex, by the first of its unknowns; -1 when all are fixed */
-static PetscErrorCode OwnersFind(MPI_Comm comm, const Mesh *mesh, PetscMPIInt owner[])
+static PetscErrorCode PatternFindOwners(MPI_Comm comm, const Mesh *mesh, PetscMPIInt owner[])
 {
   PetscLayout layout;
 
@@ -45,7 +45,8 @@ static PetscErrorCode OwnersFind(MPI_Comm comm, const Mesh *mesh, PetscMPIInt ow
 }
 
 /* Adds to count[v][0] the neighbours of v with the same owner, to count[v][1] the others */
-static PetscErrorCode NeighboursCount(const Mesh *mesh, const Star *s, const PetscMPIInt owner[], PetscScalar count[])
+static PetscErrorCode PatternCountNeighbours(const Mesh *mesh, const PatternStar *s, const PetscMPIInt owner[],
+                                             PetscScalar count[])
 {
   PetscInt *seen;
 
@@ -66,22 +67,22 @@ static PetscErrorCode NeighboursCount(const Mesh *mesh, const Star *s, const Pet
 }
 
 /* Entries per owned row inside and outside the diagonal block */
-static PetscErrorCode RowsCount(MPI_Comm comm, Model model, PetscInt part, PetscInt inside[], PetscInt outside[])
+static PetscErrorCode PatternCountRows(MPI_Comm comm, Model model, PetscInt part, PetscInt inside[], PetscInt outside[])
 {
   const Mesh  *mesh;
   PetscMPIInt *owner;
   PetscScalar *count;
   Vec          counts;
-  Star         star;
+  PatternStar  star;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(model, &mesh));
-  PetscCall(StarCreate(mesh, part, &star));
+  PetscCall(PatternCreateStar(mesh, part, &star));
   PetscCall(PetscMalloc1(mesh->n_vertices, &owner));
-  PetscCall(OwnersFind(comm, mesh, owner));
+  PetscCall(PatternFindOwners(comm, mesh, owner));
   PetscCall(ModelCreateNodal(model, &counts));
   PetscCall(VecGetArray(counts, &count));
-  PetscCall(NeighboursCount(mesh, &star, owner, count));
+  PetscCall(PatternCountNeighbours(mesh, &star, owner, count));
   PetscCall(VecRestoreArray(counts, &count));
   PetscCall(ModelSumShared(model, counts));
   PetscCall(VecGetArray(counts, &count));
@@ -111,7 +112,7 @@ PetscErrorCode PatternCreate(Model model, PetscInt part, Mat *A)
   n_own = mesh->n_own;
   n_all = mesh->n_unknowns;
   PetscCall(PetscCalloc2(n_own, &inside, n_own, &outside));
-  PetscCall(RowsCount(comm, model, part, inside, outside));
+  PetscCall(PatternCountRows(comm, model, part, inside, outside));
   for (PetscInt i = 0; i < n_own; i++) outside[i] = PetscMin(n_all - n_own, outside[i]);
   PetscCall(MatCreateAIJ(comm, n_own, n_own, n_all, n_all, 0, inside, 0, outside, A));
   PetscCall(PetscFree2(inside, outside));

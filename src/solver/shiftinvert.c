@@ -13,7 +13,7 @@
 #include <petscksp.h>
 
 /* K - s M, or K + s C + s^2 M with damping */
-static PetscErrorCode ShiftedMatrix(const PencilMatrices *pencil, PetscReal shift, Mat *A)
+static PetscErrorCode ShiftInvertMatrix(const PencilMatrices *pencil, PetscReal shift, Mat *A)
 {
   PetscFunctionBeginUser;
   PetscCall(MatDuplicate(pencil->K, MAT_COPY_VALUES, A));
@@ -28,7 +28,7 @@ static PetscErrorCode ShiftedMatrix(const PencilMatrices *pencil, PetscReal shif
 }
 
 /* Raises the error for a failed factorisation; a singular matrix sets *singular instead */
-static PetscErrorCode FactorCheck(MPI_Comm comm, PC pc, PetscBool *singular)
+static PetscErrorCode ShiftInvertCheck(MPI_Comm comm, PC pc, PetscBool *singular)
 {
   PCFailedReason reason;
   MatSolverType  type;
@@ -62,7 +62,8 @@ static PetscErrorCode FactorCheck(MPI_Comm comm, PC pc, PetscBool *singular)
 }
 
 /* Solver with MUMPS as default */
-static PetscErrorCode SolverCreate(MPI_Comm comm, Mat A, PetscBool symmetric, PetscBool want_inertia, KSP *ksp)
+static PetscErrorCode ShiftInvertCreateSolver(MPI_Comm comm, Mat A, PetscBool symmetric, PetscBool want_inertia,
+                                              KSP *ksp)
 {
   MatSolverType solver;
   PetscBool     is_mumps = PETSC_FALSE, chosen;
@@ -106,11 +107,12 @@ PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, PetscReal shift, 
   si->shift    = shift;
   PetscCall(PetscObjectGetComm((PetscObject)pencil->K, &si->comm));
   for (int attempt = 0; attempt < 4 && singular; attempt++, si->shift *= singular ? 1 + 1e-4 * attempt : 1) {
-    PetscCall(ShiftedMatrix(pencil, si->shift, &A));
-    PetscCall(SolverCreate(si->comm, A, pencil->symmetric && !(pencil->C && !want_inertia), want_inertia, &si->ksp));
+    PetscCall(ShiftInvertMatrix(pencil, si->shift, &A));
+    PetscCall(
+      ShiftInvertCreateSolver(si->comm, A, pencil->symmetric && !(pencil->C && !want_inertia), want_inertia, &si->ksp));
     PetscCall(KSPSetUp(si->ksp));
     PetscCall(KSPGetPC(si->ksp, &pc));
-    PetscCall(FactorCheck(si->comm, pc, &singular));
+    PetscCall(ShiftInvertCheck(si->comm, pc, &singular));
     PetscCall(MatDestroy(&A));
     if (singular) PetscCall(KSPDestroy(&si->ksp));
   }
@@ -123,7 +125,7 @@ PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, PetscReal shift, 
 }
 
 /* y = A^-1 x */
-static PetscErrorCode ApplyInverse(PC pc, Vec x, Vec y)
+static PetscErrorCode ShiftInvertApply(PC pc, Vec x, Vec y)
 {
   ShiftInvert *si;
 
@@ -137,7 +139,7 @@ static PetscErrorCode ApplyInverse(PC pc, Vec x, Vec y)
 }
 
 /* y = A^-T x */
-static PetscErrorCode ApplyInverseTranspose(PC pc, Vec x, Vec y)
+static PetscErrorCode ShiftInvertApplyTranspose(PC pc, Vec x, Vec y)
 {
   ShiftInvert *si;
 
@@ -164,7 +166,7 @@ PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st)
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCSHELL));
   PetscCall(PCShellSetContext(pc, si));
-  PetscCall(PCShellSetApply(pc, transposed ? ApplyInverseTranspose : ApplyInverse));
+  PetscCall(PCShellSetApply(pc, transposed ? ShiftInvertApplyTranspose : ShiftInvertApply));
   PetscFunctionReturn(0);
 }
 
@@ -181,7 +183,7 @@ PetscErrorCode ShiftInvertGetInertia(const ShiftInvert *si, PetscInt *n_negative
 }
 
 /* Column by column, for solvers other than a factorisation */
-static PetscErrorCode ApplyColumns(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X)
+static PetscErrorCode ShiftInvertApplyColumns(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X)
 {
   PetscInt n;
 
@@ -214,7 +216,7 @@ PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed
     PetscCall(PCFactorGetMatrix(pc, &F));
     PetscCall(transposed ? MatMatSolveTranspose(F, B, X) : MatMatSolve(F, B, X));
   } else {
-    PetscCall(ApplyColumns(si, transposed, B, X));
+    PetscCall(ShiftInvertApplyColumns(si, transposed, B, X));
   }
   PetscCall(EventEnd(EVENT_SOLVE));
   PetscFunctionReturn(0);

@@ -1,7 +1,7 @@
 /*
    Primal-dual active set on the laws of the pairs, a semismooth Newton method: the status of every pair makes its law
    linear; one small system gives all forces and displacements; they decide the next status. Without Coulomb pairs it
-   ends exactly when no status changes. What is smaller than ROUNDING of the largest displacement decides nothing.
+   ends exactly when no status changes. What is smaller than ACTIVE_ROUNDING of the largest displacement decides nothing.
 
    Where the statuses repeat or the system becomes singular, those of sliding pairs are found by pivoting (pivot.c); with
    Coulomb pairs only the pair that errs most changes per iteration. If that does not settle either, all friction coefficients are raised from 0 in steps, each begun from the equilibrium
@@ -10,17 +10,17 @@
 */
 #include "staticsimpl.h"
 
-#define ROUNDING   1e-13
-#define SLIPPING   1e-12 /* residual of Coulomb's law at convergence, relative */
-#define EXACT      1e-13 /* of GMRES */
-#define ROUGH      1e-6  /* of GMRES while statuses still change */
-#define CORRECT    1e-8  /* of GMRES for corrections */
-#define MIN_STEP   (1.0 / 1024)
-#define MIN_DAMP   (1.0 / 128)
-#define MAX_KEPT   64   /* statuses remembered, to see when they repeat */
-#define ONE_BY_ONE 10   /* times max_it, when single pairs change */
-#define FEW        1000 /* rows of a dense problem up to which that, and small steps of friction, are worth the time */
-#define LARGE_STEP (1.0 / 16)
+#define ACTIVE_ROUNDING 1e-13
+#define SLIPPING        1e-12 /* residual of Coulomb's law at convergence, relative */
+#define EXACT           1e-13 /* of GMRES */
+#define ROUGH           1e-6  /* of GMRES while statuses still change */
+#define CORRECT         1e-8  /* of GMRES for corrections */
+#define MIN_STEP        (1.0 / 1024)
+#define MIN_DAMP        (1.0 / 128)
+#define MAX_KEPT        64 /* statuses remembered, to see when they repeat */
+#define ONE_BY_ONE      10 /* times max_it, when single pairs change */
+#define FEW             1000 /* rows of a dense problem up to which that, and small steps of friction, are worth the time */
+#define LARGE_STEP      (1.0 / 16)
 
 /* Laws of all rows at the present status */
 static void LawsSet(const Active *a, LawRow law[])
@@ -60,13 +60,13 @@ static PetscErrorCode Solve(Active *a, PetscBool homogeneous, const PetscReal rh
   PetscCall(PetscMalloc1(a->rows->n, &law));
   LawsSet(a, law);
   for (PetscInt i = 0; i < a->rows->n && homogeneous; i++) law[i].p0 = law[i].q0 = 0;
-  PetscCall(SmallSolve(a->compliance, a->rows, a->friction, law, rhs, a->rtol, l, w, outcome, &a->reversed));
+  PetscCall(SmallSolve(&(SmallSystem){a->compliance, a->friction, law, rhs, a->rtol}, l, w, outcome, &a->reversed));
   PetscCall(PetscFree(law));
   PetscFunctionReturn(0);
 }
 
 /* Largest contact displacement or force, m */
-static PetscErrorCode ScaleFind(Active *a)
+static PetscErrorCode ActiveFindScale(Active *a)
 {
   PetscReal scale = 0;
 
@@ -87,7 +87,7 @@ static PetscReal Wrongness(const Active *a, PetscInt p, ContactStatus *next)
   CoulombPair      pair = a->rows->law[p];
 
   pair.mu *= a->friction;
-  *next = CoulombDecide(&pair, a->status[p], l, w, ROUNDING * a->scale);
+  *next = CoulombDecide(&pair, a->status[p], l, w, ACTIVE_ROUNDING * a->scale);
   if (*next == a->status[p]) return 0;
   if (*next == CONTACT_OPEN || a->status[p] == CONTACT_OPEN) return PetscAbsReal(CoulombClosing(&pair, l, w));
   return CoulombResidual(&pair, l, w);
@@ -129,7 +129,7 @@ static PetscErrorCode StatusUpdate(Active *a, PetscBool single, PetscInt *n_chan
 
 /* Largest residual of Coulomb's law, relative: of slip to the largest force, which may be far below the displacements
    (soft springs), else to the largest of both */
-static PetscErrorCode SlipResidual(const Active *a, PetscReal *residual)
+static PetscErrorCode ActiveSlipResidual(const Active *a, PetscReal *residual)
 {
   PetscReal largest[3] = {0, 0, 0}; /* of slip, of the others, and force */
 
@@ -156,7 +156,7 @@ static PetscErrorCode Damp(Active *a, const PetscReal l0[], const PetscReal w0[]
 
   PetscFunctionBeginUser;
   for (PetscReal step = 1; step > MIN_DAMP; step /= 2) {
-    PetscCall(SlipResidual(a, &residual));
+    PetscCall(ActiveSlipResidual(a, &residual));
     if (residual < before || before <= SLIPPING) break;
     for (PetscInt i = 0; i < a->rows->n; i++) {
       a->l[i] = (l0[i] + a->l[i]) / 2;
@@ -232,10 +232,10 @@ static PetscErrorCode Iterate(Active *a, PetscBool single, ActiveOutcome *outcom
       *outcome = repeats ? ACTIVE_CYCLES : ACTIVE_SINGULAR;
       break;
     }
-    PetscCall(ScaleFind(a));
+    PetscCall(ActiveFindScale(a));
     if (!n_changed) PetscCall(Damp(a, l, w, residual));
     PetscCall(StatusUpdate(a, single, &n_changed));
-    PetscCall(SlipResidual(a, &residual));
+    PetscCall(ActiveSlipResidual(a, &residual));
     if (n_changed || residual > SLIPPING) continue;
     if (a->rtol == EXACT || a->compliance->W) *outcome = a->reversed ? ACTIVE_JAMMED : ACTIVE_CONVERGED;
     a->rtol = EXACT;
@@ -305,7 +305,7 @@ static PetscErrorCode IterateSurely(Active *a, ActiveOutcome *outcome)
   PetscCall(Restart(a));
   PetscCall(HasCoulomb(a, &coulomb));
   if (!coulomb) {
-    PetscCall(PivotSolve(a->compliance, a->rows, a->friction, a->free, a->status, &found));
+    PetscCall(PivotSolve(a->compliance, a->friction, a->free, a->status, &found));
     if (found) PetscCall(Iterate(a, PETSC_FALSE, outcome));
     if (*outcome == ACTIVE_CONVERGED) PetscFunctionReturn(0);
     PetscCall(Restart(a));

@@ -15,11 +15,11 @@
 #include "staticsimpl.h"
 #include "base/gather.h"
 
-#define SHARE 0.1 /* of the stiffness of a node */
-#define BLOCK 64  /* right-hand sides at once */
+#define KAPPA_SHARE      0.1 /* of the stiffness of a node */
+#define COMPLIANCE_BLOCK 64  /* right-hand sides at once */
 
 /* Mean of n' diag(K) n at the slaves, N/m */
-static PetscErrorCode KappaFind(Mat K, const PairRows *rows, PetscReal *kappa)
+static PetscErrorCode ComplianceFindKappa(Mat K, const PairRows *rows, PetscReal *kappa)
 {
   PetscReal          sum[2] = {0, 0};
   const PetscScalar *diagonal;
@@ -42,7 +42,7 @@ static PetscErrorCode KappaFind(Mat K, const PairRows *rows, PetscReal *kappa)
   PetscCall(VecRestoreArrayRead(d, &diagonal));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, rows->comm));
   if (sum[0] == 0) PetscCall(VecSum(d, &sum[0])); /* every slave is held along n: any stiffness of the bodies will do */
-  *kappa = SHARE * sum[0] / sum[1];
+  *kappa = KAPPA_SHARE * sum[0] / sum[1];
   PetscCall(VecDestroy(&d));
   PetscFunctionReturn(0);
 }
@@ -77,7 +77,7 @@ PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, A
 }
 
 /* Columns first .. first + n - 1 of G', as a dense matrix; Gt = G' */
-static PetscErrorCode ColumnsSet(Mat Gt, PetscInt first, PetscInt n, Mat columns)
+static PetscErrorCode ComplianceSetColumns(Mat Gt, PetscInt first, PetscInt n, Mat columns)
 {
   PetscInt     begin, end, stride;
   PetscScalar *value;
@@ -101,15 +101,16 @@ static PetscErrorCode ColumnsSet(Mat Gt, PetscInt first, PetscInt n, Mat columns
   PetscFunctionReturn(0);
 }
 
-/* Stores kappa R Y, n columns from `first` on, into local rows [rows][n_all] */
-static PetscErrorCode RowsTake(Mat R, Mat Y, const Compliance *c, const PairRows *rows, PetscInt first, PetscInt n,
-                               PetscReal local[])
+/* Stores kappa R Y, the columns from `first` on, into local rows [rows][n_all] */
+static PetscErrorCode ComplianceTakeRows(const Compliance *c, Mat R, Mat Y, PetscInt first, PetscReal local[])
 {
+  const PairRows    *rows = c->rows;
   const PetscScalar *value;
-  PetscInt           stride;
+  PetscInt           stride, n;
   Mat                RY;
 
   PetscFunctionBeginUser;
+  PetscCall(MatGetSize(Y, NULL, &n));
   PetscCall(MatMatMult(R, Y, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &RY));
   PetscCall(MatDenseGetLDA(RY, &stride));
   PetscCall(MatDenseGetArrayRead(RY, &value));
@@ -122,27 +123,28 @@ static PetscErrorCode RowsTake(Mat R, Mat Y, const Compliance *c, const PairRows
 }
 
 /* W and V. K_a is symmetric: the rows of S K_a^-1 G' are the columns of V */
-static PetscErrorCode DenseCreate(const PairRows *rows, Compliance *c)
+static PetscErrorCode ComplianceFormDense(Compliance *c)
 {
-  const PetscInt n_all = rows->n_all;
-  PetscInt       n_unknowns;
-  PetscReal     *local[2];
-  Mat            Gt;
+  const PairRows *rows  = c->rows;
+  const PetscInt  n_all = rows->n_all;
+  PetscInt        n_unknowns;
+  PetscReal      *local[2];
+  Mat             Gt;
 
   PetscFunctionBeginUser;
   PetscCall(VecGetLocalSize(c->u, &n_unknowns));
   PetscCall(MatTranspose(rows->G, MAT_INITIAL_MATRIX, &Gt));
   PetscCall(PetscMalloc2(rows->n * n_all, &local[0], rows->n * n_all, &local[1]));
-  for (PetscInt first = 0; first < n_all; first += BLOCK) {
-    const PetscInt n = PetscMin(BLOCK, n_all - first);
+  for (PetscInt first = 0; first < n_all; first += COMPLIANCE_BLOCK) {
+    const PetscInt n = PetscMin(COMPLIANCE_BLOCK, n_all - first);
     Mat            B, Y;
 
     PetscCall(MatCreateDense(rows->comm, n_unknowns, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &B));
-    PetscCall(ColumnsSet(Gt, first, n, B));
+    PetscCall(ComplianceSetColumns(Gt, first, n, B));
     PetscCall(MatDuplicate(B, MAT_DO_NOT_COPY_VALUES, &Y));
     PetscCall(ShiftInvertApplyBlock(&c->inverse, PETSC_FALSE, B, Y));
-    PetscCall(RowsTake(rows->G, Y, c, rows, first, n, local[0]));
-    if (rows->S) PetscCall(RowsTake(rows->S, Y, c, rows, first, n, local[1]));
+    PetscCall(ComplianceTakeRows(c, rows->G, Y, first, local[0]));
+    if (rows->S) PetscCall(ComplianceTakeRows(c, rows->S, Y, first, local[1]));
     PetscCall(MatDestroy(&B));
     PetscCall(MatDestroy(&Y));
   }
@@ -160,23 +162,25 @@ PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const 
   Mat            K;
 
   PetscFunctionBeginUser;
+  c->rows = rows;
   PetscCall(OperatorsGetBodies(operators, p, &K, &pencil.M, NULL));
-  PetscCall(KappaFind(K, rows, &c->kappa));
+  PetscCall(ComplianceFindKappa(K, rows, &c->kappa));
   PetscCall(ComplianceAugment(K, rows, c->kappa, AUGMENT_ALL, NULL, &pencil.K));
   PetscCall(HoldCreate(operators, p, pencil.K, &c->hold));
   PetscCall(ShiftInvertCreate(&pencil, 0, PETSC_FALSE, progress, &c->inverse));
   PetscCall(MatDestroy(&pencil.K));
   PetscCall(MatCreateVecs(K, &c->u, &c->b));
   PetscCall(MatCreateVecs(rows->G, NULL, &c->row));
-  if (rows->n_all <= max_rows) PetscCall(DenseCreate(rows, c));
+  if (rows->n_all <= max_rows) PetscCall(ComplianceFormDense(c));
   PetscFunctionReturn(0);
 }
 
 /* b += kappa (S' (slide l) - G'(l - w)) */
-static PetscErrorCode AddForces(const Compliance *c, const PairRows *rows, PetscReal friction, const PetscReal l[],
-                                const PetscReal w[], Vec b)
+static PetscErrorCode ComplianceAddForces(const Compliance *c, PetscReal friction, const PetscReal l[],
+                                          const PetscReal w[], Vec b)
 {
-  PetscScalar *value;
+  const PairRows *rows = c->rows;
+  PetscScalar    *value;
 
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(c->row, &value));
@@ -193,26 +197,27 @@ static PetscErrorCode AddForces(const Compliance *c, const PairRows *rows, Petsc
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ComplianceSolve(const Compliance *c, const PairRows *rows, PetscReal friction, Vec f,
-                               const PetscReal l[], const PetscReal w[], Vec u)
+PetscErrorCode ComplianceSolve(const Compliance *c, PetscReal friction, Vec f, const PetscReal l[], const PetscReal w[],
+                               Vec u)
 {
   PetscFunctionBeginUser;
   if (f)
     PetscCall(VecCopy(f, c->b));
   else
     PetscCall(VecSet(c->b, 0));
-  PetscCall(AddForces(c, rows, friction, l, w, c->b));
+  PetscCall(ComplianceAddForces(c, friction, l, w, c->b));
   PetscCall(KSPSolve(c->inverse.ksp, c->b, u));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ComplianceApply(const Compliance *c, const PairRows *rows, PetscReal friction, const PetscReal l[],
-                               const PetscReal w[], PetscReal y[])
+PetscErrorCode ComplianceApply(const Compliance *c, PetscReal friction, const PetscReal l[], const PetscReal w[],
+                               PetscReal y[])
 {
+  const PairRows    *rows = c->rows;
   const PetscScalar *value;
 
   PetscFunctionBeginUser;
-  PetscCall(ComplianceSolve(c, rows, friction, NULL, l, w, c->u));
+  PetscCall(ComplianceSolve(c, friction, NULL, l, w, c->u));
   PetscCall(MatMult(rows->G, c->u, c->row));
   PetscCall(VecGetArrayRead(c->row, &value));
   for (PetscInt i = 0; i < rows->n; i++) y[i] = w[i] - PetscRealPart(value[i]);

@@ -9,10 +9,10 @@
 */
 #include "staticsimpl.h"
 
-#define N_REFINE 2
+#define EQUILIBRIUM_REFINE 2
 
 /* y = G x */
-static PetscErrorCode RowsOf(const Compliance *c, const PairRows *rows, Vec x, PetscReal y[])
+static PetscErrorCode EquilibriumRows(const Compliance *c, const PairRows *rows, Vec x, PetscReal y[])
 {
   const PetscScalar *value;
 
@@ -25,7 +25,7 @@ static PetscErrorCode RowsOf(const Compliance *c, const PairRows *rows, Vec x, P
 }
 
 /* Pairs closed now, over all ranks */
-static PetscErrorCode CountClosed(const Active *a, PetscInt n[2])
+static PetscErrorCode EquilibriumCountClosed(const Active *a, PetscInt n[2])
 {
   PetscFunctionBeginUser;
   n[0] = 0;
@@ -72,7 +72,7 @@ static PetscErrorCode SlidingOffCheck(const Active *a, Vec f, PetscReal size)
 }
 
 /* Raises the error for what has no equilibrium */
-static PetscErrorCode Complain(const Active *a, const char place[], ActiveOutcome outcome)
+static PetscErrorCode EquilibriumComplain(const Active *a, const char place[], ActiveOutcome outcome)
 {
   static const char *const how[] = {[ACTIVE_CONVERGED] = "",
                                     [ACTIVE_SINGULAR]  = "the bodies come off each other, and nothing else holds them",
@@ -82,7 +82,7 @@ static PetscErrorCode Complain(const Active *a, const char place[], ActiveOutcom
   PetscInt                 n[2];
 
   PetscFunctionBeginUser;
-  PetscCall(CountClosed(a, n));
+  PetscCall(EquilibriumCountClosed(a, n));
   if (a->friction == 0)
     PetscCall(ComplainFrictionless(a, outcome, place, a->rows->n_all == n[1] ? PETSC_FALSE : PETSC_TRUE));
   SETERRQ(a->rows->comm, PETSC_ERR_NOT_CONVERGED,
@@ -92,7 +92,7 @@ static PetscErrorCode Complain(const Active *a, const char place[], ActiveOutcom
 }
 
 /* r = f - K u - G'l + S' D l, forces l in m; NULL stands for u = 0 */
-static PetscErrorCode Residual(const Active *a, Vec f, Vec u, Vec r)
+static PetscErrorCode EquilibriumResidual(const Active *a, Vec f, Vec u, Vec r)
 {
   const Compliance *c    = a->compliance;
   const PairRows   *rows = a->rows;
@@ -118,38 +118,38 @@ static PetscErrorCode Residual(const Active *a, Vec f, Vec u, Vec r)
 }
 
 /* K_a^-1 (r + kappa G'e) of the residuals at u, into the work vector of the compliance, and e [rows] */
-static PetscErrorCode Missing(const Active *a, Vec f, Vec u, PetscReal e[])
+static PetscErrorCode EquilibriumMissing(const Active *a, Vec f, Vec u, PetscReal e[])
 {
   Vec r;
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(u, &r));
-  PetscCall(Residual(a, f, u, r));
-  PetscCall(RowsOf(a->compliance, a->rows, u, e));
+  PetscCall(EquilibriumResidual(a, f, u, r));
+  PetscCall(EquilibriumRows(a->compliance, a->rows, u, e));
   for (PetscInt i = 0; i < a->rows->n; i++) e[i] = a->w[i] - e[i];
-  PetscCall(ComplianceSolve(a->compliance, a->rows, 0, r, a->zero, e, a->compliance->u));
+  PetscCall(ComplianceSolve(a->compliance, 0, r, a->zero, e, a->compliance->u));
   PetscCall(VecDestroy(&r));
   PetscFunctionReturn(0);
 }
 
 /* Displacements, and refinements of them and of the pairs */
-static PetscErrorCode Refine(Active *a, Vec f, Vec u)
+static PetscErrorCode EquilibriumRefine(Active *a, Vec f, Vec u)
 {
   const PairRows *rows = a->rows;
   PetscReal      *e, *rhs;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(rows->n, &e, rows->n, &rhs));
-  for (int i = 0; i < N_REFINE; i++) {
-    PetscCall(ComplianceSolve(a->compliance, rows, 1, f, a->l, a->w, u));
-    PetscCall(Missing(a, f, u, e));
-    PetscCall(RowsOf(a->compliance, rows, a->compliance->u, rhs));
+  for (int i = 0; i < EQUILIBRIUM_REFINE; i++) {
+    PetscCall(ComplianceSolve(a->compliance, 1, f, a->l, a->w, u));
+    PetscCall(EquilibriumMissing(a, f, u, e));
+    PetscCall(EquilibriumRows(a->compliance, rows, a->compliance->u, rhs));
     for (PetscInt k = 0; k < rows->n; k++) rhs[k] -= e[k];
     PetscCall(ActiveCorrect(a, rhs));
   }
-  PetscCall(ComplianceSolve(a->compliance, rows, 1, f, a->l, a->w, u));
+  PetscCall(ComplianceSolve(a->compliance, 1, f, a->l, a->w, u));
   PetscCall(HoldProject(&a->compliance->hold, u));
-  PetscCall(Missing(a, f, u, e));
+  PetscCall(EquilibriumMissing(a, f, u, e));
   PetscCall(VecAXPY(u, 1, a->compliance->u));
   PetscCall(PetscFree2(e, rhs));
   PetscFunctionReturn(0);
@@ -163,7 +163,7 @@ static PetscErrorCode FrictionCheck(const Active *a, Vec f, PetscReal size)
   PetscFunctionBeginUser;
   if (!a->compliance->hold.n) PetscFunctionReturn(0);
   PetscCall(VecDuplicate(f, &pushed));
-  PetscCall(Residual(a, f, NULL, pushed));
+  PetscCall(EquilibriumResidual(a, f, NULL, pushed));
   PetscCall(HoldCheck(a->operators, &a->compliance->hold, "loads and friction", pushed, size));
   PetscCall(VecDestroy(&pushed));
   PetscFunctionReturn(0);
@@ -176,7 +176,7 @@ static PetscErrorCode TippingCheck(const Active *a, const char place[])
   Mat      K, A;
 
   PetscFunctionBeginUser;
-  PetscCall(CountClosed(a, n));
+  PetscCall(EquilibriumCountClosed(a, n));
   if (n[0] == n[1] && a->rows->n_all == n[1]) PetscFunctionReturn(0);
   PetscCall(OperatorsGetBodies(a->operators, a->p, &K, NULL, NULL));
   PetscCall(ComplianceAugment(K, a->rows, a->compliance->kappa, AUGMENT_CLOSED, a->status, &A));
@@ -186,46 +186,51 @@ static PetscErrorCode TippingCheck(const Active *a, const char place[])
 }
 
 /* One load step: f, from which u, l and w follow */
-static PetscErrorCode Step(Active *a, const char place[], Vec f, PetscReal size, Vec u)
+static PetscErrorCode EquilibriumStep(Active *a, const char place[], Vec f, PetscReal size, Vec u)
 {
   ActiveOutcome outcome;
   PetscInt      n[2];
 
   PetscFunctionBeginUser;
-  PetscCall(ComplianceSolve(a->compliance, a->rows, 0, f, a->zero, a->zero, u));
-  PetscCall(RowsOf(a->compliance, a->rows, u, a->free));
+  PetscCall(ComplianceSolve(a->compliance, 0, f, a->zero, a->zero, u));
+  PetscCall(EquilibriumRows(a->compliance, a->rows, u, a->free));
   PetscCall(ActiveSolve(a, &outcome));
   if (outcome == ACTIVE_CONVERGED) PetscFunctionReturn(0);
-  PetscCall(CountClosed(a, n));
+  PetscCall(EquilibriumCountClosed(a, n));
   if (outcome == ACTIVE_SLOW && a->friction == 0 && a->rows->n_all != n[1]) PetscCall(SlidingOffCheck(a, f, size));
-  PetscCall(Complain(a, place, outcome));
+  PetscCall(EquilibriumComplain(a, place, outcome));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EquilibriumSolve(Statics s, PairRows *rows, const Compliance *c, Vec f, PetscReal size,
-                                PetscInt load_steps, ContactStatus status[], PetscReal l[], Vec u)
+PetscErrorCode EquilibriumSolve(Statics s, const EquilibriumProblem *e)
 {
-  Active a = {
-    .operators = s->operators, .p = s->p, .rows = rows, .compliance = c, .max_it = s->max_it, .status = status, .l = l};
-  char place[256];
-  Vec  part;
+  PairRows *rows = e->rows;
+  Active    a    = {.operators  = s->operators,
+                    .p          = s->p,
+                    .rows       = rows,
+                    .compliance = e->compliance,
+                    .max_it     = s->max_it,
+                    .status     = e->status,
+                    .l          = e->l};
+  char      place[256];
+  Vec       part;
 
   PetscFunctionBeginUser;
   PetscCall(StaticsPlace(s, place, sizeof(place)));
   PetscCall(PetscCalloc3(rows->n, &a.free, rows->n, &a.w, rows->n, &a.zero));
-  PetscCall(VecDuplicate(f, &part));
+  PetscCall(VecDuplicate(e->f, &part));
   for (PetscInt p = 0; p < rows->n_pairs; p++) rows->law[p].slip0[0] = rows->law[p].slip0[1] = 0;
-  for (PetscInt step = 1; step <= load_steps; step++) {
+  for (PetscInt step = 1; step <= e->load_steps; step++) {
     for (PetscInt p = 0; p < rows->n_pairs && step > 1; p++)
       for (PetscInt i = 1; i < rows->law[p].d; i++) rows->law[p].slip0[i - 1] = a.w[rows->first[p] + i];
-    PetscCall(VecCopy(f, part));
-    PetscCall(VecScale(part, (PetscReal)step / (PetscReal)load_steps));
-    PetscCall(Step(&a, place, part, size, u));
+    PetscCall(VecCopy(e->f, part));
+    PetscCall(VecScale(part, (PetscReal)step / (PetscReal)e->load_steps));
+    PetscCall(EquilibriumStep(&a, place, part, e->size, e->u));
   }
   s->n_it = a.n_it;
   PetscCall(TippingCheck(&a, place));
-  PetscCall(Refine(&a, f, u));
-  PetscCall(FrictionCheck(&a, f, size));
+  PetscCall(EquilibriumRefine(&a, e->f, e->u));
+  PetscCall(FrictionCheck(&a, e->f, e->size));
   PetscCall(VecDestroy(&part));
   PetscCall(PetscFree3(a.free, a.w, a.zero));
   PetscFunctionReturn(0);

@@ -54,7 +54,7 @@ static PetscErrorCode PressureCreate(Model model, Contact contact, Vec force, Pe
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FieldsWrite(Statics s, Results results)
+PetscErrorCode StaticsWriteFields(Statics s, Results results)
 {
   const PetscScalar *u, *f;
   PetscReal         *pressure;
@@ -69,7 +69,7 @@ PetscErrorCode FieldsWrite(Statics s, Results results)
   PetscCall(ResultsWantFields(results, &wanted));
   if (!wanted) PetscFunctionReturn(0);
   PetscCall(OperatorsGetModel(s->operators, &model, &contact));
-  PetscCall(DisplacementsCreate(s, model, &displacement));
+  PetscCall(StaticsCreateDisplacements(s, model, &displacement));
   PetscCall(VecDuplicate(displacement, &force));
   PetscCall(ContactNodalForces(contact, s->state, force));
   PetscCall(PressureCreate(model, contact, force, &pressure));

@@ -10,10 +10,10 @@
 /* Normal force (N) and approach (m) of one step */
 typedef struct {
   PetscReal force, approach;
-} Reading;
+} IdentifyReading;
 
 /* k, its residual and the range of the force */
-static void LineFit(PetscInt n, const Reading reading[], StaticsStiffness *k)
+static void IdentifyFit(PetscInt n, const IdentifyReading reading[], StaticsStiffness *k)
 {
   PetscReal mean[2] = {0, 0}, product = 0, square = 0, offset;
 
@@ -36,7 +36,7 @@ static void LineFit(PetscInt n, const Reading reading[], StaticsStiffness *k)
 }
 
 /* Exact contact without friction, every pair closed at first */
-static void LawsPressing(PairRows *rows, ContactStatus status[])
+static void IdentifySetLaws(PairRows *rows, ContactStatus status[])
 {
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     rows->law[p].k  = INFINITY;
@@ -47,55 +47,54 @@ static void LawsPressing(PairRows *rows, ContactStatus status[])
 }
 
 /* One step of the ramp: part of the load */
-static PetscErrorCode Press(Statics s, PairRows *rows, const Compliance *c, Vec f, PetscReal size, PetscReal part,
-                            PetscInt interface, Vec d, ContactStatus status[], PetscReal l[], Reading *reading)
+static PetscErrorCode IdentifyPress(Statics s, const EquilibriumProblem *whole, PetscInt interface, Vec d,
+                                    PetscReal part, IdentifyReading *reading)
 {
-  PetscScalar approach;
-  Vec         u, load;
+  const PairRows    *rows = whole->rows;
+  EquilibriumProblem step = *whole;
+  PetscScalar        approach;
 
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(f, &u));
-  PetscCall(VecDuplicate(f, &load));
-  PetscCall(VecCopy(f, load));
-  PetscCall(VecScale(load, part));
-  PetscCall(EquilibriumSolve(s, rows, c, load, part * size, 1, status, l, u));
-  PetscCall(VecDot(d, u, &approach));
+  PetscCall(VecDuplicate(whole->f, &step.u));
+  PetscCall(VecDuplicate(whole->f, &step.f));
+  PetscCall(VecCopy(whole->f, step.f));
+  PetscCall(VecScale(step.f, part));
+  step.size = part * whole->size;
+  PetscCall(EquilibriumSolve(s, &step));
+  PetscCall(VecDot(d, step.u, &approach));
   reading->approach = PetscRealPart(approach);
   reading->force    = 0;
   for (PetscInt p = 0; p < rows->n_pairs; p++)
-    if (rows->pair[p].interface == interface) reading->force += c->kappa * l[rows->first[p]];
+    if (rows->pair[p].interface == interface) reading->force += step.compliance->kappa * step.l[rows->first[p]];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &reading->force, 1, MPIU_REAL, MPI_SUM, s->comm));
-  PetscCall(VecDestroy(&load));
-  PetscCall(VecDestroy(&u));
+  PetscCall(VecDestroy(&step.f));
+  PetscCall(VecDestroy(&step.u));
   PetscFunctionReturn(0);
 }
 
 /* All steps, on rows and a factorisation of their own: without friction nothing holds along the surface */
-static PetscErrorCode Ramp(Statics s, PetscInt interface, Vec d, Reading reading[])
+static PetscErrorCode IdentifyRamp(Statics s, PetscInt interface, Vec d, IdentifyReading reading[])
 {
-  PairRows       rows       = {.n = 0};
-  Compliance     compliance = {.kappa = 0};
-  PetscReal     *l, size;
-  ContactStatus *status;
-  Vec            f;
+  PairRows           rows       = {.n = 0};
+  Compliance         compliance = {.kappa = 0};
+  EquilibriumProblem whole      = {.rows = &rows, .compliance = &compliance, .load_steps = 1};
 
   PetscFunctionBeginUser;
-  PetscCall(LoadCreate(s->operators, &f, &size));
-  PetscCheck(size > 0, s->comm, PETSC_ERR_USER_INPUT, "-contact_kn identify presses with the -loads: give some");
+  PetscCall(StaticsCreateLoad(s->operators, &whole.f, &whole.size));
+  PetscCheck(whole.size > 0, s->comm, PETSC_ERR_USER_INPUT, "-contact_kn identify presses with the -loads: give some");
   PetscCall(PairRowsCreate(s->operators, PETSC_TRUE, &rows));
-  PetscCall(PetscMalloc1(rows.n_pairs, &status));
-  PetscCall(PetscCalloc1(rows.n, &l));
+  PetscCall(PetscMalloc1(rows.n_pairs, &whole.status));
+  PetscCall(PetscCalloc1(rows.n, &whole.l));
   PetscCall(ComplianceCreate(s->operators, s->p, &rows, s->dense, &s->progress, &compliance));
-  LawsPressing(&rows, status);
-  PetscCall(HoldCheck(s->operators, &compliance.hold, "the loads of -contact_kn identify", f, size));
+  IdentifySetLaws(&rows, whole.status);
+  PetscCall(HoldCheck(s->operators, &compliance.hold, "the loads of -contact_kn identify", whole.f, whole.size));
   for (PetscInt i = 0; i < s->identify_steps; i++)
-    PetscCall(Press(s, &rows, &compliance, f, size, (PetscReal)(i + 1) / (PetscReal)s->identify_steps, interface, d,
-                    status, l, &reading[i]));
+    PetscCall(IdentifyPress(s, &whole, interface, d, (PetscReal)(i + 1) / (PetscReal)s->identify_steps, &reading[i]));
   PetscCall(ComplianceDestroy(&compliance));
   PetscCall(PairRowsDestroy(&rows));
-  PetscCall(PetscFree(l));
-  PetscCall(PetscFree(status));
-  PetscCall(VecDestroy(&f));
+  PetscCall(PetscFree(whole.l));
+  PetscCall(PetscFree(whole.status));
+  PetscCall(VecDestroy(&whole.f));
   PetscFunctionReturn(0);
 }
 
@@ -103,7 +102,7 @@ PetscErrorCode StaticsIdentify(Statics s, const PetscReal p[], PetscInt interfac
 {
   const ContactInterface *interfaces;
   PetscInt                n = 0, n_interfaces;
-  Reading                *reading;
+  IdentifyReading        *reading;
   Contact                 contact;
   Vec                     d;
 
@@ -113,10 +112,10 @@ PetscErrorCode StaticsIdentify(Statics s, const PetscReal p[], PetscInt interfac
   PetscCall(ContactGetInterfaces(contact, &n_interfaces, &interfaces));
   PetscCall(ContactCreateApproach(contact, interface, &d));
   PetscCall(PetscMalloc1(s->identify_steps, &reading));
-  PetscCall(Ramp(s, interface, d, reading));
+  PetscCall(IdentifyRamp(s, interface, d, reading));
   for (PetscInt i = 0; i < s->rows.n_pairs; i++) n += s->rows.pair[i].interface == interface;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT, MPI_SUM, s->comm));
-  LineFit(s->identify_steps, reading, stiffness);
+  IdentifyFit(s->identify_steps, reading, stiffness);
   stiffness->n_steps  = s->identify_steps;
   stiffness->per_pair = stiffness->total / (PetscReal)n;
   PetscCheck(stiffness->total > 0 && !PetscIsInfOrNanReal(stiffness->total), s->comm, PETSC_ERR_NOT_CONVERGED,
@@ -127,7 +126,7 @@ PetscErrorCode StaticsIdentify(Statics s, const PetscReal p[], PetscInt interfac
 }
 
 /* Gives the parameter <contact>_kn its value */
-static PetscErrorCode StiffnessSet(Statics s, const char contact[], PetscReal value, PetscReal p[])
+static PetscErrorCode IdentifySetParameter(Statics s, const char contact[], PetscReal value, PetscReal p[])
 {
   const OperatorsParameter *parameters;
   PetscInt                  n;
@@ -155,7 +154,7 @@ PetscErrorCode StaticsIdentifyAll(Statics s, PetscReal p[], PetscViewer viewer)
 
     if (!interfaces[i].identify) continue;
     PetscCall(StaticsIdentify(s, p, i, &k));
-    PetscCall(StiffnessSet(s, interfaces[i].name, k.per_pair, p));
+    PetscCall(IdentifySetParameter(s, interfaces[i].name, k.per_pair, p));
     PetscCall(
       PetscViewerASCIIPrintf(viewer,
                              "contact %s: k_n identified as %.6g N/m per pair, %.6g N/m in total, from %" PetscInt_FMT

@@ -24,7 +24,7 @@ static PetscErrorCode UnknownsTake(Model model, Vec local, Vec f)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LoadCreate(Operators operators, Vec *f, PetscReal *size)
+PetscErrorCode StaticsCreateLoad(Operators operators, Vec *f, PetscReal *size)
 {
   const Load *loads;
   PetscInt    n;

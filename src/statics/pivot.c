@@ -20,7 +20,7 @@
 
 /* What the laws of the pairs say, all ranks' one after the other */
 typedef struct {
-  PetscReal flexibility, g0, slide; /* 1 / k, m, mu */
+  PetscReal flexibility, g0, slide; /* 1 / k, m, part of mu */
 } PivotLaw;
 
 /* Rows of l, g, z0 and the right-hand side: row i is T[i * width ..] */
@@ -30,8 +30,8 @@ typedef struct {
 } PivotTableau;
 
 /* A / k and the rest of B, A, and rhs - A g0, by columns; rhs is overwritten */
-static void PivotSystem(const Compliance *c, PetscInt n, PetscReal friction, const PivotLaw law[], PetscReal A[],
-                        PetscReal B[], PetscReal rhs[])
+static void PivotSystem(const Compliance *c, PetscInt n, const PivotLaw law[], PetscReal A[], PetscReal B[],
+                        PetscReal rhs[])
 {
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt i = 0; i < n; i++) {
@@ -39,7 +39,7 @@ static void PivotSystem(const Compliance *c, PetscInt n, PetscReal friction, con
 
       A[j * n + i] = a;
       B[j * n + i] = a * law[j].flexibility + W;
-      if (c->V) B[j * n + i] -= friction * law[j].slide * c->V[j * n + i];
+      if (c->V) B[j * n + i] -= law[j].slide * c->V[j * n + i];
       rhs[i] -= a * law[j].g0;
     }
 }
@@ -141,23 +141,25 @@ static void PivotStatus(const PivotTableau *t, const PairRows *rows, ContactStat
   }
 }
 
-PetscErrorCode PivotSolve(const Compliance *c, const PairRows *rows, PetscReal friction, const PetscReal rhs[],
-                          ContactStatus status[], PetscBool *found)
+PetscErrorCode PivotSolve(const Compliance *c, PetscReal friction, const PetscReal rhs[], ContactStatus status[],
+                          PetscBool *found)
 {
-  PivotLaw    *law, *all;
-  PivotTableau tableau;
-  PetscBLASInt n, columns = 1, info, *pivot;
-  PetscReal   *A, *B, *q;
+  const PairRows *rows = c->rows;
+  PivotLaw       *law, *all;
+  PivotTableau    tableau;
+  PetscBLASInt    n, columns = 1, info, *pivot;
+  PetscReal      *A, *B, *q;
 
   PetscFunctionBeginUser;
   *found = PETSC_FALSE;
   PetscCall(PetscBLASIntCast(rows->n_all, &n));
   PetscCall(PetscMalloc1(rows->n, &law));
-  for (PetscInt p = 0; p < rows->n_pairs; p++) law[p] = (PivotLaw){1 / rows->law[p].k, rows->law[p].g0, rows->slide[p]};
+  for (PetscInt p = 0; p < rows->n_pairs; p++)
+    law[p] = (PivotLaw){1 / rows->law[p].k, rows->law[p].g0, friction * rows->slide[p]};
   PetscCall(GatherRecords(rows->comm, rows->n, sizeof(PivotLaw), law, NULL, &all));
   PetscCall(GatherRecords(rows->comm, rows->n, sizeof(PetscReal), rhs, NULL, &q));
   PetscCall(PetscMalloc3(n * n, &A, n * n, &B, n, &pivot));
-  PivotSystem(c, n, friction, all, A, B, q);
+  PivotSystem(c, n, all, A, B, q);
   PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&n, &n, B, &n, pivot, A, &n, &info));
   if (!info) PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &n, &columns, B, &n, pivot, q, &n, &info));
   if (!info) {

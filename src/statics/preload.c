@@ -29,7 +29,7 @@
 #include "preload.h"
 
 /* Adds local cell c with displacements u, three values per local vertex */
-static PetscErrorCode CellAdd(Model model, PetscInt c, const Elasticity *material, const PetscReal u[], Mat K)
+static PetscErrorCode GeometricAddCell(Model model, PetscInt c, const Elasticity *material, const PetscReal u[], Mat K)
 {
   const Element  *element;
   const PetscInt *unknowns;
@@ -53,7 +53,8 @@ static PetscErrorCode CellAdd(Model model, PetscInt c, const Elasticity *materia
 }
 
 /* Adds all local cells */
-static PetscErrorCode CellsAdd(Operators operators, const PetscReal p[], Model model, const PetscReal u[], Mat K)
+static PetscErrorCode GeometricAddCells(Operators operators, const PetscReal p[], Model model, const PetscReal u[],
+                                        Mat K)
 {
   const Part *parts;
   const Mesh *mesh;
@@ -69,7 +70,7 @@ static PetscErrorCode CellsAdd(Operators operators, const PetscReal p[], Model m
 
     PetscCall(OperatorsGetMaterial(operators, p, mesh->cell_part[c], &values));
     material = ElasticityFromEngineering(values.young, part->poisson, part->density);
-    PetscCall(CellAdd(model, c, &material, u, K));
+    PetscCall(GeometricAddCell(model, c, &material, u, K));
   }
   PetscFunctionReturn(0);
 }
@@ -89,7 +90,7 @@ PetscErrorCode GeometricStiffnessCreate(Operators operators, const PetscReal p[]
   PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(PetscMalloc1(3 * mesh->n_vertices, &displacement));
   PetscCall(ModelGetNodal(model, u, displacement));
-  PetscCall(CellsAdd(operators, p, model, displacement, *K));
+  PetscCall(GeometricAddCells(operators, p, model, displacement, *K));
   PetscCall(PetscFree(displacement));
   PetscCall(MatAssemblyBegin(*K, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*K, MAT_FINAL_ASSEMBLY));
@@ -100,10 +101,10 @@ PetscErrorCode GeometricStiffnessCreate(Operators operators, const PetscReal p[]
 typedef struct {
   Mat N, T, B, tilt_t, tilt_b;
   Vec normal, friction_t, friction_b;
-} Pairs;
+} FollowerPairs;
 
 /* Forces of the closed pairs */
-static PetscErrorCode ForcesCreate(PetscInt n, const ContactState state[], Pairs *p)
+static PetscErrorCode FollowerCreateForces(PetscInt n, const ContactState state[], FollowerPairs *p)
 {
   PetscScalar *force[3];
 
@@ -127,7 +128,7 @@ static PetscErrorCode ForcesCreate(PetscInt n, const ContactState state[], Pairs
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode PairsCreate(Contact contact, const ContactState state[], Pairs *p)
+static PetscErrorCode FollowerCreatePairs(Contact contact, const ContactState state[], FollowerPairs *p)
 {
   const ContactPair *pairs;
   PetscInt           n, n_all, *pair;
@@ -139,11 +140,11 @@ static PetscErrorCode PairsCreate(Contact contact, const ContactState state[], P
   PetscCall(ContactCreatePairOperators(contact, n, pair, &p->N, &p->T, &p->B));
   PetscCall(PetscFree(pair));
   PetscCall(ContactCreateTilt(contact, &p->tilt_t, &p->tilt_b));
-  PetscCall(ForcesCreate(n, state, p));
+  PetscCall(FollowerCreateForces(n, state, p));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode PairsDestroy(Pairs *p)
+static PetscErrorCode FollowerDestroyPairs(FollowerPairs *p)
 {
   PetscFunctionBeginUser;
   PetscCall(MatDestroy(&p->N));
@@ -158,7 +159,7 @@ static PetscErrorCode PairsDestroy(Pairs *p)
 }
 
 /* left' diag(force) right, added to *K, which is NULL before the first */
-static PetscErrorCode ProductAdd(Mat left, Vec force, Mat right, Mat *K)
+static PetscErrorCode FollowerAddProduct(Mat left, Vec force, Mat right, Mat *K)
 {
   Mat scaled, product;
 
@@ -181,20 +182,20 @@ PetscErrorCode FollowerStiffnessCreate(Operators operators, const ContactState s
   const ContactInterface *interfaces;
   PetscInt                n;
   Contact                 contact;
-  Pairs                   p;
+  FollowerPairs           p;
 
   PetscFunctionBeginUser;
   *K = NULL;
   PetscCall(OperatorsGetModel(operators, NULL, &contact));
   PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
   if (!n) PetscFunctionReturn(0);
-  PetscCall(PairsCreate(contact, state, &p));
-  PetscCall(ProductAdd(p.T, p.normal, p.tilt_t, K));
-  PetscCall(ProductAdd(p.B, p.normal, p.tilt_b, K));
-  PetscCall(ProductAdd(p.tilt_t, p.normal, p.T, K));
-  PetscCall(ProductAdd(p.tilt_b, p.normal, p.B, K));
-  PetscCall(ProductAdd(p.N, p.friction_t, p.tilt_t, K));
-  PetscCall(ProductAdd(p.N, p.friction_b, p.tilt_b, K));
-  PetscCall(PairsDestroy(&p));
+  PetscCall(FollowerCreatePairs(contact, state, &p));
+  PetscCall(FollowerAddProduct(p.T, p.normal, p.tilt_t, K));
+  PetscCall(FollowerAddProduct(p.B, p.normal, p.tilt_b, K));
+  PetscCall(FollowerAddProduct(p.tilt_t, p.normal, p.T, K));
+  PetscCall(FollowerAddProduct(p.tilt_b, p.normal, p.B, K));
+  PetscCall(FollowerAddProduct(p.N, p.friction_t, p.tilt_t, K));
+  PetscCall(FollowerAddProduct(p.N, p.friction_b, p.tilt_b, K));
+  PetscCall(FollowerDestroyPairs(&p));
   PetscFunctionReturn(0);
 }

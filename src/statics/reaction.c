@@ -8,7 +8,7 @@
 #include "staticsimpl.h"
 
 /* Internal forces minus loads and contact forces at all local vertices, three values each */
-static PetscErrorCode UnbalanceCreate(Statics s, Model model, Contact contact, Vec *local)
+static PetscErrorCode ReactionUnbalance(Statics s, Model model, Contact contact, Vec *local)
 {
   PetscInt    n;
   Vec         part;
@@ -30,7 +30,8 @@ static PetscErrorCode UnbalanceCreate(Statics s, Model model, Contact contact, V
 
 /* Sum of a local vector over the vertices of a set, each once, in some directions; what was summed is set to zero, so
    that a direction that two supports hold counts for the first */
-static PetscErrorCode SetSum(Model model, const char set[], const PetscBool direction[3], Vec local, PetscReal sum[3])
+static PetscErrorCode ReactionSum(Model model, const char set[], const PetscBool direction[3], Vec local,
+                                  PetscReal sum[3])
 {
   PetscScalar    *value;
   const PetscInt *v;
@@ -58,7 +59,7 @@ static PetscErrorCode SetSum(Model model, const char set[], const PetscBool dire
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Row(ResultsTable table, const char name[], const char kind[], const PetscReal force[3])
+static PetscErrorCode ReactionRow(ResultsTable table, const char name[], const char kind[], const PetscReal force[3])
 {
   PetscFunctionBeginUser;
   PetscCall(ResultsTableRow(table, "%s,%s,%.15g,%.15g,%.15g", name, kind, (double)force[0], (double)force[1],
@@ -67,7 +68,7 @@ static PetscErrorCode Row(ResultsTable table, const char name[], const char kind
 }
 
 /* Displacements of all local vertices, three values each, zero where held */
-PetscErrorCode DisplacementsCreate(Statics s, Model model, Vec *local)
+PetscErrorCode StaticsCreateDisplacements(Statics s, Model model, Vec *local)
 {
   PetscScalar *nodal;
 
@@ -81,7 +82,7 @@ PetscErrorCode DisplacementsCreate(Statics s, Model model, Vec *local)
 
 /* Springs pull with their present stiffness: the parameters are named after the list, one for all directions or one for
    each */
-static PetscErrorCode SpringStiffness(Statics s, const Grounded *g, PetscReal stiffness[3])
+static PetscErrorCode ReactionStiffness(Statics s, const Grounded *g, PetscReal stiffness[3])
 {
   static const char *const  ending[] = {"stiffness_x", "stiffness_y", "stiffness_z"};
   const OperatorsParameter *parameters;
@@ -102,7 +103,7 @@ static PetscErrorCode SpringStiffness(Statics s, const Grounded *g, PetscReal st
 }
 
 /* Rows of supports and springs */
-static PetscErrorCode HoldersWrite(Statics s, Model model, Contact contact, ResultsTable table)
+static PetscErrorCode ReactionsWriteHolders(Statics s, Model model, Contact contact, ResultsTable table)
 {
   const PetscBool all[3] = {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE};
   const Support  *supports;
@@ -114,24 +115,24 @@ static PetscErrorCode HoldersWrite(Statics s, Model model, Contact contact, Resu
   PetscFunctionBeginUser;
   PetscCall(ModelGetSupports(model, &n_supports, &supports));
   PetscCall(ModelGetSprings(model, &n_springs, &springs));
-  PetscCall(UnbalanceCreate(s, model, contact, &unbalance));
+  PetscCall(ReactionUnbalance(s, model, contact, &unbalance));
   for (PetscInt i = 0; i < n_supports; i++) {
-    PetscCall(SetSum(model, supports[i].set, supports[i].fix, unbalance, force));
-    PetscCall(Row(table, supports[i].name, "support", force));
+    PetscCall(ReactionSum(model, supports[i].set, supports[i].fix, unbalance, force));
+    PetscCall(ReactionRow(table, supports[i].name, "support", force));
   }
   for (PetscInt i = 0; i < n_springs; i++) {
-    PetscCall(DisplacementsCreate(s, model, &u));
-    PetscCall(SetSum(model, springs[i].set, all, u, force));
+    PetscCall(StaticsCreateDisplacements(s, model, &u));
+    PetscCall(ReactionSum(model, springs[i].set, all, u, force));
     PetscCall(VecDestroy(&u));
-    PetscCall(SpringStiffness(s, &springs[i], stiffness));
+    PetscCall(ReactionStiffness(s, &springs[i], stiffness));
     for (int d = 0; d < 3; d++) force[d] *= -stiffness[d];
-    PetscCall(Row(table, springs[i].name, "spring", force));
+    PetscCall(ReactionRow(table, springs[i].name, "spring", force));
   }
   PetscCall(VecDestroy(&unbalance));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ReactionsWrite(Statics s, Results results)
+PetscErrorCode StaticsWriteReactions(Statics s, Results results)
 {
   const ContactInterface *interfaces;
   const Load             *loads;
@@ -145,10 +146,10 @@ PetscErrorCode ReactionsWrite(Statics s, Results results)
   PetscCall(ModelGetLoads(model, &n_loads, &loads));
   PetscCall(ContactGetInterfaces(contact, &n_interfaces, &interfaces));
   PetscCall(ResultsTableOpen(results, "reactions", "name,kind,force_x_n,force_y_n,force_z_n", &table));
-  PetscCall(HoldersWrite(s, model, contact, table));
-  for (PetscInt i = 0; i < n_loads; i++) PetscCall(Row(table, loads[i].name, "load", loads[i].force));
+  PetscCall(ReactionsWriteHolders(s, model, contact, table));
+  for (PetscInt i = 0; i < n_loads; i++) PetscCall(ReactionRow(table, loads[i].name, "load", loads[i].force));
   for (PetscInt i = 0; i < n_interfaces; i++)
-    PetscCall(Row(table, interfaces[i].name, "contact on master", s->resultant[i].force));
+    PetscCall(ReactionRow(table, interfaces[i].name, "contact on master", s->resultant[i].force));
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
 }

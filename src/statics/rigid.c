@@ -6,22 +6,27 @@
 #include "staticsimpl.h"
 #include <petscblaslapack.h>
 
-#define MAX_BODIES 64
-#define DEPENDENT  1e-6  /* norm left of a candidate that is one of the others */
-#define FREE       1e-13 /* energy beside that of the same motion with all its neighbours held */
+#define RIGID_MAX_BODIES 64
+#define RIGID_DEPENDENT  1e-6  /* norm left of a candidate that is one of the others */
+#define RIGID_FREE       1e-13 /* energy beside that of the same motion with all its neighbours held */
+
+/* Where a body is */
+typedef struct {
+  PetscReal centre[3], length; /* m; half its extent */
+} RigidBody;
 
 /* Displacement d of point x in rigid motion k of a body: translations, then rotations about c over length */
-static PetscReal RigidMotion(int k, int d, const PetscReal x[3], const PetscReal c[3], PetscReal length)
+static PetscReal RigidMotion(int k, int d, const PetscReal x[3], const RigidBody *rigid)
 {
-  const int axis = k - 3, a = (axis + 1) % 3, b = (axis + 2) % 3;
+  const PetscReal *c    = rigid->centre;
+  const int        axis = k - 3, a = (axis + 1) % 3, b = (axis + 2) % 3;
 
   if (k < 3) return k == d ? 1 : 0;
-  return d == a ? -(x[b] - c[b]) / length : d == b ? (x[a] - c[a]) / length : 0;
+  return d == a ? -(x[b] - c[b]) / rigid->length : d == b ? (x[a] - c[a]) / rigid->length : 0;
 }
 
 /* Centre and half the extent of each body, from its boxes on all ranks */
-static PetscErrorCode BodiesMeasure(Model model, PetscInt n_bodies, const PetscInt body[], PetscReal centre[][3],
-                                    PetscReal length[])
+static PetscErrorCode RigidMeasure(Model model, PetscInt n_bodies, const PetscInt body[], RigidBody rigid[])
 {
   const Mesh *mesh;
   PetscReal  *box;
@@ -41,10 +46,10 @@ static PetscErrorCode BodiesMeasure(Model model, PetscInt n_bodies, const PetscI
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, box, (PetscMPIInt)(6 * n_bodies), MPIU_REAL, MPI_MAX, comm));
   for (PetscInt i = 0; i < n_bodies; i++) {
-    length[i] = 0;
+    rigid[i].length = 0;
     for (int d = 0; d < 3; d++) {
-      centre[i][d] = (box[6 * i + d] - box[6 * i + 3 + d]) / 2;
-      length[i]    = PetscMax(length[i], (box[6 * i + d] + box[6 * i + 3 + d]) / 2);
+      rigid[i].centre[d] = (box[6 * i + d] - box[6 * i + 3 + d]) / 2;
+      rigid[i].length    = PetscMax(rigid[i].length, (box[6 * i + d] + box[6 * i + 3 + d]) / 2);
     }
   }
   PetscCall(PetscFree(box));
@@ -52,8 +57,8 @@ static PetscErrorCode BodiesMeasure(Model model, PetscInt n_bodies, const PetscI
 }
 
 /* Rigid motion k of a body at its free unknowns */
-static PetscErrorCode MotionSet(Model model, const PetscInt body[], PetscInt b, int k, const PetscReal centre[3],
-                                PetscReal length, Vec r)
+static PetscErrorCode RigidSetMotion(Model model, const PetscInt body[], PetscInt b, const RigidBody *rigid, int k,
+                                     Vec r)
 {
   const Mesh  *mesh;
   PetscInt     begin, end;
@@ -66,14 +71,14 @@ static PetscErrorCode MotionSet(Model model, const PetscInt body[], PetscInt b, 
   PetscCall(VecGetArray(r, &value));
   for (PetscInt i = 0; i < 3 * mesh->n_vertices; i++)
     if (body[i / 3] == b && mesh->unknown[i] >= begin && mesh->unknown[i] < end)
-      value[mesh->unknown[i] - begin] = RigidMotion(k, (int)(i % 3), &mesh->x[i - i % 3], centre, length);
+      value[mesh->unknown[i] - begin] = RigidMotion(k, (int)(i % 3), &mesh->x[i - i % 3], rigid);
   PetscCall(VecRestoreArray(r, &value));
   PetscFunctionReturn(0);
 }
 
 /* Makes r orthonormal to the n vectors before it in the inner product of the weights (D may be a diagonal, as Vec, or a
    Mat); false when nothing is left */
-static PetscErrorCode Orthonormalise(Mat M, Vec weights, PetscInt n, const Vec before[], Vec r, PetscBool *good)
+static PetscErrorCode RigidOrthonormalise(Mat M, Vec weights, PetscInt n, const Vec before[], Vec r, PetscBool *good)
 {
   PetscReal   norm[2];
   PetscScalar dot;
@@ -91,45 +96,45 @@ static PetscErrorCode Orthonormalise(Mat M, Vec weights, PetscInt n, const Vec b
     PetscCall(VecDot(image, r, &dot));
     norm[pass ? 1 : 0] = PetscSqrtReal(PetscMax(0, PetscRealPart(dot)));
   }
-  *good = norm[1] > DEPENDENT * norm[0] ? PETSC_TRUE : PETSC_FALSE;
+  *good = norm[1] > RIGID_DEPENDENT * norm[0] ? PETSC_TRUE : PETSC_FALSE;
   if (*good) PetscCall(VecScale(r, 1 / norm[1]));
   PetscCall(VecDestroy(&image));
   PetscFunctionReturn(0);
 }
 
 /* Rigid motions of all bodies, orthonormal in diag(A); motion[6 n_bodies] */
-static PetscErrorCode CandidatesCreate(Model model, Mat A, PetscInt *n, Vec **motion)
+static PetscErrorCode RigidCandidates(Model model, Mat A, PetscInt *n, Vec **motion)
 {
-  PetscReal(*centre)[3], *length;
-  PetscInt  n_bodies, *body;
-  PetscBool good;
-  Vec       diagonal;
+  RigidBody *rigid;
+  PetscInt   n_bodies, *body;
+  PetscBool  good;
+  Vec        diagonal;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetBodies(model, &n_bodies, &body));
-  PetscCheck(n_bodies <= MAX_BODIES, PetscObjectComm((PetscObject)A), PETSC_ERR_SUP,
+  PetscCheck(n_bodies <= RIGID_MAX_BODIES, PetscObjectComm((PetscObject)A), PETSC_ERR_SUP,
              "the mesh falls into %" PetscInt_FMT " pieces, at most %d can be held in equilibrium", n_bodies,
-             MAX_BODIES);
-  PetscCall(PetscMalloc2(n_bodies, &centre, n_bodies, &length));
-  PetscCall(BodiesMeasure(model, n_bodies, body, centre, length));
+             RIGID_MAX_BODIES);
+  PetscCall(PetscMalloc1(n_bodies, &rigid));
+  PetscCall(RigidMeasure(model, n_bodies, body, rigid));
   PetscCall(MatCreateVecs(A, &diagonal, NULL));
   PetscCall(MatGetDiagonal(A, diagonal));
   PetscCall(VecDuplicateVecs(diagonal, 6 * n_bodies, motion));
   *n = 0;
   for (PetscInt i = 0; i < 6 * n_bodies; i++) {
-    PetscCall(MotionSet(model, body, i / 6, (int)(i % 6), centre[i / 6], length[i / 6], (*motion)[*n]));
-    PetscCall(Orthonormalise(NULL, diagonal, *n, *motion, (*motion)[*n], &good));
+    PetscCall(RigidSetMotion(model, body, i / 6, &rigid[i / 6], (int)(i % 6), (*motion)[*n]));
+    PetscCall(RigidOrthonormalise(NULL, diagonal, *n, *motion, (*motion)[*n], &good));
     if (good) (*n)++;
   }
   for (PetscInt i = *n; i < 6 * n_bodies; i++) PetscCall(VecDestroy(&(*motion)[i]));
   PetscCall(VecDestroy(&diagonal));
-  PetscCall(PetscFree2(centre, length));
+  PetscCall(PetscFree(rigid));
   PetscCall(PetscFree(body));
   PetscFunctionReturn(0);
 }
 
 /* Eigenvalues ascending and vectors (in place) of the energies r_i'A r_j, [n * n] */
-static PetscErrorCode EnergiesSolve(Mat A, PetscInt n, const Vec motion[], PetscReal energy[], PetscReal vectors[])
+static PetscErrorCode RigidEnergies(Mat A, PetscInt n, const Vec motion[], PetscReal energy[], PetscReal vectors[])
 {
   PetscBLASInt N, size, info;
   PetscReal   *work;
@@ -163,10 +168,10 @@ PetscErrorCode FreeMotionsCreate(Operators operators, const PetscReal p[], Mat A
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(operators, &model, NULL));
   PetscCall(OperatorsGetBodies(operators, p, NULL, &M, NULL));
-  PetscCall(CandidatesCreate(model, A, &n, &motion));
+  PetscCall(RigidCandidates(model, A, &n, &motion));
   PetscCall(PetscMalloc2(n, &energy, n * n, &vectors));
-  PetscCall(EnergiesSolve(A, n, motion, energy, vectors));
-  while (hold->n < n && energy[hold->n] < FREE) hold->n++;
+  PetscCall(RigidEnergies(A, n, motion, energy, vectors));
+  while (hold->n < n && energy[hold->n] < RIGID_FREE) hold->n++;
   if (hold->n) {
     PetscCall(VecDuplicateVecs(motion[0], hold->n, &hold->r));
     PetscCall(VecDuplicateVecs(motion[0], hold->n, &hold->mr));
@@ -174,7 +179,7 @@ PetscErrorCode FreeMotionsCreate(Operators operators, const PetscReal p[], Mat A
   for (PetscInt i = 0; i < hold->n; i++) {
     PetscCall(VecSet(hold->r[i], 0));
     PetscCall(VecMAXPY(hold->r[i], n, &vectors[i * n], motion));
-    PetscCall(Orthonormalise(M, NULL, i, hold->r, hold->r[i], &good));
+    PetscCall(RigidOrthonormalise(M, NULL, i, hold->r, hold->r[i], &good));
     PetscCall(MatMult(M, hold->r[i], hold->mr[i]));
   }
   for (PetscInt i = 0; i < n; i++) PetscCall(VecDestroy(&motion[i]));

@@ -12,14 +12,14 @@
 #include "base/gather.h"
 #include <petscblaslapack.h>
 
-#define SINGULAR  1e-13 /* smallest pivot beside the largest */
-#define ENOUGH    1e-10 /* of GMRES that gets no farther; refinement of the whole does the rest */
-#define RESTART   300
-#define MAX_STEPS 300
+#define SMALL_PIVOT   1e-13 /* smallest pivot beside the largest */
+#define GMRES_ENOUGH  1e-10 /* of GMRES that gets no farther; refinement of the whole does the rest */
+#define GMRES_RESTART 300
+#define GMRES_STEPS   300
 
 /* Adds column z_j, and with j < 0 the constants p0, q0 (subtracted): y += Q_j + (W - V D) P_j - W Q_j */
-static void ColumnAdd(const Compliance *c, PetscReal friction, PetscInt n, const LawRow law[], PetscInt j,
-                      PetscReal y[])
+static void SmallAddColumn(const Compliance *c, PetscReal friction, PetscInt n, const LawRow law[], PetscInt j,
+                           PetscReal y[])
 {
   const PetscInt from = j < 0 ? 0 : law[j].first, to = j < 0 ? n : from + law[j].d;
 
@@ -50,26 +50,26 @@ static PetscErrorCode SmallFactor(PetscInt n, PetscReal A[], PetscReal z[], Smal
     largest = PetscMax(largest, PetscAbsReal(A[i * n + i]));
     if ((A[i * n + i] < 0) != (pivot[i] != i + 1)) *reversed = (PetscBool) !*reversed;
   }
-  *outcome = least > SINGULAR * largest ? SMALL_GOOD : SMALL_SINGULAR;
+  *outcome = least > SMALL_PIVOT * largest ? SMALL_GOOD : SMALL_SINGULAR;
   if (*outcome == SMALL_GOOD) PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &N, &one, A, &N, pivot, z, &N, &info));
   PetscCall(PetscFree(pivot));
   PetscFunctionReturn(0);
 }
 
 /* z of this rank's rows [rows] */
-static PetscErrorCode SmallSolveDense(const Compliance *c, const PairRows *rows, PetscReal friction, const LawRow law[],
-                                      const PetscReal rhs[], PetscReal z[], SmallOutcome *outcome, PetscBool *reversed)
+static PetscErrorCode SmallSolveDense(const SmallSystem *s, PetscReal z[], SmallOutcome *outcome, PetscBool *reversed)
 {
-  const PetscInt n = rows->n_all;
-  LawRow        *all_law;
-  PetscReal     *A, *all;
+  const PairRows *rows = s->compliance->rows;
+  const PetscInt  n    = rows->n_all;
+  LawRow         *all_law;
+  PetscReal      *A, *all;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n * n, &A));
-  PetscCall(GatherRecords(rows->comm, rows->n, sizeof(LawRow), law, NULL, &all_law));
-  PetscCall(GatherRecords(rows->comm, rows->n, sizeof(PetscReal), rhs, NULL, &all));
-  ColumnAdd(c, friction, n, all_law, -1, all);
-  for (PetscInt j = 0; j < n; j++) ColumnAdd(c, friction, n, all_law, j, &A[j * n]);
+  PetscCall(GatherRecords(rows->comm, rows->n, sizeof(LawRow), s->law, NULL, &all_law));
+  PetscCall(GatherRecords(rows->comm, rows->n, sizeof(PetscReal), s->rhs, NULL, &all));
+  SmallAddColumn(s->compliance, s->friction, n, all_law, -1, all);
+  for (PetscInt j = 0; j < n; j++) SmallAddColumn(s->compliance, s->friction, n, all_law, j, &A[j * n]);
   PetscCall(SmallFactor(n, A, all, outcome, reversed));
   PetscCall(PetscArraycpy(z, &all[rows->begin], rows->n));
   PetscCall(PetscFree(all_law));
@@ -78,17 +78,15 @@ static PetscErrorCode SmallSolveDense(const Compliance *c, const PairRows *rows,
   PetscFunctionReturn(0);
 }
 
-/* What the matrix-free system needs */
+/* The matrix-free system, and work [rows] */
 typedef struct {
-  const Compliance *compliance;
-  const PairRows   *rows;
-  const LawRow     *law;
-  PetscReal         friction, rtol, *l, *w;
-} Shell;
+  const SmallSystem *system;
+  PetscReal         *l, *w;
+} SmallShell;
 
 /* l = P z, w = Q z; with p0, q0 when they are wanted */
-static void LawApply(const PairRows *rows, const LawRow law[], PetscBool constants, const PetscReal z[], PetscReal l[],
-                     PetscReal w[])
+static void SmallApplyLaws(const PairRows *rows, const LawRow law[], PetscBool constants, const PetscReal z[],
+                           PetscReal l[], PetscReal w[])
 {
   for (PetscInt i = 0; i < rows->n; i++) {
     const LawRow *a = &law[i];
@@ -103,44 +101,45 @@ static void LawApply(const PairRows *rows, const LawRow law[], PetscBool constan
 }
 
 /* y = [Q + (W - V D) P - W Q] z */
-static PetscErrorCode ShellMult(Mat A, Vec z, Vec y)
+static PetscErrorCode SmallShellMult(Mat A, Vec z, Vec y)
 {
   const PetscScalar *from;
   PetscScalar       *to;
-  Shell             *s;
+  SmallShell        *s;
 
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &s));
   PetscCall(VecGetArrayRead(z, &from));
-  LawApply(s->rows, s->law, PETSC_FALSE, from, s->l, s->w);
+  SmallApplyLaws(s->system->compliance->rows, s->system->law, PETSC_FALSE, from, s->l, s->w);
   PetscCall(VecRestoreArrayRead(z, &from));
   PetscCall(VecGetArray(y, &to));
-  PetscCall(ComplianceApply(s->compliance, s->rows, s->friction, s->l, s->w, to));
+  PetscCall(ComplianceApply(s->system->compliance, s->system->friction, s->l, s->w, to));
   PetscCall(VecRestoreArray(y, &to));
   PetscFunctionReturn(0);
 }
 
 /* GMRES on the system; one that does not converge is called singular */
-static PetscErrorCode ShellSolve(Shell *s, Vec b, Vec z, SmallOutcome *outcome)
+static PetscErrorCode SmallRunGMRES(SmallShell *s, Vec b, Vec z, SmallOutcome *outcome)
 {
   KSPConvergedReason reason;
   PetscReal          left, whole;
   PetscInt           n;
+  MPI_Comm           comm = s->system->compliance->rows->comm;
   KSP                ksp;
   Mat                A;
   PC                 pc;
 
   PetscFunctionBeginUser;
   PetscCall(VecGetLocalSize(b, &n));
-  PetscCall(MatCreateShell(s->rows->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, s, &A));
-  PetscCall(MatShellSetOperation(A, MATOP_MULT, (void (*)(void))ShellMult));
-  PetscCall(KSPCreate(s->rows->comm, &ksp));
+  PetscCall(MatCreateShell(comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, s, &A));
+  PetscCall(MatShellSetOperation(A, MATOP_MULT, (void (*)(void))SmallShellMult));
+  PetscCall(KSPCreate(comm, &ksp));
   PetscCall(KSPSetOptionsPrefix(ksp, "st_pairs_"));
   PetscCall(KSPSetOperators(ksp, A, A));
   PetscCall(KSPSetType(ksp, KSPGMRES));
-  PetscCall(KSPGMRESSetRestart(ksp, RESTART));
+  PetscCall(KSPGMRESSetRestart(ksp, GMRES_RESTART));
   PetscCall(KSPGMRESSetCGSRefinementType(ksp, KSP_GMRES_CGS_REFINE_IFNEEDED));
-  PetscCall(KSPSetTolerances(ksp, s->rtol, PETSC_DEFAULT, PETSC_DEFAULT, MAX_STEPS));
+  PetscCall(KSPSetTolerances(ksp, s->system->rtol, PETSC_DEFAULT, PETSC_DEFAULT, GMRES_STEPS));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCNONE));
   PetscCall(KSPSetFromOptions(ksp));
@@ -148,36 +147,37 @@ static PetscErrorCode ShellSolve(Shell *s, Vec b, Vec z, SmallOutcome *outcome)
   PetscCall(KSPGetConvergedReason(ksp, &reason));
   PetscCall(KSPGetResidualNorm(ksp, &left));
   PetscCall(VecNorm(b, NORM_2, &whole));
-  *outcome = reason > 0 || left <= ENOUGH * whole ? SMALL_GOOD : SMALL_SINGULAR;
+  *outcome = reason > 0 || left <= GMRES_ENOUGH * whole ? SMALL_GOOD : SMALL_SINGULAR;
   PetscCall(KSPDestroy(&ksp));
   PetscCall(MatDestroy(&A));
   PetscFunctionReturn(0);
 }
 
 /* z of this rank's rows [rows] */
-static PetscErrorCode KrylovSolve(const Compliance *c, const PairRows *rows, PetscReal friction, const LawRow law[],
-                                  const PetscReal rhs[], PetscReal rtol, PetscReal z[], SmallOutcome *outcome)
+static PetscErrorCode SmallSolveGMRES(const SmallSystem *system, PetscReal z[], SmallOutcome *outcome)
 {
-  Shell        s = {c, rows, law, friction, rtol, NULL, NULL};
-  PetscScalar *value;
-  PetscReal   *y;
-  Vec          b, x;
+  const Compliance *c = system->compliance;
+  const PetscInt    n = c->rows->n;
+  SmallShell        s = {.system = system};
+  PetscScalar      *value;
+  PetscReal        *y;
+  Vec               b, x;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(rows->n, &s.l, rows->n, &s.w, rows->n, &y));
+  PetscCall(PetscMalloc3(n, &s.l, n, &s.w, n, &y));
   PetscCall(VecDuplicate(c->row, &b));
   PetscCall(VecDuplicate(c->row, &x));
-  for (PetscInt i = 0; i < rows->n; i++) {
-    s.l[i] = law[i].p0;
-    s.w[i] = law[i].q0;
+  for (PetscInt i = 0; i < n; i++) {
+    s.l[i] = system->law[i].p0;
+    s.w[i] = system->law[i].q0;
   }
-  PetscCall(ComplianceApply(c, rows, friction, s.l, s.w, y));
+  PetscCall(ComplianceApply(c, system->friction, s.l, s.w, y));
   PetscCall(VecGetArray(b, &value));
-  for (PetscInt i = 0; i < rows->n; i++) value[i] = rhs[i] - y[i];
+  for (PetscInt i = 0; i < n; i++) value[i] = system->rhs[i] - y[i];
   PetscCall(VecRestoreArray(b, &value));
-  PetscCall(ShellSolve(&s, b, x, outcome));
+  PetscCall(SmallRunGMRES(&s, b, x, outcome));
   PetscCall(VecGetArray(x, &value));
-  PetscCall(PetscArraycpy(z, value, rows->n));
+  PetscCall(PetscArraycpy(z, value, n));
   PetscCall(VecRestoreArray(x, &value));
   PetscCall(VecDestroy(&b));
   PetscCall(VecDestroy(&x));
@@ -185,20 +185,20 @@ static PetscErrorCode KrylovSolve(const Compliance *c, const PairRows *rows, Pet
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SmallSolve(const Compliance *c, const PairRows *rows, PetscReal friction, const LawRow law[],
-                          const PetscReal rhs[], PetscReal rtol, PetscReal l[], PetscReal w[], SmallOutcome *outcome,
+PetscErrorCode SmallSolve(const SmallSystem *system, PetscReal l[], PetscReal w[], SmallOutcome *outcome,
                           PetscBool *reversed)
 {
-  PetscReal *z;
+  const PairRows *rows = system->compliance->rows;
+  PetscReal      *z;
 
   PetscFunctionBeginUser;
   *reversed = PETSC_FALSE;
   PetscCall(PetscMalloc1(rows->n, &z));
-  if (c->W)
-    PetscCall(SmallSolveDense(c, rows, friction, law, rhs, z, outcome, reversed));
+  if (system->compliance->W)
+    PetscCall(SmallSolveDense(system, z, outcome, reversed));
   else
-    PetscCall(KrylovSolve(c, rows, friction, law, rhs, rtol, z, outcome));
-  LawApply(rows, law, PETSC_TRUE, z, l, w);
+    PetscCall(SmallSolveGMRES(system, z, outcome));
+  SmallApplyLaws(rows, system->law, PETSC_TRUE, z, l, w);
   PetscCall(PetscFree(z));
   PetscFunctionReturn(0);
 }

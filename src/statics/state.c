@@ -4,11 +4,11 @@
 */
 #include "staticsimpl.h"
 
-#define LOOSE 1e-6 /* of the loads, unbalanced */
+#define STATICS_LOOSE 1e-6 /* of the loads, unbalanced */
 
 /* States of all pairs from w = G u (m) and l (m) */
-static void StatesSet(const PairRows *rows, PetscReal kappa, const ContactStatus status[], const PetscReal l[],
-                      const PetscScalar w[], ContactState state[])
+static void StaticsSetPairs(const PairRows *rows, PetscReal kappa, const ContactStatus status[], const PetscReal l[],
+                            const PetscScalar w[], ContactState state[])
 {
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     const PetscInt first = rows->first[p];
@@ -25,7 +25,7 @@ static void StatesSet(const PairRows *rows, PetscReal kappa, const ContactStatus
 }
 
 /* Adds one pair to the sums of its interface */
-static void ResultantAdd(const ContactPair *pair, const ContactState *state, StaticsResultant *r)
+static void StaticsAddResultant(const ContactPair *pair, const ContactState *state, StaticsResultant *r)
 {
   r->n[state->status]++;
   r->normal += state->lambda_n;
@@ -36,12 +36,12 @@ static void ResultantAdd(const ContactPair *pair, const ContactState *state, Sta
   }
 }
 
-static PetscErrorCode ResultantsSet(Statics s)
+static PetscErrorCode StaticsSetResultants(Statics s)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(s->resultant, s->rows.n_interfaces));
   for (PetscInt p = 0; p < s->rows.n_pairs; p++)
-    ResultantAdd(&s->rows.pair[p], &s->state[p], &s->resultant[s->rows.pair[p].interface]);
+    StaticsAddResultant(&s->rows.pair[p], &s->state[p], &s->resultant[s->rows.pair[p].interface]);
   for (PetscInt i = 0; i < s->rows.n_interfaces; i++) {
     StaticsResultant *r = &s->resultant[i];
 
@@ -55,7 +55,7 @@ static PetscErrorCode ResultantsSet(Statics s)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StateForces(const PairRows *rows, const ContactState state[], Vec b)
+PetscErrorCode PairRowsAddForces(const PairRows *rows, const ContactState state[], Vec b)
 {
   PetscScalar *value;
   Vec          row;
@@ -83,7 +83,7 @@ PetscErrorCode StateForces(const PairRows *rows, const ContactState state[], Vec
 
 /* |f + contact forces - K u| over the larger of |f| and |contact forces|; much of it is left where next to nothing
    resists the loads, and displacements are so large that forces drown in their rounding */
-static PetscErrorCode EquilibriumMeasure(Statics s, Vec f)
+static PetscErrorCode StaticsMeasureEquilibrium(Statics s, Vec f)
 {
   PetscReal norm, load, contact;
   Vec       r;
@@ -91,17 +91,17 @@ static PetscErrorCode EquilibriumMeasure(Statics s, Vec f)
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(f, &r));
   PetscCall(VecSet(r, 0));
-  PetscCall(StateForces(&s->rows, s->state, r));
+  PetscCall(PairRowsAddForces(&s->rows, s->state, r));
   PetscCall(VecNorm(r, NORM_2, &contact));
   PetscCall(OperatorsApplyBodies(s->operators, s->p, s->u, r));
   PetscCall(VecAYPX(r, -1, f));
-  PetscCall(StateForces(&s->rows, s->state, r));
+  PetscCall(PairRowsAddForces(&s->rows, s->state, r));
   PetscCall(VecNorm(r, NORM_2, &norm));
   PetscCall(VecNorm(f, NORM_2, &load));
   s->equilibrium = norm > 0 ? norm / PetscMax(load, contact) : 0;
   PetscCall(VecDestroy(&r));
   PetscCheck(
-    s->equilibrium <= LOOSE, s->comm, PETSC_ERR_NOT_CONVERGED,
+    s->equilibrium <= STATICS_LOOSE, s->comm, PETSC_ERR_NOT_CONVERGED,
     "no equilibrium: next to nothing resists the -loads, and %.2g of them is left unbalanced; give other -loads, "
     "-supports or -springs",
     (double)s->equilibrium);
@@ -109,7 +109,7 @@ static PetscErrorCode EquilibriumMeasure(Statics s, Vec f)
 }
 
 /* Largest displacement of a slave of this rank, m */
-static PetscErrorCode DisplacementFind(Statics s, PetscReal *displacement)
+static PetscErrorCode StaticsFindDisplacement(Statics s, PetscReal *displacement)
 {
   const PetscScalar *u;
   PetscInt           begin, end;
@@ -128,7 +128,7 @@ static PetscErrorCode DisplacementFind(Statics s, PetscReal *displacement)
 }
 
 /* Residuals of the contact laws */
-static PetscErrorCode KKTMeasure(Statics s)
+static PetscErrorCode StaticsMeasureKKT(Statics s)
 {
   PetscReal *mu, *kn, displacement;
   Contact    contact;
@@ -138,23 +138,23 @@ static PetscErrorCode KKTMeasure(Statics s)
   PetscCall(PetscMalloc2(s->rows.n_interfaces, &mu, s->rows.n_interfaces, &kn));
   for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
     PetscCall(OperatorsGetInterface(s->operators, s->p, i, &mu[i], &kn[i]));
-  PetscCall(DisplacementFind(s, &displacement));
+  PetscCall(StaticsFindDisplacement(s, &displacement));
   PetscCall(ContactComputeKKT(contact, s->state, mu, kn, displacement, &s->kkt));
   PetscCall(PetscFree2(mu, kn));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StateSet(Statics s, const Compliance *c, Vec f, const PetscReal l[])
+PetscErrorCode StaticsSetState(Statics s, const Compliance *c, Vec f, const PetscReal l[])
 {
   const PetscScalar *w;
 
   PetscFunctionBeginUser;
   PetscCall(MatMult(s->rows.G, s->u, c->row));
   PetscCall(VecGetArrayRead(c->row, &w));
-  StatesSet(&s->rows, c->kappa, s->status, l, w, s->state);
+  StaticsSetPairs(&s->rows, c->kappa, s->status, l, w, s->state);
   PetscCall(VecRestoreArrayRead(c->row, &w));
-  PetscCall(ResultantsSet(s));
-  PetscCall(EquilibriumMeasure(s, f));
-  PetscCall(KKTMeasure(s));
+  PetscCall(StaticsSetResultants(s));
+  PetscCall(StaticsMeasureEquilibrium(s, f));
+  PetscCall(StaticsMeasureKKT(s));
   PetscFunctionReturn(0);
 }

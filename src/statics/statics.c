@@ -4,7 +4,7 @@
 #include "staticsimpl.h"
 #include "base/events.h"
 
-#define MOST_DENSE 20000
+#define STATICS_MOST_DENSE 20000
 
 PetscErrorCode StaticsCreate(MPI_Comm comm, Statics *statics)
 {
@@ -26,7 +26,7 @@ PetscErrorCode StaticsSetOperators(Statics statics, Operators operators)
 }
 
 /* An option that is a count of at least `least` */
-static PetscErrorCode CountCheck(Statics s, const char option[], PetscInt value, PetscInt least)
+static PetscErrorCode StaticsCheckCount(Statics s, const char option[], PetscInt value, PetscInt least)
 {
   PetscFunctionBeginUser;
   PetscCheck(value >= least, s->comm, PETSC_ERR_USER_INPUT, "%s %" PetscInt_FMT " must be at least %" PetscInt_FMT,
@@ -55,13 +55,13 @@ PetscErrorCode StaticsSetFromOptions(Statics s)
   PetscCall(PetscOptionsBool("-static_view_kkt", "print the residuals of the contact laws", "statics.h", s->view_kkt,
                              &s->view_kkt, NULL));
   PetscOptionsEnd();
-  PetscCall(CountCheck(s, "-static_max_it", s->max_it, 1));
-  PetscCall(CountCheck(s, "-static_load_steps", s->load_steps, 1));
-  PetscCall(CountCheck(s, "-static_dense", s->dense, 0));
-  PetscCheck(s->dense <= MOST_DENSE, s->comm, PETSC_ERR_USER_INPUT,
+  PetscCall(StaticsCheckCount(s, "-static_max_it", s->max_it, 1));
+  PetscCall(StaticsCheckCount(s, "-static_load_steps", s->load_steps, 1));
+  PetscCall(StaticsCheckCount(s, "-static_dense", s->dense, 0));
+  PetscCheck(s->dense <= STATICS_MOST_DENSE, s->comm, PETSC_ERR_USER_INPUT,
              "-static_dense %" PetscInt_FMT " must be at most %d: more rows do not fit a dense matrix", s->dense,
-             MOST_DENSE);
-  PetscCall(CountCheck(s, "-static_identify_steps", s->identify_steps, 2));
+             STATICS_MOST_DENSE);
+  PetscCall(StaticsCheckCount(s, "-static_identify_steps", s->identify_steps, 2));
   PetscCall(ProgressSetFromOptions(s->comm, &s->progress));
   PetscFunctionReturn(0);
 }
@@ -134,7 +134,7 @@ PetscErrorCode StaticsPlace(Statics s, char text[], size_t size)
 }
 
 /* Nothing moves without loads on what can move, unless bodies interfere */
-static PetscErrorCode LoadCheck(Statics s, Vec f)
+static PetscErrorCode StaticsCheckLoad(Statics s, Vec f)
 {
   PetscReal least = 0, size;
 
@@ -186,14 +186,15 @@ PetscErrorCode StaticsSolve(Statics s, const PetscReal p[])
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_STATICS));
   PetscCall(StaticsSetUp(s, p));
-  PetscCall(LoadCreate(s->operators, &f, &size));
-  PetscCall(LoadCheck(s, f));
+  PetscCall(StaticsCreateLoad(s->operators, &f, &size));
+  PetscCall(StaticsCheckLoad(s, f));
   PetscCall(PetscCalloc1(s->rows.n, &l));
   PetscCall(StaticsFactor(s));
   PetscCall(HoldCheck(s->operators, &s->compliance.hold, "the loads", f, size));
-  PetscCall(EquilibriumSolve(s, &s->rows, &s->compliance, f, size, s->load_steps, s->status, l, s->u));
+  PetscCall(
+    EquilibriumSolve(s, &(EquilibriumProblem){&s->rows, &s->compliance, f, size, s->load_steps, s->status, l, s->u}));
   s->n_free = s->compliance.hold.n;
-  PetscCall(StateSet(s, &s->compliance, f, l));
+  PetscCall(StaticsSetState(s, &s->compliance, f, l));
   s->solved = PETSC_TRUE;
   PetscCall(PetscFree(l));
   PetscCall(VecDestroy(&f));

@@ -29,12 +29,13 @@ typedef struct {
 /* The factorisation of K_a = K + kappa G'G + pins, and W = kappa G K_a^-1 G', V = kappa G K_a^-1 S', by columns, on
    every rank; NULL where they would be too large */
 typedef struct {
-  PetscReal   kappa; /* N/m */
-  Hold        hold;
-  ShiftInvert inverse;
-  PetscReal  *W, *V;
-  Vec         u, b; /* work: all unknowns */
-  Vec         row;  /* work: rows */
+  const PairRows *rows;
+  PetscReal       kappa; /* N/m */
+  Hold            hold;
+  ShiftInvert     inverse;
+  PetscReal      *W, *V;
+  Vec             u, b; /* work: all unknowns */
+  Vec             row;  /* work: rows */
 } Compliance;
 
 /* What the laws of the pairs ask of the small system: row i has l_i = sum_k P[k] z_(first + k) + p0, w_i alike */
@@ -44,6 +45,15 @@ typedef struct {
 } LawRow;
 
 typedef enum { SMALL_GOOD, SMALL_SINGULAR } SmallOutcome;
+
+/* w + W_mu l - W w = rhs with the laws */
+typedef struct {
+  const Compliance *compliance;
+  PetscReal         friction; /* factor of all friction coefficients */
+  const LawRow     *law;      /* [rows] */
+  const PetscReal  *rhs;      /* [rows] m */
+  PetscReal         rtol;     /* of GMRES, where the system is not dense */
+} SmallSystem;
 
 typedef enum { ACTIVE_CONVERGED, ACTIVE_SINGULAR, ACTIVE_CYCLES, ACTIVE_SLOW, ACTIVE_JAMMED } ActiveOutcome;
 
@@ -114,10 +124,10 @@ PETSC_INTERN PetscErrorCode HoldDestroy(Hold *hold);
    for rows l, w, y; u = K_a^-1 (f - kappa (G'(l - w) - S' (slide l))), f may be NULL */
 PETSC_INTERN PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const PairRows *rows,
                                              PetscInt max_rows, Progress *progress, Compliance *c);
-PETSC_INTERN PetscErrorCode ComplianceApply(const Compliance *c, const PairRows *rows, PetscReal friction,
-                                            const PetscReal l[], const PetscReal w[], PetscReal y[]);
-PETSC_INTERN PetscErrorCode ComplianceSolve(const Compliance *c, const PairRows *rows, PetscReal friction, Vec f,
-                                            const PetscReal l[], const PetscReal w[], Vec u);
+PETSC_INTERN PetscErrorCode ComplianceApply(const Compliance *c, PetscReal friction, const PetscReal l[],
+                                            const PetscReal w[], PetscReal y[]);
+PETSC_INTERN PetscErrorCode ComplianceSolve(const Compliance *c, PetscReal friction, Vec f, const PetscReal l[],
+                                            const PetscReal w[], Vec u);
 /* K + kappa G'G of all rows, of those of pairs closed at the status [pairs], or of the normal ones. Where Coulomb's pairs
    slip in different directions they resist too; what slips in one direction makes the small system singular. */
 typedef enum { AUGMENT_ALL, AUGMENT_CLOSED, AUGMENT_NORMAL } AugmentRows;
@@ -125,16 +135,14 @@ PETSC_INTERN PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, Petsc
                                               const ContactStatus status[], Mat *A);
 PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *c);
 
-/* small.c - z of w + W_mu l - W w = rhs with the laws [rows]; l and w of it. GMRES to rtol where it is not dense.
-   reversed = whether the determinant is negative */
-PETSC_INTERN PetscErrorCode SmallSolve(const Compliance *c, const PairRows *rows, PetscReal friction,
-                                       const LawRow law[], const PetscReal rhs[], PetscReal rtol, PetscReal l[],
-                                       PetscReal w[], SmallOutcome *outcome, PetscBool *reversed);
+/* small.c - l and w [rows] of the small system; reversed = whether the determinant is negative */
+PETSC_INTERN PetscErrorCode SmallSolve(const SmallSystem *system, PetscReal l[], PetscReal w[], SmallOutcome *outcome,
+                                       PetscBool *reversed);
 
 /* pivot.c - statuses of sliding pairs by complementary pivoting on the dense small system; found is false where there
    is no solution or none is found */
-PETSC_INTERN PetscErrorCode PivotSolve(const Compliance *c, const PairRows *rows, PetscReal friction,
-                                       const PetscReal rhs[], ContactStatus status[], PetscBool *found);
+PETSC_INTERN PetscErrorCode PivotSolve(const Compliance *c, PetscReal friction, const PetscReal rhs[],
+                                       ContactStatus status[], PetscBool *found);
 
 /* activeset.c - status, l and w that obey all laws, from the status given; friction is raised in steps if need be.
    outcome and active->friction tell where it ended. */
@@ -142,22 +150,32 @@ PETSC_INTERN PetscErrorCode ActiveSolve(Active *active, ActiveOutcome *outcome);
 /* One correction of l and w at the status reached, for a residual rhs [rows] of the small system */
 PETSC_INTERN PetscErrorCode ActiveCorrect(Active *active, const PetscReal rhs[]);
 
-/* equilibrium.c - the whole solution for forces f of a size (N): status, l (m), u */
-PETSC_INTERN PetscErrorCode EquilibriumSolve(Statics statics, PairRows *rows, const Compliance *compliance, Vec f,
-                                             PetscReal size, PetscInt load_steps, ContactStatus status[], PetscReal l[],
-                                             Vec u);
+/* Forces on the bodies, and what comes of them */
+typedef struct {
+  PairRows         *rows;
+  const Compliance *compliance;
+  Vec               f;
+  PetscReal         size; /* of the forces, N */
+  PetscInt          load_steps;
+  ContactStatus    *status; /* [pairs] to begin with, then as found */
+  PetscReal        *l;      /* [rows] forces of the pairs over kappa, m */
+  Vec               u;
+} EquilibriumProblem;
+
+/* equilibrium.c - the whole solution */
+PETSC_INTERN PetscErrorCode EquilibriumSolve(Statics statics, const EquilibriumProblem *problem);
 
 /* state.c - states, resultants and residuals of a solution */
-PETSC_INTERN PetscErrorCode StateSet(Statics statics, const Compliance *compliance, Vec f, const PetscReal l[]);
+PETSC_INTERN PetscErrorCode StaticsSetState(Statics statics, const Compliance *compliance, Vec f, const PetscReal l[]);
 /* b += forces of the contact on the unknowns, -N' lambda_n + T' lambda_t + B' lambda_b, N */
-PETSC_INTERN PetscErrorCode StateForces(const PairRows *rows, const ContactState state[], Vec b);
+PETSC_INTERN PetscErrorCode PairRowsAddForces(const PairRows *rows, const ContactState state[], Vec b);
 
 /* load.c - f of the loads, unknowns only, and its size by all of them, N */
-PETSC_INTERN PetscErrorCode LoadCreate(Operators operators, Vec *f, PetscReal *size);
+PETSC_INTERN PetscErrorCode StaticsCreateLoad(Operators operators, Vec *f, PetscReal *size);
 
 /* reaction.c - reactions.csv; u at all local vertices, zero where held */
-PETSC_INTERN PetscErrorCode ReactionsWrite(Statics statics, Results results);
-PETSC_INTERN PetscErrorCode DisplacementsCreate(Statics statics, Model model, Vec *local);
+PETSC_INTERN PetscErrorCode StaticsWriteReactions(Statics statics, Results results);
+PETSC_INTERN PetscErrorCode StaticsCreateDisplacements(Statics statics, Model model, Vec *local);
 
 /* field.c - static.h5 and static.xmf */
-PETSC_INTERN PetscErrorCode FieldsWrite(Statics statics, Results results);
+PETSC_INTERN PetscErrorCode StaticsWriteFields(Statics statics, Results results);

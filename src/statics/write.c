@@ -11,12 +11,12 @@ typedef struct {
   PetscInt     interface;
   PetscReal    x[3], t[3], area;
   ContactState state;
-} Record;
+} StaticsRecord;
 
 /* By interface, then by z, y, x of the slave */
-static int RecordCompare(const void *one, const void *other)
+static int StaticsCompareRecords(const void *one, const void *other)
 {
-  const Record *a = one, *b = other;
+  const StaticsRecord *a = one, *b = other;
 
   if (a->interface != b->interface) return a->interface < b->interface ? -1 : 1;
   for (int d = 2; d >= 0; d--)
@@ -25,44 +25,44 @@ static int RecordCompare(const void *one, const void *other)
 }
 
 /* Records of all ranks, in order, on every rank */
-static PetscErrorCode RecordsGather(Statics s, PetscInt *n, Record **all)
+static PetscErrorCode StaticsGatherRecords(Statics s, PetscInt *n, StaticsRecord **all)
 {
   const PairRows *rows = &s->rows;
-  Record         *local;
+  StaticsRecord  *local;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(rows->n_pairs, &local));
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
-    local[p] = (Record){.interface = rows->pair[p].interface, .area = rows->pair[p].area, .state = s->state[p]};
+    local[p] = (StaticsRecord){.interface = rows->pair[p].interface, .area = rows->pair[p].area, .state = s->state[p]};
     PetscCall(PetscArraycpy(local[p].x, rows->pair[p].x, 3));
     PetscCall(PetscArraycpy(local[p].t, rows->pair[p].t, 3));
   }
-  PetscCall(GatherRecords(s->comm, rows->n_pairs, sizeof(Record), local, n, all));
-  qsort(*all, (size_t)*n, sizeof(Record), RecordCompare);
+  PetscCall(GatherRecords(s->comm, rows->n_pairs, sizeof(StaticsRecord), local, n, all));
+  qsort(*all, (size_t)*n, sizeof(StaticsRecord), StaticsCompareRecords);
   PetscCall(PetscFree(local));
   PetscFunctionReturn(0);
 }
 
 /* static.csv */
-static PetscErrorCode PairsWrite(Statics s, Results results)
+static PetscErrorCode StaticsWritePairs(Statics s, Results results)
 {
   const ContactInterface *interfaces;
   ResultsTable            table;
   PetscInt                n, n_interfaces;
   Contact                 contact;
-  Record                 *record;
+  StaticsRecord          *record;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
   PetscCall(ContactGetInterfaces(contact, &n_interfaces, &interfaces));
-  PetscCall(RecordsGather(s, &n, &record));
+  PetscCall(StaticsGatherRecords(s, &n, &record));
   PetscCall(ResultsTableOpen(results, "static",
                              "pair,x_m,y_m,z_m,gap_m,lambda_n_n,lambda_t_n,status,interface,lambda_b_n,area_m2,"
                              "pressure_pa,slip_t_m,slip_b_m,t_x,t_y,t_z",
                              &table));
   for (PetscInt i = 0; i < n; i++) {
-    const Record       *r = &record[i];
-    const ContactState *q = &r->state;
+    const StaticsRecord *r = &record[i];
+    const ContactState  *q = &r->state;
 
     PetscCall(ResultsTableRow(
       table,
@@ -80,8 +80,8 @@ static PetscErrorCode PairsWrite(Statics s, Results results)
 PetscErrorCode StaticsWrite(Statics s, Results results)
 {
   PetscFunctionBeginUser;
-  PetscCall(PairsWrite(s, results));
-  PetscCall(ReactionsWrite(s, results));
-  PetscCall(FieldsWrite(s, results));
+  PetscCall(StaticsWritePairs(s, results));
+  PetscCall(StaticsWriteReactions(s, results));
+  PetscCall(StaticsWriteFields(s, results));
   PetscFunctionReturn(0);
 }

@@ -150,7 +150,8 @@ PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedMo
   }
   PetscCall(BVDestroy(&block));
   PetscCall(PencilSetParameters(sweep->pencil, p));
-  PetscCall(ModesLabelVectors(sweep->modes, n, modes->rigid, shape, shape + n, shape + 2 * n, shape + 3 * n, label));
+  PetscCall(ModesLabelShapes(sweep->modes,
+                             &(ModesShapes){n, modes->rigid, shape, shape + n, shape + 2 * n, shape + 3 * n}, label));
   for (PetscInt i = 0; i < 4 * n; i++) PetscCall(VecDestroy(&shape[i]));
   PetscCall(PetscFree2(columns, shape));
   PetscFunctionReturn(0);
