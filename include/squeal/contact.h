@@ -72,7 +72,6 @@ typedef struct {
   PetscReal  tolerance;   /* pairs farther apart than this are no pairs, m */
   PetscBool  damping;     /* friction damping: mu N0 / v across the slip, mu_slope N0 along it */
   PetscReal  force;       /* total normal force in the sliding state, N */
-  PetscBool  preloaded;   /* that force is the one of ContactSetForces() */
   PetscReal  speed;       /* sliding speed, m/s */
   PetscReal  slip[3];     /* direction, or 0,0,0 when it comes from the rotation */
   PetscReal  rotation[3]; /* angular velocity of the master relative to the slave, rad/s */
@@ -157,10 +156,6 @@ PetscErrorCode ContactCreateApproach(Contact contact, PetscInt interface, Vec *d
 /*@ ContactNodalForces - forces of the contact on all nodes, N, from the states of the local pairs, into a local vector
    of three values per vertex in the layout of the coordinates; held nodes included. Collective. @*/
 PetscErrorCode ContactNodalForces(Contact contact, const ContactState state[], Vec local);
-
-/*@ ContactSetForces - normal forces lambda_n (N) of the local pairs in the sliding state, in place of -contact_force.
-    Collective. @*/
-PetscErrorCode ContactSetForces(Contact contact, const PetscReal lambda_n[]);
 
 /*@
    ContactGrow - moves the front between closed and open pairs by whole rows. Two pairs are neighbours when their slave

@@ -149,23 +149,6 @@ PetscErrorCode ContactGetPairs(Contact contact, PetscInt *n_local, PetscInt *n_g
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactSetForces(Contact contact, const PetscReal lambda_n[])
-{
-  PetscReal total[CONTACT_MAX] = {0};
-
-  PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    contact->pairs[p].force = lambda_n[p];
-    total[contact->pairs[p].interface] += lambda_n[p];
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, total, CONTACT_MAX, MPIU_REAL, MPI_SUM, contact->comm));
-  for (PetscInt i = 0; i < contact->n_interfaces; i++) {
-    contact->interfaces[i].force     = total[i];
-    contact->interfaces[i].preloaded = PETSC_TRUE;
-  }
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ContactGetCentre(Contact contact, PetscReal centre[3], PetscBool *found)
 {
   PetscFunctionBeginUser;
