@@ -1,6 +1,6 @@
 /*
    Model: life cycle, options, access. The mesh is made on rank 0 (generate.c, import.c), checked there (check.c),
-   distributed (partition.c), and then carries its tables (tabulate.c) and the layout of the unknowns (support.c).
+   distributed (partition.c), and then carries its tables (tabulate.c) and the layout of the unknowns (layout.c).
 */
 #include "modelimpl.h"
 
@@ -36,6 +36,7 @@ PetscErrorCode ModelSetFromOptions(Model model)
   if (source == 0) PetscCall(RigSetFromOptions(model->comm, &model->rig));
   PetscCall(PartsSetFromOptions(model));
   PetscCall(SupportsSetFromOptions(model));
+  PetscCall(GroundedsSetFromOptions(model));
   PetscCall(LoadsSetFromOptions(model));
   PetscCall(ProbesSetFromOptions(model));
   PetscFunctionReturn(0);
@@ -73,7 +74,7 @@ PetscErrorCode ModelSetUp(Model model)
   PetscCall(MeshCheck(model));
   PetscCall(PartitionMesh(model));
   PetscCall(MeshTabulate(model));
-  PetscCall(SupportsLayOut(model));
+  PetscCall(MeshLayOut(model));
   PetscCall(LoadsCheck(model));
   PetscCall(ProbesLocate(model));
   PetscFunctionReturn(0);
@@ -156,33 +157,6 @@ PetscErrorCode ModelGetSupports(Model model, PetscInt *n, const Support **suppor
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelGetSprings(Model model, PetscInt *n, const Grounded **springs)
-{
-  PetscFunctionBeginUser;
-  *n       = model->n_springs;
-  *springs = model->springs;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModelGetDashpots(Model model, PetscInt *n, const Grounded **dashpots)
-{
-  PetscFunctionBeginUser;
-  *n        = model->n_dashpots;
-  *dashpots = model->dashpots;
-  PetscFunctionReturn(0);
-}
-
-/* Prints a list of grounded springs or dashpots */
-static PetscErrorCode GroundedView(const char kind[], const char unit[], PetscInt n, const Grounded g[],
-                                   PetscViewer viewer)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < n; i++)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s %s on %s: %.6g, %.6g, %.6g %s per node\n", kind, g[i].name, g[i].set,
-                                     (double)g[i].value[0], (double)g[i].value[1], (double)g[i].value[2], unit));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ModelView(Model model, PetscViewer viewer)
 {
   PetscInt    n_cells = model->mesh.n_cells;
@@ -206,8 +180,7 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  support %s holds%s%s%s of %s\n", model->supports[i].name,
                                      model->supports[i].fix[0] ? " x" : "", model->supports[i].fix[1] ? " y" : "",
                                      model->supports[i].fix[2] ? " z" : "", model->supports[i].set));
-  PetscCall(GroundedView("spring", "N/m", model->n_springs, model->springs, viewer));
-  PetscCall(GroundedView("dashpot", "N s/m", model->n_dashpots, model->dashpots, viewer));
+  PetscCall(GroundedsView(model, viewer));
   for (PetscInt i = 0; i < model->n_loads; i++) {
     const Load *l = &model->loads[i];
 
@@ -215,18 +188,6 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
                                      (double)l->force[0], (double)l->force[1], (double)l->force[2]));
   }
   PetscCall(ProbesView(model, viewer));
-  PetscFunctionReturn(0);
-}
-
-/* Frees a list of grounded springs or dashpots */
-static PetscErrorCode GroundedDestroy(PetscInt n, Grounded **g)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < n; i++) {
-    PetscCall(PetscFree((*g)[i].name));
-    PetscCall(PetscFree((*g)[i].set));
-  }
-  PetscCall(PetscFree(*g));
   PetscFunctionReturn(0);
 }
 
@@ -247,8 +208,7 @@ PetscErrorCode ModelDestroy(Model *model)
   }
   PetscCall(ProbesDestroy(m));
   for (PetscInt i = 0; i < m->n_together; i++) PetscCall(PetscFree(m->together[i]));
-  PetscCall(GroundedDestroy(m->n_springs, &m->springs));
-  PetscCall(GroundedDestroy(m->n_dashpots, &m->dashpots));
+  PetscCall(GroundedsDestroy(m));
   PetscCall(PetscFree(m->parts));
   PetscCall(PetscFree(m->supports));
   PetscCall(PetscFree(m->loads));

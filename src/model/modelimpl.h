@@ -67,9 +67,16 @@ PETSC_INTERN PetscErrorCode PartsSetFromOptions(Model model);
 PETSC_INTERN PetscErrorCode PartsCheck(Model model);
 PETSC_INTERN PetscErrorCode PartsFindCells(Model model, PetscInt cell_part[]);
 
-/* support.c - essential supports, grounded springs and dashpots; the layout of the unknowns */
+/* support.c - essential supports */
 PETSC_INTERN PetscErrorCode SupportsSetFromOptions(Model model);
-PETSC_INTERN PetscErrorCode SupportsLayOut(Model model);
+
+/* grounded.c - springs and dashpots */
+PETSC_INTERN PetscErrorCode GroundedsSetFromOptions(Model model);
+PETSC_INTERN PetscErrorCode GroundedsView(Model model, PetscViewer viewer);
+PETSC_INTERN PetscErrorCode GroundedsDestroy(Model model);
+
+/* layout.c - the unknowns: displacements that no support fixes. Fills their part of the tables. */
+PETSC_INTERN PetscErrorCode MeshLayOut(Model model);
 
 /* load.c - total forces on sets; raises an error for a set that the mesh does not have, or that has no node of an
    element */

@@ -91,28 +91,35 @@ static PetscInt NumberVertices(const GmshMesh *mesh, PetscInt vertex[])
   return n;
 }
 
-/* The mesh from the volume elements on rank 0; `shape` is NULL and `vertex` unused on the others */
-static PetscErrorCode CreateCells(MPI_Comm comm, const GmshMesh *mesh, const GmshShape *shape, PetscInt n_cells,
-                                  const PetscInt vertex[], PetscInt n_vertices, DM *dm)
+/* The volume elements of a file; all empty but on rank 0 */
+typedef struct {
+  const GmshShape *shape;
+  PetscInt         n_cells, n_vertices;
+  PetscInt        *vertex; /* [nodes of the file] vertex of the DM, -1 for a node that no cell has */
+} GmshVolumes;
+
+/* The mesh from the volume elements */
+static PetscErrorCode CreateCells(MPI_Comm comm, const GmshMesh *mesh, const GmshVolumes *volumes, DM *dm)
 {
-  const PetscInt n_corners = shape ? shape->n_nodes : 0;
+  const PetscInt n_corners = volumes->shape ? volumes->shape->n_nodes : 0;
   PetscInt      *cells, n = 0;
   PetscReal     *x;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n_cells * n_corners, &cells, 3 * n_vertices, &x));
+  PetscCall(PetscMalloc2(volumes->n_cells * n_corners, &cells, 3 * volumes->n_vertices, &x));
   for (PetscInt e = 0; e < mesh->n_elements; e++) {
     PetscInt *cell = cells + n_corners * n;
 
     if (mesh->elements[e].shape->dim < 3) continue;
-    for (PetscInt v = 0; v < n_corners; v++) cell[v] = vertex[mesh->elements[e].node[v]];
-    PetscCall(DMPlexInvertCell(shape->polytope, cell));
+    for (PetscInt v = 0; v < n_corners; v++) cell[v] = volumes->vertex[mesh->elements[e].node[v]];
+    PetscCall(DMPlexInvertCell(volumes->shape->polytope, cell));
     n++;
   }
   for (PetscInt i = 0; i < mesh->n_nodes; i++) {
-    if (vertex[i] >= 0) PetscCall(PetscArraycpy(x + 3 * vertex[i], mesh->x + 3 * i, 3));
+    if (volumes->vertex[i] >= 0) PetscCall(PetscArraycpy(x + 3 * volumes->vertex[i], mesh->x + 3 * i, 3));
   }
-  PetscCall(DMPlexCreateFromCellListPetsc(comm, 3, n_cells, n_vertices, n_corners, PETSC_TRUE, cells, 3, x, dm));
+  PetscCall(DMPlexCreateFromCellListPetsc(comm, 3, volumes->n_cells, volumes->n_vertices, n_corners, PETSC_TRUE, cells,
+                                          3, x, dm));
   PetscCall(PetscFree2(cells, x));
   PetscFunctionReturn(0);
 }
@@ -244,27 +251,26 @@ static PetscErrorCode FillLabels(DM dm, const GmshMesh *mesh, const PetscInt ver
 */
 PetscErrorCode ImportGmsh(MPI_Comm comm, const char file[], DM *dm)
 {
-  GmshMesh         mesh    = {0};
-  ReaderError      error   = {0};
-  const GmshShape *shape   = NULL;
-  PetscInt         n_cells = 0, n_vertices = 0, *vertex;
-  PetscMPIInt      rank;
+  GmshMesh    mesh    = {0};
+  ReaderError error   = {0};
+  GmshVolumes volumes = {0};
+  PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   if (rank == 0) PetscCall(GmshMeshRead(file, &mesh, &error));
   if (rank == 0 && !error.code) PetscCall(FindNodes(&mesh, &error));
-  if (rank == 0) shape = FindCells(&mesh, &n_cells, &error);
+  if (rank == 0) volumes.shape = FindCells(&mesh, &volumes.n_cells, &error);
   PetscCall(RaiseError(comm, file, &error));
-  PetscCall(PetscMalloc1(mesh.n_nodes, &vertex));
-  if (rank == 0) n_vertices = NumberVertices(&mesh, vertex);
-  PetscCall(CreateCells(comm, &mesh, shape, n_cells, vertex, n_vertices, dm));
+  PetscCall(PetscMalloc1(mesh.n_nodes, &volumes.vertex));
+  if (rank == 0) volumes.n_vertices = NumberVertices(&mesh, volumes.vertex);
+  PetscCall(CreateCells(comm, &mesh, &volumes, dm));
   PetscCall(CheckOverlap(*dm, &error));
   PetscCall(RaiseError(comm, file, &error));
   PetscCall(CreateLabels(*dm, file, &mesh));
-  PetscCall(FillLabels(*dm, &mesh, vertex, &error));
+  PetscCall(FillLabels(*dm, &mesh, volumes.vertex, &error));
   PetscCall(RaiseError(comm, file, &error));
-  PetscCall(PetscFree(vertex));
+  PetscCall(PetscFree(volumes.vertex));
   PetscCall(GmshMeshDestroy(&mesh));
   PetscFunctionReturn(0);
 }

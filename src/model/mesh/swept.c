@@ -67,7 +67,7 @@ static void SweptCoordinates(const Motion *motion, const PetscReal x[3], PetscRe
   if (value[2] > 2 * PETSC_PI - tolerance) value[2] -= 2 * PETSC_PI;
 }
 
-static int PlaceCompare(const void *a, const void *b)
+static int LinePlaceCompare(const void *a, const void *b)
 {
   const PetscReal x = ((const SweptPlace *)a)->value, y = ((const SweptPlace *)b)->value;
 
@@ -79,7 +79,7 @@ static PetscInt LevelsFind(PetscInt n, SweptPlace place[], PetscReal tolerance, 
 {
   PetscInt n_levels = 0;
 
-  qsort(place, (size_t)n, sizeof(*place), PlaceCompare);
+  qsort(place, (size_t)n, sizeof(*place), LinePlaceCompare);
   for (PetscInt i = 0; i < n; i++) {
     if (!n_levels || place[i].value - at[n_levels - 1] > tolerance) at[n_levels++] = place[i].value;
     mark[place[i].node].level[d] = n_levels - 1;
