@@ -178,6 +178,9 @@ PetscErrorCode ContactViewKKT(const ContactKKT *kkt, PetscViewer viewer);
 /*@ ContactGetCentre - mean position of all pairs, m; found is false without contact. Collective. @*/
 PetscErrorCode ContactGetCentre(Contact contact, PetscReal centre[3], PetscBool *found);
 
+/*@ ContactAddChecksum - adds surfaces and parameters of each interface. Collective; after ModelSetUp(). @*/
+PetscErrorCode ContactAddChecksum(Contact contact, Checksum checksum);
+
 /*@ ContactView - interfaces in words. Collective. @*/
 PetscErrorCode ContactView(Contact contact, PetscViewer viewer);
 

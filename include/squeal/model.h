@@ -9,6 +9,7 @@
 #pragma once
 
 #include <petscdmplex.h>
+#include <squeal/checksum.h>
 #include <squeal/element.h>
 #include <squeal/mesh.h>
 
@@ -213,6 +214,17 @@ PetscErrorCode ModelSumShared(Model model, Vec local);
 
 /*@ ModelGetCoordinates - of the local vertices, shape [vertices][3], m (borrowed). Not collective. @*/
 PetscErrorCode ModelGetCoordinates(Model model, const PetscReal **coordinates);
+
+/*@ ModelAddChecksum - adds mesh, materials, supports, springs and dashpots; with_partition: also which rank has which
+    cells. Collective; after ModelSetUp(). @*/
+PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum checksum);
+
+/*@ ModelAddLoadsChecksum - adds the loads. Collective. @*/
+PetscErrorCode ModelAddLoadsChecksum(Model model, Checksum checksum);
+
+/*@ ModelAddSetChecksum - adds name and nodes of a set to the present part, and its faces where it is a surface.
+    Collective. @*/
+PetscErrorCode ModelAddSetChecksum(Model model, const char set[], PetscBool is_surface, Checksum checksum);
 
 /*@ ModelView - prints in words what the scene needs: counts, parts, supports, springs. Collective. @*/
 PetscErrorCode ModelView(Model model, PetscViewer viewer);

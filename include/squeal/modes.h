@@ -93,6 +93,9 @@ PetscErrorCode ModesLabelShapes(Modes modes, const ModesShapes *shapes, char lab
 /*@ ModesGetCompleteness - one line that says how it was checked that no mode is missing (borrowed). Not collective. @*/
 PetscErrorCode ModesGetCompleteness(Modes modes, const char **line);
 
+/*@ ModesAddChecksum - adds which modes are asked for. Not collective. @*/
+PetscErrorCode ModesAddChecksum(Modes modes, Checksum checksum);
+
 /*@ ModesView - the table of modes for people. Collective. @*/
 PetscErrorCode ModesView(Modes modes, PetscViewer viewer);
 

@@ -79,6 +79,10 @@ PetscErrorCode OperatorsCreatePoint(Operators operators, PetscReal **p);
     Collective. @*/
 PetscErrorCode OperatorsCheckParameter(Operators operators, PetscInt parameter, PetscReal value);
 
+/*@ OperatorsAddChecksum - adds what options choose, and matrices that are loaded. Collective; after OperatorsSetUp().
+    @*/
+PetscErrorCode OperatorsAddChecksum(Operators operators, Checksum checksum);
+
 /*@ OperatorsGetMaterial - the values of a part at p. Not collective. @*/
 PetscErrorCode OperatorsGetMaterial(Operators operators, const PetscReal p[], PetscInt part,
                                     OperatorsMaterial *material);

@@ -126,9 +126,8 @@ PetscErrorCode ContactProjectorGetMemory(ContactProjector projector, PetscInt *n
 /*@ ContactProjectorSetMemory - takes them back, on the same ranks, and repeats the last search. Collective. @*/
 PetscErrorCode ContactProjectorSetMemory(ContactProjector projector, PetscInt n, const PetscReal values[]);
 
-/*@ ContactProjectorGetPrint - a number that differs, for all that can be expected, where surfaces, kinematics or ramps
-    differ; the same on every rank. Not collective. @*/
-PetscErrorCode ContactProjectorGetPrint(ContactProjector projector, PetscReal *print);
+/*@ ContactProjectorAddChecksum - adds kinematics and ramps to the parts of the interfaces. Not collective. @*/
+PetscErrorCode ContactProjectorAddChecksum(ContactProjector projector, Checksum checksum);
 
 /*@ ContactProjectorView - surfaces and kinematics in words. Collective. @*/
 PetscErrorCode ContactProjectorView(ContactProjector projector, PetscViewer viewer);

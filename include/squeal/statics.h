@@ -117,6 +117,9 @@ PetscErrorCode StaticsIdentify(Statics statics, const PetscReal p[], PetscInt in
     @*/
 PetscErrorCode StaticsIdentifyAll(Statics statics, PetscReal p[], PetscViewer viewer);
 
+/*@ StaticsAddChecksum - adds the loads and how the sliding state is found. Collective. @*/
+PetscErrorCode StaticsAddChecksum(Statics statics, Checksum checksum);
+
 /*@ StaticsView - status, forces, residuals in words. Collective. @*/
 PetscErrorCode StaticsView(Statics statics, PetscViewer viewer);
 

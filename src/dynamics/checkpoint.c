@@ -1,7 +1,8 @@
 /*
    Checkpoint: one file of all ranks,
 
-      head       magic word, byte order, its own length and checksum, version, sizes, fingerprint
+      head       magic word, byte order, its own length and checksum, version, sizes
+      parts      [parts] of the scene's checksum
       names      [items][32] characters
       table      [ranks][items + 1] numbers of values of each item, then the checksum of the rank's values
       values     of rank 0: item 0, item 1, ...; of rank 1; ...
@@ -10,37 +11,33 @@
 */
 #include "checkpoint.h"
 #include "base/fault.h"
-#include "base/checksum.h"
 #include <errno.h>
 #include <fcntl.h>
-#include <stdint.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #define CHECKPOINT_MAGIC   "squealCP"
 #define CHECKPOINT_ORDER   UINT64_C(0x0102030405060708)
-#define CHECKPOINT_VERSION 1
+#define CHECKPOINT_VERSION 2
 #define NAME_LENGTH        32
-#define MAX_PRINT          16
 
 /* The first five members keep their places in every version */
 typedef struct {
-  char      magic[8];
-  uint64_t  order;    /* CHECKPOINT_ORDER as the writer's machine stores it */
-  uint64_t  size;     /* of head, names and table, bytes */
-  uint64_t  checksum; /* of these, with this word 0 */
-  uint64_t  version;
-  uint64_t  real_size; /* bytes */
-  uint64_t  n_ranks, n_items, n_print;
-  uint64_t  total; /* length of the file, bytes */
-  PetscReal print[MAX_PRINT];
+  char     magic[8];
+  uint64_t order;    /* CHECKPOINT_ORDER as the writer's machine stores it */
+  uint64_t size;     /* of all that stands before the values, bytes */
+  uint64_t checksum; /* of these, with this word 0 */
+  uint64_t version;
+  uint64_t real_size; /* bytes */
+  uint64_t n_ranks, n_items, n_parts;
+  uint64_t total; /* length of the file, bytes */
 } Head;
 
 /* A file that is being read, and what is wrong with it */
 typedef struct {
   char  name[PETSC_MAX_PATH_LEN];
   int   fd;
-  Head *head; /* with names and table behind it; NULL until read */
+  Head *head; /* with parts, names and table behind it; NULL until read */
   Fault fault;
 } CheckpointReader;
 
@@ -48,20 +45,26 @@ typedef struct {
 #define NoteDamage(reader, ...) FaultNote(&(reader)->fault, PETSC_ERR_FILE_READ, __VA_ARGS__)
 #define NoteOther(reader, ...)  FaultNote(&(reader)->fault, PETSC_ERR_FILE_UNEXPECTED, __VA_ARGS__)
 
-static size_t HeadSize(uint64_t n_ranks, uint64_t n_items)
+static size_t HeadSize(const Head *h)
 {
-  return sizeof(Head) + NAME_LENGTH * n_items + sizeof(uint64_t) * n_ranks * (n_items + 1);
+  return sizeof(Head) + sizeof(ChecksumPart) * h->n_parts + NAME_LENGTH * h->n_items +
+         sizeof(uint64_t) * h->n_ranks * (h->n_items + 1);
+}
+
+static ChecksumPart *HeadParts(const Head *head)
+{
+  return (ChecksumPart *)(head + 1);
 }
 
 static char *HeadName(const Head *head, PetscInt i)
 {
-  return (char *)(head + 1) + NAME_LENGTH * i;
+  return (char *)(HeadParts(head) + head->n_parts) + NAME_LENGTH * i;
 }
 
 /* Row of a rank in the table */
 static uint64_t *HeadRow(const Head *head, PetscInt rank)
 {
-  return (uint64_t *)((char *)(head + 1) + NAME_LENGTH * head->n_items) + (uint64_t)rank * (head->n_items + 1);
+  return (uint64_t *)HeadName(head, (PetscInt)head->n_items) + (uint64_t)rank * (head->n_items + 1);
 }
 
 static uint64_t HeadChecksum(const Head *head)
@@ -70,35 +73,40 @@ static uint64_t HeadChecksum(const Head *head)
   uint64_t       sum;
 
   ((Head *)head)->checksum = 0;
-  sum                      = ChecksumAdd(CHECKSUM_BEGIN, head, head->size);
+  sum                      = ChecksumBytes(CHECKSUM_BEGIN, head, head->size);
   ((Head *)head)->checksum = kept;
   return sum;
 }
 
-/* Head, names and the table of all ranks, complete on rank 0, where row [n + 1] of each rank is gathered */
-static PetscErrorCode HeadCreate(MPI_Comm comm, const CheckpointPrint *print, PetscInt n, const CheckpointItem item[],
-                                 uint64_t row[], Head **head)
+/* Head, parts, names and the table of all ranks, complete on rank 0, where row [n + 1] of each rank is gathered */
+static PetscErrorCode HeadCreate(MPI_Comm comm, Checksum scene, PetscInt n, const CheckpointItem item[], uint64_t row[],
+                                 Head **head)
 {
-  PetscMPIInt size, width;
-  uint64_t    n_values = 0;
-  Head       *h;
+  const ChecksumPart *parts;
+  PetscInt            n_parts;
+  PetscMPIInt         size, width;
+  uint64_t            n_values = 0;
+  Head               *h;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(comm, &size));
   PetscCall(PetscMPIIntCast(n + 1, &width));
   for (PetscInt i = 0; i < n; i++) n_values += row[i];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_values, 1, MPI_UINT64_T, MPI_SUM, comm));
-  PetscCall(PetscCalloc(HeadSize((uint64_t)size, (uint64_t)n), &h));
-  PetscCall(PetscMemcpy(h->magic, CHECKPOINT_MAGIC, sizeof(h->magic)));
-  h->order     = CHECKPOINT_ORDER;
-  h->size      = HeadSize((uint64_t)size, (uint64_t)n);
-  h->version   = CHECKPOINT_VERSION;
-  h->real_size = sizeof(PetscReal);
-  h->n_ranks   = (uint64_t)size;
-  h->n_items   = (uint64_t)n;
-  h->n_print   = (uint64_t)print->n_print;
-  h->total     = h->size + sizeof(PetscReal) * n_values;
-  PetscCall(PetscArraycpy(h->print, print->print, print->n_print));
+  PetscCall(ChecksumGetParts(scene, &n_parts, &parts));
+  Head begin = {.magic     = CHECKPOINT_MAGIC,
+                .order     = CHECKPOINT_ORDER,
+                .version   = CHECKPOINT_VERSION,
+                .real_size = sizeof(PetscReal),
+                .n_ranks   = (uint64_t)size,
+                .n_items   = (uint64_t)n,
+                .n_parts   = (uint64_t)n_parts};
+
+  begin.size  = HeadSize(&begin);
+  begin.total = begin.size + sizeof(PetscReal) * n_values;
+  PetscCall(PetscCalloc((size_t)begin.size, &h));
+  *h = begin;
+  PetscCall(PetscArraycpy(HeadParts(h), parts, n_parts));
   for (PetscInt i = 0; i < n; i++) PetscCall(PetscStrncpy(HeadName(h, i), item[i].name, NAME_LENGTH));
   PetscCallMPI(MPI_Gather(row, width, MPI_UINT64_T, HeadRow(h, 0), width, MPI_UINT64_T, 0, comm));
   h->checksum = HeadChecksum(h);
@@ -106,8 +114,7 @@ static PetscErrorCode HeadCreate(MPI_Comm comm, const CheckpointPrint *print, Pe
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CheckpointWrite(MPI_Comm comm, Results results, const CheckpointPrint *print, PetscInt n,
-                               const CheckpointItem item[])
+PetscErrorCode CheckpointWrite(MPI_Comm comm, Results results, Checksum scene, PetscInt n, const CheckpointItem item[])
 {
   ResultsPiece  *piece;
   uint64_t      *row;
@@ -116,17 +123,15 @@ PetscErrorCode CheckpointWrite(MPI_Comm comm, Results results, const CheckpointP
   PetscErrorCode failure;
 
   PetscFunctionBeginUser;
-  PetscCheck(print->n_print >= 0 && print->n_print <= MAX_PRINT, comm, PETSC_ERR_ARG_OUTOFRANGE,
-             "a fingerprint of %" PetscInt_FMT " numbers, at most %d", print->n_print, MAX_PRINT);
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCall(PetscCalloc2(n + 1, &row, n + 1, &piece));
   row[n] = CHECKSUM_BEGIN;
   for (PetscInt i = 0; i < n; i++) {
     piece[i + 1] = (ResultsPiece){item[i].values, sizeof(PetscReal) * (size_t)item[i].n};
     row[i]       = (uint64_t)item[i].n;
-    row[n]       = ChecksumAdd(row[n], item[i].values, piece[i + 1].size);
+    row[n]       = ChecksumBytes(row[n], item[i].values, piece[i + 1].size);
   }
-  PetscCall(HeadCreate(comm, print, n, item, row, &head));
+  PetscCall(HeadCreate(comm, scene, n, item, row, &head));
   piece[0] = (ResultsPiece){head, rank == 0 ? (size_t)head->size : 0};
   failure  = ResultsBinaryWrite(results, CHECKPOINT_FILE, n + 1, piece);
   PetscCall(PetscFree(head));
@@ -232,30 +237,21 @@ static PetscErrorCode ReaderCheckRun(CheckpointReader *reader, PetscMPIInt size)
   else if (h->n_ranks != (uint64_t)size)
     PetscCall(NoteOther(reader, "%s was written by %llu rank%s, this run has %d", reader->name,
                         (unsigned long long)h->n_ranks, h->n_ranks == 1 ? "" : "s", size));
-  else if (h->size != HeadSize(h->n_ranks, h->n_items))
+  else if (h->size != HeadSize(h))
     PetscCall(NoteDamage(reader, "%s is damaged: its head has a wrong length", reader->name));
   PetscFunctionReturn(0);
 }
 
-/* Checks the fingerprint, bit by bit */
-static PetscErrorCode ReaderCheckPrint(CheckpointReader *reader, const CheckpointPrint *print)
+/* Checks that it is a run of this scene */
+static PetscErrorCode ReaderCheckScene(CheckpointReader *reader, Checksum scene)
 {
   const Head *h = reader->head;
+  char        names[256];
 
   PetscFunctionBeginUser;
   if (reader->fault.code) PetscFunctionReturn(0);
-  if (h->n_print != (uint64_t)print->n_print)
-    PetscCall(NoteOther(
-      reader, "%s is of another model or other parameters: a fingerprint of %llu numbers, here %" PetscInt_FMT,
-      reader->name, (unsigned long long)h->n_print, print->n_print));
-  for (PetscInt i = 0; i < print->n_print && !reader->fault.code; i++) {
-    if (!memcmp(&h->print[i], &print->print[i], sizeof(PetscReal))) continue;
-    PetscCall(NoteOther(reader,
-                        "%s is of another model or other parameters: number %" PetscInt_FMT
-                        " of its fingerprint is %.17g, here %.17g%s%s%s",
-                        reader->name, i + 1, (double)h->print[i], (double)print->print[i], print->name[i] ? " (" : "",
-                        print->name[i] ? print->name[i] : "", print->name[i] ? ")" : ""));
-  }
+  PetscCall(ChecksumCompare(scene, (PetscInt)h->n_parts, HeadParts(h), sizeof(names), names));
+  if (names[0]) PetscCall(NoteOther(reader, "%s is of another scene, which differs in: %s", reader->name, names));
   PetscFunctionReturn(0);
 }
 
@@ -270,20 +266,18 @@ static PetscErrorCode ReaderCheckItems(CheckpointReader *reader, PetscMPIInt ran
   PetscFunctionBeginUser;
   if (reader->fault.code) PetscFunctionReturn(0);
   if (h->n_items != (uint64_t)n)
-    PetscCall(NoteOther(
-      reader, "%s has %llu arrays, this run has %" PetscInt_FMT ": it is of another model or other parameters",
-      reader->name, (unsigned long long)h->n_items, n));
+    PetscCall(NoteOther(reader, "%s has %llu arrays, this run has %" PetscInt_FMT ": it is of another scene",
+                        reader->name, (unsigned long long)h->n_items, n));
   row = HeadRow(h, rank);
   for (PetscInt i = 0; i < n && !reader->fault.code; i++) {
     PetscCall(PetscStrncpy(name, item[i].name, sizeof(name)));
     if (strncmp(HeadName(h, i), name, NAME_LENGTH))
-      PetscCall(NoteOther(reader, "%s has '%.32s' where this run has '%s': it is of another model or other parameters",
-                          reader->name, HeadName(h, i), name));
+      PetscCall(NoteOther(reader, "%s has '%.32s' where this run has '%s': it is of another scene", reader->name,
+                          HeadName(h, i), name));
     else if (item[i].n >= 0 && row[i] != (uint64_t)item[i].n)
-      PetscCall(NoteOther(reader,
-                          "%s has %llu numbers of '%s' on rank %d, this run has %" PetscInt_FMT
-                          ": it is of another model or other parameters",
-                          reader->name, (unsigned long long)row[i], name, rank, item[i].n));
+      PetscCall(NoteOther(
+        reader, "%s has %llu numbers of '%s' on rank %d, this run has %" PetscInt_FMT ": it is of another scene",
+        reader->name, (unsigned long long)row[i], name, rank, item[i].n));
   }
   PetscFunctionReturn(0);
 }
@@ -325,7 +319,7 @@ static PetscErrorCode ReaderReadValues(CheckpointReader *reader, PetscMPIInt ran
   row = HeadRow(reader->head, rank);
   at  = *values;
   for (uint64_t i = 0; i < reader->head->n_items; at += row[i++])
-    sum = ChecksumAdd(sum, at, sizeof(PetscReal) * row[i]);
+    sum = ChecksumBytes(sum, at, sizeof(PetscReal) * row[i]);
   if (sum != row[reader->head->n_items])
     PetscCall(NoteDamage(reader, "%s is damaged: the checksum of the values of rank %d differs", reader->name, rank));
   PetscFunctionReturn(0);
@@ -343,8 +337,7 @@ static PetscErrorCode ItemsFill(const uint64_t row[], const PetscReal values[], 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CheckpointRead(MPI_Comm comm, Results results, const CheckpointPrint *print, PetscInt n,
-                              CheckpointItem item[])
+PetscErrorCode CheckpointRead(MPI_Comm comm, Results results, Checksum scene, PetscInt n, CheckpointItem item[])
 {
   CheckpointReader reader = {.fd = -1};
   const char      *dir;
@@ -358,7 +351,7 @@ PetscErrorCode CheckpointRead(MPI_Comm comm, Results results, const CheckpointPr
   PetscCall(ReaderOpen(&reader, dir));
   PetscCall(ReaderReadHead(&reader));
   PetscCall(ReaderCheckRun(&reader, size));
-  PetscCall(ReaderCheckPrint(&reader, print));
+  PetscCall(ReaderCheckScene(&reader, scene));
   PetscCall(ReaderCheckItems(&reader, rank, n, item));
   PetscCall(ReaderReadValues(&reader, rank, &values));
   PetscCall(FaultsAgree(comm, &reader.fault));

@@ -3,6 +3,7 @@
 */
 #pragma once
 
+#include <squeal/checksum.h>
 #include <squeal/model.h>
 #include <squeal/results.h>
 
@@ -16,27 +17,20 @@ typedef struct {
   PetscReal  *values;
 } CheckpointItem;
 
-/* What a checkpoint must agree in */
-typedef struct {
-  PetscReal   print[16]; /* fingerprint of model, materials, contact, integrator */
-  PetscInt    n_print;
-  const char *name[16]; /* what each stands for, for messages; NULL for unsaid */
-} CheckpointPrint;
-
 /*
    CheckpointWrite - writes `checkpoint.bin` in the folder of the results under a temporary name, flushes it to the disk
    and renames it, so that at any moment the last complete one is there. Collective. Errors: PETSC_ERR_FILE_WRITE with
    the file and the reason (no space left on device); the last good one is kept.
 */
-PETSC_INTERN PetscErrorCode CheckpointWrite(MPI_Comm comm, Results results, const CheckpointPrint *print, PetscInt n,
+PETSC_INTERN PetscErrorCode CheckpointWrite(MPI_Comm comm, Results results, Checksum scene, PetscInt n,
                                             const CheckpointItem item[]);
 
 /*
    CheckpointRead - reads it back; items in the same order. Collective.
    Errors: PETSC_ERR_FILE_OPEN without a file; PETSC_ERR_FILE_READ for one that is truncated or damaged (length,
-   checksum), PETSC_ERR_FILE_UNEXPECTED for one of another version, number of ranks, or model: what differs is said.
+   checksum), PETSC_ERR_FILE_UNEXPECTED for one of another version, number of ranks, or scene: what differs is said.
 */
-PETSC_INTERN PetscErrorCode CheckpointRead(MPI_Comm comm, Results results, const CheckpointPrint *print, PetscInt n,
+PETSC_INTERN PetscErrorCode CheckpointRead(MPI_Comm comm, Results results, Checksum scene, PetscInt n,
                                            CheckpointItem item[]);
 
 /* shape.c - mode `mode` of modes.csv and modes.h5 in folder dir at the local vertices [n_vertices][3] of the model:

@@ -340,6 +340,7 @@ PetscErrorCode DynamicsDestroy(Dynamics *dynamics)
   PetscCall(PetscFree(d->sums));
   PetscCall(ExternalDestroy(&d->external));
   PetscCall(BodiesDestroy(&d->bodies));
+  PetscCall(ChecksumDestroy(&d->scene));
   PetscCall(PetscFree(*dynamics));
   PetscFunctionReturn(0);
 }

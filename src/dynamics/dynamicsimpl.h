@@ -56,6 +56,7 @@ struct _p_Dynamics {
   LedgerPart      part;
   LedgerOrigin    origin;
   CriticalStep    critical;
+  Checksum        scene; /* for checkpoints; NULL until one is met */
   /* statistics */
   PetscInt       n_elements, n_steps; /* of this call */
   PetscLogDouble seconds;

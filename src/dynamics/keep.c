@@ -1,6 +1,6 @@
 /*
    Checkpoints of a run: everything that the next step depends on, so that a run goes on bitwise on the same number of
-   ranks. Which numbers must agree between writer and reader: model, materials, contact, integrator.
+   ranks.
 */
 #include "dynamicsimpl.h"
 #include "base/events.h"
@@ -25,40 +25,39 @@ typedef struct {
 
 typedef enum { SCALARS, U, V, KU, DAMPING, FORCE, FORCE_OLD, PROJECTOR, EXTERNAL, HISTORY, N_ITEMS } Item;
 
-/* Numbers that differ between runs that must not be mixed */
-static PetscErrorCode MakePrint(Dynamics d, CheckpointPrint *print)
+/* What a run must share with the one that it goes on with. The end, intervals of what is recorded and tolerances of the
+   contact forces may change */
+static PetscErrorCode DynamicsAddChecksum(Dynamics d, Checksum c)
 {
-  const OperatorsParameter *parameter;
-  const PetscReal          *mass;
-  PetscInt                  n;
-  PetscReal                *p = print->print;
-
   PetscFunctionBeginUser;
-  *print = (CheckpointPrint){
-    .n_print = 10,
-    .name = {"masses", "materials and springs", "friction and sliding speeds", "directions of sliding", "-ts_central_b",
-             "number of elements", "-dynamics_coriolis", "-dynamics_centrifugal", "loads, gravity, motions, impulses",
-             "surfaces and kinematics of contacts"}
-  };
-  PetscCall(BodiesGetMass(d->bodies, &mass, NULL, NULL));
-  for (PetscInt i = 0; i < d->layout->n; i++) p[0] += mass[i] * (1 + i % 7);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &p[0], 1, MPIU_REAL, MPI_SUM, d->comm));
-  PetscCall(OperatorsGetParameters(d->operators, &n, &parameter));
-  for (PetscInt i = 0; i < n; i++)
-    p[1] = 0.99 * p[1] + asinh(parameter[i].value); /* large and small ones count alike */
-  for (PetscInt i = 0; i < d->n_interfaces; i++) {
-    const ContactInterface *c;
+  PetscCall(ModelAddChecksum(d->model, PETSC_TRUE, c));
+  if (d->contact) PetscCall(ContactAddChecksum(d->contact, c));
+  if (d->projector) PetscCall(ContactProjectorAddChecksum(d->projector, c));
+  PetscCall(ExternalAddChecksum(d->external, c));
+  PetscCall(BodiesAddChecksum(d->bodies, c));
+  PetscCall(HistoryAddChecksum(d->history, c));
+  if (d->start == START_STATIC) PetscCall(StaticsAddChecksum(d->statics, c));
+  PetscCall(ChecksumSetPart(c, "the start"));
+  PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){d->start}));
+  PetscCall(ChecksumAddString(c, d->shape));
+  if (d->shape[0]) PetscCall(ChecksumAddInts(c, 1, &d->shape_mode));
+  if (d->shape[0]) PetscCall(ChecksumAddReals(c, 1, &d->shape_amplitude));
+  PetscCall(ChecksumSetPart(c, "-ts_central_b"));
+  PetscCall(ChecksumAddReals(c, 1, &d->b));
+  PetscCall(ChecksumSetPart(c, "-dynamics_step_fraction"));
+  PetscCall(ChecksumAddReals(c, 1, &d->fraction));
+  PetscCall(ChecksumSetPart(c, "-dynamics_coriolis, -dynamics_centrifugal"));
+  PetscCall(ChecksumAddInts(c, 2, (const PetscInt[]){d->coriolis, d->centrifugal}));
+  PetscFunctionReturn(0);
+}
 
-    PetscCall(ContactGetInterfaces(d->contact, &n, &c));
-    p[2] = 0.99 * p[2] + c[i].mu + asinh(c[i].speed) + c[i].mu_slope;
-    for (int k = 0; k < 3; k++) p[3] = 0.99 * p[3] + c[i].slip[k] + asinh(c[i].rotation[k]) + c[i].center[k];
-  }
-  p[4] = d->b;
-  p[5] = (PetscReal)d->n_elements;
-  p[6] = d->coriolis;
-  p[7] = d->centrifugal;
-  PetscCall(ExternalGetPrint(d->external, &p[8]));
-  if (d->projector) PetscCall(ContactProjectorGetPrint(d->projector, &p[9]));
+/* Makes the checksum of the scene, once */
+static PetscErrorCode DynamicsSumScene(Dynamics d)
+{
+  PetscFunctionBeginUser;
+  if (d->scene) PetscFunctionReturn(0);
+  PetscCall(ChecksumCreate(d->comm, &d->scene));
+  PetscCall(DynamicsAddChecksum(d, d->scene));
   PetscFunctionReturn(0);
 }
 
@@ -172,21 +171,20 @@ static PetscErrorCode ArraysRestore(Dynamics d, Arrays *a)
 
 PetscErrorCode DynamicsKeep(Dynamics d)
 {
-  CheckpointItem  item[N_ITEMS];
-  CheckpointPrint print;
-  Arrays          arrays;
-  Scalars         scalars;
+  CheckpointItem item[N_ITEMS];
+  Arrays         arrays;
+  Scalars        scalars;
 
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_CHECKPOINT));
   PetscCall(CheckNumbers(d));
-  PetscCall(MakePrint(d, &print));
+  PetscCall(DynamicsSumScene(d));
   PetscCall(ScalarsGet(d, &scalars));
   PetscCall(ArraysGet(d, &arrays));
   PetscCall(ItemsFill(d, &scalars, &arrays, item));
   if (d->projector) PetscCall(ContactProjectorGetMemory(d->projector, &item[PROJECTOR].n, &item[PROJECTOR].values));
   PetscCall(HistoryGetMemory(d->history, &item[HISTORY].n, &item[HISTORY].values));
-  PetscCall(CheckpointWrite(d->comm, d->results, &print, N_ITEMS, item));
+  PetscCall(CheckpointWrite(d->comm, d->results, d->scene, N_ITEMS, item));
   PetscCall(PetscFree(item[HISTORY].values));
   PetscCall(PetscFree(item[PROJECTOR].values));
   PetscCall(ArraysRestore(d, &arrays));
@@ -196,17 +194,16 @@ PetscErrorCode DynamicsKeep(Dynamics d)
 
 PetscErrorCode DynamicsGoOn(Dynamics d)
 {
-  CheckpointItem  item[N_ITEMS];
-  CheckpointPrint print;
-  Arrays          arrays;
-  Scalars         scalars;
+  CheckpointItem item[N_ITEMS];
+  Arrays         arrays;
+  Scalars        scalars;
 
   PetscFunctionBeginUser;
-  PetscCall(MakePrint(d, &print));
+  PetscCall(DynamicsSumScene(d));
   PetscCall(ArraysGet(d, &arrays));
   PetscCall(ItemsFill(d, &scalars, &arrays, item));
   item[PROJECTOR].n = item[HISTORY].n = -1;
-  PetscCall(CheckpointRead(d->comm, d->results, &print, N_ITEMS, item));
+  PetscCall(CheckpointRead(d->comm, d->results, d->scene, N_ITEMS, item));
   PetscCall(ScalarsSet(d, &scalars));
   if (d->projector) PetscCall(ContactProjectorSetMemory(d->projector, item[PROJECTOR].n, item[PROJECTOR].values));
   PetscCall(HistorySetMemory(d->history, item[HISTORY].n, item[HISTORY].values));

@@ -63,6 +63,16 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModesAddChecksum(Modes modes, Checksum c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ChecksumSetPart(c, "options of modes"));
+  PetscCall(ChecksumAddReals(c, 2, modes->band));
+  PetscCall(ChecksumAddReals(c, 1, &modes->growth));
+  PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){modes->is_static}));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModesGetContact(Modes modes, PetscBool *is_static)
 {
   PetscFunctionBeginUser;

@@ -37,6 +37,43 @@ PetscErrorCode OperatorsLoadFromOptions(Operators o, OptionsItems PetscOptionsOb
   PetscFunctionReturn(0);
 }
 
+/* Rows of a matrix in any order */
+static PetscErrorCode MatrixAddChecksum(Mat A, Checksum c)
+{
+  PetscInt  begin, end;
+  uint64_t *piece;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetOwnershipRange(A, &begin, &end));
+  PetscCall(PetscMalloc1(end - begin, &piece));
+  for (PetscInt row = begin; row < end; row++) {
+    const PetscInt    *columns;
+    const PetscScalar *values;
+    PetscInt           n;
+    uint64_t          *sum = &piece[row - begin];
+
+    PetscCall(MatGetRow(A, row, &n, &columns, &values));
+    *sum = ChecksumBytes(CHECKSUM_BEGIN, &row, sizeof(row));
+    *sum = ChecksumBytes(*sum, columns, (size_t)n * sizeof(*columns));
+    *sum = ChecksumBytes(*sum, values, (size_t)n * sizeof(*values));
+    PetscCall(MatRestoreRow(A, row, &n, &columns, &values));
+  }
+  PetscCall(ChecksumAddPieces(c, end - begin, piece));
+  PetscCall(PetscFree(piece));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsAddChecksum(Operators o, Checksum c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ChecksumSetPart(c, "matrices"));
+  PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){o->lump}));
+  if (o->model) PetscFunctionReturn(0);
+  PetscCall(ChecksumAddReals(c, 1, &o->loaded_mu));
+  for (PetscInt t = 0; t < o->base.n; t++) PetscCall(MatrixAddChecksum(o->base.term[t].A, c));
+  PetscFunctionReturn(0);
+}
+
 /* Raises an error when the file cannot be read, alike on all ranks */
 static PetscErrorCode OperatorsCheckFile(MPI_Comm comm, const char letter[], const char file[])
 {

@@ -66,6 +66,19 @@ PetscErrorCode StaticsSetFromOptions(Statics s)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode StaticsAddChecksum(Statics s, Checksum c)
+{
+  const PetscInt all[] = {s->load_steps, s->dense, s->rows_more, s->identify_steps, s->geometric, s->follower};
+  Model          model;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(s->operators, &model, NULL));
+  if (model) PetscCall(ModelAddLoadsChecksum(model, c));
+  PetscCall(ChecksumSetPart(c, "options of statics"));
+  PetscCall(ChecksumAddInts(c, PETSC_STATIC_ARRAY_LENGTH(all), all));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode StaticsCheckUse(Statics s, PetscBool modes)
 {
   const char *option = s->rows_more ? "-static_rows" : s->geometric ? "-static_geometric" : "-static_follower";

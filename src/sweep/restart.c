@@ -2,54 +2,47 @@
    Full solutions are kept in the output folder until the sweep is complete, so that a killed sweep goes on where it
    stopped. Each rank writes its part of the new vectors after every full solution, sweep_restart_<k>_rank<r>, under a
    temporary name that becomes final only when all ranks have written. The dense model is made again from the same
-   blocks of vectors: on one rank bit by bit the same. A fingerprint of matrices, window, points and ranks tells whether
-   the files belong to this sweep; files of another one are ignored and in the end replaced.
+   blocks of vectors: on one rank bit by bit the same. The checksum of the scene tells whether the files belong to this
+   sweep; files of another one are ignored and in the end replaced.
 */
 #include "sweepimpl.h"
 #include <stdio.h>
 #include <unistd.h>
 
-#define N_PRINTS 10
+#define VERSION 2 /* of the format */
 
-/* What stands before the vectors in each file */
+/* What stands before the parts of the scene and the vectors in each file */
 typedef struct {
-  PetscReal print[N_PRINTS], last;
-  PetscInt  n_samples, n_passed, n_used, first, n, n_blocks, n_local;
+  PetscReal last;
+  PetscInt  version, n_parts, n_samples, n_passed, n_used, first, n, n_blocks, n_local;
 } Header;
 
-/* Numbers that differ between sweeps that must not be mixed */
-static PetscErrorCode FingerprintMake(Sweep sweep, PetscReal print[N_PRINTS])
+/* What a sweep must share with the one that it goes on with */
+static PetscErrorCode SweepAddChecksum(Sweep sweep, Checksum c)
 {
-  const Reduced *r = &sweep->basis.reduced;
-  PetscInt       n_local, n_global;
-  PetscMPIInt    size;
-  PetscReal     *p;
+  const SweepGrid          *grid = &sweep->grid;
+  const OperatorsParameter *parameters;
+  PetscInt                  n;
+  PetscMPIInt               size;
+  Model                     model;
+  Contact                   contact;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(print, N_PRINTS));
+  PetscCall(OperatorsGetModel(sweep->operators, &model, &contact));
+  if (model) PetscCall(ModelAddChecksum(model, PETSC_TRUE, c));
+  if (contact) PetscCall(ContactAddChecksum(contact, c));
+  PetscCall(OperatorsAddChecksum(sweep->operators, c));
+  if (sweep->statics) PetscCall(StaticsAddChecksum(sweep->statics, c));
+  PetscCall(ModesAddChecksum(sweep->modes, c));
+  PetscCall(OperatorsGetParameters(sweep->operators, &n, &parameters));
   PetscCallMPI(MPI_Comm_size(sweep->comm, &size));
-  PetscCall(BVGetSizes(sweep->basis.vectors, &n_local, &n_global, NULL));
-  print[0] = 1; /* version of the format */
-  print[1] = size;
-  print[2] = (PetscReal)n_global;
-  print[3] = sweep->window.low;
-  print[4] = sweep->window.high;
-  print[5] = sweep->window.growth;
-  print[6] = sweep->rtol;
-  for (PetscInt t = 0; t < r->n_terms; t++) {
-    PetscReal norm;
-
-    PetscCall(MatNorm(r->term[t].A, NORM_FROBENIUS, &norm));
-    print[7] = 0.9 * print[7] + norm;
+  PetscCall(ChecksumSetPart(c, "the sweep"));
+  PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){size}));
+  PetscCall(ChecksumAddReals(c, 1, &sweep->rtol));
+  for (PetscInt k = 0; k < grid->n_axes; k++) {
+    PetscCall(ChecksumAddString(c, parameters[grid->parameter[k]].name));
+    PetscCall(ChecksumAddReals(c, grid->n[k], grid->value[k]));
   }
-  PetscCall(PetscMalloc1(r->n_parameters, &p));
-  for (PetscInt i = 0; i < sweep->grid.n_places; i++) {
-    GridFill(&sweep->grid, &sweep->grid.place[i], p);
-    for (PetscInt k = 0; k < r->n_parameters; k++)
-      print[8] = 0.99 * print[8] + asinh(p[k]); /* large and small ones count alike */
-  }
-  PetscCall(PetscFree(p));
-  print[9] = (PetscReal)r->n_terms;
   PetscFunctionReturn(0);
 }
 
@@ -116,16 +109,18 @@ static PetscErrorCode AllGood(MPI_Comm comm, PetscBool *good)
 
 PetscErrorCode SweepKeep(void *ctx)
 {
-  Sweep     sweep = (Sweep)ctx;
-  Basis    *basis = &sweep->basis;
-  char      name[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
-  PetscBool good = PETSC_TRUE;
-  Header    h;
-  FILE     *file;
+  Sweep               sweep = (Sweep)ctx;
+  Basis              *basis = &sweep->basis;
+  const ChecksumPart *scene;
+  char                name[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
+  PetscBool           good = PETSC_TRUE;
+  Header              h;
+  FILE               *file;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(&h, sizeof(h)));
-  PetscCall(PetscArraycpy(h.print, sweep->print, N_PRINTS));
+  h.version = VERSION;
+  PetscCall(ChecksumGetParts(sweep->scene, &h.n_parts, &scene));
   h.last      = sweep->greedy.last;
   h.n_passed  = sweep->greedy.n_passed;
   h.n_samples = sweep->greedy.n_samples, h.n_used = basis->reduced.n_used;
@@ -136,6 +131,7 @@ PetscErrorCode SweepKeep(void *ctx)
   file = fopen(part, "wb");
   good = file ? PETSC_TRUE : PETSC_FALSE;
   Transfer(file, PETSC_TRUE, &h, sizeof(h), 1, &good);
+  Transfer(file, PETSC_TRUE, (void *)scene, sizeof(*scene), h.n_parts, &good);
   Transfer(file, PETSC_TRUE, basis->block_end, sizeof(PetscInt), h.n_blocks, &good);
   PetscCall(RecordsTransfer(sweep, file, PETSC_TRUE, &h, &good));
   PetscCall(VectorsTransfer(file, PETSC_TRUE, basis->vectors, &h, &good));
@@ -155,12 +151,24 @@ PetscErrorCode SweepKeep(void *ctx)
   PetscFunctionReturn(0);
 }
 
-/* Whether the fingerprints are those of one sweep: norms of matrices may differ in their last digits */
-static PetscBool PrintsAgree(const PetscReal a[N_PRINTS], const PetscReal b[N_PRINTS])
+/* Reads the parts of the scene; good = whether they are those of this sweep */
+static PetscErrorCode SceneCheck(Sweep sweep, FILE *file, const Header *h, PetscBool *good)
 {
-  for (int i = 0; i < N_PRINTS; i++)
-    if (PetscAbsReal(a[i] - b[i]) > 1e-12 * PetscAbsReal(a[i])) return PETSC_FALSE;
-  return PETSC_TRUE;
+  const ChecksumPart *own;
+  ChecksumPart       *kept;
+  PetscInt            n;
+  char                names[256];
+
+  PetscFunctionBeginUser;
+  if (!*good) PetscFunctionReturn(0);
+  PetscCall(ChecksumGetParts(sweep->scene, &n, &own));
+  if (h->version != VERSION || h->n_parts != n) *good = PETSC_FALSE;
+  PetscCall(PetscCalloc1(n, &kept));
+  Transfer(file, PETSC_FALSE, kept, sizeof(*kept), n, good);
+  PetscCall(ChecksumCompare(sweep->scene, n, kept, sizeof(names), names));
+  if (names[0]) *good = PETSC_FALSE;
+  PetscCall(PetscFree(kept));
+  PetscFunctionReturn(0);
 }
 
 /* Reads file k into the basis; good = whether it exists, is whole and belongs to this sweep */
@@ -177,9 +185,10 @@ static PetscErrorCode FileResume(Sweep sweep, PetscInt k, PetscBool *good)
   file  = fopen(name, "rb");
   *good = file ? PETSC_TRUE : PETSC_FALSE;
   Transfer(file, PETSC_FALSE, &h, sizeof(h), 1, good);
+  PetscCall(SceneCheck(sweep, file, &h, good));
   PetscCall(BVGetSizes(basis->vectors, &n_local, NULL, NULL));
-  if (*good && (h.n < h.first || h.n_used > h.n || !PrintsAgree(h.print, sweep->print) || h.first != basis->reduced.n ||
-                h.n_local != n_local || h.n_samples > sweep->greedy.max_samples || h.n_blocks > BASIS_MAX_BLOCKS))
+  if (*good && (h.n < h.first || h.n_used > h.n || h.first != basis->reduced.n || h.n_local != n_local ||
+                h.n_samples > sweep->greedy.max_samples || h.n_blocks > BASIS_MAX_BLOCKS))
     *good = PETSC_FALSE;
   PetscCall(AllGood(sweep->comm, good));
   if (*good) {
@@ -205,7 +214,8 @@ PetscErrorCode SweepResume(Sweep sweep)
   PetscBool good = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  PetscCall(FingerprintMake(sweep, sweep->print));
+  PetscCall(ChecksumCreate(sweep->comm, &sweep->scene));
+  PetscCall(SweepAddChecksum(sweep, sweep->scene));
   while (good) {
     PetscCall(FileResume(sweep, sweep->n_files, &good));
     if (good) sweep->n_files++;

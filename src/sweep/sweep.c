@@ -330,6 +330,7 @@ PetscErrorCode SweepDestroy(Sweep *sweep)
   PetscCall(PetscFree(s->label));
   PetscCall(PetscFree(s->worst));
   PetscCall(PetscFree(s->is_confirmed));
+  PetscCall(ChecksumDestroy(&s->scene));
   PetscCall(BranchEventsDestroy(&s->events));
   PetscCall(GreedyDestroy(&s->greedy));
   PetscCall(BasisDestroy(&s->basis));

@@ -86,7 +86,7 @@ struct _p_Sweep {
   PetscInt       n_checks, n_risks, n_combinations;
   PetscReal      worst_risk; /* largest estimated relative error of all combinations */
   const char    *folder;     /* of the restart files */
-  PetscReal      print[10];  /* tells whether they belong to this sweep */
+  Checksum       scene;      /* tells whether they belong to this sweep */
   PetscInt       n_files, n_kept;
   PetscLogDouble seconds[5]; /* basis, points, onsets, verification, contact statuses */
 };

@@ -4,7 +4,6 @@
    changed by hand (with the checksum made anew). A full disk is played by the limit of the size of a file.
 */
 #include "dynamics/checkpoint.h"
-#include "base/checksum.h"
 #include "check.h"
 #include "scratch.h"
 #include <math.h>
@@ -21,14 +20,14 @@
 enum { ORDER = 1, SIZE, CHECKSUM, VERSION, REAL, RANKS, TOTAL = 9 };
 
 typedef struct {
-  Scratch         scratch;
-  Results         results;
-  CheckpointPrint print;
-  PetscMPIInt     size;
-  PetscReal       value[N_ITEMS][MAX_N];
-  CheckpointItem  item[N_ITEMS];
-  long            length; /* of the good file, bytes */
-  unsigned char   good[MAX_BYTES];
+  Scratch        scratch;
+  Results        results;
+  Checksum       scene;
+  PetscMPIInt    size;
+  PetscReal      value[N_ITEMS][MAX_N];
+  CheckpointItem item[N_ITEMS];
+  long           length; /* of the good file, bytes */
+  unsigned char  good[MAX_BYTES];
 } Test;
 
 /* Arrays whose lengths differ between ranks, one of them empty on rank 0, with numbers that only bits tell apart */
@@ -57,7 +56,7 @@ static PetscErrorCode ReadBack(Test *t, PetscBool any, PetscBool *same)
   memset(value, 1, sizeof(value));
   for (int i = 0; i < N_ITEMS; i++)
     item[i] = (CheckpointItem){t->item[i].name, any ? -1 : t->item[i].n, any ? NULL : value[i]};
-  error = CheckpointRead(PETSC_COMM_WORLD, t->results, &t->print, N_ITEMS, item);
+  error = CheckpointRead(PETSC_COMM_WORLD, t->results, t->scene, N_ITEMS, item);
   for (int i = 0; i < N_ITEMS && !error; i++) {
     const size_t bytes = sizeof(PetscReal) * (size_t)t->item[i].n;
 
@@ -116,8 +115,7 @@ static int TestSame(Test *t)
 
   for (int salt = 0; salt < 2; salt++) { /* the second one replaces the first */
     ItemsMake(t, salt);
-    failed +=
-      CheckTrue("written", !CheckpointWrite(PETSC_COMM_WORLD, t->results, &t->print, N_ITEMS, t->item), t->size);
+    failed += CheckTrue("written", !CheckpointWrite(PETSC_COMM_WORLD, t->results, t->scene, N_ITEMS, t->item), t->size);
     failed += CheckTrue("read", !ReadBack(t, PETSC_FALSE, &same) && same, salt);
     failed += CheckTrue("read with open lengths", !ReadBack(t, PETSC_TRUE, &same) && same, salt);
   }
@@ -169,7 +167,7 @@ static int RefusedWord(Test *t, int word, uint64_t value, PetscErrorCode code, c
   head[word]     = value;
   head[CHECKSUM] = 0;
   memcpy(bytes, head, sizeof(head));
-  if (head[SIZE] <= (uint64_t)t->length) sum = ChecksumAdd(CHECKSUM_BEGIN, bytes, head[SIZE]);
+  if (head[SIZE] <= (uint64_t)t->length) sum = ChecksumBytes(CHECKSUM_BEGIN, bytes, head[SIZE]);
   memcpy(bytes + 8 * CHECKSUM, &sum, 8);
   return Refused(t, bytes, t->length, code, words);
 }
@@ -181,7 +179,7 @@ static int TestForeign(Test *t)
   int  failed = 0;
 
   snprintf(ranks, sizeof(ranks), "was written by 7 ranks, this run has %d", t->size);
-  snprintf(version, sizeof(version), "has version 9 of the format, this program reads version 1");
+  snprintf(version, sizeof(version), "has version 9 of the format, this program reads version 2");
   failed += CheckTrue("other ranks", RefusedWord(t, RANKS, 7, PETSC_ERR_FILE_UNEXPECTED, ranks), 7);
   failed += CheckTrue("other version", RefusedWord(t, VERSION, 9, PETSC_ERR_FILE_UNEXPECTED, version), 9);
   failed +=
@@ -202,25 +200,31 @@ static int TestForeign(Test *t)
   return failed;
 }
 
-/* Breaks when: another fingerprint (by one bit, by sign of zero, by number), or other arrays on one rank alone, pass */
+/* The scene of a run: a number that is 0 or differs by its sign alone, and a part more */
+static PetscErrorCode SceneMake(PetscReal x, PetscBool more, Checksum *scene)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ChecksumDestroy(scene));
+  PetscCall(ChecksumCreate(PETSC_COMM_WORLD, scene));
+  PetscCall(ChecksumSetPart(*scene, "materials"));
+  PetscCall(ChecksumAddReals(*scene, 1, &x));
+  PetscCall(ChecksumSetPart(*scene, "supports"));
+  if (more) PetscCall(ChecksumSetPart(*scene, "contact pad"));
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: another scene (by one bit, by a part more), or other arrays on one rank alone, pass */
 static int TestOtherModel(Test *t)
 {
-  const CheckpointPrint print   = t->print;
-  const PetscMPIInt     last    = t->size - 1;
-  const char            other[] = "is of another model or other parameters";
-  int                   failed  = 0;
+  const PetscMPIInt last   = t->size - 1;
+  int               failed = 0;
 
-  t->print.print[1] = nextafter(print.print[1], 10);
-  failed +=
-    CheckTrue("print that differs by one bit", Refused(t, t->good, t->length, PETSC_ERR_FILE_UNEXPECTED, other), 1);
-  t->print          = print;
-  t->print.print[2] = -0.0;
-  failed +=
-    CheckTrue("print that differs by a sign", Refused(t, t->good, t->length, PETSC_ERR_FILE_UNEXPECTED, other), 2);
-  t->print = print;
-  t->print.n_print++;
-  failed += CheckTrue("longer print", Refused(t, t->good, t->length, PETSC_ERR_FILE_UNEXPECTED, other), 3);
-  t->print = print;
+  PetscCall(SceneMake(-0.0, PETSC_TRUE, &t->scene));
+  failed += CheckTrue("one bit, one part",
+                      Refused(t, t->good, t->length, PETSC_ERR_FILE_UNEXPECTED,
+                              "is of another scene, which differs in: materials, contact pad"),
+                      1);
+  PetscCall(SceneMake(0, PETSC_FALSE, &t->scene));
   if (t->scratch.rank == last) t->item[2].n--;
   failed += CheckTrue("length that differs on one rank",
                       Refused(t, t->good, t->length, PETSC_ERR_FILE_UNEXPECTED, "has 7 numbers of 'a name"), 4);
@@ -260,27 +264,13 @@ static int TestFull(Test *t)
 
     ItemsMake(t, 2);
     LimitFiles(limit);
-    error = CheckpointWrite(PETSC_COMM_WORLD, t->results, &t->print, N_ITEMS, t->item);
+    error = CheckpointWrite(PETSC_COMM_WORLD, t->results, t->scene, N_ITEMS, t->item);
     LimitFiles(-1);
     ItemsMake(t, 1);
     good += error == PETSC_ERR_FILE_WRITE && strstr(t->scratch.message, NAME ": File too large; free some space") &&
             !ReadBack(t, PETSC_FALSE, &same) && same && !ScratchRemove(&t->scratch, NAME ".part");
   }
   return CheckTrue("the last good file stays when the disk is full", good == n, n);
-}
-
-/* Breaks when: the sum of a zero-filled tail or an empty array is that of another length */
-static int TestChecksum(void)
-{
-  const char bytes[16] = {1, 2, 3};
-  uint64_t   sum[17];
-  int        equal = 0;
-
-  for (size_t n = 0; n <= 16; n++) {
-    sum[n] = ChecksumAdd(CHECKSUM_BEGIN, bytes, n);
-    for (size_t i = 0; i < n; i++) equal += sum[i] == sum[n];
-  }
-  return CheckTrue("lengths have their own checksums", equal == 0, equal);
 }
 
 int main(int argc, char **argv)
@@ -295,10 +285,7 @@ int main(int argc, char **argv)
   PetscCall(PetscOptionsSetValue(NULL, "-output_dir", t.scratch.dir));
   PetscCall(ResultsCreate(PETSC_COMM_WORLD, &t.results));
   PetscCall(ResultsSetFromOptions(t.results));
-  t.print = (CheckpointPrint){
-    .print = {0.1, 1 + PETSC_MACHINE_EPSILON, 0},
-      .n_print = 3
-  };
+  PetscCall(SceneMake(0, PETSC_FALSE, &t.scene));
   failed = TestSame(&t);
   failed += TestTruncated(&t);
   failed += TestFlipped(&t);
@@ -306,8 +293,8 @@ int main(int argc, char **argv)
   failed += TestOtherModel(&t);
   failed += TestMissing(&t);
   failed += TestFull(&t);
-  failed += TestChecksum();
   (void)ScratchRemove(&t.scratch, NAME);
+  PetscCall(ChecksumDestroy(&t.scene));
   PetscCall(ResultsDestroy(&t.results));
   failed += CheckTrue("no other file is left", ScratchDestroy(&t.scratch), 0);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD));

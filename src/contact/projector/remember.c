@@ -4,7 +4,6 @@
    whether a search is due, which each rank knows.
 */
 #include "projectorimpl.h"
-#include "base/checksum.h"
 
 #define PER_PAIR (4 + 3 * PROJECTOR_PAST) /* facet, natural coordinates, slip speed, forces */
 #define PER_SUMS 16
@@ -106,22 +105,16 @@ PetscErrorCode ContactProjectorSetMemory(ContactProjector p, PetscInt n, const P
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactProjectorGetPrint(ContactProjector p, PetscReal *print)
+PetscErrorCode ContactProjectorAddChecksum(ContactProjector p, Checksum c)
 {
-  uint64_t h = CHECKSUM_BEGIN;
-
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < p->n_interfaces; i++) {
-    const ContactInterface *c     = &p->contact->interfaces[i];
-    const ContactSliding   *s     = &p->sliding[i];
-    const PetscReal         all[] = {s->turning,    s->rotates,    s->slides, s->axis[0],
-                                     s->axis[1],    s->axis[2],    s->speed,  (PetscReal)s->ramp.shape,
-                                     s->ramp.delay, s->ramp.length};
+    const ContactSliding *s       = &p->sliding[i];
+    const PetscReal       ramps[] = {(PetscReal)s->ramp.shape, s->ramp.delay, s->ramp.length};
 
-    h = ChecksumAdd(h, c->slave, strlen(c->slave));
-    h = ChecksumAdd(h, c->master, strlen(c->master));
-    h = ChecksumAdd(h, all, sizeof(all));
+    PetscCall(ChecksumSetPart(c, "contact %s", p->contact->interfaces[i].name));
+    PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){s->turning}));
+    PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(ramps), ramps));
   }
-  *print = (PetscReal)(h >> 12); /* 52 bits, which a real number holds exactly */
   PetscFunctionReturn(0);
 }

@@ -197,6 +197,14 @@ PetscErrorCode BodiesGetDampingForce(Bodies b, PetscReal **d)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode BodiesAddChecksum(Bodies b, Checksum c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ChecksumSetPart(c, "-dynamics_kernel"));
+  PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){b->no_sweep}));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BodiesDestroy(Bodies *bodies)
 {
   Bodies b = *bodies;

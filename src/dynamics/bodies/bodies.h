@@ -108,6 +108,9 @@ PetscErrorCode BodiesGetDampingForce(Bodies bodies, PetscReal **d);
     K_e + s C_e (and of springs and dashpots with their nodes), an upper bound of the assembled one. Collective. @*/
 PetscErrorCode BodiesGetElementBound(Bodies bodies, PetscReal s, PetscReal *bound);
 
+/*@ BodiesAddChecksum - adds the choice of kernels. Not collective. @*/
+PetscErrorCode BodiesAddChecksum(Bodies bodies, Checksum checksum);
+
 /*@ BodiesView - which kernel serves which body, in words. Collective. @*/
 PetscErrorCode BodiesView(Bodies bodies, PetscViewer viewer);
 

@@ -3,7 +3,6 @@
    external.h.
 */
 #include "externalimpl.h"
-#include "base/checksum.h"
 
 PetscErrorCode ExternalCreate(MPI_Comm comm, Model model, External *external)
 {
@@ -100,44 +99,45 @@ PetscErrorCode ExternalGetMemory(External external, PetscInt *n, PetscReal **val
   PetscFunctionReturn(0);
 }
 
-static uint64_t PrintReals(uint64_t h, PetscInt n, const PetscReal values[])
-{
-  return ChecksumAdd(h, values, (size_t)n * sizeof(*values));
-}
-
-static uint64_t PrintRamp(uint64_t h, const Ramp *ramp)
+static PetscErrorCode RampAddChecksum(const Ramp *ramp, Checksum c)
 {
   const PetscReal all[] = {(PetscReal)ramp->shape, ramp->delay, ramp->length};
 
-  return PrintReals(h, PETSC_STATIC_ARRAY_LENGTH(all), all);
+  PetscFunctionBeginUser;
+  PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(all), all));
+  PetscFunctionReturn(0);
 }
 
-PetscErrorCode ExternalGetPrint(External external, PetscReal *print)
+PetscErrorCode ExternalAddChecksum(External external, Checksum c)
 {
-  uint64_t    h = PrintReals(CHECKSUM_BEGIN, 3, external->gravity);
-  PetscInt    n;
-  const Load *loads;
-
   PetscFunctionBeginUser;
-  PetscCall(ModelGetLoads(external->model, &n, &loads));
+  PetscCall(ChecksumSetPart(c, "-dynamics_gravity"));
+  PetscCall(ChecksumAddReals(c, 3, external->gravity));
+  PetscCall(ChecksumSetPart(c, "the start"));
+  PetscCall(ChecksumAddReals(c, 3 * external->n_parts, external->velocity));
+  PetscCall(ModelAddLoadsChecksum(external->model, c));
   for (PetscInt i = 0; i < external->n_loads; i++) {
-    h = ChecksumAdd(h, loads[i].set, strlen(loads[i].set));
-    h = PrintReals(PrintRamp(h, &external->loads[i].ramp), 3, external->loads[i].force);
+    PetscCall(ChecksumSetPart(c, "load %s", external->loads[i].name));
+    PetscCall(RampAddChecksum(&external->loads[i].ramp, c));
   }
   for (PetscInt i = 0; i < external->n_motions; i++) {
     const Drive *m = &external->motions[i];
 
-    h = ChecksumAdd(h, m->set, strlen(m->set));
-    h = PrintReals(PrintRamp(h, &m->ramp), 3, m->displacement);
-    h = ChecksumAdd(h, m->direction, sizeof(m->direction));
+    PetscCall(ChecksumSetPart(c, "motion %s", m->name));
+    PetscCall(ModelAddSetChecksum(external->model, m->set, PETSC_FALSE, c));
+    PetscCall(ChecksumAddReals(c, 3, m->displacement));
+    PetscCall(ChecksumAddInts(c, 3, (const PetscInt[]){m->direction[0], m->direction[1], m->direction[2]}));
+    PetscCall(RampAddChecksum(&m->ramp, c));
   }
   for (PetscInt i = 0; i < external->n_impulses; i++) {
     const Impulse *hit = &external->impulses[i];
 
-    h = PrintReals(PrintReals(h, 3, hit->x), 3, hit->impulse);
-    h = PrintReals(h, 1, &hit->time);
+    PetscCall(ChecksumSetPart(c, "impulse %s", hit->name));
+    PetscCall(ChecksumAddInts(c, 1, &i)); /* the order counts */
+    PetscCall(ChecksumAddReals(c, 3, hit->x));
+    PetscCall(ChecksumAddReals(c, 3, hit->impulse));
+    PetscCall(ChecksumAddReals(c, 1, &hit->time));
   }
-  *print = (PetscReal)(h >> 12); /* 52 bits, which a real number holds exactly */
   PetscFunctionReturn(0);
 }
 

@@ -79,9 +79,9 @@ PETSC_INTERN PetscErrorCode ExternalFinish(External external, PetscReal dt, cons
    written in place; valid until the next ExternalSetFrame() of another part). Not collective. */
 PETSC_INTERN PetscErrorCode ExternalGetMemory(External external, PetscInt *n, PetscReal **values);
 
-/* ExternalGetPrint - a number that differs, for all that can be expected, where loads, gravity, motions, impulses or
-   their ramps differ; the same on every rank. After ExternalSetUp(). Not collective. */
-PETSC_INTERN PetscErrorCode ExternalGetPrint(External external, PetscReal *print);
+/* ExternalAddChecksum - adds loads, gravity, motions, impulses, their ramps, and velocities at the start. Collective;
+   after ExternalSetUp(). */
+PETSC_INTERN PetscErrorCode ExternalAddChecksum(External external, Checksum checksum);
 
 /* ExternalView - in words, such as "load press: 100 N, smooth ramp over 0.002 s". Collective. */
 PETSC_INTERN PetscErrorCode ExternalView(External external, PetscViewer viewer);

@@ -222,6 +222,17 @@ PetscErrorCode HistorySetMemory(History h, PetscInt n, const PetscReal values[])
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode HistoryAddChecksum(History h, Checksum c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ChecksumSetPart(c, "probes"));
+  for (PetscInt i = 0; i < h->n_probes; i++) {
+    PetscCall(ChecksumAddString(c, h->probes[i].name));
+    PetscCall(ChecksumAddReals(c, 3, h->probes[i].x));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode HistoryClose(History history)
 {
   PetscFunctionBeginUser;

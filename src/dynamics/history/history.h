@@ -45,6 +45,9 @@ PETSC_INTERN PetscErrorCode HistoryRecord(History history, const HistoryState *s
 PETSC_INTERN PetscErrorCode HistoryGetMemory(History history, PetscInt *n, PetscReal **values);
 PETSC_INTERN PetscErrorCode HistorySetMemory(History history, PetscInt n, const PetscReal values[]);
 
+/* adds the probes, whose columns go on. Not collective. */
+PETSC_INTERN PetscErrorCode HistoryAddChecksum(History history, Checksum checksum);
+
 /* completes transient.csv under its final name. Collective. */
 PETSC_INTERN PetscErrorCode HistoryClose(History history);
 

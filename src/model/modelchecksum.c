@@ -1,0 +1,110 @@
+/*
+   What a model adds to the checksum of a scene. The mesh counts by the places of its nodes, which no renumbering
+   changes: a cell by its part and corners in the element's order, a set by its nodes, a surface by its faces as well.
+*/
+#include "modelimpl.h"
+
+/* Checksum of n vertices (points of the DM), in any order */
+static uint64_t VerticesSum(Model model, PetscInt v_start, PetscInt n, const PetscInt vertex[])
+{
+  uint64_t sum = 0;
+
+  for (PetscInt i = 0; i < n; i++)
+    sum += ChecksumBytes(CHECKSUM_BEGIN, &model->coordinates[3 * (vertex[i] - v_start)], 3 * sizeof(PetscReal));
+  return ChecksumBytes(CHECKSUM_BEGIN, &sum, sizeof(sum));
+}
+
+PetscErrorCode ModelAddSetChecksum(Model model, const char set[], PetscBool is_surface, Checksum c)
+{
+  const PetscInt *vertex;
+  PetscInt        v_start, n, n_faces = 0, *corners = NULL;
+  uint64_t       *piece;
+  IS              is;
+
+  PetscFunctionBeginUser;
+  PetscCall(ChecksumAddString(c, set));
+  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &v_start, NULL));
+  PetscCall(ModelGetOwnedVertices(model, set, &is));
+  PetscCall(ISGetLocalSize(is, &n));
+  if (is_surface) PetscCall(ModelGetSetFaces(model, set, &n_faces, &corners));
+  PetscCall(PetscMalloc1(n + n_faces, &piece));
+  PetscCall(ISGetIndices(is, &vertex));
+  for (PetscInt i = 0; i < n; i++) piece[i] = VerticesSum(model, v_start, 1, &vertex[i]);
+  for (PetscInt i = 0; i < n_faces; i++) piece[n + i] = VerticesSum(model, v_start, 4, &corners[4 * i]);
+  PetscCall(ISRestoreIndices(is, &vertex));
+  PetscCall(ISDestroy(&is));
+  PetscCall(ChecksumAddPieces(c, n + n_faces, piece));
+  PetscCall(PetscFree(corners));
+  PetscCall(PetscFree(piece));
+  PetscFunctionReturn(0);
+}
+
+/* Cells, and as a part of its own which rank has which, where a run goes on with arrays of each rank */
+static PetscErrorCode MeshAddChecksum(Model model, PetscBool with_partition, Checksum c)
+{
+  PetscInt    c_start, c_end, vertices[ELEMENT_MAX_NODES];
+  PetscMPIInt rank;
+  PetscReal   x[ELEMENT_MAX_DOFS];
+  uint64_t   *piece, local = CHECKSUM_BEGIN;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(model->comm, &rank));
+  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &c_start, &c_end));
+  PetscCall(PetscMalloc1(c_end - c_start, &piece));
+  for (PetscInt i = 0; i < c_end - c_start; i++) {
+    PetscCall(ModelGetCell(model, i, vertices, x));
+    piece[i] = ChecksumBytes(CHECKSUM_BEGIN, x, 3 * (size_t)model->element->n_nodes * sizeof(PetscReal));
+    piece[i] = ChecksumBytes(piece[i], &model->cell_part[i], sizeof(PetscInt));
+    local    = ChecksumBytes(local, &piece[i], sizeof(local));
+  }
+  PetscCall(ChecksumSetPart(c, "the mesh"));
+  PetscCall(ChecksumAddString(c, model->element->formulation));
+  PetscCall(ChecksumAddPieces(c, c_end - c_start, piece));
+  PetscCall(PetscFree(piece));
+  local = ChecksumBytes(local, &rank, sizeof(rank));
+  PetscCall(ChecksumSetPart(c, "its partition"));
+  if (with_partition) PetscCall(ChecksumAddPieces(c, 1, &local));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MeshAddChecksum(model, with_partition, c));
+  PetscCall(ChecksumSetPart(c, "materials"));
+  for (PetscInt i = 0; i < model->n_parts; i++) {
+    const Part     *p     = &model->parts[i];
+    const PetscReal all[] = {p->young, p->poisson, p->density, p->alpha, p->beta};
+
+    PetscCall(ChecksumAddString(c, p->name));
+    PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(all), all));
+  }
+  PetscCall(ChecksumSetPart(c, "supports"));
+  for (PetscInt i = 0; i < model->n_supports; i++) {
+    const PetscBool *fix = model->supports[i].fix;
+
+    PetscCall(ModelAddSetChecksum(model, model->supports[i].set, PETSC_FALSE, c));
+    PetscCall(ChecksumAddInts(c, 3, (const PetscInt[]){fix[0], fix[1], fix[2]}));
+  }
+  for (PetscInt i = 0; i < model->n_springs + model->n_dashpots; i++) {
+    const PetscBool is_spring = i < model->n_springs ? PETSC_TRUE : PETSC_FALSE;
+    const Grounded *g         = is_spring ? &model->springs[i] : &model->dashpots[i - model->n_springs];
+
+    PetscCall(ChecksumSetPart(c, is_spring ? "springs" : "dashpots"));
+    PetscCall(ModelAddSetChecksum(model, g->set, PETSC_FALSE, c));
+    PetscCall(ChecksumAddReals(c, 3, g->value));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelAddLoadsChecksum(Model model, Checksum c)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < model->n_loads; i++) {
+    PetscCall(ChecksumSetPart(c, "load %s", model->loads[i].name));
+    PetscCall(ChecksumAddInts(c, 1, &i)); /* the order counts */
+    PetscCall(ModelAddSetChecksum(model, model->loads[i].set, PETSC_FALSE, c));
+    PetscCall(ChecksumAddReals(c, 3, model->loads[i].force));
+  }
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,164 @@
+"""What the tests of restarts in time share: scenes, runs in folders of their own, what must be equal, and waiting for
+the processes of a run."""
+
+import argparse
+import csv
+import random
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+import h5py
+
+SOURCE = Path(__file__).resolve().parents[2]
+SMALL = """
+rig: {disc: {elements: "4,24,1"}, pad: {elements: "4,4,2"}, beam: {elements: 5}}
+pad: {young: 39.8e9}
+loads: press
+press: {ramp: 2e-4}
+impulses: tap
+tap: {time: 3e-4, impulse: "0,0,-1e-3"}
+motions: nudge
+nudge: {set: beam_top, displacement: "0,1e-7,0", directions: y, ramp: 5e-4}
+contact: {speed: 0.02}
+dynamics: {history_interval: 1e-6, pairs_interval: 1e-5, snapshot_interval: 2e-4, live: 0}
+"""
+TURNS = "-contact_kinematics turning -contact_slip 0,0,0 -contact_speed 0 -contact_rotation 0,0,-2 -contact_mu 0.9" \
+        " -dynamics_gravity 0,-9.81,0 -dynamics_coriolis -dynamics_centrifugal"
+SCENES = {
+    "stays": "-contact_ramp 1e-3 -ts_central_b 0.5",
+    "stays dissipative": "-contact_ramp 1e-3 -ts_central_b 0.8",
+    "turns": TURNS,
+    "turns dissipative": TURNS + " -ts_central_b 0.8",
+}
+TABLES = ("transient.csv", "contact_pairs.csv", "transient.xmf")
+RESTART = "-dynamics_restart"
+OFTEN = 200  # steps between checkpoints
+PATIENCE = 60  # seconds
+
+
+def fail(message):
+    raise SystemExit(f"FAILED: {message}")
+
+
+class Runs:
+    """Runs of one scene, each in a folder of its own."""
+
+    def __init__(self, arguments, folder, scene):
+        self.arguments, self.folder, self.scene = arguments, folder, scene
+
+    def command(self, name, *options):
+        (self.folder / "small.yaml").write_text(SMALL)
+        return [self.arguments.launcher, "-n", str(self.arguments.ranks), self.arguments.squeal, "-options_file",
+                SOURCE / "options/massi2005_transient.yaml", "-options_file", self.folder / "small.yaml",
+                *SCENES[self.scene].split(), "-output_dir", self.folder / name, "-ts_max_time", str(self.arguments.end),
+                *options]
+
+    def start(self, name, *options):
+        return subprocess.Popen(self.command(name, *options), start_new_session=True, text=True,
+                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+    def complete(self, name, *options):
+        """Runs to the end; seconds that it took."""
+        begun = time.monotonic()
+        process = self.start(name, *options)
+        stderr = process.communicate(timeout=PATIENCE)[1]
+        if process.returncode:
+            fail(f"{self.scene}, {name}: exit status {process.returncode}: {stderr}")
+        return time.monotonic() - begun
+
+    def path(self, name, file):
+        return self.folder / name / file
+
+
+    def restart(self, name, *options):
+        """Tries to go on: exit status, and the lines that complain."""
+        process = self.start(name, RESTART, *options)
+        stderr = process.communicate(timeout=PATIENCE)[1]
+        return process.returncode, [line for line in stderr.splitlines() if line.startswith("squeal:")]
+
+
+# --- what is equal
+
+
+def arrays(path):
+    """All datasets of a file, as bytes."""
+    with h5py.File(path) as file:
+        keys = []
+        file.visit(keys.append)
+        found = {key: file[key][()].tobytes() for key in keys if isinstance(file[key], h5py.Dataset)}
+    return found
+
+
+def compare(runs, one, other):
+    """Tables by bytes, fields by the bytes of their values; nothing temporary is left."""
+    for table in TABLES:
+        if runs.path(one, table).read_bytes() != runs.path(other, table).read_bytes():
+            difference = first_difference(runs, one, other, table)
+            fail(f"{runs.scene}: {table} of {other} differs from that of {one}: {difference}")
+    frames = [sorted(path.name for path in (runs.folder / name).glob("snapshot_*.h5")) for name in (one, other)]
+    if frames[0] != frames[1] or len(frames[0]) < 3:
+        fail(f"{runs.scene}: snapshots {frames[1]} of {other}, {frames[0]} of {one}")
+    for frame in frames[0]:
+        if arrays(runs.path(one, frame)) != arrays(runs.path(other, frame)):
+            fail(f"{runs.scene}: values in {frame} of {other} differ from those of {one}")
+    left = [path.name for path in (runs.folder / other).glob("*.part")]
+    if left:
+        fail(f"{runs.scene}: {' '.join(left)} left behind in {other}")
+
+
+def first_difference(runs, one, other, table):
+    """Column and cells of the first row that differs."""
+    rows = [list(csv.reader(runs.path(name, table).open(newline=""))) for name in (one, other)]
+    for row in zip(*rows):
+        for column, cells in enumerate(zip(*row)):
+            if cells[0] != cells[1]:
+                return f"{rows[0][0][column]} {cells[1]} instead of {cells[0]} at {row[0][0]} s"
+    return f"{len(rows[1])} rows instead of {len(rows[0])}"
+
+
+# --- processes
+
+
+def ranks_of(folder):
+    """Processes that write to a folder: ranks and launcher."""
+    found = []
+    for entry in Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            if str(folder).encode() in entry.read_bytes().split(b"\0"):
+                found.append(int(entry.parent.name))
+        except OSError:
+            pass  # ended meanwhile
+    return found
+
+
+def wait(process, happened):
+    """Waits until something happened; whether it did before the process ended."""
+    begun = time.monotonic()
+    while not happened():
+        if process.poll() is not None:
+            return False
+        if time.monotonic() - begun > PATIENCE:
+            fail("nothing happened")
+        time.sleep(0.001)
+    return True
+
+
+def scenes(description, check):
+    """Calls check(runs, chance) for each scene that the command line names."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("squeal")
+    parser.add_argument("launcher")
+    parser.add_argument("--ranks", type=int, default=1)
+    parser.add_argument("--seed", type=int, default=random.SystemRandom().randrange(10**6))
+    parser.add_argument("--end", type=float, default=3e-3, help="simulated time, s")
+    parser.add_argument("--scene", action="append", choices=SCENES, help="instead of all")
+    arguments = parser.parse_args()
+    arguments.squeal = str(Path(arguments.squeal).resolve())
+    print(f"seed {arguments.seed}", flush=True)
+    chance = random.Random(arguments.seed)
+    for scene in arguments.scene or list(SCENES):
+        with tempfile.TemporaryDirectory(prefix="squeal-") as name:
+            check(Runs(arguments, Path(name), scene), chance)
+    return 0
