@@ -47,9 +47,11 @@ typedef struct {
   PetscInt  sweeps, checks, steps; /* since the start: of Gauss-Seidel, looks at all pairs, steps */
 } ContactSums;
 
+/*@ ContactProjectorCreate - for all interfaces; after ContactSetFromOptions(). Collective. @*/
+PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *projector);
+
 /*@
-   ContactProjectorCreate - reads surfaces and friction of all interfaces, and of each the options below. Collective;
-   after ContactSetUp() or, where meshes need not face each other, ContactSetFromOptions().
+   ContactProjectorSetFromOptions - reads how the masters move, and the tolerance. Collective.
 
    Options Database Keys:
 +  -contact_kinematics <prescribed|turning> - see above
@@ -57,11 +59,10 @@ typedef struct {
 .  -projector_rtol <1e-10> - natural map residual, relative to the largest impulse of the step before and of this one
 -  -projector_max_it <1000> - sweeps; beyond, PETSC_ERR_NOT_CONVERGED with residual and pair
 @*/
-PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *projector);
+PetscErrorCode ContactProjectorSetFromOptions(ContactProjector projector);
 
-/*@ ContactProjectorReadOptions - reads and checks the options of ContactProjectorCreate() alone, before there is a
-    mesh, so that OptionsCheckUnknown() knows them. Call after ContactSetFromOptions(). Collective. @*/
-PetscErrorCode ContactProjectorReadOptions(Contact contact);
+/*@ ContactProjectorSetUp - checks the interfaces and gathers their surfaces; after ModelSetUp(). Collective. @*/
+PetscErrorCode ContactProjectorSetUp(ContactProjector projector);
 
 /*@ ContactProjectorGetTurning - whether the master of an interface turns in its own frame, and its angular velocity,
     rad/s. Errors: PETSC_ERR_USER_INPUT where that changes in time. Collective. @*/

@@ -20,6 +20,7 @@ PetscErrorCode DynamicsCreate(MPI_Comm comm, Dynamics *dynamics)
   PetscCall(TSSetType((*dynamics)->ts, TSCENTRAL));
   PetscCall(TSSetExactFinalTime((*dynamics)->ts, TS_EXACTFINALTIME_STEPOVER));
   PetscCall(HistoryCreate(comm, &(*dynamics)->history));
+  PetscCall(BodiesCreate(comm, &(*dynamics)->bodies));
   PetscFunctionReturn(0);
 }
 
@@ -29,6 +30,9 @@ PetscErrorCode DynamicsSetModel(Dynamics d, Model model, Contact contact)
   d->model   = model;
   d->contact = contact;
   PetscCall(ExternalCreate(d->comm, model, &d->external));
+  PetscCall(ContactGetInterfaces(contact, &d->n_interfaces, &d->interfaces));
+  PetscCall(PetscCalloc1(d->n_interfaces, &d->sums));
+  if (d->n_interfaces) PetscCall(ContactProjectorCreate(contact, &d->projector));
   PetscFunctionReturn(0);
 }
 
@@ -85,7 +89,7 @@ static PetscErrorCode RunSetFromOptions(Dynamics d, OptionsItems PetscOptionsObj
 PetscErrorCode DynamicsSetFromOptions(Dynamics d)
 {
   PetscReal dt;
-  PetscBool set, general, central;
+  PetscBool set, central;
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(d->comm, NULL, "Dynamics", NULL);
@@ -104,8 +108,8 @@ PetscErrorCode DynamicsSetFromOptions(Dynamics d)
   PetscCall(TSCentralGetB(d->ts, &d->b));
   PetscCall(HistorySetFromOptions(d->history));
   if (d->external) PetscCall(ExternalSetFromOptions(d->external));
-  if (d->contact) PetscCall(ContactProjectorReadOptions(d->contact));
-  PetscCall(BodiesReadOptions(d->comm, &general));
+  if (d->projector) PetscCall(ContactProjectorSetFromOptions(d->projector));
+  PetscCall(BodiesSetFromOptions(d->bodies));
   PetscFunctionReturn(0);
 }
 
@@ -132,6 +136,7 @@ static PetscErrorCode SurfaceSetUp(Dynamics d)
   PetscReal       *inverse;
 
   PetscFunctionBeginUser;
+  PetscCall(ContactProjectorSetUp(d->projector));
   PetscCall(BodiesGetMass(d->bodies, NULL, NULL, &minv));
   PetscCall(ContactProjectorGetNodes(d->projector, &s->n, &s->vertex));
   PetscCall(PetscCalloc4(3 * s->n, &s->u, 3 * s->n, &s->before, 3 * s->n, &s->v, 3 * s->n, &s->force));
@@ -146,18 +151,6 @@ static PetscErrorCode SurfaceSetUp(Dynamics d)
   }
   PetscCall(ContactProjectorSetMass(d->projector, inverse));
   PetscCall(PetscFree(inverse));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ContactSetUpDynamics(Dynamics d)
-{
-  const ContactInterface *interfaces;
-
-  PetscFunctionBeginUser;
-  if (d->contact) PetscCall(ContactGetInterfaces(d->contact, &d->n_interfaces, &interfaces));
-  if (d->n_interfaces == 0) PetscFunctionReturn(0);
-  PetscCall(ContactProjectorCreate(d->contact, &d->projector));
-  PetscCall(PetscCalloc1(d->n_interfaces, &d->sums));
   PetscFunctionReturn(0);
 }
 
@@ -246,10 +239,9 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscCall(ModelGetMesh(d->model, &mesh));
   d->n_elements = mesh->n_cells;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &d->n_elements, 1, MPIU_INT, MPI_SUM, d->comm));
-  PetscCall(BodiesCreate(d->operators, &d->bodies));
+  PetscCall(BodiesSetUp(d->bodies, d->operators));
   PetscCall(BodiesGetLayout(d->bodies, &d->layout));
   PetscCall(ExternalSetUp(d->external, d->bodies));
-  PetscCall(ContactSetUpDynamics(d));
   if (d->projector) PetscCall(SurfaceSetUp(d));
   PetscCall(DynamicsSetFrames(d));
   PetscCall(StateCreate(d));

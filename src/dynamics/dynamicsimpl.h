@@ -26,9 +26,11 @@ typedef struct {
 } DynamicsSurface;
 
 struct _p_Dynamics {
-  MPI_Comm comm;
-  Model    model;
-  Contact  contact; /* NULL for none */
+  MPI_Comm                comm;
+  Model                   model;
+  Contact                 contact;
+  PetscInt                n_interfaces;
+  const ContactInterface *interfaces;
   /* set by options */
   PetscReal     fraction, dt_asked; /* of the critical step; -ts_dt, 0 for none */
   PetscBool     step_force, coriolis, centrifugal, view_kkt, restart;
@@ -51,7 +53,6 @@ struct _p_Dynamics {
   PetscReal      *ku;         /* K u of this rank's cells, N */
   DynamicsSurface surface;
   ContactSums    *sums; /* [interfaces] */
-  PetscInt        n_interfaces;
   Ledger          ledger;
   LedgerPart      part;
   LedgerOrigin    origin;

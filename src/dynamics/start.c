@@ -32,13 +32,12 @@ static PetscErrorCode CheckAbsent(Dynamics d, const char name[], const char what
 static PetscErrorCode CheckStatic(Dynamics d)
 {
   static const char *const ramps[] = {"_ramp", "_delay"}, *const others[] = {"dynamics_gravity", "motions"};
-  const ContactInterface *interfaces;
+  const ContactInterface *interfaces = d->interfaces;
   const Load             *loads;
-  PetscInt                n_loads, n = 0;
+  PetscInt                n_loads, n = d->n_interfaces;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetLoads(d->model, &n_loads, &loads));
-  if (d->contact) PetscCall(ContactGetInterfaces(d->contact, &n, &interfaces));
   for (int r = 0; r < 2; r++) {
     PetscCall(CheckAbsent(d, others[r], "", PETSC_FALSE));
     for (PetscInt i = 0; i < n_loads; i++) PetscCall(CheckAbsent(d, loads[i].name, ramps[r], PETSC_TRUE));

@@ -34,14 +34,12 @@ static PetscErrorCode SurfacePart(Dynamics d, const char set[], PetscInt *part)
 
 PetscErrorCode DynamicsSetFrames(Dynamics d)
 {
-  const ContactInterface *interfaces;
-  const Part             *parts;
-  PetscInt                n, n_parts, n_turning = 0;
+  const Part *parts;
+  PetscInt    n_parts, n_turning = 0;
 
   PetscFunctionBeginUser;
   if (!d->coriolis && !d->centrifugal) PetscFunctionReturn(0);
   PetscCall(ModelGetParts(d->model, &n_parts, &parts));
-  if (d->contact) PetscCall(ContactGetInterfaces(d->contact, &n, &interfaces));
   for (PetscInt i = 0; i < d->n_interfaces; i++) {
     PetscReal rotation[3];
     PetscInt  part;
@@ -50,9 +48,9 @@ PetscErrorCode DynamicsSetFrames(Dynamics d)
     PetscCall(ContactProjectorGetTurning(d->projector, i, &turns, rotation));
     if (!turns) continue;
     n_turning++;
-    PetscCall(SurfacePart(d, interfaces[i].master, &part));
+    PetscCall(SurfacePart(d, d->interfaces[i].master, &part));
     PetscCall(
-      ExternalSetFrame(d->external, parts[part].name, rotation, interfaces[i].center, d->coriolis, d->centrifugal));
+      ExternalSetFrame(d->external, parts[part].name, rotation, d->interfaces[i].center, d->coriolis, d->centrifugal));
   }
   PetscCheck(n_turning, d->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_%s does nothing: no contact has -..._kinematics turning with a -..._rotation",

@@ -4,33 +4,33 @@
 */
 #include "modelimpl.h"
 
-/* Checksum of n vertices (points of the DM), in any order */
-static uint64_t VerticesSum(Model model, PetscInt v_start, PetscInt n, const PetscInt vertex[])
+/* Checksum of n vertices, in any order */
+static uint64_t ModelSumVertices(const Mesh *mesh, PetscInt n, const PetscInt vertex[])
 {
   uint64_t sum = 0;
 
-  for (PetscInt i = 0; i < n; i++)
-    sum += ChecksumBytes(CHECKSUM_BEGIN, &model->coordinates[3 * (vertex[i] - v_start)], 3 * sizeof(PetscReal));
+  for (PetscInt i = 0; i < n; i++) sum += ChecksumBytes(CHECKSUM_BEGIN, &mesh->x[3 * vertex[i]], 3 * sizeof(PetscReal));
   return ChecksumBytes(CHECKSUM_BEGIN, &sum, sizeof(sum));
 }
 
 PetscErrorCode ModelAddSetChecksum(Model model, const char set[], PetscBool is_surface, Checksum c)
 {
   const PetscInt *vertex;
-  PetscInt        v_start, n, n_faces = 0, *corners = NULL;
+  const Mesh     *mesh;
+  PetscInt        n, n_faces = 0, *corners = NULL;
   uint64_t       *piece;
   IS              is;
 
   PetscFunctionBeginUser;
   PetscCall(ChecksumAddString(c, set));
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &v_start, NULL));
+  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(ModelGetOwnedVertices(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   if (is_surface) PetscCall(ModelGetSetFaces(model, set, &n_faces, &corners));
   PetscCall(PetscMalloc1(n + n_faces, &piece));
   PetscCall(ISGetIndices(is, &vertex));
-  for (PetscInt i = 0; i < n; i++) piece[i] = VerticesSum(model, v_start, 1, &vertex[i]);
-  for (PetscInt i = 0; i < n_faces; i++) piece[n + i] = VerticesSum(model, v_start, 4, &corners[4 * i]);
+  for (PetscInt i = 0; i < n; i++) piece[i] = ModelSumVertices(mesh, 1, &vertex[i]);
+  for (PetscInt i = 0; i < n_faces; i++) piece[n + i] = ModelSumVertices(mesh, 4, &corners[4 * i]);
   PetscCall(ISRestoreIndices(is, &vertex));
   PetscCall(ISDestroy(&is));
   PetscCall(ChecksumAddPieces(c, n + n_faces, piece));
@@ -40,26 +40,27 @@ PetscErrorCode ModelAddSetChecksum(Model model, const char set[], PetscBool is_s
 }
 
 /* Cells, and as a part of its own which rank has which, where a run goes on with arrays of each rank */
-static PetscErrorCode MeshAddChecksum(Model model, PetscBool with_partition, Checksum c)
+static PetscErrorCode ModelAddMeshChecksum(Model model, PetscBool with_partition, Checksum c)
 {
-  PetscInt    c_start, c_end, vertices[ELEMENT_MAX_NODES];
+  const Mesh *mesh;
+  PetscInt    vertices[ELEMENT_MAX_NODES];
   PetscMPIInt rank;
   PetscReal   x[ELEMENT_MAX_DOFS];
   uint64_t   *piece, local = CHECKSUM_BEGIN;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(model->comm, &rank));
-  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &c_start, &c_end));
-  PetscCall(PetscMalloc1(c_end - c_start, &piece));
-  for (PetscInt i = 0; i < c_end - c_start; i++) {
+  PetscCall(ModelGetMesh(model, &mesh));
+  PetscCall(PetscMalloc1(mesh->n_cells, &piece));
+  for (PetscInt i = 0; i < mesh->n_cells; i++) {
     PetscCall(ModelGetCell(model, i, vertices, x));
-    piece[i] = ChecksumBytes(CHECKSUM_BEGIN, x, 3 * (size_t)model->element->n_nodes * sizeof(PetscReal));
-    piece[i] = ChecksumBytes(piece[i], &model->cell_part[i], sizeof(PetscInt));
+    piece[i] = ChecksumBytes(CHECKSUM_BEGIN, x, 3 * (size_t)mesh->n_nodes * sizeof(PetscReal));
+    piece[i] = ChecksumBytes(piece[i], &mesh->cell_part[i], sizeof(PetscInt));
     local    = ChecksumBytes(local, &piece[i], sizeof(local));
   }
   PetscCall(ChecksumSetPart(c, "the mesh"));
   PetscCall(ChecksumAddString(c, model->element->formulation));
-  PetscCall(ChecksumAddPieces(c, c_end - c_start, piece));
+  PetscCall(ChecksumAddPieces(c, mesh->n_cells, piece));
   PetscCall(PetscFree(piece));
   local = ChecksumBytes(local, &rank, sizeof(rank));
   PetscCall(ChecksumSetPart(c, "its partition"));
@@ -70,7 +71,7 @@ static PetscErrorCode MeshAddChecksum(Model model, PetscBool with_partition, Che
 PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum c)
 {
   PetscFunctionBeginUser;
-  PetscCall(MeshAddChecksum(model, with_partition, c));
+  PetscCall(ModelAddMeshChecksum(model, with_partition, c));
   PetscCall(ChecksumSetPart(c, "materials"));
   for (PetscInt i = 0; i < model->n_parts; i++) {
     const Part     *p     = &model->parts[i];

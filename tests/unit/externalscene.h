@@ -46,7 +46,9 @@ static inline PetscErrorCode SceneBegin(const char options[], Scene *s)
 static inline PetscErrorCode SceneEnd(Scene *s)
 {
   PetscFunctionBeginUser;
-  PetscCall(BodiesCreate(s->chain.operators, &s->bodies));
+  PetscCall(BodiesCreate(PETSC_COMM_WORLD, &s->bodies));
+  PetscCall(BodiesSetFromOptions(s->bodies));
+  PetscCall(BodiesSetUp(s->bodies, s->chain.operators));
   PetscCall(BodiesGetLayout(s->bodies, &s->layout));
   PetscCall(PetscCalloc3(s->layout->n, &s->u, s->layout->n, &s->v, s->layout->n, &s->f));
   PetscFunctionReturn(0);

@@ -63,7 +63,9 @@ static PetscErrorCode CaseCreate(const char scene[], const char options[], Case 
   PetscCall(ModelSetUp(c->model));
   PetscCall(ContactSetUp(c->contact));
   PetscCall(OperatorsSetUp(c->operators));
-  PetscCall(BodiesCreate(c->operators, &c->bodies));
+  PetscCall(BodiesCreate(PETSC_COMM_WORLD, &c->bodies));
+  PetscCall(BodiesSetFromOptions(c->bodies));
+  PetscCall(BodiesSetUp(c->bodies, c->operators));
   PetscCall(BodiesGetLayout(c->bodies, &c->layout));
   PetscFunctionReturn(0);
 }

@@ -49,6 +49,8 @@ static inline PetscErrorCode SliderCreate(MPI_Comm comm, int n_boxes, const Box 
   PetscCall(ModelSetUp(s->model));
   PetscCall(BoxesRemove(comm, path));
   PetscCall(ContactProjectorCreate(s->contact, &s->projector));
+  PetscCall(ContactProjectorSetFromOptions(s->projector));
+  PetscCall(ContactProjectorSetUp(s->projector));
   PetscCall(ContactProjectorGetNodes(s->projector, &s->n, &s->vertex));
   PetscCall(PetscCalloc6(3 * s->n, &s->x, 3 * s->n, &s->minv, 3 * s->n, &s->u, 3 * s->n, &s->before, 3 * s->n, &s->v,
                          3 * s->n, &s->force));

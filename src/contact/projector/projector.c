@@ -8,11 +8,20 @@
 /* What the root says with the forces */
 enum { HEAD_SEARCH, HEAD_FAILED, HEAD_RESIDUAL, HEAD_SWEEPS, HEAD_X };
 
-static PetscErrorCode ProjectorSetFromOptions(ContactProjector p)
+PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *projector)
 {
   PetscFunctionBeginUser;
-  p->rtol   = 1e-10;
-  p->max_it = 1000;
+  PetscCall(PetscCalloc1(1, projector));
+  (*projector)->contact      = contact;
+  (*projector)->n_interfaces = contact->n_interfaces;
+  (*projector)->rtol         = 1e-10;
+  (*projector)->max_it       = 1000;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProjectorSetFromOptions(ContactProjector p)
+{
+  PetscFunctionBeginUser;
   PetscOptionsBegin(p->contact->comm, NULL, "Contact forces in dynamics", NULL);
   PetscCall(PetscOptionsReal("-projector_rtol", "natural map residual, relative to the largest impulse", "projector.h",
                              p->rtol, &p->rtol, NULL));
@@ -23,19 +32,6 @@ static PetscErrorCode ProjectorSetFromOptions(ContactProjector p)
   PetscCheck(p->max_it > 0, p->contact->comm, PETSC_ERR_USER_INPUT,
              "-projector_max_it %" PetscInt_FMT " must be positive", p->max_it);
   for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(SlidingSetFromOptions(p->contact, i, &p->sliding[i]));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ContactProjectorReadOptions(Contact contact)
-{
-  ContactProjector p;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(1, &p));
-  p->contact      = contact;
-  p->n_interfaces = contact->n_interfaces;
-  PetscCall(ProjectorSetFromOptions(p));
-  PetscCall(PetscFree(p));
   PetscFunctionReturn(0);
 }
 
@@ -55,20 +51,15 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *projector)
+PetscErrorCode ContactProjectorSetUp(ContactProjector p)
 {
-  ContactProjector p;
+  const ContactInterface *interface = p->contact->interfaces;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(1, &p));
-  p->contact      = contact;
-  p->n_interfaces = contact->n_interfaces;
-  for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(InterfaceCheck(contact->comm, &contact->interfaces[i]));
-  PetscCall(ProjectorSetFromOptions(p));
+  for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(InterfaceCheck(p->contact->comm, &interface[i]));
   for (PetscInt i = 0; i < p->n_interfaces; i++)
-    PetscCall(SlidingCheck(contact->comm, &contact->interfaces[i], &p->sliding[i]));
+    PetscCall(SlidingCheck(p->contact->comm, &interface[i], &p->sliding[i]));
   PetscCall(ProjectorSetUpSurfaces(p));
-  *projector = p;
   PetscFunctionReturn(0);
 }
 

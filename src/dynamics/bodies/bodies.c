@@ -56,36 +56,39 @@ static PetscErrorCode DampingSetUp(Bodies b)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BodiesReadOptions(MPI_Comm comm, PetscBool *general)
+PetscErrorCode BodiesCreate(MPI_Comm comm, Bodies *bodies)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(bodies));
+  (*bodies)->comm       = comm;
+  (*bodies)->share.comm = MPI_COMM_NULL;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesSetFromOptions(Bodies b)
 {
   static const char *const kernels[] = {"auto", "general"};
   PetscInt                 kernel    = 0;
 
   PetscFunctionBeginUser;
-  PetscOptionsBegin(comm, NULL, "Bodies in time", NULL);
+  PetscOptionsBegin(b->comm, NULL, "Bodies in time", NULL);
   PetscCall(PetscOptionsEList("-dynamics_kernel", "internal forces; general: one matrix of blocks for every body",
                               "dynamics.h", kernels, 2, kernels[0], &kernel, NULL));
   PetscOptionsEnd();
-  *general = kernel == 1 ? PETSC_TRUE : PETSC_FALSE;
+  b->no_sweep = kernel == 1 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BodiesCreate(Operators operators, Bodies *bodies)
+PetscErrorCode BodiesSetUp(Bodies b, Operators operators)
 {
-  Bodies      b;
   const Mesh *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(1, &b));
-  *bodies      = b;
   b->operators = operators;
   PetscCall(OperatorsGetModel(operators, &b->model, NULL));
-  PetscCheck(b->model, PETSC_COMM_WORLD, PETSC_ERR_ARG_WRONGSTATE, "bodies need a model: loaded matrices have none");
-  PetscCall(ModelGetComm(b->model, &b->comm));
-  PetscCall(BodiesReadOptions(b->comm, &b->no_sweep));
+  PetscCheck(b->model, b->comm, PETSC_ERR_ARG_WRONGSTATE, "bodies need a model: loaded matrices have none");
   PetscCall(ModelGetMesh(b->model, &mesh));
   b->layout.n_vertices = mesh->n_vertices;
-  b->share.comm        = MPI_COMM_NULL;
   PetscCall(ModelGetBodies(b->model, &b->n_bodies, &b->body));
   PetscCall(SharedSetUp(b));
   PetscCall(BodiesFindSwept(b));

@@ -54,19 +54,20 @@ static inline void LayoutSet(const Layout *l, PetscInt i, const PetscReal cartes
   LayoutAdd(l, i, cartesian, x);
 }
 
+/*@ BodiesCreate - without bodies. Collective. @*/
+PetscErrorCode BodiesCreate(MPI_Comm comm, Bodies *bodies);
+
 /*@
-   BodiesCreate - finds bodies swept along an angle or an axis, lays out the nodes, and makes the masses and kernels
-   from the present values of the parameters of the operators. Collective.
+   BodiesSetFromOptions - reads the choice of kernels. Collective.
 
    Options Database Keys:
 .  -dynamics_kernel <auto|general> - general: one sparse matrix of 3 x 3 blocks for every body
 @*/
-PetscErrorCode BodiesCreate(Operators operators, Bodies *bodies);
+PetscErrorCode BodiesSetFromOptions(Bodies bodies);
 
-/*@ BodiesReadOptions - reads the options of BodiesCreate(), before there is a mesh: whether all bodies shall be
- general. Collective.
- @*/
-PetscErrorCode BodiesReadOptions(MPI_Comm comm, PetscBool *general);
+/*@ BodiesSetUp - finds bodies swept along an angle or an axis, lays out the nodes, and makes the masses and kernels from
+    the present values of the parameters of the operators. Collective. @*/
+PetscErrorCode BodiesSetUp(Bodies bodies, Operators operators);
 
 /*@ BodiesGetLayout - where the nodes stand (borrowed). Not collective. @*/
 PetscErrorCode BodiesGetLayout(Bodies bodies, const Layout **layout);

@@ -45,7 +45,7 @@ PETSC_INTERN PetscErrorCode ExternalSetFromOptions(External external);
 
 /*
    ExternalSetUp - gathers the nodes of the loads, holds the directions of prescribed motions by BodiesHold().
-   Collective; after BodiesCreate().
+   Collective; after BodiesSetUp().
 
    Errors: PETSC_ERR_USER_INPUT for an unknown set; for motions whose directions a swept body cannot express, that
    prescribe the same direction of a node twice or only what supports hold; for an impulse on a node that is held.
