@@ -21,7 +21,8 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parents[2]
 SMALL = 'rig: {disc: {elements: "8,24,1"}, pad: {elements: "4,4,2"}, beam: {elements: 10}}\nmodes: {band: "100,12000"}\n'
 TABLES = ("sweep.csv", "onsets.csv", "parameters.csv")
-CHANGES = (("-contact_mu", "0.4"), ("-beam_poisson", "0.29"), ("-hub_fix", "xz"), ("-modes_band", "100,11000"))
+CHANGES = (("-contact_mu", "0.4"), ("-beam_poisson", "0.29"), ("-modes_band", "100,11000"),
+           ("-supports", "hub,foot", "-foot_set", "beam_rows", "-foot_fix", "x"))
 PATIENCE = 100  # seconds
 
 
