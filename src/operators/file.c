@@ -70,7 +70,7 @@ PetscErrorCode OperatorsAddChecksum(Operators o, Checksum c)
   PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){o->lump}));
   if (o->model) PetscFunctionReturn(0);
   PetscCall(ChecksumAddReals(c, 1, &o->loaded_mu));
-  for (PetscInt t = 0; t < o->base.n; t++) PetscCall(MatrixAddChecksum(o->base.term[t].A, c));
+  for (PetscInt t = 0; t < o->terms.n; t++) PetscCall(MatrixAddChecksum(o->terms.term[t].A, c));
   PetscFunctionReturn(0);
 }
 
