@@ -31,62 +31,62 @@ typedef struct {
   uint64_t real_size; /* bytes */
   uint64_t n_ranks, n_items, n_parts;
   uint64_t total; /* length of the file, bytes */
-} Head;
+} CheckpointHead;
 
 /* A file that is being read, and what is wrong with it */
 typedef struct {
-  char  name[PETSC_MAX_PATH_LEN];
-  int   fd;
-  Head *head; /* with parts, names and table behind it; NULL until read */
-  Fault fault;
+  char            name[PETSC_MAX_PATH_LEN];
+  int             fd;
+  CheckpointHead *head; /* with parts, names and table behind it; NULL until read */
+  Fault           fault;
 } CheckpointReader;
 
 /* Keep what is wrong with the file, printf-like: it is damaged, or of another program, run or model */
 #define NoteDamage(reader, ...) FaultNote(&(reader)->fault, PETSC_ERR_FILE_READ, __VA_ARGS__)
 #define NoteOther(reader, ...)  FaultNote(&(reader)->fault, PETSC_ERR_FILE_UNEXPECTED, __VA_ARGS__)
 
-static size_t HeadSize(const Head *h)
+static size_t HeadSize(const CheckpointHead *h)
 {
-  return sizeof(Head) + sizeof(ChecksumPart) * h->n_parts + NAME_LENGTH * h->n_items +
+  return sizeof(CheckpointHead) + sizeof(ChecksumPart) * h->n_parts + NAME_LENGTH * h->n_items +
          sizeof(uint64_t) * h->n_ranks * (h->n_items + 1);
 }
 
-static ChecksumPart *HeadParts(const Head *head)
+static ChecksumPart *HeadParts(const CheckpointHead *head)
 {
   return (ChecksumPart *)(head + 1);
 }
 
-static char *HeadName(const Head *head, PetscInt i)
+static char *HeadName(const CheckpointHead *head, PetscInt i)
 {
   return (char *)(HeadParts(head) + head->n_parts) + NAME_LENGTH * i;
 }
 
 /* Row of a rank in the table */
-static uint64_t *HeadRow(const Head *head, PetscInt rank)
+static uint64_t *HeadRow(const CheckpointHead *head, PetscInt rank)
 {
   return (uint64_t *)HeadName(head, (PetscInt)head->n_items) + (uint64_t)rank * (head->n_items + 1);
 }
 
-static uint64_t HeadChecksum(const Head *head)
+static uint64_t HeadChecksum(const CheckpointHead *head)
 {
   const uint64_t kept = head->checksum;
   uint64_t       sum;
 
-  ((Head *)head)->checksum = 0;
-  sum                      = ChecksumBytes(CHECKSUM_BEGIN, head, head->size);
-  ((Head *)head)->checksum = kept;
+  ((CheckpointHead *)head)->checksum = 0;
+  sum                                = ChecksumBytes(CHECKSUM_BEGIN, head, head->size);
+  ((CheckpointHead *)head)->checksum = kept;
   return sum;
 }
 
 /* Head, parts, names and the table of all ranks, complete on rank 0, where row [n + 1] of each rank is gathered */
 static PetscErrorCode HeadCreate(MPI_Comm comm, Checksum scene, PetscInt n, const CheckpointItem item[], uint64_t row[],
-                                 Head **head)
+                                 CheckpointHead **head)
 {
   const ChecksumPart *parts;
   PetscInt            n_parts;
   PetscMPIInt         size, width;
   uint64_t            n_values = 0;
-  Head               *h;
+  CheckpointHead     *h;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(comm, &size));
@@ -94,13 +94,13 @@ static PetscErrorCode HeadCreate(MPI_Comm comm, Checksum scene, PetscInt n, cons
   for (PetscInt i = 0; i < n; i++) n_values += row[i];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_values, 1, MPI_UINT64_T, MPI_SUM, comm));
   PetscCall(ChecksumGetParts(scene, &n_parts, &parts));
-  Head begin = {.magic     = CHECKPOINT_MAGIC,
-                .order     = CHECKPOINT_ORDER,
-                .version   = CHECKPOINT_VERSION,
-                .real_size = sizeof(PetscReal),
-                .n_ranks   = (uint64_t)size,
-                .n_items   = (uint64_t)n,
-                .n_parts   = (uint64_t)n_parts};
+  CheckpointHead begin = {.magic     = CHECKPOINT_MAGIC,
+                          .order     = CHECKPOINT_ORDER,
+                          .version   = CHECKPOINT_VERSION,
+                          .real_size = sizeof(PetscReal),
+                          .n_ranks   = (uint64_t)size,
+                          .n_items   = (uint64_t)n,
+                          .n_parts   = (uint64_t)n_parts};
 
   begin.size  = HeadSize(&begin);
   begin.total = begin.size + sizeof(PetscReal) * n_values;
@@ -116,11 +116,11 @@ static PetscErrorCode HeadCreate(MPI_Comm comm, Checksum scene, PetscInt n, cons
 
 PetscErrorCode CheckpointWrite(MPI_Comm comm, Results results, Checksum scene, PetscInt n, const CheckpointItem item[])
 {
-  ResultsPiece  *piece;
-  uint64_t      *row;
-  Head          *head;
-  PetscMPIInt    rank;
-  PetscErrorCode failure;
+  ResultsPiece   *piece;
+  uint64_t       *row;
+  CheckpointHead *head;
+  PetscMPIInt     rank;
+  PetscErrorCode  failure;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
@@ -175,7 +175,7 @@ static PetscErrorCode ReaderOpen(CheckpointReader *reader, const char dir[])
 }
 
 /* Checks what is the same in all versions and the length of the file; head is the first part of one */
-static PetscErrorCode ReaderCheckKind(CheckpointReader *reader, const Head *head, uint64_t length)
+static PetscErrorCode ReaderCheckKind(CheckpointReader *reader, const CheckpointHead *head, uint64_t length)
 {
   uint64_t other = 0;
 
@@ -188,7 +188,7 @@ static PetscErrorCode ReaderCheckKind(CheckpointReader *reader, const Head *head
     PetscCall(NoteOther(reader, "%s is no checkpoint of squeal, or damaged", reader->name));
   else if (head->order == other)
     PetscCall(NoteOther(reader, "%s was written by a machine with the other order of bytes", reader->name));
-  else if (head->order != CHECKPOINT_ORDER || head->size < offsetof(Head, real_size))
+  else if (head->order != CHECKPOINT_ORDER || head->size < offsetof(CheckpointHead, real_size))
     PetscCall(NoteDamage(reader, "%s is damaged: its head is wrong", reader->name));
   else if (head->size > length)
     PetscCall(NoteDamage(reader, "%s is truncated or damaged: %llu bytes, its head says more", reader->name,
@@ -199,9 +199,9 @@ static PetscErrorCode ReaderCheckKind(CheckpointReader *reader, const Head *head
 /* Reads the head with names and table on this rank, and checks it in itself */
 static PetscErrorCode ReaderReadHead(CheckpointReader *reader)
 {
-  struct stat status;
-  uint64_t    length;
-  Head        head = {.size = 0};
+  struct stat    status;
+  uint64_t       length;
+  CheckpointHead head = {.size = 0};
 
   PetscFunctionBeginUser;
   if (reader->fault.code) PetscFunctionReturn(0);
@@ -227,7 +227,7 @@ static PetscErrorCode ReaderReadHead(CheckpointReader *reader)
 /* Checks that the file is one of this program on these ranks */
 static PetscErrorCode ReaderCheckRun(CheckpointReader *reader, PetscMPIInt size)
 {
-  const Head *h = reader->head;
+  const CheckpointHead *h = reader->head;
 
   PetscFunctionBeginUser;
   if (reader->fault.code) PetscFunctionReturn(0);
@@ -245,8 +245,8 @@ static PetscErrorCode ReaderCheckRun(CheckpointReader *reader, PetscMPIInt size)
 /* Checks that it is a run of this scene */
 static PetscErrorCode ReaderCheckScene(CheckpointReader *reader, Checksum scene)
 {
-  const Head *h = reader->head;
-  char        names[256];
+  const CheckpointHead *h = reader->head;
+  char                  names[256];
 
   PetscFunctionBeginUser;
   if (reader->fault.code) PetscFunctionReturn(0);
@@ -259,9 +259,9 @@ static PetscErrorCode ReaderCheckScene(CheckpointReader *reader, Checksum scene)
 static PetscErrorCode ReaderCheckItems(CheckpointReader *reader, PetscMPIInt rank, PetscInt n,
                                        const CheckpointItem item[])
 {
-  const Head     *h = reader->head;
-  const uint64_t *row;
-  char            name[NAME_LENGTH];
+  const CheckpointHead *h = reader->head;
+  const uint64_t       *row;
+  char                  name[NAME_LENGTH];
 
   PetscFunctionBeginUser;
   if (reader->fault.code) PetscFunctionReturn(0);
@@ -285,8 +285,8 @@ static PetscErrorCode ReaderCheckItems(CheckpointReader *reader, PetscMPIInt ran
 /* Where the values of a rank begin, and how many bytes they have */
 static PetscErrorCode ReaderFindValues(CheckpointReader *reader, PetscMPIInt rank, uint64_t *begin, uint64_t *size)
 {
-  const Head *h = reader->head;
-  uint64_t    at, end = 0;
+  const CheckpointHead *h = reader->head;
+  uint64_t              at, end = 0;
 
   PetscFunctionBeginUser;
   *begin = *size = 0;
@@ -326,7 +326,8 @@ static PetscErrorCode ReaderReadValues(CheckpointReader *reader, PetscMPIInt ran
 }
 
 /* Hands the values to the items */
-static PetscErrorCode ItemsFill(const uint64_t row[], const PetscReal values[], PetscInt n, CheckpointItem item[])
+static PetscErrorCode CheckpointFillItems(const uint64_t row[], const PetscReal values[], PetscInt n,
+                                          CheckpointItem item[])
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; values += row[i++]) {
@@ -355,7 +356,7 @@ PetscErrorCode CheckpointRead(MPI_Comm comm, Results results, Checksum scene, Pe
   PetscCall(ReaderCheckItems(&reader, rank, n, item));
   PetscCall(ReaderReadValues(&reader, rank, &values));
   PetscCall(FaultsAgree(comm, &reader.fault));
-  if (!reader.fault.code) PetscCall(ItemsFill(HeadRow(reader.head, rank), values, n, item));
+  if (!reader.fault.code) PetscCall(CheckpointFillItems(HeadRow(reader.head, rank), values, n, item));
   PetscCall(PetscFree(values));
   PetscCall(PetscFree(reader.head));
   if (reader.fd >= 0) (void)close(reader.fd);

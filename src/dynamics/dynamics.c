@@ -36,7 +36,7 @@ PetscErrorCode DynamicsSetModel(Dynamics d, Model model, Contact contact)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode StepSetFromOptions(Dynamics d, OptionsItems PetscOptionsObject)
+static PetscErrorCode DynamicsStepFromOptions(Dynamics d, OptionsItems PetscOptionsObject)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsReal("-dynamics_step_fraction", "step, where -ts_dt is not given, of the critical one (-)",
@@ -49,7 +49,7 @@ static PetscErrorCode StepSetFromOptions(Dynamics d, OptionsItems PetscOptionsOb
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode StartSetFromOptions(Dynamics d, OptionsItems PetscOptionsObject)
+static PetscErrorCode DynamicsStartFromOptions(Dynamics d, OptionsItems PetscOptionsObject)
 {
   static const char *const starts[N_STARTS] = {[START_REST] = "rest", [START_STATIC] = "static"};
   PetscInt                 start            = d->start;
@@ -67,7 +67,7 @@ static PetscErrorCode StartSetFromOptions(Dynamics d, OptionsItems PetscOptionsO
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode RunSetFromOptions(Dynamics d, OptionsItems PetscOptionsObject)
+static PetscErrorCode DynamicsRunFromOptions(Dynamics d, OptionsItems PetscOptionsObject)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsBool("-dynamics_coriolis", "Coriolis forces in parts that turn", "dynamics.h", d->coriolis,
@@ -93,9 +93,9 @@ PetscErrorCode DynamicsSetFromOptions(Dynamics d)
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(d->comm, NULL, "Dynamics", NULL);
-  PetscCall(StepSetFromOptions(d, PetscOptionsObject));
-  PetscCall(StartSetFromOptions(d, PetscOptionsObject));
-  PetscCall(RunSetFromOptions(d, PetscOptionsObject));
+  PetscCall(DynamicsStepFromOptions(d, PetscOptionsObject));
+  PetscCall(DynamicsStartFromOptions(d, PetscOptionsObject));
+  PetscCall(DynamicsRunFromOptions(d, PetscOptionsObject));
   PetscOptionsEnd();
   PetscCall(TSSetFromOptions(d->ts));
   PetscCall(PetscObjectTypeCompare((PetscObject)d->ts, TSCENTRAL, &central));
@@ -129,7 +129,7 @@ PetscErrorCode DynamicsSetOperators(Dynamics d, Operators operators, Statics sta
 }
 
 /* Nodes of the contact surfaces, their work arrays and masses */
-static PetscErrorCode SurfaceSetUp(Dynamics d)
+static PetscErrorCode DynamicsSetUpSurface(Dynamics d)
 {
   DynamicsSurface *s = &d->surface;
   const PetscReal *minv;
@@ -155,7 +155,7 @@ static PetscErrorCode SurfaceSetUp(Dynamics d)
 }
 
 /* State vectors and the integrator's masses */
-static PetscErrorCode StateCreate(Dynamics d)
+static PetscErrorCode DynamicsCreateState(Dynamics d)
 {
   const PetscReal *minv;
   const PetscInt   n = d->layout->n;
@@ -174,7 +174,7 @@ static PetscErrorCode StateCreate(Dynamics d)
 }
 
 /* A step that divides the time that is left, where the run shall end exactly at -ts_max_time */
-static PetscErrorCode MatchEnd(Dynamics d, PetscReal *dt)
+static PetscErrorCode DynamicsMatchEnd(Dynamics d, PetscReal *dt)
 {
   TSExactFinalTimeOption end;
   PetscReal              begin, time;
@@ -192,7 +192,7 @@ static PetscErrorCode MatchEnd(Dynamics d, PetscReal *dt)
 }
 
 /* The step asked for, or the stated fraction of the critical one; a larger one is refused */
-static PetscErrorCode ChooseStep(Dynamics d)
+static PetscErrorCode DynamicsChooseStep(Dynamics d)
 {
   const PetscReal critical = d->critical.assembled;
   PetscReal       dt       = d->dt_asked > 0 ? d->dt_asked : d->fraction * critical;
@@ -203,12 +203,12 @@ static PetscErrorCode ChooseStep(Dynamics d)
     "-ts_dt %.6g is above the critical step %.6g s: the fastest oscillations would grow; take at most %.6g, or "
     "-dynamics_step_force",
     (double)dt, (double)critical, (double)(d->fraction * critical));
-  PetscCall(MatchEnd(d, &dt));
+  PetscCall(DynamicsMatchEnd(d, &dt));
   PetscCall(TSSetTimeStep(d->ts, dt));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CheckEnd(Dynamics d, PetscReal *end)
+static PetscErrorCode DynamicsCheckEnd(Dynamics d, PetscReal *end)
 {
   PetscInt max_steps;
 
@@ -242,12 +242,12 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscCall(BodiesSetUp(d->bodies, d->operators));
   PetscCall(BodiesGetLayout(d->bodies, &d->layout));
   PetscCall(ExternalSetUp(d->external, d->bodies));
-  if (d->projector) PetscCall(SurfaceSetUp(d));
+  if (d->projector) PetscCall(DynamicsSetUpSurface(d));
   PetscCall(DynamicsSetFrames(d));
-  PetscCall(StateCreate(d));
+  PetscCall(DynamicsCreateState(d));
   PetscCall(DynamicsFindCriticalStep(d));
-  PetscCall(ChooseStep(d));
-  PetscCall(CheckEnd(d, &end));
+  PetscCall(DynamicsChooseStep(d));
+  PetscCall(DynamicsCheckEnd(d, &end));
   if (d->contact) PetscCall(HistorySetContact(d->history, d->contact));
   PetscCall(TSGetTimeStep(d->ts, &dt));
   PetscCall(HistorySetUp(d->history, d->model, d->layout, d->projector, results, end, dt));
@@ -258,7 +258,7 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
 }
 
 /* After every step: checkpoints where they are due, and the end where a signal asks for it */
-static PetscErrorCode AfterStep(TS ts)
+static PetscErrorCode DynamicsAfterStep(TS ts)
 {
   Dynamics  d;
   PetscInt  n;
@@ -280,7 +280,7 @@ static PetscErrorCode AfterStep(TS ts)
 }
 
 /* Raises the error of a run that a signal ended */
-static PetscErrorCode ComplainStopped(Dynamics d)
+static PetscErrorCode DynamicsComplainStopped(Dynamics d)
 {
   PetscReal time;
   PetscInt  n;
@@ -300,18 +300,18 @@ PetscErrorCode DynamicsSolve(Dynamics d, Results results)
   PetscFunctionBeginUser;
   PetscCall(DynamicsSetUp(d, results));
   PetscCall(TSSetApplicationContext(d->ts, d));
-  PetscCall(TSSetPostStep(d->ts, AfterStep));
+  PetscCall(TSSetPostStep(d->ts, DynamicsAfterStep));
   PetscCall(StopInstall());
   PetscCall(PetscTime(&begin));
   PetscCall(TSSolve(d->ts, NULL));
   PetscCall(PetscTime(&end));
   PetscCall(StopRemove());
   d->seconds = end - begin;
-  if (d->stopped && d->checkpoint_interval > 0) PetscCall(ComplainStopped(d));
+  if (d->stopped && d->checkpoint_interval > 0) PetscCall(DynamicsComplainStopped(d));
   d->ended = PETSC_TRUE;
   PetscCall(TSCentralEvaluate(d->ts)); /* the forces of the last time, for its row */
   PetscCall(HistoryClose(d->history));
-  if (d->stopped) PetscCall(ComplainStopped(d));
+  if (d->stopped) PetscCall(DynamicsComplainStopped(d));
   PetscFunctionReturn(0);
 }
 

@@ -73,17 +73,17 @@ PETSC_INTERN PetscErrorCode DynamicsConstrain(TS ts, const CentralStep *step, Ve
 /* critical.c - the critical steps of the bodies */
 PETSC_INTERN PetscErrorCode DynamicsFindCriticalStep(Dynamics dynamics);
 
-/* frame.c - inertial forces in parts that turn */
+/* turningframe.c - inertial forces in parts that turn */
 PETSC_INTERN PetscErrorCode DynamicsSetFrames(Dynamics dynamics);
 
-/* state.c - between vectors of all unknowns and state vectors (held directions 0) */
-PETSC_INTERN PetscErrorCode StateFromVec(Model model, const Layout *layout, Vec x, PetscReal state[]);
-PETSC_INTERN PetscErrorCode StateToVec(Model model, const Layout *layout, const PetscReal state[], Vec x);
+/* statevector.c - between vectors of all unknowns and state vectors (held directions 0) */
+PETSC_INTERN PetscErrorCode StateVectorFromVec(Model model, const Layout *layout, Vec x, PetscReal state[]);
+PETSC_INTERN PetscErrorCode StateVectorToVec(Model model, const Layout *layout, const PetscReal state[], Vec x);
 
-/* start.c - displacements and velocities at the start */
+/* startstate.c - displacements and velocities at the start */
 PETSC_INTERN PetscErrorCode DynamicsStartState(Dynamics dynamics);
 
-/* keep.c - checkpoints */
+/* dynamicskeep.c - checkpoints */
 PETSC_INTERN PetscErrorCode DynamicsKeep(Dynamics dynamics);
 PETSC_INTERN PetscErrorCode DynamicsGoOn(Dynamics dynamics);
 

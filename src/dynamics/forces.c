@@ -12,7 +12,7 @@
 #define CHECK_INTERVAL 200 /* steps between two looks at the ledger where no row is due */
 
 /* The first vertex whose velocity is no number: this rank alone knows of it */
-static PetscErrorCode ComplainNaN(Dynamics d, const CentralStep *step, const PetscReal v[])
+static PetscErrorCode DynamicsComplainNaN(Dynamics d, const CentralStep *step, const PetscReal v[])
 {
   const PetscReal *x;
   PetscInt         n_step;
@@ -34,8 +34,8 @@ static PetscErrorCode ComplainNaN(Dynamics d, const CentralStep *step, const Pet
 }
 
 /* Sum of v'(f - f_old) over this rank, shared vertices counted once; held directions have no acceleration */
-static PetscReal IntegratorPower(const Layout *l, const PetscReal minv[], const PetscReal v[], const PetscReal f[],
-                                 const PetscReal f_old[])
+static PetscReal DynamicsIntegratorPower(const Layout *l, const PetscReal minv[], const PetscReal v[],
+                                         const PetscReal f[], const PetscReal f_old[])
 {
   PetscReal power = 0;
 
@@ -51,7 +51,8 @@ static PetscReal IntegratorPower(const Layout *l, const PetscReal minv[], const 
 
 /* Completes the integrator's work of the step before, whose forces the arrays still hold at the beginning of this one
  */
-static PetscErrorCode CompleteIntegrator(Dynamics d, const CentralStep *step, const PetscReal v[], Vec f, Vec f_old)
+static PetscErrorCode DynamicsCompleteIntegrator(Dynamics d, const CentralStep *step, const PetscReal v[], Vec f,
+                                                 Vec f_old)
 {
   const PetscScalar *older, *last;
   const PetscReal   *minv;
@@ -61,7 +62,8 @@ static PetscErrorCode CompleteIntegrator(Dynamics d, const CentralStep *step, co
   if (!f_old || step->dt_old == 0) PetscFunctionReturn(0);
   PetscCall(VecGetArrayRead(f, &older)); /* f is about to be overwritten: it holds the forces before f_old */
   PetscCall(VecGetArrayRead(f_old, &last));
-  LedgerAddIntegrator(&d->part, d->b, IntegratorPower(d->layout, minv, v, last, older), PETSC_TRUE, step->dt_old);
+  LedgerAddIntegrator(&d->part, d->b, DynamicsIntegratorPower(d->layout, minv, v, last, older), PETSC_TRUE,
+                      step->dt_old);
   PetscCall(VecRestoreArrayRead(f_old, &last));
   PetscCall(VecRestoreArrayRead(f, &older));
   PetscFunctionReturn(0);
@@ -88,12 +90,12 @@ PetscErrorCode DynamicsForce(TS ts, const CentralStep *step, Vec u, Vec v, Vec f
   (void)ts;
   PetscCall(VecGetArrayRead(u, &displacement));
   PetscCall(VecGetArray(v, &velocity));
-  PetscCall(CompleteIntegrator(d, step, velocity, f, f_old));
+  PetscCall(DynamicsCompleteIntegrator(d, step, velocity, f, f_old));
   PetscCall(VecGetArray(f, &force));
   PetscCall(EventBegin(EVENT_BODIES_ADVANCE));
   PetscCall(BodiesAdvance(d->bodies, step->dt_old, displacement, velocity, d->ku, force, &sums));
   PetscCall(EventEnd(EVENT_BODIES_ADVANCE));
-  if (PetscIsInfOrNanReal(sums.kinetic)) PetscCall(ComplainNaN(d, step, velocity));
+  if (PetscIsInfOrNanReal(sums.kinetic)) PetscCall(DynamicsComplainNaN(d, step, velocity));
   LedgerAddBodies(&d->part, &sums, step->dt_old);
   if (d->projector) {
     PetscCall(ContactProjectorGetActive(d->projector, &n_active, &active));
@@ -145,8 +147,8 @@ static PetscReal SurfaceEnergy(const DynamicsSurface *s, const Layout *l, PetscI
 }
 
 /* Contact forces of the step on all copies of the active nodes; balanced: the ledger is looked at in this step */
-static PetscErrorCode AddContact(Dynamics d, const CentralStep *step, PetscBool balanced, const PetscReal u[],
-                                 const PetscReal v[], const PetscReal f_old[], PetscReal f[])
+static PetscErrorCode DynamicsAddContact(Dynamics d, const CentralStep *step, PetscBool balanced, const PetscReal u[],
+                                         const PetscReal v[], const PetscReal f_old[], PetscReal f[])
 {
   const ContactStep      contact = {.time = step->time, .dt = step->dt, .kick = step->kick};
   const DynamicsSurface *s       = &d->surface;
@@ -167,7 +169,7 @@ static PetscErrorCode AddContact(Dynamics d, const CentralStep *step, PetscBool 
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode GetSums(Dynamics d)
+static PetscErrorCode DynamicsGetSums(Dynamics d)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < d->n_interfaces; i++) PetscCall(ContactProjectorGetSums(d->projector, i, &d->sums[i]));
@@ -175,20 +177,20 @@ static PetscErrorCode GetSums(Dynamics d)
 }
 
 /* The ledger up to the half step before t_n; the contact forces of the step from t_n must not be known yet */
-static PetscErrorCode Balance(Dynamics d, const CentralStep *step, PetscInt n)
+static PetscErrorCode DynamicsBalance(Dynamics d, const CentralStep *step, PetscInt n)
 {
   const PetscReal fraction = step->dt / d->critical.assembled;
 
   PetscFunctionBeginUser;
-  PetscCall(GetSums(d));
+  PetscCall(DynamicsGetSums(d));
   PetscCall(LedgerClose(d->comm, &d->part, d->n_interfaces, d->sums, n <= 1 ? PETSC_TRUE : PETSC_FALSE, &d->origin,
                         &d->ledger));
   PetscCall(LedgerJudge(d->comm, &d->ledger, fraction, n, step->time));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Record(Dynamics d, const CentralStep *step, PetscInt n, const PetscReal u[],
-                             const PetscReal before[], const PetscReal f_old[], const PetscReal f[])
+static PetscErrorCode DynamicsRecord(Dynamics d, const CentralStep *step, PetscInt n, const PetscReal u[],
+                                     const PetscReal before[], const PetscReal f_old[], const PetscReal f[])
 {
   HistoryState state = {.step         = n,
                         .time         = step->time,
@@ -204,7 +206,7 @@ static PetscErrorCode Record(Dynamics d, const CentralStep *step, PetscInt n, co
 
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_RECORD));
-  PetscCall(GetSums(d));
+  PetscCall(DynamicsGetSums(d));
   PetscCall(BodiesGetMass(d->bodies, NULL, NULL, &state.minv));
   PetscCall(HistoryRecord(d->history, &state));
   PetscCall(EventEnd(EVENT_RECORD));
@@ -224,17 +226,18 @@ PetscErrorCode DynamicsConstrain(TS ts, const CentralStep *step, Vec u, Vec v, V
   PetscCall(TSGetStepNumber(ts, &n));
   due      = HistoryIsDue(d->history, step->time, step->dt);
   balanced = due || d->ended || n <= 1 || n % CHECK_INTERVAL == 0 ? PETSC_TRUE : PETSC_FALSE;
-  if (balanced) PetscCall(Balance(d, step, n));
+  if (balanced) PetscCall(DynamicsBalance(d, step, n));
   PetscCall(VecGetArrayRead(u, &displacement));
   PetscCall(VecGetArrayRead(v, &velocity));
   if (f_old) PetscCall(VecGetArrayRead(f_old, &last));
   PetscCall(VecGetArray(f, &force));
-  if (d->projector) PetscCall(AddContact(d, step, balanced, displacement, velocity, last, force));
+  if (d->projector) PetscCall(DynamicsAddContact(d, step, balanced, displacement, velocity, last, force));
   PetscCall(ExternalFinish(d->external, step->dt, force));
   PetscCall(BodiesGetMass(d->bodies, NULL, NULL, &minv));
   if (last)
-    LedgerAddIntegrator(&d->part, d->b, IntegratorPower(d->layout, minv, velocity, force, last), PETSC_FALSE, 0);
-  if (due) PetscCall(Record(d, step, n, displacement, velocity, last, force));
+    LedgerAddIntegrator(&d->part, d->b, DynamicsIntegratorPower(d->layout, minv, velocity, force, last), PETSC_FALSE,
+                        0);
+  if (due) PetscCall(DynamicsRecord(d, step, n, displacement, velocity, last, force));
   PetscCall(VecRestoreArray(f, &force));
   if (f_old) PetscCall(VecRestoreArrayRead(f_old, &last));
   PetscCall(VecRestoreArrayRead(v, &velocity));

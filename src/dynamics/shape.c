@@ -73,7 +73,7 @@ static PetscInt CsvColumn(const char header[], const char name[])
 }
 
 /* Finds the row of a mode */
-static PetscErrorCode RowFind(FILE *file, const char name[], PetscInt mode, PetscReal lambda[2], Fault *fault)
+static PetscErrorCode ShapeFindRow(FILE *file, const char name[], PetscInt mode, PetscReal lambda[2], Fault *fault)
 {
   char      line[MAX_LINE] = "";
   PetscInt  columns[3];
@@ -107,7 +107,7 @@ static PetscErrorCode RowFind(FILE *file, const char name[], PetscInt mode, Pets
 }
 
 /* Reads lambda of the mode from modes.csv */
-static PetscErrorCode TableRead(const char dir[], PetscInt mode, PetscReal lambda[2], Fault *fault)
+static PetscErrorCode ShapeReadTable(const char dir[], PetscInt mode, PetscReal lambda[2], Fault *fault)
 {
   char  name[PETSC_MAX_PATH_LEN];
   FILE *file;
@@ -119,14 +119,14 @@ static PetscErrorCode TableRead(const char dir[], PetscInt mode, PetscReal lambd
     PetscCall(FaultNote(fault, PETSC_ERR_FILE_OPEN,
                         "cannot read %s: %s; -dynamics_shape needs the folder of a run of modes", name,
                         strerror(errno)));
-  if (file) PetscCall(RowFind(file, name, mode, lambda, fault));
+  if (file) PetscCall(ShapeFindRow(file, name, mode, lambda, fault));
   if (file) (void)fclose(file);
   PetscFunctionReturn(0);
 }
 
 /* Reads dataset /VTKHDF/`path` of n_rows (any for -1) times `width` values, which the caller frees */
-static PetscErrorCode ArrayRead(hid_t file, const char path[], PetscDataType type, PetscInt width, PetscInt *n_rows,
-                                void *values, Fault *fault)
+static PetscErrorCode ShapeReadArray(hid_t file, const char path[], PetscDataType type, PetscInt width,
+                                     PetscInt *n_rows, void *values, Fault *fault)
 {
   char    full[128];
   hsize_t dims[2] = {0, 1};
@@ -158,7 +158,7 @@ static PetscErrorCode ArrayRead(hid_t file, const char path[], PetscDataType typ
 }
 
 /* Checks by the title of the shape, "7: 3458.21 Hz, ...", that it belongs to the table, freq in Hz */
-static PetscErrorCode TitleCheck(hid_t file, const char key[], double freq, Fault *fault)
+static PetscErrorCode ShapeCheckTitle(hid_t file, const char key[], double freq, Fault *fault)
 {
   char   path[128], title[256] = "";
   double written = 0;
@@ -181,8 +181,8 @@ static PetscErrorCode TitleCheck(hid_t file, const char key[], double freq, Faul
 }
 
 /* Reads mesh and shape from modes.h5 */
-static PetscErrorCode FieldRead(const char dir[], PetscInt mode, PetscReal omega, PetscInt n_nodes, Shape *shape,
-                                Fault *fault)
+static PetscErrorCode ShapeReadField(const char dir[], PetscInt mode, PetscReal omega, PetscInt n_nodes, Shape *shape,
+                                     Fault *fault)
 {
   char     name[PETSC_MAX_PATH_LEN], key[2][64];
   PetscInt n_corners = -1;
@@ -198,11 +198,11 @@ static PetscErrorCode FieldRead(const char dir[], PetscInt mode, PetscReal omega
     PetscCall(FaultNote(fault, PETSC_ERR_FILE_OPEN,
                         "cannot read %s, which a run of modes writes with -output_fields, for -dynamics_shape", name));
   shape->n_points = -1;
-  PetscCall(ArrayRead(file, "Points", PETSC_REAL, 3, &shape->n_points, &shape->points, fault));
-  PetscCall(ArrayRead(file, "Connectivity", PETSC_INT, 1, &n_corners, &shape->corners, fault));
-  PetscCall(ArrayRead(file, key[0], PETSC_REAL, 3, &shape->n_points, &shape->re, fault));
-  PetscCall(ArrayRead(file, key[1], PETSC_REAL, 3, &shape->n_points, &shape->im, fault));
-  PetscCall(TitleCheck(file, key[0], (double)(omega / (2 * PETSC_PI)), fault));
+  PetscCall(ShapeReadArray(file, "Points", PETSC_REAL, 3, &shape->n_points, &shape->points, fault));
+  PetscCall(ShapeReadArray(file, "Connectivity", PETSC_INT, 1, &n_corners, &shape->corners, fault));
+  PetscCall(ShapeReadArray(file, key[0], PETSC_REAL, 3, &shape->n_points, &shape->re, fault));
+  PetscCall(ShapeReadArray(file, key[1], PETSC_REAL, 3, &shape->n_points, &shape->im, fault));
+  PetscCall(ShapeCheckTitle(file, key[0], (double)(omega / (2 * PETSC_PI)), fault));
   if (file >= 0) (void)H5Fclose(file);
   for (PetscInt i = 0; i < n_corners && !fault->code; i++)
     if (shape->corners[i] < 0 || shape->corners[i] >= shape->n_points)
@@ -211,12 +211,12 @@ static PetscErrorCode FieldRead(const char dir[], PetscInt mode, PetscReal omega
   PetscFunctionReturn(0);
 }
 
-static PetscReal Height(const PetscReal x[3])
+static PetscReal ShapeHeight(const PetscReal x[3])
 {
   return oblique[0] * x[0] + oblique[1] * x[1] + oblique[2] * x[2];
 }
 
-static PetscReal Distance(const PetscReal a[3], const PetscReal b[3])
+static PetscReal ShapeDistance(const PetscReal a[3], const PetscReal b[3])
 {
   return PetscSqrtReal(PetscSqr(a[0] - b[0]) + PetscSqr(a[1] - b[1]) + PetscSqr(a[2] - b[2]));
 }
@@ -232,7 +232,7 @@ static PetscErrorCode ShapeSort(Shape *shape, PetscInt n_nodes)
     lower[i % 3] = PetscMin(lower[i % 3], shape->points[i]);
     upper[i % 3] = PetscMax(upper[i % 3], shape->points[i]);
   }
-  shape->tolerance = TOLERANCE * Distance(lower, upper);
+  shape->tolerance = TOLERANCE * ShapeDistance(lower, upper);
   PetscCall(PetscCalloc1(3 * shape->n_cells, &shape->centres));
   PetscCall(PetscMalloc2(shape->n_cells, &shape->height, shape->n_cells, &shape->cell));
   for (PetscInt c = 0; c < shape->n_cells; c++) {
@@ -240,7 +240,7 @@ static PetscErrorCode ShapeSort(Shape *shape, PetscInt n_nodes)
 
     for (PetscInt i = 0; i < n_nodes; i++)
       for (int d = 0; d < 3; d++) x[d] += shape->points[3 * shape->corners[n_nodes * c + i] + d] / (PetscReal)n_nodes;
-    shape->height[c] = Height(x);
+    shape->height[c] = ShapeHeight(x);
     shape->cell[c]   = c;
   }
   PetscCall(PetscSortRealWithArrayInt(shape->n_cells, shape->height, shape->cell));
@@ -250,7 +250,7 @@ static PetscErrorCode ShapeSort(Shape *shape, PetscInt n_nodes)
 /* Cell of the file with this centre, -1 without one */
 static PetscInt ShapeFindCell(const Shape *shape, const PetscReal centre[3])
 {
-  const PetscReal height = Height(centre);
+  const PetscReal height = ShapeHeight(centre);
   PetscInt        low = 0, high = shape->n_cells;
 
   while (low < high) {
@@ -262,7 +262,7 @@ static PetscInt ShapeFindCell(const Shape *shape, const PetscReal centre[3])
       high = middle;
   }
   for (; low < shape->n_cells && shape->height[low] <= height + shape->tolerance; low++)
-    if (Distance(&shape->centres[3 * shape->cell[low]], centre) <= shape->tolerance) return shape->cell[low];
+    if (ShapeDistance(&shape->centres[3 * shape->cell[low]], centre) <= shape->tolerance) return shape->cell[low];
   return -1;
 }
 
@@ -272,14 +272,14 @@ static PetscInt ShapeFindCorner(const Shape *shape, PetscInt n_nodes, PetscInt c
   for (PetscInt i = 0; i < n_nodes && cell >= 0; i++) {
     const PetscInt p = shape->corners[n_nodes * cell + i];
 
-    if (Distance(&shape->points[3 * p], x) <= shape->tolerance) return p;
+    if (ShapeDistance(&shape->points[3 * p], x) <= shape->tolerance) return p;
   }
   return -1;
 }
 
 /* Lays the shape on the corners of local cell c */
-static PetscErrorCode CellFill(Model model, const Shape *shape, PetscInt c, PetscInt n_nodes, PetscReal re[],
-                               PetscReal im[], Fault *fault)
+static PetscErrorCode ShapeFillCell(Model model, const Shape *shape, PetscInt c, PetscInt n_nodes, PetscReal re[],
+                                    PetscReal im[], Fault *fault)
 {
   PetscInt  vertices[ELEMENT_MAX_NODES], cell;
   PetscReal x[3 * ELEMENT_MAX_NODES], centre[3] = {0, 0, 0};
@@ -304,8 +304,8 @@ static PetscErrorCode CellFill(Model model, const Shape *shape, PetscInt c, Pets
 }
 
 /* Lays the shape on all local cells */
-static PetscErrorCode CellsFill(MPI_Comm comm, Model model, const Shape *shape, PetscInt n_nodes, PetscReal re[],
-                                PetscReal im[], Fault *fault)
+static PetscErrorCode ShapeFillCells(MPI_Comm comm, Model model, const Shape *shape, PetscInt n_nodes, PetscReal re[],
+                                     PetscReal im[], Fault *fault)
 {
   const Mesh *mesh;
   PetscInt    n_cells;
@@ -317,7 +317,7 @@ static PetscErrorCode CellsFill(MPI_Comm comm, Model model, const Shape *shape, 
   n_cells = mesh->n_cells;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_cells, 1, MPIU_INT, MPI_SUM, comm));
   for (PetscInt c = 0; c < mesh->n_cells && !fault->code; c++)
-    PetscCall(CellFill(model, shape, c, n_nodes, re, im, fault));
+    PetscCall(ShapeFillCell(model, shape, c, n_nodes, re, im, fault));
   PetscCall(FaultsAgree(comm, fault)); /* a place says more than numbers */
   if (n_cells != shape->n_cells)
     PetscCall(FaultNote(fault, PETSC_ERR_USER_INPUT,
@@ -335,12 +335,12 @@ PetscErrorCode ShapeRead(MPI_Comm comm, Model model, const char dir[], PetscInt 
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetElement(model, &element));
-  PetscCall(TableRead(dir, mode, lambda, &fault));
-  PetscCall(FieldRead(dir, mode, lambda[1], element->n_nodes, &shape, &fault));
+  PetscCall(ShapeReadTable(dir, mode, lambda, &fault));
+  PetscCall(ShapeReadField(dir, mode, lambda[1], element->n_nodes, &shape, &fault));
   PetscCall(FaultsAgree(comm, &fault));
   if (!fault.code) {
     PetscCall(ShapeSort(&shape, element->n_nodes));
-    PetscCall(CellsFill(comm, model, &shape, element->n_nodes, re, im, &fault));
+    PetscCall(ShapeFillCells(comm, model, &shape, element->n_nodes, re, im, &fault));
   }
   PetscCall(PetscFree(shape.points));
   PetscCall(PetscFree(shape.re));

@@ -5,7 +5,7 @@
 #include "dynamicsimpl.h"
 
 /* Part that has most cells at a surface: the one that the surface belongs to */
-static PetscErrorCode SurfacePart(Dynamics d, const char set[], PetscInt *part)
+static PetscErrorCode DynamicsFindPart(Dynamics d, const char set[], PetscInt *part)
 {
   const PetscInt *vertices;
   const Mesh     *mesh;
@@ -48,7 +48,7 @@ PetscErrorCode DynamicsSetFrames(Dynamics d)
     PetscCall(ContactProjectorGetTurning(d->projector, i, &turns, rotation));
     if (!turns) continue;
     n_turning++;
-    PetscCall(SurfacePart(d, d->interfaces[i].master, &part));
+    PetscCall(DynamicsFindPart(d, d->interfaces[i].master, &part));
     PetscCall(
       ExternalSetFrame(d->external, parts[part].name, rotation, d->interfaces[i].center, d->coriolis, d->centrifugal));
   }

@@ -1,5 +1,5 @@
 /*
-   Advance of bodies that are not swept, as that of swept ones (swept.c). Of the symmetric half of K each block A of
+   Advance of bodies that are not swept, as that of swept ones (sweptbody.c). Of the symmetric half of K each block A of
    nodes i < j serves twice: g_i += A v_j, g_j += A' v_i. Both take the rows of A, loaded with the number behind each:
    the products of rows with v_j are summed over j and their components at the end, those with components of v_i are
    summed at once. Nodes that ranks share come first, so that the rows of these alone complete g there.
@@ -8,24 +8,24 @@
 #include "bodiesimpl.h"
 
 /* Sum of the first three numbers */
-STENCIL_INLINE PetscReal LanesSum(const StencilLanes *x)
+STENCIL_INLINE PetscReal BlockRowsSum(const StencilLanes *x)
 {
   return (*x)[0] + (*x)[1] + (*x)[2];
 }
 
 /* y [3] = row i times x, of a whole row; x of node 0 */
-STENCIL_INLINE void RowApply(const BlockRows *rows, PetscInt i, const PetscReal x[], PetscReal y[])
+STENCIL_INLINE void BlockRowsApply(const BlockRows *rows, PetscInt i, const PetscReal x[], PetscReal y[])
 {
   StencilLanes sum[3] = {{0}, {0}, {0}};
 
   for (PetscInt k = rows->start[i]; k < rows->start[i + 1]; k++)
     for (int j = 0; j < 3; j++)
       sum[j] += *(const StencilLanes *)&rows->value[9 * k + 3 * j] * *(const StencilLanes *)&x[3 * rows->column[k]];
-  for (int j = 0; j < 3; j++) y[j] = LanesSum(&sum[j]);
+  for (int j = 0; j < 3; j++) y[j] = BlockRowsSum(&sum[j]);
 }
 
 /* y [n][4] += row i and its mirror image, column i, times x; x of node 0 */
-STENCIL_INLINE void RowAdd(const BlockRows *rows, PetscInt i, const PetscReal x[], PetscReal y[])
+STENCIL_INLINE void BlockRowsApplyBoth(const BlockRows *rows, PetscInt i, const PetscReal x[], PetscReal y[])
 {
   const PetscReal   *u = &x[3 * i], *a = &rows->value[9 * rows->start[i]];
   const StencilLanes own[3] = {
@@ -49,12 +49,12 @@ STENCIL_INLINE void RowAdd(const BlockRows *rows, PetscInt i, const PetscReal x[
     }
     *at = g;
   }
-  for (int j = 0; j < 3; j++) y[4 * i + j] += LanesSum(&sum[j]);
+  for (int j = 0; j < 3; j++) y[4 * i + j] += BlockRowsSum(&sum[j]);
 }
 
 /* Node i with g = K v and h = C v without the part of the mass */
-STENCIL_INLINE void NodeAdvance(const General *general, PetscInt i, const PetscReal g[], const PetscReal h[],
-                                BodiesWork *w)
+STENCIL_INLINE void GeneralAdvanceNode(const General *general, PetscInt i, const PetscReal g[], const PetscReal h[],
+                                       BodiesWork *w)
 {
   const PetscInt  at = general->begin + 3 * i;
   const PetscReal m = general->mass[i], alpha = general->alpha[i];
@@ -75,19 +75,19 @@ STENCIL_INLINE void NodeAdvance(const General *general, PetscInt i, const PetscR
 }
 
 VERSIONS
-static void NodesAdvance(const General *general, PetscInt begin, PetscInt end, BodiesWork *w)
+static void GeneralAdvanceNodes(const General *general, PetscInt begin, PetscInt end, BodiesWork *w)
 {
   const PetscReal *const v = w->v + general->begin;
 
-  for (PetscInt i = begin; i < end; i++) RowAdd(&general->stiffness, i, v, general->product);
+  for (PetscInt i = begin; i < end; i++) BlockRowsApplyBoth(&general->stiffness, i, v, general->product);
   for (PetscInt i = begin; i < end; i++) {
     PetscReal *g = &general->product[4 * i], h[3];
 
     if (w->d && general->beta[i] < 0)
-      RowApply(&general->damping, i, v, h);
+      BlockRowsApply(&general->damping, i, v, h);
     else
       for (int j = 0; j < 3; j++) h[j] = general->beta[i] * g[j];
-    NodeAdvance(general, i, g, h, w);
+    GeneralAdvanceNode(general, i, g, h, w);
     for (int j = 0; j < 4; j++) g[j] = 0;
   }
 }
@@ -96,8 +96,8 @@ PetscErrorCode GeneralAdvance(const General *general, PetscBool early, BodiesWor
 {
   PetscFunctionBeginUser;
   if (early)
-    NodesAdvance(general, 0, general->n_early, w);
+    GeneralAdvanceNodes(general, 0, general->n_early, w);
   else
-    NodesAdvance(general, general->n_early, general->n, w);
+    GeneralAdvanceNodes(general, general->n_early, general->n, w);
   PetscFunctionReturn(0);
 }

@@ -6,7 +6,7 @@
 #include "base/events.h"
 
 /* Masses of this rank's cells, then complete ones; held directions have no inverse */
-static PetscErrorCode MassesSet(Bodies b)
+static PetscErrorCode BodiesSetMasses(Bodies b)
 {
   const Layout   *l = &b->layout;
   const PetscInt *unknowns;
@@ -39,7 +39,7 @@ static PetscErrorCode MassesSet(Bodies b)
 }
 
 /* Whether any rank has damping, and then room for its forces */
-static PetscErrorCode DampingSetUp(Bodies b)
+static PetscErrorCode BodiesSetUpDamping(Bodies b)
 {
   const Part *parts;
   PetscInt    n_parts;
@@ -95,8 +95,8 @@ PetscErrorCode BodiesSetUp(Bodies b, Operators operators)
   PetscCall(BodiesLayOut(b));
   PetscCall(GeneralSetUp(b));
   PetscCall(PointsSetUp(b));
-  PetscCall(MassesSet(b));
-  PetscCall(DampingSetUp(b));
+  PetscCall(BodiesSetMasses(b));
+  PetscCall(BodiesSetUpDamping(b));
   for (int i = 0; i < 2; i++) PetscCall(PetscCalloc1(b->layout.n, &b->work[i]));
   PetscFunctionReturn(0);
 }
@@ -125,7 +125,7 @@ PetscErrorCode BodiesHold(Bodies b, PetscInt vertex, PetscInt j)
 }
 
 /* The kernels on the vertices that ranks share, or on the others */
-static PetscErrorCode KernelsAdvance(Bodies b, PetscBool early, BodiesWork *w)
+static PetscErrorCode BodiesAdvanceKernels(Bodies b, PetscBool early, BodiesWork *w)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < b->n_swept; i++) PetscCall(SweptAdvance(&b->swept[i], early, w));
@@ -141,9 +141,9 @@ PetscErrorCode BodiesAdvance(Bodies b, PetscReal dt, const PetscReal u[], const 
   BodiesWork w = {.dt = dt, .u = u, .v = (PetscReal *)v, .ku = ku, .f = f, .d = b->d};
 
   PetscFunctionBeginUser;
-  PetscCall(KernelsAdvance(b, PETSC_TRUE, &w));
+  PetscCall(BodiesAdvanceKernels(b, PETSC_TRUE, &w));
   PetscCall(SharedBegin(&b->share, &b->layout, f));
-  PetscCall(KernelsAdvance(b, PETSC_FALSE, &w));
+  PetscCall(BodiesAdvanceKernels(b, PETSC_FALSE, &w));
   PetscCall(EventBegin(EVENT_EXCHANGE));
   PetscCall(SharedEnd(&b->share, &b->layout, f));
   PetscCall(EventEnd(EVENT_EXCHANGE));
@@ -152,7 +152,7 @@ PetscErrorCode BodiesAdvance(Bodies b, PetscReal dt, const PetscReal u[], const 
 }
 
 /* Zeros in held directions and padding */
-static void HeldClear(Bodies b, PetscReal x[])
+static void BodiesClearHeld(Bodies b, PetscReal x[])
 {
   for (PetscInt i = 0; i < b->layout.n; i++)
     if (b->minv[i] == 0) x[i] = 0;
@@ -166,14 +166,14 @@ PetscErrorCode BodiesApply(Bodies b, const PetscReal x[], PetscReal kx[], PetscR
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(k, b->layout.n));
   if (cx) PetscCall(PetscArrayzero(cx, b->layout.n));
-  for (int early = 1; early >= 0; early--) PetscCall(KernelsAdvance(b, (PetscBool)early, &w));
+  for (int early = 1; early >= 0; early--) PetscCall(BodiesAdvanceKernels(b, (PetscBool)early, &w));
   for (int i = 0; i < 2; i++) {
     PetscReal *y = i ? cx : kx;
 
     if (!y) continue;
     PetscCall(SharedBegin(&b->share, &b->layout, y));
     PetscCall(SharedEnd(&b->share, &b->layout, y));
-    HeldClear(b, y);
+    BodiesClearHeld(b, y);
   }
   PetscFunctionReturn(0);
 }
@@ -185,7 +185,7 @@ PetscErrorCode BodiesSetState(Bodies b, const PetscReal u[], const PetscReal v[]
   PetscFunctionBeginUser;
   if (b->d) {
     PetscCall(PetscArrayzero(b->work[0], b->layout.n));
-    for (int early = 1; early >= 0; early--) PetscCall(KernelsAdvance(b, (PetscBool)early, &w));
+    for (int early = 1; early >= 0; early--) PetscCall(BodiesAdvanceKernels(b, (PetscBool)early, &w));
   }
   PetscCall(PetscArrayzero(ku, b->layout.n));
   PetscCall(BodiesCellsAddForces(b, u, ku));

@@ -115,7 +115,7 @@ typedef struct {
   PetscReal stiffness[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS]; /* N/m, [3 n_nodes][3 n_nodes], Cartesian */
 } BodiesCell;
 
-/* cell.c */
+/* bodycell.c */
 PETSC_INTERN PetscErrorCode BodiesCountCells(Bodies bodies, PetscInt *n_cells);
 PETSC_INTERN PetscErrorCode BodiesGetCell(Bodies bodies, PetscInt c, BodiesCell *cell);
 /* body and local vertices of a cell, without its matrices */
@@ -130,26 +130,26 @@ PETSC_INTERN PetscErrorCode BodiesCellsAddForces(Bodies bodies, const PetscReal 
 PETSC_INTERN PetscErrorCode BodiesFindSwept(Bodies bodies);
 PETSC_INTERN PetscErrorCode BodiesLayOut(Bodies bodies);
 
-/* column.c - `mirrored` is whether the stencil describes the cells; the caller falls back on rows of blocks where not
+/* sweptcolumn.c - `mirrored` is whether the stencil describes the cells; the caller falls back on rows of blocks where not
    */
 PETSC_INTERN PetscErrorCode SweptSetUp(Bodies bodies, SweptBody *swept, PetscBool *mirrored);
 
-/* swept.c - ranges once it is known which vertices ranks share, shared [n_vertices] */
+/* sweptbody.c - ranges once it is known which vertices ranks share, shared [n_vertices] */
 PETSC_INTERN PetscErrorCode SweptSetRanges(SweptBody *swept, const PetscBool shared[]);
 PETSC_INTERN PetscErrorCode SweptAdvance(const SweptBody *swept, PetscBool early, BodiesWork *work);
 PETSC_INTERN PetscErrorCode SweptDestroy(SweptBody *swept);
 
-/* general.c, blockrows.c */
+/* generalbody.c, blockrows.c */
 PETSC_INTERN PetscErrorCode GeneralSetUp(Bodies bodies);
 PETSC_INTERN PetscErrorCode GeneralDestroy(General *general);
 PETSC_INTERN PetscErrorCode GeneralAdvance(const General *general, PetscBool early, BodiesWork *work);
 
-/* point.c */
+/* bodypoint.c */
 PETSC_INTERN PetscErrorCode PointsSetUp(Bodies bodies);
 PETSC_INTERN void           PointsAdvance(Bodies bodies, PetscBool early, BodiesWork *work);
 PETSC_INTERN void           PointsAddForces(Bodies bodies, const PetscReal u[], PetscReal ku[]);
 
-/* shared.c - Begin sends what x has at shared vertices, End replaces it by the sums */
+/* sharedvertices.c - Begin sends what x has at shared vertices, End replaces it by the sums */
 PETSC_INTERN PetscErrorCode SharedSetUp(Bodies bodies);
 PETSC_INTERN PetscErrorCode SharedBegin(Shared *share, const Layout *layout, const PetscReal x[]);
 PETSC_INTERN PetscErrorCode SharedEnd(Shared *share, const Layout *layout, PetscReal x[]);

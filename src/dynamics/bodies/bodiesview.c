@@ -4,7 +4,7 @@
 #include "bodiesimpl.h"
 
 /* Cells of each body [n_bodies] that the swept kernel serves, over all ranks, and all of them */
-static PetscErrorCode CellsCount(Bodies b, PetscInt n_swept[], PetscInt n_all[])
+static PetscErrorCode BodiesCountSwept(Bodies b, PetscInt n_swept[], PetscInt n_all[])
 {
   PetscInt n_cells;
 
@@ -30,7 +30,7 @@ PetscErrorCode BodiesView(Bodies b, PetscViewer viewer)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(b->n_bodies, &n_swept, b->n_bodies, &n_all));
-  PetscCall(CellsCount(b, n_swept, n_all));
+  PetscCall(BodiesCountSwept(b, n_swept, n_all));
   for (PetscInt i = 0; i < b->n_bodies; i++) {
     const PetscInt n_rows = n_all[i] - n_swept[i];
 

@@ -9,7 +9,7 @@
 
 #define SAME_AXIS 1e-8 /* of centres that ranks find, relative to the mesh */
 
-static PetscInt RoundUp(PetscInt n)
+static PetscInt LayoutRoundUp(PetscInt n)
 {
   return (n + STENCIL_WIDTH - 1) / STENCIL_WIDTH * STENCIL_WIDTH;
 }
@@ -25,7 +25,7 @@ static PetscErrorCode BodiesFlagLocal(Bodies b, PetscBool local[])
 }
 
 /* Whether the directions held at the vertices of a body, and their places, allow components about an axis */
-static PetscErrorCode FrameCheck(Bodies b, PetscInt body, const BodiesFrame *frame, PetscBool *suits)
+static PetscErrorCode BodiesFrameSuits(Bodies b, PetscInt body, const BodiesFrame *frame, PetscBool *suits)
 {
   const PetscInt  *unknowns, j = (frame->axis + 1) % 3, k = (frame->axis + 2) % 3;
   const PetscReal *x;
@@ -43,7 +43,7 @@ static PetscErrorCode FrameCheck(Bodies b, PetscInt body, const BodiesFrame *fra
 }
 
 /* Whether two centres are the same but for rounding; scale (m) */
-static PetscBool FrameAgrees(const BodiesFrame *a, const ModelLines *lines, PetscReal scale)
+static PetscBool BodiesFrameAgrees(const BodiesFrame *a, const ModelLines *lines, PetscReal scale)
 {
   if (a->axis != lines->axis) return PETSC_FALSE;
   for (int d = 0; d < 3; d++)
@@ -52,7 +52,7 @@ static PetscBool FrameAgrees(const BodiesFrame *a, const ModelLines *lines, Pets
 }
 
 /* Largest coordinate of the mesh, m */
-static PetscErrorCode ModelScale(Bodies b, PetscReal *scale)
+static PetscErrorCode BodiesFindScale(Bodies b, PetscReal *scale)
 {
   const PetscReal *x;
 
@@ -65,7 +65,7 @@ static PetscErrorCode ModelScale(Bodies b, PetscReal *scale)
 }
 
 /* Axis + 1, 0 for none, and centre [n_bodies][4] that the lowest rank with turned lines of each body finds */
-static PetscErrorCode FramesPropose(Bodies b, ModelLines *const lines[], PetscReal axes[])
+static PetscErrorCode BodiesProposeFrames(Bodies b, ModelLines *const lines[], PetscReal axes[])
 {
   PetscMPIInt rank, size, *first;
 
@@ -87,15 +87,15 @@ static PetscErrorCode FramesPropose(Bodies b, ModelLines *const lines[], PetscRe
 }
 
 /* Frames of all bodies, the same on every rank */
-static PetscErrorCode FramesFind(Bodies b, ModelLines *const lines[])
+static PetscErrorCode BodiesFindFrames(Bodies b, ModelLines *const lines[])
 {
   PetscReal *axes, scale;
   PetscBool *turned;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelScale(b, &scale));
+  PetscCall(BodiesFindScale(b, &scale));
   PetscCall(PetscMalloc2(4 * b->n_bodies, &axes, b->n_bodies, &turned));
-  PetscCall(FramesPropose(b, lines, axes));
+  PetscCall(BodiesProposeFrames(b, lines, axes));
   for (PetscInt i = 0; i < b->n_bodies; i++) {
     BodiesFrame *frame = &b->frame[i];
 
@@ -103,8 +103,8 @@ static PetscErrorCode FramesFind(Bodies b, ModelLines *const lines[])
     if (!turned[i]) continue;
     frame->axis = (PetscInt)axes[4 * i] - 1;
     for (int d = 0; d < 3; d++) frame->centre[d] = axes[4 * i + 1 + d];
-    PetscCall(FrameCheck(b, i, frame, &turned[i]));
-    if (lines[i] && lines[i]->turned && !FrameAgrees(frame, lines[i], scale)) turned[i] = PETSC_FALSE;
+    PetscCall(BodiesFrameSuits(b, i, frame, &turned[i]));
+    if (lines[i] && lines[i]->turned && !BodiesFrameAgrees(frame, lines[i], scale)) turned[i] = PETSC_FALSE;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, turned, (PetscMPIInt)b->n_bodies, MPIU_BOOL, MPI_LAND, b->comm));
   for (PetscInt i = 0; i < b->n_bodies; i++) b->frame[i].turned = turned[i];
@@ -113,7 +113,7 @@ static PetscErrorCode FramesFind(Bodies b, ModelLines *const lines[])
 }
 
 /* Bases of the vertices: along the axis, radial, tangential; or x, y, z */
-static PetscErrorCode BasesFind(Bodies b)
+static PetscErrorCode LayoutFindBases(Bodies b)
 {
   const PetscReal *coordinates;
 
@@ -146,7 +146,7 @@ static PetscErrorCode BasesFind(Bodies b)
 }
 
 /* Keeps the lines of a body as swept ones where the stencil serves them */
-static PetscErrorCode SweptKeep(Bodies b, PetscInt body, ModelLines **lines)
+static PetscErrorCode BodiesKeepSwept(Bodies b, PetscInt body, ModelLines **lines)
 {
   SweptBody *swept    = &b->swept[b->n_swept];
   PetscBool  mirrored = PETSC_FALSE;
@@ -156,7 +156,7 @@ static PetscErrorCode SweptKeep(Bodies b, PetscInt body, ModelLines **lines)
   if ((*lines)->turned == b->frame[body].turned) {
     *swept        = (SweptBody){.body = body, .lines = *lines, .along = (*lines)->turned ? 2 : (*lines)->axis};
     *lines        = NULL;
-    swept->stride = RoundUp(swept->lines->n_nodes + 2);
+    swept->stride = LayoutRoundUp(swept->lines->n_nodes + 2);
     PetscCall(SweptSetUp(b, swept, &mirrored));
     if (mirrored)
       b->n_swept++;
@@ -179,9 +179,9 @@ PetscErrorCode BodiesFindSwept(Bodies b)
   PetscCall(BodiesFlagLocal(b, local));
   for (PetscInt i = 0; i < b->n_bodies && !b->no_sweep; i++)
     if (local[i]) PetscCall(ModelCreateLines(b->model, i, b->body, &lines[i]));
-  PetscCall(FramesFind(b, lines));
-  PetscCall(BasesFind(b));
-  for (PetscInt i = 0; i < b->n_bodies; i++) PetscCall(SweptKeep(b, i, &lines[i]));
+  PetscCall(BodiesFindFrames(b, lines));
+  PetscCall(LayoutFindBases(b));
+  for (PetscInt i = 0; i < b->n_bodies; i++) PetscCall(BodiesKeepSwept(b, i, &lines[i]));
   PetscCall(PetscFree2(lines, local));
   PetscFunctionReturn(0);
 }
@@ -244,7 +244,7 @@ PetscErrorCode BodiesLayOut(Bodies b)
   l->n += STENCIL_WIDTH;
   b->general.begin = l->n;
   PetscCall(GeneralLayOut(b, shared));
-  l->n += RoundUp(3 * b->general.n + 1);
+  l->n += LayoutRoundUp(3 * b->general.n + 1);
   for (PetscInt i = 0; i < b->n_swept; i++) PetscCall(SweptSetRanges(&b->swept[i], shared));
   PetscCall(PetscFree(shared));
   PetscFunctionReturn(0);

@@ -50,7 +50,7 @@ static PetscErrorCode StepPencilApply(StepPencil *p, Vec x)
   const Dynamics d = p->dynamics;
 
   PetscFunctionBeginUser;
-  PetscCall(StateFromVec(d->model, d->layout, x, p->x));
+  PetscCall(StateVectorFromVec(d->model, d->layout, x, p->x));
   for (PetscInt i = 0; i < d->layout->n; i++) p->x[i] *= p->scale[i];
   PetscCall(BodiesApply(d->bodies, p->x, p->kx, p->cx));
   for (PetscInt i = 0; i < d->layout->n; i++) {
@@ -68,7 +68,7 @@ static PetscErrorCode StepPencilMult(Mat A, Vec x, Vec y)
   PetscCall(MatShellGetContext(A, &p));
   PetscCall(StepPencilApply(p, x));
   for (PetscInt i = 0; i < p->dynamics->layout->n; i++) p->kx[i] += p->s * p->cx[i];
-  PetscCall(StateToVec(p->dynamics->model, p->dynamics->layout, p->kx, y));
+  PetscCall(StateVectorToVec(p->dynamics->model, p->dynamics->layout, p->kx, y));
   PetscFunctionReturn(0);
 }
 
@@ -81,9 +81,9 @@ static PetscErrorCode StepPencilRayleigh(StepPencil *p, Vec x, PetscReal *k, Pet
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(x, &y));
   PetscCall(StepPencilApply(p, x));
-  PetscCall(StateToVec(d->model, d->layout, p->kx, y));
+  PetscCall(StateVectorToVec(d->model, d->layout, p->kx, y));
   PetscCall(VecDot(x, y, k));
-  PetscCall(StateToVec(d->model, d->layout, p->cx, y));
+  PetscCall(StateVectorToVec(d->model, d->layout, p->cx, y));
   PetscCall(VecDot(x, y, c));
   PetscCall(VecDestroy(&y));
   PetscFunctionReturn(0);
@@ -130,7 +130,7 @@ static PetscErrorCode StepPencilLargest(StepPencil *p, EPS eps, PetscReal s, Vec
 }
 
 /* The dt at which an eigenvector with k, c is critical: dt^2 k + 2 dt c = 2 / b */
-static PetscReal VectorStep(PetscReal b, PetscReal k, PetscReal c)
+static PetscReal CriticalVectorStep(PetscReal b, PetscReal k, PetscReal c)
 {
   return (2 / b) / (c + PetscSqrtReal(c * c + 2 * k / b));
 }
@@ -147,7 +147,7 @@ static PetscErrorCode StepPencilFindStep(StepPencil *p, EPS eps, Vec x, PetscRea
     last = dt;
     PetscCall(StepPencilRayleigh(p, x, &k, &c));
     if (c == 0) break;
-    dt = VectorStep(b, k + PetscMax(0, lambda - k - p->s * c), c);
+    dt = CriticalVectorStep(b, k + PetscMax(0, lambda - k - p->s * c), c);
     PetscCall(StepPencilLargest(p, eps, 2 / dt, x, &lambda));
     critical->its++;
   }
@@ -157,7 +157,7 @@ static PetscErrorCode StepPencilFindStep(StepPencil *p, EPS eps, Vec x, PetscRea
 
 /* Largest dt that the elements allow each by itself, dt^2 bound(2 / dt) = 2 / b, from the assembled one downwards:
    every iteration halves the error at least, since bound(s) is linear in s at most */
-static PetscErrorCode ElementStep(Dynamics d, CriticalStep *critical)
+static PetscErrorCode CriticalElementStep(Dynamics d, CriticalStep *critical)
 {
   PetscReal last = 0, bound;
 
@@ -189,7 +189,7 @@ PetscErrorCode DynamicsFindCriticalStep(Dynamics d)
   PetscCall(OperatorsCreateVec(d->operators, &x));
   PetscCall(VecSetRandom(x, NULL));
   PetscCall(StepPencilFindStep(&pencil, eps, x, d->b, &d->critical));
-  PetscCall(ElementStep(d, &d->critical));
+  PetscCall(CriticalElementStep(d, &d->critical));
   PetscCall(VecDestroy(&x));
   PetscCall(EPSDestroy(&eps));
   PetscCall(MatDestroy(&A));

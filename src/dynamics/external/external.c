@@ -26,7 +26,7 @@ PetscErrorCode ExternalSetFromOptions(External external)
 }
 
 /* The next n numbers of the memory */
-static PetscReal *MemoryTake(PetscReal **next, PetscInt n)
+static PetscReal *ExternalTakeMemory(PetscReal **next, PetscInt n)
 {
   PetscReal *const here = *next;
 
@@ -46,12 +46,12 @@ PetscErrorCode ExternalLayMemory(External external)
   if (n > n_before) PetscCall(PetscArrayzero(&external->memory[n_before], n - n_before));
   external->n_memory = n;
   next               = external->memory;
-  external->begun    = MemoryTake(&next, 1);
-  external->drives   = MemoryTake(&next, 1);
-  for (PetscInt i = 0; i < external->n_loads; i++) external->loads[i].last = MemoryTake(&next, 1);
-  for (PetscInt i = 0; i < external->n_impulses; i++) external->impulses[i].last = MemoryTake(&next, 2);
+  external->begun    = ExternalTakeMemory(&next, 1);
+  external->drives   = ExternalTakeMemory(&next, 1);
+  for (PetscInt i = 0; i < external->n_loads; i++) external->loads[i].last = ExternalTakeMemory(&next, 1);
+  for (PetscInt i = 0; i < external->n_impulses; i++) external->impulses[i].last = ExternalTakeMemory(&next, 2);
   for (PetscInt i = 0; i < external->n_frames; i++)
-    external->frames[i].last = MemoryTake(&next, 3 * external->frames[i].n);
+    external->frames[i].last = ExternalTakeMemory(&next, 3 * external->frames[i].n);
   PetscFunctionReturn(0);
 }
 
@@ -99,7 +99,7 @@ PetscErrorCode ExternalGetMemory(External external, PetscInt *n, PetscReal **val
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode RampAddChecksum(const Ramp *ramp, Checksum c)
+static PetscErrorCode ExternalAddRamp(const Ramp *ramp, Checksum c)
 {
   const PetscReal all[] = {(PetscReal)ramp->shape, ramp->delay, ramp->length};
 
@@ -118,7 +118,7 @@ PetscErrorCode ExternalAddChecksum(External external, Checksum c)
   PetscCall(ModelAddLoadsChecksum(external->model, c));
   for (PetscInt i = 0; i < external->n_loads; i++) {
     PetscCall(ChecksumSetPart(c, "load %s", external->loads[i].name));
-    PetscCall(RampAddChecksum(&external->loads[i].ramp, c));
+    PetscCall(ExternalAddRamp(&external->loads[i].ramp, c));
   }
   for (PetscInt i = 0; i < external->n_motions; i++) {
     const Drive *m = &external->motions[i];
@@ -127,7 +127,7 @@ PetscErrorCode ExternalAddChecksum(External external, Checksum c)
     PetscCall(ModelAddSetChecksum(external->model, m->set, PETSC_FALSE, c));
     PetscCall(ChecksumAddReals(c, 3, m->displacement));
     PetscCall(ChecksumAddInts(c, 3, (const PetscInt[]){m->direction[0], m->direction[1], m->direction[2]}));
-    PetscCall(RampAddChecksum(&m->ramp, c));
+    PetscCall(ExternalAddRamp(&m->ramp, c));
   }
   for (PetscInt i = 0; i < external->n_impulses; i++) {
     const Impulse *hit = &external->impulses[i];

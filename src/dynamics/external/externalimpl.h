@@ -80,7 +80,7 @@ struct _p_External {
 /* external.c - makes the memory as long as what is there needs; new numbers are 0 */
 PETSC_INTERN PetscErrorCode ExternalLayMemory(External external);
 
-/* load.c */
+/* loadforce.c */
 PETSC_INTERN PetscErrorCode TimedLoadsSetFromOptions(External external);
 PETSC_INTERN PetscErrorCode TimedLoadsSetUp(External external);
 PETSC_INTERN PetscErrorCode TimedLoadsAdvance(External external, PetscReal t, const PetscReal v[], PetscReal f[],

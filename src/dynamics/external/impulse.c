@@ -63,7 +63,7 @@ PetscErrorCode ImpulsesSetFromOptions(External external)
 }
 
 /* This rank's copy of the vertex that one rank names by a number >= 0, else -1 */
-static PetscErrorCode VertexFindCopy(Model model, PetscInt *vertex)
+static PetscErrorCode ImpulseFindCopy(Model model, PetscInt *vertex)
 {
   const Mesh *mesh;
   PetscInt    global = -1;
@@ -106,7 +106,7 @@ PetscErrorCode ImpulsesSetUp(External external)
     PetscBool moves;
 
     PetscCall(ModelFindNode(external->model, hit->part, hit->at, &vertex));
-    PetscCall(VertexFindCopy(external->model, &vertex));
+    PetscCall(ImpulseFindCopy(external->model, &vertex));
     PetscCall(ForcePatternCreate(external->layout, vertex >= 0, &vertex, hit->impulse, &hit->pattern));
     PetscCall(ImpulsePlace(external, vertex, hit, &moves));
     PetscCheck(moves, external->comm, PETSC_ERR_USER_INPUT,

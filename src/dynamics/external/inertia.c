@@ -44,7 +44,7 @@ PetscErrorCode InertiaSetUp(External external)
 }
 
 /* Constant, hence the same power for `old` and `now`; no `old` before the first step */
-static void GravityAdvance(External external, const PetscReal v[], PetscReal f[], ExternalPower *power)
+static void InertiaGravityAdvance(External external, const PetscReal v[], PetscReal f[], ExternalPower *power)
 {
   const PetscReal *weight = external->weight, *own = external->own_weight;
   PetscReal        sum = 0;
@@ -58,8 +58,8 @@ static void GravityAdvance(External external, const PetscReal v[], PetscReal f[]
 }
 
 /* Inertial force on mass m at place x (m) with velocity v, N */
-static void FrameForce(const InertiaFrame *frame, PetscReal m, const PetscReal x[3], const PetscReal v[3],
-                       PetscReal force[3])
+static void InertiaFrameForce(const InertiaFrame *frame, PetscReal m, const PetscReal x[3], const PetscReal v[3],
+                              PetscReal force[3])
 {
   PetscReal arm[3], turn[3], centrifugal[3], coriolis[3];
 
@@ -71,8 +71,8 @@ static void FrameForce(const InertiaFrame *frame, PetscReal m, const PetscReal x
     force[d] = -m * ((frame->coriolis ? 2 * coriolis[d] : 0) + (frame->centrifugal ? centrifugal[d] : 0));
 }
 
-static void FrameAdvance(External external, InertiaFrame *frame, const PetscReal X[], const PetscReal u[],
-                         const PetscReal v[], PetscReal f[], ExternalPower *power)
+static void InertiaFrameAdvance(External external, InertiaFrame *frame, const PetscReal X[], const PetscReal u[],
+                                const PetscReal v[], PetscReal f[], ExternalPower *power)
 {
   const Layout *layout = external->layout;
 
@@ -86,7 +86,7 @@ static void FrameAdvance(External external, InertiaFrame *frame, const PetscReal
       x[d] += X[3 * i + d];
       power->old += k < frame->n_owned ? last[d] * velocity[d] : 0;
     }
-    FrameForce(frame, external->mass[layout->at[i]], x, velocity, last);
+    InertiaFrameForce(frame, external->mass[layout->at[i]], x, velocity, last);
     for (int d = 0; d < 3 && k < frame->n_owned; d++) power->now += last[d] * velocity[d];
     LayoutAdd(layout, i, last, f);
   }
@@ -98,14 +98,15 @@ PetscErrorCode InertiaAdvance(External external, const PetscReal u[], const Pets
   const PetscReal *X;
 
   PetscFunctionBeginUser;
-  if (external->weight) GravityAdvance(external, v, f, power);
+  if (external->weight) InertiaGravityAdvance(external, v, f, power);
   if (external->n_frames) PetscCall(ModelGetCoordinates(external->model, &X));
-  for (PetscInt i = 0; i < external->n_frames; i++) FrameAdvance(external, &external->frames[i], X, u, v, f, power);
+  for (PetscInt i = 0; i < external->n_frames; i++)
+    InertiaFrameAdvance(external, &external->frames[i], X, u, v, f, power);
   PetscFunctionReturn(0);
 }
 
 /* Vertices of the part, owned ones first, without those of the frames before */
-static PetscErrorCode FrameFindVertices(External external, const char part[], InertiaFrame *frame)
+static PetscErrorCode InertiaFrameFindVertices(External external, const char part[], InertiaFrame *frame)
 {
   const Layout   *layout = external->layout;
   const PetscInt *vertex;
@@ -136,7 +137,7 @@ static PetscErrorCode FrameFindVertices(External external, const char part[], In
 }
 
 /* The frame of a part, a new one where it has none; an error for no part */
-static PetscErrorCode FrameFind(External external, const char part[], InertiaFrame **frame)
+static PetscErrorCode InertiaFrameFind(External external, const char part[], InertiaFrame **frame)
 {
   const Part *parts;
   PetscInt    n, i;
@@ -155,7 +156,7 @@ static PetscErrorCode FrameFind(External external, const char part[], InertiaFra
   }
   *frame         = &external->frames[external->n_frames];
   (*frame)->part = i;
-  PetscCall(FrameFindVertices(external, part, *frame));
+  PetscCall(InertiaFrameFindVertices(external, part, *frame));
   external->n_frames++;
   PetscCall(ExternalLayMemory(external));
   PetscFunctionReturn(0);
@@ -169,7 +170,7 @@ PetscErrorCode ExternalSetFrame(External external, const char part[], const Pets
   PetscFunctionBeginUser;
   PetscCheck(external->layout, external->comm, PETSC_ERR_ARG_WRONGSTATE,
              "ExternalSetUp() must come before the frame of %s", part);
-  PetscCall(FrameFind(external, part, &frame));
+  PetscCall(InertiaFrameFind(external, part, &frame));
   PetscCall(PetscArraycpy(frame->omega, omega, 3));
   PetscCall(PetscArraycpy(frame->centre, centre, 3));
   frame->coriolis    = coriolis;

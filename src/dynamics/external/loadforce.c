@@ -27,7 +27,7 @@ PetscErrorCode TimedLoadsSetFromOptions(External external)
 }
 
 /* Full forces of load i at the nodes that have some; local is work */
-static PetscErrorCode LoadGather(External external, PetscInt i, Vec local)
+static PetscErrorCode TimedLoadGather(External external, PetscInt i, Vec local)
 {
   const Layout    *layout = external->layout;
   const PetscReal *force;
@@ -57,7 +57,7 @@ PetscErrorCode TimedLoadsSetUp(External external)
   PetscFunctionBeginUser;
   if (!external->n_loads) PetscFunctionReturn(0);
   PetscCall(ModelCreateNodal(external->model, &local));
-  for (PetscInt i = 0; i < external->n_loads; i++) PetscCall(LoadGather(external, i, local));
+  for (PetscInt i = 0; i < external->n_loads; i++) PetscCall(TimedLoadGather(external, i, local));
   PetscCall(VecDestroy(&local));
   PetscFunctionReturn(0);
 }

@@ -17,7 +17,7 @@
 #define SHARE_TOLERANCE 1e-8 /* of s, from 0 and 1 */
 
 /* The flagged directions as a word such as "xz" */
-static void DirectionsWord(const PetscBool direction[3], char word[4])
+static void MotionDirections(const PetscBool direction[3], char word[4])
 {
   for (int d = 0; d < 3; d++)
     if (direction[d]) *word++ = "xyz"[d];
@@ -167,7 +167,7 @@ PetscErrorCode MotionsSetUp(External external, Bodies bodies)
     PetscCall(MotionFindNumbers(external, bodies, taken, motion, &count[1]));
     count[0] = motion->n;
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, external->comm));
-    DirectionsWord(motion->direction, word);
+    MotionDirections(motion->direction, word);
     PetscCheck(
       !count[1], external->comm, PETSC_ERR_USER_INPUT,
       "-%s_directions %s splits the radial and circumferential components of a swept body on %s: prescribe both "
@@ -224,7 +224,7 @@ PetscErrorCode MotionsView(External external, PetscViewer viewer)
     const Drive     *motion = &external->motions[i];
     const PetscReal *x      = motion->displacement;
 
-    DirectionsWord(motion->direction, word);
+    MotionDirections(motion->direction, word);
     PetscCall(RampDescribe(&motion->ramp, sizeof(words), words));
     if (x[0] != 0 || x[1] != 0 || x[2] != 0)
       PetscCall(PetscViewerASCIIPrintf(viewer, "  motion %s: %s moved by %.6g, %.6g, %.6g m (%s prescribed), %s\n",

@@ -11,9 +11,9 @@ typedef struct {
   PetscReal sweeps, steps;
   PetscReal bytes, pair_bytes; /* lengths of the tables */
   PetscReal n_frames;
-} Kept;
+} HistoryKept;
 
-#define N_KEPT (PetscInt)(sizeof(Kept) / sizeof(PetscReal))
+#define N_KEPT (PetscInt)(sizeof(HistoryKept) / sizeof(PetscReal))
 
 void HistoryMotion(const Layout *layout, const HistoryState *state, PetscInt i, PetscReal u[3], PetscReal v[3],
                    PetscReal a[3])
@@ -46,7 +46,7 @@ PetscErrorCode HistoryCreate(MPI_Comm comm, History *history)
 }
 
 /* Checks an interval; 0 only where it means none */
-static PetscErrorCode IntervalCheck(MPI_Comm comm, const char option[], PetscReal interval, PetscBool none)
+static PetscErrorCode HistoryCheckInterval(MPI_Comm comm, const char option[], PetscReal interval, PetscBool none)
 {
   PetscFunctionBeginUser;
   PetscCheck(interval > 0 || (none && interval == 0), comm, PETSC_ERR_USER_INPUT, "%s %.6g s must be positive%s",
@@ -67,10 +67,10 @@ PetscErrorCode HistorySetFromOptions(History h)
   PetscCall(PetscOptionsReal("-dynamics_live", "s of the clock between live lines, 0 for none", "dynamics.h",
                              h->live.interval, &h->live.interval, NULL));
   PetscOptionsEnd();
-  PetscCall(IntervalCheck(h->comm, "-dynamics_history_interval", h->rows.interval, PETSC_FALSE));
-  PetscCall(IntervalCheck(h->comm, "-dynamics_pairs_interval", h->pairs.interval, PETSC_TRUE));
-  PetscCall(IntervalCheck(h->comm, "-dynamics_snapshot_interval", h->frames.interval, PETSC_TRUE));
-  PetscCall(IntervalCheck(h->comm, "-dynamics_live", h->live.interval, PETSC_TRUE));
+  PetscCall(HistoryCheckInterval(h->comm, "-dynamics_history_interval", h->rows.interval, PETSC_FALSE));
+  PetscCall(HistoryCheckInterval(h->comm, "-dynamics_pairs_interval", h->pairs.interval, PETSC_TRUE));
+  PetscCall(HistoryCheckInterval(h->comm, "-dynamics_snapshot_interval", h->frames.interval, PETSC_TRUE));
+  PetscCall(HistoryCheckInterval(h->comm, "-dynamics_live", h->live.interval, PETSC_TRUE));
   PetscFunctionReturn(0);
 }
 
@@ -115,8 +115,8 @@ PetscBool HistoryIsDue(History history, PetscReal t, PetscReal dt)
 }
 
 /* Opens a table; bytes > 0: goes on with that of the run before, of that length */
-static PetscErrorCode TableBegin(Results results, const char name[], const char header[], PetscReal bytes,
-                                 ResultsTable *table)
+static PetscErrorCode HistoryBeginTable(Results results, const char name[], const char header[], PetscReal bytes,
+                                        ResultsTable *table)
 {
   PetscFunctionBeginUser;
   if (*table) PetscFunctionReturn(0);
@@ -128,23 +128,23 @@ static PetscErrorCode TableBegin(Results results, const char name[], const char 
 }
 
 /* Opens the tables that are wanted, if they are not open */
-static PetscErrorCode TablesBegin(History history, PetscReal bytes, PetscReal pair_bytes)
+static PetscErrorCode HistoryBeginTables(History history, PetscReal bytes, PetscReal pair_bytes)
 {
   char *header;
 
   PetscFunctionBeginUser;
   if (!history->table) {
-    PetscCall(RowCreateHeader(history, &header));
-    PetscCall(TableBegin(history->results, "transient", header, bytes, &history->table));
+    PetscCall(HistoryCreateHeader(history, &header));
+    PetscCall(HistoryBeginTable(history->results, "transient", header, bytes, &history->table));
     PetscCall(PetscFree(header));
   }
   if (history->pairs.interval > 0)
-    PetscCall(TableBegin(history->results, "contact_pairs", PAIRS_HEADER, pair_bytes, &history->pair_table));
+    PetscCall(HistoryBeginTable(history->results, "contact_pairs", PAIRS_HEADER, pair_bytes, &history->pair_table));
   PetscFunctionReturn(0);
 }
 
 /* States of the pairs in the step from t_n */
-static PetscErrorCode RecordPairs(History history, const HistoryState *state)
+static PetscErrorCode HistoryRecordPairs(History history, const HistoryState *state)
 {
   const ContactState *pair;
   const PetscInt     *interface, *number;
@@ -153,21 +153,21 @@ static PetscErrorCode RecordPairs(History history, const HistoryState *state)
 
   PetscFunctionBeginUser;
   PetscCall(ContactProjectorGetStates(history->projector, &n, &pair, &interface, &number, &x));
-  PetscCall(
-    PairsWrite(history->pair_table, history->comm, history->interfaces, state->time, n, pair, interface, number, x));
+  PetscCall(HistoryWritePairs(history->pair_table, history->comm, history->interfaces, state->time, n, pair, interface,
+                              number, x));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode HistoryRecord(History history, const HistoryState *state)
 {
   PetscFunctionBeginUser;
-  PetscCall(TablesBegin(history, 0, 0));
+  PetscCall(HistoryBeginTables(history, 0, 0));
   if (ScheduleMeet(&history->rows, state->time, state->dt)) {
     GrowthAdd(&history->growth, state->time, state->ledger->kinetic);
-    PetscCall(RowWrite(history, state));
+    PetscCall(HistoryWriteRow(history, state));
     PetscCall(LiveShow(history, state));
   }
-  if (ScheduleMeet(&history->pairs, state->time, state->dt)) PetscCall(RecordPairs(history, state));
+  if (ScheduleMeet(&history->pairs, state->time, state->dt)) PetscCall(HistoryRecordPairs(history, state));
   if (ScheduleMeet(&history->frames, state->time, state->dt)) PetscCall(SnapshotWrite(history, state));
   PetscFunctionReturn(0);
 }
@@ -179,19 +179,19 @@ PetscErrorCode HistoryGetMemory(History h, PetscInt *n, PetscReal **values)
   const PetscReal *times    = NULL;
 
   PetscFunctionBeginUser;
-  PetscCall(TablesBegin(h, 0, 0));
+  PetscCall(HistoryBeginTables(h, 0, 0));
   PetscCall(ResultsTableFlush(h->table, &bytes));
   if (h->pair_table) PetscCall(ResultsTableFlush(h->pair_table, &pair_bytes));
   if (h->film) PetscCall(ResultsFilmGetTimes(h->film, &n_frames, &times));
-  const Kept kept = {.rows       = h->rows,
-                     .pairs      = h->pairs,
-                     .frames     = h->frames,
-                     .growth     = h->growth,
-                     .sweeps     = h->sweeps,
-                     .steps      = h->steps,
-                     .bytes      = (PetscReal)bytes,
-                     .pair_bytes = (PetscReal)pair_bytes,
-                     .n_frames   = (PetscReal)n_frames};
+  const HistoryKept kept = {.rows       = h->rows,
+                            .pairs      = h->pairs,
+                            .frames     = h->frames,
+                            .growth     = h->growth,
+                            .sweeps     = h->sweeps,
+                            .steps      = h->steps,
+                            .bytes      = (PetscReal)bytes,
+                            .pair_bytes = (PetscReal)pair_bytes,
+                            .n_frames   = (PetscReal)n_frames};
 
   *n = N_KEPT + n_frames;
   PetscCall(PetscMalloc1(*n, values));
@@ -202,7 +202,7 @@ PetscErrorCode HistoryGetMemory(History h, PetscInt *n, PetscReal **values)
 
 PetscErrorCode HistorySetMemory(History h, PetscInt n, const PetscReal values[])
 {
-  Kept kept;
+  HistoryKept kept;
 
   PetscFunctionBeginUser;
   PetscCheck(n >= N_KEPT, h->comm, PETSC_ERR_ARG_SIZ, "memory of %" PetscInt_FMT " numbers, must be %" PetscInt_FMT, n,
@@ -218,7 +218,7 @@ PetscErrorCode HistorySetMemory(History h, PetscInt n, const PetscReal values[])
   ScheduleRestore(&h->pairs, &kept.pairs);
   ScheduleRestore(&h->frames, &kept.frames);
   if (h->film) PetscCall(ResultsFilmSetTimes(h->film, n - N_KEPT, &values[N_KEPT]));
-  PetscCall(TablesBegin(h, kept.bytes, kept.pair_bytes));
+  PetscCall(HistoryBeginTables(h, kept.bytes, kept.pair_bytes));
   PetscFunctionReturn(0);
 }
 
@@ -236,7 +236,7 @@ PetscErrorCode HistoryAddChecksum(History h, Checksum c)
 PetscErrorCode HistoryClose(History history)
 {
   PetscFunctionBeginUser;
-  PetscCall(TablesBegin(history, 0, 0));
+  PetscCall(HistoryBeginTables(history, 0, 0));
   PetscCall(ResultsTableClose(&history->table));
   PetscCall(ResultsTableClose(&history->pair_table));
   PetscFunctionReturn(0);

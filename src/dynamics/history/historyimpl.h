@@ -63,14 +63,14 @@ PETSC_INTERN PetscBool ScheduleIsDue(const Schedule *schedule, PetscReal t, Pets
 PETSC_INTERN PetscBool ScheduleMeet(Schedule *schedule, PetscReal t, PetscReal dt);
 PETSC_INTERN void      ScheduleRestore(Schedule *schedule, const Schedule *kept);
 
-/* row.c - header of transient.csv, which the caller frees, and a row */
-PETSC_INTERN PetscErrorCode RowCreateHeader(History history, char **header);
-PETSC_INTERN PetscErrorCode RowWrite(History history, const HistoryState *state);
+/* historyrow.c - header of transient.csv, which the caller frees, and a row */
+PETSC_INTERN PetscErrorCode HistoryCreateHeader(History history, char **header);
+PETSC_INTERN PetscErrorCode HistoryWriteRow(History history, const HistoryState *state);
 
-/* pairs.c - rows of the states of all ranks, by interface and number of the slave */
-PETSC_INTERN PetscErrorCode PairsWrite(ResultsTable table, MPI_Comm comm, const ContactInterface interfaces[],
-                                       PetscReal time, PetscInt n, const ContactState state[],
-                                       const PetscInt interface[], const PetscInt number[], const PetscReal x[]);
+/* historypairs.c - rows of the states of all ranks, by interface and number of the slave */
+PETSC_INTERN PetscErrorCode HistoryWritePairs(ResultsTable table, MPI_Comm comm, const ContactInterface interfaces[],
+                                              PetscReal time, PetscInt n, const ContactState state[],
+                                              const PetscInt interface[], const PetscInt number[], const PetscReal x[]);
 
 /* live.c */
 PETSC_INTERN void           GrowthAdd(Growth *growth, PetscReal t, PetscReal kinetic);

@@ -52,7 +52,7 @@ void GrowthAdd(Growth *g, PetscReal t, PetscReal kinetic)
 }
 
 /* Time for people */
-static void TimePrint(double seconds, char text[32])
+static void LivePrintTime(double seconds, char text[32])
 {
   const long s = lround(PetscMin(seconds, 1e8));
 
@@ -65,7 +65,7 @@ static void TimePrint(double seconds, char text[32])
 }
 
 /* Contact state, empty without interfaces */
-static void ContactPrint(const HistoryState *state, char text[128])
+static void LivePrintContact(const HistoryState *state, char text[128])
 {
   long   n[CONTACT_N_STATUS] = {0};
   double normal              = 0;
@@ -87,8 +87,8 @@ static PetscErrorCode LivePrint(const Live *live, const Growth *growth, const Hi
   char            time[32] = "-", contact[128], rate[32] = "-", line[320];
 
   PetscFunctionBeginUser;
-  if (done > 0) TimePrint((double)(left / done) * (live->shown - live->begun), time);
-  ContactPrint(state, contact);
+  if (done > 0) LivePrintTime((double)(left / done) * (live->shown - live->begun), time);
+  LivePrintContact(state, contact);
   if (growth->n == 2) (void)snprintf(rate, sizeof(rate), "%+.3g 1/s", (double)growth->rate);
   (void)snprintf(line, sizeof(line), "step %ld  t %.6g ms  left %s%s  growth %s\n", (long)state->step,
                  1e3 * (double)state->time, time, contact, rate);

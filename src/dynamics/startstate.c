@@ -9,7 +9,7 @@
 #include "dynamicsimpl.h"
 
 /* Raises the error for an option that the sliding state does not know; a time of 0 is none */
-static PetscErrorCode CheckAbsent(Dynamics d, const char name[], const char what[], PetscBool time)
+static PetscErrorCode StartCheckAbsent(Dynamics d, const char name[], const char what[], PetscBool time)
 {
   char      option[160];
   PetscReal length = 1;
@@ -29,7 +29,7 @@ static PetscErrorCode CheckAbsent(Dynamics d, const char name[], const char what
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CheckStatic(Dynamics d)
+static PetscErrorCode StartCheckStatic(Dynamics d)
 {
   static const char *const ramps[] = {"_ramp", "_delay"}, *const others[] = {"dynamics_gravity", "motions"};
   const ContactInterface *interfaces = d->interfaces;
@@ -39,9 +39,9 @@ static PetscErrorCode CheckStatic(Dynamics d)
   PetscFunctionBeginUser;
   PetscCall(ModelGetLoads(d->model, &n_loads, &loads));
   for (int r = 0; r < 2; r++) {
-    PetscCall(CheckAbsent(d, others[r], "", PETSC_FALSE));
-    for (PetscInt i = 0; i < n_loads; i++) PetscCall(CheckAbsent(d, loads[i].name, ramps[r], PETSC_TRUE));
-    for (PetscInt i = 0; i < n; i++) PetscCall(CheckAbsent(d, interfaces[i].name, ramps[r], PETSC_TRUE));
+    PetscCall(StartCheckAbsent(d, others[r], "", PETSC_FALSE));
+    for (PetscInt i = 0; i < n_loads; i++) PetscCall(StartCheckAbsent(d, loads[i].name, ramps[r], PETSC_TRUE));
+    for (PetscInt i = 0; i < n; i++) PetscCall(StartCheckAbsent(d, interfaces[i].name, ramps[r], PETSC_TRUE));
   }
   for (PetscInt i = 0; i < n; i++)
     PetscCheck(interfaces[i].law == CONTACT_CONSTRAINT, d->comm, PETSC_ERR_USER_INPUT,
@@ -51,7 +51,7 @@ static PetscErrorCode CheckStatic(Dynamics d)
 }
 
 /* u += A re, v += A (sigma re - omega im) */
-static PetscErrorCode AddShape(Dynamics d, PetscReal u[], PetscReal v[])
+static PetscErrorCode StartAddShape(Dynamics d, PetscReal u[], PetscReal v[])
 {
   const PetscInt n = d->layout->n_vertices;
   PetscReal     *re, *im, lambda[2], largest = 0;
@@ -80,7 +80,7 @@ static PetscErrorCode AddShape(Dynamics d, PetscReal u[], PetscReal v[])
 }
 
 /* 1e-10 of the model's size, m: rounding of coordinates is no penetration */
-static PetscErrorCode FindSlack(Dynamics d, PetscReal *slack)
+static PetscErrorCode StartFindSlack(Dynamics d, PetscReal *slack)
 {
   const PetscReal *x;
   PetscReal        range[2] = {0, 0}; /* largest and smallest coordinate, as maxima */
@@ -106,7 +106,7 @@ static PetscErrorCode StartContact(Dynamics d, const PetscReal u[])
   if (!d->projector) PetscFunctionReturn(0);
   if (d->start == START_STATIC) PetscCall(StaticsGetState(d->statics, &states, NULL));
   for (PetscInt i = 0; i < d->surface.n; i++) LayoutGet(d->layout, d->surface.vertex[i], u, &d->surface.u[3 * i]);
-  PetscCall(FindSlack(d, &slack));
+  PetscCall(StartFindSlack(d, &slack));
   if (d->shape[0]) slack += PetscAbsReal(d->shape_amplitude);
   PetscCall(ContactProjectorStart(d->projector, 0, d->surface.u, slack, states));
   PetscFunctionReturn(0);
@@ -123,12 +123,12 @@ PetscErrorCode DynamicsStartState(Dynamics d)
   if (d->start == START_STATIC) {
     Vec displacement;
 
-    PetscCall(CheckStatic(d));
+    PetscCall(StartCheckStatic(d));
     PetscCall(StaticsSolve(d->statics, NULL));
     PetscCall(StaticsGetState(d->statics, NULL, &displacement));
-    PetscCall(StateFromVec(d->model, d->layout, displacement, u));
+    PetscCall(StateVectorFromVec(d->model, d->layout, displacement, u));
   }
-  if (d->shape[0]) PetscCall(AddShape(d, u, v));
+  if (d->shape[0]) PetscCall(StartAddShape(d, u, v));
   PetscCall(StartContact(d, u));
   PetscCall(BodiesSetState(d->bodies, u, v, d->ku));
   PetscCall(VecRestoreArray(d->v, &v));

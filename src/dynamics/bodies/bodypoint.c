@@ -5,7 +5,7 @@
 #include "bodiesimpl.h"
 
 /* The point of a vertex, new if need be; of_vertex [n_vertices], -1 without */
-static PetscErrorCode PointGet(Bodies b, PetscInt vertex, PetscInt of_vertex[], Point **point)
+static PetscErrorCode PointFind(Bodies b, PetscInt vertex, PetscInt of_vertex[], Point **point)
 {
   PetscFunctionBeginUser;
   if (of_vertex[vertex] < 0) {
@@ -18,7 +18,7 @@ static PetscErrorCode PointGet(Bodies b, PetscInt vertex, PetscInt of_vertex[], 
 }
 
 /* block += Q diag(value) Q' */
-static void BlockAdd(const PetscReal q[9], const PetscReal value[3], PetscReal block[9])
+static void PointAddBlock(const PetscReal q[9], const PetscReal value[3], PetscReal block[9])
 {
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
@@ -26,7 +26,7 @@ static void BlockAdd(const PetscReal q[9], const PetscReal value[3], PetscReal b
 }
 
 /* Adds the springs or the dashpots of a list */
-static PetscErrorCode GroundedAdd(Bodies b, const Grounded *grounded, PetscBool is_dashpot, PetscInt of_vertex[])
+static PetscErrorCode PointsAddGrounded(Bodies b, const Grounded *grounded, PetscBool is_dashpot, PetscInt of_vertex[])
 {
   const PetscInt *vertices;
   PetscInt        n;
@@ -41,8 +41,8 @@ static PetscErrorCode GroundedAdd(Bodies b, const Grounded *grounded, PetscBool 
     Point         *point;
 
     if (b->layout.at[v] < 0) continue;
-    PetscCall(PointGet(b, v, of_vertex, &point));
-    BlockAdd(&b->layout.basis[9 * v], grounded->value, is_dashpot ? point->damping : point->stiffness);
+    PetscCall(PointFind(b, v, of_vertex, &point));
+    PointAddBlock(&b->layout.basis[9 * v], grounded->value, is_dashpot ? point->damping : point->stiffness);
   }
   PetscCall(ISRestoreIndices(is, &vertices));
   PetscCall(ISDestroy(&is));
@@ -59,8 +59,8 @@ PetscErrorCode PointsSetUp(Bodies b)
   for (PetscInt v = 0; v < b->layout.n_vertices; v++) of_vertex[v] = -1;
   PetscCall(ModelGetSprings(b->model, &n_springs, &springs));
   PetscCall(ModelGetDashpots(b->model, &n_dashpots, &dashpots));
-  for (PetscInt i = 0; i < n_springs; i++) PetscCall(GroundedAdd(b, &springs[i], PETSC_FALSE, of_vertex));
-  for (PetscInt i = 0; i < n_dashpots; i++) PetscCall(GroundedAdd(b, &dashpots[i], PETSC_TRUE, of_vertex));
+  for (PetscInt i = 0; i < n_springs; i++) PetscCall(PointsAddGrounded(b, &springs[i], PETSC_FALSE, of_vertex));
+  for (PetscInt i = 0; i < n_dashpots; i++) PetscCall(PointsAddGrounded(b, &dashpots[i], PETSC_TRUE, of_vertex));
   for (PetscInt i = 0; i < b->share.n; i++)
     if (of_vertex[b->share.shared[i]] >= 0) b->point[of_vertex[b->share.shared[i]]].early = PETSC_TRUE;
   PetscCall(PetscFree(of_vertex));
@@ -68,7 +68,7 @@ PetscErrorCode PointsSetUp(Bodies b)
 }
 
 /* y = A x in the places of a vertex */
-static void BlockApply(const PetscReal a[9], const PetscReal x[], PetscInt at, PetscInt step, PetscReal y[3])
+static void PointApply(const PetscReal a[9], const PetscReal x[], PetscInt at, PetscInt step, PetscReal y[3])
 {
   for (int i = 0; i < 3; i++) y[i] = a[3 * i] * x[at] + a[3 * i + 1] * x[at + step] + a[3 * i + 2] * x[at + 2 * step];
 }
@@ -81,8 +81,8 @@ void PointsAdvance(Bodies b, PetscBool early, BodiesWork *w)
     PetscReal      g[3], h[3];
 
     if (point->early != early) continue;
-    BlockApply(point->stiffness, w->v, at, step, g);
-    BlockApply(point->damping, w->v, at, step, h);
+    PointApply(point->stiffness, w->v, at, step, g);
+    PointApply(point->damping, w->v, at, step, h);
     for (PetscInt j = 0; j < 3; j++) {
       const PetscInt k = at + j * step;
 
@@ -102,7 +102,7 @@ void PointsAddForces(Bodies b, const PetscReal u[], PetscReal ku[])
     const PetscInt at = b->layout.at[b->point[i].vertex], step = b->layout.step[b->point[i].vertex];
     PetscReal      g[3];
 
-    BlockApply(b->point[i].stiffness, u, at, step, g);
+    PointApply(b->point[i].stiffness, u, at, step, g);
     for (PetscInt j = 0; j < 3; j++) ku[at + j * step] += g[j];
   }
 }

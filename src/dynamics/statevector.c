@@ -4,7 +4,7 @@
 */
 #include "dynamicsimpl.h"
 
-PetscErrorCode StateFromVec(Model model, const Layout *layout, Vec x, PetscReal state[])
+PetscErrorCode StateVectorFromVec(Model model, const Layout *layout, Vec x, PetscReal state[])
 {
   PetscReal *value;
 
@@ -18,7 +18,7 @@ PetscErrorCode StateFromVec(Model model, const Layout *layout, Vec x, PetscReal 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StateToVec(Model model, const Layout *layout, const PetscReal state[], Vec x)
+PetscErrorCode StateVectorToVec(Model model, const Layout *layout, const PetscReal state[], Vec x)
 {
   const PetscInt *unknowns;
   PetscInt        begin, end;

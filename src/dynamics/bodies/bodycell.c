@@ -58,7 +58,7 @@ PetscErrorCode BodiesGetCell(Bodies bodies, PetscInt c, BodiesCell *cell)
 }
 
 /* Block of nodes a and b in their bases: Q_a A Q_b' */
-static void BlockTurn(const PetscReal qa[9], const PetscReal qb[9], PetscInt n, PetscReal block[])
+static void BodiesCellTurnBlock(const PetscReal qa[9], const PetscReal qb[9], PetscInt n, PetscReal block[])
 {
   PetscReal half[9];
 
@@ -76,12 +76,12 @@ void BodiesTurnCell(const Layout *layout, BodiesCell *cell)
 
   for (PetscInt a = 0; a < cell->n_nodes; a++)
     for (PetscInt b = 0; b < cell->n_nodes; b++)
-      BlockTurn(&layout->basis[9 * cell->vertex[a]], &layout->basis[9 * cell->vertex[b]], n,
-                &cell->stiffness[3 * a * n + 3 * b]);
+      BodiesCellTurnBlock(&layout->basis[9 * cell->vertex[a]], &layout->basis[9 * cell->vertex[b]], n,
+                          &cell->stiffness[3 * a * n + 3 * b]);
 }
 
 /* ku += K_e u_e */
-static void CellAddForces(const Layout *layout, const BodiesCell *cell, const PetscReal u[], PetscReal ku[])
+static void BodiesCellAddForces(const Layout *layout, const BodiesCell *cell, const PetscReal u[], PetscReal ku[])
 {
   const PetscInt n = 3 * cell->n_nodes;
   PetscReal      relative[ELEMENT_MAX_DOFS];
@@ -107,7 +107,7 @@ PetscErrorCode BodiesCellsAddForces(Bodies bodies, const PetscReal u[], PetscRea
     BodiesCell cell;
 
     PetscCall(BodiesGetCell(bodies, c, &cell));
-    CellAddForces(&bodies->layout, &cell, u, ku);
+    BodiesCellAddForces(&bodies->layout, &cell, u, ku);
   }
   PetscFunctionReturn(0);
 }

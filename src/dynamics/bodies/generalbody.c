@@ -9,9 +9,9 @@
 typedef struct {
   PetscInt  n, *of_vertex; /* [n_vertices] node, -1 of vertices elsewhere */
   PetscInt *cell;          /* [n] cells with such nodes */
-} Cells;
+} GeneralCells;
 
-static PetscErrorCode CellsFind(Bodies b, Cells *cells)
+static PetscErrorCode GeneralFindCells(Bodies b, GeneralCells *cells)
 {
   const General *g = &b->general;
   PetscInt       n_cells;
@@ -31,7 +31,7 @@ static PetscErrorCode CellsFind(Bodies b, Cells *cells)
 }
 
 /* Rows with all nodes that share a cell with each, or `upper` with those that are not before it */
-static PetscErrorCode RowsCreate(Bodies b, const Cells *cells, PetscBool upper, BlockRows *rows)
+static PetscErrorCode BlockRowsCreate(Bodies b, const GeneralCells *cells, PetscBool upper, BlockRows *rows)
 {
   PetscInt n_all = 0, *first, *all;
 
@@ -80,7 +80,7 @@ static PetscErrorCode RowsCreate(Bodies b, const Cells *cells, PetscBool upper, 
 }
 
 /* Adds scale times the stiffness of a cell */
-static PetscErrorCode RowsAdd(const Cells *cells, const BodiesCell *cell, PetscReal scale, BlockRows *rows)
+static PetscErrorCode BlockRowsAdd(const GeneralCells *cells, const BodiesCell *cell, PetscReal scale, BlockRows *rows)
 {
   const PetscInt n = cell->n_nodes;
 
@@ -99,7 +99,7 @@ static PetscErrorCode RowsAdd(const Cells *cells, const BodiesCell *cell, PetscR
 }
 
 /* Stiffness, masses and damping factors of all cells; beta is -1 where no cell was yet, and -2 where cells differ */
-static PetscErrorCode GeneralSum(Bodies b, const Cells *cells)
+static PetscErrorCode GeneralSum(Bodies b, const GeneralCells *cells)
 {
   General *g = &b->general;
 
@@ -110,7 +110,7 @@ static PetscErrorCode GeneralSum(Bodies b, const Cells *cells)
 
     PetscCall(BodiesGetCell(b, cells->cell[c], &cell));
     BodiesTurnCell(&b->layout, &cell);
-    PetscCall(RowsAdd(cells, &cell, 1, &g->stiffness));
+    PetscCall(BlockRowsAdd(cells, &cell, 1, &g->stiffness));
     for (PetscInt a = 0; a < cell.n_nodes; a++) {
       const PetscInt i = cells->of_vertex[cell.vertex[a]];
 
@@ -123,7 +123,7 @@ static PetscErrorCode GeneralSum(Bodies b, const Cells *cells)
 }
 
 /* Whether a node of the cell has cells of different beta */
-static PetscBool CellIsMixed(const General *g, const Cells *cells, PetscInt n_nodes, const PetscInt vertex[])
+static PetscBool GeneralIsMixed(const General *g, const GeneralCells *cells, PetscInt n_nodes, const PetscInt vertex[])
 {
   for (PetscInt a = 0; a < n_nodes; a++)
     if (g->beta[cells->of_vertex[vertex[a]]] == -2) return PETSC_TRUE;
@@ -131,7 +131,7 @@ static PetscBool CellIsMixed(const General *g, const Cells *cells, PetscInt n_no
 }
 
 /* Empties rows but for those of nodes with different beta */
-static PetscErrorCode RowsKeepMixed(const General *g, BlockRows *rows)
+static PetscErrorCode BlockRowsKeepMixed(const General *g, BlockRows *rows)
 {
   PetscInt end = 0;
 
@@ -149,7 +149,7 @@ static PetscErrorCode RowsKeepMixed(const General *g, BlockRows *rows)
 }
 
 /* Blocks of the second term of C for the nodes of which the cells have different beta */
-static PetscErrorCode DampingSum(Bodies b, const Cells *cells)
+static PetscErrorCode GeneralSumDamping(Bodies b, const GeneralCells *cells)
 {
   General *g     = &b->general;
   PetscInt mixed = 0;
@@ -160,32 +160,32 @@ static PetscErrorCode DampingSum(Bodies b, const Cells *cells)
     PetscCall(PetscCalloc1(g->n + 1, &g->damping.start));
     PetscFunctionReturn(0);
   }
-  PetscCall(RowsCreate(b, cells, PETSC_FALSE, &g->damping));
+  PetscCall(BlockRowsCreate(b, cells, PETSC_FALSE, &g->damping));
   for (PetscInt c = 0; c < cells->n; c++) {
     PetscInt   body, n_nodes, vertex[ELEMENT_MAX_NODES];
     BodiesCell cell;
 
     PetscCall(BodiesGetCellVertices(b, cells->cell[c], &body, &n_nodes, vertex));
-    if (!CellIsMixed(g, cells, n_nodes, vertex)) continue;
+    if (!GeneralIsMixed(g, cells, n_nodes, vertex)) continue;
     PetscCall(BodiesGetCell(b, cells->cell[c], &cell));
     BodiesTurnCell(&b->layout, &cell);
-    PetscCall(RowsAdd(cells, &cell, cell.beta, &g->damping));
+    PetscCall(BlockRowsAdd(cells, &cell, cell.beta, &g->damping));
   }
-  PetscCall(RowsKeepMixed(g, &g->damping));
+  PetscCall(BlockRowsKeepMixed(g, &g->damping));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode GeneralSetUp(Bodies b)
 {
-  General *g     = &b->general;
-  Cells    cells = {0};
+  General     *g     = &b->general;
+  GeneralCells cells = {0};
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc4(g->n, &g->mass, g->n, &g->alpha, g->n, &g->beta, 4 * g->n, &g->product));
-  PetscCall(CellsFind(b, &cells));
-  PetscCall(RowsCreate(b, &cells, PETSC_TRUE, &g->stiffness));
+  PetscCall(GeneralFindCells(b, &cells));
+  PetscCall(BlockRowsCreate(b, &cells, PETSC_TRUE, &g->stiffness));
   PetscCall(GeneralSum(b, &cells));
-  PetscCall(DampingSum(b, &cells));
+  PetscCall(GeneralSumDamping(b, &cells));
   PetscCall(PetscFree2(cells.of_vertex, cells.cell));
   PetscFunctionReturn(0);
 }

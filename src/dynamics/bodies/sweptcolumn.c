@@ -11,7 +11,7 @@
 /* Blocks of a line and its neighbour, in the components p, q, c */
 typedef struct {
   PetscReal after[9], before[9], up[9], down[9];
-} Blocks;
+} ColumnBlocks;
 
 /* A column by its cell between nodes 0 and 1 */
 typedef struct {
@@ -21,14 +21,14 @@ typedef struct {
 } Column;
 
 typedef struct {
-  PetscInt n_columns;
-  Column  *column;
-  PetscInt n_keys, *key; /* pairs i n_lines + j that share a cell, ascending */
-  Blocks  *stiffness, *damping;
-} Section;
+  PetscInt      n_columns;
+  Column       *column;
+  PetscInt      n_keys, *key; /* pairs i n_lines + j that share a cell, ascending */
+  ColumnBlocks *stiffness, *damping;
+} ColumnSection;
 
 /* Line and node along it of each local vertex, -1 of vertices elsewhere */
-static PetscErrorCode VerticesFind(const SweptBody *s, PetscInt n_vertices, PetscInt line[], PetscInt node[])
+static PetscErrorCode ColumnsFindVertices(const SweptBody *s, PetscInt n_vertices, PetscInt line[], PetscInt node[])
 {
   const ModelLines *lines = s->lines;
 
@@ -58,14 +58,14 @@ static PetscBool ColumnBegins(PetscInt n_nodes, const PetscInt vertex[], const P
 }
 
 /* The columns; `complete` is whether they hold all local cells of the body */
-static PetscErrorCode ColumnsFind(Bodies b, const SweptBody *s, Section *section, PetscBool *complete)
+static PetscErrorCode ColumnsFind(Bodies b, const SweptBody *s, ColumnSection *section, PetscBool *complete)
 {
   const PetscInt n_along = s->lines->n_nodes - (s->lines->closed ? 0 : 1);
   PetscInt       n_cells, n_own = 0, size = 0, *line, *node;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(b->layout.n_vertices, &line, b->layout.n_vertices, &node));
-  PetscCall(VerticesFind(s, b->layout.n_vertices, line, node));
+  PetscCall(ColumnsFindVertices(s, b->layout.n_vertices, line, node));
   PetscCall(BodiesCountCells(b, &n_cells));
   for (PetscInt c = 0; c < n_cells; c++) {
     PetscInt body, n_nodes, vertex[ELEMENT_MAX_NODES];
@@ -79,8 +79,8 @@ static PetscErrorCode ColumnsFind(Bodies b, const SweptBody *s, Section *section
       size = 2 * size + 16;
       PetscCall(PetscRealloc((size_t)size * sizeof(Column), &section->column));
     }
-    PetscCall(BodiesGetCell(b, c, &column.cell));
-    BodiesTurnCell(&b->layout, &column.cell);
+    PetscCall(BodiesGetCell(b, c, &sweptcolumn.cell));
+    BodiesTurnCell(&b->layout, &sweptcolumn.cell);
     section->column[section->n_columns++] = column;
   }
   *complete = n_own == section->n_columns * n_along ? PETSC_TRUE : PETSC_FALSE;
@@ -89,7 +89,7 @@ static PetscErrorCode ColumnsFind(Bodies b, const SweptBody *s, Section *section
 }
 
 /* Pairs of lines that share a column, and room for their blocks */
-static PetscErrorCode KeysFind(PetscInt n_lines, Section *section)
+static PetscErrorCode SectionFindKeys(PetscInt n_lines, ColumnSection *section)
 {
   PetscFunctionBeginUser;
   section->n_keys = 64 * section->n_columns;
@@ -105,8 +105,8 @@ static PetscErrorCode KeysFind(PetscInt n_lines, Section *section)
 }
 
 /* Adds the block of nodes a and b of a column, scaled; pqc [3] places of p, q, c among the components */
-static void BlocksAdd(const Column *column, PetscInt a, PetscInt b, const PetscInt pqc[3], PetscReal scale,
-                      Blocks *blocks)
+static void ColumnAddBlock(const Column *column, PetscInt a, PetscInt b, const PetscInt pqc[3], PetscReal scale,
+                           ColumnBlocks *blocks)
 {
   PetscReal *sum = column->second[a] ? (column->second[b] ? blocks->before : blocks->down)
                                      : (column->second[b] ? blocks->up : blocks->after);
@@ -116,7 +116,7 @@ static void BlocksAdd(const Column *column, PetscInt a, PetscInt b, const PetscI
       sum[3 * i + j] += scale * column->cell.stiffness[24 * (3 * a + pqc[i]) + 3 * b + pqc[j]];
 }
 
-static PetscErrorCode SectionSum(const SweptBody *s, Section *section)
+static PetscErrorCode ColumnSectionSum(const SweptBody *s, ColumnSection *section)
 {
   const PetscInt pqc[3] = {(s->along + 1) % 3, (s->along + 2) % 3, s->along};
 
@@ -129,15 +129,15 @@ static PetscErrorCode SectionSum(const SweptBody *s, Section *section)
 
       PetscCall(
         PetscFindInt(column->line[i / 8] * s->lines->n_lines + column->line[i % 8], section->n_keys, section->key, &k));
-      BlocksAdd(column, i / 8, i % 8, pqc, 1, &section->stiffness[k]);
-      BlocksAdd(column, i / 8, i % 8, pqc, column->cell.beta, &section->damping[k]);
+      ColumnAddBlock(column, i / 8, i % 8, pqc, 1, &section->stiffness[k]);
+      ColumnAddBlock(column, i / 8, i % 8, pqc, column->cell.beta, &section->damping[k]);
     }
   }
   PetscFunctionReturn(0);
 }
 
 /* Whether the blocks of the one side are those of the other, mirrored: x = S y S */
-static PetscBool BlocksMirror(const PetscReal x[9], const PetscReal y[9], PetscReal scale)
+static PetscBool ColumnBlocksMirror(const PetscReal x[9], const PetscReal y[9], PetscReal scale)
 {
   for (int i = 0; i < 9; i++) {
     const PetscReal sign = (i / 3 == 2) == (i % 3 == 2) ? 1 : -1;
@@ -147,23 +147,24 @@ static PetscBool BlocksMirror(const PetscReal x[9], const PetscReal y[9], PetscR
   return PETSC_TRUE;
 }
 
-static PetscBool SectionMirrors(const Section *section)
+static PetscBool ColumnSectionMirrors(const ColumnSection *section)
 {
   PetscReal scale = 0;
 
   for (PetscInt k = 0; k < section->n_keys; k++)
     for (int i = 0; i < 9; i++) scale = PetscMax(scale, PetscAbsReal(section->stiffness[k].after[i]));
   for (PetscInt k = 0; k < section->n_keys; k++) {
-    const Blocks *blocks = &section->stiffness[k];
+    const ColumnBlocks *blocks = &section->stiffness[k];
 
-    if (!BlocksMirror(blocks->before, blocks->after, scale) || !BlocksMirror(blocks->down, blocks->up, scale))
+    if (!ColumnBlocksMirror(blocks->before, blocks->after, scale) ||
+        !ColumnBlocksMirror(blocks->down, blocks->up, scale))
       return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }
 
 /* E0, E1, O1 of the blocks */
-static void CoefficientsSet(const Blocks *blocks, double c[STENCIL_COEFFICIENTS], double before[9])
+static void SweptSetCoefficients(const ColumnBlocks *blocks, double c[STENCIL_COEFFICIENTS], double before[9])
 {
   static const int even[5] = {0, 1, 3, 4, 8}, odd[4] = {2, 5, 6, 7};
 
@@ -176,7 +177,7 @@ static void CoefficientsSet(const Blocks *blocks, double c[STENCIL_COEFFICIENTS]
 }
 
 /* The neighbours of the lines, in the order of the keys */
-static PetscErrorCode LinesSet(SweptBody *s, const Section *section)
+static PetscErrorCode SweptSetLines(SweptBody *s, const ColumnSection *section)
 {
   const PetscInt n_lines = s->lines->n_lines, n = section->n_keys;
 
@@ -187,8 +188,8 @@ static PetscErrorCode LinesSet(SweptBody *s, const Section *section)
     const PetscInt i = section->key[k] / n_lines, j = section->key[k] % n_lines;
 
     s->at[k] = 3 * (ptrdiff_t)j * s->stride;
-    CoefficientsSet(&section->stiffness[k], s->coefficient[k], s->before[k]);
-    CoefficientsSet(&section->damping[k], s->coefficient[n + k], s->before[n + k]);
+    SweptSetCoefficients(&section->stiffness[k], s->coefficient[k], s->before[k]);
+    SweptSetCoefficients(&section->damping[k], s->coefficient[n + k], s->before[n + k]);
     if (!s->stiffness[i].n++) {
       s->stiffness[i].at          = &s->at[k];
       s->stiffness[i].coefficient = (const double(*)[STENCIL_COEFFICIENTS]) & s->coefficient[k];
@@ -199,7 +200,7 @@ static PetscErrorCode LinesSet(SweptBody *s, const Section *section)
 }
 
 /* Makes the damping of a line a stencil of its own, whose coefficients follow all those of the stiffness */
-static void LineDamp(SweptBody *s, PetscInt n_keys, PetscInt l)
+static void SweptDampLine(SweptBody *s, PetscInt n_keys, PetscInt l)
 {
   s->damping[l] = s->stiffness[l];
   s->damping[l].coefficient += n_keys;
@@ -208,7 +209,7 @@ static void LineDamp(SweptBody *s, PetscInt n_keys, PetscInt l)
 
 /* Masses of the nodes (kg), and damping factors of the lines: alpha weighted by mass, beta where all cells have the
    same */
-static PetscErrorCode MassesSet(SweptBody *s, const Section *section)
+static PetscErrorCode SweptSetMasses(SweptBody *s, const ColumnSection *section)
 {
   const PetscInt n_lines = s->lines->n_lines, last = s->lines->n_nodes - 1;
   PetscReal     *whole;
@@ -227,7 +228,7 @@ static PetscErrorCode MassesSet(SweptBody *s, const Section *section)
     s->alpha[l] += mass * column->cell.alpha;
     for (PetscInt k = 0; k <= last; k++)
       if (s->lines->closed || k != (column->second[i % 8] ? 0 : last)) row[k] += mass;
-    if (s->beta[l] >= 0 && s->beta[l] != beta) LineDamp(s, section->n_keys, l);
+    if (s->beta[l] >= 0 && s->beta[l] != beta) SweptDampLine(s, section->n_keys, l);
     s->beta[l] = beta;
   }
   for (PetscInt l = 0; l < n_lines; l++) s->alpha[l] /= whole[l];
@@ -237,18 +238,18 @@ static PetscErrorCode MassesSet(SweptBody *s, const Section *section)
 
 PetscErrorCode SweptSetUp(Bodies b, SweptBody *s, PetscBool *mirrored)
 {
-  Section section = {0};
+  ColumnSection section = {0};
 
   PetscFunctionBeginUser;
   PetscCall(ColumnsFind(b, s, &section, mirrored));
   if (*mirrored) {
-    PetscCall(KeysFind(s->lines->n_lines, &section));
-    PetscCall(SectionSum(s, &section));
-    *mirrored = SectionMirrors(&section);
+    PetscCall(SectionFindKeys(s->lines->n_lines, &section));
+    PetscCall(ColumnSectionSum(s, &section));
+    *mirrored = ColumnSectionMirrors(&section);
   }
   if (*mirrored) {
-    PetscCall(LinesSet(s, &section));
-    PetscCall(MassesSet(s, &section));
+    PetscCall(SweptSetLines(s, &section));
+    PetscCall(SweptSetMasses(s, &section));
   }
   PetscCall(PetscFree(section.column));
   PetscCall(PetscFree(section.key));

@@ -18,13 +18,14 @@ static const char *const probe_columns[N_PER_PROBE] = {"x_m",    "y_m",     "z_m
                                                        "vz_m_s", "ax_m_s2", "ay_m_s2", "az_m_s2"};
 
 /* Interfaces with columns of their own: where there are several */
-static PetscInt RowCountFaces(History history)
+static PetscInt HistoryCountFaces(History history)
 {
   return history->n_interfaces > 1 ? history->n_interfaces : 0;
 }
 
 /* Adds the columns `name`_`column` to a header that has room for them */
-static PetscErrorCode HeaderAdd(char header[], size_t room, const char name[], PetscInt n, const char *const columns[])
+static PetscErrorCode HistoryAddColumns(char header[], size_t room, const char name[], PetscInt n,
+                                        const char *const columns[])
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
@@ -36,9 +37,9 @@ static PetscErrorCode HeaderAdd(char header[], size_t room, const char name[], P
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode RowCreateHeader(History history, char **header)
+PetscErrorCode HistoryCreateHeader(History history, char **header)
 {
-  const PetscInt n_faces = RowCountFaces(history);
+  const PetscInt n_faces = HistoryCountFaces(history);
   size_t         room    = sizeof(first_columns), length;
 
   PetscFunctionBeginUser;
@@ -53,14 +54,14 @@ PetscErrorCode RowCreateHeader(History history, char **header)
   PetscCall(PetscMalloc1(room, header));
   PetscCall(PetscStrncpy(*header, first_columns, room));
   for (PetscInt i = 0; i < n_faces; i++)
-    PetscCall(HeaderAdd(*header, room, history->interfaces[i].name, N_PER_FACE, face_columns));
+    PetscCall(HistoryAddColumns(*header, room, history->interfaces[i].name, N_PER_FACE, face_columns));
   for (PetscInt i = 0; i < history->n_probes; i++)
-    PetscCall(HeaderAdd(*header, room, history->probes[i].name, N_PER_PROBE, probe_columns));
+    PetscCall(HistoryAddColumns(*header, room, history->probes[i].name, N_PER_PROBE, probe_columns));
   PetscFunctionReturn(0);
 }
 
 /* Sums over the interfaces; mean sweeps per step since the last row */
-static void RowContact(History history, const HistoryState *state, PetscReal row[N_FIRST])
+static void HistoryRowContact(History history, const HistoryState *state, PetscReal row[N_FIRST])
 {
   PetscReal sweeps = 0, steps = 0;
 
@@ -81,7 +82,7 @@ static void RowContact(History history, const HistoryState *state, PetscReal row
   history->steps  = steps;
 }
 
-static void RowLedger(const Ledger *ledger, PetscReal row[N_FIRST])
+static void HistoryRowLedger(const Ledger *ledger, PetscReal row[N_FIRST])
 {
   row[5]  = ledger->kinetic;
   row[6]  = ledger->strain;
@@ -95,7 +96,7 @@ static void RowLedger(const Ledger *ledger, PetscReal row[N_FIRST])
 }
 
 /* Motions of the probes, [n_probes][9], on rank 0; each is known to one rank */
-static PetscErrorCode RowProbes(History history, const HistoryState *state, PetscReal motions[])
+static PetscErrorCode HistoryRowProbes(History history, const HistoryState *state, PetscReal motions[])
 {
   const PetscInt n = N_PER_PROBE * history->n_probes;
   PetscReal     *mine;
@@ -114,9 +115,9 @@ static PetscErrorCode RowProbes(History history, const HistoryState *state, Pets
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode RowWrite(History history, const HistoryState *state)
+PetscErrorCode HistoryWriteRow(History history, const HistoryState *state)
 {
-  const PetscInt n_faces = RowCountFaces(history), n_motions = N_PER_PROBE * history->n_probes;
+  const PetscInt n_faces = HistoryCountFaces(history), n_motions = N_PER_PROBE * history->n_probes;
   const PetscInt n = N_FIRST + N_PER_FACE * n_faces + n_motions;
   PetscReal     *row;
 
@@ -125,13 +126,13 @@ PetscErrorCode RowWrite(History history, const HistoryState *state)
              "sums of %" PetscInt_FMT " interfaces, must be %" PetscInt_FMT, state->n_interfaces, n_faces);
   PetscCall(PetscCalloc1(n, &row));
   row[0] = state->time;
-  RowContact(history, state, row);
-  RowLedger(state->ledger, row);
+  HistoryRowContact(history, state, row);
+  HistoryRowLedger(state->ledger, row);
   for (PetscInt i = 0; i < n_faces; i++) {
     row[N_FIRST + N_PER_FACE * i]     = state->sums[i].normal;
     row[N_FIRST + N_PER_FACE * i + 1] = state->sums[i].friction;
   }
-  PetscCall(RowProbes(history, state, &row[n - n_motions]));
+  PetscCall(HistoryRowProbes(history, state, &row[n - n_motions]));
   PetscCall(ResultsTableNumbers(history->table, n, row));
   PetscCall(ResultsTableCheck(history->table));
   PetscCall(PetscFree(row));

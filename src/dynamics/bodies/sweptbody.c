@@ -12,7 +12,7 @@ typedef struct {
 } SweptSums;
 
 /* Stores eight numbers, or four; the compiler drops what leads to numbers that are not stored */
-STENCIL_INLINE void RowStore(int n, StencilVector y, PetscReal x[])
+STENCIL_INLINE void SweptStoreRow(int n, StencilVector y, PetscReal x[])
 {
   if (n == STENCIL_WIDTH)
     StencilStore(y, x);
@@ -21,8 +21,8 @@ STENCIL_INLINE void RowStore(int n, StencilVector y, PetscReal x[])
 }
 
 /* Eight (or four) nodes of a row, with g = K v and h = C v without the part of the mass */
-STENCIL_INLINE void RowAdvance(int n, const BodiesWork *w, PetscInt at, PetscReal alpha, StencilVector mass,
-                               StencilVector g, StencilVector h, SweptSums *sums)
+STENCIL_INLINE void SweptAdvanceRow(int n, const BodiesWork *w, PetscInt at, PetscReal alpha, StencilVector mass,
+                                    StencilVector g, StencilVector h, SweptSums *sums)
 {
   const StencilVector v  = StencilLoad(w->v + at);
   StencilVector       ku = StencilLoad(w->ku + at), f, momentum = StencilTimes(mass, v);
@@ -30,26 +30,26 @@ STENCIL_INLINE void RowAdvance(int n, const BodiesWork *w, PetscInt at, PetscRea
   StencilAddProduct(StencilLoad(w->u + at), ku, &sums->strain);
   StencilAddProduct(momentum, v, &sums->kinetic);
   StencilAdd(w->dt, g, &ku);
-  RowStore(n, ku, w->ku + at);
+  SweptStoreRow(n, ku, w->ku + at);
   f = (StencilVector){-ku.a, -ku.b};
   if (w->d) {
     StencilAddProduct(v, StencilLoad(w->d + at), &sums->damping_old);
     StencilAdd(alpha, momentum, &h);
     StencilAddProduct(v, h, &sums->damping);
-    RowStore(n, h, w->d + at);
+    SweptStoreRow(n, h, w->d + at);
     f = StencilMinus(f, h);
   }
-  RowStore(n, f, w->f + at);
+  SweptStoreRow(n, f, w->f + at);
 }
 
 /* Takes `missing` off at the node where `at` is 1 */
-STENCIL_INLINE void VectorsTake(const double missing[3], const double at[], StencilVector g[3])
+STENCIL_INLINE void SweptTakeMissing(const double missing[3], const double at[], StencilVector g[3])
 {
   for (int i = 0; i < 3; i++) StencilAdd(-missing[i], StencilLoad(at), &g[i]);
 }
 
 /* g = K v, or likewise with other coefficients, at nodes k .. k + 7 of a line, zero in the padding */
-STENCIL_INLINE void BlockApply(const SweptBody *s, const StencilLine *line, const SweptRange *range, PetscBool ends,
+STENCIL_INLINE void SweptApply(const SweptBody *s, const StencilLine *line, const SweptRange *range, PetscBool ends,
                                const ptrdiff_t row[3], PetscInt k, const PetscReal v[], StencilVector g[3])
 {
   double missing[3];
@@ -57,18 +57,18 @@ STENCIL_INLINE void BlockApply(const SweptBody *s, const StencilLine *line, cons
   StencilApply(line, k, row, v, g);
   if (ends && range->first) {
     StencilMissing(line, 0, 1, row, v, missing);
-    VectorsTake(missing, &s->first[k], g);
+    SweptTakeMissing(missing, &s->first[k], g);
   }
   if (ends && range->last) {
     StencilMissing(line, s->lines->n_nodes - 1, -1, row, v, missing);
-    VectorsTake(missing, &s->last[k], g);
+    SweptTakeMissing(missing, &s->last[k], g);
   }
   for (int i = 0; i < 3; i++) g[i] = StencilTimes(g[i], StencilLoad(s->inside + k));
 }
 
 /* Nodes k .. k + n - 1 of line l */
-STENCIL_INLINE void BlockAdvance(int n, const SweptBody *s, const SweptRange *range, PetscBool ends, PetscInt l,
-                                 PetscInt k, const BodiesWork *w, SweptSums *sums)
+STENCIL_INLINE void SweptAdvanceBlock(int n, const SweptBody *s, const SweptRange *range, PetscBool ends, PetscInt l,
+                                      PetscInt k, const BodiesWork *w, SweptSums *sums)
 {
   const PetscInt      at = s->begin + 3 * l * s->stride + k, p = (s->along + 1) % 3, q = (s->along + 2) % 3;
   const ptrdiff_t     row[3] = {p * s->stride, q * s->stride, s->along * s->stride};
@@ -77,16 +77,16 @@ STENCIL_INLINE void BlockAdvance(int n, const SweptBody *s, const SweptRange *ra
   const PetscBool     own    = w->d && s->damping[l].n ? PETSC_TRUE : PETSC_FALSE;
   StencilVector       g[3], h[3];
 
-  BlockApply(s, &s->stiffness[l], range, ends, row, k, v, g);
+  SweptApply(s, &s->stiffness[l], range, ends, row, k, v, g);
   if (own)
-    BlockApply(s, &s->damping[l], range, ends, row, k, v, h);
+    SweptApply(s, &s->damping[l], range, ends, row, k, v, h);
   else
     for (int i = 0; i < 3; i++) h[i] = (StencilVector){s->beta[l] * g[i].a, s->beta[l] * g[i].b};
-  for (int i = 0; i < 3; i++) RowAdvance(n, w, at + (PetscInt)row[i], s->alpha[l], mass, g[i], h[i], sums);
+  for (int i = 0; i < 3; i++) SweptAdvanceRow(n, w, at + (PetscInt)row[i], s->alpha[l], mass, g[i], h[i], sums);
 }
 
 /* Adds the energies of a line; of its last four nodes the first half of the vectors */
-STENCIL_INLINE void SumsAdd(const SweptSums *line, const SweptSums *tail, BodiesSums *sums)
+STENCIL_INLINE void SweptAddSums(const SweptSums *line, const SweptSums *tail, BodiesSums *sums)
 {
   sums->kinetic += 0.5 * (StencilSum(line->kinetic) + StencilSumLanes(&tail->kinetic.a));
   sums->strain += 0.5 * (StencilSum(line->strain) + StencilSumLanes(&tail->strain.a));
@@ -95,7 +95,7 @@ STENCIL_INLINE void SumsAdd(const SweptSums *line, const SweptSums *tail, Bodies
 }
 
 /* A range of all lines; `ends` is known at each call, so that blocks without ends have no code for them */
-STENCIL_INLINE void LinesAdvance(const SweptBody *s, const SweptRange *range, PetscBool ends, BodiesWork *w)
+STENCIL_INLINE void SweptAdvanceLines(const SweptBody *s, const SweptRange *range, PetscBool ends, BodiesWork *w)
 {
   const PetscInt half = (range->end - range->begin) % STENCIL_WIDTH, end = range->end - half;
 
@@ -103,23 +103,23 @@ STENCIL_INLINE void LinesAdvance(const SweptBody *s, const SweptRange *range, Pe
     SweptSums sums = {0}, tail = {0};
 
     for (PetscInt k = range->begin; k < end; k += STENCIL_WIDTH)
-      BlockAdvance(STENCIL_WIDTH, s, range, ends, l, k, w, &sums);
-    if (half) BlockAdvance(STENCIL_WIDTH / 2, s, range, ends, l, end, w, &tail);
-    SumsAdd(&sums, &tail, &w->sums);
+      SweptAdvanceBlock(STENCIL_WIDTH, s, range, ends, l, k, w, &sums);
+    if (half) SweptAdvanceBlock(STENCIL_WIDTH / 2, s, range, ends, l, end, w, &tail);
+    SweptAddSums(&sums, &tail, &w->sums);
   }
 }
 
 VERSIONS
-static void RangeAdvance(const SweptBody *s, const SweptRange *range, BodiesWork *w)
+static void SweptAdvanceRange(const SweptBody *s, const SweptRange *range, BodiesWork *w)
 {
   if (range->first || range->last)
-    LinesAdvance(s, range, PETSC_TRUE, w);
+    SweptAdvanceLines(s, range, PETSC_TRUE, w);
   else
-    LinesAdvance(s, range, PETSC_FALSE, w);
+    SweptAdvanceLines(s, range, PETSC_FALSE, w);
 }
 
 /* Ghosts of a closed body: the last node before the first one and the reverse; or zeros */
-static void GhostsSet(const SweptBody *s, PetscBool zero, PetscReal v[])
+static void SweptSetGhosts(const SweptBody *s, PetscBool zero, PetscReal v[])
 {
   const PetscInt n = s->lines->n_nodes;
 
@@ -134,15 +134,15 @@ static void GhostsSet(const SweptBody *s, PetscBool zero, PetscReal v[])
 PetscErrorCode SweptAdvance(const SweptBody *s, PetscBool early, BodiesWork *w)
 {
   PetscFunctionBeginUser;
-  if (early) GhostsSet(s, PETSC_FALSE, w->v);
+  if (early) SweptSetGhosts(s, PETSC_FALSE, w->v);
   for (PetscInt i = 0; i < s->n_ranges; i++)
-    if (s->range[i].early == early) RangeAdvance(s, &s->range[i], w);
-  if (!early) GhostsSet(s, PETSC_TRUE, w->v);
+    if (s->range[i].early == early) SweptAdvanceRange(s, &s->range[i], w);
+  if (!early) SweptSetGhosts(s, PETSC_TRUE, w->v);
   PetscFunctionReturn(0);
 }
 
 /* Flags along the lines as numbers */
-static PetscErrorCode FlagsSet(SweptBody *s)
+static PetscErrorCode SweptSetFlags(SweptBody *s)
 {
   const PetscInt n = s->lines->n_nodes;
 
@@ -155,7 +155,7 @@ static PetscErrorCode FlagsSet(SweptBody *s)
 }
 
 /* Whether the lines have shared vertices at nodes begin .. end - 1 */
-static PetscBool NodesShared(const ModelLines *lines, PetscInt begin, PetscInt end, const PetscBool shared[])
+static PetscBool SweptIsShared(const ModelLines *lines, PetscInt begin, PetscInt end, const PetscBool shared[])
 {
   for (PetscInt l = 0; l < lines->n_lines; l++)
     for (PetscInt k = begin; k < PetscMin(end, lines->n_nodes); k++)
@@ -169,13 +169,13 @@ PetscErrorCode SweptSetRanges(SweptBody *s, const PetscBool shared[])
   const PetscBool open = s->lines->closed ? PETSC_FALSE : PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  PetscCall(FlagsSet(s));
+  PetscCall(SweptSetFlags(s));
   PetscCall(PetscMalloc1(n_blocks, &s->range));
   for (PetscInt k = 0; k < n; k += STENCIL_WIDTH) {
     SweptRange *last  = s->n_ranges ? &s->range[s->n_ranges - 1] : NULL;
     SweptRange  range = {.begin = k, .end = k + (n - k <= STENCIL_WIDTH / 2 ? STENCIL_WIDTH / 2 : STENCIL_WIDTH)};
 
-    range.early = NodesShared(s->lines, k, range.end, shared);
+    range.early = SweptIsShared(s->lines, k, range.end, shared);
     range.first = open && k == 0 ? PETSC_TRUE : PETSC_FALSE;
     range.last  = open && range.end >= n ? PETSC_TRUE : PETSC_FALSE;
     if (last && last->early == range.early && last->first == range.first && last->last == range.last)

@@ -7,7 +7,7 @@
 #include <petscblaslapack.h>
 
 /* Largest eigenvalue (1/s^2) of M_e^-1/2 K_e M_e^-1/2 */
-static PetscErrorCode CellGetLargest(const BodiesCell *cell, PetscReal *largest)
+static PetscErrorCode BoundOfCell(const BodiesCell *cell, PetscReal *largest)
 {
   const PetscInt n = 3 * cell->n_nodes;
   PetscReal      a[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], w[ELEMENT_MAX_DOFS], work[8 * ELEMENT_MAX_DOFS];
@@ -25,8 +25,8 @@ static PetscErrorCode CellGetLargest(const BodiesCell *cell, PetscReal *largest)
 
 /* Whether another cell of the same column stands for this one: swept bodies are looked at at node 0 alone. first
    [n_vertices] flags the nodes 0 of lines, swept the vertices of swept bodies */
-static PetscBool CellIsRepeated(PetscInt n_nodes, const PetscInt vertex[], const PetscBool first[],
-                                const PetscBool swept[])
+static PetscBool BoundIsRepeated(PetscInt n_nodes, const PetscInt vertex[], const PetscBool first[],
+                                 const PetscBool swept[])
 {
   if (!swept[vertex[0]]) return PETSC_FALSE;
   for (PetscInt a = 0; a < n_nodes; a++)
@@ -35,7 +35,7 @@ static PetscBool CellIsRepeated(PetscInt n_nodes, const PetscInt vertex[], const
 }
 
 /* Whether nothing of a cell may move */
-static PetscBool CellIsHeld(Bodies b, PetscInt n_nodes, const PetscInt vertex[])
+static PetscBool BoundIsHeld(Bodies b, PetscInt n_nodes, const PetscInt vertex[])
 {
   for (PetscInt a = 0; a < n_nodes; a++)
     for (int j = 0; j < 3; j++)
@@ -43,7 +43,7 @@ static PetscBool CellIsHeld(Bodies b, PetscInt n_nodes, const PetscInt vertex[])
   return PETSC_TRUE;
 }
 
-static void SweptFlag(Bodies b, PetscBool first[], PetscBool swept[])
+static void BoundFlagSwept(Bodies b, PetscBool first[], PetscBool swept[])
 {
   for (PetscInt i = 0; i < b->n_swept; i++) {
     const ModelLines *lines = b->swept[i].lines;
@@ -53,14 +53,14 @@ static void SweptFlag(Bodies b, PetscBool first[], PetscBool swept[])
   }
 }
 
-static PetscErrorCode CellsGetLargest(Bodies b, PetscReal s, PetscReal *largest)
+static PetscErrorCode BoundOfCells(Bodies b, PetscReal s, PetscReal *largest)
 {
   PetscBool *first, *swept;
   PetscInt   n_cells;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(b->layout.n_vertices, &first, b->layout.n_vertices, &swept));
-  SweptFlag(b, first, swept);
+  BoundFlagSwept(b, first, swept);
   PetscCall(BodiesCountCells(b, &n_cells));
   *largest = 0;
   for (PetscInt c = 0; c < n_cells; c++) {
@@ -69,9 +69,9 @@ static PetscErrorCode CellsGetLargest(Bodies b, PetscReal s, PetscReal *largest)
     BodiesCell cell;
 
     PetscCall(BodiesGetCellVertices(b, c, &body, &n_nodes, vertex));
-    if (CellIsRepeated(n_nodes, vertex, first, swept) || CellIsHeld(b, n_nodes, vertex)) continue;
+    if (BoundIsRepeated(n_nodes, vertex, first, swept) || BoundIsHeld(b, n_nodes, vertex)) continue;
     PetscCall(BodiesGetCell(b, c, &cell));
-    PetscCall(CellGetLargest(&cell, &lambda));
+    PetscCall(BoundOfCell(&cell, &lambda));
     *largest = PetscMax(*largest, (1 + s * cell.beta) * lambda + s * cell.alpha);
   }
   PetscCall(PetscFree2(first, swept));
@@ -79,7 +79,7 @@ static PetscErrorCode CellsGetLargest(Bodies b, PetscReal s, PetscReal *largest)
 }
 
 /* Largest (k + s c) / m of the nodes; the trace bounds the largest direction */
-static void PointsGetLargest(Bodies b, PetscReal s, PetscReal *largest)
+static void BoundOfPoints(Bodies b, PetscReal s, PetscReal *largest)
 {
   *largest = 0;
   for (PetscInt i = 0; i < b->n_points; i++) {
@@ -97,8 +97,8 @@ PetscErrorCode BodiesGetElementBound(Bodies b, PetscReal s, PetscReal *bound)
   PetscReal largest[2];
 
   PetscFunctionBeginUser;
-  PetscCall(CellsGetLargest(b, s, &largest[0]));
-  PointsGetLargest(b, s, &largest[1]);
+  PetscCall(BoundOfCells(b, s, &largest[0]));
+  BoundOfPoints(b, s, &largest[1]);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPIU_REAL, MPI_MAX, b->comm));
   *bound = largest[0] + largest[1];
   PetscFunctionReturn(0);

@@ -15,15 +15,15 @@ typedef struct {
   Ledger       ledger;
   LedgerPart   part;
   LedgerOrigin origin;
-} Scalars;
+} KeptScalars;
 
 /* Arrays of the state vectors; forces of the last two steps for b > 1/2, else NULL: the next step needs those of the
    last, the work of the integrator in the last one those before */
 typedef struct {
   PetscScalar *u, *v, *f, *f_old;
-} Arrays;
+} KeptArrays;
 
-typedef enum { SCALARS, U, V, KU, DAMPING, FORCE, FORCE_OLD, PROJECTOR, EXTERNAL, HISTORY, N_ITEMS } Item;
+typedef enum { SCALARS, U, V, KU, DAMPING, FORCE, FORCE_OLD, PROJECTOR, EXTERNAL, HISTORY, N_ITEMS } KeptItem;
 
 /* What a run must share with the one that it goes on with. The end, intervals of what is recorded and tolerances of the
    contact forces may change */
@@ -62,7 +62,8 @@ static PetscErrorCode DynamicsSumScene(Dynamics d)
 }
 
 /* What is kept; contact and history are the caller's */
-static PetscErrorCode ItemsFill(Dynamics d, Scalars *scalars, const Arrays *a, CheckpointItem item[N_ITEMS])
+static PetscErrorCode DynamicsListItems(Dynamics d, KeptScalars *scalars, const KeptArrays *a,
+                                        CheckpointItem item[N_ITEMS])
 {
   const PetscInt n = d->layout->n;
   PetscReal     *damping, *external;
@@ -71,7 +72,7 @@ static PetscErrorCode ItemsFill(Dynamics d, Scalars *scalars, const Arrays *a, C
   PetscFunctionBeginUser;
   PetscCall(BodiesGetDampingForce(d->bodies, &damping));
   PetscCall(ExternalGetMemory(d->external, &n_external, &external));
-  item[SCALARS]   = (CheckpointItem){"scalars", N_REALS(Scalars), (PetscReal *)scalars};
+  item[SCALARS]   = (CheckpointItem){"scalars", N_REALS(KeptScalars), (PetscReal *)scalars};
   item[U]         = (CheckpointItem){"displacements", n, a->u};
   item[V]         = (CheckpointItem){"velocities", n, a->v};
   item[KU]        = (CheckpointItem){"stiffness forces", n, d->ku};
@@ -86,7 +87,7 @@ static PetscErrorCode ItemsFill(Dynamics d, Scalars *scalars, const Arrays *a, C
 
 /* Every velocity is a number: a spoilt state must not replace a good checkpoint. A sum passes NaN on to all ranks,
    where a maximum may lose it. */
-static PetscErrorCode CheckNumbers(Dynamics d)
+static PetscErrorCode DynamicsCheckNumbers(Dynamics d)
 {
   PetscReal norm;
 
@@ -97,7 +98,7 @@ static PetscErrorCode CheckNumbers(Dynamics d)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ScalarsGet(Dynamics d, Scalars *s)
+static PetscErrorCode KeptScalarsGet(Dynamics d, KeptScalars *s)
 {
   PetscInt step;
 
@@ -113,7 +114,7 @@ static PetscErrorCode ScalarsGet(Dynamics d, Scalars *s)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ScalarsSet(Dynamics d, const Scalars *s)
+static PetscErrorCode KeptScalarsSet(Dynamics d, const KeptScalars *s)
 {
   TSExactFinalTimeOption match;
   PetscReal              end, left;
@@ -142,12 +143,12 @@ static PetscErrorCode ScalarsSet(Dynamics d, const Scalars *s)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ArraysGet(Dynamics d, Arrays *a)
+static PetscErrorCode KeptArraysGet(Dynamics d, KeptArrays *a)
 {
   Vec f, f_old;
 
   PetscFunctionBeginUser;
-  *a = (Arrays){NULL};
+  *a = (KeptArrays){NULL};
   PetscCall(TSCentralGetForces(d->ts, &f, &f_old));
   PetscCall(VecGetArray(d->u, &a->u));
   PetscCall(VecGetArray(d->v, &a->v));
@@ -156,7 +157,7 @@ static PetscErrorCode ArraysGet(Dynamics d, Arrays *a)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ArraysRestore(Dynamics d, Arrays *a)
+static PetscErrorCode KeptArraysRestore(Dynamics d, KeptArrays *a)
 {
   Vec f, f_old;
 
@@ -172,22 +173,22 @@ static PetscErrorCode ArraysRestore(Dynamics d, Arrays *a)
 PetscErrorCode DynamicsKeep(Dynamics d)
 {
   CheckpointItem item[N_ITEMS];
-  Arrays         arrays;
-  Scalars        scalars;
+  KeptArrays     arrays;
+  KeptScalars    scalars;
 
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_CHECKPOINT));
-  PetscCall(CheckNumbers(d));
+  PetscCall(DynamicsCheckNumbers(d));
   PetscCall(DynamicsSumScene(d));
-  PetscCall(ScalarsGet(d, &scalars));
-  PetscCall(ArraysGet(d, &arrays));
-  PetscCall(ItemsFill(d, &scalars, &arrays, item));
+  PetscCall(KeptScalarsGet(d, &scalars));
+  PetscCall(KeptArraysGet(d, &arrays));
+  PetscCall(DynamicsListItems(d, &scalars, &arrays, item));
   if (d->projector) PetscCall(ContactProjectorGetMemory(d->projector, &item[PROJECTOR].n, &item[PROJECTOR].values));
   PetscCall(HistoryGetMemory(d->history, &item[HISTORY].n, &item[HISTORY].values));
   PetscCall(CheckpointWrite(d->comm, d->results, d->scene, N_ITEMS, item));
   PetscCall(PetscFree(item[HISTORY].values));
   PetscCall(PetscFree(item[PROJECTOR].values));
-  PetscCall(ArraysRestore(d, &arrays));
+  PetscCall(KeptArraysRestore(d, &arrays));
   PetscCall(EventEnd(EVENT_CHECKPOINT));
   PetscFunctionReturn(0);
 }
@@ -195,21 +196,21 @@ PetscErrorCode DynamicsKeep(Dynamics d)
 PetscErrorCode DynamicsGoOn(Dynamics d)
 {
   CheckpointItem item[N_ITEMS];
-  Arrays         arrays;
-  Scalars        scalars;
+  KeptArrays     arrays;
+  KeptScalars    scalars;
 
   PetscFunctionBeginUser;
   PetscCall(DynamicsSumScene(d));
-  PetscCall(ArraysGet(d, &arrays));
-  PetscCall(ItemsFill(d, &scalars, &arrays, item));
+  PetscCall(KeptArraysGet(d, &arrays));
+  PetscCall(DynamicsListItems(d, &scalars, &arrays, item));
   item[PROJECTOR].n = item[HISTORY].n = -1;
   PetscCall(CheckpointRead(d->comm, d->results, d->scene, N_ITEMS, item));
-  PetscCall(ScalarsSet(d, &scalars));
+  PetscCall(KeptScalarsSet(d, &scalars));
   if (d->projector) PetscCall(ContactProjectorSetMemory(d->projector, item[PROJECTOR].n, item[PROJECTOR].values));
   PetscCall(HistorySetMemory(d->history, item[HISTORY].n, item[HISTORY].values));
   PetscCall(PetscFree(item[HISTORY].values));
   PetscCall(PetscFree(item[PROJECTOR].values));
-  PetscCall(ArraysRestore(d, &arrays));
+  PetscCall(KeptArraysRestore(d, &arrays));
   PetscFunctionReturn(0);
 }
 

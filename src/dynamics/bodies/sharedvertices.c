@@ -14,20 +14,20 @@ typedef struct {
   PetscInt    number; /* global */
   PetscMPIInt rank;
   PetscInt    vertex; /* local on that rank */
-} Copy;
+} SharedCopy;
 
-static int CopyCompare(const void *a, const void *b)
+static int SharedCopyCompare(const void *a, const void *b)
 {
-  const Copy *x = a, *y = b;
+  const SharedCopy *x = a, *y = b;
 
   if (x->number != y->number) return x->number < y->number ? -1 : 1;
   return (x->rank > y->rank) - (x->rank < y->rank);
 }
 
 /* All copies of all shared vertices, sorted by number, then rank */
-static PetscErrorCode CopiesGather(Bodies b, const PetscBool shared[], PetscInt *n_all, Copy **all)
+static PetscErrorCode SharedGatherCopies(Bodies b, const PetscBool shared[], PetscInt *n_all, SharedCopy **all)
 {
-  Copy       *own;
+  SharedCopy *own;
   const Mesh *mesh;
   PetscInt    n = 0;
   PetscMPIInt rank;
@@ -43,14 +43,14 @@ static PetscErrorCode CopiesGather(Bodies b, const PetscBool shared[], PetscInt 
     own[n].vertex = v;
     n++;
   }
-  PetscCall(GatherRecords(b->comm, n, sizeof(Copy), own, n_all, all));
-  if (*n_all) qsort(*all, (size_t)*n_all, sizeof(Copy), CopyCompare);
+  PetscCall(GatherRecords(b->comm, n, sizeof(SharedCopy), own, n_all, all));
+  if (*n_all) qsort(*all, (size_t)*n_all, sizeof(SharedCopy), SharedCopyCompare);
   PetscCall(PetscFree(own));
   PetscFunctionReturn(0);
 }
 
 /* End of the copies of one vertex that begin at i */
-static PetscInt CopiesEnd(PetscInt n_all, const Copy all[], PetscInt i)
+static PetscInt SharedCopiesEnd(PetscInt n_all, const SharedCopy all[], PetscInt i)
 {
   PetscInt end = i + 1;
 
@@ -59,7 +59,7 @@ static PetscInt CopiesEnd(PetscInt n_all, const Copy all[], PetscInt i)
 }
 
 /* This rank's copy among those from begin to end, -1 without */
-static PetscInt CopiesFind(const Copy all[], PetscInt begin, PetscInt end, PetscMPIInt rank)
+static PetscInt SharedCopiesFind(const SharedCopy all[], PetscInt begin, PetscInt end, PetscMPIInt rank)
 {
   for (PetscInt i = begin; i < end; i++)
     if (all[i].rank == rank) return i;
@@ -67,16 +67,16 @@ static PetscInt CopiesFind(const Copy all[], PetscInt begin, PetscInt end, Petsc
 }
 
 /* Neighbours, and how many vertices are shared with each */
-static PetscErrorCode NeighboursFind(Shared *share, PetscInt n_all, const Copy all[], PetscMPIInt rank,
-                                     PetscMPIInt size)
+static PetscErrorCode SharedFindNeighbours(Shared *share, PetscInt n_all, const SharedCopy all[], PetscMPIInt rank,
+                                           PetscMPIInt size)
 {
   PetscInt *count;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(size, &count));
   for (PetscInt i = 0, end; i < n_all; i = end) {
-    end = CopiesEnd(n_all, all, i);
-    if (CopiesFind(all, i, end, rank) < 0) continue;
+    end = SharedCopiesEnd(n_all, all, i);
+    if (SharedCopiesFind(all, i, end, rank) < 0) continue;
     share->n++;
     for (PetscInt j = i; j < end; j++) count[all[j].rank]++;
   }
@@ -95,7 +95,7 @@ static PetscErrorCode NeighboursFind(Shared *share, PetscInt n_all, const Copy a
 }
 
 /* Places of the shared vertices in the messages, the same on both sides: by global number */
-static PetscErrorCode SourcesFind(Shared *share, PetscInt n_all, const Copy all[], PetscMPIInt rank)
+static PetscErrorCode SharedFindSources(Shared *share, PetscInt n_all, const SharedCopy all[], PetscMPIInt rank)
 {
   PetscInt *filled, n = 0;
 
@@ -108,8 +108,8 @@ static PetscErrorCode SourcesFind(Shared *share, PetscInt n_all, const Copy all[
   for (PetscInt i = 0, end; i < n_all; i = end) {
     PetscInt own, m = share->source_start[n];
 
-    end = CopiesEnd(n_all, all, i);
-    own = CopiesFind(all, i, end, rank);
+    end = SharedCopiesEnd(n_all, all, i);
+    own = SharedCopiesFind(all, i, end, rank);
     if (own < 0) continue;
     for (PetscInt j = i; j < end; j++) {
       PetscInt r;
@@ -130,7 +130,7 @@ static PetscErrorCode SourcesFind(Shared *share, PetscInt n_all, const Copy all[
 }
 
 /* Persistent requests, receiving first */
-static PetscErrorCode RequestsCreate(Shared *share)
+static PetscErrorCode SharedCreateRequests(Shared *share)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(3 * share->start[share->n_ranks], &share->send, 3 * share->start[share->n_ranks],
@@ -154,7 +154,7 @@ PetscErrorCode SharedSetUp(Bodies b)
   const Mesh *mesh;
   PetscBool  *shared;
   PetscInt    n_all;
-  Copy       *all;
+  SharedCopy *all;
   PetscMPIInt rank, size;
 
   PetscFunctionBeginUser;
@@ -164,11 +164,11 @@ PetscErrorCode SharedSetUp(Bodies b)
   PetscCall(ModelGetShared(b->model, &shared));
   PetscCall(PetscMalloc1(mesh->n_vertices, &b->layout.owned));
   PetscCall(PetscArraycpy(b->layout.owned, mesh->owned, mesh->n_vertices));
-  PetscCall(CopiesGather(b, shared, &n_all, &all));
-  PetscCall(NeighboursFind(share, n_all, all, rank, size));
-  PetscCall(SourcesFind(share, n_all, all, rank));
+  PetscCall(SharedGatherCopies(b, shared, &n_all, &all));
+  PetscCall(SharedFindNeighbours(share, n_all, all, rank, size));
+  PetscCall(SharedFindSources(share, n_all, all, rank));
   PetscCallMPI(MPI_Comm_dup(b->comm, &share->comm));
-  PetscCall(RequestsCreate(share));
+  PetscCall(SharedCreateRequests(share));
   PetscCall(PetscFree(shared));
   PetscCall(PetscFree(all));
   PetscFunctionReturn(0);

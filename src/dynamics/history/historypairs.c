@@ -1,0 +1,66 @@
+/*
+   contact_pairs.csv: the state of each pair of slave node and master surface in time. Pairs are numbered by interface
+   and global number of the slave, so that a pair keeps its number during the run.
+*/
+#include "historyimpl.h"
+#include "base/gather.h"
+#include <stdlib.h>
+
+typedef struct {
+  PetscInt      interface, number;
+  ContactStatus status;
+  PetscReal     x[3], gap, lambda_n, lambda_t;
+} HistoryPairRecord;
+
+static int HistoryPairCompare(const void *one, const void *other)
+{
+  const HistoryPairRecord *a = one, *b = other;
+
+  if (a->interface != b->interface) return a->interface < b->interface ? -1 : 1;
+  return a->number < b->number ? -1 : a->number > b->number;
+}
+
+/* Records of all ranks in order, on every rank */
+static PetscErrorCode HistoryGatherPairs(MPI_Comm comm, PetscInt n, const ContactState state[],
+                                         const PetscInt interface[], const PetscInt number[], const PetscReal x[],
+                                         PetscInt *n_all, HistoryPairRecord **all)
+{
+  HistoryPairRecord *local;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &local));
+  for (PetscInt i = 0; i < n; i++) {
+    local[i] = (HistoryPairRecord){.interface = interface[i],
+                                   .number    = number[i],
+                                   .status    = state[i].status,
+                                   .gap       = state[i].gap,
+                                   .lambda_n  = state[i].lambda_n,
+                                   .lambda_t  = hypot(state[i].lambda_t[0], state[i].lambda_t[1])};
+    PetscCall(PetscArraycpy(local[i].x, &x[3 * i], 3));
+  }
+  PetscCall(GatherRecords(comm, n, sizeof(HistoryPairRecord), local, n_all, all));
+  qsort(*all, (size_t)*n_all, sizeof(HistoryPairRecord), HistoryPairCompare);
+  PetscCall(PetscFree(local));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HistoryWritePairs(ResultsTable table, MPI_Comm comm, const ContactInterface interfaces[], PetscReal time,
+                                 PetscInt n, const ContactState state[], const PetscInt interface[],
+                                 const PetscInt number[], const PetscReal x[])
+{
+  PetscInt           n_all;
+  HistoryPairRecord *all;
+
+  PetscFunctionBeginUser;
+  PetscCall(HistoryGatherPairs(comm, n, state, interface, number, x, &n_all, &all));
+  for (PetscInt i = 0; i < n_all; i++) {
+    const HistoryPairRecord *r = &all[i];
+
+    PetscCall(ResultsTableRow(table, "%.15g,%" PetscInt_FMT ",%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%s", (double)time,
+                              i + 1, interfaces[r->interface].name, (double)r->x[0], (double)r->x[1], (double)r->x[2],
+                              (double)r->gap, (double)r->lambda_n, (double)r->lambda_t, ContactStatusNames[r->status]));
+  }
+  PetscCall(PetscFree(all));
+  PetscCall(ResultsTableCheck(table));
+  PetscFunctionReturn(0);
+}
