@@ -4,7 +4,6 @@
 #pragma once
 
 #include <squeal/checksum.h>
-#include <squeal/model.h>
 #include <squeal/results.h>
 
 #define CHECKPOINT_FILE "checkpoint.bin"
@@ -32,10 +31,3 @@ PETSC_INTERN PetscErrorCode CheckpointWrite(MPI_Comm comm, Results results, Chec
 */
 PETSC_INTERN PetscErrorCode CheckpointRead(MPI_Comm comm, Results results, Checksum scene, PetscInt n,
                                            CheckpointItem item[]);
-
-/* shape.c - mode `mode` of modes.csv and modes.h5 in folder dir at the local vertices [n_vertices][3] of the model:
-   real and imaginary part, and lambda = sigma + i omega, 1/s. Nodes are found by position, so that the ranks of the
-   runs may differ. Collective. Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_USER_INPUT for a mode or mesh that does not
-   agree. */
-PETSC_INTERN PetscErrorCode ShapeRead(MPI_Comm comm, Model model, const char dir[], PetscInt mode, PetscReal re[],
-                                      PetscReal im[], PetscReal lambda[2]);

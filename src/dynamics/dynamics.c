@@ -248,9 +248,9 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscCall(DynamicsFindCriticalStep(d));
   PetscCall(DynamicsChooseStep(d));
   PetscCall(DynamicsCheckEnd(d, &end));
-  if (d->contact) PetscCall(HistorySetContact(d->history, d->contact));
   PetscCall(TSGetTimeStep(d->ts, &dt));
-  PetscCall(HistorySetUp(d->history, d->model, d->layout, d->projector, results, end, dt));
+  PetscCall(HistorySetUp(
+    d->history, &(HistorySource){d->model, d->layout, d->projector, d->n_interfaces, d->interfaces, results}, end, dt));
   PetscCall(TSSetUp(d->ts));
   PetscCall(d->restart ? DynamicsGoOn(d) : DynamicsStartState(d));
   if (!d->restart) PetscCall(DynamicsForget(d));

@@ -6,7 +6,6 @@
 #include "checkpoint.h"
 #include "dynamics/external/external.h"
 #include "dynamics/history/history.h"
-#include "ledger.h"
 #include "dynamics/central/tscentral.h"
 
 typedef enum { START_REST, START_STATIC, N_STARTS } DynamicsStart;
@@ -53,9 +52,7 @@ struct _p_Dynamics {
   PetscReal      *ku;         /* K u of this rank's cells, N */
   DynamicsSurface surface;
   ContactSums    *sums; /* [interfaces] */
-  Ledger          ledger;
-  LedgerPart      part;
-  LedgerOrigin    origin;
+  LedgerAccount   ledger;
   CriticalStep    critical;
   Checksum        scene; /* for checkpoints; NULL until one is met */
   /* statistics */
@@ -66,11 +63,10 @@ struct _p_Dynamics {
 };
 
 /* forces.c - callbacks of the TS: forces, contact, and what is recorded when they are complete */
-PETSC_INTERN PetscErrorCode DynamicsForce(TS ts, const CentralStep *step, Vec u, Vec v, Vec f_old, Vec f, void *ctx);
-PETSC_INTERN PetscErrorCode DynamicsConstrain(TS ts, const CentralStep *step, Vec u, Vec v, Vec f_old, Vec f,
-                                              void *ctx);
+PETSC_INTERN PetscErrorCode DynamicsForce(TS ts, const CentralStep *step, void *ctx);
+PETSC_INTERN PetscErrorCode DynamicsConstrain(TS ts, const CentralStep *step, void *ctx);
 
-/* critical.c - the critical steps of the bodies */
+/* criticalstep.c - the critical steps of the bodies */
 PETSC_INTERN PetscErrorCode DynamicsFindCriticalStep(Dynamics dynamics);
 
 /* turningframe.c - inertial forces in parts that turn */

@@ -11,19 +11,25 @@
 
 /* Scalars of a run */
 typedef struct {
-  PetscReal    time, dt, dt_old, step;
-  Ledger       ledger;
-  LedgerPart   part;
-  LedgerOrigin origin;
+  PetscReal     time, dt, dt_old, step;
+  LedgerAccount ledger;
 } KeptScalars;
 
-/* Arrays of the state vectors; forces of the last two steps for b > 1/2, else NULL: the next step needs those of the
-   last, the work of the integrator in the last one those before */
-typedef struct {
-  PetscScalar *u, *v, *f, *f_old;
-} KeptArrays;
-
-typedef enum { SCALARS, U, V, KU, DAMPING, FORCE, FORCE_OLD, PROJECTOR, EXTERNAL, HISTORY, N_ITEMS } KeptItem;
+/* Vectors first */
+typedef enum {
+  U,
+  V,
+  FORCE,
+  FORCE_OLD,
+  N_VECTORS,
+  SCALARS = N_VECTORS,
+  KU,
+  DAMPING,
+  PROJECTOR,
+  EXTERNAL,
+  HISTORY,
+  N_ITEMS
+} KeptItem;
 
 /* What a run must share with the one that it goes on with. The end, intervals of what is recorded and tolerances of the
    contact forces may change */
@@ -62,7 +68,7 @@ static PetscErrorCode DynamicsSumScene(Dynamics d)
 }
 
 /* What is kept; contact and history are the caller's */
-static PetscErrorCode DynamicsListItems(Dynamics d, KeptScalars *scalars, const KeptArrays *a,
+static PetscErrorCode DynamicsListItems(Dynamics d, KeptScalars *scalars, PetscScalar *const a[],
                                         CheckpointItem item[N_ITEMS])
 {
   const PetscInt n = d->layout->n;
@@ -73,12 +79,12 @@ static PetscErrorCode DynamicsListItems(Dynamics d, KeptScalars *scalars, const 
   PetscCall(BodiesGetDampingForce(d->bodies, &damping));
   PetscCall(ExternalGetMemory(d->external, &n_external, &external));
   item[SCALARS]   = (CheckpointItem){"scalars", N_REALS(KeptScalars), (PetscReal *)scalars};
-  item[U]         = (CheckpointItem){"displacements", n, a->u};
-  item[V]         = (CheckpointItem){"velocities", n, a->v};
+  item[U]         = (CheckpointItem){"displacements", n, a[U]};
+  item[V]         = (CheckpointItem){"velocities", n, a[V]};
   item[KU]        = (CheckpointItem){"stiffness forces", n, d->ku};
   item[DAMPING]   = (CheckpointItem){"damping forces", damping ? n : 0, damping};
-  item[FORCE]     = (CheckpointItem){"forces", a->f ? n : 0, a->f};
-  item[FORCE_OLD] = (CheckpointItem){"forces before", a->f_old ? n : 0, a->f_old};
+  item[FORCE]     = (CheckpointItem){"forces", a[FORCE] ? n : 0, a[FORCE]};
+  item[FORCE_OLD] = (CheckpointItem){"forces before", a[FORCE_OLD] ? n : 0, a[FORCE_OLD]};
   item[PROJECTOR] = (CheckpointItem){"contact", 0, NULL};
   item[EXTERNAL]  = (CheckpointItem){"external", n_external, external};
   item[HISTORY]   = (CheckpointItem){"history", 0, NULL};
@@ -109,8 +115,6 @@ static PetscErrorCode KeptScalarsGet(Dynamics d, KeptScalars *s)
   PetscCall(TSGetStepNumber(d->ts, &step));
   s->step   = (PetscReal)step;
   s->ledger = d->ledger;
-  s->part   = d->part;
-  s->origin = d->origin;
   PetscFunctionReturn(0);
 }
 
@@ -138,42 +142,29 @@ static PetscErrorCode KeptScalarsSet(Dynamics d, const KeptScalars *s)
   PetscCall(TSCentralSetLastStep(d->ts, s->dt_old));
   PetscCall(TSSetStepNumber(d->ts, (PetscInt)s->step));
   d->ledger = s->ledger;
-  d->part   = s->part;
-  d->origin = s->origin;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode KeptArraysGet(Dynamics d, KeptArrays *a)
+/* Arrays of the state vectors, and for b > 1/2 of the forces of the last two steps, else NULL: the next step needs those
+   of the last, the work of the integrator in the last one those before. Gets or restores them */
+static PetscErrorCode KeptArraysAccess(Dynamics d, PetscBool get, PetscScalar *a[N_VECTORS])
 {
-  Vec f, f_old;
+  Vec x[N_VECTORS] = {d->u, d->v};
 
   PetscFunctionBeginUser;
-  *a = (KeptArrays){NULL};
-  PetscCall(TSCentralGetForces(d->ts, &f, &f_old));
-  PetscCall(VecGetArray(d->u, &a->u));
-  PetscCall(VecGetArray(d->v, &a->v));
-  if (f_old) PetscCall(VecGetArray(f, &a->f));
-  if (f_old) PetscCall(VecGetArray(f_old, &a->f_old));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode KeptArraysRestore(Dynamics d, KeptArrays *a)
-{
-  Vec f, f_old;
-
-  PetscFunctionBeginUser;
-  PetscCall(TSCentralGetForces(d->ts, &f, &f_old));
-  if (f_old) PetscCall(VecRestoreArray(f_old, &a->f_old));
-  if (f_old) PetscCall(VecRestoreArray(f, &a->f));
-  PetscCall(VecRestoreArray(d->v, &a->v));
-  PetscCall(VecRestoreArray(d->u, &a->u));
+  PetscCall(TSCentralGetForces(d->ts, &x[FORCE], &x[FORCE_OLD]));
+  for (int i = 0; i < N_VECTORS; i++) {
+    if (get) a[i] = NULL;
+    if (i >= FORCE && !x[FORCE_OLD]) continue;
+    PetscCall(get ? VecGetArray(x[i], &a[i]) : VecRestoreArray(x[i], &a[i]));
+  }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode DynamicsKeep(Dynamics d)
 {
   CheckpointItem item[N_ITEMS];
-  KeptArrays     arrays;
+  PetscScalar   *arrays[N_VECTORS];
   KeptScalars    scalars;
 
   PetscFunctionBeginUser;
@@ -181,14 +172,14 @@ PetscErrorCode DynamicsKeep(Dynamics d)
   PetscCall(DynamicsCheckNumbers(d));
   PetscCall(DynamicsSumScene(d));
   PetscCall(KeptScalarsGet(d, &scalars));
-  PetscCall(KeptArraysGet(d, &arrays));
-  PetscCall(DynamicsListItems(d, &scalars, &arrays, item));
+  PetscCall(KeptArraysAccess(d, PETSC_TRUE, arrays));
+  PetscCall(DynamicsListItems(d, &scalars, arrays, item));
   if (d->projector) PetscCall(ContactProjectorGetMemory(d->projector, &item[PROJECTOR].n, &item[PROJECTOR].values));
   PetscCall(HistoryGetMemory(d->history, &item[HISTORY].n, &item[HISTORY].values));
   PetscCall(CheckpointWrite(d->comm, d->results, d->scene, N_ITEMS, item));
   PetscCall(PetscFree(item[HISTORY].values));
   PetscCall(PetscFree(item[PROJECTOR].values));
-  PetscCall(KeptArraysRestore(d, &arrays));
+  PetscCall(KeptArraysAccess(d, PETSC_FALSE, arrays));
   PetscCall(EventEnd(EVENT_CHECKPOINT));
   PetscFunctionReturn(0);
 }
@@ -196,13 +187,13 @@ PetscErrorCode DynamicsKeep(Dynamics d)
 PetscErrorCode DynamicsGoOn(Dynamics d)
 {
   CheckpointItem item[N_ITEMS];
-  KeptArrays     arrays;
+  PetscScalar   *arrays[N_VECTORS];
   KeptScalars    scalars;
 
   PetscFunctionBeginUser;
   PetscCall(DynamicsSumScene(d));
-  PetscCall(KeptArraysGet(d, &arrays));
-  PetscCall(DynamicsListItems(d, &scalars, &arrays, item));
+  PetscCall(KeptArraysAccess(d, PETSC_TRUE, arrays));
+  PetscCall(DynamicsListItems(d, &scalars, arrays, item));
   item[PROJECTOR].n = item[HISTORY].n = -1;
   PetscCall(CheckpointRead(d->comm, d->results, d->scene, N_ITEMS, item));
   PetscCall(KeptScalarsSet(d, &scalars));
@@ -210,7 +201,7 @@ PetscErrorCode DynamicsGoOn(Dynamics d)
   PetscCall(HistorySetMemory(d->history, item[HISTORY].n, item[HISTORY].values));
   PetscCall(PetscFree(item[HISTORY].values));
   PetscCall(PetscFree(item[PROJECTOR].values));
-  PetscCall(KeptArraysRestore(d, &arrays));
+  PetscCall(KeptArraysAccess(d, PETSC_FALSE, arrays));
   PetscFunctionReturn(0);
 }
 

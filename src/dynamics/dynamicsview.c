@@ -48,7 +48,7 @@ PetscErrorCode DynamicsView(Dynamics d, PetscViewer viewer)
                                    "element and step\n",
                                    d->n_steps, (double)time, d->seconds, 1e6 * d->seconds / PetscMax(1, d->n_steps),
                                    1e9 * d->seconds / PetscMax(1, d->n_steps) / d->n_elements));
-  PetscCall(LedgerView(&d->ledger, viewer));
+  PetscCall(LedgerView(&d->ledger.total, viewer));
   if (d->projector && d->view_kkt) {
     PetscCall(ContactProjectorGetKKT(d->projector, &kkt));
     PetscCall(ContactViewKKT(&kkt, viewer));

@@ -11,9 +11,40 @@
 
 #define CHECK_INTERVAL 200 /* steps between two looks at the ledger where no row is due */
 
-/* The first vertex whose velocity is no number: this rank alone knows of it */
-static PetscErrorCode DynamicsComplainNaN(Dynamics d, const CentralStep *step, const PetscReal v[])
+/* A step with its arrays, [layout n] */
+typedef struct {
+  const CentralStep *step;
+  const PetscScalar *u, *f_old; /* f_old NULL for b = 1/2 */
+  PetscScalar       *v, *f;
+  const PetscReal   *minv;
+} ForceArrays;
+
+static PetscErrorCode ForceArraysGet(Dynamics d, const CentralStep *step, ForceArrays *a)
 {
+  PetscFunctionBeginUser;
+  *a = (ForceArrays){.step = step};
+  PetscCall(BodiesGetMass(d->bodies, NULL, NULL, &a->minv));
+  PetscCall(VecGetArrayRead(step->u, &a->u));
+  PetscCall(VecGetArray(step->v, &a->v));
+  if (step->f_old) PetscCall(VecGetArrayRead(step->f_old, &a->f_old));
+  PetscCall(VecGetArray(step->f, &a->f));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ForceArraysRestore(ForceArrays *a)
+{
+  PetscFunctionBeginUser;
+  PetscCall(VecRestoreArray(a->step->f, &a->f));
+  if (a->f_old) PetscCall(VecRestoreArrayRead(a->step->f_old, &a->f_old));
+  PetscCall(VecRestoreArray(a->step->v, &a->v));
+  PetscCall(VecRestoreArrayRead(a->step->u, &a->u));
+  PetscFunctionReturn(0);
+}
+
+/* The first vertex whose velocity is no number: this rank alone knows of it */
+static PetscErrorCode DynamicsComplainNaN(Dynamics d, const ForceArrays *a)
+{
+  const double     time = (double)a->step->time;
   const PetscReal *x;
   PetscInt         n_step;
 
@@ -24,18 +55,16 @@ static PetscErrorCode DynamicsComplainNaN(Dynamics d, const CentralStep *step, c
     PetscReal here[3];
 
     if (d->layout->at[i] < 0) continue;
-    LayoutGet(d->layout, i, v, here);
+    LayoutGet(d->layout, i, a->v, here);
     PetscCheck(!PetscIsInfOrNanReal(here[0] + here[1] + here[2]), PETSC_COMM_SELF, PETSC_ERR_FP,
                "velocity is no number at the node at %.6g, %.6g, %.6g m after step %" PetscInt_FMT ", %.6g s",
-               (double)x[3 * i], (double)x[3 * i + 1], (double)x[3 * i + 2], n_step, (double)step->time);
+               (double)x[3 * i], (double)x[3 * i + 1], (double)x[3 * i + 2], n_step, time);
   }
-  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FP, "energy is no number after step %" PetscInt_FMT ", %.6g s", n_step,
-          (double)step->time);
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FP, "energy is no number after step %" PetscInt_FMT ", %.6g s", n_step, time);
 }
 
 /* Sum of v'(f - f_old) over this rank, shared vertices counted once; held directions have no acceleration */
-static PetscReal DynamicsIntegratorPower(const Layout *l, const PetscReal minv[], const PetscReal v[],
-                                         const PetscReal f[], const PetscReal f_old[])
+static PetscReal DynamicsIntegratorPower(const Layout *l, const ForceArrays *a)
 {
   PetscReal power = 0;
 
@@ -43,30 +72,10 @@ static PetscReal DynamicsIntegratorPower(const Layout *l, const PetscReal minv[]
     for (int j = 0; j < 3 && l->owned[i] && l->at[i] >= 0; j++) {
       const PetscInt k = l->at[i] + j * l->step[i];
 
-      if (minv[k] > 0) power += v[k] * (f[k] - f_old[k]);
+      if (a->minv[k] > 0) power += a->v[k] * (a->f[k] - a->f_old[k]);
     }
   }
   return power;
-}
-
-/* Completes the integrator's work of the step before, whose forces the arrays still hold at the beginning of this one
- */
-static PetscErrorCode DynamicsCompleteIntegrator(Dynamics d, const CentralStep *step, const PetscReal v[], Vec f,
-                                                 Vec f_old)
-{
-  const PetscScalar *older, *last;
-  const PetscReal   *minv;
-
-  PetscFunctionBeginUser;
-  PetscCall(BodiesGetMass(d->bodies, NULL, NULL, &minv));
-  if (!f_old || step->dt_old == 0) PetscFunctionReturn(0);
-  PetscCall(VecGetArrayRead(f, &older)); /* f is about to be overwritten: it holds the forces before f_old */
-  PetscCall(VecGetArrayRead(f_old, &last));
-  LedgerAddIntegrator(&d->part, d->b, DynamicsIntegratorPower(d->layout, minv, v, last, older), PETSC_TRUE,
-                      step->dt_old);
-  PetscCall(VecRestoreArrayRead(f_old, &last));
-  PetscCall(VecRestoreArrayRead(f, &older));
-  PetscFunctionReturn(0);
 }
 
 /* Cartesian values of a state vector at the active nodes */
@@ -76,46 +85,43 @@ static void SurfaceGet(const DynamicsSurface *s, const Layout *l, PetscInt n, co
   for (PetscInt i = 0; i < n; i++) LayoutGet(l, s->vertex[active[i]], x, &cartesian[3 * active[i]]);
 }
 
-PetscErrorCode DynamicsForce(TS ts, const CentralStep *step, Vec u, Vec v, Vec f_old, Vec f, void *ctx)
+PetscErrorCode DynamicsForce(TS ts, const CentralStep *step, void *ctx)
 {
-  const Dynamics     d = ctx;
-  const PetscScalar *displacement;
-  const PetscInt    *active;
-  PetscScalar       *velocity, *force;
-  PetscInt           n_active;
-  BodiesSums         sums;
-  ExternalPower      power;
+  const Dynamics  d = ctx;
+  const PetscInt *active;
+  PetscInt        n_active;
+  BodiesSums      sums;
+  ExternalPower   power;
+  ForceArrays     a;
 
   PetscFunctionBeginUser;
   (void)ts;
-  PetscCall(VecGetArrayRead(u, &displacement));
-  PetscCall(VecGetArray(v, &velocity));
-  PetscCall(DynamicsCompleteIntegrator(d, step, velocity, f, f_old));
-  PetscCall(VecGetArray(f, &force));
+  PetscCall(ForceArraysGet(d, step, &a));
+  if (a.f_old && step->dt_old > 0) /* completes the work of the step before: f still holds the forces before f_old */
+    LedgerAddIntegrator(&d->ledger.part, d->b, -DynamicsIntegratorPower(d->layout, &a), PETSC_TRUE, step->dt_old);
   PetscCall(EventBegin(EVENT_BODIES_ADVANCE));
-  PetscCall(BodiesAdvance(d->bodies, step->dt_old, displacement, velocity, d->ku, force, &sums));
+  PetscCall(BodiesAdvance(d->bodies, &(BodiesStep){step->dt_old, a.u, a.v, d->ku, a.f}, &sums));
   PetscCall(EventEnd(EVENT_BODIES_ADVANCE));
-  if (PetscIsInfOrNanReal(sums.kinetic)) PetscCall(DynamicsComplainNaN(d, step, velocity));
-  LedgerAddBodies(&d->part, &sums, step->dt_old);
+  if (PetscIsInfOrNanReal(sums.kinetic)) PetscCall(DynamicsComplainNaN(d, &a));
+  LedgerAddBodies(&d->ledger.part, &sums, step->dt_old);
   if (d->projector) {
     PetscCall(ContactProjectorGetActive(d->projector, &n_active, &active));
-    SurfaceGet(&d->surface, d->layout, n_active, active, velocity, d->surface.before);
+    SurfaceGet(&d->surface, d->layout, n_active, active, a.v, d->surface.before);
   }
   PetscCall(EventBegin(EVENT_EXTERNAL));
-  PetscCall(ExternalAdvance(d->external, step->time, step->dt, displacement, velocity, force, &power));
+  PetscCall(ExternalAdvance(d->external, &(ExternalStep){step->time, step->dt, a.u, a.v, a.f}, &power));
   PetscCall(EventEnd(EVENT_EXTERNAL));
-  LedgerAddExternal(&d->part, &power, step->dt_old);
-  PetscCall(VecRestoreArray(f, &force));
-  PetscCall(VecRestoreArray(v, &velocity));
-  PetscCall(VecRestoreArrayRead(u, &displacement));
+  LedgerAddExternal(&d->ledger.part, &power, step->dt_old);
+  PetscCall(ForceArraysRestore(&a));
   PetscFunctionReturn(0);
 }
 
 /* Predicted velocities of the active nodes, Cartesian */
-static void SurfacePredict(const DynamicsSurface *s, const Layout *l, const CentralStep *step, PetscInt n,
-                           const PetscInt active[], const PetscReal minv[], const PetscReal f[],
-                           const PetscReal f_old[], const PetscReal v[])
+static void SurfacePredict(const DynamicsSurface *s, const Layout *l, const ForceArrays *a, PetscInt n,
+                           const PetscInt active[])
 {
+  const CentralStep *step = a->step;
+
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt   vertex = s->vertex[active[i]], at = l->at[vertex], stride = l->step[vertex];
     const PetscReal *q    = &l->basis[9 * vertex];
@@ -124,7 +130,8 @@ static void SurfacePredict(const DynamicsSurface *s, const Layout *l, const Cent
     for (int c = 0; c < 3; c++) here[c] = 0;
     for (int j = 0; j < 3; j++) {
       const PetscInt  k = at + j * stride;
-      const PetscReal w = v[k] + minv[k] * (step->kick * f[k] + (f_old ? step->kick_old * f_old[k] : 0));
+      const PetscReal f = step->kick * a->f[k] + (a->f_old ? step->kick_old * a->f_old[k] : 0);
+      const PetscReal w = a->v[k] + a->minv[k] * f;
 
       for (int c = 0; c < 3; c++) here[c] += q[3 * j + c] * w;
     }
@@ -147,24 +154,23 @@ static PetscReal SurfaceEnergy(const DynamicsSurface *s, const Layout *l, PetscI
 }
 
 /* Contact forces of the step on all copies of the active nodes; balanced: the ledger is looked at in this step */
-static PetscErrorCode DynamicsAddContact(Dynamics d, const CentralStep *step, PetscBool balanced, const PetscReal u[],
-                                         const PetscReal v[], const PetscReal f_old[], PetscReal f[])
+static PetscErrorCode DynamicsAddContact(Dynamics d, const ForceArrays *a, PetscBool balanced)
 {
-  const ContactStep      contact = {.time = step->time, .dt = step->dt, .kick = step->kick};
-  const DynamicsSurface *s       = &d->surface;
+  const CentralStep     *step      = a->step;
+  const ContactStep      contact   = {.time = step->time, .dt = step->dt, .kick = step->kick};
+  const DynamicsSurface *s         = &d->surface;
+  PetscReal             *predicted = &d->ledger.part.predicted;
   const PetscInt        *active;
-  const PetscReal       *minv;
   PetscInt               n;
 
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_PROJECT));
-  PetscCall(BodiesGetMass(d->bodies, NULL, NULL, &minv));
   PetscCall(ContactProjectorGetActive(d->projector, &n, &active));
-  SurfaceGet(s, d->layout, n, active, u, s->u);
-  SurfacePredict(s, d->layout, step, n, active, minv, f, f_old, v);
-  if (balanced) d->part.predicted = PetscMax(d->part.predicted, SurfaceEnergy(s, d->layout, n, active, minv));
+  SurfaceGet(s, d->layout, n, active, a->u, s->u);
+  SurfacePredict(s, d->layout, a, n, active);
+  if (balanced) *predicted = PetscMax(*predicted, SurfaceEnergy(s, d->layout, n, active, a->minv));
   PetscCall(ContactProject(d->projector, &contact, s->u, s->before, s->v, s->force));
-  for (PetscInt i = 0; i < n; i++) LayoutAdd(d->layout, s->vertex[active[i]], &s->force[3 * active[i]], f);
+  for (PetscInt i = 0; i < n; i++) LayoutAdd(d->layout, s->vertex[active[i]], &s->force[3 * active[i]], a->f);
   PetscCall(EventEnd(EVENT_PROJECT));
   PetscFunctionReturn(0);
 }
@@ -183,64 +189,52 @@ static PetscErrorCode DynamicsBalance(Dynamics d, const CentralStep *step, Petsc
 
   PetscFunctionBeginUser;
   PetscCall(DynamicsGetSums(d));
-  PetscCall(LedgerClose(d->comm, &d->part, d->n_interfaces, d->sums, n <= 1 ? PETSC_TRUE : PETSC_FALSE, &d->origin,
-                        &d->ledger));
-  PetscCall(LedgerJudge(d->comm, &d->ledger, fraction, n, step->time));
+  PetscCall(LedgerClose(d->comm, &d->ledger, d->n_interfaces, d->sums, n <= 1 ? PETSC_TRUE : PETSC_FALSE));
+  PetscCall(LedgerJudge(d->comm, &d->ledger.total, fraction, n, step->time));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode DynamicsRecord(Dynamics d, const CentralStep *step, PetscInt n, const PetscReal u[],
-                                     const PetscReal before[], const PetscReal f_old[], const PetscReal f[])
+static PetscErrorCode DynamicsRecord(Dynamics d, const ForceArrays *a, PetscInt n)
 {
-  HistoryState state = {.step         = n,
-                        .time         = step->time,
-                        .dt           = step->dt,
-                        .b            = step->dt_old > 0 ? d->b : 0,
-                        .u            = u,
-                        .before       = before,
-                        .f            = f,
-                        .f_old        = step->dt_old > 0 ? f_old : NULL,
-                        .ledger       = &d->ledger,
-                        .n_interfaces = d->n_interfaces,
-                        .sums         = d->sums};
+  const CentralStep *step  = a->step;
+  HistoryState       state = {.step         = n,
+                              .time         = step->time,
+                              .dt           = step->dt,
+                              .b            = step->dt_old > 0 ? d->b : 0,
+                              .u            = a->u,
+                              .before       = a->v,
+                              .f            = a->f,
+                              .f_old        = step->dt_old > 0 ? a->f_old : NULL,
+                              .minv         = a->minv,
+                              .ledger       = &d->ledger.total,
+                              .n_interfaces = d->n_interfaces,
+                              .sums         = d->sums};
 
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_RECORD));
   PetscCall(DynamicsGetSums(d));
-  PetscCall(BodiesGetMass(d->bodies, NULL, NULL, &state.minv));
   PetscCall(HistoryRecord(d->history, &state));
   PetscCall(EventEnd(EVENT_RECORD));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DynamicsConstrain(TS ts, const CentralStep *step, Vec u, Vec v, Vec f_old, Vec f, void *ctx)
+PetscErrorCode DynamicsConstrain(TS ts, const CentralStep *step, void *ctx)
 {
-  const Dynamics     d = ctx;
-  const PetscScalar *displacement, *velocity, *last = NULL;
-  const PetscReal   *minv;
-  PetscScalar       *force;
-  PetscBool          due, balanced;
-  PetscInt           n;
+  const Dynamics d = ctx;
+  PetscBool      due, balanced;
+  PetscInt       n;
+  ForceArrays    a;
 
   PetscFunctionBeginUser;
   PetscCall(TSGetStepNumber(ts, &n));
   due      = HistoryIsDue(d->history, step->time, step->dt);
   balanced = due || d->ended || n <= 1 || n % CHECK_INTERVAL == 0 ? PETSC_TRUE : PETSC_FALSE;
   if (balanced) PetscCall(DynamicsBalance(d, step, n));
-  PetscCall(VecGetArrayRead(u, &displacement));
-  PetscCall(VecGetArrayRead(v, &velocity));
-  if (f_old) PetscCall(VecGetArrayRead(f_old, &last));
-  PetscCall(VecGetArray(f, &force));
-  if (d->projector) PetscCall(DynamicsAddContact(d, step, balanced, displacement, velocity, last, force));
-  PetscCall(ExternalFinish(d->external, step->dt, force));
-  PetscCall(BodiesGetMass(d->bodies, NULL, NULL, &minv));
-  if (last)
-    LedgerAddIntegrator(&d->part, d->b, DynamicsIntegratorPower(d->layout, minv, velocity, force, last), PETSC_FALSE,
-                        0);
-  if (due) PetscCall(DynamicsRecord(d, step, n, displacement, velocity, last, force));
-  PetscCall(VecRestoreArray(f, &force));
-  if (f_old) PetscCall(VecRestoreArrayRead(f_old, &last));
-  PetscCall(VecRestoreArrayRead(v, &velocity));
-  PetscCall(VecRestoreArrayRead(u, &displacement));
+  PetscCall(ForceArraysGet(d, step, &a));
+  if (d->projector) PetscCall(DynamicsAddContact(d, &a, balanced));
+  PetscCall(ExternalFinish(d->external, step->dt, a.f));
+  if (a.f_old) LedgerAddIntegrator(&d->ledger.part, d->b, DynamicsIntegratorPower(d->layout, &a), PETSC_FALSE, 0);
+  if (due) PetscCall(DynamicsRecord(d, &a, n));
+  PetscCall(ForceArraysRestore(&a));
   PetscFunctionReturn(0);
 }

@@ -7,6 +7,7 @@
    such that the largest component of Re(x) is the amplitude asked for. m, m/s.
 */
 #include "dynamicsimpl.h"
+#include "shape.h"
 
 /* Raises the error for an option that the sliding state does not know; a time of 0 is none */
 static PetscErrorCode StartCheckAbsent(Dynamics d, const char name[], const char what[], PetscBool time)
@@ -58,7 +59,7 @@ static PetscErrorCode StartAddShape(Dynamics d, PetscReal u[], PetscReal v[])
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(3 * n, &re, 3 * n, &im));
-  PetscCall(ShapeRead(d->comm, d->model, d->shape, d->shape_mode, re, im, lambda));
+  PetscCall(ShapeRead(d->model, d->shape, d->shape_mode, re, im, lambda));
   for (PetscInt i = 0; i < 3 * n; i++) largest = PetscMax(largest, PetscAbsReal(re[i]));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPI_MAX, d->comm));
   PetscCheck(largest > 0, d->comm, PETSC_ERR_USER_INPUT,

@@ -79,7 +79,7 @@ static inline PetscErrorCode SceneAdvance(Scene *s, PetscReal t, PetscReal dt, E
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(s->f, s->layout->n));
-  PetscCall(ExternalAdvance(s->external, t, dt, s->u, s->v, s->f, power));
+  PetscCall(ExternalAdvance(s->external, &(ExternalStep){t, dt, s->u, s->v, s->f}, power));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, power, 2, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD));
   PetscFunctionReturn(0);
 }

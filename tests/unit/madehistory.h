@@ -127,7 +127,8 @@ static inline PetscErrorCode MadeHistory(Made *m, const char options[], History 
   PetscCall(PetscOptionsInsertString(NULL, options));
   PetscCall(HistoryCreate(PETSC_COMM_WORLD, history));
   PetscCall(HistorySetFromOptions(*history));
-  PetscCall(HistorySetUp(*history, m->model, &m->layout, NULL, m->results, 1, 0));
+  PetscCall(
+    HistorySetUp(*history, &(HistorySource){.model = m->model, .layout = &m->layout, .results = m->results}, 1, 0));
   PetscFunctionReturn(0);
 }
 

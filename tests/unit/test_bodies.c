@@ -316,7 +316,7 @@ static PetscErrorCode CheckAdvance(const Case *c, int *failed)
   for (PetscInt step = 0; step < 5; step++) {
     PetscCall(PetscArraycpy(old, v, n));
     PetscCall(FieldSet(c, 4 + step, v));
-    PetscCall(BodiesAdvance(c->bodies, dt, u, v, ku, f, &sums));
+    PetscCall(BodiesAdvance(c->bodies, &(BodiesStep){dt, u, v, ku, f}, &sums));
     PetscCall(ForceCompare(c, dt, u, v, f, &error));
     if (step == 4) PetscCall(CheckSums(c, u, v, old, &sums, failed));
     for (PetscInt i = 0; i < n; i++) u[i] += dt * v[i];

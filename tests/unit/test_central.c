@@ -12,31 +12,31 @@ typedef struct {
   PetscBool wall;
 } Oscillator;
 
-static PetscErrorCode Force(TS ts, const CentralStep *step, Vec u, Vec v, Vec f_old, Vec f, void *ctx)
+static PetscErrorCode Force(TS ts, const CentralStep *step, void *ctx)
 {
   const Oscillator *o = ctx;
 
   PetscFunctionBeginUser;
-  (void)ts, (void)step, (void)f_old;
-  PetscCall(VecAXPBYPCZ(f, -o->omega2, -o->c, 0, u, v));
+  (void)ts;
+  PetscCall(VecAXPBYPCZ(step->f, -o->omega2, -o->c, 0, step->u, step->v));
   PetscFunctionReturn(0);
 }
 
 /* The least force >= 0 with which u_{n+1} >= 0 */
-static PetscErrorCode Wall(TS ts, const CentralStep *step, Vec u, Vec v, Vec f_old, Vec f, void *ctx)
+static PetscErrorCode Wall(TS ts, const CentralStep *step, void *ctx)
 {
   PetscScalar *x, *w, *g, predicted;
 
   PetscFunctionBeginUser;
-  (void)ts, (void)f_old, (void)ctx;
-  PetscCall(VecGetArray(u, &x));
-  PetscCall(VecGetArray(v, &w));
-  PetscCall(VecGetArray(f, &g));
+  (void)ts, (void)ctx;
+  PetscCall(VecGetArray(step->u, &x));
+  PetscCall(VecGetArray(step->v, &w));
+  PetscCall(VecGetArray(step->f, &g));
   predicted = x[0] + step->dt * (w[0] + step->kick * g[0]);
   if (predicted < 0) g[0] -= predicted / (step->dt * step->kick);
-  PetscCall(VecRestoreArray(f, &g));
-  PetscCall(VecRestoreArray(v, &w));
-  PetscCall(VecRestoreArray(u, &x));
+  PetscCall(VecRestoreArray(step->f, &g));
+  PetscCall(VecRestoreArray(step->v, &w));
+  PetscCall(VecRestoreArray(step->u, &x));
   PetscFunctionReturn(0);
 }
 

@@ -132,7 +132,7 @@ static PetscErrorCode Step(const Nodes *nodes, External external, PetscInt n, St
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(before, s->v, N));
   (void)SpringForce(nodes, s->u, s->u, s->f);
-  PetscCall(ExternalAdvance(external, t, DT, s->u, s->v, s->f, &power));
+  PetscCall(ExternalAdvance(external, &(ExternalStep){t, DT, s->u, s->v, s->f}, &power));
   if (n > 1) s->external += DT / 2 * power.old;
   if (n > 1) {
     const PetscReal error = s->kinetic + s->strain - s->start - s->external - s->contact;
@@ -242,7 +242,7 @@ static PetscErrorCode TestImpulse(int *failed)
       PetscReal     v[N] = {1, 1, 1, 1, 1, 1}, f[N] = {0}, force[3];
       ExternalPower power;
 
-      PetscCall(ExternalAdvance(external, DT * (PetscReal)n, DT, u, v, f, &power));
+      PetscCall(ExternalAdvance(external, &(ExternalStep){DT * (PetscReal)n, DT, u, v, f}, &power));
       LayoutGet(&nodes.layout, 1, f, force);
       for (int d = 0; d < 3; d++) sum[d] += DT * force[d];
       if (force[0] != 0) step = n;

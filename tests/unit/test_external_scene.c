@@ -279,8 +279,8 @@ static PetscErrorCode TestBalance(int *failed)
     BodiesSums    sums;
     ExternalPower power;
 
-    PetscCall(BodiesAdvance(s.bodies, n ? dt : 0, s.u, s.v, ku, s.f, &sums));
-    PetscCall(ExternalAdvance(s.external, dt * n, dt, s.u, s.v, s.f, &power));
+    PetscCall(BodiesAdvance(s.bodies, &(BodiesStep){n ? dt : 0, s.u, s.v, ku, s.f}, &sums));
+    PetscCall(ExternalAdvance(s.external, &(ExternalStep){dt * n, dt, s.u, s.v, s.f}, &power));
     if (n > 1) work += dt / 2 * power.old;
     if (n > 0) PetscCall(Balance(&sums, work, &start, &throughput, &worst));
     if (n > 0) work += dt / 2 * power.now;

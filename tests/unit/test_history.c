@@ -162,7 +162,8 @@ static PetscErrorCode TestPairs(Made *m, int *failed)
     n++;
   }
   PetscCall(ResultsTableOpen(m->results, "contact_pairs", PAIRS_HEADER, &table));
-  PetscCall(HistoryWritePairs(table, PETSC_COMM_WORLD, interfaces, 0.5, n, state, interface, number, x));
+  PetscCall(
+    HistoryWritePairs(table, PETSC_COMM_WORLD, interfaces, 0.5, &(HistoryPairs){n, state, interface, number, x}));
   PetscCall(ResultsTableClose(&table));
   text = MadeRead(m, "contact_pairs.csv");
   if (m->rank == 0) *failed += CheckTrue("states of the pairs", text && !strcmp(text, expected), 0);

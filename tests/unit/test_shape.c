@@ -5,7 +5,7 @@
    what must come back is known at every node, whatever ranks wrote and read it. Pad and disc of the coarse brake match,
    so that 25 nodes of either stand at the same places with other values. The second part takes the brake's own modes.
 */
-#include "dynamics/checkpoint.h"
+#include "dynamics/shape.h"
 #include <squeal/modes.h>
 #include <hdf5.h>
 #include <slepcsys.h>
@@ -101,14 +101,14 @@ static PetscErrorCode WriteShape(Results results, const ModelOnRanks *m)
 
 /* Breaks when: a node gets the value of another one, of the node of another body at its place, or none. Expected: the
    formula, to the last bit at the file's own coordinates, which are those of the model */
-static int CheckKnown(MPI_Comm comm, const char dir[], ModelOnRanks *m, const char name[])
+static int CheckKnown(const char dir[], ModelOnRanks *m, const char name[])
 {
   PetscReal lambda[2];
   int       wrong = 0, failed;
 
   memset(m->re, 1, 3 * sizeof(PetscReal) * (size_t)m->n);
   memset(m->im, 1, 3 * sizeof(PetscReal) * (size_t)m->n);
-  failed = CheckTrue(name, !ShapeRead(comm, m->model, dir, 2, m->re, m->im, lambda), m->n);
+  failed = CheckTrue(name, !ShapeRead(m->model, dir, 2, m->re, m->im, lambda), m->n);
   for (PetscInt i = 0; i < 3 * m->n; i++) {
     const PetscReal known = Known(m, i / 3, (int)(i % 3));
 
@@ -146,13 +146,13 @@ static int TestRanks(Scratch *s, ModelOnRanks *all, ModelOnRanks *own)
   int     failed = CheckTrue("nodes of two bodies at one place", CountMatching(own) == N_MATCHING, CountMatching(own));
 
   if (WriterCreate(PETSC_COMM_WORLD, &results) || WriteShape(results, all) || ResultsDestroy(&results)) return 1;
-  failed += CheckKnown(PETSC_COMM_WORLD, s->dir, all, "written by all, read by all");
-  failed += CheckKnown(PETSC_COMM_SELF, s->dir, own, "written by all, read by one");
+  failed += CheckKnown(s->dir, all, "written by all, read by all");
+  failed += CheckKnown(s->dir, own, "written by all, read by one");
   (void)MPI_Barrier(PETSC_COMM_WORLD);
   if (s->rank == 0)
     if (WriterCreate(PETSC_COMM_SELF, &results) || WriteShape(results, own) || ResultsDestroy(&results)) return 1;
   (void)MPI_Barrier(PETSC_COMM_WORLD);
-  return failed + CheckKnown(PETSC_COMM_WORLD, s->dir, all, "written by one, read by all");
+  return failed + CheckKnown(s->dir, all, "written by one, read by all");
 }
 
 /* Whether a mode is refused on all ranks with a line that has these words */
@@ -164,7 +164,7 @@ static int Refused(Scratch *s, const char dir[], ModelOnRanks *m, PetscInt mode,
   int            good;
 
   s->message[0] = '\0';
-  error         = ShapeRead(PETSC_COMM_WORLD, m->model, dir, mode, m->re, m->im, lambda);
+  error         = ShapeRead(m->model, dir, mode, m->re, m->im, lambda);
   good          = error == code && strstr(s->message, words) && !strchr(s->message, '\n');
   if (!good) printf("error %d, message: %s\n", (int)error, s->message);
   return CheckTrue(words, good, mode);
@@ -260,7 +260,7 @@ static PetscErrorCode TestModes(Scratch *s, int *failed)
     Vec       xr, xi, yr, yi;
 
     PetscCall(ModesGetVectors(modes, i, &xr, &xi, &yr, &yi));
-    PetscCall(ShapeRead(PETSC_COMM_WORLD, chain.model, s->dir, i + 1, re, im, lambda));
+    PetscCall(ShapeRead(chain.model, s->dir, i + 1, re, im, lambda));
     PetscCall(Compare(chain.model, xr, n_values, re, &difference[0]));
     PetscCall(Compare(chain.model, xi, n_values, im, &difference[1]));
     *failed += CheckClose("shape of a mode", difference[0] + difference[1], 0, 0);

@@ -134,18 +134,17 @@ static PetscErrorCode BodiesAdvanceKernels(Bodies b, PetscBool early, BodiesWork
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BodiesAdvance(Bodies b, PetscReal dt, const PetscReal u[], const PetscReal v[], PetscReal ku[],
-                             PetscReal f[], BodiesSums *sums)
+PetscErrorCode BodiesAdvance(Bodies b, const BodiesStep *step, BodiesSums *sums)
 {
   /* v is written to at its padding alone, which is as before in the end */
-  BodiesWork w = {.dt = dt, .u = u, .v = (PetscReal *)v, .ku = ku, .f = f, .d = b->d};
+  BodiesWork w = {.dt = step->dt, .u = step->u, .v = (PetscReal *)step->v, .ku = step->ku, .f = step->f, .d = b->d};
 
   PetscFunctionBeginUser;
   PetscCall(BodiesAdvanceKernels(b, PETSC_TRUE, &w));
-  PetscCall(SharedBegin(&b->share, &b->layout, f));
+  PetscCall(SharedBegin(&b->share, &b->layout, w.f));
   PetscCall(BodiesAdvanceKernels(b, PETSC_FALSE, &w));
   PetscCall(EventBegin(EVENT_EXCHANGE));
-  PetscCall(SharedEnd(&b->share, &b->layout, f));
+  PetscCall(SharedEnd(&b->share, &b->layout, w.f));
   PetscCall(EventEnd(EVENT_EXCHANGE));
   *sums = w.sums;
   PetscFunctionReturn(0);

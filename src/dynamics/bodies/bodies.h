@@ -21,6 +21,15 @@ typedef struct {
   PetscBool *owned;      /* [n_vertices] exactly one rank owns each vertex */
 } Layout;
 
+/* A call of BodiesAdvance(), with state vectors */
+typedef struct {
+  PetscReal        dt; /* of the step that led to u, s */
+  const PetscReal *u;  /* displacements at t_{n+1}, m */
+  const PetscReal *v;  /* velocities v_{n+1/2}, m/s */
+  PetscReal       *ku; /* K u of this rank's cells alone, N */
+  PetscReal       *f;  /* internal forces, N */
+} BodiesStep;
+
 /* Sums over this rank (a number shared by ranks is counted once over all of them), at the call of BodiesAdvance() with
    u_{n+1}, v = v_{n+1/2} */
 typedef struct {
@@ -88,18 +97,9 @@ PetscErrorCode BodiesApply(Bodies bodies, const PetscReal x[], PetscReal kx[], P
     the damping forces of v for the sums of the next BodiesAdvance(). Collective. @*/
 PetscErrorCode BodiesSetState(Bodies bodies, const PetscReal u[], const PetscReal v[], PetscReal ku[]);
 
-/*@
-   BodiesAdvance - ku += dt K v, then f = -ku - C v, complete at shared vertices; the sums use ku before. ku holds the
-   forces of this rank's cells alone. dt = 0 leaves ku as it is (first step). The exchange of shared vertices overlaps
-   with the work on the others. Collective.
-
-   Input Parameters:
-+  dt - of the step that led to u, s
-.  u  - displacements at t_{n+1}, m
--  v  - velocities v_{n+1/2}, m/s
-@*/
-PetscErrorCode BodiesAdvance(Bodies bodies, PetscReal dt, const PetscReal u[], const PetscReal v[], PetscReal ku[],
-                             PetscReal f[], BodiesSums *sums);
+/*@ BodiesAdvance - ku += dt K v, then f = -ku - C v, complete at shared vertices; the sums use ku before. dt = 0 leaves
+    ku as it is (first step). The exchange of shared vertices overlaps with the work on the others. Collective. @*/
+PetscErrorCode BodiesAdvance(Bodies bodies, const BodiesStep *step, BodiesSums *sums);
 
 /*@ BodiesGetDampingForce - d of the last BodiesAdvance(), [n], for a checkpoint (borrowed; NULL without damping). Not
     collective. @*/

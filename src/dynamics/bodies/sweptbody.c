@@ -11,6 +11,20 @@ typedef struct {
   StencilVector kinetic, strain, damping_old, damping;
 } SweptSums;
 
+/* A range of all lines; `ends` is known where it is made, so that blocks without ends have no code for them */
+typedef struct {
+  const SweptBody  *s;
+  const SweptRange *range;
+  PetscBool         ends;
+  const BodiesWork *w;
+} SweptPass;
+
+/* A block of nodes of a line: g = K v and h = C v without the part of the mass, in three rows */
+typedef struct {
+  PetscReal     alpha;
+  StencilVector mass, g[3], h[3];
+} SweptBlock;
+
 /* Stores eight numbers, or four; the compiler drops what leads to numbers that are not stored */
 STENCIL_INLINE void SweptStoreRow(int n, StencilVector y, PetscReal x[])
 {
@@ -20,21 +34,22 @@ STENCIL_INLINE void SweptStoreRow(int n, StencilVector y, PetscReal x[])
     *(StencilLanes *)x = y.a;
 }
 
-/* Eight (or four) nodes of a row, with g = K v and h = C v without the part of the mass */
-STENCIL_INLINE void SweptAdvanceRow(int n, const BodiesWork *w, PetscInt at, PetscReal alpha, StencilVector mass,
-                                    StencilVector g, StencilVector h, SweptSums *sums)
+/* Row i of eight (or four) nodes, from `at` on */
+STENCIL_INLINE void SweptAdvanceRow(int n, const BodiesWork *w, PetscInt at, const SweptBlock *block, int i,
+                                    SweptSums *sums)
 {
   const StencilVector v  = StencilLoad(w->v + at);
-  StencilVector       ku = StencilLoad(w->ku + at), f, momentum = StencilTimes(mass, v);
+  StencilVector       ku = StencilLoad(w->ku + at), f, h, momentum = StencilTimes(block->mass, v);
 
   StencilAddProduct(StencilLoad(w->u + at), ku, &sums->strain);
   StencilAddProduct(momentum, v, &sums->kinetic);
-  StencilAdd(w->dt, g, &ku);
+  StencilAdd(w->dt, block->g[i], &ku);
   SweptStoreRow(n, ku, w->ku + at);
   f = (StencilVector){-ku.a, -ku.b};
   if (w->d) {
+    h = block->h[i];
     StencilAddProduct(v, StencilLoad(w->d + at), &sums->damping_old);
-    StencilAdd(alpha, momentum, &h);
+    StencilAdd(block->alpha, momentum, &h);
     StencilAddProduct(v, h, &sums->damping);
     SweptStoreRow(n, h, w->d + at);
     f = StencilMinus(f, h);
@@ -49,17 +64,19 @@ STENCIL_INLINE void SweptTakeMissing(const double missing[3], const double at[],
 }
 
 /* g = K v, or likewise with other coefficients, at nodes k .. k + 7 of a line, zero in the padding */
-STENCIL_INLINE void SweptApply(const SweptBody *s, const StencilLine *line, const SweptRange *range, PetscBool ends,
-                               const ptrdiff_t row[3], PetscInt k, const PetscReal v[], StencilVector g[3])
+STENCIL_INLINE void SweptApply(const SweptPass *pass, const StencilLine *line, const ptrdiff_t row[3], PetscInt k,
+                               StencilVector g[3])
 {
-  double missing[3];
+  const SweptBody *s = pass->s;
+  const PetscReal *v = pass->w->v + s->begin;
+  double           missing[3];
 
   StencilApply(line, k, row, v, g);
-  if (ends && range->first) {
+  if (pass->ends && pass->range->first) {
     StencilMissing(line, 0, 1, row, v, missing);
     SweptTakeMissing(missing, &s->first[k], g);
   }
-  if (ends && range->last) {
+  if (pass->ends && pass->range->last) {
     StencilMissing(line, s->lines->n_nodes - 1, -1, row, v, missing);
     SweptTakeMissing(missing, &s->last[k], g);
   }
@@ -67,22 +84,20 @@ STENCIL_INLINE void SweptApply(const SweptBody *s, const StencilLine *line, cons
 }
 
 /* Nodes k .. k + n - 1 of line l */
-STENCIL_INLINE void SweptAdvanceBlock(int n, const SweptBody *s, const SweptRange *range, PetscBool ends, PetscInt l,
-                                      PetscInt k, const BodiesWork *w, SweptSums *sums)
+STENCIL_INLINE void SweptAdvanceBlock(int n, const SweptPass *pass, PetscInt l, PetscInt k, SweptSums *sums)
 {
-  const PetscInt      at = s->begin + 3 * l * s->stride + k, p = (s->along + 1) % 3, q = (s->along + 2) % 3;
-  const ptrdiff_t     row[3] = {p * s->stride, q * s->stride, s->along * s->stride};
-  const PetscReal    *v      = w->v + s->begin;
-  const StencilVector mass   = StencilLoad(s->mass + l * s->stride + k);
-  const PetscBool     own    = w->d && s->damping[l].n ? PETSC_TRUE : PETSC_FALSE;
-  StencilVector       g[3], h[3];
+  const SweptBody *s  = pass->s;
+  const PetscInt   at = s->begin + 3 * l * s->stride + k, p = (s->along + 1) % 3, q = (s->along + 2) % 3;
+  const ptrdiff_t  row[3] = {p * s->stride, q * s->stride, s->along * s->stride};
+  const PetscBool  own    = pass->w->d && s->damping[l].n ? PETSC_TRUE : PETSC_FALSE;
+  SweptBlock       block  = {.alpha = s->alpha[l], .mass = StencilLoad(s->mass + l * s->stride + k)};
 
-  SweptApply(s, &s->stiffness[l], range, ends, row, k, v, g);
+  SweptApply(pass, &s->stiffness[l], row, k, block.g);
   if (own)
-    SweptApply(s, &s->damping[l], range, ends, row, k, v, h);
+    SweptApply(pass, &s->damping[l], row, k, block.h);
   else
-    for (int i = 0; i < 3; i++) h[i] = (StencilVector){s->beta[l] * g[i].a, s->beta[l] * g[i].b};
-  for (int i = 0; i < 3; i++) SweptAdvanceRow(n, w, at + (PetscInt)row[i], s->alpha[l], mass, g[i], h[i], sums);
+    for (int i = 0; i < 3; i++) block.h[i] = (StencilVector){s->beta[l] * block.g[i].a, s->beta[l] * block.g[i].b};
+  for (int i = 0; i < 3; i++) SweptAdvanceRow(n, pass->w, at + (PetscInt)row[i], &block, i, sums);
 }
 
 /* Adds the energies of a line; of its last four nodes the first half of the vectors */
@@ -94,17 +109,16 @@ STENCIL_INLINE void SweptAddSums(const SweptSums *line, const SweptSums *tail, B
   sums->damping += StencilSum(line->damping) + StencilSumLanes(&tail->damping.a);
 }
 
-/* A range of all lines; `ends` is known at each call, so that blocks without ends have no code for them */
 STENCIL_INLINE void SweptAdvanceLines(const SweptBody *s, const SweptRange *range, PetscBool ends, BodiesWork *w)
 {
-  const PetscInt half = (range->end - range->begin) % STENCIL_WIDTH, end = range->end - half;
+  const PetscInt  half = (range->end - range->begin) % STENCIL_WIDTH, end = range->end - half;
+  const SweptPass pass = {.s = s, .range = range, .ends = ends, .w = w};
 
   for (PetscInt l = 0; l < s->lines->n_lines; l++) {
     SweptSums sums = {0}, tail = {0};
 
-    for (PetscInt k = range->begin; k < end; k += STENCIL_WIDTH)
-      SweptAdvanceBlock(STENCIL_WIDTH, s, range, ends, l, k, w, &sums);
-    if (half) SweptAdvanceBlock(STENCIL_WIDTH / 2, s, range, ends, l, end, w, &tail);
+    for (PetscInt k = range->begin; k < end; k += STENCIL_WIDTH) SweptAdvanceBlock(STENCIL_WIDTH, &pass, l, k, &sums);
+    if (half) SweptAdvanceBlock(STENCIL_WIDTH / 2, &pass, l, end, &tail);
     SweptAddSums(&sums, &tail, &w->sums);
   }
 }

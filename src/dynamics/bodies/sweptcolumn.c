@@ -79,8 +79,8 @@ static PetscErrorCode ColumnsFind(Bodies b, const SweptBody *s, ColumnSection *s
       size = 2 * size + 16;
       PetscCall(PetscRealloc((size_t)size * sizeof(Column), &section->column));
     }
-    PetscCall(BodiesGetCell(b, c, &sweptcolumn.cell));
-    BodiesTurnCell(&b->layout, &sweptcolumn.cell);
+    PetscCall(BodiesGetCell(b, c, &column.cell));
+    BodiesTurnCell(&b->layout, &column.cell);
     section->column[section->n_columns++] = column;
   }
   *complete = n_own == section->n_columns * n_along ? PETSC_TRUE : PETSC_FALSE;

@@ -26,6 +26,8 @@ static PetscErrorCode CentralDescribe(TS ts, CentralStep *step)
   const PetscReal   mean  = 0.5 * (c->dt_old + ts->time_step); /* between the middles of the two steps */
 
   PetscFunctionBegin;
+  step->u        = ts->vec_sol;
+  step->v        = ts->vec_dot;
   step->time     = ts->ptime;
   step->dt       = ts->time_step;
   step->dt_old   = c->dt_old;
@@ -35,7 +37,7 @@ static PetscErrorCode CentralDescribe(TS ts, CentralStep *step)
 }
 
 /* f_n with the forces of the constraint; f_{n-1} is kept where the scheme needs it */
-static PetscErrorCode CentralComputeForces(TS ts, const CentralStep *step)
+static PetscErrorCode CentralComputeForces(TS ts, CentralStep *step)
 {
   TS_Central *c = (TS_Central *)ts->data;
 
@@ -46,58 +48,67 @@ static PetscErrorCode CentralComputeForces(TS ts, const CentralStep *step)
     c->f     = c->f_old;
     c->f_old = last;
   }
-  PetscCall((*c->force)(ts, step, ts->vec_sol, ts->vec_dot, c->f_old, c->f, c->ctx));
-  if (c->constraint) PetscCall((*c->constraint)(ts, step, ts->vec_sol, ts->vec_dot, c->f_old, c->f, c->ctx));
+  step->f     = c->f;
+  step->f_old = c->f_old;
+  PetscCall((*c->force)(ts, step, c->ctx));
+  if (c->constraint) PetscCall((*c->constraint)(ts, step, c->ctx));
   PetscFunctionReturn(0);
 }
 
+/* Numbers of a step; f_old NULL for b = 1/2 */
+typedef struct {
+  PetscInt           n;
+  const PetscScalar *minv, *f, *f_old;
+  PetscScalar       *v, *u;
+} CentralArrays;
+
 /* v += kick minv f, u += dt v */
-static VERSIONS void KickAndDrift(PetscInt n, const CentralStep *step, const PetscScalar *restrict minv,
-                                  const PetscScalar *restrict f, PetscScalar *restrict v, PetscScalar *restrict u)
+static VERSIONS void KickAndDrift(const CentralStep *step, const CentralArrays *a)
 {
   const PetscReal kick = step->kick, dt = step->dt;
+  const PetscScalar *restrict minv = a->minv, *restrict f = a->f;
+  PetscScalar *restrict v = a->v, *restrict u = a->u;
 
-  for (PetscInt i = 0; i < n; i++) {
+  for (PetscInt i = 0; i < a->n; i++) {
     v[i] += kick * minv[i] * f[i];
     u[i] += dt * v[i];
   }
 }
 
 /* v += minv (kick f + kick_old f_old), u += dt v */
-static VERSIONS void KickAndDriftTwo(PetscInt n, const CentralStep *step, const PetscScalar *restrict minv,
-                                     const PetscScalar *restrict f, const PetscScalar *restrict f_old,
-                                     PetscScalar *restrict v, PetscScalar *restrict u)
+static VERSIONS void KickAndDriftTwo(const CentralStep *step, const CentralArrays *a)
 {
-  for (PetscInt i = 0; i < n; i++) {
-    v[i] += minv[i] * (step->kick * f[i] + step->kick_old * f_old[i]);
-    u[i] += step->dt * v[i];
+  const PetscReal kick = step->kick, kick_old = step->kick_old, dt = step->dt;
+  const PetscScalar *restrict minv = a->minv, *restrict f = a->f, *restrict f_old = a->f_old;
+  PetscScalar *restrict v = a->v, *restrict u = a->u;
+
+  for (PetscInt i = 0; i < a->n; i++) {
+    v[i] += minv[i] * (kick * f[i] + kick_old * f_old[i]);
+    u[i] += dt * v[i];
   }
 }
 
 static PetscErrorCode CentralMove(TS ts, const CentralStep *step)
 {
-  TS_Central        *c = (TS_Central *)ts->data;
-  const PetscScalar *minv, *f, *f_old;
-  PetscScalar       *u, *v;
-  PetscInt           n;
+  TS_Central   *c = (TS_Central *)ts->data;
+  CentralArrays a = {.f_old = NULL};
 
   PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(ts->vec_sol, &n));
-  PetscCall(VecGetArrayRead(c->minv, &minv));
-  PetscCall(VecGetArrayRead(c->f, &f));
-  PetscCall(VecGetArray(ts->vec_dot, &v));
-  PetscCall(VecGetArray(ts->vec_sol, &u));
-  if (c->f_old) {
-    PetscCall(VecGetArrayRead(c->f_old, &f_old));
-    KickAndDriftTwo(n, step, minv, f, f_old, v, u);
-    PetscCall(VecRestoreArrayRead(c->f_old, &f_old));
-  } else {
-    KickAndDrift(n, step, minv, f, v, u);
-  }
-  PetscCall(VecRestoreArray(ts->vec_sol, &u));
-  PetscCall(VecRestoreArray(ts->vec_dot, &v));
-  PetscCall(VecRestoreArrayRead(c->f, &f));
-  PetscCall(VecRestoreArrayRead(c->minv, &minv));
+  PetscCall(VecGetLocalSize(step->u, &a.n));
+  PetscCall(VecGetArrayRead(c->minv, &a.minv));
+  PetscCall(VecGetArrayRead(step->f, &a.f));
+  if (step->f_old) PetscCall(VecGetArrayRead(step->f_old, &a.f_old));
+  PetscCall(VecGetArray(step->v, &a.v));
+  PetscCall(VecGetArray(step->u, &a.u));
+  if (a.f_old)
+    KickAndDriftTwo(step, &a);
+  else
+    KickAndDrift(step, &a);
+  PetscCall(VecRestoreArray(step->u, &a.u));
+  PetscCall(VecRestoreArray(step->v, &a.v));
+  if (step->f_old) PetscCall(VecRestoreArrayRead(step->f_old, &a.f_old));
+  PetscCall(VecRestoreArrayRead(step->f, &a.f));
+  PetscCall(VecRestoreArrayRead(c->minv, &a.minv));
   PetscFunctionReturn(0);
 }
 

@@ -16,14 +16,15 @@
 
 /* The step from t_n: v_{n+1/2} = v_{n-1/2} + M^-1 (kick f_n + kick_old f_{n-1}), s */
 typedef struct {
+  Vec       u, v;           /* u_n and v_{n-1/2} */
+  Vec       f, f_old;       /* f_n and f_{n-1}, N; f_old is NULL for b = 1/2 */
   PetscReal time, dt;       /* t_n and t_{n+1} - t_n */
   PetscReal dt_old;         /* t_n - t_{n-1}, 0 in the first step */
   PetscReal kick, kick_old; /* kick_old = 0 for b = 1/2 and in the first step */
 } CentralStep;
 
-/* Fills f = f_n, N, at u = u_n and v = v_{n-1/2}; f_old is f_{n-1}, NULL for b = 1/2. It may give v other values where
-   M^-1 is 0. */
-typedef PetscErrorCode (*CentralForce)(TS ts, const CentralStep *step, Vec u, Vec v, Vec f_old, Vec f, void *ctx);
+/* Fills f. It may give v other values where M^-1 is 0. */
+typedef PetscErrorCode (*CentralForce)(TS ts, const CentralStep *step, void *ctx);
 
 /* Registers the type; once */
 PETSC_INTERN PetscErrorCode TSCentralRegister(void);

@@ -55,6 +55,33 @@ PetscErrorCode ExternalLayMemory(External external)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ExternalFindVertices(External external, const char set[], PetscInt *n, PetscInt *n_owned,
+                                    PetscInt **vertex)
+{
+  const Layout   *layout = external->layout;
+  const PetscInt *point;
+  PetscInt        n_all;
+  IS              is;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetSetVertices(external->model, set, &is));
+  PetscCall(ISGetLocalSize(is, &n_all));
+  PetscCall(PetscMalloc1(n_all, vertex));
+  PetscCall(ISGetIndices(is, &point));
+  *n = 0;
+  for (int pass = 0; pass < 2; pass++) {
+    for (PetscInt k = 0; k < n_all; k++) {
+      const PetscInt i = point[k];
+
+      if (layout->at[i] >= 0 && layout->owned[i] == (pass == 0)) (*vertex)[(*n)++] = i;
+    }
+    if (pass == 0) *n_owned = *n;
+  }
+  PetscCall(ISRestoreIndices(is, &point));
+  PetscCall(ISDestroy(&is));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ExternalSetUp(External external, Bodies bodies)
 {
   PetscFunctionBeginUser;
@@ -68,17 +95,16 @@ PetscErrorCode ExternalSetUp(External external, Bodies bodies)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ExternalAdvance(External external, PetscReal t, PetscReal dt, const PetscReal u[], PetscReal v[],
-                               PetscReal f[], ExternalPower *power)
+PetscErrorCode ExternalAdvance(External external, const ExternalStep *step, ExternalPower *power)
 {
   PetscFunctionBeginUser;
   power->old        = *external->drives;
   power->now        = 0;
   *external->drives = 0;
-  PetscCall(TimedLoadsAdvance(external, t, v, f, power));
-  PetscCall(InertiaAdvance(external, u, v, f, power));
-  PetscCall(ImpulsesAdvance(external, t, dt, v, f, power));
-  PetscCall(MotionsAdvance(external, t, dt, v));
+  PetscCall(TimedLoadsAdvance(external, step, power));
+  PetscCall(InertiaAdvance(external, step, power));
+  PetscCall(ImpulsesAdvance(external, step, power));
+  PetscCall(MotionsAdvance(external, step));
   *external->begun = 1;
   PetscFunctionReturn(0);
 }

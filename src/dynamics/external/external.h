@@ -24,6 +24,14 @@ typedef struct {
   PetscReal old, now;
 } ExternalPower;
 
+/* The step from t_n, s, with state vectors of the layout */
+typedef struct {
+  PetscReal        time, dt;
+  const PetscReal *u; /* u_n, m */
+  PetscReal       *v; /* v_{n-1/2}, m/s; in directions of prescribed motions v_{n+1/2} in the end */
+  PetscReal       *f; /* internal forces, N, to which all others are added */
+} ExternalStep;
+
 PETSC_INTERN PetscErrorCode ExternalCreate(MPI_Comm comm, Model model, External *external);
 
 /*
@@ -65,11 +73,10 @@ PETSC_INTERN PetscErrorCode ExternalSetFrame(External external, const char part[
 /*
    ExternalAdvance - adds the forces at t_n to f, complete at every copy of a vertex, and gives the directions of
    prescribed motions the velocity (d(t_n + dt) - d(t_n)) / dt. An impulse J at time T acts as J / dt in the step with
-   t_n <= T < t_n + dt, of the first two steps in the second: the first is half a step and would give half of J. On
-   entry v is v_{n-1/2}, f the internal forces. Call at every step. dt is that of the step from t_n. Not collective.
+   t_n <= T < t_n + dt, of the first two steps in the second: the first is half a step and would give half of J. Call at
+   every step. Not collective.
 */
-PETSC_INTERN PetscErrorCode ExternalAdvance(External external, PetscReal t, PetscReal dt, const PetscReal u[],
-                                            PetscReal v[], PetscReal f[], ExternalPower *power);
+PETSC_INTERN PetscErrorCode ExternalAdvance(External external, const ExternalStep *step, ExternalPower *power);
 
 /* ExternalFinish - ends the step that ExternalAdvance() began, when f holds all forces at t_n, contact included: from
    it follows the power of the drives. Not collective. */

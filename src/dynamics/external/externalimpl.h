@@ -80,18 +80,22 @@ struct _p_External {
 /* external.c - makes the memory as long as what is there needs; new numbers are 0 */
 PETSC_INTERN PetscErrorCode ExternalLayMemory(External external);
 
+/* external.c - local vertices (from 0) of a set that have cells, those that this rank owns first; the caller frees them.
+   Collective. */
+PETSC_INTERN PetscErrorCode ExternalFindVertices(External external, const char set[], PetscInt *n, PetscInt *n_owned,
+                                                 PetscInt **vertex);
+
 /* loadforce.c */
 PETSC_INTERN PetscErrorCode TimedLoadsSetFromOptions(External external);
 PETSC_INTERN PetscErrorCode TimedLoadsSetUp(External external);
-PETSC_INTERN PetscErrorCode TimedLoadsAdvance(External external, PetscReal t, const PetscReal v[], PetscReal f[],
-                                              ExternalPower *power);
+PETSC_INTERN PetscErrorCode TimedLoadsAdvance(External external, const ExternalStep *step, ExternalPower *power);
 PETSC_INTERN PetscErrorCode TimedLoadsView(External external, PetscViewer viewer);
 PETSC_INTERN PetscErrorCode TimedLoadsDestroy(External external);
 
 /* motion.c - SetUp holds the directions; Advance gives them v_{n+1/2}, Finish counts the power of their drives */
 PETSC_INTERN PetscErrorCode MotionsSetFromOptions(External external);
 PETSC_INTERN PetscErrorCode MotionsSetUp(External external, Bodies bodies);
-PETSC_INTERN PetscErrorCode MotionsAdvance(External external, PetscReal t, PetscReal dt, PetscReal v[]);
+PETSC_INTERN PetscErrorCode MotionsAdvance(External external, const ExternalStep *step);
 PETSC_INTERN PetscErrorCode MotionsFinish(External external, PetscReal dt, const PetscReal f[]);
 PETSC_INTERN PetscErrorCode MotionsView(External external, PetscViewer viewer);
 PETSC_INTERN PetscErrorCode MotionsDestroy(External external);
@@ -99,16 +103,14 @@ PETSC_INTERN PetscErrorCode MotionsDestroy(External external);
 /* impulse.c - SetUp after that of the motions, since an impulse on a prescribed node does nothing */
 PETSC_INTERN PetscErrorCode ImpulsesSetFromOptions(External external);
 PETSC_INTERN PetscErrorCode ImpulsesSetUp(External external);
-PETSC_INTERN PetscErrorCode ImpulsesAdvance(External external, PetscReal t, PetscReal dt, const PetscReal v[],
-                                            PetscReal f[], ExternalPower *power);
+PETSC_INTERN PetscErrorCode ImpulsesAdvance(External external, const ExternalStep *step, ExternalPower *power);
 PETSC_INTERN PetscErrorCode ImpulsesView(External external, PetscViewer viewer);
 PETSC_INTERN PetscErrorCode ImpulsesDestroy(External external);
 
 /* inertia.c - gravity and turning frames */
 PETSC_INTERN PetscErrorCode InertiaSetFromOptions(External external);
 PETSC_INTERN PetscErrorCode InertiaSetUp(External external);
-PETSC_INTERN PetscErrorCode InertiaAdvance(External external, const PetscReal u[], const PetscReal v[], PetscReal f[],
-                                           ExternalPower *power);
+PETSC_INTERN PetscErrorCode InertiaAdvance(External external, const ExternalStep *step, ExternalPower *power);
 PETSC_INTERN PetscErrorCode InertiaView(External external, PetscViewer viewer);
 PETSC_INTERN PetscErrorCode InertiaDestroy(External external);
 

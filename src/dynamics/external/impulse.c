@@ -116,21 +116,22 @@ PetscErrorCode ImpulsesSetUp(External external)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ImpulsesAdvance(External external, PetscReal t, PetscReal dt, const PetscReal v[], PetscReal f[],
-                               ExternalPower *power)
+PetscErrorCode ImpulsesAdvance(External external, const ExternalStep *step, ExternalPower *power)
 {
+  const PetscReal end = step->time + step->dt;
+
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < external->n_impulses; i++) {
     Impulse        *hit  = &external->impulses[i];
-    const PetscBool acts = *external->begun != 0 && hit->last[1] == 0 && hit->time < t + dt ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool acts = *external->begun != 0 && hit->last[1] == 0 && hit->time < end ? PETSC_TRUE : PETSC_FALSE;
     PetscReal       full;
 
     if (!acts && hit->last[0] == 0) continue;
-    full = ForcePatternPower(&hit->pattern, v);
+    full = ForcePatternPower(&hit->pattern, step->v);
     power->old += hit->last[0] * full;
-    hit->last[0] = acts ? 1 / dt : 0;
+    hit->last[0] = acts ? 1 / step->dt : 0;
     power->now += hit->last[0] * full;
-    ForcePatternAdd(&hit->pattern, hit->last[0], f);
+    ForcePatternAdd(&hit->pattern, hit->last[0], step->f);
     if (acts) hit->last[1] = 1;
   }
   PetscFunctionReturn(0);

@@ -18,9 +18,7 @@ PetscErrorCode InertiaSetFromOptions(External external)
   PetscOptionsBegin(external->comm, NULL, "Gravity", NULL);
   PetscCall(OptionsGetReals(PetscOptionsObject, "-dynamics_gravity", "acceleration in x,y,z, m/s^2", 3, g, NULL));
   PetscOptionsEnd();
-  for (int d = 0; d < 3; d++)
-    PetscCheck(!PetscIsInfOrNanReal(g[d]), external->comm, PETSC_ERR_USER_INPUT,
-               "-dynamics_gravity value %.6g must be a finite number (m/s^2)", (double)g[d]);
+  PetscCall(OptionsCheckFinite(external->comm, "dynamics", "gravity", "m/s^2", g));
   PetscFunctionReturn(0);
 }
 
@@ -44,10 +42,10 @@ PetscErrorCode InertiaSetUp(External external)
 }
 
 /* Constant, hence the same power for `old` and `now`; no `old` before the first step */
-static void InertiaGravityAdvance(External external, const PetscReal v[], PetscReal f[], ExternalPower *power)
+static void InertiaGravityAdvance(External external, const ExternalStep *step, ExternalPower *power)
 {
-  const PetscReal *weight = external->weight, *own = external->own_weight;
-  PetscReal        sum = 0;
+  const PetscReal *weight = external->weight, *own = external->own_weight, *v = step->v;
+  PetscReal       *f = step->f, sum = 0;
 
   for (PetscInt i = 0; i < external->layout->n; i++) {
     sum += own[i] * v[i];
@@ -71,8 +69,8 @@ static void InertiaFrameForce(const InertiaFrame *frame, PetscReal m, const Pets
     force[d] = -m * ((frame->coriolis ? 2 * coriolis[d] : 0) + (frame->centrifugal ? centrifugal[d] : 0));
 }
 
-static void InertiaFrameAdvance(External external, InertiaFrame *frame, const PetscReal X[], const PetscReal u[],
-                                const PetscReal v[], PetscReal f[], ExternalPower *power)
+static void InertiaFrameAdvance(External external, InertiaFrame *frame, const PetscReal X[], const ExternalStep *step,
+                                ExternalPower *power)
 {
   const Layout *layout = external->layout;
 
@@ -80,58 +78,45 @@ static void InertiaFrameAdvance(External external, InertiaFrame *frame, const Pe
     const PetscInt i    = frame->vertex[k];
     PetscReal     *last = &frame->last[3 * k], x[3], velocity[3];
 
-    LayoutGet(layout, i, u, x);
-    LayoutGet(layout, i, v, velocity);
+    LayoutGet(layout, i, step->u, x);
+    LayoutGet(layout, i, step->v, velocity);
     for (int d = 0; d < 3; d++) {
       x[d] += X[3 * i + d];
       power->old += k < frame->n_owned ? last[d] * velocity[d] : 0;
     }
     InertiaFrameForce(frame, external->mass[layout->at[i]], x, velocity, last);
     for (int d = 0; d < 3 && k < frame->n_owned; d++) power->now += last[d] * velocity[d];
-    LayoutAdd(layout, i, last, f);
+    LayoutAdd(layout, i, last, step->f);
   }
 }
 
-PetscErrorCode InertiaAdvance(External external, const PetscReal u[], const PetscReal v[], PetscReal f[],
-                              ExternalPower *power)
+PetscErrorCode InertiaAdvance(External external, const ExternalStep *step, ExternalPower *power)
 {
   const PetscReal *X;
 
   PetscFunctionBeginUser;
-  if (external->weight) InertiaGravityAdvance(external, v, f, power);
+  if (external->weight) InertiaGravityAdvance(external, step, power);
   if (external->n_frames) PetscCall(ModelGetCoordinates(external->model, &X));
-  for (PetscInt i = 0; i < external->n_frames; i++)
-    InertiaFrameAdvance(external, &external->frames[i], X, u, v, f, power);
+  for (PetscInt i = 0; i < external->n_frames; i++) InertiaFrameAdvance(external, &external->frames[i], X, step, power);
   PetscFunctionReturn(0);
 }
 
 /* Vertices of the part, owned ones first, without those of the frames before */
 static PetscErrorCode InertiaFrameFindVertices(External external, const char part[], InertiaFrame *frame)
 {
-  const Layout   *layout = external->layout;
-  const PetscInt *vertex;
-  PetscInt        n;
-  PetscBool      *taken;
-  IS              is;
+  PetscInt   n, n_owned;
+  PetscBool *taken;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetSetVertices(external->model, part, &is));
-  PetscCall(ISGetLocalSize(is, &n));
-  PetscCall(PetscMalloc1(n, &frame->vertex));
-  PetscCall(PetscCalloc1(layout->n_vertices, &taken));
+  PetscCall(PetscCalloc1(external->layout->n_vertices, &taken));
   for (const InertiaFrame *before = external->frames; before < frame; before++)
     for (PetscInt k = 0; k < before->n; k++) taken[before->vertex[k]] = PETSC_TRUE;
-  PetscCall(ISGetIndices(is, &vertex));
-  for (int pass = 0; pass < 2; pass++) {
-    for (PetscInt k = 0; k < n; k++) {
-      const PetscInt i = vertex[k];
-
-      if (layout->at[i] >= 0 && !taken[i] && layout->owned[i] == (pass == 0)) frame->vertex[frame->n++] = i;
-    }
-    if (pass == 0) frame->n_owned = frame->n;
+  PetscCall(ExternalFindVertices(external, part, &n, &n_owned, &frame->vertex));
+  for (PetscInt k = 0; k < n; k++) {
+    if (taken[frame->vertex[k]]) continue;
+    frame->vertex[frame->n++] = frame->vertex[k];
+    if (k < n_owned) frame->n_owned = frame->n;
   }
-  PetscCall(ISRestoreIndices(is, &vertex));
-  PetscCall(ISDestroy(&is));
   PetscCall(PetscFree(taken));
   PetscFunctionReturn(0);
 }

@@ -62,17 +62,16 @@ PetscErrorCode TimedLoadsSetUp(External external)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode TimedLoadsAdvance(External external, PetscReal t, const PetscReal v[], PetscReal f[],
-                                 ExternalPower *power)
+PetscErrorCode TimedLoadsAdvance(External external, const ExternalStep *step, ExternalPower *power)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < external->n_loads; i++) {
     TimedLoad      *load   = &external->loads[i];
-    const PetscReal factor = RampValue(&load->ramp, t), full = ForcePatternPower(&load->pattern, v);
+    const PetscReal factor = RampValue(&load->ramp, step->time), full = ForcePatternPower(&load->pattern, step->v);
 
     power->old += *load->last * full;
     power->now += factor * full;
-    ForcePatternAdd(&load->pattern, factor, f);
+    ForcePatternAdd(&load->pattern, factor, step->f);
     *load->last = factor;
   }
   PetscFunctionReturn(0);

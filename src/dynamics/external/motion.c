@@ -45,12 +45,11 @@ static PetscErrorCode MotionSetDirections(MPI_Comm comm, Drive *motion, const ch
 
 static PetscErrorCode MotionCheck(MPI_Comm comm, const Drive *motion)
 {
-  PetscBool moves = PETSC_FALSE;
+  const PetscReal *x = motion->displacement;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsCheckFinite(comm, motion->name, "displacement", "m", motion->displacement));
-  for (int d = 0; d < 3; d++) moves = motion->displacement[d] != 0 ? PETSC_TRUE : moves;
-  PetscCheck(!moves || motion->ramp.length > 0, comm, PETSC_ERR_USER_INPUT,
+  PetscCall(OptionsCheckFinite(comm, motion->name, "displacement", "m", x));
+  PetscCheck((x[0] == 0 && x[1] == 0 && x[2] == 0) || motion->ramp.length > 0, comm, PETSC_ERR_USER_INPUT,
              "-%s_ramp %.6g must be given and positive (s): a displacement cannot jump", motion->name,
              motion->ramp.length);
   PetscFunctionReturn(0);
@@ -132,24 +131,16 @@ static PetscErrorCode MotionAddVertex(External external, Bodies bodies, PetscInt
 static PetscErrorCode MotionFindNumbers(External external, Bodies bodies, PetscBT taken, Drive *motion,
                                         PetscInt trouble[2])
 {
-  const Layout   *layout = external->layout;
-  const PetscInt *vertex;
-  PetscInt        n;
-  IS              is;
+  PetscInt n, n_owned, *vertex;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetSetVertices(external->model, motion->set, &is));
-  PetscCall(ISGetLocalSize(is, &n));
+  PetscCall(ExternalFindVertices(external, motion->set, &n, &n_owned, &vertex));
   PetscCall(PetscMalloc4(3 * n, &motion->index, 3 * n, &motion->full, 3 * n, &motion->before, 3 * n, &motion->after));
-  PetscCall(ISGetIndices(is, &vertex));
-  for (int pass = 0; pass < 2; pass++) {
-    for (PetscInt i = 0; i < n; i++)
-      if (layout->at[vertex[i]] >= 0 && layout->owned[vertex[i]] == (pass == 0))
-        PetscCall(MotionAddVertex(external, bodies, vertex[i], taken, motion, trouble));
-    if (pass == 0) motion->n_owned = motion->n;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(MotionAddVertex(external, bodies, vertex[i], taken, motion, trouble));
+    if (i < n_owned) motion->n_owned = motion->n;
   }
-  PetscCall(ISRestoreIndices(is, &vertex));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(vertex));
   PetscFunctionReturn(0);
 }
 
@@ -184,16 +175,17 @@ PetscErrorCode MotionsSetUp(External external, Bodies bodies)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MotionsAdvance(External external, PetscReal t, PetscReal dt, PetscReal v[])
+PetscErrorCode MotionsAdvance(External external, const ExternalStep *step)
 {
   PetscFunctionBeginUser;
   for (PetscInt m = 0; m < external->n_motions; m++) {
     Drive          *motion = &external->motions[m];
-    const PetscReal rate   = (RampValue(&motion->ramp, t + dt) - RampValue(&motion->ramp, t)) / dt;
+    const PetscReal begin  = RampValue(&motion->ramp, step->time);
+    const PetscReal rate   = (RampValue(&motion->ramp, step->time + step->dt) - begin) / step->dt;
 
     for (PetscInt i = 0; i < motion->n; i++) {
-      motion->before[i] = v[motion->index[i]];
-      motion->after[i] = v[motion->index[i]] = rate * motion->full[i];
+      motion->before[i] = step->v[motion->index[i]];
+      motion->after[i] = step->v[motion->index[i]] = rate * motion->full[i];
     }
   }
   PetscFunctionReturn(0);

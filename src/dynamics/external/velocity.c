@@ -21,9 +21,7 @@ PetscErrorCode VelocitySetFromOptions(External external)
     PetscOptionsBegin(external->comm, prefix, title, NULL);
     PetscCall(OptionsGetReals(PetscOptionsObject, "-velocity", "at the start in x,y,z, m/s", 3, v, NULL));
     PetscOptionsEnd();
-    for (int d = 0; d < 3; d++)
-      PetscCheck(!PetscIsInfOrNanReal(v[d]), external->comm, PETSC_ERR_USER_INPUT,
-                 "-%s_velocity value %.6g must be a finite number (m/s)", parts[i].name, (double)v[d]);
+    PetscCall(OptionsCheckFinite(external->comm, parts[i].name, "velocity", "m/s", v));
   }
   PetscFunctionReturn(0);
 }
@@ -37,20 +35,15 @@ static PetscBool VelocityIsZero(const PetscReal v[3])
 static PetscErrorCode VelocityAddPart(External external, const char part[], const PetscReal velocity[3],
                                       PetscReal sum[], PetscInt count[])
 {
-  const PetscInt *vertex;
-  PetscInt        n;
-  IS              is;
+  PetscInt n, n_owned, *vertex;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetSetVertices(external->model, part, &is));
-  PetscCall(ISGetLocalSize(is, &n));
-  PetscCall(ISGetIndices(is, &vertex));
+  PetscCall(ExternalFindVertices(external, part, &n, &n_owned, &vertex));
   for (PetscInt k = 0; k < n; k++) {
     for (int d = 0; d < 3; d++) sum[3 * vertex[k] + d] += velocity[d];
     count[vertex[k]]++;
   }
-  PetscCall(ISRestoreIndices(is, &vertex));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(vertex));
   PetscFunctionReturn(0);
 }
 
@@ -60,7 +53,7 @@ static void VelocityAddMeans(External external, PetscReal sum[], const PetscInt 
   const Layout *layout = external->layout;
 
   for (PetscInt i = 0; i < layout->n_vertices; i++) {
-    if (layout->at[i] < 0 || !count[i]) continue;
+    if (!count[i]) continue;
     for (int d = 0; d < 3; d++) sum[3 * i + d] /= (PetscReal)count[i];
     LayoutAdd(layout, i, &sum[3 * i], v);
     for (int j = 0; j < 3; j++) {

@@ -74,34 +74,23 @@ PetscErrorCode HistorySetFromOptions(History h)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode HistorySetContact(History history, Contact contact)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ContactGetInterfaces(contact, &history->n_interfaces, &history->interfaces));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode HistorySetUp(History history, Model model, const Layout *layout, ContactProjector projector,
-                            Results results, PetscReal end_time, PetscReal dt)
+PetscErrorCode HistorySetUp(History history, const HistorySource *source, PetscReal end, PetscReal dt)
 {
   PetscBool fields;
 
   PetscFunctionBeginUser;
-  history->model     = model;
-  history->layout    = layout;
-  history->projector = projector;
-  history->results   = results;
-  history->live.end  = end_time;
+  history->source   = *source;
+  history->live.end = end;
   ScheduleRound(&history->rows, dt);
   ScheduleRound(&history->pairs, dt);
   ScheduleRound(&history->frames, dt);
-  history->growth.window = end_time > 0 ? PetscMin(end_time / 20, 1e-3) : 1e-3;
-  PetscCall(ModelGetProbes(model, &history->n_probes, &history->probes));
-  PetscCall(ResultsWantFields(results, &fields));
+  history->growth.window = end > 0 ? PetscMin(end / 20, 1e-3) : 1e-3;
+  PetscCall(ModelGetProbes(source->model, &history->n_probes, &history->probes));
+  PetscCall(ResultsWantFields(source->results, &fields));
   if (!fields) history->frames.interval = 0;
-  if (!projector) history->pairs.interval = 0;
-  PetscCheck(history->pairs.interval == 0 || history->interfaces, history->comm, PETSC_ERR_ARG_WRONGSTATE,
-             "states of pairs need the names of their interfaces: call HistorySetContact()");
+  if (!source->projector) history->pairs.interval = 0;
+  PetscCheck(history->pairs.interval == 0 || source->interfaces, history->comm, PETSC_ERR_ARG_WRONGSTATE,
+             "states of pairs need the names of their interfaces");
   if (history->frames.interval > 0) PetscCall(SnapshotsCreate(history));
   PetscFunctionReturn(0);
 }
@@ -135,26 +124,23 @@ static PetscErrorCode HistoryBeginTables(History history, PetscReal bytes, Petsc
   PetscFunctionBeginUser;
   if (!history->table) {
     PetscCall(HistoryCreateHeader(history, &header));
-    PetscCall(HistoryBeginTable(history->results, "transient", header, bytes, &history->table));
+    PetscCall(HistoryBeginTable(history->source.results, "transient", header, bytes, &history->table));
     PetscCall(PetscFree(header));
   }
   if (history->pairs.interval > 0)
-    PetscCall(HistoryBeginTable(history->results, "contact_pairs", PAIRS_HEADER, pair_bytes, &history->pair_table));
+    PetscCall(
+      HistoryBeginTable(history->source.results, "contact_pairs", PAIRS_HEADER, pair_bytes, &history->pair_table));
   PetscFunctionReturn(0);
 }
 
 /* States of the pairs in the step from t_n */
-static PetscErrorCode HistoryRecordPairs(History history, const HistoryState *state)
+static PetscErrorCode HistoryRecordPairs(History history, PetscReal time)
 {
-  const ContactState *pair;
-  const PetscInt     *interface, *number;
-  const PetscReal    *x;
-  PetscInt            n;
+  HistoryPairs p;
 
   PetscFunctionBeginUser;
-  PetscCall(ContactProjectorGetStates(history->projector, &n, &pair, &interface, &number, &x));
-  PetscCall(HistoryWritePairs(history->pair_table, history->comm, history->interfaces, state->time, n, pair, interface,
-                              number, x));
+  PetscCall(ContactProjectorGetStates(history->source.projector, &p.n, &p.state, &p.interface, &p.number, &p.x));
+  PetscCall(HistoryWritePairs(history->pair_table, history->comm, history->source.interfaces, time, &p));
   PetscFunctionReturn(0);
 }
 
@@ -167,7 +153,7 @@ PetscErrorCode HistoryRecord(History history, const HistoryState *state)
     PetscCall(HistoryWriteRow(history, state));
     PetscCall(LiveShow(history, state));
   }
-  if (ScheduleMeet(&history->pairs, state->time, state->dt)) PetscCall(HistoryRecordPairs(history, state));
+  if (ScheduleMeet(&history->pairs, state->time, state->dt)) PetscCall(HistoryRecordPairs(history, state->time));
   if (ScheduleMeet(&history->frames, state->time, state->dt)) PetscCall(SnapshotWrite(history, state));
   PetscFunctionReturn(0);
 }

@@ -5,7 +5,7 @@
 
 #include <squeal/projector.h>
 #include <squeal/results.h>
-#include "dynamics/ledger.h"
+#include "ledger.h"
 
 typedef struct _p_History *History;
 
@@ -20,17 +20,23 @@ typedef struct {
   const ContactSums *sums; /* [n_interfaces] of the step from t_n */
 } HistoryState;
 
+/* What is recorded, and where; all borrowed */
+typedef struct {
+  Model                   model;
+  const Layout           *layout;
+  ContactProjector        projector; /* NULL without contacts */
+  PetscInt                n_interfaces;
+  const ContactInterface *interfaces; /* NULL: without columns and pairs of their own */
+  Results                 results;
+} HistorySource;
+
 PETSC_INTERN PetscErrorCode HistoryCreate(MPI_Comm comm, History *history);
 
 /* -dynamics_history_interval, -dynamics_pairs_interval, -dynamics_snapshot_interval, -dynamics_live */
 PETSC_INTERN PetscErrorCode HistorySetFromOptions(History history);
 
-/* Names of the interfaces, for columns and pairs; before HistorySetUp(). Not collective */
-PETSC_INTERN PetscErrorCode HistorySetContact(History history, Contact contact);
-
-/* Intervals are rounded to whole steps dt (0 for not). Collective. */
-PETSC_INTERN PetscErrorCode HistorySetUp(History history, Model model, const Layout *layout, ContactProjector projector,
-                                         Results results, PetscReal end_time, PetscReal dt);
+/* Takes what is recorded, and rounds the intervals to whole steps dt (0 for not). Collective. */
+PETSC_INTERN PetscErrorCode HistorySetUp(History history, const HistorySource *source, PetscReal end, PetscReal dt);
 
 /* Whether a row (or a snapshot) is due at step n, time t: the same answer on every rank, and cheap; multiples k of
    the interval are met at the first t >= k interval - dt / 2 */

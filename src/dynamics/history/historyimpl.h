@@ -33,20 +33,15 @@ typedef struct {
 } Live;
 
 struct _p_History {
-  MPI_Comm  comm;
-  Schedule  rows, pairs, frames;
-  Growth    growth;
-  Live      live;
-  PetscReal sweeps, steps; /* of the projector at the last row */
-  /* what is recorded */
-  Model                   model;
-  const Layout           *layout;
-  ContactProjector        projector;  /* NULL without contacts */
-  const ContactInterface *interfaces; /* [n_interfaces] those with names; none without HistorySetContact() */
-  PetscInt                n_interfaces, n_probes;
-  const Probe            *probes;
+  MPI_Comm      comm;
+  Schedule      rows, pairs, frames;
+  Growth        growth;
+  Live          live;
+  PetscReal     sweeps, steps; /* of the projector at the last row */
+  HistorySource source;
+  PetscInt      n_probes;
+  const Probe  *probes;
   /* where */
-  Results      results;
   ResultsTable table, pair_table;
   ResultsFilm  film; /* NULL for none */
 };
@@ -68,9 +63,16 @@ PETSC_INTERN PetscErrorCode HistoryCreateHeader(History history, char **header);
 PETSC_INTERN PetscErrorCode HistoryWriteRow(History history, const HistoryState *state);
 
 /* historypairs.c - rows of the states of all ranks, by interface and number of the slave */
+typedef struct {
+  PetscInt            n;
+  const ContactState *state;     /* [n] */
+  const PetscInt     *interface; /* [n] */
+  const PetscInt     *number;    /* [n] global vertices */
+  const PetscReal    *x;         /* [n][3], m */
+} HistoryPairs;
+
 PETSC_INTERN PetscErrorCode HistoryWritePairs(ResultsTable table, MPI_Comm comm, const ContactInterface interfaces[],
-                                              PetscReal time, PetscInt n, const ContactState state[],
-                                              const PetscInt interface[], const PetscInt number[], const PetscReal x[]);
+                                              PetscReal time, const HistoryPairs *pairs);
 
 /* live.c */
 PETSC_INTERN void           GrowthAdd(Growth *growth, PetscReal t, PetscReal kinetic);

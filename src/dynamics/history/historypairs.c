@@ -21,38 +21,37 @@ static int HistoryPairCompare(const void *one, const void *other)
 }
 
 /* Records of all ranks in order, on every rank */
-static PetscErrorCode HistoryGatherPairs(MPI_Comm comm, PetscInt n, const ContactState state[],
-                                         const PetscInt interface[], const PetscInt number[], const PetscReal x[],
-                                         PetscInt *n_all, HistoryPairRecord **all)
+static PetscErrorCode HistoryGatherPairs(MPI_Comm comm, const HistoryPairs *p, PetscInt *n_all, HistoryPairRecord **all)
 {
   HistoryPairRecord *local;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &local));
-  for (PetscInt i = 0; i < n; i++) {
-    local[i] = (HistoryPairRecord){.interface = interface[i],
-                                   .number    = number[i],
-                                   .status    = state[i].status,
-                                   .gap       = state[i].gap,
-                                   .lambda_n  = state[i].lambda_n,
-                                   .lambda_t  = hypot(state[i].lambda_t[0], state[i].lambda_t[1])};
-    PetscCall(PetscArraycpy(local[i].x, &x[3 * i], 3));
+  PetscCall(PetscMalloc1(p->n, &local));
+  for (PetscInt i = 0; i < p->n; i++) {
+    const ContactState *state = &p->state[i];
+
+    local[i] = (HistoryPairRecord){.interface = p->interface[i],
+                                   .number    = p->number[i],
+                                   .status    = state->status,
+                                   .gap       = state->gap,
+                                   .lambda_n  = state->lambda_n,
+                                   .lambda_t  = hypot(state->lambda_t[0], state->lambda_t[1])};
+    PetscCall(PetscArraycpy(local[i].x, &p->x[3 * i], 3));
   }
-  PetscCall(GatherRecords(comm, n, sizeof(HistoryPairRecord), local, n_all, all));
-  qsort(*all, (size_t)*n_all, sizeof(HistoryPairRecord), HistoryPairCompare);
+  PetscCall(GatherRecords(comm, p->n, sizeof(*local), local, n_all, all));
+  qsort(*all, (size_t)*n_all, sizeof(*local), HistoryPairCompare);
   PetscCall(PetscFree(local));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode HistoryWritePairs(ResultsTable table, MPI_Comm comm, const ContactInterface interfaces[], PetscReal time,
-                                 PetscInt n, const ContactState state[], const PetscInt interface[],
-                                 const PetscInt number[], const PetscReal x[])
+                                 const HistoryPairs *pairs)
 {
   PetscInt           n_all;
   HistoryPairRecord *all;
 
   PetscFunctionBeginUser;
-  PetscCall(HistoryGatherPairs(comm, n, state, interface, number, x, &n_all, &all));
+  PetscCall(HistoryGatherPairs(comm, pairs, &n_all, &all));
   for (PetscInt i = 0; i < n_all; i++) {
     const HistoryPairRecord *r = &all[i];
 

@@ -20,7 +20,7 @@ static const char *const probe_columns[N_PER_PROBE] = {"x_m",    "y_m",     "z_m
 /* Interfaces with columns of their own: where there are several */
 static PetscInt HistoryCountFaces(History history)
 {
-  return history->n_interfaces > 1 ? history->n_interfaces : 0;
+  return history->source.n_interfaces > 1 ? history->source.n_interfaces : 0;
 }
 
 /* Adds the columns `name`_`column` to a header that has room for them */
@@ -44,7 +44,7 @@ PetscErrorCode HistoryCreateHeader(History history, char **header)
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n_faces; i++) {
-    PetscCall(PetscStrlen(history->interfaces[i].name, &length));
+    PetscCall(PetscStrlen(history->source.interfaces[i].name, &length));
     room += N_PER_FACE * (length + NAME_ROOM);
   }
   for (PetscInt i = 0; i < history->n_probes; i++) {
@@ -54,7 +54,7 @@ PetscErrorCode HistoryCreateHeader(History history, char **header)
   PetscCall(PetscMalloc1(room, header));
   PetscCall(PetscStrncpy(*header, first_columns, room));
   for (PetscInt i = 0; i < n_faces; i++)
-    PetscCall(HistoryAddColumns(*header, room, history->interfaces[i].name, N_PER_FACE, face_columns));
+    PetscCall(HistoryAddColumns(*header, room, history->source.interfaces[i].name, N_PER_FACE, face_columns));
   for (PetscInt i = 0; i < history->n_probes; i++)
     PetscCall(HistoryAddColumns(*header, room, history->probes[i].name, N_PER_PROBE, probe_columns));
   PetscFunctionReturn(0);
@@ -108,7 +108,7 @@ static PetscErrorCode HistoryRowProbes(History history, const HistoryState *stat
     PetscReal *const m = &mine[N_PER_PROBE * i];
 
     if (history->probes[i].vertex >= 0)
-      HistoryMotion(history->layout, state, history->probes[i].vertex, m, m + 3, m + 6);
+      HistoryMotion(history->source.layout, state, history->probes[i].vertex, m, m + 3, m + 6);
   }
   PetscCallMPI(MPI_Reduce(mine, motions, (PetscMPIInt)n, MPIU_REAL, MPI_SUM, 0, history->comm));
   PetscCall(PetscFree(mine));

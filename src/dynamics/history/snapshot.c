@@ -9,20 +9,20 @@ PetscErrorCode SnapshotsCreate(History history)
   const Mesh *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(history->model, &mesh));
-  PetscCall(ResultsFilmCreate(history->results, "transient", "snapshot", mesh, &history->film));
+  PetscCall(ModelGetMesh(history->source.model, &mesh));
+  PetscCall(ResultsFilmCreate(history->source.results, "transient", "snapshot", mesh, &history->film));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode SnapshotWrite(History history, const HistoryState *state)
 {
-  const PetscInt n = history->layout->n_vertices;
+  const PetscInt n = history->source.layout->n_vertices;
   PetscReal     *u, *v, a[3];
   char           title[64];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(3 * n, &u, 3 * n, &v));
-  for (PetscInt i = 0; i < n; i++) HistoryMotion(history->layout, state, i, &u[3 * i], &v[3 * i], a);
+  for (PetscInt i = 0; i < n; i++) HistoryMotion(history->source.layout, state, i, &u[3 * i], &v[3 * i], a);
   PetscCall(PetscSNPrintf(title, sizeof(title), "step %" PetscInt_FMT ", t = %.6g ms", state->step,
                           (double)(1e3 * state->time)));
   PetscCall(ResultsFilmWrite(history->film, state->time, title, 2,

@@ -11,7 +11,7 @@
    x'Mx = 1, k = x'Kx, c = x'Cx, the next dt solves dt^2 k + 2 dt c = 2 / b: from above, since another vector may be
    worse at the new dt. Upper bound of lambda_max for the check: that of the single elements.
 */
-#include "dynamics/dynamicsimpl.h"
+#include "dynamicsimpl.h"
 #include <slepceps.h>
 
 #define CRITICAL_MAX_IT 50

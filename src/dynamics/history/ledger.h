@@ -31,6 +31,13 @@ typedef struct {
   PetscReal contact, friction, heat;
 } LedgerOrigin;
 
+/* All of a run, which goes on with it after a restart: reals alone */
+typedef struct {
+  Ledger       total;
+  LedgerPart   part;
+  LedgerOrigin origin;
+} LedgerAccount;
+
 /* The bodies' sums at the beginning of a step: completes the damping work of the step before, of length dt_old */
 PETSC_INTERN void LedgerAddBodies(LedgerPart *part, const BodiesSums *sums, PetscReal dt_old);
 
@@ -42,8 +49,8 @@ PETSC_INTERN void LedgerAddIntegrator(LedgerPart *part, PetscReal b, PetscReal p
                                       PetscReal dt_old);
 
 /* Sums over all ranks, and the works of contact (n interfaces). `first`: the ledger begins here. Collective. */
-PETSC_INTERN PetscErrorCode LedgerClose(MPI_Comm comm, LedgerPart *part, PetscInt n, const ContactSums sums[],
-                                        PetscBool first, LedgerOrigin *origin, Ledger *ledger);
+PETSC_INTERN PetscErrorCode LedgerClose(MPI_Comm comm, LedgerAccount *account, PetscInt n, const ContactSums sums[],
+                                        PetscBool first);
 
 /*
    LedgerJudge - raises PETSC_ERR_FP where the energy cannot be explained: the balance does not close to 1e-6 of the

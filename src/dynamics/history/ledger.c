@@ -60,10 +60,11 @@ static void LedgerRaiseThroughput(Ledger *l)
     l->throughput = PetscMax(l->throughput, PetscAbsReal(term[i]));
 }
 
-PetscErrorCode LedgerClose(MPI_Comm comm, LedgerPart *part, PetscInt n, const ContactSums sums[], PetscBool first,
-                           LedgerOrigin *origin, Ledger *ledger)
+PetscErrorCode LedgerClose(MPI_Comm comm, LedgerAccount *account, PetscInt n, const ContactSums sums[], PetscBool first)
 {
-  PetscReal sum[6];
+  LedgerPart *part   = &account->part;
+  Ledger     *ledger = &account->total;
+  PetscReal   sum[6];
 
   PetscFunctionBeginUser;
   if (first) part->external = part->damping = part->integrator = 0;
@@ -80,7 +81,7 @@ PetscErrorCode LedgerClose(MPI_Comm comm, LedgerPart *part, PetscInt n, const Co
   ledger->damping    = sum[3];
   ledger->integrator = sum[4];
   if (first) ledger->start = sum[0] + sum[1];
-  LedgerSetContact(ledger, n, sums, first, origin);
+  LedgerSetContact(ledger, n, sums, first, &account->origin);
   ledger->error = ledger->kinetic + ledger->strain - ledger->start - ledger->external - ledger->contact -
                   ledger->friction - ledger->damping - ledger->integrator;
   ledger->predicted = sum[5];
