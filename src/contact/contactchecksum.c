@@ -1,6 +1,6 @@
 /*
-   What the interfaces add to the checksum of a scene: what options say. A stiffness that is found by pressing, and
-   forces of the sliding state, follow from the rest of the scene.
+   What the interfaces add to the checksum of a scene: what options say. A stiffness that is found by pressing follows
+   from the rest of the scene.
 */
 #include "contactimpl.h"
 
@@ -9,9 +9,8 @@ PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
     const ContactInterface *f         = &contact->interfaces[i];
-    const PetscInt          flags[]   = {i, f->law, f->identify, f->damping, f->preloaded};
-    const PetscReal         numbers[] = {
-              f->mu, f->mu_slope, f->tolerance, f->speed, f->identify ? 0 : f->kn, f->preloaded ? 0 : f->force};
+    const PetscInt          flags[]   = {i, f->law, f->identify, f->damping};
+    const PetscReal         numbers[] = {f->mu, f->mu_slope, f->tolerance, f->speed, f->identify ? 0 : f->kn, f->force};
 
     PetscCall(ChecksumSetPart(c, "contact %s", f->name));
     PetscCall(ModelAddSetChecksum(contact->model, f->slave, PETSC_TRUE, c));
