@@ -63,3 +63,44 @@ static inline PetscErrorCode ChainDestroy(Chain *chain)
   PetscCall(ModelDestroy(&chain->model));
   PetscFunctionReturn(0);
 }
+
+/* All loads of the scene as a vector of the unknowns, N */
+static inline PetscErrorCode ChainCreateLoads(const Chain *chain, Vec *f)
+{
+  const PetscInt    *unknowns;
+  const PetscScalar *value;
+  const Load        *loads;
+  PetscInt           n, n_loads;
+  Vec                local;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsCreateVec(chain->operators, f));
+  PetscCall(VecSetOption(*f, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
+  PetscCall(ModelCreateNodal(chain->model, &local));
+  PetscCall(ModelGetLoads(chain->model, &n_loads, &loads));
+  for (PetscInt i = 0; i < n_loads; i++) PetscCall(ModelAddLoad(chain->model, i, local));
+  PetscCall(ModelGetUnknowns(chain->model, &unknowns));
+  PetscCall(VecGetLocalSize(local, &n));
+  PetscCall(VecGetArrayRead(local, &value));
+  PetscCall(VecSetValues(*f, n, unknowns, value, INSERT_VALUES));
+  PetscCall(VecRestoreArrayRead(local, &value));
+  PetscCall(VecAssemblyBegin(*f));
+  PetscCall(VecAssemblyEnd(*f));
+  PetscCall(VecDestroy(&local));
+  PetscFunctionReturn(0);
+}
+
+/* r = (N - mu T) u over the pairs of the first interface */
+static inline PetscErrorCode ChainConstrain(const Chain *chain, PetscReal mu, Vec u, Vec *r)
+{
+  Mat N, T;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactCreateOperators(chain->contact, 0, &N, &T, NULL));
+  PetscCall(MatAXPY(N, -mu, T, DIFFERENT_NONZERO_PATTERN));
+  PetscCall(MatCreateVecs(N, NULL, r));
+  PetscCall(MatMult(N, u, *r));
+  PetscCall(MatDestroy(&N));
+  PetscCall(MatDestroy(&T));
+  PetscFunctionReturn(0);
+}

@@ -7,6 +7,7 @@
 */
 #include "brake.h"
 #include "check.h"
+#include "petscmain.h"
 #include <string.h>
 
 /* A scene and the two sets of values between which it goes, forth and back */
@@ -173,23 +174,17 @@ static PetscErrorCode TestDerivatives(Pencil o, int *failed)
 }
 
 /* |(N - mu T) u| / |u| over the interface */
-static PetscErrorCode ConstraintResidual(Contact contact, PetscReal mu, Vec u, PetscReal *residual)
+static PetscErrorCode ConstraintResidual(const Chain *chain, PetscReal mu, Vec u, PetscReal *residual)
 {
   PetscReal norm;
-  Mat       N, T;
   Vec       r;
 
   PetscFunctionBeginUser;
-  PetscCall(ContactCreateOperators(contact, 0, &N, &T, NULL));
-  PetscCall(MatAXPY(N, -mu, T, DIFFERENT_NONZERO_PATTERN));
-  PetscCall(MatCreateVecs(N, NULL, &r));
-  PetscCall(MatMult(N, u, r));
+  PetscCall(ChainConstrain(chain, mu, u, &r));
   PetscCall(VecNorm(r, NORM_2, residual));
   PetscCall(VecNorm(u, NORM_2, &norm));
   *residual /= norm;
   PetscCall(VecDestroy(&r));
-  PetscCall(MatDestroy(&N));
-  PetscCall(MatDestroy(&T));
   PetscFunctionReturn(0);
 }
 
@@ -228,7 +223,7 @@ static PetscErrorCode TestProjection(Chain *chain, PetscBool constrained, int *f
     PetscCall(VecNorm(back, NORM_INFINITY, &residual));
     *failed += CheckClose("unknowns of the pencil back from their expansion", residual, 0, 1e-14);
     if (!constrained) continue;
-    PetscCall(ConstraintResidual(chain->contact, left ? m.all.mu : 0, u[left], &residual));
+    PetscCall(ConstraintResidual(chain, left ? m.all.mu : 0, u[left], &residual));
     *failed += CheckClose(left ? "(N - mu T) y = 0" : "N u = 0", residual, 0, 1e-15);
   }
   PetscCall(Bilinear(m.all.K, u[1], u[0], &full));
@@ -280,15 +275,15 @@ static PetscErrorCode TestScene(const Scene *scene, int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  (void)size;
+  for (size_t i = 0; i < sizeof(scenes) / sizeof(scenes[0]); i++) PetscCall(TestScene(&scenes[i], failed));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  int failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  for (size_t i = 0; i < sizeof(scenes) / sizeof(scenes[0]); i++) PetscCall(TestScene(&scenes[i], &failed));
-  PetscCall(PetscOptionsClear(NULL));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }

@@ -10,6 +10,7 @@
 #include "boxes.h"
 #include "brake.h"
 #include "check.h"
+#include "petscmain.h"
 
 #define BOXES                                                                                                          \
   "-parts lower,upper -lower_young 4 -lower_poisson 0 -lower_density 1 -upper_young 6 -upper_poisson 0 "               \
@@ -100,30 +101,6 @@ static PetscErrorCode TestLinear(int *failed)
   PetscFunctionReturn(0);
 }
 
-/* Forces of load 0 at the unknowns */
-static PetscErrorCode LoadCreate(Model model, Operators operators, Vec *f)
-{
-  const PetscScalar *value;
-  const PetscInt    *unknowns;
-  PetscInt           n;
-  Vec                local;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelCreateNodal(model, &local));
-  PetscCall(ModelAddLoad(model, 0, local));
-  PetscCall(ModelGetUnknowns(model, &unknowns));
-  PetscCall(OperatorsCreateVec(operators, f));
-  PetscCall(VecSetOption(*f, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
-  PetscCall(VecGetLocalSize(local, &n));
-  PetscCall(VecGetArrayRead(local, &value));
-  PetscCall(VecSetValues(*f, n, unknowns, value, INSERT_VALUES));
-  PetscCall(VecRestoreArrayRead(local, &value));
-  PetscCall(VecAssemblyBegin(*f));
-  PetscCall(VecAssemblyEnd(*f));
-  PetscCall(VecDestroy(&local));
-  PetscFunctionReturn(0);
-}
-
 /* Approach of the rows under the load */
 static PetscErrorCode PressedApproach(Chain *chain, PetscReal *approach)
 {
@@ -135,7 +112,7 @@ static PetscErrorCode PressedApproach(Chain *chain, PetscReal *approach)
   PetscFunctionBeginUser;
   PetscCall(ChainLinearise(chain, NULL));
   PetscCall(PencilGetMatrices(chain->pencil, &pencil));
-  PetscCall(LoadCreate(chain->model, chain->operators, &f));
+  PetscCall(ChainCreateLoads(chain, &f));
   PetscCall(VecDuplicate(f, &u));
   PetscCall(ContactCreateApproach(chain->contact, 0, &d));
   PetscCall(KSPCreate(PETSC_COMM_WORLD, &ksp));
@@ -205,17 +182,17 @@ static PetscErrorCode TestIdentify(int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  (void)size;
+  PetscCall(TestLinear(failed));
+  PetscCall(TestPressed(failed));
+  PetscCall(TestIdentify(failed));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  int failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCall(TestLinear(&failed));
-  PetscCall(TestPressed(&failed));
-  PetscCall(TestIdentify(&failed));
-  PetscCall(PetscOptionsClear(NULL));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }

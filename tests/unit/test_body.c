@@ -6,6 +6,7 @@
 */
 #include "boxes.h"
 #include "check.h"
+#include "petscmain.h"
 
 /* Number of local cells of a part of which a vertex has another body than `expected` */
 static PetscErrorCode CountWrong(Model model, const char part[], const PetscInt body[], PetscInt expected,
@@ -95,16 +96,16 @@ static PetscErrorCode TestBoxes(int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  (void)size;
+  PetscCall(TestRig(failed));
+  PetscCall(TestBoxes(failed));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  int failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCall(TestRig(&failed));
-  PetscCall(TestBoxes(&failed));
-  PetscCall(PetscOptionsClear(NULL));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }

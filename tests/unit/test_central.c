@@ -4,6 +4,7 @@
    solutions.
 */
 #include "check.h"
+#include "petscmain.h"
 #include "dynamics/central/tscentral.h"
 
 /* Masses 1, stiffness omega^2, viscosity c (1/s), a wall that x >= 0 must not pass where asked for */
@@ -178,19 +179,20 @@ static PetscErrorCode TestOptions(int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  (void)size;
+  PetscCall(TSCentralRegister());
+  PetscCall(TestOrder(failed));
+  PetscCall(TestDissipation(failed));
+  PetscCall(TestCritical(failed));
+  PetscCall(TestWall(failed));
+  PetscCall(TestOptions(failed));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  int failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCall(TSCentralRegister());
-  PetscCall(TestOrder(&failed));
-  PetscCall(TestDissipation(&failed));
-  PetscCall(TestCritical(&failed));
-  PetscCall(TestWall(&failed));
-  PetscCall(TestOptions(&failed));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }

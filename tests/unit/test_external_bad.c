@@ -6,6 +6,7 @@
 #include "check.h"
 #include "externalscene.h"
 #include "scratch.h"
+#include "petscmain.h"
 
 #define PULL "-loads pull -pull_set head_top -pull_force 1,0,0 "
 #define LIFT "-motions lift -lift_set head_top -lift_displacement 1,0,0 -lift_ramp 1 "
@@ -126,19 +127,19 @@ static PetscErrorCode TestBad(int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  (void)size;
+  PetscCall(TestTurned(failed));
+  PetscCall(TestTurnedBad("-lift_displacement 1,0,0", PETSC_TRUE, failed));
+  PetscCall(TestTurnedBad("-lift_displacement 0,1,1", PETSC_TRUE, failed));
+  PetscCall(TestTurnedBad("-lift_displacement 0,0,1", PETSC_FALSE, failed));
+  PetscCall(TestBad(failed));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  int failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCall(TestTurned(&failed));
-  PetscCall(TestTurnedBad("-lift_displacement 1,0,0", PETSC_TRUE, &failed));
-  PetscCall(TestTurnedBad("-lift_displacement 0,1,1", PETSC_TRUE, &failed));
-  PetscCall(TestTurnedBad("-lift_displacement 0,0,1", PETSC_FALSE, &failed));
-  PetscCall(TestBad(&failed));
-  PetscCall(PetscOptionsClear(NULL));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }

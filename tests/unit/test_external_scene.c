@@ -6,6 +6,7 @@
 */
 #include "check.h"
 #include "externalscene.h"
+#include "petscmain.h"
 
 /* The same Cartesian vector at all nodes of a state vector */
 static void SceneFill(const Scene *s, const PetscReal value[3], PetscReal x[])
@@ -295,22 +296,22 @@ static PetscErrorCode TestBalance(int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  (void)size;
+  PetscCall(TestLoads(failed));
+  PetscCall(TestGravityAndImpulse(failed));
+  PetscCall(TestMotion(failed));
+  PetscCall(TestHeld(failed));
+  PetscCall(TestVelocity(failed));
+  PetscCall(TestFrame(failed));
+  PetscCall(TestTwoFrames(failed));
+  PetscCall(TestBalance(failed));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  int failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCall(TestLoads(&failed));
-  PetscCall(TestGravityAndImpulse(&failed));
-  PetscCall(TestMotion(&failed));
-  PetscCall(TestHeld(&failed));
-  PetscCall(TestVelocity(&failed));
-  PetscCall(TestFrame(&failed));
-  PetscCall(TestTwoFrames(&failed));
-  PetscCall(TestBalance(&failed));
-  PetscCall(PetscOptionsClear(NULL));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }

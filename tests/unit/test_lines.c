@@ -7,6 +7,7 @@
 */
 #include "boxes.h"
 #include "check.h"
+#include "petscmain.h"
 
 #define MATERIALS                                                                                                      \
   "-disc_young 1 -disc_density 1 -pad_young 1 -pad_density 1 -beam_young 1 -beam_density 1 -model_source rig "
@@ -306,20 +307,17 @@ static PetscErrorCode TestColumns(int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  PetscCall(TestRig(size, failed));
+  PetscCall(TestPatch(failed));
+  PetscCall(TestRings(size, failed));
+  if (size == 1) PetscCall(TestColumns(failed));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  PetscMPIInt size;
-  int         failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
-  PetscCall(TestRig(size, &failed));
-  PetscCall(TestPatch(&failed));
-  PetscCall(TestRings(size, &failed));
-  if (size == 1) PetscCall(TestColumns(&failed));
-  PetscCall(PetscOptionsClear(NULL));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }

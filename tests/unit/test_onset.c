@@ -4,6 +4,7 @@
 */
 #include "check.h"
 #include "densereduced.h"
+#include "petscmain.h"
 #include "sweep/track/frame.h"
 
 static const ReducedWindow everything = {0, 100, 100};
@@ -266,19 +267,20 @@ static PetscErrorCode TestDivergence(int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  (void)size;
+  PetscCall(TestPlane(failed));
+  PetscCall(TestUndamped(failed));
+  PetscCall(TestDamped(failed));
+  PetscCall(TestBothEnds(failed));
+  PetscCall(TestDoublets(failed));
+  PetscCall(TestDivergence(failed));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  int failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCall(TestPlane(&failed));
-  PetscCall(TestUndamped(&failed));
-  PetscCall(TestDamped(&failed));
-  PetscCall(TestBothEnds(&failed));
-  PetscCall(TestDoublets(&failed));
-  PetscCall(TestDivergence(&failed));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }

@@ -5,6 +5,7 @@
 #include "brake.h"
 #include "check.h"
 #include "scratch.h"
+#include "petscmain.h"
 #include <string.h>
 
 /* Breaks when: a bad value passes, or its message does not name parameter, value, limits and unit */
@@ -76,16 +77,16 @@ static PetscErrorCode TestDense(int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  (void)size;
+  PetscCall(TestLimits(failed));
+  PetscCall(TestDense(failed));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  int failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCall(TestLimits(&failed));
-  PetscCall(TestDense(&failed));
-  PetscCall(PetscOptionsClear(NULL));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }

@@ -5,6 +5,7 @@
 */
 #include "twoboxes.h"
 #include "check.h"
+#include "petscmain.h"
 
 #define GAP 1e-6 /* m, of the meshes, by which the nodes of the two boxes have places of their own */
 #define DT  1e-3 /* s */
@@ -322,23 +323,20 @@ static PetscErrorCode TestRedundant(int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  PetscCall(TestRanks(failed));
+  if (size == 1) {
+    PetscCall(TestLaws(PETSC_FALSE, 0.4, failed));
+    PetscCall(TestLaws(PETSC_TRUE, 0.3, failed));
+    PetscCall(TestTwice(failed));
+    PetscCall(TestRedundant(failed));
+  }
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  PetscMPIInt size;
-  int         failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
-  PetscCall(TestRanks(&failed));
-  if (size == 1) {
-    PetscCall(TestLaws(PETSC_FALSE, 0.4, &failed));
-    PetscCall(TestLaws(PETSC_TRUE, 0.3, &failed));
-    PetscCall(TestTwice(&failed));
-    PetscCall(TestRedundant(&failed));
-  }
-  PetscCall(PetscOptionsClear(NULL));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }

@@ -6,6 +6,7 @@
 #include <petscsys.h>
 #include "check.h"
 #include "densesystem.h"
+#include "petscmain.h"
 
 #define NEAR_EPS 1e-12
 
@@ -276,20 +277,21 @@ static PetscErrorCode TestSpread(int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  (void)size;
+  PetscCall(TestFlutter(failed));
+  PetscCall(TestUnevenDamping(failed));
+  PetscCall(TestDivergence(failed));
+  PetscCall(TestRigid(failed));
+  PetscCall(TestTriple(failed));
+  PetscCall(TestDouble(failed));
+  PetscCall(TestSpread(failed));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  int failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCall(TestFlutter(&failed));
-  PetscCall(TestUnevenDamping(&failed));
-  PetscCall(TestDivergence(&failed));
-  PetscCall(TestRigid(&failed));
-  PetscCall(TestTriple(&failed));
-  PetscCall(TestDouble(&failed));
-  PetscCall(TestSpread(&failed));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }

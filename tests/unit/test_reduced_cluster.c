@@ -5,6 +5,7 @@
 #include <petscsys.h>
 #include "check.h"
 #include "densesystem.h"
+#include "petscmain.h"
 
 #define N_LOCK 8 /* unknowns of the system that locks in */
 
@@ -152,16 +153,17 @@ static PetscErrorCode TestDouble(int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  (void)size;
+  PetscCall(TestLockIn(failed));
+  PetscCall(TestJordan(failed));
+  PetscCall(TestDouble(failed));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  int failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCall(TestLockIn(&failed));
-  PetscCall(TestJordan(&failed));
-  PetscCall(TestDouble(&failed));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }

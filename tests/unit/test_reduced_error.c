@@ -6,6 +6,7 @@
 #include <petscsys.h>
 #include "check.h"
 #include "densesystem.h"
+#include "petscmain.h"
 
 #define N_ALL  50
 #define N_USED 30
@@ -182,18 +183,19 @@ static PetscErrorCode TestSensitivity(PetscReal damping, int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  (void)size;
+  PetscCall(TestRandom(1e-2, 0.001, failed));
+  PetscCall(TestFloor(failed));
+  PetscCall(TestNothingLeftOut(failed));
+  PetscCall(TestSensitivity(0, failed));
+  PetscCall(TestSensitivity(0.05, failed));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  int failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCall(TestRandom(1e-2, 0.001, &failed));
-  PetscCall(TestFloor(&failed));
-  PetscCall(TestNothingLeftOut(&failed));
-  PetscCall(TestSensitivity(0, &failed));
-  PetscCall(TestSensitivity(0.05, &failed));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }

@@ -6,6 +6,7 @@
 */
 #include "twoboxes.h"
 #include "check.h"
+#include "petscmain.h"
 
 #define DT 1e-3 /* s */
 
@@ -346,21 +347,21 @@ static PetscErrorCode TestStart(int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  (void)size;
+  PetscCall(TestTurn(failed));
+  PetscCall(TestEdge(failed));
+  PetscCall(TestFlight(failed));
+  PetscCall(TestKinematics(failed));
+  PetscCall(TestMemory(failed));
+  PetscCall(TestStates(failed));
+  PetscCall(TestStart(failed));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  int failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCall(TestTurn(&failed));
-  PetscCall(TestEdge(&failed));
-  PetscCall(TestFlight(&failed));
-  PetscCall(TestKinematics(&failed));
-  PetscCall(TestMemory(&failed));
-  PetscCall(TestStates(&failed));
-  PetscCall(TestStart(&failed));
-  PetscCall(PetscOptionsClear(NULL));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }

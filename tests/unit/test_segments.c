@@ -8,6 +8,7 @@
 */
 #include "check.h"
 #include "densereduced.h"
+#include "petscmain.h"
 #include "sweep/line.h"
 
 #define N_STATUSES 4
@@ -205,16 +206,17 @@ static PetscErrorCode TestDoubt(int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  (void)size;
+  PetscCall(TestStatuses(failed));
+  PetscCall(TestSegments(failed));
+  PetscCall(TestDoubt(failed));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  int failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCall(TestStatuses(&failed));
-  PetscCall(TestSegments(&failed));
-  PetscCall(TestDoubt(&failed));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }

@@ -6,6 +6,7 @@
 */
 #include "boxes.h"
 #include "check.h"
+#include "petscmain.h"
 
 #define N_SLABS      160
 #define CELLS        64 /* of a slab */
@@ -173,20 +174,17 @@ static PetscErrorCode TestBars(PetscMPIInt size, int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  PetscCall(TestRing(size, failed));
+  PetscCall(TestAlone(size, failed));
+  PetscCall(TestPatch(size, failed));
+  PetscCall(TestBars(size, failed));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  PetscMPIInt size;
-  int         failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
-  PetscCall(TestRing(size, &failed));
-  PetscCall(TestAlone(size, &failed));
-  PetscCall(TestPatch(size, &failed));
-  PetscCall(TestBars(size, &failed));
-  PetscCall(PetscOptionsClear(NULL));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }

@@ -21,32 +21,6 @@ typedef struct {
   PetscReal laws, equilibrium, forces; /* the worst */
 } Tally;
 
-/* Loads as a vector of the unknowns */
-static PetscErrorCode LoadsCreate(const Chain *chain, Vec *f)
-{
-  const PetscInt    *unknowns;
-  const PetscScalar *value;
-  const Load        *loads;
-  PetscInt           n, n_loads;
-  Vec                local;
-
-  PetscFunctionBeginUser;
-  PetscCall(OperatorsCreateVec(chain->operators, f));
-  PetscCall(VecSetOption(*f, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
-  PetscCall(ModelCreateNodal(chain->model, &local));
-  PetscCall(ModelGetLoads(chain->model, &n_loads, &loads));
-  for (PetscInt i = 0; i < n_loads; i++) PetscCall(ModelAddLoad(chain->model, i, local));
-  PetscCall(ModelGetUnknowns(chain->model, &unknowns));
-  PetscCall(VecGetLocalSize(local, &n));
-  PetscCall(VecGetArrayRead(local, &value));
-  PetscCall(VecSetValues(*f, n, unknowns, value, INSERT_VALUES));
-  PetscCall(VecRestoreArrayRead(local, &value));
-  PetscCall(VecAssemblyBegin(*f));
-  PetscCall(VecAssemblyEnd(*f));
-  PetscCall(VecDestroy(&local));
-  PetscFunctionReturn(0);
-}
-
 /* b += factor * rows' (component of the states), component 0 lambda_n, 1 and 2 lambda_t */
 static PetscErrorCode ForcesAdd(Mat rows, const ContactState state[], int component, PetscReal factor, Vec b)
 {
@@ -76,7 +50,7 @@ static PetscErrorCode Imbalance(const Chain *chain, const ContactState state[], 
   Vec       f, r, diagonal;
 
   PetscFunctionBeginUser;
-  PetscCall(LoadsCreate(chain, &f));
+  PetscCall(ChainCreateLoads(chain, &f));
   PetscCall(VecDuplicate(f, &r));
   PetscCall(VecDuplicate(f, &diagonal));
   PetscCall(VecSet(r, 0));
@@ -123,7 +97,7 @@ static PetscErrorCode DenseContactCreate(const Scene *scene, const Chain *chain,
   PetscCall(LongMatrix(K, &c->K));
   PetscCall(LongMatrix(N, &c->N));
   PetscCall(LongMatrix(T, &c->T));
-  PetscCall(LoadsCreate(chain, &f));
+  PetscCall(ChainCreateLoads(chain, &f));
   PetscCall(VecGetArrayRead(f, &value));
   c->f = calloc((size_t)n_unknowns, sizeof(*c->f));
   for (PetscInt i = 0; i < n_unknowns; i++) c->f[i] = value[i];

@@ -5,6 +5,7 @@
       kappa = mean +- sqrt(d),   d = (difference of the diagonal)^2 / 4 + g_12 g_21.
 */
 #include "densesweep.h"
+#include "petscmain.h"
 
 static const ReducedWindow everything = {0, 100, 100};
 
@@ -199,19 +200,20 @@ static PetscErrorCode TestPoints(int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  (void)size;
+  PetscCall(TestCrossings(failed));
+  PetscCall(TestVeering(failed));
+  PetscCall(TestLockIn(failed));
+  PetscCall(TestFriction(failed));
+  PetscCall(TestWindow(failed));
+  PetscCall(TestPoints(failed));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  int failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCall(TestCrossings(&failed));
-  PetscCall(TestVeering(&failed));
-  PetscCall(TestLockIn(&failed));
-  PetscCall(TestFriction(&failed));
-  PetscCall(TestWindow(&failed));
-  PetscCall(TestPoints(&failed));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }

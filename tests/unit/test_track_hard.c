@@ -3,6 +3,7 @@
    happens between them.
 */
 #include "densesweep.h"
+#include "petscmain.h"
 
 static const ReducedWindow everything = {0, 100, 100};
 
@@ -196,18 +197,19 @@ static PetscErrorCode TestRigid(int *failed)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  (void)size;
+  PetscCall(TestDefective(failed));
+  PetscCall(TestDampedDefective(failed));
+  PetscCall(TestDoubletLockIn(failed));
+  PetscCall(TestRigid(failed));
+  PetscCall(TestCoarse(failed));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  int failed = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCall(TestDefective(&failed));
-  PetscCall(TestDampedDefective(&failed));
-  PetscCall(TestDoubletLockIn(&failed));
-  PetscCall(TestRigid(&failed));
-  PetscCall(TestCoarse(&failed));
-  PetscCall(PetscFinalize());
-  printf("%d failed\n", failed);
-  return failed ? 1 : 0;
+  return PetscMain(argc, argv, Tests);
 }
