@@ -4,8 +4,8 @@ tests/README.md is one, and README.md has at most 200 lines. Breaks when a file 
 status: 0, or 1.
 
 A path is a word between backticks, or in an indented block, that begins with a folder of the top; NAME in it stands for
-anything. Names of C and Python files without a folder are looked for below the README's own. Links are relative to
-it."""
+anything. Names of C and Python files without a folder are looked for in all of them. Links are relative to the
+README."""
 
 import re
 import sys
@@ -29,12 +29,12 @@ def words(text):
         yield from (word.strip("\"'.,;:()") for word in (one or line).split())
 
 
-def is_there(folder, word):
+def is_there(word):
     """Whether a word that looks like a path names something; one that does not is taken to."""
     if word.startswith(FOLDERS):
         return any(ROOT.glob(word.replace("NAME", "*")))
     if re.fullmatch(r"\w+\.[ch]|\w+\.py", word):
-        return any(folder.rglob(word))
+        return any(path for folder in FOLDERS for path in (ROOT / folder).rglob(word))
     return True
 
 
@@ -42,7 +42,7 @@ def faults(readme):
     """What a README names that is not there."""
     text = readme.read_text()
     for word in words(text):
-        if not is_there(readme.parent, word):
+        if not is_there(word):
             yield f"there is no {word}"
     for link in LINK.findall(text):
         if "://" not in link and not (readme.parent / link).exists():
