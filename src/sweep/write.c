@@ -39,9 +39,9 @@ static PetscErrorCode SweepRowWrite(Sweep sweep, PetscInt i, const SweepMode *m,
 {
   const SweepGrid *grid = &sweep->grid;
   const PetscReal  size = hypot(m->sigma, m->omega);
-  char      error[32], error_hz[32], condition[32], distance[32], closed[32] = "", second[32] = "", branch[32] = "";
-  PetscInt  n_closed;
-  PetscBool jump;
+  char             error[32], error_hz[32], condition[32], distance[32], closed[32], second[32] = "", branch[32];
+  PetscInt         n_closed;
+  PetscBool        jump;
 
   PetscFunctionBeginUser;
   PetscCall(NumberOrEmpty(size > 0 ? m->error / size : NAN, error));
@@ -49,9 +49,9 @@ static PetscErrorCode SweepRowWrite(Sweep sweep, PetscInt i, const SweepMode *m,
   PetscCall(NumberOrEmpty(m->condition, condition));
   PetscCall(NumberOrEmpty(m->branch < 0 ? NAN : OnsetDistance(sweep, i, m->branch), distance));
   if (grid->n_axes == 2) PetscCall(NumberOrEmpty(grid->value[1][i / grid->n[0]], second));
-  if (m->branch >= 0) PetscCall(PetscSNPrintf(branch, sizeof(branch), "%" PetscInt_FMT, m->branch + 1));
+  PetscCall(NumberOrEmpty(m->branch < 0 ? NAN : (PetscReal)(m->branch + 1), branch));
   PetscCall(SweepClosedAt(sweep, i, &n_closed, &jump));
-  if (n_closed >= 0) PetscCall(PetscSNPrintf(closed, sizeof(closed), "%" PetscInt_FMT, n_closed));
+  PetscCall(NumberOrEmpty(n_closed < 0 ? NAN : (PetscReal)n_closed, closed));
   PetscCall(ResultsTableRow(table, "%d,%.15g,%s,%.15g,%.15g,%s,%d,\"%s\",%s,%s,%s,%s,%s,%s,%d", (int)i + 1,
                             (double)grid->value[0][i % grid->n[0]], branch, (double)(m->omega / (2 * PETSC_PI)),
                             (double)m->sigma, error, (int)m->unstable, m->label, second,
@@ -91,12 +91,11 @@ static PetscErrorCode OnsetTableWrite(Sweep sweep, Results results)
     results, "onsets", "parameter,critical_value,freq_hz,kind,label,error_estimate,branch,partner,confirmed,value_2",
     &table));
   for (PetscInt e = 0; e < sweep->events.n; e++) {
-    const BranchEvent *event       = &sweep->events.event[e];
-    char               partner[32] = "", second[32] = "";
+    const BranchEvent *event = &sweep->events.event[e];
+    char               partner[32], second[32] = "";
 
     if (!event->found) continue;
-    if (event->branch[1] >= 0)
-      PetscCall(PetscSNPrintf(partner, sizeof(partner), "%" PetscInt_FMT, event->branch[1] + 1));
+    PetscCall(NumberOrEmpty(event->branch[1] < 0 ? NAN : (PetscReal)(event->branch[1] + 1), partner));
     if (sweep->grid.n_axes == 2) PetscCall(NumberOrEmpty(sweep->grid.value[1][SweepEventLine(sweep, e)], second));
     PetscCall(ResultsTableRow(table, "%s,%.15g,%.15g,%s,\"%s\",%.15g,%d,%s,%d,%s",
                               parameters[sweep->grid.parameter[0]].name, (double)event->critical,

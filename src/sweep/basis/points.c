@@ -28,8 +28,8 @@ PetscReal ReducedModesWorst(const ReducedModes *modes, const ReducedWindow *wind
 }
 
 /* Solution with errors at one point */
-static PetscErrorCode PointSolve(const Reduced *reduced, const ReducedWindow *window, const PetscReal p[],
-                                 ReducedModes *modes)
+static PetscErrorCode SolveWithErrors(const Reduced *reduced, const ReducedWindow *window, const PetscReal p[],
+                                      ReducedModes *modes)
 {
   PetscFunctionBeginUser;
   PetscCall(ReducedSolve(reduced, p, window, modes));
@@ -73,7 +73,7 @@ PetscErrorCode PointsSolve(const PointGroups *groups, const Reduced *reduced, co
   PetscCall(PetscMemzero(modes, (size_t)n * sizeof(*modes)));
   for (PetscInt i = 0; i < n; i++)
     if (PointGroupsOwner(groups, i) == rank)
-      PetscCall(PointSolve(reduced, window, &points[i * reduced->n_parameters], &modes[i]));
+      PetscCall(SolveWithErrors(reduced, window, &points[i * reduced->n_parameters], &modes[i]));
   for (PetscInt i = 0; i < n; i++)
     PetscCall(ReducedModesBroadcast(groups->comm, PointGroupsOwner(groups, i), &modes[i]));
   PetscFunctionReturn(0);
@@ -91,7 +91,7 @@ PetscErrorCode PointsEstimate(const PointGroups *groups, const Reduced *reduced,
 
     worst[i] = 0;
     if (PointGroupsOwner(groups, i) != rank) continue;
-    PetscCall(PointSolve(reduced, window, &points[i * reduced->n_parameters], &modes));
+    PetscCall(SolveWithErrors(reduced, window, &points[i * reduced->n_parameters], &modes));
     worst[i] = ReducedModesWorst(&modes, window, PETSC_FALSE);
     PetscCall(ReducedModesDestroy(&modes));
   }
