@@ -30,7 +30,7 @@ BELOW |= {"results": {"base", "results"},
 LAYERS = {"dense": {"dense"}, "basis": {"dense", "basis"}, "track": {"dense", "track"}}
 # Public headers of which the name is not their room's
 ROOM_OF_HEADER = {"checksum": "base", "contactstatus": "kernels", "elasticity": "kernels", "element": "model",
-                  "options": "base", "pencil": "operators", "projector": "contact", "sys": "base"}
+                  "mesh": "base", "options": "base", "pencil": "operators", "projector": "contact", "sys": "base"}
 # Signatures that a library lays down
 LAID_DOWN = {"KeepError": "PetscPushErrorHandler()"}
 STRATA = re.compile(r"\b(DMPlexGet\w*Stratum|DMPlexGet(Vertex|Cell|Point)Numbering|DMGetStratum\w+|DM\w*Label\w*)\s*\(")

@@ -25,13 +25,14 @@ static PetscErrorCode PartSetFromOptions(MPI_Comm comm, Part *part)
 
 PetscErrorCode PartsSetFromOptions(Model model)
 {
-  char     *names[MODEL_MAX_NAMES];
-  PetscBool given;
+  static const char list[] = "-parts";
+  char             *names[MODEL_MAX_NAMES];
+  PetscBool         given;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-parts", &given));
-  if (!given && !strcmp(model->source, "rig")) PetscCall(PetscOptionsSetValue(NULL, "-parts", "disc,pad,beam"));
-  PetscCall(OptionsGetNames(model->comm, "-parts", "bodies: volumes of the mesh, each the prefix of its material",
+  PetscCall(PetscOptionsHasName(NULL, NULL, list, &given));
+  if (!given && !strcmp(model->source, "rig")) PetscCall(PetscOptionsSetValue(NULL, list, "disc,pad,beam"));
+  PetscCall(OptionsGetNames(model->comm, list, "bodies: volumes of the mesh, each the prefix of its material",
                             MODEL_MAX_NAMES, &model->n_parts, names));
   PetscCall(PetscCalloc1(model->n_parts, &model->parts));
   for (PetscInt i = 0; i < model->n_parts; i++) {
