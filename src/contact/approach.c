@@ -17,6 +17,12 @@ typedef struct {
   PetscReal x[3];     /* of the other end, m: decides between edges of equal cosine */
 } Below;
 
+/* Those of a surface, on every rank, ordered by vertex */
+typedef struct {
+  PetscInt n;
+  Below   *below;
+} BelowList;
+
 /* The number by which a vertex is found, -1 when all its directions are held */
 static PetscInt VertexKey(const PetscInt unknowns[3])
 {
@@ -115,22 +121,22 @@ static void BelowReduce(PetscInt *n, Below below[])
 }
 
 /* The edges of all vertices of a surface, on every rank, ordered by vertex */
-static PetscErrorCode BelowGather(Model model, MPI_Comm comm, const char set[], PetscInt *n, Below **below)
+static PetscErrorCode BelowGather(Model model, MPI_Comm comm, const char set[], BelowList *list)
 {
   PetscInt n_local;
   Below   *local;
 
   PetscFunctionBeginUser;
   PetscCall(BelowLocal(model, set, &n_local, &local));
-  PetscCall(GatherRecords(comm, n_local, sizeof(Below), local, n, below));
-  BelowReduce(n, *below);
+  PetscCall(GatherRecords(comm, n_local, sizeof(Below), local, &list->n, &list->below));
+  BelowReduce(&list->n, list->below);
   PetscCall(PetscFree(local));
   PetscFunctionReturn(0);
 }
 
 /* Adds scale n . u of the vertex below the one with these unknowns; counts it as missing when there is none */
-static PetscErrorCode RowAdd(PetscInt n, const Below below[], const PetscInt unknowns[3], PetscReal scale,
-                             const PetscReal normal[3], Vec d, PetscInt *missing)
+static PetscErrorCode BelowAdd(const BelowList *list, const PetscInt unknowns[3], PetscReal scale,
+                               const PetscReal normal[3], Vec d, PetscInt *missing)
 {
   const PetscScalar values[3] = {scale * normal[0], scale * normal[1], scale * normal[2]};
   const Below       wanted    = {.vertex = VertexKey(unknowns)};
@@ -138,7 +144,7 @@ static PetscErrorCode RowAdd(PetscInt n, const Below below[], const PetscInt unk
 
   PetscFunctionBeginUser;
   if (wanted.vertex < 0) PetscFunctionReturn(0);
-  found = (const Below *)bsearch(&wanted, below, (size_t)n, sizeof(*below), BelowCompare);
+  found = (const Below *)bsearch(&wanted, list->below, (size_t)list->n, sizeof(Below), BelowCompare);
   if (found)
     PetscCall(VecSetValues(d, 3, found->below, values, ADD_VALUES));
   else
@@ -147,8 +153,8 @@ static PetscErrorCode RowAdd(PetscInt n, const Below below[], const PetscInt unk
 }
 
 /* Adds the local pairs of an interface: slave and master are the edges of the two surfaces */
-static PetscErrorCode PairsAdd(Contact contact, PetscInt interface, PetscInt n_slave, const Below slave[],
-                               PetscInt n_master, const Below master[], Vec d)
+static PetscErrorCode PairsAdd(Contact contact, PetscInt interface, const BelowList *slave, const BelowList *master,
+                               Vec d)
 {
   const ContactInterface *c       = &contact->interfaces[interface];
   PetscInt                n_pairs = 0, missing = 0;
@@ -161,9 +167,9 @@ static PetscErrorCode PairsAdd(Contact contact, PetscInt interface, PetscInt n_s
     const PetscReal    share = 1 / (PetscReal)n_pairs;
 
     if (pair->interface != interface) continue;
-    PetscCall(RowAdd(n_slave, slave, pair->slave, -share, pair->n, d, &missing));
+    PetscCall(BelowAdd(slave, pair->slave, -share, pair->n, d, &missing));
     for (PetscInt i = 0; i < pair->n_master; i++)
-      PetscCall(RowAdd(n_master, master, pair->master[i], pair->weight[i] * share, pair->n, d, &missing));
+      PetscCall(BelowAdd(master, pair->master[i], pair->weight[i] * share, pair->n, d, &missing));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &missing, 1, MPIU_INT, MPI_SUM, contact->comm));
   PetscCheck(!missing, contact->comm, PETSC_ERR_USER_INPUT,
@@ -175,21 +181,20 @@ static PetscErrorCode PairsAdd(Contact contact, PetscInt interface, PetscInt n_s
 PetscErrorCode ContactCreateApproach(Contact contact, PetscInt interface, Vec *d)
 {
   const ContactInterface *c = &contact->interfaces[interface];
-  PetscInt                n_slave, n_master;
-  Below                  *slave, *master;
+  BelowList               slave, master;
   DM                      dm;
 
   PetscFunctionBeginUser;
-  PetscCall(BelowGather(contact->model, contact->comm, c->slave, &n_slave, &slave));
-  PetscCall(BelowGather(contact->model, contact->comm, c->master, &n_master, &master));
+  PetscCall(BelowGather(contact->model, contact->comm, c->slave, &slave));
+  PetscCall(BelowGather(contact->model, contact->comm, c->master, &master));
   PetscCall(ModelGetDM(contact->model, &dm));
   PetscCall(DMCreateGlobalVector(dm, d));
   PetscCall(VecSet(*d, 0));
   PetscCall(VecSetOption(*d, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE)); /* held directions */
-  PetscCall(PairsAdd(contact, interface, n_slave, slave, n_master, master, *d));
+  PetscCall(PairsAdd(contact, interface, &slave, &master, *d));
   PetscCall(VecAssemblyBegin(*d));
   PetscCall(VecAssemblyEnd(*d));
-  PetscCall(PetscFree(slave));
-  PetscCall(PetscFree(master));
+  PetscCall(PetscFree(slave.below));
+  PetscCall(PetscFree(master.below));
   PetscFunctionReturn(0);
 }

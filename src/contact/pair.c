@@ -131,7 +131,7 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const Conta
 }
 
 /* Raises the error for a node without partner, or where the slip that is given vanishes */
-static PetscErrorCode PairCheck(MPI_Comm comm, ContactInterface *c, PairFailure *failure)
+static PetscErrorCode PartnerCheck(MPI_Comm comm, ContactInterface *c, PairFailure *failure)
 {
   const PetscBool given = Dot(c->slip, c->slip) > 0 || Dot(c->rotation, c->rotation) > 0 ? PETSC_TRUE : PETSC_FALSE;
   struct {
@@ -171,7 +171,7 @@ PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface)
   PetscFunctionBeginUser;
   PetscCall(ContactGetSurface(contact, interface, &surface));
   PetscCall(PairNodes(contact, interface, surface, &failure));
-  PetscCall(PairCheck(contact->comm, c, &failure));
+  PetscCall(PartnerCheck(contact->comm, c, &failure));
   for (PetscInt p = first; p < contact->n_pairs; p++) area += contact->pairs[p].area;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPI_SUM, contact->comm));
   for (PetscInt p = first; p < contact->n_pairs; p++)

@@ -4,7 +4,7 @@
 #include "contactimpl.h"
 
 /* Sets one row: d . (u_m - u_s) */
-static PetscErrorCode RowSet(Mat rows, PetscInt row, const ContactPair *pair, const PetscReal d[3])
+static PetscErrorCode PairRowSet(Mat rows, PetscInt row, const ContactPair *pair, const PetscReal d[3])
 {
   const PetscScalar slave[3] = {-d[0], -d[1], -d[2]};
 
@@ -28,7 +28,7 @@ PetscErrorCode ContactCreateRows(Contact contact, PetscInt n, const PetscInt pai
   PetscCall(ModelGetMesh(contact->model, &mesh));
   PetscCall(MatCreateAIJ(contact->comm, n, mesh->n_own, PETSC_DETERMINE, PETSC_DETERMINE, 15, NULL, 15, NULL, rows));
   PetscCall(MatGetOwnershipRange(*rows, &row, NULL));
-  for (PetscInt i = 0; i < n; i++) PetscCall(RowSet(*rows, row + i, &contact->pairs[pair[i]], direction[i]));
+  for (PetscInt i = 0; i < n; i++) PetscCall(PairRowSet(*rows, row + i, &contact->pairs[pair[i]], direction[i]));
   PetscCall(MatAssemblyBegin(*rows, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*rows, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(0);

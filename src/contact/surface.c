@@ -80,7 +80,7 @@ static int FacetCompare(const void *left, const void *right)
     a[d] = (f->x[0][d] + f->x[2][d]) + (f->x[1][d] + f->x[3][d]);
     b[d] = (g->x[0][d] + g->x[2][d]) + (g->x[1][d] + g->x[3][d]);
   }
-  return PlaceCompare(a, b);
+  return ContactPlaceCompare(a, b);
 }
 
 static PetscReal FacetUnit(PetscReal n[3])

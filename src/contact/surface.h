@@ -63,7 +63,7 @@ typedef struct {
 #define CONTACT_EDGE 0.02 /* beyond the border a slave still faces it, in natural coordinates */
 
 /* By x, then y, then z */
-static inline int PlaceCompare(const PetscReal a[3], const PetscReal b[3])
+static inline int ContactPlaceCompare(const PetscReal a[3], const PetscReal b[3])
 {
   for (int d = 0; d < 3; d++)
     if (a[d] != b[d]) return a[d] < b[d] ? -1 : 1;

@@ -36,7 +36,7 @@ PetscErrorCode ContactProjectorSetFromOptions(ContactProjector p)
 }
 
 /* Raises an error for parameters that make no sense in dynamics */
-static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
+static PetscErrorCode InterfaceCheckInTime(MPI_Comm comm, const ContactInterface *c)
 {
   PetscBool same;
 
@@ -56,7 +56,7 @@ PetscErrorCode ContactProjectorSetUp(ContactProjector p)
   const ContactInterface *interface = p->contact->interfaces;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(InterfaceCheck(p->contact->comm, &interface[i]));
+  for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(InterfaceCheckInTime(p->contact->comm, &interface[i]));
   for (PetscInt i = 0; i < p->n_interfaces; i++)
     PetscCall(SlidingCheck(p->contact->comm, &interface[i], &p->sliding[i]));
   PetscCall(ProjectorSetUpSurfaces(p));

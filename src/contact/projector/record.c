@@ -77,8 +77,8 @@ typedef struct {
 } Directions;
 
 /* Adds one closed pair to the sums of its interface */
-INTO_VERSIONS void SumsAdd(const ContactProjector p, const ProjectorPair *pair, const ContactState *state, PetscReal dt,
-                           ContactSums *sums, Directions *directions)
+INTO_VERSIONS void InterfaceSumsAdd(const ContactProjector p, const ProjectorPair *pair, const ContactState *state,
+                                    PetscReal dt, ContactSums *sums, Directions *directions)
 {
   PetscReal old[3], velocity[3];
 
@@ -135,7 +135,7 @@ VERSIONS void PairsRecord(ContactProjector p, const ContactStep *step, const Pro
     p->sums[i].n[state->status]++;
     if (pair->facet < 0) continue;
     for (int d = 0; d < 3 && p->sliding[i].slides; d++) directions[i].along[d] += pair->turned[1][d];
-    if (state->lambda_n != 0) SumsAdd(p, pair, state, step->dt, &p->sums[i], &directions[i]);
+    if (state->lambda_n != 0) InterfaceSumsAdd(p, pair, state, step->dt, &p->sums[i], &directions[i]);
   }
   for (PetscInt i = 0; i < p->n_interfaces; i++) p->sums[i].friction = FrictionAlong(&directions[i]);
   p->dt = step->dt;

@@ -30,7 +30,7 @@ static PetscErrorCode VerticesMark(Model model, const char set[], PetscBool mark
 }
 
 /* All local vertices of contact surfaces, ascending */
-static PetscErrorCode VerticesFind(Contact contact, PetscInt *n, PetscInt **vertex)
+static PetscErrorCode SurfaceVerticesFind(Contact contact, PetscInt *n, PetscInt **vertex)
 {
   const Mesh *mesh;
   PetscBool  *mark;
@@ -59,7 +59,7 @@ static PetscErrorCode NodesFind(ContactProjector p, PetscInt *n_unique, PetscInt
   PetscInt        n, *vertex, *local, total;
 
   PetscFunctionBeginUser;
-  PetscCall(VerticesFind(p->contact, &n, &vertex));
+  PetscCall(SurfaceVerticesFind(p->contact, &n, &vertex));
   PetscCall(ModelGetMesh(p->contact->model, &mesh));
   PetscCall(PetscMalloc1(n, &local));
   for (PetscInt i = 0; i < n; i++)
@@ -134,7 +134,7 @@ static int SlaveCompare(const void *left, const void *right)
   const Slave *a = (const Slave *)left, *b = (const Slave *)right;
 
   if (a->interface != b->interface) return a->interface < b->interface ? -1 : 1;
-  return PlaceCompare(a->x, b->x);
+  return ContactPlaceCompare(a->x, b->x);
 }
 
 /* One pair per slave, without partner as yet */
