@@ -10,28 +10,54 @@ static const char help[] =
 
 typedef enum { ANALYSIS_MODES, ANALYSIS_SWEEP, ANALYSIS_STATIC, ANALYSIS_TRANSIENT, N_ANALYSES } Analysis;
 
+static const char *const analyses[N_ANALYSES] = {"modes", "sweep", "static", "transient"};
+
+/* What shows itself, on stdout or where its own option says */
+typedef enum {
+  SHOWN_MODEL,
+  SHOWN_CONTACT,
+  SHOWN_OPERATORS,
+  SHOWN_STATICS,
+  SHOWN_MODES,
+  SHOWN_SWEEP,
+  SHOWN_DYNAMICS,
+  N_SHOWN
+} Shown;
+
+static const struct {
+  const char *option, *help;
+} shown[N_SHOWN] = {
+  [SHOWN_MODEL]     = {"-model_view",     "show mesh, parts, supports, springs and loads"          },
+  [SHOWN_CONTACT]   = {"-contact_view",   "show interfaces and their pairs"                        },
+  [SHOWN_OPERATORS] = {"-operators_view", "show the pencil of modes and sweeps, and its parameters"},
+  [SHOWN_STATICS]   = {"-statics_view",   "show the equilibrium"                                   },
+  [SHOWN_MODES]     = {"-modes_view",     "show the modes found"                                   },
+  [SHOWN_SWEEP]     = {"-sweep_view",     "show what a sweep found"                                },
+  [SHOWN_DYNAMICS]  = {"-dynamics_view",  "show bodies, step and balances of a run in time"        },
+};
+
 /* The chain of a run: options -> model -> contact -> operators -> statics -> pencil -> modes -> sweep, or dynamics; and
    results */
 typedef struct {
-  Model      model; /* NULL for matrices without a mesh */
-  Contact    contact;
-  Operators  operators;
-  PetscReal *p; /* values of the parameters: those of the scene, and what statics identify */
-  Statics    statics;
-  Pencil     pencil; /* at p, where modes, a file or a view ask for it */
-  Modes      modes;
-  Sweep      sweep;
-  Dynamics   dynamics;
-  Results    results;
-  Analysis   analysis;
-  PetscBool  view;
+  Model       model; /* NULL for matrices without a mesh */
+  Contact     contact;
+  Operators   operators;
+  PetscReal  *p; /* values of the parameters: those of the scene, and what statics identify */
+  Statics     statics;
+  Pencil      pencil; /* at p, where modes, a file or a view ask for it */
+  Modes       modes;
+  Sweep       sweep;
+  Dynamics    dynamics;
+  Results     results;
+  Analysis    analysis;
+  PetscBool   view;
+  PetscViewer viewer[N_SHOWN]; /* of what the options below ask for and is not shown yet */
 } Chain;
 
 static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
 {
-  static const char *const analyses[N_ANALYSES] = {"modes", "sweep", "static", "transient"};
-  PetscBool                has_matrices;
-  PetscInt                 analysis = ANALYSIS_MODES;
+  PetscBool has_matrices;
+  PetscInt  analysis = ANALYSIS_MODES;
 
   PetscFunctionBeginUser;
   PetscCall(SquealSetFromOptions(comm));
@@ -42,6 +68,8 @@ static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
                              chain->view, &chain->view, NULL));
   PetscOptionsEnd();
   chain->analysis = (Analysis)analysis;
+  for (int i = 0; i < N_SHOWN; i++)
+    PetscCall(OptionsGetViewer(comm, shown[i].option, shown[i].help, &chain->viewer[i]));
   PetscCall(OperatorsCreate(comm, &chain->operators));
   PetscCall(OperatorsSetFromOptions(chain->operators));
   PetscCall(OperatorsHaveMatrices(chain->operators, &has_matrices));
@@ -69,6 +97,7 @@ static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
 static PetscErrorCode ChainDestroy(Chain *chain)
 {
   PetscFunctionBeginUser;
+  for (int i = 0; i < N_SHOWN; i++) PetscCall(PetscViewerDestroy(&chain->viewer[i]));
   PetscCall(ResultsDestroy(&chain->results));
   PetscCall(DynamicsDestroy(&chain->dynamics));
   PetscCall(SweepDestroy(&chain->sweep));
@@ -139,14 +168,52 @@ static PetscErrorCode ChainLinearise(Chain *chain)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ChainView(Chain *chain, PetscViewer viewer)
+static PetscErrorCode ShownView(Chain *chain, Shown what, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
-  if (chain->model) PetscCall(ModelView(chain->model, viewer));
-  if (chain->contact && chain->analysis != ANALYSIS_TRANSIENT) PetscCall(ContactView(chain->contact, viewer));
-  if (chain->analysis != ANALYSIS_MODES && chain->analysis != ANALYSIS_SWEEP) PetscFunctionReturn(0);
-  PetscCall(ChainLinearise(chain));
-  PetscCall(PencilView(chain->pencil, viewer));
+  if (what == SHOWN_MODEL) PetscCall(ModelView(chain->model, viewer));
+  if (what == SHOWN_CONTACT) PetscCall(ContactView(chain->contact, viewer));
+  if (what == SHOWN_OPERATORS) PetscCall(ChainLinearise(chain));
+  if (what == SHOWN_OPERATORS) PetscCall(PencilView(chain->pencil, viewer));
+  if (what == SHOWN_STATICS) PetscCall(StaticsView(chain->statics, viewer));
+  if (what == SHOWN_MODES) PetscCall(ModesView(chain->modes, viewer));
+  if (what == SHOWN_SWEEP) PetscCall(SweepView(chain->sweep, viewer));
+  if (what == SHOWN_DYNAMICS) PetscCall(DynamicsView(chain->dynamics, viewer));
+  PetscFunctionReturn(0);
+}
+
+/* Shows it on stdout where wanted, and where its option says */
+static PetscErrorCode ChainShow(Chain *chain, Shown what, PetscBool wanted)
+{
+  const PetscViewer out = PETSC_VIEWER_STDOUT_(PETSC_COMM_WORLD);
+
+  PetscFunctionBeginUser;
+  if (wanted) PetscCall(ShownView(chain, what, out));
+  if (chain->viewer[what] && !(wanted && chain->viewer[what] == out))
+    PetscCall(ShownView(chain, what, chain->viewer[what]));
+  PetscCall(PetscViewerDestroy(&chain->viewer[what]));
+  PetscFunctionReturn(0);
+}
+
+/* What there is before the analysis */
+static PetscErrorCode ChainView(Chain *chain)
+{
+  PetscFunctionBeginUser;
+  if (chain->model) PetscCall(ChainShow(chain, SHOWN_MODEL, chain->view));
+  if (chain->contact && chain->analysis != ANALYSIS_TRANSIENT) PetscCall(ChainShow(chain, SHOWN_CONTACT, chain->view));
+  if (chain->analysis == ANALYSIS_MODES || chain->analysis == ANALYSIS_SWEEP)
+    PetscCall(ChainShow(chain, SHOWN_OPERATORS, chain->view));
+  PetscFunctionReturn(0);
+}
+
+/* One line on stderr for each option of those that had nothing to show */
+static PetscErrorCode ChainWarnHidden(MPI_Comm comm, const Chain *chain)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < N_SHOWN; i++)
+    if (chain->viewer[i])
+      PetscCall(PetscFPrintf(comm, stderr, "squeal: warning: %s has nothing to show with -analysis %s\n",
+                             shown[i].option, analyses[chain->analysis]));
   PetscFunctionReturn(0);
 }
 
@@ -173,20 +240,20 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode RunStatic(Chain *chain, PetscViewer viewer)
+static PetscErrorCode RunStatic(Chain *chain)
 {
   PetscFunctionBeginUser;
   PetscCall(SquealStageBegin(SQUEAL_STATICS));
   PetscCall(StaticsSolve(chain->statics, chain->p));
   PetscCall(SquealStageEnd(SQUEAL_STATICS));
-  PetscCall(StaticsView(chain->statics, viewer));
+  PetscCall(ChainShow(chain, SHOWN_STATICS, PETSC_TRUE));
   PetscCall(SquealStageBegin(SQUEAL_RESULTS));
   PetscCall(StaticsWrite(chain->statics, chain->results));
   PetscCall(SquealStageEnd(SQUEAL_RESULTS));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode RunModes(Chain *chain, PetscViewer viewer)
+static PetscErrorCode RunModes(Chain *chain)
 {
   PetscFunctionBeginUser;
   PetscCall(ChainLinearise(chain));
@@ -194,38 +261,38 @@ static PetscErrorCode RunModes(Chain *chain, PetscViewer viewer)
   PetscCall(SquealStageBegin(SQUEAL_MODES));
   PetscCall(ModesSolve(chain->modes));
   PetscCall(SquealStageEnd(SQUEAL_MODES));
-  PetscCall(ModesView(chain->modes, viewer));
+  PetscCall(ChainShow(chain, SHOWN_MODES, PETSC_TRUE));
   PetscCall(SquealStageBegin(SQUEAL_RESULTS));
   PetscCall(ModesWrite(chain->modes, chain->results));
   PetscCall(SquealStageEnd(SQUEAL_RESULTS));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode RunSweep(Chain *chain, PetscViewer viewer)
+static PetscErrorCode RunSweep(Chain *chain)
 {
   PetscFunctionBeginUser;
   PetscCall(PencilDestroy(&chain->pencil)); /* a sweep makes its own */
   PetscCall(SquealStageBegin(SQUEAL_SWEEP));
   PetscCall(SweepSolve(chain->sweep, chain->results));
   PetscCall(SquealStageEnd(SQUEAL_SWEEP));
-  PetscCall(SweepView(chain->sweep, viewer));
+  PetscCall(ChainShow(chain, SHOWN_SWEEP, PETSC_TRUE));
   PetscCall(SquealStageBegin(SQUEAL_RESULTS));
   PetscCall(SweepWrite(chain->sweep, chain->results));
   PetscCall(SquealStageEnd(SQUEAL_RESULTS));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode RunTransient(Chain *chain, PetscViewer viewer)
+static PetscErrorCode RunTransient(Chain *chain)
 {
   PetscFunctionBeginUser;
   PetscCall(SquealStageBegin(SQUEAL_DYNAMICS));
   PetscCall(DynamicsSolve(chain->dynamics, chain->results));
   PetscCall(SquealStageEnd(SQUEAL_DYNAMICS));
-  PetscCall(DynamicsView(chain->dynamics, viewer));
+  PetscCall(ChainShow(chain, SHOWN_DYNAMICS, PETSC_TRUE));
   PetscFunctionReturn(0);
 }
 
-typedef PetscErrorCode (*RunAnalysis)(Chain *, PetscViewer);
+typedef PetscErrorCode (*RunAnalysis)(Chain *);
 
 static const RunAnalysis run_analysis[N_ANALYSES] = {[ANALYSIS_MODES]     = RunModes,
                                                      [ANALYSIS_SWEEP]     = RunSweep,
@@ -246,9 +313,10 @@ static PetscErrorCode Run(MPI_Comm comm)
     PetscCall(ResultsOpenDirectory(chain.results));
     PetscCall(ChainSetUp(&chain));
     PetscCall(ChainConnect(&chain, viewer));
-    if (chain.view) PetscCall(ChainView(&chain, viewer));
-    PetscCall(run_analysis[chain.analysis](&chain, viewer));
+    PetscCall(ChainView(&chain));
+    PetscCall(run_analysis[chain.analysis](&chain));
     if (chain.view) PetscCall(SquealViewStages(comm, viewer));
+    PetscCall(ChainWarnHidden(comm, &chain));
     PetscCall(OptionsWarnUnused(comm));
   }
   PetscCall(ChainDestroy(&chain));

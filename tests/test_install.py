@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What is installed serves a program of one's own: the flags of squeal.pc compile and link it, and it runs. Breaks when a
-header is missing or needs one of src, when a library is not named, or when the flags are those of the build.
+"""What is installed serves a program of one's own: the flags of squeal.pc compile and link it, and it runs. Breaks when
+a header is missing or needs one of src, when a library is not named, or when the flags are those of the build.
 
     test_install.py MESON BUILD MPIRUN"""
 
@@ -26,7 +26,8 @@ int main(int argc, char **argv)
   return SquealFinalize(error);
 }
 """
-OPTIONS = "-model_source rig -parts disc -rig_pad 0 -rig_disc_elements 3,12,1 -rig_disc_mesh axisymmetric -disc_young 2e11 -disc_density 7800"
+OPTIONS = ("-model_source rig -parts disc -rig_pad 0 -rig_disc_elements 3,12,1 -rig_disc_mesh axisymmetric "
+           "-disc_young 2e11 -disc_density 7800")
 
 
 def run(*command, **more):
