@@ -119,7 +119,6 @@ PetscErrorCode SquealSetFromOptions(MPI_Comm comm)
   PetscCall(PetscOptionsBool("-squeal_traceback", "show PETSc's traceback of an error, for developers", "sys.h", traced,
                              &traced, NULL));
   PetscOptionsEnd();
-  if (traced) (void)setvbuf(stderr, NULL, _IOLBF, BUFSIZ); /* lines of ranks do not run into each other */
   PetscFunctionReturn(0);
 }
 
