@@ -8,7 +8,7 @@
              than six arguments, src and include together not above MOST_LINES
   strata     only src/model knows how a DMPlex numbers its points
   readmes    each folder of src has a README.md of at most 25 lines, or one above it that names the folder
-  options    no option is read in two places
+  options    no option is read by two functions
   words      nothing of who wrote it where: no paths of somebody's own folders, no day's work, no numbers of tasks
 
 All violations are printed with file:line. The same rules then run on a small house with one violation of each kind
@@ -167,23 +167,24 @@ def owner(source, f, at):
 
 
 def read_options(source):
-    """Option, its owner and line for each literal name that is handed to a function that reads it."""
+    """Option, its owner, function and line for each literal name that is handed to a function that reads it."""
     first = r'(?:[\w>.-]+(?:\([^)]*\))?, (NULL, |"\w+", )?)?'
     reader = re.compile(rf'\b(\w*Option\w*)\(\s*{first}"-(\w+)"')
     for f in source.functions:
         for found in reader.finditer(source.text, f.begin, f.end):
             whose = found[2].strip('", ') if found[2] else owner(source, f, found.start() - f.begin)
-            yield found[3], "" if whose == "NULL" else whose, source.line(found.start(3))
+            yield found[3], "" if whose == "NULL" else whose, f.name, source.line(found.start(3))
 
 
 def options(house):
     """Options that two places read."""
     seen = {}
     for source in house.c:
-        for name, whose, line in read_options(source):
-            if (name, whose) in seen:
-                yield house.say(source.path, line, f"-{name} is read at {seen[name, whose]} too")
-            seen.setdefault((name, whose), f"{source.path.relative_to(house.root)}:{line}")
+        for name, whose, function, line in read_options(source):
+            here = function, house.say(source.path, line, "")
+            before = seen.setdefault((name, whose), here)
+            if before[0] != function:
+                yield f"{here[1]}-{name} is read at {before[1][:-2]} too"
 
 
 def words(house):
