@@ -65,6 +65,17 @@ typedef struct {
   PetscBool fix[3];
 } Support;
 
+/* What the options name */
+typedef struct {
+  PetscInt       n_parts, n_supports, n_springs, n_dashpots, n_loads, n_probes;
+  Part          *parts;
+  Support       *supports;
+  Grounded      *springs, *dashpots;
+  Load          *loads;
+  Probe         *probes;
+  const Element *element; /* formulation of the cells; after ModelSetUp() */
+} ModelScene;
+
 /*@
    ModelCreate - makes an empty model. Collective.
 @*/
@@ -114,39 +125,16 @@ PetscErrorCode ModelGetDM(Model model, DM *dm);
 /*@ ModelGetMesh - what this rank has of the mesh, after ModelSetUp() (borrowed). Not collective. @*/
 PetscErrorCode ModelGetMesh(Model model, const Mesh **mesh);
 
-/*@ ModelGetParts - the bodies (borrowed). Not collective. @*/
-PetscErrorCode ModelGetParts(Model model, PetscInt *n_parts, const Part **parts);
+/*@ ModelGetScene - what the options name, after ModelSetFromOptions() (borrowed). Not collective. @*/
+PetscErrorCode ModelGetScene(Model model, const ModelScene **scene);
 
 /*@ ModelFindPart - index of the part that -`name`_part gives, -1 for an empty one. Not collective, same call on all
     ranks. Errors: PETSC_ERR_USER_INPUT for none of the parts. @*/
 PetscErrorCode ModelFindPart(Model model, const char name[], const char part[], PetscInt *index);
 
-/*@ ModelGetCellParts - index of the part of each local cell, shape [number of local cells] (borrowed). Not
-    collective. @*/
-PetscErrorCode ModelGetCellParts(Model model, const PetscInt **cell_part);
-
-/*@ ModelGetElement - formulation of the cells. Not collective. @*/
-PetscErrorCode ModelGetElement(Model model, const Element **element);
-
 /*@ ModelGetCell - corners of local cell c in the element's node order: vertices [n_nodes] and coordinates [n_nodes][3]
     (m). Not collective. @*/
 PetscErrorCode ModelGetCell(Model model, PetscInt c, PetscInt vertices[], PetscReal coordinates[]);
-
-/*@ ModelGetUnknowns - global number of each displacement of each local vertex, shape [vertices][3]; -1 where a support
-    fixes it (borrowed). Not collective. @*/
-PetscErrorCode ModelGetUnknowns(Model model, const PetscInt **unknowns);
-
-/*@ ModelGetSprings - grounded springs (borrowed). Not collective. @*/
-PetscErrorCode ModelGetSprings(Model model, PetscInt *n, const Grounded **springs);
-
-/*@ ModelGetDashpots - grounded dashpots (borrowed). Not collective. @*/
-PetscErrorCode ModelGetDashpots(Model model, PetscInt *n, const Grounded **dashpots);
-
-/*@ ModelGetSupports - essential supports (borrowed). Not collective. @*/
-PetscErrorCode ModelGetSupports(Model model, PetscInt *n, const Support **supports);
-
-/*@ ModelGetLoads - total forces on sets (borrowed). Not collective. @*/
-PetscErrorCode ModelGetLoads(Model model, PetscInt *n, const Load **loads);
 
 /*@
    ModelAddLoad - adds load i to a vector of ModelCreateNodal(), N. On a
@@ -180,9 +168,6 @@ PetscErrorCode ModelGetSetFaces(Model model, const char set[], PetscInt *n, Pets
     @*/
 PetscErrorCode ModelGetSetNormals(Model model, const char set[], PetscReal **area_normals);
 
-/*@ ModelGetProbes - places that histories record (borrowed). Not collective. @*/
-PetscErrorCode ModelGetProbes(Model model, PetscInt *n, const Probe **probes);
-
 /*@ ModelFindNode - the node of a part (empty for any) nearest to a place (m): its local vertex from 0 on one rank that
     has it, -1 on all others. Collective; after ModelSetUp(). @*/
 PetscErrorCode ModelFindNode(Model model, const char part[], const PetscReal at[3], PetscInt *vertex);
@@ -211,9 +196,6 @@ PetscErrorCode ModelGetNodal(Model model, Vec u, PetscReal nodal[]);
 /*@ ModelSumShared - sums a vector of ModelCreateNodal() over all ranks that share a vertex; every one of them gets the
     sum. Collective. @*/
 PetscErrorCode ModelSumShared(Model model, Vec local);
-
-/*@ ModelGetCoordinates - of the local vertices, shape [vertices][3], m (borrowed). Not collective. @*/
-PetscErrorCode ModelGetCoordinates(Model model, const PetscReal **coordinates);
 
 /*@ ModelAddChecksum - adds mesh, materials, supports, springs and dashpots; with_partition: also which rank has which
     cells. Collective; after ModelSetUp(). @*/

@@ -50,28 +50,26 @@ static int BelowCompare(const void *a, const void *b)
    is held or no edge goes inward. */
 static PetscErrorCode BelowFind(Model model, PetscInt v, const PetscReal normal[3], Below *best)
 {
-  const PetscReal  area = PetscSqrtReal(PetscSqr(normal[0]) + PetscSqr(normal[1]) + PetscSqr(normal[2]));
-  const PetscReal *x;
-  const PetscInt  *unknowns;
-  PetscInt         n_edges, *ends;
+  const PetscReal area = PetscSqrtReal(PetscSqr(normal[0]) + PetscSqr(normal[1]) + PetscSqr(normal[2]));
+  const Mesh     *mesh;
+  PetscInt        n_edges, *ends;
 
   PetscFunctionBeginUser;
   *best = (Below){.vertex = -1};
-  PetscCall(ModelGetCoordinates(model, &x));
-  PetscCall(ModelGetUnknowns(model, &unknowns));
+  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(ModelGetNeighbours(model, v, &n_edges, &ends));
   for (PetscInt e = 0; e < n_edges; e++) {
-    Below     b   = {.vertex = VertexKey(&unknowns[3 * v])};
+    Below     b   = {.vertex = VertexKey(&mesh->unknown[3 * v])};
     PetscReal dot = 0, length = 0;
     PetscInt  end = 3 * ends[e];
 
     for (int d = 0; d < 3; d++) {
-      const PetscReal edge = x[end + d] - x[3 * v + d];
+      const PetscReal edge = mesh->x[end + d] - mesh->x[3 * v + d];
 
       dot -= edge * normal[d];
       length += PetscSqr(edge);
-      b.x[d]     = x[end + d];
-      b.below[d] = unknowns[end + d];
+      b.x[d]     = mesh->x[end + d];
+      b.below[d] = mesh->unknown[end + d];
     }
     b.cosine = area > 0 ? dot / (area * PetscSqrtReal(length)) : 0;
     if (b.cosine > 0 && (best->vertex < 0 || BelowIsBetter(&b, best))) *best = b;

@@ -113,8 +113,8 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const Conta
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
-  PetscCall(ModelGetCoordinates(contact->model, &nodes.x));
-  PetscCall(ModelGetUnknowns(contact->model, &nodes.unknowns));
+  nodes.x        = mesh->x;
+  nodes.unknowns = mesh->unknown;
   PetscCall(ModelGetSetNormals(contact->model, c->slave, &nodes.normals));
   PetscCall(ModelGetOwnedVertices(contact->model, c->slave, &is));
   PetscCall(ISGetLocalSize(is, &n));

@@ -44,12 +44,12 @@ static PetscErrorCode ForceArraysRestore(ForceArrays *a)
 /* The first vertex whose velocity is no number: this rank alone knows of it */
 static PetscErrorCode DynamicsComplainNaN(Dynamics d, const ForceArrays *a)
 {
-  const double     time = (double)a->step->time;
-  const PetscReal *x;
-  PetscInt         n_step;
+  const double time = (double)a->step->time;
+  const Mesh  *mesh;
+  PetscInt     n_step;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetCoordinates(d->model, &x));
+  PetscCall(ModelGetMesh(d->model, &mesh));
   PetscCall(TSGetStepNumber(d->ts, &n_step));
   for (PetscInt i = 0; i < d->layout->n_vertices; i++) {
     PetscReal here[3];
@@ -58,7 +58,7 @@ static PetscErrorCode DynamicsComplainNaN(Dynamics d, const ForceArrays *a)
     LayoutGet(d->layout, i, a->v, here);
     PetscCheck(!PetscIsInfOrNanReal(here[0] + here[1] + here[2]), PETSC_COMM_SELF, PETSC_ERR_FP,
                "velocity is no number at the node at %.6g, %.6g, %.6g m after step %" PetscInt_FMT ", %.6g s",
-               (double)x[3 * i], (double)x[3 * i + 1], (double)x[3 * i + 2], n_step, time);
+               (double)mesh->x[3 * i], (double)mesh->x[3 * i + 1], (double)mesh->x[3 * i + 2], n_step, time);
   }
   SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FP, "energy is no number after step %" PetscInt_FMT ", %.6g s", n_step, time);
 }

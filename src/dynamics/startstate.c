@@ -34,14 +34,15 @@ static PetscErrorCode StartCheckStatic(Dynamics d)
 {
   static const char *const ramps[] = {"_ramp", "_delay"}, *const others[] = {"dynamics_gravity", "motions"};
   const ContactInterface *interfaces = d->interfaces;
-  const Load             *loads;
-  PetscInt                n_loads, n = d->n_interfaces;
+  const ModelScene       *scene;
+  PetscInt                n = d->n_interfaces;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetLoads(d->model, &n_loads, &loads));
+  PetscCall(ModelGetScene(d->model, &scene));
   for (int r = 0; r < 2; r++) {
     PetscCall(StartCheckAbsent(d, others[r], "", PETSC_FALSE));
-    for (PetscInt i = 0; i < n_loads; i++) PetscCall(StartCheckAbsent(d, loads[i].name, ramps[r], PETSC_TRUE));
+    for (PetscInt i = 0; i < scene->n_loads; i++)
+      PetscCall(StartCheckAbsent(d, scene->loads[i].name, ramps[r], PETSC_TRUE));
     for (PetscInt i = 0; i < n; i++) PetscCall(StartCheckAbsent(d, interfaces[i].name, ramps[r], PETSC_TRUE));
   }
   for (PetscInt i = 0; i < n; i++)
@@ -83,14 +84,14 @@ static PetscErrorCode StartAddShape(Dynamics d, PetscReal u[], PetscReal v[])
 /* 1e-10 of the model's size, m: rounding of coordinates is no penetration */
 static PetscErrorCode StartFindSlack(Dynamics d, PetscReal *slack)
 {
-  const PetscReal *x;
-  PetscReal        range[2] = {0, 0}; /* largest and smallest coordinate, as maxima */
+  const Mesh *mesh;
+  PetscReal   range[2] = {0, 0}; /* largest and smallest coordinate, as maxima */
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetCoordinates(d->model, &x));
+  PetscCall(ModelGetMesh(d->model, &mesh));
   for (PetscInt i = 0; i < 3 * d->layout->n_vertices; i++) {
-    range[0] = PetscMax(range[0], x[i]);
-    range[1] = PetscMax(range[1], -x[i]);
+    range[0] = PetscMax(range[0], mesh->x[i]);
+    range[1] = PetscMax(range[1], -mesh->x[i]);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 2, MPIU_REAL, MPI_MAX, d->comm));
   *slack = 1e-10 * (range[0] + range[1]);

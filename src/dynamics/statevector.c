@@ -20,12 +20,12 @@ PetscErrorCode StateVectorFromVec(Model model, const Layout *layout, Vec x, Pets
 
 PetscErrorCode StateVectorToVec(Model model, const Layout *layout, const PetscReal state[], Vec x)
 {
-  const PetscInt *unknowns;
-  PetscInt        begin, end;
-  PetscScalar    *value;
+  const Mesh  *mesh;
+  PetscInt     begin, end;
+  PetscScalar *value;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetUnknowns(model, &unknowns));
+  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(VecGetOwnershipRange(x, &begin, &end));
   PetscCall(VecGetArray(x, &value));
   for (PetscInt i = 0; i < layout->n_vertices; i++) {
@@ -34,7 +34,7 @@ PetscErrorCode StateVectorToVec(Model model, const Layout *layout, const PetscRe
     if (layout->at[i] < 0) continue;
     LayoutGet(layout, i, state, here);
     for (int d = 0; d < 3; d++) {
-      const PetscInt row = unknowns[3 * i + d];
+      const PetscInt row = mesh->unknown[3 * i + d];
 
       if (row >= begin && row < end) value[row - begin] = here[d];
     }

@@ -34,12 +34,12 @@ static PetscErrorCode DynamicsFindPart(Dynamics d, const char set[], PetscInt *p
 
 PetscErrorCode DynamicsSetFrames(Dynamics d)
 {
-  const Part *parts;
-  PetscInt    n_parts, n_turning = 0;
+  const ModelScene *scene;
+  PetscInt          n_turning = 0;
 
   PetscFunctionBeginUser;
   if (!d->coriolis && !d->centrifugal) PetscFunctionReturn(0);
-  PetscCall(ModelGetParts(d->model, &n_parts, &parts));
+  PetscCall(ModelGetScene(d->model, &scene));
   for (PetscInt i = 0; i < d->n_interfaces; i++) {
     PetscReal rotation[3];
     PetscInt  part;
@@ -49,8 +49,8 @@ PetscErrorCode DynamicsSetFrames(Dynamics d)
     if (!turns) continue;
     n_turning++;
     PetscCall(DynamicsFindPart(d, d->interfaces[i].master, &part));
-    PetscCall(
-      ExternalSetFrame(d->external, parts[part].name, rotation, d->interfaces[i].center, d->coriolis, d->centrifugal));
+    PetscCall(ExternalSetFrame(d->external, scene->parts[part].name, rotation, d->interfaces[i].center, d->coriolis,
+                               d->centrifugal));
   }
   PetscCheck(n_turning, d->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_%s does nothing: no contact has -..._kinematics turning with a -..._rotation",

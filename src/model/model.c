@@ -101,25 +101,10 @@ PetscErrorCode ModelGetMesh(Model model, const Mesh **mesh)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelGetParts(Model model, PetscInt *n_parts, const Part **parts)
+PetscErrorCode ModelGetScene(Model model, const ModelScene **scene)
 {
   PetscFunctionBeginUser;
-  *n_parts = model->n_parts;
-  *parts   = model->parts;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModelGetCellParts(Model model, const PetscInt **cell_part)
-{
-  PetscFunctionBeginUser;
-  *cell_part = model->mesh.cell_part;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModelGetElement(Model model, const Element **element)
-{
-  PetscFunctionBeginUser;
-  *element = model->element;
+  *scene = &model->scene;
   PetscFunctionReturn(0);
 }
 
@@ -135,28 +120,6 @@ PetscErrorCode ModelGetCell(Model model, PetscInt c, PetscInt vertices[], PetscR
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelGetCoordinates(Model model, const PetscReal **coordinates)
-{
-  PetscFunctionBeginUser;
-  *coordinates = model->mesh.x;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModelGetUnknowns(Model model, const PetscInt **unknowns)
-{
-  PetscFunctionBeginUser;
-  *unknowns = model->mesh.unknown;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModelGetSupports(Model model, PetscInt *n, const Support **supports)
-{
-  PetscFunctionBeginUser;
-  *n        = model->n_supports;
-  *supports = model->supports;
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ModelView(Model model, PetscViewer viewer)
 {
   PetscInt    n_cells = model->mesh.n_cells;
@@ -168,21 +131,22 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer,
                                    "model: %s, %" PetscInt_FMT " cells, %" PetscInt_FMT " unknowns on %d ranks; %s\n",
                                    !strcmp(model->source, "rig") ? "built-in rig" : model->file, n_cells,
-                                   model->mesh.n_unknowns, size, model->element->description));
-  for (PetscInt i = 0; i < model->n_parts; i++) {
-    const Part *p = &model->parts[i];
+                                   model->mesh.n_unknowns, size, model->scene.element->description));
+  for (PetscInt i = 0; i < model->scene.n_parts; i++) {
+    const Part *p = &model->scene.parts[i];
 
     PetscCall(PetscViewerASCIIPrintf(
       viewer, "  part %s: E %.6g Pa, nu %.6g, rho %.6g kg/m^3, alpha %.6g 1/s, beta %.6g s\n", p->name,
       (double)p->young, (double)p->poisson, (double)p->density, (double)p->alpha, (double)p->beta));
   }
-  for (PetscInt i = 0; i < model->n_supports; i++)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  support %s holds%s%s%s of %s\n", model->supports[i].name,
-                                     model->supports[i].fix[0] ? " x" : "", model->supports[i].fix[1] ? " y" : "",
-                                     model->supports[i].fix[2] ? " z" : "", model->supports[i].set));
+  for (PetscInt i = 0; i < model->scene.n_supports; i++)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  support %s holds%s%s%s of %s\n", model->scene.supports[i].name,
+                                     model->scene.supports[i].fix[0] ? " x" : "",
+                                     model->scene.supports[i].fix[1] ? " y" : "",
+                                     model->scene.supports[i].fix[2] ? " z" : "", model->scene.supports[i].set));
   PetscCall(GroundedsView(model, viewer));
-  for (PetscInt i = 0; i < model->n_loads; i++) {
-    const Load *l = &model->loads[i];
+  for (PetscInt i = 0; i < model->scene.n_loads; i++) {
+    const Load *l = &model->scene.loads[i];
 
     PetscCall(PetscViewerASCIIPrintf(viewer, "  load %s on %s: %.6g, %.6g, %.6g N in all\n", l->name, l->set,
                                      (double)l->force[0], (double)l->force[1], (double)l->force[2]));
@@ -197,21 +161,21 @@ PetscErrorCode ModelDestroy(Model *model)
 
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(0);
-  for (PetscInt i = 0; i < m->n_parts; i++) PetscCall(PetscFree(m->parts[i].name));
-  for (PetscInt i = 0; i < m->n_supports; i++) {
-    PetscCall(PetscFree(m->supports[i].name));
-    PetscCall(PetscFree(m->supports[i].set));
+  for (PetscInt i = 0; i < m->scene.n_parts; i++) PetscCall(PetscFree(m->scene.parts[i].name));
+  for (PetscInt i = 0; i < m->scene.n_supports; i++) {
+    PetscCall(PetscFree(m->scene.supports[i].name));
+    PetscCall(PetscFree(m->scene.supports[i].set));
   }
-  for (PetscInt i = 0; i < m->n_loads; i++) {
-    PetscCall(PetscFree(m->loads[i].name));
-    PetscCall(PetscFree(m->loads[i].set));
+  for (PetscInt i = 0; i < m->scene.n_loads; i++) {
+    PetscCall(PetscFree(m->scene.loads[i].name));
+    PetscCall(PetscFree(m->scene.loads[i].set));
   }
   PetscCall(ProbesDestroy(m));
   for (PetscInt i = 0; i < m->n_together; i++) PetscCall(PetscFree(m->together[i]));
   PetscCall(GroundedsDestroy(m));
-  PetscCall(PetscFree(m->parts));
-  PetscCall(PetscFree(m->supports));
-  PetscCall(PetscFree(m->loads));
+  PetscCall(PetscFree(m->scene.parts));
+  PetscCall(PetscFree(m->scene.supports));
+  PetscCall(PetscFree(m->scene.loads));
   PetscCall(MeshReset(m));
   PetscCall(DMDestroy(&m->dm));
   PetscCall(PetscFree(*model));

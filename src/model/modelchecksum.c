@@ -59,7 +59,7 @@ static PetscErrorCode ModelAddMeshChecksum(Model model, PetscBool with_partition
     local    = ChecksumBytes(local, &piece[i], sizeof(local));
   }
   PetscCall(ChecksumSetPart(c, "the mesh"));
-  PetscCall(ChecksumAddString(c, model->element->formulation));
+  PetscCall(ChecksumAddString(c, model->scene.element->formulation));
   PetscCall(ChecksumAddPieces(c, mesh->n_cells, piece));
   PetscCall(PetscFree(piece));
   local = ChecksumBytes(local, &rank, sizeof(rank));
@@ -73,23 +73,23 @@ PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum 
   PetscFunctionBeginUser;
   PetscCall(ModelAddMeshChecksum(model, with_partition, c));
   PetscCall(ChecksumSetPart(c, "materials"));
-  for (PetscInt i = 0; i < model->n_parts; i++) {
-    const Part     *p     = &model->parts[i];
+  for (PetscInt i = 0; i < model->scene.n_parts; i++) {
+    const Part     *p     = &model->scene.parts[i];
     const PetscReal all[] = {p->young, p->poisson, p->density, p->alpha, p->beta};
 
     PetscCall(ChecksumAddString(c, p->name));
     PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(all), all));
   }
   PetscCall(ChecksumSetPart(c, "supports"));
-  for (PetscInt i = 0; i < model->n_supports; i++) {
-    const PetscBool *fix = model->supports[i].fix;
+  for (PetscInt i = 0; i < model->scene.n_supports; i++) {
+    const PetscBool *fix = model->scene.supports[i].fix;
 
-    PetscCall(ModelAddSetChecksum(model, model->supports[i].set, PETSC_FALSE, c));
+    PetscCall(ModelAddSetChecksum(model, model->scene.supports[i].set, PETSC_FALSE, c));
     PetscCall(ChecksumAddInts(c, 3, (const PetscInt[]){fix[0], fix[1], fix[2]}));
   }
-  for (PetscInt i = 0; i < model->n_springs + model->n_dashpots; i++) {
-    const PetscBool is_spring = i < model->n_springs ? PETSC_TRUE : PETSC_FALSE;
-    const Grounded *g         = is_spring ? &model->springs[i] : &model->dashpots[i - model->n_springs];
+  for (PetscInt i = 0; i < model->scene.n_springs + model->scene.n_dashpots; i++) {
+    const PetscBool is_spring = i < model->scene.n_springs ? PETSC_TRUE : PETSC_FALSE;
+    const Grounded *g = is_spring ? &model->scene.springs[i] : &model->scene.dashpots[i - model->scene.n_springs];
 
     PetscCall(ChecksumSetPart(c, is_spring ? "springs" : "dashpots"));
     PetscCall(ModelAddSetChecksum(model, g->set, PETSC_FALSE, c));
@@ -101,11 +101,11 @@ PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum 
 PetscErrorCode ModelAddLoadsChecksum(Model model, Checksum c)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < model->n_loads; i++) {
-    PetscCall(ChecksumSetPart(c, "load %s", model->loads[i].name));
+  for (PetscInt i = 0; i < model->scene.n_loads; i++) {
+    PetscCall(ChecksumSetPart(c, "load %s", model->scene.loads[i].name));
     PetscCall(ChecksumAddInts(c, 1, &i)); /* the order counts */
-    PetscCall(ModelAddSetChecksum(model, model->loads[i].set, PETSC_FALSE, c));
-    PetscCall(ChecksumAddReals(c, 3, model->loads[i].force));
+    PetscCall(ModelAddSetChecksum(model, model->scene.loads[i].set, PETSC_FALSE, c));
+    PetscCall(ChecksumAddReals(c, 3, model->scene.loads[i].force));
   }
   PetscFunctionReturn(0);
 }

@@ -25,21 +25,16 @@ typedef struct {
 struct _p_Model {
   MPI_Comm comm;
   /* set by options */
-  PetscBool given; /* the scene names a mesh */
-  char      source[8], file[PETSC_MAX_PATH_LEN], formulation[32];
-  Rig       rig;
-  PetscInt  n_parts, n_supports, n_springs, n_dashpots, n_loads, n_probes, n_together;
-  Part     *parts;
-  Support  *supports;
-  Grounded *springs, *dashpots;
-  Load     *loads;
-  Probe    *probes;
-  char     *together[MODEL_MAX_NAMES]; /* sets whose cells stay on one rank */
-  PetscBool keep_slabs;                /* swept bodies are cut between slabs, and no set is kept together */
+  PetscBool  given; /* the scene names a mesh */
+  char       source[8], file[PETSC_MAX_PATH_LEN], formulation[32];
+  Rig        rig;
+  ModelScene scene;
+  PetscInt   n_together;
+  char      *together[MODEL_MAX_NAMES]; /* sets whose cells stay on one rank */
+  PetscBool  keep_slabs;                /* swept bodies are cut between slabs, and no set is kept together */
   /* built by ModelSetUp() */
-  DM             dm;
-  const Element *element;
-  Mesh           mesh;
+  DM   dm;
+  Mesh mesh;
 };
 
 /* rig.c - dimensions and counts of the rig; errors for impossible ones */

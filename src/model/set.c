@@ -121,7 +121,7 @@ PetscErrorCode ModelGetOwnedVertices(Model model, const char set[], IS *vertices
 /* Reverses the corners of a face when they are clockwise seen from outside its cell */
 static PetscErrorCode FaceOrient(Model model, PetscInt face, PetscInt corners[4])
 {
-  const PetscInt  n_nodes = model->element->n_nodes;
+  const PetscInt  n_nodes = model->scene.element->n_nodes;
   const PetscInt *cells;
   PetscInt        cStart, vertices[ELEMENT_MAX_NODES];
   PetscReal       cell_x[ELEMENT_MAX_DOFS], x[4][3], normal[3], outward[3] = {0, 0, 0}, side = 0;

@@ -61,7 +61,7 @@ static PetscErrorCode MeshSetCorners(Model model, PetscInt cStart, PetscInt vSta
     PetscCall(DMPlexGetTransitiveClosure(model->dm, cStart + c, PETSC_TRUE, &n_points, &closure));
     while (closure[2 * first] < vStart || closure[2 * first] >= vStart + mesh->n_vertices) first++;
     for (PetscInt i = 0; i < mesh->n_nodes; i++)
-      corner[mesh->n_nodes * c + i] = closure[2 * (first + model->element->closure_order[i])] - vStart;
+      corner[mesh->n_nodes * c + i] = closure[2 * (first + model->scene.element->closure_order[i])] - vStart;
   }
   if (closure) PetscCall(DMPlexRestoreTransitiveClosure(model->dm, cStart, PETSC_TRUE, &n_points, &closure));
   mesh->corner = corner;
@@ -77,10 +77,10 @@ static PetscErrorCode MeshSetParts(Model model)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(mesh->n_cells, &cell_part));
-  PetscCall(PetscMalloc1(model->n_parts, &part));
-  for (PetscInt i = 0; i < model->n_parts; i++) part[i] = model->parts[i].name;
+  PetscCall(PetscMalloc1(model->scene.n_parts, &part));
+  for (PetscInt i = 0; i < model->scene.n_parts; i++) part[i] = model->scene.parts[i].name;
   PetscCall(PartsFindCells(model, cell_part));
-  mesh->n_parts   = model->n_parts;
+  mesh->n_parts   = model->scene.n_parts;
   mesh->cell_part = cell_part;
   mesh->part      = part;
   PetscFunctionReturn(0);
@@ -93,10 +93,10 @@ PetscErrorCode MeshTabulate(Model model)
   PetscFunctionBeginUser;
   PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, &cEnd));
   PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, &vEnd));
-  model->mesh = (Mesh){.shape      = model->element->shape,
+  model->mesh = (Mesh){.shape      = model->scene.element->shape,
                        .n_vertices = vEnd - vStart,
                        .n_cells    = cEnd - cStart,
-                       .n_nodes    = model->element->n_nodes};
+                       .n_nodes    = model->scene.element->n_nodes};
   PetscCall(MeshSetParts(model));
   PetscCall(MeshSetPlaces(model));
   PetscCall(MeshSetNumbers(model));

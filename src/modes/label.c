@@ -26,11 +26,11 @@
    cells give */
 static PetscErrorCode PartMasses(Model model, PetscInt part, PetscReal density, PetscReal **mass)
 {
-  const Element *element;
-  const Mesh    *mesh;
+  const ModelScene *scene;
+  const Mesh       *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetElement(model, &element));
+  PetscCall(ModelGetScene(model, &scene));
   PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(PetscCalloc1(mesh->n_vertices, mass));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
@@ -39,7 +39,7 @@ static PetscErrorCode PartMasses(Model model, PetscInt part, PetscReal density, 
 
     if (mesh->cell_part[c] != part) continue;
     PetscCall(ModelGetCell(model, c, vertices, x));
-    element->measure(x, &volume, &jacobian);
+    scene->element->measure(x, &volume, &jacobian);
     for (PetscInt i = 0; i < mesh->n_nodes; i++) (*mass)[vertices[i]] += density * volume / (PetscReal)mesh->n_nodes;
   }
   PetscFunctionReturn(0);
@@ -196,12 +196,11 @@ static PetscErrorCode LabelUnknown(Modes modes)
 
 PetscErrorCode ModesLabel(Modes modes)
 {
-  Labels      l = {0};
-  const Part *parts;
-  PetscInt    n_parts;
-  Model       model;
-  Contact     contact;
-  Operators   operators;
+  Labels            l = {0};
+  const ModelScene *scene;
+  Model             model;
+  Contact           contact;
+  Operators         operators;
 
   PetscFunctionBeginUser;
   PetscCall(PencilGetOperators(modes->pencil, &operators));
@@ -210,14 +209,14 @@ PetscErrorCode ModesLabel(Modes modes)
     PetscCall(LabelUnknown(modes));
     PetscFunctionReturn(0);
   }
-  PetscCall(ModelGetParts(model, &n_parts, &parts));
-  PetscCall(LabelsCreate(modes, model, contact, n_parts, parts, &l));
+  PetscCall(ModelGetScene(model, &scene));
+  PetscCall(LabelsCreate(modes, model, contact, scene->n_parts, scene->parts, &l));
   for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelsAdd(modes, model, i, &l));
-  PetscCallMPI(
-    MPI_Allreduce(MPI_IN_PLACE, l.share, (PetscMPIInt)(2 * modes->n * n_parts), MPIU_REAL, MPI_SUM, modes->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.share, (PetscMPIInt)(2 * modes->n * scene->n_parts), MPIU_REAL, MPI_SUM,
+                             modes->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.energy, (PetscMPIInt)(2 * modes->n), MPIU_REAL, MPI_SUM, modes->comm));
   if (l.disc >= 0) PetscCall(DiscSolve(&l.frame));
-  for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelWrite(modes, &l, parts, i));
+  for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelWrite(modes, &l, scene->parts, i));
   PetscCall(LabelsDestroy(&l));
   PetscFunctionReturn(0);
 }

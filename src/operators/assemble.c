@@ -23,18 +23,18 @@ static void ElementLump(PetscInt n, PetscReal mass[])
 /* Adds local cell c to K_p and M_p */
 static PetscErrorCode OperatorsAddCell(Operators o, PetscInt c, const Elasticity *material, Mat K, Mat M)
 {
-  const Element *element;
-  const Mesh    *mesh;
-  PetscInt       n, vertices[ELEMENT_MAX_NODES], rows[ELEMENT_MAX_DOFS];
-  PetscReal      x[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  const ModelScene *scene;
+  const Mesh       *mesh;
+  PetscInt          n, vertices[ELEMENT_MAX_NODES], rows[ELEMENT_MAX_DOFS];
+  PetscReal x[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(o->model, &mesh));
-  PetscCall(ModelGetElement(o->model, &element));
+  PetscCall(ModelGetScene(o->model, &scene));
   PetscCall(ModelGetCell(o->model, c, vertices, x));
-  n = 3 * element->n_nodes;
+  n = 3 * scene->element->n_nodes;
   for (PetscInt i = 0; i < n; i++) rows[i] = mesh->unknown[3 * vertices[i / 3] + i % 3];
-  PetscCheck(!element->matrices(x, material, ke, me), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
+  PetscCheck(!scene->element->matrices(x, material, ke, me), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
   if (o->lump) ElementLump(n, me);
   PetscCall(MatSetValues(K, n, rows, n, rows, ke, ADD_VALUES));
   PetscCall(MatSetValues(M, n, rows, n, rows, me, ADD_VALUES));
@@ -97,20 +97,21 @@ static PetscErrorCode OperatorsAddPart(Operators o, PetscInt part, const Part *p
 /* Diagonal matrix of ones at the nodes of a set, in the directions of the mask */
 static PetscErrorCode UnitDiagonalCreate(Operators o, const char set[], const PetscBool mask[3], Mat *D)
 {
+  const Mesh       *mesh;
   const PetscScalar one = 1;
-  const PetscInt   *unknowns, *vertices;
+  const PetscInt   *vertices;
   PetscInt          n_vertices, n_own;
   IS                is;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetUnknowns(o->model, &unknowns));
+  PetscCall(ModelGetMesh(o->model, &mesh));
   PetscCall(MatGetLocalSize(o->terms.term[0].A, &n_own, NULL));
   PetscCall(MatCreateAIJ(o->comm, n_own, n_own, PETSC_DETERMINE, PETSC_DETERMINE, 1, NULL, 0, NULL, D));
   PetscCall(ModelGetOwnedVertices(o->model, set, &is));
   PetscCall(ISGetLocalSize(is, &n_vertices));
   PetscCall(ISGetIndices(is, &vertices));
   for (PetscInt j = 0; j < 3 * n_vertices; j++) {
-    const PetscInt row = unknowns[3 * vertices[j / 3] + j % 3];
+    const PetscInt row = mesh->unknown[3 * vertices[j / 3] + j % 3];
 
     if (mask[j % 3]) PetscCall(MatSetValues(*D, 1, &row, 1, &row, &one, ADD_VALUES));
   }
@@ -165,18 +166,14 @@ static PetscErrorCode OperatorsAddGrounded(Operators o, OperatorsTermKind kind, 
 
 PetscErrorCode OperatorsAssemble(Operators o)
 {
-  const Part     *parts;
-  const Grounded *springs, *dashpots;
-  PetscInt        n_parts, n_springs, n_dashpots;
+  const ModelScene *scene;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetParts(o->model, &n_parts, &parts));
-  PetscCall(ModelGetSprings(o->model, &n_springs, &springs));
-  PetscCall(ModelGetDashpots(o->model, &n_dashpots, &dashpots));
-  for (PetscInt i = 0; i < n_parts; i++) PetscCall(OperatorsAddPart(o, i, &parts[i]));
-  for (PetscInt i = 0; i < n_springs; i++)
-    PetscCall(OperatorsAddGrounded(o, OPERATORS_STIFFNESS, &springs[i], "stiffness"));
-  for (PetscInt i = 0; i < n_dashpots; i++)
-    PetscCall(OperatorsAddGrounded(o, OPERATORS_DAMPING, &dashpots[i], "viscosity"));
+  PetscCall(ModelGetScene(o->model, &scene));
+  for (PetscInt i = 0; i < scene->n_parts; i++) PetscCall(OperatorsAddPart(o, i, &scene->parts[i]));
+  for (PetscInt i = 0; i < scene->n_springs; i++)
+    PetscCall(OperatorsAddGrounded(o, OPERATORS_STIFFNESS, &scene->springs[i], "stiffness"));
+  for (PetscInt i = 0; i < scene->n_dashpots; i++)
+    PetscCall(OperatorsAddGrounded(o, OPERATORS_DAMPING, &scene->dashpots[i], "viscosity"));
   PetscFunctionReturn(0);
 }

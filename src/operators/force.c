@@ -10,15 +10,15 @@
 static PetscErrorCode OperatorsAddCellForce(Operators o, PetscInt c, const Elasticity *material, const PetscScalar u[],
                                             PetscScalar f[])
 {
-  const Element *element;
-  PetscInt       n, vertices[ELEMENT_MAX_NODES], at[ELEMENT_MAX_DOFS];
-  PetscReal      x[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  const ModelScene *scene;
+  PetscInt          n, vertices[ELEMENT_MAX_NODES], at[ELEMENT_MAX_DOFS];
+  PetscReal x[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetElement(o->model, &element));
+  PetscCall(ModelGetScene(o->model, &scene));
   PetscCall(ModelGetCell(o->model, c, vertices, x));
-  PetscCheck(!element->matrices(x, material, ke, me), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
-  n = 3 * element->n_nodes;
+  PetscCheck(!scene->element->matrices(x, material, ke, me), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
+  n = 3 * scene->element->n_nodes;
   for (PetscInt i = 0; i < n; i++) at[i] = 3 * vertices[i / 3] + i % 3;
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt j = 3; j < n; j++) f[at[i]] += ke[n * i + j] * (u[at[j]] - u[at[j % 3]]);
@@ -28,17 +28,16 @@ static PetscErrorCode OperatorsAddCellForce(Operators o, PetscInt c, const Elast
 /* Adds the forces of all local cells */
 static PetscErrorCode OperatorsAddCellForces(Operators o, const PetscReal p[], const PetscScalar u[], PetscScalar f[])
 {
-  const Part *parts;
-  const Mesh *mesh;
-  PetscInt    n_parts;
+  const ModelScene *scene;
+  const Mesh       *mesh;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(o->model, &mesh));
-  PetscCall(ModelGetParts(o->model, &n_parts, &parts));
+  PetscCall(ModelGetScene(o->model, &scene));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     const PetscInt   part     = mesh->cell_part[c];
     const PetscReal  young    = p[N_PART_PARAMETERS * part + PART_YOUNG];
-    const Elasticity material = ElasticityFromEngineering(young, parts[part].poisson, 1);
+    const Elasticity material = ElasticityFromEngineering(young, scene->parts[part].poisson, 1);
 
     PetscCall(OperatorsAddCellForce(o, c, &material, u, f));
   }
@@ -69,17 +68,16 @@ PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[],
 /* f += forces of the springs */
 static PetscErrorCode OperatorsAddSpringForces(Operators o, const PetscReal p[], Vec u, Vec f)
 {
-  const Part *parts;
-  PetscInt    n_parts;
-  Vec         part;
+  const ModelScene *scene;
+  Vec               part;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetParts(o->model, &n_parts, &parts));
+  PetscCall(ModelGetScene(o->model, &scene));
   PetscCall(VecDuplicate(f, &part));
   for (PetscInt t = 0; t < o->terms.n; t++) {
     const OperatorsTerm *term = &o->terms.term[t];
 
-    if (term->kind != OPERATORS_STIFFNESS || term->factor[0].parameter < N_PART_PARAMETERS * n_parts) continue;
+    if (term->kind != OPERATORS_STIFFNESS || term->factor[0].parameter < N_PART_PARAMETERS * scene->n_parts) continue;
     PetscCall(MatMult(term->A, u, part));
     PetscCall(VecAXPY(f, OperatorsTermCoefficient(term, p), part));
   }
@@ -90,13 +88,13 @@ static PetscErrorCode OperatorsAddSpringForces(Operators o, const PetscReal p[],
 PetscErrorCode OperatorsApplyBodies(Operators operators, const PetscReal p[], Vec u, Vec f)
 {
   const PetscScalar *force;
-  const PetscInt    *unknowns;
+  const Mesh        *mesh;
   PetscScalar       *value;
   PetscInt           n, begin, end;
   Vec                local;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetUnknowns(operators->model, &unknowns));
+  PetscCall(ModelGetMesh(operators->model, &mesh));
   PetscCall(ModelCreateNodal(operators->model, &local));
   PetscCall(OperatorsInternalForces(operators, p, u, local));
   PetscCall(VecGetLocalSize(local, &n));
@@ -104,7 +102,7 @@ PetscErrorCode OperatorsApplyBodies(Operators operators, const PetscReal p[], Ve
   PetscCall(VecGetArrayRead(local, &force));
   PetscCall(VecGetArray(f, &value));
   for (PetscInt i = 0; i < n; i++)
-    if (unknowns[i] >= begin && unknowns[i] < end) value[unknowns[i] - begin] = force[i];
+    if (mesh->unknown[i] >= begin && mesh->unknown[i] < end) value[mesh->unknown[i] - begin] = force[i];
   PetscCall(VecRestoreArray(f, &value));
   PetscCall(VecRestoreArrayRead(local, &force));
   PetscCall(VecDestroy(&local));

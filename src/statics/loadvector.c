@@ -8,16 +8,17 @@
 static PetscErrorCode UnknownsTake(Model model, Vec local, Vec f)
 {
   const PetscScalar *value;
-  const PetscInt    *unknowns;
+  const Mesh        *mesh;
   PetscInt           n, begin, end;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetUnknowns(model, &unknowns));
+  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(VecGetOwnershipRange(f, &begin, &end));
   PetscCall(VecGetLocalSize(local, &n));
   PetscCall(VecGetArrayRead(local, &value));
   for (PetscInt i = 0; i < n; i++)
-    if (unknowns[i] >= begin && unknowns[i] < end) PetscCall(VecSetValue(f, unknowns[i], value[i], INSERT_VALUES));
+    if (mesh->unknown[i] >= begin && mesh->unknown[i] < end)
+      PetscCall(VecSetValue(f, mesh->unknown[i], value[i], INSERT_VALUES));
   PetscCall(VecRestoreArrayRead(local, &value));
   PetscCall(VecAssemblyBegin(f));
   PetscCall(VecAssemblyEnd(f));
@@ -26,19 +27,18 @@ static PetscErrorCode UnknownsTake(Model model, Vec local, Vec f)
 
 PetscErrorCode StaticsCreateLoad(Operators operators, Vec *f, PetscReal *size)
 {
-  const Load *loads;
-  PetscInt    n;
-  Vec         local;
-  Model       model;
+  const ModelScene *scene;
+  Vec               local;
+  Model             model;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(operators, &model, NULL));
-  PetscCall(ModelGetLoads(model, &n, &loads));
+  PetscCall(ModelGetScene(model, &scene));
   PetscCall(ModelCreateNodal(model, &local));
   *size = 0;
-  for (PetscInt i = 0; i < n; i++) {
+  for (PetscInt i = 0; i < scene->n_loads; i++) {
     PetscCall(ModelAddLoad(model, i, local));
-    for (int d = 0; d < 3; d++) *size += PetscAbsReal(loads[i].force[d]);
+    for (int d = 0; d < 3; d++) *size += PetscAbsReal(scene->loads[i].force[d]);
   }
   PetscCall(OperatorsCreateVec(operators, f));
   PetscCall(UnknownsTake(model, local, *f));

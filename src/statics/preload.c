@@ -31,23 +31,23 @@
 /* Adds local cell c with displacements u, three values per local vertex */
 static PetscErrorCode GeometricAddCell(Model model, PetscInt c, const Elasticity *material, const PetscReal u[], Mat K)
 {
-  const Element  *element;
-  const PetscInt *unknowns;
-  PetscInt        n, vertices[ELEMENT_MAX_NODES], rows[ELEMENT_MAX_DOFS];
-  PetscReal       x[ELEMENT_MAX_DOFS], ue[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  const ModelScene *scene;
+  const Mesh       *mesh;
+  PetscInt          n, vertices[ELEMENT_MAX_NODES], rows[ELEMENT_MAX_DOFS];
+  PetscReal         x[ELEMENT_MAX_DOFS], ue[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetElement(model, &element));
-  PetscCall(ModelGetUnknowns(model, &unknowns));
+  PetscCall(ModelGetScene(model, &scene));
+  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(ModelGetCell(model, c, vertices, x));
-  n = 3 * element->n_nodes;
+  n = 3 * scene->element->n_nodes;
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt at = 3 * vertices[i / 3] + i % 3;
 
-    rows[i] = unknowns[at];
+    rows[i] = mesh->unknown[at];
     ue[i]   = u[at];
   }
-  PetscCheck(!element->geometric(x, material, ue, ke), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
+  PetscCheck(!scene->element->geometric(x, material, ue, ke), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
   PetscCall(MatSetValues(K, n, rows, n, rows, ke, ADD_VALUES));
   PetscFunctionReturn(0);
 }
@@ -56,15 +56,14 @@ static PetscErrorCode GeometricAddCell(Model model, PetscInt c, const Elasticity
 static PetscErrorCode GeometricAddCells(Operators operators, const PetscReal p[], Model model, const PetscReal u[],
                                         Mat K)
 {
-  const Part *parts;
-  const Mesh *mesh;
-  PetscInt    n_parts;
+  const ModelScene *scene;
+  const Mesh       *mesh;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(model, &mesh));
-  PetscCall(ModelGetParts(model, &n_parts, &parts));
+  PetscCall(ModelGetScene(model, &scene));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const Part       *part = &parts[mesh->cell_part[c]];
+    const Part       *part = &scene->parts[mesh->cell_part[c]];
     OperatorsMaterial values;
     Elasticity        material;
 

@@ -10,9 +10,8 @@
 /* Internal forces minus loads and contact forces at all local vertices, three values each */
 static PetscErrorCode ReactionUnbalance(Statics s, Model model, Contact contact, Vec *local)
 {
-  PetscInt    n;
-  Vec         part;
-  const Load *loads;
+  Vec               part;
+  const ModelScene *scene;
 
   PetscFunctionBeginUser;
   PetscCall(ModelCreateNodal(model, local));
@@ -21,8 +20,8 @@ static PetscErrorCode ReactionUnbalance(Statics s, Model model, Contact contact,
   PetscCall(ContactNodalForces(contact, s->state, part));
   PetscCall(VecAXPY(*local, -1, part));
   PetscCall(VecSet(part, 0));
-  PetscCall(ModelGetLoads(model, &n, &loads));
-  for (PetscInt i = 0; i < n; i++) PetscCall(ModelAddLoad(model, i, part));
+  PetscCall(ModelGetScene(model, &scene));
+  for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(ModelAddLoad(model, i, part));
   PetscCall(VecAXPY(*local, -1, part));
   PetscCall(VecDestroy(&part));
   PetscFunctionReturn(0);
@@ -105,28 +104,25 @@ static PetscErrorCode ReactionStiffness(Statics s, const Grounded *g, PetscReal 
 /* Rows of supports and springs */
 static PetscErrorCode ReactionsWriteHolders(Statics s, Model model, Contact contact, ResultsTable table)
 {
-  const PetscBool all[3] = {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE};
-  const Support  *supports;
-  const Grounded *springs;
-  PetscInt        n_supports, n_springs;
-  PetscReal       force[3], stiffness[3];
-  Vec             unbalance, u;
+  const PetscBool   all[3] = {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE};
+  const ModelScene *scene;
+  PetscReal         force[3], stiffness[3];
+  Vec               unbalance, u;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetSupports(model, &n_supports, &supports));
-  PetscCall(ModelGetSprings(model, &n_springs, &springs));
+  PetscCall(ModelGetScene(model, &scene));
   PetscCall(ReactionUnbalance(s, model, contact, &unbalance));
-  for (PetscInt i = 0; i < n_supports; i++) {
-    PetscCall(ReactionSum(model, supports[i].set, supports[i].fix, unbalance, force));
-    PetscCall(ReactionRow(table, supports[i].name, "support", force));
+  for (PetscInt i = 0; i < scene->n_supports; i++) {
+    PetscCall(ReactionSum(model, scene->supports[i].set, scene->supports[i].fix, unbalance, force));
+    PetscCall(ReactionRow(table, scene->supports[i].name, "support", force));
   }
-  for (PetscInt i = 0; i < n_springs; i++) {
+  for (PetscInt i = 0; i < scene->n_springs; i++) {
     PetscCall(StaticsCreateDisplacements(s, model, &u));
-    PetscCall(ReactionSum(model, springs[i].set, all, u, force));
+    PetscCall(ReactionSum(model, scene->springs[i].set, all, u, force));
     PetscCall(VecDestroy(&u));
-    PetscCall(ReactionStiffness(s, &springs[i], stiffness));
+    PetscCall(ReactionStiffness(s, &scene->springs[i], stiffness));
     for (int d = 0; d < 3; d++) force[d] *= -stiffness[d];
-    PetscCall(ReactionRow(table, springs[i].name, "spring", force));
+    PetscCall(ReactionRow(table, scene->springs[i].name, "spring", force));
   }
   PetscCall(VecDestroy(&unbalance));
   PetscFunctionReturn(0);
@@ -135,19 +131,20 @@ static PetscErrorCode ReactionsWriteHolders(Statics s, Model model, Contact cont
 PetscErrorCode StaticsWriteReactions(Statics s, Results results)
 {
   const ContactInterface *interfaces;
-  const Load             *loads;
-  PetscInt                n_loads, n_interfaces;
+  const ModelScene       *scene;
+  PetscInt                n_interfaces;
   ResultsTable            table;
   Contact                 contact;
   Model                   model;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(s->operators, &model, &contact));
-  PetscCall(ModelGetLoads(model, &n_loads, &loads));
+  PetscCall(ModelGetScene(model, &scene));
   PetscCall(ContactGetInterfaces(contact, &n_interfaces, &interfaces));
   PetscCall(ResultsTableOpen(results, "reactions", "name,kind,force_x_n,force_y_n,force_z_n", &table));
   PetscCall(ReactionsWriteHolders(s, model, contact, table));
-  for (PetscInt i = 0; i < n_loads; i++) PetscCall(ReactionRow(table, loads[i].name, "load", loads[i].force));
+  for (PetscInt i = 0; i < scene->n_loads; i++)
+    PetscCall(ReactionRow(table, scene->loads[i].name, "load", scene->loads[i].force));
   for (PetscInt i = 0; i < n_interfaces; i++)
     PetscCall(ReactionRow(table, interfaces[i].name, "contact on master", s->resultant[i].force));
   PetscCall(ResultsTableClose(&table));

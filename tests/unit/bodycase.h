@@ -49,20 +49,18 @@ static inline PetscErrorCode CaseDestroy(Case *c)
 /* State vector of a field that wobbles within a few elements (m), zero in held directions */
 static inline PetscErrorCode FieldSet(const Case *c, PetscInt seed, PetscReal x[])
 {
-  const PetscReal *coordinates;
-  const PetscInt  *unknowns;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetCoordinates(c->model, &coordinates));
-  PetscCall(ModelGetUnknowns(c->model, &unknowns));
+  PetscCall(ModelGetMesh(c->model, &mesh));
   PetscCall(PetscArrayzero(x, c->layout->n));
   for (PetscInt v = 0; v < c->layout->n_vertices; v++) {
-    const PetscReal *p = &coordinates[3 * v];
+    const PetscReal *p = &mesh->x[3 * v];
     PetscReal        u[3];
 
     if (c->layout->at[v] < 0) continue;
     for (int d = 0; d < 3; d++)
-      u[d] = unknowns[3 * v + d] < 0 ? 0 : PetscSinReal((d + seed + 1) * 130 * p[0] + 210 * p[1] - 170 * p[2] + d);
+      u[d] = mesh->unknown[3 * v + d] < 0 ? 0 : PetscSinReal((d + seed + 1) * 130 * p[0] + 210 * p[1] - 170 * p[2] + d);
     LayoutSet(c->layout, v, u, x);
   }
   PetscFunctionReturn(0);
@@ -71,17 +69,17 @@ static inline PetscErrorCode FieldSet(const Case *c, PetscInt seed, PetscReal x[
 /* The values of a state vector at the unknowns, from the owners of the vertices */
 static inline PetscErrorCode StateRestrict(const Case *c, const PetscReal x[], Vec u)
 {
-  const PetscInt *unknowns;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetUnknowns(c->model, &unknowns));
+  PetscCall(ModelGetMesh(c->model, &mesh));
   PetscCall(VecSetOption(u, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
   for (PetscInt v = 0; v < c->layout->n_vertices; v++) {
     PetscReal value[3];
 
     if (c->layout->at[v] < 0 || !c->layout->owned[v]) continue;
     LayoutGet(c->layout, v, x, value);
-    PetscCall(VecSetValues(u, 3, &unknowns[3 * v], value, INSERT_VALUES));
+    PetscCall(VecSetValues(u, 3, &mesh->unknown[3 * v], value, INSERT_VALUES));
   }
   PetscCall(VecAssemblyBegin(u));
   PetscCall(VecAssemblyEnd(u));

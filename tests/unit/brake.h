@@ -67,22 +67,22 @@ static inline PetscErrorCode ChainDestroy(Chain *chain)
 /* All loads of the scene as a vector of the unknowns, N */
 static inline PetscErrorCode ChainCreateLoads(const Chain *chain, Vec *f)
 {
-  const PetscInt    *unknowns;
+  const Mesh        *mesh;
   const PetscScalar *value;
-  const Load        *loads;
-  PetscInt           n, n_loads;
+  const ModelScene  *scene;
+  PetscInt           n;
   Vec                local;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsCreateVec(chain->operators, f));
   PetscCall(VecSetOption(*f, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
   PetscCall(ModelCreateNodal(chain->model, &local));
-  PetscCall(ModelGetLoads(chain->model, &n_loads, &loads));
-  for (PetscInt i = 0; i < n_loads; i++) PetscCall(ModelAddLoad(chain->model, i, local));
-  PetscCall(ModelGetUnknowns(chain->model, &unknowns));
+  PetscCall(ModelGetScene(chain->model, &scene));
+  for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(ModelAddLoad(chain->model, i, local));
+  PetscCall(ModelGetMesh(chain->model, &mesh));
   PetscCall(VecGetLocalSize(local, &n));
   PetscCall(VecGetArrayRead(local, &value));
-  PetscCall(VecSetValues(*f, n, unknowns, value, INSERT_VALUES));
+  PetscCall(VecSetValues(*f, n, mesh->unknown, value, INSERT_VALUES));
   PetscCall(VecRestoreArrayRead(local, &value));
   PetscCall(VecAssemblyBegin(*f));
   PetscCall(VecAssemblyEnd(*f));

@@ -134,10 +134,13 @@ static inline PetscErrorCode MadeHistory(Made *m, const char options[], History 
 
 static inline PetscErrorCode MadeCreate(Made *m)
 {
+  const Mesh *mesh;
+
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &m->rank));
   PetscCall(BoxesCreateModel(PETSC_COMM_WORLD, BOX_LENGTH(made_boxes), made_boxes, MADE_SCENE, &m->model));
-  PetscCall(ModelGetCoordinates(m->model, &m->x));
+  PetscCall(ModelGetMesh(m->model, &mesh));
+  m->x = mesh->x;
   PetscCall(MadeLayOut(m));
   PetscCall(ScratchMakeFolder(m->dir));
   PetscCall(PetscOptionsSetValue(NULL, "-output_dir", m->dir));

@@ -117,10 +117,11 @@ static PetscErrorCode TestGravityAndImpulse(int *failed)
 /* Breaks when: a motion moves other nodes or directions than asked, copies of a node part, or the way is not d */
 static PetscErrorCode TestMotion(int *failed)
 {
-  const PetscReal *x, lift[3] = {0.5, 0, -0.25};
-  PetscReal        wrong = 0, sum[3], spread;
-  ExternalPower    power;
-  Scene            s;
+  const Mesh     *mesh;
+  const PetscReal lift[3] = {0.5, 0, -0.25};
+  PetscReal       wrong   = 0, sum[3], spread;
+  ExternalPower   power;
+  Scene           s;
 
   PetscFunctionBeginUser;
   PetscCall(
@@ -129,13 +130,13 @@ static PetscErrorCode TestMotion(int *failed)
     PetscCall(SceneAdvance(&s, 0.1 * n, 0.1, &power));
     for (PetscInt i = 0; i < s.layout->n; i++) s.u[i] += 0.1 * s.v[i];
   }
-  PetscCall(ModelGetCoordinates(s.chain.model, &x));
+  PetscCall(ModelGetMesh(s.chain.model, &mesh));
   for (PetscInt i = 0; i < s.layout->n_vertices; i++) {
     PetscReal here[3];
 
     LayoutGet(s.layout, i, s.u, here);
     for (int d = 0; d < 3; d++)
-      wrong = PetscMax(wrong, PetscAbsReal(here[d] - (PetscAbsReal(x[3 * i + 2] - 1) < 1e-12 ? lift[d] : 0)));
+      wrong = PetscMax(wrong, PetscAbsReal(here[d] - (PetscAbsReal(mesh->x[3 * i + 2] - 1) < 1e-12 ? lift[d] : 0)));
   }
   *failed += CheckClose("way of the motion, largest error, m", wrong, 0, 1e-14);
   PetscCall(SceneSum(&s, s.u, sum, &spread));

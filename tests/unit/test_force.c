@@ -38,15 +38,15 @@ static PetscErrorCode BarCreate(Chain *chain)
 static PetscErrorCode LocalRestrict(Model model, Vec local, Vec u)
 {
   const PetscScalar *value;
-  const PetscInt    *unknowns;
+  const Mesh        *mesh;
   PetscInt           n;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetUnknowns(model, &unknowns));
+  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(VecGetLocalSize(local, &n));
   PetscCall(VecGetArrayRead(local, &value));
   for (PetscInt i = 0; i < n; i++)
-    if (unknowns[i] >= 0) PetscCall(VecSetValue(u, unknowns[i], value[i], INSERT_VALUES));
+    if (mesh->unknown[i] >= 0) PetscCall(VecSetValue(u, mesh->unknown[i], value[i], INSERT_VALUES));
   PetscCall(VecRestoreArrayRead(local, &value));
   PetscCall(VecAssemblyBegin(u));
   PetscCall(VecAssemblyEnd(u));
@@ -105,14 +105,14 @@ static PetscErrorCode TestProduct(Chain *chain, int *failed)
 static PetscErrorCode SetSum(Model model, const char set[], Vec local, PetscReal sum[6])
 {
   const PetscScalar *f;
-  const PetscReal   *x;
+  const Mesh        *mesh;
   const PetscInt    *vertices;
   PetscInt           n;
   IS                 is;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(sum, 6));
-  PetscCall(ModelGetCoordinates(model, &x));
+  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(ModelGetOwnedVertices(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
@@ -122,7 +122,7 @@ static PetscErrorCode SetSum(Model model, const char set[], Vec local, PetscReal
       const PetscInt v = 3 * vertices[i], d1 = (d + 1) % 3, d2 = (d + 2) % 3;
 
       sum[d] += f[v + d];
-      sum[3 + d] += x[v + d1] * f[v + d2] - x[v + d2] * f[v + d1];
+      sum[3 + d] += mesh->x[v + d1] * f[v + d2] - mesh->x[v + d2] * f[v + d1];
     }
   PetscCall(VecRestoreArrayRead(local, &f));
   PetscCall(ISRestoreIndices(is, &vertices));

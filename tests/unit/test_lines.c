@@ -60,17 +60,17 @@ static void Coordinates(const ModelLines *lines, const PetscReal x[3], PetscReal
 /* Largest distance (m) of a node of the lines from where its line and number put it */
 static PetscErrorCode LinesError(Model model, const ModelLines *lines, PetscReal *worst)
 {
-  const PetscReal *x;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
   *worst = lines ? 0 : -1;
-  PetscCall(ModelGetCoordinates(model, &x));
+  PetscCall(ModelGetMesh(model, &mesh));
   for (PetscInt i = 0; lines && i < lines->n_lines * lines->n_nodes; i++) {
     const PetscInt k = i % lines->n_nodes;
     PetscReal      first[3], here[3], along;
 
-    Coordinates(lines, &x[3 * lines->vertex[i - k]], first);
-    Coordinates(lines, &x[3 * lines->vertex[i]], here);
+    Coordinates(lines, &mesh->x[3 * lines->vertex[i - k]], first);
+    Coordinates(lines, &mesh->x[3 * lines->vertex[i]], here);
     along = here[2] - lines->begin - lines->step * (PetscReal)k;
     if (lines->turned) along = here[0] * (along - 2 * PETSC_PI * round(along / (2 * PETSC_PI)));
     for (int d = 0; d < 2; d++) *worst = PetscMax(*worst, PetscAbsReal(here[d] - first[d]));

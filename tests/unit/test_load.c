@@ -75,19 +75,19 @@ static PetscErrorCode LoadSum(Model model, PetscInt n_vertices, const PetscReal 
 static PetscErrorCode TestSums(Model model, int *failed)
 {
   static const PetscReal n_expected[] = {5 * 4, 4, 1, 5 * 4 * 4};
-  const Load            *loads;
-  PetscInt               n, n_vertices;
+  const ModelScene      *scene;
+  PetscInt               n_vertices;
   PetscReal              sum[3], moment[3][3], count, *f;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetLoads(model, &n, &loads));
-  *failed += CheckClose("loads", (double)n, 4, 0);
-  for (PetscInt i = 0; i < n; i++) {
+  PetscCall(ModelGetScene(model, &scene));
+  *failed += CheckClose("loads", (double)scene->n_loads, 4, 0);
+  for (PetscInt i = 0; i < scene->n_loads; i++) {
     PetscCall(LoadGet(model, i, 0, &n_vertices, &f));
     PetscCall(LoadSum(model, n_vertices, f, sum, moment, &count));
     for (int d = 0; d < 3; d++)
-      *failed += CheckClose("sum of the forces, N", sum[d], loads[i].force[d],
-                            1e-13 * PetscMax(1, PetscAbsReal(loads[i].force[d])));
+      *failed += CheckClose("sum of the forces, N", sum[d], scene->loads[i].force[d],
+                            1e-13 * PetscMax(1, PetscAbsReal(scene->loads[i].force[d])));
     *failed += CheckClose("vertices with a force", count, n_expected[i], 0);
     PetscCall(PetscFree(f));
   }
@@ -129,17 +129,17 @@ static PetscReal Share(PetscInt n, const PetscReal x[], PetscReal at)
    load replaces what is there (here 10 N everywhere) */
 static PetscErrorCode TestDistribution(Model model, int *failed)
 {
-  const PetscReal *x;
-  PetscInt         n_vertices;
-  PetscReal        worst = 0, *f;
+  const Mesh *mesh;
+  PetscInt    n_vertices;
+  PetscReal   worst = 0, *f;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetCoordinates(model, &x));
+  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(LoadGet(model, 0, 10, &n_vertices, &f));
   for (PetscInt v = 0; v < n_vertices; v++) {
-    const PetscReal top = PetscAbsReal(x[3 * v + 2] - 1.5) < 1e-12 ? 1 : 0;
+    const PetscReal top = PetscAbsReal(mesh->x[3 * v + 2] - 1.5) < 1e-12 ? 1 : 0;
     const PetscReal share =
-      top * Share(BOX_LENGTH(grid_x), grid_x, x[3 * v]) * Share(BOX_LENGTH(grid_y), grid_y, x[3 * v + 1]);
+      top * Share(BOX_LENGTH(grid_x), grid_x, mesh->x[3 * v]) * Share(BOX_LENGTH(grid_y), grid_y, mesh->x[3 * v + 1]);
 
     worst = PetscMax(worst, PetscAbsReal(f[3 * v] - 10 - 3 * share));
     worst = PetscMax(worst, PetscAbsReal(f[3 * v + 1] - 10 + 5 * share));

@@ -1,5 +1,5 @@
 /*
-   Unit test of ModelGetProbes(): the nearest node, one on all ranks together, and the same on 1, 2 and 3 ranks.
+   Unit test of probes of a scene: the nearest node, one on all ranks together, and the same on 1, 2 and 3 ranks.
 
    References: grids of unit steps, so that the nearest node and the distances of ties are exact. Nodes are numbered
    against x and y, which decide ties.
@@ -48,20 +48,19 @@ static PetscErrorCode VertexIsOf(Model model, PetscInt vertex, const char part[]
    fall as the ranks number the nodes */
 static PetscErrorCode TestNearest(Model model, int *failed)
 {
-  const Probe *probes;
-  PetscInt     n;
+  const ModelScene *scene;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetProbes(model, &n, &probes));
-  *failed += CheckClose("probes", (double)n, N_PROBES, 0);
-  for (PetscInt i = 0; i < n; i++) {
-    PetscInt  n_ranks = probes[i].vertex >= 0 ? 1 : 0;
+  PetscCall(ModelGetScene(model, &scene));
+  *failed += CheckClose("probes", (double)scene->n_probes, N_PROBES, 0);
+  for (PetscInt i = 0; i < scene->n_probes; i++) {
+    PetscInt  n_ranks = scene->probes[i].vertex >= 0 ? 1 : 0;
     PetscBool is      = PETSC_FALSE;
 
-    if (n_ranks) PetscCall(VertexIsOf(model, probes[i].vertex, expected_part[i], expected[i], &is));
+    if (n_ranks) PetscCall(VertexIsOf(model, scene->probes[i].vertex, expected_part[i], expected[i], &is));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_ranks, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &is, 1, MPIU_BOOL, MPI_LOR, PETSC_COMM_WORLD));
-    for (int d = 0; d < 3; d++) *failed += CheckClose(probes[i].name, probes[i].x[d], expected[i][d], 0);
+    for (int d = 0; d < 3; d++) *failed += CheckClose(scene->probes[i].name, scene->probes[i].x[d], expected[i][d], 0);
     *failed += CheckClose("ranks that record it", (double)n_ranks, 1, 0);
     *failed += CheckTrue("the node belongs to the part", is, (double)i);
   }

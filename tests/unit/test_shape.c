@@ -20,12 +20,10 @@
 
 /* A model of the scene on some ranks, and the local vertices */
 typedef struct {
-  Model            model;
-  const Mesh      *mesh;
-  PetscInt         n, *body;
-  const PetscInt  *unknown;
-  const PetscReal *x;
-  PetscReal       *re, *im;
+  Model       model;
+  const Mesh *mesh;
+  PetscInt    n, *body;
+  PetscReal  *re, *im;
 } ModelOnRanks;
 
 static PetscErrorCode ModelOnRanksCreate(MPI_Comm comm, ModelOnRanks *m)
@@ -39,8 +37,6 @@ static PetscErrorCode ModelOnRanksCreate(MPI_Comm comm, ModelOnRanks *m)
   PetscCall(ModelGetMesh(m->model, &m->mesh));
   m->n = m->mesh->n_vertices;
   PetscCall(ModelGetBodies(m->model, &n_bodies, &m->body));
-  PetscCall(ModelGetUnknowns(m->model, &m->unknown));
-  PetscCall(ModelGetCoordinates(m->model, &m->x));
   PetscCall(PetscMalloc2(3 * m->n, &m->re, 3 * m->n, &m->im));
   PetscFunctionReturn(0);
 }
@@ -57,9 +53,9 @@ static PetscErrorCode ModelOnRanksDestroy(ModelOnRanks *m)
 /* Displacement d of vertex v, 0 where it is held; the imaginary part is -3 times as large */
 static PetscReal Known(const ModelOnRanks *m, PetscInt v, int d)
 {
-  const PetscReal *x = &m->x[3 * v];
+  const PetscReal *x = &m->mesh->x[3 * v];
 
-  return m->unknown[3 * v + d] < 0 ? 0 : (1 + m->body[v]) * (1 + d + x[0] + 2 * x[1] + 4 * x[2]);
+  return m->mesh->unknown[3 * v + d] < 0 ? 0 : (1 + m->body[v]) * (1 + d + x[0] + 2 * x[1] + 4 * x[2]);
 }
 
 /* modes.csv with modes 1 to n, columns in any order */
@@ -126,7 +122,7 @@ static int CountMatching(const ModelOnRanks *m)
 
   for (PetscInt v = 0; v < m->n; v++)
     for (PetscInt w = 0; w < v; w++)
-      if (m->body[v] != m->body[w] && !memcmp(&m->x[3 * v], &m->x[3 * w], 3 * sizeof(PetscReal))) n++;
+      if (m->body[v] != m->body[w] && !memcmp(&m->mesh->x[3 * v], &m->mesh->x[3 * w], 3 * sizeof(PetscReal))) n++;
   return n;
 }
 

@@ -33,8 +33,8 @@ static inline PetscReal Noise(const PetscReal x[3], PetscReal seed)
 static inline PetscErrorCode SliderCreate(MPI_Comm comm, int n_boxes, const Box boxes[], const char scene[],
                                           const char more[], Slider *s)
 {
-  const PetscReal *x;
-  char             path[PETSC_MAX_PATH_LEN];
+  const Mesh *mesh;
+  char        path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
   PetscCall(BoxesWrite(comm, n_boxes, boxes, path));
@@ -54,8 +54,8 @@ static inline PetscErrorCode SliderCreate(MPI_Comm comm, int n_boxes, const Box 
   PetscCall(ContactProjectorGetNodes(s->projector, &s->n, &s->vertex));
   PetscCall(PetscCalloc6(3 * s->n, &s->x, 3 * s->n, &s->minv, 3 * s->n, &s->u, 3 * s->n, &s->before, 3 * s->n, &s->v,
                          3 * s->n, &s->force));
-  PetscCall(ModelGetCoordinates(s->model, &x));
-  for (PetscInt i = 0; i < 3 * s->n; i++) s->x[i] = x[3 * s->vertex[i / 3] + i % 3];
+  PetscCall(ModelGetMesh(s->model, &mesh));
+  for (PetscInt i = 0; i < 3 * s->n; i++) s->x[i] = mesh->x[3 * s->vertex[i / 3] + i % 3];
   PetscFunctionReturn(0);
 }
 

@@ -177,10 +177,10 @@ static PetscErrorCode SlavesFind(ContactProjector p, const PetscInt unique[])
 /* Arrays of the nodes on the root, with their places */
 static PetscErrorCode NodesCreate(ContactProjector p)
 {
-  ProjectorNodes  *nodes = &p->nodes;
-  const PetscInt   n     = p->share.rank == p->share.root ? p->share.n_nodes : 0;
-  const PetscReal *x;
-  PetscReal       *local;
+  ProjectorNodes *nodes = &p->nodes;
+  const PetscInt  n     = p->share.rank == p->share.root ? p->share.n_nodes : 0;
+  const Mesh     *mesh;
+  PetscReal      *local;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc7(3 * n, &nodes->x, 3 * n, &nodes->minv, 3 * n, &nodes->u, 3 * n, &nodes->before, 3 * n,
@@ -188,9 +188,9 @@ static PetscErrorCode NodesCreate(ContactProjector p)
   PetscCall(PetscCalloc1(3 * n, &nodes->rest));
   PetscCall(PetscCalloc2(n, &nodes->even, 3 * n, &p->u_search));
   PetscCall(PetscCalloc1(p->share.n_nodes, &p->is_active));
-  PetscCall(ModelGetCoordinates(p->contact->model, &x));
+  PetscCall(ModelGetMesh(p->contact->model, &mesh));
   PetscCall(PetscMalloc1(3 * p->share.n, &local));
-  for (PetscInt i = 0; i < 3 * p->share.n; i++) local[i] = x[3 * p->share.vertex[i / 3] + i % 3];
+  for (PetscInt i = 0; i < 3 * p->share.n; i++) local[i] = mesh->x[3 * p->share.vertex[i / 3] + i % 3];
   PetscCall(ShareGather(&p->share, 1, (const PetscReal *const[]){local}, (PetscReal *const[]){nodes->x}));
   PetscCall(PetscFree(local));
   PetscFunctionReturn(0);

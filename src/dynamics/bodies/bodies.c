@@ -8,11 +8,11 @@
 /* Masses of this rank's cells, then complete ones; held directions have no inverse */
 static PetscErrorCode BodiesSetMasses(Bodies b)
 {
-  const Layout   *l = &b->layout;
-  const PetscInt *unknowns;
+  const Layout *l = &b->layout;
+  const Mesh   *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetUnknowns(b->model, &unknowns));
+  PetscCall(ModelGetMesh(b->model, &mesh));
   PetscCall(PetscCalloc3(l->n, &b->part, l->n, &b->total, l->n, &b->minv));
   for (PetscInt i = 0; i < b->n_swept; i++) {
     const SweptBody *s = &b->swept[i];
@@ -31,7 +31,7 @@ static PetscErrorCode BodiesSetMasses(Bodies b)
       PetscBool      held = PETSC_FALSE;
 
       for (int d = 0; d < 3; d++)
-        if (unknowns[3 * v + d] < 0 && l->basis[9 * v + 3 * j + d] != 0) held = PETSC_TRUE;
+        if (mesh->unknown[3 * v + d] < 0 && l->basis[9 * v + 3 * j + d] != 0) held = PETSC_TRUE;
       b->minv[at] = held ? 0 : 1 / b->total[at];
     }
   }
@@ -41,13 +41,12 @@ static PetscErrorCode BodiesSetMasses(Bodies b)
 /* Whether any rank has damping, and then room for its forces */
 static PetscErrorCode BodiesSetUpDamping(Bodies b)
 {
-  const Part *parts;
-  PetscInt    n_parts;
+  const ModelScene *scene;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetParts(b->model, &n_parts, &parts));
-  for (PetscInt i = 0; i < n_parts; i++)
-    if (parts[i].alpha != 0 || parts[i].beta != 0) b->damped = PETSC_TRUE;
+  PetscCall(ModelGetScene(b->model, &scene));
+  for (PetscInt i = 0; i < scene->n_parts; i++)
+    if (scene->parts[i].alpha != 0 || scene->parts[i].beta != 0) b->damped = PETSC_TRUE;
   for (PetscInt i = 0; i < b->n_points; i++)
     for (int j = 0; j < 9; j++)
       if (b->point[i].damping[j] != 0) b->damped = PETSC_TRUE;

@@ -30,25 +30,23 @@ PetscErrorCode BodiesGetCellVertices(Bodies bodies, PetscInt c, PetscInt *body, 
 
 PetscErrorCode BodiesGetCell(Bodies bodies, PetscInt c, BodiesCell *cell)
 {
-  const Element  *element;
-  const Part     *parts, *part;
-  const PetscInt *cell_part;
-  PetscInt        n_parts;
-  Elasticity      material;
-  PetscReal       x[ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  const ModelScene *scene;
+  const Part       *part;
+  const Mesh       *mesh;
+  Elasticity        material;
+  PetscReal         x[ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetElement(bodies->model, &element));
-  PetscCall(ModelGetParts(bodies->model, &n_parts, &parts));
-  PetscCall(ModelGetCellParts(bodies->model, &cell_part));
+  PetscCall(ModelGetScene(bodies->model, &scene));
+  PetscCall(ModelGetMesh(bodies->model, &mesh));
   PetscCall(ModelGetCell(bodies->model, c, cell->vertex, x));
-  cell->n_nodes = element->n_nodes;
-  cell->part    = cell_part[c];
-  part          = &parts[cell->part];
+  cell->n_nodes = scene->element->n_nodes;
+  cell->part    = mesh->cell_part[c];
+  part          = &scene->parts[cell->part];
   cell->alpha   = part->alpha;
   cell->beta    = part->beta;
   material      = ElasticityFromEngineering(part->young, part->poisson, part->density);
-  PetscCheck(!element->matrices(x, &material, cell->stiffness, me), PETSC_COMM_SELF, PETSC_ERR_PLIB,
+  PetscCheck(!scene->element->matrices(x, &material, cell->stiffness, me), PETSC_COMM_SELF, PETSC_ERR_PLIB,
              "element is inverted");
   for (PetscInt a = 0; a < cell->n_nodes; a++) {
     cell->mass[a] = 0;

@@ -51,16 +51,17 @@ static PetscErrorCode PointsAddGrounded(Bodies b, const Grounded *grounded, Pets
 
 PetscErrorCode PointsSetUp(Bodies b)
 {
-  const Grounded *springs, *dashpots;
-  PetscInt        n_springs, n_dashpots, *of_vertex;
+  const ModelScene *scene;
+  PetscInt         *of_vertex;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(b->layout.n_vertices, &of_vertex));
   for (PetscInt v = 0; v < b->layout.n_vertices; v++) of_vertex[v] = -1;
-  PetscCall(ModelGetSprings(b->model, &n_springs, &springs));
-  PetscCall(ModelGetDashpots(b->model, &n_dashpots, &dashpots));
-  for (PetscInt i = 0; i < n_springs; i++) PetscCall(PointsAddGrounded(b, &springs[i], PETSC_FALSE, of_vertex));
-  for (PetscInt i = 0; i < n_dashpots; i++) PetscCall(PointsAddGrounded(b, &dashpots[i], PETSC_TRUE, of_vertex));
+  PetscCall(ModelGetScene(b->model, &scene));
+  for (PetscInt i = 0; i < scene->n_springs; i++)
+    PetscCall(PointsAddGrounded(b, &scene->springs[i], PETSC_FALSE, of_vertex));
+  for (PetscInt i = 0; i < scene->n_dashpots; i++)
+    PetscCall(PointsAddGrounded(b, &scene->dashpots[i], PETSC_TRUE, of_vertex));
   for (PetscInt i = 0; i < b->share.n; i++)
     if (of_vertex[b->share.shared[i]] >= 0) b->point[of_vertex[b->share.shared[i]]].early = PETSC_TRUE;
   PetscCall(PetscFree(of_vertex));

@@ -27,17 +27,16 @@ static PetscErrorCode BodiesFlagLocal(Bodies b, PetscBool local[])
 /* Whether the directions held at the vertices of a body, and their places, allow components about an axis */
 static PetscErrorCode BodiesFrameSuits(Bodies b, PetscInt body, const BodiesFrame *frame, PetscBool *suits)
 {
-  const PetscInt  *unknowns, j = (frame->axis + 1) % 3, k = (frame->axis + 2) % 3;
-  const PetscReal *x;
+  const Mesh    *mesh;
+  const PetscInt j = (frame->axis + 1) % 3, k = (frame->axis + 2) % 3;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetUnknowns(b->model, &unknowns));
-  PetscCall(ModelGetCoordinates(b->model, &x));
+  PetscCall(ModelGetMesh(b->model, &mesh));
   *suits = PETSC_TRUE;
   for (PetscInt v = 0; v < b->layout.n_vertices; v++) {
     if (b->body[v] != body) continue;
-    if ((unknowns[3 * v + j] < 0) != (unknowns[3 * v + k] < 0)) *suits = PETSC_FALSE;
-    if (x[3 * v + j] == frame->centre[j] && x[3 * v + k] == frame->centre[k]) *suits = PETSC_FALSE;
+    if ((mesh->unknown[3 * v + j] < 0) != (mesh->unknown[3 * v + k] < 0)) *suits = PETSC_FALSE;
+    if (mesh->x[3 * v + j] == frame->centre[j] && mesh->x[3 * v + k] == frame->centre[k]) *suits = PETSC_FALSE;
   }
   PetscFunctionReturn(0);
 }
@@ -54,12 +53,12 @@ static PetscBool BodiesFrameAgrees(const BodiesFrame *a, const ModelLines *lines
 /* Largest coordinate of the mesh, m */
 static PetscErrorCode BodiesFindScale(Bodies b, PetscReal *scale)
 {
-  const PetscReal *x;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetCoordinates(b->model, &x));
+  PetscCall(ModelGetMesh(b->model, &mesh));
   *scale = 0;
-  for (PetscInt i = 0; i < 3 * b->layout.n_vertices; i++) *scale = PetscMax(*scale, PetscAbsReal(x[i]));
+  for (PetscInt i = 0; i < 3 * b->layout.n_vertices; i++) *scale = PetscMax(*scale, PetscAbsReal(mesh->x[i]));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, scale, 1, MPIU_REAL, MPI_MAX, b->comm));
   PetscFunctionReturn(0);
 }
@@ -115,13 +114,13 @@ static PetscErrorCode BodiesFindFrames(Bodies b, ModelLines *const lines[])
 /* Bases of the vertices: along the axis, radial, tangential; or x, y, z */
 static PetscErrorCode LayoutFindBases(Bodies b)
 {
-  const PetscReal *coordinates;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetCoordinates(b->model, &coordinates));
+  PetscCall(ModelGetMesh(b->model, &mesh));
   PetscCall(PetscCalloc1(9 * b->layout.n_vertices, &b->layout.basis));
   for (PetscInt v = 0; v < b->layout.n_vertices; v++) {
-    const PetscReal   *x = &coordinates[3 * v];
+    const PetscReal   *x = &mesh->x[3 * v];
     PetscReal         *q = &b->layout.basis[9 * v], r[2], length;
     const BodiesFrame *frame;
     PetscInt           i, j, k;

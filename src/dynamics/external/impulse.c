@@ -84,12 +84,12 @@ static PetscErrorCode ImpulseFindCopy(Model model, PetscInt *vertex)
 static PetscErrorCode ImpulsePlace(External external, PetscInt vertex, Impulse *hit, PetscBool *moves)
 {
   const ForcePattern *p = &hit->pattern;
-  const PetscReal    *x;
+  const Mesh         *mesh;
   PetscReal           here[4] = {0, 0, 0, 0};
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetCoordinates(external->model, &x));
-  if (vertex >= 0 && external->layout->owned[vertex]) PetscCall(PetscArraycpy(here, &x[3 * vertex], 3));
+  PetscCall(ModelGetMesh(external->model, &mesh));
+  if (vertex >= 0 && external->layout->owned[vertex]) PetscCall(PetscArraycpy(here, &mesh->x[3 * vertex], 3));
   for (PetscInt i = 0; i < p->n; i++) here[3] += PetscAbsReal(external->minv[p->index[i]] * p->value[i]);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, here, 4, MPIU_REAL, MPI_SUM, external->comm));
   PetscCall(PetscArraycpy(hit->x, here, 3));

@@ -92,12 +92,13 @@ static void InertiaFrameAdvance(External external, InertiaFrame *frame, const Pe
 
 PetscErrorCode InertiaAdvance(External external, const ExternalStep *step, ExternalPower *power)
 {
-  const PetscReal *X;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(external->model, &mesh));
   if (external->weight) InertiaGravityAdvance(external, step, power);
-  if (external->n_frames) PetscCall(ModelGetCoordinates(external->model, &X));
-  for (PetscInt i = 0; i < external->n_frames; i++) InertiaFrameAdvance(external, &external->frames[i], X, step, power);
+  for (PetscInt i = 0; i < external->n_frames; i++)
+    InertiaFrameAdvance(external, &external->frames[i], mesh->x, step, power);
   PetscFunctionReturn(0);
 }
 
@@ -124,14 +125,14 @@ static PetscErrorCode InertiaFrameFindVertices(External external, const char par
 /* The frame of a part, a new one where it has none; an error for no part */
 static PetscErrorCode InertiaFrameFind(External external, const char part[], InertiaFrame **frame)
 {
-  const Part *parts;
-  PetscInt    n, i;
-  PetscBool   same = PETSC_FALSE;
+  const ModelScene *scene;
+  PetscInt          i;
+  PetscBool         same = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetParts(external->model, &n, &parts));
-  for (i = 0; i < n; i++) {
-    PetscCall(PetscStrcmp(part, parts[i].name, &same));
+  PetscCall(ModelGetScene(external->model, &scene));
+  for (i = 0; i < scene->n_parts; i++) {
+    PetscCall(PetscStrcmp(part, scene->parts[i].name, &same));
     if (same) break;
   }
   PetscCheck(same, external->comm, PETSC_ERR_ARG_OUTOFRANGE, "'%s' is none of the -parts: it has no frame", part);
@@ -165,22 +166,22 @@ PetscErrorCode ExternalSetFrame(External external, const char part[], const Pets
 
 PetscErrorCode InertiaView(External external, PetscViewer viewer)
 {
-  const PetscReal *g = external->gravity;
-  const Part      *parts;
-  PetscInt         n;
+  const PetscReal  *g = external->gravity;
+  const ModelScene *scene;
 
   PetscFunctionBeginUser;
   if (g[0] != 0 || g[1] != 0 || g[2] != 0)
     PetscCall(
       PetscViewerASCIIPrintf(viewer, "  gravity: %.6g, %.6g, %.6g m/s^2\n", (double)g[0], (double)g[1], (double)g[2]));
-  PetscCall(ModelGetParts(external->model, &n, &parts));
+  PetscCall(ModelGetScene(external->model, &scene));
   for (PetscInt i = 0; i < external->n_frames; i++) {
     const InertiaFrame *frame = &external->frames[i];
     const PetscReal    *w     = frame->omega;
 
-    PetscCall(PetscViewerASCIIPrintf(
-      viewer, "  part %s turns with %.6g rad/s: Coriolis force %s, centrifugal force %s\n", parts[frame->part].name,
-      (double)Vec3Length(w), frame->coriolis ? "counted" : "left out", frame->centrifugal ? "counted" : "left out"));
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer, "  part %s turns with %.6g rad/s: Coriolis force %s, centrifugal force %s\n",
+                             scene->parts[frame->part].name, (double)Vec3Length(w),
+                             frame->coriolis ? "counted" : "left out", frame->centrifugal ? "counted" : "left out"));
   }
   PetscFunctionReturn(0);
 }

@@ -6,17 +6,18 @@
 
 PetscErrorCode TimedLoadsSetFromOptions(External external)
 {
-  const Load *loads;
-  char        prefix[128], title[160];
+  const ModelScene *scene;
+  char              prefix[128], title[160];
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetLoads(external->model, &external->n_loads, &loads));
+  PetscCall(ModelGetScene(external->model, &scene));
+  external->n_loads = scene->n_loads;
   PetscCall(PetscCalloc1(external->n_loads, &external->loads));
   for (PetscInt i = 0; i < external->n_loads; i++) {
     TimedLoad *load = &external->loads[i];
 
-    PetscCall(PetscStrallocpy(loads[i].name, &load->name));
-    PetscCall(PetscArraycpy(load->force, loads[i].force, 3));
+    PetscCall(PetscStrallocpy(scene->loads[i].name, &load->name));
+    PetscCall(PetscArraycpy(load->force, scene->loads[i].force, 3));
     PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", load->name));
     PetscCall(PetscSNPrintf(title, sizeof(title), "Load %s in time", load->name));
     PetscOptionsBegin(external->comm, prefix, title, NULL);

@@ -7,21 +7,22 @@
 
 PetscErrorCode VelocitySetFromOptions(External external)
 {
-  const Part *parts;
-  char        prefix[128], title[160];
+  const ModelScene *scene;
+  char              prefix[128], title[160];
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetParts(external->model, &external->n_parts, &parts));
+  PetscCall(ModelGetScene(external->model, &scene));
+  external->n_parts = scene->n_parts;
   PetscCall(PetscCalloc1(3 * external->n_parts, &external->velocity));
   for (PetscInt i = 0; i < external->n_parts; i++) {
     PetscReal *v = &external->velocity[3 * i];
 
-    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", parts[i].name));
-    PetscCall(PetscSNPrintf(title, sizeof(title), "Start of part %s", parts[i].name));
+    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", scene->parts[i].name));
+    PetscCall(PetscSNPrintf(title, sizeof(title), "Start of part %s", scene->parts[i].name));
     PetscOptionsBegin(external->comm, prefix, title, NULL);
     PetscCall(OptionsGetReals(PetscOptionsObject, "-velocity", "at the start in x,y,z, m/s", 3, v, NULL));
     PetscOptionsEnd();
-    PetscCall(OptionsCheckFinite(external->comm, parts[i].name, "velocity", "m/s", v));
+    PetscCall(OptionsCheckFinite(external->comm, scene->parts[i].name, "velocity", "m/s", v));
   }
   PetscFunctionReturn(0);
 }
@@ -66,19 +67,19 @@ static void VelocityAddMeans(External external, PetscReal sum[], const PetscInt 
 
 PetscErrorCode ExternalSetVelocity(External external, PetscReal v[])
 {
-  const Part *parts;
-  PetscInt    n, *count;
-  PetscReal  *sum;
-  PetscBool   moves = PETSC_FALSE;
+  const ModelScene *scene;
+  PetscInt         *count;
+  PetscReal        *sum;
+  PetscBool         moves = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetParts(external->model, &n, &parts));
+  PetscCall(ModelGetScene(external->model, &scene));
   for (PetscInt i = 0; i < external->n_parts; i++)
     if (!VelocityIsZero(&external->velocity[3 * i])) moves = PETSC_TRUE;
   if (!moves) PetscFunctionReturn(0);
   PetscCall(PetscCalloc2(3 * external->layout->n_vertices, &sum, external->layout->n_vertices, &count));
   for (PetscInt i = 0; i < external->n_parts; i++)
-    PetscCall(VelocityAddPart(external, parts[i].name, &external->velocity[3 * i], sum, count));
+    PetscCall(VelocityAddPart(external, scene->parts[i].name, &external->velocity[3 * i], sum, count));
   VelocityAddMeans(external, sum, count, v);
   PetscCall(PetscFree2(sum, count));
   PetscFunctionReturn(0);
@@ -86,16 +87,15 @@ PetscErrorCode ExternalSetVelocity(External external, PetscReal v[])
 
 PetscErrorCode VelocityView(External external, PetscViewer viewer)
 {
-  const Part *parts;
-  PetscInt    n;
+  const ModelScene *scene;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetParts(external->model, &n, &parts));
+  PetscCall(ModelGetScene(external->model, &scene));
   for (PetscInt i = 0; i < external->n_parts; i++) {
     const PetscReal *v = &external->velocity[3 * i];
 
     if (!VelocityIsZero(v))
-      PetscCall(PetscViewerASCIIPrintf(viewer, "  part %s starts with %.6g, %.6g, %.6g m/s\n", parts[i].name,
+      PetscCall(PetscViewerASCIIPrintf(viewer, "  part %s starts with %.6g, %.6g, %.6g m/s\n", scene->parts[i].name,
                                        (double)v[0], (double)v[1], (double)v[2]));
   }
   PetscFunctionReturn(0);

@@ -76,7 +76,8 @@ PetscErrorCode HistorySetFromOptions(History h)
 
 PetscErrorCode HistorySetUp(History history, const HistorySource *source, PetscReal end, PetscReal dt)
 {
-  PetscBool fields;
+  const ModelScene *scene;
+  PetscBool         fields;
 
   PetscFunctionBeginUser;
   history->source   = *source;
@@ -85,7 +86,9 @@ PetscErrorCode HistorySetUp(History history, const HistorySource *source, PetscR
   ScheduleRound(&history->pairs, dt);
   ScheduleRound(&history->frames, dt);
   history->growth.window = end > 0 ? PetscMin(end / 20, 1e-3) : 1e-3;
-  PetscCall(ModelGetProbes(source->model, &history->n_probes, &history->probes));
+  PetscCall(ModelGetScene(source->model, &scene));
+  history->n_probes = scene->n_probes;
+  history->probes   = scene->probes;
   PetscCall(ResultsWantFields(source->results, &fields));
   if (!fields) history->frames.interval = 0;
   if (!source->projector) history->pairs.interval = 0;

@@ -13,9 +13,9 @@ static PetscErrorCode CellPartName(Model model, PetscInt cell, const char **name
 
   PetscFunctionBeginUser;
   *name = "none";
-  for (PetscInt i = 0; i < model->n_parts; i++) {
-    PetscCall(DMGetLabelValue(model->dm, model->parts[i].name, cell, &value));
-    if (value == 1) *name = model->parts[i].name;
+  for (PetscInt i = 0; i < model->scene.n_parts; i++) {
+    PetscCall(DMGetLabelValue(model->dm, model->scene.parts[i].name, cell, &value));
+    if (value == 1) *name = model->scene.parts[i].name;
   }
   PetscFunctionReturn(0);
 }
@@ -93,6 +93,6 @@ PetscErrorCode MeshCheck(Model model)
   PetscCallMPI(MPI_Bcast(text, sizeof(text), MPI_CHAR, 0, model->comm));
   PetscCallMPI(MPI_Bcast(&shape, 1, MPIU_INT, 0, model->comm));
   PetscCheck(!text[0], model->comm, PETSC_ERR_USER_INPUT, "%s", text);
-  model->element = ElementFind((DMPolytopeType)shape, model->formulation);
+  model->scene.element = ElementFind((DMPolytopeType)shape, model->formulation);
   PetscFunctionReturn(0);
 }

@@ -9,8 +9,8 @@
 static PetscErrorCode SupportsFlag(Model model, PetscInt vStart, PetscInt vEnd, PetscBool fixed[][3])
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < model->n_supports; i++) {
-    const Support  *support = &model->supports[i];
+  for (PetscInt i = 0; i < model->scene.n_supports; i++) {
+    const Support  *support = &model->scene.supports[i];
     const PetscInt *vertices;
     PetscInt        n;
     IS              is;

@@ -90,7 +90,7 @@ PetscErrorCode ModelCreateLines(Model model, PetscInt body, const PetscInt body_
 
   PetscFunctionBeginUser;
   *lines = NULL;
-  if (model->element->n_nodes != LINES_CORNERS) PetscFunctionReturn(0);
+  if (model->scene.element->n_nodes != LINES_CORNERS) PetscFunctionReturn(0);
   PetscCall(PieceCreate(model, body, body_of_vertex, &piece));
   for (int pair = 0; pair < MOTION_PAIRS && piece.n_cells; pair++) {
     if (!PieceMotion(&piece, pair, &motion)) continue;

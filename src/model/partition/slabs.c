@@ -108,7 +108,7 @@ static PetscErrorCode ChainAdd(Model model, BodyList *bodies, PetscInt body, Pet
 /* Mean of the corners of each cell of the undistributed mesh, m */
 static PetscErrorCode CellsCentres(Model model, PetscInt n_cells, PetscReal centre[])
 {
-  const PetscInt n_nodes = model->element->n_nodes;
+  const PetscInt n_nodes = model->scene.element->n_nodes;
   PetscInt       vertices[ELEMENT_MAX_NODES];
   PetscReal      x[ELEMENT_MAX_DOFS];
 

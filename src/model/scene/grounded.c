@@ -52,24 +52,8 @@ static PetscErrorCode GroundedListFromOptions(MPI_Comm comm, const GroundedKind 
 PetscErrorCode GroundedsSetFromOptions(Model model)
 {
   PetscFunctionBeginUser;
-  PetscCall(GroundedListFromOptions(model->comm, &spring, &model->n_springs, &model->springs));
-  PetscCall(GroundedListFromOptions(model->comm, &dashpot, &model->n_dashpots, &model->dashpots));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModelGetSprings(Model model, PetscInt *n, const Grounded **springs)
-{
-  PetscFunctionBeginUser;
-  *n       = model->n_springs;
-  *springs = model->springs;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModelGetDashpots(Model model, PetscInt *n, const Grounded **dashpots)
-{
-  PetscFunctionBeginUser;
-  *n        = model->n_dashpots;
-  *dashpots = model->dashpots;
+  PetscCall(GroundedListFromOptions(model->comm, &spring, &model->scene.n_springs, &model->scene.springs));
+  PetscCall(GroundedListFromOptions(model->comm, &dashpot, &model->scene.n_dashpots, &model->scene.dashpots));
   PetscFunctionReturn(0);
 }
 
@@ -86,8 +70,8 @@ static PetscErrorCode GroundedListView(const GroundedKind *kind, PetscInt n, con
 PetscErrorCode GroundedsView(Model model, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
-  PetscCall(GroundedListView(&spring, model->n_springs, model->springs, viewer));
-  PetscCall(GroundedListView(&dashpot, model->n_dashpots, model->dashpots, viewer));
+  PetscCall(GroundedListView(&spring, model->scene.n_springs, model->scene.springs, viewer));
+  PetscCall(GroundedListView(&dashpot, model->scene.n_dashpots, model->scene.dashpots, viewer));
   PetscFunctionReturn(0);
 }
 
@@ -105,7 +89,7 @@ static PetscErrorCode GroundedListDestroy(PetscInt n, Grounded **g)
 PetscErrorCode GroundedsDestroy(Model model)
 {
   PetscFunctionBeginUser;
-  PetscCall(GroundedListDestroy(model->n_springs, &model->springs));
-  PetscCall(GroundedListDestroy(model->n_dashpots, &model->dashpots));
+  PetscCall(GroundedListDestroy(model->scene.n_springs, &model->scene.springs));
+  PetscCall(GroundedListDestroy(model->scene.n_dashpots, &model->scene.dashpots));
   PetscFunctionReturn(0);
 }

@@ -34,11 +34,11 @@ PetscErrorCode LoadsSetFromOptions(Model model)
 
   PetscFunctionBeginUser;
   PetscCall(OptionsGetNames(model->comm, "-loads", "forces, each the prefix of its -set and -force", MODEL_MAX_NAMES,
-                            &model->n_loads, names));
-  PetscCall(PetscCalloc1(model->n_loads, &model->loads));
-  for (PetscInt i = 0; i < model->n_loads; i++) {
-    model->loads[i].name = names[i];
-    PetscCall(LoadSetFromOptions(model->comm, &model->loads[i]));
+                            &model->scene.n_loads, names));
+  PetscCall(PetscCalloc1(model->scene.n_loads, &model->scene.loads));
+  for (PetscInt i = 0; i < model->scene.n_loads; i++) {
+    model->scene.loads[i].name = names[i];
+    PetscCall(LoadSetFromOptions(model->comm, &model->scene.loads[i]));
   }
   PetscFunctionReturn(0);
 }
@@ -140,20 +140,12 @@ static PetscErrorCode LoadCreateWeights(Model model, const Load *load, Vec *weig
 PetscErrorCode LoadsCheck(Model model)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < model->n_loads; i++) {
+  for (PetscInt i = 0; i < model->scene.n_loads; i++) {
     Vec weights;
 
-    PetscCall(LoadCreateWeights(model, &model->loads[i], &weights));
+    PetscCall(LoadCreateWeights(model, &model->scene.loads[i], &weights));
     PetscCall(VecDestroy(&weights));
   }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModelGetLoads(Model model, PetscInt *n, const Load **loads)
-{
-  PetscFunctionBeginUser;
-  *n     = model->n_loads;
-  *loads = model->loads;
   PetscFunctionReturn(0);
 }
 
@@ -165,13 +157,13 @@ PetscErrorCode ModelAddLoad(Model model, PetscInt i, Vec local)
   Vec                weights;
 
   PetscFunctionBeginUser;
-  PetscCheck(i >= 0 && i < model->n_loads, model->comm, PETSC_ERR_ARG_OUTOFRANGE,
-             "load %" PetscInt_FMT " does not exist: there are %" PetscInt_FMT, i, model->n_loads);
-  PetscCall(LoadCreateWeights(model, &model->loads[i], &weights));
+  PetscCheck(i >= 0 && i < model->scene.n_loads, model->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "load %" PetscInt_FMT " does not exist: there are %" PetscInt_FMT, i, model->scene.n_loads);
+  PetscCall(LoadCreateWeights(model, &model->scene.loads[i], &weights));
   PetscCall(VecGetLocalSize(weights, &n));
   PetscCall(VecGetArrayRead(weights, &weight));
   PetscCall(VecGetArray(local, &f));
-  for (PetscInt j = 0; j < n; j++) f[j] += weight[j - j % 3] * model->loads[i].force[j % 3];
+  for (PetscInt j = 0; j < n; j++) f[j] += weight[j - j % 3] * model->scene.loads[i].force[j % 3];
   PetscCall(VecRestoreArray(local, &f));
   PetscCall(VecRestoreArrayRead(weights, &weight));
   PetscCall(VecDestroy(&weights));

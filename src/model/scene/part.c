@@ -33,12 +33,12 @@ PetscErrorCode PartsSetFromOptions(Model model)
   PetscCall(PetscOptionsHasName(NULL, NULL, list, &given));
   if (!given && !strcmp(model->source, "rig")) PetscCall(PetscOptionsSetValue(NULL, list, "disc,pad,beam"));
   PetscCall(OptionsGetNames(model->comm, list, "bodies: volumes of the mesh, each the prefix of its material",
-                            MODEL_MAX_NAMES, &model->n_parts, names));
-  PetscCall(PetscCalloc1(model->n_parts, &model->parts));
-  for (PetscInt i = 0; i < model->n_parts; i++) {
-    model->parts[i].name    = names[i];
-    model->parts[i].poisson = 0.3;
-    PetscCall(PartSetFromOptions(model->comm, &model->parts[i]));
+                            MODEL_MAX_NAMES, &model->scene.n_parts, names));
+  PetscCall(PetscCalloc1(model->scene.n_parts, &model->scene.parts));
+  for (PetscInt i = 0; i < model->scene.n_parts; i++) {
+    model->scene.parts[i].name    = names[i];
+    model->scene.parts[i].poisson = 0.3;
+    PetscCall(PartSetFromOptions(model->comm, &model->scene.parts[i]));
   }
   PetscFunctionReturn(0);
 }
@@ -50,10 +50,10 @@ PetscErrorCode ModelFindPart(Model model, const char name[], const char part[], 
   PetscFunctionBeginUser;
   *index = -1;
   if (!part[0]) PetscFunctionReturn(0);
-  for (PetscInt i = 0; i < model->n_parts; i++) {
+  for (PetscInt i = 0; i < model->scene.n_parts; i++) {
     PetscCall(PetscStrlcat(names, i ? ", " : "", sizeof(names)));
-    PetscCall(PetscStrlcat(names, model->parts[i].name, sizeof(names)));
-    if (!strcmp(model->parts[i].name, part)) *index = i;
+    PetscCall(PetscStrlcat(names, model->scene.parts[i].name, sizeof(names)));
+    if (!strcmp(model->scene.parts[i].name, part)) *index = i;
   }
   PetscCheck(*index >= 0, model->comm, PETSC_ERR_USER_INPUT, "-%s_part %s is none of the -parts: %s", name, part,
              names);
@@ -63,10 +63,10 @@ PetscErrorCode ModelFindPart(Model model, const char name[], const char part[], 
 PetscErrorCode PartsCheck(Model model)
 {
   PetscFunctionBeginUser;
-  PetscCheck(model->n_parts, model->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(model->scene.n_parts, model->comm, PETSC_ERR_USER_INPUT,
              "-parts is empty: name at least one volume of the mesh");
-  for (PetscInt i = 0; i < model->n_parts; i++) {
-    const Part *p = &model->parts[i];
+  for (PetscInt i = 0; i < model->scene.n_parts; i++) {
+    const Part *p = &model->scene.parts[i];
 
     PetscCheck(p->young > 0, model->comm, PETSC_ERR_USER_INPUT, "-%s_young %.6g must be given and positive (Pa)",
                p->name, (double)p->young);
@@ -93,7 +93,7 @@ static PetscErrorCode PartMarkCells(Model model, PetscInt part, PetscInt cell_pa
   PetscFunctionBeginUser;
   *n_marked = 0;
   PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, &cEnd));
-  PetscCall(DMGetLabel(model->dm, model->parts[part].name, &label));
+  PetscCall(DMGetLabel(model->dm, model->scene.parts[part].name, &label));
   if (!label) PetscFunctionReturn(0);
   PetscCall(DMLabelGetStratumIS(label, 1, &is));
   if (!is) PetscFunctionReturn(0);
@@ -116,10 +116,10 @@ PetscErrorCode PartsFindCells(Model model, PetscInt cell_part[])
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < model->mesh.n_cells; c++) cell_part[c] = -1;
-  for (PetscInt part = 0; part < model->n_parts; part++) {
+  for (PetscInt part = 0; part < model->scene.n_parts; part++) {
     PetscCall(PartMarkCells(model, part, cell_part, &n_local, &bad[0]));
     PetscCallMPI(MPI_Allreduce(&n_local, &n_cells, 1, MPIU_INT, MPI_SUM, model->comm));
-    if (!n_cells) PetscCall(ModelComplainSet(model, "volume", model->parts[part].name));
+    if (!n_cells) PetscCall(ModelComplainSet(model, "volume", model->scene.parts[part].name));
   }
   for (PetscInt c = 0; c < model->mesh.n_cells; c++)
     if (cell_part[c] < 0) bad[1] = c;

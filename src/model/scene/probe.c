@@ -46,12 +46,12 @@ PetscErrorCode ProbesSetFromOptions(Model model)
   PetscFunctionBeginUser;
   PetscCall(OptionsGetNames(model->comm, "-probes",
                             "places that histories record, each the prefix of its -at and -part", MODEL_MAX_NAMES,
-                            &model->n_probes, names));
-  PetscCall(PetscCalloc1(model->n_probes, &model->probes));
-  for (PetscInt i = 0; i < model->n_probes; i++) {
-    model->probes[i].name   = names[i];
-    model->probes[i].vertex = -1;
-    PetscCall(ProbeSetFromOptions(model, &model->probes[i]));
+                            &model->scene.n_probes, names));
+  PetscCall(PetscCalloc1(model->scene.n_probes, &model->scene.probes));
+  for (PetscInt i = 0; i < model->scene.n_probes; i++) {
+    model->scene.probes[i].name   = names[i];
+    model->scene.probes[i].vertex = -1;
+    PetscCall(ProbeSetFromOptions(model, &model->scene.probes[i]));
   }
   PetscFunctionReturn(0);
 }
@@ -132,7 +132,7 @@ static PetscErrorCode ProbeLocate(Model model, Probe *probe)
 PetscErrorCode ProbesLocate(Model model)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < model->n_probes; i++) PetscCall(ProbeLocate(model, &model->probes[i]));
+  for (PetscInt i = 0; i < model->scene.n_probes; i++) PetscCall(ProbeLocate(model, &model->scene.probes[i]));
   PetscFunctionReturn(0);
 }
 
@@ -150,19 +150,11 @@ PetscErrorCode ModelFindNode(Model model, const char part[], const PetscReal at[
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelGetProbes(Model model, PetscInt *n, const Probe **probes)
-{
-  PetscFunctionBeginUser;
-  *n      = model->n_probes;
-  *probes = model->probes;
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ProbesView(Model model, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < model->n_probes; i++) {
-    const Probe *p = &model->probes[i];
+  for (PetscInt i = 0; i < model->scene.n_probes; i++) {
+    const Probe *p = &model->scene.probes[i];
 
     PetscCall(
       PetscViewerASCIIPrintf(viewer, "  probe %s: node at %.6g, %.6g, %.6g m%s%s, asked for %.6g, %.6g, %.6g m\n",
@@ -175,10 +167,10 @@ PetscErrorCode ProbesView(Model model, PetscViewer viewer)
 PetscErrorCode ProbesDestroy(Model model)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < model->n_probes; i++) {
-    PetscCall(PetscFree(model->probes[i].name));
-    PetscCall(PetscFree(model->probes[i].part));
+  for (PetscInt i = 0; i < model->scene.n_probes; i++) {
+    PetscCall(PetscFree(model->scene.probes[i].name));
+    PetscCall(PetscFree(model->scene.probes[i].part));
   }
-  PetscCall(PetscFree(model->probes));
+  PetscCall(PetscFree(model->scene.probes));
   PetscFunctionReturn(0);
 }

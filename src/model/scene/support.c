@@ -29,11 +29,11 @@ PetscErrorCode SupportsSetFromOptions(Model model)
 
   PetscFunctionBeginUser;
   PetscCall(OptionsGetNames(model->comm, "-supports", "essential conditions, each the prefix of its -set and -fix",
-                            MODEL_MAX_NAMES, &model->n_supports, names));
-  PetscCall(PetscCalloc1(model->n_supports, &model->supports));
-  for (PetscInt i = 0; i < model->n_supports; i++) {
-    model->supports[i].name = names[i];
-    PetscCall(SupportSetFromOptions(model->comm, &model->supports[i]));
+                            MODEL_MAX_NAMES, &model->scene.n_supports, names));
+  PetscCall(PetscCalloc1(model->scene.n_supports, &model->scene.supports));
+  for (PetscInt i = 0; i < model->scene.n_supports; i++) {
+    model->scene.supports[i].name = names[i];
+    PetscCall(SupportSetFromOptions(model->comm, &model->scene.supports[i]));
   }
   PetscFunctionReturn(0);
 }
