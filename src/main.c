@@ -240,64 +240,41 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode RunStatic(Chain *chain)
+/* Computes, shows and writes what the analysis is for */
+static PetscErrorCode ChainRun(Chain *chain)
 {
+  static const struct {
+    SquealStage stage;
+    Shown       shown;
+  } run[N_ANALYSES] = {
+    [ANALYSIS_MODES]     = {SQUEAL_MODES,    SHOWN_MODES   },
+    [ANALYSIS_SWEEP]     = {SQUEAL_SWEEP,    SHOWN_SWEEP   },
+    [ANALYSIS_STATIC]    = {SQUEAL_STATICS,  SHOWN_STATICS },
+    [ANALYSIS_TRANSIENT] = {SQUEAL_DYNAMICS, SHOWN_DYNAMICS}
+  };
+  const Analysis analysis = chain->analysis;
+
   PetscFunctionBeginUser;
-  PetscCall(SquealStageBegin(SQUEAL_STATICS));
-  PetscCall(StaticsSolve(chain->statics, chain->p));
-  PetscCall(SquealStageEnd(SQUEAL_STATICS));
-  PetscCall(ChainShow(chain, SHOWN_STATICS, PETSC_TRUE));
+  if (analysis == ANALYSIS_MODES) {
+    PetscCall(ChainLinearise(chain));
+    PetscCall(ModesSetPencil(chain->modes, chain->pencil));
+  }
+  if (analysis == ANALYSIS_SWEEP) PetscCall(PencilDestroy(&chain->pencil)); /* a sweep makes its own */
+  PetscCall(SquealStageBegin(run[analysis].stage));
+  if (analysis == ANALYSIS_MODES) PetscCall(ModesSolve(chain->modes));
+  if (analysis == ANALYSIS_SWEEP) PetscCall(SweepSolve(chain->sweep, chain->results));
+  if (analysis == ANALYSIS_STATIC) PetscCall(StaticsSolve(chain->statics, chain->p));
+  if (analysis == ANALYSIS_TRANSIENT) PetscCall(DynamicsSolve(chain->dynamics, chain->results));
+  PetscCall(SquealStageEnd(run[analysis].stage));
+  PetscCall(ChainShow(chain, run[analysis].shown, PETSC_TRUE));
+  if (analysis == ANALYSIS_TRANSIENT) PetscFunctionReturn(0); /* which writes as it goes */
   PetscCall(SquealStageBegin(SQUEAL_RESULTS));
-  PetscCall(StaticsWrite(chain->statics, chain->results));
+  if (analysis == ANALYSIS_MODES) PetscCall(ModesWrite(chain->modes, chain->results));
+  if (analysis == ANALYSIS_SWEEP) PetscCall(SweepWrite(chain->sweep, chain->results));
+  if (analysis == ANALYSIS_STATIC) PetscCall(StaticsWrite(chain->statics, chain->results));
   PetscCall(SquealStageEnd(SQUEAL_RESULTS));
   PetscFunctionReturn(0);
 }
-
-static PetscErrorCode RunModes(Chain *chain)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ChainLinearise(chain));
-  PetscCall(ModesSetPencil(chain->modes, chain->pencil));
-  PetscCall(SquealStageBegin(SQUEAL_MODES));
-  PetscCall(ModesSolve(chain->modes));
-  PetscCall(SquealStageEnd(SQUEAL_MODES));
-  PetscCall(ChainShow(chain, SHOWN_MODES, PETSC_TRUE));
-  PetscCall(SquealStageBegin(SQUEAL_RESULTS));
-  PetscCall(ModesWrite(chain->modes, chain->results));
-  PetscCall(SquealStageEnd(SQUEAL_RESULTS));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode RunSweep(Chain *chain)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PencilDestroy(&chain->pencil)); /* a sweep makes its own */
-  PetscCall(SquealStageBegin(SQUEAL_SWEEP));
-  PetscCall(SweepSolve(chain->sweep, chain->results));
-  PetscCall(SquealStageEnd(SQUEAL_SWEEP));
-  PetscCall(ChainShow(chain, SHOWN_SWEEP, PETSC_TRUE));
-  PetscCall(SquealStageBegin(SQUEAL_RESULTS));
-  PetscCall(SweepWrite(chain->sweep, chain->results));
-  PetscCall(SquealStageEnd(SQUEAL_RESULTS));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode RunTransient(Chain *chain)
-{
-  PetscFunctionBeginUser;
-  PetscCall(SquealStageBegin(SQUEAL_DYNAMICS));
-  PetscCall(DynamicsSolve(chain->dynamics, chain->results));
-  PetscCall(SquealStageEnd(SQUEAL_DYNAMICS));
-  PetscCall(ChainShow(chain, SHOWN_DYNAMICS, PETSC_TRUE));
-  PetscFunctionReturn(0);
-}
-
-typedef PetscErrorCode (*RunAnalysis)(Chain *);
-
-static const RunAnalysis run_analysis[N_ANALYSES] = {[ANALYSIS_MODES]     = RunModes,
-                                                     [ANALYSIS_SWEEP]     = RunSweep,
-                                                     [ANALYSIS_STATIC]    = RunStatic,
-                                                     [ANALYSIS_TRANSIENT] = RunTransient};
 
 static PetscErrorCode Run(MPI_Comm comm)
 {
@@ -314,7 +291,7 @@ static PetscErrorCode Run(MPI_Comm comm)
     PetscCall(ChainSetUp(&chain));
     PetscCall(ChainConnect(&chain, viewer));
     PetscCall(ChainView(&chain));
-    PetscCall(run_analysis[chain.analysis](&chain));
+    PetscCall(ChainRun(&chain));
     if (chain.view) PetscCall(SquealViewStages(comm, viewer));
     PetscCall(ChainWarnHidden(comm, &chain));
     PetscCall(OptionsWarnUnused(comm));

@@ -32,6 +32,20 @@ typedef PetscOptionItems OptionsItems;
 PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], PetscInt max, PetscInt *n,
                                char *names[]);
 
+/* A list of the scene, and how one of its records is read */
+typedef struct {
+  const char *option, *help; /* as of OptionsGetNames() */
+  const char *title;         /* heads the options of a record in -help, before its name */
+  size_t      size;          /* of a record, which begins with char *name */
+  /* reads the options that the name is the prefix of, and checks them; owner is that of OptionsReadList() */
+  PetscErrorCode (*read)(OptionsItems PetscOptionsObject, void *owner, void *record);
+} OptionsList;
+
+/*@ OptionsReadList - reads the names of a list into n new records, zero but for their names, and then the options of
+    each. records is the address of the pointer to them; the caller frees it and the names. Collective. Errors: as
+    OptionsGetNames(), and those of read(). @*/
+PetscErrorCode OptionsReadList(MPI_Comm comm, const OptionsList *list, void *owner, PetscInt *n, void *records);
+
 /*@
    OptionsGetReals - reads an array of exactly n numbers between PetscOptionsBegin() and PetscOptionsEnd(). Collective.
 

@@ -10,9 +10,10 @@
 #include <ctype.h>
 #include <stdarg.h>
 
-#define MAX_VALID 1024
-#define MAX_NAME  128
-#define MAX_LIST  4096 /* characters of a list of names */
+#define MAX_VALID   1024
+#define MAX_NAME    128
+#define MAX_RECORDS 64   /* names in one list of the scene */
+#define MAX_LIST    4096 /* characters of a list of names */
 
 /* Prefixes of options that PETSc and SLEPc read themselves, some of them only at the end */
 static const char *const library_prefixes[] = {
@@ -92,6 +93,25 @@ PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char he
     PetscCall(NameCheckFree(comm, option, names[i]));
   }
   *n = count;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsReadList(MPI_Comm comm, const OptionsList *list, void *owner, PetscInt *n, void *records)
+{
+  char *names[MAX_RECORDS], *record, prefix[MAX_NAME], title[MAX_NAME];
+
+  PetscFunctionBeginUser;
+  PetscCall(OptionsGetNames(comm, list->option, list->help, MAX_RECORDS, n, names));
+  PetscCall(PetscCalloc((size_t)*n * list->size, &record));
+  *(void **)records = record;
+  for (PetscInt i = 0; i < *n; i++) *(char **)(void *)(record + (size_t)i * list->size) = names[i];
+  for (PetscInt i = 0; i < *n; i++, record += list->size) {
+    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", names[i]));
+    PetscCall(PetscSNPrintf(title, sizeof(title), "%s %s", list->title, names[i]));
+    PetscOptionsBegin(comm, prefix, title, NULL);
+    PetscCall(list->read(PetscOptionsObject, owner, record));
+    PetscOptionsEnd();
+  }
   PetscFunctionReturn(0);
 }
 

@@ -16,6 +16,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, Model *model)
 PetscErrorCode ModelSetFromOptions(Model model)
 {
   static const char *const sources[] = {"rig", "file"};
+  ModelScene *const        scene     = &model->scene;
   PetscInt                 source    = 0;
   PetscBool                given, has_mesh;
 
@@ -34,11 +35,14 @@ PetscErrorCode ModelSetFromOptions(Model model)
   model->given = given || has_mesh ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(PetscStrncpy(model->source, sources[source], sizeof(model->source)));
   if (source == 0) PetscCall(RigSetFromOptions(model->comm, &model->rig));
-  PetscCall(PartsSetFromOptions(model));
-  PetscCall(SupportsSetFromOptions(model));
-  PetscCall(GroundedsSetFromOptions(model));
-  PetscCall(LoadsSetFromOptions(model));
-  PetscCall(ProbesSetFromOptions(model));
+  PetscCall(PetscOptionsHasName(NULL, NULL, parts_list.option, &given));
+  if (!given && source == 0) PetscCall(PetscOptionsSetValue(NULL, parts_list.option, "disc,pad,beam"));
+  PetscCall(OptionsReadList(model->comm, &parts_list, model, &scene->n_parts, &scene->parts));
+  PetscCall(OptionsReadList(model->comm, &supports_list, model, &scene->n_supports, &scene->supports));
+  PetscCall(OptionsReadList(model->comm, &springs_list, model, &scene->n_springs, &scene->springs));
+  PetscCall(OptionsReadList(model->comm, &dashpots_list, model, &scene->n_dashpots, &scene->dashpots));
+  PetscCall(OptionsReadList(model->comm, &loads_list, model, &scene->n_loads, &scene->loads));
+  PetscCall(OptionsReadList(model->comm, &probes_list, model, &scene->n_probes, &scene->probes));
   PetscFunctionReturn(0);
 }
 
@@ -155,27 +159,32 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
+/* Frees the records of a list, each of which begins with n_strings strings of its own */
+static PetscErrorCode RecordsDestroy(PetscInt n, size_t size, PetscInt n_strings, void *records)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt k = 0; k < n_strings; k++)
+      PetscCall(PetscFree(((char **)(void *)((char *)records + (size_t)i * size))[k]));
+  PetscCall(PetscFree(records));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelDestroy(Model *model)
 {
-  Model m = *model;
+  Model       m = *model;
+  ModelScene *s;
 
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(0);
-  for (PetscInt i = 0; i < m->scene.n_parts; i++) PetscCall(PetscFree(m->scene.parts[i].name));
-  for (PetscInt i = 0; i < m->scene.n_supports; i++) {
-    PetscCall(PetscFree(m->scene.supports[i].name));
-    PetscCall(PetscFree(m->scene.supports[i].set));
-  }
-  for (PetscInt i = 0; i < m->scene.n_loads; i++) {
-    PetscCall(PetscFree(m->scene.loads[i].name));
-    PetscCall(PetscFree(m->scene.loads[i].set));
-  }
-  PetscCall(ProbesDestroy(m));
+  s = &m->scene;
+  PetscCall(RecordsDestroy(s->n_parts, sizeof(*s->parts), 1, s->parts));
+  PetscCall(RecordsDestroy(s->n_supports, sizeof(*s->supports), 2, s->supports));
+  PetscCall(RecordsDestroy(s->n_springs, sizeof(*s->springs), 2, s->springs));
+  PetscCall(RecordsDestroy(s->n_dashpots, sizeof(*s->dashpots), 2, s->dashpots));
+  PetscCall(RecordsDestroy(s->n_loads, sizeof(*s->loads), 2, s->loads));
+  PetscCall(RecordsDestroy(s->n_probes, sizeof(*s->probes), 2, s->probes));
   for (PetscInt i = 0; i < m->n_together; i++) PetscCall(PetscFree(m->together[i]));
-  PetscCall(GroundedsDestroy(m));
-  PetscCall(PetscFree(m->scene.parts));
-  PetscCall(PetscFree(m->scene.supports));
-  PetscCall(PetscFree(m->scene.loads));
   PetscCall(MeshReset(m));
   PetscCall(DMDestroy(&m->dm));
   PetscCall(PetscFree(*model));

@@ -57,32 +57,26 @@ PETSC_INTERN PetscErrorCode PartitionMesh(Model model);
 PETSC_INTERN PetscErrorCode MeshTabulate(Model model);
 PETSC_INTERN PetscErrorCode MeshReset(Model model);
 
-/* part.c - bodies: their names and materials, and the part of each cell */
-PETSC_INTERN PetscErrorCode PartsSetFromOptions(Model model);
+/* The lists of the scene, whose files read their records: part.c, support.c, grounded.c, load.c, probe.c */
+PETSC_INTERN const OptionsList parts_list, supports_list, springs_list, dashpots_list, loads_list, probes_list;
+
+/* part.c - checks the materials, and finds the part of each cell */
 PETSC_INTERN PetscErrorCode PartsCheck(Model model);
 PETSC_INTERN PetscErrorCode PartsFindCells(Model model, PetscInt cell_part[]);
 
-/* support.c - essential supports */
-PETSC_INTERN PetscErrorCode SupportsSetFromOptions(Model model);
-
 /* grounded.c - springs and dashpots */
-PETSC_INTERN PetscErrorCode GroundedsSetFromOptions(Model model);
 PETSC_INTERN PetscErrorCode GroundedsView(Model model, PetscViewer viewer);
-PETSC_INTERN PetscErrorCode GroundedsDestroy(Model model);
 
 /* layout.c - the unknowns: displacements that no support fixes. Fills their part of the tables. */
 PETSC_INTERN PetscErrorCode MeshLayOut(Model model);
 
 /* load.c - total forces on sets; raises an error for a set that the mesh does not have, or that has no node of an
    element */
-PETSC_INTERN PetscErrorCode LoadsSetFromOptions(Model model);
 PETSC_INTERN PetscErrorCode LoadsCheck(Model model);
 
 /* probe.c - places that histories record: reads them, and finds their nodes */
-PETSC_INTERN PetscErrorCode ProbesSetFromOptions(Model model);
 PETSC_INTERN PetscErrorCode ProbesLocate(Model model);
 PETSC_INTERN PetscErrorCode ProbesView(Model model, PetscViewer viewer);
-PETSC_INTERN PetscErrorCode ProbesDestroy(Model model);
 
 /* check.c - finds the element of the cells and raises an error for a bad one; before the mesh is distributed */
 PETSC_INTERN PetscErrorCode MeshCheck(Model model);

@@ -9,9 +9,6 @@
 #include "external.h"
 #include "forcepattern.h"
 #include "base/ramp.h"
-
-#define EXTERNAL_MAX_NAMES 64 /* names in one list of the scene */
-
 /* A load of the model: F(t) = r(t) F */
 typedef struct {
   char        *name;

@@ -25,16 +25,13 @@ static PetscErrorCode ImpulseCheck(External external, const Impulse *hit, PetscB
   PetscFunctionReturn(0);
 }
 
-/* One impulse, whose name is set */
-static PetscErrorCode ImpulseSetFromOptions(External external, Impulse *hit)
+static PetscErrorCode ImpulseRead(OptionsItems PetscOptionsObject, void *owner, void *record)
 {
-  char      prefix[128], title[160], part[256] = "";
+  Impulse  *hit       = record;
+  char      part[256] = "";
   PetscBool placed;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", hit->name));
-  PetscCall(PetscSNPrintf(title, sizeof(title), "Impulse %s", hit->name));
-  PetscOptionsBegin(external->comm, prefix, title, NULL);
   PetscCall(OptionsGetReals(PetscOptionsObject, "-at", "place x,y,z whose nearest node is hit, m (required)", 3,
                             hit->at, &placed));
   PetscCall(
@@ -42,23 +39,18 @@ static PetscErrorCode ImpulseSetFromOptions(External external, Impulse *hit)
   PetscCall(
     OptionsGetReals(PetscOptionsObject, "-impulse", "momentum in x,y,z, N s (required)", 3, hit->impulse, NULL));
   PetscCall(PetscOptionsReal("-time", "when, s", "dynamics.h", hit->time, &hit->time, NULL));
-  PetscOptionsEnd();
   PetscCall(PetscStrallocpy(part, &hit->part));
-  PetscCall(ImpulseCheck(external, hit, placed));
+  PetscCall(ImpulseCheck(owner, hit, placed));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ImpulsesSetFromOptions(External external)
 {
-  char *names[EXTERNAL_MAX_NAMES];
+  static const OptionsList list = {"-impulses", "at nodes, each the prefix of its -at and -impulse", "Impulse",
+                                   sizeof(Impulse), ImpulseRead};
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(external->comm, "-impulses", "at nodes, each the prefix of its -at and -impulse",
-                            EXTERNAL_MAX_NAMES, &external->n_impulses, names));
-  PetscCall(PetscCalloc1(external->n_impulses, &external->impulses));
-  for (PetscInt i = 0; i < external->n_impulses; i++) external->impulses[i].name = names[i];
-  for (PetscInt i = 0; i < external->n_impulses; i++)
-    PetscCall(ImpulseSetFromOptions(external, &external->impulses[i]));
+  PetscCall(OptionsReadList(external->comm, &list, external, &external->n_impulses, &external->impulses));
   PetscFunctionReturn(0);
 }
 

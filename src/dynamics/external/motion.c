@@ -55,23 +55,21 @@ static PetscErrorCode MotionCheck(MPI_Comm comm, const Drive *motion)
   PetscFunctionReturn(0);
 }
 
-/* One motion, whose name is set */
-static PetscErrorCode MotionSetFromOptions(MPI_Comm comm, Drive *motion)
+static PetscErrorCode MotionRead(OptionsItems PetscOptionsObject, void *owner, void *record)
 {
-  char      prefix[128], title[160], word[16] = "";
-  PetscBool given;
+  const MPI_Comm comm     = PetscOptionsObject->comm;
+  Drive         *motion   = record;
+  char           word[16] = "";
+  PetscBool      given;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", motion->name));
-  PetscCall(PetscSNPrintf(title, sizeof(title), "Motion %s", motion->name));
-  PetscOptionsBegin(comm, prefix, title, NULL);
+  (void)owner;
   PetscCall(OptionsGetSet(PetscOptionsObject, &motion->set));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-displacement", "in x,y,z, m", 3, motion->displacement, NULL));
   PetscCall(PetscOptionsString("-directions",
                                "that are prescribed: some of x, y, z; by default those of the displacement",
                                "dynamics.h", word, word, sizeof(word), &given));
   PetscCall(RampSetFromOptions(PetscOptionsObject, &motion->ramp));
-  PetscOptionsEnd();
   PetscCall(MotionCheck(comm, motion));
   PetscCall(MotionSetDirections(comm, motion, word, given));
   PetscFunctionReturn(0);
@@ -79,15 +77,11 @@ static PetscErrorCode MotionSetFromOptions(MPI_Comm comm, Drive *motion)
 
 PetscErrorCode MotionsSetFromOptions(External external)
 {
-  char *names[EXTERNAL_MAX_NAMES];
+  static const OptionsList list = {"-motions", "prescribed displacements, each the prefix of its -set", "Motion",
+                                   sizeof(Drive), MotionRead};
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(external->comm, "-motions", "prescribed displacements, each the prefix of its -set",
-                            EXTERNAL_MAX_NAMES, &external->n_motions, names));
-  PetscCall(PetscCalloc1(external->n_motions, &external->motions));
-  for (PetscInt i = 0; i < external->n_motions; i++) external->motions[i].name = names[i];
-  for (PetscInt i = 0; i < external->n_motions; i++)
-    PetscCall(MotionSetFromOptions(external->comm, &external->motions[i]));
+  PetscCall(OptionsReadList(external->comm, &list, external, &external->n_motions, &external->motions));
   PetscFunctionReturn(0);
 }
 

@@ -8,19 +8,17 @@
 #include "kernels/facet.h"
 #include <squeal/options.h>
 
-/* Set and force of one load, whose name is set */
-static PetscErrorCode LoadSetFromOptions(MPI_Comm comm, Load *load)
+/* Set and force of one load */
+static PetscErrorCode LoadRead(OptionsItems PetscOptionsObject, void *owner, void *record)
 {
-  char      prefix[128], title[160];
-  PetscReal sum = 0;
+  const MPI_Comm comm = PetscOptionsObject->comm;
+  Load          *load = record;
+  PetscReal      sum  = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", load->name));
-  PetscCall(PetscSNPrintf(title, sizeof(title), "Load %s", load->name));
-  PetscOptionsBegin(comm, prefix, title, NULL);
+  (void)owner;
   PetscCall(OptionsGetSet(PetscOptionsObject, &load->set));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-force", "total force in x,y,z, N", 3, load->force, NULL));
-  PetscOptionsEnd();
   PetscCall(OptionsCheckFinite(comm, load->name, "force", "N", load->force));
   for (int d = 0; d < 3; d++) sum += PetscAbsReal(load->force[d]);
   PetscCheck(sum > 0, comm, PETSC_ERR_USER_INPUT, "-%s_force must be given: three values, not all zero (N)",
@@ -28,20 +26,8 @@ static PetscErrorCode LoadSetFromOptions(MPI_Comm comm, Load *load)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LoadsSetFromOptions(Model model)
-{
-  char *names[MODEL_MAX_NAMES];
-
-  PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(model->comm, "-loads", "forces, each the prefix of its -set and -force", MODEL_MAX_NAMES,
-                            &model->scene.n_loads, names));
-  PetscCall(PetscCalloc1(model->scene.n_loads, &model->scene.loads));
-  for (PetscInt i = 0; i < model->scene.n_loads; i++) {
-    model->scene.loads[i].name = names[i];
-    PetscCall(LoadSetFromOptions(model->comm, &model->scene.loads[i]));
-  }
-  PetscFunctionReturn(0);
-}
+const OptionsList loads_list = {"-loads", "forces, each the prefix of its -set and -force", "Load", sizeof(Load),
+                                LoadRead};
 
 /* Whether any rank has a face of the set */
 static PetscErrorCode SetHasFaces(Model model, const char set[], PetscBool *has)

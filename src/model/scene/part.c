@@ -5,43 +5,24 @@
 #include <squeal/options.h>
 
 /* Material of one part; nothing has a default that could pass unnoticed except Rayleigh factors of zero */
-static PetscErrorCode PartSetFromOptions(MPI_Comm comm, Part *part)
+static PetscErrorCode PartRead(OptionsItems PetscOptionsObject, void *owner, void *record)
 {
-  char prefix[128], title[160];
+  Part *part = record;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", part->name));
-  PetscCall(PetscSNPrintf(title, sizeof(title), "Part %s", part->name));
-  PetscOptionsBegin(comm, prefix, title, NULL);
+  (void)owner;
+  part->poisson = 0.3;
   PetscCall(PetscOptionsReal("-young", "Young's modulus, Pa (required)", "model.h", part->young, &part->young, NULL));
   PetscCall(
     PetscOptionsReal("-poisson", "Poisson's ratio, in (-1, 0.5)", "model.h", part->poisson, &part->poisson, NULL));
   PetscCall(PetscOptionsReal("-density", "density, kg/m^3 (required)", "model.h", part->density, &part->density, NULL));
   PetscCall(PetscOptionsReal("-alpha", "Rayleigh factor of the mass, 1/s", "model.h", part->alpha, &part->alpha, NULL));
   PetscCall(PetscOptionsReal("-beta", "Rayleigh factor of the stiffness, s", "model.h", part->beta, &part->beta, NULL));
-  PetscOptionsEnd();
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PartsSetFromOptions(Model model)
-{
-  static const char list[] = "-parts";
-  char             *names[MODEL_MAX_NAMES];
-  PetscBool         given;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsHasName(NULL, NULL, list, &given));
-  if (!given && !strcmp(model->source, "rig")) PetscCall(PetscOptionsSetValue(NULL, list, "disc,pad,beam"));
-  PetscCall(OptionsGetNames(model->comm, list, "bodies: volumes of the mesh, each the prefix of its material",
-                            MODEL_MAX_NAMES, &model->scene.n_parts, names));
-  PetscCall(PetscCalloc1(model->scene.n_parts, &model->scene.parts));
-  for (PetscInt i = 0; i < model->scene.n_parts; i++) {
-    model->scene.parts[i].name    = names[i];
-    model->scene.parts[i].poisson = 0.3;
-    PetscCall(PartSetFromOptions(model->comm, &model->scene.parts[i]));
-  }
-  PetscFunctionReturn(0);
-}
+const OptionsList parts_list = {"-parts", "bodies: volumes of the mesh, each the prefix of its material", "Part",
+                                sizeof(Part), PartRead};
 
 PetscErrorCode ModelFindPart(Model model, const char name[], const char part[], PetscInt *index)
 {

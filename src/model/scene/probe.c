@@ -16,22 +16,21 @@ typedef struct {
   PetscInt  part, number, rank, vertex;
 } Candidate;
 
-/* Place and part of one probe, whose name is set */
-static PetscErrorCode ProbeSetFromOptions(Model model, Probe *probe)
+/* Place and part of one probe */
+static PetscErrorCode ProbeRead(OptionsItems PetscOptionsObject, void *owner, void *record)
 {
-  char      prefix[128], title[160], part[256] = "";
-  PetscInt  index;
-  PetscBool given;
+  const Model model     = owner;
+  Probe      *probe     = record;
+  char        part[256] = "";
+  PetscInt    index;
+  PetscBool   given;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", probe->name));
-  PetscCall(PetscSNPrintf(title, sizeof(title), "Probe %s", probe->name));
-  PetscOptionsBegin(model->comm, prefix, title, NULL);
+  probe->vertex = -1;
   PetscCall(
     OptionsGetReals(PetscOptionsObject, "-at", "place x,y,z, m: the nearest node (required)", 3, probe->at, &given));
   PetscCall(
     PetscOptionsString("-part", "part that has the node; default any", "model.h", part, part, sizeof(part), NULL));
-  PetscOptionsEnd();
   PetscCall(PetscStrallocpy(part, &probe->part));
   PetscCheck(given, model->comm, PETSC_ERR_USER_INPUT, "-%s_at must be given: the place x,y,z (m)", probe->name);
   PetscCall(OptionsCheckFinite(model->comm, probe->name, "at", "m", probe->at));
@@ -39,22 +38,8 @@ static PetscErrorCode ProbeSetFromOptions(Model model, Probe *probe)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ProbesSetFromOptions(Model model)
-{
-  char *names[MODEL_MAX_NAMES];
-
-  PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(model->comm, "-probes",
-                            "places that histories record, each the prefix of its -at and -part", MODEL_MAX_NAMES,
-                            &model->scene.n_probes, names));
-  PetscCall(PetscCalloc1(model->scene.n_probes, &model->scene.probes));
-  for (PetscInt i = 0; i < model->scene.n_probes; i++) {
-    model->scene.probes[i].name   = names[i];
-    model->scene.probes[i].vertex = -1;
-    PetscCall(ProbeSetFromOptions(model, &model->scene.probes[i]));
-  }
-  PetscFunctionReturn(0);
-}
+const OptionsList probes_list = {"-probes", "places that histories record, each the prefix of its -at and -part",
+                                 "Probe", sizeof(Probe), ProbeRead};
 
 static int CandidateCompare(const void *a, const void *b)
 {
@@ -161,16 +146,5 @@ PetscErrorCode ProbesView(Model model, PetscViewer viewer)
                              p->name, (double)p->x[0], (double)p->x[1], (double)p->x[2], p->part[0] ? " of " : "",
                              p->part, (double)p->at[0], (double)p->at[1], (double)p->at[2]));
   }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ProbesDestroy(Model model)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < model->scene.n_probes; i++) {
-    PetscCall(PetscFree(model->scene.probes[i].name));
-    PetscCall(PetscFree(model->scene.probes[i].part));
-  }
-  PetscCall(PetscFree(model->scene.probes));
   PetscFunctionReturn(0);
 }
