@@ -9,6 +9,7 @@
 #include "external.h"
 #include "forcepattern.h"
 #include "base/ramp.h"
+
 /* A load of the model: F(t) = r(t) F */
 typedef struct {
   char        *name;
