@@ -124,6 +124,14 @@ PetscErrorCode ModelGetCell(Model model, PetscInt c, PetscInt vertices[], PetscR
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode GroundedView(PetscViewer viewer, const char kind[], const Grounded *g, const char unit[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  %s %s on %s: %.6g, %.6g, %.6g %s per node\n", kind, g->name, g->set,
+                                   (double)g->value[0], (double)g->value[1], (double)g->value[2], unit));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelView(Model model, PetscViewer viewer)
 {
   PetscInt    n_cells = model->mesh.n_cells;
@@ -148,7 +156,10 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
                                      model->scene.supports[i].fix[0] ? " x" : "",
                                      model->scene.supports[i].fix[1] ? " y" : "",
                                      model->scene.supports[i].fix[2] ? " z" : "", model->scene.supports[i].set));
-  PetscCall(GroundedsView(model, viewer));
+  for (PetscInt i = 0; i < model->scene.n_springs; i++)
+    PetscCall(GroundedView(viewer, "spring", &model->scene.springs[i], "N/m"));
+  for (PetscInt i = 0; i < model->scene.n_dashpots; i++)
+    PetscCall(GroundedView(viewer, "dashpot", &model->scene.dashpots[i], "N s/m"));
   for (PetscInt i = 0; i < model->scene.n_loads; i++) {
     const Load *l = &model->scene.loads[i];
 

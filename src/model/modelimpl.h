@@ -64,9 +64,6 @@ PETSC_INTERN const OptionsList parts_list, supports_list, springs_list, dashpots
 PETSC_INTERN PetscErrorCode PartsCheck(Model model);
 PETSC_INTERN PetscErrorCode PartsFindCells(Model model, PetscInt cell_part[]);
 
-/* grounded.c - springs and dashpots */
-PETSC_INTERN PetscErrorCode GroundedsView(Model model, PetscViewer viewer);
-
 /* layout.c - the unknowns: displacements that no support fixes. Fills their part of the tables. */
 PETSC_INTERN PetscErrorCode MeshLayOut(Model model);
 

@@ -147,34 +147,32 @@ PetscErrorCode ResultsTableReopen(Results results, const char name[], const char
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ResultsTableSuspend(ResultsTable *table)
+/* Ends the file of a table, under its final name or the temporary one, and frees the table in any case */
+static PetscErrorCode TableEnd(ResultsTable *table, PetscBool publish)
 {
-  OutFile       *file;
+  OutFile       *file = *table ? &(*table)->file : NULL;
   PetscErrorCode failure;
 
   PetscFunctionBeginUser;
-  if (!*table) PetscFunctionReturn(0);
-  file       = &(*table)->file;
-  file->keep = PETSC_TRUE;
-  PetscCall(OutFileCloseText(file));
-  failure = OutFilesCheck(1, &file);
+  if (!file) PetscFunctionReturn(0);
+  if (!publish) {
+    file->keep = PETSC_TRUE;
+    PetscCall(OutFileCloseText(file));
+  }
+  failure = publish ? OutFilesPublish(1, &file) : OutFilesCheck(1, &file);
   PetscCall(PetscFree(*table));
   PetscCall(failure);
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ResultsTableSuspend(ResultsTable *table)
+{
+  return TableEnd(table, PETSC_FALSE);
+}
+
 PetscErrorCode ResultsTableClose(ResultsTable *table)
 {
-  OutFile       *file;
-  PetscErrorCode failure;
-
-  PetscFunctionBeginUser;
-  if (!*table) PetscFunctionReturn(0);
-  file    = &(*table)->file;
-  failure = OutFilesPublish(1, &file);
-  PetscCall(PetscFree(*table));
-  PetscCall(failure);
-  PetscFunctionReturn(0);
+  return TableEnd(table, PETSC_TRUE);
 }
 
 PetscErrorCode ResultsDestroy(Results *results)

@@ -44,21 +44,3 @@ const OptionsList springs_list  = {"-springs", "each the prefix of its -set and 
                                    sizeof(Grounded), SpringRead};
 const OptionsList dashpots_list = {"-dashpots", "each the prefix of its -set and value", "Grounded dashpot",
                                    sizeof(Grounded), DashpotRead};
-
-static PetscErrorCode GroundedListView(const char kind[], const char unit[], PetscInt n, const Grounded g[],
-                                       PetscViewer viewer)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < n; i++)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s %s on %s: %.6g, %.6g, %.6g %s per node\n", kind, g[i].name, g[i].set,
-                                     (double)g[i].value[0], (double)g[i].value[1], (double)g[i].value[2], unit));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode GroundedsView(Model model, PetscViewer viewer)
-{
-  PetscFunctionBeginUser;
-  PetscCall(GroundedListView("spring", "N/m", model->scene.n_springs, model->scene.springs, viewer));
-  PetscCall(GroundedListView("dashpot", "N s/m", model->scene.n_dashpots, model->scene.dashpots, viewer));
-  PetscFunctionReturn(0);
-}
