@@ -30,17 +30,6 @@ static const Element elements[] = {
    .measure       = Hex8Measure}
 };
 
-/*@
-   ElementFind - the row of the table with this shape and formulation, or NULL
-
-   Not collective
-
-   Input Parameters:
-+  shape       - cell shape of the mesh
--  formulation - value of -model_element
-
-.seealso: `ElementNames()`
-@*/
 const Element *ElementFind(DMPolytopeType shape, const char formulation[])
 {
   for (size_t i = 0; i < sizeof(elements) / sizeof(elements[0]); i++) {
@@ -49,13 +38,6 @@ const Element *ElementFind(DMPolytopeType shape, const char formulation[])
   return NULL;
 }
 
-/*@
-   ElementNames - the formulations, separated by commas, for messages
-
-   Not collective
-
-.seealso: `ElementFind()`
-@*/
 const char *ElementNames(void)
 {
   return INCOMPATIBLE ", " FULL;
