@@ -42,7 +42,7 @@ static PetscErrorCode OnsetCorrect(Sweep sweep, const Correction *correction, co
   PetscCall(ReducedSolve(&sweep->basis.reduced, p, near, &modes));
   PetscCall(ReducedModesBroadcast(sweep->comm, 0, &modes));
   PetscCall(CorrectionApply(correction, &modes, ONSET_DROP, &sweep->basis, &n_added));
-  PetscCall(BasisPromote(&sweep->basis));
+  sweep->basis.reduced.n_used = sweep->basis.reduced.n;
   PetscCall(ReducedModesDestroy(&modes));
   PetscFunctionReturn(0);
 }
@@ -69,7 +69,7 @@ static PetscErrorCode OnsetConverge(Sweep sweep, const BranchLine *line, PetscRe
     PetscCall(OnsetReduced(sweep, line, event));
     *change = PetscAbsReal(event->critical - before);
   }
-  PetscCall(CorrectionDestroy(&correction));
+  PetscCall(ShiftInvertDestroy(&correction.factor));
   PetscFunctionReturn(0);
 }
 

@@ -48,24 +48,10 @@ static PetscErrorCode TrackBroadcast(Sweep sweep, PetscInt n_before, LinePoints 
   sweep->n_branches = n[0];
   for (PetscInt i = 0; i < points->n; i++)
     PetscCallMPI(MPI_Bcast(points->branch[i], (PetscMPIInt)points->modes[i].n, MPIU_INT, 0, sweep->comm));
-  while (events->n < n[1])
-    PetscCall(BranchEventsAdd(events, &(BranchEvent){
-                                        .branch = {-1, -1}
-    }));
+  PetscCall(PetscRealloc(PetscMax(1, n[1]) * sizeof(BranchEvent), &events->event));
   events->n = n[1];
   PetscCall(PetscMPIIntCast((PetscInt)sizeof(BranchEvent) * (n[1] - n_before), &bytes));
   if (bytes) PetscCallMPI(MPI_Bcast(&events->event[n_before], bytes, MPI_BYTE, 0, sweep->comm));
-  PetscFunctionReturn(0);
-}
-
-/* Follows the branches along the line */
-static PetscErrorCode PointsTrack(Sweep sweep, LinePoints *points)
-{
-  const PetscInt before = sweep->events.n;
-
-  PetscFunctionBeginUser;
-  PetscCall(LineTrackSegments(sweep, points));
-  PetscCall(TrackBroadcast(sweep, before, points));
   PetscFunctionReturn(0);
 }
 
@@ -141,12 +127,8 @@ PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedMo
   PetscCall(BasisCreateBlock(&sweep->basis, 4 * n, &block));
   PetscCall(BasisLift(&sweep->basis, modes->size, 4 * n, columns, block));
   for (PetscInt i = 0; i < 4 * n; i++) {
-    Vec column;
-
-    PetscCall(BVGetColumn(block, i, &column));
-    PetscCall(VecDuplicate(column, &shape[i]));
-    PetscCall(VecCopy(column, shape[i]));
-    PetscCall(BVRestoreColumn(block, i, &column));
+    PetscCall(BVCreateVec(block, &shape[i]));
+    PetscCall(BVCopyVec(block, i, shape[i]));
   }
   PetscCall(BVDestroy(&block));
   PetscCall(PencilSetParameters(sweep->pencil, p));
@@ -302,7 +284,8 @@ PetscErrorCode SweepLines(Sweep sweep)
     const PetscInt n_before = sweep->n_branches, first_event = sweep->events.n;
 
     PetscCall(PointsCreate(sweep, line, &points));
-    PetscCall(PointsTrack(sweep, &points));
+    PetscCall(LineTrackSegments(sweep, &points));
+    PetscCall(TrackBroadcast(sweep, first_event, &points));
     if (line) PetscCall(PointsLink(sweep, &before, n_before, first_event, &points));
     PetscCall(LabelsGrow(sweep, n_before));
     PetscCall(PointsLabel(sweep, &points));

@@ -214,13 +214,16 @@ PetscErrorCode SweepStatuses(Sweep sweep)
   PetscBool          affine;
 
   PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(sweep->operators, NULL, &contact));
+  sweep->statuses.n_pairs = -1;
+  if (contact) {
+    PetscCall(ContactGetPairs(contact, &n, &n_all, &pair));
+    PetscCall(StatusListCreate(sweep->comm, n, &sweep->statuses));
+  }
   if (!sweep->statics) {
     PetscCall(OperatorsLinearise(sweep->operators, NULL, &sweep->pencil));
     PetscFunctionReturn(0);
   }
-  PetscCall(OperatorsGetModel(sweep->operators, NULL, &contact));
-  PetscCall(ContactGetPairs(contact, &n, &n_all, &pair));
-  PetscCall(StatusListCreate(sweep->comm, n, &sweep->statuses));
   if (sweep->method == SWEEP_FULL) PetscFunctionReturn(0);
   PetscCall(StaticsIsAffine(sweep->statics, &affine));
   PetscCheck(affine, sweep->comm, PETSC_ERR_SUP,
@@ -237,21 +240,13 @@ PetscErrorCode SweepStatuses(Sweep sweep)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SweepClosedAt(Sweep sweep, PetscInt point, PetscInt *n_closed, PetscBool *jump)
+PetscInt SweepClosedAt(Sweep sweep, PetscInt point, PetscBool *jump)
 {
-  const SweepGrid   *grid  = &sweep->grid;
-  const SweepPlace  *place = &grid->place[grid->at[point]];
-  const ContactPair *pair;
-  Contact            contact;
-  PetscInt           n;
+  const SweepGrid  *grid  = &sweep->grid;
+  const SweepPlace *place = &grid->place[grid->at[point]];
 
-  PetscFunctionBeginUser;
-  *n_closed = -1;
-  *jump     = PETSC_FALSE;
-  PetscCall(OperatorsGetModel(sweep->operators, NULL, &contact));
-  if (contact) PetscCall(ContactGetPairs(contact, &n, n_closed, &pair));
-  if (!sweep->statics) PetscFunctionReturn(0);
-  *n_closed = sweep->statuses.n_closed[place->status];
+  *jump = PETSC_FALSE;
+  if (!sweep->statics) return sweep->statuses.n_pairs;
   if (point % grid->n[0]) *jump = (PetscBool)(grid->place[grid->at[point - 1]].status != place->status);
-  PetscFunctionReturn(0);
+  return sweep->statuses.n_closed[place->status];
 }

@@ -200,19 +200,6 @@ static PetscErrorCode BasisMake(Sweep sweep, PetscBool exceeding)
   PetscFunctionReturn(0);
 }
 
-/* Greedy basis, kept in the output folder as it grows */
-static PetscErrorCode BasisGreedy(Sweep sweep)
-{
-  PetscFunctionBeginUser;
-  if (sweep->restart) {
-    PetscCall(SweepResume(sweep));
-    sweep->greedy.keep     = SweepKeep;
-    sweep->greedy.keep_ctx = sweep;
-  }
-  PetscCall(BasisMake(sweep, PETSC_FALSE));
-  PetscFunctionReturn(0);
-}
-
 /* Reduced model, by the method chosen */
 static PetscErrorCode ModelMake(Sweep sweep)
 {
@@ -236,7 +223,12 @@ static PetscErrorCode ModelMake(Sweep sweep)
     PetscCall(BasisFillReal(&sweep->basis, sweep->modes, sweep->n_real, p));
   } else {
     PetscCall(BasisFillWhole(&sweep->basis, &sweep->whole));
-    if (!sweep->whole) PetscCall(BasisGreedy(sweep));
+    if (!sweep->whole && sweep->restart) { /* kept in the output folder as it grows */
+      PetscCall(SweepResume(sweep));
+      sweep->greedy.keep     = SweepKeep;
+      sweep->greedy.keep_ctx = sweep;
+    }
+    if (!sweep->whole) PetscCall(BasisMake(sweep, PETSC_FALSE));
   }
   PetscCall(PetscFree(p));
   PetscFunctionReturn(0);

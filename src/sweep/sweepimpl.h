@@ -72,7 +72,7 @@ struct _p_Sweep {
   ReducedWindow  window;
   Basis          basis;
   Greedy         greedy;
-  StatusList     statuses;              /* empty without statics */
+  StatusList     statuses;              /* empty without statics; n_pairs -1 without contact */
   PetscInt       base_status, n_static; /* status of the scene's own values; static solutions */
   SweepPoint    *point;
   PetscReal     *worst; /* [places] largest estimated relative error, but for rounding */
@@ -111,7 +111,7 @@ PETSC_INTERN PetscErrorCode SweepAxisCheck(Sweep sweep, const char name[]);
 PETSC_INTERN PetscErrorCode SweepStatuses(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepStatusSolve(Sweep sweep, const SweepPlace *place, PetscInt *status);
 PETSC_INTERN PetscErrorCode SweepStatusTake(Sweep sweep, const SlidingState *state, PetscInt *status);
-PETSC_INTERN PetscErrorCode SweepClosedAt(Sweep sweep, PetscInt point, PetscInt *n_closed, PetscBool *jump);
+PETSC_INTERN PetscInt       SweepClosedAt(Sweep sweep, PetscInt point, PetscBool *jump);
 PETSC_INTERN PetscBool      SweepClosedRange(Sweep sweep, PetscInt *least, PetscInt *most);
 /* confirm.c - onsets on the reduced model, then on the full problem */
 PETSC_INTERN PetscErrorCode SweepOnsets(Sweep sweep);

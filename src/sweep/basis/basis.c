@@ -167,15 +167,10 @@ static PetscErrorCode DiagonalExtend(const Basis *basis, const OperatorsTerm *te
   PetscCall(MatGetDiagonal(term->A, diagonal));
   PetscCall(VecAbs(diagonal));
   PetscCall(BVDuplicateResize(block, n - first, &scaled));
-  for (PetscInt j = 0; j < n - first; j++) {
-    Vec from, to;
-
-    PetscCall(BVGetColumn(block, j, &from));
-    PetscCall(BVGetColumn(scaled, j, &to));
-    PetscCall(VecPointwiseMult(to, from, diagonal));
-    PetscCall(BVRestoreColumn(scaled, j, &to));
-    PetscCall(BVRestoreColumn(block, j, &from));
-  }
+  PetscCall(BVCopy(block, scaled));
+  PetscCall(BVGetMat(scaled, &H));
+  PetscCall(MatDiagonalScale(H, diagonal, NULL));
+  PetscCall(BVRestoreMat(scaled, &H));
   PetscCall(InnerProducts(basis->vectors, NULL, scaled, &H));
   PetscCall(BlockCopy(H, PETSC_FALSE, n, 0, first, *reduced));
   PetscCall(BlockCopy(H, PETSC_TRUE, n, first, 0, *reduced));
@@ -260,13 +255,6 @@ PetscErrorCode BasisRebuild(Basis *basis, PetscInt n_blocks)
     PetscCall(ReducedExtend(basis, block));
     PetscCall(BVDestroy(&block));
   }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode BasisPromote(Basis *basis)
-{
-  PetscFunctionBeginUser;
-  basis->reduced.n_used = basis->reduced.n;
   PetscFunctionReturn(0);
 }
 

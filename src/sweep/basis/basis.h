@@ -6,7 +6,7 @@
 #include <slepcbv.h>
 
 /* [V Z], orthonormal in the mass matrix of the scene's own parameters. The leading reduced.n_used vectors are the
-   model, the others estimate its error. */
+   model (those added become part of it when the caller raises that number), the others estimate its error. */
 #define BASIS_MAX_BLOCKS 1024
 
 typedef struct {
@@ -21,13 +21,14 @@ typedef struct {
 PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis);
 /* Block of n columns in the unknowns of the pencil, to fill and to hand to BasisAdd() */
 PetscErrorCode BasisCreateBlock(const Basis *basis, PetscInt n, BV *block);
+/* fill.c - block of the vectors of the first n modes of the eigensolver: n_parts = 1 the real parts of right ones, 4 real
+   and imaginary parts of right and left ones, as far as there are any */
+PetscErrorCode BasisCreateModes(const Basis *basis, Modes modes, PetscInt n, PetscInt n_parts, BV *block);
 /* Appends what the block holds beyond the basis, leaving out directions whose M-norm is below drop; the block is
    overwritten, n_added (may be NULL) = vectors gained. The dense model follows. */
 PetscErrorCode BasisAdd(Basis *basis, BV block, PetscReal drop, PetscInt *n_added);
 /* Makes the dense model of vectors read from elsewhere, block by block as BasisAdd() did */
 PetscErrorCode BasisRebuild(Basis *basis, PetscInt n_blocks);
-/* The model now uses all vectors */
-PetscErrorCode BasisPromote(Basis *basis);
 /* block = V coordinates, coordinates [m][size] with size <= n, real */
 PetscErrorCode BasisLift(const Basis *basis, PetscInt size, PetscInt m, const PetscReal coordinates[], BV block);
 PetscErrorCode BasisDestroy(Basis *basis);

@@ -20,8 +20,7 @@ PetscErrorCode CorrectionCreate(Pencil pencil, const PetscReal p[], const Reduce
   PencilMatrices undamped;
 
   PetscFunctionBeginUser;
-  PetscCall(PencilSetParameters(pencil, p));
-  PetscCall(PencilGetMatrices(pencil, &c->matrices));
+  PetscCall(CorrectionMove(pencil, p, c));
   undamped   = c->matrices;
   undamped.C = NULL;
   PetscCall(ShiftInvertCreate(&undamped, window->high * window->high, PETSC_FALSE, progress, &c->factor));
@@ -75,13 +74,6 @@ static PetscErrorCode ColumnsCollect(const ReducedModes *modes, PetscBool damped
     c->m++;
   }
   c->n_columns = c->column[c->m];
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ColumnsDestroy(Columns *c)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree3(c->column, c->lambda, c->coordinates));
   PetscFunctionReturn(0);
 }
 
@@ -152,7 +144,7 @@ static PetscErrorCode CorrectionSide(const Correction *c, const ReducedModes *mo
   PetscCall(BVRestoreMat(vectors, &X));
   PetscCall(BVDestroy(&vectors));
   *n += columns.n_columns;
-  PetscCall(ColumnsDestroy(&columns));
+  PetscCall(PetscFree3(columns.column, columns.lambda, columns.coordinates));
   PetscFunctionReturn(0);
 }
 
@@ -173,13 +165,6 @@ PetscErrorCode CorrectionApply(const Correction *c, const ReducedModes *modes, P
   if (n) PetscCall(BasisAdd(basis, block, drop, n_added));
   PetscCall(BVDestroy(&block));
   PetscCall(EventEnd(EVENT_CORRECT));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode CorrectionDestroy(Correction *c)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ShiftInvertDestroy(&c->factor));
   PetscFunctionReturn(0);
 }
 

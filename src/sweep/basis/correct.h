@@ -10,7 +10,7 @@ typedef struct {
   ShiftInvert    factor;
 } Correction;
 
-/* Sets the pencil to p and factors it near the window's modes */
+/* Sets the pencil to p and factors it near the window's modes; the caller destroys the factor */
 PetscErrorCode CorrectionCreate(Pencil pencil, const PetscReal p[], const ReducedWindow *window, Progress *progress,
                                 Correction *correction);
 /* Moves to other values p nearby: the pencil is made for them, the factorisation stays */
@@ -19,7 +19,6 @@ PetscErrorCode CorrectionMove(Pencil pencil, const PetscReal p[], Correction *co
    vectors gained */
 PetscErrorCode CorrectionApply(const Correction *correction, const ReducedModes *modes, PetscReal drop, Basis *basis,
                                PetscInt *n_added);
-PetscErrorCode CorrectionDestroy(Correction *correction);
 
 /* Frictionless modes in the window (from zero on where its lower end is below half of the upper one) by Sylvester's law
    of inertia with the pencil at p, and by the basis; alike where the basis lacks none. Both are -1 where the

@@ -7,12 +7,32 @@
 
 #define WHOLE 200 /* unknowns up to which the basis is the whole space */
 
+PetscErrorCode BasisCreateModes(const Basis *basis, Modes modes, PetscInt n, PetscInt n_parts, BV *block)
+{
+  Vec      part[4], q;
+  PetscInt m = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(BasisCreateBlock(basis, n_parts * n, block));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(ModesGetVectors(modes, i, &part[0], &part[1], &part[2], &part[3]));
+    for (int k = 0; k < n_parts; k++) {
+      if (!part[k]) continue;
+      PetscCall(BVGetColumn(*block, m, &q));
+      PetscCall(PencilRestrict(basis->pencil, part[k], q));
+      PetscCall(BVRestoreColumn(*block, m++, &q));
+    }
+  }
+  PetscCall(BVSetActiveColumns(*block, 0, m));
+  PetscFunctionReturn(0);
+}
+
 /* The model of all that the block holds; frees the block */
 static PetscErrorCode BasisTake(Basis *basis, BV *block, PetscInt *n_added)
 {
   PetscFunctionBeginUser;
   PetscCall(BasisAdd(basis, *block, 0, n_added));
-  PetscCall(BasisPromote(basis));
+  basis->reduced.n_used = basis->reduced.n;
   PetscCall(BVDestroy(block));
   PetscFunctionReturn(0);
 }
@@ -20,6 +40,7 @@ static PetscErrorCode BasisTake(Basis *basis, BV *block, PetscInt *n_added)
 PetscErrorCode BasisFillWhole(Basis *basis, PetscBool *whole)
 {
   PetscInt n, first, last, n_added;
+  Mat      unit;
   BV       block;
 
   PetscFunctionBeginUser;
@@ -28,16 +49,12 @@ PetscErrorCode BasisFillWhole(Basis *basis, PetscBool *whole)
   if (n > WHOLE) PetscFunctionReturn(0);
   PetscCall(BasisCreateBlock(basis, n, &block));
   PetscCall(MatGetOwnershipRange(basis->M, &first, &last));
-  for (PetscInt i = 0; i < n; i++) {
-    Vec unit;
-
-    PetscCall(BVGetColumn(block, i, &unit));
-    PetscCall(VecSet(unit, 0));
-    if (i >= first && i < last) PetscCall(VecSetValue(unit, i, 1, INSERT_VALUES));
-    PetscCall(VecAssemblyBegin(unit));
-    PetscCall(VecAssemblyEnd(unit));
-    PetscCall(BVRestoreColumn(block, i, &unit));
-  }
+  PetscCall(BVGetMat(block, &unit));
+  PetscCall(MatZeroEntries(unit));
+  for (PetscInt i = first; i < last; i++) PetscCall(MatSetValue(unit, i, i, 1, INSERT_VALUES));
+  PetscCall(MatAssemblyBegin(unit, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(unit, MAT_FINAL_ASSEMBLY));
+  PetscCall(BVRestoreMat(block, &unit));
   PetscCall(BasisTake(basis, &block, &n_added));
   *whole = n_added == n ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
@@ -59,15 +76,7 @@ PetscErrorCode BasisFillReal(Basis *basis, Modes modes, PetscInt n_modes, PetscR
   PetscCall(ModesSolve(modes));
   PetscCall(ModesSetBand(modes, band));
   PetscCall(ModesGet(modes, &n, &mode));
-  PetscCall(BasisCreateBlock(basis, n, &block));
-  for (PetscInt i = 0; i < n; i++) {
-    Vec u, q;
-
-    PetscCall(ModesGetVectors(modes, i, &u, NULL, NULL, NULL));
-    PetscCall(BVGetColumn(block, i, &q));
-    PetscCall(PencilRestrict(basis->pencil, u, q));
-    PetscCall(BVRestoreColumn(block, i, &q));
-  }
+  PetscCall(BasisCreateModes(basis, modes, n, 1, &block));
   PetscCall(BasisTake(basis, &block, NULL));
   PetscFunctionReturn(0);
 }

@@ -47,27 +47,6 @@ static PetscErrorCode SampleAdd(GreedyWork *run, const PetscReal p[], PetscBool 
   PetscFunctionReturn(0);
 }
 
-/* Right and left vectors of the eigensolver as a block in the unknowns of the pencil */
-static PetscErrorCode ModesToBlock(GreedyWork *run, PetscInt n, BV *block)
-{
-  Vec      part[4], q;
-  PetscInt m = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(BasisCreateBlock(run->basis, 4 * n, block));
-  for (PetscInt i = 0; i < n; i++) {
-    PetscCall(ModesGetVectors(run->greedy->modes, i, &part[0], &part[1], &part[2], &part[3]));
-    for (int k = 0; k < 4; k++) {
-      if (!part[k]) continue;
-      PetscCall(BVGetColumn(*block, m, &q));
-      PetscCall(PencilRestrict(run->basis->pencil, part[k], q));
-      PetscCall(BVRestoreColumn(*block, m++, &q));
-    }
-  }
-  PetscCall(BVSetActiveColumns(*block, 0, m));
-  PetscFunctionReturn(0);
-}
-
 /* Solves point p by the eigensolver */
 static PetscErrorCode SampleKrylov(GreedyWork *run, const PetscReal p[], PetscReal estimate)
 {
@@ -84,10 +63,10 @@ static PetscErrorCode SampleKrylov(GreedyWork *run, const PetscReal p[], PetscRe
   PetscCall(ModesSolve(run->greedy->modes));
   PetscCall(ModesSetBand(run->greedy->modes, band));
   PetscCall(ModesGet(run->greedy->modes, &n, &mode));
-  PetscCall(ModesToBlock(run, n, &block));
+  PetscCall(BasisCreateModes(run->basis, run->greedy->modes, n, 4, &block));
   PetscCall(BasisAdd(run->basis, block, run->drop, &n_vectors));
   PetscCall(BVDestroy(&block));
-  PetscCall(BasisPromote(run->basis));
+  run->basis->reduced.n_used = run->basis->reduced.n;
   PetscCall(SampleAdd(run, p, PETSC_TRUE, n_vectors, estimate));
   PetscFunctionReturn(0);
 }
@@ -169,11 +148,11 @@ static PetscErrorCode SampleCorrect(GreedyWork *run, const PetscReal p[], PetscR
   worst = *first;
   for (int step = 1; step < GREEDY_STEPS && worst > SAFE * run->greedy->rtol; step++) {
     n_vectors += n_added;
-    PetscCall(BasisPromote(run->basis));
+    run->basis->reduced.n_used = run->basis->reduced.n;
     PetscCall(StepApply(run, &correction, p, &modes, &n_added, &worst));
   }
   PetscCall(ReducedModesDestroy(&modes));
-  PetscCall(CorrectionDestroy(&correction));
+  PetscCall(ShiftInvertDestroy(&correction.factor));
   PetscCall(SampleCount(run, p, &complete));
   run->greedy->n_passed = *first <= SAFE * run->greedy->rtol && complete ? run->greedy->n_passed + 1 : 0;
   PetscCall(SampleAdd(run, p, PETSC_FALSE, n_vectors, *first));
@@ -185,23 +164,10 @@ static PetscErrorCode SampleCorrect(GreedyWork *run, const PetscReal p[], PetscR
 }
 
 /* Extent of the points along each parameter, scale[n_parameters]: the length of the range, or the negative logarithm of
-   its ratio where the ends differ by a factor of RATIO_FROM; 0 for a parameter that does not vary */
-static void ScalePoints(PetscInt n, PetscInt n_parameters, const PetscReal points[], PetscReal scale[])
-{
-  for (PetscInt k = 0; k < n_parameters; k++) {
-    PetscReal low = points[k], high = points[k];
-
-    for (PetscInt i = 0; i < n; i++) {
-      low  = PetscMin(low, points[i * n_parameters + k]);
-      high = PetscMax(high, points[i * n_parameters + k]);
-    }
-    scale[k] = low > 0 && high > RATIO_FROM * low ? -PetscLogReal(high / low) : high - low;
-  }
-}
-
-/* Groups of pairs that open or close count as one parameter together: the distance of two statuses, squared, is the
-   share of the groups in which they differ */
-static PetscErrorCode ScaleGroups(const GreedyWork *run)
+   its ratio where the ends differ by a factor of RATIO_FROM; 0 for a parameter that does not vary. Groups of pairs that
+   open or close count as one parameter together: the distance of two statuses, squared, is the share of the groups in
+   which they differ. */
+static PetscErrorCode ScalePoints(GreedyWork *run)
 {
   const OperatorsParameter *parameters;
   PetscInt                  n, n_groups = 0;
@@ -209,53 +175,53 @@ static PetscErrorCode ScaleGroups(const GreedyWork *run)
   PetscFunctionBeginUser;
   PetscCall(PencilGetParameters(run->basis->pencil, &n, &parameters, NULL));
   for (PetscInt k = 0; k < n; k++) n_groups += parameters[k].internal ? 1 : 0;
-  for (PetscInt k = 0; k < n; k++)
+  for (PetscInt k = 0; k < n; k++) {
+    PetscReal low = run->points[k], high = run->points[k];
+
+    for (PetscInt i = 0; i < run->n; i++) {
+      low  = PetscMin(low, run->points[i * n + k]);
+      high = PetscMax(high, run->points[i * n + k]);
+    }
+    run->scale[k] = low > 0 && high > RATIO_FROM * low ? -PetscLogReal(high / low) : high - low;
     if (parameters[k].internal) run->scale[k] *= PetscSqrtReal((PetscReal)n_groups);
+  }
   PetscFunctionReturn(0);
 }
 
-/* Distance of two points in parts of the extent */
-static PetscReal PointDistance(PetscInt n_parameters, const PetscReal scale[], const PetscReal a[], const PetscReal b[])
+/* Distance of point i from the nearest full solution, in parts of the extent */
+static PetscReal PointDistance(const GreedyWork *run, PetscInt i)
 {
-  PetscReal sum = 0;
+  const PetscInt   n_parameters = run->basis->reduced.n_parameters;
+  const PetscReal *a = &run->points[i * n_parameters], *scale = run->scale;
+  PetscReal        nearest = PETSC_MAX_REAL;
 
-  for (PetscInt k = 0; k < n_parameters; k++) {
-    if (scale[k] > 0) sum += PetscSqr((a[k] - b[k]) / scale[k]);
-    if (scale[k] < 0) sum += PetscSqr(PetscLogReal(a[k] / b[k]) / scale[k]);
+  for (PetscInt j = 0; j < run->greedy->n_samples; j++) {
+    const PetscReal *b   = run->greedy->sample[j].p;
+    PetscReal        sum = 0;
+
+    for (PetscInt k = 0; k < n_parameters; k++) {
+      if (scale[k] > 0) sum += PetscSqr((a[k] - b[k]) / scale[k]);
+      if (scale[k] < 0) sum += PetscSqr(PetscLogReal(a[k] / b[k]) / scale[k]);
+    }
+    nearest = PetscMin(nearest, PetscSqrtReal(sum));
   }
-  return PetscSqrtReal(sum);
+  return nearest;
 }
 
 /* The point farthest from all full solutions, and how far */
 static PetscInt PointFarthest(const GreedyWork *run, PetscReal *farthest)
 {
-  const Greedy  *g            = run->greedy;
-  const PetscInt n_parameters = run->basis->reduced.n_parameters;
-  PetscInt       best         = 0;
+  PetscInt best = 0;
 
   *farthest = -1;
   for (PetscInt i = 0; i < run->n; i++) {
-    PetscReal nearest = PETSC_MAX_REAL;
+    const PetscReal nearest = PointDistance(run, i);
 
-    for (PetscInt j = 0; j < g->n_samples; j++)
-      nearest =
-        PetscMin(nearest, PointDistance(n_parameters, run->scale, &run->points[i * n_parameters], g->sample[j].p));
     if (nearest <= *farthest + 1e-12) continue;
     *farthest = nearest;
     best      = i;
   }
   return best;
-}
-
-/* Whether no full solution is at the point */
-static PetscBool PointIsNew(const GreedyWork *run, PetscInt i)
-{
-  const PetscInt n_parameters = run->basis->reduced.n_parameters;
-
-  for (PetscInt j = 0; j < run->greedy->n_samples; j++)
-    if (PointDistance(n_parameters, run->scale, &run->points[i * n_parameters], run->greedy->sample[j].p) == 0)
-      return PETSC_FALSE;
-  return PETSC_TRUE;
 }
 
 /* The next point to look at, or -1 */
@@ -270,10 +236,9 @@ static PetscErrorCode PointNext(GreedyWork *run, PetscInt *next)
   PetscFunctionBeginUser;
   *next = PointFarthest(run, &farthest);
   if (g->n_passed < enough && (farthest > 0 || g->n_samples == 1)) PetscFunctionReturn(0);
-  PetscCall(PointsEstimate(run->greedy->groups, &run->basis->reduced, &run->greedy->window, run->n, run->points,
-                           run->estimate));
+  PetscCall(PointsEstimate(g->groups, &run->basis->reduced, &g->window, run->n, run->points, run->estimate));
   for (PetscInt i = 0; i < run->n; i++)
-    if (PointIsNew(run, i) && (worst < 0 || run->estimate[i] > run->estimate[worst])) worst = i;
+    if (PointDistance(run, i) > 0 && (worst < 0 || run->estimate[i] > run->estimate[worst])) worst = i;
   g->worst = worst >= 0 ? run->estimate[worst] : 0;
   *next    = g->worst > g->rtol ? worst : -1;
   PetscFunctionReturn(0);
@@ -290,8 +255,7 @@ PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], B
   run.guarded.low  = low < 0.5 * high ? 0 : low * (1 - GUARD);
   run.guarded.high = high * (1 + GUARD);
   PetscCall(PetscMalloc2(n, &run.estimate, n_parameters, &run.scale));
-  ScalePoints(n, n_parameters, points, run.scale);
-  PetscCall(ScaleGroups(&run));
+  PetscCall(ScalePoints(&run));
   if (!greedy->n_samples) {
     PetscCall(SampleKrylov(&run, points, NAN));
     if (greedy->keep) PetscCall(greedy->keep(greedy->keep_ctx));

@@ -131,23 +131,18 @@ static PetscErrorCode FormF(const Plane *plane, PetscComplex F[], PetscBool *sin
 }
 
 /* Eigenvalues s[m] of the changed pencil of the plane */
-static PetscErrorCode PlaneEigenvalues(const Plane *plane, PetscComplex F[], PetscComplex s[])
+static PetscErrorCode PlaneEigenvalues(const Plane *plane, const PetscComplex F[], PetscComplex s[])
 {
-  const PetscInt  m = plane->m, N = plane->N;
+  const PetscInt  m    = plane->m;
   const PetscReal unit = plane->form.damped ? 1 / plane->form.scale : -1;
-  PetscComplex   *AX, *BX, *B;
+  PetscComplex   *A, *B;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(m * N, &AX, m * N, &BX, m * m, &B));
-  PetscCall(StandardApply(&plane->form, STANDARD_A, PETSC_FALSE, m, plane->X, AX));
-  PetscCall(StandardApply(&plane->form, STANDARD_B, PETSC_FALSE, m, plane->X, BX));
-  for (PetscInt i = 0; i < m; i++)
-    for (PetscInt j = 0; j < m; j++) {
-      F[j * m + i] = DenseDot(N, plane->Y + i * N, AX + j * N) + unit * F[j * m + i];
-      B[j * m + i] = DenseDot(N, plane->Y + i * N, BX + j * N);
-    }
-  PetscCall(DenseComplexEigenvalues(m, F, B, s));
-  PetscCall(PetscFree3(AX, BX, B));
+  PetscCall(PetscMalloc2(m * m, &A, m * m, &B));
+  PetscCall(StandardProject(&plane->form, m, plane->X, plane->Y, A, B));
+  for (PetscInt i = 0; i < m * m; i++) A[i] += unit * F[i];
+  PetscCall(DenseComplexEigenvalues(m, A, B, s));
+  PetscCall(PetscFree2(A, B));
   PetscFunctionReturn(0);
 }
 

@@ -35,22 +35,15 @@ typedef struct {
   PetscBLASInt      *pivot;
 } Work;
 
-/* Largest K_ii / M_ii, (rad/s)^2 */
-static PetscReal LargestQuotient(const DensePencil *pencil)
+/* Shift, rad/s: the middle of the window, but not above the largest K_ii / M_ii */
+static PetscReal ShiftChoose(const DensePencil *pencil, const ReducedWindow *window)
 {
-  PetscReal largest = 0;
+  const PetscReal high = window->high, low = PetscMax(window->low, 0.01 * high);
+  const PetscReal middle  = PetscSqrtReal(low) * PetscSqrtReal(high);
+  PetscReal       largest = 0;
 
   for (PetscInt i = 0; i < pencil->n * pencil->n; i += pencil->n + 1)
     if (pencil->M[i] > 0) largest = PetscMax(largest, pencil->K[i] / pencil->M[i]);
-  return largest;
-}
-
-/* Shift, rad/s */
-static PetscReal ShiftChoose(const DensePencil *pencil, const ReducedWindow *window)
-{
-  const PetscReal high = window->high, low = PetscMax(window->low, 0.01 * high), largest = LargestQuotient(pencil);
-  const PetscReal middle = PetscSqrtReal(low) * PetscSqrtReal(high);
-
   return largest > 0 ? PetscMin(middle, PetscSqrtReal(largest)) : middle > 0 ? middle : 1;
 }
 
@@ -276,21 +269,6 @@ static PetscErrorCode RigidOnce(PetscInt n_rigid, ReducedModes *modes)
   PetscFunctionReturn(0);
 }
 
-/* Takes eigenvalue i into the list as number at */
-static PetscErrorCode Take(const Work *w, PetscInt i, PetscBool symmetric, PetscInt at, ReducedModes *modes)
-{
-  PetscComplex *const x = modes->x + at * w->n, *const y = modes->y + at * w->n;
-
-  PetscFunctionBeginUser;
-  VectorGet(w, w->R, i, 0, PETSC_FALSE, x);
-  if (symmetric) {
-    PetscCall(PetscArraycpy(y, x, w->n));
-  } else {
-    PetscCall(LeftGet(w, i, y));
-  }
-  PetscFunctionReturn(0);
-}
-
 /* Indices list [N] of the eigenvalues that belong to the window, rigid ones in front; lambda [N] of all */
 static PetscErrorCode List(const Work *w, const ReducedWindow *window, PetscInt list[], PetscComplex lambda[],
                            PetscInt *n, PetscInt *n_rigid)
@@ -335,7 +313,11 @@ PetscErrorCode DensePencilEigen(const DensePencil *pencil, const ReducedWindow *
   for (PetscInt k = 0; k < n; k++) {
     modes->lambda[k] = lambda[list[k]];
     modes->rigid[k]  = k < n_rigid ? PETSC_TRUE : PETSC_FALSE;
-    PetscCall(Take(&w, list[k], pencil->symmetric, k, modes));
+    VectorGet(&w, w.R, list[k], 0, PETSC_FALSE, modes->x + k * w.n);
+    if (pencil->symmetric)
+      PetscCall(PetscArraycpy(modes->y + k * w.n, modes->x + k * w.n, w.n));
+    else
+      PetscCall(LeftGet(&w, list[k], modes->y + k * w.n));
   }
   if (pencil->damped) PetscCall(RigidOnce(n_rigid, modes));
   PetscCall(PetscFree2(list, lambda));

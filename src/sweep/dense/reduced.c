@@ -53,26 +53,16 @@ PetscErrorCode ReducedModesSelect(const ReducedModes *from, PetscInt n, const Pe
   PetscFunctionBeginUser;
   PetscCall(ReducedModesCreate(n, size, to));
   for (PetscInt i = 0; i < n; i++) {
-    to->lambda[i]  = from->lambda[list[i]];
-    to->product[i] = from->product[list[i]];
-    to->error[i]   = from->error[list[i]];
-    to->noise[i]   = from->noise[list[i]];
-    to->rigid[i]   = from->rigid[list[i]];
-    PetscCall(PetscArraycpy(&to->x[i * size], &from->x[list[i] * size], size));
-    PetscCall(PetscArraycpy(&to->y[i * size], &from->y[list[i] * size], size));
+    const PetscInt k = list ? list[i] : i;
+
+    to->lambda[i]  = from->lambda[k];
+    to->product[i] = from->product[k];
+    to->error[i]   = from->error[k];
+    to->noise[i]   = from->noise[k];
+    to->rigid[i]   = from->rigid[k];
+    PetscCall(PetscArraycpy(&to->x[i * size], &from->x[k * size], size));
+    PetscCall(PetscArraycpy(&to->y[i * size], &from->y[k * size], size));
   }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ReducedModesCopy(const ReducedModes *from, ReducedModes *to)
-{
-  PetscInt *all;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(from->n, &all));
-  for (PetscInt i = 0; i < from->n; i++) all[i] = i;
-  PetscCall(ReducedModesSelect(from, from->n, all, to));
-  PetscCall(PetscFree(all));
   PetscFunctionReturn(0);
 }
 
@@ -131,25 +121,12 @@ static PetscErrorCode SumSymmetric(const Reduced *reduced, const PetscReal p[], 
   PetscFunctionReturn(0);
 }
 
-/* Whether mode a comes before b: by omega, or among equal frequencies by sigma */
-static PetscBool Precedes(const ReducedModes *m, PetscInt a, PetscInt b, PetscBool equal)
+/* Order of two indices of keys, for a stable sort */
+static int CompareKeys(const void *a, const void *b, void *keys)
 {
-  const PetscReal difference =
-    equal ? creal(m->lambda[a]) - creal(m->lambda[b]) : cimag(m->lambda[a]) - cimag(m->lambda[b]);
+  const PetscReal difference = ((PetscReal *)keys)[*(const PetscInt *)a] - ((PetscReal *)keys)[*(const PetscInt *)b];
 
-  return difference < 0 ? PETSC_TRUE : PETSC_FALSE;
-}
-
-/* Stable insertion sort of order[first .. last - 1] */
-static void SortRange(const ReducedModes *m, PetscInt first, PetscInt last, PetscBool equal, PetscInt order[])
-{
-  for (PetscInt i = first + 1; i < last; i++) {
-    const PetscInt here = order[i];
-    PetscInt       j    = i;
-
-    for (; j > first && Precedes(m, here, order[j - 1], equal); j--) order[j] = order[j - 1];
-    order[j] = here;
-  }
+  return difference < 0 ? -1 : difference > 0;
 }
 
 /* Sorts by frequency, equal ones by growth */
@@ -157,22 +134,20 @@ static PetscErrorCode ModesSort(ReducedModes *modes)
 {
   const PetscInt n   = modes->n;
   ReducedModes   old = *modes;
+  PetscReal     *sigma, *omega;
   PetscInt      *order;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &order));
-  for (PetscInt i = 0; i < n; i++) order[i] = i;
-  SortRange(&old, 0, n, PETSC_FALSE, order);
+  PetscCall(PetscMalloc3(n, &order, n, &sigma, n, &omega));
+  for (PetscInt i = 0; i < n; i++) order[i] = i, sigma[i] = creal(old.lambda[i]), omega[i] = cimag(old.lambda[i]);
+  PetscCall(PetscTimSort(n, order, sizeof(*order), CompareKeys, omega));
   for (PetscInt first = 0, last; first < n; first = last) {
-    for (last = first + 1; last < n; last++) {
-      const PetscReal low = cimag(old.lambda[order[last - 1]]), high = cimag(old.lambda[order[last]]);
-
-      if (high - low > PAIR * high) break;
-    }
-    SortRange(&old, first, last, PETSC_TRUE, order);
+    for (last = first + 1; last < n; last++)
+      if (omega[order[last]] - omega[order[last - 1]] > PAIR * omega[order[last]]) break;
+    PetscCall(PetscTimSort(last - first, order + first, sizeof(*order), CompareKeys, sigma));
   }
   PetscCall(ReducedModesSelect(&old, n, order, modes));
-  PetscCall(PetscFree(order));
+  PetscCall(PetscFree3(order, sigma, omega));
   PetscCall(ReducedModesDestroy(&old));
   PetscFunctionReturn(0);
 }
@@ -212,9 +187,7 @@ static PetscErrorCode ClusterBiorthogonalise(PetscInt m, const PetscInt list[], 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(m * m, &G, m * n, &Y, m, &pivot));
   for (PetscInt i = 0; i < m; i++)
-    for (PetscInt j = 0; j < m; j++) {
-      G[j * m + i] = DenseDot(n, modes->y + list[i] * n, Dx + list[j] * n);
-    }
+    for (PetscInt j = 0; j < m; j++) G[j * m + i] = DenseDot(n, modes->y + list[i] * n, Dx + list[j] * n);
   for (PetscInt i = 0; i < m; i++)
     for (PetscInt k = 0; k < n; k++) Y[k * m + i] = modes->y[list[i] * n + k];
   PetscCall(FactorProducts(m, G, pivot, &defective));

@@ -43,8 +43,7 @@ typedef struct {
 PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
                             ReducedModes *modes);
 PetscErrorCode ReducedModesCreate(PetscInt n, PetscInt size, ReducedModes *modes);
-PetscErrorCode ReducedModesCopy(const ReducedModes *from, ReducedModes *to);
-/* A copy of some of the modes, list [n] */
+/* A copy of some of the modes, list [n], or of the first n where list is NULL */
 PetscErrorCode ReducedModesSelect(const ReducedModes *from, PetscInt n, const PetscInt list[], ReducedModes *to);
 PetscErrorCode ReducedModesDestroy(ReducedModes *modes);
 

@@ -90,3 +90,22 @@ PetscErrorCode StandardApply(const StandardForm *f, StandardMatrix matrix, Petsc
   }
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode StandardProject(const StandardForm *f, PetscInt m, const PetscComplex X[], const PetscComplex Y[],
+                               PetscComplex H[], PetscComplex G[])
+{
+  const PetscInt N = StandardSize(f);
+  PetscComplex  *AX, *BX;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(m * N, &AX, m * N, &BX));
+  PetscCall(StandardApply(f, STANDARD_A, PETSC_FALSE, m, X, AX));
+  PetscCall(StandardApply(f, STANDARD_B, PETSC_FALSE, m, X, BX));
+  for (PetscInt i = 0; i < m; i++)
+    for (PetscInt j = 0; j < m; j++) {
+      H[j * m + i] = DenseDot(N, Y + i * N, AX + j * N);
+      G[j * m + i] = DenseDot(N, Y + i * N, BX + j * N);
+    }
+  PetscCall(PetscFree2(AX, BX));
+  PetscFunctionReturn(0);
+}

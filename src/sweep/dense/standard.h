@@ -30,6 +30,9 @@ PetscInt StandardSize(const StandardForm *form);
 /* Y = op(A) X or op(B) X, [m][StandardSize()] */
 PetscErrorCode StandardApply(const StandardForm *form, StandardMatrix matrix, PetscBool transposed, PetscInt m,
                              const PetscComplex X[], PetscComplex Y[]);
+/* H = Y^T A X, G = Y^T B X of m vectors X, Y [m][StandardSize()], [m * m] column-major */
+PetscErrorCode StandardProject(const StandardForm *form, PetscInt m, const PetscComplex X[], const PetscComplex Y[],
+                               PetscComplex H[], PetscComplex G[]);
 /* s of lambda, and the lambda with omega >= 0 of s */
 PetscComplex StandardValue(const StandardForm *form, PetscComplex lambda);
 PetscComplex StandardLambda(const StandardForm *form, PetscComplex s);

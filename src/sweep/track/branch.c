@@ -26,10 +26,7 @@ static PetscErrorCode BranchRemember(Branch *branch, const ModeFrame *frame, Pet
 static PetscErrorCode BranchListAdd(BranchList *list, ModeFrame *frame, PetscInt i)
 {
   PetscFunctionBeginUser;
-  if (list->n == list->capacity) {
-    list->capacity = 2 * list->capacity + 32;
-    PetscCall(PetscRealloc(list->capacity * sizeof(*list->branch), &list->branch));
-  }
+  PetscCall(PetscRealloc((list->n + 1) * sizeof(*list->branch), &list->branch));
   PetscCall(PetscMalloc2(frame->N, &list->branch[list->n].x, frame->N, &list->branch[list->n].w));
   PetscCall(BranchRemember(&list->branch[list->n], frame, i));
   frame->branch[i] = list->first + list->n++;
@@ -57,14 +54,8 @@ static PetscErrorCode BranchScore(const Branch *branch, const ModeFrame *b, Pets
   PetscFunctionReturn(0);
 }
 
-/* Clusters of a frame in each component, count [n_components] */
-static void ClustersCount(const ModeFrame *frame, const PetscInt component[], PetscInt count[])
-{
-  for (PetscInt i = 0; i < frame->modes.n; i++) count[component[i]] += frame->cluster[i] == i;
-}
-
-/* Hands the vectors on; count [n_components] clusters of a */
-static PetscErrorCode BranchListUpdate(BranchList *list, const ModeFrame *b, const Match *match, const PetscInt count[])
+/* Hands the vectors on */
+static PetscErrorCode BranchListUpdate(BranchList *list, const ModeFrame *b, const Match *match)
 {
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < b->modes.n; j++) {
@@ -72,7 +63,7 @@ static PetscErrorCode BranchListUpdate(BranchList *list, const ModeFrame *b, con
     const PetscInt size   = ModeFrameClusterSize(b, j);
 
     if (match->from[j] < 0) continue;
-    if (size > 1 && count[match->component_b[j]] > 1) branch->joined = PETSC_TRUE;
+    if (size > 1 && match->clusters_a[match->component_b[j]] > 1) branch->joined = PETSC_TRUE;
     if (size == 1 || !branch->joined) PetscCall(BranchRemember(branch, b, j));
   }
   PetscFunctionReturn(0);
@@ -82,10 +73,9 @@ PetscErrorCode BranchListContinue(BranchList *list, const ModeFrame *a, ModeFram
 {
   const PetscInt na = a->modes.n, nb = b->modes.n;
   PetscReal     *score, *order;
-  PetscInt      *count;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc3(na * nb, &score, na, &order, match->n_components, &count));
+  PetscCall(PetscMalloc2(na * nb, &score, na, &order));
   PetscCall(PetscArraycpy(score, match->strength, na * nb));
   for (PetscInt i = 0; i < na; i++) {
     const Branch *branch = list->branch + a->branch[i] - list->first;
@@ -100,9 +90,8 @@ PetscErrorCode BranchListContinue(BranchList *list, const ModeFrame *a, ModeFram
     else
       b->branch[j] = a->branch[match->from[j]];
   }
-  ClustersCount(a, match->component_a, count);
-  PetscCall(BranchListUpdate(list, b, match, count));
-  PetscCall(PetscFree3(score, order, count));
+  PetscCall(BranchListUpdate(list, b, match));
+  PetscCall(PetscFree2(score, order));
   PetscFunctionReturn(0);
 }
 
@@ -111,6 +100,6 @@ PetscErrorCode BranchListDestroy(BranchList *list)
   PetscFunctionBeginUser;
   for (PetscInt r = 0; r < list->n; r++) PetscCall(PetscFree2(list->branch[r].x, list->branch[r].w));
   PetscCall(PetscFree(list->branch));
-  list->n = list->capacity = 0;
+  list->n = 0;
   PetscFunctionReturn(0);
 }

@@ -12,7 +12,7 @@ typedef struct {
 
 /* Branches first, first + 1, ... */
 typedef struct {
-  PetscInt first, n, capacity;
+  PetscInt first, n;
   Branch  *branch;
 } BranchList;
 

@@ -67,12 +67,11 @@ static PetscErrorCode ClusterRefine(ModeFrame *f, PetscInt k, const PetscInt mem
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(k * f->N, &X, k * f->N, &Y));
   PetscCall(ModePlaneRefine(f, k, member, X, Y));
-  for (PetscInt a = 0; a < k; a++) {
+  for (PetscInt a = 0; a < k; a++)
     for (PetscInt r = 0; r < f->N; r++) {
       f->X[member[a] * f->N + r] = X[a * f->N + r];
       f->Y[member[a] * f->N + r] = Y[a * f->N + r];
     }
-  }
   PetscCall(PetscFree2(X, Y));
   PetscFunctionReturn(0);
 }
@@ -164,7 +163,7 @@ PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], cons
   f->refine = refine;
   f->form   = (StandardForm){&f->pencil, size, form->damped, form->scale};
   f->N      = StandardSize(&f->form);
-  PetscCall(ReducedModesCopy(modes, &f->modes));
+  PetscCall(ReducedModesSelect(modes, n, NULL, &f->modes));
   PetscCall(ReducedPencil(reduced, p, size, &f->pencil));
   PetscCall(PetscMalloc5(n, &f->cluster, n, &f->branch, n * f->N, &f->X, n * f->N, &f->Y, n * f->N, &f->W));
   FrameCluster(f);
@@ -204,22 +203,4 @@ void ModeFrameOverlap(const ModeFrame *f, const PetscComplex w[], const PetscCom
 {
   for (PetscInt j = 0; j < f->modes.n; j++)
     sum[f->cluster[j]] += DenseDot(f->N, w, f->X + j * f->N) * DenseDot(f->N, f->W + j * f->N, x);
-}
-
-PetscErrorCode ModeFramePencil(const ModeFrame *a, const ModeFrame *b, PetscComplex H[], PetscComplex G[])
-{
-  const PetscInt n = a->modes.n, N = a->N;
-  PetscComplex  *AX, *BX;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n * N, &AX, n * N, &BX));
-  PetscCall(StandardApply(&b->form, STANDARD_A, PETSC_FALSE, n, a->X, AX));
-  PetscCall(StandardApply(&b->form, STANDARD_B, PETSC_FALSE, n, a->X, BX));
-  for (PetscInt i = 0; i < n; i++)
-    for (PetscInt j = 0; j < n; j++) {
-      H[i * n + j] = DenseDot(N, a->Y + i * N, AX + j * N);
-      G[i * n + j] = DenseDot(N, a->Y + i * N, BX + j * N);
-    }
-  PetscCall(PetscFree2(AX, BX));
-  PetscFunctionReturn(0);
 }

@@ -27,7 +27,7 @@ typedef struct {
 typedef struct {
   const Reduced    *reduced;
   const BranchLine *line;
-  PetscReal        *p; /* [n_parameters] of the last solution */
+  PetscReal        *p; /* [n_parameters] of the last solution; freed by the caller */
   StandardForm      form;
   PetscBool         estimate; /* whether errors of the eigenvalues are estimated */
 } ModeSource;
@@ -37,7 +37,6 @@ PetscErrorCode ModeSourceCreate(const Reduced *reduced, const BranchLine *line, 
 PetscErrorCode ModeSourceSolve(ModeSource *source, PetscReal value, ModeFrame **frame);
 /* The same from modes that are known already */
 PetscErrorCode ModeSourceTake(ModeSource *source, PetscReal value, const ReducedModes *modes, ModeFrame **frame);
-PetscErrorCode ModeSourceDestroy(ModeSource *source);
 
 /* frame.c - p [n_parameters]; damped and scale of the form are taken; the frame's value is left to the caller */
 PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], const StandardForm *form, PetscBool refine,
@@ -50,10 +49,6 @@ PetscInt ModeFrameClusterSize(const ModeFrame *frame, PetscInt i);
 /* What x with its dual w has in common with each cluster Q: adds sum_{j in Q} (w^T x_j) (w_j^T x) to sum [modes.n] at
    the first mode of Q. The factors are the coefficients of mode j in x and of x in mode j. */
 void ModeFrameOverlap(const ModeFrame *frame, const PetscComplex w[], const PetscComplex x[], PetscComplex sum[]);
-/* S = (Y_i^T B(b) X_j)^-1 (Y_i^T A(b) X_j) on modes i, j of a: the pencil of another point b on the vectors of a; H =
-   Y^T A X, G = Y^T B X, [a->modes.n^2], second index fastest */
-PetscErrorCode ModeFramePencil(const ModeFrame *a, const ModeFrame *b, PetscComplex H[], PetscComplex G[]);
-
 /* plane.c - undamped: the plane of the modes member[k] as real bases X, Y [k][size], refined by inverse iteration if
    frame->refine */
 PetscErrorCode ModePlaneRefine(const ModeFrame *frame, PetscInt k, const PetscInt member[], PetscReal X[],

@@ -30,8 +30,8 @@
 static PetscBool PairMatrix(const PetscComplex H[], const PetscComplex G[], PetscInt n, PetscInt i, PetscInt k,
                             PetscComplex S[])
 {
-  const PetscComplex a = G[i * n + i], b = G[i * n + k], c = G[k * n + i], d = G[k * n + k], det = a * d - b * c;
-  const PetscComplex e = H[i * n + i], f = H[i * n + k], g = H[k * n + i], h = H[k * n + k];
+  const PetscComplex a = G[i * n + i], b = G[k * n + i], c = G[i * n + k], d = G[k * n + k], det = a * d - b * c;
+  const PetscComplex e = H[i * n + i], f = H[k * n + i], g = H[i * n + k], h = H[k * n + k];
 
   if (cabs(det) < 1e-3 * cabs(a * d) || det == 0) return PETSC_FALSE;
   S[0] = (d * e - b * g) / det;
@@ -150,7 +150,7 @@ static PetscErrorCode PredictStep(const IntervalStep *step, PetscReal *t, PetscB
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n * n, &H, n * n, &G));
-  PetscCall(ModeFramePencil(step->a, step->b, H, G));
+  PetscCall(StandardProject(&step->b->form, n, step->a->X, step->a->Y, H, G));
   for (PetscInt i = 0; i < n && !*found; i++) {
     for (PetscInt k = i + 1; k < n && !*found && ModeTakesPart(step, i); k++) {
       if (ModeTakesPart(step, k) && PairMatrix(H, G, n, i, k, S)) *found = PredictPair(step, i, k, S, t);

@@ -76,7 +76,7 @@ static PetscErrorCode ComponentsFind(const ModeFrame *a, const ModeFrame *b, Mat
 }
 
 /* Whether mode i of a, of which b has no partner, is outside the window there: first-order eigenvalue from the mean of
-   its cluster, diagonals of H and G [na * na] of ModeFramePencil() */
+   its cluster, diagonals of H and G [na * na] of StandardProject() by the other point */
 static PetscBool ModeHasLeft(const ModeFrame *a, PetscInt i, const ReducedWindow *window, const PetscComplex H[],
                              const PetscComplex G[])
 {
@@ -110,7 +110,7 @@ static PetscErrorCode LonelyCheck(const ModeFrame *a, const ModeFrame *b, const 
     if (!partners[component[i]]) need = PETSC_TRUE;
   if (!need) PetscFunctionReturn(0);
   PetscCall(PetscMalloc2(n * n, &H, n * n, &G));
-  PetscCall(ModeFramePencil(a, b, H, G));
+  PetscCall(StandardProject(&b->form, n, a->X, a->Y, H, G));
   for (PetscInt i = 0; i < n; i++)
     if (!partners[component[i]]) certain[component[i]] = window ? ModeHasLeft(a, i, window, H, G) : PETSC_TRUE;
   PetscCall(PetscFree2(H, G));
@@ -121,11 +121,11 @@ static PetscErrorCode LonelyCheck(const ModeFrame *a, const ModeFrame *b, const 
 static PetscErrorCode ComponentsJudge(const ModeFrame *a, const ModeFrame *b, const ReducedWindow *window, Match *match)
 {
   const PetscInt na = match->na, nb = match->nb, n = match->n_components;
-  PetscInt      *modes_a, *modes_b, *clusters_a, *clusters_b;
+  PetscInt      *modes_a, *modes_b, *clusters_a = match->clusters_a, *clusters_b = match->clusters_b;
   PetscReal     *sum;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc5(n, &modes_a, n, &modes_b, n, &clusters_a, n, &clusters_b, n, &sum));
+  PetscCall(PetscCalloc3(n, &modes_a, n, &modes_b, n, &sum));
   for (PetscInt i = 0; i < na; i++) {
     modes_a[match->component_a[i]]++;
     clusters_a[match->component_a[i]] += a->cluster[i] == i;
@@ -148,17 +148,21 @@ static PetscErrorCode ComponentsJudge(const ModeFrame *a, const ModeFrame *b, co
   PetscCall(LonelyCheck(b, a, window, match->component_b, modes_a, match->certain));
   match->all_certain = PETSC_TRUE;
   for (PetscInt c = 0; c < n; c++) match->all_certain = (PetscBool)(match->all_certain && match->certain[c]);
-  PetscCall(PetscFree5(modes_a, modes_b, clusters_a, clusters_b, sum));
+  PetscCall(PetscFree3(modes_a, modes_b, sum));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode MatchCreate(const ModeFrame *a, const ModeFrame *b, const ReducedWindow *window, Match *match)
 {
+  PetscInt n;
+
   PetscFunctionBeginUser;
   match->na = a->modes.n;
   match->nb = b->modes.n;
-  PetscCall(PetscMalloc5(match->na * match->nb, &match->strength, match->na, &match->component_a, match->nb,
-                         &match->component_b, match->na + match->nb, &match->certain, match->nb, &match->from));
+  n         = match->na + match->nb;
+  PetscCall(PetscCalloc7(match->na * match->nb, &match->strength, match->na, &match->component_a, match->nb,
+                         &match->component_b, n, &match->clusters_a, n, &match->clusters_b, n, &match->certain,
+                         match->nb, &match->from));
   PetscCall(StrengthFind(a, b, match));
   PetscCall(ComponentsFind(a, b, match));
   PetscCall(ComponentsJudge(a, b, window, match));
@@ -235,6 +239,7 @@ PetscErrorCode MatchAssign(const ModeFrame *a, const ModeFrame *b, const PetscRe
 PetscErrorCode MatchDestroy(Match *match)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree5(match->strength, match->component_a, match->component_b, match->certain, match->from));
+  PetscCall(PetscFree7(match->strength, match->component_a, match->component_b, match->clusters_a, match->clusters_b,
+                       match->certain, match->from));
   PetscFunctionReturn(0);
 }

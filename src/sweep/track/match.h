@@ -10,6 +10,7 @@ typedef struct {
   PetscInt   na, nb, n_components;
   PetscReal *strength;                  /* [na * nb] overlap of the clusters of i and j, 1 = the same or contained */
   PetscInt  *component_a, *component_b; /* [na], [nb] */
+  PetscInt  *clusters_a, *clusters_b;   /* [n_components] clusters of a, b in each */
   PetscBool *certain;                   /* [n_components] */
   PetscBool  all_certain;
   PetscInt  *from; /* [nb] mode of a or -1; MatchAssign() */

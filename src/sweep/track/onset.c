@@ -341,6 +341,6 @@ PetscErrorCode OnsetFind(const Reduced *reduced, const BranchLine *line, BranchE
   }
   PetscCall(TrialDestroy(&onset.end[0]));
   PetscCall(TrialDestroy(&onset.end[1]));
-  PetscCall(ModeSourceDestroy(&onset.source));
+  PetscCall(PetscFree(onset.source.p));
   PetscFunctionReturn(0);
 }

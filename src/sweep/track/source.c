@@ -46,10 +46,3 @@ PetscErrorCode ModeSourceSolve(ModeSource *source, PetscReal value, ModeFrame **
   PetscCall(ReducedModesDestroy(&modes));
   PetscFunctionReturn(0);
 }
-
-PetscErrorCode ModeSourceDestroy(ModeSource *source)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree(source->p));
-  PetscFunctionReturn(0);
-}

@@ -25,10 +25,7 @@ typedef struct {
 PetscErrorCode BranchEventsAdd(BranchEvents *events, const BranchEvent *event)
 {
   PetscFunctionBeginUser;
-  if (events->n == events->capacity) {
-    events->capacity = 2 * events->capacity + 16;
-    PetscCall(PetscRealloc(events->capacity * sizeof(*events->event), &events->event));
-  }
+  PetscCall(PetscRealloc((events->n + 1) * sizeof(*event), &events->event));
   events->event[events->n++] = *event;
   PetscFunctionReturn(0);
 }
@@ -37,7 +34,7 @@ PetscErrorCode BranchEventsDestroy(BranchEvents *events)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(events->event));
-  events->n = events->capacity = 0;
+  events->n = 0;
   PetscFunctionReturn(0);
 }
 
@@ -57,24 +54,26 @@ static PetscInt EventPartner(const ModeFrame *frame, PetscInt i)
   return partner < 0 ? -1 : frame->branch[partner];
 }
 
+/* Event between a and b of mode i, which is unstable at the frame, one of them */
+static BranchEvent EventOf(const ModeFrame *frame, PetscInt i, const ModeFrame *a, const ModeFrame *b)
+{
+  return (BranchEvent){
+    .lambda   = frame->modes.lambda[i],
+    .omega    = cimag(frame->modes.lambda[i]),
+    .lower    = PetscMin(a->value, b->value),
+    .upper    = PetscMax(a->value, b->value),
+    .critical = frame->value,
+    .branch   = {frame->branch[i], EventPartner(frame, i)}
+  };
+}
+
 /* Event of mode i of a, j of b, of which one is unstable */
 static PetscErrorCode EventMake(const ModeFrame *a, PetscInt i, const ModeFrame *b, PetscInt j, BranchEvents *events)
 {
-  const PetscBool at_a       = ReducedModeIsUnstable(&a->modes, i),
-                  descending = a->value > b->value ? PETSC_TRUE : PETSC_FALSE;
-  const ModeFrame *unstable  = at_a ? a : b;
-  const PetscInt   mode      = at_a ? i : j;
-  const PetscBool  begins    = at_a == descending ? PETSC_TRUE : PETSC_FALSE;
-  BranchEvent      event     = {0};
+  const PetscBool at_a = ReducedModeIsUnstable(&a->modes, i), begins = (PetscBool)(at_a == (a->value > b->value));
+  BranchEvent     event = EventOf(at_a ? a : b, at_a ? i : j, a, b);
 
   PetscFunctionBeginUser;
-  event.lambda    = unstable->modes.lambda[mode];
-  event.lower     = PetscMin(a->value, b->value);
-  event.upper     = PetscMax(a->value, b->value);
-  event.omega     = cimag(event.lambda);
-  event.critical  = at_a ? a->value : b->value;
-  event.branch[0] = unstable->branch[mode];
-  event.branch[1] = EventPartner(unstable, mode);
   if (cimag(event.lambda) == 0)
     event.kind = begins ? EVENT_DIVERGENCE : EVENT_RESTABILISATION;
   else
@@ -172,7 +171,7 @@ PetscErrorCode TrackLine(const Reduced *reduced, const BranchLine *line, const R
   PetscCall(ModeFrameDestroy(&frame));
   *n_branches += tracker.branches.n;
   PetscCall(BranchListDestroy(&tracker.branches));
-  PetscCall(ModeSourceDestroy(&tracker.source));
+  PetscCall(PetscFree(tracker.source.p));
   PetscCall(EventEnd(EVENT_TRACK));
   PetscFunctionReturn(0);
 }
@@ -234,18 +233,14 @@ static void MatchDropDoubtful(Match *match)
 /* Event of mode i, which is unstable at this frame and not at the other */
 static PetscErrorCode JumpMake(const ModeFrame *frame, PetscInt i, const ModeFrame *other, BranchEvents *events)
 {
-  BranchEvent event = {.kind = EVENT_JUMP, .found = PETSC_TRUE};
+  BranchEvent event = EventOf(frame, i, frame, other);
 
   PetscFunctionBeginUser;
-  event.lambda    = frame->modes.lambda[i];
-  event.omega     = cimag(event.lambda);
-  event.lower     = PetscMin(frame->value, other->value);
-  event.upper     = PetscMax(frame->value, other->value);
-  event.critical  = 0.5 * (event.lower + event.upper);
-  event.error     = 0.5 * (event.upper - event.lower);
-  event.above     = frame->value > other->value ? PETSC_TRUE : PETSC_FALSE;
-  event.branch[0] = frame->branch[i];
-  event.branch[1] = EventPartner(frame, i);
+  event.kind     = EVENT_JUMP;
+  event.found    = PETSC_TRUE;
+  event.critical = 0.5 * (event.lower + event.upper);
+  event.error    = 0.5 * (event.upper - event.lower);
+  event.above    = frame->value > other->value ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(BranchEventsAdd(events, &event));
   PetscFunctionReturn(0);
 }

@@ -26,7 +26,7 @@ typedef struct {
 } BranchEvent;
 
 typedef struct {
-  PetscInt     n, capacity;
+  PetscInt     n;
   BranchEvent *event;
 } BranchEvents;
 
