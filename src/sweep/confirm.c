@@ -73,36 +73,30 @@ static PetscErrorCode OnsetConverge(Sweep sweep, const BranchLine *line, PetscRe
   PetscFunctionReturn(0);
 }
 
-/* Whether the pairs closed at the critical value are those of the segment in which it was found */
-static PetscErrorCode OnsetCheckStatus(Sweep sweep, const BranchEvent *event, PetscBool *same)
-{
-  SweepPlace place = sweep->grid.place[event->place];
-  PetscInt   status;
-
-  PetscFunctionBeginUser;
-  place.value[0] = event->critical;
-  PetscCall(SweepStatusSolve(sweep, &place, &status));
-  *same = status == place.status ? PETSC_TRUE : PETSC_FALSE;
-  PetscFunctionReturn(0);
-}
-
 /* One onset to the end */
 static PetscErrorCode OnsetConfirm(Sweep sweep, PetscInt e)
 {
   BranchEvent *event  = &sweep->events.event[e];
   PetscReal    change = PETSC_MAX_REAL, *p;
   BranchLine   line   = {sweep->grid.parameter[0], sweep->grid.n[0], sweep->grid.value[0], NULL, &sweep->window};
+  SweepPlace   place  = sweep->grid.place[event->place];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
-  GridFill(&sweep->grid, &sweep->grid.place[event->place], p);
+  GridFill(&sweep->grid, &place, p);
   line.base = p;
   PetscCall(OnsetReduced(sweep, &line, event));
   if (event->found && sweep->method == SWEEP_REDUCED) PetscCall(OnsetConverge(sweep, &line, p, event, &change));
   sweep->is_confirmed[e] =
     event->found && change <= CONFIRMED * PetscAbsReal(event->critical) ? PETSC_TRUE : PETSC_FALSE;
   if (change < PETSC_MAX_REAL) event->error = PetscMax(change, 1e-14 * PetscAbsReal(event->critical));
-  if (sweep->is_confirmed[e] && sweep->statics) PetscCall(OnsetCheckStatus(sweep, event, &sweep->is_confirmed[e]));
+  if (sweep->is_confirmed[e] && sweep->statics) { /* the same pairs must be closed as where it was found */
+    PetscInt status;
+
+    place.value[0] = event->critical;
+    PetscCall(SweepStatusSolve(sweep, &place, &status));
+    sweep->is_confirmed[e] = status == place.status ? PETSC_TRUE : PETSC_FALSE;
+  }
   PetscCall(PetscFree(p));
   PetscFunctionReturn(0);
 }

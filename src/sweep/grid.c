@@ -101,12 +101,15 @@ PetscErrorCode GridValuesParse(MPI_Comm comm, const char option[], const char te
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GridParameterFind(MPI_Comm comm, const char option[], const char name[], PetscInt n,
-                                 const OperatorsParameter parameters[], PetscInt *index)
+PetscErrorCode GridParameterFind(MPI_Comm comm, Operators operators, const char option[], const char name[],
+                                 PetscInt *index)
 {
-  char valid[2048] = "";
+  const OperatorsParameter *parameters;
+  PetscInt                  n;
+  char                      valid[2048] = "";
 
   PetscFunctionBeginUser;
+  PetscCall(OperatorsGetParameters(operators, &n, &parameters));
   *index = -1;
   for (PetscInt i = 0; i < n; i++) {
     if (!strcmp(parameters[i].name, name)) *index = i;

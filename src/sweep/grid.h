@@ -31,8 +31,8 @@ typedef struct {
 PetscErrorCode GridValuesParse(MPI_Comm comm, const char option[], const char text[], PetscInt *n, PetscReal *value[],
                                PetscBool *ratio);
 /* The parameter of that name; errors list the valid ones */
-PetscErrorCode GridParameterFind(MPI_Comm comm, const char option[], const char name[], PetscInt n,
-                                 const OperatorsParameter parameters[], PetscInt *index);
+PetscErrorCode GridParameterFind(MPI_Comm comm, Operators operators, const char option[], const char name[],
+                                 PetscInt *index);
 PetscInt       GridSize(const SweepGrid *grid);
 /* The points of the grid as places, all of status 0 */
 PetscErrorCode GridCreatePlaces(SweepGrid *grid);

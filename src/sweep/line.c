@@ -4,6 +4,7 @@
    only.
 */
 #include "line.h"
+#include "sweep/dense/dense.h"
 
 static PetscErrorCode PointsCreate(Sweep sweep, PetscInt line, LinePoints *points)
 {
@@ -100,19 +101,6 @@ static PetscErrorCode PointsKeep(Sweep sweep, const LinePoints *points)
   PetscFunctionReturn(0);
 }
 
-/* Real columns xr, xi, yr, yi of all modes, [4 n][size] */
-static void CoordinatesSplit(const ReducedModes *modes, PetscReal columns[])
-{
-  const PetscInt n = modes->n, size = modes->size;
-
-  for (PetscInt k = 0; k < n * size; k++) {
-    columns[k]                = creal(modes->x[k]);
-    columns[n * size + k]     = cimag(modes->x[k]);
-    columns[2 * n * size + k] = creal(modes->y[k]);
-    columns[3 * n * size + k] = cimag(modes->y[k]);
-  }
-}
-
 PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedModes *modes, char label[][32])
 {
   const PetscInt n = modes->n;
@@ -123,7 +111,8 @@ PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedMo
   PetscFunctionBeginUser;
   if (!n) PetscFunctionReturn(0);
   PetscCall(PetscMalloc2(4 * n * modes->size, &columns, 4 * n, &shape));
-  CoordinatesSplit(modes, columns);
+  DenseSplit(n * modes->size, modes->x, columns); /* xr, xi, yr, yi, [4 n][size] */
+  DenseSplit(n * modes->size, modes->y, columns + 2 * n * modes->size);
   PetscCall(BasisCreateBlock(&sweep->basis, 4 * n, &block));
   PetscCall(BasisLift(&sweep->basis, modes->size, 4 * n, columns, block));
   for (PetscInt i = 0; i < 4 * n; i++) {
@@ -181,18 +170,6 @@ static PetscErrorCode PointLabel(Sweep sweep, const LinePoints *points, PetscInt
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode PointsLabel(Sweep sweep, const LinePoints *points)
-{
-  PetscInt *at;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(sweep->n_branches, &at));
-  LabelPoints(sweep, points, at);
-  for (PetscInt i = 0; i < points->n; i++) PetscCall(PointLabel(sweep, points, i, at));
-  PetscCall(PetscFree(at));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode SweepClassify(Sweep sweep)
 {
   PetscFunctionBeginUser;
@@ -245,15 +222,6 @@ static PetscErrorCode PairsByLabel(Sweep sweep, PetscInt first_event, const Line
   PetscFunctionReturn(0);
 }
 
-/* Room for the names of all branches so far; those from n_before on are empty */
-static PetscErrorCode LabelsGrow(Sweep sweep, PetscInt n_before)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscRealloc(sizeof(*sweep->label) * (size_t)PetscMax(1, sweep->n_branches), &sweep->label));
-  PetscCall(PetscArrayzero(sweep->label + n_before, sweep->n_branches - n_before));
-  PetscFunctionReturn(0);
-}
-
 PetscReal SweepWorst(Sweep sweep)
 {
   PetscReal worst = 0;
@@ -277,6 +245,7 @@ PetscErrorCode SweepLines(Sweep sweep)
 {
   const PetscInt n_lines = sweep->grid.n_axes == 2 ? sweep->grid.n[1] : 1;
   LinePoints     before  = {0}, points;
+  PetscInt      *at;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(sweep->grid.n_places, &sweep->worst));
@@ -287,8 +256,12 @@ PetscErrorCode SweepLines(Sweep sweep)
     PetscCall(LineTrackSegments(sweep, &points));
     PetscCall(TrackBroadcast(sweep, first_event, &points));
     if (line) PetscCall(PointsLink(sweep, &before, n_before, first_event, &points));
-    PetscCall(LabelsGrow(sweep, n_before));
-    PetscCall(PointsLabel(sweep, &points));
+    PetscCall(PetscRealloc(sizeof(*sweep->label) * (size_t)PetscMax(1, sweep->n_branches), &sweep->label));
+    PetscCall(PetscArrayzero(sweep->label + n_before, sweep->n_branches - n_before));
+    PetscCall(PetscMalloc1(sweep->n_branches, &at));
+    LabelPoints(sweep, &points, at);
+    for (PetscInt i = 0; i < points.n; i++) PetscCall(PointLabel(sweep, &points, i, at));
+    PetscCall(PetscFree(at));
     PetscCall(PairsByLabel(sweep, first_event, &points));
     PetscCall(PointsKeep(sweep, &points));
     PetscCall(PointsDestroy(&before));

@@ -17,13 +17,10 @@ typedef struct {
 
 static PetscErrorCode BoxRead(Sweep sweep, ParameterBox *box)
 {
-  const OperatorsParameter *parameters;
-  PetscInt                  n_parameters;
-  char                    **names;
-  int                       n;
+  char **names;
+  int    n;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetParameters(sweep->operators, &n_parameters, &parameters));
   PetscCall(PetscStrToArray(sweep->uncertain, ',', &n, &names));
   PetscCheck(n >= 1 && n <= SWEEP_MAX_UNCERTAIN, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_uncertain '%s' must name 1 to %d parameters", sweep->uncertain, SWEEP_MAX_UNCERTAIN);
@@ -34,8 +31,7 @@ static PetscErrorCode BoxRead(Sweep sweep, ParameterBox *box)
   for (int k = 0; k < n; k++) {
     const PetscReal percent = sweep->percent[sweep->n_percent == 1 ? 0 : k];
 
-    PetscCall(
-      GridParameterFind(sweep->comm, "-sweep_uncertain", names[k], n_parameters, parameters, &box->parameter[k]));
+    PetscCall(GridParameterFind(sweep->comm, sweep->operators, "-sweep_uncertain", names[k], &box->parameter[k]));
     PetscCheck(percent > 0 && percent < 100, sweep->comm, PETSC_ERR_USER_INPUT,
                "-sweep_percent %.6g must lie between 0 and 100", (double)percent);
     PetscCheck(sweep->grid.base[box->parameter[k]] != 0, sweep->comm, PETSC_ERR_USER_INPUT,
@@ -83,14 +79,13 @@ static PetscErrorCode RisksCount(Sweep sweep, PetscInt n, const PetscReal points
     PetscBool certain;
 
     sweep->worst_risk = PetscMax(sweep->worst_risk, ReducedModesWorst(&modes[i], &sweep->window, PETSC_FALSE));
-
     PetscCall(PetscMalloc1(modes[i].n, &match));
     PetscCall(TrackMatch(&sweep->basis.reduced, points, &modes[0], &modes[i], match, &certain));
     for (PetscInt k = 0; k < modes[i].n; k++) {
       const PetscReal sigma = creal(modes[i].lambda[k]);
       SweepRisk      *r     = &risk[match[k] >= 0 ? match[k] : modes[0].n];
 
-      if (!ReducedIsUnstable(modes[i].lambda[k], modes[i].error[k])) continue;
+      if (!ReducedModeIsUnstable(&modes[i], k)) continue;
       r->n_unstable++;
       if (sigma <= r->largest) continue;
       r->largest = sigma;

@@ -64,24 +64,20 @@ PetscErrorCode SweepStatusSolve(Sweep sweep, const SweepPlace *place, PetscInt *
   PetscFunctionReturn(0);
 }
 
-/* Whether the contact status changes between places k and k + 1 of one line; width = their relative distance */
-static PetscBool PlaceChanges(const SweepGrid *grid, PetscInt k, PetscReal *width)
-{
-  const SweepPlace *a = &grid->place[k], *b = a + 1;
-
-  if (a->line != b->line || a->status == b->status) return PETSC_FALSE;
-  *width = PetscAbsReal(b->value[0] - a->value[0]) / PetscMax(PetscAbsReal(a->value[0]), PetscAbsReal(b->value[0]));
-  return PETSC_TRUE;
-}
-
-/* The widest bracket of a change of status that is to be divided, or -1 */
+/* The place before the widest bracket, relative to its values, of a change of status on one line that is to be divided,
+   or -1 */
 static PetscInt WidestChange(const SweepGrid *grid)
 {
-  PetscReal width, widest = BRACKET_WIDTH;
-  PetscInt  at = -1;
+  PetscReal widest = BRACKET_WIDTH;
+  PetscInt  at     = -1;
 
-  for (PetscInt k = 0; k + 1 < grid->n_places; k++)
-    if (PlaceChanges(grid, k, &width) && width > widest) widest = width, at = k;
+  for (PetscInt k = 0; k + 1 < grid->n_places; k++) {
+    const SweepPlace *a = &grid->place[k], *b = a + 1;
+    const PetscReal   largest = PetscMax(PetscAbsReal(a->value[0]), PetscAbsReal(b->value[0]));
+    const PetscReal   width   = PetscAbsReal(b->value[0] - a->value[0]) / largest;
+
+    if (a->line == b->line && a->status != b->status && width > widest) widest = width, at = k;
+  }
   return at;
 }
 
@@ -104,17 +100,6 @@ static PetscErrorCode ChangesBracket(Sweep sweep)
 
     if (place->point < 0 && place[-1].status == place->status && place[1].status == place->status) GridRemove(grid, k);
   }
-  PetscFunctionReturn(0);
-}
-
-/* The scene's own values, about which robustness is asked for: what is swept has its own value there, too */
-static PetscErrorCode BaseSolve(Sweep sweep)
-{
-  SweepPlace base = {.point = -1};
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < sweep->grid.n_axes; k++) base.value[k] = sweep->grid.base[sweep->grid.parameter[k]];
-  PetscCall(SweepStatusSolve(sweep, &base, &sweep->base_status));
   PetscFunctionReturn(0);
 }
 
@@ -209,6 +194,7 @@ PetscErrorCode SweepStatuses(Sweep sweep)
 {
   const ContactPair *pair;
   SweepGrid         *grid = &sweep->grid;
+  SweepPlace         base = {.point = -1};
   Contact            contact;
   PetscInt           n, n_all;
   PetscBool          affine;
@@ -234,7 +220,10 @@ PetscErrorCode SweepStatuses(Sweep sweep)
   PetscCall(ChangesBracket(sweep));
   for (PetscInt i = 0; i < sweep->n_checks; i++)
     PetscCall(SweepStatusSolve(sweep, &sweep->check[i].at, &sweep->check[i].at.status));
-  if (sweep->uncertain[0]) PetscCall(BaseSolve(sweep));
+  if (sweep->uncertain[0]) { /* about the scene's own values: what is swept has its own value there, too */
+    for (PetscInt k = 0; k < grid->n_axes; k++) base.value[k] = grid->base[grid->parameter[k]];
+    PetscCall(SweepStatusSolve(sweep, &base, &sweep->base_status));
+  }
   PetscCall(StaticsRelease(sweep->statics));
   PetscCall(StatusGroupsSet(sweep));
   PetscFunctionReturn(0);

@@ -85,22 +85,6 @@ static PetscErrorCode GroupsHistory(const StatusList *list, PetscInt n, const Pe
   PetscFunctionReturn(0);
 }
 
-/* number [n] = 0 for groups always closed, -1 for those never, 1 .. n_groups for the others */
-static void GroupsNumber(const StatusList *list, PetscInt n, const PetscInt history[], PetscInt number[],
-                         PetscInt *n_groups)
-{
-  *n_groups = 0;
-  for (PetscInt g = 0; g < n; g++) {
-    PetscInt sum = 0;
-
-    for (PetscInt s = 0; s < list->n; s++) sum += history[g * list->n + s];
-    if (sum == 0)
-      number[g] = -1;
-    else
-      number[g] = sum == list->n ? 0 : ++*n_groups;
-  }
-}
-
 PetscErrorCode StatusListGroup(const StatusList *list, PetscInt group[], PetscInt *n_groups, PetscReal **value)
 {
   PetscInt *history, *number, n = 1;
@@ -110,7 +94,13 @@ PetscErrorCode StatusListGroup(const StatusList *list, PetscInt group[], PetscIn
   for (PetscInt s = 0; s < list->n; s++) PetscCall(GroupsDivide(list, s, &n, group));
   PetscCall(PetscMalloc2(n * list->n, &history, n, &number));
   PetscCall(GroupsHistory(list, n, group, history));
-  GroupsNumber(list, n, history, number, n_groups);
+  *n_groups = 0;
+  for (PetscInt g = 0; g < n; g++) {
+    PetscInt sum = 0;
+
+    for (PetscInt s = 0; s < list->n; s++) sum += history[g * list->n + s];
+    number[g] = sum == 0 ? -1 : sum == list->n ? 0 : ++*n_groups;
+  }
   PetscCall(PetscMalloc1(list->n * *n_groups, value));
   for (PetscInt g = 0; g < n; g++)
     for (PetscInt s = 0; s < list->n && number[g] > 0; s++)

@@ -144,14 +144,12 @@ PetscErrorCode SweepSetFromOptions(Sweep sweep)
 /* Parameters and values of the axes, checked against what each parameter may be */
 static PetscErrorCode GridSetUp(Sweep sweep)
 {
-  static const char *const  options[] = {"-sweep_values", "-sweep_values_2"};
-  const OperatorsParameter *parameters;
-  SweepGrid                *grid = &sweep->grid;
-  char                    **names;
-  int                       n_names;
+  static const char *const options[] = {"-sweep_values", "-sweep_values_2"};
+  SweepGrid               *grid      = &sweep->grid;
+  char                   **names;
+  int                      n_names;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetParameters(sweep->operators, &grid->n_parameters, &parameters));
   PetscCall(PetscStrToArray(sweep->parameter, ',', &n_names, &names));
   PetscCheck(n_names == 1 || n_names == 2, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_parameter '%s' must name one or two options of the scene, e.g. pad_young", sweep->parameter);
@@ -160,8 +158,7 @@ static PetscErrorCode GridSetUp(Sweep sweep)
   for (grid->n_axes = 0; grid->n_axes < n_names; grid->n_axes++) {
     const PetscInt k = grid->n_axes;
 
-    PetscCall(GridParameterFind(sweep->comm, "-sweep_parameter", names[k], grid->n_parameters, parameters,
-                                &grid->parameter[k]));
+    PetscCall(GridParameterFind(sweep->comm, sweep->operators, "-sweep_parameter", names[k], &grid->parameter[k]));
     PetscCall(SweepAxisCheck(sweep, names[k]));
     PetscCheck(strlen(sweep->values[k]) < SWEEP_MAX_TEXT - 1, sweep->comm, PETSC_ERR_USER_INPUT,
                "%s is longer than %d characters; give a range first:last:n", options[k], SWEEP_MAX_TEXT);

@@ -186,38 +186,42 @@ static PetscErrorCode SensitivityRows(Sweep sweep, ResultsTable table)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SweepWrite(Sweep sweep, Results results)
+/* Table `name` of the rows */
+static PetscErrorCode TableWrite(Sweep sweep, Results results, PetscErrorCode (*rows)(Sweep, ResultsTable),
+                                 const char name[], const char header[])
 {
-  const struct {
-    const char *name;
-    PetscBool   wanted;
-    PetscErrorCode (*rows)(Sweep, ResultsTable);
-    const char *header;
-  } tables[] = {
-    {"sweep",         PETSC_TRUE,                                                  PointRows,
-     "point,value,branch,freq_hz,growth_rad_s,error_estimate,unstable,label,value_2,class,error_hz,condition,"
-     "onset_distance,n_closed,jump"                                                                                             },
-    {"parameters",    PETSC_TRUE,                                                  ParameterRows,   "parameter,value,unit,swept"},
-    {"onsets",        (PetscBool)(sweep->is_confirmed != NULL),                    OnsetRows,
-     "parameter,critical_value,freq_hz,kind,label,error_estimate,branch,partner,confirmed,value_2"                              },
-    {"verify",        (PetscBool)(sweep->n_checks > 0),                            CheckRows,
-     "value,value_2,modes_full,modes_reduced,unstable_full,unstable_reduced,true_error,error_estimate,freq_hz,"
-     "full_error"                                                                                                               },
-    {"robustness",    (PetscBool)(sweep->n_risks > 0),                             RiskRows,
-     "label,freq_hz,growth_nominal_rad_s,growth_largest_rad_s,error_rad_s,unstable_combinations,combinations"                   },
-    {"sensitivities", (PetscBool)(sweep->sensitivities && sweep->basis.reduced.n), SensitivityRows,
-     "point,value,branch,freq_hz,parameter,freq_hz_per_unit,growth_rad_s_per_unit,freq_hz_per_percent,"
-     "growth_rad_s_per_percent"                                                                                                 },
-  };
   ResultsTable table;
 
   PetscFunctionBeginUser;
-  for (size_t k = 0; k < sizeof(tables) / sizeof(tables[0]); k++) {
-    if (!tables[k].wanted) continue;
-    PetscCall(ResultsTableOpen(results, tables[k].name, tables[k].header, &table));
-    PetscCall(tables[k].rows(sweep, table));
-    PetscCall(ResultsTableClose(&table));
-  }
+  PetscCall(ResultsTableOpen(results, name, header, &table));
+  PetscCall(rows(sweep, table));
+  PetscCall(ResultsTableClose(&table));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepWrite(Sweep sweep, Results results)
+{
+  PetscFunctionBeginUser;
+  PetscCall(TableWrite(sweep, results, PointRows, "sweep",
+                       "point,value,branch,freq_hz,growth_rad_s,error_estimate,unstable,label,value_2,class,error_hz,"
+                       "condition,onset_distance,n_closed,jump"));
+  PetscCall(TableWrite(sweep, results, ParameterRows, "parameters", "parameter,value,unit,swept"));
+  if (sweep->is_confirmed)
+    PetscCall(
+      TableWrite(sweep, results, OnsetRows, "onsets",
+                 "parameter,critical_value,freq_hz,kind,label,error_estimate,branch,partner,confirmed,value_2"));
+  if (sweep->n_checks)
+    PetscCall(TableWrite(sweep, results, CheckRows, "verify",
+                         "value,value_2,modes_full,modes_reduced,unstable_full,unstable_reduced,true_error,"
+                         "error_estimate,freq_hz,full_error"));
+  if (sweep->n_risks)
+    PetscCall(TableWrite(sweep, results, RiskRows, "robustness",
+                         "label,freq_hz,growth_nominal_rad_s,growth_largest_rad_s,error_rad_s,unstable_combinations,"
+                         "combinations"));
+  if (sweep->sensitivities && sweep->basis.reduced.n)
+    PetscCall(TableWrite(sweep, results, SensitivityRows, "sensitivities",
+                         "point,value,branch,freq_hz,parameter,freq_hz_per_unit,growth_rad_s_per_unit,"
+                         "freq_hz_per_percent,growth_rad_s_per_percent"));
   PetscCall(SweepForget(sweep));
   PetscFunctionReturn(0);
 }

@@ -256,13 +256,12 @@ PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], B
   run.guarded.high = high * (1 + GUARD);
   PetscCall(PetscMalloc2(n, &run.estimate, n_parameters, &run.scale));
   PetscCall(ScalePoints(&run));
-  if (!greedy->n_samples) {
-    PetscCall(SampleKrylov(&run, points, NAN));
-    if (greedy->keep) PetscCall(greedy->keep(greedy->keep_ctx));
-  }
-  PetscCall(PointNext(&run, &next));
+  if (greedy->n_samples) PetscCall(PointNext(&run, &next));
   while (next >= 0 && greedy->n_samples < greedy->max_samples) {
-    PetscCall(SampleCorrect(&run, &points[next * n_parameters], &greedy->last));
+    if (greedy->n_samples)
+      PetscCall(SampleCorrect(&run, &points[next * n_parameters], &greedy->last));
+    else
+      PetscCall(SampleKrylov(&run, points, NAN));
     if (greedy->keep) PetscCall(greedy->keep(greedy->keep_ctx));
     PetscCall(PointNext(&run, &next));
   }

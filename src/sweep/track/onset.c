@@ -328,14 +328,12 @@ PetscErrorCode OnsetFind(const Reduced *reduced, const BranchLine *line, BranchE
   Onset     onset = {0};
   PetscReal critical;
   PetscBool divergence = event->kind == EVENT_DIVERGENCE || event->kind == EVENT_RESTABILISATION;
-  PetscBool found;
 
   PetscFunctionBeginUser;
   PetscCall(ModeSourceCreate(reduced, line, &onset.source));
   onset.kind = divergence ? ONSET_STIFFNESS : (onset.source.form.damped ? ONSET_GROWTH : ONSET_PAIR);
-  PetscCall(OnsetBracket(&onset, event, &critical, &found));
-  event->found = found;
-  if (found) {
+  PetscCall(OnsetBracket(&onset, event, &critical, &event->found));
+  if (event->found) {
     event->critical = critical;
     PetscCall(OnsetFinish(&onset, event));
   }

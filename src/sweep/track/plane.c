@@ -23,17 +23,15 @@ static PetscErrorCode PlaneReal(PetscInt N, PetscInt k, const PetscInt member[],
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * k * N, &Z));
-  for (PetscInt a = 0; a < k; a++) {
+  for (PetscInt a = 0; a < k; a++)
     for (PetscInt r = 0; r < N; r++) {
       Z[2 * a * N + r]       = creal(vectors[member[a] * N + r]);
       Z[(2 * a + 1) * N + r] = cimag(vectors[member[a] * N + r]);
     }
-  }
   PetscCall(DenseOrthonormalise(N, 2 * k, FRAME_PARALLEL, Z, &kept));
-  for (PetscInt a = 0; a < k; a++) {
+  for (PetscInt a = 0; a < k; a++)
     for (PetscInt r = 0; r < N; r++)
       X[a * N + r] = a < kept ? creal(Z[a * N + r]) : sin(1.0 + (a + 1.3) * (r + 1.7) * (r + 0.9));
-  }
   PetscCall(PetscFree(Z));
   PetscFunctionReturn(0);
 }
