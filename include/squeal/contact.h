@@ -32,10 +32,10 @@ typedef struct {
   PetscInt  n_master;               /* corners of the master facet that take part, 1 to 4 */
   PetscReal weight[4];              /* their weights, sum 1 */
   PetscInt  master[4][3], slave[3]; /* global unknowns x, y, z; -1 when fixed by a support */
-  PetscInt  corner[4];              /* global numbers of the master's vertices */
+  PetscInt  corner[4], vertex;      /* global numbers of the vertices of master and slave */
   PetscReal x[3];                   /* position of the slave, m */
   PetscReal n[3], t[3], b[3];       /* unit vectors */
-  PetscReal area;                   /* tributary area of the slave node, m^2 */
+  PetscReal area, area_master;      /* of the slave node and of the point that it faces, |sum_i w_i a_i|, m^2 */
   PetscReal gap;                    /* n . (x_s - x_m) of the mesh as it is, m, positive open */
   PetscReal force; /* normal force carried in the sliding state, N, compressive >= 0; 0 when not given */
   PetscReal speed; /* stated sliding speed, m/s; 0 where nothing slides as told */
@@ -119,14 +119,8 @@ PetscErrorCode ContactGetInterfaces(Contact contact, PetscInt *n, const ContactI
 PetscErrorCode ContactGetPairs(Contact contact, PetscInt *n_local, PetscInt *n_global, const ContactPair **pairs);
 
 /*@
-   ContactCreateOperators - N, T and B of one interface as sparse matrices of shape [its pairs][unknowns]. Collective.
-   The caller destroys them; pass NULL for what is not needed.
-@*/
-PetscErrorCode ContactCreateOperators(Contact contact, PetscInt interface, Mat *N, Mat *T, Mat *B);
-
-/*@
-   ContactCreatePairOperators - the same of chosen local pairs: row i of this rank belongs to pair[i], i < n.
-   Collective. The caller destroys them; pass NULL for what is not needed.
+   ContactCreatePairOperators - N, T and B of chosen local pairs as sparse matrices of shape [pairs][unknowns]: row i of
+   this rank belongs to pair[i], i < n. Collective. The caller destroys them; pass NULL for what is not needed.
 @*/
 PetscErrorCode ContactCreatePairOperators(Contact contact, PetscInt n, const PetscInt pair[], Mat *N, Mat *T, Mat *B);
 

@@ -34,9 +34,9 @@ typedef struct {
   PetscReal kick; /* v = v* + kick M^-1 G'lambda, s */
 } ContactStep;
 
-/* Sums over all pairs of one interface at t_n; on every rank after ContactProjectorGetSums() */
+/* Sums over all pairs of one interface at t_n, all of them PetscReal; on every rank after ContactProjectorGetSums() */
 typedef struct {
-  PetscInt  n[CONTACT_N_STATUS]; /* pairs of each status */
+  PetscReal n[CONTACT_N_STATUS]; /* pairs of each status */
   PetscReal normal;              /* sum of lambda_n, N */
   PetscReal friction;      /* component of the force on the master along the mean slip direction, or its size, N */
   PetscReal force[3];      /* on the master, N */
@@ -44,7 +44,7 @@ typedef struct {
   PetscReal friction_work; /* of friction on the velocities of the nodes, J: what it feeds less what it takes */
   PetscReal heat;          /* dissipated by slip, with the sliding velocity, J, >= 0 */
   PetscReal residual;      /* natural map, relative to the largest impulse, worst step since the start */
-  PetscInt  sweeps, checks, steps; /* since the start: of Gauss-Seidel, looks at all pairs, steps */
+  PetscReal sweeps, checks, steps; /* since the start: of Gauss-Seidel, looks at all pairs, steps */
 } ContactSums;
 
 /*@ ContactProjectorCreate - for all interfaces; after ContactSetFromOptions(). Collective. @*/

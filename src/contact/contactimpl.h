@@ -12,7 +12,6 @@ struct _p_Contact {
   ContactInterface interfaces[CONTACT_MAX];
   PetscInt         n_pairs, n_pairs_all; /* on this rank, on all ranks */
   ContactPair     *pairs;                /* ordered by interface */
-  PetscInt        *vertex;               /* [n_pairs] global number of the slave's vertex */
   ContactSurface   surface[CONTACT_MAX]; /* of the masters, made when they are asked for first */
 };
 

@@ -9,11 +9,6 @@
 #include "contactimpl.h"
 #include "kernels/facet.h"
 
-static PetscReal Dot(const PetscReal a[3], const PetscReal b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Foot of a node on the surface at rest; matching nodes meet exactly. Beyond the border it is the nearest point */
 static void FootFind(const ContactSurface *surface, const PetscReal x[3], ContactFoot *foot)
 {
@@ -35,13 +30,16 @@ static PetscBool PairSetMaster(const ContactInterface *c, const ContactSurface *
                                ContactPair *pair)
 {
   const ContactFacet *facet = &surface->facet[foot->facet];
-  PetscReal           weight[4], along[3], e[3][3], speed;
+  PetscReal           weight[4], along[3], e[3][3], a[3] = {0, 0, 0}, speed;
 
   ContactSlideAlong(c, pair->x, along);
   speed = ContactBasis(facet, foot->natural, along, weight, e);
   for (int i = 0; i < 4; i++) {
     if (weight[i] == 0) continue;
-    for (int d = 0; d < 3; d++) pair->master[pair->n_master][d] = facet->unknowns[i][d];
+    for (int d = 0; d < 3; d++) {
+      pair->master[pair->n_master][d] = facet->unknowns[i][d];
+      a[d] += weight[i] * facet->area[i][d];
+    }
     pair->corner[pair->n_master]   = surface->vertex[facet->node[i]];
     pair->weight[pair->n_master++] = weight[i];
   }
@@ -50,8 +48,9 @@ static PetscBool PairSetMaster(const ContactInterface *c, const ContactSurface *
     pair->t[d] = e[1][d];
     pair->b[d] = e[2][d];
   }
-  pair->speed = Dot(c->rotation, c->rotation) > 0 ? speed : speed > 0 ? c->speed : 0;
-  pair->gap   = ContactGap(facet, weight, e[0], pair->x);
+  pair->speed       = Vec3Dot(c->rotation, c->rotation) > 0 ? speed : speed > 0 ? c->speed : 0;
+  pair->area_master = Vec3Length(a);
+  pair->gap         = ContactGap(facet, weight, e[0], pair->x);
   if (PetscAbsReal(pair->gap) < 1e-9 * facet->size) pair->gap = 0;
   return speed > 0 ? PETSC_TRUE : PETSC_FALSE;
 }
@@ -61,79 +60,50 @@ typedef struct {
   PetscReal distance, x[3], no_slip;
 } PairFailure;
 
-/* What is known of the slave nodes: arrays of the local vertices */
-typedef struct {
-  const PetscReal *x;        /* [vertex][3], m */
-  const PetscInt  *unknowns; /* [vertex][3] */
-  PetscReal       *normals;  /* [vertex][3], times area, m^2 */
-} SlaveNodes;
-
-/* The pair of local vertex v with the facet nearest to it; what fails is kept in *failure */
-static PetscErrorCode PairSet(const ContactInterface *c, const SlaveNodes *nodes, PetscInt v,
-                              const ContactSurface *surface, ContactPair *pair, PairFailure *failure)
-{
-  const PetscReal *normal = &nodes->normals[3 * v];
-  ContactFoot      foot;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(pair->x, &nodes->x[3 * v], 3));
-  PetscCall(PetscArraycpy(pair->slave, &nodes->unknowns[3 * v], 3));
-  pair->area = PetscSqrtReal(Dot(normal, normal));
-  FootFind(surface, pair->x, &foot);
-  if (foot.distance > failure->distance) {
-    failure->distance = foot.distance;
-    PetscCall(PetscArraycpy(failure->x, pair->x, 3));
-  }
-  if (foot.facet >= 0 && !PairSetMaster(c, surface, &foot, pair)) failure->no_slip = 1;
-  PetscFunctionReturn(0);
-}
-
-/* Appends n pairs of an interface, of which slave and master are to be found; first is the place of the first */
-static PetscErrorCode PairsAppend(Contact contact, PetscInt interface, PetscInt n, PetscInt *first)
-{
-  PetscFunctionBeginUser;
-  *first = contact->n_pairs;
-  contact->n_pairs += n;
-  PetscCall(PetscRealloc(sizeof(ContactPair) * (size_t)contact->n_pairs, &contact->pairs));
-  PetscCall(PetscRealloc(sizeof(PetscInt) * (size_t)contact->n_pairs, &contact->vertex));
-  for (PetscInt p = *first; p < contact->n_pairs; p++) contact->pairs[p] = (ContactPair){.interface = interface};
-  PetscFunctionReturn(0);
-}
-
-/* Pairs the slave nodes that this rank owns */
+/* Pairs the slave nodes that this rank owns with the facets nearest to them; what fails is kept in *failure */
 static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const ContactSurface *surface,
                                 PairFailure *failure)
 {
   const ContactInterface *c = &contact->interfaces[interface];
   const PetscInt         *vertices;
   const Mesh             *mesh;
-  SlaveNodes              nodes;
-  PetscInt                n, first;
+  PetscReal              *normals; /* [vertex][3], times area, m^2 */
+  PetscInt                n;
   IS                      is;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
-  nodes.x        = mesh->x;
-  nodes.unknowns = mesh->unknown;
-  PetscCall(ModelGetSetNormals(contact->model, c->slave, &nodes.normals));
+  PetscCall(ModelGetSetNormals(contact->model, c->slave, &normals));
   PetscCall(ModelGetOwnedVertices(contact->model, c->slave, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
-  PetscCall(PairsAppend(contact, interface, n, &first));
+  PetscCall(PetscRealloc(sizeof(ContactPair) * (size_t)(contact->n_pairs + n), &contact->pairs));
   for (PetscInt i = 0; i < n; i++) {
-    contact->vertex[first + i] = mesh->number[vertices[i]];
-    PetscCall(PairSet(c, &nodes, vertices[i], surface, &contact->pairs[first + i], failure));
+    const PetscInt v    = vertices[i];
+    ContactPair   *pair = &contact->pairs[contact->n_pairs++];
+    ContactFoot    foot;
+
+    *pair = (ContactPair){.interface = interface, .vertex = mesh->number[v], .area = Vec3Length(&normals[3 * v])};
+    PetscCall(PetscArraycpy(pair->x, &mesh->x[3 * v], 3));
+    PetscCall(PetscArraycpy(pair->slave, &mesh->unknown[3 * v], 3));
+    FootFind(surface, pair->x, &foot);
+    if (foot.distance > failure->distance) {
+      failure->distance = foot.distance;
+      PetscCall(PetscArraycpy(failure->x, pair->x, 3));
+    }
+    if (foot.facet >= 0 && !PairSetMaster(c, surface, &foot, pair)) failure->no_slip = 1;
   }
   PetscCall(ISRestoreIndices(is, &vertices));
   PetscCall(ISDestroy(&is));
-  PetscCall(PetscFree(nodes.normals));
+  PetscCall(PetscFree(normals));
   PetscFunctionReturn(0);
 }
 
 /* Raises the error for a node without partner, or where the slip that is given vanishes */
 static PetscErrorCode PartnerCheck(MPI_Comm comm, ContactInterface *c, PairFailure *failure)
 {
-  const PetscBool given = Dot(c->slip, c->slip) > 0 || Dot(c->rotation, c->rotation) > 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool given =
+    Vec3Dot(c->slip, c->slip) > 0 || Vec3Dot(c->rotation, c->rotation) > 0 ? PETSC_TRUE : PETSC_FALSE;
   struct {
     double distance;
     int    rank;

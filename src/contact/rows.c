@@ -56,16 +56,3 @@ PetscErrorCode ContactCreatePairOperators(Contact contact, PetscInt n, const Pet
   if (B) PetscCall(RowsAlong(contact, n, pair, offsetof(ContactPair, b), B));
   PetscFunctionReturn(0);
 }
-
-PetscErrorCode ContactCreateOperators(Contact contact, PetscInt interface, Mat *N, Mat *T, Mat *B)
-{
-  PetscInt n = 0, *pair;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(contact->n_pairs, &pair));
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    if (contact->pairs[p].interface == interface) pair[n++] = p;
-  PetscCall(ContactCreatePairOperators(contact, n, pair, N, T, B));
-  PetscCall(PetscFree(pair));
-  PetscFunctionReturn(0);
-}

@@ -9,23 +9,17 @@
 #define LEAF       4  /* facets of a leaf, at most */
 #define MAX_LEVELS 64 /* of the tree, which is balanced */
 
-/* Mean of the corners of a facet along one axis, times 4 */
-static PetscReal FacetMiddle(const ContactFacet *f, int d)
-{
-  return (f->x[0][d] + f->x[2][d]) + (f->x[1][d] + f->x[3][d]);
-}
-
 /* Longest side of the box of the middles of facets order[0..n) */
 static int LongestSide(const ContactSurface *s, PetscInt n, const PetscInt order[])
 {
   PetscReal low[3], high[3];
   int       longest = 0;
 
-  for (int d = 0; d < 3; d++) low[d] = high[d] = FacetMiddle(&s->facet[order[0]], d);
+  for (int d = 0; d < 3; d++) low[d] = high[d] = ContactFacetMiddle(&s->facet[order[0]], d);
   for (PetscInt i = 1; i < n; i++)
     for (int d = 0; d < 3; d++) {
-      low[d]  = PetscMin(low[d], FacetMiddle(&s->facet[order[i]], d));
-      high[d] = PetscMax(high[d], FacetMiddle(&s->facet[order[i]], d));
+      low[d]  = PetscMin(low[d], ContactFacetMiddle(&s->facet[order[i]], d));
+      high[d] = PetscMax(high[d], ContactFacetMiddle(&s->facet[order[i]], d));
     }
   for (int d = 1; d < 3; d++)
     if (high[d] - low[d] > high[longest] - low[longest]) longest = d;
@@ -44,7 +38,7 @@ static PetscErrorCode BoxBuild(ContactSurface *s, PetscInt first, PetscInt n)
   if (n <= LEAF) PetscFunctionReturn(0);
   side = LongestSide(s, n, &s->order[first]);
   PetscCall(PetscMalloc1(n, &key));
-  for (PetscInt i = 0; i < n; i++) key[i] = FacetMiddle(&s->facet[s->order[first + i]], side);
+  for (PetscInt i = 0; i < n; i++) key[i] = ContactFacetMiddle(&s->facet[s->order[first + i]], side);
   PetscCall(PetscSortRealWithArrayInt(n, key, &s->order[first]));
   PetscCall(PetscFree(key));
   PetscCall(BoxBuild(s, first, n / 2));

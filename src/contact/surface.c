@@ -77,18 +77,10 @@ static int FacetCompare(const void *left, const void *right)
   PetscReal           a[3], b[3];
 
   for (int d = 0; d < 3; d++) {
-    a[d] = (f->x[0][d] + f->x[2][d]) + (f->x[1][d] + f->x[3][d]);
-    b[d] = (g->x[0][d] + g->x[2][d]) + (g->x[1][d] + g->x[3][d]);
+    a[d] = ContactFacetMiddle(f, d);
+    b[d] = ContactFacetMiddle(g, d);
   }
   return ContactPlaceCompare(a, b);
-}
-
-static PetscReal FacetUnit(PetscReal n[3])
-{
-  const PetscReal length = PetscSqrtReal(PetscSqr(n[0]) + PetscSqr(n[1]) + PetscSqr(n[2]));
-
-  for (int d = 0; d < 3; d++) n[d] /= length;
-  return length;
 }
 
 /* Size and normal; flat where the facet's own normal and that of the surface differ from it by rounding alone at all
@@ -103,14 +95,14 @@ static void FacetMeasure(ContactFacet *f)
   };
 
   FacetNormal((const double(*)[3])f->x, 0, 0, f->normal);
-  f->size = 2 * PetscSqrtReal(FacetUnit(f->normal));
+  f->size = 2 * PetscSqrtReal(Vec3Normalise(f->normal));
   f->flat = PETSC_TRUE;
   for (int i = 0; i < 4; i++) {
     PetscReal own[3], mean[3] = {f->area[i][0], f->area[i][1], f->area[i][2]};
 
     FacetNormal((const double(*)[3])f->x, corner[i][0], corner[i][1], own);
-    (void)FacetUnit(own);
-    (void)FacetUnit(mean);
+    (void)Vec3Normalise(own);
+    (void)Vec3Normalise(mean);
     for (int d = 0; d < 3; d++)
       if (PetscAbsReal(own[d] - f->normal[d]) > 1e-13 || PetscAbsReal(mean[d] - f->normal[d]) > 1e-13)
         f->flat = PETSC_FALSE;
@@ -133,7 +125,7 @@ static PetscErrorCode SurfaceSetNodes(ContactSurface *s)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SurfaceCreate(Contact contact, const char set[], ContactSurface *s)
+PetscErrorCode ContactSurfaceCreate(Contact contact, const char set[], ContactSurface *s)
 {
   PetscInt      n_local;
   ContactFacet *local;
@@ -158,7 +150,7 @@ PetscErrorCode ContactGetSurface(Contact contact, PetscInt interface, const Cont
   ContactSurface *s = &contact->surface[interface];
 
   PetscFunctionBeginUser;
-  if (!s->facet) PetscCall(SurfaceCreate(contact, contact->interfaces[interface].master, s));
+  if (!s->facet) PetscCall(ContactSurfaceCreate(contact, contact->interfaces[interface].master, s));
   *surface = s;
   PetscFunctionReturn(0);
 }

@@ -70,10 +70,18 @@ static inline int ContactPlaceCompare(const PetscReal a[3], const PetscReal b[3]
   return 0;
 }
 
+/* Mean of the corners of a facet along one axis, times 4 */
+static inline PetscReal ContactFacetMiddle(const ContactFacet *f, int d)
+{
+  return (f->x[0][d] + f->x[2][d]) + (f->x[1][d] + f->x[3][d]);
+}
+
 /* surface.c - facets of a set on this rank, node[] being global numbers, without neighbours; the caller frees them */
 PETSC_INTERN PetscErrorCode ContactFacetsLocal(Model model, const char set[], PetscInt *n, ContactFacet **facets);
 /* surface.c - surface of the master of an interface, made when it is asked for first (borrowed). Collective. */
 PETSC_INTERN PetscErrorCode ContactGetSurface(Contact contact, PetscInt interface, const ContactSurface **surface);
+/* surface.c - any surface, into one that is all 0. Collective. */
+PETSC_INTERN PetscErrorCode ContactSurfaceCreate(Contact contact, const char set[], ContactSurface *surface);
 PETSC_INTERN PetscErrorCode ContactSurfaceDestroy(ContactSurface *surface);
 
 /* search.c - bounding volumes of a surface at rest; those of the same tree as the surface lies */

@@ -11,13 +11,6 @@
 #include "contactimpl.h"
 #include "kernels/facet.h"
 
-/* Area vectors of a surface at its vertices: row 3 v + d belongs to component d of vertex v (global number) */
-typedef struct {
-  PetscInt n_rows;  /* of this rank */
-  Mat      turning; /* [rows][unknowns] */
-  Vec      area;    /* [rows] m^2 */
-} AreaNormals;
-
 /* The 96 entries of a facet that are not zero by nature: component d of u x c takes the others of u */
 static void FacetEntries(const ContactFacet *facet, PetscInt row[96], PetscInt column[96], PetscScalar value[96])
 {
@@ -38,59 +31,32 @@ static void FacetEntries(const ContactFacet *facet, PetscInt row[96], PetscInt c
   }
 }
 
-/* Matrix of the derivatives of the area vectors */
-static PetscErrorCode TurningCreate(PetscInt n_facets, const ContactFacet facets[], Mat turning)
-{
-  PetscInt    *row, *column;
-  PetscScalar *value;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(96 * n_facets, &row, 96 * n_facets, &column, 96 * n_facets, &value));
-  for (PetscInt f = 0; f < n_facets; f++) FacetEntries(&facets[f], &row[96 * f], &column[96 * f], &value[96 * f]);
-  PetscCall(MatSetPreallocationCOO(turning, 96 * n_facets, row, column));
-  PetscCall(MatSetValuesCOO(turning, value, INSERT_VALUES));
-  PetscCall(PetscFree3(row, column, value));
-  PetscFunctionReturn(0);
-}
-
-/* Area vectors of a surface and their derivatives */
-static PetscErrorCode AreaNormalsCreate(Contact contact, const char set[], AreaNormals *a)
+/* Derivatives of the area vectors of a surface at its vertices, shape [3 vertices][unknowns]: row 3 v + d belongs to
+   component d of vertex v (global number) */
+static PetscErrorCode TurningCreate(Contact contact, const char set[], Mat *turning)
 {
   const Mesh   *mesh;
-  PetscInt      n_facets;
+  PetscInt      n_rows = 0, n, *row, *column;
+  PetscScalar  *value;
   ContactFacet *facets;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
-  a->n_rows = 0;
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) a->n_rows += mesh->owned[v] ? 3 : 0;
-  PetscCall(ContactFacetsLocal(contact->model, set, &n_facets, &facets));
-  PetscCall(MatCreate(contact->comm, &a->turning));
-  PetscCall(MatSetSizes(a->turning, a->n_rows, mesh->n_own, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetType(a->turning, MATAIJ));
-  PetscCall(TurningCreate(n_facets, facets, a->turning));
-  PetscCall(MatCreateVecs(a->turning, NULL, &a->area));
-  for (PetscInt i = 0; i < 12 * n_facets; i++) {
-    const ContactFacet *facet = &facets[i / 12];
-    const PetscInt      row   = 3 * facet->node[i / 3 % 4] + i % 3;
-
-    PetscCall(VecSetValue(a->area, row, facet->area[i / 3 % 4][i % 3], INSERT_VALUES)); /* complete on every rank */
-  }
-  PetscCall(VecAssemblyBegin(a->area));
-  PetscCall(VecAssemblyEnd(a->area));
+  for (PetscInt v = 0; v < mesh->n_vertices; v++) n_rows += mesh->owned[v] ? 3 : 0;
+  PetscCall(ContactFacetsLocal(contact->model, set, &n, &facets));
+  PetscCall(PetscMalloc3(96 * n, &row, 96 * n, &column, 96 * n, &value));
+  for (PetscInt f = 0; f < n; f++) FacetEntries(&facets[f], &row[96 * f], &column[96 * f], &value[96 * f]);
+  PetscCall(MatCreate(contact->comm, turning));
+  PetscCall(MatSetSizes(*turning, n_rows, mesh->n_own, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(*turning, MATAIJ));
+  PetscCall(MatSetPreallocationCOO(*turning, 96 * n, row, column));
+  PetscCall(MatSetValuesCOO(*turning, value, INSERT_VALUES));
+  PetscCall(PetscFree3(row, column, value));
   PetscCall(PetscFree(facets));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode AreaNormalsDestroy(AreaNormals *a)
-{
-  PetscFunctionBeginUser;
-  PetscCall(MatDestroy(&a->turning));
-  PetscCall(VecDestroy(&a->area));
-  PetscFunctionReturn(0);
-}
-
-/* sum_i w_i d . a_i for the pairs of an interface, d = n, t or b by its offset in ContactPair; other rows are empty */
+/* sum_i w_i d . a_i / |a| for the pairs of an interface, d = t or b by its offset in ContactPair; other rows are empty */
 static PetscErrorCode InterpolationCreate(Contact contact, PetscInt interface, size_t offset, PetscInt n_columns,
                                           Mat *P)
 {
@@ -106,37 +72,24 @@ static PetscErrorCode InterpolationCreate(Contact contact, PetscInt interface, s
 
     if (pair->interface != interface) continue;
     for (PetscInt i = 0; i < 3 * pair->n_master; i++)
-      PetscCall(MatSetValue(*P, row, 3 * pair->corner[i / 3] + i % 3, pair->weight[i / 3] * d[i % 3], ADD_VALUES));
+      PetscCall(MatSetValue(*P, row, 3 * pair->corner[i / 3] + i % 3,
+                            pair->weight[i / 3] * d[i % 3] / pair->area_master, ADD_VALUES));
   }
   PetscCall(MatAssemblyBegin(*P, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*P, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(0);
 }
 
-/* 1 / |a| of the pairs of an interface, 0 for the others */
-static PetscErrorCode InverseAreas(Contact contact, PetscInt interface, const AreaNormals *a, Vec *inverse)
-{
-  Mat P;
-
-  PetscFunctionBeginUser;
-  PetscCall(InterpolationCreate(contact, interface, offsetof(ContactPair, n), a->n_rows, &P));
-  PetscCall(MatCreateVecs(P, NULL, inverse));
-  PetscCall(MatMult(P, a->area, *inverse));
-  PetscCall(VecReciprocal(*inverse));
-  PetscCall(MatDestroy(&P));
-  PetscFunctionReturn(0);
-}
-
 /* Adds the rows of an interface to one tilt operator, which is NULL before the first */
-static PetscErrorCode TiltAdd(Contact contact, PetscInt interface, size_t offset, const AreaNormals *a, Vec inverse,
-                              Mat *tilt)
+static PetscErrorCode TiltAdd(Contact contact, PetscInt interface, size_t offset, Mat turning, Mat *tilt)
 {
-  Mat P, rows;
+  PetscInt n_rows;
+  Mat      P, rows;
 
   PetscFunctionBeginUser;
-  PetscCall(InterpolationCreate(contact, interface, offset, a->n_rows, &P));
-  PetscCall(MatDiagonalScale(P, inverse, NULL));
-  PetscCall(MatMatMult(P, a->turning, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &rows));
+  PetscCall(MatGetLocalSize(turning, &n_rows, NULL));
+  PetscCall(InterpolationCreate(contact, interface, offset, n_rows, &P));
+  PetscCall(MatMatMult(P, turning, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &rows));
   PetscCall(MatProductClear(rows));
   PetscCall(MatDestroy(&P));
   if (*tilt) {
@@ -149,18 +102,15 @@ static PetscErrorCode TiltAdd(Contact contact, PetscInt interface, size_t offset
 
 PetscErrorCode ContactCreateTilt(Contact contact, Mat *tilt_t, Mat *tilt_b)
 {
+  Mat turning;
+
   PetscFunctionBeginUser;
   *tilt_t = *tilt_b = NULL;
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
-    AreaNormals a;
-    Vec         inverse;
-
-    PetscCall(AreaNormalsCreate(contact, contact->interfaces[i].master, &a));
-    PetscCall(InverseAreas(contact, i, &a, &inverse));
-    PetscCall(TiltAdd(contact, i, offsetof(ContactPair, t), &a, inverse, tilt_t));
-    PetscCall(TiltAdd(contact, i, offsetof(ContactPair, b), &a, inverse, tilt_b));
-    PetscCall(AreaNormalsDestroy(&a));
-    PetscCall(VecDestroy(&inverse));
+    PetscCall(TurningCreate(contact, contact->interfaces[i].master, &turning));
+    PetscCall(TiltAdd(contact, i, offsetof(ContactPair, t), turning, tilt_t));
+    PetscCall(TiltAdd(contact, i, offsetof(ContactPair, b), turning, tilt_b));
+    PetscCall(MatDestroy(&turning));
   }
   PetscFunctionReturn(0);
 }

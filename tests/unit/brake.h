@@ -90,13 +90,29 @@ static inline PetscErrorCode ChainCreateLoads(const Chain *chain, Vec *f)
   PetscFunctionReturn(0);
 }
 
+/* N, T and B of one interface, NULL for what is not needed */
+static inline PetscErrorCode InterfaceOperators(Contact contact, PetscInt interface, Mat *N, Mat *T, Mat *B)
+{
+  const ContactPair *pairs;
+  PetscInt           n = 0, n_pairs, n_all, *pair;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetPairs(contact, &n_pairs, &n_all, &pairs));
+  PetscCall(PetscMalloc1(n_pairs, &pair));
+  for (PetscInt p = 0; p < n_pairs; p++)
+    if (pairs[p].interface == interface) pair[n++] = p;
+  PetscCall(ContactCreatePairOperators(contact, n, pair, N, T, B));
+  PetscCall(PetscFree(pair));
+  PetscFunctionReturn(0);
+}
+
 /* r = (N - mu T) u over the pairs of the first interface */
 static inline PetscErrorCode ChainConstrain(const Chain *chain, PetscReal mu, Vec u, Vec *r)
 {
   Mat N, T;
 
   PetscFunctionBeginUser;
-  PetscCall(ContactCreateOperators(chain->contact, 0, &N, &T, NULL));
+  PetscCall(InterfaceOperators(chain->contact, 0, &N, &T, NULL));
   PetscCall(MatAXPY(N, -mu, T, DIFFERENT_NONZERO_PATTERN));
   PetscCall(MatCreateVecs(N, NULL, r));
   PetscCall(MatMult(N, u, *r));

@@ -44,7 +44,7 @@ static inline PetscErrorCode ReferenceStiffness(Chain *chain, const PetscReal fa
     PetscReal mu, kn;
 
     PetscCall(OperatorsGetInterface(chain->operators, point, i, &mu, &kn));
-    PetscCall(ContactCreateOperators(chain->contact, i, &N, &T, NULL));
+    PetscCall(InterfaceOperators(chain->contact, i, &N, &T, NULL));
     PetscCall(MatGetLocalSize(N, &n, NULL));
     PetscCall(AddProduct(kn, N, &factor[first], N, x, y));
     PetscCall(AddProduct(-mu * kn, T, &factor[first], N, x, y));
@@ -92,7 +92,7 @@ static inline PetscErrorCode ReferenceDamping(Chain *chain, const PetscReal fact
   for (PetscInt p = 0; p < n; p++) total += pair[p].area;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &total, 1, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD));
   for (PetscInt p = 0; p < n; p++) weight[p] = factor[p] * (lambda_n ? lambda_n[p] : force * pair[p].area / total);
-  PetscCall(ContactCreateOperators(chain->contact, 0, NULL, &T, &B));
+  PetscCall(InterfaceOperators(chain->contact, 0, NULL, &T, &B));
   PetscCall(AddProduct(PetscAbsReal(mu) / speed, B, weight, B, x, y));
   PetscCall(AddProduct(slope, T, weight, T, x, y));
   PetscCall(MatDestroy(&T));

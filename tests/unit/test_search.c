@@ -78,7 +78,7 @@ static PetscErrorCode CountPressed(Slider *s, PetscReal x, PetscReal z, PetscRea
   }
   PetscCall(SliderPress(s, 0));
   PetscCall(ContactProjectorGetSums(s->projector, 0, &sums));
-  *n = sums.n[CONTACT_STICK] + sums.n[CONTACT_SLIP];
+  *n = (PetscInt)(sums.n[CONTACT_STICK] + sums.n[CONTACT_SLIP]);
   PetscFunctionReturn(0);
 }
 

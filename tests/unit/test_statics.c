@@ -54,7 +54,7 @@ static PetscErrorCode Imbalance(const Chain *chain, const ContactState state[], 
   PetscCall(VecDuplicate(f, &r));
   PetscCall(VecDuplicate(f, &diagonal));
   PetscCall(VecSet(r, 0));
-  PetscCall(ContactCreateOperators(chain->contact, 0, &rows[0], &rows[1], &rows[2]));
+  PetscCall(InterfaceOperators(chain->contact, 0, &rows[0], &rows[1], &rows[2]));
   for (int i = 0; i < 3; i++) {
     PetscCall(ForcesAdd(rows[i], state, i, i ? -1 : 1, r));
     PetscCall(MatDestroy(&rows[i]));
@@ -93,7 +93,7 @@ static PetscErrorCode DenseContactCreate(const Scene *scene, const Chain *chain,
   PetscCall(OperatorsGetBodies(chain->operators, NULL, &K, NULL, NULL));
   PetscCall(MatGetSize(K, &n_unknowns, NULL));
   c->n_unknowns = (int)n_unknowns;
-  PetscCall(ContactCreateOperators(chain->contact, 0, &N, &T, NULL));
+  PetscCall(InterfaceOperators(chain->contact, 0, &N, &T, NULL));
   PetscCall(LongMatrix(K, &c->K));
   PetscCall(LongMatrix(N, &c->N));
   PetscCall(LongMatrix(T, &c->T));

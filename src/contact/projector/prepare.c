@@ -193,8 +193,8 @@ PetscBool PairPlace(ContactProjector p, PetscInt k, const PetscReal u[], const P
 }
 
 /* The same for Gauss-Seidel, without the directions */
-INTO_VERSIONS void RowSet(const ContactProjector p, const ProjectorPair *pair, const PetscReal impulse[3],
-                          ProjectorRow *row)
+INTO_VERSIONS void PairSetRow(const ContactProjector p, const ProjectorPair *pair, const PetscReal impulse[3],
+                              ProjectorRow *row)
 {
   const PetscReal *minv = p->nodes.minv;
 
@@ -269,7 +269,7 @@ INTO_VERSIONS void PairPrepare(ContactProjector p, PetscInt k, const ContactStep
   PairGuess(pair, p->order, step->kick, impulse);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) pair->p[i] += pair->e[i][j] * impulse[j];
-  RowSet(p, pair, impulse, &p->row[k]);
+  PairSetRow(p, pair, impulse, &p->row[k]);
 }
 
 static VERSIONS void PairsPrepareAll(ContactProjector p, const ContactStep *step)

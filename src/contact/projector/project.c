@@ -215,7 +215,7 @@ INTO_VERSIONS void PairTurnIn(const ProjectorPair *pair, const PetscReal x[3], P
 }
 
 /* Residual of one pair, N s; its velocity and impulse along n, t, b */
-INTO_VERSIONS PetscReal PairCheck(ContactProjector p, PetscInt k)
+INTO_VERSIONS PetscReal PairMiss(ContactProjector p, PetscInt k)
 {
   ProjectorPair      *pair = &p->pair[k];
   const ProjectorRow *row  = &p->row[k];
@@ -243,7 +243,7 @@ static VERSIONS PetscReal PairsCheck(ContactProjector p, PetscInt *n, PetscInt *
     PetscReal            residual;
 
     if (pair->facet < 0) continue;
-    residual = PairCheck(p, k);
+    residual = PairMiss(p, k);
     if (!p->visited[k]) {
       if (pair->q[0] >= 0 || PairMass(pair) == 0) continue;
       p->visited[k]    = PETSC_TRUE;

@@ -231,10 +231,9 @@ PetscErrorCode ContactProjectorView(ContactProjector p, PetscViewer viewer)
     PetscCall(SlidingView(c, &p->sliding[i], viewer));
   }
   if (p->n_interfaces) PetscCall(ContactProjectorGetSums(p, 0, &sums));
-  if (sums.steps)
+  if (sums.steps > 0)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %.4g sweeps and %.4g looks at all pairs per step\n",
-                                     (double)sums.sweeps / (double)sums.steps,
-                                     (double)sums.checks / (double)sums.steps));
+                                     (double)(sums.sweeps / sums.steps), (double)(sums.checks / sums.steps)));
   PetscFunctionReturn(0);
 }
 

@@ -78,8 +78,7 @@ typedef struct {
   MPI_Datatype record[SHARE_FIELDS]; /* of a node: 1 to SHARE_FIELDS fields of three values */
   PetscMPIInt  rank, size, root;
   PetscInt     n_nodes;           /* of all ranks */
-  PetscInt     n, *vertex;        /* of this rank: local vertices from 0, ascending, */
-  PetscInt    *node;              /* and their numbers */
+  PetscInt     n, *vertex;        /* of this rank: local vertices from 0, ascending */
   PetscInt     n_active, *active; /* of these n; it is one of */
   PetscInt    *list[2];           /* of which the other is that of the step before */
   PetscInt *first, *holder; /* [size + 1] and all ranks' numbers one after the other; ~ number where another owns it */
@@ -139,7 +138,6 @@ struct _p_ContactProjector {
   PetscInt        *interface, *number; /* [n_pairs] of the slaves, and */
   PetscReal       *slave_x;            /* [n_pairs][3] their places */
   ContactSums      sums[CONTACT_MAX];
-  PetscReal        dt;
   /* on all ranks */
   PetscBool search_next; /* all nodes are active, and the next step begins with a search */
 };
@@ -163,6 +161,12 @@ static inline void FrameDisplacement(const ContactFrame *f, const PetscReal x[3]
   const PetscReal y[3] = {x[0] + u[0] - f->centre[0], x[1] + u[1] - f->centre[1], x[2] + u[2] - f->centre[2]};
 
   for (int i = 0; i < 3; i++) d[i] = u[i] + f->D[i][0] * y[0] + f->D[i][1] * y[1] + f->D[i][2] * y[2] - f->shift[i];
+}
+
+/* Number of the node at place i of holder[] */
+static inline PetscInt ShareNode(const ProjectorShare *share, PetscInt i)
+{
+  return PetscMax(share->holder[i], ~share->holder[i]);
 }
 
 /* surface.c - surfaces of all interfaces, the nodes and who has them; pairs without partner */

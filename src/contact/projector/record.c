@@ -6,6 +6,7 @@
       contact   dt lambda_n V_n         friction  -dt lambda_T . V_T        heat  dt lambda_T . s
    so that friction + heat is what the drive of the sliding feeds. lambda_T is the force on the master.
 */
+#include "base/vec3.h"
 #include "base/versions.h"
 #include "projectorimpl.h"
 
@@ -105,19 +106,17 @@ static void SumsBegin(ContactSums *sums, const ProjectorConvergence *convergence
   for (int d = 0; d < 3; d++) sums->force[d] = 0;
   sums->normal = sums->friction = 0;
   sums->residual                = PetscMax(sums->residual, convergence->residual);
-  sums->sweeps += convergence->sweeps;
-  sums->checks += convergence->checks;
+  sums->sweeps += (PetscReal)convergence->sweeps;
+  sums->checks += (PetscReal)convergence->checks;
   sums->steps++;
 }
 
 /* Component of friction along the mean direction of slip, or its size where nothing says one */
 static PetscReal FrictionAlong(const Directions *d)
 {
-  const PetscReal *a = d->along, *f = d->friction;
-  const PetscReal  length = PetscSqrtReal(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+  const PetscReal length = Vec3Length(d->along);
 
-  if (length > 0) return (f[0] * a[0] + f[1] * a[1] + f[2] * a[2]) / length;
-  return PetscSqrtReal(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
+  return length > 0 ? Vec3Dot(d->friction, d->along) / length : Vec3Length(d->friction);
 }
 
 VERSIONS void PairsRecord(ContactProjector p, const ContactStep *step, const ProjectorConvergence *convergence)
@@ -138,7 +137,6 @@ VERSIONS void PairsRecord(ContactProjector p, const ContactStep *step, const Pro
     if (state->lambda_n != 0) InterfaceSumsAdd(p, pair, state, step->dt, &p->sums[i], &directions[i]);
   }
   for (PetscInt i = 0; i < p->n_interfaces; i++) p->sums[i].friction = FrictionAlong(&directions[i]);
-  p->dt = step->dt;
 }
 
 PetscErrorCode ContactProjectorGetKKT(ContactProjector p, ContactKKT *kkt)

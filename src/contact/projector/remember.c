@@ -6,38 +6,13 @@
 #include "projectorimpl.h"
 
 #define PER_PAIR (4 + 3 * PROJECTOR_PAST) /* facet, natural coordinates, slip speed, forces */
-#define PER_SUMS 16
+#define PER_SUMS ((PetscInt)(sizeof(ContactSums) / sizeof(PetscReal)))
 
 /* Numbers of the root after the first */
 static PetscInt MemoryLength(const ContactProjector p)
 {
   if (p->share.rank != p->share.root) return 1;
   return 4 + PER_SUMS * p->n_interfaces + PER_PAIR * p->n_pairs + 3 * p->share.n_nodes;
-}
-
-static void SumsGet(const ContactSums *s, PetscReal value[PER_SUMS])
-{
-  const PetscReal all[PER_SUMS] = {
-    (PetscReal)s->n[0],   (PetscReal)s->n[1],   (PetscReal)s->n[2], s->normal,        s->friction, s->force[0],
-    s->force[1],          s->force[2],          s->contact_work,    s->friction_work, s->heat,     s->residual,
-    (PetscReal)s->sweeps, (PetscReal)s->checks, (PetscReal)s->steps};
-
-  for (int i = 0; i < PER_SUMS; i++) value[i] = all[i];
-}
-
-static void SumsSet(const PetscReal value[PER_SUMS], ContactSums *s)
-{
-  for (int i = 0; i < CONTACT_N_STATUS; i++) s->n[i] = (PetscInt)value[i];
-  s->normal   = value[3];
-  s->friction = value[4];
-  for (int d = 0; d < 3; d++) s->force[d] = value[5 + d];
-  s->contact_work  = value[8];
-  s->friction_work = value[9];
-  s->heat          = value[10];
-  s->residual      = value[11];
-  s->sweeps        = (PetscInt)value[12];
-  s->checks        = (PetscInt)value[13];
-  s->steps         = (PetscInt)value[14];
 }
 
 PetscErrorCode ContactProjectorGetMemory(ContactProjector p, PetscInt *n, PetscReal **values)
@@ -53,7 +28,8 @@ PetscErrorCode ContactProjectorGetMemory(ContactProjector p, PetscInt *n, PetscR
   *v++ = p->t_search;
   *v++ = (PetscReal)p->order;
   *v++ = p->rate;
-  for (PetscInt i = 0; i < p->n_interfaces; i++, v += PER_SUMS) SumsGet(&p->sums[i], v);
+  PetscCall(PetscMemcpy(v, p->sums, sizeof(ContactSums) * (size_t)p->n_interfaces));
+  v += PER_SUMS * p->n_interfaces;
   for (PetscInt k = 0; k < p->n_pairs; k++) {
     const ProjectorPair *pair = &p->pair[k];
 
@@ -74,10 +50,10 @@ static PetscErrorCode RootSetMemory(ContactProjector p, const PetscReal v[])
   PetscFunctionBeginUser;
   p->order = (PetscInt)*v++;
   p->rate  = *v++;
-  for (PetscInt i = 0; i < p->n_interfaces; i++, v += PER_SUMS) {
-    SumsSet(v, &p->sums[i]);
+  PetscCall(PetscMemcpy(p->sums, v, sizeof(ContactSums) * (size_t)p->n_interfaces));
+  v += PER_SUMS * p->n_interfaces;
+  for (PetscInt i = 0; i < p->n_interfaces; i++)
     SlidingFrame(&p->contact->interfaces[i], &p->sliding[i], t, &p->frame[i]);
-  }
   for (PetscInt k = 0; k < p->n_pairs; k++) {
     ProjectorPair *pair = &p->pair[k];
 

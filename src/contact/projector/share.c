@@ -35,12 +35,6 @@ PetscErrorCode ShareSetUp(MPI_Comm comm, PetscInt n, const PetscInt number[], Pr
   PetscFunctionReturn(0);
 }
 
-/* Number of the node at place i of holder[] */
-static inline PetscInt HolderNode(const ProjectorShare *share, PetscInt i)
-{
-  return share->holder[i] < 0 ? ~share->holder[i] : share->holder[i];
-}
-
 PetscErrorCode ShareSetActive(ProjectorShare *share, const PetscBool is_active[])
 {
   PetscInt    n_send = 0, n_back = 0;
@@ -53,7 +47,7 @@ PetscErrorCode ShareSetActive(ProjectorShare *share, const PetscBool is_active[]
     const PetscInt first_send = n_send, first_back = n_back;
 
     for (PetscInt i = share->first[r]; i < share->first[r + 1]; i++) {
-      const PetscInt node = HolderNode(share, i);
+      const PetscInt node = ShareNode(share, i);
 
       if (is_active && !is_active[node]) continue;
       if (share->holder[i] >= 0) share->send_node[n_send++] = node;
@@ -139,7 +133,6 @@ PetscErrorCode ShareDestroy(ProjectorShare *share)
   for (int k = 0; k < SHARE_FIELDS; k++)
     if (share->record[k]) PetscCallMPI(MPI_Type_free(&share->record[k]));
   PetscCall(PetscFree(share->vertex));
-  PetscCall(PetscFree(share->node));
   PetscCall(PetscFree2(share->list[0], share->list[1]));
   PetscCall(PetscFree(share->first));
   PetscCall(PetscFree(share->holder));

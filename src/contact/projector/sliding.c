@@ -9,19 +9,14 @@
    Lengths in m, angles in rad, times in s.
 */
 #include "projectorimpl.h"
-#include "base/ramp.h"
+#include "base/vec3.h"
 #include <squeal/options.h>
-
-static PetscReal Length(const PetscReal a[3])
-{
-  return PetscSqrtReal(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-}
 
 /* Axis and speed from the parameters of the interface */
 static void SlidingSetAxis(const ContactInterface *c, ContactSliding *sliding)
 {
-  const PetscReal  omega  = Length(c->rotation);
-  const PetscReal *vector = omega > 0 ? c->rotation : c->slip, length = Length(vector);
+  const PetscReal  omega  = Vec3Length(c->rotation);
+  const PetscReal *vector = omega > 0 ? c->rotation : c->slip, length = Vec3Length(vector);
 
   sliding->slides  = length > 0 ? PETSC_TRUE : PETSC_FALSE;
   sliding->rotates = omega > 0 ? PETSC_TRUE : PETSC_FALSE;

@@ -106,7 +106,7 @@ static PetscErrorCode GivenGather(ContactProjector p, const ContactState states[
     const ContactPair  *pair = &contact->pairs[k];
     const ContactState *s    = &states[k];
 
-    local[k] = (Given){pair->interface, contact->vertex[k], .state = *s};
+    local[k] = (Given){pair->interface, pair->vertex, .state = *s};
     for (int d = 0; d < 3; d++)
       local[k].force[d] = s->lambda_n * pair->n[d] - s->lambda_t[0] * pair->t[d] - s->lambda_t[1] * pair->b[d];
   }

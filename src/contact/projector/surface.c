@@ -68,24 +68,19 @@ static PetscErrorCode NodesFind(ContactProjector p, PetscInt *n_unique, PetscInt
     ShareSetUp(p->contact->comm, n, local, share)); /* numbers of vertices for a while: negative where not owned */
   total = share->first[share->size];
   PetscCall(PetscMalloc1(total, unique));
-  for (PetscInt i = 0; i < total; i++) (*unique)[i] = PetscMax(share->holder[i], ~share->holder[i]);
+  for (PetscInt i = 0; i < total; i++) (*unique)[i] = ShareNode(share, i);
   *n_unique = total;
   PetscCall(PetscSortRemoveDupsInt(n_unique, *unique));
   for (PetscInt i = 0; i < total; i++) {
     const PetscBool owned = share->holder[i] >= 0 ? PETSC_TRUE : PETSC_FALSE;
     PetscInt        node;
 
-    PetscCall(PetscFindInt(owned ? share->holder[i] : ~share->holder[i], *n_unique, *unique, &node));
+    PetscCall(PetscFindInt(ShareNode(share, i), *n_unique, *unique, &node));
     share->holder[i] = owned ? node : ~node;
   }
   share->n_nodes = *n_unique;
   share->vertex  = vertex;
-  share->node    = local;
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscInt h = share->holder[share->first[share->rank] + i];
-
-    share->node[i] = h < 0 ? ~h : h;
-  }
+  PetscCall(PetscFree(local));
   PetscFunctionReturn(0);
 }
 
@@ -142,9 +137,7 @@ static PetscErrorCode PairsCreate(ContactProjector p, PetscInt n, const Slave sl
 {
   PetscFunctionBeginUser;
   p->n_pairs = n;
-  PetscCall(PetscCalloc1(n, &p->pair));
-  PetscCall(PetscCalloc1(n, &p->row));
-  PetscCall(PetscCalloc1(n, &p->state));
+  PetscCall(PetscCalloc3(n, &p->pair, n, &p->row, n, &p->state));
   PetscCall(PetscMalloc5(n, &p->interface, n, &p->number, 3 * n, &p->slave_x, n, &p->visited, n, &p->visit));
   PetscCall(PetscCalloc2(n + 1, &p->first_candidate, 3 * n, &p->place));
   for (PetscInt i = 0; i < n; i++) {
@@ -185,9 +178,7 @@ static PetscErrorCode NodesCreate(ContactProjector p)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc7(3 * n, &nodes->x, 3 * n, &nodes->minv, 3 * n, &nodes->u, 3 * n, &nodes->before, 3 * n,
                          &nodes->v, 3 * n, &nodes->force, 3 * n, &nodes->predicted));
-  PetscCall(PetscCalloc1(3 * n, &nodes->rest));
-  PetscCall(PetscCalloc2(n, &nodes->even, 3 * n, &p->u_search));
-  PetscCall(PetscCalloc1(p->share.n_nodes, &p->is_active));
+  PetscCall(PetscCalloc4(3 * n, &nodes->rest, n, &nodes->even, 3 * n, &p->u_search, p->share.n_nodes, &p->is_active));
   PetscCall(ModelGetMesh(p->contact->model, &mesh));
   PetscCall(PetscMalloc1(3 * p->share.n, &local));
   for (PetscInt i = 0; i < 3 * p->share.n; i++) local[i] = mesh->x[3 * p->share.vertex[i / 3] + i % 3];
@@ -203,20 +194,10 @@ static PetscErrorCode MasterCreate(ContactProjector p, PetscInt i, PetscInt n, c
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetSurface(p->contact, i, &m->surface));
-  PetscCall(PetscMalloc2(m->surface->n_nodes, &m->node, m->surface->n_nodes, &m->seen));
-  PetscCall(PetscCalloc1(m->surface->n_facets, &m->live));
-  PetscCall(PetscMalloc1(m->surface->n_boxes, &m->box));
+  PetscCall(PetscCalloc4(m->surface->n_nodes, &m->node, m->surface->n_nodes, &m->seen, m->surface->n_facets, &m->live,
+                         m->surface->n_boxes, &m->box));
   for (PetscInt k = 0; k < m->surface->n_nodes; k++)
     PetscCall(PetscFindInt(m->surface->vertex[k], n, unique, &m->node[k]));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode MasterDestroy(ProjectorMaster *m)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree2(m->node, m->seen));
-  PetscCall(PetscFree(m->live));
-  PetscCall(PetscFree(m->box));
   PetscFunctionReturn(0);
 }
 
@@ -237,18 +218,15 @@ PetscErrorCode ProjectorSetUpSurfaces(ContactProjector p)
 PetscErrorCode ProjectorDestroySurfaces(ContactProjector p)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(MasterDestroy(&p->master[i]));
-  PetscCall(PetscFree(p->pair));
-  PetscCall(PetscFree(p->row));
-  PetscCall(PetscFree(p->state));
+  for (PetscInt i = 0; i < p->n_interfaces; i++)
+    PetscCall(PetscFree4(p->master[i].node, p->master[i].seen, p->master[i].live, p->master[i].box));
+  PetscCall(PetscFree3(p->pair, p->row, p->state));
   PetscCall(PetscFree5(p->interface, p->number, p->slave_x, p->visited, p->visit));
   PetscCall(PetscFree2(p->first_candidate, p->place));
   PetscCall(PetscFree(p->candidates.facet));
   PetscCall(
     PetscFree7(p->nodes.x, p->nodes.minv, p->nodes.u, p->nodes.before, p->nodes.v, p->nodes.force, p->nodes.predicted));
-  PetscCall(PetscFree(p->nodes.rest));
-  PetscCall(PetscFree2(p->nodes.even, p->u_search));
-  PetscCall(PetscFree(p->is_active));
+  PetscCall(PetscFree4(p->nodes.rest, p->nodes.even, p->u_search, p->is_active));
   PetscCall(ShareDestroy(&p->share));
   PetscFunctionReturn(0);
 }

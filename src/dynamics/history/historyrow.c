@@ -70,12 +70,12 @@ static void HistoryRowContact(History history, const HistoryState *state, PetscR
 
     row[1] += s->normal;
     row[2] += s->friction;
-    row[3] += (PetscReal)(s->n[CONTACT_STICK] + s->n[CONTACT_SLIP]);
-    row[4] += (PetscReal)s->n[CONTACT_STICK];
-    row[14] += (PetscReal)s->n[CONTACT_OPEN];
+    row[3] += s->n[CONTACT_STICK] + s->n[CONTACT_SLIP];
+    row[4] += s->n[CONTACT_STICK];
+    row[14] += s->n[CONTACT_OPEN];
     row[15] = PetscMax(row[15], s->residual);
-    sweeps += (PetscReal)s->sweeps;
-    steps += (PetscReal)s->steps;
+    sweeps += s->sweeps;
+    steps += s->steps;
   }
   row[16]         = steps > history->steps ? (sweeps - history->sweeps) / (steps - history->steps) : 0;
   history->sweeps = sweeps;
