@@ -28,7 +28,7 @@ TURNS = "-contact_kinematics turning -contact_slip 0,0,0 -contact_speed 0 -conta
         " -dynamics_gravity 0,-9.81,0 -dynamics_coriolis -dynamics_centrifugal"
 SCENES = {
     "stays": "-contact_ramp 1e-3 -ts_central_b 0.5",
-    "stays dissipative": "-contact_ramp 1e-3 -ts_central_b 0.8",
+    "stays dissipative": "-contact_ramp 1e-3 -ts_central_b 0.8 -contact_mu_slope -5",
     "turns": TURNS,
     "turns dissipative": TURNS + " -ts_central_b 0.8",
 }
