@@ -182,10 +182,6 @@ PetscErrorCode ModelDestroyLines(ModelLines **lines);
     collective. The caller frees them. @*/
 PetscErrorCode ModelGetNeighbours(Model model, PetscInt v, PetscInt *n, PetscInt **neighbours);
 
-/*@ ModelGetShared - for each local vertex, shape [vertices], whether other ranks have it too. Collective. The caller
-    frees it. @*/
-PetscErrorCode ModelGetShared(Model model, PetscBool **shared);
-
 /*@ ModelCreateNodal - a vector of three zeros for each local vertex. Not collective. The caller destroys it. @*/
 PetscErrorCode ModelCreateNodal(Model model, Vec *nodal);
 

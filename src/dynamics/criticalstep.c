@@ -26,14 +26,12 @@ typedef struct {
 
 static PetscErrorCode StepPencilCreate(Dynamics d, StepPencil *p)
 {
-  const PetscReal *minv;
-  const PetscInt   n = d->layout->n;
+  const PetscInt n = d->layout->n;
 
   PetscFunctionBeginUser;
   *p = (StepPencil){.dynamics = d};
-  PetscCall(BodiesGetMass(d->bodies, NULL, NULL, &minv));
   PetscCall(PetscMalloc4(n, &p->scale, n, &p->x, n, &p->kx, n, &p->cx));
-  for (PetscInt i = 0; i < n; i++) p->scale[i] = PetscSqrtReal(minv[i]);
+  for (PetscInt i = 0; i < n; i++) p->scale[i] = PetscSqrtReal(d->layout->minv[i]);
   PetscFunctionReturn(0);
 }
 

@@ -132,12 +132,10 @@ PetscErrorCode DynamicsSetOperators(Dynamics d, Operators operators, Statics sta
 static PetscErrorCode DynamicsSetUpSurface(Dynamics d)
 {
   DynamicsSurface *s = &d->surface;
-  const PetscReal *minv;
   PetscReal       *inverse;
 
   PetscFunctionBeginUser;
   PetscCall(ContactProjectorSetUp(d->projector));
-  PetscCall(BodiesGetMass(d->bodies, NULL, NULL, &minv));
   PetscCall(ContactProjectorGetNodes(d->projector, &s->n, &s->vertex));
   PetscCall(PetscCalloc4(3 * s->n, &s->u, 3 * s->n, &s->before, 3 * s->n, &s->v, 3 * s->n, &s->force));
   PetscCall(PetscCalloc1(3 * s->n, &inverse));
@@ -147,7 +145,8 @@ static PetscErrorCode DynamicsSetUpSurface(Dynamics d)
 
     for (int j = 0; j < 3; j++)
       for (int c = 0; c < 3; c++)
-        inverse[3 * i + c] += PetscSqr(q[3 * j + c]) * minv[d->layout->at[vertex] + j * d->layout->step[vertex]];
+        inverse[3 * i + c] +=
+          PetscSqr(q[3 * j + c]) * d->layout->minv[d->layout->at[vertex] + j * d->layout->step[vertex]];
   }
   PetscCall(ContactProjectorSetMass(d->projector, inverse));
   PetscCall(PetscFree(inverse));
@@ -157,8 +156,7 @@ static PetscErrorCode DynamicsSetUpSurface(Dynamics d)
 /* State vectors and the integrator's masses */
 static PetscErrorCode DynamicsCreateState(Dynamics d)
 {
-  const PetscReal *minv;
-  const PetscInt   n = d->layout->n;
+  const PetscInt n = d->layout->n;
 
   PetscFunctionBeginUser;
   PetscCall(VecCreateMPI(d->comm, n, PETSC_DETERMINE, &d->u));
@@ -166,8 +164,7 @@ static PetscErrorCode DynamicsCreateState(Dynamics d)
   PetscCall(VecSet(d->u, 0));
   PetscCall(VecSet(d->v, 0));
   PetscCall(PetscCalloc1(n, &d->ku));
-  PetscCall(BodiesGetMass(d->bodies, NULL, NULL, &minv));
-  PetscCall(VecCreateMPIWithArray(d->comm, 1, n, PETSC_DETERMINE, minv, &d->minv));
+  PetscCall(VecCreateMPIWithArray(d->comm, 1, n, PETSC_DETERMINE, d->layout->minv, &d->minv));
   PetscCall(TS2SetSolution(d->ts, d->u, d->v));
   PetscCall(TSCentralSetForces(d->ts, d->minv, DynamicsForce, DynamicsConstrain, d));
   PetscFunctionReturn(0);

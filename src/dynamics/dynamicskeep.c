@@ -71,12 +71,11 @@ static PetscErrorCode DynamicsSumScene(Dynamics d)
 static PetscErrorCode DynamicsListItems(Dynamics d, KeptScalars *scalars, PetscScalar *const a[],
                                         CheckpointItem item[N_ITEMS])
 {
-  const PetscInt n = d->layout->n;
-  PetscReal     *damping, *external;
+  const PetscInt n       = d->layout->n;
+  PetscReal     *damping = d->layout->damping, *external;
   PetscInt       n_external;
 
   PetscFunctionBeginUser;
-  PetscCall(BodiesGetDampingForce(d->bodies, &damping));
   PetscCall(ExternalGetMemory(d->external, &n_external, &external));
   item[SCALARS]   = (CheckpointItem){"scalars", N_REALS(KeptScalars), (PetscReal *)scalars};
   item[U]         = (CheckpointItem){"displacements", n, a[U]};

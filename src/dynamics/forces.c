@@ -22,8 +22,7 @@ typedef struct {
 static PetscErrorCode ForceArraysGet(Dynamics d, const CentralStep *step, ForceArrays *a)
 {
   PetscFunctionBeginUser;
-  *a = (ForceArrays){.step = step};
-  PetscCall(BodiesGetMass(d->bodies, NULL, NULL, &a->minv));
+  *a = (ForceArrays){.step = step, .minv = d->layout->minv};
   PetscCall(VecGetArrayRead(step->u, &a->u));
   PetscCall(VecGetArray(step->v, &a->v));
   if (step->f_old) PetscCall(VecGetArrayRead(step->f_old, &a->f_old));

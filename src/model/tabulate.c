@@ -135,26 +135,3 @@ PetscErrorCode ModelGetNeighbours(Model model, PetscInt v, PetscInt *n, PetscInt
   }
   PetscFunctionReturn(0);
 }
-
-PetscErrorCode ModelGetShared(Model model, PetscBool **shared)
-{
-  const PetscInt *degree, *leaf;
-  PetscInt        n_roots, n_leaves, vStart, vEnd;
-  PetscSF         sf;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, &vEnd));
-  PetscCall(PetscCalloc1(vEnd - vStart, shared));
-  PetscCall(DMGetPointSF(model->dm, &sf));
-  PetscCall(PetscSFGetGraph(sf, &n_roots, &n_leaves, &leaf, NULL));
-  if (n_roots < 0) PetscFunctionReturn(0); /* a mesh on one rank shares nothing */
-  PetscCall(PetscSFComputeDegreeBegin(sf, &degree));
-  PetscCall(PetscSFComputeDegreeEnd(sf, &degree));
-  for (PetscInt v = vStart; v < PetscMin(vEnd, n_roots); v++) (*shared)[v - vStart] = degree[v] > 0;
-  for (PetscInt i = 0; i < n_leaves; i++) {
-    const PetscInt v = leaf ? leaf[i] : i;
-
-    if (v >= vStart && v < vEnd) (*shared)[v - vStart] = PETSC_TRUE;
-  }
-  PetscFunctionReturn(0);
-}

@@ -61,14 +61,13 @@ static PetscErrorCode CheckApply(const Case *c, int *failed)
 /* Breaks when: masses lose a cell, count a shared vertex twice or stand elsewhere than its components */
 static PetscErrorCode CheckMass(const Case *c, int *failed)
 {
-  const PetscReal *total, *part, *minv;
+  const PetscReal *total = c->layout->total, *part = c->layout->part;
   PetscReal       *x, *mx, error, sum[2] = {0, 0};
   Mat              M;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(c->layout->n, &x, c->layout->n, &mx));
   PetscCall(FieldSet(c, 1, x));
-  PetscCall(BodiesGetMass(c->bodies, &part, &total, &minv));
   for (PetscInt i = 0; i < c->layout->n; i++) mx[i] = total[i] * x[i];
   PetscCall(OperatorsGetBodies(c->operators, NULL, NULL, &M, NULL));
   PetscCall(StateCompare(c, M, x, mx, &error));
@@ -157,8 +156,8 @@ static PetscErrorCode ForceCompare(const Case *c, PetscReal dt, const PetscReal 
 /* Breaks when: ku is not carried along, the lagged damping is missing, the padding is touched, or copies differ */
 static PetscErrorCode CheckAdvance(const Case *c, int *failed)
 {
-  const PetscReal dt = 1e-7, *minv;
-  const PetscInt  n  = c->layout->n;
+  const PetscReal dt = 1e-7, *minv = c->layout->minv;
+  const PetscInt  n = c->layout->n;
   PetscReal      *u, *v, *ku, *f, *old, *fresh, error, largest = 0, padding = 0;
   PetscBool      *is_padding;
   PetscInt        n_different;
@@ -166,7 +165,6 @@ static PetscErrorCode CheckAdvance(const Case *c, int *failed)
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc7(n, &u, n, &v, n, &ku, n, &f, n, &old, n, &fresh, n, &is_padding));
-  PetscCall(BodiesGetMass(c->bodies, NULL, NULL, &minv));
   PetscCall(FieldSet(c, 2, u));
   for (PetscInt i = 0; i < n; i++) u[i] *= 1e-6;
   PetscCall(FieldSet(c, 3, v));
@@ -204,12 +202,11 @@ static PetscErrorCode CheckAdvance(const Case *c, int *failed)
    out of all proportion */
 static PetscErrorCode CheckBound(const Case *c, PetscReal s, int *failed)
 {
-  const PetscReal *minv;
+  const PetscReal *minv = c->layout->minv;
   PetscReal       *x, *kx, *cx, bound, quotient = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc3(c->layout->n, &x, c->layout->n, &kx, c->layout->n, &cx));
-  PetscCall(BodiesGetMass(c->bodies, NULL, NULL, &minv));
   PetscCall(FieldSet(c, 5, x));
   for (int i = 0; i < 200; i++) {
     PetscReal norm = 0;
@@ -251,11 +248,10 @@ static PetscErrorCode CheckTranslation(const Case *c, int *failed)
 /* Breaks when: a held direction keeps its inverse mass, or another one loses it */
 static PetscErrorCode CheckHold(const Case *c, int *failed)
 {
-  const PetscReal *minv, *total;
+  const PetscReal *minv = c->layout->minv, *total = c->layout->total;
   PetscInt         n_before = 0, n_after = 0, vertex = -1;
 
   PetscFunctionBeginUser;
-  PetscCall(BodiesGetMass(c->bodies, NULL, &total, &minv));
   for (PetscInt v = 0; v < c->layout->n_vertices && vertex < 0; v++)
     if (c->layout->at[v] >= 0 && minv[c->layout->at[v] + c->layout->step[v]] > 0) vertex = v;
   if (vertex < 0) PetscFunctionReturn(0); /* a rank whose vertices are all held */

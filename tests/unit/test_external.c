@@ -44,8 +44,14 @@ static void NodesCreate(Nodes *nodes)
   nodes->basis[0][1][0]                         = -s;
   nodes->basis[0][2][2]                         = 1;
   for (int d = 0; d < 3; d++) nodes->basis[1][d][d] = 1;
-  nodes->layout       = (Layout){.n = N, .n_vertices = 2, .at = nodes->at, .step = nodes->step, .owned = nodes->owned};
-  nodes->layout.basis = &nodes->basis[0][0][0];
+  nodes->layout = (Layout){.n          = N,
+                           .n_vertices = 2,
+                           .at         = nodes->at,
+                           .step       = nodes->step,
+                           .basis      = &nodes->basis[0][0][0],
+                           .owned      = nodes->owned,
+                           .total      = nodes->mass,
+                           .minv       = nodes->minv};
 }
 
 /* The first node driven along x and y: its first two components */
@@ -73,8 +79,6 @@ static PetscErrorCode SceneCreate(const Nodes *nodes, External *external)
   PetscCall(ExternalCreate(PETSC_COMM_SELF, NULL, external));
   e          = *external;
   e->layout  = &nodes->layout;
-  e->mass    = nodes->mass;
-  e->minv    = nodes->minv;
   e->n_loads = e->n_motions = e->n_impulses = 1;
   PetscCall(PetscCalloc1(1, &e->loads));
   PetscCall(PetscCalloc1(1, &e->motions));

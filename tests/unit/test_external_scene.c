@@ -157,7 +157,7 @@ static PetscErrorCode TestHeld(int *failed)
   PetscCall(SceneCreate("-motions lift,hold -lift_set head_top -lift_displacement 0.5,0,0 -lift_ramp 1 "
                         "-hold_set head_edge -hold_directions zy ",
                         &s));
-  PetscCall(BodiesGetMass(s.bodies, NULL, NULL, &minv));
+  minv = s.layout->minv;
   for (PetscInt i = 0; i < s.layout->n_vertices; i++)
     for (int j = 0; j < 3 && s.layout->owned[i]; j++) n[minv[s.layout->at[i] + j * s.layout->step[i]] == 0]++;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n, 2, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
@@ -272,7 +272,7 @@ static PetscErrorCode TestBalance(int *failed)
 
   PetscFunctionBeginUser;
   PetscCall(SceneCreate(EVERYTHING, &s));
-  PetscCall(BodiesGetMass(s.bodies, NULL, NULL, &minv));
+  minv = s.layout->minv;
   PetscCall(PetscCalloc1(s.layout->n, &ku));
   PetscCall(ExternalSetFrame(s.external, "head", omega, centre, PETSC_TRUE, PETSC_TRUE));
   PetscCall(ExternalSetVelocity(s.external, s.v));

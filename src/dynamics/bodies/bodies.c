@@ -8,22 +8,20 @@
 /* Masses of this rank's cells, then complete ones; held directions have no inverse */
 static PetscErrorCode BodiesSetMasses(Bodies b)
 {
-  const Layout *l = &b->layout;
-  const Mesh   *mesh;
+  Layout *l = &b->layout;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(b->model, &mesh));
-  PetscCall(PetscCalloc3(l->n, &b->part, l->n, &b->total, l->n, &b->minv));
+  PetscCall(PetscCalloc3(l->n, &l->part, l->n, &l->total, l->n, &l->minv));
   for (PetscInt i = 0; i < b->n_swept; i++) {
     const SweptBody *s = &b->swept[i];
 
     for (PetscInt row = 0; row < 3 * s->lines->n_lines; row++)
-      PetscCall(PetscArraycpy(&b->part[s->begin + row * s->stride], &s->mass[row / 3 * s->stride], s->stride));
+      PetscCall(PetscArraycpy(&l->part[s->begin + row * s->stride], &s->mass[row / 3 * s->stride], s->stride));
   }
-  for (PetscInt i = 0; i < 3 * b->general.n; i++) b->part[b->general.begin + i] = b->general.mass[i / 3];
-  PetscCall(PetscArraycpy(b->total, b->part, l->n));
-  PetscCall(SharedBegin(&b->share, l, b->total));
-  PetscCall(SharedEnd(&b->share, l, b->total));
+  for (PetscInt i = 0; i < 3 * b->general.n; i++) l->part[b->general.begin + i] = b->general.mass[i / 3];
+  PetscCall(PetscArraycpy(l->total, l->part, l->n));
+  PetscCall(SharedBegin(&b->share, l, l->total));
+  PetscCall(SharedEnd(&b->share, l, l->total));
   for (PetscInt v = 0; v < l->n_vertices; v++) {
     if (l->at[v] < 0) continue;
     for (PetscInt j = 0; j < 3; j++) {
@@ -31,8 +29,8 @@ static PetscErrorCode BodiesSetMasses(Bodies b)
       PetscBool      held = PETSC_FALSE;
 
       for (int d = 0; d < 3; d++)
-        if (mesh->unknown[3 * v + d] < 0 && l->basis[9 * v + 3 * j + d] != 0) held = PETSC_TRUE;
-      b->minv[at] = held ? 0 : 1 / b->total[at];
+        if (b->mesh->unknown[3 * v + d] < 0 && l->basis[9 * v + 3 * j + d] != 0) held = PETSC_TRUE;
+      l->minv[at] = held ? 0 : 1 / l->total[at];
     }
   }
   PetscFunctionReturn(0);
@@ -51,7 +49,7 @@ static PetscErrorCode BodiesSetUpDamping(Bodies b)
     for (int j = 0; j < 9; j++)
       if (b->point[i].damping[j] != 0) b->damped = PETSC_TRUE;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &b->damped, 1, MPIU_BOOL, MPI_LOR, b->comm));
-  if (b->damped) PetscCall(PetscCalloc1(b->layout.n, &b->d));
+  if (b->damped) PetscCall(PetscCalloc1(b->layout.n, &b->layout.damping));
   PetscFunctionReturn(0);
 }
 
@@ -80,14 +78,13 @@ PetscErrorCode BodiesSetFromOptions(Bodies b)
 
 PetscErrorCode BodiesSetUp(Bodies b, Operators operators)
 {
-  const Mesh *mesh;
-
   PetscFunctionBeginUser;
   b->operators = operators;
   PetscCall(OperatorsGetModel(operators, &b->model, NULL));
   PetscCheck(b->model, b->comm, PETSC_ERR_ARG_WRONGSTATE, "bodies need a model: loaded matrices have none");
-  PetscCall(ModelGetMesh(b->model, &mesh));
-  b->layout.n_vertices = mesh->n_vertices;
+  PetscCall(ModelGetMesh(b->model, &b->mesh));
+  b->layout.n_vertices = b->mesh->n_vertices;
+  b->layout.owned      = b->mesh->owned;
   PetscCall(ModelGetBodies(b->model, &b->n_bodies, &b->body));
   PetscCall(SharedSetUp(b));
   PetscCall(BodiesFindSwept(b));
@@ -107,19 +104,10 @@ PetscErrorCode BodiesGetLayout(Bodies b, const Layout **layout)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BodiesGetMass(Bodies b, const PetscReal **part, const PetscReal **total, const PetscReal **minv)
-{
-  PetscFunctionBeginUser;
-  if (part) *part = b->part;
-  if (total) *total = b->total;
-  if (minv) *minv = b->minv;
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode BodiesHold(Bodies b, PetscInt vertex, PetscInt j)
 {
   PetscFunctionBeginUser;
-  if (b->layout.at[vertex] >= 0) b->minv[b->layout.at[vertex] + j * b->layout.step[vertex]] = 0;
+  if (b->layout.at[vertex] >= 0) b->layout.minv[b->layout.at[vertex] + j * b->layout.step[vertex]] = 0;
   PetscFunctionReturn(0);
 }
 
@@ -136,7 +124,8 @@ static PetscErrorCode BodiesAdvanceKernels(Bodies b, PetscBool early, BodiesWork
 PetscErrorCode BodiesAdvance(Bodies b, const BodiesStep *step, BodiesSums *sums)
 {
   /* v is written to at its padding alone, which is as before in the end */
-  BodiesWork w = {.dt = step->dt, .u = step->u, .v = (PetscReal *)step->v, .ku = step->ku, .f = step->f, .d = b->d};
+  BodiesWork w = {
+    .dt = step->dt, .u = step->u, .v = (PetscReal *)step->v, .ku = step->ku, .f = step->f, .d = b->layout.damping};
 
   PetscFunctionBeginUser;
   PetscCall(BodiesAdvanceKernels(b, PETSC_TRUE, &w));
@@ -153,7 +142,7 @@ PetscErrorCode BodiesAdvance(Bodies b, const BodiesStep *step, BodiesSums *sums)
 static void BodiesClearHeld(Bodies b, PetscReal x[])
 {
   for (PetscInt i = 0; i < b->layout.n; i++)
-    if (b->minv[i] == 0) x[i] = 0;
+    if (b->layout.minv[i] == 0) x[i] = 0;
 }
 
 PetscErrorCode BodiesApply(Bodies b, const PetscReal x[], PetscReal kx[], PetscReal cx[])
@@ -178,23 +167,16 @@ PetscErrorCode BodiesApply(Bodies b, const PetscReal x[], PetscReal kx[], PetscR
 
 PetscErrorCode BodiesSetState(Bodies b, const PetscReal u[], const PetscReal v[], PetscReal ku[])
 {
-  BodiesWork w = {.dt = 0, .u = u, .v = (PetscReal *)v, .ku = b->work[0], .f = b->work[1], .d = b->d};
+  BodiesWork w = {.dt = 0, .u = u, .v = (PetscReal *)v, .ku = b->work[0], .f = b->work[1], .d = b->layout.damping};
 
   PetscFunctionBeginUser;
-  if (b->d) {
+  if (b->damped) {
     PetscCall(PetscArrayzero(b->work[0], b->layout.n));
     for (int early = 1; early >= 0; early--) PetscCall(BodiesAdvanceKernels(b, (PetscBool)early, &w));
   }
   PetscCall(PetscArrayzero(ku, b->layout.n));
   PetscCall(BodiesCellsAddForces(b, u, ku));
   PointsAddForces(b, u, ku);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode BodiesGetDampingForce(Bodies b, PetscReal **d)
-{
-  PetscFunctionBeginUser;
-  *d = b->d;
   PetscFunctionReturn(0);
 }
 
@@ -221,10 +203,9 @@ PetscErrorCode BodiesDestroy(Bodies *bodies)
   PetscCall(PetscFree(b->body));
   PetscCall(PetscFree2(b->layout.at, b->layout.step));
   PetscCall(PetscFree(b->layout.basis));
-  PetscCall(PetscFree(b->layout.owned));
-  PetscCall(PetscFree3(b->part, b->total, b->minv));
+  PetscCall(PetscFree3(b->layout.part, b->layout.total, b->layout.minv));
   for (int i = 0; i < 2; i++) PetscCall(PetscFree(b->work[i]));
-  PetscCall(PetscFree(b->d));
+  PetscCall(PetscFree(b->layout.damping));
   PetscCall(PetscFree(*bodies));
   PetscFunctionReturn(0);
 }

@@ -14,11 +14,14 @@
 typedef struct _p_Bodies *Bodies;
 
 typedef struct {
-  PetscInt   n;          /* length of a state vector on this rank */
-  PetscInt   n_vertices; /* local vertices */
-  PetscInt  *at, *step;  /* [n_vertices]; at = -1 for a vertex without cells */
-  PetscReal *basis;      /* [n_vertices][3][3], row j is the direction of component j */
-  PetscBool *owned;      /* [n_vertices] exactly one rank owns each vertex */
+  PetscInt         n;            /* length of a state vector on this rank */
+  PetscInt         n_vertices;   /* local vertices */
+  PetscInt        *at, *step;    /* [n_vertices]; at = -1 for a vertex without cells */
+  PetscReal       *basis;        /* [n_vertices][3][3], row j is the direction of component j */
+  const PetscBool *owned;        /* [n_vertices] exactly one rank owns each vertex */
+  PetscReal       *part, *total; /* [n] masses of this rank's cells alone, and complete ones, kg */
+  PetscReal       *minv;         /* [n] 1 / total, 0 in held directions and padding */
+  PetscReal       *damping;      /* [n] C v of the last BodiesAdvance(), N; NULL without damping */
 } Layout;
 
 /* A call of BodiesAdvance(), with state vectors */
@@ -78,13 +81,8 @@ PetscErrorCode BodiesSetFromOptions(Bodies bodies);
     the present values of the parameters of the operators. Collective. @*/
 PetscErrorCode BodiesSetUp(Bodies bodies, Operators operators);
 
-/*@ BodiesGetLayout - where the nodes stand (borrowed). Not collective. @*/
+/*@ BodiesGetLayout - where the nodes stand, and their masses (borrowed). Not collective. @*/
 PetscErrorCode BodiesGetLayout(Bodies bodies, const Layout **layout);
-
-/*@ BodiesGetMass - masses [n] (kg): `part` of this rank's cells alone (its sum over ranks is the mass), `total`
-    complete on every rank; 1 / total, 0 in held directions and padding, in `minv` (borrowed; NULL for what is not
-    needed). Not collective. @*/
-PetscErrorCode BodiesGetMass(Bodies bodies, const PetscReal **part, const PetscReal **total, const PetscReal **minv);
 
 /*@ BodiesHold - makes a direction of a vertex held: minv = 0, so that only its prescribed velocity moves it. j is the
     component in the local basis. Same call on all ranks that have the vertex. @*/
@@ -100,10 +98,6 @@ PetscErrorCode BodiesSetState(Bodies bodies, const PetscReal u[], const PetscRea
 /*@ BodiesAdvance - ku += dt K v, then f = -ku - C v, complete at shared vertices; the sums use ku before. dt = 0 leaves
     ku as it is (first step). The exchange of shared vertices overlaps with the work on the others. Collective. @*/
 PetscErrorCode BodiesAdvance(Bodies bodies, const BodiesStep *step, BodiesSums *sums);
-
-/*@ BodiesGetDampingForce - d of the last BodiesAdvance(), [n], for a checkpoint (borrowed; NULL without damping). Not
-    collective. @*/
-PetscErrorCode BodiesGetDampingForce(Bodies bodies, PetscReal **d);
 
 /*@ BodiesGetElementBound - largest omega^2 (1/s^2) of any single element with its own lumped mass, with stiffness
     K_e + s C_e (and of springs and dashpots with their nodes), an upper bound of the assembled one. Collective. @*/

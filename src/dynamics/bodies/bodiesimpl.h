@@ -66,21 +66,20 @@ typedef struct {
 /* Sums over ranks at shared vertices, in ascending order of the ranks, so that all copies are bitwise equal */
 typedef struct {
   MPI_Comm     comm;
-  PetscMPIInt  n_ranks, *rank; /* neighbours, ascending */
-  PetscInt    *start;          /* [n_ranks + 1] */
+  PetscMPIInt  self;
+  PetscBool   *shared;         /* [n_vertices] whether other ranks have the vertex, too */
+  PetscInt     n_ranks, *rank; /* that share vertices with this one, and this one at place `own`, ascending */
+  PetscInt     own, *start;    /* [n_ranks + 1] */
   PetscInt    *vertex;         /* [start[n_ranks]] local vertices shared with each, in the same order on both */
-  PetscInt     n;              /* shared vertices */
-  PetscInt    *shared;         /* [n] local vertices */
-  PetscInt    *source_start;   /* [n + 1] */
-  PetscInt    *source;         /* [] places among the received, -1 for this rank's own, by ascending rank */
   PetscReal   *send, *receive; /* [start[n_ranks]][3] */
-  MPI_Request *request;        /* [2 n_ranks], receiving first */
+  MPI_Request *request;        /* [2 (n_ranks - 1)], receiving first */
 } Shared;
 
 struct _p_Bodies {
   MPI_Comm     comm;
   Operators    operators;
   Model        model;
+  const Mesh  *mesh;
   PetscBool    no_sweep; /* -dynamics_kernel general */
   PetscInt     n_bodies, *body;
   BodiesFrame *frame; /* [n_bodies] */
@@ -91,10 +90,8 @@ struct _p_Bodies {
   PetscInt     n_points;
   Point       *point;
   Shared       share;
-  PetscBool    damped;              /* there is damping on some rank */
-  PetscReal   *part, *total, *minv; /* [layout.n] */
-  PetscReal   *d;                   /* [layout.n], NULL without damping */
-  PetscReal   *work[2];             /* [layout.n] each, for BodiesApply() and BodiesSetState() */
+  PetscBool    damped;  /* there is damping on some rank */
+  PetscReal   *work[2]; /* [layout.n] each, for BodiesApply() and BodiesSetState() */
 };
 
 /* One call of the kernels; d NULL without damping */
@@ -116,11 +113,7 @@ typedef struct {
 } BodiesCell;
 
 /* bodycell.c */
-PETSC_INTERN PetscErrorCode BodiesCountCells(Bodies bodies, PetscInt *n_cells);
 PETSC_INTERN PetscErrorCode BodiesGetCell(Bodies bodies, PetscInt c, BodiesCell *cell);
-/* body and local vertices of a cell, without its matrices */
-PETSC_INTERN PetscErrorCode BodiesGetCellVertices(Bodies bodies, PetscInt c, PetscInt *body, PetscInt *n_nodes,
-                                                  PetscInt vertex[]);
 /* turns the stiffness to the local bases of its nodes */
 PETSC_INTERN void BodiesTurnCell(const Layout *layout, BodiesCell *cell);
 /* ku += K u cell by cell */

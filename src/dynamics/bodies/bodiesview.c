@@ -6,16 +6,12 @@
 /* Cells of each body [n_bodies] that the swept kernel serves, over all ranks, and all of them */
 static PetscErrorCode BodiesCountSwept(Bodies b, PetscInt n_swept[], PetscInt n_all[])
 {
-  PetscInt n_cells;
-
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(n_swept, b->n_bodies));
   PetscCall(PetscArrayzero(n_all, b->n_bodies));
-  PetscCall(BodiesCountCells(b, &n_cells));
-  for (PetscInt c = 0; c < n_cells; c++) {
-    PetscInt body, n_nodes, vertex[ELEMENT_MAX_NODES];
+  for (PetscInt c = 0; c < b->mesh->n_cells; c++) {
+    const PetscInt body = b->body[b->mesh->corner[b->mesh->n_nodes * c]];
 
-    PetscCall(BodiesGetCellVertices(b, c, &body, &n_nodes, vertex));
     n_all[body]++;
     for (PetscInt i = 0; i < b->n_swept; i++) n_swept[body] += b->swept[i].body == body;
   }

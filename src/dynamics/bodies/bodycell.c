@@ -6,42 +6,18 @@
 */
 #include "bodiesimpl.h"
 
-PetscErrorCode BodiesCountCells(Bodies bodies, PetscInt *n_cells)
-{
-  const Mesh *mesh;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(bodies->model, &mesh));
-  *n_cells = mesh->n_cells;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode BodiesGetCellVertices(Bodies bodies, PetscInt c, PetscInt *body, PetscInt *n_nodes, PetscInt vertex[])
-{
-  const Mesh *mesh;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(bodies->model, &mesh));
-  *n_nodes = mesh->n_nodes;
-  PetscCall(PetscArraycpy(vertex, &mesh->corner[mesh->n_nodes * c], mesh->n_nodes));
-  *body = bodies->body[vertex[0]];
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode BodiesGetCell(Bodies bodies, PetscInt c, BodiesCell *cell)
 {
   const ModelScene *scene;
   const Part       *part;
-  const Mesh       *mesh;
   Elasticity        material;
   PetscReal         x[ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(bodies->model, &scene));
-  PetscCall(ModelGetMesh(bodies->model, &mesh));
   PetscCall(ModelGetCell(bodies->model, c, cell->vertex, x));
   cell->n_nodes = scene->element->n_nodes;
-  cell->part    = mesh->cell_part[c];
+  cell->part    = bodies->mesh->cell_part[c];
   part          = &scene->parts[cell->part];
   cell->alpha   = part->alpha;
   cell->beta    = part->beta;
@@ -97,11 +73,8 @@ static void BodiesCellAddForces(const Layout *layout, const BodiesCell *cell, co
 
 PetscErrorCode BodiesCellsAddForces(Bodies bodies, const PetscReal u[], PetscReal ku[])
 {
-  PetscInt n_cells;
-
   PetscFunctionBeginUser;
-  PetscCall(BodiesCountCells(bodies, &n_cells));
-  for (PetscInt c = 0; c < n_cells; c++) {
+  for (PetscInt c = 0; c < bodies->mesh->n_cells; c++) {
     BodiesCell cell;
 
     PetscCall(BodiesGetCell(bodies, c, &cell));

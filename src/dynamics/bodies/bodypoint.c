@@ -10,7 +10,7 @@ static PetscErrorCode PointFind(Bodies b, PetscInt vertex, PetscInt of_vertex[],
   PetscFunctionBeginUser;
   if (of_vertex[vertex] < 0) {
     PetscCall(PetscRealloc((size_t)(b->n_points + 1) * sizeof(Point), &b->point));
-    b->point[b->n_points] = (Point){.vertex = vertex};
+    b->point[b->n_points] = (Point){.vertex = vertex, .early = b->share.shared[vertex]};
     of_vertex[vertex]     = b->n_points++;
   }
   *point = &b->point[of_vertex[vertex]];
@@ -62,8 +62,6 @@ PetscErrorCode PointsSetUp(Bodies b)
     PetscCall(PointsAddGrounded(b, &scene->springs[i], PETSC_FALSE, of_vertex));
   for (PetscInt i = 0; i < scene->n_dashpots; i++)
     PetscCall(PointsAddGrounded(b, &scene->dashpots[i], PETSC_TRUE, of_vertex));
-  for (PetscInt i = 0; i < b->share.n; i++)
-    if (of_vertex[b->share.shared[i]] >= 0) b->point[of_vertex[b->share.shared[i]]].early = PETSC_TRUE;
   PetscCall(PetscFree(of_vertex));
   PetscFunctionReturn(0);
 }

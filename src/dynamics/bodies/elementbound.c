@@ -39,7 +39,7 @@ static PetscBool BoundIsHeld(Bodies b, PetscInt n_nodes, const PetscInt vertex[]
 {
   for (PetscInt a = 0; a < n_nodes; a++)
     for (int j = 0; j < 3; j++)
-      if (b->minv[b->layout.at[vertex[a]] + j * b->layout.step[vertex[a]]] > 0) return PETSC_FALSE;
+      if (b->layout.minv[b->layout.at[vertex[a]] + j * b->layout.step[vertex[a]]] > 0) return PETSC_FALSE;
   return PETSC_TRUE;
 }
 
@@ -55,20 +55,18 @@ static void BoundFlagSwept(Bodies b, PetscBool first[], PetscBool swept[])
 
 static PetscErrorCode BoundOfCells(Bodies b, PetscReal s, PetscReal *largest)
 {
-  PetscBool *first, *swept;
-  PetscInt   n_cells;
+  const PetscInt n_nodes = b->mesh->n_nodes;
+  PetscBool     *first, *swept;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(b->layout.n_vertices, &first, b->layout.n_vertices, &swept));
   BoundFlagSwept(b, first, swept);
-  PetscCall(BodiesCountCells(b, &n_cells));
   *largest = 0;
-  for (PetscInt c = 0; c < n_cells; c++) {
-    PetscInt   body, n_nodes, vertex[ELEMENT_MAX_NODES];
-    PetscReal  lambda;
-    BodiesCell cell;
+  for (PetscInt c = 0; c < b->mesh->n_cells; c++) {
+    const PetscInt *vertex = &b->mesh->corner[n_nodes * c];
+    PetscReal       lambda;
+    BodiesCell      cell;
 
-    PetscCall(BodiesGetCellVertices(b, c, &body, &n_nodes, vertex));
     if (BoundIsRepeated(n_nodes, vertex, first, swept) || BoundIsHeld(b, n_nodes, vertex)) continue;
     PetscCall(BodiesGetCell(b, c, &cell));
     PetscCall(BoundOfCell(&cell, &lambda));
@@ -84,7 +82,7 @@ static void BoundOfPoints(Bodies b, PetscReal s, PetscReal *largest)
   *largest = 0;
   for (PetscInt i = 0; i < b->n_points; i++) {
     const Point    *point = &b->point[i];
-    const PetscReal m     = b->total[b->layout.at[point->vertex]];
+    const PetscReal m     = b->layout.total[b->layout.at[point->vertex]];
     PetscReal       trace = 0;
 
     for (int j = 0; j < 9; j += 4) trace += point->stiffness[j] + s * point->damping[j];

@@ -13,27 +13,23 @@ typedef struct {
 
 static PetscErrorCode GeneralFindCells(Bodies b, GeneralCells *cells)
 {
-  const General *g = &b->general;
-  PetscInt       n_cells;
+  const General *g    = &b->general;
+  const Mesh    *mesh = b->mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(BodiesCountCells(b, &n_cells));
-  PetscCall(PetscMalloc2(b->layout.n_vertices, &cells->of_vertex, n_cells, &cells->cell));
+  PetscCall(PetscMalloc2(b->layout.n_vertices, &cells->of_vertex, mesh->n_cells, &cells->cell));
   for (PetscInt v = 0; v < b->layout.n_vertices; v++) cells->of_vertex[v] = -1;
   for (PetscInt i = 0; i < g->n; i++) cells->of_vertex[g->vertex[i]] = i;
-  for (PetscInt c = 0; c < n_cells; c++) {
-    PetscInt body, n_nodes, vertex[ELEMENT_MAX_NODES];
-
-    PetscCall(BodiesGetCellVertices(b, c, &body, &n_nodes, vertex));
-    if (cells->of_vertex[vertex[0]] >= 0) cells->cell[cells->n++] = c;
-  }
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    if (cells->of_vertex[mesh->corner[mesh->n_nodes * c]] >= 0) cells->cell[cells->n++] = c;
   PetscFunctionReturn(0);
 }
 
 /* Rows with all nodes that share a cell with each, or `upper` with those that are not before it */
 static PetscErrorCode BlockRowsCreate(Bodies b, const GeneralCells *cells, PetscBool upper, BlockRows *rows)
 {
-  PetscInt n_all = 0, *first, *all;
+  const PetscInt n_nodes = b->mesh->n_nodes;
+  PetscInt       n_all   = 0, *first, *all;
 
   PetscFunctionBeginUser;
   rows->n     = b->general.n;
@@ -42,9 +38,8 @@ static PetscErrorCode BlockRowsCreate(Bodies b, const GeneralCells *cells, Petsc
   PetscCall(PetscCalloc1(rows->n + 1, &first));
   for (int pass = 0; pass < 2; pass++) {
     for (PetscInt i = 0; i < cells->n; i++) {
-      PetscInt body, n_nodes, vertex[ELEMENT_MAX_NODES];
+      const PetscInt *vertex = &b->mesh->corner[n_nodes * cells->cell[i]];
 
-      PetscCall(BodiesGetCellVertices(b, cells->cell[i], &body, &n_nodes, vertex));
       for (PetscInt a = 0; a < n_nodes; a++)
         for (PetscInt e = 0; e < n_nodes; e++) {
           const PetscInt row = cells->of_vertex[vertex[a]], column = cells->of_vertex[vertex[e]];
@@ -162,11 +157,10 @@ static PetscErrorCode GeneralSumDamping(Bodies b, const GeneralCells *cells)
   }
   PetscCall(BlockRowsCreate(b, cells, PETSC_FALSE, &g->damping));
   for (PetscInt c = 0; c < cells->n; c++) {
-    PetscInt   body, n_nodes, vertex[ELEMENT_MAX_NODES];
-    BodiesCell cell;
+    const PetscInt n_nodes = b->mesh->n_nodes;
+    BodiesCell     cell;
 
-    PetscCall(BodiesGetCellVertices(b, cells->cell[c], &body, &n_nodes, vertex));
-    if (!GeneralIsMixed(g, cells, n_nodes, vertex)) continue;
+    if (!GeneralIsMixed(g, cells, n_nodes, &b->mesh->corner[n_nodes * cells->cell[c]])) continue;
     PetscCall(BodiesGetCell(b, cells->cell[c], &cell));
     BodiesTurnCell(&b->layout, &cell);
     PetscCall(BlockRowsAdd(cells, &cell, cell.beta, &g->damping));

@@ -27,11 +27,10 @@ static PetscErrorCode BodiesFlagLocal(Bodies b, PetscBool local[])
 /* Whether the directions held at the vertices of a body, and their places, allow components about an axis */
 static PetscErrorCode BodiesFrameSuits(Bodies b, PetscInt body, const BodiesFrame *frame, PetscBool *suits)
 {
-  const Mesh    *mesh;
   const PetscInt j = (frame->axis + 1) % 3, k = (frame->axis + 2) % 3;
+  const Mesh    *mesh = b->mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(b->model, &mesh));
   *suits = PETSC_TRUE;
   for (PetscInt v = 0; v < b->layout.n_vertices; v++) {
     if (b->body[v] != body) continue;
@@ -53,12 +52,9 @@ static PetscBool BodiesFrameAgrees(const BodiesFrame *a, const ModelLines *lines
 /* Largest coordinate of the mesh, m */
 static PetscErrorCode BodiesFindScale(Bodies b, PetscReal *scale)
 {
-  const Mesh *mesh;
-
   PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(b->model, &mesh));
   *scale = 0;
-  for (PetscInt i = 0; i < 3 * b->layout.n_vertices; i++) *scale = PetscMax(*scale, PetscAbsReal(mesh->x[i]));
+  for (PetscInt i = 0; i < 3 * b->layout.n_vertices; i++) *scale = PetscMax(*scale, PetscAbsReal(b->mesh->x[i]));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, scale, 1, MPIU_REAL, MPI_MAX, b->comm));
   PetscFunctionReturn(0);
 }
@@ -114,13 +110,10 @@ static PetscErrorCode BodiesFindFrames(Bodies b, ModelLines *const lines[])
 /* Bases of the vertices: along the axis, radial, tangential; or x, y, z */
 static PetscErrorCode LayoutFindBases(Bodies b)
 {
-  const Mesh *mesh;
-
   PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(b->model, &mesh));
   PetscCall(PetscCalloc1(9 * b->layout.n_vertices, &b->layout.basis));
   for (PetscInt v = 0; v < b->layout.n_vertices; v++) {
-    const PetscReal   *x = &mesh->x[3 * v];
+    const PetscReal   *x = &b->mesh->x[3 * v];
     PetscReal         *q = &b->layout.basis[9 * v], r[2], length;
     const BodiesFrame *frame;
     PetscInt           i, j, k;
@@ -200,7 +193,7 @@ static void SweptLayOut(const SweptBody *swept, Layout *layout)
 }
 
 /* Places of all other vertices with cells: those that ranks share, then the rest */
-static PetscErrorCode GeneralLayOut(Bodies b, const PetscBool shared[])
+static PetscErrorCode GeneralLayOut(Bodies b)
 {
   General *g = &b->general;
   Layout  *l = &b->layout;
@@ -209,7 +202,7 @@ static PetscErrorCode GeneralLayOut(Bodies b, const PetscBool shared[])
   PetscCall(PetscMalloc1(l->n_vertices, &g->vertex));
   for (int pass = 0; pass < 2; pass++) {
     for (PetscInt v = 0; v < l->n_vertices; v++) {
-      if (b->body[v] < 0 || l->at[v] >= 0 || shared[v] == (PetscBool)pass) continue;
+      if (b->body[v] < 0 || l->at[v] >= 0 || b->share.shared[v] == (PetscBool)pass) continue;
       g->vertex[g->n++] = v;
     }
     if (pass == 0) g->n_early = g->n;
@@ -223,17 +216,14 @@ static PetscErrorCode GeneralLayOut(Bodies b, const PetscBool shared[])
 
 PetscErrorCode BodiesLayOut(Bodies b)
 {
-  Layout    *l = &b->layout;
-  PetscBool *shared;
+  Layout *l = &b->layout;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(l->n_vertices, &l->at, l->n_vertices, &l->step));
-  PetscCall(PetscCalloc1(l->n_vertices, &shared));
   for (PetscInt v = 0; v < l->n_vertices; v++) {
     l->at[v]   = -1;
     l->step[v] = 0;
   }
-  for (PetscInt i = 0; i < b->share.n; i++) shared[b->share.shared[i]] = PETSC_TRUE;
   l->n = STENCIL_WIDTH;
   for (PetscInt i = 0; i < b->n_swept; i++) {
     b->swept[i].begin = l->n;
@@ -242,9 +232,8 @@ PetscErrorCode BodiesLayOut(Bodies b)
   }
   l->n += STENCIL_WIDTH;
   b->general.begin = l->n;
-  PetscCall(GeneralLayOut(b, shared));
+  PetscCall(GeneralLayOut(b));
   l->n += LayoutRoundUp(3 * b->general.n + 1);
-  for (PetscInt i = 0; i < b->n_swept; i++) PetscCall(SweptSetRanges(&b->swept[i], shared));
-  PetscCall(PetscFree(shared));
+  for (PetscInt i = 0; i < b->n_swept; i++) PetscCall(SweptSetRanges(&b->swept[i], b->share.shared));
   PetscFunctionReturn(0);
 }

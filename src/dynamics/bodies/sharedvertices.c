@@ -4,205 +4,112 @@
    owner.
 */
 #include "bodiesimpl.h"
-#include "base/gather.h"
-#include <stdlib.h>
 
 #define SHARED_TAG 5501
 
-/* A vertex on one of the ranks that share it */
-typedef struct {
-  PetscInt    number; /* global */
-  PetscMPIInt rank;
-  PetscInt    vertex; /* local on that rank */
-} SharedCopy;
-
-static int SharedCopyCompare(const void *a, const void *b)
+/* Vertices that this rank has in common with each other one, and all of these in its own name */
+static PetscErrorCode SharedFindRanks(Shared *share, const Mesh *mesh)
 {
-  const SharedCopy *x = a, *y = b;
-
-  if (x->number != y->number) return x->number < y->number ? -1 : 1;
-  return (x->rank > y->rank) - (x->rank < y->rank);
-}
-
-/* All copies of all shared vertices, sorted by number, then rank */
-static PetscErrorCode SharedGatherCopies(Bodies b, const PetscBool shared[], PetscInt *n_all, SharedCopy **all)
-{
-  SharedCopy *own;
-  const Mesh *mesh;
-  PetscInt    n = 0;
-  PetscMPIInt rank;
+  ISLocalToGlobalMapping map;
+  PetscInt               n, *ranks, *n_common, **common, *order, n_all = 0;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(b->comm, &rank));
-  PetscCall(ModelGetMesh(b->model, &mesh));
-  PetscCall(PetscCalloc1(mesh->n_vertices, &own));
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) {
-    if (!shared[v]) continue;
-    own[n].number = mesh->number[v];
-    own[n].rank   = rank;
-    own[n].vertex = v;
-    n++;
+  PetscCall(ISLocalToGlobalMappingCreate(share->comm, 1, mesh->n_vertices, mesh->number, PETSC_USE_POINTER, &map));
+  PetscCall(ISLocalToGlobalMappingGetInfo(map, &n, &ranks, &n_common, &common));
+  PetscCall(PetscCalloc1(mesh->n_vertices, &share->shared));
+  for (PetscInt i = 0; i < n; i++) {
+    n_all += n_common[i];
+    for (PetscInt k = 0; k < n_common[i] && ranks[i] != share->self; k++) share->shared[common[i][k]] = PETSC_TRUE;
   }
-  PetscCall(GatherRecords(b->comm, n, sizeof(SharedCopy), own, n_all, all));
-  if (*n_all) qsort(*all, (size_t)*n_all, sizeof(SharedCopy), SharedCopyCompare);
-  PetscCall(PetscFree(own));
+  for (PetscInt v = 0; v < mesh->n_vertices; v++) n_all += share->shared[v];
+  PetscCall(PetscMalloc3(n + 1, &share->rank, n + 2, &share->start, n_all, &share->vertex));
+  PetscCall(PetscMalloc1(n + 1, &order));
+  share->rank[share->n_ranks] = share->self;
+  order[share->n_ranks++]     = -1;
+  for (PetscInt i = 0; i < n; i++) {
+    if (ranks[i] == share->self) continue;
+    share->rank[share->n_ranks] = ranks[i];
+    order[share->n_ranks++]     = i;
+  }
+  PetscCall(PetscSortIntWithArray(share->n_ranks, share->rank, order));
+  share->start[0] = 0;
+  for (PetscInt i = 0, end = 0; i < share->n_ranks; share->start[++i] = end) {
+    for (PetscInt k = 0; order[i] >= 0 && k < n_common[order[i]]; k++) share->vertex[end++] = common[order[i]][k];
+    for (PetscInt v = 0; order[i] < 0 && v < mesh->n_vertices; v++)
+      if (share->shared[v]) share->vertex[end++] = v;
+  }
+  PetscCall(PetscFree(order));
+  PetscCall(ISLocalToGlobalMappingRestoreInfo(map, &n, &ranks, &n_common, &common));
+  PetscCall(ISLocalToGlobalMappingDestroy(&map));
   PetscFunctionReturn(0);
 }
 
-/* End of the copies of one vertex that begin at i */
-static PetscInt SharedCopiesEnd(PetscInt n_all, const SharedCopy all[], PetscInt i)
-{
-  PetscInt end = i + 1;
-
-  while (end < n_all && all[end].number == all[i].number) end++;
-  return end;
-}
-
-/* This rank's copy among those from begin to end, -1 without */
-static PetscInt SharedCopiesFind(const SharedCopy all[], PetscInt begin, PetscInt end, PetscMPIInt rank)
-{
-  for (PetscInt i = begin; i < end; i++)
-    if (all[i].rank == rank) return i;
-  return -1;
-}
-
-/* Neighbours, and how many vertices are shared with each */
-static PetscErrorCode SharedFindNeighbours(Shared *share, PetscInt n_all, const SharedCopy all[], PetscMPIInt rank,
-                                           PetscMPIInt size)
-{
-  PetscInt *count;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(size, &count));
-  for (PetscInt i = 0, end; i < n_all; i = end) {
-    end = SharedCopiesEnd(n_all, all, i);
-    if (SharedCopiesFind(all, i, end, rank) < 0) continue;
-    share->n++;
-    for (PetscInt j = i; j < end; j++) count[all[j].rank]++;
-  }
-  count[rank] = 0;
-  for (PetscMPIInt r = 0; r < size; r++) share->n_ranks += count[r] > 0;
-  PetscCall(PetscMalloc1(share->n_ranks, &share->rank));
-  PetscCall(PetscCalloc1(share->n_ranks + 1, &share->start));
-  for (PetscMPIInt r = 0, i = 0; r < size; r++) {
-    if (!count[r]) continue;
-    share->rank[i]      = r;
-    share->start[i + 1] = share->start[i] + count[r];
-    i++;
-  }
-  PetscCall(PetscFree(count));
-  PetscFunctionReturn(0);
-}
-
-/* Places of the shared vertices in the messages, the same on both sides: by global number */
-static PetscErrorCode SharedFindSources(Shared *share, PetscInt n_all, const SharedCopy all[], PetscMPIInt rank)
-{
-  PetscInt *filled, n = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(share->n, &share->shared, share->n + 1, &share->source_start, n_all, &share->source));
-  PetscCall(PetscMalloc1(share->start[share->n_ranks], &share->vertex));
-  PetscCall(PetscMalloc1(share->n_ranks, &filled));
-  PetscCall(PetscArraycpy(filled, share->start, share->n_ranks));
-  share->source_start[0] = 0;
-  for (PetscInt i = 0, end; i < n_all; i = end) {
-    PetscInt own, m = share->source_start[n];
-
-    end = SharedCopiesEnd(n_all, all, i);
-    own = SharedCopiesFind(all, i, end, rank);
-    if (own < 0) continue;
-    for (PetscInt j = i; j < end; j++) {
-      PetscInt r;
-
-      if (j == own) {
-        share->source[m++] = -1;
-        continue;
-      }
-      PetscCall(PetscFindMPIInt(all[j].rank, share->n_ranks, share->rank, &r));
-      share->source[m++]         = filled[r];
-      share->vertex[filled[r]++] = all[own].vertex;
-    }
-    share->shared[n]         = all[own].vertex;
-    share->source_start[++n] = m;
-  }
-  PetscCall(PetscFree(filled));
-  PetscFunctionReturn(0);
-}
-
-/* Persistent requests, receiving first */
+/* Persistent requests with the other ranks, receiving first */
 static PetscErrorCode SharedCreateRequests(Shared *share)
 {
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(3 * share->start[share->n_ranks], &share->send, 3 * share->start[share->n_ranks],
-                         &share->receive, 2 * share->n_ranks, &share->request));
-  for (PetscMPIInt i = 0; i < share->n_ranks; i++) {
-    const PetscInt begin = 3 * share->start[i];
-    PetscMPIInt    n;
+  const PetscInt n_values = 3 * share->start[share->n_ranks];
 
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(n_values, &share->send, n_values, &share->receive, 2 * (share->n_ranks - 1), &share->request));
+  for (PetscInt i = 0, k = 0; i < share->n_ranks; i++) {
+    const PetscInt    begin = 3 * share->start[i];
+    const PetscMPIInt rank  = (PetscMPIInt)share->rank[i];
+    PetscMPIInt       n;
+
+    if (rank == share->self) share->own = i;
+    if (rank == share->self) continue;
     PetscCall(PetscMPIIntCast(3 * share->start[i + 1] - begin, &n));
     PetscCallMPI(
-      MPI_Recv_init(share->receive + begin, n, MPIU_REAL, share->rank[i], SHARED_TAG, share->comm, &share->request[i]));
-    PetscCallMPI(MPI_Send_init(share->send + begin, n, MPIU_REAL, share->rank[i], SHARED_TAG, share->comm,
-                               &share->request[share->n_ranks + i]));
+      MPI_Recv_init(share->receive + begin, n, MPIU_REAL, rank, SHARED_TAG, share->comm, &share->request[k]));
+    PetscCallMPI(MPI_Send_init(share->send + begin, n, MPIU_REAL, rank, SHARED_TAG, share->comm,
+                               &share->request[share->n_ranks - 1 + k++]));
   }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode SharedSetUp(Bodies b)
 {
-  Shared     *share = &b->share;
-  const Mesh *mesh;
-  PetscBool  *shared;
-  PetscInt    n_all;
-  SharedCopy *all;
-  PetscMPIInt rank, size;
+  Shared *share = &b->share;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(b->comm, &rank));
-  PetscCallMPI(MPI_Comm_size(b->comm, &size));
-  PetscCall(ModelGetMesh(b->model, &mesh));
-  PetscCall(ModelGetShared(b->model, &shared));
-  PetscCall(PetscMalloc1(mesh->n_vertices, &b->layout.owned));
-  PetscCall(PetscArraycpy(b->layout.owned, mesh->owned, mesh->n_vertices));
-  PetscCall(SharedGatherCopies(b, shared, &n_all, &all));
-  PetscCall(SharedFindNeighbours(share, n_all, all, rank, size));
-  PetscCall(SharedFindSources(share, n_all, all, rank));
   PetscCallMPI(MPI_Comm_dup(b->comm, &share->comm));
+  PetscCallMPI(MPI_Comm_rank(b->comm, &share->self));
+  PetscCall(SharedFindRanks(share, b->mesh));
   PetscCall(SharedCreateRequests(share));
-  PetscCall(PetscFree(shared));
-  PetscCall(PetscFree(all));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode SharedBegin(Shared *share, const Layout *layout, const PetscReal x[])
 {
+  const PetscInt own = 3 * share->start[share->own], n_own = 3 * share->start[share->own + 1] - own;
+  const int      n = (int)share->n_ranks - 1;
+
   PetscFunctionBeginUser;
-  if (!share->n_ranks) PetscFunctionReturn(0);
-  PetscCallMPI(MPI_Startall(share->n_ranks, share->request));
+  if (!n) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Startall(n, share->request));
   for (PetscInt i = 0; i < share->start[share->n_ranks]; i++) {
     const PetscInt at = layout->at[share->vertex[i]], step = layout->step[share->vertex[i]];
 
     for (PetscInt j = 0; j < 3; j++) share->send[3 * i + j] = x[at + j * step];
   }
-  PetscCallMPI(MPI_Startall(share->n_ranks, share->request + share->n_ranks));
+  PetscCallMPI(MPI_Startall(n, share->request + n));
+  PetscCall(PetscArraycpy(share->receive + own, share->send + own, n_own));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode SharedEnd(Shared *share, const Layout *layout, PetscReal x[])
 {
+  const int n = (int)share->n_ranks - 1;
+
   PetscFunctionBeginUser;
-  if (!share->n_ranks) PetscFunctionReturn(0);
-  PetscCallMPI(MPI_Waitall(2 * share->n_ranks, share->request, MPI_STATUSES_IGNORE));
-  for (PetscInt i = 0; i < share->n; i++) {
-    const PetscInt at = layout->at[share->shared[i]], step = layout->step[share->shared[i]];
+  if (!n) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Waitall(2 * n, share->request, MPI_STATUSES_IGNORE));
+  for (PetscInt i = share->start[share->own]; i < share->start[share->own + 1]; i++)
+    for (PetscInt j = 0; j < 3; j++) x[layout->at[share->vertex[i]] + j * layout->step[share->vertex[i]]] = 0;
+  for (PetscInt i = 0; i < share->start[share->n_ranks]; i++) {
+    const PetscInt at = layout->at[share->vertex[i]], step = layout->step[share->vertex[i]];
 
-    for (PetscInt j = 0; j < 3; j++) {
-      PetscReal sum = 0;
-
-      for (PetscInt s = share->source_start[i]; s < share->source_start[i + 1]; s++)
-        sum += share->source[s] < 0 ? x[at + j * step] : share->receive[3 * share->source[s] + j];
-      x[at + j * step] = sum;
-    }
+    for (PetscInt j = 0; j < 3; j++) x[at + j * step] += share->receive[3 * i + j];
   }
   PetscFunctionReturn(0);
 }
@@ -210,12 +117,10 @@ PetscErrorCode SharedEnd(Shared *share, const Layout *layout, PetscReal x[])
 PetscErrorCode SharedDestroy(Shared *share)
 {
   PetscFunctionBeginUser;
-  for (PetscMPIInt i = 0; i < 2 * share->n_ranks; i++) PetscCallMPI(MPI_Request_free(&share->request[i]));
+  for (PetscInt i = 0; i < 2 * (share->n_ranks - 1); i++) PetscCallMPI(MPI_Request_free(&share->request[i]));
   PetscCall(PetscFree3(share->send, share->receive, share->request));
-  PetscCall(PetscFree3(share->shared, share->source_start, share->source));
-  PetscCall(PetscFree(share->vertex));
-  PetscCall(PetscFree(share->rank));
-  PetscCall(PetscFree(share->start));
+  PetscCall(PetscFree3(share->rank, share->start, share->vertex));
+  PetscCall(PetscFree(share->shared));
   if (share->comm != MPI_COMM_NULL) PetscCallMPI(MPI_Comm_free(&share->comm));
   PetscFunctionReturn(0);
 }

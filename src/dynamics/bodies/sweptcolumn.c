@@ -61,20 +61,18 @@ static PetscBool ColumnBegins(PetscInt n_nodes, const PetscInt vertex[], const P
 static PetscErrorCode ColumnsFind(Bodies b, const SweptBody *s, ColumnSection *section, PetscBool *complete)
 {
   const PetscInt n_along = s->lines->n_nodes - (s->lines->closed ? 0 : 1);
-  PetscInt       n_cells, n_own = 0, size = 0, *line, *node;
+  PetscInt       n_own = 0, size = 0, *line, *node;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(b->layout.n_vertices, &line, b->layout.n_vertices, &node));
   PetscCall(ColumnsFindVertices(s, b->layout.n_vertices, line, node));
-  PetscCall(BodiesCountCells(b, &n_cells));
-  for (PetscInt c = 0; c < n_cells; c++) {
-    PetscInt body, n_nodes, vertex[ELEMENT_MAX_NODES];
-    Column   column;
+  for (PetscInt c = 0; c < b->mesh->n_cells; c++) {
+    const PetscInt *vertex = &b->mesh->corner[b->mesh->n_nodes * c];
+    Column          column;
 
-    PetscCall(BodiesGetCellVertices(b, c, &body, &n_nodes, vertex));
-    if (body != s->body) continue;
+    if (b->body[vertex[0]] != s->body) continue;
     n_own++;
-    if (!ColumnBegins(n_nodes, vertex, line, node, &column)) continue;
+    if (!ColumnBegins(b->mesh->n_nodes, vertex, line, node, &column)) continue;
     if (section->n_columns == size) {
       size = 2 * size + 16;
       PetscCall(PetscRealloc((size_t)size * sizeof(Column), &section->column));

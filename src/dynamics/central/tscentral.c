@@ -63,13 +63,12 @@ typedef struct {
 } CentralArrays;
 
 /* v += kick minv f, u += dt v */
-static VERSIONS void KickAndDrift(const CentralStep *step, const CentralArrays *a)
+static VERSIONS void KickAndDrift(PetscInt n, const CentralStep *step, const PetscScalar *restrict minv,
+                                  const PetscScalar *restrict f, PetscScalar *restrict v, PetscScalar *restrict u)
 {
   const PetscReal kick = step->kick, dt = step->dt;
-  const PetscScalar *restrict minv = a->minv, *restrict f = a->f;
-  PetscScalar *restrict v = a->v, *restrict u = a->u;
 
-  for (PetscInt i = 0; i < a->n; i++) {
+  for (PetscInt i = 0; i < n; i++) {
     v[i] += kick * minv[i] * f[i];
     u[i] += dt * v[i];
   }
@@ -103,7 +102,7 @@ static PetscErrorCode CentralMove(TS ts, const CentralStep *step)
   if (a.f_old)
     KickAndDriftTwo(step, &a);
   else
-    KickAndDrift(step, &a);
+    KickAndDrift(a.n, step, a.minv, a.f, a.v, a.u);
   PetscCall(VecRestoreArray(step->u, &a.u));
   PetscCall(VecRestoreArray(step->v, &a.v));
   if (step->f_old) PetscCall(VecRestoreArrayRead(step->f_old, &a.f_old));

@@ -86,7 +86,6 @@ PetscErrorCode ExternalSetUp(External external, Bodies bodies)
 {
   PetscFunctionBeginUser;
   PetscCall(BodiesGetLayout(bodies, &external->layout));
-  PetscCall(BodiesGetMass(bodies, NULL, &external->mass, &external->minv));
   PetscCall(TimedLoadsSetUp(external));
   PetscCall(InertiaSetUp(external));
   PetscCall(MotionsSetUp(external, bodies));

@@ -64,10 +64,9 @@ struct _p_External {
   PetscReal     gravity[3]; /* m/s^2 */
   InertiaFrame *frames;     /* [n_parts] */
   /* built by ExternalSetUp() */
-  const Layout    *layout;
-  const PetscReal *mass, *minv; /* kg, 1/kg; borrowed */
-  PetscReal       *weight;      /* [layout n] m g along each number, N; NULL without gravity */
-  PetscReal       *own_weight;  /* the same where this rank owns the vertex, else 0 */
+  const Layout *layout;
+  PetscReal    *weight;     /* [layout n] m g along each number, N; NULL without gravity */
+  PetscReal    *own_weight; /* the same where this rank owns the vertex, else 0 */
   /* status: what a restart needs, in one array to which all the `last` point */
   PetscInt   n_memory;
   PetscReal *memory;

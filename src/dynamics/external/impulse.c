@@ -82,7 +82,7 @@ static PetscErrorCode ImpulsePlace(External external, PetscInt vertex, Impulse *
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(external->model, &mesh));
   if (vertex >= 0 && external->layout->owned[vertex]) PetscCall(PetscArraycpy(here, &mesh->x[3 * vertex], 3));
-  for (PetscInt i = 0; i < p->n; i++) here[3] += PetscAbsReal(external->minv[p->index[i]] * p->value[i]);
+  for (PetscInt i = 0; i < p->n; i++) here[3] += PetscAbsReal(external->layout->minv[p->index[i]] * p->value[i]);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, here, 4, MPIU_REAL, MPI_SUM, external->comm));
   PetscCall(PetscArraycpy(hit->x, here, 3));
   *moves = here[3] > 0 ? PETSC_TRUE : PETSC_FALSE;

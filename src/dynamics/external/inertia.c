@@ -34,7 +34,7 @@ PetscErrorCode InertiaSetUp(External external)
     PetscReal force[3];
 
     if (layout->at[i] < 0) continue;
-    for (int d = 0; d < 3; d++) force[d] = external->mass[layout->at[i]] * g[d];
+    for (int d = 0; d < 3; d++) force[d] = external->layout->total[layout->at[i]] * g[d];
     LayoutSet(layout, i, force, external->weight);
     if (layout->owned[i]) LayoutSet(layout, i, force, external->own_weight);
   }
@@ -84,7 +84,7 @@ static void InertiaFrameAdvance(External external, InertiaFrame *frame, const Pe
       x[d] += X[3 * i + d];
       power->old += k < frame->n_owned ? last[d] * velocity[d] : 0;
     }
-    InertiaFrameForce(frame, external->mass[layout->at[i]], x, velocity, last);
+    InertiaFrameForce(frame, external->layout->total[layout->at[i]], x, velocity, last);
     for (int d = 0; d < 3 && k < frame->n_owned; d++) power->now += last[d] * velocity[d];
     LayoutAdd(layout, i, last, step->f);
   }

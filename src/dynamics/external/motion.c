@@ -112,7 +112,7 @@ static PetscErrorCode MotionAddVertex(External external, Bodies bodies, PetscInt
     if (share < SHARE_TOLERANCE) continue;
     trouble[0] += share < 1 - SHARE_TOLERANCE;
     trouble[1] += PetscBTLookup(taken, index) ? 1 : 0;
-    if (external->minv[index] == 0) continue;
+    if (external->layout->minv[index] == 0) continue;
     motion->index[motion->n]  = index;
     motion->full[motion->n++] = q[0] * x[0] + q[1] * x[1] + q[2] * x[2];
     PetscCall(BodiesHold(bodies, vertex, j));
@@ -193,7 +193,7 @@ PetscErrorCode MotionsFinish(External external, PetscReal dt, const PetscReal f[
 
     for (PetscInt i = 0; i < motion->n_owned; i++) {
       const PetscReal before = motion->before[i], after = motion->after[i];
-      const PetscReal drive = external->mass[motion->index[i]] * (after - before) / dt - f[motion->index[i]];
+      const PetscReal drive = external->layout->total[motion->index[i]] * (after - before) / dt - f[motion->index[i]];
 
       *external->drives += drive * (before + after);
     }

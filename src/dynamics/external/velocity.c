@@ -60,7 +60,7 @@ static void VelocityAddMeans(External external, PetscReal sum[], const PetscInt 
     for (int j = 0; j < 3; j++) {
       const PetscInt index = layout->at[i] + j * layout->step[i];
 
-      if (external->minv[index] == 0) v[index] = 0;
+      if (external->layout->minv[index] == 0) v[index] = 0;
     }
   }
 }
