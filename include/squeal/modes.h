@@ -67,9 +67,6 @@ PetscErrorCode ModesSetBand(Modes modes, const PetscReal band[2]);
 /*@ ModesSetNearest - instead of a band the `count` modes nearest to `target` (Hz). Not collective. @*/
 PetscErrorCode ModesSetNearest(Modes modes, PetscReal target, PetscInt count);
 
-/*@ ModesSetLeft - whether left vectors are computed. Not collective. @*/
-PetscErrorCode ModesSetLeft(Modes modes, PetscBool left);
-
 /*@ ModesSolve - computes eigenvalues, vectors, errors and labels, and checks that none is missing. Collective. @*/
 PetscErrorCode ModesSolve(Modes modes);
 
@@ -89,9 +86,6 @@ typedef struct {
 
 /*@ ModesLabelShapes - names for shapes from elsewhere, as in modes.csv, label[n]. Collective. @*/
 PetscErrorCode ModesLabelShapes(Modes modes, const ModesShapes *shapes, char label[][32]);
-
-/*@ ModesGetCompleteness - one line that says how it was checked that no mode is missing (borrowed). Not collective. @*/
-PetscErrorCode ModesGetCompleteness(Modes modes, const char **line);
 
 /*@ ModesAddChecksum - adds which modes are asked for. Not collective. @*/
 PetscErrorCode ModesAddChecksum(Modes modes, Checksum checksum);

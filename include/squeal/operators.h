@@ -97,10 +97,16 @@ PetscErrorCode OperatorsGetInterface(Operators operators, const PetscReal p[], P
     damping). Pass NULL for what is not needed. Collective. @*/
 PetscErrorCode OperatorsGetBodies(Operators operators, const PetscReal p[], Mat *K, Mat *M, Mat *C);
 
+/*@ OperatorsReleaseBodies - frees those matrices; the next call for them forms them again. Collective. @*/
+PetscErrorCode OperatorsReleaseBodies(Operators operators);
+
 /*@ OperatorsInternalForces - K_e u_e of all elements at p, summed over this rank's cells and then over ranks, N, into a
    local vector of three values per vertex in the layout of the coordinates, held directions included: at a support they
    are its reaction. Springs and contact are no part of it. Collective. @*/
 PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[], Vec u, Vec local);
+
+/*@ OperatorsTakeNodal - moves such a vector, complete at every vertex, to the unknowns. Collective. @*/
+PetscErrorCode OperatorsTakeNodal(Operators operators, Vec local, Vec u);
 
 /*@ OperatorsApplyBodies - f = K u of parts and springs at p, N, element by element: without the rounding of the
     assembled matrix in rigid translations. Collective. @*/

@@ -87,8 +87,8 @@ PetscErrorCode StaticsSolve(Statics statics, const PetscReal p[]);
 @*/
 PetscErrorCode StaticsSolveSliding(Statics statics, const PetscReal p[], SlidingState *state);
 
-/*@ StaticsRelease - frees the factorisation that StaticsSolve() keeps for the next call, at the same bodies.
-    Collective. @*/
+/*@ StaticsRelease - frees the factorisation that StaticsSolve() keeps for the next call, at the same bodies, and the
+    matrices of OperatorsGetBodies(). Collective. @*/
 PetscErrorCode StaticsRelease(Statics statics);
 
 /*@ StaticsGetState - states of the local pairs, and displacements of all unknowns, m (borrowed). Not collective. @*/

@@ -41,29 +41,18 @@ static PetscErrorCode DampedCollect(PEP pep, PetscReal shift, PetscInt n, Spectr
    window; for modes near a target those at most as far from it as the count-th nearest */
 static PetscReal DampedRadius(const Window *window, PetscReal shift, const Spectrum *found)
 {
-  PetscReal d = 0;
-
   if (!window->count) return hypot(window->high, shift + window->growth);
   if (found->n < window->count) return PETSC_MAX_REAL;
-  for (PetscInt i = 0; i < found->n; i++) {
-    PetscInt nearer = 0;
-
-    for (PetscInt j = 0; j < found->n; j++)
-      nearer += WindowDistance(window, found, j) < WindowDistance(window, found, i);
-    if (nearer < window->count) d = PetscMax(d, WindowDistance(window, found, i));
-  }
-  return hypot(window->target, shift) + d;
+  return hypot(window->target, shift) + WindowNearest(window, found);
 }
 
 /* Solver for nev eigenvalues about the shift; the transposed problem starts from another random vector */
 static PetscErrorCode DampedCreateSolver(Mat problem[3], ShiftInvert *si, PetscBool transposed, int start, PetscInt nev,
                                          PEP *pep)
 {
-  PetscMPIInt rank;
-  PetscInt    n;
-  PetscRandom random;
-  BV          bv;
-  ST          st;
+  PetscInt n;
+  BV       bv;
+  ST       st;
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(problem[0], &n, NULL));
@@ -82,12 +71,7 @@ static PetscErrorCode DampedCreateSolver(Mat problem[3], ShiftInvert *si, PetscB
   PetscCall(ShiftInvertAttach(si, transposed, st));
   PetscCall(PEPSetFromOptions(*pep));
   PetscCall(PEPGetBV(*pep, &bv));
-  PetscCall(BVGetRandomContext(bv, &random));
-  PetscCallMPI(MPI_Comm_rank(si->comm, &rank));
-  /* a start vector alike on all ranks could miss what is not */
-  PetscCall(
-    PetscRandomSetSeed(random, (transposed ? 20051 : 2005) + 1000 * (unsigned long)start + (unsigned long)rank));
-  PetscCall(PetscRandomSeed(random));
+  PetscCall(SolverSeed(bv, (transposed ? 20051 : 2005) + 1000 * (unsigned long)start));
   PetscFunctionReturn(0);
 }
 

@@ -119,7 +119,6 @@ static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Part parts[
 static PetscErrorCode LabelsCreate(Modes modes, Model model, Contact contact, PetscInt n_parts, const Part parts[],
                                    Labels *l)
 {
-  const PetscReal *x;
   const PetscReal *p;
   PetscReal        centre[3];
   const Mesh      *mesh;
@@ -130,7 +129,6 @@ static PetscErrorCode LabelsCreate(Modes modes, Model model, Contact contact, Pe
   PetscCall(PencilGetOperators(modes->pencil, &operators));
   PetscCall(PencilGetParameters(modes->pencil, NULL, NULL, &p));
   PetscCall(ModelGetMesh(model, &mesh));
-  x             = mesh->x;
   l->n_parts    = n_parts;
   l->n_vertices = mesh->n_vertices;
   l->disc       = -1;
@@ -151,8 +149,8 @@ static PetscErrorCode LabelsCreate(Modes modes, Model model, Contact contact, Pe
              modes->disc);
   if (l->disc < 0) PetscFunctionReturn(0);
   PetscCall(ContactGetCentre(contact, centre, &found));
-  PetscCall(DiscCreate(modes->comm, &(DiscPart){l->n_vertices, x, l->mass[l->disc], found ? centre : NULL}, modes->n,
-                       &l->frame, &same));
+  PetscCall(DiscCreate(modes->comm, &(DiscPart){l->n_vertices, mesh->x, l->mass[l->disc], found ? centre : NULL},
+                       modes->n, &l->frame, &same));
   if (!same) l->disc = -1;
   PetscFunctionReturn(0);
 }

@@ -140,13 +140,9 @@ static PetscErrorCode LeftBiorthogonaliseCluster(const PencilMatrices *pencil, c
   PetscCall(VecDuplicateVecs(work[0], m, &yi));
   for (PetscInt i = 0; i < m; i++)
     for (PetscInt j = 0; j < m; j++) {
-      const PetscComplex a = inverse[i * m + j];
+      const ComplexVec y = {left->xr[first + j], left->xi[first + j]};
 
-      PetscCall(VecAXPY(yr[i], creal(a), left->xr[first + j]));
-      PetscCall(VecAXPY(yi[i], cimag(a), left->xr[first + j]));
-      if (!left->xi[first + j]) continue;
-      PetscCall(VecAXPY(yr[i], -cimag(a), left->xi[first + j]));
-      PetscCall(VecAXPY(yi[i], creal(a), left->xi[first + j]));
+      PetscCall(ComplexVecAXPY(inverse[i * m + j], y, (ComplexVec){yr[i], yi[i]}));
     }
   for (PetscInt i = 0; i < m; i++) {
     PetscCall(VecCopy(yr[i], left->xr[first + i]));

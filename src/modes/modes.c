@@ -108,13 +108,6 @@ PetscErrorCode ModesSetNearest(Modes modes, PetscReal target, PetscInt count)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModesSetLeft(Modes modes, PetscBool left)
-{
-  PetscFunctionBeginUser;
-  modes->left = left;
-  PetscFunctionReturn(0);
-}
-
 /* Right or left spectrum by the solver that fits the pencil */
 static PetscErrorCode SpectrumSolve(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
                                     PetscBool transposed, Spectrum *spectrum)
@@ -222,13 +215,6 @@ PetscErrorCode ModesGetVectors(Modes modes, PetscInt i, Vec *xr, Vec *xi, Vec *y
   if (xi) *xi = modes->right.xi[i];
   if (yr) *yr = modes->left_spectrum.n ? modes->left_spectrum.xr[i] : NULL;
   if (yi) *yi = modes->left_spectrum.n ? modes->left_spectrum.xi[i] : NULL;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModesGetCompleteness(Modes modes, const char **line)
-{
-  PetscFunctionBeginUser;
-  *line = modes->completeness;
   PetscFunctionReturn(0);
 }
 

@@ -56,7 +56,7 @@ typedef struct {
 PETSC_INTERN PetscErrorCode WindowFind(Modes modes, Window *window);
 PETSC_INTERN PetscErrorCode WindowReach(Modes modes, Window *window); /* sets high for the modes nearest to a target */
 PETSC_INTERN PetscErrorCode WindowCountRigid(Modes modes, Window *window, const Spectrum *spectrum);
-PETSC_INTERN PetscReal WindowDistance(const Window *window, const Spectrum *spectrum, PetscInt i); /* from i target */
+PETSC_INTERN PetscReal      WindowNearest(const Window *window, const Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode WindowSelect(const Window *window, Spectrum *spectrum);
 PETSC_INTERN PetscInt       WindowFarthest(const Window *window, const Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *spectrum, PetscBool *complete);
@@ -68,6 +68,8 @@ PETSC_INTERN PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pen
                                           ShiftInvert *si, PetscBool transposed, Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode DampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window,
                                         ShiftInvert *si, PetscBool transposed, Spectrum *spectrum);
+/* undamped.c - start vectors of a solver at random, not alike on all ranks: such a vector could miss what is not */
+PETSC_INTERN PetscErrorCode SolverSeed(BV bv, unsigned long seed);
 PETSC_INTERN PetscReal      UndampedShift(const Window *window);
 PETSC_INTERN PetscReal      DampedShift(const Window *window);
 

@@ -73,11 +73,7 @@ PetscErrorCode SpectrumKeep(Spectrum *s, PetscInt first, PetscInt n)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++)
     if (first) SpectrumSwap(s, i, first + i);
-  for (PetscInt i = n; i < s->n; i++) {
-    PetscCall(VecDestroy(&s->xr[i]));
-    PetscCall(VecDestroy(&s->xi[i]));
-  }
-  s->n = n;
+  while (s->n > n) PetscCall(SpectrumRemove(s, s->n - 1));
   PetscFunctionReturn(0);
 }
 

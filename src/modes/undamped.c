@@ -24,18 +24,12 @@ PetscReal UndampedShift(const Window *window)
 static PetscReal UndampedRadius(const Window *window, PetscReal shift, const Spectrum *found)
 {
   const PetscReal low = window->low, high = window->high, s = window->growth, t = window->target;
-  PetscReal       d = 0;
+  PetscReal       d;
 
   if (!window->count)
     return PetscMax(hypot(high * high - s * s - shift, 2 * s * high), hypot(low * low - s * s - shift, 2 * s * low));
   if (found->n < window->count) return PETSC_MAX_REAL;
-  for (PetscInt i = 0; i < found->n; i++) { /* the count-th nearest to the target */
-    PetscInt nearer = 0;
-
-    for (PetscInt j = 0; j < found->n; j++)
-      nearer += WindowDistance(window, found, j) < WindowDistance(window, found, i);
-    if (nearer < window->count) d = PetscMax(d, WindowDistance(window, found, i));
-  }
+  d = WindowNearest(window, found);
   return 2 * t * d + d * d + PetscAbsReal(shift - t * t);
 }
 
@@ -73,14 +67,25 @@ static PetscErrorCode UndampedCollect(EPS eps, PetscReal shift, PetscInt n, Spec
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SolverSeed(BV bv, unsigned long seed)
+{
+  PetscMPIInt rank;
+  PetscRandom random;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetRandomContext(bv, &random));
+  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)bv), &rank));
+  PetscCall(PetscRandomSetSeed(random, seed + (unsigned long)rank));
+  PetscCall(PetscRandomSeed(random));
+  PetscFunctionReturn(0);
+}
+
 /* Solver for nev eigenvalues about the shift; the transposed problem starts from another random vector */
 static PetscErrorCode UndampedCreateSolver(const PencilMatrices *pencil, ShiftInvert *si, PetscBool transposed,
                                            PetscInt nev, PetscInt n, EPS *eps)
 {
-  PetscMPIInt rank;
-  PetscRandom random;
-  BV          bv;
-  ST          st;
+  BV bv;
+  ST st;
 
   PetscFunctionBeginUser;
   PetscCall(EPSCreate(si->comm, eps));
@@ -94,21 +99,7 @@ static PetscErrorCode UndampedCreateSolver(const PencilMatrices *pencil, ShiftIn
   PetscCall(ShiftInvertAttach(si, transposed, st));
   PetscCall(EPSSetFromOptions(*eps));
   PetscCall(EPSGetBV(*eps, &bv));
-  PetscCall(BVGetRandomContext(bv, &random));
-  PetscCallMPI(MPI_Comm_rank(si->comm, &rank));
-  /* a start vector alike on all ranks could miss what is not */
-  PetscCall(PetscRandomSetSeed(random, (transposed ? 20051 : 2005) + (unsigned long)rank));
-  PetscCall(PetscRandomSeed(random));
-  PetscFunctionReturn(0);
-}
-
-/* K', M' for left vectors */
-static PetscErrorCode UndampedTranspose(const PencilMatrices *pencil, PencilMatrices *transposed)
-{
-  PetscFunctionBeginUser;
-  *transposed = *pencil;
-  PetscCall(MatCreateTranspose(pencil->K, &transposed->K));
-  PetscCall(MatCreateTranspose(pencil->M, &transposed->M));
+  PetscCall(SolverSeed(bv, transposed ? 20051 : 2005));
   PetscFunctionReturn(0);
 }
 
@@ -123,7 +114,8 @@ PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Wi
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(pencil->K, &n, NULL));
-  if (transposed) PetscCall(UndampedTranspose(pencil, &problem));
+  if (transposed) PetscCall(MatCreateTranspose(pencil->K, &problem.K));
+  if (transposed) PetscCall(MatCreateTranspose(pencil->M, &problem.M));
   for (int attempt = 0; attempt < 8 && !covered; attempt++, nev += nev / 2) {
     EPS eps;
 
@@ -142,9 +134,7 @@ PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Wi
   PetscCheck(
     covered, si->comm, PETSC_ERR_NOT_CONVERGED,
     "the eigensolver did not converge all modes of the window; raise -eps_max_it or -eps_ncv, or narrow -modes_band");
-  if (transposed) {
-    PetscCall(MatDestroy(&problem.K));
-    PetscCall(MatDestroy(&problem.M));
-  }
+  if (transposed) PetscCall(MatDestroy(&problem.K));
+  if (transposed) PetscCall(MatDestroy(&problem.M));
   PetscFunctionReturn(0);
 }

@@ -20,6 +20,17 @@ static PetscErrorCode WindowScale(const PencilMatrices *pencil, PetscReal *scale
   PetscFunctionReturn(0);
 }
 
+/* Frictionless modes with frequency below omega (rad/s) */
+static PetscErrorCode WindowCountBelow(Modes modes, PetscReal omega, PetscInt *n)
+{
+  PencilMatrices frictionless;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
+  PetscCall(ShiftInvertCountBelow(&frictionless, omega, &modes->progress, n));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode WindowFind(Modes modes, Window *window)
 {
   PencilMatrices frictionless;
@@ -39,12 +50,11 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
   PetscCall(WindowScale(&frictionless, &window->scale));
   if (!frictionless.symmetric) PetscFunctionReturn(0);
   if (!modes->has_band) {
-    PetscCall(ShiftInvertCountBelow(&frictionless, window->target, &modes->progress, &window->below));
+    PetscCall(WindowCountBelow(modes, window->target, &window->below));
     PetscFunctionReturn(0);
   }
-  PetscCall(ShiftInvertCountBelow(&frictionless, window->low < window->scale ? 0 : window->low * (1 - MODES_EDGE),
-                                  &modes->progress, &window->below));
-  PetscCall(ShiftInvertCountBelow(&frictionless, window->high * (1 + MODES_EDGE), &modes->progress, &below_high));
+  PetscCall(WindowCountBelow(modes, window->low < window->scale ? 0 : window->low * (1 - MODES_EDGE), &window->below));
+  PetscCall(WindowCountBelow(modes, window->high * (1 + MODES_EDGE), &below_high));
   window->expected = below_high - window->below;
   PetscFunctionReturn(0);
 }
@@ -71,19 +81,31 @@ PetscErrorCode WindowReach(Modes modes, Window *window)
 /* With damping a rigid mode is a double zero, which rounding splits into two tiny eigenvalues */
 PetscErrorCode WindowCountRigid(Modes modes, Window *window, const Spectrum *s)
 {
-  PencilMatrices frictionless;
-
   PetscFunctionBeginUser;
   if (!s->n || PetscAbsReal(s->sigma[0]) > window->scale || s->omega[0] > window->scale || window->below < 0)
     PetscFunctionReturn(0);
-  PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
-  PetscCall(ShiftInvertCountBelow(&frictionless, window->scale, &modes->progress, &window->rigid));
+  PetscCall(WindowCountBelow(modes, window->scale, &window->rigid));
   PetscFunctionReturn(0);
 }
 
-PetscReal WindowDistance(const Window *window, const Spectrum *s, PetscInt i)
+static PetscReal WindowDistance(const Window *window, const Spectrum *s, PetscInt i)
 {
   return PetscSqrtReal(PetscSqr(s->omega[i] - window->target) + PetscSqr(s->sigma[i]));
+}
+
+/* Distance of the count-th nearest eigenvalue to the target */
+PetscReal WindowNearest(const Window *window, const Spectrum *found)
+{
+  PetscReal distance = 0;
+
+  for (PetscInt i = 0; i < found->n; i++) {
+    PetscInt nearer = 0;
+
+    for (PetscInt j = 0; j < found->n; j++)
+      nearer += WindowDistance(window, found, j) < WindowDistance(window, found, i);
+    if (nearer < window->count) distance = PetscMax(distance, WindowDistance(window, found, i));
+  }
+  return distance;
 }
 
 /* The eigenvalue farthest from the target; of a double one the last, so that the order of frequency decides */
@@ -113,16 +135,12 @@ PetscErrorCode WindowSelect(const Window *window, Spectrum *s)
 
 PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *s, PetscBool *complete)
 {
-  PencilMatrices frictionless;
-  PetscInt       below_low, below_high;
+  PetscInt below_low, below_high;
 
   PetscFunctionBeginUser;
   if (window->count && s->n) { /* just outside the outermost modes: what lies that close belongs to them */
-    PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
-    PetscCall(ShiftInvertCountBelow(&frictionless, s->omega[0] < window->scale ? 0 : s->omega[0] * (1 - 1e-6),
-                                    &modes->progress, &below_low));
-    PetscCall(ShiftInvertCountBelow(&frictionless, PetscMax(window->scale, s->omega[s->n - 1] * (1 + 1e-6)),
-                                    &modes->progress, &below_high));
+    PetscCall(WindowCountBelow(modes, s->omega[0] < window->scale ? 0 : s->omega[0] * (1 - 1e-6), &below_low));
+    PetscCall(WindowCountBelow(modes, PetscMax(window->scale, s->omega[s->n - 1] * (1 + 1e-6)), &below_high));
     window->expected = below_high - below_low;
   }
   *complete = s->n == window->expected || (window->count && window->expected >= s->n && s->n == window->count)

@@ -65,6 +65,26 @@ PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[],
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OperatorsTakeNodal(Operators operators, Vec local, Vec f)
+{
+  const PetscScalar *force;
+  const Mesh        *mesh;
+  PetscScalar       *value;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(operators->model, &mesh));
+  PetscCall(VecGetArrayRead(local, &force));
+  PetscCall(VecGetArray(f, &value));
+  for (PetscInt i = 0; i < 3 * mesh->n_vertices; i++) {
+    const PetscInt row = mesh->unknown[i] - mesh->first_own;
+
+    if (mesh->unknown[i] >= 0 && row >= 0 && row < mesh->n_own) value[row] = force[i];
+  }
+  PetscCall(VecRestoreArray(f, &value));
+  PetscCall(VecRestoreArrayRead(local, &force));
+  PetscFunctionReturn(0);
+}
+
 /* f += forces of the springs */
 static PetscErrorCode OperatorsAddSpringForces(Operators o, const PetscReal p[], Vec u, Vec f)
 {
@@ -87,24 +107,12 @@ static PetscErrorCode OperatorsAddSpringForces(Operators o, const PetscReal p[],
 
 PetscErrorCode OperatorsApplyBodies(Operators operators, const PetscReal p[], Vec u, Vec f)
 {
-  const PetscScalar *force;
-  const Mesh        *mesh;
-  PetscScalar       *value;
-  PetscInt           n, begin, end;
-  Vec                local;
+  Vec local;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(operators->model, &mesh));
   PetscCall(ModelCreateNodal(operators->model, &local));
   PetscCall(OperatorsInternalForces(operators, p, u, local));
-  PetscCall(VecGetLocalSize(local, &n));
-  PetscCall(VecGetOwnershipRange(f, &begin, &end));
-  PetscCall(VecGetArrayRead(local, &force));
-  PetscCall(VecGetArray(f, &value));
-  for (PetscInt i = 0; i < n; i++)
-    if (mesh->unknown[i] >= begin && mesh->unknown[i] < end) value[mesh->unknown[i] - begin] = force[i];
-  PetscCall(VecRestoreArray(f, &value));
-  PetscCall(VecRestoreArrayRead(local, &force));
+  PetscCall(OperatorsTakeNodal(operators, local, f));
   PetscCall(VecDestroy(&local));
   PetscCall(OperatorsAddSpringForces(operators, OperatorsPoint(operators, p), u, f));
   PetscFunctionReturn(0);

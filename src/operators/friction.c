@@ -9,10 +9,10 @@
    on the left.
 */
 #include "pencilimpl.h"
+#include "base/vec3.h"
 #include <math.h>
 
-/* scale L' W R with W = diag(weights), or the identity where weights is NULL */
-static PetscErrorCode FrictionProduct(PetscReal scale, Mat L, Vec weights, Mat R, Mat *A)
+PetscErrorCode TermsProduct(PetscReal scale, Mat L, Vec weights, Mat R, Mat *A)
 {
   Mat WR = R;
 
@@ -26,14 +26,6 @@ static PetscErrorCode FrictionProduct(PetscReal scale, Mat L, Vec weights, Mat R
   PetscCall(MatScale(*A, scale));
   if (weights) PetscCall(MatDestroy(&WR));
   PetscFunctionReturn(0);
-}
-
-/* Angular velocity of the master, rad/s */
-static PetscReal AngularVelocity(const ContactInterface *c)
-{
-  const PetscReal *w = c->rotation;
-
-  return PetscSqrtReal(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
 }
 
 /* Closed pairs of one interface in one group */
@@ -82,7 +74,7 @@ static PetscErrorCode FrictionGroupDestroy(FrictionGroup *g)
 /* Weights of the pairs: along = N0 / N, across = N0 / N V / v */
 static PetscErrorCode DampingSetWeights(Pencil pencil, const FrictionGroup *g, Vec across, Vec along)
 {
-  const PetscReal    speed = AngularVelocity(g->c) > 0 ? AngularVelocity(g->c) : g->c->speed;
+  const PetscReal    turning = Vec3Length(g->c->rotation), speed = turning > 0 ? turning : g->c->speed;
   const ContactPair *pairs;
   PetscInt           n, n_all, row;
 
@@ -114,8 +106,8 @@ static PetscErrorCode DampingAdd(Pencil pencil, const FrictionGroup *g)
   PetscCall(MatCreateVecs(g->T, NULL, &across));
   PetscCall(VecDuplicate(across, &along));
   PetscCall(DampingSetWeights(pencil, g, across, along));
-  PetscCall(FrictionProduct(1, g->B, across, g->B, &BB));
-  PetscCall(FrictionProduct(1, g->T, along, g->T, &TT));
+  PetscCall(TermsProduct(1, g->B, across, g->B, &BB));
+  PetscCall(TermsProduct(1, g->T, along, g->T, &TT));
   PetscCall(TermsAdd(&pencil->base, OPERATORS_DAMPING, TT, PETSC_TRUE, 2 + g->more, slope));
   PetscCall(TermsAdd(&pencil->base, OPERATORS_DAMPING, BB, PETSC_TRUE, 3 + g->more, mu));
   term                     = &pencil->base.term[pencil->base.n - 1];
@@ -135,11 +127,11 @@ static PetscErrorCode PenaltyAdd(Pencil pencil, const FrictionGroup *g)
   Mat            NN, TN;
 
   PetscFunctionBeginUser;
-  PetscCall(FrictionProduct(1, g->N, NULL, g->N, &NN));
+  PetscCall(TermsProduct(1, g->N, NULL, g->N, &NN));
   PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, NN, PETSC_TRUE, 1 + g->more, kn));
   PetscCall(MatDestroy(&NN));
   if (g->q.mu < 0) PetscFunctionReturn(0);
-  PetscCall(FrictionProduct(-1, g->T, NULL, g->N, &TN));
+  PetscCall(TermsProduct(-1, g->T, NULL, g->N, &TN));
   PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, TN, PETSC_FALSE, 2 + g->more, mu));
   PetscCall(MatDestroy(&TN));
   PetscFunctionReturn(0);
@@ -148,7 +140,7 @@ static PetscErrorCode PenaltyAdd(Pencil pencil, const FrictionGroup *g)
 /* Parameters of one interface */
 static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface *c, InterfaceParameters *q)
 {
-  const PetscReal turning = AngularVelocity(c);
+  const PetscReal turning = Vec3Length(c->rotation); /* rad/s */
   const struct {
     PetscBool          there;
     const char        *name;

@@ -157,6 +157,13 @@ PetscErrorCode OperatorsGetBodies(Operators operators, const PetscReal p[], Mat 
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OperatorsReleaseBodies(Operators operators)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < N_BODIES_SUMS; i++) PetscCall(TermsSumDestroy(&operators->sum[i]));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OperatorsCreateVec(Operators operators, Vec *u)
 {
   PetscFunctionBeginUser;
@@ -186,7 +193,7 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   PetscFunctionBeginUser;
   if (!o) PetscFunctionReturn(0);
   for (int i = 0; i < N_OPERATORS; i++) PetscCall(PetscFree(o->dense[i]));
-  for (int i = 0; i < N_BODIES_SUMS; i++) PetscCall(TermsSumDestroy(&o->sum[i]));
+  PetscCall(OperatorsReleaseBodies(o));
   PetscCall(TermsDestroy(&o->terms));
   PetscCall(PetscFree(o->interface));
   PetscCall(PetscFree(o->mu));

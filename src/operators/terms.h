@@ -34,6 +34,8 @@ PETSC_INTERN PetscErrorCode TermsAdd(Terms *terms, OperatorsTermKind kind, Mat A
 PETSC_INTERN PetscErrorCode TermsAppend(Terms *terms, const Terms *more);
 PETSC_INTERN PetscBool TermsVanish(const Terms *terms, TermsChoice choice, PetscBool mass_only, const PetscReal p[]);
 PETSC_INTERN PetscErrorCode TermsDestroy(Terms *terms);
+/* friction.c - scale L' W R with W = diag(weights), or the identity where weights is NULL */
+PETSC_INTERN PetscErrorCode TermsProduct(PetscReal scale, Mat L, Vec weights, Mat R, Mat *A);
 
 /* sum.c - forms a sum at p: values in place where the pattern allows, nothing where the coefficients are the same */
 PETSC_INTERN PetscErrorCode TermsSumForm(const Terms *terms, const TermsSumKind *kind, const PetscReal p[],

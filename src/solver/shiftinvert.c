@@ -124,32 +124,28 @@ PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, PetscReal shift, 
   PetscFunctionReturn(0);
 }
 
-/* y = A^-1 x */
-static PetscErrorCode ShiftInvertApply(PC pc, Vec x, Vec y)
+/* y = A^-1 x or A^-T x */
+static PetscErrorCode ShiftInvertRun(PC pc, PetscErrorCode (*solve)(KSP, Vec, Vec), Vec x, Vec y)
 {
   ShiftInvert *si;
 
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(pc, &si));
   PetscCall(EventBegin(EVENT_SOLVE));
-  PetscCall(KSPSolve(si->ksp, x, y));
+  PetscCall(solve(si->ksp, x, y));
   PetscCall(EventEnd(EVENT_SOLVE));
   PetscCall(ProgressStep(si->progress));
   PetscFunctionReturn(0);
 }
 
-/* y = A^-T x */
+static PetscErrorCode ShiftInvertApply(PC pc, Vec x, Vec y)
+{
+  return ShiftInvertRun(pc, KSPSolve, x, y);
+}
+
 static PetscErrorCode ShiftInvertApplyTranspose(PC pc, Vec x, Vec y)
 {
-  ShiftInvert *si;
-
-  PetscFunctionBeginUser;
-  PetscCall(PCShellGetContext(pc, &si));
-  PetscCall(EventBegin(EVENT_SOLVE));
-  PetscCall(KSPSolveTranspose(si->ksp, x, y));
-  PetscCall(EventEnd(EVENT_SOLVE));
-  PetscCall(ProgressStep(si->progress));
-  PetscFunctionReturn(0);
+  return ShiftInvertRun(pc, KSPSolveTranspose, x, y);
 }
 
 PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st)
@@ -167,18 +163,6 @@ PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st)
   PetscCall(PCSetType(pc, PCSHELL));
   PetscCall(PCShellSetContext(pc, si));
   PetscCall(PCShellSetApply(pc, transposed ? ShiftInvertApplyTranspose : ShiftInvertApply));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ShiftInvertGetInertia(const ShiftInvert *si, PetscInt *n_negative)
-{
-  PC  pc;
-  Mat F;
-
-  PetscFunctionBeginUser;
-  PetscCall(KSPGetPC(si->ksp, &pc));
-  PetscCall(PCFactorGetMatrix(pc, &F));
-  PetscCall(MatGetInertia(F, n_negative, NULL, NULL));
   PetscFunctionReturn(0);
 }
 
@@ -225,12 +209,16 @@ PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed
 PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal omega, Progress *progress, PetscInt *n)
 {
   ShiftInvert si;
+  PC          pc;
+  Mat         F;
 
   PetscFunctionBeginUser;
   *n = 0;
   if (omega <= 0) PetscFunctionReturn(0);
   PetscCall(ShiftInvertCreate(pencil, omega * omega, PETSC_TRUE, progress, &si));
-  PetscCall(ShiftInvertGetInertia(&si, n));
+  PetscCall(KSPGetPC(si.ksp, &pc));
+  PetscCall(PCFactorGetMatrix(pc, &F));
+  PetscCall(MatGetInertia(F, n, NULL, NULL));
   PetscCall(ShiftInvertDestroy(&si));
   PetscFunctionReturn(0);
 }

@@ -19,7 +19,6 @@ typedef struct {
 PETSC_INTERN PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, PetscReal shift, PetscBool want_inertia,
                                               Progress *progress, ShiftInvert *si);
 PETSC_INTERN PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st);
-PETSC_INTERN PetscErrorCode ShiftInvertGetInertia(const ShiftInvert *si, PetscInt *n_negative);
 PETSC_INTERN PetscErrorCode ShiftInvertDestroy(ShiftInvert *si);
 /* X = A^-1 B, or A^-T B, for dense B, X of the same size: many right-hand sides at once */
 PETSC_INTERN PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X);

@@ -182,27 +182,16 @@ static PetscErrorCode StatusPrint(const Active *a, PetscReal *print)
   PetscFunctionReturn(0);
 }
 
-/* Whether some pair follows Coulomb's law */
-static PetscErrorCode HasCoulomb(const Active *a, PetscBool *has)
-{
-  PetscFunctionBeginUser;
-  *has = a->rows->n > a->rows->n_pairs ? PETSC_TRUE : PETSC_FALSE;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, has, 1, MPIU_BOOL, MPI_LOR, a->rows->comm));
-  PetscFunctionReturn(0);
-}
-
 /* Whether the present status was there before; remembers it. With Coulomb pairs in slip, whose laws change with the
    iterate, a repeated status is no cycle. */
 static PetscErrorCode StatusRepeats(const Active *a, PetscReal kept[MAX_KEPT], PetscInt *n_kept, PetscBool *repeats)
 {
   PetscReal print;
-  PetscBool coulomb;
 
   PetscFunctionBeginUser;
   *repeats = PETSC_FALSE;
-  PetscCall(HasCoulomb(a, &coulomb));
   PetscCall(StatusPrint(a, &print));
-  for (PetscInt i = 0; i < PetscMin(*n_kept, MAX_KEPT) && !coulomb; i++)
+  for (PetscInt i = 0; i < PetscMin(*n_kept, MAX_KEPT) && !PairRowsCoulomb(a->rows); i++)
     if (kept[i] == print) *repeats = PETSC_TRUE;
   kept[(*n_kept)++ % MAX_KEPT] = print;
   PetscFunctionReturn(0);
@@ -214,14 +203,13 @@ static PetscErrorCode Iterate(Active *a, PetscBool single, ActiveOutcome *outcom
   const PetscInt max_it = single ? ONE_BY_ONE * a->max_it : a->max_it;
   PetscReal      kept[MAX_KEPT], residual = 0, *l, *w;
   PetscInt       n_kept = 0, n_changed = 1;
-  PetscBool      repeats, coulomb;
+  PetscBool      repeats;
   SmallOutcome   small;
 
   PetscFunctionBeginUser;
   *outcome = ACTIVE_SLOW;
   PetscCall(PetscMalloc2(a->rows->n, &l, a->rows->n, &w));
-  PetscCall(HasCoulomb(a, &coulomb));
-  a->rtol = single || coulomb ? EXACT : ROUGH;
+  a->rtol = single || PairRowsCoulomb(a->rows) ? EXACT : ROUGH;
   for (PetscInt it = 0; it < max_it && *outcome == ACTIVE_SLOW; it++, a->n_it++) {
     repeats = PETSC_FALSE;
     if (n_changed) PetscCall(StatusRepeats(a, kept, &n_kept, &repeats));
@@ -299,12 +287,11 @@ static PetscErrorCode Raise(Active *a, ActiveOutcome *outcome)
 /* Statuses by pivoting, or with Coulomb pairs by single changes, confirmed by the iteration */
 static PetscErrorCode IterateSurely(Active *a, ActiveOutcome *outcome)
 {
-  PetscBool coulomb, found;
+  PetscBool found;
 
   PetscFunctionBeginUser;
   PetscCall(Restart(a));
-  PetscCall(HasCoulomb(a, &coulomb));
-  if (!coulomb) {
+  if (!PairRowsCoulomb(a->rows)) {
     PetscCall(PivotSolve(a->compliance, a->friction, a->free, a->status, &found));
     if (found) PetscCall(Iterate(a, PETSC_FALSE, outcome));
     if (*outcome == ACTIVE_CONVERGED) PetscFunctionReturn(0);

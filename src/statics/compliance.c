@@ -14,6 +14,7 @@
 */
 #include "staticsimpl.h"
 #include "base/gather.h"
+#include "operators/terms.h"
 
 #define KAPPA_SHARE      0.1 /* of the stiffness of a node */
 #define COMPLIANCE_BLOCK 64  /* right-hand sides at once */
@@ -51,8 +52,8 @@ PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, A
                                  const ContactStatus status[], Mat *A)
 {
   PetscScalar *resists;
-  Mat          G = rows->G, GG;
-  Vec          weight;
+  Mat          GG;
+  Vec          weight = NULL;
 
   PetscFunctionBeginUser;
   if (which != AUGMENT_ALL) {
@@ -62,17 +63,13 @@ PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, A
       for (PetscInt i = rows->first[p]; i < rows->first[p + 1]; i++)
         resists[i] = which == AUGMENT_NORMAL ? i == rows->first[p] : status[p] != CONTACT_OPEN;
     PetscCall(VecRestoreArray(weight, &resists));
-    PetscCall(MatDuplicate(rows->G, MAT_COPY_VALUES, &G));
-    PetscCall(MatDiagonalScale(G, weight, NULL));
-    PetscCall(VecDestroy(&weight));
   }
-  PetscCall(MatTransposeMatMult(G, G, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &GG));
-  PetscCall(MatProductClear(GG));
+  PetscCall(TermsProduct(1, rows->G, weight, rows->G, &GG));
+  PetscCall(VecDestroy(&weight));
   PetscCall(MatDuplicate(K, MAT_COPY_VALUES, A));
   PetscCall(MatAXPY(*A, kappa, GG, DIFFERENT_NONZERO_PATTERN));
   PetscCall(MatSetOption(*A, MAT_SYMMETRIC, PETSC_TRUE));
   PetscCall(MatDestroy(&GG));
-  if (which != AUGMENT_ALL) PetscCall(MatDestroy(&G));
   PetscFunctionReturn(0);
 }
 
@@ -175,16 +172,15 @@ PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const 
   PetscFunctionReturn(0);
 }
 
-/* b += kappa (S' (slide l) - G'(l - w)) */
-static PetscErrorCode ComplianceAddForces(const Compliance *c, PetscReal friction, const PetscReal l[],
-                                          const PetscReal w[], Vec b)
+PetscErrorCode ComplianceAddForces(const Compliance *c, PetscReal friction, const PetscReal l[], const PetscReal w[],
+                                   Vec b)
 {
   const PairRows *rows = c->rows;
   PetscScalar    *value;
 
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(c->row, &value));
-  for (PetscInt i = 0; i < rows->n; i++) value[i] = c->kappa * (w[i] - l[i]);
+  for (PetscInt i = 0; i < rows->n; i++) value[i] = c->kappa * ((w ? w[i] : 0) - (l ? l[i] : 0));
   PetscCall(VecRestoreArray(c->row, &value));
   PetscCall(MatMultTransposeAdd(rows->G, c->row, b, b));
   if (!rows->S || friction == 0) PetscFunctionReturn(0);
@@ -210,18 +206,22 @@ PetscErrorCode ComplianceSolve(const Compliance *c, PetscReal friction, Vec f, c
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ComplianceGetRows(const Compliance *c, Vec u, PetscReal w[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(VecPlaceArray(c->row, w));
+  PetscCall(MatMult(c->rows->G, u, c->row));
+  PetscCall(VecResetArray(c->row));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ComplianceApply(const Compliance *c, PetscReal friction, const PetscReal l[], const PetscReal w[],
                                PetscReal y[])
 {
-  const PairRows    *rows = c->rows;
-  const PetscScalar *value;
-
   PetscFunctionBeginUser;
   PetscCall(ComplianceSolve(c, friction, NULL, l, w, c->u));
-  PetscCall(MatMult(rows->G, c->u, c->row));
-  PetscCall(VecGetArrayRead(c->row, &value));
-  for (PetscInt i = 0; i < rows->n; i++) y[i] = w[i] - PetscRealPart(value[i]);
-  PetscCall(VecRestoreArrayRead(c->row, &value));
+  PetscCall(ComplianceGetRows(c, c->u, y));
+  for (PetscInt i = 0; i < c->rows->n; i++) y[i] = w[i] - y[i];
   PetscFunctionReturn(0);
 }
 

@@ -35,20 +35,18 @@ static PetscErrorCode PressureSet(Model model, const char set[], const PetscScal
 }
 
 /* Pressure of all interfaces at the local vertices; the caller frees it */
-static PetscErrorCode PressureCreate(Model model, Contact contact, Vec force, PetscReal **pressure)
+static PetscErrorCode PressureCreate(Statics s, Vec force, PetscReal **pressure)
 {
-  const ContactInterface *interfaces;
-  const PetscScalar      *value;
-  PetscInt                n, n_interfaces;
+  const PetscScalar *value;
+  PetscInt           n;
 
   PetscFunctionBeginUser;
-  PetscCall(ContactGetInterfaces(contact, &n_interfaces, &interfaces));
   PetscCall(VecGetLocalSize(force, &n));
   PetscCall(PetscCalloc1(n / 3, pressure));
   PetscCall(VecGetArrayRead(force, &value));
-  for (PetscInt i = 0; i < n_interfaces; i++) {
-    PetscCall(PressureSet(model, interfaces[i].slave, value, *pressure));
-    PetscCall(PressureSet(model, interfaces[i].master, value, *pressure));
+  for (PetscInt i = 0; i < s->rows.n_interfaces; i++) {
+    PetscCall(PressureSet(s->model, s->rows.interface[i].slave, value, *pressure));
+    PetscCall(PressureSet(s->model, s->rows.interface[i].master, value, *pressure));
   }
   PetscCall(VecRestoreArrayRead(force, &value));
   PetscFunctionReturn(0);
@@ -60,20 +58,17 @@ PetscErrorCode StaticsWriteFields(Statics s, Results results)
   PetscReal         *pressure;
   const Mesh        *mesh;
   PetscBool          wanted;
-  Contact            contact;
   ResultsField       field;
-  Model              model;
   Vec                displacement, force;
 
   PetscFunctionBeginUser;
   PetscCall(ResultsWantFields(results, &wanted));
   if (!wanted) PetscFunctionReturn(0);
-  PetscCall(OperatorsGetModel(s->operators, &model, &contact));
-  PetscCall(StaticsCreateDisplacements(s, model, &displacement));
+  PetscCall(StaticsCreateDisplacements(s, &displacement));
   PetscCall(VecDuplicate(displacement, &force));
-  PetscCall(ContactNodalForces(contact, s->state, force));
-  PetscCall(PressureCreate(model, contact, force, &pressure));
-  PetscCall(ModelGetMesh(model, &mesh));
+  PetscCall(ContactNodalForces(s->contact, s->state, force));
+  PetscCall(PressureCreate(s, force, &pressure));
+  PetscCall(ModelGetMesh(s->model, &mesh));
   PetscCall(ResultsFieldOpen(results, "static", mesh, &field));
   PetscCall(VecGetArrayRead(displacement, &u));
   PetscCall(VecGetArrayRead(force, &f));

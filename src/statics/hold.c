@@ -90,48 +90,46 @@ PetscErrorCode HoldCreate(Operators operators, const PetscReal p[], Mat A, Hold 
   PetscFunctionReturn(0);
 }
 
-/* Where unknown i is: position, direction and part; on all ranks */
-static PetscErrorCode UnknownDescribe(Model model, PetscInt unknown, PetscReal x[3], int *direction, char part[64])
+/* Where an unknown is, on all ranks */
+typedef struct {
+  PetscReal   x[3];
+  int         direction, part;
+  const char *name; /* of the part */
+} UnknownPlace;
+
+static PetscErrorCode UnknownFind(Operators operators, PetscInt unknown, UnknownPlace *place)
 {
-  struct {
-    PetscReal x[3];
-    int       direction, part;
-  } found = {
-    {-PETSC_MAX_REAL, -PETSC_MAX_REAL, -PETSC_MAX_REAL},
-    -1, -1
-  };
   const Mesh *mesh;
   PetscInt    at = -1;
   MPI_Comm    comm;
+  Model       model;
 
   PetscFunctionBeginUser;
+  *place = (UnknownPlace){
+    .x = {-PETSC_MAX_REAL, -PETSC_MAX_REAL, -PETSC_MAX_REAL},
+      .direction = -1, .part = -1
+  };
+  PetscCall(OperatorsGetModel(operators, &model, NULL));
   PetscCall(ModelGetComm(model, &comm));
   PetscCall(ModelGetMesh(model, &mesh));
   for (PetscInt i = 0; i < 3 * mesh->n_vertices; i++)
     if (mesh->unknown[i] == unknown) at = i;
   for (PetscInt i = 0; i < mesh->n_nodes * mesh->n_cells && at >= 0; i++)
-    if (mesh->corner[i] == at / 3) found.part = (int)mesh->cell_part[i / mesh->n_nodes];
-  if (at >= 0) {
-    PetscCall(PetscArraycpy(found.x, &mesh->x[at - at % 3], 3));
-    found.direction = (int)(at % 3);
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found.x, 3, MPIU_REAL, MPI_MAX, comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &found.direction, 2, MPI_INT, MPI_MAX, comm));
-  PetscCall(PetscArraycpy(x, found.x, 3));
-  *direction = found.direction;
-  PetscCall(PetscStrncpy(part, found.part >= 0 ? mesh->part[found.part] : "?", 64));
+    if (mesh->corner[i] == at / 3) place->part = (int)mesh->cell_part[i / mesh->n_nodes];
+  if (at >= 0) PetscCall(PetscArraycpy(place->x, &mesh->x[at - at % 3], 3));
+  if (at >= 0) place->direction = (int)(at % 3);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, place->x, 3, MPIU_REAL, MPI_MAX, comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &place->direction, 2, MPI_INT, MPI_MAX, comm));
+  place->name = place->part >= 0 ? mesh->part[place->part] : "?";
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode HoldCheck(Operators operators, const Hold *hold, const char force[], Vec f, PetscReal size)
 {
-  char        part[64];
-  int         direction;
-  PetscInt    which, at;
-  PetscReal   x[3];
-  PetscScalar along, largest;
-  Model       model;
-  Vec         motion;
+  PetscInt     which, at;
+  PetscScalar  along, largest;
+  UnknownPlace place;
+  Vec          motion;
 
   PetscFunctionBeginUser;
   if (!hold->n) PetscFunctionReturn(0);
@@ -144,15 +142,15 @@ PetscErrorCode HoldCheck(Operators operators, const Hold *hold, const char force
   PetscCall(LargestEntry(1, &motion, &which, &at));
   PetscCall(EntryGet(motion, at, &largest));
   PetscCall(VecDot(f, motion, &along));
-  PetscCall(OperatorsGetModel(operators, &model, NULL));
-  PetscCall(UnknownDescribe(model, at, x, &direction, part));
+  PetscCall(UnknownFind(operators, at, &place));
   PetscCall(VecDestroy(&motion));
   PetscCheck(
     PetscAbsScalar(along) <= RESISTED * size * PetscAbsScalar(largest), PetscObjectComm((PetscObject)f),
     PETSC_ERR_USER_INPUT,
     "no equilibrium: %s push part %s with %.6g N along a rigid motion that nothing resists, which moves it most along "
     "%c, at %.6g, %.6g, %.6g m; give -supports, -springs or other -loads",
-    force, part, (double)PetscAbsScalar(along / largest), "xyz"[direction], (double)x[0], (double)x[1], (double)x[2]);
+    force, place.name, (double)PetscAbsScalar(along / largest), "xyz"[place.direction], (double)place.x[0],
+    (double)place.x[1], (double)place.x[2]);
   PetscFunctionReturn(0);
 }
 
@@ -164,19 +162,15 @@ PetscErrorCode HoldCheckClosed(Operators operators, const PetscReal p[], const H
   PetscFunctionBeginUser;
   PetscCall(FreeMotionsCreate(operators, p, A, &left));
   if (left.n > hold->n) {
-    char      part[64];
-    int       direction;
-    PetscReal x[3];
-    Model     model;
+    UnknownPlace tips;
 
     PetscCall(PinsChoose(&left));
-    PetscCall(OperatorsGetModel(operators, &model, NULL));
-    PetscCall(UnknownDescribe(model, left.pin[0], x, &direction, part));
+    PetscCall(UnknownFind(operators, left.pin[0], &tips));
     SETERRQ(PetscObjectComm((PetscObject)A), PETSC_ERR_NOT_CONVERGED,
             "no stable equilibrium%s: only %" PetscInt_FMT
             " of the pairs stay closed, and part %s can tip or slide on them without resistance; lower the friction "
             "coefficient, move the -loads, or give -supports or -springs",
-            place, n_closed, part);
+            place, n_closed, tips.name);
   }
   PetscCall(HoldDestroy(&left));
   PetscFunctionReturn(0);

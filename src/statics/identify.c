@@ -47,12 +47,12 @@ static void IdentifySetLaws(PairRows *rows, ContactStatus status[])
 }
 
 /* One step of the ramp: part of the load */
-static PetscErrorCode IdentifyPress(Statics s, const EquilibriumProblem *whole, PetscInt interface, Vec d,
-                                    PetscReal part, IdentifyReading *reading)
+static PetscErrorCode IdentifyPress(Statics s, const Active *whole, PetscInt interface, Vec d, PetscReal part,
+                                    IdentifyReading *reading)
 {
-  const PairRows    *rows = whole->rows;
-  EquilibriumProblem step = *whole;
-  PetscScalar        approach;
+  const PairRows *rows = whole->rows;
+  Active          step = *whole;
+  PetscScalar     approach;
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(whole->f, &step.u));
@@ -75,9 +75,9 @@ static PetscErrorCode IdentifyPress(Statics s, const EquilibriumProblem *whole, 
 /* All steps, on rows and a factorisation of their own: without friction nothing holds along the surface */
 static PetscErrorCode IdentifyRamp(Statics s, PetscInt interface, Vec d, IdentifyReading reading[])
 {
-  PairRows           rows       = {.n = 0};
-  Compliance         compliance = {.kappa = 0};
-  EquilibriumProblem whole      = {.rows = &rows, .compliance = &compliance, .load_steps = 1};
+  PairRows   rows       = {.n = 0};
+  Compliance compliance = {.kappa = 0};
+  Active     whole      = {.rows = &rows, .compliance = &compliance, .load_steps = 1};
 
   PetscFunctionBeginUser;
   PetscCall(StaticsCreateLoad(s->operators, &whole.f, &whole.size));
@@ -100,17 +100,13 @@ static PetscErrorCode IdentifyRamp(Statics s, PetscInt interface, Vec d, Identif
 
 PetscErrorCode StaticsIdentify(Statics s, const PetscReal p[], PetscInt interface, StaticsStiffness *stiffness)
 {
-  const ContactInterface *interfaces;
-  PetscInt                n = 0, n_interfaces;
-  IdentifyReading        *reading;
-  Contact                 contact;
-  Vec                     d;
+  PetscInt         n = 0;
+  IdentifyReading *reading;
+  Vec              d;
 
   PetscFunctionBeginUser;
   PetscCall(StaticsSetUp(s, p));
-  PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
-  PetscCall(ContactGetInterfaces(contact, &n_interfaces, &interfaces));
-  PetscCall(ContactCreateApproach(contact, interface, &d));
+  PetscCall(ContactCreateApproach(s->contact, interface, &d));
   PetscCall(PetscMalloc1(s->identify_steps, &reading));
   PetscCall(IdentifyRamp(s, interface, d, reading));
   for (PetscInt i = 0; i < s->rows.n_pairs; i++) n += s->rows.pair[i].interface == interface;
@@ -119,7 +115,7 @@ PetscErrorCode StaticsIdentify(Statics s, const PetscReal p[], PetscInt interfac
   stiffness->n_steps  = s->identify_steps;
   stiffness->per_pair = stiffness->total / (PetscReal)n;
   PetscCheck(stiffness->total > 0 && !PetscIsInfOrNanReal(stiffness->total), s->comm, PETSC_ERR_NOT_CONVERGED,
-             "-%s_kn identify: the -loads do not press this contact", interfaces[interface].name);
+             "-%s_kn identify: the -loads do not press this contact", s->rows.interface[interface].name);
   PetscCall(PetscFree(reading));
   PetscCall(VecDestroy(&d));
   PetscFunctionReturn(0);
@@ -144,11 +140,9 @@ PetscErrorCode StaticsIdentifyAll(Statics s, PetscReal p[], PetscViewer viewer)
 {
   const ContactInterface *interfaces;
   PetscInt                n = 0;
-  Contact                 contact;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
-  if (contact) PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
+  if (s->contact) PetscCall(ContactGetInterfaces(s->contact, &n, &interfaces));
   for (PetscInt i = 0; i < n; i++) {
     StaticsStiffness k;
 

@@ -27,6 +27,7 @@
    contact of a node with a surface).
 */
 #include "preload.h"
+#include "operators/terms.h"
 
 /* Adds local cell c with displacements u, three values per local vertex */
 static PetscErrorCode GeometricAddCell(Model model, PetscInt c, const Elasticity *material, const PetscReal u[], Mat K)
@@ -96,105 +97,76 @@ PetscErrorCode GeometricStiffnessCreate(Operators operators, const PetscReal p[]
   PetscFunctionReturn(0);
 }
 
-/* Operators of all pairs, rows of the local ones in their order, and the forces of the closed ones, N */
-typedef struct {
-  Mat N, T, B, tilt_t, tilt_b;
-  Vec normal, friction_t, friction_b;
-} FollowerPairs;
+/* Operators of all pairs, rows of the local ones in their order */
+typedef enum { FOLLOWER_N, FOLLOWER_T, FOLLOWER_B, FOLLOWER_TILT_T, FOLLOWER_TILT_B, N_FOLLOWER } FollowerOperator;
 
-/* Forces of the closed pairs */
-static PetscErrorCode FollowerCreateForces(PetscInt n, const ContactState state[], FollowerPairs *p)
+/* Forces of the closed pairs: normal ones, friction along t and b, N */
+static PetscErrorCode FollowerCreateForces(PetscInt n, const ContactState state[], Mat N, Vec force[3])
 {
-  PetscScalar *force[3];
-
   PetscFunctionBeginUser;
-  PetscCall(MatCreateVecs(p->N, NULL, &p->normal));
-  PetscCall(VecDuplicate(p->normal, &p->friction_t));
-  PetscCall(VecDuplicate(p->normal, &p->friction_b));
-  PetscCall(VecGetArray(p->normal, &force[0]));
-  PetscCall(VecGetArray(p->friction_t, &force[1]));
-  PetscCall(VecGetArray(p->friction_b, &force[2]));
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscReal closed = state[i].status == CONTACT_OPEN ? 0 : 1;
+  for (int k = 0; k < 3; k++) {
+    PetscScalar *value;
 
-    force[0][i] = closed * state[i].lambda_n;
-    force[1][i] = closed * state[i].lambda_t[0];
-    force[2][i] = closed * state[i].lambda_t[1];
+    PetscCall(MatCreateVecs(N, NULL, &force[k]));
+    PetscCall(VecGetArray(force[k], &value));
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscReal closed = state[i].status == CONTACT_OPEN ? 0 : 1;
+
+      value[i] = closed * (k ? state[i].lambda_t[k - 1] : state[i].lambda_n);
+    }
+    PetscCall(VecRestoreArray(force[k], &value));
   }
-  PetscCall(VecRestoreArray(p->normal, &force[0]));
-  PetscCall(VecRestoreArray(p->friction_t, &force[1]));
-  PetscCall(VecRestoreArray(p->friction_b, &force[2]));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode FollowerCreatePairs(Contact contact, const ContactState state[], FollowerPairs *p)
+/* Operators of all local pairs */
+static PetscErrorCode FollowerCreateOperators(Contact contact, PetscInt n, Mat A[N_FOLLOWER])
 {
-  const ContactPair *pairs;
-  PetscInt           n, n_all, *pair;
+  PetscInt *pair;
 
   PetscFunctionBeginUser;
-  PetscCall(ContactGetPairs(contact, &n, &n_all, &pairs));
   PetscCall(PetscMalloc1(n, &pair));
   for (PetscInt i = 0; i < n; i++) pair[i] = i;
-  PetscCall(ContactCreatePairOperators(contact, n, pair, &p->N, &p->T, &p->B));
+  PetscCall(ContactCreatePairOperators(contact, n, pair, &A[FOLLOWER_N], &A[FOLLOWER_T], &A[FOLLOWER_B]));
   PetscCall(PetscFree(pair));
-  PetscCall(ContactCreateTilt(contact, &p->tilt_t, &p->tilt_b));
-  PetscCall(FollowerCreateForces(n, state, p));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode FollowerDestroyPairs(FollowerPairs *p)
-{
-  PetscFunctionBeginUser;
-  PetscCall(MatDestroy(&p->N));
-  PetscCall(MatDestroy(&p->T));
-  PetscCall(MatDestroy(&p->B));
-  PetscCall(MatDestroy(&p->tilt_t));
-  PetscCall(MatDestroy(&p->tilt_b));
-  PetscCall(VecDestroy(&p->normal));
-  PetscCall(VecDestroy(&p->friction_t));
-  PetscCall(VecDestroy(&p->friction_b));
-  PetscFunctionReturn(0);
-}
-
-/* left' diag(force) right, added to *K, which is NULL before the first */
-static PetscErrorCode FollowerAddProduct(Mat left, Vec force, Mat right, Mat *K)
-{
-  Mat scaled, product;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatDuplicate(right, MAT_COPY_VALUES, &scaled));
-  PetscCall(MatDiagonalScale(scaled, force, NULL));
-  PetscCall(MatTransposeMatMult(left, scaled, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &product));
-  PetscCall(MatProductClear(product));
-  PetscCall(MatDestroy(&scaled));
-  if (*K) {
-    PetscCall(MatAXPY(*K, 1, product, DIFFERENT_NONZERO_PATTERN));
-    PetscCall(MatDestroy(&product));
-  } else
-    *K = product;
+  PetscCall(ContactCreateTilt(contact, &A[FOLLOWER_TILT_T], &A[FOLLOWER_TILT_B]));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode FollowerStiffnessCreate(Operators operators, const ContactState state[], Mat *K)
 {
-  const ContactInterface *interfaces;
-  PetscInt                n;
-  Contact                 contact;
-  FollowerPairs           p;
+  /* left' diag(force) right */
+  static const struct {
+    FollowerOperator left, right;
+    int              force;
+  } product[] = {
+    {FOLLOWER_T,      FOLLOWER_TILT_T, 0},
+    {FOLLOWER_B,      FOLLOWER_TILT_B, 0},
+    {FOLLOWER_TILT_T, FOLLOWER_T,      0},
+    {FOLLOWER_TILT_B, FOLLOWER_B,      0},
+    {FOLLOWER_N,      FOLLOWER_TILT_T, 1},
+    {FOLLOWER_N,      FOLLOWER_TILT_B, 2}
+  };
+  const ContactPair *pairs;
+  PetscInt           n, n_all;
+  Contact            contact;
+  Mat                A[N_FOLLOWER], one;
+  Vec                force[3];
 
   PetscFunctionBeginUser;
   *K = NULL;
   PetscCall(OperatorsGetModel(operators, NULL, &contact));
-  PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
-  if (!n) PetscFunctionReturn(0);
-  PetscCall(FollowerCreatePairs(contact, state, &p));
-  PetscCall(FollowerAddProduct(p.T, p.normal, p.tilt_t, K));
-  PetscCall(FollowerAddProduct(p.B, p.normal, p.tilt_b, K));
-  PetscCall(FollowerAddProduct(p.tilt_t, p.normal, p.T, K));
-  PetscCall(FollowerAddProduct(p.tilt_b, p.normal, p.B, K));
-  PetscCall(FollowerAddProduct(p.N, p.friction_t, p.tilt_t, K));
-  PetscCall(FollowerAddProduct(p.N, p.friction_b, p.tilt_b, K));
-  PetscCall(FollowerDestroyPairs(&p));
+  PetscCall(ContactGetPairs(contact, &n, &n_all, &pairs));
+  if (!n_all) PetscFunctionReturn(0);
+  PetscCall(FollowerCreateOperators(contact, n, A));
+  PetscCall(FollowerCreateForces(n, state, A[FOLLOWER_N], force));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(product); i++) {
+    PetscCall(TermsProduct(1, A[product[i].left], force[product[i].force], A[product[i].right], i ? &one : K));
+    if (!i) continue;
+    PetscCall(MatAXPY(*K, 1, one, DIFFERENT_NONZERO_PATTERN));
+    PetscCall(MatDestroy(&one));
+  }
+  for (int k = 0; k < N_FOLLOWER; k++) PetscCall(MatDestroy(&A[k]));
+  for (int k = 0; k < 3; k++) PetscCall(VecDestroy(&force[k]));
   PetscFunctionReturn(0);
 }

@@ -5,11 +5,8 @@
 
 /*@
    GeometricStiffnessCreate - the stiffness int grad N_i . sigma . grad N_j dV times the 3 x 3 identity (N/m) of the
-   stress sigma of a static displacement, symmetric; tension stiffens. Collective. The caller destroys it.
-
-   Input Parameters:
-+  p - the point, whose Young's moduli give the stress
--  u         - displacements of all unknowns, m
+   stress sigma of a static displacement u (m, all unknowns) with the Young's moduli of the point p, symmetric; tension
+   stiffens. Collective. The caller destroys it.
 @*/
 PETSC_INTERN PetscErrorCode GeometricStiffnessCreate(Operators operators, const PetscReal p[], Vec u, Mat *K);
 

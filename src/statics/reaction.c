@@ -8,20 +8,20 @@
 #include "staticsimpl.h"
 
 /* Internal forces minus loads and contact forces at all local vertices, three values each */
-static PetscErrorCode ReactionUnbalance(Statics s, Model model, Contact contact, Vec *local)
+static PetscErrorCode ReactionUnbalance(Statics s, Vec *local)
 {
   Vec               part;
   const ModelScene *scene;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelCreateNodal(model, local));
-  PetscCall(ModelCreateNodal(model, &part));
+  PetscCall(ModelCreateNodal(s->model, local));
+  PetscCall(ModelCreateNodal(s->model, &part));
   PetscCall(OperatorsInternalForces(s->operators, s->p, s->u, *local));
-  PetscCall(ContactNodalForces(contact, s->state, part));
+  PetscCall(ContactNodalForces(s->contact, s->state, part));
   PetscCall(VecAXPY(*local, -1, part));
   PetscCall(VecSet(part, 0));
-  PetscCall(ModelGetScene(model, &scene));
-  for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(ModelAddLoad(model, i, part));
+  PetscCall(ModelGetScene(s->model, &scene));
+  for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(ModelAddLoad(s->model, i, part));
   PetscCall(VecAXPY(*local, -1, part));
   PetscCall(VecDestroy(&part));
   PetscFunctionReturn(0);
@@ -66,15 +66,14 @@ static PetscErrorCode ReactionRow(ResultsTable table, const char name[], const c
   PetscFunctionReturn(0);
 }
 
-/* Displacements of all local vertices, three values each, zero where held */
-PetscErrorCode StaticsCreateDisplacements(Statics s, Model model, Vec *local)
+PetscErrorCode StaticsCreateDisplacements(Statics s, Vec *local)
 {
   PetscScalar *nodal;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelCreateNodal(model, local));
+  PetscCall(ModelCreateNodal(s->model, local));
   PetscCall(VecGetArray(*local, &nodal));
-  PetscCall(ModelGetNodal(model, s->u, nodal));
+  PetscCall(ModelGetNodal(s->model, s->u, nodal));
   PetscCall(VecRestoreArray(*local, &nodal));
   PetscFunctionReturn(0);
 }
@@ -102,7 +101,7 @@ static PetscErrorCode ReactionStiffness(Statics s, const Grounded *g, PetscReal 
 }
 
 /* Rows of supports and springs */
-static PetscErrorCode ReactionsWriteHolders(Statics s, Model model, Contact contact, ResultsTable table)
+static PetscErrorCode ReactionsWriteHolders(Statics s, ResultsTable table)
 {
   const PetscBool   all[3] = {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE};
   const ModelScene *scene;
@@ -110,15 +109,15 @@ static PetscErrorCode ReactionsWriteHolders(Statics s, Model model, Contact cont
   Vec               unbalance, u;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetScene(model, &scene));
-  PetscCall(ReactionUnbalance(s, model, contact, &unbalance));
+  PetscCall(ModelGetScene(s->model, &scene));
+  PetscCall(ReactionUnbalance(s, &unbalance));
   for (PetscInt i = 0; i < scene->n_supports; i++) {
-    PetscCall(ReactionSum(model, scene->supports[i].set, scene->supports[i].fix, unbalance, force));
+    PetscCall(ReactionSum(s->model, scene->supports[i].set, scene->supports[i].fix, unbalance, force));
     PetscCall(ReactionRow(table, scene->supports[i].name, "support", force));
   }
   for (PetscInt i = 0; i < scene->n_springs; i++) {
-    PetscCall(StaticsCreateDisplacements(s, model, &u));
-    PetscCall(ReactionSum(model, scene->springs[i].set, all, u, force));
+    PetscCall(StaticsCreateDisplacements(s, &u));
+    PetscCall(ReactionSum(s->model, scene->springs[i].set, all, u, force));
     PetscCall(VecDestroy(&u));
     PetscCall(ReactionStiffness(s, &scene->springs[i], stiffness));
     for (int d = 0; d < 3; d++) force[d] *= -stiffness[d];
@@ -130,23 +129,17 @@ static PetscErrorCode ReactionsWriteHolders(Statics s, Model model, Contact cont
 
 PetscErrorCode StaticsWriteReactions(Statics s, Results results)
 {
-  const ContactInterface *interfaces;
-  const ModelScene       *scene;
-  PetscInt                n_interfaces;
-  ResultsTable            table;
-  Contact                 contact;
-  Model                   model;
+  const ModelScene *scene;
+  ResultsTable      table;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(s->operators, &model, &contact));
-  PetscCall(ModelGetScene(model, &scene));
-  PetscCall(ContactGetInterfaces(contact, &n_interfaces, &interfaces));
+  PetscCall(ModelGetScene(s->model, &scene));
   PetscCall(ResultsTableOpen(results, "reactions", "name,kind,force_x_n,force_y_n,force_z_n", &table));
-  PetscCall(ReactionsWriteHolders(s, model, contact, table));
+  PetscCall(ReactionsWriteHolders(s, table));
   for (PetscInt i = 0; i < scene->n_loads; i++)
     PetscCall(ReactionRow(table, scene->loads[i].name, "load", scene->loads[i].force));
-  for (PetscInt i = 0; i < n_interfaces; i++)
-    PetscCall(ReactionRow(table, interfaces[i].name, "contact on master", s->resultant[i].force));
+  for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
+    PetscCall(ReactionRow(table, s->rows.interface[i].name, "contact on master", s->resultant[i].force));
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
 }

@@ -6,7 +6,7 @@
 #include "staticsimpl.h"
 
 /* Rows per pair of each interface, and their sums */
-static PetscErrorCode PairRowsCount(const ContactInterface interfaces[], PetscBool pressing, PairRows *rows)
+static PetscErrorCode PairRowsCount(PetscBool pressing, PairRows *rows)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(rows->n_pairs + 1, &rows->first));
@@ -14,7 +14,7 @@ static PetscErrorCode PairRowsCount(const ContactInterface interfaces[], PetscBo
   PetscCall(PetscCalloc1(rows->n_pairs, &rows->slide));
   rows->first[0] = 0;
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
-    const ContactInterface *c = &interfaces[rows->pair[p].interface];
+    const ContactInterface *c = &rows->interface[rows->pair[p].interface];
 
     rows->law[p].d     = pressing || c->slides || c->mu == 0 ? 1 : 3;
     rows->law[p].g0    = rows->pair[p].gap;
@@ -26,7 +26,7 @@ static PetscErrorCode PairRowsCount(const ContactInterface interfaces[], PetscBo
 }
 
 /* G, and S where some interface slides */
-static PetscErrorCode PairRowsCreateMatrices(Contact contact, const ContactInterface interfaces[], PairRows *rows)
+static PetscErrorCode PairRowsCreateMatrices(Contact contact, PairRows *rows)
 {
   PetscInt *pair;
   PetscReal(*across)[3], (*along)[3];
@@ -43,9 +43,9 @@ static PetscErrorCode PairRowsCreateMatrices(Contact contact, const ContactInter
       pair[rows->first[p] + i] = p;
       PetscCall(PetscArraycpy(across[rows->first[p] + i], d[i], 3));
     }
-    if (interfaces[q->interface].slides) PetscCall(PetscArraycpy(along[rows->first[p]], q->t, 3));
+    if (rows->interface[q->interface].slides) PetscCall(PetscArraycpy(along[rows->first[p]], q->t, 3));
   }
-  for (PetscInt i = 0; i < rows->n_interfaces; i++) any = (PetscBool)(any || interfaces[i].slides);
+  for (PetscInt i = 0; i < rows->n_interfaces; i++) any = (PetscBool)(any || rows->interface[i].slides);
   PetscCall(ContactCreateRows(contact, rows->n, pair, (const PetscReal(*)[3])across, &rows->G));
   if (any) PetscCall(ContactCreateRows(contact, rows->n, pair, (const PetscReal(*)[3])along, &rows->S));
   PetscCall(MatGetOwnershipRange(rows->G, &rows->begin, NULL));
@@ -56,30 +56,22 @@ static PetscErrorCode PairRowsCreateMatrices(Contact contact, const ContactInter
 
 PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, PairRows *rows)
 {
-  const ContactInterface *interfaces;
-  Contact                 contact;
-  PetscInt                n_all;
-  Model                   model;
+  Contact contact;
+  Model   model;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(operators, &model, &contact));
   PetscCall(ModelGetComm(model, &rows->comm));
-  PetscCall(ContactGetInterfaces(contact, &rows->n_interfaces, &interfaces));
-  PetscCall(ContactGetPairs(contact, &rows->n_pairs, &n_all, &rows->pair));
-  PetscCall(PairRowsCount(interfaces, pressing, rows));
-  PetscCall(PairRowsCreateMatrices(contact, interfaces, rows));
+  PetscCall(ContactGetInterfaces(contact, &rows->n_interfaces, &rows->interface));
+  PetscCall(ContactGetPairs(contact, &rows->n_pairs, &rows->n_pairs_all, &rows->pair));
+  PetscCall(PairRowsCount(pressing, rows));
+  PetscCall(PairRowsCreateMatrices(contact, rows));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscReal kappa, PairRows *rows)
 {
-  const ContactInterface *interfaces;
-  PetscInt                n;
-  Contact                 contact;
-
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(operators, NULL, &contact));
-  PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
   for (PetscInt k = 0; k < rows->n_pairs; k++) {
     const PetscInt i = rows->pair[k].interface;
     PetscReal      mu, kn;
@@ -87,7 +79,7 @@ PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscRe
     PetscCall(OperatorsGetInterface(operators, p, i, &mu, &kn));
     rows->law[k].k  = kn / kappa;
     rows->law[k].mu = rows->law[k].d == 3 ? PetscAbsReal(mu) : 0;
-    rows->slide[k]  = interfaces[i].slides ? mu : 0;
+    rows->slide[k]  = rows->interface[i].slides ? mu : 0;
   }
   PetscFunctionReturn(0);
 }

@@ -10,12 +10,10 @@ PetscErrorCode StaticsIsAffine(Statics s, PetscBool *affine)
 {
   const ContactInterface *interfaces;
   PetscInt                n;
-  Contact                 contact;
 
   PetscFunctionBeginUser;
   *affine = s->geometric || s->follower ? PETSC_FALSE : PETSC_TRUE;
-  PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
-  PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
+  PetscCall(ContactGetInterfaces(s->contact, &n, &interfaces));
   for (PetscInt i = 0; i < n; i++)
     if (interfaces[i].damping) *affine = PETSC_FALSE;
   PetscFunctionReturn(0);
@@ -24,21 +22,17 @@ PetscErrorCode StaticsIsAffine(Statics s, PetscBool *affine)
 /* Modes about the sliding state need one: every pair slides or is open */
 static PetscErrorCode StaticsCheckSliding(Statics s)
 {
-  const ContactInterface *interfaces;
-  PetscInt                n;
-  Contact                 contact;
+  const ContactInterface *c = s->rows.interface;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
-  PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
-  for (PetscInt i = 0; i < n; i++)
-    PetscCheck(interfaces[i].force == 0, s->comm, PETSC_ERR_USER_INPUT,
+  for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
+    PetscCheck(c[i].force == 0, s->comm, PETSC_ERR_USER_INPUT,
                "-%s_force %.6g does nothing with -modes_contact static, which takes the normal forces from the -loads",
-               interfaces[i].name, (double)interfaces[i].force);
-  for (PetscInt i = 0; i < n; i++)
-    PetscCheck(interfaces[i].slides || interfaces[i].mu == 0, s->comm, PETSC_ERR_USER_INPUT,
+               c[i].name, (double)c[i].force);
+  for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
+    PetscCheck(c[i].slides || c[i].mu == 0, s->comm, PETSC_ERR_USER_INPUT,
                "-modes_contact static needs to know along what contact %s slides: give -%s_slip x,y,z or -%s_rotation",
-               interfaces[i].name, interfaces[i].name, interfaces[i].name);
+               c[i].name, c[i].name, c[i].name);
   PetscFunctionReturn(0);
 }
 
@@ -46,7 +40,6 @@ PetscErrorCode StaticsSolveSliding(Statics s, const PetscReal p[], SlidingState 
 {
   PetscBool *closed;
   PetscInt  *group;
-  Contact    contact;
 
   PetscFunctionBeginUser;
   PetscCall(StaticsSetUp(s, p));
@@ -54,8 +47,7 @@ PetscErrorCode StaticsSolveSliding(Statics s, const PetscReal p[], SlidingState 
   PetscCall(StaticsSolve(s, p));
   PetscCall(PetscMalloc2(s->rows.n_pairs, &closed, s->rows.n_pairs, &group));
   for (PetscInt i = 0; i < s->rows.n_pairs; i++) closed[i] = (PetscBool)(s->state[i].status != CONTACT_OPEN);
-  PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
-  if (s->rows_more) PetscCall(ContactGrow(contact, s->rows_more, closed));
+  if (s->rows_more) PetscCall(ContactGrow(s->contact, s->rows_more, closed));
   for (PetscInt i = 0; i < s->rows.n_pairs; i++) group[i] = closed[i] ? 0 : -1;
   PetscCall(SlidingStateCreate(s->rows.n_pairs, 0, group, state));
   PetscCall(PetscFree2(closed, group));

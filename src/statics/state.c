@@ -8,18 +8,18 @@
 
 /* States of all pairs from w = G u (m) and l (m) */
 static void StaticsSetPairs(const PairRows *rows, PetscReal kappa, const ContactStatus status[], const PetscReal l[],
-                            const PetscScalar w[], ContactState state[])
+                            const PetscReal w[], ContactState state[])
 {
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     const PetscInt first = rows->first[p];
     ContactState  *s     = &state[p];
 
-    *s             = (ContactState){.status = status[p], .gap = rows->law[p].g0 - PetscRealPart(w[first])};
+    *s             = (ContactState){.status = status[p], .gap = rows->law[p].g0 - w[first]};
     s->lambda_n    = kappa * l[first];
     s->lambda_t[0] = rows->slide[p] * s->lambda_n;
     for (PetscInt i = 1; i < rows->law[p].d; i++) {
       s->lambda_t[i - 1] = -kappa * l[first + i];
-      s->slip[i - 1]     = -(PetscRealPart(w[first + i]) - rows->law[p].slip0[i - 1]);
+      s->slip[i - 1]     = -(w[first + i] - rows->law[p].slip0[i - 1]);
     }
   }
 }
@@ -55,35 +55,9 @@ static PetscErrorCode StaticsSetResultants(Statics s)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PairRowsAddForces(const PairRows *rows, const ContactState state[], Vec b)
-{
-  PetscScalar *value;
-  Vec          row;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatCreateVecs(rows->G, NULL, &row));
-  PetscCall(VecGetArray(row, &value));
-  for (PetscInt p = 0; p < rows->n_pairs; p++) {
-    value[rows->first[p]] = -state[p].lambda_n;
-    for (PetscInt i = 1; i < rows->law[p].d; i++) value[rows->first[p] + i] = state[p].lambda_t[i - 1];
-  }
-  PetscCall(VecRestoreArray(row, &value));
-  PetscCall(MatMultTransposeAdd(rows->G, row, b, b));
-  if (rows->S) {
-    PetscCall(VecSet(row, 0));
-    PetscCall(VecGetArray(row, &value));
-    for (PetscInt p = 0; p < rows->n_pairs; p++)
-      if (rows->law[p].d == 1) value[rows->first[p]] = state[p].lambda_t[0];
-    PetscCall(VecRestoreArray(row, &value));
-    PetscCall(MatMultTransposeAdd(rows->S, row, b, b));
-  }
-  PetscCall(VecDestroy(&row));
-  PetscFunctionReturn(0);
-}
-
 /* |f + contact forces - K u| over the larger of |f| and |contact forces|; much of it is left where next to nothing
    resists the loads, and displacements are so large that forces drown in their rounding */
-static PetscErrorCode StaticsMeasureEquilibrium(Statics s, Vec f)
+static PetscErrorCode StaticsMeasureEquilibrium(Statics s, Vec f, const PetscReal l[])
 {
   PetscReal norm, load, contact;
   Vec       r;
@@ -91,11 +65,11 @@ static PetscErrorCode StaticsMeasureEquilibrium(Statics s, Vec f)
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(f, &r));
   PetscCall(VecSet(r, 0));
-  PetscCall(PairRowsAddForces(&s->rows, s->state, r));
+  PetscCall(ComplianceAddForces(&s->compliance, 1, l, NULL, r));
   PetscCall(VecNorm(r, NORM_2, &contact));
   PetscCall(OperatorsApplyBodies(s->operators, s->p, s->u, r));
   PetscCall(VecAYPX(r, -1, f));
-  PetscCall(PairRowsAddForces(&s->rows, s->state, r));
+  PetscCall(ComplianceAddForces(&s->compliance, 1, l, NULL, r));
   PetscCall(VecNorm(r, NORM_2, &norm));
   PetscCall(VecNorm(f, NORM_2, &load));
   s->equilibrium = norm > 0 ? norm / PetscMax(load, contact) : 0;
@@ -131,30 +105,28 @@ static PetscErrorCode StaticsFindDisplacement(Statics s, PetscReal *displacement
 static PetscErrorCode StaticsMeasureKKT(Statics s)
 {
   PetscReal *mu, *kn, displacement;
-  Contact    contact;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
   PetscCall(PetscMalloc2(s->rows.n_interfaces, &mu, s->rows.n_interfaces, &kn));
   for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
     PetscCall(OperatorsGetInterface(s->operators, s->p, i, &mu[i], &kn[i]));
   PetscCall(StaticsFindDisplacement(s, &displacement));
-  PetscCall(ContactComputeKKT(contact, s->state, mu, kn, displacement, &s->kkt));
+  PetscCall(ContactComputeKKT(s->contact, s->state, mu, kn, displacement, &s->kkt));
   PetscCall(PetscFree2(mu, kn));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StaticsSetState(Statics s, const Compliance *c, Vec f, const PetscReal l[])
+PetscErrorCode StaticsSetState(Statics s, Vec f, const PetscReal l[])
 {
-  const PetscScalar *w;
+  PetscReal *w;
 
   PetscFunctionBeginUser;
-  PetscCall(MatMult(s->rows.G, s->u, c->row));
-  PetscCall(VecGetArrayRead(c->row, &w));
-  StaticsSetPairs(&s->rows, c->kappa, s->status, l, w, s->state);
-  PetscCall(VecRestoreArrayRead(c->row, &w));
+  PetscCall(PetscMalloc1(s->rows.n, &w));
+  PetscCall(ComplianceGetRows(&s->compliance, s->u, w));
+  StaticsSetPairs(&s->rows, s->compliance.kappa, s->status, l, w, s->state);
+  PetscCall(PetscFree(w));
   PetscCall(StaticsSetResultants(s));
-  PetscCall(StaticsMeasureEquilibrium(s, f));
+  PetscCall(StaticsMeasureEquilibrium(s, f, l));
   PetscCall(StaticsMeasureKKT(s));
   PetscFunctionReturn(0);
 }

@@ -22,6 +22,7 @@ PetscErrorCode StaticsSetOperators(Statics statics, Operators operators)
 {
   PetscFunctionBeginUser;
   statics->operators = operators;
+  PetscCall(OperatorsGetModel(operators, &statics->model, &statics->contact));
   PetscFunctionReturn(0);
 }
 
@@ -69,11 +70,9 @@ PetscErrorCode StaticsSetFromOptions(Statics s)
 PetscErrorCode StaticsAddChecksum(Statics s, Checksum c)
 {
   const PetscInt all[] = {s->load_steps, s->dense, s->rows_more, s->identify_steps, s->geometric, s->follower};
-  Model          model;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(s->operators, &model, NULL));
-  if (model) PetscCall(ModelAddLoadsChecksum(model, c));
+  if (s->model) PetscCall(ModelAddLoadsChecksum(s->model, c));
   PetscCall(ChecksumSetPart(c, "options of statics"));
   PetscCall(ChecksumAddInts(c, PETSC_STATIC_ARRAY_LENGTH(all), all));
   PetscFunctionReturn(0);
@@ -95,17 +94,14 @@ PetscErrorCode StaticsCheckUse(Statics s, PetscBool modes)
 static PetscErrorCode StaticsCreateRows(Statics s)
 {
   const OperatorsParameter *parameters;
-  Model                     model;
-  PetscInt                  n_pairs;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(s->operators, &model, NULL));
-  PetscCheck(model, s->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(s->model, s->comm, PETSC_ERR_USER_INPUT,
              "-analysis static and -modes_contact static need a mesh and contact, "
              "not loaded matrices");
   PetscCall(PairRowsCreate(s->operators, PETSC_FALSE, &s->rows));
-  PetscCallMPI(MPI_Allreduce(&s->rows.n_pairs, &n_pairs, 1, MPIU_INT, MPI_SUM, s->comm));
-  PetscCheck(n_pairs, s->comm, PETSC_ERR_USER_INPUT, "-analysis static and -modes_contact static need -contacts");
+  PetscCheck(s->rows.n_pairs_all, s->comm, PETSC_ERR_USER_INPUT,
+             "-analysis static and -modes_contact static need -contacts");
   PetscCall(OperatorsGetParameters(s->operators, &s->n_parameters, &parameters));
   PetscCall(PetscMalloc3(s->rows.n_pairs, &s->status, s->rows.n_pairs, &s->state, s->rows.n_interfaces, &s->resultant));
   for (PetscInt p = 0; p < s->rows.n_pairs; p++) s->status[p] = s->rows.law[p].d == 3 ? CONTACT_STICK : CONTACT_SLIP;
@@ -188,6 +184,7 @@ PetscErrorCode StaticsRelease(Statics statics)
   PetscFunctionBeginUser;
   PetscCall(ComplianceDestroy(&statics->compliance));
   PetscCall(PetscFree(statics->factored));
+  if (statics->operators) PetscCall(OperatorsReleaseBodies(statics->operators));
   PetscFunctionReturn(0);
 }
 
@@ -204,10 +201,16 @@ PetscErrorCode StaticsSolve(Statics s, const PetscReal p[])
   PetscCall(PetscCalloc1(s->rows.n, &l));
   PetscCall(StaticsFactor(s));
   PetscCall(HoldCheck(s->operators, &s->compliance.hold, "the loads", f, size));
-  PetscCall(
-    EquilibriumSolve(s, &(EquilibriumProblem){&s->rows, &s->compliance, f, size, s->load_steps, s->status, l, s->u}));
+  PetscCall(EquilibriumSolve(s, &(Active){.rows       = &s->rows,
+                                          .compliance = &s->compliance,
+                                          .f          = f,
+                                          .size       = size,
+                                          .load_steps = s->load_steps,
+                                          .status     = s->status,
+                                          .l          = l,
+                                          .u          = s->u}));
   s->n_free = s->compliance.hold.n;
-  PetscCall(StaticsSetState(s, &s->compliance, f, l));
+  PetscCall(StaticsSetState(s, f, l));
   s->solved = PETSC_TRUE;
   PetscCall(PetscFree(l));
   PetscCall(VecDestroy(&f));

@@ -7,16 +7,23 @@
 
 /* Rows of the contact problem: the normal one of a pair that slides or has no friction, else normal, t and b */
 typedef struct {
-  MPI_Comm           comm;
-  PetscInt           n_pairs, n_interfaces;
-  const ContactPair *pair;
-  CoulombPair       *law;   /* [n_pairs] mu, k, gap and rows of each pair; mu is 0 in the law of a sliding pair */
-  PetscReal         *slide; /* [n_pairs] friction coefficient of a sliding pair, else 0 */
-  PetscInt           n, n_all, begin; /* rows of this rank, of all, first of this rank */
-  PetscInt          *first;           /* [n_pairs + 1] first row of each pair, counted on this rank */
-  Mat                G;               /* [rows][unknowns] n, t, b */
-  Mat                S;               /* t in the rows of sliding pairs, else empty; NULL where nothing slides */
+  MPI_Comm                comm;
+  PetscInt                n_pairs, n_pairs_all, n_interfaces; /* of this rank, of all */
+  const ContactPair      *pair;
+  const ContactInterface *interface;
+  CoulombPair            *law;   /* [n_pairs] mu, k, gap and rows of each pair; mu is 0 in the law of a sliding pair */
+  PetscReal              *slide; /* [n_pairs] friction coefficient of a sliding pair, else 0 */
+  PetscInt                n, n_all, begin; /* rows of this rank, of all, first of this rank */
+  PetscInt               *first;           /* [n_pairs + 1] first row of each pair, counted on this rank */
+  Mat                     G;               /* [rows][unknowns] n, t, b */
+  Mat                     S;               /* t in the rows of sliding pairs, else empty; NULL where nothing slides */
 } PairRows;
+
+/* Whether some pair follows Coulomb's law */
+static inline PetscBool PairRowsCoulomb(const PairRows *rows)
+{
+  return rows->n_all > rows->n_pairs_all ? PETSC_TRUE : PETSC_FALSE;
+}
 
 /* Rigid motions that nothing resists, r_i' M r_j = delta_ij, and the unknowns at which they are held */
 typedef struct {
@@ -61,22 +68,26 @@ typedef enum { ACTIVE_CONVERGED, ACTIVE_SINGULAR, ACTIVE_CYCLES, ACTIVE_SLOW, AC
 typedef struct {
   Operators         operators;
   const PetscReal  *p; /* the point */
-  const PairRows   *rows;
+  PairRows         *rows;
   const Compliance *compliance;
-  PetscInt          max_it, n_it;
-  PetscReal         friction; /* factor of all friction coefficients, 0 .. 1 */
-  PetscReal         rtol;     /* of GMRES on the small system */
-  PetscReal         scale;    /* m, of the contact displacements; what is below 1e-13 of it is rounding */
-  ContactStatus    *status;   /* [n_pairs] */
-  PetscReal        *free;     /* [rows] w without contact forces, kappa-held: G K_a^-1 f */
-  PetscReal        *l, *w;    /* [rows] */
-  PetscReal        *zero;     /* [rows] */
-  PetscBool         reversed; /* the system of the last iteration has a determinant of the wrong sign */
+  Vec               f, u; /* forces on the bodies, N, and displacements of all unknowns */
+  PetscReal         size; /* of all forces, N */
+  PetscInt          load_steps, max_it, n_it;
+  char              place[256]; /* the point in words, for messages */
+  PetscReal         friction;   /* factor of all friction coefficients, 0 .. 1 */
+  PetscReal         rtol;       /* of GMRES on the small system */
+  PetscReal         scale;      /* m, of the contact displacements; what is below 1e-13 of it is rounding */
+  ContactStatus    *status;     /* [n_pairs] to begin with, then as found */
+  PetscReal        *free;       /* [rows] w without contact forces, kappa-held: G K_a^-1 f */
+  PetscReal        *l, *w;      /* [rows] */
+  PetscBool         reversed;   /* the system of the last iteration has a determinant of the wrong sign */
 } Active;
 
 struct _p_Statics {
   MPI_Comm  comm;
   Operators operators;
+  Model     model; /* of the operators, as the contact; NULL for loaded matrices */
+  Contact   contact;
   Progress  progress;
   /* set by options */
   PetscInt  max_it, load_steps, dense, rows_more, identify_steps;
@@ -121,13 +132,17 @@ PETSC_INTERN PetscErrorCode HoldProject(const Hold *hold, Vec u);
 PETSC_INTERN PetscErrorCode HoldDestroy(Hold *hold);
 
 /* compliance.c - factors, and forms W and V for up to max_rows rows; y = kappa G K_a^-1 (G'(l - w) - S' (slide l)) + w
-   for rows l, w, y; u = K_a^-1 (f - kappa (G'(l - w) - S' (slide l))), f may be NULL */
+   for rows l, w, y; u = K_a^-1 (f - kappa (G'(l - w) - S' (slide l))), f may be NULL; b += kappa (S' (slide l) - G'(l - w)),
+   l and w may be NULL without friction, w with it; w = G u */
 PETSC_INTERN PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const PairRows *rows,
                                              PetscInt max_rows, Progress *progress, Compliance *c);
 PETSC_INTERN PetscErrorCode ComplianceApply(const Compliance *c, PetscReal friction, const PetscReal l[],
                                             const PetscReal w[], PetscReal y[]);
 PETSC_INTERN PetscErrorCode ComplianceSolve(const Compliance *c, PetscReal friction, Vec f, const PetscReal l[],
                                             const PetscReal w[], Vec u);
+PETSC_INTERN PetscErrorCode ComplianceAddForces(const Compliance *c, PetscReal friction, const PetscReal l[],
+                                                const PetscReal w[], Vec b);
+PETSC_INTERN PetscErrorCode ComplianceGetRows(const Compliance *c, Vec u, PetscReal w[]);
 /* K + kappa G'G of all rows, of those of pairs closed at the status [pairs], or of the normal ones. Where Coulomb's pairs
    slip in different directions they resist too; what slips in one direction makes the small system singular. */
 typedef enum { AUGMENT_ALL, AUGMENT_CLOSED, AUGMENT_NORMAL } AugmentRows;
@@ -150,32 +165,18 @@ PETSC_INTERN PetscErrorCode ActiveSolve(Active *active, ActiveOutcome *outcome);
 /* One correction of l and w at the status reached, for a residual rhs [rows] of the small system */
 PETSC_INTERN PetscErrorCode ActiveCorrect(Active *active, const PetscReal rhs[]);
 
-/* Forces on the bodies, and what comes of them */
-typedef struct {
-  PairRows         *rows;
-  const Compliance *compliance;
-  Vec               f;
-  PetscReal         size; /* of the forces, N */
-  PetscInt          load_steps;
-  ContactStatus    *status; /* [pairs] to begin with, then as found */
-  PetscReal        *l;      /* [rows] forces of the pairs over kappa, m */
-  Vec               u;
-} EquilibriumProblem;
-
-/* equilibrium.c - the whole solution */
-PETSC_INTERN PetscErrorCode EquilibriumSolve(Statics statics, const EquilibriumProblem *problem);
+/* equilibrium.c - the whole solution, from rows, compliance, f, u, size, load_steps, status and l (zeros) */
+PETSC_INTERN PetscErrorCode EquilibriumSolve(Statics statics, Active *active);
 
 /* state.c - states, resultants and residuals of a solution */
-PETSC_INTERN PetscErrorCode StaticsSetState(Statics statics, const Compliance *compliance, Vec f, const PetscReal l[]);
-/* b += forces of the contact on the unknowns, -N' lambda_n + T' lambda_t + B' lambda_b, N */
-PETSC_INTERN PetscErrorCode PairRowsAddForces(const PairRows *rows, const ContactState state[], Vec b);
+PETSC_INTERN PetscErrorCode StaticsSetState(Statics statics, Vec f, const PetscReal l[]);
 
 /* load.c - f of the loads, unknowns only, and its size by all of them, N */
 PETSC_INTERN PetscErrorCode StaticsCreateLoad(Operators operators, Vec *f, PetscReal *size);
 
 /* reaction.c - reactions.csv; u at all local vertices, zero where held */
 PETSC_INTERN PetscErrorCode StaticsWriteReactions(Statics statics, Results results);
-PETSC_INTERN PetscErrorCode StaticsCreateDisplacements(Statics statics, Model model, Vec *local);
+PETSC_INTERN PetscErrorCode StaticsCreateDisplacements(Statics statics, Vec *local);
 
 /* field.c - static.h5 and static.xmf */
 PETSC_INTERN PetscErrorCode StaticsWriteFields(Statics statics, Results results);

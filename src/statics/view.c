@@ -23,14 +23,9 @@ static PetscErrorCode InterfaceView(const ContactInterface *c, const StaticsResu
 
 PetscErrorCode StaticsView(Statics s, PetscViewer viewer)
 {
-  const ContactInterface *interfaces;
-  PetscInt                n;
-  Contact                 contact;
-
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
-  PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
-  for (PetscInt i = 0; i < n; i++) PetscCall(InterfaceView(&interfaces[i], &s->resultant[i], viewer));
+  for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
+    PetscCall(InterfaceView(&s->rows.interface[i], &s->resultant[i], viewer));
   if (s->n_free)
     PetscCall(PetscViewerASCIIPrintf(viewer,
                                      "%" PetscInt_FMT " rigid motion%s that nothing resists or loads %s left out\n",

@@ -46,15 +46,11 @@ static PetscErrorCode StaticsGatherRecords(Statics s, PetscInt *n, StaticsRecord
 /* static.csv */
 static PetscErrorCode StaticsWritePairs(Statics s, Results results)
 {
-  const ContactInterface *interfaces;
-  ResultsTable            table;
-  PetscInt                n, n_interfaces;
-  Contact                 contact;
-  StaticsRecord          *record;
+  ResultsTable   table;
+  PetscInt       n;
+  StaticsRecord *record;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
-  PetscCall(ContactGetInterfaces(contact, &n_interfaces, &interfaces));
   PetscCall(StaticsGatherRecords(s, &n, &record));
   PetscCall(ResultsTableOpen(results, "static",
                              "pair,x_m,y_m,z_m,gap_m,lambda_n_n,lambda_t_n,status,interface,lambda_b_n,area_m2,"
@@ -68,9 +64,9 @@ static PetscErrorCode StaticsWritePairs(Statics s, Results results)
       table,
       "%" PetscInt_FMT ",%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g",
       i + 1, (double)r->x[0], (double)r->x[1], (double)r->x[2], (double)q->gap, (double)q->lambda_n,
-      (double)q->lambda_t[0], ContactStatusNames[q->status], interfaces[r->interface].name, (double)q->lambda_t[1],
-      (double)r->area, (double)(q->lambda_n / r->area), (double)q->slip[0], (double)q->slip[1], (double)r->t[0],
-      (double)r->t[1], (double)r->t[2]));
+      (double)q->lambda_t[0], ContactStatusNames[q->status], s->rows.interface[r->interface].name,
+      (double)q->lambda_t[1], (double)r->area, (double)(q->lambda_n / r->area), (double)q->slip[0], (double)q->slip[1],
+      (double)r->t[0], (double)r->t[1], (double)r->t[2]));
   }
   PetscCall(ResultsTableClose(&table));
   PetscCall(PetscFree(record));
