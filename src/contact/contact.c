@@ -35,6 +35,21 @@ static PetscErrorCode StiffnessRead(OptionsItems PetscOptionsObject, ContactInte
   PetscFunctionReturn(0);
 }
 
+/* Raises an error for what is no finite number */
+static PetscErrorCode InterfaceCheckFinite(MPI_Comm comm, const ContactInterface *c)
+{
+  static const char *const option[]   = {"mu", "mu_slope", "speed", "force", "tolerance"};
+  static const char *const unit[]     = {"without unit", "s/m", "m/s", "N", "m"};
+  const PetscReal          value[][3] = {{c->mu}, {c->mu_slope}, {c->speed}, {c->force}, {c->tolerance}};
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 5; i++) PetscCall(OptionsCheckFinite(comm, c->name, option[i], unit[i], value[i]));
+  PetscCall(OptionsCheckFinite(comm, c->name, "slip", "a direction", c->slip));
+  PetscCall(OptionsCheckFinite(comm, c->name, "rotation", "rad/s", c->rotation));
+  PetscCall(OptionsCheckFinite(comm, c->name, "center", "m", c->center));
+  PetscFunctionReturn(0);
+}
+
 /* Parameters of one interface, whose name is set */
 static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c)
 {
@@ -68,6 +83,7 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
                             c->rotation, NULL));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-center", "a point of its axis, m", 3, c->center, NULL));
   PetscOptionsEnd();
+  PetscCall(InterfaceCheckFinite(comm, c));
   PetscCheck(!set || n == 2, comm, PETSC_ERR_USER_INPUT,
              "-%s_surfaces has %" PetscInt_FMT " names; give two: slave,master", c->name, n);
   c->law    = (ContactLaw)law;
@@ -81,8 +97,6 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
 {
   PetscFunctionBeginUser;
   PetscCheck(c->slave && c->master, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces must be given: slave,master", c->name);
-  PetscCheck(PetscIsNormalReal(c->mu) || c->mu == 0, comm, PETSC_ERR_USER_INPUT, "-%s_mu %.6g must be a number",
-             c->name, (double)c->mu);
   PetscCheck(c->law == CONTACT_CONSTRAINT || (c->kn > 0 && !PetscIsInfReal(c->kn)), comm, PETSC_ERR_USER_INPUT,
              "-%s_kn %.6g must be given and positive (N/m), or choose -%s_law constraint", c->name, (double)c->kn,
              c->name);
