@@ -91,7 +91,7 @@ void ContactFootWalk(const ContactShape *shape, const PetscReal x[3], ContactFoo
     foot->facet      = next;
     foot->natural[0] = foot->natural[1] = 0;
     if (next == before) {
-      (void)Drop(shape, next, x, foot->natural);
+      if (!Drop(shape, next, x, foot->natural)) break;
       WalkEnd(shape, foot);
       return;
     }
