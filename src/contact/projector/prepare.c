@@ -9,8 +9,11 @@
    The guess goes on with the forces of the last steps as a constant, a line or a parabola in time, whichever would have
    guessed the last step best (record.c).
 
-   The friction coefficient is that of the slip speed at t_n, on the line through those of v_{n-1/2} and v_{n-3/2}.
+   The friction coefficient is that of the slip speed at t_n, on the line through those of v_{n-1/2} and v_{n-3/2}. To
+   v_{n-1/2} it adds the sliding velocity of the step at hand, at t_{n+1/2} or the mean of t_n to t_{n+1}: the two differ
+   by one step where a ramp changes it.
 */
+#include "base/vec3.h"
 #include "base/versions.h"
 #include "projectorimpl.h"
 
@@ -159,6 +162,14 @@ static void PairFind(ContactProjector p, PetscInt k, const PetscReal u[], const 
   PairFollow(p, k, d, predicted, deepest);
 }
 
+/* Whether friction needs the direction of a sliding that is given */
+static PetscBool PairNeedsSlip(ContactProjector p, const ProjectorPair *pair)
+{
+  const ContactInterface *c = &p->contact->interfaces[pair->interface];
+
+  return p->sliding[pair->interface].slides && (c->mu != 0 || c->mu_slope != 0) ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscBool PairPlace(ContactProjector p, PetscInt k, const PetscReal u[], const PetscReal predicted[], PetscReal deepest)
 {
   ProjectorPair         *pair    = &p->pair[k];
@@ -183,8 +194,13 @@ PetscBool PairPlace(ContactProjector p, PetscInt k, const PetscReal u[], const P
   facet = &master->surface->facet[pair->facet];
   for (int i = 0; i < 4; i++) pair->node[i] = master->node[facet->node[i]];
   ContactSlideAlong(&p->contact->interfaces[pair->interface], place, along);
-  pair->speed = ContactBasis(facet, pair->natural, along, pair->weight, pair->e);
-  if (!sliding->rotates) pair->speed = sliding->slides ? sliding->speed : 0;
+  pair->speed   = ContactBasis(facet, pair->natural, along, pair->weight, pair->e);
+  pair->no_slip = pair->speed == 0 && PairNeedsSlip(p, pair) ? PETSC_TRUE : PETSC_FALSE;
+  if (!sliding->rotates) {
+    const PetscReal part = sliding->turning ? pair->speed / Vec3Length(along) : 1;
+
+    pair->speed = sliding->slides ? part * sliding->speed : 0;
+  }
   PairTurn(frame, pair);
   PairSetCompliance(&p->nodes, pair);
   if (pair->found) pair->gap = PairGap(p, pair, p->nodes.rest, p->nodes.rest);

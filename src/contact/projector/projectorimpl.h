@@ -54,6 +54,7 @@ typedef struct {
   PetscReal     offset[3];    /* added to the velocities of the nodes: gap at t_n / dt, and the sliding velocity, m/s */
   PetscReal     drift[3];     /* sliding velocity along n, t, b, m/s */
   PetscReal     speed;        /* stated sliding speed, 0 where nothing slides as told, m/s */
+  PetscBool     no_slip;      /* friction needs the sliding velocity, which has no part in the surface here */
   PetscReal     mu, slip;     /* slip speed of v_{n-1/2}, m/s, -1 where it is not known: for mu */
   PetscReal     p[3], q[3];   /* impulse on the slave, N s; relative velocity with the offset, m/s */
   ContactStatus status;

@@ -8,15 +8,18 @@
 
 #define START_REACH 10 /* margins within which bodies that interpenetrate are found */
 
-/* What is wrong at the start: the deepest pair, and one that nothing can move along its normal */
+/* What is wrong at the start: the deepest pair, one that nothing can move along its normal, and one across which the
+   given sliding velocity has no part in the surface */
 typedef struct {
   PetscReal depth, x[3];
   PetscReal interface, stiff, stiff_x[3], stiff_interface;
+  PetscReal no_slip, no_slip_x[3], no_slip_interface;
 } StartFault;
 
 /* Finds the facets of all slaves, on the root */
 static void PairsFind(ContactProjector p, StartFault *fault)
 {
+  fault->no_slip = 0;
   for (PetscInt k = 0; k < p->n_pairs; k++) {
     ProjectorPair   *pair = &p->pair[k];
     const PetscReal *x    = &p->nodes.x[3 * pair->slave];
@@ -33,6 +36,11 @@ static void PairsFind(ContactProjector p, StartFault *fault)
       fault->depth     = -gap;
       fault->interface = (PetscReal)pair->interface;
       for (int i = 0; i < 3; i++) fault->x[i] = x[i];
+    }
+    if (pair->no_slip) {
+      fault->no_slip           = 1;
+      fault->no_slip_interface = (PetscReal)pair->interface;
+      for (int i = 0; i < 3; i++) fault->no_slip_x[i] = x[i];
     }
     if (PairMass(pair) > 0) continue;
     fault->stiff           = 1;
@@ -75,6 +83,12 @@ static PetscErrorCode StartCheck(ContactProjector p, PetscReal slack, StartFault
     "contact %s: at %.6g, %.6g, %.6g m both %s and %s are held along the normal, so that no force can keep them "
     "apart; free one of them, or take it out of the surface",
     c->name, (double)fault->stiff_x[0], (double)fault->stiff_x[1], (double)fault->stiff_x[2], c->slave, c->master);
+  c = &p->contact->interfaces[(PetscInt)fault->no_slip_interface];
+  PetscCheck(
+    fault->no_slip == 0, p->share.comm, PETSC_ERR_USER_INPUT,
+    "contact %s: the sliding velocity vanishes in the surface at %.6g, %.6g, %.6g m; give -%s_slip x,y,z along "
+    "the surface",
+    c->name, (double)fault->no_slip_x[0], (double)fault->no_slip_x[1], (double)fault->no_slip_x[2], c->name);
   PetscFunctionReturn(0);
 }
 
@@ -116,11 +130,34 @@ static PetscErrorCode GivenGather(ContactProjector p, const ContactState states[
   PetscFunctionReturn(0);
 }
 
+/* Raises the error for a slave with a force that faces no facet in time: beyond the border of its master, where pairs
+   at rest take the nearest point */
+static PetscErrorCode BorderCheck(ContactProjector p, PetscInt lost)
+{
+  PetscReal x[4] = {-1, 0, 0, 0};
+
+  PetscFunctionBeginUser;
+  if (p->share.rank == p->share.root && lost >= 0) {
+    x[0] = (PetscReal)p->interface[lost];
+    for (int d = 0; d < 3; d++) x[1 + d] = p->slave_x[3 * lost + d];
+  }
+  PetscCallMPI(MPI_Bcast(x, 4, MPIU_REAL, p->share.root, p->share.comm));
+  if (x[0] >= 0) {
+    const ContactInterface *c = &p->contact->interfaces[(PetscInt)x[0]];
+
+    SETERRQ(p->share.comm, PETSC_ERR_USER_INPUT,
+            "contact %s: the node of %s at %.6g, %.6g, %.6g m carries a force at the static start, but lies beyond the "
+            "border of %s; make %s larger, or -%s_tolerance smaller",
+            c->name, c->slave, (double)x[1], (double)x[2], (double)x[3], c->master, c->master, c->name);
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Forces of the slaves that face a facet. They are given on the ground, and kept in the frame of the master */
 static PetscErrorCode StartForces(ContactProjector p, const ContactState states[])
 {
   Given   *all;
-  PetscInt n;
+  PetscInt n, lost = -1;
 
   PetscFunctionBeginUser;
   PetscCall(GivenGather(p, states, &n, &all));
@@ -130,6 +167,7 @@ static PetscErrorCode StartForces(ContactProjector p, const ContactState states[
     ProjectorPair *pair   = &p->pair[k];
 
     for (int i = 0; i < 3 * PROJECTOR_PAST; i++) pair->lambda[i / 3][i % 3] = 0;
+    if (given && pair->facet < 0 && given->state.lambda_n > 0) lost = k;
     if (!given || pair->facet < 0) continue;
     for (int d = 0; d < 3; d++) {
       const PetscReal *D = p->frame[pair->interface].D[d];
@@ -142,6 +180,7 @@ static PetscErrorCode StartForces(ContactProjector p, const ContactState states[
     for (int i = 0; i < 2; i++) p->state[k].lambda_t[i] = given->state.lambda_t[i];
   }
   PetscCall(PetscFree(all));
+  PetscCall(BorderCheck(p, lost));
   PetscFunctionReturn(0);
 }
 
