@@ -145,12 +145,30 @@ PetscErrorCode ContactSurfaceCreate(Contact contact, const char set[], ContactSu
   PetscFunctionReturn(0);
 }
 
+/* Raises the error for a node of a master where the faces around it cancel, so that it has no normal */
+static PetscErrorCode MasterCheck(MPI_Comm comm, const ContactInterface *c, const ContactSurface *s)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < 4 * s->n_facets; i++) {
+    const ContactFacet *f = &s->facet[i / 4];
+    const PetscReal    *x = f->x[i % 4];
+
+    PetscCheck(Vec3Length(f->area[i % 4]) > 1e-9 * PetscSqr(f->size), comm, PETSC_ERR_USER_INPUT,
+               "contact %s: %s has no normal at %.6g, %.6g, %.6g m, where its faces look in opposite directions",
+               c->name, c->master, (double)x[0], (double)x[1], (double)x[2]);
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactGetSurface(Contact contact, PetscInt interface, const ContactSurface **surface)
 {
   ContactSurface *s = &contact->surface[interface];
 
   PetscFunctionBeginUser;
-  if (!s->facet) PetscCall(ContactSurfaceCreate(contact, contact->interfaces[interface].master, s));
+  if (!s->facet) {
+    PetscCall(ContactSurfaceCreate(contact, contact->interfaces[interface].master, s));
+    PetscCall(MasterCheck(contact->comm, &contact->interfaces[interface], s));
+  }
   *surface = s;
   PetscFunctionReturn(0);
 }
