@@ -5,6 +5,7 @@
 #include "historyimpl.h"
 #include "base/gather.h"
 #include <stdlib.h>
+#include <math.h>
 
 typedef struct {
   PetscInt      interface, number;
@@ -33,7 +34,7 @@ static PetscErrorCode HistoryGatherPairs(MPI_Comm comm, const HistoryPairs *p, P
     local[i] = (HistoryPairRecord){.interface = p->interface[i],
                                    .number    = p->number[i],
                                    .status    = state->status,
-                                   .gap       = state->gap,
+                                   .gap       = state->gap >= PETSC_INFINITY ? INFINITY : state->gap,
                                    .lambda_n  = state->lambda_n,
                                    .lambda_t  = hypot(state->lambda_t[0], state->lambda_t[1])};
     PetscCall(PetscArraycpy(local[i].x, &p->x[3 * i], 3));
