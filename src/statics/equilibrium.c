@@ -194,6 +194,7 @@ PetscErrorCode EquilibriumSolve(Statics s, Active *a)
   PetscCall(EquilibriumRefine(a));
   PetscCall(FrictionCheck(a));
   PetscCall(VecDestroy(&a->f));
+  a->f = whole;
   PetscCall(PetscFree2(a->free, a->w));
   PetscFunctionReturn(0);
 }
