@@ -175,7 +175,8 @@ PetscErrorCode ContactGetCentre(Contact contact, PetscReal centre[3], PetscBool 
   PetscFunctionReturn(0);
 }
 
-/* What options say: a stiffness that is found by pressing follows from the rest of the scene */
+/* What options say: a stiffness that is found by pressing depends on the loads, and counts where it is used, as a value
+   of the sweep */
 PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
 {
   PetscFunctionBeginUser;

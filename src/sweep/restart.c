@@ -9,13 +9,32 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#define VERSION 2 /* of the format */
+#define VERSION   3    /* of the format */
+#define MAX_PARTS 1000 /* of a scene; more are none */
 
 /* What stands before the parts of the scene and the vectors in each file */
 typedef struct {
   PetscReal last;
-  PetscInt  version, n_parts, n_samples, n_passed, n_used, first, n, n_blocks, n_local;
+  PetscInt  version, n_parts, n_parameters, n_samples, n_passed, n_used, first, n, n_blocks, n_local;
 } Header;
+
+/* The places, and the values of all parameters there: what was identified and which pairs are closed belong to them */
+static PetscErrorCode GridAddChecksum(const SweepGrid *grid, Checksum c)
+{
+  PetscReal *p;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(grid->n_parameters, &p));
+  PetscCall(ChecksumAddInts(c, 3, (const PetscInt[]){grid->n_parameters, grid->n_groups, grid->n_places}));
+  PetscCall(ChecksumAddReals(c, grid->n_parameters, grid->base));
+  for (PetscInt i = 0; i < grid->n_places; i++) {
+    GridFill(grid, &grid->place[i], p);
+    PetscCall(ChecksumAddInts(c, 2, (const PetscInt[]){grid->place[i].point, grid->place[i].status}));
+    PetscCall(ChecksumAddReals(c, grid->n_parameters, p));
+  }
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
+}
 
 /* What a sweep must share with the one that it goes on with */
 static PetscErrorCode SweepAddChecksum(Sweep sweep, Checksum c)
@@ -39,10 +58,8 @@ static PetscErrorCode SweepAddChecksum(Sweep sweep, Checksum c)
   PetscCall(ChecksumSetPart(c, "the sweep"));
   PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){size}));
   PetscCall(ChecksumAddReals(c, 1, &sweep->rtol));
-  for (PetscInt k = 0; k < grid->n_axes; k++) {
-    PetscCall(ChecksumAddString(c, parameters[grid->parameter[k]].name));
-    PetscCall(ChecksumAddReals(c, grid->n[k], grid->value[k]));
-  }
+  for (PetscInt k = 0; k < grid->n_axes; k++) PetscCall(ChecksumAddString(c, parameters[grid->parameter[k]].name));
+  PetscCall(GridAddChecksum(grid, c));
   PetscFunctionReturn(0);
 }
 
@@ -121,8 +138,9 @@ PetscErrorCode SweepKeep(void *ctx)
   PetscCall(PetscMemzero(&h, sizeof(h)));
   h.version = VERSION;
   PetscCall(ChecksumGetParts(sweep->scene, &h.n_parts, &scene));
-  h.last      = sweep->greedy.last;
-  h.n_passed  = sweep->greedy.n_passed;
+  h.n_parameters = sweep->grid.n_parameters;
+  h.last         = sweep->greedy.last;
+  h.n_passed     = sweep->greedy.n_passed;
   h.n_samples = sweep->greedy.n_samples, h.n_used = basis->reduced.n_used;
   h.first = sweep->n_kept, h.n = basis->reduced.n, h.n_blocks = basis->n_blocks;
   PetscCall(BVGetSizes(basis->vectors, &h.n_local, NULL, NULL));
@@ -151,21 +169,19 @@ PetscErrorCode SweepKeep(void *ctx)
   PetscFunctionReturn(0);
 }
 
-/* Reads the parts of the scene; good = whether they are those of this sweep */
-static PetscErrorCode SceneCheck(Sweep sweep, FILE *file, const Header *h, PetscBool *good)
+/* Reads the parts of the scene; good = whether they are those of this sweep, names = of those that differ */
+static PetscErrorCode SceneCheck(Sweep sweep, FILE *file, const Header *h, PetscBool *good, char names[256])
 {
-  const ChecksumPart *own;
-  ChecksumPart       *kept;
-  PetscInt            n;
-  char                names[256];
+  ChecksumPart *kept;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscStrncpy(names, *good ? "the format of the files" : "", 256));
   if (!*good) PetscFunctionReturn(0);
-  PetscCall(ChecksumGetParts(sweep->scene, &n, &own));
-  if (h->version != VERSION || h->n_parts != n) *good = PETSC_FALSE;
-  PetscCall(PetscCalloc1(n, &kept));
-  Transfer(file, PETSC_FALSE, kept, sizeof(*kept), n, good);
-  PetscCall(ChecksumCompare(sweep->scene, n, kept, sizeof(names), names));
+  *good = h->version == VERSION && h->n_parts >= 0 && h->n_parts <= MAX_PARTS ? PETSC_TRUE : PETSC_FALSE;
+  if (!*good) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(h->n_parts, &kept));
+  Transfer(file, PETSC_FALSE, kept, sizeof(*kept), h->n_parts, good);
+  if (*good) PetscCall(ChecksumCompare(sweep->scene, h->n_parts, kept, 256, names));
   if (names[0]) *good = PETSC_FALSE;
   PetscCall(PetscFree(kept));
   PetscFunctionReturn(0);
@@ -175,7 +191,7 @@ static PetscErrorCode SceneCheck(Sweep sweep, FILE *file, const Header *h, Petsc
 static PetscErrorCode FileResume(Sweep sweep, PetscInt k, PetscBool *good)
 {
   Basis   *basis = &sweep->basis;
-  char     name[PETSC_MAX_PATH_LEN];
+  char     name[PETSC_MAX_PATH_LEN], names[256];
   Header   h;
   FILE    *file;
   PetscInt n_local;
@@ -185,10 +201,15 @@ static PetscErrorCode FileResume(Sweep sweep, PetscInt k, PetscBool *good)
   file  = fopen(name, "rb");
   *good = file ? PETSC_TRUE : PETSC_FALSE;
   Transfer(file, PETSC_FALSE, &h, sizeof(h), 1, good);
-  PetscCall(SceneCheck(sweep, file, &h, good));
+  PetscCall(SceneCheck(sweep, file, &h, good, names));
+  if (!k && names[0])
+    PetscCall(PetscFPrintf(sweep->comm, stderr,
+                           "squeal: warning: '%s' is of another scene, which differs in: %s; the sweep begins anew\n",
+                           name, names));
   PetscCall(BVGetSizes(basis->vectors, &n_local, NULL, NULL));
-  if (*good && (h.n < h.first || h.n_used > h.n || h.first != basis->reduced.n || h.n_local != n_local ||
-                h.n_samples > sweep->greedy.max_samples || h.n_blocks > BASIS_MAX_BLOCKS))
+  if (*good &&
+      (h.n_parameters != sweep->grid.n_parameters || h.n < h.first || h.n_used > h.n || h.first != basis->reduced.n ||
+       h.n_local != n_local || h.n_samples > sweep->greedy.max_samples || h.n_blocks > BASIS_MAX_BLOCKS))
     *good = PETSC_FALSE;
   PetscCall(AllGood(sweep->comm, good));
   if (*good) {
