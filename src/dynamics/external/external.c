@@ -158,7 +158,8 @@ PetscErrorCode ExternalAddChecksum(External external, Checksum c)
     const Impulse *hit = &external->impulses[i];
 
     PetscCall(ChecksumSetPart(c, "impulse %s", hit->name));
-    PetscCall(ChecksumAddInts(c, 1, &i)); /* the order counts */
+    PetscCall(ChecksumAddInts(c, 1, &i));       /* the order counts */
+    PetscCall(ChecksumAddString(c, hit->part)); /* nodes of two bodies may share a place */
     PetscCall(ChecksumAddReals(c, 3, hit->x));
     PetscCall(ChecksumAddReals(c, 3, hit->impulse));
     PetscCall(ChecksumAddReals(c, 1, &hit->time));

@@ -217,6 +217,7 @@ PetscErrorCode HistoryAddChecksum(History h, Checksum c)
   PetscCall(ChecksumSetPart(c, "probes"));
   for (PetscInt i = 0; i < h->n_probes; i++) {
     PetscCall(ChecksumAddString(c, h->probes[i].name));
+    PetscCall(ChecksumAddString(c, h->probes[i].part));
     PetscCall(ChecksumAddReals(c, 3, h->probes[i].x));
   }
   PetscFunctionReturn(0);
