@@ -1,8 +1,9 @@
 /*
    Checksum - tells whether a run that is to go on is one of the same scene. Each room adds what it has read of the
    options, and the mesh, under the names of the parts that they belong to ("the mesh", "contact pad"); a part has a sum
-   of 64 bits, so that a difference can be named. Numbers count bit by bit. What all ranks know alike is added by each
-   of them; what they have in pieces, in any order, is summed over them: the sums do not depend on the number of ranks.
+   of 64 bits, so that a difference can be named. Numbers count bit by bit, but -0 as 0. What all ranks know alike is
+   added by each of them; what they have in pieces, in any order, is summed over them: the sums do not depend on the
+   number of ranks.
 */
 #pragma once
 

@@ -75,8 +75,13 @@ static PetscErrorCode ChecksumAdd(Checksum c, const void *bytes, size_t size)
 
 PetscErrorCode ChecksumAddReals(Checksum c, PetscInt n, const PetscReal values[])
 {
+  PetscReal *plain;
+
   PetscFunctionBeginUser;
-  PetscCall(ChecksumAdd(c, values, (size_t)n * sizeof(*values)));
+  PetscCall(PetscMalloc1(n, &plain));
+  for (PetscInt i = 0; i < n; i++) plain[i] = values[i] + 0.0; /* -0 becomes 0 */
+  PetscCall(ChecksumAdd(c, plain, (size_t)n * sizeof(*plain)));
+  PetscCall(PetscFree(plain));
   PetscFunctionReturn(0);
 }
 
