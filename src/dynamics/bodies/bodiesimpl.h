@@ -72,8 +72,7 @@ typedef struct {
   PetscInt     own, *start;    /* [n_ranks + 1] */
   PetscInt    *vertex;         /* [start[n_ranks]] local vertices shared with each, in the same order on both */
   PetscReal   *send, *receive; /* [start[n_ranks]][3] */
-  int          n_messages;     /* to the other ranks */
-  MPI_Request *request;        /* [2 n_messages], receiving first */
+  MPI_Request *request;        /* [2 (n_ranks - 1)], receiving first */
 } Shared;
 
 struct _p_Bodies {

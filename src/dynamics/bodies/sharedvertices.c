@@ -5,8 +5,7 @@
 */
 #include "bodiesimpl.h"
 
-#define SHARED_TAG  5501
-#define SHARED_MOST 480 /* numbers of a message: up to 4 kB it leaves at once, and its receiver need not be waiting */
+#define SHARED_TAG 5501
 
 /* Vertices that this rank has in common with each other one, and all of these in its own name */
 static PetscErrorCode SharedFindRanks(Shared *share, const Mesh *mesh)
@@ -45,31 +44,26 @@ static PetscErrorCode SharedFindRanks(Shared *share, const Mesh *mesh)
   PetscFunctionReturn(0);
 }
 
-/* Persistent requests with the other ranks, receiving first, of at most SHARED_MOST numbers each */
+/* Persistent requests with the other ranks, receiving first */
 static PetscErrorCode SharedCreateRequests(Shared *share)
 {
   const PetscInt n_values = 3 * share->start[share->n_ranks];
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < share->n_ranks; i++) {
-    const PetscInt n = 3 * (share->start[i + 1] - share->start[i]);
+  PetscCall(PetscMalloc3(n_values, &share->send, n_values, &share->receive, 2 * (share->n_ranks - 1), &share->request));
+  for (PetscInt i = 0, k = 0; i < share->n_ranks; i++) {
+    const PetscInt    begin = 3 * share->start[i];
+    const PetscMPIInt rank  = (PetscMPIInt)share->rank[i];
+    PetscMPIInt       n;
 
-    if (share->rank[i] == share->self)
-      share->own = i;
-    else
-      share->n_messages += (int)((n + SHARED_MOST - 1) / SHARED_MOST);
+    if (rank == share->self) share->own = i;
+    if (rank == share->self) continue;
+    PetscCall(PetscMPIIntCast(3 * share->start[i + 1] - begin, &n));
+    PetscCallMPI(
+      MPI_Recv_init(share->receive + begin, n, MPIU_REAL, rank, SHARED_TAG, share->comm, &share->request[k]));
+    PetscCallMPI(MPI_Send_init(share->send + begin, n, MPIU_REAL, rank, SHARED_TAG, share->comm,
+                               &share->request[share->n_ranks - 1 + k++]));
   }
-  PetscCall(PetscMalloc3(n_values, &share->send, n_values, &share->receive, 2 * share->n_messages, &share->request));
-  for (PetscInt i = 0, k = 0; i < share->n_ranks; i++)
-    for (PetscInt at = 3 * share->start[i], n; at < 3 * share->start[i + 1] && i != share->own; at += n, k++) {
-      const int rank = (int)share->rank[i];
-
-      n = PetscMin(SHARED_MOST, 3 * share->start[i + 1] - at);
-      PetscCallMPI(
-        MPI_Recv_init(&share->receive[at], (int)n, MPIU_REAL, rank, SHARED_TAG, share->comm, &share->request[k]));
-      PetscCallMPI(MPI_Send_init(&share->send[at], (int)n, MPIU_REAL, rank, SHARED_TAG, share->comm,
-                                 &share->request[share->n_messages + k]));
-    }
   PetscFunctionReturn(0);
 }
 
@@ -88,25 +82,28 @@ PetscErrorCode SharedSetUp(Bodies b)
 PetscErrorCode SharedBegin(Shared *share, const Layout *layout, const PetscReal x[])
 {
   const PetscInt own = 3 * share->start[share->own], n_own = 3 * share->start[share->own + 1] - own;
+  const int      n = (int)share->n_ranks - 1;
 
   PetscFunctionBeginUser;
-  if (!share->n_messages) PetscFunctionReturn(0);
-  PetscCallMPI(MPI_Startall(share->n_messages, share->request));
+  if (!n) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Startall(n, share->request));
   for (PetscInt i = 0; i < share->start[share->n_ranks]; i++) {
     const PetscInt at = layout->at[share->vertex[i]], step = layout->step[share->vertex[i]];
 
     for (PetscInt j = 0; j < 3; j++) share->send[3 * i + j] = x[at + j * step];
   }
-  PetscCallMPI(MPI_Startall(share->n_messages, share->request + share->n_messages));
+  PetscCallMPI(MPI_Startall(n, share->request + n));
   PetscCall(PetscArraycpy(share->receive + own, share->send + own, n_own));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode SharedEnd(Shared *share, const Layout *layout, PetscReal x[])
 {
+  const int n = (int)share->n_ranks - 1;
+
   PetscFunctionBeginUser;
-  if (!share->n_messages) PetscFunctionReturn(0);
-  PetscCallMPI(MPI_Waitall(2 * share->n_messages, share->request, MPI_STATUSES_IGNORE));
+  if (!n) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Waitall(2 * n, share->request, MPI_STATUSES_IGNORE));
   for (PetscInt i = share->start[share->own]; i < share->start[share->own + 1]; i++)
     for (PetscInt j = 0; j < 3; j++) x[layout->at[share->vertex[i]] + j * layout->step[share->vertex[i]]] = 0;
   for (PetscInt i = 0; i < share->start[share->n_ranks]; i++) {
@@ -120,7 +117,7 @@ PetscErrorCode SharedEnd(Shared *share, const Layout *layout, PetscReal x[])
 PetscErrorCode SharedDestroy(Shared *share)
 {
   PetscFunctionBeginUser;
-  for (int i = 0; i < 2 * share->n_messages; i++) PetscCallMPI(MPI_Request_free(&share->request[i]));
+  for (PetscInt i = 0; i < 2 * (share->n_ranks - 1); i++) PetscCallMPI(MPI_Request_free(&share->request[i]));
   PetscCall(PetscFree3(share->send, share->receive, share->request));
   PetscCall(PetscFree3(share->rank, share->start, share->vertex));
   PetscCall(PetscFree(share->shared));
