@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#define VERSION   3    /* of the format */
-#define MAX_PARTS 1000 /* of a scene; more are none */
+#define VERSION         3    /* of the format */
+#define SWEEP_MAX_PARTS 1000 /* of a scene; more are none */
 
 /* What stands before the parts of the scene and the vectors in each file */
 typedef struct {
@@ -177,7 +177,7 @@ static PetscErrorCode SceneCheck(Sweep sweep, FILE *file, const Header *h, Petsc
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(names, *good ? "the format of the files" : "", 256));
   if (!*good) PetscFunctionReturn(0);
-  *good = h->version == VERSION && h->n_parts >= 0 && h->n_parts <= MAX_PARTS ? PETSC_TRUE : PETSC_FALSE;
+  *good = h->version == VERSION && h->n_parts >= 0 && h->n_parts <= SWEEP_MAX_PARTS ? PETSC_TRUE : PETSC_FALSE;
   if (!*good) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(h->n_parts, &kept));
   Transfer(file, PETSC_FALSE, kept, sizeof(*kept), h->n_parts, good);
