@@ -210,11 +210,6 @@ PetscErrorCode PencilCheckSliding(Pencil pencil)
                "-%s_friction_damping needs a positive -%s_force (N), or -modes_contact static", c[i].name, c[i].name);
     PetscCheck(c[i].damping || c[i].mu_slope == 0, pencil->comm, PETSC_ERR_USER_INPUT,
                "-%s_mu_slope does nothing without -%s_friction_damping", c[i].name, c[i].name);
-    PetscCheck(
-      !c[i].damping || c[i].mu > 0 || c[i].mu_slope >= 0, pencil->comm, PETSC_ERR_USER_INPUT,
-      "-%s_mu_slope %.6g with -%s_mu 0: friction cannot fall below 0, where its law has no slope; give a positive "
-      "-%s_mu, or no slope",
-      c[i].name, (double)c[i].mu_slope, c[i].name, c[i].name);
   }
   PetscFunctionReturn(0);
 }
