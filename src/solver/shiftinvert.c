@@ -124,15 +124,28 @@ PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, PetscReal shift, 
   PetscFunctionReturn(0);
 }
 
-/* y = A^-1 x or A^-T x */
-static PetscErrorCode ShiftInvertRun(PC pc, PetscErrorCode (*solve)(KSP, Vec, Vec), Vec x, Vec y)
+PetscErrorCode ShiftInvertSolve(const ShiftInvert *si, PetscBool transposed, Vec b, Vec x)
+{
+  KSPConvergedReason reason;
+
+  PetscFunctionBeginUser;
+  PetscCall(transposed ? KSPSolveTranspose(si->ksp, b, x) : KSPSolve(si->ksp, b, x));
+  PetscCall(KSPGetConvergedReason(si->ksp, &reason));
+  PetscCheck(reason >= 0, si->comm, PETSC_ERR_NOT_CONVERGED,
+             "the linear solver failed (%s): see -st_ksp_type, -st_ksp_rtol and -st_ksp_max_it, or leave them out",
+             KSPConvergedReasons[reason]);
+  PetscFunctionReturn(0);
+}
+
+/* y = A^-1 x or A^-T x, a step of the eigensolver */
+static PetscErrorCode ShiftInvertRun(PC pc, PetscBool transposed, Vec x, Vec y)
 {
   ShiftInvert *si;
 
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(pc, &si));
   PetscCall(EventBegin(EVENT_SOLVE));
-  PetscCall(solve(si->ksp, x, y));
+  PetscCall(ShiftInvertSolve(si, transposed, x, y));
   PetscCall(EventEnd(EVENT_SOLVE));
   PetscCall(ProgressStep(si->progress));
   PetscFunctionReturn(0);
@@ -140,12 +153,12 @@ static PetscErrorCode ShiftInvertRun(PC pc, PetscErrorCode (*solve)(KSP, Vec, Ve
 
 static PetscErrorCode ShiftInvertApply(PC pc, Vec x, Vec y)
 {
-  return ShiftInvertRun(pc, KSPSolve, x, y);
+  return ShiftInvertRun(pc, PETSC_FALSE, x, y);
 }
 
 static PetscErrorCode ShiftInvertApplyTranspose(PC pc, Vec x, Vec y)
 {
-  return ShiftInvertRun(pc, KSPSolveTranspose, x, y);
+  return ShiftInvertRun(pc, PETSC_TRUE, x, y);
 }
 
 PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st)
@@ -163,46 +176,6 @@ PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st)
   PetscCall(PCSetType(pc, PCSHELL));
   PetscCall(PCShellSetContext(pc, si));
   PetscCall(PCShellSetApply(pc, transposed ? ShiftInvertApplyTranspose : ShiftInvertApply));
-  PetscFunctionReturn(0);
-}
-
-/* Column by column, for solvers other than a factorisation */
-static PetscErrorCode ShiftInvertApplyColumns(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X)
-{
-  PetscInt n;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatGetSize(B, NULL, &n));
-  for (PetscInt j = 0; j < n; j++) {
-    Vec b, x;
-
-    PetscCall(MatDenseGetColumnVecRead(B, j, &b));
-    PetscCall(MatDenseGetColumnVecWrite(X, j, &x));
-    PetscCall(transposed ? KSPSolveTranspose(si->ksp, b, x) : KSPSolve(si->ksp, b, x));
-    PetscCall(MatDenseRestoreColumnVecWrite(X, j, &x));
-    PetscCall(MatDenseRestoreColumnVecRead(B, j, &b));
-  }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X)
-{
-  PetscBool direct, factored;
-  Mat       F;
-  PC        pc;
-
-  PetscFunctionBeginUser;
-  PetscCall(KSPGetPC(si->ksp, &pc));
-  PetscCall(PetscObjectTypeCompare((PetscObject)si->ksp, KSPPREONLY, &direct));
-  PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, &factored, PCLU, PCCHOLESKY, ""));
-  PetscCall(EventBegin(EVENT_SOLVE));
-  if (direct && factored) {
-    PetscCall(PCFactorGetMatrix(pc, &F));
-    PetscCall(transposed ? MatMatSolveTranspose(F, B, X) : MatMatSolve(F, B, X));
-  } else {
-    PetscCall(ShiftInvertApplyColumns(si, transposed, B, X));
-  }
-  PetscCall(EventEnd(EVENT_SOLVE));
   PetscFunctionReturn(0);
 }
 

@@ -20,7 +20,10 @@ PETSC_INTERN PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, Pets
                                               Progress *progress, ShiftInvert *si);
 PETSC_INTERN PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st);
 PETSC_INTERN PetscErrorCode ShiftInvertDestroy(ShiftInvert *si);
-/* X = A^-1 B, or A^-T B, for dense B, X of the same size: many right-hand sides at once */
+/* x = A^-1 b, or A^-T b. PETSC_ERR_NOT_CONVERGED where an iterative solver of the user's did not converge */
+PETSC_INTERN PetscErrorCode ShiftInvertSolve(const ShiftInvert *si, PetscBool transposed, Vec b, Vec x);
+/* block.c - X = A^-1 B, or A^-T B, for dense B, X of the same size and any leading dimension: many right-hand sides at
+   once. PETSC_ERR_LIB where the last column does not solve its system: a library behaves otherwise than assumed */
 PETSC_INTERN PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X);
 /* Frictionless modes with frequency below omega (rad/s) by Sylvester's law of inertia; symmetric undamped pencil */
 PETSC_INTERN PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal omega, Progress *progress,

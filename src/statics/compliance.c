@@ -202,7 +202,7 @@ PetscErrorCode ComplianceSolve(const Compliance *c, PetscReal friction, Vec f, c
   else
     PetscCall(VecSet(c->b, 0));
   PetscCall(ComplianceAddForces(c, friction, l, w, c->b));
-  PetscCall(KSPSolve(c->inverse.ksp, c->b, u));
+  PetscCall(ShiftInvertSolve(&c->inverse, PETSC_FALSE, c->b, u));
   PetscFunctionReturn(0);
 }
 

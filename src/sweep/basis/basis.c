@@ -108,14 +108,15 @@ static PetscErrorCode BlockOrthonormalise(const Basis *basis, BV W, PetscReal dr
 static PetscErrorCode BlockCopy(Mat H, PetscBool transposed, PetscInt n, PetscInt i, PetscInt j, PetscReal A[])
 {
   const PetscScalar *h;
-  PetscInt           rows, columns;
+  PetscInt           rows, columns, stride;
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(H, &rows, &columns));
+  PetscCall(MatDenseGetLDA(H, &stride));
   PetscCall(MatDenseGetArrayRead(H, &h));
   for (PetscInt c = 0; c < columns; c++)
     for (PetscInt r = 0; r < rows; r++)
-      A[transposed ? (j + r) * n + i + c : (j + c) * n + i + r] = PetscRealPart(h[c * rows + r]);
+      A[transposed ? (j + r) * n + i + c : (j + c) * n + i + r] = PetscRealPart(h[c * stride + r]);
   PetscCall(MatDenseRestoreArrayRead(H, &h));
   PetscFunctionReturn(0);
 }

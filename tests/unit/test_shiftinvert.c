@@ -1,0 +1,232 @@
+/*
+   Unit test of solver/block.c: solves in blocks with dense matrices whose columns lie apart in memory (leading dimension
+   above the local rows), as newer SLEPc hands them out, and the products with such matrices that the sweep relies on.
+
+   Reference: X is chosen at random, B = A X made column by column with MatMult() or MatMultTranspose().
+*/
+#include "check.h"
+#include "solver/ordering.h"
+#include "solver/shiftinvert.h"
+
+#define N       200
+#define COLUMNS 7
+
+/* A band of half width 3 with a strong diagonal at random; K unsymmetric or symmetric, M the identity */
+static PetscErrorCode MakePencil(PetscBool symmetric, PencilMatrices *pencil)
+{
+  PetscInt    first, last;
+  PetscRandom random;
+
+  PetscFunctionBeginUser;
+  *pencil = (PencilMatrices){.symmetric = symmetric};
+  PetscCall(MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, PETSC_DECIDE, N, N, 7, NULL, 6, NULL, &pencil->K));
+  PetscCall(MatGetOwnershipRange(pencil->K, &first, &last));
+  PetscCall(PetscRandomCreate(PETSC_COMM_SELF, &random));
+  for (PetscInt i = 0; i < N; i++)
+    for (PetscInt j = i; j < PetscMin(N, i + 4); j++) {
+      PetscReal value[2];
+
+      PetscCall(PetscRandomGetValueReal(random, &value[0]));
+      PetscCall(PetscRandomGetValueReal(random, &value[1]));
+      if (i >= first && i < last) PetscCall(MatSetValue(pencil->K, i, j, value[0] + (i == j ? 4 : 0), INSERT_VALUES));
+      if (j != i && j >= first && j < last)
+        PetscCall(MatSetValue(pencil->K, j, i, value[symmetric ? 0 : 1], INSERT_VALUES));
+    }
+  PetscCall(PetscRandomDestroy(&random));
+  PetscCall(MatAssemblyBegin(pencil->K, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(pencil->K, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatDuplicate(pencil->K, MAT_DO_NOT_COPY_VALUES, &pencil->M));
+  PetscCall(MatZeroEntries(pencil->M));
+  PetscCall(MatShift(pencil->M, 1));
+  PetscFunctionReturn(0);
+}
+
+/* A dense matrix whose columns are `apart` entries apart beyond their length, filled with 7, gaps too */
+static PetscErrorCode MakeDense(Mat A, PetscInt apart, PetscScalar **memory, Mat *D)
+{
+  PetscInt n, lda;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetLocalSize(A, &n, NULL));
+  lda = n + apart;
+  PetscCall(PetscMalloc1(lda * COLUMNS, memory));
+  for (PetscInt i = 0; i < lda * COLUMNS; i++) (*memory)[i] = 7;
+  PetscCall(MatCreate(PETSC_COMM_WORLD, D));
+  PetscCall(MatSetSizes(*D, n, PETSC_DECIDE, N, COLUMNS));
+  PetscCall(MatSetType(*D, MATDENSE));
+  PetscCall(MatDenseSetLDA(*D, lda));
+  PetscCall(MatSeqDenseSetPreallocation(*D, *memory));
+  PetscCall(MatMPIDenseSetPreallocation(*D, *memory));
+  PetscCall(MatAssemblyBegin(*D, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*D, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+/* B = A X or A' X, column by column */
+static PetscErrorCode Multiply(Mat A, PetscBool transposed, Mat X, Mat B)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < COLUMNS; j++) {
+    Vec x, b;
+
+    PetscCall(MatDenseGetColumnVecRead(X, j, &x));
+    PetscCall(MatDenseGetColumnVecWrite(B, j, &b));
+    PetscCall(transposed ? MatMultTranspose(A, x, b) : MatMult(A, x, b));
+    PetscCall(MatDenseRestoreColumnVecWrite(B, j, &b));
+    PetscCall(MatDenseRestoreColumnVecRead(X, j, &x));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Largest difference of two dense matrices, column by column */
+static PetscErrorCode Difference(Mat X, Mat Y, PetscReal *largest)
+{
+  PetscFunctionBeginUser;
+  *largest = 0;
+  for (PetscInt j = 0; j < COLUMNS; j++) {
+    PetscReal here;
+    Vec       x, y, d;
+
+    PetscCall(MatDenseGetColumnVecRead(X, j, &x));
+    PetscCall(MatDenseGetColumnVecRead(Y, j, &y));
+    PetscCall(VecDuplicate(x, &d));
+    PetscCall(VecWAXPY(d, -1, x, y));
+    PetscCall(VecNorm(d, NORM_INFINITY, &here));
+    *largest = PetscMax(*largest, here);
+    PetscCall(VecDestroy(&d));
+    PetscCall(MatDenseRestoreColumnVecRead(Y, j, &y));
+    PetscCall(MatDenseRestoreColumnVecRead(X, j, &x));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: MUMPS is handed columns that lie apart, which it takes for columns that follow one another; the right
+   side is overwritten */
+static PetscErrorCode TestSolve(PetscBool symmetric, PetscBool transposed, const PetscInt apart[2], int *failed)
+{
+  PencilMatrices pencil;
+  PetscScalar   *memory[4];
+  PetscReal      worst[2];
+  ShiftInvert    si;
+  Progress       progress = {0};
+  Mat            B, Copy, X, Y;
+
+  PetscFunctionBeginUser;
+  PetscCall(MakePencil(symmetric, &pencil));
+  PetscCall(ShiftInvertCreate(&pencil, 0, PETSC_FALSE, &progress, &si));
+  PetscCall(MakeDense(pencil.K, 2, &memory[0], &X));
+  PetscCall(MakeDense(pencil.K, apart[0], &memory[1], &B));
+  PetscCall(MakeDense(pencil.K, apart[1], &memory[2], &Y));
+  PetscCall(MakeDense(pencil.K, 0, &memory[3], &Copy));
+  PetscCall(MatSetRandom(X, NULL));
+  PetscCall(Multiply(pencil.K, transposed, X, B));
+  PetscCall(Multiply(pencil.K, transposed, X, Copy));
+  PetscCall(ShiftInvertApplyBlock(&si, transposed, B, Y));
+  PetscCall(Difference(X, Y, &worst[0]));
+  PetscCall(Difference(B, Copy, &worst[1]));
+  printf("     %s%s, columns %d and %d apart\n", symmetric ? "symmetric" : "unsymmetric",
+         transposed ? ", transposed" : "", (int)apart[0], (int)apart[1]);
+  *failed += CheckClose("largest error of X", worst[0], 0, 1e-12) + CheckClose("change of B", worst[1], 0, 0);
+  PetscCall(ShiftInvertDestroy(&si));
+  for (int i = 0; i < 4; i++) PetscCall(MatDestroy((Mat *[]){&X, &B, &Y, &Copy}[i]));
+  for (int i = 0; i < 4; i++) PetscCall(PetscFree(memory[i]));
+  PetscCall(MatDestroy(&pencil.K));
+  PetscCall(MatDestroy(&pencil.M));
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: a library solves another system than it was given and nobody looks. Here the factors stay those of K while
+   the matrix is changed in one entry of the last row. */
+static PetscErrorCode TestTrust(int *failed)
+{
+  PencilMatrices pencil;
+  PetscErrorCode error;
+  PetscScalar   *memory[2];
+  ShiftInvert    si;
+  Progress       progress = {0};
+  Mat            A, B, X;
+
+  PetscFunctionBeginUser;
+  PetscCall(MakePencil(PETSC_FALSE, &pencil));
+  PetscCall(ShiftInvertCreate(&pencil, 0, PETSC_FALSE, &progress, &si));
+  PetscCall(MakeDense(pencil.K, 0, &memory[0], &B));
+  PetscCall(MakeDense(pencil.K, 0, &memory[1], &X));
+  PetscCall(MatSetRandom(B, NULL));
+  PetscCall(ShiftInvertApplyBlock(&si, PETSC_FALSE, B, X));
+  PetscCall(KSPGetOperators(si.ksp, &A, NULL));
+  PetscCall(MatShift(A, 1e-3));
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  error = ShiftInvertApplyBlock(&si, PETSC_FALSE, B, X);
+  PetscCall(PetscPopErrorHandler());
+  *failed += CheckTrue("factors of another matrix are an error", error == PETSC_ERR_LIB, error);
+  PetscCall(ShiftInvertDestroy(&si));
+  PetscCall(MatDestroy(&B));
+  PetscCall(MatDestroy(&X));
+  for (int i = 0; i < 2; i++) PetscCall(PetscFree(memory[i]));
+  PetscCall(MatDestroy(&pencil.K));
+  PetscCall(MatDestroy(&pencil.M));
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: PETSc's products with a sparse matrix, or a scaling of rows, trust that columns follow one another */
+static PetscErrorCode TestProducts(int *failed)
+{
+  PencilMatrices pencil;
+  PetscScalar   *memory[2];
+  PetscReal      worst;
+  Vec            d;
+  Mat            X, B, AX;
+
+  PetscFunctionBeginUser;
+  PetscCall(MakePencil(PETSC_FALSE, &pencil));
+  PetscCall(MakeDense(pencil.K, 5, &memory[0], &X));
+  PetscCall(MakeDense(pencil.K, 3, &memory[1], &B));
+  PetscCall(MatSetRandom(X, NULL));
+  for (int transposed = 0; transposed < 2; transposed++) {
+    PetscCall(Multiply(pencil.K, (PetscBool)transposed, X, B));
+    PetscCall(transposed ? MatTransposeMatMult(pencil.K, X, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &AX)
+                         : MatMatMult(pencil.K, X, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &AX));
+    PetscCall(Difference(B, AX, &worst));
+    PetscCall(MatDestroy(&AX));
+    *failed += CheckClose(transposed ? "A' X" : "A X", worst, 0, 1e-13);
+  }
+  PetscCall(MatCreateVecs(pencil.K, &d, NULL));
+  PetscCall(VecSet(d, 3));
+  PetscCall(MatCopy(X, B, SAME_NONZERO_PATTERN));
+  PetscCall(MatDiagonalScale(B, d, NULL));
+  PetscCall(MatScale(X, 3));
+  PetscCall(Difference(B, X, &worst));
+  *failed += CheckClose("rows scaled by a diagonal", worst, 0, 1e-15);
+  PetscCall(VecDestroy(&d));
+  PetscCall(MatDestroy(&X));
+  PetscCall(MatDestroy(&B));
+  for (int i = 0; i < 2; i++) PetscCall(PetscFree(memory[i]));
+  PetscCall(MatDestroy(&pencil.K));
+  PetscCall(MatDestroy(&pencil.M));
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  static const PetscInt apart[4][2] = {
+    {0, 0},
+    {5, 0},
+    {0, 5},
+    {5, 3}
+  };
+  int failed = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
+  PetscCall(OrderingRegister());
+  for (int i = 0; i < 4; i++) {
+    PetscCall(TestSolve(PETSC_TRUE, PETSC_FALSE, apart[i], &failed));
+    PetscCall(TestSolve(PETSC_FALSE, PETSC_FALSE, apart[i], &failed));
+    PetscCall(TestSolve(PETSC_FALSE, PETSC_TRUE, apart[i], &failed));
+  }
+  PetscCall(TestTrust(&failed));
+  PetscCall(TestProducts(&failed));
+  PetscCall(PetscFinalize());
+  printf("%d failed\n", failed);
+  return failed ? 1 : 0;
+}
