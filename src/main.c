@@ -1,10 +1,6 @@
-static const char help[] =
-  "squeal: friction-induced vibration of bodies in sliding contact.\n"
-  "  squeal -options_file options/massi2005.yaml [-analysis modes|sweep|static|transient] [-output_dir DIR] [any "
-  "option]\n"
-  "  mpirun -n 2 squeal ... uses two ranks. SI units everywhere. Options files are YAML; later options override "
-  "earlier ones.\n";
-
+/*
+   squeal: friction-induced vibration of bodies in sliding contact. The chain of a run, from options to results.
+*/
 #include <squeal/squeal.h>
 #include <squeal/options.h>
 
@@ -61,7 +57,7 @@ static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
 
   PetscFunctionBeginUser;
   PetscCall(SquealSetFromOptions(comm));
-  PetscOptionsBegin(comm, NULL, "squeal", NULL);
+  PetscOptionsBegin(comm, NULL, "Analysis", NULL);
   PetscCall(
     PetscOptionsEList("-analysis", "what to compute", "squeal.h", analyses, N_ANALYSES, analyses[0], &analysis, NULL));
   PetscCall(PetscOptionsBool("-squeal_view", "print what was chosen and why, and the time of each stage", "squeal.h",
@@ -280,30 +276,41 @@ static PetscErrorCode Run(MPI_Comm comm)
 {
   Chain       chain  = {0};
   PetscViewer viewer = PETSC_VIEWER_STDOUT_(comm);
-  PetscBool   asked;
 
   PetscFunctionBeginUser;
   PetscCall(ChainCreate(comm, &chain));
-  PetscCall(PetscOptionsHasHelp(NULL, &asked));
-  if (!asked) {
-    PetscCall(OptionsCheckUnknown(comm, ReadAgain, NULL));
-    PetscCall(ResultsOpenDirectory(chain.results));
-    PetscCall(ChainSetUp(&chain));
-    PetscCall(ChainConnect(&chain, viewer));
-    PetscCall(ChainView(&chain));
-    PetscCall(ChainRun(&chain));
-    if (chain.view) PetscCall(SquealViewStages(comm, viewer));
-    PetscCall(ChainWarnHidden(comm, &chain));
-    PetscCall(OptionsWarnUnused(comm));
-  }
+  PetscCall(OptionsCheckUnknown(comm, ReadAgain, NULL));
+  if (chain.model) PetscCall(ModelCheckGiven(chain.model));
+  PetscCall(ResultsOpenDirectory(chain.results));
+  PetscCall(ChainSetUp(&chain));
+  PetscCall(ChainConnect(&chain, viewer));
+  PetscCall(ChainView(&chain));
+  PetscCall(ChainRun(&chain));
+  if (chain.view) PetscCall(SquealViewStages(comm, viewer));
+  PetscCall(ChainWarnHidden(comm, &chain));
+  PetscCall(OptionsWarnUnused(comm));
   PetscCall(ChainDestroy(&chain));
+  PetscFunctionReturn(0);
+}
+
+/* What the command line is for: help, nothing, or a run */
+static PetscErrorCode Answer(MPI_Comm comm, PetscBool no_arguments)
+{
+  PetscBool help;
+
+  PetscFunctionBeginUser;
+  PetscCall(SquealViewOptions(comm, ReadAgain, NULL, &help));
+  if (help) PetscFunctionReturn(0);
+  if (no_arguments) PetscCall(SquealViewUsage(comm));
+  PetscCall(Run(comm));
   PetscFunctionReturn(0);
 }
 
 int main(int argc, char **argv)
 {
-  PetscErrorCode error = SquealInitialize(&argc, &argv, help);
+  const PetscBool no_arguments = argc == 1 ? PETSC_TRUE : PETSC_FALSE;
+  PetscErrorCode  error        = SquealInitialize(&argc, &argv, NULL);
 
-  if (!error) error = Run(PETSC_COMM_WORLD);
+  if (!error) error = Answer(PETSC_COMM_WORLD, no_arguments);
   return SquealFinalize(error);
 }

@@ -107,6 +107,9 @@ PetscErrorCode ModelKeepTogether(Model model, const char set[]);
     heeded. Call before ModelSetUp(). Not collective, same call on all ranks. @*/
 PetscErrorCode ModelKeepSlabs(Model model);
 
+/*@ ModelCheckGiven - raises PETSC_ERR_USER_INPUT where the options tell of no mesh. Collective. @*/
+PetscErrorCode ModelCheckGiven(Model model);
+
 /*@
    ModelSetUp - generates or reads the mesh, checks its elements, partitions it, and lays out the unknowns. Collective.
 

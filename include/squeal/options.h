@@ -66,6 +66,10 @@ PetscErrorCode OptionsGetReals(OptionsItems PetscOptionsObject, const char optio
 PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
                               PetscInt values[]);
 
+/*@ OptionsGetWords - reads a list of at most n words; on return n of them, 0 where the option is not given. Collective.
+    The caller frees them. @*/
+PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char *words[]);
+
 /*@
    OptionsGetViewer - reads where something is to be shown, in PETSc's words: "-modes_view" is stdout,
    "-modes_view ascii:modes.txt" a file, "-modes_view ascii:modes.txt::append" its end. Collective.

@@ -18,13 +18,42 @@ typedef enum {
   SQUEAL_N_STAGES
 } SquealStage;
 
+/* Versions of the program and of what it stands on */
+typedef struct {
+  char squeal[32], petsc[32], slepc[32], mumps[32], mpi[MPI_MAX_LIBRARY_VERSION_STRING];
+} SquealVersions;
+
+/*@ SquealGetVersions - e.g. "3.18.5". Not collective; MPI must be up. @*/
+void SquealGetVersions(SquealVersions *versions);
+
 /*@
    SquealInitialize - starts MPI, PETSc and SLEPc, with one-line error messages, log stages and the citation.
    Collective.
 
+   Input Parameter:
+.  help - text of a program of one's own for PETSc's -help; NULL for squeal itself, where -h, --help, -version and
+          --version are answered here and end the program with status 0
+
    Errors: an options file that cannot be read.
 @*/
 PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[]);
+
+/*@ SquealViewUsage - prints a few lines for a command line without any options. Collective. @*/
+PetscErrorCode SquealViewUsage(MPI_Comm comm);
+
+/*@
+   SquealViewOptions - with -help, prints all options of squeal by the room that reads them, with unit, value in force
+   and default; without a scene for one name in each list. With -help_all those of PETSc and SLEPc too, as PETSc does.
+   Collective.
+
+   Input Parameters:
++  read_again - reads all options of all rooms on objects of its own
+-  ctx        - its context
+   Output Parameter:
+.  asked - whether there was -help or -help_all
+@*/
+PetscErrorCode SquealViewOptions(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx,
+                                 PetscBool *asked);
 
 /*@
    SquealSetFromOptions - what concerns every room. Collective.

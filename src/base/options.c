@@ -2,16 +2,16 @@
    Lists of names, values that are no numbers, and unknown options.
 
    An option that nobody read is an error unless its prefix is one of PETSc's or SLEPc's. The valid names are exactly
-   those that -help would print, so they are collected by reading all options once more with PETSc's help printer
-   replaced; this happens only when there is something to complain about. Nearest = smallest Damerau-Levenshtein
+   those that -help would print, so they are collected by reading all options once more (help.c); this happens only when
+   there is something to complain about. Nearest = smallest Damerau-Levenshtein
    distance (adjacent swaps count once): F. J. Damerau, Comm. ACM 7, 1964; a prefix left out counts as one edit.
 */
+#include "help.h"
 #include <squeal/options.h>
 #include <ctype.h>
-#include <stdarg.h>
+#include <stdlib.h>
 
-#define MAX_VALID   1024
-#define MAX_NAME    128
+#define MAX_NAME    HELP_MAX_NAME
 #define MAX_RECORDS 64   /* names in one list of the scene */
 #define MAX_LIST    4096 /* characters of a list of names */
 
@@ -75,14 +75,11 @@ static PetscErrorCode NameCheckFree(MPI_Comm comm, const char option[], const ch
 PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], PetscInt max, PetscInt *n,
                                char *names[])
 {
-  PetscBool set, same;
+  PetscBool same;
   PetscInt  count = max;
 
   PetscFunctionBeginUser;
-  PetscOptionsBegin(comm, NULL, "Names in the scene", NULL);
-  PetscCall(PetscOptionsStringArray(option, help, "none", names, &count, &set));
-  PetscOptionsEnd();
-  if (!set) count = 0;
+  PetscCall(OptionsGetWords(comm, option, help, &count, names));
   for (PetscInt i = 0; i < count; i++) {
     PetscCheck(NameIsIdentifier(names[i]), comm, PETSC_ERR_USER_INPUT,
                "%s '%s' is no name: use letters, digits and underscores, a letter first", option, names[i]);
@@ -195,48 +192,6 @@ static int NameDistance(const char unknown[], const char valid[])
   return EditDistance(unknown, valid);
 }
 
-/* Names that the help printer saw. PETSc's printer is a bare function pointer without context: hence the one static
-   record, alive only inside CollectValid(). */
-static struct {
-  int  n;
-  char name[MAX_VALID][MAX_NAME];
-} * collected;
-
-/* Stands in for PetscHelpPrintf: keeps the names from lines such as "  -disc_young: <now ...>" */
-static PetscErrorCode CollectHelp(MPI_Comm comm, const char format[], ...)
-{
-  char        text[4096];
-  size_t      length;
-  const char *c;
-  va_list     args;
-
-  PetscFunctionBeginUser;
-  (void)comm;
-  va_start(args, format);
-  PetscCall(PetscVSNPrintf(text, sizeof(text), format, &length, args));
-  va_end(args);
-  for (c = text; *c == ' '; c++) continue;
-  if (*c++ != '-' || collected->n == MAX_VALID) PetscFunctionReturn(0);
-  length = strspn(c, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_");
-  length = PetscMin(length, MAX_NAME - 1);
-  PetscCall(PetscStrncpy(collected->name[collected->n++], c, length + 1));
-  PetscFunctionReturn(0);
-}
-
-/* Fills `collected` with all valid names */
-static PetscErrorCode CollectValid(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx)
-{
-  PetscErrorCode (*const printer)(MPI_Comm, const char[], ...) = PetscHelpPrintf;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsSetValue(NULL, "-help", NULL));
-  PetscCall(PetscOptionsHelpPrintedDestroy(&PetscOptionsHelpPrintedSingleton)); /* forget which titles were printed */
-  PetscHelpPrintf = CollectHelp;
-  PetscCall((*read_again)(comm, ctx));
-  PetscHelpPrintf = printer;
-  PetscFunctionReturn(0);
-}
-
 /* Whether PETSc or SLEPc read this option */
 static PetscBool OptionIsLibrarys(const char name[])
 {
@@ -257,6 +212,7 @@ PetscErrorCode OptionsCheckUnknown(MPI_Comm comm, PetscErrorCode (*read_again)(M
 {
   PetscInt n, best = PETSC_MAX_INT;
   char   **names, **values, unknown[MAX_NAME] = "", nearest[MAX_NAME] = "";
+  HelpList valid = {0};
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
@@ -265,16 +221,15 @@ PetscErrorCode OptionsCheckUnknown(MPI_Comm comm, PetscErrorCode (*read_again)(M
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
   if (!unknown[0]) PetscFunctionReturn(0);
 
-  PetscCall(PetscCalloc1(1, &collected));
-  PetscCall(CollectValid(comm, read_again, ctx));
-  for (int i = 0; i < collected->n; i++) {
-    const int distance = NameDistance(unknown, collected->name[i]);
+  PetscCall(HelpCollect(comm, read_again, ctx, &valid));
+  for (int i = 0; i < valid.n; i++) {
+    const int distance = NameDistance(unknown, valid.option[i].name);
 
     if (distance >= best) continue;
     best = distance;
-    PetscCall(PetscStrncpy(nearest, collected->name[i], sizeof(nearest)));
+    PetscCall(PetscStrncpy(nearest, valid.option[i].name, sizeof(nearest)));
   }
-  PetscCall(PetscFree(collected));
+  free(valid.option);
   PetscCall(ComplainUnknown(comm, unknown, best <= 2 + (PetscInt)strlen(unknown) / 3 ? nearest : NULL));
   PetscFunctionReturn(0);
 }

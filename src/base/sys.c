@@ -8,10 +8,12 @@
 #include <squeal/sys.h>
 #include <squeal/options.h>
 #include "events.h"
+#include "help.h"
 #include <slepcsys.h>
 #include <hdf5.h>
 #include <petsctime.h>
 #include <signal.h>
+#include <stdlib.h>
 
 #define MAX_MESSAGE 1024
 
@@ -97,9 +99,12 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
   PetscFunctionBeginUser;
   (void)signal(SIGXFSZ, SIG_IGN); /* a file beyond `ulimit -f` is an error of the write, as a full disk is */
   PetscCallMPI(MPI_Init(argc, argv));
+  if (!help && HelpAnswer(*argc, *argv)) exit(MPI_Finalize());
+  if (!help) HelpHush(*argc, *argv);
   (void)H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   PetscCall(PetscPushErrorHandler(KeepError, error_message));
   error = SlepcInitialize(argc, argv, NULL, help);
+  (void)signal(SIGPIPE, SIG_DFL); /* `squeal ... | head` ends where head does, as other programs do */
   if (error) NameOptionsFiles(*argc, *argv, error_message);
   PetscCall(error);
   for (PetscInt s = 0; s < SQUEAL_N_STAGES; s++) {

@@ -4,6 +4,7 @@
 #include <squeal/options.h>
 
 #define MAX_REALS 16
+#define MAX_TEXT  (32 * MAX_REALS)
 
 /* Raises the error for an option of more or fewer than n values, of which PETSc leaves out those beyond n */
 static PetscErrorCode OptionsCheckCount(OptionsItems PetscOptionsObject, const char option[], PetscInt n,
@@ -22,13 +23,46 @@ static PetscErrorCode OptionsCheckCount(OptionsItems PetscOptionsObject, const c
   PetscFunctionReturn(0);
 }
 
+/* Tells PETSc's help printer of an option with its value now and its default; for what PETSc would show in part */
+static PetscErrorCode OptionsShow(OptionsItems PetscOptionsObject, const char option[], const char help[],
+                                  const char now[], const char initial[])
+{
+  const char *prefix = PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "";
+
+  PetscFunctionBeginUser;
+  if (PetscOptionsObject->printhelp && PetscOptionsObject->count == 1)
+    PetscCall((*PetscHelpPrintf)(PetscOptionsObject->comm, "  -%s%s <now %s : formerly %s>: %s (options.h)\n", prefix,
+                                 option + 1, now, initial, help));
+  PetscFunctionReturn(0);
+}
+
+/* Text of an array: 0,8.4e6,0 */
+static PetscErrorCode ArrayPrint(PetscInt n, const PetscReal *reals, const PetscInt *integers, char text[MAX_TEXT])
+{
+  char number[32];
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(
+      PetscSNPrintf(number, sizeof(number), "%s%.12g", i ? "," : "", reals ? (double)reals[i] : (double)integers[i]));
+    PetscCall(PetscStrlcat(text, number, MAX_TEXT));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OptionsGetReals(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
                                PetscReal values[], PetscBool *set)
 {
   PetscInt count = n;
+  char     now[MAX_TEXT], initial[MAX_TEXT];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsRealArray(option, help, "options.h", values, &count, NULL));
+  PetscCall(ArrayPrint(n, values, NULL, initial));
+  PetscCall(
+    PetscOptionsGetRealArray(PetscOptionsObject->options, PetscOptionsObject->prefix, option, values, &count, NULL));
+  PetscCall(ArrayPrint(n, values, NULL, now));
+  PetscCall(OptionsShow(PetscOptionsObject, option, help, now, initial));
   PetscCall(OptionsCheckCount(PetscOptionsObject, option, n, set));
   PetscFunctionReturn(0);
 }
@@ -37,22 +71,41 @@ PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option
                               PetscInt values[])
 {
   PetscInt count = n;
+  char     now[MAX_TEXT], initial[MAX_TEXT];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsIntArray(option, help, "options.h", values, &count, NULL));
+  PetscCall(ArrayPrint(n, NULL, values, initial));
+  PetscCall(
+    PetscOptionsGetIntArray(PetscOptionsObject->options, PetscOptionsObject->prefix, option, values, &count, NULL));
+  PetscCall(ArrayPrint(n, NULL, values, now));
+  PetscCall(OptionsShow(PetscOptionsObject, option, help, now, initial));
   PetscCall(OptionsCheckCount(PetscOptionsObject, option, n, NULL));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char *words[])
+{
+  PetscBool set;
+
+  PetscFunctionBeginUser;
+  PetscOptionsBegin(comm, NULL, "Names in the scene", NULL);
+  PetscCall(PetscOptionsGetStringArray(NULL, NULL, option, words, n, &set));
+  PetscCall(OptionsShow(PetscOptionsObject, option, help, "", ""));
+  PetscOptionsEnd();
+  if (!set) *n = 0;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode OptionsGetViewer(MPI_Comm comm, const char option[], const char help[], PetscViewer *viewer)
 {
   PetscViewerFormat format;
-  PetscBool         ascii;
+  PetscBool         ascii, set;
 
   PetscFunctionBeginUser;
   *viewer = NULL;
-  PetscOptionsBegin(comm, NULL, "What is shown, and where: ascii[:FILE[:FORMAT[:append]]]", NULL);
-  PetscCall(PetscOptionsViewer(option, help, "options.h", viewer, &format, NULL));
+  PetscOptionsBegin(comm, NULL, "What is shown, and where: ascii, or ascii:FILE, or ascii:FILE::append", NULL);
+  PetscCall(PetscOptionsGetViewer(comm, NULL, NULL, option, viewer, &format, &set));
+  PetscCall(OptionsShow(PetscOptionsObject, option, help, "", ""));
   PetscOptionsEnd();
   if (!*viewer) PetscFunctionReturn(0);
   PetscCall(PetscObjectTypeCompare((PetscObject)*viewer, PETSCVIEWERASCII, &ascii));

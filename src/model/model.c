@@ -64,12 +64,19 @@ PetscErrorCode ModelKeepSlabs(Model model)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelSetUp(Model model)
+PetscErrorCode ModelCheckGiven(Model model)
 {
   PetscFunctionBeginUser;
   PetscCheck(
     model->given, model->comm, PETSC_ERR_USER_INPUT,
     "nothing to compute: give -options_file FILE, -model_source rig, -model_mesh FILE or -operators_load_k FILE");
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelSetUp(Model model)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelCheckGiven(model));
   PetscCall(PartsCheck(model));
   if (!strcmp(model->source, "rig"))
     PetscCall(RigGenerate(model->comm, &model->rig, &model->dm));

@@ -45,11 +45,11 @@ PetscErrorCode ResultsSetFromOptions(Results results)
   const size_t room = sizeof(results->dir) - 256; /* the rest is for the names of the files */
 
   PetscFunctionBeginUser;
-  PetscOptionsBegin(results->comm, NULL, "Results", "Results");
-  PetscCall(PetscOptionsString("-output_dir", "Folder of all files, made where it is missing", "ResultsSetFromOptions",
+  PetscOptionsBegin(results->comm, NULL, "Results", NULL);
+  PetscCall(PetscOptionsString("-output_dir", "folder of all files, made where it is missing", "results.h",
                                results->dir, results->dir, sizeof(results->dir), NULL));
-  PetscCall(PetscOptionsBool("-output_fields", "Write shapes for ParaView (*.h5, *.xmf) beside the tables",
-                             "ResultsSetFromOptions", results->fields, &results->fields, NULL));
+  PetscCall(PetscOptionsBool("-output_fields", "write shapes for ParaView (*.h5, *.xmf) beside the tables",
+                             "results.h", results->fields, &results->fields, NULL));
   PetscOptionsEnd();
   PetscCheck(results->dir[0] && strlen(results->dir) < room, results->comm, PETSC_ERR_USER_INPUT,
              "-output_dir must be the name of a folder, of at most %d characters", (int)room);

@@ -23,7 +23,7 @@ static PetscErrorCode SpringRead(OptionsItems PetscOptionsObject, void *owner, v
   PetscFunctionBeginUser;
   (void)owner;
   PetscCall(OptionsGetSet(PetscOptionsObject, &g->set));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-stiffness", "stiffness in x,y,z, N/m per node", 3, g->value, NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-stiffness", "stiffness in x,y,z, N/m per node (required)", 3, g->value, NULL));
   PetscCall(GroundedCheck(PetscOptionsObject->comm, g, "stiffness"));
   PetscFunctionReturn(0);
 }
@@ -35,7 +35,7 @@ static PetscErrorCode DashpotRead(OptionsItems PetscOptionsObject, void *owner, 
   PetscFunctionBeginUser;
   (void)owner;
   PetscCall(OptionsGetSet(PetscOptionsObject, &g->set));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-viscosity", "viscosity in x,y,z, N s/m per node", 3, g->value, NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-viscosity", "viscosity in x,y,z, N s/m per node (required)", 3, g->value, NULL));
   PetscCall(GroundedCheck(PetscOptionsObject->comm, g, "viscosity"));
   PetscFunctionReturn(0);
 }

@@ -18,7 +18,7 @@ static PetscErrorCode LoadRead(OptionsItems PetscOptionsObject, void *owner, voi
   PetscFunctionBeginUser;
   (void)owner;
   PetscCall(OptionsGetSet(PetscOptionsObject, &load->set));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-force", "total force in x,y,z, N", 3, load->force, NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-force", "total force in x,y,z, N (required)", 3, load->force, NULL));
   PetscCall(OptionsCheckFinite(comm, load->name, "force", "N", load->force));
   for (int d = 0; d < 3; d++) sum += PetscAbsReal(load->force[d]);
   PetscCheck(sum > 0, comm, PETSC_ERR_USER_INPUT, "-%s_force must be given: three values, not all zero (N)",
