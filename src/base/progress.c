@@ -36,7 +36,7 @@ PetscErrorCode ProgressStep(Progress *progress)
 
   PetscFunctionBeginUser;
   progress->done++;
-  if (!progress->on || progress->done % 5) PetscFunctionReturn(0);
+  if (!progress->on || (progress->expected > 100 && progress->done % 5)) PetscFunctionReturn(0);
   PetscCall(PetscTime(&now));
   if (now - progress->begun < 2) PetscFunctionReturn(0);
   progress->expected = PetscMax(progress->expected, progress->done);

@@ -37,6 +37,7 @@ static const struct {
   [EVENT_CORRECT]        = {"BasisCorrect",   SQUEAL_SWEEP    },
   [EVENT_ORTHOGONALISE]  = {"BasisOrthonorm", SQUEAL_SWEEP    },
   [EVENT_REDUCED]        = {"ReducedEigen",   SQUEAL_SWEEP    },
+  [EVENT_FOLLOW]         = {"ReducedFollow",  SQUEAL_SWEEP    },
   [EVENT_TRACK]          = {"TrackLine",      SQUEAL_SWEEP    },
   [EVENT_BODIES_ADVANCE] = {"BodiesAdvance",  SQUEAL_DYNAMICS },
   [EVENT_EXCHANGE]       = {"BodiesExchange", SQUEAL_DYNAMICS },

@@ -10,46 +10,58 @@
 #define ONSET_DROP  1e-9
 #define ONSET_STEPS 5
 
-/* Finds the value on the reduced model; alike on all ranks */
-static PetscErrorCode OnsetReduced(Sweep sweep, const BranchLine *line, BranchEvent *event)
+/* Finds the value on the reduced model, and the modes there; alike on all ranks */
+static PetscErrorCode OnsetReduced(Sweep sweep, const BranchLine *line, BranchEvent *event, ReducedModes *critical)
 {
   PetscFunctionBeginUser;
-  PetscCall(OnsetFind(&sweep->basis.reduced, line, event));
+  PetscCall(ReducedModesDestroy(critical));
+  PetscCall(OnsetFind(&sweep->basis.reduced, line, event, critical));
   PetscCallMPI(MPI_Bcast(event, (PetscMPIInt)sizeof(*event), MPI_BYTE, 0, sweep->comm));
+  PetscCall(ReducedModesBroadcast(sweep->comm, 0, critical));
   PetscFunctionReturn(0);
 }
 
-/* Frequencies to correct about an onset: the pair's own without damping, else the whole window, whose shift is far from
-   them all */
-static ReducedWindow WindowNear(const ReducedWindow *window, PetscReal omega, PetscBool damped)
+/* Whether the onset is that of a simple mode: sigma = 0 with damping */
+static PetscBool OnsetIsSimple(Sweep sweep, const PetscReal p[], const BranchEvent *event)
 {
-  ReducedWindow near = *window;
+  if (event->kind != EVENT_LOCK_IN && event->kind != EVENT_LOCK_OUT) return PETSC_FALSE;
+  return ReducedIsDamped(&sweep->basis.reduced, p);
+}
 
-  if (damped) return near;
-  near.low  = omega * (1 - ONSET_WIDTH);
-  near.high = PetscMax(omega * (1 + ONSET_WIDTH), ONSET_WIDTH * window->high);
+/* Frequencies about an onset: close to the pair or the mode; the whole window for a divergence with damping, whose shift
+   is far from all of them */
+static ReducedWindow WindowNear(Sweep sweep, const PetscReal p[], const BranchEvent *event)
+{
+  ReducedWindow near = sweep->window;
+
+  if (ReducedIsDamped(&sweep->basis.reduced, p) && !OnsetIsSimple(sweep, p, event)) return near;
+  near.low  = event->omega * (1 - ONSET_WIDTH);
+  near.high = PetscMax(event->omega * (1 + ONSET_WIDTH), ONSET_WIDTH * near.high);
   return near;
 }
 
-/* The basis takes in corrections of the modes in the window at p */
+/* The basis takes in corrections at p: of a simple mode itself, critical, else of the modes in the window */
 static PetscErrorCode OnsetCorrect(Sweep sweep, const Correction *correction, const PetscReal p[],
-                                   const ReducedWindow *near)
+                                   const ReducedWindow *near, BranchEvent *event, ReducedModes *critical)
 {
-  ReducedModes modes;
-  PetscInt     n_added;
+  PetscInt n_added;
 
   PetscFunctionBeginUser;
-  PetscCall(ReducedSolve(&sweep->basis.reduced, p, near, &modes));
-  PetscCall(ReducedModesBroadcast(sweep->comm, 0, &modes));
-  PetscCall(CorrectionApply(correction, &modes, ONSET_DROP, &sweep->basis, &n_added));
+  if (!OnsetIsSimple(sweep, p, event)) {
+    PetscCall(ReducedModesDestroy(critical));
+    PetscCall(ReducedSolve(&sweep->basis.reduced, p, near, critical));
+    PetscCall(ReducedModesBroadcast(sweep->comm, 0, critical));
+    event->n_solved++;
+  }
+  PetscCall(CorrectionApply(correction, critical, ONSET_DROP, &sweep->basis, &n_added));
   sweep->basis.reduced.n_used = sweep->basis.reduced.n;
-  PetscCall(ReducedModesDestroy(&modes));
+  event->n_corrected++;
   PetscFunctionReturn(0);
 }
 
 /* Alternates corrections by the full problem and the reduced iteration; change = the last one of the critical value */
 static PetscErrorCode OnsetConverge(Sweep sweep, const BranchLine *line, PetscReal p[], BranchEvent *event,
-                                    PetscReal *change)
+                                    ReducedModes *critical, PetscReal *change)
 {
   Correction    correction;
   ReducedWindow near;
@@ -57,7 +69,7 @@ static PetscErrorCode OnsetConverge(Sweep sweep, const BranchLine *line, PetscRe
   PetscFunctionBeginUser;
   *change            = PETSC_MAX_REAL;
   p[line->parameter] = event->critical;
-  near               = WindowNear(&sweep->window, event->omega, ReducedIsDamped(&sweep->basis.reduced, p));
+  near               = WindowNear(sweep, p, event);
   PetscCall(CorrectionCreate(sweep->pencil, p, &near, &sweep->progress, &correction));
   for (int step = 0; step < ONSET_STEPS && event->found && *change > CONFIRMED * PetscAbsReal(event->critical);
        step++) {
@@ -65,8 +77,8 @@ static PetscErrorCode OnsetConverge(Sweep sweep, const BranchLine *line, PetscRe
 
     p[line->parameter] = before;
     if (step) PetscCall(CorrectionMove(sweep->pencil, p, &correction));
-    PetscCall(OnsetCorrect(sweep, &correction, p, &near));
-    PetscCall(OnsetReduced(sweep, line, event));
+    PetscCall(OnsetCorrect(sweep, &correction, p, &near, event, critical));
+    PetscCall(OnsetReduced(sweep, line, event, critical));
     *change = PetscAbsReal(event->critical - before);
   }
   PetscCall(ShiftInvertDestroy(&correction.factor));
@@ -76,20 +88,23 @@ static PetscErrorCode OnsetConverge(Sweep sweep, const BranchLine *line, PetscRe
 /* One onset to the end */
 static PetscErrorCode OnsetConfirm(Sweep sweep, PetscInt e)
 {
-  BranchEvent *event  = &sweep->events.event[e];
-  PetscReal    change = PETSC_MAX_REAL, *p;
-  BranchLine   line   = {sweep->grid.parameter[0], sweep->grid.n[0], sweep->grid.value[0], NULL, &sweep->window};
-  SweepPlace   place  = sweep->grid.place[event->place];
+  BranchEvent *event    = &sweep->events.event[e];
+  PetscReal    change   = PETSC_MAX_REAL, *p;
+  BranchLine   line     = {sweep->grid.parameter[0], sweep->grid.n[0], sweep->grid.value[0], NULL, &sweep->window};
+  SweepPlace   place    = sweep->grid.place[event->place];
+  ReducedModes critical = {0};
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
   GridFill(&sweep->grid, &place, p);
   line.base = p;
-  PetscCall(OnsetReduced(sweep, &line, event));
-  if (event->found && sweep->method == SWEEP_REDUCED) PetscCall(OnsetConverge(sweep, &line, p, event, &change));
+  PetscCall(OnsetReduced(sweep, &line, event, &critical));
+  if (event->found && sweep->method == SWEEP_REDUCED)
+    PetscCall(OnsetConverge(sweep, &line, p, event, &critical, &change));
+  PetscCall(ReducedModesDestroy(&critical));
   sweep->is_confirmed[e] =
     event->found && change <= CONFIRMED * PetscAbsReal(event->critical) ? PETSC_TRUE : PETSC_FALSE;
-  if (change < PETSC_MAX_REAL) event->error = PetscMax(change, 1e-14 * PetscAbsReal(event->critical));
+  if (change < PETSC_MAX_REAL) event->error = PetscMax(change, event->error);
   if (sweep->is_confirmed[e] && sweep->statics) { /* the same pairs must be closed as where it was found */
     PetscInt status;
 
@@ -132,10 +147,19 @@ static void OnsetsSort(Sweep sweep)
 
 PetscErrorCode SweepOnsets(Sweep sweep)
 {
+  Progress progress = {.on = sweep->progress.on};
+  PetscInt n        = 0;
+
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(PetscMax(1, sweep->events.n), &sweep->is_confirmed));
-  for (PetscInt e = 0; e < sweep->events.n; e++)
-    if (sweep->events.event[e].kind != EVENT_JUMP) PetscCall(OnsetConfirm(sweep, e));
+  for (PetscInt e = 0; e < sweep->events.n; e++) n += sweep->events.event[e].kind != EVENT_JUMP;
+  PetscCall(ProgressBegin(&progress, "onsets", n));
+  for (PetscInt e = 0; e < sweep->events.n; e++) {
+    if (sweep->events.event[e].kind == EVENT_JUMP) continue;
+    PetscCall(OnsetConfirm(sweep, e));
+    PetscCall(ProgressStep(&progress));
+  }
+  PetscCall(ProgressEnd(&progress));
   OnsetsSort(sweep);
   PetscFunctionReturn(0);
 }

@@ -186,6 +186,27 @@ static PetscErrorCode OnsetsView(Sweep sweep, const OperatorsParameter *paramete
   PetscFunctionReturn(0);
 }
 
+/* What the onsets cost */
+static PetscErrorCode OnsetCostView(Sweep sweep, PetscViewer viewer)
+{
+  PetscInt n[3] = {0}, n_onsets = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt e = 0; e < sweep->events.n; e++) {
+    const BranchEvent *event = &sweep->events.event[e];
+
+    n_onsets += event->kind != EVENT_JUMP;
+    n[0] += event->n_solved;
+    n[1] += event->n_followed;
+    n[2] += event->n_corrected;
+  }
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "%" PetscInt_FMT " onsets: %" PetscInt_FMT " reduced eigenproblems, %" PetscInt_FMT
+                                   " modes followed, %" PetscInt_FMT " corrections on the full problem\n",
+                                   n_onsets, n[0], n[1], n[2]));
+  PetscFunctionReturn(0);
+}
+
 /* True errors beside their estimates */
 static PetscErrorCode ChecksView(Sweep sweep, PetscViewer viewer)
 {
@@ -261,6 +282,7 @@ PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer)
                                      "basis of %" PetscInt_FMT " vectors; largest estimated error %.1e (an estimate, "
                                      "not a bound); modes counted without friction at the full solutions\n",
                                      sweep->basis.reduced.n_used, (double)sweep->greedy.worst));
+  if (sweep->is_confirmed) PetscCall(OnsetCostView(sweep, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, "time: basis %.2f s, points %.2f s, onsets %.2f s, checks %.2f s",
                                    sweep->seconds[0], sweep->seconds[1], sweep->seconds[2], sweep->seconds[3]));
   if (sweep->statics) PetscCall(PetscViewerASCIIPrintf(viewer, ", contact status %.2f s", sweep->seconds[4]));

@@ -122,7 +122,7 @@ static PetscErrorCode CheckOnset(Sweep sweep, PetscInt e, BranchEventKind kind, 
   if (e >= sweep->events.n) PetscFunctionReturn(0);
   event = sweep->events.event[e];
   GridFill(&sweep->grid, &sweep->grid.place[event.place], p);
-  PetscCall(OnsetFind(&sweep->basis.reduced, &line, &event));
+  PetscCall(OnsetFind(&sweep->basis.reduced, &line, &event, NULL));
   *failed += CheckTrue("kind of the onset", event.kind == kind && event.found, (double)event.kind);
   *failed += CheckClose("onset within a segment", event.critical, expected, 1e-10);
   PetscFunctionReturn(0);

@@ -298,3 +298,35 @@ PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const R
   PetscCall(PetscFree(Ms));
   PetscFunctionReturn(0);
 }
+
+/* Vectors to begin with: those of the first mode of from, or numbers without structure */
+static void FollowBegin(PetscInt n, const ReducedModes *from, PetscComplex x[], PetscComplex y[])
+{
+  for (PetscInt i = 0; i < n; i++) {
+    x[i] = !from ? cos(1.0 + i * (PetscReal)i) : i < from->size ? from->x[i] : 0;
+    y[i] = !from ? sin(1.3 + i * (PetscReal)i) : i < from->size ? from->y[i] : 0;
+  }
+}
+
+PetscErrorCode ReducedFollow(const Reduced *reduced, const PetscReal p[], PetscComplex lambda, const ReducedModes *from,
+                             ReducedModes *modes)
+{
+  const PetscInt n = reduced->n_used;
+  DensePencil    pencil;
+  PetscReal     *Ms;
+  PetscBool      found;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n * n, &Ms));
+  PetscCall(ReducedPencil(reduced, p, n, &pencil));
+  PetscCall(SumSymmetric(reduced, p, Ms, &pencil.symmetric));
+  PetscCall(ReducedModesCreate(1, n, modes));
+  FollowBegin(n, from, modes->x, modes->y);
+  PetscCall(DensePencilFollow(&pencil, &lambda, modes->x, modes->y, &found));
+  modes->lambda[0] = lambda;
+  modes->n         = found ? 1 : 0;
+  if (found) PetscCall(ModesFinish(&pencil, Ms, modes));
+  PetscCall(DensePencilDestroy(&pencil));
+  PetscCall(PetscFree(Ms));
+  PetscFunctionReturn(0);
+}

@@ -42,6 +42,10 @@ typedef struct {
    right ones. Undamped, a negative kappa is listed as lambda = +sqrt(-kappa) only; damped, all real eigenvalues are. */
 PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
                             ReducedModes *modes);
+/* A single simple eigenvalue from a guess: lambda with the vectors of the first mode of from, or with none (NULL) when
+   lambda is known to many digits. modes->n = 1, or 0 where the iteration does not end */
+PetscErrorCode ReducedFollow(const Reduced *reduced, const PetscReal p[], PetscComplex lambda, const ReducedModes *from,
+                             ReducedModes *modes);
 PetscErrorCode ReducedModesCreate(PetscInt n, PetscInt size, ReducedModes *modes);
 /* A copy of some of the modes, list [n], or of the first n where list is NULL */
 PetscErrorCode ReducedModesSelect(const ReducedModes *from, PetscInt n, const PetscInt list[], ReducedModes *to);

@@ -29,12 +29,16 @@ typedef struct {
   const BranchLine *line;
   PetscReal        *p; /* [n_parameters] of the last solution; freed by the caller */
   StandardForm      form;
-  PetscBool         estimate; /* whether errors of the eigenvalues are estimated */
+  PetscBool         estimate;             /* whether errors of the eigenvalues are estimated */
+  PetscInt          n_solved, n_followed; /* eigenproblems, and single modes followed */
 } ModeSource;
 
 /* source.c - the parameters and the solution at a value of the line */
 PetscErrorCode ModeSourceCreate(const Reduced *reduced, const BranchLine *line, ModeSource *source);
 PetscErrorCode ModeSourceSolve(ModeSource *source, PetscReal value, ModeFrame **frame);
+/* The same of a single mode, from a guess and the first mode of from (NULL: none); found = whether that ends */
+PetscErrorCode ModeSourceFollow(ModeSource *source, PetscReal value, PetscComplex lambda, const ReducedModes *from,
+                                ModeFrame **frame, PetscBool *found);
 /* The same from modes that are known already */
 PetscErrorCode ModeSourceTake(ModeSource *source, PetscReal value, const ReducedModes *modes, ModeFrame **frame);
 

@@ -14,23 +14,18 @@
 
    The zero is bracketed by the points of the event and found by Brent's method (R. P. Brent, Algorithms for
    Minimization without Derivatives, Prentice-Hall 1973, chapter 4). At each trial value the mode, or the plane, is the
-   one with the largest product with those of the nearer end of the bracket.
+   one with the largest product with those of the nearer end of the bracket. The mode of a damped system is followed by
+   Newton's method (dense/follow.c); all modes are solved for only where what that finds is not the same one for
+   certain.
 
-   Error of the critical value: |delta g| / |g'|, where sigma carries three times the estimated error of the eigenvalue,
-   kappa that times 2 |lambda| + error, with damping times kappa / lambda at the unstable end, and d the square of 2
-   omega times the error, the splitting that the error makes of a double eigenvalue; and rounding.
+   Error of the critical value: |delta g| / |g'|, where sigma carries three times the estimated error of the eigenvalue
+   and what rounding does to it, kappa that times 2 |lambda| + error, with damping times kappa / lambda at the unstable
+   end, and d the square of 2 omega times the error, the splitting that the error makes of a double eigenvalue; and
+   rounding.
 */
-#include "match.h"
-#include <petscblaslapack.h>
+#include "trial.h"
 
-typedef enum { ONSET_PAIR, ONSET_GROWTH, ONSET_STIFFNESS } OnsetKind;
-
-/* A trial value with the modes that take part */
-typedef struct {
-  ModeFrame *frame;
-  PetscInt   k, *member; /* [k] */
-  PetscReal  g, m;
-} Trial;
+#define FOLLOW_AT 1e-6 /* relative distance of the unstable mode from what it was in the sweep */
 
 typedef struct {
   ModeSource source;
@@ -39,121 +34,64 @@ typedef struct {
   PetscReal  change; /* of g with |lambda| at the unstable end */
 } Onset;
 
-static PetscErrorCode TrialDestroy(Trial *trial)
+/* Guess of the simple mode at a value: on the line through both ends of the bracket, or that of the reference */
+static PetscComplex OnsetGuess(const Onset *onset, const Trial *reference, PetscReal value)
 {
-  PetscFunctionBeginUser;
-  PetscCall(ModeFrameDestroy(&trial->frame));
-  PetscCall(PetscFree(trial->member));
-  PetscFunctionReturn(0);
+  const ModeFrame *a = onset->end[0].frame, *b = onset->end[1].frame;
+  PetscComplex     end[2];
+
+  if (!b || a->value == b->value) return reference->frame->modes.lambda[reference->member[0]];
+  end[0] = a->modes.lambda[onset->end[0].member[0]];
+  end[1] = b->modes.lambda[onset->end[1].member[0]];
+  return end[0] + (value - a->value) / (b->value - a->value) * (end[1] - end[0]);
 }
 
-/* S = Y' A X [k * k] with real A of the frame; Z [k][size] is work */
-static PetscErrorCode PlaneProduct(const Trial *trial, const PetscReal A[], const PetscReal X[], const PetscReal Y[],
-                                   PetscReal Z[], PetscReal S[])
+/* Follows a simple mode from the reference to a value; found = whether what is there certainly is the same mode */
+static PetscErrorCode OnsetFollow(Onset *onset, PetscReal value, const Trial *reference, Trial *trial, PetscBool *found)
 {
-  const PetscReal one = 1, zero = 0;
-  PetscBLASInt    n, k;
+  ReducedModes from;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(trial->frame->form.n, &n));
-  PetscCall(PetscBLASIntCast(trial->k, &k));
-  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &n, &k, &n, &one, A, &n, X, &n, &zero, Z, &n));
-  PetscCallBLAS("BLASgemm", BLASgemm_("T", "N", &k, &k, &n, &one, Y, &n, Z, &n, &zero, S, &k));
-  PetscFunctionReturn(0);
-}
-
-/* -d and m of the plane of the trial's members */
-static PetscErrorCode PlaneDiscriminant(Trial *trial)
-{
-  const ModeFrame *f = trial->frame;
-  const PetscInt   n = f->form.n, k = trial->k;
-  PetscBLASInt    *pivot;
-  PetscReal       *X, *Y, *Z, *G, *S, d = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc6(k * n, &X, k * n, &Y, k * n, &Z, k * k, &G, k * k, &S, k, &pivot));
-  PetscCall(ModePlaneRefine(f, k, trial->member, X, Y));
-  PetscCall(PlaneProduct(trial, f->pencil.M, X, Y, Z, G));
-  PetscCall(PlaneProduct(trial, f->pencil.K, X, Y, Z, S));
-  PetscCall(DenseFactor(k, G, pivot, NULL));
-  PetscCall(DenseSolve(k, G, pivot, PETSC_FALSE, k, S));
-  trial->m = 0;
-  for (PetscInt a = 0; a < k; a++) trial->m += S[a * k + a] / k;
-  for (PetscInt a = 0; a < k; a++) S[a * k + a] -= trial->m;
-  for (PetscInt a = 0; a < k; a++)
-    for (PetscInt b = 0; b < k; b++) d += S[a * k + b] * S[b * k + a] / k;
-  trial->g = -d;
-  PetscCall(PetscFree6(X, Y, Z, G, S, pivot));
-  PetscFunctionReturn(0);
-}
-
-/* -kappa of a single mode, kappa = y^T K x / (y^T M x), which is -lambda^2 without damping and of the sign of -lambda
-   near lambda = 0 with it; lambda itself is rounded to zero there */
-static PetscErrorCode ModeStiffness(Trial *trial)
-{
-  const ModeFrame    *f = trial->frame;
-  const PetscComplex *x = f->modes.x + trial->member[0] * f->form.n, *y = f->modes.y + trial->member[0] * f->form.n;
-  PetscComplex        k = 0, m = 0;
-
-  PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < f->form.n; c++) {
-    for (PetscInt r = 0; r < f->form.n; r++) {
-      k += y[r] * f->pencil.K[c * f->form.n + r] * x[c];
-      m += y[r] * f->pencil.M[c * f->form.n + r] * x[c];
-    }
-  }
-  trial->g = -creal(k / m);
-  PetscFunctionReturn(0);
-}
-
-/* g of the members */
-static PetscErrorCode TrialValue(OnsetKind kind, Trial *trial)
-{
-  PetscFunctionBeginUser;
-  if (kind == ONSET_PAIR)
-    PetscCall(PlaneDiscriminant(trial));
-  else if (kind == ONSET_GROWTH)
-    trial->g = creal(trial->frame->modes.lambda[trial->member[0]]);
-  else
-    PetscCall(ModeStiffness(trial));
-  PetscFunctionReturn(0);
-}
-
-/* The k modes of the trial that have most in common with the plane of the reference */
-static PetscErrorCode TrialIdentify(const Trial *reference, Trial *trial, PetscBool *found)
-{
-  const ModeFrame *a = reference->frame, *b = trial->frame;
-  const PetscInt   nb = b->modes.n, k = reference->k, *member = reference->member;
-  PetscComplex    *sum;
-  PetscBool       *taken;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(nb, &sum, nb, &taken));
-  PetscCall(PetscMalloc1(k, &trial->member));
-  for (PetscInt r = 0; r < k; r++) ModeFrameOverlap(b, a->W + member[r] * a->N, a->X + member[r] * a->N, sum);
-  *found = nb >= k ? PETSC_TRUE : PETSC_FALSE;
-  for (trial->k = 0; trial->k < k && *found; trial->k++) {
-    PetscInt best = -1;
-
-    for (PetscInt j = 0; j < nb; j++)
-      if (!taken[j] && (best < 0 || cabs(sum[b->cluster[j]]) > cabs(sum[b->cluster[best]]))) best = j;
-    if (cabs(sum[b->cluster[best]]) < 0.2) *found = PETSC_FALSE;
-    taken[best]             = PETSC_TRUE;
-    trial->member[trial->k] = best;
-  }
-  PetscCall(PetscFree2(sum, taken));
+  *found = onset->kind == ONSET_GROWTH && ModeFrameClusterSize(reference->frame, reference->member[0]) == 1
+             ? PETSC_TRUE
+             : PETSC_FALSE;
+  if (!*found) PetscFunctionReturn(0);
+  PetscCall(ReducedModesSelect(&reference->frame->modes, 1, reference->member, &from));
+  PetscCall(ModeSourceFollow(&onset->source, value, OnsetGuess(onset, reference, value), &from, &trial->frame, found));
+  if (*found) *found = TrialIsSame(reference, trial);
+  PetscCall(TrialTakeSingle(trial, *found));
+  PetscCall(ReducedModesDestroy(&from));
   PetscFunctionReturn(0);
 }
 
 /* The trial at a value, by the nearer end of the bracket */
 static PetscErrorCode OnsetTry(Onset *onset, PetscReal value, Trial *trial, PetscBool *found)
 {
-  const PetscReal to_0 = PetscAbsReal(value - onset->end[0].frame->value);
-  const PetscReal to_1 = onset->end[1].frame ? PetscAbsReal(value - onset->end[1].frame->value) : PETSC_MAX_REAL;
+  const PetscReal to_0      = PetscAbsReal(value - onset->end[0].frame->value);
+  const PetscReal to_1      = onset->end[1].frame ? PetscAbsReal(value - onset->end[1].frame->value) : PETSC_MAX_REAL;
+  const Trial    *reference = &onset->end[to_1 < to_0 ? 1 : 0];
 
   PetscFunctionBeginUser;
-  PetscCall(ModeSourceSolve(&onset->source, value, &trial->frame));
-  PetscCall(TrialIdentify(&onset->end[to_1 < to_0 ? 1 : 0], trial, found));
+  PetscCall(OnsetFollow(onset, value, reference, trial, found));
+  if (!*found) {
+    PetscCall(ModeSourceSolve(&onset->source, value, &trial->frame));
+    PetscCall(TrialIdentify(reference, trial, found));
+  }
+  if (*found) PetscCall(TrialValue(onset->kind, trial));
+  PetscFunctionReturn(0);
+}
+
+/* The unstable end of a simple mode, of which the sweep knows the eigenvalue */
+static PetscErrorCode OnsetBeginSimple(Onset *onset, PetscReal value, PetscComplex lambda, PetscBool *found)
+{
+  Trial *trial = &onset->end[0];
+
+  PetscFunctionBeginUser;
+  *found = PETSC_FALSE;
+  if (onset->kind != ONSET_GROWTH) PetscFunctionReturn(0);
+  PetscCall(ModeSourceFollow(&onset->source, value, lambda, NULL, &trial->frame, found));
+  if (*found && cabs(trial->frame->modes.lambda[0] - lambda) > FOLLOW_AT * cabs(lambda)) *found = PETSC_FALSE;
+  PetscCall(TrialTakeSingle(trial, *found));
   if (*found) PetscCall(TrialValue(onset->kind, trial));
   PetscFunctionReturn(0);
 }
@@ -166,6 +104,8 @@ static PetscErrorCode OnsetBegin(Onset *onset, PetscReal value, PetscComplex lam
   PetscInt   mode = -1;
 
   PetscFunctionBeginUser;
+  PetscCall(OnsetBeginSimple(onset, value, lambda, found));
+  if (*found) PetscFunctionReturn(0);
   PetscCall(ModeSourceSolve(&onset->source, value, &trial->frame));
   f = trial->frame;
   PetscCall(PetscMalloc1(f->modes.n, &trial->member));
@@ -258,21 +198,23 @@ static PetscReal OnsetUncertainty(const Onset *onset, const Trial *trial, const 
   const PetscReal unit =
     onset->kind == ONSET_GROWTH ? size : (onset->kind == ONSET_PAIR ? PetscSqr(size * size) : size * onset->change);
   const PetscReal lambda = cabs(trial->frame->modes.lambda[trial->member[0]]);
-  PetscReal       error  = 0, delta;
+  PetscReal       error = 0, noise = 0, delta;
 
   for (PetscInt r = 0; r < trial->k; r++) {
     const ReducedModes *modes = &trial->frame->modes;
     const PetscInt      i     = trial->member[r];
 
     error = PetscMax(error, modes->error[i] - modes->noise[i]); /* rounding of the critical value is added apart */
+    noise = PetscMax(noise, modes->noise[i]);
   }
   delta = onset->kind == ONSET_PAIR ? PetscSqr(2 * event->omega * error) : 3 * error;
+  if (onset->kind == ONSET_GROWTH) delta += noise;
   if (onset->kind == ONSET_STIFFNESS) delta *= onset->source.form.damped ? onset->change : 2 * lambda + error;
   return delta + 10 * PETSC_MACHINE_EPSILON * unit;
 }
 
-/* Frequency and error at the critical value */
-static PetscErrorCode OnsetFinish(Onset *onset, BranchEvent *event)
+/* Frequency, error and modes at the critical value */
+static PetscErrorCode OnsetFinish(Onset *onset, BranchEvent *event, ReducedModes *modes)
 {
   const PetscReal width = event->upper - event->lower;
   Trial           trial = {0};
@@ -293,6 +235,7 @@ static PetscErrorCode OnsetFinish(Onset *onset, BranchEvent *event)
     delta        = OnsetUncertainty(onset, &trial, event);
     event->error = delta < slope * width ? delta / slope : width;
     event->error += 4 * PETSC_MACHINE_EPSILON * PetscAbsReal(event->critical);
+    if (modes) PetscCall(ReducedModesSelect(&trial.frame->modes, trial.k, trial.member, modes));
   }
   PetscCall(TrialDestroy(&trial));
   PetscFunctionReturn(0);
@@ -323,20 +266,23 @@ static PetscErrorCode OnsetBracket(Onset *onset, const BranchEvent *event, Petsc
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OnsetFind(const Reduced *reduced, const BranchLine *line, BranchEvent *event)
+PetscErrorCode OnsetFind(const Reduced *reduced, const BranchLine *line, BranchEvent *event, ReducedModes *modes)
 {
   Onset     onset = {0};
   PetscReal critical;
   PetscBool divergence = event->kind == EVENT_DIVERGENCE || event->kind == EVENT_RESTABILISATION;
 
   PetscFunctionBeginUser;
+  if (modes) PetscCall(PetscMemzero(modes, sizeof(*modes)));
   PetscCall(ModeSourceCreate(reduced, line, &onset.source));
   onset.kind = divergence ? ONSET_STIFFNESS : (onset.source.form.damped ? ONSET_GROWTH : ONSET_PAIR);
   PetscCall(OnsetBracket(&onset, event, &critical, &event->found));
   if (event->found) {
     event->critical = critical;
-    PetscCall(OnsetFinish(&onset, event));
+    PetscCall(OnsetFinish(&onset, event, modes));
   }
+  event->n_solved += onset.source.n_solved;
+  event->n_followed += onset.source.n_followed;
   PetscCall(TrialDestroy(&onset.end[0]));
   PetscCall(TrialDestroy(&onset.end[1]));
   PetscCall(PetscFree(onset.source.p));

@@ -40,9 +40,26 @@ PetscErrorCode ModeSourceSolve(ModeSource *source, PetscReal value, ModeFrame **
 
   PetscFunctionBeginUser;
   SourceSetValue(source, value);
+  source->n_solved++;
   PetscCall(ReducedSolve(source->reduced, source->p, source->line->window, &modes));
   if (source->estimate) PetscCall(ReducedEstimate(source->reduced, source->p, &modes));
   PetscCall(ModeSourceTake(source, value, &modes, frame));
+  PetscCall(ReducedModesDestroy(&modes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModeSourceFollow(ModeSource *source, PetscReal value, PetscComplex lambda, const ReducedModes *from,
+                                ModeFrame **frame, PetscBool *found)
+{
+  ReducedModes modes = {0};
+
+  PetscFunctionBeginUser;
+  SourceSetValue(source, value);
+  source->n_followed++;
+  PetscCall(ReducedFollow(source->reduced, source->p, lambda, from, &modes));
+  *found = modes.n ? PETSC_TRUE : PETSC_FALSE;
+  if (*found && source->estimate) PetscCall(ReducedEstimate(source->reduced, source->p, &modes));
+  if (*found) PetscCall(ModeSourceTake(source, value, &modes, frame));
   PetscCall(ReducedModesDestroy(&modes));
   PetscFunctionReturn(0);
 }

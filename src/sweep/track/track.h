@@ -21,8 +21,10 @@ typedef struct {
   PetscReal       omega;        /* rad/s at the critical value */
   PetscReal       error;        /* estimated error of the critical value, in its unit */
   PetscBool       found;
-  PetscBool       above; /* of a jump: unstable at upper */
-  PetscInt        place; /* of the grid, whose other parameters hold; set by the caller */
+  PetscBool       above;                /* of a jump: unstable at upper */
+  PetscInt        place;                /* of the grid, whose other parameters hold; set by the caller */
+  PetscInt        n_solved, n_followed; /* reduced eigenproblems, and single modes followed, so far */
+  PetscInt        n_corrected;          /* corrections on the full problem, counted by the caller */
 } BranchEvent;
 
 typedef struct {
@@ -64,5 +66,6 @@ PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], const Bran
 PetscErrorCode BranchEventsAdd(BranchEvents *events, const BranchEvent *event);
 PetscErrorCode BranchEventsDestroy(BranchEvents *events);
 
-/* onset.c - the critical value of an event on the reduced model, to rounding, and its estimated error */
-PetscErrorCode OnsetFind(const Reduced *reduced, const BranchLine *line, BranchEvent *event);
+/* onset.c - the critical value of an event on the reduced model, to rounding, and its estimated error; modes (may be
+   NULL) = the modes that take part, there; empty if not found */
+PetscErrorCode OnsetFind(const Reduced *reduced, const BranchLine *line, BranchEvent *event, ReducedModes *modes);
