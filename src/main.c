@@ -281,11 +281,13 @@ static PetscErrorCode Run(MPI_Comm comm)
   PetscCall(ChainCreate(comm, &chain));
   PetscCall(OptionsCheckUnknown(comm, ReadAgain, NULL));
   if (chain.model) PetscCall(ModelCheckGiven(chain.model));
+  PetscCall(ResultsKeepScene(chain.results, ReadAgain, NULL));
   PetscCall(ResultsOpenDirectory(chain.results));
   PetscCall(ChainSetUp(&chain));
   PetscCall(ChainConnect(&chain, viewer));
   PetscCall(ChainView(&chain));
   PetscCall(ChainRun(&chain));
+  PetscCall(ResultsFinish(chain.results));
   if (chain.view) PetscCall(SquealViewStages(comm, viewer));
   PetscCall(ChainWarnHidden(comm, &chain));
   PetscCall(OptionsWarnUnused(comm));

@@ -71,6 +71,23 @@ PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option
 PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char *words[]);
 
 /*@
+   OptionsGetPath - reads the path of something to be read, without a prefix, between PetscOptionsBegin() and
+   PetscOptionsEnd(). Collective.
+
+   A relative path in an options file begins at the folder of that file, and where there is nothing of that name, at the
+   working folder, as one on the command line does. The option's value becomes the absolute path.
+
+   Input Parameters:
++  option - e.g. "-model_mesh"
+-  help   - one line
+   Output Parameters:
++  path - of PETSC_MAX_PATH_LEN characters, with its folder; unchanged where the option is not given
+-  set  - whether it is given, or NULL
+@*/
+PetscErrorCode OptionsGetPath(OptionsItems PetscOptionsObject, const char option[], const char help[], char path[],
+                              PetscBool *set);
+
+/*@
    OptionsGetViewer - reads where something is to be shown, in PETSc's words: "-modes_view" is stdout,
    "-modes_view ascii:modes.txt" a file, "-modes_view ascii:modes.txt::append" its end. Collective.
 

@@ -142,5 +142,32 @@ typedef struct {
 @*/
 PetscErrorCode ResultsBinaryWrite(Results results, const char name[], PetscInt n, const ResultsPiece pieces[]);
 
+/*@ ResultsKeep - the file `name` in the folder belongs to this run; those that it writes do so anyway. Collective. @*/
+PetscErrorCode ResultsKeep(Results results, const char name[]);
+
+/*@ ResultsKeepFolder - this run reads the results of an earlier one in `folder`: where that is the folder of its own,
+    all files stay. Collective. @*/
+PetscErrorCode ResultsKeepFolder(Results results, const char folder[]);
+
+/*@
+   ResultsKeepScene - begins the account of the run: its time, and all options of squeal in force. Collective; before
+   anything is written.
+
+   Input Parameters:
++  read_again - reads all options of all rooms on objects of its own
+-  ctx        - its context
+@*/
+PetscErrorCode ResultsKeepScene(Results results, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx);
+
+/*@
+   ResultsFinish - ends a run that did what was asked. Collective.
+
+   It writes scene.yaml: the commands of this run and of its repetition, versions, ranks, time, memory, the files, and
+   all options in force, as a file that -options_file reads. Then squeal's own files that an earlier run left in the
+   folder go. Files of other names stay, and so does what a killed run goes on from: a transient while its table is
+   unfinished, sweep_restart_*. Errors: as ResultsTableClose().
+@*/
+PetscErrorCode ResultsFinish(Results results);
+
 /*@ ResultsDestroy - frees the writer. Collective. @*/
 PetscErrorCode ResultsDestroy(Results *results);

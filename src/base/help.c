@@ -222,11 +222,11 @@ void HelpHush(int argc, char *const argv[])
     if (!strcmp(argv[i], "-help")) PetscHelpPrintf = HushHelp;
 }
 
-/* From now on whoever reads an option tells the help printer of it, also of those read before */
-static PetscErrorCode HelpForce(void)
+/* Whether whoever reads an option from now on tells the help printer of it, also of those read before */
+static PetscErrorCode HelpForce(PetscBool on)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsSetValue(NULL, "-help", NULL));
+  PetscCall(on ? PetscOptionsSetValue(NULL, "-help", NULL) : PetscOptionsClearValue(NULL, "-help"));
   PetscCall(PetscOptionsHelpPrintedDestroy(&PetscOptionsHelpPrintedSingleton));
   PetscFunctionReturn(0);
 }
@@ -236,9 +236,11 @@ PetscErrorCode HelpCollect(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm,
   PetscErrorCode (*const printer)(MPI_Comm, const char[], ...)       = PetscHelpPrintf;
   PetscErrorCode (*const all_printer)(FILE *, const char[], va_list) = PetscVFPrintf;
   PetscErrorCode error;
+  PetscBool      asked;
 
   PetscFunctionBeginUser;
-  PetscCall(HelpForce());
+  PetscCall(PetscOptionsHasHelp(NULL, &asked));
+  PetscCall(HelpForce(PETSC_TRUE));
   collecting.list    = list;
   collecting.line[0] = '\0';
   PetscHelpPrintf    = CollectHelp;
@@ -247,6 +249,7 @@ PetscErrorCode HelpCollect(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm,
   PetscHelpPrintf    = printer;
   PetscVFPrintf      = all_printer;
   collecting.list    = NULL;
+  if (!asked) PetscCall(HelpForce(PETSC_FALSE));
   PetscCall(error);
   PetscFunctionReturn(0);
 }
@@ -314,7 +317,7 @@ PetscErrorCode SquealViewOptions(MPI_Comm comm, PetscErrorCode (*read_again)(MPI
   PetscCall(SceneIsGiven(&given));
   if (!given) PetscCall(PetscOptionsInsertString(NULL, names_of_all));
   if (all) {
-    PetscCall(HelpForce());
+    PetscCall(HelpForce(PETSC_TRUE));
     PetscCall((*read_again)(comm, ctx));
     PetscFunctionReturn(0);
   }

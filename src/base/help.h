@@ -1,4 +1,4 @@
-/* Private to base/: what squeal says of itself and of its options */
+/* For base/ and results/: what squeal says of itself and of its options */
 #pragma once
 
 #include <petscsys.h>
@@ -22,6 +22,6 @@ typedef struct {
 PETSC_INTERN PetscBool HelpAnswer(int argc, char *const argv[]);
 /* Keeps PETSc from printing what it knows of -help at its start, which HelpPrint() does */
 PETSC_INTERN void HelpHush(int argc, char *const argv[]);
-/* All options that read_again() reads, n = 0 before; free list->option with free() */
+/* All options that read_again() reads, with values; n = 0 before, free list->option with free() */
 PETSC_INTERN PetscErrorCode HelpCollect(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx,
                                         HelpList *list);

@@ -57,8 +57,8 @@ static PetscErrorCode DynamicsStartFromOptions(Dynamics d, OptionsItems PetscOpt
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsEList("-dynamics_start", "at rest, or the sliding state under the loads", "dynamics.h", starts,
                               N_STARTS, starts[start], &start, NULL));
-  PetscCall(PetscOptionsString("-dynamics_shape", "folder of a run of modes: one of them is added to the start",
-                               "dynamics.h", d->shape, d->shape, sizeof(d->shape), NULL));
+  PetscCall(OptionsGetPath(PetscOptionsObject, "-dynamics_shape",
+                           "folder of a run of modes: one of them is added to the start", d->shape, NULL));
   PetscCall(PetscOptionsInt("-dynamics_shape_mode", "its number in modes.csv", "dynamics.h", d->shape_mode,
                             &d->shape_mode, NULL));
   PetscCall(PetscOptionsReal("-dynamics_shape_amplitude", "its largest displacement, m", "dynamics.h",
@@ -251,6 +251,8 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscCall(TSSetUp(d->ts));
   PetscCall(d->restart ? DynamicsGoOn(d) : DynamicsStartState(d));
   if (!d->restart) PetscCall(DynamicsForget(d));
+  if (d->restart) PetscCall(ResultsKeep(results, CHECKPOINT_FILE));
+  if (d->shape[0]) PetscCall(ResultsKeepFolder(results, d->shape));
   PetscFunctionReturn(0);
 }
 

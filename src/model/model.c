@@ -24,8 +24,8 @@ PetscErrorCode ModelSetFromOptions(Model model)
   PetscOptionsBegin(model->comm, NULL, "Model", NULL);
   PetscCall(PetscOptionsEList("-model_source", "mesh: the built-in disc-pad-beam rig, or a file", "model.h", sources, 2,
                               sources[0], &source, &given));
-  PetscCall(PetscOptionsString("-model_mesh", "Gmsh file, format 2.2 or 4.1, with physical names", "model.h",
-                               model->file, model->file, sizeof(model->file), &has_mesh));
+  PetscCall(OptionsGetPath(PetscOptionsObject, "-model_mesh", "Gmsh file, format 2.2 or 4.1, with physical names",
+                           model->file, &has_mesh));
   PetscCall(PetscOptionsString("-model_element", "element formulation: incompatible (QM6) or full (trilinear)",
                                "model.h", model->formulation, model->formulation, sizeof(model->formulation), NULL));
   PetscOptionsEnd();

@@ -24,7 +24,7 @@ PetscErrorCode OperatorsLoadFromOptions(Operators o, OptionsItems PetscOptionsOb
 
     PetscCall(PetscSNPrintf(name, sizeof(name), "-operators_load_%s", letters[i]));
     PetscCall(PetscSNPrintf(help, sizeof(help), "PETSc binary file of the %s", meanings[i]));
-    PetscCall(PetscOptionsString(name, help, "operators.h", o->load[i], o->load[i], sizeof(o->load[i]), NULL));
+    PetscCall(OptionsGetPath(PetscOptionsObject, name, help, o->load[i], NULL));
     PetscCall(PetscSNPrintf(name, sizeof(name), "-operators_dense_%s", letters[i]));
     PetscCall(PetscSNPrintf(help, sizeof(help), "small dense matrix of the %s, rows one after another", meanings[i]));
     PetscCall(PetscMalloc1(OPERATORS_MAX_DENSE, &o->dense[i]));

@@ -37,15 +37,6 @@ static PetscErrorCode FilmReserve(ResultsFilm film, PetscInt n)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ResultsFilmSetTimes(ResultsFilm film, PetscInt n, const PetscReal times[])
-{
-  PetscFunctionBeginUser;
-  PetscCall(FilmReserve(film, n));
-  PetscCall(PetscArraycpy(film->time, times, n));
-  film->n_frames = n;
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ResultsFilmGetTimes(ResultsFilm film, PetscInt *n, const PetscReal **times)
 {
   PetscFunctionBeginUser;
@@ -59,6 +50,24 @@ static PetscErrorCode FrameName(ResultsFilm film, PetscInt k, char name[80])
 {
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(name, 80, "%s_%06d", film->frame, (int)k));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsFilmSetTimes(ResultsFilm film, PetscInt n, const PetscReal times[])
+{
+  char name[80], file[96];
+
+  PetscFunctionBeginUser;
+  PetscCall(FilmReserve(film, n));
+  PetscCall(PetscArraycpy(film->time, times, n));
+  film->n_frames = n;
+  for (PetscInt k = 0; k < n; k++) {
+    PetscCall(FrameName(film, k, name));
+    PetscCall(PetscSNPrintf(file, sizeof(file), "%s.h5", name));
+    PetscCall(ResultsKeep(film->results, file));
+    PetscCall(PetscSNPrintf(file, sizeof(file), "%s.xmf", name));
+    PetscCall(ResultsKeep(film->results, file));
+  }
   PetscFunctionReturn(0);
 }
 

@@ -21,6 +21,7 @@ PetscErrorCode OutFileSetName(Results results, const char name[], const char ext
   file->fd     = -1;
   PetscCall(PetscSNPrintf(file->name, sizeof(file->name), "%s/%s%s", results->dir, name, extension));
   PetscCall(PetscSNPrintf(file->part, sizeof(file->part), "%s/%s%s.part", results->dir, name, extension));
+  PetscCall(ResultsKeep(results, file->name + strlen(results->dir) + 1));
   PetscFunctionReturn(0);
 }
 

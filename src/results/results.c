@@ -48,8 +48,8 @@ PetscErrorCode ResultsSetFromOptions(Results results)
   PetscOptionsBegin(results->comm, NULL, "Results", NULL);
   PetscCall(PetscOptionsString("-output_dir", "folder of all files, made where it is missing", "results.h",
                                results->dir, results->dir, sizeof(results->dir), NULL));
-  PetscCall(PetscOptionsBool("-output_fields", "write shapes for ParaView (*.h5, *.xmf) beside the tables",
-                             "results.h", results->fields, &results->fields, NULL));
+  PetscCall(PetscOptionsBool("-output_fields", "write shapes for ParaView (*.h5, *.xmf) beside the tables", "results.h",
+                             results->fields, &results->fields, NULL));
   PetscOptionsEnd();
   PetscCheck(results->dir[0] && strlen(results->dir) < room, results->comm, PETSC_ERR_USER_INPUT,
              "-output_dir must be the name of a folder, of at most %d characters", (int)room);
@@ -178,6 +178,7 @@ PetscErrorCode ResultsTableClose(ResultsTable *table)
 PetscErrorCode ResultsDestroy(Results *results)
 {
   PetscFunctionBeginUser;
+  if (*results) PetscCall(ResultsForget(*results));
   PetscCall(PetscFree(*results));
   PetscFunctionReturn(0);
 }

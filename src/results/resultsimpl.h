@@ -10,6 +10,7 @@
 #pragma once
 
 #include <squeal/results.h>
+#include "base/help.h"
 #include <hdf5.h>
 #include <stdio.h>
 
@@ -17,6 +18,11 @@ struct _p_Results {
   MPI_Comm  comm;
   char      dir[PETSC_MAX_PATH_LEN];
   PetscBool fields;
+  PetscInt  n_kept, kept_room;
+  char    **kept;     /* names of files in the folder that belong to this run */
+  PetscBool keep_all; /* nothing of earlier runs goes */
+  HelpList  options;  /* all, as the run found them */
+  double    begun;    /* MPI_Wtime() */
 };
 
 /* A file that is being written as `part`, to be renamed to `name` */
@@ -72,6 +78,9 @@ PETSC_INTERN PetscErrorCode OutFileVPrint(OutFile *file, const char format[], va
 PETSC_INTERN PetscErrorCode OutFileWriteAt(OutFile *file, const char *bytes, size_t size, off_t offset);
 PETSC_INTERN PetscErrorCode OutFilesCheck(PetscInt n, OutFile *const files[]);
 PETSC_INTERN PetscErrorCode OutFilesPublish(PetscInt n, OutFile *const files[]);
+
+/* provenance.c */
+PETSC_INTERN PetscErrorCode ResultsForget(Results results);
 
 /* h5file.c */
 PETSC_INTERN PetscErrorCode OutFileOpenH5(OutFile *file);

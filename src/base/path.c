@@ -1,0 +1,85 @@
+/*
+   Paths that options name: one in an options file is relative to the folder of that file, one on the command line to
+   the working folder.
+*/
+#include <squeal/options.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Whether the command line gives the option itself */
+static PetscErrorCode PathIsOnCommandLine(const char name[], PetscBool *given)
+{
+  char **word;
+  int    n;
+
+  PetscFunctionBeginUser;
+  *given = PETSC_FALSE;
+  PetscCall(PetscGetArgs(&n, &word));
+  for (int i = 1; i < n; i++)
+    if (!strcmp(word[i], name)) *given = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* Whether the options file gives the option this value */
+static PetscErrorCode FileGives(MPI_Comm comm, const char file[], const char name[], const char value[],
+                                PetscBool *gives)
+{
+  PetscOptions options;
+  char         text[PETSC_MAX_PATH_LEN];
+  PetscBool    set;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsCreate(&options));
+  PetscCall(PetscOptionsInsertFile(comm, options, file, PETSC_TRUE));
+  PetscCall(PetscOptionsGetString(options, NULL, name, text, sizeof(text), &set));
+  PetscCall(PetscOptionsDestroy(&options));
+  *gives = set && !strcmp(text, value) ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Puts the folder of the last options file that gives the value before it, where that names something */
+static PetscErrorCode PathResolve(MPI_Comm comm, const char name[], char path[], size_t size)
+{
+  char      beside[PETSC_MAX_PATH_LEN];
+  char    **word;
+  int       n;
+  PetscBool gives;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscGetArgs(&n, &word));
+  for (int i = n - 2; i > 0; i--) {
+    const char *slash = strrchr(word[i + 1], '/');
+
+    if (strncmp(word[i], "-options_file", 13) || !slash) continue;
+    PetscCall(FileGives(comm, word[i + 1], name, path, &gives));
+    if (!gives) continue;
+    PetscCall(PetscSNPrintf(beside, sizeof(beside), "%.*s/%s", (int)(slash - word[i + 1]), word[i + 1], path));
+    if (!access(beside, F_OK)) PetscCall(PetscStrncpy(path, beside, size));
+    break;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsGetPath(OptionsItems PetscOptionsObject, const char option[], const char help[], char path[],
+                              PetscBool *set)
+{
+  const MPI_Comm comm = PetscOptionsObject->comm;
+  PetscBool      given, on_command_line;
+  PetscMPIInt    rank;
+  char          *whole;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsString(option, help, "options.h", path, path, PETSC_MAX_PATH_LEN, &given));
+  if (set) *set = given;
+  if (!given || !path[0]) PetscFunctionReturn(0);
+  PetscCall(PathIsOnCommandLine(option, &on_command_line));
+  if (path[0] != '/' && !on_command_line) PetscCall(PathResolve(comm, option, path, PETSC_MAX_PATH_LEN));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Bcast(path, PETSC_MAX_PATH_LEN, MPI_CHAR, 0, comm)); /* one rank decides what is there */
+  whole = realpath(path, NULL);
+  if (whole) PetscCall(PetscOptionsSetValue(NULL, option, whole)); /* for scene.yaml, which lies elsewhere */
+  if (whole) PetscCall(PetscOptionsHasName(NULL, NULL, option, &given));
+  free(whole);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,295 @@
+/*
+   Provenance: which files this run wrote, the removal of those of an earlier run, and scene.yaml, which tells where the
+   files come from and can be run again.
+*/
+#include "resultsimpl.h"
+#include "base/help.h"
+#include <squeal/sys.h>
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+#define SCENE "scene"
+
+/* Files that squeal writes, each with the unfinished one without which it may go; # stands for a row of digits */
+static const struct {
+  const char *name, *unfinished;
+} known[] = {
+  {"modes.csv",         NULL                },
+  {"modes.h5",          NULL                },
+  {"modes.xmf",         NULL                },
+  {"static.csv",        NULL                },
+  {"static.h5",         NULL                },
+  {"static.xmf",        NULL                },
+  {"reactions.csv",     NULL                },
+  {"sweep.csv",         NULL                },
+  {"onsets.csv",        NULL                },
+  {"verify.csv",        NULL                },
+  {"sensitivities.csv", NULL                },
+  {"robustness.csv",    NULL                },
+  {"parameters.csv",    NULL                },
+  {"transient.csv",     "transient.csv.part"},
+  {"transient.xmf",     "transient.csv.part"},
+  {"contact_pairs.csv", "transient.csv.part"},
+  {"snapshot_#.h5",     "transient.csv.part"},
+  {"snapshot_#.xmf",    "transient.csv.part"},
+  {"checkpoint.bin",    "transient.csv.part"},
+};
+
+/* Options that say where something goes or how the run began, not what is computed */
+static const char *const not_of_scene[] = {"options_file", "output_dir", "squeal_log",
+                                           "log_file",     "help",       "dynamics_restart"};
+
+PetscErrorCode ResultsKeep(Results results, const char name[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < results->n_kept; i++)
+    if (!strcmp(results->kept[i], name)) PetscFunctionReturn(0);
+  if (results->n_kept == results->kept_room) {
+    results->kept_room = 2 * results->kept_room + 16;
+    PetscCall(PetscRealloc((size_t)results->kept_room * sizeof(*results->kept), &results->kept));
+  }
+  PetscCall(PetscStrallocpy(name, &results->kept[results->n_kept++]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsKeepFolder(Results results, const char folder[])
+{
+  char *const mine = realpath(results->dir, NULL), *const other = realpath(folder, NULL);
+
+  PetscFunctionBeginUser;
+  if (mine && other && !strcmp(mine, other)) results->keep_all = PETSC_TRUE;
+  free(mine);
+  free(other);
+  PetscFunctionReturn(0);
+}
+
+/* Removes what earlier runs left of this name, unless this run wrote or needs it */
+static PetscErrorCode NameRemove(Results results, const char name[])
+{
+  char path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < results->n_kept; i++)
+    if (!strcmp(results->kept[i], name)) PetscFunctionReturn(0);
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", results->dir, name));
+  (void)unlink(path); /* most are not there */
+  PetscFunctionReturn(0);
+}
+
+/* Removes the numbered files of a pattern, counting up until one is missing */
+static PetscErrorCode NumberedRemove(Results results, const char pattern[])
+{
+  const char *digits = strchr(pattern, '#');
+  char        name[80], path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  for (int k = 0;; k++) {
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%.*s%06d%s", (int)(digits - pattern), pattern, k, digits + 1));
+    PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", results->dir, name));
+    if (access(path, F_OK)) break;
+    PetscCall(NameRemove(results, name));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Removes the files of earlier runs, on the first rank */
+static PetscErrorCode FilesRemove(Results results)
+{
+  char path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(known); i++) {
+    PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", results->dir, known[i].unfinished ? known[i].unfinished : ""));
+    if (known[i].unfinished && !access(path, F_OK)) continue;
+    if (strchr(known[i].name, '#'))
+      PetscCall(NumberedRemove(results, known[i].name));
+    else
+      PetscCall(NameRemove(results, known[i].name));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsKeepScene(Results results, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx)
+{
+  HelpList *const list = &results->options;
+
+  PetscFunctionBeginUser;
+  results->begun = MPI_Wtime();
+  PetscCall(HelpCollect(results->comm, read_again, ctx, list));
+  PetscFunctionReturn(0);
+}
+
+/* Option of squeal of that name, or NULL */
+static const HelpOption *OptionFind(const HelpList *list, const char name[])
+{
+  for (int i = 0; i < list->n; i++)
+    if (list->option[i].own && !strcmp(list->option[i].name, name)) return &list->option[i];
+  return NULL;
+}
+
+/* Whether the option is one of those that a scene does not hold */
+static PetscBool OptionIsOfRun(const char name[])
+{
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(not_of_scene); i++)
+    if (!strcmp(name, not_of_scene[i])) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Takes the next "-name value ..." off the text of all options; false at its end. A value may hold blanks */
+static PetscBool NextGiven(char **text, char **name, char **value)
+{
+  char *end;
+
+  if (!*text || **text != '-') return PETSC_FALSE;
+  *name = *text + 1;
+  for (end = *name; *end && !(end[0] == ' ' && end[1] == '-' && isalpha((unsigned char)end[2])); end++) continue;
+  *text = *end ? end + 1 : end;
+  *end  = '\0';
+  while (end > *name && end[-1] == ' ') *--end = '\0';
+  *value = *name + strcspn(*name, " ");
+  if (**value) *(*value)++ = '\0';
+  return PETSC_TRUE;
+}
+
+/* One key of the scene, the value in double quotes */
+static PetscErrorCode ScenePrintKey(OutFile *file, const char name[], const char value[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(OutFilePrint(file, "%s: \"", name));
+  for (const char *c = value; *c; c++) PetscCall(OutFilePrint(file, *c == '"' || *c == '\\' ? "\\%c" : "%c", *c));
+  PetscCall(OutFilePrint(file, "\"\n"));
+  PetscFunctionReturn(0);
+}
+
+/* The options that are given: as keys, or on the command line what PETSc knows as bare words */
+static PetscErrorCode ScenePrintGiven(Results results, OutFile *file, PetscBool keys)
+{
+  char *all, *rest, *name, *value;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  for (rest = all; NextGiven(&rest, &name, &value);) {
+    const HelpOption *own  = OptionFind(&results->options, name);
+    const size_t      n    = strlen(name);
+    const PetscBool   view = n > 5 && !strcmp(name + n - 5, "_view") ? PETSC_TRUE : PETSC_FALSE;
+
+    if (OptionIsOfRun(name)) continue;
+    if (keys && (value[0] || own))
+      PetscCall(ScenePrintKey(file, name, value[0] ? value : view && !own->initial[0] ? "ascii" : "true"));
+    if (!keys && !value[0] && !own) PetscCall(OutFilePrint(file, " -%s", name));
+  }
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
+/* What nobody gave: the defaults in force, as comments */
+static PetscErrorCode ScenePrintDefaults(const HelpList *list, OutFile *file)
+{
+  PetscBool given;
+  char      dashed[HELP_MAX_NAME + 1];
+
+  PetscFunctionBeginUser;
+  PetscCall(OutFilePrint(file, "\n# At their defaults:\n"));
+  for (int i = 0; i < list->n; i++) {
+    if (!list->option[i].own || !list->option[i].value[0] || OptionIsOfRun(list->option[i].name)) continue;
+    PetscCall(PetscSNPrintf(dashed, sizeof(dashed), "-%s", list->option[i].name));
+    PetscCall(PetscOptionsHasName(NULL, NULL, dashed, &given));
+    if (!given) PetscCall(OutFilePrint(file, "# %s: %s\n", list->option[i].name, list->option[i].value));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The command line of this run */
+static PetscErrorCode ScenePrintCommand(OutFile *file, PetscMPIInt size)
+{
+  char **arguments, folder[PETSC_MAX_PATH_LEN];
+  int    n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscGetArgs(&n, &arguments));
+  PetscCall(PetscGetWorkingDirectory(folder, sizeof(folder)));
+  PetscCall(OutFilePrint(file, "# command: "));
+  if (size > 1) PetscCall(OutFilePrint(file, "mpirun -n %d ", size));
+  for (int i = 0; i < n; i++) {
+    const PetscBool plain = arguments[i][0] && !strpbrk(arguments[i], " \t\n'\"\\$*?;&|<>(){}[]#~`!");
+
+    PetscCall(OutFilePrint(file, plain ? "%s%s" : "%s'%s'", i ? " " : "", arguments[i]));
+  }
+  PetscCall(OutFilePrint(file, "\n# in: %s\n", folder));
+  PetscFunctionReturn(0);
+}
+
+/* Seconds since the start, and the sum of all ranks' largest memory, MB */
+static PetscErrorCode SceneGetCost(Results results, double *seconds, double *megabytes)
+{
+  struct rusage usage;
+
+  PetscFunctionBeginUser;
+  (void)getrusage(RUSAGE_SELF, &usage);
+  *megabytes = (double)usage.ru_maxrss * 1024e-6;
+  *seconds   = MPI_Wtime() - results->begun;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, megabytes, 1, MPI_DOUBLE, MPI_SUM, results->comm));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SceneWrite(Results results)
+{
+  SquealVersions v;
+  PetscMPIInt    size;
+  OutFile        opened, *file = &opened;
+  double         seconds, megabytes;
+  char           date[32];
+  const time_t   now = time(NULL);
+
+  PetscFunctionBeginUser;
+  SquealGetVersions(&v);
+  PetscCallMPI(MPI_Comm_size(results->comm, &size));
+  PetscCall(SceneGetCost(results, &seconds, &megabytes));
+  (void)strftime(date, sizeof(date), "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));
+  PetscCall(OutFileSetName(results, SCENE, ".yaml", file));
+  PetscCall(OutFileOpenText(file));
+  PetscCall(
+    OutFilePrint(file, "# Where the files of this folder come from, and all options in force. To repeat the run:\n"));
+  PetscCall(OutFilePrint(file, "# repeat: "));
+  if (size > 1) PetscCall(OutFilePrint(file, "mpirun -n %d ", size));
+  PetscCall(OutFilePrint(file, "squeal -options_file %s/" SCENE ".yaml -output_dir %s", results->dir, results->dir));
+  PetscCall(ScenePrintGiven(results, file, PETSC_FALSE));
+  PetscCall(OutFilePrint(file, "\n"));
+  PetscCall(ScenePrintCommand(file, size));
+  PetscCall(OutFilePrint(file, "# versions: squeal %s, PETSc %s, SLEPc %s, MUMPS %s, %s\n", v.squeal, v.petsc, v.slepc,
+                         v.mumps, v.mpi));
+  PetscCall(
+    OutFilePrint(file, "# cost: %d ranks, %.1f s, %.0f MB at most\n# end: %s\n", size, seconds, megabytes, date));
+  PetscCall(OutFilePrint(file, "# files:"));
+  for (PetscInt i = 0; i < results->n_kept; i++) PetscCall(OutFilePrint(file, " %s", results->kept[i]));
+  PetscCall(OutFilePrint(file, "\n\n"));
+  PetscCall(ScenePrintGiven(results, file, PETSC_TRUE));
+  PetscCall(ScenePrintDefaults(&results->options, file));
+  PetscCall(OutFilesPublish(1, &file));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsFinish(Results results)
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(results->comm, &rank));
+  PetscCall(SceneWrite(results));
+  if (rank == 0 && !results->keep_all) PetscCall(FilesRemove(results));
+  PetscCallMPI(MPI_Barrier(results->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsForget(Results results)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < results->n_kept; i++) PetscCall(PetscFree(results->kept[i]));
+  PetscCall(PetscFree(results->kept));
+  free(results->options.option);
+  PetscFunctionReturn(0);
+}

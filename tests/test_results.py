@@ -1,0 +1,150 @@
+#!/usr/bin/env python3
+"""Where results come from. Breaks when scene.yaml does not repeat the run that wrote it, when tables of an earlier run
+stay beside new ones, when a file of the user or of an unfinished run goes, or when a failed run removes anything.
+
+    test_results.py SQUEAL MPIRUN"""
+
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[1]
+SCENE = """
+model: {mesh: mesh/block.msh}
+parts: base,block
+base: {young: 210e9, poisson: 0.3, density: 7800}
+block: {young: 10e9, poisson: 0.3, density: 2500}
+supports: ground
+ground: {set: base_bottom, fix: xyz}
+springs: holder
+holder: {set: block_top, stiffness: "1e6,1e6,0"}
+loads: press
+press: {set: block_top, force: "0,0,-1000"}
+contacts: contact
+contact: {surfaces: "block_bottom,base_top", law: constraint, mu: 0.3, slip: "0,1,0"}
+modes: {target: 5000, count: 4}
+"""
+RUN = {"modes": ["-modes_contact", "static"], "static": ["-analysis", "static"],
+       "transient": ["-analysis", "transient", "-ts_max_time", "2e-4", "-contact_speed", "1",
+                     "-dynamics_history_interval", "1e-6"]}
+
+
+class Runner:
+    """Runs squeal in a folder of its own and keeps what is wrong."""
+
+    def __init__(self, squeal, mpirun, folder):
+        self.squeal, self.mpirun, self.folder, self.faults = squeal, mpirun, folder, []
+
+    def run(self, *options, ranks=1, cwd=None):
+        command = [self.mpirun, "-n", str(ranks), self.squeal, *options]
+        return subprocess.run(command, capture_output=True, text=True, cwd=cwd or self.folder)
+
+    def scene(self, analysis, *more, out="out", **how):
+        return self.run("-options_file", self.folder / "scenes/mine.yaml", "-output_dir", self.folder / out, *RUN[analysis],
+                        *more, **how)
+
+    def files(self, out="out"):
+        return sorted(path.name for path in (self.folder / out).iterdir())
+
+    def check(self, holds, what, done=None):
+        print("ok  " if holds else "FAIL", what)
+        if not holds:
+            self.faults.append(what)
+            print(done.stdout + done.stderr if done else self.files())
+
+
+def alike(first, second):
+    """Whether two tables of modes hold the same frequencies; two ranks add up in any order."""
+    rows = [[float(line.split(",")[1]) for line in path.read_text().splitlines()[1:]] for path in (first, second)]
+    return len(rows[0]) == len(rows[1]) == 4 and all(abs(a - b) <= 1e-11 * b for a, b in zip(*rows))
+
+
+def check_scene(r):
+    """The repeated run gives the same table, from another folder and on two ranks."""
+    elsewhere = r.folder / "elsewhere"
+    elsewhere.mkdir()
+    for ranks in (1, 2):
+        done = r.scene("modes", "-contact_mu", "0.25", "-squeal_view", ranks=ranks)
+        text = (r.folder / "out/scene.yaml").read_text()
+        r.check(done.returncode == 0 and (r.folder / "out/modes.csv").exists(), f"modes on {ranks}", done)
+        for word in ('contact_mu: "0.25"', 'squeal_view: "true"', 'modes_contact: "static"', "# versions: squeal ", "MUMPS",
+                     f"# cost: {ranks} ranks", "# contact_tolerance: 1e-05", "# command: ", "modes.csv"):
+            r.check(word in text, f"scene.yaml on {ranks} says {word}", done)
+        repeat = re.search(r"# repeat: (?:mpirun -n (\d+) )?squeal (.*)", text)
+        options = repeat[2].replace(f"-output_dir {r.folder}/out", "-output_dir again").split()
+        again = r.run(*options, ranks=int(repeat[1] or 1), cwd=elsewhere)
+        r.check(again.returncode == 0 and alike(elsewhere / "again/modes.csv", r.folder / "out/modes.csv"), f"scene.yaml repeats the run on {ranks}, from another folder", again)
+        r.check("option" not in again.stderr, "nothing in scene.yaml is unused", again)
+
+
+def check_stale(r):
+    """Each run leaves its own files, and those that are not squeal's."""
+    for name in ("notes.txt", "mine.csv", "modes.csv.old"):
+        (r.folder / "out" / name).write_text("mine")
+    done = r.scene("modes", "-contact_mu", "nonsense")
+    r.check(done.returncode != 0 and "modes.h5" in r.files(), "a run that fails removes nothing", done)
+    done = r.scene("static")
+    mine = ["mine.csv", "modes.csv.old", "notes.txt"]
+    r.check(r.files() == sorted(["reactions.csv", "scene.yaml", "static.csv", "static.h5", "static.xmf", *mine]),
+            "after statics only its files and those of the user", done)
+    done = r.scene("modes", "-output_fields", "0")
+    r.check(r.files() == sorted(["modes.csv", "scene.yaml", *mine]), "after modes without fields only modes.csv", done)
+    done = r.scene("transient", "-dynamics_shape", r.folder / "out", ranks=2)
+    r.check(done.returncode != 0, "a shape needs modes.h5", done)
+    r.scene("modes")
+    done = r.scene("transient", "-dynamics_shape", r.folder / "out", "-dynamics_snapshot_interval", "5e-5",
+                   "-dynamics_checkpoint_interval", "20")
+    r.check({"modes.h5", "modes.csv", "transient.csv", "snapshot_000001.h5", "checkpoint.bin"} <= set(r.files()),
+            "the modes that a transient began with stay", done)
+    done = r.scene("transient", "-dynamics_snapshot_interval", "1.5e-4")
+    r.check("snapshot_000002.h5" not in r.files() and "modes.h5" not in r.files() and "snapshot_000001.h5" in r.files(),
+            "snapshots beyond the new ones go", done)
+
+
+def check_unfinished(r):
+    """What a stopped transient goes on from stays, and it does go on."""
+    done = r.scene("transient", out="whole")
+    r.scene("transient", "-dynamics_checkpoint_interval", "20", out="out")
+    part = r.folder / "out/transient.csv"
+    part.rename(part.with_suffix(".csv.part"))  # as a run that was killed leaves it
+    done = r.scene("modes")
+    r.check({"checkpoint.bin", "transient.csv.part", "modes.csv"} <= set(r.files()), "an unfinished run stays", done)
+    done = r.scene("transient", "-dynamics_restart", "-dynamics_checkpoint_interval", "20")
+    same = part.exists() and part.read_bytes() == (r.folder / "whole/transient.csv").read_bytes()
+    r.check(done.returncode == 0 and same, "and goes on bitwise", done)
+    r.check({"checkpoint.bin", "transient.csv"} <= set(r.files()) and "modes.csv" not in r.files(), "its files stay", done)
+    r.check("dynamics_restart:" not in (r.folder / "out/scene.yaml").read_text().split("# At")[0],
+            "its scene is the whole run")
+
+
+def check_path(r):
+    """A path in an options file begins there, one on the command line in the working folder."""
+    elsewhere = r.folder / "elsewhere"
+    done = r.scene("static", "-model_mesh", "scenes/mesh/block.msh")
+    r.check(done.returncode == 0, "a path on the command line", done)
+    done = r.scene("static", "-model_mesh", "mesh/block.msh")
+    r.check(done.returncode != 0 and "mesh/block.msh" in done.stderr, "is not one beside the options file", done)
+    (r.folder / "scenes/over.yaml").write_text("contact: {mu: 0.1}\n")
+    done = r.scene("static", "-options_file", r.folder / "scenes/over.yaml", cwd=elsewhere)
+    r.check(done.returncode == 0, "a path in the first of two options files", done)
+
+
+def main():
+    squeal, mpirun = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+    with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
+        r = Runner(squeal, mpirun, Path(folder).resolve())
+        (r.folder / "scenes/mesh").mkdir(parents=True)
+        (r.folder / "scenes/mine.yaml").write_text(SCENE)
+        subprocess.run([sys.executable, SOURCE / "tests/mesh.py", "blocks", "--elements", "3,3,3",
+                        r.folder / "scenes/mesh/block.msh"], check=True)
+        for check in (check_scene, check_stale, check_unfinished, check_path):
+            check(r)
+    if r.faults:
+        print(f"{len(r.faults)} failed: {'; '.join(r.faults)}")
+    return 1 if r.faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
