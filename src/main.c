@@ -3,6 +3,8 @@
 */
 #include <squeal/squeal.h>
 #include <squeal/options.h>
+#include "scope.h"
+#include "solver/shiftinvert.h"
 
 typedef enum { ANALYSIS_MODES, ANALYSIS_SWEEP, ANALYSIS_STATIC, ANALYSIS_TRANSIENT, N_ANALYSES } Analysis;
 
@@ -22,32 +24,34 @@ typedef enum {
 
 static const struct {
   const char *option, *help;
+  unsigned    in; /* bits of the analyses that have something to show */
 } shown[N_SHOWN] = {
-  [SHOWN_MODEL]     = {"-model_view",     "show mesh, parts, supports, springs and loads"          },
-  [SHOWN_CONTACT]   = {"-contact_view",   "show interfaces and their pairs"                        },
-  [SHOWN_OPERATORS] = {"-operators_view", "show the pencil of modes and sweeps, and its parameters"},
-  [SHOWN_STATICS]   = {"-statics_view",   "show the equilibrium"                                   },
-  [SHOWN_MODES]     = {"-modes_view",     "show the modes found"                                   },
-  [SHOWN_SWEEP]     = {"-sweep_view",     "show what a sweep found"                                },
-  [SHOWN_DYNAMICS]  = {"-dynamics_view",  "show bodies, step and balances of a run in time"        },
+  [SHOWN_MODEL]     = {"-model_view",     "show mesh, parts, supports, springs and loads",           15                     },
+  [SHOWN_CONTACT]   = {"-contact_view",   "show interfaces and their pairs",                         7                      },
+  [SHOWN_OPERATORS] = {"-operators_view", "show the pencil of modes and sweeps, and its parameters", 3                      },
+  [SHOWN_STATICS]   = {"-statics_view",   "show the equilibrium",                                    1 << ANALYSIS_STATIC   },
+  [SHOWN_MODES]     = {"-modes_view",     "show the modes found",                                    1 << ANALYSIS_MODES    },
+  [SHOWN_SWEEP]     = {"-sweep_view",     "show what a sweep found",                                 1 << ANALYSIS_SWEEP    },
+  [SHOWN_DYNAMICS]  = {"-dynamics_view",  "show bodies, step and balances of a run in time",         1 << ANALYSIS_TRANSIENT},
 };
 
 /* The chain of a run: options -> model -> contact -> operators -> statics -> pencil -> modes -> sweep, or dynamics; and
    results */
 typedef struct {
-  Model       model; /* NULL for matrices without a mesh */
-  Contact     contact;
-  Operators   operators;
-  PetscReal  *p; /* values of the parameters: those of the scene, and what statics identify */
-  Statics     statics;
-  Pencil      pencil; /* at p, where modes, a file or a view ask for it */
-  Modes       modes;
-  Sweep       sweep;
-  Dynamics    dynamics;
-  Results     results;
-  Analysis    analysis;
-  PetscBool   view;
-  PetscViewer viewer[N_SHOWN]; /* of what the options below ask for and is not shown yet */
+  Model         model; /* NULL for matrices without a mesh */
+  Contact       contact;
+  Operators     operators;
+  PetscReal    *p; /* values of the parameters: those of the scene, and what statics identify */
+  Statics       statics;
+  Pencil        pencil; /* at p, where modes, a file or a view ask for it */
+  Modes         modes;
+  Sweep         sweep;
+  Dynamics      dynamics;
+  Results       results;
+  Analysis      analysis;
+  OptionsClaims claims; /* who read what stands on the command line */
+  PetscBool     view;
+  PetscViewer   viewer[N_SHOWN]; /* of what the options below ask for and is not shown yet */
 } Chain;
 
 static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
@@ -56,12 +60,13 @@ static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
   PetscInt  analysis = ANALYSIS_MODES;
 
   PetscFunctionBeginUser;
+  PetscCall(OptionsClaimsCreate(&chain->claims));
   PetscCall(SquealSetFromOptions(comm));
   PetscOptionsBegin(comm, NULL, "Analysis", NULL);
   PetscCall(
     PetscOptionsEList("-analysis", "what to compute", "squeal.h", analyses, N_ANALYSES, analyses[0], &analysis, NULL));
-  PetscCall(PetscOptionsBool("-squeal_view", "print what was chosen and why, and the time of each stage", "squeal.h",
-                             chain->view, &chain->view, NULL));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-squeal_view",
+                           "print what was chosen and why, and the time of each stage", &chain->view));
   PetscOptionsEnd();
   chain->analysis = (Analysis)analysis;
   for (int i = 0; i < N_SHOWN; i++)
@@ -76,17 +81,32 @@ static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
     PetscCall(ContactSetFromOptions(chain->contact));
     PetscCall(OperatorsSetModel(chain->operators, chain->model, chain->contact));
   }
+  PetscCall(ResultsCreate(comm, &chain->results));
+  PetscCall(ResultsSetFromOptions(chain->results));
+  PetscCall(OptionsClaim(chain->claims, READER_ANY));
+  PetscFunctionReturn(0);
+}
+
+/* What not every analysis needs; each reader claims what is read in its turn */
+static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
+{
+  PetscFunctionBeginUser;
   PetscCall(DynamicsCreate(comm, &chain->dynamics));
   if (chain->model) PetscCall(DynamicsSetModel(chain->dynamics, chain->model, chain->contact));
   PetscCall(DynamicsSetFromOptions(chain->dynamics));
+  PetscCall(OptionsClaim(chain->claims, READER_DYNAMICS));
   PetscCall(StaticsCreate(comm, &chain->statics));
   PetscCall(StaticsSetFromOptions(chain->statics));
+  PetscCall(OptionsClaim(chain->claims, READER_STATICS));
   PetscCall(ModesCreate(comm, &chain->modes));
   PetscCall(ModesSetFromOptions(chain->modes));
+  PetscCall(SolverReadEigenOptions(comm));
+  PetscCall(OptionsClaim(chain->claims, READER_MODES));
+  PetscCall(SolverReadFactorOptions(comm));
+  PetscCall(OptionsClaim(chain->claims, READER_FACTOR));
   PetscCall(SweepCreate(comm, &chain->sweep));
   PetscCall(SweepSetFromOptions(chain->sweep));
-  PetscCall(ResultsCreate(comm, &chain->results));
-  PetscCall(ResultsSetFromOptions(chain->results));
+  PetscCall(OptionsClaim(chain->claims, READER_SWEEP));
   PetscFunctionReturn(0);
 }
 
@@ -94,6 +114,7 @@ static PetscErrorCode ChainDestroy(Chain *chain)
 {
   PetscFunctionBeginUser;
   for (int i = 0; i < N_SHOWN; i++) PetscCall(PetscViewerDestroy(&chain->viewer[i]));
+  PetscCall(OptionsClaimsDestroy(&chain->claims));
   PetscCall(ResultsDestroy(&chain->results));
   PetscCall(DynamicsDestroy(&chain->dynamics));
   PetscCall(SweepDestroy(&chain->sweep));
@@ -107,6 +128,27 @@ static PetscErrorCode ChainDestroy(Chain *chain)
   PetscFunctionReturn(0);
 }
 
+/* Raises an error for what stands on the command line and has no effect in this analysis */
+static PetscErrorCode ChainCheckOptions(MPI_Comm comm, const Chain *chain)
+{
+  const Analysis analysis = chain->analysis;
+  const Scope    scope    = {.analysis  = analyses[analysis],
+                             .sweep     = analysis == ANALYSIS_SWEEP,
+                             .transient = analysis == ANALYSIS_TRANSIENT,
+                             .modes     = analysis == ANALYSIS_SWEEP || analysis == ANALYSIS_MODES,
+                             .model     = chain->model,
+                             .contact   = chain->contact,
+                             .linear    = chain->modes,
+                             .dynamics  = chain->dynamics};
+
+  PetscFunctionBeginUser;
+  PetscCall(ScopeCheck(comm, &scope, chain->claims));
+  for (int i = 0; i < N_SHOWN; i++)
+    if (chain->viewer[i] && (!(shown[i].in >> analysis & 1) || (!chain->model && i <= SHOWN_CONTACT)))
+      PetscCall(OptionsRefuse(comm, shown[i].option, "this analysis has nothing to show there"));
+  PetscFunctionReturn(0);
+}
+
 /* Reads all options on a chain of its own, to list the valid names */
 static PetscErrorCode ReadAgain(MPI_Comm comm, void *ctx)
 {
@@ -115,6 +157,7 @@ static PetscErrorCode ReadAgain(MPI_Comm comm, void *ctx)
   PetscFunctionBeginUser;
   (void)ctx;
   PetscCall(ChainCreate(comm, &chain));
+  PetscCall(ChainCreateAnalyses(comm, &chain));
   PetscCall(ChainDestroy(&chain));
   PetscFunctionReturn(0);
 }
@@ -202,17 +245,6 @@ static PetscErrorCode ChainView(Chain *chain)
   PetscFunctionReturn(0);
 }
 
-/* One line on stderr for each option of those that had nothing to show */
-static PetscErrorCode ChainWarnHidden(MPI_Comm comm, const Chain *chain)
-{
-  PetscFunctionBeginUser;
-  for (int i = 0; i < N_SHOWN; i++)
-    if (chain->viewer[i])
-      PetscCall(PetscFPrintf(comm, stderr, "squeal: warning: %s has nothing to show with -analysis %s\n",
-                             shown[i].option, analyses[chain->analysis]));
-  PetscFunctionReturn(0);
-}
-
 /* What rooms need of each other, the contact stiffness where pressing is to tell it, and the matrices for a file */
 static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
 {
@@ -279,7 +311,10 @@ static PetscErrorCode Run(MPI_Comm comm)
 
   PetscFunctionBeginUser;
   PetscCall(ChainCreate(comm, &chain));
+  PetscCall(ChainCreateAnalyses(comm, &chain));
   PetscCall(OptionsCheckUnknown(comm, ReadAgain, NULL));
+  PetscCall(OptionsCheckValues(comm));
+  PetscCall(ChainCheckOptions(comm, &chain));
   if (chain.model) PetscCall(ModelCheckGiven(chain.model));
   PetscCall(ResultsKeepScene(chain.results, ReadAgain, NULL));
   PetscCall(ResultsOpenDirectory(chain.results));
@@ -289,7 +324,6 @@ static PetscErrorCode Run(MPI_Comm comm)
   PetscCall(ChainRun(&chain));
   PetscCall(ResultsFinish(chain.results));
   if (chain.view) PetscCall(SquealViewStages(comm, viewer));
-  PetscCall(ChainWarnHidden(comm, &chain));
   PetscCall(OptionsWarnUnused(comm));
   PetscCall(ChainDestroy(&chain));
   PetscFunctionReturn(0);

@@ -126,5 +126,60 @@ PetscErrorCode OptionsExplainValue(const char message[], char text[], size_t siz
 @*/
 PetscErrorCode OptionsCheckUnknown(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx);
 
-/*@ OptionsWarnUnused - one line on stderr for each option that nobody used until now. Collective. @*/
+/*@
+   OptionsCheckArguments - looks at the command line and at the options files that it names, before SlepcInitialize().
+   Not collective: all ranks read alike.
+
+   Errors: PETSC_ERR_USER_INPUT for a word that is no option's value, an empty value, an options file that is none, for
+   YAML the line of a fault, of a key that stands twice, or has no value.
+@*/
+PetscErrorCode OptionsCheckArguments(int argc, char *const argv[]);
+
+/*@ OptionsCheckFile - the same for one options file; YAML by its ending, or where is_yaml says so. Not collective. @*/
+PetscErrorCode OptionsCheckFile(const char file[], PetscBool is_yaml);
+
+/*@ OptionsCheckNumbers - raises an error for nan, inf and what overflows to it, in the value of any option, whatever
+    PETSc makes of it. Not collective: all ranks have the same options. @*/
+PetscErrorCode OptionsCheckNumbers(void);
+
+/*@ OptionsCheckNumber - the same for one option between PetscOptionsBegin() and PetscOptionsEnd(). Not collective. @*/
+PetscErrorCode OptionsCheckNumber(OptionsItems PetscOptionsObject, const char option[]);
+
+/*@ OptionsGetBool - reads a logical option between PetscOptionsBegin() and PetscOptionsEnd(); without a value it is
+    true. Collective. @*/
+PetscErrorCode OptionsGetBool(OptionsItems PetscOptionsObject, const char option[], const char help[],
+                              PetscBool *value);
+
+/*@ OptionsCheckValues - raises an error for an option of the program without a value, unless OptionsGetBool() or
+    OptionsGetViewer() has read it. Collective; when every room has read its options. @*/
+PetscErrorCode OptionsCheckValues(MPI_Comm comm);
+
+/*@ OptionsRefuse - raises an error where the option, such as "-contact_kn", stands on the command line; why ends the
+    message. For what is read, and has no effect. Collective. @*/
+PetscErrorCode OptionsRefuse(MPI_Comm comm, const char option[], const char why[]);
+
+/* Options of the command line, and who read each */
+typedef struct _p_OptionsClaims *OptionsClaims;
+
+/* Somebody who reads options */
+typedef struct {
+  PetscBool   in_force; /* what he reads has an effect in this run */
+  const char *belongs;  /* what he reads for, in words */
+} OptionsReader;
+
+PetscErrorCode OptionsClaimsCreate(OptionsClaims *claims);
+
+/*@ OptionsClaim - what was read since the last call was read by this reader. Not collective. @*/
+PetscErrorCode OptionsClaim(OptionsClaims claims, int reader);
+
+/*@ OptionsClaimsCheck - raises an error for an option of the command line whose reader is not in force. Collective. @*/
+PetscErrorCode OptionsClaimsCheck(MPI_Comm comm, OptionsClaims claims, const OptionsReader readers[],
+                                  const char analysis[]);
+PetscErrorCode OptionsClaimsDestroy(OptionsClaims *claims);
+
+/*@ OptionIsLibrarys - whether PETSc or SLEPc read an option, given without its dash. Not collective. @*/
+PetscErrorCode OptionIsLibrarys(const char name[], PetscBool *is_librarys);
+
+/*@ OptionsWarnUnused - one line on stderr for each option that nobody used until now, and an error for one that stands
+    on the command line. Collective. @*/
 PetscErrorCode OptionsWarnUnused(MPI_Comm comm);

@@ -192,12 +192,25 @@ static int NameDistance(const char unknown[], const char valid[])
   return EditDistance(unknown, valid);
 }
 
-/* Whether PETSc or SLEPc read this option */
-static PetscBool OptionIsLibrarys(const char name[])
+/* Options of PETSc's and SLEPc's solvers: read when the rooms read theirs, or when SolverReadOptions() asks, but for
+   those of MUMPS and of viewers */
+static PetscBool OptionIsSolvers(const char name[])
 {
-  for (const char *const *prefix = library_prefixes; *prefix; prefix++)
-    if (!strncmp(name, *prefix, strlen(*prefix))) return PETSC_TRUE;
+  static const char *const prefixes[] = {"eps_", "pep_", "st_", "ts_"};
+
+  if (strstr(name, "mat_mumps_icntl_") || strstr(name, "mat_mumps_cntl_") || strstr(name, "_view")) return PETSC_FALSE;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(prefixes); i++)
+    if (!strncmp(name, prefixes[i], strlen(prefixes[i]))) return PETSC_TRUE;
   return PETSC_FALSE;
+}
+
+PetscErrorCode OptionIsLibrarys(const char name[], PetscBool *is_librarys)
+{
+  PetscFunctionBeginUser;
+  *is_librarys = PETSC_FALSE;
+  for (const char *const *prefix = library_prefixes; *prefix; prefix++)
+    if (!strncmp(name, *prefix, strlen(*prefix))) *is_librarys = PETSC_TRUE;
+  PetscFunctionReturn(0);
 }
 
 /* Raises the error for one unknown option */
@@ -210,14 +223,17 @@ static PetscErrorCode ComplainUnknown(MPI_Comm comm, const char name[], const ch
 
 PetscErrorCode OptionsCheckUnknown(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx)
 {
-  PetscInt n, best = PETSC_MAX_INT;
-  char   **names, **values, unknown[MAX_NAME] = "", nearest[MAX_NAME] = "";
-  HelpList valid = {0};
+  PetscInt  n, best = PETSC_MAX_INT;
+  char    **names, **values, unknown[MAX_NAME] = "", nearest[MAX_NAME] = "";
+  HelpList  valid = {0};
+  PetscBool is_librarys;
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
-  for (PetscInt i = 0; i < n && !unknown[0]; i++)
-    if (!OptionIsLibrarys(names[i])) PetscCall(PetscStrncpy(unknown, names[i], sizeof(unknown)));
+  for (PetscInt i = 0; i < n && !unknown[0]; i++) {
+    PetscCall(OptionIsLibrarys(names[i], &is_librarys));
+    if (!is_librarys || OptionIsSolvers(names[i])) PetscCall(PetscStrncpy(unknown, names[i], sizeof(unknown)));
+  }
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
   if (!unknown[0]) PetscFunctionReturn(0);
 
@@ -249,15 +265,19 @@ static PetscBool OptionIsLate(const char name[])
 PetscErrorCode OptionsWarnUnused(MPI_Comm comm)
 {
   PetscInt    n;
-  char      **names, **values;
+  char      **names, **values, option[MAX_NAME];
   PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
-  for (PetscInt i = 0; i < n && rank == 0; i++)
-    if (!OptionIsLate(names[i]))
-      PetscCall(PetscFPrintf(PETSC_COMM_SELF, stderr, "squeal: warning: option -%s was not used\n", names[i]));
+  for (PetscInt i = 0; i < n; i++) {
+    if (OptionIsLate(names[i])) continue;
+    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s", names[i]));
+    PetscCall(OptionsRefuse(comm, option, "nothing in this run has read it; what was written is without it"));
+    if (rank) continue;
+    PetscCall(PetscFPrintf(PETSC_COMM_SELF, stderr, "squeal: warning: option %s was not used\n", option));
+  }
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
   PetscFunctionReturn(0);
 }

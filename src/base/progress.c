@@ -2,6 +2,7 @@
    Progress line on stderr with the time left; quiet when stderr is no terminal, unless -squeal_progress 1.
 */
 #include "progress.h"
+#include <squeal/options.h>
 #include <petsctime.h>
 #include <unistd.h>
 
@@ -13,8 +14,8 @@ PetscErrorCode ProgressSetFromOptions(MPI_Comm comm, Progress *progress)
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   progress->on = isatty(STDERR_FILENO) ? PETSC_TRUE : PETSC_FALSE;
   PetscOptionsBegin(comm, NULL, "Progress", NULL);
-  PetscCall(PetscOptionsBool("-squeal_progress", "progress line on stderr; by default where it is a terminal",
-                             "modes.h", progress->on, &progress->on, NULL));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-squeal_progress",
+                           "progress line on stderr; by default where it is a terminal", &progress->on));
   PetscOptionsEnd();
   if (rank) progress->on = PETSC_FALSE;
   PetscFunctionReturn(0);

@@ -9,6 +9,7 @@
 #include <squeal/options.h>
 #include "events.h"
 #include "help.h"
+#include "progress.h"
 #include <slepcsys.h>
 #include <hdf5.h>
 #include <petsctime.h>
@@ -78,23 +79,8 @@ static PetscErrorCode KeepError(MPI_Comm comm, int line, const char *function, c
   return code;
 }
 
-/* Adds the files to a message about YAML that names none; PETSc does not say which of several it read */
-static void NameOptionsFiles(int argc, char *const argv[], char message[MAX_MESSAGE])
-{
-  const char *between = "; check tabs, indentation, brackets and quotes of ";
-
-  if (!strstr(message, "YAML") || strstr(message, "option file: ")) return;
-  for (int i = 1; i + 1 < argc; i++) {
-    if (strncmp(argv[i], "-options_file", 13)) continue;
-    (void)snprintf(&message[strlen(message)], MAX_MESSAGE - strlen(message), "%s-options_file %s", between,
-                   argv[i + 1]);
-    between = " or ";
-  }
-}
-
 PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
 {
-  PetscErrorCode error;
   PetscClassId class[SQUEAL_N_STAGES];
 
   PetscFunctionBeginUser;
@@ -104,10 +90,10 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
   if (!help) HelpHush(*argc, *argv);
   (void)H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   PetscCall(PetscPushErrorHandler(KeepError, error_message));
-  error = SlepcInitialize(argc, argv, NULL, help);
+  PetscErrorHandlingInitialized = PETSC_TRUE; /* as PetscInitialize() begins: errors are kept from now on */
+  PetscCall(OptionsCheckArguments(*argc, *argv));
+  PetscCall(SlepcInitialize(argc, argv, NULL, help));
   (void)signal(SIGPIPE, SIG_DFL); /* `squeal ... | head` ends where head does, as other programs do */
-  if (error) NameOptionsFiles(*argc, *argv, error_message);
-  PetscCall(error);
   for (PetscInt s = 0; s < SQUEAL_N_STAGES; s++) {
     PetscCall(PetscLogStageRegister(stage_names[s], &stages[s]));
     PetscCall(PetscClassIdRegister(stage_names[s], &class[s]));
@@ -120,10 +106,14 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
 
 PetscErrorCode SquealSetFromOptions(MPI_Comm comm)
 {
+  Progress progress;
+
   PetscFunctionBeginUser;
+  PetscCall(OptionsCheckNumbers());
+  PetscCall(ProgressSetFromOptions(comm, &progress)); /* as several rooms do: it belongs to none of them */
   PetscOptionsBegin(comm, NULL, "squeal", NULL);
-  PetscCall(PetscOptionsBool("-squeal_traceback", "show PETSc's traceback of an error, for developers", "sys.h", traced,
-                             &traced, NULL));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-squeal_traceback",
+                           "show PETSc's traceback of an error, for developers", &traced));
   PetscOptionsEnd();
   PetscFunctionReturn(0);
 }

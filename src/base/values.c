@@ -51,6 +51,30 @@ static PetscErrorCode ArrayPrint(PetscInt n, const PetscReal *reals, const Petsc
   PetscFunctionReturn(0);
 }
 
+/* Gives an option without a value the value that this stands for, so that OptionsCheckValues() sees it */
+static PetscErrorCode OptionsFillValue(PetscOptions options, const char name[], const char text[])
+{
+  const char *value;
+  PetscBool   set;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsFindPair(options, NULL, name, &value, &set));
+  if (set && !(value && value[0])) PetscCall(PetscOptionsSetValue(options, name, text));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsGetBool(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscBool *value)
+{
+  char name[256];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(name, sizeof(name), "-%s%s", PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "",
+                          option + 1));
+  PetscCall(OptionsFillValue(PetscOptionsObject->options, name, "true"));
+  PetscCall(PetscOptionsBool(option, help, "options.h", *value, value, NULL));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OptionsGetReals(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
                                PetscReal values[], PetscBool *set)
 {
@@ -103,6 +127,7 @@ PetscErrorCode OptionsGetViewer(MPI_Comm comm, const char option[], const char h
 
   PetscFunctionBeginUser;
   *viewer = NULL;
+  PetscCall(OptionsFillValue(NULL, option, "ascii"));
   PetscOptionsBegin(comm, NULL, "What is shown, and where: ascii, or ascii:FILE, or ascii:FILE::append", NULL);
   PetscCall(PetscOptionsGetViewer(comm, NULL, NULL, option, viewer, &format, &set));
   PetscCall(OptionsShow(PetscOptionsObject, option, help, "", ""));

@@ -75,8 +75,8 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
   PetscCall(
     PetscOptionsReal("-force", "total normal force in the sliding state, N", "contact.h", c->force, &c->force, NULL));
   PetscCall(PetscOptionsReal("-speed", "sliding speed, m/s", "contact.h", c->speed, &c->speed, NULL));
-  PetscCall(PetscOptionsBool("-friction_damping", "damping mu N/v across the slip, mu_slope N along it", "contact.h",
-                             c->damping, &c->damping, NULL));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-friction_damping",
+                           "damping mu N/v across the slip, mu_slope N along it", &c->damping));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-slip", "direction of the slave's velocity relative to the master", 3,
                             c->slip, NULL));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-rotation", "or: angular velocity of the master, rad/s", 3,

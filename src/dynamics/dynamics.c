@@ -43,8 +43,8 @@ static PetscErrorCode DynamicsStepFromOptions(Dynamics d, OptionsItems PetscOpti
                              "dynamics.h", d->fraction, &d->fraction, NULL));
   PetscCheck(d->fraction > 0 && d->fraction <= 1, d->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_step_fraction %.6g must be in (0, 1]", (double)d->fraction);
-  PetscCall(PetscOptionsBool("-dynamics_step_force", "integrate with a -ts_dt above the critical step", "dynamics.h",
-                             d->step_force, &d->step_force, NULL));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_step_force",
+                           "integrate with a -ts_dt above the critical step", &d->step_force));
   PetscCall(PetscOptionsReal("-ts_time_step", "the same as -ts_dt, s", "dynamics.h", d->dt_asked, &d->dt_asked, NULL));
   PetscFunctionReturn(0);
 }
@@ -70,19 +70,19 @@ static PetscErrorCode DynamicsStartFromOptions(Dynamics d, OptionsItems PetscOpt
 static PetscErrorCode DynamicsRunFromOptions(Dynamics d, OptionsItems PetscOptionsObject)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsBool("-dynamics_coriolis", "Coriolis forces in parts that turn", "dynamics.h", d->coriolis,
-                             &d->coriolis, NULL));
-  PetscCall(PetscOptionsBool("-dynamics_centrifugal", "centrifugal forces in parts that turn", "dynamics.h",
-                             d->centrifugal, &d->centrifugal, NULL));
-  PetscCall(PetscOptionsBool("-contact_view_kkt", "print the residuals of the contact laws at the end", "dynamics.h",
-                             d->view_kkt, &d->view_kkt, NULL));
+  PetscCall(
+    OptionsGetBool(PetscOptionsObject, "-dynamics_coriolis", "Coriolis forces in parts that turn", &d->coriolis));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_centrifugal", "centrifugal forces in parts that turn",
+                           &d->centrifugal));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-contact_view_kkt",
+                           "print the residuals of the contact laws at the end", &d->view_kkt));
   PetscCall(PetscOptionsInt("-dynamics_checkpoint_interval", "steps between checkpoints, 0 for none", "dynamics.h",
                             d->checkpoint_interval, &d->checkpoint_interval, NULL));
   PetscCheck(d->checkpoint_interval >= 0, d->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_checkpoint_interval %" PetscInt_FMT " must be a number of steps, 0 for none",
              d->checkpoint_interval);
-  PetscCall(PetscOptionsBool("-dynamics_restart", "go on from the checkpoint in the output folder", "dynamics.h",
-                             d->restart, &d->restart, NULL));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_restart", "go on from the checkpoint in the output folder",
+                           &d->restart));
   PetscFunctionReturn(0);
 }
 

@@ -41,8 +41,8 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   PetscCall(PetscOptionsReal(
     "-modes_growth", "largest growth or decay that a band must cover, 1/s (0: a tenth of the angular frequency f2)",
     "modes.h", modes->growth, &modes->growth, NULL));
-  PetscCall(PetscOptionsBool("-modes_left", "left vectors: condition and error of each eigenvalue", "modes.h",
-                             modes->left, &modes->left, NULL));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-modes_left", "left vectors: condition and error of each eigenvalue",
+                           &modes->left));
   PetscCall(PetscOptionsString("-modes_disc", "part whose shapes are named by nodal circles and diameters", "modes.h",
                                modes->disc, modes->disc, sizeof(modes->disc), NULL));
   PetscCall(PetscOptionsEList("-modes_contact", "pairs that are closed: every one, or those of the sliding state",

@@ -2,6 +2,7 @@
    Results - the folder of the results and its tables. See squeal/results.h.
 */
 #include "resultsimpl.h"
+#include <squeal/options.h>
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -48,8 +49,8 @@ PetscErrorCode ResultsSetFromOptions(Results results)
   PetscOptionsBegin(results->comm, NULL, "Results", NULL);
   PetscCall(PetscOptionsString("-output_dir", "folder of all files, made where it is missing", "results.h",
                                results->dir, results->dir, sizeof(results->dir), NULL));
-  PetscCall(PetscOptionsBool("-output_fields", "write shapes for ParaView (*.h5, *.xmf) beside the tables", "results.h",
-                             results->fields, &results->fields, NULL));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-output_fields",
+                           "write shapes for ParaView (*.h5, *.xmf) beside the tables", &results->fields));
   PetscOptionsEnd();
   PetscCheck(results->dir[0] && strlen(results->dir) < room, results->comm, PETSC_ERR_USER_INPUT,
              "-output_dir must be the name of a folder, of at most %d characters", (int)room);

@@ -28,3 +28,8 @@ PETSC_INTERN PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBo
 /* Frictionless modes with frequency below omega (rad/s) by Sylvester's law of inertia; symmetric undamped pencil */
 PETSC_INTERN PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal omega, Progress *progress,
                                                   PetscInt *n);
+
+/* readoptions.c - reads the options eps_, pep_ (eigensolvers) and st_ (factorisations) where some are given and nobody
+   has read them yet, so that what is still unread is unknown */
+PETSC_INTERN PetscErrorCode SolverReadEigenOptions(MPI_Comm comm);
+PETSC_INTERN PetscErrorCode SolverReadFactorOptions(MPI_Comm comm);

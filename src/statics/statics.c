@@ -3,6 +3,7 @@
 */
 #include "staticsimpl.h"
 #include "base/events.h"
+#include <squeal/options.h>
 
 #define STATICS_MOST_DENSE 20000
 
@@ -47,14 +48,14 @@ PetscErrorCode StaticsSetFromOptions(Statics s)
                             "statics.h", s->dense, &s->dense, NULL));
   PetscCall(PetscOptionsInt("-static_rows", "for modes: rows of pairs more (> 0) or less (< 0) than are closed",
                             "statics.h", s->rows_more, &s->rows_more, NULL));
-  PetscCall(PetscOptionsBool("-static_geometric", "for modes: geometric stiffness of the preload", "statics.h",
-                             s->geometric, &s->geometric, NULL));
-  PetscCall(PetscOptionsBool("-static_follower", "for modes: contact forces turn with the master surface", "statics.h",
-                             s->follower, &s->follower, NULL));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-static_geometric", "for modes: geometric stiffness of the preload",
+                           &s->geometric));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-static_follower",
+                           "for modes: contact forces turn with the master surface", &s->follower));
   PetscCall(PetscOptionsInt("-static_identify_steps", "steps of the force ramp of -contact_kn identify", "statics.h",
                             s->identify_steps, &s->identify_steps, NULL));
-  PetscCall(PetscOptionsBool("-static_view_kkt", "print the residuals of the contact laws", "statics.h", s->view_kkt,
-                             &s->view_kkt, NULL));
+  PetscCall(
+    OptionsGetBool(PetscOptionsObject, "-static_view_kkt", "print the residuals of the contact laws", &s->view_kkt));
   PetscOptionsEnd();
   PetscCall(StaticsCheckCount(s, "-static_max_it", s->max_it, 1));
   PetscCall(StaticsCheckCount(s, "-static_load_steps", s->load_steps, 1));

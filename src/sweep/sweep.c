@@ -87,10 +87,10 @@ static PetscErrorCode ReadExtras(Sweep sweep, OptionsItems PetscOptionsObject)
   PetscCall(PetscOptionsInt("-sweep_verify",
                             "compare with full solutions at this many points between those of the sweep", "sweep.h",
                             sweep->n_verify, &sweep->n_verify, NULL));
-  PetscCall(PetscOptionsBool("-sweep_onsets", "critical values of the first parameter, confirmed on the full problem",
-                             "sweep.h", sweep->onsets, &sweep->onsets, NULL));
-  PetscCall(PetscOptionsBool("-sweep_sensitivities", "derivatives of every eigenvalue by every parameter", "sweep.h",
-                             sweep->sensitivities, &sweep->sensitivities, NULL));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-sweep_onsets",
+                           "critical values of the first parameter, confirmed on the full problem", &sweep->onsets));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-sweep_sensitivities",
+                           "derivatives of every eigenvalue by every parameter", &sweep->sensitivities));
   PetscCall(PetscOptionsString("-sweep_uncertain", "parameters known to -sweep_percent only: what can become unstable",
                                "sweep.h", sweep->uncertain, sweep->uncertain, sizeof(sweep->uncertain), NULL));
   PetscCall(PetscCalloc1(SWEEP_MAX_UNCERTAIN + 1, &sweep->percent));
@@ -103,8 +103,8 @@ static PetscErrorCode ReadExtras(Sweep sweep, OptionsItems PetscOptionsObject)
   if (!set) sweep->n_percent = 1;
   PetscCall(PetscOptionsInt("-sweep_groups", "ranks that share the points (0: all; the full solutions use all ranks)",
                             "sweep.h", sweep->n_groups, &sweep->n_groups, NULL));
-  PetscCall(PetscOptionsBool("-sweep_restart", "go on where a sweep of the same scene in -output_dir was stopped",
-                             "sweep.h", sweep->restart, &sweep->restart, NULL));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-sweep_restart",
+                           "go on where a sweep of the same scene in -output_dir was stopped", &sweep->restart));
   PetscFunctionReturn(0);
 }
 

@@ -5,6 +5,7 @@
    elements in the disc with a patch under the pad, or its axisymmetric 16 x 160 x 4; spring rows at 20 and 80 mm.
 */
 #include "model/modelimpl.h"
+#include <squeal/options.h>
 
 /* The pad stands on the disc's face and the patch leaves rings and columns beside it */
 static PetscErrorCode RigCheckFootprint(MPI_Comm comm, const Rig *rig)
@@ -129,8 +130,7 @@ PetscErrorCode RigSetFromOptions(MPI_Comm comm, Rig *rig)
   rig->disc_nz     = elements[2];
   PetscCall(PetscOptionsReal("-disc_spread", "Rings away from the patch: 0 keep their radii, 1 become uniform (-)",
                              "model.h", rig->disc_spread, &rig->disc_spread, NULL));
-  PetscCall(
-    PetscOptionsBool("-pad", "Pad and beam as well as the disc", "model.h", rig->with_pad, &rig->with_pad, NULL));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-pad", "Pad and beam as well as the disc", &rig->with_pad));
   PetscCall(PetscOptionsReal("-pad_radius", "Radius of the pad's centre (m)", "model.h", rig->pad_radius,
                              &rig->pad_radius, NULL));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-pad_size", "Size of the pad in x, y, z (m; 0.01,0.01,0.01)", 3,

@@ -1,0 +1,125 @@
+/*
+   The command line: what stands on it, by PETSc's own rule for names and values, and whether that does anything.
+
+   An options file is shared between analyses: what it says for another one is fine. Who writes an option on the command
+   line means it, so what no room of this analysis reads is an error. Which room read an option follows from what is
+   marked as used after each has read its own.
+*/
+#include <squeal/options.h>
+
+#define MAX_WORD 256
+
+/* Options that name a file: their value is read at once */
+static PetscErrorCode ArgumentNamesFile(const char name[], PetscBool *file, PetscBool *is_yaml)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrcasecmp(name, "-options_file", file));
+  PetscCall(PetscStrcasecmp(name, "-options_file_yaml", is_yaml));
+  if (*is_yaml) *file = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsCheckArguments(int argc, char *const argv[])
+{
+  PetscBool is_name, is_next, file, is_yaml;
+
+  PetscFunctionBeginUser;
+  for (int i = 1; i < argc; i++) {
+    PetscCall(PetscOptionsValidKey(argv[i], &is_name));
+    PetscCheck(is_name, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "'%s' belongs to no option: write -NAME VALUE, where VALUE is one word without spaces, and an options "
+               "file as -options_file FILE",
+               argv[i]);
+    PetscCall(ArgumentNamesFile(argv[i], &file, &is_yaml));
+    PetscCheck(!file || i + 1 < argc, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s has no value; give a file", argv[i]);
+    if (i + 1 == argc) break;
+    PetscCall(PetscOptionsValidKey(argv[i + 1], &is_next));
+    PetscCheck(!file || !is_next, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s has no value; give a file", argv[i]);
+    if (is_next) continue;
+    PetscCheck(argv[i + 1][strspn(argv[i + 1], " \t\n")], PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s has an empty value; give one, or leave the option out", argv[i]);
+    if (file) PetscCall(OptionsCheckFile(argv[i + 1], is_yaml));
+    i++;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Whether a word is a number that is not finite; 1e999 is none either */
+static PetscBool WordIsInfinite(const char word[])
+{
+  char        *end;
+  const double value = strtod(word, &end);
+
+  return end != word && !*end && PetscIsInfOrNanReal((PetscReal)value) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Raises an error for an infinite number in a value such as 1:2:3,4 */
+static PetscErrorCode ValueCheckFinite(const char name[], const char value[])
+{
+  char word[MAX_WORD];
+
+  PetscFunctionBeginUser;
+  for (const char *c = value; *c; c += strspn(c, ",: ")) {
+    const size_t length = strcspn(c, ",: ");
+
+    PetscCall(PetscStrncpy(word, c, PetscMin(length + 1, sizeof(word))));
+    PetscCheck(!WordIsInfinite(word), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s must be a finite number", name,
+               word);
+    c += length;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsCheckNumber(OptionsItems PetscOptionsObject, const char option[])
+{
+  const char *prefix = PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "";
+  char        name[MAX_WORD], value[MAX_WORD];
+  PetscBool   set;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetString(PetscOptionsObject->options, prefix, option, value, sizeof(value), &set));
+  if (!set) PetscFunctionReturn(0);
+  PetscCall(PetscSNPrintf(name, sizeof(name), "-%s%s", prefix, option + 1));
+  PetscCall(ValueCheckFinite(name, value));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsCheckNumbers(void)
+{
+  char     *all, *word, *rest;
+  char      name[MAX_WORD] = "";
+  PetscBool is_name;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  for (word = strtok_r(all, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
+    PetscCall(PetscOptionsValidKey(word, &is_name));
+    if (is_name)
+      PetscCall(PetscStrncpy(name, word, sizeof(name)));
+    else if (strcmp(name, "-output_dir"))
+      PetscCall(ValueCheckFinite(name, word));
+  }
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsCheckValues(MPI_Comm comm)
+{
+  char       *all, *word, *rest;
+  const char *text;
+  PetscBool   is_name, set, is_librarys;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  for (word = strtok_r(all, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
+    PetscCall(PetscOptionsValidKey(word, &is_name));
+    if (!is_name) continue;
+    PetscCall(OptionIsLibrarys(word + 1, &is_librarys));
+    if (is_librarys) continue;
+    PetscCall(PetscOptionsFindPair(NULL, NULL, word, &text, &set));
+    PetscCheck(!set || (text && text[0]), comm, PETSC_ERR_USER_INPUT,
+               "%s has no value; give one, or leave the option out", word);
+  }
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}

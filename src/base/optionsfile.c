@@ -1,0 +1,242 @@
+/*
+   Options files, looked at before PETSc reads them: PETSc lets the last of two equal keys win, drops keys without a
+   value, reads one document of several, and would wait for a pipe.
+
+   YAML is read with libyaml, which PETSc reads it with too. A key is known by the option that it becomes, all keys
+   above it in front: disc: {young: 1} and disc_young: 1 in one file are the same key twice. What a merge (<<) or an
+   alias brings may be overridden, as YAML has it, and is not looked at.
+*/
+#include <squeal/options.h>
+#include <errno.h>
+#include <sys/stat.h>
+#include <yaml.h>
+
+#define MAX_SIZE  (16 << 20) /* bytes of an options file */
+#define MAX_DEPTH 32
+#define MAX_KEY   512
+
+/* A mapping or a list that is open */
+typedef struct {
+  PetscBool list, skipped; /* skipped: brought by a merge, or for the reader only ($$) */
+  PetscBool wants_value;   /* of a mapping: its key has been read */
+  size_t    prefix;        /* characters of the key that all keys in it begin with */
+  PetscInt  n_items;       /* of a list */
+} YamlLevel;
+
+/* The file, and where it is read */
+typedef struct {
+  const char *file;
+  size_t      line; /* of the present event, from 1 */
+  PetscInt    depth, n_keys, n_documents;
+  YamlLevel   level[MAX_DEPTH];
+  char        key[MAX_KEY]; /* the present one, as the option without its dash */
+  char      **keys;         /* all options that the file gives */
+  size_t     *lines;        /* where */
+} YamlFile;
+
+/* Raises an error for an option that the file has already given */
+static PetscErrorCode YamlAddKey(YamlFile *f)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < f->n_keys; i++)
+    PetscCheck(strcmp(f->keys[i], f->key), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s:%zu: %s stands twice, already in line %zu; keep one", f->file, f->line, f->key, f->lines[i]);
+  PetscCall(PetscRealloc((size_t)(f->n_keys + 1) * sizeof(*f->keys), &f->keys));
+  PetscCall(PetscRealloc((size_t)(f->n_keys + 1) * sizeof(*f->lines), &f->lines));
+  PetscCall(PetscStrallocpy(f->key, &f->keys[f->n_keys]));
+  f->lines[f->n_keys++] = f->line;
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for nothing as a value */
+static PetscErrorCode YamlCheckValue(const YamlFile *f, const char value[])
+{
+  static const char *const nothing[] = {"", "~", "null", "Null", "NULL"};
+
+  PetscFunctionBeginUser;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(nothing); i++)
+    PetscCheck(strcmp(value, nothing[i]), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s:%zu: %s has no value; give one, or leave the key out", f->file, f->line, f->key);
+  PetscFunctionReturn(0);
+}
+
+/* A key of the present mapping */
+static PetscErrorCode YamlReadKey(YamlFile *f, const char text[])
+{
+  YamlLevel   *level  = &f->level[f->depth - 1];
+  const size_t length = strlen(text);
+
+  PetscFunctionBeginUser;
+  PetscCheck(length > 0 && level->prefix + length + 2 < MAX_KEY, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s:%zu: a key must have 1 to %d characters", f->file, f->line, MAX_KEY - 2);
+  PetscCall(PetscStrncpy(&f->key[level->prefix], text, MAX_KEY - level->prefix));
+  level->wants_value = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* The present mapping or list got what it waited for */
+static void YamlValueEnds(YamlFile *f)
+{
+  YamlLevel *level = f->depth ? &f->level[f->depth - 1] : NULL;
+
+  if (!level) return;
+  level->wants_value = PETSC_FALSE;
+  level->n_items++;
+}
+
+static PetscBool YamlIsSkipped(const YamlFile *f)
+{
+  const YamlLevel *level = &f->level[f->depth - 1];
+  const char      *key   = &f->key[level->prefix];
+
+  return level->skipped || (!level->list && (!strcmp(key, "<<") || !strncmp(key, "$$", 2))) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscErrorCode YamlReadScalar(YamlFile *f, const char text[])
+{
+  YamlLevel *level = f->depth ? &f->level[f->depth - 1] : NULL;
+
+  PetscFunctionBeginUser;
+  PetscCheck(level, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s:%zu: '%.40s' is no option; write NAME: VALUE", f->file,
+             f->line, text);
+  if (!level->list && !level->wants_value) {
+    PetscCall(YamlReadKey(f, text));
+    PetscFunctionReturn(0);
+  }
+  if (!YamlIsSkipped(f)) {
+    PetscCall(YamlCheckValue(f, text));
+    if (!level->list) PetscCall(YamlAddKey(f));
+  }
+  YamlValueEnds(f);
+  PetscFunctionReturn(0);
+}
+
+/* A mapping or list begins, as the value of the present key */
+static PetscErrorCode YamlOpen(YamlFile *f, PetscBool list)
+{
+  const YamlLevel *above = f->depth ? &f->level[f->depth - 1] : NULL;
+  YamlLevel        level = {.list = list};
+
+  PetscFunctionBeginUser;
+  PetscCheck(f->depth < MAX_DEPTH, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s:%zu: more than %d levels", f->file,
+             f->line, MAX_DEPTH);
+  PetscCheck(above || !list, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s:%zu: a list is no option; write NAME: VALUE",
+             f->file, f->line);
+  PetscCheck(!above || above->list || above->wants_value, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s:%zu: a mapping or list is no key", f->file, f->line);
+  if (above) level.skipped = YamlIsSkipped(f);
+  PetscCheck(!above || !above->list || level.skipped, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s:%zu: the list %s holds a mapping or list; give values only", f->file, f->line, f->key);
+  if (above && list && !level.skipped) PetscCall(YamlAddKey(f));
+  level.prefix = strlen(f->key);
+  if (above && !list) f->key[level.prefix++] = '_';
+  f->key[level.prefix] = '\0';
+  f->level[f->depth++] = level;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode YamlClose(YamlFile *f)
+{
+  YamlLevel *level = &f->level[f->depth - 1];
+
+  PetscFunctionBeginUser;
+  f->key[level->prefix] = '\0';
+  if (!level->list && level->prefix) f->key[level->prefix - 1] = '\0';
+  PetscCheck(level->n_items || level->skipped || f->depth == 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s:%zu: %s has no value; give one, or leave the key out", f->file, f->line, f->key);
+  f->depth--;
+  YamlValueEnds(f);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode YamlReadEvent(YamlFile *f, const yaml_event_t *event)
+{
+  YamlLevel *level = f->depth ? &f->level[f->depth - 1] : NULL;
+
+  PetscFunctionBeginUser;
+  f->line = event->start_mark.line + 1;
+  switch (event->type) {
+  case YAML_DOCUMENT_START_EVENT:
+    PetscCheck(!f->n_documents++, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s:%zu: a second document begins, of which nothing would be read", f->file, f->line);
+    break;
+  case YAML_SCALAR_EVENT:
+    PetscCall(YamlReadScalar(f, (const char *)event->data.scalar.value));
+    break;
+  case YAML_MAPPING_START_EVENT:
+    PetscCall(YamlOpen(f, PETSC_FALSE));
+    break;
+  case YAML_SEQUENCE_START_EVENT:
+    PetscCall(YamlOpen(f, PETSC_TRUE));
+    break;
+  case YAML_MAPPING_END_EVENT:
+  case YAML_SEQUENCE_END_EVENT:
+    PetscCall(YamlClose(f));
+    break;
+  case YAML_ALIAS_EVENT:
+    if (level && !level->list && level->wants_value && !YamlIsSkipped(f)) PetscCall(YamlAddKey(f));
+    YamlValueEnds(f);
+    break;
+  default:
+    break;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* All events of the file */
+static PetscErrorCode YamlReadEvents(YamlFile *f, yaml_parser_t *parser)
+{
+  PetscBool done = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  while (!done) {
+    yaml_event_t event;
+
+    PetscCheck(yaml_parser_parse(parser, &event), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s:%zu: %s; check tabs, indentation, brackets and quotes of this YAML file", f->file,
+               parser->problem_mark.line + 1, parser->problem ? parser->problem : "no YAML");
+    done = event.type == YAML_STREAM_END_EVENT ? PETSC_TRUE : PETSC_FALSE;
+    PetscCall(YamlReadEvent(f, &event));
+    yaml_event_delete(&event);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode YamlCheck(const char file[], FILE *stream)
+{
+  YamlFile     *f;
+  yaml_parser_t parser;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, &f));
+  f->file = file;
+  PetscCheck(yaml_parser_initialize(&parser), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory to read %s", file);
+  yaml_parser_set_input_file(&parser, stream);
+  PetscCall(YamlReadEvents(f, &parser));
+  yaml_parser_delete(&parser);
+  for (PetscInt i = 0; i < f->n_keys; i++) PetscCall(PetscFree(f->keys[i]));
+  PetscCall(PetscFree(f->keys));
+  PetscCall(PetscFree(f->lines));
+  PetscCall(PetscFree(f));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsCheckFile(const char file[], PetscBool is_yaml)
+{
+  const char *ending = strrchr(file, '.');
+  struct stat what;
+  FILE       *stream;
+
+  PetscFunctionBeginUser;
+  PetscCheck(!stat(file, &what), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "-options_file %s: %s", file, strerror(errno));
+  PetscCheck(S_ISREG(what.st_mode), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "-options_file %s is no regular file; give a YAML file", file);
+  PetscCheck(what.st_size <= MAX_SIZE, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "-options_file %s has %.3g MB, an options file at most %d", file, (double)what.st_size / 1e6,
+             MAX_SIZE >> 20);
+  stream = fopen(file, "rb");
+  PetscCheck(stream, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "-options_file %s: %s", file, strerror(errno));
+  if (is_yaml || (ending && (!strcmp(ending, ".yaml") || !strcmp(ending, ".yml")))) PetscCall(YamlCheck(file, stream));
+  (void)fclose(stream);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,110 @@
+/*
+   What stands on the command line and nothing in this analysis has a use for: see base/arguments.c.
+*/
+#include "scope.h"
+
+/* Whether something asks for an equilibrium */
+static PetscErrorCode ScopeNeedsStatics(const Scope *s, PetscBool *needs)
+{
+  const ContactInterface *interfaces;
+  PetscInt                n = 0;
+
+  PetscFunctionBeginUser;
+  *needs = PETSC_TRUE;
+  if (s->modes) PetscCall(ModesGetContact(s->linear, needs));
+  if (s->transient) PetscCall(DynamicsNeedsPairs(s->dynamics, needs));
+  if (s->contact) PetscCall(ContactGetInterfaces(s->contact, &n, &interfaces));
+  for (PetscInt i = 0; i < n; i++)
+    if (interfaces[i].identify) *needs = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for -`name`_`what` on the command line */
+static PetscErrorCode ScopeRefuse(MPI_Comm comm, const char name[], const char what[], const char why[])
+{
+  char option[256];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_%s", name, what));
+  PetscCall(OptionsRefuse(comm, option, why));
+  PetscFunctionReturn(0);
+}
+
+/* What an interface reads and this analysis has no use for */
+static PetscErrorCode ScopeCheckContact(MPI_Comm comm, const Scope *s, const ContactInterface *c)
+{
+  static const char exact[]   = "not used by -analysis transient, whose contact is exact: no penalty, no linearisation";
+  static const char steady[]  = "not used by -analysis static: the loads tell the forces, and nothing moves";
+  static const char linear[]  = "not used by modes without -NAME_friction_damping";
+  const PetscBool   is_static = !s->modes && !s->transient ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (c->rotation[0] != 0 || c->rotation[1] != 0 || c->rotation[2] != 0)
+    PetscCall(ScopeRefuse(comm, c->name, "slip", "not used beside the -NAME_rotation of the same contact; give one"));
+  if (s->transient && c->law == CONTACT_PENALTY) PetscCall(ScopeRefuse(comm, c->name, "law", exact));
+  if (s->transient) PetscCall(ScopeRefuse(comm, c->name, "kn", exact));
+  if (s->transient) PetscCall(ScopeRefuse(comm, c->name, "friction_damping", exact));
+  if (s->transient) PetscCall(ScopeRefuse(comm, c->name, "force", exact));
+  if (is_static) PetscCall(ScopeRefuse(comm, c->name, "friction_damping", steady));
+  if (is_static) PetscCall(ScopeRefuse(comm, c->name, "force", steady));
+  if (is_static) PetscCall(ScopeRefuse(comm, c->name, "speed", steady));
+  if (is_static) PetscCall(ScopeRefuse(comm, c->name, "mu_slope", steady));
+  if (s->modes && !c->damping) PetscCall(ScopeRefuse(comm, c->name, "force", linear));
+  if (s->modes && !c->damping && c->mu_slope == 0) PetscCall(ScopeRefuse(comm, c->name, "speed", linear));
+  PetscFunctionReturn(0);
+}
+
+/* What the model reads for other analyses */
+static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool statics)
+{
+  static const char all[]     = "not used by modes with all pairs closed; give -modes_contact static";
+  static const char no_time[] = "not used without -analysis transient";
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(s->model, &scene));
+  for (PetscInt i = 0; i < scene->n_probes && !s->transient; i++)
+    PetscCall(ScopeRefuse(comm, scene->probes[i].name, "at", no_time));
+  for (PetscInt i = 0; i < scene->n_loads && s->modes && !statics; i++) {
+    PetscCall(ScopeRefuse(comm, scene->loads[i].name, "force", all));
+    PetscCall(ScopeRefuse(comm, scene->loads[i].name, "set", all));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* What every reader reads, and this analysis has no use for */
+static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool statics)
+{
+  const ContactInterface *interfaces;
+  PetscInt                n = 0;
+
+  PetscFunctionBeginUser;
+  if (s->model) PetscCall(ScopeCheckModel(comm, s, statics));
+  if (s->contact) PetscCall(ContactGetInterfaces(s->contact, &n, &interfaces));
+  for (PetscInt i = 0; i < n; i++) PetscCall(ScopeCheckContact(comm, s, &interfaces[i]));
+  if (s->transient)
+    PetscCall(ScopeRefuse(comm, "operators", "mass", "not used by -analysis transient, whose mass is lumped"));
+  if (!s->transient && !s->modes) PetscCall(ScopeRefuse(comm, "operators", "mass", "not used by -analysis static"));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ScopeCheck(MPI_Comm comm, const Scope *s, OptionsClaims claims)
+{
+  OptionsReader readers[N_READERS] = {
+    [READER_ANY]      = {PETSC_TRUE,   "every analysis"                                                            },
+    [READER_STATICS]  = {PETSC_FALSE,  "-analysis static, and modes, sweeps and transients about the sliding state"},
+    [READER_MODES]    = {s->modes,     "-analysis modes and sweep"                                                 },
+    [READER_FACTOR]   = {s->modes,     "analyses that factorise a matrix"                                          },
+    [READER_SWEEP]    = {s->sweep,     "-analysis sweep"                                                           },
+    [READER_DYNAMICS] = {s->transient, "-analysis transient"                                                       },
+  };
+  PetscBool statics;
+
+  PetscFunctionBeginUser;
+  PetscCall(ScopeNeedsStatics(s, &statics));
+  readers[READER_STATICS].in_force = statics;
+  if (statics) readers[READER_FACTOR].in_force = PETSC_TRUE;
+  PetscCall(OptionsClaimsCheck(comm, claims, readers, s->analysis));
+  PetscCall(ScopeCheckRead(comm, s, statics));
+  PetscFunctionReturn(0);
+}

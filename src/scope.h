@@ -1,0 +1,29 @@
+/* Private to main.c: what an analysis has a use for, and who reads the options of the rest */
+#pragma once
+
+#include <squeal/options.h>
+#include <squeal/squeal.h>
+
+/* Who reads options */
+typedef enum {
+  READER_ANY,
+  READER_STATICS,
+  READER_MODES,
+  READER_FACTOR,
+  READER_SWEEP,
+  READER_DYNAMICS,
+  N_READERS
+} Reader;
+
+/* A run; model and contact are NULL for matrices without a mesh */
+typedef struct {
+  const char *analysis;
+  PetscBool   modes, sweep, transient;
+  Model       model;
+  Contact     contact;
+  Modes       linear;
+  Dynamics    dynamics;
+} Scope;
+
+/* Raises an error for an option of the command line that a reader claimed of whom the run has no need. Collective. */
+PETSC_INTERN PetscErrorCode ScopeCheck(MPI_Comm comm, const Scope *scope, OptionsClaims claims);
