@@ -1,8 +1,4 @@
-/*
-   squeal: friction-induced vibration of bodies in sliding contact. The chain of a run, from options to results.
-*/
-#include <squeal/squeal.h>
-#include <squeal/options.h>
+/* squeal: friction-induced vibration of bodies in sliding contact. The chain of a run, from options to results. */
 #include "scope.h"
 #include "solver/shiftinvert.h"
 
@@ -35,8 +31,7 @@ static const struct {
   [SHOWN_DYNAMICS]  = {"-dynamics_view",  "show bodies, step and balances of a run in time",         1 << ANALYSIS_TRANSIENT},
 };
 
-/* The chain of a run: options -> model -> contact -> operators -> statics -> pencil -> modes -> sweep, or dynamics; and
-   results */
+/* The chain of a run: options, model, contact, operators, statics, pencil, modes, sweep, or dynamics; and results */
 typedef struct {
   Model         model; /* NULL for matrices without a mesh */
   Contact       contact;
@@ -65,8 +60,8 @@ static PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
   PetscOptionsBegin(comm, NULL, "Analysis", NULL);
   PetscCall(
     PetscOptionsEList("-analysis", "what to compute", "squeal.h", analyses, N_ANALYSES, analyses[0], &analysis, NULL));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-squeal_view",
-                           "print what was chosen and why, and the time of each stage", &chain->view));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-squeal_view", "print choices and why, and the time of each stage",
+                           &chain->view));
   PetscOptionsEnd();
   chain->analysis = (Analysis)analysis;
   for (int i = 0; i < N_SHOWN; i++)
@@ -135,7 +130,7 @@ static PetscErrorCode ChainCheckOptions(MPI_Comm comm, const Chain *chain)
   const Scope    scope    = {.analysis  = analyses[analysis],
                              .sweep     = analysis == ANALYSIS_SWEEP,
                              .transient = analysis == ANALYSIS_TRANSIENT,
-                             .modes     = analysis == ANALYSIS_SWEEP || analysis == ANALYSIS_MODES,
+                             .modes     = analysis <= ANALYSIS_SWEEP,
                              .model     = chain->model,
                              .contact   = chain->contact,
                              .linear    = chain->modes,
@@ -144,7 +139,7 @@ static PetscErrorCode ChainCheckOptions(MPI_Comm comm, const Chain *chain)
   PetscFunctionBeginUser;
   PetscCall(ScopeCheck(comm, &scope, chain->claims));
   for (int i = 0; i < N_SHOWN; i++)
-    if (chain->viewer[i] && (!(shown[i].in >> analysis & 1) || (!chain->model && i <= SHOWN_CONTACT)))
+    if (chain->viewer[i] && !(shown[i].in >> analysis & 1))
       PetscCall(OptionsRefuse(comm, shown[i].option, "this analysis has nothing to show there"));
   PetscFunctionReturn(0);
 }
@@ -344,7 +339,7 @@ static PetscErrorCode Answer(MPI_Comm comm, PetscBool no_arguments)
 
 int main(int argc, char **argv)
 {
-  const PetscBool no_arguments = argc == 1 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool no_arguments = argc == 1;
   PetscErrorCode  error        = SquealInitialize(&argc, &argv, NULL);
 
   if (!error) error = Answer(PETSC_COMM_WORLD, no_arguments);
