@@ -3,12 +3,18 @@
    modes lie near the imaginary axis at +- i omega, at distances sqrt(omega^2 + s^2) from the shift, so they converge
    from low to high frequency, and a window is reached by converging all below it. Of each conjugate pair the one with
    omega > 0 is kept.
+
+   With C = beta K all of them lie on the circle |lambda + 1/beta| = 1/beta, and thousands of overdamped ones gather near
+   -1/beta. These must stay farther from the shift than the window's corners, sigma + i high: a shift of 0.3 high is the
+   fastest where beta high is small, one of high where it is near one.
 */
 #include "modesimpl.h"
 
 PetscReal DampedShift(const Window *window)
 {
-  return 0.3 * PetscMax(window->high, window->target);
+  const PetscReal high = PetscMax(window->high, window->target);
+
+  return high * PetscMax(0.3, PetscMin(1, high * window->damping));
 }
 
 /* Puts the converged eigenvalues of the upper half plane into a spectrum; reach = largest distance from the shift */
@@ -75,6 +81,19 @@ static PetscErrorCode DampedCreateSolver(Mat problem[3], ShiftInvert *si, PetscB
   PetscFunctionReturn(0);
 }
 
+/* SLEPc's own test after every restart, and the limit in time; ctx is the Modes */
+static PetscErrorCode DampedStop(PEP pep, PetscInt its, PetscInt max_it, PetscInt n, PetscInt nev,
+                                 PEPConvergedReason *reason, void *ctx)
+{
+  Modes modes = (Modes)ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(PEPStoppingBasic(pep, its, max_it, n, nev, reason, NULL));
+  PetscCall(LimitAsk(modes, n, nev));
+  if (*reason == PEP_CONVERGED_ITERATING && modes->over) *reason = PEP_DIVERGED_ITS;
+  PetscFunctionReturn(0);
+}
+
 /* Solves; failed = LAPACK could not reorder the Schur form (xTREXC: eigenvalues too close to swap), which depends on
    the start vector and happens where the Krylov space is the whole space */
 static PetscErrorCode DampedRunSolver(PEP pep, PetscBool *failed)
@@ -102,7 +121,7 @@ PetscErrorCode DampedSolve(Modes modes, const PencilMatrices *pencil, const Wind
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(pencil->K, &n, NULL));
-  if (window->expected >= 0) nev = 2 * (window->below + window->expected + window->extra);
+  if (window->within >= 0) nev = 2 * (window->within + window->extra);
   if (window->count) nev = 2 * (PetscMax(0, window->below) + window->count + window->extra);
   for (int i = 0; i < 3 && transposed; i++) PetscCall(MatCreateTranspose(problem[i], &problem[i]));
   for (int attempt = 0; attempt < 8 && !covered; attempt++, nev += failed ? 0 : nev / 2) {
@@ -110,6 +129,7 @@ PetscErrorCode DampedSolve(Modes modes, const PencilMatrices *pencil, const Wind
 
     nev = PetscMin(nev, 2 * n);
     PetscCall(DampedCreateSolver(problem, si, transposed, attempt, nev, &pep));
+    PetscCall(PEPSetStoppingTestFunction(pep, DampedStop, modes, NULL));
     PetscCall(ProgressBegin(&modes->progress, transposed ? "left vectors" : "right vectors", 2 * nev + nev / 4));
     PetscCall(DampedRunSolver(pep, &failed));
     PetscCall(ProgressEnd(&modes->progress));
@@ -119,6 +139,7 @@ PetscErrorCode DampedSolve(Modes modes, const PencilMatrices *pencil, const Wind
     }
     PetscCall(DampedCollect(pep, si->shift, n, spectrum));
     covered = spectrum->reach > DampedRadius(window, si->shift, spectrum) ? PETSC_TRUE : PETSC_FALSE;
+    if (!covered) PetscCall(LimitCheck(modes, PETSC_TRUE, spectrum));
     if (!covered && nev < 2 * n) PetscCall(SpectrumDestroy(spectrum));
     PetscCall(PEPDestroy(&pep));
     if (nev == 2 * n) break;

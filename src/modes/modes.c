@@ -10,9 +10,10 @@ PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, modes));
-  (*modes)->comm  = comm;
-  (*modes)->left  = PETSC_TRUE;
-  (*modes)->count = 20;
+  (*modes)->comm     = comm;
+  (*modes)->left     = PETSC_TRUE;
+  (*modes)->count    = 20;
+  (*modes)->max_time = 3600;
   PetscCall(PetscStrncpy((*modes)->disc, "disc", sizeof((*modes)->disc)));
   PetscCall(OrderingRegister());
   PetscFunctionReturn(0);
@@ -41,6 +42,8 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   PetscCall(PetscOptionsReal(
     "-modes_growth", "largest growth or decay that a band must cover, 1/s (0: a tenth of the angular frequency f2)",
     "modes.h", modes->growth, &modes->growth, NULL));
+  PetscCall(PetscOptionsReal("-modes_max_time", "time that a solution may take, s (0: any)", "modes.h", modes->max_time,
+                             &modes->max_time, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-modes_left", "left vectors: condition and error of each eigenvalue",
                            &modes->left));
   PetscCall(PetscOptionsString("-modes_disc", "part whose shapes are named by nodal circles and diameters", "modes.h",
@@ -57,8 +60,11 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
              modes->count);
   PetscCheck(modes->growth >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_growth %.6g must not be negative (1/s)",
              (double)modes->growth);
+  PetscCheck(modes->max_time >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_max_time %.6g must not be negative (s)",
+             (double)modes->max_time);
   PetscCheck(modes->target >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_target %.6g must not be negative (Hz)",
              (double)modes->target);
+  PetscCall(ProgressSetFromOptions(modes->comm, &modes->progress));
   PetscFunctionReturn(0);
 }
 
@@ -134,9 +140,9 @@ static PetscErrorCode SolveBoth(Modes modes, const PencilMatrices *pencil, Windo
 {
   const PetscBool proven   = pencil->symmetric && !pencil->C ? PETSC_TRUE : PETSC_FALSE;
   PetscBool       complete = PETSC_TRUE;
-  PetscReal       worst    = 0;
 
   PetscFunctionBeginUser;
+  window->proven = proven;
   for (int attempt = 0; attempt < 3; attempt++) {
     PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_FALSE, &modes->right));
     if (pencil->C) PetscCall(WindowCountRigid(modes, window, &modes->right));
@@ -146,7 +152,7 @@ static PetscErrorCode SolveBoth(Modes modes, const PencilMatrices *pencil, Windo
       if (complete && modes->left) PetscCall(SpectrumCopy(&modes->right, &modes->left_spectrum));
     } else if (modes->left) {
       PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_TRUE, &modes->left_spectrum));
-      PetscCall(LeftMatch(modes, window, &worst, &complete));
+      PetscCall(LeftMatch(modes, window, &window->worst, &complete));
     }
     if (complete) break;
     window->extra += 10 + modes->right.n / 2;
@@ -156,7 +162,6 @@ static PetscErrorCode SolveBoth(Modes modes, const PencilMatrices *pencil, Windo
   PetscCheck(complete, modes->comm, PETSC_ERR_NOT_CONVERGED,
              "modes are missing after three attempts (%s); narrow -modes_band or tighten -eps_tol",
              proven ? "inertia count" : "left and right differ");
-  PetscCall(WindowDescribe(window, proven, modes->left, worst, modes->completeness, sizeof(modes->completeness)));
   PetscFunctionReturn(0);
 }
 
@@ -179,8 +184,10 @@ PetscErrorCode ModesSolve(Modes modes)
 
   PetscFunctionBeginUser;
   PetscCall(ModesReset(modes));
+  PetscCall(LimitBegin(modes));
   PetscCall(PencilGetMatrices(modes->pencil, &pencil));
   PetscCall(WindowFind(modes, &window));
+  if (pencil.C) PetscCall(WindowSetDamping(modes, &pencil, &window));
   PetscCheck(window.expected != 0 || !pencil.symmetric || pencil.C, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_band %.6g,%.6g Hz contains no mode (%" PetscInt_FMT " lie below it); widen it",
              (double)modes->band[0], (double)modes->band[1], window.below);
@@ -193,6 +200,7 @@ PetscErrorCode ModesSolve(Modes modes)
              (double)modes->band[0], (double)modes->band[1]);
   PetscCall(QualityMeasure(modes, &pencil));
   if (window.rigid) PetscCall(TwinsDrop(modes, &window));
+  PetscCall(WindowDescribe(modes, &window));
   PetscCall(ModesLabel(modes));
   PetscFunctionReturn(0);
 }

@@ -29,6 +29,7 @@ struct _p_Modes {
   /* set by options */
   PetscReal band[2], target; /* Hz */
   PetscReal growth;          /* rad/s; 0: a tenth of the highest angular frequency */
+  PetscReal max_time;        /* s, of one solution; 0: any */
   PetscBool has_band, left, is_static;
   PetscInt  count;
   char      disc[64];
@@ -37,7 +38,10 @@ struct _p_Modes {
   Spectrum right, left_spectrum; /* in the unknowns of the pencil, later expanded to all unknowns */
   Mode    *mode;
   PetscInt n;
-  char     completeness[512];
+  char     completeness[768];
+  /* of the solution under way */
+  PetscLogDouble begun; /* s */
+  PetscBool      over;  /* max_time is */
 };
 
 /* What to look for: all eigenvalues with omega in [low, high] and |sigma| <= growth, rad/s, and how many there are
@@ -47,21 +51,34 @@ typedef struct {
   PetscInt  expected, below; /* frictionless modes in the window and below it, by inertia; negative when not known */
   PetscInt  extra;           /* eigenvalues to compute beyond those expected */
   PetscInt  rigid;           /* damped: rigid modes, each a double zero; listed once */
+  PetscInt  twins;           /* the other zeros, which were left out */
   PetscInt  count;           /* > 0: this many nearest to target instead, low and high unknown */
   PetscReal target;          /* rad/s */
   PetscReal scale;           /* far below any elastic mode yet above rounding: 1e-5 sqrt(|K| / |M|), rad/s */
+  PetscReal edge[2];         /* ends of the band by which modes were counted and are selected, rad/s */
+  PetscReal damping;         /* |C| / |K|, s: with stiffness damping beta the overdamped modes gather at -1 / beta */
+  PetscInt  within;          /* damped: modes about as near to the shift as the window's corners; negative: not known */
+  PetscBool proven;          /* inertia counts what was found */
+  PetscReal worst;           /* largest relative difference of right and left eigenvalues */
 } Window;
 
 /* window.c - the window, and the count of frictionless modes in it by Sylvester's law of inertia */
 PETSC_INTERN PetscErrorCode WindowFind(Modes modes, Window *window);
 PETSC_INTERN PetscErrorCode WindowReach(Modes modes, Window *window); /* sets high for the modes nearest to a target */
 PETSC_INTERN PetscErrorCode WindowCountRigid(Modes modes, Window *window, const Spectrum *spectrum);
+PETSC_INTERN PetscErrorCode WindowSetDamping(Modes modes, const PencilMatrices *pencil, Window *window);
 PETSC_INTERN PetscReal      WindowNearest(const Window *window, const Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode WindowSelect(const Window *window, Spectrum *spectrum);
 PETSC_INTERN PetscInt       WindowFarthest(const Window *window, const Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *spectrum, PetscBool *complete);
-PETSC_INTERN PetscErrorCode WindowDescribe(const Window *window, PetscBool proven, PetscBool left, PetscReal worst,
-                                           char text[], size_t size);
+/* complete.c - in words, how it was checked that no mode is missing */
+PETSC_INTERN PetscErrorCode WindowDescribe(Modes modes, const Window *window);
+
+/* limit.c - the time that a solution may take: begins it; whether it is over, asked at every restart of an eigensolver
+   with n of nev eigenvalues converged, which also tells the progress line how far it is; the error with its advice */
+PETSC_INTERN PetscErrorCode LimitBegin(Modes modes);
+PETSC_INTERN PetscErrorCode LimitAsk(Modes modes, PetscInt n, PetscInt nev);
+PETSC_INTERN PetscErrorCode LimitCheck(Modes modes, PetscBool damped, const Spectrum *spectrum);
 
 /* undamped.c, damped.c - all eigenvalues of the pencil in the window, right ones or those of the transposed problem */
 PETSC_INTERN PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window,
@@ -82,7 +99,7 @@ PETSC_INTERN PetscErrorCode LeftBiorthogonalise(Modes modes, const PencilMatrice
 PETSC_INTERN PetscErrorCode QualityMeasure(Modes modes, const PencilMatrices *pencil);
 
 /* twins.c - lists a rigid mode of a damped system once, and trims the list to the modes asked for */
-PETSC_INTERN PetscErrorCode TwinsDrop(Modes modes, const Window *window);
+PETSC_INTERN PetscErrorCode TwinsDrop(Modes modes, Window *window);
 
 /* label.c - names of the shapes */
 PETSC_INTERN PetscErrorCode ModesLabel(Modes modes);

@@ -103,6 +103,19 @@ static PetscErrorCode UndampedCreateSolver(const PencilMatrices *pencil, ShiftIn
   PetscFunctionReturn(0);
 }
 
+/* SLEPc's own test after every restart, and the limit in time; ctx is the Modes */
+static PetscErrorCode UndampedStop(EPS eps, PetscInt its, PetscInt max_it, PetscInt n, PetscInt nev,
+                                   EPSConvergedReason *reason, void *ctx)
+{
+  Modes modes = (Modes)ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(EPSStoppingBasic(eps, its, max_it, n, nev, reason, NULL));
+  PetscCall(LimitAsk(modes, n, nev));
+  if (*reason == EPS_CONVERGED_ITERATING && modes->over) *reason = EPS_DIVERGED_ITS;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
                              PetscBool transposed, Spectrum *spectrum)
 {
@@ -121,12 +134,14 @@ PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Wi
 
     nev = PetscMin(nev, n);
     PetscCall(UndampedCreateSolver(&problem, si, transposed, nev, n, &eps));
+    PetscCall(EPSSetStoppingTestFunction(eps, UndampedStop, modes, NULL));
     PetscCall(ProgressBegin(&modes->progress, transposed ? "left vectors" : "right vectors", 2 * nev + nev / 4));
     PetscCall(EPSSolve(eps));
     PetscCall(ProgressEnd(&modes->progress));
     PetscCall(UndampedCollect(eps, si->shift, n, spectrum));
     covered =
       spectrum->reach > UndampedRadius(window, si->shift, spectrum) || spectrum->n == n ? PETSC_TRUE : PETSC_FALSE;
+    if (!covered) PetscCall(LimitCheck(modes, PETSC_FALSE, spectrum));
     if (!covered && nev < n) PetscCall(SpectrumDestroy(spectrum));
     PetscCall(EPSDestroy(&eps));
     if (nev == n) break;

@@ -7,6 +7,7 @@
 #include "modesimpl.h"
 
 #define MODES_EDGE 1e-8 /* relative width of the band's ends, so that an eigenvalue on an end belongs to it */
+#define MODES_AWAY 1e-7 /* relative move of an end on which MUMPS finds an eigenvalue */
 
 /* A frequency (rad/s) that is small beside all elastic modes, from the size of the matrices */
 static PetscErrorCode WindowScale(const PencilMatrices *pencil, PetscReal *scale)
@@ -20,14 +21,14 @@ static PetscErrorCode WindowScale(const PencilMatrices *pencil, PetscReal *scale
   PetscFunctionReturn(0);
 }
 
-/* Frictionless modes with frequency below omega (rad/s) */
-static PetscErrorCode WindowCountBelow(Modes modes, PetscReal omega, PetscInt *n)
+/* Frictionless modes with frequency below *omega (rad/s), which is moved up or down where a mode lies there */
+static PetscErrorCode WindowCountBelow(Modes modes, PetscReal away, PetscReal *omega, PetscInt *n)
 {
   PencilMatrices frictionless;
 
   PetscFunctionBeginUser;
   PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
-  PetscCall(ShiftInvertCountBelow(&frictionless, omega, &modes->progress, n));
+  PetscCall(ShiftInvertCountBelow(&frictionless, away, &modes->progress, omega, n));
   PetscFunctionReturn(0);
 }
 
@@ -43,18 +44,29 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
   window->target   = 2 * PETSC_PI * modes->target;
   window->count    = modes->has_band ? 0 : modes->count;
   window->growth   = modes->growth > 0 ? modes->growth : 0.1 * window->high;
+  window->edge[0]  = window->low * (1 - MODES_EDGE);
+  window->edge[1]  = window->high * (1 + MODES_EDGE);
+  window->damping  = 0;
+  window->within   = -1;
+  window->worst    = 0;
   window->rigid    = 0;
+  window->twins    = 0;
   window->expected = -1;
   window->below    = -1;
   window->extra    = 6;
   PetscCall(WindowScale(&frictionless, &window->scale));
   if (!frictionless.symmetric) PetscFunctionReturn(0);
   if (!modes->has_band) {
-    PetscCall(WindowCountBelow(modes, window->target, &window->below));
+    PetscReal target = window->target;
+
+    PetscCall(WindowCountBelow(modes, MODES_AWAY, &target, &window->below));
     PetscFunctionReturn(0);
   }
-  PetscCall(WindowCountBelow(modes, window->low < window->scale ? 0 : window->low * (1 - MODES_EDGE), &window->below));
-  PetscCall(WindowCountBelow(modes, window->high * (1 + MODES_EDGE), &below_high));
+  if (window->low < window->scale)
+    window->below = 0;
+  else
+    PetscCall(WindowCountBelow(modes, -MODES_AWAY, &window->edge[0], &window->below));
+  PetscCall(WindowCountBelow(modes, MODES_AWAY, &window->edge[1], &below_high));
   window->expected = below_high - window->below;
   PetscFunctionReturn(0);
 }
@@ -78,13 +90,35 @@ PetscErrorCode WindowReach(Modes modes, Window *window)
   PetscFunctionReturn(0);
 }
 
+/* C = b K moves a mode omega of the undamped problem to a distance d from the real shift s with
+   d^2 = s^2 + (1 + b s) omega^2. Where many are farther than the window's corners, asking for as many eigenvalues as the
+   undamped problem has in the window would look for them among the overdamped ones, which hardly differ. */
+PetscErrorCode WindowSetDamping(Modes modes, const PencilMatrices *pencil, Window *window)
+{
+  PetscReal K, C, shift, corner, omega;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatNorm(pencil->K, NORM_FROBENIUS, &K));
+  PetscCall(MatNorm(pencil->C, NORM_FROBENIUS, &C));
+  window->damping = K > 0 ? C / K : 0;
+  if (window->expected < 0) PetscFunctionReturn(0);
+  window->within = window->below + window->expected;
+  shift          = DampedShift(window);
+  corner         = hypot(window->high, shift + window->growth);
+  omega          = PetscSqrtReal((corner * corner - shift * shift) / (1 + shift * window->damping));
+  if (omega < window->high) PetscCall(WindowCountBelow(modes, MODES_AWAY, &omega, &window->within));
+  PetscFunctionReturn(0);
+}
+
 /* With damping a rigid mode is a double zero, which rounding splits into two tiny eigenvalues */
 PetscErrorCode WindowCountRigid(Modes modes, Window *window, const Spectrum *s)
 {
+  PetscReal scale = window->scale;
+
   PetscFunctionBeginUser;
   if (!s->n || PetscAbsReal(s->sigma[0]) > window->scale || s->omega[0] > window->scale || window->below < 0)
     PetscFunctionReturn(0);
-  PetscCall(WindowCountBelow(modes, window->scale, &window->rigid));
+  PetscCall(WindowCountBelow(modes, MODES_AWAY, &scale, &window->rigid));
   PetscFunctionReturn(0);
 }
 
@@ -127,8 +161,8 @@ PetscErrorCode WindowSelect(const Window *window, Spectrum *s)
     while (s->n > window->count + window->rigid) PetscCall(SpectrumRemove(s, WindowFarthest(window, s)));
     PetscFunctionReturn(0);
   }
-  while (n > 0 && s->omega[first] < window->low * (1 - MODES_EDGE)) first++, n--;
-  while (n > 0 && s->omega[first + n - 1] > window->high * (1 + MODES_EDGE)) n--;
+  while (n > 0 && s->omega[first] < window->edge[0]) first++, n--;
+  while (n > 0 && s->omega[first + n - 1] > window->edge[1]) n--;
   PetscCall(SpectrumKeep(s, first, n));
   PetscFunctionReturn(0);
 }
@@ -139,40 +173,15 @@ PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *s, Petsc
 
   PetscFunctionBeginUser;
   if (window->count && s->n) { /* just outside the outermost modes: what lies that close belongs to them */
-    PetscCall(WindowCountBelow(modes, s->omega[0] < window->scale ? 0 : s->omega[0] * (1 - 1e-6), &below_low));
-    PetscCall(WindowCountBelow(modes, PetscMax(window->scale, s->omega[s->n - 1] * (1 + 1e-6)), &below_high));
+    PetscReal low  = s->omega[0] < window->scale ? 0 : s->omega[0] * (1 - 1e-6);
+    PetscReal high = PetscMax(window->scale, s->omega[s->n - 1] * (1 + 1e-6));
+
+    PetscCall(WindowCountBelow(modes, -MODES_AWAY, &low, &below_low));
+    PetscCall(WindowCountBelow(modes, MODES_AWAY, &high, &below_high));
     window->expected = below_high - below_low;
   }
   *complete = s->n == window->expected || (window->count && window->expected >= s->n && s->n == window->count)
                 ? PETSC_TRUE
                 : PETSC_FALSE;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode WindowDescribe(const Window *window, PetscBool proven, PetscBool left, PetscReal worst, char text[],
-                              size_t size)
-{
-  char frictionless[96] = "", region[64] = "";
-
-  PetscFunctionBeginUser;
-  if (window->expected >= 0 && !window->count)
-    PetscCall(PetscSNPrintf(frictionless, sizeof(frictionless),
-                            "; without friction and damping %" PetscInt_FMT " (inertia)", window->expected));
-  if (!window->count)
-    PetscCall(PetscSNPrintf(region, sizeof(region), " with |growth| below %.6g 1/s", (double)window->growth));
-  if (proven && window->count)
-    PetscCall(PetscSNPrintf(text, size,
-                            "none is missing: inertia of K - s M counts %" PetscInt_FMT " up to the outermost",
-                            window->expected));
-  else if (proven)
-    PetscCall(PetscSNPrintf(text, size,
-                            "none is missing: inertia of K - s M at the ends of the band counts %" PetscInt_FMT,
-                            window->expected));
-  else if (left)
-    PetscCall(PetscSNPrintf(text, size,
-                            "none%s was missed by right or left alone: from different starts they agree to %.1e%s",
-                            region, (double)worst, frictionless));
-  else
-    PetscCall(PetscSNPrintf(text, size, "completeness was not checked, since -modes_left is off%s", frictionless));
   PetscFunctionReturn(0);
 }

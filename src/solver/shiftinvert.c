@@ -89,8 +89,19 @@ static PetscErrorCode ShiftInvertCreateSolver(MPI_Comm comm, Mat A, PetscBool sy
     PetscCall(PCFactorSetUpMatSolverType(pc));
     PetscCall(PCFactorGetMatrix(pc, &F));
     PetscCall(MatMumpsSetIcntl(F, 13, 1)); /* MUMPS counts negative pivots of the root only without ScaLAPACK */
-    PetscCall(MatMumpsSetIcntl(F, 24, 1));
+    PetscCall(MatMumpsSetIcntl(F, 24, 1)); /* null pivots are counted, INFOG(28), instead of an error */
   }
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error for what no shift makes regular */
+static PetscErrorCode ShiftInvertRegular(MPI_Comm comm, int regular, PetscReal shift)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(
+    regular, comm, PETSC_ERR_MAT_LU_ZRPVT,
+    "the problem is singular at every shift near %.6g: a part without mass or an unknown without stiffness and mass",
+    (double)shift);
   PetscFunctionReturn(0);
 }
 
@@ -116,10 +127,7 @@ PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, PetscReal shift, 
     PetscCall(MatDestroy(&A));
     if (singular) PetscCall(KSPDestroy(&si->ksp));
   }
-  PetscCheck(
-    !singular, si->comm, PETSC_ERR_MAT_LU_ZRPVT,
-    "the problem is singular at every shift near %.6g: a part without mass or an unknown without stiffness and mass",
-    (double)shift);
+  PetscCall(ShiftInvertRegular(si->comm, !singular, shift));
   PetscCall(EventEnd(EVENT_FACTOR));
   PetscFunctionReturn(0);
 }
@@ -179,20 +187,27 @@ PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal omega, Progress *progress, PetscInt *n)
+PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal away, Progress *progress, PetscReal *omega,
+                                     PetscInt *n)
 {
-  ShiftInvert si;
-  PC          pc;
-  Mat         F;
+  PetscInt n_null = 1;
 
   PetscFunctionBeginUser;
   *n = 0;
-  if (omega <= 0) PetscFunctionReturn(0);
-  PetscCall(ShiftInvertCreate(pencil, omega * omega, PETSC_TRUE, progress, &si));
-  PetscCall(KSPGetPC(si.ksp, &pc));
-  PetscCall(PCFactorGetMatrix(pc, &F));
-  PetscCall(MatGetInertia(F, n, NULL, NULL));
-  PetscCall(ShiftInvertDestroy(&si));
+  if (*omega <= 0) PetscFunctionReturn(0);
+  for (int attempt = 0; attempt < 4 && n_null; attempt++) {
+    ShiftInvert si;
+    PC          pc;
+    Mat         F;
+
+    *omega *= 1 + attempt * away;
+    PetscCall(ShiftInvertCreate(pencil, *omega * *omega, PETSC_TRUE, progress, &si));
+    PetscCall(KSPGetPC(si.ksp, &pc));
+    PetscCall(PCFactorGetMatrix(pc, &F));
+    PetscCall(MatGetInertia(F, n, &n_null, NULL));
+    PetscCall(ShiftInvertDestroy(&si));
+  }
+  PetscCall(ShiftInvertRegular(PetscObjectComm((PetscObject)pencil->K), !n_null, *omega * *omega));
   PetscFunctionReturn(0);
 }
 

@@ -25,9 +25,11 @@ PETSC_INTERN PetscErrorCode ShiftInvertSolve(const ShiftInvert *si, PetscBool tr
 /* block.c - X = A^-1 B, or A^-T B, for dense B, X of the same size and any leading dimension: many right-hand sides at
    once. PETSC_ERR_LIB where the last column does not solve its system: a library behaves otherwise than assumed */
 PETSC_INTERN PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X);
-/* Frictionless modes with frequency below omega (rad/s) by Sylvester's law of inertia; symmetric undamped pencil */
-PETSC_INTERN PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal omega, Progress *progress,
-                                                  PetscInt *n);
+/* Frictionless modes with frequency below *omega (rad/s) by Sylvester's law of inertia; symmetric undamped pencil. A null
+   pivot is an eigenvalue at *omega itself, which has no sign: *omega is then moved by its part `away` (of either sign).
+   PETSC_ERR_MAT_LU_ZRPVT where null pivots stay. */
+PETSC_INTERN PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal away, Progress *progress,
+                                                  PetscReal *omega, PetscInt *n);
 
 /* readoptions.c - reads the options eps_, pep_ (eigensolvers) and st_ (factorisations) where some are given and nobody
    has read them yet, so that what is still unread is unknown */

@@ -147,7 +147,7 @@ static void OnsetsSort(Sweep sweep)
 
 PetscErrorCode SweepOnsets(Sweep sweep)
 {
-  Progress progress;
+  Progress progress = {.on = sweep->progress.on};
   PetscInt n        = 0;
 
   PetscFunctionBeginUser;

@@ -14,6 +14,8 @@
 #include "correct.h"
 #include "base/events.h"
 
+#define COUNT_AWAY 1e-7 /* relative move of the end of a band that an eigenvalue lies on */
+
 PetscErrorCode CorrectionCreate(Pencil pencil, const PetscReal p[], const ReducedWindow *window, Progress *progress,
                                 Correction *c)
 {
@@ -171,12 +173,12 @@ PetscErrorCode CorrectionApply(const Correction *c, const ReducedModes *modes, P
 PetscErrorCode CorrectionCount(const Basis *basis, const PetscReal p[], const ReducedWindow *window, Progress *progress,
                                PetscInt *full, PetscInt *by_basis)
 {
-  const Reduced      *reduced = &basis->reduced;
-  const ReducedWindow w       = {window->low < 0.5 * window->high ? 0 : window->low, window->high, PETSC_MAX_REAL};
-  PencilMatrices      frictionless;
-  ReducedModes        modes;
-  PetscReal          *p0;
-  PetscInt            below = 0;
+  const Reduced *reduced = &basis->reduced;
+  ReducedWindow  w       = {window->low < 0.5 * window->high ? 0 : window->low, window->high, PETSC_MAX_REAL};
+  PencilMatrices frictionless;
+  ReducedModes   modes;
+  PetscReal     *p0;
+  PetscInt       below = 0;
 
   PetscFunctionBeginUser;
   *full = *by_basis = -1;
@@ -185,8 +187,8 @@ PetscErrorCode CorrectionCount(const Basis *basis, const PetscReal p[], const Re
   PetscCall(PetscMalloc1(reduced->n_parameters, &p0));
   PetscCall(PetscArraycpy(p0, p, reduced->n_parameters));
   if (frictionless.symmetric && ReducedFrictionless(reduced, p0)) {
-    PetscCall(ShiftInvertCountBelow(&frictionless, w.low, progress, &below));
-    PetscCall(ShiftInvertCountBelow(&frictionless, w.high, progress, full));
+    PetscCall(ShiftInvertCountBelow(&frictionless, -COUNT_AWAY, progress, &w.low, &below));
+    PetscCall(ShiftInvertCountBelow(&frictionless, COUNT_AWAY, progress, &w.high, full));
     PetscCall(ReducedSolve(reduced, p0, &w, &modes));
     *full -= below;
     *by_basis = modes.n;

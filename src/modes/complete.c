@@ -1,0 +1,74 @@
+/*
+   What a solution says about its completeness. Without damping and friction inertia proves it. Else right and left
+   vectors are compared, and the frictionless, undamped count stands beside the modes found. There a mode is a pair of
+   eigenvalues lambda: conjugates, of which one is listed, or two real ones where damping keeps it from oscillating. A
+   rigid mode, a double zero, becomes 0 and -alpha with C x = alpha M x.
+*/
+#include "modesimpl.h"
+
+/* Modes that do not oscillate: rows listed, and as many of them as the undamped system has modes */
+static void CountReal(Modes modes, const Window *window, PetscInt *rows, PetscInt *pairs)
+{
+  PetscInt n_rigid = 0;
+
+  *rows = 0;
+  for (PetscInt i = 0; i < modes->n; i++) {
+    *rows += modes->mode[i].omega == 0;
+    n_rigid += modes->mode[i].rigid;
+  }
+  *pairs = (*rows + window->twins + 1) / 2;
+  if (*rows == n_rigid) *pairs = n_rigid; /* each a double zero of which one is listed */
+}
+
+/* The count without friction and damping, and why that of the rows may differ from it */
+static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, char text[], size_t size)
+{
+  PetscInt rows, pairs;
+  char     real[128] = "", other[128] = "";
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  if (window->expected < 0 || window->count) PetscFunctionReturn(0);
+  CountReal(modes, window, &rows, &pairs);
+  if (rows != pairs)
+    PetscCall(PetscSNPrintf(real, sizeof(real),
+                            "; %" PetscInt_FMT
+                            " of these do not oscillate and are the real eigenvalues of %" PetscInt_FMT
+                            " mode%s, which makes %" PetscInt_FMT,
+                            rows, pairs, pairs == 1 ? "" : "s", modes->n - rows + pairs));
+  if (modes->n - rows + pairs != window->expected)
+    PetscCall(PetscStrncpy(other, "; the others lie beyond that growth or have left the band", sizeof(other)));
+  if (modes->n - rows + pairs > window->expected)
+    PetscCall(PetscStrncpy(other, "; the others came into the band by friction or damping", sizeof(other)));
+  PetscCall(PetscSNPrintf(text, size, "%s; the count without friction and damping is %" PetscInt_FMT " (inertia)%s", real,
+                          window->expected, other));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode WindowDescribe(Modes modes, const Window *window)
+{
+  char         frictionless[384], region[64] = "";
+  char        *text = modes->completeness;
+  const size_t size = sizeof(modes->completeness);
+
+  PetscFunctionBeginUser;
+  PetscCall(DescribeFrictionless(modes, window, frictionless, sizeof(frictionless)));
+  if (!window->count)
+    PetscCall(PetscSNPrintf(region, sizeof(region), " with |growth| below %.6g 1/s", (double)window->growth));
+  if (window->proven && window->count)
+    PetscCall(PetscSNPrintf(text, size,
+                            "none is missing: inertia of K - s M counts %" PetscInt_FMT " up to the outermost",
+                            window->expected));
+  else if (window->proven)
+    PetscCall(PetscSNPrintf(text, size,
+                            "none is missing: inertia of K - s M at the ends of the band counts %" PetscInt_FMT,
+                            window->expected));
+  else if (modes->left)
+    PetscCall(PetscSNPrintf(text, size,
+                            "none was found missing: right and left vectors, sought from different starts with one "
+                            "shared factorisation, give the same eigenvalues%s, to %.1e%s",
+                            region, (double)window->worst, frictionless));
+  else
+    PetscCall(PetscSNPrintf(text, size, "completeness was not checked, since -modes_left is off%s", frictionless));
+  PetscFunctionReturn(0);
+}
