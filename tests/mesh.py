@@ -18,7 +18,7 @@ cylinders  a shoe on a shaft, both parts of rings about z: volumes "shaft", "sho
 
 --renumber draws new numbers of nodes and elements, a new order of both, and a new first node of each element.
 --move turns the mesh by MOVE_ROTATION, a quarter turn about (1, 2, 2), and shifts it; the direction y becomes
-(-4, 4, 7) / 9. Lengths in m.
+(-4, 4, 7) / 9. --scale 1000 gives mm. Lengths in m.
 """
 
 import argparse
@@ -307,6 +307,7 @@ def main():
     parser.add_argument("--binary", action="store_true")
     parser.add_argument("--renumber", type=int, metavar="SEED")
     parser.add_argument("--move", action="store_true")
+    parser.add_argument("--scale", type=float, default=1)
     arguments = parser.parse_args()
     elements = [int(n) for n in arguments.elements.split(",")]
     lift = [float(length) for length in arguments.lift.split(",")]
@@ -332,7 +333,7 @@ def main():
         random.shuffle(numbers)
     if arguments.move:
         nodes = nodes @ MOVE_ROTATION.T + MOVE_SHIFT
-    write(arguments.file, arguments.format, arguments.binary, nodes, groups, node_tags, numbers)
+    write(arguments.file, arguments.format, arguments.binary, arguments.scale * nodes, groups, node_tags, numbers)
 
 
 if __name__ == "__main__":

@@ -86,6 +86,7 @@ PetscErrorCode ModelSetUp(Model model)
   PetscCall(PartitionMesh(model));
   PetscCall(MeshTabulate(model));
   PetscCall(MeshLayOut(model));
+  PetscCall(PartsCheckUnits(model));
   PetscCall(LoadsCheck(model));
   PetscCall(ProbesLocate(model));
   PetscFunctionReturn(0);
@@ -151,13 +152,7 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
                                    "model: %s, %" PetscInt_FMT " cells, %" PetscInt_FMT " unknowns on %d ranks; %s\n",
                                    !strcmp(model->source, "rig") ? "built-in rig" : model->file, n_cells,
                                    model->mesh.n_unknowns, size, model->scene.element->description));
-  for (PetscInt i = 0; i < model->scene.n_parts; i++) {
-    const Part *p = &model->scene.parts[i];
-
-    PetscCall(PetscViewerASCIIPrintf(
-      viewer, "  part %s: E %.6g Pa, nu %.6g, rho %.6g kg/m^3, alpha %.6g 1/s, beta %.6g s\n", p->name,
-      (double)p->young, (double)p->poisson, (double)p->density, (double)p->alpha, (double)p->beta));
-  }
+  for (PetscInt i = 0; i < model->scene.n_parts; i++) PetscCall(PartView(model, i, viewer));
   for (PetscInt i = 0; i < model->scene.n_supports; i++)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  support %s holds%s%s%s of %s\n", model->scene.supports[i].name,
                                      model->scene.supports[i].fix[0] ? " x" : "",
@@ -203,6 +198,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(RecordsDestroy(s->n_loads, sizeof(*s->loads), 2, s->loads));
   PetscCall(RecordsDestroy(s->n_probes, sizeof(*s->probes), 2, s->probes));
   for (PetscInt i = 0; i < m->n_together; i++) PetscCall(PetscFree(m->together[i]));
+  PetscCall(PetscFree(m->extent));
   PetscCall(MeshReset(m));
   PetscCall(DMDestroy(&m->dm));
   PetscCall(PetscFree(*model));

@@ -22,6 +22,11 @@ typedef struct {
   PetscReal beam_rows[2]; /* heights of the two spring rows above the beam's lower end, 20 and 80 mm */
 } Rig;
 
+/* What a part takes up */
+typedef struct {
+  PetscReal size[3], volume; /* bounding box, m; m^3 */
+} PartExtent;
+
 struct _p_Model {
   MPI_Comm comm;
   /* set by options */
@@ -33,9 +38,14 @@ struct _p_Model {
   char      *together[MODEL_MAX_NAMES]; /* sets whose cells stay on one rank */
   PetscBool  keep_slabs;                /* swept bodies are cut between slabs, and no set is kept together */
   /* built by ModelSetUp() */
-  DM   dm;
-  Mesh mesh;
+  DM          dm;
+  Mesh        mesh;
+  PartExtent *extent; /* of each part */
 };
+
+/* extent.c - measures the parts; a warning where their units do not fit together. Collective */
+PETSC_INTERN PetscErrorCode PartsCheckUnits(Model model);
+PETSC_INTERN PetscErrorCode PartView(Model model, PetscInt part, PetscViewer viewer);
 
 /* rig.c - dimensions and counts of the rig; errors for impossible ones */
 PETSC_INTERN PetscErrorCode RigSetFromOptions(MPI_Comm comm, Rig *rig);

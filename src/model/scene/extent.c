@@ -1,0 +1,106 @@
+/*
+   Size, volume and mass of the parts, and whether they tell of mixed units.
+
+   Any consistent set of units serves: m, kg, s, N, Pa, or mm, t, s, N, MPa, which gives the same Hz. The speed of waves
+   in a bar, sqrt(E / rho), tells which: 15 m/s (rubber) to 20 km/s (ceramics) in m and kg, a thousand times as much in
+   mm and t. Neither fits where modulus and density are of two sets. Coordinates of a third one show by their size.
+*/
+#include "model/modelimpl.h"
+
+#define SLOWEST        15.  /* m/s: soft rubber */
+#define FASTEST        2e4  /* m/s: beyond beryllium and diamond, 12.9 and 18 km/s */
+#define LIGHTEST_SI    1e-2 /* kg/m^3 */
+#define HEAVIEST_TONNE 1e-6 /* t/mm^3; osmium has 2.3e-8 */
+#define LARGEST_SI     20.  /* m */
+#define SMALLEST_MM    0.5  /* mm */
+#define HEAVIEST_PART  1e6  /* kg */
+
+/* Bounding boxes and volumes of this rank's cells, then of all */
+static PetscErrorCode ExtentsMeasure(Model model)
+{
+  const PetscInt n = model->scene.n_parts;
+  PetscReal     *low, *volume;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &model->extent));
+  PetscCall(PetscMalloc2(6 * n, &low, n, &volume)); /* [part][3] least coordinates, then the negative largest ones */
+  for (PetscInt i = 0; i < 6 * n; i++) low[i] = PETSC_MAX_REAL;
+  PetscCall(PetscArrayzero(volume, n));
+  for (PetscInt c = 0; c < model->mesh.n_cells; c++) {
+    const PetscInt part = model->mesh.cell_part[c];
+    PetscInt       vertices[ELEMENT_MAX_NODES];
+    PetscReal      x[ELEMENT_MAX_DOFS], cell, jacobian;
+
+    PetscCall(ModelGetCell(model, c, vertices, x));
+    model->scene.element->measure(x, &cell, &jacobian);
+    volume[part] += cell;
+    for (PetscInt k = 0; k < 3 * model->mesh.n_nodes; k++) {
+      low[6 * part + k % 3]     = PetscMin(low[6 * part + k % 3], x[k]);
+      low[6 * part + 3 + k % 3] = PetscMin(low[6 * part + 3 + k % 3], -x[k]);
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, low, (PetscMPIInt)(6 * n), MPIU_REAL, MPI_MIN, model->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, volume, (PetscMPIInt)n, MPIU_REAL, MPI_SUM, model->comm));
+  for (PetscInt i = 0; i < n; i++) {
+    for (int d = 0; d < 3; d++) model->extent[i].size[d] = -low[6 * i + d] - low[6 * i + 3 + d];
+    model->extent[i].volume = volume[i];
+  }
+  PetscCall(PetscFree2(low, volume));
+  PetscFunctionReturn(0);
+}
+
+/* What the units of a part probably are where they do not fit together; NULL where they do */
+static const char *PartDoubt(const Part *p, const PartExtent *e)
+{
+  const PetscReal speed   = PetscSqrtReal(p->young / p->density);
+  const PetscReal longest = PetscMax(e->size[0], PetscMax(e->size[1], e->size[2]));
+  const PetscBool tonnes  = p->density < HEAVIEST_TONNE && speed >= 1e3 * SLOWEST && speed <= 1e3 * FASTEST;
+
+  if (tonnes)
+    return longest < SMALLEST_MM ? "the mesh is in m, but the material in t/mm^3 and MPa: scale the mesh" : NULL;
+  if (p->density < HEAVIEST_TONNE) return "the density is in t/mm^3: give kg/m^3 (steel 7850), or the modulus in MPa";
+  if (p->density < LIGHTEST_SI)
+    return "the density is in kg/mm^3 or g/mm^3: give kg/m^3 with Pa and m, or t/mm^3 with MPa and mm";
+  if (speed < SLOWEST) return "the modulus is in MPa or GPa: give Pa (steel 210e9)";
+  if (longest > LARGEST_SI) return "the mesh is in mm: scale it to m, or give t/mm^3 and MPa";
+  if (e->volume * p->density > HEAVIEST_PART) return "the mesh is in mm or cm: scale it to m";
+  return NULL;
+}
+
+PetscErrorCode PartsCheckUnits(Model model)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ExtentsMeasure(model));
+  for (PetscInt i = 0; i < model->scene.n_parts; i++) {
+    const Part       *p     = &model->scene.parts[i];
+    const PartExtent *e     = &model->extent[i];
+    const char       *doubt = PartDoubt(p, e);
+
+    if (!doubt) continue;
+    PetscCall(
+      PetscFPrintf(model->comm, stderr,
+                   "squeal: warning: units of part %s: size %.4g x %.4g x %.4g, mass %.4g, E %.4g, rho %.4g; probably "
+                   "%s\n",
+                   p->name, (double)e->size[0], (double)e->size[1], (double)e->size[2],
+                   (double)(e->volume * p->density), (double)p->young, (double)p->density, doubt));
+    break; /* the others will be alike */
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PartView(Model model, PetscInt part, PetscViewer viewer)
+{
+  const Part       *p       = &model->scene.parts[part];
+  const PartExtent *e       = &model->extent[part];
+  const PetscReal   longest = PetscMax(e->size[0], PetscMax(e->size[1], e->size[2]));
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer, "  part %s: E %.6g Pa, nu %.6g, rho %.6g kg/m^3, alpha %.6g 1/s, beta %.6g s\n", p->name, (double)p->young,
+    (double)p->poisson, (double)p->density, (double)p->alpha, (double)p->beta));
+  PetscCall(
+    PetscViewerASCIIPrintf(viewer, "    %.4g x %.4g x %.4g m, %.4g m^3, %.4g kg; a wave along it takes %.3g s\n",
+                           (double)e->size[0], (double)e->size[1], (double)e->size[2], (double)e->volume,
+                           (double)(e->volume * p->density), (double)(longest / PetscSqrtReal(p->young / p->density))));
+  PetscFunctionReturn(0);
+}
