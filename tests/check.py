@@ -1,6 +1,7 @@
 """Numeric checks of the tables of a run, as a case of tests/run.py asks for them: values in the order of the rows, by
 label, against another run or other ranks, and bounds."""
 
+import cmath
 import csv
 import math
 import shlex
@@ -38,7 +39,10 @@ def read_rows(path, where):
 
 def column_of(rows, column):
     require(all(column in row for row in rows), f"there is no column {column!r}")
-    return [row[column] for row in rows]
+    values = [row[column] for row in rows]
+    lost = [i for i, value in enumerate(values, 1) if not isinstance(value, str) and not cmath.isfinite(value)]
+    require(not lost, f"{column} is not finite in rows {lost[:5]}")  # nan compares as false with every bound
+    return values
 
 
 def nearest_pairs(values, references):

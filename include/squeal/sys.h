@@ -58,8 +58,13 @@ PetscErrorCode SquealViewOptions(MPI_Comm comm, PetscErrorCode (*read_again)(MPI
 /*@
    SquealSetFromOptions - what concerns every room. Collective.
 
-   Options Database Key:
-.  -squeal_traceback - shows PETSc's traceback of an error, on each rank that meets it, before the line that a user sees
+   Options Database Keys:
++  -squeal_traceback  - shows PETSc's traceback of an error, on each rank that meets it, before the line that a user sees
+.  -squeal_log <file> - all that is printed on stdout and stderr, but for progress, goes to this file as well; also
+                        -log_file
+-  -squeal_progress   - the stage and the time left, on stderr; by default where that is a terminal
+
+   Errors: PETSC_ERR_FILE_OPEN for a log that cannot be written.
 @*/
 PetscErrorCode SquealSetFromOptions(MPI_Comm comm);
 

@@ -1,17 +1,19 @@
-/* Private to modes/ and sweep/: the progress line */
+/* Progress on stderr, for all rooms */
 #pragma once
 
 #include <petscsys.h>
 
-/* Progress line on stderr: what is done, of how much, and the time left */
+/* A loop: what is done, of how much, and since when; what = NULL shows nothing */
 typedef struct {
-  PetscBool      on, shown;
   const char    *what;
   PetscInt       done, expected;
   PetscLogDouble begun;
 } Progress;
 
-PETSC_INTERN PetscErrorCode ProgressSetFromOptions(MPI_Comm comm, Progress *progress);
+/* Whether and how progress shows in this run: -squeal_progress */
+PETSC_INTERN PetscErrorCode ProgressSetFromOptions(MPI_Comm comm);
+/* Tells which stage of the flow begins */
+PETSC_INTERN PetscErrorCode ProgressStage(const char name[]);
 PETSC_INTERN PetscErrorCode ProgressBegin(Progress *progress, const char what[], PetscInt expected);
 PETSC_INTERN PetscErrorCode ProgressStep(Progress *progress);
 PETSC_INTERN PetscErrorCode ProgressEnd(Progress *progress);

@@ -9,6 +9,7 @@
 #include <squeal/options.h>
 #include "events.h"
 #include "help.h"
+#include "print.h"
 #include "progress.h"
 #include <slepcsys.h>
 #include <hdf5.h>
@@ -93,6 +94,7 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
   PetscErrorHandlingInitialized = PETSC_TRUE; /* as PetscInitialize() begins: errors are kept from now on */
   PetscCall(OptionsCheckArguments(*argc, *argv));
   PetscCall(SlepcInitialize(argc, argv, NULL, help));
+  PrintInstall();
   (void)signal(SIGPIPE, SIG_DFL); /* `squeal ... | head` ends where head does, as other programs do */
   for (PetscInt s = 0; s < SQUEAL_N_STAGES; s++) {
     PetscCall(PetscLogStageRegister(stage_names[s], &stages[s]));
@@ -106,15 +108,20 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
 
 PetscErrorCode SquealSetFromOptions(MPI_Comm comm)
 {
-  Progress progress;
+  char      log[PETSC_MAX_PATH_LEN] = "";
+  PetscBool has_log, has_file;
 
   PetscFunctionBeginUser;
   PetscCall(OptionsCheckNumbers());
-  PetscCall(ProgressSetFromOptions(comm, &progress)); /* as several rooms do: it belongs to none of them */
   PetscOptionsBegin(comm, NULL, "squeal", NULL);
   PetscCall(OptionsGetBool(PetscOptionsObject, "-squeal_traceback",
                            "show PETSc's traceback of an error, for developers", &traced));
+  PetscCall(PetscOptionsString("-squeal_log", "file that all that is printed goes to as well; also -log_file", "sys.h",
+                               log, log, sizeof(log), &has_log));
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-log_file", has_log ? NULL : log, sizeof(log), &has_file));
   PetscOptionsEnd();
+  if (has_log || has_file) PetscCall(PrintSetLog(comm, log));
+  PetscCall(ProgressSetFromOptions(comm));
   PetscFunctionReturn(0);
 }
 
@@ -123,6 +130,7 @@ PetscErrorCode SquealStageBegin(SquealStage stage)
   PetscFunctionBeginUser;
   PetscCall(PetscLogStagePush(stages[stage]));
   PetscCall(PetscTime(&ledger[stage].begun));
+  PetscCall(ProgressStage(stage_names[stage]));
   PetscFunctionReturn(0);
 }
 
@@ -174,12 +182,14 @@ int SquealFinalize(PetscErrorCode error)
     int             rank;
 
     (void)MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    if (!together || rank == 0) fprintf(stderr, "squeal: error: %s\n", error_message);
+    if (!together || rank == 0) PrintError(error_message);
     if (!together) (void)MPI_Abort(MPI_COMM_WORLD, 1);
+    (void)PrintEnd();
     (void)MPI_Finalize();
     return 1;
   }
   if (SlepcFinalize()) (void)MPI_Abort(MPI_COMM_WORLD, 1);
+  if (!PrintEnd()) fprintf(stderr, "squeal: warning: the log -squeal_log is not complete, the disk may be full\n");
   (void)MPI_Finalize();
   return 0;
 }

@@ -64,7 +64,6 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
              (double)modes->max_time);
   PetscCheck(modes->target >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_target %.6g must not be negative (Hz)",
              (double)modes->target);
-  PetscCall(ProgressSetFromOptions(modes->comm, &modes->progress));
   PetscFunctionReturn(0);
 }
 

@@ -142,6 +142,9 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
   if (mode->rigid) mode->sigma = mode->omega = 0;
   mode->unstable =
     mode->sigma > 3 * mode->error && mode->sigma > (has_left ? 1e-9 : 1e-6) * size ? PETSC_TRUE : PETSC_FALSE;
+  PetscCheck(isfinite(mode->error) && isfinite(mode->sigma) && isfinite(mode->omega), modes->comm,
+             PETSC_ERR_NOT_CONVERGED, "mode at %.6g Hz has an error of %g Hz: whether it grows cannot be told",
+             (double)(cimag(lambda) / (2 * PETSC_PI)), (double)mode->error);
   if (!has_left) mode->error = NAN;
   PetscCheck(mode->rigid || mode->backward_error < QUALITY_BACKWARD, modes->comm, PETSC_ERR_NOT_CONVERGED,
              "mode at %.6g Hz has a backward error of %.2g, more than %.0e: the matrices are too badly scaled",

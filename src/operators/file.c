@@ -74,22 +74,6 @@ PetscErrorCode OperatorsAddChecksum(Operators o, Checksum c)
   PetscFunctionReturn(0);
 }
 
-/* Raises an error when the file cannot be read, alike on all ranks */
-static PetscErrorCode OperatorsCheckFile(MPI_Comm comm, const char letter[], const char file[])
-{
-  PetscBool   readable;
-  PetscMPIInt rank;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (rank == 0) PetscCall(PetscTestFile(file, 'r', &readable));
-  PetscCallMPI(MPI_Bcast(&readable, 1, MPIU_BOOL, 0, comm));
-  PetscCheck(readable, comm, PETSC_ERR_FILE_OPEN,
-             "cannot read '%s' of -operators_load_%s: give a file written by -operators_save or MatView()", file,
-             letter);
-  PetscFunctionReturn(0);
-}
-
 /* Sparse matrix from a dense list */
 static PetscErrorCode OperatorsReadDense(MPI_Comm comm, const char letter[], PetscInt n_values,
                                          const PetscReal values[], Mat *A)
@@ -115,7 +99,7 @@ static PetscErrorCode OperatorsReadFile(MPI_Comm comm, const char letter[], cons
   PetscViewer viewer;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsCheckFile(comm, letter, file));
+  PetscCall(MatrixFileCheck(comm, letter, file));
   PetscCall(PetscViewerBinaryOpen(comm, file, FILE_MODE_READ, &viewer));
   PetscCall(MatCreate(comm, A));
   PetscCall(MatSetType(*A, MATAIJ));
@@ -157,6 +141,7 @@ static PetscErrorCode OperatorsCheckMatrices(Operators o, Mat A[N_OPERATORS])
                " rows: all must be square and alike",
                letters[i], rows, columns, n);
   }
+  PetscCall(MassCheck(A[OPERATOR_M]));
   PetscCheck(A[OPERATOR_H] || o->loaded_mu == 0, o->comm, PETSC_ERR_USER_INPUT,
              "-contact_mu %.6g does nothing without -operators_load_h or -operators_dense_h", (double)o->loaded_mu);
   PetscFunctionReturn(0);

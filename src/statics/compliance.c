@@ -127,11 +127,13 @@ static PetscErrorCode ComplianceFormDense(Compliance *c)
   PetscInt        n_unknowns;
   PetscReal      *local[2];
   Mat             Gt;
+  Progress        progress;
 
   PetscFunctionBeginUser;
   PetscCall(VecGetLocalSize(c->u, &n_unknowns));
   PetscCall(MatTranspose(rows->G, MAT_INITIAL_MATRIX, &Gt));
   PetscCall(PetscMalloc2(rows->n * n_all, &local[0], rows->n * n_all, &local[1]));
+  PetscCall(ProgressBegin(&progress, "contact compliance, blocks", (n_all + COMPLIANCE_BLOCK - 1) / COMPLIANCE_BLOCK));
   for (PetscInt first = 0; first < n_all; first += COMPLIANCE_BLOCK) {
     const PetscInt n = PetscMin(COMPLIANCE_BLOCK, n_all - first);
     Mat            B, Y;
@@ -144,7 +146,9 @@ static PetscErrorCode ComplianceFormDense(Compliance *c)
     if (rows->S) PetscCall(ComplianceTakeRows(c, rows->S, Y, first, local[1]));
     PetscCall(MatDestroy(&B));
     PetscCall(MatDestroy(&Y));
+    PetscCall(ProgressStep(&progress));
   }
+  PetscCall(ProgressEnd(&progress));
   PetscCall(GatherRecords(rows->comm, rows->n, (size_t)n_all * sizeof(PetscReal), local[0], NULL, &c->W));
   if (rows->S) PetscCall(GatherRecords(rows->comm, rows->n, (size_t)n_all * sizeof(PetscReal), local[1], NULL, &c->V));
   PetscCall(PetscFree2(local[0], local[1]));

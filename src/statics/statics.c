@@ -64,7 +64,6 @@ PetscErrorCode StaticsSetFromOptions(Statics s)
              "-static_dense %" PetscInt_FMT " must be at most %d: more rows do not fit a dense matrix", s->dense,
              STATICS_MOST_DENSE);
   PetscCall(StaticsCheckCount(s, "-static_identify_steps", s->identify_steps, 2));
-  PetscCall(ProgressSetFromOptions(s->comm, &s->progress));
   PetscFunctionReturn(0);
 }
 

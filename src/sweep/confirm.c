@@ -147,7 +147,7 @@ static void OnsetsSort(Sweep sweep)
 
 PetscErrorCode SweepOnsets(Sweep sweep)
 {
-  Progress progress = {.on = sweep->progress.on};
+  Progress progress;
   PetscInt n        = 0;
 
   PetscFunctionBeginUser;

@@ -137,7 +137,6 @@ PetscErrorCode SweepSetFromOptions(Sweep sweep)
              (int)size);
   sweep->groups.comm     = sweep->comm;
   sweep->groups.n_groups = sweep->n_groups ? sweep->n_groups : size;
-  PetscCall(ProgressSetFromOptions(sweep->comm, &sweep->progress));
   PetscFunctionReturn(0);
 }
 

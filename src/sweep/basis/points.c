@@ -5,6 +5,7 @@
    to all ranks, bit by bit the same.
 */
 #include "points.h"
+#include "base/progress.h"
 
 #define POINTS_MARGIN 10 /* between the estimate at the corrected points and elsewhere */
 
@@ -67,13 +68,18 @@ PetscErrorCode PointsSolve(const PointGroups *groups, const Reduced *reduced, co
                            const PetscReal points[], ReducedModes modes[])
 {
   PetscMPIInt rank;
+  Progress    progress;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(groups->comm, &rank));
   PetscCall(PetscMemzero(modes, (size_t)n * sizeof(*modes)));
-  for (PetscInt i = 0; i < n; i++)
+  PetscCall(ProgressBegin(&progress, "points", n));
+  for (PetscInt i = 0; i < n; i++) {
     if (PointGroupsOwner(groups, i) == rank)
       PetscCall(SolveWithErrors(reduced, window, &points[i * reduced->n_parameters], &modes[i]));
+    PetscCall(ProgressStep(&progress));
+  }
+  PetscCall(ProgressEnd(&progress));
   for (PetscInt i = 0; i < n; i++)
     PetscCall(ReducedModesBroadcast(groups->comm, PointGroupsOwner(groups, i), &modes[i]));
   PetscFunctionReturn(0);
@@ -83,18 +89,22 @@ PetscErrorCode PointsEstimate(const PointGroups *groups, const Reduced *reduced,
                               PetscInt n, const PetscReal points[], PetscReal worst[])
 {
   PetscMPIInt rank, count;
+  Progress    progress;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(groups->comm, &rank));
+  PetscCall(ProgressBegin(&progress, "points of the basis", n));
   for (PetscInt i = 0; i < n; i++) {
     ReducedModes modes;
 
     worst[i] = 0;
+    PetscCall(ProgressStep(&progress));
     if (PointGroupsOwner(groups, i) != rank) continue;
     PetscCall(SolveWithErrors(reduced, window, &points[i * reduced->n_parameters], &modes));
     worst[i] = ReducedModesWorst(&modes, window, PETSC_FALSE);
     PetscCall(ReducedModesDestroy(&modes));
   }
+  PetscCall(ProgressEnd(&progress));
   PetscCall(PetscMPIIntCast(n, &count));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, worst, count, MPIU_REAL, MPI_MAX, groups->comm));
   PetscFunctionReturn(0);

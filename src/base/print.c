@@ -1,0 +1,74 @@
+/*
+   Printing: PETSc hands all text of its printers to PetscVFPrintf, which is replaced here. Text for stdout and stderr is
+   copied to the log file. A progress line, which begins with a carriage return, is no part of the log, and is erased
+   before other text follows it.
+*/
+#include "print.h"
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Log handles */
+static struct {
+  FILE     *log;
+  PetscBool pending; /* a progress line is on the screen */
+  PetscErrorCode (*print)(FILE *, const char[], va_list);
+} printing;
+
+/* Stands in for PetscVFPrintf */
+static PetscErrorCode PrintBoth(FILE *file, const char format[], va_list args)
+{
+  const PetscBool shown = file == stdout || file == stderr ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool line  = shown && format[0] == '\r' ? PETSC_TRUE : PETSC_FALSE;
+  va_list         copy;
+
+  PetscFunctionBeginUser;
+  if (shown && printing.pending && !line) (void)fprintf(stderr, "\r%78s\r", "");
+  if (shown) printing.pending = line;
+  if (shown && !line && printing.log) {
+    va_copy(copy, args);
+    PetscCall((*printing.print)(printing.log, format, copy));
+    va_end(copy);
+  }
+  PetscCall((*printing.print)(file, format, args));
+  PetscFunctionReturn(0);
+}
+
+void PrintInstall(void)
+{
+  printing.print = PetscVFPrintf;
+  PetscVFPrintf  = PrintBoth;
+}
+
+PetscErrorCode PrintSetLog(MPI_Comm comm, const char file[])
+{
+  PetscMPIInt rank, error = 0;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0 && !printing.log) {
+    printing.log = fopen(file, "w");
+    error        = printing.log ? 0 : errno;
+    if (printing.log) (void)setvbuf(printing.log, NULL, _IOLBF, BUFSIZ);
+  }
+  PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, comm));
+  PetscCheck(!error, comm, PETSC_ERR_FILE_OPEN, "cannot write the log -squeal_log %s: %s; choose another file", file,
+             strerror(error));
+  PetscFunctionReturn(0);
+}
+
+void PrintError(const char message[])
+{
+  if (printing.pending) (void)fprintf(stderr, "\r%78s\r", "");
+  (void)fprintf(stderr, "squeal: error: %s\n", message);
+  if (printing.log) (void)fprintf(printing.log, "squeal: error: %s\n", message);
+}
+
+PetscBool PrintEnd(void)
+{
+  PetscBool whole = PETSC_TRUE;
+
+  if (printing.log) whole = ferror(printing.log) || fclose(printing.log) ? PETSC_FALSE : PETSC_TRUE;
+  printing.log = NULL;
+  return whole;
+}

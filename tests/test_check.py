@@ -1,0 +1,39 @@
+#!/usr/bin/env python3
+"""The checks of tests/check.py on made-up tables: what is not finite passes none. Breaks when bounds are compared with min()
+and max() alone, of which a nan is neither. Exit status: 0, or 1."""
+
+import sys
+import tempfile
+from pathlib import Path
+from types import SimpleNamespace
+
+from check import Checker, Failure
+
+CHECKS = ({"min": 0}, {"max": 10}, {"min": 0, "max": 10}, {"equals": [1, 2, 3], "rtol": 1}, {"equals_run": "run", "rtol": 1})
+
+
+def passes(folder, cell, check):
+    """Whether a table of three values, of which the second is the cell, passes the check."""
+    (folder / "modes.csv").write_text(f"freq_hz\n1\n{cell}\n3\n")
+    runner = SimpleNamespace(output=lambda name: folder, case={"run": {"run": {}}})
+    try:
+        Checker(runner, runner).make({"run": "run", "column": "freq_hz", **check})
+    except Failure:
+        return False
+    return True
+
+
+def main():
+    failed = 0
+    with tempfile.TemporaryDirectory() as name:
+        for check in CHECKS:
+            for cell, expected in (("2", True), ("nan", False), ("inf", False), ("-inf", False)):
+                if passes(Path(name), cell, check) != expected:
+                    print(f"FAILED {check}: a table with {cell} {'fails' if expected else 'passes'}")
+                    failed += 1
+    print(f"{failed} of {4 * len(CHECKS)} failed")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

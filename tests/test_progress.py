@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""What a run prints: all of it in the log file too, the stage and the time left on stderr where asked for or on a
+terminal, and the end by ^C. Breaks when a stage or a long loop is silent, when progress gets into the log or stays on
+the screen, when the log misses an error, or when ^C leaves a trace or half a file.
+
+    test_progress.py SQUEAL"""
+
+import os
+import pty
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+OPTIONS = Path(__file__).resolve().parents[1] / "options"
+COARSE = "-rig_disc_elements 6,12,1 -rig_pad_elements 3,3,2 -rig_beam_elements 4 -modes_band 1000,8000".split()
+SCENE = ["-options_file", OPTIONS / "massi2005.yaml"]
+
+
+class Runner:
+    def __init__(self, squeal, folder):
+        self.squeal, self.folder, self.faults = squeal, folder, []
+
+    def run(self, *options):
+        return subprocess.run([self.squeal, *SCENE, *options], capture_output=True, text=True, cwd=self.folder)
+
+    def check(self, holds, what, text=""):
+        print("ok  " if holds else "FAIL", what)
+        if not holds:
+            self.faults.append(what)
+            print(text)
+
+
+def check_log(r):
+    for option in ("-squeal_log", "-log_file"):
+        done = r.run(*COARSE, "-squeal_view", option, "all.txt")
+        log = (r.folder / "all.txt").read_text()
+        r.check(done.returncode == 0 and done.stdout and log == done.stdout + done.stderr, f"{option} holds what is printed", log)
+    done = r.run(*COARSE, "-pad_young", "-1", "-squeal_log", "all.txt")
+    r.check(done.stderr and (r.folder / "all.txt").read_text() == done.stderr, "the log holds the error", done.stderr)
+    done = r.run(*COARSE, "-squeal_log", "nowhere/all.txt")
+    r.check(done.returncode and re.fullmatch(r"squeal: error: .*-squeal_log nowhere/all.txt: No such file.*\n", done.stderr),
+            "a log that cannot be written is an error", done.stderr)
+
+
+def check_stages(r):
+    done = r.run(*COARSE, "-squeal_progress", "1", "-squeal_log", "all.txt")
+    stages = re.findall(r"^(\w+) after \d+ s$", done.stderr, re.MULTILINE)
+    r.check({"Model", "Contact", "Operators", "Modes", "Results"} <= set(stages), f"stages on stderr: {stages}", done.stderr)
+    r.check(r.run(*COARSE).stderr == "", "nothing on stderr where it is no terminal", "")
+    master, slave = pty.openpty()
+    process = subprocess.Popen([r.squeal, *SCENE, *COARSE], cwd=r.folder, stdout=slave, stderr=slave)
+    process.wait()
+    os.close(slave)
+    text = b""
+    while True:
+        try:
+            piece = os.read(master, 4096)
+        except OSError:
+            break
+        text += piece
+    shown = re.sub(r"[^\n]*\r(?!\n)", "", text.decode().replace("\r\n", "\n"))  # what is written over is gone
+    r.check(b"\rModes" in text and "Modes  " not in shown and shown.startswith("mode "), "on a terminal the line goes", shown)
+
+
+def check_left_and_interrupt(r):
+    """The time left within a loop of the eigensolver, then ^C."""
+    process = subprocess.Popen([r.squeal, *SCENE, "-modes_band", "0,20000", "-squeal_progress", "1", "-output_dir", "long"],
+                               cwd=r.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    lines, begun = [], time.time()
+    while time.time() - begun < 100 and not (lines and "left" in lines[-1]):
+        lines.append(process.stderr.readline())
+        if not lines[-1]:
+            break
+    r.check(re.fullmatch(r"right vectors: \d+ of about \d+, \d+ s left\n", lines[-1]), "time left of a loop", "".join(lines))
+    process.send_signal(signal.SIGINT)
+    process.wait(20)
+    rest = process.stderr.read()
+    r.check(process.returncode != 0 and "PETSC ERROR" not in rest and len(rest.splitlines()) <= 1, "^C ends it", rest)
+    left = [path.name for path in (r.folder / "long").iterdir()]
+    r.check(not left, f"^C leaves no half file {left}")
+
+
+def main():
+    with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
+        r = Runner(Path(sys.argv[1]).resolve(), Path(folder))
+        check_log(r)
+        check_stages(r)
+        check_left_and_interrupt(r)
+    if r.faults:
+        print(f"{len(r.faults)} failed: {'; '.join(r.faults)}")
+    return 1 if r.faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
