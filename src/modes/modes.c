@@ -204,6 +204,7 @@ static PetscErrorCode ModesReset(Modes modes)
   PetscCall(SpectrumDestroy(&modes->right));
   PetscCall(SpectrumDestroy(&modes->left_spectrum));
   PetscCall(PetscFree(modes->mode));
+  PetscCall(PetscFree(modes->part_percent));
   modes->n = 0;
   PetscFunctionReturn(0);
 }
