@@ -162,10 +162,14 @@ PetscErrorCode CertificateCheck(const Active *a)
   PetscCall(RigidDescribe(a->operators, certificate.motion, sizeof(moves), moves));
   PetscCall(VecDestroy(&certificate.motion));
   PetscCheck(
-    certificate.frictionless, a->rows->comm, PETSC_ERR_NOT_CONVERGED,
+    certificate.frictionless || PairRowsCoulomb(a->rows), a->rows->comm, PETSC_ERR_NOT_CONVERGED,
     "no sliding equilibrium%s: the loads with the friction %s, against which no force of a pair acts; friction "
     "may be at most %.7g of its value; lower the friction coefficient, or give -supports or -springs",
     a->place, moves, certificate.friction > FRICTION_NONE ? (double)certificate.friction : 0.0);
+  PetscCheck(certificate.frictionless, a->rows->comm, PETSC_ERR_NOT_CONVERGED,
+             "no equilibrium%s: the loads with the friction of what slides %s, against which no force of a pair acts; "
+             "lower the friction coefficient of what slides, raise that of what holds, or give -supports or -springs",
+             a->place, moves);
   SETERRQ(a->rows->comm, PETSC_ERR_NOT_CONVERGED,
           "no equilibrium%s: the loads %s, against which no force of a pair acts, %s friction; give -loads that press "
           "the contacts together, within their edges, %s-supports or -springs",

@@ -48,14 +48,15 @@ static PetscErrorCode ComplianceFindKappa(Mat K, const PairRows *rows, PetscReal
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, const ContactStatus status[], Mat *A)
+PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, PetscBool closed_only,
+                                 const ContactStatus status[], Mat *A)
 {
   PetscScalar *resists;
   Mat          GG;
   Vec          weight = NULL;
 
   PetscFunctionBeginUser;
-  if (status) {
+  if (closed_only) {
     PetscCall(MatCreateVecs(rows->G, NULL, &weight));
     PetscCall(VecGetArray(weight, &resists));
     for (PetscInt p = 0; p < rows->n_pairs; p++)
@@ -164,7 +165,7 @@ PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const 
   c->rows = rows;
   PetscCall(OperatorsGetBodies(operators, p, &K, &pencil.M, NULL));
   PetscCall(ComplianceFindKappa(K, rows, &c->kappa));
-  PetscCall(ComplianceAugment(K, rows, c->kappa, NULL, &pencil.K));
+  PetscCall(ComplianceAugment(K, rows, c->kappa, PETSC_FALSE, NULL, &pencil.K));
   PetscCall(HoldCreate(operators, p, pencil.K, &c->hold));
   PetscCall(ShiftInvertCreate(&pencil, 0, PETSC_FALSE, progress, &c->inverse));
   PetscCall(MatDestroy(&pencil.K));

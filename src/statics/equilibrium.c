@@ -141,7 +141,7 @@ static PetscErrorCode TippingCheck(const Active *a)
   PetscCall(EquilibriumCountClosed(a, &n));
   if (n == a->rows->n_pairs_all) PetscFunctionReturn(0);
   PetscCall(OperatorsGetBodies(a->operators, a->p, &K, NULL, NULL));
-  PetscCall(ComplianceAugment(K, a->rows, a->compliance->kappa, a->status, &A));
+  PetscCall(ComplianceAugment(K, a->rows, a->compliance->kappa, PETSC_TRUE, a->status, &A));
   PetscCall(HoldFindLoose(a->operators, a->p, &a->compliance->hold, A, &part));
   PetscCall(MatDestroy(&A));
   if (!part) PetscFunctionReturn(0);

@@ -183,9 +183,9 @@ PETSC_INTERN PetscErrorCode ComplianceSolve(const Compliance *c, PetscReal frict
 PETSC_INTERN PetscErrorCode ComplianceAddForces(const Compliance *c, PetscReal friction, const PetscReal l[],
                                                 const PetscReal w[], Vec b);
 PETSC_INTERN PetscErrorCode ComplianceGetRows(const Compliance *c, Vec u, PetscReal w[]);
-/* K + kappa G'G of all rows, or of those of pairs closed at the status [pairs], NULL for all. Where Coulomb's pairs
+/* K + kappa G'G of all rows, or of those of pairs closed at the status [pairs]. Where Coulomb's pairs
    slip in different directions they resist too; what slips in one direction makes the small system singular. */
-PETSC_INTERN PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa,
+PETSC_INTERN PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, PetscBool closed_only,
                                               const ContactStatus status[], Mat *A);
 PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *c);
 
