@@ -2,6 +2,7 @@
    What stands on the command line and nothing in this analysis has a use for: see base/arguments.c.
 */
 #include "scope.h"
+#include "base/vec3.h"
 
 /* Whether something asks for an equilibrium */
 static PetscErrorCode ScopeNeedsStatics(const Scope *s, PetscBool *needs)
@@ -39,7 +40,7 @@ static PetscErrorCode ScopeCheckContact(MPI_Comm comm, const Scope *s, const Con
   const PetscBool   is_static = !s->modes && !s->transient ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  if (c->rotation[0] != 0 || c->rotation[1] != 0 || c->rotation[2] != 0)
+  if (Vec3Dot(c->rotation, c->rotation) > 0 && Vec3Dot(c->slip, c->slip) > 0)
     PetscCall(ScopeRefuse(comm, c->name, "slip", "not used beside the -NAME_rotation of the same contact; give one"));
   if (s->transient && c->law == CONTACT_PENALTY) PetscCall(ScopeRefuse(comm, c->name, "law", exact));
   if (s->transient) PetscCall(ScopeRefuse(comm, c->name, "kn", exact));
@@ -63,6 +64,7 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(s->model, &scene));
+  if (s->modes && !statics) PetscCall(ScopeRefuse(comm, "model", "gravity", all));
   for (PetscInt i = 0; i < scene->n_probes && !s->transient; i++)
     PetscCall(ScopeRefuse(comm, scene->probes[i].name, "at", no_time));
   for (PetscInt i = 0; i < scene->n_loads && s->modes && !statics; i++) {

@@ -49,7 +49,6 @@ PetscErrorCode DynamicsSetModel(Dynamics dynamics, Model model, Contact contact)
    and of the scene
 +  -press_ramp <0>, -press_ramp_shape <smooth|linear>, -press_delay <0> - ramp of the load `press`, s
 .  -disc_velocity <0,0,0>        - of the part `disc` at the start, m/s
-.  -dynamics_gravity <0,0,0>     - m/s^2
 .  -motions <names>              - prescribed displacements of sets: -lift_set, -lift_displacement x,y,z (m),
                                    -lift_directions xyz, and a ramp, which must be given
 -  -impulses <names>             - at nodes: -hit_at x,y,z (m), -hit_part, -hit_impulse x,y,z (N s), -hit_time (s)

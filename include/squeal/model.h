@@ -73,7 +73,8 @@ typedef struct {
   Grounded      *springs, *dashpots;
   Load          *loads;
   Probe         *probes;
-  const Element *element; /* formulation of the cells; after ModelSetUp() */
+  PetscReal      gravity[3]; /* m/s^2 */
+  const Element *element;    /* formulation of the cells; after ModelSetUp() */
 } ModelScene;
 
 /*@
@@ -90,6 +91,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
 .  -model_mesh <file>       - Gmsh file, format 2.2 or 4.1
 .  -model_element <incompatible|full> - element formulation
 .  -parts, -supports, -springs, -dashpots, -loads, -probes <names> - lists; each name is the prefix of its own options
+.  -model_gravity <0,0,0>   - acceleration of gravity, m/s^2, which acts on the mass of all parts in statics and in time
 -  -rig_*                   - dimensions (m) and counts of the built-in disc, pad and beam
 
    Errors: PETSC_ERR_USER_INPUT for a missing or invalid value, naming option, value and what is valid.
@@ -200,7 +202,10 @@ PetscErrorCode ModelSumShared(Model model, Vec local);
     cells. Collective; after ModelSetUp(). @*/
 PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum checksum);
 
-/*@ ModelAddLoadsChecksum - adds the loads. Collective. @*/
+/*@ ModelHasGravity - whether the acceleration of gravity is not zero. Not collective. @*/
+PetscBool ModelHasGravity(Model model);
+
+/*@ ModelAddLoadsChecksum - adds the loads, and gravity. Collective. @*/
 PetscErrorCode ModelAddLoadsChecksum(Model model, Checksum checksum);
 
 /*@ ModelAddSetChecksum - adds name and nodes of a set to the present part, and its faces where it is a surface.

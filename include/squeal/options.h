@@ -138,11 +138,8 @@ PetscErrorCode OptionsCheckArguments(int argc, char *const argv[]);
 /*@ OptionsCheckFile - the same for one options file; YAML by its ending, or where is_yaml says so. Not collective. @*/
 PetscErrorCode OptionsCheckFile(const char file[], PetscBool is_yaml);
 
-/* Largest magnitude of a number that is given: products of several stay finite */
-#define OPTIONS_LARGEST 1e60
-
-/*@ OptionsCheckNumbers - raises an error for nan, inf and numbers beyond OPTIONS_LARGEST in the value of any option,
-    whatever PETSc makes of it. Not collective: all ranks have the same options. @*/
+/*@ OptionsCheckNumbers - raises an error for nan, inf and what overflows to it, in the value of any option, whatever
+    PETSc makes of it. Not collective: all ranks have the same options. @*/
 PetscErrorCode OptionsCheckNumbers(void);
 
 /*@ OptionsCheckNumber - the same for one option between PetscOptionsBegin() and PetscOptionsEnd(). Not collective. @*/

@@ -44,13 +44,13 @@ PetscErrorCode OptionsCheckArguments(int argc, char *const argv[])
   PetscFunctionReturn(0);
 }
 
-/* Whether a word is a number that is not finite, or beyond all that is measured */
-static PetscBool WordIsTooLarge(const char word[])
+/* Whether a word is a number that is not finite; 1e999 is none either */
+static PetscBool WordIsInfinite(const char word[])
 {
   char        *end;
   const double value = strtod(word, &end);
 
-  return end != word && !*end && !(PetscAbsReal((PetscReal)value) <= OPTIONS_LARGEST) ? PETSC_TRUE : PETSC_FALSE;
+  return end != word && !*end && PetscIsInfOrNanReal((PetscReal)value) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Raises an error for an infinite number in a value such as 1:2:3,4 */
@@ -63,8 +63,8 @@ static PetscErrorCode ValueCheckFinite(const char name[], const char value[])
     const size_t length = strcspn(c, ",: ");
 
     PetscCall(PetscStrncpy(word, c, PetscMin(length + 1, sizeof(word))));
-    PetscCheck(!WordIsTooLarge(word), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "%s: %s must be a finite number, of at most %g", name, word, OPTIONS_LARGEST);
+    PetscCheck(!WordIsInfinite(word), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s value %s must be a finite number",
+               name, word);
     c += length;
   }
   PetscFunctionReturn(0);

@@ -32,15 +32,15 @@ static PetscErrorCode StartCheckAbsent(Dynamics d, const char name[], const char
 
 static PetscErrorCode StartCheckStatic(Dynamics d)
 {
-  static const char *const ramps[] = {"_ramp", "_delay"}, *const others[] = {"dynamics_gravity", "motions"};
-  const ContactInterface *interfaces = d->interfaces;
-  const ModelScene       *scene;
-  PetscInt                n = d->n_interfaces;
+  static const char *const ramps[]    = {"_ramp", "_delay"};
+  const ContactInterface  *interfaces = d->interfaces;
+  const ModelScene        *scene;
+  PetscInt                 n = d->n_interfaces;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(d->model, &scene));
+  PetscCall(StartCheckAbsent(d, "motions", "", PETSC_FALSE));
   for (int r = 0; r < 2; r++) {
-    PetscCall(StartCheckAbsent(d, others[r], "", PETSC_FALSE));
     for (PetscInt i = 0; i < scene->n_loads; i++)
       PetscCall(StartCheckAbsent(d, scene->loads[i].name, ramps[r], PETSC_TRUE));
     for (PetscInt i = 0; i < n; i++) PetscCall(StartCheckAbsent(d, interfaces[i].name, ramps[r], PETSC_TRUE));

@@ -18,7 +18,7 @@ PetscErrorCode ModelSetFromOptions(Model model)
   static const char *const sources[] = {"rig", "file"};
   ModelScene *const        scene     = &model->scene;
   PetscInt                 source    = 0;
-  PetscBool                given, has_mesh;
+  PetscBool                given, has_mesh, old;
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(model->comm, NULL, "Model", NULL);
@@ -28,7 +28,13 @@ PetscErrorCode ModelSetFromOptions(Model model)
                            model->file, &has_mesh));
   PetscCall(PetscOptionsString("-model_element", "element formulation: incompatible (QM6) or full (trilinear)",
                                "model.h", model->formulation, model->formulation, sizeof(model->formulation), NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-model_gravity", "acceleration of gravity in x,y,z, m/s^2", 3,
+                            scene->gravity, NULL));
   PetscOptionsEnd();
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-dynamics_gravity", &old));
+  PetscCheck(!old, model->comm, PETSC_ERR_USER_INPUT,
+             "-dynamics_gravity is now -model_gravity: it acts in statics too");
+  PetscCall(OptionsCheckFinite(model->comm, "model", "gravity", "m/s^2", scene->gravity));
   PetscCheck(!given || source == 1 || !has_mesh, model->comm, PETSC_ERR_USER_INPUT,
              "-model_mesh %s does nothing with -model_source rig; choose -model_source file", model->file);
   if (has_mesh) source = 1;
@@ -132,6 +138,13 @@ PetscErrorCode ModelGetCell(Model model, PetscInt c, PetscInt vertices[], PetscR
   PetscFunctionReturn(0);
 }
 
+PetscBool ModelHasGravity(Model model)
+{
+  const PetscReal *g = model->scene.gravity;
+
+  return g[0] != 0 || g[1] != 0 || g[2] != 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
 static PetscErrorCode GroundedView(PetscViewer viewer, const char kind[], const Grounded *g, const char unit[])
 {
   PetscFunctionBeginUser;
@@ -168,6 +181,9 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  load %s on %s: %.6g, %.6g, %.6g N in all\n", l->name, l->set,
                                      (double)l->force[0], (double)l->force[1], (double)l->force[2]));
   }
+  if (ModelHasGravity(model))
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  gravity: %.6g, %.6g, %.6g m/s^2\n", (double)model->scene.gravity[0],
+                                     (double)model->scene.gravity[1], (double)model->scene.gravity[2]));
   PetscCall(ProbesView(model, viewer));
   PetscFunctionReturn(0);
 }

@@ -101,6 +101,8 @@ PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum 
 PetscErrorCode ModelAddLoadsChecksum(Model model, Checksum c)
 {
   PetscFunctionBeginUser;
+  PetscCall(ChecksumSetPart(c, "-model_gravity"));
+  PetscCall(ChecksumAddReals(c, 3, model->scene.gravity));
   for (PetscInt i = 0; i < model->scene.n_loads; i++) {
     PetscCall(ChecksumSetPart(c, "load %s", model->scene.loads[i].name));
     PetscCall(ChecksumAddInts(c, 1, &i)); /* the order counts */

@@ -65,6 +65,56 @@ PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[],
   PetscFunctionReturn(0);
 }
 
+/* Adds the weight of local cell c: sum_j m_ij g, the mass matrix times a uniform acceleration */
+static PetscErrorCode OperatorsAddCellWeight(Operators o, PetscInt c, const Elasticity *material, PetscScalar f[])
+{
+  const ModelScene *scene;
+  PetscInt          n, vertices[ELEMENT_MAX_NODES];
+  PetscReal x[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(o->model, &scene));
+  PetscCall(ModelGetCell(o->model, c, vertices, x));
+  PetscCheck(!scene->element->matrices(x, material, ke, me), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
+  n = 3 * scene->element->n_nodes;
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = i % 3; j < n; j += 3) f[3 * vertices[i / 3] + i % 3] += me[n * i + j] * scene->gravity[i % 3];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsAddWeight(Operators operators, const PetscReal p[], Vec local, PetscReal total[3])
+{
+  const ModelScene *scene;
+  const Mesh       *mesh;
+  PetscScalar      *force;
+  PetscInt          n;
+  Vec               weight;
+
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 3; d++) total[d] = 0;
+  if (!operators->model || !ModelHasGravity(operators->model)) PetscFunctionReturn(0);
+  PetscCall(ModelGetMesh(operators->model, &mesh));
+  PetscCall(ModelGetScene(operators->model, &scene));
+  PetscCall(ModelCreateNodal(operators->model, &weight));
+  PetscCall(VecGetLocalSize(weight, &n));
+  PetscCall(VecGetArray(weight, &force));
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    OperatorsMaterial values;
+    Elasticity        material;
+
+    PetscCall(OperatorsGetMaterial(operators, p, mesh->cell_part[c], &values));
+    material = ElasticityFromEngineering(1, 0, values.density);
+    PetscCall(OperatorsAddCellWeight(operators, c, &material, force));
+  }
+  for (PetscInt i = 0; i < n; i++) total[i % 3] += PetscRealPart(force[i]);
+  PetscCall(VecRestoreArray(weight, &force));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, total, 3, MPIU_REAL, MPI_SUM, operators->comm));
+  PetscCall(ModelSumShared(operators->model, weight));
+  PetscCall(VecAXPY(local, 1, weight));
+  PetscCall(VecDestroy(&weight));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OperatorsTakeNodal(Operators operators, Vec local, Vec f)
 {
   const PetscScalar *force;

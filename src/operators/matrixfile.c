@@ -4,13 +4,14 @@
 
    A sparse file holds, in integers of 4 bytes and reals of 8, most significant byte first:
       1211216, rows, columns, n; entries of each row; columns of the n entries, row by row; the n entries.
-   A dense file has n = -1 and all entries. Numbers beyond 1e60 are refused as those of options are.
+   A dense file has n = -1 and all entries. Numbers beyond 1e60 are refused: their products are no numbers.
 */
 #include "pencilimpl.h"
 #include <errno.h>
 #include <sys/stat.h>
 
 #define MATRIX_FILE_CHUNK 4096
+#define MATRIX_LARGEST    1e60      /* of a number, so that products of several stay finite */
 #define MATRIX_MAX_ROWS   100000000 /* 1e8: a larger number is none of rows */
 
 /* The file, and what is wrong with it: empty where nothing is */
@@ -114,9 +115,9 @@ static PetscErrorCode MatrixFileNumbers(MatrixFile *f)
     (void)memcpy(&value, &word, sizeof(value));
     if (!isfinite(value))
       PetscCall(PetscSNPrintf(f->fault, sizeof(f->fault), "its entry %.0f is not finite", k));
-    else if (fabs(value) > OPTIONS_LARGEST)
+    else if (fabs(value) > MATRIX_LARGEST)
       PetscCall(PetscSNPrintf(f->fault, sizeof(f->fault), "its entry %.0f is %g: numbers must be of at most %g", k,
-                              value, OPTIONS_LARGEST));
+                              value, MATRIX_LARGEST));
   }
   PetscFunctionReturn(0);
 }

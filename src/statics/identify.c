@@ -80,7 +80,7 @@ static PetscErrorCode IdentifyRamp(Statics s, PetscInt interface, Vec d, Identif
   Active     whole      = {.rows = &rows, .compliance = &compliance, .load_steps = 1};
 
   PetscFunctionBeginUser;
-  PetscCall(StaticsCreateLoad(s->operators, &whole.f, &whole.size));
+  PetscCall(StaticsCreateLoad(s->operators, s->p, &whole.f, &whole.size));
   PetscCheck(whole.size > 0, s->comm, PETSC_ERR_USER_INPUT, "-contact_kn identify presses with the -loads: give some");
   PetscCall(PairRowsCreate(s->operators, PETSC_TRUE, &rows));
   PetscCall(PetscMalloc1(rows.n_pairs, &whole.status));

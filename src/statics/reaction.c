@@ -3,13 +3,14 @@
 
       reaction = sum K_e u_e - load - contact force,
 
-   and a spring pulls with -k u. In equilibrium reactions, springs and loads sum to zero; reactions.csv lists them all.
+   and a spring pulls with -k u. Loads include the weight. In equilibrium reactions, springs and loads sum to zero; reactions.csv lists them all.
 */
 #include "staticsimpl.h"
 
 /* Internal forces minus loads and contact forces at all local vertices, three values each */
 static PetscErrorCode ReactionUnbalance(Statics s, Vec *local)
 {
+  PetscReal         weight[3];
   Vec               part;
   const ModelScene *scene;
 
@@ -22,6 +23,7 @@ static PetscErrorCode ReactionUnbalance(Statics s, Vec *local)
   PetscCall(VecSet(part, 0));
   PetscCall(ModelGetScene(s->model, &scene));
   for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(ModelAddLoad(s->model, i, part));
+  PetscCall(OperatorsAddWeight(s->operators, s->p, part, weight));
   PetscCall(VecAXPY(*local, -1, part));
   PetscCall(VecDestroy(&part));
   PetscFunctionReturn(0);
@@ -127,6 +129,19 @@ static PetscErrorCode ReactionsWriteHolders(Statics s, ResultsTable table)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode ReactionWriteWeight(Statics s, ResultsTable table)
+{
+  PetscReal weight[3];
+  Vec       nodal;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelCreateNodal(s->model, &nodal));
+  PetscCall(OperatorsAddWeight(s->operators, s->p, nodal, weight));
+  PetscCall(VecDestroy(&nodal));
+  PetscCall(ReactionRow(table, "gravity", "weight", weight));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode StaticsWriteReactions(Statics s, Results results)
 {
   const ModelScene *scene;
@@ -138,6 +153,7 @@ PetscErrorCode StaticsWriteReactions(Statics s, Results results)
   PetscCall(ReactionsWriteHolders(s, table));
   for (PetscInt i = 0; i < scene->n_loads; i++)
     PetscCall(ReactionRow(table, scene->loads[i].name, "load", scene->loads[i].force));
+  if (ModelHasGravity(s->model)) PetscCall(ReactionWriteWeight(s, table));
   for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
     PetscCall(ReactionRow(table, s->rows.interface[i].name, "contact on master", s->resultant[i].force));
   PetscCall(ResultsTableClose(&table));

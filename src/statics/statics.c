@@ -196,7 +196,7 @@ PetscErrorCode StaticsSolve(Statics s, const PetscReal p[])
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_STATICS));
   PetscCall(StaticsSetUp(s, p));
-  PetscCall(StaticsCreateLoad(s->operators, &f, &size));
+  PetscCall(StaticsCreateLoad(s->operators, s->p, &f, &size));
   PetscCall(StaticsCheckLoad(s, f));
   PetscCall(PetscCalloc1(s->rows.n, &l));
   PetscCall(StaticsFactor(s));

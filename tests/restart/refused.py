@@ -41,7 +41,7 @@ CHANGES = [
     ("-edge_part", "beam", "probes"),
     ("-probes", "face,edge", "probes"),
     ("-disc_velocity", "0,0,1e-3", "the start"),
-    ("-dynamics_gravity", "0,0,1", "-dynamics_gravity"),
+    ("-model_gravity", "0,0,1", "-model_gravity"),
     ("-ts_central_b", "0.6", "-ts_central_b"),
     ("-dynamics_step_fraction", "0.8", "-dynamics_step_fraction"),
     ("-dynamics_kernel", "general", "-dynamics_kernel"),

@@ -25,7 +25,7 @@ contact: {speed: 0.02}
 dynamics: {history_interval: 1e-6, pairs_interval: 1e-5, snapshot_interval: 2e-4, live: 0}
 """
 TURNS = "-contact_kinematics turning -contact_slip 0,0,0 -contact_speed 0 -contact_rotation 0,0,-2 -contact_mu 0.9" \
-        " -dynamics_gravity 0,-9.81,0 -dynamics_coriolis -dynamics_centrifugal"
+        " -model_gravity 0,-9.81,0 -dynamics_coriolis -dynamics_centrifugal"
 SCENES = {
     "stays": "-contact_ramp 1e-3 -ts_central_b 0.5",
     "stays dissipative": "-contact_ramp 1e-3 -ts_central_b 0.8 -contact_mu_slope -5",

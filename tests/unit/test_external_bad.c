@@ -16,8 +16,6 @@
 /* Options, and what the error begins with */
 static const char *const bad[][2] = {
   {PULL "-pull_ramp -1",               "-pull_ramp -1 must be a time of at least 0 (s)"              },
-  {"-dynamics_gravity 0,0",            "-dynamics_gravity has 2 values; give 3"                      },
-  {"-dynamics_gravity 0,0,nan",        "-dynamics_gravity value nan must be a finite number (m/s^2)" },
   {"-head_velocity 1",                 "-head_velocity has 1 values; give 3"                         },
   {"-head_velocity inf,0,0",           "-head_velocity value inf must be a finite number"            },
   {"-motions 2lift",                   "-motions '2lift' is no name"                                 },

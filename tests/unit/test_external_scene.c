@@ -94,7 +94,7 @@ static PetscErrorCode TestGravityAndImpulse(int *failed)
   Scene           s;
 
   PetscFunctionBeginUser;
-  PetscCall(SceneCreate("-dynamics_gravity 1,0,-9 ", &s));
+  PetscCall(SceneCreate("-model_gravity 1,0,-9 ", &s));
   SceneFill(&s, one, s.v);
   PetscCall(SceneAdvance(&s, 0, 0.1, &power));
   PetscCall(CheckSum(&s, "weight, N", weight, failed));
@@ -243,7 +243,7 @@ static PetscErrorCode TestTwoFrames(int *failed)
 }
 
 #define EVERYTHING                                                                                                     \
-  "-loads pull -pull_set head -pull_force 1,-2,0.5 -pull_ramp 2 -dynamics_gravity 0,0.1,-0.2 -impulses hit -hit_at "   \
+  "-loads pull -pull_set head -pull_force 1,-2,0.5 -pull_ramp 2 -model_gravity 0,0.1,-0.2 -impulses hit -hit_at "      \
   "0.4,0.4,0.4 "                                                                                                       \
   "-hit_impulse 0.1,0.1,0 -hit_time 1.01 -motions lift -lift_set head_edge -lift_displacement 0.05,0,-0.1 "            \
   "-lift_ramp 3 -foot_velocity 0.1,0,0 "

@@ -15,9 +15,12 @@ PetscErrorCode ExternalCreate(MPI_Comm comm, Model model, External *external)
 
 PetscErrorCode ExternalSetFromOptions(External external)
 {
+  const ModelScene *scene;
+
   PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(external->model, &scene));
+  PetscCall(PetscArraycpy(external->gravity, scene->gravity, 3));
   PetscCall(TimedLoadsSetFromOptions(external));
-  PetscCall(InertiaSetFromOptions(external));
   PetscCall(MotionsSetFromOptions(external));
   PetscCall(ImpulsesSetFromOptions(external));
   PetscCall(VelocitySetFromOptions(external));
@@ -136,8 +139,6 @@ static PetscErrorCode ExternalAddRamp(const Ramp *ramp, Checksum c)
 PetscErrorCode ExternalAddChecksum(External external, Checksum c)
 {
   PetscFunctionBeginUser;
-  PetscCall(ChecksumSetPart(c, "-dynamics_gravity"));
-  PetscCall(ChecksumAddReals(c, 3, external->gravity));
   PetscCall(ChecksumSetPart(c, "the start"));
   PetscCall(ChecksumAddReals(c, 3 * external->n_parts, external->velocity));
   PetscCall(ModelAddLoadsChecksum(external->model, c));

@@ -39,7 +39,6 @@ PETSC_INTERN PetscErrorCode ExternalCreate(MPI_Comm comm, Model model, External 
 
    Options Database Keys:
 +  -press_ramp <0>, -press_ramp_shape <smooth|linear>, -press_delay <0> - of the load `press`: length, shape, begin, s
-.  -dynamics_gravity <0,0,0> - m/s^2
 .  -motions <names>       - prescribed displacements, each the prefix of its own options
 .  -lift_set, -lift_displacement x,y,z, -lift_directions <those of the displacement> - named set, m, some of x, y, z
 .  -lift_ramp, -lift_ramp_shape <smooth|linear>, -lift_delay <0> - as of loads; the length must be positive

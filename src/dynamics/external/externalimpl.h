@@ -60,8 +60,8 @@ struct _p_External {
   TimedLoad    *loads;
   Drive        *motions;
   Impulse      *impulses;
+  PetscReal     gravity[3]; /* of the model, m/s^2 */
   PetscReal    *velocity;   /* [n_parts][3], m/s */
-  PetscReal     gravity[3]; /* m/s^2 */
   InertiaFrame *frames;     /* [n_parts] */
   /* built by ExternalSetUp() */
   const Layout *layout;
@@ -105,7 +105,6 @@ PETSC_INTERN PetscErrorCode ImpulsesView(External external, PetscViewer viewer);
 PETSC_INTERN PetscErrorCode ImpulsesDestroy(External external);
 
 /* inertia.c - gravity and turning frames */
-PETSC_INTERN PetscErrorCode InertiaSetFromOptions(External external);
 PETSC_INTERN PetscErrorCode InertiaSetUp(External external);
 PETSC_INTERN PetscErrorCode InertiaAdvance(External external, const ExternalStep *step, ExternalPower *power);
 PETSC_INTERN PetscErrorCode InertiaView(External external, PetscViewer viewer);

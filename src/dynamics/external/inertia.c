@@ -10,18 +10,6 @@
 #include "base/vec3.h"
 #include <squeal/options.h>
 
-PetscErrorCode InertiaSetFromOptions(External external)
-{
-  PetscReal *g = external->gravity;
-
-  PetscFunctionBeginUser;
-  PetscOptionsBegin(external->comm, NULL, "Gravity", NULL);
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-dynamics_gravity", "acceleration in x,y,z, m/s^2", 3, g, NULL));
-  PetscOptionsEnd();
-  PetscCall(OptionsCheckFinite(external->comm, "dynamics", "gravity", "m/s^2", g));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode InertiaSetUp(External external)
 {
   const Layout    *layout = external->layout;

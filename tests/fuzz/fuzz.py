@@ -1,0 +1,213 @@
+#!/usr/bin/env python3
+"""Damaged inputs: options, YAML, meshes in four formats, PETSc matrices, checkpoints, tables of a run that goes on, shapes, and what a
+sweep keeps. Each is damaged in one way (damage.py), drawn from a seed, and run on one rank. Judged is
+
+  end      no signal, and an end within the time limit
+  message  on failure exactly one line, "squeal: error: ...", and nothing of PETSc, MPI or the C library
+  files    on failure no table or field in a folder that was empty
+  answer   on success numbers that are finite; where the damage keeps the meaning, those of the undamaged input; where the file has a
+           checksum, too, whatever was changed; of matrices the eigenvalues that another reader of the file finds (oracle.py)
+
+    fuzz.py build/squeal --count 3000
+
+--only KIND runs one kind, --one N one input alone and keeps its folder. Exit status: 0, 1 when an input was not handled."""
+
+import argparse
+import collections
+import csv
+import math
+import os
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+
+import oracle
+import scenes
+
+FINAL = {".csv", ".h5", ".xmf", ".bin"}
+TOLERANCE = 1e-9
+
+
+def numbers(path):
+    """All cells of a table that are numbers, by column."""
+    with path.open(newline="", errors="replace") as file:
+        rows = list(csv.DictReader(file))
+    found = collections.defaultdict(list)
+    for row in rows:
+        for key, cell in row.items():
+            try:
+                found[key].append(float(cell))
+            except (TypeError, ValueError):
+                found[key].append(cell)
+    return found
+
+
+def same(one, other):
+    """Whether two tables agree, but for rounding."""
+    skip = {"backward_error", "condition", "error_hz", "error_estimate", "energy_error_j", "projector_residual"}
+    if set(one) != set(other):
+        return False
+    for key in set(one) - skip:
+        if len(one[key]) != len(other[key]):
+            return False
+        scale = max((abs(x) for x in other[key] if isinstance(x, float)), default=0)
+        for a, b in zip(one[key], other[key]):
+            if a != b and not (isinstance(a, float) and isinstance(b, float) and abs(a - b) <= TOLERANCE * scale):
+                return False
+    return True
+
+
+def finite(table):
+    """Whether the eigenvalues and histories are numbers; what may be unknown is left out."""
+    unknown = {"condition", "error_hz", "onset_distance", "error_estimate"}
+    return all(math.isfinite(x) for key, column in table.items() if key not in unknown for x in column if isinstance(x, float))
+
+
+class Fuzz:
+    """Inputs of all kinds, and the verdict on each."""
+
+    def __init__(self, arguments, folder):
+        self.arguments, self.folder = arguments, folder
+        self.made = folder / "made"
+        self.made.mkdir()
+        self.bases = [base for base in scenes.bases(arguments.squeal, self.made)
+                      if not arguments.only or arguments.only in base.name]
+        self.answers = {}
+
+    def launch(self, base, work, words):
+        environment = {**os.environ, "OMPI_MCA_btl_vader_single_copy_mechanism": "none"}
+        command = [self.arguments.squeal, *words, "-output_dir", "out", "-output_fields", "0"]
+        process = subprocess.Popen(command, cwd=work, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, start_new_session=True)
+        try:
+            stdout, stderr = process.communicate(timeout=self.arguments.limit)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.communicate()
+            return None, ""
+        return process.returncode, stderr.decode(errors="replace")
+
+    def answer(self, base):
+        """Of the undamaged input."""
+        work = self.folder / f"base {base.name}"
+        scenes.lay_out(base, self.made, work)
+        status, stderr = self.launch(base, work, base.words)
+        if status != 0:
+            raise SystemExit(f"the undamaged {base.name} fails: {stderr}")
+        found = numbers(work / "out" / base.table)
+        shutil.rmtree(work)
+        return found
+
+    def damage(self, base, work, draw):
+        """Damages one file, or one word of the options; what was done, whether the meaning stays, the words."""
+        change = draw.choice(base.damages)
+        words = list(base.words)
+        if base.files:
+            path = work / draw.choice(base.files)
+            before = path.read_bytes()
+            after, kept = change(draw, before)
+            path.write_bytes(after)
+            return f"{change.__name__} of {path.name}", kept or after == before, words
+        at = draw.randrange(len(words))
+        after, kept = change(draw, words[at].encode())
+        after = after.replace(b"\0", b"0")
+        kept = after == words[at].encode()
+        words[at] = after
+        return f"{change.__name__}: {words[at]!r} for {base.words[at]}", kept, words
+
+    def judge(self, base, work, kept, result):
+        """What is wrong, empty for nothing."""
+        status, stderr = result
+        lines = [line for line in stderr.split("\n") if line.strip() and not line.startswith("squeal: warning: ")]
+        if status is None:
+            return "no end"
+        if status < 0 or status > 100:
+            return f"signal or abort {status}: {stderr[-300:]}"
+        if status:
+            if len(lines) != 1 or not lines[0].startswith("squeal: error: ") or len(lines[0]) < 25:
+                return f"message of {len(lines)} lines: {stderr[:300]}"
+            left = [] if base.folder else [path.name for path in work.glob("out/*") if path.suffix in FINAL]
+            return f"{left} left behind" if left else ""
+        if lines:
+            return f"words of a run that succeeds: {stderr[:300]}"
+        return self.judge_answer(base, work, kept)
+
+    def judge_answer(self, base, work, kept):
+        path = work / "out" / base.table
+        if not path.exists():
+            return "" if base.name == "options" and not kept else f"success without {base.table}"
+        found = numbers(path)
+        if not finite(found):
+            return f"{base.table} holds what is not finite"
+        if (kept or base.sealed) and not same(found, self.answers[base.name]):
+            return "another answer"
+        return self.judge_matrices(work, found) if base.name == "matrix" else ""
+
+    @staticmethod
+    def judge_matrices(work, found):
+        K, M = oracle.read(work / "K.bin"), oracle.read(work / "M.bin")
+        if K is None or M is None:
+            return "a file that is no matrix was read"
+        kappa = np.emath.sqrt(-oracle.eigenvalues(K, M))
+        expected = sorted(abs(value) for value in kappa)
+        got = [abs(complex(s, 2 * math.pi * f)) for s, f in zip(found["growth_rad_s"], found["freq_hz"])]
+        floor = 1e-6 * max(expected)
+        off = [value for value in got if min(abs(value - other) for other in expected) > floor + 1e-6 * value]
+        return f"eigenvalues {off} are not those of the files: {expected}" if off else ""
+
+    def make(self, n):
+        """Input n: its kind, what was done, and what is wrong."""
+        base = self.bases[n % len(self.bases)]
+        work = self.folder / f"input {n}"
+        draw = random.Random(f"{self.arguments.seed} {n}")
+        scenes.lay_out(base, self.made, work)
+        done, kept, words = self.damage(base, work, draw)
+        result = self.launch(base, work, words)
+        wrong = self.judge(base, work, kept, result)
+        if self.arguments.one is None:
+            shutil.rmtree(work)
+        return n, base.name, done, wrong, result[0]
+
+    def run(self):
+        with ThreadPoolExecutor(self.arguments.jobs) as pool:
+            self.answers = dict(zip((base.name for base in self.bases), pool.map(self.answer, self.bases)))
+            chosen = range(self.arguments.count) if self.arguments.one is None else [self.arguments.one]
+            results = list(pool.map(self.make, chosen))
+        kinds = collections.Counter((name, "ends well" if not status else "refused") for _, name, _, _, status in results)
+        for (name, how), n in sorted(kinds.items()):
+            print(f"{name:20} {how:10} {n}")
+        wrong = [result for result in results if result[3]]
+        for n, name, done, what, _ in wrong:
+            print(f"FAILED input {n}, {name}, {done}: {what}")
+        print(f"{len(results)} inputs, {len(wrong)} not handled")
+        return 1 if wrong else 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("squeal", type=lambda name: Path(name).resolve())
+    parser.add_argument("--count", type=int, default=300)
+    parser.add_argument("--seed", default="2005")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--limit", type=float, default=20, help="seconds a run may take")
+    parser.add_argument("--only", help="one kind")
+    parser.add_argument("--one", type=int, help="one input, whose folder is kept")
+    arguments = parser.parse_args()
+    folder = Path(tempfile.mkdtemp(prefix="squeal-fuzz-"))
+    try:
+        return Fuzz(arguments, folder).run()
+    finally:
+        if arguments.one is None:
+            shutil.rmtree(folder, ignore_errors=True)
+        else:
+            print(folder)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,134 @@
+"""What is damaged: tiny scenes, their files, and the command that reads them; each with what an undamaged run answers."""
+
+import importlib.util
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import damage
+
+TESTS = Path(__file__).resolve().parents[1]
+BODIES = """
+parts: base,block
+base: {young: 2e9, poisson: 0.3, density: 2000}
+block: {young: 1e9, poisson: 0.2, density: 1000}
+supports: ground
+ground: {set: base_bottom, fix: xyz}
+"""
+BRAKE = BODIES + """
+springs: hold
+hold: {set: block_top, stiffness: "1e3,1e3,1e3"}
+loads: press
+press: {set: block_top, force: "0,0,-100"}
+contacts: contact
+contact: {surfaces: "block_bottom,base_top", mu: 0.3, law: constraint, slip: "1,0,0", speed: 0.1}
+modes: {band: "0,3000", growth: 1000}
+sweep: {parameter: contact_mu, values: "0:0.6:4"}
+"""
+BEAM = """
+parts: beam
+beam: {young: 210e9, poisson: 0.3, density: 7800}
+supports: root
+root: {set: root}
+modes: {target: 0, count: 3}
+model: {mesh: beam.msh}
+"""
+OPTIONS = ("-operators_dense_k", "2,1,0,1,3,1,0,1,4", "-operators_dense_m", "1,0,0,0,1,0,0,0,2", "-operators_dense_h",
+           "0,1,0,-1,0,0,0,0,0", "-contact_mu", "0.25", "-modes_target", "0", "-modes_count", "3", "-eps_tol", "1e-11",
+           "-modes_growth", "5")
+
+
+class Base:
+    """A kind of input: files that are damaged, the command, and which tables tell the answer."""
+
+    def __init__(self, name, damages, files, words, table="modes.csv"):
+        self.name, self.damages, self.files, self.words, self.table = name, damages, files, words, table
+        self.sealed = False  # the file has a checksum: a changed one may not succeed with another answer
+        self.folder = None   # where files of an earlier run lie, which are copied for each run
+
+
+def run(program, folder, *words):
+    """An undamaged run that makes files; its exit status is the caller's to judge."""
+    return subprocess.run([program, *words], cwd=folder, capture_output=True, text=True, timeout=120, check=False)
+
+
+def mesh(folder, name, *words):
+    subprocess.run([sys.executable, TESTS / "mesh.py", *words, folder / name], check=True, capture_output=True)
+
+
+def matrices(folder):
+    """Two sparse matrices of three rows."""
+    spec = importlib.util.spec_from_file_location("oracle", Path(__file__).with_name("oracle.py"))
+    oracle = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(oracle)
+    oracle.write(folder / "K.bin", [[2, 1, 0], [1, 3, 1], [0, 1, 4]])
+    oracle.write(folder / "M.bin", [[1, 0.25, 0], [0.25, 1, 0], [0, 0, 2]])
+
+
+def transient(program, folder):
+    """A run in time to half of its way, with a checkpoint, and a shape to start from."""
+    first = ("-options_file", "brake.yaml", "-model_mesh", "blocks.msh", "-analysis", "transient", "-press_ramp", "1e-4",
+             "-dynamics_live", "0", "-dynamics_checkpoint_interval", "20")
+    done = run(program, folder, *first, "-ts_max_steps", "60", "-output_dir", "half")
+    assert done.returncode == 0 and (folder / "half/checkpoint.bin").exists(), done.stderr
+    shape = run(program, folder, "-options_file", "brake.yaml", "-model_mesh", "blocks.msh", "-output_dir", "shape")
+    assert shape.returncode == 0, shape.stderr
+    return first
+
+
+def sweep(program, folder):
+    """A sweep that ended before its time, and kept its full solutions."""
+    words = ("-options_file", "brake.yaml", "-model_mesh", "finer.msh", "-analysis", "sweep", "-modes_band", "0,6000",
+             "-sweep_onsets", "0")
+    done = run(program, folder, *words, "-sweep_max_samples", "2", "-sweep_rtol", "1e-13", "-output_dir", "stopped")
+    left = sorted((folder / "stopped").glob("sweep_restart_*"))
+    return words if done.returncode and left else None
+
+
+def bases(program, folder):
+    """All kinds of input, made in the folder."""
+    (folder / "brake.yaml").write_text(BRAKE)
+    (folder / "beam.yaml").write_text(BEAM)
+    mesh(folder, "blocks.msh", "blocks", "--elements", "1,1,1")
+    mesh(folder, "finer.msh", "blocks", "--elements", "2,2,2")
+    matrices(folder)
+    found = [Base("options", damage.LINES, (), OPTIONS),
+             Base("yaml", damage.LINES, ("brake.yaml",), ("-options_file", "brake.yaml", "-model_mesh", "blocks.msh")),
+             Base("matrix", damage.BYTES, ("K.bin", "M.bin"), ("-operators_load_k", "K.bin", "-operators_load_m", "M.bin",
+                                                               "-modes_target", "0", "-modes_count", "3"))]
+    for version, binary in (("2.2", ()), ("2.2", ("--binary",)), ("4.1", ()), ("4.1", ("--binary",))):
+        name = f"beam{version}{'b' if binary else 'a'}.msh"
+        mesh(folder, name, "beam", "--elements", "2,1,1", "--format", version, *binary)
+        damages = damage.BYTES + damage.TEXT_OF_BINARY if binary else damage.LINES
+        found.append(Base(f"mesh {version} {'binary' if binary else 'ascii'}", damages, (name,),
+                          ("-options_file", "beam.yaml", "-model_mesh", name)))
+    first = transient(program, folder)
+    restart = Base("checkpoint", damage.BYTES, ("out/checkpoint.bin",), (*first, "-ts_max_steps", "90", "-dynamics_restart"),
+                   "transient.csv")
+    history = Base("history", damage.LINES, ("out/transient.csv",), restart.words, "transient.csv")
+    restart.folder = history.folder = folder / "half"
+    restart.sealed = True
+    shape = Base("shape", damage.BYTES, ("shape/modes.h5",), (*first, "-ts_max_steps", "20", "-dynamics_shape", "shape",
+                                                              "-dynamics_shape_mode", "1", "-dynamics_shape_amplitude", "1e-6"),
+                 "transient.csv")
+    found += [restart, history, shape]
+    words = sweep(program, folder)
+    if words:
+        kept = Base("sweep", damage.BYTES, tuple(f"out/{path.name}" for path in sorted((folder / "stopped").glob("sweep_restart_*"))),
+                    words, "sweep.csv")
+        kept.sealed, kept.folder = True, folder / "stopped"
+        found.append(kept)
+    return found
+
+
+def lay_out(base, folder, work):
+    """A fresh folder with everything that the command of a base reads."""
+    work.mkdir()
+    for path in folder.iterdir():
+        if path.is_file():
+            (work / path.name).write_bytes(path.read_bytes())
+    if base.name == "shape":
+        shutil.copytree(folder / "shape", work / "shape")
+    if base.folder:
+        shutil.copytree(base.folder, work / "out")
