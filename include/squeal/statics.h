@@ -74,7 +74,10 @@ PetscErrorCode StaticsCheckUse(Statics statics, PetscBool modes);
    from the status of the solution before, else with all pairs closed. Collective.
 
    Errors: PETSC_ERR_USER_INPUT without loads or for a load that nothing resists; PETSC_ERR_NOT_CONVERGED where there is
-   no equilibrium: the message says how far friction or load could be raised and what then happened.
+   no equilibrium ("no equilibrium": proven by a rigid motion, which the message names, along which the loads push and
+   against which no force of a pair acts), where what was found is not stable, or where none was found ("no equilibrium
+   found": the message says how far friction could be raised, and whether the bodies then jam, the pairs do not settle or
+   go round in a circle, or GMRES did not converge).
 @*/
 PetscErrorCode StaticsSolve(Statics statics, const PetscReal p[]);
 

@@ -322,6 +322,7 @@ PetscErrorCode SquealViewOptions(MPI_Comm comm, PetscErrorCode (*read_again)(MPI
     PetscFunctionReturn(0);
   }
   PetscCall(HelpCollect(comm, read_again, ctx, &list));
+  PetscCall(PetscPrintf(comm, "squeal %s: friction-induced vibration of bodies in sliding contact\n", SQUEAL_VERSION));
   PetscCall(HelpPrint(comm, &list, given ? PETSC_FALSE : PETSC_TRUE));
   free(list.option);
   PetscFunctionReturn(0);

@@ -6,7 +6,8 @@
 #include "base/vec3.h"
 #include <petscblaslapack.h>
 
-#define DISC_BINS 720 /* of the rim, to find gaps between columns of nodes */
+#define DISC_BINS    720 /* of the rim, to find gaps between columns of nodes */
+#define DISC_SECTORS 8   /* all of which a surface around the axis has nodes in */
 
 /* Centre (m) and second moments per mass, sum m d d' / sum m (m^2), over all ranks */
 static PetscErrorCode DiscMoments(MPI_Comm comm, PetscInt n, const PetscReal x[], const PetscReal mass[],
@@ -102,24 +103,84 @@ static void DiscTerms(const Disc *disc, PetscReal r, PetscReal theta, PetscReal 
   }
 }
 
-/* Nodes of the disc on this rank, their weights, and the radii over all ranks */
-static PetscErrorCode DiscNodes(Disc *disc, PetscInt n_vertices, const PetscReal x[], const PetscReal mass[])
+/* Least values over all ranks */
+static PetscErrorCode LeastOfAll(MPI_Comm comm, int n, PetscReal values[])
 {
-  PetscReal range[2] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL}, r, theta;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, values, n, MPIU_REAL, MPI_MIN, comm));
+  PetscFunctionReturn(0);
+}
+
+/* Least radius of the friction ring: that of a contact surface that goes all around the axis, else 0 */
+static PetscErrorCode DiscFindRing(const Disc *disc, const DiscPart *part, PetscReal *inner)
+{
+  PetscReal least[1 + DISC_SECTORS] = {PETSC_MAX_REAL}, r, theta;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n_vertices, &disc->node, n_vertices, &disc->weight));
-  for (PetscInt v = 0; v < n_vertices; v++) {
-    if (mass[v] <= 0) continue;
-    disc->weight[disc->n_nodes] = mass[v];
-    disc->node[disc->n_nodes++] = v;
-    DiscPolar(disc, &x[3 * v], &r, &theta);
-    range[0] = PetscMax(range[0], -r);
-    range[1] = PetscMax(range[1], r);
+  for (PetscInt v = 0; part->surface && v < part->n_vertices; v++) {
+    if (!part->surface[v] || part->mass[v] <= 0) continue;
+    DiscPolar(disc, &part->x[3 * v], &r, &theta);
+    least[0]                                                                            = PetscMin(least[0], r);
+    least[1 + (int)((theta + PETSC_PI) / (2 * PETSC_PI) * DISC_SECTORS) % DISC_SECTORS] = -1;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 2, MPIU_REAL, MPI_MAX, disc->comm));
-  disc->r_inner = -range[0];
-  disc->r_outer = range[1];
+  PetscCall(LeastOfAll(disc->comm, 1 + DISC_SECTORS, least));
+  *inner = least[0] < PETSC_MAX_REAL ? least[0] * (1 - 1e-6) : 0;
+  for (int k = 0; k < DISC_SECTORS; k++)
+    if (least[1 + k] == 0) *inner = 0;
+  PetscFunctionReturn(0);
+}
+
+/* Bounds of what counts as the disc: radii, and how far the outer half of the ring reaches along the axis. A hat or a
+   bell inside of it does not count */
+static PetscErrorCode DiscFindBounds(const Disc *disc, const DiscPart *part, PetscReal radius[2], PetscReal along[2])
+{
+  PetscReal least[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, r, theta;
+
+  PetscFunctionBeginUser;
+  PetscCall(DiscFindRing(disc, part, &radius[0]));
+  for (PetscInt v = 0; v < part->n_vertices; v++) {
+    if (part->mass[v] <= 0) continue;
+    DiscPolar(disc, &part->x[3 * v], &r, &theta);
+    least[0] = PetscMin(least[0], -r);
+  }
+  PetscCall(LeastOfAll(disc->comm, 1, least));
+  radius[1] = -least[0];
+  along[0] = along[1] = PETSC_MAX_REAL;
+  for (PetscInt v = 0; v < part->n_vertices; v++) {
+    const PetscReal z = Vec3Dot(&part->x[3 * v], disc->axis);
+
+    DiscPolar(disc, &part->x[3 * v], &r, &theta);
+    if (part->mass[v] <= 0 || (radius[0] > 0 && r < (radius[0] + radius[1]) / 2)) continue;
+    along[0] = PetscMin(along[0], z);
+    along[1] = PetscMin(along[1], -z);
+  }
+  PetscCall(LeastOfAll(disc->comm, 2, along));
+  along[0] -= 1e-6 * disc->size;
+  along[1] = -along[1] + 1e-6 * disc->size;
+  PetscFunctionReturn(0);
+}
+
+/* Nodes of the disc on this rank, their weights, and the radii over all ranks */
+static PetscErrorCode DiscNodes(Disc *disc, const DiscPart *part)
+{
+  PetscReal range[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, radius[2], along[2], r, theta;
+
+  PetscFunctionBeginUser;
+  PetscCall(DiscFindBounds(disc, part, radius, along));
+  PetscCall(PetscMalloc2(part->n_vertices, &disc->node, part->n_vertices, &disc->weight));
+  for (PetscInt v = 0; v < part->n_vertices; v++) {
+    const PetscReal z = Vec3Dot(&part->x[3 * v], disc->axis);
+
+    DiscPolar(disc, &part->x[3 * v], &r, &theta);
+    if (part->mass[v] <= 0 || r < radius[0] || z < along[0] || z > along[1]) continue;
+    disc->weight[disc->n_nodes] = part->mass[v];
+    disc->node[disc->n_nodes++] = v;
+    range[0]                    = PetscMin(range[0], r);
+    range[1]                    = PetscMin(range[1], -r);
+  }
+  PetscCall(LeastOfAll(disc->comm, 2, range));
+  disc->r_inner = range[0];
+  disc->r_outer = -range[1];
   PetscFunctionReturn(0);
 }
 
@@ -185,7 +246,7 @@ PetscErrorCode DiscCreate(MPI_Comm comm, const DiscPart *part, PetscInt n_modes,
   if (!*is_disc) PetscFunctionReturn(0);
   disc->size = PetscSqrtReal(inertia[0] + inertia[4] + inertia[8]);
   FindPlane(disc, part->contact);
-  PetscCall(DiscNodes(disc, part->n_vertices, part->x, part->mass));
+  PetscCall(DiscNodes(disc, part));
   *is_disc = disc->r_outer - disc->r_inner > 1e-6 * disc->r_outer ? PETSC_TRUE : PETSC_FALSE;
   if (!*is_disc) PetscFunctionReturn(0);
   PetscCall(DiscResolution(disc, part->x));
@@ -194,17 +255,18 @@ PetscErrorCode DiscCreate(MPI_Comm comm, const DiscPart *part, PetscInt n_modes,
   PetscFunctionReturn(0);
 }
 
-PetscReal DiscProject(Disc *disc, PetscInt column, const PetscReal u[])
+void DiscProject(Disc *disc, PetscInt column, const PetscReal u[], PetscReal energy[2])
 {
-  PetscReal *const rhs = &disc->fit[column * DISC_TERMS], energy = 0;
+  PetscReal *const rhs = &disc->fit[column * DISC_TERMS];
 
   for (PetscInt i = 0; i < disc->n_nodes; i++) {
-    const PetscReal w = Vec3Dot(&u[3 * disc->node[i]], disc->axis), weighted = w * disc->weight[i];
+    const PetscReal *a = &u[3 * disc->node[i]];
+    const PetscReal  w = Vec3Dot(a, disc->axis), weighted = w * disc->weight[i];
 
-    energy += weighted * w;
+    energy[0] += disc->weight[i] * Vec3Dot(a, a);
+    energy[1] += weighted * w;
     for (int k = 0; k < DISC_TERMS; k++) rhs[k] += weighted * disc->basis[i * DISC_TERMS + k];
   }
-  return energy;
 }
 
 PetscErrorCode DiscSolve(Disc *disc)

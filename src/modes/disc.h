@@ -27,14 +27,15 @@ typedef struct {
   PetscInt         n_vertices; /* local ones */
   const PetscReal *x, *mass;   /* [n_vertices][3] m, [n_vertices] kg */
   const PetscReal *contact;    /* centre of the contact, m; NULL without */
+  const PetscBool *surface;    /* [n_vertices]: on a contact surface; NULL for none */
 } DiscPart;
 
 /* is_disc = whether two of the three principal moments of inertia agree within 5 %, so that there is an axis */
 PETSC_INTERN PetscErrorCode DiscCreate(MPI_Comm comm, const DiscPart *part, PetscInt n_modes, Disc *disc,
                                        PetscBool *is_disc);
-/* Adds the displacements u[local vertices][3] to right-hand side `column`; returns their out-of-plane energy on this
-   rank */
-PETSC_INTERN PetscReal      DiscProject(Disc *disc, PetscInt column, const PetscReal u[]);
+/* Adds the displacements u[local vertices][3] to right-hand side `column`, and their energy on this rank, all and out
+   of plane, to energy */
+PETSC_INTERN void           DiscProject(Disc *disc, PetscInt column, const PetscReal u[], PetscReal energy[2]);
 PETSC_INTERN PetscErrorCode DiscSolve(Disc *disc);
 /* P_0 .. P_4 of the radius r mapped to [-1, 1] */
 PETSC_INTERN void           DiscLegendre(const Disc *disc, PetscReal r, PetscReal p[DISC_POLYNOMIALS]);

@@ -8,7 +8,8 @@
    contact. The nodal circles are the sign changes of the harmonics' radial profiles (the family of harmonics with
    most energy decides), the nodal diameters half the antinodes of that family around the rim, since a stiff contact
    mixes neighbouring harmonics, and cosine against sine tells an antinode at the contact (+). Axis and centre are
-   those of the part's inertia tensor, so any mesh in any position serves.
+   those of the part's inertia tensor, so any mesh in any position serves. Where a contact surface goes all around the
+   axis, only the ring from its least radius outward counts, not a hat inside of it.
 
    A mode is named after the disc's shape when the disc takes part with at least a quarter and moves mostly out of
    plane, else after the part that takes most part. Participation of part p is |y^T M_p x| from left and right
@@ -50,7 +51,7 @@ typedef struct {
   PetscInt    n_parts, n_vertices, disc; /* disc = its part, or -1 */
   PetscReal **mass;                      /* [part][local vertex] */
   PetscReal  *share;                     /* [mode][part][2]: y^T M_p x, real and imaginary */
-  PetscReal  *energy;                    /* [mode][2]: the disc's kinetic energy of x, all and out of plane */
+  PetscReal  *energy;                    /* [mode][2]: the ring's kinetic energy of x, all and out of plane */
   PetscReal  *x[2], *y[2];               /* nodal values of one mode, real and imaginary [local vertices][3] */
   Disc        frame;
 } Labels;
@@ -85,19 +86,17 @@ static PetscErrorCode LabelsAdd(Modes modes, Model model, PetscInt i, Labels *l)
     share[0] = WeightedDot(n, m, l->y[0], l->x[0]) - WeightedDot(n, m, l->y[1], l->x[1]);
     share[1] = WeightedDot(n, m, l->y[0], l->x[1]) + WeightedDot(n, m, l->y[1], l->x[0]);
   }
-  for (int k = 0; k < 2 && l->disc >= 0; k++) {
-    l->energy[2 * i] += WeightedDot(l->n_vertices, l->mass[l->disc], l->x[k], l->x[k]);
-    l->energy[2 * i + 1] += DiscProject(&l->frame, 2 * i + k, l->x[k]);
-  }
+  for (int k = 0; k < 2 && l->disc >= 0; k++) DiscProject(&l->frame, 2 * i + k, l->x[k], &l->energy[2 * i]);
   PetscFunctionReturn(0);
 }
 
-/* Writes the name of mode i */
+/* Writes the name of mode i, and its participation in per cent */
 static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Part parts[], PetscInt i)
 {
-  PetscReal share[MAX_PARTS], total = 0;
-  PetscInt  most = 0;
-  Mode     *mode = &modes->mode[i];
+  double *const percent = &modes->part_percent[i * l->n_parts];
+  PetscReal     share[MAX_PARTS], total = 0;
+  PetscInt      most = 0;
+  Mode         *mode = &modes->mode[i];
 
   PetscFunctionBeginUser;
   for (PetscInt part = 0; part < l->n_parts; part++) {
@@ -107,11 +106,36 @@ static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Part parts[
     total += share[part];
     if (share[part] > share[most]) most = part;
   }
+  for (PetscInt part = 0; part < l->n_parts; part++)
+    percent[part] = total > 0 ? 100 * (double)(share[part] / total) : 0;
   if (l->disc >= 0 && share[l->disc] > DISC_SHARE * total && l->energy[2 * i + 1] > 0.5 * l->energy[2 * i] &&
       !mode->rigid)
     PetscCall(DiscName(&l->frame, i, mode->label, sizeof(mode->label)));
   else
     PetscCall(PetscSNPrintf(mode->label, sizeof(mode->label), "%s%s", parts[most].name, mode->rigid ? " rigid" : ""));
+  PetscFunctionReturn(0);
+}
+
+/* Marks the local vertices on the surfaces of the contacts; free marks */
+static PetscErrorCode SurfacesMark(Model model, Contact contact, PetscInt n_vertices, PetscBool **marks)
+{
+  const ContactInterface *interfaces;
+  PetscInt                n_interfaces, n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n_vertices, marks));
+  PetscCall(ContactGetInterfaces(contact, &n_interfaces, &interfaces));
+  for (PetscInt i = 0; i < 2 * n_interfaces; i++) {
+    const PetscInt *vertex;
+    IS              is;
+
+    PetscCall(ModelGetSetVertices(model, i % 2 ? interfaces[i / 2].master : interfaces[i / 2].slave, &is));
+    PetscCall(ISGetLocalSize(is, &n));
+    PetscCall(ISGetIndices(is, &vertex));
+    for (PetscInt k = 0; k < n; k++) (*marks)[vertex[k]] = PETSC_TRUE;
+    PetscCall(ISRestoreIndices(is, &vertex));
+    PetscCall(ISDestroy(&is));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -122,7 +146,7 @@ static PetscErrorCode LabelsCreate(Modes modes, Model model, Contact contact, Pe
   const PetscReal *p;
   PetscReal        centre[3];
   const Mesh      *mesh;
-  PetscBool        same, found;
+  PetscBool        same, found, *surface;
   Operators        operators;
 
   PetscFunctionBeginUser;
@@ -149,8 +173,11 @@ static PetscErrorCode LabelsCreate(Modes modes, Model model, Contact contact, Pe
              modes->disc);
   if (l->disc < 0) PetscFunctionReturn(0);
   PetscCall(ContactGetCentre(contact, centre, &found));
-  PetscCall(DiscCreate(modes->comm, &(DiscPart){l->n_vertices, mesh->x, l->mass[l->disc], found ? centre : NULL},
-                       modes->n, &l->frame, &same));
+  PetscCall(SurfacesMark(model, contact, l->n_vertices, &surface));
+  PetscCall(DiscCreate(modes->comm,
+                       &(DiscPart){l->n_vertices, mesh->x, l->mass[l->disc], found ? centre : NULL, surface}, modes->n,
+                       &l->frame, &same));
+  PetscCall(PetscFree(surface));
   if (!same) l->disc = -1;
   PetscFunctionReturn(0);
 }
@@ -214,6 +241,8 @@ PetscErrorCode ModesLabel(Modes modes)
                              modes->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.energy, (PetscMPIInt)(2 * modes->n), MPIU_REAL, MPI_SUM, modes->comm));
   if (l.disc >= 0) PetscCall(DiscSolve(&l.frame));
+  PetscCall(PetscFree(modes->part_percent));
+  PetscCall(PetscMalloc1(modes->n * scene->n_parts, &modes->part_percent));
   for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelWrite(modes, &l, scene->parts, i));
   PetscCall(LabelsDestroy(&l));
   PetscFunctionReturn(0);
@@ -237,7 +266,8 @@ PetscErrorCode ModesLabelShapes(Modes modes, const ModesShapes *given, char labe
   Vec             work[2];
 
   PetscFunctionBeginUser;
-  shapes.n = n;
+  shapes.n            = n;
+  shapes.part_percent = NULL;
   PetscCall(SpectrumCreate(n, &shapes.right));
   PetscCall(SpectrumCreate(n, &shapes.left_spectrum));
   PetscCall(PetscCalloc1(n, &shapes.mode));
@@ -256,5 +286,6 @@ PetscErrorCode ModesLabelShapes(Modes modes, const ModesShapes *given, char labe
   PetscCall(SpectrumDestroy(&shapes.right));
   PetscCall(SpectrumDestroy(&shapes.left_spectrum));
   PetscCall(PetscFree(shapes.mode));
+  PetscCall(PetscFree(shapes.part_percent));
   PetscFunctionReturn(0);
 }

@@ -6,6 +6,8 @@
 #include "solver/ordering.h"
 #include <squeal/options.h>
 
+#define MODES_NEAR 1e-9 /* distance of an eigenvalue from the shift, beside the farthest: below it the shift is moved */
+
 PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
 {
   PetscFunctionBeginUser;
@@ -134,6 +136,37 @@ static PetscErrorCode SpectrumCopy(const Spectrum *from, Spectrum *to)
   PetscFunctionReturn(0);
 }
 
+/* Whether an eigenvalue kappa = -lambda^2 is so near to the shift that rounding of its inverse spoils the others */
+static PetscBool ShiftSpoils(const Spectrum *s, PetscReal shift)
+{
+  PetscReal nearest = PETSC_MAX_REAL, farthest = 0;
+
+  for (PetscInt i = 0; i < s->n; i++) {
+    const PetscReal re       = s->omega[i] * s->omega[i] - s->sigma[i] * s->sigma[i] - shift;
+    const PetscReal distance = hypot(re, 2 * s->sigma[i] * s->omega[i]);
+
+    nearest  = PetscMin(nearest, distance);
+    farthest = PetscMax(farthest, distance);
+  }
+  return nearest < MODES_NEAR * farthest ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Right spectrum; a shift that happens to be an eigenvalue is moved */
+static PetscErrorCode SolveRight(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_FALSE, &modes->right));
+  for (int attempt = 1; attempt < 4 && !pencil->C && ShiftSpoils(&modes->right, si->shift); attempt++) {
+    const PetscReal shift = si->shift * (1 + 1e-3 * attempt);
+
+    PetscCall(SpectrumDestroy(&modes->right));
+    PetscCall(ShiftInvertDestroy(si));
+    PetscCall(ShiftInvertCreate(pencil, shift, PETSC_FALSE, &modes->progress, si));
+    PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_FALSE, &modes->right));
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Right and left spectra that agree; a second attempt asks for more eigenvalues */
 static PetscErrorCode SolveBoth(Modes modes, const PencilMatrices *pencil, Window *window, ShiftInvert *si)
 {
@@ -143,7 +176,7 @@ static PetscErrorCode SolveBoth(Modes modes, const PencilMatrices *pencil, Windo
   PetscFunctionBeginUser;
   window->proven = proven;
   for (int attempt = 0; attempt < 3; attempt++) {
-    PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_FALSE, &modes->right));
+    PetscCall(SolveRight(modes, pencil, window, si));
     if (pencil->C) PetscCall(WindowCountRigid(modes, window, &modes->right));
     PetscCall(WindowSelect(window, &modes->right));
     if (proven) {
@@ -171,6 +204,7 @@ static PetscErrorCode ModesReset(Modes modes)
   PetscCall(SpectrumDestroy(&modes->right));
   PetscCall(SpectrumDestroy(&modes->left_spectrum));
   PetscCall(PetscFree(modes->mode));
+  PetscCall(PetscFree(modes->part_percent));
   modes->n = 0;
   PetscFunctionReturn(0);
 }

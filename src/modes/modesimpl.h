@@ -38,6 +38,7 @@ struct _p_Modes {
   Spectrum right, left_spectrum; /* in the unknowns of the pencil, later expanded to all unknowns */
   Mode    *mode;
   PetscInt n;
+  double  *part_percent; /* participation of the parts [n][parts], NULL for matrices without a mesh */
   char     completeness[768];
   /* of the solution under way */
   PetscLogDouble begun; /* s */

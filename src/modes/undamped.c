@@ -10,11 +10,14 @@
 #include "modesimpl.h"
 #include <complex.h>
 
+/* Without a target, or with one near zero, the shift lies below zero, where rigid modes may be. Rounding of an eigenvalue there by its inverse,
+   1 / (kappa - shift), spoils the others by as much: 1e-8 |K| / |M| below leaves 1e-8 of the largest at worst. */
 PetscReal UndampedShift(const Window *window)
 {
   const PetscReal low = window->low * window->low, high = window->high * window->high;
 
-  if (window->count) return window->target > 0 ? window->target * window->target : -window->scale * window->scale;
+  if (window->count)
+    return window->target > 10 * window->scale ? window->target * window->target : -PetscSqr(10 * window->scale);
   return low + 0.25 * (high - low);
 }
 

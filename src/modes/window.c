@@ -57,7 +57,7 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
   PetscCall(WindowScale(&frictionless, &window->scale));
   if (!frictionless.symmetric) PetscFunctionReturn(0);
   if (!modes->has_band) {
-    PetscReal target = window->target;
+    PetscReal target = window->target < window->scale ? 0 : window->target;
 
     PetscCall(WindowCountBelow(modes, MODES_AWAY, &target, &window->below));
     PetscFunctionReturn(0);

@@ -67,22 +67,44 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
-/* modes.csv */
-static PetscErrorCode ModesWriteTable(Modes modes, Results results)
+/* Header of modes.csv; further columns only at its end, since others read it */
+static PetscErrorCode ModesOpenTable(const ModelScene *scene, Results results, ResultsTable *table)
 {
-  ResultsTable table;
+  char header[16384], column[256];
 
   PetscFunctionBeginUser;
-  PetscCall(ResultsTableOpen(results, "modes",
-                             "mode,freq_hz,growth_rad_s,damping_ratio,backward_error,condition,unstable,label,error_hz",
-                             &table));
-  for (PetscInt i = 0; i < modes->n; i++) {
-    const Mode *m = &modes->mode[i];
+  PetscCall(PetscStrncpy(header,
+                         "mode,freq_hz,growth_rad_s,damping_ratio,backward_error,condition,unstable,label,error_hz",
+                         sizeof(header)));
+  for (PetscInt part = 0; scene && part < scene->n_parts; part++) {
+    PetscCall(PetscSNPrintf(column, sizeof(column), ",part_%s_percent", scene->parts[part].name));
+    PetscCall(PetscStrlcat(header, column, sizeof(header)));
+  }
+  PetscCall(ResultsTableOpen(results, "modes", header, table));
+  PetscFunctionReturn(0);
+}
 
-    PetscCall(ResultsTableRow(table, "%d,%.15g,%.15g,%.15g,%.15g,%.15g,%d,\"%s\",%.15g", (int)i + 1,
+/* modes.csv */
+static PetscErrorCode ModesWriteTable(Modes modes, Model model, Results results)
+{
+  const ModelScene *scene = NULL;
+  ResultsTable      table;
+
+  PetscFunctionBeginUser;
+  if (model) PetscCall(ModelGetScene(model, &scene));
+  PetscCall(ModesOpenTable(scene, results, &table));
+  for (PetscInt i = 0; i < modes->n; i++) {
+    const Mode *m             = &modes->mode[i];
+    char        percent[2048] = "", number[32];
+
+    for (PetscInt part = 0; scene && part < scene->n_parts; part++) {
+      PetscCall(PetscSNPrintf(number, sizeof(number), ",%.15g", modes->part_percent[i * scene->n_parts + part]));
+      PetscCall(PetscStrlcat(percent, number, sizeof(percent)));
+    }
+    PetscCall(ResultsTableRow(table, "%d,%.15g,%.15g,%.15g,%.15g,%.15g,%d,\"%s\",%.15g%s", (int)i + 1,
                               (double)ModeFrequency(m), (double)m->sigma, (double)ModeDampingRatio(m),
                               (double)m->backward_error, (double)m->condition, (int)m->unstable, m->label,
-                              (double)(m->error / (2 * PETSC_PI))));
+                              (double)(m->error / (2 * PETSC_PI)), percent));
   }
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
@@ -121,8 +143,8 @@ PetscErrorCode ModesWrite(Modes modes, Results results)
   Model     model;
 
   PetscFunctionBeginUser;
-  PetscCall(ModesWriteTable(modes, results));
   PetscCall(ModesGetModel(modes, &model, NULL));
+  PetscCall(ModesWriteTable(modes, model, results));
   PetscCall(ResultsWantFields(results, &wanted));
   if (model && wanted) PetscCall(ModesWriteShapes(modes, model, results));
   PetscFunctionReturn(0);

@@ -2,11 +2,6 @@
    Primal-dual active set on the laws of the pairs, a semismooth Newton method: the status of every pair makes its law
    linear; one small system gives all forces and displacements; they decide the next status. Without Coulomb pairs it
    ends exactly when no status changes. What is smaller than ACTIVE_ROUNDING of the largest displacement decides nothing.
-
-   Where the statuses repeat or the system becomes singular, those of sliding pairs are found by pivoting (pivot.c); with
-   Coulomb pairs only the pair that errs most changes per iteration. If that does not settle either, all friction coefficients are raised from 0 in steps, each begun from the equilibrium
-   before it, with half the step after a failure. Equilibrium without friction is a convex problem. An equilibrium whose
-   system has a determinant of the wrong sign (small.c) is none that can be reached from there, hence a failure too.
 */
 #include "staticsimpl.h"
 
@@ -15,12 +10,41 @@
 #define EXACT           1e-13 /* of GMRES */
 #define ROUGH           1e-6  /* of GMRES while statuses still change */
 #define CORRECT         1e-8  /* of GMRES for corrections */
-#define MIN_STEP        (1.0 / 1024)
 #define MIN_DAMP        (1.0 / 128)
-#define MAX_KEPT        64 /* statuses remembered, to see when they repeat */
+#define SURE_ROUNDING   1e-11 /* where statuses have gone round in circles */
+#define SAFEGUARD_TRIES 10
 #define ONE_BY_ONE      10 /* times max_it, when single pairs change */
-#define FEW             1000 /* rows of a dense problem up to which that, and small steps of friction, are worth the time */
-#define LARGE_STEP      (1.0 / 16)
+
+/* Which of the wrong pairs change */
+typedef enum { CHANGE_ALL, CHANGE_WORST, CHANGE_LAST } StatusChange;
+
+/* Where the laws are linear, all change as long as fewer and fewer are wrong, or SAFEGUARD_TRIES times more; else the
+   last: finite where there is one solution for any loads (J. J. Judice, F. M. Pires, Comput. Oper. Res. 21, 1994, 587) */
+typedef struct {
+  PetscBool sure, linear;
+  PetscInt  least, tries;
+} Safeguard;
+
+/* The pair of one rank that changes alone, as MPI_MAXLOC finds it; -1 on other ranks */
+typedef struct {
+  struct {
+    double wrong;
+    int    rank;
+  } most;
+  PetscInt pair;
+} WrongPair;
+
+static StatusChange SafeguardChoose(Safeguard *s, PetscInt n_wrong)
+{
+  if (!s->sure) return CHANGE_ALL;
+  if (!s->linear) return CHANGE_WORST;
+  if (n_wrong < s->least) {
+    s->least = n_wrong;
+    s->tries = SAFEGUARD_TRIES;
+    return CHANGE_ALL;
+  }
+  return s->tries-- > 0 ? CHANGE_ALL : CHANGE_LAST;
+}
 
 /* Laws of all rows at the present status */
 static void LawsSet(const Active *a, LawRow law[])
@@ -87,43 +111,63 @@ static PetscReal Wrongness(const Active *a, PetscInt p, ContactStatus *next)
   CoulombPair      pair = a->rows->law[p];
 
   pair.mu *= a->friction;
-  *next = CoulombDecide(&pair, a->status[p], l, w, ACTIVE_ROUNDING * a->scale);
+  *next = CoulombDecide(&pair, a->status[p], l, w, a->rounding * a->scale);
   if (*next == a->status[p]) return 0;
   if (*next == CONTACT_OPEN || a->status[p] == CONTACT_OPEN) return PetscAbsReal(CoulombClosing(&pair, l, w));
   return CoulombResidual(&pair, l, w);
 }
 
-/* Changes all wrong statuses, or that of the most wrong pair only; n_changed over all ranks */
-static PetscErrorCode StatusUpdate(Active *a, PetscBool single, PetscInt *n_changed)
+/* Wrong pairs over all ranks, and the one that changes alone: the most wrong or the last */
+static PetscErrorCode StatusFindWrong(const Active *a, PetscBool last, PetscInt *n_wrong, WrongPair *one)
 {
-  struct {
-    double wrong;
-    int    rank;
-  } worst          = {0, 0};
-  PetscInt      at = -1;
-  ContactStatus next, best = CONTACT_OPEN;
-  PetscMPIInt   rank;
+  PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(a->rows->comm, &rank));
-  *n_changed = 0;
+  *one = (WrongPair){
+    .most = {-1, rank},
+      .pair = -1
+  };
+  *n_wrong = 0;
   for (PetscInt p = 0; p < a->rows->n_pairs; p++) {
-    const PetscReal wrong = Wrongness(a, p, &next);
+    ContactStatus   next;
+    const PetscReal how = Wrongness(a, p, &next), wrong = last ? (PetscReal)(a->rows->begin + a->rows->first[p]) : how;
 
     if (next == a->status[p]) continue;
-    (*n_changed)++;
-    if (!single) a->status[p] = next;
-    if (at >= 0 && wrong <= worst.wrong) continue;
-    at          = p;
-    best        = next;
-    worst.wrong = wrong;
+    (*n_wrong)++;
+    if (one->pair >= 0 && wrong <= one->most.wrong) continue;
+    one->pair       = p;
+    one->most.wrong = wrong;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n_changed, 1, MPIU_INT, MPI_SUM, a->rows->comm));
-  if (!single || !*n_changed) PetscFunctionReturn(0);
-  worst.rank  = rank;
-  worst.wrong = at < 0 ? -1 : worst.wrong;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, a->rows->comm));
-  if (worst.rank == rank) a->status[at] = best;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n_wrong, 1, MPIU_INT, MPI_SUM, a->rows->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &one->most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, a->rows->comm));
+  if (one->most.rank != rank) one->pair = -1;
+  PetscFunctionReturn(0);
+}
+
+/* Changes wrong statuses as the safeguard says; n_changed of all that are wrong, over all ranks */
+static PetscErrorCode StatusUpdate(Active *a, Safeguard *guard, PetscInt *n_changed)
+{
+  ContactStatus next;
+  WrongPair     worst, last;
+
+  PetscFunctionBeginUser;
+  PetscCall(StatusFindWrong(a, PETSC_FALSE, n_changed, &worst));
+  PetscCall(StatusFindWrong(a, PETSC_TRUE, n_changed, &last));
+  switch (SafeguardChoose(guard, *n_changed)) {
+  case CHANGE_ALL:
+    for (PetscInt p = 0; p < a->rows->n_pairs; p++) {
+      (void)Wrongness(a, p, &next);
+      a->status[p] = next;
+    }
+    break;
+  case CHANGE_LAST:
+    worst.pair = last.pair; /* fall through */
+  case CHANGE_WORST:
+    if (worst.pair < 0) break;
+    (void)Wrongness(a, worst.pair, &next);
+    a->status[worst.pair] = next;
+  }
   PetscFunctionReturn(0);
 }
 
@@ -166,149 +210,59 @@ static PetscErrorCode Damp(Active *a, const PetscReal l0[], const PetscReal w0[]
   PetscFunctionReturn(0);
 }
 
-/* A number that differs for different statuses of all pairs */
-static PetscErrorCode StatusPrint(const Active *a, PetscReal *print)
+PetscErrorCode ActiveIsReversed(const Active *a, PetscReal friction, PetscBool *reversed)
 {
-  const PetscReal golden = 0.61803398874989484820;
+  Active  at = *a;
+  LawRow *law;
 
   PetscFunctionBeginUser;
-  *print = 0;
-  for (PetscInt p = 0; p < a->rows->n_pairs; p++) {
-    const PetscReal at = golden * (PetscReal)(a->rows->begin + a->rows->first[p] + 1);
-
-    *print += (1 + (PetscReal)a->status[p]) * (at - PetscFloorReal(at));
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, print, 1, MPIU_REAL, MPI_SUM, a->rows->comm));
+  at.friction = friction;
+  *reversed   = PETSC_FALSE;
+  if (friction == 0 || (!PairRowsCoulomb(a->rows) && !a->rows->S)) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(a->rows->n, &law));
+  LawsSet(&at, law);
+  PetscCall(SmallIsReversed(&(SmallSystem){a->compliance, friction, law, a->free, a->rtol}, reversed));
+  PetscCall(PetscFree(law));
   PetscFunctionReturn(0);
 }
 
-/* Whether the present status was there before; remembers it. With Coulomb pairs in slip, whose laws change with the
-   iterate, a repeated status is no cycle. */
-static PetscErrorCode StatusRepeats(const Active *a, PetscReal kept[MAX_KEPT], PetscInt *n_kept, PetscBool *repeats)
+PetscErrorCode ActiveIterate(Active *a, PetscBool sure, ActiveOutcome *outcome)
 {
-  PetscReal print;
-
-  PetscFunctionBeginUser;
-  *repeats = PETSC_FALSE;
-  PetscCall(StatusPrint(a, &print));
-  for (PetscInt i = 0; i < PetscMin(*n_kept, MAX_KEPT) && !PairRowsCoulomb(a->rows); i++)
-    if (kept[i] == print) *repeats = PETSC_TRUE;
-  kept[(*n_kept)++ % MAX_KEPT] = print;
-  PetscFunctionReturn(0);
-}
-
-/* Iterates from the present status at the present friction */
-static PetscErrorCode Iterate(Active *a, PetscBool single, ActiveOutcome *outcome)
-{
-  const PetscInt max_it = single ? ONE_BY_ONE * a->max_it : a->max_it;
-  PetscReal      kept[MAX_KEPT], residual = 0, *l, *w;
-  PetscInt       n_kept = 0, n_changed = 1;
+  const PetscInt max_it    = sure ? ONE_BY_ONE * a->max_it : a->max_it;
+  PetscReal      residual  = 0, *l, *w;
+  PetscInt       n_changed = 1;
+  Cycle          cycle     = {.n = 0};
+  Safeguard      guard     = {.sure = sure, .linear = ActiveIsLinear(a), .least = PETSC_MAX_INT};
   PetscBool      repeats;
   SmallOutcome   small;
 
   PetscFunctionBeginUser;
   *outcome = ACTIVE_SLOW;
   PetscCall(PetscMalloc2(a->rows->n, &l, a->rows->n, &w));
-  a->rtol = single || PairRowsCoulomb(a->rows) ? EXACT : ROUGH;
+  a->rtol     = sure || PairRowsCoulomb(a->rows) ? EXACT : ROUGH;
+  a->rounding = sure ? SURE_ROUNDING : ACTIVE_ROUNDING;
   for (PetscInt it = 0; it < max_it && *outcome == ACTIVE_SLOW; it++, a->n_it++) {
     repeats = PETSC_FALSE;
-    if (n_changed) PetscCall(StatusRepeats(a, kept, &n_kept, &repeats));
+    if (n_changed && !(sure && guard.linear)) PetscCall(CycleCheck(a, &cycle, &repeats));
     PetscCall(PetscArraycpy(l, a->l, a->rows->n));
     PetscCall(PetscArraycpy(w, a->w, a->rows->n));
     PetscCall(Solve(a, PETSC_FALSE, a->free, a->l, a->w, &small));
-    if (small == SMALL_SINGULAR || repeats) {
-      *outcome = repeats ? ACTIVE_CYCLES : ACTIVE_SINGULAR;
+    if (small != SMALL_GOOD || repeats) {
+      *outcome = repeats ? ACTIVE_CYCLES : small == SMALL_UNSOLVED ? ACTIVE_UNSOLVED : ACTIVE_SINGULAR;
       break;
     }
     PetscCall(ActiveFindScale(a));
     if (!n_changed) PetscCall(Damp(a, l, w, residual));
-    PetscCall(StatusUpdate(a, single, &n_changed));
+    PetscCall(StatusUpdate(a, &guard, &n_changed));
     PetscCall(ActiveSlipResidual(a, &residual));
     if (n_changed || residual > SLIPPING) continue;
-    if (a->rtol == EXACT || a->compliance->W) *outcome = a->reversed ? ACTIVE_JAMMED : ACTIVE_CONVERGED;
+    if (a->rtol == EXACT || a->compliance->W) {
+      if (!a->compliance->W) PetscCall(ActiveIsReversed(a, a->friction, &a->reversed));
+      *outcome = a->reversed ? ACTIVE_JAMMED : ACTIVE_CONVERGED;
+    }
     a->rtol = EXACT;
   }
   PetscCall(PetscFree2(l, w));
-  PetscFunctionReturn(0);
-}
-
-/* All pairs closed, without slip */
-static PetscErrorCode Restart(Active *a)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < a->rows->n_pairs; p++) a->status[p] = a->rows->law[p].d == 3 ? CONTACT_STICK : CONTACT_SLIP;
-  PetscCall(PetscArrayzero(a->l, a->rows->n));
-  PetscCall(PetscArrayzero(a->w, a->rows->n));
-  PetscFunctionReturn(0);
-}
-
-/* Whether many iterations are worth their time */
-static PetscBool IsFew(const Active *a)
-{
-  return a->compliance->W && a->rows->n_all <= FEW ? PETSC_TRUE : PETSC_FALSE;
-}
-
-/* Raises friction in steps from the equilibrium without it */
-static PetscErrorCode Raise(Active *a, ActiveOutcome *outcome)
-{
-  const PetscBool few      = IsFew(a);
-  const PetscReal min_step = few ? MIN_STEP : LARGE_STEP;
-  PetscReal       reached = 0, step = 0.25, *l, *w;
-  ContactStatus  *status;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(a->rows->n_pairs, &status, a->rows->n, &l, a->rows->n, &w));
-  a->friction = 0;
-  PetscCall(Restart(a));
-  PetscCall(Iterate(a, few, outcome));
-  while (reached < 1 && *outcome == ACTIVE_CONVERGED && step >= min_step) {
-    PetscCall(PetscArraycpy(status, a->status, a->rows->n_pairs));
-    PetscCall(PetscArraycpy(l, a->l, a->rows->n));
-    PetscCall(PetscArraycpy(w, a->w, a->rows->n));
-    a->friction = PetscMin(1, reached + step);
-    PetscCall(Iterate(a, PETSC_FALSE, outcome));
-    if (*outcome != ACTIVE_CONVERGED && few) PetscCall(Iterate(a, PETSC_TRUE, outcome));
-    if (*outcome == ACTIVE_CONVERGED) {
-      reached = a->friction;
-      step *= 1.5;
-      continue;
-    }
-    PetscCall(PetscArraycpy(a->status, status, a->rows->n_pairs));
-    PetscCall(PetscArraycpy(a->l, l, a->rows->n));
-    PetscCall(PetscArraycpy(a->w, w, a->rows->n));
-    step /= 2;
-    if (step >= min_step) *outcome = ACTIVE_CONVERGED;
-  }
-  a->friction = reached;
-  PetscCall(PetscFree3(status, l, w));
-  PetscFunctionReturn(0);
-}
-
-/* Statuses by pivoting, or with Coulomb pairs by single changes, confirmed by the iteration */
-static PetscErrorCode IterateSurely(Active *a, ActiveOutcome *outcome)
-{
-  PetscBool found;
-
-  PetscFunctionBeginUser;
-  PetscCall(Restart(a));
-  if (!PairRowsCoulomb(a->rows)) {
-    PetscCall(PivotSolve(a->compliance, a->friction, a->free, a->status, &found));
-    if (found) PetscCall(Iterate(a, PETSC_FALSE, outcome));
-    if (*outcome == ACTIVE_CONVERGED) PetscFunctionReturn(0);
-    PetscCall(Restart(a));
-  }
-  PetscCall(Iterate(a, PETSC_TRUE, outcome));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ActiveSolve(Active *a, ActiveOutcome *outcome)
-{
-  PetscFunctionBeginUser;
-  a->friction = 1;
-  PetscCall(Iterate(a, PETSC_FALSE, outcome));
-  if (*outcome == ACTIVE_CONVERGED) PetscFunctionReturn(0);
-  if (IsFew(a)) PetscCall(IterateSurely(a, outcome));
-  if (*outcome != ACTIVE_CONVERGED) PetscCall(Raise(a, outcome));
   PetscFunctionReturn(0);
 }
 

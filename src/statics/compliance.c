@@ -48,7 +48,7 @@ static PetscErrorCode ComplianceFindKappa(Mat K, const PairRows *rows, PetscReal
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, AugmentRows which,
+PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, PetscBool closed_only,
                                  const ContactStatus status[], Mat *A)
 {
   PetscScalar *resists;
@@ -56,12 +56,11 @@ PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, A
   Vec          weight = NULL;
 
   PetscFunctionBeginUser;
-  if (which != AUGMENT_ALL) {
+  if (closed_only) {
     PetscCall(MatCreateVecs(rows->G, NULL, &weight));
     PetscCall(VecGetArray(weight, &resists));
     for (PetscInt p = 0; p < rows->n_pairs; p++)
-      for (PetscInt i = rows->first[p]; i < rows->first[p + 1]; i++)
-        resists[i] = which == AUGMENT_NORMAL ? i == rows->first[p] : status[p] != CONTACT_OPEN;
+      for (PetscInt i = rows->first[p]; i < rows->first[p + 1]; i++) resists[i] = status[p] != CONTACT_OPEN;
     PetscCall(VecRestoreArray(weight, &resists));
   }
   PetscCall(TermsProduct(1, rows->G, weight, rows->G, &GG));
@@ -166,7 +165,7 @@ PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const 
   c->rows = rows;
   PetscCall(OperatorsGetBodies(operators, p, &K, &pencil.M, NULL));
   PetscCall(ComplianceFindKappa(K, rows, &c->kappa));
-  PetscCall(ComplianceAugment(K, rows, c->kappa, AUGMENT_ALL, NULL, &pencil.K));
+  PetscCall(ComplianceAugment(K, rows, c->kappa, PETSC_FALSE, NULL, &pencil.K));
   PetscCall(HoldCreate(operators, p, pencil.K, &c->hold));
   PetscCall(ShiftInvertCreate(&pencil, 0, PETSC_FALSE, progress, &c->inverse));
   PetscCall(MatDestroy(&pencil.K));

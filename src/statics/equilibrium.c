@@ -21,57 +21,49 @@ static PetscErrorCode EquilibriumCountClosed(const Active *a, PetscInt *n)
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for what has no equilibrium, even without friction */
-static PetscErrorCode ComplainFrictionless(const Active *a, ActiveOutcome outcome)
+/* What the iteration ended with, and what may help */
+static PetscErrorCode OutcomePrint(const Active *a, ActiveOutcome outcome, size_t size, char text[])
 {
-  PetscFunctionBeginUser;
-  PetscCheck(outcome != ACTIVE_SLOW, a->rows->comm, PETSC_ERR_NOT_CONVERGED,
-             "no equilibrium found%s: the pairs do not settle within -static_max_it %" PetscInt_FMT
-             " iterations; allow more",
-             a->place, a->max_it);
-  PetscCheck(!PairRowsCoulomb(a->rows), a->rows->comm, PETSC_ERR_NOT_CONVERGED,
-             "no equilibrium%s: the -loads push the bodies along or off each other by more than friction holds, and "
-             "nothing else does; give other -loads, a higher friction coefficient, -supports or -springs",
-             a->place);
-  SETERRQ(a->rows->comm, PETSC_ERR_NOT_CONVERGED,
-          "no equilibrium%s, even without friction: the bodies come off each other or tip over, and nothing else holds "
-          "them; the -loads must press the contacts together, within their edges",
-          a->place);
-}
-
-/* Raises the error for loads along a motion that friction alone resists: it has been tried, and does not hold them */
-static PetscErrorCode SlidingOffCheck(const Active *a)
-{
-  Hold free = {.n = 0};
-  Mat  K, A;
+  static const char *const how[] = {
+    [ACTIVE_CONVERGED] = "",
+    [ACTIVE_SINGULAR]  = "the closed pairs leave a motion that nothing resists; give -supports or -springs",
+    [ACTIVE_CYCLES] =
+      "the statuses of the pairs go round in a circle; change -static_load_steps or the -loads a little",
+    [ACTIVE_SLOW]     = "the pairs do not settle within -static_max_it %" PetscInt_FMT " iterations; allow more",
+    [ACTIVE_JAMMED]   = "the bodies jam: friction presses them together by more than they yield",
+    [ACTIVE_UNSOLVED] = "GMRES on the rows of the pairs did not converge; allow more by -st_pairs_ksp_max_it"};
+  char dense[96] = "";
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetBodies(a->operators, a->p, &K, NULL, NULL));
-  PetscCall(ComplianceAugment(K, a->rows, a->compliance->kappa, AUGMENT_NORMAL, NULL, &A));
-  PetscCall(FreeMotionsCreate(a->operators, a->p, A, &free));
-  PetscCall(HoldCheck(a->operators, &free, "loads, by more than friction is found to hold,", a->f, a->size));
-  PetscCall(HoldDestroy(&free));
-  PetscCall(MatDestroy(&A));
+  if (!a->compliance->W && outcome != ACTIVE_JAMMED)
+    PetscCall(
+      PetscSNPrintf(dense, sizeof(dense), ", or raise -static_dense to %" PetscInt_FMT " rows", a->rows->n_all));
+  PetscCall(PetscSNPrintf(text, size, how[outcome], a->max_it));
+  PetscCall(PetscStrlcat(text, dense, size));
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for what has no equilibrium */
+/* Raises the error for what was not found: nothing proves that there is none */
 static PetscErrorCode EquilibriumComplain(const Active *a, ActiveOutcome outcome)
 {
-  static const char *const how[] = {[ACTIVE_CONVERGED] = "",
-                                    [ACTIVE_SINGULAR]  = "the bodies come off each other, and nothing else holds them",
-                                    [ACTIVE_CYCLES]    = "the pairs do not settle between open and closed",
-                                    [ACTIVE_SLOW]      = "the pairs do not settle within -static_max_it iterations",
-                                    [ACTIVE_JAMMED]    = "the bodies jam"};
-  PetscInt                 n;
+  Certificate without = {.proven = PETSC_FALSE};
+  PetscInt    n;
+  char        how[256];
 
   PetscFunctionBeginUser;
   PetscCall(EquilibriumCountClosed(a, &n));
-  if (a->friction == 0) PetscCall(ComplainFrictionless(a, outcome));
+  if (!a->pressed && PairRowsCoulomb(a->rows)) PetscCall(CertificateFind(a, 0, &without));
+  PetscCall(VecDestroy(&without.motion));
+  PetscCall(OutcomePrint(a, without.proven ? a->first : outcome, sizeof(how), how));
+  PetscCheck(!without.proven, a->rows->comm, PETSC_ERR_NOT_CONVERGED,
+             "no equilibrium found%s: friction alone can hold the bodies, and with it %s; or give a higher friction "
+             "coefficient, -supports or -springs",
+             a->place, how);
+  PetscCheck(a->pressed, a->rows->comm, PETSC_ERR_NOT_CONVERGED, "no equilibrium found%s: %s", a->place, how);
   SETERRQ(a->rows->comm, PETSC_ERR_NOT_CONVERGED,
-          "no sliding equilibrium%s: friction could be raised to %.4g of its value, where %" PetscInt_FMT
-          " of %" PetscInt_FMT " pairs are closed; beyond, %s; lower the friction coefficient",
-          a->place, (double)a->friction, n, a->rows->n_pairs_all, how[outcome]);
+          "no %sequilibrium found%s: friction could be raised to %.4g of its value, where %" PetscInt_FMT
+          " of %" PetscInt_FMT " pairs are closed; beyond, %s; or lower the friction coefficient",
+          PairRowsCoulomb(a->rows) ? "" : "sliding ", a->place, (double)a->friction, n, a->rows->n_pairs_all, how);
 }
 
 /* r = f - K u - G'l + S' D l, forces l in m; NULL stands for u = 0 */
@@ -141,17 +133,24 @@ static PetscErrorCode FrictionCheck(const Active *a)
 /* The closed pairs must hold what all pairs could */
 static PetscErrorCode TippingCheck(const Active *a)
 {
-  PetscInt n;
-  Mat      K, A;
+  const char *part;
+  PetscInt    n;
+  Mat         K, A;
 
   PetscFunctionBeginUser;
   PetscCall(EquilibriumCountClosed(a, &n));
-  if (n == a->rows->n_all) PetscFunctionReturn(0);
+  if (n == a->rows->n_pairs_all) PetscFunctionReturn(0);
   PetscCall(OperatorsGetBodies(a->operators, a->p, &K, NULL, NULL));
-  PetscCall(ComplianceAugment(K, a->rows, a->compliance->kappa, AUGMENT_CLOSED, a->status, &A));
-  PetscCall(HoldCheckClosed(a->operators, a->p, &a->compliance->hold, a->place, A, n));
+  PetscCall(ComplianceAugment(K, a->rows, a->compliance->kappa, PETSC_TRUE, a->status, &A));
+  PetscCall(HoldFindLoose(a->operators, a->p, &a->compliance->hold, A, &part));
   PetscCall(MatDestroy(&A));
-  PetscFunctionReturn(0);
+  if (!part) PetscFunctionReturn(0);
+  PetscCall(CertificateCheck(a));
+  SETERRQ(a->rows->comm, PETSC_ERR_NOT_CONVERGED,
+          "no stable equilibrium%s: only %" PetscInt_FMT
+          " of the pairs stay closed, and part %s can tip or slide on them without resistance; lower the friction "
+          "coefficient, move the -loads, or give -supports or -springs",
+          a->place, n, part);
 }
 
 /* One load step, from which u, l and w follow */
@@ -163,9 +162,7 @@ static PetscErrorCode EquilibriumStep(Active *a)
   PetscCall(ComplianceSolve(a->compliance, 0, a->f, NULL, NULL, a->u));
   PetscCall(ComplianceGetRows(a->compliance, a->u, a->free));
   PetscCall(ActiveSolve(a, &outcome));
-  if (outcome == ACTIVE_CONVERGED) PetscFunctionReturn(0);
-  if (outcome == ACTIVE_SLOW && a->friction == 0 && PairRowsCoulomb(a->rows)) PetscCall(SlidingOffCheck(a));
-  PetscCall(EquilibriumComplain(a, outcome));
+  if (outcome != ACTIVE_CONVERGED) PetscCall(EquilibriumComplain(a, outcome));
   PetscFunctionReturn(0);
 }
 

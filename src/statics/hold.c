@@ -154,23 +154,19 @@ PetscErrorCode HoldCheck(Operators operators, const Hold *hold, const char force
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode HoldCheckClosed(Operators operators, const PetscReal p[], const Hold *hold, const char place[], Mat A,
-                               PetscInt n_closed)
+PetscErrorCode HoldFindLoose(Operators operators, const PetscReal p[], const Hold *hold, Mat A, const char **part)
 {
   Hold left = {.n = 0};
 
   PetscFunctionBeginUser;
+  *part = NULL;
   PetscCall(FreeMotionsCreate(operators, p, A, &left));
   if (left.n > hold->n) {
     UnknownPlace tips;
 
     PetscCall(PinsChoose(&left));
     PetscCall(UnknownFind(operators, left.pin[0], &tips));
-    SETERRQ(PetscObjectComm((PetscObject)A), PETSC_ERR_NOT_CONVERGED,
-            "no stable equilibrium%s: only %" PetscInt_FMT
-            " of the pairs stay closed, and part %s can tip or slide on them without resistance; lower the friction "
-            "coefficient, move the -loads, or give -supports or -springs",
-            place, n_closed, tips.name);
+    *part = tips.name;
   }
   PetscCall(HoldDestroy(&left));
   PetscFunctionReturn(0);

@@ -6,6 +6,9 @@
 
       l = M g + q,   M = B^-1 A,   q = B^-1 (rhs - A g0),   A = I - W,   B = A / k + W - V D,   0 <= l, 0 <= g, l g = 0.
 
+   Pairs of Coulomb's law can be pivoted without friction only: their tangential rows have l = 0, so that B has the columns
+   of A there for w, and nothing is complementary to them.
+
    The tableau l - M g - e z0 = q, e = (1, ..., 1), begins with the largest z0 that makes all forces positive; whenever a
    variable leaves the basis its complement enters, until z0 leaves. Ties are broken lexicographically by the columns of
    l, so that no basis comes twice. A column without positive entry is a ray: no equilibrium is found.
@@ -18,9 +21,10 @@
 #define PIVOT_TIES  1e-12 /* of the largest ratio: closer ones are equal */
 #define PIVOT_MOST  50    /* pivots per pair */
 
-/* What the laws of the pairs say, all ranks' one after the other */
+/* What the law of a row says, all ranks' one after the other */
 typedef struct {
   PetscReal flexibility, g0, slide; /* 1 / k, m, part of mu */
+  PetscBool tangential;
 } PivotLaw;
 
 /* Rows of l, g, z0 and the right-hand side: row i is T[i * width ..] */
@@ -38,10 +42,23 @@ static void PivotSystem(const Compliance *c, PetscInt n, const PivotLaw law[], P
       const PetscReal W = c->W[j * n + i], a = (i == j ? 1 : 0) - W;
 
       A[j * n + i] = a;
-      B[j * n + i] = a * law[j].flexibility + W;
+      B[j * n + i] = law[j].tangential ? a : a * law[j].flexibility + W;
       if (c->V) B[j * n + i] -= law[j].slide * c->V[j * n + i];
       rhs[i] -= a * law[j].g0;
     }
+}
+
+/* Keeps the normal rows of M (and columns) and q; their number */
+static PetscInt PivotKeepNormal(PetscInt n, const PivotLaw law[], PetscReal M[], PetscReal q[])
+{
+  PetscInt m = 0, at = 0;
+
+  for (PetscInt i = 0; i < n; i++)
+    if (!law[i].tangential) q[m++] = q[i];
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n && !law[j].tangential; i++)
+      if (!law[i].tangential) M[at++] = M[j * n + i];
+  return m;
 }
 
 /* The tableau of M and q, given by columns, with the forces as its basis */
@@ -130,22 +147,43 @@ static PetscBool PivotComplement(PivotTableau *t)
   return PETSC_FALSE;
 }
 
-/* Open pairs are those whose gap is in the basis */
-static void PivotStatus(const PivotTableau *t, const PairRows *rows, ContactStatus status[])
+/* Open pairs are those whose gap is in the basis; law [rows] of all, pairs numbered by their normal rows */
+static void PivotStatus(const PivotTableau *t, const PairRows *rows, const PivotLaw law[], ContactStatus status[])
 {
+  PetscInt begin = 0;
+
+  for (PetscInt i = 0; i < rows->begin; i++) begin += !law[i].tangential;
   for (PetscInt p = 0; p < rows->n_pairs; p++) status[p] = CONTACT_SLIP;
   for (PetscInt i = 0; i < t->n; i++) {
-    const PetscInt p = t->basis[i] - t->n - rows->begin;
+    const PetscInt p = t->basis[i] - t->n - begin;
 
     if (t->basis[i] >= t->n && p >= 0 && p < rows->n_pairs) status[p] = CONTACT_OPEN;
   }
+}
+
+/* Laws of the rows of all ranks */
+static PetscErrorCode PivotGather(const PairRows *rows, PetscReal friction, PivotLaw **all)
+{
+  PivotLaw *law;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(rows->n, &law));
+  for (PetscInt p = 0; p < rows->n_pairs; p++)
+    for (PetscInt i = rows->first[p]; i < rows->first[p + 1]; i++) {
+      law[i] = (PivotLaw){.tangential = PETSC_TRUE};
+      if (i == rows->first[p])
+        law[i] = (PivotLaw){1 / rows->law[p].k, rows->law[p].g0, friction * rows->slide[p], PETSC_FALSE};
+    }
+  PetscCall(GatherRecords(rows->comm, rows->n, sizeof(PivotLaw), law, NULL, all));
+  PetscCall(PetscFree(law));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode PivotSolve(const Compliance *c, PetscReal friction, const PetscReal rhs[], ContactStatus status[],
                           PetscBool *found)
 {
   const PairRows *rows = c->rows;
-  PivotLaw       *law, *all;
+  PivotLaw       *law;
   PivotTableau    tableau;
   PetscBLASInt    n, columns = 1, info, *pivot;
   PetscReal      *A, *B, *q;
@@ -153,24 +191,20 @@ PetscErrorCode PivotSolve(const Compliance *c, PetscReal friction, const PetscRe
   PetscFunctionBeginUser;
   *found = PETSC_FALSE;
   PetscCall(PetscBLASIntCast(rows->n_all, &n));
-  PetscCall(PetscMalloc1(rows->n, &law));
-  for (PetscInt p = 0; p < rows->n_pairs; p++)
-    law[p] = (PivotLaw){1 / rows->law[p].k, rows->law[p].g0, friction * rows->slide[p]};
-  PetscCall(GatherRecords(rows->comm, rows->n, sizeof(PivotLaw), law, NULL, &all));
+  PetscCall(PivotGather(rows, friction, &law));
   PetscCall(GatherRecords(rows->comm, rows->n, sizeof(PetscReal), rhs, NULL, &q));
   PetscCall(PetscMalloc3(n * n, &A, n * n, &B, n, &pivot));
-  PivotSystem(c, n, all, A, B, q);
+  PivotSystem(c, n, law, A, B, q);
   PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&n, &n, B, &n, pivot, A, &n, &info));
   if (!info) PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &n, &columns, B, &n, pivot, q, &n, &info));
   if (!info) {
-    PetscCall(PivotTableauCreate(n, A, q, &tableau));
+    PetscCall(PivotTableauCreate(PivotKeepNormal(n, law, A, q), A, q, &tableau));
     *found = PivotComplement(&tableau);
-    if (*found) PivotStatus(&tableau, rows, status);
+    if (*found) PivotStatus(&tableau, rows, law, status);
     PetscCall(PetscFree2(tableau.T, tableau.basis));
   }
   PetscCall(PetscFree3(A, B, pivot));
   PetscCall(PetscFree(law));
-  PetscCall(PetscFree(all));
   PetscCall(PetscFree(q));
   PetscFunctionReturn(0);
 }

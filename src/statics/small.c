@@ -3,7 +3,7 @@
 
       [Q + (W - V D) P - W Q] z = rhs - q0 - (W - V D) p0 + W q0.
 
-   Dense, it is factored by LAPACK on every rank alike; too large for that, it is solved by GMRES, each application of W
+   Dense, it is factored by LAPACK on every rank alike, or solved by least squares where it is singular; too large for that, it is solved by GMRES, each application of W
    and V one pair of triangular solves. The determinant is positive without friction whatever is open or closed (a
    column is either one of W, whose eigenvalues lie in (0, 1], or one of I - W); where friction has turned its sign, the
    equilibrium lies beyond one at which the bodies jam.
@@ -12,10 +12,12 @@
 #include "base/gather.h"
 #include <petscblaslapack.h>
 
-#define SMALL_PIVOT   1e-13 /* smallest pivot beside the largest */
-#define GMRES_ENOUGH  1e-10 /* of GMRES that gets no farther; refinement of the whole does the rest */
-#define GMRES_RESTART 300
-#define GMRES_STEPS   300
+#define SMALL_PIVOT      1e-13 /* smallest pivot beside the largest */
+#define SMALL_REDUNDANT  1e-12 /* singular value beside the largest that is none */
+#define SMALL_CONSISTENT 1e-10 /* residual of a singular system that has solutions */
+#define GMRES_ENOUGH     1e-10 /* of GMRES that gets no farther; refinement of the whole does the rest */
+#define GMRES_RESTART    300
+#define GMRES_STEPS      300
 
 /* Adds column z_j, and with j < 0 the constants p0, q0 (subtracted): y += Q_j + (W - V D) P_j - W Q_j */
 static void SmallAddColumn(const Compliance *c, PetscReal friction, PetscInt n, const LawRow law[], PetscInt j,
@@ -56,6 +58,31 @@ static PetscErrorCode SmallFactor(PetscInt n, PetscReal A[], PetscReal z[], Smal
   PetscFunctionReturn(0);
 }
 
+/* The least z of those that solve the system where it is singular, as with supports or pairs that share a force: the
+   shares are not unique then. Overwrites A. */
+static PetscErrorCode SmallSolveLeast(PetscInt n, PetscReal A[], PetscReal z[], SmallOutcome *outcome)
+{
+  const PetscReal rcond = SMALL_REDUNDANT;
+  PetscReal       left = 0, whole = 0, *copy, *rhs, *singular, *work;
+  PetscBLASInt    N, one          = 1, rank, size, info;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n, &N));
+  PetscCall(PetscBLASIntCast(10 * n, &size));
+  PetscCall(PetscMalloc4(n * n, &copy, n, &rhs, n, &singular, size, &work));
+  PetscCall(PetscArraycpy(copy, A, n * n));
+  PetscCall(PetscArraycpy(rhs, z, n));
+  PetscCallBLAS("LAPACKgelss", LAPACKgelss_(&N, &N, &one, A, &N, z, &N, singular, &rcond, &rank, work, &size, &info));
+  for (PetscInt j = 0; j < n; j++) {
+    whole += PetscSqr(rhs[j]);
+    for (PetscInt i = 0; i < n; i++) singular[i] = (j ? singular[i] : -rhs[i]) + copy[j * n + i] * z[j];
+  }
+  for (PetscInt i = 0; i < n; i++) left += PetscSqr(singular[i]);
+  *outcome = !info && left <= PetscSqr(SMALL_CONSISTENT) * whole ? SMALL_GOOD : SMALL_SINGULAR;
+  PetscCall(PetscFree4(copy, rhs, singular, work));
+  PetscFunctionReturn(0);
+}
+
 /* z of this rank's rows [rows] */
 static PetscErrorCode SmallSolveDense(const SmallSystem *s, PetscReal z[], SmallOutcome *outcome, PetscBool *reversed)
 {
@@ -71,6 +98,12 @@ static PetscErrorCode SmallSolveDense(const SmallSystem *s, PetscReal z[], Small
   SmallAddColumn(s->compliance, s->friction, n, all_law, -1, all);
   for (PetscInt j = 0; j < n; j++) SmallAddColumn(s->compliance, s->friction, n, all_law, j, &A[j * n]);
   PetscCall(SmallFactor(n, A, all, outcome, reversed));
+  if (*outcome == SMALL_SINGULAR) {
+    PetscCall(PetscArrayzero(A, n * n));
+    for (PetscInt j = 0; j < n; j++) SmallAddColumn(s->compliance, s->friction, n, all_law, j, &A[j * n]);
+    PetscCall(SmallSolveLeast(n, A, all, outcome));
+    *reversed = PETSC_FALSE;
+  }
   PetscCall(PetscArraycpy(z, &all[rows->begin], rows->n));
   PetscCall(PetscFree(all_law));
   PetscCall(PetscFree(all));
@@ -118,7 +151,7 @@ static PetscErrorCode SmallShellMult(Mat A, Vec z, Vec y)
   PetscFunctionReturn(0);
 }
 
-/* GMRES on the system; one that does not converge is called singular */
+/* GMRES on the system */
 static PetscErrorCode SmallRunGMRES(SmallShell *s, Vec b, Vec z, SmallOutcome *outcome)
 {
   KSPConvergedReason reason;
@@ -147,7 +180,7 @@ static PetscErrorCode SmallRunGMRES(SmallShell *s, Vec b, Vec z, SmallOutcome *o
   PetscCall(KSPGetConvergedReason(ksp, &reason));
   PetscCall(KSPGetResidualNorm(ksp, &left));
   PetscCall(VecNorm(b, NORM_2, &whole));
-  *outcome = reason > 0 || left <= GMRES_ENOUGH * whole ? SMALL_GOOD : SMALL_SINGULAR;
+  *outcome = reason > 0 || left <= GMRES_ENOUGH * whole ? SMALL_GOOD : SMALL_UNSOLVED;
   PetscCall(KSPDestroy(&ksp));
   PetscCall(MatDestroy(&A));
   PetscFunctionReturn(0);

@@ -76,7 +76,7 @@ static PetscErrorCode StaticsMeasureEquilibrium(Statics s, Vec f, const PetscRea
   PetscCall(VecDestroy(&r));
   PetscCheck(
     s->equilibrium <= STATICS_LOOSE, s->comm, PETSC_ERR_NOT_CONVERGED,
-    "no equilibrium: next to nothing resists the -loads, and %.2g of them is left unbalanced; give other -loads, "
+    "no equilibrium found: next to nothing resists the -loads, and %.2g of them is left unbalanced; give other -loads, "
     "-supports or -springs",
     (double)s->equilibrium);
   PetscFunctionReturn(0);

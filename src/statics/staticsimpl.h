@@ -51,7 +51,22 @@ typedef struct {
   PetscReal P[3], Q[3], p0, q0, slide;
 } LawRow;
 
-typedef enum { SMALL_GOOD, SMALL_SINGULAR } SmallOutcome;
+/* What the free motions r_1 .. r_m of the bodies alone do to each pair of all ranks: mu where it slides else 0, mu of
+   Coulomb's law, then N r_j, T r_j, B r_j, [3][m] */
+typedef struct {
+  PetscInt   m, n_pairs, width; /* width = 2 + 3 m */
+  PetscReal *pair;              /* [n_pairs][width] */
+  PetscReal *push;              /* [m] f'r_j */
+} RigidPairs;
+
+/* A proof that the loads have no equilibrium */
+typedef struct {
+  PetscBool proven, frictionless; /* also without friction */
+  PetscReal friction;             /* part of the friction that could be balanced, where it is not frictionless */
+  Vec       motion;               /* the bodies' acceleration, of all unknowns; NULL where nothing is proven */
+} Certificate;
+
+typedef enum { SMALL_GOOD, SMALL_SINGULAR, SMALL_UNSOLVED } SmallOutcome;
 
 /* w + W_mu l - W w = rhs with the laws */
 typedef struct {
@@ -62,7 +77,15 @@ typedef struct {
   PetscReal         rtol;     /* of GMRES, where the system is not dense */
 } SmallSystem;
 
-typedef enum { ACTIVE_CONVERGED, ACTIVE_SINGULAR, ACTIVE_CYCLES, ACTIVE_SLOW, ACTIVE_JAMMED } ActiveOutcome;
+/* How the iteration ended; UNSOLVED by a GMRES that did not converge */
+typedef enum {
+  ACTIVE_CONVERGED,
+  ACTIVE_SINGULAR,
+  ACTIVE_CYCLES,
+  ACTIVE_SLOW,
+  ACTIVE_JAMMED,
+  ACTIVE_UNSOLVED
+} ActiveOutcome;
 
 /* The contact problem at one load, and its iterate; forces divided by kappa, m */
 typedef struct {
@@ -76,12 +99,29 @@ typedef struct {
   char              place[256]; /* the point in words, for messages */
   PetscReal         friction;   /* factor of all friction coefficients, 0 .. 1 */
   PetscReal         rtol;       /* of GMRES on the small system */
-  PetscReal         scale;      /* m, of the contact displacements; what is below 1e-13 of it is rounding */
-  ContactStatus    *status;     /* [n_pairs] to begin with, then as found */
-  PetscReal        *free;       /* [rows] w without contact forces, kappa-held: G K_a^-1 f */
-  PetscReal        *l, *w;      /* [rows] */
-  PetscBool         reversed;   /* the system of the last iteration has a determinant of the wrong sign */
+  PetscReal         scale;      /* m, of the contact displacements; what is below `rounding` of it decides nothing */
+  PetscReal         rounding;
+  ContactStatus    *status;   /* [n_pairs] to begin with, then as found */
+  PetscReal        *free;     /* [rows] w without contact forces, kappa-held: G K_a^-1 f */
+  PetscReal        *l, *w;    /* [rows] */
+  ActiveOutcome     first;    /* of the iteration with the whole friction */
+  PetscBool         pressed;  /* an equilibrium without friction was found */
+  PetscBool         reversed; /* the system of the last iteration has a determinant of the wrong sign */
 } Active;
+
+/* Whether the laws of all pairs are linear at each status */
+static inline PetscBool ActiveIsLinear(const Active *active)
+{
+  return !PairRowsCoulomb(active->rows) || active->friction == 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+#define CYCLE_LONGEST 64
+
+/* Numbers that tell iterates apart: of all statuses, and of forces and displacements, m */
+typedef struct {
+  PetscInt  n;
+  PetscReal status[CYCLE_LONGEST], iterate[CYCLE_LONGEST];
+} Cycle;
 
 struct _p_Statics {
   MPI_Comm  comm;
@@ -125,9 +165,9 @@ PETSC_INTERN PetscErrorCode FreeMotionsCreate(Operators operators, const PetscRe
    any force on the bodies) along one of them; u without them */
 PETSC_INTERN PetscErrorCode HoldCreate(Operators operators, const PetscReal p[], Mat A, Hold *hold);
 PETSC_INTERN PetscErrorCode HoldCheck(Operators operators, const Hold *hold, const char force[], Vec f, PetscReal size);
-/* Error where A, of the closed pairs only, has more free motions */
-PETSC_INTERN PetscErrorCode HoldCheckClosed(Operators operators, const PetscReal p[], const Hold *hold,
-                                            const char place[], Mat A, PetscInt n_closed);
+/* The part that moves most freely where A, of the closed pairs only, has more free motions, else NULL */
+PETSC_INTERN PetscErrorCode HoldFindLoose(Operators operators, const PetscReal p[], const Hold *hold, Mat A,
+                                          const char **part);
 PETSC_INTERN PetscErrorCode HoldProject(const Hold *hold, Vec u);
 PETSC_INTERN PetscErrorCode HoldDestroy(Hold *hold);
 
@@ -143,30 +183,51 @@ PETSC_INTERN PetscErrorCode ComplianceSolve(const Compliance *c, PetscReal frict
 PETSC_INTERN PetscErrorCode ComplianceAddForces(const Compliance *c, PetscReal friction, const PetscReal l[],
                                                 const PetscReal w[], Vec b);
 PETSC_INTERN PetscErrorCode ComplianceGetRows(const Compliance *c, Vec u, PetscReal w[]);
-/* K + kappa G'G of all rows, of those of pairs closed at the status [pairs], or of the normal ones. Where Coulomb's pairs
+/* K + kappa G'G of all rows, or of those of pairs closed at the status [pairs]. Where Coulomb's pairs
    slip in different directions they resist too; what slips in one direction makes the small system singular. */
-typedef enum { AUGMENT_ALL, AUGMENT_CLOSED, AUGMENT_NORMAL } AugmentRows;
-PETSC_INTERN PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, AugmentRows which,
+PETSC_INTERN PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, PetscBool closed_only,
                                               const ContactStatus status[], Mat *A);
 PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *c);
 
-/* small.c - l and w [rows] of the small system; reversed = whether the determinant is negative */
+/* small.c - l and w [rows] of the small system; reversed = whether the determinant is negative, dense ones only */
 PETSC_INTERN PetscErrorCode SmallSolve(const SmallSystem *system, PetscReal l[], PetscReal w[], SmallOutcome *outcome,
                                        PetscBool *reversed);
+/* determinant.c - reversed for any: its sign by a sparse factorisation of bodies and pairs */
+PETSC_INTERN PetscErrorCode SmallIsReversed(const SmallSystem *system, PetscBool *reversed);
 
-/* pivot.c - statuses of sliding pairs by complementary pivoting on the dense small system; found is false where there
-   is no solution or none is found */
+/* pivot.c - statuses of sliding pairs, or of all without friction, by complementary pivoting on the dense small
+   system; found is false where there is no solution or none is found */
 PETSC_INTERN PetscErrorCode PivotSolve(const Compliance *c, PetscReal friction, const PetscReal rhs[],
                                        ContactStatus status[], PetscBool *found);
 
-/* activeset.c - status, l and w that obey all laws, from the status given; friction is raised in steps if need be.
-   outcome and active->friction tell where it ended. */
-PETSC_INTERN PetscErrorCode ActiveSolve(Active *active, ActiveOutcome *outcome);
+/* cycle.c - whether the iterate was there before, among the last ones seen; remembers it */
+PETSC_INTERN PetscErrorCode CycleCheck(const Active *active, Cycle *cycle, PetscBool *repeats);
+
+/* activeset.c - iterates from the present status at the present friction; sure changes fewer pairs at a time */
+PETSC_INTERN PetscErrorCode ActiveIterate(Active *active, PetscBool sure, ActiveOutcome *outcome);
+/* Whether the small system at the present status and a factor of friction has a determinant of the wrong sign */
+PETSC_INTERN PetscErrorCode ActiveIsReversed(const Active *active, PetscReal friction, PetscBool *reversed);
 /* One correction of l and w at the status reached, for a residual rhs [rows] of the small system */
 PETSC_INTERN PetscErrorCode ActiveCorrect(Active *active, const PetscReal rhs[]);
 
+/* continuation.c - status, l and w that obey all laws, from the status given; friction is raised in steps if need be.
+   outcome and active->friction tell where it ended. */
+PETSC_INTERN PetscErrorCode ActiveSolve(Active *active, ActiveOutcome *outcome);
+
 /* equilibrium.c - the whole solution, from rows, compliance, f, u, size, load_steps, status and l (zeros) */
 PETSC_INTERN PetscErrorCode EquilibriumSolve(Statics statics, Active *active);
+
+/* balance.c - what the pairs, with their friction times a factor, cannot balance of the loads, left [m]; worst is the
+   largest work of a force of a pair along it, beside |left| and the largest force */
+PETSC_INTERN PetscErrorCode BalanceLoads(const RigidPairs *k, PetscReal friction, PetscReal left[], PetscReal *worst);
+
+/* certificate.c - tries to prove that the forces f have no equilibrium with all friction coefficients times a factor;
+   the caller destroys the motion. Check raises the error where it is proven. */
+PETSC_INTERN PetscErrorCode CertificateFind(const Active *active, PetscReal friction, Certificate *certificate);
+PETSC_INTERN PetscErrorCode CertificateCheck(const Active *active);
+
+/* describe.c - a motion that is rigid in each body, in words: the body that goes farthest, and where to */
+PETSC_INTERN PetscErrorCode RigidDescribe(Operators operators, Vec r, size_t size, char text[]);
 
 /* state.c - states, resultants and residuals of a solution */
 PETSC_INTERN PetscErrorCode StaticsSetState(Statics statics, Vec f, const PetscReal l[]);
