@@ -112,8 +112,13 @@ class Fuzz:
             path = work / draw.choice(base.files)
             before = path.read_bytes()
             after, kept = change(draw, before)
+            name = change.__name__
+            if draw.random() < 0.25:  # two faults at once
+                more = draw.choice(base.damages)
+                after, kept_too = more(draw, after)
+                name, kept = f"{name} and {more.__name__}", kept and kept_too
             path.write_bytes(after)
-            return f"{change.__name__} of {path.name}", kept or after == before, words
+            return f"{name} of {path.name}", kept or after == before, words
         at = draw.randrange(len(words))
         after, kept = change(draw, words[at].encode())
         after = after.replace(b"\0", b"0")
@@ -182,6 +187,9 @@ class Fuzz:
         kinds = collections.Counter((name, "ends well" if not status else "refused") for _, name, _, _, status in results)
         for (name, how), n in sorted(kinds.items()):
             print(f"{name:20} {how:10} {n}")
+        if self.arguments.list:
+            for n, name, done, _, status in results:
+                print(f"input {n}, {name}, {done}: exit status {status}")
         wrong = [result for result in results if result[3]]
         for n, name, done, what, _ in wrong:
             print(f"FAILED input {n}, {name}, {done}: {what}")
@@ -197,6 +205,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--limit", type=float, default=20, help="seconds a run may take")
     parser.add_argument("--only", help="one kind")
+    parser.add_argument("--list", action="store_true", help="say what was done to each input, and its exit status")
     parser.add_argument("--one", type=int, help="one input, whose folder is kept")
     arguments = parser.parse_args()
     folder = Path(tempfile.mkdtemp(prefix="squeal-fuzz-"))
