@@ -10,6 +10,7 @@
 #include "events.h"
 #include "help.h"
 #include "print.h"
+#include "memory.h"
 #include "progress.h"
 #include <slepcsys.h>
 #include <hdf5.h>
@@ -76,6 +77,8 @@ static PetscErrorCode KeepError(MPI_Comm comm, int line, const char *function, c
   if (type != PETSC_ERROR_INITIAL || kept[0]) return code;
   if (!text || !text[0]) (void)PetscErrorMessage(code, &text, NULL);
   (void)snprintf(kept, MAX_MESSAGE, "%.*s", text ? (int)strcspn(text, "\n") : 13, text ? text : "unknown error");
+  if (code == PETSC_ERR_MEM || (function && strstr(function, "PetscMalloc")))
+    MemoryExplain(kept, MAX_MESSAGE); /* 3.18: other code */
   if (!OptionsExplainValue(kept, better, sizeof(better)) && better[0]) (void)snprintf(kept, MAX_MESSAGE, "%s", better);
   return code;
 }
@@ -89,11 +92,13 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
   PetscCallMPI(MPI_Init(argc, argv));
   if (!help && HelpAnswer(*argc, *argv)) exit(MPI_Finalize());
   if (!help) HelpHush(*argc, *argv);
+  (void)H5dont_atexit(); /* all files are closed by then, but for one that cannot be written, which would crash it */
   (void)H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   PetscCall(PetscPushErrorHandler(KeepError, error_message));
   PetscErrorHandlingInitialized = PETSC_TRUE; /* as PetscInitialize() begins: errors are kept from now on */
   PetscCall(OptionsCheckArguments(*argc, *argv));
   PetscCall(SlepcInitialize(argc, argv, NULL, help));
+  PetscCall(MemoryPrepare(PETSC_COMM_WORLD));
   PrintInstall();
   (void)signal(SIGPIPE, SIG_DFL); /* `squeal ... | head` ends where head does, as other programs do */
   for (PetscInt s = 0; s < SQUEAL_N_STAGES; s++) {
