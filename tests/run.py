@@ -66,6 +66,8 @@ FINAL_SUFFIXES = {".csv", ".h5", ".xmf", ".bin", ".info"}
 # "[host:pid] PMIX ERROR"
 MPIRUN_REMARK = re.compile(r"^-{40,}\n.*?^-{40,}$|^\[\S+:\d+\] PMIX ERROR[^\n]*$", re.MULTILINE | re.DOTALL)
 SKIPPED = 77
+# Kernels of OpenBLAS, and what a processor must be able to do to run them
+CORES = {"Nehalem": "sse4_2", "Haswell": "avx2", "Zen": "avx2", "SkylakeX": "avx512vl"}
 
 
 def end(process):
@@ -88,6 +90,17 @@ def processes_naming(text):
         except OSError:
             pass  # ended meanwhile
     return found
+
+
+def choose_core(core):
+    """Has OpenBLAS take the kernels of a processor, by which results are rounded differently; another BLAS takes no
+    notice. Says why that cannot be, where this processor would not run them."""
+    try:
+        flags = Path("/proc/cpuinfo").read_text().split()
+    except OSError:
+        flags = []
+    os.environ["OPENBLAS_CORETYPE"] = core
+    return None if CORES[core] in flags else f"no {CORES[core]} here, which the kernels for {core} need"
 
 
 class Runner:
@@ -117,6 +130,7 @@ class Runner:
         command += self.expand(self.case.get("options", "") + " " + run.get("options", ""))
         if "file_limit" in run:
             command = ["prlimit", f"--fsize={run['file_limit']}", *command]
+            environment["OMPI_MCA_btl_sm_segment_size"] = "4194304"  # Open MPI 5 shares memory by files
         self.link(name, run)
         print("$", shlex.join(map(str, command)), flush=True)
         process = subprocess.Popen(command, cwd=self.folder, env=environment, text=True,
@@ -185,12 +199,14 @@ def main():
     parser.add_argument("--launcher", default=SOURCE / "scripts/mpirun", help="mpirun")
     parser.add_argument("--ranks", type=int, action="append", help="instead of the ranks of the case")
     parser.add_argument("--timeout", type=float, default=120, help="seconds allowed to each run")
+    parser.add_argument("--core", choices=CORES, help="processor whose kernels OpenBLAS takes")
     arguments = parser.parse_args()
     arguments.squeal = arguments.squeal.resolve()
     case = tomllib.loads(arguments.case.read_text())
     absent = [module for module in case.get("needs", []) if not importlib.util.find_spec(module)]
-    if absent:
-        print(f"skipped: no Python module {' '.join(absent)}")
+    reason = f"no Python module {' '.join(absent)}" if absent else arguments.core and choose_core(arguments.core)
+    if reason:
+        print(f"skipped: {reason}")
         return SKIPPED
 
     results = []
