@@ -4,6 +4,7 @@ import importlib.util
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import damage
@@ -78,12 +79,25 @@ def transient(program, folder):
 
 
 def sweep(program, folder):
-    """A sweep that ended before its time, and kept its full solutions."""
+    """A sweep that was killed, and kept its full solutions; the command that goes on with them."""
     words = ("-options_file", "brake.yaml", "-model_mesh", "finer.msh", "-analysis", "sweep", "-modes_band", "0,6000",
-             "-sweep_onsets", "0")
-    done = run(program, folder, *words, "-sweep_max_samples", "2", "-sweep_rtol", "1e-13", "-output_dir", "stopped")
-    left = sorted((folder / "stopped").glob("sweep_restart_*"))
-    return words if done.returncode and left else None
+             "-sweep_onsets", "0", "-sweep_rtol", "1e-9")
+    for _ in range(20):
+        shutil.rmtree(folder / "stopped", ignore_errors=True)
+        process = subprocess.Popen([program, *words, "-output_dir", "stopped"], cwd=folder, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL)
+        while process.poll() is None and not (folder / "stopped/sweep_restart_001_rank0").exists():
+            time.sleep(0.0005)
+        process.kill()
+        process.wait()
+        if (folder / "stopped/sweep_restart_001_rank0").exists() and not (folder / "stopped/sweep.csv").exists():
+            break
+    else:
+        raise SystemExit("no sweep could be killed between its first full solution and its end")
+    shutil.copytree(folder / "stopped", folder / "gone on")
+    done = run(program, folder, *words, "-output_dir", "gone on")
+    assert done.returncode == 0 and "anew" not in done.stderr, done.stderr
+    return words
 
 
 def bases(program, folder):
@@ -114,12 +128,10 @@ def bases(program, folder):
                  "transient.csv")
     found += [restart, history, shape]
     words = sweep(program, folder)
-    if words:
-        kept = Base("sweep", damage.BYTES, tuple(f"out/{path.name}" for path in sorted((folder / "stopped").glob("sweep_restart_*"))),
-                    words, "sweep.csv")
-        kept.sealed, kept.folder = True, folder / "stopped"
-        found.append(kept)
-    return found
+    files = tuple(f"out/{path.name}" for path in sorted((folder / "stopped").glob("sweep_restart_*_rank0")))
+    kept = Base("sweep", damage.BYTES, files, words, "sweep.csv")
+    kept.sealed, kept.folder = True, folder / "stopped"
+    return [*found, kept]
 
 
 def lay_out(base, folder, work):
