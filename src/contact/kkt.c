@@ -62,7 +62,7 @@ static PetscReal SlipResidual(const ContactJudged *pair)
   return Length2(rest);
 }
 
-/* Raises the residuals to those of one pair; what is no number obeys no law */
+/* Raises the residuals to those of one pair; nan counts as a violation */
 static void PairRaise(const ContactJudged *pair, const Scale *scale, ContactKKT *kkt)
 {
   const ContactState *state = pair->state;

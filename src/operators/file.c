@@ -27,7 +27,7 @@ PetscErrorCode OperatorsLoadFromOptions(Operators o, OptionsItems PetscOptionsOb
     PetscCall(OptionsGetPath(PetscOptionsObject, name, help, o->load[i], NULL));
     PetscCall(PetscSNPrintf(name, sizeof(name), "-operators_dense_%s", letters[i]));
     PetscCall(PetscSNPrintf(help, sizeof(help), "small dense matrix of the %s, rows one after another", meanings[i]));
-    PetscCall(PetscMalloc1(OPERATORS_MAX_DENSE, &o->dense[i]));
+    PetscCall(PetscCalloc1(OPERATORS_MAX_DENSE, &o->dense[i]));
     o->n_dense[i] = OPERATORS_MAX_DENSE;
     PetscCall(PetscOptionsRealArray(name, help, "operators.h", o->dense[i], &o->n_dense[i], &set));
     if (!set) o->n_dense[i] = 0;

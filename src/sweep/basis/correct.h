@@ -21,7 +21,7 @@ PetscErrorCode CorrectionApply(const Correction *correction, const ReducedModes 
                                PetscInt *n_added);
 
 /* Frictionless modes in the window (from zero on where its lower end is below half of the upper one) by Sylvester's law
-   of inertia with the pencil at p, and by the basis; alike where the basis lacks none. Both are -1 where the
+   of inertia with the pencil at p, and by the basis; the two are equal where the basis holds every mode. Both are -1 where the
    matrices cannot be made frictionless. */
 PetscErrorCode CorrectionCount(const Basis *basis, const PetscReal p[], const ReducedWindow *window, Progress *progress,
                                PetscInt *full, PetscInt *by_basis);
