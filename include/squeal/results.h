@@ -7,6 +7,7 @@
 
 #include <petscsys.h>
 #include <squeal/mesh.h>
+#include <stdint.h>
 
 typedef struct _p_Results      *Results;
 typedef struct _p_ResultsTable *ResultsTable;
@@ -50,15 +51,22 @@ PetscErrorCode ResultsTableNumbers(ResultsTable table, PetscInt n, const PetscRe
     in blocks of some kilobytes, and failures show with them. Collective. Errors: as ResultsTableClose(). @*/
 PetscErrorCode ResultsTableCheck(ResultsTable table);
 
-/*@ ResultsTableFlush - brings all rows to the disk, and gives the length of the table on every rank, from which
+/* How far a table has been written: its length, and the checksum of that */
+typedef struct {
+  PetscInt64 bytes;
+  uint64_t   sum;
+} ResultsMark;
+
+/*@ ResultsTableFlush - brings all rows to the disk, and gives the mark of the table on every rank, from which
     ResultsTableReopen() goes on; from then on the temporary file is kept whatever fails. Collective.
     Errors: as ResultsTableClose(). @*/
-PetscErrorCode ResultsTableFlush(ResultsTable table, PetscInt64 *bytes);
+PetscErrorCode ResultsTableFlush(ResultsTable table, ResultsMark *mark);
 
 /*@ ResultsTableReopen - goes on with table `name` of a run that was killed: cuts its temporary file, or where there
-    is none the complete one, back to the first `bytes`. Collective.
-    Errors: PETSC_ERR_FILE_UNEXPECTED for a file that is missing, shorter, or has another header. @*/
-PetscErrorCode ResultsTableReopen(Results results, const char name[], const char header[], PetscInt64 bytes,
+    is none the complete one, back to the mark. Collective.
+    Errors: PETSC_ERR_FILE_UNEXPECTED for a file that is missing, shorter, has another header, or other rows before the
+    mark. @*/
+PetscErrorCode ResultsTableReopen(Results results, const char name[], const char header[], const ResultsMark *mark,
                                   ResultsTable *table);
 
 /*@ ResultsTableSuspend - closes the table under its temporary name, for ResultsTableReopen(). Collective; the handle is

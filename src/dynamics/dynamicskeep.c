@@ -121,6 +121,7 @@ static PetscErrorCode KeptScalarsSet(Dynamics d, const KeptScalars *s)
 {
   TSExactFinalTimeOption match;
   PetscReal              end, left;
+  PetscInt               most;
 
   PetscFunctionBeginUser;
   PetscCheck(
@@ -129,6 +130,16 @@ static PetscErrorCode KeptScalarsSet(Dynamics d, const KeptScalars *s)
     (double)d->dt_asked, (double)s->dt);
   PetscCall(TSGetExactFinalTime(d->ts, &match));
   PetscCall(TSGetMaxTime(d->ts, &end));
+  PetscCall(TSGetMaxSteps(d->ts, &most));
+  PetscCheck(end > s->time - s->dt, d->comm, PETSC_ERR_USER_INPUT,
+             "-ts_max_time %.6g s is before the checkpoint that -dynamics_restart goes on with, at %.6g s, whose rows "
+             "would be lost: give a later end, or start anew with another -output_dir",
+             (double)end, (double)s->time);
+  PetscCheck((PetscReal)most >= s->step, d->comm, PETSC_ERR_USER_INPUT,
+             "-ts_max_steps %" PetscInt_FMT
+             " is before the checkpoint that -dynamics_restart goes on with, at step %.0f, "
+             "whose rows would be lost: give more, or start anew with another -output_dir",
+             most, (double)s->step);
   left = (end - s->time) / s->dt;
   PetscCheck(
     match != TS_EXACTFINALTIME_MATCHSTEP || PetscAbsReal(left - PetscFloorReal(left + 0.5)) < 1e-6, d->comm,

@@ -9,6 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#define TEXT_BLOCK 65536 /* bytes */
+
 /* Names the file `name``extension` in the folder of the results; nothing is opened */
 PetscErrorCode OutFileSetName(Results results, const char name[], const char extension[], OutFile *file)
 {
@@ -19,6 +21,8 @@ PetscErrorCode OutFileSetName(Results results, const char name[], const char ext
   file->stream = NULL;
   file->h5     = H5I_INVALID_HID;
   file->fd     = -1;
+  file->sum    = CHECKSUM_BEGIN;
+  file->summed = 0;
   PetscCall(PetscSNPrintf(file->name, sizeof(file->name), "%s/%s%s", results->dir, name, extension));
   PetscCall(PetscSNPrintf(file->part, sizeof(file->part), "%s/%s%s.part", results->dir, name, extension));
   PetscCall(ResultsKeep(results, file->name + strlen(results->dir) + 1));
@@ -41,20 +45,49 @@ PetscErrorCode OutFileOpenText(OutFile *file)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(file->comm, &rank));
   if (rank == 0) {
-    file->stream = fopen(file->part, "w");
+    file->stream = fopen(file->part, "w+");
     PetscCall(OutFileNote(file, file->stream ? PETSC_FALSE : PETSC_TRUE));
   }
   PetscFunctionReturn(0);
 }
 
-/* Why text of `bytes` with first line `head` cannot be continued, NULL when it can; then it is cut back to them */
-static const char *TextCut(int fd, const char head[], PetscInt64 bytes)
+/* Checksum of the first bytes of a text, on from those of the call before: block by block, the last one as it is. Notes
+   failures. */
+static PetscErrorCode TextSum(OutFile *file, int fd, PetscInt64 bytes, uint64_t *sum)
 {
-  const size_t length = strlen(head) + 1;
-  const off_t  end    = lseek(fd, 0, SEEK_END);
-  char        *found = malloc(length), last = 0;
-  const char  *reason = NULL;
+  char     *block;
+  PetscBool failed = PETSC_FALSE;
 
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(TEXT_BLOCK, &block));
+  errno = 0;
+  for (*sum = file->sum; file->summed <= bytes && !failed;) {
+    const size_t size = (size_t)PetscMin(TEXT_BLOCK, bytes - file->summed);
+
+    failed = pread(fd, block, size, (off_t)file->summed) == (ssize_t)size ? PETSC_FALSE : PETSC_TRUE;
+    *sum   = ChecksumBytes(file->sum, block, size);
+    if (size < TEXT_BLOCK) break;
+    file->sum = *sum;
+    file->summed += TEXT_BLOCK;
+  }
+  PetscCall(PetscFree(block));
+  PetscCall(OutFileNote(file, failed));
+  PetscFunctionReturn(0);
+}
+
+/* Why text up to the mark with first line `head` cannot be continued, NULL when it can; then it is cut back to it */
+static const char *TextCut(OutFile *file, int fd, const char head[], const ResultsMark *mark)
+{
+  const PetscInt64 bytes  = mark->bytes;
+  const size_t     length = strlen(head) + 1;
+  const off_t      end    = lseek(fd, 0, SEEK_END);
+  char            *found = malloc(length), last = 0;
+  const char      *reason = NULL;
+  uint64_t         sum    = 0;
+
+  file->sum    = CHECKSUM_BEGIN;
+  file->summed = 0;
+  if (end >= bytes) (void)TextSum(file, fd, bytes, &sum);
   if (!found || end < 0)
     reason = strerror(errno);
   else if (end < bytes)
@@ -64,6 +97,8 @@ static const char *TextCut(int fd, const char head[], PetscInt64 bytes)
     reason = "it has other columns";
   else if (bytes < (PetscInt64)length || pread(fd, &last, 1, (off_t)bytes - 1) != 1 || last != '\n')
     reason = "it is not the one that was kept";
+  else if (sum != mark->sum)
+    reason = "its rows before the checkpoint are not those that were written";
   else if (ftruncate(fd, (off_t)bytes))
     reason = strerror(errno);
   free(found);
@@ -71,11 +106,11 @@ static const char *TextCut(int fd, const char head[], PetscInt64 bytes)
 }
 
 /* Opens the temporary file, or else the complete one, which then is temporary again, to append to its first bytes */
-static const char *TextReopen(OutFile *file, const char head[], PetscInt64 bytes)
+static const char *TextReopen(OutFile *file, const char head[], const ResultsMark *mark)
 {
   const char *path   = access(file->part, F_OK) ? file->name : file->part;
   const int   fd     = open(path, O_RDWR);
-  const char *reason = fd < 0 ? strerror(errno) : TextCut(fd, head, bytes);
+  const char *reason = fd < 0 ? strerror(errno) : TextCut(file, fd, head, mark);
 
   if (!reason && path == file->name && rename(file->name, file->part)) reason = strerror(errno);
   if (!reason && lseek(fd, 0, SEEK_END) < 0) reason = strerror(errno);
@@ -84,8 +119,8 @@ static const char *TextReopen(OutFile *file, const char head[], PetscInt64 bytes
   return reason;
 }
 
-/* Opens text that an earlier run flushed, to continue it after `bytes`; raises its failures. Collective */
-PetscErrorCode OutFileReopenText(OutFile *file, const char head[], PetscInt64 bytes)
+/* Opens text that an earlier run flushed, to continue it after the mark; raises its failures. Collective */
+PetscErrorCode OutFileReopenText(OutFile *file, const char head[], const ResultsMark *mark)
 {
   char        reason[128] = "";
   const char *why;
@@ -94,7 +129,7 @@ PetscErrorCode OutFileReopenText(OutFile *file, const char head[], PetscInt64 by
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(file->comm, &rank));
   file->keep = PETSC_TRUE;
-  why        = rank ? NULL : TextReopen(file, head, bytes);
+  why        = rank ? NULL : TextReopen(file, head, mark);
   if (why) PetscCall(PetscStrncpy(reason, why, sizeof(reason)));
   PetscCallMPI(MPI_Bcast(reason, sizeof(reason), MPI_CHAR, 0, file->comm));
   PetscCheck(!reason[0], file->comm, PETSC_ERR_FILE_UNEXPECTED, "cannot go on with %s: %s; start the run anew",
@@ -102,21 +137,23 @@ PetscErrorCode OutFileReopenText(OutFile *file, const char head[], PetscInt64 by
   PetscFunctionReturn(0);
 }
 
-/* Brings the text to the disk, and keeps it from now on; bytes is its length on every rank. Raises failures.
-   Collective */
-PetscErrorCode OutFileFlushText(OutFile *file, PetscInt64 *bytes)
+/* Brings the text to the disk, and keeps it from now on; mark is its length and checksum on every rank. Raises
+   failures. Collective */
+PetscErrorCode OutFileFlushText(OutFile *file, ResultsMark *mark)
 {
   PetscFunctionBeginUser;
-  *bytes = 0;
+  *mark = (ResultsMark){.bytes = 0};
   if (file->stream && !file->error) {
     errno = 0;
     PetscCall(OutFileNote(file, fflush(file->stream) || fsync(fileno(file->stream)) ? PETSC_TRUE : PETSC_FALSE));
-    *bytes = ftello(file->stream);
-    PetscCall(OutFileNote(file, *bytes < 0 ? PETSC_TRUE : PETSC_FALSE));
+    mark->bytes = ftello(file->stream);
+    PetscCall(OutFileNote(file, mark->bytes < 0 ? PETSC_TRUE : PETSC_FALSE));
+    if (!file->error) PetscCall(TextSum(file, fileno(file->stream), mark->bytes, &mark->sum));
   }
   PetscCall(OutFilesCheck(1, &file));
   file->keep = PETSC_TRUE;
-  PetscCallMPI(MPI_Bcast(bytes, 1, MPIU_INT64, 0, file->comm));
+  PetscCallMPI(MPI_Bcast(&mark->bytes, 1, MPIU_INT64, 0, file->comm));
+  PetscCallMPI(MPI_Bcast(&mark->sum, 1, MPI_UINT64_T, 0, file->comm));
   PetscFunctionReturn(0);
 }
 

@@ -127,14 +127,14 @@ PetscErrorCode ResultsTableCheck(ResultsTable table)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ResultsTableFlush(ResultsTable table, PetscInt64 *bytes)
+PetscErrorCode ResultsTableFlush(ResultsTable table, ResultsMark *mark)
 {
   PetscFunctionBeginUser;
-  PetscCall(OutFileFlushText(&table->file, bytes));
+  PetscCall(OutFileFlushText(&table->file, mark));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ResultsTableReopen(Results results, const char name[], const char header[], PetscInt64 bytes,
+PetscErrorCode ResultsTableReopen(Results results, const char name[], const char header[], const ResultsMark *mark,
                                   ResultsTable *table)
 {
   PetscErrorCode failure;
@@ -142,7 +142,7 @@ PetscErrorCode ResultsTableReopen(Results results, const char name[], const char
   PetscFunctionBeginUser;
   PetscCall(PetscNew(table));
   PetscCall(OutFileSetName(results, name, ".csv", &(*table)->file));
-  failure = OutFileReopenText(&(*table)->file, header, bytes);
+  failure = OutFileReopenText(&(*table)->file, header, mark);
   if (failure) PetscCall(PetscFree(*table));
   PetscCall(failure);
   PetscFunctionReturn(0);

@@ -9,6 +9,7 @@
 */
 #pragma once
 
+#include <squeal/checksum.h>
 #include <squeal/results.h>
 #include "base/help.h"
 #include <hdf5.h>
@@ -27,13 +28,15 @@ struct _p_Results {
 
 /* A file that is being written as `part`, to be renamed to `name` */
 typedef struct {
-  MPI_Comm  comm;
-  char      name[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
-  PetscBool keep;   /* a failure leaves `part`, since a run may go on from what is in it */
-  int       error;  /* errno of the first failure on this rank; 0 = none */
-  FILE     *stream; /* text: open on the first rank */
-  hid_t     h5;     /* HDF5: open on the first rank, else H5I_INVALID_HID */
-  int       fd;     /* HDF5, binary: for the rows or pieces of this rank, else -1 */
+  MPI_Comm   comm;
+  char       name[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
+  PetscBool  keep;   /* a failure leaves `part`, since a run may go on from what is in it */
+  int        error;  /* errno of the first failure on this rank; 0 = none */
+  FILE      *stream; /* text: open on the first rank */
+  uint64_t   sum;    /* text: checksum of its first `summed` bytes, whole blocks */
+  PetscInt64 summed;
+  hid_t      h5; /* HDF5: open on the first rank, else H5I_INVALID_HID */
+  int        fd; /* HDF5, binary: for the rows or pieces of this rank, else -1 */
 } OutFile;
 
 /* Rows of a distributed table of values that this rank holds: [first, first + n_local) of n_global */
@@ -70,8 +73,8 @@ struct _p_ResultsField {
 PETSC_INTERN PetscErrorCode OutFileSetName(Results results, const char name[], const char extension[], OutFile *file);
 PETSC_INTERN PetscErrorCode OutFileNote(OutFile *file, PetscBool failed);
 PETSC_INTERN PetscErrorCode OutFileOpenText(OutFile *file);
-PETSC_INTERN PetscErrorCode OutFileReopenText(OutFile *file, const char head[], PetscInt64 bytes);
-PETSC_INTERN PetscErrorCode OutFileFlushText(OutFile *file, PetscInt64 *bytes);
+PETSC_INTERN PetscErrorCode OutFileReopenText(OutFile *file, const char head[], const ResultsMark *mark);
+PETSC_INTERN PetscErrorCode OutFileFlushText(OutFile *file, ResultsMark *mark);
 PETSC_INTERN PetscErrorCode OutFileCloseText(OutFile *file);
 PETSC_INTERN PetscErrorCode OutFilePrint(OutFile *file, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 PETSC_INTERN PetscErrorCode OutFileVPrint(OutFile *file, const char format[], va_list values);

@@ -9,7 +9,7 @@ typedef struct {
   Schedule  rows, pairs, frames;
   Growth    growth;
   PetscReal sweeps, steps;
-  PetscReal bytes, pair_bytes; /* lengths of the tables */
+  PetscReal mark[2][3]; /* of both tables: length, halves of the checksum */
   PetscReal n_frames;
 } HistoryKept;
 
@@ -106,33 +106,45 @@ PetscBool HistoryIsDue(History history, PetscReal t, PetscReal dt)
            : PETSC_FALSE;
 }
 
-/* Opens a table; bytes > 0: goes on with that of the run before, of that length */
-static PetscErrorCode HistoryBeginTable(Results results, const char name[], const char header[], PetscReal bytes,
+/* A mark as reals, and back */
+static void MarkKeep(const ResultsMark *mark, PetscReal kept[3])
+{
+  kept[0] = (PetscReal)mark->bytes;
+  kept[1] = (PetscReal)(mark->sum >> 32);
+  kept[2] = (PetscReal)(mark->sum & UINT32_MAX);
+}
+
+static ResultsMark MarkTake(const PetscReal kept[3])
+{
+  return (ResultsMark){(PetscInt64)kept[0], (uint64_t)kept[1] << 32 | (uint64_t)kept[2]};
+}
+
+/* Opens a table; bytes > 0 in a mark: goes on with that of the run before */
+static PetscErrorCode HistoryBeginTable(Results results, const char name[], const char header[], ResultsMark mark,
                                         ResultsTable *table)
 {
   PetscFunctionBeginUser;
   if (*table) PetscFunctionReturn(0);
-  if (bytes > 0)
-    PetscCall(ResultsTableReopen(results, name, header, (PetscInt64)bytes, table));
+  if (mark.bytes > 0)
+    PetscCall(ResultsTableReopen(results, name, header, &mark, table));
   else
     PetscCall(ResultsTableOpen(results, name, header, table));
   PetscFunctionReturn(0);
 }
 
 /* Opens the tables that are wanted, if they are not open */
-static PetscErrorCode HistoryBeginTables(History history, PetscReal bytes, PetscReal pair_bytes)
+static PetscErrorCode HistoryBeginTables(History history, const ResultsMark mark[2])
 {
   char *header;
 
   PetscFunctionBeginUser;
   if (!history->table) {
     PetscCall(HistoryCreateHeader(history, &header));
-    PetscCall(HistoryBeginTable(history->source.results, "transient", header, bytes, &history->table));
+    PetscCall(HistoryBeginTable(history->source.results, "transient", header, mark[0], &history->table));
     PetscCall(PetscFree(header));
   }
   if (history->pairs.interval > 0)
-    PetscCall(
-      HistoryBeginTable(history->source.results, "contact_pairs", PAIRS_HEADER, pair_bytes, &history->pair_table));
+    PetscCall(HistoryBeginTable(history->source.results, "contact_pairs", PAIRS_HEADER, mark[1], &history->pair_table));
   PetscFunctionReturn(0);
 }
 
@@ -150,7 +162,7 @@ static PetscErrorCode HistoryRecordPairs(History history, PetscReal time)
 PetscErrorCode HistoryRecord(History history, const HistoryState *state)
 {
   PetscFunctionBeginUser;
-  PetscCall(HistoryBeginTables(history, 0, 0));
+  PetscCall(HistoryBeginTables(history, (ResultsMark[2]){{0}}));
   if (ScheduleMeet(&history->rows, state->time, state->dt)) {
     GrowthAdd(&history->growth, state->time, state->ledger->kinetic);
     PetscCall(HistoryWriteRow(history, state));
@@ -163,25 +175,24 @@ PetscErrorCode HistoryRecord(History history, const HistoryState *state)
 
 PetscErrorCode HistoryGetMemory(History h, PetscInt *n, PetscReal **values)
 {
-  PetscInt64       bytes, pair_bytes = 0;
+  ResultsMark      mark[2]  = {{0}};
   PetscInt         n_frames = 0;
   const PetscReal *times    = NULL;
 
   PetscFunctionBeginUser;
-  PetscCall(HistoryBeginTables(h, 0, 0));
-  PetscCall(ResultsTableFlush(h->table, &bytes));
-  if (h->pair_table) PetscCall(ResultsTableFlush(h->pair_table, &pair_bytes));
+  PetscCall(HistoryBeginTables(h, mark));
+  PetscCall(ResultsTableFlush(h->table, &mark[0]));
+  if (h->pair_table) PetscCall(ResultsTableFlush(h->pair_table, &mark[1]));
   if (h->film) PetscCall(ResultsFilmGetTimes(h->film, &n_frames, &times));
-  const HistoryKept kept = {.rows       = h->rows,
-                            .pairs      = h->pairs,
-                            .frames     = h->frames,
-                            .growth     = h->growth,
-                            .sweeps     = h->sweeps,
-                            .steps      = h->steps,
-                            .bytes      = (PetscReal)bytes,
-                            .pair_bytes = (PetscReal)pair_bytes,
-                            .n_frames   = (PetscReal)n_frames};
+  HistoryKept kept = {.rows     = h->rows,
+                      .pairs    = h->pairs,
+                      .frames   = h->frames,
+                      .growth   = h->growth,
+                      .sweeps   = h->sweeps,
+                      .steps    = h->steps,
+                      .n_frames = (PetscReal)n_frames};
 
+  for (int i = 0; i < 2; i++) MarkKeep(&mark[i], kept.mark[i]);
   *n = N_KEPT + n_frames;
   PetscCall(PetscMalloc1(*n, values));
   PetscCall(PetscMemcpy(*values, &kept, sizeof(kept)));
@@ -207,7 +218,7 @@ PetscErrorCode HistorySetMemory(History h, PetscInt n, const PetscReal values[])
   ScheduleRestore(&h->pairs, &kept.pairs);
   ScheduleRestore(&h->frames, &kept.frames);
   if (h->film) PetscCall(ResultsFilmSetTimes(h->film, n - N_KEPT, &values[N_KEPT]));
-  PetscCall(HistoryBeginTables(h, kept.bytes, kept.pair_bytes));
+  PetscCall(HistoryBeginTables(h, (ResultsMark[2]){MarkTake(kept.mark[0]), MarkTake(kept.mark[1])}));
   PetscFunctionReturn(0);
 }
 
@@ -226,7 +237,7 @@ PetscErrorCode HistoryAddChecksum(History h, Checksum c)
 PetscErrorCode HistoryClose(History history)
 {
   PetscFunctionBeginUser;
-  PetscCall(HistoryBeginTables(history, 0, 0));
+  PetscCall(HistoryBeginTables(history, (ResultsMark[2]){{0}}));
   PetscCall(ResultsTableClose(&history->table));
   PetscCall(ResultsTableClose(&history->pair_table));
   PetscFunctionReturn(0);
