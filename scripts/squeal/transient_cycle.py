@@ -16,6 +16,7 @@ WIDTH = 0.2  # of the band about the main line, relative to its frequency
 DETACHED = 1e-6  # of the mean normal force: below it the surfaces are apart
 N_MODES = 3  # fitted at most in the window of growth
 LISTED = 3e-3  # a mode with less than this part of the strongest amplitude in the window is not listed,
+STEADY = 0.05  # largest relative change of the root mean square between two halves of what is called steady
 KNOWN = 30.0  # 1/s, and none of a larger error, except the strongest
 
 
@@ -109,10 +110,17 @@ class Vibration:
         if not self.line:
             return "at rest" if not numpy.ptp(self.signal[self.steady]) > 0 else "too short to tell"
         if not self.growth:
-            return "steady"
+            change = self.change_of_rms()
+            return "steady" if abs(change) <= STEADY else "grows" if change > 0 else "decays"
         if self.growth.slope < 0:
             return "decays"
         return "limit cycle" if self.growth.saturation is not None else "grows"
+
+    def change_of_rms(self):
+        """Relative change of the root mean square from the first half of the part that is looked at to its second."""
+        values = self.signal[self.steady] - self.signal[self.steady].mean()
+        halves = [values[:len(values) // 2].std(), values[len(values) // 2:].std()]
+        return halves[1] / halves[0] - 1 if halves[0] > 0 else 0.0
 
     def find_cycle(self, band):
         """The part after saturation, else the second half; spectrum and main line of this part."""
@@ -124,7 +132,9 @@ class Vibration:
             length = length_of(self)
             resolution = max(3 / length, self.line[0] / 100)
             self.density = power_density(self.time[self.steady], self.signal[self.steady], resolution)
-            self.harmonics = harmonic_levels(self.time[self.steady], self.signal[self.steady], self.line[0])
+            self.harmonics = {}  # of what repeats itself; a spectrum of a decay has no such lines
+            if self.regime() in ("steady", "limit cycle"):
+                self.harmonics = harmonic_levels(self.time[self.steady], self.signal[self.steady], self.line[0])
             self.other = other_line(self.time[self.steady], self.signal[self.steady], self.line[0], LOWEST)
 
 
@@ -149,7 +159,7 @@ def vibration_quantities(vibration, unit):
         yield Quantity("main_amplitude", vibration.line[2], None, unit)
         yield Quantity("rms", values.std(), apart, unit)
         yield Quantity("peak", abs(values).max(), None, unit)
-        yield Quantity("change_of_rms", halves[1] / halves[0] - 1 if halves[0] > 0 else 0.0, None, "-")
+        yield Quantity("change_of_rms", vibration.change_of_rms(), None, "-")
         for number, level in vibration.harmonics.items():
             yield Quantity(f"harmonic_{number}", level, None, "dB")
         if vibration.other:
