@@ -6,6 +6,8 @@
 #include "solver/ordering.h"
 #include <squeal/options.h>
 
+#define MODES_LARGEST 1e30 /* Hz, 1/s: squares stay finite */
+
 #define MODES_NEAR 1e-9 /* distance of an eigenvalue from the shift, beside the farthest: below it the shift is moved */
 
 PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
@@ -57,6 +59,9 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   PetscCheck(!modes->has_band || (modes->band[0] >= 0 && modes->band[1] > modes->band[0]), modes->comm,
              PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g must satisfy 0 <= f1 < f2 (Hz)", (double)modes->band[0],
              (double)modes->band[1]);
+  PetscCheck(modes->band[1] <= MODES_LARGEST && modes->target <= MODES_LARGEST && modes->growth <= MODES_LARGEST,
+             modes->comm, PETSC_ERR_USER_INPUT,
+             "-modes_band, -modes_target (Hz) and -modes_growth (1/s) must be of at most %g", MODES_LARGEST);
   if (has_target || has_count) modes->has_band = PETSC_FALSE;
   PetscCheck(modes->count > 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_count %" PetscInt_FMT " must be positive",
              modes->count);

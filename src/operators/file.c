@@ -84,6 +84,9 @@ static PetscErrorCode OperatorsReadDense(MPI_Comm comm, const char letter[], Pet
   PetscFunctionBeginUser;
   PetscCheck(n * n == n_values, comm, PETSC_ERR_USER_INPUT,
              "-operators_dense_%s has %" PetscInt_FMT " values, which is no square number", letter, n_values);
+  for (PetscInt i = 0; i < n_values; i++)
+    PetscCheck(PetscAbsReal(values[i]) <= MATRIX_LARGEST, comm, PETSC_ERR_USER_INPUT,
+               "-operators_dense_%s value %.6g must be of at most %g", letter, (double)values[i], MATRIX_LARGEST);
   PetscCall(MatCreateAIJ(comm, PETSC_DECIDE, PETSC_DECIDE, n, n, n, NULL, n, NULL, A));
   PetscCall(MatGetOwnershipRange(*A, &first, &last));
   for (PetscInt i = first; i < last; i++)

@@ -11,7 +11,6 @@
 #include <sys/stat.h>
 
 #define MATRIX_FILE_CHUNK 4096
-#define MATRIX_LARGEST    1e60      /* of a number, so that products of several stay finite */
 #define MATRIX_MAX_ROWS   100000000 /* 1e8: a larger number is none of rows */
 
 /* The file, and what is wrong with it: empty where nothing is */

@@ -64,6 +64,12 @@ PetscErrorCode OperatorsSetUp(Operators operators)
   } else {
     PetscCall(OperatorsLoad(operators));
   }
+  for (PetscInt i = 0; i < operators->parameters.n; i++) {
+    const OperatorsParameter *q = &operators->parameters.list[i];
+
+    PetscCheck(PetscIsInfReal(q->value) || PetscAbsReal(q->value) <= MATRIX_LARGEST, operators->comm,
+               PETSC_ERR_USER_INPUT, "-%s %.6g must be of at most %g", q->name, (double)q->value, MATRIX_LARGEST);
+  }
   PetscCall(EventEnd(EVENT_ASSEMBLE));
   PetscFunctionReturn(0);
 }

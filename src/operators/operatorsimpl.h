@@ -4,6 +4,8 @@
 #include "terms.h"
 #include <squeal/options.h>
 
+#define MATRIX_LARGEST 1e60 /* of entries and parameters, so that products of several stay finite */
+
 /* The four matrices, in the order of their option names */
 typedef enum { OPERATOR_K, OPERATOR_M, OPERATOR_C, OPERATOR_H, N_OPERATORS } OperatorKind;
 
