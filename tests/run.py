@@ -44,10 +44,12 @@ A case is a TOML file. Only `run` is required.
     run = "NAME"
     command = "{source}/tests/verify/fields.py {NAME}/modes.xmf"   # a Python script that must succeed
 
-Every run that succeeds must leave no memory allocated and no option unused. Exit status: 0, 1 failed, 77 skipped.
+Every run that succeeds must leave no memory allocated and no option unused, and every sweep that is verified must
+state errors that hold. Exit status: 0, 1 failed, 77 skipped.
 """
 
 import argparse
+import csv
 import importlib.util
 import os
 import re
@@ -68,6 +70,7 @@ MPIRUN_REMARK = re.compile(r"^-{40,}\n.*?^-{40,}$|^\[\S+:\d+\] PMIX ERROR[^\n]*$
 SKIPPED = 77
 # Kernels of OpenBLAS, and what a processor must be able to do to run them
 CORES = {"Nehalem": "sse4_2", "Haswell": "avx2", "Zen": "avx2", "SkylakeX": "avx512vl"}
+MOST_BEYOND, WORST_RATIO = 0.01, 3  # of the errors that a sweep states
 
 
 def end(process):
@@ -180,6 +183,20 @@ class Runner:
         for file in run.get("files", []):
             path = self.output(name) / file
             require(path.is_file() and path.stat().st_size, f"{file} was not written")
+        self.check_errors(self.output(name) / "verify.csv")
+
+    @staticmethod
+    def check_errors(path):
+        """A verified sweep: 99 % of its modes, or all but one, within their printed error, the worst within three times."""
+        rows = []
+        if path.is_file():
+            with path.open(newline="") as lines:
+                rows = [row for row in csv.DictReader(lines) if row["error_estimate"]]
+        beyond = sum(int(row["modes_beyond_error"]) for row in rows)
+        modes = sum(int(row["modes_full"]) for row in rows)
+        worst = max((float(row["worst_ratio"]) for row in rows), default=0)
+        require(beyond <= max(1, MOST_BEYOND * modes), f"{beyond} of {modes} modes err by more than is printed")
+        require(worst <= WORST_RATIO, f"a mode errs by {worst:.1f} times what is printed")
 
 
 def attempt(title, action, *arguments):

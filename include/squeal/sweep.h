@@ -55,7 +55,7 @@ springs, viscosity of dashpots, mu, kn, speed, ... of a contact, e.g. pad_young,
 .  -sweep_onsets <true>           - critical values of the first parameter, confirmed on the full problem
 .  -sweep_sensitivities <false>   - derivatives of every eigenvalue by every parameter
 .  -sweep_uncertain <names>       - parameters known to -sweep_percent only: which modes can become unstable
-.  -sweep_percent <10>            - their uncertainty, percent; one value or one for each
+.  -sweep_percent <percents>      - their uncertainty, one value for all names or one for each
 .  -sweep_groups <0>              - ranks that share the points, 0 for all; full solutions use all ranks
 -  -sweep_restart <true>          - go on where a sweep of the same scene in -output_dir was stopped
 @*/

@@ -3,13 +3,15 @@
 
       backward error   |Q x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|)
       condition        |x|_M |y|_M / |y^T D x|
-      error            |y^T Q x| / |y^T Q' x|, first order in the residual, but not below what rounding in K does
+      error            |y^T Q x| / |y^T Q' x|, first order in the residual, and what rounding in K does, ROUNDINGS times:
+                       in its entries, in products with it, and in its factors
    (F. Tisseur, Lin. Alg. Appl. 309, 2000, for the quadratic problem.)
 */
 #include "complexvec.h"
 
 #define QUALITY_BACKWARD 1e-6 /* largest backward error that is a solution */
-#define QUALITY_NOISE    100  /* lambda^2 below this many times its error is a rigid mode */
+#define ROUNDINGS        3
+#define QUALITY_NOISE    100 /* lambda^2 below this many times its error is a rigid mode */
 
 /* What all modes share: matrices, their Frobenius norms (K, C, M), and work vectors */
 typedef struct {
@@ -138,10 +140,11 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
   noise *= (has_left && isfinite(mode->condition) ? PetscMax(1, mode->condition) : 1) / (norm_x * norm_x);
   square      = PetscMax(noise, has_left && p.y_Dx > 0 ? p.y_Qx / p.y_Dx : 0); /* error of lambda^2 */
   mode->rigid = size * size <= QUALITY_NOISE * square ? PETSC_TRUE : PETSC_FALSE;
+  square      = ROUNDINGS * noise + (has_left && p.y_Dx > 0 ? p.y_Qx / p.y_Dx : 0);
   mode->error = mode->rigid ? PetscMax(size, PetscSqrtReal(square)) : square / (2 * size);
   if (mode->rigid) mode->sigma = mode->omega = 0;
   mode->unstable =
-    mode->sigma > 3 * mode->error && mode->sigma > (has_left ? 1e-9 : 1e-6) * size ? PETSC_TRUE : PETSC_FALSE;
+    mode->sigma > mode->error && mode->sigma > (has_left ? 1e-9 : 1e-6) * size ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(isfinite(mode->error) && isfinite(mode->sigma) && isfinite(mode->omega), modes->comm,
              PETSC_ERR_NOT_CONVERGED, "mode at %.6g Hz has an error of %g Hz: whether it grows cannot be told",
              (double)(cimag(lambda) / (2 * PETSC_PI)), (double)mode->error);

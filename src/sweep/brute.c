@@ -77,6 +77,25 @@ static PetscReal LargestDistance(PetscInt n, const Mode full[], const ReducedMod
   return largest;
 }
 
+/* True errors beside the sum of what the two solutions state */
+static void CheckRatios(PetscInt n, const Mode full[], const ReducedModes *reduced, SweepCheck *check)
+{
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscComplex lambda  = CMPLX(full[i].sigma, full[i].omega);
+    PetscReal          nearest = PETSC_MAX_REAL, stated = 1, ratio;
+
+    if (full[i].rigid || !reduced->n) continue;
+    for (PetscInt k = 0; k < reduced->n; k++) {
+      const PetscReal distance = cabs(reduced->lambda[k] - lambda);
+
+      if (distance < nearest) nearest = distance, stated = reduced->error[k] + full[i].error;
+    }
+    ratio = nearest / stated;
+    if (!(ratio <= 1)) check->n_beyond++;
+    if (!(ratio <= check->ratio)) check->ratio = ratio;
+  }
+}
+
 /* Compares the two at the point of the check; the reduced window is a little wider, for modes on its edge */
 static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
 {
@@ -102,6 +121,7 @@ static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
     check->n_reduced++;
     check->n_unstable_reduced += ReducedIsUnstable(reduced.lambda[k], reduced.error[k]);
   }
+  CheckRatios(check->n_full, full, &reduced, check);
   check->error    = LargestDistance(check->n_full, full, &reduced, &check->omega);
   check->estimate = sweep->method == SWEEP_REAL ? NAN : ReducedModesWorst(&reduced, &sweep->window, PETSC_TRUE);
   for (PetscInt i = 0; i < check->n_full; i++)

@@ -148,7 +148,7 @@ static void OnsetsSort(Sweep sweep)
 PetscErrorCode SweepOnsets(Sweep sweep)
 {
   Progress progress;
-  PetscInt n        = 0;
+  PetscInt n = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(PetscMax(1, sweep->events.n), &sweep->is_confirmed));

@@ -178,8 +178,9 @@ PetscErrorCode SweepClassify(Sweep sweep)
       SweepMode         *m      = &sweep->point[i].mode[k];
       const PetscComplex lambda = CMPLX(m->sigma, m->omega);
 
-      m->unstable  = ReducedIsUnstable(lambda, PetscIsInfOrNanReal(m->error) ? 0 : m->error);
-      m->numerical = !m->unstable && m->sigma > REDUCED_TINY * cabs(lambda) ? PETSC_TRUE : PETSC_FALSE;
+      m->unstable = ReducedIsUnstable(lambda, isnan(m->error) ? 0 : m->error);
+      m->numerical =
+        !m->unstable && (isinf(m->error) || m->sigma > REDUCED_TINY * cabs(lambda)) ? PETSC_TRUE : PETSC_FALSE;
       PetscCall(PetscStrncpy(m->label, sweep->label[m->branch].text, sizeof(m->label)));
     }
   PetscFunctionReturn(0);

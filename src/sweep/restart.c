@@ -3,20 +3,28 @@
    stopped. Each rank writes its part of the new vectors after every full solution, sweep_restart_<k>_rank<r>, under a
    temporary name that becomes final only when all ranks have written. The dense model is made again from the same
    blocks of vectors: on one rank bit by bit the same. The checksum of the scene tells whether the files belong to this
-   sweep; files of another one are ignored and in the end replaced.
+   sweep, and one of all that stands before it, at the end of each file, whether it is whole. Files of another sweep and
+   damaged ones are named, not read, and in the end replaced.
 */
 #include "sweepimpl.h"
 #include <stdio.h>
 #include <unistd.h>
 
-#define VERSION         3    /* of the format */
-#define SWEEP_MAX_PARTS 1000 /* of a scene; more are none */
+#define VERSION         4       /* of the format */
+#define SWEEP_MAX_PARTS 1000    /* of a scene; more are none */
+#define PIECE           1048576 /* bytes read at once */
 
 /* What stands before the parts of the scene and the vectors in each file */
 typedef struct {
   PetscReal last;
   PetscInt  version, n_parts, n_parameters, n_samples, n_passed, n_used, first, n, n_blocks, n_local;
 } Header;
+
+/* A file; good until something fails */
+typedef struct {
+  FILE     *file;
+  PetscBool write, good;
+} Stream;
 
 /* The places, and the values of all parameters there: what was identified and which pairs are closed belong to them */
 static PetscErrorCode GridAddChecksum(const SweepGrid *grid, Checksum c)
@@ -75,16 +83,18 @@ static PetscErrorCode FileName(Sweep sweep, PetscInt k, const char ending[], cha
   PetscFunctionReturn(0);
 }
 
-/* Reads or writes n items; accumulates success */
-static void Transfer(FILE *file, PetscBool write, void *data, size_t size, PetscInt n, PetscBool *good)
+/* Reads or writes n items */
+static void Transfer(Stream *s, void *data, size_t size, PetscInt n)
 {
-  const size_t done = !*good ? 0 : write ? fwrite(data, size, (size_t)n, file) : fread(data, size, (size_t)n, file);
+  const size_t done = !s->good   ? 0
+                      : s->write ? fwrite(data, size, (size_t)n, s->file)
+                                 : fread(data, size, (size_t)n, s->file);
 
-  if (done != (size_t)n) *good = PETSC_FALSE;
+  if (done != (size_t)n) s->good = PETSC_FALSE;
 }
 
 /* The vectors first .. n - 1 of this rank */
-static PetscErrorCode VectorsTransfer(FILE *file, PetscBool write, BV vectors, const Header *h, PetscBool *good)
+static PetscErrorCode VectorsTransfer(Stream *s, BV vectors, const Header *h)
 {
   PetscFunctionBeginUser;
   for (PetscInt j = h->first; j < h->n; j++) {
@@ -93,7 +103,7 @@ static PetscErrorCode VectorsTransfer(FILE *file, PetscBool write, BV vectors, c
 
     PetscCall(BVGetColumn(vectors, j, &v));
     PetscCall(VecGetArray(v, &array));
-    Transfer(file, write, array, sizeof(PetscScalar), h->n_local, good);
+    Transfer(s, array, sizeof(PetscScalar), h->n_local);
     PetscCall(VecRestoreArray(v, &array));
     PetscCall(BVRestoreColumn(vectors, j, &v));
   }
@@ -101,17 +111,18 @@ static PetscErrorCode VectorsTransfer(FILE *file, PetscBool write, BV vectors, c
 }
 
 /* Samples and ends of blocks, all that there are by now */
-static PetscErrorCode RecordsTransfer(Sweep sweep, FILE *file, PetscBool write, const Header *h, PetscBool *good)
+static PetscErrorCode RecordsTransfer(Sweep sweep, Stream *s, const Header *h)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < h->n_samples && *good; i++) {
-    GreedySample *s = &sweep->greedy.sample[i];
+  for (PetscInt i = 0; i < h->n_samples && s->good; i++) {
+    GreedySample *sample = &sweep->greedy.sample[i];
 
-    if (!s->p) PetscCall(PetscMalloc1(sweep->grid.n_parameters, &s->p));
-    Transfer(file, write, s->p, sizeof(PetscReal), sweep->grid.n_parameters, good);
-    Transfer(file, write, &s->krylov, sizeof(s->krylov), 1, good);
-    Transfer(file, write, &s->n_vectors, sizeof(s->n_vectors), 1, good);
-    Transfer(file, write, &s->estimate, sizeof(s->estimate), 1, good);
+    if (!sample->p) PetscCall(PetscMalloc1(sweep->grid.n_parameters, &sample->p));
+    Transfer(s, sample->p, sizeof(PetscReal), sweep->grid.n_parameters);
+    Transfer(s, &sample->krylov, sizeof(sample->krylov), 1);
+    Transfer(s, &sample->factored, sizeof(sample->factored), 1);
+    Transfer(s, &sample->n_vectors, sizeof(sample->n_vectors), 1);
+    Transfer(s, &sample->estimate, sizeof(sample->estimate), 1);
   }
   PetscFunctionReturn(0);
 }
@@ -124,15 +135,42 @@ static PetscErrorCode AllGood(MPI_Comm comm, PetscBool *good)
   PetscFunctionReturn(0);
 }
 
+/* The checksum of all that stands in a file: appended, or compared with the one at its end */
+static PetscErrorCode FileSeal(const char name[], PetscBool append, PetscBool *good)
+{
+  FILE    *file = *good ? fopen(name, append ? "r+b" : "rb") : NULL;
+  char    *piece;
+  uint64_t sum = CHECKSUM_BEGIN, last = 0;
+  long     left = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(PIECE, &piece));
+  *good = file && !fseek(file, 0, SEEK_END) && (left = ftell(file)) >= 0 ? PETSC_TRUE : PETSC_FALSE;
+  left -= append ? 0 : (long)sizeof(last);
+  if (file) rewind(file);
+  for (*good = *good && left >= 0 ? PETSC_TRUE : PETSC_FALSE; *good && left > 0;) {
+    const size_t size = left < PIECE ? (size_t)left : PIECE;
+
+    if (fread(piece, 1, size, file) != size) *good = PETSC_FALSE;
+    sum = ChecksumBytes(sum, piece, size);
+    left -= (long)size;
+  }
+  if (*good && append && (fseek(file, 0, SEEK_END) || fwrite(&sum, sizeof(sum), 1, file) != 1)) *good = PETSC_FALSE;
+  if (*good && !append && (fread(&last, sizeof(last), 1, file) != 1 || last != sum)) *good = PETSC_FALSE;
+  if (file && fclose(file)) *good = PETSC_FALSE;
+  PetscCall(PetscFree(piece));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SweepKeep(void *ctx)
 {
   Sweep               sweep = (Sweep)ctx;
   Basis              *basis = &sweep->basis;
   const ChecksumPart *scene;
   char                name[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
+  Stream              s    = {.write = PETSC_TRUE};
   PetscBool           good = PETSC_TRUE;
   Header              h;
-  FILE               *file;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(&h, sizeof(h)));
@@ -146,14 +184,16 @@ PetscErrorCode SweepKeep(void *ctx)
   PetscCall(BVGetSizes(basis->vectors, &h.n_local, NULL, NULL));
   PetscCall(FileName(sweep, sweep->n_files, "", name));
   PetscCall(FileName(sweep, sweep->n_files, ".part", part));
-  file = fopen(part, "wb");
-  good = file ? PETSC_TRUE : PETSC_FALSE;
-  Transfer(file, PETSC_TRUE, &h, sizeof(h), 1, &good);
-  Transfer(file, PETSC_TRUE, (void *)scene, sizeof(*scene), h.n_parts, &good);
-  Transfer(file, PETSC_TRUE, basis->block_end, sizeof(PetscInt), h.n_blocks, &good);
-  PetscCall(RecordsTransfer(sweep, file, PETSC_TRUE, &h, &good));
-  PetscCall(VectorsTransfer(file, PETSC_TRUE, basis->vectors, &h, &good));
-  if (file && fclose(file)) good = PETSC_FALSE;
+  s.file = fopen(part, "wb");
+  s.good = s.file ? PETSC_TRUE : PETSC_FALSE;
+  Transfer(&s, &h, sizeof(h), 1);
+  Transfer(&s, (void *)scene, sizeof(*scene), h.n_parts);
+  Transfer(&s, basis->block_end, sizeof(PetscInt), h.n_blocks);
+  PetscCall(RecordsTransfer(sweep, &s, &h));
+  PetscCall(VectorsTransfer(&s, basis->vectors, &h));
+  if (s.file && fclose(s.file)) s.good = PETSC_FALSE;
+  PetscCall(FileSeal(part, PETSC_TRUE, &s.good));
+  good = s.good;
   PetscCall(AllGood(sweep->comm, &good));
   if (good && rename(part, name)) good = PETSC_FALSE;
   if (!good) (void)unlink(part);
@@ -169,64 +209,89 @@ PetscErrorCode SweepKeep(void *ctx)
   PetscFunctionReturn(0);
 }
 
-/* Reads the parts of the scene; good = whether they are those of this sweep, names = of those that differ */
-static PetscErrorCode SceneCheck(Sweep sweep, FILE *file, const Header *h, PetscBool *good, char names[256])
+/* Reads the parts of the scene; s->good = whether they are those of this sweep, names = of those that differ */
+static PetscErrorCode SceneCheck(Sweep sweep, Stream *s, const Header *h, char names[256])
 {
   ChecksumPart *kept;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscStrncpy(names, *good ? "the format of the files" : "", 256));
-  if (!*good) PetscFunctionReturn(0);
-  *good = h->version == VERSION && h->n_parts >= 0 && h->n_parts <= SWEEP_MAX_PARTS ? PETSC_TRUE : PETSC_FALSE;
-  if (!*good) PetscFunctionReturn(0);
+  PetscCall(PetscStrncpy(names, s->good && h->version != VERSION ? "the format of the files" : "", 256));
+  if (h->version != VERSION || h->n_parts < 0 || h->n_parts > SWEEP_MAX_PARTS) s->good = PETSC_FALSE;
+  if (!s->good) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(h->n_parts, &kept));
-  Transfer(file, PETSC_FALSE, kept, sizeof(*kept), h->n_parts, good);
-  if (*good) PetscCall(ChecksumCompare(sweep->scene, h->n_parts, kept, 256, names));
-  if (names[0]) *good = PETSC_FALSE;
+  Transfer(s, kept, sizeof(*kept), h->n_parts);
+  if (s->good) PetscCall(ChecksumCompare(sweep->scene, h->n_parts, kept, 256, names));
+  if (names[0]) s->good = PETSC_FALSE;
   PetscCall(PetscFree(kept));
+  PetscFunctionReturn(0);
+}
+
+/* Whether what a header says can be: its vectors follow those that there are, and the model has all but corrections */
+static PetscErrorCode HeaderCheck(Sweep sweep, const Header *h, PetscBool *good)
+{
+  const Basis *basis = &sweep->basis;
+  PetscInt     n_local;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetSizes(basis->vectors, &n_local, NULL, NULL));
+  if (h->n_parameters != sweep->grid.n_parameters || h->n_local != n_local) *good = PETSC_FALSE;
+  if (h->first != basis->reduced.n || h->n < h->first || h->n_used < 1 || h->n_used > h->n) *good = PETSC_FALSE;
+  if (h->n_samples < 1 || h->n_samples > sweep->greedy.max_samples) *good = PETSC_FALSE;
+  if (h->n_blocks < basis->n_blocks || h->n_blocks > BASIS_MAX_BLOCKS) *good = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Blocks, records and vectors behind a good header */
+static PetscErrorCode FileTake(Sweep sweep, Stream *s, const Header *h)
+{
+  Basis *basis = &sweep->basis;
+
+  PetscFunctionBeginUser;
+  Transfer(s, basis->block_end, sizeof(PetscInt), h->n_blocks);
+  PetscCall(RecordsTransfer(sweep, s, h));
+  PetscCall(BVResize(basis->vectors, h->n, PETSC_TRUE));
+  PetscCall(VectorsTransfer(s, basis->vectors, h));
+  PetscCall(AllGood(sweep->comm, &s->good));
+  if (!s->good) PetscFunctionReturn(0);
+  PetscCall(BasisRebuild(basis, h->n_blocks));
+  basis->reduced.n_used   = h->n_used;
+  sweep->greedy.n_samples = h->n_samples;
+  sweep->greedy.last      = h->last;
+  sweep->greedy.n_passed  = h->n_passed;
+  sweep->n_kept           = h->n;
   PetscFunctionReturn(0);
 }
 
 /* Reads file k into the basis; good = whether it exists, is whole and belongs to this sweep */
 static PetscErrorCode FileResume(Sweep sweep, PetscInt k, PetscBool *good)
 {
-  Basis   *basis = &sweep->basis;
-  char     name[PETSC_MAX_PATH_LEN], names[256];
-  Header   h;
-  FILE    *file;
-  PetscInt n_local;
+  char      name[PETSC_MAX_PATH_LEN], names[256] = "";
+  PetscBool there, whole;
+  Header    h = {0};
+  Stream    s = {NULL};
 
   PetscFunctionBeginUser;
   PetscCall(FileName(sweep, k, "", name));
-  file  = fopen(name, "rb");
-  *good = file ? PETSC_TRUE : PETSC_FALSE;
-  Transfer(file, PETSC_FALSE, &h, sizeof(h), 1, good);
-  PetscCall(SceneCheck(sweep, file, &h, good, names));
-  if (!k && names[0])
+  there = whole = access(name, F_OK) == 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(FileSeal(name, PETSC_FALSE, &whole));
+  PetscCall(AllGood(sweep->comm, &whole));
+  s.file = whole ? fopen(name, "rb") : NULL;
+  s.good = s.file ? PETSC_TRUE : PETSC_FALSE;
+  Transfer(&s, &h, sizeof(h), 1);
+  if (s.good) PetscCall(SceneCheck(sweep, &s, &h, names));
+  PetscCall(HeaderCheck(sweep, &h, &s.good));
+  PetscCall(AllGood(sweep->comm, &s.good));
+  if (!s.good && names[0] && !k)
     PetscCall(PetscFPrintf(sweep->comm, stderr,
                            "squeal: warning: '%s' is of another scene, which differs in: %s; the sweep begins anew\n",
                            name, names));
-  PetscCall(BVGetSizes(basis->vectors, &n_local, NULL, NULL));
-  if (*good &&
-      (h.n_parameters != sweep->grid.n_parameters || h.n < h.first || h.n_used > h.n || h.first != basis->reduced.n ||
-       h.n_local != n_local || h.n_samples > sweep->greedy.max_samples || h.n_blocks > BASIS_MAX_BLOCKS))
-    *good = PETSC_FALSE;
-  PetscCall(AllGood(sweep->comm, good));
-  if (*good) {
-    Transfer(file, PETSC_FALSE, basis->block_end, sizeof(PetscInt), h.n_blocks, good);
-    PetscCall(RecordsTransfer(sweep, file, PETSC_FALSE, &h, good));
-    PetscCall(BVResize(basis->vectors, h.n, PETSC_TRUE));
-    PetscCall(VectorsTransfer(file, PETSC_FALSE, basis->vectors, &h, good));
-    PetscCall(AllGood(sweep->comm, good));
-  }
-  if (file) (void)fclose(file);
-  if (!*good) PetscFunctionReturn(0);
-  PetscCall(BasisRebuild(basis, h.n_blocks));
-  basis->reduced.n_used   = h.n_used;
-  sweep->greedy.n_samples = h.n_samples;
-  sweep->greedy.last      = h.last;
-  sweep->greedy.n_passed  = h.n_passed;
-  sweep->n_kept           = h.n;
+  else if (!s.good && there)
+    PetscCall(PetscFPrintf(sweep->comm, stderr,
+                           "squeal: warning: '%s' is damaged or of another version; the sweep goes on without it\n",
+                           name));
+  if (s.good) PetscCall(FileTake(sweep, &s, &h));
+  if (s.file) (void)fclose(s.file);
+  *good = s.good;
   PetscFunctionReturn(0);
 }
 

@@ -43,6 +43,15 @@ static PetscErrorCode BoxRead(Sweep sweep, ParameterBox *box)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SweepUncertainCheck(Sweep sweep)
+{
+  ParameterBox box;
+
+  PetscFunctionBeginUser;
+  PetscCall(BoxRead(sweep, &box));
+  PetscFunctionReturn(0);
+}
+
 /* Element i of the van der Corput sequence in the given base, in [0, 1) */
 static PetscReal VanDerCorput(PetscInt i, PetscInt base)
 {

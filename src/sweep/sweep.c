@@ -94,13 +94,14 @@ static PetscErrorCode ReadExtras(Sweep sweep, OptionsItems PetscOptionsObject)
   PetscCall(PetscOptionsString("-sweep_uncertain", "parameters known to -sweep_percent only: what can become unstable",
                                "sweep.h", sweep->uncertain, sweep->uncertain, sizeof(sweep->uncertain), NULL));
   PetscCall(PetscCalloc1(SWEEP_MAX_UNCERTAIN + 1, &sweep->percent));
-  sweep->n_percent  = SWEEP_MAX_UNCERTAIN + 1;
-  sweep->percent[0] = 10;
-  PetscCall(PetscOptionsRealArray("-sweep_percent", "their uncertainty, percent; one value (10) or one for each",
-                                  "sweep.h", sweep->percent, &sweep->n_percent, &set));
+  sweep->n_percent = SWEEP_MAX_UNCERTAIN + 1;
+  PetscCall(PetscOptionsRealArray("-sweep_percent", "their uncertainty, percent; one value or one for each", "sweep.h",
+                                  sweep->percent, &sweep->n_percent, &set));
   PetscCheck(!set || sweep->uncertain[0], sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_percent does nothing without -sweep_uncertain");
-  if (!set) sweep->n_percent = 1;
+  PetscCheck(set || !sweep->uncertain[0], sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_uncertain %s without -sweep_percent: give one percentage for all names, or one for each",
+             sweep->uncertain);
   PetscCall(PetscOptionsInt("-sweep_groups", "ranks that share the points (0: all; the full solutions use all ranks)",
                             "sweep.h", sweep->n_groups, &sweep->n_groups, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-sweep_restart",
@@ -212,7 +213,7 @@ static PetscErrorCode ModelMake(Sweep sweep)
   sweep->greedy.rtol        = sweep->rtol;
   sweep->greedy.max_samples = sweep->max_samples;
   sweep->greedy.progress    = &sweep->progress;
-  PetscCall(PetscCalloc1(2 * sweep->max_samples + 2, &sweep->greedy.sample));
+  PetscCall(PetscCalloc1(2 * sweep->max_samples + 2 + GREEDY_LOOKS, &sweep->greedy.sample));
   sweep->greedy.last = PETSC_MAX_REAL;
   if (sweep->method == SWEEP_REAL) {
     GridPoint(&sweep->grid, GridSize(&sweep->grid) / 2, p);
@@ -289,6 +290,7 @@ PetscErrorCode SweepSolve(Sweep sweep, Results results)
   sweep->window.low  = 2 * PETSC_PI * band[0];
   sweep->window.high = 2 * PETSC_PI * band[1];
   PetscCall(GridSetUp(sweep));
+  if (sweep->uncertain[0]) PetscCall(SweepUncertainCheck(sweep));
   PetscCall(SweepCheckPlaces(sweep));
   PetscCall(PetscCalloc1(GridSize(&sweep->grid), &sweep->point));
   PetscCall(PetscTime(&since));

@@ -41,6 +41,8 @@ typedef struct {
   PetscInt   n_full, n_reduced, n_unstable_full, n_unstable_reduced;
   PetscReal  error, estimate; /* largest relative ones: distance, estimate of the reduced model */
   PetscReal  full;            /* largest relative error that the full solution itself states */
+  PetscInt   n_beyond;        /* modes whose true error exceeds what both solutions state */
+  PetscReal  ratio;           /* largest true error beside what both state */
   PetscReal  omega;           /* rad/s, where the true error is largest */
 } SweepCheck;
 
@@ -99,8 +101,8 @@ PETSC_INTERN PetscReal SweepWorst(Sweep sweep);
 /* Names of all modes of a point from their shapes on the mesh */
 PETSC_INTERN PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedModes *modes,
                                             char label[][32]);
-/* Which eigenvalues are unstable, or numerically so: growth is `unstable` when it exceeds three times the estimated
-   error of its eigenvalue, and `numerical` when the error bar covers zero */
+/* Which eigenvalues are unstable, or numerically so: growth is `unstable` when it exceeds the estimated error of
+   its eigenvalue, and `numerical` when the error bar covers zero, or is not finite */
 PETSC_INTERN PetscErrorCode SweepClassify(Sweep sweep);
 /* sliding.c - raises the error for a contact's parameter that would be overwritten at every point */
 PETSC_INTERN PetscErrorCode SweepAxisCheck(Sweep sweep, const char name[]);
@@ -122,7 +124,8 @@ PETSC_INTERN PetscInt SweepEventLine(Sweep sweep, PetscInt e);
 PETSC_INTERN PetscErrorCode SweepBrute(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepCheckPlaces(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepVerify(Sweep sweep);
-/* robust.c - combinations of uncertain parameters */
+/* robust.c - raises the error for names or percentages that cannot be; combinations of uncertain parameters */
+PETSC_INTERN PetscErrorCode SweepUncertainCheck(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepRobustness(Sweep sweep);
 /* restart.c - keeps the full solutions so far (ctx is the sweep), takes up what an earlier run kept, and deletes it */
 PETSC_INTERN PetscErrorCode SweepKeep(void *ctx);

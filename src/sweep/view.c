@@ -211,7 +211,7 @@ static PetscErrorCode OnsetCostView(Sweep sweep, PetscViewer viewer)
 static PetscErrorCode ChecksView(Sweep sweep, PetscViewer viewer)
 {
   PetscReal error = 0, estimate = 0;
-  PetscInt  missed = 0;
+  PetscInt  missed = 0, n = 0, n_beyond = 0;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < sweep->n_checks; i++) {
@@ -219,14 +219,17 @@ static PetscErrorCode ChecksView(Sweep sweep, PetscViewer viewer)
 
     error    = PetscMax(error, c->error);
     estimate = PetscMax(estimate, c->estimate);
+    n += c->n_full;
+    n_beyond += c->n_beyond;
     if (c->n_full != c->n_reduced || c->n_unstable_full != c->n_unstable_reduced) missed++;
   }
   if (sweep->n_checks)
     PetscCall(PetscViewerASCIIPrintf(viewer,
                                      "checked by %" PetscInt_FMT
                                      " full solutions between the points: largest true error %.1e (estimate %.1e), "
+                                     "%" PetscInt_FMT " of %" PetscInt_FMT " modes beyond what is stated; "
                                      "%" PetscInt_FMT " with another number of modes or instabilities\n",
-                                     sweep->n_checks, (double)error, (double)estimate, missed));
+                                     sweep->n_checks, (double)error, (double)estimate, n_beyond, n, missed));
   PetscFunctionReturn(0);
 }
 

@@ -118,10 +118,11 @@ static PetscErrorCode CheckRows(Sweep sweep, ResultsTable table)
   for (PetscInt i = 0; i < sweep->n_checks; i++) {
     const SweepCheck *c = &sweep->check[i];
 
-    PetscCall(ResultsTableRow(table, "%.15g,%s,%d,%d,%d,%d,%.15g,%s,%.15g,%.15g", (double)c->at.value[0],
+    PetscCall(ResultsTableRow(table, "%.15g,%s,%d,%d,%d,%d,%.15g,%s,%.15g,%.15g,%d,%s", (double)c->at.value[0],
                               NumberOrEmpty(sweep->grid.n_axes == 2 ? c->at.value[1] : NAN).text, (int)c->n_full,
                               (int)c->n_reduced, (int)c->n_unstable_full, (int)c->n_unstable_reduced, (double)c->error,
-                              NumberOrEmpty(c->estimate).text, (double)(c->omega / (2 * PETSC_PI)), (double)c->full));
+                              NumberOrEmpty(c->estimate).text, (double)(c->omega / (2 * PETSC_PI)), (double)c->full,
+                              (int)c->n_beyond, NumberOrEmpty(sweep->method == SWEEP_REAL ? NAN : c->ratio).text));
   }
   PetscFunctionReturn(0);
 }
@@ -213,7 +214,7 @@ PetscErrorCode SweepWrite(Sweep sweep, Results results)
   if (sweep->n_checks)
     PetscCall(TableWrite(sweep, results, CheckRows, "verify",
                          "value,value_2,modes_full,modes_reduced,unstable_full,unstable_reduced,true_error,"
-                         "error_estimate,freq_hz,full_error"));
+                         "error_estimate,freq_hz,full_error,modes_beyond_error,worst_ratio"));
   if (sweep->n_risks)
     PetscCall(TableWrite(sweep, results, RiskRows, "robustness",
                          "label,freq_hz,growth_nominal_rad_s,growth_largest_rad_s,error_rad_s,unstable_combinations,"

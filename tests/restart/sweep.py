@@ -24,7 +24,11 @@ TABLES = ("sweep.csv", "onsets.csv", "parameters.csv")
 # What differs, and the options that make it so
 CHANGES = (("contact contact", "-contact_mu", "0.4"), ("materials", "-beam_poisson", "0.29"),
            ("modes", "-modes_band", "100,11000"),
-           ("supports", "-supports", "hub,foot", "-foot_set", "beam_rows", "-foot_fix", "x"))
+           ("supports", "-supports", "hub,foot", "-foot_set", "beam_rows", "-foot_fix", "x"),
+           ("contact contact", "-contact_slip", "1,0,0"), ("the mesh", "-model_element", "full"),
+           ("springs", "-rows_stiffness", "0,8.422e6,1"), ("the mesh", "-rig_disc_spread", "0.5"))
+# Places in the second file, and what is put there: n_samples and n_used of the header, a bit of a vector, an end
+DAMAGE = ((20, b"\xff\xff\xff\xff"), (28, b"\x01\0\0\0"), (28, b"\xff\xff\xff\xff"), (-1000, b"\x01"), (-8, None))
 # Pairs that are closed at some places only, groups of them among the parameters; fewer groups without the last two
 GROUPS = ("-sweep_parameter", "contact_mu", "-sweep_values", "0.05,0.06,0.07", "-sweep_verify", "0",
           "-sweep_uncertain", "pad_young", "-sweep_percent", "10")
@@ -86,6 +90,25 @@ def begin_anew(arguments, folder, output, parts, *options):
         raise SystemExit(f"FAILED: {' '.join(options)} is not said to differ in {parts}:\n{printed}")
 
 
+def check_damage(arguments, folder):
+    """Damaged files: each is named and left out, and the sweep ends as if it had not been there."""
+    for number, (place, bytes_) in enumerate(DAMAGE):
+        output = f"damaged{number}"
+        shutil.copytree(folder / "other", folder / output)
+        file = folder / output / "sweep_restart_001_rank0"
+        data = bytearray(file.read_bytes())
+        data[place:len(data) if bytes_ is None else place + len(bytes_)] = bytes_ or b""
+        file.write_bytes(data)
+        printed = complete(arguments, folder, output)
+        if not re.search("sweep_restart_001_rank0' is damaged or of another version; the sweep goes on without it$",
+                         printed, re.M):
+            raise SystemExit(f"FAILED: damage {number} was not seen:\n{printed}")
+        if kept(arguments, folder, output):
+            raise SystemExit(f"FAILED: damage {number}: files are left")
+        if not same(arguments, folder / "undisturbed/sweep.csv", folder / output / "sweep.csv"):
+            raise SystemExit(f"FAILED: damage {number}: sweep.csv differs")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("squeal")
@@ -112,6 +135,8 @@ def main():
         for parts, *change in CHANGES:
             shutil.copytree(folder / "other", folder / change[0])
             begin_anew(arguments, folder, change[0], parts, *change)
+        if arguments.contact == "all" and arguments.ranks == 1:
+            check_damage(arguments, folder)
         if arguments.contact == "static":
             kill_after(arguments, folder, "groups", 1, *GROUPS)
             begin_anew(arguments, folder, "groups", "the sweep", *GROUPS[:6])

@@ -73,7 +73,7 @@ static PetscErrorCode TestLockIn(int *failed)
       PetscCall(SolveBoth(&s, p, &wide, &m, &truth));
       for (PetscInt i = 0; i < 2; i++) {
         error    = PetscMax(error, Nearest(&truth, m.lambda[i]));
-        estimate = PetscMax(estimate, m.error[i]);
+        estimate = PetscMax(estimate, m.sharp[i]);
       }
       printf("     mu / mu_c - 1 = %g, %s, error %.2e, estimate %.2e, 1 / condition %.1e\n", distance[k],
              damped ? "damped" : "undamped", error, estimate, cabs(m.product[0]));
@@ -111,7 +111,7 @@ static PetscErrorCode TestJordan(int *failed)
     PetscCall(SolveBoth(&s, NULL, &wide, &m, &truth));
     for (PetscInt i = 0; i < 2; i++) {
       error    = PetscMax(error, Nearest(&truth, m.lambda[i]));
-      estimate = PetscMax(estimate, m.error[i]);
+      estimate = PetscMax(estimate, m.sharp[i]);
     }
     printf("     Jordan block, %s, error %.2e, 1 / condition %.1e\n", damped ? "damped" : "undamped", error,
            cabs(m.product[0]));
@@ -142,7 +142,7 @@ static PetscErrorCode TestDouble(int *failed)
   SystemAdd(&s, OPERATORS_MASS, PETSC_TRUE, -1, M);
   PetscCall(SolveBoth(&s, NULL, &wide, &m, &truth));
   for (PetscInt i = 0; i < 3; i++) {
-    const PetscReal ratio = m.error[i] / cabs(truth.lambda[i] - m.lambda[i]);
+    const PetscReal ratio = m.sharp[i] / cabs(truth.lambda[i] - m.lambda[i]);
 
     low = PetscMin(low, ratio), high = PetscMax(high, ratio);
   }

@@ -153,6 +153,14 @@ static PetscErrorCode CorrectionSide(const Correction *c, const ReducedModes *mo
 PetscErrorCode CorrectionApply(const Correction *c, const ReducedModes *modes, PetscReal drop, Basis *basis,
                                PetscInt *n_added)
 {
+  PetscFunctionBeginUser;
+  PetscCall(CorrectionApplySides(c, modes, CORRECT_BOTH, drop, basis, n_added));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CorrectionApplySides(const Correction *c, const ReducedModes *modes, CorrectionSides sides,
+                                    PetscReal drop, Basis *basis, PetscInt *n_added)
+{
   PetscInt n = 0;
   BV       block;
 
@@ -161,8 +169,8 @@ PetscErrorCode CorrectionApply(const Correction *c, const ReducedModes *modes, P
   if (!modes->n) PetscFunctionReturn(0);
   PetscCall(EventBegin(EVENT_CORRECT));
   PetscCall(BasisCreateBlock(basis, 4 * modes->n, &block));
-  PetscCall(CorrectionSide(c, modes, PETSC_FALSE, basis, block, &n));
-  PetscCall(CorrectionSide(c, modes, PETSC_TRUE, basis, block, &n));
+  if (sides != CORRECT_LEFT) PetscCall(CorrectionSide(c, modes, PETSC_FALSE, basis, block, &n));
+  if (sides != CORRECT_RIGHT) PetscCall(CorrectionSide(c, modes, PETSC_TRUE, basis, block, &n));
   PetscCall(BVSetActiveColumns(block, 0, n));
   if (n) PetscCall(BasisAdd(basis, block, drop, n_added));
   PetscCall(BVDestroy(&block));

@@ -10,6 +10,8 @@ typedef struct {
   ShiftInvert    factor;
 } Correction;
 
+typedef enum { CORRECT_BOTH, CORRECT_RIGHT, CORRECT_LEFT } CorrectionSides;
+
 /* Sets the pencil to p and factors it near the window's modes; the caller destroys the factor */
 PetscErrorCode CorrectionCreate(Pencil pencil, const PetscReal p[], const ReducedWindow *window, Progress *progress,
                                 Correction *correction);
@@ -19,6 +21,10 @@ PetscErrorCode CorrectionMove(Pencil pencil, const PetscReal p[], Correction *co
    vectors gained */
 PetscErrorCode CorrectionApply(const Correction *correction, const ReducedModes *modes, PetscReal drop, Basis *basis,
                                PetscInt *n_added);
+
+/* The same of right or left vectors only */
+PetscErrorCode CorrectionApplySides(const Correction *correction, const ReducedModes *modes, CorrectionSides sides,
+                                    PetscReal drop, Basis *basis, PetscInt *n_added);
 
 /* Frictionless modes in the window (from zero on where its lower end is below half of the upper one) by Sylvester's law
    of inertia with the pencil at p, and by the basis; the two are equal where the basis holds every mode. Both are -1 where the

@@ -8,15 +8,18 @@
    farthest from all looked at, as long as the last one had to be taken in; else the one with the largest estimate. It
    ends when the farthest point needs nothing (two of them while there are no corrections that could tell an error
    elsewhere), and no point does by the estimate with all corrections so far (points.c).
+
+   Corrections of one point tell little of the error at others. Before it ends, the points farthest from all others are
+   therefore looked at with the factors of the last one, a block solve each, which estimates the error from then on.
 */
 #include "greedy.h"
 
 #define GUARD        0.03 /* relative width beyond the band of modes that the basis holds */
-#define SAFE         0.03 /* what is asked at a point that corrections come from, beside rtol */
+#define SAFE         0.01 /* what is asked at a point that corrections come from, beside rtol */
 #define SETTLED      1e-3 /* beside rtol: a mode that needs no more corrections at this point */
 #define GREEDY_STEPS 8
-#define GREEDY_DROP                                                                                                    \
-  3e-3 /* vectors shorter than this beside the root of rtol add nothing; errors go with their squares */
+#define GREEDY_DROP  1e-3 /* vectors shorter than this beside the root of rtol add nothing to the model */
+#define LOOK_DROP    3e-2 /* beside that: vectors that tell an error, as the square times a ratio of stiffnesses, 1e4 */
 
 /* What the run knows */
 typedef struct {
@@ -28,6 +31,10 @@ typedef struct {
   PetscReal       *estimate; /* [n] */
   PetscReal       *scale;    /* [n_parameters] */
   PetscReal        drop;
+  CorrectionSides  sides;
+  PetscInt         first; /* sample from which on distances are measured */
+  Correction       correction;
+  PetscBool        has_factor, is_near; /* is_near: the factors are those of the point */
 } GreedyWork;
 
 /* New entry of the list of full solutions */
@@ -104,8 +111,8 @@ static PetscErrorCode ModesDropSettled(const ReducedModes *before, PetscReal tol
 
 /* One step of corrections at p of the modes that the step before (modes, empty at first) has not settled; worst = what
    they tell about the model before */
-static PetscErrorCode StepApply(GreedyWork *run, const Correction *correction, const PetscReal p[], ReducedModes *modes,
-                                PetscInt *n_added, PetscReal *worst)
+static PetscErrorCode StepApply(GreedyWork *run, const PetscReal p[], ReducedModes *modes, PetscInt *n_added,
+                                PetscReal *worst)
 {
   ReducedModes before = *modes;
 
@@ -114,7 +121,7 @@ static PetscErrorCode StepApply(GreedyWork *run, const Correction *correction, c
   PetscCall(ReducedModesBroadcast(run->basis->comm, 0, modes)); /* control flow must be alike on all ranks */
   PetscCall(ModesDropSettled(&before, SETTLED * run->greedy->rtol, modes));
   PetscCall(ReducedModesDestroy(&before));
-  PetscCall(CorrectionApply(correction, modes, run->drop, run->basis, n_added));
+  PetscCall(CorrectionApplySides(&run->correction, modes, run->sides, run->drop, run->basis, n_added));
   PetscCall(ReducedEstimate(&run->basis->reduced, p, modes));
   PetscCall(ReducedModesBroadcast(run->basis->comm, 0, modes));
   *worst = ReducedModesWorst(modes, &run->greedy->window, PETSC_FALSE);
@@ -133,57 +140,77 @@ static PetscErrorCode SampleCount(GreedyWork *run, const PetscReal p[], PetscBoo
   PetscFunctionReturn(0);
 }
 
-/* Looks at point p: first = the estimate there before; where it exceeds rtol, the basis takes the point in */
-static PetscErrorCode SampleCorrect(GreedyWork *run, const PetscReal p[], PetscReal *first)
+/* The factors at p in place of those before */
+static PetscErrorCode FactorMake(GreedyWork *run, const PetscReal p[])
 {
-  Correction   correction;
-  ReducedModes modes = {0};
-  PetscReal    worst;
-  PetscInt     n_added, n_vectors = 0;
-  PetscBool    complete = PETSC_TRUE;
-
   PetscFunctionBeginUser;
-  PetscCall(CorrectionCreate(run->basis->pencil, p, &run->guarded, run->greedy->progress, &correction));
-  PetscCall(StepApply(run, &correction, p, &modes, &n_added, first));
-  worst = *first;
-  for (int step = 1; step < GREEDY_STEPS && worst > SAFE * run->greedy->rtol; step++) {
-    n_vectors += n_added;
-    run->basis->reduced.n_used = run->basis->reduced.n;
-    PetscCall(StepApply(run, &correction, p, &modes, &n_added, &worst));
-  }
-  PetscCall(ReducedModesDestroy(&modes));
-  PetscCall(ShiftInvertDestroy(&correction.factor));
-  PetscCall(SampleCount(run, p, &complete));
-  run->greedy->n_passed = *first <= SAFE * run->greedy->rtol && complete ? run->greedy->n_passed + 1 : 0;
-  PetscCall(SampleAdd(run, p, PETSC_FALSE, n_vectors, *first));
-  if (!complete && run->greedy->n_samples < run->greedy->max_samples) {
-    *first = PETSC_MAX_REAL;
-    PetscCall(SampleKrylov(run, p, *first));
-  }
+  if (run->has_factor) PetscCall(ShiftInvertDestroy(&run->correction.factor));
+  PetscCall(CorrectionCreate(run->basis->pencil, p, &run->guarded, run->greedy->progress, &run->correction));
+  run->has_factor = run->is_near = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
-/* Extent of the points along each parameter, scale[n_parameters]: the length of the range, or the negative logarithm of
-   its ratio where the ends differ by a factor of RATIO_FROM; 0 for a parameter that does not vary. Groups of pairs that
-   open or close count as one parameter together: the distance of two statuses, squared, is the share of the groups in
-   which they differ. */
-static PetscErrorCode ScalePoints(GreedyWork *run)
+/* The pencil at p with the factors of the last point that has any; a run that goes on makes these anew */
+static PetscErrorCode FactorKeep(GreedyWork *run, const PetscReal p[])
 {
-  const OperatorsParameter *parameters;
-  PetscInt                  n, n_groups = 0;
+  PetscInt last = run->greedy->n_samples - 1;
 
   PetscFunctionBeginUser;
-  PetscCall(PencilGetParameters(run->basis->pencil, &n, &parameters, NULL));
-  for (PetscInt k = 0; k < n; k++) n_groups += parameters[k].internal ? 1 : 0;
-  for (PetscInt k = 0; k < n; k++) {
-    PetscReal low = run->points[k], high = run->points[k];
+  while (last > 0 && !run->greedy->sample[last].factored) last--;
+  if (!run->has_factor) PetscCall(FactorMake(run, run->greedy->sample[last].p));
+  PetscCall(CorrectionMove(run->basis->pencil, p, &run->correction));
+  run->is_near = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
 
-    for (PetscInt i = 0; i < run->n; i++) {
-      low  = PetscMin(low, run->points[i * n + k]);
-      high = PetscMax(high, run->points[i * n + k]);
-    }
-    run->scale[k] = low > 0 && high > RATIO_FROM * low ? -PetscLogReal(high / low) : high - low;
-    if (parameters[k].internal) run->scale[k] *= PetscSqrtReal((PetscReal)n_groups);
+/* How often p has been looked at, or, factored, corrected with factors of its own */
+static PetscInt PointTimes(const GreedyWork *run, const PetscReal p[], PetscBool factored)
+{
+  PetscInt times = 0;
+
+  for (PetscInt j = 0; j < run->greedy->n_samples; j++) {
+    const GreedySample *sample = &run->greedy->sample[j];
+    PetscBool           same   = sample->factored || !factored ? PETSC_TRUE : PETSC_FALSE;
+
+    for (PetscInt k = 0; k < run->basis->reduced.n_parameters && same; k++)
+      same = sample->p[k] == p[k] ? PETSC_TRUE : PETSC_FALSE;
+    times += same ? 1 : 0;
+  }
+  return times;
+}
+
+/* Looks at point p: first = the estimate there before; where it exceeds rtol, the basis takes the point in */
+static PetscErrorCode SampleCorrect(GreedyWork *run, const PetscReal p[], PetscReal *first)
+{
+  const PetscReal drop  = run->drop;
+  ReducedModes    modes = {0};
+  PetscReal       worst;
+  PetscInt        n_added, n_vectors = 0;
+  PetscBool       complete = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  if (PointTimes(run, p, PETSC_TRUE)) run->drop *= LOOK_DROP; /* what was left out is what errs */
+  if (run->greedy->n_samples > 1 && !PointTimes(run, p, PETSC_FALSE))
+    PetscCall(FactorKeep(run, p));
+  else
+    PetscCall(FactorMake(run, p));
+  PetscCall(StepApply(run, p, &modes, &n_added, first));
+  worst = *first;
+  if (worst > SAFE * run->greedy->rtol && !run->is_near) PetscCall(FactorMake(run, p));
+  for (int step = 1; step < GREEDY_STEPS && worst > SAFE * run->greedy->rtol; step++) {
+    n_vectors += n_added;
+    run->basis->reduced.n_used = run->basis->reduced.n;
+    PetscCall(StepApply(run, p, &modes, &n_added, &worst));
+  }
+  PetscCall(ReducedModesDestroy(&modes));
+  run->drop = drop;
+  PetscCall(SampleCount(run, p, &complete));
+  run->greedy->n_passed = *first <= SAFE * run->greedy->rtol && complete ? run->greedy->n_passed + 1 : 0;
+  PetscCall(SampleAdd(run, p, PETSC_FALSE, n_vectors, *first));
+  run->greedy->sample[run->greedy->n_samples - 1].factored = run->is_near;
+  if (!complete && run->greedy->n_samples < run->greedy->max_samples) {
+    *first = PETSC_MAX_REAL;
+    PetscCall(SampleKrylov(run, p, *first));
   }
   PetscFunctionReturn(0);
 }
@@ -195,7 +222,7 @@ static PetscReal PointDistance(const GreedyWork *run, PetscInt i)
   const PetscReal *a = &run->points[i * n_parameters], *scale = run->scale;
   PetscReal        nearest = PETSC_MAX_REAL;
 
-  for (PetscInt j = 0; j < run->greedy->n_samples; j++) {
+  for (PetscInt j = run->first; j < run->greedy->n_samples; j++) {
     const PetscReal *b   = run->greedy->sample[j].p;
     PetscReal        sum = 0;
 
@@ -238,9 +265,43 @@ static PetscErrorCode PointNext(GreedyWork *run, PetscInt *next)
   if (g->n_passed < enough && (farthest > 0 || g->n_samples == 1)) PetscFunctionReturn(0);
   PetscCall(PointsEstimate(g->groups, &run->basis->reduced, &g->window, run->n, run->points, run->estimate));
   for (PetscInt i = 0; i < run->n; i++)
-    if (PointDistance(run, i) > 0 && (worst < 0 || run->estimate[i] > run->estimate[worst])) worst = i;
+    if (PointTimes(run, &run->points[i * run->basis->reduced.n_parameters], PETSC_TRUE) < 2 &&
+        (worst < 0 || run->estimate[i] > run->estimate[worst]))
+      worst = i;
   g->worst = worst >= 0 ? run->estimate[worst] : 0;
   *next    = g->worst > g->rtol ? worst : -1;
+  PetscFunctionReturn(0);
+}
+
+/* Looks at the points farthest from all others with the factors of the last full solution */
+static PetscErrorCode PointsLook(GreedyWork *run)
+{
+  Greedy *const   g         = run->greedy;
+  const PetscInt  n_samples = g->n_samples, n_parameters = run->basis->reduced.n_parameters;
+  const PetscReal drop = run->drop;
+  PetscReal       farthest, worst;
+  PetscInt        n_added;
+
+  PetscFunctionBeginUser;
+  g->looked  = PETSC_TRUE;
+  run->first = n_samples - 1;
+  run->drop *= LOOK_DROP;
+  for (int look = 0; look < GREEDY_LOOKS; look++) {
+    const PetscReal *p     = &run->points[PointFarthest(run, &farthest) * n_parameters];
+    ReducedModes     modes = {0};
+
+    if (farthest <= 0) break;
+    run->sides = look % 2 ? CORRECT_LEFT : CORRECT_RIGHT;
+    PetscCall(FactorKeep(run, p));
+    PetscCall(StepApply(run, p, &modes, &n_added, &worst));
+    PetscCall(ReducedModesDestroy(&modes));
+    PetscCall(SampleAdd(run, p, PETSC_FALSE, 0, worst)); /* for the distances */
+  }
+  run->sides = CORRECT_BOTH;
+  run->first = 0;
+  run->drop  = drop;
+  for (PetscInt j = n_samples; j < g->n_samples; j++) PetscCall(PetscFree(g->sample[j].p));
+  g->n_samples = n_samples;
   PetscFunctionReturn(0);
 }
 
@@ -255,16 +316,23 @@ PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], B
   run.guarded.low  = low < 0.5 * high ? 0 : low * (1 - GUARD);
   run.guarded.high = high * (1 + GUARD);
   PetscCall(PetscMalloc2(n, &run.estimate, n_parameters, &run.scale));
-  PetscCall(ScalePoints(&run));
+  PetscCall(PointsScale(basis->pencil, n, points, run.scale));
   if (greedy->n_samples) PetscCall(PointNext(&run, &next));
-  while (next >= 0 && greedy->n_samples < greedy->max_samples) {
+  for (;;) {
+    if (next < 0 && !greedy->looked) {
+      PetscCall(PointsLook(&run));
+      PetscCall(PointNext(&run, &next));
+    }
+    if (next < 0 || greedy->n_samples >= greedy->max_samples) break;
     if (greedy->n_samples)
       PetscCall(SampleCorrect(&run, &points[next * n_parameters], &greedy->last));
     else
       PetscCall(SampleKrylov(&run, points, NAN));
+    greedy->looked = PETSC_FALSE;
     if (greedy->keep) PetscCall(greedy->keep(greedy->keep_ctx));
     PetscCall(PointNext(&run, &next));
   }
+  if (run.has_factor) PetscCall(ShiftInvertDestroy(&run.correction.factor));
   PetscCall(PetscFree2(run.estimate, run.scale));
   PetscCheck(next < 0, basis->comm, PETSC_ERR_NOT_CONVERGED,
              "-sweep_rtol %.6g was not reached with %" PetscInt_FMT

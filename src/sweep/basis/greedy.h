@@ -5,11 +5,14 @@
 #include "points.h"
 #include <squeal/modes.h>
 
+#define GREEDY_LOOKS 4 /* points looked at with the factors of another, beside those of a full solution */
+
 /* A full solution */
 typedef struct {
   PetscReal *p;         /* [n_parameters] */
   PetscBool  krylov;    /* by the eigensolver from nothing; else by corrections from the basis */
   PetscInt   n_vectors; /* gained */
+  PetscBool  factored;  /* by corrections with the factors of this point; else those of one before sufficed */
   PetscReal  estimate;  /* largest relative error before this solution as its corrections told; NaN for the first */
 } GreedySample;
 
@@ -24,6 +27,7 @@ typedef struct {
   PetscReal          worst;    /* largest estimated relative error at all points when it ended */
   PetscReal          last;     /* estimate at the last point before it was taken in */
   PetscInt           n_passed; /* points in a row that needed nothing */
+  PetscBool          looked;   /* at other points since the last full solution */
   Progress          *progress;
   PetscErrorCode (*keep)(void *ctx); /* called after every full solution; may be NULL */
   void *keep_ctx;

@@ -7,7 +7,7 @@
 #include "points.h"
 #include "base/progress.h"
 
-#define POINTS_MARGIN 10 /* between the estimate at the corrected points and elsewhere */
+#define POINTS_MARGIN 30 /* between the estimate where corrections come from and elsewhere */
 
 /* The rank that solves point i */
 static PetscMPIInt PointGroupsOwner(const PointGroups *groups, PetscInt i)
@@ -107,5 +107,26 @@ PetscErrorCode PointsEstimate(const PointGroups *groups, const Reduced *reduced,
   PetscCall(ProgressEnd(&progress));
   PetscCall(PetscMPIIntCast(n, &count));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, worst, count, MPIU_REAL, MPI_MAX, groups->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PointsScale(Pencil pencil, PetscInt n_points, const PetscReal points[], PetscReal scale[])
+{
+  const OperatorsParameter *parameters;
+  PetscInt                  n, n_groups = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetParameters(pencil, &n, &parameters, NULL));
+  for (PetscInt k = 0; k < n; k++) n_groups += parameters[k].internal ? 1 : 0;
+  for (PetscInt k = 0; k < n; k++) {
+    PetscReal low = points[k], high = points[k];
+
+    for (PetscInt i = 0; i < n_points; i++) {
+      low  = PetscMin(low, points[i * n + k]);
+      high = PetscMax(high, points[i * n + k]);
+    }
+    scale[k] = low > 0 && high > RATIO_FROM * low ? -PetscLogReal(high / low) : high - low;
+    if (parameters[k].internal) scale[k] *= PetscSqrtReal((PetscReal)n_groups);
+  }
   PetscFunctionReturn(0);
 }

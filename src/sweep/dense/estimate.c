@@ -22,13 +22,14 @@
    x^T K x = 0, and its error is the frequency that would turn it into, sqrt(|d kappa|).
 
    To each estimate a floor is added: what rounding does in the dense problem, SOLVER_ROUNDING eps sqrt(sum |K_ii|
-   |x_i|^2 sum |K_ii| |y_i|^2) in kappa, and in the matrices of the mesh, eps sqrt(x^H E x y^H E y) with E = sum |c_t|
-   V' |diag A_t| V, the energy without cancellation between neighbouring nodes.
+   |x_i|^2 sum |K_ii| |y_i|^2) in kappa, and in the matrices of the mesh, MESH_ROUNDING eps sqrt(x^H E x y^H E y) with
+   E = sum |c_t| V' |diag A_t| V, the energy without cancellation between neighbouring nodes.
 */
 #include "estimate.h"
 
 #define NEAR_CHANGES    20   /* eigenvalues closer than this many changes belong together */
 #define FARTHEST        1e-2 /* but not if they are farther apart than this, relative: the basis is merely poor there */
+#define MESH_ROUNDING   3    /* roundings of K on the mesh: its terms in a sum, products with it, their sums */
 #define SOLVER_ROUNDING 8    /* errors of a dense solver beside rounding in its matrix */
 #define MEETING         1e-4 /* modes closer than this, relative, may meet */
 #define EQUAL           1e-9 /* closer than this, relative, they always do */
@@ -105,21 +106,35 @@ static PetscErrorCode EstimateCreate(const Reduced *reduced, const PetscReal p[]
   PetscFunctionReturn(0);
 }
 
-/* f = s^T Q_zz^-1 r of mode i, in the unit of kappa; not finite where Q_zz is singular */
-static PetscErrorCode CoupleMode(const Estimate *e, PetscInt i, PetscComplex *f)
+/* a^H b */
+static PetscReal Conjugated(PetscInt n, const PetscComplex a[], const PetscComplex b[])
+{
+  PetscComplex sum = 0;
+
+  for (PetscInt i = 0; i < n; i++) sum += conj(a[i]) * b[i];
+  return cabs(sum);
+}
+
+/* sharp = |s^T Q_zz^-1 r| of mode i, in the unit of kappa; f the same, but not below the mean of r and s each with
+   itself: the product of right and left may pass through zero where neither does; not finite where Q_zz is singular */
+static PetscErrorCode CoupleMode(const Estimate *e, PetscInt i, PetscReal *f, PetscReal *sharp)
 {
   const ReducedModes *modes  = e->modes;
   const PetscComplex  lambda = modes->lambda[i];
-  PetscComplex       *r, *s;
+  const PetscInt      n      = e->n_z;
+  PetscComplex       *r, *u, *s, *v;
   PetscBool           singular;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(e->n_z, &r, e->n_z, &s));
+  PetscCall(PetscMalloc2(2 * n, &r, 2 * n, &u));
+  s = r + n, v = u + n;
   PetscCall(EstimateCouple(e, lambda, PETSC_FALSE, 1, modes->x + i * e->n_v, r));
   PetscCall(EstimateCouple(e, lambda, PETSC_TRUE, 1, modes->y + i * e->n_v, s));
-  PetscCall(EstimateSolve(e, lambda, 1, r, &singular));
-  *f = singular ? CMPLX(INFINITY, 0) : DenseDot(e->n_z, s, r);
-  PetscCall(PetscFree2(r, s));
+  PetscCall(PetscArraycpy(u, r, 2 * n));
+  PetscCall(EstimateSolve(e, lambda, 2, u, &singular));
+  *sharp = singular ? INFINITY : cabs(DenseDot(n, s, u));
+  *f     = PetscMax(*sharp, PetscSqrtReal(Conjugated(n, r, u)) * PetscSqrtReal(Conjugated(n, s, v)));
+  PetscCall(PetscFree2(r, u));
   PetscFunctionReturn(0);
 }
 
@@ -156,13 +171,14 @@ static PetscErrorCode Alone(const Estimate *e, ReducedModes *modes, PetscReal ch
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < modes->n; i++) {
-    PetscComplex f;
-    PetscReal    kappa;
+    const PetscReal all = cabs(modes->lambda[i]) * cabs(modes->lambda[i]);
+    PetscReal       f, sharp, kappa;
 
-    PetscCall(CoupleMode(e, i, &f));
-    kappa = isfinite(cabs(f)) ? KappaChange(modes, i, cabs(f)) : cabs(modes->lambda[i]) * cabs(modes->lambda[i]);
-    modes->error[i] = LambdaChange(modes, i, kappa);
-    change[i]       = e->pencil.damped ? modes->error[i] : kappa;
+    PetscCall(CoupleMode(e, i, &f, &sharp));
+    kappa           = isfinite(sharp) ? KappaChange(modes, i, sharp) : all;
+    modes->sharp[i] = LambdaChange(modes, i, kappa);
+    modes->error[i] = LambdaChange(modes, i, isfinite(sharp) ? KappaChange(modes, i, f) : all);
+    change[i]       = e->pencil.damped ? modes->sharp[i] : kappa;
   }
   PetscFunctionReturn(0);
 }
@@ -212,7 +228,7 @@ static PetscErrorCode Together(const Estimate *e, PetscInt first, const PetscInt
     if (cluster[i] == first) list[m++] = i;
   if (m > 1) PetscCall(EstimateCluster(e, m, list, s, &singular));
   for (PetscInt a = 0; a < m && m > 1 && !singular; a++)
-    modes->error[list[a]] = EstimateDistance(e, modes->lambda[list[a]], s[a]);
+    modes->error[list[a]] = modes->sharp[list[a]] = EstimateDistance(e, modes->lambda[list[a]], s[a]);
   PetscCall(PetscFree2(list, s));
   PetscFunctionReturn(0);
 }
@@ -230,10 +246,11 @@ static PetscErrorCode AddFloor(const Estimate *e, const Reduced *reduced, const 
   for (PetscInt i = 0; i < modes->n; i++) {
     const PetscComplex *x = modes->x + i * n, *y = modes->y + i * n;
     const PetscReal     mesh  = RoundingProduct(n, E, x, y, work);
-    const PetscReal     noise = SOLVER_ROUNDING * DensePencilNoise(&e->pencil, n, x, y) + mesh;
+    const PetscReal     noise = SOLVER_ROUNDING * DensePencilNoise(&e->pencil, n, x, y) + MESH_ROUNDING * mesh;
 
     modes->noise[i] = LambdaChange(modes, i, KappaChange(modes, i, noise));
     modes->error[i] += modes->noise[i];
+    modes->sharp[i] += modes->noise[i];
   }
   PetscCall(PetscFree2(E, work));
   PetscFunctionReturn(0);
@@ -250,6 +267,7 @@ PetscErrorCode ReducedEstimate(const Reduced *reduced, const PetscReal p[], Redu
   PetscCall(EstimateCreate(reduced, p, modes, &e));
   PetscCall(PetscMalloc2(modes->n, &change, modes->n, &cluster));
   PetscCall(PetscArrayzero(modes->error, modes->n));
+  PetscCall(PetscArrayzero(modes->sharp, modes->n));
   if (e.n_z) {
     PetscCall(Alone(&e, modes, change));
     Group(&e, change, cluster);

@@ -13,14 +13,13 @@
 */
 #include "eigen.h"
 
-#define BAR        3     /* widths of the error bar */
 #define PAIR       1e-7  /* relative difference of equal frequencies */
 #define SAME_VALUE 1e-9  /* relative difference of equal eigenvalues */
 #define DEFECTIVE  1e-10 /* least pivot, relative, of the products of a cluster that is not defective */
 
 PetscBool ReducedIsUnstable(PetscComplex lambda, PetscReal error)
 {
-  return creal(lambda) > PetscMax(BAR * error, REDUCED_TINY * cabs(lambda)) ? PETSC_TRUE : PETSC_FALSE;
+  return creal(lambda) > PetscMax(error, REDUCED_TINY * cabs(lambda)) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscBool ReducedModeIsUnstable(const ReducedModes *modes, PetscInt i)
@@ -39,6 +38,7 @@ void ReducedClusterJoin(PetscInt n, PetscInt i, PetscInt j, PetscInt cluster[])
 PetscErrorCode ReducedModesCreate(PetscInt n, PetscInt size, ReducedModes *modes)
 {
   PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n, &modes->sharp));
   modes->n    = n;
   modes->size = size;
   PetscCall(PetscCalloc7(n, &modes->lambda, n * size, &modes->x, n * size, &modes->y, n, &modes->product, n,
@@ -58,6 +58,7 @@ PetscErrorCode ReducedModesSelect(const ReducedModes *from, PetscInt n, const Pe
     to->lambda[i]  = from->lambda[k];
     to->product[i] = from->product[k];
     to->error[i]   = from->error[k];
+    to->sharp[i]   = from->sharp[k];
     to->noise[i]   = from->noise[k];
     to->rigid[i]   = from->rigid[k];
     PetscCall(PetscArraycpy(&to->x[i * size], &from->x[k * size], size));
@@ -69,6 +70,7 @@ PetscErrorCode ReducedModesSelect(const ReducedModes *from, PetscInt n, const Pe
 PetscErrorCode ReducedModesDestroy(ReducedModes *modes)
 {
   PetscFunctionBeginUser;
+  PetscCall(PetscFree(modes->sharp));
   PetscCall(PetscFree7(modes->lambda, modes->x, modes->y, modes->product, modes->error, modes->noise, modes->rigid));
   modes->n = 0;
   PetscFunctionReturn(0);

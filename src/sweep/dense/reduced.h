@@ -33,6 +33,7 @@ typedef struct {
   PetscComplex *product; /* [n] y^T D(lambda) x, D = M + C / (2 lambda), rigid modes: M; 1 / |product| is the condition,
                             0 if defective */
   PetscReal    *error;   /* [n] estimated error of lambda, rad/s; 0 until ReducedEstimate() */
+  PetscReal    *sharp;   /* [n] the same to first order: error is more where right and left residuals cancel in it */
   PetscReal    *noise;   /* [n] the part of the error that is rounding: no better basis lowers it */
   PetscBool    *rigid;   /* [n] zero within rounding */
 } ReducedModes;
@@ -51,7 +52,7 @@ PetscErrorCode ReducedModesCreate(PetscInt n, PetscInt size, ReducedModes *modes
 PetscErrorCode ReducedModesSelect(const ReducedModes *from, PetscInt n, const PetscInt list[], ReducedModes *to);
 PetscErrorCode ReducedModesDestroy(ReducedModes *modes);
 
-/* Whether sigma exceeds three times the error of its eigenvalue, and rounding, REDUCED_TINY |lambda|; the same of
+/* Whether sigma exceeds the error of its eigenvalue, and rounding, REDUCED_TINY |lambda|; the same of
    mode i */
 #define REDUCED_TINY 1e-9
 PetscBool ReducedIsUnstable(PetscComplex lambda, PetscReal error);

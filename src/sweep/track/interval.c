@@ -131,7 +131,7 @@ static PetscBool PredictPair(const IntervalStep *step, PetscInt i, PetscInt k, c
   const ReducedModes *modes   = &a->modes;
   const PetscComplex  s[2]    = {StandardValue(&a->form, modes->lambda[i]), StandardValue(&a->form, modes->lambda[k])};
   const PetscComplex  delta_a = s[0] - s[1], delta_b = S[0] - S[3], coupling = S[1] * S[2];
-  const PetscReal     limit = PetscMax(REDUCED_TINY * cabs(s[0]), 3 * (modes->error[i] + modes->error[k]));
+  const PetscReal     limit = PetscMax(REDUCED_TINY * cabs(s[0]), modes->error[i] + modes->error[k]);
 
   if (!ReducedModeIsUnstable(&b->modes, other[i]) && !ReducedModeIsUnstable(&b->modes, other[k])) {
     if (a->form.damped && PredictDamped(s, S, limit, t)) return PETSC_TRUE;

@@ -1,0 +1,156 @@
+"""Errors of sweeps beside the errors that they state, over small random brakes. At each point of a sweep the matrices are
+written by a full solution, and its eigenvalues refined in extended precision (exact.py) are the truth."""
+
+import csv
+import math
+import random
+import subprocess
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy
+
+from .exact import Pencil, exact_values
+from .program import ROOT, scene
+
+# Parameter: range around the scene's value, as a factor or as ends
+SWEPT = {"contact_kn": (1e-2, 1e3, True), "contact_mu": (0.0, 1.2, False), "pad_young": (0.25, 4, True),
+         "disc_young": (0.4, 2.5, True), "beam_young": (0.3, 3, True), "pad_density": (0.5, 2, True),
+         "disc_density": (0.5, 2, True), "rows_stiffness": (0.1, 10, True), "disc_alpha": (0.0, 40, False)}
+POINTS = 9
+
+
+def even(low, high, generator):
+    """A number between low and high, evenly in ratios, with six digits."""
+    return float(f"{math.exp(generator.uniform(math.log(low), math.log(high))):.6g}")
+
+
+def random_scene(seed):
+    """Options of a small brake, and its parameters by name."""
+    r = random.Random(seed)
+    value = {"contact_kn": even(1e8, 1e10, r), "contact_mu": round(r.uniform(0.2, 0.7), 3),
+             "pad_young": even(5e9, 4e10, r), "disc_young": even(1e11, 3e11, r), "beam_young": even(2e11, 2e12, r),
+             "pad_density": even(2e3, 4e3, r), "disc_density": even(7e3, 8e3, r), "rows_stiffness": even(4e6, 1e8, r),
+             "disc_alpha": 0.0}
+    words = ["-rig_disc_elements", f"{r.choice((4, 5))},{r.choice((8, 10, 12))},1", "-rig_pad_elements",
+             f"2,2,{r.choice((1, 2))}", "-rig_beam_elements", str(r.choice((3, 4, 5))),
+             "-modes_band", f"{r.choice((0, 500))},{r.choice((9000, 11000, 13000))}"]
+    if r.random() < 0.25:
+        words += ["-pad_beta", f"{even(1e-8, 3e-7, r)}"]
+        value["disc_alpha"] = round(r.uniform(1, 30), 2)
+    if r.random() < 0.2:
+        words += ["-contact_law", "constraint"]
+    elif r.random() < 0.25:
+        words += ["-modes_contact", "static", "-press_force", f"0,{even(5, 50, r):g},-100"]
+    return words, value
+
+
+def random_sweep(seed):
+    """Words of the scene, its values, and the names and values of the axes."""
+    words, value = random_scene(seed)
+    r = random.Random(1000 + seed)
+    names = [name for name in SWEPT if name != "contact_kn" or "constraint" not in words]
+    names = [name for name in names if name != "disc_alpha" or "-pad_beta" in words]
+    chosen = [names[seed % len(names)]]
+    if r.random() < 0.15:
+        chosen.append(r.choice([name for name in names if name not in chosen]))
+    axes = {}
+    for name in chosen:
+        low, high, ratio = SWEPT[name]
+        n = POINTS if len(chosen) == 1 else 3
+        low, high = (low * value[name], high * value[name]) if ratio else (low, high)
+        axes[name] = [float(f"{low * (high / low)**(i / (n - 1)):.10g}" if ratio else
+                            f"{low + (high - low) * i / (n - 1):.10g}") for i in range(n)]
+    return words, value, axes
+
+
+def scene_words(words, value):
+    """The whole command line of a scene, without output."""
+    own = dict(value)
+    own["rows_stiffness"] = f"0,{own['rows_stiffness']:.10g},0"
+    return [*scene("massi2005"), *words, *(w for name, v in own.items() for w in (f"-{name}", v))]
+
+
+def launch(program, words):
+    """Runs squeal on one rank in this process' place; the reason of a failure, or None."""
+    done = subprocess.run([str(word) for word in (program, *words)], capture_output=True, text=True, check=False)
+    return (done.stderr.strip() or f"exit status {done.returncode}") if done.returncode else None
+
+
+def eigenvalues(path, kept=lambda row: True):
+    """(lambda, stated error rad/s, row) of a table."""
+    with Path(path).open(newline="") as lines:
+        return [(complex(float(row["growth_rad_s"]), 2 * math.pi * float(row["freq_hz"])),
+                 2 * math.pi * float(row["error_hz"] or "nan"), row) for row in csv.DictReader(lines) if kept(row)]
+
+
+def full_point(program, folder, words, value):
+    """Modes of one point in full with their exact eigenvalues: [(exact, found, stated error)]."""
+    reason = launch(program, [*scene_words(words, value), "-analysis", "modes", "-operators_save", folder / "ops",
+                              "-output_dir", folder, "-output_fields", 0])
+    if reason:
+        raise RuntimeError(reason)
+    found = [(own, error) for own, error, _ in eigenvalues(folder / "modes.csv") if own != 0]
+    exact = exact_values(Pencil(folder / "ops", value["contact_mu"]), [own for own, _ in found])
+    return [(true, own, error) for true, (own, error) in zip(exact, found)]
+
+
+def point_records(found, full):
+    """(true error, stated error, relative) of the sweep's modes at a point, each with the nearest one in full."""
+    records = []
+    for own, stated, row in found:
+        if own == 0 or not full:
+            continue
+        true, near, _ = min(full, key=lambda one: abs(one[1] - own))
+        if math.isnan(float(abs(true))) or abs(near - own) > 1e-3 * abs(own):
+            continue
+        records.append((float(abs(true - own)) / abs(own), stated / abs(own), row["freq_hz"]))
+    return records
+
+
+def grid_points(axes):
+    """Values of all points by name, the first parameter the fastest."""
+    points = [{}]
+    for name in reversed(axes):
+        points = [{name: value, **point} for point in points for value in axes[name]]
+    return points
+
+
+def one_sweep(program, seed):
+    """Errors of one sweep: (name, [(true, stated, freq)] of the sweep, the same of its full solutions, reason)."""
+    words, value, axes = random_sweep(seed)
+    with tempfile.TemporaryDirectory() as top:
+        folder = Path(top)
+        options = ["-sweep_parameter", ",".join(axes)]
+        for suffix, name in zip(("", "_2"), axes):
+            options += [f"-sweep_values{suffix}", ",".join(f"{v:.10g}" for v in axes[name])]
+        reason = launch(program, [*scene_words(words, value), "-analysis", "sweep", *options, "-sweep_onsets", 0,
+                                  "-output_dir", folder / "sweep"])
+        if reason:
+            return seed, ",".join(axes), [], [], reason
+        rows = eigenvalues(folder / "sweep/sweep.csv")
+        sweep, modes = [], []
+        for number, point in enumerate(grid_points(axes), 1):
+            place = folder / str(number)
+            place.mkdir()
+            try:
+                full = full_point(program, place, words, {**value, **point})
+            except RuntimeError as error:
+                return seed, ",".join(axes), sweep, modes, str(error)
+            sweep += [(*record, number) for record in
+                      point_records([one for one in rows if int(one[2]["point"]) == number], full)]
+            modes += [(float(abs(true - own)) / abs(own), error / abs(own), own.imag / (2 * math.pi), number)
+                      for true, own, error in full if not math.isnan(float(abs(true)))]
+    return seed, ",".join(axes), sweep, modes, None
+
+
+def effectivity(records):
+    """True error over stated error of each record."""
+    return numpy.array([record[0] / max(record[1], 1e-300) for record in records])
+
+
+def all_sweeps(program, seeds, workers):
+    """one_sweep() of every seed."""
+    with ThreadPoolExecutor(workers) as pool:
+        return list(pool.map(lambda seed: one_sweep(program, seed), seeds))
