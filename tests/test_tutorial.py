@@ -37,6 +37,19 @@ def follow(folder, kind, command):
     return [] if bool(ours) == (kind == "sh-warning") else [f"warnings {ours}: {command}"]
 
 
+def check_decay(folder):
+    """Growth and frequency in time against the eigenvalue, both as the page states them."""
+    with (folder / "results/time/transient_summary.csv").open() as lines:
+        told = {row["quantity"]: float(row["value"]) for row in csv.DictReader(lines)}
+    with (folder / "results/same/modes.csv").open() as lines:
+        modes = [(float(row["growth_rad_s"]), float(row["freq_hz"])) for row in csv.DictReader(lines)]
+    growth, frequency = told["growth"], told["growth_frequency"]
+    nearest = min(modes, key=lambda mode: abs(mode[0] - growth) + abs(mode[1] - frequency))
+    same = abs(nearest[0] / growth - 1) < 5e-3 and abs(nearest[1] / frequency - 1) < 2e-5
+    right = round(growth) == -20 and round(frequency) == 5886
+    return [] if same and right else [f"in time {growth} 1/s at {frequency} Hz, the mode {nearest}"]
+
+
 def check_numbers(folder):
     """The numbers that the page states."""
     with (folder / "results/modes.csv").open() as lines:
@@ -53,6 +66,7 @@ def check_numbers(folder):
         faults.append(f"grows: {grows}")
     if [round(value, 3) for value in onsets] != [0.263, 0.473]:
         faults.append(f"onsets: {onsets}")
+    faults += check_decay(folder)
     return faults + ([] if len(closed) == 35 else [f"{len(closed)} pairs touch"])
 
 
