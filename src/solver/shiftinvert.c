@@ -46,11 +46,13 @@ static PetscErrorCode ShiftInvertCheck(MPI_Comm comm, PC pc, PetscBool *singular
     PetscCall(MatMumpsGetInfog(F, 1, &info));
     PetscCall(MatMumpsGetInfog(F, 2, &extra));
   }
-  PetscCheck(info != -8 && info != -9 && info != -14 && info != -15 && info != -17 && info != -20, comm, PETSC_ERR_MEM,
+  /* not PETSC_ERR_MEM, for which the message would be another */
+  PetscCheck(info != -8 && info != -9 && info != -14 && info != -15 && info != -17 && info != -20, comm,
+             PETSC_ERR_NOT_CONVERGED,
              "MUMPS' workspace is too small (INFOG(1) = %" PetscInt_FMT ", INFOG(2) = %" PetscInt_FMT
              "): raise -st_mat_mumps_icntl_14 (percent of extra workspace) or -st_mat_mumps_icntl_23 (MB per rank)",
              info, extra);
-  PetscCheck(info != -13 && info != -7 && info != -19 && info != -5, comm, PETSC_ERR_MEM,
+  PetscCheck(info != -13 && info != -7 && info != -19 && info != -5, comm, PETSC_ERR_NOT_CONVERGED,
              "MUMPS ran out of memory (INFOG(1) = %" PetscInt_FMT ", INFOG(2) = %" PetscInt_FMT
              "): raise -st_mat_mumps_icntl_23 (MB per rank) if it limits, use more ranks or a coarser mesh",
              info, extra);
