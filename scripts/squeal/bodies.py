@@ -19,12 +19,12 @@ class Scene:
         if cells.shape[1] != 8:
             raise BadInput(f"{file.filename}: cells of {cells.shape[1]} nodes; only hexahedra can be drawn")
         names = [name.decode() for name in group["CellData/part"].attrs["names"]]
-        on_disc = numpy.full(len(cells), True)
-        if disc_name in names:
-            on_disc = group["CellData/part"][:] == names.index(disc_name)
+        part = group["CellData/part"][:]
+        on_disc = part == names.index(disc_name) if disc_name in names else numpy.full(len(cells), True)
         self.disc = boundary_faces(cells[on_disc])
         self.rest = boundary_faces(cells[~on_disc])
-        self.rest_names = " and ".join(name for name in names if name != disc_name) if len(self.rest) else ""
+        self.others = {name: boundary_faces(cells[~on_disc & (part == i)]) for i, name in enumerate(names)
+                       if (~on_disc & (part == i)).any()}
         self.set_frame()
 
     def set_frame(self):

@@ -15,7 +15,7 @@ OPTIONAL = {"interface": str, "area_m2": float, "pressure_pa": float, "lambda_b_
             "t_z": float}
 MM = 1e3
 SAME = 1e-6  # places within this part of the extent are one
-MAX_ROWS, BINS = 60, 30  # of the profile: more distinct rows than this are collected in bins
+MAX_ROWS, BINS = 60, 30  # of the profile: more rows than this are collected in bins, at most so many
 NAMES = "xyz"
 
 
@@ -158,7 +158,7 @@ class Surface:
         parts = [f"{self.closed.sum()} of {len(self.closed)} pairs closed",
                  f"normal force {self.normal_force.sum():.4g} N"]
         if self.friction.any():
-            parts.append(f"friction {self.friction.sum():.4g} N")
+            parts.append(f"sum of the friction forces {self.friction.sum():.4g} N")
         parts.append(f"largest {self.quantity} {most:.3g} {self.unit}")
         lead = self.lead()
         if lead is not None:
@@ -205,14 +205,22 @@ def triangles(surface):
     return mesh
 
 
+def bins_of(surface, n_places):
+    """Number of rows of equal width, or 0 where the pairs stand in rows themselves."""
+    n_pairs = len(surface.status)
+    scattered = 2 * n_places > n_pairs and min(surface.size) > SAME * max(surface.size)  # as on a turned or curved pad
+    return min(BINS, math.isqrt(n_pairs)) if scattered else BINS if n_places > MAX_ROWS else 0
+
+
 def profile(surface):
     """Along the axis of the profile: borders of the rows, mean value of each, closed pairs and all pairs of each."""
     along = surface.place[:, surface.profile_axis]
     extent = surface.size.max() or 1.0
     places, number = levels(along, extent)
-    if len(places) > MAX_ROWS:
-        borders = numpy.linspace(along.min(), along.max(), BINS + 1)
-        number = numpy.clip(numpy.searchsorted(borders, along, side="right") - 1, 0, BINS - 1)
+    bins = bins_of(surface, len(places))
+    if bins:
+        borders = numpy.linspace(along.min(), along.max(), bins + 1)
+        number = numpy.clip(numpy.searchsorted(borders, along, side="right") - 1, 0, bins - 1)
     else:
         borders = limits_between(places, 0.1 * extent)
     n = len(borders) - 1

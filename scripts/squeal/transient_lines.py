@@ -92,7 +92,7 @@ def forces_text(run, vibration):
     """Line below the title."""
     normal = run.normal[vibration.steady]
     apart = detached_share(normal)
-    return (f"{vibration.regime()}; normal force {normal.min():.3g} to {normal.max():.3g} N, "
+    return (f"{vibration.regime()}; normal force {normal.min():.4g} to {normal.max():.4g} N, "
             + (f"zero for {apart:.1%} of the time" if apart else "never zero") + f" after "
             f"{MS * vibration.time[vibration.steady][0]:.3g} ms")
 
@@ -110,7 +110,7 @@ def draw_forces(run, vibration, case):
             plot_line(axes, run.time[cut], values[cut], color=colour, lw=1.1 if cut.start is None else 1.8)
     wide[0].set_ylabel("sum of forces, N")
     legend = [("normal", BLUE), ("friction", VERMILION)]
-    place_legend(wide[0], legend, "line", "upper left")
+    place_legend(wide[0], legend, "line", "best")
     if status:
         draw_status(wide[1], run.time, status)
         draw_status(near[1], run.time[last], [values[last] for values in status])
@@ -134,7 +134,7 @@ def draw_ledger(wide, near, run, error, last):
     wide.set_yscale("log")
     shown = numpy.log10(numpy.maximum(error[len(error) // 100:], floor))
     wide.set_ylim(10**(numpy.floor(shown.min()) - 0.2), 10**(numpy.ceil(shown.max()) + 0.2))
-    wide.set_ylabel("ledger error")
+    wide.set_ylabel("balance error")
 
 
 def place_legend(axes, entries, kind, place):

@@ -60,8 +60,8 @@ def test_numbers(root):
     surface = surface_of(root / "numbers", state.rows()[:-11])
     close(surface.middle, numpy.average(state.x[:-11], axis=0, weights=state.area[:-11]), "middle, weighted by area")
     surface = surface_of(root / "numbers", state.rows())
-    expected = (f"99 of 121 pairs closed, normal force {FORCE:g} N, friction {MU * FORCE:g} N, largest pressure "
-                f"{1e-3 * state.pressure.max():.3g} kPa")
+    expected = (f"99 of 121 pairs closed, normal force {FORCE:g} N, sum of the friction forces {MU * FORCE:g} N, "
+                f"largest pressure {1e-3 * state.pressure.max():.3g} kPa")
     require(surface.summary().startswith(expected), surface.summary())
     x, y, values = static_pairs.grid_cells(surface)
     close(numpy.outer(numpy.diff(y), numpy.diff(x)).ravel(), 1e6 * state.area, "cells are the areas")
@@ -92,6 +92,10 @@ def test_orientation(root):
     close(surface.direction @ surface.axes, along, "direction in an oblique plane", 1e-9)
     tail, head = surface.arrow()
     close((head - tail) / numpy.linalg.norm(head - tail), surface.direction, "arrow", 1e-9)
+    c, s = numpy.cos(0.3), numpy.sin(0.3)
+    surface = surface_of(root / "plane", State(across=(c, s, 0), along=(-s, c, 0)).rows())
+    borders, _, _, pairs = static_pairs.profile(surface)
+    require(len(borders) == 12 and pairs.sum() == 121 and pairs.min() > 1, f"rows of a turned grid: {pairs}")
 
 
 def test_old_columns(root):
