@@ -58,10 +58,10 @@ static struct {
   PetscLogDouble begun, seconds, memory;
 } ledger[SQUEAL_N_STAGES];
 
-static const char citation[] =
-  "@inproceedings{massi2005,\n  title = {Numerical analysis of squeal instability},\n  year = {2005}\n}\n";
-static PetscBool cited  = PETSC_FALSE;
-static PetscBool traced = PETSC_FALSE; /* -squeal_traceback */
+static const char citation[] = "@inproceedings{massi2005,\n  author = {Massi, F. and Baillet, L.},\n  title = "
+                               "{Numerical analysis of squeal instability},\n  year = {2005}\n}\n";
+static PetscBool  cited      = PETSC_FALSE;
+static PetscBool  traced     = PETSC_FALSE; /* -squeal_traceback */
 
 /* Keeps the first line of the first message; the codes of the callers above add nothing for a user. The traceback is
    that of PETSC_COMM_SELF, since PETSc aborts the higher ranks of another communicator. */
