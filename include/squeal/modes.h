@@ -77,11 +77,11 @@ PetscErrorCode ModesGet(Modes modes, PetscInt *n, const Mode **mode);
     (borrowed; xi, yi are NULL for a real vector, yr for a mode without left vector). Not collective. @*/
 PetscErrorCode ModesGetVectors(Modes modes, PetscInt i, Vec *xr, Vec *xi, Vec *yr, Vec *yi);
 
-/* Shapes from elsewhere: right (xr + i xi) and left vectors in the unknowns of the pencil, [n] each */
+/* Shapes from elsewhere: right (xr + i xi) and left (yr + i yi) vectors */
 typedef struct {
   PetscInt         n;
-  const PetscBool *rigid; /* whether the shape is a rigid mode */
-  Vec             *xr, *xi, *yr, *yi;
+  const PetscBool *rigid;             /* whether the shape is a rigid mode */
+  Vec             *xr, *xi, *yr, *yi; /* [n] vectors, length: unknowns of the pencil */
 } ModesShapes;
 
 /*@ ModesLabelShapes - names for shapes from elsewhere, as in modes.csv, label[n]. Collective. @*/

@@ -104,7 +104,7 @@ PetscErrorCode ResultsFieldWriteMode(ResultsField field, const char key[], const
 typedef struct {
   const char      *key; /* name of the array, with its unit: displacement_m */
   PetscInt         width;
-  const PetscReal *values;
+  const PetscReal *values; /* [local vertices][width], in the unit of the name */
 } ResultsNodal;
 
 /*@ ResultsFieldWriteNodal - one real state of the body: n arrays under one title, which ParaView shows as one grid.

@@ -82,9 +82,9 @@ PetscErrorCode StaticsCheckUse(Statics statics, PetscBool modes);
 PetscErrorCode StaticsSolve(Statics statics, const PetscReal p[]);
 
 /*@
-   StaticsSolveSliding - the same, and the sliding state as a value: the closed pairs, with rows of pairs more or less
-   where -static_rows asks for it, the normal forces, the optional stiffness of the preload, and p. The caller destroys
-   it. Collective.
+   StaticsSolveSliding - the same, and the sliding state as a value: the closed pairs (rows closed or opened at their
+   edge where -static_rows asks for it), the normal forces, the optional stiffness of the preload, and p. The caller
+   destroys it. Collective.
 
    Errors: also PETSC_ERR_USER_INPUT for an interface with friction of which nothing says along what it slides, and for
    a normal force that is given although the loads tell it.

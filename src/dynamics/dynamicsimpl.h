@@ -17,11 +17,13 @@ typedef struct {
   PetscInt  its;       /* eigenproblems solved */
 } CriticalStep;
 
-/* Contact surfaces, [nodes][3] in Cartesian components; only the active ones are filled */
+/* Nodes of the contact surfaces; arrays have n * 3 Cartesian components, filled at the nodes of active pairs only */
 typedef struct {
-  PetscInt        n;
-  const PetscInt *vertex; /* local vertices from 0 */
-  PetscReal      *u, *before, *v, *force;
+  PetscInt        n;          /* nodes */
+  const PetscInt *vertex;     /* [n] local vertices from 0 */
+  PetscReal      *u;          /* [n][3] displacements, m */
+  PetscReal      *before, *v; /* [n][3] velocities v_{n-1/2}, and v_{n+1/2} as predicted without contact, m/s */
+  PetscReal      *force;      /* [n][3] forces on the nodes, N */
 } DynamicsSurface;
 
 struct _p_Dynamics {
@@ -47,9 +49,9 @@ struct _p_Dynamics {
   History          history;
   Results          results;
   /* state and work */
-  const Layout   *layout;
-  Vec             u, v, minv; /* state vectors of the layout */
-  PetscReal      *ku;         /* K u of this rank's cells, N */
+  const Layout *layout;
+  Vec        u, v, minv; /* displacements, m; velocities, m/s; inverse masses, 1/kg; length and order of the layout */
+  PetscReal *ku;         /* K u of this rank's cells, N */
   DynamicsSurface surface;
   ContactSums    *sums; /* [interfaces] */
   LedgerAccount   ledger;

@@ -9,9 +9,9 @@
 /* Eigenvalues lambda = sigma + i omega (rad/s), omega >= 0, in order of frequency, with vectors x = xr + i xi in the
    unknowns of the pencil; xi is NULL for a real vector */
 typedef struct {
-  PetscInt   n, capacity;
-  PetscReal *sigma, *omega;
-  Vec       *xr, *xi;
+  PetscInt   n, capacity;   /* eigenvalues; length of the arrays */
+  PetscReal *sigma, *omega; /* [n] growth and angular frequency, rad/s */
+  Vec       *xr, *xi;       /* [n] vectors, length: unknowns of the pencil */
   PetscReal
     reach; /* all eigenvalues with |lambda| up to this were converged, rad/s (undamped: those around the shift) */
 } Spectrum;

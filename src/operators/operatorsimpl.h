@@ -27,8 +27,8 @@ struct _p_Operators {
   Contact  contact;
   /* set by options */
   char       load[N_OPERATORS][PETSC_MAX_PATH_LEN], save[PETSC_MAX_PATH_LEN];
-  PetscReal *dense[N_OPERATORS];
-  PetscInt   n_dense[N_OPERATORS];
+  PetscReal *dense[N_OPERATORS];   /* [OPERATORS_MAX_DENSE] entries of -operators_dense_k and the like, by rows */
+  PetscInt   n_dense[N_OPERATORS]; /* entries given: the square of the number of unknowns; 0 for none */
   PetscBool  lump;
   PetscReal  loaded_mu; /* -contact_mu of loaded or dense matrices */
   /* built by OperatorsSetUp() */

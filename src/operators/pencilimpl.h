@@ -30,11 +30,11 @@ struct _p_Pencil {
   PetscReal *force; /* [n_pairs] normal force, N: of the state, or of -contact_force shared by area */
   PetscReal *total; /* [interfaces] their sums over all ranks */
   /* matrices */
-  Terms     base;   /* in all unknowns: those of the bodies, of the contact, of the preload */
-  Mat       Zr, E;  /* right null space of the constraints and its injection; NULL without constraints */
-  PetscInt  n_left; /* Zl = Zr + sum_i p[left_mu[i]] left[i] */
-  Mat      *left;
-  PetscInt *left_mu;
+  Terms     base;      /* in all unknowns: those of the bodies, of the contact, of the preload */
+  Mat       Zr, E;     /* right null space of the constraints and its injection; NULL without constraints */
+  PetscInt  n_left;    /* Zl = Zr + sum_i p[left_mu[i]] left[i] */
+  Mat      *left;      /* [n_left] */
+  PetscInt *left_mu;   /* [n_left] parameters that are friction coefficients */
   Terms     projected; /* in the unknowns of the pencil, made when asked for; empty without constraints: base serves */
   TermsSum  sum[N_PENCIL_SUMS];
 };

@@ -1,7 +1,7 @@
 /*
-   From an equilibrium to the sliding state that a pencil is made about: the closed pairs, with rows of pairs more or
-   less where -static_rows asks for it, the normal forces that friction damping needs, and the optional stiffness of the
-   preload.
+   From an equilibrium to the sliding state that a pencil is made about: the closed pairs (rows closed or opened at
+   their edge where -static_rows asks for it), the normal forces that friction damping needs, and the optional
+   stiffness of the preload.
 */
 #include "preload.h"
 #include "staticsimpl.h"

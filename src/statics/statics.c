@@ -46,7 +46,8 @@ PetscErrorCode StaticsSetFromOptions(Statics s)
                             s->load_steps, &s->load_steps, NULL));
   PetscCall(PetscOptionsInt("-static_dense", "most rows of the contact problem for a dense one, beyond: GMRES",
                             "statics.h", s->dense, &s->dense, NULL));
-  PetscCall(PetscOptionsInt("-static_rows", "for modes: rows of pairs more (> 0) or less (< 0) than are closed",
+  PetscCall(PetscOptionsInt("-static_rows",
+                            "for modes: rows of pairs closed at the edge of the contact (> 0), or opened there (< 0)",
                             "statics.h", s->rows_more, &s->rows_more, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-static_geometric", "for modes: geometric stiffness of the preload",
                            &s->geometric));

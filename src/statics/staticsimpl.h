@@ -28,8 +28,8 @@ static inline PetscBool PairRowsCoulomb(const PairRows *rows)
 /* Rigid motions that nothing resists, r_i' M r_j = delta_ij, and the unknowns at which they are held */
 typedef struct {
   PetscInt  n;
-  Vec      *r, *mr;
-  PetscInt *pin;
+  Vec      *r, *mr;    /* [n] motions and their products with M; length: all unknowns */
+  PetscInt *pin;       /* [n] global numbers of the unknowns held */
   PetscReal stiffness; /* of a pin, N/m */
 } Hold;
 
@@ -40,9 +40,9 @@ typedef struct {
   PetscReal       kappa; /* N/m */
   Hold            hold;
   ShiftInvert     inverse;
-  PetscReal      *W, *V;
-  Vec             u, b; /* work: all unknowns */
-  Vec             row;  /* work: rows */
+  PetscReal      *W, *V; /* [rows][rows] by columns, of all ranks */
+  Vec             u, b;  /* work: all unknowns */
+  Vec             row;   /* work: rows */
 } Compliance;
 
 /* What the laws of the pairs ask of the small system: row i has l_i = sum_k P[k] z_(first + k) + p0, w_i alike */
@@ -103,7 +103,7 @@ typedef struct {
   PetscReal         rounding;
   ContactStatus    *status;   /* [n_pairs] to begin with, then as found */
   PetscReal        *free;     /* [rows] w without contact forces, kappa-held: G K_a^-1 f */
-  PetscReal        *l, *w;    /* [rows] */
+  PetscReal        *l, *w;    /* [rows] contact forces over kappa, m; displacements of the rows, m */
   ActiveOutcome     first;    /* of the iteration with the whole friction */
   PetscBool         pressed;  /* an equilibrium without friction was found */
   PetscBool         reversed; /* the system of the last iteration has a determinant of the wrong sign */
@@ -139,9 +139,9 @@ struct _p_Statics {
   /* the solution */
   PetscBool         solved;
   PetscInt          n_parameters, n_it;
-  ContactStatus    *status;
-  ContactState     *state;
-  Vec               u;
+  ContactStatus    *status; /* [n_pairs] open, stick or slip */
+  ContactState     *state;  /* [n_pairs] gap, forces, status */
+  Vec               u;      /* displacements, m; length: all unknowns */
   ContactKKT        kkt;
   PetscReal         equilibrium; /* relative residual */
   PetscInt          n_free;      /* rigid motions held by pins */

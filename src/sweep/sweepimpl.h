@@ -76,15 +76,15 @@ struct _p_Sweep {
   Greedy         greedy;
   StatusList     statuses;              /* empty without statics; n_pairs -1 without contact */
   PetscInt       base_status, n_static; /* status of the scene's own values; static solutions */
-  SweepPoint    *point;
-  PetscReal     *worst; /* [places] largest estimated relative error, but for rounding */
+  SweepPoint    *point;                 /* [places] */
+  PetscReal     *worst;                 /* [places] largest estimated relative error, but for rounding */
   PetscInt       n_branches;
   PetscBool      whole; /* the basis is the whole space */
   BranchName    *label; /* [n_branches] */
   BranchEvents   events;
-  PetscBool     *is_confirmed; /* on the full problem */
-  SweepCheck    *check;
-  SweepRisk     *risk;
+  PetscBool     *is_confirmed; /* [onsets] on the full problem */
+  SweepCheck    *check;        /* [n_checks] */
+  SweepRisk     *risk;         /* [n_risks] */
   PetscInt       n_checks, n_risks, n_combinations;
   PetscReal      worst_risk; /* largest estimated relative error of all combinations */
   const char    *folder;     /* of the restart files */
