@@ -62,8 +62,9 @@ static PetscErrorCode EquilibriumComplain(const Active *a, ActiveOutcome outcome
   PetscCheck(a->pressed, a->rows->comm, PETSC_ERR_NOT_CONVERGED, "no equilibrium found%s: %s", a->place, how);
   SETERRQ(a->rows->comm, PETSC_ERR_NOT_CONVERGED,
           "no %sequilibrium found%s: friction could be raised to %.4g of its value, where %" PetscInt_FMT
-          " of %" PetscInt_FMT " pairs are closed; beyond, %s; or lower the friction coefficient",
-          PairRowsCoulomb(a->rows) ? "" : "sliding ", a->place, (double)a->friction, n, a->rows->n_pairs_all, how);
+          " of %" PetscInt_FMT " pairs are closed; beyond, %s; %slower the friction coefficient",
+          PairRowsCoulomb(a->rows) ? "" : "sliding ", a->place, (double)a->friction, n, a->rows->n_pairs_all, how,
+          outcome == ACTIVE_JAMMED ? "" : "or ");
 }
 
 /* r = f - K u - G'l + S' D l, forces l in m; NULL stands for u = 0 */
