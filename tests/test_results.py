@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Where results come from. Breaks when scene.yaml does not repeat the run that wrote it, when tables of an earlier run
-stay beside new ones, when a file of the user or of an unfinished run goes, or when a failed run removes anything.
+stay beside new ones, when a file of the user or of an unfinished run goes (whatever its name), or when a failed run removes anything.
 
     test_results.py SQUEAL MPIRUN"""
 
@@ -103,6 +103,20 @@ def check_stale(r):
             "snapshots beyond the new ones go", done)
 
 
+def check_users(r):
+    """Files of the user under squeal's own names stay, as long as no run writes them."""
+    names = ("parameters.csv", "static.csv", "snapshot_000000.h5", "sweep.csv")
+    (r.folder / "users").mkdir()
+    for name in names:
+        (r.folder / "users" / name).write_text("precious")
+    for analysis in ("modes", "transient", "modes"):
+        done = r.scene(analysis, "-output_fields", "0", out="users")
+        r.check(done.returncode == 0 and set(names) <= set(r.files("users"))
+                and all((r.folder / "users" / name).read_text() == "precious" for name in names), f"{analysis} removes no file of the user", done)
+    listed = (r.folder / "users/scene.yaml").read_text()
+    r.check("transient.csv" not in r.files("users") and "static.csv" not in listed, "but those of the run before", done)
+
+
 def check_unfinished(r):
     """What a stopped transient goes on from stays, and it does go on."""
     done = r.scene("transient", out="whole")
@@ -139,7 +153,7 @@ def main():
         (r.folder / "scenes/mine.yaml").write_text(SCENE)
         subprocess.run([sys.executable, SOURCE / "tests/mesh.py", "blocks", "--elements", "3,3,3",
                         r.folder / "scenes/mesh/block.msh"], check=True)
-        for check in (check_scene, check_stale, check_unfinished, check_path):
+        for check in (check_scene, check_stale, check_users, check_unfinished, check_path):
             check(r)
     if r.faults:
         print(f"{len(r.faults)} failed: {'; '.join(r.faults)}")

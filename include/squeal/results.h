@@ -171,8 +171,8 @@ PetscErrorCode ResultsKeepScene(Results results, PetscErrorCode (*read_again)(MP
    ResultsFinish - ends a run that did what was asked. Collective.
 
    It writes scene.yaml: the commands of this run and of its repetition, versions, ranks, time, memory, the files, and
-   all options in force, as a file that -options_file reads. Then squeal's own files that an earlier run left in the
-   folder go. Files of other names stay, and so does what a killed run goes on from: a transient while its table is
+   all options in force, as a file that -options_file reads. Then the files go that the scene.yaml of an earlier run in
+   the folder lists. All others stay, and so does what a killed run goes on from: a transient while its table is
    unfinished, sweep_restart_*. Errors: as ResultsTableClose().
 @*/
 PetscErrorCode ResultsFinish(Results results);

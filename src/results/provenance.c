@@ -1,6 +1,5 @@
 /*
-   Provenance: which files this run wrote, the removal of those of an earlier run, and scene.yaml, which tells where the
-   files come from and can be run again.
+   Provenance: scene.yaml, which tells where the files of a folder come from and can be run again.
 */
 #include "resultsimpl.h"
 #include "base/help.h"
@@ -10,108 +9,10 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <time.h>
-#include <unistd.h>
-
-#define SCENE "scene"
-
-/* Files that squeal writes, each with the unfinished one without which it may go; # stands for a row of digits */
-static const struct {
-  const char *name, *unfinished;
-} known[] = {
-  {"modes.csv",         NULL                },
-  {"modes.h5",          NULL                },
-  {"modes.xmf",         NULL                },
-  {"static.csv",        NULL                },
-  {"static.h5",         NULL                },
-  {"static.xmf",        NULL                },
-  {"reactions.csv",     NULL                },
-  {"sweep.csv",         NULL                },
-  {"onsets.csv",        NULL                },
-  {"verify.csv",        NULL                },
-  {"sensitivities.csv", NULL                },
-  {"robustness.csv",    NULL                },
-  {"parameters.csv",    NULL                },
-  {"transient.csv",     "transient.csv.part"},
-  {"transient.xmf",     "transient.csv.part"},
-  {"contact_pairs.csv", "transient.csv.part"},
-  {"snapshot_#.h5",     "transient.csv.part"},
-  {"snapshot_#.xmf",    "transient.csv.part"},
-  {"checkpoint.bin",    "transient.csv.part"},
-};
 
 /* Options that say where something goes or how the run began, not what is computed */
 static const char *const not_of_scene[] = {"options_file", "output_dir", "squeal_log",
                                            "log_file",     "help",       "dynamics_restart"};
-
-PetscErrorCode ResultsKeep(Results results, const char name[])
-{
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < results->n_kept; i++)
-    if (!strcmp(results->kept[i], name)) PetscFunctionReturn(0);
-  if (results->n_kept == results->kept_room) {
-    results->kept_room = 2 * results->kept_room + 16;
-    PetscCall(PetscRealloc((size_t)results->kept_room * sizeof(*results->kept), &results->kept));
-  }
-  PetscCall(PetscStrallocpy(name, &results->kept[results->n_kept++]));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ResultsKeepFolder(Results results, const char folder[])
-{
-  char *const mine = realpath(results->dir, NULL), *const other = realpath(folder, NULL);
-
-  PetscFunctionBeginUser;
-  if (mine && other && !strcmp(mine, other)) results->keep_all = PETSC_TRUE;
-  free(mine);
-  free(other);
-  PetscFunctionReturn(0);
-}
-
-/* Removes what earlier runs left of this name, unless this run wrote or needs it */
-static PetscErrorCode NameRemove(Results results, const char name[])
-{
-  char path[PETSC_MAX_PATH_LEN];
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < results->n_kept; i++)
-    if (!strcmp(results->kept[i], name)) PetscFunctionReturn(0);
-  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", results->dir, name));
-  (void)unlink(path); /* most are not there */
-  PetscFunctionReturn(0);
-}
-
-/* Removes the numbered files of a pattern, counting up until one is missing */
-static PetscErrorCode NumberedRemove(Results results, const char pattern[])
-{
-  const char *digits = strchr(pattern, '#');
-  char        name[80], path[PETSC_MAX_PATH_LEN];
-
-  PetscFunctionBeginUser;
-  for (int k = 0;; k++) {
-    PetscCall(PetscSNPrintf(name, sizeof(name), "%.*s%06d%s", (int)(digits - pattern), pattern, k, digits + 1));
-    PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", results->dir, name));
-    if (access(path, F_OK)) break;
-    PetscCall(NameRemove(results, name));
-  }
-  PetscFunctionReturn(0);
-}
-
-/* Removes the files of earlier runs, on the first rank */
-static PetscErrorCode FilesRemove(Results results)
-{
-  char path[PETSC_MAX_PATH_LEN];
-
-  PetscFunctionBeginUser;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(known); i++) {
-    PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", results->dir, known[i].unfinished ? known[i].unfinished : ""));
-    if (known[i].unfinished && !access(path, F_OK)) continue;
-    if (strchr(known[i].name, '#'))
-      PetscCall(NumberedRemove(results, known[i].name));
-    else
-      PetscCall(NameRemove(results, known[i].name));
-  }
-  PetscFunctionReturn(0);
-}
 
 PetscErrorCode ResultsKeepScene(Results results, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx)
 {
@@ -251,6 +152,7 @@ static PetscErrorCode SceneWrite(Results results)
   PetscCall(SceneGetCost(results, &seconds, &megabytes));
   (void)strftime(date, sizeof(date), "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));
   PetscCall(OutFileSetName(results, SCENE, ".yaml", file));
+  PetscCall(EarlierRead(results));
   PetscCall(OutFileOpenText(file));
   PetscCall(
     OutFilePrint(file, "# Where the files of this folder come from, and all options in force. To repeat the run:\n"));
@@ -264,9 +166,11 @@ static PetscErrorCode SceneWrite(Results results)
                          v.mumps, v.mpi));
   PetscCall(
     OutFilePrint(file, "# cost: %d ranks, %.1f s, %.0f MB at most\n# end: %s\n", size, seconds, megabytes, date));
-  PetscCall(OutFilePrint(file, "# files:"));
+  PetscCall(OutFilePrint(file, SCENE_FILES));
   for (PetscInt i = 0; i < results->n_kept; i++) PetscCall(OutFilePrint(file, " %s", results->kept[i]));
-  PetscCall(OutFilePrint(file, "\n\n"));
+  PetscCall(OutFilePrint(file, "\n"));
+  PetscCall(EarlierPrint(results, file));
+  PetscCall(OutFilePrint(file, "\n"));
   PetscCall(ScenePrintGiven(results, file, PETSC_TRUE));
   PetscCall(ScenePrintDefaults(&results->options, file));
   PetscCall(OutFilesPublish(1, &file));
@@ -275,12 +179,9 @@ static PetscErrorCode SceneWrite(Results results)
 
 PetscErrorCode ResultsFinish(Results results)
 {
-  PetscMPIInt rank;
-
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(results->comm, &rank));
   PetscCall(SceneWrite(results));
-  if (rank == 0 && !results->keep_all) PetscCall(FilesRemove(results));
+  PetscCall(EarlierRemove(results));
   PetscCallMPI(MPI_Barrier(results->comm));
   PetscFunctionReturn(0);
 }
@@ -290,6 +191,8 @@ PetscErrorCode ResultsForget(Results results)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < results->n_kept; i++) PetscCall(PetscFree(results->kept[i]));
   PetscCall(PetscFree(results->kept));
+  for (PetscInt i = 0; i < results->n_earlier; i++) PetscCall(PetscFree(results->earlier[i]));
+  PetscCall(PetscFree(results->earlier));
   free(results->options.option);
   PetscFunctionReturn(0);
 }

@@ -15,12 +15,18 @@
 #include <hdf5.h>
 #include <stdio.h>
 
+/* scene.yaml, and its lines that name the files of a run, and those of earlier runs that stay */
+#define SCENE       "scene"
+#define SCENE_FILES "# files:"
+#define SCENE_STAY  "# files of earlier runs:"
+
 struct _p_Results {
   MPI_Comm  comm;
   char      dir[PETSC_MAX_PATH_LEN];
   PetscBool fields;
-  PetscInt  n_kept, kept_room;
+  PetscInt  n_kept, n_earlier;
   char    **kept;     /* names of files in the folder that belong to this run */
+  char    **earlier;  /* those that only earlier runs wrote, on the first rank at the end */
   PetscBool keep_all; /* nothing of earlier runs goes */
   HelpList  options;  /* all, as the run found them */
   double    begun;    /* MPI_Wtime() */
@@ -81,6 +87,11 @@ PETSC_INTERN PetscErrorCode OutFileVPrint(OutFile *file, const char format[], va
 PETSC_INTERN PetscErrorCode OutFileWriteAt(OutFile *file, const char *bytes, size_t size, off_t offset);
 PETSC_INTERN PetscErrorCode OutFilesCheck(PetscInt n, OutFile *const files[]);
 PETSC_INTERN PetscErrorCode OutFilesPublish(PetscInt n, OutFile *const files[]);
+
+/* earlier.c */
+PETSC_INTERN PetscErrorCode EarlierRead(Results results);
+PETSC_INTERN PetscErrorCode EarlierPrint(Results results, OutFile *file);
+PETSC_INTERN PetscErrorCode EarlierRemove(Results results);
 
 /* provenance.c */
 PETSC_INTERN PetscErrorCode ResultsForget(Results results);

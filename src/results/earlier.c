@@ -1,0 +1,162 @@
+/*
+   Files of earlier runs in the folder. What is removed is only what their scene.yaml says that squeal wrote: a file that
+   somebody else put there may have any name.
+*/
+#include "resultsimpl.h"
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Files that squeal writes and may remove, each with the unfinished one without which it may go; # stands for a row of digits */
+static const struct {
+  const char *name, *unfinished;
+} known[] = {
+  {"modes.csv",         NULL                },
+  {"modes.h5",          NULL                },
+  {"modes.xmf",         NULL                },
+  {"static.csv",        NULL                },
+  {"static.h5",         NULL                },
+  {"static.xmf",        NULL                },
+  {"reactions.csv",     NULL                },
+  {"sweep.csv",         NULL                },
+  {"onsets.csv",        NULL                },
+  {"verify.csv",        NULL                },
+  {"sensitivities.csv", NULL                },
+  {"robustness.csv",    NULL                },
+  {"parameters.csv",    NULL                },
+  {"transient.csv",     "transient.csv.part"},
+  {"transient.xmf",     "transient.csv.part"},
+  {"contact_pairs.csv", "transient.csv.part"},
+  {"snapshot_#.h5",     "transient.csv.part"},
+  {"snapshot_#.xmf",    "transient.csv.part"},
+  {"checkpoint.bin",    "transient.csv.part"},
+};
+
+/* Whether the name is in a list of n */
+static PetscBool NameIsIn(PetscInt n, char *const names[], const char name[])
+{
+  for (PetscInt i = 0; i < n; i++)
+    if (!strcmp(names[i], name)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Adds a name to a list of n, which has room for 16 of them and for any larger power of two */
+static PetscErrorCode NameAdd(PetscInt *n, char ***names, const char name[])
+{
+  PetscFunctionBeginUser;
+  if (*n == 0) PetscCall(PetscMalloc1(16, names));
+  if (*n >= 16 && !(*n & (*n - 1))) PetscCall(PetscRealloc(2 * (size_t)*n * sizeof(**names), names));
+  PetscCall(PetscStrallocpy(name, &(*names)[(*n)++]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsKeep(Results results, const char name[])
+{
+  PetscFunctionBeginUser;
+  if (!NameIsIn(results->n_kept, results->kept, name)) PetscCall(NameAdd(&results->n_kept, &results->kept, name));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsKeepFolder(Results results, const char folder[])
+{
+  char *const mine = realpath(results->dir, NULL), *const other = realpath(folder, NULL);
+
+  PetscFunctionBeginUser;
+  if (mine && other && !strcmp(mine, other)) results->keep_all = PETSC_TRUE;
+  free(mine);
+  free(other);
+  PetscFunctionReturn(0);
+}
+
+/* Whether a file of that name may go: squeal writes such ones, and no unfinished run goes on from it */
+static PetscBool NameMayGo(Results results, const char name[])
+{
+  char path[PETSC_MAX_PATH_LEN];
+
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(known); i++) {
+    const size_t before = strcspn(known[i].name, "#");
+    const char  *rest   = name + before;
+
+    if (strncmp(name, known[i].name, before)) continue;
+    while (known[i].name[before] && isdigit((unsigned char)*rest)) rest++;
+    if (strcmp(rest, known[i].name + before + (known[i].name[before] ? 1 : 0))) continue;
+    if (!known[i].unfinished) return PETSC_TRUE;
+    if (PetscSNPrintf(path, sizeof(path), "%s/%s", results->dir, known[i].unfinished)) return PETSC_FALSE;
+    return access(path, F_OK) ? PETSC_TRUE : PETSC_FALSE;
+  }
+  return PETSC_FALSE;
+}
+
+/* Whether the file of an earlier run goes when this one ends */
+static PetscBool EarlierGoes(Results results, const char name[])
+{
+  return !results->keep_all && NameMayGo(results, name) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Takes the names off one line of an earlier scene.yaml, but for those that this run wrote or needs */
+static PetscErrorCode LineRead(Results results, char line[])
+{
+  char *rest;
+
+  PetscFunctionBeginUser;
+  for (char *name = strtok_r(line, " \n", &rest); name; name = strtok_r(NULL, " \n", &rest))
+    if (!NameIsIn(results->n_kept, results->kept, name) && !NameIsIn(results->n_earlier, results->earlier, name))
+      PetscCall(NameAdd(&results->n_earlier, &results->earlier, name));
+  PetscFunctionReturn(0);
+}
+
+/* Reads which files earlier runs wrote, from the scene.yaml that is there before this run writes its own. On the first
+   rank; the others have none */
+PetscErrorCode EarlierRead(Results results)
+{
+  char        path[PETSC_MAX_PATH_LEN], *line = NULL;
+  size_t      room = 0;
+  FILE       *file;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(results->comm, &rank));
+  if (rank) PetscFunctionReturn(0);
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/" SCENE ".yaml", results->dir));
+  file = fopen(path, "r");
+  if (!file) PetscFunctionReturn(0); /* nothing there is known to be squeal's */
+  while (getline(&line, &room, file) >= 0) {
+    if (!strncmp(line, SCENE_FILES, strlen(SCENE_FILES))) PetscCall(LineRead(results, line + strlen(SCENE_FILES)));
+    if (!strncmp(line, SCENE_STAY, strlen(SCENE_STAY))) PetscCall(LineRead(results, line + strlen(SCENE_STAY)));
+  }
+  free(line);
+  (void)fclose(file);
+  PetscFunctionReturn(0);
+}
+
+/* The line of the files that stay, so that a later run knows whose they are */
+PetscErrorCode EarlierPrint(Results results, OutFile *file)
+{
+  PetscBool begun = PETSC_FALSE;
+  char      path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < results->n_earlier; i++) {
+    PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", results->dir, results->earlier[i]));
+    if (EarlierGoes(results, results->earlier[i]) || access(path, F_OK)) continue;
+    PetscCall(OutFilePrint(file, "%s %s", begun ? "" : SCENE_STAY, results->earlier[i]));
+    begun = PETSC_TRUE;
+  }
+  if (begun) PetscCall(OutFilePrint(file, "\n"));
+  PetscFunctionReturn(0);
+}
+
+/* Removes the files of earlier runs */
+PetscErrorCode EarlierRemove(Results results)
+{
+  char path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < results->n_earlier; i++) {
+    if (!EarlierGoes(results, results->earlier[i])) continue;
+    PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", results->dir, results->earlier[i]));
+    (void)unlink(path); /* it may be gone */
+  }
+  PetscFunctionReturn(0);
+}
