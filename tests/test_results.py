@@ -5,6 +5,7 @@ stay beside new ones, when a file of the user or of an unfinished run goes (what
     test_results.py SQUEAL MPIRUN"""
 
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -133,6 +134,38 @@ def check_unfinished(r):
             "its scene is the whole run")
 
 
+def check_words(r):
+    """Folders whose names hold blanks, quotes, and what looks like options, come through scene.yaml and its commands."""
+    odd = r.folder / "it's -x \"y\" -modes_count 2 $HOME"
+    (odd / "mesh").mkdir(parents=True)
+    shutil.copy(r.folder / "scenes/mine.yaml", odd)
+    shutil.copy(r.folder / "scenes/mesh/block.msh", odd / "mesh")
+    done = r.run("-options_file", odd / "mine.yaml", "-output_dir", odd / "out", "-modes_count", "3")
+    text = (odd / "out/scene.yaml").read_text() if done.returncode == 0 else ""
+    given = re.findall(r"^(\w+): ", text, re.MULTILINE)
+    r.check("model_mesh" in given and len(given) == len(set(given)) and not {"x", "x/mesh/block.msh"} & set(given),
+            f"options of a scene in {odd.name}: {given}", done)
+    first = (odd / "out/modes.csv").read_bytes() if done.returncode == 0 else b""
+    for kind in ("repeat", "command"):
+        (odd / "out/modes.csv").unlink(missing_ok=True)
+        line = re.search(rf"# {kind}: (.*)", text)
+        words = line[1].replace("squeal ", '"$0" ', 1) if line and kind == "repeat" else line[1] if line else "false"
+        again = subprocess.run(["bash", "-c", words, r.squeal], capture_output=True, text=True, cwd=r.folder)
+        r.check(again.returncode == 0 and (odd / "out/modes.csv").read_bytes() == first, f"bash runs the {kind} line {words}", again)
+
+
+def check_damaged(r):
+    """The message names the table that is damaged."""
+    r.scene("transient", "-dynamics_checkpoint_interval", "20", out="damaged", ranks=2)
+    table = r.folder / "damaged/transient.csv"
+    for path in (table, table.with_suffix(".csv.part")):
+        if path != table:
+            table.rename(path)
+        path.write_bytes(path.read_bytes()[:40])
+        done = r.scene("transient", "-dynamics_restart", "-dynamics_checkpoint_interval", "20", out="damaged", ranks=2)
+        r.check(done.returncode and f"cannot go on with {path}: " in done.stderr, f"{path.name} is named", done)
+
+
 def check_path(r):
     """A path in an options file begins there, one on the command line in the working folder."""
     elsewhere = r.folder / "elsewhere"
@@ -153,7 +186,7 @@ def main():
         (r.folder / "scenes/mine.yaml").write_text(SCENE)
         subprocess.run([sys.executable, SOURCE / "tests/mesh.py", "blocks", "--elements", "3,3,3",
                         r.folder / "scenes/mesh/block.msh"], check=True)
-        for check in (check_scene, check_stale, check_users, check_unfinished, check_path):
+        for check in (check_scene, check_stale, check_users, check_unfinished, check_damaged, check_words, check_path):
             check(r)
     if r.faults:
         print(f"{len(r.faults)} failed: {'; '.join(r.faults)}")

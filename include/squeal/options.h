@@ -117,6 +117,21 @@ PetscErrorCode OptionsCheckFinite(MPI_Comm comm, const char name[], const char o
 PetscErrorCode OptionsExplainValue(const char message[], char text[], size_t size);
 
 /*@
+   OptionsNextGiven - takes the next option off the text of PetscOptionsGetAll(), as it is given: a value may hold blanks
+   and what looks like another option. Nothing becomes used by it. Not collective.
+
+   Input Parameter:
+.  size - room of name
+   Input/Output Parameter:
+.  text - where the text goes on
+   Output Parameters:
++  name  - without its dash
+.  value - borrowed from PETSc; empty for none
+-  more  - false at the end of the text; name and value are then not set
+@*/
+PetscErrorCode OptionsNextGiven(char **text, size_t size, char name[], const char **value, PetscBool *more);
+
+/*@
    OptionsCheckUnknown - raises an error for an option that nobody read and that is not PETSc's or SLEPc's, naming the
    nearest valid one. Collective; call when every room has read its options.
 

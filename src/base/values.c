@@ -2,6 +2,7 @@
    Values between PetscOptionsBegin() and PetscOptionsEnd(): arrays of a given length, sets, viewers; and finite numbers.
 */
 #include <squeal/options.h>
+#include <string.h>
 
 #define MAX_REALS 16
 #define MAX_TEXT  (32 * MAX_REALS)
@@ -48,6 +49,43 @@ static PetscErrorCode ArrayPrint(PetscInt n, const PetscReal *reals, const Petsc
       PetscSNPrintf(number, sizeof(number), "%s%.12g", i ? "," : "", reals ? (double)reals[i] : (double)integers[i]));
     PetscCall(PetscStrlcat(text, number, MAX_TEXT));
   }
+  PetscFunctionReturn(0);
+}
+
+/* Value of an option that is given, NULL for none, and whether it is given; leaves it unused where nobody used it */
+static PetscErrorCode GivenFind(const char name[], const char **value, PetscBool *given)
+{
+  PetscInt n;
+  char   **names, **values;
+
+  PetscFunctionBeginUser;
+  *given = PETSC_FALSE;
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  for (PetscInt i = 0; i < n && !*given; i++) {
+    *given = strcmp(names[i], name + 1) ? PETSC_FALSE : PETSC_TRUE;
+    *value = values[i];
+  }
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  if (!*given) PetscCall(PetscOptionsFindPair(NULL, NULL, name, value, given));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsNextGiven(char **text, size_t size, char name[], const char **value, PetscBool *more)
+{
+  const size_t length = strcspn(*text, " ");
+  char         dashed[MAX_TEXT];
+
+  PetscFunctionBeginUser;
+  *more = **text == '-' ? PETSC_TRUE : PETSC_FALSE;
+  if (!*more) PetscFunctionReturn(0);
+  PetscCall(PetscStrncpy(dashed, *text, PetscMin(length + 1, sizeof(dashed))));
+  PetscCall(GivenFind(dashed, value, more));
+  PetscCheck(*more, PETSC_COMM_SELF, PETSC_ERR_PLIB, "%s is given and cannot be found", dashed);
+  PetscCall(PetscStrncpy(name, dashed + 1, size));
+  *text += length;
+  if (*value) *text += 1 + strlen(*value);
+  *text += strspn(*text, " ");
+  if (!*value) *value = "";
   PetscFunctionReturn(0);
 }
 

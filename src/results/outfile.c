@@ -105,14 +105,14 @@ static const char *TextCut(OutFile *file, int fd, const char head[], const Resul
   return reason;
 }
 
-/* Opens the temporary file, or else the complete one, which then is temporary again, to append to its first bytes */
-static const char *TextReopen(OutFile *file, const char head[], const ResultsMark *mark)
+/* Opens the file at path, the temporary or the complete one, which then is temporary again, to append to its first
+   bytes */
+static const char *TextReopen(OutFile *file, const char path[], const char head[], const ResultsMark *mark)
 {
-  const char *path   = access(file->part, F_OK) ? file->name : file->part;
   const int   fd     = open(path, O_RDWR);
   const char *reason = fd < 0 ? strerror(errno) : TextCut(file, fd, head, mark);
 
-  if (!reason && path == file->name && rename(file->name, file->part)) reason = strerror(errno);
+  if (!reason && strcmp(path, file->part) && rename(file->name, file->part)) reason = strerror(errno);
   if (!reason && lseek(fd, 0, SEEK_END) < 0) reason = strerror(errno);
   if (!reason && !(file->stream = fdopen(fd, "w"))) reason = strerror(errno);
   if (reason && fd >= 0) (void)close(fd);
@@ -122,18 +122,20 @@ static const char *TextReopen(OutFile *file, const char head[], const ResultsMar
 /* Opens text that an earlier run flushed, to continue it after the mark; raises its failures. Collective */
 PetscErrorCode OutFileReopenText(OutFile *file, const char head[], const ResultsMark *mark)
 {
-  char        reason[128] = "";
+  char        reason[128] = "", path[PETSC_MAX_PATH_LEN];
   const char *why;
   PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(file->comm, &rank));
   file->keep = PETSC_TRUE;
-  why        = rank ? NULL : TextReopen(file, head, mark);
+  PetscCall(PetscStrncpy(path, access(file->part, F_OK) ? file->name : file->part, sizeof(path)));
+  why = rank ? NULL : TextReopen(file, path, head, mark);
   if (why) PetscCall(PetscStrncpy(reason, why, sizeof(reason)));
   PetscCallMPI(MPI_Bcast(reason, sizeof(reason), MPI_CHAR, 0, file->comm));
-  PetscCheck(!reason[0], file->comm, PETSC_ERR_FILE_UNEXPECTED, "cannot go on with %s: %s; start the run anew",
-             file->part, reason);
+  PetscCallMPI(MPI_Bcast(path, sizeof(path), MPI_CHAR, 0, file->comm));
+  PetscCheck(!reason[0], file->comm, PETSC_ERR_FILE_UNEXPECTED, "cannot go on with %s: %s; start the run anew", path,
+             reason);
   PetscFunctionReturn(0);
 }
 

@@ -3,8 +3,8 @@
 */
 #include "resultsimpl.h"
 #include "base/help.h"
+#include <squeal/options.h>
 #include <squeal/sys.h>
-#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -40,20 +40,21 @@ static PetscBool OptionIsOfRun(const char name[])
   return PETSC_FALSE;
 }
 
-/* Takes the next "-name value ..." off the text of all options; false at its end. A value may hold blanks */
-static PetscBool NextGiven(char **text, char **name, char **value)
+/* A word of a command line, as a shell reads it */
+static PetscErrorCode ScenePrintWord(OutFile *file, const char word[])
 {
-  char *end;
+  const PetscBool plain = word[0] && !strpbrk(word, " \t\n'\"\\$*?;&|<>(){}[]#~`!") ? PETSC_TRUE : PETSC_FALSE;
 
-  if (!*text || **text != '-') return PETSC_FALSE;
-  *name = *text + 1;
-  for (end = *name; *end && !(end[0] == ' ' && end[1] == '-' && isalpha((unsigned char)end[2])); end++) continue;
-  *text = *end ? end + 1 : end;
-  *end  = '\0';
-  while (end > *name && end[-1] == ' ') *--end = '\0';
-  *value = *name + strcspn(*name, " ");
-  if (**value) *(*value)++ = '\0';
-  return PETSC_TRUE;
+  PetscFunctionBeginUser;
+  if (plain) {
+    PetscCall(OutFilePrint(file, "%s", word));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(OutFilePrint(file, "'"));
+  for (const char *c = word; *c; c++)
+    PetscCall(*c == '\'' ? OutFilePrint(file, "'\\''") : OutFilePrint(file, "%c", *c));
+  PetscCall(OutFilePrint(file, "'"));
+  PetscFunctionReturn(0);
 }
 
 /* One key of the scene, the value in double quotes */
@@ -66,22 +67,35 @@ static PetscErrorCode ScenePrintKey(OutFile *file, const char name[], const char
   PetscFunctionReturn(0);
 }
 
+/* One option: as a key, or as a bare word */
+static PetscErrorCode ScenePrintOption(Results results, OutFile *file, PetscBool keys, const char name[],
+                                       const char value[])
+{
+  const HelpOption *own  = OptionFind(&results->options, name);
+  const size_t      n    = strlen(name);
+  const PetscBool   view = n > 5 && !strcmp(name + n - 5, "_view") ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (keys && (value[0] || own))
+    PetscCall(ScenePrintKey(file, name, value[0] ? value : view && own && !own->initial[0] ? "ascii" : "true"));
+  if (!keys && !value[0] && !own) PetscCall(OutFilePrint(file, " -%s", name));
+  PetscFunctionReturn(0);
+}
+
 /* The options that are given: as keys, or on the command line what PETSc knows as bare words */
 static PetscErrorCode ScenePrintGiven(Results results, OutFile *file, PetscBool keys)
 {
-  char *all, *rest, *name, *value;
+  char       *all, *rest;
+  char        name[HELP_MAX_NAME];
+  const char *value;
+  PetscBool   more = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsGetAll(NULL, &all));
-  for (rest = all; NextGiven(&rest, &name, &value);) {
-    const HelpOption *own  = OptionFind(&results->options, name);
-    const size_t      n    = strlen(name);
-    const PetscBool   view = n > 5 && !strcmp(name + n - 5, "_view") ? PETSC_TRUE : PETSC_FALSE;
-
-    if (OptionIsOfRun(name)) continue;
-    if (keys && (value[0] || own))
-      PetscCall(ScenePrintKey(file, name, value[0] ? value : view && !own->initial[0] ? "ascii" : "true"));
-    if (!keys && !value[0] && !own) PetscCall(OutFilePrint(file, " -%s", name));
+  for (rest = all; more;) {
+    PetscCall(OptionsNextGiven(&rest, sizeof(name), name, &value, &more));
+    if (!more || OptionIsOfRun(name)) continue;
+    PetscCall(ScenePrintOption(results, file, keys, name, value));
   }
   PetscCall(PetscFree(all));
   PetscFunctionReturn(0);
@@ -116,9 +130,8 @@ static PetscErrorCode ScenePrintCommand(OutFile *file, PetscMPIInt size)
   PetscCall(OutFilePrint(file, "# command: "));
   if (size > 1) PetscCall(OutFilePrint(file, "mpirun -n %d ", size));
   for (int i = 0; i < n; i++) {
-    const PetscBool plain = arguments[i][0] && !strpbrk(arguments[i], " \t\n'\"\\$*?;&|<>(){}[]#~`!");
-
-    PetscCall(OutFilePrint(file, plain ? "%s%s" : "%s'%s'", i ? " " : "", arguments[i]));
+    if (i) PetscCall(OutFilePrint(file, " "));
+    PetscCall(ScenePrintWord(file, arguments[i]));
   }
   PetscCall(OutFilePrint(file, "\n# in: %s\n", folder));
   PetscFunctionReturn(0);
@@ -158,7 +171,10 @@ static PetscErrorCode SceneWrite(Results results)
     OutFilePrint(file, "# Where the files of this folder come from, and all options in force. To repeat the run:\n"));
   PetscCall(OutFilePrint(file, "# repeat: "));
   if (size > 1) PetscCall(OutFilePrint(file, "mpirun -n %d ", size));
-  PetscCall(OutFilePrint(file, "squeal -options_file %s/" SCENE ".yaml -output_dir %s", results->dir, results->dir));
+  PetscCall(OutFilePrint(file, "squeal -options_file "));
+  PetscCall(ScenePrintWord(file, file->name));
+  PetscCall(OutFilePrint(file, " -output_dir "));
+  PetscCall(ScenePrintWord(file, results->dir));
   PetscCall(ScenePrintGiven(results, file, PETSC_FALSE));
   PetscCall(OutFilePrint(file, "\n"));
   PetscCall(ScenePrintCommand(file, size));
