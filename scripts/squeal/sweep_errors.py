@@ -2,11 +2,12 @@
 written by a full solution, and its eigenvalues refined in extended precision (exact.py) are the truth."""
 
 import csv
+import json
 import math
 import random
 import subprocess
 import tempfile
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 
 import numpy
@@ -105,7 +106,7 @@ def point_records(found, full):
         true, near, _ = min(full, key=lambda one: abs(one[1] - own))
         if math.isnan(float(abs(true))) or abs(near - own) > 1e-3 * abs(own):
             continue
-        records.append((float(abs(true - own)) / abs(own), stated / abs(own), row["freq_hz"]))
+        records.append((float(abs(true - own)) / abs(own), stated / abs(own), float(row["freq_hz"])))
     return records
 
 
@@ -117,8 +118,9 @@ def grid_points(axes):
     return points
 
 
-def one_sweep(program, seed):
-    """Errors of one sweep: (name, [(true, stated, freq)] of the sweep, the same of its full solutions, reason)."""
+def one_sweep(program, seed, every=1):
+    """Errors of one sweep, at each `every`th point: (seed, name, [(true, stated, freq, point)] of the sweep, the same of its
+    full solutions, reason)."""
     words, value, axes = random_sweep(seed)
     with tempfile.TemporaryDirectory() as top:
         folder = Path(top)
@@ -131,7 +133,7 @@ def one_sweep(program, seed):
             return seed, ",".join(axes), [], [], reason
         rows = eigenvalues(folder / "sweep/sweep.csv")
         sweep, modes = [], []
-        for number, point in enumerate(grid_points(axes), 1):
+        for number, point in list(enumerate(grid_points(axes), 1))[::every]:
             place = folder / str(number)
             place.mkdir()
             try:
@@ -150,7 +152,22 @@ def effectivity(records):
     return numpy.array([record[0] / max(record[1], 1e-300) for record in records])
 
 
-def all_sweeps(program, seeds, workers):
-    """one_sweep() of every seed."""
+def read_results(path):
+    """Results of one_sweep() by seed that an earlier run has kept; none where there is no file."""
+    if not path or not path.exists():
+        return {}
+    with path.open() as lines:
+        return {result[0]: result for result in map(json.loads, lines)}
+
+
+def all_sweeps(program, seeds, workers, path=None):
+    """one_sweep() of every seed as each ends. Those in the file of `path` are taken from there, others added to it."""
+    kept = read_results(path)
+    yield from (kept[seed] for seed in seeds if seed in kept)
     with ThreadPoolExecutor(workers) as pool:
-        return list(pool.map(lambda seed: one_sweep(program, seed), seeds))
+        runs = [pool.submit(one_sweep, program, seed) for seed in seeds if seed not in kept]
+        for run in as_completed(runs):
+            if path:
+                with path.open("a") as lines:
+                    lines.write(json.dumps(run.result()) + "\n")
+            yield run.result()

@@ -224,7 +224,6 @@ PetscErrorCode BasisAdd(Basis *basis, BV block, PetscReal drop, PetscInt *n_adde
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_ORTHOGONALISE));
   PetscCall(BlockProject(basis, block));
-  PetscCall(BlockProject(basis, block));
   PetscCall(BlockOrthonormalise(basis, block, drop));
   PetscCall(BVGetActiveColumns(block, NULL, &n));
   if (n) {
