@@ -34,16 +34,27 @@ class Runner:
             print(text)
 
 
+FIRST = "# Log of squeal: all that it printed\n"
+
+
 def check_log(r):
+    for name, text in (("victim.yaml", "parts: disc\n"), ("table.csv", "a,b")):
+        (r.folder / name).write_text(text)
+        done = r.run(*COARSE, "-squeal_log", name)
+        r.check(done.returncode and re.fullmatch(rf"squeal: error: -squeal_log {name} would replace .*\n", done.stderr)
+                and (r.folder / name).read_text() == text, f"a log never replaces {name}", done.stderr)
     for option in ("-squeal_log", "-log_file"):
         done = r.run(*COARSE, "-squeal_view", option, "all.txt")
         log = (r.folder / "all.txt").read_text()
-        r.check(done.returncode == 0 and done.stdout and log == done.stdout + done.stderr, f"{option} holds what is printed", log)
+        r.check(done.returncode == 0 and done.stdout and log == FIRST + done.stdout + done.stderr, f"{option} holds what is printed", log)
     done = r.run(*COARSE, "-pad_young", "-1", "-squeal_log", "all.txt")
-    r.check(done.stderr and (r.folder / "all.txt").read_text() == done.stderr, "the log holds the error", done.stderr)
-    done = r.run(*COARSE, "-squeal_log", "nowhere/all.txt")
-    r.check(done.returncode and re.fullmatch(r"squeal: error: .*-squeal_log nowhere/all.txt: No such file.*\n", done.stderr),
+    r.check(done.stderr and (r.folder / "all.txt").read_text() == FIRST + done.stderr, "the log holds the error", done.stderr)
+    done = r.run(*COARSE, "-squeal_log", "victim.yaml/all.txt")
+    r.check(done.returncode and re.fullmatch(r"squeal: error: .*-squeal_log victim.yaml/all.txt: Not a directory.*\n", done.stderr),
             "a log that cannot be written is an error", done.stderr)
+    done = r.run(*COARSE, "-output_dir", "new/results", "-squeal_log", "new/results/run.log")
+    r.check(done.returncode == 0 and (r.folder / "new/results/run.log").read_text() == FIRST + done.stdout,
+            "a log in the folder of the results, which the run makes", done.stderr)
 
 
 def check_stages(r):

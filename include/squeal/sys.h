@@ -64,7 +64,7 @@ PetscErrorCode SquealViewOptions(MPI_Comm comm, PetscErrorCode (*read_again)(MPI
                         -log_file
 -  -squeal_progress   - the stage and the time left, on stderr; by default where that is a terminal
 
-   Errors: PETSC_ERR_FILE_OPEN for a log that cannot be written.
+   Errors: PETSC_ERR_FILE_OPEN for a log that cannot be written, or would replace a file that is no log.
 @*/
 PetscErrorCode SquealSetFromOptions(MPI_Comm comm);
 

@@ -2,9 +2,12 @@
    Paths that options name: one in an options file is relative to the folder of that file, one on the command line to
    the working folder.
 */
+#include "path.h"
 #include <squeal/options.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* Whether the command line gives the option itself */
@@ -82,4 +85,22 @@ PetscErrorCode OptionsGetPath(OptionsItems PetscOptionsObject, const char option
   if (whole) PetscCall(PetscOptionsHasName(NULL, NULL, option, &given));
   free(whole);
   PetscFunctionReturn(0);
+}
+
+int PathMakeFolders(const char dir[])
+{
+  char        path[PETSC_MAX_PATH_LEN];
+  struct stat status;
+
+  strcpy(path, dir);
+  for (char *end = path + 1; *end; end++) {
+    if (*end != '/') continue;
+    *end = '\0';
+    if (mkdir(path, 0777) && errno != EEXIST) return errno;
+    *end = '/';
+  }
+  if (mkdir(path, 0777) && errno != EEXIST) return errno;
+  if (stat(path, &status)) return errno;
+  if (!S_ISDIR(status.st_mode)) return ENOTDIR;
+  return access(path, W_OK | X_OK) ? errno : 0;
 }

@@ -4,9 +4,15 @@
    before other text follows it.
 */
 #include "print.h"
+#include "path.h"
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* By which a log is known */
+static const char first_line[] = "# Log of squeal: all that it printed\n";
 
 /* Log handles */
 static struct {
@@ -40,16 +46,48 @@ void PrintInstall(void)
   PetscVFPrintf  = PrintBoth;
 }
 
+/* Whether the log may be written there: nothing is there, or what is no file, an empty one, or an earlier log */
+static PetscBool LogMayReplace(const char path[])
+{
+  char        line[sizeof(first_line)] = "";
+  struct stat status;
+  FILE       *file;
+
+  if (stat(path, &status) || !S_ISREG(status.st_mode) || status.st_size == 0) return PETSC_TRUE;
+  file = fopen(path, "r");
+  if (!file) return PETSC_FALSE;
+  if (!fgets(line, sizeof(line), file)) line[0] = '\0';
+  (void)fclose(file);
+  return strcmp(line, first_line) ? PETSC_FALSE : PETSC_TRUE;
+}
+
+/* Makes the folder of the log, which may be that of results to come; returns errno */
+static int LogMakeFolder(const char path[])
+{
+  char        folder[PETSC_MAX_PATH_LEN];
+  const char *slash = strrchr(path, '/');
+
+  if (!slash || slash == path) return 0;
+  (void)snprintf(folder, sizeof(folder), "%.*s", (int)(slash - path), path);
+  return access(folder, F_OK) ? PathMakeFolders(folder) : 0;
+}
+
 PetscErrorCode PrintSetLog(MPI_Comm comm, const char file[])
 {
   PetscMPIInt rank, error = 0;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0 && !printing.log && !LogMayReplace(file)) error = EEXIST;
+  PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, comm));
+  PetscCheck(!error, comm, PETSC_ERR_FILE_OPEN,
+             "-squeal_log %s would replace a file that is no log of squeal; choose another file", file);
   if (rank == 0 && !printing.log) {
-    printing.log = fopen(file, "w");
-    error        = printing.log ? 0 : errno;
+    error        = LogMakeFolder(file);
+    printing.log = error ? NULL : fopen(file, "w");
+    if (!error && !printing.log) error = errno;
     if (printing.log) (void)setvbuf(printing.log, NULL, _IOLBF, BUFSIZ);
+    if (printing.log) (void)fputs(first_line, printing.log);
   }
   PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, comm));
   PetscCheck(!error, comm, PETSC_ERR_FILE_OPEN, "cannot write the log -squeal_log %s: %s; choose another file", file,

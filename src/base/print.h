@@ -5,7 +5,8 @@
 
 /* Stands between PETSc's printers and the files from now on */
 PETSC_INTERN void PrintInstall(void);
-/* Copies all that is printed from now on to a file, on the first rank; once. Errors: PETSC_ERR_FILE_OPEN. Collective */
+/* Copies all that is printed from now on to a file, on the first rank; once; makes its folder. Errors:
+   PETSC_ERR_FILE_OPEN, also where a file is there that is no log. Collective */
 PETSC_INTERN PetscErrorCode PrintSetLog(MPI_Comm comm, const char file[]);
 /* Prints on stderr and into the log, also where PETSC is at its end */
 PETSC_INTERN void PrintError(const char message[]);

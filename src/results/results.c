@@ -2,34 +2,13 @@
    Results - the folder of the results and its tables. See squeal/results.h.
 */
 #include "resultsimpl.h"
+#include "base/path.h"
 #include <squeal/options.h>
-#include <errno.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 struct _p_ResultsTable {
   OutFile file;
 };
-
-/* Makes the folder and its parents where they are missing; returns errno, 0 when a folder is there */
-static int MakeFolders(const char dir[])
-{
-  char        path[PETSC_MAX_PATH_LEN];
-  struct stat status;
-
-  strcpy(path, dir);
-  for (char *end = path + 1; *end; end++) {
-    if (*end != '/') continue;
-    *end = '\0';
-    if (mkdir(path, 0777) && errno != EEXIST) return errno;
-    *end = '/';
-  }
-  if (mkdir(path, 0777) && errno != EEXIST) return errno;
-  if (stat(path, &status)) return errno;
-  if (!S_ISDIR(status.st_mode)) return ENOTDIR;
-  return access(path, W_OK | X_OK) ? errno : 0;
-}
 
 PetscErrorCode ResultsCreate(MPI_Comm comm, Results *results)
 {
@@ -63,7 +42,7 @@ PetscErrorCode ResultsOpenDirectory(Results results)
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(results->comm, &rank));
-  if (rank == 0) error = MakeFolders(results->dir);
+  if (rank == 0) error = PathMakeFolders(results->dir);
   PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, results->comm));
   PetscCheck(!error, results->comm, PETSC_ERR_FILE_OPEN,
              "cannot write into the folder -output_dir %s: %s; choose another", results->dir, strerror(error));
