@@ -121,8 +121,10 @@ PetscErrorCode SquealSetFromOptions(MPI_Comm comm)
   PetscOptionsBegin(comm, NULL, "squeal", NULL);
   PetscCall(OptionsGetBool(PetscOptionsObject, "-squeal_traceback",
                            "show PETSc's traceback of an error, for developers", &traced));
-  PetscCall(PetscOptionsString("-squeal_log", "file that all that is printed goes to as well; also -log_file", "sys.h",
-                               log, log, sizeof(log), &has_log));
+  PetscCall(PetscOptionsString(
+    "-squeal_log",
+    "file that all that is printed goes to as well, never in place of a file that is no log; also -log_file", "sys.h",
+    log, log, sizeof(log), &has_log));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-log_file", has_log ? NULL : log, sizeof(log), &has_file));
   PetscOptionsEnd();
   if (has_log || has_file) PetscCall(PrintSetLog(comm, log));
