@@ -166,6 +166,7 @@ static PetscErrorCode ChainSetUp(Chain *chain)
   if (transient) PetscCall(DynamicsNeedsPairs(chain->dynamics, &pairs));
   if (chain->model) {
     if (transient) PetscCall(ModelKeepSlabs(chain->model));
+    if (pairs) PetscCall(ModelHoldMotions(chain->model)); /* in time they move */
     PetscCall(SquealStageBegin(SQUEAL_MODEL));
     PetscCall(ModelSetUp(chain->model));
     PetscCall(SquealStageEnd(SQUEAL_MODEL));

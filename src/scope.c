@@ -74,22 +74,6 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
   PetscFunctionReturn(0);
 }
 
-/* The equilibrium does not know prescribed displacements: an answer without them would be another scene's */
-static PetscErrorCode ScopeCheckMotions(MPI_Comm comm, const Scope *s, PetscBool statics)
-{
-  static const char option[] = "-motions";
-  char              names[256];
-  PetscBool         set;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsGetString(NULL, NULL, option, names, sizeof(names), &set));
-  PetscCheck(!set || !statics || s->transient, comm, PETSC_ERR_USER_INPUT,
-             "%s %s: the sliding state knows no prescribed displacements; take -supports and -loads, or -analysis "
-             "transient",
-             option, names);
-  PetscFunctionReturn(0);
-}
-
 /* What every reader reads, and this analysis has no use for */
 static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool statics)
 {
@@ -98,7 +82,6 @@ static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool st
 
   PetscFunctionBeginUser;
   if (s->model) PetscCall(ScopeCheckModel(comm, s, statics));
-  if (s->model) PetscCall(ScopeCheckMotions(comm, s, statics));
   if (s->contact) PetscCall(ContactGetInterfaces(s->contact, &n, &interfaces));
   for (PetscInt i = 0; i < n; i++) PetscCall(ScopeCheckContact(comm, s, &interfaces[i]));
   if (s->transient)

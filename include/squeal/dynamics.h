@@ -49,8 +49,8 @@ PetscErrorCode DynamicsSetModel(Dynamics dynamics, Model model, Contact contact)
    and of the scene
 +  -press_ramp <0>, -press_ramp_shape <smooth|linear>, -press_delay <0> - ramp of the load `press`, s
 .  -disc_velocity <0,0,0>        - of the part `disc` at the start, m/s
-.  -motions <names>              - prescribed displacements of sets: -lift_set, -lift_displacement x,y,z (m),
-                                   -lift_directions xyz, and a ramp, which must be given
+.  -lift_ramp, -lift_ramp_shape, -lift_delay - the same of the motion `lift` (model.h), whose ramp must be given;
+                                   from the sliding state motions are there from the start, and have none
 -  -impulses <names>             - at nodes: -hit_at x,y,z (m), -hit_part, -hit_impulse x,y,z (N s), -hit_time (s)
    Those of contact surfaces are in projector.h.
 @*/

@@ -65,16 +65,24 @@ typedef struct {
   PetscBool fix[3];
 } Support;
 
+/* Prescribed displacement d of a set along the flagged directions, m; in time r(t) d, with a ramp */
+typedef struct {
+  char     *name, *set;
+  PetscReal displacement[3];
+  PetscBool direction[3];
+} PrescribedMotion;
+
 /* What the options name */
 typedef struct {
-  PetscInt       n_parts, n_supports, n_springs, n_dashpots, n_loads, n_probes;
-  Part          *parts;
-  Support       *supports;
-  Grounded      *springs, *dashpots;
-  Load          *loads;
-  Probe         *probes;
-  PetscReal      gravity[3]; /* m/s^2 */
-  const Element *element;    /* formulation of the cells; after ModelSetUp() */
+  PetscInt          n_parts, n_supports, n_springs, n_dashpots, n_loads, n_motions, n_probes;
+  Part             *parts;
+  Support          *supports;
+  Grounded         *springs, *dashpots;
+  Load             *loads;
+  PrescribedMotion *motions;
+  Probe            *probes;
+  PetscReal         gravity[3]; /* m/s^2 */
+  const Element    *element;    /* formulation of the cells; after ModelSetUp() */
 } ModelScene;
 
 /*@
@@ -83,15 +91,18 @@ typedef struct {
 PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
 
 /*@
-   ModelSetFromOptions - reads the scene: mesh source, parts and materials, supports, springs, dashpots, loads, probes.
+   ModelSetFromOptions - reads the scene: mesh source, parts and materials, supports, springs, dashpots, loads, motions,
+   probes.
    Collective.
 
    Options Database Keys:
 +  -model_source <rig|file> - where the mesh comes from
 .  -model_mesh <file>       - Gmsh file, format 2.2 or 4.1
 .  -model_element <incompatible|full> - element formulation
-.  -parts, -supports, -springs, -dashpots, -loads, -probes <names> - lists; each name is the prefix of its own options
+.  -parts, -supports, -springs, -dashpots, -loads, -motions, -probes <names> - lists; each name is the prefix of its own options
 .  -model_gravity <0,0,0>   - acceleration of gravity, m/s^2, which acts on the mass of all parts in statics and in time
+.  -lift_set, -lift_displacement x,y,z, -lift_directions <those of the displacement> - of a motion named `lift`: named
+   set, m, some of x, y, z
 -  -rig_*                   - dimensions (m) and counts of the built-in disc, pad and beam
 
    Errors: PETSC_ERR_USER_INPUT for a missing or invalid value, naming option, value and what is valid.
@@ -108,6 +119,11 @@ PetscErrorCode ModelKeepTogether(Model model, const char set[]);
     of them; bodies that fit into a rank's share of the cost stay whole. The sets of ModelKeepTogether() are then not
     heeded. Call before ModelSetUp(). Not collective, same call on all ranks. @*/
 PetscErrorCode ModelKeepSlabs(Model model);
+
+/*@ ModelHoldMotions - the motions act as supports with their whole displacement: the directions that they prescribe are
+    no unknowns. Without it, where motions act in time, they are unknowns as all others. Call before ModelSetUp(). Not
+    collective. @*/
+PetscErrorCode ModelHoldMotions(Model model);
 
 /*@ ModelCheckGiven - raises PETSC_ERR_USER_INPUT where the options tell of no mesh. Collective. @*/
 PetscErrorCode ModelCheckGiven(Model model);
@@ -194,11 +210,14 @@ PetscErrorCode ModelCreateNodal(Model model, Vec *nodal);
     [vertices][3]; zero where a support fixes them. Collective. @*/
 PetscErrorCode ModelGetNodal(Model model, Vec u, PetscReal nodal[]);
 
+/*@ ModelGetDisplaced - the same, with the displacements that motions prescribe where they are held. Collective. @*/
+PetscErrorCode ModelGetDisplaced(Model model, Vec u, PetscReal nodal[]);
+
 /*@ ModelSumShared - sums a vector of ModelCreateNodal() over all ranks that share a vertex; every one of them gets the
     sum. Collective. @*/
 PetscErrorCode ModelSumShared(Model model, Vec local);
 
-/*@ ModelAddChecksum - adds mesh, materials, supports, springs and dashpots; with_partition: also which rank has which
+/*@ ModelAddChecksum - adds mesh, materials, supports, motions, springs and dashpots; with_partition: also which rank has which
     cells. Collective; after ModelSetUp(). @*/
 PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum checksum);
 
@@ -207,6 +226,13 @@ PetscBool ModelHasGravity(Model model);
 
 /*@ ModelAddLoadsChecksum - adds the loads, and gravity. Collective. @*/
 PetscErrorCode ModelAddLoadsChecksum(Model model, Checksum checksum);
+
+/*@ ModelCheckMotion - raises PETSC_ERR_USER_INPUT for a motion that prescribes no direction of a node (n_held = 0), or one
+    that another prescribes (n_twice > 0); counts of this rank. Collective. @*/
+PetscErrorCode ModelCheckMotion(Model model, const PrescribedMotion *motion, PetscInt n_held, PetscInt n_twice);
+
+/*@ ModelDescribeMotion - such as "motion lift: head_top moved by 0, 0, 1e-06 m (z prescribed)". Not collective. @*/
+PetscErrorCode ModelDescribeMotion(const PrescribedMotion *motion, size_t size, char words[]);
 
 /*@ ModelAddSetChecksum - adds name and nodes of a set to the present part, and its faces where it is a surface.
     Collective. @*/

@@ -105,6 +105,10 @@ PetscErrorCode OperatorsReleaseBodies(Operators operators);
    are its reaction. Springs and contact are no part of it. Collective. @*/
 PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[], Vec u, Vec local);
 
+/*@ OperatorsPrescribedForces - internal forces of the displacements that motions prescribe, all others held, as those of
+    OperatorsInternalForces(): with u = 0 on the unknowns, K_fd d there. Zero without motions. Collective. @*/
+PetscErrorCode OperatorsPrescribedForces(Operators operators, const PetscReal p[], Vec local);
+
 /*@ OperatorsAddWeight - adds the weight of all parts under -model_gravity, f_i = sum_j m_ij g at the densities of p, to
     a vector of ModelCreateNodal(), N; total is its sum over the bodies. Collective. @*/
 PetscErrorCode OperatorsAddWeight(Operators operators, const PetscReal p[], Vec local, PetscReal total[3]);

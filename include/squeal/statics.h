@@ -11,6 +11,9 @@
    lambda_n, lambda_b = 0 at every closed pair; else Coulomb's law, |(lambda_t, lambda_b)| <= mu lambda_n, with slip of
    the slave along the friction on the master.
 
+   Motions (-motions) hold u = d: these displacements are no unknowns, f has -K_fd d more, and gaps and slip count d. In modes
+   about the state they are held. Their reactions are rows of reactions.csv.
+
    Method: one factorisation of K_a = K + kappa G'G (+ pins), G the rows of N (and T, B where Coulomb's law holds), and
    from it the small problem of the pairs, w + W_mu l - kappa W w = G K_a^-1 f for contact displacements w = G u and
    forces l, closed by one of the laws per pair; a primal-dual active set (semismooth Newton: M. Hintermueller, K. Ito,

@@ -74,8 +74,10 @@ PETSC_INTERN PetscErrorCode DynamicsFindCriticalStep(Dynamics dynamics);
 /* turningframe.c - inertial forces in parts that turn */
 PETSC_INTERN PetscErrorCode DynamicsSetFrames(Dynamics dynamics);
 
-/* statevector.c - between vectors of all unknowns and state vectors (held directions 0) */
+/* statevector.c - between vectors of all unknowns and state vectors (held directions 0, or of displacements what
+   motions prescribe there) */
 PETSC_INTERN PetscErrorCode StateVectorFromVec(Model model, const Layout *layout, Vec x, PetscReal state[]);
+PETSC_INTERN PetscErrorCode StateVectorFromDisplacements(Model model, const Layout *layout, Vec u, PetscReal state[]);
 PETSC_INTERN PetscErrorCode StateVectorToVec(Model model, const Layout *layout, const PetscReal state[], Vec x);
 
 /* startstate.c - displacements and velocities at the start */

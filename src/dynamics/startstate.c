@@ -1,7 +1,8 @@
 /*
    The state at t = 0: displacements u_0 and velocities v_0.
       rest    u_0 = 0, v_0 the initial velocities of the parts
-      static  u_0 of the sliding state under the loads (statics.h) and its contact forces; v_0 as at rest. Then nothing
+      static  u_0 of the sliding state under the loads (statics.h) and motions, and its contact forces; v_0 as at
+              rest. Then nothing
               moves until something disturbs it: all loads and sliding speeds are in force from the first step.
    On top of either a mode x of an earlier run, lambda = sigma + i omega: u_0 += A Re(x), v_0 += A Re(lambda x), with A
    such that the largest component of Re(x) is the amplitude asked for. m, m/s.
@@ -9,8 +10,8 @@
 #include "dynamicsimpl.h"
 #include "shape.h"
 
-/* Raises the error for an option that the sliding state does not know; a time of 0 is none */
-static PetscErrorCode StartCheckAbsent(Dynamics d, const char name[], const char what[], PetscBool time)
+/* Raises the error for a time that the sliding state does not know; 0 is none */
+static PetscErrorCode StartCheckAbsent(Dynamics d, const char name[], const char what[])
 {
   char      option[160];
   PetscReal length = 1;
@@ -18,10 +19,7 @@ static PetscErrorCode StartCheckAbsent(Dynamics d, const char name[], const char
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(option, sizeof(option), "-%s%s", name, what));
-  if (time)
-    PetscCall(PetscOptionsGetReal(NULL, NULL, option, &length, &set));
-  else
-    PetscCall(PetscOptionsHasName(NULL, NULL, option, &set));
+  PetscCall(PetscOptionsGetReal(NULL, NULL, option, &length, &set));
   PetscCheck(
     !set || length == 0, d->comm, PETSC_ERR_USER_INPUT,
     "%s has no place with -dynamics_start static, the steady state under the whole loads: leave it out, or take "
@@ -39,11 +37,10 @@ static PetscErrorCode StartCheckStatic(Dynamics d)
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(d->model, &scene));
-  PetscCall(StartCheckAbsent(d, "motions", "", PETSC_FALSE));
   for (int r = 0; r < 2; r++) {
-    for (PetscInt i = 0; i < scene->n_loads; i++)
-      PetscCall(StartCheckAbsent(d, scene->loads[i].name, ramps[r], PETSC_TRUE));
-    for (PetscInt i = 0; i < n; i++) PetscCall(StartCheckAbsent(d, interfaces[i].name, ramps[r], PETSC_TRUE));
+    for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(StartCheckAbsent(d, scene->loads[i].name, ramps[r]));
+    for (PetscInt i = 0; i < scene->n_motions; i++) PetscCall(StartCheckAbsent(d, scene->motions[i].name, ramps[r]));
+    for (PetscInt i = 0; i < n; i++) PetscCall(StartCheckAbsent(d, interfaces[i].name, ramps[r]));
   }
   for (PetscInt i = 0; i < n; i++)
     PetscCheck(interfaces[i].law == CONTACT_CONSTRAINT, d->comm, PETSC_ERR_USER_INPUT,
@@ -128,7 +125,7 @@ PetscErrorCode DynamicsStartState(Dynamics d)
     PetscCall(StartCheckStatic(d));
     PetscCall(StaticsSolve(d->statics, NULL));
     PetscCall(StaticsGetState(d->statics, NULL, &displacement));
-    PetscCall(StateVectorFromVec(d->model, d->layout, displacement, u));
+    PetscCall(StateVectorFromDisplacements(d->model, d->layout, displacement, u));
   }
   if (d->shape[0]) PetscCall(StartAddShape(d, u, v));
   PetscCall(StartContact(d, u));

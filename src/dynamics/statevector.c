@@ -4,17 +4,33 @@
 */
 #include "dynamicsimpl.h"
 
-PetscErrorCode StateVectorFromVec(Model model, const Layout *layout, Vec x, PetscReal state[])
+static PetscErrorCode StateVectorFrom(Model model, const Layout                                        *layout,
+                                      PetscErrorCode (*get)(Model model, Vec x, PetscReal nodal[]), Vec x,
+                                      PetscReal state[])
 {
   PetscReal *value;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(3 * layout->n_vertices, &value));
-  PetscCall(ModelGetNodal(model, x, value));
+  PetscCall(get(model, x, value));
   PetscCall(PetscArrayzero(state, layout->n));
   for (PetscInt i = 0; i < layout->n_vertices; i++)
     if (layout->at[i] >= 0) LayoutSet(layout, i, &value[3 * i], state);
   PetscCall(PetscFree(value));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StateVectorFromDisplacements(Model model, const Layout *layout, Vec u, PetscReal state[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(StateVectorFrom(model, layout, ModelGetDisplaced, u, state));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StateVectorFromVec(Model model, const Layout *layout, Vec x, PetscReal state[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(StateVectorFrom(model, layout, ModelGetNodal, x, state));
   PetscFunctionReturn(0);
 }
 

@@ -48,6 +48,7 @@ PetscErrorCode ModelSetFromOptions(Model model)
   PetscCall(OptionsReadList(model->comm, &springs_list, model, &scene->n_springs, &scene->springs));
   PetscCall(OptionsReadList(model->comm, &dashpots_list, model, &scene->n_dashpots, &scene->dashpots));
   PetscCall(OptionsReadList(model->comm, &loads_list, model, &scene->n_loads, &scene->loads));
+  PetscCall(OptionsReadList(model->comm, &motions_list, model, &scene->n_motions, &scene->motions));
   PetscCall(OptionsReadList(model->comm, &probes_list, model, &scene->n_probes, &scene->probes));
   PetscFunctionReturn(0);
 }
@@ -76,6 +77,14 @@ PetscErrorCode ModelCheckGiven(Model model)
   PetscCheck(
     model->given, model->comm, PETSC_ERR_USER_INPUT,
     "nothing to compute: give -options_file FILE, -model_source rig, -model_mesh FILE or -operators_load_k FILE");
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelHoldMotions(Model model)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!model->dm, model->comm, PETSC_ERR_ARG_WRONGSTATE, "ModelHoldMotions() must come before ModelSetUp()");
+  model->hold_motions = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -181,6 +190,12 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  load %s on %s: %.6g, %.6g, %.6g N in all\n", l->name, l->set,
                                      (double)l->force[0], (double)l->force[1], (double)l->force[2]));
   }
+  for (PetscInt i = 0; i < model->scene.n_motions; i++) {
+    char words[256];
+
+    PetscCall(ModelDescribeMotion(&model->scene.motions[i], sizeof(words), words));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s\n", words));
+  }
   if (ModelHasGravity(model))
     PetscCall(PetscViewerASCIIPrintf(viewer, "  gravity: %.6g, %.6g, %.6g m/s^2\n", (double)model->scene.gravity[0],
                                      (double)model->scene.gravity[1], (double)model->scene.gravity[2]));
@@ -212,6 +227,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(RecordsDestroy(s->n_springs, sizeof(*s->springs), 2, s->springs));
   PetscCall(RecordsDestroy(s->n_dashpots, sizeof(*s->dashpots), 2, s->dashpots));
   PetscCall(RecordsDestroy(s->n_loads, sizeof(*s->loads), 2, s->loads));
+  PetscCall(RecordsDestroy(s->n_motions, sizeof(*s->motions), 2, s->motions));
   PetscCall(RecordsDestroy(s->n_probes, sizeof(*s->probes), 2, s->probes));
   for (PetscInt i = 0; i < m->n_together; i++) PetscCall(PetscFree(m->together[i]));
   PetscCall(PetscFree(m->extent));

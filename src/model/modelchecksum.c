@@ -87,6 +87,14 @@ PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum 
     PetscCall(ModelAddSetChecksum(model, model->scene.supports[i].set, PETSC_FALSE, c));
     PetscCall(ChecksumAddInts(c, 3, (const PetscInt[]){fix[0], fix[1], fix[2]}));
   }
+  for (PetscInt i = 0; i < model->scene.n_motions; i++) {
+    const PrescribedMotion *m = &model->scene.motions[i];
+
+    PetscCall(ChecksumSetPart(c, "motion %s", m->name));
+    PetscCall(ModelAddSetChecksum(model, m->set, PETSC_FALSE, c));
+    PetscCall(ChecksumAddReals(c, 3, m->displacement));
+    PetscCall(ChecksumAddInts(c, 3, (const PetscInt[]){m->direction[0], m->direction[1], m->direction[2]}));
+  }
   for (PetscInt i = 0; i < model->scene.n_springs + model->scene.n_dashpots; i++) {
     const PetscBool is_spring = i < model->scene.n_springs ? PETSC_TRUE : PETSC_FALSE;
     const Grounded *g = is_spring ? &model->scene.springs[i] : &model->scene.dashpots[i - model->scene.n_springs];

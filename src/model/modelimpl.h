@@ -36,6 +36,7 @@ struct _p_Model {
   ModelScene scene;
   PetscInt   n_together;
   char      *together[MODEL_MAX_NAMES]; /* sets whose cells stay on one rank */
+  PetscBool  hold_motions;              /* the directions of motions are no unknowns */
   PetscBool  keep_slabs;                /* swept bodies are cut between slabs, and no set is kept together */
   /* built by ModelSetUp() */
   DM          dm;
@@ -67,8 +68,10 @@ PETSC_INTERN PetscErrorCode PartitionMesh(Model model);
 PETSC_INTERN PetscErrorCode MeshTabulate(Model model);
 PETSC_INTERN PetscErrorCode MeshReset(Model model);
 
-/* The lists of the scene, whose files read their records: part.c, support.c, grounded.c, load.c, probe.c */
-PETSC_INTERN const OptionsList parts_list, supports_list, springs_list, dashpots_list, loads_list, probes_list;
+/* The lists of the scene, whose files read their records: part.c, support.c, grounded.c, load.c, motion.c,
+   probe.c */
+PETSC_INTERN const OptionsList parts_list, supports_list, springs_list, dashpots_list, loads_list, motions_list,
+  probes_list;
 
 /* part.c - checks the materials, and finds the part of each cell */
 PETSC_INTERN PetscErrorCode PartsCheck(Model model);
@@ -80,6 +83,10 @@ PETSC_INTERN PetscErrorCode MeshLayOut(Model model);
 /* load.c - total forces on sets; raises an error for a set that the mesh does not have, or that has no node of an
    element */
 PETSC_INTERN PetscErrorCode LoadsCheck(Model model);
+
+/* motion.c - flags what the motions prescribe and no support fixes in fixed [vertex][3], and tabulates how far they go;
+   errors for an unknown set, and those of ModelCheckMotion(). Collective. */
+PETSC_INTERN PetscErrorCode MotionsFlag(Model model, PetscBool fixed[][3]);
 
 /* probe.c - places that histories record: reads them, and finds their nodes */
 PETSC_INTERN PetscErrorCode ProbesLocate(Model model);

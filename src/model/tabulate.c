@@ -113,6 +113,7 @@ PetscErrorCode MeshReset(Model model)
   PetscCall(PetscFree(mesh->number));
   PetscCall(PetscFree(mesh->owned));
   PetscCall(PetscFree(mesh->unknown));
+  PetscCall(PetscFree(mesh->prescribed));
   PetscCall(PetscFree(mesh->corner));
   PetscCall(PetscFree(mesh->cell_part));
   PetscCall(PetscFree(mesh->part));

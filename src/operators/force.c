@@ -44,11 +44,24 @@ static PetscErrorCode OperatorsAddCellForces(Operators o, const PetscReal p[], c
   PetscFunctionReturn(0);
 }
 
+/* Forces of displacements [vertices][3], complete at every vertex */
+static PetscErrorCode OperatorsForcesOf(Operators o, const PetscReal p[], const PetscReal displacement[], Vec local)
+{
+  PetscScalar *force;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(local, 0));
+  PetscCall(VecGetArray(local, &force));
+  PetscCall(OperatorsAddCellForces(o, OperatorsPoint(o, p), displacement, force));
+  PetscCall(VecRestoreArray(local, &force));
+  PetscCall(ModelSumShared(o->model, local));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[], Vec u, Vec local)
 {
-  const Mesh  *mesh;
-  PetscReal   *displacement;
-  PetscScalar *force;
+  const Mesh *mesh;
+  PetscReal  *displacement;
 
   PetscFunctionBeginUser;
   PetscCheck(operators->model, operators->comm, PETSC_ERR_ARG_WRONGSTATE,
@@ -56,12 +69,21 @@ PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[],
   PetscCall(ModelGetMesh(operators->model, &mesh));
   PetscCall(PetscMalloc1(3 * mesh->n_vertices, &displacement));
   PetscCall(ModelGetNodal(operators->model, u, displacement));
-  PetscCall(VecSet(local, 0));
-  PetscCall(VecGetArray(local, &force));
-  PetscCall(OperatorsAddCellForces(operators, OperatorsPoint(operators, p), displacement, force));
-  PetscCall(VecRestoreArray(local, &force));
+  PetscCall(OperatorsForcesOf(operators, p, displacement, local));
   PetscCall(PetscFree(displacement));
-  PetscCall(ModelSumShared(operators->model, local));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsPrescribedForces(Operators operators, const PetscReal p[], Vec local)
+{
+  const Mesh *mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(operators->model, &mesh));
+  if (mesh->prescribed)
+    PetscCall(OperatorsForcesOf(operators, p, mesh->prescribed, local));
+  else
+    PetscCall(VecSet(local, 0));
   PetscFunctionReturn(0);
 }
 

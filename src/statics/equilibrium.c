@@ -179,12 +179,12 @@ PetscErrorCode EquilibriumSolve(Statics s, Active *a)
   PetscCall(StaticsPlace(s, a->place, sizeof(a->place)));
   PetscCall(PetscCalloc2(rows->n, &a->free, rows->n, &a->w));
   PetscCall(VecDuplicate(whole, &a->f));
-  for (PetscInt p = 0; p < rows->n_pairs; p++) rows->law[p].slip0[0] = rows->law[p].slip0[1] = 0;
   for (PetscInt step = 1; step <= a->load_steps; step++) {
-    for (PetscInt p = 0; p < rows->n_pairs && step > 1; p++)
-      for (PetscInt i = 1; i < rows->law[p].d; i++) rows->law[p].slip0[i - 1] = a->w[rows->first[p] + i];
+    const PetscReal part = (PetscReal)step / (PetscReal)a->load_steps;
+
+    PairRowsMove(rows, part, part - 1 / (PetscReal)a->load_steps, step > 1 ? a->w : NULL);
     PetscCall(VecCopy(whole, a->f));
-    PetscCall(VecScale(a->f, (PetscReal)step / (PetscReal)a->load_steps));
+    PetscCall(VecScale(a->f, part));
     PetscCall(EquilibriumStep(a));
   }
   s->n_it = a->n_it;

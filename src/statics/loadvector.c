@@ -1,12 +1,33 @@
 /*
-   The loads, and the weight of the parts, as a vector of the unknowns. What falls on held directions goes straight into a support and is no part of
-   it; the size counts everything.
+   The loads, the weight of the parts, and what motions with displacements d exert, -K_fd d, as a vector of the unknowns.
+   What falls on held directions goes straight into a support and is no part of it; the size counts everything, of
+   motions a small part only, since K_fd d is far above what presses the bodies where they move as a whole.
 */
 #include "staticsimpl.h"
+
+#define MOTION_SHARE 1e-2 /* of |K_fd d| in the size */
+
+/* f -= K_fd d; and its share of the size */
+static PetscErrorCode LoadAddMotions(Operators operators, const PetscReal p[], Vec local, Vec f, PetscReal *size)
+{
+  PetscReal norm;
+  Vec       part;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(f, &part));
+  PetscCall(OperatorsPrescribedForces(operators, p, local));
+  PetscCall(OperatorsTakeNodal(operators, local, part));
+  PetscCall(VecNorm(part, NORM_1, &norm));
+  PetscCall(VecAXPY(f, -1, part));
+  PetscCall(VecDestroy(&part));
+  *size += MOTION_SHARE * norm;
+  PetscFunctionReturn(0);
+}
 
 PetscErrorCode StaticsCreateLoad(Operators operators, const PetscReal p[], Vec *f, PetscReal *size)
 {
   const ModelScene *scene;
+  const Mesh       *mesh;
   Vec               local;
   PetscReal         weight[3];
   Model             model;
@@ -14,6 +35,7 @@ PetscErrorCode StaticsCreateLoad(Operators operators, const PetscReal p[], Vec *
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(operators, &model, NULL));
   PetscCall(ModelGetScene(model, &scene));
+  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(ModelCreateNodal(model, &local));
   *size = 0;
   for (PetscInt i = 0; i < scene->n_loads; i++) {
@@ -24,6 +46,7 @@ PetscErrorCode StaticsCreateLoad(Operators operators, const PetscReal p[], Vec *
   for (int d = 0; d < 3; d++) *size += PetscAbsReal(weight[d]);
   PetscCall(OperatorsCreateVec(operators, f));
   PetscCall(OperatorsTakeNodal(operators, local, *f));
+  if (mesh->prescribed) PetscCall(LoadAddMotions(operators, p, local, *f, size));
   PetscCall(VecDestroy(&local));
   PetscFunctionReturn(0);
 }

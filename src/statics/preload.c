@@ -89,7 +89,7 @@ PetscErrorCode GeometricStiffnessCreate(Operators operators, const PetscReal p[]
   PetscCall(MatSetOption(*K, MAT_NO_OFF_PROC_ENTRIES, PETSC_FALSE)); /* which sums of matrices set */
   PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(PetscMalloc1(3 * mesh->n_vertices, &displacement));
-  PetscCall(ModelGetNodal(model, u, displacement));
+  PetscCall(ModelGetDisplaced(model, u, displacement));
   PetscCall(GeometricAddCells(operators, p, model, displacement, *K));
   PetscCall(PetscFree(displacement));
   PetscCall(MatAssemblyBegin(*K, MAT_FINAL_ASSEMBLY));

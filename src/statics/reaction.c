@@ -1,9 +1,10 @@
 /*
-   Who carries the loads: reactions of supports and springs, loads, and contact forces. At a held direction of a vertex
+   Who carries the loads: reactions of supports, motions and springs, loads, and contact forces. At a held direction of a vertex
 
-      reaction = sum K_e u_e - load - contact force,
+      reaction = sum K_e u_e + k u - load - contact force,
 
-   and a spring pulls with -k u. Loads include the weight. In equilibrium reactions, springs and loads sum to zero; reactions.csv lists them all.
+   u = d where a motion prescribes it, and a spring pulls with -k u. Loads include the weight. In equilibrium reactions, springs and loads sum to
+   zero; reactions.csv lists them all.
 */
 #include "staticsimpl.h"
 
@@ -18,6 +19,8 @@ static PetscErrorCode ReactionUnbalance(Statics s, Vec *local)
   PetscCall(ModelCreateNodal(s->model, local));
   PetscCall(ModelCreateNodal(s->model, &part));
   PetscCall(OperatorsInternalForces(s->operators, s->p, s->u, *local));
+  PetscCall(OperatorsPrescribedForces(s->operators, s->p, part));
+  PetscCall(VecAXPY(*local, 1, part));
   PetscCall(ContactNodalForces(s->contact, s->state, part));
   PetscCall(VecAXPY(*local, -1, part));
   PetscCall(VecSet(part, 0));
@@ -75,7 +78,7 @@ PetscErrorCode StaticsCreateDisplacements(Statics s, Vec *local)
   PetscFunctionBeginUser;
   PetscCall(ModelCreateNodal(s->model, local));
   PetscCall(VecGetArray(*local, &nodal));
-  PetscCall(ModelGetNodal(s->model, s->u, nodal));
+  PetscCall(ModelGetDisplaced(s->model, s->u, nodal));
   PetscCall(VecRestoreArray(*local, &nodal));
   PetscFunctionReturn(0);
 }
@@ -102,7 +105,34 @@ static PetscErrorCode ReactionStiffness(Statics s, const Grounded *g, PetscReal 
   PetscFunctionReturn(0);
 }
 
-/* Rows of supports and springs */
+/* Adds k u of the springs at what motions hold; elsewhere supports hold u = 0 */
+static PetscErrorCode ReactionAddSprings(Statics s, const ModelScene *scene, Vec displacement, Vec unbalance)
+{
+  PetscReal *value, *u;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(displacement, &u));
+  PetscCall(VecGetArray(unbalance, &value));
+  for (PetscInt i = 0; i < scene->n_springs; i++) {
+    const PetscInt *v;
+    PetscReal       stiffness[3];
+    PetscInt        n;
+    IS              is;
+
+    PetscCall(ReactionStiffness(s, &scene->springs[i], stiffness));
+    PetscCall(ModelGetSetVertices(s->model, scene->springs[i].set, &is));
+    PetscCall(ISGetLocalSize(is, &n));
+    PetscCall(ISGetIndices(is, &v));
+    for (PetscInt k = 0; k < 3 * n; k++) value[3 * v[k / 3] + k % 3] += stiffness[k % 3] * u[3 * v[k / 3] + k % 3];
+    PetscCall(ISRestoreIndices(is, &v));
+    PetscCall(ISDestroy(&is));
+  }
+  PetscCall(VecRestoreArray(unbalance, &value));
+  PetscCall(VecRestoreArray(displacement, &u));
+  PetscFunctionReturn(0);
+}
+
+/* Rows of supports, motions and springs */
 static PetscErrorCode ReactionsWriteHolders(Statics s, ResultsTable table)
 {
   const PetscBool   all[3] = {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE};
@@ -113,9 +143,16 @@ static PetscErrorCode ReactionsWriteHolders(Statics s, ResultsTable table)
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(s->model, &scene));
   PetscCall(ReactionUnbalance(s, &unbalance));
+  PetscCall(StaticsCreateDisplacements(s, &u));
+  PetscCall(ReactionAddSprings(s, scene, u, unbalance));
+  PetscCall(VecDestroy(&u));
   for (PetscInt i = 0; i < scene->n_supports; i++) {
     PetscCall(ReactionSum(s->model, scene->supports[i].set, scene->supports[i].fix, unbalance, force));
     PetscCall(ReactionRow(table, scene->supports[i].name, "support", force));
+  }
+  for (PetscInt i = 0; i < scene->n_motions; i++) {
+    PetscCall(ReactionSum(s->model, scene->motions[i].set, scene->motions[i].direction, unbalance, force));
+    PetscCall(ReactionRow(table, scene->motions[i].name, "motion", force));
   }
   for (PetscInt i = 0; i < scene->n_springs; i++) {
     PetscCall(StaticsCreateDisplacements(s, &u));

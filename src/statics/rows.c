@@ -66,6 +66,7 @@ PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, PairRows 
   PetscCall(ContactGetPairs(contact, &rows->n_pairs, &rows->n_pairs_all, &rows->pair));
   PetscCall(PairRowsCount(pressing, rows));
   PetscCall(PairRowsCreateMatrices(contact, rows));
+  PetscCall(PairRowsSetMoved(model, rows));
   PetscFunctionReturn(0);
 }
 
@@ -92,5 +93,6 @@ PetscErrorCode PairRowsDestroy(PairRows *rows)
   PetscCall(PetscFree(rows->first));
   PetscCall(PetscFree(rows->law));
   PetscCall(PetscFree(rows->slide));
+  PetscCall(PetscFree(rows->moved));
   PetscFunctionReturn(0);
 }

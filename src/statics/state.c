@@ -82,7 +82,7 @@ static PetscErrorCode StaticsMeasureEquilibrium(Statics s, Vec f, const PetscRea
   PetscFunctionReturn(0);
 }
 
-/* Largest displacement of a slave of this rank, m */
+/* Largest displacement of a slave of this rank, or of its pair by motions, m */
 static PetscErrorCode StaticsFindDisplacement(Statics s, PetscReal *displacement)
 {
   const PetscScalar *u;
@@ -98,6 +98,8 @@ static PetscErrorCode StaticsFindDisplacement(Statics s, PetscReal *displacement
     if (row >= begin && row < end) *displacement = PetscMax(*displacement, PetscAbsScalar(u[row - begin]));
   }
   PetscCall(VecRestoreArrayRead(s->u, &u));
+  for (PetscInt i = 0; i < s->rows.n && s->rows.moved; i++)
+    *displacement = PetscMax(*displacement, PetscAbsReal(s->rows.moved[i]));
   PetscFunctionReturn(0);
 }
 

@@ -150,6 +150,7 @@ static PetscErrorCode StaticsCheckLoad(Statics s, Vec f)
 
   PetscFunctionBeginUser;
   PetscCall(VecNorm(f, NORM_2, &size));
+  PairRowsMove(&s->rows, 1, 0, NULL);
   for (PetscInt p = 0; p < s->rows.n_pairs; p++) least = PetscMin(least, s->rows.law[p].g0);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPI_MIN, s->comm));
   PetscCheck(size > 0 || least < 0, s->comm, PETSC_ERR_USER_INPUT,

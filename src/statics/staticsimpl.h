@@ -15,6 +15,7 @@ typedef struct {
   PetscReal              *slide; /* [n_pairs] friction coefficient of a sliding pair, else 0 */
   PetscInt                n, n_all, begin; /* rows of this rank, of all, first of this rank */
   PetscInt               *first;           /* [n_pairs + 1] first row of each pair, counted on this rank */
+  PetscReal              *moved;           /* [rows] contact displacements by motions, m; NULL without */
   Mat                     G;               /* [rows][unknowns] n, t, b */
   Mat                     S;               /* t in the rows of sliding pairs, else empty; NULL where nothing slides */
 } PairRows;
@@ -156,6 +157,10 @@ PETSC_INTERN PetscErrorCode StaticsPlace(Statics statics, char text[], size_t si
    interfaces at p */
 PETSC_INTERN PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, PairRows *rows);
 PETSC_INTERN PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscReal kappa, PairRows *rows);
+/* moved.c - contact displacements by motions; gaps at a part of them, and slip that counts from w [rows] and the part
+   before, NULL and 0 at the first load step */
+PETSC_INTERN PetscErrorCode PairRowsSetMoved(Model model, PairRows *rows);
+PETSC_INTERN void           PairRowsMove(PairRows *rows, PetscReal part, PetscReal before, const PetscReal w[]);
 PETSC_INTERN PetscErrorCode PairRowsDestroy(PairRows *rows);
 
 /* rigid.c - the motions without energy in A (K + kappa G'G), r and mr only */

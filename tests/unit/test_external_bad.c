@@ -15,29 +15,33 @@
 
 /* Options, and what the error begins with */
 static const char *const bad[][2] = {
-  {PULL "-pull_ramp -1",               "-pull_ramp -1 must be a time of at least 0 (s)"              },
-  {"-head_velocity 1",                 "-head_velocity has 1 values; give 3"                         },
-  {"-head_velocity inf,0,0",           "-head_velocity value inf must be a finite number"            },
-  {"-motions 2lift",                   "-motions '2lift' is no name"                                 },
-  {"-motions lift,lift",               "-motions names 'lift' twice"                                 },
-  {"-motions lift -lift_ramp 1",       "-lift_set must be given: a named set of the mesh"            },
-  {LIFT "-lift_set hat",               "the mesh has no set named 'hat'; it names: "                 },
-  {LIFT "-lift_displacement 0,0,0",    "-lift_displacement is zero: give it (m), or -lift_directions"},
-  {LIFT "-lift_displacement nan,0,0",  "-lift_displacement value nan must be a finite number"        },
-  {LIFT "-lift_directions xw",         "-lift_directions 'xw' must be some of the letters x, y, z"   },
-  {LIFT "-lift_directions",            "-lift_directions '' must be some of the letters x, y, z"     },
-  {LIFT "-lift_directions y",          "-lift_displacement has 1 m along x, which -lift_directions y"},
-  {LIFT "-lift_ramp 0",                "-lift_ramp 0 must be given and positive (s)"                 },
-  {LIFT "-lift_delay -2",              "-lift_delay -2 must be a time of at least 0 (s)"             },
-  {LIFT "-lift_set foot_bottom",       "-lift_set foot_bottom is held by supports in all"            },
-  {LIFT MORE "-more_directions xz",    "-more_set head_edge has nodes that another of the -motions"  },
-  {"-impulses hit -hit_impulse 1,0,0", "-hit_at must be given: the place x,y,z (m)"                  },
-  {HIT "-hit_at 0,0,inf",              "-hit_at value inf must be a finite number (m)"               },
-  {HIT "-hit_impulse 0,0,0",           "-hit_impulse must be given: three values, not all zero"      },
-  {HIT "-hit_time -1",                 "-hit_time -1 must be a time of at least 0 (s)"               },
-  {HIT "-hit_part neck",               "-hit_part neck is none of the -parts: foot, head"            },
-  {HIT "-hit_at 0,0,0",                "-hit_impulse does nothing: the node at 0, 0, 0 m is held"    },
-  {HIT LIFT,                           "-hit_impulse does nothing: the node at 0, 0, 1 m is held"    },
+  {PULL "-pull_ramp -1",               "-pull_ramp -1 must be a time of at least 0 (s)"            },
+  {"-head_velocity 1",                 "-head_velocity has 1 values; give 3"                       },
+  {"-head_velocity inf,0,0",           "-head_velocity value inf must be a finite number"          },
+  {LIFT "-lift_set hat",               "the mesh has no set named 'hat'; it names: "               },
+  {LIFT "-lift_ramp 0",                "-lift_ramp 0 must be given and positive (s)"               },
+  {LIFT "-lift_delay -2",              "-lift_delay -2 must be a time of at least 0 (s)"           },
+  {LIFT "-lift_set foot_bottom",       "-lift_set foot_bottom is held by supports in all"          },
+  {LIFT MORE "-more_directions xz",    "-more_set head_edge has nodes that another of the -motions"},
+  {"-impulses hit -hit_impulse 1,0,0", "-hit_at must be given: the place x,y,z (m)"                },
+  {HIT "-hit_at 0,0,inf",              "-hit_at value inf must be a finite number (m)"             },
+  {HIT "-hit_impulse 0,0,0",           "-hit_impulse must be given: three values, not all zero"    },
+  {HIT "-hit_time -1",                 "-hit_time -1 must be a time of at least 0 (s)"             },
+  {HIT "-hit_part neck",               "-hit_part neck is none of the -parts: foot, head"          },
+  {HIT "-hit_at 0,0,0",                "-hit_impulse does nothing: the node at 0, 0, 0 m is held"  },
+  {HIT LIFT,                           "-hit_impulse does nothing: the node at 0, 0, 1 m is held"  },
+};
+
+/* The same of what the model reads */
+static const char *const bad_model[][2] = {
+  {"-motions 2lift",                  "-motions '2lift' is no name"                                 },
+  {"-motions lift,lift",              "-motions names 'lift' twice"                                 },
+  {"-motions lift -lift_ramp 1",      "-lift_set must be given: a named set of the mesh"            },
+  {LIFT "-lift_displacement 0,0,0",   "-lift_displacement is zero: give it (m), or -lift_directions"},
+  {LIFT "-lift_displacement nan,0,0", "-lift_displacement value nan must be a finite number"        },
+  {LIFT "-lift_directions xw",        "-lift_directions 'xw' must be some of the letters x, y, z"   },
+  {LIFT "-lift_directions",           "-lift_directions '' must be some of the letters x, y, z"     },
+  {LIFT "-lift_directions y",         "-lift_displacement has 1 m along x, which -lift_directions y"},
 };
 
 #define RING                                                                                                           \
@@ -125,6 +129,32 @@ static PetscErrorCode TestBad(int *failed)
   PetscFunctionReturn(0);
 }
 
+/* The same for the model's options of motions */
+static PetscErrorCode TestBadModel(int *failed)
+{
+  Scratch scratch;
+
+  PetscFunctionBeginUser;
+  PetscCall(ScratchCreate(&scratch));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(bad_model); i++) {
+    PetscErrorCode error;
+    Model          model;
+
+    scratch.message[0] = '\0';
+    PetscCall(PetscOptionsClear(NULL));
+    PetscCall(PetscOptionsInsertString(NULL, BAR "-model_source rig"));
+    PetscCall(PetscOptionsInsertString(NULL, bad_model[i][0]));
+    PetscCall(ModelCreate(PETSC_COMM_WORLD, &model));
+    error = ModelSetFromOptions(model);
+    *failed +=
+      CheckTrue(bad_model[i][1], error == PETSC_ERR_USER_INPUT && strstr(scratch.message, bad_model[i][1]), error);
+    if (!strstr(scratch.message, bad_model[i][1])) printf("     says: %s\n", scratch.message);
+    PetscCall(ModelDestroy(&model));
+  }
+  *failed += CheckTrue("scratch folder is empty", ScratchDestroy(&scratch), 0);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Tests(PetscMPIInt size, int *failed)
 {
   PetscFunctionBeginUser;
@@ -134,6 +164,7 @@ static PetscErrorCode Tests(PetscMPIInt size, int *failed)
   PetscCall(TestTurnedBad("-lift_displacement 0,1,1", PETSC_TRUE, failed));
   PetscCall(TestTurnedBad("-lift_displacement 0,0,1", PETSC_FALSE, failed));
   PetscCall(TestBad(failed));
+  PetscCall(TestBadModel(failed));
   PetscFunctionReturn(0);
 }
 

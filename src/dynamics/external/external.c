@@ -149,10 +149,7 @@ PetscErrorCode ExternalAddChecksum(External external, Checksum c)
   for (PetscInt i = 0; i < external->n_motions; i++) {
     const Drive *m = &external->motions[i];
 
-    PetscCall(ChecksumSetPart(c, "motion %s", m->name));
-    PetscCall(ModelAddSetChecksum(external->model, m->set, PETSC_FALSE, c));
-    PetscCall(ChecksumAddReals(c, 3, m->displacement));
-    PetscCall(ChecksumAddInts(c, 3, (const PetscInt[]){m->direction[0], m->direction[1], m->direction[2]}));
+    PetscCall(ChecksumSetPart(c, "motion %s", m->prescribed->name));
     PetscCall(ExternalAddRamp(&m->ramp, c));
   }
   for (PetscInt i = 0; i < external->n_impulses; i++) {

@@ -39,9 +39,8 @@ PETSC_INTERN PetscErrorCode ExternalCreate(MPI_Comm comm, Model model, External 
 
    Options Database Keys:
 +  -press_ramp <0>, -press_ramp_shape <smooth|linear>, -press_delay <0> - of the load `press`: length, shape, begin, s
-.  -motions <names>       - prescribed displacements, each the prefix of its own options
-.  -lift_set, -lift_displacement x,y,z, -lift_directions <those of the displacement> - named set, m, some of x, y, z
-.  -lift_ramp, -lift_ramp_shape <smooth|linear>, -lift_delay <0> - as of loads; the length must be positive
+.  -lift_ramp, -lift_ramp_shape <smooth|linear>, -lift_delay <0> - of the motion `lift`, as of loads; the length must be
+   positive, unless the model holds the motions (ModelHoldMotions()): then they stay where they are from the start
 .  -impulses <names>      - at nodes, each the prefix of its own options
 .  -hit_at x,y,z, -hit_part, -hit_impulse x,y,z, -hit_time <0> - place (m) whose nearest node is hit, its part, N s, s
 -  -disc_velocity <0,0,0> - of the part `disc` at the start, m/s
@@ -51,7 +50,8 @@ PETSC_INTERN PetscErrorCode ExternalCreate(MPI_Comm comm, Model model, External 
 PETSC_INTERN PetscErrorCode ExternalSetFromOptions(External external);
 
 /*
-   ExternalSetUp - gathers the nodes of the loads, holds the directions of prescribed motions by BodiesHold().
+   ExternalSetUp - gathers the nodes of the loads, holds the directions of prescribed motions by BodiesHold(),
+   where the model does not.
    Collective; after BodiesSetUp().
 
    Errors: PETSC_ERR_USER_INPUT for an unknown set; for motions whose directions a swept body cannot express, that

@@ -21,14 +21,12 @@ typedef struct {
 
 /* Displacement of a set, d(t) = r(t) d */
 typedef struct {
-  char      *name, *set;
-  PetscReal  displacement[3]; /* d, m */
-  PetscBool  direction[3];    /* that are prescribed */
-  Ramp       ramp;
-  PetscInt   n, n_owned; /* prescribed numbers of a state vector, those of owned vertices first */
-  PetscInt  *index;
-  PetscReal *full;           /* d along each, m */
-  PetscReal *before, *after; /* work: v_{n-1/2} and v_{n+1/2}, m/s */
+  const PrescribedMotion *prescribed; /* d, set and directions, of the scene */
+  Ramp                    ramp;
+  PetscInt                n, n_owned; /* prescribed numbers of a state vector, those of owned vertices first */
+  PetscInt               *index;
+  PetscReal              *full;           /* d along each, m */
+  PetscReal              *before, *after; /* work: v_{n-1/2} and v_{n+1/2}, m/s */
 } Drive;
 
 /* Momentum J given to a node at a time */

@@ -16,72 +16,37 @@
 
 #define SHARE_TOLERANCE 1e-8 /* of s, from 0 and 1 */
 
-/* The flagged directions as a word such as "xz" */
-static void MotionDirections(const PetscBool direction[3], char word[4])
+PetscErrorCode MotionsSetFromOptions(External external)
 {
-  for (int d = 0; d < 3; d++)
-    if (direction[d]) *word++ = "xyz"[d];
-  *word = '\0';
-}
-
-/* Directions from a word, and by default those in which something moves */
-static PetscErrorCode MotionSetDirections(MPI_Comm comm, Drive *motion, const char word[], PetscBool set)
-{
-  const PetscReal *x = motion->displacement;
+  const ModelScene *scene;
+  char              prefix[128], title[160];
 
   PetscFunctionBeginUser;
-  PetscCheck(!set || (word[0] && strspn(word, "xyz") == strlen(word)), comm, PETSC_ERR_USER_INPUT,
-             "-%s_directions '%s' must be some of the letters x, y, z", motion->name, word);
-  PetscCheck(set || x[0] != 0 || x[1] != 0 || x[2] != 0, comm, PETSC_ERR_USER_INPUT,
-             "-%s_displacement is zero: give it (m), or -%s_directions to hold", motion->name, motion->name);
-  for (int d = 0; d < 3; d++) {
-    motion->direction[d] = (set ? !!strchr(word, "xyz"[d]) : x[d] != 0) ? PETSC_TRUE : PETSC_FALSE;
-    PetscCheck(motion->direction[d] || x[d] == 0, comm, PETSC_ERR_USER_INPUT,
-               "-%s_displacement has %.6g m along %c, which -%s_directions %s leaves out", motion->name, (double)x[d],
-               "xyz"[d], motion -> name, word);
+  PetscCall(ModelGetScene(external->model, &scene));
+  external->n_motions = scene->n_motions;
+  PetscCall(PetscCalloc1(external->n_motions, &external->motions));
+  for (PetscInt i = 0; i < external->n_motions; i++) {
+    Drive *motion = &external->motions[i];
+
+    motion->prescribed = &scene->motions[i];
+    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", motion->prescribed->name));
+    PetscCall(PetscSNPrintf(title, sizeof(title), "Motion %s in time", motion->prescribed->name));
+    PetscOptionsBegin(external->comm, prefix, title, NULL);
+    PetscCall(RampSetFromOptions(PetscOptionsObject, &motion->ramp));
+    PetscOptionsEnd();
   }
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode MotionCheck(MPI_Comm comm, const Drive *motion)
+/* Raises the error for a jump */
+static PetscErrorCode MotionCheckRamp(MPI_Comm comm, const Drive *motion)
 {
-  const PetscReal *x = motion->displacement;
+  const PetscReal *x = motion->prescribed->displacement;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsCheckFinite(comm, motion->name, "displacement", "m", x));
   PetscCheck((x[0] == 0 && x[1] == 0 && x[2] == 0) || motion->ramp.length > 0, comm, PETSC_ERR_USER_INPUT,
-             "-%s_ramp %.6g must be given and positive (s): a displacement cannot jump", motion->name,
+             "-%s_ramp %.6g must be given and positive (s): a displacement cannot jump", motion->prescribed->name,
              motion->ramp.length);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode MotionRead(OptionsItems PetscOptionsObject, void *owner, void *record)
-{
-  const MPI_Comm comm     = PetscOptionsObject->comm;
-  Drive         *motion   = record;
-  char           word[16] = "";
-  PetscBool      given;
-
-  PetscFunctionBeginUser;
-  (void)owner;
-  PetscCall(OptionsGetSet(PetscOptionsObject, &motion->set));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-displacement", "in x,y,z, m", 3, motion->displacement, NULL));
-  PetscCall(PetscOptionsString("-directions",
-                               "that are prescribed: some of x, y, z; by default those of the displacement",
-                               "dynamics.h", word, word, sizeof(word), &given));
-  PetscCall(RampSetFromOptions(PetscOptionsObject, &motion->ramp));
-  PetscCall(MotionCheck(comm, motion));
-  PetscCall(MotionSetDirections(comm, motion, word, given));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode MotionsSetFromOptions(External external)
-{
-  static const OptionsList list = {"-motions", "prescribed displacements, each the prefix of its -set", "Motion",
-                                   sizeof(Drive), MotionRead};
-
-  PetscFunctionBeginUser;
-  PetscCall(OptionsReadList(external->comm, &list, external, &external->n_motions, &external->motions));
   PetscFunctionReturn(0);
 }
 
@@ -91,7 +56,7 @@ static PetscReal MotionShare(const Drive *motion, const Layout *layout, PetscInt
   const PetscReal *q     = &layout->basis[9 * vertex + 3 * j];
   PetscReal        share = 0;
 
-  for (int d = 0; d < 3; d++) share += motion->direction[d] ? q[d] * q[d] : 0;
+  for (int d = 0; d < 3; d++) share += motion->prescribed->direction[d] ? q[d] * q[d] : 0;
   return share;
 }
 
@@ -101,7 +66,7 @@ static PetscErrorCode MotionAddVertex(External external, Bodies bodies, PetscInt
                                       PetscInt trouble[2])
 {
   const Layout    *layout = external->layout;
-  const PetscReal *x      = motion->displacement;
+  const PetscReal *x      = motion->prescribed->displacement;
 
   PetscFunctionBeginUser;
   for (int j = 0; j < 3; j++) {
@@ -128,7 +93,7 @@ static PetscErrorCode MotionFindNumbers(External external, Bodies bodies, PetscB
   PetscInt n, n_owned, *vertex;
 
   PetscFunctionBeginUser;
-  PetscCall(ExternalFindVertices(external, motion->set, &n, &n_owned, &vertex));
+  PetscCall(ExternalFindVertices(external, motion->prescribed->set, &n, &n_owned, &vertex));
   PetscCall(PetscMalloc4(3 * n, &motion->index, 3 * n, &motion->full, 3 * n, &motion->before, 3 * n, &motion->after));
   for (PetscInt i = 0; i < n; i++) {
     PetscCall(MotionAddVertex(external, bodies, vertex[i], taken, motion, trouble));
@@ -138,32 +103,38 @@ static PetscErrorCode MotionFindNumbers(External external, Bodies bodies, PetscB
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MotionsSetUp(External external, Bodies bodies)
+/* Raises the error for directions that split the components of a swept body */
+static PetscErrorCode MotionCheckSplit(MPI_Comm comm, const PrescribedMotion *motion, PetscInt n_split)
 {
-  PetscBT taken;
+  char words[256];
 
   PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_split, 1, MPIU_INT, MPI_SUM, comm));
+  PetscCall(ModelDescribeMotion(motion, sizeof(words), words));
+  PetscCheck(!n_split, comm, PETSC_ERR_USER_INPUT,
+             "%s: splits the radial and circumferential components of a swept body: prescribe by -%s_directions both "
+             "directions across its axis, or neither",
+             words, motion->name);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MotionsSetUp(External external, Bodies bodies)
+{
+  const Mesh *mesh;
+  PetscBT     taken;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(external->model, &mesh));
+  if (mesh->prescribed) PetscFunctionReturn(0); /* held by the model from the start: nothing moves */
   PetscCall(PetscBTCreate(external->layout->n, &taken));
   for (PetscInt i = 0; i < external->n_motions; i++) {
-    Drive   *motion   = &external->motions[i];
-    PetscInt count[3] = {0, 0, 0};
-    char     word[4];
+    Drive   *motion     = &external->motions[i];
+    PetscInt trouble[2] = {0, 0};
 
-    PetscCall(MotionFindNumbers(external, bodies, taken, motion, &count[1]));
-    count[0] = motion->n;
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, external->comm));
-    MotionDirections(motion->direction, word);
-    PetscCheck(
-      !count[1], external->comm, PETSC_ERR_USER_INPUT,
-      "-%s_directions %s splits the radial and circumferential components of a swept body on %s: prescribe both "
-      "directions across its axis, or neither",
-      motion->name, word, motion->set);
-    PetscCheck(!count[2], external->comm, PETSC_ERR_USER_INPUT,
-               "-%s_set %s has nodes that another of the -motions prescribes in the same direction", motion->name,
-               motion->set);
-    PetscCheck(count[0], external->comm, PETSC_ERR_USER_INPUT,
-               "-%s_set %s is held by supports in all of the directions %s: the motion does nothing", motion->name,
-               motion->set, word);
+    PetscCall(MotionCheckRamp(external->comm, motion));
+    PetscCall(MotionFindNumbers(external, bodies, taken, motion, trouble));
+    PetscCall(MotionCheckSplit(external->comm, motion->prescribed, trouble[0]));
+    PetscCall(ModelCheckMotion(external->model, motion->prescribed, motion->n, trouble[1]));
   }
   PetscCall(PetscBTDestroy(&taken));
   PetscFunctionReturn(0);
@@ -203,21 +174,19 @@ PetscErrorCode MotionsFinish(External external, PetscReal dt, const PetscReal f[
 
 PetscErrorCode MotionsView(External external, PetscViewer viewer)
 {
-  char word[4], words[160];
+  char words[256], ramp[160];
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < external->n_motions; i++) {
     const Drive     *motion = &external->motions[i];
-    const PetscReal *x      = motion->displacement;
+    const PetscReal *x      = motion->prescribed->displacement;
 
-    MotionDirections(motion->direction, word);
-    PetscCall(RampDescribe(&motion->ramp, sizeof(words), words));
+    PetscCall(ModelDescribeMotion(motion->prescribed, sizeof(words), words));
+    PetscCall(RampDescribe(&motion->ramp, sizeof(ramp), ramp));
     if (x[0] != 0 || x[1] != 0 || x[2] != 0)
-      PetscCall(PetscViewerASCIIPrintf(viewer, "  motion %s: %s moved by %.6g, %.6g, %.6g m (%s prescribed), %s\n",
-                                       motion->name, motion->set, (double)x[0], (double)x[1], (double)x[2], word,
-                                       words));
+      PetscCall(PetscViewerASCIIPrintf(viewer, "  %s, %s\n", words, ramp));
     else
-      PetscCall(PetscViewerASCIIPrintf(viewer, "  motion %s: %s held in %s\n", motion->name, motion->set, word));
+      PetscCall(PetscViewerASCIIPrintf(viewer, "  %s\n", words));
   }
   PetscFunctionReturn(0);
 }
@@ -228,8 +197,6 @@ PetscErrorCode MotionsDestroy(External external)
   for (PetscInt i = 0; i < external->n_motions; i++) {
     Drive *motion = &external->motions[i];
 
-    PetscCall(PetscFree(motion->name));
-    PetscCall(PetscFree(motion->set));
     PetscCall(PetscFree4(motion->index, motion->full, motion->before, motion->after));
   }
   PetscCall(PetscFree(external->motions));

@@ -1,6 +1,6 @@
 /*
-   Layout of the unknowns: three displacements per vertex, of which those that a support fixes are constrained in the
-   section of the DM, hence absent from global vectors and matrices.
+   Layout of the unknowns: three displacements per vertex, of which those that a support fixes, or a motion that is
+   held prescribes, are constrained in the section of the DM, hence absent from global vectors and matrices.
 */
 #include "model/modelimpl.h"
 
@@ -99,6 +99,7 @@ PetscErrorCode MeshLayOut(Model model)
   PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, &vEnd));
   PetscCall(PetscCalloc1(vEnd - vStart, &fixed));
   PetscCall(SupportsFlag(model, vStart, vEnd, fixed));
+  if (model->hold_motions && model->scene.n_motions) PetscCall(MotionsFlag(model, fixed));
   PetscCall(SectionCreate(model->dm, vStart, vEnd, fixed, &section));
   PetscCall(DMSetLocalSection(model->dm, section));
   PetscCall(PetscSectionDestroy(&section));
