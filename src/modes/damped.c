@@ -66,8 +66,6 @@ static PetscErrorCode DampedCreateSolver(Mat problem[3], ShiftInvert *si, PetscB
   PetscCall(PEPSetOperators(*pep, 3, problem));
   PetscCall(PEPSetProblemType(*pep, PEP_GENERAL));
   PetscCall(PEPSetType(*pep, PEPTOAR));
-  PetscCall(PEPSetWhichEigenpairs(*pep, PEP_TARGET_MAGNITUDE));
-  PetscCall(PEPSetTarget(*pep, si->shift));
   PetscCall(PEPSetDimensions(*pep, nev, PetscMin(2 * n, nev + PetscMax(3 * nev / 5, 20)), PETSC_DEFAULT));
   PetscCall(PEPSetTolerances(*pep, 1e-11, 200));
   /* lambda = scale * mu with |mu| <= 1 in the window; explicit, since the norms of transposed matrices are not at
@@ -76,6 +74,8 @@ static PetscErrorCode DampedCreateSolver(Mat problem[3], ShiftInvert *si, PetscB
   PetscCall(PEPGetST(*pep, &st));
   PetscCall(ShiftInvertAttach(si, transposed, st));
   PetscCall(PEPSetFromOptions(*pep));
+  PetscCall(PEPSetWhichEigenpairs(*pep, PEP_TARGET_MAGNITUDE));
+  PetscCall(PEPSetTarget(*pep, si->shift));
   PetscCall(PEPGetBV(*pep, &bv));
   PetscCall(SolverSeed(bv, (transposed ? 20051 : 2005) + 1000 * (unsigned long)start));
   PetscFunctionReturn(0);

@@ -94,13 +94,13 @@ static PetscErrorCode UndampedCreateSolver(const PencilMatrices *pencil, ShiftIn
   PetscCall(EPSCreate(si->comm, eps));
   PetscCall(EPSSetOperators(*eps, pencil->K, pencil->M));
   PetscCall(EPSSetProblemType(*eps, pencil->symmetric ? EPS_GHEP : EPS_GNHEP));
-  PetscCall(EPSSetWhichEigenpairs(*eps, EPS_TARGET_MAGNITUDE));
-  PetscCall(EPSSetTarget(*eps, si->shift));
   PetscCall(EPSSetDimensions(*eps, nev, PetscMin(n, nev + PetscMax(nev / 2, 20)), PETSC_DEFAULT));
   PetscCall(EPSSetTolerances(*eps, 1e-11, 200));
   PetscCall(EPSGetST(*eps, &st));
   PetscCall(ShiftInvertAttach(si, transposed, st));
   PetscCall(EPSSetFromOptions(*eps));
+  PetscCall(EPSSetWhichEigenpairs(*eps, EPS_TARGET_MAGNITUDE));
+  PetscCall(EPSSetTarget(*eps, si->shift));
   PetscCall(EPSGetBV(*eps, &bv));
   PetscCall(SolverSeed(bv, transposed ? 20051 : 2005));
   PetscFunctionReturn(0);
