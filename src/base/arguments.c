@@ -6,6 +6,7 @@
    marked as used after each has read its own.
 */
 #include <squeal/options.h>
+#include <strings.h>
 
 #define MAX_WORD 256
 
@@ -96,7 +97,7 @@ PetscErrorCode OptionsCheckNumbers(void)
     PetscCall(PetscOptionsValidKey(word, &is_name));
     if (is_name)
       PetscCall(PetscStrncpy(name, word, sizeof(name)));
-    else if (strcmp(name, "-output_dir"))
+    else if (strcasecmp(name, "-output_dir"))
       PetscCall(ValueCheckFinite(name, word));
   }
   PetscCall(PetscFree(all));

@@ -35,12 +35,15 @@ PetscErrorCode OptionsRefuse(MPI_Comm comm, const char option[], const char why[
 {
   const char **name, **value;
   PetscInt     n;
+  PetscBool    same;
 
   PetscFunctionBeginUser;
   PetscCall(ArgumentsGet(&n, &name, &value));
-  for (PetscInt i = 0; i < n; i++)
-    PetscCheck(strcmp(name[i], option), comm, PETSC_ERR_USER_INPUT, "%s%s%s: %s", option, value[i] ? " " : "",
-               value[i] ? value[i] : "", why);
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(PetscStrcasecmp(name[i], option, &same));
+    PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "%s%s%s: %s", option, value[i] ? " " : "", value[i] ? value[i] : "",
+               why);
+  }
   PetscCall(PetscFree2(name, value));
   PetscFunctionReturn(0);
 }

@@ -10,6 +10,7 @@
 #include <squeal/options.h>
 #include <ctype.h>
 #include <stdlib.h>
+#include <strings.h>
 
 #define MAX_NAME    HELP_MAX_NAME
 #define MAX_RECORDS 64   /* names in one list of the scene */
@@ -58,9 +59,10 @@ static PetscErrorCode NameCheckFree(MPI_Comm comm, const char option[], const ch
   PetscBool                taken = PETSC_FALSE, set;
 
   PetscFunctionBeginUser;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(own) && !taken; i++) PetscCall(PetscStrcmp(name, own[i], &taken));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(own) && !taken; i++)
+    PetscCall(PetscStrcasecmp(name, own[i], &taken));
   for (const char *const *p = library_prefixes; *p && !taken; p++)
-    taken = !strncmp(*p, name, length) && !strcmp(*p + length, "_") ? PETSC_TRUE : PETSC_FALSE;
+    taken = !strncasecmp(*p, name, length) && !strcmp(*p + length, "_") ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(!taken, comm, PETSC_ERR_USER_INPUT, "%s '%s' is no name: other options begin with -%s_; choose another",
              option, name, name);
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(lists); i++) {
@@ -84,7 +86,7 @@ PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char he
     PetscCheck(NameIsIdentifier(names[i]), comm, PETSC_ERR_USER_INPUT,
                "%s '%s' is no name: use letters, digits and underscores, a letter first", option, names[i]);
     for (PetscInt j = 0; j < i; j++) {
-      PetscCall(PetscStrcmp(names[i], names[j], &same));
+      PetscCall(PetscStrcasecmp(names[i], names[j], &same));
       PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "%s names '%s' twice", option, names[i]);
     }
     PetscCall(NameCheckFree(comm, option, names[i]));
@@ -200,7 +202,7 @@ static PetscBool OptionIsSolvers(const char name[])
 
   if (strstr(name, "mat_mumps_icntl_") || strstr(name, "mat_mumps_cntl_") || strstr(name, "_view")) return PETSC_FALSE;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(prefixes); i++)
-    if (!strncmp(name, prefixes[i], strlen(prefixes[i]))) return PETSC_TRUE;
+    if (!strncasecmp(name, prefixes[i], strlen(prefixes[i]))) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -209,7 +211,7 @@ PetscErrorCode OptionIsLibrarys(const char name[], PetscBool *is_librarys)
   PetscFunctionBeginUser;
   *is_librarys = PETSC_FALSE;
   for (const char *const *prefix = library_prefixes; *prefix; prefix++)
-    if (!strncmp(name, *prefix, strlen(*prefix))) *is_librarys = PETSC_TRUE;
+    if (!strncasecmp(name, *prefix, strlen(*prefix))) *is_librarys = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 

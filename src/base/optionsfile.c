@@ -37,10 +37,14 @@ typedef struct {
 /* Raises an error for an option that the file has already given */
 static PetscErrorCode YamlAddKey(YamlFile *f)
 {
+  PetscBool same;
+
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < f->n_keys; i++)
-    PetscCheck(strcmp(f->keys[i], f->key), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "%s:%zu: %s stands twice, already in line %zu; keep one", f->file, f->line, f->key, f->lines[i]);
+  for (PetscInt i = 0; i < f->n_keys; i++) {
+    PetscCall(PetscStrcasecmp(f->keys[i], f->key, &same)); /* PETSc's names ignore case */
+    PetscCheck(!same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s:%zu: %s stands twice, already in line %zu; keep one",
+               f->file, f->line, f->key, f->lines[i]);
+  }
   PetscCall(PetscRealloc((size_t)(f->n_keys + 1) * sizeof(*f->keys), &f->keys));
   PetscCall(PetscRealloc((size_t)(f->n_keys + 1) * sizeof(*f->lines), &f->lines));
   PetscCall(PetscStrallocpy(f->key, &f->keys[f->n_keys]));
@@ -54,6 +58,7 @@ static PetscErrorCode YamlCheckValue(const YamlFile *f, const char value[])
   static const char *const nothing[] = {"", "~", "null", "Null", "NULL"};
 
   PetscFunctionBeginUser;
+  value += strspn(value, " \t\n");
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(nothing); i++)
     PetscCheck(strcmp(value, nothing[i]), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "%s:%zu: %s has no value; give one, or leave the key out", f->file, f->line, f->key);

@@ -7,20 +7,24 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 /* Whether the command line gives the option itself */
 static PetscErrorCode PathIsOnCommandLine(const char name[], PetscBool *given)
 {
-  char **word;
-  int    n;
+  char    **word;
+  int       n;
+  PetscBool same;
 
   PetscFunctionBeginUser;
   *given = PETSC_FALSE;
   PetscCall(PetscGetArgs(&n, &word));
-  for (int i = 1; i < n; i++)
-    if (!strcmp(word[i], name)) *given = PETSC_TRUE;
+  for (int i = 1; i < n; i++) {
+    PetscCall(PetscStrcasecmp(word[i], name, &same));
+    if (same) *given = PETSC_TRUE;
+  }
   PetscFunctionReturn(0);
 }
 
@@ -54,7 +58,7 @@ static PetscErrorCode PathResolve(MPI_Comm comm, const char name[], char path[],
   for (int i = n - 2; i > 0; i--) {
     const char *slash = strrchr(word[i + 1], '/');
 
-    if (strncmp(word[i], "-options_file", 13) || !slash) continue;
+    if (strncasecmp(word[i], "-options_file", 13) || !slash) continue;
     PetscCall(FileGives(comm, word[i + 1], name, path, &gives));
     if (!gives) continue;
     PetscCall(PetscSNPrintf(beside, sizeof(beside), "%.*s/%s", (int)(slash - word[i + 1]), word[i + 1], path));

@@ -7,6 +7,7 @@
 #include <squeal/sys.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/resource.h>
 #include <time.h>
 
@@ -28,7 +29,7 @@ PetscErrorCode ResultsKeepScene(Results results, PetscErrorCode (*read_again)(MP
 static const HelpOption *OptionFind(const HelpList *list, const char name[])
 {
   for (int i = 0; i < list->n; i++)
-    if (list->option[i].own && !strcmp(list->option[i].name, name)) return &list->option[i];
+    if (list->option[i].own && !strcasecmp(list->option[i].name, name)) return &list->option[i];
   return NULL;
 }
 
@@ -36,7 +37,7 @@ static const HelpOption *OptionFind(const HelpList *list, const char name[])
 static PetscBool OptionIsOfRun(const char name[])
 {
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(not_of_scene); i++)
-    if (!strcmp(name, not_of_scene[i])) return PETSC_TRUE;
+    if (!strcasecmp(name, not_of_scene[i])) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
