@@ -34,12 +34,13 @@ static PetscErrorCode ScopeRefuse(MPI_Comm comm, const char name[], const char w
 /* What an interface reads and this analysis has no use for */
 static PetscErrorCode ScopeCheckContact(MPI_Comm comm, const Scope *s, const ContactInterface *c)
 {
-  static const char exact[]   = "not used by -analysis transient, whose contact is exact: no penalty, no linearisation";
-  static const char steady[]  = "not used by -analysis static: the loads tell the forces, and nothing moves";
-  static const char linear[]  = "not used by modes without -NAME_friction_damping";
+  static const char exact[]  = "not used by -analysis transient, whose contact is exact: no penalty, no linearisation";
+  static const char steady[] = "not used by -analysis static: the loads tell the forces, and nothing moves";
+  char              linear[256];
   const PetscBool   is_static = !s->modes && !s->transient ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(linear, sizeof(linear), "not used by modes without -%s_friction_damping", c->name));
   if (Vec3Dot(c->rotation, c->rotation) > 0 && Vec3Dot(c->slip, c->slip) > 0)
     PetscCall(ScopeRefuse(comm, c->name, "slip", "not used beside the -NAME_rotation of the same contact; give one"));
   if (s->transient && c->law == CONTACT_PENALTY) PetscCall(ScopeRefuse(comm, c->name, "law", exact));
@@ -59,18 +60,36 @@ static PetscErrorCode ScopeCheckContact(MPI_Comm comm, const Scope *s, const Con
 static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool statics)
 {
   static const char all[]     = "not used by modes with all pairs closed; give -modes_contact static";
+  static const char still[]   = "not used by -analysis static, where nothing moves and nothing is damped";
   static const char no_time[] = "not used without -analysis transient";
   const ModelScene *scene;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(s->model, &scene));
   if (s->modes && !statics) PetscCall(ScopeRefuse(comm, "model", "gravity", all));
+  for (PetscInt i = 0; i < scene->n_parts && !s->transient && !s->modes; i++) {
+    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "alpha", still));
+    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "beta", still));
+  }
   for (PetscInt i = 0; i < scene->n_probes && !s->transient; i++)
     PetscCall(ScopeRefuse(comm, scene->probes[i].name, "at", no_time));
   for (PetscInt i = 0; i < scene->n_loads && s->modes && !statics; i++) {
     PetscCall(ScopeRefuse(comm, scene->loads[i].name, "force", all));
     PetscCall(ScopeRefuse(comm, scene->loads[i].name, "set", all));
   }
+  PetscFunctionReturn(0);
+}
+
+/* What TS reads for integrators that are implicit or choose their steps */
+static PetscErrorCode ScopeCheckIntegrator(MPI_Comm comm)
+{
+  static const char *const others[] = {"-ts_rtol",   "-ts_atol",  "-ts_adapt_type", "-snes_rtol", "-snes_atol",
+                                       "-snes_type", "-ksp_rtol", "-ksp_atol",      "-ksp_type",  "-pc_type"};
+
+  PetscFunctionBeginUser;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(others); i++)
+    PetscCall(
+      OptionsRefuse(comm, others[i], "not used, the steps of -analysis transient are explicit and of one length"));
   PetscFunctionReturn(0);
 }
 
@@ -84,6 +103,7 @@ static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool st
   if (s->model) PetscCall(ScopeCheckModel(comm, s, statics));
   if (s->contact) PetscCall(ContactGetInterfaces(s->contact, &n, &interfaces));
   for (PetscInt i = 0; i < n; i++) PetscCall(ScopeCheckContact(comm, s, &interfaces[i]));
+  if (s->transient) PetscCall(ScopeCheckIntegrator(comm));
   if (s->transient)
     PetscCall(ScopeRefuse(comm, "operators", "mass", "not used by -analysis transient, whose mass is lumped"));
   if (!s->transient && !s->modes) PetscCall(ScopeRefuse(comm, "operators", "mass", "not used by -analysis static"));

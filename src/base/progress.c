@@ -19,14 +19,18 @@ static struct {
 PetscErrorCode ProgressSetFromOptions(MPI_Comm comm)
 {
   PetscMPIInt rank;
+  PetscBool   given, other = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   screen.terminal = isatty(STDERR_FILENO) ? PETSC_TRUE : PETSC_FALSE;
   screen.on       = screen.terminal;
   PetscOptionsBegin(comm, NULL, "Progress", NULL);
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-squeal_progress",
-                           "time left on stderr; by default where it is a terminal, else a line each 5 s", &screen.on));
+  PetscCall(OptionsGetBool(
+    PetscOptionsObject, "-squeal_progress",
+    "time left on stderr; by default where it is a terminal, else a line each 5 s; also -progress", &screen.on));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-squeal_progress", &given));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-progress", given ? &other : &screen.on, NULL));
   PetscOptionsEnd();
   if (rank) screen.on = PETSC_FALSE;
   if (!screen.begun) PetscCall(PetscTime(&screen.begun));

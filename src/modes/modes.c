@@ -62,6 +62,8 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   PetscCheck(modes->band[1] <= MODES_LARGEST && modes->target <= MODES_LARGEST && modes->growth <= MODES_LARGEST,
              modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_band, -modes_target (Hz) and -modes_growth (1/s) must be of at most %g", MODES_LARGEST);
+  if (modes->has_band && (has_target || has_count))
+    PetscCall(OptionsRefuse(modes->comm, "-modes_band", "not used beside -modes_target or -modes_count; give one"));
   if (has_target || has_count) modes->has_band = PETSC_FALSE;
   PetscCheck(modes->count > 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_count %" PetscInt_FMT " must be positive",
              modes->count);
