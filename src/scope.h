@@ -1,4 +1,4 @@
-/* Private to main.c: what an analysis has a use for, and who reads the options of the rest */
+/* Private to the chain: what an analysis has a use for, and who reads the options of the rest */
 #pragma once
 
 #include <squeal/options.h>

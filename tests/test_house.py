@@ -4,8 +4,8 @@
   names      no type, macro, constant or function has one name twice in src and include, static functions included
   includes   a room includes only those below it (BELOW), a layer of the sweep only its own and lower ones (LAYERS), and
              nobody another room's private header (*impl.h)
-  lengths    no file of src, include, scripts, tests above 350 lines, no function body above 80, no function of more
-             than six arguments
+  lengths    no file of src, include, scripts, tests above 350 lines, main.c not above 80, no function body above 80, no
+             function of more than six arguments
   strata     only src/model knows how a DMPlex numbers its points
   readmes    each folder of src has a README.md of at most 25 lines, or one above it that names the folder
   options    no option is read by two functions
@@ -21,7 +21,7 @@ from pathlib import Path
 
 from house import Source
 
-MOST_FILE, MOST_BODY, MOST_ARGUMENTS, MOST_README = 350, 80, 6, 25
+MOST_FILE, MOST_MAIN, MOST_BODY, MOST_ARGUMENTS, MOST_README = 350, 80, 80, 6, 25
 
 CHAIN = ("base", "kernels", "model", "contact", "operators", "solver", "statics", "modes", "sweep")
 BELOW = {room: {*CHAIN[:k + 1], *(("results",) if k > 1 else ())} for k, room in enumerate(CHAIN)}
@@ -118,6 +118,8 @@ def lengths(house):
         n_lines = path.read_bytes().count(b"\n")
         if n_lines > MOST_FILE and (path.suffix in (".c", ".h", ".py") or path.read_bytes()[:2] == b"#!"):
             yield house.say(path, n_lines, f"longer than {MOST_FILE} lines")
+        if path.name == "main.c" and n_lines > MOST_MAIN:
+            yield house.say(path, n_lines, f"longer than {MOST_MAIN} lines, a screen")
     for source in house.c:
         for f in source.functions:
             if f.n_lines > MOST_BODY:
@@ -226,6 +228,7 @@ PLANTED = (
     (includes, "is no file", {"src/modes/a.c": '#include "gone.h"\n'}),
     (lengths, "longer than", {"scripts/a": "#!/bin/sh\n" + 350 * "\n"}),
     (lengths, "longer than", {"tests/a.py": 351 * "\n"}),
+    (lengths, "a screen", {"src/main.c": 81 * "\n"}),
     (lengths, "body of Long", {"src/model/a.c": "void Long(void)\n{\n" + 81 * "  ;\n" + "}\n"}),
     (lengths, "Many has 7 arguments", {"src/model/a.c": MANY}),
     (strata, "DMPlexGetDepthStratum", {"src/modes/a.c": "void A(void)\n{\n  DMPlexGetDepthStratum(dm, 0);\n}\n"}),

@@ -41,33 +41,38 @@ static void Normalise(PetscInt n, PetscComplex x[])
   for (PetscInt i = 0; i < n && square > 0; i++) x[i] /= PetscSqrtReal(square);
 }
 
-/* LU of Q(lambda); lambda that is an eigenvalue to the last bit is moved by some of them */
-static PetscErrorCode FactorAt(const DensePencil *q, PetscComplex *lambda, PetscComplex Q[], PetscBLASInt pivot[])
+/* LU of Q(lambda); lambda that is an eigenvalue to the last bit is moved by some of them, but for lambda = 0 */
+static PetscErrorCode FactorAt(const DensePencil *q, PetscComplex *lambda, PetscComplex Q[], PetscBLASInt pivot[],
+                               PetscBool *singular)
 {
-  PetscBool singular = PETSC_TRUE;
-
   PetscFunctionBeginUser;
-  for (int attempt = 0; attempt < 3 && singular; attempt++) {
+  *singular = PETSC_TRUE;
+  for (int attempt = 0; attempt < 3 && *singular; attempt++) {
     if (attempt) *lambda *= 1 + 8 * PETSC_MACHINE_EPSILON * attempt;
     DensePencilEvaluate(q, *lambda, 0, q->n, Q);
-    PetscCall(DenseComplexFactor(q->n, Q, pivot, &singular));
+    PetscCall(DenseComplexFactor(q->n, Q, pivot, singular));
   }
-  PetscCheck(!singular, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED,
-             "dense pencil of size %" PetscInt_FMT ": singular about %.6g rad/s", q->n, (double)cabs(*lambda));
   PetscFunctionReturn(0);
 }
 
-/* One step: lambda, x, y are replaced; change = |step|, not finite where y and x have nothing in common */
+/* One step: lambda, x, y are replaced; change = |step|, not finite where y and x have nothing in common, or where
+   Q(lambda) stays singular and nothing is replaced */
 static PetscErrorCode FollowStep(const DensePencil *q, PetscComplex *lambda, PetscComplex x[], PetscComplex y[],
                                  PetscReal *change)
 {
   const PetscInt n = q->n;
   PetscComplex  *Q, *z, *w, step;
   PetscBLASInt  *pivot;
+  PetscBool      singular;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc4(n * n, &Q, n, &z, n, &w, n, &pivot));
-  PetscCall(FactorAt(q, lambda, Q, pivot));
+  PetscCall(FactorAt(q, lambda, Q, pivot, &singular));
+  if (singular) {
+    *change = INFINITY;
+    PetscCall(PetscFree4(Q, z, w, pivot));
+    PetscFunctionReturn(0);
+  }
   PetscCall(DerivativeApply(q, *lambda, PETSC_FALSE, x, z));
   PetscCall(PetscArraycpy(x, z, n));
   PetscCall(DenseComplexSolve(n, Q, pivot, PETSC_FALSE, 1, x));

@@ -1,0 +1,217 @@
+/* The chain of a run: what each analysis makes of the rooms, in their order. No physics */
+#include "chain.h"
+#include "solver/shiftinvert.h"
+
+static const char *const analyses[N_ANALYSES] = {"modes", "sweep", "static", "transient"};
+
+/* What every analysis needs */
+static PetscErrorCode ChainCreateScene(MPI_Comm comm, Chain *chain)
+{
+  PetscBool has_matrices;
+  PetscInt  analysis = ANALYSIS_MODES;
+
+  PetscFunctionBeginUser;
+  PetscCall(OptionsClaimsCreate(&chain->claims));
+  PetscCall(SquealSetFromOptions(comm));
+  PetscOptionsBegin(comm, NULL, "Analysis", NULL);
+  PetscCall(
+    PetscOptionsEList("-analysis", "what to compute", "squeal.h", analyses, N_ANALYSES, analyses[0], &analysis, NULL));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-squeal_view", "print choices and why, and the time of each stage",
+                           &chain->view));
+  PetscOptionsEnd();
+  chain->analysis = (Analysis)analysis;
+  PetscCall(ChainGetViewers(comm, chain));
+  PetscCall(OperatorsCreate(comm, &chain->operators));
+  PetscCall(OperatorsSetFromOptions(chain->operators));
+  PetscCall(OperatorsHaveMatrices(chain->operators, &has_matrices));
+  if (!has_matrices) {
+    PetscCall(ModelCreate(comm, &chain->model));
+    PetscCall(ModelSetFromOptions(chain->model));
+    PetscCall(ContactCreate(chain->model, &chain->contact));
+    PetscCall(ContactSetFromOptions(chain->contact));
+    PetscCall(OperatorsSetModel(chain->operators, chain->model, chain->contact));
+  }
+  PetscCall(ResultsCreate(comm, &chain->results));
+  PetscCall(ResultsSetFromOptions(chain->results));
+  PetscCall(OptionsClaim(chain->claims, READER_ANY));
+  PetscFunctionReturn(0);
+}
+
+/* What not every analysis needs; each reader claims what is read in its turn */
+static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
+{
+  PetscFunctionBeginUser;
+  PetscCall(DynamicsCreate(comm, &chain->dynamics));
+  if (chain->model) PetscCall(DynamicsSetModel(chain->dynamics, chain->model, chain->contact));
+  PetscCall(DynamicsSetFromOptions(chain->dynamics));
+  PetscCall(OptionsClaim(chain->claims, READER_DYNAMICS));
+  PetscCall(StaticsCreate(comm, &chain->statics));
+  PetscCall(StaticsSetFromOptions(chain->statics));
+  PetscCall(OptionsClaim(chain->claims, READER_STATICS));
+  PetscCall(ModesCreate(comm, &chain->modes));
+  PetscCall(ModesSetFromOptions(chain->modes));
+  PetscCall(SolverReadEigenOptions(comm));
+  PetscCall(OptionsClaim(chain->claims, READER_MODES));
+  PetscCall(SolverReadFactorOptions(comm));
+  PetscCall(OptionsClaim(chain->claims, READER_FACTOR));
+  PetscCall(SweepCreate(comm, &chain->sweep));
+  PetscCall(SweepSetFromOptions(chain->sweep));
+  PetscCall(OptionsClaim(chain->claims, READER_SWEEP));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ChainCreateScene(comm, chain));
+  PetscCall(ChainCreateAnalyses(comm, chain));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChainDestroy(Chain *chain)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < N_SHOWN; i++) PetscCall(PetscViewerDestroy(&chain->viewer[i]));
+  PetscCall(OptionsClaimsDestroy(&chain->claims));
+  PetscCall(ResultsDestroy(&chain->results));
+  PetscCall(DynamicsDestroy(&chain->dynamics));
+  PetscCall(SweepDestroy(&chain->sweep));
+  PetscCall(ModesDestroy(&chain->modes));
+  PetscCall(PencilDestroy(&chain->pencil));
+  PetscCall(StaticsDestroy(&chain->statics));
+  PetscCall(PetscFree(chain->p));
+  PetscCall(OperatorsDestroy(&chain->operators));
+  PetscCall(ContactDestroy(&chain->contact));
+  PetscCall(ModelDestroy(&chain->model));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChainCheckOptions(MPI_Comm comm, const Chain *chain)
+{
+  const Analysis analysis = chain->analysis;
+  const Scope    scope    = {.analysis  = analyses[analysis],
+                             .sweep     = analysis == ANALYSIS_SWEEP,
+                             .transient = analysis == ANALYSIS_TRANSIENT,
+                             .modes     = analysis <= ANALYSIS_SWEEP,
+                             .model     = chain->model,
+                             .contact   = chain->contact,
+                             .linear    = chain->modes,
+                             .dynamics  = chain->dynamics};
+
+  PetscFunctionBeginUser;
+  PetscCall(ScopeCheck(comm, &scope, chain->claims));
+  PetscCall(ChainCheckViewers(comm, chain));
+  PetscFunctionReturn(0);
+}
+
+/* Model, pairs and terms */
+static PetscErrorCode ChainAssemble(Chain *chain)
+{
+  const PetscBool transient = chain->analysis == ANALYSIS_TRANSIENT ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool       pairs     = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  if (transient) PetscCall(DynamicsNeedsPairs(chain->dynamics, &pairs));
+  if (chain->model) {
+    if (transient) PetscCall(ModelKeepSlabs(chain->model));
+    if (pairs) PetscCall(ModelHoldMotions(chain->model)); /* in time they move */
+    PetscCall(SquealStageBegin(SQUEAL_MODEL));
+    PetscCall(ModelSetUp(chain->model));
+    PetscCall(SquealStageEnd(SQUEAL_MODEL));
+    PetscCall(SquealStageBegin(SQUEAL_CONTACT));
+    if (pairs) PetscCall(ContactSetUp(chain->contact));
+    PetscCall(SquealStageEnd(SQUEAL_CONTACT));
+  }
+  PetscCall(SquealStageBegin(SQUEAL_OPERATORS));
+  PetscCall(OperatorsSetUp(chain->operators));
+  PetscCall(SquealStageEnd(SQUEAL_OPERATORS));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChainLinearise(Chain *chain)
+{
+  SlidingState state;
+  PetscBool    is_static;
+
+  PetscFunctionBeginUser;
+  if (chain->pencil) PetscFunctionReturn(0);
+  PetscCall(ModesGetContact(chain->modes, &is_static));
+  if (is_static) {
+    PetscCall(SquealStageBegin(SQUEAL_STATICS));
+    PetscCall(StaticsSolveSliding(chain->statics, chain->p, &state));
+    PetscCall(StaticsRelease(chain->statics));
+    PetscCall(SquealStageEnd(SQUEAL_STATICS));
+  }
+  PetscCall(SquealStageBegin(SQUEAL_OPERATORS));
+  PetscCall(OperatorsLinearise(chain->operators, is_static ? &state : NULL, &chain->pencil));
+  if (!is_static) PetscCall(PencilSetParameters(chain->pencil, chain->p));
+  PetscCall(SquealStageEnd(SQUEAL_OPERATORS));
+  if (is_static) PetscCall(SlidingStateDestroy(&state));
+  PetscFunctionReturn(0);
+}
+
+/* What rooms need of each other, the contact stiffness where pressing is to tell it, and the matrices for a file */
+static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
+{
+  const char *folder;
+  PetscBool   is_static;
+
+  PetscFunctionBeginUser;
+  PetscCall(StaticsSetOperators(chain->statics, chain->operators));
+  PetscCall(DynamicsSetOperators(chain->dynamics, chain->operators, chain->statics));
+  PetscCall(ModesGetContact(chain->modes, &is_static));
+  PetscCall(StaticsCheckUse(chain->statics, is_static && chain->analysis != ANALYSIS_STATIC));
+  PetscCall(OperatorsCreatePoint(chain->operators, &chain->p));
+  PetscCall(StaticsIdentifyAll(chain->statics, chain->p, viewer));
+  PetscCall(SweepSetOperators(chain->sweep, chain->operators, chain->p));
+  PetscCall(SweepSetModes(chain->sweep, chain->modes));
+  if (is_static) PetscCall(SweepSetStatics(chain->sweep, chain->statics));
+  PetscCall(OperatorsGetSave(chain->operators, &folder));
+  if (!folder[0]) PetscFunctionReturn(0);
+  PetscCall(ChainLinearise(chain));
+  PetscCall(PencilSave(chain->pencil));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChainSetUp(Chain *chain, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ChainAssemble(chain));
+  PetscCall(ChainConnect(chain, viewer));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChainRun(Chain *chain)
+{
+  static const struct {
+    SquealStage stage;
+    Shown       shown;
+  } run[N_ANALYSES] = {
+    [ANALYSIS_MODES]     = {SQUEAL_MODES,    SHOWN_MODES   },
+    [ANALYSIS_SWEEP]     = {SQUEAL_SWEEP,    SHOWN_SWEEP   },
+    [ANALYSIS_STATIC]    = {SQUEAL_STATICS,  SHOWN_STATICS },
+    [ANALYSIS_TRANSIENT] = {SQUEAL_DYNAMICS, SHOWN_DYNAMICS}
+  };
+  const Analysis analysis = chain->analysis;
+
+  PetscFunctionBeginUser;
+  if (analysis == ANALYSIS_MODES) {
+    PetscCall(ChainLinearise(chain));
+    PetscCall(ModesSetPencil(chain->modes, chain->pencil));
+  }
+  if (analysis == ANALYSIS_SWEEP) PetscCall(PencilDestroy(&chain->pencil)); /* a sweep makes its own */
+  PetscCall(SquealStageBegin(run[analysis].stage));
+  if (analysis == ANALYSIS_MODES) PetscCall(ModesSolve(chain->modes));
+  if (analysis == ANALYSIS_SWEEP) PetscCall(SweepSolve(chain->sweep, chain->results));
+  if (analysis == ANALYSIS_STATIC) PetscCall(StaticsSolve(chain->statics, chain->p));
+  if (analysis == ANALYSIS_TRANSIENT) PetscCall(DynamicsSolve(chain->dynamics, chain->results));
+  PetscCall(SquealStageEnd(run[analysis].stage));
+  PetscCall(ChainShow(chain, run[analysis].shown, PETSC_TRUE));
+  if (analysis == ANALYSIS_TRANSIENT) PetscFunctionReturn(0); /* which writes as it goes */
+  PetscCall(SquealStageBegin(SQUEAL_RESULTS));
+  if (analysis == ANALYSIS_MODES) PetscCall(ModesWrite(chain->modes, chain->results));
+  if (analysis == ANALYSIS_SWEEP) PetscCall(SweepWrite(chain->sweep, chain->results));
+  if (analysis == ANALYSIS_STATIC) PetscCall(StaticsWrite(chain->statics, chain->results));
+  PetscCall(SquealStageEnd(SQUEAL_RESULTS));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,56 @@
+/* Chain (private to main.c) - the chain of a run, from options to results */
+#pragma once
+
+#include "scope.h"
+
+typedef enum { ANALYSIS_MODES, ANALYSIS_SWEEP, ANALYSIS_STATIC, ANALYSIS_TRANSIENT, N_ANALYSES } Analysis;
+
+/* What shows itself, on stdout or where its own option says */
+typedef enum {
+  SHOWN_MODEL,
+  SHOWN_CONTACT,
+  SHOWN_OPERATORS,
+  SHOWN_STATICS,
+  SHOWN_MODES,
+  SHOWN_SWEEP,
+  SHOWN_DYNAMICS,
+  N_SHOWN
+} Shown;
+
+/* The chain of a run: options, model, contact, operators, statics, pencil, modes, sweep, or dynamics; and results */
+typedef struct {
+  Model         model; /* NULL for matrices without a mesh */
+  Contact       contact;
+  Operators     operators;
+  PetscReal    *p; /* values of the parameters: those of the scene, and what statics identify */
+  Statics       statics;
+  Pencil        pencil; /* at p, where modes, a file or a view ask for it */
+  Modes         modes;
+  Sweep         sweep;
+  Dynamics      dynamics;
+  Results       results;
+  Analysis      analysis;
+  OptionsClaims claims; /* who read what stands on the command line */
+  PetscBool     view;
+  PetscViewer   viewer[N_SHOWN]; /* of what the options below ask for and is not shown yet */
+} Chain;
+
+/* Reads the options of every analysis. Collective */
+PETSC_INTERN PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain);
+/* Raises an error for what stands on the command line and has no effect in this analysis. Collective */
+PETSC_INTERN PetscErrorCode ChainCheckOptions(MPI_Comm comm, const Chain *chain);
+/* Model, contact and terms; what rooms need of each other; matrices for a file where asked for */
+PETSC_INTERN PetscErrorCode ChainSetUp(Chain *chain, PetscViewer viewer);
+/* Computes, shows and writes what the analysis is for */
+PETSC_INTERN PetscErrorCode ChainRun(Chain *chain);
+PETSC_INTERN PetscErrorCode ChainDestroy(Chain *chain);
+/* The pencil at p: about the sliding state there, or with all pairs closed; made once */
+PETSC_INTERN PetscErrorCode ChainLinearise(Chain *chain);
+
+/* chainview.c - which objects -X_view asks for */
+PETSC_INTERN PetscErrorCode ChainGetViewers(MPI_Comm comm, Chain *chain);
+PETSC_INTERN PetscErrorCode ChainCheckViewers(MPI_Comm comm, const Chain *chain);
+/* Shows an object on stdout where wanted, and where its option says */
+PETSC_INTERN PetscErrorCode ChainShow(Chain *chain, Shown what, PetscBool wanted);
+/* Shows what there is before the analysis */
+PETSC_INTERN PetscErrorCode ChainView(Chain *chain);

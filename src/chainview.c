@@ -1,0 +1,68 @@
+/* Views of the objects of a run: -model_view and its like, and -squeal_view for all */
+#include "chain.h"
+
+static const struct {
+  const char *option, *help;
+  unsigned    in; /* bits of the analyses that have something to show */
+} shown[N_SHOWN] = {
+  [SHOWN_MODEL]     = {"-model_view",     "show mesh, parts, supports, springs and loads",           15                     },
+  [SHOWN_CONTACT]   = {"-contact_view",   "show interfaces and their pairs",                         7                      },
+  [SHOWN_OPERATORS] = {"-operators_view", "show the pencil of modes and sweeps, and its parameters", 3                      },
+  [SHOWN_STATICS]   = {"-statics_view",   "show the equilibrium",                                    1 << ANALYSIS_STATIC   },
+  [SHOWN_MODES]     = {"-modes_view",     "show the modes found",                                    1 << ANALYSIS_MODES    },
+  [SHOWN_SWEEP]     = {"-sweep_view",     "show what a sweep found",                                 1 << ANALYSIS_SWEEP    },
+  [SHOWN_DYNAMICS]  = {"-dynamics_view",  "show bodies, step and balances of a run in time",         1 << ANALYSIS_TRANSIENT},
+};
+
+PetscErrorCode ChainGetViewers(MPI_Comm comm, Chain *chain)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < N_SHOWN; i++)
+    PetscCall(OptionsGetViewer(comm, shown[i].option, shown[i].help, &chain->viewer[i]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChainCheckViewers(MPI_Comm comm, const Chain *chain)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < N_SHOWN; i++)
+    if (chain->viewer[i] && !(shown[i].in >> chain->analysis & 1))
+      PetscCall(OptionsRefuse(comm, shown[i].option, "this analysis has nothing to show there"));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ShownView(Chain *chain, Shown what, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  if (what == SHOWN_MODEL) PetscCall(ModelView(chain->model, viewer));
+  if (what == SHOWN_CONTACT) PetscCall(ContactView(chain->contact, viewer));
+  if (what == SHOWN_OPERATORS) PetscCall(ChainLinearise(chain));
+  if (what == SHOWN_OPERATORS) PetscCall(PencilView(chain->pencil, viewer));
+  if (what == SHOWN_STATICS) PetscCall(StaticsView(chain->statics, viewer));
+  if (what == SHOWN_MODES) PetscCall(ModesView(chain->modes, viewer));
+  if (what == SHOWN_SWEEP) PetscCall(SweepView(chain->sweep, viewer));
+  if (what == SHOWN_DYNAMICS) PetscCall(DynamicsView(chain->dynamics, viewer));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChainShow(Chain *chain, Shown what, PetscBool wanted)
+{
+  const PetscViewer out = PETSC_VIEWER_STDOUT_(PETSC_COMM_WORLD);
+
+  PetscFunctionBeginUser;
+  if (wanted) PetscCall(ShownView(chain, what, out));
+  if (chain->viewer[what] && !(wanted && chain->viewer[what] == out))
+    PetscCall(ShownView(chain, what, chain->viewer[what]));
+  PetscCall(PetscViewerDestroy(&chain->viewer[what]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChainView(Chain *chain)
+{
+  PetscFunctionBeginUser;
+  if (chain->model) PetscCall(ChainShow(chain, SHOWN_MODEL, chain->view));
+  if (chain->contact && chain->analysis != ANALYSIS_TRANSIENT) PetscCall(ChainShow(chain, SHOWN_CONTACT, chain->view));
+  if (chain->analysis == ANALYSIS_MODES || chain->analysis == ANALYSIS_SWEEP)
+    PetscCall(ChainShow(chain, SHOWN_OPERATORS, chain->view));
+  PetscFunctionReturn(0);
+}
