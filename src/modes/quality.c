@@ -150,7 +150,7 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
              (double)(cimag(lambda) / (2 * PETSC_PI)), (double)mode->error);
   if (!has_left) mode->error = NAN;
   PetscCheck(
-    mode->backward_error < QUALITY_BACKWARD, modes->comm, PETSC_ERR_NOT_CONVERGED,
+    mode->rigid || mode->backward_error < QUALITY_BACKWARD, modes->comm, PETSC_ERR_NOT_CONVERGED,
     "the eigensolver returned a mode at %.6g Hz with a backward error of %.2g, more than %.0e: it is none, or the "
     "matrices are too badly scaled; tighten -eps_tol or -pep_tol where they are given",
     (double)(cimag(lambda) / (2 * PETSC_PI)), (double)mode->backward_error, QUALITY_BACKWARD);

@@ -125,9 +125,9 @@ static PetscErrorCode WritePart(const Made *m, const char text[])
 static PetscErrorCode TestForeign(Made *m, int *failed)
 {
   static const char *const texts[]    = {NULL, "time_s,normal_force_n\n0,0\n", ""};
-  static const char *const expected[] = {": No such file or directory; start the run anew",
-                                         ": it is shorter than when it was kept; start the run anew",
-                                         ": it has other columns; start the run anew"};
+  static const char *const expected[] = {"/transient.csv: No such file or directory; start the run anew",
+                                         "/transient.csv.part: it is shorter than when it was kept; start the run anew",
+                                         "/transient.csv.part: it has other columns; start the run anew"};
   char                     longer[20000];
   PetscReal               *memory;
   PetscInt                 n;
@@ -146,8 +146,7 @@ static PetscErrorCode TestForeign(Made *m, int *failed)
     PetscCall(PetscPushErrorHandler(ScratchKeepError, &errors));
     *failed += CheckTrue("a foreign table is refused", GoOn(m, 17, n, memory) == PETSC_ERR_FILE_UNEXPECTED, i);
     PetscCall(PetscPopErrorHandler());
-    *failed +=
-      CheckTrue("message", strstr(errors.message, "/transient.csv.part: ") && strstr(errors.message, expected[i]), i);
+    *failed += CheckTrue("message", strstr(errors.message, expected[i]) != NULL, i);
     left = MadeRead(m, "transient.csv.part");
     if (m->rank == 0) *failed += CheckTrue("it is as it was", text ? SameText(left, text) : !left, i);
     free(left);
