@@ -216,7 +216,7 @@ def main():
     parser.add_argument("--squeal", type=Path, required=True, help="the program")
     parser.add_argument("--launcher", default=SOURCE / "scripts/mpirun", help="mpirun")
     parser.add_argument("--ranks", type=int, action="append", help="instead of the ranks of the case")
-    parser.add_argument("--timeout", type=float, default=120, help="seconds allowed to each run")
+    parser.add_argument("--timeout", type=float, default=240, help="seconds allowed to each run")
     parser.add_argument("--core", choices=CORES, help="processor whose kernels OpenBLAS takes")
     arguments = parser.parse_args()
     arguments.squeal = arguments.squeal.resolve()
