@@ -16,7 +16,7 @@ from .exact import Pencil, exact_values
 from .program import ROOT, scene
 
 # Parameter: range around the scene's value, as a factor or as ends
-SWEPT = {"contact_kn": (1e-2, 1e3, True), "contact_mu": (0.0, 1.2, False), "pad_young": (0.25, 4, True),
+SWEPT = {"contact_kn": (1e-4, 1e4, True), "contact_mu": (0.0, 1.2, False), "pad_young": (0.25, 4, True),
          "disc_young": (0.4, 2.5, True), "beam_young": (0.3, 3, True), "pad_density": (0.5, 2, True),
          "disc_density": (0.5, 2, True), "rows_stiffness": (0.1, 10, True), "disc_alpha": (0.0, 40, False)}
 POINTS = 9
@@ -93,7 +93,8 @@ def full_point(program, folder, words, value):
     if reason:
         raise RuntimeError(reason)
     found = [(own, error) for own, error, _ in eigenvalues(folder / "modes.csv") if own != 0]
-    exact = exact_values(Pencil(folder / "ops", value["contact_mu"]), [own for own, _ in found])
+    pencil = Pencil(folder / "ops", value["contact_mu"])
+    exact = exact_values(pencil, [own for own, _ in found], [error for _, error in found])
     return [(true, own, error) for true, (own, error) in zip(exact, found)]
 
 
