@@ -1,5 +1,7 @@
 """Surfaces of the bodies whose fields squeal wrote, and the frame in which a disc and its neighbours are drawn."""
 
+from contextlib import contextmanager
+
 import numpy
 
 from .tables import BadInput
@@ -21,10 +23,10 @@ class Scene:
         names = [name.decode() for name in group["CellData/part"].attrs["names"]]
         part = group["CellData/part"][:]
         on_disc = part == names.index(disc_name) if disc_name in names else numpy.full(len(cells), True)
+        self.surfaces = {name: boundary_faces(cells[part == i]) for i, name in enumerate(names) if (part == i).any()}
         self.disc = boundary_faces(cells[on_disc])
         self.rest = boundary_faces(cells[~on_disc])
-        self.others = {name: boundary_faces(cells[~on_disc & (part == i)]) for i, name in enumerate(names)
-                       if (~on_disc & (part == i)).any()}
+        self.others = {name: faces for name, faces in self.surfaces.items() if name != disc_name and len(self.rest)}
         self.set_frame()
 
     def set_frame(self):
@@ -53,12 +55,64 @@ class Scene:
 
     def displacement(self, mode):
         """Real displacements at the phase at which the disc's out-of-plane amplitude is largest."""
+        return self.shape(mode).real
+
+    def shape(self, mode):
+        """Complex displacements, turned so that this phase is zero."""
         key = f"mode_{mode:03d}"
         if f"{key}_re" not in self.shapes:
             raise BadInput(f"{self.shapes.file.filename}: no shape of mode {mode}; see the column mode of modes.csv")
         shape = self.shapes[f"{key}_re"][:] + 1j * self.shapes[f"{key}_im"][:]
         out_of_plane = shape[numpy.unique(self.disc)] @ self.axis
-        return (shape * numpy.exp(-0.5j * numpy.angle(numpy.sum(out_of_plane**2)))).real
+        return shape * numpy.exp(-0.5j * numpy.angle(numpy.sum(out_of_plane**2)))
+
+
+class Skin:
+    """The surfaces of a scene in a frame of their own: x along the circumference at the contact, y outward, z along the
+    axis, from the middle, in half the largest extent; `extent` in m. `quads` index `nodes` of the scene."""
+
+    def __init__(self, scene):
+        self.frame = numpy.stack([scene.slip, scene.radial, scene.axis], axis=1)
+        faces = numpy.concatenate(list(scene.surfaces.values()))
+        self.nodes, quads = numpy.unique(faces, return_inverse=True)
+        self.quads = quads.reshape(faces.shape)
+        self.parts = {name: len(part) for name, part in scene.surfaces.items()}
+        self.part = numpy.repeat(numpy.arange(len(self.parts)), list(self.parts.values()))
+        place = scene.points[self.nodes] @ self.frame
+        self.extent = numpy.ptp(place, axis=0)
+        self.half = self.extent.max() / 2 or 1.0
+        self.place = (place - (place.max(axis=0) + place.min(axis=0)) / 2) / self.half
+        self.edges = feature_edges(self.place, self.quads, self.part)
+
+    def moved(self, field):
+        """Vectors of the scene's nodes, real or complex, on the surface in its frame."""
+        return field[self.nodes] @ self.frame
+
+
+@contextmanager
+def opened(path):
+    """An HDF5 file; what cannot be read is one line."""
+    try:
+        import h5py
+    except ImportError:
+        raise BadInput(f"{path}: cannot be read without the Python module h5py") from None
+    try:
+        with h5py.File(path) as file:
+            yield file
+    except (OSError, KeyError, IndexError, ValueError) as error:
+        raise BadInput(f"{path}: cannot be read: {error}") from None
+
+
+def read_states(paths, name, disc_name):
+    """Values of an array at the nodes of each file, with the scene of the first one: they share a mesh."""
+    scene = None
+    for path in paths:
+        with opened(path) as file:
+            scene = scene or Scene(file, disc_name)
+            data = file["VTKHDF/PointData"]
+            if name not in data:
+                raise BadInput(f"{path}: no array {name}")
+            yield scene, data[name][:]
 
 
 def boundary_faces(cells):
@@ -66,3 +120,18 @@ def boundary_faces(cells):
     faces = cells[:, HEX_FACES].reshape(-1, 4)
     _, first, count = numpy.unique(numpy.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
     return faces[first[count == 1]]
+
+
+def feature_edges(points, faces, part, sharp=0.8):
+    """Edges [n][2] at which a body has a corner (the cosine between the faces is below `sharp`), or an end; `part` is
+    that of each face."""
+    normal = numpy.cross(points[faces[:, 2]] - points[faces[:, 0]], points[faces[:, 3]] - points[faces[:, 1]])
+    normal /= numpy.linalg.norm(normal, axis=1)[:, None] + 1e-300
+    edges = numpy.sort(numpy.stack([faces, numpy.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    face = numpy.repeat(numpy.arange(len(faces)), 4)
+    order = numpy.lexsort((face, edges[:, 1], edges[:, 0], part[face]))
+    edges, face = edges[order], face[order]
+    same = (edges[1:] == edges[:-1]).all(axis=1) & (part[face[1:]] == part[face[:-1]])
+    flat = same & ((normal[face[1:]] * normal[face[:-1]]).sum(axis=1) > sharp)
+    smooth = numpy.append(flat, False) | numpy.append(False, flat)
+    return numpy.unique(edges[~smooth], axis=0)

@@ -2,12 +2,11 @@
 plot/static and study/static. Lengths are in mm, along two axes in the plane of the pairs: where z is constant these
 are x to the right and y up."""
 
-import csv
 import math
 
 import numpy
 from matplotlib.tri import Triangulation
-from .tables import BadInput, prefixed, read_table
+from .tables import BadInput, header, prefixed, read_table
 
 STATUS = ("open", "stick", "slip")
 COLUMNS = {"pair": int, "x_m": float, "y_m": float, "z_m": float, "lambda_n_n": float, "lambda_t_n": float}
@@ -24,15 +23,6 @@ def status(text):
     if text not in STATUS:
         raise ValueError(text)
     return text
-
-
-def header(path):
-    """Names of the columns; none where they cannot be read, which is for read_table() to say."""
-    try:
-        with path.open(newline="") as lines:
-            return next(csv.reader(lines), [])
-    except (OSError, ValueError, csv.Error):
-        return []
 
 
 def read_surfaces(path):

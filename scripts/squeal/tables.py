@@ -34,6 +34,15 @@ def read_table(path, kinds):
         raise BadInput(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
 
+def header(path):
+    """Names of the columns; none where they cannot be read, which is for read_table() to say."""
+    try:
+        with path.open(newline="") as lines:
+            return next(csv.reader(lines), [])
+    except (OSError, ValueError, csv.Error):
+        return []
+
+
 def convert(path, line, row, kinds):
     """The wanted columns of one row."""
     if None in row or None in row.values():

@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 import numpy
 from matplotlib.tri import Triangulation
 
-from .bodies import Scene
+from .bodies import read_states
 from .picture import BLUE, GREEN, GREY, SKY, SOFT, VERMILION
 from .spectrum import circle_content
 from .tables import BadInput
@@ -66,30 +66,13 @@ def face_of(scene):
     return Face(1e3 * flat, triangles, foot, nodes, ring, numpy.arctan2(y[ring], x[ring]), scene.axis)
 
 
-def read_snapshot(path, face, disc_name):
-    """Face (read where it is None) and velocity of its nodes across it."""
-    try:
-        import h5py
-    except ImportError:
-        raise BadInput("snapshots cannot be read without the Python module h5py") from None
-    try:
-        with h5py.File(path) as file:
-            face = face or face_of(Scene(file, disc_name))
-            data = file["VTKHDF/PointData"]
-            if VELOCITY not in data:
-                raise BadInput(f"{path}: no array {VELOCITY}")
-            return face, data[VELOCITY][:][face.nodes] @ abs(face.axis)
-    except (OSError, KeyError, IndexError, ValueError) as error:
-        raise BadInput(f"{path}: cannot be read: {error}") from None
-
-
 def read_shapes(files, disc_name, first):
     """Snapshots (time, path) from a time on, or the last one if there is none; times that are not known count all."""
     chosen = [pair for pair in files if pair[0] is None or pair[0] >= first] or files[-1:]
     face, velocity = None, []
-    for _, path in chosen:
-        face, values = read_snapshot(path, face, disc_name)
-        velocity.append(values)
+    for scene, values in read_states([path for _, path in chosen], VELOCITY, disc_name):
+        face = face or face_of(scene)
+        velocity.append(values[face.nodes] @ abs(face.axis))
     if len(face.ring) < 8:
         raise BadInput(f"{chosen[0][1]}: {len(face.ring)} nodes on the outer circle of the part {disc_name}, "
                        "8 are needed")

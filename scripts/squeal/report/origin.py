@@ -1,0 +1,50 @@
+"""Sections that every folder has: the scene in words and as a picture, and where the numbers come from: commands,
+versions, cost, options."""
+
+import re
+
+from .markup import Column, command, figure, missing, pairs, section, table, tag
+from .shapes import data_script, viewer
+from .words import scene_words
+
+FACTS = {"cost": "cost", "end": "ended", "versions": "versions", "in": "in the folder"}
+
+
+def scene_section(folder, bodies, drawn):
+    """Words and picture; `drawn`: the numbers of the bodies are in the page already."""
+    words = scene_words(folder.scene) if folder.scene else missing(f"No words about the scene: {folder.why}.")
+    picture = missing("No picture of the scene: the folder has no field of hexahedra (*.h5).")
+    if bodies:
+        source = folder.key if drawn else f"{folder.key}-scene"
+        size = " × ".join(f"{1e3 * extent:.4g}" for extent in bodies.extent)
+        where = viewer(f"{folder.key}-bodies", source, "the bodies; drag to turn them", still=True)
+        said = (f"{', '.join(bodies.parts)}; {size} mm over all, {len(bodies.quads)} faces of elements on the surface. "
+                "Drag to turn.")
+        picture = figure(f"{folder.key}-picture", "The bodies", [None if drawn else data_script(source, bodies, []), where],
+                         said, folder.command("report"))
+    return section(f"{folder.key}-scene", "Scene", tag("div", words, picture, class_="pair scene"))
+
+
+def cost_of(folder):
+    """ranks, seconds, megabytes; None where they are not known."""
+    found = re.match(r"(\d+) ranks, ([\d.]+) s, (\d+) MB", folder.scene.facts.get("cost", "") if folder.scene else "")
+    return (int(found[1]), float(found[2]), int(found[3])) if found else None
+
+
+def origin_section(folder, errors):
+    """Errors and cost in one list, then commands and all options. errors: (name, text) of what each analysis says."""
+    scene = folder.scene
+    if not scene:
+        return section(f"{folder.key}-origin", "Errors, cost, origin", pairs(errors),
+                       missing(f"No cost, versions and options: {folder.why}."))
+    facts = [(name, scene.facts[key]) for key, name in FACTS.items() if key in scene.facts]
+    commands = [(name, scene.facts[key]) for key, name in (("command", "The command of this run"),
+                                                           ("repeat", "The same from its scene.yaml")) if key in scene.facts]
+    options = [(name, value, "given") for name, value in scene.given.items()]
+    options += [(name, value, "default") for name, value in scene.defaults.items()]
+    columns = [Column("option", lambda row: row[0], left=True), Column("value", lambda row: row[1], left=True),
+               Column("", lambda row: row[2], left=True)]
+    return section(f"{folder.key}-origin", "Errors, cost, origin", pairs([*errors, *facts]),
+                   [(tag("h4", name), command(text)) for name, text in commands],
+                   tag("details", tag("summary", f"All {len(options)} options in force"),
+                       table(f"{folder.key}-options", columns, options, lambda row: row[2])))

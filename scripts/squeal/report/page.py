@@ -1,0 +1,79 @@
+"""The page: folders one after another, what they have in common first, in one file without any other."""
+
+from pathlib import Path
+
+from ..tables import BadInput
+from .folders import Folder
+from .markup import Markup, Part, count, join, missing, section, tag
+from .modes import modes_part
+from .origin import origin_section, scene_section
+
+HERE = Path(__file__).resolve().parent
+LARGEST = 10e6  # bytes of the page
+SHARE = 0.7  # of them for shapes
+TITLES = {"modes": "Modes", "static": "Sliding state", "sweep": "Sweep", "transient": "In time",
+          "frf": "Frequency response"}
+SECTIONS = {"modes": modes_part}
+
+
+def resource(name):
+    """A file that goes into the page as it is."""
+    return Markup((HERE / name).read_text())
+
+
+def analysis_part(folder, kind, room):
+    """One analysis; what cannot be read is a section that says so, and a line for the user."""
+    try:
+        return SECTIONS[kind](folder, room)
+    except BadInput as error:
+        return Part(section(f"{folder.key}-{kind}", TITLES[kind], folder.lacks(error)))
+
+
+def article(folder, room):
+    """One folder."""
+    parts = {kind: analysis_part(folder, kind, room) for kind in folder.analyses if kind in SECTIONS}
+    bodies = next((part.bodies for part in parts.values() if part.bodies), None)
+    errors = [error for part in parts.values() for error in part.errors]
+    verdicts = [part.verdict for part in parts.values() if part.verdict]
+    content = [tag("h2", folder.name), [tag("p", verdict, class_="lead") for verdict in verdicts]]
+    if not folder.analyses:
+        return tag("article", content, missing(f"{folder.wrong[0]}."), id=folder.key)
+    return tag("article", content, scene_section(folder, bodies, bool(bodies)), [part.content for part in parts.values()],
+               origin_section(folder, errors), id=folder.key)
+
+
+def navigation(folders):
+    """Links to all sections."""
+    def links(folder):
+        items = [(f"{folder.key}-scene", "Scene"), *((f"{folder.key}-{kind}", TITLES[kind]) for kind in folder.analyses),
+                 (f"{folder.key}-origin", "Origin")] if folder.analyses else []
+        return tag("li", tag("a", folder.name, href=f"#{folder.key}"),
+                   tag("ul", [tag("li", tag("a", text, href=f"#{name}")) for name, text in items]))
+
+    return tag("nav", tag("ul", [links(folder) for folder in folders]), aria_label="Sections")
+
+
+def page(folders, title):
+    """All of it."""
+    room = SHARE * LARGEST / max(len(folders), 1)
+    head = tag("head", tag("meta", charset="utf-8"), tag("title", title),
+               tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
+               tag("meta", name="color-scheme", content="light dark"),
+               tag("link", rel="icon", href="data:,"), tag("style", resource("page.css")))
+    body = tag("body", tag("header", tag("h1", title), tag("p", count(len(folders), "folder"), class_="quiet")),
+               navigation(folders), tag("main", [article(folder, room) for folder in folders]),
+               tag("script", *(resource(name) for name in ("page.js", "viewer.js", "stage.js"))))
+    return join([Markup("<!DOCTYPE html>\n"), tag("html", head, body, lang="en")])
+
+
+def write_page(paths, output, title, options):
+    """Reads the folders and writes the page; returns its name and a line for each thing that is wrong."""
+    folders = [Folder(path, number, options) for number, path in enumerate(paths, 1)]
+    if not any(folder.analyses for folder in folders):
+        raise BadInput(folders[0].wrong[0])
+    text = page(folders, title)
+    try:
+        output.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise BadInput(f"cannot write {output}: {error.strerror}") from None
+    return output, [text for folder in folders for text in folder.wrong]

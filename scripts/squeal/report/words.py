@@ -1,0 +1,146 @@
+"""The scene in sentences, from the options in force."""
+
+from ..picture import MINUS
+from ..tables import prefixed
+from .markup import count, figures, tag
+
+AXES = "xyz"
+
+
+def numbers(text):
+    """Numbers between commas; none where it is something else."""
+    try:
+        return [float(word) for word in text.split(",")]
+    except ValueError:
+        return []
+
+
+def quantity(value, unit):
+    """A value in the unit in which it is easily read."""
+    factor, unit = prefixed(abs(value), unit)
+    return f"{figures(value * factor, 4)} {unit}"
+
+
+def listed(words):
+    """a, b and c."""
+    words = list(words)
+    return " and ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
+
+
+def vector(text, unit):
+    """0, 0, -100 N along z reads −100 N along z; several components are all named."""
+    parts = [f"{quantity(value, unit)} along {axis}" for value, axis in zip(numbers(text), AXES) if value]
+    return listed(parts) or f"0 {unit}"
+
+
+def direction(text):
+    """+y for 0,1,0."""
+    values = numbers(text)
+    if sum(bool(value) for value in values) == 1:
+        i = next(i for i, value in enumerate(values) if value)
+        return ("+" if values[i] > 0 else MINUS) + AXES[i]
+    return f"({text})"
+
+
+def mesh_words(scene):
+    """Where the mesh comes from."""
+    if scene.value("model_mesh"):
+        return f"The mesh is the file {scene.value('model_mesh')}."
+    if any(scene.value(f"operators_{kind}_k") not in ("", "0") for kind in ("load", "dense")):
+        return "The scene is given by matrices, without a mesh."
+    inner, outer, thick = (1e3 * scene.number(f"rig_disc_{name}") for name in ("inner", "outer", "thickness"))
+    rings = scene.value("rig_disc_elements")
+    about = (f"The disc has radii of {figures(inner)} and {figures(outer)} mm, is {figures(thick)} mm thick, and has "
+             f"{' × '.join(rings.split(','))} elements (rings, columns, layers).")
+    if not scene.is_true("rig_pad"):
+        return about
+    size = " × ".join(figures(1e3 * value) for value in numbers(scene.value("rig_pad_size")))
+    return (f"{about} A pad of {size} mm at radius {figures(1e3 * scene.number('rig_pad_radius'))} mm hangs on a beam of "
+            f"{figures(1e3 * scene.number('rig_beam_height'))} mm.")
+
+
+def part_words(scene, name):
+    """A material."""
+    damping = [f"{sign} = {figures(scene.number(f'{name}_{key}'), 4)} {unit}"
+               for key, sign, unit in (("alpha", "α", "1/s"), ("beta", "β", "s")) if scene.number(f"{name}_{key}")]
+    return (f"{name}: E = {quantity(scene.number(f'{name}_young'), 'Pa')}, ν = {scene.value(f'{name}_poisson', '0.3')}, "
+            f"ρ = {figures(scene.number(f'{name}_density'))} kg/m³{''.join(f', {text}' for text in damping)}.")
+
+
+def contact_words(scene, name):
+    """An interface."""
+    slave, _, master = scene.value(f"{name}_surfaces").partition(",")
+    turn, slip = (numbers(scene.value(f"{name}_{key}")) for key in ("rotation", "slip"))
+    if any(turn):
+        motion = f"{master} turns with {vector(scene.value(f'{name}_rotation'), 'rad/s')}"
+    elif any(slip):
+        motion = f"{slave} slides towards {direction(scene.value(f'{name}_slip'))}"
+    else:
+        motion = "no sliding is prescribed"
+    speed, slope = scene.number(f"{name}_speed"), scene.number(f"{name}_mu_slope")
+    law = "exact constraint"
+    if scene.value(f"{name}_law") == "penalty":
+        kn = numbers(scene.value(f"{name}_kn"))
+        law = f"normal stiffness {quantity(kn[0], 'N/m')} per pair" if kn else "normal stiffness found by pressing"
+    if scene.value("analysis", "modes") == "transient":
+        law = "exact contact in time"
+    return (f"{name}: {slave} on {master}, {motion}{f' at {figures(speed, 4)} m/s' if speed else ''}, friction coefficient "
+            f"{scene.value(f'{name}_mu', '0')}{f', its slope {figures(slope, 4)} s/m' if slope else ''}; {law}.")
+
+
+def load_words(scene, name):
+    """A force."""
+    ramp = scene.number(f"{name}_ramp")
+    grown = f", within {figures(1e3 * ramp, 4)} ms" if ramp and scene.value("analysis") == "transient" else ""
+    return f"{name}: {vector(scene.value(f'{name}_force'), 'N')} in total on {scene.value(f'{name}_set')}{grown}."
+
+
+LISTS = (
+    ("parts", part_words),
+    ("supports", lambda s, n: f"{n}: {s.value(f'{n}_set')} is held in {listed(s.value(f'{n}_fix', 'xyz'))}."),
+    ("springs", lambda s, n: f"{n}: springs on {s.value(f'{n}_set')}, {vector(s.value(f'{n}_stiffness'), 'N/m')} per node."),
+    ("dashpots", lambda s, n: f"{n}: dashpots on {s.value(f'{n}_set')}, {vector(s.value(f'{n}_viscosity'), 'N s/m')} per node."),
+    ("loads", load_words),
+    ("motions", lambda s, n: f"{n}: {s.value(f'{n}_set')} is moved by {vector(s.value(f'{n}_displacement'), 'm')}."),
+    ("contacts", contact_words),
+    ("impulses", lambda s, n: f"{n}: a blow of {vector(s.value(f'{n}_impulse'), 'N s')} at ({s.value(f'{n}_at')}) m after "
+                              f"{figures(1e3 * s.number(f'{n}_time'), 4)} ms."),
+    ("probes", lambda s, n: f"{n}: records the motion at ({s.value(f'{n}_at')}) m."),
+)
+
+
+def analysis_words(scene):
+    """What was computed."""
+    kind = scene.value("analysis", "modes")
+    about = "the pairs that the sliding state closes" if scene.value("modes_contact") == "static" else "all pairs closed"
+    low, high = (numbers(scene.value("modes_band")) + [0, 0])[:2]
+    band = f"from {figures(low)} to {figures(high)} Hz" if high else (
+        f"the {scene.value('modes_count')} nearest to {figures(scene.number('modes_target'))} Hz")
+    if kind == "sweep":
+        values = " and ".join(filter(None, (scene.value("sweep_values"), scene.value("sweep_values_2"))))
+        return f"Sweep of {scene.value('sweep_parameter')} over {values}: all modes {band}, about {about}."
+    if kind == "static":
+        return "Equilibrium with friction while the bodies slide."
+    if kind == "transient":
+        start = "the sliding state" if scene.value("dynamics_start") == "static" else "rest"
+        return f"Motion in time over {figures(1e3 * scene.number('ts_max_time'), 4)} ms, from {start}, with exact contact."
+    if kind == "frf":
+        return f"Frequency response, about {about}."
+    return f"Complex modes {band}, about {about}, {scene.value('operators_mass', 'consistent')} mass."
+
+
+def scene_words(scene):
+    """All of it: a sentence for each thing."""
+    groups = [tag("li", analysis_words(scene)), tag("li", mesh_words(scene))]
+    for name, say in LISTS:
+        for thing in scene.names(name):
+            head, _, rest = say(scene, thing).partition(":")
+            groups.append(tag("li", tag("b", head), f":{rest}"))
+    return tag("ul", groups, class_="words")
+
+
+def headline(scene):
+    """One line for lists of folders."""
+    parts = scene.names("parts")
+    return f"{scene.value('analysis', 'modes')}, {count(len(parts), 'part')}" + (
+        f", mu {scene.value(scene.names('contacts')[0] + '_mu', '0')}" if scene.names("contacts") else "")

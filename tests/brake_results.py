@@ -1,0 +1,27 @@
+"""Result folders of a small brake, one for each analysis, for tests of what reads them."""
+
+import subprocess
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[1]
+BRAKE = ["-options_file", SOURCE / "options/massi2005.yaml", "-rig_disc_elements", "8,24,1", "-rig_pad_elements", "4,4,2",
+         "-rig_beam_elements", "10"]
+IN_TIME = ["-options_file", SOURCE / "options/massi2005_transient.yaml", "-rig_disc_elements", "8,32,1",
+           "-rig_pad_elements", "4,4,2"]
+RUNS = {
+    "modes": [*BRAKE, "-contact_mu", "0.9", "-pad_young", "39.8e9"],
+    "modes_quiet": [*BRAKE, "-contact_mu", "0", "-modes_band", "0,6000"],
+    "static": [*BRAKE, "-analysis", "static"],
+    "sweep": [*BRAKE, "-analysis", "sweep", "-modes_band", "1000,6000", "-sweep_parameter", "contact_mu",
+              "-sweep_values", "0:1.2:13", "-sweep_verify", "2"],
+    "transient": [*IN_TIME, "-ts_max_time", "8e-3", "-dynamics_snapshot_interval", "0.5e-3"],
+}
+
+
+def make_results(squeal, mpirun, folder, names=tuple(RUNS)):
+    """Runs squeal for each name into a folder of that name."""
+    for name in names:
+        command = [mpirun, "-n", "1", squeal, *RUNS[name], "-output_dir", folder / name]
+        done = subprocess.run(list(map(str, command)), capture_output=True, text=True, cwd=folder, check=False)
+        if done.returncode:
+            raise SystemExit(f"{name}: {done.stderr}")
