@@ -47,6 +47,21 @@ static PetscErrorCode IterateSurely(Active *a, ActiveOutcome *outcome)
   PetscFunctionReturn(0);
 }
 
+/* Why friction could not be raised further: whether the bodies jam at the whole of it. Pairs that obey Coulomb's law may
+   slip anywhere without friction: where it could not be raised at all, a jam is the word of rounding, and what the first
+   iteration ended with is told instead. */
+static PetscErrorCode RaiseOutcome(Active *a, ActiveOutcome *outcome)
+{
+  PetscFunctionBeginUser;
+  if (a->friction == 0 && PairRowsCoulomb(a->rows)) {
+    if (*outcome == ACTIVE_JAMMED) *outcome = a->first;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(ActiveIsReversed(a, 1, &a->reversed));
+  if (a->reversed) *outcome = ACTIVE_JAMMED;
+  PetscFunctionReturn(0);
+}
+
 /* Raises friction in steps from the equilibrium without it */
 static PetscErrorCode Raise(Active *a, ActiveOutcome *outcome)
 {
@@ -81,10 +96,7 @@ static PetscErrorCode Raise(Active *a, ActiveOutcome *outcome)
     if (step >= min_step) *outcome = ACTIVE_CONVERGED;
   }
   a->friction = reached;
-  if (*outcome != ACTIVE_CONVERGED && *outcome != ACTIVE_UNSOLVED && a->pressed) {
-    PetscCall(ActiveIsReversed(a, 1, &a->reversed));
-    if (a->reversed) *outcome = ACTIVE_JAMMED;
-  }
+  if (*outcome != ACTIVE_CONVERGED && *outcome != ACTIVE_UNSOLVED && a->pressed) PetscCall(RaiseOutcome(a, outcome));
   PetscCall(PetscFree3(status, l, w));
   PetscFunctionReturn(0);
 }

@@ -88,6 +88,7 @@ static PetscErrorCode EquilibriumMissing(const Active *a, PetscReal e[])
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(a->u, &r));
   PetscCall(EquilibriumResidual(a, a->u, r));
+  PetscCall(HoldRelieve(&a->compliance->hold, r));
   PetscCall(ComplianceGetRows(a->compliance, a->u, e));
   for (PetscInt i = 0; i < a->rows->n; i++) e[i] = a->w[i] - e[i];
   PetscCall(ComplianceSolve(a->compliance, 0, r, NULL, e, a->compliance->u));

@@ -184,6 +184,18 @@ PetscErrorCode HoldProject(const Hold *hold, Vec u)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode HoldRelieve(const Hold *hold, Vec f)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < hold->n; i++) {
+    PetscScalar along;
+
+    PetscCall(VecDot(f, hold->r[i], &along));
+    PetscCall(VecAXPY(f, -along, hold->mr[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode HoldDestroy(Hold *hold)
 {
   PetscFunctionBeginUser;

@@ -104,6 +104,7 @@ static PetscErrorCode SmallSolveDense(const SmallSystem *s, PetscReal z[], Small
     PetscCall(SmallSolveLeast(n, A, all, outcome));
     *reversed = PETSC_FALSE;
   }
+  if (s->friction == 0) *reversed = PETSC_FALSE; /* where slip is free the determinant is zero, its sign rounding */
   PetscCall(PetscArraycpy(z, &all[rows->begin], rows->n));
   PetscCall(PetscFree(all_law));
   PetscCall(PetscFree(all));

@@ -174,6 +174,8 @@ PETSC_INTERN PetscErrorCode HoldCheck(Operators operators, const Hold *hold, con
 PETSC_INTERN PetscErrorCode HoldFindLoose(Operators operators, const PetscReal p[], const Hold *hold, Mat A,
                                           const char **part);
 PETSC_INTERN PetscErrorCode HoldProject(const Hold *hold, Vec u);
+/* Takes from forces f what pushes along the free motions, spread as inertia would: f - M r (r'f) */
+PETSC_INTERN PetscErrorCode HoldRelieve(const Hold *hold, Vec f);
 PETSC_INTERN PetscErrorCode HoldDestroy(Hold *hold);
 
 /* compliance.c - factors, and forms W and V for up to max_rows rows; y = kappa G K_a^-1 (G'(l - w) - S' (slide l)) + w

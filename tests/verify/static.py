@@ -14,6 +14,7 @@
                                                     sum of the friction on the slave along -y (N), 0 along x; the cone
                                                     of every pair; which pairs stick: "all", "some" or "none"
     verify/static.py column FOLDER FORCE AREA       even pressure
+    verify/static.py under FOLDER FORCE X OFF       the resultant of lambda_n acts at X (m), by at most OFF off
 """
 
 import csv
@@ -131,7 +132,13 @@ def column(judge, folder, force, area):
     line(judge, "pressure unlike the even one", np.abs(pairs.force / pairs.area * area / force - 1).max(), 0, 1e-9)
 
 
-CHECKS = {check.__name__: check for check in (press, lean, bed, stiffer, friction, column)}
+def under(judge, folder, force, x, off):
+    pairs, off = Pairs(folder), float(off)
+    line(judge, "resultant of lambda_n, x, from where it should be / m", (pairs.x - float(x)) @ pairs.force / float(force),
+         -off, off)
+
+
+CHECKS = {check.__name__: check for check in (press, lean, bed, stiffer, friction, column, under)}
 
 
 def main(what, *arguments):
