@@ -54,6 +54,8 @@ static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
   PetscCall(OptionsClaim(chain->claims, READER_MODES));
   PetscCall(SolverReadFactorOptions(comm));
   PetscCall(OptionsClaim(chain->claims, READER_FACTOR));
+  PetscCall(SolverReadIterativeOptions(comm));
+  PetscCall(OptionsClaim(chain->claims, READER_ITERATIVE));
   PetscCall(SweepCreate(comm, &chain->sweep));
   PetscCall(SweepSetFromOptions(chain->sweep));
   PetscCall(OptionsClaim(chain->claims, READER_SWEEP));
@@ -96,6 +98,8 @@ PetscErrorCode ChainCheckOptions(MPI_Comm comm, const Chain *chain)
                              .model     = chain->model,
                              .contact   = chain->contact,
                              .linear    = chain->modes,
+                             .operators = chain->operators,
+                             .varied    = chain->sweep,
                              .dynamics  = chain->dynamics};
 
   PetscFunctionBeginUser;

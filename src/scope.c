@@ -36,13 +36,17 @@ static PetscErrorCode ScopeCheckContact(MPI_Comm comm, const Scope *s, const Con
 {
   static const char exact[]  = "not used by -analysis transient, whose contact is exact: no penalty, no linearisation";
   static const char steady[] = "not used by -analysis static: the loads tell the forces, and nothing moves";
-  char              linear[256];
+  char              linear[256], other[256];
   const PetscBool   is_static = !s->modes && !s->transient ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(linear, sizeof(linear), "not used by modes without -%s_friction_damping", c->name));
+  PetscCall(PetscSNPrintf(other, sizeof(other), "not used beside -%s_rotation; give one", c->name));
   if (Vec3Dot(c->rotation, c->rotation) > 0 && Vec3Dot(c->slip, c->slip) > 0)
-    PetscCall(ScopeRefuse(comm, c->name, "slip", "not used beside the -NAME_rotation of the same contact; give one"));
+    PetscCall(ScopeRefuse(comm, c->name, "slip", other));
+  PetscCall(
+    PetscSNPrintf(other, sizeof(other), "not used with -%s_law constraint, which is as stiff as can be", c->name));
+  if (!s->transient && c->law == CONTACT_CONSTRAINT && !c->identify) PetscCall(ScopeRefuse(comm, c->name, "kn", other));
   if (s->transient && c->law == CONTACT_PENALTY) PetscCall(ScopeRefuse(comm, c->name, "law", exact));
   if (s->transient) PetscCall(ScopeRefuse(comm, c->name, "kn", exact));
   if (s->transient) PetscCall(ScopeRefuse(comm, c->name, "friction_damping", exact));
@@ -53,6 +57,60 @@ static PetscErrorCode ScopeCheckContact(MPI_Comm comm, const Scope *s, const Con
   if (is_static) PetscCall(ScopeRefuse(comm, c->name, "mu_slope", steady));
   if (s->modes && !c->damping) PetscCall(ScopeRefuse(comm, c->name, "force", linear));
   if (s->modes && !c->damping && c->mu_slope == 0) PetscCall(ScopeRefuse(comm, c->name, "speed", linear));
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for a density that has no weight; a scene that the command line alone tells of must have one */
+static PetscErrorCode ScopeCheckDensity(MPI_Comm comm, const ModelScene *scene)
+{
+  PetscBool in_file;
+  char      option[256];
+
+  PetscFunctionBeginUser;
+  if (Vec3Dot(scene->gravity, scene->gravity) > 0) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < scene->n_parts; i++) {
+    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_density", scene->parts[i].name));
+    PetscCall(OptionsFilesGive(comm, option, &in_file));
+    if (in_file) PetscCall(OptionsRefuse(comm, option, "not used by -analysis static without -model_gravity"));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Whether the eigenvalue problems may have damping, and whether they may have none */
+static PetscErrorCode ScopeGetDamping(const Scope *s, PetscBool *damped, PetscBool *undamped)
+{
+  const ModelScene       *scene;
+  const ContactInterface *interfaces;
+  PetscInt                n = 0;
+  PetscBool               sure, varied, real;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsHaveDamping(s->operators, &sure));
+  if (s->model) PetscCall(ModelGetScene(s->model, &scene));
+  for (PetscInt i = 0; s->model && i < scene->n_parts; i++)
+    if (scene->parts[i].alpha > 0 || scene->parts[i].beta > 0) sure = PETSC_TRUE;
+  for (PetscInt i = 0; s->model && i < scene->n_dashpots; i++)
+    if (Vec3Dot(scene->dashpots[i].value, scene->dashpots[i].value) > 0) sure = PETSC_TRUE;
+  PetscCall(SweepGetDamping(s->varied, &varied, &real));
+  *undamped = !sure || (s->sweep && (varied || real)) ? PETSC_TRUE : PETSC_FALSE;
+  *damped   = sure || (s->sweep && varied) ? PETSC_TRUE : PETSC_FALSE;
+  if (s->contact) PetscCall(ContactGetInterfaces(s->contact, &n, &interfaces));
+  for (PetscInt i = 0; i < n; i++)
+    if (interfaces[i].damping) *damped = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* Options of the eigensolver that is not needed */
+static PetscErrorCode ScopeCheckEigensolver(MPI_Comm comm, const Scope *s)
+{
+  PetscBool damped, undamped, has_band;
+
+  PetscFunctionBeginUser;
+  PetscCall(ScopeGetDamping(s, &damped, &undamped));
+  PetscCall(ModesHaveBand(s->linear, &has_band)); /* without a band the undamped modes tell how far to look */
+  if (!undamped && has_band)
+    PetscCall(OptionsRefusePrefix(comm, "-eps_", "not used by damped modes in a band, which -pep_* solves"));
+  if (!damped) PetscCall(OptionsRefusePrefix(comm, "-pep_", "not used by modes without damping, which -eps_* solves"));
   PetscFunctionReturn(0);
 }
 
@@ -71,6 +129,7 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
     PetscCall(ScopeRefuse(comm, scene->parts[i].name, "alpha", still));
     PetscCall(ScopeRefuse(comm, scene->parts[i].name, "beta", still));
   }
+  if (!s->transient && !s->modes) PetscCall(ScopeCheckDensity(comm, scene));
   for (PetscInt i = 0; i < scene->n_probes && !s->transient; i++)
     PetscCall(ScopeRefuse(comm, scene->probes[i].name, "at", no_time));
   for (PetscInt i = 0; i < scene->n_loads && s->modes && !statics; i++) {
@@ -83,13 +142,14 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
 /* What TS reads for integrators that are implicit or choose their steps */
 static PetscErrorCode ScopeCheckIntegrator(MPI_Comm comm)
 {
-  static const char *const others[] = {"-ts_rtol",   "-ts_atol",  "-ts_adapt_type", "-snes_rtol", "-snes_atol",
-                                       "-snes_type", "-ksp_rtol", "-ksp_atol",      "-ksp_type",  "-pc_type"};
+  static const char *const others[] = {"-ts_rtol",      "-ts_atol",         "-ts_adapt_",   "-ts_max_reject",
+                                       "-ts_max_snes_", "-ts_error_if_",    "-ts_fd_color", "-ts_use_splitrhs",
+                                       "-ts_time_span", "-ts_rhs_jacobian_"};
 
   PetscFunctionBeginUser;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(others); i++)
-    PetscCall(
-      OptionsRefuse(comm, others[i], "not used, the steps of -analysis transient are explicit and of one length"));
+    PetscCall(OptionsRefusePrefix(comm, others[i],
+                                  "not used, the steps of -analysis transient are explicit and of one length"));
   PetscFunctionReturn(0);
 }
 
@@ -103,6 +163,7 @@ static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool st
   if (s->model) PetscCall(ScopeCheckModel(comm, s, statics));
   if (s->contact) PetscCall(ContactGetInterfaces(s->contact, &n, &interfaces));
   for (PetscInt i = 0; i < n; i++) PetscCall(ScopeCheckContact(comm, s, &interfaces[i]));
+  if (s->modes) PetscCall(ScopeCheckEigensolver(comm, s));
   if (s->transient) PetscCall(ScopeCheckIntegrator(comm));
   if (s->transient)
     PetscCall(ScopeRefuse(comm, "operators", "mass", "not used by -analysis transient, whose mass is lumped"));
@@ -113,12 +174,14 @@ static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool st
 PetscErrorCode ScopeCheck(MPI_Comm comm, const Scope *s, OptionsClaims claims)
 {
   OptionsReader readers[N_READERS] = {
-    [READER_ANY]      = {PETSC_TRUE,   "every analysis"                                                            },
-    [READER_STATICS]  = {PETSC_FALSE,  "-analysis static, and modes, sweeps and transients about the sliding state"},
-    [READER_MODES]    = {s->modes,     "-analysis modes and sweep"                                                 },
-    [READER_FACTOR]   = {s->modes,     "analyses that factorise a matrix"                                          },
-    [READER_SWEEP]    = {s->sweep,     "-analysis sweep"                                                           },
-    [READER_DYNAMICS] = {s->transient, "-analysis transient"                                                       },
+    [READER_ANY]       = {PETSC_TRUE,   "every analysis"                                                            },
+    [READER_STATICS]   = {PETSC_FALSE,  "-analysis static, and modes, sweeps and transients about the sliding state"},
+    [READER_MODES]     = {s->modes,     "-analysis modes and sweep"                                                 },
+    [READER_FACTOR]    = {s->modes,     "analyses that factorise a matrix"                                          },
+    [READER_ITERATIVE] = {PETSC_FALSE,
+                          "an iterative -st_ksp_type such as gmres, since a factorised matrix needs no iteration"   },
+    [READER_SWEEP]     = {s->sweep,     "-analysis sweep"                                                           },
+    [READER_DYNAMICS]  = {s->transient, "-analysis transient"                                                       },
   };
   PetscBool statics;
 
@@ -126,6 +189,7 @@ PetscErrorCode ScopeCheck(MPI_Comm comm, const Scope *s, OptionsClaims claims)
   PetscCall(ScopeNeedsStatics(s, &statics));
   readers[READER_STATICS].in_force = statics;
   if (statics) readers[READER_FACTOR].in_force = PETSC_TRUE;
+  if (!readers[READER_FACTOR].in_force) readers[READER_ITERATIVE] = readers[READER_FACTOR];
   PetscCall(OptionsClaimsCheck(comm, claims, readers, s->analysis));
   PetscCall(ScopeCheckRead(comm, s, statics));
   PetscFunctionReturn(0);

@@ -10,6 +10,7 @@ typedef enum {
   READER_STATICS,
   READER_MODES,
   READER_FACTOR,
+  READER_ITERATIVE,
   READER_SWEEP,
   READER_DYNAMICS,
   N_READERS
@@ -21,7 +22,9 @@ typedef struct {
   PetscBool   modes, sweep, transient;
   Model       model;
   Contact     contact;
+  Operators   operators;
   Modes       linear;
+  Sweep       varied;
   Dynamics    dynamics;
 } Scope;
 

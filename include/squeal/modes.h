@@ -61,6 +61,9 @@ PetscErrorCode ModesGetContact(Modes modes, PetscBool *is_static);
     Errors: PETSC_ERR_USER_INPUT without -modes_band. @*/
 PetscErrorCode ModesGetBand(Modes modes, PetscReal band[2], PetscReal *growth);
 
+/*@ ModesHaveBand - whether the modes of a band are asked for, not those nearest to a target. Not collective. @*/
+PetscErrorCode ModesHaveBand(Modes modes, PetscBool *has_band);
+
 /*@ ModesSetBand - another band, Hz. Not collective. @*/
 PetscErrorCode ModesSetBand(Modes modes, const PetscReal band[2]);
 

@@ -55,6 +55,9 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators);
     @*/
 PetscErrorCode OperatorsHaveMatrices(Operators operators, PetscBool *have);
 
+/*@ OperatorsHaveDamping - whether there is a damping one among them. Not collective. @*/
+PetscErrorCode OperatorsHaveDamping(Operators operators, PetscBool *have);
+
 /*@ OperatorsSetUp - assembles the bodies or loads the matrices. Collective. @*/
 PetscErrorCode OperatorsSetUp(Operators operators);
 

@@ -132,8 +132,9 @@ PetscErrorCode OptionsExplainValue(const char message[], char text[], size_t siz
 PetscErrorCode OptionsNextGiven(char **text, size_t size, char name[], const char **value, PetscBool *more);
 
 /*@
-   OptionsCheckUnknown - raises an error for an option that nobody read and that is not PETSc's or SLEPc's, naming the
-   nearest valid one. Collective; call when every room has read its options.
+   OptionsCheckUnknown - raises an error for an option that nobody has read, naming the nearest valid one; of those of
+   PETSc and SLEPc only where the command line gives it and nothing will read it. Collective; call when every room has
+   read its options.
 
    Input Parameters:
 +  read_again - reads all options of all rooms on objects of its own, so that the valid names can be listed
@@ -172,6 +173,17 @@ PetscErrorCode OptionsCheckValues(MPI_Comm comm);
 /*@ OptionsRefuse - raises an error where the option, such as "-contact_kn", stands on the command line; why ends the
     message. For what is read, and has no effect. Collective. @*/
 PetscErrorCode OptionsRefuse(MPI_Comm comm, const char option[], const char why[]);
+
+/*@ OptionsRefusePrefix - the same of all options that begin so, such as "-pep_". Collective. @*/
+PetscErrorCode OptionsRefusePrefix(MPI_Comm comm, const char prefix[], const char why[]);
+
+/*@ OptionsCommandGives - whether the command line itself gives an option, whose name has no dash here. Not collective.
+    @*/
+PetscErrorCode OptionsCommandGives(const char name[], PetscBool *gives);
+
+/*@ OptionsFilesGive - whether one of the options files of the command line gives an option, such as "-pad_density".
+    Collective. @*/
+PetscErrorCode OptionsFilesGive(MPI_Comm comm, const char option[], PetscBool *give);
 
 /* Options of the command line, and who read each */
 typedef struct _p_OptionsClaims *OptionsClaims;

@@ -61,6 +61,10 @@ springs, viscosity of dashpots, mu, kn, speed, ... of a contact, e.g. pad_young,
 @*/
 PetscErrorCode SweepSetFromOptions(Sweep sweep);
 
+/*@ SweepGetDamping - whether it varies a parameter of damping, which may be 0 at some points, and whether it projects on
+    real modes, which have none. Not collective. @*/
+PetscErrorCode SweepGetDamping(Sweep sweep, PetscBool *varied, PetscBool *real);
+
 /*@ SweepSolve - all points, branches, onsets and what else was asked for. Collective. @*/
 PetscErrorCode SweepSolve(Sweep sweep, Results results);
 

@@ -2,6 +2,7 @@
    Who reads what stands on the command line: see arguments.c.
 */
 #include <squeal/options.h>
+#include <strings.h>
 
 struct _p_OptionsClaims {
   PetscInt     n;
@@ -31,20 +32,46 @@ static PetscErrorCode ArgumentsGet(PetscInt *n, const char ***name, const char *
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsRefuse(MPI_Comm comm, const char option[], const char why[])
+PetscErrorCode OptionsCommandGives(const char name[], PetscBool *gives)
+{
+  const char **given, **value;
+  PetscInt     n;
+
+  PetscFunctionBeginUser;
+  *gives = PETSC_FALSE;
+  PetscCall(ArgumentsGet(&n, &given, &value));
+  for (PetscInt i = 0; i < n; i++)
+    if (!strcasecmp(given[i] + strspn(given[i], "-"), name)) *gives = PETSC_TRUE;
+  PetscCall(PetscFree2(given, value));
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for an option of the command line; `length` characters of its name count */
+static PetscErrorCode ArgumentsRefuse(MPI_Comm comm, const char option[], size_t length, const char why[])
 {
   const char **name, **value;
   PetscInt     n;
-  PetscBool    same;
 
   PetscFunctionBeginUser;
   PetscCall(ArgumentsGet(&n, &name, &value));
-  for (PetscInt i = 0; i < n; i++) {
-    PetscCall(PetscStrcasecmp(name[i], option, &same));
-    PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "%s%s%s: %s", option, value[i] ? " " : "", value[i] ? value[i] : "",
-               why);
-  }
+  for (PetscInt i = 0; i < n; i++)
+    PetscCheck(strncasecmp(name[i], option, length), comm, PETSC_ERR_USER_INPUT, "%.*s%s%s%s: %s", (int)length, option,
+               strlen(name[i]) > length ? name[i] + length : "", value[i] ? " " : "", value[i] ? value[i] : "", why);
   PetscCall(PetscFree2(name, value));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsRefuse(MPI_Comm comm, const char option[], const char why[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(ArgumentsRefuse(comm, option, strlen(option) + 1, why));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsRefusePrefix(MPI_Comm comm, const char prefix[], const char why[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(ArgumentsRefuse(comm, prefix, strlen(prefix), why));
   PetscFunctionReturn(0);
 }
 

@@ -25,3 +25,5 @@ PETSC_INTERN void HelpHush(int argc, char *const argv[]);
 /* All options that read_again() reads, with values; n = 0 before, free list->option with free() */
 PETSC_INTERN PetscErrorCode HelpCollect(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx,
                                         HelpList *list);
+/* unknown.c - whether options of PETSc or SLEPc begin with the name and an underscore */
+PETSC_INTERN PetscBool UnknownIsLibrarysPrefix(const char name[]);

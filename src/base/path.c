@@ -11,23 +11,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Whether the command line gives the option itself */
-static PetscErrorCode PathIsOnCommandLine(const char name[], PetscBool *given)
-{
-  char    **word;
-  int       n;
-  PetscBool same;
-
-  PetscFunctionBeginUser;
-  *given = PETSC_FALSE;
-  PetscCall(PetscGetArgs(&n, &word));
-  for (int i = 1; i < n; i++) {
-    PetscCall(PetscStrcasecmp(word[i], name, &same));
-    if (same) *given = PETSC_TRUE;
-  }
-  PetscFunctionReturn(0);
-}
-
 /* Whether the options file gives the option this value */
 static PetscErrorCode FileGives(MPI_Comm comm, const char file[], const char name[], const char value[],
                                 PetscBool *gives)
@@ -80,7 +63,7 @@ PetscErrorCode OptionsGetPath(OptionsItems PetscOptionsObject, const char option
   PetscCall(PetscOptionsString(option, help, "options.h", path, path, PETSC_MAX_PATH_LEN, &given));
   if (set) *set = given;
   if (!given || !path[0]) PetscFunctionReturn(0);
-  PetscCall(PathIsOnCommandLine(option, &on_command_line));
+  PetscCall(OptionsCommandGives(option + 1, &on_command_line));
   if (path[0] != '/' && !on_command_line) PetscCall(PathResolve(comm, option, path, PETSC_MAX_PATH_LEN));
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Bcast(path, PETSC_MAX_PATH_LEN, MPI_CHAR, 0, comm)); /* one rank decides what is there */
@@ -88,6 +71,23 @@ PetscErrorCode OptionsGetPath(OptionsItems PetscOptionsObject, const char option
   if (whole) PetscCall(PetscOptionsSetValue(NULL, option, whole)); /* for scene.yaml, which lies elsewhere */
   if (whole) PetscCall(PetscOptionsHasName(NULL, NULL, option, &given));
   free(whole);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsFilesGive(MPI_Comm comm, const char option[], PetscBool *give)
+{
+  PetscOptions options;
+  char       **word;
+  int          n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscGetArgs(&n, &word));
+  PetscCall(PetscOptionsCreate(&options));
+  for (int i = 1; i + 1 < n; i++)
+    if (!strncasecmp(word[i], "-options_file", 13))
+      PetscCall(PetscOptionsInsertFile(comm, options, word[i + 1], PETSC_TRUE));
+  PetscCall(PetscOptionsHasName(options, NULL, option, give));
+  PetscCall(PetscOptionsDestroy(&options));
   PetscFunctionReturn(0);
 }
 

@@ -103,6 +103,13 @@ PetscErrorCode ModesGetBand(Modes modes, PetscReal band[2], PetscReal *growth)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModesHaveBand(Modes modes, PetscBool *has_band)
+{
+  PetscFunctionBeginUser;
+  *has_band = modes->has_band;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModesSetBand(Modes modes, const PetscReal band[2])
 {
   PetscFunctionBeginUser;

@@ -53,6 +53,13 @@ PetscErrorCode OperatorsHaveMatrices(Operators operators, PetscBool *have)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OperatorsHaveDamping(Operators operators, PetscBool *have)
+{
+  PetscFunctionBeginUser;
+  *have = operators->load[OPERATOR_C][0] || operators->n_dense[OPERATOR_C] ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OperatorsSetUp(Operators operators)
 {
   PetscFunctionBeginUser;

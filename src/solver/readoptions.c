@@ -3,6 +3,7 @@
    on their types, and a misspelt one must be an error before the run.
 */
 #include "shiftinvert.h"
+#include <squeal/options.h>
 #include <slepceps.h>
 #include <slepcpep.h>
 #include <strings.h>
@@ -107,25 +108,37 @@ static PetscErrorCode PepReadOptions(MPI_Comm comm)
   PetscFunctionReturn(0);
 }
 
-/* Of a linear solver with the types that it has by default */
+/* Of a linear solver with the types that it has by default. Where MUMPS factorises, it reads its own options as it does:
+   hence a matrix of one unknown */
 static PetscErrorCode KspReadOptions(MPI_Comm comm, const char prefix[], KSPType ksp_type, PCType pc_type)
 {
-  KSP ksp;
-  PC  pc;
+  PetscMPIInt rank;
+  KSP         ksp;
+  Mat         A;
+  PC          pc;
 
   PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(MatCreateAIJ(comm, rank ? 0 : 1, rank ? 0 : 1, 1, 1, 1, NULL, 0, NULL, &A));
+  if (!rank) PetscCall(MatSetValue(A, 0, 0, 1, INSERT_VALUES));
+  PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
   PetscCall(KSPCreate(comm, &ksp));
   PetscCall(KSPSetOptionsPrefix(ksp, prefix));
+  PetscCall(KSPSetOperators(ksp, A, A));
   PetscCall(KSPSetType(ksp, ksp_type));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, pc_type));
+  if (!strcmp(pc_type, PCLU)) PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
   PetscCall(KSPSetFromOptions(ksp));
+  if (!strcmp(pc_type, PCLU)) PetscCall(KSPSetUp(ksp));
   PetscCall(KSPDestroy(&ksp));
+  PetscCall(MatDestroy(&A));
   PetscFunctionReturn(0);
 }
 
-/* Whether a name that nobody has read begins so */
-static PetscErrorCode PrefixIsLeft(const char prefix[], PetscBool *left)
+/* Whether a name that nobody has read begins with one of the prefixes */
+static PetscErrorCode PrefixIsLeft(size_t n_prefixes, const char *const prefix[], PetscBool *left)
 {
   char   **names, **values;
   PetscInt n;
@@ -134,21 +147,24 @@ static PetscErrorCode PrefixIsLeft(const char prefix[], PetscBool *left)
   *left = PETSC_FALSE;
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
   for (PetscInt i = 0; i < n; i++)
-    if (!strncasecmp(names[i], prefix, strlen(prefix))) *left = PETSC_TRUE;
+    for (size_t k = 0; k < n_prefixes; k++)
+      if (!strncasecmp(names[i], prefix[k], strlen(prefix[k]))) *left = PETSC_TRUE;
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode SolverReadEigenOptions(MPI_Comm comm)
 {
-  static const char other[] = "not offered, other modes would be found; choose them by -modes_band or -modes_target";
-  PetscBool         eps, pep;
+  static const char        other[]  = "not offered, other modes would be found; choose them by -modes_band or "
+                                      "-modes_target";
+  static const char *const shared[] = {"eps_", "bv_", "ds_", "rg_"}, *const quadratic[] = {"pep_"};
+  PetscBool eps, pep;
 
   PetscFunctionBeginUser;
   PetscCall(SolverRefuse(comm, "eps_", PETSC_STATIC_ARRAY_LENGTH(solved), solved, other));
   PetscCall(SolverRefuse(comm, "pep_", PETSC_STATIC_ARRAY_LENGTH(solved), solved, other));
-  PetscCall(PrefixIsLeft("eps_", &eps));
-  PetscCall(PrefixIsLeft("pep_", &pep));
+  PetscCall(PrefixIsLeft(PETSC_STATIC_ARRAY_LENGTH(shared), shared, &eps));
+  PetscCall(PrefixIsLeft(PETSC_STATIC_ARRAY_LENGTH(quadratic), quadratic, &pep));
   if (eps) PetscCall(EpsReadOptions(comm));
   if (pep) PetscCall(PepReadOptions(comm));
   PetscFunctionReturn(0);
@@ -158,13 +174,32 @@ PetscErrorCode SolverReadFactorOptions(MPI_Comm comm)
 {
   static const char exact[] =
     "not offered, the matrix is factorised, and the shift follows from -modes_band or -modes_target; leave it out";
+  static const char nobody[] =
+    "no solver of squeal reads it: steps in time are explicit, and those that factorise a matrix read -st_ksp_*, "
+    "-st_pc_* and -st_mat_mumps_*";
+  static const char *const factors[] = {"st_", "mat_mumps_"}, *const others[] = {"-snes_", "-ksp_", "-pc_"};
   PetscBool left;
 
   PetscFunctionBeginUser;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(others); i++)
+    PetscCall(OptionsRefusePrefix(comm, others[i], nobody));
   PetscCall(SolverRefuse(comm, "st_", PETSC_STATIC_ARRAY_LENGTH(transformed), transformed, exact));
-  PetscCall(PrefixIsLeft("st_", &left));
+  PetscCall(PrefixIsLeft(PETSC_STATIC_ARRAY_LENGTH(factors), factors, &left));
   if (!left) PetscFunctionReturn(0);
   PetscCall(KspReadOptions(comm, "st_", KSPPREONLY, PCLU));
   PetscCall(KspReadOptions(comm, "st_pairs_", KSPGMRES, PCNONE));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SolverReadIterativeOptions(MPI_Comm comm)
+{
+  static const char *const iterated[] = {"st_ksp_"};
+  PetscBool                left;
+
+  PetscFunctionBeginUser;
+  PetscCall(PrefixIsLeft(1, iterated, &left));
+  if (!left) PetscFunctionReturn(0);
+  PetscCall(PetscOptionsHelpPrintedDestroy(&PetscOptionsHelpPrintedSingleton)); /* -help lists a prefix once */
+  PetscCall(KspReadOptions(comm, "st_", KSPGMRES, PCNONE));
   PetscFunctionReturn(0);
 }

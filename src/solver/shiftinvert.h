@@ -31,7 +31,8 @@ PETSC_INTERN PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBo
 PETSC_INTERN PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal away, Progress *progress,
                                                   PetscReal *omega, PetscInt *n);
 
-/* readoptions.c - reads the options eps_, pep_ (eigensolvers) and st_ (factorisations) where some are given and nobody
-   has read them yet, so that what is still unread is unknown */
+/* readoptions.c - reads the options eps_, pep_ (eigensolvers), st_ (factorisations), and of st_ksp_ those of iterative
+   solvers, where some are given and nobody has read them yet, so that what is still unread is unknown */
 PETSC_INTERN PetscErrorCode SolverReadEigenOptions(MPI_Comm comm);
 PETSC_INTERN PetscErrorCode SolverReadFactorOptions(MPI_Comm comm);
+PETSC_INTERN PetscErrorCode SolverReadIterativeOptions(MPI_Comm comm);

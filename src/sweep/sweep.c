@@ -141,6 +141,18 @@ PetscErrorCode SweepSetFromOptions(Sweep sweep)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SweepGetDamping(Sweep sweep, PetscBool *varied, PetscBool *real)
+{
+  static const char *const factors[] = {"_alpha", "_beta", "_viscosity"};
+
+  PetscFunctionBeginUser;
+  *real   = sweep->method == SWEEP_REAL ? PETSC_TRUE : PETSC_FALSE;
+  *varied = PETSC_FALSE;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(factors); i++)
+    if (strstr(sweep->parameter, factors[i])) *varied = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
 /* Parameters and values of the axes, checked against what each parameter may be */
 static PetscErrorCode GridSetUp(Sweep sweep)
 {

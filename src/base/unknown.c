@@ -1,0 +1,249 @@
+/*
+   Unknown options, and those that nobody reads.
+
+   An option that nobody read is an error unless its prefix is one of PETSc's or SLEPc's. The valid names are exactly
+   those that -help would print, so they are collected by reading all options once more (help.c); this happens only when
+   there is something to complain about. Nearest = smallest Damerau-Levenshtein distance (adjacent swaps count once): F.
+   J. Damerau, Comm. ACM 7, 1964; a prefix left out counts as one edit.
+
+   PETSc has read most of its own options before the run. What it reads later is listed below; anything else of its
+   prefixes that is left then is never read: an error on the command line, while a file or an environment may be shared
+   with other programs.
+*/
+#include "help.h"
+#include <squeal/options.h>
+#include <stdlib.h>
+#include <strings.h>
+
+/* Prefixes of options that PETSc and SLEPc read themselves, some of them only at the end */
+static const char *const library_prefixes[] = {
+  "bv_",        "checkstack", "citations",   "debug",      "display",   "dm_",
+  "draw",       "ds_",        "eps_",        "error_",     "fp_",       "get_total",
+  "help",       "info",       "is_",         "ksp_",       "log_",      "malloc",
+  "mat_",       "matptap",    "memory",      "mpi",        "no_signal", "objects",
+  "on_error",   "options_",   "partitioner", "pc_",        "pep_",      "petscpartitioner",
+  "petscspace", "python",     "rg_",         "saws",       "sf_",       "shared_tmp",
+  "slepc",      "st_",        "start_in",    "stop_for",   "sub_",      "tmp",
+  "ts_",        "use_gpu",    "vec_",        "vecscatter", "version",   "viewer",
+  "x_virtual",  NULL};
+
+/* Options that PETSc reads in the run or at its end, but for views of the solvers */
+static const char *const read_later[] = {"citations",
+                                         "dm_ds_jet_degree",
+                                         "dm_plex_celltypes_view",
+                                         "dm_plex_interpolate_orient_interfaces",
+                                         "draw_pause",
+                                         "get_total_flops",
+                                         "is_view",
+                                         "log_all",
+                                         "log_exclude",
+                                         "log_view",
+                                         "malloc_dump",
+                                         "malloc_view",
+                                         "mat_freeintermediatedatastructures",
+                                         "mat_inode_limit",
+                                         "mat_no_inode",
+                                         "mat_no_unroll",
+                                         "mat_product_clear",
+                                         "mat_view",
+                                         "mat_view_ordering",
+                                         "memory_view",
+                                         "mpidump",
+                                         "objects_dump",
+                                         "options_left",
+                                         "options_view",
+                                         "sf_rank_order",
+                                         "sf_type",
+                                         "vec_view",
+                                         "vec_view_stash",
+                                         "vecscatter_merge",
+                                         "vecstash_initial_size",
+                                         "viewer_binary_skip_info"};
+
+/* Others, for the nearest name: what it reads at its start, and types, which the help printer is not told of */
+static const char *const read_first[] = {"bv_type",           "rg_type",
+                                         "st_ksp_type",       "debug_terminal",
+                                         "error_output_none", "error_output_stdout",
+                                         "fp_trap",           "info",
+                                         "info_exclude",      "log_sync",
+                                         "log_trace",         "log_view_gpu_time",
+                                         "log_view_memory",   "malloc_debug",
+                                         "malloc_test",       "no_signal_handler",
+                                         "on_error_abort",    "on_error_attach_debugger",
+                                         "options_file",      "options_file_yaml",
+                                         "options_monitor",   "start_in_debugger",
+                                         "stop_for_debugger", "version"};
+
+/* Number of edits (insert, delete, replace, swap neighbours) from a to b; both at most HELP_MAX_NAME - 1 long */
+static int EditDistance(const char a[], const char b[])
+{
+  const int la = (int)strnlen(a, HELP_MAX_NAME - 1), lb = (int)strnlen(b, HELP_MAX_NAME - 1);
+  int       d[3][HELP_MAX_NAME];
+
+  for (int j = 0; j <= lb; j++) d[0][j] = j;
+  for (int i = 1; i <= la; i++) {
+    int *const now = d[i % 3], *const last = d[(i + 2) % 3], *const before = d[(i + 1) % 3];
+
+    now[0] = i;
+    for (int j = 1; j <= lb; j++) {
+      const int differ = a[i - 1] != b[j - 1];
+
+      now[j] = PetscMin(PetscMin(now[j - 1], last[j]) + 1, last[j - 1] + differ);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) now[j] = PetscMin(now[j], before[j - 2] + 1);
+    }
+  }
+  return d[la % 3][lb];
+}
+
+/* How far a valid name is from an unknown one: a prefix left out, as of -contact_mu in -mu, is one edit */
+static int NameDistance(const char unknown[], const char valid[])
+{
+  const size_t lu = strlen(unknown), lv = strlen(valid);
+
+  if (lv > lu && valid[lv - lu - 1] == '_' && !strcmp(valid + lv - lu, unknown)) return 1;
+  return EditDistance(unknown, valid);
+}
+
+/* Options of PETSc's and SLEPc's solvers: read when the rooms read theirs, or when SolverReadEigenOptions() and its like
+   ask, but for those of viewers */
+static PetscBool OptionIsSolvers(const char name[])
+{
+  static const char *const prefixes[] = {"eps_", "pep_", "st_", "ts_", "bv_", "ds_", "rg_"};
+
+  if (strstr(name, "_view")) return PETSC_FALSE;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(prefixes); i++)
+    if (!strncasecmp(name, prefixes[i], strlen(prefixes[i]))) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+PetscErrorCode OptionIsLibrarys(const char name[], PetscBool *is_librarys)
+{
+  PetscFunctionBeginUser;
+  *is_librarys = PETSC_FALSE;
+  for (const char *const *prefix = library_prefixes; *prefix; prefix++)
+    if (!strncasecmp(name, *prefix, strlen(*prefix))) *is_librarys = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscBool UnknownIsLibrarysPrefix(const char name[])
+{
+  const size_t length = strlen(name);
+
+  for (const char *const *p = library_prefixes; *p; p++)
+    if (!strncasecmp(*p, name, length) && !strcmp(*p + length, "_")) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Whether PETSc or SLEPc may still read one of their options */
+static PetscBool OptionIsReadLater(const char name[])
+{
+  static const char *const viewed[] = {"eps_", "pep_", "st_", "ts_"};
+
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(read_later); i++)
+    if (!strcasecmp(name, read_later[i])) return PETSC_TRUE;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(viewed); i++)
+    if (!strncasecmp(name, viewed[i], strlen(viewed[i])) && strstr(name, "_view")) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* An option that nobody reads, and the valid name nearest to it */
+typedef struct {
+  char      name[HELP_MAX_NAME], nearest[HELP_MAX_NAME];
+  PetscBool is_librarys;
+  int       distance;
+} UnknownOption;
+
+/* Keeps a valid name where none was nearer; those of TS for implicit steps are not valid */
+static PetscErrorCode UnknownCompare(UnknownOption *u, const char valid[])
+{
+  const int distance = NameDistance(u->name, valid);
+
+  PetscFunctionBeginUser;
+  if (distance >= u->distance || !strncmp(valid, "ksp_", 4) || !strncmp(valid, "pc_", 3)) PetscFunctionReturn(0);
+  u->distance = distance;
+  PetscCall(PetscStrncpy(u->nearest, valid, sizeof(u->nearest)));
+  PetscFunctionReturn(0);
+}
+
+/* The first unknown option; an empty name for none */
+static PetscErrorCode UnknownTakeFirst(UnknownOption *u)
+{
+  PetscInt n;
+  char   **names, **values;
+
+  PetscFunctionBeginUser;
+  *u = (UnknownOption){.distance = PETSC_MAX_INT};
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  for (PetscInt i = 0; i < n && !u->name[0]; i++) {
+    PetscBool unknown = PETSC_TRUE;
+
+    PetscCall(OptionIsLibrarys(names[i], &u->is_librarys));
+    u->is_librarys = u->is_librarys && !OptionIsSolvers(names[i]) ? PETSC_TRUE : PETSC_FALSE;
+    if (u->is_librarys && OptionIsReadLater(names[i])) continue;
+    if (u->is_librarys) PetscCall(OptionsCommandGives(names[i], &unknown));
+    if (unknown) PetscCall(PetscStrncpy(u->name, names[i], sizeof(u->name)));
+  }
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error; the names of the libraries are near each other */
+static PetscErrorCode UnknownComplain(MPI_Comm comm, const UnknownOption *u)
+{
+  const int length = (int)strlen(u->name), near = u->is_librarys ? 1 + length / 6 : 2 + length / 3;
+
+  PetscFunctionBeginUser;
+  PetscCheck(u->distance > near, comm, PETSC_ERR_USER_INPUT, "unknown option -%s; the nearest valid one is -%s",
+             u->name, u->nearest);
+  PetscCheck(!u->is_librarys, comm, PETSC_ERR_USER_INPUT, "-%s: nothing in squeal reads it; leave it out", u->name);
+  SETERRQ(comm, PETSC_ERR_USER_INPUT, "unknown option -%s; -help lists the valid ones", u->name);
+}
+
+PetscErrorCode OptionsCheckUnknown(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx)
+{
+  UnknownOption unknown;
+  HelpList      valid = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(UnknownTakeFirst(&unknown));
+  if (!unknown.name[0]) PetscFunctionReturn(0);
+  PetscCall(HelpCollect(comm, read_again, ctx, &valid));
+  for (int i = 0; i < valid.n; i++) PetscCall(UnknownCompare(&unknown, valid.option[i].name));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(read_later); i++) PetscCall(UnknownCompare(&unknown, read_later[i]));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(read_first); i++) PetscCall(UnknownCompare(&unknown, read_first[i]));
+  free(valid.option);
+  PetscCall(UnknownComplain(comm, &unknown));
+  PetscFunctionReturn(0);
+}
+
+/* Whether PETSc reads this option only at its end */
+static PetscBool OptionIsLate(const char name[])
+{
+  static const char *const late[] = {"log_",         "malloc",       "memory",    "objects_dump",
+                                     "options_left", "options_view", "citations", "options_table",
+                                     "get_total",    "version",      NULL};
+
+  for (const char *const *prefix = late; *prefix; prefix++)
+    if (!strncmp(name, *prefix, strlen(*prefix))) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+PetscErrorCode OptionsWarnUnused(MPI_Comm comm)
+{
+  PetscInt    n;
+  char      **names, **values, option[HELP_MAX_NAME];
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  for (PetscInt i = 0; i < n; i++) {
+    if (OptionIsLate(names[i])) continue;
+    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s", names[i]));
+    PetscCall(OptionsRefuse(comm, option, "nothing in this run has read it; what was written is without it"));
+    if (rank) continue;
+    PetscCall(PetscFPrintf(PETSC_COMM_SELF, stderr, "squeal: warning: option %s was not used\n", option));
+  }
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  PetscFunctionReturn(0);
+}
