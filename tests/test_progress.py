@@ -3,7 +3,7 @@
 terminal, and the end by ^C. Breaks when a stage or a long loop is silent, when progress gets into the log or stays on
 the screen, when the log misses an error, or when ^C leaves a trace or half a file.
 
-    test_progress.py SQUEAL"""
+    test_progress.py SQUEAL LAUNCHER"""
 
 import os
 import pty
@@ -21,11 +21,21 @@ SCENE = ["-options_file", OPTIONS / "massi2005.yaml"]
 
 
 class Runner:
-    def __init__(self, squeal, folder):
-        self.squeal, self.folder, self.faults = squeal, folder, []
+    def __init__(self, squeal, launcher, folder):
+        self.squeal, self.launcher, self.folder, self.faults = squeal, launcher, folder, []
 
     def run(self, *options):
         return subprocess.run([self.squeal, *SCENE, *options], capture_output=True, text=True, cwd=self.folder)
+
+    def check_stop(self, process, number, name):
+        """Sends the signal: one line, the exit status of a shell's 128 + number, no file under a final name."""
+        process.send_signal(number)
+        rest = process.communicate(timeout=20)[1]
+        said = [line for line in rest.splitlines() if line.startswith("squeal") or "PETSC" in line]
+        sign = signal.Signals(number).name
+        self.check(process.returncode == -number and said == [STOPPED.format(sign)], f"{sign} ends it with a line", rest)
+        left = [path.name for path in (self.folder / name).iterdir() if path.suffix != ".part"]
+        self.check(not left, f"{sign} leaves no half file {left}")
 
     def check(self, holds, what, text=""):
         print("ok  " if holds else "FAIL", what)
@@ -34,6 +44,7 @@ class Runner:
             print(text)
 
 
+STOPPED = "squeal: error: stopped by {}; files that bear their final name are complete"
 FIRST = "# Log of squeal: all that it printed\n"
 
 
@@ -87,20 +98,43 @@ def check_left_and_interrupt(r):
         if not lines[-1]:
             break
     r.check(re.fullmatch(r"right vectors: \d+ of about \d+, \d+ s left\n", lines[-1]), "time left of a loop", "".join(lines))
+    r.check_stop(process, signal.SIGINT, "long")
+
+
+def check_stop_in_statics(r):
+    """SIGTERM while the equilibrium is sought."""
+    process = subprocess.Popen([r.squeal, *SCENE, "-analysis", "static", "-rig_disc_elements", "16,96,2", "-rig_pad_elements",
+                                "12,12,2", "-squeal_progress", "1", "-output_dir", "statics"],
+                               cwd=r.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while not (line := process.stderr.readline()).startswith("Statics"):
+        if not line:
+            break
+    r.check_stop(process, signal.SIGTERM, "statics")
+
+
+def check_stop_on_ranks(r):
+    """mpirun asks all ranks; one speaks."""
+    environment = {**os.environ, "OMPI_MCA_odls_base_sigkill_timeout": "2"}
+    process = subprocess.Popen([r.launcher, "-n", "2", r.squeal, *SCENE, "-modes_band", "0,20000", "-squeal_progress", "1",
+                                "-output_dir", "ranks"], cwd=r.folder, env=environment, stdin=subprocess.DEVNULL,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while not (line := process.stderr.readline()).startswith("Modes"):
+        if not line:
+            break
     process.send_signal(signal.SIGINT)
-    process.wait(20)
-    rest = process.stderr.read()
-    r.check(process.returncode != 0 and "PETSC ERROR" not in rest and len(rest.splitlines()) <= 1, "^C ends it", rest)
-    left = [path.name for path in (r.folder / "long").iterdir()]
-    r.check(not left, f"^C leaves no half file {left}")
+    rest = process.communicate(timeout=30)[1]
+    lines = [line for line in rest.splitlines() if line.startswith("squeal: error")]
+    r.check(process.returncode and lines == [STOPPED.format("SIGTERM")], "^C of mpirun: one rank says so", rest)
 
 
 def main():
     with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
-        r = Runner(Path(sys.argv[1]).resolve(), Path(folder))
+        r = Runner(Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), Path(folder))
         check_log(r)
         check_stages(r)
         check_left_and_interrupt(r)
+        check_stop_in_statics(r)
+        check_stop_on_ranks(r)
     if r.faults:
         print(f"{len(r.faults)} failed: {'; '.join(r.faults)}")
     return 1 if r.faults else 0

@@ -17,7 +17,8 @@ static const char first_line[] = "# Log of squeal: all that it printed\n";
 /* Log handles */
 static struct {
   FILE     *log;
-  PetscBool pending; /* a progress line is on the screen */
+  int       log_number; /* its descriptor */
+  PetscBool pending;    /* a progress line is on the screen */
   PetscErrorCode (*print)(FILE *, const char[], va_list);
 } printing;
 
@@ -86,6 +87,7 @@ PetscErrorCode PrintSetLog(MPI_Comm comm, const char file[])
     error        = LogMakeFolder(file);
     printing.log = error ? NULL : fopen(file, "w");
     if (!error && !printing.log) error = errno;
+    if (printing.log) printing.log_number = fileno(printing.log);
     if (printing.log) (void)setvbuf(printing.log, NULL, _IOLBF, BUFSIZ);
     if (printing.log) (void)fputs(first_line, printing.log);
   }
@@ -100,6 +102,18 @@ void PrintError(const char message[])
   if (printing.pending) (void)fprintf(stderr, "\r%78s\r", "");
   (void)fprintf(stderr, "squeal: error: %s\n", message);
   if (printing.log) (void)fprintf(printing.log, "squeal: error: %s\n", message);
+}
+
+void PrintAtOnce(const char line[])
+{
+  char          erase[] = "\r                                                                              \r";
+  const ssize_t n[]     = {
+        printing.pending ? write(STDERR_FILENO, erase, sizeof(erase) - 1) : 0,
+    write(STDERR_FILENO, line, strlen(line)),
+    printing.log ? write(printing.log_number, line, strlen(line)) : 0,
+  };
+
+  (void)n; /* where nothing can be written nothing can be said */
 }
 
 PetscBool PrintEnd(void)

@@ -10,5 +10,7 @@ PETSC_INTERN void PrintInstall(void);
 PETSC_INTERN PetscErrorCode PrintSetLog(MPI_Comm comm, const char file[]);
 /* Prints on stderr and into the log, also where PETSC is at its end */
 PETSC_INTERN void PrintError(const char message[]);
+/* Writes a line on stderr and into the log from within a signal handler */
+PETSC_INTERN void PrintAtOnce(const char line[]);
 /* Closes the log; false where not all of it came to the disk */
 PETSC_INTERN PetscBool PrintEnd(void);

@@ -9,6 +9,7 @@
 #include <squeal/options.h>
 #include "events.h"
 #include "help.h"
+#include "interrupt.h"
 #include "print.h"
 #include "memory.h"
 #include "progress.h"
@@ -100,6 +101,7 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
   PetscCall(SlepcInitialize(argc, argv, NULL, help));
   PetscCall(MemoryPrepare(PETSC_COMM_WORLD));
   PrintInstall();
+  PetscCall(InterruptInstall(PETSC_COMM_WORLD));
   (void)signal(SIGPIPE, SIG_DFL); /* `squeal ... | head` ends where head does, as other programs do */
   for (PetscInt s = 0; s < SQUEAL_N_STAGES; s++) {
     PetscCall(PetscLogStageRegister(stage_names[s], &stages[s]));

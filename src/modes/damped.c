@@ -96,7 +96,7 @@ static PetscErrorCode DampedStop(PEP pep, PetscInt its, PetscInt max_it, PetscIn
 
 /* Solves; failed = LAPACK could not reorder the Schur form (xTREXC: eigenvalues too close to swap), which depends on
    the start vector and happens where the Krylov space is the whole space */
-static PetscErrorCode DampedRunSolver(PEP pep, PetscBool *failed)
+static PetscErrorCode DampedRunSolver(Modes modes, PEP pep, PetscBool *failed)
 {
   PetscErrorCode error;
 
@@ -105,10 +105,9 @@ static PetscErrorCode DampedRunSolver(PEP pep, PetscBool *failed)
   error = PEPSolve(pep);
   PetscCall(PetscPopErrorHandler());
   *failed = error == PETSC_ERR_LIB ? PETSC_TRUE : PETSC_FALSE;
-  if (*failed)
-    PetscCall(PetscFPTrapPop()); /* the one that SLEPc left behind */
-  else
-    PetscCall(error);
+  if (*failed) PetscCall(PetscFPTrapPop());                /* the one that SLEPc left behind */
+  if (error && !*failed) PetscCall(LimitCheckLeft(modes)); /* its message was not kept */
+  if (!*failed) PetscCall(error);
   PetscFunctionReturn(0);
 }
 
@@ -135,8 +134,9 @@ PetscErrorCode DampedSolve(Modes modes, const PencilMatrices *pencil, const Wind
     nev = PetscMin(nev, 2 * n);
     PetscCall(DampedCreateSolver(problem, si, transposed, attempt, nev, &pep));
     PetscCall(PEPSetStoppingTestFunction(pep, DampedStop, modes, NULL));
+    PetscCall(LimitAttach(modes, nev / 2, si)); /* conjugates are one mode */
     PetscCall(ProgressBegin(&modes->progress, transposed ? "left vectors" : "right vectors", 2 * nev + nev / 4));
-    PetscCall(DampedRunSolver(pep, &failed));
+    PetscCall(DampedRunSolver(modes, pep, &failed));
     PetscCall(ProgressEnd(&modes->progress));
     if (failed) {
       PetscCall(PEPDestroy(&pep));

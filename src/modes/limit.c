@@ -1,8 +1,11 @@
 /*
-   The time that a solution may take. Rank 0's clock decides for all ranks, so that all stop at the same restart.
+   The time that a solution may take. Rank 0's clock decides for all ranks, so that all stop at the same restart, or,
+   where none comes in time, after the same solve. A factorisation is not interrupted.
 */
 #include "modesimpl.h"
 #include <petsctime.h>
+
+#define LIMIT_PATIENCE 1.1 /* of the limit: as long a restart is waited for, which tells the frequency reached */
 
 PetscErrorCode LimitBegin(Modes modes)
 {
@@ -12,16 +15,57 @@ PetscErrorCode LimitBegin(Modes modes)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LimitAsk(Modes modes, PetscInt n, PetscInt nev)
+/* Whether `times` the limit is over */
+static PetscErrorCode LimitLook(Modes modes, PetscReal times)
 {
-  Progress      *progress = &modes->progress;
   PetscLogDouble now;
 
   PetscFunctionBeginUser;
-  if (n > 0) progress->expected = PetscMax(progress->done + 1, progress->done * nev / n);
+  if (modes->max_time <= 0) PetscFunctionReturn(0);
   PetscCall(PetscTime(&now));
-  modes->over = modes->max_time > 0 && now - modes->begun > modes->max_time ? PETSC_TRUE : PETSC_FALSE;
+  modes->over = now - modes->begun > times * modes->max_time ? PETSC_TRUE : PETSC_FALSE;
   PetscCallMPI(MPI_Bcast(&modes->over, 1, MPIU_BOOL, 0, modes->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LimitCheckLeft(Modes modes)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!modes->over, modes->comm, PETSC_ERR_NOT_CONVERGED,
+             "-modes_max_time %.6g s is over with %" PetscInt_FMT " of about %" PetscInt_FMT
+             " eigenvalues converged; narrow -modes_band, use more ranks, or raise -modes_max_time",
+             (double)modes->max_time, modes->found, modes->wanted);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode LimitAfterSolve(void *ctx)
+{
+  Modes modes = ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(LimitLook(modes, LIMIT_PATIENCE));
+  PetscCall(LimitCheckLeft(modes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LimitAttach(Modes modes, PetscInt nev, ShiftInvert *si)
+{
+  PetscFunctionBeginUser;
+  modes->found  = 0;
+  modes->wanted = nev;
+  si->after     = LimitAfterSolve;
+  si->after_ctx = modes;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LimitAsk(Modes modes, PetscInt n, PetscInt nev)
+{
+  Progress *progress = &modes->progress;
+
+  PetscFunctionBeginUser;
+  if (n > 0) progress->expected = PetscMax(progress->done + 1, progress->done * nev / n);
+  modes->found = n;
+  PetscCall(LimitLook(modes, 1));
   PetscFunctionReturn(0);
 }
 

@@ -46,8 +46,8 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   PetscCall(PetscOptionsReal(
     "-modes_growth", "largest growth or decay that a band must cover, 1/s (0: a tenth of the angular frequency f2)",
     "modes.h", modes->growth, &modes->growth, NULL));
-  PetscCall(PetscOptionsReal("-modes_max_time", "time that a solution may take, s (0: any)", "modes.h", modes->max_time,
-                             &modes->max_time, NULL));
+  PetscCall(PetscOptionsReal("-modes_max_time", "time that a solution may take, s (0: any); asked after every solve",
+                             "modes.h", modes->max_time, &modes->max_time, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-modes_left", "left vectors: condition and error of each eigenvalue",
                            &modes->left));
   PetscCall(PetscOptionsString("-modes_disc", "part whose shapes are named by nodal circles and diameters", "modes.h",

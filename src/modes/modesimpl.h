@@ -41,8 +41,9 @@ struct _p_Modes {
   double  *part_percent; /* participation of the parts [n][parts], NULL for matrices without a mesh */
   char     completeness[768];
   /* of the solution under way */
-  PetscLogDouble begun; /* s */
-  PetscBool      over;  /* max_time is */
+  PetscLogDouble begun;         /* s */
+  PetscBool      over;          /* max_time is */
+  PetscInt       found, wanted; /* eigenvalues converged at the last restart, and how many are asked for */
 };
 
 /* What to look for: all eigenvalues with omega in [low, high] and |sigma| <= growth, rad/s, and how many there are
@@ -75,11 +76,14 @@ PETSC_INTERN PetscErrorCode WindowProve(Modes modes, Window *window, const Spect
 /* complete.c - in words, how it was checked that no mode is missing */
 PETSC_INTERN PetscErrorCode WindowDescribe(Modes modes, const Window *window);
 
-/* limit.c - the time that a solution may take: begins it; whether it is over, asked at every restart of an eigensolver
-   with n of nev eigenvalues converged, which also tells the progress line how far it is; the error with its advice */
+/* limit.c - the time that a solution may take: begins it; has the factors ask it after every solve; whether it is over,
+   asked at every restart of an eigensolver with n of nev eigenvalues converged, which also tells the progress line how
+   far it is; the error with its advice, for a spectrum, or where an eigensolver was left before a restart */
 PETSC_INTERN PetscErrorCode LimitBegin(Modes modes);
+PETSC_INTERN PetscErrorCode LimitAttach(Modes modes, PetscInt nev, ShiftInvert *si);
 PETSC_INTERN PetscErrorCode LimitAsk(Modes modes, PetscInt n, PetscInt nev);
 PETSC_INTERN PetscErrorCode LimitCheck(Modes modes, PetscBool damped, const Spectrum *spectrum);
+PETSC_INTERN PetscErrorCode LimitCheckLeft(Modes modes);
 
 /* undamped.c, damped.c - all eigenvalues of the pencil in the window, right ones or those of the transposed problem */
 PETSC_INTERN PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window,

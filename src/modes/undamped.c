@@ -138,6 +138,7 @@ PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Wi
     nev = PetscMin(nev, n);
     PetscCall(UndampedCreateSolver(&problem, si, transposed, nev, n, &eps));
     PetscCall(EPSSetStoppingTestFunction(eps, UndampedStop, modes, NULL));
+    PetscCall(LimitAttach(modes, nev, si));
     PetscCall(ProgressBegin(&modes->progress, transposed ? "left vectors" : "right vectors", 2 * nev + nev / 4));
     PetscCall(EPSSolve(eps));
     PetscCall(ProgressEnd(&modes->progress));

@@ -117,6 +117,7 @@ PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, PetscReal shift, 
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_FACTOR));
   si->progress = progress;
+  si->after    = NULL;
   si->shift    = shift;
   PetscCall(PetscObjectGetComm((PetscObject)pencil->K, &si->comm));
   for (int attempt = 0; attempt < 4 && singular; attempt++, si->shift *= singular ? 1 + 1e-4 * attempt : 1) {
@@ -158,6 +159,7 @@ static PetscErrorCode ShiftInvertRun(PC pc, PetscBool transposed, Vec x, Vec y)
   PetscCall(ShiftInvertSolve(si, transposed, x, y));
   PetscCall(EventEnd(EVENT_SOLVE));
   PetscCall(ProgressStep(si->progress));
+  if (si->after) PetscCall((*si->after)(si->after_ctx));
   PetscFunctionReturn(0);
 }
 

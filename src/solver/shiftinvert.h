@@ -12,6 +12,9 @@ typedef struct {
   KSP       ksp;
   PetscReal shift; /* kappa (rad/s)^2 when undamped, lambda (rad/s) when damped */
   Progress *progress;
+  /* called after every solve of an eigensolver, alike on all ranks; NULL for nothing. An error ends the solution */
+  PetscErrorCode (*after)(void *ctx);
+  void *after_ctx;
 } ShiftInvert;
 
 /* shiftinvert.c - prefix st_; a singular matrix moves the shift a little, want_inertia lets MUMPS count negative

@@ -1,0 +1,44 @@
+/*
+   The end by ^C or SIGTERM: one line on stderr and in the log, then the end that the signal brings, hence exit status
+   130 or 143 in a shell. mpirun asks all its ranks at once, of which the first speaks; whoever asks a single rank gets
+   the line from that one. A run in time listens itself while it steps (dynamics/stop.h).
+
+   A handler may call nothing that locks or allocates, and reaches nothing but static memory.
+*/
+#include "print.h"
+#include "interrupt.h"
+#include <signal.h>
+#include <string.h>
+#include <unistd.h>
+
+static volatile sig_atomic_t first_rank = 0;
+
+static void InterruptEnd(int number, siginfo_t *info, void *ctx)
+{
+  (void)ctx;
+  if (first_rank || info->si_pid != getppid())
+    PrintAtOnce(number == SIGINT
+                  ? "squeal: error: stopped by SIGINT; files that bear their final name are complete\n"
+                  : "squeal: error: stopped by SIGTERM; files that bear their final name are complete\n");
+  (void)raise(number); /* the action before is the default one again */
+}
+
+PetscErrorCode InterruptInstall(MPI_Comm comm)
+{
+  static const int signals[] = {SIGINT, SIGTERM};
+  struct sigaction action, before;
+  PetscMPIInt      rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  first_rank = rank == 0;
+  PetscCall(PetscMemzero(&action, sizeof(action)));
+  action.sa_sigaction = InterruptEnd;
+  action.sa_flags     = SA_SIGINFO | SA_RESETHAND | SA_NODEFER;
+  (void)sigemptyset(&action.sa_mask);
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(signals); i++) {
+    if (!sigaction(signals[i], NULL, &before) && before.sa_handler == SIG_IGN) continue; /* as nohup and & wish */
+    (void)sigaction(signals[i], &action, NULL);
+  }
+  PetscFunctionReturn(0);
+}

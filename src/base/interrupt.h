@@ -1,0 +1,7 @@
+/* Private to base/: what happens at ^C and SIGTERM */
+#pragma once
+
+#include <petscsys.h>
+
+/* Ends the program with one line from now on, where these signals are not ignored. Collective */
+PETSC_INTERN PetscErrorCode InterruptInstall(MPI_Comm comm);
