@@ -64,13 +64,18 @@ from check import Checker, Failure, require
 
 SOURCE = Path(__file__).resolve().parent.parent
 FINAL_SUFFIXES = {".csv", ".h5", ".xmf", ".bin", ".info"}
-# Open MPI 5 cannot be told to be quiet: remarks between dashes, and now and then a line of its daemon,
-# "[host:pid] PMIX ERROR"
+# Open MPI 5 cannot be told to be quiet: remarks between dashes, each ended by a zero byte, which may come late; and now
+# and then a line of its daemon, "[host:pid] PMIX ERROR"
 MPIRUN_REMARK = re.compile(r"^-{40,}\n.*?^-{40,}$|^\[\S+:\d+\] PMIX ERROR[^\n]*$", re.MULTILINE | re.DOTALL)
 SKIPPED = 77
 # Kernels of OpenBLAS, and what a processor must be able to do to run them
 CORES = {"Nehalem": "sse4_2", "Haswell": "avx2", "Zen": "avx2", "SkylakeX": "avx512vl"}
 MOST_BEYOND, WORST_RATIO = 0.01, 3  # of the errors that a sweep states
+
+
+def own_words(stderr):
+    """What the program itself wrote."""
+    return MPIRUN_REMARK.sub("", stderr.replace("\0", ""))
 
 
 def end(process):
@@ -158,7 +163,7 @@ class Runner:
             raise
 
     def check_error(self, name, run, status, stderr):
-        lines = [line for line in MPIRUN_REMARK.sub("", stderr).splitlines() if line.strip(" \0")]
+        lines = [line for line in own_words(stderr).splitlines() if line.strip()]
         require(status != 0, "exit status 0, but an error was expected")
         require(len(lines) == 1, f"{len(lines)} lines on stderr, but one was expected")
         require(re.search(run["error"], lines[0]), f"the message does not match {run['error']!r}")

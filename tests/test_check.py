@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The checks of tests/check.py on made-up tables: what is not finite passes none. Breaks when bounds are compared with min()
-and max() alone, of which a nan is neither. Exit status: 0, or 1."""
+and max() alone, of which a nan is neither. And what tests/run.py takes for the program's own words. Exit status: 0, or 1."""
 
 import sys
 import tempfile
@@ -8,6 +8,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from check import Checker, Failure
+from run import own_words
 
 CHECKS = ({"min": 0}, {"max": 10}, {"min": 0, "max": 10}, {"equals": [1, 2, 3], "rtol": 1}, {"equals_run": "run", "rtol": 1})
 
@@ -23,15 +24,22 @@ def passes(folder, cell, check):
     return True
 
 
+def own(remark):
+    """Whether of a line after a remark of mpirun, and of that remark's end, only the line is left."""
+    return own_words(f"{remark}squeal: error: 1\n").strip("\n") == "squeal: error: 1"
+
+
 def main():
-    failed = 0
+    rule = 60 * "-"
+    remarks = ("", f"{rule}\nabort\n{rule}\n", f"{rule}\nabort\n{rule}\n\0", f"\0{rule}\nabort\n{rule}\n")
+    failed = [own(remark) for remark in remarks].count(False)
     with tempfile.TemporaryDirectory() as name:
         for check in CHECKS:
             for cell, expected in (("2", True), ("nan", False), ("inf", False), ("-inf", False)):
                 if passes(Path(name), cell, check) != expected:
                     print(f"FAILED {check}: a table with {cell} {'fails' if expected else 'passes'}")
                     failed += 1
-    print(f"{failed} of {4 * len(CHECKS)} failed")
+    print(f"{failed} of {len(remarks) + 4 * len(CHECKS)} failed")
     return 1 if failed else 0
 
 

@@ -71,7 +71,7 @@ static PetscReal BalanceBest(const RigidPairs *k, PetscReal friction, const Pets
   return most;
 }
 
-/* target = the forces of least |push - sum|, of any sign */
+/* target = what forces of any sign, least |push - sum|, are on the edges in use */
 static PetscErrorCode EdgeSetFit(EdgeSet *e, const PetscReal push[])
 {
   const PetscReal rcond = BALANCE_RCOND;
@@ -101,8 +101,10 @@ static PetscBool EdgeSetMove(EdgeSet *e)
   PetscInt  n = 0, last = -1;
 
   for (PetscInt i = 0; i < e->n; i++) {
-    if (e->target[i] > 0 || e->force[i] / (e->force[i] - e->target[i]) >= part) continue;
-    part = e->force[i] / (e->force[i] - e->target[i]);
+    const PetscReal way = e->force[i] > 0 ? e->force[i] / (e->force[i] - e->target[i]) : 0;
+
+    if (e->target[i] > 0 || way >= part) continue;
+    part = way;
     last = i;
   }
   for (PetscInt i = 0; i < e->n; i++) {
@@ -136,8 +138,8 @@ static PetscErrorCode EdgeSetRefine(EdgeSet *e, PetscReal left[])
   PetscFunctionReturn(0);
 }
 
-/* Adds an edge and finds the forces of all again */
-static PetscErrorCode EdgeSetAdd(EdgeSet *e, const PetscReal edge[], const PetscReal push[])
+/* Adds an edge and finds the forces of all again, from what is left, so that a force far below the others has digits */
+static PetscErrorCode EdgeSetAdd(EdgeSet *e, const PetscReal edge[], const PetscReal push[], PetscReal left[])
 {
   PetscBool reached = PETSC_FALSE;
 
@@ -145,9 +147,12 @@ static PetscErrorCode EdgeSetAdd(EdgeSet *e, const PetscReal edge[], const Petsc
   PetscCall(PetscArraycpy(&e->edge[e->n * e->m], edge, e->m));
   e->force[e->n++] = 0;
   while (e->n && !reached) {
-    PetscCall(EdgeSetFit(e, push));
+    PetscCall(EdgeSetFit(e, left));
+    for (PetscInt i = 0; i < e->n; i++) e->target[i] += e->force[i];
     reached = EdgeSetMove(e);
+    EdgeSetLeave(e, push, left);
   }
+  PetscCall(EdgeSetRefine(e, left));
   PetscFunctionReturn(0);
 }
 
@@ -165,9 +170,7 @@ PetscErrorCode BalanceLoads(const RigidPairs *k, PetscReal friction, PetscReal l
     before = EdgeNorm(m, left);
     best   = BalanceBest(k, friction, left, edge, worst);
     if (before == 0 || best <= BALANCE_ENOUGH * before || e.n > m) break;
-    PetscCall(EdgeSetAdd(&e, edge, k->push));
-    EdgeSetLeave(&e, k->push, left);
-    PetscCall(EdgeSetRefine(&e, left));
+    PetscCall(EdgeSetAdd(&e, edge, k->push, left));
     if (EdgeNorm(m, left) >= before) break; /* rounding */
   }
   (void)BalanceBest(k, friction, left, edge, worst);

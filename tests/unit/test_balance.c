@@ -63,6 +63,27 @@ static PetscErrorCode TestTable(int *failed)
   PetscFunctionReturn(0);
 }
 
+/* Two pairs without friction: all of the push but a part of 2e-7 is along one of them, and the other must take less than
+   the rounding of the first's force so that nothing works along what is left. Breaks when that little force is zero,
+   or its share of a step 0 / 0. */
+static PetscErrorCode TestLittle(int *failed)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 40; i++) {
+    const PetscReal  turn         = 0.1 + 0.03 * i;
+    PetscReal        pair[2 * 11] = {0, 0, 1}, push[3] = {113, 113 * 2e-7, 0}, left[3], worst;
+    const RigidPairs k = {.m = 3, .n_pairs = 2, .width = 11, .pair = pair, .push = push};
+
+    pair[11 + 2] = cos(turn);
+    pair[11 + 3] = 4e-11;
+    pair[11 + 4] = sin(turn);
+    PetscCall(BalanceLoads(&k, 1, left, &worst));
+    *failed += CheckClose("what one pair leaves", left[1] / push[1], 1, 1e-14);
+    *failed += CheckTrue("the other takes its little part", worst <= 1e-14 * push[1], worst);
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Statuses of three pairs with linear laws. Breaks when a circle is not seen, or seen where there is none. */
 static PetscErrorCode TestCycle(int *failed)
 {
@@ -96,6 +117,7 @@ int main(int argc, char **argv)
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
   PetscCall(TestPairs(&failed));
   PetscCall(TestTable(&failed));
+  PetscCall(TestLittle(&failed));
   PetscCall(TestCycle(&failed));
   PetscCall(PetscFinalize());
   printf("%d failed\n", failed);
