@@ -12,8 +12,8 @@ RUNS = {
     "modes": [*BRAKE, "-contact_mu", "0.9", "-pad_young", "39.8e9"],
     "modes_quiet": [*BRAKE, "-contact_mu", "0", "-modes_band", "0,6000"],
     "static": [*BRAKE, "-analysis", "static"],
-    "sweep": [*BRAKE, "-analysis", "sweep", "-modes_band", "1000,6000", "-sweep_parameter", "contact_mu",
-              "-sweep_values", "0:1.2:13", "-sweep_verify", "2"],
+    "sweep": [*BRAKE, "-analysis", "sweep", "-modes_band", "1000,6000", "-sweep_parameter", "pad_young",
+              "-sweep_values", "6.5e9:14e9:16", "-sweep_verify", "2"],
     "transient": [*IN_TIME, "-ts_max_time", "8e-3", "-dynamics_snapshot_interval", "0.5e-3"],
 }
 

@@ -102,3 +102,16 @@ def circle_content(angles, values):
     numbers = numpy.arange(min((len(angle) - 1) // 2, 24) + 1)
     parts = abs(numpy.exp(-1j * numpy.outer(numbers, angle)) @ (width * value))**2
     return numpy.where(numbers == 0, parts, 2 * parts)
+
+
+def spectrogram(times, values, resolution, most=240):
+    """Power spectral density over time: middles of the segments (s), frequencies (Hz), unit^2/Hz [frequency][segment].
+    Segments of 2 / resolution (s), at most `most` of them, Hann's window."""
+    step = interval(times)
+    n = max(min(int(2 / (resolution * step)), len(values)), 2)
+    starts = numpy.unique(numpy.linspace(0, len(values) - n, min(most, max(1, 8 * len(values) // n))).astype(int))
+    weights = numpy.hanning(n + 1)[:-1]
+    pieces = numpy.stack([values[i:i + n] for i in starts])
+    pieces = weights * (pieces - (pieces @ weights / weights.sum())[:, None])
+    density = 2 * step * abs(numpy.fft.rfft(pieces, axis=1))**2 / (weights**2).sum()
+    return times[starts] + 0.5 * n * step, numpy.fft.rfftfreq(n, step), density.T

@@ -10,7 +10,7 @@ from .tables import BadInput, header, prefixed, read_table
 
 STATUS = ("open", "stick", "slip")
 COLUMNS = {"pair": int, "x_m": float, "y_m": float, "z_m": float, "lambda_n_n": float, "lambda_t_n": float}
-OPTIONAL = {"interface": str, "area_m2": float, "pressure_pa": float, "lambda_b_n": float, "t_x": float, "t_y": float,
+OPTIONAL = {"interface": str, "gap_m": float, "slip_t_m": float, "area_m2": float, "pressure_pa": float, "lambda_b_n": float, "t_x": float, "t_y": float,
             "t_z": float}
 MM = 1e3
 SAME = 1e-6  # places within this part of the extent are one
@@ -40,7 +40,8 @@ class Surface:
     """The pairs of one interface, with their places in its plane."""
 
     def __init__(self, name, rows):
-        self.name = name
+        self.name, self.number = name, [row["pair"] for row in rows]
+        self.gap, self.slip = (numpy.array([row.get(key, math.nan) for row in rows]) for key in ("gap_m", "slip_t_m"))
         self.x = numpy.array([[row[f"{axis}_m"] for axis in NAMES] for row in rows])
         self.normal_force = numpy.array([row["lambda_n_n"] for row in rows])
         self.friction = numpy.array([math.hypot(row["lambda_t_n"], row.get("lambda_b_n", 0)) for row in rows])

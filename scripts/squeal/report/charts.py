@@ -175,13 +175,13 @@ class Place:
         return self.x.place(x, left, right), self.y.place(y, bottom, top)
 
 
-OFFSETS = [(0, -10), (0, 18), (10, 4), (-10, 4), (0, -26), (0, 34), (12, -18), (-12, -18), (12, 24), (-12, 24), (0, -42)]
+OFFSETS = [(0, -12), (0, 20), (10, 4), (-10, 4), (0, -28), (0, 36), (12, -18), (-12, -18), (12, 24), (-12, 24), (0, -42)]
 
 
 def placed_labels(panel, place):
     """Texts that cover neither one another nor the frame."""
-    taken, pieces = [], []
-    left, top, right, bottom = place.box
+    pieces, (left, top, right, bottom) = [], place.box
+    taken = [(a - 7, b - 7, a + 7, b + 7) for x, y, *_ in panel.labels for a, b in [place(x, y)]]
     for x, y, text, colour in panel.labels:
         (a,), (b,) = place([x], [y])
         width = LETTER * len(text)
@@ -233,8 +233,8 @@ class Chart:
             box = LEFT, above, width - RIGHT, above + self.height_of(panel, width)
             place = Place(self.x, panel.y, box)
             clip = f"{name}-{kind}-{i}"
-            frame = tag("rect", x=box[0], y=f"{box[1] - 1:.1f}", width=box[2] - box[0],
-                        height=f"{box[3] - box[1] + 2:.1f}")
+            frame = tag("rect", x=box[0] - 6, y=f"{box[1] - 6:.1f}", width=box[2] - box[0] + 12,
+                        height=f"{box[3] - box[1] + 12:.1f}")
             pieces += [self.panel_frame(panel, place, i == len(self.panels) - 1),
                        tag("clipPath", frame, id=clip),
                        tag("g", [item(place) for item in panel.items], clip_path=f"url(#{clip})"),

@@ -47,7 +47,7 @@ def figures(value, digits=6):
     """A number with that many digits, powers of ten raised."""
     if not math.isfinite(value):
         return "–"
-    text = f"{value:.{digits}g}"
+    text = f"{value + 0.0:.{digits}g}"
     if "e" in text:
         mantissa, exponent = text.split("e")
         text = f"{mantissa} × 10{str(int(exponent)).translate(SUPERSCRIPT)}".removeprefix("1 × ")
@@ -130,7 +130,8 @@ def section(name, title, *content, level=3):
 
 
 class Part:
-    """What an analysis gives to the page: its section, its bodies or None, (name, text) of its errors, its verdict."""
+    """What an analysis gives to the page: its section, (source of data_script(), bodies) or None, (name, text) of its
+    errors, its verdict."""
 
     def __init__(self, content, bodies=None, errors=(), verdict=""):
         self.content, self.bodies, self.errors, self.verdict = content, bodies, list(errors), verdict

@@ -205,4 +205,4 @@ def modes_part(folder, room):
     content = section(key, "Modes", eigenvalues(modes, folder), shapes, tag("h4", "Table of modes"),
                       mode_table(modes, folder),
                       tag("div", contributions(modes, folder), errors(modes, folder), class_="pair"))
-    return Part(content, bodies, error_facts(modes), verdict(modes))
+    return Part(content, bodies and (folder.key, bodies), error_facts(modes), verdict(modes))

@@ -4,24 +4,23 @@ versions, cost, options."""
 import re
 
 from .markup import Column, command, figure, missing, pairs, section, table, tag
-from .shapes import data_script, viewer
+from .shapes import viewer
 from .words import scene_words
 
 FACTS = {"cost": "cost", "end": "ended", "versions": "versions", "in": "in the folder"}
 
 
-def scene_section(folder, bodies, drawn):
-    """Words and picture; `drawn`: the numbers of the bodies are in the page already."""
+def scene_section(folder, source, bodies):
+    """Words and picture; `source`: of the data_script() that has the bodies."""
     words = scene_words(folder.scene) if folder.scene else missing(f"No words about the scene: {folder.why}.")
     picture = missing("No picture of the scene: the folder has no field of hexahedra (*.h5).")
     if bodies:
-        source = folder.key if drawn else f"{folder.key}-scene"
         size = " × ".join(f"{1e3 * extent:.4g}" for extent in bodies.extent)
         where = viewer(f"{folder.key}-bodies", source, "the bodies; drag to turn them", still=True)
         said = (f"{', '.join(bodies.parts)}; {size} mm over all, {len(bodies.quads)} faces of elements on the surface. "
                 "Drag to turn.")
-        picture = figure(f"{folder.key}-picture", "The bodies", [None if drawn else data_script(source, bodies, []), where],
-                         said, folder.command("report"))
+        picture = figure(f"{folder.key}-picture", "The bodies", where, said,
+                         folder.command("report"))
     return section(f"{folder.key}-scene", "Scene", tag("div", words, picture, class_="pair scene"))
 
 

@@ -3,17 +3,23 @@
 from pathlib import Path
 
 from ..tables import BadInput
+from .compare import compare_section
 from .folders import Folder
 from .markup import Markup, Part, count, join, missing, section, tag
 from .modes import modes_part
 from .origin import origin_section, scene_section
+from .responses import response_part
+from .statics import static_part
+from .sweeps import sweep_part
+from .transients import transient_part
 
 HERE = Path(__file__).resolve().parent
 LARGEST = 10e6  # bytes of the page
 SHARE = 0.7  # of them for shapes
 TITLES = {"modes": "Modes", "static": "Sliding state", "sweep": "Sweep", "transient": "In time",
           "frf": "Frequency response"}
-SECTIONS = {"modes": modes_part}
+SECTIONS = {"modes": modes_part, "static": static_part, "sweep": sweep_part, "transient": transient_part,
+            "frf": response_part}
 
 
 def resource(name):
@@ -30,16 +36,16 @@ def analysis_part(folder, kind, room):
 
 
 def article(folder, room):
-    """One folder."""
-    parts = {kind: analysis_part(folder, kind, room) for kind in folder.analyses if kind in SECTIONS}
-    bodies = next((part.bodies for part in parts.values() if part.bodies), None)
+    """One folder, and what it says in one line."""
+    parts = {kind: analysis_part(folder, kind, room) for kind in folder.analyses}
+    source, bodies = next((part.bodies for part in parts.values() if part.bodies), (None, None))
     errors = [error for part in parts.values() for error in part.errors]
     verdicts = [part.verdict for part in parts.values() if part.verdict]
     content = [tag("h2", folder.name), [tag("p", verdict, class_="lead") for verdict in verdicts]]
     if not folder.analyses:
-        return tag("article", content, missing(f"{folder.wrong[0]}."), id=folder.key)
-    return tag("article", content, scene_section(folder, bodies, bool(bodies)), [part.content for part in parts.values()],
-               origin_section(folder, errors), id=folder.key)
+        return tag("article", content, missing(f"{folder.wrong[0]}."), id=folder.key), "no result"
+    return tag("article", content, scene_section(folder, source, bodies), [part.content for part in parts.values()],
+               origin_section(folder, errors), id=folder.key), " ".join(verdicts)
 
 
 def navigation(folders):
@@ -50,7 +56,17 @@ def navigation(folders):
         return tag("li", tag("a", folder.name, href=f"#{folder.key}"),
                    tag("ul", [tag("li", tag("a", text, href=f"#{name}")) for name, text in items]))
 
-    return tag("nav", tag("ul", [links(folder) for folder in folders]), aria_label="Sections")
+    both = tag("li", tag("a", "Side by side", href="#all")) if len(folders) > 1 else None
+    return tag("nav", tag("ul", both, [links(folder) for folder in folders]), aria_label="Sections")
+
+
+def subtitle(folders):
+    """How many, which version, when."""
+    facts = [folder.scene.facts for folder in folders if folder.scene]
+    versions = {fact["versions"].split(",")[0] for fact in facts if "versions" in fact}
+    ends = sorted(fact["end"][:10] for fact in facts if "end" in fact)
+    return ", ".join([count(len(folders), "result folder"), *sorted(versions),
+                      *([f"computed {' to '.join(dict.fromkeys((ends[0], ends[-1])))}"] if ends else [])])
 
 
 def page(folders, title):
@@ -60,8 +76,10 @@ def page(folders, title):
                tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
                tag("meta", name="color-scheme", content="light dark"),
                tag("link", rel="icon", href="data:,"), tag("style", resource("page.css")))
-    body = tag("body", tag("header", tag("h1", title), tag("p", count(len(folders), "folder"), class_="quiet")),
-               navigation(folders), tag("main", [article(folder, room) for folder in folders]),
+    articles, verdicts = zip(*(article(folder, room) for folder in folders))
+    body = tag("body", tag("header", tag("h1", title), tag("p", subtitle(folders), class_="quiet")),
+               navigation(folders),
+               tag("main", compare_section(folders, verdicts) if len(folders) > 1 else None, articles),
                tag("script", *(resource(name) for name in ("page.js", "viewer.js", "stage.js"))))
     return join([Markup("<!DOCTYPE html>\n"), tag("html", head, body, lang="en")])
 

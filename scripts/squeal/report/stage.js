@@ -3,6 +3,7 @@
 const glass = new Glass();
 const renderer = glass.gl ? glass : new Painter();
 const PERIOD = 1600; // ms a turn of the phase takes
+const FRAME = 30; // ms between pictures at least
 const stages = {}, bodies_of = {};
 const MINUS = "\u2212";
 
@@ -25,7 +26,8 @@ class Stage {
     this.state = {index: moves ? 0 : null, turn: [...VIEWS.oblique], phase: 0, scale: moves ? 0.16 : 0, zoom: 1,
       colour: moves ? "axis" : "parts", mesh: true, largest: 1};
     this.frames = Boolean(this.bodies.frames);
-    this.playing = moves && !still;
+    this.fixed = Boolean(this.bodies.fixed);
+    this.playing = moves && !still && !this.fixed;
     this.visible = true;
     if (moves) this.add_controls();
     this.add_views();
@@ -46,9 +48,9 @@ class Stage {
       ...[["axis", "along the axis"], ["slip", "along the sliding"], ["radial", "outward"], ["size", "size"], ["parts", "parts"]]
         .map(([value, text]) => made("option", {value}, text)));
     const named = (text, control) => made("label", {}, made("span", {}, text), control);
-    if (!this.frames) bar.append(named("Shape", this.choice));
-    bar.append(this.play, named(this.frames ? "Time" : "Phase", this.slider), named("Exaggeration", this.size),
-      named("Colour", this.paint));
+    if (!this.frames && shapes.length > 1) bar.append(named("Shape", this.choice));
+    if (!this.fixed) bar.append(this.play, named(this.frames ? "Time" : "Phase", this.slider));
+    bar.append(named("Exaggeration", this.size), named("Colour", this.paint));
     this.host.append(bar);
     this.note = this.host.querySelector(".note") || made("p", {class: "note", "aria-live": "polite"});
     this.host.append(this.note);
@@ -187,8 +189,12 @@ function show_shape(name, number) {
 
 addEventListener("DOMContentLoaded", () => {
   for (const host of document.querySelectorAll(".viewer")) stages[host.id] = new Stage(host);
+  let last = 0;
   const turn = time => {
-    Object.values(stages).forEach(stage => stage.tick(time));
+    if (time - last > FRAME) {
+      last = time;
+      Object.values(stages).forEach(stage => stage.tick(time));
+    }
     requestAnimationFrame(turn);
   };
   requestAnimationFrame(turn);

@@ -109,6 +109,14 @@ LISTS = (
 )
 
 
+def range_words(text):
+    """6.5e9:80e9:75 reads from 6.5e9 to 80e9 in 75 values."""
+    first, last, n, *how = (text.split(":") + ["", ""])[:4] if ":" in text else (text, "", "", "")
+    if not last:
+        return f"over {first}"
+    return f"from {first} to {last} in {n} values" + (" of equal ratios" if "log" in how else "")
+
+
 def analysis_words(scene):
     """What was computed."""
     kind = scene.value("analysis", "modes")
@@ -117,8 +125,9 @@ def analysis_words(scene):
     band = f"from {figures(low)} to {figures(high)} Hz" if high else (
         f"the {scene.value('modes_count')} nearest to {figures(scene.number('modes_target'))} Hz")
     if kind == "sweep":
-        values = " and ".join(filter(None, (scene.value("sweep_values"), scene.value("sweep_values_2"))))
-        return f"Sweep of {scene.value('sweep_parameter')} over {values}: all modes {band}, about {about}."
+        names = scene.names("sweep_parameter")
+        ranges = [f"{name} {range_words(scene.value(f'sweep_values{end}'))}" for name, end in zip(names, ("", "_2"))]
+        return f"Sweep of {listed(ranges)}: all modes {band}, about {about}."
     if kind == "static":
         return "Equilibrium with friction while the bodies slide."
     if kind == "transient":

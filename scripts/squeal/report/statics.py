@@ -1,0 +1,209 @@
+"""Section of the sliding state: pressure and status of every pair, profile along the sliding, reactions and their
+balance, residuals of the laws of contact and friction, deformation."""
+
+import numpy
+from matplotlib.colors import to_hex
+
+from ..bodies import read_states
+from ..static_map import COLOURS
+from ..static_pairs import MM, grid_cells, profile, read_surfaces
+from ..tables import BadInput, read_table
+from .charts import Axis, Chart, Panel
+from .markup import (Column, Markup, Part, count, figure, figures, join, legend, missing, section, table, tag)
+from .shapes import Bodies, Shape, data_script, viewer
+from .words import direction
+
+MOST_TIPS = 4000  # pairs that tell their numbers
+REACTIONS = {"name": str, "kind": str, "force_x_n": float, "force_y_n": float, "force_z_n": float}
+DISPLACEMENT = "displacement_m"
+WORDS = {"open": "open", "stick": "sticking", "slip": "sliding"}
+LAWS = (("penetration", "largest overlap of a pair, to the largest gap or slip"),
+        ("sign", "largest pull of a pair, to the largest normal force"),
+        ("complementarity", "largest force across a gap"),
+        ("cone", "largest friction beyond mu times the normal force"))
+
+
+def tips_of(surface):
+    """What each pair tells."""
+    return [f"pair {n}, {WORDS[status]}: x {figures(x[0] * MM, 4)}, y {figures(x[1] * MM, 4)}, z {figures(x[2] * MM, 4)} mm; "
+            f"normal force {figures(force, 4)} N, friction {figures(friction, 4)} N, {surface.quantity} "
+            f"{figures(value, 4)} {surface.unit}, gap {figures(1e6 * gap, 3)} µm"
+            for n, status, x, force, friction, value, gap in zip(
+                surface.number, surface.status, surface.x, surface.normal_force, surface.friction, surface.value,
+                surface.gap)]
+
+
+def colour_of(surface):
+    """Of the pressure of each pair."""
+    most = surface.value.max() or 1
+    return [to_hex(COLOURS(value / most)) for value in surface.value]
+
+
+def cells_of(surface):
+    """Limits [n][2] along both axes of the area of each pair; None where the pairs form no grid."""
+    cells = grid_cells(surface)
+    if cells is None:
+        return None
+
+    def limits(borders, place):
+        i = numpy.clip(numpy.searchsorted(borders, place, side="right") - 1, 0, len(borders) - 2)
+        return numpy.stack([borders[i], borders[i + 1]], axis=1)
+
+    return limits(cells[0], surface.place[:, 0]), limits(cells[1], surface.place[:, 1])
+
+
+def pressure_chart(surface, key):
+    """The pairs seen along the normal."""
+    (x0, y0), (x1, y1) = surface.limits()
+    panel = Panel(Axis(surface.axis_title(1), y0, y1), 400)
+    tips = tips_of(surface) if len(surface.number) <= MOST_TIPS else len(surface.number) * [None]
+    cells = cells_of(surface)
+    closed = surface.closed
+    if cells:
+        colours = [colour if shut else "#f4f4f4" for colour, shut in zip(colour_of(surface), closed)]
+        panel.boxes(*cells, colours, tips)
+    for name, radius, colour in (("open", 4, "dark hollow"), ("slip", 2, "dark"), ("stick", 4, "blue")):
+        chosen = numpy.flatnonzero(surface.status == name)
+        panel.points(*surface.place[chosen].T, colour, [tips[i] for i in chosen],
+                     radius * min(1, (400 / max(len(surface.number), 1))**0.5) + 1)
+    middle = MM * surface.middle @ surface.axes.T
+    panel.rule(x=middle[0], colour="soft dashed")
+    panel.rule(y=middle[1], colour="soft dashed")
+    if surface.centre is not None:
+        panel.marks([surface.centre[0]], [surface.centre[1]], "cross", "green",
+                    [f"centre of force: {figures(surface.centre[0], 4)}, {figures(surface.centre[1], 4)} mm"])
+    arrow = surface.arrow()
+    if len(arrow):
+        panel.line(*arrow.T, "blue thick", "direction in which the slave slides")
+        panel.points([arrow[1][0]], [arrow[1][1]], "blue", ["the slave slides this way: the leading edge"], 6)
+    chart = Chart(f"pressure and status of the pairs of {surface.name or 'the contact'}",
+                  Axis(surface.axis_title(0), x0, x1), [panel], square=True)
+    entries = [("dark", "hollow", f"open ({(~closed).sum()})")] * bool((~closed).any())
+    entries += [(colour, "dot", f"{WORDS[name]} ({(surface.status == name).sum()})")
+                for name, colour in (("slip", "dark"), ("stick", "blue")) if (surface.status == name).any()]
+    entries += [("green", "cross", "centre of force")] + [("blue", "line", "sliding direction")] * bool(len(arrow))
+    return join([legend(entries), scale_bar(surface), chart.markup(f"{key}-map", "half")])
+
+
+def scale_bar(surface):
+    """Colours of the pressure."""
+    stops = ", ".join(to_hex(COLOURS(i / 8)) for i in range(9))
+    most = f"{figures(surface.value.max(), 3)} {surface.unit}"
+    return tag("div", tag("span", "0"), tag("i", style=f"background: linear-gradient(90deg, {stops})"), tag("span", most),
+               class_="scale")
+
+
+def profile_chart(surface, key):
+    """Mean pressure of each row along the sliding."""
+    borders, value, closed, pairs = profile(surface)
+    unit = f"mean {surface.quantity}, {surface.unit}" if surface.area is not None else "normal force of a row, N"
+    panel = Panel(Axis.about(unit, value, zero=True), 360)
+    tips = [f"{figures(a, 4)} to {figures(b, 4)} mm: {figures(v, 4)} {surface.unit if surface.area is not None else 'N'}, "
+            f"{n} of {of} pairs closed" for a, b, v, n, of in zip(borders, borders[1:], value, closed, pairs)]
+    panel.boxes(numpy.stack([borders[:-1], borders[1:]], axis=1), [[0, v] for v in value], len(value) * ["orange"], tips)
+    along = surface.profile_axis
+    axis = Axis(surface.axis_title(along), borders.min(), borders.max())
+    if surface.direction is not None:
+        ends = (axis.low, axis.high) if surface.direction[along] > 0 else (axis.high, axis.low)
+        for at, text in zip(ends, ("trailing edge", "leading edge")):
+            inside = at + 0.15 * (sum(ends) / 2 - at)
+            panel.label(inside, panel.y.high * 0.9, text, "blue")
+    return Chart("pressure along the sliding", axis, [panel]).markup(f"{key}-profile", "half")
+
+
+def residuals(surface, scene):
+    """Of the laws, from the table, as squeal defines them (contact.h); None without gaps."""
+    force, gap = abs(surface.normal_force).max(), surface.gap.copy()
+    if not force > 0 or not numpy.isfinite(gap).all():
+        return None
+    if scene and scene.value(f"{surface.name}_law", "penalty") == "penalty" and scene.number(f"{surface.name}_kn"):
+        gap += surface.normal_force / scene.number(f"{surface.name}_kn")
+    length = max(abs(gap).max(), numpy.nan_to_num(abs(surface.slip)).max(), 1e-300)
+    mu = abs(scene.number(f"{surface.name}_mu")) if scene else numpy.inf
+    over = surface.friction - mu * surface.normal_force if numpy.isfinite(mu) else numpy.zeros(1)
+    return {"penetration": max(0.0, (-gap).max()) / length, "sign": max(0.0, (-surface.normal_force).max()) / force,
+            "complementarity": abs(numpy.minimum(surface.normal_force / force, gap / length)).max(),
+            "cone": max(0.0, over.max()) / force}
+
+
+def reactions(folder):
+    """Forces on the bodies, their table and what is left over relative to the largest one."""
+    path = folder.path / "reactions.csv"
+    if not path.exists():
+        return missing("No reactions: reactions.csv is not there."), None
+    rows = read_table(path, REACTIONS)
+    columns = [Column("name", lambda row: row["name"], left=True), Column("kind", lambda row: row["kind"], left=True)]
+    columns += [Column(f"force {axis}, N", lambda row, axis=axis: row[f"force_{axis}_n"], lambda v: figures(v, 6))
+                for axis in "xyz"]
+    force = numpy.array([[row[f"force_{axis}_n"] for axis in "xyz"] for row in rows
+                         if not row["kind"].startswith("contact")]).reshape(-1, 3)
+    largest = abs(force).max() if len(force) else 0
+    left = abs(force.sum(axis=0)).max() / largest if largest else 0.0
+    return table(f"{folder.key}-reactions", columns, rows), left
+
+
+def deformation(folder):
+    """The bodies as the loads bend them."""
+    path = folder.path / "static.h5"
+    if not path.exists():
+        return missing("No deformation: static.h5 is not there; see -output_fields."), None
+    (scene, field), = read_states([path], DISPLACEMENT, folder.disc())
+    bodies = Bodies(scene)
+    largest = 1e6 * numpy.linalg.norm(field, axis=1).max()
+    detail = f"Largest displacement {figures(largest, 4)} µm."
+    shape = Shape(0, "sliding state", detail, bodies.packed_shape(field))
+    source = f"{folder.key}-static-field"
+    picture = [data_script(source, bodies, [shape], fixed=True),
+               viewer(f"{source}-viewer", source, "deformed bodies; drag to turn them")]
+    return figure(f"{source}-figure", "Deformation", picture, f"{detail} Exaggerated; the outline is the body at rest.",
+                  folder.command("report")), bodies
+
+
+def pair_table(folder, surface, key):
+    """All pairs."""
+    rows = range(len(surface.number))
+    columns = [Column("pair", lambda i: surface.number[i])]
+    columns += [Column(f"{axis}, mm", lambda i, k=k: float(MM * surface.x[i, k]), lambda v: figures(v, 5))
+                for k, axis in enumerate("xyz")]
+    columns += [Column("status", lambda i: str(surface.status[i]), left=True),
+                Column("normal force, N", lambda i: float(surface.normal_force[i]), lambda v: figures(v, 5)),
+                Column("friction, N", lambda i: float(surface.friction[i]), lambda v: figures(v, 5)),
+                Column(f"{surface.quantity}, {surface.unit}", lambda i: float(surface.value[i]), lambda v: figures(v, 4)),
+                Column("gap, µm", lambda i: float(1e6 * surface.gap[i]), lambda v: figures(v, 4))]
+    return tag("details", tag("summary", f"All {count(len(surface.number), 'pair')}"), table(f"{key}-pairs", columns, rows))
+
+
+def surface_figures(folder, surface, number):
+    """Map, profile, table of one interface."""
+    key, command = f"{folder.key}-contact{number}", folder.command("plot/static")
+    slides = ""
+    if folder.scene and folder.scene.value(f"{surface.name}_slip"):
+        slides = f" The slave slides towards {direction(folder.scene.value(f'{surface.name}_slip'))}."
+    maps = figure(f"{key}-pressure", f"Pressure {surface.name}".rstrip(), pressure_chart(surface, key),
+                  surface.summary() + "." + slides, command)
+    rows = figure(f"{key}-rows", "Rows along the sliding", profile_chart(surface, key),
+                  "Friction turns the pad: the leading edge carries more.", command)
+    return [tag("div", maps, rows, class_="pair"), pair_table(folder, surface, key)]
+
+
+def static_part(folder, _):
+    """All of it."""
+    surfaces = read_surfaces(folder.path / "static.csv")
+    forces, left = folder.tried(reactions, folder), None
+    if not isinstance(forces, Markup):
+        forces, left = forces
+    try:
+        shape, bodies = deformation(folder)
+    except BadInput as error:
+        shape, bodies = folder.lacks(error), None
+    errors = [("forces left over, to the largest", figures(left, 2))] if left is not None else []
+    for surface in surfaces:
+        found = residuals(surface, folder.scene) or {}
+        errors += [(f"{meaning}{f', {surface.name}' if len(surfaces) > 1 else ''}", figures(found[name], 2))
+                   for name, meaning in LAWS if name in found]
+    content = section(f"{folder.key}-static", "Sliding state",
+                      [surface_figures(folder, surface, i) for i, surface in enumerate(surfaces, 1)],
+                      tag("h4", "Forces on the bodies"), forces, shape)
+    verdict = "; ".join(f"{surface.name}: {surface.summary()}" if surface.name else surface.summary()
+                        for surface in surfaces) + "."
+    return Part(content, bodies and (f"{folder.key}-static-field", bodies), errors, verdict)

@@ -1,0 +1,211 @@
+"""What the page of scripts/report says of each analysis, against the files that squeal wrote, read here on their own. Used
+by test_report.py; `t` keeps what is wrong, `page` finds elements, `key` is the folder's prefix."""
+
+import base64
+import csv
+import json
+
+import h5py
+import numpy
+
+
+def rows_of(path):
+    with path.open(newline="") as lines:
+        return list(csv.DictReader(lines))
+
+
+def close(found, expected, tolerance):
+    """Whether all numbers agree within an absolute tolerance."""
+    found, expected = (numpy.asarray(list(values), float) for values in (found, expected))
+    return found.shape == expected.shape and bool((abs(found - expected) <= tolerance).all())
+
+
+def same_numbers(page, table, title, rows, column, factor=1.0):
+    """Whether a column of the page is one of the file, to its last digit but one."""
+    found = [float(row[title]) for row in page.table(table)]
+    return len(found) == len(rows) > 0 and close(found, [factor * float(row[column]) for row in rows],
+                                                 1e-14 * max(abs(float(row[column]) * factor) for row in rows))
+
+
+def straight(pixels, values):
+    """Whether places on the screen are a straight line of values, within the rounding to a tenth."""
+    pixels, values = (numpy.array(list(v), float) for v in (pixels, values))
+    line = numpy.polyfit(values, pixels, 1)
+    return len(values) > 2 and abs(line[0]) > 0 and abs(numpy.polyval(line, values) - pixels).max() < 0.11
+
+
+def check_modes(t, page, key, folder):
+    """Table, chart and shares: breaks when a row, a unit or a column is mixed up."""
+    rows = rows_of(folder / "modes.csv")
+    for title, column, factor in (("mode", "mode", 1), ("freq, Hz", "freq_hz", 1), ("growth, 1/s", "growth_rad_s", 1),
+                                  ("damping, %", "damping_ratio", 100), ("error, Hz", "error_hz", 1),
+                                  ("condition", "condition", 1), ("backward error", "backward_error", 1),
+                                  ("beam, %", "part_beam_percent", 1)):
+        t.check(same_numbers(page, f"{key}-table", title, rows, column, factor), f"{key}: {title} of the table")
+    t.check([row["label"] for row in page.table(f"{key}-table")] == [row["label"] for row in rows], f"{key}: labels")
+    by_mode = {row["mode"]: row for row in rows}
+    for kind in ("wide", "narrow"):
+        svg = page.find("svg", inside=f"{key}-eigenvalues", class_=f"chart {kind}")
+        t.check(len(svg) == 1, f"{key}: one {kind} chart")
+    dots = page.find("circle", inside=f"{key}-eigenvalues")
+    wide = dots[:len(dots) // 2]
+    t.check(sorted(int(e["data-shape"]) for e in wide) == sorted(int(mode) for mode in by_mode), f"{key}: a dot a mode")
+    chosen = [by_mode[e["data-shape"]] for e in wide]
+    t.check(straight((e["cx"] for e in wide), (row["freq_hz"] for row in chosen)), f"{key}: dots over frequency")
+    if any(float(row["growth_rad_s"]) for row in rows):
+        t.check(straight((e["cy"] for e in wide), (row["growth_rad_s"] for row in chosen)), f"{key}: dots over growth")
+    told = all(f"{float(row['freq_hz']):.3f} Hz" in e["text"] and ("UNSTABLE" in e["text"]) == (row["unstable"] == "1")
+               for e, row in zip(wide, chosen))
+    t.check(told, f"{key}: each dot tells its frequency and whether it grows")
+    boxes = page.find("rect", inside=f"{key}-parts", class_="box green")
+    shares = [float(row["part_beam_percent"]) for row in rows]
+    seen = [(e["height"], share) for e, share in zip(boxes, shares) if share > 1]
+    t.check(len(boxes) == 2 * len(rows) and straight(*zip(*seen)), f"{key}: shares of the beam")
+
+
+def numbers(text, kind):
+    return numpy.frombuffer(base64.b64decode(text), kind)
+
+
+def check_shapes(t, page, key, folder):
+    """Places and displacements that the viewer gets against the field, node by node: breaks when axes, nodes, phase or
+    modes are mixed up. The frame of this brake is y, x, z; 16 bits leave 2e-5."""
+    data = json.loads(page.find("script", id=f"{key}-data")[0]["text"])
+    with h5py.File(folder / "modes.h5") as file:
+        points = file["VTKHDF/Points"][:][:, [1, 0, 2]]
+        middle, half = (points.max(axis=0) + points.min(axis=0)) / 2, numpy.ptp(points, axis=0).max() / 2
+        place = middle + half * numbers(data["points"], "<f4").reshape(-1, 3)
+        node, before = [], -1
+        for here in place:  # nodes keep their order; pad and disc have some at one place
+            near = numpy.flatnonzero(numpy.linalg.norm(points - here, axis=1) < 1e-7)
+            before = next((int(i) for i in near if i > before), -1)
+            node.append(before)
+        t.check(min(node) >= 0 and len(node) > len(points) / 3, f"{key}: places of the surface")
+        for shape in data["shapes"]:
+            name = f"VTKHDF/PointData/mode_{shape['number']:03d}"
+            field = (file[f"{name}_re"][:] + 1j * file[f"{name}_im"][:])[:, [1, 0, 2]][node].ravel()
+            moved = numbers(shape["re"], "<i2").astype(complex)
+            moved += 1j * numbers(shape["im"], "<i2") if shape["im"] else 0
+            factor = numpy.vdot(moved, field) / numpy.vdot(moved, moved)
+            left = abs(factor * moved - field).max() / abs(field).max()
+            if left > (2e-3 if shape["im"] is None else 1e-4):
+                t.check(False, f"{key}: shape {shape['number']} is off by {left:.1e}")
+    n_modes = len(rows_of(folder / "modes.csv"))
+    t.check(len(data["shapes"]) == n_modes, f"{key}: {len(data['shapes'])} shapes of {n_modes}")
+
+
+def places(elements, name):
+    """Numbers of an attribute, of the wide one of two charts."""
+    return numpy.array([float(e[name]) for e in elements])
+
+
+def first_half(elements):
+    """Of the wide chart, which stands before the narrow one."""
+    return elements[:len(elements) // 2]
+
+
+def path_points(d):
+    """Points of a path."""
+    return numpy.array([list(map(float, pair.split())) for pair in d.replace("M", "L").split("L")[1:]])
+
+
+def check_static(t, page, key, folder):
+    """Pairs, reactions and residuals: breaks when pairs are mixed up, a status is lost, or a sum is wrong."""
+    rows = rows_of(folder / "static.csv")
+    for title, column, factor in (("pair", "pair", 1), ("x, mm", "x_m", 1e3), ("normal force, N", "lambda_n_n", 1),
+                                  ("gap, µm", "gap_m", 1e6)):
+        t.check(same_numbers(page, f"{key}-contact1-pairs", title, rows, column, factor), f"{key}: {title} of the pairs")
+    cells = first_half([e for e in page.find("rect", inside=f"{key}-contact1-pressure") if e.get("style")])
+    told = [f"pair {row['pair']}, " in e["text"] and f"normal force {float(row['lambda_n_n']):.4g} N" in e["text"]
+            for e, row in zip(cells, rows) if 0.001 < float(row["lambda_n_n"])]
+    t.check(len(cells) == len(rows) and all(told) and len(told) > 10, f"{key}: {len(told)} closed pairs tell their force")
+    middle = places(cells, "x") + places(cells, "width") / 2
+    t.check(len(set(numpy.round(middle, 1))) == len({row["x_m"] for row in rows}), f"{key}: as many columns as the pad has")
+    forces = rows_of(folder / "reactions.csv")
+    for axis in "xyz":
+        t.check(same_numbers(page, f"{key}-reactions", f"force {axis}, N", forces, f"force_{axis}_n")
+                if any(float(row[f"force_{axis}_n"]) for row in forces) else True, f"{key}: reactions along {axis}")
+    n_open = sum(row["status"] == "open" for row in rows)
+    t.check(n_open > 0 and f"{len(rows) - n_open} of {len(rows)} pairs closed" in page.source, f"{key}: {n_open} pairs open")
+    facts = dict(zip((e["text"] for e in page.find("dt", inside=f"{key}-origin")),
+                     (e["text"] for e in page.find("dd", inside=f"{key}-origin"))))
+    small = [name for name in facts if name.startswith(("forces left over", "largest overlap", "largest force across"))]
+    t.check(len(small) == 3 and all("10⁻" in facts[name] or facts[name] == "0" for name in small), f"{key}: residuals {facts}")
+
+
+def check_sweep(t, page, key, folder):
+    """Points, lines and onsets: breaks when branches or values are mixed up."""
+    rows, onsets = rows_of(folder / "sweep.csv"), rows_of(folder / "onsets.csv")
+    t.check(len(onsets) > 1 and same_numbers(page, f"{key}-onsets", "freq, Hz", onsets, "freq_hz") and
+            same_numbers(page, f"{key}-onsets", "pad_young, GPa", onsets, "critical_value", 1e-9), f"{key}: {len(onsets)} onsets")
+    marks = first_half([e for e in page.find("path", inside=f"{key}-branches") if "mark" in e.get("class", "")])
+    at = [list(map(float, e["transform"][10:-1].split())) for e in marks]
+    t.check(len(marks) == len(onsets) and straight([x for x, _ in at], [row["critical_value"] for row in onsets]) and
+            straight([y for _, y in at], [row["freq_hz"] for row in onsets]), f"{key}: marks of the onsets in their places")
+    dots = first_half([e for e in page.find("circle", inside=f"{key}-branches") if "vermilion" in e["class"]])
+    growing = [row for row in rows if row["class"] == "unstable"]
+    t.check(len(dots) == 2 * len(growing) > 4, f"{key}: {len(growing)} unstable points, in both panels")
+    dots = [e for e in dots if float(e["cy"]) > 480]  # of the lower panel
+    told = [next((row for row in growing if f"growth +{float(row['growth_rad_s']):.4g} 1/s" in e["text"]), None) for e in dots]
+    t.check(None not in told and straight(places(dots, "cy"), [row["growth_rad_s"] for row in told]) and
+            straight(places(dots, "cx"), [row["value"] for row in told]), f"{key}: growth of the unstable points")
+    first = min(float(row["critical_value"]) for row in onsets if row["kind"] == "lock_in")
+    t.check(f"first lock-in at pad_young {1e-9 * first:.5g} GPa" in page.source, f"{key}: the first lock-in, {first:.5g}")
+    quiet = [e for e in page.find("path", inside=f"{key}-branches") if e.get("class") == "line quiet"]
+    t.check(len(quiet) > 2, f"{key}: {len(quiet) // 2} other modes")
+
+
+def check_transient(t, page, key, folder):
+    """Forces over time, summary, film: breaks when columns are mixed up, points left out, or snapshots in wrong order."""
+    rows = rows_of(folder / "transient.csv")
+    line = next(e for e in page.find("path", inside=f"{key}-forces") if e.get("class") == "line blue")
+    points = path_points(line["d"])
+    last = len(points)
+    t.check(last == len(rows) and straight(points[:, 0], [row["time_s"] for row in rows]) and
+            straight(points[:, 1], [row["normal_force_n"] for row in rows]), f"{key}: {last} points of the normal force")
+    done = t.script("plot/transient", folder.name)
+    summary = {row["quantity"]: row for row in rows_of(folder / "transient_summary.csv")} if not done.returncode else {}
+    shown = {row["quantity"]: row for row in page.table(f"{key}-summary")}
+    same = [name for name in shown if float(shown[name]["value"]) == float(summary.get(name, {"value": "nan"})["value"])]
+    t.check(len(shown) == len(same) > 8, f"{key}: {len(same)} of {len(shown)} numbers as plot/transient has them {done.stderr}")
+    data = json.loads(page.find("script", id=f"{key}-film-data")[0]["text"])
+    times = [float(shape["detail"].split()[0]) for shape in data["shapes"]]
+    t.check(len(times) > 4 and times == sorted(times), f"{key}: {len(times)} snapshots in order")
+    moves = numpy.array([numbers(shape["re"], "<i2") for shape in data["shapes"]], float)
+    t.check(abs(moves.mean(axis=0)).max() < 1 and abs(moves).max() > 20000, f"{key}: the film has no mean")
+    image = page.find("image", inside=f"{key}-spectrogram")
+    t.check(image and image[0]["href"].startswith("data:image/png;base64,iVBOR"), f"{key}: a spectrogram")
+
+
+def write_response(folder):
+    """A made-up response of one mode at 2 kHz with 1 % of damping beside what is in the folder."""
+    freq = numpy.linspace(1000, 3000, 401)
+    value = 1e-8 / (1 - (freq / 2000)**2 + 0.02j * freq / 2000)
+    lines = [f"{f:.15g},{v.real:.15g},{v.imag:.15g},{1e-9 * abs(v):.15g},1e-09" for f, v in zip(freq, value)]
+    (folder / "frf.csv").write_text("\n".join(["freq_hz,tip_z_re_m_n,tip_z_im_m_n,error_m_n,error_relative", *lines]) + "\n")
+    (folder / "peaks.csv").write_text("freq_hz,magnitude_m_n,mode,mode_freq_hz,damping_ratio,label\n"
+                                      '2000,5e-07,3,2000,0.01,"(0,3+)"\n')
+
+
+def check_frf(t, page, key, folder):
+    """Magnitude and phase of the response."""
+    rows = rows_of(folder / "frf.csv")
+    value = numpy.array([complex(float(row["tip_z_re_m_n"]), float(row["tip_z_im_m_n"])) for row in rows])
+    lines = [e for e in page.find("path", inside=f"{key}-response") if e.get("class") == "line blue"][:2]
+    above, below = (path_points(e["d"]) for e in lines)
+    t.check(straight(above[:, 1], numpy.log(abs(value))) and straight(above[:, 0], [row["freq_hz"] for row in rows]),
+            f"{key}: magnitude of the response")
+    t.check(straight(below[:, 1], numpy.angle(value)), f"{key}: its phase")
+    t.check(same_numbers(page, f"{key}-peaks", "peak, Hz", rows_of(folder / "peaks.csv"), "freq_hz"), f"{key}: its peaks")
+
+
+def check_together(t, page, folders):
+    """Folders side by side: every folder has its row, and what differs is what was given."""
+    t.check([row["folder"] for row in page.table("overview")] == [folder.name for folder in folders], "a row a folder")
+    differ = {row["option"]: row for row in page.table("differences")}
+    t.check((differ["contact_mu"]["modes"], differ["contact_mu"]["modes_quiet"]) == ("0.9", "0") and
+            "disc_poisson" not in differ, f"{len(differ)} options differ")
+    rows = [row for row in rows_of(folders[0] / "modes.csv") if row["unstable"] == "1"]
+    shown = page.table("all-unstable")
+    t.check(len(shown) == len(rows) and close([row["growth, 1/s: modes"] for row in shown],
+                                              [row["growth_rad_s"] for row in rows], 1e-9), "unstable modes of all folders")
