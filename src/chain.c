@@ -2,7 +2,7 @@
 #include "chain.h"
 #include "solver/shiftinvert.h"
 
-static const char *const analyses[N_ANALYSES] = {"modes", "sweep", "static", "transient"};
+static const char *const analyses[N_ANALYSES] = {"modes", "sweep", "static", "transient", "frf"};
 
 /* What every analysis needs */
 static PetscErrorCode ChainCreateScene(MPI_Comm comm, Chain *chain)
@@ -59,6 +59,9 @@ static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
   PetscCall(SweepCreate(comm, &chain->sweep));
   PetscCall(SweepSetFromOptions(chain->sweep));
   PetscCall(OptionsClaim(chain->claims, READER_SWEEP));
+  PetscCall(FrfCreate(comm, &chain->frf));
+  PetscCall(FrfSetFromOptions(chain->frf));
+  PetscCall(OptionsClaim(chain->claims, READER_FRF));
   PetscFunctionReturn(0);
 }
 
@@ -77,6 +80,7 @@ PetscErrorCode ChainDestroy(Chain *chain)
   PetscCall(OptionsClaimsDestroy(&chain->claims));
   PetscCall(ResultsDestroy(&chain->results));
   PetscCall(DynamicsDestroy(&chain->dynamics));
+  PetscCall(FrfDestroy(&chain->frf));
   PetscCall(SweepDestroy(&chain->sweep));
   PetscCall(ModesDestroy(&chain->modes));
   PetscCall(PencilDestroy(&chain->pencil));
@@ -94,7 +98,8 @@ PetscErrorCode ChainCheckOptions(MPI_Comm comm, const Chain *chain)
   const Scope    scope    = {.analysis  = analyses[analysis],
                              .sweep     = analysis == ANALYSIS_SWEEP,
                              .transient = analysis == ANALYSIS_TRANSIENT,
-                             .modes     = analysis <= ANALYSIS_SWEEP,
+                             .frf       = analysis == ANALYSIS_FRF,
+                             .modes     = analysis <= ANALYSIS_SWEEP || analysis == ANALYSIS_FRF,
                              .model     = chain->model,
                              .contact   = chain->contact,
                              .linear    = chain->modes,
@@ -170,6 +175,9 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscCall(SweepSetOperators(chain->sweep, chain->operators, chain->p));
   PetscCall(SweepSetModes(chain->sweep, chain->modes));
   if (is_static) PetscCall(SweepSetStatics(chain->sweep, chain->statics));
+  PetscCall(FrfSetOperators(chain->frf, chain->operators));
+  PetscCall(FrfSetModes(chain->frf, chain->modes));
+  if (chain->analysis == ANALYSIS_FRF) PetscCall(FrfSetUp(chain->frf));
   PetscCall(OperatorsGetSave(chain->operators, &folder));
   if (!folder[0]) PetscFunctionReturn(0);
   PetscCall(ChainLinearise(chain));
@@ -185,6 +193,19 @@ PetscErrorCode ChainSetUp(Chain *chain, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
+/* The response, and the modes that it is made of */
+static PetscErrorCode ChainWriteFrf(Chain *chain)
+{
+  PetscInt    n;
+  const Mode *mode;
+
+  PetscFunctionBeginUser;
+  PetscCall(FrfWrite(chain->frf, chain->results));
+  PetscCall(ModesGet(chain->modes, &n, &mode));
+  if (n) PetscCall(ModesWrite(chain->modes, chain->results));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ChainRun(Chain *chain)
 {
   static const struct {
@@ -194,14 +215,16 @@ PetscErrorCode ChainRun(Chain *chain)
     [ANALYSIS_MODES]     = {SQUEAL_MODES,    SHOWN_MODES   },
     [ANALYSIS_SWEEP]     = {SQUEAL_SWEEP,    SHOWN_SWEEP   },
     [ANALYSIS_STATIC]    = {SQUEAL_STATICS,  SHOWN_STATICS },
-    [ANALYSIS_TRANSIENT] = {SQUEAL_DYNAMICS, SHOWN_DYNAMICS}
+    [ANALYSIS_TRANSIENT] = {SQUEAL_DYNAMICS, SHOWN_DYNAMICS},
+    [ANALYSIS_FRF]       = {SQUEAL_FRF,      SHOWN_FRF     }
   };
   const Analysis analysis = chain->analysis;
 
   PetscFunctionBeginUser;
-  if (analysis == ANALYSIS_MODES) {
+  if (analysis == ANALYSIS_MODES || analysis == ANALYSIS_FRF) {
     PetscCall(ChainLinearise(chain));
     PetscCall(ModesSetPencil(chain->modes, chain->pencil));
+    PetscCall(FrfSetPencil(chain->frf, chain->pencil));
   }
   if (analysis == ANALYSIS_SWEEP) PetscCall(PencilDestroy(&chain->pencil)); /* a sweep makes its own */
   PetscCall(SquealStageBegin(run[analysis].stage));
@@ -209,6 +232,7 @@ PetscErrorCode ChainRun(Chain *chain)
   if (analysis == ANALYSIS_SWEEP) PetscCall(SweepSolve(chain->sweep, chain->results));
   if (analysis == ANALYSIS_STATIC) PetscCall(StaticsSolve(chain->statics, chain->p));
   if (analysis == ANALYSIS_TRANSIENT) PetscCall(DynamicsSolve(chain->dynamics, chain->results));
+  if (analysis == ANALYSIS_FRF) PetscCall(FrfSolve(chain->frf));
   PetscCall(SquealStageEnd(run[analysis].stage));
   PetscCall(ChainShow(chain, run[analysis].shown, PETSC_TRUE));
   if (analysis == ANALYSIS_TRANSIENT) PetscFunctionReturn(0); /* which writes as it goes */
@@ -216,6 +240,7 @@ PetscErrorCode ChainRun(Chain *chain)
   if (analysis == ANALYSIS_MODES) PetscCall(ModesWrite(chain->modes, chain->results));
   if (analysis == ANALYSIS_SWEEP) PetscCall(SweepWrite(chain->sweep, chain->results));
   if (analysis == ANALYSIS_STATIC) PetscCall(StaticsWrite(chain->statics, chain->results));
+  if (analysis == ANALYSIS_FRF) PetscCall(ChainWriteFrf(chain));
   PetscCall(SquealStageEnd(SQUEAL_RESULTS));
   PetscFunctionReturn(0);
 }

@@ -3,7 +3,7 @@
 
 #include "scope.h"
 
-typedef enum { ANALYSIS_MODES, ANALYSIS_SWEEP, ANALYSIS_STATIC, ANALYSIS_TRANSIENT, N_ANALYSES } Analysis;
+typedef enum { ANALYSIS_MODES, ANALYSIS_SWEEP, ANALYSIS_STATIC, ANALYSIS_TRANSIENT, ANALYSIS_FRF, N_ANALYSES } Analysis;
 
 /* What shows itself, on stdout or where its own option says */
 typedef enum {
@@ -13,11 +13,12 @@ typedef enum {
   SHOWN_STATICS,
   SHOWN_MODES,
   SHOWN_SWEEP,
+  SHOWN_FRF,
   SHOWN_DYNAMICS,
   N_SHOWN
 } Shown;
 
-/* The chain of a run: options, model, contact, operators, statics, pencil, modes, sweep, or dynamics; and results */
+/* The chain of a run: options, model, contact, operators, statics, pencil, modes, sweep, frequency response, or dynamics; and results */
 typedef struct {
   Model         model; /* NULL for matrices without a mesh */
   Contact       contact;
@@ -27,6 +28,7 @@ typedef struct {
   Pencil        pencil; /* at p, where modes, a file or a view ask for it */
   Modes         modes;
   Sweep         sweep;
+  Frf           frf;
   Dynamics      dynamics;
   Results       results;
   Analysis      analysis;

@@ -1,17 +1,20 @@
 /* Views of the objects of a run: -model_view and its like, and -squeal_view for all */
 #include "chain.h"
 
+#define LINEAR (1 << ANALYSIS_MODES | 1 << ANALYSIS_SWEEP | 1 << ANALYSIS_FRF)
+
 static const struct {
   const char *option, *help;
   unsigned    in; /* bits of the analyses that have something to show */
 } shown[N_SHOWN] = {
-  [SHOWN_MODEL]     = {"-model_view",     "show mesh, parts, supports, springs and loads",           15                     },
-  [SHOWN_CONTACT]   = {"-contact_view",   "show interfaces and their pairs",                         7                      },
-  [SHOWN_OPERATORS] = {"-operators_view", "show the pencil of modes and sweeps, and its parameters", 3                      },
-  [SHOWN_STATICS]   = {"-statics_view",   "show the equilibrium",                                    1 << ANALYSIS_STATIC   },
-  [SHOWN_MODES]     = {"-modes_view",     "show the modes found",                                    1 << ANALYSIS_MODES    },
-  [SHOWN_SWEEP]     = {"-sweep_view",     "show what a sweep found",                                 1 << ANALYSIS_SWEEP    },
-  [SHOWN_DYNAMICS]  = {"-dynamics_view",  "show bodies, step and balances of a run in time",         1 << ANALYSIS_TRANSIENT},
+  [SHOWN_MODEL]     = {"-model_view",     "show mesh, parts, supports, springs and loads",           31                                     },
+  [SHOWN_CONTACT]   = {"-contact_view",   "show interfaces and their pairs",                         7 | LINEAR                             },
+  [SHOWN_OPERATORS] = {"-operators_view", "show the pencil of modes and sweeps, and its parameters", LINEAR                                 },
+  [SHOWN_STATICS]   = {"-statics_view",   "show the equilibrium",                                    1 << ANALYSIS_STATIC                   },
+  [SHOWN_MODES]     = {"-modes_view",     "show the modes found",                                    1 << ANALYSIS_MODES | 1 << ANALYSIS_FRF},
+  [SHOWN_SWEEP]     = {"-sweep_view",     "show what a sweep found",                                 1 << ANALYSIS_SWEEP                    },
+  [SHOWN_FRF]       = {"-frf_view",       "show the frequency response and its peaks",               1 << ANALYSIS_FRF                      },
+  [SHOWN_DYNAMICS]  = {"-dynamics_view",  "show bodies, step and balances of a run in time",         1 << ANALYSIS_TRANSIENT                },
 };
 
 PetscErrorCode ChainGetViewers(MPI_Comm comm, Chain *chain)
@@ -41,6 +44,7 @@ static PetscErrorCode ShownView(Chain *chain, Shown what, PetscViewer viewer)
   if (what == SHOWN_STATICS) PetscCall(StaticsView(chain->statics, viewer));
   if (what == SHOWN_MODES) PetscCall(ModesView(chain->modes, viewer));
   if (what == SHOWN_SWEEP) PetscCall(SweepView(chain->sweep, viewer));
+  if (what == SHOWN_FRF) PetscCall(FrfView(chain->frf, viewer));
   if (what == SHOWN_DYNAMICS) PetscCall(DynamicsView(chain->dynamics, viewer));
   PetscFunctionReturn(0);
 }
@@ -62,7 +66,6 @@ PetscErrorCode ChainView(Chain *chain)
   PetscFunctionBeginUser;
   if (chain->model) PetscCall(ChainShow(chain, SHOWN_MODEL, chain->view));
   if (chain->contact && chain->analysis != ANALYSIS_TRANSIENT) PetscCall(ChainShow(chain, SHOWN_CONTACT, chain->view));
-  if (chain->analysis == ANALYSIS_MODES || chain->analysis == ANALYSIS_SWEEP)
-    PetscCall(ChainShow(chain, SHOWN_OPERATORS, chain->view));
+  if (LINEAR >> chain->analysis & 1) PetscCall(ChainShow(chain, SHOWN_OPERATORS, chain->view));
   PetscFunctionReturn(0);
 }

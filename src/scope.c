@@ -117,9 +117,9 @@ static PetscErrorCode ScopeCheckEigensolver(MPI_Comm comm, const Scope *s)
 /* What the model reads for other analyses */
 static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool statics)
 {
-  static const char all[]     = "not used by modes with all pairs closed; give -modes_contact static";
-  static const char still[]   = "not used by -analysis static, where nothing moves and nothing is damped";
-  static const char no_time[] = "not used without -analysis transient";
+  static const char all[]      = "not used by modes with all pairs closed; give -modes_contact static";
+  static const char still[]    = "not used by -analysis static, where nothing moves and nothing is damped";
+  static const char no_probe[] = "not used without -analysis transient or frf";
   const ModelScene *scene;
 
   PetscFunctionBeginUser;
@@ -130,8 +130,8 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
     PetscCall(ScopeRefuse(comm, scene->parts[i].name, "beta", still));
   }
   if (!s->transient && !s->modes) PetscCall(ScopeCheckDensity(comm, scene));
-  for (PetscInt i = 0; i < scene->n_probes && !s->transient; i++)
-    PetscCall(ScopeRefuse(comm, scene->probes[i].name, "at", no_time));
+  for (PetscInt i = 0; i < scene->n_probes && !s->transient && !s->frf; i++)
+    PetscCall(ScopeRefuse(comm, scene->probes[i].name, "at", no_probe));
   for (PetscInt i = 0; i < scene->n_loads && s->modes && !statics; i++) {
     PetscCall(ScopeRefuse(comm, scene->loads[i].name, "force", all));
     PetscCall(ScopeRefuse(comm, scene->loads[i].name, "set", all));
@@ -176,11 +176,12 @@ PetscErrorCode ScopeCheck(MPI_Comm comm, const Scope *s, OptionsClaims claims)
   OptionsReader readers[N_READERS] = {
     [READER_ANY]       = {PETSC_TRUE,   "every analysis"                                                            },
     [READER_STATICS]   = {PETSC_FALSE,  "-analysis static, and modes, sweeps and transients about the sliding state"},
-    [READER_MODES]     = {s->modes,     "-analysis modes and sweep"                                                 },
+    [READER_MODES]     = {s->modes,     "-analysis modes, sweep and frf"                                            },
     [READER_FACTOR]    = {s->modes,     "analyses that factorise a matrix"                                          },
     [READER_ITERATIVE] = {PETSC_FALSE,
                           "an iterative -st_ksp_type such as gmres, since a factorised matrix needs no iteration"   },
     [READER_SWEEP]     = {s->sweep,     "-analysis sweep"                                                           },
+    [READER_FRF]       = {s->frf,       "-analysis frf"                                                             },
     [READER_DYNAMICS]  = {s->transient, "-analysis transient"                                                       },
   };
   PetscBool statics;

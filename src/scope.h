@@ -12,6 +12,7 @@ typedef enum {
   READER_FACTOR,
   READER_ITERATIVE,
   READER_SWEEP,
+  READER_FRF,
   READER_DYNAMICS,
   N_READERS
 } Reader;
@@ -19,7 +20,7 @@ typedef enum {
 /* A run; model and contact are NULL for matrices without a mesh */
 typedef struct {
   const char *analysis;
-  PetscBool   modes, sweep, transient;
+  PetscBool   modes, sweep, frf, transient;
   Model       model;
   Contact     contact;
   Operators   operators;

@@ -14,6 +14,7 @@
 
 #include <squeal/pencil.h>
 #include <squeal/results.h>
+#include <petscksp.h>
 
 typedef struct _p_Modes *Modes;
 
@@ -69,6 +70,16 @@ PetscErrorCode ModesSetBand(Modes modes, const PetscReal band[2]);
 
 /*@ ModesSetNearest - instead of a band the `count` modes nearest to `target` (Hz). Not collective. @*/
 PetscErrorCode ModesSetNearest(Modes modes, PetscReal target, PetscInt count);
+
+/*@ ModesWant - whether the options ask for the modes nearest to a frequency, and for left vectors. Not collective. @*/
+PetscErrorCode ModesWant(Modes modes, PetscBool *nearest, PetscBool *left);
+
+/*@ ModesKeepFactor - whether ModesSolve() keeps its factorisation until the next solution. Not collective. @*/
+PetscErrorCode ModesKeepFactor(Modes modes, PetscBool keep);
+
+/*@ ModesGetFactor - the factorisation that was kept (borrowed): of K - shift M, shift in (rad/s)^2, or with damping of
+    K + shift C + shift^2 M, in rad/s. Not collective. Errors: PETSC_ERR_ARG_WRONGSTATE where none was kept. @*/
+PetscErrorCode ModesGetFactor(Modes modes, KSP *ksp, PetscReal *shift);
 
 /*@ ModesSolve - computes eigenvalues, vectors, errors and labels, and checks that none is missing. Collective. @*/
 PetscErrorCode ModesSolve(Modes modes);

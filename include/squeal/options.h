@@ -70,6 +70,12 @@ PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option
     The caller frees them. @*/
 PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char *words[]);
 
+/*@ ValuesParse - the values that the text of an option stands for: "first:last:n", equal steps,
+    "first:last:n:log", equal ratios (is_log), or "v1,v2,...", ascending or descending. Not collective, same call on all
+    ranks; comm is that of errors. The caller frees value. Errors: PETSC_ERR_USER_INPUT for other texts. @*/
+PetscErrorCode ValuesParse(MPI_Comm comm, const char option[], const char text[], PetscInt *n, PetscReal *value[],
+                           PetscBool *is_log);
+
 /*@
    OptionsGetPath - reads the path of something to be read, without a prefix, between PetscOptionsBegin() and
    PetscOptionsEnd(). Collective.

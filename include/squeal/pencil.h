@@ -121,6 +121,10 @@ PetscErrorCode PencilGetClosed(Pencil pencil, PetscInt *n_closed, PetscBool *fro
 /*@ PencilExpand - unknowns of the pencil to all unknowns, u = Zr q (or Zl q for a left vector). Collective. @*/
 PetscErrorCode PencilExpand(Pencil pencil, PetscBool left, Vec q, Vec u);
 
+/*@ PencilProjectForce - a force f on all unknowns, N, to the equations of the pencil, g = Zl' f; or to those of the
+    transposed problem, g = Zr' f. Collective. @*/
+PetscErrorCode PencilProjectForce(Pencil pencil, PetscBool transposed, Vec f, Vec g);
+
 /*@ PencilRestrict - the inverse of PencilExpand() for a vector that obeys the constraints. Collective. @*/
 PetscErrorCode PencilRestrict(Pencil pencil, Vec u, Vec q);
 

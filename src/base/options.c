@@ -33,8 +33,8 @@ static PetscBool ListHolds(const char list[], const char value[])
 /* Raises an error for a name that the program's own options begin with, or that another list of the scene has too */
 static PetscErrorCode NameCheckFree(MPI_Comm comm, const char option[], const char name[])
 {
-  static const char *const own[]   = {"dynamics", "model",  "modes",  "operators", "output", "projector",
-                                      "rig",      "squeal", "static", "statics",   "sweep"};
+  static const char *const own[]   = {"dynamics",  "frf", "model",  "modes",  "operators", "output",
+                                      "projector", "rig", "squeal", "static", "statics",   "sweep"};
   static const char *const lists[] = {"-parts",    "-supports", "-springs", "-dashpots", "-loads",
                                       "-contacts", "-probes",   "-motions", "-impulses"};
   char                     list[MAX_LIST];

@@ -21,8 +21,8 @@
 
 #define MAX_MESSAGE 1024
 
-static const char *const stage_names[SQUEAL_N_STAGES] = {"Model", "Contact", "Operators", "Statics",
-                                                         "Modes", "Sweep",   "Dynamics",  "Results"};
+static const char *const stage_names[SQUEAL_N_STAGES] = {"Model", "Contact", "Operators", "Statics", "Modes",
+                                                         "Sweep", "Frf",     "Dynamics",  "Results"};
 /* First error of this rank, printed by SquealFinalize() */
 static char error_message[MAX_MESSAGE];
 

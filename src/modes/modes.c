@@ -64,7 +64,8 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
              "-modes_band, -modes_target (Hz) and -modes_growth (1/s) must be of at most %g", MODES_LARGEST);
   if (modes->has_band && (has_target || has_count))
     PetscCall(OptionsRefuse(modes->comm, "-modes_band", "not used beside -modes_target or -modes_count; give one"));
-  if (has_target || has_count) modes->has_band = PETSC_FALSE;
+  modes->has_nearest = has_target || has_count ? PETSC_TRUE : PETSC_FALSE;
+  if (modes->has_nearest) modes->has_band = PETSC_FALSE;
   PetscCheck(modes->count > 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_count %" PetscInt_FMT " must be positive",
              modes->count);
   PetscCheck(modes->growth >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_growth %.6g must not be negative (1/s)",
@@ -107,6 +108,30 @@ PetscErrorCode ModesHaveBand(Modes modes, PetscBool *has_band)
 {
   PetscFunctionBeginUser;
   *has_band = modes->has_band;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesWant(Modes modes, PetscBool *nearest, PetscBool *left)
+{
+  PetscFunctionBeginUser;
+  *nearest = modes->has_nearest;
+  *left    = modes->left;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesKeepFactor(Modes modes, PetscBool keep)
+{
+  PetscFunctionBeginUser;
+  modes->keep = keep;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesGetFactor(Modes modes, KSP *ksp, PetscReal *shift)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(modes->factor.ksp, modes->comm, PETSC_ERR_ARG_WRONGSTATE, "no factorisation was kept");
+  *ksp   = modes->factor.ksp;
+  *shift = modes->factor.shift;
   PetscFunctionReturn(0);
 }
 
@@ -219,6 +244,7 @@ static PetscErrorCode ModesReset(Modes modes)
   PetscCall(SpectrumDestroy(&modes->left_spectrum));
   PetscCall(PetscFree(modes->mode));
   PetscCall(PetscFree(modes->part_percent));
+  PetscCall(ShiftInvertDestroy(&modes->factor));
   modes->n = 0;
   PetscFunctionReturn(0);
 }
@@ -242,7 +268,10 @@ PetscErrorCode ModesSolve(Modes modes)
   PetscCall(ShiftInvertCreate(&pencil, pencil.C ? DampedShift(&window) : UndampedShift(&window), PETSC_FALSE,
                               &modes->progress, &si));
   PetscCall(SolveBoth(modes, &pencil, &window, &si));
-  PetscCall(ShiftInvertDestroy(&si));
+  if (modes->keep)
+    modes->factor = si;
+  else
+    PetscCall(ShiftInvertDestroy(&si));
   PetscCheck(modes->right.n, modes->comm, PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g Hz contains no mode; widen it",
              (double)modes->band[0], (double)modes->band[1]);
   PetscCall(QualityMeasure(modes, &pencil));

@@ -30,16 +30,17 @@ struct _p_Modes {
   PetscReal band[2], target; /* Hz */
   PetscReal growth;          /* rad/s; 0: a tenth of the highest angular frequency */
   PetscReal max_time;        /* s, of one solution; 0: any */
-  PetscBool has_band, left, is_static;
+  PetscBool has_band, has_nearest, left, is_static, keep;
   PetscInt  count;
   char      disc[64];
   Progress  progress;
   /* results */
-  Spectrum right, left_spectrum; /* in the unknowns of the pencil, later expanded to all unknowns */
-  Mode    *mode;
-  PetscInt n;
-  double  *part_percent; /* participation of the parts [n][parts], NULL for matrices without a mesh */
-  char     completeness[768];
+  Spectrum    right, left_spectrum; /* in the unknowns of the pencil, later expanded to all unknowns */
+  Mode       *mode;
+  PetscInt    n;
+  double     *part_percent; /* participation of the parts [n][parts], NULL for matrices without a mesh */
+  char        completeness[768];
+  ShiftInvert factor; /* of the solution where keep is set */
   /* of the solution under way */
   PetscLogDouble begun;         /* s */
   PetscBool      over;          /* max_time is */

@@ -185,6 +185,26 @@ PetscErrorCode PencilExpand(Pencil pencil, PetscBool left, Vec q, Vec u)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode PencilProjectForce(Pencil pencil, PetscBool transposed, Vec f, Vec g)
+{
+  Vec part;
+
+  PetscFunctionBeginUser;
+  if (!pencil->Zr) {
+    PetscCall(VecCopy(f, g));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(MatMultTranspose(pencil->Zr, f, g));
+  if (transposed) PetscFunctionReturn(0);
+  PetscCall(VecDuplicate(g, &part));
+  for (PetscInt i = 0; i < pencil->n_left; i++) {
+    PetscCall(MatMultTranspose(pencil->left[i], f, part));
+    PetscCall(VecAXPY(g, pencil->parameters.p[pencil->left_mu[i]], part));
+  }
+  PetscCall(VecDestroy(&part));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode PencilRestrict(Pencil pencil, Vec u, Vec q)
 {
   PetscFunctionBeginUser;

@@ -25,6 +25,8 @@ static const struct {
   {"sensitivities.csv", NULL                },
   {"robustness.csv",    NULL                },
   {"parameters.csv",    NULL                },
+  {"frf.csv",           NULL                },
+  {"peaks.csv",         NULL                },
   {"transient.csv",     "transient.csv.part"},
   {"transient.xmf",     "transient.csv.part"},
   {"contact_pairs.csv", "transient.csv.part"},

@@ -1,14 +1,10 @@
 /*
-   The reduced basis. Blocks of vectors are made orthonormal in M block by block (A. Stathopoulos, K. Wu, SIAM J. Sci.
-   Comput. 23, 2002: SVQB): W -= V V' M W, G = W' M W = U D U', W := W U D^-1/2, where directions with D below the
-   square of the drop tolerance are left out. All of it is matrix-matrix work. The dense model V' A_t V is extended by
-   the rows and columns of the new vectors.
+   The reduced basis. Blocks of vectors are made orthonormal in M; the dense model V' A_t V is extended by the rows and
+   columns of the new vectors.
 */
 #include "basis.h"
 #include "base/events.h"
-#include "sweep/dense/dense.h"
-
-#define REORTHOGONALISE 1e-9 /* a direction smaller than this beside its block is rounding */
+#include "solver/orthonormal.h"
 
 PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis)
 {
@@ -39,68 +35,6 @@ PetscErrorCode BasisCreateBlock(const Basis *basis, PetscInt n, BV *block)
   PetscFunctionBeginUser;
   PetscCall(BVDuplicateResize(basis->vectors, n, block));
   PetscCall(BVSetActiveColumns(*block, 0, n));
-  PetscFunctionReturn(0);
-}
-
-/* H = X' A Y (A the identity where NULL) for the active columns of X and Y */
-static PetscErrorCode InnerProducts(BV X, Mat A, BV Y, Mat *H)
-{
-  PetscInt nx, ny;
-  BV       AY = Y;
-
-  PetscFunctionBeginUser;
-  PetscCall(BVGetActiveColumns(X, NULL, &nx));
-  PetscCall(BVGetActiveColumns(Y, NULL, &ny));
-  if (A) {
-    PetscCall(BVDuplicateResize(Y, ny, &AY));
-    PetscCall(BVMatMult(Y, A, AY));
-  }
-  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, nx, ny, NULL, H));
-  PetscCall(BVDot(AY, X, *H));
-  if (A) PetscCall(BVDestroy(&AY));
-  PetscFunctionReturn(0);
-}
-
-/* W -= V V' M W */
-static PetscErrorCode BlockProject(Basis *basis, BV W)
-{
-  Mat coefficients;
-
-  PetscFunctionBeginUser;
-  if (!basis->reduced.n) PetscFunctionReturn(0);
-  PetscCall(BVSetActiveColumns(basis->vectors, 0, basis->reduced.n));
-  PetscCall(InnerProducts(basis->vectors, basis->M, W, &coefficients));
-  PetscCall(BVMult(W, -1, 1, basis->vectors, coefficients));
-  PetscCall(MatDestroy(&coefficients));
-  PetscFunctionReturn(0);
-}
-
-/* Makes the block orthonormal in M; its active columns become those above the drop tolerance */
-static PetscErrorCode BlockOrthonormalise(const Basis *basis, BV W, PetscReal drop)
-{
-  PetscInt     m, kept = 0;
-  PetscReal   *eigenvalue;
-  PetscScalar *G;
-  Mat          gram;
-
-  PetscFunctionBeginUser;
-  PetscCall(BVGetActiveColumns(W, NULL, &m));
-  if (!m) PetscFunctionReturn(0);
-  PetscCall(InnerProducts(W, basis->M, W, &gram));
-  PetscCall(PetscMalloc1(m, &eigenvalue));
-  PetscCall(MatDenseGetArray(gram, &G));
-  PetscCall(DenseSymmetricEigen(m, G, NULL, eigenvalue, NULL));
-  PetscCallMPI(MPI_Bcast(G, (PetscMPIInt)(m * m), MPIU_SCALAR, 0, basis->comm)); /* the same directions on all ranks */
-  PetscCallMPI(MPI_Bcast(eigenvalue, (PetscMPIInt)m, MPIU_REAL, 0, basis->comm));
-  drop = PetscMax(drop, REORTHOGONALISE * PetscSqrtReal(PetscMax(eigenvalue[m - 1], 0)));
-  for (PetscInt i = m - 1; i >= 0 && eigenvalue[i] > drop * drop; i--) kept++;
-  for (PetscInt k = 0; k < kept; k++)
-    for (PetscInt i = 0; i < m; i++) G[k * m + i] = G[(m - kept + k) * m + i] / PetscSqrtReal(eigenvalue[m - kept + k]);
-  PetscCall(MatDenseRestoreArray(gram, &G));
-  PetscCall(BVMultInPlace(W, gram, 0, kept));
-  PetscCall(BVSetActiveColumns(W, 0, kept));
-  PetscCall(MatDestroy(&gram));
-  PetscCall(PetscFree(eigenvalue));
   PetscFunctionReturn(0);
 }
 
@@ -141,12 +75,12 @@ static PetscErrorCode TermExtend(const Basis *basis, const OperatorsTerm *term, 
 
   PetscFunctionBeginUser;
   PetscCall(MatrixGrow(first, n, reduced));
-  PetscCall(InnerProducts(basis->vectors, term->A, block, &H));
+  PetscCall(BlockProducts(basis->vectors, term->A, block, &H));
   PetscCall(BlockCopy(H, PETSC_FALSE, n, 0, first, *reduced));
   if (!term->symmetric) {
     PetscCall(MatDestroy(&H));
     PetscCall(MatCreateTranspose(term->A, &At));
-    PetscCall(InnerProducts(basis->vectors, At, block, &H));
+    PetscCall(BlockProducts(basis->vectors, At, block, &H));
     PetscCall(MatDestroy(&At));
   }
   PetscCall(BlockCopy(H, PETSC_TRUE, n, first, 0, *reduced));
@@ -172,7 +106,7 @@ static PetscErrorCode DiagonalExtend(const Basis *basis, const OperatorsTerm *te
   PetscCall(BVGetMat(scaled, &H));
   PetscCall(MatDiagonalScale(H, diagonal, NULL));
   PetscCall(BVRestoreMat(scaled, &H));
-  PetscCall(InnerProducts(basis->vectors, NULL, scaled, &H));
+  PetscCall(BlockProducts(basis->vectors, NULL, scaled, &H));
   PetscCall(BlockCopy(H, PETSC_FALSE, n, 0, first, *reduced));
   PetscCall(BlockCopy(H, PETSC_TRUE, n, first, 0, *reduced));
   PetscCall(MatDestroy(&H));
@@ -223,13 +157,9 @@ PetscErrorCode BasisAdd(Basis *basis, BV block, PetscReal drop, PetscInt *n_adde
 
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_ORTHOGONALISE));
-  PetscCall(BlockProject(basis, block));
-  PetscCall(BlockOrthonormalise(basis, block, drop));
+  PetscCall(BlockOrthonormalise(basis->vectors, first, basis->M, drop, block));
   PetscCall(BVGetActiveColumns(block, NULL, &n));
   if (n) {
-    PetscCall(BlockProject(basis, block));
-    PetscCall(BlockOrthonormalise(basis, block, 0.1));
-    PetscCall(BVGetActiveColumns(block, NULL, &n));
     PetscCall(BVResize(basis->vectors, first + n, PETSC_TRUE));
     PetscCall(BVSetActiveColumns(basis->vectors, first, first + n));
     PetscCall(BVCopy(block, basis->vectors));

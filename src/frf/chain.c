@@ -1,0 +1,234 @@
+/*
+   Krylov vectors at the shift (Z. Bai, Y. Su, SIAM J. Sci. Comput. 26, 2005: second-order Krylov spaces for the damped
+   pencil; C. Campos, J. E. Roman, SIAM J. Sci. Comput. 38, 2016: states as coordinates in one space). The modes' states
+   are in the chain from the beginning, so that steps do not fall back on the modes near the shift.
+*/
+#include "chain.h"
+
+#define STATE_DEPENDENT 1e-9 /* a state of length one that is nearer than this to those before is one of them */
+
+PetscErrorCode FrfChainCreate(FrfSpace *space, const ShiftInvert *factor, PetscBool transposed, PetscInt capacity,
+                              FrfChain *chain)
+{
+  PetscFunctionBeginUser;
+  *chain        = (FrfChain){.space = space, .factor = *factor, .transposed = transposed, .capacity = capacity};
+  chain->length = (space->pencil.C ? 2 : 1) * space->small.size;
+  PetscCall(PetscCalloc1(capacity * chain->length, &chain->state));
+  PetscFunctionReturn(0);
+}
+
+static PetscReal StateDot(const FrfChain *chain, const PetscReal a[], const PetscReal b[])
+{
+  PetscReal sum = 0;
+
+  for (PetscInt i = 0; i < chain->length; i++) sum += a[i] * b[i];
+  return sum;
+}
+
+/* Scales a state to length one and returns the length before */
+static PetscReal StateScale(const FrfChain *chain, PetscReal a[])
+{
+  const PetscReal length = PetscSqrtReal(StateDot(chain, a, a));
+
+  for (PetscInt i = 0; i < chain->length && length > 0; i++) a[i] /= length;
+  return length;
+}
+
+/* Takes in what a state (overwritten) holds beyond those of the chain */
+static PetscErrorCode StateAdd(FrfChain *chain, PetscReal a[])
+{
+  PetscReal length;
+
+  PetscFunctionBeginUser;
+  (void)StateScale(chain, a);
+  for (int twice = 0; twice < 2; twice++)
+    for (PetscInt k = 0; k < chain->n; k++) {
+      const PetscReal *b = &chain->state[k * chain->length], dot = StateDot(chain, a, b);
+
+      for (PetscInt i = 0; i < chain->length; i++) a[i] -= dot * b[i];
+    }
+  length = StateScale(chain, a);
+  if (length < STATE_DEPENDENT || chain->n == chain->capacity) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(&chain->state[chain->n++ * chain->length], a, chain->length));
+  PetscFunctionReturn(0);
+}
+
+/* States of a mode, real and imaginary part: x, or with damping [t x; x], t = g / (lambda - shift). x[0], x[1] are
+   coordinates of the two parts, x[1] NULL for a real vector */
+static PetscErrorCode StateAddMode(FrfChain *chain, PetscComplex lambda, const PetscReal *x[2])
+{
+  const PetscInt     size = chain->space->small.size, two = chain->length > size;
+  const PetscComplex t = chain->factor.shift / (lambda - chain->factor.shift);
+  PetscReal         *a;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(chain->length, &a));
+  for (int part = 0; part < 2; part++) {
+    for (PetscInt i = 0; i < size; i++) {
+      const PetscComplex z = CMPLX(x[0][i], x[1] ? x[1][i] : 0), tz = two ? t * z : z;
+
+      a[i] = part ? cimag(tz) : creal(tz);
+      if (two) a[size + i] = part ? cimag(z) : creal(z);
+    }
+    if (part == 0 || x[1] || two) PetscCall(StateAdd(chain, a));
+  }
+  PetscCall(PetscFree(a));
+  PetscFunctionReturn(0);
+}
+
+/* The block of the modes' vectors, real parts and imaginary ones; column[i] is the first of mode i */
+static PetscErrorCode ModesBlock(Frf frf, const FrfChain *chain, PetscInt n, PetscInt column[], BV *block)
+{
+  Vec x[4], q;
+
+  PetscFunctionBeginUser;
+  PetscCall(FrfSpaceCreateBlock(chain->space, 2 * n, block));
+  column[0] = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    const int first = chain->transposed ? 2 : 0;
+
+    PetscCall(ModesGetVectors(frf->modes, i, &x[0], &x[1], &x[2], &x[3]));
+    column[i + 1] = column[i];
+    for (int part = 0; part < 2; part++) {
+      if (!x[first + part]) continue;
+      PetscCall(BVGetColumn(*block, column[i + 1], &q));
+      PetscCall(PencilRestrict(frf->pencil, x[first + part], q));
+      PetscCall(BVRestoreColumn(*block, column[i + 1]++, &q));
+    }
+  }
+  PetscCall(BVSetActiveColumns(*block, 0, column[n]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfChainAddModes(Frf frf, FrfChain *chain)
+{
+  const PetscInt size = chain->space->small.size;
+  const Mode    *mode;
+  PetscInt       n, *column;
+  PetscReal     *x;
+  BV             block;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesGet(frf->modes, &n, &mode));
+  PetscCall(PetscMalloc1(n + 1, &column));
+  PetscCall(ModesBlock(frf, chain, n, column, &block));
+  PetscCall(FrfSpaceAdd(chain->space, block));
+  PetscCall(FrfSpaceCoordinates(chain->space, block, &x));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal *part[2] = {&x[column[i] * size],
+                                column[i + 1] - column[i] == 2 ? &x[(column[i] + 1) * size] : NULL};
+
+    PetscCall(StateAddMode(chain, CMPLX(mode[i].sigma, mode[i].omega), part));
+  }
+  chain->last = chain->n;
+  PetscCall(BVDestroy(&block));
+  PetscCall(PetscFree(x));
+  PetscCall(PetscFree(column));
+  PetscFunctionReturn(0);
+}
+
+/* Y = A X, or A' X */
+static PetscErrorCode BlockApply(const FrfChain *chain, BV X, Mat A, BV Y)
+{
+  PetscFunctionBeginUser;
+  PetscCall(chain->transposed ? BVMatMultTranspose(X, A, Y) : BVMatMult(X, A, Y));
+  PetscFunctionReturn(0);
+}
+
+/* X := Q0^-1 R, or Q0^-T R, and the states [V' X; old], old[n][size] NULL for zero; X goes into the space */
+static PetscErrorCode ChainTake(FrfChain *chain, BV R, const PetscReal *old)
+{
+  const PetscInt size = chain->space->small.size;
+  PetscInt       n;
+  PetscReal     *c, *a;
+  BV             X;
+  Mat            right, answer;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetActiveColumns(R, NULL, &n));
+  PetscCall(FrfSpaceCreateBlock(chain->space, n, &X));
+  PetscCall(BVGetMat(R, &right));
+  PetscCall(BVGetMat(X, &answer));
+  PetscCall(ShiftInvertApplyBlock(&chain->factor, chain->transposed, right, answer));
+  PetscCall(BVRestoreMat(X, &answer));
+  PetscCall(BVRestoreMat(R, &right));
+  *chain->n_solves += n;
+  PetscCall(FrfSpaceAdd(chain->space, X));
+  PetscCall(FrfSpaceCoordinates(chain->space, X, &c));
+  PetscCall(PetscCalloc1(chain->length, &a));
+  chain->last = chain->n;
+  for (PetscInt j = 0; j < n; j++) {
+    PetscCall(PetscArraycpy(a, &c[j * size], size));
+    if (chain->length > size && old) PetscCall(PetscArraycpy(a + size, &old[j * size], size));
+    if (chain->length > size && !old) PetscCall(PetscArrayzero(a + size, size));
+    PetscCall(StateAdd(chain, a));
+  }
+  PetscCall(PetscFree(a));
+  PetscCall(PetscFree(c));
+  PetscCall(BVDestroy(&X));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfChainBegin(FrfChain *chain, PetscInt n, const Vec b[])
+{
+  BV R;
+
+  PetscFunctionBeginUser;
+  PetscCall(FrfSpaceCreateBlock(chain->space, n, &R));
+  for (PetscInt j = 0; j < n; j++) PetscCall(BVInsertVec(R, j, b[j]));
+  PetscCall(ChainTake(chain, R, NULL));
+  PetscCall(BVDestroy(&R));
+  PetscFunctionReturn(0);
+}
+
+/* R = M P, or with damping -g Q'(shift) P - g^2 M Q */
+static PetscErrorCode ChainResidual(const FrfChain *chain, PetscInt n, const PetscReal states[], BV R)
+{
+  const PencilMatrices *m    = &chain->space->pencil;
+  const PetscReal       g    = chain->factor.shift;
+  const PetscInt        size = chain->space->small.size;
+  BV                    P, T;
+
+  PetscFunctionBeginUser;
+  PetscCall(FrfSpaceCreateBlock(chain->space, n, &P));
+  PetscCall(FrfSpaceLift(chain->space, n, chain->length, states, P));
+  PetscCall(BlockApply(chain, P, m->M, R));
+  if (m->C) {
+    PetscCall(FrfSpaceCreateBlock(chain->space, n, &T));
+    PetscCall(BVScale(R, -2 * g * g));
+    PetscCall(BlockApply(chain, P, m->C, T));
+    PetscCall(BVMult(R, -g, 1, T, NULL));
+    PetscCall(FrfSpaceLift(chain->space, n, chain->length, states + size, P));
+    PetscCall(BlockApply(chain, P, m->M, T));
+    PetscCall(BVMult(R, -g * g, 1, T, NULL));
+    PetscCall(BVDestroy(&T));
+  }
+  PetscCall(BVDestroy(&P));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfChainStep(FrfChain *chain)
+{
+  const PetscInt n = chain->n - chain->last, size = chain->space->small.size;
+  PetscReal     *states, *old;
+  BV             R;
+
+  PetscFunctionBeginUser;
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(n * chain->length, &states, n * size, &old));
+  PetscCall(PetscArraycpy(states, &chain->state[chain->last * chain->length], n * chain->length));
+  for (PetscInt j = 0; j < n; j++) PetscCall(PetscArraycpy(&old[j * size], &states[j * chain->length], size));
+  PetscCall(FrfSpaceCreateBlock(chain->space, n, &R));
+  PetscCall(ChainResidual(chain, n, states, R));
+  PetscCall(ChainTake(chain, R, old));
+  PetscCall(BVDestroy(&R));
+  PetscCall(PetscFree2(states, old));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfChainDestroy(FrfChain *chain)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(chain->state));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,31 @@
+/* Private to frf/: Krylov vectors of the pencil at the shift, beyond those of the modes */
+#pragma once
+
+#include "space.h"
+
+/* With Q0 = K - shift M undamped, the states p are vectors and S p = Q0^-1 M p; with damping Q0 = Q(shift), they are pairs
+   p, q and S [p; q] = [-Q0^-1 (g Q'(shift) p + g^2 M q); p], g = shift, so that
+
+      (Q0 - d M)^-1 b = (1 - d S)^-1 Q0^-1 b,   Q(shift + g d)^-1 b = first part of (1 - d S)^-1 [Q0^-1 b; 0].
+
+   States are kept as coordinates in the space, orthonormal: first those of the modes, which S maps on themselves, then
+   those of the chain. Left chains are those of the transposed pencil. */
+typedef struct {
+  FrfSpace   *space;
+  ShiftInvert factor; /* borrowed */
+  PetscBool   transposed;
+  PetscInt    n, capacity, length; /* states, most of them, numbers of each: size, or 2 size with damping */
+  PetscInt    last;                /* the states from here on are those of the last step */
+  PetscReal  *state;               /* [capacity][length] */
+  PetscInt   *n_solves;            /* counts right-hand sides */
+} FrfChain;
+
+/* A chain of up to `capacity` states */
+PETSC_INTERN PetscErrorCode FrfChainCreate(FrfSpace *space, const ShiftInvert *factor, PetscBool transposed,
+                                           PetscInt capacity, FrfChain *chain);
+/* Puts vectors and states of all modes into space and chain */
+PETSC_INTERN PetscErrorCode FrfChainAddModes(Frf frf, FrfChain *chain);
+/* Begins with Q0^-1 b of n vectors b in the unknowns of the pencil, or goes on by one step. The space grows. */
+PETSC_INTERN PetscErrorCode FrfChainBegin(FrfChain *chain, PetscInt n, const Vec b[]);
+PETSC_INTERN PetscErrorCode FrfChainStep(FrfChain *chain);
+PETSC_INTERN PetscErrorCode FrfChainDestroy(FrfChain *chain);

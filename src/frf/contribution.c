@@ -1,0 +1,93 @@
+/*
+   How much each mode gives: |r_k| / |i omega - lambda_k| with the residue r_k = (l^T x)(y^T f) / (y^T Q'(lambda) x), whose
+   denominator is 2 |lambda| |x|_M |y|_M / condition. A rigid mode gives (l^T x)(y^T f) / (y^T M x) / omega^2.
+*/
+#include "frfimpl.h"
+
+#define POLE_ROUNDING 1e-14 /* relative distance of a frequency and a mode that rounding cannot tell from none */
+
+/* Distance of i omega from the eigenvalue, rad/s */
+static PetscReal ModeDistance(const Mode *mode, PetscReal omega)
+{
+  return hypot(mode->sigma, mode->omega - omega);
+}
+
+PetscErrorCode FrfCheckPoles(Frf frf)
+{
+  const Mode *mode;
+  PetscInt    n;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesGet(frf->modes, &n, &mode));
+  for (PetscInt i = 0; i < frf->n; i++)
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscReal omega = 2 * PETSC_PI * frf->freq[i];
+      const PetscReal close = PetscMax(mode[k].error, POLE_ROUNDING * omega);
+
+      PetscCheck(ModeDistance(&mode[k], omega) > close, frf->comm, PETSC_ERR_USER_INPUT,
+                 "-frf_frequencies: %.15g Hz is a pole, mode %" PetscInt_FMT
+                 " without damping, where the response is infinite; move the frequency, or give damping",
+                 (double)frf->freq[i], k + 1);
+    }
+  PetscFunctionReturn(0);
+}
+
+/* |v^T (xr + i xi)|^2 */
+static PetscErrorCode SquareDot(Vec v, Vec xr, Vec xi, PetscReal *square)
+{
+  PetscReal re, im = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDot(v, xr, &re));
+  if (xi) PetscCall(VecDot(v, xi, &im));
+  *square = re * re + im * im;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfResiduesCreate(Frf frf, FrfResidues *r)
+{
+  const Mode *mode;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesGet(frf->modes, &r->n, &mode));
+  PetscCall(PetscCalloc1(r->n, &r->residue));
+  for (PetscInt k = 0; k < r->n; k++) {
+    const PetscReal size    = hypot(mode[k].sigma, mode[k].omega);
+    PetscReal       outputs = 0, input, square;
+    Vec             xr, xi, yr, yi;
+
+    PetscCall(ModesGetVectors(frf->modes, k, &xr, &xi, &yr, &yi));
+    PetscCall(SquareDot(frf->f, yr, yi, &input));
+    for (PetscInt p = 0; p < frf->n_outputs; p++) {
+      PetscCall(SquareDot(frf->l[p], xr, xi, &square));
+      outputs += square;
+    }
+    r->residue[k] = PetscSqrtReal(outputs * input) * mode[k].condition / (mode[k].rigid ? 1 : 2 * size);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfResiduesLargest(Frf frf, const FrfResidues *r, PetscReal omega, PetscInt *largest)
+{
+  const Mode *mode;
+  PetscInt    n;
+  PetscReal   most = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesGet(frf->modes, &n, &mode));
+  *largest = -1;
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal here = r->residue[k] / (mode[k].rigid ? omega * omega : ModeDistance(&mode[k], omega));
+
+    if (here > most) *largest = k;
+    most = PetscMax(most, here);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfResiduesDestroy(FrfResidues *r)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(r->residue));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,187 @@
+/*
+   Frf: life cycle, options, and the flow: places -> modes -> residual term -> response and its error -> peaks.
+*/
+#include "frfimpl.h"
+#include <squeal/options.h>
+#include <string.h>
+
+#define MAX_PLACES     512
+#define BEYOND_HIGHEST 1.5 /* end of the band of modes where none is asked for, beside the highest frequency */
+
+PetscErrorCode FrfCreate(MPI_Comm comm, Frf *frf)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, frf));
+  (*frf)->comm      = comm;
+  (*frf)->rtol      = 1e-8;
+  (*frf)->max_steps = 30;
+  PetscCall(PetscStrncpy((*frf)->directions, "xyz", sizeof((*frf)->directions)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfSetOperators(Frf frf, Operators operators)
+{
+  PetscFunctionBeginUser;
+  frf->operators = operators;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfSetModes(Frf frf, Modes modes)
+{
+  PetscFunctionBeginUser;
+  frf->modes = modes;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfSetPencil(Frf frf, Pencil pencil)
+{
+  PetscFunctionBeginUser;
+  frf->pencil = pencil;
+  PetscFunctionReturn(0);
+}
+
+/* The frequencies that a text stands for */
+static PetscErrorCode FrequenciesParse(Frf frf)
+{
+  PetscBool is_log;
+
+  PetscFunctionBeginUser;
+  PetscCall(ValuesParse(frf->comm, "-frf_frequencies", frf->frequencies, &frf->n, &frf->freq, &is_log));
+  for (PetscInt i = 0; i < frf->n; i++)
+    PetscCheck(frf->freq[i] > 0, frf->comm, PETSC_ERR_USER_INPUT,
+               "-frf_frequencies %s holds %.6g: frequencies must be positive (Hz)", frf->frequencies,
+               (double)frf->freq[i]);
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for directions other than some of x, y, z, each once */
+static PetscErrorCode DirectionsCheck(Frf frf)
+{
+  PetscBool good = frf->directions[0] ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (const char *c = frf->directions; *c; c++)
+    if (!strchr("xyz", *c) || strchr(c + 1, *c)) good = PETSC_FALSE;
+  PetscCheck(good, frf->comm, PETSC_ERR_USER_INPUT, "-frf_directions '%s' must be some of x, y, z", frf->directions);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfSetFromOptions(Frf frf)
+{
+  static const char *const methods[] = {"modal", "direct"};
+  PetscInt                 method    = FRF_MODAL;
+  PetscBool                given;
+
+  PetscFunctionBeginUser;
+  PetscOptionsBegin(frf->comm, NULL, "Frequency response", NULL);
+  PetscCall(PetscOptionsString("-frf_force", "where a force of 1 N acts: a probe and x, y, z or three numbers", "frf.h",
+                               frf->force, frf->force, sizeof(frf->force), NULL));
+  PetscCall(PetscOptionsString("-frf_directions", "in which the response is recorded: some of x, y, z", "frf.h",
+                               frf->directions, frf->directions, sizeof(frf->directions), NULL));
+  PetscCall(PetscOptionsString("-frf_frequencies", "low:high:n, low:high:n:log, or f1,f2,..., Hz", "frf.h",
+                               frf->frequencies, frf->frequencies, sizeof(frf->frequencies), &given));
+  PetscCall(PetscOptionsEList("-frf_method", "superposition of modes, or the whole system at each frequency", "frf.h",
+                              methods, N_FRF_METHODS, methods[0], &method, NULL));
+  PetscCall(PetscOptionsReal("-frf_rtol", "largest estimated relative error of superposition (an estimate, no bound)",
+                             "frf.h", frf->rtol, &frf->rtol, NULL));
+  PetscCall(PetscOptionsInt("-frf_max_steps", "most steps of the residual term", "frf.h", frf->max_steps,
+                            &frf->max_steps, NULL));
+  PetscOptionsEnd();
+  frf->method   = (FrfMethod)method;
+  frf->n_places = MAX_PLACES;
+  PetscCall(PetscCalloc1(MAX_PLACES, &frf->place));
+  PetscCall(OptionsGetWords(frf->comm, "-frf_probes", "where the response is recorded; default all probes",
+                            &frf->n_places, frf->place));
+  PetscCheck(frf->rtol > 0, frf->comm, PETSC_ERR_USER_INPUT, "-frf_rtol %.6g must be positive", (double)frf->rtol);
+  PetscCheck(frf->max_steps > 0, frf->comm, PETSC_ERR_USER_INPUT, "-frf_max_steps %" PetscInt_FMT " must be positive",
+             frf->max_steps);
+  PetscCall(DirectionsCheck(frf));
+  if (given) PetscCall(FrequenciesParse(frf));
+  PetscFunctionReturn(0);
+}
+
+/* The band of the modes must have something to do with the frequencies, and left vectors are needed */
+static PetscErrorCode FrfCheckModes(Frf frf)
+{
+  const PetscReal low  = PetscMin(frf->freq[0], frf->freq[frf->n - 1]);
+  const PetscReal high = PetscMax(frf->freq[0], frf->freq[frf->n - 1]);
+  PetscBool       has_band, has_nearest, left;
+  PetscReal       band[2] = {0, BEYOND_HIGHEST * high}, growth;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesHaveBand(frf->modes, &has_band));
+  PetscCall(ModesWant(frf->modes, &has_nearest, &left));
+  PetscCheck(left, frf->comm, PETSC_ERR_USER_INPUT,
+             "-modes_left false: superposition of modes needs left vectors; leave it out, or give -frf_method direct");
+  if (has_band) PetscCall(ModesGetBand(frf->modes, band, &growth));
+  PetscCheck(low <= band[1] && high >= band[0], frf->comm, PETSC_ERR_USER_INPUT,
+             "-frf_frequencies from %.6g to %.6g Hz: no mode of -modes_band %.6g,%.6g Hz is among them; widen the band",
+             (double)low, (double)high, (double)band[0], (double)band[1]);
+  if (!has_band && !has_nearest) PetscCall(ModesSetBand(frf->modes, band));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfSetUp(Frf frf)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(frf->n, frf->comm, PETSC_ERR_USER_INPUT,
+             "-frf_frequencies must be given: low:high:n, low:high:n:log, or f1,f2,... (Hz)");
+  if (frf->method == FRF_MODAL) PetscCall(FrfCheckModes(frf));
+  PetscCall(FrfFindForce(frf));
+  PetscCall(FrfFindOutputs(frf));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfSolve(Frf frf)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc3(frf->n * frf->n_outputs, &frf->re, frf->n * frf->n_outputs, &frf->im, frf->n, &frf->error));
+  PetscCall(frf->method == FRF_DIRECT ? FrfSolveDirect(frf) : FrfSolveModal(frf));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfGet(Frf frf, PetscInt *n, const PetscReal **freq_hz, PetscInt *n_outputs, const FrfOutput **output)
+{
+  PetscFunctionBeginUser;
+  *n         = frf->n;
+  *freq_hz   = frf->freq;
+  *n_outputs = frf->n_outputs;
+  *output    = frf->output;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfGetResponse(Frf frf, PetscInt i, const PetscReal **re, const PetscReal **im, PetscReal *error)
+{
+  PetscFunctionBeginUser;
+  *re    = &frf->re[i * frf->n_outputs];
+  *im    = &frf->im[i * frf->n_outputs];
+  *error = frf->error[i];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfGetPeaks(Frf frf, PetscInt *n, const FrfPeak **peaks)
+{
+  PetscFunctionBeginUser;
+  *n     = frf->n_peaks;
+  *peaks = frf->peak;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfDestroy(Frf *frf)
+{
+  Frf s = *frf;
+
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < s->n_places; i++) PetscCall(PetscFree(s->place[i]));
+  PetscCall(PetscFree(s->place));
+  PetscCall(PetscFree(s->freq));
+  PetscCall(VecDestroy(&s->f));
+  for (PetscInt p = 0; p < s->n_outputs; p++) PetscCall(VecDestroy(&s->l[p]));
+  PetscCall(PetscFree(s->l));
+  PetscCall(PetscFree(s->output));
+  PetscCall(PetscFree3(s->re, s->im, s->error));
+  PetscCall(PetscFree(s->peak));
+  PetscCall(PetscFree(*frf));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,67 @@
+/* Private to frf/: the record of the solver */
+#pragma once
+
+#include "solver/shiftinvert.h"
+#include <squeal/frf.h>
+#include <complex.h>
+
+typedef enum { FRF_MODAL, FRF_DIRECT, N_FRF_METHODS } FrfMethod;
+
+struct _p_Frf {
+  MPI_Comm  comm;
+  Operators operators;
+  Modes     modes;
+  Pencil    pencil;
+  /* set by options */
+  char       force[256], frequencies[4096], directions[8];
+  PetscInt   n_places; /* names of -frf_probes; 0: all */
+  char     **place;    /* [n_places] */
+  PetscInt   n;        /* frequencies */
+  PetscReal *freq;     /* [n] Hz */
+  FrfMethod  method;
+  PetscReal  rtol;
+  PetscInt   max_steps;
+  /* input and outputs, vectors of all unknowns */
+  char       input[256]; /* in words */
+  Vec        f;          /* force of 1 N */
+  PetscInt   n_outputs;
+  FrfOutput *output; /* [n_outputs] */
+  Vec       *l;      /* [n_outputs] unit vector of the unknown */
+  /* results */
+  PetscReal *re, *im; /* [n][n_outputs] m/N */
+  PetscReal *error;   /* [n] m/N */
+  PetscInt   n_peaks;
+  FrfPeak   *peak;
+  PetscInt   n_steps, n_vectors, n_solves, n_factors; /* of the residual term; of the direct method */
+  Progress   progress;
+};
+
+/* places.c - the force, and the unknowns that are recorded */
+PETSC_INTERN PetscErrorCode FrfFindForce(Frf frf);
+PETSC_INTERN PetscErrorCode FrfFindOutputs(Frf frf);
+/* The force and the outputs in the unknowns of the pencil: right[1] = Zl' f, left[n_outputs] = Zr' l; the caller destroys
+   the vectors */
+PETSC_INTERN PetscErrorCode FrfProject(Frf frf, Vec *right, Vec **left);
+
+/* modal.c, direct.c - the response at all frequencies */
+PETSC_INTERN PetscErrorCode FrfSolveModal(Frf frf);
+PETSC_INTERN PetscErrorCode FrfSolveDirect(Frf frf);
+
+/* contribution.c - how much each mode gives to the response */
+typedef struct {
+  PetscInt n;
+  PetscReal
+    *residue; /* [n] |l^T x| |y^T f| / |y^T Q' x| over the outputs, m/(N s); of a rigid mode / |y^T M x|, 1/kg */
+} FrfResidues;
+
+PETSC_INTERN PetscErrorCode FrfResiduesCreate(Frf frf, FrfResidues *residues);
+/* The mode that gives most at omega (rad/s), -1 for none */
+PETSC_INTERN PetscErrorCode FrfResiduesLargest(Frf frf, const FrfResidues *residues, PetscReal omega, PetscInt *mode);
+PETSC_INTERN PetscErrorCode FrfResiduesDestroy(FrfResidues *residues);
+/* Raises an error for a frequency at which an undamped mode lies */
+PETSC_INTERN PetscErrorCode FrfCheckPoles(Frf frf);
+
+/* peaks.c - maxima of the response; residues NULL: no mode is told */
+PETSC_INTERN PetscErrorCode FrfFindPeaks(Frf frf, const FrfResidues *residues);
+/* Root of the sum of squares over the outputs at frequency i, m/N */
+PETSC_INTERN PetscReal FrfMagnitude(Frf frf, PetscInt i);

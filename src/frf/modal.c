@@ -1,0 +1,222 @@
+/*
+   Superposition of modes with the residual term: Galerkin's method on the span of the modes' vectors and of Krylov
+   vectors at the shift of the modes' own factorisation, which grows until the answer stays what it is.
+*/
+#include "chain.h"
+#include "schur.h"
+
+#define N_LOOKS 33 /* frequencies that are looked at while the space grows */
+
+typedef struct {
+  FrfSpace  space;
+  FrfChain  right, left; /* left is empty for a symmetric pencil */
+  Vec       b, *l;
+  PetscInt  level; /* vectors of the space before the last step */
+  PetscReal shift;
+} Superposition;
+
+/* Columns of real and imaginary parts of all modes' vectors, right and left ones, as far as there are any */
+static PetscErrorCode ModesCount(Frf frf, PetscInt *n_columns)
+{
+  const Mode *mode;
+  PetscInt    n;
+  Vec         x[4];
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesGet(frf->modes, &n, &mode));
+  *n_columns = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(ModesGetVectors(frf->modes, i, &x[0], &x[1], &x[2], &x[3]));
+    for (int k = 0; k < 4; k++) *n_columns += x[k] ? 1 : 0;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Space and chains with the modes */
+static PetscErrorCode SuperpositionCreate(Frf frf, Superposition *s)
+{
+  PencilMatrices pencil;
+  ShiftInvert    factor = {.comm = frf->comm, .progress = &frf->progress};
+  PetscInt       n_modes, most;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesGetFactor(frf->modes, &factor.ksp, &factor.shift));
+  PetscCall(PencilGetMatrices(frf->pencil, &pencil));
+  PetscCall(ModesCount(frf, &n_modes));
+  PetscCall(FrfProject(frf, &s->b, &s->l));
+  s->shift = factor.shift;
+  most     = 2 * n_modes + (frf->max_steps + 1) * (frf->n_outputs + 1);
+  PetscCall(FrfSpaceCreate(&pencil, n_modes + (frf->max_steps + 1) * (frf->n_outputs + 1), &s->space));
+  PetscCall(FrfChainCreate(&s->space, &factor, PETSC_FALSE, most, &s->right));
+  PetscCall(FrfChainCreate(&s->space, &factor, PETSC_TRUE, pencil.symmetric ? 0 : most, &s->left));
+  s->right.n_solves = s->left.n_solves = &frf->n_solves;
+  PetscCall(FrfChainAddModes(frf, &s->right));
+  if (!pencil.symmetric) PetscCall(FrfChainAddModes(frf, &s->left));
+  s->level = s->space.small.n;
+  PetscFunctionReturn(0);
+}
+
+/* The first step, Q0^-1 b and Q0^-T l, or one more */
+static PetscErrorCode SuperpositionStep(Frf frf, Superposition *s)
+{
+  const PetscBool symmetric = s->space.pencil.symmetric;
+
+  PetscFunctionBeginUser;
+  s->level = s->space.small.n;
+  if (frf->n_steps++) {
+    PetscCall(FrfChainStep(&s->right));
+    PetscCall(FrfChainStep(&s->left));
+  } else if (symmetric) {
+    Vec *all;
+
+    PetscCall(PetscMalloc1(frf->n_outputs + 1, &all));
+    all[0] = s->b;
+    PetscCall(PetscArraycpy(all + 1, s->l, frf->n_outputs));
+    PetscCall(FrfChainBegin(&s->right, frf->n_outputs + 1, all));
+    PetscCall(PetscFree(all));
+  } else {
+    PetscCall(FrfChainBegin(&s->right, 1, &s->b));
+    PetscCall(FrfChainBegin(&s->left, frf->n_outputs, s->l));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The force and the outputs in coordinates */
+static PetscErrorCode EndsCreate(Frf frf, const Superposition *s, FrfEnds *ends)
+{
+  BV block;
+
+  PetscFunctionBeginUser;
+  ends->n_outputs = frf->n_outputs;
+  PetscCall(FrfSpaceCreateBlock(&s->space, frf->n_outputs + 1, &block));
+  PetscCall(BVInsertVec(block, 0, s->b));
+  for (PetscInt p = 0; p < frf->n_outputs; p++) PetscCall(BVInsertVec(block, p + 1, s->l[p]));
+  PetscCall(FrfSpaceCoordinates(&s->space, block, &ends->b));
+  ends->l = ends->b + s->space.small.size;
+  PetscCall(BVDestroy(&block));
+  PetscFunctionReturn(0);
+}
+
+/* Response at every stride-th frequency, shared among ranks; the error is the difference of the two */
+static PetscErrorCode RespondAll(Frf frf, const FrfSchur *used, const FrfSchur *larger, PetscInt stride)
+{
+  const PetscInt n = frf->n_outputs;
+  PetscReal     *re, *im;
+  PetscMPIInt    rank, size;
+  PetscInt       singular = -1;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(frf->comm, &rank));
+  PetscCallMPI(MPI_Comm_size(frf->comm, &size));
+  PetscCall(PetscMalloc2(n, &re, n, &im));
+  PetscCall(PetscArrayzero(frf->re, n * frf->n));
+  PetscCall(PetscArrayzero(frf->im, n * frf->n));
+  PetscCall(PetscArrayzero(frf->error, frf->n));
+  for (PetscInt i = rank * stride; i < frf->n; i += size * stride) {
+    const PetscReal omega = 2 * PETSC_PI * frf->freq[i];
+    PetscReal      *hr = &frf->re[i * n], *hi = &frf->im[i * n];
+    PetscBool       pole[2];
+
+    PetscCall(FrfSchurRespond(used, omega, hr, hi, &pole[0]));
+    PetscCall(FrfSchurRespond(larger, omega, re, im, &pole[1]));
+    if (pole[0] || pole[1]) singular = i;
+    for (PetscInt p = 0; p < n; p++) frf->error[i] += PetscSqr(re[p] - hr[p]) + PetscSqr(im[p] - hi[p]);
+    frf->error[i] = PetscSqrtReal(frf->error[i]);
+  }
+  PetscCall(PetscFree2(re, im));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &singular, 1, MPIU_INT, MPI_MAX, frf->comm));
+  PetscCheck(singular < 0, frf->comm, PETSC_ERR_USER_INPUT,
+             "-frf_frequencies: %.15g Hz is a pole, where the response is infinite", (double)frf->freq[singular]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, frf->re, (PetscMPIInt)(n * frf->n), MPIU_REAL, MPI_SUM, frf->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, frf->im, (PetscMPIInt)(n * frf->n), MPIU_REAL, MPI_SUM, frf->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, frf->error, (PetscMPIInt)frf->n, MPIU_REAL, MPI_SUM, frf->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Largest relative error at the frequencies that were looked at, and where */
+static PetscReal WorstError(Frf frf, PetscInt stride, PetscInt *where)
+{
+  PetscReal worst = 0;
+
+  *where = 0;
+  for (PetscInt i = 0; i < frf->n; i += stride) {
+    const PetscReal size = FrfMagnitude(frf, i), relative = size > 0 ? frf->error[i] / size : frf->error[i] > 0;
+
+    if (relative <= worst) continue;
+    worst  = relative;
+    *where = i;
+  }
+  return worst;
+}
+
+/* Response on the space before and after the last step, at every stride-th frequency */
+static PetscErrorCode SuperpositionRespond(Frf frf, const Superposition *s, PetscInt stride)
+{
+  FrfSchur used, larger;
+  FrfEnds  ends;
+
+  PetscFunctionBeginUser;
+  PetscCall(EndsCreate(frf, s, &ends));
+  PetscCall(FrfSchurCreate(&s->space.small, s->level, PETSC_FALSE, s->shift, &ends, &used));
+  PetscCall(FrfSchurCreate(&s->space.small, s->space.small.n, PETSC_TRUE, s->shift, &ends, &larger));
+  PetscCall(RespondAll(frf, &used, &larger, stride));
+  PetscCall(FrfSchurDestroy(&larger));
+  PetscCall(FrfSchurDestroy(&used));
+  PetscCall(PetscFree(ends.b));
+  PetscFunctionReturn(0);
+}
+
+/* Steps until the answer is accurate */
+static PetscErrorCode SuperpositionGrow(Frf frf, Superposition *s)
+{
+  const PetscInt stride = PetscMax(1, frf->n / N_LOOKS);
+  PetscReal      worst  = PETSC_MAX_REAL;
+  PetscInt       where;
+
+  PetscFunctionBeginUser;
+  PetscCall(SuperpositionStep(frf, s));
+  while (worst > frf->rtol && frf->n_steps < frf->max_steps + 1) {
+    PetscCall(SuperpositionStep(frf, s));
+    PetscCall(SuperpositionRespond(frf, s, stride));
+    worst = WorstError(frf, stride, &where);
+    if (worst > frf->rtol || stride == 1) continue;
+    PetscCall(SuperpositionRespond(frf, s, 1));
+    worst = WorstError(frf, 1, &where);
+  }
+  PetscCheck(worst <= frf->rtol, frf->comm, PETSC_ERR_NOT_CONVERGED,
+             "the estimated error at %.6g Hz is %.2g after %" PetscInt_FMT
+             " steps, more than -frf_rtol %.2g: let -modes_band end farther above it, or raise -frf_max_steps",
+             (double)frf->freq[where], (double)worst, frf->n_steps - 1, (double)frf->rtol);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SuperpositionDestroy(Frf frf, Superposition *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(FrfChainDestroy(&s->right));
+  PetscCall(FrfChainDestroy(&s->left));
+  PetscCall(FrfSpaceDestroy(&s->space));
+  PetscCall(VecDestroy(&s->b));
+  PetscCall(VecDestroyVecs(frf->n_outputs, &s->l));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfSolveModal(Frf frf)
+{
+  FrfResidues   residues;
+  Superposition s;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesKeepFactor(frf->modes, PETSC_TRUE));
+  PetscCall(ModesSetPencil(frf->modes, frf->pencil));
+  PetscCall(ModesSolve(frf->modes));
+  PetscCall(FrfCheckPoles(frf));
+  PetscCall(SuperpositionCreate(frf, &s));
+  PetscCall(SuperpositionGrow(frf, &s));
+  frf->n_vectors = s.space.small.n;
+  PetscCall(SuperpositionDestroy(frf, &s));
+  PetscCall(FrfResiduesCreate(frf, &residues));
+  PetscCall(FrfFindPeaks(frf, &residues));
+  PetscCall(FrfResiduesDestroy(&residues));
+  PetscFunctionReturn(0);
+}

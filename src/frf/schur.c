@@ -1,0 +1,162 @@
+/*
+   The small response. With S = Z T Z', T quasi-triangular (LAPACK gees), Q^-1 b is the solution of
+
+      undamped   (T - 1/d) y = -(1/d) Z' Q0^-1 b,          d = omega^2 - shift,            one column
+      damped     (T - w) y   = -w Z' [Q0^-1 b; 0],         w = shift / (i omega - shift),  complex,
+
+   the latter in real arithmetic T Y - Y B = R for the two columns of Y = [re y, im y] with B = [re w, im w; -im w, re
+   w]: both are what LAPACK's trsyl solves, at the cost of a product with T.
+*/
+#include "schur.h"
+#include <slepcblaslapack.h>
+
+/* Factors of the n x n matrix A (overwritten), and A^-1 of m right-hand sides */
+static PetscErrorCode SpaceSolve(PetscInt size, PetscReal A[], PetscInt m, PetscReal B[])
+{
+  PetscBLASInt n, n_right, *pivot, info;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(size, &n));
+  PetscCall(PetscBLASIntCast(m, &n_right));
+  PetscCall(PetscMalloc1(size, &pivot));
+  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&n, &n_right, A, &n, pivot, B, &n, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED, "LAPACK gesv: info %d", (int)info);
+  PetscCall(PetscFree(pivot));
+  PetscFunctionReturn(0);
+}
+
+/* Q0 [n][n], and the right-hand sides M, with damping g Q'(g) and g^2 M, and b, one after the other [.. + 1][n] */
+static void SystemFill(const FrfSmall *s, const FrfSchur *schur, const PetscReal b[], PetscReal Q[], PetscReal R[])
+{
+  const PetscInt  n = schur->n;
+  const PetscReal g = schur->shift;
+
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscInt  at = j * s->size + i;
+      const PetscReal k = s->K[at] + (schur->rounded ? s->E[at] : 0), m = s->M[at], c = s->C ? s->C[at] : 0;
+
+      Q[j * n + i] = schur->damped ? k + g * c + g * g * m : k - g * m;
+      R[j * n + i] = schur->damped ? 2 * g * g * m + g * c : m;
+      if (schur->damped) R[(n + j) * n + i] = g * g * m;
+    }
+  for (PetscInt i = 0; i < n; i++) R[schur->length * n + i] = b[i];
+}
+
+/* S into T, and Q0^-1 b into b */
+static PetscErrorCode SchurForm(const FrfSmall *small, const PetscReal b[], FrfSchur *s)
+{
+  const PetscInt n = s->n, length = s->length;
+  PetscReal     *Q, *R;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n * n, &Q, n * (length + 1), &R));
+  SystemFill(small, s, b, Q, R);
+  PetscCall(SpaceSolve(n, Q, length + 1, R));
+  for (PetscInt j = 0; j < length; j++)
+    for (PetscInt i = 0; i < n; i++) s->T[j * length + i] = (s->damped ? -1 : 1) * R[j * n + i];
+  for (PetscInt j = 0; j < n && s->damped; j++) s->T[j * length + n + j] = 1;
+  PetscCall(PetscArraycpy(s->b, &R[length * n], n));
+  PetscCall(PetscFree2(Q, R));
+  PetscFunctionReturn(0);
+}
+
+/* v := Z' v, work[length] */
+static void SchurTurn(PetscInt length, const PetscReal Z[], PetscReal v[], PetscReal work[])
+{
+  for (PetscInt j = 0; j < length; j++) {
+    work[j] = 0;
+    for (PetscInt i = 0; i < length; i++) work[j] += Z[j * length + i] * v[i];
+  }
+  for (PetscInt j = 0; j < length; j++) v[j] = work[j];
+}
+
+/* T := Z' T Z quasi-triangular */
+static PetscErrorCode SchurReduce(FrfSchur *s, PetscReal Z[])
+{
+  PetscBLASInt n, n_work, none, info;
+  PetscReal   *wr, *wi, *work;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(s->length, &n));
+  PetscCall(PetscBLASIntCast(66 * s->length + 64, &n_work)); /* blocks of 64 columns */
+  PetscCall(PetscMalloc3(s->length, &wr, s->length, &wi, n_work, &work));
+  PetscCallBLAS("LAPACKgees",
+                LAPACKgees_("V", "N", NULL, &n, s->T, &n, &none, wr, wi, Z, &n, work, &n_work, NULL, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED, "LAPACK gees: info %d", (int)info);
+  PetscCall(PetscFree3(wr, wi, work));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfSchurCreate(const FrfSmall *small, PetscInt n, PetscBool rounded, PetscReal shift,
+                              const FrfEnds *ends, FrfSchur *s)
+{
+  PetscReal *Z;
+
+  PetscFunctionBeginUser;
+  *s        = (FrfSchur){.n         = n,
+                         .rounded   = rounded,
+                         .shift     = shift,
+                         .n_outputs = ends->n_outputs,
+                         .damped    = small->C ? PETSC_TRUE : PETSC_FALSE};
+  s->length = s->damped ? 2 * n : n;
+  PetscCall(PetscCalloc1(s->length * s->length, &s->T));
+  PetscCall(PetscCalloc3(s->length, &s->b, ends->n_outputs * s->length, &s->l, 2 * s->length, &s->x));
+  PetscCall(PetscMalloc1(s->length * s->length, &Z));
+  PetscCall(SchurForm(small, ends->b, s));
+  PetscCall(SchurReduce(s, Z));
+  SchurTurn(s->length, Z, s->b, s->x);
+  for (PetscInt p = 0; p < ends->n_outputs; p++) {
+    PetscCall(PetscArraycpy(&s->l[p * s->length], &ends->l[p * small->size], n));
+    SchurTurn(s->length, Z, &s->l[p * s->length], s->x);
+  }
+  PetscCall(PetscFree(Z));
+  PetscFunctionReturn(0);
+}
+
+/* Solves T X - X B = X for the m columns of X */
+static PetscErrorCode SchurSolve(const FrfSchur *s, PetscBLASInt m, const PetscReal B[], PetscBool *singular)
+{
+  const PetscBLASInt minus = -1;
+  PetscBLASInt       n, info;
+  PetscReal          scale;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(s->length, &n));
+  PetscCallBLAS("LAPACKtrsyl", LAPACKtrsyl_("N", "N", &minus, &n, &m, s->T, &n, B, &m, s->x, &n, &scale, &info));
+  PetscCheck(info >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK trsyl: info %d", (int)info);
+  *singular = info > 0 || scale == 0 ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt i = 0; i < m * s->length && !*singular; i++) s->x[i] /= scale;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfSchurRespond(const FrfSchur *s, PetscReal omega, PetscReal re[], PetscReal im[], PetscBool *singular)
+{
+  const PetscReal    d   = omega * omega - s->shift;
+  const PetscComplex w   = s->damped ? s->shift / CMPLX(-s->shift, omega) : 1 / d;
+  const PetscReal    B[] = {creal(w), -cimag(w), cimag(w), creal(w)}; /* column-major */
+  PetscReal         *x = s->x, *y = s->x + s->length;
+
+  PetscFunctionBeginUser;
+  *singular = PETSC_FALSE;
+  for (PetscInt i = 0; i < s->length; i++) x[i] = -creal(w) * s->b[i], y[i] = -cimag(w) * s->b[i];
+  if (s->damped || d != 0)
+    PetscCall(SchurSolve(s, s->damped ? 2 : 1, B, singular));
+  else
+    PetscCall(PetscArraycpy(x, s->b, s->length));
+  for (PetscInt p = 0; p < s->n_outputs; p++) {
+    const PetscReal *l = &s->l[p * s->length];
+
+    re[p] = im[p] = 0;
+    for (PetscInt i = 0; i < s->length; i++) re[p] += l[i] * x[i], im[p] += s->damped ? l[i] * y[i] : 0;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfSchurDestroy(FrfSchur *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(s->T));
+  PetscCall(PetscFree3(s->b, s->l, s->x));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,103 @@
+/*
+   Blocks of vectors made orthonormal in M (A. Stathopoulos, K. Wu, SIAM J. Sci. Comput. 23, 2002: SVQB):
+
+      W -= V V' M W,   G = W' M W = U D U',   W := W U D^-1/2,
+
+   where directions with D below the square of the drop tolerance are left out. All of it is matrix-matrix work; done
+   twice it is orthonormal to rounding.
+*/
+#include "orthonormal.h"
+#include <petscblaslapack.h>
+
+#define REORTHOGONALISE 1e-9 /* a direction smaller than this beside its block is rounding */
+
+PetscErrorCode BlockProducts(BV X, Mat A, BV Y, Mat *H)
+{
+  PetscInt nx, ny;
+  BV       AY = Y;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetActiveColumns(X, NULL, &nx));
+  PetscCall(BVGetActiveColumns(Y, NULL, &ny));
+  if (A) {
+    PetscCall(BVDuplicateResize(Y, ny, &AY));
+    PetscCall(BVMatMult(Y, A, AY));
+  }
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, nx, ny, NULL, H));
+  PetscCall(BVDot(AY, X, *H));
+  if (A) PetscCall(BVDestroy(&AY));
+  PetscFunctionReturn(0);
+}
+
+/* W -= V V' M W */
+static PetscErrorCode BlockProject(BV V, PetscInt n, Mat M, BV W)
+{
+  Mat coefficients;
+
+  PetscFunctionBeginUser;
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(BVSetActiveColumns(V, 0, n));
+  PetscCall(BlockProducts(V, M, W, &coefficients));
+  PetscCall(BVMult(W, -1, 1, V, coefficients));
+  PetscCall(MatDestroy(&coefficients));
+  PetscFunctionReturn(0);
+}
+
+/* Eigenvalues w, ascending, and vectors of the symmetric n x n matrix G, which they overwrite; those of rank 0 on all */
+static PetscErrorCode GramEigen(MPI_Comm comm, PetscInt size, PetscScalar G[], PetscReal w[])
+{
+  PetscBLASInt n, work_size, info;
+  PetscScalar *work;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(size, &n));
+  PetscCall(PetscBLASIntCast(66 * size + 64, &work_size)); /* blocks of 64 columns */
+  PetscCall(PetscMalloc1(work_size, &work));
+  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "U", &n, G, &n, w, work, &work_size, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED, "LAPACK syev: info %d", (int)info);
+  PetscCall(PetscFree(work));
+  PetscCallMPI(MPI_Bcast(G, (PetscMPIInt)(size * size), MPIU_SCALAR, 0, comm));
+  PetscCallMPI(MPI_Bcast(w, (PetscMPIInt)size, MPIU_REAL, 0, comm));
+  PetscFunctionReturn(0);
+}
+
+/* Makes the block orthonormal in M; its active columns become those above the drop tolerance */
+static PetscErrorCode BlockScale(Mat M, PetscReal drop, BV W)
+{
+  PetscInt     m, kept = 0;
+  PetscReal   *eigenvalue;
+  PetscScalar *G;
+  Mat          gram;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetActiveColumns(W, NULL, &m));
+  if (!m) PetscFunctionReturn(0);
+  PetscCall(BlockProducts(W, M, W, &gram));
+  PetscCall(PetscMalloc1(m, &eigenvalue));
+  PetscCall(MatDenseGetArray(gram, &G));
+  PetscCall(GramEigen(PetscObjectComm((PetscObject)W), m, G, eigenvalue));
+  drop = PetscMax(drop, REORTHOGONALISE * PetscSqrtReal(PetscMax(eigenvalue[m - 1], 0)));
+  for (PetscInt i = m - 1; i >= 0 && eigenvalue[i] > drop * drop; i--) kept++;
+  for (PetscInt k = 0; k < kept; k++)
+    for (PetscInt i = 0; i < m; i++) G[k * m + i] = G[(m - kept + k) * m + i] / PetscSqrtReal(eigenvalue[m - kept + k]);
+  PetscCall(MatDenseRestoreArray(gram, &G));
+  PetscCall(BVMultInPlace(W, gram, 0, kept));
+  PetscCall(BVSetActiveColumns(W, 0, kept));
+  PetscCall(MatDestroy(&gram));
+  PetscCall(PetscFree(eigenvalue));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlockOrthonormalise(BV V, PetscInt n, Mat M, PetscReal drop, BV W)
+{
+  PetscInt m;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlockProject(V, n, M, W));
+  PetscCall(BlockScale(M, drop, W));
+  PetscCall(BVGetActiveColumns(W, NULL, &m));
+  if (!m) PetscFunctionReturn(0);
+  PetscCall(BlockProject(V, n, M, W));
+  PetscCall(BlockScale(M, 0.1, W));
+  PetscFunctionReturn(0);
+}
