@@ -37,6 +37,9 @@ PetscErrorCode DynamicsSetModel(Dynamics dynamics, Model model, Contact contact)
 .  -dynamics_shape <dir>         - folder of a run of modes, one of which is added to the start:
 .  -dynamics_shape_mode <1>      - its number in modes.csv
 .  -dynamics_shape_amplitude <1e-9> - largest component of its displacement Re(x), m; velocity Re(lambda x)
+.  -dynamics_filters <dir>       - folder of a run of modes about the sliding state, -modes_filters and lumped mass:
+                                   their amplitudes in amplitudes.csv, |c| at the largest component of the shape, m
+.  -dynamics_filters_modes <0> - numbers of the modes in modes.csv; 0: all unstable ones
 .  -dynamics_coriolis, -dynamics_centrifugal <false> - inertial forces in parts that turn
 .  -dynamics_kernel <auto|general> - internal forces; general: one matrix of blocks for every body
 .  -dynamics_history_interval <5e-6> - between rows of transient.csv, s; rounded to whole steps, as the next two

@@ -48,6 +48,7 @@ PetscErrorCode ModesSetPencil(Modes modes, Pencil pencil);
 .  -modes_growth <1/s>       - largest growth or decay that a band must cover; default a tenth of the angular
 frequency of f2
 .  -modes_left <true>        - compute left vectors (condition and error need them)
+.  -modes_filters <false>    - write modal filters (filters.h5), for the amplitudes of the modes in a transient
 .  -modes_disc <disc>        - part whose modes are labelled by nodal circles and diameters
 -  -modes_contact <all|static> - whether the pencil that is set is to be one with all pairs closed, or
 about the sliding state (statics.h)

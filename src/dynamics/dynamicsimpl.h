@@ -39,6 +39,7 @@ struct _p_Dynamics {
   char          shape[PETSC_MAX_PATH_LEN]; /* folder of a run of modes; empty for none */
   PetscInt      shape_mode, checkpoint_interval;
   PetscReal     shape_amplitude, b;
+  char          filters_dir[PETSC_MAX_PATH_LEN]; /* folder of a run of modes; empty for none */
   /* children */
   Operators        operators;
   Statics          statics;
@@ -47,6 +48,7 @@ struct _p_Dynamics {
   External         external;
   ContactProjector projector; /* NULL without contacts */
   History          history;
+  HistoryFilters   filters;
   Results          results;
   /* state and work */
   const Layout *layout;
@@ -82,6 +84,10 @@ PETSC_INTERN PetscErrorCode StateVectorToVec(Model model, const Layout *layout, 
 
 /* startstate.c - displacements and velocities at the start */
 PETSC_INTERN PetscErrorCode DynamicsStartState(Dynamics dynamics);
+
+/* filters.c - modal filters of -dynamics_filters for the history, which solves the sliding state; frees them */
+PETSC_INTERN PetscErrorCode DynamicsSetFilters(Dynamics dynamics);
+PETSC_INTERN PetscErrorCode DynamicsDestroyFilters(Dynamics dynamics);
 
 /* dynamicskeep.c - checkpoints */
 PETSC_INTERN PetscErrorCode DynamicsKeep(Dynamics dynamics);

@@ -15,8 +15,9 @@ static const PetscReal oblique[3] = {0.754877666246692760, 0.569840290998053266,
 
 /* The local vertices on which the shape is laid */
 typedef struct {
-  Model      model;
-  PetscReal *re, *im; /* [vertices][3] */
+  Model       model;
+  const char *option;  /* that asks for it */
+  PetscReal  *re, *im; /* [vertices][3] */
 } ShapeTarget;
 
 static PetscReal ShapeHeight(const PetscReal x[3])
@@ -103,12 +104,11 @@ static PetscErrorCode ShapeFillCell(const Shape *shape, PetscInt c, const ShapeT
     const PetscInt v = vertices[i], p = ShapeFindCorner(shape, cell, &x[3 * i]);
 
     if (p < 0)
-      PetscCall(
-        FaultNote(fault, PETSC_ERR_USER_INPUT,
-                  "the mesh of -dynamics_shape has no node at %.9g, %.9g, %.9g m of a cell about %.9g, %.9g, %.9g "
-                  "m; it must be the mesh of this run",
-                  (double)x[3 * i], (double)x[3 * i + 1], (double)x[3 * i + 2], (double)centre[0], (double)centre[1],
-                  (double)centre[2]));
+      PetscCall(FaultNote(fault, PETSC_ERR_USER_INPUT,
+                          "the mesh of %s has no node at %.9g, %.9g, %.9g m of a cell about %.9g, %.9g, %.9g "
+                          "m; it must be the mesh of this run",
+                          to->option, (double)x[3 * i], (double)x[3 * i + 1], (double)x[3 * i + 2], (double)centre[0],
+                          (double)centre[1], (double)centre[2]));
     for (int d = 0; d < 3 && p >= 0; d++) {
       to->re[3 * v + d] = shape->re[3 * p + d];
       to->im[3 * v + d] = shape->im[3 * p + d];
@@ -133,16 +133,15 @@ static PetscErrorCode ShapeFillCells(MPI_Comm comm, const Shape *shape, const Sh
   PetscCall(FaultsAgree(comm, fault)); /* a place says more than numbers */
   if (n_cells != shape->n_cells)
     PetscCall(FaultNote(fault, PETSC_ERR_USER_INPUT,
-                        "the mesh of -dynamics_shape has %" PetscInt_FMT " cells, that of this run %" PetscInt_FMT,
+                        "the mesh of %s has %" PetscInt_FMT " cells, that of this run %" PetscInt_FMT, to->option,
                         shape->n_cells, n_cells));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ShapeRead(Model model, const char dir[], PetscInt mode, PetscReal re[], PetscReal im[],
-                         PetscReal lambda[2])
+PetscErrorCode ShapeRead(Model model, const ShapeSource *source, PetscReal re[], PetscReal im[], PetscReal lambda[2])
 {
   const Mesh *mesh;
-  ShapeTarget to    = {.model = model, .re = re, .im = im};
+  ShapeTarget to    = {.model = model, .option = source->option, .re = re, .im = im};
   Shape       shape = {.n_cells = 0};
   Fault       fault = {.code = 0};
   MPI_Comm    comm;
@@ -151,8 +150,8 @@ PetscErrorCode ShapeRead(Model model, const char dir[], PetscInt mode, PetscReal
   PetscCall(ModelGetComm(model, &comm));
   PetscCall(ModelGetMesh(model, &mesh));
   shape.n_nodes = mesh->n_nodes;
-  PetscCall(ShapeReadTable(dir, mode, lambda, &fault));
-  PetscCall(ShapeReadField(dir, mode, lambda[1], &shape, &fault));
+  PetscCall(ShapeReadTable(source, lambda, &fault));
+  PetscCall(ShapeReadField(source, lambda[1], &shape, &fault));
   PetscCall(FaultsAgree(comm, &fault));
   if (!fault.code) {
     PetscCall(ShapeSort(&shape));

@@ -19,14 +19,27 @@ typedef struct {
   PetscReal  tolerance;        /* m */
 } Shape;
 
-/* shapefile.c - lambda = sigma + i omega (1/s) of a mode from modes.csv in folder dir, and from modes.h5 mesh and shape,
-   which the caller frees; what is wrong goes to the fault. Not collective. */
-PETSC_INTERN PetscErrorCode ShapeReadTable(const char dir[], PetscInt mode, PetscReal lambda[2], Fault *fault);
-PETSC_INTERN PetscErrorCode ShapeReadField(const char dir[], PetscInt mode, PetscReal omega, Shape *shape,
-                                           Fault *fault);
+/* Which arrays of which file are asked for, and by which option: for messages */
+typedef struct {
+  const char *option, *number; /* that name the folder, and the mode */
+  const char *made_by;         /* with which a run of modes writes the file */
+  const char *dir;             /* folder of the run of modes */
+  const char *file;            /* modes.h5, filters.h5 */
+  const char *kind;            /* arrays mode_###<kind>_re and _im: "", "_u", "_v" */
+  PetscInt    mode;            /* number in modes.csv */
+} ShapeSource;
 
-/* shape.c - mode `mode` at the local vertices [n_vertices][3] of the model: real and imaginary part, and lambda. Nodes
-   are found by position, so that the ranks of the runs may differ. Collective. Errors: PETSC_ERR_FILE_OPEN,
+/* shapefile.c - lambda = sigma + i omega (1/s) of a mode from modes.csv in the folder, and mesh and shape from the file,
+   which the caller frees; what is wrong goes to the fault. Not collective. */
+PETSC_INTERN PetscErrorCode ShapeReadTable(const ShapeSource *source, PetscReal lambda[2], Fault *fault);
+PETSC_INTERN PetscErrorCode ShapeReadField(const ShapeSource *source, PetscReal omega, Shape *shape, Fault *fault);
+
+/* shapefile.c - numbers of the modes that modes.csv in folder dir, named by option, calls unstable; the caller frees
+   them. Collective. Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_USER_INPUT for a table without such a column. */
+PETSC_INTERN PetscErrorCode ShapeListUnstable(MPI_Comm comm, const ShapeSource *source, PetscInt *n, PetscInt **modes);
+
+/* shape.c - a mode at the local vertices [n_vertices][3] of the model: real and imaginary part, and lambda. Nodes are
+   found by position, so that the ranks of the runs may differ. Collective. Errors: PETSC_ERR_FILE_OPEN,
    PETSC_ERR_USER_INPUT for a mode or mesh that does not agree. */
-PETSC_INTERN PetscErrorCode ShapeRead(Model model, const char dir[], PetscInt mode, PetscReal re[], PetscReal im[],
+PETSC_INTERN PetscErrorCode ShapeRead(Model model, const ShapeSource *source, PetscReal re[], PetscReal im[],
                                       PetscReal lambda[2]);

@@ -57,7 +57,10 @@ static PetscErrorCode StartAddShape(Dynamics d, PetscReal u[], PetscReal v[])
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(3 * n, &re, 3 * n, &im));
-  PetscCall(ShapeRead(d->model, d->shape, d->shape_mode, re, im, lambda));
+  PetscCall(ShapeRead(d->model,
+                      &(ShapeSource){"-dynamics_shape", "-dynamics_shape_mode", "-output_fields", d->shape, "modes.h5",
+                                     "", d->shape_mode},
+                      re, im, lambda));
   for (PetscInt i = 0; i < 3 * n; i++) largest = PetscMax(largest, PetscAbsReal(re[i]));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPI_MAX, d->comm));
   PetscCheck(largest > 0, d->comm, PETSC_ERR_USER_INPUT,

@@ -50,12 +50,16 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
                              "modes.h", modes->max_time, &modes->max_time, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-modes_left", "left vectors: condition and error of each eigenvalue",
                            &modes->left));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-modes_filters",
+                           "write modal filters, which find the modes' amplitudes in a transient", &modes->filters));
   PetscCall(PetscOptionsString("-modes_disc", "part whose shapes are named by nodal circles and diameters", "modes.h",
                                modes->disc, modes->disc, sizeof(modes->disc), NULL));
   PetscCall(PetscOptionsEList("-modes_contact", "pairs that are closed: every one, or those of the sliding state",
                               "modes.h", contacts, 2, contacts[0], &contact, NULL));
   PetscOptionsEnd();
   modes->is_static = contact ? PETSC_TRUE : PETSC_FALSE;
+  PetscCheck(modes->left || !modes->filters, modes->comm, PETSC_ERR_USER_INPUT,
+             "-modes_filters needs left vectors: leave out -modes_left false");
   PetscCheck(!modes->has_band || (modes->band[0] >= 0 && modes->band[1] > modes->band[0]), modes->comm,
              PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g must satisfy 0 <= f1 < f2 (Hz)", (double)modes->band[0],
              (double)modes->band[1]);

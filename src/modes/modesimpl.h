@@ -30,7 +30,7 @@ struct _p_Modes {
   PetscReal band[2], target; /* Hz */
   PetscReal growth;          /* rad/s; 0: a tenth of the highest angular frequency */
   PetscReal max_time;        /* s, of one solution; 0: any */
-  PetscBool has_band, has_nearest, left, is_static, keep;
+  PetscBool has_band, has_nearest, left, is_static, keep, filters;
   PetscInt  count;
   char      disc[64];
   Progress  progress;
@@ -103,6 +103,9 @@ PETSC_INTERN PetscErrorCode LeftBiorthogonalise(Modes modes, const PencilMatrice
 
 /* quality.c - measures the errors, expands the vectors to all unknowns and normalises them */
 PETSC_INTERN PetscErrorCode QualityMeasure(Modes modes, const PencilMatrices *pencil);
+
+/* filter.c - filters.h5 and filters.xmf: modal filters of all modes but rigid ones */
+PETSC_INTERN PetscErrorCode ModesWriteFilters(Modes modes, Model model, Results results);
 
 /* twins.c - lists a rigid mode of a damped system once, and trims the list to the modes asked for */
 PETSC_INTERN PetscErrorCode TwinsDrop(Modes modes, Window *window);

@@ -147,5 +147,6 @@ PetscErrorCode ModesWrite(Modes modes, Results results)
   PetscCall(ModesWriteTable(modes, model, results));
   PetscCall(ResultsWantFields(results, &wanted));
   if (model && wanted) PetscCall(ModesWriteShapes(modes, model, results));
+  if (modes->filters) PetscCall(ModesWriteFilters(modes, model, results));
   PetscFunctionReturn(0);
 }

@@ -13,6 +13,8 @@ static const struct {
   const char *name, *unfinished;
 } known[] = {
   {"modes.csv",         NULL                },
+  {"filters.h5",        NULL                },
+  {"filters.xmf",       NULL                },
   {"modes.h5",          NULL                },
   {"modes.xmf",         NULL                },
   {"static.csv",        NULL                },
@@ -29,6 +31,7 @@ static const struct {
   {"peaks.csv",         NULL                },
   {"transient.csv",     "transient.csv.part"},
   {"transient.xmf",     "transient.csv.part"},
+  {"amplitudes.csv",    "transient.csv.part"},
   {"contact_pairs.csv", "transient.csv.part"},
   {"snapshot_#.h5",     "transient.csv.part"},
   {"snapshot_#.xmf",    "transient.csv.part"},

@@ -84,6 +84,11 @@ def check_run(runs, name):
     file.write_bytes(whole)
 
 
+def check_filters(runs, name):
+    """Amplitudes of modes that the run before did not record."""
+    refuse(runs, name, "is of another scene, which differs in: -dynamics_filters...", *runs.watch("1"))
+
+
 def check_end(runs, name):
     """An end before the checkpoint, in time or in steps."""
     refuse(runs, name, "would be lost: give a later end, or start anew with another -output_dir", "-ts_max_time", "1e-4")
@@ -147,6 +152,7 @@ def check(runs, _):
         refuse(runs, name, f"is of another scene, which differs in: {parts}", option, value)
     check_run(runs, name)
     check_end(runs, name)
+    check_filters(runs, name)
     kept = {path: path.read_bytes() for path in (runs.folder / name).iterdir()}
     check_rows(runs, name)
     put_back(runs, name, kept)
@@ -154,7 +160,7 @@ def check(runs, _):
     put_back(runs, name, kept)
     runs.complete(name, RESTART)
     compare(runs, "undisturbed", name)
-    print(f"{runs.scene}: {len(CHANGES) + 7} restarts refused, then gone on: bitwise the same", flush=True)
+    print(f"{runs.scene}: {len(CHANGES) + 8} restarts refused, then gone on: bitwise the same", flush=True)
 
 
 if __name__ == "__main__":

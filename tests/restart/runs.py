@@ -28,10 +28,12 @@ TURNS = "-contact_kinematics turning -contact_slip 0,0,0 -contact_speed 0 -conta
         " -model_gravity 0,-9.81,0 -dynamics_coriolis -dynamics_centrifugal"
 SCENES = {
     "stays": "-contact_ramp 1e-3 -ts_central_b 0.5",
+    "stays watched": "-contact_ramp 1e-3 -ts_central_b 0.5",
     "stays dissipative": "-contact_ramp 1e-3 -ts_central_b 0.8 -contact_mu_slope -5",
     "turns": TURNS,
     "turns dissipative": TURNS + " -ts_central_b 0.8",
 }
+WATCHED = ("stays watched",)  # scenes with amplitudes of modes
 TABLES = ("transient.csv", "contact_pairs.csv", "transient.xmf")
 RESTART = "-dynamics_restart"
 OFTEN = 200  # steps between checkpoints
@@ -53,7 +55,18 @@ class Runs:
         return [self.arguments.launcher, "-n", str(self.arguments.ranks), self.arguments.squeal, "-options_file",
                 SOURCE / "options/massi2005_transient.yaml", "-options_file", self.folder / "small.yaml",
                 *SCENES[self.scene].split(), "-output_dir", self.folder / name, "-ts_max_time", str(self.arguments.end),
-                *options]
+                *(self.watch("1,2") if self.scene in WATCHED else ()), *options]
+
+    def watch(self, modes):
+        """Options that record the amplitudes of some modes, whose filters are made once."""
+        folder = self.folder / "modes"
+        if not folder.exists():
+            words = ["-options_file", SOURCE / "options/massi2005_transient.yaml", "-options_file",
+                     self.folder / "small.yaml", "-analysis", "modes", "-operators_mass", "lumped", "-modes_filters",
+                     "-modes_band", "1000,4000", "-output_dir", folder]
+            subprocess.run([self.arguments.launcher, "-n", "1", self.arguments.squeal, *words], check=True,
+                           capture_output=True)
+        return "-dynamics_filters", folder, "-dynamics_filters_modes", modes
 
     def start(self, name, *options):
         return subprocess.Popen(self.command(name, *options), start_new_session=True, text=True,
@@ -93,7 +106,7 @@ def arrays(path):
 
 def compare(runs, one, other):
     """Tables by bytes, fields by the bytes of their values; nothing temporary is left."""
-    for table in TABLES:
+    for table in (*TABLES, "amplitudes.csv") if runs.scene in WATCHED else TABLES:
         if runs.path(one, table).read_bytes() != runs.path(other, table).read_bytes():
             difference = first_difference(runs, one, other, table)
             fail(f"{runs.scene}: {table} of {other} differs from that of {one}: {difference}")

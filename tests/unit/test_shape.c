@@ -95,16 +95,23 @@ static PetscErrorCode WriteShape(Results results, const ModelOnRanks *m)
   PetscFunctionReturn(0);
 }
 
+/* Mode `mode` of a run of modes in folder dir */
+static ShapeSource ModeOf(const char dir[], PetscInt mode)
+{
+  return (ShapeSource){"-dynamics_shape", "-dynamics_shape_mode", "-output_fields", dir, "modes.h5", "", mode};
+}
+
 /* Breaks when: a node gets the value of another one, of the node of another body at its place, or none. Expected: the
    formula, to the last bit at the file's own coordinates, which are those of the model */
 static int CheckKnown(const char dir[], ModelOnRanks *m, const char name[])
 {
-  PetscReal lambda[2];
-  int       wrong = 0, failed;
+  const ShapeSource source = ModeOf(dir, 2);
+  PetscReal         lambda[2];
+  int               wrong = 0, failed;
 
   memset(m->re, 1, 3 * sizeof(PetscReal) * (size_t)m->n);
   memset(m->im, 1, 3 * sizeof(PetscReal) * (size_t)m->n);
-  failed = CheckTrue(name, !ShapeRead(m->model, dir, 2, m->re, m->im, lambda), m->n);
+  failed = CheckTrue(name, !ShapeRead(m->model, &source, m->re, m->im, lambda), m->n);
   for (PetscInt i = 0; i < 3 * m->n; i++) {
     const PetscReal known = Known(m, i / 3, (int)(i % 3));
 
@@ -155,12 +162,13 @@ static int TestRanks(Scratch *s, ModelOnRanks *all, ModelOnRanks *own)
 static int Refused(Scratch *s, const char dir[], ModelOnRanks *m, PetscInt mode, PetscErrorCode code,
                    const char words[])
 {
-  PetscReal      lambda[2];
-  PetscErrorCode error;
-  int            good;
+  const ShapeSource source = ModeOf(dir, mode);
+  PetscReal         lambda[2];
+  PetscErrorCode    error;
+  int               good;
 
   s->message[0] = '\0';
-  error         = ShapeRead(m->model, dir, mode, m->re, m->im, lambda);
+  error         = ShapeRead(m->model, &source, m->re, m->im, lambda);
   good          = error == code && strstr(s->message, words) && !strchr(s->message, '\n');
   if (!good) printf("error %d, message: %s\n", (int)error, s->message);
   return CheckTrue(words, good, mode);
@@ -252,11 +260,12 @@ static PetscErrorCode TestModes(Scratch *s, int *failed)
   PetscCall(PetscMalloc2(n_values, &re, n_values, &im));
   PetscCall(ModesGet(modes, &n, &mode));
   for (PetscInt i = 0; i < n; i++) {
-    PetscReal lambda[2], difference[2];
-    Vec       xr, xi, yr, yi;
+    const ShapeSource source = ModeOf(s->dir, i + 1);
+    PetscReal         lambda[2], difference[2];
+    Vec               xr, xi, yr, yi;
 
     PetscCall(ModesGetVectors(modes, i, &xr, &xi, &yr, &yi));
-    PetscCall(ShapeRead(chain.model, s->dir, i + 1, re, im, lambda));
+    PetscCall(ShapeRead(chain.model, &source, re, im, lambda));
     PetscCall(Compare(chain.model, xr, n_values, re, &difference[0]));
     PetscCall(Compare(chain.model, xi, n_values, im, &difference[1]));
     *failed += CheckClose("shape of a mode", difference[0] + difference[1], 0, 0);

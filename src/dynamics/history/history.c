@@ -4,12 +4,14 @@
 */
 #include "historyimpl.h"
 
+#define N_TABLES 3 /* rows, pairs, amplitudes */
+
 /* What a restart needs, before the times of the snapshots: reals alone */
 typedef struct {
   Schedule  rows, pairs, frames;
   Growth    growth;
   PetscReal sweeps, steps;
-  PetscReal mark[2][3]; /* of both tables: length, halves of the checksum */
+  PetscReal mark[N_TABLES][3]; /* of the tables: length, halves of the checksum */
   PetscReal n_frames;
 } HistoryKept;
 
@@ -98,6 +100,13 @@ PetscErrorCode HistorySetUp(History history, const HistorySource *source, PetscR
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode HistorySetFilters(History history, const HistoryFilters *filters)
+{
+  PetscFunctionBeginUser;
+  history->filters = filters;
+  PetscFunctionReturn(0);
+}
+
 PetscBool HistoryIsDue(History history, PetscReal t, PetscReal dt)
 {
   return ScheduleIsDue(&history->rows, t, dt) || ScheduleIsDue(&history->pairs, t, dt) ||
@@ -133,18 +142,24 @@ static PetscErrorCode HistoryBeginTable(Results results, const char name[], cons
 }
 
 /* Opens the tables that are wanted, if they are not open */
-static PetscErrorCode HistoryBeginTables(History history, const ResultsMark mark[2])
+static PetscErrorCode HistoryBeginTables(History history, const ResultsMark mark[N_TABLES])
 {
-  char *header;
+  const Results results = history->source.results;
+  char         *header;
 
   PetscFunctionBeginUser;
   if (!history->table) {
     PetscCall(HistoryCreateHeader(history, &header));
-    PetscCall(HistoryBeginTable(history->source.results, "transient", header, mark[0], &history->table));
+    PetscCall(HistoryBeginTable(results, "transient", header, mark[0], &history->table));
     PetscCall(PetscFree(header));
   }
   if (history->pairs.interval > 0)
-    PetscCall(HistoryBeginTable(history->source.results, "contact_pairs", PAIRS_HEADER, mark[1], &history->pair_table));
+    PetscCall(HistoryBeginTable(results, "contact_pairs", PAIRS_HEADER, mark[1], &history->pair_table));
+  if (history->filters && !history->amplitude_table) {
+    PetscCall(AmplitudesCreateHeader(history->filters, &header));
+    PetscCall(HistoryBeginTable(results, "amplitudes", header, mark[2], &history->amplitude_table));
+    PetscCall(PetscFree(header));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -162,10 +177,11 @@ static PetscErrorCode HistoryRecordPairs(History history, PetscReal time)
 PetscErrorCode HistoryRecord(History history, const HistoryState *state)
 {
   PetscFunctionBeginUser;
-  PetscCall(HistoryBeginTables(history, (ResultsMark[2]){{0}}));
+  PetscCall(HistoryBeginTables(history, (ResultsMark[N_TABLES]){{0}}));
   if (ScheduleMeet(&history->rows, state->time, state->dt)) {
     GrowthAdd(&history->growth, state->time, state->ledger->kinetic);
     PetscCall(HistoryWriteRow(history, state));
+    if (history->filters) PetscCall(HistoryWriteAmplitudes(history, state));
     PetscCall(LiveShow(history, state));
   }
   if (ScheduleMeet(&history->pairs, state->time, state->dt)) PetscCall(HistoryRecordPairs(history, state->time));
@@ -175,14 +191,15 @@ PetscErrorCode HistoryRecord(History history, const HistoryState *state)
 
 PetscErrorCode HistoryGetMemory(History h, PetscInt *n, PetscReal **values)
 {
-  ResultsMark      mark[2]  = {{0}};
-  PetscInt         n_frames = 0;
-  const PetscReal *times    = NULL;
+  ResultsMark      mark[N_TABLES] = {{0}};
+  PetscInt         n_frames       = 0;
+  const PetscReal *times          = NULL;
 
   PetscFunctionBeginUser;
   PetscCall(HistoryBeginTables(h, mark));
   PetscCall(ResultsTableFlush(h->table, &mark[0]));
   if (h->pair_table) PetscCall(ResultsTableFlush(h->pair_table, &mark[1]));
+  if (h->amplitude_table) PetscCall(ResultsTableFlush(h->amplitude_table, &mark[2]));
   if (h->film) PetscCall(ResultsFilmGetTimes(h->film, &n_frames, &times));
   HistoryKept kept = {.rows     = h->rows,
                       .pairs    = h->pairs,
@@ -192,7 +209,7 @@ PetscErrorCode HistoryGetMemory(History h, PetscInt *n, PetscReal **values)
                       .steps    = h->steps,
                       .n_frames = (PetscReal)n_frames};
 
-  for (int i = 0; i < 2; i++) MarkKeep(&mark[i], kept.mark[i]);
+  for (int i = 0; i < N_TABLES; i++) MarkKeep(&mark[i], kept.mark[i]);
   *n = N_KEPT + n_frames;
   PetscCall(PetscMalloc1(*n, values));
   PetscCall(PetscMemcpy(*values, &kept, sizeof(kept)));
@@ -218,7 +235,8 @@ PetscErrorCode HistorySetMemory(History h, PetscInt n, const PetscReal values[])
   ScheduleRestore(&h->pairs, &kept.pairs);
   ScheduleRestore(&h->frames, &kept.frames);
   if (h->film) PetscCall(ResultsFilmSetTimes(h->film, n - N_KEPT, &values[N_KEPT]));
-  PetscCall(HistoryBeginTables(h, (ResultsMark[2]){MarkTake(kept.mark[0]), MarkTake(kept.mark[1])}));
+  PetscCall(HistoryBeginTables(
+    h, (ResultsMark[N_TABLES]){MarkTake(kept.mark[0]), MarkTake(kept.mark[1]), MarkTake(kept.mark[2])}));
   PetscFunctionReturn(0);
 }
 
@@ -231,15 +249,18 @@ PetscErrorCode HistoryAddChecksum(History h, Checksum c)
     PetscCall(ChecksumAddString(c, h->probes[i].part));
     PetscCall(ChecksumAddReals(c, 3, h->probes[i].x));
   }
+  PetscCall(ChecksumSetPart(c, "-dynamics_filters"));
+  if (h->filters) PetscCall(ChecksumAddInts(c, h->filters->n, h->filters->mode));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode HistoryClose(History history)
 {
   PetscFunctionBeginUser;
-  PetscCall(HistoryBeginTables(history, (ResultsMark[2]){{0}}));
+  PetscCall(HistoryBeginTables(history, (ResultsMark[N_TABLES]){{0}}));
   PetscCall(ResultsTableClose(&history->table));
   PetscCall(ResultsTableClose(&history->pair_table));
+  PetscCall(ResultsTableClose(&history->amplitude_table));
   PetscFunctionReturn(0);
 }
 
@@ -249,6 +270,7 @@ PetscErrorCode HistoryDestroy(History *history)
   if (!*history) PetscFunctionReturn(0);
   PetscCall(ResultsTableSuspend(&(*history)->table));
   PetscCall(ResultsTableSuspend(&(*history)->pair_table));
+  PetscCall(ResultsTableSuspend(&(*history)->amplitude_table));
   PetscCall(ResultsFilmDestroy(&(*history)->film));
   PetscCall(PetscFree(*history));
   PetscFunctionReturn(0);

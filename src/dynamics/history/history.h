@@ -1,5 +1,5 @@
 /*
-   History (private to dynamics/) - transient.csv, contact_pairs.csv, the live line, and snapshots with transient.xmf.
+   History (private to dynamics/) - transient.csv, contact_pairs.csv, amplitudes.csv, the live line, and snapshots with transient.xmf.
 */
 #pragma once
 
@@ -30,6 +30,15 @@ typedef struct {
   Results                 results;
 } HistorySource;
 
+/* Modal filters, weights of state vectors with every unknown on one rank */
+typedef struct {
+  PetscInt   n;    /* modes */
+  PetscInt  *mode; /* [n] numbers in modes.csv */
+  PetscReal *u;    /* [n][2][layout n] of displacements, real and imaginary part (-) */
+  PetscReal *v;    /* [n][2][layout n] of velocities, s */
+  PetscReal *rest; /* [n][2] what they give of the sliding state, m */
+} HistoryFilters;
+
 PETSC_INTERN PetscErrorCode HistoryCreate(MPI_Comm comm, History *history);
 
 /* -dynamics_history_interval, -dynamics_pairs_interval, -dynamics_snapshot_interval, -dynamics_live */
@@ -37,6 +46,9 @@ PETSC_INTERN PetscErrorCode HistorySetFromOptions(History history);
 
 /* Takes what is recorded, and rounds the intervals to whole steps dt (0 for not). Collective. */
 PETSC_INTERN PetscErrorCode HistorySetUp(History history, const HistorySource *source, PetscReal end, PetscReal dt);
+
+/* Takes filters (borrowed), for amplitudes.csv beside every row. Not collective. */
+PETSC_INTERN PetscErrorCode HistorySetFilters(History history, const HistoryFilters *filters);
 
 /* Whether a row (or a snapshot) is due at step n, time t: the same answer on every rank, and cheap; multiples k of
    the interval are met at the first t >= k interval - dt / 2 */
@@ -51,7 +63,7 @@ PETSC_INTERN PetscErrorCode HistoryRecord(History history, const HistoryState *s
 PETSC_INTERN PetscErrorCode HistoryGetMemory(History history, PetscInt *n, PetscReal **values);
 PETSC_INTERN PetscErrorCode HistorySetMemory(History history, PetscInt n, const PetscReal values[]);
 
-/* adds the probes, whose columns go on. Not collective. */
+/* adds the probes and filters, whose columns go on. Not collective. */
 PETSC_INTERN PetscErrorCode HistoryAddChecksum(History history, Checksum checksum);
 
 /* completes transient.csv under its final name. Collective. */

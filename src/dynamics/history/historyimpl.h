@@ -33,16 +33,17 @@ typedef struct {
 } Live;
 
 struct _p_History {
-  MPI_Comm      comm;
-  Schedule      rows, pairs, frames;
-  Growth        growth;
-  Live          live;
-  PetscReal     sweeps, steps; /* of the projector at the last row */
-  HistorySource source;
-  PetscInt      n_probes;
-  const Probe  *probes;
+  MPI_Comm              comm;
+  Schedule              rows, pairs, frames;
+  Growth                growth;
+  Live                  live;
+  PetscReal             sweeps, steps; /* of the projector at the last row */
+  HistorySource         source;
+  PetscInt              n_probes;
+  const Probe          *probes;
+  const HistoryFilters *filters; /* NULL for none */
   /* where */
-  ResultsTable table, pair_table;
+  ResultsTable table, pair_table, amplitude_table;
   ResultsFilm  film; /* NULL for none */
 };
 
@@ -73,6 +74,10 @@ typedef struct {
 
 PETSC_INTERN PetscErrorCode HistoryWritePairs(ResultsTable table, MPI_Comm comm, const ContactInterface interfaces[],
                                               PetscReal time, const HistoryPairs *pairs);
+
+/* amplitudes.c - header of amplitudes.csv, which the caller frees, and a row. Collective. */
+PETSC_INTERN PetscErrorCode AmplitudesCreateHeader(const HistoryFilters *filters, char **header);
+PETSC_INTERN PetscErrorCode HistoryWriteAmplitudes(History history, const HistoryState *state);
 
 /* live.c */
 PETSC_INTERN void           GrowthAdd(Growth *growth, PetscReal t, PetscReal kinetic);
