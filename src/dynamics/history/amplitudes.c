@@ -3,12 +3,12 @@
 */
 #include "historyimpl.h"
 
-#define COLUMN_ROOM 32
+#define AMPLITUDE_ROOM 32
 
 PetscErrorCode AmplitudesCreateHeader(const HistoryFilters *filters, char **header)
 {
-  const size_t room = (size_t)(2 * filters->n + 1) * COLUMN_ROOM;
-  char         column[COLUMN_ROOM];
+  const size_t room = (size_t)(2 * filters->n + 1) * AMPLITUDE_ROOM;
+  char         column[AMPLITUDE_ROOM];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(room, header));
