@@ -13,6 +13,7 @@ A case is a TOML file. Only `run` is required.
 
     [run.NAME]               # made in the order of the file
     options = "-contact_mu 1"    # {OTHER} is the output folder of an earlier run
+    ranks = [1]                  # of the case's; checks of runs that are not made on a number of ranks are left out there
     stdout = ["regex"]           # found in the output
     files = ["modes.csv"]        # written, not empty
     link = {"modes.csv.part" = "/dev/full"}    # symbolic links put into the output folder before
@@ -116,6 +117,7 @@ class Runner:
 
     def __init__(self, arguments, case, folder, ranks):
         self.arguments, self.case, self.folder, self.ranks = arguments, case, folder, ranks
+        self.made = [name for name, run in case["run"].items() if ranks in run.get("ranks", [ranks])]
 
     def output(self, name):
         return self.folder / f"{name}-{self.ranks}"
@@ -190,6 +192,20 @@ class Runner:
             require(path.is_file() and path.stat().st_size, f"{file} was not written")
         self.check_errors(self.output(name) / "verify.csv")
 
+    def check(self, checker):
+        """Whether each check of runs that were made here passed."""
+        results = []
+        for index, check in enumerate(self.case.get("check", []), 1):
+            if self.names(check) <= set(self.made):
+                title = check.get("why", f"check {index}")
+                results.append(attempt(f"{title} on {self.ranks}", checker.make, check))
+        return results
+
+    def names(self, check):
+        """Runs that a check looks at."""
+        named = {check.get("run"), check.get("equals_run"), *re.findall(r"{(\w+)}", check.get("command", ""))}
+        return named & set(self.case["run"]) or {next(iter(self.case["run"]))}
+
     @staticmethod
     def check_errors(path):
         """A verified sweep: every mode errs by less than three times its printed error, and one in a hundred by more than
@@ -233,20 +249,21 @@ def main():
         return SKIPPED
 
     results = []
+    chosen = arguments.ranks or case.get("ranks", [1])
+    never = [name for name, run in case["run"].items() if not set(run.get("ranks", chosen)) & set(chosen)]
+    if never and not arguments.ranks:
+        parser.error(f"runs on no number of ranks: {' '.join(never)}")
     with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
         for name, text in case.get("file", {}).items():
             (Path(folder) / name).write_text(text)
         for command in case.get("make", []):
             subprocess.run([sys.executable, *shlex.split(command.format(source=SOURCE))], cwd=folder, check=True)
         first = None
-        for ranks in arguments.ranks or case.get("ranks", [1]):
+        for ranks in chosen:
             runner = Runner(arguments, case, Path(folder), ranks)
             first = first or runner
-            results += [attempt(f"run {name} on {ranks}", runner.make, name) for name in case["run"]]
-            checker = Checker(runner, first)
-            for index, check in enumerate(case.get("check", []), 1):
-                title = check.get("why", f"check {index}")
-                results.append(attempt(f"{title} on {ranks}", checker.make, check))
+            results += [attempt(f"run {name} on {ranks}", runner.make, name) for name in runner.made]
+            results += runner.check(Checker(runner, first))
     return 0 if all(results) else 1
 
 

@@ -1,7 +1,10 @@
 /*
-   The loads, the weight of the parts, and what motions with displacements d exert, -K_fd d, as a vector of the unknowns.
-   What falls on held directions goes straight into a support and is no part of it; the size counts everything, of
-   motions a small part only, since K_fd d is far above what presses the bodies where they move as a whole.
+   The loads, the weight of the parts, and what motions with displacements d exert, -K_fd d, as a vector of the
+   unknowns. What falls on held directions goes straight into a support and is no part of it. The size, beside which
+   a force along a free motion is judged (hold.c, 1e-8), counts loads and weight in full and of |K_fd d|_1 a
+   hundredth. That sum is no force that passes through the bodies: with n elements along them it is some 2 n times
+   as large (bars of 5 and 40 elements: 10 and 80 times). Rounding along a free motion was measured as 1.3e-16 to
+   1.6e-16 of it, at displacements from 1e-6 to 1e-2 m; the bound is 1e-10 of it, far from both.
 */
 #include "staticsimpl.h"
 

@@ -84,6 +84,9 @@ class Runs:
     def path(self, name, file):
         return self.folder / name / file
 
+    def ranks(self, name, process):
+        """Processes of a run without its launcher, which one rank has not (scripts/mpirun)."""
+        return [rank for rank in ranks_of(self.folder / name) if self.arguments.ranks == 1 or rank != process.pid]
 
     def restart(self, name, *options):
         """Tries to go on: exit status, and the lines that complain."""

@@ -9,7 +9,7 @@ import signal
 import sys
 import time
 
-from runs import OFTEN, PATIENCE, RESTART, compare, fail, ranks_of, scenes, wait
+from runs import OFTEN, PATIENCE, RESTART, compare, fail, scenes, wait
 
 # --- full disks
 
@@ -17,9 +17,8 @@ from runs import OFTEN, PATIENCE, RESTART, compare, fail, ranks_of, scenes, wait
 def limit_table(runs, name, process):
     """Lets no file of the ranks grow beyond what the table has, and a little more."""
     room = runs.path(name, "transient.csv.part").stat().st_size + 20000
-    for rank in ranks_of(runs.folder / name):
-        if rank != process.pid:
-            resource.prlimit(rank, resource.RLIMIT_FSIZE, (room, resource.RLIM_INFINITY))
+    for rank in runs.ranks(name, process):
+        resource.prlimit(rank, resource.RLIMIT_FSIZE, (room, resource.RLIM_INFINITY))
 
 
 def fill(runs, name, file):
@@ -62,8 +61,7 @@ def ask(runs, name, number, whom, *options):
     process = runs.start(name, *options)
     sign = runs.path(name, "transient.csv.part")
     wait(process, lambda: sign.exists() and sign.stat().st_size > 100000)
-    ranks = [rank for rank in ranks_of(runs.folder / name) if rank != process.pid]
-    os.kill(process.pid if whom == "launcher" else ranks[0], number)
+    os.kill(process.pid if whom == "launcher" else runs.ranks(name, process)[0], number)
     stderr = process.communicate(timeout=PATIENCE)[1]
     lines = [line for line in stderr.splitlines() if line.startswith("squeal:")]
     if not process.returncode or len(lines) != 1 or "stopped by a signal after step" not in lines[0]:

@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+"""Plants faults, one at a time, in a copy of the sources, and asks that the tests named beside each of them notice: a suite
+that passes with a planted fault holds nothing there. Not part of the suite, since each fault compiles anew.
+
+    faults.py FOLDER [WORD...]    the copy with its build is made in FOLDER, and used again; only faults that hold a WORD
+
+Exit status: 0 when each fault is noticed by all the tests named, else 1."""
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[1]
+TOPS = ("src", "include", "tests", "scripts", "options", "meson.build", "meson_options.txt", "README.md")
+
+# What is wrong; file, its words, the words instead; tests that notice
+FAULTS = (
+    ("friction has the other sign in H", "src/operators/friction.c", "TermsProduct(-1, g->T", "TermsProduct(1, g->T",
+     "closed-1 preload"),
+    ("0.99 mu in the cone of dynamics", "src/kernels/cone.h", ".mu = mu\n", ".mu = 0.99 * mu\n", "cone-1 project-1"),
+    ("0.99 mu in the cone of statics", "src/kernels/coulomb.h", "-pair->mu * e[i] * law->P", "-0.99 * pair->mu * e[i] * law->P",
+     "coulomb-1 static_stick"),
+    ("gap of the wrong side", "src/contact/foot.c", "  return gap;\n", "  return -gap;\n", "search-1 static_motions"),
+    ("stated errors of sweeps a tenth", "src/sweep/basis/points.c", "POINTS_MARGIN 30", "POINTS_MARGIN 3", "errors"),
+    ("a left mode is lost", "src/modes/left.c", "  PetscCall(PetscCalloc1(left->n, &used));\n",
+     "  if (left->n > 3) left->n--;\n  PetscCall(PetscCalloc1(left->n, &used));\n", "massi2005_small"),
+    ("inertia counts one more", "src/solver/shiftinvert.c", "    PetscCall(MatGetInertia(F, n, &n_null, NULL));\n",
+     "    PetscCall(MatGetInertia(F, n, &n_null, NULL));\n    *n += 1;\n", "verification_doublets completeness"),
+    ("mass lumped by its diagonal (as rows would only in bricks)", "src/operators/assemble.c", "j % 3 == i % 3) sum +=",
+     "j == i) sum += 3.375 *", "affine-1 transient_growth"),
+    ("the ledger leaves the integrator out", "src/dynamics/history/ledger.c", "ledger->damping - ledger->integrator;",
+     "ledger->damping;", "transient_bars"),
+    ("left vectors are not made biorthogonal", "src/modes/left.c", "inverse[i * m + j], y", "i == j, y", "oscillator"),
+    ("a restart loses the forces before", "src/dynamics/dynamicskeep.c", "a[FORCE_OLD] ? n : 0, a[FORCE_OLD]",
+     "0, a[FORCE_OLD]", "transient_restart-transient-1"),
+    ("one nodal diameter more in labels", "src/modes/discname.c", "family.circles, diameters,", "family.circles, diameters + 1,",
+     "shape-1 hat_disc"),
+    ("loads are a step early", "src/dynamics/external/loadforce.c", "RampValue(&load->ramp, step->time)",
+     "RampValue(&load->ramp, step->time + step->dt)", "external-1"),
+    ("motions are a step early", "src/dynamics/external/motion.c", "step->time);\n    const PetscReal rate   = (RampValue(&motion->ramp, step->time +",
+     "step->time + step->dt);\n    const PetscReal rate = (RampValue(&motion->ramp, step->time + 2 *", "external-1 transient_free"),
+)
+
+
+def copy(folder):
+    """Brings the copy up to date, files that changed alone."""
+    for top in TOPS:
+        for path in [SOURCE / top] if (SOURCE / top).is_file() else sorted((SOURCE / top).rglob("*")):
+            to = folder / path.relative_to(SOURCE)
+            if path.is_file() and (not to.exists() or to.read_bytes() != path.read_bytes()):
+                to.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy2(path, to)
+    if not (folder / "build").exists():
+        subprocess.run(["meson", "setup", folder / "build", folder], check=True, stdout=subprocess.DEVNULL)
+
+
+def failing(folder, tests):
+    """Those of the tests that fail."""
+    log = folder / "build/meson-logs/testlog.json"
+    log.unlink(missing_ok=True)
+    subprocess.run(["meson", "test", "-C", folder / "build", "--no-rebuild", "-t", "6", *tests], check=False,
+                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    results = [json.loads(line) for line in log.read_text().splitlines()]
+    return [test["name"].split(" / ")[-1] for test in results if test["result"] == "FAIL"]
+
+
+def programs(tests):
+    """Targets of the unit tests among the tests, whose names end in their ranks."""
+    names = [test.rpartition("-")[0] for test in tests.split()]
+    return [f"tests/test_{name}" for name in names if (SOURCE / f"tests/unit/test_{name}.c").exists()]
+
+
+def plant(folder, fault):
+    """Plants a fault, runs its tests, takes it out; whether all tests noticed."""
+    what, name, words, instead, tests = fault
+    path, text = folder / name, (SOURCE / name).read_text()
+    if text.count(words) < 1:
+        print(f"FAILED {what}: {name} does not hold {words!r}")
+        return False
+    path.write_text(text.replace(words, instead))
+    try:
+        built = subprocess.run(["ninja", "-C", folder / "build", "squeal", *programs(tests)], capture_output=True, check=False)
+        noticed = failing(folder, tests.split()) if not built.returncode else []
+    finally:
+        path.write_text(text)
+    missed = sorted(set(tests.split()) - set(noticed))
+    print(f"{'FAILED' if missed else 'ok'} {what}: noticed by {' '.join(noticed) or 'none'}"
+          f"{', not by ' + ' '.join(missed) if missed else ''}{' (does not compile)' if built.returncode else ''}", flush=True)
+    return not missed
+
+
+def main():
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    folder, words = Path(sys.argv[1]).resolve(), sys.argv[2:]
+    chosen = [fault for fault in FAULTS if not words or any(word in fault[0] for word in words)]
+    copy(folder)
+    return 0 if chosen and all([plant(folder, fault) for fault in chosen]) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
