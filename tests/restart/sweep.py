@@ -33,6 +33,7 @@ DAMAGE = ((20, b"\xff\xff\xff\xff"), (28, b"\x01\0\0\0"), (28, b"\xff\xff\xff\xf
 # Pairs that are closed at some places only, groups of them among the parameters; fewer groups without the last two
 GROUPS = ("-sweep_parameter", "contact_mu", "-sweep_values", "0.05,0.06,0.07", "-sweep_verify", "0",
           "-sweep_uncertain", "pad_young", "-sweep_percent", "10")
+PLAIN = ("-sweep_onsets", "0")  # where onsets are not looked at
 PATIENCE = 100  # seconds
 
 
@@ -84,7 +85,7 @@ def kill_after(arguments, folder, output, n, *options):
 
 def begin_anew(arguments, folder, output, parts, *options):
     """A sweep that finds the solutions of another scene, of which it says what differs."""
-    printed = complete(arguments, folder, output, *options)
+    printed = complete(arguments, folder, output, *PLAIN, *options)
     if "going on" in printed:
         raise SystemExit(f"FAILED: took up the solutions of another scene: {' '.join(options)}")
     if not re.search(f"is of another scene, which differs in: .*{parts}.*; the sweep begins anew$", printed, re.M):
