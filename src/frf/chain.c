@@ -135,49 +135,43 @@ static PetscErrorCode BlockApply(const FrfChain *chain, BV X, Mat A, BV Y)
   PetscFunctionReturn(0);
 }
 
-/* X := Q0^-1 R, or Q0^-T R, and the states [V' X; old], old[n][size] NULL for zero; X goes into the space */
-static PetscErrorCode ChainTake(FrfChain *chain, BV R, const PetscReal *old)
+/* The columns first .. first + n - 1 of the block: Q0^-1 R, or Q0^-T R */
+static PetscErrorCode ChainSolve(const FrfChain *chain, BV R, PetscInt first, BV block)
 {
-  const PetscInt size = chain->space->small.size;
-  PetscInt       n;
-  PetscReal     *c, *a;
-  BV             X;
-  Mat            right, answer;
+  PetscInt n;
+  Mat      right, answer;
 
   PetscFunctionBeginUser;
   PetscCall(BVGetActiveColumns(R, NULL, &n));
-  PetscCall(FrfSpaceCreateBlock(chain->space, n, &X));
+  PetscCall(BVSetActiveColumns(block, first, first + n));
   PetscCall(BVGetMat(R, &right));
-  PetscCall(BVGetMat(X, &answer));
+  PetscCall(BVGetMat(block, &answer));
   PetscCall(ShiftInvertApplyBlock(&chain->factor, chain->transposed, right, answer));
-  PetscCall(BVRestoreMat(X, &answer));
+  PetscCall(BVRestoreMat(block, &answer));
   PetscCall(BVRestoreMat(R, &right));
   *chain->n_solves += n;
-  PetscCall(FrfSpaceAdd(chain->space, X));
-  PetscCall(FrfSpaceCoordinates(chain->space, X, &c));
+  PetscFunctionReturn(0);
+}
+
+/* The states [c; old] of n answers with coordinates c[n][size]; old is that of the states that they came from */
+static PetscErrorCode ChainTake(FrfChain *chain, PetscInt n, const PetscReal c[])
+{
+  const PetscInt size = chain->space->small.size, from = chain->last;
+  PetscReal     *a;
+
+  PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(chain->length, &a));
   chain->last = chain->n;
   for (PetscInt j = 0; j < n; j++) {
     PetscCall(PetscArraycpy(a, &c[j * size], size));
-    if (chain->length > size && old) PetscCall(PetscArraycpy(a + size, &old[j * size], size));
-    if (chain->length > size && !old) PetscCall(PetscArrayzero(a + size, size));
+    if (chain->length > size && chain->begun)
+      PetscCall(PetscArraycpy(a + size, &chain->state[(from + j) * chain->length], size));
+    else if (chain->length > size)
+      PetscCall(PetscArrayzero(a + size, size));
     PetscCall(StateAdd(chain, a));
   }
+  chain->begun = PETSC_TRUE;
   PetscCall(PetscFree(a));
-  PetscCall(PetscFree(c));
-  PetscCall(BVDestroy(&X));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode FrfChainBegin(FrfChain *chain, PetscInt n, const Vec b[])
-{
-  BV R;
-
-  PetscFunctionBeginUser;
-  PetscCall(FrfSpaceCreateBlock(chain->space, n, &R));
-  for (PetscInt j = 0; j < n; j++) PetscCall(BVInsertVec(R, j, b[j]));
-  PetscCall(ChainTake(chain, R, NULL));
-  PetscCall(BVDestroy(&R));
   PetscFunctionReturn(0);
 }
 
@@ -207,22 +201,38 @@ static PetscErrorCode ChainResidual(const FrfChain *chain, PetscInt n, const Pet
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrfChainStep(FrfChain *chain)
+/* Right-hand sides of the next step: the n vectors b that the chain begins with, or those of the last states */
+static PetscErrorCode ChainCreateSides(const FrfChain *chain, PetscInt n, BV *R)
 {
-  const PetscInt n = chain->n - chain->last, size = chain->space->small.size;
-  PetscReal     *states, *old;
-  BV             R;
+  PetscFunctionBeginUser;
+  PetscCall(FrfSpaceCreateBlock(chain->space, n, R));
+  for (PetscInt j = 0; j < n && !chain->begun; j++) PetscCall(BVInsertVec(*R, j, chain->b[j]));
+  if (chain->begun) PetscCall(ChainResidual(chain, n, &chain->state[chain->last * chain->length], *R));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfChainsStep(FrfSpace *space, FrfChain *chain[2])
+{
+  PetscInt   n[2];
+  PetscReal *c;
+  BV         block, R;
 
   PetscFunctionBeginUser;
-  if (!n) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc2(n * chain->length, &states, n * size, &old));
-  PetscCall(PetscArraycpy(states, &chain->state[chain->last * chain->length], n * chain->length));
-  for (PetscInt j = 0; j < n; j++) PetscCall(PetscArraycpy(&old[j * size], &states[j * chain->length], size));
-  PetscCall(FrfSpaceCreateBlock(chain->space, n, &R));
-  PetscCall(ChainResidual(chain, n, states, R));
-  PetscCall(ChainTake(chain, R, old));
-  PetscCall(BVDestroy(&R));
-  PetscCall(PetscFree2(states, old));
+  for (int k = 0; k < 2; k++) n[k] = chain[k]->begun ? chain[k]->n - chain[k]->last : chain[k]->n_b;
+  if (n[0] + n[1] == 0) PetscFunctionReturn(0);
+  PetscCall(FrfSpaceCreateBlock(space, n[0] + n[1], &block));
+  for (int k = 0; k < 2; k++) {
+    if (!n[k]) continue;
+    PetscCall(ChainCreateSides(chain[k], n[k], &R));
+    PetscCall(ChainSolve(chain[k], R, k * n[0], block));
+    PetscCall(BVDestroy(&R));
+  }
+  PetscCall(BVSetActiveColumns(block, 0, n[0] + n[1]));
+  PetscCall(FrfSpaceAdd(space, block));
+  PetscCall(FrfSpaceCoordinates(space, block, &c));
+  for (int k = 0; k < 2; k++) PetscCall(ChainTake(chain[k], n[k], c + k * n[0] * space->small.size));
+  PetscCall(PetscFree(c));
+  PetscCall(BVDestroy(&block));
   PetscFunctionReturn(0);
 }
 

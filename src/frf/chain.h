@@ -17,7 +17,10 @@ typedef struct {
   PetscInt    n, capacity, length; /* states, most of them, numbers of each: size, or 2 size with damping */
   PetscInt    last;                /* the states from here on are those of the last step */
   PetscReal  *state;               /* [capacity][length] */
-  PetscInt   *n_solves;            /* counts right-hand sides */
+  PetscInt    n_b;                 /* vectors that it begins with */
+  const Vec  *b;                   /* [n_b] in the unknowns of the pencil */
+  PetscBool   begun;
+  PetscInt   *n_solves; /* counts right-hand sides */
 } FrfChain;
 
 /* A chain of up to `capacity` states */
@@ -25,7 +28,6 @@ PETSC_INTERN PetscErrorCode FrfChainCreate(FrfSpace *space, const ShiftInvert *f
                                            PetscInt capacity, FrfChain *chain);
 /* Puts vectors and states of all modes into space and chain */
 PETSC_INTERN PetscErrorCode FrfChainAddModes(Frf frf, FrfChain *chain);
-/* Begins with Q0^-1 b of n vectors b in the unknowns of the pencil, or goes on by one step. The space grows. */
-PETSC_INTERN PetscErrorCode FrfChainBegin(FrfChain *chain, PetscInt n, const Vec b[]);
-PETSC_INTERN PetscErrorCode FrfChainStep(FrfChain *chain);
+/* One step of both chains, either of which may be empty: it begins with Q0^-1 b of its vectors b. The space grows. */
+PETSC_INTERN PetscErrorCode FrfChainsStep(FrfSpace *space, FrfChain *chain[2]);
 PETSC_INTERN PetscErrorCode FrfChainDestroy(FrfChain *chain);

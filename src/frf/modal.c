@@ -10,8 +10,8 @@
 typedef struct {
   FrfSpace  space;
   FrfChain  right, left; /* left is empty for a symmetric pencil */
-  Vec       b, *l;
-  PetscInt  level; /* vectors of the space before the last step */
+  Vec       b, *l, *all; /* the force, the outputs, and both */
+  PetscInt  level;       /* vectors of the space before the last step */
   PetscReal shift;
 } Superposition;
 
@@ -50,34 +50,26 @@ static PetscErrorCode SuperpositionCreate(Frf frf, Superposition *s)
   PetscCall(FrfChainCreate(&s->space, &factor, PETSC_FALSE, most, &s->right));
   PetscCall(FrfChainCreate(&s->space, &factor, PETSC_TRUE, pencil.symmetric ? 0 : most, &s->left));
   s->right.n_solves = s->left.n_solves = &frf->n_solves;
+  PetscCall(PetscMalloc1(frf->n_outputs + 1, &s->all));
+  s->all[0] = s->b;
+  PetscCall(PetscArraycpy(s->all + 1, s->l, frf->n_outputs));
+  s->right.b   = s->all;
+  s->right.n_b = pencil.symmetric ? frf->n_outputs + 1 : 1;
+  s->left.b    = s->l;
+  s->left.n_b  = pencil.symmetric ? 0 : frf->n_outputs;
   PetscCall(FrfChainAddModes(frf, &s->right));
   if (!pencil.symmetric) PetscCall(FrfChainAddModes(frf, &s->left));
   s->level = s->space.small.n;
   PetscFunctionReturn(0);
 }
 
-/* The first step, Q0^-1 b and Q0^-T l, or one more */
+/* One step of both chains */
 static PetscErrorCode SuperpositionStep(Frf frf, Superposition *s)
 {
-  const PetscBool symmetric = s->space.pencil.symmetric;
-
   PetscFunctionBeginUser;
+  frf->n_steps++;
   s->level = s->space.small.n;
-  if (frf->n_steps++) {
-    PetscCall(FrfChainStep(&s->right));
-    PetscCall(FrfChainStep(&s->left));
-  } else if (symmetric) {
-    Vec *all;
-
-    PetscCall(PetscMalloc1(frf->n_outputs + 1, &all));
-    all[0] = s->b;
-    PetscCall(PetscArraycpy(all + 1, s->l, frf->n_outputs));
-    PetscCall(FrfChainBegin(&s->right, frf->n_outputs + 1, all));
-    PetscCall(PetscFree(all));
-  } else {
-    PetscCall(FrfChainBegin(&s->right, 1, &s->b));
-    PetscCall(FrfChainBegin(&s->left, frf->n_outputs, s->l));
-  }
+  PetscCall(FrfChainsStep(&s->space, (FrfChain *[]){&s->right, &s->left}));
   PetscFunctionReturn(0);
 }
 
@@ -197,6 +189,7 @@ static PetscErrorCode SuperpositionDestroy(Frf frf, Superposition *s)
   PetscCall(FrfChainDestroy(&s->left));
   PetscCall(FrfSpaceDestroy(&s->space));
   PetscCall(VecDestroy(&s->b));
+  PetscCall(PetscFree(s->all));
   PetscCall(VecDestroyVecs(frf->n_outputs, &s->l));
   PetscFunctionReturn(0);
 }
