@@ -18,7 +18,8 @@ typedef enum {
   N_SHOWN
 } Shown;
 
-/* The chain of a run: options, model, contact, operators, statics, pencil, modes, sweep, frequency response, or dynamics; and results */
+/* The chain of a run: options, model, contact, operators, statics, pencil, then modes, sweep, frequency response or
+   dynamics; and results */
 typedef struct {
   Model         model; /* NULL for matrices without a mesh */
   Contact       contact;

@@ -1,5 +1,6 @@
 /*
-   History (private to dynamics/) - transient.csv, contact_pairs.csv, amplitudes.csv, the live line, and snapshots with transient.xmf.
+   History (private to dynamics/) - transient.csv, contact_pairs.csv, amplitudes.csv, the live line, and snapshots with
+   transient.xmf.
 */
 #pragma once
 
