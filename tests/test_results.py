@@ -71,7 +71,7 @@ def check_scene(r):
         text = (r.folder / "out/scene.yaml").read_text()
         r.check(done.returncode == 0 and (r.folder / "out/modes.csv").exists(), f"modes on {ranks}", done)
         for word in ('contact_mu: "0.25"', 'squeal_view: "true"', 'modes_contact: "static"', "# versions: squeal ", "MUMPS",
-                     f"# cost: {ranks} ranks", "# contact_tolerance: 1e-05", "# command: ", "modes.csv"):
+                     f"# cost: {ranks} rank", "# contact_tolerance: 1e-05", "# command: ", "modes.csv"):
             r.check(word in text, f"scene.yaml on {ranks} says {word}", done)
         repeat = re.search(r"# repeat: (?:mpirun -n (\d+) )?squeal (.*)", text)
         options = repeat[2].replace(f"-output_dir {r.folder}/out", "-output_dir again").split()
@@ -126,12 +126,31 @@ def check_unfinished(r):
     part.rename(part.with_suffix(".csv.part"))  # as a run that was killed leaves it
     done = r.scene("modes")
     r.check({"checkpoint.bin", "transient.csv.part", "modes.csv"} <= set(r.files()), "an unfinished run stays", done)
+    kept = (r.folder / "out/checkpoint.bin").read_bytes()
+    done = r.scene("transient", "-dynamics_checkpoint_interval", "20")
+    r.check(done.returncode and "checkpoint.bin of an unfinished run would be lost" in done.stderr
+            and (r.folder / "out/checkpoint.bin").read_bytes() == kept, "a fresh run does not take its checkpoint away", done)
     done = r.scene("transient", "-dynamics_restart", "-dynamics_checkpoint_interval", "20")
     same = part.exists() and part.read_bytes() == (r.folder / "whole/transient.csv").read_bytes()
     r.check(done.returncode == 0 and same, "and goes on bitwise", done)
     r.check({"checkpoint.bin", "transient.csv"} <= set(r.files()) and "modes.csv" not in r.files(), "its files stay", done)
     r.check("dynamics_restart:" not in (r.folder / "out/scene.yaml").read_text().split("# At")[0],
             "its scene is the whole run")
+
+
+def check_foreign(r):
+    """A user's file under the name of a checkpoint stays; one of a finished run goes with its tables."""
+    (r.folder / "foreign").mkdir()
+    file = r.folder / "foreign/checkpoint.bin"
+    file.write_text("precious, longer than a head")
+    done = r.scene("transient", out="foreign")
+    r.check(done.returncode == 0 and file.exists() and file.read_text().startswith("precious"), "a user's checkpoint.bin stays", done)
+    done = r.scene("transient", "-dynamics_checkpoint_interval", "20", out="foreign")
+    r.check(done.returncode and "checkpoint.bin is no checkpoint of squeal" in done.stderr
+            and file.read_text().startswith("precious"), "and is not replaced", done)
+    r.scene("transient", "-dynamics_checkpoint_interval", "20", out="finished")
+    done = r.scene("transient", out="finished")
+    r.check(done.returncode == 0 and not (r.folder / "finished/checkpoint.bin").exists(), "that of a finished run goes", done)
 
 
 def check_words(r):
@@ -186,7 +205,7 @@ def main():
         (r.folder / "scenes/mine.yaml").write_text(SCENE)
         subprocess.run([sys.executable, SOURCE / "tests/mesh.py", "blocks", "--elements", "3,3,3",
                         r.folder / "scenes/mesh/block.msh"], check=True)
-        for check in (check_scene, check_stale, check_users, check_unfinished, check_damaged, check_words, check_path):
+        for check in (check_scene, check_stale, check_users, check_unfinished, check_foreign, check_damaged, check_words, check_path):
             check(r)
     if r.faults:
         print(f"{len(r.faults)} failed: {'; '.join(r.faults)}")

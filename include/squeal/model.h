@@ -217,6 +217,11 @@ PetscErrorCode ModelGetDisplaced(Model model, Vec u, PetscReal nodal[]);
     sum. Collective. @*/
 PetscErrorCode ModelSumShared(Model model, Vec local);
 
+/*@ ModelDescribeDoubt - for a message that something does not come to an end: the part that a wave takes longest to cross,
+    and what its units probably are; empty where none takes more than 50 periods of hz (Hz). Not collective; after
+    ModelSetUp(). @*/
+PetscErrorCode ModelDescribeDoubt(Model model, PetscReal hz, size_t size, char text[]);
+
 /*@ ModelAddChecksum - adds mesh, materials, supports, motions, springs and dashpots; with_partition: also which rank has which
     cells. Collective; after ModelSetUp(). @*/
 PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum checksum);

@@ -31,3 +31,8 @@ PETSC_INTERN PetscErrorCode CheckpointWrite(MPI_Comm comm, Results results, Chec
 */
 PETSC_INTERN PetscErrorCode CheckpointRead(MPI_Comm comm, Results results, Checksum scene, PetscInt n,
                                            CheckpointItem item[]);
+
+/* What bears the name of a checkpoint in the folder of the results: nothing, a file of somebody else, or one that begins
+   as squeal's do. Collective. */
+typedef enum { CHECKPOINT_NONE, CHECKPOINT_FOREIGN, CHECKPOINT_OURS } CheckpointKind;
+PETSC_INTERN PetscErrorCode CheckpointFind(MPI_Comm comm, Results results, CheckpointKind *kind);

@@ -244,3 +244,27 @@ PetscErrorCode CheckpointRead(MPI_Comm comm, Results results, Checksum scene, Pe
   PetscCall(FaultsRaise(comm, &reader.fault));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode CheckpointFind(MPI_Comm comm, Results results, CheckpointKind *kind)
+{
+  char        path[PETSC_MAX_PATH_LEN], magic[sizeof(CHECKPOINT_MAGIC)] = "";
+  const char *dir;
+  FILE       *file;
+  PetscMPIInt rank;
+  int         found = CHECKPOINT_NONE;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(ResultsGetDirectory(results, &dir));
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", dir, CHECKPOINT_FILE));
+  if (rank == 0 && !access(path, F_OK)) {
+    found = CHECKPOINT_FOREIGN;
+    file  = fopen(path, "rb");
+    if (file && fread(magic, 1, sizeof(magic) - 1, file) == sizeof(magic) - 1 && !strcmp(magic, CHECKPOINT_MAGIC))
+      found = CHECKPOINT_OURS;
+    if (file) (void)fclose(file);
+  }
+  PetscCallMPI(MPI_Bcast(&found, 1, MPI_INT, 0, comm));
+  *kind = (CheckpointKind)found;
+  PetscFunctionReturn(0);
+}

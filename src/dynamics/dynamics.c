@@ -155,6 +155,7 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscCheck(d->model, d->comm, PETSC_ERR_USER_INPUT,
              "-analysis transient needs a mesh: loaded matrices have no contact surfaces");
   d->results = results;
+  if (!d->restart) PetscCall(DynamicsCheckEarlier(d));
   PetscCall(ModelGetMesh(d->model, &mesh));
   d->n_elements = mesh->n_cells;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &d->n_elements, 1, MPIU_INT, MPI_SUM, d->comm));

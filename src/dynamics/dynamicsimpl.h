@@ -96,3 +96,5 @@ PETSC_INTERN PetscErrorCode DynamicsGoOn(Dynamics dynamics);
 /* takes away the checkpoint of an earlier run, whose tables a run that starts anew replaces: nothing must go on from it
    with these. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsForget(Dynamics dynamics);
+/* raises an error where that would lose the checkpoint of an unfinished run, or a file that is not squeal's. Collective. */
+PETSC_INTERN PetscErrorCode DynamicsCheckEarlier(Dynamics dynamics);

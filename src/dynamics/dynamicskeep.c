@@ -215,13 +215,43 @@ PetscErrorCode DynamicsGoOn(Dynamics d)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DynamicsForget(Dynamics d)
+PetscErrorCode DynamicsCheckEarlier(Dynamics d)
 {
-  char        path[PETSC_MAX_PATH_LEN];
-  const char *dir;
-  PetscMPIInt rank, error = 0;
+  char           part[PETSC_MAX_PATH_LEN];
+  const char    *dir;
+  PetscMPIInt    rank;
+  PetscBool      unfinished = PETSC_FALSE;
+  CheckpointKind kind;
 
   PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(d->comm, &rank));
+  PetscCall(ResultsGetDirectory(d->results, &dir));
+  PetscCall(CheckpointFind(d->comm, d->results, &kind));
+  PetscCheck(kind != CHECKPOINT_FOREIGN || !d->checkpoint_interval, d->comm, PETSC_ERR_FILE_UNEXPECTED,
+             "%s/%s is no checkpoint of squeal, and -dynamics_checkpoint_interval would replace it; choose another "
+             "-output_dir",
+             dir, CHECKPOINT_FILE);
+  PetscCall(PetscSNPrintf(part, sizeof(part), "%s/transient.csv.part", dir));
+  if (rank == 0 && !access(part, F_OK)) unfinished = PETSC_TRUE;
+  PetscCallMPI(MPI_Bcast(&unfinished, 1, MPIU_BOOL, 0, d->comm));
+  PetscCheck(
+    kind != CHECKPOINT_OURS || !unfinished, d->comm, PETSC_ERR_USER_INPUT,
+    "%s/%s of an unfinished run would be lost: go on with it by -dynamics_restart, choose another -output_dir, "
+    "or delete it",
+    dir, CHECKPOINT_FILE);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsForget(Dynamics d)
+{
+  char           path[PETSC_MAX_PATH_LEN];
+  const char    *dir;
+  PetscMPIInt    rank, error = 0;
+  CheckpointKind kind;
+
+  PetscFunctionBeginUser;
+  PetscCall(CheckpointFind(d->comm, d->results, &kind));
+  if (kind != CHECKPOINT_OURS) PetscFunctionReturn(0);
   PetscCallMPI(MPI_Comm_rank(d->comm, &rank));
   PetscCall(ResultsGetDirectory(d->results, &dir));
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", dir, CHECKPOINT_FILE));

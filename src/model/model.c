@@ -170,10 +170,10 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(model->comm, &size));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_cells, 1, MPIU_INT, MPI_SUM, model->comm));
-  PetscCall(PetscViewerASCIIPrintf(viewer,
-                                   "model: %s, %" PetscInt_FMT " cells, %" PetscInt_FMT " unknowns on %d ranks; %s\n",
-                                   !strcmp(model->source, "rig") ? "built-in rig" : model->file, n_cells,
-                                   model->mesh.n_unknowns, size, model->scene.element->description));
+  PetscCall(
+    PetscViewerASCIIPrintf(viewer, "model: %s, %" PetscInt_FMT " cells, %" PetscInt_FMT " unknowns on %d rank%s; %s\n",
+                           !strcmp(model->source, "rig") ? "built-in rig" : model->file, n_cells,
+                           model->mesh.n_unknowns, size, size == 1 ? "" : "s", model->scene.element->description));
   for (PetscInt i = 0; i < model->scene.n_parts; i++) PetscCall(PartView(model, i, viewer));
   for (PetscInt i = 0; i < model->scene.n_supports; i++)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  support %s holds%s%s%s of %s\n", model->scene.supports[i].name,

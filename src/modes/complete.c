@@ -72,3 +72,22 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
     PetscCall(PetscSNPrintf(text, size, "completeness was not checked, since -modes_left is off%s", frictionless));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode WindowComplain(Modes modes, const Window *window, const char solver[])
+{
+  Operators operators;
+  Model     model;
+  char      doubt[512] = "";
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetOperators(modes->pencil, &operators));
+  PetscCall(OperatorsGetModel(operators, &model, NULL));
+  if (model)
+    PetscCall(ModelDescribeDoubt(model, PetscMax(window->high, window->target) / (2 * PETSC_PI), sizeof(doubt), doubt));
+  PetscCheck(!doubt[0], modes->comm, PETSC_ERR_NOT_CONVERGED,
+             "the eigensolver did not converge all modes of the window: %s", doubt);
+  SETERRQ(
+    modes->comm, PETSC_ERR_NOT_CONVERGED,
+    "the eigensolver did not converge all modes of the window; raise -%s_max_it or -%s_ncv, or narrow -modes_band",
+    solver, solver);
+}

@@ -149,9 +149,7 @@ PetscErrorCode DampedSolve(Modes modes, const PencilMatrices *pencil, const Wind
     PetscCall(PEPDestroy(&pep));
     if (nev == 2 * n) break;
   }
-  PetscCheck(
-    covered, si->comm, PETSC_ERR_NOT_CONVERGED,
-    "the eigensolver did not converge all modes of the window; raise -pep_max_it or -pep_ncv, or narrow -modes_band");
+  if (!covered) PetscCall(WindowComplain(modes, window, "pep"));
   for (int i = 0; i < 3 && transposed; i++) PetscCall(MatDestroy(&problem[i]));
   PetscFunctionReturn(0);
 }

@@ -280,6 +280,7 @@ PetscErrorCode ModesSolve(Modes modes)
              (double)modes->band[0], (double)modes->band[1]);
   PetscCall(QualityMeasure(modes, &pencil));
   if (window.rigid) PetscCall(TwinsDrop(modes, &window));
+  if (window.rigid) PetscCall(NullVectorsRefine(modes, &pencil, &window));
   PetscCall(WindowDescribe(modes, &window));
   PetscCall(ModesLabel(modes));
   PetscFunctionReturn(0);

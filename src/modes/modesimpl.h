@@ -76,6 +76,8 @@ PETSC_INTERN PetscInt       WindowFarthest(const Window *window, const Spectrum 
 PETSC_INTERN PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *spectrum, PetscBool *complete);
 /* complete.c - in words, how it was checked that no mode is missing */
 PETSC_INTERN PetscErrorCode WindowDescribe(Modes modes, const Window *window);
+/* The error of a window that the eigensolver, eps or pep, did not cover, with its likely cause */
+PETSC_INTERN PetscErrorCode WindowComplain(Modes modes, const Window *window, const char solver[]);
 
 /* limit.c - the time that a solution may take: begins it; has the factors ask it after every solve; whether it is over,
    asked at every restart of an eigensolver with n of nev eigenvalues converged, which also tells the progress line how
@@ -109,6 +111,10 @@ PETSC_INTERN PetscErrorCode ModesWriteFilters(Modes modes, Model model, Results 
 
 /* twins.c - lists a rigid mode of a damped system once, and trims the list to the modes asked for */
 PETSC_INTERN PetscErrorCode TwinsDrop(Modes modes, Window *window);
+
+/* nullvectors.c - vectors of the rigid modes of a damped system where those of the eigensolver are bad. Errors:
+   PETSC_ERR_NOT_CONVERGED where K has no such vector */
+PETSC_INTERN PetscErrorCode NullVectorsRefine(Modes modes, const PencilMatrices *damped, const Window *window);
 
 /* label.c - names of the shapes */
 PETSC_INTERN PetscErrorCode ModesLabel(Modes modes);

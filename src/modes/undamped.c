@@ -150,9 +150,7 @@ PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Wi
     PetscCall(EPSDestroy(&eps));
     if (nev == n) break;
   }
-  PetscCheck(
-    covered, si->comm, PETSC_ERR_NOT_CONVERGED,
-    "the eigensolver did not converge all modes of the window; raise -eps_max_it or -eps_ncv, or narrow -modes_band");
+  if (!covered) PetscCall(WindowComplain(modes, window, "eps"));
   if (transposed) PetscCall(MatDestroy(&problem.K));
   if (transposed) PetscCall(MatDestroy(&problem.M));
   PetscFunctionReturn(0);

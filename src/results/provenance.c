@@ -181,8 +181,8 @@ static PetscErrorCode SceneWrite(Results results)
   PetscCall(ScenePrintCommand(file, size));
   PetscCall(OutFilePrint(file, "# versions: squeal %s, PETSc %s, SLEPc %s, MUMPS %s, %s\n", v.squeal, v.petsc, v.slepc,
                          v.mumps, v.mpi));
-  PetscCall(
-    OutFilePrint(file, "# cost: %d ranks, %.1f s, %.0f MB at most\n# end: %s\n", size, seconds, megabytes, date));
+  PetscCall(OutFilePrint(file, "# cost: %d rank%s, %.1f s, %.0f MB at most\n# end: %s\n", size, size == 1 ? "" : "s",
+                         seconds, megabytes, date));
   PetscCall(OutFilePrint(file, SCENE_FILES));
   for (PetscInt i = 0; i < results->n_kept; i++) PetscCall(OutFilePrint(file, " %s", results->kept[i]));
   PetscCall(OutFilePrint(file, "\n"));

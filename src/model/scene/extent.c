@@ -14,6 +14,7 @@
 #define LARGEST_SI     20.  /* m */
 #define SMALLEST_MM    0.5  /* mm */
 #define HEAVIEST_PART  1e6  /* kg */
+#define SLOW_PERIODS   50.  /* of the highest frequency of a window while a wave crosses a part: thousands of modes */
 
 /* Bounding boxes and volumes of this rank's cells, then of all */
 static PetscErrorCode ExtentsMeasure(Model model)
@@ -47,6 +48,12 @@ static PetscErrorCode ExtentsMeasure(Model model)
   }
   PetscCall(PetscFree2(low, volume));
   PetscFunctionReturn(0);
+}
+
+/* Time that a wave takes along the longest side, s */
+static PetscReal PartCrossing(const Part *p, const PartExtent *e)
+{
+  return PetscMax(e->size[0], PetscMax(e->size[1], e->size[2])) / PetscSqrtReal(p->young / p->density);
 }
 
 /* What the units of a part probably are where they do not fit together; NULL where they do */
@@ -88,19 +95,45 @@ PetscErrorCode PartsCheckUnits(Model model)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModelDescribeDoubt(Model model, PetscReal hz, size_t size, char text[])
+{
+  PetscInt  slowest = -1;
+  PetscReal longest = SLOW_PERIODS / hz;
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  for (PetscInt i = 0; i < model->scene.n_parts; i++) {
+    const PetscReal crossing = PartCrossing(&model->scene.parts[i], &model->extent[i]);
+
+    if (crossing <= longest) continue;
+    longest = crossing;
+    slowest = i;
+  }
+  if (slowest < 0) PetscFunctionReturn(0);
+  const Part *p     = &model->scene.parts[slowest];
+  const char *doubt = PartDoubt(p, &model->extent[slowest]);
+
+  PetscCall(PetscSNPrintf(text, size,
+                          "a wave along part %s takes %.3g s, %.0f periods of %.6g Hz; probably %s%s (-%s_young %.6g, "
+                          "-%s_density %.6g)",
+                          p->name, (double)longest, (double)(longest * hz), (double)hz,
+                          doubt ? "" : "its modulus, density or mesh has other units", doubt ? doubt : "", p->name,
+                          (double)p->young, p->name, (double)p->density));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode PartView(Model model, PetscInt part, PetscViewer viewer)
 {
-  const Part       *p       = &model->scene.parts[part];
-  const PartExtent *e       = &model->extent[part];
-  const PetscReal   longest = PetscMax(e->size[0], PetscMax(e->size[1], e->size[2]));
+  const Part       *p = &model->scene.parts[part];
+  const PartExtent *e = &model->extent[part];
 
   PetscFunctionBeginUser;
   PetscCall(PetscViewerASCIIPrintf(
     viewer, "  part %s: E %.6g Pa, nu %.6g, rho %.6g kg/m^3, alpha %.6g 1/s, beta %.6g s\n", p->name, (double)p->young,
     (double)p->poisson, (double)p->density, (double)p->alpha, (double)p->beta));
-  PetscCall(
-    PetscViewerASCIIPrintf(viewer, "    %.4g x %.4g x %.4g m, %.4g m^3, %.4g kg; a wave along it takes %.3g s\n",
-                           (double)e->size[0], (double)e->size[1], (double)e->size[2], (double)e->volume,
-                           (double)(e->volume * p->density), (double)(longest / PetscSqrtReal(p->young / p->density))));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "    %.4g x %.4g x %.4g m, %.4g m^3, %.4g kg; a wave along it takes %.3g s\n",
+                                   (double)e->size[0], (double)e->size[1], (double)e->size[2], (double)e->volume,
+                                   (double)(e->volume * p->density), (double)PartCrossing(p, e)));
   PetscFunctionReturn(0);
 }

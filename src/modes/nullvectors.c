@@ -1,0 +1,145 @@
+/*
+   Vectors of the rigid modes of a damped system, K x = 0. The quadratic eigensolver finds x from [x; lambda x] scaled by
+   its largest eigenvalues, which leaves little of it at lambda = 0. So these vectors are found apart, by inverse
+   iteration on the undamped problem,
+
+      (K - s M) x' = M x,   s = -(10 scale)^2 far below every elastic mode,
+
+   which reduces what is elastic by |s| / omega^2 each time, and M-orthonormal. Left ones by the transposed problem.
+*/
+#include "modesimpl.h"
+
+#define NULL_GOOD     1e-10 /* backward error of an eigensolver's vector that needs nothing */
+#define NULL_ENOUGH   1e-14 /* where the iteration ends */
+#define NULL_LARGEST  1e-6  /* above it there is no such vector */
+#define NULL_MAX_STEP 8
+
+/* Makes x[j] M-orthonormal to those before it, twice for the sake of rounding; work = M x[j] */
+static PetscErrorCode NullOrthonormalise(Mat M, PetscInt j, Vec x[], Vec work)
+{
+  PetscScalar dot;
+
+  PetscFunctionBeginUser;
+  for (int pass = 0; pass < 2; pass++)
+    for (PetscInt i = 0; i < j; i++) {
+      PetscCall(MatMult(M, x[j], work));
+      PetscCall(VecDot(work, x[i], &dot));
+      PetscCall(VecAXPY(x[j], -dot, x[i]));
+    }
+  PetscCall(MatMult(M, x[j], work));
+  PetscCall(VecDot(work, x[j], &dot));
+  PetscCall(VecScale(x[j], 1 / PetscSqrtReal(dot)));
+  PetscFunctionReturn(0);
+}
+
+/* Largest |K x| / (|K| |x|) of the vectors, or with K' */
+static PetscErrorCode NullMeasure(Mat K, PetscBool transposed, PetscInt n, Vec x[], Vec work, PetscReal error[])
+{
+  PetscReal norm, length, residual;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatNorm(K, NORM_FROBENIUS, &norm));
+  for (PetscInt j = 0; j < n; j++) {
+    PetscCall(transposed ? MatMultTranspose(K, x[j], work) : MatMult(K, x[j], work));
+    PetscCall(VecNorm(work, NORM_2, &residual));
+    PetscCall(VecNorm(x[j], NORM_2, &length));
+    error[j] = residual / (norm * length);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* n vectors of the null space of K, or K', and their backward errors */
+static PetscErrorCode NullIterate(const PencilMatrices *pencil, const ShiftInvert *si, PetscBool transposed, PetscInt n,
+                                  Vec x[], PetscReal error[])
+{
+  PetscReal   worst = PETSC_MAX_REAL;
+  PetscRandom random;
+  Vec         work;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(x[0], &work));
+  PetscCall(PetscRandomCreate(si->comm, &random));
+  for (PetscInt j = 0; j < n; j++) PetscCall(VecSetRandom(x[j], random));
+  PetscCall(PetscRandomDestroy(&random));
+  for (int step = 0; step < NULL_MAX_STEP && worst > NULL_ENOUGH; step++) {
+    for (PetscInt j = 0; j < n; j++) {
+      PetscCall(transposed ? MatMultTranspose(pencil->M, x[j], work) : MatMult(pencil->M, x[j], work));
+      PetscCall(ShiftInvertSolve(si, transposed, work, x[j]));
+      PetscCall(NullOrthonormalise(pencil->M, j, x, work));
+    }
+    PetscCall(NullMeasure(pencil->K, transposed, n, x, work, error));
+    worst = 0;
+    for (PetscInt j = 0; j < n; j++) worst = PetscMax(worst, error[j]);
+  }
+  PetscCall(VecDestroy(&work));
+  PetscFunctionReturn(0);
+}
+
+/* Puts the vectors, in the pencil's unknowns, in place of those of the rigid modes, in all unknowns with M-norm one */
+static PetscErrorCode NullPut(Modes modes, PetscBool left, Vec x[], Spectrum *s)
+{
+  PetscReal square;
+  Mat       M;
+  Vec       work;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetMass(modes->pencil, &M));
+  PetscCall(MatCreateVecs(M, &work, NULL));
+  for (PetscInt i = 0, j = 0; i < modes->n; i++) {
+    if (!modes->mode[i].rigid) continue;
+    PetscCall(PencilExpand(modes->pencil, left, x[j++], s->xr[i]));
+    PetscCall(VecDestroy(&s->xi[i]));
+    PetscCall(MatMult(M, s->xr[i], work));
+    PetscCall(VecDot(work, s->xr[i], &square));
+    PetscCall(VecScale(s->xr[i], 1 / PetscSqrtReal(square)));
+  }
+  PetscCall(VecDestroy(&work));
+  PetscFunctionReturn(0);
+}
+
+/* Whether the vectors of rigid modes, n of them, are good as they are */
+static PetscBool NullIsGood(Modes modes, PetscInt *n)
+{
+  PetscReal worst = 0;
+
+  *n = 0;
+  for (PetscInt i = 0; i < modes->n; i++) {
+    if (!modes->mode[i].rigid) continue;
+    ++*n;
+    worst = PetscMax(worst, modes->mode[i].backward_error);
+  }
+  return worst < NULL_GOOD ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode NullVectorsRefine(Modes modes, const PencilMatrices *damped, const Window *window)
+{
+  const PencilMatrices pencil = {.K = damped->K, .M = damped->M, .symmetric = damped->symmetric};
+  PetscInt             n;
+  PetscReal           *error;
+  ShiftInvert          si;
+  Vec                  like, *x;
+
+  PetscFunctionBeginUser;
+  if (NullIsGood(modes, &n)) PetscFunctionReturn(0);
+  PetscCall(MatCreateVecs(pencil.K, &like, NULL));
+  PetscCall(VecDuplicateVecs(like, n, &x));
+  PetscCall(PetscMalloc1(n, &error));
+  PetscCall(ShiftInvertCreate(&pencil, -PetscSqr(10 * window->scale), PETSC_FALSE, &modes->progress, &si));
+  if (modes->left_spectrum.n) PetscCall(NullIterate(&pencil, &si, PETSC_TRUE, n, x, error));
+  if (modes->left_spectrum.n) PetscCall(NullPut(modes, PETSC_TRUE, x, &modes->left_spectrum));
+  PetscCall(NullIterate(&pencil, &si, PETSC_FALSE, n, x, error));
+  PetscCall(NullPut(modes, PETSC_FALSE, x, &modes->right));
+  PetscCall(ShiftInvertDestroy(&si));
+  for (PetscInt i = 0, j = 0; i < modes->n; i++)
+    if (modes->mode[i].rigid) modes->mode[i].backward_error = error[j++];
+  for (PetscInt j = 0; j < n; j++)
+    PetscCheck(
+      error[j] < NULL_LARGEST, modes->comm, PETSC_ERR_NOT_CONVERGED,
+      "the vector of a rigid mode has a backward error of %.2g, more than %.0e: leave it out with a -modes_band "
+      "above 0",
+      (double)error[j], NULL_LARGEST);
+  PetscCall(PetscFree(error));
+  PetscCall(VecDestroyVecs(n, &x));
+  PetscCall(VecDestroy(&like));
+  PetscFunctionReturn(0);
+}
