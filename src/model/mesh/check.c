@@ -20,8 +20,10 @@ static PetscErrorCode CellPartName(Model model, PetscInt cell, const char **name
   PetscFunctionReturn(0);
 }
 
-/* Corners x[n_nodes][3] of a cell of the serial mesh in the element's order, and their mean */
-static PetscErrorCode CellCorners(DM dm, const Element *element, PetscInt cell, PetscReal x[], PetscReal centre[3])
+/* Corners x[n_nodes][3] of a cell of the serial mesh in the element's order, and their mean; false where a node stands
+   twice, which a closure holds once */
+static PetscErrorCode CellCorners(DM dm, const Element *element, PetscInt cell, PetscReal x[], PetscReal centre[3],
+                                  PetscBool *whole)
 {
   PetscScalar *values = NULL;
   PetscSection section;
@@ -32,8 +34,9 @@ static PetscErrorCode CellCorners(DM dm, const Element *element, PetscInt cell, 
   PetscCall(DMGetCoordinateSection(dm, &section));
   PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
   PetscCall(DMPlexVecGetClosure(dm, section, coordinates, cell, &n, &values));
+  *whole = n == 3 * element->n_nodes ? PETSC_TRUE : PETSC_FALSE;
   for (int d = 0; d < 3; d++) centre[d] = 0;
-  for (PetscInt i = 0; i < element->n_nodes; i++)
+  for (PetscInt i = 0; i < element->n_nodes && *whole; i++)
     for (int d = 0; d < 3; d++) {
       x[3 * i + d] = values[3 * element->closure_order[i] + d];
       centre[d] += x[3 * i + d] / (PetscReal)element->n_nodes;
@@ -54,6 +57,7 @@ static PetscErrorCode FindBadCell(Model model, char text[], size_t size)
     DMPolytopeType shape;
     const Element *element;
     const char    *part;
+    PetscBool      whole;
 
     PetscCall(DMPlexGetCellType(model->dm, c, &shape));
     element = ElementFind(shape, model->formulation);
@@ -63,10 +67,16 @@ static PetscErrorCode FindBadCell(Model model, char text[], size_t size)
         c - cStart + 1, DMPolytopeTypes[shape], model->formulation, ElementNames()));
       break;
     }
-    PetscCall(CellCorners(model->dm, element, c, x, centre));
-    element->measure(x, &volume, &jacobian);
-    if (jacobian > FLAT) continue;
+    PetscCall(CellCorners(model->dm, element, c, x, centre, &whole));
+    if (whole) element->measure(x, &volume, &jacobian);
+    if (whole && jacobian > FLAT) continue;
     PetscCall(CellPartName(model, c, &part));
+    if (!whole) {
+      PetscCall(PetscSNPrintf(
+        text, size, "element %" PetscInt_FMT " (part %s) has a node twice; give %" PetscInt_FMT " different ones",
+        c - cStart + 1, part, element->n_nodes));
+      break;
+    }
     PetscCall(PetscSNPrintf(
       text, size, "element %" PetscInt_FMT " (part %s, centre %.6g, %.6g, %.6g m) is inverted or has no volume",
       c - cStart + 1, part, (double)centre[0], (double)centre[1], (double)centre[2]));
