@@ -5,15 +5,18 @@ or a section that says so. Numbers are compared with the files that squeal wrote
 
     test_report.py SQUEAL MPIRUN"""
 
+import random
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
+import warnings
 from html.parser import HTMLParser
 from pathlib import Path
 
 from brake_results import SOURCE, make_results
+from fuzz.damage import BYTES, LINES
 from report_checks import (check_frf, check_modes, check_shapes, check_static, check_sweep, check_together,
                            check_transient, write_response)
 
@@ -139,6 +142,39 @@ def check_bad(t):
     t.check("scene.yaml: no such file" in page.source, "what a folder without scene.yaml lacks is said")
 
 
+def column_out(random, data):
+    """A table without one of its columns."""
+    rows = [line.split(b",") for line in data.split(b"\n")]
+    at = random.randrange(len(rows[0]))
+    return b"\n".join(b",".join(row[:at] + row[at + 1:]) for row in rows), False
+
+
+def check_damages(t, names, n=60):
+    """Files of a folder damaged at random, from a fixed seed: a page or one line, never a trace or a warning."""
+    sys.path.insert(0, str(SOURCE / "scripts"))
+    from squeal.report.folders import Options
+    from squeal.report.page import write_page
+    from squeal.tables import BadInput
+    warnings.simplefilter("error", RuntimeWarning)
+    generator, written = random.Random(7), 0
+    for _ in range(n):
+        folder = t.folder / "damaged"
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree(t.folder / generator.choice(names), folder)
+        files = sorted(path for path in folder.iterdir() if path.suffix in (".csv", ".h5", ".yaml"))
+        path = generator.choice(files)
+        damage = generator.choice(BYTES if path.suffix == ".h5" else (column_out, *LINES))
+        path.write_bytes(damage(generator, path.read_bytes())[0])
+        try:
+            write_page([folder], t.folder / "damaged.html", "damaged", Options())
+            written += 1
+        except BadInput as error:
+            t.check("\n" not in str(error), f"{path.name}, {damage.__name__}: {error}")
+        except Exception as error:  # what a user would see as a trace
+            t.check(False, f"{path.name}, {damage.__name__}: {error!r}")
+    t.check(written > n // 2, f"{written} pages of {n} damaged folders")
+
+
 def main():
     squeal, mpirun = (Path(word).resolve() for word in sys.argv[1:3])
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
@@ -160,6 +196,7 @@ def main():
         for number, name in enumerate(names, 1):
             check_origin(t, page, f"r{number}", t.folder / name)
         check_bad(t)
+        check_damages(t, names)
     print("\n".join(t.faults) or "all as it should be")
     return 1 if t.faults else 0
 

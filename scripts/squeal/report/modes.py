@@ -1,5 +1,7 @@
 """Section of complex modes: eigenvalues, moving shapes, the table, contributions of the parts, errors."""
 
+import math
+
 from ..bodies import Scene, opened
 from ..tables import BadInput, flag, header, optional, read_table
 from .charts import Axis, Chart, Panel
@@ -173,10 +175,12 @@ def errors(modes, folder):
     x = Axis.about(f"frequency, {unit}", [scale * row["freq_hz"] for row in rows], room=0.03)
     panels = []
     for name, title in (("error_hz", "error, Hz"), ("condition", "condition")):
+        if name not in modes.has:
+            continue
         values = [row[name] for row in rows]
         panel = Panel(Axis.about(title, values, log=True), 150)
-        tips = [f"{name_of(row)}: error {figures(row['error_hz'], 2)} Hz, condition {figures(row['condition'], 3)}"
-                for row in rows]
+        tips = [f"{name_of(row)}: error {figures(row['error_hz'], 2)} Hz, condition "
+                f"{figures(row.get('condition', math.nan), 3)}" for row in rows]
         panel.points([scale * row["freq_hz"] for row in rows], values, "blue", tips, 3.5)
         panels.append(panel)
     chart = Chart("error and condition of each eigenvalue", x, panels).markup(f"{folder.key}-err", "half")
