@@ -14,6 +14,7 @@ RUNS = {
     "static": [*BRAKE, "-analysis", "static"],
     "sweep": [*BRAKE, "-analysis", "sweep", "-modes_band", "1000,6000", "-sweep_parameter", "pad_young",
               "-sweep_values", "6.5e9:14e9:16", "-sweep_verify", "2"],
+    "frf": [*BRAKE, "-options_file", SOURCE / "options/massi2005_frf.yaml", "-frf_frequencies", "1500:4500:301"],
     "transient": [*IN_TIME, "-ts_max_time", "8e-3", "-dynamics_snapshot_interval", "0.5e-3"],
 }
 

@@ -177,26 +177,22 @@ def check_transient(t, page, key, folder):
     t.check(image and image[0]["href"].startswith("data:image/png;base64,iVBOR"), f"{key}: a spectrogram")
 
 
-def write_response(folder):
-    """A made-up response of one mode at 2 kHz with 1 % of damping beside what is in the folder."""
-    freq = numpy.linspace(1000, 3000, 401)
-    value = 1e-8 / (1 - (freq / 2000)**2 + 0.02j * freq / 2000)
-    lines = [f"{f:.15g},{v.real:.15g},{v.imag:.15g},{1e-9 * abs(v):.15g},1e-09" for f, v in zip(freq, value)]
-    (folder / "frf.csv").write_text("\n".join(["freq_hz,tip_z_re_m_n,tip_z_im_m_n,error_m_n,error_relative", *lines]) + "\n")
-    (folder / "peaks.csv").write_text("freq_hz,magnitude_m_n,mode,mode_freq_hz,damping_ratio,label\n"
-                                      '2000,5e-07,3,2000,0.01,"(0,3+)"\n')
-
-
 def check_frf(t, page, key, folder):
-    """Magnitude and phase of the response."""
-    rows = rows_of(folder / "frf.csv")
-    value = numpy.array([complex(float(row["tip_z_re_m_n"]), float(row["tip_z_im_m_n"])) for row in rows])
-    lines = [e for e in page.find("path", inside=f"{key}-response") if e.get("class") == "line blue"][:2]
-    above, below = (path_points(e["d"]) for e in lines)
-    t.check(straight(above[:, 1], numpy.log(abs(value))) and straight(above[:, 0], [row["freq_hz"] for row in rows]),
-            f"{key}: magnitude of the response")
-    t.check(straight(below[:, 1], numpy.angle(value)), f"{key}: its phase")
-    t.check(same_numbers(page, f"{key}-peaks", "peak, Hz", rows_of(folder / "peaks.csv"), "freq_hz"), f"{key}: its peaks")
+    """Magnitude and phase of every output that is drawn, and the peaks."""
+    rows, peaks = rows_of(folder / "frf.csv"), rows_of(folder / "peaks.csv")
+    lines = first_half([e for e in page.find("path", inside=f"{key}-response") if e.get("class", "").startswith("line ")])
+    n = len(lines) // 2
+    t.check(n == 7, f"{key}: {n} outputs")
+    for above, below in zip(lines[:n], lines[n:]):
+        name = above["text"]
+        value = numpy.array([complex(float(row[f"{name}_re_m_n"]), float(row[f"{name}_im_m_n"])) for row in rows])
+        points = path_points(above["d"])
+        t.check(straight(points[:, 1], numpy.log(abs(value))) and straight(points[:, 0], [row["freq_hz"] for row in rows]),
+                f"{key}: magnitude of {name}")
+        kept = numpy.append(abs(numpy.diff(numpy.angle(value))) <= numpy.pi, True)  # the line ends where it jumps a turn
+        t.check(straight(path_points(below["d"])[:, 1], numpy.angle(value)[kept]), f"{key}: phase of {name}")
+    t.check(same_numbers(page, f"{key}-peaks", "peak, Hz", peaks, "freq_hz") and
+            same_numbers(page, f"{key}-peaks", "damping, %", peaks, "damping_ratio", 100), f"{key}: {len(peaks)} peaks")
 
 
 def check_together(t, page, folders):

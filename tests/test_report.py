@@ -18,7 +18,7 @@ from pathlib import Path
 from brake_results import SOURCE, make_results
 from fuzz.damage import BYTES, LINES
 from report_checks import (check_frf, check_modes, check_shapes, check_static, check_sweep, check_together,
-                           check_transient, write_response)
+                           check_transient)
 
 LARGEST = 10e6  # bytes
 
@@ -180,9 +180,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
         t = Test(Path(name))
         make_results(squeal, mpirun, t.folder)
-        shutil.copytree(t.folder / "modes_quiet", t.folder / "response")
-        write_response(t.folder / "response")
-        names = ("modes", "modes_quiet", "static", "sweep", "transient", "response")
+        names = ("modes", "modes_quiet", "static", "sweep", "transient", "frf")
         page = t.page(*names)
         check_alone(t, page)
         for key, folder in (("r1", "modes"), ("r2", "modes_quiet")):
@@ -191,7 +189,7 @@ def main():
         check_static(t, page, "r3", t.folder / "static")
         check_sweep(t, page, "r4", t.folder / "sweep")
         check_transient(t, page, "r5", t.folder / "transient")
-        check_frf(t, page, "r6", t.folder / "response")
+        check_frf(t, page, "r6", t.folder / "frf")
         check_together(t, page, [t.folder / name for name in names])
         for number, name in enumerate(names, 1):
             check_origin(t, page, f"r{number}", t.folder / name)

@@ -6,6 +6,7 @@ import numpy
 
 from .tables import BadInput
 
+LARGEST = 1e30  # of what is a displacement, a velocity or a place
 # Faces of VTK's hexahedron, seen anticlockwise from outside
 HEX_FACES = numpy.array([[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]])
 
@@ -16,7 +17,7 @@ class Scene:
     def __init__(self, file, disc_name):
         group = file["VTKHDF"]
         self.shapes = group["PointData"]
-        self.points = group["Points"][:]
+        self.points = sound(file.filename, "Points", group["Points"][:])
         cells = group["Connectivity"][:].reshape(group["NumberOfCells"][0], -1)
         if cells.shape[1] != 8:
             raise BadInput(f"{file.filename}: cells of {cells.shape[1]} nodes; only hexahedra can be drawn")
@@ -62,7 +63,9 @@ class Scene:
         key = f"mode_{mode:03d}"
         if f"{key}_re" not in self.shapes:
             raise BadInput(f"{self.shapes.file.filename}: no shape of mode {mode}; see the column mode of modes.csv")
-        shape = self.shapes[f"{key}_re"][:] + 1j * self.shapes[f"{key}_im"][:]
+        name = self.shapes.file.filename
+        re, im = (sound(name, f"{key}_{part}", self.shapes[f"{key}_{part}"][:]) for part in ("re", "im"))
+        shape = re + 1j * im
         out_of_plane = shape[numpy.unique(self.disc)] @ self.axis
         return shape * numpy.exp(-0.5j * numpy.angle(numpy.sum(out_of_plane**2)))
 
@@ -89,6 +92,13 @@ class Skin:
         return field[self.nodes] @ self.frame
 
 
+def sound(path, name, values):
+    """Values of an array, if they can be any of a field."""
+    if not (abs(values) < LARGEST).all():
+        raise BadInput(f"{path}: array {name} has values that are no numbers or above {LARGEST:g}; was the file damaged?")
+    return values
+
+
 @contextmanager
 def opened(path):
     """An HDF5 file; what cannot be read is one line."""
@@ -99,7 +109,7 @@ def opened(path):
     try:
         with h5py.File(path) as file:
             yield file
-    except (OSError, KeyError, IndexError, ValueError) as error:
+    except (OSError, KeyError, IndexError, ValueError, RuntimeError) as error:  # RuntimeError: h5py's of torn files
         raise BadInput(f"{path}: cannot be read: {error}") from None
 
 
@@ -112,7 +122,7 @@ def read_states(paths, name, disc_name):
             data = file["VTKHDF/PointData"]
             if name not in data:
                 raise BadInput(f"{path}: no array {name}")
-            yield scene, data[name][:]
+            yield scene, sound(path, name, data[name][:])
 
 
 def boundary_faces(cells):

@@ -1,6 +1,7 @@
 """A result folder as the page sees it: which analyses it holds, its scene, the commands that draw it again."""
 
 import shlex
+from pathlib import Path
 from typing import NamedTuple
 
 from ..provenance import Provenance
@@ -10,6 +11,7 @@ from .markup import missing
 TABLES = {"modes": "modes.csv", "static": "static.csv", "sweep": "sweep.csv", "frf": "frf.csv",
           "transient": "transient.csv"}
 UNFINISHED = ".part"
+SCRIPTS = Path(__file__).resolve().parents[2]
 
 
 class Options(NamedTuple):
@@ -65,5 +67,6 @@ class Folder:
         return self.scene.value("modes_disc", "disc") if self.scene else "disc"
 
     def command(self, script, *words):
-        """What draws one of its pictures again."""
+        """What draws one of its pictures again; the page itself where no script does."""
+        script = script if (SCRIPTS / script).exists() else "report"
         return " ".join([f"scripts/{script}", shlex.quote(self.name), *words])

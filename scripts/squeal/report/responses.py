@@ -8,7 +8,13 @@ from .charts import Axis, Chart, Panel
 from .markup import Column, Part, count, figure, figures, fixed, legend, missing, section, table, tag
 
 COLOURS = ("blue", "orange", "green", "purple", "sky", "vermilion", "grey")
-MOST_TIPS = 600  # points of an output that tell their numbers
+MOST_TIPS = 400  # points of an output that tell their numbers
+
+
+def strongest(responses):
+    """Outputs that are drawn, in their order: as many as there are colours, those of the largest magnitude."""
+    by_size = sorted(responses.outputs, key=lambda name: -abs(responses.outputs[name]).max())[:len(COLOURS)]
+    return {name: values for name, values in responses.outputs.items() if name in by_size}
 
 
 def scaled(freq):
@@ -20,10 +26,11 @@ def magnitude_figure(folder, responses):
     """Magnitude and phase over frequency, peaks named."""
     scale, unit = scaled(responses.freq)
     x = scale * responses.freq
-    magnitude = {name: abs(values) for name, values in responses.outputs.items()}
+    outputs = strongest(responses)
+    magnitude = {name: numpy.where(values == 0, numpy.nan, abs(values)) for name, values in outputs.items()}
     above = Panel(Axis.about("magnitude, m/N", numpy.concatenate(list(magnitude.values())), log=True), 330)
     below = Panel(Axis("phase, degrees", -185, 185), 170)
-    for k, (name, values) in enumerate(responses.outputs.items()):
+    for k, (name, values) in enumerate(outputs.items()):
         colour, phase = COLOURS[k % len(COLOURS)], numpy.degrees(numpy.angle(values))
         above.line(x, magnitude[name], colour, name)
         jumps = numpy.append(abs(numpy.diff(phase)) > 180, False)
@@ -34,12 +41,13 @@ def magnitude_figure(folder, responses):
             for f, m, p in zip(responses.freq[::step], magnitude[name][::step], phase[::step])], 1.2)
     for row in responses.peaks:
         at = abs(responses.freq - row["freq_hz"]).argmin()
-        top = max(values[at] for values in magnitude.values())
+        top = max(numpy.nan_to_num(values[at]) for values in magnitude.values())
         above.label(scale * row["freq_hz"], top, row["label"] or f"{scale * row['freq_hz']:.3f}")
     chart = Chart("frequency response", Axis(f"frequency, {unit}", x.min(), x.max()), [above, below])
-    keys = legend([(COLOURS[k % len(COLOURS)], "line", name) for k, name in enumerate(responses.outputs)])
+    keys = legend([(COLOURS[k % len(COLOURS)], "line", name) for k, name in enumerate(outputs)])
     return figure(f"{folder.key}-response", "Displacement per force", [keys, chart.markup(f"{folder.key}-response-chart")],
-                  "Peaks carry the label of the mode that gives most.", folder.command("report"))
+                  f"{len(outputs)} of {count(len(responses.outputs), 'output')}, the largest ones; peaks carry the label of the "
+                  "mode that gives most.", folder.command("plot/frf"))
 
 
 def error_figure(folder, responses):
@@ -53,7 +61,7 @@ def error_figure(folder, responses):
     chart = Chart("error of the response", Axis(f"frequency, {unit}", *(scale * responses.freq[[0, -1]])), [panel])
     return figure(f"{folder.key}-response-errors", "Error of the response",
                   chart.markup(f"{folder.key}-response-err", "half"), "Of all outputs together: an estimate, not a bound.",
-                  folder.command("report"))
+                  folder.command("plot/frf"))
 
 
 def peak_table(folder, responses):

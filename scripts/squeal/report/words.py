@@ -134,7 +134,8 @@ def analysis_words(scene):
         start = "the sliding state" if scene.value("dynamics_start") == "static" else "rest"
         return f"Motion in time over {figures(1e3 * scene.number('ts_max_time'), 4)} ms, from {start}, with exact contact."
     if kind == "frf":
-        return f"Frequency response, about {about}."
+        return (f"Response to 1 N at {scene.value('frf_force').replace(',', ' along ')}, "
+                f"{range_words(scene.value('frf_frequencies'))}, Hz, about {about}.")
     return f"Complex modes {band}, about {about}, {scene.value('operators_mass', 'consistent')} mass."
 
 
