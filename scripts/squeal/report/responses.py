@@ -43,7 +43,13 @@ def magnitude_figure(folder, responses):
         at = abs(responses.freq - row["freq_hz"]).argmin()
         top = max(numpy.nan_to_num(values[at]) for values in magnitude.values())
         above.label(scale * row["freq_hz"], top, row["label"] or f"{scale * row['freq_hz']:.3f}")
-    chart = Chart("frequency response", Axis(f"frequency, {unit}", x.min(), x.max()), [above, below])
+    panels = [above, below]
+    if any(name in responses.coherence for name in outputs):
+        panels.append(Panel(Axis("coherence", 0, 1.05), 110))
+    for k, name in enumerate(outputs):
+        if name in responses.coherence:
+            panels[-1].line(x, responses.coherence[name], COLOURS[k], name)
+    chart = Chart("frequency response", Axis(f"frequency, {unit}", x.min(), x.max()), panels)
     keys = legend([(COLOURS[k % len(COLOURS)], "line", name) for k, name in enumerate(outputs)])
     return figure(f"{folder.key}-response", "Displacement per force", [keys, chart.markup(f"{folder.key}-response-chart")],
                   f"{len(outputs)} of {count(len(responses.outputs), 'output')}, the largest ones; peaks carry the label of the "
