@@ -117,6 +117,13 @@ def blanks(random, data):
     return data.replace(b"\n", b" \n"), True
 
 
+def lines_shuffled(random, data):
+    """Of a YAML file whose keys have a line each."""
+    lines = data.splitlines(keepends=True)
+    random.shuffle(lines)
+    return b"".join(lines), True
+
+
 def nothing(random, data):
     return data, True
 
