@@ -63,7 +63,7 @@ without a mesh the number of an unknown, from 1
 .  -frf_directions <xyz>          - in which directions
 .  -frf_frequencies <low:high:n>  - Hz; low:high:n:log for equal ratios; or a list
 .  -frf_method <modal>            - superposition of modes; direct solves the whole system at each frequency
-.  -frf_rtol <1e-8>               - largest estimated relative error of the modal method
+.  -frf_rtol <1e-8>               - largest estimated relative error of the modal method, rounding apart
 -  -frf_max_steps <30>            - most steps of the residual term
 
    Errors: PETSC_ERR_USER_INPUT for frequencies that are not positive, directions that are none.

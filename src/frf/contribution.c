@@ -24,7 +24,7 @@ PetscErrorCode FrfCheckPoles(Frf frf)
       const PetscReal omega = 2 * PETSC_PI * frf->freq[i];
       const PetscReal close = PetscMax(mode[k].error, POLE_ROUNDING * omega);
 
-      PetscCheck(ModeDistance(&mode[k], omega) > close, frf->comm, PETSC_ERR_USER_INPUT,
+      PetscCheck(mode[k].rigid || ModeDistance(&mode[k], omega) > close, frf->comm, PETSC_ERR_USER_INPUT,
                  "-frf_frequencies: %.15g Hz is a pole, mode %" PetscInt_FMT
                  " without damping, where the response is infinite; move the frequency, or give damping",
                  (double)frf->freq[i], k + 1);

@@ -141,8 +141,9 @@ static PetscReal WorstError(Frf frf, PetscInt stride, PetscInt *where)
   return worst;
 }
 
-/* Response on the space before and after the last step, at every stride-th frequency */
-static PetscErrorCode SuperpositionRespond(Frf frf, const Superposition *s, PetscInt stride)
+/* Response on the space before and after the last step, the latter with K rounded otherwise if asked for, at every stride-th
+   frequency */
+static PetscErrorCode SuperpositionRespond(Frf frf, const Superposition *s, PetscBool rounded, PetscInt stride)
 {
   FrfSchur used, larger;
   FrfEnds  ends;
@@ -150,7 +151,7 @@ static PetscErrorCode SuperpositionRespond(Frf frf, const Superposition *s, Pets
   PetscFunctionBeginUser;
   PetscCall(EndsCreate(frf, s, &ends));
   PetscCall(FrfSchurCreate(&s->space.small, s->level, PETSC_FALSE, s->shift, &ends, &used));
-  PetscCall(FrfSchurCreate(&s->space.small, s->space.small.n, PETSC_TRUE, s->shift, &ends, &larger));
+  PetscCall(FrfSchurCreate(&s->space.small, s->space.small.n, rounded, s->shift, &ends, &larger));
   PetscCall(RespondAll(frf, &used, &larger, stride));
   PetscCall(FrfSchurDestroy(&larger));
   PetscCall(FrfSchurDestroy(&used));
@@ -158,7 +159,7 @@ static PetscErrorCode SuperpositionRespond(Frf frf, const Superposition *s, Pets
   PetscFunctionReturn(0);
 }
 
-/* Steps until the answer is accurate */
+/* Steps until the answer is accurate but for rounding, of which the error that is told at the end has its part */
 static PetscErrorCode SuperpositionGrow(Frf frf, Superposition *s)
 {
   const PetscInt stride = PetscMax(1, frf->n / N_LOOKS);
@@ -169,16 +170,17 @@ static PetscErrorCode SuperpositionGrow(Frf frf, Superposition *s)
   PetscCall(SuperpositionStep(frf, s));
   while (worst > frf->rtol && frf->n_steps < frf->max_steps + 1) {
     PetscCall(SuperpositionStep(frf, s));
-    PetscCall(SuperpositionRespond(frf, s, stride));
+    PetscCall(SuperpositionRespond(frf, s, PETSC_FALSE, stride));
     worst = WorstError(frf, stride, &where);
     if (worst > frf->rtol || stride == 1) continue;
-    PetscCall(SuperpositionRespond(frf, s, 1));
+    PetscCall(SuperpositionRespond(frf, s, PETSC_FALSE, 1));
     worst = WorstError(frf, 1, &where);
   }
   PetscCheck(worst <= frf->rtol, frf->comm, PETSC_ERR_NOT_CONVERGED,
              "the estimated error at %.6g Hz is %.2g after %" PetscInt_FMT
              " steps, more than -frf_rtol %.2g: let -modes_band end farther above it, or raise -frf_max_steps",
              (double)frf->freq[where], (double)worst, frf->n_steps - 1, (double)frf->rtol);
+  PetscCall(SuperpositionRespond(frf, s, PETSC_TRUE, 1));
   PetscFunctionReturn(0);
 }
 
