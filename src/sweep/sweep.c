@@ -75,6 +75,8 @@ static PetscErrorCode ReadMethod(Sweep sweep, OptionsItems PetscOptionsObject)
   PetscCall(PetscOptionsInt("-sweep_real_modes", "frictionless modes of -sweep_method real", "sweep.h", sweep->n_real,
                             &sweep->n_real, NULL));
   sweep->method = (SweepMethod)method;
+  if (method != SWEEP_REAL)
+    PetscCall(OptionsRefuse(sweep->comm, "-sweep_real_modes", "not used without -sweep_method real"));
   PetscFunctionReturn(0);
 }
 
