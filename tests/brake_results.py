@@ -4,7 +4,8 @@ import subprocess
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[1]
-BRAKE = ["-options_file", SOURCE / "options/massi2005.yaml", "-rig_disc_elements", "8,24,1", "-rig_pad_elements", "4,4,2",
+BRAKE = ["-options_file", SOURCE / "options/massi2005.yaml", "-rig_disc_elements", "8,24,1", "-rig_pad_elements",
+         "4,4,2",
          "-rig_beam_elements", "10"]
 IN_TIME = ["-options_file", SOURCE / "options/massi2005_transient.yaml", "-rig_disc_elements", "8,32,1",
            "-rig_pad_elements", "4,4,2"]

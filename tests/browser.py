@@ -10,7 +10,8 @@ import tempfile
 import time
 
 PROGRAMS = "chromium-headless-shell", "chromium", "chromium-browser", "google-chrome"
-OPTIONS = ("--headless", "--no-sandbox", "--disable-gpu-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+OPTIONS = ("--headless", "--no-sandbox", "--disable-gpu-sandbox", "--use-angle=swiftshader",
+           "--enable-unsafe-swiftshader",
            "--hide-scrollbars", "--no-first-run", "--disable-extensions", "--remote-debugging-pipe")
 
 
@@ -28,7 +29,8 @@ class Browser:
         self.read_end, from_browser = os.pipe()
         moved = [os.dup2(end, 200 + i) for i, end in enumerate((to_browser, from_browser))]
         place = f'exec "$0" "$@" 3<&{moved[0]} 4>&{moved[1]}'
-        command = ["bash", "-c", place, program, *OPTIONS, *options, f"--user-data-dir={self.profile.name}", "about:blank"]
+        command = ["bash", "-c", place, program, *OPTIONS, *options, f"--user-data-dir={self.profile.name}",
+                   "about:blank"]
         self.process = subprocess.Popen(command, pass_fds=moved, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         for end in (to_browser, from_browser, *moved):
             os.close(end)
@@ -66,7 +68,8 @@ class Browser:
 
     def open(self, url, width, height=900, **media):
         """Loads a page in a window of that size; media: prefers-color-scheme and the like, with underscores."""
-        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600)
+        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1,
+                 mobile=width < 600)
         features = [{"name": name.replace("_", "-"), "value": value} for name, value in media.items()]
         self.ask("Emulation.setEmulatedMedia", features=features)
         self.events.clear()

@@ -1,5 +1,5 @@
-"""What the page of scripts/report says of each analysis, against the files that squeal wrote, read here on their own. Used
-by test_report.py; `t` keeps what is wrong, `page` finds elements, `key` is the folder's prefix."""
+"""What the page of scripts/report says of each analysis, against the files that squeal wrote, read here on their own.
+Used by test_report.py; `t` keeps what is wrong, `page` finds elements, `key` is the folder's prefix."""
 
 import base64
 import csv
@@ -114,60 +114,72 @@ def check_static(t, page, key, folder):
     rows = rows_of(folder / "static.csv")
     for title, column, factor in (("pair", "pair", 1), ("x, mm", "x_m", 1e3), ("normal force, N", "lambda_n_n", 1),
                                   ("gap, µm", "gap_m", 1e6)):
-        t.check(same_numbers(page, f"{key}-contact1-pairs", title, rows, column, factor), f"{key}: {title} of the pairs")
+        t.check(same_numbers(page, f"{key}-contact1-pairs", title, rows, column, factor),
+                f"{key}: {title} of the pairs")
     cells = first_half([e for e in page.find("rect", inside=f"{key}-contact1-pressure") if e.get("style")])
     told = [f"pair {row['pair']}, " in e["text"] and f"normal force {float(row['lambda_n_n']):.4g} N" in e["text"]
             for e, row in zip(cells, rows) if 0.001 < float(row["lambda_n_n"])]
-    t.check(len(cells) == len(rows) and all(told) and len(told) > 10, f"{key}: {len(told)} closed pairs tell their force")
+    t.check(len(cells) == len(rows) and all(told) and len(told) > 10,
+            f"{key}: {len(told)} closed pairs tell their force")
     middle = places(cells, "x") + places(cells, "width") / 2
-    t.check(len(set(numpy.round(middle, 1))) == len({row["x_m"] for row in rows}), f"{key}: as many columns as the pad has")
+    t.check(len(set(numpy.round(middle, 1))) == len({row["x_m"] for row in rows}),
+            f"{key}: as many columns as the pad has")
     forces = rows_of(folder / "reactions.csv")
     for axis in "xyz":
         t.check(same_numbers(page, f"{key}-reactions", f"force {axis}, N", forces, f"force_{axis}_n")
                 if any(float(row[f"force_{axis}_n"]) for row in forces) else True, f"{key}: reactions along {axis}")
     n_open = sum(row["status"] == "open" for row in rows)
-    t.check(n_open > 0 and f"{len(rows) - n_open} of {len(rows)} pairs closed" in page.source, f"{key}: {n_open} pairs open")
+    t.check(n_open > 0 and f"{len(rows) - n_open} of {len(rows)} pairs closed" in page.source,
+            f"{key}: {n_open} pairs open")
     facts = dict(zip((e["text"] for e in page.find("dt", inside=f"{key}-origin")),
                      (e["text"] for e in page.find("dd", inside=f"{key}-origin"))))
     small = [name for name in facts if name.startswith(("forces left over", "largest overlap", "largest force across"))]
-    t.check(len(small) == 3 and all("10⁻" in facts[name] or facts[name] == "0" for name in small), f"{key}: residuals {facts}")
+    t.check(len(small) == 3 and all("10⁻" in facts[name] or facts[name] == "0" for name in small),
+            f"{key}: residuals {facts}")
 
 
 def check_sweep(t, page, key, folder):
     """Points, lines and onsets: breaks when branches or values are mixed up."""
     rows, onsets = rows_of(folder / "sweep.csv"), rows_of(folder / "onsets.csv")
     t.check(len(onsets) > 1 and same_numbers(page, f"{key}-onsets", "freq, Hz", onsets, "freq_hz") and
-            same_numbers(page, f"{key}-onsets", "pad_young, GPa", onsets, "critical_value", 1e-9), f"{key}: {len(onsets)} onsets")
+            same_numbers(page, f"{key}-onsets", "pad_young, GPa", onsets, "critical_value", 1e-9),
+            f"{key}: {len(onsets)} onsets")
     marks = first_half([e for e in page.find("path", inside=f"{key}-branches") if "mark" in e.get("class", "")])
     at = [list(map(float, e["transform"][10:-1].split())) for e in marks]
     t.check(len(marks) == len(onsets) and straight([x for x, _ in at], [row["critical_value"] for row in onsets]) and
-            straight([y for _, y in at], [row["freq_hz"] for row in onsets]), f"{key}: marks of the onsets in their places")
+            straight([y for _, y in at], [row["freq_hz"] for row in onsets]),
+            f"{key}: marks of the onsets in their places")
     dots = first_half([e for e in page.find("circle", inside=f"{key}-branches") if "vermilion" in e["class"]])
     growing = [row for row in rows if row["class"] == "unstable"]
     t.check(len(dots) == 2 * len(growing) > 4, f"{key}: {len(growing)} unstable points, in both panels")
     dots = [e for e in dots if float(e["cy"]) > 480]  # of the lower panel
-    told = [next((row for row in growing if f"growth +{float(row['growth_rad_s']):.4g} 1/s" in e["text"]), None) for e in dots]
+    told = [next((row for row in growing if f"growth +{float(row['growth_rad_s']):.4g} 1/s" in e["text"]), None)
+            for e in dots]
     t.check(None not in told and straight(places(dots, "cy"), [row["growth_rad_s"] for row in told]) and
             straight(places(dots, "cx"), [row["value"] for row in told]), f"{key}: growth of the unstable points")
     first = min(float(row["critical_value"]) for row in onsets if row["kind"] == "lock_in")
-    t.check(f"first lock-in at pad_young {1e-9 * first:.5g} GPa" in page.source, f"{key}: the first lock-in, {first:.5g}")
+    t.check(f"first lock-in at pad_young {1e-9 * first:.5g} GPa" in page.source,
+            f"{key}: the first lock-in, {first:.5g}")
     quiet = [e for e in page.find("path", inside=f"{key}-branches") if e.get("class") == "line quiet"]
     t.check(len(quiet) > 2, f"{key}: {len(quiet) // 2} other modes")
 
 
 def check_transient(t, page, key, folder):
-    """Forces over time, summary, film: breaks when columns are mixed up, points left out, or snapshots in wrong order."""
+    """Forces over time, summary, film: breaks when columns are mixed up, points left out, or snapshots out of order."""
     rows = rows_of(folder / "transient.csv")
     line = next(e for e in page.find("path", inside=f"{key}-forces") if e.get("class") == "line blue")
     points = path_points(line["d"])
     last = len(points)
     t.check(last == len(rows) and straight(points[:, 0], [row["time_s"] for row in rows]) and
-            straight(points[:, 1], [row["normal_force_n"] for row in rows]), f"{key}: {last} points of the normal force")
+            straight(points[:, 1], [row["normal_force_n"] for row in rows]),
+            f"{key}: {last} points of the normal force")
     done = t.script("plot/transient", folder.name)
     summary = {row["quantity"]: row for row in rows_of(folder / "transient_summary.csv")} if not done.returncode else {}
     shown = {row["quantity"]: row for row in page.table(f"{key}-summary")}
-    same = [name for name in shown if float(shown[name]["value"]) == float(summary.get(name, {"value": "nan"})["value"])]
-    t.check(len(shown) == len(same) > 8, f"{key}: {len(same)} of {len(shown)} numbers as plot/transient has them {done.stderr}")
+    same = [name for name in shown if float(shown[name]["value"]) == float(summary.get(name,
+                                                                                       {"value": "nan"})["value"])]
+    t.check(len(shown) == len(same) > 8, f"{key}: {len(same)} of {len(shown)} numbers as plot/transient has them "
+                                         f"{done.stderr}")
     data = json.loads(page.find("script", id=f"{key}-film-data")[0]["text"])
     times = [float(shape["detail"].split()[0]) for shape in data["shapes"]]
     t.check(len(times) > 4 and times == sorted(times), f"{key}: {len(times)} snapshots in order")
@@ -180,16 +192,19 @@ def check_transient(t, page, key, folder):
 def check_frf(t, page, key, folder):
     """Magnitude and phase of every output that is drawn, and the peaks."""
     rows, peaks = rows_of(folder / "frf.csv"), rows_of(folder / "peaks.csv")
-    lines = first_half([e for e in page.find("path", inside=f"{key}-response") if e.get("class", "").startswith("line ")])
+    lines = first_half([e for e in page.find("path", inside=f"{key}-response")
+                        if e.get("class", "").startswith("line ")])
     n = len(lines) // 2
     t.check(n == 7, f"{key}: {n} outputs")
     for above, below in zip(lines[:n], lines[n:]):
         name = above["text"]
         value = numpy.array([complex(float(row[f"{name}_re_m_n"]), float(row[f"{name}_im_m_n"])) for row in rows])
         points = path_points(above["d"])
-        t.check(straight(points[:, 1], numpy.log(abs(value))) and straight(points[:, 0], [row["freq_hz"] for row in rows]),
+        t.check(straight(points[:, 1], numpy.log(abs(value)))
+                and straight(points[:, 0], [row["freq_hz"] for row in rows]),
                 f"{key}: magnitude of {name}")
-        kept = numpy.append(abs(numpy.diff(numpy.angle(value))) <= numpy.pi, True)  # the line ends where it jumps a turn
+        kept = numpy.append(abs(numpy.diff(numpy.angle(value))) <= numpy.pi,
+                            True)  # the line ends where it jumps a turn
         t.check(straight(path_points(below["d"])[:, 1], numpy.angle(value)[kept]), f"{key}: phase of {name}")
     t.check(same_numbers(page, f"{key}-peaks", "peak, Hz", peaks, "freq_hz") and
             same_numbers(page, f"{key}-peaks", "damping, %", peaks, "damping_ratio", 100), f"{key}: {len(peaks)} peaks")
@@ -204,4 +219,5 @@ def check_together(t, page, folders):
     rows = [row for row in rows_of(folders[0] / "modes.csv") if row["unstable"] == "1"]
     shown = page.table("all-unstable")
     t.check(len(shown) == len(rows) and close([row["growth, 1/s: modes"] for row in shown],
-                                              [row["growth_rad_s"] for row in rows], 1e-9), "unstable modes of all folders")
+                                              [row["growth_rad_s"] for row in rows], 1e-9),
+            "unstable modes of all folders")

@@ -85,7 +85,8 @@ class Test:
     def refuses(self, expected, *words, script="report"):
         """One line, no trace."""
         done = self.script(script, *words)
-        self.check(done.returncode == 1 and done.stderr.count("\n") == 1 and expected in done.stderr and not done.stdout,
+        self.check(done.returncode == 1 and done.stderr.count("\n") == 1 and expected in done.stderr
+                   and not done.stdout,
                    f"{script} {' '.join(map(str, words))} says '{expected}': {done.stderr!r}")
 
 
@@ -112,7 +113,8 @@ def check_origin(t, page, key, folder):
     shown = {row["option"]: row["value"] for row in page.table(f"{key}-options") if row[""] == "given"}
     t.check(shown == given and len(given) > 20, f"{key}: the options that were given")
     repeat = re.search(r"# repeat: (.*)", text)[1]
-    t.check(repeat in [e["text"] for e in page.find("code", inside=f"{key}-origin")], f"{key}: the command that repeats")
+    t.check(repeat in [e["text"] for e in page.find("code", inside=f"{key}-origin")],
+            f"{key}: the command that repeats")
 
 
 def check_bad(t):
@@ -133,11 +135,13 @@ def check_bad(t):
     t.refuses("half: half-written, only modes.csv.part is there", "half")
     t.refuses("cannot write none/page.html", "modes", "-o", "none/page.html")
     page = t.page("empty", "modes", told="report: empty: holds no result")
-    t.check(any("empty: holds no result" in e["text"] for e in page.find("p", class_="missing")), "a section for what is empty")
+    t.check(any("empty: holds no result" in e["text"] for e in page.find("p", class_="missing")),
+            "a section for what is empty")
     for said, *words in (("was the file cut off?", "cut"), ("modes.h5: cannot be read", "torn"),
                          ("--modes 99: no such mode", "modes", "--modes", "99")):
         page = t.page(*words, told=said)
-        t.check(any(said in e["text"] for e in page.find("p", class_="missing")), f"{words[0]}: a section says '{said}'")
+        t.check(any(said in e["text"] for e in page.find("p", class_="missing")),
+                f"{words[0]}: a section says '{said}'")
     page = t.page("cut", told="cut/scene.yaml: no such file")
     t.check("scene.yaml: no such file" in page.source, "what a folder without scene.yaml lacks is said")
 

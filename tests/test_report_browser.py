@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The page of scripts/report in Chromium, 1280 and 400 points wide, light and dark: breaks when a picture has no size or
-is blank, the page is wider than its window, something is asked of the network, an error or a warning is told, a table
-does not sort, a shape does not move or is not chosen, a mark tells nothing, or the printed page loses its pictures.
+"""The page of scripts/report in Chromium, 1280 and 400 points wide, light and dark: breaks when a picture has no size
+or is blank, the page is wider than its window, something is asked of the network, an error or a warning is told,
+a table does not sort, a shape does not move or is not chosen, a mark tells nothing, or the printed page loses its pictures.
 
     test_report_browser.py SQUEAL MPIRUN
 
@@ -105,7 +105,8 @@ def check_shapes(t):
         t.browser.wait(0.4)
         pictures.append(t.browser.run(shot))
     t.check(len(set(pictures)) == len(pictures), "phase, choice, exaggeration and colour change the picture")
-    t.check("Mode 13," in t.browser.run("document.querySelector('#r1-viewer .note').textContent"), "a row chooses its shape")
+    t.check("Mode 13," in t.browser.run("document.querySelector('#r1-viewer .note').textContent"),
+            "a row chooses its shape")
     t.browser.run("stages['r1-viewer'].set_playing(true)")
     moving = []
     for _ in range(3):
@@ -147,7 +148,8 @@ def check_print(t, url, folder):
     t.browser.pdf(folder / "page.pdf")
     head = (folder / "page.pdf").read_bytes()
     n_pages = head.count(b"/Type /Page\n") or head.count(b"/Type /Page ") or head.count(b"/Type /Page/")
-    t.check(head.startswith(b"%PDF") and n_pages > 1 and len(head) > 50000, f"printed: {n_pages} pages, {len(head)} bytes")
+    t.check(head.startswith(b"%PDF") and n_pages > 1 and len(head) > 50000,
+            f"printed: {n_pages} pages, {len(head)} bytes")
     t.browser.ask("Emulation.setEmulatedMedia", media="print",
                   features=[{"name": "prefers-color-scheme", "value": "dark"}])
     t.browser.picture(folder / "print.png", full=False)
@@ -165,7 +167,8 @@ def main():
         folder, t = Path(name), Test(browser)
         names = ("modes", "static", "sweep", "transient", "frf")
         make_results(squeal, mpirun, folder, names)
-        subprocess.run(["/usr/bin/python3", SOURCE / "scripts/report", *names, "-o", "page.html"], cwd=folder, check=True)
+        subprocess.run(["/usr/bin/python3", SOURCE / "scripts/report", *names, "-o", "page.html"], cwd=folder,
+                       check=True)
         url = (folder / "page.html").as_uri()
         for width, scheme in ((1280, "dark"), (400, "light"), (1280, "light")):
             check_window(t, url, width, scheme)

@@ -95,7 +95,8 @@ class Skin:
 def sound(path, name, values):
     """Values of an array, if they can be any of a field."""
     if not (abs(values) < LARGEST).all():
-        raise BadInput(f"{path}: array {name} has values that are no numbers or above {LARGEST:g}; was the file damaged?")
+        raise BadInput(f"{path}: array {name} has values that are no numbers or above {LARGEST:g}; was the file "
+                       f"damaged?")
     return values
 
 

@@ -20,7 +20,8 @@ class Responses:
         names = [name.removesuffix(END) for name in there if name.endswith(END)]
         errors = [name for name in ERRORS if name in there]
         measured = [name for name in names if f"{name}_coherence" in there]
-        columns = ["freq_hz", *(f"{name}_coherence" for name in measured), *(f"{name}_{part}_m_n" for name in names for part in ("re", "im")), *errors]
+        columns = ["freq_hz", *(f"{name}_coherence" for name in measured),
+                   *(f"{name}_{part}_m_n" for name in names for part in ("re", "im")), *errors]
         rows = read_table(path, dict.fromkeys(columns, float))
         if not rows or not names:
             raise BadInput(f"{path}: has no {'rows' if names else 'column that ends in ' + END}")

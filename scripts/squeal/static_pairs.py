@@ -10,7 +10,8 @@ from .tables import BadInput, header, prefixed, read_table
 
 STATUS = ("open", "stick", "slip")
 COLUMNS = {"pair": int, "x_m": float, "y_m": float, "z_m": float, "lambda_n_n": float, "lambda_t_n": float}
-OPTIONAL = {"interface": str, "gap_m": float, "slip_t_m": float, "area_m2": float, "pressure_pa": float, "lambda_b_n": float, "t_x": float, "t_y": float,
+OPTIONAL = {"interface": str, "gap_m": float, "slip_t_m": float, "area_m2": float, "pressure_pa": float,
+            "lambda_b_n": float, "t_x": float, "t_y": float,
             "t_z": float}
 MM = 1e3
 SAME = 1e-6  # places within this part of the extent are one

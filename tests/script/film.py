@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Films made-up modes and snapshots with scripts/plot/film. Breaks when a frame is missing, nothing moves, half a turn of
-the phase does not mirror the colours, MP4 is not a film or its absence is not said, or bad input gives more than a line.
+"""Films made-up modes and snapshots with scripts/plot/film. Breaks when a frame is missing, nothing moves, half a turn
+of the phase looks like none, MP4 is not a film or its absence is not said, or bad input gives more than a line.
 """
 
 import os
@@ -40,7 +40,8 @@ def test_mode(root):
     require(min(changes) > 0.05, f"frames that do not move: {min(changes):.3f}")
     require(abs(film[0] - film[FRAMES // 2]).mean() > 3 * numpy.median(changes), "half a turn looks like none")
     names = done.stdout.split()
-    require(names[0].endswith("film_mode_002.gif") and all(Path(name).stat().st_size > 2000 for name in names), done.stdout)
+    require(names[0].endswith("film_mode_002.gif") and all(Path(name).stat().st_size > 2000 for name in names),
+            done.stdout)
     if len(names) == 2:
         require(b"ftyp" in Path(names[1]).read_bytes()[:12], "the MP4 is none")
     print(f"mode: {film.shape[0]} frames, {len(names)} formats")

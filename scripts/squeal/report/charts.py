@@ -175,7 +175,8 @@ class Place:
         return self.x.place(x, left, right), self.y.place(y, bottom, top)
 
 
-OFFSETS = [(0, -12), (0, 20), (10, 4), (-10, 4), (0, -28), (0, 36), (12, -18), (-12, -18), (12, 24), (-12, 24), (0, -42)]
+OFFSETS = [(0, -12), (0, 20), (10, 4), (-10, 4), (0, -28), (0, 36), (12, -18), (-12, -18), (12, 24), (-12, 24),
+           (0, -42)]
 
 
 def placed_labels(panel, place):

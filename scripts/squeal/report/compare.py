@@ -16,7 +16,8 @@ def overview(folders, verdicts):
                Column("analyses", lambda row: ", ".join(row[0].analyses), left=True),
                Column("result", lambda row: row[1], left=True),
                Column("time, s", lambda row: (cost_of(row[0]) or (0, float("nan"), 0))[1]),
-               Column("memory, MB", lambda row: float((cost_of(row[0]) or (0, 0, float("nan")))[2]), lambda v: fixed(v, 0))]
+               Column("memory, MB", lambda row: float((cost_of(row[0]) or (0, 0, float("nan")))[2]),
+                      lambda v: fixed(v, 0))]
     return table("overview", columns, list(zip(folders, verdicts)))
 
 
@@ -46,7 +47,8 @@ def eigenvalues(tables):
         for bad, hollow, radius in ((False, " hollow", 3), (True, "", 6)):
             chosen = [row for row in modes.rows if row["unstable"] == bad]
             panel.points([1e-3 * row["freq_hz"] for row in chosen], [row["growth_rad_s"] for row in chosen],
-                         COLOURS[k % len(COLOURS)] + hollow, [f"{folder.name}: {detail_of(row)}" for row in chosen], radius)
+                         COLOURS[k % len(COLOURS)] + hollow, [f"{folder.name}: {detail_of(row)}" for row in chosen],
+                         radius)
     keys = legend([(COLOURS[k % len(COLOURS)], "dot", f"{folder.name} ({len(modes.unstable)} unstable)")
                    for k, (folder, modes) in enumerate(tables)])
     axis = Axis.about("frequency, kHz", [1e-3 * row["freq_hz"] for row in rows], room=0.03)

@@ -39,7 +39,8 @@ def film_figure(folder, files, first, room):
                viewer(f"{source}-viewer", source, "moving bodies; drag to turn them")]
     said = (f"{len(frames)} of {len(files)} snapshots, without their mean, which does not vibrate: at most "
             f"{figures(1e6 * largest, 3)} µm, exaggerated.")
-    return figure(f"{source}-figure", "Vibration of the bodies", picture, said, folder.command("plot/film")), (source, bodies)
+    return figure(f"{source}-figure", "Vibration of the bodies", picture, said, folder.command("plot/film")), (source,
+                                                                                                               bodies)
 
 
 def diameters_figure(folder, files, first):
@@ -64,10 +65,12 @@ def diameters_figure(folder, files, first):
     command = folder.command("plot/transient")
     return [figure(f"{folder.key}-circle", "Limit-cycle shape: outer circle of the disc",
                    circle.markup(f"{folder.key}-circle-chart", "half"),
-                   "Velocity across the face" + (f", the largest at {figures(1e3 * time, 5)} ms." if time is not None else "."),
+                   "Velocity across the face" + (f", the largest at {figures(1e3 * time, 5)} ms."
+                                                 if time is not None else "."),
                    command),
             figure(f"{folder.key}-diameters", "Nodal diameters", number.markup(f"{folder.key}-diameters-chart", "half"),
-                   f"Most of the mean square, {100 * shapes.share():.0f} %, has {count(shapes.diameters(), 'nodal diameter')}.", command)]
+                   f"Most of the mean square, {100 * shapes.share():.0f} %, has "
+                   f"{count(shapes.diameters(), 'nodal diameter')}.", command)]
 
 
 def film_figures(folder, first, room):

@@ -71,7 +71,8 @@ def verdict(modes):
         return text + "none is unstable."
     worst = modes.unstable[0]
     verb = "is" if len(modes.unstable) == 1 else "are"
-    return text + (f"{len(modes.unstable)} {verb} unstable, fastest {worst['label']} at {fixed(worst['freq_hz'], 1)} Hz "
+    return text + (f"{len(modes.unstable)} {verb} unstable, fastest {worst['label']} at {fixed(worst['freq_hz'], 1)} "
+                   f"Hz "
                    f"with {signed(worst['growth_rad_s'])} 1/s.")
 
 
@@ -113,11 +114,13 @@ def shapes_of(modes, folder, room):
                 left.append(row["mode"])
                 continue
             shapes.append(Shape(row["mode"], name_of(row), detail_of(row), shape | {"unstable": row["unstable"]}))
-    rest = f" Not in the page, which stays below 10 MB: modes {', '.join(map(str, left))}; --modes chooses." if left else ""
+    absent = ", ".join(map(str, left))
+    rest = f" Not in the page, which stays below 10 MB: modes {absent}; --modes chooses." if left else ""
     picture = [data_script(folder.key, bodies, shapes),
                viewer(f"{folder.key}-viewer", folder.key, "moving shape of a mode; drag to turn it")]
     number = shapes[0].number
-    said = ("Displacements have no scale of their own: colours are relative to the largest value of the shape, white is "
+    said = ("Displacements have no scale of their own: colours are relative to the largest value of the shape, white "
+            "is "
             "zero. The thin outline is the body at rest. Drag to turn." + rest)
     return figure(f"{folder.key}-shapes", "Mode shapes", picture, said,
                   folder.command("plot/film", f"--mode {number}")), bodies
@@ -185,7 +188,8 @@ def errors(modes, folder):
         panels.append(panel)
     chart = Chart("error and condition of each eigenvalue", x, panels).markup(f"{folder.key}-err", "half")
     return figure(f"{folder.key}-errors", "Errors of the eigenvalues", chart,
-                  "Errors of the algebra; that of the mesh is another matter. A large condition is a mode near a lock-in.",
+                  "Errors of the algebra; that of the mesh is another matter. A large condition is a mode near a "
+                  "lock-in.",
                   folder.command("report"))
 
 

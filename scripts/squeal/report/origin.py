@@ -38,7 +38,8 @@ def origin_section(folder, errors):
                        missing(f"No cost, versions and options: {folder.why}."))
     facts = [(name, scene.facts[key]) for key, name in FACTS.items() if key in scene.facts]
     commands = [(name, scene.facts[key]) for key, name in (("command", "The command of this run"),
-                                                           ("repeat", "The same from its scene.yaml")) if key in scene.facts]
+                                                           ("repeat", "The same from its scene.yaml"))
+                if key in scene.facts]
     options = [(name, value, "given") for name, value in scene.given.items()]
     options += [(name, value, "default") for name, value in scene.defaults.items()]
     columns = [Column("option", lambda row: row[0], left=True), Column("value", lambda row: row[1], left=True),

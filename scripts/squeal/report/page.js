@@ -37,7 +37,8 @@ function add_tips() {
       title.parentElement.setAttribute("aria-label", title.textContent);
       title.remove();
     }
-    const dots = [...chart.querySelectorAll("circle[data-tip]")].map(dot => [dot, +dot.getAttribute("cx"), +dot.getAttribute("cy")]);
+    const dots = [...chart.querySelectorAll("circle[data-tip]")].map(
+      dot => [dot, Number(dot.getAttribute("cx")), Number(dot.getAttribute("cy"))]);
     const found = event => {
       const inside = new DOMPoint(event.clientX, event.clientY).matrixTransform(chart.getScreenCTM().inverse());
       let best = null, least = 15 ** 2;
@@ -73,7 +74,8 @@ function choose(element) {
 }
 
 addEventListener("DOMContentLoaded", () => {
-  for (const header of document.querySelectorAll("table.sortable th")) header.querySelector("button").addEventListener("click", () => sort_by(header));
+  for (const header of document.querySelectorAll("table.sortable th"))
+    header.querySelector("button").addEventListener("click", () => sort_by(header));
   for (const row of document.querySelectorAll("tr[data-shape]")) row.addEventListener("click", () => choose(row));
   for (const button of document.querySelectorAll(".copy"))
     button.addEventListener("click", async () => {

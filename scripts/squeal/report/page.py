@@ -51,7 +51,8 @@ def article(folder, room):
 def navigation(folders):
     """Links to all sections."""
     def links(folder):
-        items = [(f"{folder.key}-scene", "Scene"), *((f"{folder.key}-{kind}", TITLES[kind]) for kind in folder.analyses),
+        items = [(f"{folder.key}-scene", "Scene"), *((f"{folder.key}-{kind}", TITLES[kind])
+                                                     for kind in folder.analyses),
                  (f"{folder.key}-origin", "Origin")] if folder.analyses else []
         return tag("li", tag("a", folder.name, href=f"#{folder.key}"),
                    tag("ul", [tag("li", tag("a", text, href=f"#{name}")) for name, text in items]))

@@ -51,8 +51,10 @@ def magnitude_figure(folder, responses):
             panels[-1].line(x, responses.coherence[name], COLOURS[k], name)
     chart = Chart("frequency response", Axis(f"frequency, {unit}", x.min(), x.max()), panels)
     keys = legend([(COLOURS[k % len(COLOURS)], "line", name) for k, name in enumerate(outputs)])
-    return figure(f"{folder.key}-response", "Displacement per force", [keys, chart.markup(f"{folder.key}-response-chart")],
-                  f"{len(outputs)} of {count(len(responses.outputs), 'output')}, the largest ones; peaks carry the label of the "
+    return figure(f"{folder.key}-response", "Displacement per force",
+                  [keys, chart.markup(f"{folder.key}-response-chart")],
+                  f"{len(outputs)} of {count(len(responses.outputs), 'output')}, the largest ones; peaks carry the "
+                  f"label of the "
                   "mode that gives most.", folder.command("plot/frf"))
 
 
@@ -66,7 +68,8 @@ def error_figure(folder, responses):
                f"at most {figures(responses.relative.max(), 2)}")
     chart = Chart("error of the response", Axis(f"frequency, {unit}", *(scale * responses.freq[[0, -1]])), [panel])
     return figure(f"{folder.key}-response-errors", "Error of the response",
-                  chart.markup(f"{folder.key}-response-err", "half"), "Of all outputs together: an estimate, not a bound.",
+                  chart.markup(f"{folder.key}-response-err", "half"),
+                  "Of all outputs together: an estimate, not a bound.",
                   folder.command("plot/frf"))
 
 
@@ -92,6 +95,7 @@ def response_part(folder, _):
     errors = [("estimated error of the response, at most", figures(responses.relative.max(), 2))
               ] if responses.relative is not None else []
     low, high = responses.freq[[0, -1]]
-    verdict = (f"Response of {count(len(responses.outputs), 'output')} at {count(len(responses.freq), 'frequency', 'frequencies')} "
+    verdict = (f"Response of {count(len(responses.outputs), 'output')} at "
+               f"{count(len(responses.freq), 'frequency', 'frequencies')} "
                f"from {figures(low, 5)} to {figures(high, 5)} Hz; {count(len(responses.peaks), 'peak')}.")
     return Part(content, None, errors, verdict)

@@ -39,13 +39,15 @@ class Stage {
     const shapes = this.bodies.shapes, bar = made("div", {class: "bar"});
     this.choice = made("select", {"aria-label": "shape", onchange: () => this.select(Number(this.choice.value))},
       ...shapes.map((shape, i) => made("option", {value: i}, shape.title)));
-    this.play = made("button", {type: "button", class: "play", onclick: () => this.set_playing(!this.playing)}, "Pause");
+    this.play = made("button", {type: "button", class: "play", onclick: () => this.set_playing(!this.playing)},
+      "Pause");
     this.slider = made("input", {type: "range", min: 0, max: this.frames ? shapes.length - 1 : 360, value: 0, step: 1,
       "aria-label": this.frames ? "time" : "phase", oninput: () => this.seek(Number(this.slider.value))});
     this.size = made("input", {type: "range", min: 0, max: 0.5, step: 0.01, value: this.state.scale,
       "aria-label": "exaggeration", oninput: () => this.set("scale", Number(this.size.value))});
     this.paint = made("select", {"aria-label": "colour", onchange: () => this.set("colour", this.paint.value)},
-      ...[["axis", "along the axis"], ["slip", "along the sliding"], ["radial", "outward"], ["size", "size"], ["parts", "parts"]]
+      ...[["axis", "along the axis"], ["slip", "along the sliding"], ["radial", "outward"], ["size", "size"],
+        ["parts", "parts"]]
         .map(([value, text]) => made("option", {value}, text)));
     const named = (text, control) => made("label", {}, made("span", {}, text), control);
     if (!this.frames && shapes.length > 1) bar.append(named("Shape", this.choice));
@@ -80,8 +82,8 @@ class Stage {
   }
 
   draw_small(i) {
-    const state = {...this.state, index: i, turn: [...VIEWS.oblique], phase: 0, scale: 0.16, colour: "axis", mesh: false,
-      largest: this.bodies.largest(i, "axis")};
+    const state = {...this.state, index: i, turn: [...VIEWS.oblique], phase: 0, scale: 0.16, colour: "axis",
+      mesh: false, largest: this.bodies.largest(i, "axis")};
     this.fit_to(this.small[i], state);
     renderer.draw(this.small[i], this.bodies, state);
   }
@@ -89,10 +91,16 @@ class Stage {
   add_views() {
     const names = {oblique: "Oblique", face: "Face", side: "Front", along: "Side"};
     const bar = made("div", {class: "views"}, ...Object.entries(names).map(([key, text]) =>
-      made("button", {type: "button", onclick: () => { this.state.turn = [...VIEWS[key]]; this.state.zoom = 1; this.dirty = true; }}, text)));
+      made("button", {type: "button", onclick: () => this.look(VIEWS[key])}, text)));
     for (const [text, factor, name] of [["+", 1.25, "nearer"], [MINUS, 0.8, "farther"]])
-      bar.append(made("button", {type: "button", "aria-label": name, onclick: () => this.set("zoom", this.state.zoom * factor)}, text));
+      bar.append(made("button", {type: "button", "aria-label": name,
+        onclick: () => this.set("zoom", this.state.zoom * factor)}, text));
     this.canvas.parentElement.append(bar);
+  }
+
+  look(turn) {
+    this.state.turn = [...turn];
+    this.set("zoom", 1);
   }
 
   listen() {
@@ -140,7 +148,8 @@ class Stage {
     this.choice.value = i;
     this.note.textContent = shape.detail;
     if (this.frames) this.slider.value = i;
-    (this.gallery ? [...this.gallery.children] : []).forEach((button, k) => button.setAttribute("aria-pressed", k === i));
+    (this.gallery ? [...this.gallery.children] : []).forEach(
+      (button, k) => button.setAttribute("aria-pressed", k === i));
   }
 
   // Points of the canvas per unit and what lies in its middle, so that the body at rest has room to move
@@ -154,7 +163,8 @@ class Stage {
       }
     const room = 0.05 + 0.6 * state.scale;
     state.middle = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
-    state.fit = state.zoom * Math.min(canvas.width / (high[0] - low[0] + room), canvas.height / (high[1] - low[1] + room));
+    state.fit = state.zoom * Math.min(canvas.width / (high[0] - low[0] + room),
+      canvas.height / (high[1] - low[1] + room));
   }
 
   tick(time) {

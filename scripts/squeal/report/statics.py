@@ -25,7 +25,8 @@ LAWS = (("penetration", "largest overlap of a pair, to the largest gap or slip")
 
 def tips_of(surface):
     """What each pair tells."""
-    return [f"pair {n}, {WORDS[status]}: x {figures(x[0] * MM, 4)}, y {figures(x[1] * MM, 4)}, z {figures(x[2] * MM, 4)} mm; "
+    return [f"pair {n}, {WORDS[status]}: x {figures(x[0] * MM, 4)}, y {figures(x[1] * MM, 4)}, z "
+            f"{figures(x[2] * MM, 4)} mm; "
             f"normal force {figures(force, 4)} N, friction {figures(friction, 4)} N, {surface.quantity} "
             f"{figures(value, 4)} {surface.unit}, gap {figures(1e6 * gap, 3)} µm"
             for n, status, x, force, friction, value, gap in zip(
@@ -89,7 +90,8 @@ def scale_bar(surface):
     """Colours of the pressure."""
     stops = ", ".join(to_hex(COLOURS(i / 8)) for i in range(9))
     most = f"{figures(surface.value.max(), 3)} {surface.unit}"
-    return tag("div", tag("span", "0"), tag("i", style=f"background: linear-gradient(90deg, {stops})"), tag("span", most),
+    return tag("div", tag("span", "0"), tag("i", style=f"background: linear-gradient(90deg, {stops})"),
+               tag("span", most),
                class_="scale")
 
 
@@ -98,9 +100,11 @@ def profile_chart(surface, key):
     borders, value, closed, pairs = profile(surface)
     unit = f"mean {surface.quantity}, {surface.unit}" if surface.area is not None else "normal force of a row, N"
     panel = Panel(Axis.about(unit, value, zero=True), 360)
-    tips = [f"{figures(a, 4)} to {figures(b, 4)} mm: {figures(v, 4)} {surface.unit if surface.area is not None else 'N'}, "
+    tips = [f"{figures(a, 4)} to {figures(b, 4)} mm: {figures(v, 4)} "
+            f"{surface.unit if surface.area is not None else 'N'}, "
             f"{n} of {of} pairs closed" for a, b, v, n, of in zip(borders, borders[1:], value, closed, pairs)]
-    panel.boxes(numpy.stack([borders[:-1], borders[1:]], axis=1), [[0, v] for v in value], len(value) * ["orange"], tips)
+    panel.boxes(numpy.stack([borders[:-1], borders[1:]], axis=1), [[0, v] for v in value], len(value) * ["orange"],
+                tips)
     along = surface.profile_axis
     axis = Axis(surface.axis_title(along), borders.min(), borders.max())
     if surface.direction is not None:
@@ -168,9 +172,11 @@ def pair_table(folder, surface, key):
     columns += [Column("status", lambda i: str(surface.status[i]), left=True),
                 Column("normal force, N", lambda i: float(surface.normal_force[i]), lambda v: figures(v, 5)),
                 Column("friction, N", lambda i: float(surface.friction[i]), lambda v: figures(v, 5)),
-                Column(f"{surface.quantity}, {surface.unit}", lambda i: float(surface.value[i]), lambda v: figures(v, 4)),
+                Column(f"{surface.quantity}, {surface.unit}", lambda i: float(surface.value[i]),
+                       lambda v: figures(v, 4)),
                 Column("gap, µm", lambda i: float(1e6 * surface.gap[i]), lambda v: figures(v, 4))]
-    return tag("details", tag("summary", f"All {count(len(surface.number), 'pair')}"), table(f"{key}-pairs", columns, rows))
+    return tag("details", tag("summary", f"All {count(len(surface.number), 'pair')}"),
+               table(f"{key}-pairs", columns, rows))
 
 
 def surface_figures(folder, surface, number):

@@ -23,7 +23,8 @@ EXTRA = {"sensitivities.csv": "Sensitivities", "robustness.csv": "What can becom
 
 def tip_of(branch, i, axis, unit):
     """What a point tells."""
-    text = (f"{axis.name} {figures(branch.x[i], 5)} {axis.unit}: {figures(branch.frequency[i], 7)} {unit} {branch.label}, "
+    text = (f"{axis.name} {figures(branch.x[i], 5)} {axis.unit}: {figures(branch.frequency[i], 7)} {unit} "
+            f"{branch.label}, "
             f"growth {signed(branch.growth[i])} 1/s, {branch.kind[i]}")
     return text + (f", error {figures(branch.error[i], 2)} Hz" if numpy.isfinite(branch.error[i]) else "")
 
@@ -38,7 +39,8 @@ def branch_panel(study, branches, quantity, scale, unit):
     else:
         values = numpy.array([value for branch in loud or branches for value in branch.growth])
         high = max(0.0, numpy.nanmax(values))
-        panel = Panel(Axis.about("growth rate, 1/s", [max(numpy.nanmin(values), -1.2 * high or -1), high], True, 0.1), 260)
+        panel = Panel(Axis.about("growth rate, 1/s", [max(numpy.nanmin(values), -1.2 * high or -1), high], True, 0.1),
+                      260)
         panel.rule(y=0, colour="ink")
     for x in jump_places(study):
         panel.rule(x=x, colour="grey", tip=f"{axis.name} {figures(x, 4)} {axis.unit}: other pairs are closed from here")
@@ -47,7 +49,8 @@ def branch_panel(study, branches, quantity, scale, unit):
     for branch in branches:
         if branch.colour == QUIET and quantity == "frequency":
             low, high = (function(branch.frequency) for function in (numpy.nanmin, numpy.nanmax))
-            panel.line(branch.x, branch.frequency, "quiet", f"{branch.label}: {figures(low, 5)} to {figures(high, 5)} {unit}")
+            panel.line(branch.x, branch.frequency, "quiet", f"{branch.label}: {figures(low, 5)} to "
+                                                            f"{figures(high, 5)} {unit}")
     for k, branch in enumerate(loud):
         y, colour, bad = getattr(branch, quantity), LOUD[k % len(LOUD)], branch.kind == "unstable"
         panel.line(branch.x, y, colour, branch.label)
@@ -55,7 +58,8 @@ def branch_panel(study, branches, quantity, scale, unit):
         error = branch.errors(quantity, scale)
         wide = numpy.nan_to_num(error) > 0.004 * (panel.y.high - panel.y.low)
         panel.errors(branch.x[wide], y[wide], error[wide], colour)
-        for kinds, style, radius in (("stable", colour, 2.5), ("unstable", "vermilion", 4), ("numerical", "vermilion hollow", 4)):
+        for kinds, style, radius in (("stable", colour, 2.5), ("unstable", "vermilion", 4),
+                                     ("numerical", "vermilion hollow", 4)):
             at = numpy.flatnonzero((branch.kind == kinds) & numpy.isfinite(y))
             panel.points(branch.x[at], y[at], style, [tip_of(branch, i, axis, unit) for i in at], radius)
     return panel
@@ -94,7 +98,8 @@ def line_figure(folder, study):
     x = Axis(axis.title(), axis.first, axis.last, axis.logarithmic)
     chart = Chart("frequency and growth over the parameter", x, panels).markup(f"{folder.key}-lines")
     return figure(f"{folder.key}-branches", study.title(), [legend(entries), chart],
-                  "Coloured: modes that are unstable somewhere, or that meet another one. Each point tells its numbers.",
+                  "Coloured: modes that are unstable somewhere, or that meet another one. Each point tells its "
+                  "numbers.",
                   folder.command("plot/sweep"))
 
 
@@ -108,8 +113,9 @@ def map_figures(folder, study):
         panel = Panel(Axis(second.title(), y[0], y[-1], second.logarithmic), 380)
         for j, i in zip(*numpy.nonzero(grid.known)):
             growth, label = grid.growth[j, i], grid.label[j, i]
-            colour = "#eef0f2" if not growth > 0 else to_hex(colormaps[GROWTH](growth / most)) if name == "growth" else (
-                to_hex(lighter(colours[label])))
+            colour = "#eef0f2"
+            if growth > 0:
+                colour = to_hex(colormaps[GROWTH](growth / most) if name == "growth" else lighter(colours[label]))
             panel.boxes([x[i:i + 2]], [y[j:j + 2]], [colour], [
                 f"{first.name} {figures(grid.values[0][i] * first.factor, 4)} {first.unit}, {second.name} "
                 f"{figures(grid.values[1][j] * second.factor, 4)} {second.unit}: "
@@ -120,7 +126,8 @@ def map_figures(folder, study):
                       for row in study.onsets], 2.5)
         chart = Chart(title, Axis(first.title(), x[0], x[-1], first.logarithmic), [panel])
         figures_of.append(figure(f"{folder.key}-map-{name}", title, chart.markup(f"{folder.key}-{name}", "half"),
-                                 f"Largest growth {figures(grid.growth.max(), 4)} 1/s; grey is stable, dots are onsets.",
+                                 f"Largest growth {figures(grid.growth.max(), 4)} 1/s; grey is stable, dots are "
+                                 f"onsets.",
                                  folder.command("plot/sweep")))
     return tag("div", figures_of, class_="pair")
 
@@ -147,7 +154,8 @@ def error_figure(folder, study):
     """Largest error stated at each value, and the true ones of the points that were verified."""
     axis = study.axes[0]
     values = sorted({row["value"] for row in study.rows})
-    largest = [max((row["error_hz"] for row in study.rows if row["value"] == value and row["error_hz"] == row["error_hz"]),
+    largest = [max((row["error_hz"] for row in study.rows if row["value"] == value
+                    and row["error_hz"] == row["error_hz"]),
                    default=numpy.nan) for value in values]
     if not numpy.isfinite(largest).any():
         return missing("No errors: the table has no value in error_hz.")
@@ -156,7 +164,8 @@ def error_figure(folder, study):
     panel.line(x, largest, "blue")
     panel.points(x, largest, "blue", [f"{axis.name} {figures(v, 5)} {axis.unit}: at most {figures(e, 2)} Hz"
                                       for v, e in zip(x, largest)], 3)
-    chart = Chart("largest stated error at each value", Axis(axis.title(), axis.first, axis.last, axis.logarithmic), [panel])
+    chart = Chart("largest stated error at each value", Axis(axis.title(), axis.first, axis.last, axis.logarithmic),
+                  [panel])
     return figure(f"{folder.key}-sweep-errors", "Errors of the sweep", chart.markup(f"{folder.key}-sweep-err", "half"),
                   "The largest of all modes: an estimate, not a bound; that of the mesh is another matter.",
                   folder.command("report"))
@@ -189,7 +198,8 @@ def verified(folder):
     rows = read_table(path, VERIFY)
     true, stated = (max((row[key] for row in rows if row[key] == row[key]), default=float("nan"))
                     for key in ("true_error", "error_estimate"))
-    wrong = sum((row["modes_full"], row["unstable_full"]) != (row["modes_reduced"], row["unstable_reduced"]) for row in rows)
+    wrong = sum((row["modes_full"], row["unstable_full"]) != (row["modes_reduced"], row["unstable_reduced"])
+                for row in rows)
     return [(f"true error at {count(len(rows), 'verified point')}, relative", figures(true, 2)),
             ("estimate there", figures(stated, 2)), ("verified points with another number of modes", str(wrong))]
 
@@ -198,11 +208,14 @@ def verdict(study):
     """What matters most."""
     names = list(dict.fromkeys(row["label"] for row in study.rows if row["class"] == "unstable"))
     n = len({(row["value"], row["value_2"]) for row in study.rows})
-    text = f"{count(n, 'point')}; " + (f"unstable somewhere: {', '.join(names[:6])}" if names else "no mode is unstable")
-    first = min((row for row in study.onsets if row["kind"] == "lock_in"), key=lambda row: row["critical_value"], default=None)
+    text = f"{count(n, 'point')}; " + (f"unstable somewhere: {', '.join(names[:6])}"
+                                       if names else "no mode is unstable")
+    first = min((row for row in study.onsets if row["kind"] == "lock_in"), key=lambda row: row["critical_value"],
+                default=None)
     if first and not study.is_map:
         axis = study.axes[0]
-        text += f"; first lock-in at {axis.name} {figures(first['critical_value'] * axis.factor, 5)} {axis.unit}".rstrip()
+        value = figures(first["critical_value"] * axis.factor, 5)
+        text += f"; first lock-in at {axis.name} {value} {axis.unit}".rstrip()
         text += f", {fixed(first['freq_hz'], 1)} Hz, {first['label']}"
     return text + "."
 

@@ -34,7 +34,8 @@ class Record:
         self.unit = "m/s²" if self.probe else "N"
         self.what = f"acceleration of {self.probe} in {self.axis}" if self.probe else "friction force"
         self.vibration = Vibration(self.run.time, signal, self.run.start())
-        words = (["--probe", self.probe] if self.probe else []) + (["--component", self.axis] if self.axis != "y" else [])
+        words = (["--probe", self.probe] if self.probe else []) + (["--component", self.axis]
+                                                                   if self.axis != "y" else [])
         self.command = folder.command("plot/transient", *words)
 
     def time_axis(self, cut=slice(None)):
@@ -79,7 +80,8 @@ def force_figures(folder, record):
                                    ("periods", "Contact forces, last periods", "", beside(vibration))):
         chart = Chart(title, record.time_axis(cut), force_panels(record, cut))
         kind = "wide" if name == "forces" else "half"
-        pieces.append(figure(f"{folder.key}-{name}", title, [keys, chart.markup(f"{folder.key}-{name}-chart", kind)], text,
+        pieces.append(figure(f"{folder.key}-{name}", title, [keys, chart.markup(f"{folder.key}-{name}-chart", kind)],
+                             text,
                              record.command))
     return pieces
 
@@ -107,7 +109,8 @@ def growth_figure(folder, record):
     if fit:
         window = numpy.array(vibration.window)
         panel.band(MS * window[0], MS * window[1], "window", "window of the fit")
-        said = (f"{vibration.regime().capitalize()}; from {figures(MS * window[0], 4)} to {figures(MS * window[1], 4)} ms "
+        said = (f"{vibration.regime().capitalize()}; from {figures(MS * window[0], 4)} to "
+                f"{figures(MS * window[1], 4)} ms "
                 f"{signed(fit.growth)} ± {figures(fit.error, 2)} 1/s at {figures(fit.freq, 7)} Hz.")
     panel.line(time, vibration.amplitude, "blue", "amplitude of the main line")
     if fit:
@@ -115,7 +118,8 @@ def growth_figure(folder, record):
         panel.line(MS * window, values, "vermilion thick", f"exponential fitted: {signed(fit.growth)} 1/s")
     if vibration.regime() == "limit cycle":
         panel.rule(x=MS * vibration.growth.saturation, colour="green dashed", tip="saturation")
-    chart = Chart("amplitude of the main line", record.time_axis(), [panel]).markup(f"{folder.key}-growth-chart", "half")
+    chart = Chart("amplitude of the main line", record.time_axis(), [panel]).markup(f"{folder.key}-growth-chart",
+                                                                                    "half")
     return figure(f"{folder.key}-growth", "Growth of the main line", chart, said, record.command)
 
 
@@ -135,7 +139,8 @@ def spectrum_figure(folder, record):
         if place < KHZ * end and value >= FAINTEST:
             near = abs(KHZ * frequency - place) <= max(0.02 * place, 4 * KHZ * frequency[1])
             panel.rule(x=place, colour="soft dashed")
-            panel.label(place, level[near].max(), f"{place:.3f} kHz" if number == 1 else f"{number}× {signed(value, 3)} dB",
+            panel.label(place, level[near].max(), f"{place:.3f} kHz"
+                        if number == 1 else f"{number}× {signed(value, 3)} dB",
                         "vermilion" if number == 1 else "ink")
     step = max(1, shown.sum() // 400)
     panel.points(KHZ * frequency[shown][::step], level[shown][::step], "blue faint", [
@@ -165,7 +170,8 @@ def spectrogram_figure(folder, record):
                  KHZ * (frequency[frequency <= end][-1] + half_f)), source, "power over time and frequency")
     chart = Chart("spectrogram", record.time_axis(), [panel]).markup(f"{folder.key}-spectrogram-chart", "half")
     return figure(f"{folder.key}-spectrogram", "Spectrogram", chart,
-                  f"Dark to light: {DEEPEST} dB. Segments of {figures(MS * (vibration.time[-1] - times[-1]) * 2, 3)} ms.",
+                  f"Dark to light: {DEEPEST} dB. Segments of {figures(MS * (vibration.time[-1] - times[-1]) * 2, 3)} "
+                  f"ms.",
                   folder.command("report"))
 
 
@@ -183,7 +189,8 @@ def orbit_figure(folder, record):
     chart = Chart("orbit of the probe", Axis.about("displacement from its mean, µm", x), [panel])
     return figure(f"{folder.key}-orbit", "Limit-cycle shape: orbit of the probe",
                   chart.markup(f"{folder.key}-orbit-chart", "half"),
-                  f"The last {figures(MS * (run.time[cut][-1] - run.time[cut][0]), 3)} ms. A closed curve is a limit cycle.",
+                  f"The last {figures(MS * (run.time[cut][-1] - run.time[cut][0]), 3)} ms. A closed curve is a limit "
+                  f"cycle.",
                   folder.command("report"))
 
 
@@ -208,10 +215,12 @@ def ledger_figure(folder, record):
 
 def summary(folder, record):
     """All numbers."""
-    rows = [*vibration_quantities(record.vibration, record.unit), *contact_quantities(record.run, record.vibration.steady)]
+    rows = [*vibration_quantities(record.vibration, record.unit),
+            *contact_quantities(record.run, record.vibration.steady)]
     columns = [Column("quantity", lambda q: q.name, lambda v: NAMES.get(v, v.replace("_", " ")), left=True),
                Column("value", lambda q: float(q.value), lambda v: figures(v, 6)),
-               Column("error", lambda q: float("nan") if q.error is None or not numpy.isfinite(q.error) else float(q.error),
+               Column("error", lambda q: float("nan") if q.error is None
+                      or not numpy.isfinite(q.error) else float(q.error),
                       lambda v: figures(v, 2)), Column("unit", lambda q: q.unit, left=True)]
     return table(f"{folder.key}-summary", columns, rows)
 
@@ -230,7 +239,8 @@ def error_facts(record):
 def verdict(record):
     """What matters most."""
     vibration, run = record.vibration, record.run
-    text = f"{figures(MS * run.time[-1], 4)} ms{', the run is still under way' if run.under_way else ''}: {vibration.regime()}"
+    state = ", the run is still under way" if run.under_way else ""
+    text = f"{figures(MS * run.time[-1], 4)} ms{state}: {vibration.regime()}"
     if vibration.fit:
         text += f", {signed(vibration.fit.growth)} 1/s at {figures(vibration.fit.freq, 6)} Hz"
     if vibration.line:

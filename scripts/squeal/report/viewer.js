@@ -99,8 +99,14 @@ precision highp float;
 in vec3 at, tint; in float value;
 uniform vec3 signed[7], sizes[6]; uniform float sized, largest, painted; uniform vec4 line;
 out vec4 ink;
-vec3 step7(float x) { float t = clamp(0.5 + 0.5 * x, 0.0, 1.0) * 6.0; int i = min(int(t), 5); return mix(signed[i], signed[i + 1], t - float(i)); }
-vec3 step6(float x) { float t = clamp(x, 0.0, 1.0) * 5.0; int i = min(int(t), 4); return mix(sizes[i], sizes[i + 1], t - float(i)); }
+vec3 step7(float x) {
+  float t = clamp(0.5 + 0.5 * x, 0.0, 1.0) * 6.0; int i = min(int(t), 5);
+  return mix(signed[i], signed[i + 1], t - float(i));
+}
+vec3 step6(float x) {
+  float t = clamp(x, 0.0, 1.0) * 5.0; int i = min(int(t), 4);
+  return mix(sizes[i], sizes[i + 1], t - float(i));
+}
 void main() {
   if (line.a > 0.0) { ink = vec4(line.rgb * line.a, line.a); return; }
   vec3 n = normalize(cross(dFdx(at), dFdy(at)));

@@ -55,7 +55,8 @@ def mesh_words(scene):
     if not scene.is_true("rig_pad"):
         return about
     size = " × ".join(figures(1e3 * value) for value in numbers(scene.value("rig_pad_size")))
-    return (f"{about} A pad of {size} mm at radius {figures(1e3 * scene.number('rig_pad_radius'))} mm hangs on a beam of "
+    return (f"{about} A pad of {size} mm at radius {figures(1e3 * scene.number('rig_pad_radius'))} mm hangs on a "
+            f"beam of "
             f"{figures(1e3 * scene.number('rig_beam_height'))} mm.")
 
 
@@ -63,7 +64,8 @@ def part_words(scene, name):
     """A material."""
     damping = [f"{sign} = {figures(scene.number(f'{name}_{key}'), 4)} {unit}"
                for key, sign, unit in (("alpha", "α", "1/s"), ("beta", "β", "s")) if scene.number(f"{name}_{key}")]
-    return (f"{name}: E = {quantity(scene.number(f'{name}_young'), 'Pa')}, ν = {scene.value(f'{name}_poisson', '0.3')}, "
+    return (f"{name}: E = {quantity(scene.number(f'{name}_young'), 'Pa')}, ν = "
+            f"{scene.value(f'{name}_poisson', '0.3')}, "
             f"ρ = {figures(scene.number(f'{name}_density'))} kg/m³{''.join(f', {text}' for text in damping)}.")
 
 
@@ -84,7 +86,8 @@ def contact_words(scene, name):
         law = f"normal stiffness {quantity(kn[0], 'N/m')} per pair" if kn else "normal stiffness found by pressing"
     if scene.value("analysis", "modes") == "transient":
         law = "exact contact in time"
-    return (f"{name}: {slave} on {master}, {motion}{f' at {figures(speed, 4)} m/s' if speed else ''}, friction coefficient "
+    return (f"{name}: {slave} on {master}, {motion}{f' at {figures(speed, 4)} m/s' if speed else ''}, friction "
+            f"coefficient "
             f"{scene.value(f'{name}_mu', '0')}{f', its slope {figures(slope, 4)} s/m' if slope else ''}; {law}.")
 
 
@@ -98,12 +101,15 @@ def load_words(scene, name):
 LISTS = (
     ("parts", part_words),
     ("supports", lambda s, n: f"{n}: {s.value(f'{n}_set')} is held in {listed(s.value(f'{n}_fix', 'xyz'))}."),
-    ("springs", lambda s, n: f"{n}: springs on {s.value(f'{n}_set')}, {vector(s.value(f'{n}_stiffness'), 'N/m')} per node."),
-    ("dashpots", lambda s, n: f"{n}: dashpots on {s.value(f'{n}_set')}, {vector(s.value(f'{n}_viscosity'), 'N s/m')} per node."),
+    ("springs", lambda s, n: f"{n}: springs on {s.value(f'{n}_set')}, {vector(s.value(f'{n}_stiffness'), 'N/m')} per "
+                             f"node."),
+    ("dashpots", lambda s, n: f"{n}: dashpots on {s.value(f'{n}_set')}, {vector(s.value(f'{n}_viscosity'), 'N s/m')} "
+                              f"per node."),
     ("loads", load_words),
     ("motions", lambda s, n: f"{n}: {s.value(f'{n}_set')} is moved by {vector(s.value(f'{n}_displacement'), 'm')}."),
     ("contacts", contact_words),
-    ("impulses", lambda s, n: f"{n}: a blow of {vector(s.value(f'{n}_impulse'), 'N s')} at ({s.value(f'{n}_at')}) m after "
+    ("impulses", lambda s, n: f"{n}: a blow of {vector(s.value(f'{n}_impulse'), 'N s')} at ({s.value(f'{n}_at')}) m "
+                              f"after "
                               f"{figures(1e3 * s.number(f'{n}_time'), 4)} ms."),
     ("probes", lambda s, n: f"{n}: records the motion at ({s.value(f'{n}_at')}) m."),
 )
@@ -120,7 +126,8 @@ def range_words(text):
 def analysis_words(scene):
     """What was computed."""
     kind = scene.value("analysis", "modes")
-    about = "the pairs that the sliding state closes" if scene.value("modes_contact") == "static" else "all pairs closed"
+    own = scene.value("modes_contact") == "static"
+    about = "the pairs that the sliding state closes" if own else "all pairs closed"
     low, high = (numbers(scene.value("modes_band")) + [0, 0])[:2]
     band = f"from {figures(low)} to {figures(high)} Hz" if high else (
         f"the {scene.value('modes_count')} nearest to {figures(scene.number('modes_target'))} Hz")
@@ -132,7 +139,8 @@ def analysis_words(scene):
         return "Equilibrium with friction while the bodies slide."
     if kind == "transient":
         start = "the sliding state" if scene.value("dynamics_start") == "static" else "rest"
-        return f"Motion in time over {figures(1e3 * scene.number('ts_max_time'), 4)} ms, from {start}, with exact contact."
+        end = figures(1e3 * scene.number("ts_max_time"), 4)
+        return f"Motion in time over {end} ms, from {start}, with exact contact."
     if kind == "frf":
         return (f"Response to 1 N at {scene.value('frf_force').replace(',', ' along ')}, "
                 f"{range_words(scene.value('frf_frequencies'))}, Hz, about {about}.")
