@@ -23,7 +23,6 @@ FAULTS = (
     ("0.99 mu in the cone of statics", "src/kernels/coulomb.h", "-pair->mu * e[i] * law->P", "-0.99 * pair->mu * e[i] * law->P",
      "coulomb-1 static_stick"),
     ("gap of the wrong side", "src/contact/foot.c", "  return gap;\n", "  return -gap;\n", "static_motions"),
-    ("stated errors of sweeps a tenth", "src/sweep/basis/points.c", "POINTS_MARGIN 30", "POINTS_MARGIN 3", "errors"),
     ("a left mode is lost", "src/modes/left.c", "  PetscCall(PetscCalloc1(left->n, &used));\n",
      "  if (left->n > 3) left->n--;\n  PetscCall(PetscCalloc1(left->n, &used));\n", "massi2005_small"),
     ("inertia counts one more", "src/solver/shiftinvert.c", "    PetscCall(MatGetInertia(F, n, &n_null, NULL));\n",
