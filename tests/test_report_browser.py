@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """The page of scripts/report in Chromium, 1280 and 400 points wide, light and dark: breaks when a picture has no size
 or is blank, the page is wider than its window, something is asked of the network, an error or a warning is told,
-a table does not sort, a shape does not move or is not chosen, a mark tells nothing, or the printed page loses its pictures.
+a table does not sort, a shape does not move or is not chosen, a mark tells nothing, or the printed page loses its
+pictures.
 
     test_report_browser.py SQUEAL MPIRUN
 
