@@ -140,6 +140,7 @@ static PetscErrorCode ModesSort(ReducedModes *modes)
   PetscInt      *order;
 
   PetscFunctionBeginUser;
+  if (n < 2) PetscFunctionReturn(0); /* PetscTimSort() reads the first entry of none */
   PetscCall(PetscMalloc3(n, &order, n, &sigma, n, &omega));
   for (PetscInt i = 0; i < n; i++) order[i] = i, sigma[i] = creal(old.lambda[i]), omega[i] = cimag(old.lambda[i]);
   PetscCall(PetscTimSort(n, order, sizeof(*order), CompareKeys, omega));
