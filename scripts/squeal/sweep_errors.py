@@ -70,6 +70,8 @@ def scene_words(words, value):
     """The whole command line of a scene, without output."""
     own = dict(value)
     own["rows_stiffness"] = f"0,{own['rows_stiffness']:.10g},0"
+    if "constraint" in words:
+        del own["contact_kn"]
     return [*scene("massi2005"), *words, *(w for name, v in own.items() for w in (f"-{name}", v))]
 
 
