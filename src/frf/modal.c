@@ -11,8 +11,8 @@ typedef struct {
   FrfSpace  space;
   FrfChain  right, left; /* left is empty for a symmetric pencil */
   Vec       b, *l, *all; /* the force, the outputs, and both */
-  PetscInt  level;       /* vectors of the space before the last step */
   PetscReal shift;
+  FrfSchur  used, larger; /* the small response before the last step, and after it */
 } Superposition;
 
 /* Columns of real and imaginary parts of all modes' vectors, right and left ones, as far as there are any */
@@ -59,7 +59,6 @@ static PetscErrorCode SuperpositionCreate(Frf frf, Superposition *s)
   s->left.n_b  = pencil.symmetric ? 0 : frf->n_outputs;
   PetscCall(FrfChainAddModes(frf, &s->right));
   if (!pencil.symmetric) PetscCall(FrfChainAddModes(frf, &s->left));
-  s->level = s->space.small.n;
   PetscFunctionReturn(0);
 }
 
@@ -68,7 +67,6 @@ static PetscErrorCode SuperpositionStep(Frf frf, Superposition *s)
 {
   PetscFunctionBeginUser;
   frf->n_steps++;
-  s->level = s->space.small.n;
   PetscCall(FrfChainsStep(&s->space, (FrfChain *[]){&s->right, &s->left}));
   PetscFunctionReturn(0);
 }
@@ -141,20 +139,14 @@ static PetscReal WorstError(Frf frf, PetscInt stride, PetscInt *where)
   return worst;
 }
 
-/* Response on the space before and after the last step, the latter with K rounded otherwise if asked for, at every stride-th
-   frequency */
-static PetscErrorCode SuperpositionRespond(Frf frf, const Superposition *s, PetscBool rounded, PetscInt stride)
+/* The small response on the space as it is, with K rounded otherwise if asked for */
+static PetscErrorCode SuperpositionReduce(Frf frf, const Superposition *s, PetscBool rounded, FrfSchur *schur)
 {
-  FrfSchur used, larger;
-  FrfEnds  ends;
+  FrfEnds ends;
 
   PetscFunctionBeginUser;
   PetscCall(EndsCreate(frf, s, &ends));
-  PetscCall(FrfSchurCreate(&s->space.small, s->level, PETSC_FALSE, s->shift, &ends, &used));
-  PetscCall(FrfSchurCreate(&s->space.small, s->space.small.n, rounded, s->shift, &ends, &larger));
-  PetscCall(RespondAll(frf, &used, &larger, stride));
-  PetscCall(FrfSchurDestroy(&larger));
-  PetscCall(FrfSchurDestroy(&used));
+  PetscCall(FrfSchurCreate(&s->space.small, s->space.small.n, rounded, s->shift, &ends, schur));
   PetscCall(PetscFree(ends.b));
   PetscFunctionReturn(0);
 }
@@ -164,29 +156,37 @@ static PetscErrorCode SuperpositionGrow(Frf frf, Superposition *s)
 {
   const PetscInt stride = PetscMax(1, frf->n / N_LOOKS);
   PetscReal      worst  = PETSC_MAX_REAL;
-  PetscInt       where;
+  PetscInt       where  = 0;
 
   PetscFunctionBeginUser;
   PetscCall(SuperpositionStep(frf, s));
+  PetscCall(SuperpositionReduce(frf, s, PETSC_FALSE, &s->larger));
   while (worst > frf->rtol && frf->n_steps < frf->max_steps + 1) {
     PetscCall(SuperpositionStep(frf, s));
-    PetscCall(SuperpositionRespond(frf, s, PETSC_FALSE, stride));
+    PetscCall(FrfSchurDestroy(&s->used));
+    s->used = s->larger;
+    PetscCall(SuperpositionReduce(frf, s, PETSC_FALSE, &s->larger));
+    PetscCall(RespondAll(frf, &s->used, &s->larger, stride));
     worst = WorstError(frf, stride, &where);
     if (worst > frf->rtol || stride == 1) continue;
-    PetscCall(SuperpositionRespond(frf, s, PETSC_FALSE, 1));
+    PetscCall(RespondAll(frf, &s->used, &s->larger, 1));
     worst = WorstError(frf, 1, &where);
   }
   PetscCheck(worst <= frf->rtol, frf->comm, PETSC_ERR_NOT_CONVERGED,
              "the estimated error at %.6g Hz is %.2g after %" PetscInt_FMT
              " steps, more than -frf_rtol %.2g: let -modes_band end farther above it, or raise -frf_max_steps",
              (double)frf->freq[where], (double)worst, frf->n_steps - 1, (double)frf->rtol);
-  PetscCall(SuperpositionRespond(frf, s, PETSC_TRUE, 1));
+  PetscCall(FrfSchurDestroy(&s->larger));
+  PetscCall(SuperpositionReduce(frf, s, PETSC_TRUE, &s->larger));
+  PetscCall(RespondAll(frf, &s->used, &s->larger, 1));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode SuperpositionDestroy(Frf frf, Superposition *s)
 {
   PetscFunctionBeginUser;
+  PetscCall(FrfSchurDestroy(&s->used));
+  PetscCall(FrfSchurDestroy(&s->larger));
   PetscCall(FrfChainDestroy(&s->right));
   PetscCall(FrfChainDestroy(&s->left));
   PetscCall(FrfSpaceDestroy(&s->space));
@@ -199,7 +199,7 @@ static PetscErrorCode SuperpositionDestroy(Frf frf, Superposition *s)
 PetscErrorCode FrfSolveModal(Frf frf)
 {
   FrfResidues   residues;
-  Superposition s;
+  Superposition s = {.shift = 0};
 
   PetscFunctionBeginUser;
   PetscCall(ModesKeepFactor(frf->modes, PETSC_TRUE));
