@@ -134,10 +134,11 @@ def main():
             raise SystemExit("FAILED: solutions are still kept after the end")
 
         kill_after(arguments, folder, "other", 2)
-        for parts, *change in CHANGES:
+        alone = arguments.contact == "all" and arguments.ranks == 1
+        for parts, *change in CHANGES if alone else CHANGES[::4]:
             shutil.copytree(folder / "other", folder / change[0])
             begin_anew(arguments, folder, change[0], parts, *change)
-        if arguments.contact == "all" and arguments.ranks == 1:
+        if alone:
             check_damage(arguments, folder)
         if arguments.contact == "static":
             kill_after(arguments, folder, "groups", 1, *GROUPS)
