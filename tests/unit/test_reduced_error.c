@@ -8,6 +8,8 @@
 #include "densesystem.h"
 #include "petscmain.h"
 
+#define MOST_OVER 300 /* floor over the error of one problem, which chance makes small: 21 to 144 by processor */
+
 #define N_ALL  50
 #define N_USED 30
 
@@ -116,8 +118,8 @@ static PetscErrorCode TestFloor(int *failed)
     error    = PetscMax(error, cabs(m.lambda[i] - CMPLX(0, sqrt(pow(10, 7 + i / 3.0)))));
     estimate = PetscMax(estimate, m.error[i]);
   }
-  *failed +=
-    CheckTrue("floor / rounding error, spread 1e10", estimate > error && estimate < 100 * error, estimate / error);
+  *failed += CheckTrue("floor / rounding error, spread 1e10", estimate > error && estimate < MOST_OVER * error,
+                       estimate / error);
   PetscCall(ReducedModesDestroy(&m));
   PetscFunctionReturn(0);
 }
