@@ -66,22 +66,6 @@ PetscErrorCode FrfSpaceCreateBlock(const FrfSpace *space, PetscInt n, BV *block)
   PetscFunctionReturn(0);
 }
 
-/* Copies H, or its transpose, into A (leading dimension size) from row i and column j on */
-static PetscErrorCode SmallCopy(Mat H, PetscBool transposed, PetscInt size, PetscReal A[])
-{
-  const PetscScalar *h;
-  PetscInt           rows, columns, stride;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatGetSize(H, &rows, &columns));
-  PetscCall(MatDenseGetLDA(H, &stride));
-  PetscCall(MatDenseGetArrayRead(H, &h));
-  for (PetscInt c = 0; c < columns; c++)
-    for (PetscInt r = 0; r < rows; r++) A[transposed ? r * size + c : c * size + r] = PetscRealPart(h[c * stride + r]);
-  PetscCall(MatDenseRestoreArrayRead(H, &h));
-  PetscFunctionReturn(0);
-}
-
 /* V' A V, extended by the columns `first` and on, which are those of the block */
 static PetscErrorCode SmallExtend(const FrfSpace *space, Mat A, BV block, PetscInt first, PetscReal small[])
 {
@@ -92,14 +76,14 @@ static PetscErrorCode SmallExtend(const FrfSpace *space, Mat A, BV block, PetscI
   PetscFunctionBeginUser;
   PetscCall(MatIsSymmetricKnown(A, &known, &symmetric));
   PetscCall(BlockProducts(space->V, A, block, &H));
-  PetscCall(SmallCopy(H, PETSC_FALSE, size, &small[first * size]));
+  PetscCall(BlockCopy(H, PETSC_FALSE, size, &small[first * size]));
   if (!known || !symmetric) {
     PetscCall(MatDestroy(&H));
     PetscCall(MatCreateTranspose(A, &At));
     PetscCall(BlockProducts(space->V, At, block, &H));
     PetscCall(MatDestroy(&At));
   }
-  PetscCall(SmallCopy(H, PETSC_TRUE, size, &small[first]));
+  PetscCall(BlockCopy(H, PETSC_TRUE, size, &small[first]));
   PetscCall(MatDestroy(&H));
   PetscFunctionReturn(0);
 }
@@ -117,12 +101,12 @@ static PetscErrorCode StiffnessExtend(FrfSpace *space, BV block, PetscInt first,
   PetscCall(BVDuplicateResize(block, n, &product));
   PetscCall(BVMatMult(block, space->pencil.K, product));
   PetscCall(BlockProducts(space->V, NULL, product, &H));
-  PetscCall(SmallCopy(H, PETSC_FALSE, size, &small[first * size]));
+  PetscCall(BlockCopy(H, PETSC_FALSE, size, &small[first * size]));
   PetscCall(MatDestroy(&H));
   if (first) {
     PetscCall(BVSetActiveColumns(space->KV, 0, first));
     PetscCall(BlockProducts(block, NULL, space->KV, &H));
-    PetscCall(SmallCopy(H, PETSC_FALSE, size, &small[first]));
+    PetscCall(BlockCopy(H, PETSC_FALSE, size, &small[first]));
     PetscCall(MatDestroy(&H));
   }
   PetscCall(BVResize(space->KV, first + n, PETSC_TRUE));
@@ -190,7 +174,7 @@ PetscErrorCode FrfSpaceCoordinates(const FrfSpace *space, BV block, PetscReal **
   PetscCall(PetscCalloc1(n * space->small.size, coordinates));
   PetscCall(BVSetActiveColumns(space->V, 0, space->small.n));
   PetscCall(BlockProducts(space->V, NULL, block, &H));
-  PetscCall(SmallCopy(H, PETSC_FALSE, space->small.size, *coordinates));
+  PetscCall(BlockCopy(H, PETSC_FALSE, space->small.size, *coordinates));
   PetscCall(MatDestroy(&H));
   PetscFunctionReturn(0);
 }

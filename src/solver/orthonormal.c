@@ -101,3 +101,18 @@ PetscErrorCode BlockOrthonormalise(BV V, PetscInt n, Mat M, PetscReal drop, BV W
   PetscCall(BlockScale(M, 0.1, W));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode BlockCopy(Mat H, PetscBool transposed, PetscInt n, PetscReal A[])
+{
+  const PetscScalar *h;
+  PetscInt           rows, columns, stride;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetSize(H, &rows, &columns));
+  PetscCall(MatDenseGetLDA(H, &stride));
+  PetscCall(MatDenseGetArrayRead(H, &h));
+  for (PetscInt c = 0; c < columns; c++)
+    for (PetscInt r = 0; r < rows; r++) A[transposed ? r * n + c : c * n + r] = PetscRealPart(h[c * stride + r]);
+  PetscCall(MatDenseRestoreArrayRead(H, &h));
+  PetscFunctionReturn(0);
+}

@@ -38,23 +38,6 @@ PetscErrorCode BasisCreateBlock(const Basis *basis, PetscInt n, BV *block)
   PetscFunctionReturn(0);
 }
 
-/* Copies H, or its transpose, into A (leading dimension n) from row i and column j on */
-static PetscErrorCode BlockCopy(Mat H, PetscBool transposed, PetscInt n, PetscInt i, PetscInt j, PetscReal A[])
-{
-  const PetscScalar *h;
-  PetscInt           rows, columns, stride;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatGetSize(H, &rows, &columns));
-  PetscCall(MatDenseGetLDA(H, &stride));
-  PetscCall(MatDenseGetArrayRead(H, &h));
-  for (PetscInt c = 0; c < columns; c++)
-    for (PetscInt r = 0; r < rows; r++)
-      A[transposed ? (j + r) * n + i + c : (j + c) * n + i + r] = PetscRealPart(h[c * stride + r]);
-  PetscCall(MatDenseRestoreArrayRead(H, &h));
-  PetscFunctionReturn(0);
-}
-
 /* Room for an n x n matrix with the old one in its corner */
 static PetscErrorCode MatrixGrow(PetscInt first, PetscInt n, PetscReal **A)
 {
@@ -76,14 +59,14 @@ static PetscErrorCode TermExtend(const Basis *basis, const OperatorsTerm *term, 
   PetscFunctionBeginUser;
   PetscCall(MatrixGrow(first, n, reduced));
   PetscCall(BlockProducts(basis->vectors, term->A, block, &H));
-  PetscCall(BlockCopy(H, PETSC_FALSE, n, 0, first, *reduced));
+  PetscCall(BlockCopy(H, PETSC_FALSE, n, *reduced + first * n));
   if (!term->symmetric) {
     PetscCall(MatDestroy(&H));
     PetscCall(MatCreateTranspose(term->A, &At));
     PetscCall(BlockProducts(basis->vectors, At, block, &H));
     PetscCall(MatDestroy(&At));
   }
-  PetscCall(BlockCopy(H, PETSC_TRUE, n, first, 0, *reduced));
+  PetscCall(BlockCopy(H, PETSC_TRUE, n, *reduced + first));
   PetscCall(MatDestroy(&H));
   PetscFunctionReturn(0);
 }
@@ -107,8 +90,8 @@ static PetscErrorCode DiagonalExtend(const Basis *basis, const OperatorsTerm *te
   PetscCall(MatDiagonalScale(H, diagonal, NULL));
   PetscCall(BVRestoreMat(scaled, &H));
   PetscCall(BlockProducts(basis->vectors, NULL, scaled, &H));
-  PetscCall(BlockCopy(H, PETSC_FALSE, n, 0, first, *reduced));
-  PetscCall(BlockCopy(H, PETSC_TRUE, n, first, 0, *reduced));
+  PetscCall(BlockCopy(H, PETSC_FALSE, n, *reduced + first * n));
+  PetscCall(BlockCopy(H, PETSC_TRUE, n, *reduced + first));
   PetscCall(MatDestroy(&H));
   PetscCall(BVDestroy(&scaled));
   PetscCall(VecDestroy(&diagonal));

@@ -30,7 +30,7 @@
 #define NEAR_CHANGES    20   /* eigenvalues closer than this many changes belong together */
 #define FARTHEST        1e-2 /* but not if they are farther apart than this, relative: the basis is merely poor there */
 #define MESH_ROUNDING   3    /* roundings of K on the mesh: its terms in a sum, products with it, their sums */
-#define SOLVER_ROUNDING 16   /* errors of LU and QR of a dense problem beside rounding in its matrix: 9 were measured */
+#define SOLVER_ROUNDING 16   /* errors of LU and QR of a dense problem beside rounding in its matrix: 8 were measured */
 #define MEETING         1e-4 /* modes closer than this, relative, may meet */
 #define EQUAL           1e-9 /* closer than this, relative, they always do */
 
