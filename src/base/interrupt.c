@@ -1,7 +1,8 @@
 /*
    The end by ^C or SIGTERM: one line on stderr and in the log, then the end that the signal brings, hence exit status
    130 or 143 in a shell. mpirun asks all its ranks at once, of which the first speaks; whoever asks a single rank gets
-   the line from that one. A run in time listens itself while it steps (dynamics/stop.h).
+   the line from that one. A run in time listens itself while it steps (dynamics/stop.h). After an error nothing more is
+   said: MPI_Abort() makes mpirun end all ranks by SIGTERM, also the one that has just given its reason.
 
    A handler may call nothing that locks or allocates, and reaches nothing but static memory.
 */
@@ -11,12 +12,14 @@
 #include <string.h>
 #include <unistd.h>
 
+static const int             signals[]  = {SIGINT, SIGTERM};
 static volatile sig_atomic_t first_rank = 0;
+static pid_t                 launcher   = 0;
 
 static void InterruptEnd(int number, siginfo_t *info, void *ctx)
 {
   (void)ctx;
-  if (first_rank || info->si_pid != getppid())
+  if (first_rank || info->si_pid != launcher)
     PrintAtOnce(number == SIGINT
                   ? "squeal: error: stopped by SIGINT; files that bear their final name are complete\n"
                   : "squeal: error: stopped by SIGTERM; files that bear their final name are complete\n");
@@ -25,13 +28,13 @@ static void InterruptEnd(int number, siginfo_t *info, void *ctx)
 
 PetscErrorCode InterruptInstall(MPI_Comm comm)
 {
-  static const int signals[] = {SIGINT, SIGTERM};
   struct sigaction action, before;
   PetscMPIInt      rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   first_rank = rank == 0;
+  launcher   = getppid();
   PetscCall(PetscMemzero(&action, sizeof(action)));
   action.sa_sigaction = InterruptEnd;
   action.sa_flags     = SA_SIGINFO | SA_RESETHAND | SA_NODEFER;
@@ -41,4 +44,12 @@ PetscErrorCode InterruptInstall(MPI_Comm comm)
     (void)sigaction(signals[i], &action, NULL);
   }
   PetscFunctionReturn(0);
+}
+
+void InterruptRemove(void)
+{
+  struct sigaction before;
+
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(signals); i++)
+    if (!sigaction(signals[i], NULL, &before) && before.sa_handler != SIG_IGN) (void)signal(signals[i], SIG_DFL);
 }

@@ -5,3 +5,6 @@
 
 /* Ends the program with one line from now on, where these signals are not ignored. Collective */
 PETSC_INTERN PetscErrorCode InterruptInstall(MPI_Comm comm);
+
+/* Gives the signals their default action back, before an error is printed */
+PETSC_INTERN void InterruptRemove(void);

@@ -191,6 +191,7 @@ int SquealFinalize(PetscErrorCode error)
     int             rank;
 
     (void)MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    InterruptRemove();
     if (!together || rank == 0) PrintError(error_message);
     if (!together) (void)MPI_Abort(MPI_COMM_WORLD, 1);
     (void)PrintEnd();
