@@ -1,15 +1,14 @@
-"""Parts of study/transient in time: every run is kept in a folder of its own and taken from there as long as program
-and command are the same."""
+"""Parts of study/transient in time: every run is kept in a folder of its own and taken from there as long as it
+is the same run."""
 
-import hashlib
 import subprocess
 import sys
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy
 
-from .program import ROOT, launch
+from .kept_runs import KeptRun
+from .program import ROOT
 from .signal import fit_modes
 from .tables import print_row, read_table
 from .transient_cycle import Vibration, detached_share
@@ -35,22 +34,10 @@ RISES = (Rise(25.1, "", "(0,4+)", (3300, 3700)), Rise(39.8, "", "(0,4+)", (3300,
          Rise(25.1, "-contact_mu 0.2", "(0,4+)", (3300, 3700)))
 
 
-def key_of(program, words):
-    """What a kept run must agree in: program and command."""
-    key = hashlib.sha256(Path(program).read_bytes())
-    key.update("\0".join(map(str, words)).encode())
-    return key.hexdigest()
-
-
 def run(program, ranks, folder, options, scene=SCENE):
-    """Folder with the tables of a run, made anew where it is not there or was made by another program or command."""
-    folder.mkdir(parents=True, exist_ok=True)
+    """Folder with the tables of a run, made anew where it is not there or was made otherwise."""
     words = ["-options_file", scene, "-squeal_progress", 0, *options.split()]
-    log, key = folder / "log.txt", key_of(program, [ranks, *words])
-    if not log.exists() or not log.read_text(encoding="utf-8").startswith(key):
-        text = launch(program, ranks, [*words, "-output_dir", folder], f"{folder}, options {options}")
-        log.write_text(f"{key}\n{text}", encoding="utf-8")
-    return folder
+    return KeptRun(program, ranks, folder, words).made()
 
 
 def case_folder(args, young, kind=""):
