@@ -25,8 +25,8 @@ class Options(NamedTuple):
 class Folder:
     """`key`: prefix of its elements; `scene`: its Provenance or None, and `why` then; `wrong`: lines for the user."""
 
-    def __init__(self, path, number, options):
-        self.path, self.key, self.options = path, f"r{number}", options
+    def __init__(self, path, key, options):
+        self.path, self.key, self.options = path, key, options
         self.name = str(path)
         if not path.is_dir():
             raise BadInput(f"{path}: no such folder; run squeal first, or name its -output_dir")

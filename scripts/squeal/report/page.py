@@ -1,6 +1,7 @@
 """The page: folders one after another, what they have in common first, in one file without any other."""
 
 from pathlib import Path
+from typing import NamedTuple
 
 from ..tables import BadInput
 from .compare import compare_section
@@ -20,6 +21,13 @@ TITLES = {"modes": "Modes", "static": "Sliding state", "sweep": "Sweep", "transi
           "frf": "Frequency response"}
 SECTIONS = {"modes": modes_part, "static": static_part, "sweep": sweep_part, "transient": transient_part,
             "frf": response_part}
+
+
+class Opening(NamedTuple):
+    """What stands before the folders: its title, links (id, text) to its sections, its content."""
+    title: str
+    links: list
+    content: list
 
 
 def resource(name):
@@ -48,17 +56,23 @@ def article(folder, room):
                origin_section(folder, errors), id=folder.key), " ".join(verdicts)
 
 
-def navigation(folders):
+def links_to(name, title, links):
+    """An article and its sections."""
+    return tag("li", tag("a", title, href=f"#{name}"),
+               tag("ul", [tag("li", tag("a", text, href=f"#{place}")) for place, text in links]))
+
+
+def navigation(folders, opening):
     """Links to all sections."""
     def links(folder):
         items = [(f"{folder.key}-scene", "Scene"), *((f"{folder.key}-{kind}", TITLES[kind])
                                                      for kind in folder.analyses),
                  (f"{folder.key}-origin", "Origin")] if folder.analyses else []
-        return tag("li", tag("a", folder.name, href=f"#{folder.key}"),
-                   tag("ul", [tag("li", tag("a", text, href=f"#{name}")) for name, text in items]))
+        return links_to(folder.key, folder.name, items)
 
     both = tag("li", tag("a", "Side by side", href="#all")) if len(folders) > 1 else None
-    return tag("nav", tag("ul", both, [links(folder) for folder in folders]), aria_label="Sections")
+    first = links_to("first", opening.title, opening.links) if opening else None
+    return tag("nav", tag("ul", first, both, [links(folder) for folder in folders]), aria_label="Sections")
 
 
 def subtitle(folders):
@@ -70,27 +84,28 @@ def subtitle(folders):
                       *([f"computed {' to '.join(dict.fromkeys((ends[0], ends[-1])))}"] if ends else [])])
 
 
-def page(folders, title):
+def page(folders, title, opening=None):
     """All of it."""
     room = SHARE * LARGEST / max(len(folders), 1)
     head = tag("head", tag("meta", charset="utf-8"), tag("title", title),
                tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
                tag("meta", name="color-scheme", content="light dark"),
                tag("link", rel="icon", href="data:,"), tag("style", resource("page.css")))
+    first = tag("article", tag("h2", opening.title), opening.content, id="first") if opening else None
     articles, verdicts = zip(*(article(folder, room) for folder in folders))
     body = tag("body", tag("header", tag("h1", title), tag("p", subtitle(folders), class_="quiet")),
-               navigation(folders),
-               tag("main", compare_section(folders, verdicts) if len(folders) > 1 else None, articles),
+               navigation(folders, opening),
+               tag("main", first, compare_section(folders, verdicts) if len(folders) > 1 else None, articles),
                tag("script", *(resource(name) for name in ("page.js", "viewer.js", "stage.js"))))
     return join([Markup("<!DOCTYPE html>\n"), tag("html", head, body, lang="en")])
 
 
-def write_page(paths, output, title, options):
+def write_page(paths, output, title, options, opening=None):
     """Reads the folders and writes the page; returns its name and a line for each thing that is wrong."""
-    folders = [Folder(path, number, options) for number, path in enumerate(paths, 1)]
+    folders = [Folder(path, f"r{number}", options) for number, path in enumerate(paths, 1)]
     if not any(folder.analyses for folder in folders):
         raise BadInput(folders[0].wrong[0])
-    text = page(folders, title)
+    text = page(folders, title, opening)
     try:
         output.write_text(text, encoding="utf-8")
     except OSError as error:

@@ -1,0 +1,246 @@
+"""The part of the page that has the seed paper beside what comes out here, and the page."""
+
+import math
+
+from ..kept_runs import LOG
+from ..report.charts import Axis, Chart, Panel
+from ..report.films import diameters_figure
+from ..report.folders import Folder, Options
+from ..report.markup import Column, figure, missing, section, table, tag
+from ..report.origin import cost_of
+from ..report.page import Opening, write_page
+from ..report.sweeps import line_figure
+from ..report.transients import Record, force_figures, growth_figure, signal_figure, spectrum_figure
+from ..sweep_tables import Study
+from ..table1 import RESOLUTION, TABLE
+from ..tables import BadInput, flag, read_table
+from ..transient_history import snapshots
+from . import claims
+from .plan import FIGURES, chosen_runs
+from .shapes import mode_shape, moving_shape
+
+MODES = {"mode": int, "freq_hz": float, "growth_rad_s": float, "unstable": flag, "label": str}
+VERDICT = {True: "as in the paper", False: "NOT as in the paper", None: ""}
+TITLE = "The seed paper beside what comes out here"
+
+
+class Place:
+    """The folder of all runs, and those that are complete."""
+
+    def __init__(self, root, runs):
+        self.root, self.runs = root, runs
+        self.made = {run.name for run in runs if (root / run.name / LOG).exists()}
+
+    def folder(self, name, key):
+        """A run for the pictures of one figure: `key` begins the names of their elements."""
+        if name not in self.made:
+            raise BadInput(f"{self.root / name}: this run is not complete")
+        return Folder(self.root / name, key, Options(probe="edge"))
+
+
+def claim_table(name, found):
+    """Claims in rows; on a narrow screen each is a paragraph."""
+    def cells(claim):
+        return [tag("b", claim.what), tag("span", claim.paper, data_of="paper"),
+                tag("span", claim.here, data_of="here"), tag("i", VERDICT[claim.kept])]
+
+    head = tag("li", tag("b", ""), tag("span", "paper"), tag("span", "here"), tag("i", ""), class_="head")
+    rows = [tag("li", cells(claim), class_={True: "good", False: "other"}.get(claim.kept)) for claim in found]
+    return tag("ul", head, rows, class_="claims", id=f"paper-{name}-claims")
+
+
+# Table 1, Figures 3 and 4
+
+
+def frequency_table(columns):
+    """The paper's columns and ours."""
+    def ours(name, line):
+        return next((pair for pair in columns[name] if pair.line is line), None)
+
+    def value(name, attribute):
+        return lambda line: getattr(ours(name, line), attribute, math.nan)
+
+    def whole(hz):
+        return f"{hz:.0f}"
+
+    shown = [Column("mode", lambda line: line.name, left=True),
+             Column("Ansys", lambda line: float(line.ansys), whole),
+             Column("Plast3", lambda line: float(line.plast3 or math.nan), whole)]
+    for name in columns:
+        shown += [Column(f"{name}, Hz", value(name, "ours"), whole),
+                  Column("%", value(name, "error"), claims.percent)]
+    return table("paper-table1-frequencies", shown, TABLE)
+
+
+def table1(place):
+    """Table 1."""
+    folders = [place.folder(f"modes-{mass}", "table1").path for mass in ("consistent", "lumped")]
+    columns = claims.table_columns(*folders)
+    said = (f"Percent: of Ansys' column with consistent mass, of Plast3's with lumped mass. All frequencies of "
+            f"Plast3's column are multiples of {RESOLUTION} Hz, the resolution of the paper's transform: each is known to "
+            f"{RESOLUTION / 2:.0f} Hz.")
+    return claim_table("table1", claims.table_claims(columns)), frequency_table(columns), tag("p", said, class_="quiet")
+
+
+def figure3(place):
+    """Two meshes of the disc."""
+    pairs = claims.mesh_pairs(place.folder("disc-10240", "fig3").path, place.folder("disc-2412", "fig3").path)
+    freq, error = ([f * scale for f in values] for values, scale in zip(zip(*pairs), (1e-3, 100)))
+    panel = Panel(Axis.about("difference of the coarse disc, %", error, True), 260)
+    panel.rule(y=0, colour="ink")
+    panel.points(freq, error, "blue", [f"{f:.3f} kHz: {e:+.2f} %" for f, e in zip(freq, error)])
+    chart = Chart("difference of the frequencies of two meshes", Axis.about("frequency, kHz", freq), [panel])
+    return claim_table("fig3", claims.mesh_claims(pairs)), figure("paper-fig3-chart", "Frequencies of two meshes",
+                                                                  chart.markup("paper-fig3-svg"))
+
+
+def shape_figure(name, title, shape, said=""):
+    """A face with its title."""
+    return figure(f"paper-{name}", title, shape.image(title), said)
+
+
+def figure4(place):
+    """Shapes of two modes."""
+    folder = place.folder("modes-lumped", "fig4")
+    rows = read_table(folder.path / "modes.csv", MODES)
+    found, pictures = [], []
+    for label, paper in (("(0,4+)", 3424), ("(0,5+)", 4877)):
+        row = next((row for row in rows if row["label"] == label), None)
+        if not row:
+            found.append(claims.Claim(label, f"{paper} Hz", "no mode has this label", False))
+            continue
+        error = row["freq_hz"] / paper - 1
+        found.append(claims.Claim(label, f"{paper} Hz", f"{row['freq_hz']:.0f} Hz, {claims.percent(error)}",
+                                  abs(error) < claims.CLOSE))
+        shape = mode_shape(folder.path, folder.disc(), row["mode"], int(label[3]))
+        pictures.append(shape_figure(f"fig4-{label[3]}", f"{label}, {row['freq_hz']:.0f} Hz", shape))
+    return claim_table("fig4", found), tag("div", pictures, class_="pair")
+
+
+# Figures 5 and 6
+
+
+def figure5(place):
+    """Eigenvalues over the pad's modulus."""
+    found, pictures = [], []
+    for run, name in (("sweep", "the paper's values"), ("sweep-fitted", "fitted to the onsets")):
+        folder = place.folder(run, f"paper-fig5-{run}")
+        study = Study(folder.path, None, None)
+        found += claims.sweep_claims(study, name)
+        pictures.append([tag("h4", name.capitalize()), line_figure(folder, study)])
+    return claim_table("fig5", found), pictures
+
+
+def figure6(place):
+    """Shapes of the unstable modes."""
+    folder = place.folder("modes-unstable", "fig6")
+    rows = [row for row in read_table(folder.path / "modes.csv", MODES) if row["unstable"]]
+    found, pictures = [], []
+    for family, band in claims.FAMILIES.items():
+        own = [row for row in rows if band[0] <= row["freq_hz"] <= band[1]]
+        if not own:
+            found.append(claims.Claim(f"unstable mode near {family}", claims.SHAPES[family], "none", False))
+            continue
+        row = max(own, key=lambda row: row["growth_rad_s"])
+        shape = mode_shape(folder.path, folder.disc(), row["mode"], int(claims.SHAPES[family][3]))
+        found += claims.shape_claims(family, row, shape.antinode_at_contact())
+        pictures.append(shape_figure(f"fig6-{family[0]}", f"{row['label']}, {row['freq_hz']:.0f} Hz", shape,
+                                     "Pad of 60 GPa."))
+    return claim_table("fig6", found), tag("div", pictures, class_="pair")
+
+
+# Figures 7 to 11
+
+
+def force_part(name, run, claim):
+    """Forces and acceleration."""
+    def make(place):
+        folder = place.folder(run, f"paper-{name}")
+        record = Record(folder)
+        pictures = [signal_figure(folder, record)]
+        if record.vibration.line:
+            pictures.append(growth_figure(folder, record))
+        return (claim_table(name, claim(record)), force_figures(folder, record)[:1],
+                tag("div", pictures, class_="pair"))
+
+    return make
+
+
+def spectrum_part(name, run, with_line, paper):
+    """Spectrum and shape."""
+    def make(place):
+        folder = place.folder(run, f"paper-{name}")
+        record = Record(folder)
+        found, pictures = list(claims.line_claims(record)) if with_line else [], []
+        if record.vibration.line:
+            pictures.append(spectrum_figure(folder, record))
+        first = record.run.time[record.vibration.steady][0]
+        shape, share = moving_shape(folder.path, folder.disc(), first)
+        circles = None
+        if shape:
+            found += claims.diameter_claims(shape, share, paper)
+            pictures.append(shape_figure(f"{name}-shape", "Velocity across the disc's face", shape))
+            circles = tag("div", diameters_figure(folder, snapshots(folder.path), first), class_="pair")
+        return claim_table(name, found), tag("div", pictures, class_="pair"), circles
+
+    return make
+
+
+def pressing(place):
+    """k_n."""
+    return (claim_table("kn", claims.pressing_claims(place.folder("pressing", "kn").path)),)
+
+
+SECTIONS = {"table1": table1, "fig3": figure3, "fig4": figure4, "fig5": figure5, "fig6": figure6,
+            "fig7": force_part("fig7", "time-16", claims.stable_claims),
+            "fig8": force_part("fig8", "time-25.1", claims.growth_claims),
+            "fig9": spectrum_part("fig9", "time-25.1", True, "(0,4+)"),
+            "fig10": force_part("fig10", "time-39.8", claims.detached_claims),
+            "fig11": spectrum_part("fig11", "time-39.8", False, "drawn, not named"), "kn": pressing}
+ABOUT = {"table1": "frequencies of the disc's modes, pad of 25.1 GPa", "fig3": "two meshes of the disc",
+         "fig4": "shapes of (0,4+) and (0,5+)", "fig5": "eigenvalues over the pad's modulus",
+         "fig6": "shapes of the unstable modes", "fig7": "pad of 16 GPa in time", "fig8": "pad of 25.1 GPa in time",
+         "fig9": "its spectrum and shape", "fig10": "pad of 39.8 GPa in time", "fig11": "its spectrum and shape",
+         "kn": "pad of 16 GPa"}
+
+
+# The page
+
+
+def cost_table(place):
+    """How long each run took."""
+    rows = [(run, cost_of(place.folder(run.name, "cost"))) for run in place.runs if run.name in place.made]
+    columns = [Column("run", lambda row: row[0].name, left=True),
+               Column("for", lambda row: ", ".join(FIGURES[name] for name in row[0].figures), left=True),
+               Column("time, s", lambda row: row[1][1] if row[1] else math.nan),
+               Column("memory, MB", lambda row: float(row[1][2]) if row[1] else math.nan, lambda v: f"{v:.0f}")]
+    return section("paper-cost", "What it took", table("paper-cost-table", columns, rows),
+                   tag("p", f"One rank each; {sum(cost[1] for _, cost in rows if cost):.0f} s of one core together.",
+                       class_="quiet"))
+
+
+def opening(place, names, coarse):
+    """The part of the page, and what is wrong with it."""
+    parts, wrong = [], []
+    for name in names:
+        try:
+            content = SECTIONS[name](place)
+        except BadInput as error:
+            wrong.append(f"{FIGURES[name]}: {error}")
+            content = missing(f"{error}.")
+        parts.append(section(f"paper-{name}", f"{FIGURES[name]}: {ABOUT[name]}", content))
+    warning = missing("Small meshes and short records (--coarse): the numbers of this page mean nothing.")
+    content = [warning if coarse else None, parts, cost_table(place)]
+    links = [(f"paper-{name}", FIGURES[name]) for name in names]
+    return Opening("The paper beside ours", links, content), wrong
+
+
+def write_paper(root, names, coarse):
+    """The page of all runs that are complete; returns its name and a line for each thing that is wrong."""
+    place = Place(root, chosen_runs(names))
+    if not place.made:
+        raise BadInput(f"{root}: no run is complete")
+    first, wrong = opening(place, names, coarse)
+    paths = [root / run.name for run in place.runs if run.name in place.made]
+    page, others = write_page(paths, root / "paper.html", TITLE, Options(probe="edge"), first)
+    return page, wrong + others

@@ -1,0 +1,164 @@
+"""What the seed paper says, and what comes out here: a list of claims for each table and figure."""
+
+import math
+import re
+from typing import NamedTuple
+
+import numpy
+
+from ..kept_runs import LOG
+from ..report.markup import figures, fixed, signed
+from ..table1 import beside, groups, read_modes, rms
+from ..tables import BadInput, read_table
+
+FAMILIES = {"3500 Hz": (3000, 4300), "5000 Hz": (4600, 5700)}  # Hz about the paper's two instabilities
+ONSETS = {"3500 Hz": 24, "5000 Hz": 20}  # GPa, its Figure 5
+SHAPES = {"3500 Hz": "(0,4+)", "5000 Hz": "(0,5+)"}  # its Figure 6
+SQUEAL = 3430  # Hz, its Figure 9
+PRESSED = 2.5895e8  # N/m, its section 2.1
+CLOSE = 0.01  # a frequency is the paper's within this
+
+
+class Claim(NamedTuple):
+    """`kept`: whether it is as in the paper; None where that is not a question of yes or no."""
+    what: str
+    paper: str
+    here: str
+    kept: bool | None = None
+
+
+def percent(value):
+    """With its sign."""
+    return f"{signed(100 * value, 2)} %"
+
+
+def table_claims(columns):
+    """Table 1. columns: name -> list of Beside, or a text that says why there is none."""
+    for name, pairs in columns.items():
+        if isinstance(pairs, str):
+            yield Claim(name, "", pairs)
+            continue
+        own = groups(pairs)
+        column = "Ansys" if pairs[0].paper == pairs[0].line.ansys else "Plast3"
+        there = [pair for pair in pairs if not math.isnan(pair.ours)]
+        yield Claim(f"{name}: rms difference", f"0, its {column} column",
+                    f"{100 * rms(pairs):.2f} % of {len(there)} of {len(pairs)} modes; (0,m+) "
+                    f"{fixed(100 * rms(own['(0,m+)']), 2)} %, (1,m) {fixed(100 * rms(own['(1,m)']), 2)} %")
+
+
+def mesh_claims(pairs):
+    """Figure 3. pairs: (Hz of the fine disc, relative difference of the coarse one)."""
+    for end, most in ((10e3, 0.02), (20e3, 0.05)):
+        worst = max((abs(error) for freq, error in pairs if freq < end), default=math.nan)
+        yield Claim(f"largest difference to {figures(end / 1e3)} kHz", f"below {100 * most:g} %",
+                    f"{fixed(100 * worst, 2)} %", worst < most)
+
+
+def unstable_range(study, band):
+    """Least and largest value (GPa) at which a mode of the band is unstable, from the onsets where there are any."""
+    values = [row["value"] for row in study.rows if row["unstable"] and band[0] <= row["freq_hz"] <= band[1]]
+    if not values:
+        return None
+    onsets = [row["critical_value"] for row in study.onsets
+              if row["kind"] == "lock_in" and band[0] <= row["freq_hz"] <= band[1]]
+    return 1e-9 * min([*onsets, *values]), 1e-9 * max(values)
+
+
+def sweep_claims(study, name):
+    """Figure 5."""
+    last = 1e-9 * max(row["value"] for row in study.rows)
+    for family, band in FAMILIES.items():
+        found = unstable_range(study, band)
+        here = f"from {figures(found[0], 3)} to {figures(found[1], 3)} GPa" if found else "stable"
+        yield Claim(f"{name}: unstable near {family}", f"from {ONSETS[family]} to 80 GPa", here,
+                    bool(found) and found[1] >= 0.999 * last)
+
+
+def shape_claims(family, row, antinode):
+    """Figure 6, one mode."""
+    yield Claim(f"unstable mode near {family}", SHAPES[family],
+                f"{row['label']} at {fixed(row['freq_hz'], 0)} Hz, growth {signed(row['growth_rad_s'], 3)} 1/s",
+                row["label"] == SHAPES[family])
+    yield Claim(f"near {family}: antinode at the contact over the largest of the others", "lower",
+                fixed(antinode, 2), antinode < 1)
+
+
+def growth_words(vibration):
+    """Regime, growth, frequency."""
+    fit = vibration.fit
+    return vibration.regime() + (f", {signed(fit.growth, 3)} 1/s at {fixed(fit.freq, 0)} Hz" if fit else "")
+
+
+def stable_claims(record):
+    """Figure 7."""
+    vibration, normal = record.vibration, record.run.normal[record.vibration.steady]
+    yield Claim("acceleration of the pad's edge", "decreases: stable", growth_words(vibration),
+                vibration.regime() in ("decays", "steady", "at rest"))
+    yield Claim("oscillation of the contact forces", "not remarkable",
+                f"normal force {figures(normal.min(), 4)} to {figures(normal.max(), 4)} N",
+                bool(numpy.ptp(normal) < 0.1 * normal.mean()))
+
+
+def growth_claims(record):
+    """Figure 8."""
+    normal = record.run.normal[record.vibration.steady]
+    share = float((normal <= 0).mean())
+    yield Claim("acceleration of the pad's edge", "grows exponentially to a maximum", growth_words(record.vibration),
+                record.vibration.regime() == "limit cycle")
+    yield Claim("normal force in the steady state", "strong oscillation; the pad is not said to detach",
+                f"{figures(normal.min(), 3)} to {figures(normal.max(), 3)} N, zero for {fixed(100 * share, 1)} % of "
+                "the time", share == 0)
+
+
+def line_claims(record):
+    """Main line of Figure 9."""
+    vibration = record.vibration
+    if not vibration.line:
+        yield Claim("squeal frequency", f"{SQUEAL} Hz", f"no line: {vibration.why}", False)
+        return
+    error = vibration.line[0] / SQUEAL - 1
+    yield Claim("squeal frequency", f"{SQUEAL} Hz", f"{fixed(vibration.line[0], 0)} Hz, {percent(error)}",
+                abs(error) < CLOSE)
+    levels = ", ".join(f"{number}×: {signed(level, 2)} dB" for number, level in vibration.harmonics.items())
+    yield Claim("its harmonics", "there", levels or "none", bool(levels))
+
+
+def diameter_claims(shape, share, paper):
+    """Shape of Figures 9 and 11."""
+    yield Claim("shape of the disc", paper, f"{shape.diameters} nodal diameters, with {100 * share:.0f} % of the mean "
+                "square", shape.diameters == 4)
+    antinode = shape.antinode_at_contact()
+    yield Claim("antinode at the contact over the largest of the others", "lower", fixed(antinode, 2), antinode < 1)
+
+
+def detached_claims(record):
+    """Figure 10."""
+    normal = record.run.normal[record.vibration.steady]
+    share = float((normal <= 0).mean())
+    yield Claim("acceleration of the pad's edge", "grows", growth_words(record.vibration),
+                bool(record.vibration.growth and record.vibration.growth.slope > 0))
+    yield Claim("contact forces", "become zero: the pad detaches",
+                f"zero for {fixed(100 * share, 1)} % of the time, at most {figures(normal.max(), 3)} N", share > 0)
+
+
+def pressing_claims(folder):
+    """k_n by pressing."""
+    found = re.search(r"k_n identified as (\S+) N/m per pair, (\S+) N/m in total",
+                      (folder / LOG).read_text(encoding="utf-8"))
+    if not found:
+        raise BadInput(f"{folder / LOG}: tells no k_n")
+    for name, value in zip(("for each pair", "in total"), map(float, found.groups())):
+        yield Claim(f"k_n at 16 GPa, {name}", f"{figures(PRESSED, 5)} N/m, of what is not said",
+                    f"{figures(value, 5)} N/m: the printed one is {figures(PRESSED / value, 3)} times as much")
+
+
+def mesh_pairs(fine, coarse):
+    """(Hz, relative difference) of the modes of two discs, doublets in their order."""
+    own = [read_table(folder / "modes.csv", {"freq_hz": float, "label": str}) for folder in (fine, coarse)]
+    return [(a["freq_hz"], b["freq_hz"] / a["freq_hz"] - 1) for a, b in zip(*own)]
+
+
+def table_columns(consistent, lumped):
+    """The columns of Table 1 that there are."""
+    return {"modes, consistent mass": beside(read_modes(consistent), "ansys"),
+            "modes, lumped mass": beside(read_modes(lumped), "plast3")}
