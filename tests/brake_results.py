@@ -12,7 +12,7 @@ IN_TIME = ["-options_file", SOURCE / "options/massi2005_transient.yaml", "-rig_d
 RUNS = {
     "modes": [*BRAKE, "-contact_mu", "0.9", "-pad_young", "39.8e9"],
     "modes_quiet": [*BRAKE, "-contact_mu", "0", "-modes_band", "0,6000"],
-    "static": [*BRAKE, "-analysis", "static"],
+    "static": [*BRAKE, "-analysis", "static", "-static_view_kkt"],
     "sweep": [*BRAKE, "-analysis", "sweep", "-modes_band", "1000,6000", "-sweep_parameter", "pad_young",
               "-sweep_values", "6.5e9:14e9:16", "-sweep_verify", "2"],
     "frf": [*BRAKE, "-options_file", SOURCE / "options/massi2005_frf.yaml", "-frf_frequencies", "1500:4500:301"],
@@ -23,7 +23,8 @@ RUNS = {
 def make_results(squeal, mpirun, folder, names=tuple(RUNS)):
     """Runs squeal for each name into a folder of that name."""
     for name in names:
-        command = [mpirun, "-n", "1", squeal, *RUNS[name], "-output_dir", folder / name]
+        command = [mpirun, "-n", "1", squeal, *RUNS[name], "-squeal_view", "-output_dir", folder / name]
         done = subprocess.run(list(map(str, command)), capture_output=True, text=True, cwd=folder, check=False)
         if done.returncode:
             raise SystemExit(f"{name}: {done.stderr}")
+        (folder / name / "log.txt").write_text(done.stdout)

@@ -4,6 +4,7 @@ Used by test_report.py; `t` keeps what is wrong, `page` finds elements, `key` is
 import base64
 import csv
 import json
+import re
 
 import h5py
 import numpy
@@ -109,6 +110,33 @@ def path_points(d):
     return numpy.array([list(map(float, pair.split())) for pair in d.replace("M", "L").split("L")[1:]])
 
 
+def facts_of(page, key):
+    """Errors, cost and origin by name."""
+    return dict(zip((e["text"] for e in page.find("dt", inside=f"{key}-origin")),
+                    (e["text"] for e in page.find("dd", inside=f"{key}-origin"))))
+
+
+def plain(text):
+    """A number of the page."""
+    text = text.translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")).replace("\N{MINUS SIGN}", "-")
+    return float(re.sub(r"(?:^| × )10(?=-?\d+$)", lambda found: "e" if found[0][0] == " " else "1e", text))
+
+
+def check_cost(t, page, key, folder):
+    """Cost, stages and completeness as the run printed them."""
+    log, facts = (folder / "log.txt").read_text(), facts_of(page, key)
+    printed = re.findall(r"^(\w+) +([\d.]+) +(\d+)$", log[log.index("stage  "):], re.MULTILINE)
+    shown = [(row["stage"], row["memory, MB"]) for row in page.table(f"{key}-stages")]
+    t.check(len(shown) > 2 and shown == [(name, memory) for name, _, memory in printed], f"{key}: stages {shown}")
+    times = [float(row["time, s"]) for row in page.table(f"{key}-stages")]
+    t.check(close(times, [seconds for _, seconds, _ in printed], 0.011) and "1 rank, " in facts["cost"],
+            f"{key}: their time")
+    said = re.search(r"^\d+ modes, \d+ unstable; (.*)$", log, re.MULTILINE)
+    shown = facts.get("completeness of the modes", "")
+    t.check(shown == said[1] if said else shown.startswith("none ") == (folder / "modes.csv").exists(),
+            f"{key}: completeness '{shown}'")
+
+
 def check_static(t, page, key, folder):
     """Pairs, reactions and residuals: breaks when pairs are mixed up, a status is lost, or a sum is wrong."""
     rows = rows_of(folder / "static.csv")
@@ -131,11 +159,14 @@ def check_static(t, page, key, folder):
     n_open = sum(row["status"] == "open" for row in rows)
     t.check(n_open > 0 and f"{len(rows) - n_open} of {len(rows)} pairs closed" in page.source,
             f"{key}: {n_open} pairs open")
-    facts = dict(zip((e["text"] for e in page.find("dt", inside=f"{key}-origin")),
-                     (e["text"] for e in page.find("dd", inside=f"{key}-origin"))))
-    small = [name for name in facts if name.startswith(("forces left over", "largest overlap", "largest force across"))]
-    t.check(len(small) == 3 and all("10⁻" in facts[name] or facts[name] == "0" for name in small),
-            f"{key}: residuals {facts}")
+    facts = facts_of(page, key)
+    told = re.findall(r"^  (\w+) +([\d.e+-]+)  ", (folder / "log.txt").read_text(), re.MULTILINE)
+    shown = [next((plain(text) for name, text in facts.items() if name.startswith(begin)), None)
+             for begin in ("largest overlap", "largest pull", "largest force across", "largest friction beyond",
+                           "largest friction off")]
+    t.check(len(told) == 5 and shown == [float(value) for _, value in told] and shown[0] > 0,
+            f"{key}: residuals as squeal prints them: {told} {shown}")
+    t.check("10⁻" in facts["forces left over, to the largest"], f"{key}: reactions in balance")
 
 
 def check_sweep(t, page, key, folder):
@@ -213,6 +244,7 @@ def check_frf(t, page, key, folder):
 def check_together(t, page, folders):
     """Folders side by side: every folder has its row, and what differs is what was given."""
     t.check([row["folder"] for row in page.table("overview")] == [folder.name for folder in folders], "a row a folder")
+    t.check(all(float(row["memory, MB"]) > 10 for row in page.table("overview")), "a row a folder: its cost")
     differ = {row["option"]: row for row in page.table("differences")}
     t.check((differ["contact_mu"]["modes"], differ["contact_mu"]["modes_quiet"]) == ("0.9", "0") and
             "disc_poisson" not in differ, f"{len(differ)} options differ")

@@ -17,8 +17,8 @@ from pathlib import Path
 
 from brake_results import SOURCE, make_results
 from fuzz.damage import BYTES, LINES
-from report_checks import (check_frf, check_modes, check_shapes, check_static, check_sweep, check_together,
-                           check_transient)
+from report_checks import (check_cost, check_frf, check_modes, check_shapes, check_static, check_sweep,
+                           check_together, check_transient)
 
 LARGEST = 10e6  # bytes
 
@@ -197,6 +197,7 @@ def main():
         check_together(t, page, [t.folder / name for name in names])
         for number, name in enumerate(names, 1):
             check_origin(t, page, f"r{number}", t.folder / name)
+            check_cost(t, page, f"r{number}", t.folder / name)
         check_bad(t)
         check_damages(t, names)
     print("\n".join(t.faults) or "all as it should be")

@@ -71,7 +71,7 @@ def check_scene(r):
         text = (r.folder / "out/scene.yaml").read_text()
         r.check(done.returncode == 0 and (r.folder / "out/modes.csv").exists(), f"modes on {ranks}", done)
         for word in ('contact_mu: "0.25"', 'squeal_view: "true"', 'modes_contact: "static"', "# versions: squeal ", "MUMPS",
-                     f"# cost: {ranks} rank", "# contact_tolerance: 1e-05", "# command: ", "modes.csv"):
+                     f"# cost: {ranks} rank", "# stages: Model ", "# completeness: none was found missing: ", "# contact_tolerance: 1e-05", "# command: ", "modes.csv"):
             r.check(word in text, f"scene.yaml on {ranks} says {word}", done)
         repeat = re.search(r"# repeat: (?:mpirun -n (\d+) )?squeal (.*)", text)
         options = repeat[2].replace(f"-output_dir {r.folder}/out", "-output_dir again").split()

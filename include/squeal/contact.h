@@ -169,6 +169,9 @@ PetscErrorCode ContactComputeKKT(Contact contact, const ContactState state[], co
 /*@ ContactViewKKT - the residuals in one line each. Collective. @*/
 PetscErrorCode ContactViewKKT(const ContactKKT *kkt, PetscViewer viewer);
 
+/*@ ContactPrintKKT - the residuals as text: "penetration 9.0e-13, sign 0.0e+00, ...", text [size]. Not collective. @*/
+PetscErrorCode ContactPrintKKT(const ContactKKT *kkt, size_t size, char text[]);
+
 /*@ ContactGetCentre - mean position of all pairs, m; found is false without contact. Collective. @*/
 PetscErrorCode ContactGetCentre(Contact contact, PetscReal centre[3], PetscBool *found);
 

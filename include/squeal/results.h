@@ -168,10 +168,19 @@ PetscErrorCode ResultsKeepFolder(Results results, const char folder[]);
 PetscErrorCode ResultsKeepScene(Results results, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx);
 
 /*@
+   ResultsNote - a line "# key: text" of scene.yaml, what a run says of its errors. Collective; before ResultsFinish().
+
+   Input Parameters:
++  key    - letters, digits and -, once in a run
+-  format - printf-like, with the values, one line
+@*/
+PetscErrorCode ResultsNote(Results results, const char key[], const char format[], ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
+
+/*@
    ResultsFinish - ends a run that did what was asked. Collective.
 
-   It writes scene.yaml: the commands of this run and of its repetition, versions, ranks, time, memory, the files, and
-   all options in force, as a file that -options_file reads. Then the files go that the scene.yaml of an earlier run in
+   It writes scene.yaml: the commands of this run and of its repetition, versions, ranks, time, memory, both of each
+   stage too, what ResultsNote() was told, the files, and all options in force, as a file that -options_file reads. Then the files go that the scene.yaml of an earlier run in
    the folder lists. All others stay, and so does what a killed run goes on from: a transient while its table is
    unfinished, sweep_restart_*. Errors: as ResultsTableClose().
 @*/

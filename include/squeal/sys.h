@@ -75,6 +75,15 @@ PetscErrorCode SquealStageBegin(SquealStage stage);
 /*@ SquealStageEnd - leaves it. Collective. @*/
 PetscErrorCode SquealStageEnd(SquealStage stage);
 
+/* What a stage took: seconds of the slowest rank, memory at its end summed over the ranks */
+typedef struct {
+  const char *name;
+  double      seconds, megabytes;
+} SquealStageCost;
+
+/*@ SquealGetStages - cost [SQUEAL_N_STAGES] of the n stages that were entered. Collective. @*/
+PetscErrorCode SquealGetStages(MPI_Comm comm, PetscInt *n, SquealStageCost cost[]);
+
 /*@ SquealViewStages - prints time (s, slowest rank) and memory (MB, sum of ranks) of each stage. Collective. @*/
 PetscErrorCode SquealViewStages(MPI_Comm comm, PetscViewer viewer);
 

@@ -155,18 +155,34 @@ PetscErrorCode SquealStageEnd(SquealStage stage)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SquealGetStages(MPI_Comm comm, PetscInt *n, SquealStageCost cost[])
+{
+  PetscFunctionBeginUser;
+  *n = 0;
+  for (PetscInt s = 0; s < SQUEAL_N_STAGES; s++) {
+    SquealStageCost *c = &cost[*n];
+
+    if (ledger[s].begun == 0) continue; /* never entered */
+    c->name = stage_names[s];
+    PetscCallMPI(MPI_Allreduce(&ledger[s].seconds, &c->seconds, 1, MPI_DOUBLE, MPI_MAX, comm));
+    PetscCallMPI(MPI_Allreduce(&ledger[s].memory, &c->megabytes, 1, MPI_DOUBLE, MPI_SUM, comm));
+    c->megabytes *= 1e-6;
+    ++*n;
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SquealViewStages(MPI_Comm comm, PetscViewer viewer)
 {
-  double slowest, memory;
+  SquealStageCost cost[SQUEAL_N_STAGES];
+  PetscInt        n;
 
   PetscFunctionBeginUser;
+  PetscCall(SquealGetStages(comm, &n, cost));
   PetscCall(PetscViewerASCIIPrintf(viewer, "stage       time s   memory MB\n"));
-  for (PetscInt s = 0; s < SQUEAL_N_STAGES; s++) {
-    if (ledger[s].begun == 0) continue; /* never entered */
-    PetscCallMPI(MPI_Allreduce(&ledger[s].seconds, &slowest, 1, MPI_DOUBLE, MPI_MAX, comm));
-    PetscCallMPI(MPI_Allreduce(&ledger[s].memory, &memory, 1, MPI_DOUBLE, MPI_SUM, comm));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "%-10s %7.2f   %9.0f\n", stage_names[s], slowest, memory / 1e6));
-  }
+  for (PetscInt s = 0; s < n; s++)
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer, "%-10s %7.2f   %9.0f\n", cost[s].name, cost[s].seconds, cost[s].megabytes));
   PetscFunctionReturn(0);
 }
 

@@ -116,12 +116,17 @@ PetscErrorCode ContactComputeKKT(Contact contact, const ContactState state[], co
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactViewKKT(const ContactKKT *kkt, PetscViewer viewer)
+/* A residual in words */
+typedef struct {
+  const char *name, *meaning;
+  PetscReal   value;
+} Law;
+
+#define N_LAWS 5
+
+static void LawsOf(const ContactKKT *kkt, Law law[N_LAWS])
 {
-  const struct {
-    const char *name, *meaning;
-    PetscReal   value;
-  } lines[] = {
+  const Law all[N_LAWS] = {
     {"penetration",     "pairs that overlap, to the largest displacement or gap",         kkt->penetration    },
     {"sign",            "pairs that pull, to the largest normal force",                   kkt->sign           },
     {"complementarity", "pairs that carry force across a gap",                            kkt->complementarity},
@@ -129,9 +134,31 @@ PetscErrorCode ContactViewKKT(const ContactKKT *kkt, PetscViewer viewer)
     {"dissipation",     "friction off the direction of slip, or slip where a pair holds", kkt->dissipation    },
   };
 
+  for (int i = 0; i < N_LAWS; i++) law[i] = all[i];
+}
+
+PetscErrorCode ContactViewKKT(const ContactKKT *kkt, PetscViewer viewer)
+{
+  Law law[N_LAWS];
+
   PetscFunctionBeginUser;
-  for (size_t i = 0; i < sizeof(lines) / sizeof(lines[0]); i++)
-    PetscCall(
-      PetscViewerASCIIPrintf(viewer, "  %-15s %8.1e  %s\n", lines[i].name, (double)lines[i].value, lines[i].meaning));
+  LawsOf(kkt, law);
+  for (int i = 0; i < N_LAWS; i++)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-15s %8.1e  %s\n", law[i].name, (double)law[i].value, law[i].meaning));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactPrintKKT(const ContactKKT *kkt, size_t size, char text[])
+{
+  Law  law[N_LAWS];
+  char piece[64];
+
+  PetscFunctionBeginUser;
+  LawsOf(kkt, law);
+  text[0] = 0;
+  for (int i = 0; i < N_LAWS; i++) {
+    PetscCall(PetscSNPrintf(piece, sizeof(piece), "%s%s %.1e", i ? ", " : "", law[i].name, (double)law[i].value));
+    PetscCall(PetscStrlcat(text, piece, size));
+  }
   PetscFunctionReturn(0);
 }

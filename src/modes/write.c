@@ -145,6 +145,7 @@ PetscErrorCode ModesWrite(Modes modes, Results results)
   PetscFunctionBeginUser;
   PetscCall(ModesGetModel(modes, &model, NULL));
   PetscCall(ModesWriteTable(modes, model, results));
+  PetscCall(ResultsNote(results, "completeness", "%s", modes->completeness));
   PetscCall(ResultsWantFields(results, &wanted));
   if (model && wanted) PetscCall(ModesWriteShapes(modes, model, results));
   if (modes->filters) PetscCall(ModesWriteFilters(modes, model, results));

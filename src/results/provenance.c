@@ -151,6 +151,37 @@ static PetscErrorCode SceneGetCost(Results results, double *seconds, double *meg
   PetscFunctionReturn(0);
 }
 
+/* What the stages took, and what the rooms said */
+static PetscErrorCode ScenePrintNotes(Results results, OutFile *file)
+{
+  SquealStageCost cost[SQUEAL_N_STAGES];
+  PetscInt        n;
+
+  PetscFunctionBeginUser;
+  PetscCall(SquealGetStages(results->comm, &n, cost));
+  for (PetscInt s = 0; s < n; s++)
+    PetscCall(OutFilePrint(file, "%s%s %.2f s %.0f MB", s ? ", " : "# stages: ", cost[s].name, cost[s].seconds,
+                           cost[s].megabytes));
+  if (n) PetscCall(OutFilePrint(file, "\n"));
+  for (PetscInt i = 0; i < results->n_notes; i++) PetscCall(OutFilePrint(file, "%s\n", results->note[i]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsNote(Results results, const char key[], const char format[], ...)
+{
+  char    text[1024], line[1100];
+  va_list values;
+
+  PetscFunctionBeginUser;
+  va_start(values, format);
+  (void)vsnprintf(text, sizeof(text), format, values);
+  va_end(values);
+  PetscCall(PetscSNPrintf(line, sizeof(line), "# %s: %s", key, text));
+  PetscCall(PetscRealloc((size_t)(results->n_notes + 1) * sizeof(char *), &results->note));
+  PetscCall(PetscStrallocpy(line, &results->note[results->n_notes++]));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode SceneWrite(Results results)
 {
   SquealVersions v;
@@ -183,6 +214,7 @@ static PetscErrorCode SceneWrite(Results results)
                          v.mumps, v.mpi));
   PetscCall(OutFilePrint(file, "# cost: %d rank%s, %.1f s, %.0f MB at most\n# end: %s\n", size, size == 1 ? "" : "s",
                          seconds, megabytes, date));
+  PetscCall(ScenePrintNotes(results, file));
   PetscCall(OutFilePrint(file, SCENE_FILES));
   for (PetscInt i = 0; i < results->n_kept; i++) PetscCall(OutFilePrint(file, " %s", results->kept[i]));
   PetscCall(OutFilePrint(file, "\n"));
@@ -208,6 +240,8 @@ PetscErrorCode ResultsForget(Results results)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < results->n_kept; i++) PetscCall(PetscFree(results->kept[i]));
   PetscCall(PetscFree(results->kept));
+  for (PetscInt i = 0; i < results->n_notes; i++) PetscCall(PetscFree(results->note[i]));
+  PetscCall(PetscFree(results->note));
   for (PetscInt i = 0; i < results->n_earlier; i++) PetscCall(PetscFree(results->earlier[i]));
   PetscCall(PetscFree(results->earlier));
   free(results->options.option);

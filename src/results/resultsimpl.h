@@ -24,9 +24,10 @@ struct _p_Results {
   MPI_Comm  comm;
   char      dir[PETSC_MAX_PATH_LEN];
   PetscBool fields;
-  PetscInt  n_kept, n_earlier;
+  PetscInt  n_kept, n_earlier, n_notes;
   char    **kept;     /* names of files in the folder that belong to this run */
   char    **earlier;  /* those that only earlier runs wrote, on the first rank at the end */
+  char    **note;     /* lines of scene.yaml */
   PetscBool keep_all; /* nothing of earlier runs goes */
   HelpList  options;  /* all, as the run found them */
   double    begun;    /* MPI_Wtime() */

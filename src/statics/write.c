@@ -73,9 +73,25 @@ static PetscErrorCode StaticsWritePairs(Statics s, Results results)
   PetscFunctionReturn(0);
 }
 
+/* Residuals, for scene.yaml */
+static PetscErrorCode StaticsNote(Statics s, Results results)
+{
+  ContactKKT kkt;
+  PetscReal  equilibrium;
+  char       text[256];
+
+  PetscFunctionBeginUser;
+  PetscCall(StaticsGetKKT(s, &kkt, &equilibrium));
+  PetscCall(ContactPrintKKT(&kkt, sizeof(text), text));
+  PetscCall(ResultsNote(results, "kkt", "%s", text));
+  PetscCall(ResultsNote(results, "equilibrium", "%.1e", (double)equilibrium));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode StaticsWrite(Statics s, Results results)
 {
   PetscFunctionBeginUser;
+  PetscCall(StaticsNote(s, results));
   PetscCall(StaticsWritePairs(s, results));
   PetscCall(StaticsWriteReactions(s, results));
   PetscCall(StaticsWriteFields(s, results));

@@ -3,11 +3,12 @@ versions, cost, options."""
 
 import re
 
-from .markup import Column, command, figure, missing, pairs, section, table, tag
+from .markup import Column, command, figure, fixed, missing, pairs, section, table, tag
 from .shapes import viewer
 from .words import scene_words
 
-FACTS = {"cost": "cost", "end": "ended", "versions": "versions", "in": "in the folder"}
+FACTS = {"completeness": "completeness of the modes", "cost": "cost", "end": "ended", "versions": "versions",
+         "in": "in the folder"}
 
 
 def scene_section(folder, source, bodies):
@@ -26,8 +27,18 @@ def scene_section(folder, source, bodies):
 
 def cost_of(folder):
     """ranks, seconds, megabytes; None where they are not known."""
-    found = re.match(r"(\d+) ranks, ([\d.]+) s, (\d+) MB", folder.scene.facts.get("cost", "") if folder.scene else "")
+    found = re.match(r"(\d+) ranks?, ([\d.]+) s, (\d+) MB", folder.scene.facts.get("cost", "") if folder.scene else "")
     return (int(found[1]), float(found[2]), int(found[3])) if found else None
+
+
+def stage_table(folder):
+    """Time and memory of each stage; nothing where the run did not write them."""
+    found = re.findall(r"(\w+) ([\d.]+) s (\d+) MB", folder.scene.facts.get("stages", ""))
+    columns = [Column("stage", lambda row: row[0], left=True),
+               Column("time, s", lambda row: float(row[1]), lambda v: fixed(v, 2), hint="of the slowest rank"),
+               Column("memory, MB", lambda row: float(row[2]), lambda v: fixed(v, 0),
+                      hint="at its end, all ranks together")]
+    return [tag("h4", "What each stage took"), table(f"{folder.key}-stages", columns, found)] if found else None
 
 
 def origin_section(folder, errors):
@@ -45,6 +56,6 @@ def origin_section(folder, errors):
     columns = [Column("option", lambda row: row[0], left=True), Column("value", lambda row: row[1], left=True),
                Column("", lambda row: row[2], left=True)]
     return section(f"{folder.key}-origin", "Errors, cost, origin", pairs([*errors, *facts]),
-                   [(tag("h4", name), command(text)) for name, text in commands],
+                   stage_table(folder), [(tag("h4", name), command(text)) for name, text in commands],
                    tag("details", tag("summary", f"All {len(options)} options in force"),
                        table(f"{folder.key}-options", columns, options, lambda row: row[2])))

@@ -1,6 +1,8 @@
 """Section of the sliding state: pressure and status of every pair, profile along the sliding, reactions and their
 balance, residuals of the laws of contact and friction, deformation."""
 
+import re
+
 import numpy
 from matplotlib.colors import to_hex
 
@@ -17,10 +19,12 @@ MOST_TIPS = 4000  # pairs that tell their numbers
 REACTIONS = {"name": str, "kind": str, "force_x_n": float, "force_y_n": float, "force_z_n": float}
 DISPLACEMENT = "displacement_m"
 WORDS = {"open": "open", "stick": "sticking", "slip": "sliding"}
-LAWS = (("penetration", "largest overlap of a pair, to the largest gap or slip"),
+LAWS = (("penetration", "largest overlap of a pair, to the largest displacement or gap"),
         ("sign", "largest pull of a pair, to the largest normal force"),
         ("complementarity", "largest force across a gap"),
-        ("cone", "largest friction beyond mu times the normal force"))
+        ("cone", "largest friction beyond mu times the normal force"),
+        ("dissipation", "largest friction off the direction of slip, or slip where a pair holds"),
+        ("equilibrium", "forces that the equilibrium leaves over, to the load"))
 
 
 def tips_of(surface):
@@ -115,19 +119,16 @@ def profile_chart(surface, key):
     return Chart("pressure along the sliding", axis, [panel]).markup(f"{key}-profile", "half")
 
 
-def residuals(surface, scene):
-    """Of the laws, from the table, as squeal defines them (contact.h); None without gaps."""
-    force, gap = abs(surface.normal_force).max(), surface.gap.copy()
-    if not force > 0 or not numpy.isfinite(gap).all():
-        return None
-    if scene and scene.value(f"{surface.name}_law", "penalty") == "penalty" and scene.number(f"{surface.name}_kn"):
-        gap += surface.normal_force / scene.number(f"{surface.name}_kn")
-    length = max(abs(gap).max(), numpy.nan_to_num(abs(surface.slip)).max(), 1e-300)
-    mu = abs(scene.number(f"{surface.name}_mu")) if scene else numpy.inf
-    over = surface.friction - mu * surface.normal_force if numpy.isfinite(mu) else numpy.zeros(1)
-    return {"penetration": max(0.0, (-gap).max()) / length, "sign": max(0.0, (-surface.normal_force).max()) / force,
-            "complementarity": abs(numpy.minimum(surface.normal_force / force, gap / length)).max(),
-            "cone": max(0.0, over.max()) / force}
+def residuals(scene):
+    """Of the laws and of the equilibrium, (meaning, text), as squeal wrote them; none where it did not."""
+    facts = scene.facts if scene else {}
+    found = dict(re.findall(r"(\w+) (\d[\d.e+-]*)", facts.get("kkt", "")))
+    found["equilibrium"] = facts.get("equilibrium", "")
+    for name, meaning in LAWS:
+        try:
+            yield meaning, figures(float(found[name]), 2)
+        except (KeyError, ValueError):
+            continue
 
 
 def reactions(folder):
@@ -203,10 +204,7 @@ def static_part(folder, _):
     except BadInput as error:
         shape, bodies = folder.lacks(error), None
     errors = [("forces left over, to the largest", figures(left, 2))] if left is not None else []
-    for surface in surfaces:
-        found = residuals(surface, folder.scene) or {}
-        errors += [(f"{meaning}{f', {surface.name}' if len(surfaces) > 1 else ''}", figures(found[name], 2))
-                   for name, meaning in LAWS if name in found]
+    errors += residuals(folder.scene)
     content = section(f"{folder.key}-static", "Sliding state",
                       [surface_figures(folder, surface, i) for i, surface in enumerate(surfaces, 1)],
                       tag("h4", "Forces on the bodies"), forces, shape)
