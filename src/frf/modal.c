@@ -87,33 +87,53 @@ static PetscErrorCode EndsCreate(Frf frf, const Superposition *s, FrfEnds *ends)
   PetscFunctionReturn(0);
 }
 
+/* Both responses at the frequencies first, first + step and so on, FRF_BATCH at most; the error is their difference.
+   work[4][FRF_BATCH][n_outputs]. Returns in *singular one that is a pole */
+static PetscErrorCode RespondBatch(Frf frf, const FrfSchur *schur[2], PetscInt first, PetscInt step, PetscReal work[],
+                                   PetscInt *singular)
+{
+  const PetscInt n = frf->n_outputs, block = FRF_BATCH * n, m = PetscMin(FRF_BATCH, (frf->n - 1 - first) / step + 1);
+  PetscReal      omega[FRF_BATCH];
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < m; f++) omega[f] = 2 * PETSC_PI * frf->freq[first + f * step];
+  for (int k = 0; k < 2; k++) {
+    PetscInt pole;
+
+    PetscCall(FrfSchurRespond(schur[k], m, omega, &work[2 * k * block], &work[(2 * k + 1) * block], &pole));
+    if (pole >= 0) *singular = first + pole * step;
+  }
+  for (PetscInt f = 0; f < m; f++) {
+    const PetscReal *re = &work[f * n], *im = re + block;
+    const PetscInt   i = first + f * step;
+
+    PetscCall(PetscArraycpy(&frf->re[i * n], re, n));
+    PetscCall(PetscArraycpy(&frf->im[i * n], im, n));
+    for (PetscInt p = 0; p < n; p++)
+      frf->error[i] += PetscSqr(re[2 * block + p] - re[p]) + PetscSqr(im[2 * block + p] - im[p]);
+    frf->error[i] = PetscSqrtReal(frf->error[i]);
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Response at every stride-th frequency, shared among ranks; the error is the difference of the two */
 static PetscErrorCode RespondAll(Frf frf, const FrfSchur *used, const FrfSchur *larger, PetscInt stride)
 {
   const PetscInt n = frf->n_outputs;
-  PetscReal     *re, *im;
+  PetscReal     *work;
   PetscMPIInt    rank, size;
   PetscInt       singular = -1;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(frf->comm, &rank));
   PetscCallMPI(MPI_Comm_size(frf->comm, &size));
-  PetscCall(PetscMalloc2(n, &re, n, &im));
+  PetscCall(PetscMalloc1(4 * FRF_BATCH * n, &work));
   PetscCall(PetscArrayzero(frf->re, n * frf->n));
   PetscCall(PetscArrayzero(frf->im, n * frf->n));
   PetscCall(PetscArrayzero(frf->error, frf->n));
-  for (PetscInt i = rank * stride; i < frf->n; i += size * stride) {
-    const PetscReal omega = 2 * PETSC_PI * frf->freq[i];
-    PetscReal      *hr = &frf->re[i * n], *hi = &frf->im[i * n];
-    PetscBool       pole[2];
-
-    PetscCall(FrfSchurRespond(used, omega, hr, hi, &pole[0]));
-    PetscCall(FrfSchurRespond(larger, omega, re, im, &pole[1]));
-    if (pole[0] || pole[1]) singular = i;
-    for (PetscInt p = 0; p < n; p++) frf->error[i] += PetscSqr(re[p] - hr[p]) + PetscSqr(im[p] - hi[p]);
-    frf->error[i] = PetscSqrtReal(frf->error[i]);
-  }
-  PetscCall(PetscFree2(re, im));
+  for (PetscInt i = rank * stride; i < frf->n; i += FRF_BATCH * size * stride)
+    PetscCall(RespondBatch(frf, (const FrfSchur *[]){used, larger}, i, size * stride, work, &singular));
+  PetscCall(PetscFree(work));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &singular, 1, MPIU_INT, MPI_MAX, frf->comm));
   PetscCheck(singular < 0, frf->comm, PETSC_ERR_USER_INPUT,
              "-frf_frequencies: %.15g Hz is a pole, where the response is infinite", (double)frf->freq[singular]);

@@ -5,7 +5,8 @@
       damped     (T - w) y   = -w Z' [Q0^-1 b; 0],         w = shift / (i omega - shift),  complex,
 
    the latter in real arithmetic T Y - Y B = R for the two columns of Y = [re y, im y] with B = [re w, im w; -im w, re
-   w]: both are what LAPACK's trsyl solves, at the cost of a product with T.
+   w]: both are what LAPACK's trsyl solves, at the cost of a product with T. Several frequencies are solved together, with
+   their B along the diagonal of a larger one.
 */
 #include "schur.h"
 #include <slepcblaslapack.h>
@@ -101,7 +102,8 @@ PetscErrorCode FrfSchurCreate(const FrfSmall *small, PetscInt n, PetscBool round
                          .damped    = small->C ? PETSC_TRUE : PETSC_FALSE};
   s->length = s->damped ? 2 * n : n;
   PetscCall(PetscCalloc1(s->length * s->length, &s->T));
-  PetscCall(PetscCalloc3(s->length, &s->b, ends->n_outputs * s->length, &s->l, 2 * s->length, &s->x));
+  PetscCall(PetscCalloc4(s->length, &s->b, ends->n_outputs * s->length, &s->l, 2 * FRF_BATCH * s->length, &s->x,
+                         4 * FRF_BATCH * FRF_BATCH, &s->B));
   PetscCall(PetscMalloc1(s->length * s->length, &Z));
   PetscCall(SchurForm(small, ends->b, s));
   PetscCall(SchurReduce(s, Z));
@@ -115,41 +117,81 @@ PetscErrorCode FrfSchurCreate(const FrfSmall *small, PetscInt n, PetscBool round
 }
 
 /* Solves T X - X B = X for the m columns of X */
-static PetscErrorCode SchurSolve(const FrfSchur *s, PetscBLASInt m, const PetscReal B[], PetscBool *singular)
+static PetscErrorCode SchurSolve(const FrfSchur *s, PetscInt m, PetscBool *singular)
 {
   const PetscBLASInt minus = -1;
-  PetscBLASInt       n, info;
+  PetscBLASInt       n, n_columns, info;
   PetscReal          scale;
 
   PetscFunctionBeginUser;
   PetscCall(PetscBLASIntCast(s->length, &n));
-  PetscCallBLAS("LAPACKtrsyl", LAPACKtrsyl_("N", "N", &minus, &n, &m, s->T, &n, B, &m, s->x, &n, &scale, &info));
+  PetscCall(PetscBLASIntCast(m, &n_columns));
+  PetscCallBLAS("LAPACKtrsyl",
+                LAPACKtrsyl_("N", "N", &minus, &n, &n_columns, s->T, &n, s->B, &n_columns, s->x, &n, &scale, &info));
   PetscCheck(info >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK trsyl: info %d", (int)info);
   *singular = info > 0 || scale == 0 ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt i = 0; i < m * s->length && !*singular; i++) s->x[i] /= scale;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrfSchurRespond(const FrfSchur *s, PetscReal omega, PetscReal re[], PetscReal im[], PetscBool *singular)
+/* B and the right-hand sides of n frequencies; false where one of them is the shift itself */
+static PetscBool SchurFill(const FrfSchur *s, PetscInt n, const PetscReal omega[])
 {
-  const PetscReal    d   = omega * omega - s->shift;
-  const PetscComplex w   = s->damped ? s->shift / CMPLX(-s->shift, omega) : 1 / d;
-  const PetscReal    B[] = {creal(w), -cimag(w), cimag(w), creal(w)}; /* column-major */
-  PetscReal         *x = s->x, *y = s->x + s->length;
+  const PetscInt two = s->damped ? 2 : 1, m = two * n;
+
+  for (PetscInt i = 0; i < m * m; i++) s->B[i] = 0;
+  for (PetscInt f = 0; f < n; f++) {
+    const PetscReal    d = omega[f] * omega[f] - s->shift;
+    const PetscComplex w = s->damped ? s->shift / CMPLX(-s->shift, omega[f]) : 1 / d;
+    PetscReal         *B = &s->B[two * f * (m + 1)], *x = &s->x[two * f * s->length];
+
+    if (!s->damped && d == 0) return PETSC_FALSE;
+    B[0] = creal(w);
+    if (s->damped) B[1] = -cimag(w), B[m] = cimag(w), B[m + 1] = creal(w); /* column-major */
+    for (PetscInt i = 0; i < s->length; i++) x[i] = -creal(w) * s->b[i];
+    for (PetscInt i = 0; i < s->length && s->damped; i++) x[s->length + i] = -cimag(w) * s->b[i];
+  }
+  return PETSC_TRUE;
+}
+
+/* H at n frequencies from their one or two columns of X */
+static void SchurOutputs(const FrfSchur *s, PetscInt n, PetscReal re[], PetscReal im[])
+{
+  const PetscInt two = s->damped ? 2 : 1;
+
+  for (PetscInt f = 0; f < n; f++)
+    for (PetscInt p = 0; p < s->n_outputs; p++) {
+      const PetscReal *l = &s->l[p * s->length], *x = &s->x[two * f * s->length], *y = x + s->length;
+      PetscReal        sum[2] = {0, 0};
+
+      for (PetscInt i = 0; i < s->length; i++) sum[0] += l[i] * x[i];
+      for (PetscInt i = 0; i < s->length && s->damped; i++) sum[1] += l[i] * y[i];
+      re[f * s->n_outputs + p] = sum[0];
+      im[f * s->n_outputs + p] = sum[1];
+    }
+}
+
+PetscErrorCode FrfSchurRespond(const FrfSchur *s, PetscInt n, const PetscReal omega[], PetscReal re[], PetscReal im[],
+                               PetscInt *pole)
+{
+  PetscBool singular = PETSC_FALSE, regular;
 
   PetscFunctionBeginUser;
-  *singular = PETSC_FALSE;
-  for (PetscInt i = 0; i < s->length; i++) x[i] = -creal(w) * s->b[i], y[i] = -cimag(w) * s->b[i];
-  if (s->damped || d != 0)
-    PetscCall(SchurSolve(s, s->damped ? 2 : 1, B, singular));
-  else
-    PetscCall(PetscArraycpy(x, s->b, s->length));
-  for (PetscInt p = 0; p < s->n_outputs; p++) {
-    const PetscReal *l = &s->l[p * s->length];
+  *pole   = -1;
+  regular = SchurFill(s, n, omega);
+  if (regular) PetscCall(SchurSolve(s, s->damped ? 2 * n : n, &singular));
+  if (n > 1 && (singular || !regular)) {
+    for (PetscInt f = 0; f < n; f++) {
+      PetscInt one;
 
-    re[p] = im[p] = 0;
-    for (PetscInt i = 0; i < s->length; i++) re[p] += l[i] * x[i], im[p] += s->damped ? l[i] * y[i] : 0;
+      PetscCall(FrfSchurRespond(s, 1, &omega[f], &re[f * s->n_outputs], &im[f * s->n_outputs], &one));
+      if (one == 0) *pole = f;
+    }
+    PetscFunctionReturn(0);
   }
+  if (!regular) PetscCall(PetscArraycpy(s->x, s->b, s->length)); /* at the shift the answer is Q0^-1 b */
+  if (singular) *pole = 0;
+  SchurOutputs(s, n, re, im);
   PetscFunctionReturn(0);
 }
 
@@ -157,6 +199,6 @@ PetscErrorCode FrfSchurDestroy(FrfSchur *s)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(s->T));
-  PetscCall(PetscFree3(s->b, s->l, s->x));
+  PetscCall(PetscFree4(s->b, s->l, s->x, s->B));
   PetscFunctionReturn(0);
 }

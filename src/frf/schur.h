@@ -3,6 +3,8 @@
 
 #include "space.h"
 
+#define FRF_BATCH 16 /* frequencies that are solved together: trsyl takes the norm of T anew in each call */
+
 /* S of chain.h on the first n vectors of the space, as Z T Z' with T quasi-triangular, and the force and outputs there */
 typedef struct {
   PetscInt   n, length, n_outputs;
@@ -11,7 +13,8 @@ typedef struct {
   PetscReal *T; /* [length][length] column-major */
   PetscReal *b; /* [length] Z' [Q0^-1 b; 0] */
   PetscReal *l; /* [n_outputs][length] Z' [l; 0] */
-  PetscReal *x; /* [2][length] work */
+  PetscReal *B; /* [2 FRF_BATCH][2 FRF_BATCH] work: w of each frequency on the diagonal */
+  PetscReal *x; /* [2 FRF_BATCH][length] work */
 } FrfSchur;
 
 /* The force and outputs in coordinates of the space: b[size], l[n_outputs][size] */
@@ -23,7 +26,8 @@ typedef struct {
 /* Of the first n vectors; rounded: with K + E in place of K */
 PETSC_INTERN PetscErrorCode FrfSchurCreate(const FrfSmall *small, PetscInt n, PetscBool rounded, PetscReal shift,
                                            const FrfEnds *ends, FrfSchur *schur);
-/* H at omega (rad/s): re[n_outputs], im[n_outputs]; PETSC_TRUE in *singular where it is a pole to rounding */
-PETSC_INTERN PetscErrorCode FrfSchurRespond(const FrfSchur *schur, PetscReal omega, PetscReal re[], PetscReal im[],
-                                            PetscBool *singular);
+/* H at n <= FRF_BATCH frequencies omega (rad/s): re[n][n_outputs], im[n][n_outputs]; *pole is the index of one that is a pole to
+   rounding, or -1 */
+PETSC_INTERN PetscErrorCode FrfSchurRespond(const FrfSchur *schur, PetscInt n, const PetscReal omega[], PetscReal re[],
+                                            PetscReal im[], PetscInt *pole);
 PETSC_INTERN PetscErrorCode FrfSchurDestroy(FrfSchur *schur);
