@@ -3,7 +3,7 @@
 
       (s^2 M + s C + K + mu H) u = f e^{st},   s = i omega, omega = 2 pi freq_hz;     H_p = u_p / |f|, m/N (receptance)
 
-   It is also the Laplace transform of the answer to an impulse of 1 N s. Superposition of the modes lambda_k of the
+   It is also the Laplace transform of h_p(t), the answer to an impulse of 1 N s at rest. Superposition of the modes lambda_k of the
    quadratic pencil Q(s), with right and left vectors x_k, y_k,
 
       H_p(s) = sum_k  (l_p^T x_k) (y_k^T f) / ((y_k^T Q'(lambda_k) x_k) (s - lambda_k)) + conjugate  +  R_p(s),
@@ -14,6 +14,10 @@
    vectors of Q at the shift that begin with Q^-1 f and with Q^-T l_p (the moments of H at the shift). Poles and
    residues of the modes stay as they are, and each step of the Krylov vectors fits two more moments. One step gives
    the static correction of the textbooks. Rigid modes are modes with lambda = 0.
+
+   In time the modes alone answer, since what lies outside of the window is no residual term there,
+
+      h_p(t) = sum_k  2 Re( (l_p^T x_k) (y_k^T f) / (y_k^T Q'(lambda_k) x_k) e^{lambda_k t} ),   m/(N s).
 
    The error that is reported beside each frequency is the difference from the answer with one step more, in which the
    left vectors see the residual of the right ones,
@@ -62,6 +66,7 @@ without a mesh the number of an unknown, from 1
 .  -frf_probes <names>            - where the response is recorded; default all probes, or all of up to 10 unknowns
 .  -frf_directions <xyz>          - in which directions
 .  -frf_frequencies <low:high:n>  - Hz; low:high:n:log for equal ratios; or a list
+.  -frf_times <low:high:n>        - s; the answer of the modes to an impulse of 1 N s as well; or a list
 .  -frf_method <modal>            - superposition of modes; direct solves the whole system at each frequency
 .  -frf_rtol <1e-8>               - largest estimated relative error of the modal method, rounding apart
 -  -frf_max_steps <30>            - most steps of the residual term
@@ -99,7 +104,7 @@ PetscErrorCode FrfGetPeaks(Frf frf, PetscInt *n, const FrfPeak **peaks);
 /*@ FrfView - what was done, and the peaks. Collective. @*/
 PetscErrorCode FrfView(Frf frf, PetscViewer viewer);
 
-/*@ FrfWrite - frf.csv and peaks.csv. Collective. @*/
+/*@ FrfWrite - frf.csv and peaks.csv, with -frf_times also impulse.csv. Collective. @*/
 PetscErrorCode FrfWrite(Frf frf, Results results);
 
 /*@ FrfDestroy - frees the solver. Collective. @*/

@@ -22,6 +22,8 @@ typedef struct _p_Modes *Modes;
 typedef struct {
   PetscReal sigma, omega;   /* rad/s; sigma > 0 is unstable */
   PetscReal backward_error; /* |Q(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|), Frobenius norms */
+  PetscReal product
+    [2]; /* real and imaginary part of y'(M + C / (2 lambda)) x of the vectors of ModesGetVectors() */
   PetscReal
     condition; /* 2 |lambda| |x|_M |y|_M / |y'(2 lambda M + C) x|: 1 for real modes, infinite at a defective pair */
   PetscReal

@@ -32,15 +32,14 @@ PetscErrorCode FrfCheckPoles(Frf frf)
   PetscFunctionReturn(0);
 }
 
-/* |v^T (xr + i xi)|^2 */
-static PetscErrorCode SquareDot(Vec v, Vec xr, Vec xi, PetscReal *square)
+PetscErrorCode FrfDot(Vec v, Vec xr, Vec xi, PetscComplex *dot)
 {
   PetscReal re, im = 0;
 
   PetscFunctionBeginUser;
   PetscCall(VecDot(v, xr, &re));
   if (xi) PetscCall(VecDot(v, xi, &im));
-  *square = re * re + im * im;
+  *dot = CMPLX(re, im);
   PetscFunctionReturn(0);
 }
 
@@ -53,16 +52,17 @@ PetscErrorCode FrfResiduesCreate(Frf frf, FrfResidues *r)
   PetscCall(PetscCalloc1(r->n, &r->residue));
   for (PetscInt k = 0; k < r->n; k++) {
     const PetscReal size    = hypot(mode[k].sigma, mode[k].omega);
-    PetscReal       outputs = 0, input, square;
+    PetscReal       outputs = 0;
+    PetscComplex    input, output;
     Vec             xr, xi, yr, yi;
 
     PetscCall(ModesGetVectors(frf->modes, k, &xr, &xi, &yr, &yi));
-    PetscCall(SquareDot(frf->f, yr, yi, &input));
+    PetscCall(FrfDot(frf->f, yr, yi, &input));
     for (PetscInt p = 0; p < frf->n_outputs; p++) {
-      PetscCall(SquareDot(frf->l[p], xr, xi, &square));
-      outputs += square;
+      PetscCall(FrfDot(frf->l[p], xr, xi, &output));
+      outputs += PetscSqr(cabs(output));
     }
-    r->residue[k] = PetscSqrtReal(outputs * input) * mode[k].condition / (mode[k].rigid ? 1 : 2 * size);
+    r->residue[k] = PetscSqrtReal(outputs) * cabs(input) * mode[k].condition / (mode[k].rigid ? 1 : 2 * size);
   }
   PetscFunctionReturn(0);
 }

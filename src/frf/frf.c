@@ -54,6 +54,22 @@ static PetscErrorCode FrequenciesParse(Frf frf)
   PetscFunctionReturn(0);
 }
 
+/* The times that a text stands for */
+static PetscErrorCode TimesParse(Frf frf)
+{
+  PetscBool is_log;
+
+  PetscFunctionBeginUser;
+  PetscCall(ValuesParse(frf->comm, "-frf_times", frf->times, &frf->n_times, &frf->time, &is_log));
+  for (PetscInt i = 0; i < frf->n_times; i++)
+    PetscCheck(frf->time[i] >= 0, frf->comm, PETSC_ERR_USER_INPUT,
+               "-frf_times %s holds %.6g s: the impulse acts at 0, before which nothing moves", frf->times,
+               (double)frf->time[i]);
+  PetscCheck(frf->method == FRF_MODAL, frf->comm, PETSC_ERR_USER_INPUT,
+             "-frf_times needs the modes: leave out -frf_method direct");
+  PetscFunctionReturn(0);
+}
+
 /* Raises an error for directions other than some of x, y, z, each once */
 static PetscErrorCode DirectionsCheck(Frf frf)
 {
@@ -70,7 +86,7 @@ PetscErrorCode FrfSetFromOptions(Frf frf)
 {
   static const char *const methods[] = {"modal", "direct"};
   PetscInt                 method    = FRF_MODAL;
-  PetscBool                given;
+  PetscBool                given, has_times;
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(frf->comm, NULL, "Frequency response", NULL);
@@ -80,6 +96,8 @@ PetscErrorCode FrfSetFromOptions(Frf frf)
                                frf->directions, frf->directions, sizeof(frf->directions), NULL));
   PetscCall(PetscOptionsString("-frf_frequencies", "low:high:n, low:high:n:log, or f1,f2,..., Hz", "frf.h",
                                frf->frequencies, frf->frequencies, sizeof(frf->frequencies), &given));
+  PetscCall(PetscOptionsString("-frf_times", "of the answer to an impulse of 1 N s: low:high:n, or t1,t2,..., s",
+                               "frf.h", frf->times, frf->times, sizeof(frf->times), &has_times));
   PetscCall(PetscOptionsEList("-frf_method", "superposition of modes, or the whole system at each frequency", "frf.h",
                               methods, N_FRF_METHODS, methods[0], &method, NULL));
   PetscCall(PetscOptionsReal("-frf_rtol", "largest estimated relative error of superposition (an estimate, no bound)",
@@ -97,6 +115,7 @@ PetscErrorCode FrfSetFromOptions(Frf frf)
              frf->max_steps);
   PetscCall(DirectionsCheck(frf));
   if (given) PetscCall(FrequenciesParse(frf));
+  if (has_times) PetscCall(TimesParse(frf));
   PetscFunctionReturn(0);
 }
 
@@ -176,6 +195,8 @@ PetscErrorCode FrfDestroy(Frf *frf)
   for (PetscInt i = 0; i < s->n_places; i++) PetscCall(PetscFree(s->place[i]));
   PetscCall(PetscFree(s->place));
   PetscCall(PetscFree(s->freq));
+  PetscCall(PetscFree(s->time));
+  PetscCall(PetscFree(s->impulse));
   PetscCall(VecDestroy(&s->f));
   for (PetscInt p = 0; p < s->n_outputs; p++) PetscCall(VecDestroy(&s->l[p]));
   PetscCall(PetscFree(s->l));

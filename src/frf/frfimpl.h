@@ -13,11 +13,13 @@ struct _p_Frf {
   Modes     modes;
   Pencil    pencil;
   /* set by options */
-  char       force[256], frequencies[4096], directions[8];
+  char       force[256], frequencies[4096], times[4096], directions[8];
   PetscInt   n_places; /* names of -frf_probes; 0: all */
   char     **place;    /* [n_places] */
   PetscInt   n;        /* frequencies */
   PetscReal *freq;     /* [n] Hz */
+  PetscInt   n_times;
+  PetscReal *time; /* [n_times] s, of the answer to an impulse */
   FrfMethod  method;
   PetscReal  rtol;
   PetscInt   max_steps;
@@ -30,6 +32,7 @@ struct _p_Frf {
   /* results */
   PetscReal *re, *im; /* [n][n_outputs] m/N */
   PetscReal *error;   /* [n] m/N */
+  PetscReal *impulse; /* [n_times][n_outputs] m/(N s) */
   PetscInt   n_peaks;
   FrfPeak   *peak;
   PetscInt   n_steps, n_vectors, n_solves, n_factors; /* of the residual term; of the direct method */
@@ -58,6 +61,8 @@ PETSC_INTERN PetscErrorCode FrfResiduesCreate(Frf frf, FrfResidues *residues);
 /* The mode that gives most at omega (rad/s), -1 for none */
 PETSC_INTERN PetscErrorCode FrfResiduesLargest(Frf frf, const FrfResidues *residues, PetscReal omega, PetscInt *mode);
 PETSC_INTERN PetscErrorCode FrfResiduesDestroy(FrfResidues *residues);
+/* v^T (xr + i xi), xi NULL for a real vector */
+PETSC_INTERN PetscErrorCode FrfDot(Vec v, Vec xr, Vec xi, PetscComplex *dot);
 /* Raises an error for a frequency at which an undamped mode lies */
 PETSC_INTERN PetscErrorCode FrfCheckPoles(Frf frf);
 
@@ -65,3 +70,6 @@ PETSC_INTERN PetscErrorCode FrfCheckPoles(Frf frf);
 PETSC_INTERN PetscErrorCode FrfFindPeaks(Frf frf, const FrfResidues *residues);
 /* Root of the sum of squares over the outputs at frequency i, m/N */
 PETSC_INTERN PetscReal FrfMagnitude(Frf frf, PetscInt i);
+
+/* impulse.c - the answer of the modes to an impulse */
+PETSC_INTERN PetscErrorCode FrfSolveImpulse(Frf frf);

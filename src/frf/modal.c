@@ -233,5 +233,6 @@ PetscErrorCode FrfSolveModal(Frf frf)
   PetscCall(FrfResiduesCreate(frf, &residues));
   PetscCall(FrfFindPeaks(frf, &residues));
   PetscCall(FrfResiduesDestroy(&residues));
+  if (frf->n_times) PetscCall(FrfSolveImpulse(frf));
   PetscFunctionReturn(0);
 }

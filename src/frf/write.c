@@ -125,6 +125,35 @@ static PetscErrorCode FrfWriteResponse(Frf frf, Results results)
   PetscFunctionReturn(0);
 }
 
+/* impulse.csv */
+static PetscErrorCode FrfWriteImpulse(Frf frf, Results results)
+{
+  const PetscInt n      = frf->n_outputs;
+  const size_t   length = (size_t)(n + 1) * COLUMN_ROOM;
+  char          *header, column[COLUMN_ROOM];
+  PetscReal     *row;
+  ResultsTable   table;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(length, &header));
+  PetscCall(PetscMalloc1(n + 1, &row));
+  PetscCall(PetscStrlcat(header, "time_s", length));
+  for (PetscInt p = 0; p < n; p++) {
+    PetscCall(PetscSNPrintf(column, sizeof(column), ",%s_m_ns", frf->output[p].name));
+    PetscCall(PetscStrlcat(header, column, length));
+  }
+  PetscCall(ResultsTableOpen(results, "impulse", header, &table));
+  for (PetscInt i = 0; i < frf->n_times; i++) {
+    row[0] = frf->time[i];
+    PetscCall(PetscArraycpy(row + 1, &frf->impulse[i * n], n));
+    PetscCall(ResultsTableNumbers(table, n + 1, row));
+  }
+  PetscCall(ResultsTableClose(&table));
+  PetscCall(PetscFree(header));
+  PetscCall(PetscFree(row));
+  PetscFunctionReturn(0);
+}
+
 /* peaks.csv */
 static PetscErrorCode FrfWritePeaks(Frf frf, Results results)
 {
@@ -150,5 +179,6 @@ PetscErrorCode FrfWrite(Frf frf, Results results)
   PetscFunctionBeginUser;
   PetscCall(FrfWriteResponse(frf, results));
   PetscCall(FrfWritePeaks(frf, results));
+  if (frf->n_times) PetscCall(FrfWriteImpulse(frf, results));
   PetscFunctionReturn(0);
 }

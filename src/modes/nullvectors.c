@@ -5,11 +5,14 @@
 
       (K - s M) x' = M x,   s = -(10 scale)^2 far below every elastic mode,
 
-   which reduces what is elastic by |s| / omega^2 each time, and M-orthonormal. Left ones by the transposed problem.
+   which reduces what is elastic by |s| / omega^2 each time, and M-orthonormal. Left ones by the transposed problem. The
+   two zeros of a rigid mode have one vector: of those that were kept some may be the same.
 */
 #include "modesimpl.h"
+#include <petscblaslapack.h>
 
 #define NULL_GOOD     1e-10 /* backward error of an eigensolver's vector that needs nothing */
+#define NULL_APART    1e-2  /* least eigenvalue of the Gram matrix of vectors that need nothing */
 #define NULL_ENOUGH   1e-14 /* where the iteration ends */
 #define NULL_LARGEST  1e-6  /* above it there is no such vector */
 #define NULL_MAX_STEP 8
@@ -97,30 +100,66 @@ static PetscErrorCode NullPut(Modes modes, PetscBool left, Vec x[], Spectrum *s)
   PetscFunctionReturn(0);
 }
 
-/* Whether the vectors of rigid modes, n of them, are good as they are */
-static PetscBool NullIsGood(Modes modes, PetscInt *n)
+/* Least eigenvalue of the Gram matrix of the rigid modes' vectors, M-norm one each, n of them */
+static PetscErrorCode NullApart(Modes modes, const Spectrum *s, PetscInt n, PetscReal *least)
 {
-  PetscReal worst = 0;
+  PetscBLASInt size, n_work, info;
+  PetscReal   *gram, *w, *work;
+  PetscInt     k = 0;
+  Mat          M;
+  Vec         *x, Mx;
 
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n, &size));
+  PetscCall(PetscBLASIntCast(4 * n, &n_work));
+  PetscCall(PetscMalloc4(n, &x, n * n, &gram, n, &w, 4 * n, &work));
+  PetscCall(PencilGetMass(modes->pencil, &M));
+  PetscCall(MatCreateVecs(M, &Mx, NULL));
+  for (PetscInt i = 0; i < modes->n; i++)
+    if (modes->mode[i].rigid) x[k++] = s->xr[i];
+  for (PetscInt j = 0; j < n; j++) {
+    PetscCall(MatMult(M, x[j], Mx));
+    PetscCall(VecMDot(Mx, n, x, &gram[j * n]));
+  }
+  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("N", "U", &size, gram, &size, w, work, &n_work, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev: info %d", (int)info);
+  *least = w[0];
+  PetscCall(VecDestroy(&Mx));
+  PetscCall(PetscFree4(x, gram, w, work));
+  PetscFunctionReturn(0);
+}
+
+/* Whether the vectors of rigid modes, n of them, are good as they are */
+static PetscErrorCode NullIsGood(Modes modes, PetscInt *n, PetscBool *good)
+{
+  PetscReal worst = 0, least = 1, left = 1;
+
+  PetscFunctionBeginUser;
   *n = 0;
   for (PetscInt i = 0; i < modes->n; i++) {
     if (!modes->mode[i].rigid) continue;
     ++*n;
     worst = PetscMax(worst, modes->mode[i].backward_error);
   }
-  return worst < NULL_GOOD ? PETSC_TRUE : PETSC_FALSE;
+  if (*n > 1 && worst < NULL_GOOD) PetscCall(NullApart(modes, &modes->right, *n, &least));
+  if (*n > 1 && worst < NULL_GOOD && modes->left_spectrum.n)
+    PetscCall(NullApart(modes, &modes->left_spectrum, *n, &left));
+  *good = worst < NULL_GOOD && PetscMin(least, left) > NULL_APART ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode NullVectorsRefine(Modes modes, const PencilMatrices *damped, const Window *window)
 {
   const PencilMatrices pencil = {.K = damped->K, .M = damped->M, .symmetric = damped->symmetric};
   PetscInt             n;
+  PetscBool            good;
   PetscReal           *error;
   ShiftInvert          si;
   Vec                  like, *x;
 
   PetscFunctionBeginUser;
-  if (NullIsGood(modes, &n)) PetscFunctionReturn(0);
+  PetscCall(NullIsGood(modes, &n, &good));
+  if (good) PetscFunctionReturn(0);
   PetscCall(MatCreateVecs(pencil.K, &like, NULL));
   PetscCall(VecDuplicateVecs(like, n, &x));
   PetscCall(PetscMalloc1(n, &error));

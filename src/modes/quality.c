@@ -79,7 +79,8 @@ static PetscErrorCode QualityNoise(const Quality *q, ComplexVec x, PetscReal *no
 
 /* Backward error of an eigenpair, |y^T Q x|, |y^T D x| */
 typedef struct {
-  PetscReal backward, y_Qx, y_Dx;
+  PetscReal    backward, y_Qx, y_Dx;
+  PetscComplex product; /* y^T D x */
 } QualityProducts;
 
 /* The products with y are not touched without a left vector */
@@ -102,8 +103,8 @@ static PetscErrorCode QualityResidual(Quality *q, PetscComplex lambda, ComplexVe
   PetscCall(ComplexVecDot(y, q->z, &dot));
   p->y_Qx = cabs(dot);
   if (pencil->C && size > 0) PetscCall(ComplexVecMultAdd(pencil->C, 1 / (2 * lambda), x, q->scratch, q->Mx));
-  PetscCall(ComplexVecDot(y, q->Mx, &dot));
-  p->y_Dx = cabs(dot);
+  PetscCall(ComplexVecDot(y, q->Mx, &p->product));
+  p->y_Dx = cabs(p->product);
   PetscFunctionReturn(0);
 }
 
@@ -136,6 +137,8 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
   mode->backward_error = p.backward;
   mode->sigma          = creal(lambda);
   mode->omega          = cimag(lambda);
+  mode->product[0]     = creal(p.product) / (norm_x * norm_y);
+  mode->product[1]     = cimag(p.product) / (norm_x * norm_y);
   mode->condition      = !has_left ? NAN : p.y_Dx > 0 ? norm_x * norm_y / p.y_Dx : INFINITY;
   noise *= (has_left && isfinite(mode->condition) ? PetscMax(1, mode->condition) : 1) / (norm_x * norm_x);
   square      = PetscMax(noise, has_left && p.y_Dx > 0 ? p.y_Qx / p.y_Dx : 0); /* error of lambda^2 */

@@ -29,6 +29,7 @@ static const struct {
   {"parameters.csv",    NULL                },
   {"frf.csv",           NULL                },
   {"peaks.csv",         NULL                },
+  {"impulse.csv",       NULL                },
   {"transient.csv",     "transient.csv.part"},
   {"transient.xmf",     "transient.csv.part"},
   {"amplitudes.csv",    "transient.csv.part"},
