@@ -77,8 +77,8 @@ def table1(place):
     folders = [place.folder(f"modes-{mass}", "table1").path for mass in ("consistent", "lumped")]
     columns = claims.table_columns(*folders)
     said = (f"Percent: of Ansys' column with consistent mass, of Plast3's with lumped mass. All frequencies of "
-            f"Plast3's column are multiples of {RESOLUTION} Hz, the resolution of the paper's transform: each is known to "
-            f"{RESOLUTION / 2:.0f} Hz.")
+            f"Plast3's column are multiples of {RESOLUTION} Hz, the resolution of the paper's transform: each is known "
+            f"to {RESOLUTION / 2:.0f} Hz.")
     return claim_table("table1", claims.table_claims(columns)), frequency_table(columns), tag("p", said, class_="quiet")
 
 
@@ -112,7 +112,7 @@ def figure4(place):
         error = row["freq_hz"] / paper - 1
         found.append(claims.Claim(label, f"{paper} Hz", f"{row['freq_hz']:.0f} Hz, {claims.percent(error)}",
                                   abs(error) < claims.CLOSE))
-        shape = mode_shape(folder.path, folder.disc(), row["mode"], int(label[3]))
+        shape = mode_shape(folder.path, folder.disc(), row["mode"])
         pictures.append(shape_figure(f"fig4-{label[3]}", f"{label}, {row['freq_hz']:.0f} Hz", shape))
     return claim_table("fig4", found), tag("div", pictures, class_="pair")
 
@@ -142,8 +142,8 @@ def figure6(place):
             found.append(claims.Claim(f"unstable mode near {family}", claims.SHAPES[family], "none", False))
             continue
         row = max(own, key=lambda row: row["growth_rad_s"])
-        shape = mode_shape(folder.path, folder.disc(), row["mode"], int(claims.SHAPES[family][3]))
-        found += claims.shape_claims(family, row, shape.antinode_at_contact())
+        shape = mode_shape(folder.path, folder.disc(), row["mode"])
+        found += claims.shape_claims(family, row, shape)
         pictures.append(shape_figure(f"fig6-{family[0]}", f"{row['label']}, {row['freq_hz']:.0f} Hz", shape,
                                      "Pad of 60 GPa."))
     return claim_table("fig6", found), tag("div", pictures, class_="pair")

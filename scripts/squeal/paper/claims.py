@@ -16,7 +16,8 @@ ONSETS = {"3500 Hz": 24, "5000 Hz": 20}  # GPa, its Figure 5
 SHAPES = {"3500 Hz": "(0,4+)", "5000 Hz": "(0,5+)"}  # its Figure 6
 SQUEAL = 3430  # Hz, its Figure 9
 PRESSED = 2.5895e8  # N/m, its section 2.1
-CLOSE = 0.01  # a frequency is the paper's within this
+CLOSE = 0.01  # a frequency is the paper's within this,
+NEAR = 0.1  # and an onset
 
 
 class Claim(NamedTuple):
@@ -55,7 +56,7 @@ def mesh_claims(pairs):
 
 
 def unstable_range(study, band):
-    """Least and largest value (GPa) at which a mode of the band is unstable, from the onsets where there are any."""
+    """Least and largest value (GPa) at which a mode of the band is unstable: onsets and points; None where none is."""
     values = [row["value"] for row in study.rows if row["unstable"] and band[0] <= row["freq_hz"] <= band[1]]
     if not values:
         return None
@@ -69,16 +70,22 @@ def sweep_claims(study, name):
     last = 1e-9 * max(row["value"] for row in study.rows)
     for family, band in FAMILIES.items():
         found = unstable_range(study, band)
-        here = f"from {figures(found[0], 3)} to {figures(found[1], 3)} GPa" if found else "stable"
-        yield Claim(f"{name}: unstable near {family}", f"from {ONSETS[family]} to 80 GPa", here,
-                    bool(found) and found[1] >= 0.999 * last)
+        if not found:
+            yield Claim(f"{name}: unstable near {family}", f"from {ONSETS[family]} to 80 GPa", "stable", False)
+            continue
+        yield Claim(f"{name}: unstable near {family}, from", f"{ONSETS[family]} GPa", f"{figures(found[0], 3)} GPa",
+                    abs(found[0] / ONSETS[family] - 1) < NEAR)
+        yield Claim(f"{name}: unstable near {family}, to", "80 GPa, the last value",
+                    f"{figures(found[1], 3)} GPa", found[1] > 0.999 * last)
 
 
-def shape_claims(family, row, antinode):
+def shape_claims(family, row, shape):
     """Figure 6, one mode."""
-    yield Claim(f"unstable mode near {family}", SHAPES[family],
-                f"{row['label']} at {fixed(row['freq_hz'], 0)} Hz, growth {signed(row['growth_rad_s'], 3)} 1/s",
-                row["label"] == SHAPES[family])
+    yield Claim(f"unstable mode near {family}", f"the disc in its {SHAPES[family]}",
+                f"{fixed(row['freq_hz'], 0)} Hz, growth {signed(row['growth_rad_s'], 3)} 1/s, the disc with "
+                f"{shape.diameters} nodal diameters; its name is {row['label']}",
+                shape.diameters == int(SHAPES[family][3]))
+    antinode = shape.antinode_at_contact()
     yield Claim(f"near {family}: antinode at the contact over the largest of the others", "lower",
                 fixed(antinode, 2), antinode < 1)
 

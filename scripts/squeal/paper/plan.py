@@ -13,6 +13,7 @@ DISC = ("-model_source rig -rig_pad 0 -parts disc -disc_young 210e9 -disc_poisso
 IN_TIME = "-dynamics_snapshot_interval 0.5e-3 -dynamics_live 2"
 # With --coarse: small bodies, few values, short records
 SMALL = "-rig_disc_elements 8,24,1 -rig_pad_elements 4,4,2 -rig_beam_elements 10"
+SMALL_SECONDS = 2.0
 SMALL_IN_TIME = "-rig_disc_elements 8,32,1 -rig_pad_elements 4,4,2 -ts_max_time 8e-3"
 
 
@@ -29,6 +30,10 @@ class Planned(NamedTuple):
     def words(self, coarse):
         """Of the command line, without the folder."""
         return [*scene(*self.files), *self.options.split(), *(self.coarse.split() if coarse else [])]
+
+    def lasts(self, coarse):
+        """Seconds on one free core."""
+        return min(self.seconds, SMALL_SECONDS) if coarse else self.seconds
 
 
 def in_time(name, young, figures, length, seconds):

@@ -8,6 +8,7 @@ import numpy
 
 from ..bodies import Scene, opened
 from ..report.markup import tag
+from ..spectrum import circle_content
 from ..transient_history import snapshots
 from ..transient_shape import draw_face, face_of, read_shapes
 
@@ -40,12 +41,13 @@ class Shape:
         return tag("img", src=source, alt=about, width=int(SIZE * DPI), height=int(SIZE * DPI), class_="shape")
 
 
-def mode_shape(folder, disc, number, diameters):
+def mode_shape(folder, disc, number):
     """Of a mode of modes.h5."""
     with opened(folder / "modes.h5") as file:
         scene = Scene(file, disc)
         face = face_of(scene)
-        return Shape(face, scene.displacement(number)[face.nodes] @ face.axis, diameters)
+        values = scene.displacement(number)[face.nodes] @ face.axis
+    return Shape(face, values, int(circle_content(face.angle, values[face.ring]).argmax()))
 
 
 def moving_shape(folder, disc, first):

@@ -20,7 +20,7 @@ class Job:
     """A run of the plan in its folder."""
 
     def __init__(self, planned, program, folder, coarse):
-        self.planned, self.name = planned, planned.name
+        self.planned, self.name, self.seconds = planned, planned.name, planned.lasts(coarse)
         words = [*planned.words(coarse), "-squeal_progress", 0]
         self.kept = KeptRun(program, 1, folder / planned.name, words)
         self.process, self.begun, self.took, self.error = None, 0.0, None, ""
@@ -76,9 +76,9 @@ class Job:
         if self.done or self.error:
             return 0.0
         if not self.process:
-            return pace * self.planned.seconds
+            return pace * self.seconds
         ran, share = time.monotonic() - self.begun, self.share()
-        return ran * (1 - share) / share if share > 0.02 else max(pace * self.planned.seconds - ran, 1.0)
+        return ran * (1 - share) / share if share > 0.02 else max(pace * self.seconds - ran, 1.0)
 
 
 def duration(seconds):
@@ -118,11 +118,11 @@ class Work:
 
     def pace(self):
         """Time that was taken over what was planned, 1 before anything is known."""
-        known = [(job.took, job.planned.seconds) for job in self.jobs if job.took and job.done]
+        known = [(job.took, job.seconds) for job in self.jobs if job.took and job.done]
         for job in self.running:
             share = job.share()
             if share > 0.02:
-                known.append((time.monotonic() - job.begun, share * job.planned.seconds))
+                known.append((time.monotonic() - job.begun, share * job.seconds))
         return sum(took for took, _ in known) / sum(planned for _, planned in known) if known else 1.0
 
     def left(self):
