@@ -16,7 +16,10 @@ RUNS = {
     "sweep": [*BRAKE, "-analysis", "sweep", "-modes_band", "1000,6000", "-sweep_parameter", "pad_young",
               "-sweep_values", "6.5e9:14e9:16", "-sweep_verify", "2"],
     "frf": [*BRAKE, "-options_file", SOURCE / "options/massi2005_frf.yaml", "-frf_frequencies", "1500:4500:301"],
-    "transient": [*IN_TIME, "-ts_max_time", "8e-3", "-dynamics_snapshot_interval", "0.5e-3"],
+    "filters": [*IN_TIME, "-analysis", "modes", "-modes_contact", "static", "-operators_mass", "lumped",
+                "-contact_friction_damping", "-modes_band", "3000,6000", "-modes_filters", "-output_fields", "0"],
+    "transient": [*IN_TIME, "-dynamics_filters", "filters", "-dynamics_filters_modes", "1,2,3",
+                  "-ts_max_time", "8e-3", "-dynamics_snapshot_interval", "0.5e-3"],
 }
 
 

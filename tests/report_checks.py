@@ -195,6 +195,28 @@ def check_sweep(t, page, key, folder):
     t.check(len(quiet) > 2, f"{key}: {len(quiet) // 2} other modes")
 
 
+def check_amplitudes(t, page, key, folder):
+    """Logarithm of |c| of each mode over time, and the slope of the eigenvalue beside it: breaks when modes, parts of c
+    or axes are mixed up."""
+    rows, modes = rows_of(folder / "amplitudes.csv"), rows_of(folder.parent / "filters/modes.csv")
+    time = numpy.array([row["time_s"] for row in rows], float)
+    lines = first_half([e for e in page.find("path", inside=f"{key}-amplitudes")
+                        if e.get("class", "").startswith("line ")])
+    t.check(len(lines) == 6, f"{key}: {len(lines)} lines of amplitudes and eigenvalues")
+    for mode, line, dashed in zip(modes, lines, lines[3:]):
+        c = numpy.hypot(*(numpy.array([row[f"mode_{mode['mode']}_{part}_m"] for row in rows], float)
+                          for part in ("re", "im")))
+        points = path_points(line["d"])
+        n = len(points)
+        t.check(mode["label"] in line["text"] and n > 0.9 * len(rows)
+                and straight(points[:, 1], numpy.log(c[-n:])) and straight(points[:, 0], time[-n:]),
+                f"{key}: amplitude of mode {mode['mode']}, {n} points")
+        scale = [numpy.polyfit(values, points[:, k], 1)[0] for k, values in enumerate((time[-n:], numpy.log(c[-n:])))]
+        ends = numpy.diff(path_points(dashed["d"]), axis=0)[0] / scale
+        t.check(abs(ends[1] / ends[0] - float(mode["growth_rad_s"])) < 0.3 / abs(scale[1] * ends[0]),
+                f"{key}: slope {ends[1] / ends[0]:.4g} of its eigenvalue {mode['growth_rad_s']}")
+
+
 def check_transient(t, page, key, folder):
     """Forces over time, summary, film: breaks when columns are mixed up, points left out, or snapshots out of order."""
     rows = rows_of(folder / "transient.csv")
@@ -216,6 +238,7 @@ def check_transient(t, page, key, folder):
     t.check(len(times) > 4 and times == sorted(times), f"{key}: {len(times)} snapshots in order")
     moves = numpy.array([numbers(shape["re"], "<i2") for shape in data["shapes"]], float)
     t.check(abs(moves.mean(axis=0)).max() < 1 and abs(moves).max() > 20000, f"{key}: the film has no mean")
+    check_amplitudes(t, page, key, folder)
     image = page.find("image", inside=f"{key}-spectrogram")
     t.check(image and image[0]["href"].startswith("data:image/png;base64,iVBOR"), f"{key}: a spectrogram")
 

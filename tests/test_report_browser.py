@@ -167,7 +167,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="squeal-") as name, Browser(program) as browser:
         folder, t = Path(name), Test(browser)
         names = ("modes", "static", "sweep", "transient", "frf")
-        make_results(squeal, mpirun, folder, names)
+        make_results(squeal, mpirun, folder, ("filters", *names))
         subprocess.run(["/usr/bin/python3", SOURCE / "scripts/report", *names, "-o", "page.html"], cwd=folder,
                        check=True)
         url = (folder / "page.html").as_uri()

@@ -4,6 +4,7 @@ saving."""
 import argparse
 from pathlib import Path
 
+import numpy
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
@@ -57,6 +58,23 @@ def place_texts(axes, texts, offsets, taken, **style):
                 taken.append(box)
                 break
             note.remove()
+
+
+def spread(places, least):
+    """Places that are `least` apart at least, moved as little as their order allows, from 0 to 1."""
+    order = numpy.argsort(places)
+    moved = numpy.array(places, float)[order]
+    for _ in range(200):
+        gap = least - numpy.diff(moved)
+        push = numpy.maximum(gap, 0) / 2
+        moved[:-1] -= push
+        moved[1:] += push
+        moved = numpy.clip(moved, 0, 1)
+        if gap.max(initial=0) <= 1e-6:
+            break
+    out = numpy.empty_like(moved)
+    out[order] = moved
+    return out
 
 
 def save_picture(figure, output):

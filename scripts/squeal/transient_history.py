@@ -15,10 +15,10 @@ COMPONENTS = {f"{kind}{axis}": f"{kind}{axis}_{unit}" for kind, unit in (("", "m
 FIRST_CHOICE = "pad"  # probes with this in their name are preferred
 
 
-def open_table(folder):
+def open_table(folder, name="transient.csv"):
     """Path of the table and whether the run is still under way: its temporary name says so."""
-    path = folder / "transient.csv"
-    part = folder / "transient.csv.part"
+    path = folder / name
+    part = folder / f"{name}.part"
     if path.exists() or not part.exists():
         return path, False
     return part, True
@@ -55,11 +55,11 @@ def find_fault(path, lines, n_columns):
                 raise BadInput(f"{path}: line {number}: {name} is '{cell}'")
 
 
-def read_columns(path, under_way):
+def read_columns(path, under_way, needed=NEEDED):
     """Columns by name."""
     lines = read_lines(path, under_way)
     names = lines[0].split(",")
-    missing = [name for name in NEEDED if name not in names]
+    missing = [name for name in needed if name not in names]
     if missing:
         raise BadInput(f"{path}: no column {missing[0]}")
     if len(lines) - 1 < LEAST:

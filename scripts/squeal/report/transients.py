@@ -12,6 +12,7 @@ from ..transient_cycle import Vibration, contact_quantities, detached_share, vib
 from ..transient_cycle import figures as with_error
 from ..transient_history import Run
 from ..transient_lines import FAINTEST, HARMONICS, KHZ, MS, beside, decibels
+from .amplitudes import amplitude_pieces
 from .charts import Axis, Chart, Panel
 from .films import film_figures
 from .markup import Column, Part, figure, figures, legend, missing, section, signed, table, tag
@@ -262,6 +263,7 @@ def transient_part(folder, room):
         halves.append(missing("No motion of a place: the run had no -probes."))
     forces, periods = force_figures(folder, record)
     film, bodies = film_figures(folder, record.run.time[record.vibration.steady][0], room)
-    content = section(f"{folder.key}-transient", "In time", forces, tag("div", periods, halves, class_="pair"), film,
+    content = section(f"{folder.key}-transient", "In time", forces, tag("div", periods, halves, class_="pair"),
+                      folder.tried(amplitude_pieces, folder), film,
                       ledger_figure(folder, record), tag("h4", "Summary"), summary(folder, record))
     return Part(content, bodies, error_facts(record), verdict(record))
