@@ -12,6 +12,8 @@ COLUMNS = "ansys", "plast3"
 # of 19.27 ms. Hence each is known to half of it.
 RESOLUTION = 51.884
 
+ASKED = 0.007  # rms of (0,m+) relative to a column, at most
+
 
 class Line(NamedTuple):
     """A mode: the paper's name, its frequencies, our labels of both where they differ from that name. The paper's
@@ -60,9 +62,9 @@ def read_modes(folder):
 
 
 def read_peaks(folder):
-    """(label, Hz) of peaks.csv, those that have a label."""
-    rows = read_table(folder / "peaks.csv", {"freq_hz": float, "label": str})
-    return [(row["label"], row["freq_hz"]) for row in rows if row["label"]]
+    """(label, Hz) of the modes that make the peaks of peaks.csv, those that have a label."""
+    rows = read_table(folder / "peaks.csv", {"mode_freq_hz": float, "label": str})
+    return [(row["label"], row["mode_freq_hz"]) for row in rows if row["label"]]
 
 
 def beside(modes, column):

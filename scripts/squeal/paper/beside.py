@@ -6,7 +6,7 @@ from ..kept_runs import LOG
 from ..report.charts import Axis, Chart, Panel
 from ..report.films import diameters_figure
 from ..report.folders import Folder, Options
-from ..report.markup import Column, figure, missing, section, table, tag
+from ..report.markup import Column, figure, legend, missing, section, table, tag
 from ..report.origin import cost_of
 from ..report.page import Opening, write_page
 from ..report.sweeps import line_figure
@@ -17,10 +17,11 @@ from ..tables import BadInput, flag, read_table
 from ..transient_history import snapshots
 from . import claims
 from .plan import FIGURES, chosen_runs
-from .shapes import mode_shape, moving_shape
+from .shapes import mode_shape, moving_shape, peak_shape
 
 MODES = {"mode": int, "freq_hz": float, "growth_rad_s": float, "unstable": flag, "label": str}
 VERDICT = {True: "as in the paper", False: "NOT as in the paper", None: ""}
+COLOURS = "blue", "orange", "green", "purple"
 TITLE = "The seed paper beside what comes out here"
 
 
@@ -36,6 +37,10 @@ class Place:
         if name not in self.made:
             raise BadInput(f"{self.root / name}: this run is not complete")
         return Folder(self.root / name, key, Options(probe="edge"))
+
+    def path(self, name):
+        """Folder of a run; None where it is not complete."""
+        return self.root / name if name in self.made else None
 
 
 def claim_table(name, found):
@@ -74,8 +79,7 @@ def frequency_table(columns):
 
 def table1(place):
     """Table 1."""
-    folders = [place.folder(f"modes-{mass}", "table1").path for mass in ("consistent", "lumped")]
-    columns = claims.table_columns(*folders)
+    columns = claims.table_columns(*map(place.path, ("modes-consistent", "modes-lumped", "response")))
     said = (f"Percent: of Ansys' column with consistent mass, of Plast3's with lumped mass. All frequencies of "
             f"Plast3's column are multiples of {RESOLUTION} Hz, the resolution of the paper's transform: each is known "
             f"to {RESOLUTION / 2:.0f} Hz.")
@@ -99,21 +103,37 @@ def shape_figure(name, title, shape, said=""):
     return figure(f"paper-{name}", title, shape.image(title), said)
 
 
+def circles_figure(label, shape, freq):
+    """What the nodes of the circles do at a peak."""
+    panel = Panel(Axis("displacement / its largest", -1.1, 1.1), 260)
+    panel.rule(y=0, colour="ink")
+    keys = []
+    for colour, (radius, angles, values) in zip(COLOURS, shape):
+        panel.line(angles, values, colour, f"{radius:g} mm")
+        keys.append((colour, "line", f"{radius:g} mm"))
+    chart = Chart(f"{label} on circles of nodes", Axis("angle from the contact, degrees", -180, 180), [panel])
+    name = f"paper-fig4-in-time-{label[3]}"
+    return figure(name, f"{label} in time, {freq:.0f} Hz", [legend(keys), chart.markup(f"{name}-chart", "half")],
+                  "Across the disc's face, on circles of nodes.")
+
+
 def figure4(place):
-    """Shapes of two modes."""
-    folder = place.folder("modes-lumped", "fig4")
+    """Shapes of two modes, by the response in time and by the modes."""
+    folder, response = place.folder("modes-lumped", "fig4"), place.path("response")
     rows = read_table(folder.path / "modes.csv", MODES)
     found, pictures = [], []
-    for label, paper in (("(0,4+)", 3424), ("(0,5+)", 4877)):
+    for label in ("(0,4+)", "(0,5+)"):
         row = next((row for row in rows if row["label"] == label), None)
-        if not row:
-            found.append(claims.Claim(label, f"{paper} Hz", "no mode has this label", False))
+        if row:
+            shape = mode_shape(folder.path, folder.disc(), row["mode"])
+            pictures.append(shape_figure(f"fig4-{label[3]}", f"{label} by the modes, {row['freq_hz']:.0f} Hz", shape))
+        found.append(claims.frequency_claim(label, "modes", row and row["freq_hz"]))
+        if not response:
             continue
-        error = row["freq_hz"] / paper - 1
-        found.append(claims.Claim(label, f"{paper} Hz", f"{row['freq_hz']:.0f} Hz, {claims.percent(error)}",
-                                  abs(error) < claims.CLOSE))
-        shape = mode_shape(folder.path, folder.disc(), row["mode"])
-        pictures.append(shape_figure(f"fig4-{label[3]}", f"{label}, {row['freq_hz']:.0f} Hz", shape))
+        freq, circles = peak_shape(response, label)
+        found.append(claims.frequency_claim(label, "in time", freq))
+        if freq:
+            pictures.append(circles_figure(label, circles, freq))
     return claim_table("fig4", found), tag("div", pictures, class_="pair")
 
 

@@ -8,7 +8,7 @@ import numpy
 
 from ..kept_runs import LOG
 from ..report.markup import figures, fixed, signed
-from ..table1 import beside, groups, read_modes, rms
+from ..table1 import ASKED, TABLE, beside, groups, read_modes, read_peaks, rms
 from ..tables import BadInput, read_table
 
 FAMILIES = {"3500 Hz": (3000, 4300), "5000 Hz": (4600, 5700)}  # Hz about the paper's two instabilities
@@ -34,17 +34,24 @@ def percent(value):
 
 
 def table_claims(columns):
-    """Table 1. columns: name -> list of Beside, or a text that says why there is none."""
+    """Table 1. columns: name -> list of Beside."""
     for name, pairs in columns.items():
-        if isinstance(pairs, str):
-            yield Claim(name, "", pairs)
-            continue
         own = groups(pairs)
         column = "Ansys" if pairs[0].paper == pairs[0].line.ansys else "Plast3"
         there = [pair for pair in pairs if not math.isnan(pair.ours)]
         yield Claim(f"{name}: rms difference", f"0, its {column} column",
                     f"{100 * rms(pairs):.2f} % of {len(there)} of {len(pairs)} modes; (0,m+) "
-                    f"{fixed(100 * rms(own['(0,m+)']), 2)} %, (1,m) {fixed(100 * rms(own['(1,m)']), 2)} %")
+                    f"{fixed(100 * rms(own['(0,m+)']), 2)} %, (1,m) {fixed(100 * rms(own['(1,m)']), 2)} %",
+                    rms(own["(0,m+)"]) <= ASKED and len(there) == len(pairs))
+
+
+def frequency_claim(label, how, freq):
+    """Figure 4. freq: Hz, or None."""
+    paper = next(line.plast3 for line in TABLE if line.name == label)
+    if not freq:
+        return Claim(f"{label}, {how}", f"{paper} Hz", "no peak or mode has this label", False)
+    error = freq / paper - 1
+    return Claim(f"{label}, {how}", f"{paper} Hz", f"{fixed(freq, 0)} Hz, {percent(error)}", abs(error) < CLOSE)
 
 
 def mesh_claims(pairs):
@@ -165,7 +172,8 @@ def mesh_pairs(fine, coarse):
     return [(a["freq_hz"], b["freq_hz"] / a["freq_hz"] - 1) for a, b in zip(*own)]
 
 
-def table_columns(consistent, lumped):
-    """The columns of Table 1 that there are."""
-    return {"modes, consistent mass": beside(read_modes(consistent), "ansys"),
-            "modes, lumped mass": beside(read_modes(lumped), "plast3")}
+def table_columns(consistent, lumped, response):
+    """Ours of Table 1, of the folders that there are."""
+    ours = {"modes, consistent mass": (consistent, read_modes, "ansys"),
+            "modes, lumped mass": (lumped, read_modes, "plast3"), "in time": (response, read_peaks, "plast3")}
+    return {name: beside(read(folder), column) for name, (folder, read, column) in ours.items() if folder}

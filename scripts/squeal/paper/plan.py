@@ -19,13 +19,14 @@ SMALL_IN_TIME = "-rig_disc_elements 8,32,1 -rig_pad_elements 4,4,2 -ts_max_time 
 
 class Planned(NamedTuple):
     """A run: its name, the figures that need it, options files of options/, options, those of --coarse, and how long it
-    takes on one free core, s."""
+    takes on one free core, s; `after`: a script of scripts/ that works on its folder when it has ended."""
     name: str
     figures: tuple
     files: tuple
     options: str
     coarse: str
     seconds: float
+    after: str = ""
 
     def words(self, coarse):
         """Of the command line, without the folder."""

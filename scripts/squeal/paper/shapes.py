@@ -2,6 +2,7 @@
 
 import base64
 import io
+import math
 
 import matplotlib.pyplot as plt
 import numpy
@@ -9,6 +10,7 @@ import numpy
 from ..bodies import Scene, opened
 from ..report.markup import tag
 from ..spectrum import circle_content
+from ..tables import read_table
 from ..transient_history import snapshots
 from ..transient_shape import draw_face, face_of, read_shapes
 
@@ -48,6 +50,23 @@ def mode_shape(folder, disc, number):
         face = face_of(scene)
         values = scene.displacement(number)[face.nodes] @ face.axis
     return Shape(face, values, int(circle_content(face.angle, values[face.ring]).argmax()))
+
+
+def peak_shape(folder, label):
+    """Of the peak with a label, of a response in time: frequency (Hz) of its mode, and for each circle its radius (mm),
+    angles from the contact (degrees, rising), values across the face; none where no peak has the label."""
+    peaks = read_table(folder / "peaks.csv", {"mode": int, "mode_freq_hz": float, "label": str})
+    peak = next((row for row in peaks if row["label"] == label), None)
+    if not peak:
+        return None, []
+    value = f"peak_{peak['mode']}_re"
+    rows = read_table(folder / "operating_shapes.csv", {"radius_m": float, "angle_rad": float, value: float})
+    circles = []
+    for radius in sorted({round(row["radius_m"], 6) for row in rows}, reverse=True):
+        own = sorted((math.degrees(math.remainder(row["angle_rad"], 2 * math.pi)), row[value]) for row in rows
+                     if abs(row["radius_m"] - radius) < 1e-6)
+        circles.append((1e3 * radius, *zip(*own)))
+    return peak["mode_freq_hz"], circles
 
 
 def moving_shape(folder, disc, first):

@@ -9,6 +9,7 @@ import sys
 import time
 
 from ..kept_runs import KeptRun
+from ..program import ROOT
 
 PERIOD = 10.0  # s between two lines where there is no terminal
 GRACE = 10.0  # s that a run has to end itself
@@ -23,14 +24,21 @@ class Job:
         self.planned, self.name, self.seconds = planned, planned.name, planned.lasts(coarse)
         words = [*planned.words(coarse), "-squeal_progress", 0]
         self.kept = KeptRun(program, 1, folder / planned.name, words)
-        self.process, self.begun, self.took, self.error = None, 0.0, None, ""
+        self.commands, self.process, self.begun, self.took, self.error = [], None, 0.0, None, ""
         self.done = self.kept.is_complete()
 
     def start(self):
         """In a group of its own, so that ^C reaches it through stop() only, and ends with its parent."""
-        command = ["setpriv", "--pdeathsig", "TERM", *self.kept.begin()]
+        self.commands = [self.kept.begin()]
+        if self.planned.after:
+            self.commands.append([sys.executable, str(ROOT / "scripts" / self.planned.after), str(self.kept.folder)])
         self.begun = time.monotonic()
-        with self.part("out").open("w") as out, self.part("err").open("w") as err:
+        self.go_on("w")
+
+    def go_on(self, mode="a"):
+        """The next of its commands; mode: of the files that have what it prints."""
+        command = ["setpriv", "--pdeathsig", "TERM", *self.commands.pop(0)]
+        with self.part("out").open(mode) as out, self.part("err").open(mode) as err:
             self.process = subprocess.Popen(command, stdout=out, stderr=err, stdin=subprocess.DEVNULL,
                                             start_new_session=True)
 
@@ -47,6 +55,9 @@ class Job:
     def has_ended(self):
         """Whether it has; then it is complete, or `error` says why not."""
         if self.process.poll() is None:
+            return False
+        if self.process.returncode == 0 and self.commands:
+            self.go_on()
             return False
         text, said = (self.part(kind).read_text(errors="replace") for kind in ("out", "err"))
         self.took = time.monotonic() - self.begun
