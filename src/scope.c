@@ -132,6 +132,8 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
   if (!s->transient && !s->modes) PetscCall(ScopeCheckDensity(comm, scene));
   for (PetscInt i = 0; i < scene->n_probes && !s->transient && !s->frf; i++)
     PetscCall(ScopeRefuse(comm, scene->probes[i].name, "at", no_probe));
+  for (PetscInt i = 0; i < scene->n_circles && !s->transient && !s->frf; i++)
+    PetscCall(ScopeRefuse(comm, scene->circles[i].name, "radius", no_probe));
   for (PetscInt i = 0; i < scene->n_loads && s->modes && !statics; i++) {
     PetscCall(ScopeRefuse(comm, scene->loads[i].name, "force", all));
     PetscCall(ScopeRefuse(comm, scene->loads[i].name, "set", all));

@@ -45,6 +45,17 @@ typedef struct {
   PetscInt  vertex;      /* local vertex from 0 on the rank that records it, -1 on all others */
 } Probe;
 
+/* Nodes of a part at equal angles about an axis, whose motion along it histories and responses record */
+typedef struct {
+  char     *name, *part;
+  PetscReal radius, tolerance; /* m; how far a node may be from its place */
+  PetscInt  n;                 /* nodes */
+  int       axis, side;        /* 0, 1, 2 for x, y, z; 1 or -1: the side of the part on which it lies */
+  PetscBool has_centre;        /* given, else the middle of the part */
+  PetscReal centre[3];         /* m */
+  Probe    *probe;             /* [n], named `name`_000 and so on; after ModelSetUp() */
+} Circle;
+
 /* Cells swept along an angle or an axis: each lies between two consecutive nodes of four lines. All lines have the same
    number of nodes, five at least, equally spaced, and node k of every line has the same angle (or place along the
    axis); the cells of a column between four lines are equal but for the sweep and have the same part. Lines that share
@@ -74,13 +85,14 @@ typedef struct {
 
 /* What the options name */
 typedef struct {
-  PetscInt          n_parts, n_supports, n_springs, n_dashpots, n_loads, n_motions, n_probes;
+  PetscInt          n_parts, n_supports, n_springs, n_dashpots, n_loads, n_motions, n_probes, n_circles;
   Part             *parts;
   Support          *supports;
   Grounded         *springs, *dashpots;
   Load             *loads;
   PrescribedMotion *motions;
   Probe            *probes;
+  Circle           *circles;
   PetscReal         gravity[3]; /* m/s^2 */
   const Element    *element;    /* formulation of the cells; after ModelSetUp() */
 } ModelScene;
@@ -92,17 +104,19 @@ PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
 
 /*@
    ModelSetFromOptions - reads the scene: mesh source, parts and materials, supports, springs, dashpots, loads, motions,
-   probes.
+   probes, circles.
    Collective.
 
    Options Database Keys:
 +  -model_source <rig|file> - where the mesh comes from
 .  -model_mesh <file>       - Gmsh file, format 2.2 or 4.1
 .  -model_element <incompatible|full> - element formulation
-.  -parts, -supports, -springs, -dashpots, -loads, -motions, -probes <names> - lists; each name is the prefix of its own options
+.  -parts, -supports, -springs, -dashpots, -loads, -motions, -probes, -circles <names> - lists; each name is the prefix of its own options
 .  -model_gravity <0,0,0>   - acceleration of gravity, m/s^2, which acts on the mass of all parts in statics and in time
 .  -lift_set, -lift_displacement x,y,z, -lift_directions <those of the displacement> - of a motion named `lift`: named
    set, m, some of x, y, z
+.  -rim_radius, -rim_count, -rim_part <disc>, -rim_face <z+>, -rim_centre x,y,z, -rim_tolerance - of a circle named `rim`:
+   m, nodes, which part and side of it, m, m
 -  -rig_*                   - dimensions (m) and counts of the built-in disc, pad and beam
 
    Errors: PETSC_ERR_USER_INPUT for a missing or invalid value, naming option, value and what is valid.

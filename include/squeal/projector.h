@@ -44,7 +44,10 @@ typedef struct {
   PetscReal friction_work; /* of friction on the velocities of the nodes, J: what it feeds less what it takes */
   PetscReal heat;          /* dissipated by slip, with the sliding velocity, J, >= 0 */
   PetscReal residual;      /* natural map, relative to the largest impulse, worst step since the start */
-  PetscReal sweeps, checks, steps; /* since the start: of Gauss-Seidel, looks at all pairs, steps */
+  PetscReal sweeps, checks, steps;  /* since the start: of Gauss-Seidel, looks at all pairs, steps */
+  PetscReal marked;                 /* value of `steps` at ContactProjectorMark(), 0 for never */
+  PetscReal mark[CONTACT_N_STATUS]; /* `n` then */
+  PetscReal changed, most; /* steps since then with other numbers of pairs in `n`, and the most pairs that differ */
 } ContactSums;
 
 /*@ ContactProjectorCreate - for all interfaces; after ContactSetFromOptions(). Collective. @*/
@@ -113,6 +116,10 @@ PetscErrorCode ContactProject(ContactProjector projector, const ContactStep *ste
     of the step. Not collective. @*/
 PetscErrorCode ContactProjectorGetStates(ContactProjector projector, PetscInt *n, const ContactState **state,
                                          const PetscInt **interface, const PetscInt **number, const PetscReal **x);
+
+/*@ ContactProjectorMark - from the next step on counts in the sums how often the numbers of open and sticking pairs
+    differ from those of the last step; only the first call does. Not collective. @*/
+PetscErrorCode ContactProjectorMark(ContactProjector projector);
 
 /*@ ContactProjectorGetSums - sums of interface i, over all ranks. Collective. @*/
 PetscErrorCode ContactProjectorGetSums(ContactProjector projector, PetscInt interface, ContactSums *sums);

@@ -74,16 +74,17 @@ def demodulate(times, values, band, stop=40, share=0.25):
 
 
 def pencil(values, most):
-    """Ratios per sample of the exponentials in a series, those above the noise, `most` of them at most. Threshold:
-    4/2.858 of that of Gavish and Donoho, IEEE Trans. Inf. Theory 60, 2014, since rows of the matrix repeat their
-    noise."""
+    """Ratios per sample of the exponentials in a series, or in several [sample][series] together, those above the noise,
+    `most` of them at most. Threshold: 4/2.858 of that of Gavish and Donoho, IEEE Trans. Inf. Theory 60, 2014, since
+    rows of the matrix repeat their noise."""
     row = min(len(values) // 2, LONGEST_PENCIL)
-    hankel = numpy.lib.stride_tricks.sliding_window_view(values, row)
-    _, singular, right = numpy.linalg.svd(hankel, full_matrices=False)
+    values = values.reshape(len(values), -1)
+    hankel = numpy.lib.stride_tricks.sliding_window_view(values, row, axis=0).transpose(0, 2, 1)
+    _, singular, right = numpy.linalg.svd(hankel.reshape(len(hankel), -1), full_matrices=False)
     noise = max(4 * numpy.median(singular), 1e-13 * singular[0])
     order = max(1, min(int((singular > noise).sum()), most, row - 1, len(values) // 4))
-    basis = right[:order].T
-    return numpy.linalg.eigvals(numpy.linalg.lstsq(basis[:-1], basis[1:], rcond=None)[0])
+    basis, n = right[:order].T, values.shape[1]
+    return numpy.linalg.eigvals(numpy.linalg.lstsq(basis[:-n], basis[n:], rcond=None)[0])
 
 
 def amplitudes(times, values, exponents):

@@ -36,7 +36,7 @@ static PetscErrorCode NameCheckFree(MPI_Comm comm, const char option[], const ch
   static const char *const own[]   = {"dynamics",  "frf", "model",  "modes",  "operators", "output",
                                       "projector", "rig", "squeal", "static", "statics",   "sweep"};
   static const char *const lists[] = {"-parts",    "-supports", "-springs", "-dashpots", "-loads",
-                                      "-contacts", "-probes",   "-motions", "-impulses"};
+                                      "-contacts", "-probes",   "-motions", "-impulses", "-circles"};
   char                     list[MAX_LIST];
   PetscBool                taken = PETSC_FALSE, set;
 

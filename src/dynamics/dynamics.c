@@ -235,6 +235,7 @@ PetscErrorCode DynamicsSolve(Dynamics d, Results results)
   d->ended = PETSC_TRUE;
   PetscCall(TSCentralEvaluate(d->ts)); /* the forces of the last time, for its row */
   PetscCall(HistoryClose(d->history));
+  PetscCall(DynamicsReportImpulses(d));
   if (d->stopped) PetscCall(DynamicsComplainStopped(d));
   PetscFunctionReturn(0);
 }

@@ -73,6 +73,11 @@ PETSC_INTERN PetscErrorCode DynamicsConstrain(TS ts, const CentralStep *step, vo
 /* criticalstep.c - the critical steps of the bodies */
 PETSC_INTERN PetscErrorCode DynamicsFindCriticalStep(Dynamics dynamics);
 
+/* impulses.c - where an impulse acts in this step: counts from now on what it changes at the contacts; at the end, says
+   so. Report is collective. */
+PETSC_INTERN PetscErrorCode DynamicsMarkImpulse(Dynamics dynamics);
+PETSC_INTERN PetscErrorCode DynamicsReportImpulses(Dynamics dynamics);
+
 /* turningframe.c - inertial forces in parts that turn */
 PETSC_INTERN PetscErrorCode DynamicsSetFrames(Dynamics dynamics);
 

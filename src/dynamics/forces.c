@@ -111,6 +111,7 @@ PetscErrorCode DynamicsForce(TS ts, const CentralStep *step, void *ctx)
   PetscCall(ExternalAdvance(d->external, &(ExternalStep){step->time, step->dt, a.u, a.v, a.f}, &power));
   PetscCall(EventEnd(EVENT_EXTERNAL));
   LedgerAddExternal(&d->ledger.part, &power, step->dt_old);
+  PetscCall(DynamicsMarkImpulse(d));
   PetscCall(ForceArraysRestore(&a));
   PetscFunctionReturn(0);
 }

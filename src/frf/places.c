@@ -177,20 +177,53 @@ static PetscErrorCode OutputsOfProbe(Frf frf, Model model, const Probe *probe)
   PetscFunctionReturn(0);
 }
 
+/* The nodes of a circle along its axis. Errors: one is held */
+static PetscErrorCode OutputsOfCircle(Frf frf, Model model, const Circle *circle)
+{
+  PetscInt unknown[3];
+  char     name[128];
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < circle->n; k++) {
+    const Probe *probe = &circle->probe[k];
+
+    PetscCall(ProbeUnknowns(frf, model, probe, unknown));
+    PetscCheck(unknown[circle->axis] >= 0, frf->comm, PETSC_ERR_USER_INPUT,
+               "circle %s cannot answer: the node at %.6g, %.6g, %.6g m is held in %c; choose others by -frf_probes",
+               circle->name, (double)probe->x[0], (double)probe->x[1], (double)probe->x[2], "xyz"[circle->axis]);
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s_%c", probe->name, "xyz"[circle->axis]));
+    PetscCall(OutputAdd(frf, name, unknown[circle->axis]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Outputs of the probe or circle of a name */
+static PetscErrorCode OutputsOfName(Frf frf, Model model, const ModelScene *scene, const char name[])
+{
+  PetscInt index;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < scene->n_circles; i++) {
+    if (strcmp(scene->circles[i].name, name)) continue;
+    PetscCall(OutputsOfCircle(frf, model, &scene->circles[i]));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(ProbeFind(frf, scene, "-frf_probes", name, &index));
+  PetscCall(OutputsOfProbe(frf, model, &scene->probes[index]));
+  PetscFunctionReturn(0);
+}
+
 /* Outputs of a mesh */
 static PetscErrorCode OutputsOfModel(Frf frf, Model model)
 {
   const ModelScene *scene;
-  PetscInt          index;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(model, &scene));
-  for (PetscInt i = 0; i < frf->n_places; i++) {
-    PetscCall(ProbeFind(frf, scene, "-frf_probes", frf->place[i], &index));
-    PetscCall(OutputsOfProbe(frf, model, &scene->probes[index]));
-  }
-  for (PetscInt i = 0; i < scene->n_probes && !frf->n_places; i++)
-    PetscCall(OutputsOfProbe(frf, model, &scene->probes[i]));
+  for (PetscInt i = 0; i < frf->n_places; i++) PetscCall(OutputsOfName(frf, model, scene, frf->place[i]));
+  if (frf->n_places) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < scene->n_probes; i++) PetscCall(OutputsOfProbe(frf, model, &scene->probes[i]));
+  for (PetscInt i = 0; i < scene->n_circles; i++) PetscCall(OutputsOfCircle(frf, model, &scene->circles[i]));
   PetscFunctionReturn(0);
 }
 
@@ -236,6 +269,7 @@ PetscErrorCode FrfFindOutputs(Frf frf)
   PetscCall(VecGetSize(frf->f, &n));
   if (model) PetscCall(ModelGetScene(model, &scene));
   most = scene ? 3 * PetscMax(frf->n_places, scene->n_probes) : PetscMax(frf->n_places, ALL_UNKNOWNS);
+  for (PetscInt i = 0; scene && i < scene->n_circles; i++) most += scene->circles[i].n;
   PetscCall(PetscCalloc1(most, &frf->output));
   PetscCall(PetscCalloc1(most, &frf->l));
   PetscCall(model ? OutputsOfModel(frf, model) : OutputsOfMatrices(frf, n));

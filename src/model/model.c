@@ -50,6 +50,7 @@ PetscErrorCode ModelSetFromOptions(Model model)
   PetscCall(OptionsReadList(model->comm, &loads_list, model, &scene->n_loads, &scene->loads));
   PetscCall(OptionsReadList(model->comm, &motions_list, model, &scene->n_motions, &scene->motions));
   PetscCall(OptionsReadList(model->comm, &probes_list, model, &scene->n_probes, &scene->probes));
+  PetscCall(OptionsReadList(model->comm, &circles_list, model, &scene->n_circles, &scene->circles));
   PetscFunctionReturn(0);
 }
 
@@ -104,6 +105,7 @@ PetscErrorCode ModelSetUp(Model model)
   PetscCall(PartsCheckUnits(model));
   PetscCall(LoadsCheck(model));
   PetscCall(ProbesLocate(model));
+  PetscCall(CirclesLocate(model));
   PetscFunctionReturn(0);
 }
 
@@ -200,6 +202,7 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  gravity: %.6g, %.6g, %.6g m/s^2\n", (double)model->scene.gravity[0],
                                      (double)model->scene.gravity[1], (double)model->scene.gravity[2]));
   PetscCall(ProbesView(model, viewer));
+  PetscCall(CirclesView(model, viewer));
   PetscFunctionReturn(0);
 }
 
@@ -229,6 +232,8 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(RecordsDestroy(s->n_loads, sizeof(*s->loads), 2, s->loads));
   PetscCall(RecordsDestroy(s->n_motions, sizeof(*s->motions), 2, s->motions));
   PetscCall(RecordsDestroy(s->n_probes, sizeof(*s->probes), 2, s->probes));
+  PetscCall(CirclesDestroy(m));
+  PetscCall(RecordsDestroy(s->n_circles, sizeof(*s->circles), 2, s->circles));
   for (PetscInt i = 0; i < m->n_together; i++) PetscCall(PetscFree(m->together[i]));
   PetscCall(PetscFree(m->extent));
   PetscCall(MeshReset(m));

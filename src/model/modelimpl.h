@@ -69,9 +69,9 @@ PETSC_INTERN PetscErrorCode MeshTabulate(Model model);
 PETSC_INTERN PetscErrorCode MeshReset(Model model);
 
 /* The lists of the scene, whose files read their records: part.c, support.c, grounded.c, load.c, motion.c,
-   probe.c */
+   probe.c, circle.c */
 PETSC_INTERN const OptionsList parts_list, supports_list, springs_list, dashpots_list, loads_list, motions_list,
-  probes_list;
+  probes_list, circles_list;
 
 /* part.c - checks the materials, and finds the part of each cell */
 PETSC_INTERN PetscErrorCode PartsCheck(Model model);
@@ -89,8 +89,14 @@ PETSC_INTERN PetscErrorCode LoadsCheck(Model model);
 PETSC_INTERN PetscErrorCode MotionsFlag(Model model, PetscBool fixed[][3]);
 
 /* probe.c - places that histories record: reads them, and finds their nodes */
+PETSC_INTERN PetscErrorCode ProbeLocate(Model model, Probe *probe);
 PETSC_INTERN PetscErrorCode ProbesLocate(Model model);
 PETSC_INTERN PetscErrorCode ProbesView(Model model, PetscViewer viewer);
+
+/* circle.c - circles of such places; Destroy frees the places alone */
+PETSC_INTERN PetscErrorCode CirclesLocate(Model model);
+PETSC_INTERN PetscErrorCode CirclesView(Model model, PetscViewer viewer);
+PETSC_INTERN PetscErrorCode CirclesDestroy(Model model);
 
 /* check.c - finds the element of the cells and raises an error for a bad one; before the mesh is distributed */
 PETSC_INTERN PetscErrorCode MeshCheck(Model model);

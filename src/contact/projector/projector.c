@@ -204,6 +204,19 @@ PetscErrorCode ContactProjectorGetStates(ContactProjector p, PetscInt *n, const 
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ContactProjectorMark(ContactProjector p)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < p->n_interfaces; i++) {
+    ContactSums *s = &p->sums[i];
+
+    if (s->marked > 0 || s->steps == 0) continue;
+    s->marked = s->steps;
+    PetscCall(PetscArraycpy(s->mark, s->n, CONTACT_N_STATUS));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactProjectorGetSums(ContactProjector p, PetscInt interface, ContactSums *sums)
 {
   PetscFunctionBeginUser;

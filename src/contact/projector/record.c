@@ -111,6 +111,17 @@ static void SumsBegin(ContactSums *sums, const ProjectorConvergence *convergence
   sums->steps++;
 }
 
+/* Pairs that are open or stick now and were not at the mark, or the other way round, by their numbers */
+static void SumsCompare(ContactSums *sums)
+{
+  PetscReal most = 0;
+
+  for (int i = 0; i < CONTACT_N_STATUS && sums->marked > 0; i++)
+    most = PetscMax(most, PetscAbsReal(sums->n[i] - sums->mark[i]));
+  sums->changed += most > 0 ? 1 : 0;
+  sums->most = PetscMax(sums->most, most);
+}
+
 /* Component of friction along the mean direction of slip, or its size where nothing says one */
 static PetscReal FrictionAlong(const Directions *d)
 {
@@ -136,7 +147,10 @@ VERSIONS void PairsRecord(ContactProjector p, const ContactStep *step, const Pro
     for (int d = 0; d < 3 && p->sliding[i].slides; d++) directions[i].along[d] += pair->turned[1][d];
     if (state->lambda_n != 0) InterfaceSumsAdd(p, pair, state, step->dt, &p->sums[i], &directions[i]);
   }
-  for (PetscInt i = 0; i < p->n_interfaces; i++) p->sums[i].friction = FrictionAlong(&directions[i]);
+  for (PetscInt i = 0; i < p->n_interfaces; i++) {
+    p->sums[i].friction = FrictionAlong(&directions[i]);
+    SumsCompare(&p->sums[i]);
+  }
 }
 
 PetscErrorCode ContactProjectorGetKKT(ContactProjector p, ContactKKT *kkt)

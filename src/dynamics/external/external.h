@@ -81,6 +81,19 @@ PETSC_INTERN PetscErrorCode ExternalAdvance(External external, const ExternalSte
    it follows the power of the drives. Not collective. */
 PETSC_INTERN PetscErrorCode ExternalFinish(External external, PetscReal dt, const PetscReal f[]);
 
+/* A blow: place of its node, m; momentum, N s; the time t_n of the step in which it acted, s, 0 before that */
+typedef struct {
+  const char *name;
+  PetscReal   x[3], impulse[3], time;
+} ExternalHit;
+
+/* ExternalIsHitting - whether an impulse acts in the step that ExternalAdvance() began. Not collective. */
+PETSC_INTERN PetscBool ExternalIsHitting(External external);
+
+/* ExternalCountHits, ExternalGetHit - the impulses of the scene; the name is borrowed. Not collective. */
+PETSC_INTERN PetscErrorCode ExternalCountHits(External external, PetscInt *n);
+PETSC_INTERN PetscErrorCode ExternalGetHit(External external, PetscInt i, ExternalHit *hit);
+
 /* ExternalGetMemory - what must be kept between two steps for a bitwise restart: n numbers of this rank (borrowed, and
    written in place; valid until the next ExternalSetFrame() of another part). Not collective. */
 PETSC_INTERN PetscErrorCode ExternalGetMemory(External external, PetscInt *n, PetscReal **values);

@@ -36,7 +36,7 @@ typedef struct {
   PetscReal    impulse[3];  /* J, N s */
   PetscReal    time;        /* s */
   ForcePattern pattern;     /* of J */
-  PetscReal   *last;        /* factor of J in the last step, 1/s, and 1 when it has acted */
+  PetscReal   *last;        /* factor of J in the last step, 1/s, and the time t_n > 0 at which it acted */
 } Impulse;
 
 /* Inertial forces of a part described in a turning frame */

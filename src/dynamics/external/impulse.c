@@ -124,8 +124,33 @@ PetscErrorCode ImpulsesAdvance(External external, const ExternalStep *step, Exte
     hit->last[0] = acts ? 1 / step->dt : 0;
     power->now += hit->last[0] * full;
     ForcePatternAdd(&hit->pattern, hit->last[0], step->f);
-    if (acts) hit->last[1] = 1;
+    if (acts) hit->last[1] = step->time;
   }
+  PetscFunctionReturn(0);
+}
+
+PetscBool ExternalIsHitting(External external)
+{
+  for (PetscInt i = 0; i < external->n_impulses; i++)
+    if (external->impulses[i].last[0] != 0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+PetscErrorCode ExternalCountHits(External external, PetscInt *n)
+{
+  PetscFunctionBeginUser;
+  *n = external->n_impulses;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExternalGetHit(External external, PetscInt i, ExternalHit *hit)
+{
+  const Impulse *from = &external->impulses[i];
+
+  PetscFunctionBeginUser;
+  *hit = (ExternalHit){.name = from->name, .time = from->last[1]};
+  PetscCall(PetscArraycpy(hit->x, from->x, 3));
+  PetscCall(PetscArraycpy(hit->impulse, from->impulse, 3));
   PetscFunctionReturn(0);
 }
 

@@ -4,7 +4,7 @@
 */
 #include "historyimpl.h"
 
-#define N_TABLES 3 /* rows, pairs, amplitudes */
+#define N_TABLES 4 /* rows, pairs, amplitudes, circles */
 
 /* What a restart needs, before the times of the snapshots: reals alone */
 typedef struct {
@@ -89,8 +89,10 @@ PetscErrorCode HistorySetUp(History history, const HistorySource *source, PetscR
   ScheduleRound(&history->frames, dt);
   history->growth.window = end > 0 ? PetscMin(end / 20, 1e-3) : 1e-3;
   PetscCall(ModelGetScene(source->model, &scene));
-  history->n_probes = scene->n_probes;
-  history->probes   = scene->probes;
+  history->n_probes  = scene->n_probes;
+  history->probes    = scene->probes;
+  history->n_circles = scene->n_circles;
+  history->circles   = scene->circles;
   PetscCall(ResultsWantFields(source->results, &fields));
   if (!fields) history->frames.interval = 0;
   if (!source->projector) history->pairs.interval = 0;
@@ -160,6 +162,11 @@ static PetscErrorCode HistoryBeginTables(History history, const ResultsMark mark
     PetscCall(HistoryBeginTable(results, "amplitudes", header, mark[2], &history->amplitude_table));
     PetscCall(PetscFree(header));
   }
+  if (history->n_circles && !history->circle_table) {
+    PetscCall(CirclesCreateHeader(history, &header));
+    PetscCall(HistoryBeginTable(results, "circles", header, mark[3], &history->circle_table));
+    PetscCall(PetscFree(header));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -182,6 +189,7 @@ PetscErrorCode HistoryRecord(History history, const HistoryState *state)
     GrowthAdd(&history->growth, state->time, state->ledger->kinetic);
     PetscCall(HistoryWriteRow(history, state));
     if (history->filters) PetscCall(HistoryWriteAmplitudes(history, state));
+    if (history->n_circles) PetscCall(HistoryWriteCircles(history, state));
     PetscCall(LiveShow(history, state));
   }
   if (ScheduleMeet(&history->pairs, state->time, state->dt)) PetscCall(HistoryRecordPairs(history, state->time));
@@ -200,6 +208,7 @@ PetscErrorCode HistoryGetMemory(History h, PetscInt *n, PetscReal **values)
   PetscCall(ResultsTableFlush(h->table, &mark[0]));
   if (h->pair_table) PetscCall(ResultsTableFlush(h->pair_table, &mark[1]));
   if (h->amplitude_table) PetscCall(ResultsTableFlush(h->amplitude_table, &mark[2]));
+  if (h->circle_table) PetscCall(ResultsTableFlush(h->circle_table, &mark[3]));
   if (h->film) PetscCall(ResultsFilmGetTimes(h->film, &n_frames, &times));
   HistoryKept kept = {.rows     = h->rows,
                       .pairs    = h->pairs,
@@ -235,8 +244,8 @@ PetscErrorCode HistorySetMemory(History h, PetscInt n, const PetscReal values[])
   ScheduleRestore(&h->pairs, &kept.pairs);
   ScheduleRestore(&h->frames, &kept.frames);
   if (h->film) PetscCall(ResultsFilmSetTimes(h->film, n - N_KEPT, &values[N_KEPT]));
-  PetscCall(HistoryBeginTables(
-    h, (ResultsMark[N_TABLES]){MarkTake(kept.mark[0]), MarkTake(kept.mark[1]), MarkTake(kept.mark[2])}));
+  PetscCall(HistoryBeginTables(h, (ResultsMark[N_TABLES]){MarkTake(kept.mark[0]), MarkTake(kept.mark[1]),
+                                                          MarkTake(kept.mark[2]), MarkTake(kept.mark[3])}));
   PetscFunctionReturn(0);
 }
 
@@ -248,6 +257,12 @@ PetscErrorCode HistoryAddChecksum(History h, Checksum c)
     PetscCall(ChecksumAddString(c, h->probes[i].name));
     PetscCall(ChecksumAddString(c, h->probes[i].part));
     PetscCall(ChecksumAddReals(c, 3, h->probes[i].x));
+  }
+  PetscCall(ChecksumSetPart(c, "circles"));
+  for (PetscInt i = 0; i < h->n_circles; i++) {
+    PetscCall(ChecksumAddString(c, h->circles[i].name));
+    PetscCall(ChecksumAddInts(c, 2, (const PetscInt[]){h->circles[i].n, h->circles[i].axis}));
+    for (PetscInt k = 0; k < h->circles[i].n; k++) PetscCall(ChecksumAddReals(c, 3, h->circles[i].probe[k].x));
   }
   PetscCall(ChecksumSetPart(c, "-dynamics_filters"));
   if (h->filters) PetscCall(ChecksumAddInts(c, h->filters->n, h->filters->mode));
@@ -261,6 +276,8 @@ PetscErrorCode HistoryClose(History history)
   PetscCall(ResultsTableClose(&history->table));
   PetscCall(ResultsTableClose(&history->pair_table));
   PetscCall(ResultsTableClose(&history->amplitude_table));
+  PetscCall(ResultsTableClose(&history->circle_table));
+  PetscCall(CirclesWriteNodes(history));
   PetscFunctionReturn(0);
 }
 
@@ -271,6 +288,7 @@ PetscErrorCode HistoryDestroy(History *history)
   PetscCall(ResultsTableSuspend(&(*history)->table));
   PetscCall(ResultsTableSuspend(&(*history)->pair_table));
   PetscCall(ResultsTableSuspend(&(*history)->amplitude_table));
+  PetscCall(ResultsTableSuspend(&(*history)->circle_table));
   PetscCall(ResultsFilmDestroy(&(*history)->film));
   PetscCall(PetscFree(*history));
   PetscFunctionReturn(0);

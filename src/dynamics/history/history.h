@@ -1,5 +1,5 @@
 /*
-   History (private to dynamics/) - transient.csv, contact_pairs.csv, amplitudes.csv, the live line, and snapshots with
+   History (private to dynamics/) - transient.csv, contact_pairs.csv, amplitudes.csv, circles.csv, the live line, and snapshots with
    transient.xmf.
 */
 #pragma once
@@ -64,7 +64,7 @@ PETSC_INTERN PetscErrorCode HistoryRecord(History history, const HistoryState *s
 PETSC_INTERN PetscErrorCode HistoryGetMemory(History history, PetscInt *n, PetscReal **values);
 PETSC_INTERN PetscErrorCode HistorySetMemory(History history, PetscInt n, const PetscReal values[]);
 
-/* adds the probes and filters, whose columns go on. Not collective. */
+/* adds the probes, circles and filters, whose columns go on. Not collective. */
 PETSC_INTERN PetscErrorCode HistoryAddChecksum(History history, Checksum checksum);
 
 /* completes transient.csv under its final name. Collective. */

@@ -41,9 +41,11 @@ struct _p_History {
   HistorySource         source;
   PetscInt              n_probes;
   const Probe          *probes;
+  PetscInt              n_circles;
+  const Circle         *circles;
   const HistoryFilters *filters; /* NULL for none */
   /* where */
-  ResultsTable table, pair_table, amplitude_table;
+  ResultsTable table, pair_table, amplitude_table, circle_table;
   ResultsFilm  film; /* NULL for none */
 };
 
@@ -78,6 +80,11 @@ PETSC_INTERN PetscErrorCode HistoryWritePairs(ResultsTable table, MPI_Comm comm,
 /* amplitudes.c - header of amplitudes.csv, which the caller frees, and a row. Collective. */
 PETSC_INTERN PetscErrorCode AmplitudesCreateHeader(const HistoryFilters *filters, char **header);
 PETSC_INTERN PetscErrorCode HistoryWriteAmplitudes(History history, const HistoryState *state);
+
+/* circles.c - header of circles.csv, which the caller frees, a row, and the table of the nodes. Collective. */
+PETSC_INTERN PetscErrorCode CirclesCreateHeader(History history, char **header);
+PETSC_INTERN PetscErrorCode HistoryWriteCircles(History history, const HistoryState *state);
+PETSC_INTERN PetscErrorCode CirclesWriteNodes(History history);
 
 /* live.c */
 PETSC_INTERN void           GrowthAdd(Growth *growth, PetscReal t, PetscReal kinetic);

@@ -97,7 +97,7 @@ static PetscErrorCode ProbeFindLocal(Model model, const Probe *probe, PetscInt *
 }
 
 /* The node of one probe: its place on every rank, its vertex on the rank that records it */
-static PetscErrorCode ProbeLocate(Model model, Probe *probe)
+PetscErrorCode ProbeLocate(Model model, Probe *probe)
 {
   PetscMPIInt rank;
   PetscInt    n, n_all;

@@ -1,0 +1,65 @@
+/*
+   What the impulses of a run did: when they acted, and whether they opened or stuck pairs of the contacts, in words and
+   in impulses.csv. A response is linear while the same pairs touch as before the blow.
+*/
+#include "dynamicsimpl.h"
+
+/* Over all contacts, since the first impulse: steps, those with other numbers of open or sticking pairs than before it,
+   and how many pairs differ at most */
+typedef struct {
+  PetscReal steps, changed, most;
+} ImpulseEffect;
+
+static ImpulseEffect ImpulseMeasure(const Dynamics d)
+{
+  ImpulseEffect effect = {0, 0, 0};
+
+  for (PetscInt i = 0; i < d->n_interfaces; i++) {
+    const ContactSums *s = &d->sums[i];
+
+    if (s->marked == 0) continue;
+    effect.steps   = s->steps - s->marked;
+    effect.changed = PetscMax(effect.changed, s->changed);
+    effect.most    = PetscMax(effect.most, s->most);
+  }
+  return effect;
+}
+
+PetscErrorCode DynamicsMarkImpulse(Dynamics d)
+{
+  PetscFunctionBeginUser;
+  if (d->projector && ExternalIsHitting(d->external)) PetscCall(ContactProjectorMark(d->projector));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsReportImpulses(Dynamics d)
+{
+  const ImpulseEffect effect = ImpulseMeasure(d);
+  ResultsTable        table;
+  PetscInt            n;
+
+  PetscFunctionBeginUser;
+  PetscCall(ExternalCountHits(d->external, &n));
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(ResultsTableOpen(d->results, "impulses",
+                             "name,time_s,x_m,y_m,z_m,impulse_x_n_s,impulse_y_n_s,impulse_z_n_s,steps_after,"
+                             "steps_changed,pairs_changed",
+                             &table));
+  for (PetscInt i = 0; i < n; i++) {
+    ExternalHit hit;
+
+    PetscCall(ExternalGetHit(d->external, i, &hit));
+    if (hit.time <= 0) continue; /* the run ended before */
+    PetscCall(ResultsTableRow(table, "%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g", hit.name,
+                              (double)hit.time, (double)hit.x[0], (double)hit.x[1], (double)hit.x[2],
+                              (double)hit.impulse[0], (double)hit.impulse[1], (double)hit.impulse[2],
+                              (double)effect.steps, (double)effect.changed, (double)effect.most));
+  }
+  PetscCall(ResultsTableClose(&table));
+  if (effect.changed > 0)
+    PetscCall(PetscPrintf(d->comm,
+                          "after the impulse %.0f of %.0f steps have other numbers of open or sticking pairs than "
+                          "before it, by %.0f at most: the response is not linear\n",
+                          (double)effect.changed, (double)effect.steps, (double)effect.most));
+  PetscFunctionReturn(0);
+}
