@@ -118,10 +118,9 @@ static inline ContactStatus CoulombDecide(const CoulombPair *pair, ContactStatus
 /* Residual of the friction law, |p - Proj_C(p + s)|, m */
 static inline double CoulombResidual(const CoulombPair *pair, const double l[], const double w[])
 {
-  const double p[2] = {-l[1], -l[2]};
-  double       q[2];
+  double q[2];
 
   if (pair->d == 1) return 0;
   (void)CoulombTrial(pair, l, w, q);
-  return FrictionMiss(p, q, pair->mu * fmax(0, l[0]));
+  return FrictionMiss((double[2]){-l[1], -l[2]}, q, pair->mu * fmax(0, l[0]));
 }
