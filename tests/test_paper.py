@@ -159,6 +159,9 @@ def check_numbers(p, page):
     total = float(re.search(r"per pair, (\S+) N/m in total", told)[1])
     p.check(abs(number(found[1][2], r"^([\d.]+) × 10") * 10**(len(f"{total:.0f}") - 1) / total - 1) < 1e-4,
             f"k_n: {found[1][2]} of {total:g}")
+    peak = next(row for row in rows_of(p.folder / "response/peaks.csv") if row["label"] == "(0,4+)")
+    p.check(float(row["in time, Hz"]) == float(peak["mode_freq_hz"]) and
+            f"{float(peak['mode_freq_hz']):.0f} Hz" in claims_of(page, "fig4")[1][2], f"in time: {peak}")
     rows = rows_of(p.folder / "time-39.8/transient.csv")
     most = max(float(row["normal_force_n"]) for row in rows[len(rows) // 2:])
     p.check(abs(number(claims_of(page, "fig10")[1][2], r"at most ([\d.]+) N") / most - 1) < 0.01,

@@ -48,6 +48,8 @@ RUNS = (
     in_time("time-25.1", "25.1e9", ("fig8", "fig9"), "50e-3", 290),
     in_time("time-39.8", "39.8e9", ("fig10", "fig11"), "50e-3", 290),
     in_time("time-16", "16e9", ("fig7",), "25e-3", 145),
+    Planned("response", ("table1", "fig4"), ("massi2005_transient", "massi2005_response"), "-dynamics_live 2",
+            "-rig_disc_elements 8,40,1 -rig_pad_elements 4,4,2", 150, "response"),
     Planned("sweep", ("fig5",), SWEEP, "-modes_band 2500,6000", f"{SMALL} -sweep_values 6.5e9:80e9:12", 25),
     Planned("sweep-fitted", ("fig5",), (*SWEEP, "massi2005_fitted_sweep"), "-modes_band 2500,6000",
             f"{SMALL} -sweep_values 6.5e9:80e9:12", 20),

@@ -3,6 +3,7 @@ not made again; when stopped, the runs under way are ended, and made again the n
 
 import os
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -17,6 +18,12 @@ LEFT = re.compile(r"^step .*? t ([\d.]+) ms", re.MULTILINE)
 END = re.compile(r"-ts_max_time ([\d.e+-]+)")
 
 
+def processor_seconds():
+    """Of all processes that have ended and been waited for."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 class Job:
     """A run of the plan in its folder."""
 
@@ -25,7 +32,7 @@ class Job:
         words = [*planned.words(coarse), "-squeal_progress", 0]
         self.kept = KeptRun(program, 1, folder / planned.name, words)
         self.commands, self.process, self.begun, self.took, self.error = [], None, 0.0, None, ""
-        self.done = self.kept.is_complete()
+        self.done, self.processor = self.kept.is_complete(), 0.0
 
     def start(self):
         """In a group of its own, so that ^C reaches it through stop() only, and ends with its parent."""
@@ -54,8 +61,10 @@ class Job:
 
     def has_ended(self):
         """Whether it has; then it is complete, or `error` says why not."""
+        before = processor_seconds()
         if self.process.poll() is None:
             return False
+        self.processor += processor_seconds() - before
         if self.process.returncode == 0 and self.commands:
             self.go_on()
             return False
@@ -152,7 +161,8 @@ class Work:
         """Says what has ended."""
         for job in [job for job in self.running if job.has_ended()]:
             self.running.remove(job)
-            self.screen.say(f"{job.name}: FAILED, {job.error}" if job.error else f"{job.name}: {duration(job.took)}")
+            self.screen.say(f"{job.name}: FAILED, {job.error}" if job.error else
+                            f"{job.name}: {duration(job.took)}, {duration(job.processor)} of a processor")
 
     def do(self):
         """All of it. Stopped by ^C or SIGTERM, the runs under way are ended first."""
