@@ -195,6 +195,38 @@ def check_sweep(t, page, key, folder):
     t.check(len(quiet) > 2, f"{key}: {len(quiet) // 2} other modes")
 
 
+def check_map(t, page, key, folder):
+    """A cell for each pair of values, which tells the worst mode, and a dot for each critical value: breaks when the
+    parameters are mixed up, or a stable point is coloured."""
+    rows, onsets = rows_of(folder / "sweep.csv"), rows_of(folder / "onsets.csv")
+    points = {}
+    for row in rows:
+        points.setdefault((float(row["value"]), float(row["value_2"])), []).append(row)
+    for name in ("growth", "family"):
+        cells = first_half([e for e in page.find("rect", inside=f"{key}-map-{name}") if ": " in e["text"]])
+        t.check(len(cells) == len(points) == 12, f"{key}: {len(cells)} cells of {len(points)} points")
+        told = {}
+        for cell in cells:
+            where, what = cell["text"].split(": ", 1)
+            young, mu = re.findall(r"[\d.]+", where)
+            told[round(float(young), 2), float(mu)] = what, cell
+        wrong = []
+        for (young, mu), modes in points.items():
+            what, cell = told[round(1e-9 * young, 2), mu]
+            bad = [row for row in modes if row["class"] == "unstable"]
+            worst = max(bad, key=lambda row: float(row["growth_rad_s"]), default=None)
+            expected = f"{worst['label']} grows with {float(worst['growth_rad_s']):.4g} 1/s" if worst else "stable"
+            if what != expected or (cell.get("class") == "box stable") == bool(bad):
+                wrong.append((young, mu, what, expected))
+        t.check(not wrong and 0 < sum("grows" in what for what, _ in told.values()) < 12,
+                f"{key}: cells of the {name} map tell the worst mode {wrong[:2]}")
+        dots = first_half([e for e in page.find("circle", inside=f"{key}-map-{name}") if "dark" in e["class"]])
+        inside = [row for row in onsets if row["value_2"]]
+        t.check(len(dots) == len(inside) > 1, f"{key}: {len(dots)} critical values")
+        t.check(straight([e["cx"] for e in dots], [row["critical_value"] for row in inside]) or len(dots) < 3,
+                f"{key}: they stand at their values")
+
+
 def check_amplitudes(t, page, key, folder):
     """Logarithm of |c| of each mode over time, and the slope of the eigenvalue beside it: breaks when modes, parts of c
     or axes are mixed up."""

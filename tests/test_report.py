@@ -17,7 +17,7 @@ from pathlib import Path
 
 from brake_results import SOURCE, make_results
 from fuzz.damage import BYTES, LINES
-from report_checks import (check_cost, check_frf, check_modes, check_shapes, check_static, check_sweep,
+from report_checks import (check_cost, check_frf, check_map, check_modes, check_shapes, check_static, check_sweep,
                            check_together, check_transient)
 
 LARGEST = 10e6  # bytes
@@ -142,6 +142,13 @@ def check_bad(t):
         page = t.page(*words, told=said)
         t.check(any(said in e["text"] for e in page.find("p", class_="missing")),
                 f"{words[0]}: a section says '{said}'")
+    shutil.copytree(t.folder / "transient", t.folder / "going")
+    for name in ("transient.csv", "amplitudes.csv"):
+        (t.folder / "going" / name).rename(t.folder / "going" / f"{name}.part")
+    (t.folder / "going/scene.yaml").unlink()
+    page = t.page("going", told="going/scene.yaml: no such file; a run writes it at its end")
+    t.check("the run is still under way" in page.source and page.find("figure", id="r1-amplitudes"),
+            "a run under way: what it has so far, amplitudes too")
     page = t.page("cut", told="cut/scene.yaml: no such file")
     t.check("scene.yaml: no such file" in page.source, "what a folder without scene.yaml lacks is said")
 
@@ -184,7 +191,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
         t = Test(Path(name))
         make_results(squeal, mpirun, t.folder)
-        names = ("modes", "modes_quiet", "static", "sweep", "transient", "frf")
+        names = ("modes", "modes_quiet", "static", "sweep", "transient", "frf", "map")
         page = t.page(*names)
         check_alone(t, page)
         for key, folder in (("r1", "modes"), ("r2", "modes_quiet")):
@@ -194,6 +201,7 @@ def main():
         check_sweep(t, page, "r4", t.folder / "sweep")
         check_transient(t, page, "r5", t.folder / "transient")
         check_frf(t, page, "r6", t.folder / "frf")
+        check_map(t, page, "r7", t.folder / "map")
         check_together(t, page, [t.folder / name for name in names])
         for number, name in enumerate(names, 1):
             check_origin(t, page, f"r{number}", t.folder / name)

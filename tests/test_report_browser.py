@@ -166,7 +166,7 @@ def main():
     squeal, mpirun = (Path(word).resolve() for word in sys.argv[1:3])
     with tempfile.TemporaryDirectory(prefix="squeal-") as name, Browser(program) as browser:
         folder, t = Path(name), Test(browser)
-        names = ("modes", "static", "sweep", "transient", "frf")
+        names = ("modes", "static", "sweep", "transient", "frf", "map")
         make_results(squeal, mpirun, folder, ("filters", *names))
         subprocess.run(["/usr/bin/python3", SOURCE / "scripts/report", *names, "-o", "page.html"], cwd=folder,
                        check=True)

@@ -108,6 +108,13 @@ def legend(entries):
                class_="legend")
 
 
+def scale(colour_at, last):
+    """Colours from 0 to `last`, a text; colour_at: of a share from 0 to 1."""
+    stops = ", ".join(colour_at(i / 8) for i in range(9))
+    return tag("div", tag("span", "0"), tag("i", style=f"background: linear-gradient(90deg, {stops})"),
+               tag("span", last), class_="scale")
+
+
 def command(text):
     """A command to copy."""
     return tag("div", tag("code", text), tag("button", "Copy", type="button", class_="copy"), class_="command")

@@ -11,7 +11,8 @@ from ..static_map import COLOURS
 from ..static_pairs import MM, grid_cells, profile, read_surfaces
 from ..tables import BadInput, read_table
 from .charts import Axis, Chart, Panel
-from .markup import (Column, Markup, Part, count, figure, figures, join, legend, missing, section, table, tag)
+from .markup import (Column, Markup, Part, count, figure, figures, join, legend, missing, scale, section, table,
+                     tag)
 from .shapes import Bodies, Shape, data_script, viewer
 from .words import direction
 
@@ -87,16 +88,8 @@ def pressure_chart(surface, key):
     entries += [(colour, "dot", f"{WORDS[name]} ({(surface.status == name).sum()})")
                 for name, colour in (("slip", "dark"), ("stick", "blue")) if (surface.status == name).any()]
     entries += [("green", "cross", "centre of force")] + [("blue", "line", "sliding direction")] * bool(len(arrow))
-    return join([legend(entries), scale_bar(surface), chart.markup(f"{key}-map", "half")])
-
-
-def scale_bar(surface):
-    """Colours of the pressure."""
-    stops = ", ".join(to_hex(COLOURS(i / 8)) for i in range(9))
-    most = f"{figures(surface.value.max(), 3)} {surface.unit}"
-    return tag("div", tag("span", "0"), tag("i", style=f"background: linear-gradient(90deg, {stops})"),
-               tag("span", most),
-               class_="scale")
+    colours = scale(lambda share: to_hex(COLOURS(share)), f"{figures(surface.value.max(), 3)} {surface.unit}")
+    return join([legend(entries), colours, chart.markup(f"{key}-map", "half")])
 
 
 def profile_chart(surface, key):

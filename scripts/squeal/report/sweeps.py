@@ -2,14 +2,12 @@
 verified, sensitivities and robustness."""
 
 import numpy
-from matplotlib import colormaps
-from matplotlib.colors import to_hex
 
 from ..sweep_lines import MARKERS, QUIET, branches_of, jump_places
-from ..sweep_map import GROWTH, Grid, edges, family_colours, lighter
 from ..sweep_tables import Study
 from ..tables import header, optional, read_table
 from .charts import Axis, Chart, Panel
+from .maps import map_figures
 from .markup import (Column, Part, count, figure, figures, fixed, join, legend, missing, section, signed, table, tag)
 
 LOUD = ("blue", "orange", "green", "purple", "sky")
@@ -101,35 +99,6 @@ def line_figure(folder, study):
                   "Coloured: modes that are unstable somewhere, or that meet another one. Each point tells its "
                   "numbers.",
                   folder.command("plot/sweep"))
-
-
-def map_figures(folder, study):
-    """Largest growth, and which mode it is, over two parameters."""
-    grid, (first, second) = Grid(study), study.axes
-    x, y = (edges(numpy.array(v) * axis.factor, axis.logarithmic) for v, axis in zip(grid.values, study.axes))
-    most, colours = grid.growth.max() or 1.0, family_colours(grid)
-    figures_of = []
-    for name, title in (("growth", "How fast the worst mode grows"), ("family", "Which mode it is")):
-        panel = Panel(Axis(second.title(), y[0], y[-1], second.logarithmic), 380)
-        for j, i in zip(*numpy.nonzero(grid.known)):
-            growth, label = grid.growth[j, i], grid.label[j, i]
-            colour = "#eef0f2"
-            if growth > 0:
-                colour = to_hex(colormaps[GROWTH](growth / most) if name == "growth" else lighter(colours[label]))
-            panel.boxes([x[i:i + 2]], [y[j:j + 2]], [colour], [
-                f"{first.name} {figures(grid.values[0][i] * first.factor, 4)} {first.unit}, {second.name} "
-                f"{figures(grid.values[1][j] * second.factor, 4)} {second.unit}: "
-                + (f"{label} grows with {figures(growth, 4)} 1/s" if growth > 0 else "stable")])
-        panel.points(*([row[key] * axis.factor for row in study.onsets] for key, axis in
-                       zip(("critical_value", "value_2"), study.axes)), "dark",
-                     [f"critical value {figures(row['critical_value'] * first.factor, 5)} {first.unit}, {row['label']}"
-                      for row in study.onsets], 2.5)
-        chart = Chart(title, Axis(first.title(), x[0], x[-1], first.logarithmic), [panel])
-        figures_of.append(figure(f"{folder.key}-map-{name}", title, chart.markup(f"{folder.key}-{name}", "half"),
-                                 f"Largest growth {figures(grid.growth.max(), 4)} 1/s; grey is stable, dots are "
-                                 f"onsets.",
-                                 folder.command("plot/sweep")))
-    return tag("div", figures_of, class_="pair")
 
 
 def onset_table(folder, study):
@@ -229,6 +198,7 @@ def sweep_part(folder, _):
     stated = max((row["error_hz"] for row in study.rows if row["error_hz"] == row["error_hz"]), default=float("nan"))
     content = section(f"{folder.key}-sweep", "Sweep", picture,
                       tag("div", tag("div", tag("h4", "Onsets"), onset_table(folder, study)),
-                          None if study.is_map else error_figure(folder, study), class_="pair"), join(extra))
+                          None if study.is_map else error_figure(folder, study),
+                          class_=None if study.is_map else "pair"), join(extra))
     errors = [("largest stated error of an eigenvalue", f"{figures(stated, 2)} Hz"), *verified(folder)]
     return Part(content, None, errors, verdict(study))
