@@ -6,7 +6,7 @@ from ..kept_runs import LOG
 from ..report.charts import Axis, Chart, Panel
 from ..report.films import diameters_figure
 from ..report.folders import Folder, Options
-from ..report.markup import Column, figure, legend, missing, section, table, tag
+from ..report.markup import Column, count, figure, legend, missing, section, table, tag
 from ..report.origin import cost_of
 from ..report.page import Opening, write_page
 from ..report.sweeps import line_figure
@@ -26,10 +26,10 @@ TITLE = "The seed paper beside what comes out here"
 
 
 class Place:
-    """The folder of all runs, and those that are complete."""
+    """The folder of all runs, those that are complete, and whether each claim came out as in the paper."""
 
     def __init__(self, root, runs):
-        self.root, self.runs = root, runs
+        self.root, self.runs, self.verdicts = root, runs, []
         self.made = {run.name for run in runs if (root / run.name / LOG).exists()}
 
     def folder(self, name, key):
@@ -42,16 +42,17 @@ class Place:
         """Folder of a run; None where it is not complete."""
         return self.root / name if name in self.made else None
 
+    def claims(self, name, found):
+        """Claims in rows; on a narrow screen each is a paragraph."""
+        def cells(claim):
+            return [tag("b", claim.what), tag("span", claim.paper, data_of="paper"),
+                    tag("span", claim.here, data_of="here"), tag("i", VERDICT[claim.kept])]
 
-def claim_table(name, found):
-    """Claims in rows; on a narrow screen each is a paragraph."""
-    def cells(claim):
-        return [tag("b", claim.what), tag("span", claim.paper, data_of="paper"),
-                tag("span", claim.here, data_of="here"), tag("i", VERDICT[claim.kept])]
-
-    head = tag("li", tag("b", ""), tag("span", "paper"), tag("span", "here"), tag("i", ""), class_="head")
-    rows = [tag("li", cells(claim), class_={True: "good", False: "other"}.get(claim.kept)) for claim in found]
-    return tag("ul", head, rows, class_="claims", id=f"paper-{name}-claims")
+        found = list(found)
+        self.verdicts += [claim.kept for claim in found if claim.kept is not None]
+        head = tag("li", tag("b", ""), tag("span", "paper"), tag("span", "here"), tag("i", ""), class_="head")
+        rows = [tag("li", cells(claim), class_={True: "good", False: "other"}.get(claim.kept)) for claim in found]
+        return tag("ul", head, rows, class_="claims", id=f"paper-{name}-claims")
 
 
 # Table 1, Figures 3 and 4
@@ -83,7 +84,8 @@ def table1(place):
     said = (f"Percent: of Ansys' column with consistent mass, of Plast3's with lumped mass. All frequencies of "
             f"Plast3's column are multiples of {RESOLUTION} Hz, the resolution of the paper's transform: each is known "
             f"to {RESOLUTION / 2:.0f} Hz.")
-    return claim_table("table1", claims.table_claims(columns)), frequency_table(columns), tag("p", said, class_="quiet")
+    return (place.claims("table1", claims.table_claims(columns)), frequency_table(columns),
+            tag("p", said, class_="quiet"))
 
 
 def figure3(place):
@@ -94,7 +96,7 @@ def figure3(place):
     panel.rule(y=0, colour="ink")
     panel.points(freq, error, "blue", [f"{f:.3f} kHz: {e:+.2f} %" for f, e in zip(freq, error)])
     chart = Chart("difference of the frequencies of two meshes", Axis.about("frequency, kHz", freq), [panel])
-    return claim_table("fig3", claims.mesh_claims(pairs)), figure("paper-fig3-chart", "Frequencies of two meshes",
+    return place.claims("fig3", claims.mesh_claims(pairs)), figure("paper-fig3-chart", "Frequencies of two meshes",
                                                                   chart.markup("paper-fig3-svg"))
 
 
@@ -134,7 +136,7 @@ def figure4(place):
         found.append(claims.frequency_claim(label, "in time", freq))
         if freq:
             pictures.append(circles_figure(label, circles, freq))
-    return claim_table("fig4", found), tag("div", pictures, class_="pair")
+    return place.claims("fig4", found), tag("div", pictures, class_="pair")
 
 
 # Figures 5 and 6
@@ -148,7 +150,7 @@ def figure5(place):
         study = Study(folder.path, None, None)
         found += claims.sweep_claims(study, name)
         pictures.append([tag("h4", name.capitalize()), line_figure(folder, study)])
-    return claim_table("fig5", found), pictures
+    return place.claims("fig5", found), pictures
 
 
 def figure6(place):
@@ -166,7 +168,7 @@ def figure6(place):
         found += claims.shape_claims(family, row, shape)
         pictures.append(shape_figure(f"fig6-{family[0]}", f"{row['label']}, {row['freq_hz']:.0f} Hz", shape,
                                      "Pad of 60 GPa."))
-    return claim_table("fig6", found), tag("div", pictures, class_="pair")
+    return place.claims("fig6", found), tag("div", pictures, class_="pair")
 
 
 # Figures 7 to 11
@@ -180,7 +182,7 @@ def force_part(name, run, claim):
         pictures = [signal_figure(folder, record)]
         if record.vibration.line:
             pictures.append(growth_figure(folder, record))
-        return (claim_table(name, claim(record)), force_figures(folder, record)[:1],
+        return (place.claims(name, claim(record)), force_figures(folder, record)[:1],
                 tag("div", pictures, class_="pair"))
 
     return make
@@ -201,14 +203,14 @@ def spectrum_part(name, run, with_line, paper):
             found += claims.diameter_claims(shape, share, paper)
             pictures.append(shape_figure(f"{name}-shape", "Velocity across the disc's face", shape))
             circles = tag("div", diameters_figure(folder, snapshots(folder.path), first), class_="pair")
-        return claim_table(name, found), tag("div", pictures, class_="pair"), circles
+        return place.claims(name, found), tag("div", pictures, class_="pair"), circles
 
     return make
 
 
 def pressing(place):
     """k_n."""
-    return (claim_table("kn", claims.pressing_claims(place.folder("pressing", "kn").path)),)
+    return (place.claims("kn", claims.pressing_claims(place.folder("pressing", "kn").path)),)
 
 
 SECTIONS = {"table1": table1, "fig3": figure3, "fig4": figure4, "fig5": figure5, "fig6": figure6,
@@ -250,7 +252,9 @@ def opening(place, names, coarse):
             content = missing(f"{error}.")
         parts.append(section(f"paper-{name}", f"{FIGURES[name]}: {ABOUT[name]}", content))
     warning = missing("Small meshes and short records (--coarse): the numbers of this page mean nothing.")
-    content = [warning if coarse else None, parts, cost_table(place)]
+    lead = tag("p", f"{sum(place.verdicts)} of {count(len(place.verdicts), 'statement')} of the paper with a yes or no "
+               "come out here as in the paper.", class_="lead")
+    content = [warning if coarse else lead, parts, cost_table(place)]
     links = [(f"paper-{name}", FIGURES[name]) for name in names]
     return Opening("The paper beside ours", links, content), wrong
 

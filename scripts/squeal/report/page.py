@@ -86,12 +86,12 @@ def subtitle(folders):
 
 def page(folders, title, opening=None):
     """All of it."""
-    room = SHARE * LARGEST / max(len(folders), 1)
+    first = tag("article", tag("h2", opening.title), opening.content, id="first") if opening else Markup("")
+    room = SHARE * (LARGEST - len(first)) / max(len(folders), 1)
     head = tag("head", tag("meta", charset="utf-8"), tag("title", title),
                tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
                tag("meta", name="color-scheme", content="light dark"),
                tag("link", rel="icon", href="data:,"), tag("style", resource("page.css")))
-    first = tag("article", tag("h2", opening.title), opening.content, id="first") if opening else None
     articles, verdicts = zip(*(article(folder, room) for folder in folders))
     body = tag("body", tag("header", tag("h1", title), tag("p", subtitle(folders), class_="quiet")),
                navigation(folders, opening),
