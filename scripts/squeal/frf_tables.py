@@ -32,3 +32,8 @@ class Responses:
         self.error, self.relative = (value.get(name) for name in ERRORS)
         peaks = folder / "peaks.csv"
         self.peaks = read_table(peaks, PEAKS) if peaks.exists() else []
+
+    def strongest(self, n):
+        """Names of the n outputs of the largest magnitude, in their order."""
+        by_size = sorted(self.outputs, key=lambda name: -abs(self.outputs[name]).max())[:n]
+        return [name for name in self.outputs if name in by_size]

@@ -17,7 +17,7 @@ from .tables import BadInput
 DECAYED = 1e-3  # part of the largest motion at which a record is over
 TAIL = 0.02  # of the record, where this is looked at
 WIDTH = 3000.0  # Hz, of the bands in which modes are identified
-PERIODS = 10  # of the lowest frequency in a record, at least
+PERIODS = 4  # of the lowest frequency in a record, at least
 SEEN = 0.05  # part of the response at its frequency that makes a mode a peak
 
 

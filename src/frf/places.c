@@ -21,6 +21,10 @@ static PetscErrorCode ProbeFind(Frf frf, const ModelScene *scene, const char opt
     PetscCall(PetscStrlcat(valid, i ? ", " : "", sizeof(valid)));
     PetscCall(PetscStrlcat(valid, scene->probes[i].name, sizeof(valid)));
   }
+  for (PetscInt i = 0; i < scene->n_circles && !strcmp(option, "-frf_probes"); i++) {
+    PetscCall(PetscStrlcat(valid, i ? ", " : valid[0] ? "; or -circles: " : "none; or -circles: ", sizeof(valid)));
+    PetscCall(PetscStrlcat(valid, scene->circles[i].name, sizeof(valid)));
+  }
   PetscCheck(*index >= 0, frf->comm, PETSC_ERR_USER_INPUT, "%s '%s' is none of the -probes: %s", option, name,
              valid[0] ? valid : "there are none, give -probes NAME -NAME_at x,y,z");
   PetscFunctionReturn(0);

@@ -45,6 +45,8 @@ CHANGES = [
     ("-edge_at", "0.115,0.005,0", "probes"),
     ("-edge_part", "beam", "probes"),
     ("-probes", "face,edge", "probes"),
+    ("-rim_count", "8", "circles"),
+    ("-rim_face", "z-", "circles"),
     ("-disc_velocity", "0,0,1e-3", "the start"),
     ("-model_gravity", "0,0,1", "-model_gravity"),
     ("-ts_central_b", "0.6", "-ts_central_b"),
@@ -97,7 +99,7 @@ def check_end(runs, name):
 
 def check_rows(runs, name):
     """A digit of an early row, of each table."""
-    for table in ("transient.csv", "contact_pairs.csv"):
+    for table in ("transient.csv", "contact_pairs.csv", "circles.csv"):
         path = runs.path(name, table)
         whole = path.read_bytes()
         at = whole.index(b"\n") + 20

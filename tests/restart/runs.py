@@ -19,6 +19,8 @@ loads: press
 press: {ramp: 2e-4}
 impulses: tap
 tap: {time: 3e-4, impulse: "0,0,-1e-3"}
+circles: rim
+rim: {radius: 0.12, count: 12}
 motions: nudge
 nudge: {set: beam_top, displacement: "0,1e-7,0", directions: y, ramp: 5e-4}
 contact: {speed: 0.02}
@@ -34,7 +36,7 @@ SCENES = {
     "turns dissipative": TURNS + " -ts_central_b 0.8",
 }
 WATCHED = ("stays watched",)  # scenes with amplitudes of modes
-TABLES = ("transient.csv", "contact_pairs.csv", "transient.xmf")
+TABLES = ("transient.csv", "contact_pairs.csv", "circles.csv", "impulses.csv", "transient.xmf")
 RESTART = "-dynamics_restart"
 OFTEN = 200  # steps between checkpoints
 PATIENCE = 60  # seconds

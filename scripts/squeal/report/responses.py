@@ -11,12 +11,6 @@ COLOURS = ("blue", "orange", "green", "purple", "sky", "vermilion", "grey")
 MOST_TIPS = 400  # points of an output that tell their numbers
 
 
-def strongest(responses):
-    """Outputs that are drawn, in their order: as many as there are colours, those of the largest magnitude."""
-    by_size = sorted(responses.outputs, key=lambda name: -abs(responses.outputs[name]).max())[:len(COLOURS)]
-    return {name: values for name, values in responses.outputs.items() if name in by_size}
-
-
 def scaled(freq):
     """Factor and unit of the frequencies."""
     return (1e-3, "kHz") if freq.max() >= 1000 else (1.0, "Hz")
@@ -26,7 +20,7 @@ def magnitude_figure(folder, responses):
     """Magnitude and phase over frequency, peaks named."""
     scale, unit = scaled(responses.freq)
     x = scale * responses.freq
-    outputs = strongest(responses)
+    outputs = {name: responses.outputs[name] for name in responses.strongest(len(COLOURS))}
     magnitude = {name: numpy.where(values == 0, numpy.nan, abs(values)) for name, values in outputs.items()}
     above = Panel(Axis.about("magnitude, m/N", numpy.concatenate(list(magnitude.values())), log=True), 330)
     below = Panel(Axis("phase, degrees", -185, 185), 170)

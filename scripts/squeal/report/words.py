@@ -112,6 +112,8 @@ LISTS = (
                               f"after "
                               f"{figures(1e3 * s.number(f'{n}_time'), 4)} ms."),
     ("probes", lambda s, n: f"{n}: records the motion at ({s.value(f'{n}_at')}) m."),
+    ("circles", lambda s, n: f"{n}: records the motion of {s.value(f'{n}_count')} nodes on a circle of radius "
+                             f"{s.value(f'{n}_radius')} m."),
 )
 
 
