@@ -5,6 +5,7 @@ where the record has decayed. Else it is exp(-a t), which adds a to the decay of
 taken off again, and so has the response by what it does to the parts of these modes, r / (i omega - lambda).
 """
 
+import math
 from typing import NamedTuple
 
 import numpy
@@ -56,6 +57,17 @@ def modal_sum(modes, freq, shift=0.0):
     return sum(parts) if parts else 0
 
 
+def limits(time):
+    """Least and largest frequency that a record can tell, Hz."""
+    return PERIODS / time[-1], 0.25 / interval(time)
+
+
+def usual_frequencies(time):
+    """Each 10 Hz from 500 to 20000 Hz, as far as the record can tell them."""
+    lowest, highest = limits(time)
+    return numpy.arange(max(50, math.ceil(lowest / 10)), min(2000, int(highest / 10)) + 1) * 10.0
+
+
 class Response:
     """`freq` (Hz), `values` [frequency][output] (m/N), `error` (m/N, estimate, of all outputs together), `modes`,
     `peaks`, `window`."""
@@ -77,9 +89,10 @@ class Response:
     @staticmethod
     def check(time, freq):
         """Raises an error for frequencies that the record cannot tell."""
-        highest, lowest = 0.25 / interval(time), PERIODS / time[-1]
-        if freq[-1] > highest or freq[0] < lowest:
-            raise BadInput(f"--frequencies {freq[0]:.6g} to {freq[-1]:.6g} Hz must lie between {lowest:.6g} Hz, "
+        lowest, highest = limits(time)
+        if len(freq) < 3 or freq[-1] > highest or freq[0] < lowest:
+            asked = f"{freq[0]:.6g} to {freq[-1]:.6g} Hz" if len(freq) else "(none fits)"
+            raise BadInput(f"--frequencies {asked} must lie between {lowest:.6g} Hz, "
                            f"{PERIODS} periods in the record, and {highest:.6g} Hz, four rows to a period")
 
     def estimate(self, time, windowed):
