@@ -4,6 +4,7 @@ not made again; when stopped, the runs under way are ended, and made again the n
 import os
 import re
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -118,14 +119,21 @@ class Screen:
         if not self.terminal and time.monotonic() - self.shown < PERIOD:
             return
         self.shown = time.monotonic()
-        end = "\r" if self.terminal else "\n"
-        print(text.ljust(self.width) if self.terminal else text, end=end, file=self.file, flush=True)
+        if self.terminal:
+            text = text[:shutil.get_terminal_size().columns - 1]
+        self.write(text, "" if self.terminal else "\n")
         self.width = len(text)
 
     def say(self, text):
         """What stays."""
-        print(text.ljust(self.width) if self.terminal else text, file=self.file, flush=True)
+        self.write(text, "\n")
         self.width = 0
+
+    def write(self, text, end):
+        """Over what the line of a terminal shows."""
+        if self.terminal:
+            text = "\r" + text.ljust(self.width)
+        print(text, end=end, file=self.file, flush=True)
 
 
 class Work:
