@@ -25,16 +25,25 @@ typedef struct {
   PetscReal beta;    /* Rayleigh factor of the stiffness, s */
 } Part;
 
-/* Grounded spring (N/m) or dashpot (N s/m) at every node of a set, per node and direction */
+/* How a quantity on a set is spread over its vertices: the same at each, in all, or per area */
+typedef enum { SPREAD_EACH, SPREAD_TOTAL, SPREAD_AREA } Spread;
+
+/* Grounded spring or dashpot on a set, in each direction: at every node (N/m, N s/m), in all (the same units), or per
+   area of a surface (N/m^3, N s/m^3) */
 typedef struct {
-  char     *name, *set;
-  PetscReal value[3];
+  char       *name, *set;
+  PetscReal   value[3];
+  Spread      spread;
+  const char *quantity, *unit; /* "stiffness_total", "N/m" and so on */
 } Grounded;
 
-/* Total force on a set, N, spread over a surface by its area, over other sets equally by node */
+/* Total force on a set, N, spread over a surface by its area, over other sets equally by node; or a pressure on a
+   surface, Pa, into the body */
 typedef struct {
   char     *name, *set;
-  PetscReal force[3];
+  PetscBool is_pressure;
+  PetscReal pressure, force[3]; /* Pa; N, of a pressure its resultant after ModelSetUp() */
+  PetscReal size;               /* sum of |force|, or |pressure| times area, N; after ModelSetUp() */
 } Load;
 
 /* A place of a body that histories record: the nearest node of the part */
@@ -192,6 +201,13 @@ PetscErrorCode ModelGetSetVertices(Model model, const char set[], IS *vertices);
 /*@ ModelGetOwnedVertices - as ModelGetSetVertices(), those that this rank owns: each vertex of the set on exactly one
     rank. Collective. @*/
 PetscErrorCode ModelGetOwnedVertices(Model model, const char set[], IS *vertices);
+
+/*@ ModelCreateShares - the shares s_v of the vertices of a set in a quantity that is spread over it, in the first of three
+    places of each local vertex, complete on every rank that has it: 1; adding up to 1; or area, m^2. Collective. The
+    caller destroys the vector.
+    Errors: PETSC_ERR_USER_INPUT for a set without a node of an element, and per area for one without faces; `owner` is
+    the prefix of the option -owner_set that the message names. @*/
+PetscErrorCode ModelCreateShares(Model model, const char owner[], const char set[], Spread spread, Vec *shares);
 
 /*@ ModelGetSetFaces - quadrilaterals of a surface set on this rank: corners [n][4] (local vertices),
     counter-clockwise seen from outside the body; each face is on exactly one rank. Collective. The caller frees them.

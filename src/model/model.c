@@ -103,7 +103,8 @@ PetscErrorCode ModelSetUp(Model model)
   PetscCall(MeshTabulate(model));
   PetscCall(MeshLayOut(model));
   PetscCall(PartsCheckUnits(model));
-  PetscCall(LoadsCheck(model));
+  PetscCall(GroundedSetUp(model));
+  PetscCall(LoadsSetUp(model));
   PetscCall(ProbesLocate(model));
   PetscCall(CirclesLocate(model));
   PetscFunctionReturn(0);
@@ -156,14 +157,6 @@ PetscBool ModelHasGravity(Model model)
   return g[0] != 0 || g[1] != 0 || g[2] != 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-static PetscErrorCode GroundedView(PetscViewer viewer, const char kind[], const Grounded *g, const char unit[])
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  %s %s on %s: %.6g, %.6g, %.6g %s per node\n", kind, g->name, g->set,
-                                   (double)g->value[0], (double)g->value[1], (double)g->value[2], unit));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ModelView(Model model, PetscViewer viewer)
 {
   PetscInt    n_cells = model->mesh.n_cells;
@@ -183,15 +176,10 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
                                      model->scene.supports[i].fix[1] ? " y" : "",
                                      model->scene.supports[i].fix[2] ? " z" : "", model->scene.supports[i].set));
   for (PetscInt i = 0; i < model->scene.n_springs; i++)
-    PetscCall(GroundedView(viewer, "spring", &model->scene.springs[i], "N/m"));
+    PetscCall(GroundedView(&model->scene.springs[i], "spring", viewer));
   for (PetscInt i = 0; i < model->scene.n_dashpots; i++)
-    PetscCall(GroundedView(viewer, "dashpot", &model->scene.dashpots[i], "N s/m"));
-  for (PetscInt i = 0; i < model->scene.n_loads; i++) {
-    const Load *l = &model->scene.loads[i];
-
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  load %s on %s: %.6g, %.6g, %.6g N in all\n", l->name, l->set,
-                                     (double)l->force[0], (double)l->force[1], (double)l->force[2]));
-  }
+    PetscCall(GroundedView(&model->scene.dashpots[i], "dashpot", viewer));
+  for (PetscInt i = 0; i < model->scene.n_loads; i++) PetscCall(LoadView(&model->scene.loads[i], viewer));
   for (PetscInt i = 0; i < model->scene.n_motions; i++) {
     char words[256];
 

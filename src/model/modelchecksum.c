@@ -102,6 +102,7 @@ PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum 
     PetscCall(ChecksumSetPart(c, is_spring ? "springs" : "dashpots"));
     PetscCall(ModelAddSetChecksum(model, g->set, PETSC_FALSE, c));
     PetscCall(ChecksumAddReals(c, 3, g->value));
+    if (g->spread != SPREAD_EACH) PetscCall(ChecksumAddString(c, g->quantity));
   }
   PetscFunctionReturn(0);
 }
@@ -116,6 +117,7 @@ PetscErrorCode ModelAddLoadsChecksum(Model model, Checksum c)
     PetscCall(ChecksumAddInts(c, 1, &i)); /* the order counts */
     PetscCall(ModelAddSetChecksum(model, model->scene.loads[i].set, PETSC_FALSE, c));
     PetscCall(ChecksumAddReals(c, 3, model->scene.loads[i].force));
+    if (model->scene.loads[i].is_pressure) PetscCall(ChecksumAddReals(c, 1, &model->scene.loads[i].pressure));
   }
   PetscFunctionReturn(0);
 }

@@ -80,9 +80,17 @@ PETSC_INTERN PetscErrorCode PartsFindCells(Model model, PetscInt cell_part[]);
 /* layout.c - the unknowns: displacements that no support fixes. Fills their part of the tables. */
 PETSC_INTERN PetscErrorCode MeshLayOut(Model model);
 
-/* load.c - total forces on sets; raises an error for a set that the mesh does not have, or that has no node of an
-   element */
-PETSC_INTERN PetscErrorCode LoadsCheck(Model model);
+/* load.c - resultants of the loads; raises an error for a set that the mesh does not have, that has no node of an
+   element, or that is no surface where a pressure needs one */
+PETSC_INTERN PetscErrorCode LoadsSetUp(Model model);
+PETSC_INTERN PetscErrorCode LoadView(const Load *load, PetscViewer viewer);
+
+/* grounded.c - errors for sets that a spring or dashpot cannot be spread over; a line about it */
+PETSC_INTERN PetscErrorCode GroundedSetUp(Model model);
+PETSC_INTERN PetscErrorCode GroundedView(const Grounded *grounded, const char kind[], PetscViewer viewer);
+
+/* set.c - faces of a set with cells on both sides, of all ranks; each is counted at least once. Collective */
+PETSC_INTERN PetscErrorCode ModelCountInnerFaces(Model model, const char set[], PetscInt *n);
 
 /* motion.c - flags what the motions prescribe and no support fixes in fixed [vertex][3], and tabulates how far they go;
    errors for an unknown set, and those of ModelCheckMotion(). Collective. */

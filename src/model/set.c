@@ -4,6 +4,7 @@
 */
 #include "modelimpl.h"
 #include "kernels/facet.h"
+#include <petscsf.h>
 
 /* The named sets of the mesh as "disc, pad", for messages; the same text on all ranks */
 static PetscErrorCode SetListNames(DM dm, char list[], size_t size)
@@ -177,6 +178,34 @@ PetscErrorCode ModelGetSetFaces(Model model, const char set[], PetscInt *n, Pets
   PetscCall(ISDestroy(&points));
   PetscCallMPI(MPI_Allreduce(n, &n_all, 1, MPIU_INT, MPI_SUM, model->comm));
   PetscCheck(n_all, model->comm, PETSC_ERR_USER_INPUT, "the set '%s' has no faces: a surface is needed", set);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelCountInnerFaces(Model model, const char set[], PetscInt *n)
+{
+  const PetscInt *p, *shared;
+  PetscInt        fStart, fEnd, n_points = 0, n_shared, n_cells, place;
+  PetscSF         sf;
+  IS              points;
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  PetscCall(SetGetPoints(model, set, &points));
+  PetscCall(DMPlexGetHeightStratum(model->dm, 1, &fStart, &fEnd));
+  PetscCall(DMGetPointSF(model->dm, &sf));
+  PetscCall(PetscSFGetGraph(sf, NULL, &n_shared, &shared, NULL)); /* points that another rank owns, ascending */
+  if (points) PetscCall(ISGetLocalSize(points, &n_points));
+  if (points) PetscCall(ISGetIndices(points, &p));
+  for (PetscInt i = 0; i < n_points; i++) {
+    if (p[i] < fStart || p[i] >= fEnd) continue;
+    PetscCall(DMPlexGetSupportSize(model->dm, p[i], &n_cells));
+    place = -1;
+    if (n_cells == 1 && n_shared > 0) PetscCall(PetscFindInt(p[i], n_shared, shared, &place));
+    *n += n_cells > 1 || place >= 0;
+  }
+  if (points) PetscCall(ISRestoreIndices(points, &p));
+  PetscCall(ISDestroy(&points));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n, 1, MPIU_INT, MPI_SUM, model->comm));
   PetscFunctionReturn(0);
 }
 

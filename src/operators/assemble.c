@@ -1,6 +1,6 @@
 /*
    Terms of the bodies, springs and dashpots. Of each part p, at its Poisson's ratio, K_p (m) per unit Young's modulus E
-   and M_p (m^3) per unit density rho; of each list of springs or dashpots the diagonal matrix of ones at its unknowns:
+   and M_p (m^3) per unit density rho; of each list of springs or dashpots the diagonal matrix of its nodes' shares:
       K = sum_p E_p K_p + sum_s k_s D_s,   M = sum_p rho_p M_p,
       C = sum_p (alpha_p rho_p M_p + beta_p E_p K_p) + sum_d c_d D_d
 */
@@ -94,29 +94,34 @@ static PetscErrorCode OperatorsAddPart(Operators o, PetscInt part, const Part *p
   PetscFunctionReturn(0);
 }
 
-/* Diagonal matrix of ones at the nodes of a set, in the directions of the mask */
-static PetscErrorCode UnitDiagonalCreate(Operators o, const char set[], const PetscBool mask[3], Mat *D)
+/* Diagonal matrix of the shares of the nodes of a set, in the directions of the mask */
+static PetscErrorCode ShareDiagonalCreate(Operators o, const Grounded *g, const PetscBool mask[3], Mat *D)
 {
-  const Mesh       *mesh;
-  const PetscScalar one = 1;
-  const PetscInt   *vertices;
-  PetscInt          n_vertices, n_own;
-  IS                is;
+  const Mesh        *mesh;
+  const PetscScalar *share;
+  const PetscInt    *vertices;
+  PetscInt           n_vertices, n_own;
+  Vec                shares;
+  IS                 is;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(o->model, &mesh));
   PetscCall(MatGetLocalSize(o->terms.term[0].A, &n_own, NULL));
   PetscCall(MatCreateAIJ(o->comm, n_own, n_own, PETSC_DETERMINE, PETSC_DETERMINE, 1, NULL, 0, NULL, D));
-  PetscCall(ModelGetOwnedVertices(o->model, set, &is));
+  PetscCall(ModelCreateShares(o->model, g->name, g->set, g->spread, &shares));
+  PetscCall(VecGetArrayRead(shares, &share));
+  PetscCall(ModelGetOwnedVertices(o->model, g->set, &is));
   PetscCall(ISGetLocalSize(is, &n_vertices));
   PetscCall(ISGetIndices(is, &vertices));
   for (PetscInt j = 0; j < 3 * n_vertices; j++) {
     const PetscInt row = mesh->unknown[3 * vertices[j / 3] + j % 3];
 
-    if (mask[j % 3]) PetscCall(MatSetValues(*D, 1, &row, 1, &row, &one, ADD_VALUES));
+    if (mask[j % 3]) PetscCall(MatSetValues(*D, 1, &row, 1, &row, &share[3 * vertices[j / 3]], ADD_VALUES));
   }
   PetscCall(ISRestoreIndices(is, &vertices));
   PetscCall(ISDestroy(&is));
+  PetscCall(VecRestoreArrayRead(shares, &share));
+  PetscCall(VecDestroy(&shares));
   PetscCall(MatAssemblyBegin(*D, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*D, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(0);
@@ -126,14 +131,13 @@ static PetscErrorCode UnitDiagonalCreate(Operators o, const char set[], const Pe
 static PetscErrorCode OperatorsAddDirections(Operators o, OperatorsTermKind kind, const Grounded *g, const char what[],
                                              PetscReal value, const PetscBool mask[3])
 {
-  const char *unit = kind == OPERATORS_STIFFNESS ? "N/m" : "N s/m";
-  PetscInt    index;
-  Mat         D;
+  PetscInt index;
+  Mat      D;
 
   PetscFunctionBeginUser;
   PetscCall(ParametersAdd(&o->parameters, g->name, what,
-                          &(OperatorsParameter){.unit = unit, .value = value, .closed = PETSC_TRUE}, &index));
-  PetscCall(UnitDiagonalCreate(o, g->set, mask, &D));
+                          &(OperatorsParameter){.unit = g->unit, .value = value, .closed = PETSC_TRUE}, &index));
+  PetscCall(ShareDiagonalCreate(o, g, mask, &D));
   PetscCall(TermsAdd(&o->terms, kind, D, PETSC_TRUE, 1, &index));
   PetscCall(MatDestroy(&D));
   PetscFunctionReturn(0);
@@ -141,10 +145,11 @@ static PetscErrorCode OperatorsAddDirections(Operators o, OperatorsTermKind kind
 
 /* Parameters and terms of a list of springs or dashpots: one where all components that are not zero are equal, else one
    for each of them */
-static PetscErrorCode OperatorsAddGrounded(Operators o, OperatorsTermKind kind, const Grounded *g, const char what[])
+static PetscErrorCode OperatorsAddGrounded(Operators o, OperatorsTermKind kind, const Grounded *g)
 {
-  PetscBool mask[3], uniform = PETSC_TRUE;
-  PetscReal value = 0;
+  const char *what = g->quantity;
+  PetscBool   mask[3], uniform = PETSC_TRUE;
+  PetscReal   value = 0;
 
   PetscFunctionBeginUser;
   for (int d = 0; d < 3; d++) {
@@ -172,8 +177,8 @@ PetscErrorCode OperatorsAssemble(Operators o)
   PetscCall(ModelGetScene(o->model, &scene));
   for (PetscInt i = 0; i < scene->n_parts; i++) PetscCall(OperatorsAddPart(o, i, &scene->parts[i]));
   for (PetscInt i = 0; i < scene->n_springs; i++)
-    PetscCall(OperatorsAddGrounded(o, OPERATORS_STIFFNESS, &scene->springs[i], "stiffness"));
+    PetscCall(OperatorsAddGrounded(o, OPERATORS_STIFFNESS, &scene->springs[i]));
   for (PetscInt i = 0; i < scene->n_dashpots; i++)
-    PetscCall(OperatorsAddGrounded(o, OPERATORS_DAMPING, &scene->dashpots[i], "viscosity"));
+    PetscCall(OperatorsAddGrounded(o, OPERATORS_DAMPING, &scene->dashpots[i]));
   PetscFunctionReturn(0);
 }

@@ -43,7 +43,7 @@ PetscErrorCode StaticsCreateLoad(Operators operators, const PetscReal p[], Vec *
   *size = 0;
   for (PetscInt i = 0; i < scene->n_loads; i++) {
     PetscCall(ModelAddLoad(model, i, local));
-    for (int d = 0; d < 3; d++) *size += PetscAbsReal(scene->loads[i].force[d]);
+    *size += scene->loads[i].size;
   }
   PetscCall(OperatorsAddWeight(operators, p, local, weight));
   for (int d = 0; d < 3; d++) *size += PetscAbsReal(weight[d]);

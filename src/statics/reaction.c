@@ -87,48 +87,39 @@ PetscErrorCode StaticsCreateDisplacements(Statics s, Vec *local)
    each */
 static PetscErrorCode ReactionStiffness(Statics s, const Grounded *g, PetscReal stiffness[3])
 {
-  static const char *const  ending[] = {"stiffness_x", "stiffness_y", "stiffness_z"};
   const OperatorsParameter *parameters;
   PetscInt                  n;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetParameters(s->operators, &n, &parameters));
   for (int d = 0; d < 3; d++) {
-    char all[160], one[160];
+    char all[192], one[192];
 
     stiffness[d] = 0;
-    PetscCall(PetscSNPrintf(all, sizeof(all), "%s_stiffness", g->name));
-    PetscCall(PetscSNPrintf(one, sizeof(one), "%s_%s", g->name, ending[d]));
+    PetscCall(PetscSNPrintf(all, sizeof(all), "%s_%s", g->name, g->quantity));
+    PetscCall(PetscSNPrintf(one, sizeof(one), "%s_%s_%c", g->name, g->quantity, "xyz"[d]));
     for (PetscInt i = 0; i < n && g->value[d] != 0; i++)
       if (!strcmp(parameters[i].name, all) || !strcmp(parameters[i].name, one)) stiffness[d] = s->p[i];
   }
   PetscFunctionReturn(0);
 }
 
-/* Adds k u of the springs at what motions hold; elsewhere supports hold u = 0 */
-static PetscErrorCode ReactionAddSprings(Statics s, const ModelScene *scene, Vec displacement, Vec unbalance)
+/* k u of one list of springs at all local vertices, N; the caller destroys the vector */
+static PetscErrorCode ReactionCreateSpring(Statics s, const Grounded *g, Vec displacement, Vec *forces)
 {
-  PetscReal *value, *u;
+  const PetscReal *u;
+  PetscReal        stiffness[3], *f;
+  PetscInt         n;
 
   PetscFunctionBeginUser;
-  PetscCall(VecGetArray(displacement, &u));
-  PetscCall(VecGetArray(unbalance, &value));
-  for (PetscInt i = 0; i < scene->n_springs; i++) {
-    const PetscInt *v;
-    PetscReal       stiffness[3];
-    PetscInt        n;
-    IS              is;
-
-    PetscCall(ReactionStiffness(s, &scene->springs[i], stiffness));
-    PetscCall(ModelGetSetVertices(s->model, scene->springs[i].set, &is));
-    PetscCall(ISGetLocalSize(is, &n));
-    PetscCall(ISGetIndices(is, &v));
-    for (PetscInt k = 0; k < 3 * n; k++) value[3 * v[k / 3] + k % 3] += stiffness[k % 3] * u[3 * v[k / 3] + k % 3];
-    PetscCall(ISRestoreIndices(is, &v));
-    PetscCall(ISDestroy(&is));
-  }
-  PetscCall(VecRestoreArray(unbalance, &value));
-  PetscCall(VecRestoreArray(displacement, &u));
+  PetscCall(ReactionStiffness(s, g, stiffness));
+  PetscCall(ModelCreateShares(s->model, g->name, g->set, g->spread, forces));
+  PetscCall(VecGetLocalSize(*forces, &n));
+  PetscCall(VecGetArrayRead(displacement, &u));
+  PetscCall(VecGetArray(*forces, &f));
+  for (PetscInt i = n - 1; i >= 0; i--) f[i] = f[i - i % 3] * stiffness[i % 3] * u[i];
+  PetscCall(VecRestoreArray(*forces, &f));
+  PetscCall(VecRestoreArrayRead(displacement, &u));
   PetscFunctionReturn(0);
 }
 
@@ -137,15 +128,18 @@ static PetscErrorCode ReactionsWriteHolders(Statics s, ResultsTable table)
 {
   const PetscBool   all[3] = {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE};
   const ModelScene *scene;
-  PetscReal         force[3], stiffness[3];
-  Vec               unbalance, u;
+  PetscReal         force[3];
+  Vec               unbalance, u, spring;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(s->model, &scene));
   PetscCall(ReactionUnbalance(s, &unbalance));
   PetscCall(StaticsCreateDisplacements(s, &u));
-  PetscCall(ReactionAddSprings(s, scene, u, unbalance));
-  PetscCall(VecDestroy(&u));
+  for (PetscInt i = 0; i < scene->n_springs; i++) { /* at what motions hold; elsewhere supports hold u = 0 */
+    PetscCall(ReactionCreateSpring(s, &scene->springs[i], u, &spring));
+    PetscCall(VecAXPY(unbalance, 1, spring));
+    PetscCall(VecDestroy(&spring));
+  }
   for (PetscInt i = 0; i < scene->n_supports; i++) {
     PetscCall(ReactionSum(s->model, scene->supports[i].set, scene->supports[i].fix, unbalance, force));
     PetscCall(ReactionRow(table, scene->supports[i].name, "support", force));
@@ -155,13 +149,13 @@ static PetscErrorCode ReactionsWriteHolders(Statics s, ResultsTable table)
     PetscCall(ReactionRow(table, scene->motions[i].name, "motion", force));
   }
   for (PetscInt i = 0; i < scene->n_springs; i++) {
-    PetscCall(StaticsCreateDisplacements(s, &u));
-    PetscCall(ReactionSum(s->model, scene->springs[i].set, all, u, force));
-    PetscCall(VecDestroy(&u));
-    PetscCall(ReactionStiffness(s, &scene->springs[i], stiffness));
-    for (int d = 0; d < 3; d++) force[d] *= -stiffness[d];
+    PetscCall(ReactionCreateSpring(s, &scene->springs[i], u, &spring));
+    PetscCall(VecScale(spring, -1));
+    PetscCall(ReactionSum(s->model, scene->springs[i].set, all, spring, force));
+    PetscCall(VecDestroy(&spring));
     PetscCall(ReactionRow(table, scene->springs[i].name, "spring", force));
   }
+  PetscCall(VecDestroy(&u));
   PetscCall(VecDestroy(&unbalance));
   PetscFunctionReturn(0);
 }

@@ -28,24 +28,32 @@ static void PointAddBlock(const PetscReal q[9], const PetscReal value[3], PetscR
 /* Adds the springs or the dashpots of a list */
 static PetscErrorCode PointsAddGrounded(Bodies b, const Grounded *grounded, PetscBool is_dashpot, PetscInt of_vertex[])
 {
-  const PetscInt *vertices;
-  PetscInt        n;
-  IS              is;
+  const PetscInt  *vertices;
+  const PetscReal *share;
+  PetscInt         n;
+  Vec              shares;
+  IS               is;
 
   PetscFunctionBeginUser;
+  PetscCall(ModelCreateShares(b->model, grounded->name, grounded->set, grounded->spread, &shares));
+  PetscCall(VecGetArrayRead(shares, &share));
   PetscCall(ModelGetOwnedVertices(b->model, grounded->set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt v = vertices[i];
+    PetscReal      value[3];
     Point         *point;
 
     if (b->layout.at[v] < 0) continue;
     PetscCall(PointFind(b, v, of_vertex, &point));
-    PointAddBlock(&b->layout.basis[9 * v], grounded->value, is_dashpot ? point->damping : point->stiffness);
+    for (int d = 0; d < 3; d++) value[d] = share[3 * v] * grounded->value[d];
+    PointAddBlock(&b->layout.basis[9 * v], value, is_dashpot ? point->damping : point->stiffness);
   }
   PetscCall(ISRestoreIndices(is, &vertices));
   PetscCall(ISDestroy(&is));
+  PetscCall(VecRestoreArrayRead(shares, &share));
+  PetscCall(VecDestroy(&shares));
   PetscFunctionReturn(0);
 }
 

@@ -1,157 +1,164 @@
 /*
-   Loads: total forces on named sets. With F in N the forces at the vertices v are
-      f_v = F int N_v dA / A   on a surface, with the bilinear shape functions N_v of its faces and A its area (m^2),
-      f_v = F / n              on a set without faces, at its n vertices,
-   so that they add up to F. Vertices without a cell (points of a file's geometry) take no part.
+   Loads on named sets: a total force F (N), f_v = F s_v with the shares s_v of the vertices v (spread.c), or a pressure
+   p (Pa) on a surface, which pushes into the body,
+
+      f_v = -p int N_v n dA,   n the normal out of the body.
+
+   Both keep their directions while the body moves.
 */
 #include "model/modelimpl.h"
+#include "base/vec3.h"
 #include "kernels/facet.h"
 #include <squeal/options.h>
 
-/* Set and force of one load */
+/* Set and force or pressure of one load */
 static PetscErrorCode LoadRead(OptionsItems PetscOptionsObject, void *owner, void *record)
 {
   const MPI_Comm comm = PetscOptionsObject->comm;
   Load          *load = record;
   PetscReal      sum  = 0;
+  PetscBool      has_force;
 
   PetscFunctionBeginUser;
   (void)owner;
   PetscCall(OptionsGetSet(PetscOptionsObject, &load->set));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-force", "total force in x,y,z, N (required)", 3, load->force, NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-force", "total force in x,y,z, N", 3, load->force, &has_force));
+  PetscCall(PetscOptionsReal("-pressure", "instead of a force: pressure on a surface, into the body, Pa", "model.h",
+                             load->pressure, &load->pressure, &load->is_pressure));
+  PetscCheck(!has_force || !load->is_pressure, comm, PETSC_ERR_USER_INPUT,
+             "-%s_force and -%s_pressure are given; give one of them", load->name, load->name);
+  if (load->is_pressure) {
+    PetscCheck(load->pressure != 0 && isfinite(load->pressure), comm, PETSC_ERR_USER_INPUT,
+               "-%s_pressure %.6g must be finite and not zero (Pa)", load->name, (double)load->pressure);
+    PetscFunctionReturn(0);
+  }
   PetscCall(OptionsCheckFinite(comm, load->name, "force", "N", load->force));
   for (int d = 0; d < 3; d++) sum += PetscAbsReal(load->force[d]);
-  PetscCheck(sum > 0, comm, PETSC_ERR_USER_INPUT, "-%s_force must be given: three values, not all zero (N)",
-             load->name);
+  PetscCheck(sum > 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_force must be given: three values, not all zero (N); or -%s_pressure (Pa)", load->name, load->name);
   PetscFunctionReturn(0);
 }
 
-const OptionsList loads_list = {"-loads", "forces, each the prefix of its -set and -force", "Load", sizeof(Load),
-                                LoadRead};
+const OptionsList loads_list = {"-loads", "forces, each the prefix of its -set and -force or -pressure", "Load",
+                                sizeof(Load), LoadRead};
 
-/* Whether any rank has a face of the set */
-static PetscErrorCode SetHasFaces(Model model, const char set[], PetscBool *has)
-{
-  PetscInt fStart, fEnd;
-  DMLabel  label;
-
-  PetscFunctionBeginUser;
-  *has = PETSC_FALSE;
-  PetscCall(DMPlexGetHeightStratum(model->dm, 1, &fStart, &fEnd));
-  PetscCall(DMGetLabel(model->dm, set, &label));
-  for (PetscInt f = fStart; label && f < fEnd && !*has; f++) PetscCall(DMLabelStratumHasPoint(label, 1, f, has));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, has, 1, MPIU_BOOL, MPI_LOR, model->comm));
-  PetscFunctionReturn(0);
-}
-
-/* Corner shares of the area, integral of w_i dA (m^2), by 2 x 2 Gauss points; exact for plane facets */
-static void FacetAreaShares(const double x[4][3], double share[4])
-{
-  static const double g[2] = {-0.57735026918962576451, 0.57735026918962576451};
-
-  for (int i = 0; i < 4; i++) share[i] = 0;
-  for (int q = 0; q < 4; q++) {
-    double w[4], n[3];
-
-    FacetWeights(g[q % 2], g[q / 2], w);
-    FacetNormal(x, g[q % 2], g[q / 2], n);
-    for (int i = 0; i < 4; i++) share[i] += w[i] * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-  }
-}
-
-/* Adds int N_v dA (m^2) of the faces on this rank to weight[3 v] */
-static PetscErrorCode SurfaceAddWeights(Model model, const char set[], PetscScalar weight[])
+/* Adds -p int N_v n dA of the faces on this rank to f[3 v], and their area (m^2) to *area */
+static PetscErrorCode PressureAdd(Model model, const Load *load, PetscScalar f[], PetscReal *area)
 {
   PetscInt n_faces, *corners;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetSetFaces(model, set, &n_faces, &corners));
-  for (PetscInt f = 0; f < n_faces; f++) {
-    double x[4][3], share[4];
+  PetscCall(ModelGetSetFaces(model, load->set, &n_faces, &corners));
+  for (PetscInt i = 0; i < n_faces; i++) {
+    double x[4][3], share[4][3], whole[3] = {0, 0, 0};
 
-    for (int i = 0; i < 4; i++) PetscCall(PetscArraycpy(x[i], &model->mesh.x[3 * corners[4 * f + i]], 3));
-    FacetAreaShares((const double(*)[3])x, share);
-    for (int i = 0; i < 4; i++) weight[3 * corners[4 * f + i]] += share[i];
+    for (int k = 0; k < 4; k++) PetscCall(PetscArraycpy(x[k], &model->mesh.x[3 * corners[4 * i + k]], 3));
+    FacetAreaNormals((const double(*)[3])x, share);
+    for (int k = 0; k < 4; k++)
+      for (int d = 0; d < 3; d++) {
+        f[3 * corners[4 * i + k] + d] -= load->pressure * share[k][d];
+        whole[d] += share[k][d];
+      }
+    *area += Vec3Length(whole);
   }
   PetscCall(PetscFree(corners));
   PetscFunctionReturn(0);
 }
 
-/* Adds 1 at the vertices of the set that this rank owns and that have cells to weight[3 v] */
-static PetscErrorCode VerticesAddWeights(Model model, const char set[], PetscScalar weight[])
+/* Raises an error for a face with cells on both sides, where there is no outside */
+static PetscErrorCode PressureCheckFaces(Model model, const Load *load)
 {
-  const PetscInt *vertices;
-  PetscInt        vStart, n, n_edges;
-  IS              is;
+  PetscInt inner;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, NULL));
-  PetscCall(ModelGetOwnedVertices(model, set, &is));
-  PetscCall(ISGetLocalSize(is, &n));
-  PetscCall(ISGetIndices(is, &vertices));
-  for (PetscInt j = 0; j < n; j++) {
-    PetscCall(DMPlexGetSupportSize(model->dm, vStart + vertices[j], &n_edges));
-    if (n_edges) weight[3 * vertices[j]] += 1;
-  }
-  PetscCall(ISRestoreIndices(is, &vertices));
-  PetscCall(ISDestroy(&is));
+  PetscCall(ModelCountInnerFaces(model, load->set, &inner));
+  PetscCheck(!inner, model->comm, PETSC_ERR_USER_INPUT,
+             "-%s_pressure: %" PetscInt_FMT
+             " faces of -%s_set %s lie inside of a body, with a cell on both sides; name "
+             "a surface of it",
+             load->name, inner, load->name, load->set);
   PetscFunctionReturn(0);
 }
 
-/* The part f_v / F of each vertex, in the first of its three places, on every rank that has the vertex. The caller
-   destroys the vector. */
-static PetscErrorCode LoadCreateWeights(Model model, const Load *load, Vec *weights)
+/* The forces of a load at full size, on every rank that has the vertex, N; the caller destroys the vector. *area: of a
+   surface under pressure, m^2 */
+static PetscErrorCode LoadCreateForces(Model model, const Load *load, Vec *forces, PetscReal *area)
 {
-  PetscScalar *weight;
-  PetscReal    total = 0;
+  PetscScalar *f;
   PetscInt     n;
-  PetscBool    faces;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelCreateNodal(model, weights));
-  PetscCall(SetHasFaces(model, load->set, &faces));
-  PetscCall(VecGetLocalSize(*weights, &n));
-  PetscCall(VecGetArray(*weights, &weight));
-  PetscCall(faces ? SurfaceAddWeights(model, load->set, weight) : VerticesAddWeights(model, load->set, weight));
-  for (PetscInt i = 0; i < n; i++) total += PetscRealPart(weight[i]);
-  PetscCall(VecRestoreArray(*weights, &weight));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &total, 1, MPIU_REAL, MPI_SUM, model->comm));
-  PetscCheck(total > 0, model->comm, PETSC_ERR_USER_INPUT,
-             "-%s_set %s has no node of an element: name a surface, curve or point of a body", load->name, load->set);
-  PetscCall(VecScale(*weights, 1 / total));
-  PetscCall(ModelSumShared(model, *weights));
+  *area = 0;
+  if (!load->is_pressure) {
+    PetscCall(ModelCreateShares(model, load->name, load->set, SPREAD_TOTAL, forces));
+    PetscCall(VecGetLocalSize(*forces, &n));
+    PetscCall(VecGetArray(*forces, &f));
+    for (PetscInt j = n - 1; j >= 0; j--) f[j] = f[j - j % 3] * load->force[j % 3];
+    PetscCall(VecRestoreArray(*forces, &f));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(ModelCreateNodal(model, forces));
+  PetscCall(VecGetArray(*forces, &f));
+  PetscCall(PressureAdd(model, load, f, area));
+  PetscCall(VecRestoreArray(*forces, &f));
+  PetscCall(ModelSumShared(model, *forces));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, area, 1, MPIU_REAL, MPI_SUM, model->comm));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LoadsCheck(Model model)
+/* The resultant of a pressure, N */
+static PetscErrorCode PressureSum(Model model, Load *load, Vec forces)
+{
+  const PetscScalar *f;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(forces, &f));
+  for (PetscInt j = 0; j < 3 * model->mesh.n_vertices; j++)
+    if (model->mesh.owned[j / 3]) load->force[j % 3] += f[j];
+  PetscCall(VecRestoreArrayRead(forces, &f));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, load->force, 3, MPIU_REAL, MPI_SUM, model->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LoadsSetUp(Model model)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < model->scene.n_loads; i++) {
-    Vec weights;
+    Load     *load = &model->scene.loads[i];
+    PetscReal area;
+    Vec       forces;
 
-    PetscCall(LoadCreateWeights(model, &model->scene.loads[i], &weights));
-    PetscCall(VecDestroy(&weights));
+    if (load->is_pressure) PetscCall(PressureCheckFaces(model, load));
+    PetscCall(LoadCreateForces(model, load, &forces, &area));
+    if (load->is_pressure) PetscCall(PressureSum(model, load, forces));
+    load->size = PetscAbsReal(load->pressure) * area;
+    for (int d = 0; d < 3 && !load->is_pressure; d++) load->size += PetscAbsReal(load->force[d]);
+    PetscCall(VecDestroy(&forces));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LoadView(const Load *load, PetscViewer viewer)
+{
+  char words[64] = "";
+
+  PetscFunctionBeginUser;
+  if (load->is_pressure) PetscCall(PetscSNPrintf(words, sizeof(words), "%.6g Pa, ", (double)load->pressure));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  load %s on %s: %s%.6g, %.6g, %.6g N in all\n", load->name, load->set,
+                                   words, (double)load->force[0], (double)load->force[1], (double)load->force[2]));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ModelAddLoad(Model model, PetscInt i, Vec local)
 {
-  const PetscScalar *weight;
-  PetscScalar       *f;
-  PetscInt           n;
-  Vec                weights;
+  PetscReal area;
+  Vec       forces;
 
   PetscFunctionBeginUser;
   PetscCheck(i >= 0 && i < model->scene.n_loads, model->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "load %" PetscInt_FMT " does not exist: there are %" PetscInt_FMT, i, model->scene.n_loads);
-  PetscCall(LoadCreateWeights(model, &model->scene.loads[i], &weights));
-  PetscCall(VecGetLocalSize(weights, &n));
-  PetscCall(VecGetArrayRead(weights, &weight));
-  PetscCall(VecGetArray(local, &f));
-  for (PetscInt j = 0; j < n; j++) f[j] += weight[j - j % 3] * model->scene.loads[i].force[j % 3];
-  PetscCall(VecRestoreArray(local, &f));
-  PetscCall(VecRestoreArrayRead(weights, &weight));
-  PetscCall(VecDestroy(&weights));
+  PetscCall(LoadCreateForces(model, &model->scene.loads[i], &forces, &area));
+  PetscCall(VecAXPY(local, 1, forces));
+  PetscCall(VecDestroy(&forces));
   PetscFunctionReturn(0);
 }
