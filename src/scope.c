@@ -128,6 +128,7 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
   for (PetscInt i = 0; i < scene->n_parts && !s->transient && !s->modes; i++) {
     PetscCall(ScopeRefuse(comm, scene->parts[i].name, "alpha", still));
     PetscCall(ScopeRefuse(comm, scene->parts[i].name, "beta", still));
+    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "loss_factor", still));
   }
   if (!s->transient && !s->modes) PetscCall(ScopeCheckDensity(comm, scene));
   for (PetscInt i = 0; i < scene->n_probes && !s->transient && !s->frf; i++)
@@ -136,6 +137,7 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
     PetscCall(ScopeRefuse(comm, scene->circles[i].name, "radius", no_probe));
   for (PetscInt i = 0; i < scene->n_loads && s->modes && !statics; i++) {
     PetscCall(ScopeRefuse(comm, scene->loads[i].name, "force", all));
+    PetscCall(ScopeRefuse(comm, scene->loads[i].name, "pressure", all));
     PetscCall(ScopeRefuse(comm, scene->loads[i].name, "set", all));
   }
   PetscFunctionReturn(0);

@@ -22,7 +22,8 @@ typedef struct {
   PetscReal poisson; /* Poisson's ratio, in (-1, 0.5) */
   PetscReal density; /* kg/m^3, > 0 */
   PetscReal alpha;   /* Rayleigh factor of the mass, 1/s: C = alpha M + beta K */
-  PetscReal beta;    /* Rayleigh factor of the stiffness, s */
+  PetscReal beta;    /* Rayleigh factor of the stiffness, s, loss included */
+  PetscReal loss;    /* loss factor at the scene's loss_frequency, part of beta */
 } Part;
 
 /* How a quantity on a set is spread over its vertices: the same at each, in all, or per area */
@@ -102,8 +103,9 @@ typedef struct {
   PrescribedMotion *motions;
   Probe            *probes;
   Circle           *circles;
-  PetscReal         gravity[3]; /* m/s^2 */
-  const Element    *element;    /* formulation of the cells; after ModelSetUp() */
+  PetscReal         loss_frequency; /* Hz, of the loss factors; 0: not given */
+  PetscReal         gravity[3];     /* m/s^2 */
+  const Element    *element;        /* formulation of the cells; after ModelSetUp() */
 } ModelScene;
 
 /*@
@@ -121,6 +123,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
 .  -model_mesh <file>       - Gmsh file, format 2.2 or 4.1
 .  -model_element <incompatible|full> - element formulation
 .  -parts, -supports, -springs, -dashpots, -loads, -motions, -probes, -circles <names> - lists; each name is the prefix of its own options
+.  -<part>_loss_factor <0>  - structural damping, exact at -loss_frequency <Hz>: beta grows by loss / (2 pi frequency)
 .  -model_gravity <0,0,0>   - acceleration of gravity, m/s^2, which acts on the mass of all parts in statics and in time
 .  -lift_set, -lift_displacement x,y,z, -lift_directions <those of the displacement> - of a motion named `lift`: named
    set, m, some of x, y, z

@@ -18,7 +18,7 @@ PetscErrorCode ModelSetFromOptions(Model model)
   static const char *const sources[] = {"rig", "file"};
   ModelScene *const        scene     = &model->scene;
   PetscInt                 source    = 0;
-  PetscBool                given, has_mesh, old;
+  PetscBool                given, has_mesh, has_loss, old;
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(model->comm, NULL, "Model", NULL);
@@ -30,7 +30,12 @@ PetscErrorCode ModelSetFromOptions(Model model)
                                "model.h", model->formulation, model->formulation, sizeof(model->formulation), NULL));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-model_gravity", "acceleration of gravity in x,y,z, m/s^2", 3,
                             scene->gravity, NULL));
+  PetscCall(PetscOptionsReal("-loss_frequency", "where the loss factors of the parts are exact, Hz", "model.h",
+                             scene->loss_frequency, &scene->loss_frequency, &has_loss));
   PetscOptionsEnd();
+  PetscCheck(!has_loss || (scene->loss_frequency > 0 && isfinite(scene->loss_frequency)), model->comm,
+             PETSC_ERR_USER_INPUT, "-loss_frequency %.6g must be positive and finite (Hz)",
+             (double)scene->loss_frequency);
   PetscCall(PetscOptionsHasName(NULL, NULL, "-dynamics_gravity", &old));
   PetscCheck(!old, model->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_gravity is now -model_gravity: it acts in statics too");
@@ -44,6 +49,7 @@ PetscErrorCode ModelSetFromOptions(Model model)
   PetscCall(PetscOptionsHasName(NULL, NULL, parts_list.option, &given));
   if (!given && source == 0) PetscCall(PetscOptionsSetValue(NULL, parts_list.option, "disc,pad,beam"));
   PetscCall(OptionsReadList(model->comm, &parts_list, model, &scene->n_parts, &scene->parts));
+  PetscCall(PartsAddLoss(model));
   PetscCall(OptionsReadList(model->comm, &supports_list, model, &scene->n_supports, &scene->supports));
   PetscCall(OptionsReadList(model->comm, &springs_list, model, &scene->n_springs, &scene->springs));
   PetscCall(OptionsReadList(model->comm, &dashpots_list, model, &scene->n_dashpots, &scene->dashpots));

@@ -73,6 +73,9 @@ PETSC_INTERN PetscErrorCode MeshReset(Model model);
 PETSC_INTERN const OptionsList parts_list, supports_list, springs_list, dashpots_list, loads_list, motions_list,
   probes_list, circles_list;
 
+/* part.c - the loss factors as stiffness damping; errors for those without -loss_frequency, and for the reverse */
+PETSC_INTERN PetscErrorCode PartsAddLoss(Model model);
+
 /* part.c - checks the materials, and finds the part of each cell */
 PETSC_INTERN PetscErrorCode PartsCheck(Model model);
 PETSC_INTERN PetscErrorCode PartsFindCells(Model model, PetscInt cell_part[]);

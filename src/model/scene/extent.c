@@ -131,6 +131,10 @@ PetscErrorCode PartView(Model model, PetscInt part, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(
     viewer, "  part %s: E %.6g Pa, nu %.6g, rho %.6g kg/m^3, alpha %.6g 1/s, beta %.6g s\n", p->name, (double)p->young,
     (double)p->poisson, (double)p->density, (double)p->alpha, (double)p->beta));
+  if (p->loss > 0)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "    loss factor %.6g at %.6g Hz, in beta: %.6g at half that frequency, %.6g at twice it\n",
+      (double)p->loss, (double)model->scene.loss_frequency, (double)(p->loss / 2), (double)(2 * p->loss)));
   PetscCall(PetscViewerASCIIPrintf(viewer,
                                    "    %.4g x %.4g x %.4g m, %.4g m^3, %.4g kg; a wave along it takes %.3g s\n",
                                    (double)e->size[0], (double)e->size[1], (double)e->size[2], (double)e->volume,

@@ -1,5 +1,8 @@
 /*
    Bodies: names and materials from the options, and the part of each cell from the labels of the mesh.
+
+   A loss factor eta stands for the complex stiffness (1 + i eta) K. In real arithmetic it is C = (eta / omega_ref) K,
+   which is exact at omega_ref and grows with the frequency elsewhere.
 */
 #include "model/modelimpl.h"
 #include <squeal/options.h>
@@ -18,6 +21,31 @@ static PetscErrorCode PartRead(OptionsItems PetscOptionsObject, void *owner, voi
   PetscCall(PetscOptionsReal("-density", "density, kg/m^3 (required)", "model.h", part->density, &part->density, NULL));
   PetscCall(PetscOptionsReal("-alpha", "Rayleigh factor of the mass, 1/s", "model.h", part->alpha, &part->alpha, NULL));
   PetscCall(PetscOptionsReal("-beta", "Rayleigh factor of the stiffness, s", "model.h", part->beta, &part->beta, NULL));
+  PetscCall(PetscOptionsReal("-loss_factor", "loss factor at -loss_frequency, adds to beta", "model.h", part->loss,
+                             &part->loss, NULL));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PartsAddLoss(Model model)
+{
+  const PetscReal omega = 2 * PETSC_PI * model->scene.loss_frequency;
+  PetscBool       any   = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < model->scene.n_parts; i++) {
+    Part *p = &model->scene.parts[i];
+
+    PetscCheck(p->loss >= 0 && isfinite(p->loss), model->comm, PETSC_ERR_USER_INPUT,
+               "-%s_loss_factor %.6g must be finite and not negative", p->name, (double)p->loss);
+    PetscCheck(p->loss == 0 || omega > 0, model->comm, PETSC_ERR_USER_INPUT,
+               "-%s_loss_factor %.6g needs -loss_frequency, Hz: in real arithmetic it is exact at one frequency",
+               p->name, (double)p->loss);
+    if (p->loss > 0) p->beta += p->loss / omega;
+    any = p->loss > 0 || any ? PETSC_TRUE : PETSC_FALSE;
+  }
+  PetscCheck(omega == 0 || any, model->comm, PETSC_ERR_USER_INPUT,
+             "-loss_frequency %.6g does nothing: none of the -parts has a -..._loss_factor",
+             (double)model->scene.loss_frequency);
   PetscFunctionReturn(0);
 }
 
