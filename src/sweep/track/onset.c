@@ -32,6 +32,7 @@ typedef struct {
   OnsetKind  kind;
   Trial      end[2]; /* unstable, stable */
   PetscReal  change; /* of g with |lambda| at the unstable end */
+  PetscReal  unit;   /* of g: machine epsilon times it is rounding */
 } Onset;
 
 /* Guess of the simple mode at a value: on the line through both ends of the bracket, or that of the reference */
@@ -133,7 +134,15 @@ static PetscErrorCode OnsetShrink(Onset *onset, Trial *trial)
   PetscFunctionReturn(0);
 }
 
-/* Brent's method for the zero of g between the ends */
+/* The size of what g is a difference of */
+static PetscReal OnsetUnit(const Onset *onset, const BranchEvent *event)
+{
+  const PetscReal size = PetscMax(cabs(event->lambda), event->omega);
+
+  return onset->kind == ONSET_GROWTH ? size : onset->kind == ONSET_PAIR ? PetscSqr(size * size) : size * onset->change;
+}
+
+/* Brent's method for the zero of g between the ends, until g is rounding */
 static PetscErrorCode OnsetIterate(Onset *onset, PetscReal *critical, PetscBool *found)
 {
   PetscReal a = onset->end[0].frame->value, b = onset->end[1].frame->value, c = a, d = b - a, e = d;
@@ -148,7 +157,7 @@ static PetscErrorCode OnsetIterate(Onset *onset, PetscReal *critical, PetscBool 
     tolerance = 2 * PETSC_MACHINE_EPSILON * PetscAbsReal(b);
     half      = 0.5 * (c - b);
     *critical = b;
-    if (PetscAbsReal(half) <= tolerance || gb == 0) break;
+    if (PetscAbsReal(half) <= tolerance || PetscAbsReal(gb) <= PETSC_MACHINE_EPSILON * onset->unit) break;
     if (PetscAbsReal(e) >= tolerance && PetscAbsReal(ga) > PetscAbsReal(gb)) {
       const PetscReal s = gb / ga, q = ga / gc, r = gb / gc;
       PetscReal       u = a == c ? 2 * half * s : s * (2 * half * q * (q - r) - (b - a) * (r - 1));
@@ -194,9 +203,6 @@ static PetscErrorCode OnsetSlope(Onset *onset, const Trial *trial, const BranchE
 /* Error of g at the critical trial, from those of the eigenvalues and rounding */
 static PetscReal OnsetUncertainty(const Onset *onset, const Trial *trial, const BranchEvent *event)
 {
-  const PetscReal size = PetscMax(cabs(event->lambda), event->omega);
-  const PetscReal unit =
-    onset->kind == ONSET_GROWTH ? size : (onset->kind == ONSET_PAIR ? PetscSqr(size * size) : size * onset->change);
   const PetscReal lambda = cabs(trial->frame->modes.lambda[trial->member[0]]);
   PetscReal       error = 0, noise = 0, delta;
 
@@ -210,7 +216,7 @@ static PetscReal OnsetUncertainty(const Onset *onset, const Trial *trial, const 
   delta = onset->kind == ONSET_PAIR ? PetscSqr(2 * event->omega * error) : 3 * error;
   if (onset->kind == ONSET_GROWTH) delta += noise;
   if (onset->kind == ONSET_STIFFNESS) delta *= onset->source.form.damped ? onset->change : 2 * lambda + error;
-  return delta + 10 * PETSC_MACHINE_EPSILON * unit;
+  return delta + 10 * PETSC_MACHINE_EPSILON * onset->unit;
 }
 
 /* Frequency, error and modes at the critical value */
@@ -252,6 +258,7 @@ static PetscErrorCode OnsetBracket(Onset *onset, const BranchEvent *event, Petsc
 
   PetscFunctionBeginUser;
   PetscCall(OnsetBegin(onset, unstable, event->lambda, found));
+  onset->unit = OnsetUnit(onset, event);
   if (*found) PetscCall(OnsetTry(onset, stable, &onset->end[1], found));
   if (!*found) PetscFunctionReturn(0);
   g0 = onset->end[0].g, g1 = onset->end[1].g;
