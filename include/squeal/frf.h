@@ -63,7 +63,7 @@ PetscErrorCode FrfSetPencil(Frf frf, Pencil pencil);
    Options Database Keys:
 +  -frf_force <probe,direction>   - where the force of 1 N acts: a probe and x, y, z or three numbers; for matrices
 without a mesh the number of an unknown, from 1
-.  -frf_probes <names>            - where the response is recorded; default all probes and circles, or all of up to 10 unknowns
+.  -frf_probes <names>            - where the response is recorded; circles by name; default all probes, or all of up to 10 unknowns
 .  -frf_directions <xyz>          - in which directions
 .  -frf_frequencies <low:high:n>  - Hz; low:high:n:log for equal ratios; or a list
 .  -frf_times <low:high:n>        - s; the answer of the modes to an impulse of 1 N s as well; or a list

@@ -108,8 +108,9 @@ PetscErrorCode FrfSetFromOptions(Frf frf)
   frf->method   = (FrfMethod)method;
   frf->n_places = MAX_PLACES;
   PetscCall(PetscCalloc1(MAX_PLACES, &frf->place));
-  PetscCall(OptionsGetWords(frf->comm, "-frf_probes", "where the response is recorded; default all probes and circles",
-                            &frf->n_places, frf->place));
+  PetscCall(OptionsGetWords(frf->comm, "-frf_probes",
+                            "where the response is recorded: probes, circles; default all probes", &frf->n_places,
+                            frf->place));
   PetscCheck(frf->rtol > 0, frf->comm, PETSC_ERR_USER_INPUT, "-frf_rtol %.6g must be positive", (double)frf->rtol);
   PetscCheck(frf->max_steps > 0, frf->comm, PETSC_ERR_USER_INPUT, "-frf_max_steps %" PetscInt_FMT " must be positive",
              frf->max_steps);

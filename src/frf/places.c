@@ -225,9 +225,8 @@ static PetscErrorCode OutputsOfModel(Frf frf, Model model)
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(model, &scene));
   for (PetscInt i = 0; i < frf->n_places; i++) PetscCall(OutputsOfName(frf, model, scene, frf->place[i]));
-  if (frf->n_places) PetscFunctionReturn(0);
-  for (PetscInt i = 0; i < scene->n_probes; i++) PetscCall(OutputsOfProbe(frf, model, &scene->probes[i]));
-  for (PetscInt i = 0; i < scene->n_circles; i++) PetscCall(OutputsOfCircle(frf, model, &scene->circles[i]));
+  for (PetscInt i = 0; i < scene->n_probes && !frf->n_places; i++)
+    PetscCall(OutputsOfProbe(frf, model, &scene->probes[i]));
   PetscFunctionReturn(0);
 }
 
