@@ -40,6 +40,12 @@ FAULTS = (
      "RampValue(&load->ramp, step->time + step->dt)", "transient_free"),
     ("motions are a step early", "src/dynamics/external/motion.c", "step->time);\n    const PetscReal rate   = (RampValue(&motion->ramp, step->time +",
      "step->time + step->dt);\n    const PetscReal rate = (RampValue(&motion->ramp, step->time + 2 *", "transient_free"),
+    ("changes after an impulse are not counted", "src/contact/projector/record.c", "sums->changed += most > 0 ? 1 : 0;", "",
+     "transient_response"),
+    ("a window's damping stays in the response", "scripts/squeal/response_transform.py", "if self.window.decay:",
+     "if not self.window.decay:", "response"),
+    ("residues are those of the first row, not of the blow", "scripts/squeal/identify.py", "numpy.outer(part, time)",
+     "numpy.outer(part, time - time[0])", "response"),
 )
 
 
