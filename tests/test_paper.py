@@ -55,6 +55,10 @@ class Paper:
         """Time of the log of each complete run."""
         return {path.parent.name: path.stat().st_mtime_ns for path in self.folder.glob("*/log.txt")}
 
+    def under_way(self):
+        """Folders of runs that have begun and not ended."""
+        return [path.parent for path in self.folder.glob("*/out.part") if not (path.parent / "log.txt").exists()]
+
     def processes(self):
         """Those that work in the folder."""
         mine = str(self.folder).encode()
@@ -79,19 +83,19 @@ def rows_of(path):
 
 
 def interrupted(p, sign, n):
-    """Sends a signal when n more runs are complete; returns the complete ones, status and what was said."""
+    """Sends a signal when n more runs are complete and others under way; returns the complete ones, status and what was said."""
     wanted = len(p.complete()) + n
     with (p.root / "said").open("w") as said:
         process = subprocess.Popen(p.command("--jobs", "2"), stderr=said, stdout=said, cwd=p.root)
         begun = time.monotonic()
-        while len(p.complete()) < wanted and process.poll() is None and time.monotonic() - begun < BELIEVED:
+        while (len(p.complete()) < wanted or not p.under_way()) and process.poll() is None and time.monotonic() - begun < BELIEVED:
             time.sleep(0.01)
         process.send_signal(sign)
         process.wait(BELIEVED)
     begun = time.monotonic()
     while p.processes() and time.monotonic() - begun < BELIEVED:
         time.sleep(0.05)
-    begun = [path.parent for path in p.folder.glob("*/out.part")]
+    begun = p.under_way()
     ended = [folder.name for folder in begun if (folder / "scene.yaml").exists()]
     p.check(len(ended) < len(begun) and not p.processes(),  # one may end by itself just then
             f"{sign.name} ends the {len(begun)} runs that were under way {ended} {p.processes()}")
@@ -168,6 +172,17 @@ def check_numbers(p, page):
             f"Figure 10: {claims_of(page, 'fig10')[1]}, {most:.2f} N")
 
 
+def check_lines(p, text):
+    """No line has many more points than two for each point of the screen: breaks when a page of long records is too
+    large to be opened."""
+    most = 0.0
+    for kind, width in (("wide", 1120), ("half", 540), ("narrow", 372)):
+        for picture in re.findall(rf'<svg class="chart {kind}".*?</svg>', text, re.DOTALL):
+            counts = [d.count("L") for d in re.findall(r' d="(M[^"]*)"', picture)]
+            most = max([most, *(n / width for n in counts)])
+    p.check(0.5 < most < 2.5, f"{most:.2f} points of a line for a point of the screen at most")
+
+
 def check_page(p):
     """Every figure, its claims and pictures, one file of a sensible size."""
     text = (p.folder / "paper.html").read_text()
@@ -178,6 +193,7 @@ def check_page(p):
     empty = [name for name in SECTIONS[:-1] if not claims_of(page, name)]
     p.check(not empty and not page.find("p", class_="missing", inside="first")[1:], f"every figure has claims {empty}")
     p.check(len(text) < 10e6 and not re.search(r'(src|href)="https?:', text), f"one file of {len(text)} bytes")
+    check_lines(p, text)
     took = [float(row["time, s"]) for row in page.table("paper-cost-table")]
     p.check(len(took) == N_RUNS and min(took) > 0, f"the time of every run {took}")
     check_numbers(p, page)

@@ -236,9 +236,9 @@ def cost_table(place):
                Column("for", lambda row: ", ".join(FIGURES[name] for name in row[0].figures), left=True),
                Column("time, s", lambda row: row[1][1] if row[1] else math.nan),
                Column("memory, MB", lambda row: float(row[1][2]) if row[1] else math.nan, lambda v: f"{v:.0f}")]
+    total = sum(cost[1] for _, cost in rows if cost)
     return section("paper-cost", "What it took", table("paper-cost-table", columns, rows),
-                   tag("p", f"One rank each; {sum(cost[1] for _, cost in rows if cost):.0f} s of one core together.",
-                       class_="quiet"))
+                   tag("p", f"One rank each; {total:.0f} s by the clock one after another.", class_="quiet"))
 
 
 def opening(place, names, coarse):

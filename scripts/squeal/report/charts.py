@@ -12,7 +12,6 @@ from .markup import Markup, attribute, figures, join, tag
 WIDTHS = {"wide": 1120, "half": 540, "narrow": 372}  # points of the screen
 LETTER = 6.6  # width of a letter of the labels
 LEFT, RIGHT, TOP, BOTTOM, BETWEEN = 58, 14, 24, 44, 34
-MOST = 3000  # points of a line: of more, the extremes of pieces are drawn
 
 
 def round_step(span, most):
@@ -74,9 +73,9 @@ def path_of(x, y):
     return "".join(pieces)
 
 
-def thinned(x, y):
-    """Extremes of pieces where there are too many points."""
-    piece = 2 * len(x) // MOST
+def thinned(x, y, width):
+    """Extremes of pieces, one for each point of the screen, where a line has more than two points for each."""
+    piece = int(len(x) / width)
     if piece <= 1:
         return x, y
     n = len(x) // piece * piece
@@ -97,8 +96,8 @@ class Panel:
 
     def line(self, x, y, colour, tip=None, **style):
         """Through points."""
-        x, y = thinned(x, y)
-        self.items.append(lambda place: titled("path", tip, d=path_of(*place(x, y)), class_=f"line {colour}", **style))
+        self.items.append(lambda place: titled("path", tip, d=path_of(*place(*thinned(x, y, place.width()))),
+                                               class_=f"line {colour}", **style))
 
     def points(self, x, y, colour, tips, radius=3.5, data=None):
         """Dots; `data`: attributes of each."""
@@ -169,6 +168,10 @@ class Place:
 
     def __init__(self, x, y, box):
         self.x, self.y, self.box = x, y, box
+
+    def width(self):
+        """Of the frame, points of the screen."""
+        return self.box[2] - self.box[0]
 
     def __call__(self, x, y):
         left, top, right, bottom = self.box

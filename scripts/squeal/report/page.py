@@ -16,7 +16,7 @@ from .transients import transient_part
 
 HERE = Path(__file__).resolve().parent
 LARGEST = 10e6  # bytes of the page
-SHARE = 0.7  # of them for shapes
+SHARES = 0.7, 0.35, 0.15, 0.0  # of them for shapes: the first one with which the page is not larger
 TITLES = {"modes": "Modes", "static": "Sliding state", "sweep": "Sweep", "transient": "In time",
           "frf": "Frequency response"}
 SECTIONS = {"modes": modes_part, "static": static_part, "sweep": sweep_part, "transient": transient_part,
@@ -84,10 +84,10 @@ def subtitle(folders):
                       *([f"computed {' to '.join(dict.fromkeys((ends[0], ends[-1])))}"] if ends else [])])
 
 
-def page(folders, title, opening=None):
-    """All of it."""
-    first = tag("article", tag("h2", opening.title), opening.content, id="first") if opening else Markup("")
-    room = SHARE * (LARGEST - len(first)) / max(len(folders), 1)
+def page(folders, title, opening, share):
+    """All of it; share: of the largest page, for shapes."""
+    first = tag("article", tag("h2", opening.title), opening.content, id="first") if opening else None
+    room = share * LARGEST / max(len(folders), 1)
     head = tag("head", tag("meta", charset="utf-8"), tag("title", title),
                tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
                tag("meta", name="color-scheme", content="light dark"),
@@ -102,10 +102,13 @@ def page(folders, title, opening=None):
 
 def write_page(paths, output, title, options, opening=None):
     """Reads the folders and writes the page; returns its name and a line for each thing that is wrong."""
-    folders = [Folder(path, f"r{number}", options) for number, path in enumerate(paths, 1)]
-    if not any(folder.analyses for folder in folders):
-        raise BadInput(folders[0].wrong[0])
-    text = page(folders, title, opening)
+    for share in SHARES:
+        folders = [Folder(path, f"r{number}", options) for number, path in enumerate(paths, 1)]
+        if not any(folder.analyses for folder in folders):
+            raise BadInput(folders[0].wrong[0])
+        text = page(folders, title, opening, share)
+        if len(text.encode()) <= LARGEST:
+            break
     try:
         output.write_text(text, encoding="utf-8")
     except OSError as error:
