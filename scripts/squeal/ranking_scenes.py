@@ -30,7 +30,7 @@ STARTS = {"blow": ("static", "-impulses tap -tap_at -0.12,0,0 -tap_part disc -ta
           "press": ("rest", "-press_ramp 1e-3")}
 SPEED = 0.5  # m/s
 LEAST = 150.0  # 1/s, of the fastest mode: it reaches its limit soon
-RISE, AFTER, LOOKED_AT = 8.0, 30e-3, 15e-3  # e-folds of the fastest mode; s after them; s that are looked at
+RISE, LOOKED_AT = 8.0, 15e-3  # e-folds of the fastest mode, after which a run goes on; s at its end, looked at
 LINEAR = 40  # rows just after the blow
 LOWEST, HIGHEST = 400.0, 20e3  # Hz of the main line
 MODES = {"mode": int, "freq_hz": float, "growth_rad_s": float, "damping_ratio": float, "error_hz": optional,
@@ -144,7 +144,7 @@ def probe_motion(folder, mode):
 
 def transient_of(args, brake, modes, fastest, start):
     """Folder of a run in time from one of STARTS."""
-    end = round(RISE / fastest + AFTER, 4)
+    end = round(RISE / fastest + args.after, 4)
     place = ",".join(map(str, PROBE))
     name = f"time-{brake.name()}" if start == "blow" else f"{start}-{brake.name()}"
     return run(args.program, 1, args.runs / name,
