@@ -15,6 +15,7 @@ from .transient_amplitudes import Amplitudes
 from .transient_history import Run
 from .transient_study import run
 
+PAPER = ROOT / "options/massi2005.yaml"
 BRAKE = ("-rig_disc_elements 8,24,1 -rig_pad_elements 4,4,2 -rig_beam_elements 10 -rows_stiffness 0,18.5284e6,0 "
          "-contact_law constraint -contact_speed 0.5")  # 20 springs have the stiffness of the paper's 44
 ABOUT = "-operators_mass lumped -contact_friction_damping -modes_band 500,20000"
@@ -87,7 +88,7 @@ def nearest(rows, freq, within=0.03):
 def modes_of(args, brake, state):
     """Folder and rows of the modes about a state."""
     folder = run(args.program, 1, args.runs / f"modes-{state}-{brake.name()}",
-                 f"-analysis modes {ABOUT} {STATES[state]} {brake.options()}", ROOT / "options/massi2005.yaml")
+                 f"-analysis modes {ABOUT} {STATES[state]} {brake.options()}", PAPER)
     return folder, read_table(folder / "modes.csv", MODES)
 
 
@@ -128,7 +129,7 @@ def swept(args, brake, parameter):
     shared = brake._replace(mu=FRICTION[0]) if parameter == "contact_mu" else brake._replace(young=MODULI[0])
     folder = run(args.program, 1, args.runs / f"sweep-{parameter}-{brake.name(parameter)}",
                  f"-analysis sweep -sweep_method full -modes_contact static {ABOUT} -sweep_onsets 0 "
-                 f"{shared.options()} -sweep_parameter {parameter} -sweep_values {values}", ROOT / "options/massi2005.yaml")
+                 f"{shared.options()} -sweep_parameter {parameter} -sweep_values {values}", PAPER)
     return read_table(folder / "sweep.csv", SWEEP), own
 
 
@@ -151,7 +152,7 @@ def transient_of(args, brake, modes, fastest, start):
                f"-analysis transient -dynamics_start {STARTS[start][0]} {brake.options()} {STARTS[start][1]} "
                f"-probes edge -edge_at {place} -edge_part pad -ts_max_time {end} -dynamics_live 0 "
                f"-dynamics_filters {modes}",
-               ROOT / "options/massi2005.yaml")
+               PAPER)
 
 
 def main_line(folder, table, velocity, until):
