@@ -50,11 +50,10 @@ def faults(readme):
 
 
 def unknown_tests():
-    """Names in the last column of the table of accuracy that are neither a case, a unit test, one of a script nor of meson.build."""
+    """Names in the last column of the table of accuracy that are neither a case, a unit test nor one of meson.build."""
     accuracy = (ROOT / "tests/README.md").read_text().split("## How accurate")[1]
     table = re.findall(r"^\|.*\|([^|]+)\|$", accuracy, re.MULTILINE)
     known = {path.stem for path in (ROOT / "tests/cases").glob("*.toml")}
-    known |= {path.stem for path in (ROOT / "tests/script").glob("*.py")}
     known |= {path.stem.removeprefix("test_") for path in (ROOT / "tests/unit").glob("test_*.c")}
     meson = (ROOT / "tests/meson.build").read_text()
     known |= set(re.findall(r"test\('(\w+)-?'", meson))
