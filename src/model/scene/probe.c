@@ -38,7 +38,8 @@ static PetscErrorCode ProbeRead(OptionsItems PetscOptionsObject, void *owner, vo
   PetscFunctionReturn(0);
 }
 
-const OptionsList probes_list = {"-probes", "places that histories and responses record, each the prefix of its -at and -part",
+const OptionsList probes_list = {"-probes",
+                                 "places that histories and responses record, each the prefix of its -at and -part",
                                  "Probe", sizeof(Probe), ProbeRead};
 
 static int CandidateCompare(const void *a, const void *b)
