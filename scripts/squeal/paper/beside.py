@@ -23,7 +23,7 @@ MODES = {"mode": int, "freq_hz": float, "growth_rad_s": float, "unstable": flag,
 VERDICT = {True: "as in the paper", False: "NOT as in the paper", None: ""}
 COLOURS = "blue", "orange", "green", "purple"
 TUNED = ("Figures 7 to 11 are with rows of springs, damping and speed that the paper does not state: they were tuned "
-         "so that its three regimes come out, and 1 mm of the rows changes them. The second sweep of Figure 5 is fitted "
+         "so that its three regimes come out; 1 mm of the rows changes them. The second sweep of Figure 5 is fitted "
          "to the paper's onsets, and gets no verdict.")
 TITLE = "The seed paper beside what comes out here"
 
