@@ -47,8 +47,10 @@ static PetscErrorCode ScopeCheckContact(MPI_Comm comm, const Scope *s, const Con
   PetscCall(
     PetscSNPrintf(other, sizeof(other), "not used with -%s_law constraint, which is as stiff as can be", c->name));
   if (!s->transient && c->law == CONTACT_CONSTRAINT && !c->identify) PetscCall(ScopeRefuse(comm, c->name, "kn", other));
+  if (!s->transient && c->law == CONTACT_CONSTRAINT) PetscCall(ScopeRefuse(comm, c->name, "kn_per_area", other));
   if (s->transient && c->law == CONTACT_PENALTY) PetscCall(ScopeRefuse(comm, c->name, "law", exact));
   if (s->transient) PetscCall(ScopeRefuse(comm, c->name, "kn", exact));
+  if (s->transient) PetscCall(ScopeRefuse(comm, c->name, "kn_per_area", exact));
   if (s->transient) PetscCall(ScopeRefuse(comm, c->name, "friction_damping", exact));
   if (s->transient) PetscCall(ScopeRefuse(comm, c->name, "force", exact));
   if (is_static) PetscCall(ScopeRefuse(comm, c->name, "friction_damping", steady));

@@ -67,7 +67,8 @@ typedef struct {
   ContactLaw law;
   PetscReal  mu;          /* friction coefficient at the stated sliding speed */
   PetscReal  mu_slope;    /* d mu / d slip speed, s/m */
-  PetscReal  kn;          /* stiffness per pair, N/m */
+  PetscReal  kn;          /* stiffness per pair, N/m, or per area, N/m^3 */
+  PetscBool  per_area;    /* which of the two: that of a pair is then kn times the area of its slave */
   PetscBool  identify;    /* kn is to be identified by pressing; until then it is 1 */
   PetscReal  tolerance;   /* pairs farther apart than this are no pairs, m */
   PetscBool  damping;     /* friction damping: mu N0 / v across the slip, mu_slope N0 along it */
@@ -160,6 +161,10 @@ PetscErrorCode ContactNodalForces(Contact contact, const ContactState state[], V
 -  closed - of the local pairs, changed in place
 @*/
 PetscErrorCode ContactGrow(Contact contact, PetscInt rows, PetscBool closed[]);
+
+/*@ ContactPairStiffness - the stiffness of a pair, N/m, of an interface with this value of kn, as ContactInterface has it. Not
+    collective. @*/
+PetscReal ContactPairStiffness(const ContactInterface *interface, const ContactPair *pair, PetscReal kn);
 
 /*@ ContactComputeKKT - residuals of the states of the local pairs, with mu and kn (infinite for the constraint) of each
     interface; displacement is the largest of the local pairs, m. Collective. @*/

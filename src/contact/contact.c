@@ -22,11 +22,18 @@ PetscErrorCode ContactCreate(Model model, Contact *contact)
 static PetscErrorCode StiffnessRead(OptionsItems PetscOptionsObject, ContactInterface *c)
 {
   char      text[128] = "", *end;
-  PetscBool set;
+  PetscBool set, per_area;
+  PetscReal value = 0;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscOptionsReal("-kn_per_area", "instead: normal stiffness per area of the slave, N/m^3 (penalty)",
+                             "contact.h", value, &value, &per_area));
   PetscCall(PetscOptionsString("-kn", "normal stiffness per pair, N/m (penalty), or: identify", "contact.h", "0", text,
                                sizeof(text), &set));
+  PetscCheck(!set || !per_area, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
+             "-%s_kn and -%s_kn_per_area are given; give one of them", c->name, c->name);
+  c->per_area = per_area;
+  if (per_area) c->kn = value;
   if (!set) PetscFunctionReturn(0);
   c->identify = !strcmp(text, "identify") ? PETSC_TRUE : PETSC_FALSE;
   c->kn       = c->identify ? 1 : strtod(text, &end);
@@ -98,8 +105,8 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
   PetscFunctionBeginUser;
   PetscCheck(c->slave && c->master, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces must be given: slave,master", c->name);
   PetscCheck(c->law == CONTACT_CONSTRAINT || (c->kn > 0 && !PetscIsInfReal(c->kn)), comm, PETSC_ERR_USER_INPUT,
-             "-%s_kn %.6g must be given and positive (N/m), or choose -%s_law constraint", c->name, (double)c->kn,
-             c->name);
+             "-%s_kn%s %.6g must be given and positive (N/m%s), or choose -%s_law constraint", c->name,
+             c->per_area ? "_per_area" : "", (double)c->kn, c->per_area ? "^3" : "", c->name);
   PetscCheck(c->law == CONTACT_PENALTY || !c->identify, comm, PETSC_ERR_USER_INPUT,
              "-%s_kn identify does nothing with -%s_law constraint; choose -%s_law penalty", c->name, c->name, c->name);
   PetscCheck(c->tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-%s_tolerance %.6g must be positive (m)", c->name,
@@ -183,7 +190,8 @@ PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
     const ContactInterface *f         = &contact->interfaces[i];
     const PetscInt          flags[]   = {i, f->law, f->identify, f->damping};
-    const PetscReal         numbers[] = {f->mu, f->mu_slope, f->tolerance, f->speed, f->identify ? 0 : f->kn, f->force};
+    const PetscReal         numbers[] = {
+              f->mu, f->mu_slope, f->tolerance, f->speed, f->identify ? 0 : f->per_area ? -f->kn : f->kn, f->force};
 
     PetscCall(ChecksumSetPart(c, "contact %s", f->name));
     PetscCall(ModelAddSetChecksum(contact->model, f->slave, PETSC_TRUE, c));
@@ -208,7 +216,8 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
     if (c->identify)
       PetscCall(PetscViewerASCIIPrintf(viewer, "penalty, stiffness identified by pressing\n"));
     else if (c->law == CONTACT_PENALTY)
-      PetscCall(PetscViewerASCIIPrintf(viewer, "penalty %.6g N/m per pair\n", (double)c->kn));
+      PetscCall(
+        PetscViewerASCIIPrintf(viewer, "penalty %.6g %s\n", (double)c->kn, c->per_area ? "N/m^3" : "N/m per pair"));
     else
       PetscCall(PetscViewerASCIIPrintf(viewer, "exact constraint by elimination\n"));
   }

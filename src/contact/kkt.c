@@ -108,8 +108,12 @@ PetscErrorCode ContactComputeKKT(Contact contact, const ContactState state[], co
     const ContactPair *pair = &contact->pairs[p];
     const PetscInt     i    = pair->interface;
 
-    judged[p] =
-      (ContactJudged){&state[p], mu[i], kn[i], pair->gap, PetscSqrtReal(pair->area), contact->interfaces[i].slides};
+    judged[p] = (ContactJudged){&state[p],
+                                mu[i],
+                                ContactPairStiffness(&contact->interfaces[i], pair, kn[i]),
+                                pair->gap,
+                                PetscSqrtReal(pair->area),
+                                contact->interfaces[i].slides};
   }
   PetscCall(ContactJudge(contact->comm, contact->n_pairs, judged, displacement, kkt));
   PetscCall(PetscFree(judged));

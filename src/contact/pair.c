@@ -148,3 +148,8 @@ PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface)
     contact->pairs[p].force = c->force * contact->pairs[p].area / area;
   PetscFunctionReturn(0);
 }
+
+PetscReal ContactPairStiffness(const ContactInterface *interface, const ContactPair *pair, PetscReal kn)
+{
+  return interface->per_area ? kn * pair->area : kn;
+}

@@ -7,6 +7,7 @@
 #include "modesimpl.h"
 
 #define MODES_EDGE 1e-8 /* relative width of the band's ends, so that an eigenvalue on an end belongs to it */
+#define MODES_ZERO 1e-2 /* of the scale: lower frequencies cannot be told from zero */
 #define MODES_AWAY 1e-7 /* relative move of an end on which MUMPS finds an eigenvalue */
 
 /* A frequency (rad/s) that is small beside all elastic modes, from the size of the matrices */
@@ -62,8 +63,8 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
     PetscCall(WindowCountBelow(modes, MODES_AWAY, &target, &window->below));
     PetscFunctionReturn(0);
   }
-  if (window->low < window->scale)
-    window->below = 0;
+  if (window->low < MODES_ZERO * window->scale)
+    window->below = 0, window->edge[0] = 0; /* rigid modes belong to the band */
   else
     PetscCall(WindowCountBelow(modes, -MODES_AWAY, &window->edge[0], &window->below));
   PetscCall(WindowCountBelow(modes, MODES_AWAY, &window->edge[1], &below_high));

@@ -1,6 +1,7 @@
 /*
    Terms of the contact, linearised about steady sliding with normal force N0 and speed v per pair:
-      K += k_n N'N + mu k_n (-T'N)             normal stiffness and friction          (seed paper, eq. 1)
+      K += k_n N'N + mu k_n (-T'N)             normal stiffness and friction          (seed paper, eq. 1); with a k_n
+                                               per area N'A N and -T'A N, A the areas of the pairs
       C += |mu| N / V B'B_w + mu' N T'T_w      friction damping across and along the slip, mu' = d mu / d v
    of each interface. N is its total normal force (of the sliding state, or -contact_force), V its sliding speed or, where the slip comes from a rotation, the
    angular velocity; B'B_w and T'T_w carry N0 / N and V / v of each pair. Only closed pairs take part; those of a group
@@ -120,20 +121,43 @@ static PetscErrorCode DampingAdd(Pencil pencil, const FrictionGroup *g)
   PetscFunctionReturn(0);
 }
 
+/* Areas of the pairs where the stiffness is per area, else NULL */
+static PetscErrorCode PenaltyCreateWeights(Pencil pencil, const FrictionGroup *g, Vec *weights)
+{
+  const ContactPair *pairs;
+  PetscInt           n, n_all, row;
+
+  PetscFunctionBeginUser;
+  *weights = NULL;
+  if (!g->c->per_area) PetscFunctionReturn(0);
+  PetscCall(ContactGetPairs(pencil->operators->contact, &n, &n_all, &pairs));
+  PetscCall(MatCreateVecs(g->N, NULL, weights));
+  PetscCall(VecGetOwnershipRange(*weights, &row, NULL));
+  for (PetscInt i = 0; i < g->n; i++)
+    PetscCall(VecSetValue(*weights, row + i, ContactPairStiffness(g->c, &pairs[g->pair[i]], 1), INSERT_VALUES));
+  PetscCall(VecAssemblyBegin(*weights));
+  PetscCall(VecAssemblyEnd(*weights));
+  PetscFunctionReturn(0);
+}
+
 /* Terms of the penalty law; without friction where nothing says along what the interface slides */
 static PetscErrorCode PenaltyAdd(Pencil pencil, const FrictionGroup *g)
 {
   const PetscInt kn[] = {g->q.kn, g->closed}, mu[] = {g->q.kn, g->q.mu, g->closed};
   Mat            NN, TN;
+  Vec            weights;
 
   PetscFunctionBeginUser;
-  PetscCall(TermsProduct(1, g->N, NULL, g->N, &NN));
+  PetscCall(PenaltyCreateWeights(pencil, g, &weights));
+  PetscCall(TermsProduct(1, g->N, weights, g->N, &NN));
   PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, NN, PETSC_TRUE, 1 + g->more, kn));
   PetscCall(MatDestroy(&NN));
-  if (g->q.mu < 0) PetscFunctionReturn(0);
-  PetscCall(TermsProduct(-1, g->T, NULL, g->N, &TN));
-  PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, TN, PETSC_FALSE, 2 + g->more, mu));
-  PetscCall(MatDestroy(&TN));
+  if (g->q.mu >= 0) {
+    PetscCall(TermsProduct(-1, g->T, weights, g->N, &TN));
+    PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, TN, PETSC_FALSE, 2 + g->more, mu));
+    PetscCall(MatDestroy(&TN));
+  }
+  PetscCall(VecDestroy(&weights));
   PetscFunctionReturn(0);
 }
 
@@ -147,7 +171,10 @@ static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface
     OperatorsParameter like;
     PetscInt          *index;
   } what[] = {
-    {c->law == CONTACT_PENALTY,  "kn",       {.unit = "N/m", .value = c->kn},                           &q->kn   },
+    {c->law == CONTACT_PENALTY,
+     c->per_area ? "kn_per_area" : "kn",
+     {.unit = c->per_area ? "N/m^3" : "N/m", .value = c->kn},
+     &q->kn                                                                                                      },
     {c->damping,                 "mu_slope", {.unit = "s/m", .value = c->mu_slope, .lower = -INFINITY}, &q->slope},
     {c->damping,                 "force",    {.unit = "N", .value = c->force, .closed = PETSC_TRUE},    &q->force},
     {c->damping && turning > 0,  "rotation", {.unit = "rad/s", .value = turning},                       &q->speed},

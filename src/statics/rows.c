@@ -78,7 +78,7 @@ PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscRe
     PetscReal      mu, kn;
 
     PetscCall(OperatorsGetInterface(operators, p, i, &mu, &kn));
-    rows->law[k].k  = kn / kappa;
+    rows->law[k].k  = ContactPairStiffness(&rows->interface[i], &rows->pair[k], kn) / kappa;
     rows->law[k].mu = rows->law[k].d == 3 ? PetscAbsReal(mu) : 0;
     rows->slide[k]  = rows->interface[i].slides ? mu : 0;
   }
