@@ -88,7 +88,8 @@ static PetscErrorCode EndsCreate(Frf frf, const Superposition *s, FrfEnds *ends)
 }
 
 /* Both responses at the frequencies first, first + step and so on, FRF_BATCH at most; the error is their difference.
-   work[4][FRF_BATCH][n_outputs]. Returns in *singular one that is a pole */
+   schur[0] NULL: its responses are there already. work[4][FRF_BATCH][n_outputs]. Returns in *singular one that is a pole
+ */
 static PetscErrorCode RespondBatch(Frf frf, const FrfSchur *schur[2], PetscInt first, PetscInt step, PetscReal work[],
                                    PetscInt *singular)
 {
@@ -100,6 +101,7 @@ static PetscErrorCode RespondBatch(Frf frf, const FrfSchur *schur[2], PetscInt f
   for (int k = 0; k < 2; k++) {
     PetscInt pole;
 
+    if (!schur[k]) continue;
     PetscCall(FrfSchurRespond(schur[k], m, omega, &work[2 * k * block], &work[(2 * k + 1) * block], &pole));
     if (pole >= 0) *singular = first + pole * step;
   }
@@ -107,16 +109,18 @@ static PetscErrorCode RespondBatch(Frf frf, const FrfSchur *schur[2], PetscInt f
     const PetscReal *re = &work[f * n], *im = re + block;
     const PetscInt   i = first + f * step;
 
-    PetscCall(PetscArraycpy(&frf->re[i * n], re, n));
-    PetscCall(PetscArraycpy(&frf->im[i * n], im, n));
+    if (schur[0]) PetscCall(PetscArraycpy(&frf->re[i * n], re, n));
+    if (schur[0]) PetscCall(PetscArraycpy(&frf->im[i * n], im, n));
     for (PetscInt p = 0; p < n; p++)
-      frf->error[i] += PetscSqr(re[2 * block + p] - re[p]) + PetscSqr(im[2 * block + p] - im[p]);
+      frf->error[i] +=
+        PetscSqr(re[2 * block + p] - frf->re[i * n + p]) + PetscSqr(im[2 * block + p] - frf->im[i * n + p]);
     frf->error[i] = PetscSqrtReal(frf->error[i]);
   }
   PetscFunctionReturn(0);
 }
 
-/* Response at every stride-th frequency, shared among ranks; the error is the difference of the two */
+/* Response at every stride-th frequency, shared among ranks; the error is the difference of the two. used NULL: what is
+   there already is its response */
 static PetscErrorCode RespondAll(Frf frf, const FrfSchur *used, const FrfSchur *larger, PetscInt stride)
 {
   const PetscInt n = frf->n_outputs;
@@ -128,8 +132,8 @@ static PetscErrorCode RespondAll(Frf frf, const FrfSchur *used, const FrfSchur *
   PetscCallMPI(MPI_Comm_rank(frf->comm, &rank));
   PetscCallMPI(MPI_Comm_size(frf->comm, &size));
   PetscCall(PetscMalloc1(4 * FRF_BATCH * n, &work));
-  PetscCall(PetscArrayzero(frf->re, n * frf->n));
-  PetscCall(PetscArrayzero(frf->im, n * frf->n));
+  if (used) PetscCall(PetscArrayzero(frf->re, n * frf->n));
+  if (used) PetscCall(PetscArrayzero(frf->im, n * frf->n));
   PetscCall(PetscArrayzero(frf->error, frf->n));
   for (PetscInt i = rank * stride; i < frf->n; i += FRF_BATCH * size * stride)
     PetscCall(RespondBatch(frf, (const FrfSchur *[]){used, larger}, i, size * stride, work, &singular));
@@ -137,8 +141,9 @@ static PetscErrorCode RespondAll(Frf frf, const FrfSchur *used, const FrfSchur *
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &singular, 1, MPIU_INT, MPI_MAX, frf->comm));
   PetscCheck(singular < 0, frf->comm, PETSC_ERR_USER_INPUT,
              "-frf_frequencies: %.15g Hz is a pole, where the response is infinite", (double)frf->freq[singular]);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, frf->re, (PetscMPIInt)(n * frf->n), MPIU_REAL, MPI_SUM, frf->comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, frf->im, (PetscMPIInt)(n * frf->n), MPIU_REAL, MPI_SUM, frf->comm));
+  for (int part = 0; part < 2 && used; part++)
+    PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, part ? frf->im : frf->re, (PetscMPIInt)(n * frf->n), MPIU_REAL, MPI_SUM, frf->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, frf->error, (PetscMPIInt)frf->n, MPIU_REAL, MPI_SUM, frf->comm));
   PetscFunctionReturn(0);
 }
@@ -198,7 +203,7 @@ static PetscErrorCode SuperpositionGrow(Frf frf, Superposition *s)
              (double)frf->freq[where], (double)worst, frf->n_steps - 1, (double)frf->rtol);
   PetscCall(FrfSchurDestroy(&s->larger));
   PetscCall(SuperpositionReduce(frf, s, PETSC_TRUE, &s->larger));
-  PetscCall(RespondAll(frf, &s->used, &s->larger, 1));
+  PetscCall(RespondAll(frf, NULL, &s->larger, 1));
   PetscFunctionReturn(0);
 }
 

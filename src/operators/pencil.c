@@ -128,6 +128,18 @@ PetscErrorCode PencilGetTerms(Pencil pencil, PetscInt *n, const OperatorsTerm **
   PetscFunctionReturn(0);
 }
 
+/* Whether what is in C at this point is symmetric, as the damping of bodies, dashpots and friction is */
+static PetscBool DampingIsSymmetric(const Terms *terms, const PetscReal p[])
+{
+  for (PetscInt t = 0; t < terms->n; t++) {
+    const OperatorsTerm *term = &terms->term[t];
+
+    if (term->kind != OPERATORS_DAMPING || term->symmetric) continue;
+    if (OperatorsTermCoefficient(term, p) != 0) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
 PetscErrorCode PencilGetMatrices(Pencil pencil, PencilMatrices *m)
 {
   const Terms     *terms = pencil->Zr ? &pencil->projected : &pencil->base;
@@ -142,6 +154,7 @@ PetscErrorCode PencilGetMatrices(Pencil pencil, PencilMatrices *m)
   PetscCall(PencilFormSum(pencil, frictionless ? PROJECTED_K : PENCIL_K, &m->K));
   PetscCall(PencilFormSum(pencil, same_mass ? PROJECTED_M : PENCIL_M, &m->M));
   PetscCall(PencilFormSum(pencil, PENCIL_C, &m->C));
+  if (m->C && pencil->operators->symmetric) PetscCall(MatSetOption(m->C, MAT_SYMMETRIC, DampingIsSymmetric(terms, p)));
   PetscFunctionReturn(0);
 }
 
