@@ -1,15 +1,19 @@
 /*
    Left vectors for right ones. The two spectra were computed apart; here each right eigenvalue gets its left partner,
-   or the spectra are found to differ, so that a mode is missing in one of them. In a cluster of equal eigenvalues the
-   left vectors are made biorthogonal to the right ones with respect to D(lambda); without that neither condition nor
-   error would mean anything for a double mode.
+   or the spectra are found to differ, so that a mode is missing in one of them. Eigenvalues that are no farther apart
+   than left and right ones may be may have exchanged partners, or be one multiple eigenvalue: in such a cluster the left
+   vectors are combined so that
+
+      y_i^T D((lambda_i + lambda_j) / 2) x_j = delta_ij,   D(s) = M + C / (2 s),
+
+   which holds for different eigenvalues of the quadratic problem as well. Without that neither condition, error nor
+   residue would mean anything for a double mode.
 */
 #include "complexvec.h"
 #include <petscblaslapack.h>
 
-#define LEFT_MATCH   1e-5 /* left and right eigenvalues farther apart than this, relative, are different ones */
-#define LEFT_RIGID   1e-5 /* both smaller than this beside the largest of the window: zeros */
-#define LEFT_CLUSTER 1e-7 /* eigenvalues nearer than this, relative, are treated as one cluster */
+#define LEFT_MATCH 1e-5 /* left and right eigenvalues farther apart than this, relative, are different ones */
+#define LEFT_RIGID 1e-5 /* both smaller than this beside the largest of the window: zeros */
 
 /* Nearest entry of the left spectrum that is not used yet */
 static PetscInt LeftNearest(const Spectrum *left, const PetscBool used[], PetscComplex lambda, PetscReal *distance)
@@ -119,22 +123,35 @@ static PetscErrorCode ComplexInverse(PetscInt m, const PetscComplex G[], PetscCo
   PetscFunctionReturn(0);
 }
 
-/* Replaces the left vectors first .. first + m - 1 by combinations with y_i^T D x_j = delta_ij */
-static PetscErrorCode LeftBiorthogonaliseCluster(const PencilMatrices *pencil, const Spectrum *right, PetscInt first,
-                                                 PetscInt m, Vec work[], Spectrum *left)
+/* G_ij = y_i^T D((lambda_i + lambda_j) / 2) x_j of the vectors first .. first + m - 1, row-major */
+static PetscErrorCode LeftForm(Modes modes, const PencilMatrices *pencil, PetscInt first, PetscInt m, Vec work[],
+                               PetscComplex G[])
 {
-  PetscComplex *G, *inverse;
-  Vec          *yr, *yi;
+  const Spectrum *right = &modes->right, *left = &modes->left_spectrum;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < m; i++)
+    for (PetscInt j = 0; j < m; j++) {
+      const PetscComplex lambda = 0.5 * (SpectrumLambda(right, first + i) + SpectrumLambda(right, first + j));
+      const ComplexVec   x = {right->xr[first + j], right->xi[first + j]}, z = {work[1], work[2]};
+
+      PetscCall(ComplexVecApplyD(pencil, lambda, x, work[0], z));
+      PetscCall(ComplexVecDot((ComplexVec){left->xr[first + i], left->xi[first + i]}, z, &G[i * m + j]));
+    }
+  PetscFunctionReturn(0);
+}
+
+/* Replaces the left vectors first .. first + m - 1 by combinations with G = I */
+static PetscErrorCode LeftBiorthogonaliseCluster(Modes modes, const PencilMatrices *pencil, PetscInt first, PetscInt m,
+                                                 Vec work[])
+{
+  const Spectrum *right = &modes->right, *left = &modes->left_spectrum;
+  PetscComplex   *G, *inverse;
+  Vec            *yr, *yi;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(m * m, &G, m * m, &inverse));
-  for (PetscInt j = 0; j < m; j++) {
-    const ComplexVec x = {right->xr[first + j], right->xi[first + j]}, z = {work[1], work[2]};
-
-    PetscCall(ComplexVecApplyD(pencil, SpectrumLambda(right, first), x, work[0], z));
-    for (PetscInt i = 0; i < m; i++)
-      PetscCall(ComplexVecDot((ComplexVec){left->xr[first + i], left->xi[first + i]}, z, &G[i * m + j]));
-  }
+  PetscCall(LeftForm(modes, pencil, first, m, work, G));
   PetscCall(ComplexInverse(m, G, inverse));
   PetscCall(VecDuplicateVecs(work[0], m, &yr));
   PetscCall(VecDuplicateVecs(work[0], m, &yi));
@@ -163,9 +180,9 @@ PetscErrorCode LeftBiorthogonalise(Modes modes, const PencilMatrices *pencil, Ve
   PetscFunctionBeginUser;
   for (PetscInt first = 0, m; first < right->n; first += m) {
     for (m = 1; first + m < right->n; m++)
-      if (LeftDistance(SpectrumLambda(right, first + m), SpectrumLambda(right, first + m - 1), largest) > LEFT_CLUSTER)
+      if (LeftDistance(SpectrumLambda(right, first + m), SpectrumLambda(right, first + m - 1), largest) > LEFT_MATCH)
         break;
-    if (m > 1) PetscCall(LeftBiorthogonaliseCluster(pencil, right, first, m, work, &modes->left_spectrum));
+    if (m > 1) PetscCall(LeftBiorthogonaliseCluster(modes, pencil, first, m, work));
   }
   PetscFunctionReturn(0);
 }
