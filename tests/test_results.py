@@ -102,6 +102,13 @@ def check_stale(r):
     done = r.scene("transient", "-dynamics_snapshot_interval", "1.5e-4")
     r.check("snapshot_000002.h5" not in r.files() and "modes.h5" not in r.files() and "snapshot_000001.h5" in r.files(),
             "snapshots beyond the new ones go", done)
+    extra = {"circles.csv", "circle_nodes.csv", "impulses.csv"}
+    done = r.scene("transient", "-circles", "rim", "-rim_part", "block", "-rim_radius", "0.05", "-rim_count", "4",
+                   "-rim_tolerance", "0.02", "-impulses", "tap", "-tap_at", "0,0,0", "-tap_part", "block",
+                   "-tap_impulse", "0,0,1e-3")
+    r.check(extra <= set(r.files()), "circles and impulses have tables", done)
+    done = r.scene("transient")
+    r.check(done.returncode == 0 and not extra & set(r.files()), "which go with the next run that has none", done)
 
 
 def check_users(r):
