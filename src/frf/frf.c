@@ -93,7 +93,7 @@ PetscErrorCode FrfSetFromOptions(Frf frf)
   PetscCall(PetscOptionsString("-frf_force", "where a force of 1 N acts: a probe and x, y, z or three numbers", "frf.h",
                                frf->force, frf->force, sizeof(frf->force), NULL));
   PetscCall(PetscOptionsString("-frf_directions", "in which the response is recorded: some of x, y, z", "frf.h",
-                               frf->directions, frf->directions, sizeof(frf->directions), NULL));
+                               frf->directions, frf->directions, sizeof(frf->directions), &frf->has_directions));
   PetscCall(PetscOptionsString("-frf_frequencies", "low:high:n, low:high:n:log, or f1,f2,..., Hz", "frf.h",
                                frf->frequencies, frf->frequencies, sizeof(frf->frequencies), &given));
   PetscCall(PetscOptionsString("-frf_times", "of the answer to an impulse of 1 N s: low:high:n, or t1,t2,..., s",

@@ -14,6 +14,7 @@ struct _p_Frf {
   Pencil    pencil;
   /* set by options */
   char       force[256], frequencies[4096], times[4096], directions[8];
+  PetscBool  has_directions;
   PetscInt   n_places; /* names of -frf_probes; 0: all */
   char     **place;    /* [n_places] */
   PetscInt   n;        /* frequencies */

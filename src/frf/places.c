@@ -260,6 +260,22 @@ static PetscErrorCode PlacesCheck(Frf frf)
   PetscFunctionReturn(0);
 }
 
+/* Raises an error for directions where no probe answers, which alone has some; scene NULL without a mesh */
+static PetscErrorCode DirectionsCheckUsed(Frf frf, const ModelScene *scene)
+{
+  PetscBool used = scene && !frf->n_places ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; scene && i < frf->n_places; i++)
+    for (PetscInt k = 0; k < scene->n_probes; k++)
+      if (!strcmp(frf->place[i], scene->probes[k].name)) used = PETSC_TRUE;
+  PetscCheck(!frf->has_directions || used, frf->comm, PETSC_ERR_USER_INPUT, "-frf_directions %s does nothing: %s",
+             frf->directions,
+             scene ? "-frf_probes names circles alone, each of which answers along its axis"
+                   : "matrices without a mesh have unknowns, which -frf_probes chooses by their numbers");
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode FrfFindOutputs(Frf frf)
 {
   const ModelScene *scene = NULL;
@@ -271,6 +287,7 @@ PetscErrorCode FrfFindOutputs(Frf frf)
   PetscCall(OperatorsGetModel(frf->operators, &model, NULL));
   PetscCall(VecGetSize(frf->f, &n));
   if (model) PetscCall(ModelGetScene(model, &scene));
+  PetscCall(DirectionsCheckUsed(frf, scene));
   most = scene ? 3 * PetscMax(frf->n_places, scene->n_probes) : PetscMax(frf->n_places, ALL_UNKNOWNS);
   for (PetscInt i = 0; scene && i < scene->n_circles; i++) most += scene->circles[i].n;
   PetscCall(PetscCalloc1(most, &frf->output));

@@ -13,14 +13,35 @@
 #define MAX_BISECTIONS 30   /* of a sweep */
 #define BRACKET_WIDTH  1e-4 /* relative width of a bracket that is not divided any more */
 
+/* Raises an error for the stiffness damping of a part with a loss factor, which is part of it */
+static PetscErrorCode SweepAxisCheckLoss(Sweep sweep, Model model, const char name[])
+{
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(model, &scene));
+  for (PetscInt i = 0; i < scene->n_parts; i++) {
+    const Part  *p      = &scene->parts[i];
+    const size_t length = strlen(p->name);
+
+    PetscCheck(p->loss == 0 || strncmp(name, p->name, length) || strcmp(name + length, "_beta"), sweep->comm,
+               PETSC_ERR_USER_INPUT,
+               "-sweep_parameter %s replaces what -%s_loss_factor %.6g gives: leave one of them out", name, p->name,
+               (double)p->loss);
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SweepAxisCheck(Sweep sweep, const char name[])
 {
   const ContactInterface *interfaces;
   PetscInt                n = 0;
+  Model                   model;
   Contact                 contact;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(sweep->operators, NULL, &contact));
+  PetscCall(OperatorsGetModel(sweep->operators, &model, &contact));
+  if (model) PetscCall(SweepAxisCheckLoss(sweep, model, name));
   if (contact) PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
   for (PetscInt i = 0; i < n; i++) {
     const size_t      length = strlen(interfaces[i].name);

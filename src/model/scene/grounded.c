@@ -54,7 +54,10 @@ static PetscErrorCode GroundedRead(OptionsItems PetscOptionsObject, const Ground
     found = s;
     PetscCall(PetscArraycpy(g->value, value, 3));
   }
-  g->spread   = found < 0 ? SPREAD_EACH : (Spread)found;
+  PetscCheck(found >= 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_%s, -%s_%s or -%s_%s must be given: three values, not all zero", g->name, names[SPREAD_EACH].option,
+             g->name, names[SPREAD_TOTAL].option, g->name, names[SPREAD_AREA].option);
+  g->spread   = (Spread)found;
   g->quantity = names[g->spread].option;
   g->unit     = names[g->spread].unit;
   PetscCall(GroundedCheck(comm, g));
