@@ -175,26 +175,32 @@ static PetscErrorCode ChainTake(FrfChain *chain, PetscInt n, const PetscReal c[]
   PetscFunctionReturn(0);
 }
 
-/* R = M P, or with damping -g Q'(shift) P - g^2 M Q */
+/* R = M P, or with damping -g Q'(shift) P - g^2 M Q = -g^2 M (2 P + Q) - g C P */
 static PetscErrorCode ChainResidual(const FrfChain *chain, PetscInt n, const PetscReal states[], BV R)
 {
   const PencilMatrices *m    = &chain->space->pencil;
   const PetscReal       g    = chain->factor.shift;
   const PetscInt        size = chain->space->small.size;
+  PetscReal            *both;
   BV                    P, T;
 
   PetscFunctionBeginUser;
   PetscCall(FrfSpaceCreateBlock(chain->space, n, &P));
   PetscCall(FrfSpaceLift(chain->space, n, chain->length, states, P));
-  PetscCall(BlockApply(chain, P, m->M, R));
   if (m->C) {
     PetscCall(FrfSpaceCreateBlock(chain->space, n, &T));
-    PetscCall(BVScale(R, -2 * g * g));
     PetscCall(BlockApply(chain, P, m->C, T));
+    PetscCall(PetscMalloc1(n * size, &both));
+    for (PetscInt j = 0; j < n; j++)
+      for (PetscInt i = 0; i < size; i++)
+        both[j * size + i] = 2 * states[j * chain->length + i] + states[j * chain->length + size + i];
+    PetscCall(FrfSpaceLift(chain->space, n, size, both, P));
+    PetscCall(PetscFree(both));
+  }
+  PetscCall(BlockApply(chain, P, m->M, R));
+  if (m->C) {
+    PetscCall(BVScale(R, -g * g));
     PetscCall(BVMult(R, -g, 1, T, NULL));
-    PetscCall(FrfSpaceLift(chain->space, n, chain->length, states + size, P));
-    PetscCall(BlockApply(chain, P, m->M, T));
-    PetscCall(BVMult(R, -g * g, 1, T, NULL));
     PetscCall(BVDestroy(&T));
   }
   PetscCall(BVDestroy(&P));
