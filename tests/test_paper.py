@@ -83,12 +83,14 @@ def rows_of(path):
 
 
 def interrupted(p, sign, n):
-    """Sends a signal when n more runs are complete and others under way; returns the complete ones, status and what was said."""
+    """Sends a signal when n more runs are complete and others under way; returns the complete ones, status and
+    what was said."""
     wanted = len(p.complete()) + n
     with (p.root / "said").open("w") as said:
         process = subprocess.Popen(p.command("--jobs", "2"), stderr=said, stdout=said, cwd=p.root)
         begun = time.monotonic()
-        while (len(p.complete()) < wanted or not p.under_way()) and process.poll() is None and time.monotonic() - begun < BELIEVED:
+        while ((len(p.complete()) < wanted or not p.under_way()) and process.poll() is None and
+               time.monotonic() - begun < BELIEVED):
             time.sleep(0.01)
         process.send_signal(sign)
         process.wait(BELIEVED)
@@ -153,7 +155,7 @@ def check_numbers(p, page):
     lumped = {row["label"]: float(row["freq_hz"]) for row in rows_of(p.folder / "modes-lumped/modes.csv")[::-1]}
     row = page.table("paper-table1-frequencies")[0]
     p.check(row["mode"] == "(0,4+)" and float(row["Plast3"]) == 3424 and
-            float(row["modes, lumped mass, Hz"]) == lumped["(0,4+)"], f"Table 1: {row}")
+            float(row["lumped mass, Hz"]) == lumped["(0,4+)"], f"Table 1: {row}")
     fine, coarse = ([float(row["freq_hz"]) for row in rows_of(p.folder / name / "modes.csv")]
                     for name in ("disc-10240", "disc-2412"))
     worst = 100 * max(abs(b / a - 1) for a, b in zip(fine, coarse) if a < 10e3)
@@ -193,9 +195,11 @@ def check_page(p):
     empty = [name for name in SECTIONS[:-1] if not claims_of(page, name)]
     p.check(not empty and not page.find("p", class_="missing", inside="first")[1:], f"every figure has claims {empty}")
     p.check(len(text) < 10e6 and not re.search(r'(src|href)="https?:', text), f"one file of {len(text)} bytes")
+    how = (p.folder / "response/response.txt").read_text().splitlines()
+    p.check(len(how) > 3 and all(f"<li>{line}</li>" in text for line in how), "it is said how the response was made")
     check_lines(p, text)
     took = [float(row["time, s"]) for row in page.table("paper-cost-table")]
-    p.check(len(took) == N_RUNS and min(took) > 0, f"the time of every run {took}")
+    p.check(len(took) == N_RUNS and min(took) >= 0 and max(took) > 0, f"the time of every run {took}")
     check_numbers(p, page)
 
 
@@ -211,7 +215,12 @@ def check_failure(p):
     page = Page(p.folder / "paper.html")
     p.check(page.find("p", class_="missing", inside="paper-fig7") and len(claims_of(page, "kn")) == 2,
             "its figure says so, the others are there")
-    for words, said in ((["--only", "fig2"], "--only: fig2: must be some of table1,fig3"), (["--jobs", "0"], "--jobs"),
+    (p.root / "blocked").mkdir()
+    (p.root / "blocked/pressing").touch()
+    (p.folder / "pressing/static.csv").unlink()
+    for words, said in ((["--only", "kn", "-o", p.root / "blocked"], "blocked/pressing: no folder for a run can be"),
+                        (["--only", "fig3,kn", "--program", program], "--fresh makes every run again"),
+                        (["--only", "fig2"], "--only: fig2: must be some of table1,fig3"), (["--jobs", "0"], "--jobs"),
                         (["-o", p.squeal], "cannot be made"), (["--program", "nowhere"], "no such file")):
         done = p.run(*words)
         p.check(done.returncode and said in done.stderr and "Traceback" not in done.stderr,

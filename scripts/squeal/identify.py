@@ -1,8 +1,8 @@
 """Modes in the decay after an impulse, from all its signals together: y(t) = sum of 2 Re(r_k exp(lambda_k t)), t > 0.
 
 The signals are shifted band by band by its middle and filtered (signal.py), which keeps every exponential; then the
-matrix pencil of all of them gives lambda_k. Modes that are close in frequency differ by their shapes, hence many signals
-tell them apart. What noise makes has an exponent that depends on the window of time: only exponents that a later window
+matrix pencil of all of them gives lambda_k. Modes that are close in frequency differ by their shapes, hence many
+signals tell them apart. What noise makes has an exponent that depends on the window of time: only exponents that a later window
 repeats count. The residues r_k are fitted to the transform of the signals, which knows their first moments too, with a
 polynomial for what lies beyond the band.
 """
@@ -118,8 +118,8 @@ def band_residues(times, values, band, exponents):
 
 
 def identify(times, values, band, width):
-    """Modes of a band (Hz) by frequency, from values [time][signal]; residues are those at time 0, the impulse. `width` is
-    that of the bands into which it is cut."""
+    """Modes of a band (Hz) by frequency, from values [time][signal]; residues are those at time 0, the impulse. `width`
+    is that of the bands into which it is cut."""
     edges = numpy.linspace(*band, max(int(round((band[1] - band[0]) / width)), 1) + 1)
     bands = list(zip(edges[:-1], edges[1:]))
     every = numpy.array(sorted((value for low, high in bands for value in

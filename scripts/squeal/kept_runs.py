@@ -6,6 +6,7 @@ import hashlib
 from pathlib import Path
 
 from .program import ROOT, launch
+from .tables import BadInput
 
 LOG = "log.txt"
 
@@ -40,8 +41,11 @@ class KeptRun:
 
     def begin(self):
         """Makes the folder, which is incomplete from now on; returns the words of the command."""
-        self.folder.mkdir(parents=True, exist_ok=True)
-        self.log.unlink(missing_ok=True)
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            self.log.unlink(missing_ok=True)
+        except OSError as error:
+            raise BadInput(f"{self.folder}: no folder for a run can be made there: {error.strerror}") from None
         command = [ROOT / "scripts/mpirun", "-n", self.ranks, self.program, *self.words, "-output_dir", self.folder]
         return [str(word) for word in command]
 

@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from .tables import BadInput
+from .tables import STOPPED, BadInput
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -35,9 +35,10 @@ def launch(program, ranks, words, about):
 
 
 def parts_parser(doc, parts):
-    """Command line with --part and --program."""
+    """Command line with --part, where there are parts, and --program."""
     parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--part", action="append", choices=parts, help="only this one; may be repeated")
+    if parts:
+        parser.add_argument("--part", action="append", choices=parts, help="only this one; may be repeated")
     parser.add_argument("--program", type=Path, metavar="FILE", help="squeal; default: compiled as by scripts/run")
     return parser
 
@@ -58,12 +59,16 @@ def machine_text():
 
 
 def do_parts(name, parts, chosen, *given):
-    """The chosen parts, or all, each with what is given; bad input ends the script `name` with one line."""
+    """The chosen parts, or all, each with what is given; bad input ends the script `name` with one line, and
+    so does ^C."""
     for part in chosen or parts:
         try:
             parts[part](*given)
         except BadInput as error:
             raise SystemExit(f"{name}: {error}") from None
+        except KeyboardInterrupt:
+            print(f"{name}: stopped", file=sys.stderr)
+            raise SystemExit(STOPPED) from None
         sys.stdout.flush()
 
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy
 
-from .tables import BadInput, read_table
+from .tables import BadInput, read_table, whole
 from .transient_history import Run, read_columns
 
 IMPULSE = {"name": str, "steps_after": float, "steps_changed": float, "pairs_changed": float,
@@ -123,7 +123,7 @@ class Record:
         self.words.append(f"less the run without the impulse, {folder}")
         differ = abs(status - states[:, :len(time)])[:, self.first:]
         self.tell_changes(int(differ.any(axis=0).sum()), differ.shape[1], int(differ.max()), "samples",
-                          "the run without it")
+                          "in the run without it")
         return values - numpy.array(list(columns.values())).T[:len(time)]
 
     def take_off_rest(self, time, values, start):
@@ -138,8 +138,8 @@ class Record:
         rest = before.mean(axis=0)
         after = numpy.sqrt(((values[self.first:] - rest)**2).sum(axis=1)).max()
         still = numpy.sqrt(((before - rest)**2).sum(axis=1)).max() / max(after, 1e-300)
-        self.words.append(f"less the mean from {time[begin]:.6g} s to the impulse, when the ramp has decayed: motion there "
-                          f"is {still:.1e} of the response"
+        self.words.append(f"less the mean from {time[begin]:.6g} s to the impulse, when the ramp has decayed: motion "
+                          f"there is {still:.1e} of the response"
                           + (", TOO MUCH: give --reference, or a later impulse" if still > STILL else ""))
         self.tell_changes(self.blow.changed, self.blow.steps, self.blow.pairs, "steps", "before it")
         return values - rest
@@ -147,14 +147,14 @@ class Record:
     def tell_changes(self, n, n_all, pairs, unit, than):
         """How often the impulse opened or stuck pairs."""
         self.words.append(
-            f"the impulse opens, closes or sticks pairs in {n} of {n_all} {unit} after it, {pairs} at most: the response "
-            "is not linear; give a smaller one" if n else
-            f"as many pairs are open and stick in all {n_all} {unit} after the impulse as in {than}")
+            f"the impulse opens, closes or sticks pairs in {n} of {n_all} {unit} after it, {pairs} at most: the "
+            "response is not linear; give a smaller one" if n else
+            f"as many pairs are open and stick in all {n_all} {unit} after the impulse as {than}")
 
 
 def write_rows(path, names, rows):
     """A table; text that holds a comma is quoted."""
-    with path.open("w", newline="") as file:
+    with whole(path) as part, part.open("w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(names)
         writer.writerows([f"{cell:.15g}" if isinstance(cell, float) else cell for cell in row] for row in rows)

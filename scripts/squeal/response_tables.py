@@ -5,7 +5,7 @@ import numpy
 from .bodies import Scene, opened
 from .response_record import write_rows
 from .signal import interval
-from .tables import BadInput, print_table, read_table
+from .tables import BadInput, print_table, read_table, whole
 
 PEAKS = ("freq_hz", "magnitude_m_n", "mode", "mode_freq_hz", "damping_ratio", "label")
 MODES = {"mode": int, "freq_hz": float, "growth_rad_s": float, "damping_ratio": float, "label": str}
@@ -37,12 +37,15 @@ def write_all(response, folder, words):
               "error_relative"]
     numbers = numpy.column_stack([response.freq, values.view(float).reshape(len(values), -1), response.error,
                                   response.error / response.magnitude])
-    numpy.savetxt(folder / "frf.csv", numbers, fmt="%.15g", delimiter=",", header=",".join(header), comments="")
+    with whole(folder / "frf.csv") as part:
+        numpy.savetxt(part, numbers, fmt="%.15g", delimiter=",", header=",".join(header), comments="")
     write_rows(folder / "peaks.csv", PEAKS, [
         (float(p.freq), float(p.magnitude), k + 1, float(p.mode.freq), float(p.mode.damping), p.label)
         for k, p in enumerate(response.peaks)])
     write_shapes(response, folder / "operating_shapes.csv")
-    (folder / "response.txt").write_text("\n".join(words) + "\n")
+    (folder / "peaks_modes.csv").unlink(missing_ok=True)  # of other peaks
+    with whole(folder / "response.txt") as part:
+        part.write_text("\n".join(words) + "\n", encoding="utf-8")
 
 
 def write_shapes(response, path):
@@ -80,8 +83,8 @@ def mode_shapes(response, folder, rows):
         at = numpy.array([((scene.points - x)**2).sum(axis=1).argmin() for x in place])
         apart = abs(scene.points[at] - place).max()
         if apart > SAME * max(1, abs(place).max()):
-            raise BadInput(f"--modes {folder}: its mesh has no node at one of the circles', {apart:.3g} m away; both runs "
-                           "need the same mesh")
+            raise BadInput(f"--modes {folder}: its mesh has no node at one of the circles', {apart:.3g} m away; both "
+                           "runs need the same mesh")
         axes = ["xyz".index(node["axis"]) for _, node in nodes]
         return [k for k, _ in nodes], {row["mode"]: scene.shape(row["mode"])[at, axes] for row in rows}
 
@@ -105,6 +108,7 @@ def compare_modes(response, folder, output):
             table.append((float(peak.mode.freq), float(peak.mode.damping), peak.label, row["mode"], row["freq_hz"],
                           row["damping_ratio"], row["label"], value))
     write_rows(output / "peaks_modes.csv", COMPARED, table)
-    print_table(f"beside the modes of {folder}", ("label", "Hz", "mode Hz", "%", "damping %", "mode %", "MAC", "mode's"),
+    print_table(f"beside the modes of {folder}",
+                ("label", "Hz", "mode Hz", "%", "damping %", "mode %", "MAC", "mode's"),
                 *((row[2], f"{row[0]:.2f}", f"{row[4]:.2f}", f"{100 * (row[0] / row[4] - 1):+.4f}",
                    f"{100 * row[1]:.4f}", f"{100 * row[5]:.4f}", f"{row[7]:.5f}", row[6]) for row in table))

@@ -41,19 +41,21 @@ def choose_window(time, values, kind):
     size = numpy.linalg.norm(values, axis=1)
     left = numpy.sqrt((size[-max(int(TAIL * len(size)), 1):]**2).mean()) / max(size.max(), 1e-300)
     if kind == "rectangular" and left > DECAYED:
-        raise BadInput(f"--window rectangular: at the end of the record {left:.1e} of the largest motion is left, must be "
-                       f"{DECAYED:g} at most; use a longer one, or --window exponential")
+        raise BadInput(f"--window rectangular: at the end of the record {left:.1e} of the largest motion is left, must "
+                       f"be {DECAYED:g} at most; use a longer one, or --window exponential")
     if kind == "rectangular" or (kind == "auto" and left <= DECAYED):
-        return Window(0.0, f"rectangular window of {time[-1]:.6g} s, at whose end {left:.1e} of the largest motion is left")
+        return Window(0.0, f"rectangular window of {time[-1]:.6g} s, at whose end {left:.1e} of the largest motion is "
+                           "left")
     decay = decay_of_window(time)
-    return Window(decay, f"exponential window of {time[-1]:.6g} s, from 1 to {LEFT:g}; the decay of {decay:.6g} 1/s that it "
-                         "adds is taken off all modes")
+    return Window(decay, f"exponential window of {time[-1]:.6g} s, from 1 to {LEFT:g}; the decay of {decay:.6g} 1/s "
+                         "that it adds is taken off all modes")
 
 
 def modal_sum(modes, freq, shift=0.0):
     """Parts of modes in the response at i omega + shift."""
     s = 1j * TWO_PI * freq[:, None] + shift
-    parts = [mode.residue / (s - mode.exponent) + mode.residue.conj() / (s - numpy.conj(mode.exponent)) for mode in modes]
+    parts = [mode.residue / (s - mode.exponent) + mode.residue.conj() / (s - numpy.conj(mode.exponent))
+             for mode in modes]
     return sum(parts) if parts else 0
 
 
@@ -90,14 +92,18 @@ class Response:
     def check(time, freq):
         """Raises an error for frequencies that the record cannot tell."""
         lowest, highest = limits(time)
+        if highest - lowest < 1 / time[-1]:
+            raise BadInput(f"the record of {time[-1]:.6g} s after the impulse is too short: it can tell frequencies "
+                           f"from {lowest:.6g} Hz, {PERIODS} periods, to {highest:.6g} Hz, four rows to a period; give a "
+                           "larger --length, or let the run go on")
         if len(freq) < 3 or freq[-1] > highest or freq[0] < lowest:
             asked = f"{freq[0]:.6g} to {freq[-1]:.6g} Hz" if len(freq) else "(none fits)"
             raise BadInput(f"--frequencies {asked} must lie between {lowest:.6g} Hz, "
                            f"{PERIODS} periods in the record, and {highest:.6g} Hz, four rows to a period")
 
     def estimate(self, time, windowed):
-        """Of the rule of integration, a third of what every second row would change, since its error goes with the square
-        of the interval; of the end, what the last tenth of the record changes."""
+        """Of the rule of integration, a third of what every second row would change, since its error goes with the
+        square of the interval; of the end, what the last tenth of the record changes."""
         half = transform(time[::2], windowed[::2], self.freq)
         n = int(0.9 * len(time))
         short = transform(time[:n], windowed[:n], self.freq)
@@ -130,6 +136,6 @@ class Response:
             if mode.exponent.real < 0 and mode.height >= SEEN * m[at]:
                 peaks.append(Peak(self.freq[at] if len(near) else mode.freq, m[at], mode, self.label(mode)))
         if not peaks:
-            raise BadInput(f"--frequencies {self.freq[0]:.6g} to {self.freq[-1]:.6g} Hz: no peak of a mode in the response "
-                           "there; choose others, or a node that the modes move")
+            raise BadInput(f"--frequencies {self.freq[0]:.6g} to {self.freq[-1]:.6g} Hz: no peak of a mode in the "
+                           "response there; choose others, or a node that the modes move")
         return peaks

@@ -74,8 +74,8 @@ def demodulate(times, values, band, stop=40, share=0.25):
 
 
 def pencil(values, most):
-    """Ratios per sample of the exponentials in a series, or in several [sample][series] together, those above the noise,
-    `most` of them at most. Threshold: 4/2.858 of that of Gavish and Donoho, IEEE Trans. Inf. Theory 60, 2014, since
+    """Ratios per sample of the exponentials in a series, or in several [sample][series] together, those above the
+    noise, `most` of them at most. Threshold: 4/2.858 of that of Gavish and Donoho, IEEE Trans. Inf. Theory 60, 2014, since
     rows of the matrix repeat their noise."""
     row = min(len(values) // 2, LONGEST_PENCIL)
     values = values.reshape(len(values), -1)

@@ -1,8 +1,12 @@
 """Tables: those that squeal wrote, read with one-line errors, and those that the scripts print."""
 
+import contextlib
 import csv
 import math
 import sys
+
+
+STOPPED = 130  # exit status after ^C, as of a shell
 
 
 class BadInput(Exception):
@@ -32,6 +36,17 @@ def read_table(path, kinds):
         raise BadInput(f"{path}: no such file; run squeal first, or name its -output_dir") from None
     except (OSError, ValueError, csv.Error) as error:
         raise BadInput(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+
+
+@contextlib.contextmanager
+def whole(path):
+    """The file to write in place of one, which bears its name only when all of it is there."""
+    part = path.with_name(f"{path.name}.part")
+    try:
+        yield part
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def header(path):
@@ -84,4 +99,7 @@ def run(name, work):
     except BadInput as error:
         print(f"{name}: {error}", file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        print(f"{name}: stopped", file=sys.stderr)
+        return STOPPED
     return 0

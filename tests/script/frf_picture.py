@@ -16,7 +16,7 @@ from squeal.picture import BLUE, GREEN, GREY, VERMILION
 def write(folder, outputs=1, coherence=False, error=1e-9, peaks=True):
     """frf.csv of oscillators at 300, 600, ... Hz, and peaks.csv."""
     folder.mkdir(exist_ok=True)
-    names = [f"tip_{axis}" for axis in "xyz"[:outputs]]
+    names = [f"{probe}_{axis}" for probe in ("tip", "edge", "foot") for axis in "xyz"][:outputs]
     columns = [f"{name}_{part}" for name in names
                for part in ("re_m_n", "im_m_n", *(("coherence",) if coherence else ()))]
     lines = [",".join(["freq_hz", *columns, "error_m_n", "error_relative"])]
@@ -48,6 +48,8 @@ def test_lines(root):
     require(min(every[:3]) > 300 and every[3] < 100, f"three outputs: {every} points")
     one = points(folder, colours, "--outputs", "tip_y", "--band", "100,900")
     require(one[0] > 300 and max(one[1:]) < 100, f"one output: {one} points")
+    many = points(write(root / "many", outputs=8), (GREY,))
+    require(many[0] < 100, f"one of eight outputs has the colour of the error: {many} points")
     seen = points(write(root / "wrong", error=0.3), (GREY,))
     require(seen[0] > 100, f"a large error is not drawn: {seen}")
 
@@ -63,7 +65,9 @@ def test_coherence(root):
 def test_bad(root):
     """One line says what is wrong."""
     fails("plot/frf", root / "nothing", [], "no such file")
-    fails("plot/frf", write(root / "names"), ["--outputs", "tip_q"], "--outputs tip_q is none of tip_x")
+    fails("plot/frf", write(root / "names"), ["--outputs", "tip_q"],
+          "--outputs tip_q is not among the outputs; the nearest are tip_x")
+    fails("plot/frf", root / "names", ["--band", "2000,3000"], "--band 2000,3000: no frequency of frf.csv is in it")
     cut = write(root / "cut")
     (cut / "frf.csv").write_text((cut / "frf.csv").read_text()[:-20])
     fails("plot/frf", cut, [], "frf.csv")

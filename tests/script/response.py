@@ -4,7 +4,9 @@ how bad input fails. The disc does w(t) = rest + ramp(t) + J sum of shape_k exp(
 blow. Exit status: 0, or 1.
 """
 
+import contextlib
 import csv
+import io
 import math
 import tempfile
 from pathlib import Path
@@ -13,6 +15,7 @@ from typing import NamedTuple
 import numpy
 from drawing import drawn, fails, require, script
 from squeal.frf_tables import Responses  # found by drawing
+from squeal.tables import STOPPED, run, whole
 
 STEP, BLOW, MOMENTUM = 1.6e-5, 1.205e-3, -2e-6  # s, s, N s
 RADII, COUNT = {"rim": 0.12, "inner": 0.08}, 24
@@ -155,12 +158,34 @@ def test_rest(root):
 def test_opened(root):
     """How often the impulse changes the pairs, by steps of the run, and by rows beside a reference."""
     _, said = respond(root / "long")
-    require("as many pairs are open and stick in all 90000 steps" in said, f"nothing opened: {said}")
+    require("as many pairs are open and stick in all 90000 steps after the impulse as before it" in said, f"nothing opened: {said}")
     opened = write(root / "opened", opened=7)
     _, said = respond(opened)
     require("opens, closes or sticks pairs in 700 of 90000 steps after it, 1 at most" in said, f"steps: {said}")
     _, said = respond(opened, "--reference", write(root / "quiet", blow=False))
     require("opens, closes or sticks pairs in 7 of 3674 samples after it, 1 at most" in said, f"rows: {said}")
+
+
+def test_whole(root):
+    """Breaks when a table that could not be finished bears its name, or one of other peaks stays; ^C is one line."""
+    folder = root / "long"
+    (folder / "peaks_modes.csv").write_text("freq_hz\n1\n")
+    respond(folder)
+    require(not (folder / "peaks_modes.csv").exists(), "a comparison of other peaks stays")
+    require(not list(folder.glob("*.part")), "parts stay")
+    path = root / "table.csv"
+    path.write_text("old")
+    with contextlib.suppress(OSError), whole(path) as part:
+        part.write_text("ne")
+        raise OSError
+    require(path.read_text() == "old" and not list(root.glob("*.part")), "half a table bears its name")
+
+    def stopped():
+        raise KeyboardInterrupt
+
+    with contextlib.redirect_stderr(io.StringIO()) as said:
+        status = run("response", stopped)
+    require(status == STOPPED == 130 and said.getvalue() == "response: stopped\n", f"^C: {status} {said.getvalue()!r}")
 
 
 def test_picture(root):
@@ -172,6 +197,7 @@ def test_bad(root):
     """One line each."""
     folder = root / "short"
     fails("response", folder, ["--length", 0.07], "--length 0.07 s is longer than the record, which ends 0.018779")
+    fails("response", folder, ["--length", 1e-4], "the record of 9.1e-05 s after the impulse is too short")
     fails("response", folder, ["--length", 0], "--length 0 s must be positive")
     fails("response", folder, ["--frequencies", "6000:9000:301"], "--frequencies 6000 to 9000 Hz: no peak of a mode")
     fails("response", folder, ["--frequencies", "50:9000:301"], "must lie between 213.0")
@@ -199,7 +225,7 @@ def test_bad(root):
 def main():
     """All tests, in folders of one root."""
     with tempfile.TemporaryDirectory() as folder:
-        for test in (test_windows, test_rest, test_opened, test_picture, test_bad):
+        for test in (test_windows, test_rest, test_opened, test_whole, test_picture, test_bad):
             test(Path(folder))
             print(f"ok     {test.__doc__.splitlines()[0]}", flush=True)
 

@@ -18,6 +18,7 @@ SQUEAL = 3430  # Hz, its Figure 9
 PRESSED = 2.5895e8  # N/m, its section 2.1
 CLOSE = 0.01  # a frequency, or the rms of several, is the paper's within this,
 NEAR = 0.1  # and an onset
+QUIET = 0.1  # of the mean: oscillation of the normal force that is not remarkable
 
 
 class Claim(NamedTuple):
@@ -40,7 +41,8 @@ def table_claims(columns):
         for group, own in {"all": pairs, **groups(pairs)}.items():
             n = sum(not math.isnan(pair.ours) for pair in own)
             yield Claim(f"{name}, {group}", f"its {column} column",
-                        f"rms difference {fixed(100 * rms(own), 2)} % of {n} of {len(own)} modes",
+                        f"rms difference {fixed(100 * rms(own), 2)} % of {n} of {len(own)} modes" if n else
+                        f"none of {len(own)} modes has its label",
                         None if group == "all" else n == len(own) and rms(own) < CLOSE)
 
 
@@ -109,10 +111,10 @@ def stable_claims(record):
     """Figure 7."""
     vibration, normal = record.vibration, record.run.normal[record.vibration.steady]
     yield Claim("acceleration of the pad's edge", "decreases: stable", growth_words(vibration),
-                vibration.regime() in ("decays", "steady", "at rest"))
+                vibration.regime() == "decays")
     yield Claim("oscillation of the contact forces", "not remarkable",
                 f"normal force {figures(normal.min(), 4)} to {figures(normal.max(), 4)} N",
-                bool(numpy.ptp(normal) < 0.1 * normal.mean()))
+                bool(numpy.ptp(normal) < QUIET * normal.mean()))
 
 
 def growth_claims(record):
@@ -176,6 +178,6 @@ def mesh_pairs(fine, coarse):
 
 def table_columns(consistent, lumped, response):
     """Ours of Table 1, of the folders that there are."""
-    ours = {"modes, consistent mass": (consistent, read_modes, "ansys"),
-            "modes, lumped mass": (lumped, read_modes, "plast3"), "in time": (response, read_peaks, "plast3")}
+    ours = {"consistent mass": (consistent, read_modes, "ansys"), "lumped mass": (lumped, read_modes, "plast3"),
+            "in time": (response, read_peaks, "plast3")}
     return {name: beside(read(folder), column) for name, (folder, read, column) in ours.items() if folder}

@@ -48,8 +48,7 @@ def magnitude_figure(folder, responses):
     return figure(f"{folder.key}-response", "Displacement per force",
                   [keys, chart.markup(f"{folder.key}-response-chart")],
                   f"{len(outputs)} of {count(len(responses.outputs), 'output')}, the largest ones; peaks carry the "
-                  f"label of the "
-                  "mode that gives most.", folder.command("plot/frf"))
+                  "label of the mode that gives most.", folder.command("plot/frf"))
 
 
 def error_figure(folder, responses):
@@ -80,10 +79,24 @@ def peak_table(folder, responses):
     return table(f"{folder.key}-peaks", columns, responses.peaks)
 
 
+def how_it_was_done(folder):
+    """Lines that scripts/response wrote about a response in time; nothing about another one."""
+    path = folder.path / "response.txt"
+    if not path.exists() or not folder.scene or folder.scene.value("analysis") != "transient":
+        return None
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, ValueError) as error:
+        return folder.lacks(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}")
+    return tag("div", tag("h4", "How it was done"), tag("ul", [tag("li", line) for line in lines]),
+               id=f"{folder.key}-response-how")
+
+
 def response_part(folder, _):
     """All of it."""
     responses = Responses(folder.path)
-    content = section(f"{folder.key}-frf", "Frequency response", magnitude_figure(folder, responses),
+    content = section(f"{folder.key}-frf", "Frequency response", how_it_was_done(folder),
+                      magnitude_figure(folder, responses),
                       tag("div", tag("div", tag("h4", "Peaks"), peak_table(folder, responses)),
                           error_figure(folder, responses), class_="pair"))
     errors = [("estimated error of the response, at most", figures(responses.relative.max(), 2))
