@@ -99,7 +99,7 @@ PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum 
     const PetscBool is_spring = i < model->scene.n_springs ? PETSC_TRUE : PETSC_FALSE;
     const Grounded *g = is_spring ? &model->scene.springs[i] : &model->scene.dashpots[i - model->scene.n_springs];
 
-    PetscCall(ChecksumSetPart(c, is_spring ? "springs" : "dashpots"));
+    PetscCall(ChecksumSetPart(c, "%s %s", is_spring ? "spring" : "dashpot", g->name));
     PetscCall(ModelAddSetChecksum(model, g->set, PETSC_FALSE, c));
     PetscCall(ChecksumAddReals(c, 3, g->value));
     if (g->spread != SPREAD_EACH) PetscCall(ChecksumAddString(c, g->quantity));
@@ -113,11 +113,13 @@ PetscErrorCode ModelAddLoadsChecksum(Model model, Checksum c)
   PetscCall(ChecksumSetPart(c, "-model_gravity"));
   PetscCall(ChecksumAddReals(c, 3, model->scene.gravity));
   for (PetscInt i = 0; i < model->scene.n_loads; i++) {
-    PetscCall(ChecksumSetPart(c, "load %s", model->scene.loads[i].name));
+    const Load *load = &model->scene.loads[i];
+
+    PetscCall(ChecksumSetPart(c, "load %s", load->name));
     PetscCall(ChecksumAddInts(c, 1, &i)); /* the order counts */
-    PetscCall(ModelAddSetChecksum(model, model->scene.loads[i].set, PETSC_FALSE, c));
-    PetscCall(ChecksumAddReals(c, 3, model->scene.loads[i].force));
-    if (model->scene.loads[i].is_pressure) PetscCall(ChecksumAddReals(c, 1, &model->scene.loads[i].pressure));
+    PetscCall(ModelAddSetChecksum(model, load->set, PETSC_FALSE, c));
+    /* the resultant of a pressure is a sum over ranks, whose rounding is no difference */
+    PetscCall(load->is_pressure ? ChecksumAddReals(c, 1, &load->pressure) : ChecksumAddReals(c, 3, load->force));
   }
   PetscFunctionReturn(0);
 }

@@ -27,7 +27,7 @@ CHANGES = (("contact contact", "-contact_mu", "0.4"), ("materials", "-beam_poiss
            ("supports", "-supports", "hub,foot", "-foot_set", "beam_rows", "-foot_fix", "x"),
            ("contact contact", "-contact_slip", "1,0,0", "-rows_stiffness", "1e6,8.422e6,0"),
            ("the mesh", "-model_element", "full"),
-           ("springs", "-rows_stiffness", "0,8.422e6,1"), ("the mesh", "-rig_disc_spread", "0.5"))
+           ("spring rows", "-rows_stiffness", "0,8.422e6,1"), ("the mesh", "-rig_disc_spread", "0.5"))
 # Places in the second file, and what is put there: n_samples and n_used of the header, a bit of a vector, an end
 DAMAGE = ((20, b"\xff\xff\xff\xff"), (28, b"\x01\0\0\0"), (28, b"\xff\xff\xff\xff"), (-1000, b"\x01"), (-8, None))
 # Pairs that are closed at some places only, groups of them among the parameters; fewer groups without the last two
