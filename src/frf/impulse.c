@@ -12,7 +12,9 @@
 #include "frfimpl.h"
 #include <petscblaslapack.h>
 
-#define HELD 1e-8 /* of |C| / |M|: less damping of the rigid modes is what their vectors err by */
+#define MOST_PHASE 4e12 /* omega t, rad: rounding of omega turns a larger one by 1e-3 and more */
+#define DECAYED    -37  /* sigma t: what is left is below rounding */
+#define HELD       1e-8 /* of |C| / |M|: less damping of the rigid modes is what their vectors err by */
 
 /* One mode that is not rigid */
 typedef struct {
@@ -28,10 +30,23 @@ static PetscReal ModeMotionAt(const ModeMotion *m, PetscComplex x, PetscReal t)
   return (cimag(m->lambda) > 0 ? 2 : 1) * creal(x * m->input / (2 * m->lambda) * cexp(m->lambda * t));
 }
 
+/* Raises an error for a time at which the mode still moves, but rounding alone says where it is */
+static PetscErrorCode ModeMotionCheck(Frf frf, const ModeMotion *m)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < frf->n_times; i++)
+    PetscCheck(
+      cimag(m->lambda) * frf->time[i] <= MOST_PHASE || creal(m->lambda) * frf->time[i] < DECAYED, frf->comm,
+      PETSC_ERR_USER_INPUT, "-frf_times: %.6g s is beyond %.6g s, where the phase of the mode at %.6g Hz is rounding",
+      (double)frf->time[i], (double)(MOST_PHASE / cimag(m->lambda)), (double)(cimag(m->lambda) / (2 * PETSC_PI)));
+  PetscFunctionReturn(0);
+}
+
 /* Adds one mode to h */
 static PetscErrorCode ModeMotionAdd(Frf frf, const ModeMotion *motion)
 {
   PetscFunctionBeginUser;
+  PetscCall(ModeMotionCheck(frf, motion));
   for (PetscInt p = 0; p < frf->n_outputs; p++) {
     PetscComplex x;
 
