@@ -1,14 +1,17 @@
 #!/usr/bin/env python3
 """What scripts/plot/transient calls a vibration, on made-up signals: one that dies out within 3 ms is not steady, whatever
-lines beat in it, and has no harmonics; one of constant amplitude is, and has them; a few periods tell nothing. Breaks
-when the word or the harmonics say more than the data allow."""
+lines beat in it, and has no harmonics; one of constant amplitude is, and has them; a few periods tell nothing. And that
+scripts/paper takes only what decays for the stable brake of the paper, whose vibration decreases. Breaks when a word,
+the harmonics or the verdict say more than the data allow."""
 
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
+from squeal.paper.claims import stable_claims
 from squeal.transient_cycle import Vibration, vibration_quantities
 
 
@@ -45,6 +48,10 @@ def main():
         good = found.regime() in words and bool(harmonics) == has_harmonics
         print("ok  " if good else "FAIL", f"{name}: {found.regime()}, {len(harmonics)} harmonics")
         faults += not good
+        record = SimpleNamespace(vibration=found, run=SimpleNamespace(normal=numpy.full(len(found.time), 100.0)))
+        verdict = next(stable_claims(record)).kept
+        print("ok  " if verdict == (words == {"decays"}) else "FAIL", f"  decreases as in the paper: {verdict}")
+        faults += verdict != (words == {"decays"})
     return 1 if faults else 0
 
 
