@@ -1,18 +1,34 @@
 /*
-   Isotropic linear elasticity: stress = lambda tr(strain) I + 2 mu_lame strain,
-   lambda = E nu / ((1 + nu)(1 - 2 nu)), mu_lame = E / (2 (1 + nu)).
-   With strain = sym(grad u) the stiffness of two shape functions with gradients g, h (1/m) is the 3 x 3 block
-   lambda g h' + mu_lame (h g' + (g . h) I), to be multiplied by the volume (m^3).
+   Linear elasticity: stress = C strain, strain = sym(grad u).
+
+   Isotropic: stress = lambda tr(strain) I + 2 shear strain,
+   lambda = E nu / ((1 + nu)(1 - 2 nu)), shear = E / (2 (1 + nu)).
+
+   Anisotropic: the components in the order xx, yy, zz, yz, xz, xy of the global axes (Voigt), shear strains twice those
+   of the tensor (gamma_yz = du_y/dz + du_z/dy): stress[r] = sum_s C[r][s] strain[s], C symmetric.
+
+   The matrices of it are in kernels/stiffness.h.
 */
 #pragma once
 
+#include <stdbool.h>
+
+#define ELASTICITY_VOIGT 6
+
 typedef struct {
-  double lambda, shear; /* Lame's parameters, Pa */
-  double density;       /* kg/m^3 */
+  double lambda, shear;                         /* Lame's parameters, Pa; not read where anisotropic */
+  double density;                               /* kg/m^3 */
+  bool   anisotropic;                           /* the stiffness is C */
+  double C[ELASTICITY_VOIGT][ELASTICITY_VOIGT]; /* Pa, symmetric, all entries; not read where isotropic */
 } Elasticity;
 
 static inline Elasticity ElasticityFromEngineering(double young, double poisson, double density)
 {
-  const Elasticity e = {young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson)), density};
+  Elasticity e;
+
+  e.lambda      = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
+  e.shear       = young / (2 * (1 + poisson));
+  e.density     = density;
+  e.anisotropic = false;
   return e;
 }

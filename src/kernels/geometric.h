@@ -3,8 +3,8 @@
 
       k_ab = int grad N_a . sigma . grad N_b dV   times the 3 x 3 identity   (N/m, symmetric; tension stiffens).
 
-   sigma = lambda tr(H) I + shear (H + H') is that of the static displacements u (m), H = sum_a u_a grad N_a over shape
-   functions and bubbles. The amplitudes of the bubbles are those of equilibrium, alpha = -K_aa^-1 K_au u. The bubbles
+   sigma = C sym(H) is that of the static displacements u (m), H = sum_a u_a grad N_a over shape functions and bubbles
+   (kernels/stiffness.h). The amplitudes of the bubbles are those of equilibrium, alpha = -K_aa^-1 K_au u. The bubbles
    carry stress but turn no fibre: their own geometric stiffness is left out, as is their mass (kernels/hex8.h).
 
    A rigid rotation, u_b = w x x_b, gives k u = w x f with f the nodal forces of sigma: exact for any shape, since the
@@ -40,10 +40,7 @@ static inline void Hex8Stress(int n, const Elasticity *material, const double *v
       for (int k = 0; k < 3; k++) H[i][k] += v[a + i] * g[a + k] / j;
     }
   }
-  for (int i = 0; i < 3; i++) {
-    for (int k = 0; k < 3; k++) stress[i][k] = material->shear * (H[i][k] + H[k][i]);
-    stress[i][i] += material->lambda * (H[0][0] + H[1][1] + H[2][2]);
-  }
+  StressFromGradient(material, H, stress);
 }
 
 /* Adds g_a . sigma . g_b / j to k[8][8] */
@@ -72,7 +69,7 @@ static inline int Hex8Geometric(const double *x, const Elasticity *material, int
   double        xi[3] = {0, 0, 0}, N[HEX8_NODES], dN[HEX8_DOFS], c0[9], c[9];
 
   if (Hex8Integrate(x, n_bubbles, &sum)) return 1;
-  Hex8Stiffness(3 * n, material, sum.gradients, K);
+  Hex8Stiffness(n, material, sum.gradients, K);
   Hex8Condense(3 * n_bubbles, 3 * n, K);
   Hex8Recover(n_bubbles, K, u, v);
   Hex8Shape(xi, N, dN);
@@ -99,7 +96,7 @@ static inline int Hex8Geometric(const double *x, const Elasticity *material, int
 
    Input Parameters:
 +  x        - positions of the nodes, [8][3], m
-.  material - Lame's parameters, Pa
+.  material - stiffness, Pa
 -  u        - displacements of the nodes, [8][3], m
 
    Output Parameter:

@@ -22,9 +22,8 @@
 #pragma once
 
 #include "base/vec3.h"
+#include "stiffness.h"
 #include <math.h>
-#include <string.h>
-#include <squeal/elasticity.h>
 
 #define HEX8_NODES   8
 #define HEX8_DOFS    24
@@ -134,22 +133,11 @@ static inline int Hex8Integrate(const double *x, int n_bubbles, Hex8Integrals *s
   return 0;
 }
 
-/* Stiffness from the integrals G of g h': each block is lambda G + shear (G' + tr(G) I), upper block triangle */
+/* Stiffness of n functions from the integrals of the products of their gradients, upper block triangle */
 static inline void Hex8Stiffness(int n, const Elasticity *material, double G[HEX8_ALL][HEX8_ALL],
                                  double K[HEX8_ALL][HEX8_ALL])
 {
-  for (int a = 0; a < n; a += 3) {
-    for (int b = a; b < n; b += 3) {
-      const double trace = material->shear * (G[a][b] + G[a + 1][b + 1] + G[a + 2][b + 2]);
-
-      for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-          K[a + i][b + j] = material->lambda * G[a + i][b + j] + material->shear * G[a + j][b + i];
-        }
-        K[a + i][b + i] += trace;
-      }
-    }
-  }
+  StiffnessFromGradients(n, material, &G[0][0], HEX8_ALL, &K[0][0]);
 }
 
 /* Eliminates the first n_first unknowns of symmetric positive K, upper triangle: leaves K_22 - K_21 K_11^-1 K_12 */
@@ -188,7 +176,7 @@ static inline int Hex8Matrices(const double *x, const Elasticity *material, int 
   double        K[HEX8_ALL][HEX8_ALL];
 
   if (Hex8Integrate(x, n_bubbles, &sum)) return 1;
-  Hex8Stiffness(n, material, sum.gradients, K);
+  Hex8Stiffness(n_bubbles + HEX8_NODES, material, sum.gradients, K);
   Hex8Condense(first, n, K);
   for (int r = 0; r < HEX8_DOFS; r++) {
     for (int s = r; s < HEX8_DOFS; s++) {
@@ -205,7 +193,7 @@ static inline int Hex8Matrices(const double *x, const Elasticity *material, int 
 
    Input Parameters:
 +  x        - positions of the nodes, [8][3], m
--  material - Lame's parameters, Pa, and density, kg/m^3
+-  material - stiffness, Pa, and density, kg/m^3
 
    Output Parameters:
 +  stiffness - [24][24]
