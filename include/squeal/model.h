@@ -80,6 +80,13 @@ typedef struct {
   PetscInt *vertex;           /* [n_lines][n_nodes] local vertices from 0 */
 } ModelLines;
 
+/* Faces of a surface: node[first[f] .. first[f + 1]) are the local nodes of face f, corners first, counter-clockwise seen
+   from outside of the body, then mid-side nodes (after corner i that between corners i and i + 1), then the middle one.
+   Their number tells the shape: 3, 6 of triangles, 4, 8, 9 of quadrilaterals (kernels/facet.h) */
+typedef struct {
+  PetscInt n, *first, *node;
+} ModelFaces;
+
 /* Essential condition: the flagged directions are fixed at every vertex of the set */
 typedef struct {
   char     *name, *set;
@@ -212,10 +219,10 @@ PetscErrorCode ModelGetOwnedVertices(Model model, const char set[], IS *vertices
     the prefix of the option -owner_set that the message names. @*/
 PetscErrorCode ModelCreateShares(Model model, const char owner[], const char set[], Spread spread, Vec *shares);
 
-/*@ ModelGetSetFaces - quadrilaterals of a surface set on this rank: corners [n][4] (local vertices),
-    counter-clockwise seen from outside the body; each face is on exactly one rank. Collective. The caller frees them.
-    @*/
-PetscErrorCode ModelGetSetFaces(Model model, const char set[], PetscInt *n, PetscInt **corners);
+/*@ ModelGetSetFaces - the faces of a surface set on this rank; each face is on exactly one rank. Collective. The caller
+    frees them with ModelFacesDestroy(). Errors: PETSC_ERR_USER_INPUT for a set without faces. @*/
+PetscErrorCode ModelGetSetFaces(Model model, const char set[], ModelFaces *faces);
+PetscErrorCode ModelFacesDestroy(ModelFaces *faces);
 
 /*@ ModelGetSetNormals - for each local vertex, shape [vertices][3], the outward normal of a surface set times
     the vertex's share of its area (m^2), complete on every rank that has the vertex. Collective. The caller frees it.

@@ -11,24 +11,25 @@ PetscErrorCode ContactFacetsLocal(Model model, const char set[], PetscInt *n, Co
 {
   const Mesh *mesh;
   PetscReal  *normals;
-  PetscInt   *corners;
+  ModelFaces  faces;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(ModelGetSetNormals(model, set, &normals));
-  PetscCall(ModelGetSetFaces(model, set, n, &corners));
+  PetscCall(ModelGetSetFaces(model, set, &faces));
+  *n = faces.n;
   PetscCall(PetscCalloc1(*n, facets));
   for (PetscInt i = 0; i < 4 * *n; i++) {
     ContactFacet  *f = &(*facets)[i / 4];
-    const PetscInt v = 3 * corners[i];
+    const PetscInt v = 3 * faces.node[i];
 
     PetscCall(PetscArraycpy(f->x[i % 4], &mesh->x[v], 3));
     PetscCall(PetscArraycpy(f->area[i % 4], &normals[v], 3));
     PetscCall(PetscArraycpy(f->unknowns[i % 4], &mesh->unknown[v], 3));
-    f->node[i % 4] = mesh->number[corners[i]];
+    f->node[i % 4] = mesh->number[faces.node[i]];
   }
   PetscCall(PetscFree(normals));
-  PetscCall(PetscFree(corners));
+  PetscCall(ModelFacesDestroy(&faces));
   PetscFunctionReturn(0);
 }
 

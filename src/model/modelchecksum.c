@@ -17,7 +17,8 @@ PetscErrorCode ModelAddSetChecksum(Model model, const char set[], PetscBool is_s
 {
   const PetscInt *vertex;
   const Mesh     *mesh;
-  PetscInt        n, n_faces = 0, *corners = NULL;
+  PetscInt        n;
+  ModelFaces      faces = {0, NULL, NULL};
   uint64_t       *piece;
   IS              is;
 
@@ -26,15 +27,16 @@ PetscErrorCode ModelAddSetChecksum(Model model, const char set[], PetscBool is_s
   PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(ModelGetOwnedVertices(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
-  if (is_surface) PetscCall(ModelGetSetFaces(model, set, &n_faces, &corners));
-  PetscCall(PetscMalloc1(n + n_faces, &piece));
+  if (is_surface) PetscCall(ModelGetSetFaces(model, set, &faces));
+  PetscCall(PetscMalloc1(n + faces.n, &piece));
   PetscCall(ISGetIndices(is, &vertex));
   for (PetscInt i = 0; i < n; i++) piece[i] = ModelSumVertices(mesh, 1, &vertex[i]);
-  for (PetscInt i = 0; i < n_faces; i++) piece[n + i] = ModelSumVertices(mesh, 4, &corners[4 * i]);
+  for (PetscInt i = 0; i < faces.n; i++)
+    piece[n + i] = ModelSumVertices(mesh, faces.first[i + 1] - faces.first[i], &faces.node[faces.first[i]]);
   PetscCall(ISRestoreIndices(is, &vertex));
   PetscCall(ISDestroy(&is));
-  PetscCall(ChecksumAddPieces(c, n + n_faces, piece));
-  PetscCall(PetscFree(corners));
+  PetscCall(ChecksumAddPieces(c, n + faces.n, piece));
+  PetscCall(ModelFacesDestroy(&faces));
   PetscCall(PetscFree(piece));
   PetscFunctionReturn(0);
 }

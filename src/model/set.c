@@ -147,22 +147,23 @@ static PetscErrorCode FaceOrient(Model model, PetscInt face, PetscInt corners[4]
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelGetSetFaces(Model model, const char set[], PetscInt *n, PetscInt **corners)
+PetscErrorCode ModelGetSetFaces(Model model, const char set[], ModelFaces *faces)
 {
   const PetscInt *p;
   PetscInt        fStart, fEnd, vStart, vEnd, n_points = 0, n_closure, *closure = NULL, n_all;
   IS              points;
 
   PetscFunctionBeginUser;
-  *n = 0;
   PetscCall(SetGetPoints(model, set, &points));
   PetscCall(DMPlexGetHeightStratum(model->dm, 1, &fStart, &fEnd));
   PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, &vEnd));
   if (points) PetscCall(ISGetLocalSize(points, &n_points));
-  PetscCall(PetscMalloc1(4 * n_points, corners));
+  faces->n = 0;
+  PetscCall(PetscMalloc2(n_points + 1, &faces->first, 4 * n_points, &faces->node));
+  faces->first[0] = 0;
   if (points) PetscCall(ISGetIndices(points, &p));
   for (PetscInt i = 0; i < n_points; i++) {
-    PetscInt *const face = &(*corners)[4 * *n], n_cells, k = 0;
+    PetscInt *const face = &faces->node[faces->first[faces->n]], n_cells, k = 0;
 
     if (p[i] < fStart || p[i] >= fEnd) continue;
     PetscCall(DMPlexGetSupportSize(model->dm, p[i], &n_cells));
@@ -172,12 +173,20 @@ PetscErrorCode ModelGetSetFaces(Model model, const char set[], PetscInt *n, Pets
       if (closure[2 * j] >= vStart && closure[2 * j] < vEnd && k < 4) face[k++] = closure[2 * j] - vStart;
     PetscCall(DMPlexRestoreTransitiveClosure(model->dm, p[i], PETSC_TRUE, &n_closure, &closure));
     PetscCall(FaceOrient(model, p[i], face));
-    ++*n;
+    faces->n++;
+    faces->first[faces->n] = faces->first[faces->n - 1] + k;
   }
   if (points) PetscCall(ISRestoreIndices(points, &p));
   PetscCall(ISDestroy(&points));
-  PetscCallMPI(MPI_Allreduce(n, &n_all, 1, MPIU_INT, MPI_SUM, model->comm));
+  PetscCallMPI(MPI_Allreduce(&faces->n, &n_all, 1, MPIU_INT, MPI_SUM, model->comm));
   PetscCheck(n_all, model->comm, PETSC_ERR_USER_INPUT, "the set '%s' has no faces: a surface is needed", set);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelFacesDestroy(ModelFaces *faces)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree2(faces->first, faces->node));
   PetscFunctionReturn(0);
 }
 
@@ -212,24 +221,25 @@ PetscErrorCode ModelCountInnerFaces(Model model, const char set[], PetscInt *n)
 PetscErrorCode ModelGetSetNormals(Model model, const char set[], PetscReal **area_normals)
 {
   const PetscInt n = 3 * model->mesh.n_vertices;
-  PetscInt       n_faces, *corners;
+  ModelFaces     faces;
   PetscScalar   *sum;
   Vec            sums;
 
   PetscFunctionBeginUser;
   PetscCall(ModelCreateNodal(model, &sums));
-  PetscCall(ModelGetSetFaces(model, set, &n_faces, &corners));
+  PetscCall(ModelGetSetFaces(model, set, &faces));
   PetscCall(VecGetArray(sums, &sum));
-  for (PetscInt f = 0; f < n_faces; f++) {
-    double x[4][3], share[4][3];
+  for (PetscInt f = 0; f < faces.n; f++) {
+    const PetscInt *node = &faces.node[faces.first[f]];
+    double          x[4][3], share[4][3];
 
-    for (int i = 0; i < 4; i++) PetscCall(PetscArraycpy(x[i], &model->mesh.x[3 * corners[4 * f + i]], 3));
+    for (int i = 0; i < 4; i++) PetscCall(PetscArraycpy(x[i], &model->mesh.x[3 * node[i]], 3));
     FacetAreaNormals((const double(*)[3])x, share);
     for (int i = 0; i < 4; i++)
-      for (int d = 0; d < 3; d++) sum[3 * corners[4 * f + i] + d] += share[i][d];
+      for (int d = 0; d < 3; d++) sum[3 * node[i] + d] += share[i][d];
   }
   PetscCall(VecRestoreArray(sums, &sum));
-  PetscCall(PetscFree(corners));
+  PetscCall(ModelFacesDestroy(&faces));
   PetscCall(ModelSumShared(model, sums));
   PetscCall(PetscMalloc1(n, area_normals));
   PetscCall(VecGetArray(sums, &sum));

@@ -45,23 +45,24 @@ const OptionsList loads_list = {"-loads", "forces, each the prefix of its -set a
 /* Adds -p int N_v n dA of the faces on this rank to f[3 v], and their area (m^2) to *area */
 static PetscErrorCode PressureAdd(Model model, const Load *load, PetscScalar f[], PetscReal *area)
 {
-  PetscInt n_faces, *corners;
+  ModelFaces faces;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetSetFaces(model, load->set, &n_faces, &corners));
-  for (PetscInt i = 0; i < n_faces; i++) {
-    double x[4][3], share[4][3], whole[3] = {0, 0, 0};
+  PetscCall(ModelGetSetFaces(model, load->set, &faces));
+  for (PetscInt i = 0; i < faces.n; i++) {
+    const PetscInt *node = &faces.node[faces.first[i]];
+    double          x[4][3], share[4][3], whole[3] = {0, 0, 0};
 
-    for (int k = 0; k < 4; k++) PetscCall(PetscArraycpy(x[k], &model->mesh.x[3 * corners[4 * i + k]], 3));
+    for (int k = 0; k < 4; k++) PetscCall(PetscArraycpy(x[k], &model->mesh.x[3 * node[k]], 3));
     FacetAreaNormals((const double(*)[3])x, share);
     for (int k = 0; k < 4; k++)
       for (int d = 0; d < 3; d++) {
-        f[3 * corners[4 * i + k] + d] -= load->pressure * share[k][d];
+        f[3 * node[k] + d] -= load->pressure * share[k][d];
         whole[d] += share[k][d];
       }
     *area += Vec3Length(whole);
   }
-  PetscCall(PetscFree(corners));
+  PetscCall(ModelFacesDestroy(&faces));
   PetscFunctionReturn(0);
 }
 

@@ -44,18 +44,19 @@ static void FacetAreaShares(const double x[4][3], double share[4])
 /* Adds int N_v dA (m^2) of the faces on this rank to weight[3 v] */
 static PetscErrorCode SurfaceAddWeights(Model model, const char set[], PetscScalar weight[])
 {
-  PetscInt n_faces, *corners;
+  ModelFaces faces;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetSetFaces(model, set, &n_faces, &corners));
-  for (PetscInt f = 0; f < n_faces; f++) {
-    double x[4][3], share[4];
+  PetscCall(ModelGetSetFaces(model, set, &faces));
+  for (PetscInt f = 0; f < faces.n; f++) {
+    const PetscInt *node = &faces.node[faces.first[f]];
+    double          x[4][3], share[4];
 
-    for (int i = 0; i < 4; i++) PetscCall(PetscArraycpy(x[i], &model->mesh.x[3 * corners[4 * f + i]], 3));
+    for (int i = 0; i < 4; i++) PetscCall(PetscArraycpy(x[i], &model->mesh.x[3 * node[i]], 3));
     FacetAreaShares((const double(*)[3])x, share);
-    for (int i = 0; i < 4; i++) weight[3 * corners[4 * f + i]] += share[i];
+    for (int i = 0; i < 4; i++) weight[3 * node[i]] += share[i];
   }
-  PetscCall(PetscFree(corners));
+  PetscCall(ModelFacesDestroy(&faces));
   PetscFunctionReturn(0);
 }
 
