@@ -47,6 +47,9 @@ PetscErrorCode SweepSetStatics(Sweep sweep, Statics statics);
 springs, viscosity of dashpots, mu, kn, speed, ... of a contact, e.g. pad_young,contact_mu
 .  -sweep_values <first:last:n>   - n equal steps; first:last:n:log for equal ratios; or a list v1,v2,...
 .  -sweep_values_2 <values>       - those of the second parameter
+.  -sweep_link <name,name[:...]>  - parameters of one unit that take the value of the swept one among them, one link or,
+with : between, one for each swept parameter: inner_mu,outer_mu. Derivatives along a link are sums over its parameters;
+-sweep_uncertain moves all of a link, each by the same part of its own value
 .  -sweep_method <reduced>        - reduced; full solves every point in full; real projects on real modes
 .  -sweep_rtol <1e-6>             - largest estimated relative error of an eigenvalue
 .  -sweep_real_modes <80>         - number of frictionless modes that -sweep_method real projects on

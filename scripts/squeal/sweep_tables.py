@@ -7,7 +7,7 @@ SWEEP = {"value": float, "branch": int, "freq_hz": float, "growth_rad_s": float,
 ONSETS = {"critical_value": float, "freq_hz": float, "kind": str, "label": str, "branch": int, "partner": optional,
           "confirmed": flag, "value_2": optional}
 FONTS = {"font.size": 11, "axes.titlesize": 13, "axes.labelsize": 12, "legend.fontsize": 11, "figure.dpi": 150}
-PARAMETERS = {"parameter": str, "value": float, "unit": str, "swept": int}
+PARAMETERS = {"parameter": str, "value": float, "unit": str, "swept": int, "link": str}
 
 
 class Axis:
@@ -90,5 +90,5 @@ class Study:
     def title(self):
         """Ranges, and the friction coefficients that do not vary."""
         fixed = [f"{row['parameter']} {row['value']:.4g}" for row in self.parameters
-                 if row["swept"] == 0 and row["parameter"].endswith("_mu")]
+                 if row["swept"] == 0 and not row["link"] and row["parameter"].endswith("_mu")]
         return ", ".join([*(axis.range() for axis in self.axes), *filter(None, [self.where]), *fixed[:3]])

@@ -67,15 +67,15 @@ static PetscErrorCode OnsetConverge(Sweep sweep, const BranchLine *line, PetscRe
   ReducedWindow near;
 
   PetscFunctionBeginUser;
-  *change            = PETSC_MAX_REAL;
-  p[line->parameter] = event->critical;
-  near               = WindowNear(sweep, p, event);
+  *change = PETSC_MAX_REAL;
+  BranchLineSet(line, event->critical, p);
+  near = WindowNear(sweep, p, event);
   PetscCall(CorrectionCreate(sweep->pencil, p, &near, &sweep->progress, &correction));
   for (int step = 0; step < ONSET_STEPS && event->found && *change > CONFIRMED * PetscAbsReal(event->critical);
        step++) {
     const PetscReal before = event->critical;
 
-    p[line->parameter] = before;
+    BranchLineSet(line, before, p);
     if (step) PetscCall(CorrectionMove(sweep->pencil, p, &correction));
     PetscCall(OnsetCorrect(sweep, &correction, p, &near, event, critical));
     PetscCall(OnsetReduced(sweep, line, event, critical));
@@ -88,10 +88,11 @@ static PetscErrorCode OnsetConverge(Sweep sweep, const BranchLine *line, PetscRe
 /* One onset to the end */
 static PetscErrorCode OnsetConfirm(Sweep sweep, PetscInt e)
 {
-  BranchEvent *event    = &sweep->events.event[e];
-  PetscReal    change   = PETSC_MAX_REAL, *p;
-  BranchLine   line     = {sweep->grid.parameter[0], sweep->grid.n[0], sweep->grid.value[0], NULL, &sweep->window};
-  SweepPlace   place    = sweep->grid.place[event->place];
+  BranchEvent *event  = &sweep->events.event[e];
+  PetscReal    change = PETSC_MAX_REAL, *p;
+  BranchLine   line   = {sweep->grid.n_moved[0], sweep->grid.n[0], sweep->grid.parameter[0], sweep->grid.value[0], NULL,
+                         &sweep->window};
+  SweepPlace   place  = sweep->grid.place[event->place];
   ReducedModes critical = {0};
 
   PetscFunctionBeginUser;

@@ -86,13 +86,22 @@ void GridRemove(SweepGrid *grid, PetscInt k)
   GridNumber(grid, k);
 }
 
+PetscInt GridAxisOf(const SweepGrid *grid, PetscInt parameter)
+{
+  for (PetscInt k = 0; k < grid->n_axes; k++)
+    for (PetscInt i = 0; i < grid->n_moved[k]; i++)
+      if (grid->parameter[k][i] == parameter) return k;
+  return -1;
+}
+
 void GridFill(const SweepGrid *grid, const SweepPlace *place, PetscReal p[])
 {
-  const PetscInt first = grid->n_parameters - grid->n_groups;
+  const PetscInt first = grid->n_parameters - grid->n_groups, status = place ? place->status : 0;
 
   for (PetscInt i = 0; i < first; i++) p[i] = grid->base[i];
-  for (PetscInt g = 0; g < grid->n_groups; g++) p[first + g] = grid->closed[place->status * grid->n_groups + g];
-  for (PetscInt k = 0; k < grid->n_axes; k++) p[grid->parameter[k]] = place->value[k];
+  for (PetscInt g = 0; g < grid->n_groups; g++) p[first + g] = grid->closed[status * grid->n_groups + g];
+  for (PetscInt k = 0; k < grid->n_axes && place; k++)
+    for (PetscInt i = 0; i < grid->n_moved[k]; i++) p[grid->parameter[k][i]] = place->value[k];
 }
 
 void GridPoint(const SweepGrid *grid, PetscInt point, PetscReal p[])
@@ -108,7 +117,10 @@ PetscReal GridMiddle(const SweepGrid *grid, PetscInt axis, PetscReal a, PetscRea
 PetscErrorCode GridDestroy(SweepGrid *grid)
 {
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < GRID_MAX_AXES; k++) PetscCall(PetscFree(grid->value[k]));
+  for (PetscInt k = 0; k < GRID_MAX_AXES; k++) {
+    PetscCall(PetscFree(grid->value[k]));
+    PetscCall(PetscFree(grid->parameter[k]));
+  }
   PetscCall(PetscFree(grid->base));
   PetscCall(PetscFree(grid->place));
   PetscCall(PetscFree(grid->at));

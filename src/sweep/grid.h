@@ -15,7 +15,8 @@ typedef struct {
 
 typedef struct {
   PetscInt    n_axes, n_parameters;
-  PetscInt    parameter[GRID_MAX_AXES]; /* indices */
+  PetscInt    n_moved[GRID_MAX_AXES];   /* parameters that take the values of this axis */
+  PetscInt   *parameter[GRID_MAX_AXES]; /* [n_moved] their indices: the swept one, then those linked with it */
   PetscInt    n[GRID_MAX_AXES];
   PetscReal  *value[GRID_MAX_AXES];
   PetscBool   ratio[GRID_MAX_AXES]; /* distances along this axis are ratios: geometric mean, logarithmic plots */
@@ -39,7 +40,9 @@ PetscErrorCode GridCreatePlaces(SweepGrid *grid);
 /* Makes `place` the k-th; leaves out the k-th, which is no point of the grid */
 PetscErrorCode GridInsert(SweepGrid *grid, PetscInt k, const SweepPlace *place);
 void           GridRemove(SweepGrid *grid, PetscInt k);
-/* Values p[n_parameters] of all parameters at a place, and at a point */
+/* The axis along which a parameter moves, -1 for none */
+PetscInt GridAxisOf(const SweepGrid *grid, PetscInt parameter);
+/* Values p[n_parameters] of all parameters at a place, NULL for those of the scene, and at a point */
 void GridFill(const SweepGrid *grid, const SweepPlace *place, PetscReal p[]);
 void GridPoint(const SweepGrid *grid, PetscInt point, PetscReal p[]);
 /* The value half way between two */

@@ -66,7 +66,11 @@ static PetscErrorCode SweepAddChecksum(Sweep sweep, Checksum c)
   PetscCall(ChecksumSetPart(c, "the sweep"));
   PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){size}));
   PetscCall(ChecksumAddReals(c, 1, &sweep->rtol));
-  for (PetscInt k = 0; k < grid->n_axes; k++) PetscCall(ChecksumAddString(c, parameters[grid->parameter[k]].name));
+  for (PetscInt k = 0; k < grid->n_axes; k++) {
+    PetscCall(ChecksumAddInts(c, 1, &grid->n_moved[k]));
+    for (PetscInt i = 0; i < grid->n_moved[k]; i++)
+      PetscCall(ChecksumAddString(c, parameters[grid->parameter[k][i]].name));
+  }
   PetscCall(GridAddChecksum(grid, c));
   PetscFunctionReturn(0);
 }

@@ -9,11 +9,39 @@
 #define MAX_CORNERS 64  /* of a box in many dimensions, only the first are looked at */
 #define N_INSIDE    200 /* points of the Halton sequence */
 
-/* The box: parameters, and half widths relative to their values */
+/* The box: parameters, and half widths relative to their values. What a link holds is moved together, each by the same
+   part of its own value. */
 typedef struct {
-  PetscInt  n, parameter[SWEEP_MAX_UNCERTAIN];
-  PetscReal half[SWEEP_MAX_UNCERTAIN];
+  PetscInt        n, parameter[SWEEP_MAX_UNCERTAIN], n_moved[SWEEP_MAX_UNCERTAIN];
+  const PetscInt *moved[SWEEP_MAX_UNCERTAIN]; /* [n_moved] indices */
+  PetscReal       half[SWEEP_MAX_UNCERTAIN];
 } ParameterBox;
+
+/* What parameter k of the box moves */
+static PetscErrorCode BoxLink(Sweep sweep, const char name[], ParameterBox *box, PetscInt k)
+{
+  const SweepGrid          *grid = &sweep->grid;
+  const PetscInt            axis = GridAxisOf(grid, box->parameter[k]);
+  const OperatorsParameter *list;
+  PetscInt                  n;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetParameters(sweep->operators, &n, &list));
+  box->n_moved[k] = axis < 0 ? 1 : grid->n_moved[axis];
+  box->moved[k]   = axis < 0 ? &box->parameter[k] : grid->parameter[axis];
+  for (PetscInt j = 0; j < k; j++) {
+    PetscCheck(box->parameter[j] != box->parameter[k], sweep->comm, PETSC_ERR_USER_INPUT,
+               "-sweep_uncertain names '%s' twice", name);
+    PetscCheck(box->moved[j] != box->moved[k], sweep->comm, PETSC_ERR_USER_INPUT,
+               "-sweep_uncertain names '%s' and '%s', which -sweep_link moves together: name one of them",
+               list[box->parameter[j]].name, name);
+  }
+  for (PetscInt i = 0; i < box->n_moved[k]; i++)
+    PetscCheck(grid->base[box->moved[k][i]] != 0, sweep->comm, PETSC_ERR_USER_INPUT,
+               "-sweep_uncertain %s is 0 in this scene, and so is any percentage of it; give -%s another value",
+               list[box->moved[k][i]].name, list[box->moved[k][i]].name);
+  PetscFunctionReturn(0);
+}
 
 static PetscErrorCode BoxRead(Sweep sweep, ParameterBox *box)
 {
@@ -34,9 +62,7 @@ static PetscErrorCode BoxRead(Sweep sweep, ParameterBox *box)
     PetscCall(GridParameterFind(sweep->comm, sweep->operators, "-sweep_uncertain", names[k], &box->parameter[k]));
     PetscCheck(percent > 0 && percent < 100, sweep->comm, PETSC_ERR_USER_INPUT,
                "-sweep_percent %.6g must lie between 0 and 100", (double)percent);
-    PetscCheck(sweep->grid.base[box->parameter[k]] != 0, sweep->comm, PETSC_ERR_USER_INPUT,
-               "-sweep_uncertain %s is 0 in this scene, and so is any percentage of it; give -%s another value",
-               names[k], names[k]);
+    PetscCall(BoxLink(sweep, names[k], box, k));
     box->half[k] = percent / 100;
   }
   PetscCall(PetscStrToArrayDestroy(n, names));
@@ -72,7 +98,7 @@ static void BoxPoint(const ParameterBox *box, const PetscReal base[], PetscInt n
     const PetscReal side =
       i <= n_corners ? (((i - 1) >> k) & 1 ? 1 : -1) : 2 * VanDerCorput(i - n_corners, primes[k]) - 1;
 
-    p[box->parameter[k]] *= 1 + side * box->half[k];
+    for (PetscInt m = 0; m < box->n_moved[k]; m++) p[box->moved[k][m]] *= 1 + side * box->half[k];
   }
 }
 

@@ -55,8 +55,9 @@ PetscErrorCode LineTrackSegments(Sweep sweep, LinePoints *points)
   PetscFunctionBeginUser;
   for (PetscInt k = 0, last; k < points->n; k = last) {
     const PetscInt first_new = sweep->n_branches, first_event = sweep->events.n;
-    BranchLine     line = {sweep->grid.parameter[0], 0, &points->value[k], &points->p[k * sweep->grid.n_parameters],
-                           &sweep->window};
+    BranchLine     line = {
+          sweep->grid.n_moved[0], 0, sweep->grid.parameter[0], &points->value[k], &points->p[k * sweep->grid.n_parameters],
+          &sweep->window};
 
     for (last = k + 1; last < points->n && place[last].status == place[k].status;) last++;
     line.n = last - k;

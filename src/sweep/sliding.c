@@ -8,54 +8,9 @@
    bracket become places of the sweep themselves. A further status found on the way becomes a segment of its own.
 */
 #include "sweepimpl.h"
-#include <string.h>
 
 #define MAX_BISECTIONS 30   /* of a sweep */
 #define BRACKET_WIDTH  1e-4 /* relative width of a bracket that is not divided any more */
-
-/* Raises an error for the stiffness damping of a part with a loss factor, which is part of it */
-static PetscErrorCode SweepAxisCheckLoss(Sweep sweep, Model model, const char name[])
-{
-  const ModelScene *scene;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelGetScene(model, &scene));
-  for (PetscInt i = 0; i < scene->n_parts; i++) {
-    const Part  *p      = &scene->parts[i];
-    const size_t length = strlen(p->name);
-
-    PetscCheck(p->loss == 0 || strncmp(name, p->name, length) || strcmp(name + length, "_beta"), sweep->comm,
-               PETSC_ERR_USER_INPUT,
-               "-sweep_parameter %s replaces what -%s_loss_factor %.6g gives: leave one of them out", name, p->name,
-               (double)p->loss);
-  }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode SweepAxisCheck(Sweep sweep, const char name[])
-{
-  const ContactInterface *interfaces;
-  PetscInt                n = 0;
-  Model                   model;
-  Contact                 contact;
-
-  PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(sweep->operators, &model, &contact));
-  if (model) PetscCall(SweepAxisCheckLoss(sweep, model, name));
-  if (contact) PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
-  for (PetscInt i = 0; i < n; i++) {
-    const size_t      length = strlen(interfaces[i].name);
-    const char *const what   = strncmp(name, interfaces[i].name, length) ? "" : name + length;
-
-    PetscCheck(!interfaces[i].identify || strcmp(what, "_kn"), sweep->comm, PETSC_ERR_USER_INPUT,
-               "-%s identify does nothing where -sweep_parameter %s gives its values", name, name);
-    PetscCheck(!sweep->statics || strcmp(what, "_force"), sweep->comm, PETSC_ERR_USER_INPUT,
-               "-sweep_parameter %s does nothing with -modes_contact static, which takes the normal forces from the "
-               "-loads",
-               name);
-  }
-  PetscFunctionReturn(0);
-}
 
 PetscErrorCode SweepStatusTake(Sweep sweep, const SlidingState *state, PetscInt *status)
 {
@@ -165,7 +120,7 @@ static PetscErrorCode StatusGroupsCheck(Sweep sweep, const PetscInt group[])
              "-modes_contact static with -contact_law constraint: which pairs are closed changes between %s %.6g and "
              "%.6g (%" PetscInt_FMT " to %" PetscInt_FMT " of %" PetscInt_FMT
              "); give -contact_law penalty or -sweep_method full",
-             parameters[sweep->grid.parameter[0]].name, (double)value[0], (double)value[sweep->grid.n[0] - 1], least,
+             parameters[sweep->grid.parameter[0][0]].name, (double)value[0], (double)value[sweep->grid.n[0] - 1], least,
              most, n_all);
   PetscFunctionReturn(0);
 }
@@ -215,7 +170,6 @@ PetscErrorCode SweepStatuses(Sweep sweep)
 {
   const ContactPair *pair;
   SweepGrid         *grid = &sweep->grid;
-  SweepPlace         base = {.point = -1};
   Contact            contact;
   PetscInt           n, n_all;
   PetscBool          affine;
@@ -241,10 +195,7 @@ PetscErrorCode SweepStatuses(Sweep sweep)
   PetscCall(ChangesBracket(sweep));
   for (PetscInt i = 0; i < sweep->n_checks; i++)
     PetscCall(SweepStatusSolve(sweep, &sweep->check[i].at, &sweep->check[i].at.status));
-  if (sweep->uncertain[0]) { /* about the scene's own values: what is swept has its own value there, too */
-    for (PetscInt k = 0; k < grid->n_axes; k++) base.value[k] = grid->base[grid->parameter[k]];
-    PetscCall(SweepStatusSolve(sweep, &base, &sweep->base_status));
-  }
+  if (sweep->uncertain[0]) PetscCall(SweepStatusSolve(sweep, NULL, &sweep->base_status));
   PetscCall(StaticsRelease(sweep->statics));
   PetscCall(StatusGroupsSet(sweep));
   PetscFunctionReturn(0);

@@ -7,8 +7,7 @@
 #include <petsctime.h>
 #include <string.h>
 
-#define MAX_POINTS 1000000 /* of a grid */
-#define MAX_TRAIN  100     /* points that the greedy choice looks at */
+#define MAX_TRAIN  100 /* points that the greedy choice looks at */
 #define MAX_ROUNDS 4
 
 PetscErrorCode SweepCreate(MPI_Comm comm, Sweep *sweep)
@@ -65,6 +64,9 @@ static PetscErrorCode ReadMethod(Sweep sweep, OptionsItems PetscOptionsObject)
                                "sweep.h", sweep->values[0], sweep->values[0], sizeof(sweep->values[0]), NULL));
   PetscCall(PetscOptionsString("-sweep_values_2", "those of the second parameter", "sweep.h", sweep->values[1],
                                sweep->values[1], sizeof(sweep->values[1]), NULL));
+  PetscCall(PetscOptionsString(
+    "-sweep_link", "parameters that take the swept one's value, e.g. inner_mu,outer_mu; several links with ':' between",
+    "sweep.h", sweep->link, sweep->link, sizeof(sweep->link), &sweep->linked));
   PetscCall(PetscOptionsEList("-sweep_method",
                               "reduced basis with error estimate, every point in full, or a basis of real modes",
                               "sweep.h", methods, 3, methods[0], &method, NULL));
@@ -152,43 +154,6 @@ PetscErrorCode SweepGetDamping(Sweep sweep, PetscBool *varied, PetscBool *real)
   *varied = PETSC_FALSE;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(factors); i++)
     if (strstr(sweep->parameter, factors[i])) *varied = PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
-/* Parameters and values of the axes, checked against what each parameter may be */
-static PetscErrorCode GridSetUp(Sweep sweep)
-{
-  static const char *const options[] = {"-sweep_values", "-sweep_values_2"};
-  SweepGrid               *grid      = &sweep->grid;
-  char                   **names;
-  int                      n_names;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscStrToArray(sweep->parameter, ',', &n_names, &names));
-  PetscCheck(n_names == 1 || n_names == 2, sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_parameter '%s' must name one or two options of the scene, e.g. pad_young", sweep->parameter);
-  PetscCheck((n_names == 2) == (sweep->values[1][0] != '\0'), sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_values_2 belongs to a second -sweep_parameter: give both or neither");
-  for (grid->n_axes = 0; grid->n_axes < n_names; grid->n_axes++) {
-    const PetscInt k = grid->n_axes;
-
-    PetscCall(GridParameterFind(sweep->comm, sweep->operators, "-sweep_parameter", names[k], &grid->parameter[k]));
-    PetscCall(SweepAxisCheck(sweep, names[k]));
-    PetscCheck(strlen(sweep->values[k]) < SWEEP_MAX_TEXT - 1, sweep->comm, PETSC_ERR_USER_INPUT,
-               "%s is longer than %d characters; give a range first:last:n", options[k], SWEEP_MAX_TEXT);
-    PetscCall(
-      GridValuesParse(sweep->comm, options[k], sweep->values[k], &grid->n[k], &grid->value[k], &grid->ratio[k]));
-    for (PetscInt i = 0; i < grid->n[k]; i++)
-      PetscCall(OperatorsCheckParameter(sweep->operators, grid->parameter[k], grid->value[k][i]));
-  }
-  PetscCheck(n_names == 1 || grid->n[0] <= MAX_POINTS / grid->n[1], sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_values and -sweep_values_2 span more than %d points", MAX_POINTS);
-  PetscCheck(!sweep->n_verify || grid->n[0] > 1, sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_verify looks between the -sweep_values: give two or more");
-  PetscCheck(n_names == 1 || grid->parameter[0] != grid->parameter[1], sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_parameter names '%s' twice", names[0]);
-  PetscCall(PetscStrToArrayDestroy(n_names, names));
-  PetscCall(GridCreatePlaces(grid));
   PetscFunctionReturn(0);
 }
 
@@ -303,7 +268,7 @@ PetscErrorCode SweepSolve(Sweep sweep, Results results)
   PetscCall(ModesGetBand(sweep->modes, band, &sweep->window.growth));
   sweep->window.low  = 2 * PETSC_PI * band[0];
   sweep->window.high = 2 * PETSC_PI * band[1];
-  PetscCall(GridSetUp(sweep));
+  PetscCall(SweepAxes(sweep));
   if (sweep->uncertain[0]) PetscCall(SweepUncertainCheck(sweep));
   PetscCall(SweepCheckPlaces(sweep));
   PetscCall(PetscCalloc1(GridSize(&sweep->grid), &sweep->point));

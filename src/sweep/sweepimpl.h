@@ -63,11 +63,11 @@ struct _p_Sweep {
   Pencil    pencil;  /* of all points; NULL where each has its own sliding state */
   Progress  progress;
   /* set by options */
-  char        parameter[256], values[GRID_MAX_AXES][SWEEP_MAX_TEXT], uncertain[1024];
+  char        parameter[256], link[1024], values[GRID_MAX_AXES][SWEEP_MAX_TEXT], uncertain[1024];
   SweepMethod method;
   PetscReal   rtol, *percent;
   PetscInt    max_samples, n_real, n_verify, n_groups, n_percent;
-  PetscBool   onsets, sensitivities, restart;
+  PetscBool   linked, onsets, sensitivities, restart; /* linked: -sweep_link is given */
   /* results */
   SweepGrid      grid;
   PointGroups    groups;
@@ -104,10 +104,10 @@ PETSC_INTERN PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], co
 /* Which eigenvalues are unstable, or numerically so: growth is `unstable` when it exceeds the estimated error of
    its eigenvalue, and `numerical` when the error bar covers zero, or is not finite */
 PETSC_INTERN PetscErrorCode SweepClassify(Sweep sweep);
-/* sliding.c - raises the error for a contact's parameter that would be overwritten at every point */
-PETSC_INTERN PetscErrorCode SweepAxisCheck(Sweep sweep, const char name[]);
+/* axes.c - parameters, links and values of the axes, and the places of the grid */
+PETSC_INTERN PetscErrorCode SweepAxes(Sweep sweep);
 /* sliding.c - statuses of all places and checks from the sliding state, changes of status bracketed, groups of pairs as
-   further parameters of the pencil; the status at a place, and that of a sliding state; pairs closed at a point
+   further parameters of the pencil; the status at a place, NULL for the scene's own values, and that of a sliding state; pairs closed at a point
    (-1 without contact), and whether the point before it has another status; fewest and most pairs closed at all
    places, and whether their statuses differ */
 PETSC_INTERN PetscErrorCode SweepStatuses(Sweep sweep);

@@ -16,13 +16,29 @@ static PetscErrorCode SamplesView(Sweep sweep, const OperatorsParameter paramete
 
     PetscCall(PetscViewerASCIIPrintf(viewer, "  full solution %" PetscInt_FMT " at", i + 1));
     for (PetscInt k = 0; k < sweep->grid.n_axes; k++)
-      PetscCall(PetscViewerASCIIPrintf(viewer, " %s %.6g", parameters[sweep->grid.parameter[k]].name,
-                                       (double)s->p[sweep->grid.parameter[k]]));
+      PetscCall(PetscViewerASCIIPrintf(viewer, " %s %.6g", parameters[sweep->grid.parameter[k][0]].name,
+                                       (double)s->p[sweep->grid.parameter[k][0]]));
     if (s->krylov)
       PetscCall(PetscViewerASCIIPrintf(viewer, ", eigensolver: %" PetscInt_FMT " vectors\n", s->n_vectors));
     else
       PetscCall(PetscViewerASCIIPrintf(viewer, ", corrections: estimate before %.1e, %" PetscInt_FMT " vectors\n",
                                        (double)s->estimate, s->n_vectors));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Which parameters move together */
+static PetscErrorCode LinksView(Sweep sweep, const OperatorsParameter parameters[], PetscViewer viewer)
+{
+  const SweepGrid *grid = &sweep->grid;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < grid->n_axes; k++) {
+    if (grid->n_moved[k] == 1) continue;
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%s and with it", parameters[grid->parameter[k][0]].name));
+    for (PetscInt i = 1; i < grid->n_moved[k]; i++)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "%s %s", i > 1 ? "," : "", parameters[grid->parameter[k][i]].name));
+    PetscCall(PetscViewerASCIIPrintf(viewer, " take the value of each point\n"));
   }
   PetscFunctionReturn(0);
 }
@@ -267,10 +283,11 @@ PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer)
       n_unstable += sweep->point[i].mode[k].unstable;
       n_numerical += sweep->point[i].mode[k].numerical;
     }
+  PetscCall(LinksView(sweep, parameters, viewer));
   PetscCall(StatusView(sweep, viewer));
   PetscCall(SamplesView(sweep, parameters, viewer));
   PetscCall(BranchesView(sweep, viewer));
-  if (sweep->is_confirmed) PetscCall(OnsetsView(sweep, &parameters[sweep->grid.parameter[0]], viewer));
+  if (sweep->is_confirmed) PetscCall(OnsetsView(sweep, &parameters[sweep->grid.parameter[0][0]], viewer));
   PetscCall(ChecksView(sweep, viewer));
   PetscCall(RisksView(sweep, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer,

@@ -85,7 +85,7 @@ static PetscErrorCode OnsetRows(Sweep sweep, ResultsTable table)
 
     if (!event->found) continue;
     PetscCall(ResultsTableRow(table, "%s,%.15g,%.15g,%s,\"%s\",%.15g,%d,%s,%d,%s",
-                              parameters[sweep->grid.parameter[0]].name, (double)event->critical,
+                              parameters[sweep->grid.parameter[0][0]].name, (double)event->critical,
                               (double)(event->omega / (2 * PETSC_PI)), event_kinds[event->kind],
                               sweep->label[event->branch[0]].text, (double)event->error, (int)event->branch[0] + 1,
                               NumberOrEmpty(event->branch[1] < 0 ? NAN : event->branch[1] + 1).text,
@@ -102,12 +102,12 @@ static PetscErrorCode ParameterRows(Sweep sweep, ResultsTable table)
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetParameters(sweep->operators, &n, &parameters));
   for (PetscInt i = 0; i < n; i++) {
-    int swept = 0;
+    const PetscInt  axis = GridAxisOf(&sweep->grid, i), first = axis < 0 ? -1 : sweep->grid.parameter[axis][0];
+    const PetscBool swept = first == i ? PETSC_TRUE : PETSC_FALSE;
 
-    for (PetscInt k = 0; k < sweep->grid.n_axes; k++)
-      if (sweep->grid.parameter[k] == i) swept = (int)k + 1;
-    PetscCall(ResultsTableRow(table, "%s,%.15g,%s,%d", parameters[i].name, (double)sweep->grid.base[i],
-                              parameters[i].unit, swept));
+    PetscCall(ResultsTableRow(table, "%s,%.15g,%s,%d,%s", parameters[i].name, (double)sweep->grid.base[i],
+                              parameters[i].unit, swept ? (int)axis + 1 : 0,
+                              first >= 0 && !swept ? parameters[first].name : ""));
   }
   PetscFunctionReturn(0);
 }
@@ -140,13 +140,40 @@ static PetscErrorCode RiskRows(Sweep sweep, ResultsTable table)
   PetscFunctionReturn(0);
 }
 
-/* Rows of one mode: derivatives by every parameter, per unit and per percent of its value */
+/* Names of the parameters of an axis with + between, as one row */
+static PetscErrorCode LinkName(const SweepGrid *grid, PetscInt axis, const OperatorsParameter parameters[], size_t size,
+                               char name[])
+{
+  PetscFunctionBeginUser;
+  name[0] = '\0';
+  for (PetscInt i = 0; i < grid->n_moved[axis]; i++) {
+    PetscCall(PetscStrlcat(name, i ? "+" : "", size));
+    PetscCall(PetscStrlcat(name, parameters[grid->parameter[axis][i]].name, size));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* A row: derivative d of an eigenvalue by a parameter of value p */
+static PetscErrorCode DerivativeRow(const char row[], const char name[], PetscReal p, PetscComplex d,
+                                    ResultsTable table)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ResultsTableRow(table, "%s,%s,%.15g,%.15g,%.15g,%.15g", row, name, (double)(cimag(d) / (2 * PETSC_PI)),
+                            (double)creal(d), (double)(0.01 * p * cimag(d) / (2 * PETSC_PI)),
+                            (double)(0.01 * p * creal(d))));
+  PetscFunctionReturn(0);
+}
+
+/* Rows of one mode: derivatives by every parameter, per unit and per percent of its value; then along each axis of
+   linked parameters, the sum of theirs */
 static PetscErrorCode ModeSensitivityRows(Sweep sweep, PetscInt point, const PetscReal p[], const ReducedModes *modes,
                                           PetscInt i, ResultsTable table)
 {
   const OperatorsParameter *parameters;
+  const SweepGrid          *grid = &sweep->grid;
   PetscInt                  n, near = 0;
   PetscComplex             *d;
+  char                      row[128], name[1024];
 
   PetscFunctionBeginUser;
   PetscCall(PencilGetParameters(sweep->pencil, &n, &parameters, NULL));
@@ -158,12 +185,19 @@ static PetscErrorCode ModeSensitivityRows(Sweep sweep, PetscInt point, const Pet
     if (cabs(CMPLX(m->sigma, m->omega) - modes->lambda[i]) < cabs(CMPLX(best->sigma, best->omega) - modes->lambda[i]))
       near = k;
   }
+  PetscCall(PetscSNPrintf(row, sizeof(row), "%d,%.15g,%d,%.15g", (int)point + 1, (double)p[grid->parameter[0][0]],
+                          (int)sweep->point[point].mode[near].branch + 1,
+                          (double)(cimag(modes->lambda[i]) / (2 * PETSC_PI))));
   for (PetscInt j = 0; j < n && !parameters[j].internal; j++)
-    PetscCall(ResultsTableRow(
-      table, "%d,%.15g,%d,%.15g,%s,%.15g,%.15g,%.15g,%.15g", (int)point + 1, (double)p[sweep->grid.parameter[0]],
-      (int)sweep->point[point].mode[near].branch + 1, (double)(cimag(modes->lambda[i]) / (2 * PETSC_PI)),
-      parameters[j].name, (double)(cimag(d[j]) / (2 * PETSC_PI)), (double)creal(d[j]),
-      (double)(0.01 * p[j] * cimag(d[j]) / (2 * PETSC_PI)), (double)(0.01 * p[j] * creal(d[j]))));
+    PetscCall(DerivativeRow(row, parameters[j].name, p[j], d[j], table));
+  for (PetscInt k = 0; k < grid->n_axes; k++) {
+    PetscComplex sum = 0;
+
+    if (grid->n_moved[k] == 1) continue;
+    for (PetscInt m = 0; m < grid->n_moved[k]; m++) sum += d[grid->parameter[k][m]];
+    PetscCall(LinkName(grid, k, parameters, sizeof(name), name));
+    PetscCall(DerivativeRow(row, name, p[grid->parameter[k][0]], sum, table));
+  }
   PetscCall(PetscFree(d));
   PetscFunctionReturn(0);
 }
@@ -206,7 +240,7 @@ PetscErrorCode SweepWrite(Sweep sweep, Results results)
   PetscCall(TableWrite(sweep, results, PointRows, "sweep",
                        "point,value,branch,freq_hz,growth_rad_s,error_estimate,unstable,label,value_2,class,error_hz,"
                        "condition,onset_distance,n_closed,jump"));
-  PetscCall(TableWrite(sweep, results, ParameterRows, "parameters", "parameter,value,unit,swept"));
+  PetscCall(TableWrite(sweep, results, ParameterRows, "parameters", "parameter,value,unit,swept,link"));
   if (sweep->is_confirmed)
     PetscCall(
       TableWrite(sweep, results, OnsetRows, "onsets",

@@ -100,9 +100,9 @@ def write_sweep(folder, mu=0.5, damping=0.0, second=None, error_hz=None, values=
               for value in there]
     write_table(folder / "onsets.csv", "parameter,critical_value,freq_hz,kind,label,error_estimate,branch,partner,"
                 "confirmed,value_2", [] if damping else found)
-    write_table(folder / "parameters.csv", "parameter,value,unit,swept",
-                [("disc_young", 210e9, "Pa", 0), ("pad_young", 25.1e9, "Pa", 1),
-                 ("contact_mu", mu, "-", 0 if second is None else 2), ("contact_kn", 2.5895e8, "N/m", 0)])
+    write_table(folder / "parameters.csv", "parameter,value,unit,swept,link",
+                [("disc_young", 210e9, "Pa", 0, ""), ("pad_young", 25.1e9, "Pa", 1, ""),
+                 ("contact_mu", mu, "-", 0 if second is None else 2, ""), ("contact_kn", 2.5895e8, "N/m", 0, "")])
 
 
 if __name__ == "__main__":

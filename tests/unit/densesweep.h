@@ -9,6 +9,7 @@
 /* A sweep with its results */
 typedef struct {
   BranchLine   line;
+  PetscInt     parameter[1];
   PetscReal    value[MAX_POINTS], base[1];
   ReducedModes modes[MAX_POINTS];
   PetscInt    *branch[MAX_POINTS], n_branches;
@@ -21,10 +22,12 @@ static inline PetscErrorCode RunSweep(const Dense *dense, const ReducedWindow *w
 {
   PetscFunctionBeginUser;
   memset(run, 0, sizeof(*run));
-  run->line.n      = n;
-  run->line.value  = run->value;
-  run->line.base   = run->base;
-  run->line.window = window;
+  run->line.n         = n;
+  run->line.n_moved   = 1;
+  run->line.parameter = run->parameter;
+  run->line.value     = run->value;
+  run->line.base      = run->base;
+  run->line.window    = window;
   for (PetscInt k = 0; k < n; k++) {
     run->value[k] = first + (last - first) * k / (n - 1);
     PetscCall(ReducedSolve(&dense->system.reduced, &run->value[k], window, &run->modes[k]));

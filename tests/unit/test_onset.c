@@ -16,7 +16,8 @@ static PetscErrorCode FindOnsets(const Dense *dense, const ReducedWindow *window
   PetscReal        value[101], base[1] = {0};
   ReducedModes     modes[101] = {0};
   PetscInt        *branch[101], n_branches = 0;
-  const BranchLine line = {0, n, value, base, window};
+  const PetscInt   parameter[1] = {0};
+  const BranchLine line         = {1, n, parameter, value, base, window};
 
   PetscFunctionBeginUser;
   memset(events, 0, sizeof(*events));

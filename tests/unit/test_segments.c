@@ -85,9 +85,16 @@ static void ModelCreateJump(Dense *dense)
 static PetscErrorCode PlacesCreate(const Dense *dense, Sweep sweep, LinePoints *points)
 {
   static PetscReal value[N_PLACES], p[2 * N_PLACES], closed[2] = {1, 0}, base[2];
+  static PetscInt  swept[1] = {0};
 
   PetscFunctionBeginUser;
-  sweep->grid = (SweepGrid){.n_axes = 1, .n_parameters = 2, .n_groups = 1, .closed = closed, .base = base};
+  sweep->grid = (SweepGrid){.n_axes       = 1,
+                            .n_moved      = {1},
+                            .parameter    = {swept},
+                            .n_parameters = 2,
+                            .n_groups     = 1,
+                            .closed       = closed,
+                            .base         = base};
   PetscCall(PetscCalloc1(N_PLACES, &sweep->grid.place));
   sweep->grid.n_places = N_PLACES;
   sweep->basis.reduced = dense->system.reduced;
@@ -116,7 +123,8 @@ static PetscErrorCode CheckOnset(Sweep sweep, PetscInt e, BranchEventKind kind, 
   const PetscReal  ends[2] = {0.05, 0.95};
   BranchEvent      event;
   PetscReal        p[2];
-  const BranchLine line = {0, 2, ends, p, &everything};
+  const PetscInt   parameter[1] = {0};
+  const BranchLine line         = {1, 2, parameter, ends, p, &everything};
 
   PetscFunctionBeginUser;
   if (e >= sweep->events.n) PetscFunctionReturn(0);

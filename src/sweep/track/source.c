@@ -4,10 +4,15 @@
 */
 #include "frame.h"
 
+void BranchLineSet(const BranchLine *line, PetscReal value, PetscReal p[])
+{
+  for (PetscInt i = 0; i < line->n_moved; i++) p[line->parameter[i]] = value;
+}
+
 static void SourceSetValue(ModeSource *source, PetscReal value)
 {
   for (PetscInt i = 0; i < source->reduced->n_parameters; i++) source->p[i] = source->line->base[i];
-  source->p[source->line->parameter] = value;
+  BranchLineSet(source->line, value, source->p);
 }
 
 PetscErrorCode ModeSourceCreate(const Reduced *reduced, const BranchLine *line, ModeSource *source)

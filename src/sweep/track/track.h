@@ -32,11 +32,11 @@ typedef struct {
   BranchEvent *event;
 } BranchEvents;
 
-/* The line: parameter index, values [n] ascending or descending, all other parameters from base[n_parameters]; modes in
-   the window are followed */
+/* The line: the parameters that take its value, values [n] ascending or descending, all other parameters from
+   base[n_parameters]; modes in the window are followed */
 typedef struct {
-  PetscInt             parameter;
-  PetscInt             n;
+  PetscInt             n_moved, n;
+  const PetscInt      *parameter; /* [n_moved] indices */
   const PetscReal     *value;
   const PetscReal     *base;
   const ReducedWindow *window;
@@ -49,6 +49,8 @@ typedef struct {
   PetscInt           *branch; /* [modes->n] */
 } BranchPoint;
 
+/* source.c - gives the parameters of the line this value in p[n_parameters] */
+void BranchLineSet(const BranchLine *line, PetscReal value, PetscReal p[]);
 /* track.c - branch[point][mode] for the modes already solved at the points, numbered from *n_branches on; *n_branches
    grows. Where the match of two neighbouring points is ambiguous the interval is halved by further ReducedSolve(). */
 PetscErrorCode TrackLine(const Reduced *reduced, const BranchLine *line, const ReducedModes modes[], PetscInt *branch[],
