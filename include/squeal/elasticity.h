@@ -32,3 +32,11 @@ static inline Elasticity ElasticityFromEngineering(double young, double poisson,
   e.anisotropic = false;
   return e;
 }
+
+/* Engineering constants of an orthotropic material in its axes 1, 2, 3. Stress along i alone gives the strains
+   eps_i = sigma_i / E_i and eps_j = -nu_ij eps_i, hence nu_ij / E_i = nu_ji / E_j. */
+typedef struct {
+  double young[3];   /* E_1, E_2, E_3, Pa */
+  double poisson[3]; /* nu_12, nu_13, nu_23 */
+  double shear[3];   /* G_12, G_13, G_23, Pa */
+} EngineeringConstants;

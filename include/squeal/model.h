@@ -15,15 +15,26 @@
 
 typedef struct _p_Model *Model;
 
+/* Elasticity of a part that is not isotropic, in axes 1, 2, 3 of its own */
+typedef struct {
+  PetscInt             n;         /* Young's moduli given: 0 isotropic, 2 transversely isotropic about axis 3, 3 */
+  EngineeringConstants constants; /* Pa, all nine */
+  PetscReal            C[ELASTICITY_VOIGT][ELASTICITY_VOIGT]; /* in the axes, Pa */
+  PetscReal            axis[3][3]; /* rows: unit vectors; with a cylinder only axis 3 is that of the cells */
+  PetscBool            cylinder;   /* axis 1 is radial, 2 circumferential about axis 3 */
+  PetscReal            centre[3];  /* a point of that axis, m */
+} Anisotropy;
+
 /* Material of one body; SI units */
 typedef struct {
-  char     *name;
-  PetscReal young;   /* Young's modulus, Pa, > 0 */
-  PetscReal poisson; /* Poisson's ratio, in (-1, 0.5) */
-  PetscReal density; /* kg/m^3, > 0 */
-  PetscReal alpha;   /* Rayleigh factor of the mass, 1/s: C = alpha M + beta K */
-  PetscReal beta;    /* Rayleigh factor of the stiffness, s, loss included */
-  PetscReal loss;    /* loss factor at the scene's loss_frequency, part of beta */
+  char      *name;
+  PetscReal  young;   /* Young's modulus, Pa, > 0; E_1 where not isotropic */
+  PetscReal  poisson; /* Poisson's ratio, in (-1, 0.5); not read where not isotropic */
+  PetscReal  density; /* kg/m^3, > 0 */
+  PetscReal  alpha;   /* Rayleigh factor of the mass, 1/s: C = alpha M + beta K */
+  PetscReal  beta;    /* Rayleigh factor of the stiffness, s, loss included */
+  PetscReal  loss;    /* loss factor at the scene's loss_frequency, part of beta */
+  Anisotropy anisotropy;
 } Part;
 
 /* How a quantity on a set is spread over its vertices: the same at each, in all, or per area */
@@ -130,6 +141,8 @@ PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
 .  -model_mesh <file>       - Gmsh file, format 2.2 or 4.1
 .  -model_element <incompatible|full> - element formulation
 .  -parts, -supports, -springs, -dashpots, -loads, -motions, -probes, -circles <names> - lists; each name is the prefix of its own options
+.  -<part>_young, _poisson, _shear, _axis_1, _axis_2, _axis_3, _cylinder_axis, _cylinder_centre - elasticity, isotropic
+   or not: model/scene/anisotropic.c
 .  -<part>_loss_factor <0>  - structural damping, exact at -loss_frequency <Hz>: beta grows by loss / (2 pi frequency)
 .  -model_gravity <0,0,0>   - acceleration of gravity, m/s^2, which acts on the mass of all parts in statics and in time
 .  -lift_set, -lift_displacement x,y,z, -lift_directions <those of the displacement> - of a motion named `lift`: named
@@ -185,6 +198,15 @@ PetscErrorCode ModelGetScene(Model model, const ModelScene **scene);
 /*@ ModelFindPart - index of the part that -`name`_part gives, -1 for an empty one. Not collective, same call on all
     ranks. Errors: PETSC_ERR_USER_INPUT for none of the parts. @*/
 PetscErrorCode ModelFindPart(Model model, const char name[], const char part[], PetscInt *index);
+
+/*@ ModelGetElasticity - elasticity of a local cell in global axes, with the given Young's modulus (Pa) and density
+    (kg/m^3). Of a part that is not isotropic young stands for E_1, and all other moduli keep their ratio to it. Not
+    collective. @*/
+PetscErrorCode ModelGetElasticity(Model model, PetscInt c, PetscReal young, PetscReal density, Elasticity *elasticity);
+
+/*@ ModelMaterialIsSwept - whether the cells of a part are equal along lines of the mesh in their material too: isotropic,
+    or in axes that the sweep carries along. Not collective. @*/
+PetscBool ModelMaterialIsSwept(Model model, PetscInt part, const ModelLines *lines);
 
 /*@ ModelGetCell - corners of local cell c in the element's node order: vertices [n_nodes] and coordinates [n_nodes][3]
     (m). Not collective. @*/

@@ -129,6 +129,27 @@ PetscErrorCode OptionsGetReals(OptionsItems PetscOptionsObject, const char optio
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OptionsGetSomeReals(OptionsItems PetscOptionsObject, const char option[], const char help[],
+                                   const char initial[], PetscInt most, PetscReal values[], PetscInt *n)
+{
+  const char *prefix = PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "";
+  char        now[MAX_TEXT];
+  PetscInt    count = MAX_REALS;
+  PetscReal   all[MAX_REALS];
+  PetscBool   given;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetRealArray(PetscOptionsObject->options, prefix, option, all, &count, &given));
+  *n = given ? count : 0;
+  PetscCheck(*n <= most, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
+             "-%s%s has %" PetscInt_FMT " values; give at most %" PetscInt_FMT, prefix, option + 1, *n, most);
+  PetscCall(PetscArraycpy(values, all, *n));
+  PetscCall(ArrayPrint(*n, values, NULL, now));
+  if (*n == 1) PetscCall(PetscSNPrintf(now, sizeof(now), "%g", (double)values[0])); /* as PETSc shows one number */
+  PetscCall(OptionsShow(PetscOptionsObject, option, help, *n ? now : initial, initial));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
                               PetscInt values[])
 {

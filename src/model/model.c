@@ -109,6 +109,7 @@ PetscErrorCode ModelSetUp(Model model)
   PetscCall(MeshTabulate(model));
   PetscCall(MeshLayOut(model));
   PetscCall(PartsCheckUnits(model));
+  PetscCall(ModelCheckAxes(model));
   PetscCall(GroundedSetUp(model));
   PetscCall(LoadsSetUp(model));
   PetscCall(ProbesLocate(model));

@@ -81,6 +81,11 @@ PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum 
 
     PetscCall(ChecksumAddString(c, p->name));
     PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(all), all));
+    if (!p->anisotropy.n) continue;
+    PetscCall(ChecksumAddReals(c, ELASTICITY_VOIGT * ELASTICITY_VOIGT, p->anisotropy.C[0]));
+    PetscCall(ChecksumAddReals(c, 9, p->anisotropy.axis[0]));
+    PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){p->anisotropy.cylinder}));
+    PetscCall(ChecksumAddReals(c, 3, p->anisotropy.centre));
   }
   PetscCall(ChecksumSetPart(c, "supports"));
   for (PetscInt i = 0; i < model->scene.n_supports; i++) {

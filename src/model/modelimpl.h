@@ -73,6 +73,14 @@ PETSC_INTERN PetscErrorCode MeshReset(Model model);
 PETSC_INTERN const OptionsList parts_list, supports_list, springs_list, dashpots_list, loads_list, motions_list,
   probes_list, circles_list;
 
+/* anisotropic.c - Young's moduli, Poisson's ratios, shear moduli and axes of a part; errors for numbers of values that do
+   not belong together, for axes that are none, and for a stiffness that is not positive definite */
+PETSC_INTERN PetscErrorCode PartReadElasticity(OptionsItems PetscOptionsObject, Part *part);
+PETSC_INTERN PetscErrorCode AnisotropyView(const Anisotropy *a, PetscViewer viewer);
+
+/* material.c - raises an error for a cylinder's axis through the centre of a cell. Collective */
+PETSC_INTERN PetscErrorCode ModelCheckAxes(Model model);
+
 /* part.c - the loss factors as stiffness damping; errors for those without -loss_frequency, and for the reverse */
 PETSC_INTERN PetscErrorCode PartsAddLoss(Model model);
 

@@ -1,6 +1,6 @@
 /*
    Terms of the bodies, springs and dashpots. Of each part p, at its Poisson's ratio, K_p (m) per unit Young's modulus E
-   and M_p (m^3) per unit density rho; of each list of springs or dashpots the diagonal matrix of its nodes' shares:
+   (E_1 where it is not isotropic: all other moduli keep their ratio to it) and M_p (m^3) per unit density rho; of each list of springs or dashpots the diagonal matrix of its nodes' shares:
       K = sum_p E_p K_p + sum_s k_s D_s,   M = sum_p rho_p M_p,
       C = sum_p (alpha_p rho_p M_p + beta_p E_p K_p) + sum_d c_d D_d
 */
@@ -21,10 +21,11 @@ static void ElementLump(PetscInt n, PetscReal mass[])
 }
 
 /* Adds local cell c to K_p and M_p */
-static PetscErrorCode OperatorsAddCell(Operators o, PetscInt c, const Elasticity *material, Mat K, Mat M)
+static PetscErrorCode OperatorsAddCell(Operators o, PetscInt c, Mat K, Mat M)
 {
   const ModelScene *scene;
   const Mesh       *mesh;
+  Elasticity        unit;
   PetscInt          n, vertices[ELEMENT_MAX_NODES], rows[ELEMENT_MAX_DOFS];
   PetscReal x[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
@@ -32,9 +33,10 @@ static PetscErrorCode OperatorsAddCell(Operators o, PetscInt c, const Elasticity
   PetscCall(ModelGetMesh(o->model, &mesh));
   PetscCall(ModelGetScene(o->model, &scene));
   PetscCall(ModelGetCell(o->model, c, vertices, x));
+  PetscCall(ModelGetElasticity(o->model, c, 1, 1, &unit));
   n = 3 * scene->element->n_nodes;
   for (PetscInt i = 0; i < n; i++) rows[i] = mesh->unknown[3 * vertices[i / 3] + i % 3];
-  PetscCheck(!scene->element->matrices(x, material, ke, me), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
+  PetscCheck(!scene->element->matrices(x, &unit, ke, me), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
   if (o->lump) ElementLump(n, me);
   PetscCall(MatSetValues(K, n, rows, n, rows, ke, ADD_VALUES));
   PetscCall(MatSetValues(M, n, rows, n, rows, me, ADD_VALUES));
@@ -42,11 +44,10 @@ static PetscErrorCode OperatorsAddCell(Operators o, PetscInt c, const Elasticity
 }
 
 /* K_p and M_p of one part */
-static PetscErrorCode OperatorsCreatePart(Operators o, PetscInt part, PetscReal poisson, Mat *K, Mat *M)
+static PetscErrorCode OperatorsCreatePart(Operators o, PetscInt part, Mat *K, Mat *M)
 {
-  const Elasticity material = ElasticityFromEngineering(1, poisson, 1);
-  const Mesh      *mesh;
-  PetscInt         n_unknowns;
+  const Mesh *mesh;
+  PetscInt    n_unknowns;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(o->model, &mesh));
@@ -55,7 +56,7 @@ static PetscErrorCode OperatorsCreatePart(Operators o, PetscInt part, PetscReal 
   PetscCheck(n_unknowns, o->comm, PETSC_ERR_USER_INPUT, "the -supports hold every node: nothing can vibrate");
   PetscCall(MatDuplicate(*K, MAT_DO_NOT_COPY_VALUES, M));
   for (PetscInt c = 0; c < mesh->n_cells; c++)
-    if (mesh->cell_part[c] == part) PetscCall(OperatorsAddCell(o, c, &material, *K, *M));
+    if (mesh->cell_part[c] == part) PetscCall(OperatorsAddCell(o, c, *K, *M));
   PetscCall(MatAssemblyBegin(*K, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyBegin(*M, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*K, MAT_FINAL_ASSEMBLY));
@@ -79,7 +80,7 @@ static PetscErrorCode OperatorsAddPart(Operators o, PetscInt part, const Part *p
   Mat      K, M;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsCreatePart(o, part, p->poisson, &K, &M));
+  PetscCall(OperatorsCreatePart(o, part, &K, &M));
   for (int k = 0; k < N_PART_PARAMETERS; k++) {
     const OperatorsParameter q = {.unit = what[k].unit, .value = what[k].value, .closed = (PetscBool)(k >= PART_ALPHA)};
 

@@ -28,17 +28,14 @@ static PetscErrorCode OperatorsAddCellForce(Operators o, PetscInt c, const Elast
 /* Adds the forces of all local cells */
 static PetscErrorCode OperatorsAddCellForces(Operators o, const PetscReal p[], const PetscScalar u[], PetscScalar f[])
 {
-  const ModelScene *scene;
-  const Mesh       *mesh;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(o->model, &mesh));
-  PetscCall(ModelGetScene(o->model, &scene));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const PetscInt   part     = mesh->cell_part[c];
-    const PetscReal  young    = p[N_PART_PARAMETERS * part + PART_YOUNG];
-    const Elasticity material = ElasticityFromEngineering(young, scene->parts[part].poisson, 1);
+    Elasticity material;
 
+    PetscCall(ModelGetElasticity(o->model, c, p[N_PART_PARAMETERS * mesh->cell_part[c] + PART_YOUNG], 1, &material));
     PetscCall(OperatorsAddCellForce(o, c, &material, u, f));
   }
   PetscFunctionReturn(0);

@@ -57,19 +57,16 @@ static PetscErrorCode GeometricAddCell(Model model, PetscInt c, const Elasticity
 static PetscErrorCode GeometricAddCells(Operators operators, const PetscReal p[], Model model, const PetscReal u[],
                                         Mat K)
 {
-  const ModelScene *scene;
-  const Mesh       *mesh;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(model, &mesh));
-  PetscCall(ModelGetScene(model, &scene));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const Part       *part = &scene->parts[mesh->cell_part[c]];
     OperatorsMaterial values;
     Elasticity        material;
 
     PetscCall(OperatorsGetMaterial(operators, p, mesh->cell_part[c], &values));
-    material = ElasticityFromEngineering(values.young, part->poisson, part->density);
+    PetscCall(ModelGetElasticity(model, c, values.young, values.density, &material));
     PetscCall(GeometricAddCell(model, c, &material, u, K));
   }
   PetscFunctionReturn(0);

@@ -64,8 +64,9 @@ def part_words(scene, name):
     """A material."""
     damping = [f"{sign} = {figures(scene.number(f'{name}_{key}'), 4)} {unit}"
                for key, sign, unit in (("alpha", "α", "1/s"), ("beta", "β", "s")) if scene.number(f"{name}_{key}")]
-    return (f"{name}: E = {quantity(scene.number(f'{name}_young'), 'Pa')}, ν = "
-            f"{scene.value(f'{name}_poisson', '0.3')}, "
+    moduli = ", ".join(quantity(value, "Pa") for value in numbers(scene.value(f"{name}_young")))
+    return (f"{name}: E = {moduli}, ν = "
+            f"{scene.value(f'{name}_poisson', '0.3').replace(',', ', ')}, "
             f"ρ = {figures(scene.number(f'{name}_density'))} kg/m³{''.join(f', {text}' for text in damping)}.")
 
 

@@ -21,7 +21,7 @@ PetscErrorCode BodiesGetCell(Bodies bodies, PetscInt c, BodiesCell *cell)
   part          = &scene->parts[cell->part];
   cell->alpha   = part->alpha;
   cell->beta    = part->beta;
-  material      = ElasticityFromEngineering(part->young, part->poisson, part->density);
+  PetscCall(ModelGetElasticity(bodies->model, c, part->young, part->density, &material));
   PetscCheck(!scene->element->matrices(x, &material, cell->stiffness, me), PETSC_COMM_SELF, PETSC_ERR_PLIB,
              "element is inverted");
   for (PetscInt a = 0; a < cell->n_nodes; a++) {

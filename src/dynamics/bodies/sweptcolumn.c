@@ -64,6 +64,7 @@ static PetscErrorCode ColumnsFind(Bodies b, const SweptBody *s, ColumnSection *s
   PetscInt       n_own = 0, size = 0, *line, *node;
 
   PetscFunctionBeginUser;
+  *complete = PETSC_TRUE;
   PetscCall(PetscMalloc2(b->layout.n_vertices, &line, b->layout.n_vertices, &node));
   PetscCall(ColumnsFindVertices(s, b->layout.n_vertices, line, node));
   for (PetscInt c = 0; c < b->mesh->n_cells; c++) {
@@ -72,6 +73,7 @@ static PetscErrorCode ColumnsFind(Bodies b, const SweptBody *s, ColumnSection *s
 
     if (b->body[vertex[0]] != s->body) continue;
     n_own++;
+    if (!ModelMaterialIsSwept(b->model, b->mesh->cell_part[c], s->lines)) *complete = PETSC_FALSE;
     if (!ColumnBegins(b->mesh->n_nodes, vertex, line, node, &column)) continue;
     if (section->n_columns == size) {
       size = 2 * size + 16;
@@ -81,7 +83,7 @@ static PetscErrorCode ColumnsFind(Bodies b, const SweptBody *s, ColumnSection *s
     BodiesTurnCell(&b->layout, &column.cell);
     section->column[section->n_columns++] = column;
   }
-  *complete = n_own == section->n_columns * n_along ? PETSC_TRUE : PETSC_FALSE;
+  if (n_own != section->n_columns * n_along) *complete = PETSC_FALSE;
   PetscCall(PetscFree2(line, node));
   PetscFunctionReturn(0);
 }

@@ -14,10 +14,7 @@ static PetscErrorCode PartRead(OptionsItems PetscOptionsObject, void *owner, voi
 
   PetscFunctionBeginUser;
   (void)owner;
-  part->poisson = 0.3;
-  PetscCall(PetscOptionsReal("-young", "Young's modulus, Pa (required)", "model.h", part->young, &part->young, NULL));
-  PetscCall(
-    PetscOptionsReal("-poisson", "Poisson's ratio, in (-1, 0.5)", "model.h", part->poisson, &part->poisson, NULL));
+  PetscCall(PartReadElasticity(PetscOptionsObject, part));
   PetscCall(PetscOptionsReal("-density", "density, kg/m^3 (required)", "model.h", part->density, &part->density, NULL));
   PetscCall(PetscOptionsReal("-alpha", "Rayleigh factor of the mass, 1/s", "model.h", part->alpha, &part->alpha, NULL));
   PetscCall(PetscOptionsReal("-beta", "Rayleigh factor of the stiffness, s", "model.h", part->beta, &part->beta, NULL));
@@ -81,7 +78,7 @@ PetscErrorCode PartsCheck(Model model)
                p->name, (double)p->young);
     PetscCheck(p->density > 0, model->comm, PETSC_ERR_USER_INPUT,
                "-%s_density %.6g must be given and positive (kg/m^3)", p->name, (double)p->density);
-    PetscCheck(p->poisson > -1 && p->poisson < 0.5, model->comm, PETSC_ERR_USER_INPUT,
+    PetscCheck(p->anisotropy.n || (p->poisson > -1 && p->poisson < 0.5), model->comm, PETSC_ERR_USER_INPUT,
                "-%s_poisson %.6g must lie between -1 and 0.5, ends excluded", p->name, (double)p->poisson);
     PetscCheck(p->alpha >= 0 && p->beta >= 0, model->comm, PETSC_ERR_USER_INPUT,
                "-%s_alpha %.6g and -%s_beta %.6g must not be negative", p->name, (double)p->alpha, p->name,
