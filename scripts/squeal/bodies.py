@@ -4,11 +4,10 @@ from contextlib import contextmanager
 
 import numpy
 
+from .cells import boundary_faces, read_cells
 from .tables import BadInput
 
 LARGEST = 1e30  # of what is a displacement, a velocity or a place
-# Faces of VTK's hexahedron, seen anticlockwise from outside
-HEX_FACES = numpy.array([[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]])
 
 
 class Scene:
@@ -18,15 +17,14 @@ class Scene:
         group = file["VTKHDF"]
         self.shapes = group["PointData"]
         self.points = sound(file.filename, "Points", group["Points"][:])
-        cells = group["Connectivity"][:].reshape(group["NumberOfCells"][0], -1)
-        if cells.shape[1] != 8:
-            raise BadInput(f"{file.filename}: cells of {cells.shape[1]} nodes; only hexahedra can be drawn")
+        cells = read_cells(group)
         names = [name.decode() for name in group["CellData/part"].attrs["names"]]
         part = group["CellData/part"][:]
-        on_disc = part == names.index(disc_name) if disc_name in names else numpy.full(len(cells), True)
-        self.surfaces = {name: boundary_faces(cells[part == i]) for i, name in enumerate(names) if (part == i).any()}
-        self.disc = boundary_faces(cells[on_disc])
-        self.rest = boundary_faces(cells[~on_disc])
+        on_disc = part == names.index(disc_name) if disc_name in names else numpy.full(len(part), True)
+        self.surfaces = {name: boundary_faces(those(cells, part == i)) for i, name in enumerate(names)
+                         if (part == i).any()}
+        self.disc = boundary_faces(those(cells, on_disc))
+        self.rest = boundary_faces(those(cells, ~on_disc))
         self.others = {name: faces for name, faces in self.surfaces.items() if name != disc_name and len(self.rest)}
         self.set_frame()
 
@@ -126,11 +124,9 @@ def read_states(paths, name, disc_name):
             yield scene, sound(path, name, data[name][:])
 
 
-def boundary_faces(cells):
-    """Faces [n][4] that belong to one cell only."""
-    faces = cells[:, HEX_FACES].reshape(-1, 4)
-    _, first, count = numpy.unique(numpy.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
-    return faces[first[count == 1]]
+def those(cells, chosen):
+    """Of the cells of read_cells() the chosen ones, by type."""
+    return {kind: nodes[chosen[number]] for kind, (number, nodes) in cells.items() if chosen[number].any()}
 
 
 def feature_edges(points, faces, part, sharp=0.8):
@@ -140,6 +136,8 @@ def feature_edges(points, faces, part, sharp=0.8):
     normal /= numpy.linalg.norm(normal, axis=1)[:, None] + 1e-300
     edges = numpy.sort(numpy.stack([faces, numpy.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     face = numpy.repeat(numpy.arange(len(faces)), 4)
+    true = edges[:, 0] != edges[:, 1]  # not the one between the equal nodes of a triangle
+    edges, face = edges[true], face[true]
     order = numpy.lexsort((face, edges[:, 1], edges[:, 0], part[face]))
     edges, face = edges[order], face[order]
     same = (edges[1:] == edges[:-1]).all(axis=1) & (part[face[1:]] == part[face[:-1]])

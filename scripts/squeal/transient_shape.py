@@ -8,6 +8,7 @@ import numpy
 from matplotlib.tri import Triangulation
 
 from .bodies import read_states
+from .cells import triangles_of
 from .picture import BLUE, GREEN, GREY, SKY, SOFT, VERMILION
 from .spectrum import circle_content
 from .tables import BadInput
@@ -62,7 +63,7 @@ def face_of(scene):
     if len(scene.rest):
         rest = scene.points[numpy.unique(scene.rest)] @ numpy.stack([scene.right, scene.up], axis=1)
         foot = 1e3 * numpy.array([rest.min(axis=0), rest.max(axis=0)])
-    triangles = numpy.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    triangles = triangles_of(quads)
     return Face(1e3 * flat, triangles, foot, nodes, ring, numpy.arctan2(y[ring], x[ring]), scene.axis)
 
 

@@ -105,7 +105,7 @@ def write_snapshot(path, velocity, points, cells):
     with h5py.File(path, "w") as file:
         group = file.create_group("VTKHDF")
         group["Points"], group["Connectivity"] = points, cells.ravel()
-        group["NumberOfCells"] = [len(cells)]
+        group["Offsets"], group["Types"] = 8 * numpy.arange(len(cells) + 1), numpy.full(len(cells), 12, "u1")
         part = numpy.zeros(len(cells), int)
         part[-1] = 1
         group["CellData/part"] = part

@@ -28,7 +28,7 @@ def write_modes(folder, n_modes):
         group = file.create_group("VTKHDF")
         group["Points"] = points
         group["Connectivity"] = numpy.arange(8 * len(PARTS))
-        group["NumberOfCells"] = [len(PARTS)]
+        group["Offsets"], group["Types"] = 8 * numpy.arange(len(PARTS) + 1), numpy.full(len(PARTS), 12, "u1")
         group["CellData/part"] = numpy.arange(len(PARTS))
         group["CellData/part"].attrs["names"] = numpy.array(PARTS, "S")
         for i in range(n_modes):
