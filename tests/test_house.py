@@ -26,12 +26,12 @@ MOST_FILE, MOST_MAIN, MOST_BODY, MOST_ARGUMENTS, MOST_README = 350, 80, 80, 6, 2
 CHAIN = ("base", "kernels", "model", "contact", "operators", "solver", "statics", "modes", "sweep")
 BELOW = {room: {*CHAIN[:k + 1], *(("results",) if k > 1 else ())} for k, room in enumerate(CHAIN)}
 BELOW["frf"] = BELOW["modes"] | {"frf"}
-BELOW |= {"results": {"base", "results"},
+BELOW |= {"results": {"base", "kernels", "results"},
           "dynamics": {"base", "kernels", "model", "contact", "operators", "statics", "results", "dynamics"}}
 LAYERS = {"dense": {"dense"}, "basis": {"dense", "basis"}, "track": {"dense", "track"}}
 # Public headers of which the name is not their room's
-ROOM_OF_HEADER = {"checksum": "base", "contactstatus": "kernels", "elasticity": "kernels", "element": "model",
-                  "mesh": "base", "options": "base", "pencil": "operators", "projector": "contact", "sys": "base"}
+ROOM_OF_HEADER = {"checksum": "base", "contactstatus": "kernels", "elasticity": "kernels", "element": "kernels",
+                  "mesh": "kernels", "options": "base", "pencil": "operators", "projector": "contact", "sys": "base"}
 # Signatures that a library lays down
 LAID_DOWN = {"KeepError": "PetscPushErrorHandler()", "DampedStop": "PEPSetStoppingTestFunction()",
              "UndampedStop": "EPSSetStoppingTestFunction()"}

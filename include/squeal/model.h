@@ -3,7 +3,7 @@
 
    The mesh comes from the built-in generator (-model_source rig) or from a Gmsh file (-model_source file). Every named
    set of the scene is a DMLabel of that name with value 1: parts on cells, surfaces on faces, points on vertices.
-   The DM's local section holds three displacements (m) per vertex in the order x, y, z; displacements fixed by a
+   The DM's local section holds three displacements (m) per node (mesh.h) in the order x, y, z; displacements fixed by a
    support are constrained, hence absent from global vectors and matrices.
 */
 #pragma once
@@ -123,7 +123,6 @@ typedef struct {
   Circle           *circles;
   PetscReal         loss_frequency; /* Hz, of the loss factors; 0: not given */
   PetscReal         gravity[3];     /* m/s^2 */
-  const Element    *element;        /* formulation of the cells; after ModelSetUp() */
 } ModelScene;
 
 /*@
@@ -139,7 +138,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
    Options Database Keys:
 +  -model_source <rig|file> - where the mesh comes from
 .  -model_mesh <file>       - Gmsh file, format 2.2 or 4.1
-.  -model_element <incompatible|full> - element formulation
+.  -model_element <incompatible|full> - formulation of 8-node hexahedra
 .  -parts, -supports, -springs, -dashpots, -loads, -motions, -probes, -circles <names> - lists; each name is the prefix of its own options
 .  -<part>_young, _poisson, _shear, _axis_1, _axis_2, _axis_3, _cylinder_axis, _cylinder_centre - elasticity, isotropic
    or not: model/scene/anisotropic.c
@@ -177,8 +176,9 @@ PetscErrorCode ModelCheckGiven(Model model);
 /*@
    ModelSetUp - generates or reads the mesh, checks its elements, partitions it, and lays out the unknowns. Collective.
 
-   Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_USER_INPUT for a part or set that the mesh does not name, PETSC_ERR_USER_INPUT
-   for an inverted or zero-volume element (number, part and centre are named).
+   Errors: PETSC_ERR_FILE_OPEN; PETSC_ERR_USER_INPUT for a part or set that the mesh does not name, for an element that is
+   inverted at one of its quadrature points or has no volume (number, part and centre are named), for elements of
+   different order that share an edge or face.
 @*/
 PetscErrorCode ModelSetUp(Model model);
 
@@ -208,9 +208,9 @@ PetscErrorCode ModelGetElasticity(Model model, PetscInt c, PetscReal young, Pets
     or in axes that the sweep carries along. Not collective. @*/
 PetscBool ModelMaterialIsSwept(Model model, PetscInt part, const ModelLines *lines);
 
-/*@ ModelGetCell - corners of local cell c in the element's node order: vertices [n_nodes] and coordinates [n_nodes][3]
+/*@ ModelGetCell - local cell c: its element, and in the order of that the nodes [n_nodes] and their places x [n_nodes][3]
     (m). Not collective. @*/
-PetscErrorCode ModelGetCell(Model model, PetscInt c, PetscInt vertices[], PetscReal coordinates[]);
+PetscErrorCode ModelGetCell(Model model, PetscInt c, const Element **element, PetscInt nodes[], PetscReal x[]);
 
 /*@
    ModelAddLoad - adds load i to a vector of ModelCreateNodal(), N. On a

@@ -31,13 +31,13 @@ PetscErrorCode ContactNodalForces(Contact contact, const ContactState state[], V
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) n_own += mesh->owned[v];
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) n_own += mesh->owned[v];
   PetscCall(VecCreateMPI(contact->comm, 3 * n_own, PETSC_DETERMINE, &forces));
   PetscCall(VecSetBlockSize(forces, 3));
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(PairAddForce(&contact->pairs[p], &state[p], forces));
   PetscCall(VecAssemblyBegin(forces));
   PetscCall(VecAssemblyEnd(forces));
-  PetscCall(ISCreateBlock(PETSC_COMM_SELF, 3, mesh->n_vertices, mesh->number, PETSC_USE_POINTER, &from));
+  PetscCall(ISCreateBlock(PETSC_COMM_SELF, 3, mesh->n_nodes, mesh->number, PETSC_USE_POINTER, &from));
   PetscCall(VecScatterCreate(forces, from, local, NULL, &scatter));
   PetscCall(VecScatterBegin(scatter, forces, local, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(VecScatterEnd(scatter, forces, local, INSERT_VALUES, SCATTER_FORWARD));

@@ -42,7 +42,7 @@ static PetscErrorCode TurningCreate(Contact contact, const char set[], Mat *turn
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) n_rows += mesh->owned[v] ? 3 : 0;
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) n_rows += mesh->owned[v] ? 3 : 0;
   PetscCall(ContactFacetsLocal(contact->model, set, &n, &facets));
   PetscCall(PetscMalloc3(96 * n, &row, 96 * n, &column, 96 * n, &value));
   for (PetscInt f = 0; f < n; f++) FacetEntries(&facets[f], &row[96 * f], &column[96 * f], &value[96 * f]);

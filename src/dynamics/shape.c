@@ -2,7 +2,7 @@
    Shape: a mode that was read is laid on the mesh of this run.
 
    A place in space does not name a node, since nodes of bodies in contact may coincide; cells do not overlap, so that
-   their centres are unique. Every local cell is looked up by its centre, and then its corners among those of the cell
+   their centres are unique. Every local cell is looked up by its centre, and then its nodes among those of the cell
    found. Cells of the file are sorted by their height along an oblique direction: few centres of a regular mesh share
    one.
 */
@@ -33,8 +33,7 @@ static PetscReal ShapeDistance(const PetscReal a[3], const PetscReal b[3])
 /* Tolerance, centres, and cells by height */
 static PetscErrorCode ShapeSort(Shape *shape)
 {
-  const PetscInt n_nodes = shape->n_nodes;
-  PetscReal      lower[3], upper[3];
+  PetscReal lower[3], upper[3];
 
   PetscFunctionBeginUser;
   for (int d = 0; d < 3; d++) lower[d] = PETSC_MAX_REAL, upper[d] = PETSC_MIN_REAL;
@@ -47,9 +46,10 @@ static PetscErrorCode ShapeSort(Shape *shape)
   PetscCall(PetscMalloc2(shape->n_cells, &shape->height, shape->n_cells, &shape->cell));
   for (PetscInt c = 0; c < shape->n_cells; c++) {
     PetscReal *const x = &shape->centres[3 * c];
+    const PetscInt   n = shape->first[c + 1] - shape->first[c];
 
-    for (PetscInt i = 0; i < n_nodes; i++)
-      for (int d = 0; d < 3; d++) x[d] += shape->points[3 * shape->corners[n_nodes * c + i] + d] / (PetscReal)n_nodes;
+    for (PetscInt i = shape->first[c]; i < shape->first[c + 1]; i++)
+      for (int d = 0; d < 3; d++) x[d] += shape->points[3 * shape->nodes[i] + d] / (PetscReal)n;
     shape->height[c] = ShapeHeight(x);
     shape->cell[c]   = c;
   }
@@ -76,32 +76,28 @@ static PetscInt ShapeFindCell(const Shape *shape, const PetscReal centre[3])
   return -1;
 }
 
-/* Point of the file at x among the corners of a cell, -1 without one */
-static PetscInt ShapeFindCorner(const Shape *shape, PetscInt cell, const PetscReal x[3])
+/* Point of the file at x among the nodes of a cell, -1 without one */
+static PetscInt ShapeFindNode(const Shape *shape, PetscInt cell, const PetscReal x[3])
 {
-  const PetscInt n_nodes = shape->n_nodes;
-
-  for (PetscInt i = 0; i < n_nodes && cell >= 0; i++) {
-    const PetscInt p = shape->corners[n_nodes * cell + i];
-
-    if (ShapeDistance(&shape->points[3 * p], x) <= shape->tolerance) return p;
-  }
+  if (cell < 0) return -1;
+  for (PetscInt i = shape->first[cell]; i < shape->first[cell + 1]; i++)
+    if (ShapeDistance(&shape->points[3 * shape->nodes[i]], x) <= shape->tolerance) return shape->nodes[i];
   return -1;
 }
 
-/* Lays the shape on the corners of local cell c */
+/* Lays the shape on the nodes of local cell c */
 static PetscErrorCode ShapeFillCell(const Shape *shape, PetscInt c, const ShapeTarget *to, Fault *fault)
 {
-  const PetscInt n_nodes = shape->n_nodes;
-  PetscInt       vertices[ELEMENT_MAX_NODES], cell;
+  const Element *element;
+  PetscInt       nodes[ELEMENT_MAX_NODES], cell;
   PetscReal      x[3 * ELEMENT_MAX_NODES], centre[3] = {0, 0, 0};
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetCell(to->model, c, vertices, x));
-  for (PetscInt i = 0; i < 3 * n_nodes; i++) centre[i % 3] += x[i] / (PetscReal)n_nodes;
+  PetscCall(ModelGetCell(to->model, c, &element, nodes, x));
+  for (PetscInt i = 0; i < 3 * element->n_nodes; i++) centre[i % 3] += x[i] / (PetscReal)element->n_nodes;
   cell = ShapeFindCell(shape, centre);
-  for (PetscInt i = 0; i < n_nodes && !fault->code; i++) {
-    const PetscInt v = vertices[i], p = ShapeFindCorner(shape, cell, &x[3 * i]);
+  for (PetscInt i = 0; i < element->n_nodes && !fault->code; i++) {
+    const PetscInt v = nodes[i], p = ShapeFindNode(shape, cell, &x[3 * i]);
 
     if (p < 0)
       PetscCall(FaultNote(fault, PETSC_ERR_USER_INPUT,
@@ -125,8 +121,8 @@ static PetscErrorCode ShapeFillCells(MPI_Comm comm, const Shape *shape, const Sh
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(to->model, &mesh));
-  PetscCall(PetscArrayzero(to->re, 3 * mesh->n_vertices));
-  PetscCall(PetscArrayzero(to->im, 3 * mesh->n_vertices));
+  PetscCall(PetscArrayzero(to->re, 3 * mesh->n_nodes));
+  PetscCall(PetscArrayzero(to->im, 3 * mesh->n_nodes));
   n_cells = mesh->n_cells;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_cells, 1, MPIU_INT, MPI_SUM, comm));
   for (PetscInt c = 0; c < mesh->n_cells && !fault->code; c++) PetscCall(ShapeFillCell(shape, c, to, fault));
@@ -140,7 +136,6 @@ static PetscErrorCode ShapeFillCells(MPI_Comm comm, const Shape *shape, const Sh
 
 PetscErrorCode ShapeRead(Model model, const ShapeSource *source, PetscReal re[], PetscReal im[], PetscReal lambda[2])
 {
-  const Mesh *mesh;
   ShapeTarget to    = {.model = model, .option = source->option, .re = re, .im = im};
   Shape       shape = {.n_cells = 0};
   Fault       fault = {.code = 0};
@@ -148,8 +143,6 @@ PetscErrorCode ShapeRead(Model model, const ShapeSource *source, PetscReal re[],
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetComm(model, &comm));
-  PetscCall(ModelGetMesh(model, &mesh));
-  shape.n_nodes = mesh->n_nodes;
   PetscCall(ShapeReadTable(source, lambda, &fault));
   PetscCall(ShapeReadField(source, lambda[1], &shape, &fault));
   PetscCall(FaultsAgree(comm, &fault));
@@ -160,7 +153,8 @@ PetscErrorCode ShapeRead(Model model, const ShapeSource *source, PetscReal re[],
   PetscCall(PetscFree(shape.points));
   PetscCall(PetscFree(shape.re));
   PetscCall(PetscFree(shape.im));
-  PetscCall(PetscFree(shape.corners));
+  PetscCall(PetscFree(shape.first));
+  PetscCall(PetscFree(shape.nodes));
   PetscCall(PetscFree(shape.centres));
   PetscCall(PetscFree2(shape.height, shape.cell));
   PetscCall(FaultsRaise(comm, &fault));

@@ -9,10 +9,9 @@
 
 /* Mesh and shape of the file */
 typedef struct {
-  PetscInt   n_nodes; /* of a cell */
   PetscInt   n_points, n_cells;
   PetscReal *points, *re, *im; /* [n_points][3], m */
-  PetscInt  *corners;          /* [n_cells][n_nodes] */
+  PetscInt  *first, *nodes;    /* [n_cells + 1] where the nodes of a cell begin in nodes */
   PetscReal *centres;          /* [n_cells][3], m */
   PetscReal *height;           /* [n_cells] ascending: places of the centres along `oblique`, m */
   PetscInt  *cell;             /* [n_cells] of each height */
@@ -38,7 +37,7 @@ PETSC_INTERN PetscErrorCode ShapeReadField(const ShapeSource *source, PetscReal 
    them. Collective. Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_USER_INPUT for a table without such a column. */
 PETSC_INTERN PetscErrorCode ShapeListUnstable(MPI_Comm comm, const ShapeSource *source, PetscInt *n, PetscInt **modes);
 
-/* shape.c - a mode at the local vertices [n_vertices][3] of the model: real and imaginary part, and lambda. Nodes are
+/* shape.c - a mode at the local nodes [n_nodes][3] of the model: real and imaginary part, and lambda. Nodes are
    found by position, so that the ranks of the runs may differ. Collective. Errors: PETSC_ERR_FILE_OPEN,
    PETSC_ERR_USER_INPUT for a mode or mesh that does not agree. */
 PETSC_INTERN PetscErrorCode ShapeRead(Model model, const ShapeSource *source, PetscReal re[], PetscReal im[],

@@ -194,6 +194,22 @@ static PetscErrorCode ShapeReadArray(const ShapeFile *from, const char path[], P
   PetscFunctionReturn(0);
 }
 
+/* Checks that the cells of the file have nodes that it holds */
+static PetscErrorCode ShapeCheckCells(const ShapeFile *from, const Shape *shape, PetscInt n_ids)
+{
+  PetscBool good = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  if (from->fault->code) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < n_ids; i++) good = good && shape->nodes[i] >= 0 && shape->nodes[i] < shape->n_points;
+  for (PetscInt c = 0; c < shape->n_cells; c++) good = good && shape->first[c] < shape->first[c + 1];
+  if (shape->n_cells < 0 || shape->first[0] != 0 || shape->first[shape->n_cells] != n_ids) good = PETSC_FALSE;
+  if (!good)
+    PetscCall(FaultNote(from->fault, PETSC_ERR_USER_INPUT, "%s/%s has cells at nodes that it lacks", from->source->dir,
+                        from->source->file));
+  PetscFunctionReturn(0);
+}
+
 /* Checks by the title of the shape, "7: 3458.21 Hz, ...", that it belongs to the table, freq in Hz */
 static PetscErrorCode ShapeCheckTitle(const ShapeFile *from, const char key[], double freq)
 {
@@ -220,8 +236,8 @@ static PetscErrorCode ShapeCheckTitle(const ShapeFile *from, const char key[], d
 PetscErrorCode ShapeReadField(const ShapeSource *source, PetscReal omega, Shape *shape, Fault *fault)
 {
   char      name[PETSC_MAX_PATH_LEN], key[2][64];
-  PetscInt  n_corners = -1;
-  ShapeFile from      = {.source = source, .fault = fault};
+  PetscInt  n_ids = -1, n_offsets = -1;
+  ShapeFile from = {.source = source, .fault = fault};
 
   PetscFunctionBeginUser;
   if (fault->code) PetscFunctionReturn(0);
@@ -235,14 +251,13 @@ PetscErrorCode ShapeReadField(const ShapeSource *source, PetscReal omega, Shape 
                         source->made_by, source->option));
   shape->n_points = -1;
   PetscCall(ShapeReadArray(&from, "Points", PETSC_REAL, &shape->n_points, &shape->points));
-  PetscCall(ShapeReadArray(&from, "Connectivity", PETSC_INT, &n_corners, &shape->corners));
+  PetscCall(ShapeReadArray(&from, "Connectivity", PETSC_INT, &n_ids, &shape->nodes));
+  PetscCall(ShapeReadArray(&from, "Offsets", PETSC_INT, &n_offsets, &shape->first));
   PetscCall(ShapeReadArray(&from, key[0], PETSC_REAL, &shape->n_points, &shape->re));
   PetscCall(ShapeReadArray(&from, key[1], PETSC_REAL, &shape->n_points, &shape->im));
   PetscCall(ShapeCheckTitle(&from, key[0], (double)(omega / (2 * PETSC_PI))));
   if (from.file >= 0) (void)H5Fclose(from.file);
-  for (PetscInt i = 0; i < n_corners && !fault->code; i++)
-    if (shape->corners[i] < 0 || shape->corners[i] >= shape->n_points)
-      PetscCall(FaultNote(fault, PETSC_ERR_USER_INPUT, "%s has cells at nodes that it lacks", name));
-  shape->n_cells = n_corners / shape->n_nodes;
+  shape->n_cells = n_offsets - 1;
+  PetscCall(ShapeCheckCells(&from, shape, n_ids));
   PetscFunctionReturn(0);
 }

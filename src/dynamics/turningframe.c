@@ -15,15 +15,16 @@ static PetscErrorCode DynamicsFindPart(Dynamics d, const char set[], PetscInt *p
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(d->model, &mesh));
-  PetscCall(PetscCalloc2(mesh->n_parts, &count, mesh->n_vertices, &in_set));
+  PetscCall(PetscCalloc2(mesh->n_parts, &count, mesh->n_nodes, &in_set));
   PetscCall(ModelGetSetVertices(d->model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
   for (PetscInt i = 0; i < n; i++) in_set[vertices[i]] = PETSC_TRUE;
   PetscCall(ISRestoreIndices(is, &vertices));
   PetscCall(ISDestroy(&is));
-  for (PetscInt i = 0; i < mesh->n_nodes * mesh->n_cells; i++)
-    count[mesh->cell_part[i / mesh->n_nodes]] += in_set[mesh->corner[i]];
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    for (PetscInt i = mesh->cell_first[c]; i < mesh->cell_first[c + 1]; i++)
+      count[mesh->cell_part[c]] += in_set[mesh->cell_node[i]];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, (PetscMPIInt)mesh->n_parts, MPIU_INT, MPI_SUM, d->comm));
   *part = 0;
   for (PetscInt i = 1; i < mesh->n_parts; i++)

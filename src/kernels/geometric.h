@@ -73,13 +73,13 @@ static inline int Hex8Geometric(const double *x, const Elasticity *material, int
   Hex8Condense(3 * n_bubbles, 3 * n, K);
   Hex8Recover(n_bubbles, K, u, v);
   Hex8Shape(xi, N, dN);
-  (void)Hex8Jacobian(x, dN, c0);
+  (void)SolidJacobian(HEX8_NODES, x, dN, c0);
   for (int q = 0; q < 8; q++) {
     double j, stress[3][3];
 
     Hex8Point(q, HEX8_GAUSS, xi);
     Hex8Shape(xi, N, dN);
-    j = Hex8Jacobian(x, dN, c);
+    j = SolidJacobian(HEX8_NODES, x, dN, c);
     Hex8Gradients(n_bubbles, xi, dN, c0, c, g);
     Hex8Stress(n, material, v, g, j, stress);
     Hex8AddGeometric(g + 3 * n_bubbles, j, stress, k);
@@ -95,7 +95,8 @@ static inline int Hex8Geometric(const double *x, const Elasticity *material, int
    Hex8IncompatibleGeometric - geometric stiffness (N/m) of the element with incompatible modes, QM6
 
    Input Parameters:
-+  x        - positions of the nodes, [8][3], m
++  solid    - not used
+.  x        - positions of the nodes, [8][3], m
 .  material - stiffness, Pa
 -  u        - displacements of the nodes, [8][3], m
 
@@ -104,14 +105,17 @@ static inline int Hex8Geometric(const double *x, const Elasticity *material, int
 
    Returns 0, or 1 when the Jacobian is not positive at the centre or a Gauss point; then nothing is written.
 */
-static inline int Hex8IncompatibleGeometric(const double *x, const Elasticity *material, const double *u,
-                                            double *stiffness)
+static inline int Hex8IncompatibleGeometric(const Solid *solid, const double *x, const Elasticity *material,
+                                            const double *u, double *stiffness)
 {
+  (void)solid;
   return Hex8Geometric(x, material, HEX8_BUBBLES, u, stiffness);
 }
 
 /* Hex8FullGeometric - the same for the fully integrated trilinear element */
-static inline int Hex8FullGeometric(const double *x, const Elasticity *material, const double *u, double *stiffness)
+static inline int Hex8FullGeometric(const Solid *solid, const double *x, const Elasticity *material, const double *u,
+                                    double *stiffness)
 {
+  (void)solid;
   return Hex8Geometric(x, material, 0, u, stiffness);
 }

@@ -21,8 +21,7 @@
 */
 #pragma once
 
-#include "base/vec3.h"
-#include "stiffness.h"
+#include "solid.h"
 #include <math.h>
 
 #define HEX8_NODES   8
@@ -69,22 +68,6 @@ static inline void Hex8Shape(const double xi[3], double N[HEX8_NODES], double dN
   }
 }
 
-/* Jacobian j (m^3) and cofactors c[k][i] (m^2) */
-static inline double Hex8Jacobian(const double *x, const double dN[HEX8_DOFS], double c[9])
-{
-  double t[9] = {0};
-
-  for (int a = 0; a < HEX8_NODES; a++) {
-    for (int k = 0; k < 3; k++) {
-      for (int i = 0; i < 3; i++) t[3 * k + i] += dN[3 * a + k] * x[3 * a + i];
-    }
-  }
-  Vec3Cross(t + 3, t + 6, c);
-  Vec3Cross(t + 6, t, c + 3);
-  Vec3Cross(t, t + 3, c + 6);
-  return Vec3Dot(t, c);
-}
-
 /* j times the gradients, g[3 (n_bubbles + 8)]: bubbles with the centre's cofactors c0, then shape functions with c */
 static inline void Hex8Gradients(int n_bubbles, const double xi[3], const double dN[HEX8_DOFS], const double c0[9],
                                  const double c[9], double g[HEX8_ALL])
@@ -116,13 +99,13 @@ static inline int Hex8Integrate(const double *x, int n_bubbles, Hex8Integrals *s
 
   memset(sum, 0, sizeof(*sum));
   Hex8Shape(xi, N, dN);
-  if (!(Hex8Jacobian(x, dN, c0) > 0)) return 1;
+  if (!(SolidJacobian(HEX8_NODES, x, dN, c0) > 0)) return 1;
   for (int q = 0; q < 8; q++) {
     double j;
 
     Hex8Point(q, HEX8_GAUSS, xi);
     Hex8Shape(xi, N, dN);
-    j = Hex8Jacobian(x, dN, c);
+    j = SolidJacobian(HEX8_NODES, x, dN, c);
     if (!(j > 0)) return 1;
     Hex8Gradients(n_bubbles, xi, dN, c0, c, g);
     Hex8AddProduct(3 * (n_bubbles + HEX8_NODES), 1 / j, g, sum->gradients); /* (g/j) (g/j)' j */
@@ -192,7 +175,8 @@ static inline int Hex8Matrices(const double *x, const Elasticity *material, int 
    Hex8IncompatibleMatrices - stiffness (N/m) and consistent mass (kg) with incompatible modes, QM6
 
    Input Parameters:
-+  x        - positions of the nodes, [8][3], m
++  solid    - not used
+.  x        - positions of the nodes, [8][3], m
 -  material - stiffness, Pa, and density, kg/m^3
 
    Output Parameters:
@@ -201,52 +185,40 @@ static inline int Hex8Matrices(const double *x, const Elasticity *material, int 
 
    Returns 0, or 1 when the Jacobian is not positive at the centre or a Gauss point; then nothing is written.
 */
-static inline int Hex8IncompatibleMatrices(const double *x, const Elasticity *material, double *stiffness, double *mass)
+static inline int Hex8IncompatibleMatrices(const Solid *solid, const double *x, const Elasticity *material,
+                                           double *stiffness, double *mass)
 {
+  (void)solid;
   return Hex8Matrices(x, material, HEX8_BUBBLES, stiffness, mass);
 }
 
 /* Hex8FullMatrices - the same for the fully integrated trilinear element, which is too stiff in bending */
-static inline int Hex8FullMatrices(const double *x, const Elasticity *material, double *stiffness, double *mass)
+static inline int Hex8FullMatrices(const Solid *solid, const double *x, const Elasticity *material, double *stiffness,
+                                   double *mass)
 {
+  (void)solid;
   return Hex8Matrices(x, material, 0, stiffness, mass);
-}
-
-/* Volume of the axis-parallel box around the nodes, m^3 */
-static inline double Hex8BoxVolume(const double *x)
-{
-  double volume = 1;
-
-  for (int i = 0; i < 3; i++) {
-    double low = x[i], high = x[i];
-
-    for (int a = 1; a < HEX8_NODES; a++) {
-      low  = fmin(low, x[3 * a + i]);
-      high = fmax(high, x[3 * a + i]);
-    }
-    volume *= high - low;
-  }
-  return volume;
 }
 
 /*
    Hex8Measure - volume (m^3) and the smallest Jacobian over Gauss points and nodes, as eight times j divided by the
    volume of the bounding box: 1 for a box along the axes, not positive for an inverted element, 0 for a flat box
 */
-static inline void Hex8Measure(const double *x, double *volume, double *min_jacobian)
+static inline void Hex8Measure(const Solid *solid, const double *x, double *volume, double *min_jacobian)
 {
-  const double box      = Hex8BoxVolume(x);
+  const double box      = SolidBoxVolume(HEX8_NODES, x);
   double       smallest = HUGE_VAL, xi[3], N[HEX8_NODES], dN[HEX8_DOFS], c[9];
 
+  (void)solid;
   *volume = 0;
   for (int q = 0; q < HEX8_NODES; q++) {
     double at_gauss, at_node;
 
     Hex8Point(q, HEX8_GAUSS, xi);
     Hex8Shape(xi, N, dN);
-    at_gauss = Hex8Jacobian(x, dN, c);
+    at_gauss = SolidJacobian(HEX8_NODES, x, dN, c);
     Hex8Shape(hex8_sign[q], N, dN);
-    at_node  = Hex8Jacobian(x, dN, c);
+    at_node  = SolidJacobian(HEX8_NODES, x, dN, c);
     smallest = fmin(smallest, fmin(at_gauss, at_node));
     *volume += at_gauss;
   }

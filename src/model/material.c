@@ -12,12 +12,13 @@
 /* From the axis to the centre of a cell, radius[3] (m); and how far its nodes are from their centre, m */
 static PetscErrorCode CellFindRadius(Model model, PetscInt c, const Anisotropy *a, PetscReal radius[3], PetscReal *size)
 {
-  const PetscInt n = model->mesh.n_nodes;
-  PetscInt       vertices[ELEMENT_MAX_NODES];
+  const Element *element;
+  PetscInt       n, nodes[ELEMENT_MAX_NODES];
   PetscReal      x[ELEMENT_MAX_DOFS], centre[3] = {0, 0, 0}, along = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetCell(model, c, vertices, x));
+  PetscCall(ModelGetCell(model, c, &element, nodes, x));
+  n = element->n_corners;
   for (PetscInt i = 0; i < 3 * n; i++) centre[i % 3] += x[i] / (PetscReal)n;
   *size = 0;
   for (PetscInt i = 0; i < 3 * n; i++) *size = PetscMax(*size, PetscAbsReal(x[i] - centre[i % 3]));

@@ -26,8 +26,9 @@ PetscErrorCode ModelSetFromOptions(Model model)
                               sources[0], &source, &given));
   PetscCall(OptionsGetPath(PetscOptionsObject, "-model_mesh", "Gmsh file, format 2.2 or 4.1, with physical names",
                            model->file, &has_mesh));
-  PetscCall(PetscOptionsString("-model_element", "element formulation: incompatible (QM6) or full (trilinear)",
-                               "model.h", model->formulation, model->formulation, sizeof(model->formulation), NULL));
+  PetscCall(PetscOptionsString("-model_element", "8-node hexahedra: incompatible (QM6) or full (trilinear)", "model.h",
+                               model->formulation, model->formulation, sizeof(model->formulation),
+                               &model->has_formulation));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-model_gravity", "acceleration of gravity in x,y,z, m/s^2", 3,
                             scene->gravity, NULL));
   PetscCall(PetscOptionsReal("-loss_frequency", "where the loss factors of the parts are exact, Hz", "model.h",
@@ -104,9 +105,9 @@ PetscErrorCode ModelSetUp(Model model)
     PetscCall(RigGenerate(model->comm, &model->rig, &model->dm));
   else
     PetscCall(ImportGmsh(model->comm, model->file, &model->dm));
+  PetscCall(MeshTabulate(model));
   PetscCall(MeshCheck(model));
   PetscCall(PartitionMesh(model));
-  PetscCall(MeshTabulate(model));
   PetscCall(MeshLayOut(model));
   PetscCall(PartsCheckUnits(model));
   PetscCall(ModelCheckAxes(model));
@@ -145,14 +146,15 @@ PetscErrorCode ModelGetScene(Model model, const ModelScene **scene)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelGetCell(Model model, PetscInt c, PetscInt vertices[], PetscReal coordinates[])
+PetscErrorCode ModelGetCell(Model model, PetscInt c, const Element **element, PetscInt nodes[], PetscReal x[])
 {
-  const PetscInt n_nodes = model->mesh.n_nodes;
+  const Mesh *mesh = &model->mesh;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < n_nodes; i++) {
-    vertices[i] = model->mesh.corner[n_nodes * c + i];
-    for (int d = 0; d < 3; d++) coordinates[3 * i + d] = model->mesh.x[3 * vertices[i] + d];
+  *element = mesh->element[c];
+  for (PetscInt i = 0; i < mesh->element[c]->n_nodes; i++) {
+    nodes[i] = mesh->cell_node[mesh->cell_first[c] + i];
+    for (int d = 0; d < 3; d++) x[3 * i + d] = mesh->x[3 * nodes[i] + d];
   }
   PetscFunctionReturn(0);
 }
@@ -168,14 +170,16 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
 {
   PetscInt    n_cells = model->mesh.n_cells;
   PetscMPIInt size;
+  char        words[256];
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(model->comm, &size));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_cells, 1, MPIU_INT, MPI_SUM, model->comm));
-  PetscCall(
-    PetscViewerASCIIPrintf(viewer, "model: %s, %" PetscInt_FMT " cells, %" PetscInt_FMT " unknowns on %d rank%s; %s\n",
-                           !strcmp(model->source, "rig") ? "built-in rig" : model->file, n_cells,
-                           model->mesh.n_unknowns, size, size == 1 ? "" : "s", model->scene.element->description));
+  PetscCall(MeshDescribe(model, sizeof(words), words));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "model: %s, %" PetscInt_FMT " cells, %" PetscInt_FMT " unknowns on %d rank%s; %s\n",
+                                   !strcmp(model->source, "rig") ? "built-in rig" : model->file, n_cells,
+                                   model->mesh.n_unknowns, size, size == 1 ? "" : "s", words));
   for (PetscInt i = 0; i < model->scene.n_parts; i++) PetscCall(PartView(model, i, viewer));
   for (PetscInt i = 0; i < model->scene.n_supports; i++)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  support %s holds%s%s%s of %s\n", model->scene.supports[i].name,
@@ -188,8 +192,6 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
     PetscCall(GroundedView(&model->scene.dashpots[i], "dashpot", viewer));
   for (PetscInt i = 0; i < model->scene.n_loads; i++) PetscCall(LoadView(&model->scene.loads[i], viewer));
   for (PetscInt i = 0; i < model->scene.n_motions; i++) {
-    char words[256];
-
     PetscCall(ModelDescribeMotion(&model->scene.motions[i], sizeof(words), words));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %s\n", words));
   }

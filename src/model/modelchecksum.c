@@ -45,7 +45,7 @@ PetscErrorCode ModelAddSetChecksum(Model model, const char set[], PetscBool is_s
 static PetscErrorCode ModelAddMeshChecksum(Model model, PetscBool with_partition, Checksum c)
 {
   const Mesh *mesh;
-  PetscInt    vertices[ELEMENT_MAX_NODES];
+  PetscInt    nodes[ELEMENT_MAX_NODES];
   PetscMPIInt rank;
   PetscReal   x[ELEMENT_MAX_DOFS];
   uint64_t   *piece, local = CHECKSUM_BEGIN;
@@ -55,13 +55,16 @@ static PetscErrorCode ModelAddMeshChecksum(Model model, PetscBool with_partition
   PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(PetscMalloc1(mesh->n_cells, &piece));
   for (PetscInt i = 0; i < mesh->n_cells; i++) {
-    PetscCall(ModelGetCell(model, i, vertices, x));
-    piece[i] = ChecksumBytes(CHECKSUM_BEGIN, x, 3 * (size_t)mesh->n_nodes * sizeof(PetscReal));
+    const Element *element;
+
+    PetscCall(ModelGetCell(model, i, &element, nodes, x));
+    piece[i] = ChecksumBytes(CHECKSUM_BEGIN, x, 3 * (size_t)element->n_nodes * sizeof(PetscReal));
+    piece[i] = ChecksumBytes(piece[i], &element->shape, sizeof(element->shape));
     piece[i] = ChecksumBytes(piece[i], &mesh->cell_part[i], sizeof(PetscInt));
     local    = ChecksumBytes(local, &piece[i], sizeof(local));
   }
   PetscCall(ChecksumSetPart(c, "the mesh"));
-  PetscCall(ChecksumAddString(c, model->scene.element->formulation));
+  PetscCall(ChecksumAddString(c, model->formulation));
   PetscCall(ChecksumAddPieces(c, mesh->n_cells, piece));
   PetscCall(PetscFree(piece));
   local = ChecksumBytes(local, &rank, sizeof(rank));

@@ -32,6 +32,7 @@ struct _p_Model {
   /* set by options */
   PetscBool  given; /* the scene names a mesh */
   char       source[8], file[PETSC_MAX_PATH_LEN], formulation[32];
+  PetscBool  has_formulation; /* -model_element is given */
   Rig        rig;
   ModelScene scene;
   PetscInt   n_together;
@@ -41,7 +42,8 @@ struct _p_Model {
   /* built by ModelSetUp() */
   DM          dm;
   Mesh        mesh;
-  PartExtent *extent; /* of each part */
+  PetscInt   *node_of, *point_of; /* [points of the DM] node, -1 for none; [nodes] point */
+  PartExtent *extent;             /* of each part */
 };
 
 /* extent.c - measures the parts; a warning where their units do not fit together. Collective */
@@ -60,7 +62,8 @@ PETSC_INTERN PetscErrorCode RigGenerate(MPI_Comm comm, const Rig *rig, DM *dm);
 PETSC_INTERN PetscErrorCode ImportGmsh(MPI_Comm comm, const char file[], DM *dm);
 
 /* partition.c - distributes the mesh from rank 0 by METIS on the dual graph; the cells at the contact of the sets in
-   `together` end on one rank, or whole slabs of swept bodies do. Replaces model->dm; with one rank it does nothing. */
+   `together` end on one rank, or whole slabs of swept bodies do. Replaces model->dm and its tables; with one rank it
+   does nothing. */
 PETSC_INTERN PetscErrorCode PartitionMesh(Model model);
 
 /* tabulate.c - the tables of the local mesh but for its unknowns, now or after distribution; and frees all of them.
@@ -100,7 +103,11 @@ PETSC_INTERN PetscErrorCode LoadView(const Load *load, PetscViewer viewer);
 PETSC_INTERN PetscErrorCode GroundedSetUp(Model model);
 PETSC_INTERN PetscErrorCode GroundedView(const Grounded *grounded, const char kind[], PetscViewer viewer);
 
-/* set.c - faces of a set with cells on both sides, of all ranks; each is counted at least once. Collective */
+/* set.c - points of this rank that carry the label, NULL when there are none; an error when no rank has any.
+   Collective */
+PETSC_INTERN PetscErrorCode SetGetPoints(Model model, const char set[], IS *points);
+
+/* face.c - faces of a set with cells on both sides, of all ranks; each is counted at least once. Collective */
 PETSC_INTERN PetscErrorCode ModelCountInnerFaces(Model model, const char set[], PetscInt *n);
 
 /* motion.c - flags what the motions prescribe and no support fixes in fixed [vertex][3], and tabulates how far they go;
@@ -117,8 +124,12 @@ PETSC_INTERN PetscErrorCode CirclesLocate(Model model);
 PETSC_INTERN PetscErrorCode CirclesView(Model model, PetscViewer viewer);
 PETSC_INTERN PetscErrorCode CirclesDestroy(Model model);
 
-/* check.c - finds the element of the cells and raises an error for a bad one; before the mesh is distributed */
+/* check.c - raises an error for a bad cell, or for a formulation without effect, and warns of elements that lock;
+   before the mesh is distributed */
 PETSC_INTERN PetscErrorCode MeshCheck(Model model);
+
+/* check.c - the elements of the mesh in words: "8-node hexahedron", or "100 tet10, 20 hex20". Collective */
+PETSC_INTERN PetscErrorCode MeshDescribe(Model model, size_t size, char words[]);
 
 /* set.c - raises the error for a name that the mesh does not have, with the names that it has; what = "volume" or
    "set" */

@@ -25,7 +25,7 @@ PetscErrorCode ModelGetNodal(Model model, Vec u, PetscReal nodal[])
   PetscCall(VecSet(local, 0)); /* the held displacements, which vectors of the unknowns do not have */
   if (u) PetscCall(DMGlobalToLocal(model->dm, u, INSERT_VALUES, local));
   PetscCall(VecGetArrayRead(local, &value));
-  PetscCall(PetscArraycpy(nodal, value, 3 * model->mesh.n_vertices));
+  PetscCall(PetscArraycpy(nodal, value, 3 * model->mesh.n_nodes));
   PetscCall(VecRestoreArrayRead(local, &value));
   PetscCall(DMRestoreLocalVector(model->dm, &local));
   PetscFunctionReturn(0);
@@ -37,7 +37,7 @@ PetscErrorCode ModelGetDisplaced(Model model, Vec u, PetscReal nodal[])
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetNodal(model, u, nodal));
-  for (PetscInt i = 0; i < 3 * mesh->n_vertices && mesh->prescribed; i++) nodal[i] += mesh->prescribed[i];
+  for (PetscInt i = 0; i < 3 * mesh->n_nodes && mesh->prescribed; i++) nodal[i] += mesh->prescribed[i];
   PetscFunctionReturn(0);
 }
 

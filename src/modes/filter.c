@@ -128,7 +128,7 @@ PetscErrorCode ModesWriteFilters(Modes modes, Model model, Results results)
   PetscFunctionBeginUser;
   PetscCheck(model, modes->comm, PETSC_ERR_USER_INPUT, "-modes_filters needs a mesh: loaded matrices have none");
   PetscCall(ModelGetMesh(model, &mesh));
-  PetscCall(FilterCreate(modes, mesh->n_vertices, &f));
+  PetscCall(FilterCreate(modes, mesh->n_nodes, &f));
   PetscCall(ResultsFieldOpen(results, "filters", mesh, &field));
   for (PetscInt i = 0; i < modes->n; i++)
     if (!modes->mode[i].rigid) PetscCall(FilterWrite(modes, &f, i, model, field));

@@ -23,25 +23,24 @@
 #define MAX_PARTS  64
 #define DISC_SHARE 0.25 /* participation from which on a mode is named after the disc's shape */
 
-/* Nodal mass (kg) of one part, shape [local vertices]: an eighth of each of its hexahedra; only what this rank's
-   cells give */
+/* Nodal mass (kg) of one part, shape [local nodes]: equal parts of each of its cells; only what this rank's cells
+   give */
 static PetscErrorCode PartMasses(Model model, PetscInt part, PetscReal density, PetscReal **mass)
 {
-  const ModelScene *scene;
-  const Mesh       *mesh;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetScene(model, &scene));
   PetscCall(ModelGetMesh(model, &mesh));
-  PetscCall(PetscCalloc1(mesh->n_vertices, mass));
+  PetscCall(PetscCalloc1(mesh->n_nodes, mass));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    PetscInt  vertices[ELEMENT_MAX_NODES];
-    PetscReal x[ELEMENT_MAX_DOFS], volume, jacobian;
+    const Element *element;
+    PetscInt       nodes[ELEMENT_MAX_NODES];
+    PetscReal      x[ELEMENT_MAX_DOFS], volume, jacobian;
 
     if (mesh->cell_part[c] != part) continue;
-    PetscCall(ModelGetCell(model, c, vertices, x));
-    scene->element->measure(x, &volume, &jacobian);
-    for (PetscInt i = 0; i < mesh->n_nodes; i++) (*mass)[vertices[i]] += density * volume / (PetscReal)mesh->n_nodes;
+    PetscCall(ModelGetCell(model, c, &element, nodes, x));
+    element->measure(element->solid, x, &volume, &jacobian);
+    for (PetscInt i = 0; i < element->n_nodes; i++) (*mass)[nodes[i]] += density * volume / (PetscReal)element->n_nodes;
   }
   PetscFunctionReturn(0);
 }
@@ -154,7 +153,7 @@ static PetscErrorCode LabelsCreate(Modes modes, Model model, Contact contact, Pe
   PetscCall(PencilGetParameters(modes->pencil, NULL, NULL, &p));
   PetscCall(ModelGetMesh(model, &mesh));
   l->n_parts    = n_parts;
-  l->n_vertices = mesh->n_vertices;
+  l->n_vertices = mesh->n_nodes;
   l->disc       = -1;
   PetscCall(PetscMalloc1(n_parts, &l->mass));
   PetscCall(PetscCalloc2(2 * modes->n * n_parts, &l->share, 2 * modes->n, &l->energy));

@@ -119,7 +119,7 @@ static PetscErrorCode ModesWriteShapes(Modes modes, Model model, Results results
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(model, &mesh));
-  PetscCall(PetscMalloc2(3 * mesh->n_vertices, &re, 3 * mesh->n_vertices, &im));
+  PetscCall(PetscMalloc2(3 * mesh->n_nodes, &re, 3 * mesh->n_nodes, &im));
   PetscCall(ResultsFieldOpen(results, "modes", mesh, &field));
   for (PetscInt i = 0; i < modes->n; i++) {
     const Mode *m = &modes->mode[i];

@@ -6,38 +6,33 @@
 */
 #include "operatorsimpl.h"
 
-/* Replaces the consistent mass of an element by its row sums within each direction */
-static void ElementLump(PetscInt n, PetscReal mass[])
+/* Replaces the consistent mass of an element by the lumped one */
+static void MassLump(const Element *element, PetscReal mass[])
 {
-  for (PetscInt i = 0; i < n; i++) {
-    PetscReal sum = 0;
+  const PetscInt n = 3 * element->n_nodes;
+  PetscReal      lumped[ELEMENT_MAX_NODES];
 
-    for (PetscInt j = 0; j < n; j++) {
-      if (j % 3 == i % 3) sum += mass[i * n + j];
-      mass[i * n + j] = 0;
-    }
-    mass[i * n + i] = sum;
-  }
+  ElementLump(element, mass, lumped);
+  for (PetscInt i = 0; i < n * n; i++) mass[i] = i % n == i / n ? lumped[i / n / 3] : 0;
 }
 
 /* Adds local cell c to K_p and M_p */
 static PetscErrorCode OperatorsAddCell(Operators o, PetscInt c, Mat K, Mat M)
 {
-  const ModelScene *scene;
-  const Mesh       *mesh;
-  Elasticity        unit;
-  PetscInt          n, vertices[ELEMENT_MAX_NODES], rows[ELEMENT_MAX_DOFS];
-  PetscReal x[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  const Element *element;
+  const Mesh    *mesh;
+  Elasticity     unit;
+  PetscInt       n, vertices[ELEMENT_MAX_NODES], rows[ELEMENT_MAX_DOFS];
+  PetscReal      x[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(o->model, &mesh));
-  PetscCall(ModelGetScene(o->model, &scene));
-  PetscCall(ModelGetCell(o->model, c, vertices, x));
+  PetscCall(ModelGetCell(o->model, c, &element, vertices, x));
   PetscCall(ModelGetElasticity(o->model, c, 1, 1, &unit));
-  n = 3 * scene->element->n_nodes;
+  n = 3 * element->n_nodes;
   for (PetscInt i = 0; i < n; i++) rows[i] = mesh->unknown[3 * vertices[i / 3] + i % 3];
-  PetscCheck(!scene->element->matrices(x, &unit, ke, me), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
-  if (o->lump) ElementLump(n, me);
+  PetscCall(ElementMatrices(element, x, &unit, ke, me));
+  if (o->lump) MassLump(element, me);
   PetscCall(MatSetValues(K, n, rows, n, rows, ke, ADD_VALUES));
   PetscCall(MatSetValues(M, n, rows, n, rows, me, ADD_VALUES));
   PetscFunctionReturn(0);

@@ -10,15 +10,14 @@
 static PetscErrorCode OperatorsAddCellForce(Operators o, PetscInt c, const Elasticity *material, const PetscScalar u[],
                                             PetscScalar f[])
 {
-  const ModelScene *scene;
-  PetscInt          n, vertices[ELEMENT_MAX_NODES], at[ELEMENT_MAX_DOFS];
-  PetscReal x[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  const Element *element;
+  PetscInt       n, vertices[ELEMENT_MAX_NODES], at[ELEMENT_MAX_DOFS];
+  PetscReal      x[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetScene(o->model, &scene));
-  PetscCall(ModelGetCell(o->model, c, vertices, x));
-  PetscCheck(!scene->element->matrices(x, material, ke, me), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
-  n = 3 * scene->element->n_nodes;
+  PetscCall(ModelGetCell(o->model, c, &element, vertices, x));
+  PetscCall(ElementMatrices(element, x, material, ke, me));
+  n = 3 * element->n_nodes;
   for (PetscInt i = 0; i < n; i++) at[i] = 3 * vertices[i / 3] + i % 3;
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt j = 3; j < n; j++) f[at[i]] += ke[n * i + j] * (u[at[j]] - u[at[j % 3]]);
@@ -64,7 +63,7 @@ PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[],
   PetscCheck(operators->model, operators->comm, PETSC_ERR_ARG_WRONGSTATE,
              "internal forces need a model: loaded matrices have no elements");
   PetscCall(ModelGetMesh(operators->model, &mesh));
-  PetscCall(PetscMalloc1(3 * mesh->n_vertices, &displacement));
+  PetscCall(PetscMalloc1(3 * mesh->n_nodes, &displacement));
   PetscCall(ModelGetNodal(operators->model, u, displacement));
   PetscCall(OperatorsForcesOf(operators, p, displacement, local));
   PetscCall(PetscFree(displacement));
@@ -88,14 +87,15 @@ PetscErrorCode OperatorsPrescribedForces(Operators operators, const PetscReal p[
 static PetscErrorCode OperatorsAddCellWeight(Operators o, PetscInt c, const Elasticity *material, PetscScalar f[])
 {
   const ModelScene *scene;
+  const Element    *element;
   PetscInt          n, vertices[ELEMENT_MAX_NODES];
   PetscReal x[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(o->model, &scene));
-  PetscCall(ModelGetCell(o->model, c, vertices, x));
-  PetscCheck(!scene->element->matrices(x, material, ke, me), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
-  n = 3 * scene->element->n_nodes;
+  PetscCall(ModelGetCell(o->model, c, &element, vertices, x));
+  PetscCall(ElementMatrices(element, x, material, ke, me));
+  n = 3 * element->n_nodes;
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt j = i % 3; j < n; j += 3) f[3 * vertices[i / 3] + i % 3] += me[n * i + j] * scene->gravity[i % 3];
   PetscFunctionReturn(0);
@@ -144,7 +144,7 @@ PetscErrorCode OperatorsTakeNodal(Operators operators, Vec local, Vec f)
   PetscCall(ModelGetMesh(operators->model, &mesh));
   PetscCall(VecGetArrayRead(local, &force));
   PetscCall(VecGetArray(f, &value));
-  for (PetscInt i = 0; i < 3 * mesh->n_vertices; i++) {
+  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) {
     const PetscInt row = mesh->unknown[i] - mesh->first_own;
 
     if (mesh->unknown[i] >= 0 && row >= 0 && row < mesh->n_own) value[row] = force[i];

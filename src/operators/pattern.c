@@ -14,15 +14,17 @@ typedef struct {
 
 static PetscErrorCode PatternCreateStar(const Mesh *mesh, PetscInt part, PatternStar *s)
 {
-  const PetscInt n = mesh->n_nodes * mesh->n_cells;
+  const PetscInt n = mesh->cell_first[mesh->n_cells];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(mesh->n_vertices + 2, &s->first, n, &s->cell));
-  for (PetscInt i = 0; i < n; i++)
-    if (mesh->cell_part[i / mesh->n_nodes] == part) s->first[mesh->corner[i] + 2]++;
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) s->first[v + 2] += s->first[v + 1];
-  for (PetscInt i = 0; i < n; i++)
-    if (mesh->cell_part[i / mesh->n_nodes] == part) s->cell[s->first[mesh->corner[i] + 1]++] = i / mesh->n_nodes;
+  PetscCall(PetscCalloc2(mesh->n_nodes + 2, &s->first, n, &s->cell));
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    for (PetscInt i = mesh->cell_first[c]; i < mesh->cell_first[c + 1] && mesh->cell_part[c] == part; i++)
+      s->first[mesh->cell_node[i] + 2]++;
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) s->first[v + 2] += s->first[v + 1];
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    for (PetscInt i = mesh->cell_first[c]; i < mesh->cell_first[c + 1] && mesh->cell_part[c] == part; i++)
+      s->cell[s->first[mesh->cell_node[i] + 1]++] = c;
   PetscFunctionReturn(0);
 }
 
@@ -33,7 +35,7 @@ static PetscErrorCode PatternFindOwners(MPI_Comm comm, const Mesh *mesh, PetscMP
 
   PetscFunctionBeginUser;
   PetscCall(PetscLayoutCreateFromSizes(comm, mesh->n_own, PETSC_DETERMINE, 1, &layout));
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) {
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) {
     PetscInt d = 0;
 
     while (d < 3 && mesh->unknown[3 * v + d] < 0) d++;
@@ -51,12 +53,12 @@ static PetscErrorCode PatternCountNeighbours(const Mesh *mesh, const PatternStar
   PetscInt *seen;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(mesh->n_vertices, &seen));
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) seen[v] = -1;
-  for (PetscInt v = 0; v < mesh->n_vertices; v++)
+  PetscCall(PetscMalloc1(mesh->n_nodes, &seen));
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) seen[v] = -1;
+  for (PetscInt v = 0; v < mesh->n_nodes; v++)
     for (PetscInt k = s->first[v]; k < s->first[v + 1]; k++)
-      for (PetscInt i = 0; i < mesh->n_nodes; i++) {
-        const PetscInt w = mesh->corner[mesh->n_nodes * s->cell[k] + i];
+      for (PetscInt i = mesh->cell_first[s->cell[k]]; i < mesh->cell_first[s->cell[k] + 1]; i++) {
+        const PetscInt w = mesh->cell_node[i];
 
         if (seen[w] == v || owner[w] < 0) continue;
         seen[w] = v;
@@ -78,7 +80,7 @@ static PetscErrorCode PatternCountRows(MPI_Comm comm, Model model, PetscInt part
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(PatternCreateStar(mesh, part, &star));
-  PetscCall(PetscMalloc1(mesh->n_vertices, &owner));
+  PetscCall(PetscMalloc1(mesh->n_nodes, &owner));
   PetscCall(PatternFindOwners(comm, mesh, owner));
   PetscCall(ModelCreateNodal(model, &counts));
   PetscCall(VecGetArray(counts, &count));
@@ -86,7 +88,7 @@ static PetscErrorCode PatternCountRows(MPI_Comm comm, Model model, PetscInt part
   PetscCall(VecRestoreArray(counts, &count));
   PetscCall(ModelSumShared(model, counts));
   PetscCall(VecGetArray(counts, &count));
-  for (PetscInt i = 0; i < 3 * mesh->n_vertices; i++) {
+  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) {
     const PetscInt row = mesh->unknown[i] - mesh->first_own, v = i / 3;
 
     if (mesh->unknown[i] < mesh->first_own || row >= mesh->n_own) continue;

@@ -2,7 +2,8 @@
    Fields - mesh, complex shapes and states in one HDF5 file, laid out as VTK's VTKHDF unstructured grid:
 
       /VTKHDF  (Version, Type)    NumberOfPoints, NumberOfCells, NumberOfConnectivityIds    [1]
-         Points [nodes][3] m      Connectivity [cells x corners]   Offsets [cells + 1]   Types [cells]
+         Points [nodes][3] m      Connectivity, the nodes of the cells   Offsets [cells + 1]   Types [cells]
+         Mixed, for each cell the XDMF type and its nodes, in a mesh of several elements
          PointData/<key>_re, <key>_im [nodes][3] m, attribute title       a shape
          PointData/<key> [nodes] or [nodes][3], attribute title           an array of a state, its unit in the key
          CellData/part [cells], attribute names
@@ -12,11 +13,6 @@
 */
 #include "resultsimpl.h"
 #include <petscviewerhdf5.h>
-
-/* A further shape of cells is one more row */
-static const FieldShape field_shapes[] = {
-  {DM_POLYTOPE_HEXAHEDRON, 12, "Hexahedron", 8},
-};
 
 /* The rows of this rank, n_local of them, after those of the ranks before */
 static PetscErrorCode RowsSet(MPI_Comm comm, PetscInt n_local, ResultsRows *rows)
@@ -39,14 +35,14 @@ static PetscErrorCode FieldWriteNodes(ResultsField field, const char path[], Pet
   PetscFunctionBeginUser;
   PetscCall(PetscDataTypeToHDF5DataType(PETSC_REAL, &real));
   PetscCall(PetscMalloc1(width * field->nodes.n_local, &values));
-  for (PetscInt i = 0; i < width * mesh->n_vertices; i++)
+  for (PetscInt i = 0; i < width * mesh->n_nodes; i++)
     if (mesh->owned[i / width]) values[n++] = array[i];
   PetscCall(OutFileH5Write(&field->h5, path, real, &field->nodes, width, values));
   PetscCall(PetscFree(values));
   PetscFunctionReturn(0);
 }
 
-/* Writes where the corners of each cell begin, and the end of the last, and the VTK type of each cell */
+/* Writes where the nodes of each cell begin, and the end of the last, and the VTK type of each cell */
 static PetscErrorCode FieldWriteShapes(ResultsField field)
 {
   const PetscInt last = field->cells.first + field->cells.n_local == field->cells.n_global ? 1 : 0;
@@ -59,10 +55,8 @@ static PetscErrorCode FieldWriteShapes(ResultsField field)
   PetscCall(PetscDataTypeToHDF5DataType(PETSC_INT, &integer));
   rows.n_local += last; /* ranks without cells at the end write the same value */
   PetscCall(PetscMalloc2(rows.n_local, &offsets, rows.n_local, &types));
-  for (PetscInt i = 0; i < rows.n_local; i++) {
-    offsets[i] = (rows.first + i) * field->xdmf.shape->n_nodes;
-    types[i]   = field->xdmf.shape->vtk;
-  }
+  for (PetscInt i = 0; i < rows.n_local; i++) offsets[i] = field->ids.first + field->mesh->cell_first[i];
+  for (PetscInt i = 0; i < field->cells.n_local; i++) types[i] = (unsigned char)field->mesh->element[i]->vtk;
   PetscCall(OutFileH5Write(&field->h5, "/VTKHDF/Offsets", integer, &rows, 1, offsets));
   PetscCall(OutFileH5Write(&field->h5, "/VTKHDF/Types", H5T_NATIVE_UCHAR, &field->cells, 1, types));
   PetscCall(PetscFree2(offsets, types));
@@ -72,24 +66,44 @@ static PetscErrorCode FieldWriteShapes(ResultsField field)
 /* Writes connectivity and the part of each cell */
 static PetscErrorCode FieldWriteCells(ResultsField field)
 {
-  const Mesh       *mesh    = field->mesh;
-  const PetscInt    n_nodes = mesh->n_nodes;
-  const ResultsRows ids     = {field->cells.first * n_nodes, field->cells.n_local * n_nodes,
-                               field->cells.n_global * n_nodes};
-  PetscInt         *connectivity;
-  hid_t             integer;
+  const Mesh *mesh = field->mesh;
+  PetscInt   *connectivity;
+  hid_t       integer;
 
   PetscFunctionBeginUser;
   PetscCall(PetscDataTypeToHDF5DataType(PETSC_INT, &integer));
-  PetscCall(PetscMalloc1(ids.n_local, &connectivity));
-  for (PetscInt i = 0; i < ids.n_local; i++) connectivity[i] = mesh->number[mesh->corner[i]];
-  PetscCall(OutFileH5Write(&field->h5, "/VTKHDF/Connectivity", integer, &ids, 1, connectivity));
+  PetscCall(PetscMalloc1(field->ids.n_local, &connectivity));
+  for (PetscInt i = 0; i < field->ids.n_local; i++) connectivity[i] = mesh->number[mesh->cell_node[i]];
+  PetscCall(OutFileH5Write(&field->h5, "/VTKHDF/Connectivity", integer, &field->ids, 1, connectivity));
   PetscCall(OutFileH5Write(&field->h5, "/VTKHDF/CellData/part", integer, &field->cells, 1, mesh->cell_part));
   PetscCall(PetscFree(connectivity));
   PetscFunctionReturn(0);
 }
 
-/* Writes the groups and the numbers of points, cells and corners, one value each */
+/* Writes the XDMF type and nodes of each cell, which XDMF wants of a mesh of several elements */
+static PetscErrorCode FieldWriteMixed(ResultsField field)
+{
+  const Mesh       *mesh = field->mesh;
+  const ResultsRows rows = {field->ids.first + field->cells.first, field->ids.n_local + field->cells.n_local,
+                            field->ids.n_global + field->cells.n_global};
+  PetscInt         *mixed, n = 0;
+  hid_t             integer;
+
+  PetscFunctionBeginUser;
+  if (field->xdmf.element) PetscFunctionReturn(0);
+  PetscCall(PetscDataTypeToHDF5DataType(PETSC_INT, &integer));
+  PetscCall(PetscMalloc1(rows.n_local, &mixed));
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    mixed[n++] = mesh->element[c]->xdmf_number;
+    for (PetscInt i = mesh->cell_first[c]; i < mesh->cell_first[c + 1]; i++)
+      mixed[n++] = mesh->number[mesh->cell_node[i]];
+  }
+  PetscCall(OutFileH5Write(&field->h5, "/VTKHDF/Mixed", integer, &rows, 1, mixed));
+  PetscCall(PetscFree(mixed));
+  PetscFunctionReturn(0);
+}
+
+/* Writes the groups and the numbers of points, cells and their nodes, one value each */
 static PetscErrorCode FieldWriteHead(ResultsField field)
 {
   static const char *const type[]    = {"UnstructuredGrid"};
@@ -97,8 +111,7 @@ static PetscErrorCode FieldWriteHead(ResultsField field)
   static const char *const names[]   = {"/VTKHDF/NumberOfPoints", "/VTKHDF/NumberOfCells",
                                         "/VTKHDF/NumberOfConnectivityIds"};
   static const int         version[] = {1, 0};
-  const PetscInt           counts[]  = {field->nodes.n_global, field->cells.n_global,
-                                        field->cells.n_global * field->xdmf.shape->n_nodes};
+  const PetscInt           counts[]  = {field->nodes.n_global, field->cells.n_global, field->ids.n_global};
   ResultsRows              one       = {0, 0, 1};
   PetscMPIInt              rank;
   hid_t                    integer;
@@ -114,21 +127,39 @@ static PetscErrorCode FieldWriteHead(ResultsField field)
   PetscFunctionReturn(0);
 }
 
-/* Checks that the mesh is one that can be written, and counts its nodes and cells */
+/* The element that all cells of all ranks are of, NULL where there are several */
+static PetscErrorCode FieldFindElement(MPI_Comm comm, const Mesh *mesh, const Element **element)
+{
+  PetscInt row[2] = {-ELEMENT_MAX_ROWS, -1}; /* the negative first and the last row of the table */
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; ElementGet(i); i++)
+    for (PetscInt c = 0; c < mesh->n_cells; c++) {
+      if (mesh->element[c] != ElementGet(i)) continue;
+      row[0] = PetscMax(row[0], -i);
+      row[1] = i;
+      break;
+    }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, row, 2, MPIU_INT, MPI_MAX, comm));
+  *element = -row[0] == row[1] ? ElementGet(row[1]) : NULL;
+  PetscFunctionReturn(0);
+}
+
+/* Counts nodes and cells, and the nodes of the cells */
 static PetscErrorCode FieldSetMesh(ResultsField field, const Mesh *mesh)
 {
   PetscInt n_nodes = 0;
 
   PetscFunctionBeginUser;
   field->mesh = mesh;
-  for (size_t i = 0; i < sizeof(field_shapes) / sizeof(field_shapes[0]); i++)
-    if (field_shapes[i].polytope == mesh->shape) field->xdmf.shape = &field_shapes[i];
-  PetscCheck(field->xdmf.shape, field->h5.comm, PETSC_ERR_SUP, "fields need a mesh of hexahedra only");
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) n_nodes += mesh->owned[v];
+  PetscCall(FieldFindElement(field->h5.comm, mesh, &field->xdmf.element));
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) n_nodes += mesh->owned[v];
   PetscCall(RowsSet(field->h5.comm, n_nodes, &field->nodes));
   PetscCall(RowsSet(field->h5.comm, mesh->n_cells, &field->cells));
   field->xdmf.n_nodes = field->nodes.n_global;
+  PetscCall(RowsSet(field->h5.comm, mesh->cell_first[mesh->n_cells], &field->ids));
   field->xdmf.n_cells = field->cells.n_global;
+  field->xdmf.n_ids   = field->ids.n_global;
   PetscFunctionReturn(0);
 }
 
@@ -161,6 +192,7 @@ PetscErrorCode ResultsFieldOpen(Results results, const char name[], const Mesh *
   PetscCall(FieldWriteNodes(f, "/VTKHDF/Points", 3, mesh->x));
   PetscCall(FieldWriteShapes(f));
   PetscCall(FieldWriteCells(f));
+  PetscCall(FieldWriteMixed(f));
   PetscCall(OutFileH5Strings(&f->h5, "/VTKHDF/CellData/part", "names", mesh->n_parts, mesh->part));
   PetscCall(FieldCheck(f));
   *field = f;

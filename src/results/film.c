@@ -84,7 +84,8 @@ static PetscErrorCode FrameWrite(ResultsFilm film, PetscInt k, const char title[
   field->timed = PETSC_TRUE;
   field->time  = film->time[k];
   PetscCall(ResultsFieldWriteNodal(field, title, n, arrays));
-  xdmf->shape   = field->xdmf.shape;
+  xdmf->element = field->xdmf.element;
+  xdmf->n_ids   = field->xdmf.n_ids;
   xdmf->n_nodes = field->xdmf.n_nodes;
   xdmf->n_cells = field->xdmf.n_cells;
   PetscCall(ResultsFieldClose(&field));

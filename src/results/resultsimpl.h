@@ -51,29 +51,21 @@ typedef struct {
   PetscInt first, n_local, n_global;
 } ResultsRows;
 
-/* How a cell is described to VTK and XDMF */
-typedef struct {
-  DMPolytopeType polytope;
-  unsigned char  vtk;  /* VTK cell type */
-  const char    *xdmf; /* XDMF TopologyType */
-  PetscInt       n_nodes;
-} FieldShape;
-
 /* XDMF text: grids on one mesh, whose values are in HDF5 files beside it */
 typedef struct {
-  OutFile           file;
-  char              h5_name[PETSC_MAX_PATH_LEN]; /* of the next grid: relative to the folder of the text */
-  const FieldShape *shape;
-  PetscInt          n_nodes, n_cells, n_grids;
+  OutFile        file;
+  char           h5_name[PETSC_MAX_PATH_LEN];      /* of the next grid: relative to the folder of the text */
+  const Element *element;                          /* of all cells; NULL where there are several */
+  PetscInt       n_nodes, n_cells, n_ids, n_grids; /* n_ids: nodes of all cells together */
 } Xdmf;
 
 struct _p_ResultsField {
   const Mesh *mesh; /* borrowed */
   OutFile     h5;
   Xdmf        xdmf;
-  ResultsRows nodes, cells;
-  PetscBool   timed; /* grids stand at `time`, else at their number */
-  PetscReal   time;  /* s */
+  ResultsRows nodes, cells, ids; /* ids: nodes of the cells */
+  PetscBool   timed;             /* grids stand at `time`, else at their number */
+  PetscReal   time;              /* s */
 };
 
 /* outfile.c */

@@ -82,8 +82,9 @@ static PetscErrorCode XdmfMesh(Xdmf *xdmf)
 
   PetscFunctionBeginUser;
   PetscCall(OutFilePrint(file, "        <Topology TopologyType=\"%s\" NumberOfElements=\"%" PetscInt_FMT "\">\n",
-                         xdmf->shape->xdmf, xdmf->n_cells));
-  PetscCall(XdmfItem(xdmf, "Int", sizeof(PetscInt), xdmf->n_cells * xdmf->shape->n_nodes, 1, "Connectivity"));
+                         xdmf->element ? xdmf->element->xdmf : "Mixed", xdmf->n_cells));
+  PetscCall(XdmfItem(xdmf, "Int", sizeof(PetscInt), xdmf->n_ids + (xdmf->element ? 0 : xdmf->n_cells), 1,
+                     xdmf->element ? "Connectivity" : "Mixed"));
   PetscCall(OutFilePrint(file, "        </Topology>\n        <Geometry GeometryType=\"XYZ\">\n"));
   PetscCall(XdmfItem(xdmf, "Float", sizeof(PetscReal), xdmf->n_nodes, 3, "Points"));
   PetscCall(OutFilePrint(

@@ -26,7 +26,7 @@ static PetscErrorCode BodyFarthest(const Mesh *mesh, MPI_Comm comm, const PetscI
 
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(r, &value));
-  for (PetscInt i = 0; i < 3 * mesh->n_vertices; i++) {
+  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) {
     const PetscInt at = mesh->unknown[i] - mesh->first_own;
 
     if (mesh->unknown[i] < 0 || at < 0 || at >= mesh->n_own || PetscAbsScalar(value[at]) <= most.way) continue;
@@ -46,7 +46,7 @@ static PetscErrorCode BodyMeasure(const Mesh *mesh, MPI_Comm comm, const PetscIn
 
   PetscFunctionBeginUser;
   for (int d = 0; d < 6; d++) box[d] = -PETSC_MAX_REAL;
-  for (PetscInt i = 0; i < 3 * mesh->n_vertices; i++) {
+  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) {
     if (body[i / 3] != b) continue;
     box[i % 3]     = PetscMax(box[i % 3], mesh->x[i]);
     box[3 + i % 3] = PetscMax(box[3 + i % 3], -mesh->x[i]);
@@ -70,7 +70,7 @@ static PetscErrorCode BodyFit(const Mesh *mesh, MPI_Comm comm, const PetscInt bo
 
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(r, &value));
-  for (PetscInt i = 0; i < 3 * mesh->n_vertices; i++) {
+  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) {
     const PetscInt at = mesh->unknown[i] - mesh->first_own, d = i % 3;
     PetscReal      row[6] = {0}, x[3];
 
@@ -105,7 +105,7 @@ static PetscErrorCode BodyName(const Mesh *mesh, MPI_Comm comm, const PetscInt b
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(mesh->n_parts, &has));
   for (PetscInt i = 0; i < mesh->n_cells; i++)
-    if (body[mesh->corner[i * mesh->n_nodes]] == b) has[mesh->cell_part[i]] = 1;
+    if (body[mesh->cell_node[mesh->cell_first[i]]] == b) has[mesh->cell_part[i]] = 1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, has, (PetscMPIInt)mesh->n_parts, MPI_INT, MPI_MAX, comm));
   for (PetscInt i = 0; i < mesh->n_parts; i++) n += has[i];
   PetscCall(PetscStrncpy(text, n > 1 ? "parts" : "part", size));

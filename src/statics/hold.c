@@ -112,10 +112,11 @@ static PetscErrorCode UnknownFind(Operators operators, PetscInt unknown, Unknown
   PetscCall(OperatorsGetModel(operators, &model, NULL));
   PetscCall(ModelGetComm(model, &comm));
   PetscCall(ModelGetMesh(model, &mesh));
-  for (PetscInt i = 0; i < 3 * mesh->n_vertices; i++)
+  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++)
     if (mesh->unknown[i] == unknown) at = i;
-  for (PetscInt i = 0; i < mesh->n_nodes * mesh->n_cells && at >= 0; i++)
-    if (mesh->corner[i] == at / 3) place->part = (int)mesh->cell_part[i / mesh->n_nodes];
+  for (PetscInt c = 0; c < mesh->n_cells && at >= 0; c++)
+    for (PetscInt i = mesh->cell_first[c]; i < mesh->cell_first[c + 1]; i++)
+      if (mesh->cell_node[i] == at / 3) place->part = (int)mesh->cell_part[c];
   if (at >= 0) PetscCall(PetscArraycpy(place->x, &mesh->x[at - at % 3], 3));
   if (at >= 0) place->direction = (int)(at % 3);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, place->x, 3, MPIU_REAL, MPI_MAX, comm));

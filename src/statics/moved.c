@@ -28,8 +28,8 @@ static PetscErrorCode MovedVerticesGather(MPI_Comm comm, const Mesh *mesh, Petsc
   MovedVertex *here;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(mesh->n_vertices, &here));
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) {
+  PetscCall(PetscMalloc1(mesh->n_nodes, &here));
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) {
     const PetscReal *d = &mesh->prescribed[3 * v];
 
     if (!mesh->owned[v] || Vec3Dot(d, d) == 0) continue;

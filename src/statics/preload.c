@@ -32,23 +32,22 @@
 /* Adds local cell c with displacements u, three values per local vertex */
 static PetscErrorCode GeometricAddCell(Model model, PetscInt c, const Elasticity *material, const PetscReal u[], Mat K)
 {
-  const ModelScene *scene;
-  const Mesh       *mesh;
-  PetscInt          n, vertices[ELEMENT_MAX_NODES], rows[ELEMENT_MAX_DOFS];
-  PetscReal         x[ELEMENT_MAX_DOFS], ue[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  const Element *element;
+  const Mesh    *mesh;
+  PetscInt       n, vertices[ELEMENT_MAX_NODES], rows[ELEMENT_MAX_DOFS];
+  PetscReal      x[ELEMENT_MAX_DOFS], ue[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetScene(model, &scene));
   PetscCall(ModelGetMesh(model, &mesh));
-  PetscCall(ModelGetCell(model, c, vertices, x));
-  n = 3 * scene->element->n_nodes;
+  PetscCall(ModelGetCell(model, c, &element, vertices, x));
+  n = 3 * element->n_nodes;
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt at = 3 * vertices[i / 3] + i % 3;
 
     rows[i] = mesh->unknown[at];
     ue[i]   = u[at];
   }
-  PetscCheck(!scene->element->geometric(x, material, ue, ke), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
+  PetscCall(ElementGeometric(element, x, material, ue, ke));
   PetscCall(MatSetValues(K, n, rows, n, rows, ke, ADD_VALUES));
   PetscFunctionReturn(0);
 }
@@ -85,7 +84,7 @@ PetscErrorCode GeometricStiffnessCreate(Operators operators, const PetscReal p[]
   PetscCall(MatDuplicate(bodies, MAT_DO_NOT_COPY_VALUES, K));
   PetscCall(MatSetOption(*K, MAT_NO_OFF_PROC_ENTRIES, PETSC_FALSE)); /* which sums of matrices set */
   PetscCall(ModelGetMesh(model, &mesh));
-  PetscCall(PetscMalloc1(3 * mesh->n_vertices, &displacement));
+  PetscCall(PetscMalloc1(3 * mesh->n_nodes, &displacement));
   PetscCall(ModelGetDisplaced(model, u, displacement));
   PetscCall(GeometricAddCells(operators, p, model, displacement, *K));
   PetscCall(PetscFree(displacement));

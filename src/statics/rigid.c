@@ -37,7 +37,7 @@ static PetscErrorCode RigidMeasure(Model model, PetscInt n_bodies, const PetscIn
   PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(PetscMalloc1(6 * n_bodies, &box)); /* upper ends, and lower ones with the other sign */
   for (PetscInt i = 0; i < 6 * n_bodies; i++) box[i] = -PETSC_MAX_REAL;
-  for (PetscInt i = 0; i < 3 * mesh->n_vertices; i++) {
+  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) {
     PetscReal *end = &box[6 * body[i / 3] + i % 3];
 
     if (body[i / 3] < 0) continue;
@@ -69,7 +69,7 @@ static PetscErrorCode RigidSetMotion(Model model, const PetscInt body[], PetscIn
   PetscCall(VecSet(r, 0));
   PetscCall(VecGetOwnershipRange(r, &begin, &end));
   PetscCall(VecGetArray(r, &value));
-  for (PetscInt i = 0; i < 3 * mesh->n_vertices; i++)
+  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++)
     if (body[i / 3] == b && mesh->unknown[i] >= begin && mesh->unknown[i] < end)
       value[mesh->unknown[i] - begin] = RigidMotion(k, (int)(i % 3), &mesh->x[i - i % 3], rigid);
   PetscCall(VecRestoreArray(r, &value));

@@ -41,7 +41,7 @@ static inline PetscErrorCode FieldCreate(const Chain *chain, Field field, const 
   if (set)
     PetscCall(ModelGetSetVertices(chain->model, set, &is));
   else
-    PetscCall(ISCreateStride(PETSC_COMM_SELF, mesh->n_vertices, 0, 1, &is));
+    PetscCall(ISCreateStride(PETSC_COMM_SELF, mesh->n_nodes, 0, 1, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
   if (local) PetscCall(VecGetArrayRead(local, &value));

@@ -5,7 +5,7 @@
 
 #define N HEX8_DOFS
 
-typedef int (*MatricesFunction)(const double *, const Elasticity *, double *, double *);
+typedef int (*MatricesFunction)(const Solid *, const double *, const Elasticity *, double *, double *);
 
 typedef struct {
   const char      *name;

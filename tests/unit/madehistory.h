@@ -52,7 +52,7 @@ static inline PetscErrorCode MadeLayOut(Made *m)
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(m->model, &mesh));
-  l->n_vertices = mesh->n_vertices;
+  l->n_vertices = mesh->n_nodes;
   l->n          = 3 * (l->n_vertices + 1);
   PetscCall(PetscMalloc3(l->n_vertices, &l->at, l->n_vertices, &l->step, 9 * l->n_vertices, &l->basis));
   PetscCall(PetscCalloc5(l->n, &m->u, l->n, &m->before, l->n, &m->f, l->n, &m->f_old, l->n, &m->minv));

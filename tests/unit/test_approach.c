@@ -43,10 +43,11 @@ static PetscErrorCode VecSetLinear(Model model, const PetscReal coefficient[5], 
   PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(VecSetOption(u, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    PetscInt  vertices[ELEMENT_MAX_NODES];
-    PetscReal x[ELEMENT_MAX_DOFS];
+    const Element *element;
+    PetscInt       vertices[ELEMENT_MAX_NODES];
+    PetscReal      x[ELEMENT_MAX_DOFS];
 
-    PetscCall(ModelGetCell(model, c, vertices, x));
+    PetscCall(ModelGetCell(model, c, &element, vertices, x));
     for (int i = 0; i < 8; i++) {
       const PetscReal *at = &x[3 * i], *q = coefficient;
       const PetscReal  value = mesh->cell_part[c] ? q[0] + q[1] * at[2] : q[2] + q[3] * at[2] + q[4] * at[0];

@@ -18,11 +18,12 @@ static PetscErrorCode CountWrong(Model model, const char part[], const PetscInt 
   PetscCall(ModelGetMesh(model, &mesh));
   *n_wrong = *n_cells = 0;
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    PetscInt  vertices[ELEMENT_MAX_NODES];
-    PetscReal x[ELEMENT_MAX_DOFS];
+    const Element *element;
+    PetscInt       vertices[ELEMENT_MAX_NODES];
+    PetscReal      x[ELEMENT_MAX_DOFS];
 
     if (strcmp(mesh->part[mesh->cell_part[c]], part)) continue;
-    PetscCall(ModelGetCell(model, c, vertices, x));
+    PetscCall(ModelGetCell(model, c, &element, vertices, x));
     for (int i = 0; i < 8; i++) *n_wrong += body[vertices[i]] != expected;
     ++*n_cells;
   }

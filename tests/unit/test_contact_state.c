@@ -200,7 +200,7 @@ static PetscErrorCode MeshMove(Model model, PetscReal lift)
   }
   PetscCall(ISRestoreIndices(is, &vertex));
   PetscCall(ISDestroy(&is));
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) {
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) {
     const PetscReal y = x[3 * v + 1], z = x[3 * v + 2], x0 = x[3 * v], z1 = sin(0.7) * y + cos(0.7) * z;
 
     x[3 * v]     = cos(0.3) * x0 + sin(0.3) * z1;

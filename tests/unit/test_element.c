@@ -1,126 +1,243 @@
 /*
-   Unit test of the element table against real DMPlex meshes: the closure order of every row gives its node order.
+   Unit tests of the element table: node order against real DMPlex meshes, shape functions, quadrature, rigid motions,
+   uniform strain, and lumped mass. Lengths in m; E = 210 GPa, nu = 0.3, rho = 7800 kg/m^3.
 
-   Meshes: a box of hexahedra, and two cells of which the second is numbered from another corner about another axis, so
-   that their common face is turned in one of them.
+   Every element is tested on a cell that an affine map made of the reference, and, of the second order, on a curved one.
 */
+#include <petscdmplex.h>
 #include <squeal/element.h>
 #include "check.h"
-#include "boxmesh.h"
+#include "kernels/solidshape.h"
 
-/* Smallest Jacobian measure over all cells, nodes taken in the element's order, and the sum of the volumes */
-static PetscErrorCode MeasureMesh(DM dm, const Element *element, double *quality, double *total)
+/* Natural coordinates of node i: the mean of those of its corners */
+static void NodePlace(const Element *e, PetscInt i, double xi[3])
 {
-  PetscInt           c_start, c_end, v_start, v_end;
-  PetscSection       section;
-  Vec                coordinates;
-  const PetscScalar *xyz;
+  static const double tet[4][3] = {
+    {0, 0, 0},
+    {1, 0, 0},
+    {0, 1, 0},
+    {0, 0, 1}
+  };
+  static const double wedge[6][3] = {
+    {0, 0, -1},
+    {1, 0, -1},
+    {0, 1, -1},
+    {0, 0, 1 },
+    {1, 0, 1 },
+    {0, 1, 1 }
+  };
+  int n = 0;
 
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &c_start, &c_end));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &v_start, &v_end));
-  PetscCall(DMGetCoordinateSection(dm, &section));
-  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
-  PetscCall(VecGetArrayRead(coordinates, &xyz));
-  *quality = PETSC_MAX_REAL;
-  *total   = 0;
-  for (PetscInt c = c_start; c < c_end; c++) {
-    PetscInt *closure = NULL, n_closure, vertices[ELEMENT_MAX_NODES], n = 0, offset;
-    double    x[ELEMENT_MAX_DOFS], volume, min_jacobian;
-
-    PetscCall(DMPlexGetTransitiveClosure(dm, c, PETSC_TRUE, &n_closure, &closure));
-    for (PetscInt k = 0; k < n_closure; k++) {
-      if (closure[2 * k] >= v_start && closure[2 * k] < v_end) vertices[n++] = closure[2 * k];
-    }
-    PetscCall(DMPlexRestoreTransitiveClosure(dm, c, PETSC_TRUE, &n_closure, &closure));
-    for (PetscInt i = 0; i < element->n_nodes; i++) {
-      PetscCall(PetscSectionGetOffset(section, vertices[element->closure_order[i]], &offset));
-      for (PetscInt k = 0; k < 3; k++) x[3 * i + k] = PetscRealPart(xyz[offset + k]);
-    }
-    element->measure(x, &volume, &min_jacobian);
-    *quality = PetscMin(*quality, min_jacobian);
-    *total += volume;
+  xi[0] = xi[1] = xi[2] = 0;
+  for (int c = 0; c < e->n_corners; c++) {
+    if (!(e->at[i] & 1u << c)) continue;
+    for (int k = 0; k < 3; k++)
+      xi[k] += e->n_corners == 4 ? tet[c][k] : e->n_corners == 6 ? wedge[c][k] : (double)hex8_sign[c][k];
+    n++;
   }
-  PetscCall(VecRestoreArrayRead(coordinates, &xyz));
-  PetscFunctionReturn(0);
+  for (int k = 0; k < 3; k++) xi[k] /= n;
 }
 
-/* Box of 2 x 3 x 2 cells, 1 x 1 x 1 m */
-static PetscErrorCode CreateBox(DM *dm)
+/* Places of the nodes: x = A xi, and with curve (m) bent where the element has nodes on edges */
+static void CellPlaces(const Element *e, double curve, double x[])
 {
-  const PetscInt faces[3] = {2, 3, 2};
+  static const double A[3][3] = {
+    {1.1,  0.2, -0.1},
+    {0.1,  0.9, 0.3 },
+    {-0.2, 0.1, 1.3 }
+  };
 
-  PetscFunctionBeginUser;
-  PetscCall(BoxMeshCreate(PETSC_COMM_SELF, faces, dm));
-  PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < e->n_nodes; i++) {
+    double xi[3];
+
+    NodePlace(e, i, xi);
+    for (int d = 0; d < 3; d++) {
+      x[3 * i + d] = A[d][0] * xi[0] + A[d][1] * xi[1] + A[d][2] * xi[2];
+      if (e->n_nodes > e->n_corners) x[3 * i + d] += curve * xi[(d + 1) % 3] * xi[(d + 1) % 3];
+    }
+  }
 }
 
-/* Two unit cubes side by side in x. The second begins at (2, 1, 0), its xi, eta, zeta are z, -x, -y. Cells are given
-   in DMPlex's own order, bottom face 0, 3, 2, 1 */
-static PetscErrorCode CreateTurnedPair(DM *dm)
+/* Breaks when: N are not 1 at their own node and 0 at others, or dN is not the derivative of N */
+static int TestShape(const Element *e)
 {
-  const PetscInt cells[16] = {0, 3, 4, 1, 6, 7, 10, 9, 5, 4, 10, 11, 2, 8, 7, 1};
-  PetscReal      x[36];
+  const Solid *s     = e->solid;
+  const double xi[3] = {0.21, 0.33, 0.17};
+  double       nodal = 0, slope = 0, N[27], dN[81], other[2][27], unused[81];
+  int          failed = 0;
+
+  for (PetscInt i = 0; i < e->n_nodes; i++) {
+    double at[3];
+
+    NodePlace(e, i, at);
+    s->shape(at, N, dN);
+    for (PetscInt a = 0; a < e->n_nodes; a++) nodal = fmax(nodal, fabs(N[a] - (a == i)));
+  }
+  s->shape(xi, N, dN);
+  for (int k = 0; k < 3; k++) {
+    for (int side = 0; side < 2; side++) {
+      double at[3] = {xi[0], xi[1], xi[2]};
+
+      at[k] += side ? 1e-5 : -1e-5;
+      s->shape(at, other[side], unused);
+    }
+    for (PetscInt a = 0; a < e->n_nodes; a++)
+      slope = fmax(slope, fabs((other[1][a] - other[0][a]) / 2e-5 - dN[3 * a + k]));
+  }
+  failed += CheckTrue("N_a at node b is delta_ab", nodal < 1e-14, nodal);
+  failed += CheckTrue("dN is the derivative of N", slope < 1e-9, slope);
+  return failed;
+}
+
+/* Breaks when: the quadrature does not integrate the volume, or u = G x (a rigid rotation too) does not give the forces
+   of the uniform stress, f_a = stress int grad N_a dV; total is what they must add up to: nothing */
+static int TestPatch(const Element *e, double curve)
+{
+  static const double G[3][3] = {
+    {1,   2,  3},
+    {-4,  5,  2},
+    {0.5, -1, 2}
+  };
+  const Elasticity material = ElasticityFromEngineering(210e9, 0.3, 7800);
+  static double    K[81 * 81], M[81 * 81];
+  double           x[81], u[81], w[81] = {0}, energy = 0, exact, rigid = 0, size = 0, volume, quality, trace = 0;
+  double           mass = 0, square = 0;
+  const int        n      = 3 * (int)e->n_nodes;
+  int              failed = 0;
+
+  CellPlaces(e, curve, x);
+  e->measure(e->solid, x, &volume, &quality);
+  if (e->matrices(e->solid, x, &material, K, M)) return CheckTrue("the cell is accepted", 0, quality);
+  for (int i = 0; i < n; i++) {
+    const double *at = &x[i - i % 3];
+
+    u[i] = G[i % 3][0] * at[0] + G[i % 3][1] * at[1] + G[i % 3][2] * at[2];
+    w[i] = i % 3 == 0 ? 1 - 2 * at[1] : i % 3 == 1 ? 0.5 + 2 * at[0] : 3; /* translation, rotation about z */
+  }
+  for (int i = 0; i < n; i++) {
+    double force = 0;
+
+    for (int j = 0; j < n; j++) {
+      energy += u[i] * K[n * i + j] * u[j];
+      force += K[n * i + j] * w[j];
+      size = fmax(size, fabs(K[n * i + j]));
+      if (i % 3 == 0 && j % 3 == 0) mass += M[n * i + j];
+    }
+    rigid = fmax(rigid, fabs(force));
+  }
+  for (int i = 0; i < 3; i++) {
+    trace += G[i][i];
+    for (int j = 0; j < 3; j++) square += (G[i][j] + G[j][i]) * (G[i][j] + G[j][i]) / 4;
+  }
+  exact = volume * (material.lambda * trace * trace + 2 * material.shear * square);
+  failed += CheckTrue("rigid motions give no force", rigid < 1e-13 * size, rigid / size);
+  failed += CheckClose("energy of a uniform strain / exact", energy / exact, 1, 1e-13);
+  failed += CheckClose("mass / (rho volume)", mass / (7800 * volume), 1, 1e-13);
+  return failed;
+}
+
+/* Breaks when: a lumped mass is not positive, or they do not add up to the mass */
+static int TestLump(const Element *e)
+{
+  const Elasticity material = ElasticityFromEngineering(210e9, 0.3, 7800);
+  static double    K[81 * 81], M[81 * 81];
+  double           x[81], lumped[27], least = HUGE_VAL, all = 0, volume, quality;
+  int              failed = 0;
+
+  CellPlaces(e, 0.1, x);
+  e->measure(e->solid, x, &volume, &quality);
+  if (e->matrices(e->solid, x, &material, K, M)) return CheckTrue("the cell is accepted", 0, quality);
+  ElementLump(e, M, lumped);
+  for (PetscInt a = 0; a < e->n_nodes; a++) {
+    least = fmin(least, lumped[a]);
+    all += lumped[a];
+  }
+  failed += CheckTrue("least lumped mass is positive", least > 0, least);
+  failed += CheckClose("sum of the lumped masses / mass", all / (7800 * volume), 1, 1e-13);
+  return failed;
+}
+
+/* A mesh of one cell, whose corners are points 1 to n */
+static PetscErrorCode CreateCell(const Element *e, DM *dm)
+{
+  PetscInt cell[8];
+  DM       corners;
 
   PetscFunctionBeginUser;
-  for (int v = 0; v < 12; v++) {
-    x[3 * v]     = v % 3;
-    x[3 * v + 1] = v / 3 % 2;
-    x[3 * v + 2] = v / 6;
-  }
-  PetscCall(DMPlexCreateFromCellListPetsc(PETSC_COMM_SELF, 3, 2, 12, 8, PETSC_TRUE, cells, 3, x, dm));
+  for (PetscInt i = 0; i < e->n_corners; i++) cell[i] = i + 1;
+  PetscCall(DMPlexInvertCell(e->shape, cell));
+  PetscCall(DMPlexCreate(PETSC_COMM_SELF, &corners));
+  PetscCall(DMSetDimension(corners, 3));
+  PetscCall(DMCreateLabel(corners, "celltype"));
+  PetscCall(DMPlexSetChart(corners, 0, e->n_corners + 1));
+  PetscCall(DMPlexSetConeSize(corners, 0, e->n_corners));
+  PetscCall(DMPlexSetCellType(corners, 0, e->shape));
+  for (PetscInt i = 1; i <= e->n_corners; i++) PetscCall(DMPlexSetCellType(corners, i, DM_POLYTOPE_POINT));
+  PetscCall(DMSetUp(corners));
+  PetscCall(DMPlexSetCone(corners, 0, cell));
+  PetscCall(DMPlexSymmetrize(corners));
+  PetscCall(DMPlexStratify(corners));
+  PetscCall(DMPlexInterpolate(corners, dm));
+  PetscCall(DMDestroy(&corners));
   PetscFunctionReturn(0);
 }
 
 /* Breaks when: closure_order does not match DMPlex, so that cells are mirrored or twisted */
-static PetscErrorCode TestClosure(const char name[], DM dm, double volume, int *failed)
+static PetscErrorCode TestClosure(const Element *e, int *failed)
 {
-  const Element *element = ElementFind(DM_POLYTOPE_HEXAHEDRON, name);
-  double         quality, total;
+  PetscInt *closure = NULL, n_points, vertex[8], n = 0;
+  double    wrong = 0;
+  DM        dm;
 
   PetscFunctionBeginUser;
-  PetscCheck(element, PETSC_COMM_SELF, PETSC_ERR_PLIB, "No formulation %s", name);
-  PetscCall(MeasureMesh(dm, element, &quality, &total));
-  *failed += CheckClose("smallest Jacobian relative to the box", quality, 1, 1e-13);
-  *failed += CheckClose("sum of the volumes, m^3", total, volume, 1e-13);
+  PetscCall(CreateCell(e, &dm));
+  PetscCall(DMPlexGetTransitiveClosure(dm, 0, PETSC_TRUE, &n_points, &closure));
+  for (PetscInt k = n_points - e->n_corners; k < n_points; k++) vertex[n++] = closure[2 * k] - 1;
+  PetscCall(DMPlexRestoreTransitiveClosure(dm, 0, PETSC_TRUE, &n_points, &closure));
+  for (PetscInt i = 0; i < e->n_corners; i++) wrong += vertex[e->closure_order[i]] != i;
+  *failed += CheckTrue("corners in the order of the closure", wrong == 0, wrong);
   PetscCall(DMDestroy(&dm));
   PetscFunctionReturn(0);
 }
 
-/* Breaks when: a name is missing from the table or from the list for messages, or an unknown one is found */
+/* Breaks when: a name is missing from the list for messages, or an unknown element is found */
 static PetscErrorCode TestNames(int *failed)
 {
-  PetscInt n;
+  PetscInt n, i;
   char   **names;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscStrToArray(ElementNames(), ',', &n, &names));
+  for (i = 0; ElementGet(i); i++)
+    *failed += CheckTrue("a row is in the list", strstr(ElementNames(), ElementGet(i)->name) != NULL, (double)i);
+  PetscCall(PetscStrToArray(ElementFormulations(), ',', &n, &names));
   *failed += CheckClose("formulations listed", (double)n, 2, 0);
-  for (PetscInt i = 0; i < n; i++) {
+  for (i = 0; i < n; i++) {
     const char *name = names[i] + (names[i][0] == ' ');
 
-    *failed += CheckTrue("a listed formulation is found", ElementFind(DM_POLYTOPE_HEXAHEDRON, name) != NULL, 0);
+    *failed += CheckTrue("a listed formulation is found", ElementFind(DM_POLYTOPE_HEXAHEDRON, 8, name) != NULL, 0);
   }
   PetscCall(PetscStrToArrayDestroy((int)n, names));
-  *failed += CheckTrue("an unknown formulation is not", ElementFind(DM_POLYTOPE_HEXAHEDRON, "none") == NULL, 0);
-  *failed += CheckTrue("a shape without rows is not", ElementFind(DM_POLYTOPE_TETRAHEDRON, "full") == NULL, 0);
+  *failed += CheckTrue("an unknown formulation is not", ElementFind(DM_POLYTOPE_HEXAHEDRON, 8, "none") == NULL, 0);
+  *failed += CheckTrue("an unknown number of nodes is not", !ElementFind(DM_POLYTOPE_TETRAHEDRON, 5, "full"), 0);
   PetscFunctionReturn(0);
 }
 
 int main(int argc, char **argv)
 {
-  static const char *const names[] = {"incompatible", "full"};
-  int                      failed  = 0;
-  DM                       dm;
+  int failed = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
   PetscCall(TestNames(&failed));
-  for (int i = 0; i < 2; i++) {
-    PetscCall(CreateBox(&dm));
-    PetscCall(TestClosure(names[i], dm, 1, &failed));
-    PetscCall(CreateTurnedPair(&dm));
-    PetscCall(TestClosure(names[i], dm, 2, &failed));
+  for (PetscInt i = 0; ElementGet(i); i++) {
+    const Element *e = ElementGet(i);
+
+    printf("--- %s\n", e->description);
+    failed += TestShape(e);
+    failed += TestPatch(e, 0);
+    failed += TestPatch(e, 0.1);
+    failed += TestLump(e);
+    PetscCall(TestClosure(e, &failed));
   }
   PetscCall(PetscFinalize());
   printf("%d failed\n", failed);

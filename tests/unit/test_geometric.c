@@ -7,7 +7,7 @@
 #include "check.h"
 #include "hex8cases.h"
 
-typedef int (*GeometricFunction)(const double *, const Elasticity *, const double *, double *);
+typedef int (*GeometricFunction)(const Solid *, const double *, const Elasticity *, const double *, double *);
 
 static const GeometricFunction geometric[] = {Hex8IncompatibleGeometric, Hex8FullGeometric};
 
@@ -57,7 +57,7 @@ static int TestUniform(int f, const Elasticity *e)
     PatchCell(cell, x);
     Linear(G, 8, x, u);
     Linear(F, 8, x, w);
-    failed += geometric[f](x, e, u, k);
+    failed += geometric[f](NULL, x, e, u, k);
     energy += Work(w, k, w);
   }
   for (int i = 0; i < 27; i++) {
@@ -80,7 +80,7 @@ static int TestRigid(int f, const Elasticity *e)
   PatchCell(2, x);
   for (int i = 0; i < N; i++) u[i] = 1e-3 * sin(1 + 7.0 * i * i);
   for (int i = 0; i < N; i += 3) Vec3Cross(w, x + i, turn + i);
-  failed = formulations[f].matrices(x, e, K, M) + geometric[f](x, e, u, k);
+  failed = formulations[f].matrices(NULL, x, e, K, M) + geometric[f](NULL, x, e, u, k);
   for (int i = 0; i < N; i += 3) {
     double force[3] = {0, 0, 0}, expected[3], moved[3] = {0, 0, 0}, sum[3] = {0, 0, 0};
 
@@ -146,7 +146,7 @@ static int BarCreate(int f, const Elasticity *e, Bar *bar)
   memset(bar, 0, sizeof(*bar));
   bar->length = 25;
   Box(bar->length / CELLS, 1, 1, x);
-  failed = formulations[f].matrices(x, e, k, m);
+  failed = formulations[f].matrices(NULL, x, e, k, m);
   for (int cell = 0; cell < CELLS; cell++) {
     BarAdd(cell, k, bar->K);
     BarAdd(cell, m, bar->M);
@@ -162,7 +162,7 @@ static int BarCreate(int f, const Elasticity *e, Bar *bar)
 
       u[i] = r < 0 ? 0 : bar->u[r];
     }
-    failed += geometric[f](x, e, u, k);
+    failed += geometric[f](NULL, x, e, u, k);
     BarAdd(cell, k, bar->S);
   }
   return failed + info;

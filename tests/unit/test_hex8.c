@@ -52,7 +52,7 @@ static int TestRigidModes(const Formulation *f, const Elasticity *e)
   int    failed = 0;
 
   PatchCell(0, x);
-  failed += CheckTrue("matrices of the irregular element exist", f->matrices(x, e, K, M) == 0, 0);
+  failed += CheckTrue("matrices of the irregular element exist", f->matrices(NULL, x, e, K, M) == 0, 0);
   for (int i = 0; i < N * N; i++) asymmetry = fmax(asymmetry, fabs(K[i] - K[i % N * N + i / N]));
   Eigenvalues(K, w);
   failed += CheckClose("stiffness is symmetric", asymmetry, 0, 0);
@@ -100,10 +100,10 @@ static void VolumeByFaces(const double x[N], double *volume, double moment[3])
 static int TestMass(const Formulation *f, const Elasticity *e)
 {
   double x[N], K[N * N], M[N * N], volume, measured, min_jacobian, moment[3], coupling = 0;
-  int    failed = f->matrices((PatchCell(6, x), x), e, K, M);
+  int    failed = f->matrices(NULL, (PatchCell(6, x), x), e, K, M);
 
   VolumeByFaces(x, &volume, moment);
-  Hex8Measure(x, &measured, &min_jacobian);
+  Hex8Measure(NULL, x, &measured, &min_jacobian);
   failed += CheckClose("volume of an irregular element against its faces, relative", measured / volume, 1, 1e-14);
   for (int i = 0; i < 3; i++) {
     double total = 0, first = 0;
@@ -125,7 +125,7 @@ static int TestMass(const Formulation *f, const Elasticity *e)
 static int TestMassOfBox(const Formulation *f, const Elasticity *e)
 {
   double x[N], K[N * N], M[N * N], error = 0;
-  int    failed = f->matrices((Box(2, 3, 5, x), x), e, K, M);
+  int    failed = f->matrices(NULL, (Box(2, 3, 5, x), x), e, K, M);
 
   for (int a = 0; a < 8; a++) {
     for (int b = 0; b < 8; b++) {
@@ -142,7 +142,7 @@ static int TestMassOfBox(const Formulation *f, const Elasticity *e)
 static int TestRotation(const Formulation *f, const Elasticity *e)
 {
   double r[3][3], x[N], y[N], K[N * N], M[N * N], Kr[N * N], Mr[N * N], error_k = 0, error_m = 0;
-  int    failed = f->matrices((PatchCell(4, x), x), e, K, M);
+  int    failed = f->matrices(NULL, (PatchCell(4, x), x), e, K, M);
 
   Rotation(r);
   for (int i = 0; i < N; i++) {
@@ -150,7 +150,7 @@ static int TestRotation(const Formulation *f, const Elasticity *e)
 
     y[i] = 5 + row[0] * p[0] + row[1] * p[1] + row[2] * p[2];
   }
-  failed += f->matrices(y, e, Kr, Mr);
+  failed += f->matrices(NULL, y, e, Kr, Mr);
   for (int i = 0; i < N * N; i++) {
     const int row = i / N, col = i % N;
     double    k = 0, m = 0;
@@ -174,10 +174,10 @@ static int TestRenumbering(const Formulation *f, const Elasticity *e)
 {
   static const int turned[8] = {1, 2, 3, 0, 5, 6, 7, 4};
   double           x[N], y[N], K[N * N], M[N * N], Kt[N * N], Mt[N * N], error = 0;
-  int              failed = f->matrices((PatchCell(3, x), x), e, K, M);
+  int              failed = f->matrices(NULL, (PatchCell(3, x), x), e, K, M);
 
   for (int i = 0; i < N; i++) y[i] = x[3 * turned[i / 3] + i % 3];
-  failed += f->matrices(y, e, Kt, Mt);
+  failed += f->matrices(NULL, y, e, Kt, Mt);
   for (int i = 0; i < N * N; i++) {
     const int row = 3 * turned[i / N / 3] + i / N % 3, col = 3 * turned[i % N / 3] + i % N % 3;
 
@@ -195,14 +195,14 @@ static int TestInverted(const Formulation *f, const Elasticity *e)
   for (int i = 0; i < N * N; i++) K[i] = M[i] = -1;
   Box(1, 1, 1, x);
   for (int i = 2; i < N; i += 3) x[i] = -x[i];
-  failed += CheckTrue("a mirrored element is refused", f->matrices(x, e, K, M) == 1, 1);
+  failed += CheckTrue("a mirrored element is refused", f->matrices(NULL, x, e, K, M) == 1, 1);
   for (int i = 2; i < N; i += 3) x[i] = 0;
-  failed += CheckTrue("a flat element is refused", f->matrices(x, e, K, M) == 1, 1);
-  Hex8Measure(x, &volume, &quality);
+  failed += CheckTrue("a flat element is refused", f->matrices(NULL, x, e, K, M) == 1, 1);
+  Hex8Measure(NULL, x, &volume, &quality);
   failed += CheckTrue("a flat element has no positive measure", quality <= 0, quality);
   Box(1, 1, 1, x);
   x[18] = x[19] = x[20] = -2;
-  failed += CheckTrue("an element with a node pulled through is refused", f->matrices(x, e, K, M) == 1, 1);
+  failed += CheckTrue("an element with a node pulled through is refused", f->matrices(NULL, x, e, K, M) == 1, 1);
   for (int i = 0; i < N * N; i++) failed += K[i] != -1 || M[i] != -1;
   return failed + CheckTrue("nothing was written by the refused", failed == 0, failed);
 }
@@ -215,12 +215,12 @@ static int TestMeasure(const Elasticity *e)
   int    failed = 0;
 
   Box(2e-3, 3e-3, 5e-3, x);
-  Hex8Measure(x, &volume, &quality);
+  Hex8Measure(NULL, x, &volume, &quality);
   failed += CheckClose("volume of a box, m^3", volume, 30e-9, 1e-22);
   failed += CheckClose("smallest Jacobian of a box relative to the box", quality, 1, 1e-14);
   for (int i = 18; i < 21; i++) x[i] *= 0.3;
-  Hex8Measure(x, &volume, &quality);
-  failed += CheckTrue("Gauss points do not see a concave corner", Hex8FullMatrices(x, e, K, M) == 0, 0);
+  Hex8Measure(NULL, x, &volume, &quality);
+  failed += CheckTrue("Gauss points do not see a concave corner", Hex8FullMatrices(NULL, x, e, K, M) == 0, 0);
   return failed + CheckClose("a concave corner gives a negative Jacobian", quality, -0.05, 1e-14);
 }
 

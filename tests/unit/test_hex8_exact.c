@@ -17,7 +17,7 @@ static int PatchStiffness(const Formulation *f, const Elasticity *e, double K[48
     double x[N], Ke[N * N], Me[N * N];
 
     PatchCell(cell, x);
-    if (f->matrices(x, e, Ke, Me)) return 1;
+    if (f->matrices(NULL, x, e, Ke, Me)) return 1;
     for (int i = 0; i < N * N; i++) {
       const int r = i / N, s = i % N;
 
@@ -91,7 +91,7 @@ static int TestBending(const Formulation *f, double poisson, double ratio)
   const double     l = 10, b = 2, h = 1, young = 210e9, exact = young * b * h * h * h / 12 * l / 2;
   const Elasticity e = ElasticityFromEngineering(young, poisson, 7800);
   double           x[N], K[N * N], M[N * N], u[N], energy = 0;
-  int              failed = f->matrices((Box(l, b, h, x), x), &e, K, M);
+  int              failed = f->matrices(NULL, (Box(l, b, h, x), x), &e, K, M);
 
   for (int a = 0; a < N; a += 3) {
     u[a]     = x[a] * x[a + 2];

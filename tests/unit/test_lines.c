@@ -92,14 +92,15 @@ static PetscErrorCode LinesCells(Model model, const ModelLines *lines, PetscInt 
   *n_cells = *n_wrong = *apart = 0;
   if (!lines) PetscFunctionReturn(0);
   PetscCall(ModelGetMesh(model, &mesh));
-  PetscCall(PetscMalloc1(mesh->n_vertices, &place));
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) place[v] = -1;
+  PetscCall(PetscMalloc1(mesh->n_nodes, &place));
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) place[v] = -1;
   for (PetscInt i = 0; i < lines->n_lines * lines->n_nodes; i++) place[lines->vertex[i]] = i;
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    PetscInt  vertices[ELEMENT_MAX_NODES], k[2] = {-1, -1}, count[2] = {0, 0}, line[2] = {PETSC_MAX_INT, 0};
-    PetscReal x[ELEMENT_MAX_DOFS];
+    const Element *element;
+    PetscInt       vertices[ELEMENT_MAX_NODES], k[2] = {-1, -1}, count[2] = {0, 0}, line[2] = {PETSC_MAX_INT, 0};
+    PetscReal      x[ELEMENT_MAX_DOFS];
 
-    PetscCall(ModelGetCell(model, c, vertices, x));
+    PetscCall(ModelGetCell(model, c, &element, vertices, x));
     if (place[vertices[0]] < 0) continue;
     ++*n_cells;
     for (int i = 0; i < 8; i++) {
@@ -231,7 +232,7 @@ static PetscErrorCode RingLines(Change change, Model *model, ModelLines **lines)
   PetscFunctionBeginUser;
   PetscCall(RigCreateModel(RING, model));
   PetscCall(ModelGetMesh(*model, &mesh));
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) ChangeNode(change, v, (PetscReal *)&mesh->x[3 * v]);
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) ChangeNode(change, v, (PetscReal *)&mesh->x[3 * v]);
   PetscCall(LinesOfBody(*model, 0, lines));
   PetscFunctionReturn(0);
 }

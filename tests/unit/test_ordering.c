@@ -80,7 +80,7 @@ static PetscErrorCode AddCell(Mat A, const Numbering *numbering, PetscInt node)
       unknowns[3 * a + i] = Unknown(numbering, node + step[0] + NX * (step[1] + NY * step[2]), i);
     }
   }
-  PetscCheck(!Hex8IncompatibleMatrices(x, &e, K, M), PETSC_COMM_SELF, PETSC_ERR_PLIB, "Unit cube refused");
+  PetscCheck(!Hex8IncompatibleMatrices(NULL, x, &e, K, M), PETSC_COMM_SELF, PETSC_ERR_PLIB, "Unit cube refused");
   PetscCall(MatSetValues(A, HEX8_DOFS, unknowns, HEX8_DOFS, unknowns, K, ADD_VALUES));
   PetscFunctionReturn(0);
 }

@@ -88,7 +88,7 @@ static int TestBlock(int f, const Elasticity *e, double axis[3][3], int i, int j
 
     PatchCell(cell, x);
     for (int k = 0; k < N; k++) u[k] = Vec3Dot(strain[k % 3], x + k - k % 3);
-    failed += formulations[f].matrices(x, e, K, M);
+    failed += formulations[f].matrices(NULL, x, e, K, M);
     for (int k = 0; k < N * N; k++) force[patch_cells[cell][k / N / 3]][k / N % 3] += K[k] * u[k % N];
   }
   for (int node = 8; node < 16; node++)

@@ -28,16 +28,17 @@ static const char *const expected_part[N_PROBES] = {"b", "a", "a", "a", "b"};
 static PetscErrorCode VertexIsOf(Model model, PetscInt vertex, const char part[], const PetscReal place[3],
                                  PetscBool *is)
 {
-  const Mesh *mesh;
-  PetscInt    vertices[ELEMENT_MAX_NODES];
-  PetscReal   x[ELEMENT_MAX_DOFS];
+  const Mesh    *mesh;
+  const Element *element;
+  PetscInt       vertices[ELEMENT_MAX_NODES];
+  PetscReal      x[ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
   *is = PETSC_FALSE;
   PetscCall(ModelGetMesh(model, &mesh));
   for (PetscInt c = 0; c < mesh->n_cells && !*is; c++) {
     if (strcmp(mesh->part[mesh->cell_part[c]], part)) continue;
-    PetscCall(ModelGetCell(model, c, vertices, x));
+    PetscCall(ModelGetCell(model, c, &element, vertices, x));
     for (int i = 0; i < 8 && !*is; i++)
       if (vertices[i] == vertex) PetscCall(PetscArraycmp(&x[3 * i], place, 3, is));
   }

@@ -128,7 +128,7 @@ static PetscErrorCode WriteField(Results results, const Mesh *mesh)
   PetscFunctionBeginUser;
   error = ResultsFieldOpen(results, "field", mesh, &field);
   if (error) PetscFunctionReturn(error);
-  PetscCall(PetscCalloc1(3 * mesh->n_vertices, &values));
+  PetscCall(PetscCalloc1(3 * mesh->n_nodes, &values));
   for (int i = 0; i < 2 && !error; i++) error = ResultsFieldWriteMode(field, keys[i], keys[i], mesh->x, values);
   const ResultsNodal arrays[] = {
     {"pressure_pa",    1, values},

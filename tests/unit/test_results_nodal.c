@@ -19,8 +19,8 @@
 static PetscErrorCode CreateValues(const Mesh *mesh, PetscReal **position, PetscReal **scalar)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(3 * mesh->n_vertices, position, mesh->n_vertices, scalar));
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) {
+  PetscCall(PetscMalloc2(3 * mesh->n_nodes, position, mesh->n_nodes, scalar));
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) {
     const PetscReal *x = &mesh->x[3 * v];
 
     for (int d = 0; d < 3; d++) (*position)[3 * v + d] = mesh->owned[v] ? x[d] : SPOILT;

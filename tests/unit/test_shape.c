@@ -35,7 +35,7 @@ static PetscErrorCode ModelOnRanksCreate(MPI_Comm comm, ModelOnRanks *m)
   PetscCall(ModelSetFromOptions(m->model));
   PetscCall(ModelSetUp(m->model));
   PetscCall(ModelGetMesh(m->model, &m->mesh));
-  m->n = m->mesh->n_vertices;
+  m->n = m->mesh->n_nodes;
   PetscCall(ModelGetBodies(m->model, &n_bodies, &m->body));
   PetscCall(PetscMalloc2(3 * m->n, &m->re, 3 * m->n, &m->im));
   PetscFunctionReturn(0);
@@ -256,7 +256,7 @@ static PetscErrorCode TestModes(Scratch *s, int *failed)
   PetscCall(WriterCreate(PETSC_COMM_WORLD, &results));
   PetscCall(ModesWrite(modes, results));
   PetscCall(ModelGetMesh(chain.model, &mesh));
-  n_values = 3 * mesh->n_vertices;
+  n_values = 3 * mesh->n_nodes;
   PetscCall(PetscMalloc2(n_values, &re, n_values, &im));
   PetscCall(ModesGet(modes, &n, &mode));
   for (PetscInt i = 0; i < n; i++) {

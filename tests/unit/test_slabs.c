@@ -31,9 +31,10 @@ static PetscErrorCode RigCreateModel(const char scene[], Model *model)
 /* Local cells of the disc in each slab, count [N_SLABS], and all others */
 static PetscErrorCode CountCells(Model model, PetscInt count[], PetscInt *n_disc, PetscInt *n_others)
 {
-  const Mesh *mesh;
-  PetscInt    vertices[ELEMENT_MAX_NODES];
-  PetscReal   x[ELEMENT_MAX_DOFS];
+  const Mesh    *mesh;
+  const Element *element;
+  PetscInt       vertices[ELEMENT_MAX_NODES];
+  PetscReal      x[ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < N_SLABS; k++) count[k] = 0;
@@ -47,7 +48,7 @@ static PetscErrorCode CountCells(Model model, PetscInt count[], PetscInt *n_disc
       continue;
     }
     ++*n_disc;
-    PetscCall(ModelGetCell(model, c, vertices, x));
+    PetscCall(ModelGetCell(model, c, &element, vertices, x));
     for (int i = 0; i < 8; i++)
       for (int d = 0; d < 2; d++) centre[d] += x[3 * i + d];
     turns = atan2(centre[1], centre[0]) / (2 * PETSC_PI);

@@ -47,10 +47,10 @@ static int TestIsotropic(int f)
 
   PatchCell(3, x);
   for (int i = 0; i < N; i++) u[i] = 1e-3 * sin(1 + 7.0 * i * i);
-  failed += formulations[f].matrices(x, &lame, a[0], a[1]);
-  failed += formulations[f].matrices(x, &written, b[0], b[1]);
-  failed += (f ? Hex8FullGeometric : Hex8IncompatibleGeometric)(x, &lame, u, a[2]);
-  failed += (f ? Hex8FullGeometric : Hex8IncompatibleGeometric)(x, &written, u, b[2]);
+  failed += formulations[f].matrices(NULL, x, &lame, a[0], a[1]);
+  failed += formulations[f].matrices(NULL, x, &written, b[0], b[1]);
+  failed += (f ? Hex8FullGeometric : Hex8IncompatibleGeometric)(NULL, x, &lame, u, a[2]);
+  failed += (f ? Hex8FullGeometric : Hex8IncompatibleGeometric)(NULL, x, &written, u, b[2]);
   for (int k = 0; k < 3; k++) {
     for (int i = 0; i < N * N; i++) scale[k] = fmax(scale[k], fabs(a[k][i]));
     for (int i = 0; i < N * N; i++) error = fmax(error, fabs(a[k][i] - b[k][i]) / scale[k]);
@@ -76,7 +76,7 @@ static int TestPatch(int f, const Elasticity *e)
 
     PatchCell(cell, x);
     for (int i = 0; i < N; i++) u[i] = Vec3Dot(G[i % 3], x + i - i % 3);
-    failed += formulations[f].matrices(x, e, K, M);
+    failed += formulations[f].matrices(NULL, x, e, K, M);
     for (int i = 0; i < N * N; i++) {
       energy += u[i / N] * K[i] * u[i % N];
       force[patch_cells[cell][i / N / 3]][i / N % 3] += K[i] * u[i % N];

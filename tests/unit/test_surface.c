@@ -22,7 +22,7 @@ static PetscErrorCode Bend(Model model)
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(model, &mesh));
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) {
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) {
     PetscReal      *x     = (PetscReal *)&mesh->x[3 * v];
     const PetscReal angle = x[1] / R, r = R + x[2];
 

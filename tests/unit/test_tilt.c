@@ -13,7 +13,7 @@ static PetscErrorCode Bend(Model model)
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(model, &mesh));
   x = mesh->x;
-  for (PetscInt v = 0; v < 3 * mesh->n_vertices; v += 3) {
+  for (PetscInt v = 0; v < 3 * mesh->n_nodes; v += 3) {
     PetscReal *z = (PetscReal *)&x[v + 2];
 
     *z += 2 * (x[v] - 0.1) * (x[v] - 0.1) - 3 * x[v] * x[v + 1];

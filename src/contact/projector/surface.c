@@ -37,15 +37,15 @@ static PetscErrorCode SurfaceVerticesFind(Contact contact, PetscInt *n, PetscInt
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
-  PetscCall(PetscCalloc1(mesh->n_vertices, &mark));
+  PetscCall(PetscCalloc1(mesh->n_nodes, &mark));
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
     PetscCall(VerticesMark(contact->model, contact->interfaces[i].slave, mark));
     PetscCall(VerticesMark(contact->model, contact->interfaces[i].master, mark));
   }
   *n = 0;
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) *n += mark[v];
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) *n += mark[v];
   PetscCall(PetscMalloc1(*n, vertex));
-  for (PetscInt v = 0, k = 0; v < mesh->n_vertices; v++)
+  for (PetscInt v = 0, k = 0; v < mesh->n_nodes; v++)
     if (mark[v]) (*vertex)[k++] = v;
   PetscCall(PetscFree(mark));
   PetscFunctionReturn(0);

@@ -83,7 +83,7 @@ PetscErrorCode BodiesSetUp(Bodies b, Operators operators)
   PetscCall(OperatorsGetModel(operators, &b->model, NULL));
   PetscCheck(b->model, b->comm, PETSC_ERR_ARG_WRONGSTATE, "bodies need a model: loaded matrices have none");
   PetscCall(ModelGetMesh(b->model, &b->mesh));
-  b->layout.n_vertices = b->mesh->n_vertices;
+  b->layout.n_vertices = b->mesh->n_nodes;
   b->layout.owned      = b->mesh->owned;
   PetscCall(ModelGetBodies(b->model, &b->n_bodies, &b->body));
   PetscCall(SharedSetUp(b));

@@ -10,7 +10,7 @@ static PetscErrorCode BodiesCountSwept(Bodies b, PetscInt n_swept[], PetscInt n_
   PetscCall(PetscArrayzero(n_swept, b->n_bodies));
   PetscCall(PetscArrayzero(n_all, b->n_bodies));
   for (PetscInt c = 0; c < b->mesh->n_cells; c++) {
-    const PetscInt body = b->body[b->mesh->corner[b->mesh->n_nodes * c]];
+    const PetscInt body = b->body[b->mesh->cell_node[b->mesh->cell_first[c]]];
 
     n_all[body]++;
     for (PetscInt i = 0; i < b->n_swept; i++) n_swept[body] += b->swept[i].body == body;

@@ -1,7 +1,5 @@
 /*
-   Cells of the bodies: stiffness K_e (N/m) with the present Young's modulus, lumped mass (row sums of the consistent
-   one, kg) and
-   Rayleigh factors of their part, C_e = alpha M_e + beta K_e; and forces K_e u_e cell by cell, with displacements
+   Cells of the bodies: stiffness K_e (N/m) with the present Young's modulus, lumped mass (kg) and Rayleigh factors of their part, C_e = alpha M_e + beta K_e; and forces K_e u_e cell by cell, with displacements
    relative to the first node of each, so that a translation gives none.
 */
 #include "bodiesimpl.h"
@@ -9,25 +7,22 @@
 PetscErrorCode BodiesGetCell(Bodies bodies, PetscInt c, BodiesCell *cell)
 {
   const ModelScene *scene;
+  const Element    *element;
   const Part       *part;
   Elasticity        material;
   PetscReal         x[ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(bodies->model, &scene));
-  PetscCall(ModelGetCell(bodies->model, c, cell->vertex, x));
-  cell->n_nodes = scene->element->n_nodes;
+  PetscCall(ModelGetCell(bodies->model, c, &element, cell->vertex, x));
+  cell->n_nodes = element->n_nodes;
   cell->part    = bodies->mesh->cell_part[c];
   part          = &scene->parts[cell->part];
   cell->alpha   = part->alpha;
   cell->beta    = part->beta;
   PetscCall(ModelGetElasticity(bodies->model, c, part->young, part->density, &material));
-  PetscCheck(!scene->element->matrices(x, &material, cell->stiffness, me), PETSC_COMM_SELF, PETSC_ERR_PLIB,
-             "element is inverted");
-  for (PetscInt a = 0; a < cell->n_nodes; a++) {
-    cell->mass[a] = 0;
-    for (PetscInt b = 0; b < cell->n_nodes; b++) cell->mass[a] += me[3 * a * (3 * cell->n_nodes) + 3 * b];
-  }
+  PetscCall(ElementMatrices(element, x, &material, cell->stiffness, me));
+  ElementLump(element, me, cell->mass);
   PetscFunctionReturn(0);
 }
 

@@ -55,15 +55,15 @@ static void BoundFlagSwept(Bodies b, PetscBool first[], PetscBool swept[])
 
 static PetscErrorCode BoundOfCells(Bodies b, PetscReal s, PetscReal *largest)
 {
-  const PetscInt n_nodes = b->mesh->n_nodes;
-  PetscBool     *first, *swept;
+  PetscBool *first, *swept;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(b->layout.n_vertices, &first, b->layout.n_vertices, &swept));
   BoundFlagSwept(b, first, swept);
   *largest = 0;
   for (PetscInt c = 0; c < b->mesh->n_cells; c++) {
-    const PetscInt *vertex = &b->mesh->corner[n_nodes * c];
+    const PetscInt  n_nodes = b->mesh->element[c]->n_nodes;
+    const PetscInt *vertex  = &b->mesh->cell_node[b->mesh->cell_first[c]];
     PetscReal       lambda;
     BodiesCell      cell;
 

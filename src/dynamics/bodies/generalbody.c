@@ -21,15 +21,14 @@ static PetscErrorCode GeneralFindCells(Bodies b, GeneralCells *cells)
   for (PetscInt v = 0; v < b->layout.n_vertices; v++) cells->of_vertex[v] = -1;
   for (PetscInt i = 0; i < g->n; i++) cells->of_vertex[g->vertex[i]] = i;
   for (PetscInt c = 0; c < mesh->n_cells; c++)
-    if (cells->of_vertex[mesh->corner[mesh->n_nodes * c]] >= 0) cells->cell[cells->n++] = c;
+    if (cells->of_vertex[mesh->cell_node[mesh->cell_first[c]]] >= 0) cells->cell[cells->n++] = c;
   PetscFunctionReturn(0);
 }
 
 /* Rows with all nodes that share a cell with each, or `upper` with those that are not before it */
 static PetscErrorCode BlockRowsCreate(Bodies b, const GeneralCells *cells, PetscBool upper, BlockRows *rows)
 {
-  const PetscInt n_nodes = b->mesh->n_nodes;
-  PetscInt       n_all   = 0, *first, *all;
+  PetscInt n_all = 0, *first, *all;
 
   PetscFunctionBeginUser;
   rows->n     = b->general.n;
@@ -38,7 +37,8 @@ static PetscErrorCode BlockRowsCreate(Bodies b, const GeneralCells *cells, Petsc
   PetscCall(PetscCalloc1(rows->n + 1, &first));
   for (int pass = 0; pass < 2; pass++) {
     for (PetscInt i = 0; i < cells->n; i++) {
-      const PetscInt *vertex = &b->mesh->corner[n_nodes * cells->cell[i]];
+      const PetscInt  n_nodes = b->mesh->element[cells->cell[i]]->n_nodes;
+      const PetscInt *vertex  = &b->mesh->cell_node[b->mesh->cell_first[cells->cell[i]]];
 
       for (PetscInt a = 0; a < n_nodes; a++)
         for (PetscInt e = 0; e < n_nodes; e++) {
@@ -157,10 +157,11 @@ static PetscErrorCode GeneralSumDamping(Bodies b, const GeneralCells *cells)
   }
   PetscCall(BlockRowsCreate(b, cells, PETSC_FALSE, &g->damping));
   for (PetscInt c = 0; c < cells->n; c++) {
-    const PetscInt n_nodes = b->mesh->n_nodes;
-    BodiesCell     cell;
+    const PetscInt  n_nodes = b->mesh->element[cells->cell[c]]->n_nodes;
+    const PetscInt *vertex  = &b->mesh->cell_node[b->mesh->cell_first[cells->cell[c]]];
+    BodiesCell      cell;
 
-    if (!GeneralIsMixed(g, cells, n_nodes, &b->mesh->corner[n_nodes * cells->cell[c]])) continue;
+    if (!GeneralIsMixed(g, cells, n_nodes, vertex)) continue;
     PetscCall(BodiesGetCell(b, cells->cell[c], &cell));
     BodiesTurnCell(&b->layout, &cell);
     PetscCall(BlockRowsAdd(cells, &cell, cell.beta, &g->damping));

@@ -14,14 +14,14 @@ static PetscErrorCode SharedFindRanks(Shared *share, const Mesh *mesh)
   PetscInt               n, *ranks, *n_common, **common, *order, n_all = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(ISLocalToGlobalMappingCreate(share->comm, 1, mesh->n_vertices, mesh->number, PETSC_USE_POINTER, &map));
+  PetscCall(ISLocalToGlobalMappingCreate(share->comm, 1, mesh->n_nodes, mesh->number, PETSC_USE_POINTER, &map));
   PetscCall(ISLocalToGlobalMappingGetInfo(map, &n, &ranks, &n_common, &common));
-  PetscCall(PetscCalloc1(mesh->n_vertices, &share->shared));
+  PetscCall(PetscCalloc1(mesh->n_nodes, &share->shared));
   for (PetscInt i = 0; i < n; i++) {
     n_all += n_common[i];
     for (PetscInt k = 0; k < n_common[i] && ranks[i] != share->self; k++) share->shared[common[i][k]] = PETSC_TRUE;
   }
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) n_all += share->shared[v];
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) n_all += share->shared[v];
   PetscCall(PetscMalloc3(n + 1, &share->rank, n + 2, &share->start, n_all, &share->vertex));
   PetscCall(PetscMalloc1(n + 1, &order));
   share->rank[share->n_ranks] = share->self;
@@ -35,7 +35,7 @@ static PetscErrorCode SharedFindRanks(Shared *share, const Mesh *mesh)
   share->start[0] = 0;
   for (PetscInt i = 0, end = 0; i < share->n_ranks; share->start[++i] = end) {
     for (PetscInt k = 0; order[i] >= 0 && k < n_common[order[i]]; k++) share->vertex[end++] = common[order[i]][k];
-    for (PetscInt v = 0; order[i] < 0 && v < mesh->n_vertices; v++)
+    for (PetscInt v = 0; order[i] < 0 && v < mesh->n_nodes; v++)
       if (share->shared[v]) share->vertex[end++] = v;
   }
   PetscCall(PetscFree(order));

@@ -68,13 +68,13 @@ static PetscErrorCode ColumnsFind(Bodies b, const SweptBody *s, ColumnSection *s
   PetscCall(PetscMalloc2(b->layout.n_vertices, &line, b->layout.n_vertices, &node));
   PetscCall(ColumnsFindVertices(s, b->layout.n_vertices, line, node));
   for (PetscInt c = 0; c < b->mesh->n_cells; c++) {
-    const PetscInt *vertex = &b->mesh->corner[b->mesh->n_nodes * c];
+    const PetscInt *vertex = &b->mesh->cell_node[b->mesh->cell_first[c]];
     Column          column;
 
     if (b->body[vertex[0]] != s->body) continue;
     n_own++;
     if (!ModelMaterialIsSwept(b->model, b->mesh->cell_part[c], s->lines)) *complete = PETSC_FALSE;
-    if (!ColumnBegins(b->mesh->n_nodes, vertex, line, node, &column)) continue;
+    if (!ColumnBegins(b->mesh->element[c]->n_nodes, vertex, line, node, &column)) continue;
     if (section->n_columns == size) {
       size = 2 * size + 16;
       PetscCall(PetscRealloc((size_t)size * sizeof(Column), &section->column));

@@ -67,7 +67,7 @@ static PetscErrorCode ImpulseFindCopy(Model model, PetscInt *vertex)
   if (*vertex >= 0) global = mesh->number[*vertex];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &global, 1, MPIU_INT, MPI_MAX, comm));
   *vertex = -1;
-  for (PetscInt i = 0; i < mesh->n_vertices && *vertex < 0; i++)
+  for (PetscInt i = 0; i < mesh->n_nodes && *vertex < 0; i++)
     if (mesh->number[i] == global) *vertex = i;
   PetscFunctionReturn(0);
 }

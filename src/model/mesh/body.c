@@ -29,20 +29,14 @@ static PetscInt PieceFind(PetscInt parent[], PetscInt v)
 /* A vertex of the same piece for each local vertex, one for the whole piece, itself where it has no cells */
 static void PiecesFind(const Mesh *mesh, PetscInt piece[])
 {
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) piece[v] = v;
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) piece[v] = v;
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const PetscInt *const corners = &mesh->corner[mesh->n_nodes * c];
+    const PetscInt first = mesh->cell_node[mesh->cell_first[c]];
 
-    for (PetscInt i = 1; i < mesh->n_nodes; i++) piece[PieceFind(piece, corners[i])] = PieceFind(piece, corners[0]);
+    for (PetscInt i = mesh->cell_first[c] + 1; i < mesh->cell_first[c + 1]; i++)
+      piece[PieceFind(piece, mesh->cell_node[i])] = PieceFind(piece, first);
   }
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) piece[v] = PieceFind(piece, v);
-}
-
-/* Global number of each local vertex that has cells, else NO_BODY */
-static void VerticesNumber(const Mesh *mesh, PetscInt number[])
-{
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) number[v] = NO_BODY;
-  for (PetscInt i = 0; i < mesh->n_nodes * mesh->n_cells; i++) number[mesh->corner[i]] = mesh->number[mesh->corner[i]];
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) piece[v] = PieceFind(piece, v);
 }
 
 /* Least label of the vertices of each local piece */
@@ -52,46 +46,49 @@ static void LabelsSpread(PetscInt n, const PetscInt piece[], PetscInt label[])
   for (PetscInt v = 0; v < n; v++) label[v] = label[piece[v]];
 }
 
-/* Least label of each shared point over its ranks; label and work [points of the DM] */
-static PetscErrorCode LabelsShare(DM dm, PetscInt n_points, PetscInt label[], PetscInt work[])
+/* Least label [nodes] of each shared node over its ranks; at and work [points of the DM] */
+static PetscErrorCode LabelsShare(Model model, PetscInt n_points, PetscInt label[], PetscInt at[], PetscInt work[])
 {
-  PetscSF  sf;
-  PetscInt n_roots;
+  const PetscInt n = model->mesh.n_nodes;
+  PetscSF        sf;
+  PetscInt       n_roots;
 
   PetscFunctionBeginUser;
-  PetscCall(DMGetPointSF(dm, &sf));
+  PetscCall(DMGetPointSF(model->dm, &sf));
   PetscCall(PetscSFGetGraph(sf, &n_roots, NULL, NULL, NULL));
   if (n_roots < 0) PetscFunctionReturn(0); /* a mesh on one rank shares nothing */
-  PetscCall(PetscArraycpy(work, label, n_points));
-  PetscCall(PetscSFReduceBegin(sf, MPIU_INT, work, label, MPI_MIN));
-  PetscCall(PetscSFReduceEnd(sf, MPIU_INT, work, label, MPI_MIN));
-  PetscCall(PetscArraycpy(work, label, n_points));
-  PetscCall(PetscSFBcastBegin(sf, MPIU_INT, work, label, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(sf, MPIU_INT, work, label, MPI_REPLACE));
+  for (PetscInt p = 0; p < n_points; p++) at[p] = NO_BODY;
+  for (PetscInt v = 0; v < n; v++) at[model->point_of[v]] = label[v];
+  PetscCall(PetscArraycpy(work, at, n_points));
+  PetscCall(PetscSFReduceBegin(sf, MPIU_INT, work, at, MPI_MIN));
+  PetscCall(PetscSFReduceEnd(sf, MPIU_INT, work, at, MPI_MIN));
+  PetscCall(PetscArraycpy(work, at, n_points));
+  PetscCall(PetscSFBcastBegin(sf, MPIU_INT, work, at, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(sf, MPIU_INT, work, at, MPI_REPLACE));
+  for (PetscInt v = 0; v < n; v++) label[v] = at[model->point_of[v]];
   PetscFunctionReturn(0);
 }
 
-/* The least global number of the vertices of its body for each local vertex, NO_BODY without cells */
-static PetscErrorCode BodiesLabel(Model model, PetscInt vStart, PetscInt label_of_vertex[])
+/* The least global number of the nodes of its body for each local node */
+static PetscErrorCode BodiesLabel(Model model, PetscInt label[])
 {
-  const PetscInt n = model->mesh.n_vertices;
-  PetscInt       n_points, *label, *work, *piece;
+  const PetscInt n = model->mesh.n_nodes;
+  PetscInt       n_points, *at, *work, *piece, *before;
   PetscBool      same;
 
   PetscFunctionBeginUser;
   PetscCall(DMPlexGetChart(model->dm, NULL, &n_points));
-  PetscCall(PetscMalloc3(n_points, &label, n_points, &work, n, &piece));
-  for (PetscInt p = 0; p < n_points; p++) label[p] = NO_BODY;
+  PetscCall(PetscMalloc4(n_points, &at, n_points, &work, n, &piece, n, &before));
   PiecesFind(&model->mesh, piece);
-  VerticesNumber(&model->mesh, &label[vStart]);
+  PetscCall(PetscArraycpy(label, model->mesh.number, n));
   do {
-    PetscCall(PetscArraycpy(label_of_vertex, &label[vStart], n));
-    LabelsSpread(n, piece, &label[vStart]);
-    PetscCall(LabelsShare(model->dm, n_points, label, work));
-    PetscCall(PetscArraycmp(label_of_vertex, &label[vStart], n, &same));
+    PetscCall(PetscArraycpy(before, label, n));
+    LabelsSpread(n, piece, label);
+    PetscCall(LabelsShare(model, n_points, label, at, work));
+    PetscCall(PetscArraycmp(before, label, n, &same));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPIU_BOOL, MPI_LAND, model->comm));
   } while (!same);
-  PetscCall(PetscFree3(label, work, piece));
+  PetscCall(PetscFree4(at, work, piece, before));
   PetscFunctionReturn(0);
 }
 
@@ -102,8 +99,8 @@ static PetscErrorCode LabelsGather(Model model, const PetscInt label[], PetscInt
   PetscInt    n    = 0, *own;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(mesh->n_vertices, &own));
-  for (PetscInt v = 0; v < mesh->n_vertices; v++)
+  PetscCall(PetscMalloc1(mesh->n_nodes, &own));
+  for (PetscInt v = 0; v < mesh->n_nodes; v++)
     if (mesh->owned[v] && mesh->number[v] == label[v]) own[n++] = label[v];
   PetscCall(GatherRecords(model->comm, n, sizeof(PetscInt), own, n_bodies, labels));
   PetscCall(PetscSortInt(*n_bodies, *labels));
@@ -170,20 +167,14 @@ static PetscErrorCode BodiesSort(Model model, PetscInt n_vertices, PetscInt n_bo
 
 PetscErrorCode ModelGetBodies(Model model, PetscInt *n_bodies, PetscInt **body)
 {
-  const PetscInt n = model->mesh.n_vertices;
-  PetscInt       vStart, *labels;
+  const PetscInt n = model->mesh.n_nodes;
+  PetscInt      *labels;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, NULL));
   PetscCall(PetscMalloc1(n, body));
-  PetscCall(BodiesLabel(model, vStart, *body));
+  PetscCall(BodiesLabel(model, *body));
   PetscCall(LabelsGather(model, *body, n_bodies, &labels));
-  for (PetscInt v = 0; v < n; v++) {
-    const PetscInt label = (*body)[v];
-
-    (*body)[v] = -1;
-    if (label != NO_BODY) PetscCall(PetscFindInt(label, *n_bodies, labels, &(*body)[v]));
-  }
+  for (PetscInt v = 0; v < n; v++) PetscCall(PetscFindInt((*body)[v], *n_bodies, labels, &(*body)[v]));
   PetscCall(PetscFree(labels));
   PetscCall(BodiesSort(model, n, *n_bodies, *body));
   PetscFunctionReturn(0);

@@ -1,108 +1,138 @@
 /*
-   Checks of the undistributed mesh on rank 0, where cells still have the numbers of their source: every cell must
-   have a row in the table of elements, and a positive Jacobian.
+   Checks of the undistributed mesh on rank 0, where cells still have the numbers of their source: every cell must have a
+   row in the table of elements, and a positive Jacobian.
 */
 #include "model/modelimpl.h"
 
-#define FLAT 1e-8 /* smallest admissible Jacobian relative to the volume of the bounding box */
+#define FLAT 1e-8 /* smallest admissible Jacobian relative to that of the bounding box */
 
-/* The first name among the parts that marks the cell, for messages */
-static PetscErrorCode CellPartName(Model model, PetscInt cell, const char **name)
+/* Writes why a cell has no row in the table: a node that stands twice, or neighbours of another order */
+static PetscErrorCode CellExplain(Model model, PetscInt c, size_t size, char text[])
 {
-  PetscInt value;
+  const Mesh    *mesh = &model->mesh;
+  const PetscInt n    = mesh->cell_first[c + 1] - mesh->cell_first[c];
+  const char    *part = mesh->part[mesh->cell_part[c]];
+  PetscInt       cStart, n_corners;
+  DMPolytopeType shape;
 
   PetscFunctionBeginUser;
-  *name = "none";
-  for (PetscInt i = 0; i < model->scene.n_parts; i++) {
-    PetscCall(DMGetLabelValue(model->dm, model->scene.parts[i].name, cell, &value));
-    if (value == 1) *name = model->scene.parts[i].name;
-  }
-  PetscFunctionReturn(0);
-}
-
-/* Corners x[n_nodes][3] of a cell of the serial mesh in the element's order, and their mean; false where a node stands
-   twice, which a closure holds once */
-static PetscErrorCode CellCorners(DM dm, const Element *element, PetscInt cell, PetscReal x[], PetscReal centre[3],
-                                  PetscBool *whole)
-{
-  PetscScalar *values = NULL;
-  PetscSection section;
-  Vec          coordinates;
-  PetscInt     n;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMGetCoordinateSection(dm, &section));
-  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
-  PetscCall(DMPlexVecGetClosure(dm, section, coordinates, cell, &n, &values));
-  *whole = n == 3 * element->n_nodes ? PETSC_TRUE : PETSC_FALSE;
-  for (int d = 0; d < 3; d++) centre[d] = 0;
-  for (PetscInt i = 0; i < element->n_nodes && *whole; i++)
-    for (int d = 0; d < 3; d++) {
-      x[3 * i + d] = values[3 * element->closure_order[i] + d];
-      centre[d] += x[3 * i + d] / (PetscReal)element->n_nodes;
-    }
-  PetscCall(DMPlexVecRestoreClosure(dm, section, coordinates, cell, &n, &values));
-  PetscFunctionReturn(0);
-}
-
-/* Writes a message about the first bad cell of the serial mesh into text, which stays empty when all are good */
-static PetscErrorCode FindBadCell(Model model, char text[], size_t size)
-{
-  PetscInt cStart, cEnd;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, &cEnd));
-  for (PetscInt c = cStart; c < cEnd && !text[0]; c++) {
-    PetscReal      x[3 * ELEMENT_MAX_NODES], centre[3], volume, jacobian;
-    DMPolytopeType shape;
-    const Element *element;
-    const char    *part;
-    PetscBool      whole;
-
-    PetscCall(DMPlexGetCellType(model->dm, c, &shape));
-    element = ElementFind(shape, model->formulation);
-    if (!element) {
-      PetscCall(PetscSNPrintf(
-        text, size, "element %" PetscInt_FMT " is a %s, for which there is no formulation '%s'; there are: %s",
-        c - cStart + 1, DMPolytopeTypes[shape], model->formulation, ElementNames()));
-      break;
-    }
-    PetscCall(CellCorners(model->dm, element, c, x, centre, &whole));
-    if (whole) element->measure(x, &volume, &jacobian);
-    if (whole && jacobian > FLAT) continue;
-    PetscCall(CellPartName(model, c, &part));
-    if (!whole) {
-      PetscCall(PetscSNPrintf(
-        text, size, "element %" PetscInt_FMT " (part %s) has a node twice; give %" PetscInt_FMT " different ones",
-        c - cStart + 1, part, element->n_nodes));
-      break;
-    }
+  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, NULL));
+  PetscCall(DMPlexGetCellType(model->dm, cStart + c, &shape));
+  n_corners = DMPolytopeTypeGetNumVertices(shape);
+  if (n < n_corners)
     PetscCall(PetscSNPrintf(
-      text, size, "element %" PetscInt_FMT " (part %s, centre %.6g, %.6g, %.6g m) is inverted or has no volume",
-      c - cStart + 1, part, (double)centre[0], (double)centre[1], (double)centre[2]));
+      text, size, "element %" PetscInt_FMT " (part %s) has a node twice; give %" PetscInt_FMT " different ones", c + 1,
+      part, n_corners));
+  else if (ElementFind(shape, n_corners, model->formulation))
+    PetscCall(PetscSNPrintf(text, size,
+                            "element %" PetscInt_FMT " (part %s) is a %s that with its neighbours' nodes on common "
+                            "edges and faces has %" PetscInt_FMT "; elements that touch must have the same order",
+                            c + 1, part, DMPolytopeTypes[shape], n));
+  else
+    PetscCall(PetscSNPrintf(text, size, "element %" PetscInt_FMT " (part %s) is a %s, which is not supported; %s are",
+                            c + 1, part, DMPolytopeTypes[shape], ElementNames()));
+  PetscFunctionReturn(0);
+}
+
+/* Writes a message about the first bad cell into text, which stays empty when all are good */
+static PetscErrorCode FindBadCell(Model model, size_t size, char text[])
+{
+  const Mesh *mesh = &model->mesh;
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < mesh->n_cells && !text[0]; c++) {
+    const Element *element;
+    PetscInt       nodes[ELEMENT_MAX_NODES];
+    PetscReal      x[ELEMENT_MAX_DOFS], centre[3] = {0, 0, 0}, volume, jacobian;
+
+    if (!mesh->element[c]) {
+      PetscCall(CellExplain(model, c, size, text));
+      break;
+    }
+    PetscCall(ModelGetCell(model, c, &element, nodes, x));
+    element->measure(element->solid, x, &volume, &jacobian);
+    if (jacobian > FLAT) continue;
+    for (PetscInt i = 0; i < 3 * element->n_corners; i++) centre[i % 3] += x[i] / (PetscReal)element->n_corners;
+    PetscCall(PetscSNPrintf(
+      text, size, "element %" PetscInt_FMT " (%s, part %s, centre %.6g, %.6g, %.6g m) is inverted or has no volume%s",
+      c + 1, element->name, mesh->part[mesh->cell_part[c]], (double)centre[0], (double)centre[1], (double)centre[2],
+      element->n_nodes > element->n_corners ? " at a quadrature point" : ""));
   }
+  PetscFunctionReturn(0);
+}
+
+/* Whether any rank has a cell for which -model_element chooses */
+static PetscErrorCode FormulationIsUsed(Model model, PetscBool *used)
+{
+  PetscFunctionBeginUser;
+  *used = PETSC_FALSE;
+  for (PetscInt c = 0; c < model->mesh.n_cells && !*used; c++)
+    *used = model->mesh.element[c] && model->mesh.element[c]->formulation ? PETSC_TRUE : PETSC_FALSE;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, used, 1, MPIU_BOOL, MPI_LOR, model->comm));
+  PetscFunctionReturn(0);
+}
+
+/* The rows of the table that the cells of all ranks have, by name, with their numbers; returns how many rows */
+static PetscErrorCode ElementsCount(Model model, const Element *found[], PetscInt count[], PetscInt *n)
+{
+  PetscFunctionBeginUser;
+  for (*n = 0; (found[*n] = ElementGet(*n)); ++*n) {
+    count[*n] = 0;
+    for (PetscInt c = 0; c < model->mesh.n_cells; c++) count[*n] += model->mesh.element[c] == found[*n];
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, (PetscMPIInt)*n, MPIU_INT, MPI_SUM, model->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MeshDescribe(Model model, size_t size, char words[])
+{
+  const Element *found[ELEMENT_MAX_ROWS];
+  PetscInt       count[ELEMENT_MAX_ROWS], n, n_used = 0;
+  char           one[64];
+
+  PetscFunctionBeginUser;
+  PetscCall(ElementsCount(model, found, count, &n));
+  words[0] = 0;
+  for (PetscInt i = 0; i < n; i++) n_used += count[i] > 0;
+  for (PetscInt i = 0; i < n; i++) {
+    if (!count[i]) continue;
+    if (n_used == 1) PetscCall(PetscStrncpy(words, found[i]->description, size));
+    PetscCall(
+      PetscSNPrintf(one, sizeof(one), "%s%" PetscInt_FMT " %s", words[0] ? ", " : "", count[i], found[i]->name));
+    if (n_used > 1) PetscCall(PetscStrlcat(words, one, size));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Warns of elements that are too stiff */
+static PetscErrorCode ElementsWarn(Model model)
+{
+  const Element *found[ELEMENT_MAX_ROWS];
+  PetscInt       count[ELEMENT_MAX_ROWS], n;
+
+  PetscFunctionBeginUser;
+  PetscCall(ElementsCount(model, found, count, &n));
+  for (PetscInt i = 0; i < n; i++)
+    if (count[i] && found[i]->warning)
+      PetscCall(PetscFPrintf(model->comm, stderr, "squeal: warning: %" PetscInt_FMT " cells are a %s: %s\n", count[i],
+                             found[i]->description, found[i]->warning));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode MeshCheck(Model model)
 {
-  char        text[512] = "";
-  PetscMPIInt rank;
-  PetscInt    cStart, shape = DM_POLYTOPE_UNKNOWN;
+  char      text[512] = "";
+  PetscBool used;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(model->comm, &rank));
-  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, NULL));
-  if (rank == 0) {
-    DMPolytopeType first;
-
-    PetscCall(FindBadCell(model, text, sizeof(text)));
-    PetscCall(DMPlexGetCellType(model->dm, cStart, &first));
-    shape = (PetscInt)first;
-  }
+  PetscCheck(ElementIsFormulation(model->formulation), model->comm, PETSC_ERR_USER_INPUT,
+             "-model_element %s is no formulation; there are: %s", model->formulation, ElementFormulations());
+  PetscCall(FindBadCell(model, sizeof(text), text)); /* all cells are on rank 0 */
   PetscCallMPI(MPI_Bcast(text, sizeof(text), MPI_CHAR, 0, model->comm));
-  PetscCallMPI(MPI_Bcast(&shape, 1, MPIU_INT, 0, model->comm));
   PetscCheck(!text[0], model->comm, PETSC_ERR_USER_INPUT, "%s", text);
-  model->scene.element = ElementFind((DMPolytopeType)shape, model->formulation);
+  PetscCall(FormulationIsUsed(model, &used));
+  PetscCheck(used || !model->has_formulation, model->comm, PETSC_ERR_USER_INPUT,
+             "-model_element %s does nothing: it is for 8-node hexahedra, and the mesh has none", model->formulation);
+  PetscCall(ElementsWarn(model));
   PetscFunctionReturn(0);
 }

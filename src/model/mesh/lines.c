@@ -33,6 +33,15 @@ static PetscErrorCode PieceMeasure(Model model, Piece *piece)
   PetscFunctionReturn(0);
 }
 
+/* Whether all local cells of the body have the nodes of a hexahedron of first order */
+static PetscBool BodyIsHexahedra(const Mesh *mesh, PetscInt body, const PetscInt body_of_vertex[])
+{
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    if (body_of_vertex[mesh->cell_node[mesh->cell_first[c]]] == body && mesh->element[c]->n_nodes != LINES_CORNERS)
+      return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
 /* Local cells of the body and their nodes */
 static PetscErrorCode PieceCreate(Model model, PetscInt body, const PetscInt body_of_vertex[], Piece *piece)
 {
@@ -41,13 +50,15 @@ static PetscErrorCode PieceCreate(Model model, PetscInt body, const PetscInt bod
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(LINES_CORNERS * mesh->n_cells, &piece->corners, mesh->n_cells, &piece->part));
-  PetscCall(PetscMalloc1(mesh->n_vertices, &piece->vertex));
-  PetscCall(PetscMalloc1(mesh->n_vertices, &node));
-  for (PetscInt v = 0; v < mesh->n_vertices; v++) node[v] = -1;
+  PetscCall(PetscMalloc1(mesh->n_nodes, &piece->vertex));
+  PetscCall(PetscMalloc1(mesh->n_nodes, &node));
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) node[v] = -1;
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    if (body_of_vertex[mesh->corner[LINES_CORNERS * c]] != body) continue;
+    const PetscInt *corner = &mesh->cell_node[mesh->cell_first[c]];
+
+    if (body_of_vertex[corner[0]] != body) continue;
     for (int i = 0; i < LINES_CORNERS; i++) {
-      const PetscInt v = mesh->corner[LINES_CORNERS * c + i];
+      const PetscInt v = corner[i];
 
       if (node[v] < 0) {
         node[v]                         = piece->n_nodes;
@@ -90,7 +101,7 @@ PetscErrorCode ModelCreateLines(Model model, PetscInt body, const PetscInt body_
 
   PetscFunctionBeginUser;
   *lines = NULL;
-  if (model->scene.element->n_nodes != LINES_CORNERS) PetscFunctionReturn(0);
+  if (!BodyIsHexahedra(&model->mesh, body, body_of_vertex)) PetscFunctionReturn(0);
   PetscCall(PieceCreate(model, body, body_of_vertex, &piece));
   for (int pair = 0; pair < MOTION_PAIRS && piece.n_cells; pair++) {
     if (!PieceMotion(&piece, pair, &motion)) continue;

@@ -221,7 +221,9 @@ PetscErrorCode PartitionMesh(Model model)
              size, n[1], model->keep_slabs ? "of a slab" : "at the contact", n[0]);
   PetscCall(PetscMalloc1(clusters.n_cells, &rank));
   if (clusters.n_cells) PetscCall(CellsPartition(&graph, &clusters, &slabs, size, rank));
+  PetscCall(MeshReset(model));
   PetscCall(MeshDistribute(&model->dm, clusters.n_cells, size, rank));
+  PetscCall(MeshTabulate(model));
   PetscCall(PetscFree(rank));
   PetscCall(CellGraphDestroy(&graph));
   PetscCall(SlabsDestroy(&slabs));

@@ -43,7 +43,7 @@ static PetscErrorCode BodyListCreate(Model model, Clusters *clusters, BodyList *
   PetscCall(PetscCalloc4(clusters->n_cells, &bodies->of_cell, n, &bodies->cost, n, &bodies->whole, n, &bodies->lines));
   for (PetscInt b = 0; b < n; b++) PetscCall(ModelCreateLines(model, b, bodies->of_vertex, &bodies->lines[b]));
   for (PetscInt c = 0; c < clusters->n_cells; c++) {
-    const PetscInt    b     = bodies->of_vertex[model->mesh.corner[model->mesh.n_nodes * c]];
+    const PetscInt    b     = bodies->of_vertex[model->mesh.cell_node[model->mesh.cell_first[c]]];
     const ModelLines *lines = bodies->lines[b];
 
     bodies->of_cell[c] = b;
@@ -80,9 +80,9 @@ static PetscErrorCode BodyListChooseWhole(PetscInt n_ranks, BodyList *bodies)
 static PetscErrorCode ChainAdd(Model model, BodyList *bodies, PetscInt body, PetscInt node[], Clusters *clusters,
                                Slabs *slabs)
 {
-  const PetscInt    n_nodes = model->mesh.n_nodes;
-  ModelLines *const lines   = bodies->lines[body];
-  SlabChain *const  chain   = &slabs->chain[slabs->n++];
+  const Mesh *const mesh  = &model->mesh;
+  ModelLines *const lines = bodies->lines[body];
+  SlabChain *const  chain = &slabs->chain[slabs->n++];
 
   PetscFunctionBeginUser;
   *chain      = (SlabChain){.first = clusters->n, .n_slabs = lines->n_nodes - (lines->closed ? 0 : 1), .lines = lines};
@@ -93,8 +93,8 @@ static PetscErrorCode ChainAdd(Model model, BodyList *bodies, PetscInt body, Pet
     PetscInt least = lines->n_nodes, most = 0;
 
     if (bodies->of_cell[c] != body) continue;
-    for (PetscInt i = 0; i < n_nodes; i++) {
-      const PetscInt k = node[model->mesh.corner[n_nodes * c + i]];
+    for (PetscInt i = mesh->cell_first[c]; i < mesh->cell_first[c + 1]; i++) {
+      const PetscInt k = node[mesh->cell_node[i]];
 
       least = PetscMin(least, k);
       most  = PetscMax(most, k);
@@ -108,15 +108,15 @@ static PetscErrorCode ChainAdd(Model model, BodyList *bodies, PetscInt body, Pet
 /* Mean of the corners of each cell of the undistributed mesh, m */
 static PetscErrorCode CellsCentres(Model model, PetscInt n_cells, PetscReal centre[])
 {
-  const PetscInt n_nodes = model->scene.element->n_nodes;
-  PetscInt       vertices[ELEMENT_MAX_NODES];
+  const Element *element;
+  PetscInt       nodes[ELEMENT_MAX_NODES];
   PetscReal      x[ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < n_cells; c++) {
-    PetscCall(ModelGetCell(model, c, vertices, x));
+    PetscCall(ModelGetCell(model, c, &element, nodes, x));
     for (int d = 0; d < 3; d++) centre[3 * c + d] = 0;
-    for (PetscInt i = 0; i < 3 * n_nodes; i++) centre[3 * c + i % 3] += x[i] / (PetscReal)n_nodes;
+    for (PetscInt i = 0; i < 3 * element->n_nodes; i++) centre[3 * c + i % 3] += x[i] / (PetscReal)element->n_nodes;
   }
   PetscFunctionReturn(0);
 }
@@ -128,7 +128,7 @@ static PetscErrorCode BodiesCluster(Model model, PetscInt n_ranks, BodyList *bod
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(bodies->n, &slabs->chain, 3 * clusters->n_cells, &slabs->centre));
-  PetscCall(PetscMalloc1(model->mesh.n_vertices, &node));
+  PetscCall(PetscMalloc1(model->mesh.n_nodes, &node));
   PetscCall(CellsCentres(model, clusters->n_cells, slabs->centre));
   PetscCall(BodyListCreate(model, clusters, bodies));
   PetscCall(BodyListChooseWhole(n_ranks, bodies));
@@ -149,11 +149,9 @@ PetscErrorCode SlabsFind(Model model, PetscInt n_ranks, Clusters *clusters, Slab
   BodyList bodies = {0};
 
   PetscFunctionBeginUser;
-  PetscCall(MeshTabulate(model));
   PetscCall(ModelGetBodies(model, &bodies.n, &bodies.of_vertex));
   if (clusters->n_cells) PetscCall(BodiesCluster(model, n_ranks, &bodies, clusters, slabs));
   PetscCall(PetscFree(bodies.of_vertex));
-  PetscCall(MeshReset(model));
   PetscFunctionReturn(0);
 }
 

@@ -86,11 +86,13 @@ static PetscErrorCode PartFindMiddle(Model model, PetscInt part, PetscReal centr
 
   PetscFunctionBeginUser;
   for (int d = 0; d < 6; d++) low[d] = PETSC_MAX_REAL;
-  for (PetscInt i = 0; i < mesh->n_nodes * mesh->n_cells; i++) {
-    if (mesh->cell_part[i / mesh->n_nodes] != part) continue;
-    for (int d = 0; d < 3; d++) {
-      low[d]     = PetscMin(low[d], mesh->x[3 * mesh->corner[i] + d]);
-      low[3 + d] = PetscMin(low[3 + d], -mesh->x[3 * mesh->corner[i] + d]);
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    if (mesh->cell_part[c] != part) continue;
+    for (PetscInt i = 3 * mesh->cell_first[c]; i < 3 * mesh->cell_first[c + 1]; i++) {
+      const PetscReal x = mesh->x[3 * mesh->cell_node[i / 3] + i % 3];
+
+      low[i % 3]     = PetscMin(low[i % 3], x);
+      low[3 + i % 3] = PetscMin(low[3 + i % 3], -x);
     }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, low, 6, MPIU_REAL, MPI_MIN, model->comm));
@@ -105,14 +107,15 @@ static PetscErrorCode CircleFindHeight(Model model, PetscInt part, Circle *c)
   PetscReal   far[3] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL, -PETSC_MAX_REAL}; /* height, -least and largest radius */
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < mesh->n_nodes * mesh->n_cells; i++) {
-    const PetscReal *x      = &mesh->x[3 * mesh->corner[i]];
-    const PetscReal  radius = CircleRadius(c, x);
+  for (PetscInt k = 0; k < mesh->n_cells; k++) {
+    for (PetscInt i = mesh->cell_first[k]; i < mesh->cell_first[k + 1] && mesh->cell_part[k] == part; i++) {
+      const PetscReal *x      = &mesh->x[3 * mesh->cell_node[i]];
+      const PetscReal  radius = CircleRadius(c, x);
 
-    if (mesh->cell_part[i / mesh->n_nodes] != part) continue;
-    far[1] = PetscMax(far[1], -radius);
-    far[2] = PetscMax(far[2], radius);
-    if (PetscAbsReal(radius - c->radius) <= c->tolerance) far[0] = PetscMax(far[0], c->side * x[c->axis]);
+      far[1] = PetscMax(far[1], -radius);
+      far[2] = PetscMax(far[2], radius);
+      if (PetscAbsReal(radius - c->radius) <= c->tolerance) far[0] = PetscMax(far[0], c->side * x[c->axis]);
+    }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, far, 3, MPIU_REAL, MPI_MAX, model->comm));
   PetscCheck(

@@ -29,13 +29,14 @@ static PetscErrorCode ExtentsMeasure(Model model)
   PetscCall(PetscArrayzero(volume, n));
   for (PetscInt c = 0; c < model->mesh.n_cells; c++) {
     const PetscInt part = model->mesh.cell_part[c];
-    PetscInt       vertices[ELEMENT_MAX_NODES];
+    const Element *element;
+    PetscInt       nodes[ELEMENT_MAX_NODES];
     PetscReal      x[ELEMENT_MAX_DOFS], cell, jacobian;
 
-    PetscCall(ModelGetCell(model, c, vertices, x));
-    model->scene.element->measure(x, &cell, &jacobian);
+    PetscCall(ModelGetCell(model, c, &element, nodes, x));
+    element->measure(element->solid, x, &cell, &jacobian);
     volume[part] += cell;
-    for (PetscInt k = 0; k < 3 * model->mesh.n_nodes; k++) {
+    for (PetscInt k = 0; k < 3 * element->n_nodes; k++) {
       low[6 * part + k % 3]     = PetscMin(low[6 * part + k % 3], x[k]);
       low[6 * part + 3 + k % 3] = PetscMin(low[6 * part + 3 + k % 3], -x[k]);
     }

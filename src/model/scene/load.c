@@ -114,7 +114,7 @@ static PetscErrorCode PressureSum(Model model, Load *load, Vec forces)
 
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(forces, &f));
-  for (PetscInt j = 0; j < 3 * model->mesh.n_vertices; j++)
+  for (PetscInt j = 0; j < 3 * model->mesh.n_nodes; j++)
     if (model->mesh.owned[j / 3]) load->force[j % 3] += f[j];
   PetscCall(VecRestoreArrayRead(forces, &f));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, load->force, 3, MPIU_REAL, MPI_SUM, model->comm));

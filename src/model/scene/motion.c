@@ -123,9 +123,9 @@ PetscErrorCode MotionsFlag(Model model, PetscBool fixed[][3])
   PetscBT    taken;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(3 * model->mesh.n_vertices, &prescribed));
+  PetscCall(PetscCalloc1(3 * model->mesh.n_nodes, &prescribed));
   model->mesh.prescribed = prescribed;
-  PetscCall(PetscBTCreate(3 * model->mesh.n_vertices, &taken));
+  PetscCall(PetscBTCreate(3 * model->mesh.n_nodes, &taken));
   for (PetscInt i = 0; i < model->scene.n_motions; i++)
     PetscCall(MotionFlag(model, &model->scene.motions[i], taken, fixed, prescribed));
   PetscCall(PetscBTDestroy(&taken));

@@ -88,11 +88,13 @@ static PetscErrorCode ProbeFindLocal(Model model, const Probe *probe, PetscInt *
   PetscFunctionBeginUser;
   *n = 0;
   PetscCall(ModelFindPart(model, probe->name, probe->part, &part));
-  for (PetscInt i = 0; i < mesh->n_nodes * mesh->n_cells; i++) {
-    if (part >= 0 && mesh->cell_part[i / mesh->n_nodes] != part) continue;
-    PetscCall(CandidateSet(model, probe, mesh->cell_part[i / mesh->n_nodes], mesh->corner[i], &candidate));
-    if (!*n || CandidateCompare(&candidate, best) < 0) *best = candidate;
-    *n = 1;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    if (part >= 0 && mesh->cell_part[c] != part) continue;
+    for (PetscInt i = mesh->cell_first[c]; i < mesh->cell_first[c + 1]; i++) {
+      PetscCall(CandidateSet(model, probe, mesh->cell_part[c], mesh->cell_node[i], &candidate));
+      if (!*n || CandidateCompare(&candidate, best) < 0) *best = candidate;
+      *n = 1;
+    }
   }
   PetscFunctionReturn(0);
 }

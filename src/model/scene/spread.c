@@ -6,7 +6,6 @@
       in all    s_v = int N_v dA / A on a surface, 1 / n on a set without faces, at its n vertices; they add up to 1,
       per area  s_v = int N_v dA on a surface.
 
-   Vertices without a cell (points of a file's geometry) have no share in all.
 */
 #include "model/modelimpl.h"
 #include "kernels/facet.h"
@@ -60,22 +59,18 @@ static PetscErrorCode SurfaceAddWeights(Model model, const char set[], PetscScal
   PetscFunctionReturn(0);
 }
 
-/* Adds 1 at the vertices of the set that this rank owns to weight[3 v]; with_cells: that have cells */
-static PetscErrorCode VerticesAddWeights(Model model, const char set[], PetscBool with_cells, PetscScalar weight[])
+/* Adds 1 at the nodes of the set that this rank owns to weight[3 v] */
+static PetscErrorCode NodesAddWeights(Model model, const char set[], PetscScalar weight[])
 {
   const PetscInt *vertices;
-  PetscInt        vStart, n, n_edges;
+  PetscInt        n;
   IS              is;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, NULL));
   PetscCall(ModelGetOwnedVertices(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
-  for (PetscInt j = 0; j < n; j++) {
-    PetscCall(DMPlexGetSupportSize(model->dm, vStart + vertices[j], &n_edges));
-    if (n_edges || !with_cells) weight[3 * vertices[j]] += 1;
-  }
+  for (PetscInt j = 0; j < n; j++) weight[3 * vertices[j]] += 1;
   PetscCall(ISRestoreIndices(is, &vertices));
   PetscCall(ISDestroy(&is));
   PetscFunctionReturn(0);
@@ -102,8 +97,7 @@ PetscErrorCode ModelCreateShares(Model model, const char owner[], const char set
              "-%s_set %s has no faces: a value per area needs a surface", owner, set);
   PetscCall(ModelCreateNodal(model, shares));
   PetscCall(VecGetArray(*shares, &share));
-  PetscCall(faces ? SurfaceAddWeights(model, set, share)
-                  : VerticesAddWeights(model, set, spread == SPREAD_EACH ? PETSC_FALSE : PETSC_TRUE, share));
+  PetscCall(faces ? SurfaceAddWeights(model, set, share) : NodesAddWeights(model, set, share));
   PetscCall(VecRestoreArray(*shares, &share));
   if (spread == SPREAD_TOTAL) {
     PetscCall(WeightsTotal(model, *shares, &total));

@@ -1,0 +1,146 @@
+/*
+   Faces of a named surface: their nodes, seen from outside the body, and how many lie between two cells.
+*/
+#include "modelimpl.h"
+#include "base/vec3.h"
+#include <petscsf.h>
+
+#define FACE_MAX_NODES 9 /* of a biquadratic quadrilateral */
+
+/* Whether the corners of a face are clockwise seen from outside its cell */
+static PetscErrorCode FaceIsReversed(Model model, PetscInt face, PetscInt n, const PetscInt corner[], PetscBool *is)
+{
+  const PetscReal *x = model->mesh.x;
+  const PetscInt  *cells, last = n == 4 ? 3 : 2, from = n == 4 ? 1 : 0;
+  const Element   *element;
+  PetscInt         cStart, nodes[ELEMENT_MAX_NODES];
+  PetscReal        cell_x[ELEMENT_MAX_DOFS], a[3], b[3], normal[3], outward[3] = {0, 0, 0};
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, NULL));
+  PetscCall(DMPlexGetSupport(model->dm, face, &cells));
+  PetscCall(ModelGetCell(model, cells[0] - cStart, &element, nodes, cell_x));
+  for (int d = 0; d < 3; d++) {
+    a[d] = x[3 * corner[n == 4 ? 2 : 1] + d] - x[3 * corner[0] + d];
+    b[d] = x[3 * corner[last] + d] - x[3 * corner[from] + d];
+    for (PetscInt i = 0; i < n; i++) outward[d] += x[3 * corner[i] + d] / (PetscReal)n;
+    for (PetscInt i = 0; i < element->n_corners; i++) outward[d] -= cell_x[3 * i + d] / (PetscReal)element->n_corners;
+  }
+  Vec3Cross(a, b, normal);
+  *is = Vec3Dot(normal, outward) < 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* The node in the middle of the edge of a face between two corners, -1 without */
+static PetscErrorCode FaceFindMiddle(Model model, PetscInt face, PetscInt a, PetscInt b, PetscInt *node)
+{
+  const PetscInt *edges, *ends;
+  PetscInt        n;
+
+  PetscFunctionBeginUser;
+  *node = -1;
+  PetscCall(DMPlexGetConeSize(model->dm, face, &n));
+  PetscCall(DMPlexGetCone(model->dm, face, &edges));
+  for (PetscInt e = 0; e < n && *node < 0; e++) {
+    PetscInt end[2];
+
+    PetscCall(DMPlexGetCone(model->dm, edges[e], &ends));
+    for (int i = 0; i < 2; i++) end[i] = model->node_of[ends[i]];
+    if ((end[0] == a && end[1] == b) || (end[0] == b && end[1] == a)) *node = model->node_of[edges[e]];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Nodes of a face: corners, middles of the edges, middle of the face */
+static PetscErrorCode FaceGetNodes(Model model, PetscInt face, PetscInt *n, PetscInt node[])
+{
+  PetscInt  vStart, vEnd, n_points, n_corners = 0, *closure = NULL;
+  PetscBool reversed;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetDepthStratum(model->dm, 0, &vStart, &vEnd));
+  PetscCall(DMPlexGetTransitiveClosure(model->dm, face, PETSC_TRUE, &n_points, &closure));
+  for (PetscInt j = 0; j < n_points; j++)
+    if (closure[2 * j] >= vStart && closure[2 * j] < vEnd) node[n_corners++] = model->node_of[closure[2 * j]];
+  PetscCall(DMPlexRestoreTransitiveClosure(model->dm, face, PETSC_TRUE, &n_points, &closure));
+  PetscCall(FaceIsReversed(model, face, n_corners, node, &reversed));
+  for (PetscInt i = 1; i < (n_corners + 1) / 2 && reversed; i++) {
+    const PetscInt other = node[n_corners - i];
+
+    node[n_corners - i] = node[i];
+    node[i]             = other;
+  }
+  *n = n_corners;
+  for (PetscInt i = 0; i < n_corners; i++) {
+    PetscCall(FaceFindMiddle(model, face, node[i], node[(i + 1) % n_corners], &node[*n]));
+    if (node[*n] >= 0) ++*n;
+  }
+  if (model->node_of[face] >= 0) node[(*n)++] = model->node_of[face];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelGetSetFaces(Model model, const char set[], ModelFaces *faces)
+{
+  const PetscInt *p;
+  PetscInt        fStart, fEnd, n_points = 0, n_all;
+  IS              points;
+
+  PetscFunctionBeginUser;
+  PetscCall(SetGetPoints(model, set, &points));
+  PetscCall(DMPlexGetHeightStratum(model->dm, 1, &fStart, &fEnd));
+  if (points) PetscCall(ISGetLocalSize(points, &n_points));
+  faces->n = 0;
+  PetscCall(PetscMalloc2(n_points + 1, &faces->first, FACE_MAX_NODES * n_points, &faces->node));
+  faces->first[0] = 0;
+  if (points) PetscCall(ISGetIndices(points, &p));
+  for (PetscInt i = 0; i < n_points; i++) {
+    const PetscInt begin = faces->first[faces->n];
+    PetscInt       n_cells, n;
+
+    if (p[i] < fStart || p[i] >= fEnd) continue;
+    PetscCall(DMPlexGetSupportSize(model->dm, p[i], &n_cells));
+    if (!n_cells) continue;
+    PetscCall(FaceGetNodes(model, p[i], &n, &faces->node[begin]));
+    faces->first[++faces->n] = begin + n;
+  }
+  if (points) PetscCall(ISRestoreIndices(points, &p));
+  PetscCall(ISDestroy(&points));
+  PetscCallMPI(MPI_Allreduce(&faces->n, &n_all, 1, MPIU_INT, MPI_SUM, model->comm));
+  PetscCheck(n_all, model->comm, PETSC_ERR_USER_INPUT, "the set '%s' has no faces: a surface is needed", set);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelFacesDestroy(ModelFaces *faces)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree2(faces->first, faces->node));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelCountInnerFaces(Model model, const char set[], PetscInt *n)
+{
+  const PetscInt *p, *shared;
+  PetscInt        fStart, fEnd, n_points = 0, n_shared, n_cells, place;
+  PetscSF         sf;
+  IS              points;
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  PetscCall(SetGetPoints(model, set, &points));
+  PetscCall(DMPlexGetHeightStratum(model->dm, 1, &fStart, &fEnd));
+  PetscCall(DMGetPointSF(model->dm, &sf));
+  PetscCall(PetscSFGetGraph(sf, NULL, &n_shared, &shared, NULL)); /* points that another rank owns, ascending */
+  if (points) PetscCall(ISGetLocalSize(points, &n_points));
+  if (points) PetscCall(ISGetIndices(points, &p));
+  for (PetscInt i = 0; i < n_points; i++) {
+    if (p[i] < fStart || p[i] >= fEnd) continue;
+    PetscCall(DMPlexGetSupportSize(model->dm, p[i], &n_cells));
+    place = -1;
+    if (n_cells == 1 && n_shared > 0) PetscCall(PetscFindInt(p[i], n_shared, shared, &place));
+    *n += n_cells > 1 || place >= 0;
+  }
+  if (points) PetscCall(ISRestoreIndices(points, &p));
+  PetscCall(ISDestroy(&points));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n, 1, MPIU_INT, MPI_SUM, model->comm));
+  PetscFunctionReturn(0);
+}
