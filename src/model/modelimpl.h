@@ -71,6 +71,10 @@ PETSC_INTERN PetscErrorCode PartitionMesh(Model model);
 PETSC_INTERN PetscErrorCode MeshTabulate(Model model);
 PETSC_INTERN PetscErrorCode MeshReset(Model model);
 
+/* tabulate.c - which of n vertices are in the closure of a point, as bits */
+PETSC_INTERN PetscErrorCode PointGetCorners(DM dm, PetscInt point, PetscInt n, const PetscInt vertex[],
+                                            unsigned *corners);
+
 /* The lists of the scene, whose files read their records: part.c, support.c, grounded.c, load.c, motion.c,
    probe.c, circle.c */
 PETSC_INTERN const OptionsList parts_list, supports_list, springs_list, dashpots_list, loads_list, motions_list,

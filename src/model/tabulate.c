@@ -75,10 +75,7 @@ static PetscErrorCode MeshSetNumbers(Model model)
   PetscFunctionReturn(0);
 }
 
-/* The corners of a cell that the vertices in the closure of a point are, as bits; vertex [n] of the cell in the order of
-   its closure */
-static PetscErrorCode PointGetCorners(DM dm, const Element *element, PetscInt point, const PetscInt vertex[],
-                                      unsigned *corners)
+PetscErrorCode PointGetCorners(DM dm, PetscInt point, PetscInt n, const PetscInt vertex[], unsigned *corners)
 {
   PetscInt n_points, *closure = NULL;
 
@@ -86,8 +83,8 @@ static PetscErrorCode PointGetCorners(DM dm, const Element *element, PetscInt po
   *corners = 0;
   PetscCall(DMPlexGetTransitiveClosure(dm, point, PETSC_TRUE, &n_points, &closure));
   for (PetscInt j = 0; j < n_points; j++)
-    for (PetscInt i = 0; i < element->n_corners; i++)
-      if (closure[2 * j] == vertex[element->closure_order[i]]) *corners |= 1u << i;
+    for (PetscInt i = 0; i < n; i++)
+      if (closure[2 * j] == vertex[i]) *corners |= 1u << i;
   PetscCall(DMPlexRestoreTransitiveClosure(dm, point, PETSC_TRUE, &n_points, &closure));
   PetscFunctionReturn(0);
 }
@@ -95,15 +92,18 @@ static PetscErrorCode PointGetCorners(DM dm, const Element *element, PetscInt po
 /* Nodes of a cell in the order of its element; `points` bear them, the corners last and in the order of the closure */
 static PetscErrorCode CellOrderNodes(Model model, const Element *element, const PetscInt points[], PetscInt nodes[])
 {
-  const PetscInt  n = element->n_nodes, n_corners = element->n_corners;
-  const PetscInt *vertex = &points[n - n_corners];
+  const PetscInt n = element->n_nodes, n_corners = element->n_corners;
+  PetscInt       vertex[ELEMENT_MAX_CORNERS];
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < n_corners; i++) nodes[i] = model->node_of[vertex[element->closure_order[i]]];
+  for (PetscInt i = 0; i < n_corners; i++) {
+    vertex[i] = points[n - n_corners + element->closure_order[i]];
+    nodes[i]  = model->node_of[vertex[i]];
+  }
   for (PetscInt k = 0; k < n - n_corners; k++) {
     unsigned corners;
 
-    PetscCall(PointGetCorners(model->dm, element, points[k], vertex, &corners));
+    PetscCall(PointGetCorners(model->dm, points[k], n_corners, vertex, &corners));
     for (PetscInt i = n_corners; i < n; i++)
       if (element->at[i] == corners) nodes[i] = model->node_of[points[k]];
   }

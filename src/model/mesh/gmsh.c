@@ -10,15 +10,39 @@
 
 #include <errno.h>
 
+/* Bits of the corners around each node; elements of second order without nodes on faces take the first ones */
+static const unsigned char at_tet[]   = {1, 2, 4, 8, 3, 6, 5, 9, 12, 10};
+static const unsigned char at_prism[] = {1, 2, 4, 8, 16, 32, 3, 5, 9, 6, 18, 36, 24, 40, 48};
+static const unsigned char at_hex[]   = {1,  2,   4,  8,   16, 32,  64, 128, 3,   9,   17,  6,   34, 12,
+                                         68, 136, 48, 144, 96, 192, 15, 51,  153, 102, 204, 240, 255};
+
 static const GmshShape shapes[] = {
-  {15, 0, 1, DM_POLYTOPE_POINT        },
-  {1,  1, 2, DM_POLYTOPE_SEGMENT      },
-  {2,  2, 3, DM_POLYTOPE_TRIANGLE     },
-  {3,  2, 4, DM_POLYTOPE_QUADRILATERAL},
-  {4,  3, 4, DM_POLYTOPE_TETRAHEDRON  },
-  {5,  3, 8, DM_POLYTOPE_HEXAHEDRON   },
-  {6,  3, 6, DM_POLYTOPE_TRI_PRISM    },
-  {7,  3, 5, DM_POLYTOPE_PYRAMID      },
+  {15, 0, 1, 1,  DM_POLYTOPE_POINT,         NULL    },
+  {1,  1, 2, 2,  DM_POLYTOPE_SEGMENT,       NULL    },
+  {2,  2, 3, 3,  DM_POLYTOPE_TRIANGLE,      NULL    },
+  {3,  2, 4, 4,  DM_POLYTOPE_QUADRILATERAL, NULL    },
+  {4,  3, 4, 4,  DM_POLYTOPE_TETRAHEDRON,   at_tet  },
+  {5,  3, 8, 8,  DM_POLYTOPE_HEXAHEDRON,    at_hex  },
+  {6,  3, 6, 6,  DM_POLYTOPE_TRI_PRISM,     at_prism},
+  {8,  1, 2, 3,  DM_POLYTOPE_SEGMENT,       NULL    },
+  {9,  2, 3, 6,  DM_POLYTOPE_TRIANGLE,      NULL    },
+  {16, 2, 4, 8,  DM_POLYTOPE_QUADRILATERAL, NULL    },
+  {10, 2, 4, 9,  DM_POLYTOPE_QUADRILATERAL, NULL    },
+  {11, 3, 4, 10, DM_POLYTOPE_TETRAHEDRON,   at_tet  },
+  {17, 3, 8, 20, DM_POLYTOPE_HEXAHEDRON,    at_hex  },
+  {12, 3, 8, 27, DM_POLYTOPE_HEXAHEDRON,    at_hex  },
+  {18, 3, 6, 15, DM_POLYTOPE_TRI_PRISM,     at_prism},
+};
+
+/* Names of types that are not read, and what to do about them */
+static const struct {
+  PetscInt    type;
+  const char *what;
+} refused[] = {
+  {7,  "5-node pyramids are not supported; mesh with tetrahedra where hexahedra and tetrahedra meet"     },
+  {13, "18-node wedges are not supported; mesh with Mesh.SecondOrderIncomplete = 1 for those of 15 nodes"},
+  {14, "14-node pyramids are not supported; mesh with tetrahedra"                                        },
+  {19, "13-node pyramids are not supported; mesh with tetrahedra"                                        },
 };
 
 /* What opens $Nodes and $Elements: the number of items, and in format 4.1 of blocks (then smallest and largest tag)
@@ -42,8 +66,11 @@ static const GmshShape *ReadShape(MeshReader *r)
   for (size_t s = 0; s < PETSC_STATIC_ARRAY_LENGTH(shapes); s++) {
     if (shapes[s].type == type) return &shapes[s];
   }
+  for (size_t s = 0; s < PETSC_STATIC_ARRAY_LENGTH(refused); s++) {
+    if (refused[s].type == type) ReaderErrorSet(r->error, PETSC_ERR_SUP, "%s", refused[s].what);
+  }
   ReaderErrorSet(r->error, PETSC_ERR_SUP,
-                 "elements of type %" PetscInt_FMT " are not supported; elements of first order are", type);
+                 "elements of type %" PetscInt_FMT " are not supported; those of first and second order are", type);
   return &shapes[0];
 }
 

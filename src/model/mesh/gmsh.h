@@ -9,13 +9,14 @@
 #include <petscdmplex.h>
 
 #define GMSH_MAX_PHYSICAL 16 /* physical groups of one entity */
-#define GMSH_MAX_NODES    8  /* nodes of one element */
+#define GMSH_MAX_NODES    27 /* nodes of one element */
 
-/* A type of element; the linear ones */
+/* A type of element */
 typedef struct {
-  PetscInt       type; /* Gmsh's number */
-  PetscInt       dim, n_nodes;
-  DMPolytopeType polytope;
+  PetscInt             type; /* Gmsh's number */
+  PetscInt             dim, n_corners, n_nodes;
+  DMPolytopeType       polytope;
+  const unsigned char *at; /* [n_nodes] of volumes: node i stands in the middle of the corners whose bits are set */
 } GmshShape;
 
 typedef struct {

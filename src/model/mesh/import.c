@@ -6,7 +6,7 @@
    error, and so is a named surface element that is no face of a cell. Elements of lower dimension without a named
    group do nothing.
 */
-#include "gmsh.h"
+#include "volumes.h"
 #include "model/modelimpl.h"
 
 /* Raises on all ranks what rank 0 found wrong */
@@ -18,33 +18,22 @@ static PetscErrorCode RaiseError(MPI_Comm comm, const char file[], ReaderError *
   PetscFunctionReturn(0);
 }
 
-/* Shape of the volume elements and their number; they must be of one shape and some of them be in a named group */
-static const GmshShape *FindCells(const GmshMesh *mesh, PetscInt *n_cells, ReaderError *error)
+/* Counts the volume elements, some of which must be in a named group */
+static PetscInt CountCells(const GmshMesh *mesh, ReaderError *error)
 {
-  const GmshShape *shape  = NULL;
-  PetscBool        volume = PETSC_FALSE;
+  PetscBool volume  = PETSC_FALSE;
+  PetscInt  n_cells = 0;
 
-  *n_cells = 0;
-  for (PetscInt e = 0; e < mesh->n_elements && !error->code; e++) {
-    const GmshShape *s = mesh->elements[e].shape;
-
-    if (s->dim < 3) continue;
-    if (shape && shape != s) {
-      ReaderErrorSet(error, PETSC_ERR_SUP, "the volumes mix %s and %s elements; one shape is supported",
-                     DMPolytopeTypes[shape->polytope], DMPolytopeTypes[s->polytope]);
-    }
-    shape = s;
-    (*n_cells)++;
-  }
+  for (PetscInt e = 0; e < mesh->n_elements && !error->code; e++) n_cells += mesh->elements[e].shape->dim == 3;
   for (PetscInt g = 0; g < mesh->n_groups; g++) volume = mesh->groups[g].dim == 3 ? PETSC_TRUE : volume;
-  if (!shape)
+  if (!n_cells)
     ReaderErrorSet(error, PETSC_ERR_USER_INPUT,
                    "there is no volume element; mesh the volumes and put them into physical volumes");
   if (!volume) {
     ReaderErrorSet(error, PETSC_ERR_USER_INPUT,
                    "no physical volume has a name; name every body, as in Physical Volume(\"disc\") = {1};");
   }
-  return shape;
+  return n_cells;
 }
 
 /* Replaces the tags of the elements' nodes by their places in the file */
@@ -76,7 +65,7 @@ static PetscErrorCode FindNodes(GmshMesh *mesh, ReaderError *error)
   PetscFunctionReturn(0);
 }
 
-/* Vertex of each node in the order of the file, -1 where no volume element has it; vertex [n_nodes] */
+/* Vertex of each node in the order of the file, -1 where it is the corner of no volume element; vertex [n_nodes] */
 static PetscInt NumberVertices(const GmshMesh *mesh, PetscInt vertex[])
 {
   PetscInt n = 0;
@@ -85,43 +74,10 @@ static PetscInt NumberVertices(const GmshMesh *mesh, PetscInt vertex[])
   for (PetscInt e = 0; e < mesh->n_elements; e++) {
     const GmshElement *element = &mesh->elements[e];
 
-    for (PetscInt v = 0; element->shape->dim == 3 && v < element->shape->n_nodes; v++) vertex[element->node[v]] = 0;
+    for (PetscInt v = 0; element->shape->dim == 3 && v < element->shape->n_corners; v++) vertex[element->node[v]] = 0;
   }
   for (PetscInt i = 0; i < mesh->n_nodes; i++) vertex[i] = vertex[i] < 0 ? -1 : n++;
   return n;
-}
-
-/* The volume elements of a file; all empty but on rank 0 */
-typedef struct {
-  const GmshShape *shape;
-  PetscInt         n_cells, n_vertices;
-  PetscInt        *vertex; /* [nodes of the file] vertex of the DM, -1 for a node that no cell has */
-} GmshVolumes;
-
-/* The mesh from the volume elements */
-static PetscErrorCode CreateCells(MPI_Comm comm, const GmshMesh *mesh, const GmshVolumes *volumes, DM *dm)
-{
-  const PetscInt n_corners = volumes->shape ? volumes->shape->n_nodes : 0;
-  PetscInt      *cells, n = 0;
-  PetscReal     *x;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(volumes->n_cells * n_corners, &cells, 3 * volumes->n_vertices, &x));
-  for (PetscInt e = 0; e < mesh->n_elements; e++) {
-    PetscInt *cell = cells + n_corners * n;
-
-    if (mesh->elements[e].shape->dim < 3) continue;
-    for (PetscInt v = 0; v < n_corners; v++) cell[v] = volumes->vertex[mesh->elements[e].node[v]];
-    PetscCall(DMPlexInvertCell(volumes->shape->polytope, cell));
-    n++;
-  }
-  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
-    if (volumes->vertex[i] >= 0) PetscCall(PetscArraycpy(x + 3 * volumes->vertex[i], mesh->x + 3 * i, 3));
-  }
-  PetscCall(DMPlexCreateFromCellListPetsc(comm, 3, volumes->n_cells, volumes->n_vertices, n_corners, PETSC_TRUE, cells,
-                                          3, x, dm));
-  PetscCall(PetscFree2(cells, x));
-  PetscFunctionReturn(0);
 }
 
 /* Two cells in one place give a face more than two cells */
@@ -164,33 +120,41 @@ static PetscErrorCode CreateLabels(DM dm, const char file[], const GmshMesh *mes
   PetscFunctionReturn(0);
 }
 
-/* The points of the mesh that stand for an element: its cell, its face, or its vertices; n is 0 without any */
+/* The edge or face between vertices, if there is one, is appended to points */
+static PetscErrorCode AppendJoin(DM dm, PetscInt n_vertices, const PetscInt vertices[], PetscInt *n, PetscInt points[])
+{
+  const PetscInt *join;
+  PetscInt        n_join;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetFullJoin(dm, n_vertices, vertices, &n_join, &join));
+  if (n_join) points[(*n)++] = join[0];
+  PetscCall(DMPlexRestoreJoin(dm, n_vertices, vertices, &n_join, &join));
+  PetscFunctionReturn(0);
+}
+
+/* The points of the mesh that stand for an element: its cell, its face, or its vertices with the edge between them; n is
+   0 without any */
 static PetscErrorCode FindPoints(DM dm, const GmshElement *element, PetscInt cell, const PetscInt vertex[], PetscInt *n,
                                  PetscInt points[])
 {
-  const PetscInt  n_nodes = element->shape->n_nodes;
-  const PetscInt *face;
-  PetscInt        vStart, vertices[GMSH_MAX_NODES], n_faces;
+  const PetscInt n_corners = element->shape->n_corners;
+  PetscInt       vStart, vertices[GMSH_MAX_NODES];
 
   PetscFunctionBeginUser;
   PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, NULL));
   *n = 0;
-  for (PetscInt v = 0; v < n_nodes; v++) {
+  for (PetscInt v = 0; v < n_corners; v++) {
     if (vertex[element->node[v]] < 0) PetscFunctionReturn(0);
     vertices[v] = vStart + vertex[element->node[v]];
   }
-  if (element->shape->dim == 3) {
-    *n        = 1;
-    points[0] = cell;
-  } else if (element->shape->dim == 2) {
-    PetscCall(DMPlexGetFullJoin(dm, n_nodes, vertices, &n_faces, &face));
-    *n = n_faces;
-    if (n_faces) points[0] = face[0];
-    PetscCall(DMPlexRestoreJoin(dm, n_nodes, vertices, &n_faces, &face));
-  } else {
-    *n = n_nodes;
-    PetscCall(PetscArraycpy(points, vertices, n_nodes));
+  if (element->shape->dim == 3)
+    points[(*n)++] = cell;
+  else if (element->shape->dim < 2) {
+    *n = n_corners;
+    PetscCall(PetscArraycpy(points, vertices, n_corners));
   }
+  if (element->shape->dim == 1 || element->shape->dim == 2) PetscCall(AppendJoin(dm, n_corners, vertices, n, points));
   PetscFunctionReturn(0);
 }
 
@@ -245,26 +209,26 @@ static PetscErrorCode FillLabels(DM dm, const GmshMesh *mesh, const PetscInt ver
    ImportGmsh - a Gmsh file of format 2.2 or 4.1, text or binary, as an interpolated DMPlex, all of it on rank 0.
    Collective.
 
-   Errors: PETSC_ERR_FILE_OPEN; PETSC_ERR_FILE_READ for a damaged file; PETSC_ERR_SUP for other formats, elements of
-   higher order and mixed shapes; PETSC_ERR_USER_INPUT without named physical volumes, for overlapping ones, for a
-   named group off the volumes and for a name that stands twice.
+   Errors: PETSC_ERR_FILE_OPEN; PETSC_ERR_FILE_READ for a damaged file; PETSC_ERR_SUP for other formats and
+   elements; PETSC_ERR_USER_INPUT without named physical volumes, for overlapping ones, for a named group off the
+   volumes, for a name that stands twice, and for mid-side nodes off their edges.
 */
 PetscErrorCode ImportGmsh(MPI_Comm comm, const char file[], DM *dm)
 {
   GmshMesh    mesh    = {0};
   ReaderError error   = {0};
-  GmshVolumes volumes = {0};
+  GmshVolumes volumes = {.mesh = &mesh};
   PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   if (rank == 0) PetscCall(GmshMeshRead(file, &mesh, &error));
   if (rank == 0 && !error.code) PetscCall(FindNodes(&mesh, &error));
-  if (rank == 0) volumes.shape = FindCells(&mesh, &volumes.n_cells, &error);
+  if (rank == 0) volumes.n_cells = CountCells(&mesh, &error);
   PetscCall(RaiseError(comm, file, &error));
   PetscCall(PetscMalloc1(mesh.n_nodes, &volumes.vertex));
   if (rank == 0) volumes.n_vertices = NumberVertices(&mesh, volumes.vertex);
-  PetscCall(CreateCells(comm, &mesh, &volumes, dm));
+  PetscCall(VolumesCreateMesh(comm, &volumes, &error, dm));
   PetscCall(CheckOverlap(*dm, &error));
   PetscCall(RaiseError(comm, file, &error));
   PetscCall(CreateLabels(*dm, file, &mesh));

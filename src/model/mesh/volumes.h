@@ -1,0 +1,15 @@
+/* Private to model/: the volume elements of a Gmsh file as a DMPlex */
+#pragma once
+
+#include "gmsh.h"
+
+/* The volume elements of a file; all empty but on rank 0 */
+typedef struct {
+  const GmshMesh *mesh;
+  PetscInt        n_cells, n_vertices;
+  PetscInt       *vertex; /* [nodes of the file] vertex of the DM, -1 for a node that is the corner of no cell */
+} GmshVolumes;
+
+/* volumes.c - interpolated DMPlex of the cells, whose coordinates stand at the points that bear a node: vertices, and
+   edges, faces and cells of elements of second order. What is wrong goes to the error of rank 0. Collective. */
+PETSC_INTERN PetscErrorCode VolumesCreateMesh(MPI_Comm comm, const GmshVolumes *volumes, ReaderError *error, DM *dm);
