@@ -2,8 +2,9 @@
    Contact - frictional interfaces in steady sliding, linearised: pairs of facing nodes with gap and slip operators.
 
    Pair p joins a slave node s and the point of the master surface that it faces, which moves as u_m = sum_i w_i u_i
-   of the corners of one master facet: one node of weight 1 where the meshes match, up to four where they do not. n is
-   the master's outward normal, t the direction of the slave's sliding velocity relative to the master, b = n x t. For
+   of the nodes of one master facet, with its own shape functions w_i, which may be negative where it is of second order:
+   one node of weight 1 where the meshes match, up to nine where they do not. Every node of a slave face is a slave, those
+   between its corners too. n is the master's outward normal, t the direction of the slave's sliding velocity relative to the master, b = n x t. For
    displacements u (m)
       (N u)_p = n . (u_m - u_s)     closing of the gap
       (T u)_p = t . (u_m - u_s)     slip
@@ -26,19 +27,22 @@ typedef enum { CONTACT_PENALTY, CONTACT_CONSTRAINT } ContactLaw;
 
 extern const char *const ContactStatusNames[CONTACT_N_STATUS]; /* "open", "stick", "slip" */
 
+#define CONTACT_MAX_MASTER 9 /* nodes of a facet, at most */
+
 /* One pair; the array of pairs is distributed, each pair lives on the rank that owns its slave node */
 typedef struct {
-  PetscInt  interface;              /* index of the interface */
-  PetscInt  n_master;               /* corners of the master facet that take part, 1 to 4 */
-  PetscReal weight[4];              /* their weights, sum 1 */
-  PetscInt  master[4][3], slave[3]; /* global unknowns x, y, z; -1 when fixed by a support */
-  PetscInt  corner[4], vertex;      /* global numbers of the vertices of master and slave */
-  PetscReal x[3];                   /* position of the slave, m */
-  PetscReal n[3], t[3], b[3];       /* unit vectors */
-  PetscReal area, area_master;      /* of the slave node and of the point that it faces, |sum_i w_i a_i|, m^2 */
-  PetscReal gap;                    /* n . (x_s - x_m) of the mesh as it is, m, positive open */
-  PetscReal force; /* normal force carried in the sliding state, N, compressive >= 0; 0 when not given */
-  PetscReal speed; /* stated sliding speed, m/s; 0 where nothing slides as told */
+  PetscInt  interface;                               /* index of the interface */
+  PetscInt  n_master;                                /* nodes of the master facet that take part */
+  PetscReal weight[CONTACT_MAX_MASTER];              /* their weights, sum 1 */
+  PetscInt  master[CONTACT_MAX_MASTER][3], slave[3]; /* global unknowns x, y, z; -1 when fixed by a support */
+  PetscInt  corner[CONTACT_MAX_MASTER], vertex;      /* global numbers of the nodes of master and slave */
+  PetscReal x[3];                                    /* position of the slave, m */
+  PetscReal n[3], t[3], b[3];                        /* unit vectors */
+  PetscReal area;                                    /* positive share of the slave node in its surface, m^2 */
+  PetscReal across; /* |sum_i w_i a_i| at the point that it faces (contact/surface.h) */
+  PetscReal gap;    /* n . (x_s - x_m) of the mesh as it is, m, positive open */
+  PetscReal force;  /* normal force carried in the sliding state, N, compressive >= 0; 0 when not given */
+  PetscReal speed;  /* stated sliding speed, m/s; 0 where nothing slides as told */
 } ContactPair;
 
 /* State of one pair. Friction is given as the force on the master; in slip it has the direction of the slave's velocity

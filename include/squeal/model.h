@@ -236,7 +236,8 @@ PetscErrorCode ModelGetOwnedVertices(Model model, const char set[], IS *vertices
 
 /*@ ModelCreateShares - the shares s_v of the vertices of a set in a quantity that is spread over it, in the first of three
     places of each local vertex, complete on every rank that has it: 1; adding up to 1; or area, m^2. Collective. The
-    caller destroys the vector.
+    caller destroys the vector. Shares in an area are positive, for springs and the like: of faces of first order
+    int N_v dA, of second A int N_v^2 dA / sum_w int N_w^2 dA (kernels/facet.h).
     Errors: PETSC_ERR_USER_INPUT for a set without a node of an element, and per area for one without faces; `owner` is
     the prefix of the option -owner_set that the message names. @*/
 PetscErrorCode ModelCreateShares(Model model, const char owner[], const char set[], Spread spread, Vec *shares);
@@ -246,9 +247,22 @@ PetscErrorCode ModelCreateShares(Model model, const char owner[], const char set
 PetscErrorCode ModelGetSetFaces(Model model, const char set[], ModelFaces *faces);
 PetscErrorCode ModelFacesDestroy(ModelFaces *faces);
 
-/*@ ModelGetSetNormals - for each local vertex, shape [vertices][3], the outward normal of a surface set times
-    the vertex's share of its area (m^2), complete on every rank that has the vertex. Collective. The caller frees it.
-    @*/
+/*@ ModelFacesGet - the nodes of face f and their places x (m), as many as it returns. Not collective. @*/
+static inline PetscInt ModelFacesGet(const ModelFaces *faces, const Mesh *mesh, PetscInt f, const PetscInt **node,
+                                     PetscReal x[][3])
+{
+  const PetscInt n = faces->first[f + 1] - faces->first[f];
+
+  *node = &faces->node[faces->first[f]];
+  for (PetscInt i = 0; i < 3 * n; i++) x[i / 3][i % 3] = mesh->x[3 * (*node)[i / 3] + i % 3];
+  return n;
+}
+
+/*@ ModelGetSetNormals - for each local vertex, shape [vertices][3], the outward normal of a surface set times the vertex's
+    share of its area (m^2), complete on every rank that has the vertex. Its direction is that of the sum of the area
+    vectors of the faces around the vertex (kernels/facet.h): of first order int N_v n dA, whose length is the share too;
+    of second order the faces' own normals there with positive weights, and the length that of ModelCreateShares().
+    Collective. The caller frees it. @*/
 PetscErrorCode ModelGetSetNormals(Model model, const char set[], PetscReal **area_normals);
 
 /*@ ModelFindNode - the node of a part (empty for any) nearest to a place (m): its local vertex from 0 on one rank that

@@ -12,66 +12,71 @@
 #define INSIDE 1e-9 /* natural coordinates: on an edge */
 #define STEPS  64   /* facets of one walk */
 
-void ContactCorners(const ContactShape *shape, PetscInt f, PetscReal x[4][3])
+void ContactNodes(const ContactShape *shape, PetscInt f, PetscReal x[][3])
 {
   const ContactFacet *facet = &shape->surface->facet[f];
 
-  for (int i = 0; i < 4; i++)
+  for (int i = 0; i < facet->n; i++)
     for (int d = 0; d < 3; d++)
       x[i][d] = facet->x[i][d] + (shape->node ? shape->u[3 * shape->node[facet->node[i]] + d] : 0);
-}
-
-/* How far natural coordinates are beyond the facet */
-static PetscReal Beyond(const PetscReal natural[2])
-{
-  return PetscMax(PetscAbsReal(natural[0]), PetscAbsReal(natural[1])) - 1;
-}
-
-static void Clamp(PetscReal natural[2])
-{
-  for (int d = 0; d < 2; d++) natural[d] = PetscMax(-1, PetscMin(1, natural[d]));
 }
 
 /* How far natural coordinates are beyond edges where the surface ends */
 static PetscReal BeyondBorder(const ContactFacet *f, const PetscReal natural[2])
 {
-  PetscReal beyond = -1;
+  const FacetShape *shape  = FacetShapeOf(f->n);
+  PetscReal         beyond = -1;
 
-  if (natural[0] > 0 ? f->beside[1] < 0 : f->beside[3] < 0) beyond = PetscAbsReal(natural[0]) - 1;
-  if (natural[1] > 0 ? f->beside[2] < 0 : f->beside[0] < 0) beyond = PetscMax(beyond, PetscAbsReal(natural[1]) - 1);
+  for (int e = 0; e < shape->n_corners; e++)
+    if (f->beside[e] < 0) beyond = PetscMax(beyond, FacetBeyondEdge(shape, e, natural));
   return beyond;
 }
 
-/* The neighbour beyond whose edge the point is most, -1 where it is beyond none that has a neighbour */
+/* The neighbour beyond whose edge the point is most, -1 where it is beyond none that has a neighbour; of two edges alike
+   that of the even number */
 static PetscInt Neighbour(const ContactFacet *f, const PetscReal natural[2])
 {
-  const PetscInt  ex = natural[0] > 0 ? 1 : 3, ey = natural[1] > 0 ? 2 : 0;
-  const PetscReal x = f->beside[ex] < 0 ? 0 : PetscAbsReal(natural[0]),
-                  y = f->beside[ey] < 0 ? 0 : PetscAbsReal(natural[1]);
+  const FacetShape *shape = FacetShapeOf(f->n);
+  PetscReal         most  = INSIDE;
+  PetscInt          next  = -1;
 
-  if (PetscMax(x, y) <= 1 + INSIDE) return -1;
-  return x > y ? f->beside[ex] : f->beside[ey];
+  for (int e = 0; e < shape->n_corners; e++) {
+    const PetscReal beyond = FacetBeyondEdge(shape, e, natural);
+
+    if (f->beside[e] < 0 || beyond < most || (beyond == most && e % 2)) continue;
+    most = beyond;
+    next = f->beside[e];
+  }
+  return next;
 }
 
-/* Foot on the plane of facet f, from the natural coordinates given */
+/* Foot on facet f, from the natural coordinates given */
 static PetscBool Drop(const ContactShape *shape, PetscInt f, const PetscReal x[3], PetscReal natural[2])
 {
   const ContactFacet *facet = &shape->surface->facet[f];
-  PetscReal           corner[4][3];
+  PetscReal           node[CONTACT_MAX_MASTER][3];
 
-  ContactCorners(shape, f, corner);
-  return FacetDrop((const double(*)[3])facet->x, facet->flat ? NULL : (const double(*)[3])facet->area,
-                   (const double(*)[3])corner, x, natural)
+  ContactNodes(shape, f, node);
+  return FacetDrop(facet->n, (const double(*)[3])facet->x, facet->flat ? NULL : (const double(*)[3])facet->across,
+                   (const double(*)[3])node, x, natural)
            ? PETSC_TRUE
            : PETSC_FALSE;
+}
+
+/* The middle of a facet, from where it is searched */
+static void Middle(const ContactFacet *f, PetscReal natural[2])
+{
+  for (int d = 0; d < 2; d++) natural[d] = FacetShapeOf(f->n)->middle[d];
 }
 
 /* Ends a walk at its facet, at the edge where the point is a little beyond */
 static void WalkEnd(const ContactShape *shape, ContactFoot *foot)
 {
-  foot->beyond = BeyondBorder(&shape->surface->facet[foot->facet], foot->natural);
+  const ContactFacet *facet = &shape->surface->facet[foot->facet];
+
+  foot->beyond = BeyondBorder(facet, foot->natural);
   if (foot->beyond > CONTACT_EDGE) foot->facet = -1;
-  Clamp(foot->natural);
+  FacetShapeOf(facet->n)->clamp(foot->natural);
 }
 
 void ContactFootWalk(const ContactShape *shape, const PetscReal x[3], ContactFoot *foot)
@@ -83,13 +88,15 @@ void ContactFootWalk(const ContactShape *shape, const PetscReal x[3], ContactFoo
     PetscInt       next;
 
     if ((shape->live && !shape->live[f]) || !Drop(shape, f, x, foot->natural)) break;
-    next = Beyond(foot->natural) > INSIDE ? Neighbour(&shape->surface->facet[f], foot->natural) : -1;
+    next = FacetBeyond(shape->surface->facet[f].n, foot->natural) > INSIDE
+             ? Neighbour(&shape->surface->facet[f], foot->natural)
+             : -1;
     if (next < 0 || (next == before && f < next)) {
       WalkEnd(shape, foot);
       return;
     }
-    foot->facet      = next;
-    foot->natural[0] = foot->natural[1] = 0;
+    foot->facet = next;
+    Middle(&shape->surface->facet[next], foot->natural);
     if (next == before) {
       if (!Drop(shape, next, x, foot->natural)) break;
       WalkEnd(shape, foot);
@@ -100,29 +107,22 @@ void ContactFootWalk(const ContactShape *shape, const PetscReal x[3], ContactFoo
   foot->facet = -1;
 }
 
-/* Normal at natural coordinates, of any length */
-static void NormalSet(const ContactFacet *f, const PetscReal weight[4], PetscReal n[3])
-{
-  for (int d = 0; d < 3; d++)
-    n[d] =
-      weight[0] * f->area[0][d] + weight[1] * f->area[1][d] + weight[2] * f->area[2][d] + weight[3] * f->area[3][d];
-}
-
 void ContactFootTry(const ContactShape *shape, PetscInt f, const PetscReal x[3], PetscReal deepest, ContactFoot *foot)
 {
   const ContactFacet *facet = &shape->surface->facet[f];
-  PetscReal           corner[4][3], weight[4], n[3], gap = 0, square = 0, length = 0;
-  ContactFoot         here = {.facet = f};
+  PetscReal   node[CONTACT_MAX_MASTER][3], weight[CONTACT_MAX_MASTER], n[3], point[3], gap = 0, square = 0, length = 0;
+  ContactFoot here = {.facet = f};
 
+  Middle(facet, here.natural);
   if (!Drop(shape, f, x, here.natural)) return;
   here.beyond = BeyondBorder(facet, here.natural);
-  Clamp(here.natural);
-  ContactCorners(shape, f, corner);
-  FacetWeights(here.natural[0], here.natural[1], weight);
-  NormalSet(facet, weight, n);
+  FacetShapeOf(facet->n)->clamp(here.natural);
+  ContactNodes(shape, f, node);
+  FacetWeights(facet->n, here.natural, weight);
+  FacetSum(facet->n, weight, (const double(*)[3])facet->across, n);
+  FacetSum(facet->n, weight, (const double(*)[3])node, point);
   for (int d = 0; d < 3; d++) {
-    const PetscReal apart = x[d] - (weight[0] * corner[0][d] + weight[1] * corner[1][d] + weight[2] * corner[2][d] +
-                                    weight[3] * corner[3][d]);
+    const PetscReal apart = x[d] - point[d];
 
     gap += n[d] * apart;
     square += apart * apart;
@@ -167,28 +167,32 @@ static PetscReal TangentsSet(const PetscReal along[3], PetscReal e[3][3])
   return length;
 }
 
-PetscReal ContactBasis(const ContactFacet *f, const PetscReal natural[2], const PetscReal along[3], PetscReal weight[4],
+PetscReal ContactBasis(const ContactFacet *f, const PetscReal natural[2], const PetscReal along[3], PetscReal weight[],
                        PetscReal e[3][3])
 {
-  FacetWeights(natural[0], natural[1], weight);
+  FacetWeights(f->n, natural, weight);
   for (int d = 0; d < 3; d++) e[0][d] = f->normal[d];
   if (!f->flat) {
     PetscReal inverse;
 
-    NormalSet(f, weight, e[0]);
+    FacetSum(f->n, weight, (const double(*)[3])f->across, e[0]);
     inverse = 1 / PetscSqrtReal(PetscSqr(e[0][0]) + PetscSqr(e[0][1]) + PetscSqr(e[0][2]));
     for (int d = 0; d < 3; d++) e[0][d] *= inverse;
   }
   return TangentsSet(along, e);
 }
 
-PetscReal ContactGap(const ContactFacet *f, const PetscReal w[4], const PetscReal n[3], const PetscReal x[3])
+PetscReal ContactGap(const ContactFacet *f, const PetscReal w[], const PetscReal n[3], const PetscReal x[3])
 {
   PetscReal gap = 0;
 
-  for (int j = 0; j < 3; j++)
-    gap += n[j] * ((x[j] - f->x[0][j]) - w[1] * (f->x[1][j] - f->x[0][j]) - w[2] * (f->x[2][j] - f->x[0][j]) -
-                   w[3] * (f->x[3][j] - f->x[0][j]));
+  for (int j = 0; j < 3; j++) {
+    PetscReal along = x[j] - f->x[0][j];
+
+    for (int i = 1; i < 3; i++) along -= w[i] * (f->x[i][j] - f->x[0][j]);
+    for (int i = 3; i < f->n; i++) along -= w[i] * (f->x[i][j] - f->x[0][j]);
+    gap += n[j] * along;
+  }
   return gap;
 }
 

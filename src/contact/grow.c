@@ -13,12 +13,12 @@ static PetscErrorCode FrontMove(const ContactSurface *s, const NodeStatus turn[2
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(before, status, s->n_nodes));
   for (PetscInt f = 0; f < s->n_facets; f++) {
-    const PetscInt *node    = s->facet[f].node;
+    const PetscInt *node = s->facet[f].node, n = s->facet[f].n;
     PetscBool       touches = PETSC_FALSE;
 
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < n; i++)
       if (before[node[i]] == (PetscInt)turn[1]) touches = PETSC_TRUE;
-    for (int i = 0; i < 4 && touches; i++)
+    for (int i = 0; i < n && touches; i++)
       if (before[node[i]] == (PetscInt)turn[0]) status[node[i]] = turn[1];
   }
   PetscFunctionReturn(0);
@@ -38,7 +38,7 @@ static PetscErrorCode InterfaceGrow(Contact contact, PetscInt interface, PetscIn
     node[p] = -1;
     if (contact->pairs[p].interface != interface) continue;
     PetscCall(PetscFindInt(contact->pairs[p].vertex, s.n_nodes, s.vertex, &node[p]));
-    PetscCheck(node[p] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a pair's slave node is no corner of the slave surface");
+    PetscCheck(node[p] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a pair's slave node is no node of the slave surface");
     status[node[p]] = closed[p] ? NODE_CLOSED : NODE_OPEN;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, status, (PetscMPIInt)s.n_nodes, MPIU_INT, MPI_MAX, contact->comm));

@@ -1,6 +1,6 @@
 /*
    Forces of the contact at the nodes of the mesh: -lambda_n n + lambda_t t + lambda_b b on the master point, shared by
-   the corners of its facet with their weights, and the opposite on the slave. Nodes that a support holds are included.
+   the nodes of its facet with their weights, and the opposite on the slave. Nodes that a support holds are included.
 */
 #include "contactimpl.h"
 

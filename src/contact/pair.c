@@ -1,13 +1,12 @@
 /*
    Pairing by position. Every rank finds the feet of its own slave nodes on the master surface (surface.h): the nearest
-   point, and from there the facet whose normal leads to the node. The master point moves with the facet's bilinear
-   weights, so that matching meshes give node-to-node pairs.
+   point, and from there the facet whose normal leads to the node. The master point moves with the facet's shape
+   functions, so that matching meshes give node-to-node pairs.
 
    Slip: given, or the velocity of the slave relative to a master that turns with angular velocity w about c:
    v = -w x (x - c) in m/s. Both are projected on the tangent plane of the pair.
 */
 #include "contactimpl.h"
-#include "kernels/facet.h"
 
 /* Foot of a node on the surface at rest; matching nodes meet exactly. Beyond the border it is the nearest point */
 static void FootFind(const ContactSurface *surface, const PetscReal x[3], ContactFoot *foot)
@@ -21,24 +20,25 @@ static void FootFind(const ContactSurface *surface, const PetscReal x[3], Contac
   ContactFootWalk(&rest, x, &walk);
   if (walk.facet < 0) return;
   foot->facet = walk.facet;
-  for (int i = 0; i < 2; i++) foot->natural[i] = FacetSnap(walk.natural[i]);
+  for (int i = 0; i < 2; i++) foot->natural[i] = walk.natural[i];
+  FacetShapeOf(surface->facet[foot->facet].n)->snap(foot->natural);
 }
 
-/* Corners with their weights, directions, speed and gap; false where the slip has no part in the tangent plane. What is
+/* Nodes with their weights, directions, speed and gap; false where the slip has no part in the tangent plane. What is
    below 1e-9 of the facet's size is rounding of the coordinates, and no gap. */
 static PetscBool PairSetMaster(const ContactInterface *c, const ContactSurface *surface, const ContactFoot *foot,
                                ContactPair *pair)
 {
   const ContactFacet *facet = &surface->facet[foot->facet];
-  PetscReal           weight[4], along[3], e[3][3], a[3] = {0, 0, 0}, speed;
+  PetscReal           weight[CONTACT_MAX_MASTER], along[3], e[3][3], a[3] = {0, 0, 0}, speed;
 
   ContactSlideAlong(c, pair->x, along);
   speed = ContactBasis(facet, foot->natural, along, weight, e);
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < facet->n; i++) {
     if (weight[i] == 0) continue;
     for (int d = 0; d < 3; d++) {
       pair->master[pair->n_master][d] = facet->unknowns[i][d];
-      a[d] += weight[i] * facet->area[i][d];
+      a[d] += weight[i] * facet->across[i][d];
     }
     pair->corner[pair->n_master]   = surface->vertex[facet->node[i]];
     pair->weight[pair->n_master++] = weight[i];
@@ -48,9 +48,9 @@ static PetscBool PairSetMaster(const ContactInterface *c, const ContactSurface *
     pair->t[d] = e[1][d];
     pair->b[d] = e[2][d];
   }
-  pair->speed       = Vec3Dot(c->rotation, c->rotation) > 0 ? speed : speed > 0 ? c->speed : 0;
-  pair->area_master = Vec3Length(a);
-  pair->gap         = ContactGap(facet, weight, e[0], pair->x);
+  pair->speed  = Vec3Dot(c->rotation, c->rotation) > 0 ? speed : speed > 0 ? c->speed : 0;
+  pair->across = Vec3Length(a);
+  pair->gap    = ContactGap(facet, weight, e[0], pair->x);
   if (PetscAbsReal(pair->gap) < 1e-9 * facet->size) pair->gap = 0;
   return speed > 0 ? PETSC_TRUE : PETSC_FALSE;
 }

@@ -22,11 +22,13 @@ PetscErrorCode ContactCreateRows(Contact contact, PetscInt n, const PetscInt pai
                                  Mat *rows)
 {
   const Mesh *mesh;
-  PetscInt    row;
+  PetscInt    row, n_entries = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
-  PetscCall(MatCreateAIJ(contact->comm, n, mesh->n_own, PETSC_DETERMINE, PETSC_DETERMINE, 15, NULL, 15, NULL, rows));
+  for (PetscInt i = 0; i < n; i++) n_entries = PetscMax(n_entries, 3 * (1 + contact->pairs[pair[i]].n_master));
+  PetscCall(MatCreateAIJ(contact->comm, n, mesh->n_own, PETSC_DETERMINE, PETSC_DETERMINE, n_entries, NULL, n_entries,
+                         NULL, rows));
   PetscCall(MatGetOwnershipRange(*rows, &row, NULL));
   for (PetscInt i = 0; i < n; i++) PetscCall(PairRowSet(*rows, row + i, &contact->pairs[pair[i]], direction[i]));
   PetscCall(MatAssemblyBegin(*rows, MAT_FINAL_ASSEMBLY));

@@ -4,7 +4,7 @@
    whose boxes are within a margin of it; the nearest point is found by branch and bound.
 */
 #include "contactimpl.h"
-#include "kernels/facet.h"
+#include "kernels/nearest.h"
 
 #define LEAF       4  /* facets of a leaf, at most */
 #define MAX_LEVELS 64 /* of the tree, which is balanced */
@@ -82,10 +82,10 @@ static void BoxEmpty(ContactBox *box)
 
 static void BoxGrowFacet(const ContactShape *shape, PetscInt f, ContactBox *box)
 {
-  PetscReal corner[4][3];
+  PetscReal x[CONTACT_MAX_MASTER][3];
 
-  ContactCorners(shape, f, corner);
-  for (int i = 0; i < 4; i++) BoxGrow(box, corner[i], corner[i]);
+  ContactNodes(shape, f, x);
+  FacetBounds(shape->surface->facet[f].n, (const double(*)[3])x, box->low, box->high);
 }
 
 /* Children stand after their parents */
@@ -185,7 +185,8 @@ void ContactFootNearest(const ContactSurface *s, const PetscReal x[3], ContactFo
     }
     for (PetscInt i = node->first; i < node->first + node->n; i++) {
       PetscReal       natural[2];
-      const PetscReal here = FacetProject((const double(*)[3])s->facet[s->order[i]].x, x, natural);
+      const PetscReal here =
+        FacetProject(s->facet[s->order[i]].n, (const double(*)[3])s->facet[s->order[i]].x, x, natural);
 
       if (here >= foot->distance) continue;
       *foot = (ContactFoot){

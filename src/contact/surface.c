@@ -4,7 +4,7 @@
 */
 #include "contactimpl.h"
 #include "base/gather.h"
-#include "kernels/facet.h"
+#include "base/vec3.h"
 #include <stdlib.h>
 
 PetscErrorCode ContactFacetsLocal(Model model, const char set[], PetscInt *n, ContactFacet **facets)
@@ -19,14 +19,17 @@ PetscErrorCode ContactFacetsLocal(Model model, const char set[], PetscInt *n, Co
   PetscCall(ModelGetSetFaces(model, set, &faces));
   *n = faces.n;
   PetscCall(PetscCalloc1(*n, facets));
-  for (PetscInt i = 0; i < 4 * *n; i++) {
-    ContactFacet  *f = &(*facets)[i / 4];
-    const PetscInt v = 3 * faces.node[i];
+  for (PetscInt k = 0; k < *n; k++) {
+    ContactFacet   *f = &(*facets)[k];
+    const PetscInt *node;
 
-    PetscCall(PetscArraycpy(f->x[i % 4], &mesh->x[v], 3));
-    PetscCall(PetscArraycpy(f->area[i % 4], &normals[v], 3));
-    PetscCall(PetscArraycpy(f->unknowns[i % 4], &mesh->unknown[v], 3));
-    f->node[i % 4] = mesh->number[faces.node[i]];
+    f->n = (int)ModelFacesGet(&faces, mesh, k, &node, f->x);
+    for (int i = 0; i < f->n; i++) {
+      PetscCall(PetscArraycpy(f->across[i], &normals[3 * node[i]], 3));
+      PetscCall(PetscArraycpy(f->unknowns[i], &mesh->unknown[3 * node[i]], 3));
+      f->node[i] = mesh->number[node[i]];
+      if (ContactFacetCorners(f) < f->n) (void)Vec3Normalise(f->across[i]);
+    }
   }
   PetscCall(PetscFree(normals));
   PetscCall(ModelFacesDestroy(&faces));
@@ -47,22 +50,26 @@ static int FacetEdgeCompare(const void *left, const void *right)
   return (x->facet > y->facet) - (x->facet < y->facet);
 }
 
-/* Facets that share an edge become neighbours */
+/* Facets that share an edge, by its corners, become neighbours */
 static PetscErrorCode SurfaceSetNeighbours(ContactSurface *s)
 {
   FacetEdge *edge;
+  PetscInt   n = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(4 * s->n_facets, &edge));
-  for (PetscInt f = 0; f < s->n_facets; f++)
-    for (PetscInt e = 0; e < 4; e++) {
-      const PetscInt a = s->facet[f].node[e], b = s->facet[f].node[(e + 1) % 4];
+  for (PetscInt f = 0; f < s->n_facets; f++) {
+    const int corners = ContactFacetCorners(&s->facet[f]);
 
-      edge[4 * f + e]       = (FacetEdge){PetscMin(a, b), PetscMax(a, b), f, e};
+    for (int e = 0; e < corners; e++) {
+      const PetscInt a = s->facet[f].node[e], b = s->facet[f].node[(e + 1) % corners];
+
+      edge[n++]             = (FacetEdge){PetscMin(a, b), PetscMax(a, b), f, e};
       s->facet[f].beside[e] = -1;
     }
-  qsort(edge, (size_t)(4 * s->n_facets), sizeof(FacetEdge), FacetEdgeCompare);
-  for (PetscInt i = 0; i + 1 < 4 * s->n_facets; i++) {
+  }
+  qsort(edge, (size_t)n, sizeof(FacetEdge), FacetEdgeCompare);
+  for (PetscInt i = 0; i + 1 < n; i++) {
     if (edge[i].a != edge[i + 1].a || edge[i].b != edge[i + 1].b) continue;
     s->facet[edge[i].facet].beside[edge[i].edge]         = edge[i + 1].facet;
     s->facet[edge[i + 1].facet].beside[edge[i + 1].edge] = edge[i].facet;
@@ -85,23 +92,18 @@ static int FacetCompare(const void *left, const void *right)
 }
 
 /* Size and normal; flat where the facet's own normal and that of the surface differ from it by rounding alone at all
-   corners */
+   nodes */
 static void FacetMeasure(ContactFacet *f)
 {
-  static const PetscReal corner[4][2] = {
-    {-1, -1},
-    {1,  -1},
-    {1,  1 },
-    {-1, 1 }
-  };
+  const FacetShape *shape = FacetShapeOf(f->n);
 
-  FacetNormal((const double(*)[3])f->x, 0, 0, f->normal);
-  f->size = 2 * PetscSqrtReal(Vec3Normalise(f->normal));
+  FacetMiddleNormal(f->n, (const double(*)[3])f->x, f->normal);
+  f->size = PetscSqrtReal(Vec3Normalise(f->normal));
   f->flat = PETSC_TRUE;
-  for (int i = 0; i < 4; i++) {
-    PetscReal own[3], mean[3] = {f->area[i][0], f->area[i][1], f->area[i][2]};
+  for (int i = 0; i < f->n; i++) {
+    PetscReal own[3], mean[3] = {f->across[i][0], f->across[i][1], f->across[i][2]};
 
-    FacetNormal((const double(*)[3])f->x, corner[i][0], corner[i][1], own);
+    FacetNormal(f->n, (const double(*)[3])f->x, shape->node[i], own);
     (void)Vec3Normalise(own);
     (void)Vec3Normalise(mean);
     for (int d = 0; d < 3; d++)
@@ -110,19 +112,22 @@ static void FacetMeasure(ContactFacet *f)
   }
 }
 
-/* Nodes of a surface, ascending, and the places of the corners among them */
+/* Nodes of a surface, ascending, and the places of those of the facets among them */
 static PetscErrorCode SurfaceSetNodes(ContactSurface *s)
 {
   PetscFunctionBeginUser;
-  s->n_nodes = 4 * s->n_facets;
+  for (PetscInt f = 0; f < s->n_facets; f++) s->n_nodes += s->facet[f].n;
   PetscCall(PetscMalloc1(s->n_nodes, &s->vertex));
-  for (PetscInt i = 0; i < s->n_nodes; i++) s->vertex[i] = s->facet[i / 4].node[i % 4];
+  s->n_nodes = 0;
+  for (PetscInt f = 0; f < s->n_facets; f++)
+    for (int i = 0; i < s->facet[f].n; i++) s->vertex[s->n_nodes++] = s->facet[f].node[i];
   PetscCall(PetscSortRemoveDupsInt(&s->n_nodes, s->vertex));
-  for (PetscInt i = 0; i < 4 * s->n_facets; i++) {
-    PetscInt *node = &s->facet[i / 4].node[i % 4];
+  for (PetscInt f = 0; f < s->n_facets; f++)
+    for (int i = 0; i < s->facet[f].n; i++) {
+      PetscInt *node = &s->facet[f].node[i];
 
-    PetscCall(PetscFindInt(*node, s->n_nodes, s->vertex, node));
-  }
+      PetscCall(PetscFindInt(*node, s->n_nodes, s->vertex, node));
+    }
   PetscFunctionReturn(0);
 }
 
@@ -150,14 +155,15 @@ PetscErrorCode ContactSurfaceCreate(Contact contact, const char set[], ContactSu
 static PetscErrorCode MasterCheck(MPI_Comm comm, const ContactInterface *c, const ContactSurface *s)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < 4 * s->n_facets; i++) {
-    const ContactFacet *f = &s->facet[i / 4];
-    const PetscReal    *x = f->x[i % 4];
+  for (PetscInt k = 0; k < s->n_facets; k++)
+    for (int i = 0; i < s->facet[k].n; i++) {
+      const ContactFacet *f = &s->facet[k];
+      const PetscReal    *x = f->x[i];
 
-    PetscCheck(Vec3Length(f->area[i % 4]) > 1e-9 * PetscSqr(f->size), comm, PETSC_ERR_USER_INPUT,
-               "contact %s: %s has no normal at %.6g, %.6g, %.6g m, where its faces look in opposite directions",
-               c->name, c->master, (double)x[0], (double)x[1], (double)x[2]);
-  }
+      PetscCheck(Vec3Length(f->across[i]) > 1e-9 * PetscSqr(f->size), comm, PETSC_ERR_USER_INPUT,
+                 "contact %s: %s has no normal at %.6g, %.6g, %.6g m, where its faces look in opposite directions",
+                 c->name, c->master, (double)x[0], (double)x[1], (double)x[2]);
+    }
   PetscFunctionReturn(0);
 }
 

@@ -2,25 +2,30 @@
    Surface of a master: facets, their corners' normals, neighbours and bounding volumes. Private to contact/ and the
    projector, which find pairs on it with the same functions, at rest and at displacements.
 
-   The normal at a point of a facet is n = a / |a|, a = sum_i w_i a_i (m^2), where a_i sums, over the facets around corner
-   i, their shares of the area vector. It is continuous across edges and of second order in the size of the facets; that
-   of the facet itself jumps there and is of first order. tilt.c has its derivative.
-   A slave at x faces the point x(xi) of the facet to which x - x(xi) is parallel to n(xi).
+   The normal at a point of a facet is n = a / |a|, a = sum_i w_i a_i with the facet's own shape functions w_i, where a_i
+   (m^2) sums the area vectors of the facets around node i (kernels/facet.h); on facets of second order a_i is divided by
+   its length, since that of corners and sides differs. n is continuous across edges and, of first order, accurate to
+   second order in the size of the facets, where that of the facet itself jumps and is of first order; of second order
+   to third and second. tilt.c has its derivative.
+   A slave at x faces the point x(xi) of the facet to which x - x(xi) is parallel to n(xi). Every node of a slave face is
+   a slave, those between its corners too.
 */
 #pragma once
 
 #include <squeal/contact.h>
+#include "kernels/facet.h"
 
 /* Facet, undeformed */
 typedef struct {
-  PetscInt  node[4]; /* corners: places in ContactSurface.vertex */
-  PetscInt  unknowns[4][3];
-  PetscInt  beside[4];  /* facet across the edge from corner i to i + 1, -1 at the border */
-  PetscReal x[4][3];    /* m */
-  PetscReal area[4][3]; /* area vectors a_i, m^2 */
-  PetscReal size;       /* square root of its area, m */
-  PetscBool flat;       /* n is the same everywhere, across the facet */
-  PetscReal normal[3];  /* unit vector across the middle */
+  int       n;                        /* nodes, which tell the shape (kernels/facetshape.h) */
+  PetscBool flat;                     /* n is the same everywhere, across the facet */
+  PetscInt  node[CONTACT_MAX_MASTER]; /* places in ContactSurface.vertex, corners first */
+  PetscInt  unknowns[CONTACT_MAX_MASTER][3];
+  PetscInt  beside[4];                     /* facet across the edge from corner i to i + 1, -1 at the border */
+  PetscReal x[CONTACT_MAX_MASTER][3];      /* m */
+  PetscReal across[CONTACT_MAX_MASTER][3]; /* a_i, m^2, or of second order unit vectors along them */
+  PetscReal size;                          /* square root of its area, m */
+  PetscReal normal[3];                     /* unit vector across the middle */
 } ContactFacet;
 
 /* Bounding volume: leaves hold facets order[first .. first + n), others have n = 0 and the boxes after it and `right`
@@ -35,7 +40,7 @@ typedef struct {
   PetscInt      n_facets, n_boxes, *order;
   ContactFacet *facet;
   ContactBox   *box;              /* at rest */
-  PetscInt      n_nodes, *vertex; /* global numbers of the corners, ascending */
+  PetscInt      n_nodes, *vertex; /* global numbers of the nodes, ascending */
   PetscReal     size;             /* mean of the facets, m */
 } ContactSurface;
 
@@ -70,10 +75,20 @@ static inline int ContactPlaceCompare(const PetscReal a[3], const PetscReal b[3]
   return 0;
 }
 
-/* Mean of the corners of a facet along one axis, times 4 */
+/* Corners of a facet */
+static inline int ContactFacetCorners(const ContactFacet *f)
+{
+  return FacetShapeOf(f->n)->n_corners;
+}
+
+/* Mean of the corners of a facet along one axis, times 4; the same from whichever corner they are counted */
 static inline PetscReal ContactFacetMiddle(const ContactFacet *f, int d)
 {
-  return (f->x[0][d] + f->x[2][d]) + (f->x[1][d] + f->x[3][d]);
+  const PetscReal a = f->x[0][d], b = f->x[1][d], c = f->x[2][d];
+  const PetscReal low = PetscMin(a, PetscMin(b, c)), high = PetscMax(a, PetscMax(b, c));
+
+  if (ContactFacetCorners(f) == 4) return (a + c) + (b + f->x[3][d]);
+  return ((low + high) + PetscMax(PetscMin(a, b), PetscMin(PetscMax(a, b), c))) * 4 / 3;
 }
 
 /* surface.c - facets of a set on this rank, node[] being global numbers, without neighbours; the caller frees them */
@@ -93,8 +108,8 @@ PETSC_INTERN PetscErrorCode ContactFacetsNear(const ContactShape *shape, const C
 /* search.c - the nearest point of the surface at rest */
 PETSC_INTERN void ContactFootNearest(const ContactSurface *surface, const PetscReal x[3], ContactFoot *foot);
 
-/* foot.c - corners of a facet as it lies, m */
-PETSC_INTERN void ContactCorners(const ContactShape *shape, PetscInt f, PetscReal x[4][3]);
+/* foot.c - nodes of a facet as it lies, m */
+PETSC_INTERN void ContactNodes(const ContactShape *shape, PetscInt f, PetscReal x[][3]);
 /* foot.c - walks across edges to the facet that x faces, from foot->facet; facet -1 where the way leaves the live
    facets or the surface, or does not end */
 PETSC_INTERN void ContactFootWalk(const ContactShape *shape, const PetscReal x[3], ContactFoot *foot);
@@ -105,9 +120,9 @@ PETSC_INTERN void ContactFootTry(const ContactShape *shape, PetscInt f, const Pe
 /* foot.c - weights and n, t, b at natural coordinates, t along a vector; returns the length of its part across n, 0
    where it has none and t is any tangent */
 PETSC_INTERN PetscReal ContactBasis(const ContactFacet *facet, const PetscReal natural[2], const PetscReal along[3],
-                                    PetscReal weight[4], PetscReal e[3][3]);
+                                    PetscReal weight[], PetscReal e[3][3]);
 /* foot.c - n . (x - x_m) at rest, m */
-PETSC_INTERN PetscReal ContactGap(const ContactFacet *facet, const PetscReal weight[4], const PetscReal n[3],
+PETSC_INTERN PetscReal ContactGap(const ContactFacet *facet, const PetscReal weight[], const PetscReal n[3],
                                   const PetscReal x[3]);
 /* foot.c - direction in which a slave at x slides on the master: with rotation its velocity (m/s), else the vector of
    the options, 0 where nothing says one */

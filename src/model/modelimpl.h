@@ -103,6 +103,10 @@ PETSC_INTERN PetscErrorCode MeshLayOut(Model model);
 PETSC_INTERN PetscErrorCode LoadsSetUp(Model model);
 PETSC_INTERN PetscErrorCode LoadView(const Load *load, PetscViewer viewer);
 
+/* spread.c - as ModelCreateShares(); consistent: int N_v dA, as loads are spread */
+PETSC_INTERN PetscErrorCode SharesCreate(Model model, const char owner[], const char set[], Spread spread,
+                                         PetscBool consistent, Vec *shares);
+
 /* grounded.c - errors for sets that a spring or dashpot cannot be spread over; a line about it */
 PETSC_INTERN PetscErrorCode GroundedSetUp(Model model);
 PETSC_INTERN PetscErrorCode GroundedView(const Grounded *grounded, const char kind[], PetscViewer viewer);

@@ -1,9 +1,8 @@
 /*
-   Named sets: vertices of a set and area-weighted normals of a surface, complete on every rank that has the vertex,
-   also where the set's own faces live on another rank.
+   Named sets: vertices of a set, complete on every rank that has the vertex, also where the set's own faces live on
+   another rank.
 */
 #include "modelimpl.h"
-#include "kernels/facet.h"
 #include <petscsf.h>
 
 /* The named sets of the mesh as "disc, pad", for messages; the same text on all ranks */
@@ -117,36 +116,5 @@ PetscErrorCode ModelGetOwnedVertices(Model model, const char set[], IS *vertices
   PetscCall(ISDestroy(&all));
   PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n_owned, owned, PETSC_COPY_VALUES, vertices));
   PetscCall(PetscFree(owned));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModelGetSetNormals(Model model, const char set[], PetscReal **area_normals)
-{
-  const PetscInt n = 3 * model->mesh.n_nodes;
-  ModelFaces     faces;
-  PetscScalar   *sum;
-  Vec            sums;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelCreateNodal(model, &sums));
-  PetscCall(ModelGetSetFaces(model, set, &faces));
-  PetscCall(VecGetArray(sums, &sum));
-  for (PetscInt f = 0; f < faces.n; f++) {
-    const PetscInt *node = &faces.node[faces.first[f]];
-    double          x[4][3], share[4][3];
-
-    for (int i = 0; i < 4; i++) PetscCall(PetscArraycpy(x[i], &model->mesh.x[3 * node[i]], 3));
-    FacetAreaNormals((const double(*)[3])x, share);
-    for (int i = 0; i < 4; i++)
-      for (int d = 0; d < 3; d++) sum[3 * node[i] + d] += share[i][d];
-  }
-  PetscCall(VecRestoreArray(sums, &sum));
-  PetscCall(ModelFacesDestroy(&faces));
-  PetscCall(ModelSumShared(model, sums));
-  PetscCall(PetscMalloc1(n, area_normals));
-  PetscCall(VecGetArray(sums, &sum));
-  PetscCall(PetscArraycpy(*area_normals, sum, n));
-  PetscCall(VecRestoreArray(sums, &sum));
-  PetscCall(VecDestroy(&sums));
   PetscFunctionReturn(0);
 }

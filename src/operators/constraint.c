@@ -109,14 +109,16 @@ static PetscErrorCode InjectionCreate(Pencil pencil, PetscInt n, const ContactPa
   PetscFunctionReturn(0);
 }
 
-/* From each master corner to the slave: G = n n' w_i (interface < 0), or G_i = -n t' w_i of one interface */
+/* From each master node to the slave: G = n n' w_i (interface < 0), or G_i = -n t' w_i of one interface */
 static PetscErrorCode CouplingCreate(Pencil pencil, PetscInt n, const ContactPair **list, PetscInt interface, Mat *G)
 {
-  PetscInt n_local;
+  PetscInt n_local, n_entries = 0;
 
   PetscFunctionBeginUser;
   PetscCall(MatGetLocalSize(pencil->base.term[0].A, &n_local, NULL));
-  PetscCall(MatCreateAIJ(pencil->comm, n_local, n_local, PETSC_DETERMINE, PETSC_DETERMINE, 12, NULL, 12, NULL, G));
+  for (PetscInt p = 0; p < n; p++) n_entries = PetscMax(n_entries, 3 * list[p]->n_master);
+  PetscCall(MatCreateAIJ(pencil->comm, n_local, n_local, PETSC_DETERMINE, PETSC_DETERMINE, n_entries, NULL, n_entries,
+                         NULL, G));
   for (PetscInt p = 0; p < n; p++) {
     const ContactPair *pair = list[p];
 

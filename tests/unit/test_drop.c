@@ -4,51 +4,43 @@
 */
 #include <stdlib.h>
 #include "check.h"
+#include "facetcases.h"
 #include "kernels/drop.h"
 
-/* Deterministic numbers in [-1, 1] */
-static double Random(void)
-{
-  static unsigned long long state = 88172645463325252ULL;
+#define X(x) ((const double(*)[3])(x))
 
-  state ^= state << 13;
-  state ^= state >> 7;
-  state ^= state << 17;
-  return (double)(state >> 11) / 4503599627370496.0 - 1;
+/* Nodes of a facet, deformed by a little more */
+static void Deform(int n, double undeformed[][3], double deformed[][3])
+{
+  for (int k = 0; k < 3 * n; k++) deformed[k / 3][k % 3] = undeformed[k / 3][k % 3] + 0.01 * FacetRandom();
 }
 
-/* A unit square with corners moved at random, by `plane` in its plane and `warp` across it; deformed by a little more
-   */
-static void Facets(double plane, double warp, double undeformed[4][3], double deformed[4][3])
+/* Largest error of the natural coordinates, for places up to `reach` times as far as the facet; interpolated: along the
+   normal between the nodes, else that of the facet */
+static double Worst(int n, int interpolated, double warp, double reach, double height)
 {
-  static const double square[4][2] = {
-    {0, 0},
-    {1, 0},
-    {1, 1},
-    {0, 1}
-  };
-
-  for (int i = 0; i < 4; i++)
-    for (int d = 0; d < 3; d++) {
-      undeformed[i][d] = d < 2 ? square[i][d] + plane * Random() : warp * Random();
-      deformed[i][d]   = undeformed[i][d] + 0.01 * Random();
-    }
-}
-
-/* Largest error of the natural coordinates, for places up to `reach` in them */
-static double Worst(double warp, double reach, double height)
-{
-  double worst = 0;
+  const FacetShape *shape = FacetShapeOf(n);
+  const double      plane = n == shape->n_corners ? 0.15 : 0.05;
+  double            worst = 0;
 
   for (int k = 0; k < 10000; k++) {
-    const double at[2] = {reach * Random(), reach * Random()}, h = height * Random();
-    double       x[4][3], y[4][3], p[3], a[3], b[3], n[3], found[2] = {0, 0};
+    const double h = height * FacetRandom();
+    double       x[FACET_NODES][3], y[FACET_NODES][3], area[FACET_NODES][3], at[2], p[3], a[3], b[3], normal[3],
+      w[FACET_NODES], found[2];
 
-    Facets(0.15, warp, x, y);
-    FacetNormal((const double(*)[3])x, at[0], at[1], n);
-    FacetTangents((const double(*)[3])y, at[0], at[1], p, a, b);
-    for (int d = 0; d < 3; d++) p[d] += h * n[d];
-    if (!FacetDrop((const double(*)[3])x, NULL, (const double(*)[3])y, p, found)) return 1;
+    FacetMake(n, plane, warp, x);
+    Deform(n, x, y);
+    FacetPlace(n, reach, at);
+    for (int i = 0; i < n; i++) FacetNormal(n, X(x), shape->node[i], area[i]);
+    FacetNormal(n, X(x), at, normal);
+    FacetWeights(n, at, w);
+    if (interpolated) FacetSum(n, w, X(area), normal);
+    FacetTangents(n, X(y), at, p, a, b);
+    for (int d = 0; d < 3; d++) {
+      p[d] += h * normal[d];
+      if (d < 2) found[d] = shape->middle[d];
+    }
+    if (!FacetDrop(n, X(x), interpolated ? X(area) : NULL, X(y), p, found)) return 1;
     worst = fmax(worst, fmax(fabs(found[0] - at[0]), fabs(found[1] - at[1])));
   }
   return worst;
@@ -58,10 +50,17 @@ static double Worst(double warp, double reach, double height)
    or end before they have; a flat facet is dropped on from any height, a warped one from near it */
 int main(void)
 {
-  int failed = CheckClose("flat facets, from any height", Worst(0, 1, 10), 0, 1e-9);
+  int failed = 0;
 
-  failed += CheckClose("warped facets, from one tenth of their size", Worst(0.1, 1, 0.1), 0, 1e-7);
-  failed += CheckClose("beyond their edges", Worst(0.05, 1.3, 0.02), 0, 1e-7);
+  for (int k = 0; k < FACET_CASES; k++) {
+    const int n = facet_cases[k], second = n > 4;
+
+    printf("     %d nodes\n", n);
+    failed += CheckClose("flat facets, from any height", Worst(n, 0, 0, 1, 10), 0, 1e-9);
+    failed += CheckClose("warped facets, from one tenth of their size", Worst(n, second, 0.1, 1, 0.1), 0, 1e-7);
+    failed += CheckClose("the same along the mean normal", Worst(n, 1, 0.1, 1, 0.1), 0, 1e-8);
+    failed += CheckClose("beyond their edges", Worst(n, second, 0.05, 1.2, 0.02), 0, 1e-7);
+  }
   printf("%d failed\n", failed);
   return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

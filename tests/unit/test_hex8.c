@@ -85,7 +85,7 @@ static void VolumeByFaces(const double x[N], double *volume, double moment[3])
     for (int q = 0; q < 9; q++) {
       double point[3], a[3], b[3], n[3];
 
-      FacetTangents((const double(*)[3])corner, p[q % 3], p[q / 3], point, a, b);
+      FacetTangents(4, (const double(*)[3])corner, (const double[]){p[q % 3], p[q / 3]}, point, a, b);
       Vec3Cross(a, b, n);
       for (int i = 0; i < 3; i++) {
         *volume += w[q % 3] * w[q / 3] * point[i] * n[i] / 3;

@@ -68,7 +68,7 @@ static PetscErrorCode ErrorsFind(const char disc[], PetscReal error[3])
     NormalRaise(pair[p].x, pair[p].n, &error[0]);
     error[1] = PetscMax(error[1], PetscAbsReal(pair[p].gap));
     ContactFootNearest(surface, pair[p].x, &foot);
-    FacetNormal((const double(*)[3])surface->facet[foot.facet].x, foot.natural[0], foot.natural[1], own);
+    FacetNormal(4, (const double(*)[3])surface->facet[foot.facet].x, foot.natural, own);
     length = PetscSqrtReal(own[0] * own[0] + own[1] * own[1] + own[2] * own[2]);
     for (int d = 0; d < 3; d++) own[d] /= length;
     NormalRaise(pair[p].x, own, &error[2]);

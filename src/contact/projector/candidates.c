@@ -1,6 +1,6 @@
 /*
    Candidates: the facets of the master that a slave may meet soon, those within a margin of it (contact/search.c). Their
-   corners and all slaves are the active nodes.
+   nodes and all slaves are the active nodes.
 
    A search is due when some slave has moved by half a margin, relative to the mean motion of the active nodes of the
    master and what these move against each other. Nodes that are no candidates are unseen in between, so that a few of
@@ -12,13 +12,13 @@
 
 #define MARGIN 1.0 /* mean sizes of the facets */
 
-/* The outermost nodes of a surface along each axis are active, and the corners of live facets */
+/* The outermost nodes of a surface along each axis are active, and the nodes of live facets */
 static void MasterActivate(const ProjectorMaster *m, const ProjectorNodes *nodes, PetscBool is_active[])
 {
   const ContactSurface *s = m->surface;
 
   for (PetscInt f = 0; f < s->n_facets; f++)
-    for (int i = 0; i < 4 && m->live[f]; i++) is_active[m->node[s->facet[f].node[i]]] = PETSC_TRUE;
+    for (int i = 0; i < s->facet[f].n && m->live[f]; i++) is_active[m->node[s->facet[f].node[i]]] = PETSC_TRUE;
   for (int d = 0; d < 3; d++) {
     PetscInt low = m->node[0], high = m->node[0];
 

@@ -40,28 +40,30 @@ static void PairTurn(const ContactFrame *frame, ProjectorPair *pair)
     }
 }
 
+/* Adds the compliance of the master along axis d, sum_i w_i^2 / M_i */
+INTO_VERSIONS PetscReal MasterCompliance(const ProjectorNodes *nodes, const ProjectorPair *pair, int d, PetscReal sum)
+{
+  for (int k = 0; k < 4; k++) sum += PetscSqr(pair->weight[k]) * nodes->minv[3 * pair->node[k] + d];
+  for (int k = 4; k < pair->n; k++) sum += PetscSqr(pair->weight[k]) * nodes->minv[3 * pair->node[k] + d];
+  return sum;
+}
+
 /* Compliance W_pp */
 static void PairSetCompliance(const ProjectorNodes *nodes, ProjectorPair *pair)
 {
   const PetscReal *slave = &nodes->minv[3 * pair->slave];
-  PetscBool        even  = nodes->even[pair->slave];
+  PetscBool        even  = pair->n == 4 ? nodes->even[pair->slave] : PETSC_FALSE;
 
-  pair->w = slave[0];
-  for (int k = 0; k < 4; k++) {
-    pair->w += PetscSqr(pair->weight[k]) * nodes->minv[3 * pair->node[k]];
+  for (int k = 0; k < 4 && even; k++)
     if (pair->weight[k] != 0 && !nodes->even[pair->node[k]]) even = PETSC_FALSE;
-  }
+  pair->w = even ? MasterCompliance(nodes, pair, 0, slave[0]) : 0;
   if (even) return;
-  pair->w = 0;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       pair->W[i][j] = 0;
-      for (int d = 0; d < 3; d++) {
-        PetscReal master = 0;
-
-        for (int k = 0; k < 4; k++) master += PetscSqr(pair->weight[k]) * nodes->minv[3 * pair->node[k] + d];
-        pair->W[i][j] += pair->turned[i][d] * slave[d] * pair->turned[j][d] + pair->e[i][d] * master * pair->e[j][d];
-      }
+      for (int d = 0; d < 3; d++)
+        pair->W[i][j] += pair->turned[i][d] * slave[d] * pair->turned[j][d] +
+                         pair->e[i][d] * MasterCompliance(nodes, pair, d, 0) * pair->e[j][d];
     }
 }
 
@@ -135,12 +137,16 @@ static void PairFollow(ContactProjector p, PetscInt k, const PetscReal d[3], con
 PetscReal PairGap(ContactProjector p, const ProjectorPair *pair, const PetscReal d[3], const PetscReal u[])
 {
   const ContactFacet *f = &p->master[pair->interface].surface->facet[pair->facet];
-  const PetscReal    *w = pair->weight, *u0 = &u[3 * pair->node[0]], *u1 = &u[3 * pair->node[1]],
-                  *u2 = &u[3 * pair->node[2]], *u3 = &u[3 * pair->node[3]];
-  PetscReal gap = ContactGap(f, w, pair->e[0], &p->nodes.x[3 * pair->slave]);
+  const PetscReal    *w = pair->weight, *u0 = &u[3 * pair->node[0]];
+  PetscReal           gap = ContactGap(f, w, pair->e[0], &p->nodes.x[3 * pair->slave]);
 
-  for (int j = 0; j < 3; j++)
-    gap += pair->e[0][j] * ((d[j] - u0[j]) - w[1] * (u1[j] - u0[j]) - w[2] * (u2[j] - u0[j]) - w[3] * (u3[j] - u0[j]));
+  for (int j = 0; j < 3; j++) {
+    PetscReal along = d[j] - u0[j];
+
+    for (int i = 1; i < 4; i++) along -= w[i] * (u[3 * pair->node[i] + j] - u0[j]);
+    for (int i = 4; i < pair->n; i++) along -= w[i] * (u[3 * pair->node[i] + j] - u0[j]);
+    gap += pair->e[0][j] * along;
+  }
   return gap;
 }
 
@@ -191,8 +197,10 @@ PetscBool PairPlace(ContactProjector p, PetscInt k, const PetscReal u[], const P
   if (pair->found && pair->ready) return PETSC_TRUE;
   FrameDisplacement(frame, x, &where[3 * pair->slave], place);
   for (int i = 0; i < 3; i++) place[i] += x[i];
-  facet = &master->surface->facet[pair->facet];
-  for (int i = 0; i < 4; i++) pair->node[i] = master->node[facet->node[i]];
+  facet   = &master->surface->facet[pair->facet];
+  pair->n = PetscMax(facet->n, 4);
+  for (int i = 0; i < pair->n; i++) pair->node[i] = master->node[facet->node[i < facet->n ? i : 0]];
+  pair->weight[3] = 0;
   ContactSlideAlong(&p->contact->interfaces[pair->interface], place, along);
   pair->speed   = ContactBasis(facet, pair->natural, along, pair->weight, pair->e);
   pair->no_slip = pair->speed == 0 && PairNeedsSlip(p, pair) ? PETSC_TRUE : PETSC_FALSE;
@@ -259,6 +267,8 @@ INTO_VERSIONS PetscReal NormalDisplacement(const ProjectorPair *pair, const Pets
     for (int i = 0; i < 4; i++) master += pair->weight[i] * u[3 * pair->node[i] + d];
     sum += pair->e[0][d] * (u[3 * pair->slave + d] - master);
   }
+  for (int k = 12; k < 3 * pair->n; k++)
+    sum -= pair->e[0][k % 3] * pair->weight[k / 3] * u[3 * pair->node[k / 3] + k % 3];
   return sum;
 }
 

@@ -22,6 +22,8 @@ void PairVelocity(const ProjectorPair *pair, const PetscReal v[], PetscReal q[3]
   PetscReal master[3];
 
   for (int i = 0; i < 3; i++) master[i] = w[0] * a[i] + w[1] * b[i] + w[2] * c[i] + w[3] * d[i];
+  for (int k = 4; k < pair->n; k++)
+    for (int i = 0; i < 3; i++) master[i] += w[k] * v[3 * pair->node[k] + i];
   for (int i = 0; i < 3; i++) {
     const PetscReal *s = pair->turned[i], *e = pair->e[i];
 
@@ -47,7 +49,7 @@ static void PairPush(const ProjectorPair *pair, const PetscReal p[3], const Pets
     master[d] = pair->e[0][d] * p[0] + pair->e[1][d] * p[1] + pair->e[2][d] * p[2];
   }
   for (int d = 0; d < 3; d++) v[3 * pair->slave + d] += minv[3 * pair->slave + d] * slave[d];
-  for (int k = 0; k < 4; k++)
+  for (int k = 0; k < pair->n; k++)
     for (int d = 0; d < 3; d++) v[3 * pair->node[k] + d] -= pair->weight[k] * minv[3 * pair->node[k] + d] * master[d];
 }
 
@@ -178,6 +180,8 @@ INTO_VERSIONS PetscReal PairNoise(ContactProjector p, PetscInt k)
     sum += PetscAbsReal(p->nodes.v[3 * pair->slave + d]) + PetscAbsReal(pair->offset[d]);
     for (int i = 0; i < 4; i++) sum += PetscAbsReal(pair->weight[i] * p->nodes.v[3 * pair->node[i] + d]);
   }
+  for (int k = 12; k < 3 * pair->n; k++)
+    sum += PetscAbsReal(pair->weight[k / 3] * p->nodes.v[3 * pair->node[k / 3] + k % 3]);
   return NOISE * PETSC_MACHINE_EPSILON * PairMass(pair) * sum;
 }
 

@@ -33,7 +33,7 @@ typedef struct {
   const ContactSurface *surface;
   PetscInt             *node;          /* [n_nodes] numbers of its nodes */
   ContactBox           *box;           /* at the last search */
-  PetscBool            *live;          /* the corners of the facet are active */
+  PetscBool            *live;          /* the nodes of the facet are active */
   PetscInt              n_seen, *seen; /* nodes of it that are active */
 } ProjectorMaster;
 
@@ -46,11 +46,9 @@ typedef struct {
   PetscReal     natural[2];                /* on the facet */
   PetscReal     lambda[PROJECTOR_PAST][3]; /* forces on the slave in the frame of the master, N; [0] of the last step */
   PetscReal     e[3][3], turned[3][3];     /* n, t, b in the frame of the master, and on the ground */
-  PetscInt      node[4];                   /* corners */
-  PetscReal     weight[4];
-  PetscReal     gap;          /* of the undeformed bodies, where the facet will not change any more, m */
+  PetscReal     gap;                       /* of the undeformed bodies, where the facet will not change any more, m */
   PetscBool     found, ready; /* the facet will not change any more; directions and compliance are those of the facet */
-  PetscReal     W[3][3], w;   /* 1/kg; w = 0 where W is no multiple of the identity, else that */
+  PetscReal     W[3][3], w;   /* 1/kg; w = 0 where W is no multiple of the identity or n > 4, else that */
   PetscReal     offset[3];    /* added to the velocities of the nodes: gap at t_n / dt, and the sliding velocity, m/s */
   PetscReal     drift[3];     /* sliding velocity along n, t, b, m/s */
   PetscReal     speed;        /* stated sliding speed, 0 where nothing slides as told, m/s */
@@ -58,14 +56,17 @@ typedef struct {
   PetscReal     mu, slip;     /* slip speed of v_{n-1/2}, m/s, -1 where it is not known: for mu */
   PetscReal     p[3], q[3];   /* impulse on the slave, N s; relative velocity with the offset, m/s */
   ContactStatus status;
+  int           n; /* nodes of the facet, four at least: those of a triangle have a fourth of weight 0 */
+  PetscInt      node[CONTACT_MAX_MASTER];
+  PetscReal     weight[CONTACT_MAX_MASTER];
 } ProjectorPair;
 
-/* What Gauss-Seidel needs of a pair without coupling of its directions, close together; Cartesian, in the frame of the
-   master */
+/* What Gauss-Seidel needs of a pair without coupling of its directions and with four nodes, close together; Cartesian, in
+   the frame of the master */
 typedef struct {
-  int              node[5]; /* corners, slave */
+  int              node[5]; /* of the facet, slave */
   ContactStatus    status;
-  PetscReal        weight[4], push[5]; /* of the corners; velocity of each node per impulse, 1/kg */
+  PetscReal        weight[4], push[5]; /* of the facet's nodes; velocity of each node per impulse, 1/kg */
   PetscReal        n[3], offset[3], p[3];
   PetscReal        mass, mu; /* 1/w; 0 where the general way is needed */
   const PetscReal *D;        /* of the frame, [3][3]; NULL where it stands still */

@@ -53,6 +53,7 @@ INTO_VERSIONS void ForcesSet(ContactProjector p, PetscReal kick)
       for (int i = 0; i < 3; i++) force[3 * pair->slave + d] += pair->turned[i][d] * (pair->p[i] / kick);
       for (int j = 0; j < 4; j++) force[3 * pair->node[j] + d] -= pair->weight[j] * lambda[d];
     }
+    for (int j = 12; j < 3 * pair->n; j++) force[3 * pair->node[j / 3] + j % 3] -= pair->weight[j / 3] * lambda[j % 3];
   }
   p->order = 0;
   for (int i = 1; i < PROJECTOR_PAST; i++)

@@ -4,7 +4,7 @@
 
       f_v = -p int N_v n dA,   n the normal out of the body.
 
-   Both keep their directions while the body moves.
+   N_v being the shape functions of the faces. Both keep their directions while the body moves.
 */
 #include "model/modelimpl.h"
 #include "base/vec3.h"
@@ -50,12 +50,12 @@ static PetscErrorCode PressureAdd(Model model, const Load *load, PetscScalar f[]
   PetscFunctionBeginUser;
   PetscCall(ModelGetSetFaces(model, load->set, &faces));
   for (PetscInt i = 0; i < faces.n; i++) {
-    const PetscInt *node = &faces.node[faces.first[i]];
-    double          x[4][3], share[4][3], whole[3] = {0, 0, 0};
+    const PetscInt *node;
+    double          x[FACET_NODES][3], share[FACET_NODES][3], whole[3] = {0, 0, 0};
+    const int       n = (int)ModelFacesGet(&faces, &model->mesh, i, &node, x);
 
-    for (int k = 0; k < 4; k++) PetscCall(PetscArraycpy(x[k], &model->mesh.x[3 * node[k]], 3));
-    FacetAreaNormals((const double(*)[3])x, share);
-    for (int k = 0; k < 4; k++)
+    FacetAreaNormals(n, (const double(*)[3])x, share);
+    for (int k = 0; k < n; k++)
       for (int d = 0; d < 3; d++) {
         f[3 * node[k] + d] -= load->pressure * share[k][d];
         whole[d] += share[k][d];
@@ -91,7 +91,7 @@ static PetscErrorCode LoadCreateForces(Model model, const Load *load, Vec *force
   PetscFunctionBeginUser;
   *area = 0;
   if (!load->is_pressure) {
-    PetscCall(ModelCreateShares(model, load->name, load->set, SPREAD_TOTAL, forces));
+    PetscCall(SharesCreate(model, load->name, load->set, SPREAD_TOTAL, PETSC_TRUE, forces));
     PetscCall(VecGetLocalSize(*forces, &n));
     PetscCall(VecGetArray(*forces, &f));
     for (PetscInt j = n - 1; j >= 0; j--) f[j] = f[j - j % 3] * load->force[j % 3];

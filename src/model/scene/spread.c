@@ -1,11 +1,13 @@
 /*
-   How a quantity on a named set is spread over its vertices v: the shares s_v, with the bilinear shape functions N_v of
-   the faces and their area A (m^2),
+   How a quantity on a named set is spread over its vertices v: the shares s_v, with the area A (m^2) of its faces and
+   shares A_v in it,
 
       each      s_v = 1,
-      in all    s_v = int N_v dA / A on a surface, 1 / n on a set without faces, at its n vertices; they add up to 1,
-      per area  s_v = int N_v dA on a surface.
+      in all    s_v = A_v / A on a surface, 1 / n on a set without faces, at its n vertices; they add up to 1,
+      per area  s_v = A_v on a surface.
 
+   For loads A_v = int N_v dA, with the shape functions N_v of the faces. Springs, dashpots and whatever else needs
+   shares above 0 has the positive ones of kernels/facet.h; of faces of first order they are the same.
 */
 #include "model/modelimpl.h"
 #include "kernels/facet.h"
@@ -25,35 +27,23 @@ static PetscErrorCode SetHasFaces(Model model, const char set[], PetscBool *has)
   PetscFunctionReturn(0);
 }
 
-/* Corner shares of the area, integral of w_i dA (m^2), by 2 x 2 Gauss points; exact for plane facets */
-static void FacetAreaShares(const double x[4][3], double share[4])
-{
-  static const double g[2] = {-0.57735026918962576451, 0.57735026918962576451};
-
-  for (int i = 0; i < 4; i++) share[i] = 0;
-  for (int q = 0; q < 4; q++) {
-    double w[4], n[3];
-
-    FacetWeights(g[q % 2], g[q / 2], w);
-    FacetNormal(x, g[q % 2], g[q / 2], n);
-    for (int i = 0; i < 4; i++) share[i] += w[i] * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-  }
-}
-
-/* Adds int N_v dA (m^2) of the faces on this rank to weight[3 v] */
-static PetscErrorCode SurfaceAddWeights(Model model, const char set[], PetscScalar weight[])
+/* Adds the shares in the area (m^2) of the faces on this rank to weight[3 v] */
+static PetscErrorCode SurfaceAddWeights(Model model, const char set[], PetscBool consistent, PetscScalar weight[])
 {
   ModelFaces faces;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetSetFaces(model, set, &faces));
   for (PetscInt f = 0; f < faces.n; f++) {
-    const PetscInt *node = &faces.node[faces.first[f]];
-    double          x[4][3], share[4];
+    const PetscInt *node;
+    double          x[FACET_NODES][3], share[FACET_NODES];
+    const int       n = (int)ModelFacesGet(&faces, &model->mesh, f, &node, x);
 
-    for (int i = 0; i < 4; i++) PetscCall(PetscArraycpy(x[i], &model->mesh.x[3 * node[i]], 3));
-    FacetAreaShares((const double(*)[3])x, share);
-    for (int i = 0; i < 4; i++) weight[3 * node[i]] += share[i];
+    if (consistent)
+      FacetAreas(n, (const double(*)[3])x, share);
+    else
+      FacetPositiveAreas(n, (const double(*)[3])x, share);
+    for (int i = 0; i < n; i++) weight[3 * node[i]] += share[i];
   }
   PetscCall(ModelFacesDestroy(&faces));
   PetscFunctionReturn(0);
@@ -85,7 +75,8 @@ static PetscErrorCode WeightsTotal(Model model, Vec weights, PetscReal *total)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelCreateShares(Model model, const char owner[], const char set[], Spread spread, Vec *shares)
+PetscErrorCode SharesCreate(Model model, const char owner[], const char set[], Spread spread, PetscBool consistent,
+                            Vec *shares)
 {
   PetscScalar *share;
   PetscReal    total;
@@ -97,7 +88,7 @@ PetscErrorCode ModelCreateShares(Model model, const char owner[], const char set
              "-%s_set %s has no faces: a value per area needs a surface", owner, set);
   PetscCall(ModelCreateNodal(model, shares));
   PetscCall(VecGetArray(*shares, &share));
-  PetscCall(faces ? SurfaceAddWeights(model, set, share) : NodesAddWeights(model, set, share));
+  PetscCall(faces ? SurfaceAddWeights(model, set, consistent, share) : NodesAddWeights(model, set, share));
   PetscCall(VecRestoreArray(*shares, &share));
   if (spread == SPREAD_TOTAL) {
     PetscCall(WeightsTotal(model, *shares, &total));
@@ -106,5 +97,12 @@ PetscErrorCode ModelCreateShares(Model model, const char owner[], const char set
     PetscCall(VecScale(*shares, 1 / total));
   }
   PetscCall(ModelSumShared(model, *shares));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelCreateShares(Model model, const char owner[], const char set[], Spread spread, Vec *shares)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SharesCreate(model, owner, set, spread, PETSC_FALSE, shares));
   PetscFunctionReturn(0);
 }
