@@ -93,6 +93,12 @@ static PetscErrorCode ScopeGetDamping(const Scope *s, PetscBool *damped, PetscBo
     if (scene->parts[i].alpha > 0 || scene->parts[i].beta > 0) sure = PETSC_TRUE;
   for (PetscInt i = 0; s->model && i < scene->n_dashpots; i++)
     if (Vec3Dot(scene->dashpots[i].value, scene->dashpots[i].value) > 0) sure = PETSC_TRUE;
+  for (PetscInt i = 0; s->model && i < scene->n_joints + scene->n_points; i++) {
+    const Joint *joint = i < scene->n_joints ? &scene->joints[i] : &scene->points[i - scene->n_joints];
+
+    for (int d = 0; d < 6; d++)
+      if (joint->viscosity[d] > 0) sure = PETSC_TRUE;
+  }
   PetscCall(SweepGetDamping(s->varied, &varied, &real));
   *undamped = !sure || (s->sweep && (varied || real)) ? PETSC_TRUE : PETSC_FALSE;
   *damped   = sure || (s->sweep && varied) ? PETSC_TRUE : PETSC_FALSE;
@@ -141,6 +147,8 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
     PetscCall(ScopeRefuse(comm, scene->loads[i].name, "force", all));
     PetscCall(ScopeRefuse(comm, scene->loads[i].name, "pressure", all));
     PetscCall(ScopeRefuse(comm, scene->loads[i].name, "set", all));
+    PetscCall(ScopeRefuse(comm, scene->loads[i].name, "point", all));
+    PetscCall(ScopeRefuse(comm, scene->loads[i].name, "moment", all));
   }
   PetscFunctionReturn(0);
 }

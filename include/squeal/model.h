@@ -49,11 +49,35 @@ typedef struct {
   const char *quantity, *unit; /* "stiffness_total", "N/m" and so on */
 } Grounded;
 
-/* Total force on a set, N, spread over a surface by its area, over other sets equally by node; or a pressure on a
-   surface, Pa, into the body */
+/* Six motions q = (translation, m; rotation, rad) of the displacements u of sets, linear in them: q_j = sum over the
+   nodes i of all ranks and d of b[i][d][j] u_id. A force (N) and moment (N m) f on q act on the nodes as sum_j b_j f_j. */
 typedef struct {
-  char     *name, *set;
-  PetscBool is_pressure;
+  PetscInt   n;
+  PetscInt  *vertex; /* [n] local vertices that this rank owns */
+  PetscReal *b;      /* [n][3][6] */
+} ModelMean;
+
+/* A bushing between the mean motions of two sets, of a to b, or of one and the ground; or a point, which moves as its set
+   does in the mean, with mass, inertia, and what holds it to the ground. Of six values three are along x, y, z, three
+   about them. */
+typedef struct {
+  char     *name, *set[2]; /* set[1] is empty for the ground */
+  PetscBool is_point, has_at;
+  PetscReal at[3];        /* place of the motions, m; after ModelSetUp() */
+  PetscReal stiffness[6]; /* N/m; N m/rad */
+  PetscReal viscosity[6]; /* N s/m; N m s/rad */
+  PetscReal mass;         /* kg */
+  PetscReal inertia[6];   /* xx, yy, zz, xy, xz, yz about the place, where the mass is, kg m^2 */
+  ModelMean mean;         /* q of the point, or q_a - q_b; after ModelSetUp() */
+} Joint;
+
+/* Total force on a set, N, spread over a surface by its area, over other sets equally by node; or a pressure on a
+   surface, Pa, into the body; or a force and a moment on a point */
+typedef struct {
+  char     *name, *set; /* set is empty for a point */
+  PetscBool is_pressure, on_point;
+  PetscInt  point;     /* index of the point */
+  PetscReal moment[3]; /* on it, N m */
   PetscReal pressure, force[3]; /* Pa; N, of a pressure its resultant after ModelSetUp() */
   PetscReal size;               /* sum of |force|, or |pressure| times area, N; after ModelSetUp() */
 } Load;
@@ -114,9 +138,11 @@ typedef struct {
 /* What the options name */
 typedef struct {
   PetscInt          n_parts, n_supports, n_springs, n_dashpots, n_loads, n_motions, n_probes, n_circles;
+  PetscInt          n_joints, n_points;
   Part             *parts;
   Support          *supports;
   Grounded         *springs, *dashpots;
+  Joint            *joints, *points;
   Load             *loads;
   PrescribedMotion *motions;
   Probe            *probes;
@@ -131,19 +157,23 @@ typedef struct {
 PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
 
 /*@
-   ModelSetFromOptions - reads the scene: mesh source, parts and materials, supports, springs, dashpots, loads, motions,
-   probes, circles.
+   ModelSetFromOptions - reads the scene: mesh source, parts and materials, supports, springs, dashpots, bushings, points,
+   loads, motions, probes, circles.
    Collective.
 
    Options Database Keys:
 +  -model_source <rig|file> - where the mesh comes from
 .  -model_mesh <file>       - Gmsh file, format 2.2 or 4.1
 .  -model_element <incompatible|full> - formulation of 8-node hexahedra
-.  -parts, -supports, -springs, -dashpots, -loads, -motions, -probes, -circles <names> - lists; each name is the prefix of its own options
+.  -parts, -supports, -springs, -dashpots, -joints, -points, -loads, -motions, -probes, -circles <names> - lists; each name is the prefix of its own options
 .  -<part>_young, _poisson, _shear, _axis_1, _axis_2, _axis_3, _cylinder_axis, _cylinder_centre - elasticity, isotropic
    or not: model/scene/anisotropic.c
 .  -<part>_loss_factor <0>  - structural damping, exact at -loss_frequency <Hz>: beta grows by loss / (2 pi frequency)
 .  -model_gravity <0,0,0>   - acceleration of gravity, m/s^2, which acts on the mass of all parts in statics and in time
+.  -bush_a, -bush_b <the ground>, -bush_at x,y,z <the middle>, -bush_stiffness, _turn_stiffness, _viscosity,
+   _turn_viscosity - of a bushing named `bush`: sets of its two sides, m, N/m, N m/rad, N s/m, N m s/rad
+.  -tip_set, -tip_at, -tip_mass, -tip_inertia xx,yy,zz[,xy,xz,yz], -tip_stiffness and so on - of a point named `tip`
+.  -push_point, -push_force, -push_moment - of a load on a point: its name, N, N m
 .  -lift_set, -lift_displacement x,y,z, -lift_directions <those of the displacement> - of a motion named `lift`: named
    set, m, some of x, y, z
 .  -rim_radius, -rim_count, -rim_part <disc>, -rim_face <z+>, -rim_centre x,y,z, -rim_tolerance - of a circle named `rim`:
@@ -241,6 +271,13 @@ PetscErrorCode ModelGetOwnedVertices(Model model, const char set[], IS *vertices
     Errors: PETSC_ERR_USER_INPUT for a set without a node of an element, and per area for one without faces; `owner` is
     the prefix of the option -owner_set that the message names. @*/
 PetscErrorCode ModelCreateShares(Model model, const char owner[], const char set[], Spread spread, Vec *shares);
+
+/*@ ModelGetMeanMotion - the six motions of displacements [vertices][3], m. Collective. @*/
+PetscErrorCode ModelGetMeanMotion(Model model, const ModelMean *mean, const PetscReal nodal[], PetscReal q[6]);
+
+/*@ ModelAddMeanForce - adds what force and moment on the motions are at the nodes to nodal [vertices][3], N, each at the
+    rank that owns the vertex. Not collective. @*/
+void ModelAddMeanForce(const ModelMean *mean, const PetscReal force[6], PetscReal nodal[]);
 
 /*@ ModelGetSetFaces - the faces of a surface set on this rank; each face is on exactly one rank. Collective. The caller
     frees them with ModelFacesDestroy(). Errors: PETSC_ERR_USER_INPUT for a set without faces. @*/

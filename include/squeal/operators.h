@@ -67,7 +67,8 @@ PetscErrorCode OperatorsGetSave(Operators operators, const char **folder);
 /*@
    OperatorsGetParameters - the numbers that the matrices depend on, in the order of the scene: of each part young (Pa),
    density (kg/m^3), alpha (1/s), beta (s); of each list of springs stiffness (N/m), of dashpots viscosity (N s/m), with
-   _x, _y, _z appended where the components that are not zero differ; of each contact mu, kn (N/m, penalty), and with
+   _x, _y, _z appended where the components that are not zero differ; of each bushing and point stiffness (N/m),
+   turn_stiffness (N m/rad), viscosity (N s/m), turn_viscosity (N m s/rad) alike, of a point mass (kg); of each contact mu, kn (N/m, penalty), and with
    friction damping mu_slope (s/m), force (N) and speed (m/s), or rotation (rad/s) where that is what was given;
    contact_mu for loaded or dense matrices with H (borrowed). An interface of which nothing says along what it slides
    has no mu. Not collective.
@@ -103,9 +104,14 @@ PetscErrorCode OperatorsGetBodies(Operators operators, const PetscReal p[], Mat 
 /*@ OperatorsReleaseBodies - frees those matrices; the next call for them forms them again. Collective. @*/
 PetscErrorCode OperatorsReleaseBodies(Operators operators);
 
-/*@ OperatorsInternalForces - K_e u_e of all elements at p, summed over this rank's cells and then over ranks, N, into a
-   local vector of three values per vertex in the layout of the coordinates, held directions included: at a support they
-   are its reaction. Springs and contact are no part of it. Collective. @*/
+/*@ OperatorsGetJoint - stiffness [6], viscosity [6] (along and about x, y, z: N/m, N m/rad; N s/m, N m s/rad) and mass
+    (kg) of bushing i at p, or of point i less the number of bushings. Not collective. @*/
+PetscErrorCode OperatorsGetJoint(Operators operators, const PetscReal p[], PetscInt i, PetscReal stiffness[6],
+                                 PetscReal viscosity[6], PetscReal *mass);
+
+/*@ OperatorsInternalForces - K_e u_e of all elements at p and the forces of bushings and points, summed over ranks, N,
+   into a local vector of three values per vertex in the layout of the coordinates, held directions included: at a
+   support they are its reaction. Springs and contact are no part of it. Collective. @*/
 PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[], Vec u, Vec local);
 
 /*@ OperatorsPrescribedForces - internal forces of the displacements that motions prescribe, all others held, as those of

@@ -40,6 +40,7 @@ static const char most_used[] =
 static const char names_of_all[] =
   "-model_source rig -parts part -part_young 1 -part_density 1 -supports support -support_set S "
   "-springs spring -spring_set S -spring_stiffness 1,1,1 -dashpots dashpot -dashpot_set S -dashpot_viscosity 1,1,1 "
+  "-joints bushing -bushing_a S -bushing_stiffness 1,1,1 -points point -point_set S -point_mass 1 "
   "-loads load -load_set S -load_force 0,0,1 -contacts contact -contact_surfaces S,M -contact_kn 1 -contact_slip 1,0,0 "
   "-probes probe -probe_at 0,0,0 -motions motion -motion_set S -motion_directions z "
   "-circles circle -circle_radius 1 -circle_count 8 -impulses impulse -impulse_at 0,0,0 "

@@ -35,8 +35,8 @@ static PetscErrorCode NameCheckFree(MPI_Comm comm, const char option[], const ch
 {
   static const char *const own[]   = {"dynamics",  "frf", "model",  "modes",  "operators", "output",
                                       "projector", "rig", "squeal", "static", "statics",   "sweep"};
-  static const char *const lists[] = {"-parts",    "-supports", "-springs", "-dashpots", "-loads",
-                                      "-contacts", "-probes",   "-motions", "-impulses", "-circles"};
+  static const char *const lists[] = {"-parts",  "-supports", "-springs",  "-dashpots", "-loads",  "-contacts",
+                                      "-probes", "-motions",  "-impulses", "-circles",  "-joints", "-points"};
   char                     list[MAX_LIST];
   PetscBool                taken = PETSC_FALSE, set;
 

@@ -54,6 +54,8 @@ PetscErrorCode ModelSetFromOptions(Model model)
   PetscCall(OptionsReadList(model->comm, &supports_list, model, &scene->n_supports, &scene->supports));
   PetscCall(OptionsReadList(model->comm, &springs_list, model, &scene->n_springs, &scene->springs));
   PetscCall(OptionsReadList(model->comm, &dashpots_list, model, &scene->n_dashpots, &scene->dashpots));
+  PetscCall(OptionsReadList(model->comm, &joints_list, model, &scene->n_joints, &scene->joints));
+  PetscCall(OptionsReadList(model->comm, &points_list, model, &scene->n_points, &scene->points));
   PetscCall(OptionsReadList(model->comm, &loads_list, model, &scene->n_loads, &scene->loads));
   PetscCall(OptionsReadList(model->comm, &motions_list, model, &scene->n_motions, &scene->motions));
   PetscCall(OptionsReadList(model->comm, &probes_list, model, &scene->n_probes, &scene->probes));
@@ -112,6 +114,7 @@ PetscErrorCode ModelSetUp(Model model)
   PetscCall(PartsCheckUnits(model));
   PetscCall(ModelCheckAxes(model));
   PetscCall(GroundedSetUp(model));
+  PetscCall(JointsSetUp(model));
   PetscCall(LoadsSetUp(model));
   PetscCall(ProbesLocate(model));
   PetscCall(CirclesLocate(model));
@@ -190,6 +193,8 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
     PetscCall(GroundedView(&model->scene.springs[i], "spring", viewer));
   for (PetscInt i = 0; i < model->scene.n_dashpots; i++)
     PetscCall(GroundedView(&model->scene.dashpots[i], "dashpot", viewer));
+  for (PetscInt i = 0; i < model->scene.n_joints; i++) PetscCall(JointView(&model->scene.joints[i], viewer));
+  for (PetscInt i = 0; i < model->scene.n_points; i++) PetscCall(JointView(&model->scene.points[i], viewer));
   for (PetscInt i = 0; i < model->scene.n_loads; i++) PetscCall(LoadView(&model->scene.loads[i], viewer));
   for (PetscInt i = 0; i < model->scene.n_motions; i++) {
     PetscCall(ModelDescribeMotion(&model->scene.motions[i], sizeof(words), words));
@@ -226,6 +231,10 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(RecordsDestroy(s->n_supports, sizeof(*s->supports), 2, s->supports));
   PetscCall(RecordsDestroy(s->n_springs, sizeof(*s->springs), 2, s->springs));
   PetscCall(RecordsDestroy(s->n_dashpots, sizeof(*s->dashpots), 2, s->dashpots));
+  PetscCall(JointsDestroy(s->n_joints, s->joints));
+  PetscCall(RecordsDestroy(s->n_joints, sizeof(*s->joints), 3, s->joints));
+  PetscCall(JointsDestroy(s->n_points, s->points));
+  PetscCall(RecordsDestroy(s->n_points, sizeof(*s->points), 3, s->points));
   PetscCall(RecordsDestroy(s->n_loads, sizeof(*s->loads), 2, s->loads));
   PetscCall(RecordsDestroy(s->n_motions, sizeof(*s->motions), 2, s->motions));
   PetscCall(RecordsDestroy(s->n_probes, sizeof(*s->probes), 2, s->probes));

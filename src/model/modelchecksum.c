@@ -114,6 +114,8 @@ PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum 
     PetscCall(ChecksumAddReals(c, 3, g->value));
     if (g->spread != SPREAD_EACH) PetscCall(ChecksumAddString(c, g->quantity));
   }
+  for (PetscInt i = 0; i < model->scene.n_joints; i++) PetscCall(JointAddChecksum(model, &model->scene.joints[i], c));
+  for (PetscInt i = 0; i < model->scene.n_points; i++) PetscCall(JointAddChecksum(model, &model->scene.points[i], c));
   PetscFunctionReturn(0);
 }
 
@@ -127,7 +129,12 @@ PetscErrorCode ModelAddLoadsChecksum(Model model, Checksum c)
 
     PetscCall(ChecksumSetPart(c, "load %s", load->name));
     PetscCall(ChecksumAddInts(c, 1, &i)); /* the order counts */
-    PetscCall(ModelAddSetChecksum(model, load->set, PETSC_FALSE, c));
+    if (load->on_point) {
+      PetscCall(ChecksumAddString(c, model->scene.points[load->point].name));
+      PetscCall(ChecksumAddReals(c, 3, load->moment));
+    } else {
+      PetscCall(ModelAddSetChecksum(model, load->set, PETSC_FALSE, c));
+    }
     /* the resultant of a pressure is a sum over ranks, whose rounding is no difference */
     PetscCall(load->is_pressure ? ChecksumAddReals(c, 1, &load->pressure) : ChecksumAddReals(c, 3, load->force));
   }

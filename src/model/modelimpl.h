@@ -76,9 +76,32 @@ PETSC_INTERN PetscErrorCode PointGetCorners(DM dm, PetscInt point, PetscInt n, c
                                             unsigned *corners);
 
 /* The lists of the scene, whose files read their records: part.c, support.c, grounded.c, load.c, motion.c,
-   probe.c, circle.c */
+   probe.c, circle.c, joint.c */
 PETSC_INTERN const OptionsList parts_list, supports_list, springs_list, dashpots_list, loads_list, motions_list,
-  probes_list, circles_list;
+  probes_list, circles_list, joints_list, points_list;
+
+/* A set whose mean motion is asked for, where it was asked for, and the sign that it counts with */
+typedef struct {
+  const char *owner, *option, *set; /* -owner_option set */
+  PetscBool   turns;                /* the rotations are asked for, too */
+  PetscReal   sign;
+} ModelMeanWish;
+
+/* mean.c - the middle of a set, m; the sum of the mean motions of sets about a place (m), each with its sign.
+   Collective. Errors: PETSC_ERR_USER_INPUT for a rotation of nodes on one line. */
+PETSC_INTERN PetscErrorCode MeanFindMiddle(Model model, const ModelMeanWish *wish, PetscReal middle[3]);
+PETSC_INTERN PetscErrorCode MeanCreate(Model model, PetscInt n_wishes, const ModelMeanWish wish[],
+                                       const PetscReal at[3], ModelMean *mean);
+PETSC_INTERN PetscErrorCode MeanDestroy(ModelMean *mean);
+
+/* joint.c - eigenvalues, ascending, and -vectors [3][3] of a symmetric matrix xx, yy, zz, xy, xz, yz */
+PETSC_INTERN PetscErrorCode InertiaPrincipal(const PetscReal inertia[6], PetscReal principal[3], PetscReal axes[9]);
+/* joint.c - the motions of all bushings and points, frees these; the point that -`load`_point names; a line about one */
+PETSC_INTERN PetscErrorCode JointsSetUp(Model model);
+PETSC_INTERN PetscErrorCode JointsDestroy(PetscInt n, Joint joint[]);
+PETSC_INTERN PetscErrorCode JointFindPoint(Model model, const char load[], const char name[], PetscInt *index);
+PETSC_INTERN PetscErrorCode JointView(const Joint *joint, PetscViewer viewer);
+PETSC_INTERN PetscErrorCode JointAddChecksum(Model model, const Joint *joint, Checksum checksum);
 
 /* anisotropic.c - Young's moduli, Poisson's ratios, shear moduli and axes of a part; errors for numbers of values that do
    not belong together, for axes that are none, and for a stiffness that is not positive definite */

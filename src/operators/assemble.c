@@ -3,6 +3,7 @@
    (E_1 where it is not isotropic: all other moduli keep their ratio to it) and M_p (m^3) per unit density rho; of each list of springs or dashpots the diagonal matrix of its nodes' shares:
       K = sum_p E_p K_p + sum_s k_s D_s,   M = sum_p rho_p M_p,
       C = sum_p (alpha_p rho_p M_p + beta_p E_p K_p) + sum_d c_d D_d
+   and those of bushings and points (joint.c).
 */
 #include "operatorsimpl.h"
 
@@ -91,8 +92,9 @@ static PetscErrorCode OperatorsAddPart(Operators o, PetscInt part, const Part *p
 }
 
 /* Diagonal matrix of the shares of the nodes of a set, in the directions of the mask */
-static PetscErrorCode ShareDiagonalCreate(Operators o, const Grounded *g, const PetscBool mask[3], Mat *D)
+static PetscErrorCode ShareDiagonalCreate(Operators o, const void *of, const PetscBool mask[3], Mat *D)
 {
+  const Grounded    *g = of;
   const Mesh        *mesh;
   const PetscScalar *share;
   const PetscInt    *vertices;
@@ -124,44 +126,55 @@ static PetscErrorCode ShareDiagonalCreate(Operators o, const Grounded *g, const 
 }
 
 /* Parameter and term of the directions of the mask, which share one value */
-static PetscErrorCode OperatorsAddDirections(Operators o, OperatorsTermKind kind, const Grounded *g, const char what[],
-                                             PetscReal value, const PetscBool mask[3])
+static PetscErrorCode ComponentsAddTerm(Operators o, const Components *c, const char what[], const PetscBool mask[3],
+                                        PetscReal value, PetscInt index[3])
 {
-  PetscInt index;
-  Mat      D;
+  PetscInt parameter;
+  Mat      A;
 
   PetscFunctionBeginUser;
-  PetscCall(ParametersAdd(&o->parameters, g->name, what,
-                          &(OperatorsParameter){.unit = g->unit, .value = value, .closed = PETSC_TRUE}, &index));
-  PetscCall(ShareDiagonalCreate(o, g, mask, &D));
-  PetscCall(TermsAdd(&o->terms, kind, D, PETSC_TRUE, 1, &index));
-  PetscCall(MatDestroy(&D));
+  PetscCall(ParametersAdd(&o->parameters, c->owner, what,
+                          &(OperatorsParameter){.unit = c->unit, .value = value, .closed = PETSC_TRUE}, &parameter));
+  PetscCall(c->create(o, c->of, mask, &A));
+  PetscCall(TermsAdd(&o->terms, c->kind, A, PETSC_TRUE, 1, &parameter));
+  PetscCall(MatDestroy(&A));
+  for (int d = 0; d < 3; d++)
+    if (mask[d]) index[d] = parameter;
   PetscFunctionReturn(0);
 }
 
-/* Parameters and terms of a list of springs or dashpots: one where all components that are not zero are equal, else one
-   for each of them */
-static PetscErrorCode OperatorsAddGrounded(Operators o, OperatorsTermKind kind, const Grounded *g)
+PetscErrorCode OperatorsAddComponents(Operators o, const Components *c, PetscInt index[3])
 {
-  const char *what = g->quantity;
-  PetscBool   mask[3], uniform = PETSC_TRUE;
-  PetscReal   value = 0;
+  PetscBool mask[3], uniform = PETSC_TRUE, any = PETSC_FALSE;
+  PetscReal value = 0;
 
   PetscFunctionBeginUser;
   for (int d = 0; d < 3; d++) {
-    mask[d] = g->value[d] != 0 ? PETSC_TRUE : PETSC_FALSE;
-    if (mask[d] && value != 0 && g->value[d] != value) uniform = PETSC_FALSE;
-    if (mask[d]) value = g->value[d];
+    index[d] = -1;
+    mask[d]  = c->value[d] != 0 ? PETSC_TRUE : PETSC_FALSE;
+    if (mask[d] && value != 0 && c->value[d] != value) uniform = PETSC_FALSE;
+    if (mask[d]) value = c->value[d], any = PETSC_TRUE;
   }
-  if (uniform) PetscCall(OperatorsAddDirections(o, kind, g, what, value, mask));
+  if (any && uniform) PetscCall(ComponentsAddTerm(o, c, c->what, mask, value, index));
   for (int d = 0; d < 3 && !uniform; d++) {
     const PetscBool only[3] = {(PetscBool)(d == 0), (PetscBool)(d == 1), (PetscBool)(d == 2)};
     char            name[32];
 
     if (!mask[d]) continue;
-    PetscCall(PetscSNPrintf(name, sizeof(name), "%s_%c", what, "xyz"[d]));
-    PetscCall(OperatorsAddDirections(o, kind, g, name, g->value[d], only));
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s_%c", c->what, "xyz"[d]));
+    PetscCall(ComponentsAddTerm(o, c, name, only, c->value[d], index));
   }
+  PetscFunctionReturn(0);
+}
+
+/* Parameters and terms of a list of springs or dashpots */
+static PetscErrorCode OperatorsAddGrounded(Operators o, OperatorsTermKind kind, const Grounded *g)
+{
+  const Components c = {kind, g->name, g->quantity, g->unit, g->value, ShareDiagonalCreate, g};
+  PetscInt         index[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsAddComponents(o, &c, index));
   PetscFunctionReturn(0);
 }
 
@@ -176,5 +189,6 @@ PetscErrorCode OperatorsAssemble(Operators o)
     PetscCall(OperatorsAddGrounded(o, OPERATORS_STIFFNESS, &scene->springs[i]));
   for (PetscInt i = 0; i < scene->n_dashpots; i++)
     PetscCall(OperatorsAddGrounded(o, OPERATORS_DAMPING, &scene->dashpots[i]));
+  PetscCall(OperatorsAddJoints(o));
   PetscFunctionReturn(0);
 }

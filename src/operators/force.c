@@ -1,6 +1,6 @@
 /*
-   Internal forces of a displacement: f = sum over cells of K_e u_e (N), with Young's moduli at the point p, at all
-   vertices. Where supports hold a direction f is the force that they exert, as far as no load acts there. Displacements
+   Internal forces of a displacement: f = sum over cells of K_e u_e (N), with Young's moduli at the point p, and those of
+   bushings and points, at all vertices. Where supports hold a direction f is the force that they exert, as far as no load acts there. Displacements
    are taken relative to the first node of each cell: a translation gives no force, while in the assembled matrix its
    rounding resists like a spring of some 1e-16 of the stiffness.
 */
@@ -49,6 +49,7 @@ static PetscErrorCode OperatorsForcesOf(Operators o, const PetscReal p[], const 
   PetscCall(VecSet(local, 0));
   PetscCall(VecGetArray(local, &force));
   PetscCall(OperatorsAddCellForces(o, OperatorsPoint(o, p), displacement, force));
+  PetscCall(OperatorsAddJointForces(o, OperatorsPoint(o, p), displacement, force));
   PetscCall(VecRestoreArray(local, &force));
   PetscCall(ModelSumShared(o->model, local));
   PetscFunctionReturn(0);
@@ -126,6 +127,7 @@ PetscErrorCode OperatorsAddWeight(Operators operators, const PetscReal p[], Vec 
     PetscCall(OperatorsAddCellWeight(operators, c, &material, force));
   }
   for (PetscInt i = 0; i < n; i++) total[i % 3] += PetscRealPart(force[i]);
+  PetscCall(OperatorsAddJointWeight(operators, OperatorsPoint(operators, p), force, total));
   PetscCall(VecRestoreArray(weight, &force));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, total, 3, MPIU_REAL, MPI_SUM, operators->comm));
   PetscCall(ModelSumShared(operators->model, weight));
@@ -167,6 +169,7 @@ static PetscErrorCode OperatorsAddSpringForces(Operators o, const PetscReal p[],
     const OperatorsTerm *term = &o->terms.term[t];
 
     if (term->kind != OPERATORS_STIFFNESS || term->factor[0].parameter < N_PART_PARAMETERS * scene->n_parts) continue;
+    if (term->factor[0].parameter >= o->n_local) continue; /* bushings and points are among the internal forces */
     PetscCall(MatMult(term->A, u, part));
     PetscCall(VecAXPY(f, OperatorsTermCoefficient(term, p), part));
   }

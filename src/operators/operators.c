@@ -209,6 +209,7 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   PetscCall(OperatorsReleaseBodies(o));
   PetscCall(TermsDestroy(&o->terms));
   PetscCall(PetscFree(o->interface));
+  PetscCall(PetscFree(o->joint));
   PetscCall(PetscFree(o->mu));
   PetscCall(ParametersDestroy(&o->parameters));
   PetscCall(PetscFree(*operators));

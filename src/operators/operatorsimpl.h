@@ -21,6 +21,11 @@ typedef struct {
   PetscInt kn, slope, force, speed;
 } InterfaceParameters;
 
+/* Indices of the parameters of a bushing or point, -1 where there is none */
+typedef struct {
+  PetscInt stiffness[6], viscosity[6], mass;
+} JointParameters;
+
 struct _p_Operators {
   MPI_Comm comm;
   Model    model; /* NULL for loaded or dense matrices */
@@ -35,6 +40,8 @@ struct _p_Operators {
   Parameters           parameters; /* at the values of the scene */
   PetscInt             n_mu, *mu;  /* parameters that are friction coefficients */
   InterfaceParameters *interface;  /* of each interface */
+  JointParameters     *joint;      /* of each bushing, then of each point */
+  PetscInt             n_local;    /* the first parameters are those of parts, springs and dashpots */
   Terms                terms;      /* of the bodies, in all unknowns; with loaded matrices friction too */
   PetscBool            symmetric;  /* K, M and C are symmetric without friction; always true for a model */
   /* formed when asked for */
@@ -53,6 +60,28 @@ PETSC_INTERN PetscReal      OperatorsLargestMu(Operators operators, const PetscR
 
 /* assemble.c - parameters and terms of the bodies, springs and dashpots */
 PETSC_INTERN PetscErrorCode OperatorsAssemble(Operators operators);
+
+/* Values along or about x, y, z of something that has a matrix for each choice of them */
+typedef struct {
+  OperatorsTermKind kind;
+  const char       *owner, *what, *unit; /* of the parameter */
+  const PetscReal  *value;               /* [3] */
+  PetscErrorCode (*create)(Operators operators, const void *of, const PetscBool mask[3], Mat *A);
+  const void *of;
+} Components;
+
+/* assemble.c - parameters and terms of them: one where all that are not zero are equal, else one for each with _x, _y, _z
+   appended; index = the parameter of each, or -1 */
+PETSC_INTERN PetscErrorCode OperatorsAddComponents(Operators operators, const Components *components,
+                                                   PetscInt index[3]);
+
+/* joint.c - parameters and terms of bushings and points; their forces at displacements [vertices][3] and p, and the
+   weight of their masses, added to forces of the same shape, each at the rank that owns the vertex. Collective. */
+PETSC_INTERN PetscErrorCode OperatorsAddJoints(Operators operators);
+PETSC_INTERN PetscErrorCode OperatorsAddJointForces(Operators operators, const PetscReal p[],
+                                                    const PetscReal displacement[], PetscReal force[]);
+PETSC_INTERN PetscErrorCode OperatorsAddJointWeight(Operators operators, const PetscReal p[], PetscReal force[],
+                                                    PetscReal total[3]);
 
 /* pattern.c - empty matrix of all unknowns, preallocated for the couplings of the cells of one part */
 PETSC_INTERN PetscErrorCode PatternCreate(Model model, PetscInt part, Mat *A);

@@ -3,8 +3,9 @@
 
       reaction = sum K_e u_e + k u - load - contact force,
 
-   u = d where a motion prescribes it, and a spring pulls with -k u. Loads include the weight. In equilibrium reactions, springs and loads sum to
-   zero; reactions.csv lists them all.
+   u = d where a motion prescribes it, and a spring pulls with -k u; forces of bushings and points are among K_e u_e.
+   Loads include the weight. In equilibrium reactions, springs, bushings to the ground, points and loads sum to zero;
+   reactions.csv lists them all.
 */
 #include "staticsimpl.h"
 
@@ -123,6 +124,33 @@ static PetscErrorCode ReactionCreateSpring(Statics s, const Grounded *g, Vec dis
   PetscFunctionReturn(0);
 }
 
+/* Rows of bushings to the ground and points with stiffness, and of bushings between two sets: -k q, on a of the two */
+static PetscErrorCode ReactionsWriteJoints(Statics s, Vec displacement, ResultsTable table)
+{
+  const ModelScene *scene;
+  const PetscReal  *u;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(s->model, &scene));
+  PetscCall(VecGetArrayRead(displacement, &u));
+  for (PetscInt i = 0; i < scene->n_joints + scene->n_points; i++) {
+    const Joint *joint = i < scene->n_joints ? &scene->joints[i] : &scene->points[i - scene->n_joints];
+    PetscReal    q[6], k[6], c[6], m;
+
+    PetscCall(OperatorsGetJoint(s->operators, s->p, i, k, c, &m));
+    if (k[0] + k[1] + k[2] + k[3] + k[4] + k[5] == 0) continue;
+    PetscCall(ModelGetMeanMotion(s->model, &joint->mean, u, q));
+    for (int d = 0; d < 3; d++) q[d] *= -k[d];
+    PetscCall(ReactionRow(table, joint->name,
+                          joint->is_point    ? "point"
+                          : joint->set[1][0] ? "bushing on a"
+                                             : "bushing",
+                          q));
+  }
+  PetscCall(VecRestoreArrayRead(displacement, &u));
+  PetscFunctionReturn(0);
+}
+
 /* Rows of supports, motions and springs */
 static PetscErrorCode ReactionsWriteHolders(Statics s, ResultsTable table)
 {
@@ -155,6 +183,7 @@ static PetscErrorCode ReactionsWriteHolders(Statics s, ResultsTable table)
     PetscCall(VecDestroy(&spring));
     PetscCall(ReactionRow(table, scene->springs[i].name, "spring", force));
   }
+  PetscCall(ReactionsWriteJoints(s, u, table));
   PetscCall(VecDestroy(&u));
   PetscCall(VecDestroy(&unbalance));
   PetscFunctionReturn(0);

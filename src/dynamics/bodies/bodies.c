@@ -78,11 +78,16 @@ PetscErrorCode BodiesSetFromOptions(Bodies b)
 
 PetscErrorCode BodiesSetUp(Bodies b, Operators operators)
 {
+  const ModelScene *scene;
+
   PetscFunctionBeginUser;
   b->operators = operators;
   PetscCall(OperatorsGetModel(operators, &b->model, NULL));
   PetscCheck(b->model, b->comm, PETSC_ERR_ARG_WRONGSTATE, "bodies need a model: loaded matrices have none");
   PetscCall(ModelGetMesh(b->model, &b->mesh));
+  PetscCall(ModelGetScene(b->model, &scene));
+  PetscCheck(!scene->n_joints && !scene->n_points, b->comm, PETSC_ERR_SUP,
+             "-joints and -points are not supported by -analysis transient: use -springs and -dashpots");
   b->layout.n_vertices = b->mesh->n_nodes;
   b->layout.owned      = b->mesh->owned;
   PetscCall(ModelGetBodies(b->model, &b->n_bodies, &b->body));

@@ -2,16 +2,44 @@
    Loads on named sets: a total force F (N), f_v = F s_v with the shares s_v of the vertices v (spread.c), or a pressure
    p (Pa) on a surface, which pushes into the body,
 
-      f_v = -p int N_v n dA,   n the normal out of the body.
+      f_v = -p int N_v n dA,   n the normal out of the body,
 
-   N_v being the shape functions of the faces. Both keep their directions while the body moves.
+   N_v being the shape functions of the faces; or a force and a moment on a point, f = B'(F, M) (mean.c). All keep
+   their directions while the body moves.
 */
 #include "model/modelimpl.h"
 #include "base/vec3.h"
 #include "kernels/facet.h"
 #include <squeal/options.h>
 
-/* Set and force or pressure of one load */
+/* The set of a load, or its point with the moment on it */
+static PetscErrorCode LoadReadPlace(OptionsItems PetscOptionsObject, Model model, Load *load)
+{
+  const MPI_Comm comm     = PetscOptionsObject->comm;
+  char           set[256] = "", point[256] = "";
+  PetscBool      has_moment;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsString("-set", "named surface, curve, point or volume of the mesh (required) unless on a point",
+                               "model.h", "", set, sizeof(set), NULL));
+  PetscCall(PetscOptionsString("-point", "instead of a set: one of the -points", "model.h", point, point, sizeof(point),
+                               &load->on_point));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-moment", "on a point: moment about x,y,z, N m", 3, load->moment,
+                            &has_moment));
+  PetscCall(PetscStrallocpy(set, &load->set));
+  PetscCheck(!set[0] || !load->on_point, comm, PETSC_ERR_USER_INPUT,
+             "-%s_set and -%s_point are given; give one of them", load->name, load->name);
+  PetscCheck(set[0] || load->on_point, comm, PETSC_ERR_USER_INPUT,
+             "-%s_set must be given: a named set of the mesh; or -%s_point, one of the -points", load->name,
+             load->name);
+  PetscCheck(!has_moment || load->on_point, comm, PETSC_ERR_USER_INPUT,
+             "-%s_moment does nothing without -%s_point, one of the -points", load->name, load->name);
+  PetscCall(OptionsCheckFinite(comm, load->name, "moment", "N m", load->moment));
+  if (load->on_point) PetscCall(JointFindPoint(model, load->name, point, &load->point));
+  PetscFunctionReturn(0);
+}
+
+/* Place and force or pressure of one load */
 static PetscErrorCode LoadRead(OptionsItems PetscOptionsObject, void *owner, void *record)
 {
   const MPI_Comm comm = PetscOptionsObject->comm;
@@ -20,20 +48,21 @@ static PetscErrorCode LoadRead(OptionsItems PetscOptionsObject, void *owner, voi
   PetscBool      has_force;
 
   PetscFunctionBeginUser;
-  (void)owner;
-  PetscCall(OptionsGetSet(PetscOptionsObject, &load->set));
+  PetscCall(LoadReadPlace(PetscOptionsObject, owner, load));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-force", "total force in x,y,z, N", 3, load->force, &has_force));
   PetscCall(PetscOptionsReal("-pressure", "instead of a force: pressure on a surface, into the body, Pa", "model.h",
                              load->pressure, &load->pressure, &load->is_pressure));
   PetscCheck(!has_force || !load->is_pressure, comm, PETSC_ERR_USER_INPUT,
              "-%s_force and -%s_pressure are given; give one of them", load->name, load->name);
+  PetscCheck(!load->is_pressure || !load->on_point, comm, PETSC_ERR_USER_INPUT,
+             "-%s_pressure acts on a surface, -%s_set, and not on -%s_point", load->name, load->name, load->name);
   if (load->is_pressure) {
     PetscCheck(load->pressure != 0 && isfinite(load->pressure), comm, PETSC_ERR_USER_INPUT,
                "-%s_pressure %.6g must be finite and not zero (Pa)", load->name, (double)load->pressure);
     PetscFunctionReturn(0);
   }
   PetscCall(OptionsCheckFinite(comm, load->name, "force", "N", load->force));
-  for (int d = 0; d < 3; d++) sum += PetscAbsReal(load->force[d]);
+  for (int d = 0; d < 3; d++) sum += PetscAbsReal(load->force[d]) + PetscAbsReal(load->moment[d]);
   PetscCheck(sum > 0, comm, PETSC_ERR_USER_INPUT,
              "-%s_force must be given: three values, not all zero (N); or -%s_pressure (Pa)", load->name, load->name);
   PetscFunctionReturn(0);
@@ -81,6 +110,37 @@ static PetscErrorCode PressureCheckFaces(Model model, const Load *load)
   PetscFunctionReturn(0);
 }
 
+/* B'(F, M) */
+static PetscErrorCode PointCreateForces(Model model, const Load *load, Vec *forces)
+{
+  PetscReal    wrench[6];
+  PetscScalar *f;
+
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 3; d++) wrench[d] = load->force[d], wrench[3 + d] = load->moment[d];
+  PetscCall(ModelCreateNodal(model, forces));
+  PetscCall(VecGetArray(*forces, &f));
+  ModelAddMeanForce(&model->scene.points[load->point].mean, wrench, f);
+  PetscCall(VecRestoreArray(*forces, &f));
+  PetscCall(ModelSumShared(model, *forces));
+  PetscFunctionReturn(0);
+}
+
+/* The sum of |f| over all nodes, N */
+static PetscErrorCode ForcesSize(Model model, Vec forces, PetscReal *size)
+{
+  const PetscScalar *f;
+
+  PetscFunctionBeginUser;
+  *size = 0;
+  PetscCall(VecGetArrayRead(forces, &f));
+  for (PetscInt j = 0; j < 3 * model->mesh.n_nodes; j++)
+    if (model->mesh.owned[j / 3]) *size += PetscAbsReal(f[j]);
+  PetscCall(VecRestoreArrayRead(forces, &f));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, size, 1, MPIU_REAL, MPI_SUM, model->comm));
+  PetscFunctionReturn(0);
+}
+
 /* The forces of a load at full size, on every rank that has the vertex, N; the caller destroys the vector. *area: of a
    surface under pressure, m^2 */
 static PetscErrorCode LoadCreateForces(Model model, const Load *load, Vec *forces, PetscReal *area)
@@ -90,6 +150,10 @@ static PetscErrorCode LoadCreateForces(Model model, const Load *load, Vec *force
 
   PetscFunctionBeginUser;
   *area = 0;
+  if (load->on_point) {
+    PetscCall(PointCreateForces(model, load, forces));
+    PetscFunctionReturn(0);
+  }
   if (!load->is_pressure) {
     PetscCall(SharesCreate(model, load->name, load->set, SPREAD_TOTAL, PETSC_TRUE, forces));
     PetscCall(VecGetLocalSize(*forces, &n));
@@ -134,6 +198,7 @@ PetscErrorCode LoadsSetUp(Model model)
     if (load->is_pressure) PetscCall(PressureSum(model, load, forces));
     load->size = PetscAbsReal(load->pressure) * area;
     for (int d = 0; d < 3 && !load->is_pressure; d++) load->size += PetscAbsReal(load->force[d]);
+    if (load->on_point) PetscCall(ForcesSize(model, forces, &load->size));
     PetscCall(VecDestroy(&forces));
   }
   PetscFunctionReturn(0);
@@ -141,12 +206,16 @@ PetscErrorCode LoadsSetUp(Model model)
 
 PetscErrorCode LoadView(const Load *load, PetscViewer viewer)
 {
-  char words[64] = "";
+  char words[64] = "", moment[128] = "";
 
   PetscFunctionBeginUser;
+  if (load->on_point)
+    PetscCall(PetscSNPrintf(moment, sizeof(moment), ", and %.6g, %.6g, %.6g N m", (double)load->moment[0],
+                            (double)load->moment[1], (double)load->moment[2]));
   if (load->is_pressure) PetscCall(PetscSNPrintf(words, sizeof(words), "%.6g Pa, ", (double)load->pressure));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  load %s on %s: %s%.6g, %.6g, %.6g N in all\n", load->name, load->set,
-                                   words, (double)load->force[0], (double)load->force[1], (double)load->force[2]));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  load %s on %s: %s%.6g, %.6g, %.6g N in all%s\n", load->name,
+                                   load->on_point ? "a point" : load->set, words, (double)load->force[0],
+                                   (double)load->force[1], (double)load->force[2], moment));
   PetscFunctionReturn(0);
 }
 

@@ -1,0 +1,264 @@
+/*
+   Joints: bushings between the mean motions of two sets, or of one and the ground, and points, which stand for what is
+   fastened to a set: its mass and inertia, and what holds it. All act on the six motions q = B u about a place x_0
+   (mean.c), of two sets on the difference q_a - q_b,
+
+      K += B' diag(k) B,     C += B' diag(c) B,     M += B' diag(m, m, m, J) B,
+
+   which is exact for rigid motions: B u is the motion of the point, and a bushing does not resist where both of its
+   sides move as one rigid body. J is the inertia about x_0, where the centre of mass is.
+
+   J = [xx xy xz; xy yy yz; xz yz zz] with xy = -int x y dm is that of a body when its principal moments are not negative
+   and none exceeds the sum of the two others.
+*/
+#include "model/modelimpl.h"
+#include <petscblaslapack.h>
+
+#define INERTIA_ROUNDING 1e-9 /* of the largest principal moment */
+
+PetscErrorCode InertiaPrincipal(const PetscReal inertia[6], PetscReal principal[3], PetscReal axes[9])
+{
+  static const int at[9] = {0, 3, 4, 3, 1, 5, 4, 5, 2};
+  PetscReal        work[32];
+  PetscBLASInt     n = 3, size = 32, info;
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 9; i++) axes[i] = inertia[at[i]];
+  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "U", &n, axes, &n, principal, work, &size, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev: info %d", (int)info);
+  PetscFunctionReturn(0);
+}
+
+/* Reads three values that must not be negative; whether one of them is not zero */
+static PetscErrorCode JointReadThree(OptionsItems PetscOptionsObject, const char option[], const char help[],
+                                     const char name[], PetscReal value[3])
+{
+  PetscFunctionBeginUser;
+  PetscCall(OptionsGetReals(PetscOptionsObject, option, help, 3, value, NULL));
+  for (int d = 0; d < 3; d++)
+    PetscCheck(value[d] >= 0 && isfinite(value[d]), PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
+               "-%s_%s value %.6g must be finite and not negative", name, option + 1, (double)value[d]);
+  PetscFunctionReturn(0);
+}
+
+/* What resists the motions, and where they are taken */
+static PetscErrorCode JointReadHolders(OptionsItems PetscOptionsObject, Joint *joint)
+{
+  PetscFunctionBeginUser;
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-at", "place of its motions, m; default the middle", 3, joint->at,
+                            &joint->has_at));
+  PetscCall(OptionsCheckFinite(PetscOptionsObject->comm, joint->name, "at", "m", joint->at));
+  PetscCall(JointReadThree(PetscOptionsObject, "-stiffness", "stiffness in x,y,z, N/m", joint->name, joint->stiffness));
+  PetscCall(JointReadThree(PetscOptionsObject, "-turn_stiffness", "stiffness about x,y,z, N m/rad", joint->name,
+                           &joint->stiffness[3]));
+  PetscCall(
+    JointReadThree(PetscOptionsObject, "-viscosity", "viscosity in x,y,z, N s/m", joint->name, joint->viscosity));
+  PetscCall(JointReadThree(PetscOptionsObject, "-turn_viscosity", "viscosity about x,y,z, N m s/rad", joint->name,
+                           &joint->viscosity[3]));
+  PetscFunctionReturn(0);
+}
+
+/* Whether there is anything but zeros */
+static PetscBool JointIsGiven(PetscInt n, const PetscReal value[])
+{
+  for (PetscInt i = 0; i < n; i++)
+    if (value[i] != 0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* One side of a bushing; empty where it is not given */
+static PetscErrorCode JointReadSide(OptionsItems PetscOptionsObject, const char option[], const char help[], char **set)
+{
+  char name[256] = "";
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsString(option, help, "model.h", name, name, sizeof(name), NULL));
+  PetscCall(PetscStrallocpy(name, set));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode JointRead(OptionsItems PetscOptionsObject, void *owner, void *record)
+{
+  const MPI_Comm comm  = PetscOptionsObject->comm;
+  Joint         *joint = record;
+
+  PetscFunctionBeginUser;
+  (void)owner;
+  PetscCall(JointReadSide(PetscOptionsObject, "-a", "named set of one side (required)", &joint->set[0]));
+  PetscCall(JointReadSide(PetscOptionsObject, "-b", "named set of the other side; default the ground", &joint->set[1]));
+  PetscCall(JointReadHolders(PetscOptionsObject, joint));
+  PetscCheck(joint->set[0][0], comm, PETSC_ERR_USER_INPUT, "-%s_a must be given: a named set of the mesh", joint->name);
+  PetscCheck(strcmp(joint->set[0], joint->set[1]), comm, PETSC_ERR_USER_INPUT,
+             "-%s_a and -%s_b both name %s: a bushing joins two sets, or one and the ground", joint->name, joint->name,
+             joint->set[0]);
+  PetscCheck(JointIsGiven(6, joint->stiffness) || JointIsGiven(6, joint->viscosity), comm, PETSC_ERR_USER_INPUT,
+             "bushing %s does nothing: give -%s_stiffness, -%s_turn_stiffness, -%s_viscosity or -%s_turn_viscosity",
+             joint->name, joint->name, joint->name, joint->name, joint->name);
+  PetscFunctionReturn(0);
+}
+
+/* Mass, and inertia of three or six values */
+static PetscErrorCode PointReadMass(OptionsItems PetscOptionsObject, Joint *joint)
+{
+  const MPI_Comm comm = PetscOptionsObject->comm;
+  PetscReal      principal[3], axes[9], *J = joint->inertia;
+  PetscInt       n = 6;
+  PetscBool      given;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsReal("-mass", "mass, kg", "model.h", joint->mass, &joint->mass, NULL));
+  PetscCall(PetscOptionsRealArray("-inertia", "inertia about its place: xx,yy,zz or xx,yy,zz,xy,xz,yz, kg m^2",
+                                  "model.h", J, &n, &given));
+  PetscCheck(joint->mass >= 0 && isfinite(joint->mass), comm, PETSC_ERR_USER_INPUT,
+             "-%s_mass %.6g must be finite and not negative (kg)", joint->name, (double)joint->mass);
+  PetscCheck(!given || n == 3 || n == 6, comm, PETSC_ERR_USER_INPUT,
+             "-%s_inertia has %" PetscInt_FMT " values; give xx,yy,zz or xx,yy,zz,xy,xz,yz (kg m^2)", joint->name, n);
+  for (int i = 0; i < 6; i++)
+    PetscCheck(isfinite(J[i]), comm, PETSC_ERR_USER_INPUT, "-%s_inertia value %.6g must be finite", joint->name,
+               (double)J[i]);
+  PetscCall(InertiaPrincipal(J, principal, axes));
+  PetscCheck(principal[0] >= -INERTIA_ROUNDING * PetscAbsReal(principal[2]), comm, PETSC_ERR_USER_INPUT,
+             "-%s_inertia: no body has the principal moments %.6g, %.6g, %.6g kg m^2, since one is negative",
+             joint->name, (double)principal[0], (double)principal[1], (double)principal[2]);
+  PetscCheck(principal[2] - principal[1] - principal[0] <= INERTIA_ROUNDING * principal[2], comm, PETSC_ERR_USER_INPUT,
+             "-%s_inertia: no body has the principal moments %.6g, %.6g, %.6g kg m^2, since one exceeds the sum of the "
+             "two others",
+             joint->name, (double)principal[0], (double)principal[1], (double)principal[2]);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PointRead(OptionsItems PetscOptionsObject, void *owner, void *record)
+{
+  Joint *joint = record;
+
+  PetscFunctionBeginUser;
+  (void)owner;
+  joint->is_point = PETSC_TRUE;
+  PetscCall(OptionsGetSet(PetscOptionsObject, &joint->set[0]));
+  PetscCall(PetscStrallocpy("", &joint->set[1]));
+  PetscCall(JointReadHolders(PetscOptionsObject, joint));
+  PetscCall(PointReadMass(PetscOptionsObject, joint));
+  PetscFunctionReturn(0);
+}
+
+const OptionsList joints_list = {"-joints", "bushings, each the prefix of its -a, -b and -stiffness", "Bushing",
+                                 sizeof(Joint), JointRead};
+const OptionsList points_list = {"-points", "points joined to sets, each the prefix of its -set and -mass", "Point",
+                                 sizeof(Joint), PointRead};
+
+/* Whether anything acts on its rotations, or on the point at all */
+static void JointAsked(Model model, const Joint *joint, PetscBool *turns, PetscBool *any)
+{
+  const ModelScene *s = &model->scene;
+
+  *turns =
+    JointIsGiven(3, &joint->stiffness[3]) || JointIsGiven(3, &joint->viscosity[3]) || JointIsGiven(6, joint->inertia);
+  *any = *turns || JointIsGiven(3, joint->stiffness) || JointIsGiven(3, joint->viscosity) || joint->mass > 0;
+  for (PetscInt i = 0; i < s->n_loads; i++) {
+    if (!s->loads[i].on_point || &s->points[s->loads[i].point] != joint) continue;
+    *any = PETSC_TRUE;
+    if (JointIsGiven(3, s->loads[i].moment)) *turns = PETSC_TRUE;
+  }
+}
+
+/* The place and the six motions of one joint */
+static PetscErrorCode JointSetUp(Model model, Joint *joint)
+{
+  const PetscInt n = joint->set[1][0] ? 2 : 1;
+  ModelMeanWish  wish[2];
+  PetscReal      middle[3];
+  PetscBool      turns, any;
+
+  PetscFunctionBeginUser;
+  JointAsked(model, joint, &turns, &any);
+  PetscCheck(
+    any, model->comm, PETSC_ERR_USER_INPUT,
+    "point %s does nothing: give -%s_mass, -%s_inertia, -%s_stiffness, -%s_viscosity, or a load that acts on it",
+    joint->name, joint->name, joint->name, joint->name, joint->name);
+  for (PetscInt k = 0; k < n; k++) {
+    wish[k] = (ModelMeanWish){joint->name, joint->is_point ? "set" : k ? "b" : "a", joint->set[k], turns, k ? -1 : 1};
+    if (joint->has_at) continue;
+    PetscCall(MeanFindMiddle(model, &wish[k], middle));
+    for (int d = 0; d < 3; d++) joint->at[d] += middle[d] / (PetscReal)n;
+  }
+  PetscCall(MeanCreate(model, n, wish, joint->at, &joint->mean));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode JointsSetUp(Model model)
+{
+  ModelScene *s = &model->scene;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < s->n_joints; i++) PetscCall(JointSetUp(model, &s->joints[i]));
+  for (PetscInt i = 0; i < s->n_points; i++) PetscCall(JointSetUp(model, &s->points[i]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode JointsDestroy(PetscInt n, Joint joint[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) PetscCall(MeanDestroy(&joint[i].mean));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode JointFindPoint(Model model, const char load[], const char name[], PetscInt *index)
+{
+  const ModelScene *s          = &model->scene;
+  char              valid[512] = "";
+
+  PetscFunctionBeginUser;
+  *index = -1;
+  for (PetscInt i = 0; i < s->n_points; i++) {
+    if (!strcmp(s->points[i].name, name)) *index = i;
+    PetscCall(PetscStrlcat(valid, i ? ", " : "", sizeof(valid)));
+    PetscCall(PetscStrlcat(valid, s->points[i].name, sizeof(valid)));
+  }
+  PetscCheck(*index >= 0, model->comm, PETSC_ERR_USER_INPUT, "-%s_point %s is none of the -points: %s", load, name,
+             valid[0] ? valid : "there are none");
+  PetscFunctionReturn(0);
+}
+
+/* A line of three values where one is not zero */
+static PetscErrorCode JointViewThree(const char what[], const PetscReal v[3], const char unit[], PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  if (JointIsGiven(3, v))
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer, ", %s %.6g, %.6g, %.6g %s", what, (double)v[0], (double)v[1], (double)v[2], unit));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode JointView(const Joint *j, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  %s %s on %s%s%s at %.6g, %.6g, %.6g m", j->is_point ? "point" : "bushing",
+                                   j->name, j->set[0], j->is_point ? "" : " and ",
+                                   j->is_point    ? ""
+                                   : j->set[1][0] ? j->set[1]
+                                                  : "the ground",
+                                   (double)j->at[0], (double)j->at[1], (double)j->at[2]));
+  if (j->mass > 0) PetscCall(PetscViewerASCIIPrintf(viewer, ", mass %.6g kg", (double)j->mass));
+  PetscCall(JointViewThree("inertia", j->inertia, "kg m^2", viewer));
+  PetscCall(JointViewThree("stiffness", j->stiffness, "N/m", viewer));
+  PetscCall(JointViewThree("turn stiffness", &j->stiffness[3], "N m/rad", viewer));
+  PetscCall(JointViewThree("viscosity", j->viscosity, "N s/m", viewer));
+  PetscCall(JointViewThree("turn viscosity", &j->viscosity[3], "N m s/rad", viewer));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode JointAddChecksum(Model model, const Joint *j, Checksum c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ChecksumSetPart(c, "%s %s", j->is_point ? "point" : "bushing", j->name));
+  for (int k = 0; k < 2; k++)
+    if (j->set[k][0]) PetscCall(ModelAddSetChecksum(model, j->set[k], PETSC_FALSE, c));
+  PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){j->has_at}));
+  if (j->has_at) PetscCall(ChecksumAddReals(c, 3, j->at)); /* else a sum over ranks, whose rounding is no difference */
+  PetscCall(ChecksumAddReals(c, 6, j->stiffness));
+  PetscCall(ChecksumAddReals(c, 6, j->viscosity));
+  PetscCall(ChecksumAddReals(c, 1, &j->mass));
+  PetscCall(ChecksumAddReals(c, 6, j->inertia));
+  PetscFunctionReturn(0);
+}
