@@ -19,6 +19,7 @@ from math import factorial, pi
 from pathlib import Path
 
 import numpy as np
+from msh import sections
 
 GEO = Path(__file__).resolve().parents[1] / "options/brake.geo"
 SIZES = {"14": (45e3, 55e3), "6.5": (180e3, 220e3)}  # mm -> unknowns
@@ -36,18 +37,6 @@ def turned():
         -1, 2).T
     r1, z1 = np.roll(r, -1), np.roll(z, -1)
     return (pi / 3 * ((r + r1) * (r * z1 - r1 * z)).sum() - 5 * 7 * pi * 6.5**2) * 1e-9
-
-
-def sections(path):
-    """Numbers and words of each section of a file, line by line."""
-    found, name = {}, None
-    for line in path.read_text().splitlines():
-        if line.startswith("$"):
-            name = None if line.startswith("$End") else line[1:]
-            found.setdefault(name, [])
-        else:
-            found[name].append(line.split())
-    return found
 
 
 def names_of(part):

@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""Frequencies of clamped bodies beside CalculiX's on the same mesh, elastic ones of steel and of an orthotropic material
+in turned axes:
+
+  hex20   a piece of a ring that climbs, with curved sides. Both integrate with 27 points
+  tet10   free tetrahedra with straight sides in a skewed block. The stiffness of both is exact. CalculiX integrates the
+          mass of C3D10 with 4 points as well, which moves these frequencies by up to 4e-3; squeal's, with 15 points, is exact.
+          Hence tests/tetrahedra.py stands between them: with exact mass it must agree with squeal, with CalculiX's 4 points
+          with CalculiX
+
+Breaks when shape functions, the order of the nodes of a file, engineering constants or their axes differ from what
+others take them for. CalculiX prints 7 digits of an eigenvalue.
+
+    test_calculix.py SQUEAL MPIRUN
+
+Exit status 77, skipped, without the programs ccx (Debian's calculix-ccx) and gmsh."""
+
+import csv
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from msh import sections
+from tetrahedra import frequencies, rotated
+
+COUNT = 12
+RTOL, EXACT = 1e-5, 1e-9
+DENSITY = 7800
+MATERIALS = {"isotropic": ([210e9], [0.3], None),
+             "orthotropic": ([60e9, 9e9, 20e9], [0.28, 0.35, 0.31], [5e9, 7e9, 3e9])}  # 1,2,3; 12,13,23
+AXES = [0.6, 0.5, 0.2], [-0.3, 0.8, 0.4]  # axis 1, and another in the plane of 1 and 2
+BLOCK = """Point(1) = {0, 0, 0};
+line[] = Extrude {0.05, 0, 0} {Point{1};};
+face[] = Extrude {0.006, 0.03, 0} {Line{line[1]};};
+body[] = Extrude {0, 0.004, 0.02} {Surface{face[1]};};
+Physical Volume("body") = {body[1]};
+Physical Surface("root") = {body[5]};
+"""
+RING = """Point(1) = {0.05, 0, 0};
+line[] = Extrude {0.03, 0, 0} {Point{1}; Layers{3};};
+face[] = Extrude {0, 0.004, 0.02} {Line{line[1]}; Layers{2}; Recombine;};
+body[] = Extrude {{0, 0, 0.01}, {0, 0, 1}, {0, 0, 0}, 1.2} {Surface{face[1]}; Layers{6}; Recombine;};
+Physical Volume("body") = {body[1]};
+Physical Surface("root") = {face[1]};
+"""
+# name -> geometry, options of gmsh, type of the solid and of its faces in the file, CalculiX's name, and its order of nodes
+MESHES = {
+    "tet10": (BLOCK, "-clmin 0.011", 11, 9, "C3D10", [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]),
+    "hex20": (RING, "-setnumber Mesh.SecondOrderIncomplete 1", 17, 16, "C3D20",
+              [0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15]),
+}
+
+
+def made(command, folder):
+    """What a program prints; a failure ends the test."""
+    done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise SystemExit(f"{command[0]}: exit status {done.returncode}: {done.stdout[-500:]} {done.stderr[-500:]}")
+    return done.stdout
+
+
+def lines_of(rows):
+    """Lines of numbers for CalculiX, at most 16 in one; all but the last end with a comma."""
+    for row in rows:
+        for first in range(0, len(row), 16):
+            yield ", ".join(map(str, row[first:first + 16])) + ("," if first + 16 < len(row) else "")
+
+
+def material_cards(name):
+    young, poisson, shear = MATERIALS[name]
+    cards = ["*MATERIAL, NAME=M", "*ELASTIC" + (", TYPE=ENGINEERING CONSTANTS" if shear else "")]
+    cards += lines_of([[*young, *poisson, *shear[:2]], shear[2:]] if shear else [[*young, *poisson]])
+    cards += ["*DENSITY", str(DENSITY), "*ORIENTATION, NAME=A, SYSTEM=RECTANGULAR", *lines_of([AXES[0] + AXES[1]])]
+    return [*cards, "*SOLID SECTION, ELSET=BODY, MATERIAL=M" + (", ORIENTATION=A" if shear else "")]
+
+
+def read(folder, mesh):
+    """Numbers of each element and its nodes, in CalculiX's order; numbers of the held nodes; places, m, of all."""
+    _, _, solid, face, _, order = MESHES[mesh]
+    part = sections(folder / f"{mesh}.msh")
+    elements = [list(map(int, row)) for row in part["Elements"][1:]]
+    bodies = [[row[0], *np.array(row[3 + row[2]:])[order].tolist()] for row in elements if row[1] == solid]
+    held = sorted({node for row in elements if row[1] == face for node in row[3 + row[2]:]})
+    return bodies, held, np.array([row[1:] for row in part["Nodes"][1:]], float)
+
+
+def calculix(folder, mesh, material):
+    """Hz, ascending."""
+    bodies, held, nodes = read(folder, mesh)
+    kind = MESHES[mesh][4]
+    cards = ["*NODE", *lines_of([number, *place] for number, place in enumerate(nodes.tolist(), 1))]
+    cards += [f"*ELEMENT, TYPE={kind}, ELSET=BODY", *lines_of(bodies), "*NSET, NSET=ROOT", *lines_of([held])]
+    cards += [*material_cards(material), "*BOUNDARY", "ROOT, 1, 3", "*STEP", "*FREQUENCY", str(COUNT), "*END STEP"]
+    (folder / "job.inp").write_text("\n".join(cards) + "\n")
+    made(["ccx", "job"], folder)
+    rows = [line.split() for line in (folder / "job.dat").read_text().splitlines()]
+    found = [float(row[3]) for row in rows if len(row) == 5 and row[0].isdigit()]
+    return np.array(found[:COUNT])
+
+
+def squeal(folder, mesh, material):
+    """The same."""
+    young, poisson, shear = (",".join(map(str, values or [])) for values in MATERIALS[material])
+    words = ["-model_mesh", f"{mesh}.msh", "-parts", "body", "-body_young", young, "-body_poisson", poisson,
+             "-body_density", DENSITY, "-supports", "clamp", "-clamp_set", "root", "-clamp_fix", "xyz"]
+    if shear:
+        words += ["-body_shear", shear]
+        words += [word for k in (0, 1) for word in (f"-body_axis_{k + 1}", ",".join(map(str, AXES[k])))]
+    made([sys.argv[2], "-n", 1, sys.argv[1], *words, "-modes_target", 1, "-modes_count", COUNT, "-output_dir", "out",
+          "-output_fields", 0], folder)
+    with (folder / "out/modes.csv").open(newline="") as lines:
+        return np.array([float(row["freq_hz"]) for row in csv.DictReader(lines)][:COUNT])
+
+
+def compliance(material):
+    """[6, 6], engineering shear, order 11 22 33 12 13 23."""
+    young, poisson, shear = MATERIALS[material]
+    shear = shear or [young[0] / (2 * (1 + poisson[0]))] * 3
+    young, poisson = (np.broadcast_to(values, 3) for values in (young, poisson))
+    full = np.diag([*(1 / young), *(1 / np.array(shear))])
+    for (i, j), nu in zip(((0, 1), (0, 2), (1, 2)), poisson):
+        full[i, j] = full[j, i] = -nu / young[i]
+    return full
+
+
+def turned():
+    """Local axes, in rows."""
+    first = np.array(AXES[0]) / np.linalg.norm(AXES[0])
+    second = AXES[1] - first * (first @ AXES[1])
+    second /= np.linalg.norm(second)
+    return np.array([first, second, np.cross(first, second)])
+
+
+def between(folder, mesh, material):
+    """Frequencies of the third: with exact mass, with that of 4 points."""
+    bodies, held, nodes = read(folder, mesh)
+    cells = np.array(bodies)[:, 1:] - 1
+    stiffness = rotated(compliance(material), turned())
+    return [frequencies(nodes, cells, np.array(held) - 1, stiffness, DENSITY, four)[:COUNT] for four in (False, True)]
+
+
+def judge(names, one, other, rtol=RTOL):
+    """Whether they agree; prints it."""
+    worst = max(abs(one / other - 1)) if len(one) == len(other) == COUNT else np.inf
+    print(f"{'ok    ' if worst < rtol else 'FAILED'} {names}: {COUNT} frequencies from {one[0]:.1f} to {one[-1]:.1f} Hz, apart "
+          f"by {worst:.1e} at most, {rtol:g} allowed")
+    return worst < rtol
+
+
+def compare(folder, mesh, material):
+    """Whether all agree that should."""
+    ours, theirs = squeal(folder, mesh, material), calculix(folder, mesh, material)
+    name = f"{mesh}, {material}: squeal"
+    if mesh == "hex20":
+        return judge(f"{name}, CalculiX", ours, theirs)
+    exact, four_points = between(folder, mesh, material)
+    print(f"       mass of 4 points: {max(abs(theirs / ours - 1)):.1e} between squeal and CalculiX")
+    kept = judge(f"{name}, exact mass", ours, exact, EXACT)
+    return judge(f"{mesh}, {material}: CalculiX, mass of 4 points", theirs, four_points) and kept
+
+
+def main():
+    sys.argv[1:] = [str(Path(word).resolve()) for word in sys.argv[1:]]
+    absent = [name for name in ("ccx", "gmsh") if not shutil.which(name)]
+    if absent:
+        print(f"skipped: no {' '.join(absent)}, of scripts/packages.txt")
+        return 77
+    kept = True
+    with tempfile.TemporaryDirectory(prefix="squeal-") as name:
+        folder = Path(name)
+        for mesh, (geometry, options, *_) in MESHES.items():
+            (folder / f"{mesh}.geo").write_text(geometry)
+            made(["gmsh", "-3", "-order", 2, *options.split(), "-format", "msh22", f"{mesh}.geo", "-o", f"{mesh}.msh"],
+                 folder)
+            for material in MATERIALS:
+                kept &= compare(folder, mesh, material)
+    return 0 if kept else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
