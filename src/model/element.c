@@ -11,7 +11,7 @@
 
 #define INCOMPATIBLE "incompatible"
 #define FULL         "full"
-#define LOCKS        "it is too stiff in bending; mesh with second order (tet10)"
+#define LOCKS        "too stiff in bending; mesh with second order: "
 
 /* Bits of the corners around each node */
 static const unsigned char at_tet[]   = {1, 2, 4, 8, 3, 6, 5, 9, 10, 12};
@@ -29,7 +29,7 @@ static const unsigned char at_hex[]   = {1,   2,   4,  8,  16, 32,  64,  128, 3,
 static const Element elements[] = {
   {.name        = "tet4",
    .description = "4-node tetrahedron",
-   .warning     = LOCKS,
+   .warning     = LOCKS "tet10",
    .n_nodes     = 4,
    .solid       = &solid_tet4,
    .vtk         = 10,
@@ -43,13 +43,13 @@ static const Element elements[] = {
    .n_nodes     = 10,
    .solid       = &solid_tet10,
    .vtk         = 24,
-   .xdmf        = "Tet_10",
+   .xdmf        = "Tetrahedron_10",
    .xdmf_number = 38,
    ROW_TET,
    ROW_SOLID},
   {.name        = "wedge6",
    .description = "6-node wedge",
-   .warning     = "it is too stiff in bending; mesh with second order (wedge15)",
+   .warning     = LOCKS "wedge15",
    .n_nodes     = 6,
    .solid       = &solid_wedge6,
    .vtk         = 13,
@@ -88,7 +88,7 @@ static const Element elements[] = {
    .n_nodes     = 20,
    .solid       = &solid_hex20,
    .vtk         = 25,
-   .xdmf        = "Hex_20",
+   .xdmf        = "Hexahedron_20",
    .xdmf_number = 48,
    ROW_HEX,
    ROW_SOLID},
@@ -97,7 +97,7 @@ static const Element elements[] = {
    .n_nodes     = 27,
    .solid       = &solid_hex27,
    .vtk         = 29,
-   .xdmf        = "Hex_27",
+   .xdmf        = "Hexahedron_27",
    .xdmf_number = 50,
    .row_sums    = PETSC_TRUE,
    ROW_HEX,

@@ -3,7 +3,8 @@
 transient: transient.xmf and the snapshots that it lists), as VTK and ParaView see them.
 
 VTK's HDF reader must see the hexahedra, none inverted, every node used, all parts, and for each mode of the table a
-finite shape that is not zero. The XDMF file must name datasets that exist, with their true sizes, and the same
+finite shape that is not zero. With --kinds it must see cells of these types of VTK in place of hexahedra of first order,
+with the nodes between corners in the middle of VTK's edges and faces, of a mesh with straight edges. The XDMF file must name datasets that exist, with their true sizes, and the same
 attributes at each step, since ParaView steps through them. A wrong order of corners, a node lost or doubled between
 ranks, a shape under the wrong mode and a stale path all fail here.
 
@@ -62,19 +63,40 @@ def hexahedron_measure(grid, measure):
     return vtk_to_numpy(quality.GetOutput().GetCellData().GetArray("Quality"))
 
 
-def check_mesh(grid, hexahedra, nodes, volume):
-    """Cells: number, kind, orientation, volume (m^3); nodes: number, each used."""
-    expect("number of hexahedra", grid.GetNumberOfCells(), hexahedra)
-    kinds = set(vtk_to_numpy(grid.GetCellTypesArray()).tolist())
-    expect("kinds of cells", kinds, {VTK_HEXAHEDRON})
-    inverted = numpy.flatnonzero(hexahedron_measure(grid, "Jacobian") <= 0)
-    expect("inverted hexahedra", inverted.tolist(), [])
+def points_of(cell):
+    """Coordinates [n][3] of the points of a cell, m."""
+    points = cell.GetPoints()
+    return numpy.array([points.GetPoint(i) for i in range(points.GetNumberOfPoints())])
+
+
+def check_middles(grid):
+    """Nodes that are no corners stand in the middle of VTK's edges and faces."""
+    for k in range(grid.GetNumberOfCells()):
+        cell = grid.GetCell(k)
+        edges = [points_of(cell.GetEdge(e)) for e in range(cell.GetNumberOfEdges())]
+        faces = [points_of(cell.GetFace(f)) for f in range(cell.GetNumberOfFaces())]
+        off = [edge[2] - edge[:2].mean(0) for edge in edges if len(edge) == 3]
+        off += [face[8] - face[:4].mean(0) for face in faces if len(face) == 9]
+        if numpy.abs(off).max(initial=0) > 1e-12 * numpy.ptp(points_of(cell)):
+            raise Difference(f"nodes of cell {k} are not in the middle of VTK's edges")
+
+
+def check_mesh(grid, hexahedra, nodes, volume, kinds):
+    """Cells: number, kinds, orientation, volume (m^3); nodes: number, each used."""
+    expect("number of cells", grid.GetNumberOfCells(), hexahedra)
+    expect("kinds of cells", set(vtk_to_numpy(grid.GetCellTypesArray()).tolist()), kinds)
+    if kinds == {VTK_HEXAHEDRON}:
+        inverted = numpy.flatnonzero(hexahedron_measure(grid, "Jacobian") <= 0)
+        expect("inverted hexahedra", inverted.tolist(), [])
+    check_middles(grid)
     used = numpy.unique(vtk_to_numpy(grid.GetCells().GetConnectivityArray()))
     expect("every node used", used.tolist(), list(range(grid.GetNumberOfPoints())))
     if nodes is not None:
         expect("number of nodes", len(used), nodes)
+    if volume is None:
+        return
     total = hexahedron_measure(grid, "Volume").sum()
-    if volume is not None and abs(total - volume) > 1e-10 * volume:
+    if abs(total - volume) > 1e-10 * volume:
         raise Difference(f"volume: found {total:.15g} m^3, expected {volume:.15g} m^3")
 
 
@@ -165,10 +187,11 @@ def arguments():
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, help="folder with modes.csv, modes.h5 and modes.xmf, or with a film")
-    parser.add_argument("hexahedra", type=int, help="number of hexahedra of the mesh")
+    parser.add_argument("hexahedra", type=int, help="number of cells of the mesh")
     parser.add_argument("parts", help="names of the parts in order, e.g. disc,pad,beam")
     parser.add_argument("--nodes", type=int, help="number of nodes of the mesh")
     parser.add_argument("--volume", type=float, help="volume of the mesh, m^3, to 1e-10")
+    parser.add_argument("--kinds", help="VTK's types of the cells, e.g. 24,25; default hexahedra of 8 nodes")
     parser.add_argument("--film", help="name of a film instead of modes")
     return parser.parse_args()
 
@@ -179,7 +202,8 @@ def main():
     fields = args.folder / ("snapshot_000000.h5" if args.film else "modes.h5")
     try:
         grid = read_grid(fields)
-        check_mesh(grid, args.hexahedra, args.nodes, args.volume)
+        kinds = {int(kind) for kind in args.kinds.split(",")} if args.kinds else {VTK_HEXAHEDRON}
+        check_mesh(grid, args.hexahedra, args.nodes, args.volume, kinds)
         check_parts(grid, fields, args.parts.split(","))
         if args.film:
             done = f"{check_film(args.folder / f'{args.film}.xmf', args.hexahedra)} frames"
@@ -191,7 +215,7 @@ def main():
     except (Difference, OSError, KeyError, xml.ParseError) as error:
         print(f"test_fields: {args.folder}: {error}", file=sys.stderr)
         return 1
-    print(f"{args.folder}: {grid.GetNumberOfPoints()} nodes, {args.hexahedra} hexahedra, {done}")
+    print(f"{args.folder}: {grid.GetNumberOfPoints()} nodes, {args.hexahedra} cells, {done}")
     return 0
 
 

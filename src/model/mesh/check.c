@@ -6,7 +6,7 @@
 
 #define FLAT 1e-8 /* smallest admissible Jacobian relative to that of the bounding box */
 
-/* Writes why a cell has no row in the table: a node that stands twice, or neighbours of another order */
+/* Writes why a cell has no row in the table */
 static PetscErrorCode CellExplain(Model model, PetscInt c, size_t size, char text[])
 {
   const Mesh    *mesh = &model->mesh;
@@ -23,11 +23,6 @@ static PetscErrorCode CellExplain(Model model, PetscInt c, size_t size, char tex
     PetscCall(PetscSNPrintf(
       text, size, "element %" PetscInt_FMT " (part %s) has a node twice; give %" PetscInt_FMT " different ones", c + 1,
       part, n_corners));
-  else if (ElementFind(shape, n_corners, model->formulation))
-    PetscCall(PetscSNPrintf(text, size,
-                            "element %" PetscInt_FMT " (part %s) is a %s that with its neighbours' nodes on common "
-                            "edges and faces has %" PetscInt_FMT "; elements that touch must have the same order",
-                            c + 1, part, DMPolytopeTypes[shape], n));
   else
     PetscCall(PetscSNPrintf(text, size, "element %" PetscInt_FMT " (part %s) is a %s, which is not supported; %s are",
                             c + 1, part, DMPolytopeTypes[shape], ElementNames()));
@@ -114,8 +109,8 @@ static PetscErrorCode ElementsWarn(Model model)
   PetscCall(ElementsCount(model, found, count, &n));
   for (PetscInt i = 0; i < n; i++)
     if (count[i] && found[i]->warning)
-      PetscCall(PetscFPrintf(model->comm, stderr, "squeal: warning: %" PetscInt_FMT " cells are a %s: %s\n", count[i],
-                             found[i]->description, found[i]->warning));
+      PetscCall(PetscFPrintf(model->comm, stderr, "squeal: warning: %" PetscInt_FMT " cells are %s, which is %s\n",
+                             count[i], found[i]->name, found[i]->warning));
   PetscFunctionReturn(0);
 }
 

@@ -61,6 +61,10 @@ static void EdgeCheckMiddle(const GmshMesh *mesh, const GmshElement *element, Pe
     off += PetscSqr(middle[d] - 0.5 * (end[0][d] + end[1][d]));
     length += PetscSqr(end[1][d] - end[0][d]);
   }
+  if (length == 0) {
+    ReaderErrorSet(error, PETSC_ERR_USER_INPUT, "element %" PetscInt_FMT " has a node twice", element->number);
+    return;
+  }
   if (off <= FAR_OFF * FAR_OFF * length) return;
   ReaderErrorSet(
     error, PETSC_ERR_USER_INPUT,
@@ -101,11 +105,30 @@ static PetscErrorCode CellSetMiddles(DM dm, PetscInt cell, const GmshVolumes *vo
   PetscFunctionReturn(0);
 }
 
+/* Checks that no neighbour puts a node on an edge or face of a cell that has none there */
+static PetscErrorCode CellCheckOrder(DM dm, PetscInt cell, const GmshElement *element, const PetscInt node[],
+                                     ReaderError *error)
+{
+  PetscInt n_points, n = 0, *closure = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetTransitiveClosure(dm, cell, PETSC_TRUE, &n_points, &closure));
+  for (PetscInt j = 0; j < n_points; j++) n += node[closure[2 * j]] >= 0;
+  PetscCall(DMPlexRestoreTransitiveClosure(dm, cell, PETSC_TRUE, &n_points, &closure));
+  if (n > element->shape->n_nodes)
+    ReaderErrorSet(error, PETSC_ERR_USER_INPUT,
+                   "element %" PetscInt_FMT " has %" PetscInt_FMT
+                   " nodes, and its neighbours more on common edges or faces; elements that touch must have one order",
+                   element->number, element->shape->n_nodes);
+  PetscFunctionReturn(0);
+}
+
 /* Node of the file that each point bears, -1 for none; node [points] */
 static PetscErrorCode PointsSetNodes(DM dm, const GmshVolumes *volumes, PetscInt node[], ReaderError *error)
 {
   const GmshMesh *mesh = volumes->mesh;
   PetscInt        pEnd, vStart, c = 0;
+  PetscBool       second = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(DMPlexGetChart(dm, NULL, &pEnd));
@@ -117,10 +140,15 @@ static PetscErrorCode PointsSetNodes(DM dm, const GmshVolumes *volumes, PetscInt
     const GmshElement *element = &mesh->elements[e];
 
     if (element->shape->dim < 3) continue;
-    if (element->shape->n_nodes > element->shape->n_corners)
+    if (element->shape->n_nodes > element->shape->n_corners) {
       PetscCall(CellSetMiddles(dm, c, volumes, element, node, error));
+      second = PETSC_TRUE;
+    }
     c++;
   }
+  c = 0;
+  for (PetscInt e = 0; e < mesh->n_elements && second; e++)
+    if (mesh->elements[e].shape->dim == 3) PetscCall(CellCheckOrder(dm, c++, &mesh->elements[e], node, error));
   PetscFunctionReturn(0);
 }
 
