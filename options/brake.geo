@@ -1,13 +1,14 @@
 // A disc brake with a floating caliper, drawn in mm and written in m, in tetrahedra of second order (tet10).
 //
-//   gmsh -3 -format msh41 -setnumber size 14 options/brake.geo -o brake.msh
+//   gmsh -3 -format msh41 -setnumber size 14 options/brake.geo -o options/brake.msh
 //
 // size: length of the edges, mm, from which all else follows: 14, 6.5, 3.4 give about 50,000, 200,000, 1,000,000 unknowns.
+// turn: least number of edges around a hole, 10 by default. With -setnumber alone 1 the file has the disc only.
 // The disc turns about z. Its friction ring lies at |z| < 6, its hat points to +z, where the fingers are; the piston is
 // at -z, the pads are at +x. Bodies that touch share no nodes, but each lining is bonded to its back plate.
 
 SetFactory("OpenCASCADE");
-DefineConstant[ size = {14, Name "size"} ];
+DefineConstant[ size = {14, Name "size"}, turn = {10, Name "turn"}, alone = {0, Name "alone"} ];
 
 // Disc: a profile that turns about z, less five holes for bolts
 xz[] = {34,40,  34,33,  64,33,  70,27,  70,-6,  140,-6,  140,6,  83,6,  77,12,  77,34,  71,40};
@@ -64,6 +65,8 @@ caliper[] = BooleanDifference{ Volume{cut[0]}; Delete; }{ Volume{gap, bore, pin[
 // Names, by boxes that hold one thing each
 e = 0.01;
 Physical Volume("disc") = disc[];
+Physical Surface("bolts") = Surface In BoundingBox{-61, -61, 33 - e, 61, 61, 40 + e};
+If(!alone)
 Physical Volume("inner_lining") = Volume In BoundingBox{80, -80, -16 - e, 150, 80, -6 + e};
 Physical Volume("inner_plate") = Volume In BoundingBox{80, -80, -22 - e, 150, 80, -16 + e};
 Physical Volume("outer_lining") = Volume In BoundingBox{80, -80, 6 - e, 150, 80, 16 + e};
@@ -78,7 +81,6 @@ For i In {0:1}
   lugs~{i}[] = Surface In BoundingBox{99, -78 - e, z - 4, 117, -78 + e, z + 4};
   lugs~{i}[] += {Surface In BoundingBox{99, 78 - e, z - 4, 117, 78 + e, z + 4}};
 EndFor
-Physical Surface("bolts") = Surface In BoundingBox{-61, -61, 33 - e, 61, 61, 40 + e};
 Physical Surface("disc_inner") = ring_0[]; Physical Surface("disc_outer") = ring_1[];
 Physical Surface("inner_rub") = rub_0[]; Physical Surface("outer_rub") = rub_1[];
 Physical Surface("inner_lugs") = lugs_0[]; Physical Surface("outer_lugs") = lugs_1[];
@@ -94,9 +96,10 @@ Physical Surface("fingers") = fingers[];
 pins[] = Surface In BoundingBox{118, -97, -61, 136, -79, -39};
 pins[] += {Surface In BoundingBox{118, 79, -61, 136, 97, -39}};
 Physical Surface("pins") = pins[];
+EndIf
 
 Mesh.MeshSizeMax = size;
-Mesh.MeshSizeFromCurvature = 10;    // edges to a turn at least
+Mesh.MeshSizeFromCurvature = turn;
 Mesh.ElementOrder = 2;
 Mesh.HighOrderOptimize = 1;         // no curved element is folded
 Mesh.ScalingFactor = 1e-3;          // m

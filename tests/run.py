@@ -6,7 +6,7 @@ A case is a TOML file. Only `run` is required.
     options = "-options_file {source}/options/oscillator.yaml"   # of all runs; {source} is the top of the repository
     ranks = [1, 2]           # all runs and checks are made on each of these; default [1]
     make = ["{source}/tests/mesh.py rig rig.msh"]    # Python scripts, run first in the working folder of all runs
-    needs = ["vtkmodules"]   # Python modules, without which the case is skipped
+    needs = ["vtkmodules", "gmsh"]   # Python modules and programs, without which the case is skipped
 
     [file]
     "cube.msh" = "text"      # written into the working folder of all runs
@@ -55,6 +55,7 @@ import importlib.util
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -243,8 +244,8 @@ def main():
     arguments = parser.parse_args()
     arguments.squeal = arguments.squeal.resolve()
     case = tomllib.loads(arguments.case.read_text())
-    absent = [module for module in case.get("needs", []) if not importlib.util.find_spec(module)]
-    reason = f"no Python module {' '.join(absent)}" if absent else arguments.core and choose_core(arguments.core)
+    absent = [name for name in case.get("needs", []) if not (importlib.util.find_spec(name) or shutil.which(name))]
+    reason = f"no module or program {' '.join(absent)}" if absent else arguments.core and choose_core(arguments.core)
     if reason:
         print(f"skipped: {reason}")
         return SKIPPED
