@@ -1,6 +1,6 @@
 // A disc brake with a floating caliper, drawn in mm and written in m, in tetrahedra of second order (tet10).
 //
-//   gmsh -3 -format msh41 -setnumber size 14 options/brake.geo -o options/brake.msh
+//   gmsh -3 -format msh41 -setnumber size 14 options/brake.geo
 //
 // size: length of the edges, mm, from which all else follows: 14, 6.5, 3.4 give about 50,000, 200,000, 1,000,000 unknowns.
 // turn: least number of edges around a hole, 10 by default. With -setnumber alone 1 the file has the disc only.
