@@ -140,6 +140,27 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   PetscFunctionReturn(0);
 }
 
+/* A warning for slaves of eight nodes a face that can open */
+static PetscErrorCode InterfaceWarn(Contact contact, const ContactInterface *c)
+{
+  ModelFaces faces;
+  PetscInt   n = 0;
+
+  PetscFunctionBeginUser;
+  if (c->law != CONTACT_CONSTRAINT) PetscFunctionReturn(0);
+  PetscCall(ModelGetSetFaces(contact->model, c->slave, &faces));
+  for (PetscInt f = 0; f < faces.n; f++) n += faces.first[f + 1] - faces.first[f] == 8;
+  PetscCall(ModelFacesDestroy(&faces));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT, MPI_SUM, contact->comm));
+  if (n)
+    PetscCall(PetscFPrintf(contact->comm, stderr,
+                           "squeal: warning: contact %s: %" PetscInt_FMT
+                           " faces of %s have eight nodes (hex20, wedge15), whose corners open under a uniform "
+                           "pressure, since it pulls at them; mesh with hex27 or tet10 there\n",
+                           c->name, n, c->slave));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactSetUp(Contact contact)
 {
   PetscFunctionBeginUser;
@@ -147,6 +168,7 @@ PetscErrorCode ContactSetUp(Contact contact)
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
     PetscCall(InterfaceCheck(contact->comm, &contact->interfaces[i]));
     PetscCall(ContactPairInterface(contact, i));
+    PetscCall(InterfaceWarn(contact, &contact->interfaces[i]));
   }
   PetscCallMPI(MPI_Allreduce(&contact->n_pairs, &contact->n_pairs_all, 1, MPIU_INT, MPI_SUM, contact->comm));
   PetscCall(EventEnd(EVENT_PAIR));

@@ -223,26 +223,26 @@ static const double triangle_node[6][2] = {
   {0,   0.5}
 };
 
-#define GAUSS2 0.57735026918962576451
-#define GAUSS3 0.77459666924148337704
+#define FACET_GAUSS2 0.57735026918962576451
+#define FACET_GAUSS3 0.77459666924148337704
 
 static const double square4_point[4][3] = {
-  {-GAUSS2, -GAUSS2, 1},
-  {GAUSS2,  -GAUSS2, 1},
-  {-GAUSS2, GAUSS2,  1},
-  {GAUSS2,  GAUSS2,  1}
+  {-FACET_GAUSS2, -FACET_GAUSS2, 1},
+  {FACET_GAUSS2,  -FACET_GAUSS2, 1},
+  {-FACET_GAUSS2, FACET_GAUSS2,  1},
+  {FACET_GAUSS2,  FACET_GAUSS2,  1}
 };
 
 static const double square9_point[9][3] = {
-  {-GAUSS3, -GAUSS3, 25 / 81.0},
-  {0,       -GAUSS3, 40 / 81.0},
-  {GAUSS3,  -GAUSS3, 25 / 81.0},
-  {-GAUSS3, 0,       40 / 81.0},
-  {0,       0,       64 / 81.0},
-  {GAUSS3,  0,       40 / 81.0},
-  {-GAUSS3, GAUSS3,  25 / 81.0},
-  {0,       GAUSS3,  40 / 81.0},
-  {GAUSS3,  GAUSS3,  25 / 81.0}
+  {-FACET_GAUSS3, -FACET_GAUSS3, 25 / 81.0},
+  {0,             -FACET_GAUSS3, 40 / 81.0},
+  {FACET_GAUSS3,  -FACET_GAUSS3, 25 / 81.0},
+  {-FACET_GAUSS3, 0,             40 / 81.0},
+  {0,             0,             64 / 81.0},
+  {FACET_GAUSS3,  0,             40 / 81.0},
+  {-FACET_GAUSS3, FACET_GAUSS3,  25 / 81.0},
+  {0,             FACET_GAUSS3,  40 / 81.0},
+  {FACET_GAUSS3,  FACET_GAUSS3,  25 / 81.0}
 };
 
 static const double triangle1_point[1][3] = {

@@ -1,35 +1,79 @@
 /*
    The state as fields on the mesh: displacement (m), force of the contact on each node (N), and its pressure on both
-   surfaces, p_v = -F_v . n_v / A_v with the outward normal and the node's share of the area (Pa).
+   surfaces from p_v = -F_v . n_v with the outward normal (Pa, pressure.c).
 */
 #include "staticsimpl.h"
+#include "base/vec3.h"
+
+/* The values of all local nodes from a vector in the order of their global numbers */
+static PetscErrorCode NodesScatter(const Mesh *mesh, Vec values, PetscReal local[])
+{
+  Vec        place;
+  IS         from;
+  VecScatter scatter;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, mesh->n_nodes, local, &place));
+  PetscCall(ISCreateGeneral(PETSC_COMM_SELF, mesh->n_nodes, mesh->number, PETSC_USE_POINTER, &from));
+  PetscCall(VecScatterCreate(values, from, place, NULL, &scatter));
+  PetscCall(VecScatterBegin(scatter, values, place, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(scatter, values, place, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterDestroy(&scatter));
+  PetscCall(ISDestroy(&from));
+  PetscCall(VecDestroy(&place));
+  PetscFunctionReturn(0);
+}
+
+/* The pressures of the nodes of a surface with faces of second order, by -F . n of each, N; else they stay */
+static PetscErrorCode PressureSpread(Model model, const char set[], const PetscReal along[], PetscReal pressure[])
+{
+  const Mesh *mesh;
+  PetscBool   recovered;
+  Vec         forces;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(model, &mesh));
+  PetscCall(PressureCreateForces(model, &forces));
+  for (PetscInt v = 0; v < mesh->n_nodes; v++)
+    if (mesh->owned[v]) PetscCall(VecSetValue(forces, mesh->number[v], along[v], INSERT_VALUES));
+  PetscCall(VecAssemblyBegin(forces));
+  PetscCall(VecAssemblyEnd(forces));
+  PetscCall(PressureRecover(model, set, forces, &recovered));
+  if (recovered) PetscCall(NodesScatter(mesh, forces, pressure));
+  PetscCall(VecDestroy(&forces));
+  PetscFunctionReturn(0);
+}
 
 /* Sets the pressure on one surface. The force of a node is that of all interfaces, and so is its pressure: on a node of
    several surfaces the last one counts, with its normal and area */
 static PetscErrorCode PressureSet(Model model, const char set[], const PetscScalar force[], PetscReal pressure[])
 {
   const PetscInt *v;
+  const Mesh     *mesh;
   PetscInt        n;
-  PetscReal      *normals;
+  PetscReal      *normals, *along, *spread;
   IS              is;
 
   PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(ModelGetSetNormals(model, set, &normals));
   PetscCall(ModelGetSetVertices(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &v));
+  PetscCall(PetscCalloc2(mesh->n_nodes, &along, mesh->n_nodes, &spread));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt at   = 3 * v[i];
-    PetscReal      area = 0, along = 0;
+    const PetscReal area = Vec3Length(&normals[3 * v[i]]);
 
-    for (int d = 0; d < 3; d++) {
-      area += PetscSqr(normals[at + d]);
-      along -= normals[at + d] * PetscRealPart(force[at + d]);
-    }
-    if (area > 0) pressure[at / 3] = along / area;
+    for (int d = 0; d < 3 && area > 0; d++)
+      along[v[i]] -= normals[3 * v[i] + d] / area * PetscRealPart(force[3 * v[i] + d]);
+    if (area > 0) spread[v[i]] = along[v[i]] / area;
   }
+  PetscCall(PressureSpread(model, set, along, spread));
+  for (PetscInt i = 0; i < n; i++)
+    if (Vec3Length(&normals[3 * v[i]]) > 0) pressure[v[i]] = spread[v[i]];
   PetscCall(ISRestoreIndices(is, &v));
   PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree2(along, spread));
   PetscCall(PetscFree(normals));
   PetscFunctionReturn(0);
 }

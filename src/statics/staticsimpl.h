@@ -246,5 +246,10 @@ PETSC_INTERN PetscErrorCode StaticsCreateLoad(Operators operators, const PetscRe
 PETSC_INTERN PetscErrorCode StaticsWriteReactions(Statics statics, Results results);
 PETSC_INTERN PetscErrorCode StaticsCreateDisplacements(Statics statics, Vec *local);
 
+/* pressure.c - a vector of one force per node, in the order of their global numbers; and the pressures (Pa) in its place
+   that have forces of a set, pressing on it, where any of its faces is of second order. Collective */
+PETSC_INTERN PetscErrorCode PressureCreateForces(Model model, Vec *forces);
+PETSC_INTERN PetscErrorCode PressureRecover(Model model, const char set[], Vec forces, PetscBool *recovered);
+
 /* field.c - static.h5 and static.xmf */
 PETSC_INTERN PetscErrorCode StaticsWriteFields(Statics statics, Results results);

@@ -9,7 +9,7 @@
 /* One row of the table */
 typedef struct {
   PetscInt     interface;
-  PetscReal    x[3], t[3], area;
+  PetscReal    x[3], t[3], area, pressure;
   ContactState state;
 } StaticsRecord;
 
@@ -22,6 +22,30 @@ static int StaticsCompareRecords(const void *one, const void *other)
   for (int d = 2; d >= 0; d--)
     if (a->x[d] != b->x[d]) return a->x[d] < b->x[d] ? -1 : 1;
   return 0;
+}
+
+/* Pressures of the pairs of one interface on this rank, Pa: what all nodes of the slave surface have (pressure.c) */
+static PetscErrorCode StaticsSetPressure(Statics s, PetscInt interface, StaticsRecord local[])
+{
+  const PairRows *rows = &s->rows;
+  PetscBool       recovered;
+  Vec             forces;
+
+  PetscFunctionBeginUser;
+  PetscCall(PressureCreateForces(s->model, &forces));
+  for (PetscInt p = 0; p < rows->n_pairs; p++)
+    if (rows->pair[p].interface == interface)
+      PetscCall(VecSetValue(forces, rows->pair[p].vertex, s->state[p].lambda_n, INSERT_VALUES));
+  PetscCall(VecAssemblyBegin(forces));
+  PetscCall(VecAssemblyEnd(forces));
+  PetscCall(PressureRecover(s->model, rows->interface[interface].slave, forces, &recovered));
+  for (PetscInt p = 0; p < rows->n_pairs; p++) {
+    if (rows->pair[p].interface != interface) continue;
+    local[p].pressure = s->state[p].lambda_n / rows->pair[p].area;
+    if (recovered) PetscCall(VecGetValues(forces, 1, &rows->pair[p].vertex, &local[p].pressure));
+  }
+  PetscCall(VecDestroy(&forces));
+  PetscFunctionReturn(0);
 }
 
 /* Records of all ranks, in order, on every rank */
@@ -37,6 +61,7 @@ static PetscErrorCode StaticsGatherRecords(Statics s, PetscInt *n, StaticsRecord
     PetscCall(PetscArraycpy(local[p].x, rows->pair[p].x, 3));
     PetscCall(PetscArraycpy(local[p].t, rows->pair[p].t, 3));
   }
+  for (PetscInt i = 0; i < rows->n_interfaces; i++) PetscCall(StaticsSetPressure(s, i, local));
   PetscCall(GatherRecords(s->comm, rows->n_pairs, sizeof(StaticsRecord), local, n, all));
   qsort(*all, (size_t)*n, sizeof(StaticsRecord), StaticsCompareRecords);
   PetscCall(PetscFree(local));
@@ -65,7 +90,7 @@ static PetscErrorCode StaticsWritePairs(Statics s, Results results)
       "%" PetscInt_FMT ",%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g",
       i + 1, (double)r->x[0], (double)r->x[1], (double)r->x[2], (double)q->gap, (double)q->lambda_n,
       (double)q->lambda_t[0], ContactStatusNames[q->status], s->rows.interface[r->interface].name,
-      (double)q->lambda_t[1], (double)r->area, (double)(q->lambda_n / r->area), (double)q->slip[0], (double)q->slip[1],
+      (double)q->lambda_t[1], (double)r->area, (double)r->pressure, (double)q->slip[0], (double)q->slip[1],
       (double)r->t[0], (double)r->t[1], (double)r->t[2]));
   }
   PetscCall(ResultsTableClose(&table));
