@@ -24,3 +24,21 @@ typedef struct {
   PetscInt              n_own, first_own; /* unknowns of this rank: first_own to first_own + n_own - 1 */
   PetscInt              n_unknowns;       /* of all ranks */
 } Mesh;
+
+/* Faces of a surface: node[first[f] .. first[f + 1]) are the local nodes of face f, corners first, counter-clockwise seen
+   from outside of the body, then mid-side nodes (after corner i that between corners i and i + 1), then the middle one.
+   Their number tells the shape: 3, 6 of triangles, 4, 8, 9 of quadrilaterals (kernels/facet.h) */
+typedef struct {
+  PetscInt n, *first, *node;
+} ModelFaces;
+
+/*@ ModelFacesGet - the nodes of face f and their places x (m), as many as it returns. Not collective. @*/
+static inline PetscInt ModelFacesGet(const ModelFaces *faces, const Mesh *mesh, PetscInt f, const PetscInt **node,
+                                     PetscReal x[][3])
+{
+  const PetscInt n = faces->first[f + 1] - faces->first[f];
+
+  *node = &faces->node[faces->first[f]];
+  for (PetscInt i = 0; i < 3 * n; i++) x[i / 3][i % 3] = mesh->x[3 * (*node)[i / 3] + i % 3];
+  return n;
+}

@@ -76,8 +76,8 @@ typedef struct {
 typedef struct {
   char     *name, *set; /* set is empty for a point */
   PetscBool is_pressure, on_point;
-  PetscInt  point;     /* index of the point */
-  PetscReal moment[3]; /* on it, N m */
+  PetscInt  point;              /* index of the point */
+  PetscReal moment[3];          /* on it, N m */
   PetscReal pressure, force[3]; /* Pa; N, of a pressure its resultant after ModelSetUp() */
   PetscReal size;               /* sum of |force|, or |pressure| times area, N; after ModelSetUp() */
 } Load;
@@ -114,13 +114,6 @@ typedef struct {
   PetscBool closed;           /* all around: node n_nodes is node 0 again */
   PetscInt *vertex;           /* [n_lines][n_nodes] local vertices from 0 */
 } ModelLines;
-
-/* Faces of a surface: node[first[f] .. first[f + 1]) are the local nodes of face f, corners first, counter-clockwise seen
-   from outside of the body, then mid-side nodes (after corner i that between corners i and i + 1), then the middle one.
-   Their number tells the shape: 3, 6 of triangles, 4, 8, 9 of quadrilaterals (kernels/facet.h) */
-typedef struct {
-  PetscInt n, *first, *node;
-} ModelFaces;
 
 /* Essential condition: the flagged directions are fixed at every vertex of the set */
 typedef struct {
@@ -283,17 +276,6 @@ void ModelAddMeanForce(const ModelMean *mean, const PetscReal force[6], PetscRea
     frees them with ModelFacesDestroy(). Errors: PETSC_ERR_USER_INPUT for a set without faces. @*/
 PetscErrorCode ModelGetSetFaces(Model model, const char set[], ModelFaces *faces);
 PetscErrorCode ModelFacesDestroy(ModelFaces *faces);
-
-/*@ ModelFacesGet - the nodes of face f and their places x (m), as many as it returns. Not collective. @*/
-static inline PetscInt ModelFacesGet(const ModelFaces *faces, const Mesh *mesh, PetscInt f, const PetscInt **node,
-                                     PetscReal x[][3])
-{
-  const PetscInt n = faces->first[f + 1] - faces->first[f];
-
-  *node = &faces->node[faces->first[f]];
-  for (PetscInt i = 0; i < 3 * n; i++) x[i / 3][i % 3] = mesh->x[3 * (*node)[i / 3] + i % 3];
-  return n;
-}
 
 /*@ ModelGetSetNormals - for each local vertex, shape [vertices][3], the outward normal of a surface set times the vertex's
     share of its area (m^2), complete on every rank that has the vertex. Its direction is that of the sum of the area
