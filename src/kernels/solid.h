@@ -110,11 +110,13 @@ static inline void SolidMirror(int n, double *a)
 static inline int SolidMatrices(const Solid *solid, const double *x, const Elasticity *material, double *stiffness,
                                 double *mass)
 {
-  const int n                                           = solid->n_nodes;
-  double    gradients[SOLID_MAX_DOFS * SOLID_MAX_DOFS]  = {0}; /* int of the products of the components of gradients */
-  double    products[SOLID_MAX_NODES * SOLID_MAX_NODES] = {0}; /* int N_a N_b dV, m^3 */
+  const int n = solid->n_nodes;
+  double    gradients[SOLID_MAX_DOFS * SOLID_MAX_DOFS];  /* int of the products of the components of gradients */
+  double    products[SOLID_MAX_NODES * SOLID_MAX_NODES]; /* int N_a N_b dV, m^3 */
   double    N[SOLID_MAX_NODES], g[SOLID_MAX_DOFS];
 
+  memset(gradients, 0, sizeof(double) * 9 * (size_t)n * (size_t)n);
+  memset(products, 0, sizeof(double) * (size_t)n * (size_t)n);
   for (int q = 0; q < solid->n_points; q++) {
     const double dV = SolidPoint(solid, x, q, N, g);
 
