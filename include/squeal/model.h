@@ -11,6 +11,7 @@
 #include <petscdmplex.h>
 #include <squeal/checksum.h>
 #include <squeal/element.h>
+#include <squeal/joint.h>
 #include <squeal/mesh.h>
 
 typedef struct _p_Model *Model;
@@ -48,28 +49,6 @@ typedef struct {
   Spread      spread;
   const char *quantity, *unit; /* "stiffness_total", "N/m" and so on */
 } Grounded;
-
-/* Six motions q = (translation, m; rotation, rad) of the displacements u of sets, linear in them: q_j = sum over the
-   nodes i of all ranks and d of b[i][d][j] u_id. A force (N) and moment (N m) f on q act on the nodes as sum_j b_j f_j. */
-typedef struct {
-  PetscInt   n;
-  PetscInt  *vertex; /* [n] local vertices that this rank owns */
-  PetscReal *b;      /* [n][3][6] */
-} ModelMean;
-
-/* A bushing between the mean motions of two sets, of a to b, or of one and the ground; or a point, which moves as its set
-   does in the mean, with mass, inertia, and what holds it to the ground. Of six values three are along x, y, z, three
-   about them. */
-typedef struct {
-  char     *name, *set[2]; /* set[1] is empty for the ground */
-  PetscBool is_point, has_at;
-  PetscReal at[3];        /* place of the motions, m; after ModelSetUp() */
-  PetscReal stiffness[6]; /* N/m; N m/rad */
-  PetscReal viscosity[6]; /* N s/m; N m s/rad */
-  PetscReal mass;         /* kg */
-  PetscReal inertia[6];   /* xx, yy, zz, xy, xz, yz about the place, where the mass is, kg m^2 */
-  ModelMean mean;         /* q of the point, or q_a - q_b; after ModelSetUp() */
-} Joint;
 
 /* Total force on a set, N, spread over a surface by its area, over other sets equally by node; or a pressure on a
    surface, Pa, into the body; or a force and a moment on a point */

@@ -146,6 +146,22 @@ static PetscErrorCode DynamicsCheckEnd(Dynamics d, PetscReal *end)
   PetscFunctionReturn(0);
 }
 
+/* Masses of points; the ledger's work of the integrator for b > 1/2 knows of none */
+static PetscErrorCode DynamicsSetUpPoints(Dynamics d)
+{
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(d->model, &scene));
+  for (PetscInt i = 0; i < scene->n_points && d->b != 0.5; i++)
+    for (int j = -1; j < 6; j++)
+      PetscCheck((j < 0 ? scene->points[i].mass : scene->points[i].inertia[j]) == 0, d->comm, PETSC_ERR_SUP,
+                 "-ts_central_b %.6g is not supported with the mass of point %s: take 0.5", (double)d->b,
+                 scene->points[i].name);
+  PetscCall(BodiesSetPoints(d->bodies, d->surface.n, d->surface.vertex));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
 {
   PetscReal   end, dt;
@@ -163,6 +179,7 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscCall(BodiesGetLayout(d->bodies, &d->layout));
   PetscCall(ExternalSetUp(d->external, d->bodies));
   if (d->projector) PetscCall(DynamicsSetUpSurface(d));
+  PetscCall(DynamicsSetUpPoints(d));
   PetscCall(DynamicsSetFrames(d));
   PetscCall(DynamicsCreateState(d));
   PetscCall(DynamicsFindCriticalStep(d));

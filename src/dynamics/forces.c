@@ -2,6 +2,7 @@
    What the integrator asks for in every step from t_n, in this order:
       ku += dt K v, f = -ku - C v              internal forces (bodies.h)
       f += F(t_n), prescribed velocities       external.h
+      f += inertial forces of points           bodies.h
       v* = v + minv (kick f + kick_old f_old)  at the nodes of the contact surfaces
       f += G'lambda                            contact (projector.h)
    With f complete, t_n is recorded where a row is due. Forces in N, velocities in m/s.
@@ -111,6 +112,7 @@ PetscErrorCode DynamicsForce(TS ts, const CentralStep *step, void *ctx)
   PetscCall(ExternalAdvance(d->external, &(ExternalStep){step->time, step->dt, a.u, a.v, a.f}, &power));
   PetscCall(EventEnd(EVENT_EXTERNAL));
   LedgerAddExternal(&d->ledger.part, &power, step->dt_old);
+  PetscCall(BodiesAddInertia(d->bodies, a.f));
   PetscCall(DynamicsMarkImpulse(d));
   PetscCall(ForceArraysRestore(&a));
   PetscFunctionReturn(0);

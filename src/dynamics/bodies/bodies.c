@@ -48,6 +48,9 @@ static PetscErrorCode BodiesSetUpDamping(Bodies b)
   for (PetscInt i = 0; i < b->n_points; i++)
     for (int j = 0; j < 9; j++)
       if (b->point[i].damping[j] != 0) b->damped = PETSC_TRUE;
+  for (PetscInt i = 0; i < b->n_joints; i++)
+    for (int j = 0; j < 6; j++)
+      if (b->joint[i].like->viscosity[j] != 0) b->damped = PETSC_TRUE;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &b->damped, 1, MPIU_BOOL, MPI_LOR, b->comm));
   if (b->damped) PetscCall(PetscCalloc1(b->layout.n, &b->layout.damping));
   PetscFunctionReturn(0);
@@ -78,16 +81,11 @@ PetscErrorCode BodiesSetFromOptions(Bodies b)
 
 PetscErrorCode BodiesSetUp(Bodies b, Operators operators)
 {
-  const ModelScene *scene;
-
   PetscFunctionBeginUser;
   b->operators = operators;
   PetscCall(OperatorsGetModel(operators, &b->model, NULL));
   PetscCheck(b->model, b->comm, PETSC_ERR_ARG_WRONGSTATE, "bodies need a model: loaded matrices have none");
   PetscCall(ModelGetMesh(b->model, &b->mesh));
-  PetscCall(ModelGetScene(b->model, &scene));
-  PetscCheck(!scene->n_joints && !scene->n_points, b->comm, PETSC_ERR_SUP,
-             "-joints and -points are not supported by -analysis transient: use -springs and -dashpots");
   b->layout.n_vertices = b->mesh->n_nodes;
   b->layout.owned      = b->mesh->owned;
   PetscCall(ModelGetBodies(b->model, &b->n_bodies, &b->body));
@@ -96,6 +94,7 @@ PetscErrorCode BodiesSetUp(Bodies b, Operators operators)
   PetscCall(BodiesLayOut(b));
   PetscCall(GeneralSetUp(b));
   PetscCall(PointsSetUp(b));
+  PetscCall(JointsSetUpRows(b));
   PetscCall(BodiesSetMasses(b));
   PetscCall(BodiesSetUpDamping(b));
   for (int i = 0; i < 2; i++) PetscCall(PetscCalloc1(b->layout.n, &b->work[i]));
@@ -123,6 +122,7 @@ static PetscErrorCode BodiesAdvanceKernels(Bodies b, PetscBool early, BodiesWork
   for (PetscInt i = 0; i < b->n_swept; i++) PetscCall(SweptAdvance(&b->swept[i], early, w));
   PetscCall(GeneralAdvance(&b->general, early, w));
   PointsAdvance(b, early, w);
+  PetscCall(JointsAdvance(b, early, w));
   PetscFunctionReturn(0);
 }
 
@@ -182,6 +182,7 @@ PetscErrorCode BodiesSetState(Bodies b, const PetscReal u[], const PetscReal v[]
   PetscCall(PetscArrayzero(ku, b->layout.n));
   PetscCall(BodiesCellsAddForces(b, u, ku));
   PointsAddForces(b, u, ku);
+  PetscCall(JointsAddForces(b, u, ku));
   PetscFunctionReturn(0);
 }
 
@@ -204,6 +205,7 @@ PetscErrorCode BodiesDestroy(Bodies *bodies)
   PetscCall(SharedDestroy(&b->share));
   PetscCall(PetscFree(b->swept));
   PetscCall(PetscFree(b->point));
+  PetscCall(JointsDestroyRows(b));
   PetscCall(PetscFree(b->frame));
   PetscCall(PetscFree(b->body));
   PetscCall(PetscFree2(b->layout.at, b->layout.step));

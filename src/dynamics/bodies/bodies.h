@@ -33,7 +33,7 @@ typedef struct {
   PetscReal       *f;  /* internal forces, N */
 } BodiesStep;
 
-/* Sums over this rank (a number shared by ranks is counted once over all of them), at the call of BodiesAdvance() with
+/* Kinetic energy is that of points, too. Sums over this rank (a number shared by ranks is counted once over all of them), at the call of BodiesAdvance() with
    u_{n+1}, v = v_{n+1/2} */
 typedef struct {
   PetscReal kinetic;     /* 1/2 v'M v, J */
@@ -87,6 +87,15 @@ PetscErrorCode BodiesGetLayout(Bodies bodies, const Layout **layout);
 /*@ BodiesHold - makes a direction of a vertex held: minv = 0, so that only its prescribed velocity moves it. j is the
     component in the local basis. Same call on all ranks that have the vertex. @*/
 PetscErrorCode BodiesHold(Bodies bodies, PetscInt vertex, PetscInt j);
+
+/*@ BodiesSetPoints - what the masses of points need, after the last BodiesHold(); contact [n_contact] are the vertices
+    that contact forces may act on. Collective. Errors: PETSC_ERR_SUP for a point with mass that has one of them, or a
+    node that a motion drives. @*/
+PetscErrorCode BodiesSetPoints(Bodies bodies, PetscInt n_contact, const PetscInt contact[]);
+
+/*@ BodiesAddInertia - adds the inertial forces of points to f, N, which holds all others but those of contact, complete
+    at every copy: then minv f is the acceleration. Collective. @*/
+PetscErrorCode BodiesAddInertia(Bodies bodies, PetscReal f[]);
 
 /*@ BodiesApply - kx = K x and cx = C x (NULL where not needed), complete at shared vertices. Collective. @*/
 PetscErrorCode BodiesApply(Bodies bodies, const PetscReal x[], PetscReal kx[], PetscReal cx[]);

@@ -63,6 +63,15 @@ typedef struct {
   PetscReal stiffness[9], damping[9]; /* N/m, N s/m; symmetric */
 } Point;
 
+/* A bushing or point: six rows of B at the nodes of its sets on this rank, copies included, in the local bases */
+typedef struct {
+  const Joint *like;
+  PetscBool    heavy; /* a point with mass or inertia */
+  PetscInt     n;
+  PetscInt    *vertex; /* [n] */
+  PetscReal   *b;      /* [n][3][6] */
+} BodyJoint;
+
 /* Sums over ranks at shared vertices, in ascending order of the ranks, so that all copies are bitwise equal */
 typedef struct {
   MPI_Comm     comm;
@@ -89,6 +98,10 @@ struct _p_Bodies {
   General      general;
   PetscInt     n_points;
   Point       *point;
+  PetscInt     n_joints, n_heavy; /* bushings and points, and those with mass */
+  BodyJoint   *joint;
+  PetscReal   *joint_motion; /* [n_joints][6] of the last call */
+  PetscReal   *reaction;     /* X of the points with mass, [6 n_heavy][6 n_heavy] */
   Shared       share;
   PetscBool    damped;  /* there is damping on some rank */
   PetscReal   *work[2]; /* [layout.n] each, for BodiesApply() and BodiesSetState() */
@@ -141,6 +154,26 @@ PETSC_INTERN PetscErrorCode GeneralAdvance(const General *general, PetscBool ear
 PETSC_INTERN PetscErrorCode PointsSetUp(Bodies bodies);
 PETSC_INTERN void           PointsAdvance(Bodies bodies, PetscBool early, BodiesWork *work);
 PETSC_INTERN void           PointsAddForces(Bodies bodies, const PetscReal u[], PetscReal ku[]);
+
+/* bodyjoint.c - the rows; forces as of points; Bound adds what they add to the largest omega^2 at most, 1/s^2 */
+PETSC_INTERN PetscErrorCode JointsSetUpRows(Bodies bodies);
+PETSC_INTERN PetscErrorCode JointsAdvance(Bodies bodies, PetscBool early, BodiesWork *work);
+PETSC_INTERN PetscErrorCode JointsAddForces(Bodies bodies, const PetscReal u[], PetscReal ku[]);
+PETSC_INTERN PetscErrorCode JointsAddBound(Bodies bodies, PetscReal s, PetscReal *bound);
+PETSC_INTERN PetscErrorCode JointsDestroyRows(Bodies bodies);
+/* q = B x of all of them, or B diag(scale) x, into joint_motion */
+PETSC_INTERN PetscErrorCode JointsMotion(Bodies bodies, const PetscReal scale[], const PetscReal x[]);
+
+/* Where component i % 3 of node i / 3 of a bushing or point is */
+static inline PetscInt JointAt(const Layout *l, const BodyJoint *joint, PetscInt i)
+{
+  const PetscInt v = joint->vertex[i / 3];
+
+  return l->at[v] + i % 3 * l->step[v];
+}
+
+/* pointmass.c - 1/2 q'W q of the mass and inertia of a point, J */
+PETSC_INTERN PetscReal PointKinetic(const Joint *point, const PetscReal q[6]);
 
 /* sharedvertices.c - Begin sends what x has at shared vertices, End replaces it by the sums */
 PETSC_INTERN PetscErrorCode SharedSetUp(Bodies bodies);

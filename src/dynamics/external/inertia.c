@@ -10,6 +10,38 @@
 #include "base/vec3.h"
 #include <squeal/options.h>
 
+/* Weights of points */
+static PetscErrorCode InertiaAddPoints(External external)
+{
+  const Layout     *layout = external->layout;
+  const PetscReal  *g      = external->gravity;
+  const ModelScene *scene;
+  PetscScalar      *force;
+  Vec               nodal;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(external->model, &scene));
+  if (!scene->n_points) PetscFunctionReturn(0);
+  PetscCall(ModelCreateNodal(external->model, &nodal));
+  PetscCall(VecGetArray(nodal, &force));
+  for (PetscInt i = 0; i < scene->n_points; i++) {
+    const PetscReal m = scene->points[i].mass;
+
+    ModelAddMeanForce(&scene->points[i].mean, (const PetscReal[6]){m * g[0], m * g[1], m * g[2]}, force);
+  }
+  PetscCall(VecRestoreArray(nodal, &force));
+  PetscCall(ModelSumShared(external->model, nodal));
+  PetscCall(VecGetArray(nodal, &force));
+  for (PetscInt v = 0; v < layout->n_vertices; v++) {
+    if (layout->at[v] < 0) continue;
+    LayoutAdd(layout, v, &force[3 * v], external->weight);
+    if (layout->owned[v]) LayoutAdd(layout, v, &force[3 * v], external->own_weight);
+  }
+  PetscCall(VecRestoreArray(nodal, &force));
+  PetscCall(VecDestroy(&nodal));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode InertiaSetUp(External external)
 {
   const Layout    *layout = external->layout;
@@ -26,6 +58,7 @@ PetscErrorCode InertiaSetUp(External external)
     LayoutSet(layout, i, force, external->weight);
     if (layout->owned[i]) LayoutSet(layout, i, force, external->own_weight);
   }
+  PetscCall(InertiaAddPoints(external));
   PetscFunctionReturn(0);
 }
 
@@ -110,6 +143,29 @@ static PetscErrorCode InertiaFrameFindVertices(External external, const char par
   PetscFunctionReturn(0);
 }
 
+/* Raises an error for a point with mass on a part that turns: its own inertial forces are not there */
+static PetscErrorCode InertiaFrameCheckPoints(External external, const char part[], const InertiaFrame *frame)
+{
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(external->model, &scene));
+  for (PetscInt i = 0; i < scene->n_points; i++) {
+    const Joint *point = &scene->points[i];
+    PetscInt     both  = 0;
+    PetscBool    heavy = point->mass > 0 ? PETSC_TRUE : PETSC_FALSE;
+
+    for (int j = 0; j < 6; j++)
+      if (point->inertia[j] != 0) heavy = PETSC_TRUE;
+    for (PetscInt k = 0; k < frame->n && heavy; k++)
+      for (PetscInt l = 0; l < point->mean.n; l++) both += frame->vertex[k] == point->mean.vertex[l];
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &both, 1, MPIU_INT, MPI_MAX, external->comm));
+    PetscCheck(!both, external->comm, PETSC_ERR_SUP,
+               "point %s has a mass on part %s, which turns: not supported by -analysis transient", point->name, part);
+  }
+  PetscFunctionReturn(0);
+}
+
 /* The frame of a part, a new one where it has none; an error for no part */
 static PetscErrorCode InertiaFrameFind(External external, const char part[], InertiaFrame **frame)
 {
@@ -131,6 +187,7 @@ static PetscErrorCode InertiaFrameFind(External external, const char part[], Ine
   *frame         = &external->frames[external->n_frames];
   (*frame)->part = i;
   PetscCall(InertiaFrameFindVertices(external, part, *frame));
+  PetscCall(InertiaFrameCheckPoints(external, part, *frame));
   external->n_frames++;
   PetscCall(ExternalLayMemory(external));
   PetscFunctionReturn(0);

@@ -1,0 +1,173 @@
+/*
+   Masses of points. Mass and inertia W of points (block diagonal, six rows each) add B'W B to the diagonal masses D, so
+   that the mass matrix is no diagonal; but by Woodbury's identity
+
+      (D + B'W B)^-1 f = D^-1 (f - B' X B D^-1 f),   X = W (I + S W)^-1,   S = B D^-1 B',
+
+   the integrator, which divides by D, needs no more than the inertial forces -B' X B D^-1 f of the points beside f.
+   Held directions have D^-1 = 0: those of supports do not move, and others are refused. The critical step is found with D
+   alone: D + B'W B is larger, hence that step smaller than it might be. The work of the inertial forces is, by central
+   differences exactly, what the kinetic energy 1/2 q'W q of the points loses.
+*/
+#include "bodiesimpl.h"
+#include <petscblaslapack.h>
+
+/* W of a point */
+static void PointInertia(const Joint *joint, PetscReal W[36])
+{
+  static const int at[9] = {0, 3, 4, 3, 1, 5, 4, 5, 2};
+
+  for (int i = 0; i < 36; i++) W[i] = 0;
+  for (int d = 0; d < 3; d++) W[7 * d] = joint->mass;
+  for (int i = 0; i < 9; i++) W[6 * (3 + i / 3) + 3 + i % 3] = joint->inertia[at[i]];
+}
+
+PetscReal PointKinetic(const Joint *joint, const PetscReal q[6])
+{
+  PetscReal W[36], sum = 0;
+
+  PointInertia(joint, W);
+  for (int i = 0; i < 36; i++) sum += 0.5 * q[i / 6] * W[i] * q[i % 6];
+  return sum;
+}
+
+/* Raises an error for nodes of a point with a mass that a motion drives, or that contact forces act on */
+static PetscErrorCode PointCheckNodes(Bodies b, const BodyJoint *joint, PetscInt n_contact, const PetscInt contact[])
+{
+  const Layout *l     = &b->layout;
+  PetscInt      no[2] = {0, 0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < 3 * joint->n; i++) {
+    const PetscInt v    = joint->vertex[i / 3];
+    PetscBool      held = PETSC_FALSE;
+
+    for (int d = 0; d < 3; d++)
+      if (b->mesh->unknown[3 * v + d] < 0 && l->basis[9 * v + 3 * (i % 3) + d] != 0) held = PETSC_TRUE;
+    if (!held && l->minv[JointAt(l, joint, i)] == 0) no[0] = 1;
+    for (PetscInt k = 0; k < n_contact; k++)
+      if (contact[k] == v) no[1] = 1;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, no, 2, MPIU_INT, MPI_MAX, b->comm));
+  PetscCheck(
+    !no[0], b->comm, PETSC_ERR_SUP,
+    "point %s has a mass, and a motion drives nodes of -%s_set %s, which -analysis transient does not support: "
+    "use another set",
+    joint->like->name, joint->like->name, joint->like->set[0]);
+  PetscCheck(!no[1], b->comm, PETSC_ERR_SUP,
+             "point %s has a mass, and -%s_set %s has nodes of a contact surface, which -analysis transient does not "
+             "support: use a set apart from it",
+             joint->like->name, joint->like->name, joint->like->set[0]);
+  PetscFunctionReturn(0);
+}
+
+/* S of all points with a mass, [n][n] with n = 6 n_heavy; row [layout n] is work: the row of each number in a point */
+static PetscErrorCode PointsGetCompliance(Bodies b, const PetscInt heavy[], PetscReal S[])
+{
+  const PetscInt n = 6 * b->n_heavy;
+  PetscInt      *row;
+  PetscMPIInt    count;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(b->layout.n, &row));
+  for (PetscInt p = 0; p < b->n_heavy; p++) {
+    const BodyJoint *a = &b->joint[heavy[p]];
+
+    for (PetscInt i = 0; i < b->layout.n; i++) row[i] = -1;
+    for (PetscInt i = 0; i < 3 * a->n; i++)
+      if (b->layout.owned[a->vertex[i / 3]]) row[JointAt(&b->layout, a, i)] = i;
+    for (PetscInt q = 0; q < b->n_heavy; q++) {
+      const BodyJoint *c = &b->joint[heavy[q]];
+
+      for (PetscInt k = 0; k < 3 * c->n; k++) {
+        const PetscInt at = JointAt(&b->layout, c, k), i = row[at];
+
+        for (int j = 0; j < 36 && i >= 0; j++)
+          S[(6 * p + j / 6) * n + 6 * q + j % 6] += a->b[6 * i + j / 6] * b->layout.minv[at] * c->b[6 * k + j % 6];
+      }
+    }
+  }
+  PetscCall(PetscFree(row));
+  PetscCall(PetscMPIIntCast(n * n, &count));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, S, count, MPIU_REAL, MPI_SUM, b->comm));
+  PetscFunctionReturn(0);
+}
+
+/* X from (I + W S) X = W, symmetric */
+static PetscErrorCode PointsGetReaction(Bodies b, const PetscInt heavy[], const PetscReal S[], PetscReal X[])
+{
+  const PetscInt n = 6 * b->n_heavy;
+  PetscReal     *A;
+  PetscBLASInt   size, info, *pivot;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n, &size));
+  PetscCall(PetscMalloc2(n * n, &A, n, &pivot));
+  for (PetscInt p = 0; p < b->n_heavy; p++) {
+    PetscReal W[36];
+
+    PointInertia(b->joint[heavy[p]].like, W);
+    for (int i = 0; i < 6; i++)
+      for (PetscInt k = 0; k < n; k++) {
+        PetscReal sum = 6 * p + i == k;
+
+        for (int j = 0; j < 6; j++) sum += W[6 * i + j] * S[(6 * p + j) * n + k];
+        A[k * n + 6 * p + i] = sum; /* by columns */
+        X[k * n + 6 * p + i] = k / 6 == p ? W[6 * i + k % 6] : 0;
+      }
+  }
+  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&size, &size, A, &size, pivot, X, &size, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gesv: info %d", (int)info);
+  PetscCall(PetscFree2(A, pivot));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesSetPoints(Bodies b, PetscInt n_contact, const PetscInt contact[])
+{
+  PetscInt  *heavy;
+  PetscReal *S;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(b->n_joints, &heavy));
+  for (PetscInt m = 0; m < b->n_joints; m++) {
+    if (!b->joint[m].heavy) continue;
+    heavy[b->n_heavy++] = m;
+    PetscCall(PointCheckNodes(b, &b->joint[m], n_contact, contact));
+  }
+  if (b->n_heavy) {
+    PetscCall(PetscCalloc1(36 * b->n_heavy * b->n_heavy, &S));
+    PetscCall(PetscMalloc1(36 * b->n_heavy * b->n_heavy, &b->reaction));
+    PetscCall(PointsGetCompliance(b, heavy, S));
+    PetscCall(PointsGetReaction(b, heavy, S, b->reaction));
+    PetscCall(PetscFree(S));
+  }
+  PetscCall(PetscFree(heavy));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesAddInertia(Bodies b, PetscReal f[])
+{
+  const PetscInt n = 6 * b->n_heavy;
+
+  PetscFunctionBeginUser;
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(JointsMotion(b, b->layout.minv, f));
+  for (PetscInt m = 0, p = 0; m < b->n_joints; m++) {
+    const BodyJoint *joint = &b->joint[m];
+    PetscReal        force[6];
+
+    if (!joint->heavy) continue;
+    for (int j = 0; j < 6; j++) {
+      force[j] = 0;
+      for (PetscInt l = 0, q = 0; l < b->n_joints; l++) {
+        if (!b->joint[l].heavy) continue;
+        for (int k = 0; k < 6; k++) force[j] += b->reaction[(6 * q + k) * n + 6 * p + j] * b->joint_motion[6 * l + k];
+        q++;
+      }
+    }
+    for (PetscInt i = 0; i < 3 * joint->n; i++)
+      for (int j = 0; j < 6; j++) f[JointAt(&b->layout, joint, i)] -= joint->b[6 * i + j] * force[j];
+    p++;
+  }
+  PetscFunctionReturn(0);
+}
