@@ -20,6 +20,22 @@ static PetscErrorCode BodiesCountSwept(Bodies b, PetscInt n_swept[], PetscInt n_
   PetscFunctionReturn(0);
 }
 
+/* What a step reads of the blocks of all ranks, 10^6 bytes */
+static PetscErrorCode BodiesViewBlocks(Bodies b, PetscViewer viewer)
+{
+  const General *g = &b->general;
+  PetscReal      n[2]; /* blocks, nodes */
+
+  PetscFunctionBeginUser;
+  n[0] = g->n ? (PetscReal)(g->stiffness.start[g->n] + g->damping.start[g->n]) : 0;
+  n[1] = (PetscReal)g->n;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n, 2, MPIU_REAL, MPI_SUM, b->comm));
+  if (n[1] == 0) PetscFunctionReturn(0);
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  %.0f blocks of %.0f nodes: %.4g MB, read in each step\n", (double)n[0],
+                                   (double)n[1], 1e-6 * (double)n[0] * (9 * sizeof(PetscReal) + sizeof(PetscInt))));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BodiesView(Bodies b, PetscViewer viewer)
 {
   PetscInt *n_swept, *n_all;
@@ -40,6 +56,7 @@ PetscErrorCode BodiesView(Bodies b, PetscViewer viewer)
     if (n_rows) PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " by rows of 3 x 3 blocks", n_rows));
     PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
   }
+  PetscCall(BodiesViewBlocks(b, viewer));
   PetscCall(PetscFree2(n_swept, n_all));
   PetscFunctionReturn(0);
 }

@@ -192,6 +192,28 @@ static void SweptLayOut(const SweptBody *swept, Layout *layout)
     }
 }
 
+/* Sorts vertices along the longest side of their box: neighbours in space are then near in memory */
+static PetscErrorCode VerticesSort(const Mesh *mesh, PetscInt n, PetscInt vertex[])
+{
+  PetscReal low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, *key;
+  int       longest = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < 3 * n; i++) {
+    const PetscReal x = mesh->x[3 * vertex[i / 3] + i % 3];
+
+    low[i % 3]  = i < 3 ? x : PetscMin(low[i % 3], x);
+    high[i % 3] = i < 3 ? x : PetscMax(high[i % 3], x);
+  }
+  for (int d = 1; d < 3; d++)
+    if (high[d] - low[d] > high[longest] - low[longest]) longest = d;
+  PetscCall(PetscMalloc1(n, &key));
+  for (PetscInt i = 0; i < n; i++) key[i] = mesh->x[3 * vertex[i] + longest];
+  PetscCall(PetscSortRealWithArrayInt(n, key, vertex));
+  PetscCall(PetscFree(key));
+  PetscFunctionReturn(0);
+}
+
 /* Places of all other vertices with cells: those that ranks share, then the rest */
 static PetscErrorCode GeneralLayOut(Bodies b)
 {
@@ -205,6 +227,7 @@ static PetscErrorCode GeneralLayOut(Bodies b)
       if (b->body[v] < 0 || l->at[v] >= 0 || b->share.shared[v] == (PetscBool)pass) continue;
       g->vertex[g->n++] = v;
     }
+    PetscCall(VerticesSort(b->mesh, g->n - g->n_early, &g->vertex[g->n_early]));
     if (pass == 0) g->n_early = g->n;
     for (PetscInt i = pass ? g->n_early : 0; i < g->n; i++) {
       l->at[g->vertex[i]]   = g->begin + 3 * i;
