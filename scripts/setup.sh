@@ -16,26 +16,46 @@ quietly()
   return 1
 }
 
-# Installs the packages of packages.txt that Debian's package database does not list as installed
+# missing PACKAGES...: those that Debian's package database does not list as installed, on one line
+missing()
+{
+  # shellcheck disable=SC2046,SC2005
+  echo $(LC_ALL=C comm -23 <(printf '%s\n' "$@" | LC_ALL=C sort) \
+    <(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "$@" 2>/dev/null | sed -n 's/^installed //p' | LC_ALL=C sort))
+}
+
+# Installs the packages of packages.txt that are missing; of those marked ? the ones that this Debian has
 install_packages()
 {
-  local wanted missing privilege=()
+  local wanted optional package
   command -v dpkg-query >/dev/null || return 0 # another system: Meson names what is missing
-  wanted=$(sed 's/#.*//' "$root/scripts/packages.txt")
+  wanted=$(sed 's/#.*//; /?/d' "$root/scripts/packages.txt")
+  optional=$(sed -n 's/#.*//; s/?//p' "$root/scripts/packages.txt")
   # shellcheck disable=SC2086
-  missing=$(LC_ALL=C comm -23 <(printf '%s\n' $wanted | LC_ALL=C sort) \
-    <(dpkg-query -W -f '${db:Status-Status} ${Package}\n' $wanted 2>/dev/null | sed -n 's/^installed //p' |
-      LC_ALL=C sort))
-  [ -n "$missing" ] || return 0
-  missing=$(echo $missing)
-  if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null || { say "no sudo; as root run: apt-get install $missing"; return 1; }
-    privilege=(sudo)
+  wanted=$(missing $wanted)
+  # shellcheck disable=SC2086
+  optional=$(missing $optional)
+  if [ -n "$wanted$optional" ] && [ "$(id -u)" -ne 0 ] && ! command -v sudo >/dev/null; then
+    [ -n "$wanted" ] || return 0
+    say "no sudo; as root run: apt-get install $wanted"
+    return 1
   fi
-  say "installing Debian packages: $missing"
-  quietly "${privilege[@]}" apt-get update || return
+  [ -z "$wanted" ] || with_apt update || return
+  for package in $optional; do
+    [ "$(apt-cache policy "$package" 2>/dev/null | sed -n 's/^ *Candidate: //p' | grep -v none)" ] && wanted="$wanted $package"
+  done
+  [ -n "$wanted" ] || return 0
+  say "installing Debian packages:" $wanted
   # shellcheck disable=SC2086
-  quietly "${privilege[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing
+  with_apt install -y --no-install-recommends $wanted
+}
+
+# with_apt ARGUMENTS...: apt-get as root
+with_apt()
+{
+  local privilege=()
+  [ "$(id -u)" -eq 0 ] || privilege=(sudo)
+  quietly "${privilege[@]}" env DEBIAN_FRONTEND=noninteractive apt-get "$@"
 }
 
 # compile TARGETS...: configures once, then compiles what changed
