@@ -76,7 +76,7 @@ static void WalkEnd(const ContactShape *shape, ContactFoot *foot)
 
   foot->beyond = BeyondBorder(facet, foot->natural);
   if (foot->beyond > CONTACT_EDGE) foot->facet = -1;
-  FacetShapeOf(facet->n)->clamp(foot->natural);
+  FacetClamp(facet->n, foot->natural);
 }
 
 void ContactFootWalk(const ContactShape *shape, const PetscReal x[3], ContactFoot *foot)
@@ -116,7 +116,7 @@ void ContactFootTry(const ContactShape *shape, PetscInt f, const PetscReal x[3],
   Middle(facet, here.natural);
   if (!Drop(shape, f, x, here.natural)) return;
   here.beyond = BeyondBorder(facet, here.natural);
-  FacetShapeOf(facet->n)->clamp(here.natural);
+  FacetClamp(facet->n, here.natural);
   ContactNodes(shape, f, node);
   FacetWeights(facet->n, here.natural, weight);
   FacetSum(facet->n, weight, (const double(*)[3])facet->across, n);

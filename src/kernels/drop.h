@@ -29,8 +29,13 @@ static inline void DropAcross(int n_nodes, const double area[][3], const double 
   }
 }
 
-static inline int DropSteps(int n, const double undeformed[][3], const double area[][3], const double deformed[][3],
-                            const double p[3], double natural[2])
+/* Made for four nodes once more, where GCC would not */
+#if defined(__GNUC__)
+__attribute__((always_inline))
+#endif
+static inline int
+DropSteps(int n, const double undeformed[][3], const double area[][3], const double deformed[][3], const double p[3],
+          double natural[2])
 {
   const double low = FacetShapeOf(n)->low, high = FacetShapeOf(n)->high;
 

@@ -227,6 +227,15 @@ static inline double FacetBeyond(int n, const double at[2])
   return beyond;
 }
 
+/* Into the facet */
+static inline void FacetClamp(int n, double at[2])
+{
+  if (n == 4)
+    for (int d = 0; d < 2; d++) at[d] = at[d] > 1 ? 1 : at[d] < -1 ? -1 : at[d];
+  else
+    FacetShapeOf(n)->clamp(at);
+}
+
 /* Takes a point into low and high */
 static inline void FacetBound(const double x[3], double low[3], double high[3])
 {

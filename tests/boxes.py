@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+"""Writes boxes, each of one kind of element and without nodes in common, as one Gmsh file.
+
+    boxes.py FILE NAME:KIND:x0,y0,z0:x1,y1,z1:nx,ny,nz [...] [--cylinder R]
+
+Places in m, numbers of cells. A box makes the sets NAME (volume), NAME_left, NAME_right (least and largest x), NAME_front, NAME_back (y),
+NAME_bottom and NAME_top (z), and NAME_inside, the faces between the first two layers of cells along x. KIND as in tests/solids.py. --cylinder bends planes of equal z into cylinders, that of z = 0
+to the radius R: with s = R + z and angle = y / R, y becomes s sin(angle), z s cos(angle) - R.
+"""
+
+import argparse
+import itertools
+from pathlib import Path
+
+import numpy as np
+
+from solids import FIRST, elements, faces, write
+
+
+def inside(found):
+    """Corners of the faces between the first two layers along x, each once."""
+    once = {}
+    for kind, nodes in found:
+        on = nodes[:FIRST[kind.rstrip("0123456789")]]
+        on = on[on[:, 0] == 2]
+        if len(on) >= 3:
+            b, a = (on - on.mean(0))[:, 1:].T
+            once[frozenset(map(tuple, on.tolist()))] = on[np.argsort(np.arctan2(b, a))]
+    return list(once.values())
+
+
+def box(text, shift):
+    """Groups of one box, its places on the grid of half steps shifted along x, and their coordinates."""
+    name, kind, low, high, counts = text.split(":")
+    low, high = (np.array([float(v) for v in t.split(",")]) for t in (low, high))
+    cells = np.array([int(n) for n in counts.split(",")])
+    found = list(elements(kind, cells, None))
+    sides = {**faces(found, cells), "inside": inside(found)}
+    away = np.array([shift, 0, 0])
+    x = {(p[0] + shift, p[1], p[2]): low + (high - low) * np.array(p) / (2 * cells)
+         for p in itertools.product(*(range(2 * n + 1) for n in cells))}
+    groups = [(3, name, [(k, nodes + away) for k, nodes in found])]
+    groups += [(2, f"{name}_{side}", [(len(f), (f + away).astype(int)) for f in members]) for side, members in sides.items()]
+    return groups, x
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("file", type=Path)
+    parser.add_argument("boxes", nargs="+")
+    parser.add_argument("--cylinder", type=float, metavar="R")
+    args = parser.parse_args()
+    groups, x = [], {}
+    for i, text in enumerate(args.boxes):
+        more, places = box(text, 100000 * i)
+        groups += more
+        x.update(places)
+    if args.cylinder:
+        for p, (a, y, z) in x.items():
+            s, angle = args.cylinder + z, y / args.cylinder
+            x[p] = np.array([a, s * np.sin(angle), s * np.cos(angle) - args.cylinder])
+    write(args.file, "2.2", x, groups, None)
+
+
+if __name__ == "__main__":
+    main()
