@@ -90,7 +90,7 @@ static PetscErrorCode ScopeGetDamping(const Scope *s, PetscBool *damped, PetscBo
   PetscCall(OperatorsHaveDamping(s->operators, &sure));
   if (s->model) PetscCall(ModelGetScene(s->model, &scene));
   for (PetscInt i = 0; s->model && i < scene->n_parts; i++)
-    if (scene->parts[i].alpha > 0 || scene->parts[i].beta > 0) sure = PETSC_TRUE;
+    if (scene->parts[i].alpha > 0 || scene->parts[i].beta > 0 || scene->parts[i].spin.rate != 0) sure = PETSC_TRUE;
   for (PetscInt i = 0; s->model && i < scene->n_dashpots; i++)
     if (Vec3Dot(scene->dashpots[i].value, scene->dashpots[i].value) > 0) sure = PETSC_TRUE;
   for (PetscInt i = 0; s->model && i < scene->n_joints + scene->n_points; i++) {
@@ -128,6 +128,7 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
   static const char all[]      = "not used by modes with all pairs closed; give -modes_contact static";
   static const char still[]    = "not used by -analysis static, where nothing moves and nothing is damped";
   static const char no_probe[] = "not used without -analysis transient or frf";
+  static const char turning[] = "not used by -analysis transient; a contact's -..._kinematics turning turns its master";
   const ModelScene *scene;
 
   PetscFunctionBeginUser;
@@ -138,6 +139,8 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
     PetscCall(ScopeRefuse(comm, scene->parts[i].name, "beta", still));
     PetscCall(ScopeRefuse(comm, scene->parts[i].name, "loss_factor", still));
   }
+  for (PetscInt i = 0; i < scene->n_parts && !s->modes; i++)
+    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "spin", s->transient ? turning : still));
   if (!s->transient && !s->modes) PetscCall(ScopeCheckDensity(comm, scene));
   for (PetscInt i = 0; i < scene->n_probes && !s->transient && !s->frf; i++)
     PetscCall(ScopeRefuse(comm, scene->probes[i].name, "at", no_probe));

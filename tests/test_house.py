@@ -31,7 +31,8 @@ BELOW |= {"results": {"base", "kernels", "results"},
 LAYERS = {"dense": {"dense"}, "basis": {"dense", "basis"}, "track": {"dense", "track"}}
 # Public headers of which the name is not their room's
 ROOM_OF_HEADER = {"checksum": "base", "contactstatus": "kernels", "elasticity": "kernels", "element": "kernels",
-                  "joint": "kernels", "mesh": "kernels", "options": "base", "pencil": "operators", "projector": "contact", "sys": "base"}
+                  "joint": "kernels", "material": "kernels", "mesh": "kernels", "options": "base",
+                  "pencil": "operators", "projector": "contact", "sys": "base"}
 # Signatures that a library lays down
 LAID_DOWN = {"KeepError": "PetscPushErrorHandler()", "DampedStop": "PEPSetStoppingTestFunction()",
              "UndampedStop": "EPSSetStoppingTestFunction()"}

@@ -12,31 +12,10 @@
 #include <squeal/checksum.h>
 #include <squeal/element.h>
 #include <squeal/joint.h>
+#include <squeal/material.h>
 #include <squeal/mesh.h>
 
 typedef struct _p_Model *Model;
-
-/* Elasticity of a part that is not isotropic, in axes 1, 2, 3 of its own */
-typedef struct {
-  PetscInt             n;         /* Young's moduli given: 0 isotropic, 2 transversely isotropic about axis 3, 3 */
-  EngineeringConstants constants; /* Pa, all nine */
-  PetscReal            C[ELASTICITY_VOIGT][ELASTICITY_VOIGT]; /* in the axes, Pa */
-  PetscReal            axis[3][3]; /* rows: unit vectors; with a cylinder only axis 3 is that of the cells */
-  PetscBool            cylinder;   /* axis 1 is radial, 2 circumferential about axis 3 */
-  PetscReal            centre[3];  /* a point of that axis, m */
-} Anisotropy;
-
-/* Material of one body; SI units */
-typedef struct {
-  char      *name;
-  PetscReal  young;   /* Young's modulus, Pa, > 0; E_1 where not isotropic */
-  PetscReal  poisson; /* Poisson's ratio, in (-1, 0.5); not read where not isotropic */
-  PetscReal  density; /* kg/m^3, > 0 */
-  PetscReal  alpha;   /* Rayleigh factor of the mass, 1/s: C = alpha M + beta K */
-  PetscReal  beta;    /* Rayleigh factor of the stiffness, s, loss included */
-  PetscReal  loss;    /* loss factor at the scene's loss_frequency, part of beta */
-  Anisotropy anisotropy;
-} Part;
 
 /* How a quantity on a set is spread over its vertices: the same at each, in all, or per area */
 typedef enum { SPREAD_EACH, SPREAD_TOTAL, SPREAD_AREA } Spread;
@@ -140,6 +119,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
 .  -parts, -supports, -springs, -dashpots, -joints, -points, -loads, -motions, -probes, -circles <names> - lists; each name is the prefix of its own options
 .  -<part>_young, _poisson, _shear, _axis_1, _axis_2, _axis_3, _cylinder_axis, _cylinder_centre - elasticity, isotropic
    or not: model/scene/anisotropic.c
+.  -<part>_spin, _spin_axis, _spin_centre - steady spin of a body of revolution, rad/s, in modes
 .  -<part>_loss_factor <0>  - structural damping, exact at -loss_frequency <Hz>: beta grows by loss / (2 pi frequency)
 .  -model_gravity <0,0,0>   - acceleration of gravity, m/s^2, which acts on the mass of all parts in statics and in time
 .  -bush_a, -bush_b <the ground>, -bush_at x,y,z <the middle>, -bush_stiffness, _turn_stiffness, _viscosity,

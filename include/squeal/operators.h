@@ -68,10 +68,10 @@ PetscErrorCode OperatorsGetSave(Operators operators, const char **folder);
    OperatorsGetParameters - the numbers that the matrices depend on, in the order of the scene: of each part young (Pa),
    density (kg/m^3), alpha (1/s), beta (s); of each list of springs stiffness (N/m), of dashpots viscosity (N s/m), with
    _x, _y, _z appended where the components that are not zero differ; of each bushing and point stiffness (N/m),
-   turn_stiffness (N m/rad), viscosity (N s/m), turn_viscosity (N m s/rad) alike, of a point mass (kg); of each contact mu, kn (N/m, penalty), and with
-   friction damping mu_slope (s/m), force (N) and speed (m/s), or rotation (rad/s) where that is what was given;
-   contact_mu for loaded or dense matrices with H (borrowed). An interface of which nothing says along what it slides
-   has no mu. Not collective.
+   turn_stiffness (N m/rad), viscosity (N s/m), turn_viscosity (N m s/rad) alike, of a point mass (kg); of each part that
+   spins spin (rad/s), on which pencils alone depend; of each contact mu, kn (N/m, penalty), and with friction damping
+   mu_slope (s/m), force (N) and speed (m/s), or rotation (rad/s) where that is what was given; contact_mu for loaded or
+   dense matrices with H (borrowed). An interface of which nothing says along what it slides has no mu. Not collective.
 @*/
 PetscErrorCode OperatorsGetParameters(Operators operators, PetscInt *n, const OperatorsParameter **parameters);
 
@@ -128,6 +128,11 @@ PetscErrorCode OperatorsTakeNodal(Operators operators, Vec local, Vec u);
 /*@ OperatorsApplyBodies - f = K u of parts and springs at p, N, element by element: without the rounding of the
     assembled matrix in rigid translations. Collective. @*/
 PetscErrorCode OperatorsApplyBodies(Operators operators, const PetscReal p[], Vec u, Vec f);
+
+/*@ OperatorsCreateGeometric - the stiffness int grad N_i . sigma . grad N_j dV times the 3 x 3 identity (N/m) of the stress
+    sigma of displacements u (m, [nodes][3], local) with the moduli of the point p, symmetric; tension stiffens.
+    Collective. The caller destroys it. @*/
+PetscErrorCode OperatorsCreateGeometric(Operators operators, const PetscReal p[], const PetscReal u[], Mat *K);
 
 /*@ OperatorsCreateVec - a vector of all unknowns. Collective. @*/
 PetscErrorCode OperatorsCreateVec(Operators operators, Vec *u);

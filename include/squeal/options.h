@@ -62,10 +62,10 @@ PetscErrorCode OptionsReadList(MPI_Comm comm, const OptionsList *list, void *own
 PetscErrorCode OptionsGetReals(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
                                PetscReal values[], PetscBool *set);
 
-/*@ OptionsGetSomeReals - reads an array of any number of values up to `most`, 8 at most; on return n of them, 0 where the
-    option is not given. initial is its default for the help. Collective. Errors: PETSC_ERR_USER_INPUT for more. @*/
+/*@ OptionsGetSomeReals - reads an array of one, two or three values; on return n of them, 0 where the option is not given.
+    initial is its default for the help. Collective. Errors: PETSC_ERR_USER_INPUT for more. @*/
 PetscErrorCode OptionsGetSomeReals(OptionsItems PetscOptionsObject, const char option[], const char help[],
-                                   const char initial[], PetscInt most, PetscReal values[], PetscInt *n);
+                                   const char initial[], PetscReal values[3], PetscInt *n);
 
 /*@ OptionsGetInts - as OptionsGetReals(), integers. Collective. @*/
 PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,

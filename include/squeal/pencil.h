@@ -3,8 +3,8 @@
 
       M u'' + C u' + (K + mu H) u = 0
 
-   M, K symmetric; C damping; H the unsymmetric friction part per unit friction coefficient; all are sums of fixed
-   matrices with monomials of the parameters for coefficients. Where an interface obeys the exact constraint N u = 0, the
+   M, K symmetric; C damping, and of parts that spin the skew gyroscopic matrix; H the unsymmetric friction part per unit
+   friction coefficient; all are sums of fixed matrices with monomials of the parameters for coefficients. Where an interface obeys the exact constraint N u = 0, the
    pencil is the projection Zl' (.) Zr with N Zr = 0 and (N - mu T) Zl = 0; without constraints Zl = Zr = identity, and
    nothing is projected.
 
@@ -27,7 +27,7 @@ typedef enum { OPERATORS_STIFFNESS, OPERATORS_DAMPING, OPERATORS_MASS } Operator
 typedef struct {
   OperatorsTermKind kind;
   Mat               A;          /* in the unknowns of the pencil (borrowed); several terms may share one */
-  PetscBool         frictional; /* vanishes without friction */
+  PetscBool         frictional; /* vanishes without friction or spin */
   PetscBool         symmetric;  /* A is; never so for a frictional term */
   PetscReal         scale;
   PetscInt          n; /* factors */

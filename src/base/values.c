@@ -130,7 +130,7 @@ PetscErrorCode OptionsGetReals(OptionsItems PetscOptionsObject, const char optio
 }
 
 PetscErrorCode OptionsGetSomeReals(OptionsItems PetscOptionsObject, const char option[], const char help[],
-                                   const char initial[], PetscInt most, PetscReal values[], PetscInt *n)
+                                   const char initial[], PetscReal values[3], PetscInt *n)
 {
   const char *prefix = PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "";
   char        now[MAX_TEXT];
@@ -141,8 +141,8 @@ PetscErrorCode OptionsGetSomeReals(OptionsItems PetscOptionsObject, const char o
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsGetRealArray(PetscOptionsObject->options, prefix, option, all, &count, &given));
   *n = given ? count : 0;
-  PetscCheck(*n <= most, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
-             "-%s%s has %" PetscInt_FMT " values; give at most %" PetscInt_FMT, prefix, option + 1, *n, most);
+  PetscCheck(*n <= 3, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
+             "-%s%s has %" PetscInt_FMT " values; give at most 3", prefix, option + 1, *n);
   PetscCall(PetscArraycpy(values, all, *n));
   PetscCall(ArrayPrint(*n, values, NULL, now));
   if (*n == 1) PetscCall(PetscSNPrintf(now, sizeof(now), "%g", (double)values[0])); /* as PETSc shows one number */

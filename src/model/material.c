@@ -7,7 +7,7 @@
 #include "kernels/orthotropic.h"
 
 #define NO_RADIUS 1e-8 /* of a cell's size */
-#define SAME_AXIS 1e-8 /* of the mesh */
+#define CARRIED   1e-8 /* of the mesh */
 
 /* From the axis to the centre of a cell, radius[3] (m); and how far its nodes are from their centre, m */
 static PetscErrorCode CellFindRadius(Model model, PetscInt c, const Anisotropy *a, PetscReal radius[3], PetscReal *size)
@@ -95,8 +95,8 @@ PetscBool ModelMaterialIsSwept(Model model, PetscInt part, const ModelLines *lin
     for (int d = 0; d < 3; d++) scale = PetscMax(scale, PetscAbsReal(model->mesh.x[3 * lines->vertex[i] + d]));
   for (int d = 0; d < 3; d++) {
     if (d == lines->axis) continue;
-    if (PetscAbsReal(a->axis[2][d]) > SAME_AXIS) return PETSC_FALSE;
-    if (lines->turned && PetscAbsReal(a->centre[d] - lines->centre[d]) > SAME_AXIS * scale) return PETSC_FALSE;
+    if (PetscAbsReal(a->axis[2][d]) > CARRIED) return PETSC_FALSE;
+    if (lines->turned && PetscAbsReal(a->centre[d] - lines->centre[d]) > CARRIED * scale) return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }

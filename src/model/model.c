@@ -113,6 +113,7 @@ PetscErrorCode ModelSetUp(Model model)
   PetscCall(MeshLayOut(model));
   PetscCall(PartsCheckUnits(model));
   PetscCall(ModelCheckAxes(model));
+  PetscCall(SpinsCheck(model));
   PetscCall(GroundedSetUp(model));
   PetscCall(JointsSetUp(model));
   PetscCall(LoadsSetUp(model));

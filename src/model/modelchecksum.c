@@ -84,6 +84,11 @@ PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum 
 
     PetscCall(ChecksumAddString(c, p->name));
     PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(all), all));
+    if (p->spin.given) {
+      PetscCall(ChecksumAddReals(c, 1, &p->spin.rate));
+      PetscCall(ChecksumAddReals(c, 3, p->spin.axis));
+      PetscCall(ChecksumAddReals(c, 3, p->spin.centre));
+    }
     if (!p->anisotropy.n) continue;
     PetscCall(ChecksumAddReals(c, ELASTICITY_VOIGT * ELASTICITY_VOIGT, p->anisotropy.C[0]));
     PetscCall(ChecksumAddReals(c, 9, p->anisotropy.axis[0]));

@@ -108,6 +108,12 @@ PETSC_INTERN PetscErrorCode JointAddChecksum(Model model, const Joint *joint, Ch
 PETSC_INTERN PetscErrorCode PartReadElasticity(OptionsItems PetscOptionsObject, Part *part);
 PETSC_INTERN PetscErrorCode AnisotropyView(const Anisotropy *a, PetscViewer viewer);
 
+/* spin.c - steady spin of a part; errors for one without axis, for a part that is no body of revolution, and for a material
+   that does not turn into itself. SpinsCheck() is collective */
+PETSC_INTERN PetscErrorCode PartReadSpin(OptionsItems PetscOptionsObject, Part *part);
+PETSC_INTERN PetscErrorCode SpinsCheck(Model model);
+PETSC_INTERN PetscErrorCode SpinView(const Spin *spin, PetscViewer viewer);
+
 /* material.c - raises an error for a cylinder's axis through the centre of a cell. Collective */
 PETSC_INTERN PetscErrorCode ModelCheckAxes(Model model);
 

@@ -39,7 +39,7 @@ static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, ch
   if (modes->n - rows + pairs != window->expected)
     PetscCall(PetscStrncpy(other, "; the others lie beyond that growth or have left the band", sizeof(other)));
   if (modes->n - rows + pairs > window->expected)
-    PetscCall(PetscStrncpy(other, "; the others came into the band by friction or damping", sizeof(other)));
+    PetscCall(PetscStrncpy(other, "; the others came into the band by friction, damping or spin", sizeof(other)));
   PetscCall(PetscSNPrintf(text, size, "%s; the count without friction and damping is %" PetscInt_FMT " (inertia)%s",
                           real, window->expected, other));
   PetscFunctionReturn(0);

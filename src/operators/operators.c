@@ -66,6 +66,7 @@ PetscErrorCode OperatorsSetUp(Operators operators)
   PetscCall(EventBegin(EVENT_ASSEMBLE));
   if (operators->model) {
     PetscCall(OperatorsAssemble(operators));
+    PetscCall(OperatorsAddSpinParameters(operators));
     for (PetscInt i = 0; i < operators->parameters.n; i++) operators->parameters.list[i].body = PETSC_TRUE;
     PetscCall(OperatorsAddContactParameters(operators));
   } else {
@@ -208,6 +209,8 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   for (int i = 0; i < N_OPERATORS; i++) PetscCall(PetscFree(o->dense[i]));
   PetscCall(OperatorsReleaseBodies(o));
   PetscCall(TermsDestroy(&o->terms));
+  PetscCall(TermsDestroy(&o->spin));
+  PetscCall(PetscFree(o->spin_of_part));
   PetscCall(PetscFree(o->interface));
   PetscCall(PetscFree(o->joint));
   PetscCall(PetscFree(o->mu));

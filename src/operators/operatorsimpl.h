@@ -37,13 +37,15 @@ struct _p_Operators {
   PetscBool  lump;
   PetscReal  loaded_mu; /* -contact_mu of loaded or dense matrices */
   /* built by OperatorsSetUp() */
-  Parameters           parameters; /* at the values of the scene */
-  PetscInt             n_mu, *mu;  /* parameters that are friction coefficients */
-  InterfaceParameters *interface;  /* of each interface */
-  JointParameters     *joint;      /* of each bushing, then of each point */
-  PetscInt             n_local;    /* the first parameters are those of parts, springs and dashpots */
-  Terms                terms;      /* of the bodies, in all unknowns; with loaded matrices friction too */
-  PetscBool            symmetric;  /* K, M and C are symmetric without friction; always true for a model */
+  Parameters           parameters;   /* at the values of the scene */
+  PetscInt             n_mu, *mu;    /* parameters that are friction coefficients */
+  InterfaceParameters *interface;    /* of each interface */
+  JointParameters     *joint;        /* of each bushing, then of each point */
+  PetscInt             n_local;      /* the first parameters are those of parts, springs and dashpots */
+  PetscInt            *spin_of_part; /* [parts] parameter, -1 for parts without; NULL for loaded matrices */
+  Terms                spin;         /* of spinning parts, for pencils; made when the first one asks */
+  Terms                terms;        /* of the bodies, in all unknowns; with loaded matrices friction too */
+  PetscBool            symmetric;    /* K, M and C are symmetric without friction; always true for a model */
   /* formed when asked for */
   TermsSum sum[N_BODIES_SUMS];
 };
@@ -82,6 +84,10 @@ PETSC_INTERN PetscErrorCode OperatorsAddJointForces(Operators operators, const P
                                                     const PetscReal displacement[], PetscReal force[]);
 PETSC_INTERN PetscErrorCode OperatorsAddJointWeight(Operators operators, const PetscReal p[], PetscReal force[],
                                                     PetscReal total[3]);
+
+/* spin.c - parameters of the spinning parts; their terms, once */
+PETSC_INTERN PetscErrorCode OperatorsAddSpinParameters(Operators operators);
+PETSC_INTERN PetscErrorCode OperatorsNeedSpin(Operators operators);
 
 /* pattern.c - empty matrix of all unknowns, preallocated for the couplings of the cells of one part */
 PETSC_INTERN PetscErrorCode PatternCreate(Model model, PetscInt part, Mat *A);

@@ -15,7 +15,9 @@ PetscErrorCode OperatorsLinearise(Operators operators, const SlidingState *state
   s->operators = operators;
   PetscCall(PencilTakeState(s, state));
   PetscCall(PencilCheckSliding(s));
+  PetscCall(OperatorsNeedSpin(operators));
   PetscCall(TermsAppend(&s->base, &operators->terms));
+  PetscCall(TermsAppend(&s->base, &operators->spin));
   if (operators->model) PetscCall(PencilAddContact(s));
   if (state && state->geometric)
     PetscCall(TermsAdd(&s->base, OPERATORS_STIFFNESS, state->geometric, PETSC_TRUE, 0, NULL));
@@ -239,6 +241,7 @@ PetscErrorCode PencilView(Pencil pencil, PetscViewer viewer)
 {
   PencilMatrices m;
   PetscInt       n, n_pencil;
+  PetscBool      spinning;
   MatInfo        info;
 
   PetscFunctionBeginUser;
@@ -246,10 +249,14 @@ PetscErrorCode PencilView(Pencil pencil, PetscViewer viewer)
   PetscCall(MatGetSize(pencil->base.term[0].A, &n, NULL));
   PetscCall(MatGetSize(m.K, &n_pencil, NULL));
   PetscCall(MatGetInfo(m.K, MAT_GLOBAL_SUM, &info));
+  spinning =
+    TermsVanish(&pencil->operators->spin, TERMS_ALL, PETSC_FALSE, pencil->parameters.p) ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(PetscViewerASCIIPrintf(
     viewer, "operators: %" PetscInt_FMT " unknowns, %.0f nonzeros, %s, %s, %s mass\n", n_pencil, (double)info.nz_used,
-    m.symmetric ? "no friction: symmetric" : "friction: unsymmetric", m.C ? "damped: quadratic problem" : "undamped",
-    pencil->operators->lump ? "lumped" : "consistent"));
+    m.symmetric ? "no friction: symmetric"
+    : spinning  ? "spin or friction: unsymmetric"
+                : "friction: unsymmetric",
+    m.C ? "damped: quadratic problem" : "undamped", pencil->operators->lump ? "lumped" : "consistent"));
   if (n_pencil < n)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " unknowns eliminated by the contact constraint\n",
                                      n - n_pencil));

@@ -147,7 +147,7 @@ PetscErrorCode SweepSetFromOptions(Sweep sweep)
 
 PetscErrorCode SweepGetDamping(Sweep sweep, PetscBool *varied, PetscBool *real)
 {
-  static const char *const factors[] = {"_alpha", "_beta", "_viscosity"};
+  static const char *const factors[] = {"_alpha", "_beta", "_viscosity", "_spin"};
 
   PetscFunctionBeginUser;
   *real   = sweep->method == SWEEP_REAL ? PETSC_TRUE : PETSC_FALSE;

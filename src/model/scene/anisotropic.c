@@ -169,12 +169,12 @@ PetscErrorCode PartReadElasticity(OptionsItems PetscOptionsObject, Part *part)
 
   PetscFunctionBeginUser;
   PetscCall(OptionsGetSomeReals(PetscOptionsObject, "-young",
-                                "Young's modulus, Pa (required); E_p,E_z transversely isotropic; E_1,E_2,E_3", "", 3,
+                                "Young's modulus, Pa (required); E_p,E_z transversely isotropic; E_1,E_2,E_3", "",
                                 young, &n_young));
   PetscCall(OptionsGetSomeReals(PetscOptionsObject, "-poisson",
-                                "Poisson's ratio, in (-1, 0.5); nu_p,nu_pz; nu_12,nu_13,nu_23", "0.3", 3, poisson,
+                                "Poisson's ratio, in (-1, 0.5); nu_p,nu_pz; nu_12,nu_13,nu_23", "0.3", poisson,
                                 &n_poisson));
-  PetscCall(OptionsGetSomeReals(PetscOptionsObject, "-shear", "of two or three -young: G_pz; G_12,G_13,G_23, Pa", "", 3,
+  PetscCall(OptionsGetSomeReals(PetscOptionsObject, "-shear", "of two or three -young: G_pz; G_12,G_13,G_23, Pa", "",
                                 shear, &n_shear));
   for (int k = 0; k < N_AXES; k++) {
     PetscBool set;

@@ -133,6 +133,7 @@ PetscErrorCode PartView(Model model, PetscInt part, PetscViewer viewer)
     viewer, "  part %s: E %.6g Pa, nu %.6g, rho %.6g kg/m^3, alpha %.6g 1/s, beta %.6g s\n", p->name, (double)p->young,
     (double)p->poisson, (double)p->density, (double)p->alpha, (double)p->beta));
   if (p->anisotropy.n) PetscCall(AnisotropyView(&p->anisotropy, viewer));
+  if (p->spin.given) PetscCall(SpinView(&p->spin, viewer));
   if (p->loss > 0)
     PetscCall(PetscViewerASCIIPrintf(
       viewer, "    loss factor %.6g at %.6g Hz, in beta: %.6g at half that frequency, %.6g at twice it\n",

@@ -20,6 +20,7 @@ static PetscErrorCode PartRead(OptionsItems PetscOptionsObject, void *owner, voi
   PetscCall(PetscOptionsReal("-beta", "Rayleigh factor of the stiffness, s", "model.h", part->beta, &part->beta, NULL));
   PetscCall(PetscOptionsReal("-loss_factor", "loss factor at -loss_frequency, adds to beta", "model.h", part->loss,
                              &part->loss, NULL));
+  PetscCall(PartReadSpin(PetscOptionsObject, part));
   PetscFunctionReturn(0);
 }
 

@@ -1,0 +1,37 @@
+/*
+   Part - a body of the scene by its material: elasticity, density, damping, and its spin. SI units
+*/
+#pragma once
+
+#include <petscsys.h>
+#include <squeal/elasticity.h>
+
+/* Elasticity of a part that is not isotropic, in axes 1, 2, 3 of its own */
+typedef struct {
+  PetscInt             n;         /* Young's moduli given: 0 isotropic, 2 transversely isotropic about axis 3, 3 */
+  EngineeringConstants constants; /* Pa, all nine */
+  PetscReal            C[ELASTICITY_VOIGT][ELASTICITY_VOIGT]; /* in the axes, Pa */
+  PetscReal            axis[3][3]; /* rows: unit vectors; with a cylinder only axis 3 is that of the cells */
+  PetscBool            cylinder;   /* axis 1 is radial, 2 circumferential about axis 3 */
+  PetscReal            centre[3];  /* a point of that axis, m */
+} Anisotropy;
+
+/* Steady spin of a body of revolution in the fixed frame */
+typedef struct {
+  PetscBool given;
+  PetscReal rate;               /* rad/s, to the right about the axis */
+  PetscReal axis[3], centre[3]; /* unit vector; a point of the axis, m */
+} Spin;
+
+/* Material of one body; SI units */
+typedef struct {
+  char      *name;
+  PetscReal  young;   /* Young's modulus, Pa, > 0; E_1 where not isotropic */
+  PetscReal  poisson; /* Poisson's ratio, in (-1, 0.5); not read where not isotropic */
+  PetscReal  density; /* kg/m^3, > 0 */
+  PetscReal  alpha;   /* Rayleigh factor of the mass, 1/s: C = alpha M + beta K */
+  PetscReal  beta;    /* Rayleigh factor of the stiffness, s, loss included */
+  PetscReal  loss;    /* loss factor at the scene's loss_frequency, part of beta */
+  Anisotropy anisotropy;
+  Spin       spin;
+} Part;

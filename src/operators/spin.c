@@ -1,0 +1,211 @@
+/*
+   Terms of spinning parts, for pencils alone (kernels/spin.h has the equations): of each part, per unit density rho and
+   spin Omega,
+
+      C += Omega rho G,   K += Omega^2 rho (K_sigma - Q),
+
+   sigma being the stress of the bodies under the steady load of this part's spin, u = K^-1 f, held by supports and
+   springs but not by contacts, with the moduli of the scene. Where nothing holds the bodies, f balances itself, and
+
+      (K + s M) u_k+1 = f + s M u_k
+
+   finds u but for a rigid motion, which has no stress.
+*/
+#include "operatorsimpl.h"
+#include "kernels/spin.h"
+#include <petscksp.h>
+
+#define SHIFT    1e-10 /* s, of the largest K_ii / M_ii */
+#define RESIDUAL 1e-8  /* of f */
+#define ATTEMPTS 20
+
+PetscErrorCode OperatorsAddSpinParameters(Operators o)
+{
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(o->model, &scene));
+  PetscCall(PetscMalloc1(scene->n_parts, &o->spin_of_part));
+  for (PetscInt part = 0; part < scene->n_parts; part++) {
+    const Part              *p = &scene->parts[part];
+    const OperatorsParameter q = {.unit = "rad/s", .value = p->spin.rate, .lower = -INFINITY};
+
+    o->spin_of_part[part] = -1;
+    if (p->spin.given) PetscCall(ParametersAdd(&o->parameters, p->name, "spin", &q, &o->spin_of_part[part]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Entries [n][n] times the 3 x 3 identity into a matrix */
+static PetscErrorCode SpinSetCell(PetscInt n, const PetscInt rows[], const PetscReal entry[], Mat A)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt a = 0; a < n; a++)
+    for (PetscInt b = 0; b < n; b++)
+      for (int d = 0; d < 3; d++)
+        PetscCall(MatSetValues(A, 1, &rows[3 * a + d], 1, &rows[3 * b + d], &entry[a * n + b], ADD_VALUES));
+  PetscFunctionReturn(0);
+}
+
+/* Adds local cell c; load holds three values per local node */
+static PetscErrorCode SpinAddCell(Operators o, PetscInt c, const SpinFrame *frame, Mat G, Mat Q, PetscScalar load[])
+{
+  const Element *element;
+  const Mesh    *mesh;
+  PetscInt       n, nodes[ELEMENT_MAX_NODES], rows[ELEMENT_MAX_DOFS];
+  PetscReal      x[ELEMENT_MAX_DOFS];
+  SpinIntegrals  sum;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(o->model, &mesh));
+  PetscCall(ModelGetCell(o->model, c, &element, nodes, x));
+  n = element->n_nodes;
+  PetscCheck(!SpinIntegrate(element->solid, frame, x, &sum), PETSC_COMM_SELF, PETSC_ERR_PLIB, "element is inverted");
+  for (PetscInt i = 0; i < 3 * n; i++) {
+    rows[i] = mesh->unknown[3 * nodes[i / 3] + i % 3];
+    load[3 * nodes[i / 3] + i % 3] += sum.load[i];
+  }
+  PetscCall(SpinSetCell(n, rows, sum.gyroscopic, G));
+  PetscCall(SpinSetCell(n, rows, sum.convective, Q));
+  PetscFunctionReturn(0);
+}
+
+/* G, Q and the load f of one part, per unit density and spin */
+static PetscErrorCode SpinAssemble(Operators o, PetscInt part, Mat *G, Mat *Q, Vec f)
+{
+  const ModelScene *scene;
+  const Mesh       *mesh;
+  PetscScalar      *load;
+  SpinFrame         frame;
+  Vec               nodal;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(o->model, &scene));
+  PetscCall(ModelGetMesh(o->model, &mesh));
+  PetscCall(PetscArraycpy(frame.axis, scene->parts[part].spin.axis, 3));
+  PetscCall(PetscArraycpy(frame.centre, scene->parts[part].spin.centre, 3));
+  PetscCall(PatternCreate(o->model, part, G));
+  PetscCall(MatDuplicate(*G, MAT_DO_NOT_COPY_VALUES, Q));
+  PetscCall(ModelCreateNodal(o->model, &nodal));
+  PetscCall(VecGetArray(nodal, &load));
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    if (mesh->cell_part[c] == part) PetscCall(SpinAddCell(o, c, &frame, *G, *Q, load));
+  PetscCall(VecRestoreArray(nodal, &load));
+  PetscCall(ModelSumShared(o->model, nodal));
+  PetscCall(OperatorsTakeNodal(o, nodal, f));
+  PetscCall(VecDestroy(&nodal));
+  PetscCall(MatAssemblyBegin(*G, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyBegin(*Q, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*G, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*Q, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+/* Factors of K + s M */
+static PetscErrorCode SpinCreateSolver(Operators o, Mat K, Mat M, KSP *ksp)
+{
+  PetscReal largest;
+  Vec       k, m;
+  Mat       A;
+  PC        pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateVecs(K, &k, &m));
+  PetscCall(MatGetDiagonal(K, k));
+  PetscCall(MatGetDiagonal(M, m));
+  PetscCall(VecPointwiseDivide(k, k, m));
+  PetscCall(VecMax(k, NULL, &largest));
+  PetscCall(VecDestroy(&k));
+  PetscCall(VecDestroy(&m));
+  PetscCall(MatDuplicate(K, MAT_COPY_VALUES, &A));
+  PetscCall(MatAXPY(A, SHIFT * largest, M, UNKNOWN_NONZERO_PATTERN));
+  PetscCall(MatSetOption(A, MAT_SYMMETRIC, PETSC_TRUE));
+  PetscCall(KSPCreate(o->comm, ksp));
+  PetscCall(KSPSetOperators(*ksp, A, A));
+  PetscCall(KSPSetType(*ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(*ksp, &pc));
+  PetscCall(PCSetType(pc, PCCHOLESKY));
+  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(KSPSetUp(*ksp));
+  PetscCall(MatDestroy(&A));
+  PetscFunctionReturn(0);
+}
+
+/* u = K^-1 f of a part */
+static PetscErrorCode SpinSolve(Operators o, const char name[], Mat K, KSP ksp, Vec f, Vec u)
+{
+  PetscReal size, left;
+  Vec       r, du;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(f, &r));
+  PetscCall(VecDuplicate(f, &du));
+  PetscCall(VecNorm(f, NORM_2, &size));
+  PetscCall(VecCopy(f, r));
+  PetscCall(VecSet(u, 0));
+  left = size;
+  for (int i = 0; i < ATTEMPTS && left > RESIDUAL * size; i++) {
+    PetscCall(KSPSolve(ksp, r, du));
+    PetscCall(VecAXPY(u, 1, du));
+    PetscCall(MatMult(K, u, r));
+    PetscCall(VecAYPX(r, -1, f));
+    PetscCall(VecNorm(r, NORM_2, &left));
+  }
+  PetscCall(VecDestroy(&r));
+  PetscCall(VecDestroy(&du));
+  PetscCheck(
+    left <= RESIDUAL * size, o->comm, PETSC_ERR_NOT_CONVERGED,
+    "-%s_spin: nothing holds the bodies, and the load of the spin leaves %.2g of itself: its centre of mass is off "
+    "-%s_spin_centre",
+    name, (double)(left / size), name);
+  PetscFunctionReturn(0);
+}
+
+/* Terms of one part; K of the bodies, and its factors */
+static PetscErrorCode SpinAddPart(Operators o, PetscInt part, const char name[], Mat K, KSP ksp)
+{
+  const PetscInt spin = o->spin_of_part[part], density = N_PART_PARAMETERS * part + PART_DENSITY;
+  const Mesh    *mesh;
+  PetscReal     *displacement;
+  Mat            G, Q, S;
+  Vec            f, u;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(o->model, &mesh));
+  PetscCall(PetscMalloc1(3 * mesh->n_nodes, &displacement));
+  PetscCall(MatCreateVecs(K, &u, &f));
+  PetscCall(SpinAssemble(o, part, &G, &Q, f));
+  PetscCall(SpinSolve(o, name, K, ksp, f, u));
+  PetscCall(ModelGetNodal(o->model, u, displacement));
+  PetscCall(OperatorsCreateGeometric(o, NULL, displacement, &S));
+  PetscCall(PetscFree(displacement));
+  PetscCall(MatAXPY(S, -1, Q, UNKNOWN_NONZERO_PATTERN));
+  PetscCall(TermsAdd(&o->spin, OPERATORS_DAMPING, G, PETSC_FALSE, 2, (PetscInt[]){spin, density}));
+  PetscCall(TermsAdd(&o->spin, OPERATORS_STIFFNESS, S, PETSC_TRUE, 3, (PetscInt[]){spin, spin, density}));
+  PetscCall(MatDestroy(&G));
+  PetscCall(MatDestroy(&Q));
+  PetscCall(MatDestroy(&S));
+  PetscCall(VecDestroy(&f));
+  PetscCall(VecDestroy(&u));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsNeedSpin(Operators o)
+{
+  const ModelScene *scene;
+  KSP               ksp = NULL;
+  Mat               K, M;
+
+  PetscFunctionBeginUser;
+  if (!o->model || o->spin.n) PetscFunctionReturn(0);
+  PetscCall(ModelGetScene(o->model, &scene));
+  for (PetscInt part = 0; part < scene->n_parts; part++) {
+    if (o->spin_of_part[part] < 0) continue;
+    PetscCall(OperatorsGetBodies(o, NULL, &K, &M, NULL));
+    if (!ksp) PetscCall(SpinCreateSolver(o, K, M, &ksp));
+    PetscCall(SpinAddPart(o, part, scene->parts[part].name, K, ksp));
+  }
+  PetscCall(KSPDestroy(&ksp));
+  if (o->spin.n) PetscCall(OperatorsReleaseBodies(o));
+  PetscFunctionReturn(0);
+}

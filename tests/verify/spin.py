@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""Spinning ring and disc in the fixed frame, against closed forms.
+
+    verify/spin.py ring REST SPIN OMEGA
+        a free ring of 98..102 mm, 4 mm thick. In its plane a wave exp(i (n theta + w t)) of the turning frame, without
+        extension of the centre line, v = -u', has the dispersion
+
+            (n^2 + 1) w^2 - 4 n W w + n^2 (3 - n^2) W^2 - n^2 (n^2 - 1)^2 E I / (rho A R^4) = 0        (G. H. Bryan, 1890)
+
+        and w - n W in the fixed frame; its frequency at rest is that of REST. Across its plane n = 1 is a rigid tilt, which
+        nutates at W I_axis / I_across.
+    verify/spin.py disc REST SPIN OMEGA
+        an annular plate of 60..120 mm, 2 mm thick, its inner edge held. In the turning frame the plate has its bending
+        stiffness and the stress of the spin; no force of Coriolis acts along its normal. A wave with n nodal diameters has
+        w - n W and w + n W in the fixed frame. w(W)^2 - w(0)^2 is that of Ritz's method with (r - a)^2 r^k.
+"""
+
+import math
+import sys
+
+import numpy as np
+
+from convergence import Judge, nearest, read_modes
+
+YOUNG, POISSON, DENSITY = 210e9, 0.3, 7800
+RING = 0.098, 0.102, 0.004  # inner and outer radius, thickness, m
+PLATE = 0.06, 0.12, 0.002
+SPLIT, LEVEL, STIFFENING = 3e-4, 2e-4, 0.01  # the plate's thickness splits 2e-4 less; half the thickness 5e-5
+
+
+def compare(judge, what, found, expected, tolerance):
+    print(f"{what:44} {found:12.4f}  {expected:12.4f}  {found / expected - 1:9.1e}"
+          f"{judge.within(found / expected - 1, -tolerance, tolerance)}")
+
+
+def ring(judge, rest, modes, spin):
+    inner, outer, thick = RING
+    across = (inner**2 + outer**2) / 4 + thick**2 / 12
+    compare(judge, "nutation, Hz", nearest(modes, spin / math.pi), spin / (2 * math.pi) * 2 * (inner**2 + outer**2) / 4 / across,
+            LEVEL)
+    for n, about in ((2, 256.17), (3, 725.03)):
+        at_rest = 2 * math.pi * nearest(rest, about)
+        mean = math.sqrt(at_rest**2 + (n * (n**2 - 1) / (n**2 + 1) * spin)**2)
+        half = n * (n**2 - 1) / (n**2 + 1) * spin
+        expected = (mean - half) / (2 * math.pi), (mean + half) / (2 * math.pi)
+        found = [nearest(modes, f) for f in expected]
+        for k in range(2):
+            compare(judge, f"in its plane, n = {n}, {'against' if k == 0 else 'with'} the spin, Hz", found[k], expected[k], LEVEL)
+        compare(judge, "    split, Hz", found[1] - found[0], half / math.pi, SPLIT)
+
+
+def plate_energies(n, terms=8, points=200):
+    """Ritz's matrices of w = sum c_k (r - a)^2 r^k cos n theta: bending, stress per W^2, mass; per thickness and pi."""
+    a, b, h = PLATE
+    x, weight = np.polynomial.legendre.leggauss(points)
+    r, weight = (a + b) / 2 + (b - a) / 2 * x, (b - a) / 2 * weight
+    k = np.arange(terms)[:, None]
+    s = (r - a) / (b - a)
+    w = s**(k + 2)
+    w1, w2 = (k + 2) * s**(k + 1) / (b - a), (k + 2) * (k + 1) * s**k / (b - a)**2
+    hoop = w1 / r - n**2 * w / r**2
+    twist = n * (w1 / r - w / r**2)
+    d = YOUNG * h**2 / (12 * (1 - POISSON**2))
+    bending = d * ((w2 + hoop) * r * weight @ (w2 + hoop).T
+                   - (1 - POISSON) * (w2 * r * weight @ hoop.T + hoop * r * weight @ w2.T - 2 * twist * r * weight @ twist.T))
+    sigma_r, sigma_t = plate_stress(r)
+    stress = sigma_r * r * weight * w1 @ w1.T + sigma_t * r * weight * (n * w / r) @ (n * w / r).T
+    return bending, stress, DENSITY * (r * weight * w @ w.T)
+
+
+def plate_stress(r):
+    """Stress of the spin per W^2: u = A r + B / r - (1 - nu^2) rho r^3 / (8 E), u(a) = 0 and sigma_r(b) = 0."""
+    a, b, _ = PLATE
+    c = (1 - POISSON**2) * DENSITY / (8 * YOUNG)
+    edge = [[a, 1 / a], [(1 + POISSON), -(1 - POISSON) / b**2]]
+    A, B = np.linalg.solve(edge, [c * a**3, c * (3 + POISSON) * b**2])
+    front = YOUNG / (1 - POISSON**2)
+    strain_r, strain_t = A - B / r**2 - 3 * c * r**2, A + B / r**2 - c * r**2
+    return front * (strain_r + POISSON * strain_t), front * (strain_t + POISSON * strain_r)
+
+
+def plate_frequency(n, spin):
+    bending, stress, mass = plate_energies(n)
+    low = np.linalg.inv(np.linalg.cholesky(mass))
+    return math.sqrt(np.linalg.eigvalsh(low @ (bending + spin**2 * stress) @ low.T)[0])
+
+
+def disc(judge, rest, modes, spin):
+    for n in range(4):
+        at_rest = min(f for f, label in rest if label == f"(0,{n})")
+        stiffening = plate_frequency(n, spin)**2 - plate_frequency(n, 0)**2
+        about = math.sqrt((2 * math.pi * at_rest)**2 + stiffening)
+        found = [nearest(modes, (about + side * n * spin) / (2 * math.pi)) for side in (-1, 1)]
+        mean = math.pi * (found[0] + found[1])
+        compare(judge, f"across its plane, n = {n}: w^2 - w_0^2, 1/s^2", mean**2 - (2 * math.pi * at_rest)**2, stiffening, STIFFENING)
+        if n:
+            compare(judge, "    split, Hz", found[1] - found[0], n * spin / math.pi, SPLIT)
+
+
+def main(what, rest, spinning, spin):
+    judge = Judge()
+    print(f"{'':44} {'computed':>12}  {'closed form':>12}  {'relative':>9}")
+    {"ring": ring, "disc": disc}[what](judge, read_modes(rest), read_modes(spinning), float(spin))
+    return judge.failed
+
+
+if __name__ == "__main__":
+    sys.exit(1 if main(*sys.argv[1:]) else 0)
