@@ -4,9 +4,9 @@
 
    The normal at a point of a facet is n = a / |a|, a = sum_i w_i a_i with the facet's own shape functions w_i, where a_i
    (m^2) sums the area vectors of the facets around node i (kernels/facet.h); on facets of second order a_i is divided by
-   its length, since that of corners and sides differs. n is continuous across edges and, of first order, accurate to
-   second order in the size of the facets, where that of the facet itself jumps and is of first order; of second order
-   to third and second. tilt.c has its derivative.
+   its length, since those of corners and sides differ, which would leave n of first order. n is continuous across edges
+   and of second order in the size of the facets, where that of the facet itself jumps and is of first order; on facets
+   of second order it is of third order at least. tilt.c has its derivative.
    A slave at x faces the point x(xi) of the facet to which x - x(xi) is parallel to n(xi). Every node of a slave face is
    a slave, those between its corners too.
 */

@@ -3,6 +3,8 @@
 */
 #include "freebodies.h"
 #include "check.h"
+#include "gridfile.h"
+#include "scratch.h"
 
 /* Moves every vertex by z += 2 (x - 0.1)^2 - 3 x y, so that the surfaces are curved and still touch */
 static PetscErrorCode Bend(Model model)
@@ -81,6 +83,33 @@ static PetscErrorCode TestSurfaces(const char title[], const char scene[], Petsc
   PetscFunctionReturn(0);
 }
 
+/* Faces of six and of nine nodes on faces of their kind, node between nodes */
+static PetscErrorCode TestSecondOrder(int tetrahedra, int *failed)
+{
+  const GridBox box[2] = {
+    {"lower", {3, 4, 1}, {0, 0, 0},          {0.2, 0.2, 0.03}  },
+    {"upper", {2, 2, 1}, {0.01, 0.02, 0.03}, {0.15, 0.18, 0.06}}
+  };
+  char    scene[4 * PETSC_MAX_PATH_LEN], path[PETSC_MAX_PATH_LEN + 32];
+  Scratch scratch;
+
+  PetscFunctionBeginUser;
+  PetscCall(ScratchCreate(&scratch));
+  PetscCall(GridWriteFile(ScratchPath(&scratch, "boxes.msh", path), tetrahedra, 2, box));
+  PetscCall(PetscSNPrintf(scene, sizeof(scene),
+                          "-model_source file -model_mesh %s -parts lower,upper -lower_young 1e9 -lower_density 1000 "
+                          "-upper_young 1e9 -upper_density 1000 -contacts contact -contact_surfaces "
+                          "upper_bottom,lower_top -contact_slip 3,4,0 -contact_mu 0.5 -contact_kn 1e8 "
+                          "-contact_tolerance 1e-3 ",
+                          path));
+  PetscCall(
+    TestSurfaces(tetrahedra ? "flat, six nodes a face" : "flat, nine nodes a face", scene, PETSC_FALSE, failed));
+  PetscCall(TestSurfaces(tetrahedra ? "curved, six nodes" : "curved, nine nodes", scene, PETSC_TRUE, failed));
+  (void)ScratchRemove(&scratch, "boxes.msh");
+  (void)ScratchDestroy(&scratch);
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
   int failed = 0;
@@ -91,6 +120,7 @@ int main(int argc, char **argv)
   PetscCall(TestSurfaces("flat, nodes between nodes", FREE BETWEEN, PETSC_FALSE, &failed));
   PetscCall(TestSurfaces("curved, node on node", FREE, PETSC_TRUE, &failed));
   PetscCall(TestSurfaces("curved, nodes between nodes", FREE BETWEEN, PETSC_TRUE, &failed));
+  for (int tetrahedra = 0; tetrahedra < 2; tetrahedra++) PetscCall(TestSecondOrder(tetrahedra, &failed));
   PetscCall(PetscOptionsClear(NULL));
   PetscCall(PetscFinalize());
   printf("%d failed\n", failed);
