@@ -20,6 +20,7 @@ typedef struct {
 typedef struct {
   char     *name, *set[2]; /* set[1] is empty for the ground */
   PetscBool is_point, has_at;
+  PetscBool rigid;        /* the set moves as one rigid body, and the point with it; else it moves freely */
   PetscReal at[3];        /* place of the motions, m; after ModelSetUp() */
   PetscReal stiffness[6]; /* N/m; N m/rad */
   PetscReal viscosity[6]; /* N s/m; N m s/rad */

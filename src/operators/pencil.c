@@ -24,6 +24,7 @@ PetscErrorCode OperatorsLinearise(Operators operators, const SlidingState *state
   if (state && state->follower)
     PetscCall(TermsAdd(&s->base, OPERATORS_STIFFNESS, state->follower, PETSC_FALSE, 0, NULL));
   if (operators->model) PetscCall(PencilCreateNullSpaces(s));
+  if (operators->model) PetscCall(PencilCreateRigid(s));
   PetscFunctionReturn(0);
 }
 
@@ -258,8 +259,7 @@ PetscErrorCode PencilView(Pencil pencil, PetscViewer viewer)
                 : "friction: unsymmetric",
     m.C ? "damped: quadratic problem" : "undamped", pencil->operators->lump ? "lumped" : "consistent"));
   if (n_pencil < n)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " unknowns eliminated by the contact constraint\n",
-                                     n - n_pencil));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " unknowns eliminated by constraints\n", n - n_pencil));
   PetscFunctionReturn(0);
 }
 

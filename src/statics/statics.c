@@ -95,6 +95,7 @@ PetscErrorCode StaticsCheckUse(Statics s, PetscBool modes)
 static PetscErrorCode StaticsCreateRows(Statics s)
 {
   const OperatorsParameter *parameters;
+  const ModelScene         *scene;
 
   PetscFunctionBeginUser;
   PetscCheck(s->model, s->comm, PETSC_ERR_USER_INPUT,
@@ -103,6 +104,11 @@ static PetscErrorCode StaticsCreateRows(Statics s)
   PetscCall(PairRowsCreate(s->operators, PETSC_FALSE, &s->rows));
   PetscCheck(s->rows.n_pairs_all, s->comm, PETSC_ERR_USER_INPUT,
              "-analysis static and -modes_contact static need -contacts");
+  PetscCall(ModelGetScene(s->model, &scene));
+  for (PetscInt i = 0; i < scene->n_points; i++)
+    PetscCheck(!scene->points[i].rigid, s->comm, PETSC_ERR_SUP,
+               "-%s_join rigid is not supported by -analysis static and the sliding state: use -%s_join mean",
+               scene->points[i].name, scene->points[i].name);
   PetscCall(OperatorsGetParameters(s->operators, &s->n_parameters, &parameters));
   PetscCall(PetscMalloc3(s->rows.n_pairs, &s->status, s->rows.n_pairs, &s->state, s->rows.n_interfaces, &s->resultant));
   for (PetscInt p = 0; p < s->rows.n_pairs; p++) s->status[p] = s->rows.law[p].d == 3 ? CONTACT_STICK : CONTACT_SLIP;

@@ -8,6 +8,8 @@
    which is exact for rigid motions: B u is the motion of the point, and a bushing does not resist where both of its
    sides move as one rigid body. J is the inertia about x_0, where the centre of mass is.
 
+   The nodes of a set that is joined rigidly move as one rigid body (operators/rigid.c).
+
    J = [xx xy xz; xy yy yz; xz yz zz] with xy = -int x y dm is that of a body when its principal moments are not negative
    and none exceeds the sum of the two others.
 */
@@ -129,13 +131,18 @@ static PetscErrorCode PointReadMass(OptionsItems PetscOptionsObject, Joint *join
 
 static PetscErrorCode PointRead(OptionsItems PetscOptionsObject, void *owner, void *record)
 {
-  Joint *joint = record;
+  static const char *const joins[] = {"mean", "rigid"};
+  Joint                   *joint   = record;
+  PetscInt                 join    = 0;
 
   PetscFunctionBeginUser;
   (void)owner;
   joint->is_point = PETSC_TRUE;
   PetscCall(OptionsGetSet(PetscOptionsObject, &joint->set[0]));
   PetscCall(PetscStrallocpy("", &joint->set[1]));
+  PetscCall(PetscOptionsEList("-join", "the set moves freely, the point with it in the mean; or as one rigid body",
+                              "model.h", joins, 2, joins[0], &join, NULL));
+  joint->rigid = join == 1 ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(JointReadHolders(PetscOptionsObject, joint));
   PetscCall(PointReadMass(PetscOptionsObject, joint));
   PetscFunctionReturn(0);
@@ -151,8 +158,8 @@ static void JointAsked(Model model, const Joint *joint, PetscBool *turns, PetscB
 {
   const ModelScene *s = &model->scene;
 
-  *turns =
-    JointIsGiven(3, &joint->stiffness[3]) || JointIsGiven(3, &joint->viscosity[3]) || JointIsGiven(6, joint->inertia);
+  *turns = JointIsGiven(3, &joint->stiffness[3]) || JointIsGiven(3, &joint->viscosity[3]) ||
+           JointIsGiven(6, joint->inertia) || joint->rigid;
   *any = *turns || JointIsGiven(3, joint->stiffness) || JointIsGiven(3, joint->viscosity) || joint->mass > 0;
   for (PetscInt i = 0; i < s->n_loads; i++) {
     if (!s->loads[i].on_point || &s->points[s->loads[i].point] != joint) continue;
@@ -173,8 +180,9 @@ static PetscErrorCode JointSetUp(Model model, Joint *joint)
   JointAsked(model, joint, &turns, &any);
   PetscCheck(
     any, model->comm, PETSC_ERR_USER_INPUT,
-    "point %s does nothing: give -%s_mass, -%s_inertia, -%s_stiffness, -%s_viscosity, or a load that acts on it",
-    joint->name, joint->name, joint->name, joint->name, joint->name);
+    "point %s does nothing: give -%s_mass, -%s_inertia, -%s_stiffness, -%s_viscosity, -%s_join rigid, or a load "
+    "that acts on it",
+    joint->name, joint->name, joint->name, joint->name, joint->name, joint->name);
   for (PetscInt k = 0; k < n; k++) {
     wish[k] = (ModelMeanWish){joint->name, joint->is_point ? "set" : k ? "b" : "a", joint->set[k], turns, k ? -1 : 1};
     if (joint->has_at) continue;
@@ -238,6 +246,7 @@ PetscErrorCode JointView(const Joint *j, PetscViewer viewer)
                                    : j->set[1][0] ? j->set[1]
                                                   : "the ground",
                                    (double)j->at[0], (double)j->at[1], (double)j->at[2]));
+  if (j->rigid) PetscCall(PetscViewerASCIIPrintf(viewer, ", joined rigidly"));
   if (j->mass > 0) PetscCall(PetscViewerASCIIPrintf(viewer, ", mass %.6g kg", (double)j->mass));
   PetscCall(JointViewThree("inertia", j->inertia, "kg m^2", viewer));
   PetscCall(JointViewThree("stiffness", j->stiffness, "N/m", viewer));
@@ -254,7 +263,7 @@ PetscErrorCode JointAddChecksum(Model model, const Joint *j, Checksum c)
   PetscCall(ChecksumSetPart(c, "%s %s", j->is_point ? "point" : "bushing", j->name));
   for (int k = 0; k < 2; k++)
     if (j->set[k][0]) PetscCall(ModelAddSetChecksum(model, j->set[k], PETSC_FALSE, c));
-  PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){j->has_at}));
+  PetscCall(ChecksumAddInts(c, 2, (const PetscInt[]){j->has_at, j->rigid}));
   if (j->has_at) PetscCall(ChecksumAddReals(c, 3, j->at)); /* else a sum over ranks, whose rounding is no difference */
   PetscCall(ChecksumAddReals(c, 6, j->stiffness));
   PetscCall(ChecksumAddReals(c, 6, j->viscosity));

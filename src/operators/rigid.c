@@ -1,0 +1,233 @@
+/*
+   Points that are joined rigidly: the nodes of a set move as one rigid body, u_i = q_t + q_r x (x_i - c), or u = Phi q
+   with Phi [3 n][6]. Of the 3 n displacements of the set six are kept as unknowns, u_p = P u, which QR
+   with pivoting of Phi' chooses (P Phi is regular, and well conditioned where the nodes stand on no line), and
+
+      u = Phi (P Phi)^-1 u_p = T u_p
+
+   is exact. The pencil is projected on Zr = [kept unknowns one to one; T at the others], symmetric ones stay symmetric.
+*/
+#include "pencilimpl.h"
+#include "base/gather.h"
+#include <petscblaslapack.h>
+
+#define RIGID_TIE 1e-9 /* rows as long as another one but for rounding */
+
+/* A node of a set */
+typedef struct {
+  PetscInt  unknown[3];
+  PetscReal x[3];
+} RigidNode;
+
+/* A set of all ranks: T(i, k) = t[6 i + k] at the unknowns [3 n], of which six are kept */
+typedef struct {
+  PetscInt   n, *unknown, kept[6];
+  PetscReal *t;
+} RigidSet;
+
+/* Nodes of a point's set on all ranks; none of them may be held */
+static PetscErrorCode RigidGather(Operators o, const Joint *point, PetscInt *n, RigidNode *node[])
+{
+  const Mesh *mesh;
+  RigidNode  *own;
+  PetscInt    held = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(o->model, &mesh));
+  PetscCall(PetscMalloc1(point->mean.n, &own));
+  for (PetscInt i = 0; i < point->mean.n; i++)
+    for (int d = 0; d < 3; d++) {
+      own[i].unknown[d] = mesh->unknown[3 * point->mean.vertex[i] + d];
+      own[i].x[d]       = mesh->x[3 * point->mean.vertex[i] + d];
+      if (own[i].unknown[d] < 0) held = 1;
+    }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &held, 1, MPIU_INT, MPI_MAX, o->comm));
+  PetscCheck(!held, o->comm, PETSC_ERR_SUP,
+             "point %s: supports or motions hold nodes of -%s_set %s, which -%s_join rigid does not support: hold the "
+             "point by -%s_stiffness, or name another set",
+             point->name, point->name, point->set[0], point->name, point->name);
+  PetscCall(GatherRecords(o->comm, point->mean.n, sizeof(*own), own, n, node));
+  PetscCall(PetscFree(own));
+  PetscFunctionReturn(0);
+}
+
+/* Phi' by columns, [3 n][6], about the middle of the nodes and over their distance from it */
+static void RigidMotions(PetscInt n, const RigidNode node[], PetscReal phi[])
+{
+  PetscReal middle[3] = {0}, size = 0;
+
+  for (PetscInt i = 0; i < 3 * n; i++) middle[i % 3] += node[i / 3].x[i % 3] / (PetscReal)n;
+  for (PetscInt i = 0; i < 3 * n; i++) size = PetscMax(size, PetscAbsReal(node[i / 3].x[i % 3] - middle[i % 3]));
+  for (PetscInt i = 0; i < n; i++)
+    for (int d = 0; d < 3; d++) {
+      const int  a = (d + 1) % 3, b = (d + 2) % 3;
+      PetscReal *row = &phi[6 * (3 * i + d)];
+
+      for (int k = 0; k < 6; k++) row[k] = k == d;
+      row[3 + a] = (node[i].x[b] - middle[b]) / size; /* (w x r)_d = w_a r_b - w_b r_a */
+      row[3 + b] = -(node[i].x[a] - middle[a]) / size;
+    }
+}
+
+/* The kept unknowns, their numbers in the set: six times the longest row, whose direction then leaves all others */
+static PetscErrorCode RigidChoose(PetscInt n, const PetscReal phi[], PetscInt kept[6])
+{
+  PetscReal *row;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(6 * n, &row));
+  PetscCall(PetscArraycpy(row, phi, 6 * n));
+  for (int k = 0; k < 6; k++) {
+    PetscReal longest = -1, e[6];
+
+    for (PetscInt i = 0; i < n; i++) {
+      PetscReal square = 0;
+
+      for (int j = 0; j < 6; j++) square += PetscSqr(row[6 * i + j]);
+      if (square > (1 + RIGID_TIE) * longest) longest = square, kept[k] = i;
+    }
+    for (int j = 0; j < 6; j++) e[j] = row[6 * kept[k] + j] / PetscSqrtReal(longest);
+    for (PetscInt i = 0; i < n; i++) {
+      PetscReal along = 0;
+
+      for (int j = 0; j < 6; j++) along += e[j] * row[6 * i + j];
+      for (int j = 0; j < 6; j++) row[6 * i + j] -= along * e[j];
+    }
+  }
+  PetscCall(PetscFree(row));
+  PetscFunctionReturn(0);
+}
+
+/* T' from (P Phi)' T' = Phi' */
+static PetscErrorCode RigidSolve(PetscInt n, const PetscInt kept[6], PetscReal phi[])
+{
+  PetscBLASInt six = 6, columns, info, pivot[6];
+  PetscReal    A[36];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n, &columns));
+  for (int k = 0; k < 6; k++) PetscCall(PetscArraycpy(&A[6 * k], &phi[6 * kept[k]], 6));
+  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&six, &columns, A, &six, pivot, phi, &six, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gesv: info %d", (int)info);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RigidSetCreate(Operators o, const Joint *point, RigidSet *set)
+{
+  RigidNode *node;
+  PetscInt   n, kept[6];
+
+  PetscFunctionBeginUser;
+  PetscCall(RigidGather(o, point, &n, &node));
+  set->n = 3 * n;
+  PetscCall(PetscMalloc2(set->n, &set->unknown, 6 * set->n, &set->t));
+  for (PetscInt i = 0; i < set->n; i++) set->unknown[i] = node[i / 3].unknown[i % 3];
+  RigidMotions(n, node, set->t);
+  PetscCall(PetscFree(node));
+  PetscCall(RigidChoose(set->n, set->t, kept));
+  PetscCall(RigidSolve(set->n, kept, set->t));
+  for (int k = 0; k < 6; k++) set->kept[k] = set->unknown[kept[k]];
+  PetscFunctionReturn(0);
+}
+
+/* Whether unknown number i of a set is kept */
+static PetscBool RigidIsKept(const RigidSet *set, PetscInt i)
+{
+  for (int k = 0; k < 6; k++)
+    if (set->kept[k] == set->unknown[i]) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Column of each unknown of this rank, -1 for those that are eliminated; and their number */
+static PetscErrorCode RigidCountColumns(Pencil pencil, PetscInt n_sets, const RigidSet set[], PetscInt *n_columns,
+                                        PetscInt column[])
+{
+  PetscInt first, last, n = 0, twice = 0, *times;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetOwnershipRange(pencil->base.term[0].A, &first, &last));
+  PetscCall(PetscCalloc1(last - first, &times));
+  for (PetscInt i = 0; i < last - first; i++) column[i] = 0;
+  for (PetscInt s = 0; s < n_sets; s++)
+    for (PetscInt i = 0; i < set[s].n; i++) {
+      const PetscInt own = set[s].unknown[i] - first;
+
+      if (own < 0 || own >= last - first) continue;
+      if (times[own]++) twice = 1;
+      if (!RigidIsKept(&set[s], i)) column[own] = -1;
+    }
+  PetscCall(PetscFree(times));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &twice, 1, MPIU_INT, MPI_MAX, pencil->comm));
+  PetscCheck(!twice, pencil->comm, PETSC_ERR_USER_INPUT,
+             "two points that are joined rigidly have nodes in common: join the whole to one of them");
+  for (PetscInt i = 0; i < last - first; i++)
+    if (column[i] >= 0) column[i] = n++;
+  *n_columns = n;
+  PetscFunctionReturn(0);
+}
+
+/* The rows of an eliminated set in Zr, on the ranks that own them */
+static PetscErrorCode RigidSetRows(Pencil pencil, const RigidSet *set, const PetscInt column[], PetscInt first_column)
+{
+  PetscInt first, last, to[6];
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetOwnershipRange(pencil->Zr, &first, &last));
+  for (int k = 0; k < 6; k++)
+    to[k] = set->kept[k] >= first && set->kept[k] < last ? first_column + column[set->kept[k] - first] : -1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, to, 6, MPIU_INT, MPI_MAX, pencil->comm));
+  for (PetscInt i = 0; i < set->n; i++) {
+    const PetscInt row = set->unknown[i];
+
+    if (row < first || row >= last || RigidIsKept(set, i)) continue;
+    PetscCall(MatSetValues(pencil->Zr, 1, &row, 6, to, &set->t[6 * i], INSERT_VALUES));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Zr and E of the sets */
+static PetscErrorCode RigidCreateSpaces(Pencil pencil, PetscInt n_sets, const RigidSet set[])
+{
+  PetscInt first, last, n, n_columns, first_column, *column;
+  Mat     *spaces[2] = {&pencil->E, &pencil->Zr};
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetOwnershipRange(pencil->base.term[0].A, &first, &last));
+  n = last - first;
+  PetscCall(PetscMalloc1(n, &column));
+  PetscCall(RigidCountColumns(pencil, n_sets, set, &n_columns, column));
+  for (int k = 0; k < 2; k++) {
+    PetscCall(MatCreateAIJ(pencil->comm, n, n_columns, PETSC_DETERMINE, PETSC_DETERMINE, k ? 6 : 1, NULL, k ? 6 : 0,
+                           NULL, spaces[k]));
+    PetscCall(MatGetOwnershipRangeColumn(*spaces[k], &first_column, NULL));
+    for (PetscInt i = 0; i < n; i++)
+      if (column[i] >= 0) PetscCall(MatSetValue(*spaces[k], first + i, first_column + column[i], 1, INSERT_VALUES));
+    for (PetscInt s = 0; s < n_sets && k; s++) PetscCall(RigidSetRows(pencil, &set[s], column, first_column));
+    PetscCall(MatAssemblyBegin(*spaces[k], MAT_FINAL_ASSEMBLY));
+    PetscCall(MatAssemblyEnd(*spaces[k], MAT_FINAL_ASSEMBLY));
+  }
+  PetscCall(PetscFree(column));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilCreateRigid(Pencil pencil)
+{
+  const ModelScene *scene;
+  RigidSet         *set;
+  PetscInt          n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(pencil->operators->model, &scene));
+  PetscCall(PetscMalloc1(scene->n_points, &set));
+  for (PetscInt i = 0; i < scene->n_points; i++) {
+    if (!scene->points[i].rigid) continue;
+    PetscCheck(!pencil->Zr, pencil->comm, PETSC_ERR_SUP,
+               "-%s_join rigid with -contact_law constraint is not supported: use -contact_law penalty",
+               scene->points[i].name);
+    PetscCall(RigidSetCreate(pencil->operators, &scene->points[i], &set[n++]));
+  }
+  if (n) PetscCall(RigidCreateSpaces(pencil, n, set));
+  for (PetscInt s = 0; s < n; s++) PetscCall(PetscFree2(set[s].unknown, set[s].t));
+  PetscCall(PetscFree(set));
+  PetscFunctionReturn(0);
+}
