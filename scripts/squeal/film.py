@@ -6,7 +6,7 @@ import numpy
 from matplotlib import animation, colormaps
 from matplotlib.collections import LineCollection, PolyCollection
 
-from .picture import INK, SOFT
+from .picture import INK, SOFT, save_picture
 from .tables import BadInput
 
 YAW, PITCH = 0.55, 0.62  # of the look, rad
@@ -15,11 +15,13 @@ COLOURS = colormaps["RdBu_r"]
 LIGHT = numpy.array([-0.36, 0.51, 0.78])
 FINEST = 6000  # quads of a picture: fewer are divided, so that colours are smooth
 FEWEST = 0.1  # of the largest displacement: colours do not tell apart less
+BRIGHT = 0.93  # of the nodes of a still have colours within the scale
+EDGE, EDGE_LIFT = (0.13, 0.13, 0.13, 0.7), 0.012  # of a still: colour, and how far it stands before its faces
 
 
-def look():
+def look(yaw=YAW, pitch=PITCH):
     """Rotation of places: right, up, towards the viewer."""
-    c, s, e, f = numpy.cos(YAW), numpy.sin(YAW), numpy.cos(PITCH), numpy.sin(PITCH)
+    c, s, e, f = numpy.cos(yaw), numpy.sin(yaw), numpy.cos(pitch), numpy.sin(pitch)
     return numpy.array([[c, s, 0], [s * f, -c * f, e], [-s * e, c * e, f]])
 
 
@@ -52,15 +54,16 @@ def divided(values, n):
 class Screen:
     """One picture that is changed from frame to frame."""
 
-    def __init__(self, motion, exaggeration):
-        self.motion, self.exaggeration, self.turn = motion, exaggeration, look()
+    def __init__(self, motion, exaggeration, turn):
+        self.motion, self.exaggeration, self.turn = motion, exaggeration, turn
         self.figure = plt.figure(figsize=SIZE, dpi=DPI)
         self.parts = int(numpy.clip(numpy.sqrt(FINEST / len(motion.skin.quads)), 1, 5))
         self.axes = self.figure.add_axes([0, 0, 1, 0.88])
         self.axes.set_axis_off()
         self.axes.set_aspect("equal")
         rest = motion.skin.place @ self.turn.T
-        self.axes.add_collection(LineCollection(rest[motion.skin.edges][:, :, :2], colors="#00000040", linewidths=0.5))
+        self.rest = self.axes.add_collection(LineCollection(rest[motion.skin.edges][:, :, :2], colors="#00000040",
+                                                            linewidths=0.5))
         self.quads = self.axes.add_collection(PolyCollection([], linewidths=0.4))
         room = 0.05 + 0.6 * exaggeration
         for limit, values in ((self.axes.set_xlim, rest[:, 0]), (self.axes.set_ylim, rest[:, 1])):
@@ -68,23 +71,40 @@ class Screen:
         self.figure.text(0.03, 0.95, motion.title, weight="bold", fontsize=13, va="center", color=INK)
         self.note = self.figure.text(0.03, 0.9, "", fontsize=10, va="center", color=SOFT)
 
-    def show(self, i):
-        """One frame."""
+    def faces(self, i):
+        """Of one frame: corners of the pieces of quads [n][4][3] that face the viewer, and their colours."""
         skin, move = self.motion.skin, self.motion.moves[i]
         place = (skin.place + self.exaggeration * move) @ self.turn.T
         corners = divided(place[skin.quads], self.parts)
         value = divided(move[skin.quads][:, :, 2], self.parts).mean(axis=1) / self.motion.range
         normal = numpy.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
         normal /= numpy.linalg.norm(normal, axis=1)[:, None] + 1e-300
+        seen = normal[:, 2] > 0
+        colours = COLOURS(0.5 + 0.5 * value[seen])
+        colours[:, :3] *= (0.62 + 0.38 * abs(normal[seen] @ LIGHT))[:, None]
+        return corners[seen], colours
+
+    def paint(self, corners, colours):
+        """From the back to the front."""
         order = numpy.argsort(corners[:, :, 2].mean(axis=1))
-        order = order[normal[order, 2] > 0]
-        colours = COLOURS(0.5 + 0.5 * value[order])
-        colours[:, :3] *= (0.62 + 0.38 * abs(normal[order] @ LIGHT))[:, None]
         self.quads.set_verts(corners[order][:, :, :2])
-        self.quads.set_facecolor(colours)
-        self.quads.set_edgecolor(colours)
+        self.quads.set_facecolor(colours[order])
+        self.quads.set_edgecolor(colours[order])
+
+    def show(self, i):
+        """One frame."""
+        self.paint(*self.faces(i))
         self.note.set_text(self.motion.texts[i])
         return [self.quads, self.note]
+
+    def show_still(self):
+        """The first frame, with its edges where nothing is before them, and no text."""
+        corners, colours = self.faces(0)
+        skin = self.motion.skin
+        place = (skin.place + self.exaggeration * self.motion.moves[0]) @ self.turn.T + [0, 0, EDGE_LIFT]
+        edges = place[skin.edges[:, [0, 1, 1, 0]]]
+        self.rest.remove()
+        self.paint(numpy.concatenate([corners, edges]), numpy.concatenate([colours, numpy.tile(EDGE, (len(edges), 1))]))
 
 
 def has_ffmpeg():
@@ -92,9 +112,20 @@ def has_ffmpeg():
     return animation.FFMpegWriter.isAvailable()
 
 
-def write_film(motion, output, exaggeration, rate):
+def write_still(motion, output, exaggeration, turn):
+    """Writes the first frame as `output` with the ending .png; returns its name."""
+    motion.range = max(numpy.quantile(abs(motion.moves[0, :, 2]), BRIGHT), 1e-300)
+    screen = Screen(motion, exaggeration, turn)
+    screen.parts = max(screen.parts, 2)
+    screen.show_still()
+    save_picture(screen.figure, output.with_suffix(".png"), 1.6 * DPI)
+    plt.close(screen.figure)
+    return output.with_suffix(".png")
+
+
+def write_film(motion, output, exaggeration, rate, turn):
     """Writes `output` with the endings .gif and .mp4; returns the names written."""
-    screen = Screen(motion, exaggeration)
+    screen = Screen(motion, exaggeration, turn)
     film = animation.FuncAnimation(screen.figure, screen.show, frames=len(motion.moves))
     writers = [(".gif", animation.PillowWriter(fps=rate))]
     if has_ffmpeg():

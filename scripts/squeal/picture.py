@@ -77,9 +77,9 @@ def spread(places, least):
     return out
 
 
-def save_picture(figure, output):
+def save_picture(figure, output, dpi="figure"):
     """Writes the picture in the format of the name's ending."""
     try:
-        figure.savefig(output)
+        figure.savefig(output, dpi=dpi)
     except (OSError, ValueError) as error:
         raise BadInput(f"cannot write {output}: {getattr(error, 'strerror', None) or error}") from None

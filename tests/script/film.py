@@ -47,6 +47,18 @@ def test_mode(root):
     print(f"mode: {film.shape[0]} frames, {len(names)} formats")
 
 
+def test_still(root):
+    """A picture of the shape, and from the other side another one; no film."""
+    pictures = []
+    for yaw in ("30", "210"):
+        done = script("plot/film", root / "modes", "--mode", "2", "--still", "--look", yaw, "35", "-o", root / f"still{yaw}")
+        require(done.returncode == 0 and not (root / f"still{yaw}.gif").exists(), done.stderr)
+        pictures.append(numpy.asarray(Image.open(root / f"still{yaw}.png").convert("RGB")) / 255)
+    require(abs(pictures[0] - pictures[1]).mean() > 0.01, "seen from the other side it looks the same")
+    require(numpy.ptp(pictures[0][:, :, 0] - pictures[0][:, :, 2]) > 0.5, "no colours")
+    print(f"still: {pictures[0].shape[1]} x {pictures[0].shape[0]}")
+
+
 def test_without_ffmpeg(root):
     """GIF alone, and one line that says so."""
     done = subprocess.run([sys.executable, SCRIPTS / "plot/film", root / "modes", "-o", root / "alone"],
@@ -80,5 +92,5 @@ def test_bad(root):
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
-        for test in (test_mode, test_without_ffmpeg, test_snapshots, test_bad):
+        for test in (test_mode, test_still, test_without_ffmpeg, test_snapshots, test_bad):
             test(Path(name))
