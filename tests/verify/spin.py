@@ -13,10 +13,16 @@
         an annular plate of 60..120 mm, 2 mm thick, its inner edge held. In the turning frame the plate has its bending
         stiffness and the stress of the spin; no force of Coriolis acts along its normal. A wave with n nodal diameters has
         w - n W and w + n W in the fixed frame. w(W)^2 - w(0)^2 is that of Ritz's method with (r - a)^2 r^k.
+    verify/spin.py turning REST MODES TRANSIENT OMEGA
+        the ring of a mesh that turns, released in the shape of its mode at 256 Hz, with the forces of Coriolis alone: its
+        pattern is two waves of the turning frame with (n^2 + 1) w^2 - 4 n W w - n^2 (n^2 - 1)^2 E I / (rho A R^4) = 0. They
+        are 4 n W / (n^2 + 1) apart, and those of MODES, at the same spin in the fixed frame, 2 n W less that.
 """
 
+import csv
 import math
 import sys
+from pathlib import Path
 
 import numpy as np
 
@@ -25,7 +31,7 @@ from convergence import Judge, nearest, read_modes
 YOUNG, POISSON, DENSITY = 210e9, 0.3, 7800
 RING = 0.098, 0.102, 0.004  # inner and outer radius, thickness, m
 PLATE = 0.06, 0.12, 0.002
-SPLIT, LEVEL, STIFFENING = 3e-4, 2e-4, 0.01
+SPLIT, LEVEL, STIFFENING, TIME = 3e-4, 2e-4, 0.01, 1e-3
 # Of the split 2e-4 is the plate's thickness, 5e-5 that of half of it; of the ring 2.3e-4 its width, 3e-5 half of it
 
 
@@ -48,6 +54,37 @@ def ring(judge, rest, modes, spin):
         for k in range(2):
             compare(judge, f"in its plane, n = {n}, {'against' if k == 0 else 'with'} the spin, Hz", found[k], expected[k], LEVEL)
         compare(judge, "    split, Hz", found[1] - found[0], half / math.pi, SPLIT)
+
+
+def two_waves(time, motion, guess):
+    """Angular frequencies of two undamped waves in a record: Gauss-Newton's method on them, amplitudes by least squares."""
+    w = np.array(guess)
+
+    def rest(w):
+        basis = np.concatenate([[np.cos(f * time), np.sin(f * time)] for f in w]).T
+        return motion - basis @ np.linalg.lstsq(basis, motion, rcond=None)[0]
+
+    for _ in range(20):
+        r, step = rest(w), 1e-3
+        slopes = np.array([(rest(w + step * unit) - r) / step for unit in np.eye(2)]).T
+        w = w - np.linalg.lstsq(slopes, r, rcond=None)[0]
+    return w, np.abs(rest(w)).max() / np.abs(motion).max()
+
+
+def turning(judge, rest, modes, folder, spin):
+    with (Path(folder) / "transient.csv").open(newline="") as file:
+        rows = [(float(row["time_s"]), float(row["a_x_m"])) for row in csv.DictReader(file)]
+    n, at_rest = 2, 2 * math.pi * nearest(rest, 256)
+    apart = 4 * n * spin / (n**2 + 1)
+    mean = math.hypot(at_rest, apart / 2)
+    w, left = two_waves(*np.array(rows).T, (mean - apart / 2, mean + apart / 2))
+    print(f"left of the record: {left:.1e}{judge.within(left, 0, 5e-3)}")
+    compare(judge, "in time, mean of both waves, Hz", w.mean() / (2 * math.pi), mean / (2 * math.pi), LEVEL)
+    compare(judge, "    split in the turning frame, Hz", (w[1] - w[0]) / (2 * math.pi), apart / (2 * math.pi), TIME)
+    half = n * spin - apart / 2
+    fixed = [nearest(modes, (math.hypot(at_rest, half) + side * half) / (2 * math.pi)) for side in (-1, 1)]
+    compare(judge, "    and in the fixed frame, their sum, Hz", (w[1] - w[0]) / (2 * math.pi) + fixed[1] - fixed[0],
+            n * spin / math.pi, TIME)
 
 
 def plate_energies(n, terms=8, points=200):
@@ -98,10 +135,13 @@ def disc(judge, rest, modes, spin):
             compare(judge, "    split, Hz", found[1] - found[0], n * spin / math.pi, SPLIT)
 
 
-def main(what, rest, spinning, spin):
-    judge = Judge()
+def main(what, rest, spinning, *others):
+    judge, spin = Judge(), float(others[-1])
     print(f"{'':44} {'computed':>12}  {'closed form':>12}  {'relative':>9}")
-    {"ring": ring, "disc": disc}[what](judge, read_modes(rest), read_modes(spinning), float(spin))
+    if what == "turning":
+        turning(judge, read_modes(rest), read_modes(spinning), others[0], spin)
+    else:
+        {"ring": ring, "disc": disc}[what](judge, read_modes(rest), read_modes(spinning), spin)
     return judge.failed
 
 
