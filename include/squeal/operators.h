@@ -109,6 +109,10 @@ PetscErrorCode OperatorsReleaseBodies(Operators operators);
 PetscErrorCode OperatorsGetJoint(Operators operators, const PetscReal p[], PetscInt i, PetscReal stiffness[6],
                                  PetscReal viscosity[6], PetscReal *mass);
 
+/*@ OperatorsGetRigid - of points that are joined rigidly: all displacements u = Z q, and E' u = q, which are those of u that
+    are kept; NULL without such points (borrowed). Forces of the constraint are those with Z'f = 0. Not collective. @*/
+PetscErrorCode OperatorsGetRigid(Operators operators, Mat *Z, Mat *E);
+
 /*@ OperatorsInternalForces - K_e u_e of all elements at p and the forces of bushings and points, summed over ranks, N,
    into a local vector of three values per vertex in the layout of the coordinates, held directions included: at a
    support they are its reaction. Springs and contact are no part of it. Collective. @*/

@@ -66,6 +66,7 @@ PetscErrorCode OperatorsSetUp(Operators operators)
   PetscCall(EventBegin(EVENT_ASSEMBLE));
   if (operators->model) {
     PetscCall(OperatorsAssemble(operators));
+    PetscCall(OperatorsCreateRigid(operators));
     PetscCall(OperatorsAddSpinParameters(operators));
     for (PetscInt i = 0; i < operators->parameters.n; i++) operators->parameters.list[i].body = PETSC_TRUE;
     PetscCall(OperatorsAddContactParameters(operators));
@@ -213,6 +214,8 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   PetscCall(PetscFree(o->spin_of_part));
   PetscCall(PetscFree(o->interface));
   PetscCall(PetscFree(o->joint));
+  PetscCall(MatDestroy(&o->rigid_Z));
+  PetscCall(MatDestroy(&o->rigid_E));
   PetscCall(PetscFree(o->mu));
   PetscCall(ParametersDestroy(&o->parameters));
   PetscCall(PetscFree(*operators));

@@ -37,15 +37,17 @@ struct _p_Operators {
   PetscBool  lump;
   PetscReal  loaded_mu; /* -contact_mu of loaded or dense matrices */
   /* built by OperatorsSetUp() */
-  Parameters           parameters;   /* at the values of the scene */
-  PetscInt             n_mu, *mu;    /* parameters that are friction coefficients */
-  InterfaceParameters *interface;    /* of each interface */
-  JointParameters     *joint;        /* of each bushing, then of each point */
-  PetscInt             n_local;      /* the first parameters are those of parts, springs and dashpots */
-  PetscInt            *spin_of_part; /* [parts] parameter, -1 for parts without; NULL for loaded matrices */
-  Terms                spin;         /* of spinning parts, for pencils; made when the first one asks */
-  Terms                terms;        /* of the bodies, in all unknowns; with loaded matrices friction too */
-  PetscBool            symmetric;    /* K, M and C are symmetric without friction; always true for a model */
+  Parameters           parameters;       /* at the values of the scene */
+  PetscInt             n_mu, *mu;        /* parameters that are friction coefficients */
+  InterfaceParameters *interface;        /* of each interface */
+  JointParameters     *joint;            /* of each bushing, then of each point */
+  PetscInt             n_local;          /* the first parameters are those of parts, springs and dashpots */
+  PetscInt            *spin_of_part;     /* [parts] parameter, -1 for parts without; NULL for loaded matrices */
+  Terms                spin;             /* of spinning parts, for pencils; made when the first one asks */
+  Terms                terms;            /* of the bodies, in all unknowns; with loaded matrices friction too */
+  PetscBool            symmetric;        /* K, M and C are symmetric without friction; always true for a model */
+  Mat                  rigid_Z, rigid_E; /* of points that are joined rigidly; NULL without */
+  const char          *rigid_name;       /* of one of them */
   /* formed when asked for */
   TermsSum sum[N_BODIES_SUMS];
 };
@@ -88,6 +90,9 @@ PETSC_INTERN PetscErrorCode OperatorsAddJointWeight(Operators operators, const P
 /* spin.c - parameters of the spinning parts; their terms, once */
 PETSC_INTERN PetscErrorCode OperatorsAddSpinParameters(Operators operators);
 PETSC_INTERN PetscErrorCode OperatorsNeedSpin(Operators operators);
+
+/* rigid.c - the null space of points that are joined rigidly. Collective. */
+PETSC_INTERN PetscErrorCode OperatorsCreateRigid(Operators operators);
 
 /* pattern.c - empty matrix of all unknowns, preallocated for the couplings of the cells of one part */
 PETSC_INTERN PetscErrorCode PatternCreate(Model model, PetscInt part, Mat *A);

@@ -24,7 +24,7 @@ PetscErrorCode OperatorsLinearise(Operators operators, const SlidingState *state
   if (state && state->follower)
     PetscCall(TermsAdd(&s->base, OPERATORS_STIFFNESS, state->follower, PETSC_FALSE, 0, NULL));
   if (operators->model) PetscCall(PencilCreateNullSpaces(s));
-  if (operators->model) PetscCall(PencilCreateRigid(s));
+  if (operators->model) PetscCall(PencilTakeRigid(s));
   PetscFunctionReturn(0);
 }
 

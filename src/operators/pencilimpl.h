@@ -40,7 +40,7 @@ struct _p_Pencil {
 };
 
 /* rigid.c - null space of points that are joined rigidly, where there is none of the contact. Collective. */
-PETSC_INTERN PetscErrorCode PencilCreateRigid(Pencil pencil);
+PETSC_INTERN PetscErrorCode PencilTakeRigid(Pencil pencil);
 
 /* slidingstate.c - takes the groups and forces of a state, or those of the scene; its parameters and point */
 PETSC_INTERN PetscErrorCode PencilTakeState(Pencil pencil, const SlidingState *state);

@@ -5,7 +5,7 @@
 
       u = Phi (P Phi)^-1 u_p = T u_p
 
-   is exact. The pencil is projected on Zr = [kept unknowns one to one; T at the others], symmetric ones stay symmetric.
+   is exact. Pencils are projected on Z = [kept unknowns one to one; T at the others], symmetric ones stay symmetric.
 */
 #include "pencilimpl.h"
 #include "base/gather.h"
@@ -139,13 +139,13 @@ static PetscBool RigidIsKept(const RigidSet *set, PetscInt i)
 }
 
 /* Column of each unknown of this rank, -1 for those that are eliminated; and their number */
-static PetscErrorCode RigidCountColumns(Pencil pencil, PetscInt n_sets, const RigidSet set[], PetscInt *n_columns,
+static PetscErrorCode RigidCountColumns(Operators o, PetscInt n_sets, const RigidSet set[], PetscInt *n_columns,
                                         PetscInt column[])
 {
   PetscInt first, last, n = 0, twice = 0, *times;
 
   PetscFunctionBeginUser;
-  PetscCall(MatGetOwnershipRange(pencil->base.term[0].A, &first, &last));
+  PetscCall(MatGetOwnershipRange(o->terms.term[0].A, &first, &last));
   PetscCall(PetscCalloc1(last - first, &times));
   for (PetscInt i = 0; i < last - first; i++) column[i] = 0;
   for (PetscInt s = 0; s < n_sets; s++)
@@ -157,8 +157,8 @@ static PetscErrorCode RigidCountColumns(Pencil pencil, PetscInt n_sets, const Ri
       if (!RigidIsKept(&set[s], i)) column[own] = -1;
     }
   PetscCall(PetscFree(times));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &twice, 1, MPIU_INT, MPI_MAX, pencil->comm));
-  PetscCheck(!twice, pencil->comm, PETSC_ERR_USER_INPUT,
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &twice, 1, MPIU_INT, MPI_MAX, o->comm));
+  PetscCheck(!twice, o->comm, PETSC_ERR_USER_INPUT,
              "two points that are joined rigidly have nodes in common: join the whole to one of them");
   for (PetscInt i = 0; i < last - first; i++)
     if (column[i] >= 0) column[i] = n++;
@@ -166,43 +166,43 @@ static PetscErrorCode RigidCountColumns(Pencil pencil, PetscInt n_sets, const Ri
   PetscFunctionReturn(0);
 }
 
-/* The rows of an eliminated set in Zr, on the ranks that own them */
-static PetscErrorCode RigidSetRows(Pencil pencil, const RigidSet *set, const PetscInt column[], PetscInt first_column)
+/* The rows of an eliminated set in Z, on the ranks that own them */
+static PetscErrorCode RigidSetRows(Operators o, const RigidSet *set, const PetscInt column[], PetscInt first_column)
 {
   PetscInt first, last, to[6];
 
   PetscFunctionBeginUser;
-  PetscCall(MatGetOwnershipRange(pencil->Zr, &first, &last));
+  PetscCall(MatGetOwnershipRange(o->rigid_Z, &first, &last));
   for (int k = 0; k < 6; k++)
     to[k] = set->kept[k] >= first && set->kept[k] < last ? first_column + column[set->kept[k] - first] : -1;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, to, 6, MPIU_INT, MPI_MAX, pencil->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, to, 6, MPIU_INT, MPI_MAX, o->comm));
   for (PetscInt i = 0; i < set->n; i++) {
     const PetscInt row = set->unknown[i];
 
     if (row < first || row >= last || RigidIsKept(set, i)) continue;
-    PetscCall(MatSetValues(pencil->Zr, 1, &row, 6, to, &set->t[6 * i], INSERT_VALUES));
+    PetscCall(MatSetValues(o->rigid_Z, 1, &row, 6, to, &set->t[6 * i], INSERT_VALUES));
   }
   PetscFunctionReturn(0);
 }
 
-/* Zr and E of the sets */
-static PetscErrorCode RigidCreateSpaces(Pencil pencil, PetscInt n_sets, const RigidSet set[])
+/* Z and E of the sets */
+static PetscErrorCode RigidCreateSpaces(Operators o, PetscInt n_sets, const RigidSet set[])
 {
   PetscInt first, last, n, n_columns, first_column, *column;
-  Mat     *spaces[2] = {&pencil->E, &pencil->Zr};
+  Mat     *spaces[2] = {&o->rigid_E, &o->rigid_Z};
 
   PetscFunctionBeginUser;
-  PetscCall(MatGetOwnershipRange(pencil->base.term[0].A, &first, &last));
+  PetscCall(MatGetOwnershipRange(o->terms.term[0].A, &first, &last));
   n = last - first;
   PetscCall(PetscMalloc1(n, &column));
-  PetscCall(RigidCountColumns(pencil, n_sets, set, &n_columns, column));
+  PetscCall(RigidCountColumns(o, n_sets, set, &n_columns, column));
   for (int k = 0; k < 2; k++) {
-    PetscCall(MatCreateAIJ(pencil->comm, n, n_columns, PETSC_DETERMINE, PETSC_DETERMINE, k ? 6 : 1, NULL, k ? 6 : 0,
-                           NULL, spaces[k]));
+    PetscCall(MatCreateAIJ(o->comm, n, n_columns, PETSC_DETERMINE, PETSC_DETERMINE, k ? 6 : 1, NULL, k ? 6 : 0, NULL,
+                           spaces[k]));
     PetscCall(MatGetOwnershipRangeColumn(*spaces[k], &first_column, NULL));
     for (PetscInt i = 0; i < n; i++)
       if (column[i] >= 0) PetscCall(MatSetValue(*spaces[k], first + i, first_column + column[i], 1, INSERT_VALUES));
-    for (PetscInt s = 0; s < n_sets && k; s++) PetscCall(RigidSetRows(pencil, &set[s], column, first_column));
+    for (PetscInt s = 0; s < n_sets && k; s++) PetscCall(RigidSetRows(o, &set[s], column, first_column));
     PetscCall(MatAssemblyBegin(*spaces[k], MAT_FINAL_ASSEMBLY));
     PetscCall(MatAssemblyEnd(*spaces[k], MAT_FINAL_ASSEMBLY));
   }
@@ -210,24 +210,47 @@ static PetscErrorCode RigidCreateSpaces(Pencil pencil, PetscInt n_sets, const Ri
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PencilCreateRigid(Pencil pencil)
+PetscErrorCode OperatorsCreateRigid(Operators o)
 {
   const ModelScene *scene;
   RigidSet         *set;
   PetscInt          n = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetScene(pencil->operators->model, &scene));
+  PetscCall(ModelGetScene(o->model, &scene));
   PetscCall(PetscMalloc1(scene->n_points, &set));
-  for (PetscInt i = 0; i < scene->n_points; i++) {
-    if (!scene->points[i].rigid) continue;
-    PetscCheck(!pencil->Zr, pencil->comm, PETSC_ERR_SUP,
-               "-%s_join rigid with -contact_law constraint is not supported: use -contact_law penalty",
-               scene->points[i].name);
-    PetscCall(RigidSetCreate(pencil->operators, &scene->points[i], &set[n++]));
-  }
-  if (n) PetscCall(RigidCreateSpaces(pencil, n, set));
+  for (PetscInt i = 0; i < scene->n_points; i++)
+    if (scene->points[i].rigid) {
+      o->rigid_name = scene->points[i].name;
+      PetscCall(RigidSetCreate(o, &scene->points[i], &set[n++]));
+    }
+  if (n) PetscCall(RigidCreateSpaces(o, n, set));
   for (PetscInt s = 0; s < n; s++) PetscCall(PetscFree2(set[s].unknown, set[s].t));
   PetscCall(PetscFree(set));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsGetRigid(Operators o, Mat *Z, Mat *E)
+{
+  PetscFunctionBeginUser;
+  if (Z) *Z = o->rigid_Z;
+  if (E) *E = o->rigid_E;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilTakeRigid(Pencil pencil)
+{
+  const Operators o = pencil->operators;
+
+  PetscFunctionBeginUser;
+  if (!o->rigid_Z) PetscFunctionReturn(0);
+  PetscCheck(!pencil->Zr, pencil->comm, PETSC_ERR_SUP,
+             "-points that are joined rigidly, by -%s_join rigid, are not supported with -contact_law constraint: use "
+             "-contact_law penalty",
+             o->rigid_name);
+  PetscCall(PetscObjectReference((PetscObject)o->rigid_Z));
+  PetscCall(PetscObjectReference((PetscObject)o->rigid_E));
+  pencil->Zr = o->rigid_Z;
+  pencil->E  = o->rigid_E;
   PetscFunctionReturn(0);
 }

@@ -4,7 +4,8 @@
 
       K_a u = f - G'(l - kappa w) + S' D l,   K_a = K + kappa G'G + pins,
 
-   where K_a can be factored although contact alone holds a body. Multiplied by G, with forces l / kappa (m):
+   where K_a can be factored although contact alone holds a body. Where points are joined rigidly, u = Z q, K_a^-1 stands
+   for Z (Z'K_a Z)^-1 Z' everywhere, which forces of that constraint do not enter. Multiplied by G, with forces l / kappa (m):
 
       w + (W - V D) l - W w = G K_a^-1 f,   W = kappa G K_a^-1 G',   V = kappa G K_a^-1 S'.
 
@@ -118,6 +119,66 @@ static PetscErrorCode ComplianceTakeRows(const Compliance *c, Mat R, Mat Y, Pets
   PetscFunctionReturn(0);
 }
 
+/* Y = K_a^-1 B */
+static PetscErrorCode ComplianceApplyBlock(Compliance *c, Mat B, Mat Y)
+{
+  Mat from, to, full;
+
+  PetscFunctionBeginUser;
+  if (!c->Z) {
+    PetscCall(ShiftInvertApplyBlock(&c->inverse, PETSC_FALSE, B, Y));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(MatTransposeMatMult(c->Z, B, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &from));
+  PetscCall(MatDuplicate(from, MAT_DO_NOT_COPY_VALUES, &to));
+  PetscCall(ShiftInvertApplyBlock(&c->inverse, PETSC_FALSE, from, to));
+  PetscCall(MatMatMult(c->Z, to, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &full));
+  PetscCall(MatCopy(full, Y, SAME_NONZERO_PATTERN));
+  PetscCall(MatDestroy(&full));
+  PetscCall(MatDestroy(&from));
+  PetscCall(MatDestroy(&to));
+  PetscFunctionReturn(0);
+}
+
+/* u = K_a^-1 b */
+static PetscErrorCode ComplianceInvert(const Compliance *c, Vec b, Vec u)
+{
+  PetscFunctionBeginUser;
+  if (c->Z) {
+    PetscCall(MatMultTranspose(c->Z, b, c->reduced[0]));
+    PetscCall(ShiftInvertSolve(&c->inverse, PETSC_FALSE, c->reduced[0], c->reduced[1]));
+    PetscCall(MatMult(c->Z, c->reduced[1], u));
+  } else {
+    PetscCall(ShiftInvertSolve(&c->inverse, PETSC_FALSE, b, u));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ComplianceDropConstraint(const Compliance *c, Vec r)
+{
+  PetscFunctionBeginUser;
+  if (!c->Z) PetscFunctionReturn(0);
+  PetscCall(MatMultTranspose(c->Z, r, c->reduced[0]));
+  PetscCall(MatMult(c->E, c->reduced[0], r));
+  PetscFunctionReturn(0);
+}
+
+/* Z'A Z in the place of A */
+static PetscErrorCode ComplianceProject(Mat Z, Mat *A)
+{
+  Mat AZ, ZAZ;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatMatMult(*A, Z, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &AZ));
+  PetscCall(MatTransposeMatMult(Z, AZ, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &ZAZ));
+  PetscCall(MatProductClear(ZAZ));
+  PetscCall(MatSetOption(ZAZ, MAT_SYMMETRIC, PETSC_TRUE));
+  PetscCall(MatDestroy(&AZ));
+  PetscCall(MatDestroy(A));
+  *A = ZAZ;
+  PetscFunctionReturn(0);
+}
+
 /* W and V. K_a is symmetric: the rows of S K_a^-1 G' are the columns of V */
 static PetscErrorCode ComplianceFormDense(Compliance *c)
 {
@@ -140,7 +201,7 @@ static PetscErrorCode ComplianceFormDense(Compliance *c)
     PetscCall(MatCreateDense(rows->comm, n_unknowns, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &B));
     PetscCall(ComplianceSetColumns(Gt, first, n, B));
     PetscCall(MatDuplicate(B, MAT_DO_NOT_COPY_VALUES, &Y));
-    PetscCall(ShiftInvertApplyBlock(&c->inverse, PETSC_FALSE, B, Y));
+    PetscCall(ComplianceApplyBlock(c, B, Y));
     PetscCall(ComplianceTakeRows(c, rows->G, Y, first, local[0]));
     if (rows->S) PetscCall(ComplianceTakeRows(c, rows->S, Y, first, local[1]));
     PetscCall(MatDestroy(&B));
@@ -167,8 +228,17 @@ PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const 
   PetscCall(ComplianceFindKappa(K, rows, &c->kappa));
   PetscCall(ComplianceAugment(K, rows, c->kappa, PETSC_FALSE, NULL, &pencil.K));
   PetscCall(HoldCreate(operators, p, pencil.K, &c->hold));
+  PetscCall(OperatorsGetRigid(operators, &c->Z, &c->E));
+  PetscCall(PetscObjectReference((PetscObject)pencil.M));
+  if (c->Z) {
+    PetscCall(MatCreateVecs(c->Z, &c->reduced[0], NULL));
+    PetscCall(VecDuplicate(c->reduced[0], &c->reduced[1]));
+    PetscCall(ComplianceProject(c->Z, &pencil.K));
+    PetscCall(ComplianceProject(c->Z, &pencil.M));
+  }
   PetscCall(ShiftInvertCreate(&pencil, 0, PETSC_FALSE, progress, &c->inverse));
   PetscCall(MatDestroy(&pencil.K));
+  PetscCall(MatDestroy(&pencil.M));
   PetscCall(MatCreateVecs(K, &c->u, &c->b));
   PetscCall(MatCreateVecs(rows->G, NULL, &c->row));
   if (rows->n_all <= max_rows) PetscCall(ComplianceFormDense(c));
@@ -205,7 +275,7 @@ PetscErrorCode ComplianceSolve(const Compliance *c, PetscReal friction, Vec f, c
   else
     PetscCall(VecSet(c->b, 0));
   PetscCall(ComplianceAddForces(c, friction, l, w, c->b));
-  PetscCall(ShiftInvertSolve(&c->inverse, PETSC_FALSE, c->b, u));
+  PetscCall(ComplianceInvert(c, c->b, u));
   PetscFunctionReturn(0);
 }
 
@@ -236,6 +306,7 @@ PetscErrorCode ComplianceDestroy(Compliance *c)
   PetscCall(VecDestroy(&c->u));
   PetscCall(VecDestroy(&c->b));
   PetscCall(VecDestroy(&c->row));
+  for (int i = 0; i < 2; i++) PetscCall(VecDestroy(&c->reduced[i]));
   PetscCall(PetscFree(c->W));
   PetscCall(PetscFree(c->V));
   PetscFunctionReturn(0);

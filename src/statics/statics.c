@@ -92,10 +92,37 @@ PetscErrorCode StaticsCheckUse(Statics s, PetscBool modes)
 }
 
 /* Pairs, rows and room for the results; all pairs closed */
+/* Motions that nothing resists are sought body by body: a point must not join two bodies rigidly */
+static PetscErrorCode StaticsCheckRigid(Statics s)
+{
+  const ModelScene *scene;
+  PetscInt          n, *body;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(s->model, &scene));
+  PetscCall(ModelGetBodies(s->model, &n, &body));
+  for (PetscInt i = 0; i < scene->n_points; i++) {
+    const Joint *point   = &scene->points[i];
+    PetscInt     ends[2] = {-1, -n}; /* last body, and the first with the other sign */
+
+    for (PetscInt k = 0; k < point->mean.n; k++) {
+      ends[0] = PetscMax(ends[0], body[point->mean.vertex[k]]);
+      ends[1] = PetscMax(ends[1], -body[point->mean.vertex[k]]);
+    }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, ends, 2, MPIU_INT, MPI_MAX, s->comm));
+    PetscCheck(
+      !point->rigid || ends[0] == -ends[1], s->comm, PETSC_ERR_SUP,
+      "-%s_join rigid: -%s_set %s has nodes of two bodies, which -analysis static and the sliding state do not "
+      "support: use a point for each, and a bushing",
+      point->name, point->name, point->set[0]);
+  }
+  PetscCall(PetscFree(body));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode StaticsCreateRows(Statics s)
 {
   const OperatorsParameter *parameters;
-  const ModelScene         *scene;
 
   PetscFunctionBeginUser;
   PetscCheck(s->model, s->comm, PETSC_ERR_USER_INPUT,
@@ -104,11 +131,7 @@ static PetscErrorCode StaticsCreateRows(Statics s)
   PetscCall(PairRowsCreate(s->operators, PETSC_FALSE, &s->rows));
   PetscCheck(s->rows.n_pairs_all, s->comm, PETSC_ERR_USER_INPUT,
              "-analysis static and -modes_contact static need -contacts");
-  PetscCall(ModelGetScene(s->model, &scene));
-  for (PetscInt i = 0; i < scene->n_points; i++)
-    PetscCheck(!scene->points[i].rigid, s->comm, PETSC_ERR_SUP,
-               "-%s_join rigid is not supported by -analysis static and the sliding state: use -%s_join mean",
-               scene->points[i].name, scene->points[i].name);
+  PetscCall(StaticsCheckRigid(s));
   PetscCall(OperatorsGetParameters(s->operators, &s->n_parameters, &parameters));
   PetscCall(PetscMalloc3(s->rows.n_pairs, &s->status, s->rows.n_pairs, &s->state, s->rows.n_interfaces, &s->resultant));
   for (PetscInt p = 0; p < s->rows.n_pairs; p++) s->status[p] = s->rows.law[p].d == 3 ? CONTACT_STICK : CONTACT_SLIP;

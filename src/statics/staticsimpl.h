@@ -40,7 +40,9 @@ typedef struct {
   const PairRows *rows;
   PetscReal       kappa; /* N/m */
   Hold            hold;
-  ShiftInvert     inverse;
+  ShiftInvert     inverse;          /* of K_a, or of Z'K_a Z where points are joined rigidly */
+  Mat             Z, E;             /* OperatorsGetRigid() */
+  Vec             reduced[2];       /* work where there is Z */
   PetscReal      *W, *V; /* [rows][rows] by columns, of all ranks */
   Vec             u, b;  /* work: all unknowns */
   Vec             row;   /* work: rows */
@@ -187,6 +189,8 @@ PETSC_INTERN PetscErrorCode ComplianceApply(const Compliance *c, PetscReal frict
                                             const PetscReal w[], PetscReal y[]);
 PETSC_INTERN PetscErrorCode ComplianceSolve(const Compliance *c, PetscReal friction, Vec f, const PetscReal l[],
                                             const PetscReal w[], Vec u);
+/* Takes forces that hold rigid sets together out of a residual, N: E Z'r */
+PETSC_INTERN PetscErrorCode ComplianceDropConstraint(const Compliance *c, Vec r);
 PETSC_INTERN PetscErrorCode ComplianceAddForces(const Compliance *c, PetscReal friction, const PetscReal l[],
                                                 const PetscReal w[], Vec b);
 PETSC_INTERN PetscErrorCode ComplianceGetRows(const Compliance *c, Vec u, PetscReal w[]);
