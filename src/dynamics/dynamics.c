@@ -153,15 +153,11 @@ static PetscErrorCode DynamicsSetUpPoints(Dynamics d)
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(d->model, &scene));
-  for (PetscInt i = 0; i < scene->n_points; i++)
-    PetscCheck(!scene->points[i].rigid, d->comm, PETSC_ERR_SUP,
-               "-%s_join rigid is not supported by -analysis transient: use -%s_join mean", scene->points[i].name,
-               scene->points[i].name);
   for (PetscInt i = 0; i < scene->n_points && d->b != 0.5; i++)
     for (int j = -1; j < 6; j++)
-      PetscCheck((j < 0 ? scene->points[i].mass : scene->points[i].inertia[j]) == 0, d->comm, PETSC_ERR_SUP,
-                 "-ts_central_b %.6g is not supported with the mass of point %s: take 0.5", (double)d->b,
-                 scene->points[i].name);
+      PetscCheck((j < 0 ? scene->points[i].mass : scene->points[i].inertia[j]) == 0 && !scene->points[i].rigid, d->comm,
+                 PETSC_ERR_SUP, "-ts_central_b %.6g is not supported with the mass or rigid set of point %s: take 0.5",
+                 (double)d->b, scene->points[i].name);
   PetscCall(BodiesSetPoints(d->bodies, d->surface.n, d->surface.vertex));
   PetscFunctionReturn(0);
 }

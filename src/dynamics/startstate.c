@@ -131,6 +131,8 @@ PetscErrorCode DynamicsStartState(Dynamics d)
     PetscCall(StateVectorFromDisplacements(d->model, d->layout, displacement, u));
   }
   if (d->shape[0]) PetscCall(StartAddShape(d, u, v));
+  PetscCall(BodiesMakeRigid(d->bodies, u));
+  PetscCall(BodiesMakeRigid(d->bodies, v));
   PetscCall(StartContact(d, u));
   PetscCall(BodiesSetState(d->bodies, u, v, d->ku));
   PetscCall(VecRestoreArray(d->v, &v));

@@ -93,7 +93,11 @@ PetscErrorCode BodiesHold(Bodies bodies, PetscInt vertex, PetscInt j);
     node that a motion drives. @*/
 PetscErrorCode BodiesSetPoints(Bodies bodies, PetscInt n_contact, const PetscInt contact[]);
 
-/*@ BodiesAddInertia - adds the inertial forces of points to f, N, which holds all others but those of contact, complete
+/*@ BodiesMakeRigid - replaces what a state vector has at sets that are joined rigidly by the rigid motion next to it, after
+    BodiesSetPoints(). Collective. @*/
+PetscErrorCode BodiesMakeRigid(Bodies bodies, PetscReal x[]);
+
+/*@ BodiesAddInertia - adds the inertial forces of points, and those that hold rigid sets together, to f, N, which holds all others but those of contact, complete
     at every copy: then minv f is the acceleration. Collective. @*/
 PetscErrorCode BodiesAddInertia(Bodies bodies, PetscReal f[]);
 

@@ -66,7 +66,9 @@ typedef struct {
 /* A bushing or point: six rows of B at the nodes of its sets on this rank, copies included, in the local bases */
 typedef struct {
   const Joint *like;
-  PetscBool    heavy; /* a point with mass or inertia */
+  PetscBool    massive;                   /* a point with mass or inertia */
+  PetscBool    heavy;                     /* such a one in the mean */
+  PetscReal    mobility[36], nearest[36]; /* of a rigid one: X, and (R'D R)^-1 */
   PetscInt     n;
   PetscInt    *vertex; /* [n] */
   PetscReal   *b;      /* [n][3][6] */
@@ -174,6 +176,12 @@ static inline PetscInt JointAt(const Layout *l, const BodyJoint *joint, PetscInt
 
 /* pointmass.c - 1/2 q'W q of the mass and inertia of a point, J */
 PETSC_INTERN PetscReal PointKinetic(const Joint *point, const PetscReal q[6]);
+/* W, mass and inertia of a point */
+PETSC_INTERN void PointInertia(const Joint *point, PetscReal W[36]);
+
+/* rigidpoint.c - matrices of a rigid point; forces in the place of those on its nodes, f [layout n] */
+PETSC_INTERN PetscErrorCode RigidPointSetUp(Bodies bodies, BodyJoint *joint);
+PETSC_INTERN PetscErrorCode RigidPointsAdvance(Bodies bodies, PetscReal f[]);
 
 /* sharedvertices.c - Begin sends what x has at shared vertices, End replaces it by the sums */
 PETSC_INTERN PetscErrorCode SharedSetUp(Bodies bodies);

@@ -55,10 +55,11 @@ static PetscErrorCode JointFindNodes(Bodies b, const ModelMean *mean, Vec nodal,
 static PetscErrorCode BodyJointSetUp(Bodies b, const Joint *like, Vec nodal, BodyJoint *joint)
 {
   PetscFunctionBeginUser;
-  joint->like  = like;
-  joint->heavy = like->mass > 0 ? PETSC_TRUE : PETSC_FALSE;
+  joint->like    = like;
+  joint->massive = like->mass > 0 ? PETSC_TRUE : PETSC_FALSE;
   for (int i = 0; i < 6; i++)
-    if (like->inertia[i] != 0) joint->heavy = PETSC_TRUE;
+    if (like->inertia[i] != 0) joint->massive = PETSC_TRUE;
+  joint->heavy = joint->massive && !like->rigid ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(JointFindNodes(b, &like->mean, nodal, joint));
   for (int j = 0; j < 6; j++) PetscCall(JointSetRow(b, &like->mean, j, nodal, joint));
   PetscFunctionReturn(0);
@@ -117,7 +118,7 @@ PetscErrorCode JointsAdvance(Bodies b, PetscBool early, BodiesWork *w)
     const BodyJoint *joint = &b->joint[m];
     const PetscReal *q = &b->joint_motion[6 * m], *k = joint->like->stiffness, *c = joint->like->viscosity;
 
-    if (early && joint->heavy && !rank) w->sums.kinetic += PointKinetic(joint->like, q);
+    if (early && joint->massive && !rank) w->sums.kinetic += PointKinetic(joint->like, q);
     for (PetscInt i = 0; i < 3 * joint->n; i++) {
       const PetscInt v = joint->vertex[i / 3], at = JointAt(&b->layout, joint, i);
       PetscReal      g = 0, h = 0;

@@ -13,7 +13,7 @@
 #include <petscblaslapack.h>
 
 /* W of a point */
-static void PointInertia(const Joint *joint, PetscReal W[36])
+void PointInertia(const Joint *joint, PetscReal W[36])
 {
   static const int at[9] = {0, 3, 4, 3, 1, 5, 4, 5, 2};
 
@@ -35,7 +35,8 @@ PetscReal PointKinetic(const Joint *joint, const PetscReal q[6])
 static PetscErrorCode PointCheckNodes(Bodies b, const BodyJoint *joint, PetscInt n_contact, const PetscInt contact[])
 {
   const Layout *l     = &b->layout;
-  PetscInt      no[2] = {0, 0};
+  PetscInt      no[3] = {0, 0, 0};
+  const char   *what  = joint->like->rigid ? "is joined rigidly" : "has a mass";
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < 3 * joint->n; i++) {
@@ -47,17 +48,24 @@ static PetscErrorCode PointCheckNodes(Bodies b, const BodyJoint *joint, PetscInt
     if (!held && l->minv[JointAt(l, joint, i)] == 0) no[0] = 1;
     for (PetscInt k = 0; k < n_contact; k++)
       if (contact[k] == v) no[1] = 1;
+    for (PetscInt m = 0; m < b->n_joints && i % 3 == 0 && joint->heavy; m++)
+      for (PetscInt k = 0; k < b->joint[m].n && b->joint[m].like->rigid; k++)
+        if (b->joint[m].vertex[k] == v) no[2] = 1;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, no, 2, MPIU_INT, MPI_MAX, b->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, no, 3, MPIU_INT, MPI_MAX, b->comm));
   PetscCheck(
-    !no[0], b->comm, PETSC_ERR_SUP,
-    "point %s has a mass, and a motion drives nodes of -%s_set %s, which -analysis transient does not support: "
-    "use another set",
+    !no[2], b->comm, PETSC_ERR_SUP,
+    "point %s has a mass, and -%s_set %s has nodes of a point that is joined rigidly, which -analysis transient "
+    "does not support: give that one the mass",
     joint->like->name, joint->like->name, joint->like->set[0]);
+  PetscCheck(!no[0], b->comm, PETSC_ERR_SUP,
+             "point %s %s, and a motion drives nodes of -%s_set %s, which -analysis transient does not support: "
+             "use another set",
+             joint->like->name, what, joint->like->name, joint->like->set[0]);
   PetscCheck(!no[1], b->comm, PETSC_ERR_SUP,
-             "point %s has a mass, and -%s_set %s has nodes of a contact surface, which -analysis transient does not "
+             "point %s %s, and -%s_set %s has nodes of a contact surface, which -analysis transient does not "
              "support: use a set apart from it",
-             joint->like->name, joint->like->name, joint->like->set[0]);
+             joint->like->name, what, joint->like->name, joint->like->set[0]);
   PetscFunctionReturn(0);
 }
 
@@ -130,9 +138,10 @@ PetscErrorCode BodiesSetPoints(Bodies b, PetscInt n_contact, const PetscInt cont
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(b->n_joints, &heavy));
   for (PetscInt m = 0; m < b->n_joints; m++) {
-    if (!b->joint[m].heavy) continue;
-    heavy[b->n_heavy++] = m;
+    if (!b->joint[m].heavy && !b->joint[m].like->rigid) continue;
     PetscCall(PointCheckNodes(b, &b->joint[m], n_contact, contact));
+    if (b->joint[m].like->rigid) PetscCall(RigidPointSetUp(b, &b->joint[m]));
+    if (b->joint[m].heavy) heavy[b->n_heavy++] = m;
   }
   if (b->n_heavy) {
     PetscCall(PetscCalloc1(36 * b->n_heavy * b->n_heavy, &S));
@@ -150,6 +159,7 @@ PetscErrorCode BodiesAddInertia(Bodies b, PetscReal f[])
   const PetscInt n = 6 * b->n_heavy;
 
   PetscFunctionBeginUser;
+  PetscCall(RigidPointsAdvance(b, f));
   if (!n) PetscFunctionReturn(0);
   PetscCall(JointsMotion(b, b->layout.minv, f));
   for (PetscInt m = 0, p = 0; m < b->n_joints; m++) {
