@@ -140,24 +140,39 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   PetscFunctionReturn(0);
 }
 
-/* A warning for slaves of eight nodes a face that can open */
-static PetscErrorCode InterfaceWarn(Contact contact, const ContactInterface *c)
+/* Faces of a surface, on all ranks, of each number of nodes */
+static PetscErrorCode FacesCount(Contact contact, const char set[], PetscInt count[CONTACT_MAX_MASTER + 1])
 {
   ModelFaces faces;
-  PetscInt   n = 0;
 
   PetscFunctionBeginUser;
-  if (c->law != CONTACT_CONSTRAINT) PetscFunctionReturn(0);
-  PetscCall(ModelGetSetFaces(contact->model, c->slave, &faces));
-  for (PetscInt f = 0; f < faces.n; f++) n += faces.first[f + 1] - faces.first[f] == 8;
+  PetscCall(PetscArrayzero(count, CONTACT_MAX_MASTER + 1));
+  PetscCall(ModelGetSetFaces(contact->model, set, &faces));
+  for (PetscInt f = 0; f < faces.n; f++) count[faces.first[f + 1] - faces.first[f]]++;
   PetscCall(ModelFacesDestroy(&faces));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT, MPI_SUM, contact->comm));
-  if (n)
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, CONTACT_MAX_MASTER + 1, MPIU_INT, MPI_SUM, contact->comm));
+  PetscFunctionReturn(0);
+}
+
+/* A warning for slaves of eight nodes a face that can open; an error where second rows of nodes are asked for under faces
+   of second order, whose sides and middles have no edge into the body */
+static PetscErrorCode InterfaceCheckFaces(Contact contact, const ContactInterface *c)
+{
+  PetscInt slave[CONTACT_MAX_MASTER + 1], master[CONTACT_MAX_MASTER + 1], second = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(FacesCount(contact, c->slave, slave));
+  PetscCall(FacesCount(contact, c->master, master));
+  for (int n = 5; n <= CONTACT_MAX_MASTER; n++) second += slave[n] + master[n];
+  PetscCheck(!second || !c->identify, contact->comm, PETSC_ERR_USER_INPUT,
+             "-%s_kn identify needs elements of first order at %s and %s; give -%s_kn_per_area (N/m^3)", c->name,
+             c->slave, c->master, c->name);
+  if (c->law == CONTACT_CONSTRAINT && slave[8])
     PetscCall(PetscFPrintf(contact->comm, stderr,
                            "squeal: warning: contact %s: %" PetscInt_FMT
                            " faces of %s have eight nodes (hex20, wedge15), whose corners open under a uniform "
                            "pressure, since it pulls at them; mesh with hex27 or tet10 there\n",
-                           c->name, n, c->slave));
+                           c->name, slave[8], c->slave));
   PetscFunctionReturn(0);
 }
 
@@ -168,7 +183,7 @@ PetscErrorCode ContactSetUp(Contact contact)
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
     PetscCall(InterfaceCheck(contact->comm, &contact->interfaces[i]));
     PetscCall(ContactPairInterface(contact, i));
-    PetscCall(InterfaceWarn(contact, &contact->interfaces[i]));
+    PetscCall(InterfaceCheckFaces(contact, &contact->interfaces[i]));
   }
   PetscCallMPI(MPI_Allreduce(&contact->n_pairs, &contact->n_pairs_all, 1, MPIU_INT, MPI_SUM, contact->comm));
   PetscCall(EventEnd(EVENT_PAIR));
