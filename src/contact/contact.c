@@ -141,7 +141,7 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
 }
 
 /* Faces of a surface, on all ranks, of each number of nodes */
-static PetscErrorCode FacesCount(Contact contact, const char set[], PetscInt count[CONTACT_MAX_MASTER + 1])
+static PetscErrorCode FacesOfSizes(Contact contact, const char set[], PetscInt count[CONTACT_MAX_MASTER + 1])
 {
   ModelFaces faces;
 
@@ -161,8 +161,8 @@ static PetscErrorCode InterfaceCheckFaces(Contact contact, const ContactInterfac
   PetscInt slave[CONTACT_MAX_MASTER + 1], master[CONTACT_MAX_MASTER + 1], second = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(FacesCount(contact, c->slave, slave));
-  PetscCall(FacesCount(contact, c->master, master));
+  PetscCall(FacesOfSizes(contact, c->slave, slave));
+  PetscCall(FacesOfSizes(contact, c->master, master));
   for (int n = 5; n <= CONTACT_MAX_MASTER; n++) second += slave[n] + master[n];
   PetscCheck(!second || !c->identify, contact->comm, PETSC_ERR_USER_INPUT,
              "-%s_kn identify needs elements of first order at %s and %s; give -%s_kn_per_area (N/m^3)", c->name,
