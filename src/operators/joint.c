@@ -254,3 +254,45 @@ PetscErrorCode OperatorsAddJointWeight(Operators o, const PetscReal p[], PetscRe
   }
   PetscFunctionReturn(0);
 }
+
+/* Whether a node of a point belongs to a part, on any rank */
+static PetscErrorCode PointIsOnPart(Operators o, const Joint *point, PetscInt part, PetscBool *is)
+{
+  const Mesh *mesh;
+  PetscBool  *on;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(o->model, &mesh));
+  PetscCall(PetscCalloc1(mesh->n_nodes, &on));
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    for (PetscInt i = mesh->cell_first[c]; i < mesh->cell_first[c + 1] && mesh->cell_part[c] == part; i++)
+      on[mesh->cell_node[i]] = PETSC_TRUE;
+  *is = PETSC_FALSE;
+  for (PetscInt i = 0; i < point->mean.n; i++)
+    if (on[point->mean.vertex[i]]) *is = PETSC_TRUE;
+  PetscCall(PetscFree(on));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, is, 1, MPIU_BOOL, MPI_LOR, o->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsCheckSpinningPoints(Operators o, PetscInt part)
+{
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(o->model, &scene));
+  for (PetscInt i = 0; i < scene->n_points; i++) {
+    const Joint *point = &scene->points[i];
+    PetscBool    on = PETSC_FALSE, counts = point->rigid || point->mass > 0 ? PETSC_TRUE : PETSC_FALSE;
+
+    for (int k = 0; k < 6; k++)
+      if (point->inertia[k] != 0) counts = PETSC_TRUE;
+    if (counts) PetscCall(PointIsOnPart(o, point, part, &on));
+    PetscCheck(!on, o->comm, PETSC_ERR_SUP,
+               "point %s is %s on part %s, which -%s_spin turns: that is not supported; put it on a part that stands "
+               "still",
+               point->name, point->rigid ? "joined rigidly" : "a mass", scene->parts[part].name,
+               scene->parts[part].name);
+  }
+  PetscFunctionReturn(0);
+}

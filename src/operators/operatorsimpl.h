@@ -91,6 +91,9 @@ PETSC_INTERN PetscErrorCode OperatorsAddJointWeight(Operators operators, const P
 PETSC_INTERN PetscErrorCode OperatorsAddSpinParameters(Operators operators);
 PETSC_INTERN PetscErrorCode OperatorsNeedSpin(Operators operators);
 
+/* joint.c - raises an error for a point with mass, or joined rigidly, on a part that spins. Collective. */
+PETSC_INTERN PetscErrorCode OperatorsCheckSpinningPoints(Operators operators, PetscInt part);
+
 /* rigid.c - the null space of points that are joined rigidly. Collective. */
 PETSC_INTERN PetscErrorCode OperatorsCreateRigid(Operators operators);
 
