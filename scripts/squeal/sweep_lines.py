@@ -65,7 +65,7 @@ def draw_branches(axes, branches, quantity, scale):
     shown = False
     for branch in branches:
         y, loud = getattr(branch, quantity), branch.colour != QUIET
-        axes.plot(branch.x, y, "-", marker="o", ms=2.6 if loud else 1.2, color=branch.colour, lw=1.6 if loud else 0.8,
+        axes.plot(branch.x, y, "-", marker="o", ms=2.6 if loud or branch.number < 0 else 1.2, color=branch.colour, lw=1.6 if loud else 0.8,
                   zorder=3 if loud else 2)
         bad = branch.kind == "unstable"
         axes.plot(numpy.where(bad, branch.x, math.nan), y, "-", marker="o", ms=5.5, color=VERMILION, lw=3, zorder=4)
@@ -189,6 +189,7 @@ def name_branches(axes, branches):
     left out among the grey branches, evenly."""
     height, right, scale = 13 * axes.figure.dpi / 72, axes.bbox.x1, 72 / axes.figure.dpi
     low, high = axes.bbox.y0, axes.bbox.y1
+    branches = [b for b in branches if b.number >= 0 or b.last == len(b.x) - 1]
     ends = [(axes.transData.transform((b.x[b.last], b.frequency[b.last]))[1], b) for b in branches]
     ends = sorted((end for end in ends if low - 1 <= end[0] <= high + 1), key=lambda end: (end[0], end[1].label))
     ends = thin_out(ends, int((high - low) / height))

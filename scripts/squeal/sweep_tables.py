@@ -2,7 +2,7 @@
 
 from .tables import BadInput, flag, optional, prefixed, read_table
 
-SWEEP = {"value": float, "branch": int, "freq_hz": float, "growth_rad_s": float, "unstable": flag, "label": str,
+SWEEP = {"value": float, "branch": optional, "freq_hz": float, "growth_rad_s": float, "unstable": flag, "label": str,
          "value_2": optional, "class": str, "error_hz": optional, "jump": flag}
 ONSETS = {"critical_value": float, "freq_hz": float, "kind": str, "label": str, "branch": int, "partner": optional,
           "confirmed": flag, "value_2": optional}
@@ -47,6 +47,8 @@ class Study:
     def __init__(self, folder, band, at):
         path = folder / "sweep.csv"
         self.rows = read_table(path, SWEEP)
+        for i, row in enumerate(self.rows):  # -sweep_method full follows none: each row stands alone
+            row["branch"] = -1 - i if row["branch"] != row["branch"] else int(row["branch"])
         self.parameters = read_table(folder / "parameters.csv", PARAMETERS)
         onsets = folder / "onsets.csv"
         self.onsets = read_table(onsets, ONSETS) if onsets.exists() else []

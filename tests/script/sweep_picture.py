@@ -102,6 +102,17 @@ def test_jumps(root):
     require({"contact status changes", "jump of growth"} < set(legend), f"legend {legend}")
 
 
+def test_full(root):
+    """A sweep solved in full follows no branches: its points are marked all the same."""
+    write_sweep(root / "full", mu=0.5)
+    (root / "full/onsets.csv").unlink()
+    table = root / "full/sweep.csv"
+    head, *rows = [line.split(",") for line in table.read_text().splitlines()]
+    at = head.index("branch")
+    table.write_text("\n".join(",".join(row) for row in [head, *([*row[:at], "", *row[at + 1:]] for row in rows)]) + "\n")
+    require(red_points(drawn("plot/sweep", root / "full")) > 100, "nothing is marked")
+
+
 def test_map(root):
     """Two parameters: the map is unstable exactly where the closed form is, and --at draws one line of it."""
     mu = numpy.linspace(0, 1, 6)
@@ -134,7 +145,7 @@ def test_errors(root):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        for test in (test_colours, test_marks, test_texts, test_scale, test_jumps, test_map, test_errors):
+        for test in (test_colours, test_marks, test_texts, test_scale, test_jumps, test_full, test_map, test_errors):
             test(Path(folder))
 
 
