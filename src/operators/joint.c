@@ -1,8 +1,10 @@
 /*
    Bushings and points: with the six motions q = B u of model.h and W = diag(k), diag(c), or mass and inertia, each is a
    term B' W B of K, C or M of rank six at most, one for each parameter. Its matrix couples all nodes of the sets: n of
-   them cost 12 (3 n)^2 bytes a matrix, and a third of it where only translations count in the middle of a set; 0.1 GB
-   at 1000 nodes. Entries that are zero for every u are not stored.
+   them cost 12 (3 n)^2 bytes a matrix, 0.1 GB at 1000 nodes, and a third of it where only translations count in the
+   middle of a set. Each parameter keeps one, and each sum of K, C, M that is formed another: on 1000 nodes a bushing of
+   three stiffnesses takes 0.3 GB in modes, a point with six, mass and inertia 0.9 GB. Entries that are zero for every u
+   are not stored. Name the nodes of a bolt hole, not of a whole face.
 */
 #include "operatorsimpl.h"
 #include "base/gather.h"
