@@ -10,7 +10,8 @@
       (T u)_p = t . (u_m - u_s)     slip
       (B u)_p = b . (u_m - u_s)     transverse slip
    Pairs are node to surface. Where meshes match, a uniform pressure passes exactly: nodes of faces of six nodes then
-   carry int N_i dA, nothing at corners, where rounding says whether they are closed, and faces of eight nodes would have
+   carry int N_i dA, nothing at corners, where rounding says whether they are closed (where the pressure varies some
+   corners open, by gaps that vanish with the size of the mesh), and faces of eight nodes would have
    to pull there, so that these open with the exact law (a warning says so). Where they do not match, the total is exact,
    and the pressure at single nodes off by tens of percent, of second order more than of first.
    Penalty (seed paper, eq. 1): internal forces k_n N'N u - mu k_n T'N u, that is along n on the master k_n (N u),
