@@ -122,11 +122,42 @@ static PetscErrorCode ScopeCheckEigensolver(MPI_Comm comm, const Scope *s)
   PetscFunctionReturn(0);
 }
 
+static const char scope_still[] = "not used by -analysis static, where nothing moves and nothing is damped";
+
+/* What a bushing or a point reads and a scene at rest has no use for */
+static PetscErrorCode ScopeCheckJoint(MPI_Comm comm, const ModelScene *scene, const Joint *joint)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ScopeRefuse(comm, joint->name, "viscosity", scope_still));
+  PetscCall(ScopeRefuse(comm, joint->name, "turn_viscosity", scope_still));
+  if (!joint->is_point) PetscFunctionReturn(0);
+  PetscCall(ScopeRefuse(comm, joint->name, "inertia", scope_still));
+  if (Vec3Dot(scene->gravity, scene->gravity) == 0)
+    PetscCall(ScopeRefuse(comm, joint->name, "mass", "not used by -analysis static without -model_gravity"));
+  PetscFunctionReturn(0);
+}
+
+/* What the model reads of motion and damping, which a scene at rest has no use for */
+static PetscErrorCode ScopeCheckStill(MPI_Comm comm, const ModelScene *scene)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < scene->n_parts; i++) {
+    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "alpha", scope_still));
+    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "beta", scope_still));
+    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "loss_factor", scope_still));
+  }
+  PetscCall(ScopeCheckDensity(comm, scene));
+  for (PetscInt i = 0; i < scene->n_dashpots; i++)
+    PetscCall(ScopeRefuse(comm, scene->dashpots[i].name, scene->dashpots[i].quantity, scope_still));
+  for (PetscInt i = 0; i < scene->n_joints; i++) PetscCall(ScopeCheckJoint(comm, scene, &scene->joints[i]));
+  for (PetscInt i = 0; i < scene->n_points; i++) PetscCall(ScopeCheckJoint(comm, scene, &scene->points[i]));
+  PetscFunctionReturn(0);
+}
+
 /* What the model reads for other analyses */
 static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool statics)
 {
   static const char all[]      = "not used by modes with all pairs closed; give -modes_contact static";
-  static const char still[]    = "not used by -analysis static, where nothing moves and nothing is damped";
   static const char no_probe[] = "not used without -analysis transient or frf";
   static const char turning[] = "not used by -analysis transient; a contact's -..._kinematics turning turns its master";
   const ModelScene *scene;
@@ -134,14 +165,9 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(s->model, &scene));
   if (s->modes && !statics) PetscCall(ScopeRefuse(comm, "model", "gravity", all));
-  for (PetscInt i = 0; i < scene->n_parts && !s->transient && !s->modes; i++) {
-    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "alpha", still));
-    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "beta", still));
-    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "loss_factor", still));
-  }
+  if (!s->transient && !s->modes) PetscCall(ScopeCheckStill(comm, scene));
   for (PetscInt i = 0; i < scene->n_parts && !s->modes; i++)
-    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "spin", s->transient ? turning : still));
-  if (!s->transient && !s->modes) PetscCall(ScopeCheckDensity(comm, scene));
+    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "spin", s->transient ? turning : scope_still));
   for (PetscInt i = 0; i < scene->n_probes && !s->transient && !s->frf; i++)
     PetscCall(ScopeRefuse(comm, scene->probes[i].name, "at", no_probe));
   for (PetscInt i = 0; i < scene->n_circles && !s->transient && !s->frf; i++)
