@@ -168,6 +168,42 @@ static void JointAsked(Model model, const Joint *joint, PetscBool *turns, PetscB
   }
 }
 
+/* Whether any of its loads, or its weight, is a force that supports carry */
+static PetscBool JointIsLoaded(const ModelScene *s, const Joint *joint)
+{
+  for (PetscInt i = 0; i < s->n_loads; i++)
+    if (s->loads[i].on_point && &s->points[s->loads[i].point] == joint) return PETSC_TRUE;
+  return joint->mass > 0 && JointIsGiven(3, s->gravity) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Raises an error where supports hold all that the motions in question are means of. Displacements that -motions
+   prescribe, if not as zero, are no unknowns either; the joint then has a force */
+static PetscErrorCode JointCheckFree(Model model, const Joint *joint)
+{
+  const ModelMean *mean = &joint->mean;
+  PetscBool        acts = joint->rigid, asked[6]; /* operators/rigid.c refuses rigid sets that are held */
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 6; k++)
+    asked[k] = joint->stiffness[k] > 0 || joint->viscosity[k] > 0 || (k < 3 && joint->mass > 0) ||
+                   (k >= 3 && JointIsGiven(6, joint->inertia))
+                 ? PETSC_TRUE
+                 : PETSC_FALSE;
+  for (PetscInt i = 0; i < 3 * mean->n; i++) {
+    const PetscInt at = 3 * mean->vertex[i / 3] + i % 3;
+
+    if (model->mesh.unknown[at] < 0 && (!model->mesh.prescribed || model->mesh.prescribed[at] == 0)) continue;
+    for (int k = 0; k < 6; k++)
+      if (asked[k] && mean->b[6 * i + k] != 0) acts = PETSC_TRUE;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &acts, 1, MPIU_BOOL, MPI_LOR, model->comm));
+  PetscCheck(acts || JointIsLoaded(&model->scene, joint), model->comm, PETSC_ERR_USER_INPUT,
+             "%s %s does nothing: supports hold all of %s%s%s in its directions; name a set that is free to move",
+             joint->is_point ? "point" : "bushing", joint->name, joint->set[0], joint->set[1][0] ? " and " : "",
+             joint->set[1]);
+  PetscFunctionReturn(0);
+}
+
 /* The place and the six motions of one joint */
 static PetscErrorCode JointSetUp(Model model, Joint *joint)
 {
@@ -190,6 +226,7 @@ static PetscErrorCode JointSetUp(Model model, Joint *joint)
     for (int d = 0; d < 3; d++) joint->at[d] += middle[d] / (PetscReal)n;
   }
   PetscCall(MeanCreate(model, n, wish, joint->at, &joint->mean));
+  PetscCall(JointCheckFree(model, joint));
   PetscFunctionReturn(0);
 }
 
