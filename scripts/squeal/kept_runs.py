@@ -1,5 +1,5 @@
-"""Runs of squeal that are kept, each in a folder of its own, and taken from there as long as program, command and
-options files are the same. A run that was stopped is no kept run: its folder has no log.txt."""
+"""Runs of squeal that are kept, each in a folder of its own, and taken from there as long as program, command,
+options files and meshes are the same. A run that was stopped is no kept run: its folder has no log.txt."""
 
 import functools
 import hashlib
@@ -26,8 +26,8 @@ class KeptRun:
 
     @functools.cached_property
     def key(self):
-        """What a kept run must agree in: program, command, and the options files that it names."""
-        files = [word for before, word in zip(self.words, self.words[1:]) if before == "-options_file"]
+        """What a kept run must agree in: program, command, and the options files and meshes that it names."""
+        files = [word for before, word in zip(self.words, self.words[1:]) if before in ("-options_file", "-model_mesh")]
         parts = [digest(self.program), str(self.ranks), *self.words, *map(digest, files)]
         return hashlib.sha256("\0".join(parts).encode()).hexdigest()
 

@@ -1,0 +1,73 @@
+"""Modes of one body by one element on one mesh: frequencies, unknowns, processor time and peak memory of the whole run."""
+
+import os
+import re
+import subprocess
+from dataclasses import dataclass
+
+import numpy
+
+from .element_meshes import ELEMENTS, make_mesh
+from .kept_runs import KeptRun
+from .tables import BadInput, read_table
+
+STEEL = "-body_young 210e9 -body_poisson 0.3 -body_density 7800"
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A body, the band in Hz that holds the lowest elastic modes with room above them, and more words."""
+    name: str
+    body: object
+    band: tuple
+    options: str = ""
+
+
+@dataclass(frozen=True)
+class Result:
+    """Of a run: element, size (m) or counts of elements, unknowns, s of processor, MB, Hz ascending."""
+    element: str
+    size: float
+    unknowns: int
+    seconds: float
+    megabytes: float
+    frequencies: numpy.ndarray
+
+    def error(self, reference):
+        """The worst of the lowest modes, relative; nan where the band lacks some of them."""
+        if len(self.frequencies) < len(reference):
+            return numpy.nan
+        return abs(self.frequencies[:len(reference)] / reference - 1).max()
+
+
+def measured(command, about):
+    """What a command prints, s of processor and MB at most of its process."""
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+        text = process.stdout.read()
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        raise BadInput(f"{about}: {text.strip()[-300:]}")
+    return text, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+
+
+def solve(args, problem, element, size, counts=None, more=""):
+    """The run of an element of a size, or with counts of elements; taken from its folder where it is there."""
+    options = ELEMENTS[element][0]
+    mesh_name = "x".join(map(str, counts)) if counts else f"{1e3 * size:.3g}"
+    name = f"{problem.name}_{element}_{mesh_name}{more}"
+    folder = args.runs / re.sub(r"[^\w.]+", "_", name)
+    folder.mkdir(parents=True, exist_ok=True)
+    mesh = folder / "mesh.msh"
+    if not mesh.exists():
+        make_mesh(mesh, problem.body, element, size, counts)
+    words = ["-model_mesh", mesh, "-parts", "body", *STEEL.split(), *options.split(), *problem.options.split(), *more.split(),
+             "-modes_band", ",".join(map(str, problem.band)), "-output_fields", 0, "-squeal_progress", 0, "-squeal_view"]
+    run = KeptRun(args.program, 1, folder, words)
+    if not run.is_complete():
+        text, seconds, megabytes = measured(run.begin(), name)
+        run.end(f"{seconds} s {megabytes} MB\n{text}")
+    seconds, megabytes = map(float, run.text().split()[0:4:2])
+    unknowns = int(re.search(r"operators: (\d+) unknowns", run.text())[1])
+    rows = read_table(folder / "modes.csv", {"freq_hz": float})
+    return Result(element, size, unknowns, seconds, megabytes, numpy.array([row["freq_hz"] for row in rows]))
