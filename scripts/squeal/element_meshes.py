@@ -2,10 +2,9 @@
 tetrahedra, or tetrahedra of structured layers where sizes are to be halved exactly."""
 
 import math
-import subprocess
 from dataclasses import dataclass
 
-from .tables import BadInput
+from .gmsh import run_gmsh
 
 # name -> options of squeal, order, whether faces have no middle nodes, shape
 ELEMENTS = {
@@ -60,29 +59,21 @@ class Bar:
 
 def layers_of(body, counts, shape):
     """What extrusions along each direction say: hexahedra, wedges, or tetrahedra of structured layers."""
-    texts = [f" Layers{{{n}}};" for n in counts]
-    last = 2 if isinstance(body, Ring) else 0
+    ring = isinstance(body, Ring)  # made of quarters
+    texts = [f" Layers{{{n // 4 if ring and i == 1 else n}}};" for i, n in enumerate(counts)]
+    last = 2 if ring else 0
     for i in range(3):
         if shape == "hex" or (shape == "wedge" and i == last):
             texts[i] += " Recombine;"
     return texts
 
 
-def make_mesh(path, body, element, size, counts=None):
+def mesh_body(path, body, element, size, counts=None):
     """Writes the mesh. Tetrahedra are free unless counts are given; others have body.counts(size)."""
     _, order, incomplete, shape = ELEMENTS[element]
     free = shape == "tet" and not counts
     layers = [""] * 3 if free else layers_of(body, counts or body.counts(size), shape)
     source = path.with_suffix(".geo")
     source.write_text("\n".join(body.geometry(layers)) + "\n", encoding="utf-8")
-    command = ["gmsh", "-3", "-order", order, "-setnumber", "Mesh.SecondOrderIncomplete", incomplete, "-format", "msh41",
-               "-bin", source, "-o", path]
-    if free:
-        command += ["-clmin", size, "-clmax", size]
-    try:
-        done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
-    except FileNotFoundError:
-        raise BadInput("no program gmsh, of scripts/packages.txt") from None
-    said = done.stdout + done.stderr
-    if done.returncode or "Error" in said:
-        raise BadInput(f"{source}: gmsh: {next((line for line in said.splitlines() if 'Error' in line), said[-200:])}")
+    sizes = ["-clmin", size, "-clmax", size] if free else []
+    run_gmsh(source, path, "-order", order, "-setnumber", "Mesh.SecondOrderIncomplete", incomplete, "-bin", *sizes)

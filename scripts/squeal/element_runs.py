@@ -7,10 +7,12 @@ from dataclasses import dataclass
 
 import numpy
 
-from .element_meshes import ELEMENTS, make_mesh
+from .element_meshes import ELEMENTS, mesh_body
 from .kept_runs import KeptRun
 from .tables import BadInput, read_table
 
+# What an element may end with that is so stiff that no mode is left in the band, or that bends too much on a coarse mesh
+HOPELESS = "contains no mode", "is inverted or has no volume"
 STEEL = "-body_young 210e9 -body_poisson 0.3 -body_density 7800"
 
 
@@ -25,7 +27,7 @@ class Problem:
 
 @dataclass(frozen=True)
 class Result:
-    """Of a run: element, size (m) or counts of elements, unknowns, s of processor, MB, Hz ascending."""
+    """Of a run: element, its size in m, unknowns (0: no mesh without inverted elements), s of processor, MB, Hz ascending."""
     element: str
     size: float
     unknowns: int
@@ -40,13 +42,18 @@ class Result:
         return abs(self.frequencies[:len(reference)] / reference - 1).max()
 
 
+def is_hopeless(text):
+    """Whether the run ended so."""
+    return any(end in text for end in HOPELESS)
+
+
 def measured(command, about):
     """What a command prints, s of processor and MB at most of its process."""
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
         text = process.stdout.read()
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode:
+    if process.returncode and not is_hopeless(text):
         raise BadInput(f"{about}: {text.strip()[-300:]}")
     return text, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
 
@@ -60,7 +67,7 @@ def solve(args, problem, element, size, counts=None, more=""):
     folder.mkdir(parents=True, exist_ok=True)
     mesh = folder / "mesh.msh"
     if not mesh.exists():
-        make_mesh(mesh, problem.body, element, size, counts)
+        mesh_body(mesh, problem.body, element, size, counts)
     words = ["-model_mesh", mesh, "-parts", "body", *STEEL.split(), *options.split(), *problem.options.split(), *more.split(),
              "-modes_band", ",".join(map(str, problem.band)), "-output_fields", 0, "-squeal_progress", 0, "-squeal_view"]
     run = KeptRun(args.program, 1, folder, words)
@@ -68,6 +75,6 @@ def solve(args, problem, element, size, counts=None, more=""):
         text, seconds, megabytes = measured(run.begin(), name)
         run.end(f"{seconds} s {megabytes} MB\n{text}")
     seconds, megabytes = map(float, run.text().split()[0:4:2])
-    unknowns = int(re.search(r"operators: (\d+) unknowns", run.text())[1])
-    rows = read_table(folder / "modes.csv", {"freq_hz": float})
-    return Result(element, size, unknowns, seconds, megabytes, numpy.array([row["freq_hz"] for row in rows]))
+    count = re.search(r" (\d+) unknowns", run.text())
+    rows = [] if is_hopeless(run.text()) else read_table(folder / "modes.csv", {"freq_hz": float})
+    return Result(element, size, int(count[1]) if count else 0, seconds, megabytes, numpy.array([row["freq_hz"] for row in rows]))
