@@ -23,10 +23,10 @@ class Ring:
     thickness: float
 
     def counts(self, size):
-        """Elements along r, around, along z."""
+        """Elements along r, around, along z: two at least, since the shear of a plate is a parabola over its thickness."""
         around = math.pi * (self.inner + self.outer)
         return [max(1, round((self.outer - self.inner) / size)), 4 * max(2, round(around / size / 4)),
-                max(1, round(self.thickness / size))]
+                max(2, round(self.thickness / size))]
 
     def geometry(self, layers):
         """Of gmsh; layers along r, around, along z, each "" for free ones."""

@@ -14,7 +14,7 @@ COSTS = {"unknowns": "unknowns", "seconds": "processor time, s", "megabytes": "p
 
 def draw_errors(path, problems, asked):
     """One row for each problem: name -> element -> [(Result, error)]; a line at the error that is asked."""
-    figure, panels = plt.subplots(len(problems), len(COSTS), figsize=(11, 2.7 * len(problems)), sharey="row", squeeze=False,
+    figure, panels = plt.subplots(len(problems), len(COSTS), figsize=(9, 2.4 * len(problems)), sharey="row", squeeze=False,
                                   layout="constrained")
     for row, (name, series) in zip(panels, problems.items()):
         for axes, (cost, label) in zip(row, COSTS.items()):
