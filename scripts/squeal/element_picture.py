@@ -27,5 +27,5 @@ def draw_errors(path, problems, asked):
             axes.set_xlabel(label)
         row[0].set_ylabel("worst error, %")
         row[1].set_title(name, fontsize=10)
-    panels[0][0].legend(fontsize=7, ncols=2)
+    figure.legend(*panels[0][0].get_legend_handles_labels(), loc="outside lower center", ncols=8, fontsize=8)
     save_picture(figure, path)
