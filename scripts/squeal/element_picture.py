@@ -26,6 +26,7 @@ def draw_errors(path, problems, asked):
             axes.grid(True, which="major", linewidth=0.3)
             axes.set_xlabel(label)
         row[0].set_ylabel("worst error, %")
+        row[0].set_ylim(bottom=0.005)
         row[1].set_title(name, fontsize=10)
-    figure.legend(*panels[0][0].get_legend_handles_labels(), loc="outside lower center", ncols=8, fontsize=8)
+    panels[0][0].legend(loc="lower left", fontsize=7, ncols=2)
     save_picture(figure, path)
