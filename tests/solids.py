@@ -10,7 +10,8 @@ the other) with the order 1 or 2: hex+wedge1, wedge+tet2. Volume "bar"; surfaces
 --distort draws new places for the corners inside, within a fifth of an element, and --curve moves all other nodes inside
 too. --renumber draws new numbers of nodes and elements, a new order of both, and a new first corner of each element.
 --move turns the mesh and shifts it (tests/mesh.py). --damage swaps two mid-side nodes of the first element (swap), gives
-a node twice (twice), moves nodes along their edges until the Jacobian is negative (bend), or leaves one element of first order (order).
+a node twice (twice), moves nodes along their edges until the Jacobian is negative (bend), leaves one element of first order (order), or
+makes eight hexahedra of first order of the last hexahedron (hang).
 """
 
 import argparse
@@ -125,6 +126,9 @@ def damage(found, x, how):
         for p in nodes[at:]:
             if p[0] == 1:  # in the middle of an edge along x
                 x[tuple(p)] = x[tuple(p)] + [0.39 * 2 * x[tuple(p)][0], 0, 0]
+    elif how == "hang":
+        corners = found[-1][1][0] + CORNERS
+        found[-1:] = [("hex8", corners + p) for p in itertools.product((0, 1), repeat=3)]
     elif how == "order":
         found[0] = (f"{shape}{at}", nodes[:at])
     return found
@@ -170,7 +174,7 @@ def main():
     parser.add_argument("--curve", action="store_true")
     parser.add_argument("--renumber", type=int, metavar="SEED")
     parser.add_argument("--move", action="store_true")
-    parser.add_argument("--damage", choices=["swap", "twice", "bend", "order"])
+    parser.add_argument("--damage", choices=["swap", "twice", "bend", "order", "hang"])
     args = parser.parse_args()
     random = None if args.renumber is None else np.random.default_rng(args.renumber)
     cells = np.array([int(n) for n in args.elements.split(",")])

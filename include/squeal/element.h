@@ -27,7 +27,7 @@ typedef struct {
   PetscInt       n_nodes, n_corners;
   PetscInt       closure_order[ELEMENT_MAX_CORNERS]; /* corner i is vertex closure_order[i] of the DMPlex closure */
   const unsigned char *at;       /* [n_nodes] node i stands in the middle of the corners whose bits are set */
-  PetscBool            row_sums; /* lumped mass: row sums of the consistent one, else its diagonal, scaled (HRZ) */
+  PetscBool            row_sums; /* lumped mass: row sums of the consistent one where positive, else its diagonal, scaled (HRZ) */
   const struct Solid  *solid;
 
   /* Stiffness (N/m) and consistent mass (kg), row-major [3 n_nodes][3 n_nodes], of nodes x[n_nodes][3] (m).

@@ -83,7 +83,7 @@ PetscErrorCode ResultsTableClose(ResultsTable *table);
 
    The HDF5 file is also a VTKHDF unstructured grid, which VTK's own reader opens; nodes and cells are ordered by rank.
 
-   Errors: PETSC_ERR_ARG_NULL without a mesh, PETSC_ERR_SUP for cells other than hexahedra, PETSC_ERR_FILE_WRITE
+   Errors: PETSC_ERR_ARG_NULL without a mesh, PETSC_ERR_FILE_WRITE
    as for tables: neither file is then left, under its temporary or its final name.
 @*/
 PetscErrorCode ResultsFieldOpen(Results results, const char name[], const Mesh *mesh, ResultsField *field);

@@ -9,8 +9,8 @@
       K_ab = int grad N_a . C . grad N_b dV (N/m, stiffness.h),  M_ab = rho int N_a N_b dV (kg),
       k_ab = int grad N_a . sigma . grad N_b dV times the 3 x 3 identity (N/m), sigma the stress of u (kernels/geometric.h)
 
-   Straight-sided elements are integrated exactly, the mass of hexahedra and wedges with it; of curved ones the volume
-   and int grad N dV, hence the patch test, are exact.
+   Affine images of the reference are integrated exactly. Of any shape the volume and int grad N dV, hence the patch test,
+   are exact.
 
    Reference: O. C. Zienkiewicz, R. L. Taylor, J. Z. Zhu, The Finite Element Method: Its Basis and Fundamentals, 6th
    ed., 2005, chapters 4 and 5.
@@ -27,12 +27,14 @@
 #define SOLID_MAX_DOFS  (3 * SOLID_MAX_NODES)
 
 /* Shape functions N[n] and their derivatives dN[n][3] at natural coordinates xi; quadrature points xi, eta, zeta with
-   their weights */
+   their weights; natural coordinates of the nodes in units */
 struct Solid {
   int n_nodes, n_points;
   void (*shape)(const double xi[3], double N[], double dN[]);
   const double (*point)[4];
-  double volume; /* of the reference element */
+  double volume;                /* of the reference element */
+  const signed char (*node)[3]; /* in units of `unit` */
+  double unit;
 };
 
 typedef struct Solid Solid;
@@ -179,7 +181,7 @@ static inline double SolidBoxVolume(int n, const double *x)
 }
 
 /*
-   SolidMeasure - volume (m^3) and the smallest Jacobian over the quadrature points, times the volume of the
+   SolidMeasure - volume (m^3) and the smallest Jacobian over quadrature points and nodes, times the volume of the
    reference and divided by that of the bounding box: 1 for a box along the axes, not positive for an inverted element,
    0 for a flat one
 */
@@ -196,6 +198,13 @@ static inline void SolidMeasure(const Solid *solid, const double *x, double *vol
     j        = SolidJacobian(solid->n_nodes, x, dN, c);
     smallest = fmin(smallest, j);
     *volume += j * solid->point[q][3];
+  }
+  for (int a = 0; a < solid->n_nodes; a++) {
+    double xi[3];
+
+    for (int k = 0; k < 3; k++) xi[k] = solid->unit * solid->node[a][k];
+    solid->shape(xi, N, dN);
+    smallest = fmin(smallest, SolidJacobian(solid->n_nodes, x, dN, c));
   }
   *min_jacobian = box > 0 ? solid->volume * smallest / box : 0;
 }

@@ -188,10 +188,41 @@ static inline void Hex27Shape(const double xi[3], double N[], double dN[])
   }
 }
 
-static const Solid solid_tet4    = {4, 4, Tet4Shape, quadrature_tet4, 1.0 / 6};
-static const Solid solid_tet10   = {10, 15, Tet10Shape, quadrature_tet15, 1.0 / 6};
-static const Solid solid_wedge6  = {6, 6, Wedge6Shape, quadrature_wedge6, 1};
-static const Solid solid_wedge15 = {15, 21, Wedge15Shape, quadrature_wedge21, 1};
-static const Solid solid_hex8    = {8, 8, Hex8Shape, quadrature_hex8, 8};
-static const Solid solid_hex20   = {20, 27, Hex20Shape, quadrature_hex27, 8};
-static const Solid solid_hex27   = {27, 27, Hex27Shape, quadrature_hex27, 8};
+/* Twice the natural coordinates of the nodes of tetrahedra and wedges */
+static const signed char tet_node[10][3] = {
+  {0, 0, 0},
+  {2, 0, 0},
+  {0, 2, 0},
+  {0, 0, 2},
+  {1, 0, 0},
+  {1, 1, 0},
+  {0, 1, 0},
+  {0, 0, 1},
+  {1, 0, 1},
+  {0, 1, 1}
+};
+static const signed char wedge_node[15][3] = {
+  {0, 0, -2},
+  {2, 0, -2},
+  {0, 2, -2},
+  {0, 0, 2 },
+  {2, 0, 2 },
+  {0, 2, 2 },
+  {1, 0, -2},
+  {1, 1, -2},
+  {0, 1, -2},
+  {1, 0, 2 },
+  {1, 1, 2 },
+  {0, 1, 2 },
+  {0, 0, 0 },
+  {2, 0, 0 },
+  {0, 2, 0 }
+};
+
+static const Solid solid_tet4    = {4, 4, Tet4Shape, quadrature_tet4, 1.0 / 6, tet_node, 0.5};
+static const Solid solid_tet10   = {10, 15, Tet10Shape, quadrature_tet15, 1.0 / 6, tet_node, 0.5};
+static const Solid solid_wedge6  = {6, 6, Wedge6Shape, quadrature_wedge6, 1, wedge_node, 0.5};
+static const Solid solid_wedge15 = {15, 21, Wedge15Shape, quadrature_wedge21, 1, wedge_node, 0.5};
+static const Solid solid_hex8    = {8, 8, Hex8Shape, quadrature_hex8, 8, hex_node, 1};
+static const Solid solid_hex20   = {20, 27, Hex20Shape, quadrature_hex27, 8, hex_node, 1};
+static const Solid solid_hex27   = {27, 27, Hex27Shape, quadrature_hex27, 8, hex_node, 1};

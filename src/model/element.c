@@ -164,14 +164,14 @@ void ElementLump(const Element *e, const PetscReal mass[], PetscReal lumped[])
 {
   const PetscInt n   = e->n_nodes;
   PetscReal      all = 0, trace = 0;
+  PetscBool      positive = e->row_sums;
 
   for (PetscInt a = 0; a < n; a++) {
-    PetscReal sum = 0;
-
-    for (PetscInt b = 0; b < n; b++) sum += mass[3 * a * (3 * n) + 3 * b];
-    lumped[a] = e->row_sums ? sum : mass[3 * a * (3 * n) + 3 * a];
-    all += sum;
-    trace += lumped[a];
+    lumped[a] = 0;
+    for (PetscInt b = 0; b < n; b++) lumped[a] += mass[3 * a * (3 * n) + 3 * b];
+    all += lumped[a];
+    trace += mass[3 * a * (3 * n) + 3 * a];
+    if (!(lumped[a] > 0)) positive = PETSC_FALSE;
   }
-  for (PetscInt a = 0; a < n && !e->row_sums; a++) lumped[a] *= all / trace;
+  for (PetscInt a = 0; a < n && !positive; a++) lumped[a] = mass[3 * a * (3 * n) + 3 * a] * all / trace;
 }

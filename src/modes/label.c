@@ -23,8 +23,24 @@
 #define MAX_PARTS  64
 #define DISC_SHARE 0.25 /* participation from which on a mode is named after the disc's shape */
 
-/* Nodal mass (kg) of one part, shape [local nodes]: equal parts of each of its cells; only what this rank's cells
-   give */
+/* Masses of the nodes of a cell (kg): equal ones, or the lumped ones of elements of second order */
+static PetscErrorCode CellMasses(const Element *element, const PetscReal x[], PetscReal density, PetscReal mass[])
+{
+  const Elasticity unit = ElasticityFromEngineering(1, 0, density);
+  PetscReal        volume, jacobian, ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+
+  PetscFunctionBeginUser;
+  if (element->n_nodes > element->n_corners) {
+    PetscCall(ElementMatrices(element, x, &unit, ke, me));
+    ElementLump(element, me, mass);
+    PetscFunctionReturn(0);
+  }
+  element->measure(element->solid, x, &volume, &jacobian);
+  for (PetscInt i = 0; i < element->n_nodes; i++) mass[i] = density * volume / (PetscReal)element->n_nodes;
+  PetscFunctionReturn(0);
+}
+
+/* Nodal mass (kg) of one part, shape [local nodes]: only what this rank's cells give */
 static PetscErrorCode PartMasses(Model model, PetscInt part, PetscReal density, PetscReal **mass)
 {
   const Mesh *mesh;
@@ -35,12 +51,12 @@ static PetscErrorCode PartMasses(Model model, PetscInt part, PetscReal density, 
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     const Element *element;
     PetscInt       nodes[ELEMENT_MAX_NODES];
-    PetscReal      x[ELEMENT_MAX_DOFS], volume, jacobian;
+    PetscReal      x[ELEMENT_MAX_DOFS], share[ELEMENT_MAX_NODES];
 
     if (mesh->cell_part[c] != part) continue;
     PetscCall(ModelGetCell(model, c, &element, nodes, x));
-    element->measure(element->solid, x, &volume, &jacobian);
-    for (PetscInt i = 0; i < element->n_nodes; i++) (*mass)[nodes[i]] += density * volume / (PetscReal)element->n_nodes;
+    PetscCall(CellMasses(element, x, density, share));
+    for (PetscInt i = 0; i < element->n_nodes; i++) (*mass)[nodes[i]] += share[i];
   }
   PetscFunctionReturn(0);
 }

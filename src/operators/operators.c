@@ -31,7 +31,7 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
   PetscFunctionBeginUser;
   PetscOptionsBegin(operators->comm, NULL, "Operators", NULL);
   PetscCall(OperatorsLoadFromOptions(operators, PetscOptionsObject));
-  PetscCall(PetscOptionsEList("-operators_mass", "mass matrix of the bodies; lumped: row sums", "operators.h", masses,
+  PetscCall(PetscOptionsEList("-operators_mass", "mass matrix of the bodies; lumped: row sums, or of tet10, wedge15, hex20 the scaled diagonal", "operators.h", masses,
                               2, masses[0], &mass, NULL));
   PetscCall(PetscOptionsString("-operators_save", "folder for K.bin, M.bin, C.bin, H.bin (PETSc binary)", "operators.h",
                                operators->save, operators->save, sizeof(operators->save), NULL));

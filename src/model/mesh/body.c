@@ -1,7 +1,7 @@
 /*
    Bodies: the pieces of the mesh that hang together by nodes.
 
-   On each rank a union-find over the corners of its cells (R. E. Tarjan, J. ACM 22, 1975) joins the local vertices into
+   On each rank a union-find over the nodes of its cells (R. E. Tarjan, J. ACM 22, 1975) joins the local vertices into
    pieces. Each piece takes the least global number of its vertices; shared vertices carry it from rank to rank until
    nothing changes, at most as often as there are ranks in a row along a body.
 */

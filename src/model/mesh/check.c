@@ -1,33 +1,10 @@
 /*
    Checks of the undistributed mesh on rank 0, where cells still have the numbers of their source: every cell must have a
-   row in the table of elements, and a positive Jacobian.
+   positive Jacobian. Warnings of elements that are too stiff.
 */
 #include "model/modelimpl.h"
 
 #define FLAT 1e-8 /* smallest admissible Jacobian relative to that of the bounding box */
-
-/* Writes why a cell has no row in the table */
-static PetscErrorCode CellExplain(Model model, PetscInt c, size_t size, char text[])
-{
-  const Mesh    *mesh = &model->mesh;
-  const PetscInt n    = mesh->cell_first[c + 1] - mesh->cell_first[c];
-  const char    *part = mesh->part[mesh->cell_part[c]];
-  PetscInt       cStart, n_corners;
-  DMPolytopeType shape;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, NULL));
-  PetscCall(DMPlexGetCellType(model->dm, cStart + c, &shape));
-  n_corners = DMPolytopeTypeGetNumVertices(shape);
-  if (n < n_corners)
-    PetscCall(PetscSNPrintf(
-      text, size, "element %" PetscInt_FMT " (part %s) has a node twice; give %" PetscInt_FMT " different ones", c + 1,
-      part, n_corners));
-  else
-    PetscCall(PetscSNPrintf(text, size, "element %" PetscInt_FMT " (part %s) is a %s, which is not supported; %s are",
-                            c + 1, part, DMPolytopeTypes[shape], ElementNames()));
-  PetscFunctionReturn(0);
-}
 
 /* Writes a message about the first bad cell into text, which stays empty when all are good */
 static PetscErrorCode FindBadCell(Model model, size_t size, char text[])
@@ -40,10 +17,7 @@ static PetscErrorCode FindBadCell(Model model, size_t size, char text[])
     PetscInt       nodes[ELEMENT_MAX_NODES];
     PetscReal      x[ELEMENT_MAX_DOFS], centre[3] = {0, 0, 0}, volume, jacobian;
 
-    if (!mesh->element[c]) {
-      PetscCall(CellExplain(model, c, size, text));
-      break;
-    }
+    PetscCheck(mesh->element[c], PETSC_COMM_SELF, PETSC_ERR_PLIB, "cell without a row in the table of elements");
     PetscCall(ModelGetCell(model, c, &element, nodes, x));
     element->measure(element->solid, x, &volume, &jacobian);
     if (jacobian > FLAT) continue;
@@ -51,7 +25,7 @@ static PetscErrorCode FindBadCell(Model model, size_t size, char text[])
     PetscCall(PetscSNPrintf(
       text, size, "element %" PetscInt_FMT " (%s, part %s, centre %.6g, %.6g, %.6g m) is inverted or has no volume%s",
       c + 1, element->name, mesh->part[mesh->cell_part[c]], (double)centre[0], (double)centre[1], (double)centre[2],
-      element->n_nodes > element->n_corners ? " at a quadrature point" : ""));
+      element->n_nodes > element->n_corners ? " at a quadrature point or node" : ""));
   }
   PetscFunctionReturn(0);
 }

@@ -1,9 +1,9 @@
 /*
    Import: a Gmsh file as a DMPlex of its volume elements. A physical group becomes a label of its name with value
-   1: on cells for volumes, on faces for surfaces, on vertices for curves and points.
+   1: on cells for volumes, on faces for surfaces, on vertices for points, and on vertices and edges for curves.
 
    Nodes that belong to no volume element (centres of arcs, say) are left out; a named group that needs one is an
-   error, and so is a named surface element that is no face of a cell. Elements of lower dimension without a named
+   error, and so is a named surface or curve element that is no face or edge of a cell. Elements of lower dimension without a named
    group do nothing.
 */
 #include "volumes.h"
@@ -36,6 +36,18 @@ static PetscInt CountCells(const GmshMesh *mesh, ReaderError *error)
   return n_cells;
 }
 
+/* Checks that no node stands twice in an element */
+static void CheckTwice(const GmshMesh *mesh, const GmshElement *element, ReaderError *error)
+{
+  for (PetscInt i = 0; i < element->shape->n_nodes && !error->code; i++)
+    for (PetscInt k = 0; k < i; k++)
+      if (element->node[i] == element->node[k])
+        ReaderErrorSet(error, PETSC_ERR_USER_INPUT,
+                       "element %" PetscInt_FMT " has node %" PetscInt_FMT " twice; give %" PetscInt_FMT
+                       " different ones",
+                       element->number, mesh->node_tags[element->node[i]], element->shape->n_nodes);
+}
+
 /* Replaces the tags of the elements' nodes by their places in the file */
 static PetscErrorCode FindNodes(GmshMesh *mesh, ReaderError *error)
 {
@@ -46,6 +58,9 @@ static PetscErrorCode FindNodes(GmshMesh *mesh, ReaderError *error)
   PetscCall(PetscArraycpy(tags, mesh->node_tags, mesh->n_nodes));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) index[n] = n;
   PetscCall(PetscSortIntWithArray(mesh->n_nodes, tags, index));
+  for (PetscInt n = 1; n < mesh->n_nodes; n++)
+    if (tags[n] == tags[n - 1])
+      ReaderErrorSet(error, PETSC_ERR_FILE_READ, "node %" PetscInt_FMT " stands twice in $Nodes", tags[n]);
   for (PetscInt e = 0; e < mesh->n_elements; e++) {
     GmshElement *element = &mesh->elements[e];
 
@@ -60,6 +75,7 @@ static PetscErrorCode FindNodes(GmshMesh *mesh, ReaderError *error)
       } else
         element->node[v] = index[at];
     }
+    CheckTwice(mesh, element, error);
   }
   PetscCall(PetscFree2(tags, index));
   PetscFunctionReturn(0);
@@ -154,7 +170,12 @@ static PetscErrorCode FindPoints(DM dm, const GmshElement *element, PetscInt cel
     *n = n_corners;
     PetscCall(PetscArraycpy(points, vertices, n_corners));
   }
-  if (element->shape->dim == 1 || element->shape->dim == 2) PetscCall(AppendJoin(dm, n_corners, vertices, n, points));
+  if (element->shape->dim == 1 || element->shape->dim == 2) {
+    const PetscInt before = *n;
+
+    PetscCall(AppendJoin(dm, n_corners, vertices, n, points));
+    if (*n == before) *n = 0; /* no edge of a cell, though its ends are nodes */
+  }
   PetscFunctionReturn(0);
 }
 

@@ -79,8 +79,9 @@ void ReadReals(MeshReader *r, PetscInt n, PetscReal value[])
     double    x = 0;
     const int m = r->error->code ? 0 : r->binary ? (int)fread(&x, sizeof(x), 1, r->file) : fscanf(r->file, "%lf", &x);
 
-    if (m != 1)
-      ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "section $%s ends or holds no number at some place", r->section);
+    if (m != 1 || !isfinite(x))
+      ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "section $%s ends or holds no finite number at some place",
+                     r->section);
     value[i] = x;
   }
 }

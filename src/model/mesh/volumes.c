@@ -61,10 +61,6 @@ static void EdgeCheckMiddle(const GmshMesh *mesh, const GmshElement *element, Pe
     off += PetscSqr(middle[d] - 0.5 * (end[0][d] + end[1][d]));
     length += PetscSqr(end[1][d] - end[0][d]);
   }
-  if (length == 0) {
-    ReaderErrorSet(error, PETSC_ERR_USER_INPUT, "element %" PetscInt_FMT " has a node twice", element->number);
-    return;
-  }
   if (off <= FAR_OFF * FAR_OFF * length) return;
   ReaderErrorSet(
     error, PETSC_ERR_USER_INPUT,
@@ -123,6 +119,29 @@ static PetscErrorCode CellCheckOrder(DM dm, PetscInt cell, const GmshElement *el
   PetscFunctionReturn(0);
 }
 
+/* Checks that no node of the file stands at two points: a corner of one element in the middle of another's edge or face */
+static PetscErrorCode PointsCheckNodes(const GmshMesh *mesh, PetscInt n_points, const PetscInt node[],
+                                       ReaderError *error)
+{
+  PetscInt *point;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(mesh->n_nodes, &point));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) point[i] = -1;
+  for (PetscInt p = 0; p < n_points; p++) {
+    if (node[p] < 0) continue;
+    if (point[node[p]] >= 0)
+      ReaderErrorSet(error, PETSC_ERR_USER_INPUT,
+                     "node %" PetscInt_FMT
+                     " is a corner of one element and in the middle of an edge or face of another, "
+                     "or on two edges; elements that touch must share whole edges and faces",
+                     mesh->node_tags[node[p]]);
+    point[node[p]] = p;
+  }
+  PetscCall(PetscFree(point));
+  PetscFunctionReturn(0);
+}
+
 /* Node of the file that each point bears, -1 for none; node [points] */
 static PetscErrorCode PointsSetNodes(DM dm, const GmshVolumes *volumes, PetscInt node[], ReaderError *error)
 {
@@ -146,6 +165,7 @@ static PetscErrorCode PointsSetNodes(DM dm, const GmshVolumes *volumes, PetscInt
     }
     c++;
   }
+  PetscCall(PointsCheckNodes(mesh, pEnd, node, error));
   c = 0;
   for (PetscInt e = 0; e < mesh->n_elements && second; e++)
     if (mesh->elements[e].shape->dim == 3) PetscCall(CellCheckOrder(dm, c++, &mesh->elements[e], node, error));

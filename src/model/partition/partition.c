@@ -159,19 +159,18 @@ static PetscErrorCode PartitionerSet(PetscPartitioner partitioner, PetscInt n_ce
   PetscFunctionReturn(0);
 }
 
-/* No clusters, and all cells of equal cost */
-static PetscErrorCode ClustersCreate(DM dm, Clusters *clusters)
+/* No clusters; the cost of a cell is the entries of its matrices, 1 for a hexahedron of 8 nodes */
+static PetscErrorCode ClustersCreate(Model model, Clusters *clusters)
 {
-  PetscInt cStart, cEnd;
-
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &cStart, &cEnd));
   clusters->n       = 0;
-  clusters->n_cells = cEnd - cStart;
+  clusters->n_cells = model->mesh.n_cells;
   PetscCall(PetscMalloc2(clusters->n_cells, &clusters->of_cell, clusters->n_cells, &clusters->cost));
   for (PetscInt c = 0; c < clusters->n_cells; c++) {
+    const PetscInt n = model->mesh.element[c]->n_nodes;
+
     clusters->of_cell[c] = -1;
-    clusters->cost[c]    = 1;
+    clusters->cost[c]    = PetscMax(1, (n * n + 32) / 64);
   }
   PetscFunctionReturn(0);
 }
@@ -209,7 +208,7 @@ PetscErrorCode PartitionMesh(Model model)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(model->comm, &size));
   if (size == 1) PetscFunctionReturn(0);
-  PetscCall(ClustersCreate(model->dm, &clusters));
+  PetscCall(ClustersCreate(model, &clusters));
   PetscCall(model->keep_slabs ? SlabsFind(model, size, &clusters, &slabs) : TogetherFind(model, size, &clusters));
   PetscCall(CellGraphCreate(model->dm, &clusters, &graph));
   n[0] = graph.n;

@@ -47,7 +47,7 @@ static PetscErrorCode BodyListCreate(Model model, Clusters *clusters, BodyList *
     const ModelLines *lines = bodies->lines[b];
 
     bodies->of_cell[c] = b;
-    clusters->cost[c]  = !lines ? COST_GENERAL : lines->turned ? COST_TURNED : COST_ALONG;
+    clusters->cost[c] *= !lines ? COST_GENERAL : lines->turned ? COST_TURNED : COST_ALONG;
     bodies->cost[b] += clusters->cost[c];
   }
   PetscFunctionReturn(0);
