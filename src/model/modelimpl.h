@@ -83,7 +83,7 @@ PETSC_INTERN const OptionsList parts_list, supports_list, springs_list, dashpots
 /* A set whose mean motion is asked for, where it was asked for, and the sign that it counts with */
 typedef struct {
   const char *owner, *option, *set; /* -owner_option set */
-  PetscBool   turns;                /* the rotations are asked for, too */
+  const char *turns;                /* what asks for the rotations, such as -tip_inertia; empty for nothing */
   PetscReal   sign;
 } ModelMeanWish;
 

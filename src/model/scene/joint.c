@@ -17,6 +17,7 @@
 #include <petscblaslapack.h>
 
 #define INERTIA_ROUNDING 1e-9 /* of the largest principal moment */
+#define MAX_OPTION       256
 
 PetscErrorCode InertiaPrincipal(const PetscReal inertia[6], PetscReal principal[3], PetscReal axes[9])
 {
@@ -153,19 +154,27 @@ const OptionsList joints_list = {"-joints", "bushings, each the prefix of its -a
 const OptionsList points_list = {"-points", "points joined to sets, each the prefix of its -set and -mass", "Point",
                                  sizeof(Joint), PointRead};
 
-/* Whether anything acts on its rotations, or on the point at all */
-static void JointAsked(Model model, const Joint *joint, PetscBool *turns, PetscBool *any)
+/* The option that asks for its rotations, empty for none, and whether anything acts on it at all */
+static PetscErrorCode JointAsked(Model model, const Joint *joint, char turns[MAX_OPTION], PetscBool *any)
 {
-  const ModelScene *s = &model->scene;
+  const ModelScene *s    = &model->scene;
+  const char       *what = joint->rigid                            ? "join rigid"
+                           : JointIsGiven(3, &joint->stiffness[3]) ? "turn_stiffness"
+                           : JointIsGiven(3, &joint->viscosity[3]) ? "turn_viscosity"
+                           : JointIsGiven(6, joint->inertia)       ? "inertia"
+                                                                   : NULL;
 
-  *turns = JointIsGiven(3, &joint->stiffness[3]) || JointIsGiven(3, &joint->viscosity[3]) ||
-           JointIsGiven(6, joint->inertia) || joint->rigid;
-  *any = *turns || JointIsGiven(3, joint->stiffness) || JointIsGiven(3, joint->viscosity) || joint->mass > 0;
+  PetscFunctionBeginUser;
+  turns[0] = '\0';
+  if (what) PetscCall(PetscSNPrintf(turns, MAX_OPTION, "-%s_%s", joint->name, what));
+  *any = what || JointIsGiven(3, joint->stiffness) || JointIsGiven(3, joint->viscosity) || joint->mass > 0;
   for (PetscInt i = 0; i < s->n_loads; i++) {
     if (!s->loads[i].on_point || &s->points[s->loads[i].point] != joint) continue;
     *any = PETSC_TRUE;
-    if (JointIsGiven(3, s->loads[i].moment)) *turns = PETSC_TRUE;
+    if (!turns[0] && JointIsGiven(3, s->loads[i].moment))
+      PetscCall(PetscSNPrintf(turns, MAX_OPTION, "-%s_moment", s->loads[i].name));
   }
+  PetscFunctionReturn(0);
 }
 
 /* Whether any of its loads, or its weight, is a force that supports carry */
@@ -210,10 +219,11 @@ static PetscErrorCode JointSetUp(Model model, Joint *joint)
   const PetscInt n = joint->set[1][0] ? 2 : 1;
   ModelMeanWish  wish[2];
   PetscReal      middle[3];
-  PetscBool      turns, any;
+  PetscBool      any;
+  char           turns[MAX_OPTION];
 
   PetscFunctionBeginUser;
-  JointAsked(model, joint, &turns, &any);
+  PetscCall(JointAsked(model, joint, turns, &any));
   PetscCheck(
     any, model->comm, PETSC_ERR_USER_INPUT,
     "point %s does nothing: give -%s_mass, -%s_inertia, -%s_stiffness, -%s_viscosity, -%s_join rigid, or a load "

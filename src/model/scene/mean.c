@@ -93,12 +93,17 @@ static PetscErrorCode MeanAddRows(Model model, MeanSet *m, const ModelMeanWish *
   PetscFunctionBeginUser;
   for (int d = 0; d < 3; d++) away = PetscMax(away, PetscAbsReal(at[d] - m->middle[d]));
   PetscCheck(
-    m->turns || (!wish->turns && away <= close), model->comm, PETSC_ERR_USER_INPUT,
-    "-%s_%s %s: its nodes stand on one line or in one place, where they have no mean rotation; name a surface, "
-    "or ask for no rotation about -%s_at in the middle of it, %.6g,%.6g,%.6g m",
+    m->turns || !wish->turns[0], model->comm, PETSC_ERR_USER_INPUT,
+    "-%s_%s %s: its nodes stand on one line or in one place, where they have no mean rotation, which %s asks for; name "
+    "a surface",
+    wish->owner, wish->option, wish->set, wish->turns);
+  PetscCheck(
+    m->turns || away <= close, model->comm, PETSC_ERR_USER_INPUT,
+    "-%s_%s %s: its nodes stand on one line or in one place, where they have no mean rotation; name a surface, or take "
+    "-%s_at in the middle of it, %.6g,%.6g,%.6g m",
     wish->owner, wish->option, wish->set, wish->owner, (double)m->middle[0], (double)m->middle[1],
     (double)m->middle[2]);
-  if (!wish->turns && away <= close) { /* nothing asks for the rotation */
+  if (!wish->turns[0] && away <= close) { /* nothing asks for the rotation */
     PetscCall(PetscArrayzero(m->inverse, 9));
     at = m->middle;
   }
