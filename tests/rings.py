@@ -5,7 +5,9 @@ Gmsh file: volume "disc", nodes of second order on the circles.
     rings.py tet10 --elements 1,60,1 ring.msh        along r, around and along z
 
 --block adds a cube of 2 mm, volume "pad", that hangs 8 mm above the ring of hex8 and never touches it, and the surfaces
-"disc_face" and "pad_face" that look at each other.
+"disc_face" and "pad_face" that look at each other. --hat makes a volume
+"hat" of the upper half of the ring of hex8, one element wide, which shares its nodes with "disc", and the surface "hub"
+of its inside.
 """
 
 import argparse
@@ -36,6 +38,7 @@ def main():
     parser.add_argument("file", type=Path)
     parser.add_argument("--elements", default="1,60,1")
     parser.add_argument("--block", action="store_true")
+    parser.add_argument("--hat", action="store_true")
     args = parser.parse_args()
     cells = np.array([int(n) for n in args.elements.split(",")])
     found = [(name, nodes % [10**9, 2 * cells[1], 10**9]) for name, nodes in elements(args.kind, cells, None)]
@@ -43,8 +46,14 @@ def main():
     for p in {tuple(p) for _, nodes in found for p in nodes.tolist()}:
         r, angle = INNER + WIDTH * p[0] / (2 * cells[0]), np.pi * p[1] / cells[1]
         x[p] = np.array([r * np.cos(angle), r * np.sin(angle), HEIGHT * (p[2] / (2 * cells[2]) - 0.5)])
-    groups = [(3, "disc", found)] + (add_block(found, x, cells) if args.block else [])
-    write(args.file, "2.2" if args.block else "4.1", x, groups, None)
+    pieces = [(3, "disc", found)]
+    if args.hat:
+        upper = [cell for cell in found if cell[1][:, 2].mean() > cells[2]]
+        inside = [nodes[nodes[:, 0] == 0][[0, 1, 3, 2]] for _, nodes in upper]
+        pieces = [(3, "disc", [cell for cell in found if cell[1][:, 2].mean() < cells[2]]), (3, "hat", upper),
+                  (2, "hub", [(4, nodes) for nodes in inside])]
+    groups = pieces + (add_block(found, x, cells) if args.block else [])
+    write(args.file, "2.2" if args.block or args.hat else "4.1", x, groups, None)
 
 
 if __name__ == "__main__":

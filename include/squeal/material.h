@@ -19,8 +19,9 @@ typedef struct {
 /* Steady spin of a body of revolution in the fixed frame */
 typedef struct {
   PetscBool given;
-  PetscReal rate;               /* rad/s, to the right about the axis */
+  PetscReal rate;               /* rad/s, positive by the right-hand rule about the axis */
   PetscReal axis[3], centre[3]; /* unit vector; a point of the axis, m */
+  PetscInt  body;               /* of those parts that share nodes, the first; set up with the mesh */
 } Spin;
 
 /* Material of one body; SI units */

@@ -110,6 +110,30 @@ PetscErrorCode ModelGetSetFaces(Model model, const char set[], ModelFaces *faces
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode PartGetFaces(Model model, PetscInt part, ModelFaces *faces)
+{
+  PetscInt cStart, fStart, fEnd;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, NULL));
+  PetscCall(DMPlexGetHeightStratum(model->dm, 1, &fStart, &fEnd));
+  faces->n = 0;
+  PetscCall(PetscMalloc2(fEnd - fStart + 1, &faces->first, FACE_MAX_NODES * (fEnd - fStart), &faces->node));
+  faces->first[0] = 0;
+  for (PetscInt face = fStart; face < fEnd; face++) {
+    const PetscInt *cells, begin  = faces->first[faces->n];
+    PetscInt        n_cells, n_in = 0, n;
+
+    PetscCall(DMPlexGetSupportSize(model->dm, face, &n_cells));
+    PetscCall(DMPlexGetSupport(model->dm, face, &cells));
+    for (PetscInt i = 0; i < n_cells; i++) n_in += model->mesh.cell_part[cells[i] - cStart] == part;
+    if (n_in != 1) continue;
+    PetscCall(FaceGetNodes(model, face, &n, &faces->node[begin]));
+    faces->first[++faces->n] = begin + n;
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelFacesDestroy(ModelFaces *faces)
 {
   PetscFunctionBeginUser;

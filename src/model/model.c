@@ -109,11 +109,11 @@ PetscErrorCode ModelSetUp(Model model)
     PetscCall(ImportGmsh(model->comm, model->file, &model->dm));
   PetscCall(MeshTabulate(model));
   PetscCall(MeshCheck(model));
+  PetscCall(SpinsCheck(model));
   PetscCall(PartitionMesh(model));
   PetscCall(MeshLayOut(model));
   PetscCall(PartsCheckUnits(model));
   PetscCall(ModelCheckAxes(model));
-  PetscCall(SpinsCheck(model));
   PetscCall(GroundedSetUp(model));
   PetscCall(JointsSetUp(model));
   PetscCall(LoadsSetUp(model));

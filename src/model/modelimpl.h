@@ -108,8 +108,9 @@ PETSC_INTERN PetscErrorCode JointAddChecksum(Model model, const Joint *joint, Ch
 PETSC_INTERN PetscErrorCode PartReadElasticity(OptionsItems PetscOptionsObject, Part *part);
 PETSC_INTERN PetscErrorCode AnisotropyView(const Anisotropy *a, PetscViewer viewer);
 
-/* spin.c - steady spin of a part; errors for one without axis, for a part that is no body of revolution, and for a material
-   that does not turn into itself. SpinsCheck() is collective */
+/* spin.c - steady spin of a part; errors for one without axis, for a part that is no body of revolution, for a material
+   that does not turn into itself, and for parts that share nodes but do not spin alike. SpinsCheck() tells which parts
+   share nodes; before the mesh is distributed, collective */
 PETSC_INTERN PetscErrorCode PartReadSpin(OptionsItems PetscOptionsObject, Part *part);
 PETSC_INTERN PetscErrorCode SpinsCheck(Model model);
 PETSC_INTERN PetscErrorCode SpinView(const Spin *spin, PetscViewer viewer);
@@ -146,6 +147,10 @@ PETSC_INTERN PetscErrorCode SetGetPoints(Model model, const char set[], IS *poin
 
 /* face.c - faces of a set with cells on both sides, of all ranks; each is counted at least once. Collective */
 PETSC_INTERN PetscErrorCode ModelCountInnerFaces(Model model, const char set[], PetscInt *n);
+
+/* face.c - the faces of a part that no two of its cells share, before the mesh is distributed; freed by
+   ModelFacesDestroy() */
+PETSC_INTERN PetscErrorCode PartGetFaces(Model model, PetscInt part, ModelFaces *faces);
 
 /* motion.c - flags what the motions prescribe and no support fixes in fixed [vertex][3], and tabulates how far they go;
    errors for an unknown set, and those of ModelCheckMotion(). Collective. */

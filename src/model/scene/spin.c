@@ -5,12 +5,21 @@
 
       s = int r dV,  S = int r r' dV,   r = (I - e e') (x - c),
 
-   are checked, s = 0 and S the same in all directions across the axis, and that the material turns into itself.
+   are checked, s = 0 and S the same in all directions across the axis, and that the material turns into itself. A square
+   bar passes these. Its surface does not: the velocity Omega w, w = e x r, must lie in it,
+
+      int |w . n| dA << int |w| |n - e e'n| dA    over the faces around the axis, ends across it left out.
+
+   An N-gon has sin(pi / N) by the normals of its faces at their nodes; a square bar of many faces 0.44, a hexagonal one
+   0.27.
 */
 #include "model/modelimpl.h"
 #include "base/vec3.h"
+#include "kernels/facet.h"
 
-#define ROUND 0.01 /* of the moments: room for holes and blocks of the mesh */
+#define ROUND  0.01 /* of the moments: room for holes and blocks of the mesh */
+#define SMOOTH 0.25 /* of the velocity: room for bolt holes, and for 13 facets around */
+#define ALONG  1e-8 /* sine of the angle below which two directions are the same */
 
 PetscErrorCode PartReadSpin(OptionsItems PetscOptionsObject, Part *part)
 {
@@ -21,8 +30,8 @@ PetscErrorCode PartReadSpin(OptionsItems PetscOptionsObject, Part *part)
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsReal("-spin", "rad/s about -spin_axis, in modes: gyroscopic and centrifugal terms", "model.h",
                              s->rate, &s->rate, &s->given));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-spin_axis", "x,y,z, about which it turns to the right", 3, s->axis,
-                            &has_axis));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-spin_axis", "x,y,z, about which a positive spin is right-handed", 3,
+                            s->axis, &has_axis));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-spin_centre", "a point of that axis, m", 3, s->centre, &has_centre));
   PetscCheck(!s->given || (has_axis && has_centre), comm, PETSC_ERR_USER_INPUT,
              "-%s_spin %.6g needs -%s_spin_axis x,y,z and -%s_spin_centre x,y,z", part->name, (double)s->rate,
@@ -79,6 +88,39 @@ static PetscErrorCode SpinCheckShape(Model model, PetscInt part)
   PetscFunctionReturn(0);
 }
 
+/* Raises an error for a part whose surface the spin would move */
+static PetscErrorCode SpinCheckSurface(Model model, PetscInt part)
+{
+  const Part *p      = &model->scene.parts[part];
+  PetscReal   sum[2] = {0, 0};
+  ModelFaces  faces;
+
+  PetscFunctionBeginUser;
+  PetscCall(PartGetFaces(model, part, &faces));
+  for (PetscInt f = 0; f < faces.n; f++) {
+    const PetscInt *node;
+    double          x[FACET_NODES][3], area[FACET_NODES][3], w[3], r[3];
+    const int       n = (int)ModelFacesGet(&faces, &model->mesh, f, &node, x);
+
+    FacetNodeNormals(n, (const double(*)[3])x, area);
+    for (int i = 0; i < n; i++) {
+      for (int d = 0; d < 3; d++) r[d] = x[i][d] - p->spin.centre[d];
+      Vec3Cross(p->spin.axis, r, w);
+      sum[0] += PetscAbsReal(Vec3Dot(w, area[i]));
+      Vec3Cross(p->spin.axis, area[i], r);
+      sum[1] += Vec3Length(w) * Vec3Length(r);
+    }
+  }
+  PetscCall(ModelFacesDestroy(&faces));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, model->comm));
+  PetscCheck(
+    sum[0] <= SMOOTH * sum[1], model->comm, PETSC_ERR_USER_INPUT,
+    "-%s_spin needs a body of revolution: of the velocity of the faces of part %s around -%s_spin_axis %.2g is "
+    "along their normals, more than %g",
+    p->name, p->name, p->name, (double)(sum[0] / sum[1]), SMOOTH);
+  PetscFunctionReturn(0);
+}
+
 /* Raises an error for a material that the turning would change */
 static PetscErrorCode SpinCheckMaterial(Model model, const Part *p)
 {
@@ -89,22 +131,85 @@ static PetscErrorCode SpinCheckMaterial(Model model, const Part *p)
   if (!a->n) PetscFunctionReturn(0);
   for (int d = 0; d < 3; d++) off[d] = a->cylinder ? a->centre[d] - p->spin.centre[d] : 0;
   Vec3Cross(a->axis[2], p->spin.axis, across);
-  PetscCheck((a->n == 2 || a->cylinder) && Vec3Length(across) < 1e-8, model->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck((a->n == 2 || a->cylinder) && Vec3Length(across) < ALONG, model->comm, PETSC_ERR_USER_INPUT,
              "-%s_spin needs a material that turns into itself: isotropic, two -%s_young with -%s_axis_3 along "
              "-%s_spin_axis, or three with -%s_cylinder_axis along it",
              p->name, p->name, p->name, p->name, p->name);
   Vec3Cross(off, p->spin.axis, across);
-  PetscCheck(Vec3Length(across) <= 1e-8 * Vec3Length(off), model->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(Vec3Length(across) <= ALONG * Vec3Length(off), model->comm, PETSC_ERR_USER_INPUT,
              "-%s_cylinder_centre is not on the axis of -%s_spin", p->name, p->name);
+  PetscFunctionReturn(0);
+}
+
+/* Whether two parts turn with the same velocity about the same line, or both stand still */
+static PetscBool SpinIsSame(const Spin *a, const Spin *b)
+{
+  PetscReal off[3], across[3], beside[3];
+
+  if (a->given != b->given) return PETSC_FALSE;
+  if (!a->given) return PETSC_TRUE;
+  for (int d = 0; d < 3; d++) off[d] = b->centre[d] - a->centre[d];
+  Vec3Cross(a->axis, b->axis, across);
+  Vec3Cross(a->axis, off, beside);
+  return a->rate == b->rate && Vec3Dot(a->axis, b->axis) > 0 && Vec3Length(across) < ALONG &&
+             Vec3Length(beside) <= ALONG * Vec3Length(off)
+           ? PETSC_TRUE
+           : PETSC_FALSE;
+}
+
+/* Whether two parts share a node; on = room for all nodes */
+static PetscErrorCode PartsShareNodes(Model model, PetscInt a, PetscInt b, PetscBool on[], PetscBool *share)
+{
+  const Mesh *mesh = &model->mesh;
+
+  PetscFunctionBeginUser;
+  *share = PETSC_FALSE;
+  PetscCall(PetscArrayzero(on, mesh->n_nodes));
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    for (PetscInt i = mesh->cell_first[c]; i < mesh->cell_first[c + 1] && mesh->cell_part[c] == a; i++)
+      on[mesh->cell_node[i]] = PETSC_TRUE;
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    for (PetscInt i = mesh->cell_first[c]; i < mesh->cell_first[c + 1] && mesh->cell_part[c] == b; i++)
+      if (on[mesh->cell_node[i]]) *share = PETSC_TRUE;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, share, 1, MPIU_BOOL, MPI_LOR, model->comm));
+  PetscFunctionReturn(0);
+}
+
+/* The body of each part that spins; raises an error for parts that share nodes and do not spin alike */
+static PetscErrorCode SpinsJoin(Model model)
+{
+  const PetscInt n    = model->scene.n_parts;
+  Part *const    part = model->scene.parts;
+  PetscBool     *on, share;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(model->mesh.n_nodes, &on));
+  for (PetscInt i = 0; i < n; i++) part[i].spin.body = i;
+  for (PetscInt k = 0; k < n * n; k++) {
+    const PetscInt i = k / n, j = k % n;
+
+    if (i >= j || !(part[i].spin.given || part[j].spin.given)) continue;
+    PetscCall(PartsShareNodes(model, i, j, on, &share));
+    if (!share) continue;
+    PetscCheck(SpinIsSame(&part[i].spin, &part[j].spin), model->comm, PETSC_ERR_USER_INPUT,
+               "parts %s and %s share nodes but do not spin alike: give both the same -..._spin, -..._spin_axis and a "
+               "-..._spin_centre on one line",
+               part[i].name, part[j].name);
+    for (PetscInt l = 0, old = part[j].spin.body; l < n; l++)
+      if (part[l].spin.body == old) part[l].spin.body = part[i].spin.body;
+  }
+  PetscCall(PetscFree(on));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode SpinsCheck(Model model)
 {
   PetscFunctionBeginUser;
+  PetscCall(SpinsJoin(model));
   for (PetscInt part = 0; part < model->scene.n_parts; part++) {
     if (!model->scene.parts[part].spin.given) continue;
     PetscCall(SpinCheckShape(model, part));
+    PetscCall(SpinCheckSurface(model, part));
     PetscCall(SpinCheckMaterial(model, &model->scene.parts[part]));
   }
   PetscFunctionReturn(0);
