@@ -22,7 +22,8 @@ typedef struct {
   PetscReal   lower, upper; /* lower < value < upper; -infinity, infinity where there is no limit */
   PetscBool   closed;       /* lower itself is a value: alpha, beta, stiffness, viscosity, force may be 0 */
   PetscBool   body;         /* of parts, springs or dashpots, not of a contact */
-  PetscBool   internal;     /* no option of the scene: how far a group of pairs is closed, see SlidingState */
+  PetscBool   stressing; /* the stress of a spin depends on it, and was found with its value (OperatorsCheckMoved()) */
+  PetscBool   internal;  /* no option of the scene: how far a group of pairs is closed, see SlidingState */
 } OperatorsParameter;
 
 /* Values of a part */
@@ -82,6 +83,11 @@ PetscErrorCode OperatorsCreatePoint(Operators operators, PetscReal **p);
 /*@ OperatorsCheckParameter - raises PETSC_ERR_USER_INPUT for a value outside the limits of its parameter, naming both.
     Collective. @*/
 PetscErrorCode OperatorsCheckParameter(Operators operators, PetscInt parameter, PetscReal value);
+
+/*@ OperatorsCheckMoved - raises PETSC_ERR_USER_INPUT for n parameters that `option` would give other values than those of
+    the scene, the same to all: where the stress of a spin depends on one of them, and where the spin of one part would
+    move but not that of a part with which it shares nodes. NULL for all parameters. Collective. @*/
+PetscErrorCode OperatorsCheckMoved(Operators operators, const char option[], PetscInt n, const PetscInt parameter[]);
 
 /*@ OperatorsAddChecksum - adds what options choose, and matrices that are loaded. Collective; after OperatorsSetUp().
     @*/

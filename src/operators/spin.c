@@ -5,7 +5,9 @@
       C += Omega rho G,   K += Omega^2 rho (K_sigma - Q),
 
    sigma being the stress of the bodies under the steady load of this part's spin, u = K^-1 f, held by supports and
-   springs but not by contacts, with the moduli of the scene. Where nothing holds the bodies, f balances itself, and
+   springs but not by contacts, with the moduli of the scene: parameters on which it depends must keep these. With the
+   stiffness sum_t c_t A_t it depends on c_t where A_t u is not zero, but for the modulus of a part that alone carries f:
+   there u ~ 1 / E. Where nothing holds the bodies, f balances itself, and
 
       (K + s M) u_k+1 = f + s M u_k
 
@@ -18,6 +20,7 @@
 #define SHIFT    1e-10 /* s, of the largest K_ii / M_ii */
 #define RESIDUAL 1e-8  /* of f */
 #define ATTEMPTS 20
+#define SHARE    1e-4 /* of f, which a stiffness may carry without being counted */
 
 PetscErrorCode OperatorsAddSpinParameters(Operators o)
 {
@@ -161,6 +164,32 @@ static PetscErrorCode SpinSolve(Operators o, const char name[], Mat K, KSP ksp, 
   PetscFunctionReturn(0);
 }
 
+/* Marks the parameters on which the stress depends that the load f makes, u = K^-1 f */
+static PetscErrorCode SpinMarkStressing(Operators o, Vec f, Vec u)
+{
+  PetscInt  n_stressing = 0, *stressing;
+  PetscReal size, carried;
+  Vec       r;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(o->terms.n, &stressing));
+  PetscCall(VecDuplicate(f, &r));
+  PetscCall(VecNorm(f, NORM_2, &size));
+  for (PetscInt t = 0; t < o->terms.n; t++) {
+    const OperatorsTerm *term = &o->terms.term[t];
+
+    if (term->kind != OPERATORS_STIFFNESS || !term->n) continue;
+    PetscCall(MatMult(term->A, u, r));
+    PetscCall(VecNorm(r, NORM_2, &carried));
+    carried *= PetscAbsReal(OperatorsTermCoefficient(term, o->parameters.p));
+    if (carried > SHARE * size) stressing[n_stressing++] = term->factor[0].parameter;
+  }
+  for (PetscInt i = 0; i < n_stressing && n_stressing > 1; i++) o->parameters.list[stressing[i]].stressing = PETSC_TRUE;
+  PetscCall(PetscFree(stressing));
+  PetscCall(VecDestroy(&r));
+  PetscFunctionReturn(0);
+}
+
 /* Terms of one part; K of the bodies, and its factors */
 static PetscErrorCode SpinAddPart(Operators o, PetscInt part, const char name[], Mat K, KSP ksp)
 {
@@ -177,6 +206,7 @@ static PetscErrorCode SpinAddPart(Operators o, PetscInt part, const char name[],
   PetscCall(MatCreateVecs(K, &u, &f));
   PetscCall(SpinAssemble(o, part, &G, &Q, f));
   PetscCall(SpinSolve(o, name, K, ksp, f, u));
+  PetscCall(SpinMarkStressing(o, f, u));
   PetscCall(ModelGetNodal(o->model, u, displacement));
   PetscCall(OperatorsCreateGeometric(o, NULL, displacement, &S));
   PetscCall(PetscFree(displacement));
@@ -208,5 +238,49 @@ PetscErrorCode OperatorsNeedSpin(Operators o)
   }
   PetscCall(KSPDestroy(&ksp));
   if (o->spin.n) PetscCall(OperatorsReleaseBodies(o));
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error where a part that shares nodes with `part` keeps its spin, while that of `part` moves */
+static PetscErrorCode SpinCheckTogether(Operators o, const char option[], PetscInt part, PetscInt n,
+                                        const PetscInt parameter[])
+{
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(o->model, &scene));
+  for (PetscInt other = 0; other < scene->n_parts; other++) {
+    PetscBool moves = PETSC_FALSE;
+
+    if (scene->parts[other].spin.body != scene->parts[part].spin.body) continue;
+    for (PetscInt i = 0; i < n; i++)
+      if (parameter[i] == o->spin_of_part[other]) moves = PETSC_TRUE;
+    PetscCheck(moves, o->comm, PETSC_ERR_USER_INPUT,
+               "%s %s_spin leaves %s_spin as it is, but these parts share nodes: give -sweep_link %s_spin,%s_spin",
+               option, scene->parts[part].name, scene->parts[other].name, scene->parts[part].name,
+               scene->parts[other].name);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsCheckMoved(Operators o, const char option[], PetscInt n, const PetscInt parameter[])
+{
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  if (!o->model) PetscFunctionReturn(0);
+  PetscCall(OperatorsNeedSpin(o));
+  PetscCall(ModelGetScene(o->model, &scene));
+  for (PetscInt i = 0; i < (parameter ? n : o->parameters.n); i++) {
+    const OperatorsParameter *q = &o->parameters.list[parameter ? parameter[i] : i];
+
+    PetscCheck(
+      !q->stressing, o->comm, PETSC_ERR_USER_INPUT,
+      "%s cannot vary %s: the stress of a -..._spin is found once, with its value; densities, damping, spins and "
+      "what is of contacts may vary, stiffness where it does not carry the load of the spin",
+      option, q->name);
+    for (PetscInt part = 0; parameter && part < scene->n_parts; part++)
+      if (o->spin_of_part[part] == parameter[i]) PetscCall(SpinCheckTogether(o, option, part, n, parameter));
+  }
   PetscFunctionReturn(0);
 }

@@ -169,6 +169,9 @@ PetscErrorCode SweepAxes(Sweep sweep)
   }
   PetscCall(PetscStrToArrayDestroy(n_names, names));
   PetscCall(LinksTake(sweep));
+  for (PetscInt k = 0; k < grid->n_axes; k++)
+    PetscCall(OperatorsCheckMoved(sweep->operators, "-sweep_parameter", grid->n_moved[k], grid->parameter[k]));
+  if (sweep->sensitivities) PetscCall(OperatorsCheckMoved(sweep->operators, "-sweep_sensitivities", 0, NULL));
   for (PetscInt k = 0; k < grid->n_axes; k++) PetscCall(AxisValues(sweep, k));
   PetscCheck(n_names == 1 || grid->n[0] <= MAX_POINTS / grid->n[1], sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_values and -sweep_values_2 span more than %d points", MAX_POINTS);

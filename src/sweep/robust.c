@@ -75,6 +75,8 @@ PetscErrorCode SweepUncertainCheck(Sweep sweep)
 
   PetscFunctionBeginUser;
   PetscCall(BoxRead(sweep, &box));
+  for (PetscInt k = 0; k < box.n; k++)
+    PetscCall(OperatorsCheckMoved(sweep->operators, "-sweep_uncertain", box.n_moved[k], box.moved[k]));
   PetscFunctionReturn(0);
 }
 
