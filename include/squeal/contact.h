@@ -144,7 +144,7 @@ PetscErrorCode ContactCreateRows(Contact contact, PetscInt n, const PetscInt pai
 /*@
    ContactCreateTilt - turning of the master's normal at the pairs, sparse, shape [all pairs][unknowns], rows of the
    local pairs in their order: (tilt_t u)_p = t . delta n, (tilt_b u)_p = b . delta n with delta n the derivative of the
-   pair's normal n, which is the mean of the facets around the master's vertices, weighted by area. On a flat surface
+   pair's normal n, which is the mean of the facets around the master's nodes, weighted by area. On a flat surface
    delta n = - sum_i grad_s N_i (n . u_i). NULL without interfaces. Collective. The caller destroys them.
 @*/
 PetscErrorCode ContactCreateTilt(Contact contact, Mat *tilt_t, Mat *tilt_b);
@@ -152,13 +152,13 @@ PetscErrorCode ContactCreateTilt(Contact contact, Mat *tilt_t, Mat *tilt_b);
 /*@
    ContactCreateApproach - d such that d . u is the approach (m) of the second rows of nodes of slave and master of an
    interface, the mean over its pairs of n . (u_m2 - u_s2). The second row is what lies one element below the surface:
-   of a vertex the other end of the mesh edge that leaves the surface most nearly along its normal. Collective. The
+   of a node the other end of the mesh edge that leaves the surface most nearly along its normal. Collective. The
    caller destroys it.
 @*/
 PetscErrorCode ContactCreateApproach(Contact contact, PetscInt interface, Vec *d);
 
 /*@ ContactNodalForces - forces of the contact on all nodes, N, from the states of the local pairs, into a local vector
-   of three values per vertex in the layout of the coordinates; held nodes included. Collective. @*/
+   of three values per node in the layout of the coordinates; held nodes included. Collective. @*/
 PetscErrorCode ContactNodalForces(Contact contact, const ContactState state[], Vec local);
 
 /*@

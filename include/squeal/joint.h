@@ -10,7 +10,7 @@
    nodes i of all ranks and d of b[i][d][j] u_id. A force (N) and moment (N m) f on q act on the nodes as sum_j b_j f_j. */
 typedef struct {
   PetscInt   n;
-  PetscInt  *vertex; /* [n] local vertices that this rank owns */
+  PetscInt  *vertex; /* [n] local nodes that this rank owns */
   PetscReal *b;      /* [n][3][6] */
 } ModelMean;
 

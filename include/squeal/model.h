@@ -17,7 +17,7 @@
 
 typedef struct _p_Model *Model;
 
-/* How a quantity on a set is spread over its vertices: the same at each, in all, or per area */
+/* How a quantity on a set is spread over its nodes: the same at each, in all, or per area */
 typedef enum { SPREAD_EACH, SPREAD_TOTAL, SPREAD_AREA } Spread;
 
 /* Grounded spring or dashpot on a set, in each direction: at every node (N/m, N s/m), in all (the same units), or per
@@ -45,7 +45,7 @@ typedef struct {
   char     *name, *part; /* part is empty for any */
   PetscReal at[3];       /* place asked for, m */
   PetscReal x[3];        /* that of the node, m */
-  PetscInt  vertex;      /* local vertex from 0 on the rank that records it, -1 on all others */
+  PetscInt  vertex;      /* local node from 0 on the rank that records it, -1 on all others */
 } Probe;
 
 /* Nodes of a part at equal angles about an axis, whose motion along it histories and responses record */
@@ -70,10 +70,10 @@ typedef struct {
   PetscReal begin, step;      /* angle (rad, from the axis + 1 towards axis + 2) or place (m) of node 0, and the step */
   PetscInt  n_lines, n_nodes; /* lines, nodes of each */
   PetscBool closed;           /* all around: node n_nodes is node 0 again */
-  PetscInt *vertex;           /* [n_lines][n_nodes] local vertices from 0 */
+  PetscInt *vertex;           /* [n_lines][n_nodes] local nodes from 0 */
 } ModelLines;
 
-/* Essential condition: the flagged directions are fixed at every vertex of the set */
+/* Essential condition: the flagged directions are fixed at every node of the set */
 typedef struct {
   char     *name, *set;
   PetscBool fix[3];
@@ -196,39 +196,39 @@ PetscErrorCode ModelGetCell(Model model, PetscInt c, const Element **element, Pe
 
 /*@
    ModelAddLoad - adds load i to a vector of ModelCreateNodal(), N. On a
-   surface f_v = F int N_v dA / A, on a set of other vertices F / n. The sum over all vertices, held ones included, is
-   F; a vertex has its full force on every rank that shares it. Collective.
+   surface f_v = F int N_v dA / A, on a set of other nodes F / n. The sum over all nodes, held ones included, is
+   F; a node has its full force on every rank that shares it. Collective.
 @*/
 PetscErrorCode ModelAddLoad(Model model, PetscInt i, Vec local);
 
 /*@
    ModelGetBodies - the pieces of the mesh that hang together by nodes: their number over all ranks, and that of each
-   local vertex, shape [vertices], -1 for a vertex without cells. Numbers follow the least x, then y, then z of a
+   local node, shape [nodes], -1 for none. Numbers follow the least x, then y, then z of a
    body's nodes, so that they do not depend on the ranks. Collective. The caller frees the array.
 @*/
 PetscErrorCode ModelGetBodies(Model model, PetscInt *n_bodies, PetscInt **body);
 
-/*@ ModelGetSetVertices - local vertices of a named set, ascending, also those that other ranks own. Collective.
+/*@ ModelGetSetNodes - local nodes of a named set, ascending, also those that other ranks own. Collective.
     Errors: PETSC_ERR_USER_INPUT when no rank has the set; the message lists the sets of the mesh. @*/
-PetscErrorCode ModelGetSetVertices(Model model, const char set[], IS *vertices);
+PetscErrorCode ModelGetSetNodes(Model model, const char set[], IS *vertices);
 
-/*@ ModelGetOwnedVertices - as ModelGetSetVertices(), those that this rank owns: each vertex of the set on exactly one
+/*@ ModelGetOwnedNodes - as ModelGetSetNodes(), those that this rank owns: each node of the set on exactly one
     rank. Collective. @*/
-PetscErrorCode ModelGetOwnedVertices(Model model, const char set[], IS *vertices);
+PetscErrorCode ModelGetOwnedNodes(Model model, const char set[], IS *vertices);
 
-/*@ ModelCreateShares - the shares s_v of the vertices of a set in a quantity that is spread over it, in the first of three
-    places of each local vertex, complete on every rank that has it: 1; adding up to 1; or area, m^2. Collective. The
+/*@ ModelCreateShares - the shares s_v of the nodes of a set in a quantity that is spread over it, in the first of three
+    places of each local node, complete on every rank that has it: 1; adding up to 1; or area, m^2. Collective. The
     caller destroys the vector. Shares in an area are positive, for springs and the like: of faces of first order
     int N_v dA, of second A int N_v^2 dA / sum_w int N_w^2 dA (kernels/facet.h).
     Errors: PETSC_ERR_USER_INPUT for a set without a node of an element, and per area for one without faces; `owner` is
     the prefix of the option -owner_set that the message names. @*/
 PetscErrorCode ModelCreateShares(Model model, const char owner[], const char set[], Spread spread, Vec *shares);
 
-/*@ ModelGetMeanMotion - the six motions of displacements [vertices][3], m. Collective. @*/
+/*@ ModelGetMeanMotion - the six motions of displacements [nodes][3], m. Collective. @*/
 PetscErrorCode ModelGetMeanMotion(Model model, const ModelMean *mean, const PetscReal nodal[], PetscReal q[6]);
 
-/*@ ModelAddMeanForce - adds what force and moment on the motions are at the nodes to nodal [vertices][3], N, each at the
-    rank that owns the vertex. Not collective. @*/
+/*@ ModelAddMeanForce - adds what force and moment on the motions are at the nodes to nodal [nodes][3], N, each at the
+    rank that owns the node. Not collective. @*/
 void ModelAddMeanForce(const ModelMean *mean, const PetscReal force[6], PetscReal nodal[]);
 
 /*@ ModelGetSetFaces - the faces of a surface set on this rank; each face is on exactly one rank. Collective. The caller
@@ -236,14 +236,14 @@ void ModelAddMeanForce(const ModelMean *mean, const PetscReal force[6], PetscRea
 PetscErrorCode ModelGetSetFaces(Model model, const char set[], ModelFaces *faces);
 PetscErrorCode ModelFacesDestroy(ModelFaces *faces);
 
-/*@ ModelGetSetNormals - for each local vertex, shape [vertices][3], the outward normal of a surface set times the vertex's
-    share of its area (m^2), complete on every rank that has the vertex. Its direction is that of the sum of the area
-    vectors of the faces around the vertex (kernels/facet.h): of first order int N_v n dA, whose length is the share too;
+/*@ ModelGetSetNormals - for each local node, shape [nodes][3], the outward normal of a surface set times the node's
+    share of its area (m^2), complete on every rank that has the node. Its direction is that of the sum of the area
+    vectors of the faces around the node (kernels/facet.h): of first order int N_v n dA, whose length is the share too;
     of second order the faces' own normals there with positive weights, and the length that of ModelCreateShares().
     Collective. The caller frees it. @*/
 PetscErrorCode ModelGetSetNormals(Model model, const char set[], PetscReal **area_normals);
 
-/*@ ModelFindNode - the node of a part (empty for any) nearest to a place (m): its local vertex from 0 on one rank that
+/*@ ModelFindNode - the node of a part (empty for any) nearest to a place (m): its local node from 0 on one rank that
     has it, -1 on all others. Collective; after ModelSetUp(). @*/
 PetscErrorCode ModelFindNode(Model model, const char part[], const PetscReal at[3], PetscInt *vertex);
 
@@ -253,21 +253,21 @@ PetscErrorCode ModelFindNode(Model model, const char part[], const PetscReal at[
 PetscErrorCode ModelCreateLines(Model model, PetscInt body, const PetscInt body_of_vertex[], ModelLines **lines);
 PetscErrorCode ModelDestroyLines(ModelLines **lines);
 
-/*@ ModelGetNeighbours - the n vertices at the other ends of the edges of local vertex v that this rank has. Not
-    collective. The caller frees them. @*/
+/*@ ModelGetNeighbours - the n nodes beside local node v along edges that this rank has: in the middle of the edge where
+    it has a node there, else at its other end. Not collective. The caller frees them. @*/
 PetscErrorCode ModelGetNeighbours(Model model, PetscInt v, PetscInt *n, PetscInt **neighbours);
 
-/*@ ModelCreateNodal - a vector of three zeros for each local vertex. Not collective. The caller destroys it. @*/
+/*@ ModelCreateNodal - a vector of three zeros for each local node. Not collective. The caller destroys it. @*/
 PetscErrorCode ModelCreateNodal(Model model, Vec *nodal);
 
-/*@ ModelGetNodal - the displacements of a vector of the unknowns (NULL: zeros) at the local vertices, shape
-    [vertices][3]; zero where a support fixes them. Collective. @*/
+/*@ ModelGetNodal - the displacements of a vector of the unknowns (NULL: zeros) at the local nodes, shape
+    [nodes][3]; zero where a support fixes them. Collective. @*/
 PetscErrorCode ModelGetNodal(Model model, Vec u, PetscReal nodal[]);
 
 /*@ ModelGetDisplaced - the same, with the displacements that motions prescribe where they are held. Collective. @*/
 PetscErrorCode ModelGetDisplaced(Model model, Vec u, PetscReal nodal[]);
 
-/*@ ModelSumShared - sums a vector of ModelCreateNodal() over all ranks that share a vertex; every one of them gets the
+/*@ ModelSumShared - sums a vector of ModelCreateNodal() over all ranks that share a node; every one of them gets the
     sum. Collective. @*/
 PetscErrorCode ModelSumShared(Model model, Vec local);
 

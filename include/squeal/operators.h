@@ -120,7 +120,7 @@ PetscErrorCode OperatorsGetJoint(Operators operators, const PetscReal p[], Petsc
 PetscErrorCode OperatorsGetRigid(Operators operators, Mat *Z, Mat *E);
 
 /*@ OperatorsInternalForces - K_e u_e of all elements at p and the forces of bushings and points, summed over ranks, N,
-   into a local vector of three values per vertex in the layout of the coordinates, held directions included: at a
+   into a local vector of three values per node in the layout of the coordinates, held directions included: at a
    support they are its reaction. Springs and contact are no part of it. Collective. @*/
 PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[], Vec u, Vec local);
 
@@ -132,7 +132,7 @@ PetscErrorCode OperatorsPrescribedForces(Operators operators, const PetscReal p[
     a vector of ModelCreateNodal(), N; total is its sum over the bodies. Collective. @*/
 PetscErrorCode OperatorsAddWeight(Operators operators, const PetscReal p[], Vec local, PetscReal total[3]);
 
-/*@ OperatorsTakeNodal - moves such a vector, complete at every vertex, to the unknowns. Collective. @*/
+/*@ OperatorsTakeNodal - moves such a vector, complete at every node, to the unknowns. Collective. @*/
 PetscErrorCode OperatorsTakeNodal(Operators operators, Vec local, Vec u);
 
 /*@ OperatorsApplyBodies - f = K u of parts and springs at p, N, element by element: without the rounding of the

@@ -72,7 +72,7 @@ PetscErrorCode ContactProjectorSetUp(ContactProjector projector);
 PetscErrorCode ContactProjectorGetTurning(ContactProjector projector, PetscInt interface, PetscBool *turns,
                                           PetscReal rotation[3]);
 
-/*@ ContactProjectorGetNodes - local vertices (from 0) of contact surfaces on this rank, copies included, [n]
+/*@ ContactProjectorGetNodes - local nodes (from 0) of contact surfaces on this rank, copies included, [n]
     (borrowed). Not collective. @*/
 PetscErrorCode ContactProjectorGetNodes(ContactProjector projector, PetscInt *n, const PetscInt **vertex);
 
@@ -112,7 +112,7 @@ PetscErrorCode ContactProject(ContactProjector projector, const ContactStep *ste
                               const PetscReal before[], const PetscReal v[], PetscReal force[]);
 
 /*@ ContactProjectorGetStates - states of the last step of the slaves (borrowed): n on this rank, their interface,
-    global vertex number and place (m, [n][3]); NULL for what is not needed. gap is that at t_{n+1}, slip that
+    global node number and place (m, [n][3]); NULL for what is not needed. gap is that at t_{n+1}, slip that
     of the step. Not collective. @*/
 PetscErrorCode ContactProjectorGetStates(ContactProjector projector, PetscInt *n, const ContactState **state,
                                          const PetscInt **interface, const PetscInt **number, const PetscReal **x);

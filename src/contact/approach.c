@@ -1,29 +1,29 @@
 /*
    Approach of the second rows of nodes of slave and master, one element below their surfaces:
       d . u = mean over pairs of n . (u_m2 - u_s2)   (m)
-   Below a vertex of the surface lies the other end of its edge with the largest cosine to the inward normal. The master
+   Below a node of the surface lies the other end of its edge with the largest cosine to the inward normal. The master
    side moves with the weights of the pair's facet, u_m2 = sum_i w_i u_i2. A corner of the master held in all three
-   directions has no unknown by which it could be found: the vertex below it counts as held too.
+   directions has no unknown by which it could be found: the node below it counts as held too.
 */
 #include "contactimpl.h"
 #include "base/gather.h"
 #include <stdlib.h>
 
-/* A vertex of the surface and one end of its edges into the body */
+/* A node of the surface and one end of its edges into the body */
 typedef struct {
-  PetscInt  vertex;   /* largest unknown of the vertex of the surface, at least 0 */
+  PetscInt  vertex;   /* largest unknown of the node of the surface, at least 0 */
   PetscInt  below[3]; /* unknowns of the other end, -1 where held */
   PetscReal cosine;   /* of the edge to the inward normal */
   PetscReal x[3];     /* of the other end, m: decides between edges of equal cosine */
 } Below;
 
-/* Those of a surface, on every rank, ordered by vertex */
+/* Those of a surface, on every rank, ordered by node */
 typedef struct {
   PetscInt n;
   Below   *below;
 } BelowList;
 
-/* The number by which a vertex is found, -1 when all its directions are held */
+/* The number by which a node is found, -1 when all its directions are held */
 static PetscInt VertexKey(const PetscInt unknowns[3])
 {
   return PetscMax(unknowns[0], PetscMax(unknowns[1], unknowns[2]));
@@ -38,7 +38,7 @@ static PetscBool BelowIsBetter(const Below *a, const Below *b)
   return PETSC_FALSE;
 }
 
-/* Ascending by vertex */
+/* Ascending by node */
 static int BelowCompare(const void *a, const void *b)
 {
   const Below *x = (const Below *)a, *y = (const Below *)b;
@@ -46,7 +46,7 @@ static int BelowCompare(const void *a, const void *b)
   return (x->vertex > y->vertex) - (x->vertex < y->vertex);
 }
 
-/* Best edge of vertex v among those of this rank; normal is outward, of any length. best->vertex is -1 when the vertex
+/* Best edge of node v among those of this rank; normal is outward, of any length. best->vertex is -1 when the node
    is held or no edge goes inward. */
 static PetscErrorCode BelowFind(Model model, PetscInt v, const PetscReal normal[3], Below *best)
 {
@@ -78,7 +78,7 @@ static PetscErrorCode BelowFind(Model model, PetscInt v, const PetscReal normal[
   PetscFunctionReturn(0);
 }
 
-/* The best local edges of all vertices of a surface on this rank that are not held */
+/* The best local edges of all nodes of a surface on this rank that are not held */
 static PetscErrorCode BelowLocal(Model model, const char set[], PetscInt *n_found, Below **found)
 {
   const PetscInt *vertices;
@@ -88,7 +88,7 @@ static PetscErrorCode BelowLocal(Model model, const char set[], PetscInt *n_foun
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetSetNormals(model, set, &normals));
-  PetscCall(ModelGetSetVertices(model, set, &is));
+  PetscCall(ModelGetSetNodes(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
   PetscCall(PetscMalloc1(n, found));
@@ -103,7 +103,7 @@ static PetscErrorCode BelowLocal(Model model, const char set[], PetscInt *n_foun
   PetscFunctionReturn(0);
 }
 
-/* Keeps the best of each vertex, ordered by vertex */
+/* Keeps the best of each node, ordered by node */
 static void BelowReduce(PetscInt *n, Below below[])
 {
   PetscInt last = -1;
@@ -118,7 +118,7 @@ static void BelowReduce(PetscInt *n, Below below[])
   *n = last + 1;
 }
 
-/* The edges of all vertices of a surface, on every rank, ordered by vertex */
+/* The edges of all nodes of a surface, on every rank, ordered by node */
 static PetscErrorCode BelowGather(Model model, MPI_Comm comm, const char set[], BelowList *list)
 {
   PetscInt n_local;
@@ -132,7 +132,7 @@ static PetscErrorCode BelowGather(Model model, MPI_Comm comm, const char set[], 
   PetscFunctionReturn(0);
 }
 
-/* Adds scale n . u of the vertex below the one with these unknowns; counts it as missing when there is none */
+/* Adds scale n . u of the node below the one with these unknowns; counts it as missing when there is none */
 static PetscErrorCode BelowAdd(const BelowList *list, const PetscInt unknowns[3], PetscReal scale,
                                const PetscReal normal[3], Vec d, PetscInt *missing)
 {

@@ -25,7 +25,7 @@ PetscErrorCode ContactNodalForces(Contact contact, const ContactState state[], V
 {
   const Mesh *mesh;
   PetscInt    n_own = 0;
-  Vec         forces; /* ordered by the numbers of the vertices */
+  Vec         forces; /* ordered by the numbers of the nodes */
   VecScatter  scatter;
   IS          from;
 

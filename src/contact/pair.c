@@ -67,14 +67,14 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const Conta
   const ContactInterface *c = &contact->interfaces[interface];
   const PetscInt         *vertices;
   const Mesh             *mesh;
-  PetscReal              *normals; /* [vertex][3], times area, m^2 */
+  PetscReal              *normals; /* [node][3], times area, m^2 */
   PetscInt                n;
   IS                      is;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
   PetscCall(ModelGetSetNormals(contact->model, c->slave, &normals));
-  PetscCall(ModelGetOwnedVertices(contact->model, c->slave, &is));
+  PetscCall(ModelGetOwnedNodes(contact->model, c->slave, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
   PetscCall(PetscRealloc(sizeof(ContactPair) * (size_t)(contact->n_pairs + n), &contact->pairs));

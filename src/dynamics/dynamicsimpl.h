@@ -20,7 +20,7 @@ typedef struct {
 /* Nodes of the contact surfaces; arrays have n * 3 Cartesian components, filled at the nodes of active pairs only */
 typedef struct {
   PetscInt        n;          /* nodes */
-  const PetscInt *vertex;     /* [n] local vertices from 0 */
+  const PetscInt *vertex;     /* [n] local nodes from 0 */
   PetscReal      *u;          /* [n][3] displacements, m */
   PetscReal      *before, *v; /* [n][3] velocities v_{n-1/2}, and v_{n+1/2} as predicted without contact, m/s */
   PetscReal      *force;      /* [n][3] forces on the nodes, N */

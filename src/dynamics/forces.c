@@ -41,7 +41,7 @@ static PetscErrorCode ForceArraysRestore(ForceArrays *a)
   PetscFunctionReturn(0);
 }
 
-/* The first vertex whose velocity is no number: this rank alone knows of it */
+/* The first node whose velocity is no number: this rank alone knows of it */
 static PetscErrorCode DynamicsComplainNaN(Dynamics d, const ForceArrays *a)
 {
   const double time = (double)a->step->time;
@@ -63,7 +63,7 @@ static PetscErrorCode DynamicsComplainNaN(Dynamics d, const ForceArrays *a)
   SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FP, "energy is no number after step %" PetscInt_FMT ", %.6g s", n_step, time);
 }
 
-/* Sum of v'(f - f_old) over this rank, shared vertices counted once; held directions have no acceleration */
+/* Sum of v'(f - f_old) over this rank, shared nodes counted once; held directions have no acceleration */
 static PetscReal DynamicsIntegratorPower(const Layout *l, const ForceArrays *a)
 {
   PetscReal power = 0;
@@ -140,7 +140,7 @@ static void SurfacePredict(const DynamicsSurface *s, const Layout *l, const Forc
   }
 }
 
-/* Kinetic energy of the predicted velocities, of this rank's vertices, J */
+/* Kinetic energy of the predicted velocities, of this rank's nodes, J */
 static PetscReal SurfaceEnergy(const DynamicsSurface *s, const Layout *l, PetscInt n, const PetscInt active[],
                                const PetscReal minv[])
 {

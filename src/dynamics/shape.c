@@ -13,11 +13,11 @@
 /* Powers -1, -2 and -4 of the plastic number (p^3 = p + 1): a unit vector without small rational ratios */
 static const PetscReal oblique[3] = {0.754877666246692760, 0.569840290998053266, 0.324717957244746026};
 
-/* The local vertices on which the shape is laid */
+/* The local nodes on which the shape is laid */
 typedef struct {
   Model       model;
   const char *option;  /* that asks for it */
-  PetscReal  *re, *im; /* [vertices][3] */
+  PetscReal  *re, *im; /* [nodes][3] */
 } ShapeTarget;
 
 static PetscReal ShapeHeight(const PetscReal x[3])

@@ -1,5 +1,5 @@
 /*
-   State vectors (bodies.h) and vectors of all unknowns: the former hold every direction of every local vertex in the
+   State vectors (bodies.h) and vectors of all unknowns: the former hold every direction of every local node in the
    bodies' local components, the latter the free directions in Cartesian ones, each once.
 */
 #include "dynamicsimpl.h"

@@ -16,7 +16,7 @@ static PetscErrorCode DynamicsFindPart(Dynamics d, const char set[], PetscInt *p
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(d->model, &mesh));
   PetscCall(PetscCalloc2(mesh->n_parts, &count, mesh->n_nodes, &in_set));
-  PetscCall(ModelGetSetVertices(d->model, set, &is));
+  PetscCall(ModelGetSetNodes(d->model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
   for (PetscInt i = 0; i < n; i++) in_set[vertices[i]] = PETSC_TRUE;

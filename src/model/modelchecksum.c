@@ -4,7 +4,7 @@
 */
 #include "modelimpl.h"
 
-/* Checksum of n vertices, in any order */
+/* Checksum of n nodes, in any order */
 static uint64_t ModelSumVertices(const Mesh *mesh, PetscInt n, const PetscInt vertex[])
 {
   uint64_t sum = 0;
@@ -25,7 +25,7 @@ PetscErrorCode ModelAddSetChecksum(Model model, const char set[], PetscBool is_s
   PetscFunctionBeginUser;
   PetscCall(ChecksumAddString(c, set));
   PetscCall(ModelGetMesh(model, &mesh));
-  PetscCall(ModelGetOwnedVertices(model, set, &is));
+  PetscCall(ModelGetOwnedNodes(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   if (is_surface) PetscCall(ModelGetSetFaces(model, set, &faces));
   PetscCall(PetscMalloc1(n + faces.n, &piece));

@@ -54,7 +54,7 @@ PETSC_INTERN PetscErrorCode PartView(Model model, PetscInt part, PetscViewer vie
 PETSC_INTERN PetscErrorCode RigSetFromOptions(MPI_Comm comm, Rig *rig);
 
 /* generate.c - the rig on rank 0 as an interpolated DMPlex with the sets disc, pad, beam (cells), disc_inner,
-   disc_face, pad_face, beam_top (faces), beam_rows (vertices); error for a beam with too few node levels for its rows
+   disc_face, pad_face, beam_top (faces), beam_rows (nodes); error for a beam with too few node levels for its rows
    */
 PETSC_INTERN PetscErrorCode RigGenerate(MPI_Comm comm, const Rig *rig, DM *dm);
 
@@ -71,7 +71,7 @@ PETSC_INTERN PetscErrorCode PartitionMesh(Model model);
 PETSC_INTERN PetscErrorCode MeshTabulate(Model model);
 PETSC_INTERN PetscErrorCode MeshReset(Model model);
 
-/* tabulate.c - which of n vertices are in the closure of a point, as bits */
+/* tabulate.c - which of n nodes are in the closure of a point, as bits */
 PETSC_INTERN PetscErrorCode PointGetCorners(DM dm, PetscInt point, PetscInt n, const PetscInt vertex[],
                                             unsigned *corners);
 
@@ -152,7 +152,7 @@ PETSC_INTERN PetscErrorCode ModelCountInnerFaces(Model model, const char set[], 
    ModelFacesDestroy() */
 PETSC_INTERN PetscErrorCode PartGetFaces(Model model, PetscInt part, ModelFaces *faces);
 
-/* motion.c - flags what the motions prescribe and no support fixes in fixed [vertex][3], and tabulates how far they go;
+/* motion.c - flags what the motions prescribe and no support fixes in fixed [node][3], and tabulates how far they go;
    errors for an unknown set, and those of ModelCheckMotion(). Collective. */
 PETSC_INTERN PetscErrorCode MotionsFlag(Model model, PetscBool fixed[][3]);
 

@@ -1,5 +1,5 @@
 /*
-   Values at the local vertices, three each in the layout of the DM's coordinates, and displacements of the unknowns as
+   Values at the local nodes, three each in the layout of the DM's coordinates, and displacements of the unknowns as
    such values.
 */
 #include "modelimpl.h"

@@ -1,5 +1,5 @@
 /*
-   Named sets: vertices of a set, complete on every rank that has the vertex, also where the set's own faces live on
+   Named sets: nodes of a set, complete on every rank that has the node, also where the set's own faces live on
    another rank.
 */
 #include "modelimpl.h"
@@ -73,7 +73,7 @@ static PetscErrorCode MarkClosure(Model model, IS points, PetscScalar mark[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelGetSetVertices(Model model, const char set[], IS *vertices)
+PetscErrorCode ModelGetSetNodes(Model model, const char set[], IS *vertices)
 {
   PetscScalar *mark;
   PetscInt     n = 0, *list;
@@ -99,14 +99,14 @@ PetscErrorCode ModelGetSetVertices(Model model, const char set[], IS *vertices)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelGetOwnedVertices(Model model, const char set[], IS *vertices)
+PetscErrorCode ModelGetOwnedNodes(Model model, const char set[], IS *vertices)
 {
   const PetscInt *v;
   PetscInt        n, n_owned = 0, *owned;
   IS              all;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetSetVertices(model, set, &all));
+  PetscCall(ModelGetSetNodes(model, set, &all));
   PetscCall(ISGetLocalSize(all, &n));
   PetscCall(ISGetIndices(all, &v));
   PetscCall(PetscMalloc1(n, &owned));

@@ -2,8 +2,8 @@
    Tables of the local mesh: places and numbers of the nodes, elements, nodes and parts of the cells.
 
    The points of the DM are known to model/ alone. Those that bear a node are those for which the section of the
-   coordinates has three values: vertices, and in quadratic meshes edges, faces and cells. Node numbers follow that
-   section. Node i of a cell stands at the point whose vertices are the corners element->at[i].
+   coordinates has three values: nodes, and in quadratic meshes edges, faces and cells. Node numbers follow that
+   section. Node i of a cell stands at the point whose nodes are the corners element->at[i].
 */
 #include "modelimpl.h"
 
@@ -110,7 +110,7 @@ static PetscErrorCode CellOrderNodes(Model model, const Element *element, const 
   PetscFunctionReturn(0);
 }
 
-/* Points of a cell that bear nodes, in the order of its closure: vertices come last */
+/* Points of a cell that bear nodes, in the order of its closure: nodes come last */
 static PetscErrorCode CellGetPoints(Model model, PetscInt cell, PetscInt *n, PetscInt points[])
 {
   PetscInt n_points, *closure = NULL;

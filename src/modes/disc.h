@@ -15,7 +15,7 @@ typedef struct {
   PetscReal  size;                             /* radius of gyration, m */
   int        n_harmonics;                      /* of DISC_HARMONICS, those that the mesh resolves */
   PetscInt   n_nodes, n_columns; /* nodes of the disc on this rank; two right-hand sides per mode: re, im */
-  PetscInt  *node;               /* their local vertices */
+  PetscInt  *node;               /* their local nodes */
   PetscReal *weight;             /* nodal mass, kg */
   PetscReal *basis;              /* [n_nodes][DISC_TERMS] */
   PetscReal *gram;               /* [DISC_TERMS][DISC_TERMS] */
@@ -33,7 +33,7 @@ typedef struct {
 /* is_disc = whether two of the three principal moments of inertia agree within 5 %, so that there is an axis */
 PETSC_INTERN PetscErrorCode DiscCreate(MPI_Comm comm, const DiscPart *part, PetscInt n_modes, Disc *disc,
                                        PetscBool *is_disc);
-/* Adds the displacements u[local vertices][3] to right-hand side `column`, and their energy on this rank, all and out
+/* Adds the displacements u[local nodes][3] to right-hand side `column`, and their energy on this rank, all and out
    of plane, to energy */
 PETSC_INTERN void           DiscProject(Disc *disc, PetscInt column, const PetscReal u[], PetscReal energy[2]);
 PETSC_INTERN PetscErrorCode DiscSolve(Disc *disc);

@@ -18,7 +18,7 @@ typedef struct {
   PencilParts parts;
   ComplexVec  a, b;
   Vec         work;
-  PetscReal  *nodal[4]; /* a re, a im, b re, b im [vertices][3] */
+  PetscReal  *nodal[4]; /* a re, a im, b re, b im [nodes][3] */
 } Filter;
 
 /* Largest |x_i| */

@@ -64,10 +64,10 @@ static PetscErrorCode PartMasses(Model model, PetscInt part, PetscReal density, 
 /* Participation of the parts and the disc's fit of all modes, summed over ranks */
 typedef struct {
   PetscInt    n_parts, n_vertices, disc; /* disc = its part, or -1 */
-  PetscReal **mass;                      /* [part][local vertex] */
+  PetscReal **mass;                      /* [part][local node] */
   PetscReal  *share;                     /* [mode][part][2]: y^T M_p x, real and imaginary */
   PetscReal  *energy;                    /* [mode][2]: the ring's kinetic energy of x, all and out of plane */
-  PetscReal  *x[2], *y[2];               /* nodal values of one mode, real and imaginary [local vertices][3] */
+  PetscReal  *x[2], *y[2];               /* nodal values of one mode, real and imaginary [local nodes][3] */
   Disc        frame;
 } Labels;
 
@@ -131,7 +131,7 @@ static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Part parts[
   PetscFunctionReturn(0);
 }
 
-/* Marks the local vertices on the surfaces of the contacts; free marks */
+/* Marks the local nodes on the surfaces of the contacts; free marks */
 static PetscErrorCode SurfacesMark(Model model, Contact contact, PetscInt n_vertices, PetscBool **marks)
 {
   const ContactInterface *interfaces;
@@ -144,7 +144,7 @@ static PetscErrorCode SurfacesMark(Model model, Contact contact, PetscInt n_vert
     const PetscInt *vertex;
     IS              is;
 
-    PetscCall(ModelGetSetVertices(model, i % 2 ? interfaces[i / 2].master : interfaces[i / 2].slave, &is));
+    PetscCall(ModelGetSetNodes(model, i % 2 ? interfaces[i / 2].master : interfaces[i / 2].slave, &is));
     PetscCall(ISGetLocalSize(is, &n));
     PetscCall(ISGetIndices(is, &vertex));
     for (PetscInt k = 0; k < n; k++) (*marks)[vertex[k]] = PETSC_TRUE;

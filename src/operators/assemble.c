@@ -108,7 +108,7 @@ static PetscErrorCode ShareDiagonalCreate(Operators o, const void *of, const Pet
   PetscCall(MatCreateAIJ(o->comm, n_own, n_own, PETSC_DETERMINE, PETSC_DETERMINE, 1, NULL, 0, NULL, D));
   PetscCall(ModelCreateShares(o->model, g->name, g->set, g->spread, &shares));
   PetscCall(VecGetArrayRead(shares, &share));
-  PetscCall(ModelGetOwnedVertices(o->model, g->set, &is));
+  PetscCall(ModelGetOwnedNodes(o->model, g->set, &is));
   PetscCall(ISGetLocalSize(is, &n_vertices));
   PetscCall(ISGetIndices(is, &vertices));
   for (PetscInt j = 0; j < 3 * n_vertices; j++) {

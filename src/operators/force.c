@@ -1,12 +1,12 @@
 /*
    Internal forces of a displacement: f = sum over cells of K_e u_e (N), with Young's moduli at the point p, and those of
-   bushings and points, at all vertices. Where supports hold a direction f is the force that they exert, as far as no load acts there. Displacements
+   bushings and points, at all nodes. Where supports hold a direction f is the force that they exert, as far as no load acts there. Displacements
    are taken relative to the first node of each cell: a translation gives no force, while in the assembled matrix its
    rounding resists like a spring of some 1e-16 of the stiffness.
 */
 #include "operatorsimpl.h"
 
-/* Adds the forces of local cell c; u and f hold three values per local vertex */
+/* Adds the forces of local cell c; u and f hold three values per local node */
 static PetscErrorCode OperatorsAddCellForce(Operators o, PetscInt c, const Elasticity *material, const PetscScalar u[],
                                             PetscScalar f[])
 {
@@ -40,7 +40,7 @@ static PetscErrorCode OperatorsAddCellForces(Operators o, const PetscReal p[], c
   PetscFunctionReturn(0);
 }
 
-/* Forces of displacements [vertices][3], complete at every vertex */
+/* Forces of displacements [nodes][3], complete at every node */
 static PetscErrorCode OperatorsForcesOf(Operators o, const PetscReal p[], const PetscReal displacement[], Vec local)
 {
   PetscScalar *force;

@@ -3,7 +3,7 @@
 */
 #include "operatorsimpl.h"
 
-/* Adds local cell c with displacements u, three values per local vertex */
+/* Adds local cell c with displacements u, three values per local node */
 static PetscErrorCode GeometricAddCell(Model model, PetscInt c, const Elasticity *material, const PetscReal u[], Mat K)
 {
   const Element *element;

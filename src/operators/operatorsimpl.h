@@ -79,8 +79,8 @@ typedef struct {
 PETSC_INTERN PetscErrorCode OperatorsAddComponents(Operators operators, const Components *components,
                                                    PetscInt index[3]);
 
-/* joint.c - parameters and terms of bushings and points; their forces at displacements [vertices][3] and p, and the
-   weight of their masses, added to forces of the same shape, each at the rank that owns the vertex. Collective. */
+/* joint.c - parameters and terms of bushings and points; their forces at displacements [nodes][3] and p, and the
+   weight of their masses, added to forces of the same shape, each at the rank that owns the node. Collective. */
 PETSC_INTERN PetscErrorCode OperatorsAddJoints(Operators operators);
 PETSC_INTERN PetscErrorCode OperatorsAddJointForces(Operators operators, const PetscReal p[],
                                                     const PetscReal displacement[], PetscReal force[]);

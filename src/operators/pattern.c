@@ -1,13 +1,13 @@
 /*
-   Preallocation: couplings of the unknowns of two vertices of a common cell of one part. Each rank counts, for every
-   vertex that it has, the distinct neighbours through its own cells, apart by whether the neighbour's unknowns live
-   with the row's owner; the counts are summed over the ranks that share the vertex. Neighbours that two ranks see count
+   Preallocation: couplings of the unknowns of two nodes of a common cell of one part. Each rank counts, for every
+   node that it has, the distinct neighbours through its own cells, apart by whether the neighbour's unknowns live
+   with the row's owner; the counts are summed over the ranks that share the node. Neighbours that two ranks see count
    twice: an upper bound, exact in the interior, at a fifth of the time of DMCreateMatrix(), which walks the closure of
    edges and faces too.
 */
 #include "operatorsimpl.h"
 
-/* Cells of a part around each local vertex as lists: those of vertex v are cell[first[v]] .. cell[first[v + 1] - 1] */
+/* Cells of a part around each local node as lists: those of node v are cell[first[v]] .. cell[first[v + 1] - 1] */
 typedef struct {
   PetscInt *first, *cell;
 } PatternStar;
@@ -28,7 +28,7 @@ static PetscErrorCode PatternCreateStar(const Mesh *mesh, PetscInt part, Pattern
   PetscFunctionReturn(0);
 }
 
-/* Owner of each local vertex, by the first of its unknowns; -1 when all are fixed */
+/* Owner of each local node, by the first of its unknowns; -1 when all are fixed */
 static PetscErrorCode PatternFindOwners(MPI_Comm comm, const Mesh *mesh, PetscMPIInt owner[])
 {
   PetscLayout layout;

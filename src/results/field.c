@@ -24,7 +24,7 @@ static PetscErrorCode RowsSet(MPI_Comm comm, PetscInt n_local, ResultsRows *rows
   PetscFunctionReturn(0);
 }
 
-/* Writes an array [local vertices][width] as dataset `path`, [nodes][width] */
+/* Writes an array [local nodes][width] as dataset `path`, [nodes][width] */
 static PetscErrorCode FieldWriteNodes(ResultsField field, const char path[], PetscInt width, const PetscReal array[])
 {
   const Mesh *mesh = field->mesh;

@@ -1,7 +1,7 @@
 /*
    Fill-reducing order by METIS nested dissection for MUMPS on one rank, as the MatOrderingType "metis".
 
-   The unknowns of a mesh node have the same neighbours. Consecutive rows of identical pattern are therefore one vertex
+   The unknowns of a mesh node have the same neighbours. Consecutive rows of identical pattern are therefore one node
    of the graph that METIS dissects, weighted by their number; its edges are those of A + A'.
 
    METIS returns perm (old number of each new row) and iperm (new number of each old row). PETSc's LU hands the row
@@ -18,9 +18,9 @@
 
 /* Graph of groups of rows, in the form METIS takes */
 typedef struct {
-  idx_t  n;             /* vertices */
+  idx_t  n;             /* nodes */
   idx_t *start, *edges; /* neighbours of v are edges[start[v]] .. edges[start[v + 1] - 1] */
-  idx_t *weight;        /* rows per vertex */
+  idx_t *weight;        /* rows per node */
 } UnknownGraph;
 
 /* Whether rows i and j have the same columns */
@@ -48,7 +48,7 @@ static idx_t GroupRows(PetscInt n_rows, const PetscInt ia[], const PetscInt ja[]
   return n;
 }
 
-/* Counts (edges NULL) or stores the ends of all arcs of A and of A' between different groups, each at end[vertex] */
+/* Counts (edges NULL) or stores the ends of all arcs of A and of A' between different groups, each at end[node] */
 static void VisitArcs(PetscInt n_rows, const PetscInt ia[], const PetscInt ja[], const idx_t group[], idx_t end[],
                       idx_t edges[])
 {
@@ -122,7 +122,7 @@ static PetscErrorCode UnknownGraphDestroy(UnknownGraph *graph)
   PetscFunctionReturn(0);
 }
 
-/* Nested dissection: perm[n], the vertices in order of elimination */
+/* Nested dissection: perm[n], the nodes in order of elimination */
 static PetscErrorCode GraphDissect(UnknownGraph *graph, idx_t perm[])
 {
   idx_t *iperm, options[METIS_NOPTIONS];

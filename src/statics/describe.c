@@ -1,6 +1,6 @@
 /*
    A rigid motion in words: which body goes farthest, and where to. On each body a motion is t + w x (x - c), fitted to
-   its unknowns by least squares, c the middle of its vertices: a turn about the axis w through c + w x t / |w|^2, or a
+   its unknowns by least squares, c the middle of its nodes: a turn about the axis w through c + w x t / |w|^2, or a
    way along t where the turn is none.
 */
 #include "staticsimpl.h"

@@ -57,7 +57,7 @@ static PetscErrorCode PressureSet(Model model, const char set[], const PetscScal
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(ModelGetSetNormals(model, set, &normals));
-  PetscCall(ModelGetSetVertices(model, set, &is));
+  PetscCall(ModelGetSetNodes(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &v));
   PetscCall(PetscCalloc2(mesh->n_nodes, &along, mesh->n_nodes, &spread));
@@ -78,7 +78,7 @@ static PetscErrorCode PressureSet(Model model, const char set[], const PetscScal
   PetscFunctionReturn(0);
 }
 
-/* Pressure of all interfaces at the local vertices; the caller frees it */
+/* Pressure of all interfaces at the local nodes; the caller frees it */
 static PetscErrorCode PressureCreate(Statics s, Vec force, PetscReal **pressure)
 {
   const PetscScalar *value;

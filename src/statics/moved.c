@@ -8,7 +8,7 @@
 #include "base/vec3.h"
 #include <stdlib.h>
 
-/* A vertex that a motion moves */
+/* A node that a motion moves */
 typedef struct {
   PetscInt  number; /* over all ranks */
   PetscReal d[3];   /* m */
@@ -43,7 +43,7 @@ static PetscErrorCode MovedVerticesGather(MPI_Comm comm, const Mesh *mesh, Petsc
   PetscFunctionReturn(0);
 }
 
-/* sum += weight d of a vertex */
+/* sum += weight d of a node */
 static void MovedAdd(PetscInt n, const MovedVertex all[], PetscInt number, PetscReal weight, PetscReal sum[3])
 {
   const MovedVertex  key   = {.number = number};

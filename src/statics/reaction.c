@@ -1,5 +1,5 @@
 /*
-   Who carries the loads: reactions of supports, motions and springs, loads, and contact forces. At a held direction of a vertex
+   Who carries the loads: reactions of supports, motions and springs, loads, and contact forces. At a held direction of a node
 
       reaction = sum K_e u_e + k u - load - contact force,
 
@@ -9,7 +9,7 @@
 */
 #include "staticsimpl.h"
 
-/* Internal forces minus loads and contact forces at all local vertices, three values each */
+/* Internal forces minus loads and contact forces at all local nodes, three values each */
 static PetscErrorCode ReactionUnbalance(Statics s, Vec *local)
 {
   PetscReal         weight[3];
@@ -33,7 +33,7 @@ static PetscErrorCode ReactionUnbalance(Statics s, Vec *local)
   PetscFunctionReturn(0);
 }
 
-/* Sum of a local vector over the vertices of a set, each once, in some directions; what was summed is set to zero, so
+/* Sum of a local vector over the nodes of a set, each once, in some directions; what was summed is set to zero, so
    that a direction that two supports hold counts for the first */
 static PetscErrorCode ReactionSum(Model model, const char set[], const PetscBool direction[3], Vec local,
                                   PetscReal sum[3])
@@ -46,7 +46,7 @@ static PetscErrorCode ReactionSum(Model model, const char set[], const PetscBool
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetComm(model, &comm));
-  PetscCall(ModelGetOwnedVertices(model, set, &is));
+  PetscCall(ModelGetOwnedNodes(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &v));
   PetscCall(VecGetArray(local, &value));
@@ -105,7 +105,7 @@ static PetscErrorCode ReactionStiffness(Statics s, const Grounded *g, PetscReal 
   PetscFunctionReturn(0);
 }
 
-/* k u of one list of springs at all local vertices, N; the caller destroys the vector */
+/* k u of one list of springs at all local nodes, N; the caller destroys the vector */
 static PetscErrorCode ReactionCreateSpring(Statics s, const Grounded *g, Vec displacement, Vec *forces)
 {
   const PetscReal *u;

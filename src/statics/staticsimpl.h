@@ -246,7 +246,7 @@ PETSC_INTERN PetscErrorCode StaticsSetState(Statics statics, Vec f, const PetscR
 /* loadvector.c - f of the loads and the weight at p, unknowns only, and its size by all of them, N */
 PETSC_INTERN PetscErrorCode StaticsCreateLoad(Operators operators, const PetscReal p[], Vec *f, PetscReal *size);
 
-/* reaction.c - reactions.csv; u at all local vertices, zero where held */
+/* reaction.c - reactions.csv; u at all local nodes, zero where held */
 PETSC_INTERN PetscErrorCode StaticsWriteReactions(Statics statics, Results results);
 PETSC_INTERN PetscErrorCode StaticsCreateDisplacements(Statics statics, Vec *local);
 

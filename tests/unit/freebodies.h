@@ -39,7 +39,7 @@ static inline PetscErrorCode FieldCreate(const Chain *chain, Field field, const 
   PetscCall(VecSetOption(*u, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
   PetscCall(ModelGetMesh(chain->model, &mesh));
   if (set)
-    PetscCall(ModelGetSetVertices(chain->model, set, &is));
+    PetscCall(ModelGetSetNodes(chain->model, set, &is));
   else
     PetscCall(ISCreateStride(PETSC_COMM_SELF, mesh->n_nodes, 0, 1, &is));
   PetscCall(ISGetLocalSize(is, &n));

@@ -190,7 +190,7 @@ static PetscErrorCode MeshMove(Model model, PetscReal lift)
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(model, &mesh));
   x = (PetscReal *)mesh->x;
-  PetscCall(ModelGetSetVertices(model, "pad_face", &is));
+  PetscCall(ModelGetSetNodes(model, "pad_face", &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertex));
   for (PetscInt i = 0; i < n; i++) {

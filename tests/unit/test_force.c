@@ -113,7 +113,7 @@ static PetscErrorCode SetSum(Model model, const char set[], Vec local, PetscReal
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(sum, 6));
   PetscCall(ModelGetMesh(model, &mesh));
-  PetscCall(ModelGetOwnedVertices(model, set, &is));
+  PetscCall(ModelGetOwnedNodes(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
   PetscCall(VecGetArrayRead(local, &f));

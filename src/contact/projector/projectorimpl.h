@@ -1,8 +1,8 @@
 /*
    Private to the projector: what its files share.
 
-   Nodes of all contact surfaces are numbered from 0 by their global vertex number; every rank knows which of them its
-   local vertices are. One rank, the root, which owns most slave nodes, knows the surfaces and solves for all pairs.
+   Nodes of all contact surfaces are numbered from 0 by their global node number; every rank knows which of them its
+   local nodes are. One rank, the root, which owns most slave nodes, knows the surfaces and solves for all pairs.
    Values of nodes are Cartesian, masters that turn in their own frame (Frame), with which all of a pair is described.
 */
 #pragma once
@@ -80,7 +80,7 @@ typedef struct {
   MPI_Datatype record[SHARE_FIELDS]; /* of a node: 1 to SHARE_FIELDS fields of three values */
   PetscMPIInt  rank, size, root;
   PetscInt     n_nodes;           /* of all ranks */
-  PetscInt     n, *vertex;        /* of this rank: local vertices from 0, ascending */
+  PetscInt     n, *vertex;        /* of this rank: local nodes from 0, ascending */
   PetscInt     n_active, *active; /* of these n; it is one of */
   PetscInt    *list[2];           /* of which the other is that of the step before */
   PetscInt *first, *holder; /* [size + 1] and all ranks' numbers one after the other; ~ number where another owns it */

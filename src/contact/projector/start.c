@@ -92,7 +92,7 @@ static PetscErrorCode StartCheck(ContactProjector p, PetscReal slack, StartFault
   PetscFunctionReturn(0);
 }
 
-/* A pair of the sliding state, by interface and vertex of its slave */
+/* A pair of the sliding state, by interface and node of its slave */
 typedef struct {
   PetscInt     interface, number;
   PetscReal    force[3]; /* on the slave, N */

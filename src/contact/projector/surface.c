@@ -12,7 +12,7 @@ typedef struct {
   PetscReal x[3];
 } Slave;
 
-/* Marks the local vertices (from 0) of a set */
+/* Marks the local nodes (from 0) of a set */
 static PetscErrorCode VerticesMark(Model model, const char set[], PetscBool mark[])
 {
   const PetscInt *v;
@@ -20,7 +20,7 @@ static PetscErrorCode VerticesMark(Model model, const char set[], PetscBool mark
   IS              is;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetSetVertices(model, set, &is));
+  PetscCall(ModelGetSetNodes(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &v));
   for (PetscInt i = 0; i < n; i++) mark[v[i]] = PETSC_TRUE;
@@ -29,7 +29,7 @@ static PetscErrorCode VerticesMark(Model model, const char set[], PetscBool mark
   PetscFunctionReturn(0);
 }
 
-/* All local vertices of contact surfaces, ascending */
+/* All local nodes of contact surfaces, ascending */
 static PetscErrorCode SurfaceVerticesFind(Contact contact, PetscInt *n, PetscInt **vertex)
 {
   const Mesh *mesh;
@@ -51,7 +51,7 @@ static PetscErrorCode SurfaceVerticesFind(Contact contact, PetscInt *n, PetscInt
   PetscFunctionReturn(0);
 }
 
-/* The nodes of all ranks: unique[n] ascending global vertex numbers, and who has them */
+/* The nodes of all ranks: unique[n] ascending global node numbers, and who has them */
 static PetscErrorCode NodesFind(ContactProjector p, PetscInt *n_unique, PetscInt **unique)
 {
   ProjectorShare *share = &p->share;
@@ -65,7 +65,7 @@ static PetscErrorCode NodesFind(ContactProjector p, PetscInt *n_unique, PetscInt
   for (PetscInt i = 0; i < n; i++)
     local[i] = mesh->owned[vertex[i]] ? mesh->number[vertex[i]] : ~mesh->number[vertex[i]];
   PetscCall(
-    ShareSetUp(p->contact->comm, n, local, share)); /* numbers of vertices for a while: negative where not owned */
+    ShareSetUp(p->contact->comm, n, local, share)); /* numbers of nodes for a while: negative where not owned */
   total = share->first[share->size];
   PetscCall(PetscMalloc1(total, unique));
   for (PetscInt i = 0; i < total; i++) (*unique)[i] = ShareNode(share, i);
@@ -94,7 +94,7 @@ static PetscErrorCode SlavesAppend(Contact contact, PetscInt interface, PetscInt
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
-  PetscCall(ModelGetOwnedVertices(contact->model, contact->interfaces[interface].slave, &is));
+  PetscCall(ModelGetOwnedNodes(contact->model, contact->interfaces[interface].slave, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &v));
   PetscCall(PetscRealloc(sizeof(Slave) * (size_t)(*n_slaves + n), slave));

@@ -1,5 +1,5 @@
 /*
-   Bodies: life cycle, masses, and the order of work in a step: what touches shared vertices first, then its exchange
+   Bodies: life cycle, masses, and the order of work in a step: what touches shared nodes first, then its exchange
    while the rest is done.
 */
 #include "bodiesimpl.h"
@@ -115,7 +115,7 @@ PetscErrorCode BodiesHold(Bodies b, PetscInt vertex, PetscInt j)
   PetscFunctionReturn(0);
 }
 
-/* The kernels on the vertices that ranks share, or on the others */
+/* The kernels on the nodes that ranks share, or on the others */
 static PetscErrorCode BodiesAdvanceKernels(Bodies b, PetscBool early, BodiesWork *w)
 {
   PetscFunctionBeginUser;

@@ -3,9 +3,9 @@
    forces: f = -K u - C v of parts, springs and dashpots.
 
    Layout: a state vector is a local array of n numbers on every rank. Vertex i (from 0, all local ones, copies of other
-   ranks' vertices included) has its components at at[i], at[i] + step[i], at[i] + 2 step[i], along the orthonormal
+   ranks' nodes included) has its components at at[i], at[i] + step[i], at[i] + 2 step[i], along the orthonormal
    local basis basis[i] (rows). Bodies swept along an angle have cylindrical components, all others Cartesian ones.
-   Numbers that belong to no vertex are padding: their minv is 0, and they stay 0.
+   Numbers that belong to no node are padding: their minv is 0, and they stay 0.
 */
 #pragma once
 
@@ -15,10 +15,10 @@ typedef struct _p_Bodies *Bodies;
 
 typedef struct {
   PetscInt         n;            /* length of a state vector on this rank */
-  PetscInt         n_vertices;   /* local vertices */
-  PetscInt        *at, *step;    /* [n_vertices]; at = -1 for a vertex without cells */
+  PetscInt         n_vertices;   /* local nodes */
+  PetscInt        *at, *step;    /* [n_vertices]; at = -1 for a node without cells */
   PetscReal       *basis;        /* [n_vertices][3][3], row j is the direction of component j */
-  const PetscBool *owned;        /* [n_vertices] exactly one rank owns each vertex */
+  const PetscBool *owned;        /* [n_vertices] exactly one rank owns each node */
   PetscReal       *part, *total; /* [n] masses of this rank's cells alone, and complete ones, kg */
   PetscReal       *minv;         /* [n] 1 / total, 0 in held directions and padding */
   PetscReal       *damping;      /* [n] C v of the last BodiesAdvance(), N; NULL without damping */
@@ -42,7 +42,7 @@ typedef struct {
   PetscReal damping;     /* v_{n+1/2}' d_{n+1}, W */
 } BodiesSums;
 
-/* Vector of three Cartesian numbers at vertex i, from and to a state vector; Set, or Add */
+/* Vector of three Cartesian numbers at node i, from and to a state vector; Set, or Add */
 static inline void LayoutGet(const Layout *l, PetscInt i, const PetscReal x[], PetscReal cartesian[3])
 {
   const PetscReal *q = &l->basis[9 * i];
@@ -84,11 +84,11 @@ PetscErrorCode BodiesSetUp(Bodies bodies, Operators operators);
 /*@ BodiesGetLayout - where the nodes stand, and their masses (borrowed). Not collective. @*/
 PetscErrorCode BodiesGetLayout(Bodies bodies, const Layout **layout);
 
-/*@ BodiesHold - makes a direction of a vertex held: minv = 0, so that only its prescribed velocity moves it. j is the
-    component in the local basis. Same call on all ranks that have the vertex. @*/
+/*@ BodiesHold - makes a direction of a node held: minv = 0, so that only its prescribed velocity moves it. j is the
+    component in the local basis. Same call on all ranks that have the node. @*/
 PetscErrorCode BodiesHold(Bodies bodies, PetscInt vertex, PetscInt j);
 
-/*@ BodiesSetPoints - what the masses of points need, after the last BodiesHold(); contact [n_contact] are the vertices
+/*@ BodiesSetPoints - what the masses of points need, after the last BodiesHold(); contact [n_contact] are the nodes
     that contact forces may act on. Collective. Errors: PETSC_ERR_SUP for a point with mass that has one of them, or a
     node that a motion drives. @*/
 PetscErrorCode BodiesSetPoints(Bodies bodies, PetscInt n_contact, const PetscInt contact[]);
@@ -101,15 +101,15 @@ PetscErrorCode BodiesMakeRigid(Bodies bodies, PetscReal x[]);
     at every copy: then minv f is the acceleration. Collective. @*/
 PetscErrorCode BodiesAddInertia(Bodies bodies, PetscReal f[]);
 
-/*@ BodiesApply - kx = K x and cx = C x (NULL where not needed), complete at shared vertices. Collective. @*/
+/*@ BodiesApply - kx = K x and cx = C x (NULL where not needed), complete at shared nodes. Collective. @*/
 PetscErrorCode BodiesApply(Bodies bodies, const PetscReal x[], PetscReal kx[], PetscReal cx[]);
 
 /*@ BodiesSetState - ku = K u anew of this rank's cells, element by element relative to the first node of each, and
     the damping forces of v for the sums of the next BodiesAdvance(). Collective. @*/
 PetscErrorCode BodiesSetState(Bodies bodies, const PetscReal u[], const PetscReal v[], PetscReal ku[]);
 
-/*@ BodiesAdvance - ku += dt K v, then f = -ku - C v, complete at shared vertices; the sums use ku before. dt = 0 leaves
-    ku as it is (first step). The exchange of shared vertices overlaps with the work on the others. Collective. @*/
+/*@ BodiesAdvance - ku += dt K v, then f = -ku - C v, complete at shared nodes; the sums use ku before. dt = 0 leaves
+    ku as it is (first step). The exchange of shared nodes overlaps with the work on the others. Collective. @*/
 PetscErrorCode BodiesAdvance(Bodies bodies, const BodiesStep *step, BodiesSums *sums);
 
 /*@ BodiesGetElementBound - largest omega^2 (1/s^2) of any single element with its own lumped mass, with stiffness

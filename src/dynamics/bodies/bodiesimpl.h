@@ -11,7 +11,7 @@ typedef struct {
   PetscReal centre[3];
 } BodiesFrame;
 
-/* Consecutive nodes k of all lines (from a multiple of STENCIL_WIDTH, to one of its half); `early` ones have vertices
+/* Consecutive nodes k of all lines (from a multiple of STENCIL_WIDTH, to one of its half); `early` ones have nodes
    that ranks share, `first` and `last` ones the ends of open lines */
 typedef struct {
   PetscInt  begin, end;
@@ -48,7 +48,7 @@ typedef struct {
    */
 typedef struct {
   PetscInt   n, n_early, begin;
-  PetscInt  *vertex;       /* [n] local vertex */
+  PetscInt  *vertex;       /* [n] local node */
   PetscReal *mass, *alpha; /* [n] of this rank's cells, kg; alpha (1/s) times mass */
   PetscReal *beta;         /* [n], 0 where the cells differ */
   PetscReal *product;      /* [n][4] K v as far as it is summed, zero between the calls; the last number is void */
@@ -74,14 +74,14 @@ typedef struct {
   PetscReal   *b;      /* [n][3][6] */
 } BodyJoint;
 
-/* Sums over ranks at shared vertices, in ascending order of the ranks, so that all copies are bitwise equal */
+/* Sums over ranks at shared nodes, in ascending order of the ranks, so that all copies are bitwise equal */
 typedef struct {
   MPI_Comm     comm;
   PetscMPIInt  self;
-  PetscBool   *shared;         /* [n_vertices] whether other ranks have the vertex, too */
-  PetscInt     n_ranks, *rank; /* that share vertices with this one, and this one at place `own`, ascending */
+  PetscBool   *shared;         /* [n_vertices] whether other ranks have the node, too */
+  PetscInt     n_ranks, *rank; /* that share nodes with this one, and this one at place `own`, ascending */
   PetscInt     own, *start;    /* [n_ranks + 1] */
-  PetscInt    *vertex;         /* [start[n_ranks]] local vertices shared with each, in the same order on both */
+  PetscInt    *vertex;         /* [start[n_ranks]] local nodes shared with each, in the same order on both */
   PetscReal   *send, *receive; /* [start[n_ranks]][3] */
   MPI_Request *request;        /* [2 (n_ranks - 1)], receiving first */
 } Shared;
@@ -134,7 +134,7 @@ PETSC_INTERN void BodiesTurnCell(const Layout *layout, BodiesCell *cell);
 /* ku += K u cell by cell */
 PETSC_INTERN PetscErrorCode BodiesCellsAddForces(Bodies bodies, const PetscReal u[], PetscReal ku[]);
 
-/* layout.c - lines and frames of the bodies, then where the vertices stand */
+/* layout.c - lines and frames of the bodies, then where the nodes stand */
 PETSC_INTERN PetscErrorCode BodiesFindSwept(Bodies bodies);
 PETSC_INTERN PetscErrorCode BodiesLayOut(Bodies bodies);
 
@@ -142,7 +142,7 @@ PETSC_INTERN PetscErrorCode BodiesLayOut(Bodies bodies);
    */
 PETSC_INTERN PetscErrorCode SweptSetUp(Bodies bodies, SweptBody *swept, PetscBool *mirrored);
 
-/* sweptbody.c - ranges once it is known which vertices ranks share, shared [n_vertices] */
+/* sweptbody.c - ranges once it is known which nodes ranks share, shared [n_vertices] */
 PETSC_INTERN PetscErrorCode SweptSetRanges(SweptBody *swept, const PetscBool shared[]);
 PETSC_INTERN PetscErrorCode SweptAdvance(const SweptBody *swept, PetscBool early, BodiesWork *work);
 PETSC_INTERN PetscErrorCode SweptDestroy(SweptBody *swept);
@@ -183,7 +183,7 @@ PETSC_INTERN void PointInertia(const Joint *point, PetscReal W[36]);
 PETSC_INTERN PetscErrorCode RigidPointSetUp(Bodies bodies, BodyJoint *joint);
 PETSC_INTERN PetscErrorCode RigidPointsAdvance(Bodies bodies, PetscReal f[]);
 
-/* sharedvertices.c - Begin sends what x has at shared vertices, End replaces it by the sums */
+/* sharedvertices.c - Begin sends what x has at shared nodes, End replaces it by the sums */
 PETSC_INTERN PetscErrorCode SharedSetUp(Bodies bodies);
 PETSC_INTERN PetscErrorCode SharedBegin(Shared *share, const Layout *layout, const PetscReal x[]);
 PETSC_INTERN PetscErrorCode SharedEnd(Shared *share, const Layout *layout, PetscReal x[]);

@@ -4,7 +4,7 @@
 */
 #include "bodiesimpl.h"
 
-/* The point of a vertex, new if need be; of_vertex [n_vertices], -1 without */
+/* The point of a node, new if need be; of_vertex [n_vertices], -1 without */
 static PetscErrorCode PointFind(Bodies b, PetscInt vertex, PetscInt of_vertex[], Point **point)
 {
   PetscFunctionBeginUser;
@@ -37,7 +37,7 @@ static PetscErrorCode PointsAddGrounded(Bodies b, const Grounded *grounded, Pets
   PetscFunctionBeginUser;
   PetscCall(ModelCreateShares(b->model, grounded->name, grounded->set, grounded->spread, &shares));
   PetscCall(VecGetArrayRead(shares, &share));
-  PetscCall(ModelGetOwnedVertices(b->model, grounded->set, &is));
+  PetscCall(ModelGetOwnedNodes(b->model, grounded->set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
   for (PetscInt i = 0; i < n; i++) {
@@ -74,7 +74,7 @@ PetscErrorCode PointsSetUp(Bodies b)
   PetscFunctionReturn(0);
 }
 
-/* y = A x in the places of a vertex */
+/* y = A x in the places of a node */
 static void PointApply(const PetscReal a[9], const PetscReal x[], PetscInt at, PetscInt step, PetscReal y[3])
 {
   for (int i = 0; i < 3; i++) y[i] = a[3 * i] * x[at] + a[3 * i + 1] * x[at + step] + a[3 * i + 2] * x[at + 2 * step];

@@ -25,7 +25,7 @@ static PetscErrorCode BoundOfCell(const BodiesCell *cell, PetscReal *largest)
 }
 
 /* Whether another cell of the same column stands for this one: swept bodies are looked at at node 0 alone. first
-   [n_vertices] flags the nodes 0 of lines, swept the vertices of swept bodies */
+   [n_vertices] flags the nodes 0 of lines, swept the nodes of swept bodies */
 static PetscBool BoundIsRepeated(PetscInt n_nodes, const PetscInt vertex[], const PetscBool first[],
                                  const PetscBool swept[])
 {

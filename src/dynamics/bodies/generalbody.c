@@ -1,13 +1,13 @@
 /*
-   Bodies that are not swept: K in rows of 3 x 3 blocks, one for each pair of vertices of this rank that share a cell;
+   Bodies that are not swept: K in rows of 3 x 3 blocks, one for each pair of nodes of this rank that share a cell;
    memory limits the speed, hence the symmetric half alone is kept. C = alpha M + beta K; rows between parts of
    different beta have blocks of their own for the second term, whole rows of them.
 */
 #include "bodiesimpl.h"
 
-/* The cells of these bodies, and places of their vertices among the nodes */
+/* The cells of these bodies, and places of their nodes in `general` */
 typedef struct {
-  PetscInt  n, *of_vertex; /* [n_vertices] node, -1 of vertices elsewhere */
+  PetscInt  n, *of_vertex; /* [n_vertices] node, -1 of nodes elsewhere */
   PetscInt *cell;          /* [n] cells with such nodes */
 } GeneralCells;
 

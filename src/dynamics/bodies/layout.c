@@ -2,7 +2,7 @@
    Layout of the state vectors. A body has cylindrical components, on all ranks, where some rank finds its cells swept
    about an axis, no other one about another, and its supports can be said in them: along the axis, and in the plane
    either both directions or none. On each rank a body whose cells are swept there stands line after line, padded so
-   that blocks of nodes can be loaded with their neighbours; all other vertices follow node after node, those that ranks
+   that blocks of nodes can be loaded with their neighbours; all other nodes follow node after node, those that ranks
    share first.
 */
 #include "bodiesimpl.h"
@@ -24,7 +24,7 @@ static PetscErrorCode BodiesFlagLocal(Bodies b, PetscBool local[])
   PetscFunctionReturn(0);
 }
 
-/* Whether the directions held at the vertices of a body, and their places, allow components about an axis */
+/* Whether the directions held at the nodes of a body, and their places, allow components about an axis */
 static PetscErrorCode BodiesFrameSuits(Bodies b, PetscInt body, const BodiesFrame *frame, PetscBool *suits)
 {
   const PetscInt j = (frame->axis + 1) % 3, k = (frame->axis + 2) % 3;
@@ -107,7 +107,7 @@ static PetscErrorCode BodiesFindFrames(Bodies b, ModelLines *const lines[])
   PetscFunctionReturn(0);
 }
 
-/* Bases of the vertices: along the axis, radial, tangential; or x, y, z */
+/* Bases of the nodes: along the axis, radial, tangential; or x, y, z */
 static PetscErrorCode LayoutFindBases(Bodies b)
 {
   PetscFunctionBeginUser;
@@ -178,7 +178,7 @@ PetscErrorCode BodiesFindSwept(Bodies b)
   PetscFunctionReturn(0);
 }
 
-/* Places of the vertices of a swept body */
+/* Places of the nodes of a swept body */
 static void SweptLayOut(const SweptBody *swept, Layout *layout)
 {
   const ModelLines *lines = swept->lines;
@@ -192,7 +192,7 @@ static void SweptLayOut(const SweptBody *swept, Layout *layout)
     }
 }
 
-/* Sorts vertices along the longest side of their box: neighbours in space are then near in memory */
+/* Sorts nodes along the longest side of their box: neighbours in space are then near in memory */
 static PetscErrorCode VerticesSort(const Mesh *mesh, PetscInt n, PetscInt vertex[])
 {
   PetscReal low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, *key;
@@ -214,7 +214,7 @@ static PetscErrorCode VerticesSort(const Mesh *mesh, PetscInt n, PetscInt vertex
   PetscFunctionReturn(0);
 }
 
-/* Places of all other vertices with cells: those that ranks share, then the rest */
+/* Places of all other nodes with cells: those that ranks share, then the rest */
 static PetscErrorCode GeneralLayOut(Bodies b)
 {
   General *g = &b->general;

@@ -168,7 +168,7 @@ static PetscErrorCode SweptSetFlags(SweptBody *s)
   PetscFunctionReturn(0);
 }
 
-/* Whether the lines have shared vertices at nodes begin .. end - 1 */
+/* Whether the lines have shared nodes at nodes begin .. end - 1 */
 static PetscBool SweptIsShared(const ModelLines *lines, PetscInt begin, PetscInt end, const PetscBool shared[])
 {
   for (PetscInt l = 0; l < lines->n_lines; l++)

@@ -27,7 +27,7 @@ typedef struct {
   ColumnBlocks *stiffness, *damping;
 } ColumnSection;
 
-/* Line and node along it of each local vertex, -1 of vertices elsewhere */
+/* Line and node along it of each local node, -1 of nodes elsewhere */
 static PetscErrorCode ColumnsFindVertices(const SweptBody *s, PetscInt n_vertices, PetscInt line[], PetscInt node[])
 {
   const ModelLines *lines = s->lines;

@@ -67,7 +67,7 @@ PetscErrorCode ExternalFindVertices(External external, const char set[], PetscIn
   IS              is;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetSetVertices(external->model, set, &is));
+  PetscCall(ModelGetSetNodes(external->model, set, &is));
   PetscCall(ISGetLocalSize(is, &n_all));
   PetscCall(PetscMalloc1(n_all, vertex));
   PetscCall(ISGetIndices(is, &point));

@@ -16,7 +16,7 @@
 
 typedef struct _p_External *External;
 
-/* Power of the external forces and of the drives of prescribed motions, W, sums over this rank (shared vertices counted
+/* Power of the external forces and of the drives of prescribed motions, W, sums over this rank (shared nodes counted
    once): `old` of the forces at t_{n-1} on the velocities v_{n-1/2}, `now` of the forces at t_n on v_{n-1/2}; so that
    the work in step n is dt/2 (now_n + old_{n+1}). The drives' share of both is in old_{n+1}, since R_n is known at the
    end of the step only. `old` of the first step is 0. */
@@ -70,7 +70,7 @@ PETSC_INTERN PetscErrorCode ExternalSetFrame(External external, const char part[
                                              const PetscReal centre[3], PetscBool coriolis, PetscBool centrifugal);
 
 /*
-   ExternalAdvance - adds the forces at t_n to f, complete at every copy of a vertex, and gives the directions of
+   ExternalAdvance - adds the forces at t_n to f, complete at every copy of a node, and gives the directions of
    prescribed motions the velocity (d(t_n + dt) - d(t_n)) / dt. An impulse J at time T acts as J / dt in the step with
    t_n <= T < t_n + dt, of the first two steps in the second: the first is half a step and would give half of J. Call at
    every step. Not collective.

@@ -23,7 +23,7 @@ typedef struct {
 typedef struct {
   const PrescribedMotion *prescribed; /* d, set and directions, of the scene */
   Ramp                    ramp;
-  PetscInt                n, n_owned; /* prescribed numbers of a state vector, those of owned vertices first */
+  PetscInt                n, n_owned; /* prescribed numbers of a state vector, those of owned nodes first */
   PetscInt               *index;
   PetscReal              *full;           /* d along each, m */
   PetscReal              *before, *after; /* work: v_{n-1/2} and v_{n+1/2}, m/s */
@@ -46,7 +46,7 @@ typedef struct {
   PetscReal  centre[3]; /* m */
   PetscBool  coriolis, centrifugal;
   PetscInt   n, n_owned;
-  PetscInt  *vertex; /* local vertices from 0, owned ones first */
+  PetscInt  *vertex; /* local nodes from 0, owned ones first */
   PetscReal *last;   /* [n][3] forces of the last step, Cartesian, N */
 } InertiaFrame;
 
@@ -64,7 +64,7 @@ struct _p_External {
   /* built by ExternalSetUp() */
   const Layout *layout;
   PetscReal    *weight;     /* [layout n] m g along each number, N; NULL without gravity */
-  PetscReal    *own_weight; /* the same where this rank owns the vertex, else 0 */
+  PetscReal    *own_weight; /* the same where this rank owns the node, else 0 */
   /* status: what a restart needs, in one array to which all the `last` point */
   PetscInt   n_memory;
   PetscReal *memory;
@@ -75,7 +75,7 @@ struct _p_External {
 /* external.c - makes the memory as long as what is there needs; new numbers are 0 */
 PETSC_INTERN PetscErrorCode ExternalLayMemory(External external);
 
-/* external.c - local vertices (from 0) of a set that have cells, those that this rank owns first; the caller frees them.
+/* external.c - local nodes (from 0) of a set that have cells, those that this rank owns first; the caller frees them.
    Collective. */
 PETSC_INTERN PetscErrorCode ExternalFindVertices(External external, const char set[], PetscInt *n, PetscInt *n_owned,
                                                  PetscInt **vertex);

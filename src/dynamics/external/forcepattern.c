@@ -3,7 +3,7 @@
 */
 #include "forcepattern.h"
 
-/* Appends the nonzero components of a Cartesian force at a vertex */
+/* Appends the nonzero components of a Cartesian force at a node */
 static void ForcePatternAppend(const Layout *layout, PetscInt vertex, const PetscReal force[3], ForcePattern *p)
 {
   for (int j = 0; j < 3; j++) {

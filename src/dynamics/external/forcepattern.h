@@ -1,6 +1,6 @@
 /*
    ForcePattern (private to dynamics/) - nodal forces whose direction and distribution stay as they are while a factor
-   of time scales them: value[i] (N, or N s of an impulse) at number index[i] of a state vector, those of owned vertices
+   of time scales them: value[i] (N, or N s of an impulse) at number index[i] of a state vector, those of owned nodes
    first.
 */
 #pragma once
@@ -13,7 +13,7 @@ typedef struct {
   PetscReal *value;
 } ForcePattern;
 
-/* Forces at n local vertices (from 0), Cartesian, [n][3]; vertices without cells are left out. Not collective. */
+/* Forces at n local nodes (from 0), Cartesian, [n][3]; nodes without cells are left out. Not collective. */
 PETSC_INTERN PetscErrorCode ForcePatternCreate(const Layout *layout, PetscInt n, const PetscInt vertex[],
                                                const PetscReal force[], ForcePattern *pattern);
 PETSC_INTERN PetscErrorCode ForcePatternDestroy(ForcePattern *pattern);
@@ -24,7 +24,7 @@ static inline void ForcePatternAdd(const ForcePattern *p, PetscReal factor, Pets
   for (PetscInt i = 0; i < p->n; i++) f[p->index[i]] += factor * p->value[i];
 }
 
-/* Power (W) of the forces at factor 1, of owned vertices alone, so that ranks add up */
+/* Power (W) of the forces at factor 1, of owned nodes alone, so that ranks add up */
 static inline PetscReal ForcePatternPower(const ForcePattern *p, const PetscReal v[])
 {
   PetscReal power = 0;

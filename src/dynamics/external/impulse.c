@@ -54,7 +54,7 @@ PetscErrorCode ImpulsesSetFromOptions(External external)
   PetscFunctionReturn(0);
 }
 
-/* This rank's copy of the vertex that one rank names by a number >= 0, else -1 */
+/* This rank's copy of the node that one rank names by a number >= 0, else -1 */
 static PetscErrorCode ImpulseFindCopy(Model model, PetscInt *vertex)
 {
   const Mesh *mesh;

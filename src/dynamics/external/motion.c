@@ -50,7 +50,7 @@ static PetscErrorCode MotionCheckRamp(MPI_Comm comm, const Drive *motion)
   PetscFunctionReturn(0);
 }
 
-/* Share of the prescribed directions in component j of a vertex */
+/* Share of the prescribed directions in component j of a node */
 static PetscReal MotionShare(const Drive *motion, const Layout *layout, PetscInt vertex, int j)
 {
   const PetscReal *q     = &layout->basis[9 * vertex + 3 * j];
@@ -60,7 +60,7 @@ static PetscReal MotionShare(const Drive *motion, const Layout *layout, PetscInt
   return share;
 }
 
-/* Appends the free prescribed components of a vertex and holds them; trouble[0] counts components that the directions
+/* Appends the free prescribed components of a node and holds them; trouble[0] counts components that the directions
    split, trouble[1] those that another motion prescribes */
 static PetscErrorCode MotionAddVertex(External external, Bodies bodies, PetscInt vertex, PetscBT taken, Drive *motion,
                                       PetscInt trouble[2])
@@ -86,7 +86,7 @@ static PetscErrorCode MotionAddVertex(External external, Bodies bodies, PetscInt
   PetscFunctionReturn(0);
 }
 
-/* Prescribed numbers of the set's vertices, those of owned vertices first */
+/* Prescribed numbers of the set's nodes, those of owned nodes first */
 static PetscErrorCode MotionFindNumbers(External external, Bodies bodies, PetscBT taken, Drive *motion,
                                         PetscInt trouble[2])
 {

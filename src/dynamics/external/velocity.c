@@ -32,7 +32,7 @@ static PetscBool VelocityIsZero(const PetscReal v[3])
   return v[0] == 0 && v[1] == 0 && v[2] == 0;
 }
 
-/* Adds a part's velocity to sum[vertex][3] and 1 to count[vertex] */
+/* Adds a part's velocity to sum[node][3] and 1 to count[node] */
 static PetscErrorCode VelocityAddPart(External external, const char part[], const PetscReal velocity[3],
                                       PetscReal sum[], PetscInt count[])
 {

@@ -74,7 +74,7 @@ static PetscErrorCode CirclesFindContact(History history, PetscReal centre[3], P
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(history->source.model, &mesh));
   for (PetscInt i = 0; history->source.interfaces && i < history->source.n_interfaces; i++) {
-    PetscCall(ModelGetOwnedVertices(history->source.model, history->source.interfaces[i].slave, &is));
+    PetscCall(ModelGetOwnedNodes(history->source.model, history->source.interfaces[i].slave, &is));
     PetscCall(ISGetLocalSize(is, &n_local));
     PetscCall(ISGetIndices(is, &vertex));
     for (PetscInt k = 0; k < n_local; k++)

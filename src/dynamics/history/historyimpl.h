@@ -49,8 +49,8 @@ struct _p_History {
   ResultsFilm  film; /* NULL for none */
 };
 
-/* history.c - Cartesian displacement (m), velocity (m/s) and acceleration (m/s^2) of local vertex i at t_n; zero for
-   a vertex without cells */
+/* history.c - Cartesian displacement (m), velocity (m/s) and acceleration (m/s^2) of local node i at t_n; zero for
+   a node without cells */
 PETSC_INTERN void HistoryMotion(const Layout *layout, const HistoryState *state, PetscInt i, PetscReal u[3],
                                 PetscReal v[3], PetscReal a[3]);
 
@@ -70,7 +70,7 @@ typedef struct {
   PetscInt            n;
   const ContactState *state;     /* [n] */
   const PetscInt     *interface; /* [n] */
-  const PetscInt     *number;    /* [n] global vertices */
+  const PetscInt     *number;    /* [n] global nodes */
   const PetscReal    *x;         /* [n][3], m */
 } HistoryPairs;
 

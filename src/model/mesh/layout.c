@@ -14,7 +14,7 @@ static PetscErrorCode SupportsFlag(Model model, PetscBool fixed[][3])
     PetscInt        n;
     IS              is;
 
-    PetscCall(ModelGetSetVertices(model, support->set, &is));
+    PetscCall(ModelGetSetNodes(model, support->set, &is));
     PetscCall(ISGetLocalSize(is, &n));
     PetscCall(ISGetIndices(is, &vertices));
     for (PetscInt j = 0; j < n; j++)

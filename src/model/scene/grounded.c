@@ -1,5 +1,5 @@
 /*
-   Grounded springs and dashpots: a stiffness (N/m) or a viscosity (N s/m) in x, y, z on a named set. At vertex v it is
+   Grounded springs and dashpots: a stiffness (N/m) or a viscosity (N s/m) in x, y, z on a named set. At node v it is
    the value times the share s_v (spread.c): at every node, in all, or per area of a surface. With the latter two a finer
    mesh is as stiff as a coarse one.
 */

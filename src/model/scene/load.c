@@ -1,5 +1,5 @@
 /*
-   Loads on named sets: a total force F (N), f_v = F s_v with the shares s_v of the vertices v (spread.c), or a pressure
+   Loads on named sets: a total force F (N), f_v = F s_v with the shares s_v of the nodes v (spread.c), or a pressure
    p (Pa) on a surface, which pushes into the body,
 
       f_v = -p int N_v n dA,   n the normal out of the body,
@@ -141,7 +141,7 @@ static PetscErrorCode ForcesSize(Model model, Vec forces, PetscReal *size)
   PetscFunctionReturn(0);
 }
 
-/* The forces of a load at full size, on every rank that has the vertex, N; the caller destroys the vector. *area: of a
+/* The forces of a load at full size, on every rank that has the node, N; the caller destroys the vector. *area: of a
    surface under pressure, m^2 */
 static PetscErrorCode LoadCreateForces(Model model, const Load *load, Vec *forces, PetscReal *area)
 {

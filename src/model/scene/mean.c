@@ -19,7 +19,7 @@
 typedef struct {
   PetscInt         n;
   const PetscInt  *vertex; /* [n] that this rank owns */
-  const PetscReal *share;  /* [3 vertices] in the first of three places */
+  const PetscReal *share;  /* [3 nodes] in the first of three places */
   PetscReal        middle[3], size, inverse[9];
   PetscBool        turns; /* inverse is there */
 } MeanSet;
@@ -83,7 +83,7 @@ static void MeanRows(const MeanSet *m, const PetscReal x[3], PetscReal share, co
   }
 }
 
-/* Adds the rows of the nodes of a set to those of the vertices, b [vertices][3][6] */
+/* Adds the rows of the nodes of a set to those of the nodes, b [nodes][3][6] */
 static PetscErrorCode MeanAddRows(Model model, MeanSet *m, const ModelMeanWish *wish, const PetscReal at[3],
                                   PetscReal b[][3][6])
 {
@@ -124,7 +124,7 @@ static PetscErrorCode MeanVisit(Model model, const ModelMeanWish *wish, const Pe
   PetscFunctionBeginUser;
   PetscCall(ModelCreateShares(model, wish->owner, wish->set, SPREAD_TOTAL, &shares));
   PetscCall(VecGetArrayRead(shares, &m.share));
-  PetscCall(ModelGetOwnedVertices(model, wish->set, &is));
+  PetscCall(ModelGetOwnedNodes(model, wish->set, &is));
   PetscCall(ISGetLocalSize(is, &m.n));
   PetscCall(ISGetIndices(is, &m.vertex));
   PetscCall(MeanMoments(model, &m, second));

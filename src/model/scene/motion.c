@@ -97,7 +97,7 @@ static PetscErrorCode MotionFlag(Model model, const PrescribedMotion *motion, Pe
   IS              is;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetSetVertices(model, motion->set, &is));
+  PetscCall(ModelGetSetNodes(model, motion->set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertex));
   for (PetscInt i = 0; i < 3 * n; i++) {

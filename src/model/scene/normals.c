@@ -1,5 +1,5 @@
 /*
-   Normals of a surface at its vertices, with their shares in the area as lengths. Those of faces of first order are
+   Normals of a surface at its nodes, with their shares in the area as lengths. Those of faces of first order are
    the sums of the area vectors int N_v n dA. Of second order these may be zero at corners: there the faces' own normals
    are summed with positive weights, and get the positive shares as lengths (kernels/facet.h).
 */

@@ -99,7 +99,7 @@ static PetscErrorCode ProbeFindLocal(Model model, const Probe *probe, PetscInt *
   PetscFunctionReturn(0);
 }
 
-/* The node of one probe: its place on every rank, its vertex on the rank that records it */
+/* The node of one probe: its place on every rank, its node on the rank that records it */
 PetscErrorCode ProbeLocate(Model model, Probe *probe)
 {
   PetscMPIInt rank;

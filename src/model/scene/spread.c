@@ -1,9 +1,9 @@
 /*
-   How a quantity on a named set is spread over its vertices v: the shares s_v, with the area A (m^2) of its faces and
+   How a quantity on a named set is spread over its nodes v: the shares s_v, with the area A (m^2) of its faces and
    shares A_v in it,
 
       each      s_v = 1,
-      in all    s_v = A_v / A on a surface, 1 / n on a set without faces, at its n vertices; they add up to 1,
+      in all    s_v = A_v / A on a surface, 1 / n on a set without faces, at its n nodes; they add up to 1,
       per area  s_v = A_v on a surface.
 
    For loads A_v = int N_v dA, with the shape functions N_v of the faces. Springs, dashpots and whatever else needs
@@ -57,7 +57,7 @@ static PetscErrorCode NodesAddWeights(Model model, const char set[], PetscScalar
   IS              is;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetOwnedVertices(model, set, &is));
+  PetscCall(ModelGetOwnedNodes(model, set, &is));
   PetscCall(ISGetLocalSize(is, &n));
   PetscCall(ISGetIndices(is, &vertices));
   for (PetscInt j = 0; j < n; j++) weight[3 * vertices[j]] += 1;

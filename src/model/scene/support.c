@@ -1,5 +1,5 @@
 /*
-   Essential supports: directions in which the vertices of a named set are held.
+   Essential supports: directions in which the nodes of a named set are held.
 */
 #include "model/modelimpl.h"
 #include <squeal/options.h>
