@@ -26,7 +26,7 @@ static PetscBool ListHolds(const char list[], const char value[])
   const size_t length = strlen(value);
 
   for (const char *c = list; c; c = strchr(c, ',') ? strchr(c, ',') + 1 : NULL)
-    if (!strncmp(c, value, length) && (c[length] == ',' || !c[length])) return PETSC_TRUE;
+    if (!strncmp(c + strspn(c, " "), value, length) && strchr(", ", c[strspn(c, " ") + length])) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 

@@ -166,16 +166,55 @@ PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char *words[])
+/* Takes the blanks at both ends off */
+static PetscErrorCode ItemTrim(char item[])
 {
-  PetscBool set;
+  const size_t first = strspn(item, " \t");
+  size_t       last  = strlen(item);
 
   PetscFunctionBeginUser;
+  while (last > first && strchr(" \t", item[last - 1])) last--;
+  PetscCall(PetscMemmove(item, item + first, last - first));
+  item[last - first] = '\0';
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsCheckItems(MPI_Comm comm, const char option[], const char text[], char separator)
+{
+  const char by[] = {separator, '\0'};
+
+  PetscFunctionBeginUser;
+  if (!text[0]) PetscFunctionReturn(0); /* who reads it says what to give */
+  for (const char *c = text; c; c = strchr(c, separator) ? strchr(c, separator) + 1 : NULL)
+    PetscCheck(strspn(c, " \t") < strcspn(c, by), comm, PETSC_ERR_USER_INPUT,
+               "%s '%s' has nothing before or after a '%s': leave that out, or name what it parts", option, text, by);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsSplit(MPI_Comm comm, const char option[], const char text[], char separator, int *n,
+                            char ***items)
+{
+  PetscFunctionBeginUser;
+  PetscCall(OptionsCheckItems(comm, option, text, separator));
+  PetscCall(PetscStrToArray(text, separator, n, items));
+  for (int i = 0; i < *n; i++) PetscCall(ItemTrim((*items)[i]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char *words[])
+{
+  const char *text;
+  PetscBool   set;
+
+  PetscFunctionBeginUser;
+  PetscCall(GivenFind(option, &text, &set));
+  if (set && text && text[0]) PetscCall(OptionsCheckItems(comm, option, text, ','));
   PetscOptionsBegin(comm, NULL, "Names in the scene", NULL);
   PetscCall(PetscOptionsGetStringArray(NULL, NULL, option, words, n, &set));
   PetscCall(OptionsShow(PetscOptionsObject, option, help, "", ""));
   PetscOptionsEnd();
   if (!set) *n = 0;
+  for (PetscInt i = 0; i < *n; i++) PetscCall(ItemTrim(words[i]));
   PetscFunctionReturn(0);
 }
 

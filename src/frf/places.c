@@ -3,6 +3,7 @@
    node of its part, in directions that neither a support nor a motion holds.
 */
 #include "frfimpl.h"
+#include <squeal/options.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -135,7 +136,7 @@ PetscErrorCode FrfFindForce(Frf frf)
              "-frf_force must be given: a probe and x, y, z or three numbers, such as tip,z");
   PetscCall(OperatorsCreateVec(frf->operators, &frf->f));
   PetscCall(OperatorsGetModel(frf->operators, &model, NULL));
-  PetscCall(PetscStrToArray(frf->force, ',', &n_words, &words));
+  PetscCall(OptionsSplit(frf->comm, "-frf_force", frf->force, ',', &n_words, &words));
   if (model) {
     PetscCall(ForceOnProbe(frf, model, n_words, words));
   } else {

@@ -5,6 +5,7 @@
       d lambda / d p = sum_i d lambda / d p_i    over the parameters i of the link.
 */
 #include "sweepimpl.h"
+#include <squeal/options.h>
 #include <string.h>
 
 #define MAX_POINTS 1000000 /* of a grid */
@@ -87,7 +88,7 @@ static PetscErrorCode LinkTake(Sweep sweep, const char text[], PetscBool seen[])
   int        n;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscStrToArray(text, ',', &n, &names));
+  PetscCall(OptionsSplit(sweep->comm, "-sweep_link", text, ',', &n, &names));
   PetscCheck(n > 1, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_link '%s' must name two or more parameters, e.g. inner_mu,outer_mu", text);
   PetscCall(PetscMalloc1(n, &index));
@@ -121,7 +122,7 @@ static PetscErrorCode LinksTake(Sweep sweep)
 
   PetscFunctionBeginUser;
   if (!sweep->linked) PetscFunctionReturn(0);
-  PetscCall(PetscStrToArray(sweep->link, ':', &n, &links));
+  PetscCall(OptionsSplit(sweep->comm, "-sweep_link", sweep->link, ':', &n, &links));
   PetscCheck(n > 0, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_link '%s' must name two or more parameters, e.g. inner_mu,outer_mu", sweep->link);
   for (int i = 0; i < n; i++) PetscCall(LinkTake(sweep, links[i], seen));
@@ -152,7 +153,7 @@ PetscErrorCode SweepAxes(Sweep sweep)
   int        n_names;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscStrToArray(sweep->parameter, ',', &n_names, &names));
+  PetscCall(OptionsSplit(sweep->comm, "-sweep_parameter", sweep->parameter, ',', &n_names, &names));
   PetscCheck(n_names == 1 || n_names == 2, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_parameter '%s' must name one or two options of the scene, e.g. pad_young", sweep->parameter);
   PetscCheck((n_names == 2) == (sweep->values[1][0] != '\0'), sweep->comm, PETSC_ERR_USER_INPUT,

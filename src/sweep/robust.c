@@ -5,6 +5,7 @@
    Combinations between those looked at are not excluded.
 */
 #include "sweepimpl.h"
+#include <squeal/options.h>
 
 #define MAX_CORNERS 64  /* of a box in many dimensions, only the first are looked at */
 #define N_INSIDE    200 /* points of the Halton sequence */
@@ -49,7 +50,7 @@ static PetscErrorCode BoxRead(Sweep sweep, ParameterBox *box)
   int    n;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscStrToArray(sweep->uncertain, ',', &n, &names));
+  PetscCall(OptionsSplit(sweep->comm, "-sweep_uncertain", sweep->uncertain, ',', &n, &names));
   PetscCheck(n >= 1 && n <= SWEEP_MAX_UNCERTAIN, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_uncertain '%s' must name 1 to %d parameters", sweep->uncertain, SWEEP_MAX_UNCERTAIN);
   PetscCheck(sweep->n_percent == 1 || sweep->n_percent == n, sweep->comm, PETSC_ERR_USER_INPUT,
