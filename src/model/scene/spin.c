@@ -25,11 +25,14 @@ PetscErrorCode PartReadSpin(OptionsItems PetscOptionsObject, Part *part)
 {
   const MPI_Comm comm = PetscOptionsObject->comm;
   Spin          *s    = &part->spin;
-  PetscBool      has_axis, has_centre;
+  PetscBool      has_axis, has_centre, named;
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsReal("-spin", "rad/s about -spin_axis, in modes: gyroscopic and centrifugal terms", "model.h",
                              s->rate, &s->rate, &s->given));
+  PetscCall(PetscOptionsHasName(PetscOptionsObject->options, PetscOptionsObject->prefix, "-spin", &named));
+  PetscCheck(!named || s->given, comm, PETSC_ERR_USER_INPUT, "-%s_spin has no value; give one, or leave the option out",
+             part->name);
   PetscCall(OptionsGetReals(PetscOptionsObject, "-spin_axis", "x,y,z, about which a positive spin is right-handed", 3,
                             s->axis, &has_axis));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-spin_centre", "a point of that axis, m", 3, s->centre, &has_centre));
