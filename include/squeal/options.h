@@ -75,15 +75,15 @@ PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option
     The caller frees them. @*/
 PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char *words[]);
 
-/*@ OptionsSplit - the items of a list such as "a,b" without the blanks around them. Not collective, same call on all
+/*@ ValuesSplit - the items of a list such as "a,b" without the blanks around them. Not collective, same call on all
     ranks; comm is that of errors. The caller frees them with PetscStrToArrayDestroy(). Errors: as
-    OptionsCheckItems(). @*/
-PetscErrorCode OptionsSplit(MPI_Comm comm, const char option[], const char text[], char separator, int *n,
-                            char ***items);
+    ValuesCheckItems(). @*/
+PetscErrorCode ValuesSplit(MPI_Comm comm, const char option[], const char text[], char separator, int *n,
+                           char ***items);
 
-/*@ OptionsCheckItems - raises an error for an empty item of a list, as "a,,b" and "a," have. Not collective, same call
+/*@ ValuesCheckItems - raises an error for an empty item of a list, as "a,,b" and "a," have. Not collective, same call
     on all ranks. @*/
-PetscErrorCode OptionsCheckItems(MPI_Comm comm, const char option[], const char text[], char separator);
+PetscErrorCode ValuesCheckItems(MPI_Comm comm, const char option[], const char text[], char separator);
 
 /*@ ValuesParse - the values that the text of an option stands for: "first:last:n", equal steps,
     "first:last:n:log", equal ratios (is_log), or "v1,v2,...", ascending or descending. Not collective, same call on all

@@ -120,7 +120,7 @@ PetscErrorCode OptionsCheckValues(MPI_Comm comm)
     PetscCall(PetscOptionsFindPair(NULL, NULL, word, &text, &set));
     PetscCheck(!set || (text && text[0]), comm, PETSC_ERR_USER_INPUT,
                "%s has no value; give one, or leave the option out", word);
-    if (set && strspn(text, "0123456789.+-eE, ") == strlen(text)) PetscCall(OptionsCheckItems(comm, word, text, ','));
+    if (set && strspn(text, "0123456789.+-eE, ") == strlen(text)) PetscCall(ValuesCheckItems(comm, word, text, ','));
   }
   PetscCall(PetscFree(all));
   PetscFunctionReturn(0);

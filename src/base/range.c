@@ -61,7 +61,7 @@ static PetscErrorCode ListParse(const ValuesOption *option, PetscInt *n, PetscRe
   int    n_words;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsSplit(option->comm, option->name, option->text, ',', &n_words, &words));
+  PetscCall(ValuesSplit(option->comm, option->name, option->text, ',', &n_words, &words));
   PetscCheck(n_words > 0, option->comm, PETSC_ERR_USER_INPUT,
              "%s is empty: give first:last:n, first:last:n:log or v1,v2,...", option->name);
   *n = n_words;
@@ -89,7 +89,7 @@ PetscErrorCode ValuesParse(MPI_Comm comm, const char option[], const char text[]
   PetscFunctionBeginUser;
   *is_log = PETSC_FALSE;
   if (strchr(text, ':')) {
-    PetscCall(OptionsSplit(comm, option, text, ':', &n_words, &words));
+    PetscCall(ValuesSplit(comm, option, text, ':', &n_words, &words));
     PetscCall(RangeParse(&given, n_words, words, n, value, is_log));
     PetscCall(PetscStrToArrayDestroy(n_words, words));
   } else {

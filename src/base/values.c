@@ -179,7 +179,7 @@ static PetscErrorCode ItemTrim(char item[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsCheckItems(MPI_Comm comm, const char option[], const char text[], char separator)
+PetscErrorCode ValuesCheckItems(MPI_Comm comm, const char option[], const char text[], char separator)
 {
   const char by[] = {separator, '\0'};
 
@@ -191,11 +191,10 @@ PetscErrorCode OptionsCheckItems(MPI_Comm comm, const char option[], const char 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsSplit(MPI_Comm comm, const char option[], const char text[], char separator, int *n,
-                            char ***items)
+PetscErrorCode ValuesSplit(MPI_Comm comm, const char option[], const char text[], char separator, int *n, char ***items)
 {
   PetscFunctionBeginUser;
-  PetscCall(OptionsCheckItems(comm, option, text, separator));
+  PetscCall(ValuesCheckItems(comm, option, text, separator));
   PetscCall(PetscStrToArray(text, separator, n, items));
   for (int i = 0; i < *n; i++) PetscCall(ItemTrim((*items)[i]));
   PetscFunctionReturn(0);
@@ -208,7 +207,7 @@ PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], const char he
 
   PetscFunctionBeginUser;
   PetscCall(GivenFind(option, &text, &set));
-  if (set && text && text[0]) PetscCall(OptionsCheckItems(comm, option, text, ','));
+  if (set && text && text[0]) PetscCall(ValuesCheckItems(comm, option, text, ','));
   PetscOptionsBegin(comm, NULL, "Names in the scene", NULL);
   PetscCall(PetscOptionsGetStringArray(NULL, NULL, option, words, n, &set));
   PetscCall(OptionsShow(PetscOptionsObject, option, help, "", ""));

@@ -136,7 +136,7 @@ PetscErrorCode FrfFindForce(Frf frf)
              "-frf_force must be given: a probe and x, y, z or three numbers, such as tip,z");
   PetscCall(OperatorsCreateVec(frf->operators, &frf->f));
   PetscCall(OperatorsGetModel(frf->operators, &model, NULL));
-  PetscCall(OptionsSplit(frf->comm, "-frf_force", frf->force, ',', &n_words, &words));
+  PetscCall(ValuesSplit(frf->comm, "-frf_force", frf->force, ',', &n_words, &words));
   if (model) {
     PetscCall(ForceOnProbe(frf, model, n_words, words));
   } else {

@@ -88,7 +88,7 @@ static PetscErrorCode LinkTake(Sweep sweep, const char text[], PetscBool seen[])
   int        n;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsSplit(sweep->comm, "-sweep_link", text, ',', &n, &names));
+  PetscCall(ValuesSplit(sweep->comm, "-sweep_link", text, ',', &n, &names));
   PetscCheck(n > 1, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_link '%s' must name two or more parameters, e.g. inner_mu,outer_mu", text);
   PetscCall(PetscMalloc1(n, &index));
@@ -122,7 +122,7 @@ static PetscErrorCode LinksTake(Sweep sweep)
 
   PetscFunctionBeginUser;
   if (!sweep->linked) PetscFunctionReturn(0);
-  PetscCall(OptionsSplit(sweep->comm, "-sweep_link", sweep->link, ':', &n, &links));
+  PetscCall(ValuesSplit(sweep->comm, "-sweep_link", sweep->link, ':', &n, &links));
   PetscCheck(n > 0, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_link '%s' must name two or more parameters, e.g. inner_mu,outer_mu", sweep->link);
   for (int i = 0; i < n; i++) PetscCall(LinkTake(sweep, links[i], seen));
@@ -153,7 +153,7 @@ PetscErrorCode SweepAxes(Sweep sweep)
   int        n_names;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsSplit(sweep->comm, "-sweep_parameter", sweep->parameter, ',', &n_names, &names));
+  PetscCall(ValuesSplit(sweep->comm, "-sweep_parameter", sweep->parameter, ',', &n_names, &names));
   PetscCheck(n_names == 1 || n_names == 2, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_parameter '%s' must name one or two options of the scene, e.g. pad_young", sweep->parameter);
   PetscCheck((n_names == 2) == (sweep->values[1][0] != '\0'), sweep->comm, PETSC_ERR_USER_INPUT,

@@ -50,7 +50,7 @@ static PetscErrorCode BoxRead(Sweep sweep, ParameterBox *box)
   int    n;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsSplit(sweep->comm, "-sweep_uncertain", sweep->uncertain, ',', &n, &names));
+  PetscCall(ValuesSplit(sweep->comm, "-sweep_uncertain", sweep->uncertain, ',', &n, &names));
   PetscCheck(n >= 1 && n <= SWEEP_MAX_UNCERTAIN, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_uncertain '%s' must name 1 to %d parameters", sweep->uncertain, SWEEP_MAX_UNCERTAIN);
   PetscCheck(sweep->n_percent == 1 || sweep->n_percent == n, sweep->comm, PETSC_ERR_USER_INPUT,
