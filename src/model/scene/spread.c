@@ -3,14 +3,18 @@
    shares A_v in it,
 
       each      s_v = 1,
-      in all    s_v = A_v / A on a surface, 1 / n on a set without faces, at its n nodes; they add up to 1,
+      in all    s_v = A_v / A on a surface, L_v / L on a curve of edges, 1 / n on other sets of n nodes; they add up to 1,
       per area  s_v = A_v on a surface.
 
-   For loads A_v = int N_v dA, with the shape functions N_v of the faces. Springs, dashpots and whatever else needs
+   L_v (m) is the integral of N_v along the edges, straight between neighbouring nodes: halves of an edge, or by Simpson's
+   rule a sixth at its ends and two thirds in its middle. For loads A_v = int N_v dA, with the shape functions N_v of the
+   faces. Springs, dashpots and whatever else needs
    shares above 0 has the positive ones of kernels/facet.h; of faces of first order they are the same.
 */
 #include "model/modelimpl.h"
+#include "base/vec3.h"
 #include "kernels/facet.h"
+#include <petscsf.h>
 
 /* Whether any rank has a face of the set */
 static PetscErrorCode SetHasFaces(Model model, const char set[], PetscBool *has)
@@ -66,6 +70,51 @@ static PetscErrorCode NodesAddWeights(Model model, const char set[], PetscScalar
   PetscFunctionReturn(0);
 }
 
+/* Adds the shares in the length (m) of an edge to weight[3 v]; nodes of its ends, and -1 or that of its middle */
+static void EdgeAddWeights(const Mesh *mesh, const PetscInt end[2], PetscInt middle, PetscScalar weight[])
+{
+  const PetscReal *x[3]   = {&mesh->x[3 * end[0]], &mesh->x[3 * end[1]], middle < 0 ? NULL : &mesh->x[3 * middle]};
+  PetscReal        length = 0;
+
+  for (int i = 0; i < 2; i++) {
+    const PetscReal *to = middle < 0 ? x[1 - i] : x[2];
+
+    length +=
+      Vec3Length((const PetscReal[3]){to[0] - x[i][0], to[1] - x[i][1], to[2] - x[i][2]}) / (middle < 0 ? 2 : 1);
+  }
+  for (int i = 0; i < 2; i++) weight[3 * end[i]] += length / (middle < 0 ? 2 : 6);
+  if (middle >= 0) weight[3 * middle] += 4 * length / 6;
+}
+
+/* Adds the shares in the length (m) of the edges of a set, each on the rank that owns it, to weight[3 v] */
+static PetscErrorCode CurveAddWeights(Model model, const char set[], PetscScalar weight[])
+{
+  const PetscInt *p, *shared, *ends;
+  PetscInt        eStart, eEnd, n = 0, n_shared, place;
+  PetscSF         sf;
+  IS              points;
+
+  PetscFunctionBeginUser;
+  PetscCall(SetGetPoints(model, set, &points));
+  PetscCall(DMPlexGetDepthStratum(model->dm, 1, &eStart, &eEnd));
+  PetscCall(DMGetPointSF(model->dm, &sf));
+  PetscCall(PetscSFGetGraph(sf, NULL, &n_shared, &shared, NULL)); /* points that another rank owns, ascending */
+  if (points) PetscCall(ISGetLocalSize(points, &n));
+  if (points) PetscCall(ISGetIndices(points, &p));
+  for (PetscInt i = 0; i < n; i++) {
+    if (p[i] < eStart || p[i] >= eEnd) continue;
+    place = -1;
+    if (n_shared > 0) PetscCall(PetscFindInt(p[i], n_shared, shared, &place));
+    if (place >= 0) continue;
+    PetscCall(DMPlexGetCone(model->dm, p[i], &ends));
+    EdgeAddWeights(&model->mesh, (const PetscInt[2]){model->node_of[ends[0]], model->node_of[ends[1]]},
+                   model->node_of[p[i]], weight);
+  }
+  if (points) PetscCall(ISRestoreIndices(points, &p));
+  PetscCall(ISDestroy(&points));
+  PetscFunctionReturn(0);
+}
+
 /* Sums the weights of this rank over all ranks into *total */
 static PetscErrorCode WeightsTotal(Model model, Vec weights, PetscReal *total)
 {
@@ -88,8 +137,15 @@ PetscErrorCode SharesCreate(Model model, const char owner[], const char set[], S
              "-%s_set %s has no faces: a value per area needs a surface", owner, set);
   PetscCall(ModelCreateNodal(model, shares));
   PetscCall(VecGetArray(*shares, &share));
-  PetscCall(faces ? SurfaceAddWeights(model, set, consistent, share) : NodesAddWeights(model, set, share));
+  if (faces) PetscCall(SurfaceAddWeights(model, set, consistent, share));
+  if (!faces && spread == SPREAD_TOTAL) PetscCall(CurveAddWeights(model, set, share));
   PetscCall(VecRestoreArray(*shares, &share));
+  PetscCall(WeightsTotal(model, *shares, &total));
+  if (total == 0) { /* neither faces nor edges */
+    PetscCall(VecGetArray(*shares, &share));
+    PetscCall(NodesAddWeights(model, set, share));
+    PetscCall(VecRestoreArray(*shares, &share));
+  }
   if (spread == SPREAD_TOTAL) {
     PetscCall(WeightsTotal(model, *shares, &total));
     PetscCheck(total > 0, model->comm, PETSC_ERR_USER_INPUT,
