@@ -57,6 +57,16 @@ static PetscReal PartCrossing(const Part *p, const PartExtent *e)
   return PetscMax(e->size[0], PetscMax(e->size[1], e->size[2])) / PetscSqrtReal(p->young / p->density);
 }
 
+/* Speed of waves by the least of all moduli, m/s; shear moduli count as the Young's modulus of about twice as much */
+static PetscReal PartSlowest(const Part *p)
+{
+  const EngineeringConstants *e     = &p->anisotropy.constants;
+  PetscReal                   least = p->young;
+
+  for (int k = 0; k < 3 && p->anisotropy.n; k++) least = PetscMin(least, PetscMin(e->young[k], 2 * e->shear[k]));
+  return PetscSqrtReal(least / p->density);
+}
+
 /* What the units of a part probably are where they do not fit together; NULL where they do */
 static const char *PartDoubt(const Part *p, const PartExtent *e)
 {
@@ -70,6 +80,7 @@ static const char *PartDoubt(const Part *p, const PartExtent *e)
   if (p->density < LIGHTEST_SI)
     return "the density is in kg/mm^3 or g/mm^3: give kg/m^3 with Pa and m, or t/mm^3 with MPa and mm";
   if (speed < SLOWEST) return "the modulus is in MPa or GPa: give Pa (steel 210e9)";
+  if (PartSlowest(p) < SLOWEST) return "one of the moduli is in MPa or GPa: give all in Pa";
   if (longest > LARGEST_SI) return "the mesh is in mm: scale it to m, or give t/mm^3 and MPa";
   if (e->volume * p->density > HEAVIEST_PART) return "the mesh is in mm or cm: scale it to m";
   return NULL;
