@@ -159,6 +159,7 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
 {
   static const char all[]      = "not used by modes with all pairs closed; give -modes_contact static";
   static const char no_probe[] = "not used without -analysis transient or frf";
+  static const char unloaded[] = "not used by -analysis static, which is found without the load of the spin";
   static const char turning[] = "not used by -analysis transient; a contact's -..._kinematics turning turns its master";
   const ModelScene *scene;
 
@@ -167,7 +168,7 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
   if (s->modes && !statics) PetscCall(ScopeRefuse(comm, "model", "gravity", all));
   if (!s->transient && !s->modes) PetscCall(ScopeCheckStill(comm, scene));
   for (PetscInt i = 0; i < scene->n_parts && !s->modes; i++)
-    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "spin", s->transient ? turning : scope_still));
+    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "spin", s->transient ? turning : unloaded));
   for (PetscInt i = 0; i < scene->n_probes && !s->transient && !s->frf; i++)
     PetscCall(ScopeRefuse(comm, scene->probes[i].name, "at", no_probe));
   for (PetscInt i = 0; i < scene->n_circles && !s->transient && !s->frf; i++)

@@ -52,6 +52,8 @@ FAULTS = (
      "PetscCall(MatZeroEntries(S));\n  PetscCall(MatAXPY(S, -1, Q,", "spin"),
     ("half of the gyroscopic term", "src/kernels/spin.h", "dV * (N[a] * flow[b] - N[b] * flow[a])",
      "0.5 * dV * (N[a] * flow[b] - N[b] * flow[a])", "spin-1 spin"),
+    ("the gyroscopic term has the other sign", "src/kernels/spin.h", "dV * (N[a] * flow[b] - N[b] * flow[a])",
+     "dV * (N[b] * flow[a] - N[a] * flow[b])", "spin"),
     ("residues are those of the first row, not of the blow", "scripts/squeal/identify.py", "numpy.outer(part, time)",
      "numpy.outer(part, time - time[0])", "response"),
 )

@@ -22,6 +22,10 @@
    body are faster by n Omega, those against it slower. A rigid shift costs nothing: w . grad of it is zero. A rigid tilt
    phi has no stiffness either, phi' K_sigma phi = phi' Q phi, and turns at Omega I_axis / I_across (nutation).
 
+   Damping C = alpha M + beta K is taken in the frame, C u' in place of C (u' + Omega w . grad u). For a wave of the
+   frequency omega_0 in the turning body this is off by the factor 1 +- n Omega / omega_0, as the frequency in the frame is:
+   waves that run with the body are damped so much too strongly, those against it too weakly.
+
    Reference: U. Nackenhorst, The ALE-formulation of bodies in rolling contact, Computer Methods in Applied Mechanics and
    Engineering 193 (2004) 4299-4322.
 */

@@ -90,13 +90,14 @@ PetscBool ModelMaterialIsSwept(Model model, PetscInt part, const ModelLines *lin
   PetscReal         scale = 0;
 
   if (!a->n) return PETSC_TRUE;
-  if (!a->cylinder) return lines->turned ? PETSC_FALSE : PETSC_TRUE;
+  if (!a->cylinder && (!lines->turned || a->n != 2)) return lines->turned ? PETSC_FALSE : PETSC_TRUE;
   for (PetscInt i = 0; i < lines->n_lines * lines->n_nodes; i++)
     for (int d = 0; d < 3; d++) scale = PetscMax(scale, PetscAbsReal(model->mesh.x[3 * lines->vertex[i] + d]));
   for (int d = 0; d < 3; d++) {
     if (d == lines->axis) continue;
     if (PetscAbsReal(a->axis[2][d]) > CARRIED) return PETSC_FALSE;
-    if (lines->turned && PetscAbsReal(a->centre[d] - lines->centre[d]) > CARRIED * scale) return PETSC_FALSE;
+    if (a->cylinder && lines->turned && PetscAbsReal(a->centre[d] - lines->centre[d]) > CARRIED * scale)
+      return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }

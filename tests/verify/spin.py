@@ -17,10 +17,15 @@
         the ring of a mesh that turns, released in the shape of its mode at 256 Hz, with the forces of Coriolis alone: its
         pattern is two waves of the turning frame with (n^2 + 1) w^2 - 4 n W w - n^2 (n^2 - 1)^2 E I / (rho A R^4) = 0. They
         are 4 n W / (n^2 + 1) apart, and those of MODES, at the same spin in the fixed frame, 2 n W less that.
+    verify/spin.py waves BACK FORTH OMEGA
+        the plate's frf.csv near both waves with one nodal diameter: exp(i (omega t - theta)) runs with a positive spin and is
+        the faster one, so that a probe 22.5 degrees on is behind by that angle; before it at the slower one. The force does
+        work: Im(u / F) < 0. BACK has the opposite spin, and opposite angles.
     verify/spin.py swept MODES SWEEP VALUE
         modes.csv of MODES against the point of SWEEP's sweep.csv with that value: as many, and the same frequencies.
 """
 
+import cmath
 import csv
 import math
 import sys
@@ -33,6 +38,7 @@ from convergence import Judge, nearest, read_modes
 YOUNG, POISSON, DENSITY = 210e9, 0.3, 7800
 RING = 0.098, 0.102, 0.004  # inner and outer radius, thickness, m
 PLATE = 0.06, 0.12, 0.002
+ANGLE = 6  # degrees, for what the other modes add
 SPLIT, LEVEL, STIFFENING, TIME, SWEPT = 3e-4, 2e-4, 8e-3, 1e-3, 1e-6
 # Stiffening, a difference of squares, has 7.3e-3 by the mesh of 8 x 96 elements; 5.0e-3 with 16 x 96, 5.2e-3 with 8 x 192.
 # Of the split 2e-4 is the plate's thickness, 5e-5 that of half of it; of the ring 2.3e-4 its width, 3e-5 half of it
@@ -138,6 +144,17 @@ def disc(judge, rest, modes, spin):
             compare(judge, "    split, Hz", found[1] - found[0], n * spin / math.pi, SPLIT)
 
 
+def waves(judge, back, forth):
+    for folder, sign in ((forth, 1), (back, -1)):
+        with (Path(folder) / "frf.csv").open(newline="") as file:
+            rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+        for row, expected in zip(rows, (22.5 * sign, -22.5 * sign), strict=True):
+            tip, beside = (complex(row[f"{probe}_z_re_m_n"], row[f"{probe}_z_im_m_n"]) for probe in ("tip", "beside"))
+            angle = math.degrees(cmath.phase(beside / tip))
+            print(f"{row['freq_hz']:.0f} Hz: {angle:.1f} degrees, {expected} expected{judge.within(angle - expected, -ANGLE, ANGLE)}"
+                  f"{judge.within(tip.imag, -math.inf, 0)}")
+
+
 def swept(judge, modes, folder, value):
     with (Path(folder) / "sweep.csv").open(newline="") as file:
         points = sorted(float(row["freq_hz"]) for row in csv.DictReader(file) if math.isclose(float(row["value"]), value))
@@ -152,6 +169,8 @@ def main(what, rest, spinning, *others):
     print(f"{'':44} {'computed':>12}  {'closed form':>12}  {'relative':>9}")
     if what == "turning":
         turning(judge, read_modes(rest), read_modes(spinning), others[0], spin)
+    elif what == "waves":
+        waves(judge, rest, spinning)
     elif what == "swept":
         swept(judge, read_modes(rest), spinning, spin)
     else:

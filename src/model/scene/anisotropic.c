@@ -116,26 +116,40 @@ static PetscErrorCode AxesSet(MPI_Comm comm, const char name[], PetscReal given[
   PetscFunctionReturn(0);
 }
 
-/* Raises an error that names the condition of a positive definite stiffness that fails */
-static PetscErrorCode ConstantsCheckDefinite(MPI_Comm comm, const char name[], const EngineeringConstants *e)
+/* Raises an error that names the condition of a positive definite stiffness that fails, by the names of n = 2 or 3 moduli */
+static PetscErrorCode ConstantsCheckDefinite(MPI_Comm comm, const char name[], PetscInt n,
+                                             const EngineeringConstants *e)
 {
-  const double determinant = OrthotropicDeterminant(e);
+  static const char *const axes[2][3] = {
+    {"p", "p", "z"},
+    {"1", "2", "3"}
+  };
+  static const char *const pairs[2][3] = {
+    {"p",  "pz", "pz"},
+    {"12", "13", "23"}
+  };
+  const char *const *axis = axes[n - 2], *const *pair = pairs[n - 2];
+  const double       determinant = OrthotropicDeterminant(e);
 
   PetscFunctionBeginUser;
   for (int i = 0; i < 3; i++)
-    PetscCheck(e->young[i] > 0, comm, PETSC_ERR_USER_INPUT, "-%s_young: E_%d %.6g must be positive (Pa)", name, i + 1,
+    PetscCheck(e->young[i] > 0, comm, PETSC_ERR_USER_INPUT, "-%s_young: E_%s %.6g must be positive (Pa)", name, axis[i],
                e->young[i]);
   for (int k = 0; k < 3; k++) {
     const int    i = orthotropic_pair[k][0], j = orthotropic_pair[k][1];
     const double limit = PetscSqrtReal(e->young[i] / e->young[j]);
 
     PetscCheck(PetscAbsReal(e->poisson[k]) < limit, comm, PETSC_ERR_USER_INPUT,
-               "-%s_poisson: |nu_%d%d| %.6g must be below sqrt(E_%d / E_%d) = %.6g, or the stiffness is not positive "
+               "-%s_poisson: |nu_%s| %.6g must be below sqrt(E_%s / E_%s) = %.6g, or the stiffness is not positive "
                "definite",
-               name, i + 1, j + 1, PetscAbsReal(e->poisson[k]), i + 1, j + 1, limit);
-    PetscCheck(e->shear[k] > 0, comm, PETSC_ERR_USER_INPUT, "-%s_shear: G_%d%d %.6g must be positive (Pa)", name, i + 1,
-               j + 1, e->shear[k]);
+               name, pair[k], PetscAbsReal(e->poisson[k]), axis[i], axis[j], limit);
+    PetscCheck(e->shear[k] > 0, comm, PETSC_ERR_USER_INPUT, "-%s_shear: G_%s %.6g must be positive (Pa)", name, pair[k],
+               e->shear[k]);
   }
+  PetscCheck(n == 3 || determinant > 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_poisson: (1 + nu_p) (1 - nu_p - 2 nu_pz nu_zp) = %.6g must be positive, or the stiffness is not "
+             "positive definite; nu_p %.6g, nu_pz %.6g, nu_zp = nu_pz E_z / E_p",
+             name, determinant, e->poisson[0], e->poisson[1]);
   PetscCheck(determinant > 0, comm, PETSC_ERR_USER_INPUT,
              "-%s_poisson: 1 - nu_12 nu_21 - nu_13 nu_31 - nu_23 nu_32 - 2 nu_21 nu_32 nu_13 = %.6g must be positive, "
              "or the stiffness is not positive definite; nu_12 %.6g, nu_13 %.6g, nu_23 %.6g",
@@ -193,7 +207,7 @@ PetscErrorCode PartReadElasticity(OptionsItems PetscOptionsObject, Part *part)
   a->cylinder = given & AXIS_CYLINDER ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(AxesSet(comm, part->name, axis, a));
   ConstantsComplete(n_young, young, poisson, shear, &a->constants);
-  PetscCall(ConstantsCheckDefinite(comm, part->name, &a->constants));
+  PetscCall(ConstantsCheckDefinite(comm, part->name, a->n, &a->constants));
   OrthotropicStiffness(&a->constants, a->C);
   PetscFunctionReturn(0);
 }

@@ -69,7 +69,7 @@ PetscErrorCode BasisFillReal(Basis *basis, Modes modes, PetscInt n_modes, PetscR
 
   PetscFunctionBeginUser;
   PetscCheck(ReducedFrictionless(&basis->reduced, p), basis->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_method real: the matrices cannot be made frictionless; use reduced");
+             "-sweep_method real: the matrices cannot be made symmetric without friction and spin; use reduced");
   PetscCall(PencilSetParameters(basis->pencil, p));
   PetscCall(ModesGetBand(modes, band, &growth));
   PetscCall(ModesSetNearest(modes, 0, n_modes));
