@@ -56,7 +56,7 @@ static PetscErrorCode JointColumnsCreate(Operators o, const Joint *joint, JointC
   }
   PetscCall(GatherRecords(o->comm, n, sizeof(*own), own, &c->n, &c->column));
   PetscCall(PetscFree(own));
-  qsort(c->column, (size_t)c->n, sizeof(*c->column), JointColumnCompare);
+  if (c->n) qsort(c->column, (size_t)c->n, sizeof(*c->column), JointColumnCompare);
   PetscCheck(
     c->n <= JOINT_MOST, o->comm, PETSC_ERR_SUP,
     "%s %s has %" PetscInt_FMT " unknowns, each of which it couples to all others, %.1f GB a matrix; name sets "
