@@ -263,9 +263,9 @@ def draw_panel(axes, study, branches, loud, quantity, scale):
     return bars
 
 
-def make_panels(panels):
-    """Figure and axes of fixed margins, in inches; the right one is for the labels."""
-    left, right, top, bottom, between = 0.85, 1.05, 0.75, 1.05, 0.2
+def make_panels(panels, longest):
+    """Figure and axes of fixed margins, in inches; the right one is for labels of up to `longest` letters."""
+    left, right, top, bottom, between = 0.85, max(1.05, 0.4 + 0.1 * longest), 0.75, 1.05, 0.2
     height = sum(HEIGHTS[name] for name in panels) + top + bottom + between * (len(panels) - 1)
     figure = plt.figure(figsize=(WIDTH, height))
     axes, above = {}, height - top
@@ -282,7 +282,7 @@ def draw_lines(study, panels, labels):
     """The picture; labels: auto, all or none."""
     scale = 1e-3 if max(row["freq_hz"] for row in study.rows) >= 1000 else 1.0
     branches, loud = branches_of(study, scale)
-    figure, axes = make_panels(panels)
+    figure, axes = make_panels(panels, max((len(branch.label) for branch in branches), default=0))
     bars = False
     for name in panels:
         bars |= draw_panel(axes[name], study, branches, loud, name, scale)

@@ -58,7 +58,7 @@ PetscErrorCode InertiaSetUp(External external)
     LayoutSet(layout, i, force, external->weight);
     if (layout->owned[i]) LayoutSet(layout, i, force, external->own_weight);
   }
-  PetscCall(InertiaAddPoints(external));
+  if (external->model) PetscCall(InertiaAddPoints(external)); /* without a model there are no points */
   PetscFunctionReturn(0);
 }
 
