@@ -28,3 +28,13 @@ typedef struct {
   PetscReal inertia[6];   /* xx, yy, zz, xy, xz, yz about the place, where the mass is, kg m^2 */
   ModelMean mean;         /* q of the point, or q_a - q_b; after ModelSetUp() */
 } Joint;
+
+/* Whether a point has mass or inertia */
+static inline PetscBool JointIsMassive(const Joint *joint)
+{
+  PetscBool is = joint->mass > 0 ? PETSC_TRUE : PETSC_FALSE;
+
+  for (int k = 0; k < 6; k++)
+    if (joint->inertia[k] != 0) is = PETSC_TRUE;
+  return is;
+}

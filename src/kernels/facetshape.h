@@ -14,6 +14,7 @@
 */
 #pragma once
 
+#include "quadrature.h"
 #include <math.h>
 
 #define FACET_NODES 9 /* of a facet, at most */
@@ -223,46 +224,38 @@ static const double triangle_node[6][2] = {
   {0,   0.5}
 };
 
-#define FACET_GAUSS2 0.57735026918962576451
-#define FACET_GAUSS3 0.77459666924148337704
-
 static const double square4_point[4][3] = {
-  {-FACET_GAUSS2, -FACET_GAUSS2, 1},
-  {FACET_GAUSS2,  -FACET_GAUSS2, 1},
-  {-FACET_GAUSS2, FACET_GAUSS2,  1},
-  {FACET_GAUSS2,  FACET_GAUSS2,  1}
+  {-GAUSS2, -GAUSS2, 1},
+  {GAUSS2,  -GAUSS2, 1},
+  {-GAUSS2, GAUSS2,  1},
+  {GAUSS2,  GAUSS2,  1}
 };
 
 static const double square9_point[9][3] = {
-  {-FACET_GAUSS3, -FACET_GAUSS3, 25 / 81.0},
-  {0,             -FACET_GAUSS3, 40 / 81.0},
-  {FACET_GAUSS3,  -FACET_GAUSS3, 25 / 81.0},
-  {-FACET_GAUSS3, 0,             40 / 81.0},
-  {0,             0,             64 / 81.0},
-  {FACET_GAUSS3,  0,             40 / 81.0},
-  {-FACET_GAUSS3, FACET_GAUSS3,  25 / 81.0},
-  {0,             FACET_GAUSS3,  40 / 81.0},
-  {FACET_GAUSS3,  FACET_GAUSS3,  25 / 81.0}
+  {-GAUSS3, -GAUSS3, 25 / 81.0},
+  {0,       -GAUSS3, 40 / 81.0},
+  {GAUSS3,  -GAUSS3, 25 / 81.0},
+  {-GAUSS3, 0,       40 / 81.0},
+  {0,       0,       64 / 81.0},
+  {GAUSS3,  0,       40 / 81.0},
+  {-GAUSS3, GAUSS3,  25 / 81.0},
+  {0,       GAUSS3,  40 / 81.0},
+  {GAUSS3,  GAUSS3,  25 / 81.0}
 };
 
 static const double triangle1_point[1][3] = {
   {1 / 3.0, 1 / 3.0, 0.5}
 };
 
-/* Radon's rule of degree 5: points (6 -+ sqrt 15) / 21 from two corners, weights (155 -+ sqrt 15) / 2400 */
-#define RADON_A 0.10128650732345633880
-#define RADON_B 0.47014206410511508977
-#define RADON_P 0.06296959027241357629
-#define RADON_Q 0.06619707639425309036
-
+/* Radon's rule of degree 5 (quadrature.h) */
 static const double triangle7_point[7][3] = {
-  {1 / 3.0,         1 / 3.0,         0.1125 },
-  {RADON_A,         RADON_A,         RADON_P},
-  {1 - 2 * RADON_A, RADON_A,         RADON_P},
-  {RADON_A,         1 - 2 * RADON_A, RADON_P},
-  {RADON_B,         RADON_B,         RADON_Q},
-  {1 - 2 * RADON_B, RADON_B,         RADON_Q},
-  {RADON_B,         1 - 2 * RADON_B, RADON_Q}
+  {1 / 3.0, 1 / 3.0, TRI_WM},
+  {TRI_A,   TRI_A,   TRI_WA},
+  {TRI_A1,  TRI_A,   TRI_WA},
+  {TRI_A,   TRI_A1,  TRI_WA},
+  {TRI_B,   TRI_B,   TRI_WB},
+  {TRI_B1,  TRI_B,   TRI_WB},
+  {TRI_B,   TRI_B1,  TRI_WB}
 };
 
 #define SQUARE                                                                                                         \

@@ -285,11 +285,9 @@ PetscErrorCode OperatorsCheckSpinningPoints(Operators o, PetscInt part)
   PetscCall(ModelGetScene(o->model, &scene));
   for (PetscInt i = 0; i < scene->n_points; i++) {
     const Joint *point = &scene->points[i];
-    PetscBool    on = PETSC_FALSE, counts = point->rigid || point->mass > 0 ? PETSC_TRUE : PETSC_FALSE;
+    PetscBool    on    = PETSC_FALSE;
 
-    for (int k = 0; k < 6; k++)
-      if (point->inertia[k] != 0) counts = PETSC_TRUE;
-    if (counts) PetscCall(PointIsOnPart(o, point, part, &on));
+    if (point->rigid || JointIsMassive(point)) PetscCall(PointIsOnPart(o, point, part, &on));
     PetscCheck(!on, o->comm, PETSC_ERR_SUP,
                "point %s is %s on part %s, which -%s_spin turns: that is not supported; put it on a part that stands "
                "still",

@@ -56,10 +56,8 @@ static PetscErrorCode BodyJointSetUp(Bodies b, const Joint *like, Vec nodal, Bod
 {
   PetscFunctionBeginUser;
   joint->like    = like;
-  joint->massive = like->mass > 0 ? PETSC_TRUE : PETSC_FALSE;
-  for (int i = 0; i < 6; i++)
-    if (like->inertia[i] != 0) joint->massive = PETSC_TRUE;
-  joint->heavy = joint->massive && !like->rigid ? PETSC_TRUE : PETSC_FALSE;
+  joint->massive = JointIsMassive(like);
+  joint->heavy   = joint->massive && !like->rigid ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(JointFindNodes(b, &like->mean, nodal, joint));
   for (int j = 0; j < 6; j++) PetscCall(JointSetRow(b, &like->mean, j, nodal, joint));
   PetscFunctionReturn(0);

@@ -89,32 +89,34 @@ PetscErrorCode RigidPointSetUp(Bodies b, BodyJoint *joint)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode RigidPointsAdvance(Bodies b, PetscReal f[])
+/* Of all rigid points: forces f become D R W R'f with their mobility W; motions x become R W R'D x, the nearest rigid
+   ones */
+static PetscErrorCode RigidPointsApply(Bodies b, PetscBool forces, PetscReal x[])
 {
   PetscFunctionBeginUser;
   for (PetscInt m = 0; m < b->n_joints; m++) {
     const BodyJoint *joint = &b->joint[m];
-    PetscReal        sum[6], a[6] = {0};
+    const PetscReal *W     = forces ? joint->mobility : joint->nearest;
+    PetscReal        sum[6], q[6] = {0};
 
     if (!joint->like->rigid) continue;
-    PetscCall(RigidSum(b, joint, PETSC_FALSE, f, sum));
-    for (int k = 0; k < 36; k++) a[k / 6] += joint->mobility[k] * sum[k % 6];
-    RigidPut(b, joint, PETSC_TRUE, a, f);
+    PetscCall(RigidSum(b, joint, forces ? PETSC_FALSE : PETSC_TRUE, x, sum));
+    for (int k = 0; k < 36; k++) q[k / 6] += W[k] * sum[k % 6];
+    RigidPut(b, joint, forces, q, x);
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RigidPointsAdvance(Bodies b, PetscReal f[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(RigidPointsApply(b, PETSC_TRUE, f));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode BodiesMakeRigid(Bodies b, PetscReal x[])
 {
   PetscFunctionBeginUser;
-  for (PetscInt m = 0; m < b->n_joints; m++) {
-    const BodyJoint *joint = &b->joint[m];
-    PetscReal        sum[6], q[6] = {0};
-
-    if (!joint->like->rigid) continue;
-    PetscCall(RigidSum(b, joint, PETSC_TRUE, x, sum));
-    for (int k = 0; k < 36; k++) q[k / 6] += joint->nearest[k] * sum[k % 6];
-    RigidPut(b, joint, PETSC_FALSE, q, x);
-  }
+  PetscCall(RigidPointsApply(b, PETSC_FALSE, x));
   PetscFunctionReturn(0);
 }

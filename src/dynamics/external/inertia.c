@@ -153,11 +153,8 @@ static PetscErrorCode InertiaFrameCheckPoints(External external, const char part
   for (PetscInt i = 0; i < scene->n_points; i++) {
     const Joint *point = &scene->points[i];
     PetscInt     both  = 0;
-    PetscBool    heavy = point->mass > 0 ? PETSC_TRUE : PETSC_FALSE;
 
-    for (int j = 0; j < 6; j++)
-      if (point->inertia[j] != 0) heavy = PETSC_TRUE;
-    for (PetscInt k = 0; k < frame->n && heavy; k++)
+    for (PetscInt k = 0; k < frame->n && JointIsMassive(point); k++)
       for (PetscInt l = 0; l < point->mean.n; l++) both += frame->vertex[k] == point->mean.vertex[l];
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &both, 1, MPIU_INT, MPI_MAX, external->comm));
     PetscCheck(!both, external->comm, PETSC_ERR_SUP,
