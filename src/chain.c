@@ -20,6 +20,7 @@ static PetscErrorCode ChainCreateScene(MPI_Comm comm, Chain *chain)
                            &chain->view));
   PetscOptionsEnd();
   chain->analysis = (Analysis)analysis;
+  ShiftInvertShow(chain->view);
   PetscCall(ChainGetViewers(comm, chain));
   PetscCall(OperatorsCreate(comm, &chain->operators));
   PetscCall(OperatorsSetFromOptions(chain->operators));

@@ -1,14 +1,28 @@
 /*
    Memory that may not be had: where `ulimit -v` bounds the address space, the buffer that BLAS works in is taken at the
-   start, since OpenBLAS asks for it again and again, for ever, where it gets none in the midst of a run.
+   start, since OpenBLAS asks for it again and again, for ever, where it gets none in the midst of a run. And what is
+   free on this machine: MemAvailable of /proc/meminfo (proc(5)), or less where the control group of the process, or one
+   above it, allows less.
 */
 #include "memory.h"
+#include <math.h>
 #include <petscblaslapack.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <sys/resource.h>
 
 #define MEMORY_BUFFER ((size_t)160 << 20) /* bytes: buffers of OpenBLAS (32 to 128 MB), and some */
 #define MEMORY_ORDER  128                 /* of a product that is too large for kernels without a buffer */
+
+/* Where the two versions of control groups tell limit and use, bytes */
+static const struct {
+  const char *line, *folder, *limit, *used; /* beginning of the line of /proc/self/cgroup after its number */
+} groups[] = {
+  {":",       "/sys/fs/cgroup",        "memory.max",            "anon"     },
+  {"memory:", "/sys/fs/cgroup/memory", "memory.limit_in_bytes", "total_rss"}
+};
+
+static PetscReal allowed = 0; /* -squeal_memory, MB */
 
 /* Bytes of address space that this process may have, 0 without bound */
 static double MemoryLimit(void)
@@ -61,4 +75,76 @@ void MemoryExplain(char message[], size_t size)
     "out of memory: a rank has %.0f MB and gets no more%s; take a coarser mesh, a narrower -modes_band, or "
     "more machines",
     used / 1e6, bound);
+}
+
+/* The number after a word at the beginning of a line of a file; INFINITY where there is none */
+static double MemoryRead(const char path[], const char word[])
+{
+  FILE  *file  = fopen(path, "r");
+  double value = INFINITY;
+  char   line[512], format[64];
+
+  if (!file) return INFINITY;
+  (void)snprintf(format, sizeof(format), "%s %%lf", word);
+  while (fgets(line, sizeof(line), file))
+    if (sscanf(line, format, &value) == 1) break;
+  (void)fclose(file);
+  return value;
+}
+
+/* Bytes that a control group and those above it leave; path is that of the group and is shortened to nothing */
+static double GroupFree(int version, char path[])
+{
+  double least = INFINITY;
+
+  for (;;) {
+    char   file[1024];
+    double limit, used;
+    char  *slash = strrchr(path, '/');
+
+    (void)snprintf(file, sizeof(file), "%s%s/%s", groups[version].folder, path, groups[version].limit);
+    limit = MemoryRead(file, "");
+    (void)snprintf(file, sizeof(file), "%s%s/memory.stat", groups[version].folder, path);
+    used = MemoryRead(file, groups[version].used);
+    if (isfinite(used)) least = fmin(least, limit - used);
+    if (!slash) return least;
+    *slash = '\0';
+  }
+}
+
+/* MB that are free on this machine, to all ranks there together; infinite where nothing tells */
+static double MemoryFree(void)
+{
+  double bytes = 1024 * MemoryRead("/proc/meminfo", "MemAvailable:");
+  FILE  *file  = fopen("/proc/self/cgroup", "r");
+  char   line[768];
+
+  while (file && fgets(line, sizeof(line), file)) {
+    char *const after = strchr(line, ':');
+
+    line[strcspn(line, "\n")] = '\0';
+    for (int version = 0; after && version < 2; version++)
+      if (!strncmp(after + 1, groups[version].line, strlen(groups[version].line)))
+        bytes = fmin(bytes, GroupFree(version, after + 1 + strlen(groups[version].line)));
+  }
+  if (file) (void)fclose(file);
+  return 1e-6 * fmax(0, bytes);
+}
+
+PetscErrorCode MemorySetFromOptions(MPI_Comm comm)
+{
+  PetscFunctionBeginUser;
+  PetscOptionsBegin(comm, NULL, "Memory", NULL);
+  PetscCall(PetscOptionsReal("-squeal_memory",
+                             "MB that a factorisation may take on one machine, of all ranks there (0: what is free)",
+                             "sys.h", allowed, &allowed, NULL));
+  PetscOptionsEnd();
+  PetscCheck(allowed >= 0, comm, PETSC_ERR_USER_INPUT, "-squeal_memory %.6g must not be negative (MB)", allowed);
+  PetscFunctionReturn(0);
+}
+
+double MemoryRoom(PetscBool *given)
+{
+  *given = allowed > 0 ? PETSC_TRUE : PETSC_FALSE;
+  return allowed > 0 ? allowed : MemoryFree();
 }

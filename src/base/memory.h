@@ -8,3 +8,9 @@ PETSC_INTERN PetscErrorCode MemoryPrepare(MPI_Comm comm);
 
 /* Writes what is to be done when an allocation has failed; allocates nothing */
 PETSC_INTERN void MemoryExplain(char message[], size_t size);
+
+/* Reads -squeal_memory */
+PETSC_INTERN PetscErrorCode MemorySetFromOptions(MPI_Comm comm);
+/* MB that a factorisation may take on this machine, all ranks there together: -squeal_memory where given, else what is
+   free, infinite where nothing tells */
+PETSC_INTERN double MemoryRoom(PetscBool *given);

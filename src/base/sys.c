@@ -131,6 +131,7 @@ PetscErrorCode SquealSetFromOptions(MPI_Comm comm)
   PetscOptionsEnd();
   if (has_log || has_file) PetscCall(PrintSetLog(comm, log));
   PetscCall(ProgressSetFromOptions(comm));
+  PetscCall(MemorySetFromOptions(comm));
   PetscFunctionReturn(0);
 }
 

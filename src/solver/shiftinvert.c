@@ -9,7 +9,6 @@
 */
 #include "shiftinvert.h"
 #include "base/events.h"
-#include "ordering.h"
 #include <petscksp.h>
 
 /* K - s M, or K + s C + s^2 M with damping */
@@ -67,14 +66,10 @@ static PetscErrorCode ShiftInvertCheck(MPI_Comm comm, PC pc, PetscBool *singular
 static PetscErrorCode ShiftInvertCreateSolver(MPI_Comm comm, Mat A, PetscBool symmetric, PetscBool want_inertia,
                                               KSP *ksp)
 {
-  MatSolverType solver;
-  PetscBool     is_mumps = PETSC_FALSE, chosen;
-  PetscMPIInt   size;
-  PC            pc;
-  Mat           F;
+  PC  pc;
+  Mat F;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
   PetscCall(KSPCreate(comm, ksp));
   PetscCall(KSPSetOptionsPrefix(*ksp, "st_"));
   PetscCall(KSPSetOperators(*ksp, A, A));
@@ -83,10 +78,6 @@ static PetscErrorCode ShiftInvertCreateSolver(MPI_Comm comm, Mat A, PetscBool sy
   PetscCall(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
   PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
   PetscCall(KSPSetFromOptions(*ksp));
-  PetscCall(PCFactorGetMatSolverType(pc, &solver));
-  if (solver) PetscCall(PetscStrcmp(solver, MATSOLVERMUMPS, &is_mumps)); /* METIS's inverse order is for MUMPS only */
-  PetscCall(PetscOptionsHasName(NULL, "st_", "-pc_factor_mat_ordering_type", &chosen));
-  if (size == 1 && !symmetric && is_mumps && !chosen) PetscCall(PCFactorSetMatOrderingType(pc, ORDERING_METIS));
   if (want_inertia) {
     PetscCall(PCFactorSetUpMatSolverType(pc));
     PetscCall(PCFactorGetMatrix(pc, &F));
@@ -124,6 +115,7 @@ PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, PetscReal shift, 
     PetscCall(ShiftInvertMatrix(pencil, si->shift, &A));
     PetscCall(
       ShiftInvertCreateSolver(si->comm, A, pencil->symmetric && !(pencil->C && !want_inertia), want_inertia, &si->ksp));
+    PetscCall(ShiftInvertAnalyse(si, A));
     PetscCall(KSPSetUp(si->ksp));
     PetscCall(KSPGetPC(si->ksp, &pc));
     PetscCall(ShiftInvertCheck(si->comm, pc, &singular));

@@ -25,6 +25,11 @@ PETSC_INTERN PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transpo
 PETSC_INTERN PetscErrorCode ShiftInvertDestroy(ShiftInvert *si);
 /* x = A^-1 b, or A^-T b. PETSC_ERR_NOT_CONVERGED where an iterative solver of the user's did not converge */
 PETSC_INTERN PetscErrorCode ShiftInvertSolve(const ShiftInvert *si, PetscBool transposed, Vec b, Vec x);
+/* analysis.c - symbolic analysis of A, which the factorisation then finds done; with MUMPS only.
+   PETSC_ERR_USER_INPUT where the machine has not the memory for the factors by MUMPS' estimate */
+PETSC_INTERN PetscErrorCode ShiftInvertAnalyse(const ShiftInvert *si, Mat A);
+/* Whether the estimate is shown on stdout before factorisations, not by default */
+PETSC_INTERN void ShiftInvertShow(PetscBool show);
 /* block.c - X = A^-1 B, or A^-T B, for dense B, X of the same size and any leading dimension: many right-hand sides at
    once. PETSC_ERR_LIB where the last column does not solve its system: a library behaves otherwise than assumed */
 PETSC_INTERN PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X);
