@@ -47,10 +47,9 @@ static PetscErrorCode OperatorsCreatePart(Operators o, PetscInt part, Mat *K, Ma
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(o->model, &mesh));
-  PetscCall(PatternCreate(o->model, part, K));
+  PetscCall(PatternCreate(o->model, part, o->lump, K, M));
   PetscCall(MatGetSize(*K, &n_unknowns, NULL));
   PetscCheck(n_unknowns, o->comm, PETSC_ERR_USER_INPUT, "the -supports hold every node: nothing can vibrate");
-  PetscCall(MatDuplicate(*K, MAT_DO_NOT_COPY_VALUES, M));
   for (PetscInt c = 0; c < mesh->n_cells; c++)
     if (mesh->cell_part[c] == part) PetscCall(OperatorsAddCell(o, c, *K, *M));
   PetscCall(MatAssemblyBegin(*K, MAT_FINAL_ASSEMBLY));

@@ -97,8 +97,9 @@ PETSC_INTERN PetscErrorCode OperatorsCheckSpinningPoints(Operators operators, Pe
 /* rigid.c - the null space of points that are joined rigidly. Collective. */
 PETSC_INTERN PetscErrorCode OperatorsCreateRigid(Operators operators);
 
-/* pattern.c - empty matrix of all unknowns, preallocated for the couplings of the cells of one part */
-PETSC_INTERN PetscErrorCode PatternCreate(Model model, PetscInt part, Mat *A);
+/* pattern.c - empty matrices of all unknowns, preallocated for the couplings of the cells of one part: K of all
+   directions, M (NULL for none) of a mass, lumped or not, which drops zeros that are added to it */
+PETSC_INTERN PetscErrorCode PatternCreate(Model model, PetscInt part, PetscBool lumped, Mat *K, Mat *M);
 
 /* friction.c - parameters of the contact */
 PETSC_INTERN PetscErrorCode OperatorsAddContactParameters(Operators operators);

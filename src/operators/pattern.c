@@ -1,5 +1,6 @@
 /*
-   Preallocation: couplings of the unknowns of two nodes of a common cell of one part. Each rank counts, for every
+   Preallocation: couplings of the unknowns of two nodes of a common cell of one part; in a mass matrix those of the same
+   direction alone, a third, or where it is lumped the diagonal. Each rank counts, for every
    node that it has, the distinct neighbours through its own cells, apart by whether the neighbour's unknowns live
    with the row's owner; the counts are summed over the ranks that share the node. Neighbours that two ranks see count
    twice: an upper bound, exact in the interior, at a fifth of the time of DMCreateMatrix(), which walks the closure of
@@ -68,7 +69,7 @@ static PetscErrorCode PatternCountNeighbours(const Mesh *mesh, const PatternStar
   PetscFunctionReturn(0);
 }
 
-/* Entries per owned row inside and outside the diagonal block */
+/* Neighbours of each owned row's node inside and outside the diagonal block */
 static PetscErrorCode PatternCountRows(MPI_Comm comm, Model model, PetscInt part, PetscInt inside[], PetscInt outside[])
 {
   const Mesh  *mesh;
@@ -92,8 +93,8 @@ static PetscErrorCode PatternCountRows(MPI_Comm comm, Model model, PetscInt part
     const PetscInt row = mesh->unknown[i] - mesh->first_own, v = i / 3;
 
     if (mesh->unknown[i] < mesh->first_own || row >= mesh->n_own) continue;
-    inside[row]  = PetscMin(mesh->n_own, 3 * (PetscInt)count[3 * v]);
-    outside[row] = 3 * (PetscInt)count[3 * v + 1];
+    inside[row]  = (PetscInt)count[3 * v];
+    outside[row] = (PetscInt)count[3 * v + 1];
   }
   PetscCall(VecRestoreArray(counts, &count));
   PetscCall(VecDestroy(&counts));
@@ -102,10 +103,12 @@ static PetscErrorCode PatternCountRows(MPI_Comm comm, Model model, PetscInt part
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PatternCreate(Model model, PetscInt part, Mat *A)
+/* Empty matrix for `directions` entries per neighbour */
+static PetscErrorCode PatternAllocate(Model model, const PetscInt inside[], const PetscInt outside[],
+                                      PetscInt directions, Mat *A)
 {
   const Mesh *mesh;
-  PetscInt    n_own, n_all, *inside, *outside;
+  PetscInt    n_own, n_all, *own, *other;
   MPI_Comm    comm;
 
   PetscFunctionBeginUser;
@@ -113,10 +116,34 @@ PetscErrorCode PatternCreate(Model model, PetscInt part, Mat *A)
   PetscCall(ModelGetMesh(model, &mesh));
   n_own = mesh->n_own;
   n_all = mesh->n_unknowns;
-  PetscCall(PetscCalloc2(n_own, &inside, n_own, &outside));
+  PetscCall(PetscMalloc2(n_own, &own, n_own, &other));
+  for (PetscInt i = 0; i < n_own; i++) {
+    own[i]   = PetscMin(n_own, directions * inside[i]);
+    other[i] = PetscMin(n_all - n_own, directions * outside[i]);
+  }
+  PetscCall(MatCreateAIJ(comm, n_own, n_own, n_all, n_all, 0, own, 0, other, A));
+  PetscCall(PetscFree2(own, other));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PatternCreate(Model model, PetscInt part, PetscBool lumped, Mat *K, Mat *M)
+{
+  const Mesh *mesh;
+  PetscInt   *inside, *outside;
+  MPI_Comm    comm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetComm(model, &comm));
+  PetscCall(ModelGetMesh(model, &mesh));
+  PetscCall(PetscCalloc2(mesh->n_own, &inside, mesh->n_own, &outside));
   PetscCall(PatternCountRows(comm, model, part, inside, outside));
-  for (PetscInt i = 0; i < n_own; i++) outside[i] = PetscMin(n_all - n_own, outside[i]);
-  PetscCall(MatCreateAIJ(comm, n_own, n_own, n_all, n_all, 0, inside, 0, outside, A));
+  PetscCall(PatternAllocate(model, inside, outside, 3, K));
+  for (PetscInt i = 0; i < mesh->n_own && lumped; i++) {
+    inside[i]  = 1;
+    outside[i] = 0;
+  }
+  if (M) PetscCall(PatternAllocate(model, inside, outside, 1, M));
+  if (M) PetscCall(MatSetOption(*M, MAT_IGNORE_ZERO_ENTRIES, PETSC_TRUE));
   PetscCall(PetscFree2(inside, outside));
   PetscFunctionReturn(0);
 }

@@ -89,7 +89,7 @@ static PetscErrorCode SpinAssemble(Operators o, PetscInt part, Mat *G, Mat *Q, V
   PetscCall(ModelGetMesh(o->model, &mesh));
   PetscCall(PetscArraycpy(frame.axis, scene->parts[part].spin.axis, 3));
   PetscCall(PetscArraycpy(frame.centre, scene->parts[part].spin.centre, 3));
-  PetscCall(PatternCreate(o->model, part, G));
+  PetscCall(PatternCreate(o->model, part, PETSC_FALSE, G, NULL));
   PetscCall(MatDuplicate(*G, MAT_DO_NOT_COPY_VALUES, Q));
   PetscCall(ModelCreateNodal(o->model, &nodal));
   PetscCall(VecGetArray(nodal, &load));
