@@ -18,13 +18,11 @@ from math import factorial, pi
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from squeal.gmsh import make_mesh
+from squeal.gmsh import TET10, TRI6, make_mesh, read_mesh
 
 import numpy as np
-from msh import sections
 
 SIZES = {"14": (45e3, 55e3), "6.5": (180e3, 220e3)}  # mm -> unknowns
-TET10, TRI6 = 11, 9  # of Gmsh
 EDGES = ((0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3))  # that have the nodes 4 to 9
 SURFACES = ("bolts", "disc_inner", "disc_outer", "inner_rub", "outer_rub", "inner_lugs", "outer_lugs", "piston", "bore",
             "tips", "fingers", "pins")
@@ -38,52 +36,6 @@ def turned():
         -1, 2).T
     r1, z1 = np.roll(r, -1), np.roll(z, -1)
     return (pi / 3 * ((r + r1) * (r * z1 - r1 * z)).sum() - 5 * 7 * pi * 6.5**2) * 1e-9
-
-
-def names_of(part):
-    """(dimension, number) -> name of a physical group."""
-    return {(int(d), int(tag)): name.strip('"') for d, tag, name in part["PhysicalNames"][1:]}
-
-
-def read_22(part):
-    """Places by node number, and (name of the group, type, nodes) of each element."""
-    nodes = {int(number): place for number, *place in part["Nodes"][1:]}
-    name = names_of(part)
-    elements = []
-    for row in part["Elements"][1:]:
-        number, kind, n_tags, group, *rest = map(int, row)
-        elements.append((name[3 if kind == TET10 else 2, group], kind, rest[n_tags - 1:]))
-    return nodes, elements
-
-
-def read_41(part):
-    """The same; an entity's line ends, after its box, with its groups and its boundary."""
-    counts, *rows = part["Entities"]
-    name, group = names_of(part), {}
-    rows = rows[int(counts[0]) + int(counts[1]):]
-    for i, row in enumerate(rows):
-        dimension = 2 if i < int(counts[2]) else 3
-        group |= {(dimension, int(row[0])): name[dimension, int(tag)] for tag in row[8:8 + int(row[7])]}
-    nodes, elements, rows = {}, [], iter(part["Nodes"][1:])
-    for row in rows:
-        numbers = [int(next(rows)[0]) for _ in range(int(row[3]))]
-        nodes |= {number: next(rows) for number in numbers}
-    rows = iter(part["Elements"][1:])
-    for dimension, tag, kind, count in (map(int, row) for row in rows):
-        elements += [(group[dimension, tag], kind, list(map(int, next(rows)[1:]))) for _ in range(count)]
-    return nodes, elements
-
-
-def read(path):
-    """Places [n][3], m, and by (name, type) the nodes of each element."""
-    part = sections(path)
-    nodes, elements = (read_41 if part["MeshFormat"][0][0] == "4.1" else read_22)(part)
-    index = np.zeros(max(nodes) + 1, int)
-    index[list(nodes)] = np.arange(len(nodes))
-    sets = {}
-    for name, kind, corners in elements:
-        sets.setdefault((name, kind), []).append(corners)
-    return np.array(list(nodes.values()), float), {key: index[np.array(rows)] for key, rows in sets.items()}
 
 
 def gradients(point):
@@ -149,7 +101,7 @@ def main():
             path = Path(folder) / f"{size}.{form}"
             print(f"size {size}, {form}")
             make_mesh("brake", path, form, size=size)
-            faults += [f"{size}, {form}: {fault}" for fault in judge(*read(path), size)]
+            faults += [f"{size}, {form}: {fault}" for fault in judge(*read_mesh(path), size)]
     print("\n".join(faults) or "sound")
     return 1 if faults else 0
 

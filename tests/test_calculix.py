@@ -7,9 +7,12 @@ in turned axes:
           mass of C3D10 with 4 points as well, which moves these frequencies by up to 4e-3; squeal's, with 15 points, is exact.
           Hence tests/tetrahedra.py stands between them: with exact mass it must agree with squeal, with CalculiX's 4 points
           with CalculiX
+  friction  a disc and a pad in sliding contact, of hex20, where modes flutter: complex eigenvalues, see
+          scripts/squeal/disc_pad.py
 
 Breaks when shape functions, the order of the nodes of a file, engineering constants or their axes differ from what
-others take them for. CalculiX prints 7 digits of an eigenvalue.
+others take them for, or when friction acts with another force or along another direction. CalculiX prints 7 digits of
+an eigenvalue.
 
     test_calculix.py SQUEAL MPIRUN
 
@@ -22,8 +25,14 @@ import sys
 import tempfile
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
+from squeal.calculix import SOLIDS, body_cards, lines_of, node_cards, run_calculix, set_cards
+from squeal.disc_pad import Mesh, calculix_cards, squeal_words
+from squeal.gmsh import HEX20, QUAD8, TET10, TRI6, read_mesh
+from squeal.sweep_runs import distances, eigenvalues
+from squeal.tables import read_table
+
 import numpy as np
-from msh import sections
 from tetrahedra import frequencies, rotated
 
 COUNT = 12
@@ -46,11 +55,10 @@ body[] = Extrude {{0, 0, 0.01}, {0, 0, 1}, {0, 0, 0}, 1.2} {Surface{face[1]}; La
 Physical Volume("body") = {body[1]};
 Physical Surface("root") = {face[1]};
 """
-# name -> geometry, options of gmsh, type of the solid and of its faces in the file, CalculiX's name, and its order of nodes
+# name -> geometry, options of gmsh, types of the solid and of its faces in the file
 MESHES = {
-    "tet10": (BLOCK, "-clmin 0.011", 11, 9, "C3D10", [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]),
-    "hex20": (RING, "-setnumber Mesh.SecondOrderIncomplete 1", 17, 16, "C3D20",
-              [0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15]),
+    "tet10": (BLOCK, "-clmin 0.011", TET10, TRI6),
+    "hex20": (RING, "-setnumber Mesh.SecondOrderIncomplete 1", HEX20, QUAD8),
 }
 
 
@@ -62,13 +70,6 @@ def made(command, folder):
     return done.stdout
 
 
-def lines_of(rows):
-    """Lines of numbers for CalculiX, at most 16 in one; all but the last end with a comma."""
-    for row in rows:
-        for first in range(0, len(row), 16):
-            yield ", ".join(map(str, row[first:first + 16])) + ("," if first + 16 < len(row) else "")
-
-
 def material_cards(name):
     young, poisson, shear = MATERIALS[name]
     cards = ["*MATERIAL, NAME=M", "*ELASTIC" + (", TYPE=ENGINEERING CONSTANTS" if shear else "")]
@@ -78,27 +79,18 @@ def material_cards(name):
 
 
 def read(folder, mesh):
-    """Numbers of each element and its nodes, in CalculiX's order; numbers of the held nodes; places, m, of all."""
-    _, _, solid, face, _, order = MESHES[mesh]
-    part = sections(folder / f"{mesh}.msh")
-    elements = [list(map(int, row)) for row in part["Elements"][1:]]
-    bodies = [[row[0], *np.array(row[3 + row[2]:])[order].tolist()] for row in elements if row[1] == solid]
-    held = sorted({node for row in elements if row[1] == face for node in row[3 + row[2]:]})
-    return bodies, held, np.array([row[1:] for row in part["Nodes"][1:]], float)
+    """Places, m; nodes of each element; held nodes."""
+    _, _, solid, face = MESHES[mesh]
+    places, sets = read_mesh(folder / f"{mesh}.msh")
+    return places, sets["body", solid], np.unique(sets["root", face])
 
 
 def calculix(folder, mesh, material):
     """Hz, ascending."""
-    bodies, held, nodes = read(folder, mesh)
-    kind = MESHES[mesh][4]
-    cards = ["*NODE", *lines_of([number, *place] for number, place in enumerate(nodes.tolist(), 1))]
-    cards += [f"*ELEMENT, TYPE={kind}, ELSET=BODY", *lines_of(bodies), "*NSET, NSET=ROOT", *lines_of([held])]
+    places, cells, held = read(folder, mesh)
+    cards = [*node_cards(places), *body_cards("BODY", MESHES[mesh][2], cells), *set_cards("ROOT", held)]
     cards += [*material_cards(material), "*BOUNDARY", "ROOT, 1, 3", "*STEP", "*FREQUENCY", str(COUNT), "*END STEP"]
-    (folder / "job.inp").write_text("\n".join(cards) + "\n")
-    made(["ccx", "job"], folder)
-    rows = [line.split() for line in (folder / "job.dat").read_text().splitlines()]
-    found = [float(row[3]) for row in rows if len(row) == 5 and row[0].isdigit()]
-    return np.array(found[:COUNT])
+    return run_calculix(folder, cards)[0].imag[:COUNT] / (2 * np.pi)
 
 
 def squeal(folder, mesh, material):
@@ -136,10 +128,10 @@ def turned():
 
 def between(folder, mesh, material):
     """Frequencies of the third: with exact mass, with that of 4 points."""
-    bodies, held, nodes = read(folder, mesh)
-    cells = np.array(bodies)[:, 1:] - 1
+    places, cells, held = read(folder, mesh)
     stiffness = rotated(compliance(material), turned())
-    return [frequencies(nodes, cells, np.array(held) - 1, stiffness, DENSITY, four)[:COUNT] for four in (False, True)]
+    cells = cells[:, SOLIDS[TET10][1]]
+    return [frequencies(places, cells, held, stiffness, DENSITY, four)[:COUNT] for four in (False, True)]
 
 
 def judge(names, one, other, rtol=RTOL):
@@ -162,15 +154,31 @@ def compare(folder, mesh, material):
     return judge(f"{mesh}, {material}: CalculiX, mass of 4 points", theirs, four_points) and kept
 
 
+def friction(folder):
+    """Whether all eigenvalues to 12 kHz agree, one by one, and some of them have left the imaginary axis."""
+    mesh, mu = folder / "pair.msh", 0.6
+    Mesh((6, 8, 1), 3, 5, 3, 2).write(mesh)
+    made([sys.argv[2], "-n", 1, sys.argv[1], *squeal_words(mesh, mu, (0, 12000)), "-output_dir", "out", "-output_fields", 0],
+         folder)
+    ours = eigenvalues(read_table(folder / "out/modes.csv", {"freq_hz": float, "growth_rad_s": float}))
+    theirs, *_ = run_calculix(folder, calculix_cards(mesh, mu, len(ours)))
+    worst = max(distances(ours, theirs).max(), distances(theirs, ours).max()) if len(ours) == len(theirs) else np.inf
+    growth = max(ours.real)
+    kept = worst < RTOL and growth > 100
+    print(f"{'ok    ' if kept else 'FAILED'} friction: squeal, CalculiX: {len(ours)} eigenvalues, apart by {worst:.1e} at "
+          f"most, {RTOL:g} allowed; largest growth {growth:.1f} 1/s, 100 asked")
+    return kept
+
+
 def main():
     sys.argv[1:] = [str(Path(word).resolve()) for word in sys.argv[1:]]
     absent = [name for name in ("ccx", "gmsh") if not shutil.which(name)]
     if absent:
         print(f"skipped: no {' '.join(absent)}, of scripts/packages.txt")
         return 77
-    kept = True
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
         folder = Path(name)
+        kept = friction(folder)
         for mesh, (geometry, options, *_) in MESHES.items():
             (folder / f"{mesh}.geo").write_text(geometry)
             made(["gmsh", "-3", "-order", 2, *options.split(), "-format", "msh22", f"{mesh}.geo", "-o", f"{mesh}.msh"],

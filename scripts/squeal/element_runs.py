@@ -1,15 +1,14 @@
 """Modes of one body by one element on one mesh: frequencies, unknowns, processor time and peak memory of the whole run."""
 
-import os
 import re
-import subprocess
 from dataclasses import dataclass
 
 import numpy
 
 from .element_meshes import ELEMENTS, mesh_body
 from .kept_runs import KeptRun
-from .tables import BadInput, read_table
+from .program import measured
+from .tables import read_table
 
 # What an element may end with that is so stiff that no mode is left in the band, or that bends too much on a coarse mesh
 HOPELESS = "contains no mode", "is inverted or has no volume"
@@ -47,17 +46,6 @@ def is_hopeless(text):
     return any(end in text for end in HOPELESS)
 
 
-def measured(command, about):
-    """What a command prints, s of processor and MB at most of its process."""
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
-        text = process.stdout.read()
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode and not is_hopeless(text):
-        raise BadInput(f"{about}: {text.strip()[-300:]}")
-    return text, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
-
-
 def solve(args, problem, element, size, counts=None, more=""):
     """The run of an element of a size, or with counts of elements; taken from its folder where it is there."""
     options = ELEMENTS[element][0]
@@ -72,7 +60,7 @@ def solve(args, problem, element, size, counts=None, more=""):
              "-modes_band", ",".join(map(str, problem.band)), "-output_fields", 0, "-squeal_progress", 0, "-squeal_view"]
     run = KeptRun(args.program, 1, folder, words)
     if not run.is_complete():
-        text, seconds, megabytes = measured(run.begin(), name)
+        text, seconds, megabytes = measured(run.begin(), name, is_hopeless)
         run.end(f"{seconds} s {megabytes} MB\n{text}")
     seconds, megabytes = map(float, run.text().split()[0:4:2])
     count = re.search(r" (\d+) unknowns", run.text())

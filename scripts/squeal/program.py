@@ -34,6 +34,19 @@ def launch(program, ranks, words, about):
     return process.stdout
 
 
+def measured(command, about, may_fail=lambda text: False, folder=None):
+    """What a command prints, s of processor and MB at most of its processes. A failure is bad input, unless it may fail
+    with such a text."""
+    command = [str(word) for word in command]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=folder) as process:
+        text = process.stdout.read()
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode and not may_fail(text):
+        raise BadInput(f"{about}: {text.strip()[-300:]}")
+    return text, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+
+
 def parts_parser(doc, parts):
     """Command line with --part, where there are parts, and --program."""
     parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -75,3 +88,9 @@ def do_parts(name, parts, chosen, *given):
 def met(kept):
     """The word for it."""
     return "met" if kept else "MISSED"
+
+
+def print_demand(what, value, limit, form, least=False):
+    """One line: value, limit, and whether it is kept."""
+    kept = value >= limit if least else value <= limit
+    print(f"  {what} {value:{form}}, demanded {limit:{form}} at {'least' if least else 'most'}: {met(kept)}")
