@@ -116,3 +116,48 @@ PetscErrorCode BlockCopy(Mat H, PetscBool transposed, PetscInt n, PetscReal A[])
   PetscCall(MatDenseRestoreArrayRead(H, &h));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode BlockGrow(PetscInt first, PetscInt n, PetscReal **A)
+{
+  PetscReal *old = *A;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n * n, A));
+  for (PetscInt j = 0; j < first; j++) PetscCall(PetscArraycpy(&(*A)[j * n], &old[j * first], first));
+  PetscCall(PetscFree(old));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlockExtend(BV V, Mat A, PetscBool symmetric, BV block, PetscInt first, PetscReal **reduced)
+{
+  PetscInt n;
+  Mat      H, At;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetActiveColumns(V, NULL, &n));
+  PetscCall(BlockGrow(first, n, reduced));
+  PetscCall(BlockProducts(V, A, block, &H));
+  PetscCall(BlockCopy(H, PETSC_FALSE, n, *reduced + first * n));
+  if (!symmetric) {
+    PetscCall(MatDestroy(&H));
+    PetscCall(MatCreateTranspose(A, &At));
+    PetscCall(BlockProducts(V, At, block, &H));
+    PetscCall(MatDestroy(&At));
+  }
+  PetscCall(BlockCopy(H, PETSC_TRUE, n, *reduced + first));
+  PetscCall(MatDestroy(&H));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlockLift(BV V, PetscInt size, PetscInt m, const PetscReal coordinates[], BV block)
+{
+  Mat C;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, size, m, (PetscScalar *)coordinates, &C));
+  PetscCall(BVSetActiveColumns(V, 0, size));
+  PetscCall(BVSetActiveColumns(block, 0, m));
+  PetscCall(BVMult(block, 1, 0, V, C));
+  PetscCall(MatDestroy(&C));
+  PetscFunctionReturn(0);
+}

@@ -11,3 +11,10 @@ PETSC_INTERN PetscErrorCode BlockCopy(Mat H, PetscBool transposed, PetscInt n, P
    NULL), made orthonormal: directions shorter than drop, or that rounding leaves, are left out, and the active columns of
    W become those that are there. Collective; alike on all ranks. */
 PETSC_INTERN PetscErrorCode BlockOrthonormalise(BV V, PetscInt n, Mat M, PetscReal drop, BV W);
+/* Room for an n x n matrix with the old one, first x first, in its corner. Not collective. */
+PETSC_INTERN PetscErrorCode BlockGrow(PetscInt first, PetscInt n, PetscReal **A);
+/* V' A V, so far of the first columns of V, extended by those of the block, the last ones among V's active columns */
+PETSC_INTERN PetscErrorCode BlockExtend(BV V, Mat A, PetscBool symmetric, BV block, PetscInt first,
+                                        PetscReal **reduced);
+/* block = V coordinates, coordinates [m][size] of the first columns of V, which become its active ones */
+PETSC_INTERN PetscErrorCode BlockLift(BV V, PetscInt size, PetscInt m, const PetscReal coordinates[], BV block);

@@ -4,7 +4,7 @@
    only.
 */
 #include "line.h"
-#include "sweep/dense/dense.h"
+#include "solver/dense.h"
 
 static PetscErrorCode PointsCreate(Sweep sweep, PetscInt line, LinePoints *points)
 {

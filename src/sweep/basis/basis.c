@@ -38,39 +38,6 @@ PetscErrorCode BasisCreateBlock(const Basis *basis, PetscInt n, BV *block)
   PetscFunctionReturn(0);
 }
 
-/* Room for an n x n matrix with the old one in its corner */
-static PetscErrorCode MatrixGrow(PetscInt first, PetscInt n, PetscReal **A)
-{
-  PetscReal *old = *A;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n * n, A));
-  for (PetscInt j = 0; j < first; j++) PetscCall(PetscArraycpy(&(*A)[j * n], &old[j * first], first));
-  PetscCall(PetscFree(old));
-  PetscFunctionReturn(0);
-}
-
-/* One V' A V, extended by the columns of `block`, which are columns first .. n - 1 of V */
-static PetscErrorCode TermExtend(const Basis *basis, const OperatorsTerm *term, BV block, PetscInt first, PetscInt n,
-                                 PetscReal **reduced)
-{
-  Mat H, At;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatrixGrow(first, n, reduced));
-  PetscCall(BlockProducts(basis->vectors, term->A, block, &H));
-  PetscCall(BlockCopy(H, PETSC_FALSE, n, *reduced + first * n));
-  if (!term->symmetric) {
-    PetscCall(MatDestroy(&H));
-    PetscCall(MatCreateTranspose(term->A, &At));
-    PetscCall(BlockProducts(basis->vectors, At, block, &H));
-    PetscCall(MatDestroy(&At));
-  }
-  PetscCall(BlockCopy(H, PETSC_TRUE, n, *reduced + first));
-  PetscCall(MatDestroy(&H));
-  PetscFunctionReturn(0);
-}
-
 /* One V' |diag A| V, extended likewise */
 static PetscErrorCode DiagonalExtend(const Basis *basis, const OperatorsTerm *term, BV block, PetscInt first,
                                      PetscInt n, PetscReal **reduced)
@@ -80,7 +47,7 @@ static PetscErrorCode DiagonalExtend(const Basis *basis, const OperatorsTerm *te
   Vec diagonal;
 
   PetscFunctionBeginUser;
-  PetscCall(MatrixGrow(first, n, reduced));
+  PetscCall(BlockGrow(first, n, reduced));
   PetscCall(MatCreateVecs(term->A, &diagonal, NULL));
   PetscCall(MatGetDiagonal(term->A, diagonal));
   PetscCall(VecAbs(diagonal));
@@ -121,10 +88,10 @@ static PetscErrorCode ReducedExtend(Basis *basis, BV block)
     const PetscInt same = TermWithMatrix(r, r->term[t].A);
 
     if (same < t) {
-      PetscCall(MatrixGrow(first, n, &r->A[t]));
+      PetscCall(BlockGrow(first, n, &r->A[t]));
       PetscCall(PetscArraycpy(r->A[t], r->A[same], n * n));
     } else {
-      PetscCall(TermExtend(basis, &r->term[t], block, first, n, &r->A[t]));
+      PetscCall(BlockExtend(basis->vectors, r->term[t].A, r->term[t].symmetric, block, first, &r->A[t]));
     }
     if (r->term[t].kind == OPERATORS_STIFFNESS)
       PetscCall(DiagonalExtend(basis, &r->term[t], block, first, n, &r->D[t]));
@@ -173,15 +140,9 @@ PetscErrorCode BasisRebuild(Basis *basis, PetscInt n_blocks)
 
 PetscErrorCode BasisLift(const Basis *basis, PetscInt size, PetscInt m, const PetscReal coordinates[], BV block)
 {
-  Mat C;
-
   PetscFunctionBeginUser;
-  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, size, m, (PetscScalar *)coordinates, &C));
-  PetscCall(BVSetActiveColumns(basis->vectors, 0, size));
-  PetscCall(BVSetActiveColumns(block, 0, m));
-  PetscCall(BVMult(block, 1, 0, basis->vectors, C));
+  PetscCall(BlockLift(basis->vectors, size, m, coordinates, block));
   PetscCall(BVSetActiveColumns(basis->vectors, 0, basis->reduced.n));
-  PetscCall(MatDestroy(&C));
   PetscFunctionReturn(0);
 }
 

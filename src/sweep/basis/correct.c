@@ -13,6 +13,7 @@
 */
 #include "correct.h"
 #include "base/events.h"
+#include "solver/residual.h"
 
 #define COUNT_AWAY 1e-7 /* relative move of the end of a band that an eigenvalue lies on */
 
@@ -46,12 +47,10 @@ static PetscBool ModeCounts(const ReducedModes *modes, PetscInt i, PetscBool dam
   return cabs(modes->lambda[i] + conj(modes->lambda[i - 1])) > close ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Vectors of several modes side by side as real columns: one for a real vector, else its real and imaginary part */
+/* Columns with their coordinates */
 typedef struct {
-  PetscInt      m, n_columns;
-  PetscInt     *column;      /* [m + 1] first column of each mode */
-  PetscComplex *lambda;      /* [m] */
-  PetscReal    *coordinates; /* [n_columns][size] */
+  ComplexColumns of;
+  PetscReal     *coordinates; /* [of.n_columns][size] */
 } Columns;
 
 static PetscErrorCode ColumnsCollect(const ReducedModes *modes, PetscBool damped, const PetscComplex vectors[],
@@ -60,66 +59,19 @@ static PetscErrorCode ColumnsCollect(const ReducedModes *modes, PetscBool damped
   const PetscInt size = modes->size;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(modes->n + 1, &c->column, modes->n, &c->lambda, 2 * modes->n * size, &c->coordinates));
-  c->m = c->column[0] = 0;
+  PetscCall(ComplexColumnsCreate(modes->n, &c->of));
+  PetscCall(PetscMalloc1(2 * modes->n * size, &c->coordinates));
   for (PetscInt i = 0; i < modes->n; i++) {
     const PetscBool is_real = !damped && cimag(modes->lambda[i] * modes->lambda[i]) == 0 ? PETSC_TRUE : PETSC_FALSE;
-    PetscReal      *first   = &c->coordinates[c->column[c->m] * size];
+    PetscReal      *first   = &c->coordinates[c->of.n_columns * size];
 
     if (!ModeCounts(modes, i, damped)) continue;
     for (PetscInt k = 0; k < size; k++) {
       first[k] = creal(vectors[i * size + k]);
       if (!is_real) first[size + k] = cimag(vectors[i * size + k]);
     }
-    c->lambda[c->m]     = modes->lambda[i];
-    c->column[c->m + 1] = c->column[c->m] + (is_real ? 1 : 2);
-    c->m++;
+    ComplexColumnsAdd(&c->of, modes->lambda[i], is_real);
   }
-  c->n_columns = c->column[c->m];
-  PetscFunctionReturn(0);
-}
-
-/* R += lambda^power A X, or A' X, mode by mode */
-static PetscErrorCode ResidualAdd(Mat A, PetscBool transposed, const Columns *c, int power, Mat X, Mat R)
-{
-  const PetscScalar *ax;
-  PetscScalar       *r;
-  PetscInt           n, ldx, ldr;
-  Mat                AX;
-
-  PetscFunctionBeginUser;
-  if (transposed)
-    PetscCall(MatTransposeMatMult(A, X, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &AX));
-  else
-    PetscCall(MatMatMult(A, X, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &AX));
-  PetscCall(MatGetLocalSize(AX, &n, NULL));
-  PetscCall(MatDenseGetLDA(AX, &ldx));
-  PetscCall(MatDenseGetLDA(R, &ldr));
-  PetscCall(MatDenseGetArrayRead(AX, &ax));
-  PetscCall(MatDenseGetArray(R, &r));
-  for (PetscInt j = 0; j < c->m; j++) {
-    const PetscComplex a  = power == 2 ? c->lambda[j] * c->lambda[j] : power == 1 ? c->lambda[j] : 1;
-    const PetscReal    re = creal(a), im = cimag(a);
-    const PetscInt     at = c->column[j], two = c->column[j + 1] - at == 2;
-    const PetscScalar *xr = &ax[at * ldx], *xi = &ax[(at + 1) * ldx];
-
-    for (PetscInt k = 0; k < n; k++) r[at * ldr + k] += re * xr[k] - (two ? im * xi[k] : 0);
-    for (PetscInt k = 0; k < n && two; k++) r[(at + 1) * ldr + k] += re * xi[k] + im * xr[k];
-  }
-  PetscCall(MatDenseRestoreArray(R, &r));
-  PetscCall(MatDenseRestoreArrayRead(AX, &ax));
-  PetscCall(MatDestroy(&AX));
-  PetscFunctionReturn(0);
-}
-
-/* R = Q(lambda) X, or its transpose */
-static PetscErrorCode ResidualMake(const PencilMatrices *pencil, PetscBool transposed, const Columns *c, Mat X, Mat R)
-{
-  PetscFunctionBeginUser;
-  PetscCall(MatZeroEntries(R));
-  PetscCall(ResidualAdd(pencil->K, transposed, c, 0, X, R));
-  if (pencil->C) PetscCall(ResidualAdd(pencil->C, transposed, c, 1, X, R));
-  PetscCall(ResidualAdd(pencil->M, transposed, c, 2, X, R));
   PetscFunctionReturn(0);
 }
 
@@ -133,20 +85,21 @@ static PetscErrorCode CorrectionSide(const Correction *c, const ReducedModes *mo
 
   PetscFunctionBeginUser;
   PetscCall(ColumnsCollect(modes, c->matrices.C ? PETSC_TRUE : PETSC_FALSE, left ? modes->y : modes->x, &columns));
-  PetscCall(BasisCreateBlock(basis, columns.n_columns, &vectors));
-  PetscCall(BasisLift(basis, modes->size, columns.n_columns, columns.coordinates, vectors));
-  PetscCall(BVSetActiveColumns(block, *n, *n + columns.n_columns));
+  PetscCall(BasisCreateBlock(basis, columns.of.n_columns, &vectors));
+  PetscCall(BasisLift(basis, modes->size, columns.of.n_columns, columns.coordinates, vectors));
+  PetscCall(BVSetActiveColumns(block, *n, *n + columns.of.n_columns));
   PetscCall(BVGetMat(vectors, &X));
   PetscCall(MatDuplicate(X, MAT_DO_NOT_COPY_VALUES, &R));
-  PetscCall(ResidualMake(&c->matrices, left, &columns, X, R));
+  PetscCall(ResidualMake(&c->matrices, left, &columns.of, X, R));
   PetscCall(BVGetMat(block, &Z));
   PetscCall(ShiftInvertApplyBlock(&c->factor, left, R, Z));
   PetscCall(BVRestoreMat(block, &Z));
   PetscCall(MatDestroy(&R));
   PetscCall(BVRestoreMat(vectors, &X));
   PetscCall(BVDestroy(&vectors));
-  *n += columns.n_columns;
-  PetscCall(PetscFree3(columns.column, columns.lambda, columns.coordinates));
+  *n += columns.of.n_columns;
+  PetscCall(ComplexColumnsDestroy(&columns.of));
+  PetscCall(PetscFree(columns.coordinates));
   PetscFunctionReturn(0);
 }
 

@@ -1,7 +1,7 @@
 /* Private to sweep/: the pencil of one point as a linear problem A z = s B z (see standard.c) */
 #pragma once
 
-#include "dense.h"
+#include "solver/dense.h"
 
 /* Q(lambda) = lambda^2 M + lambda C + K, [n * n] each */
 typedef struct {

@@ -1,4 +1,4 @@
-/* Private to sweep/: small dense problems by LAPACK. Matrices are column-major, [n * n] unless stated. */
+/* Private to modes/, sweep/: small dense problems by LAPACK. Matrices are column-major, [n * n] unless stated. */
 #pragma once
 
 #include <petscsys.h>
