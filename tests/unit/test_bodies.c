@@ -58,6 +58,26 @@ static PetscErrorCode CheckApply(const Case *c, int *failed)
   PetscFunctionReturn(0);
 }
 
+/* Breaks when: a product takes up what an earlier one left behind, or adds in an order of its own */
+static PetscErrorCode CheckRepeat(const Case *c, int *failed)
+{
+  const PetscInt n = c->layout->n;
+  PetscReal     *x, *y[6];
+  PetscInt       n_different = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(7 * n, &x));
+  for (int i = 0; i < 6; i++) y[i] = x + (i + 1) * n;
+  for (int i = 0; i < 3; i++) {
+    PetscCall(FieldSet(c, i == 1 ? 7 : 0, x));
+    PetscCall(BodiesApply(c->bodies, x, y[2 * i], y[2 * i + 1]));
+  }
+  for (PetscInt i = 0; i < n; i++) n_different += y[0][i] != y[4][i] || y[1][i] != y[5][i];
+  *failed += CheckClose("  K x, C x that differ when repeated", (double)n_different, 0, 0);
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(0);
+}
+
 /* Breaks when: masses lose a cell, count a shared vertex twice or stand elsewhere than its components */
 static PetscErrorCode CheckMass(const Case *c, int *failed)
 {
@@ -286,6 +306,7 @@ static PetscErrorCode CheckScene(const Scene *scene, const char options[], Petsc
   PetscCall(CaseIsSwept(&c, &is_swept));
   *failed += CheckClose("  swept", is_swept, swept, 0);
   PetscCall(CheckApply(&c, failed));
+  PetscCall(CheckRepeat(&c, failed));
   PetscCall(CheckMass(&c, failed));
   PetscCall(CheckAdvance(&c, failed));
   PetscCall(CheckBound(&c, 3e-7, failed));

@@ -8,6 +8,7 @@
 #include "bodiesimpl.h"
 
 #define SAME_AXIS 1e-8 /* of centres that ranks find, relative to the mesh */
+#define LEAF      256  /* nodes, with their sums about 15 kB */
 
 static PetscInt LayoutRoundUp(PetscInt n)
 {
@@ -192,10 +193,11 @@ static void SweptLayOut(const SweptBody *swept, Layout *layout)
     }
 }
 
-/* Sorts nodes along the longest side of their box: neighbours in space are then near in memory */
-static PetscErrorCode VerticesSort(const Mesh *mesh, PetscInt n, PetscInt vertex[])
+/* Sorts nodes along the longest side of their box, and those of each half of it again, down to LEAF: what rows of
+   neighbours read and add to stays in the nearest cache, and neighbouring rows are of like lengths */
+static PetscErrorCode VerticesSort(const Mesh *mesh, PetscInt n, PetscInt vertex[], PetscReal key[])
 {
-  PetscReal low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, *key;
+  PetscReal low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
   int       longest = 0;
 
   PetscFunctionBeginUser;
@@ -207,33 +209,37 @@ static PetscErrorCode VerticesSort(const Mesh *mesh, PetscInt n, PetscInt vertex
   }
   for (int d = 1; d < 3; d++)
     if (high[d] - low[d] > high[longest] - low[longest]) longest = d;
-  PetscCall(PetscMalloc1(n, &key));
   for (PetscInt i = 0; i < n; i++) key[i] = mesh->x[3 * vertex[i] + longest];
   PetscCall(PetscSortRealWithArrayInt(n, key, vertex));
-  PetscCall(PetscFree(key));
+  if (n <= LEAF) PetscFunctionReturn(0);
+  PetscCall(VerticesSort(mesh, n / 2, vertex, key));
+  PetscCall(VerticesSort(mesh, n - n / 2, vertex + n / 2, key));
   PetscFunctionReturn(0);
 }
 
 /* Places of all other nodes with cells: those that ranks share, then the rest */
 static PetscErrorCode GeneralLayOut(Bodies b)
 {
-  General *g = &b->general;
-  Layout  *l = &b->layout;
+  General   *g = &b->general;
+  Layout    *l = &b->layout;
+  PetscReal *key;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(l->n_vertices, &g->vertex));
+  PetscCall(PetscMalloc1(l->n_vertices, &key));
   for (int pass = 0; pass < 2; pass++) {
     for (PetscInt v = 0; v < l->n_vertices; v++) {
       if (b->body[v] < 0 || l->at[v] >= 0 || b->share.shared[v] == (PetscBool)pass) continue;
       g->vertex[g->n++] = v;
     }
-    PetscCall(VerticesSort(b->mesh, g->n - g->n_early, &g->vertex[g->n_early]));
+    PetscCall(VerticesSort(b->mesh, g->n - g->n_early, &g->vertex[g->n_early], key));
     if (pass == 0) g->n_early = g->n;
     for (PetscInt i = pass ? g->n_early : 0; i < g->n; i++) {
       l->at[g->vertex[i]]   = g->begin + 3 * i;
       l->step[g->vertex[i]] = 1;
     }
   }
+  PetscCall(PetscFree(key));
   PetscFunctionReturn(0);
 }
 
