@@ -224,6 +224,7 @@ PetscErrorCode ChainRun(Chain *chain)
   PetscFunctionBeginUser;
   if (analysis == ANALYSIS_MODES || analysis == ANALYSIS_FRF) {
     PetscCall(ChainLinearise(chain));
+    if (analysis == ANALYSIS_MODES) PetscCall(PencilReleaseTerms(chain->pencil)); /* which need one point alone */
     PetscCall(ModesSetPencil(chain->modes, chain->pencil));
     PetscCall(FrfSetPencil(chain->frf, chain->pencil));
   }

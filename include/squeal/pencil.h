@@ -102,6 +102,11 @@ PetscReal OperatorsTermCoefficient(const OperatorsTerm *term, const PetscReal p[
 /*@ OperatorsTermDerivative - the derivative of c(p) by one parameter. Not collective. @*/
 PetscReal OperatorsTermDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt parameter);
 
+/*@ PencilReleaseTerms - frees the terms of a model, those of the operators too, once all matrices at the present point are
+    formed: half of the memory, where no other point will be asked for. Afterwards PencilSetParameters() and
+    PencilGetTerms() raise PETSC_ERR_ARG_WRONGSTATE. Matrices that were loaded stay. Collective. @*/
+PetscErrorCode PencilReleaseTerms(Pencil pencil);
+
 /*@ PencilGetMatrices - the matrices with friction. Collective. @*/
 PetscErrorCode PencilGetMatrices(Pencil pencil, PencilMatrices *matrices);
 

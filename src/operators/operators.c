@@ -31,8 +31,9 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
   PetscFunctionBeginUser;
   PetscOptionsBegin(operators->comm, NULL, "Operators", NULL);
   PetscCall(OperatorsLoadFromOptions(operators, PetscOptionsObject));
-  PetscCall(PetscOptionsEList("-operators_mass", "mass matrix of the bodies; lumped: row sums, or of tet10, wedge15, hex20 the scaled diagonal", "operators.h", masses,
-                              2, masses[0], &mass, NULL));
+  PetscCall(PetscOptionsEList(
+    "-operators_mass", "mass matrix of the bodies; lumped: row sums, or of tet10, wedge15, hex20 the scaled diagonal",
+    "operators.h", masses, 2, masses[0], &mass, NULL));
   PetscCall(PetscOptionsString("-operators_save", "folder for K.bin, M.bin, C.bin, H.bin (PETSc binary)", "operators.h",
                                operators->save, operators->save, sizeof(operators->save), NULL));
   PetscCall(OperatorsHaveMatrices(operators, &have));
@@ -181,7 +182,16 @@ PetscErrorCode OperatorsReleaseBodies(Operators operators)
 
 PetscErrorCode OperatorsCreateVec(Operators operators, Vec *u)
 {
+  const Mesh *mesh;
+
   PetscFunctionBeginUser;
+  if (operators->model) {
+    PetscCall(ModelGetMesh(operators->model, &mesh));
+    PetscCall(VecCreate(operators->comm, u));
+    PetscCall(VecSetSizes(*u, mesh->n_own, mesh->n_unknowns));
+    PetscCall(VecSetType(*u, VECSTANDARD));
+    PetscFunctionReturn(0);
+  }
   PetscCall(MatCreateVecs(operators->terms.term[0].A, u, NULL));
   PetscFunctionReturn(0);
 }

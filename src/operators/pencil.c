@@ -38,6 +38,15 @@ PetscErrorCode PencilGetParameters(Pencil pencil, PetscInt *n, const OperatorsPa
   PetscFunctionReturn(0);
 }
 
+/* Raises the error for terms that are gone */
+static PetscErrorCode PencilCheckTerms(Pencil pencil)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!pencil->released, pencil->comm, PETSC_ERR_ARG_WRONGSTATE,
+             "the terms of this pencil were released: it stays at its point");
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode PencilSetParameters(Pencil pencil, const PetscReal p[])
 {
   const PetscInt n = pencil->parameters.n;
@@ -47,6 +56,7 @@ PetscErrorCode PencilSetParameters(Pencil pencil, const PetscReal p[])
   for (PetscInt i = 0; i < n; i++) PetscCall(ParameterCheck(pencil->comm, &pencil->parameters.list[i], p[i]));
   PetscCall(PetscArraycmp(pencil->parameters.p, p, n, &same));
   if (same) PetscFunctionReturn(0);
+  PetscCall(PencilCheckTerms(pencil));
   PetscCall(PetscArraycpy(pencil->parameters.p, p, n));
   for (int i = 0; i < N_PENCIL_SUMS; i++) pencil->sum[i].current = PETSC_FALSE;
   PetscFunctionReturn(0);
@@ -125,6 +135,7 @@ PetscErrorCode PencilGetTerms(Pencil pencil, PetscInt *n, const OperatorsTerm **
   const Terms *list = pencil->Zr ? &pencil->projected : &pencil->base;
 
   PetscFunctionBeginUser;
+  PetscCall(PencilCheckTerms(pencil));
   PetscCall(PencilProjectTerms(pencil));
   *n     = list->n;
   *terms = list->term;
@@ -168,6 +179,34 @@ PetscErrorCode PencilGetFrictionless(Pencil pencil, PencilMatrices *m)
   PetscCall(PencilFormSum(pencil, PROJECTED_M, &m->M));
   m->C         = NULL;
   m->symmetric = pencil->operators->symmetric;
+  PetscFunctionReturn(0);
+}
+
+/* Destroys the matrices of a list of terms, which otherwise stays */
+static PetscErrorCode TermsRelease(Terms *terms)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt t = 0; t < terms->n; t++) PetscCall(MatDestroy(&terms->term[t].A));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilReleaseTerms(Pencil pencil)
+{
+  Operators      o = pencil->operators;
+  PencilMatrices m;
+  PencilParts    parts;
+
+  PetscFunctionBeginUser;
+  if (!o->model || pencil->released) PetscFunctionReturn(0);
+  PetscCall(PencilGetMatrices(pencil, &m));
+  PetscCall(PencilGetFrictionless(pencil, &m));
+  PetscCall(PencilGetParts(pencil, &parts));
+  PetscCall(TermsRelease(&pencil->base));
+  PetscCall(TermsRelease(&pencil->projected));
+  PetscCall(TermsRelease(&o->terms));
+  PetscCall(TermsRelease(&o->spin));
+  PetscCall(OperatorsReleaseBodies(o));
+  pencil->released = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -243,11 +282,13 @@ PetscErrorCode PencilView(Pencil pencil, PetscViewer viewer)
   PencilMatrices m;
   PetscInt       n, n_pencil;
   PetscBool      spinning;
+  Mat            M;
   MatInfo        info;
 
   PetscFunctionBeginUser;
   PetscCall(PencilGetMatrices(pencil, &m));
-  PetscCall(MatGetSize(pencil->base.term[0].A, &n, NULL));
+  PetscCall(PencilGetMass(pencil, &M));
+  PetscCall(MatGetSize(M, &n, NULL));
   PetscCall(MatGetSize(m.K, &n_pencil, NULL));
   PetscCall(MatGetInfo(m.K, MAT_GLOBAL_SUM, &info));
   spinning =

@@ -37,6 +37,7 @@ struct _p_Pencil {
   PetscInt *left_mu;   /* [n_left] parameters that are friction coefficients */
   Terms     projected; /* in the unknowns of the pencil, made when asked for; empty without constraints: base serves */
   TermsSum  sum[N_PENCIL_SUMS];
+  PetscBool released; /* the terms are gone */
 };
 
 /* rigid.c - null space of points that are joined rigidly, where there is none of the contact. Collective. */

@@ -8,6 +8,7 @@
 #include "brake.h"
 #include "check.h"
 #include "petscmain.h"
+#include "scratch.h"
 #include <string.h>
 
 /* A scene and the two sets of values between which it goes, forth and back */
@@ -239,6 +240,30 @@ static PetscErrorCode TestProjection(Chain *chain, PetscBool constrained, int *f
   PetscFunctionReturn(0);
 }
 
+/* Breaks when: a pencil whose terms are gone lacks a matrix at its point, or moves all the same. Reference: the other
+   chain, moved to that point */
+static PetscErrorCode TestReleased(Chain chain[2], const PetscReal away[], int *failed)
+{
+  const OperatorsTerm *term;
+  const PetscReal     *p;
+  PetscInt             n;
+  Scratch              keep = {.code = 0};
+  PetscErrorCode       moved, terms;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetParameters(chain[0].pencil, NULL, NULL, &p));
+  PetscCall(PencilSetParameters(chain[1].pencil, p));
+  PetscCall(PencilReleaseTerms(chain[0].pencil));
+  PetscCall(TestSame(chain[0].pencil, chain[1].pencil, failed));
+  PetscCall(PetscPushErrorHandler(ScratchKeepError, &keep));
+  moved = PencilSetParameters(chain[0].pencil, away);
+  terms = PencilGetTerms(chain[0].pencil, &n, &term);
+  PetscCall(PetscPopErrorHandler());
+  *failed += CheckTrue("released: it stays", moved == PETSC_ERR_ARG_WRONGSTATE, (double)moved);
+  *failed += CheckTrue("released: no terms", terms == PETSC_ERR_ARG_WRONGSTATE, (double)terms);
+  PetscFunctionReturn(0);
+}
+
 /* Gives the first chain the values of the second one and back */
 static PetscErrorCode TestScene(const Scene *scene, int *failed)
 {
@@ -246,6 +271,7 @@ static PetscErrorCode TestScene(const Scene *scene, int *failed)
   PetscInt                  n[2];
   Chain                     chain[2];
   Matrices                  before;
+  PetscReal                 values[64];
 
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) {
@@ -270,7 +296,9 @@ static PetscErrorCode TestScene(const Scene *scene, int *failed)
     PetscCall(TestDerivatives(chain[k].pencil, failed));
     PetscCall(TestProjection(&chain[k], strstr(scene->scene, "constraint") ? PETSC_TRUE : PETSC_FALSE, failed));
     PetscCall(PencilSetParameters(chain[k].pencil, first));
+    if (k) PetscCall(PetscArraycpy(values, first, n[0]));
   }
+  PetscCall(TestReleased(chain, values, failed));
   for (int k = 0; k < 2; k++) PetscCall(ChainDestroy(&chain[k]));
   PetscFunctionReturn(0);
 }
