@@ -3,6 +3,7 @@
    errors -> labels, with the check that no mode is missing.
 */
 #include "modesimpl.h"
+#include "solver/blockkrylov.h"
 #include "solver/ordering.h"
 #include <squeal/options.h>
 
@@ -20,6 +21,7 @@ PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
   (*modes)->max_time = 3600;
   PetscCall(PetscStrncpy((*modes)->disc, "disc", sizeof((*modes)->disc)));
   PetscCall(OrderingRegister());
+  PetscCall(BlockKrylovRegister());
   PetscFunctionReturn(0);
 }
 

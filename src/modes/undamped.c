@@ -1,6 +1,6 @@
 /*
-   Undamped problem K x = kappa M x, kappa = -lambda^2, half the size of the quadratic one: EPS Krylov-Schur with
-   shift-and-invert about a real shift, symmetric (GHEP) or not (GNHEP). A kappa in the complex plane stands for
+   Undamped problem K x = kappa M x, kappa = -lambda^2, half the size of the quadratic one: EPS block Krylov-Schur
+   with shift-and-invert about a real shift, symmetric (GHEP) or not (GNHEP). A kappa in the complex plane stands for
    lambda = sqrt(-kappa) and -lambda; the one with omega >= 0 is kept, so that a complex pair of kappa gives both
    members of a lock-in pair.
 
@@ -8,6 +8,7 @@
    farthest converged one lies outside the circle about the shift through the ends of the window.
 */
 #include "modesimpl.h"
+#include "solver/blockkrylov.h"
 #include <complex.h>
 
 /* Without a target, or with one near zero, the shift lies below zero, where rigid modes may be. Rounding of an eigenvalue there by its inverse,
@@ -85,7 +86,7 @@ PetscErrorCode SolverSeed(BV bv, unsigned long seed)
 
 /* Solver for nev eigenvalues about the shift; the transposed problem starts from another random vector */
 static PetscErrorCode UndampedCreateSolver(const PencilMatrices *pencil, ShiftInvert *si, PetscBool transposed,
-                                           PetscInt nev, PetscInt n, EPS *eps)
+                                           PetscInt nev, EPS *eps)
 {
   BV bv;
   ST st;
@@ -94,7 +95,8 @@ static PetscErrorCode UndampedCreateSolver(const PencilMatrices *pencil, ShiftIn
   PetscCall(EPSCreate(si->comm, eps));
   PetscCall(EPSSetOperators(*eps, pencil->K, pencil->M));
   PetscCall(EPSSetProblemType(*eps, pencil->symmetric ? EPS_GHEP : EPS_GNHEP));
-  PetscCall(EPSSetDimensions(*eps, nev, PetscMin(n, nev + PetscMax(nev / 2, 20)), PETSC_DEFAULT));
+  PetscCall(EPSSetType(*eps, EPSBLOCKKRYLOVSCHUR));
+  PetscCall(EPSSetDimensions(*eps, nev, PETSC_DEFAULT, PETSC_DEFAULT));
   PetscCall(EPSSetTolerances(*eps, 1e-11, 200));
   PetscCall(EPSGetST(*eps, &st));
   PetscCall(ShiftInvertAttach(si, transposed, st));
@@ -119,6 +121,22 @@ static PetscErrorCode UndampedStop(EPS eps, PetscInt its, PetscInt max_it, Petsc
   PetscFunctionReturn(0);
 }
 
+/* M itself where it is known to be symmetric, else its transpose: formed, since products with blocks of vectors need it */
+static PetscErrorCode UndampedTranspose(PencilMatrices *problem)
+{
+  PetscBool known, symmetric;
+  Mat       K = problem->K, M = problem->M;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateTranspose(K, &problem->K));
+  PetscCall(MatIsSymmetricKnown(M, &known, &symmetric));
+  if (known && symmetric)
+    PetscCall(PetscObjectReference((PetscObject)M));
+  else
+    PetscCall(MatTranspose(M, MAT_INITIAL_MATRIX, &problem->M));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
                              PetscBool transposed, Spectrum *spectrum)
 {
@@ -130,13 +148,12 @@ PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Wi
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(pencil->K, &n, NULL));
-  if (transposed) PetscCall(MatCreateTranspose(pencil->K, &problem.K));
-  if (transposed) PetscCall(MatCreateTranspose(pencil->M, &problem.M));
+  if (transposed) PetscCall(UndampedTranspose(&problem));
   for (int attempt = 0; attempt < 8 && !covered; attempt++, nev += nev / 2) {
     EPS eps;
 
     nev = PetscMin(nev, n);
-    PetscCall(UndampedCreateSolver(&problem, si, transposed, nev, n, &eps));
+    PetscCall(UndampedCreateSolver(&problem, si, transposed, nev, &eps));
     PetscCall(EPSSetStoppingTestFunction(eps, UndampedStop, modes, NULL));
     PetscCall(LimitAttach(modes, nev, si));
     PetscCall(ProgressBegin(&modes->progress, transposed ? "left vectors" : "right vectors", 2 * nev + nev / 4));

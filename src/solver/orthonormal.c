@@ -43,8 +43,7 @@ static PetscErrorCode BlockProject(BV V, PetscInt n, Mat M, BV W)
   PetscFunctionReturn(0);
 }
 
-/* Eigenvalues w, ascending, and vectors of the symmetric n x n matrix G, which they overwrite; those of rank 0 on all */
-static PetscErrorCode GramEigen(MPI_Comm comm, PetscInt size, PetscScalar G[], PetscReal w[])
+PetscErrorCode GramEigen(MPI_Comm comm, PetscInt size, PetscScalar G[], PetscReal w[])
 {
   PetscBLASInt n, work_size, info;
   PetscScalar *work;

@@ -5,6 +5,8 @@
 
 /* H = X' A Y (A the identity where NULL) for the active columns of X and Y; on every rank, the caller destroys it */
 PETSC_INTERN PetscErrorCode BlockProducts(BV X, Mat A, BV Y, Mat *H);
+/* Eigenvalues w, ascending, and vectors of the symmetric n x n matrix G, which they overwrite; those of rank 0 on all */
+PETSC_INTERN PetscErrorCode GramEigen(MPI_Comm comm, PetscInt size, PetscScalar G[], PetscReal w[]);
 /* Copies such an H, or its transpose, to A and on, the leading dimension of A being n. Not collective. */
 PETSC_INTERN PetscErrorCode BlockCopy(Mat H, PetscBool transposed, PetscInt n, PetscReal A[]);
 /* What the active columns of W hold beyond the first n columns of V, which are orthonormal in M (the identity where
@@ -18,3 +20,15 @@ PETSC_INTERN PetscErrorCode BlockExtend(BV V, Mat A, PetscBool symmetric, BV blo
                                         PetscReal **reduced);
 /* block = V coordinates, coordinates [m][size] of the first columns of V, which become its active ones */
 PETSC_INTERN PetscErrorCode BlockLift(BV V, PetscInt size, PetscInt m, const PetscReal coordinates[], BV block);
+
+/* blockfactor.c - the factors of a block: what its columns were in terms of a basis and of the new block */
+typedef struct {
+  PetscInt     ld, most; /* leading dimension of H; columns that the new block may have at most */
+  PetscScalar *H;        /* [columns][ld] C in rows 0 .. n - 1, R in as many rows below as there are columns now */
+  PetscReal    drop;     /* directions shorter than this beside the longest column are left out */
+} BlockFactors;
+
+/* W = V C + Q R for the active columns of W and the first n columns of V, which are orthonormal in M (the identity where
+   NULL). Q, orthonormal in itself and to V, takes the place of W, and its active columns become those that there are.
+   Unlike BlockOrthonormalise() it resolves directions of any length. Collective; alike on all ranks. */
+PETSC_INTERN PetscErrorCode BlockFactorise(BV V, PetscInt n, Mat M, BV W, BlockFactors *factors);

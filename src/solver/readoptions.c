@@ -2,6 +2,7 @@
    Options of PETSc's and SLEPc's solvers, read on solvers that are made for nothing else: which names they know depends
    on their types, and a misspelt one must be an error before the run.
 */
+#include "blockkrylov.h"
 #include "shiftinvert.h"
 #include <squeal/options.h>
 #include <slepceps.h>
@@ -58,8 +59,7 @@ static const char *const solved[] = {"all",
                                      "target_magnitude",
                                      "target_real",
                                      "true_residual",
-                                     "two_sided",
-                                     "type"};
+                                     "two_sided"};
 
 /* The same of the spectral transformation and its factors */
 static const char *const transformed[] = {"cayley_antishift", "filter_degree", "filter_interval", "filter_range",
@@ -84,13 +84,35 @@ static PetscErrorCode SolverRefuse(MPI_Comm comm, const char prefix[], size_t n,
   PetscFunctionReturn(0);
 }
 
+/* Raises an error for a type of eigensolver that makes no statement about which modes it finds first */
+static PetscErrorCode SolverCheckTypes(MPI_Comm comm)
+{
+  static const char *const pep[] = {"type"};
+  static const char other[] = "not offered, other modes would be found; choose them by -modes_band or -modes_target";
+  char              value[64];
+  PetscBool         set, block, single;
+
+  PetscFunctionBeginUser;
+  PetscCall(SolverRefuse(comm, "pep_", 1, pep, other));
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-eps_type", value, sizeof(value), &set));
+  if (!set) PetscFunctionReturn(0);
+  PetscCall(PetscStrcmp(value, EPSBLOCKKRYLOVSCHUR, &block));
+  PetscCall(PetscStrcmp(value, EPSKRYLOVSCHUR, &single));
+  PetscCheck(block || single, comm, PETSC_ERR_USER_INPUT,
+             "-eps_type %s: not offered, other modes would be found; valid are " EPSBLOCKKRYLOVSCHUR
+             " and " EPSKRYLOVSCHUR,
+             value);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode EpsReadOptions(MPI_Comm comm)
 {
   EPS eps;
 
   PetscFunctionBeginUser;
+  PetscCall(BlockKrylovRegister());
   PetscCall(EPSCreate(comm, &eps));
-  PetscCall(EPSSetType(eps, EPSKRYLOVSCHUR));
+  PetscCall(EPSSetType(eps, EPSBLOCKKRYLOVSCHUR));
   PetscCall(EPSSetFromOptions(eps));
   PetscCall(EPSDestroy(&eps));
   PetscFunctionReturn(0);
@@ -163,6 +185,7 @@ PetscErrorCode SolverReadEigenOptions(MPI_Comm comm)
   PetscFunctionBeginUser;
   PetscCall(SolverRefuse(comm, "eps_", PETSC_STATIC_ARRAY_LENGTH(solved), solved, other));
   PetscCall(SolverRefuse(comm, "pep_", PETSC_STATIC_ARRAY_LENGTH(solved), solved, other));
+  PetscCall(SolverCheckTypes(comm));
   PetscCall(PrefixIsLeft(PETSC_STATIC_ARRAY_LENGTH(shared), shared, &eps));
   PetscCall(PrefixIsLeft(PETSC_STATIC_ARRAY_LENGTH(quadratic), quadratic, &pep));
   if (eps) PetscCall(EpsReadOptions(comm));

@@ -119,6 +119,7 @@ PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, PetscReal shift, 
     PetscCall(KSPSetUp(si->ksp));
     PetscCall(KSPGetPC(si->ksp, &pc));
     PetscCall(ShiftInvertCheck(si->comm, pc, &singular));
+    if (!singular) PetscCall(MatNorm(A, NORM_FROBENIUS, &si->size));
     PetscCall(MatDestroy(&A));
     if (singular) PetscCall(KSPDestroy(&si->ksp));
   }
@@ -165,6 +166,31 @@ static PetscErrorCode ShiftInvertApplyTranspose(PC pc, Vec x, Vec y)
   return ShiftInvertRun(pc, PETSC_TRUE, x, y);
 }
 
+/* Y = A^-1 X or A^-T X for the columns of X, as many steps of the eigensolver */
+static PetscErrorCode ShiftInvertRunBlock(PC pc, PetscBool transposed, Mat X, Mat Y)
+{
+  ShiftInvert *si;
+  PetscInt     n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &si));
+  PetscCall(ShiftInvertApplyBlock(si, transposed, X, Y));
+  PetscCall(MatGetSize(X, NULL, &n));
+  for (PetscInt j = 0; j < n; j++) PetscCall(ProgressStep(si->progress));
+  if (si->after) PetscCall((*si->after)(si->after_ctx));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ShiftInvertMatApply(PC pc, Mat X, Mat Y)
+{
+  return ShiftInvertRunBlock(pc, PETSC_FALSE, X, Y);
+}
+
+static PetscErrorCode ShiftInvertMatApplyTranspose(PC pc, Mat X, Mat Y)
+{
+  return ShiftInvertRunBlock(pc, PETSC_TRUE, X, Y);
+}
+
 PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st)
 {
   KSP ksp;
@@ -180,6 +206,7 @@ PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st)
   PetscCall(PCSetType(pc, PCSHELL));
   PetscCall(PCShellSetContext(pc, si));
   PetscCall(PCShellSetApply(pc, transposed ? ShiftInvertApplyTranspose : ShiftInvertApply));
+  PetscCall(PCShellSetMatApply(pc, transposed ? ShiftInvertMatApplyTranspose : ShiftInvertMatApply));
   PetscFunctionReturn(0);
 }
 

@@ -11,6 +11,7 @@ typedef struct {
   MPI_Comm  comm;
   KSP       ksp;
   PetscReal shift; /* kappa (rad/s)^2 when undamped, lambda (rad/s) when damped */
+  PetscReal size;  /* |A|_F of the matrix */
   Progress *progress;
   /* called after every solve of an eigensolver, alike on all ranks; NULL for nothing. An error ends the solution */
   PetscErrorCode (*after)(void *ctx);

@@ -1,0 +1,159 @@
+/*
+   The block Krylov decomposition, see blockspace.h. Whatever is added to V is orthogonalised against all of it, so that G
+   may be full, and a random block may join at any time: its rows in G are zero.
+*/
+#include "blockspace.h"
+#include "orthonormal.h"
+
+#define VANISHED  4e-15 /* a direction that rounding made, beside its block: left out of the decomposition */
+#define EXHAUSTED 1e-12 /* the same of what Op makes of random vectors: there are no further directions */
+
+PetscErrorCode BlockSpaceCreate(ST st, BV V, Mat M, PetscInt ncv, PetscInt block, BlockSpace *s)
+{
+  PetscFunctionBeginUser;
+  *s = (BlockSpace){.st = st, .V = V, .M = M, .ncv = ncv, .block = block};
+  PetscCall(BVGetSizes(V, NULL, &s->n, NULL));
+  PetscCall(BVDuplicateResize(V, block, &s->W));
+  PetscCall(PetscCalloc2(ncv * (ncv + block), &s->G, block * (ncv + block), &s->scratch));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlockSpaceApply(BlockSpace *s, PetscInt first, PetscInt n)
+{
+  Mat Op;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVSetActiveColumns(s->V, first, first + n));
+  PetscCall(BVSetActiveColumns(s->W, 0, n));
+  PetscCall(STGetOperator(s->st, &Op));
+  PetscCall(BVMatMult(s->V, Op, s->W));
+  PetscCall(STRestoreOperator(s->st, &Op));
+  PetscFunctionReturn(0);
+}
+
+/* Makes the block W orthonormal to the first n columns of V, which its columns follow, as many as there are in it */
+static PetscErrorCode SpaceAppend(BlockSpace *s, PetscInt n, PetscReal drop, PetscScalar H[], PetscInt *rank)
+{
+  BlockFactors factors = {.ld = s->ncv + s->block, .most = s->n - n, .H = H, .drop = drop};
+
+  PetscFunctionBeginUser;
+  PetscCall(BlockFactorise(s->V, n, s->M, s->W, &factors));
+  PetscCall(BVGetActiveColumns(s->W, NULL, rank));
+  if (!*rank) PetscFunctionReturn(0);
+  PetscCall(BVSetActiveColumns(s->V, n, n + *rank));
+  PetscCall(BVCopy(s->W, s->V));
+  PetscFunctionReturn(0);
+}
+
+/* Random directions in the range of Op, of those that V has not, up to n of them: what Op makes of a random block that is
+   orthogonal to V, so that what V has does not hide them */
+static PetscErrorCode SpaceAppendRandom(BlockSpace *s, PetscInt n, PetscInt *rank)
+{
+  const PetscInt first = s->m + s->p;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVSetActiveColumns(s->V, first, first + n));
+  for (PetscInt j = first; j < first + n; j++) PetscCall(BVSetRandomColumn(s->V, j));
+  PetscCall(BVSetActiveColumns(s->W, 0, n));
+  PetscCall(BVCopy(s->V, s->W));
+  PetscCall(SpaceAppend(s, first, EXHAUSTED, s->scratch, rank));
+  if (!*rank) PetscFunctionReturn(0);
+  PetscCall(BlockSpaceApply(s, first, *rank));
+  PetscCall(SpaceAppend(s, first, EXHAUSTED, s->scratch, rank));
+  s->p += *rank;
+  PetscFunctionReturn(0);
+}
+
+/* Random directions until the last block is full or there are no more */
+static PetscErrorCode SpaceFill(BlockSpace *s)
+{
+  PetscInt missing, rank = 1;
+
+  PetscFunctionBeginUser;
+  while (rank && (missing = PetscMin(s->block - s->p, s->n - s->m - s->p)) > 0)
+    PetscCall(SpaceAppendRandom(s, missing, &rank));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlockSpaceStart(BlockSpace *s)
+{
+  PetscFunctionBeginUser;
+  s->p = 0;
+  PetscCall(SpaceFill(s));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlockSpaceExtend(BlockSpace *s)
+{
+  const PetscInt n = s->m + s->p, ld = s->ncv + s->block;
+  PetscInt       rank;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlockSpaceApply(s, s->m, s->p));
+  PetscCall(PetscArrayzero(s->G + s->m * ld, s->p * ld));
+  PetscCall(SpaceAppend(s, n, VANISHED, s->G + s->m * ld, &rank));
+  s->m = n;
+  s->p = rank;
+  PetscCall(SpaceFill(s));
+  PetscFunctionReturn(0);
+}
+
+/* G := [T; B Q] of k columns, the converged without B */
+static PetscErrorCode SpaceProject(BlockSpace *s, PetscInt converged, PetscInt k, Mat Q, Mat T)
+{
+  const PetscInt     ld = s->ncv + s->block;
+  const PetscScalar *q, *t;
+  PetscScalar       *G;
+  PetscInt           stride;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(s->ncv * ld, &G));
+  PetscCall(MatDenseGetLDA(Q, &stride));
+  PetscCall(MatDenseGetArrayRead(Q, &q));
+  PetscCall(MatDenseGetArrayRead(T, &t));
+  for (PetscInt j = 0; j < k; j++) {
+    for (PetscInt i = 0; i < k; i++) G[j * ld + i] = t[j * stride + i];
+    for (PetscInt c = 0; c < s->m && j >= converged; c++)
+      for (PetscInt i = 0; i < s->p; i++) G[j * ld + k + i] += s->G[c * ld + s->m + i] * q[j * stride + c];
+  }
+  PetscCall(MatDenseRestoreArrayRead(T, &t));
+  PetscCall(MatDenseRestoreArrayRead(Q, &q));
+  PetscCall(PetscArraycpy(s->G, G, s->ncv * ld));
+  PetscCall(PetscFree(G));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlockSpaceRestart(BlockSpace *s, PetscInt locked, PetscInt converged, PetscInt kept, Mat Q, Mat T)
+{
+  const PetscInt k = converged + kept;
+
+  PetscFunctionBeginUser;
+  PetscCall(SpaceProject(s, converged, k, Q, T));
+  PetscCall(BVSetActiveColumns(s->V, locked, s->m));
+  PetscCall(BVMultInPlace(s->V, Q, locked, k));
+  for (PetscInt j = 0; j < s->p && k < s->m; j++) PetscCall(BVCopyColumn(s->V, s->m + j, k + j));
+  s->m = k;
+  PetscFunctionReturn(0);
+}
+
+PetscReal BlockSpaceResidual(const BlockSpace *s, const PetscScalar x[])
+{
+  const PetscInt ld  = s->ncv + s->block;
+  PetscReal      sum = 0;
+
+  for (PetscInt i = 0; i < s->p; i++) {
+    PetscReal b = 0;
+
+    for (PetscInt j = 0; j < s->m; j++) b += s->G[j * ld + s->m + i] * x[j];
+    sum += b * b;
+  }
+  return PetscSqrtReal(sum);
+}
+
+PetscErrorCode BlockSpaceDestroy(BlockSpace *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(BVDestroy(&s->W));
+  PetscCall(PetscFree2(s->G, s->scratch));
+  PetscFunctionReturn(0);
+}
