@@ -270,8 +270,8 @@ int main(int argc, char **argv)
   PetscCall(SlepcInitialize(&argc, &argv, NULL, NULL));
   PetscCall(BlockKrylovRegister());
   PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(cases); i++)
-    for (size_t b = 0; b < 3; b++)
+  for (int i = 0; i < (int)PETSC_STATIC_ARRAY_LENGTH(cases); i++)
+    for (int b = 0; b < 3; b++)
       if (size == 1 || (b == i % 3 && i % 2 == size % 2))
         PetscCall(TestCase(&cases[i], (PetscInt[]){1, 3, 8}[b], &failed));
   PetscCall(PetscOptionsClear(NULL));
