@@ -16,15 +16,15 @@ STENCIL_INLINE PetscReal BlockRowsSum(const StencilLanes *x)
   return (*x)[0] + (*x)[1] + (*x)[2];
 }
 
-/* y [3] = row i times x, of a whole row; x of node 0 */
-STENCIL_INLINE void BlockRowsApply(const BlockRows *rows, PetscInt i, const PetscReal x[], PetscReal y[])
+/* y = row i times x, of a whole row; x of node 0 */
+STENCIL_INLINE void BlockRowsApply(const BlockRows *rows, PetscInt i, const PetscReal x[], StencilLanes *y)
 {
   StencilLanes sum[3] = {{0}, {0}, {0}};
 
   for (PetscInt k = rows->start[i]; k < rows->start[i + 1]; k++)
     for (int j = 0; j < 3; j++)
       sum[j] += *(const StencilLanes *)&rows->value[9 * k + 3 * j] * *(const StencilLanes *)&x[3 * rows->column[k]];
-  for (int j = 0; j < 3; j++) y[j] = BlockRowsSum(&sum[j]);
+  for (int j = 0; j < 3; j++) (*y)[j] = BlockRowsSum(&sum[j]);
 }
 
 /* A row of a block. Volatile, so that it is loaded once: GCC would load it again for each of its two products, and the
@@ -64,48 +64,65 @@ STENCIL_INLINE void BlockRowsApplyBoth(const BlockRows *rows, PetscInt i, const 
   for (int j = 0; j < 3; j++) y[4 * i + j] += BlockRowsSum(&sum[j]);
 }
 
-/* Node i with g = K v and h = C v without the part of the mass */
-STENCIL_INLINE void GeneralAdvanceNode(const General *general, PetscInt i, const PetscReal g[], const PetscReal h[],
-                                       const BodiesWork *w, BodiesSums *sums)
+/* Twice the energies, and the powers of damping, by components; the last number of each is void */
+typedef struct {
+  StencilLanes kinetic, strain, damping_old, damping;
+} GeneralSums;
+
+/* The three components at a node, and the number behind them */
+STENCIL_INLINE StencilLanes GeneralLoad(const PetscReal x[])
 {
-  const PetscInt  at = general->begin + 3 * i;
-  const PetscReal m = general->mass[i], alpha = general->alpha[i];
-
-  for (PetscInt j = 0; j < 3; j++) {
-    const PetscReal v = w->v[at + j];
-
-    sums->strain += 0.5 * w->u[at + j] * w->ku[at + j];
-    sums->kinetic += 0.5 * m * v * v;
-    w->ku[at + j] += w->dt * g[j];
-    w->f[at + j] = -w->ku[at + j];
-    if (!w->d) continue;
-    sums->damping_old += v * w->d[at + j];
-    w->d[at + j] = h[j] + alpha * v;
-    sums->damping += v * w->d[at + j];
-    w->f[at + j] -= w->d[at + j];
-  }
+  return *(const StencilLanes *)x;
 }
 
-/* Copies of the sums and addresses are local, since stores to vectors could change what `work` points to */
+STENCIL_INLINE void GeneralStore(const StencilLanes *x, PetscReal y[])
+{
+  for (int j = 0; j < 3; j++) y[j] = (*x)[j];
+}
+
+/* Node i with g = K v and h = C v without the part of the mass */
+STENCIL_INLINE void GeneralAdvanceNode(const General *general, PetscInt i, const StencilLanes *g, const StencilLanes *h,
+                                       const BodiesWork *w, GeneralSums *sums)
+{
+  const PetscInt     at = general->begin + 3 * i;
+  const StencilLanes v = GeneralLoad(w->v + at), before = GeneralLoad(w->ku + at), ku = before + w->dt * *g;
+  StencilLanes       f = -ku;
+
+  sums->strain += GeneralLoad(w->u + at) * before;
+  sums->kinetic += general->mass[i] * v * v;
+  if (w->d) {
+    const StencilLanes d = *h + general->alpha[i] * v;
+
+    sums->damping_old += v * GeneralLoad(w->d + at);
+    sums->damping += v * d;
+    f -= d;
+    GeneralStore(&d, w->d + at);
+  }
+  GeneralStore(&ku, w->ku + at);
+  GeneralStore(&f, w->f + at);
+}
+
+/* Copies of what `work` has are local, since a store to a vector could change it */
 VERSIONS
 static void GeneralAdvanceNodes(const General *general, PetscInt begin, PetscInt end, BodiesWork *work)
 {
   const General    of   = *general;
   const BodiesWork w    = *work;
-  BodiesSums       sums = w.sums;
+  GeneralSums      sums = {{0}, {0}, {0}, {0}};
 
   for (PetscInt i = begin; i < end; i++) BlockRowsApplyBoth(&of.stiffness, i, w.v + of.begin, of.product);
   for (PetscInt i = begin; i < end; i++) {
-    PetscReal *g = &of.product[4 * i], h[3];
+    StencilLanes *product = (StencilLanes *)&of.product[4 * i];
+    StencilLanes  g = *product, h = of.beta[i] * g;
 
-    if (w.d && of.beta[i] < 0)
-      BlockRowsApply(&of.damping, i, w.v + of.begin, h);
-    else
-      for (int j = 0; j < 3; j++) h[j] = of.beta[i] * g[j];
-    GeneralAdvanceNode(&of, i, g, h, &w, &sums);
-    for (int j = 0; j < 4; j++) g[j] = 0;
+    if (w.d && of.beta[i] < 0) BlockRowsApply(&of.damping, i, w.v + of.begin, &h);
+    GeneralAdvanceNode(&of, i, &g, &h, &w, &sums);
+    *product = (StencilLanes){0};
   }
-  work->sums = sums;
+  work->sums.kinetic += 0.5 * BlockRowsSum(&sums.kinetic);
+  work->sums.strain += 0.5 * BlockRowsSum(&sums.strain);
+  work->sums.damping_old += BlockRowsSum(&sums.damping_old);
+  work->sums.damping += BlockRowsSum(&sums.damping);
 }
 
 PetscErrorCode GeneralAdvance(const General *general, PetscBool early, BodiesWork *w)

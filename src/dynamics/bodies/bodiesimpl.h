@@ -50,8 +50,9 @@ typedef struct {
   PetscInt   n, n_early, begin;
   PetscInt  *vertex;       /* [n] local node */
   PetscReal *mass, *alpha; /* [n] of this rank's cells, kg; alpha (1/s) times mass */
-  PetscReal *beta;         /* [n], 0 where the cells differ */
-  PetscReal *product;      /* [n][4] K v as far as it is summed, zero between the calls; the last number is void */
+  PetscReal *beta;         /* [n] s, -2 where the cells differ */
+  PetscReal *product;      /* [n][4] K v as far as it is summed, 0 between the calls but for the last number, void */
+  PetscReal *room;         /* of product, which begins where a vector register's worth does */
   BlockRows  stiffness;
   BlockRows  damping; /* of the nodes whose cells have different beta, else empty rows */
 } General;

@@ -4,6 +4,7 @@
    different beta have blocks of their own for the second term, whole rows of them.
 */
 #include "bodiesimpl.h"
+#include <stdint.h>
 
 /* The cells of these bodies, and places of their nodes in `general` */
 typedef struct {
@@ -176,7 +177,9 @@ PetscErrorCode GeneralSetUp(Bodies b)
   GeneralCells cells = {0};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc4(g->n, &g->mass, g->n, &g->alpha, g->n, &g->beta, 4 * g->n, &g->product));
+  PetscCall(PetscCalloc4(g->n, &g->mass, g->n, &g->alpha, g->n, &g->beta, 4 * g->n + 4, &g->room));
+  g->product = g->room;
+  while ((uintptr_t)g->product % sizeof(StencilLanes)) g->product++;
   PetscCall(GeneralFindCells(b, &cells));
   PetscCall(BlockRowsCreate(b, &cells, PETSC_TRUE, &g->stiffness));
   PetscCall(GeneralSum(b, &cells));
@@ -196,6 +199,6 @@ PetscErrorCode GeneralDestroy(General *general)
     PetscCall(PetscFree(rows[i]->value));
   }
   PetscCall(PetscFree(general->vertex));
-  PetscCall(PetscFree4(general->mass, general->alpha, general->beta, general->product));
+  PetscCall(PetscFree4(general->mass, general->alpha, general->beta, general->room));
   PetscFunctionReturn(0);
 }
