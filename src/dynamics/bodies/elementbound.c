@@ -7,7 +7,35 @@
 #include "bodiesimpl.h"
 #include <petscblaslapack.h>
 
-/* Largest eigenvalue (1/s^2) of M_e^-1/2 K_e M_e^-1/2 */
+/* A = M_e^-1/2 K_e M_e^-1/2, 1/s^2 */
+static void BoundScale(const BodiesCell *cell, PetscReal a[])
+{
+  const PetscInt n = 3 * cell->n_nodes;
+  PetscReal      scale[ELEMENT_MAX_DOFS];
+
+  for (PetscInt i = 0; i < n; i++) scale[i] = 1 / PetscSqrtReal(cell->mass[i / 3]);
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = 0; j < n; j++) a[n * i + j] = scale[i] * cell->stiffness[n * i + j] * scale[j];
+}
+
+/* Whether no eigenvalue of A is above a limit: then limit - A has a Cholesky factor, at a tenth of the eigenvalues' cost */
+static PetscErrorCode BoundIsBelow(const BodiesCell *cell, PetscReal limit, PetscBool *below)
+{
+  const PetscInt n = 3 * cell->n_nodes;
+  PetscReal      a[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  PetscBLASInt   size, info;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n, &size));
+  BoundScale(cell, a);
+  for (PetscInt i = 0; i < n * n; i++) a[i] = (i % (n + 1) ? 0 : limit) - a[i];
+  LAPACKpotrf_("U", &size, a, &size, &info);
+  PetscCheck(info >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK's potrf failed with info %d", (int)info);
+  *below = info ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* Largest eigenvalue of A */
 static PetscErrorCode BoundOfCell(const BodiesCell *cell, PetscReal *largest)
 {
   const PetscInt n = 3 * cell->n_nodes;
@@ -16,8 +44,7 @@ static PetscErrorCode BoundOfCell(const BodiesCell *cell, PetscReal *largest)
 
   PetscFunctionBeginUser;
   PetscCall(PetscBLASIntCast(n, &size));
-  for (PetscInt i = 0; i < n * n; i++)
-    a[i] = cell->stiffness[i] / PetscSqrtReal(cell->mass[i / n / 3] * cell->mass[i % n / 3]);
+  BoundScale(cell, a);
   LAPACKsyev_("N", "U", &size, a, &size, w, work, &n_work, &info);
   PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK's syev failed with info %d", (int)info);
   *largest = w[n - 1];
@@ -66,10 +93,13 @@ static PetscErrorCode BoundOfCells(Bodies b, PetscReal s, PetscReal *largest)
     const PetscInt  n_nodes = b->mesh->element[c]->n_nodes;
     const PetscInt *vertex  = &b->mesh->cell_node[b->mesh->cell_first[c]];
     PetscReal       lambda;
+    PetscBool       below;
     BodiesCell      cell;
 
     if (BoundIsRepeated(n_nodes, vertex, first, swept) || BoundIsHeld(b, n_nodes, vertex)) continue;
     PetscCall(BodiesGetCell(b, c, &cell));
+    PetscCall(BoundIsBelow(&cell, (*largest - s * cell.alpha) / (1 + s * cell.beta), &below));
+    if (below) continue;
     PetscCall(BoundOfCell(&cell, &lambda));
     *largest = PetscMax(*largest, (1 + s * cell.beta) * lambda + s * cell.alpha);
   }

@@ -15,9 +15,9 @@ typedef struct {
 
 /* A column by its cell between nodes 0 and 1 */
 typedef struct {
-  BodiesCell cell;
-  PetscInt   line[8];
-  PetscBool  second[8]; /* the node is node 1 */
+  PetscInt  cell, line[8];
+  PetscBool second[8];            /* the node is node 1 */
+  PetscReal alpha, beta, mass[8]; /* of the cell, 1/s, s, kg, known when it is summed */
 } Column;
 
 typedef struct {
@@ -79,8 +79,7 @@ static PetscErrorCode ColumnsFind(Bodies b, const SweptBody *s, ColumnSection *s
       size = 2 * size + 16;
       PetscCall(PetscRealloc((size_t)size * sizeof(Column), &section->column));
     }
-    PetscCall(BodiesGetCell(b, c, &column.cell));
-    BodiesTurnCell(&b->layout, &column.cell);
+    column.cell                           = c;
     section->column[section->n_columns++] = column;
   }
   if (n_own != section->n_columns * n_along) *complete = PETSC_FALSE;
@@ -104,33 +103,39 @@ static PetscErrorCode SectionFindKeys(PetscInt n_lines, ColumnSection *section)
   PetscFunctionReturn(0);
 }
 
-/* Adds the block of nodes a and b of a column, scaled; pqc [3] places of p, q, c among the components */
-static void ColumnAddBlock(const Column *column, PetscInt a, PetscInt b, const PetscInt pqc[3], PetscReal scale,
-                           ColumnBlocks *blocks)
+/* Adds the block of nodes a and b of a column's cell, scaled; pqc [3] places of p, q, c among the components */
+static void ColumnAddBlock(const Column *column, const BodiesCell *cell, PetscInt a, PetscInt b, const PetscInt pqc[3],
+                           PetscReal scale, ColumnBlocks *blocks)
 {
   PetscReal *sum = column->second[a] ? (column->second[b] ? blocks->before : blocks->down)
                                      : (column->second[b] ? blocks->up : blocks->after);
 
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++)
-      sum[3 * i + j] += scale * column->cell.stiffness[24 * (3 * a + pqc[i]) + 3 * b + pqc[j]];
+    for (int j = 0; j < 3; j++) sum[3 * i + j] += scale * cell->stiffness[24 * (3 * a + pqc[i]) + 3 * b + pqc[j]];
 }
 
-static PetscErrorCode ColumnSectionSum(const SweptBody *s, ColumnSection *section)
+/* Sums the cells, of which one at a time is in memory */
+static PetscErrorCode ColumnSectionSum(Bodies b, const SweptBody *s, ColumnSection *section)
 {
   const PetscInt pqc[3] = {(s->along + 1) % 3, (s->along + 2) % 3, s->along};
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < section->n_columns; c++) {
-    const Column *column = &section->column[c];
+    Column    *column = &section->column[c];
+    BodiesCell cell;
 
+    PetscCall(BodiesGetCell(b, column->cell, &cell));
+    BodiesTurnCell(&b->layout, &cell);
+    column->alpha = cell.alpha;
+    column->beta  = cell.beta;
+    PetscCall(PetscArraycpy(column->mass, cell.mass, 8));
     for (PetscInt i = 0; i < 64; i++) {
       PetscInt k;
 
       PetscCall(
         PetscFindInt(column->line[i / 8] * s->lines->n_lines + column->line[i % 8], section->n_keys, section->key, &k));
-      ColumnAddBlock(column, i / 8, i % 8, pqc, 1, &section->stiffness[k]);
-      ColumnAddBlock(column, i / 8, i % 8, pqc, column->cell.beta, &section->damping[k]);
+      ColumnAddBlock(column, &cell, i / 8, i % 8, pqc, 1, &section->stiffness[k]);
+      ColumnAddBlock(column, &cell, i / 8, i % 8, pqc, cell.beta, &section->damping[k]);
     }
   }
   PetscFunctionReturn(0);
@@ -221,11 +226,11 @@ static PetscErrorCode SweptSetMasses(SweptBody *s, const ColumnSection *section)
   for (PetscInt i = 0; i < 8 * section->n_columns; i++) {
     const Column   *column = &section->column[i / 8];
     const PetscInt  l      = column->line[i % 8];
-    const PetscReal mass = column->cell.mass[i % 8], beta = column->cell.beta;
+    const PetscReal mass = column->mass[i % 8], beta = column->beta;
     PetscReal      *row = &s->mass[l * s->stride];
 
     whole[l] += mass;
-    s->alpha[l] += mass * column->cell.alpha;
+    s->alpha[l] += mass * column->alpha;
     for (PetscInt k = 0; k <= last; k++)
       if (s->lines->closed || k != (column->second[i % 8] ? 0 : last)) row[k] += mass;
     if (s->beta[l] >= 0 && s->beta[l] != beta) SweptDampLine(s, section->n_keys, l);
@@ -244,7 +249,7 @@ PetscErrorCode SweptSetUp(Bodies b, SweptBody *s, PetscBool *mirrored)
   PetscCall(ColumnsFind(b, s, &section, mirrored));
   if (*mirrored) {
     PetscCall(SectionFindKeys(s->lines->n_lines, &section));
-    PetscCall(ColumnSectionSum(s, &section));
+    PetscCall(ColumnSectionSum(b, s, &section));
     *mirrored = ColumnSectionMirrors(&section);
   }
   if (*mirrored) {
