@@ -85,7 +85,11 @@ typedef struct {
 /*@ SquealGetStages - cost [SQUEAL_N_STAGES] of the n stages that were entered. Collective. @*/
 PetscErrorCode SquealGetStages(MPI_Comm comm, PetscInt *n, SquealStageCost cost[]);
 
-/*@ SquealViewStages - prints time (s, slowest rank) and memory (MB, sum of ranks) of each stage. Collective. @*/
+/*@ SquealGetPeak - the most memory that the ranks had at any time of the run, each at its own, MB in all. Collective. @*/
+PetscErrorCode SquealGetPeak(MPI_Comm comm, double *megabytes);
+
+/*@ SquealViewStages - prints time (s, slowest rank) and memory (MB, sum of ranks) of each stage, and the most that there
+    was. Collective. @*/
 PetscErrorCode SquealViewStages(MPI_Comm comm, PetscViewer viewer);
 
 /*@ SquealFinalize - ends all ranks; returns the exit status of the program: 0 when error is 0, else 1. Collective; when

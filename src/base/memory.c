@@ -2,9 +2,12 @@
    Memory that may not be had: where `ulimit -v` bounds the address space, the buffer that BLAS works in is taken at the
    start, since OpenBLAS asks for it again and again, for ever, where it gets none in the midst of a run. And what is
    free on this machine: MemAvailable of /proc/meminfo (proc(5)), or less where the control group of the process, or one
-   above it, allows less.
+   above it, allows less. The C library keeps what is freed: SuperLU_DIST, which PETSc may be linked to, forbids it to
+   give anything back (mallopt(3), M_MMAP_MAX 0 and M_TRIM_THRESHOLD -1) for the whole process. For small problems that
+   spares the system's work; large ones would hold matrices and factors that are long gone.
 */
 #include "memory.h"
+#include <malloc.h>
 #include <math.h>
 #include <petscblaslapack.h>
 #include <stdio.h>
@@ -129,6 +132,13 @@ static double MemoryFree(void)
   }
   if (file) (void)fclose(file);
   return 1e-6 * fmax(0, bytes);
+}
+
+void MemoryReturn(void)
+{
+#if defined(__GLIBC__)
+  (void)malloc_trim(0);
+#endif
 }
 
 PetscErrorCode MemorySetFromOptions(MPI_Comm comm)

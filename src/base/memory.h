@@ -9,6 +9,9 @@ PETSC_INTERN PetscErrorCode MemoryPrepare(MPI_Comm comm);
 /* Writes what is to be done when an allocation has failed; allocates nothing */
 PETSC_INTERN void MemoryExplain(char message[], size_t size);
 
+/* Gives freed memory back to the system, which the C library keeps otherwise */
+PETSC_INTERN void MemoryReturn(void);
+
 /* Reads -squeal_memory */
 PETSC_INTERN PetscErrorCode MemorySetFromOptions(MPI_Comm comm);
 /* MB that a factorisation may take on this machine, all ranks there together: -squeal_memory where given, else what is

@@ -18,6 +18,7 @@
 #include <petsctime.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 
 #define MAX_MESSAGE 1024
 
@@ -173,10 +174,21 @@ PetscErrorCode SquealGetStages(MPI_Comm comm, PetscInt *n, SquealStageCost cost[
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SquealGetPeak(MPI_Comm comm, double *megabytes)
+{
+  struct rusage usage;
+
+  PetscFunctionBeginUser;
+  *megabytes = getrusage(RUSAGE_SELF, &usage) ? 0 : 1.024e-3 * (double)usage.ru_maxrss; /* KB */
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, megabytes, 1, MPI_DOUBLE, MPI_SUM, comm));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SquealViewStages(MPI_Comm comm, PetscViewer viewer)
 {
   SquealStageCost cost[SQUEAL_N_STAGES];
   PetscInt        n;
+  double          peak;
 
   PetscFunctionBeginUser;
   PetscCall(SquealGetStages(comm, &n, cost));
@@ -184,6 +196,8 @@ PetscErrorCode SquealViewStages(MPI_Comm comm, PetscViewer viewer)
   for (PetscInt s = 0; s < n; s++)
     PetscCall(
       PetscViewerASCIIPrintf(viewer, "%-10s %7.2f   %9.0f\n", cost[s].name, cost[s].seconds, cost[s].megabytes));
+  PetscCall(SquealGetPeak(comm, &peak));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "the most at any time %10.0f\n", peak));
   PetscFunctionReturn(0);
 }
 

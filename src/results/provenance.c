@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/resource.h>
 #include <time.h>
 
 /* Options that say where something goes or how the run began, not what is computed */
@@ -141,13 +140,9 @@ static PetscErrorCode ScenePrintCommand(OutFile *file, PetscMPIInt size)
 /* Seconds since the start, and the sum of all ranks' largest memory, MB */
 static PetscErrorCode SceneGetCost(Results results, double *seconds, double *megabytes)
 {
-  struct rusage usage;
-
   PetscFunctionBeginUser;
-  (void)getrusage(RUSAGE_SELF, &usage);
-  *megabytes = (double)usage.ru_maxrss * 1024e-6;
-  *seconds   = MPI_Wtime() - results->begun;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, megabytes, 1, MPI_DOUBLE, MPI_SUM, results->comm));
+  *seconds = MPI_Wtime() - results->begun;
+  PetscCall(SquealGetPeak(results->comm, megabytes));
   PetscFunctionReturn(0);
 }
 

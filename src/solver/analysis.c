@@ -10,6 +10,8 @@
 #include "ordering.h"
 #include <math.h>
 
+#define RETURN_FROM 500 /* MB of factors, from which freed memory is given back before they are made */
+
 #define SHOW_AGAIN 1.1 /* estimates that exceed those shown before by less are not shown */
 
 static double shown = INFINITY; /* log handle: MB of the largest estimate that has been shown; infinite for none */
@@ -83,6 +85,8 @@ static PetscErrorCode AnalysisEstimate(MPI_Comm comm, Mat F, FactorCost *cost)
   PetscCallMPI(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mb, 2, MPI_DOUBLE, MPI_SUM, machine));
   PetscCallMPI(MPI_Comm_free(&machine));
+  if (cost->all >= RETURN_FROM) MemoryReturn();
+  PetscCallMPI(MPI_Barrier(comm)); /* all ranks have, before any looks what is free */
   mb[2] = MemoryRoom(&given);
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   worst.lack = mb[0] - mb[2];
