@@ -29,9 +29,9 @@ STENCIL_INLINE void BlockRowsApply(const BlockRows *rows, PetscInt i, const Pets
 
 /* A row of a block. Volatile, so that it is loaded once: GCC would load it again for each of its two products, and the
    loads, many of them across two cache lines, are what limits the speed of blocks in cache */
-STENCIL_INLINE StencilLanes BlockRowsLoad(const PetscReal a[])
+STENCIL_INLINE void BlockRowsLoad(const PetscReal a[], StencilLanes *row)
 {
-  return *(const volatile StencilLanes *)a;
+  *row = *(const volatile StencilLanes *)a;
 }
 
 /* y [n][4] += row i and its mirror image, column i, times x; x of node 0 */
@@ -54,8 +54,9 @@ STENCIL_INLINE void BlockRowsApplyBoth(const BlockRows *rows, PetscInt i, const 
     a += 9;
     PETSC_Prefetch((const char *)a + AHEAD, 0, PETSC_PREFETCH_HINT_T0);
     for (int j = 0; j < 3; j++) {
-      const StencilLanes row = BlockRowsLoad(&a[3 * j]);
+      StencilLanes row;
 
+      BlockRowsLoad(&a[3 * j], &row);
       sum[j] += row * v;
       g += row * own[j];
     }
@@ -69,12 +70,7 @@ typedef struct {
   StencilLanes kinetic, strain, damping_old, damping;
 } GeneralSums;
 
-/* The three components at a node, and the number behind them */
-STENCIL_INLINE StencilLanes GeneralLoad(const PetscReal x[])
-{
-  return *(const StencilLanes *)x;
-}
-
+/* The first three numbers to y */
 STENCIL_INLINE void GeneralStore(const StencilLanes *x, PetscReal y[])
 {
   for (int j = 0; j < 3; j++) y[j] = (*x)[j];
@@ -85,21 +81,22 @@ STENCIL_INLINE void GeneralAdvanceNode(const General *general, PetscInt i, const
                                        const BodiesWork *w, GeneralSums *sums)
 {
   const PetscInt     at = general->begin + 3 * i;
-  const StencilLanes v = GeneralLoad(w->v + at), before = GeneralLoad(w->ku + at), ku = before + w->dt * *g;
-  StencilLanes       f = -ku;
+  const StencilLanes v = *(const StencilLanes *)&w->v[at], before = *(const StencilLanes *)&w->ku[at];
+  const StencilLanes ku = before + w->dt * *g;
+  StencilLanes       f  = -ku;
 
-  sums->strain += GeneralLoad(w->u + at) * before;
+  sums->strain += *(const StencilLanes *)&w->u[at] * before;
   sums->kinetic += general->mass[i] * v * v;
   if (w->d) {
     const StencilLanes d = *h + general->alpha[i] * v;
 
-    sums->damping_old += v * GeneralLoad(w->d + at);
+    sums->damping_old += v * *(const StencilLanes *)&w->d[at];
     sums->damping += v * d;
     f -= d;
-    GeneralStore(&d, w->d + at);
+    GeneralStore(&d, &w->d[at]);
   }
-  GeneralStore(&ku, w->ku + at);
-  GeneralStore(&f, w->f + at);
+  GeneralStore(&ku, &w->ku[at]);
+  GeneralStore(&f, &w->f[at]);
 }
 
 /* Copies of what `work` has are local, since a store to a vector could change it */
