@@ -43,8 +43,14 @@ def measured(command, about, may_fail=lambda text: False, folder=None):
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode and not may_fail(text):
-        raise BadInput(f"{about}: {text.strip()[-300:]}")
+        errors = [line.strip() for line in text.splitlines() if "error" in line.lower()]
+        raise BadInput(f"{about}: {errors[-1] if errors else text.strip()[-300:]}")
     return text, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+
+
+def measured_run(program, ranks, words, about):
+    """The same of a run of squeal."""
+    return measured([ROOT / "scripts/mpirun", "-n", ranks, program, *words], about)
 
 
 def parts_parser(doc, parts):

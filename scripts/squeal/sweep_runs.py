@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy
 
-from .program import launch, scene
+from .program import measured_run, scene
 from .tables import flag, optional, read_table
 
 SWEEP = {"value": float, "branch": optional, "freq_hz": float, "growth_rad_s": float, "error_estimate": optional,
@@ -26,7 +26,8 @@ def with_values(values, *more):
 
 
 class SweepRun:
-    """One sweep: rows of sweep.csv, onsets.csv, verify.csv (none where it was not asked for), and seconds by part.
+    """One sweep: rows of sweep.csv, onsets.csv, verify.csv (none where it was not asked for), seconds by
+    part, and those of processor of the process.
 
     The options files of options/ are named without their ending and stack in their order.
     """
@@ -35,7 +36,7 @@ class SweepRun:
         with tempfile.TemporaryDirectory() as folder:
             words = ["-squeal_view", "-squeal_progress", 0, *scene(*files), "-output_dir", folder, *options.split()]
             self.options = options
-            self.text = launch(program, ranks, words, f"{', '.join(files)}, options {options}")
+            self.text, self.cpu, _ = measured_run(program, ranks, words, f"{', '.join(files)}, options {options}")
             self.rows = read_table(Path(folder) / "sweep.csv", SWEEP)
             self.onsets = self.read_if_there(Path(folder) / "onsets.csv", ONSETS)
             self.checks = self.read_if_there(Path(folder) / "verify.csv", VERIFY)

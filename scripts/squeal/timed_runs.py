@@ -11,9 +11,11 @@ from pathlib import Path
 
 import numpy
 
-from .program import launch, scene
+from .program import measured_run, scene
 
-SOLVES = ("MatSolve", "MatSolveTranspos")  # events of one solution with the factors
+SINGLE = "MatSolve", "MatSolveTranspos"  # events of one solution with the factors
+SOLVES = *SINGLE, "MatMatSolve", "MatMatTrSolve"  # and of many at once
+COLUMN = "ShiftInvColumn"  # event of each right-hand side of the latter
 SAME = 1e-9  # frequencies of two runs, relative
 
 
@@ -51,14 +53,17 @@ def machine_limits():
 
 
 class Run:
-    """One run: wall time of the process (s), PETSc's log, MUMPS' last factorisation, memory (MB), modes."""
+    """One run: wall and processor time of the process (s), PETSc's log, MUMPS' last factorisation, memory (MB) after each
+    stage and at most, modes.
+
+    n_solves counts right-hand sides, n_calls what they were solved in, ms_solve is the time of one right-hand side."""
 
     def __init__(self, program, ranks, options):
         with tempfile.TemporaryDirectory() as folder:
             words = ["-squeal_view", "-squeal_progress", 0, *scene("massi2005"), "-st_mat_mumps_icntl_4", 2,
                      "-output_dir", folder, "-log_view", f":{folder}/log.csv:ascii_csv", *options.split()]
             begun = time.perf_counter()
-            self.text = launch(program, ranks, words, f"options {options}")
+            self.text, self.cpu, _ = measured_run(program, ranks, words, f"options {options}")
             self.wall, self.ranks, self.options = time.perf_counter() - begun, ranks, options
             self.read_log(Path(folder) / "log.csv")
             with (Path(folder) / "modes.csv").open(newline="") as file:
@@ -66,8 +71,9 @@ class Run:
         self.unknowns = int(self.last(r"operators: (\d+) unknowns"))
         self.entries = self.last(r"INFOG\(29\).*= *(\S+)")
         self.flops = self.last(r"\(3\) +Operations in node elimination.*= *(\S+)")
+        peak = re.findall(r"^the most at any time +(\d+)$", self.text, re.MULTILINE)
         self.memory = [(name, float(mb)) for name, mb in re.findall(r"^(\w+) +[\d.]+ +(\d+)$", self.text, re.MULTILINE)]
-        self.n_solves = sum(count for (_, event), (_, count) in self.log.items() if event in SOLVES)
+        self.peak = max(float(mb) for mb in (*peak, *(mb for _, mb in self.memory)))
         self.ms_solve = 1e3 * self.seconds(*SOLVES) / self.n_solves
 
     def read_log(self, path):
@@ -78,6 +84,7 @@ class Run:
             for stage, event, _, count, seconds in (row[:5] for row in csv.reader(file)):
                 old = self.log.get((stage, event.strip()), (0, 0))
                 self.log[stage, event.strip()] = max(old[0], float(seconds)), max(old[1], int(count))
+        self.n_calls, self.n_solves = self.count(*SOLVES), self.count(*SINGLE, COLUMN)
 
     def last(self, pattern):
         """The last number of the output that a pattern finds."""
@@ -85,6 +92,10 @@ class Run:
         if not found:
             raise SystemExit(f"options {self.options}: the output lacks {pattern}")
         return float(found[-1].replace("D", "e"))
+
+    def count(self, *events):
+        """How often they happened, in all stages."""
+        return sum(value[1] for (_, event), value in self.log.items() if event in events)
 
     def seconds(self, *events, stage=None):
         """Time in events, of one stage or of all."""

@@ -13,6 +13,7 @@ typedef enum {
   EVENT_STATICS,
   EVENT_FACTOR,
   EVENT_SOLVE,
+  EVENT_COLUMN, /* counts the right-hand sides that are solved in blocks; takes no time */
   EVENT_CORRECT,
   EVENT_ORTHOGONALISE,
   EVENT_REDUCED,

@@ -39,6 +39,7 @@ static const struct {
   [EVENT_STATICS]        = {"StaticsSolve",   SQUEAL_STATICS  },
   [EVENT_FACTOR]         = {"ShiftInvFactor", SQUEAL_MODES    },
   [EVENT_SOLVE]          = {"ShiftInvSolve",  SQUEAL_MODES    },
+  [EVENT_COLUMN]         = {"ShiftInvColumn", SQUEAL_MODES    },
   [EVENT_CORRECT]        = {"BasisCorrect",   SQUEAL_SWEEP    },
   [EVENT_ORTHOGONALISE]  = {"BasisOrthonorm", SQUEAL_SWEEP    },
   [EVENT_REDUCED]        = {"ReducedEigen",   SQUEAL_SWEEP    },
