@@ -45,14 +45,48 @@ static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, ch
   PetscFunctionReturn(0);
 }
 
+/* How the undamped modes of a projection are known to be complete, and what damping does to that */
+static PetscErrorCode DescribeProjection(const Window *window, const char region[], const char rest[], char text[],
+                                         size_t size)
+{
+  char undamped[192] = "inertia of K - s M counts the undamped modes in the band";
+
+  PetscFunctionBeginUser;
+  if (!window->counted)
+    PetscCall(PetscSNPrintf(undamped, sizeof(undamped),
+                            "undamped right and left vectors, sought from different starts with one shared "
+                            "factorisation, give the same eigenvalues, to %.1e",
+                            (double)window->worst));
+  PetscCall(PetscSNPrintf(text, size,
+                          "none was found missing: %s, and damping, projected on them, has a measure of %.2g beyond "
+                          "them, where less than 1 brings none%s%s",
+                          undamped, (double)window->beyond, region, rest));
+  PetscFunctionReturn(0);
+}
+
+/* Why a damped solution was not done by projection */
+static PetscErrorCode DescribeRoute(const Window *window, char text[], size_t size)
+{
+  char measure[32] = "";
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  if (!window->why[0]) PetscFunctionReturn(0);
+  if (window->beyond >= 0)
+    PetscCall(PetscSNPrintf(measure, sizeof(measure), " (measure %.2g)", (double)window->beyond));
+  PetscCall(PetscSNPrintf(text, size, "; by PEP, since %s%s", window->why, measure));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode WindowDescribe(Modes modes, const Window *window)
 {
-  char         frictionless[384], region[64] = "";
+  char         frictionless[384], region[64] = "", route[128];
   char        *text = modes->completeness;
   const size_t size = sizeof(modes->completeness);
 
   PetscFunctionBeginUser;
   PetscCall(DescribeFrictionless(modes, window, frictionless, sizeof(frictionless)));
+  PetscCall(DescribeRoute(window, route, sizeof(route)));
   if (!window->count)
     PetscCall(PetscSNPrintf(region, sizeof(region), " with |growth| below %.6g 1/s", (double)window->growth));
   if (window->proven && window->count)
@@ -63,6 +97,8 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
     PetscCall(PetscSNPrintf(text, size,
                             "none is missing: inertia of K - s M at the ends of the band counts %" PetscInt_FMT,
                             window->expected));
+  else if (window->project && (modes->left || window->counted))
+    PetscCall(DescribeProjection(window, region, frictionless, text, size));
   else if (modes->left)
     PetscCall(PetscSNPrintf(text, size,
                             "none was found missing: right and left vectors, sought from different starts with one "
@@ -70,6 +106,7 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
                             region, (double)window->worst, frictionless));
   else
     PetscCall(PetscSNPrintf(text, size, "completeness was not checked, since -modes_left is off%s", frictionless));
+  PetscCall(PetscStrlcat(text, route, size));
   PetscFunctionReturn(0);
 }
 

@@ -11,6 +11,8 @@
 
 #define MODES_NEAR 1e-9 /* distance of an eigenvalue from the shift, beside the farthest: below it the shift is moved */
 
+static const char modes_damping[] = "-modes_damping";
+
 PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
 {
   PetscFunctionBeginUser;
@@ -19,6 +21,7 @@ PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
   (*modes)->left     = PETSC_TRUE;
   (*modes)->count    = 20;
   (*modes)->max_time = 3600;
+  (*modes)->damping  = DAMPING_PEP;
   PetscCall(PetscStrncpy((*modes)->disc, "disc", sizeof((*modes)->disc)));
   PetscCall(OrderingRegister());
   PetscCall(BlockKrylovRegister());
@@ -36,7 +39,8 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
 {
   static const char *const contacts[] = {"all", "static"};
   PetscBool                has_target, has_count;
-  PetscInt                 contact = 0;
+  static const char *const routes[] = {"auto", "project", "pep"};
+  PetscInt                 contact  = 0;
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(modes->comm, NULL, "Modes", NULL);
@@ -58,6 +62,10 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
                                modes->disc, modes->disc, sizeof(modes->disc), NULL));
   PetscCall(PetscOptionsEList("-modes_contact", "pairs that are closed: every one, or those of the sliding state",
                               "modes.h", contacts, 2, contacts[0], &contact, NULL));
+  PetscCall(PetscOptionsEList(
+    "-modes_damping",
+    "route of a damped solution: projection on undamped modes where damping is weak (auto), always (project), or PEP",
+    "modes.h", routes, 3, routes[modes->damping], &modes->damping, &modes->has_route));
   PetscOptionsEnd();
   modes->is_static = contact ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(modes->left || !modes->filters, modes->comm, PETSC_ERR_USER_INPUT,
@@ -196,8 +204,7 @@ static PetscBool ShiftSpoils(const Spectrum *s, PetscReal shift)
   return nearest < MODES_NEAR * farthest ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Right spectrum; a shift that happens to be an eigenvalue is moved */
-static PetscErrorCode SolveRight(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si)
+PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si)
 {
   PetscFunctionBeginUser;
   PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_FALSE, &modes->right));
@@ -221,7 +228,7 @@ static PetscErrorCode SolveBoth(Modes modes, const PencilMatrices *pencil, Windo
   PetscFunctionBeginUser;
   window->proven = proven;
   for (int attempt = 0; attempt < 3; attempt++) {
-    PetscCall(SolveRight(modes, pencil, window, si));
+    PetscCall(ModesSolveRight(modes, pencil, window, si));
     if (pencil->C) PetscCall(WindowCountRigid(modes, window, &modes->right));
     PetscCall(WindowSelect(window, &modes->right));
     if (proven) {
@@ -255,29 +262,54 @@ static PetscErrorCode ModesReset(Modes modes)
   PetscFunctionReturn(0);
 }
 
+/* All modes of the window with a factorisation of their own problem */
+static PetscErrorCode SolveWhole(Modes modes, const PencilMatrices *pencil, Window *window)
+{
+  ShiftInvert si;
+
+  PetscFunctionBeginUser;
+  if (pencil->C) PetscCall(WindowSetDamping(modes, pencil, window));
+  if (window->count && pencil->C) PetscCall(WindowReach(modes, window));
+  PetscCall(ShiftInvertCreate(pencil, pencil->C ? DampedShift(window) : UndampedShift(window), PETSC_FALSE,
+                              &modes->progress, &si));
+  PetscCall(SolveBoth(modes, pencil, window, &si));
+  if (modes->keep)
+    modes->factor = si;
+  else
+    PetscCall(ShiftInvertDestroy(&si));
+  PetscFunctionReturn(0);
+}
+
+/* The same of a damped pencil by projection, where that is the route; a factorisation to keep is that of Q(shift) */
+static PetscErrorCode SolveProjected(Modes modes, const PencilMatrices *pencil, Window *window)
+{
+  PetscFunctionBeginUser;
+  if (!pencil->C || modes->damping == DAMPING_PEP) PetscFunctionReturn(0);
+  PetscCall(ProjectSolve(modes, pencil, window, &window->project));
+  PetscCheck(window->project || modes->damping != DAMPING_PROJECT, modes->comm, PETSC_ERR_NOT_CONVERGED,
+             "-modes_damping project cannot be done: %s; use auto or pep", window->why);
+  if (window->project && modes->keep)
+    PetscCall(ShiftInvertCreate(pencil, DampedShift(window), PETSC_FALSE, &modes->progress, &modes->factor));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModesSolve(Modes modes)
 {
   PencilMatrices pencil;
-  ShiftInvert    si;
   Window         window;
 
   PetscFunctionBeginUser;
   PetscCall(ModesReset(modes));
   PetscCall(LimitBegin(modes));
   PetscCall(PencilGetMatrices(modes->pencil, &pencil));
+  if (modes->has_route && !pencil.C)
+    PetscCall(OptionsRefuse(modes->comm, modes_damping, "not used without damping; leave it out"));
   PetscCall(WindowFind(modes, &window));
-  if (pencil.C) PetscCall(WindowSetDamping(modes, &pencil, &window));
   PetscCheck(window.expected != 0 || !pencil.symmetric || pencil.C, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_band %.6g,%.6g Hz contains no mode (%" PetscInt_FMT " lie below it); widen it",
              (double)modes->band[0], (double)modes->band[1], window.below);
-  if (window.count && pencil.C) PetscCall(WindowReach(modes, &window));
-  PetscCall(ShiftInvertCreate(&pencil, pencil.C ? DampedShift(&window) : UndampedShift(&window), PETSC_FALSE,
-                              &modes->progress, &si));
-  PetscCall(SolveBoth(modes, &pencil, &window, &si));
-  if (modes->keep)
-    modes->factor = si;
-  else
-    PetscCall(ShiftInvertDestroy(&si));
+  PetscCall(SolveProjected(modes, &pencil, &window));
+  if (!window.project) PetscCall(SolveWhole(modes, &pencil, &window));
   PetscCheck(modes->right.n, modes->comm, PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g Hz contains no mode; widen it",
              (double)modes->band[0], (double)modes->band[1]);
   PetscCall(QualityMeasure(modes, &pencil));

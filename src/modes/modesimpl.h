@@ -23,6 +23,9 @@ PETSC_INTERN PetscErrorCode SpectrumKeep(Spectrum *spectrum, PetscInt first, Pet
 PETSC_INTERN PetscErrorCode SpectrumRemove(Spectrum *spectrum, PetscInt i);
 PETSC_INTERN PetscErrorCode SpectrumDestroy(Spectrum *spectrum);
 
+/* Routes of a damped solution: by projection where its measure allows, always, never */
+enum { DAMPING_AUTO, DAMPING_PROJECT, DAMPING_PEP };
+
 struct _p_Modes {
   MPI_Comm comm;
   Pencil   pencil;
@@ -30,8 +33,9 @@ struct _p_Modes {
   PetscReal band[2], target; /* Hz */
   PetscReal growth;          /* rad/s; 0: a tenth of the highest angular frequency */
   PetscReal max_time;        /* s, of one solution; 0: any */
-  PetscBool has_band, has_nearest, left, is_static, keep, filters;
+  PetscBool has_band, has_nearest, has_route, left, is_static, keep, filters;
   PetscInt  count;
+  PetscInt  damping; /* route of a damped solution: DAMPING_AUTO ... */
   char      disc[64];
   Progress  progress;
   /* results */
@@ -39,7 +43,7 @@ struct _p_Modes {
   Mode       *mode;
   PetscInt    n;
   double     *part_percent; /* participation of the parts [n][parts], NULL for matrices without a mesh */
-  char        completeness[768];
+  char        completeness[1024];
   ShiftInvert factor; /* of the solution where keep is set */
   /* of the solution under way */
   PetscLogDouble begun;         /* s */
@@ -63,6 +67,10 @@ typedef struct {
   PetscInt  within;          /* damped: modes about as near to the shift as the window's corners; negative: not known */
   PetscBool proven;          /* inertia counts what was found */
   PetscReal worst;           /* largest relative difference of right and left eigenvalues */
+  PetscBool project;         /* damped: by projection (project.c) */
+  PetscBool counted;         /* there: inertia counts the undamped modes */
+  PetscReal beyond;          /* measure of damping there, or negative */
+  char      why[64];         /* why not by projection; empty where it was not tried */
 } Window;
 
 /* window.c - the window, and the count of frictionless modes in it by Sylvester's law of inertia */
@@ -93,6 +101,12 @@ PETSC_INTERN PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pen
                                           ShiftInvert *si, PetscBool transposed, Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode DampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window,
                                         ShiftInvert *si, PetscBool transposed, Spectrum *spectrum);
+/* modes.c - right spectrum by the solver that fits the pencil; a shift that happens to be an eigenvalue is moved */
+PETSC_INTERN PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *pencil, const Window *window,
+                                            ShiftInvert *si);
+/* project.c - right and left spectra of a damped pencil in the window by projection on undamped modes; done = false where
+   that route is not the one, window->why says why */
+PETSC_INTERN PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *window, PetscBool *done);
 /* undamped.c - start vectors of a solver at random, not alike on all ranks: such a vector could miss what is not */
 PETSC_INTERN PetscErrorCode SolverSeed(BV bv, unsigned long seed);
 PETSC_INTERN PetscReal      UndampedShift(const Window *window);

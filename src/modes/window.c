@@ -55,6 +55,11 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
   window->expected = -1;
   window->below    = -1;
   window->extra    = 6;
+  window->project  = PETSC_FALSE;
+  window->beyond   = -1;
+  window->counted  = PETSC_FALSE;
+  window->proven   = PETSC_FALSE;
+  window->why[0]   = '\0';
   PetscCall(WindowScale(&frictionless, &window->scale));
   if (!frictionless.symmetric) PetscFunctionReturn(0);
   if (!modes->has_band) {

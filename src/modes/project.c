@@ -1,0 +1,189 @@
+/*
+   Damped problem Q(lambda) x = (lambda^2 M + lambda C + K) x = 0 by projection on the undamped modes of the window and a
+   guard beyond it, right and left ones, K x = kappa M x, found with one real factorisation P = K - s M. Galerkin's method
+   with one real basis V for both sides (two bases make the dense problem ill-conditioned) gives lambda, x, y with residuals
+
+      r = Q(lambda) x,   s = Q(lambda)' y,
+
+   and V is extended by P^-1 r and P^-T s of all modes together until every backward error is at rounding level: a step of
+   shift-and-invert subspace iteration each (M. E. Hochstenbach, G. L. G. Sleijpen, Linear Algebra Appl. 358, 2003). The
+   error of an eigenvalue is the product of those of its two vectors, hence left vectors need less.
+
+   No mode is missing: the undamped modes are complete as right and left ones agree (or by inertia), and damping brings none
+   from beyond them where its measure is below one (projectfit.c). Where it is above DAMPING_WEAK the route is that of
+   damped.c.
+*/
+#include "projection.h"
+
+#define DAMPING_WEAK   0.5
+#define PROJECT_GUARD  10 /* undamped modes beyond the window */
+#define PROJECT_ROUNDS 8
+#define PROJECT_RIGHT  1e-14 /* backward errors of settled right and left vectors */
+#define PROJECT_LEFT   1e-12
+
+/* Removes what lies farther from the shift than the distance */
+static PetscErrorCode SpectrumTrim(PetscReal shift, PetscReal distance, Spectrum *s)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = s->n - 1; i >= 0; i--) {
+    const PetscComplex lambda = SpectrumLambda(s, i);
+
+    if (cabs(-lambda * lambda - shift) >= distance) PetscCall(SpectrumRemove(s, i));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Frictionless modes of the band that were found */
+static PetscInt CountInBand(const Window *window, const Spectrum *s)
+{
+  PetscInt n = 0;
+
+  for (PetscInt i = 0; i < s->n; i++) n += s->omega[i] >= window->edge[0] && s->omega[i] <= window->edge[1];
+  return n;
+}
+
+/* Undamped right and left vectors of the window and a guard, as far as both reach; complete = none is missing */
+static PetscErrorCode SolveUndamped(Modes modes, const PencilMatrices *undamped, Window *window, ShiftInvert *si,
+                                    PetscReal *reach, PetscBool *complete)
+{
+  Spectrum       *right = &modes->right, *left = &modes->left_spectrum;
+  const PetscBool counted = undamped->symmetric && window->expected >= 0 && !window->count ? PETSC_TRUE : PETSC_FALSE;
+  Window          wide    = *window;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesSolveRight(modes, undamped, window, si));
+  window->counted = counted;
+  *reach          = right->reach;
+  *complete       = !counted || CountInBand(window, right) == window->expected ? PETSC_TRUE : PETSC_FALSE;
+  if (!modes->left || counted) PetscFunctionReturn(0);
+  PetscCall(UndampedSolve(modes, undamped, window, si, PETSC_TRUE, left));
+  *reach = PetscMin(right->reach, left->reach);
+  if (*reach < PETSC_MAX_REAL) *reach *= 1 - 1e-9;
+  PetscCall(SpectrumTrim(si->shift, *reach, right));
+  PetscCall(SpectrumTrim(si->shift, *reach, left));
+  *complete = right->n == left->n ? PETSC_TRUE : PETSC_FALSE;
+  wide.low = 0, wide.high = PETSC_MAX_REAL, wide.count = 0;
+  if (*complete) PetscCall(LeftMatch(modes, &wide, &window->worst, complete));
+  PetscFunctionReturn(0);
+}
+
+/* Rigid modes: their frequency is zero within rounding */
+static PetscInt CountZeros(const Window *window, const Spectrum *s)
+{
+  PetscInt n = 0;
+
+  for (PetscInt i = 0; i < s->n; i++) n += hypot(s->sigma[i], s->omega[i]) <= window->scale;
+  return n;
+}
+
+/* Forgets the spectra */
+static PetscErrorCode SpectraDestroy(Modes modes)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SpectrumDestroy(&modes->right));
+  PetscCall(SpectrumDestroy(&modes->left_spectrum));
+  PetscFunctionReturn(0);
+}
+
+/* With -info */
+static PetscErrorCode InfoRound(const Projection *p, const ProjectionModes *found, PetscInt n_columns)
+{
+  PetscReal worst[2] = {0, 0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < found->n; i++)
+    for (int side = 0; side < 2; side++) worst[side] = PetscMax(worst[side], found->backward[side][i]);
+  PetscCall(PetscInfo(p->V,
+                      "%" PetscInt_FMT " modes on %" PetscInt_FMT
+                      " vectors: backward errors %.1e right, %.1e left, %" PetscInt_FMT
+                      " corrections; measure %.3g, |kappa - s| %.4g of %.4g\n",
+                      found->n, found->size, (double)worst[0], (double)worst[1], n_columns, (double)p->window->beyond,
+                      (double)found->lambda_reach, (double)p->reach));
+  PetscFunctionReturn(0);
+}
+
+/* Corrects the modes until all have settled; settled = they have, and the window is covered */
+static PetscErrorCode Iterate(Projection *p, ProjectionModes *found, PetscBool *settled)
+{
+  const PetscReal limits[2] = {PROJECT_RIGHT, PROJECT_LEFT};
+  PetscInt        n_columns = 1;
+
+  PetscFunctionBeginUser;
+  *settled = PETSC_FALSE;
+  for (int round = 0; round < PROJECT_ROUNDS; round++) {
+    PetscCall(ProjectionEigen(p, found));
+    if (found->lambda_reach > p->reach) break;
+    PetscCall(ProjectionCorrect(p, limits, found, &n_columns));
+    PetscCall(InfoRound(p, found, n_columns));
+    if (!n_columns) *settled = PETSC_TRUE;
+    if (!n_columns) break;
+    if (round + 1 < PROJECT_ROUNDS) PetscCall(ProjectionModesDestroy(found));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The modes of the window in place of the undamped ones */
+static PetscErrorCode PutModes(Projection *p, const ProjectionModes *found)
+{
+  Modes modes = p->modes;
+
+  PetscFunctionBeginUser;
+  PetscCall(SpectraDestroy(modes));
+  PetscCall(ProjectionLift(p, found, PETSC_FALSE, &modes->right));
+  PetscCall(WindowSelect(p->window, &modes->right));
+  if (!modes->left) PetscFunctionReturn(0);
+  PetscCall(ProjectionLift(p, found, PETSC_TRUE, &modes->left_spectrum));
+  PetscCall(WindowSelect(p->window, &modes->left_spectrum));
+  PetscFunctionReturn(0);
+}
+
+/* From the undamped modes to the damped ones; why is set where the route ends before */
+static PetscErrorCode Project(Projection *p, Window *window, const char **why)
+{
+  Modes           modes = p->modes;
+  ProjectionModes found;
+  PetscBool       settled;
+
+  PetscFunctionBeginUser;
+  PetscCall(ProjectionFit(p, &modes->right, &modes->left_spectrum));
+  PetscCall(ProjectionAddSpectrum(p, &modes->right));
+  PetscCall(ProjectionAddSpectrum(p, &modes->left_spectrum));
+  window->beyond = 0;
+  window->rigid  = CountZeros(window, &modes->right);
+  if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionMeasureBeyond(p, &window->beyond));
+  if (window->beyond > DAMPING_WEAK) *why = "damping is strong";
+  if (*why) PetscFunctionReturn(0);
+  PetscCall(Iterate(p, &found, &settled));
+  if (settled) PetscCall(PutModes(p, &found));
+  if (!settled)
+    *why = found.lambda_reach > p->reach ? "damping moves modes by more than the guard" : "corrections do not settle";
+  PetscCall(ProjectionModesDestroy(&found));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *window, PetscBool *done)
+{
+  PencilMatrices undamped = *pencil;
+  const char    *why      = NULL;
+  Projection     p;
+  PetscBool      complete = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  undamped.C = NULL;
+  PetscCall(ProjectionCreate(modes, pencil, window, &p));
+  PetscCall(ShiftInvertCreate(&undamped, UndampedShift(window), PETSC_FALSE, &modes->progress, &p.si));
+  window->extra += PROJECT_GUARD;
+  for (int attempt = 0; attempt < 3 && !complete && !why; attempt++) {
+    PetscCall(SpectraDestroy(modes));
+    PetscCall(SolveUndamped(modes, &undamped, window, &p.si, &p.reach, &complete));
+    if (!complete) window->extra += 10 + modes->right.n / 2;
+  }
+  if (!complete && !why) why = "undamped right and left modes differ";
+  if (!why) PetscCall(Project(&p, window, &why));
+  *done = why ? PETSC_FALSE : PETSC_TRUE;
+  if (why) PetscCall(PetscStrncpy(window->why, why, sizeof(window->why)));
+  if (why) PetscCall(SpectraDestroy(modes));
+  if (why) window->extra = 6, window->rigid = 0;
+  PetscCall(ProjectionDestroy(&p));
+  PetscFunctionReturn(0);
+}

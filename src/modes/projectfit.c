@@ -1,0 +1,162 @@
+/*
+   How strong damping is. What of C is alpha M + beta K moves the undamped modes but leaves their vectors:
+
+      lambda^2 + (alpha + beta kappa) lambda + kappa = 0,   kappa = omega^2.
+
+   The rest R = C - alpha M - beta K couples them, also with those beyond the basis. At lambda
+
+      Q(lambda) = (1 + beta lambda) (K - kappa M) + lambda R,   kappa(lambda) = -(lambda^2 + alpha lambda) / (1 + beta lambda),
+
+   and beyond the basis K - kappa M is regular. With G = (K - s M)^-1 lambda R / (1 + beta lambda) there and K - kappa M
+   about K - s M, I + t G stays regular for t in [0, 1] where the spectral radius of G is below one: as R grows from nothing
+   no eigenvalue comes into the window from beyond.
+*/
+#include "projection.h"
+#include "solver/dense.h"
+#include "solver/orthonormal.h"
+
+#define BEYOND_BLOCK 8
+#define BEYOND_STEPS 3
+#define FIT_DISTINCT 1e-6 /* variance of kappa beside its mean square: below it beta cannot be told from alpha */
+
+/* y'Cx / y'Mx of a real vector; NAN where that says nothing */
+static PetscErrorCode ModeDamping(const Projection *p, Vec x, Vec y, Vec work, PetscReal *damping)
+{
+  PetscReal yCx, yMx;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatMult(p->pencil->C, x, work));
+  PetscCall(VecDot(work, y, &yCx));
+  PetscCall(MatMult(p->pencil->M, x, work));
+  PetscCall(VecDot(work, y, &yMx));
+  *damping = yMx != 0 ? yCx / yMx : NAN;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ProjectionFit(Projection *p, const Spectrum *right, const Spectrum *left)
+{
+  PetscReal sum[5] = {0, 0, 0, 0, 0}; /* 1, kappa, kappa^2, c, c kappa, with kappa relative to the window's */
+  PetscReal unit   = PetscSqr(PetscMax(p->window->high, p->window->target)), det;
+  Vec       work;
+
+  PetscFunctionBeginUser;
+  p->alpha = p->beta = 0;
+  unit               = PetscMax(unit, PetscSqr(p->window->scale));
+  PetscCall(MatCreateVecs(p->pencil->K, &work, NULL));
+  for (PetscInt i = 0; i < right->n; i++) {
+    const PetscReal kappa = right->omega[i] * right->omega[i] / unit;
+    PetscReal       c;
+
+    if (right->xi[i] || right->sigma[i] != 0) continue;
+    PetscCall(ModeDamping(p, right->xr[i], left->n ? left->xr[i] : right->xr[i], work, &c));
+    if (!isfinite(c)) continue;
+    sum[0] += 1, sum[1] += kappa, sum[2] += kappa * kappa, sum[3] += c, sum[4] += c * kappa;
+  }
+  PetscCall(VecDestroy(&work));
+  det = sum[0] * sum[2] - sum[1] * sum[1];
+  if (det > FIT_DISTINCT * sum[0] * sum[2]) p->beta = PetscMax(0, (sum[0] * sum[4] - sum[1] * sum[3]) / det);
+  if (sum[0] > 0) p->alpha = PetscMax(0, (sum[3] - p->beta * sum[1]) / sum[0]);
+  p->beta /= unit;
+  PetscFunctionReturn(0);
+}
+
+/* Z = P^-1 R W for the active columns of W and Z */
+static PetscErrorCode BeyondApply(const Projection *p, BV W, BV Z)
+{
+  Mat w, z, Aw[2], b;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetMat(W, &w));
+  PetscCall(BVGetMat(Z, &z));
+  PetscCall(MatMatMult(p->pencil->C, w, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &b));
+  PetscCall(MatMatMult(p->pencil->M, w, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &Aw[0]));
+  PetscCall(MatMatMult(p->pencil->K, w, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &Aw[1]));
+  PetscCall(MatAXPY(b, -p->alpha, Aw[0], SAME_NONZERO_PATTERN));
+  PetscCall(MatAXPY(b, -p->beta, Aw[1], SAME_NONZERO_PATTERN));
+  PetscCall(ShiftInvertApplyBlock(&p->si, PETSC_FALSE, b, z));
+  for (int i = 0; i < 2; i++) PetscCall(MatDestroy(&Aw[i]));
+  PetscCall(MatDestroy(&b));
+  PetscCall(BVRestoreMat(Z, &z));
+  PetscCall(BVRestoreMat(W, &w));
+  PetscFunctionReturn(0);
+}
+
+/* Largest |eigenvalue| of H, which is overwritten, [n * n] */
+static PetscErrorCode SpectralRadius(PetscInt n, PetscReal H[], PetscReal *radius)
+{
+  PetscReal *w, *vectors;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(2 * n, &w, 2 * n * n, &vectors));
+  PetscCall(DenseEigen(n, H, w, w + n, vectors, vectors + n * n));
+  *radius = 0;
+  for (PetscInt i = 0; i < n; i++) *radius = PetscMax(*radius, hypot(w[i], w[n + i]));
+  PetscCall(PetscFree2(w, vectors));
+  PetscFunctionReturn(0);
+}
+
+/* An orthonormal basis U of a block Krylov space on the complement of V and the images P^-1 R U of its n columns */
+static PetscErrorCode BeyondArnoldi(const Projection *p, BV U, BV images, PetscInt *n)
+{
+  PetscInt m;
+  BV       all, block, image;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVDuplicateResize(p->V, p->k + BEYOND_BLOCK * BEYOND_STEPS, &all));
+  PetscCall(BVSetActiveColumns(all, 0, p->k));
+  PetscCall(BVCopy(p->V, all));
+  PetscCall(ProjectionCreateBlock(p, BEYOND_BLOCK, &block));
+  PetscCall(SolverSeed(block, 1984));
+  for (PetscInt j = 0; j < BEYOND_BLOCK; j++) PetscCall(BVSetRandomColumn(block, j));
+  *n = 0;
+  for (int step = 0; step < BEYOND_STEPS; step++) {
+    PetscCall(BlockOrthonormalise(all, p->k + *n, p->pencil->M, 0, block));
+    PetscCall(BVGetActiveColumns(block, NULL, &m));
+    if (!m) break;
+    PetscCall(ProjectionCreateBlock(p, m, &image));
+    PetscCall(BeyondApply(p, block, image));
+    PetscCall(BVSetActiveColumns(all, p->k + *n, p->k + *n + m));
+    PetscCall(BVCopy(block, all));
+    PetscCall(BVSetActiveColumns(U, *n, *n + m));
+    PetscCall(BVCopy(block, U));
+    PetscCall(BVSetActiveColumns(images, *n, *n + m));
+    PetscCall(BVCopy(image, images));
+    PetscCall(BVDestroy(&block));
+    block = image;
+    *n += m;
+  }
+  PetscCall(BVDestroy(&block));
+  PetscCall(BVDestroy(&all));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ProjectionMeasureBeyond(const Projection *p, PetscReal *rho)
+{
+  const Window      *w      = p->window;
+  const PetscComplex lambda = CMPLX(0, PetscMax(w->high, w->target));
+  PetscInt           n;
+  BV                 U, images;
+  Mat                product;
+  PetscReal         *H;
+
+  PetscFunctionBeginUser;
+  PetscCall(ProjectionCreateBlock(p, BEYOND_BLOCK * BEYOND_STEPS, &U));
+  PetscCall(ProjectionCreateBlock(p, BEYOND_BLOCK * BEYOND_STEPS, &images));
+  PetscCall(BeyondArnoldi(p, U, images, &n));
+  *rho = 0;
+  if (n) {
+    PetscCall(BVSetActiveColumns(U, 0, n));
+    PetscCall(BVSetActiveColumns(images, 0, n));
+    PetscCall(BlockProducts(U, p->pencil->M, images, &product));
+    PetscCall(PetscMalloc1(n * n, &H));
+    PetscCall(BlockCopy(product, PETSC_FALSE, n, H));
+    PetscCall(SpectralRadius(n, H, rho));
+    PetscCall(PetscFree(H));
+    PetscCall(MatDestroy(&product));
+    *rho *= cabs(lambda / (1 + p->beta * lambda));
+  }
+  PetscCallMPI(MPI_Bcast(rho, 1, MPIU_REAL, 0, p->modes->comm));
+  PetscCall(BVDestroy(&U));
+  PetscCall(BVDestroy(&images));
+  PetscFunctionReturn(0);
+}

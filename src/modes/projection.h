@@ -1,0 +1,64 @@
+/* Private to modes/: a damped window by projection on undamped vectors; see project.c */
+#pragma once
+
+#include "complexvec.h"
+
+/* One real basis V for right and left vectors, orthonormal in M, and the dense model on it */
+typedef struct {
+  Modes                 modes;
+  const PencilMatrices *pencil;
+  Mat                   transposed[3]; /* K', C', M' where these differ from K, C, M; else references to them */
+  const Window         *window;
+  ShiftInvert           si;          /* of P = K - s M */
+  PetscReal             alpha, beta; /* of the fit C = alpha M + beta K + R on the modes of the window */
+  PetscReal             reach;       /* all undamped kappa with |kappa - s| below this are in V */
+  PetscReal             norms[3];    /* of K, C, M, Frobenius */
+  BV                    V;
+  PetscInt              k;     /* columns of V */
+  PetscReal            *K, *C; /* V'KV, V'CV [k * k], column-major */
+} Projection;
+
+/* Eigenvalues of the dense model that belong to the window, omega >= 0, with right and left vectors x' x = y' y = 1,
+   turned so that x^T x is real and positive; and the backward errors of the vectors V x and V y */
+typedef struct {
+  PetscInt      n, size;
+  PetscComplex *lambda;       /* [n] rad/s */
+  PetscComplex *vectors[2];   /* [n][size] right and left, in coordinates of V */
+  PetscReal    *backward[2];  /* [n] */
+  PetscReal     lambda_reach; /* largest |kappa(lambda) - s| on the edge of what the window claims */
+} ProjectionModes;
+
+/* kappa of the undamped problem that C = alpha M + beta K maps to lambda */
+static inline PetscComplex ProjectionKappa(const Projection *p, PetscComplex lambda)
+{
+  return -(lambda * lambda + p->alpha * lambda) / (1 + p->beta * lambda);
+}
+
+/* projectspace.c - the basis and its model */
+PETSC_INTERN PetscErrorCode ProjectionCreate(Modes modes, const PencilMatrices *pencil, const Window *window,
+                                             Projection *p);
+PETSC_INTERN PetscErrorCode ProjectionCreateBlock(const Projection *p, PetscInt n, BV *block);
+/* Takes in what the block (overwritten) holds beyond V, leaving out directions with an M-norm below drop; n_added may be
+   NULL */
+PETSC_INTERN PetscErrorCode ProjectionAdd(Projection *p, PetscReal drop, BV block, PetscInt *n_added);
+/* Those of a spectrum, right or left; of conjugate pairs of kappa one is enough */
+PETSC_INTERN PetscErrorCode ProjectionAddSpectrum(Projection *p, const Spectrum *s);
+PETSC_INTERN PetscErrorCode ProjectionDestroy(Projection *p);
+
+/* projectfit.c - alpha and beta; exact where R x vanishes for all vectors of the window */
+PETSC_INTERN PetscErrorCode ProjectionFit(Projection *p, const Spectrum *right, const Spectrum *left);
+/* The measure of damping: the spectral radius of (K - s M)^-1 lambda R / (1 + beta lambda) on the complement of V,
+   |lambda| at the top of the window, estimated from a random block */
+PETSC_INTERN PetscErrorCode ProjectionMeasureBeyond(const Projection *p, PetscReal *rho);
+
+/* projectdense.c - eigenvalues of the dense model in the window */
+PETSC_INTERN PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes);
+PETSC_INTERN PetscErrorCode ProjectionModesDestroy(ProjectionModes *modes);
+
+/* projectcorrect.c - backward errors of all modes; adds P^-1 r, P^-T s of those above the limits (right, left) to the
+   basis: n_columns of them, 0 where all have settled */
+PETSC_INTERN PetscErrorCode ProjectionCorrect(Projection *p, const PetscReal limits[2], ProjectionModes *modes,
+                                              PetscInt *n_columns);
+/* The vectors V x, or V y, as a spectrum */
+PETSC_INTERN PetscErrorCode ProjectionLift(const Projection *p, const ProjectionModes *modes, PetscBool left,
+                                           Spectrum *s);
