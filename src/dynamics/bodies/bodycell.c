@@ -49,14 +49,26 @@ void BodiesTurnCell(const Layout *layout, BodiesCell *cell)
                           &cell->stiffness[3 * a * n + 3 * b]);
 }
 
+/* Displacements (m) of a cell's nodes relative to the first one, Cartesian; whether there are any */
+static PetscBool BodiesCellMoves(const Layout *layout, PetscInt n_nodes, const PetscInt vertex[], const PetscReal u[],
+                                 PetscReal relative[])
+{
+  PetscBool moves = PETSC_FALSE;
+
+  for (PetscInt a = 0; a < n_nodes; a++) LayoutGet(layout, vertex[a], u, &relative[3 * a]);
+  for (PetscInt i = 3 * n_nodes - 1; i >= 0; i--) {
+    relative[i] -= relative[i % 3];
+    if (relative[i] != 0) moves = PETSC_TRUE;
+  }
+  return moves;
+}
+
 /* ku += K_e u_e */
-static void BodiesCellAddForces(const Layout *layout, const BodiesCell *cell, const PetscReal u[], PetscReal ku[])
+static void BodiesCellAddForces(const Layout *layout, const BodiesCell *cell, const PetscReal relative[],
+                                PetscReal ku[])
 {
   const PetscInt n = 3 * cell->n_nodes;
-  PetscReal      relative[ELEMENT_MAX_DOFS];
 
-  for (PetscInt a = 0; a < cell->n_nodes; a++) LayoutGet(layout, cell->vertex[a], u, &relative[3 * a]);
-  for (PetscInt i = n - 1; i >= 0; i--) relative[i] -= relative[i % 3];
   for (PetscInt a = 0; a < cell->n_nodes; a++) {
     PetscReal force[3] = {0, 0, 0};
 
@@ -68,12 +80,18 @@ static void BodiesCellAddForces(const Layout *layout, const BodiesCell *cell, co
 
 PetscErrorCode BodiesCellsAddForces(Bodies bodies, const PetscReal u[], PetscReal ku[])
 {
+  const Mesh *mesh = bodies->mesh;
+
   PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < bodies->mesh->n_cells; c++) {
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    PetscReal  relative[ELEMENT_MAX_DOFS];
     BodiesCell cell;
 
+    if (!BodiesCellMoves(&bodies->layout, mesh->element[c]->n_nodes, &mesh->cell_node[mesh->cell_first[c]], u,
+                         relative))
+      continue;
     PetscCall(BodiesGetCell(bodies, c, &cell));
-    BodiesCellAddForces(&bodies->layout, &cell, u, ku);
+    BodiesCellAddForces(&bodies->layout, &cell, relative, ku);
   }
   PetscFunctionReturn(0);
 }
