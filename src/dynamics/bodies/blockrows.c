@@ -48,17 +48,18 @@ STENCIL_INLINE void BlockRowsApplyBoth(const BlockRows *rows, PetscInt i, const 
 
   for (int j = 0; j < 3; j++) sum[j] = *(const StencilLanes *)&a[3 * j] * *(const StencilLanes *)u;
   while (++column < end) {
-    const StencilLanes v  = *(const StencilLanes *)&x[3 * *column];
-    StencilLanes      *at = (StencilLanes *)&y[4 * *column], g = {0};
+    const size_t       j  = (size_t)*column;
+    const StencilLanes v  = *(const StencilLanes *)&x[3 * j];
+    StencilLanes      *at = (StencilLanes *)&y[4 * j], g = {0};
 
     a += 9;
     PETSC_Prefetch((const char *)a + AHEAD, 0, PETSC_PREFETCH_HINT_T0);
-    for (int j = 0; j < 3; j++) {
+    for (int c = 0; c < 3; c++) {
       StencilLanes row;
 
-      BlockRowsLoad(&a[3 * j], &row);
-      sum[j] += row * v;
-      g += row * own[j];
+      BlockRowsLoad(&a[3 * c], &row);
+      sum[c] += row * v;
+      g += row * own[c];
     }
     *at += g;
   }
