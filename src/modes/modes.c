@@ -52,6 +52,8 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   PetscCall(PetscOptionsReal(
     "-modes_growth", "largest growth or decay that a band must cover, 1/s (0: a tenth of the angular frequency f2)",
     "modes.h", modes->growth, &modes->growth, NULL));
+  PetscCall(PetscOptionsInt("-modes_shifts", "shifts that share a band without damping (0: by the count of modes)",
+                            "modes.h", modes->n_shifts, &modes->n_shifts, NULL));
   PetscCall(PetscOptionsReal("-modes_max_time", "time that a solution may take, s (0: any); asked after every solve",
                              "modes.h", modes->max_time, &modes->max_time, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-modes_left", "left vectors: condition and error of each eigenvalue",
@@ -82,6 +84,8 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   if (modes->has_nearest) modes->has_band = PETSC_FALSE;
   PetscCheck(modes->count > 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_count %" PetscInt_FMT " must be positive",
              modes->count);
+  PetscCheck(modes->n_shifts >= 0, modes->comm, PETSC_ERR_USER_INPUT,
+             "-modes_shifts %" PetscInt_FMT " must not be negative", modes->n_shifts);
   PetscCheck(modes->growth >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_growth %.6g must not be negative (1/s)",
              (double)modes->growth);
   PetscCheck(modes->max_time >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_max_time %.6g must not be negative (s)",
@@ -219,8 +223,8 @@ PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *pencil, const 
   PetscFunctionReturn(0);
 }
 
-/* Right and left spectra that agree; a second attempt asks for more eigenvalues */
-static PetscErrorCode SolveBoth(Modes modes, const PencilMatrices *pencil, Window *window, ShiftInvert *si)
+/* A second attempt asks for more eigenvalues */
+PetscErrorCode ModesSolveWindow(Modes modes, const PencilMatrices *pencil, Window *window, ShiftInvert *si)
 {
   const PetscBool proven   = pencil->symmetric && !pencil->C ? PETSC_TRUE : PETSC_FALSE;
   PetscBool       complete = PETSC_TRUE;
@@ -262,7 +266,7 @@ static PetscErrorCode ModesReset(Modes modes)
   PetscFunctionReturn(0);
 }
 
-/* All modes of the window with a factorisation of their own problem */
+/* All modes of the window with factorisations of their own problem */
 static PetscErrorCode SolveWhole(Modes modes, const PencilMatrices *pencil, Window *window)
 {
   ShiftInvert si;
@@ -270,9 +274,7 @@ static PetscErrorCode SolveWhole(Modes modes, const PencilMatrices *pencil, Wind
   PetscFunctionBeginUser;
   if (pencil->C) PetscCall(WindowSetDamping(modes, pencil, window));
   if (window->count && pencil->C) PetscCall(WindowReach(modes, window));
-  PetscCall(ShiftInvertCreate(pencil, pencil->C ? DampedShift(window) : UndampedShift(window), PETSC_FALSE,
-                              &modes->progress, &si));
-  PetscCall(SolveBoth(modes, pencil, window, &si));
+  PetscCall(ShiftsSolve(modes, pencil, window, &si));
   if (modes->keep)
     modes->factor = si;
   else
@@ -308,6 +310,7 @@ PetscErrorCode ModesSolve(Modes modes)
   PetscCheck(window.expected != 0 || !pencil.symmetric || pencil.C, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_band %.6g,%.6g Hz contains no mode (%" PetscInt_FMT " lie below it); widen it",
              (double)modes->band[0], (double)modes->band[1], window.below);
+  PetscCall(ShiftsChoose(modes, &pencil, &window));
   PetscCall(SolveProjected(modes, &pencil, &window));
   if (!window.project) PetscCall(SolveWhole(modes, &pencil, &window));
   PetscCheck(modes->right.n, modes->comm, PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g Hz contains no mode; widen it",

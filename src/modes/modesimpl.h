@@ -21,6 +21,7 @@ PETSC_INTERN PetscErrorCode SpectrumAdd(Spectrum *spectrum, PetscReal sigma, Pet
 PETSC_INTERN PetscErrorCode SpectrumSort(Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode SpectrumKeep(Spectrum *spectrum, PetscInt first, PetscInt n);
 PETSC_INTERN PetscErrorCode SpectrumRemove(Spectrum *spectrum, PetscInt i);
+PETSC_INTERN PetscErrorCode SpectrumAppend(Spectrum *from, Spectrum *to); /* moves the entries; `from` is destroyed */
 PETSC_INTERN PetscErrorCode SpectrumDestroy(Spectrum *spectrum);
 
 /* Routes of a damped solution: by projection where its measure allows, always, never */
@@ -35,7 +36,8 @@ struct _p_Modes {
   PetscReal max_time;        /* s, of one solution; 0: any */
   PetscBool has_band, has_nearest, has_route, left, is_static, keep, filters;
   PetscInt  count;
-  PetscInt  damping; /* route of a damped solution: DAMPING_AUTO ... */
+  PetscInt  damping;  /* route of a damped solution: DAMPING_AUTO ... */
+  PetscInt  n_shifts; /* of a band; 0: chosen */
   char      disc[64];
   Progress  progress;
   /* results */
@@ -43,6 +45,7 @@ struct _p_Modes {
   Mode       *mode;
   PetscInt    n;
   double     *part_percent; /* participation of the parts [n][parts], NULL for matrices without a mesh */
+  PetscInt    shifts;       /* in use */
   char        completeness[1024];
   ShiftInvert factor; /* of the solution where keep is set */
   /* of the solution under way */
@@ -81,6 +84,10 @@ PETSC_INTERN PetscErrorCode WindowSetDamping(Modes modes, const PencilMatrices *
 PETSC_INTERN PetscReal      WindowNearest(const Window *window, const Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode WindowSelect(const Window *window, Spectrum *spectrum);
 PETSC_INTERN PetscInt       WindowFarthest(const Window *window, const Spectrum *spectrum);
+/* The part ends[0] to ends[1] (rad/s) of a band, with its own count; frictional: of all modes that its circle may hold */
+PETSC_INTERN PetscErrorCode WindowNarrow(Modes modes, const PencilMatrices *pencil, const Window *whole,
+                                         const PetscReal ends[2], Window *part);
+PETSC_INTERN PetscReal      WindowMiddle(const Window *window); /* of a part, in the plane of kappa = omega^2 */
 PETSC_INTERN PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *spectrum, PetscBool *complete);
 /* complete.c - in words, how it was checked that no mode is missing */
 PETSC_INTERN PetscErrorCode WindowDescribe(Modes modes, const Window *window);
@@ -109,8 +116,17 @@ PETSC_INTERN PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *p
 PETSC_INTERN PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *window, PetscBool *done);
 /* undamped.c - start vectors of a solver at random, not alike on all ranks: such a vector could miss what is not */
 PETSC_INTERN PetscErrorCode SolverSeed(BV bv, unsigned long seed);
-PETSC_INTERN PetscReal      UndampedShift(const Window *window);
-PETSC_INTERN PetscReal      DampedShift(const Window *window);
+/* Radius about the shift that the converged eigenvalues kappa must exceed; found is for the modes nearest to a target */
+PETSC_INTERN PetscReal UndampedRadius(const Window *window, PetscReal shift, const Spectrum *found);
+PETSC_INTERN PetscReal UndampedShift(const Window *window);
+PETSC_INTERN PetscReal DampedShift(const Window *window);
+
+/* modes.c - right and left spectra of a window that agree, with a factorisation about its shift */
+PETSC_INTERN PetscErrorCode ModesSolveWindow(Modes modes, const PencilMatrices *pencil, Window *window,
+                                             ShiftInvert *si);
+/* shifts.c - sets modes->shifts, of a band; the same as above of all of it by so many, si is made here, of the last one */
+PETSC_INTERN PetscErrorCode ShiftsChoose(Modes modes, const PencilMatrices *pencil, const Window *window);
+PETSC_INTERN PetscErrorCode ShiftsSolve(Modes modes, const PencilMatrices *pencil, Window *window, ShiftInvert *si);
 
 /* left.c - left partners of the right eigenvalues; complete = the window holds the same ones in both; biorthogonal
    left vectors in clusters, work[3] in the pencil's unknowns */

@@ -77,6 +77,28 @@ PetscErrorCode SpectrumKeep(Spectrum *s, PetscInt first, PetscInt n)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SpectrumAppend(Spectrum *from, Spectrum *to)
+{
+  const PetscInt n = to->n + from->n;
+  Spectrum       all;
+
+  PetscFunctionBeginUser;
+  PetscCall(SpectrumCreate(n, &all));
+  for (PetscInt i = 0; i < n; i++) {
+    Spectrum *const source = i < to->n ? to : from;
+    const PetscInt  k      = i < to->n ? i : i - to->n;
+
+    all.sigma[i] = source->sigma[k], all.omega[i] = source->omega[k];
+    all.xr[i] = source->xr[k], all.xi[i] = source->xi[k];
+    source->xr[k] = source->xi[k] = NULL;
+  }
+  all.n = n;
+  PetscCall(SpectrumDestroy(from));
+  PetscCall(SpectrumDestroy(to));
+  *to = all;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SpectrumDestroy(Spectrum *s)
 {
   PetscFunctionBeginUser;

@@ -25,7 +25,7 @@ PetscReal UndampedShift(const Window *window)
 /* Radius about the shift, in the plane of kappa = -lambda^2, that the converged eigenvalues must exceed. Band: the
    farthest corner sigma + i omega of the window. Target t: all |lambda - i t| <= d lie within |kappa - t^2| <= 2 t d
    + d^2. */
-static PetscReal UndampedRadius(const Window *window, PetscReal shift, const Spectrum *found)
+PetscReal UndampedRadius(const Window *window, PetscReal shift, const Spectrum *found)
 {
   const PetscReal low = window->low, high = window->high, s = window->growth, t = window->target;
   PetscReal       d;

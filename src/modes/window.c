@@ -77,6 +77,36 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
   PetscFunctionReturn(0);
 }
 
+PetscReal WindowMiddle(const Window *window)
+{
+  return 0.5 * (window->low * window->low + window->high * window->high);
+}
+
+PetscErrorCode WindowNarrow(Modes modes, const PencilMatrices *pencil, const Window *whole, const PetscReal ends[2],
+                            Window *part)
+{
+  PetscReal middle, radius, edge[2];
+  PetscInt  below;
+
+  PetscFunctionBeginUser;
+  *part      = *whole;
+  part->low  = ends[0];
+  part->high = ends[1];
+  if (ends[0] > whole->low) part->edge[0] = ends[0] * (1 - MODES_EDGE);
+  if (ends[1] < whole->high) part->edge[1] = ends[1] * (1 + MODES_EDGE);
+  if (whole->expected < 0) PetscFunctionReturn(0);
+  if (pencil->symmetric) part->growth = 0;
+  middle  = WindowMiddle(part);
+  radius  = UndampedRadius(part, middle, NULL);
+  edge[0] = pencil->symmetric ? part->edge[0] : PetscSqrtReal(PetscMax(0, middle - radius));
+  edge[1] = pencil->symmetric ? part->edge[1] : PetscSqrtReal(middle + radius);
+  PetscCall(WindowCountBelow(modes, -MODES_AWAY, &edge[0], &part->below));
+  PetscCall(WindowCountBelow(modes, MODES_AWAY, &edge[1], &below));
+  part->expected = below - part->below;
+  if (pencil->symmetric) part->edge[0] = edge[0], part->edge[1] = edge[1];
+  PetscFunctionReturn(0);
+}
+
 /* The damped problem converges from zero upwards and must know how far: the frictionless, undamped modes tell */
 PetscErrorCode WindowReach(Modes modes, Window *window)
 {

@@ -187,7 +187,7 @@ static PetscErrorCode BlockKrylovVectors(EPS eps, PetscInt k)
 static PetscErrorCode BlockKrylovExtend(EPS eps, PetscInt locked)
 {
   BlockSpace    *s    = &((EPS_BlockKrylov *)eps->data)->space;
-  const PetscInt next = s->m < eps->nev ? eps->nev + eps->nev / 2 : s->m + 1;
+  const PetscInt next = s->m < eps->nev ? eps->nev + eps->nev / 2 : s->m + PetscMax(1, s->m / 12);
 
   PetscFunctionBegin;
   while (s->p && s->m + s->p <= s->ncv && s->m < PetscMax(next, locked + 1)) PetscCall(BlockSpaceExtend(s));
