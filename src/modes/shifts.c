@@ -10,7 +10,7 @@
 #include "modesimpl.h"
 
 #define SHIFTS_STRIP 1e-3 /* relative half width of the strip about a seam */
-#define SHIFTS_MODES 200  /* modes from which orthogonalisation costs more than another factorisation saves */
+#define SHIFTS_MODES 300  /* modes from which orthogonalisation costs more than another factorisation saves */
 
 PetscErrorCode ShiftsChoose(Modes modes, const PencilMatrices *pencil, const Window *window)
 {
