@@ -52,8 +52,7 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   PetscCall(PetscOptionsReal(
     "-modes_growth", "largest growth or decay that a band must cover, 1/s (0: a tenth of the angular frequency f2)",
     "modes.h", modes->growth, &modes->growth, NULL));
-  PetscCall(PetscOptionsInt("-modes_shifts", "shifts that share a band without damping (0: by the count of modes)",
-                            "modes.h", modes->n_shifts, &modes->n_shifts, NULL));
+  PetscCall(ShiftsSetFromOptions(modes, PetscOptionsObject));
   PetscCall(PetscOptionsReal("-modes_max_time", "time that a solution may take, s (0: any); asked after every solve",
                              "modes.h", modes->max_time, &modes->max_time, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-modes_left", "left vectors: condition and error of each eigenvalue",
@@ -84,8 +83,6 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   if (modes->has_nearest) modes->has_band = PETSC_FALSE;
   PetscCheck(modes->count > 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_count %" PetscInt_FMT " must be positive",
              modes->count);
-  PetscCheck(modes->n_shifts >= 0, modes->comm, PETSC_ERR_USER_INPUT,
-             "-modes_shifts %" PetscInt_FMT " must not be negative", modes->n_shifts);
   PetscCheck(modes->growth >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_growth %.6g must not be negative (1/s)",
              (double)modes->growth);
   PetscCheck(modes->max_time >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_max_time %.6g must not be negative (s)",

@@ -3,6 +3,7 @@
 
 #include "solver/shiftinvert.h"
 #include <squeal/modes.h>
+#include <squeal/options.h>
 #include <slepceps.h>
 #include <slepcpep.h>
 
@@ -125,6 +126,7 @@ PETSC_INTERN PetscReal DampedShift(const Window *window);
 PETSC_INTERN PetscErrorCode ModesSolveWindow(Modes modes, const PencilMatrices *pencil, Window *window,
                                              ShiftInvert *si);
 /* shifts.c - sets modes->shifts, of a band; the same as above of all of it by so many, si is made here, of the last one */
+PETSC_INTERN PetscErrorCode ShiftsSetFromOptions(Modes modes, OptionsItems PetscOptionsObject);
 PETSC_INTERN PetscErrorCode ShiftsChoose(Modes modes, const PencilMatrices *pencil, const Window *window);
 PETSC_INTERN PetscErrorCode ShiftsSolve(Modes modes, const PencilMatrices *pencil, Window *window, ShiftInvert *si);
 

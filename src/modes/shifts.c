@@ -12,6 +12,16 @@
 #define SHIFTS_STRIP 1e-3 /* relative half width of the strip about a seam */
 #define SHIFTS_MODES 300  /* modes from which orthogonalisation costs more than another factorisation saves */
 
+PetscErrorCode ShiftsSetFromOptions(Modes modes, OptionsItems PetscOptionsObject)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsInt("-modes_shifts", "shifts that share a band without damping (0: by the count of modes)",
+                            "modes.h", modes->n_shifts, &modes->n_shifts, NULL));
+  PetscCheck(modes->n_shifts >= 0, modes->comm, PETSC_ERR_USER_INPUT,
+             "-modes_shifts %" PetscInt_FMT " must not be negative", modes->n_shifts);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ShiftsChoose(Modes modes, const PencilMatrices *pencil, const Window *window)
 {
   const PetscInt n = modes->n_shifts;
