@@ -1,14 +1,14 @@
 """A disc, clamped at its inner edge, and a pad with a clamped back that slides on it, in hex20 with matching meshes: as
 words of squeal and as a deck of CalculiX.
 
-Both have the same contact: gaps of all pairs stay closed, and friction is mu times the normal force, along y. squeal
-eliminates the pairs (-contact_law constraint). CalculiX has springs at the integration points of the faces, of STIFFNESS,
-1e5 times that of the pad. A static step makes them slip everywhere and equally: each body moves as a whole, the pad by
-DEPTH into the disc and by SLIDE along y. It starts as much before its place, so that meshes match after it. *FREQUENCY
-about this state asks again whether each point slips, by comparing two sides that are equal: rounding would decide, half
-of the points would stick and frequencies be off by 1e-3. Hence the static step has a friction coefficient that is larger
-by EXCESS. Across the direction of slip CalculiX leaves the slope of sticking, SLOPE, 1e-6 of the pad's stiffness.
-Eigenvalues then differ by less than 1e-6.
+Both have the same contact by penalty, of STIFFNESS, 1e5 times that of the pad, so that it is of no account that squeal
+has springs between nodes and CalculiX at the integration points of the faces. All are closed, and friction is mu times
+the normal force, along y. In CalculiX a static step makes them slip everywhere and equally: each body moves as a whole,
+the pad by DEPTH into the disc and by SLIDE along y. It starts as much before its place, so that meshes match after it.
+*FREQUENCY about this state asks again whether each point slips, by comparing two sides that are equal: rounding would
+decide, half of the points would stick and frequencies be off by 1e-3. Hence the static step has a friction coefficient
+that is larger by EXCESS. Across the direction of slip CalculiX leaves the slope of sticking, SLOPE, 1e-6 of the pad's
+stiffness. Eigenvalues then differ by less than 1e-6.
 """
 
 from dataclasses import dataclass
@@ -75,8 +75,8 @@ def squeal_words(path, mu, band):
     """Of a run of the modes of a band, Hz."""
     words = ["-model_mesh", path, "-parts", "disc,pad", "-supports", "hub,back", "-hub_set", "hub", "-hub_fix", "xyz",
              "-back_set", "back", "-back_fix", "xyz", "-contacts", "contact", "-contact_surfaces", "pad_face,disc_face",
-             "-contact_law", "constraint", "-contact_mu", mu, "-contact_slip", "0,1,0",
-             "-modes_band", ",".join(map(str, band))]
+             "-contact_kn_per_area", STIFFNESS, "-contact_mu", mu, "-contact_slip", "0,1,0", "-modes_band",
+             ",".join(map(str, band))]
     for name, values in MATERIALS.items():
         for what, value in zip(("young", "poisson", "density"), values):
             words += [f"-{name}_{what}", value]
