@@ -48,7 +48,8 @@ struct _p_Modes {
   double     *part_percent; /* participation of the parts [n][parts], NULL for matrices without a mesh */
   PetscInt    shifts;       /* in use */
   char        completeness[1024];
-  ShiftInvert factor; /* of the solution where keep is set */
+  char        solver[64]; /* type of the undamped eigensolver, and its block */
+  ShiftInvert factor;     /* of the solution where keep is set */
   /* of the solution under way */
   PetscLogDouble begun;         /* s */
   PetscBool      over;          /* max_time is */

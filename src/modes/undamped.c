@@ -137,6 +137,19 @@ static PetscErrorCode UndampedTranspose(PencilMatrices *problem)
   PetscFunctionReturn(0);
 }
 
+/* The solver in words */
+static PetscErrorCode UndampedDescribe(EPS eps, size_t size, char text[])
+{
+  EPSType  type;
+  PetscInt block;
+
+  PetscFunctionBeginUser;
+  PetscCall(EPSGetType(eps, &type));
+  PetscCall(BlockKrylovGetBlock(eps, &block));
+  PetscCall(PetscSNPrintf(text, size, "%s, blocks of %" PetscInt_FMT, type, block));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
                              PetscBool transposed, Spectrum *spectrum)
 {
@@ -159,6 +172,7 @@ PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Wi
     PetscCall(ProgressBegin(&modes->progress, transposed ? "left vectors" : "right vectors", 2 * nev + nev / 4));
     PetscCall(EPSSolve(eps));
     PetscCall(ProgressEnd(&modes->progress));
+    PetscCall(UndampedDescribe(eps, sizeof(modes->solver), modes->solver));
     PetscCall(UndampedCollect(eps, si->shift, n, spectrum));
     covered =
       spectrum->reach > UndampedRadius(window, si->shift, spectrum) || spectrum->n == n ? PETSC_TRUE : PETSC_FALSE;

@@ -63,6 +63,9 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
   }
   PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " modes, %" PetscInt_FMT " unstable; %s\n", modes->n,
                                    n_unstable, modes->completeness));
+  if (ShiftInvertShows() && modes->solver[0])
+    PetscCall(PetscViewerASCIIPrintf(viewer, "undamped modes: %s, %" PetscInt_FMT " shift%s\n", modes->solver,
+                                     modes->shifts, modes->shifts == 1 ? "" : "s"));
   PetscCall(ModesViewState(modes, viewer));
   PetscFunctionReturn(0);
 }

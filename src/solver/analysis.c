@@ -138,6 +138,11 @@ void ShiftInvertShow(PetscBool show)
   shown = show ? 0 : INFINITY;
 }
 
+PetscBool ShiftInvertShows(void)
+{
+  return shown < INFINITY ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode ShiftInvertAnalyse(const ShiftInvert *si, Mat A)
 {
   PC            pc;

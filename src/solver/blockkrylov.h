@@ -12,6 +12,9 @@
    solves with many right-hand sides. An iteration fills the space once. It ends with EPS_DIVERGED_BREAKDOWN where there
    are no more finite eigenvalues.
 
-   Options: -eps_blockkrylovschur_size b: vectors in a block (default by the size of the problem); all of EPS but balancing,
+   Options: -eps_blockkrylovschur_size b: vectors in a block (default 8, less in a smaller space or problem); all of EPS but balancing,
    regions, two-sided, true residuals, and orders other than by magnitude. */
 PETSC_INTERN PetscErrorCode BlockKrylovRegister(void);
+
+/* Vectors in a block of a solver that is set up, 1 for another type */
+PETSC_INTERN PetscErrorCode BlockKrylovGetBlock(EPS eps, PetscInt *block);

@@ -150,6 +150,27 @@ PetscReal BlockSpaceResidual(const BlockSpace *s, const PetscScalar x[])
   return PetscSqrtReal(sum);
 }
 
+PetscErrorCode BlockSpacePurify(ST st, BV V, Mat M, PetscInt n, PetscInt block)
+{
+  BlockSpace s;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlockSpaceCreate(st, V, NULL, 1, block, &s));
+  for (PetscInt first = 0; first < n; first += block) {
+    const PetscInt last = PetscMin(first + block, n);
+
+    PetscCall(BlockSpaceApply(&s, first, last - first));
+    PetscCall(BVSetActiveColumns(V, first, last));
+    PetscCall(BVCopy(s.W, V));
+  }
+  PetscCall(BlockSpaceDestroy(&s));
+  PetscCall(BVSetActiveColumns(V, 0, n));
+  PetscCall(BVSetMatrix(V, M, PETSC_FALSE));
+  PetscCall(BVNormalize(V, NULL));
+  PetscCall(BVSetMatrix(V, NULL, PETSC_FALSE));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BlockSpaceDestroy(BlockSpace *s)
 {
   PetscFunctionBeginUser;

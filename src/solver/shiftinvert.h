@@ -30,7 +30,8 @@ PETSC_INTERN PetscErrorCode ShiftInvertSolve(const ShiftInvert *si, PetscBool tr
    PETSC_ERR_USER_INPUT where the machine has not the memory for the factors by MUMPS' estimate */
 PETSC_INTERN PetscErrorCode ShiftInvertAnalyse(const ShiftInvert *si, Mat A);
 /* Whether the estimate is shown on stdout before factorisations, not by default */
-PETSC_INTERN void ShiftInvertShow(PetscBool show);
+PETSC_INTERN void      ShiftInvertShow(PetscBool show);
+PETSC_INTERN PetscBool ShiftInvertShows(void);
 /* block.c - X = A^-1 B, or A^-T B, for dense B, X of the same size and any leading dimension: many right-hand sides at
    once. PETSC_ERR_LIB where the last column does not solve its system: a library behaves otherwise than assumed */
 PETSC_INTERN PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X);
