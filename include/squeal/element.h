@@ -26,9 +26,9 @@ typedef struct {
   int            vtk, xdmf_number; /* types in output; the latter in meshes of several elements */
   PetscInt       n_nodes, n_corners;
   PetscInt       closure_order[ELEMENT_MAX_CORNERS]; /* corner i is vertex closure_order[i] of the DMPlex closure */
-  const unsigned char *at;       /* [n_nodes] node i stands in the middle of the corners whose bits are set */
-  PetscBool            row_sums; /* lumped mass: row sums of the consistent one where positive, else its diagonal, scaled (HRZ) */
-  const struct Solid  *solid;
+  const unsigned char *at; /* [n_nodes] node i stands in the middle of the corners whose bits are set */
+  PetscBool row_sums; /* lumped mass: row sums of the consistent one where positive, else its diagonal, scaled (HRZ) */
+  const struct Solid *solid;
 
   /* Stiffness (N/m) and consistent mass (kg), row-major [3 n_nodes][3 n_nodes], of nodes x[n_nodes][3] (m).
      Returns 0, or 1 when the Jacobian is not positive at some point: then nothing is written. */

@@ -14,16 +14,15 @@
 
 #include <squeal/pencil.h>
 #include <squeal/results.h>
-#include <petscksp.h>
 
 typedef struct _p_Modes *Modes;
+struct ShiftInvert; /* factors, private to the solvers */
 
 /* One eigenvalue of the upper half plane (omega >= 0) and its errors */
 typedef struct {
   PetscReal sigma, omega;   /* rad/s; sigma > 0 is unstable */
   PetscReal backward_error; /* |Q(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|), Frobenius norms */
-  PetscReal product
-    [2]; /* real and imaginary part of y'(M + C / (2 lambda)) x of the vectors of ModesGetVectors() */
+  PetscReal product[2]; /* real and imaginary part of y'(M + C / (2 lambda)) x of the vectors of ModesGetVectors() */
   PetscReal
     condition; /* 2 |lambda| |x|_M |y|_M / |y'(2 lambda M + C) x|: 1 for real modes, infinite at a defective pair */
   PetscReal
@@ -83,7 +82,7 @@ PetscErrorCode ModesKeepFactor(Modes modes, PetscBool keep);
 
 /*@ ModesGetFactor - the factorisation that was kept (borrowed): of K - shift M, shift in (rad/s)^2, or with damping of
     K + shift C + shift^2 M, in rad/s. Not collective. Errors: PETSC_ERR_ARG_WRONGSTATE where none was kept. @*/
-PetscErrorCode ModesGetFactor(Modes modes, KSP *ksp, PetscReal *shift);
+PetscErrorCode ModesGetFactor(Modes modes, const struct ShiftInvert **factor);
 
 /*@ ModesSolve - computes eigenvalues, vectors, errors and labels, and checks that none is missing. Collective. @*/
 PetscErrorCode ModesSolve(Modes modes);

@@ -45,6 +45,8 @@ PetscErrorCode OperatorsSetModel(Operators operators, Model model, Contact conta
 +  -operators_load_k, _m, _c, _h <file>  - PETSc binary matrices; K and M are required together
 .  -operators_dense_k, _m, _c, _h <list> - small dense matrices inline, rows one after another
 .  -operators_mass <consistent|lumped>   - mass matrix of a model
+.  -operators_factors <auto|lu|symmetric> - with friction LU, or LDL' of the symmetric part with an update for the closed
+pairs; auto takes what needs less memory
 .  -contact_mu <mu>                      - friction coefficient of K + mu H for loaded or dense matrices
 -  -operators_save <dir>                 - write K.bin, M.bin and, where there are any, C.bin and H.bin; with the
 contact

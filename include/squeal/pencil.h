@@ -29,8 +29,9 @@ typedef struct {
   Mat               A;          /* in the unknowns of the pencil (borrowed); several terms may share one */
   PetscBool         frictional; /* vanishes without friction or spin */
   PetscBool         symmetric;  /* A is; never so for a frictional term */
-  PetscReal         scale;
-  PetscInt          n; /* factors */
+  Mat       left, right; /* A = left' right, a row for each pair (borrowed); NULL where A is not such a product */
+  PetscReal scale;
+  PetscInt  n; /* factors */
   struct {
     PetscInt  parameter; /* index */
     PetscInt  power;     /* 1 or -1 */
@@ -38,10 +39,14 @@ typedef struct {
   } factor[OPERATORS_MAX_FACTORS];
 } OperatorsTerm;
 
-/* Matrices of (lambda^2 M + lambda C + K) x = 0, friction included in K; borrowed */
+/* Matrices of (lambda^2 M + lambda C + K) x = 0, friction included in K; borrowed. Where only friction makes K
+   unsymmetric, and -operators_factors is not lu, K = K_even + left' right, K_even symmetric, left and right with a row for
+   each closed pair; NULL else. */
 typedef struct {
   Mat       K, C, M;   /* C is NULL without damping */
   PetscBool symmetric; /* K, M (and C) symmetric */
+  Mat       K_even, left, right;
+  PetscBool prefers_even; /* -operators_factors symmetric */
 } PencilMatrices;
 
 /* Matrices of all unknowns, before any projection: K + mu H, M, C; borrowed; C and H may be NULL */

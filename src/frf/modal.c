@@ -35,12 +35,16 @@ static PetscErrorCode ModesCount(Frf frf, PetscInt *n_columns)
 /* Space and chains with the modes */
 static PetscErrorCode SuperpositionCreate(Frf frf, Superposition *s)
 {
-  PencilMatrices pencil;
-  ShiftInvert    factor = {.comm = frf->comm, .progress = &frf->progress};
-  PetscInt       n_modes, most;
+  PencilMatrices     pencil;
+  ShiftInvert        factor;
+  const ShiftInvert *kept;
+  PetscInt           n_modes, most;
 
   PetscFunctionBeginUser;
-  PetscCall(ModesGetFactor(frf->modes, &factor.ksp, &factor.shift));
+  PetscCall(ModesGetFactor(frf->modes, &kept));
+  factor          = *kept;
+  factor.progress = &frf->progress;
+  factor.after    = NULL;
   PetscCall(PencilGetMatrices(frf->pencil, &pencil));
   PetscCall(ModesCount(frf, &n_modes));
   PetscCall(FrfProject(frf, &s->b, &s->l));

@@ -1,5 +1,5 @@
 /*
-   Modes: life cycle, options, and the flow of a solution: window -> factorisation -> right vectors -> left vectors ->
+   Modes: life cycle and the flow of a solution: window -> factorisation -> right vectors -> left vectors ->
    errors -> labels, with the check that no mode is missing.
 */
 #include "modesimpl.h"
@@ -7,11 +7,7 @@
 #include "solver/ordering.h"
 #include <squeal/options.h>
 
-#define MODES_LARGEST 1e30 /* Hz, 1/s: squares stay finite */
-
 #define MODES_NEAR 1e-9 /* distance of an eigenvalue from the shift, beside the farthest: below it the shift is moved */
-
-static const char modes_damping[] = "-modes_damping";
 
 PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
 {
@@ -32,63 +28,6 @@ PetscErrorCode ModesSetPencil(Modes modes, Pencil pencil)
 {
   PetscFunctionBeginUser;
   modes->pencil = pencil;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModesSetFromOptions(Modes modes)
-{
-  static const char *const contacts[] = {"all", "static"};
-  PetscBool                has_target, has_count;
-  static const char *const routes[] = {"auto", "project", "pep"};
-  PetscInt                 contact  = 0;
-
-  PetscFunctionBeginUser;
-  PetscOptionsBegin(modes->comm, NULL, "Modes", NULL);
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-modes_band", "all modes with frequency in f1,f2, Hz", 2, modes->band,
-                            &modes->has_band));
-  PetscCall(PetscOptionsReal("-modes_target", "instead of a band: the modes nearest to this frequency, Hz", "modes.h",
-                             modes->target, &modes->target, &has_target));
-  PetscCall(PetscOptionsInt("-modes_count", "how many of them", "modes.h", modes->count, &modes->count, &has_count));
-  PetscCall(PetscOptionsReal(
-    "-modes_growth", "largest growth or decay that a band must cover, 1/s (0: a tenth of the angular frequency f2)",
-    "modes.h", modes->growth, &modes->growth, NULL));
-  PetscCall(ShiftsSetFromOptions(modes, PetscOptionsObject));
-  PetscCall(PetscOptionsReal("-modes_max_time", "time that a solution may take, s (0: any); asked after every solve",
-                             "modes.h", modes->max_time, &modes->max_time, NULL));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-modes_left", "left vectors: condition and error of each eigenvalue",
-                           &modes->left));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-modes_filters",
-                           "write modal filters, which find the modes' amplitudes in a transient", &modes->filters));
-  PetscCall(PetscOptionsString("-modes_disc", "part whose shapes are named by nodal circles and diameters", "modes.h",
-                               modes->disc, modes->disc, sizeof(modes->disc), NULL));
-  PetscCall(PetscOptionsEList("-modes_contact", "pairs that are closed: every one, or those of the sliding state",
-                              "modes.h", contacts, 2, contacts[0], &contact, NULL));
-  PetscCall(PetscOptionsEList(
-    "-modes_damping",
-    "route of a damped solution: projection on undamped modes where damping is weak (auto), always (project), or PEP",
-    "modes.h", routes, 3, routes[modes->damping], &modes->damping, &modes->has_route));
-  PetscOptionsEnd();
-  modes->is_static = contact ? PETSC_TRUE : PETSC_FALSE;
-  PetscCheck(modes->left || !modes->filters, modes->comm, PETSC_ERR_USER_INPUT,
-             "-modes_filters needs left vectors: leave out -modes_left false");
-  PetscCheck(!modes->has_band || (modes->band[0] >= 0 && modes->band[1] > modes->band[0]), modes->comm,
-             PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g must satisfy 0 <= f1 < f2 (Hz)", (double)modes->band[0],
-             (double)modes->band[1]);
-  PetscCheck(modes->band[1] <= MODES_LARGEST && modes->target <= MODES_LARGEST && modes->growth <= MODES_LARGEST,
-             modes->comm, PETSC_ERR_USER_INPUT,
-             "-modes_band, -modes_target (Hz) and -modes_growth (1/s) must be of at most %g", MODES_LARGEST);
-  if (modes->has_band && (has_target || has_count))
-    PetscCall(OptionsRefuse(modes->comm, "-modes_band", "not used beside -modes_target or -modes_count; give one"));
-  modes->has_nearest = has_target || has_count ? PETSC_TRUE : PETSC_FALSE;
-  if (modes->has_nearest) modes->has_band = PETSC_FALSE;
-  PetscCheck(modes->count > 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_count %" PetscInt_FMT " must be positive",
-             modes->count);
-  PetscCheck(modes->growth >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_growth %.6g must not be negative (1/s)",
-             (double)modes->growth);
-  PetscCheck(modes->max_time >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_max_time %.6g must not be negative (s)",
-             (double)modes->max_time);
-  PetscCheck(modes->target >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_target %.6g must not be negative (Hz)",
-             (double)modes->target);
   PetscFunctionReturn(0);
 }
 
@@ -141,12 +80,11 @@ PetscErrorCode ModesKeepFactor(Modes modes, PetscBool keep)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModesGetFactor(Modes modes, KSP *ksp, PetscReal *shift)
+PetscErrorCode ModesGetFactor(Modes modes, const struct ShiftInvert **factor)
 {
   PetscFunctionBeginUser;
   PetscCheck(modes->factor.ksp, modes->comm, PETSC_ERR_ARG_WRONGSTATE, "no factorisation was kept");
-  *ksp   = modes->factor.ksp;
-  *shift = modes->factor.shift;
+  *factor = &modes->factor;
   PetscFunctionReturn(0);
 }
 
@@ -213,8 +151,7 @@ PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *pencil, const 
     const PetscReal shift = si->shift * (1 + 1e-3 * attempt);
 
     PetscCall(SpectrumDestroy(&modes->right));
-    PetscCall(ShiftInvertDestroy(si));
-    PetscCall(ShiftInvertCreate(pencil, shift, PETSC_FALSE, &modes->progress, si));
+    PetscCall(ShiftInvertMove(pencil, shift, si));
     PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_FALSE, &modes->right));
   }
   PetscFunctionReturn(0);
@@ -259,7 +196,17 @@ static PetscErrorCode ModesReset(Modes modes)
   PetscCall(PetscFree(modes->mode));
   PetscCall(PetscFree(modes->part_percent));
   PetscCall(ShiftInvertDestroy(&modes->factor));
+  PetscCall(ShiftInvertDestroy(&modes->counter));
   modes->n = 0;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesFactor(Modes modes, const PencilMatrices *pencil, PetscReal shift, ShiftInvert *si)
+{
+  PetscFunctionBeginUser;
+  *si            = modes->counter;
+  modes->counter = (ShiftInvert){.progress = &modes->progress};
+  PetscCall(ShiftInvertMove(pencil, shift, si));
   PetscFunctionReturn(0);
 }
 
@@ -299,10 +246,11 @@ PetscErrorCode ModesSolve(Modes modes)
 
   PetscFunctionBeginUser;
   PetscCall(ModesReset(modes));
+  modes->counter = (ShiftInvert){.progress = &modes->progress};
   PetscCall(LimitBegin(modes));
   PetscCall(PencilGetMatrices(modes->pencil, &pencil));
   if (modes->has_route && !pencil.C)
-    PetscCall(OptionsRefuse(modes->comm, modes_damping, "not used without damping; leave it out"));
+    PetscCall(OptionsRefuse(modes->comm, MODES_DAMPING, "not used without damping; leave it out"));
   PetscCall(WindowFind(modes, &window));
   PetscCheck(window.expected != 0 || !pencil.symmetric || pencil.C, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_band %.6g,%.6g Hz contains no mode (%" PetscInt_FMT " lie below it); widen it",
@@ -313,6 +261,7 @@ PetscErrorCode ModesSolve(Modes modes)
   PetscCheck(modes->right.n, modes->comm, PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g Hz contains no mode; widen it",
              (double)modes->band[0], (double)modes->band[1]);
   PetscCall(QualityMeasure(modes, &pencil));
+  PetscCall(ShiftInvertDestroy(&modes->counter));
   if (window.rigid) PetscCall(TwinsDrop(modes, &window));
   if (window.rigid) PetscCall(NullVectorsRefine(modes, &pencil, &window));
   PetscCall(WindowDescribe(modes, &window));

@@ -28,6 +28,8 @@ PETSC_INTERN PetscErrorCode SpectrumDestroy(Spectrum *spectrum);
 /* Routes of a damped solution: by projection where its measure allows, always, never */
 enum { DAMPING_AUTO, DAMPING_PROJECT, DAMPING_PEP };
 
+#define MODES_DAMPING "-modes_damping"
+
 struct _p_Modes {
   MPI_Comm comm;
   Pencil   pencil;
@@ -50,6 +52,7 @@ struct _p_Modes {
   char        completeness[1024];
   char        solver[64]; /* type of the undamped eigensolver, and its block */
   ShiftInvert factor;     /* of the solution where keep is set */
+  ShiftInvert counter;    /* of the last count by inertia, from which the solution takes its analysis */
   /* of the solution under way */
   PetscLogDouble begun;         /* s */
   PetscBool      over;          /* max_time is */
@@ -77,6 +80,10 @@ typedef struct {
   PetscReal beyond;          /* measure of damping there, or negative */
   char      why[64];         /* why not by projection; empty where it was not tried */
 } Window;
+
+/* modes.c - factors of K - shift M, or with damping of K + shift C + shift^2 M; those of the last count are given up, and
+   their analysis serves */
+PETSC_INTERN PetscErrorCode ModesFactor(Modes modes, const PencilMatrices *pencil, PetscReal shift, ShiftInvert *si);
 
 /* window.c - the window, and the count of frictionless modes in it by Sylvester's law of inertia */
 PETSC_INTERN PetscErrorCode WindowFind(Modes modes, Window *window);

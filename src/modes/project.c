@@ -171,7 +171,7 @@ PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *w
   PetscFunctionBeginUser;
   undamped.C = NULL;
   PetscCall(ProjectionCreate(modes, pencil, window, &p));
-  PetscCall(ShiftInvertCreate(&undamped, UndampedShift(window), PETSC_FALSE, &modes->progress, &p.si));
+  PetscCall(ModesFactor(modes, &undamped, UndampedShift(window), &p.si));
   window->extra += PROJECT_GUARD;
   for (int attempt = 0; attempt < 3 && !complete && !why; attempt++) {
     PetscCall(SpectraDestroy(modes));

@@ -101,12 +101,11 @@ static PetscErrorCode ShiftsAppend(Modes modes, PetscReal seam, Spectrum *right,
   PetscFunctionReturn(0);
 }
 
-/* The modes of one part; si is its factorisation */
+/* The modes of one part; si is its factorisation, whose analysis the counts of the next part take over */
 static PetscErrorCode ShiftsSolvePart(Modes modes, const PencilMatrices *pencil, Window *part, ShiftInvert *si)
 {
   PetscFunctionBeginUser;
-  if (si->ksp) PetscCall(ShiftInvertDestroy(si));
-  PetscCall(ShiftInvertCreate(pencil, WindowMiddle(part), PETSC_FALSE, &modes->progress, si));
+  PetscCall(ModesFactor(modes, pencil, WindowMiddle(part), si));
   PetscCall(ModesSolveWindow(modes, pencil, part, si));
   PetscFunctionReturn(0);
 }
@@ -118,15 +117,15 @@ PetscErrorCode ShiftsSolve(Modes modes, const PencilMatrices *pencil, Window *wi
 
   PetscFunctionBeginUser;
   if (n == 1) {
-    PetscCall(ShiftInvertCreate(pencil, pencil->C ? DampedShift(window) : UndampedShift(window), PETSC_FALSE,
-                                &modes->progress, si));
+    PetscCall(ModesFactor(modes, pencil, pencil->C ? DampedShift(window) : UndampedShift(window), si));
     PetscCall(ModesSolveWindow(modes, pencil, window, si));
     PetscFunctionReturn(0);
   }
-  si->ksp = NULL;
   for (PetscInt k = 0; k < n; k++) {
     Window part;
 
+    if (k) PetscCall(ShiftInvertDestroy(&modes->counter));
+    if (k) modes->counter = *si;
     PetscCall(ShiftsPart(modes, pencil, window, n, k, &part));
     PetscCall(ShiftsSolvePart(modes, pencil, &part, si));
     PetscCall(ShiftsAppend(modes, k ? ShiftsSeam(window, n, k) : 0, &right, &left));

@@ -29,7 +29,7 @@ static PetscErrorCode WindowCountBelow(Modes modes, PetscReal away, PetscReal *o
 
   PetscFunctionBeginUser;
   PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
-  PetscCall(ShiftInvertCountBelow(&frictionless, away, &modes->progress, omega, n));
+  PetscCall(ShiftInvertCountBelow(&frictionless, away, &modes->counter, omega, n));
   PetscFunctionReturn(0);
 }
 

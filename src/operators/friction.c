@@ -144,7 +144,7 @@ static PetscErrorCode PenaltyCreateWeights(Pencil pencil, const FrictionGroup *g
 static PetscErrorCode PenaltyAdd(Pencil pencil, const FrictionGroup *g)
 {
   const PetscInt kn[] = {g->q.kn, g->closed}, mu[] = {g->q.kn, g->q.mu, g->closed};
-  Mat            NN, TN;
+  Mat            NN, TN, WN;
   Vec            weights;
 
   PetscFunctionBeginUser;
@@ -153,8 +153,13 @@ static PetscErrorCode PenaltyAdd(Pencil pencil, const FrictionGroup *g)
   PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, NN, PETSC_TRUE, 1 + g->more, kn));
   PetscCall(MatDestroy(&NN));
   if (g->q.mu >= 0) {
-    PetscCall(TermsProduct(-1, g->T, weights, g->N, &TN));
+    PetscCall(MatDuplicate(g->N, MAT_COPY_VALUES, &WN));
+    PetscCall(MatScale(WN, -1));
+    if (weights) PetscCall(MatDiagonalScale(WN, weights, NULL));
+    PetscCall(TermsProduct(1, g->T, NULL, WN, &TN));
     PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, TN, PETSC_FALSE, 2 + g->more, mu));
+    PetscCall(TermsSetFactors(&pencil->base, g->T, WN));
+    PetscCall(MatDestroy(&WN));
     PetscCall(MatDestroy(&TN));
   }
   PetscCall(VecDestroy(&weights));

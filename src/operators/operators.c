@@ -24,8 +24,9 @@ PetscErrorCode OperatorsSetModel(Operators operators, Model model, Contact conta
 
 PetscErrorCode OperatorsSetFromOptions(Operators operators)
 {
-  static const char *const masses[] = {"consistent", "lumped"};
-  PetscInt                 mass     = 0;
+  static const char *const factors[] = {"auto", "lu", "symmetric"};
+  static const char *const masses[]  = {"consistent", "lumped"};
+  PetscInt                 mass      = 0;
   PetscBool                have;
 
   PetscFunctionBeginUser;
@@ -34,6 +35,10 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
   PetscCall(PetscOptionsEList(
     "-operators_mass", "mass matrix of the bodies; lumped: row sums, or of tet10, wedge15, hex20 the scaled diagonal",
     "operators.h", masses, 2, masses[0], &mass, NULL));
+  PetscCall(PetscOptionsEList(
+    "-operators_factors",
+    "with friction LU, or LDL' of the symmetric part and an update for the closed pairs, or what needs less memory",
+    "operators.h", factors, 3, factors[0], &operators->factors, NULL));
   PetscCall(PetscOptionsString("-operators_save", "folder for K.bin, M.bin, C.bin, H.bin (PETSc binary)", "operators.h",
                                operators->save, operators->save, sizeof(operators->save), NULL));
   PetscCall(OperatorsHaveMatrices(operators, &have));

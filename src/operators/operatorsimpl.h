@@ -26,6 +26,9 @@ typedef struct {
   PetscInt stiffness[6], viscosity[6], mass;
 } JointParameters;
 
+/* -operators_factors */
+enum { OPERATORS_AUTO, OPERATORS_LU, OPERATORS_EVEN };
+
 struct _p_Operators {
   MPI_Comm comm;
   Model    model; /* NULL for loaded or dense matrices */
@@ -35,6 +38,7 @@ struct _p_Operators {
   PetscReal *dense[N_OPERATORS];   /* [OPERATORS_MAX_DENSE] entries of -operators_dense_k and the like, by rows */
   PetscInt   n_dense[N_OPERATORS]; /* entries given: the square of the number of unknowns; 0 for none */
   PetscBool  lump;
+  PetscInt   factors;   /* OPERATORS_AUTO, OPERATORS_LU or OPERATORS_EVEN */
   PetscReal  loaded_mu; /* -contact_mu of loaded or dense matrices */
   /* built by OperatorsSetUp() */
   Parameters           parameters;       /* at the values of the scene */

@@ -59,6 +59,7 @@ PetscErrorCode PencilSetParameters(Pencil pencil, const PetscReal p[])
   PetscCall(PencilCheckTerms(pencil));
   PetscCall(PetscArraycpy(pencil->parameters.p, p, n));
   for (int i = 0; i < N_PENCIL_SUMS; i++) pencil->sum[i].current = PETSC_FALSE;
+  pencil->has_factors = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
@@ -154,6 +155,26 @@ static PetscBool DampingIsSymmetric(const Terms *terms, const PetscReal p[])
   return PETSC_TRUE;
 }
 
+/* K as a symmetric matrix and the product of two with a row for each pair, as far as it is such a sum */
+static PetscErrorCode PencilGetFactors(Pencil pencil, PencilMatrices *m)
+{
+  PetscFunctionBeginUser;
+  m->K_even = m->left = m->right = NULL;
+  m->prefers_even                = pencil->operators->factors == OPERATORS_EVEN ? PETSC_TRUE : PETSC_FALSE;
+  if (m->symmetric || !pencil->operators->symmetric || pencil->Zr) PetscFunctionReturn(0);
+  if (pencil->operators->factors == OPERATORS_LU) PetscFunctionReturn(0);
+  if (!pencil->has_factors) {
+    for (int i = 0; i < 2; i++) PetscCall(MatDestroy(&pencil->factor[i]));
+    PetscCall(TermsFormFactors(&pencil->base, pencil->parameters.p, &pencil->factor[0], &pencil->factor[1]));
+    pencil->has_factors = PETSC_TRUE;
+  }
+  if (!pencil->factor[0]) PetscFunctionReturn(0);
+  PetscCall(PencilFormSum(pencil, PROJECTED_K, &m->K_even));
+  m->left  = pencil->factor[0];
+  m->right = pencil->factor[1];
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode PencilGetMatrices(Pencil pencil, PencilMatrices *m)
 {
   const Terms     *terms = pencil->Zr ? &pencil->projected : &pencil->base;
@@ -169,6 +190,7 @@ PetscErrorCode PencilGetMatrices(Pencil pencil, PencilMatrices *m)
   PetscCall(PencilFormSum(pencil, same_mass ? PROJECTED_M : PENCIL_M, &m->M));
   PetscCall(PencilFormSum(pencil, PENCIL_C, &m->C));
   if (m->C && pencil->operators->symmetric) PetscCall(MatSetOption(m->C, MAT_SYMMETRIC, DampingIsSymmetric(terms, p)));
+  PetscCall(PencilGetFactors(pencil, m));
   PetscFunctionReturn(0);
 }
 
@@ -179,6 +201,8 @@ PetscErrorCode PencilGetFrictionless(Pencil pencil, PencilMatrices *m)
   PetscCall(PencilFormSum(pencil, PROJECTED_M, &m->M));
   m->C         = NULL;
   m->symmetric = pencil->operators->symmetric;
+  m->K_even = m->left = m->right = NULL;
+  m->prefers_even                = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
@@ -311,6 +335,7 @@ PetscErrorCode PencilDestroy(Pencil *pencil)
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(0);
   for (int i = 0; i < N_PENCIL_SUMS; i++) PetscCall(TermsSumDestroy(&s->sum[i]));
+  for (int i = 0; i < 2; i++) PetscCall(MatDestroy(&s->factor[i]));
   PetscCall(PencilDestroyNullSpaces(s));
   PetscCall(TermsDestroy(&s->base));
   PetscCall(ParametersDestroy(&s->parameters));

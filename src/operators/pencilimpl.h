@@ -37,7 +37,9 @@ struct _p_Pencil {
   PetscInt *left_mu;   /* [n_left] parameters that are friction coefficients */
   Terms     projected; /* in the unknowns of the pencil, made when asked for; empty without constraints: base serves */
   TermsSum  sum[N_PENCIL_SUMS];
-  PetscBool released; /* the terms are gone */
+  PetscBool released;    /* the terms are gone */
+  PetscBool has_factors; /* left' right was formed at the present point */
+  Mat       factor[2];   /* left and right factor of the unsymmetric stiffness, NULL where it has none */
 };
 
 /* rigid.c - null space of points that are joined rigidly, where there is none of the contact. Collective. */

@@ -32,6 +32,18 @@ PetscErrorCode TermsAdd(Terms *terms, OperatorsTermKind kind, Mat A, PetscBool s
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode TermsSetFactors(Terms *terms, Mat left, Mat right)
+{
+  OperatorsTerm *term = &terms->term[terms->n - 1];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscObjectReference((PetscObject)left));
+  PetscCall(PetscObjectReference((PetscObject)right));
+  term->left  = left;
+  term->right = right;
+  PetscFunctionReturn(0);
+}
+
 /* Value of factor i */
 static PetscReal FactorValue(const OperatorsTerm *term, const PetscReal p[], PetscInt i)
 {
@@ -90,6 +102,8 @@ PetscErrorCode TermsAppend(Terms *terms, const Terms *more)
   for (PetscInt t = 0; t < more->n; t++) {
     terms->term[terms->n++] = more->term[t];
     PetscCall(PetscObjectReference((PetscObject)more->term[t].A));
+    if (more->term[t].left) PetscCall(PetscObjectReference((PetscObject)more->term[t].left));
+    if (more->term[t].right) PetscCall(PetscObjectReference((PetscObject)more->term[t].right));
   }
   PetscFunctionReturn(0);
 }
@@ -97,7 +111,11 @@ PetscErrorCode TermsAppend(Terms *terms, const Terms *more)
 PetscErrorCode TermsDestroy(Terms *terms)
 {
   PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < terms->n; t++) PetscCall(MatDestroy(&terms->term[t].A));
+  for (PetscInt t = 0; t < terms->n; t++) {
+    PetscCall(MatDestroy(&terms->term[t].A));
+    PetscCall(MatDestroy(&terms->term[t].left));
+    PetscCall(MatDestroy(&terms->term[t].right));
+  }
   PetscCall(PetscFree(terms->term));
   terms->n = 0;
   PetscFunctionReturn(0);

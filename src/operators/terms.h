@@ -31,6 +31,8 @@ typedef struct {
    kinds, are zero at p */
 PETSC_INTERN PetscErrorCode TermsAdd(Terms *terms, OperatorsTermKind kind, Mat A, PetscBool symmetric, PetscInt n,
                                      const PetscInt parameter[]);
+/* Tells that the last term is left' right */
+PETSC_INTERN PetscErrorCode TermsSetFactors(Terms *terms, Mat left, Mat right);
 PETSC_INTERN PetscErrorCode TermsAppend(Terms *terms, const Terms *more);
 PETSC_INTERN PetscBool TermsVanish(const Terms *terms, TermsChoice choice, PetscBool mass_only, const PetscReal p[]);
 PETSC_INTERN PetscErrorCode TermsDestroy(Terms *terms);
@@ -41,6 +43,10 @@ PETSC_INTERN PetscErrorCode TermsProduct(PetscReal scale, Mat L, Vec weights, Ma
 PETSC_INTERN PetscErrorCode TermsSumForm(const Terms *terms, const TermsSumKind *kind, const PetscReal p[],
                                          TermsSum *sum);
 PETSC_INTERN PetscErrorCode TermsSumDestroy(TermsSum *sum);
+
+/* factors.c - the sum of the unsymmetric stiffness at p as a product, left' right, the pairs of all terms below one
+   another; NULL where a term of it has no such factors */
+PETSC_INTERN PetscErrorCode TermsFormFactors(const Terms *terms, const PetscReal p[], Mat *left, Mat *right);
 
 /* Parameters and a point of them */
 typedef struct {

@@ -16,14 +16,6 @@
 
 static double shown = INFINITY; /* log handle: MB of the largest estimate that has been shown; infinite for none */
 
-/* Cost of factors by MUMPS' estimate */
-typedef struct {
-  double entries;      /* of the factors, all ranks */
-  double all;          /* MB of all ranks */
-  double needed, disk; /* MB of one machine, the one that has least room for it; the same with factors on disk */
-  double room;         /* MB on that machine */
-} FactorCost;
-
 /* Order of the unknowns: the user's, else for LU on one rank METIS's; MUMPS chooses in the other cases */
 static PetscErrorCode AnalysisGetOrdering(Mat A, PetscBool symmetric, IS *row, IS *column)
 {
@@ -143,15 +135,15 @@ PetscBool ShiftInvertShows(void)
   return shown < INFINITY ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscErrorCode ShiftInvertAnalyse(const ShiftInvert *si, Mat A)
+PetscErrorCode ShiftInvertAnalyse(const ShiftInvert *si, Mat A, FactorCost *cost)
 {
   PC            pc;
   Mat           F;
-  FactorCost    cost;
   MatSolverType solver;
   PetscBool     is_mumps = PETSC_FALSE, symmetric;
 
   PetscFunctionBeginUser;
+  *cost = (FactorCost){0};
   PetscCall(KSPGetPC(si->ksp, &pc));
   PetscCall(PCFactorGetMatSolverType(pc, &solver));
   if (solver) PetscCall(PetscStrcmp(solver, MATSOLVERMUMPS, &is_mumps));
@@ -159,8 +151,8 @@ PetscErrorCode ShiftInvertAnalyse(const ShiftInvert *si, Mat A)
   PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCCHOLESKY, &symmetric));
   PetscCall(AnalysisRun(pc, A, symmetric));
   PetscCall(PCFactorGetMatrix(pc, &F));
-  PetscCall(AnalysisEstimate(si->comm, F, &cost));
-  PetscCall(AnalysisShow(si->comm, symmetric, &cost));
-  PetscCall(AnalysisCheck(si->comm, A, &cost));
+  PetscCall(AnalysisEstimate(si->comm, F, cost));
+  PetscCall(AnalysisShow(si->comm, symmetric, cost));
+  PetscCall(AnalysisCheck(si->comm, A, cost));
   PetscFunctionReturn(0);
 }

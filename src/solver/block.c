@@ -9,6 +9,7 @@
    is measured in every block; 1e-16 is usual.
 */
 #include "base/events.h"
+#include "lowrank.h"
 #include "shiftinvert.h"
 
 #define BLOCK_TRUST 1e-8 /* largest backward error; another column or another matrix leaves more than 1e-5 */
@@ -50,6 +51,7 @@ static PetscErrorCode BlockCheck(const ShiftInvert *si, PetscBool transposed, Ma
   PetscCall(MatDenseGetColumnVecRead(X, n - 1, &x));
   PetscCall(VecDuplicate(b, &r));
   PetscCall(transposed ? MatMultTranspose(A, x, r) : MatMult(A, x, r));
+  if (si->update) PetscCall(LowRankMultAdd(si->update, transposed, x, r));
   PetscCall(VecAXPY(r, -1, b));
   PetscCall(VecNorm(r, NORM_2, &residual));
   PetscCall(VecNorm(x, NORM_2, &size_x));
@@ -66,9 +68,10 @@ static PetscErrorCode BlockCheck(const ShiftInvert *si, PetscBool transposed, Ma
 }
 
 /* Column by column, for solvers other than a factorisation */
-static PetscErrorCode BlockApplyColumns(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X)
+static PetscErrorCode BlockApplyColumns(KSP ksp, PetscBool transposed, Mat B, Mat X)
 {
-  PetscInt n;
+  const ShiftInvert si = {.comm = PetscObjectComm((PetscObject)ksp), .ksp = ksp};
+  PetscInt          n;
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(B, NULL, &n));
@@ -77,7 +80,7 @@ static PetscErrorCode BlockApplyColumns(const ShiftInvert *si, PetscBool transpo
 
     PetscCall(MatDenseGetColumnVecRead(B, j, &b));
     PetscCall(MatDenseGetColumnVecWrite(X, j, &x));
-    PetscCall(ShiftInvertSolve(si, transposed, b, x));
+    PetscCall(ShiftInvertSolve(&si, transposed, b, x));
     PetscCall(MatDenseRestoreColumnVecWrite(X, j, &x));
     PetscCall(MatDenseRestoreColumnVecRead(B, j, &b));
   }
@@ -99,7 +102,7 @@ static PetscErrorCode BlockCount(Mat B)
 }
 
 /* All columns at once by the factors */
-static PetscErrorCode BlockApplyFactor(const ShiftInvert *si, Mat F, PetscBool transposed, Mat B, Mat X)
+static PetscErrorCode BlockApplyFactor(Mat F, PetscBool transposed, Mat B, Mat X)
 {
   Mat right, answer;
 
@@ -111,27 +114,42 @@ static PetscErrorCode BlockApplyFactor(const ShiftInvert *si, Mat F, PetscBool t
   if (answer != X) PetscCall(MatCopy(answer, X, SAME_NONZERO_PATTERN));
   PetscCall(MatDestroy(&right));
   PetscCall(MatDestroy(&answer));
-  PetscCall(BlockCheck(si, transposed, B, X));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X)
+/* X = A^-1 B by the solver of the matrix that is factored */
+static PetscErrorCode BlockSolve(KSP ksp, PetscBool transposed, Mat B, Mat X)
 {
   PetscBool direct, factored;
   Mat       F;
   PC        pc;
 
   PetscFunctionBeginUser;
-  PetscCall(KSPGetPC(si->ksp, &pc));
-  PetscCall(PetscObjectTypeCompare((PetscObject)si->ksp, KSPPREONLY, &direct));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PetscObjectTypeCompare((PetscObject)ksp, KSPPREONLY, &direct));
   PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, &factored, PCLU, PCCHOLESKY, ""));
-  PetscCall(EventBegin(EVENT_SOLVE));
   if (direct && factored) {
     PetscCall(PCFactorGetMatrix(pc, &F));
-    PetscCall(BlockApplyFactor(si, F, transposed, B, X));
+    PetscCall(BlockApplyFactor(F, transposed, B, X));
   } else {
-    PetscCall(BlockApplyColumns(si, transposed, B, X));
+    PetscCall(BlockApplyColumns(ksp, transposed, B, X));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertApplyFactors(void *ctx, Mat B, Mat X)
+{
+  PetscFunctionBeginUser;
+  PetscCall(BlockSolve((KSP)ctx, PETSC_FALSE, B, X));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X)
+{
+  PetscFunctionBeginUser;
+  PetscCall(EventBegin(EVENT_SOLVE));
+  PetscCall(si->update ? LowRankApply(si->update, transposed, B, X) : BlockSolve(si->ksp, transposed, B, X));
+  PetscCall(BlockCheck(si, transposed, B, X));
   PetscCall(EventEnd(EVENT_SOLVE));
   PetscFunctionReturn(0);
 }

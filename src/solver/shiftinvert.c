@@ -9,86 +9,13 @@
 */
 #include "shiftinvert.h"
 #include "base/events.h"
-#include <petscksp.h>
+#include "lowrank.h"
 
-/* K - s M, or K + s C + s^2 M with damping */
-static PetscErrorCode ShiftInvertMatrix(const PencilMatrices *pencil, PetscReal shift, Mat *A)
-{
-  PetscFunctionBeginUser;
-  PetscCall(MatDuplicate(pencil->K, MAT_COPY_VALUES, A));
-  if (pencil->C) {
-    PetscCall(MatAXPY(*A, shift, pencil->C, DIFFERENT_NONZERO_PATTERN));
-    PetscCall(MatAXPY(*A, shift * shift, pencil->M, DIFFERENT_NONZERO_PATTERN));
-  } else {
-    PetscCall(MatAXPY(*A, -shift, pencil->M, DIFFERENT_NONZERO_PATTERN));
-  }
-  PetscCall(MatSetOption(*A, MAT_SYMMETRIC, pencil->symmetric));
-  PetscFunctionReturn(0);
-}
-
-/* Raises the error for a failed factorisation; a singular matrix sets *singular instead */
-static PetscErrorCode ShiftInvertCheck(MPI_Comm comm, PC pc, PetscBool *singular)
-{
-  PCFailedReason reason;
-  MatSolverType  type;
-  PetscBool      is_mumps = PETSC_FALSE;
-  PetscInt       info = 0, extra = 0;
-  Mat            F;
-
-  PetscFunctionBeginUser;
-  *singular = PETSC_FALSE;
-  PetscCall(PCGetFailedReason(pc, &reason));
-  PetscCall(PCFactorGetMatSolverType(pc, &type));
-  if (type) PetscCall(PetscStrcmp(type, MATSOLVERMUMPS, &is_mumps));
-  if (is_mumps) {
-    PetscCall(PCFactorGetMatrix(pc, &F));
-    PetscCall(MatMumpsGetInfog(F, 1, &info));
-    PetscCall(MatMumpsGetInfog(F, 2, &extra));
-  }
-  /* not PETSC_ERR_MEM, for which the message would be another */
-  PetscCheck(info != -8 && info != -9 && info != -14 && info != -15 && info != -17 && info != -20, comm,
-             PETSC_ERR_NOT_CONVERGED,
-             "MUMPS' workspace is too small (INFOG(1) = %" PetscInt_FMT ", INFOG(2) = %" PetscInt_FMT
-             "): raise -st_mat_mumps_icntl_14 (percent of extra workspace) or -st_mat_mumps_icntl_23 (MB per rank)",
-             info, extra);
-  PetscCheck(info != -13 && info != -7 && info != -19 && info != -5, comm, PETSC_ERR_NOT_CONVERGED,
-             "MUMPS ran out of memory (INFOG(1) = %" PetscInt_FMT ", INFOG(2) = %" PetscInt_FMT
-             "): raise -st_mat_mumps_icntl_23 (MB per rank) if it limits, use more ranks or a coarser mesh",
-             info, extra);
-  if (info == -10 || info == -6 || reason == PC_FACTOR_NUMERIC_ZEROPIVOT || reason == PC_FACTOR_STRUCT_ZEROPIVOT)
-    *singular = PETSC_TRUE;
-  PetscCheck(*singular || !reason, comm, PETSC_ERR_NOT_CONVERGED,
-             "factorisation failed (MUMPS INFOG(1) = %" PetscInt_FMT ")", info);
-  PetscFunctionReturn(0);
-}
-
-/* Solver with MUMPS as default */
-static PetscErrorCode ShiftInvertCreateSolver(MPI_Comm comm, Mat A, PetscBool symmetric, PetscBool want_inertia,
-                                              KSP *ksp)
-{
-  PC  pc;
-  Mat F;
-
-  PetscFunctionBeginUser;
-  PetscCall(KSPCreate(comm, ksp));
-  PetscCall(KSPSetOptionsPrefix(*ksp, "st_"));
-  PetscCall(KSPSetOperators(*ksp, A, A));
-  PetscCall(KSPSetType(*ksp, KSPPREONLY));
-  PetscCall(KSPGetPC(*ksp, &pc));
-  PetscCall(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  PetscCall(KSPSetFromOptions(*ksp));
-  if (want_inertia) {
-    PetscCall(PCFactorSetUpMatSolverType(pc));
-    PetscCall(PCFactorGetMatrix(pc, &F));
-    PetscCall(MatMumpsSetIcntl(F, 13, 1)); /* MUMPS counts negative pivots of the root only without ScaLAPACK */
-    PetscCall(MatMumpsSetIcntl(F, 24, 1)); /* null pivots are counted, INFOG(28), instead of an error */
-  }
-  PetscFunctionReturn(0);
-}
+#define UPDATE_STIFF 1e2  /* k_n mu of a pair beside the (geometric) mean of the bodies' stiffnesses: LU from here on */
+#define UPDATE_SHARE 0.75 /* of the entries of LDL': vectors of an update that take no more are kept */
 
 /* Raises the error for what no shift makes regular */
-static PetscErrorCode ShiftInvertRegular(MPI_Comm comm, int regular, PetscReal shift)
+static PetscErrorCode ShiftInvertRegular(MPI_Comm comm, PetscBool regular, PetscReal shift)
 {
   PetscFunctionBeginUser;
   PetscCheck(
@@ -98,33 +25,125 @@ static PetscErrorCode ShiftInvertRegular(MPI_Comm comm, int regular, PetscReal s
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, PetscReal shift, PetscBool want_inertia,
-                                 Progress *progress, ShiftInvert *si)
+/* Whether the pairs are so stiff beside the bodies that an update would lose digits: it gets the gap of a pair as the
+   difference of two displacements, and its force as k_n times that */
+static PetscErrorCode UpdateIsStiff(const PencilMatrices *pencil, PetscBool *stiff)
 {
-  PetscBool singular = PETSC_TRUE;
-  Mat       A;
-  PC        pc;
+  PetscReal   left, right;
+  PetscScalar sum;
+  PetscInt    p, n;
+  Vec         diagonal;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatNorm(pencil->left, NORM_FROBENIUS, &left));
+  PetscCall(MatNorm(pencil->right, NORM_FROBENIUS, &right));
+  PetscCall(MatGetSize(pencil->left, &p, &n));
+  PetscCall(MatCreateVecs(pencil->K_even, &diagonal, NULL));
+  PetscCall(MatGetDiagonal(pencil->K_even, diagonal));
+  PetscCall(VecAbs(diagonal));
+  PetscCall(VecShift(diagonal, PETSC_MACHINE_EPSILON * left * right));
+  PetscCall(VecLog(diagonal));
+  PetscCall(VecSum(diagonal, &sum));
+  PetscCall(VecDestroy(&diagonal));
+  *stiff = left * right / p > UPDATE_STIFF * PetscExpReal(PetscRealPart(sum) / n) ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Whether friction is to be put on factors of the symmetric part by an update (lowrank.h), and whether its vectors, one
+   a pair, are kept. LU has twice the entries of LDL'; where the vectors would make more than that and LU does not fit,
+   they are not kept. */
+static PetscErrorCode ShiftInvertChoose(const PencilMatrices *pencil, ShiftInvert *si, PetscBool *store)
+{
+  PetscInt  n, p;
+  PetscBool keeps, stiff;
+
+  PetscFunctionBeginUser;
+  *store   = PETSC_FALSE;
+  si->even = !pencil->C && (pencil->symmetric || pencil->left) ? PETSC_TRUE : PETSC_FALSE;
+  if (!si->even || pencil->symmetric) PetscFunctionReturn(0);
+  PetscCall(UpdateIsStiff(pencil, &stiff));
+  if (stiff && !pencil->prefers_even) {
+    si->even = PETSC_FALSE;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(ShiftInvertKeepsPattern(si, pencil, &keeps));
+  if (!keeps) PetscCall(ShiftInvertPrepare(pencil, si));
+  PetscCall(MatGetSize(pencil->left, &p, &n));
+  *store = (double)n * (double)p <= UPDATE_SHARE * si->cost.entries ? PETSC_TRUE : PETSC_FALSE;
+  if (!pencil->prefers_even && !*store && 2 * si->cost.needed <= si->cost.room) si->even = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode UpdateDestroy(ShiftInvert *si)
+{
+  PetscFunctionBeginUser;
+  if (si->update) PetscCall(LowRankDestroy(si->update));
+  PetscCall(PetscFree(si->update));
+  PetscFunctionReturn(0);
+}
+
+/* Friction on the factors of the symmetric part */
+static PetscErrorCode UpdateCreate(const PencilMatrices *pencil, PetscBool store, ShiftInvert *si, PetscBool *singular)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, &si->update));
+  si->update->solve = ShiftInvertApplyFactors;
+  si->update->ctx   = si->ksp;
+  PetscCall(LowRankSetUp(pencil->left, pencil->right, store, si->update, singular));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertMove(const PencilMatrices *pencil, PetscReal shift, ShiftInvert *si)
+{
+  PetscBool singular = PETSC_TRUE, store, stands;
 
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_FACTOR));
-  si->progress = progress;
-  si->after    = NULL;
-  si->shift    = shift;
   PetscCall(PetscObjectGetComm((PetscObject)pencil->K, &si->comm));
+  PetscCall(UpdateDestroy(si));
+  PetscCall(ShiftInvertChoose(pencil, si, &store));
+  PetscCall(ShiftInvertStands(pencil, shift, si, &stands));
+  si->shift = shift;
   for (int attempt = 0; attempt < 4 && singular; attempt++, si->shift *= singular ? 1 + 1e-4 * attempt : 1) {
-    PetscCall(ShiftInvertMatrix(pencil, si->shift, &A));
-    PetscCall(
-      ShiftInvertCreateSolver(si->comm, A, pencil->symmetric && !(pencil->C && !want_inertia), want_inertia, &si->ksp));
-    PetscCall(ShiftInvertAnalyse(si, A));
-    PetscCall(KSPSetUp(si->ksp));
-    PetscCall(KSPGetPC(si->ksp, &pc));
-    PetscCall(ShiftInvertCheck(si->comm, pc, &singular));
-    if (!singular) PetscCall(MatNorm(A, NORM_FROBENIUS, &si->size));
-    PetscCall(MatDestroy(&A));
-    if (singular) PetscCall(KSPDestroy(&si->ksp));
+    singular = PETSC_FALSE;
+    if (!stands) PetscCall(ShiftInvertFactor(pencil, si, &singular));
+    if (!singular && si->even && !pencil->symmetric) PetscCall(UpdateCreate(pencil, store, si, &singular));
+    if (singular) PetscCall(UpdateDestroy(si));
+    stands = PETSC_FALSE;
   }
-  PetscCall(ShiftInvertRegular(si->comm, !singular, shift));
+  PetscCall(ShiftInvertRegular(si->comm, singular ? PETSC_FALSE : PETSC_TRUE, shift));
   PetscCall(EventEnd(EVENT_FACTOR));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, PetscReal shift, PetscBool inertia, Progress *progress,
+                                 ShiftInvert *si)
+{
+  PetscFunctionBeginUser;
+  *si = (ShiftInvert){.progress = progress, .inertia = inertia};
+  PetscCall(ShiftInvertMove(pencil, shift, si));
+  PetscFunctionReturn(0);
+}
+
+/* x = A^-1 b by the update, for a block of one */
+static PetscErrorCode UpdateSolve(const ShiftInvert *si, PetscBool transposed, Vec b, Vec x)
+{
+  PetscInt     n_local, n;
+  PetscScalar *in, *out;
+  Mat          B, X;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(b, &n_local));
+  PetscCall(VecGetSize(b, &n));
+  PetscCall(VecGetArrayRead(b, (const PetscScalar **)&in));
+  PetscCall(VecGetArrayWrite(x, &out));
+  PetscCall(MatCreateDense(si->comm, n_local, PETSC_DECIDE, n, 1, in, &B));
+  PetscCall(MatCreateDense(si->comm, n_local, PETSC_DECIDE, n, 1, out, &X));
+  PetscCall(LowRankApply(si->update, transposed, B, X));
+  PetscCall(MatDestroy(&B));
+  PetscCall(MatDestroy(&X));
+  PetscCall(VecRestoreArrayWrite(x, &out));
+  PetscCall(VecRestoreArrayRead(b, (const PetscScalar **)&in));
   PetscFunctionReturn(0);
 }
 
@@ -133,6 +152,10 @@ PetscErrorCode ShiftInvertSolve(const ShiftInvert *si, PetscBool transposed, Vec
   KSPConvergedReason reason;
 
   PetscFunctionBeginUser;
+  if (si->update) {
+    PetscCall(UpdateSolve(si, transposed, b, x));
+    PetscFunctionReturn(0);
+  }
   PetscCall(transposed ? KSPSolveTranspose(si->ksp, b, x) : KSPSolve(si->ksp, b, x));
   PetscCall(KSPGetConvergedReason(si->ksp, &reason));
   PetscCheck(reason >= 0, si->comm, PETSC_ERR_NOT_CONVERGED,
@@ -210,7 +233,7 @@ PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal away, Progress *progress, PetscReal *omega,
+PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal away, ShiftInvert *si, PetscReal *omega,
                                      PetscInt *n)
 {
   PetscInt n_null = 1;
@@ -218,25 +241,30 @@ PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal awa
   PetscFunctionBeginUser;
   *n = 0;
   if (*omega <= 0) PetscFunctionReturn(0);
+  si->inertia = PETSC_TRUE;
   for (int attempt = 0; attempt < 4 && n_null; attempt++) {
-    ShiftInvert si;
-    PC          pc;
-    Mat         F;
+    PetscBool stands;
+    PC        pc;
+    Mat       F;
 
     *omega *= 1 + attempt * away;
-    PetscCall(ShiftInvertCreate(pencil, *omega * *omega, PETSC_TRUE, progress, &si));
-    PetscCall(KSPGetPC(si.ksp, &pc));
+    PetscCall(ShiftInvertStands(pencil, *omega * *omega, si, &stands));
+    si->counts = PETSC_TRUE;
+    if (!stands) PetscCall(ShiftInvertMove(pencil, *omega * *omega, si));
+    si->counts = PETSC_FALSE;
+    PetscCall(KSPGetPC(si->ksp, &pc));
     PetscCall(PCFactorGetMatrix(pc, &F));
     PetscCall(MatGetInertia(F, n, &n_null, NULL));
-    PetscCall(ShiftInvertDestroy(&si));
   }
-  PetscCall(ShiftInvertRegular(PetscObjectComm((PetscObject)pencil->K), !n_null, *omega * *omega));
+  PetscCall(ShiftInvertRegular(si->comm, n_null ? PETSC_FALSE : PETSC_TRUE, *omega * *omega));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ShiftInvertDestroy(ShiftInvert *si)
 {
   PetscFunctionBeginUser;
+  PetscCall(UpdateDestroy(si));
   PetscCall(KSPDestroy(&si->ksp));
+  for (int i = 0; i < 3; i++) PetscCall(MatDestroy(&si->term[i]));
   PetscFunctionReturn(0);
 }

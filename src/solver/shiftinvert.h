@@ -5,14 +5,31 @@
 #include <squeal/pencil.h>
 #include <slepcst.h>
 
+/* Cost of factors by MUMPS' estimate */
+typedef struct {
+  double entries;      /* of the factors, all ranks */
+  double all;          /* MB of all ranks */
+  double needed, disk; /* MB of one machine, the one that has least room for it; the same with factors on disk */
+  double room;         /* MB on that machine */
+} FactorCost;
+
+struct LowRank; /* lowrank.h */
+
 /* Factorisation of K - s M (undamped) or K + s C + s^2 M (damped), shared by right and left vectors and by inertia
    counts */
-typedef struct {
+typedef struct ShiftInvert {
   MPI_Comm  comm;
   KSP       ksp;
-  PetscReal shift; /* kappa (rad/s)^2 when undamped, lambda (rad/s) when damped */
-  PetscReal size;  /* |A|_F of the matrix */
-  Progress *progress;
+  PetscReal shift;           /* kappa (rad/s)^2 when undamped, lambda (rad/s) when damped */
+  PetscReal size;            /* |A|_F of the matrix that is factored */
+  PetscBool inertia, counts; /* negative pivots can be counted; they are being, so that null pivots are no error */
+  PetscBool factored;        /* there are factors, not the analysis alone */
+  PetscBool even;            /* the matrix that is factored is symmetric: LDL' */
+  Mat       term[3];         /* K, C, M of it */
+  PetscObjectState pattern[3], values[3]; /* of those */
+  FactorCost       cost;                  /* of its factors */
+  struct LowRank  *update;                /* friction beside that matrix; NULL for none */
+  Progress        *progress;
   /* called after every solve of an eigensolver, alike on all ranks; NULL for nothing. An error ends the solution */
   PetscErrorCode (*after)(void *ctx);
   void *after_ctx;
@@ -22,23 +39,38 @@ typedef struct {
    pivots */
 PETSC_INTERN PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, PetscReal shift, PetscBool want_inertia,
                                               Progress *progress, ShiftInvert *si);
+/* Another shift, or other values of the pencil, for an si that was created or is all zeros but for its progress: where
+   the pattern is the same the analysis serves again */
+PETSC_INTERN PetscErrorCode ShiftInvertMove(const PencilMatrices *pencil, PetscReal shift, ShiftInvert *si);
 PETSC_INTERN PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st);
 PETSC_INTERN PetscErrorCode ShiftInvertDestroy(ShiftInvert *si);
 /* x = A^-1 b, or A^-T b. PETSC_ERR_NOT_CONVERGED where an iterative solver of the user's did not converge */
 PETSC_INTERN PetscErrorCode ShiftInvertSolve(const ShiftInvert *si, PetscBool transposed, Vec b, Vec x);
 /* analysis.c - symbolic analysis of A, which the factorisation then finds done; with MUMPS only.
    PETSC_ERR_USER_INPUT where the machine has not the memory for the factors by MUMPS' estimate */
-PETSC_INTERN PetscErrorCode ShiftInvertAnalyse(const ShiftInvert *si, Mat A);
+PETSC_INTERN PetscErrorCode ShiftInvertAnalyse(const ShiftInvert *si, Mat A, FactorCost *cost);
+/* factor.c - the matrix at si->shift with its analysis; and its factors: singular where it has none, with null pivots
+   unless they are counted */
+PETSC_INTERN PetscErrorCode ShiftInvertPrepare(const PencilMatrices *pencil, ShiftInvert *si);
+/* Whether what is to be factored has the pattern of what was, so that the analysis serves again */
+PETSC_INTERN PetscErrorCode ShiftInvertKeepsPattern(const ShiftInvert *si, const PencilMatrices *pencil,
+                                                    PetscBool *keeps);
+/* Whether the factors are those of the symmetric part at this shift already, friction put on them or not */
+PETSC_INTERN PetscErrorCode ShiftInvertStands(const PencilMatrices *pencil, PetscReal shift, const ShiftInvert *si,
+                                              PetscBool *stands);
+PETSC_INTERN PetscErrorCode ShiftInvertFactor(const PencilMatrices *pencil, ShiftInvert *si, PetscBool *singular);
 /* Whether the estimate is shown on stdout before factorisations, not by default */
 PETSC_INTERN void      ShiftInvertShow(PetscBool show);
 PETSC_INTERN PetscBool ShiftInvertShows(void);
 /* block.c - X = A^-1 B, or A^-T B, for dense B, X of the same size and any leading dimension: many right-hand sides at
    once. PETSC_ERR_LIB where the last column does not solve its system: a library behaves otherwise than assumed */
 PETSC_INTERN PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X);
+/* The same by the factors of the symmetric matrix alone; ctx is the KSP */
+PETSC_INTERN PetscErrorCode ShiftInvertApplyFactors(void *ctx, Mat B, Mat X);
 /* Frictionless modes with frequency below *omega (rad/s) by Sylvester's law of inertia; symmetric undamped pencil. A null
    pivot is an eigenvalue at *omega itself, which has no sign: *omega is then moved by its part `away` (of either sign).
    PETSC_ERR_MAT_LU_ZRPVT where null pivots stay. */
-PETSC_INTERN PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal away, Progress *progress,
+PETSC_INTERN PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal away, ShiftInvert *si,
                                                   PetscReal *omega, PetscInt *n);
 
 /* readoptions.c - reads the options eps_, pep_ (eigensolvers), st_ (factorisations), and of st_ksp_ those of iterative

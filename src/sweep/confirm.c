@@ -63,7 +63,7 @@ static PetscErrorCode OnsetCorrect(Sweep sweep, const Correction *correction, co
 static PetscErrorCode OnsetConverge(Sweep sweep, const BranchLine *line, PetscReal p[], BranchEvent *event,
                                     ReducedModes *critical, PetscReal *change)
 {
-  Correction    correction;
+  Correction    correction = {0};
   ReducedWindow near;
 
   PetscFunctionBeginUser;

@@ -2,9 +2,13 @@
    Unit test of solver/block.c: solves in blocks with dense matrices whose columns lie apart in memory (leading dimension
    above the local rows), as newer SLEPc hands them out, and the products with such matrices that the sweep relies on.
 
+   Then solver/lowrank.c: friction as an update of the factors of the symmetric part, with its vectors kept (2 pairs) and
+   not (9 pairs), at two shifts with one analysis.
+
    Reference: X is chosen at random, B = A X made column by column with MatMult() or MatMultTranspose().
 */
 #include "check.h"
+#include "solver/lowrank.h"
 #include "solver/ordering.h"
 #include "solver/shiftinvert.h"
 
@@ -206,6 +210,101 @@ static PetscErrorCode TestProducts(int *failed)
   PetscFunctionReturn(0);
 }
 
+/* p pairs: K = K_even + left' right, entries at random in rows that are spread over all unknowns */
+static PetscErrorCode AddPairs(PetscInt p, PencilMatrices *pencil)
+{
+  Mat         LR;
+  PetscRandom random;
+
+  PetscFunctionBeginUser;
+  pencil->K_even    = pencil->K;
+  pencil->symmetric = PETSC_FALSE;
+  PetscCall(PetscRandomCreate(PETSC_COMM_SELF, &random));
+  for (int side = 0; side < 2; side++) {
+    Mat     *S = side ? &pencil->right : &pencil->left;
+    PetscInt first, last, columns;
+
+    PetscCall(MatGetLocalSize(pencil->K, NULL, &columns));
+    PetscCall(MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, columns, p, N, 3, NULL, 3, NULL, S));
+    PetscCall(MatGetOwnershipRange(*S, &first, &last));
+    for (PetscInt i = 0; i < p; i++)
+      for (PetscInt k = 0; k < 3; k++) {
+        PetscReal value;
+
+        PetscCall(PetscRandomGetValueReal(random, &value));
+        if (i >= first && i < last)
+          PetscCall(MatSetValue(*S, i, (37 * i + 61 * k + 7 * side) % N, value, INSERT_VALUES));
+      }
+    PetscCall(MatAssemblyBegin(*S, MAT_FINAL_ASSEMBLY));
+    PetscCall(MatAssemblyEnd(*S, MAT_FINAL_ASSEMBLY));
+  }
+  PetscCall(PetscRandomDestroy(&random));
+  PetscCall(MatTransposeMatMult(pencil->left, pencil->right, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &LR));
+  PetscCall(MatDuplicate(pencil->K_even, MAT_COPY_VALUES, &pencil->K));
+  PetscCall(MatAXPY(pencil->K, 1, LR, DIFFERENT_NONZERO_PATTERN));
+  PetscCall(MatDestroy(&LR));
+  PetscFunctionReturn(0);
+}
+
+/* Largest error of a solution in a block, and of its first column by itself, with K - shift M */
+static PetscErrorCode CheckUpdate(const PencilMatrices *pencil, const ShiftInvert *si, PetscReal shift, int *failed)
+{
+  PetscScalar *memory[3];
+  PetscReal    worst;
+  Mat          A, B, X, Y;
+  Vec          b, x, y;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatDuplicate(pencil->K, MAT_COPY_VALUES, &A));
+  PetscCall(MatAXPY(A, -shift, pencil->M, DIFFERENT_NONZERO_PATTERN));
+  PetscCall(MakeDense(A, 2, &memory[0], &X));
+  PetscCall(MakeDense(A, 3, &memory[1], &B));
+  PetscCall(MakeDense(A, 5, &memory[2], &Y));
+  PetscCall(MatSetRandom(X, NULL));
+  for (int transposed = 0; transposed < 2; transposed++) {
+    PetscCall(Multiply(A, (PetscBool)transposed, X, B));
+    PetscCall(ShiftInvertApplyBlock(si, (PetscBool)transposed, B, Y));
+    PetscCall(Difference(X, Y, &worst));
+    *failed += CheckClose(transposed ? "transposed, block" : "block", worst, 0, 1e-12);
+    PetscCall(MatDenseGetColumnVecRead(B, 0, &b));
+    PetscCall(MatDenseGetColumnVecRead(X, 0, &x));
+    PetscCall(VecDuplicate(b, &y));
+    PetscCall(ShiftInvertSolve(si, (PetscBool)transposed, b, y));
+    PetscCall(VecAXPY(y, -1, x));
+    PetscCall(VecNorm(y, NORM_INFINITY, &worst));
+    *failed += CheckClose(transposed ? "transposed, alone" : "alone", worst, 0, 1e-12);
+    PetscCall(VecDestroy(&y));
+    PetscCall(MatDenseRestoreColumnVecRead(X, 0, &x));
+    PetscCall(MatDenseRestoreColumnVecRead(B, 0, &b));
+  }
+  for (int i = 0; i < 4; i++) PetscCall(MatDestroy((Mat *[]){&A, &B, &X, &Y}[i]));
+  for (int i = 0; i < 3; i++) PetscCall(PetscFree(memory[i]));
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: the update is that of another shift or of other pairs; the transposed solution takes the wrong factor */
+static PetscErrorCode TestUpdate(PetscInt p, PetscBool kept, int *failed)
+{
+  PencilMatrices pencil;
+  ShiftInvert    si;
+  Progress       progress = {0};
+
+  PetscFunctionBeginUser;
+  printf("     update for %d pairs\n", (int)p);
+  PetscCall(MakePencil(PETSC_TRUE, &pencil));
+  PetscCall(AddPairs(p, &pencil));
+  pencil.prefers_even = PETSC_TRUE;
+  PetscCall(ShiftInvertCreate(&pencil, 0, PETSC_FALSE, &progress, &si));
+  *failed += CheckTrue("its vectors are kept", si.update && (si.update->Y != NULL) == kept, kept);
+  PetscCall(CheckUpdate(&pencil, &si, 0, failed));
+  PetscCall(ShiftInvertMove(&pencil, 0.7, &si));
+  PetscCall(CheckUpdate(&pencil, &si, 0.7, failed));
+  PetscCall(ShiftInvertDestroy(&si));
+  for (int i = 0; i < 5; i++)
+    PetscCall(MatDestroy((Mat *[]){&pencil.K, &pencil.K_even, &pencil.M, &pencil.left, &pencil.right}[i]));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
   static const PetscInt apart[4][2] = {
@@ -224,6 +323,8 @@ int main(int argc, char **argv)
     PetscCall(TestSolve(PETSC_FALSE, PETSC_FALSE, apart[i], &failed));
     PetscCall(TestSolve(PETSC_FALSE, PETSC_TRUE, apart[i], &failed));
   }
+  PetscCall(TestUpdate(2, PETSC_TRUE, &failed));
+  PetscCall(TestUpdate(9, PETSC_FALSE, &failed));
   PetscCall(TestTrust(&failed));
   PetscCall(TestProducts(&failed));
   PetscCall(PetscFinalize());

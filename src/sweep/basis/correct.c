@@ -24,9 +24,11 @@ PetscErrorCode CorrectionCreate(Pencil pencil, const PetscReal p[], const Reduce
 
   PetscFunctionBeginUser;
   PetscCall(CorrectionMove(pencil, p, c));
-  undamped   = c->matrices;
-  undamped.C = NULL;
-  PetscCall(ShiftInvertCreate(&undamped, window->high * window->high, PETSC_FALSE, progress, &c->factor));
+  undamped           = c->matrices;
+  undamped.C         = NULL;
+  c->factor.progress = progress;
+  c->factor.inertia  = PETSC_TRUE;
+  PetscCall(ShiftInvertMove(&undamped, window->high * window->high, &c->factor));
   PetscFunctionReturn(0);
 }
 
@@ -131,8 +133,38 @@ PetscErrorCode CorrectionApplySides(const Correction *c, const ReducedModes *mod
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CorrectionCount(const Basis *basis, const PetscReal p[], const ReducedWindow *window, Progress *progress,
-                               PetscInt *full, PetscInt *by_basis)
+/* Relative error of the entry of `before` that is nearest to lambda; infinite where there is none */
+static PetscReal ErrorBefore(const ReducedModes *before, PetscComplex lambda)
+{
+  PetscReal nearest = PETSC_MAX_REAL, error = PETSC_MAX_REAL;
+
+  for (PetscInt i = 0; i < before->n; i++) {
+    const PetscReal distance = cabs(before->lambda[i] - lambda);
+
+    if (distance >= nearest) continue;
+    nearest = distance;
+    error   = before->rigid[i] ? 0 : (before->error[i] - before->noise[i]) / cabs(before->lambda[i]);
+  }
+  return error;
+}
+
+PetscErrorCode CorrectionDropSettled(const ReducedModes *before, PetscReal tolerance, ReducedModes *modes)
+{
+  ReducedModes all = *modes;
+  PetscInt    *kept, n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(all.n, &kept));
+  for (PetscInt i = 0; i < all.n; i++)
+    if (ErrorBefore(before, all.lambda[i]) > tolerance) kept[n++] = i;
+  PetscCall(ReducedModesSelect(&all, n, kept, modes));
+  PetscCall(ReducedModesDestroy(&all));
+  PetscCall(PetscFree(kept));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CorrectionCount(const Basis *basis, const PetscReal p[], const ReducedWindow *window,
+                               ShiftInvert *counter, PetscInt *full, PetscInt *by_basis)
 {
   const Reduced *reduced = &basis->reduced;
   ReducedWindow  w       = {window->low < 0.5 * window->high ? 0 : window->low, window->high, PETSC_MAX_REAL};
@@ -148,8 +180,8 @@ PetscErrorCode CorrectionCount(const Basis *basis, const PetscReal p[], const Re
   PetscCall(PetscMalloc1(reduced->n_parameters, &p0));
   PetscCall(PetscArraycpy(p0, p, reduced->n_parameters));
   if (frictionless.symmetric && ReducedFrictionless(reduced, p0)) {
-    PetscCall(ShiftInvertCountBelow(&frictionless, -COUNT_AWAY, progress, &w.low, &below));
-    PetscCall(ShiftInvertCountBelow(&frictionless, COUNT_AWAY, progress, &w.high, full));
+    PetscCall(ShiftInvertCountBelow(&frictionless, -COUNT_AWAY, counter, &w.low, &below));
+    PetscCall(ShiftInvertCountBelow(&frictionless, COUNT_AWAY, counter, &w.high, full));
     PetscCall(ReducedSolve(reduced, p0, &w, &modes));
     *full -= below;
     *by_basis = modes.n;

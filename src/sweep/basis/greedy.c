@@ -34,6 +34,7 @@ typedef struct {
   CorrectionSides  sides;
   PetscInt         first; /* sample from which on distances are measured */
   Correction       correction;
+  ShiftInvert      counter;             /* where the factors of the correction do not serve */
   PetscBool        has_factor, is_near; /* is_near: the factors are those of the point */
 } GreedyWork;
 
@@ -78,37 +79,6 @@ static PetscErrorCode SampleKrylov(GreedyWork *run, const PetscReal p[], PetscRe
   PetscFunctionReturn(0);
 }
 
-/* Relative error of the entry of `before` that is nearest to lambda; infinite where there is none */
-static PetscReal ErrorBefore(const ReducedModes *before, PetscComplex lambda)
-{
-  PetscReal nearest = PETSC_MAX_REAL, error = PETSC_MAX_REAL;
-
-  for (PetscInt i = 0; i < before->n; i++) {
-    const PetscReal distance = cabs(before->lambda[i] - lambda);
-
-    if (distance >= nearest) continue;
-    nearest = distance;
-    error   = before->rigid[i] ? 0 : (before->error[i] - before->noise[i]) / cabs(before->lambda[i]);
-  }
-  return error;
-}
-
-/* Leaves out the modes that the step before has settled */
-static PetscErrorCode ModesDropSettled(const ReducedModes *before, PetscReal tolerance, ReducedModes *modes)
-{
-  ReducedModes all = *modes;
-  PetscInt    *kept, n = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(all.n, &kept));
-  for (PetscInt i = 0; i < all.n; i++)
-    if (ErrorBefore(before, all.lambda[i]) > tolerance) kept[n++] = i;
-  PetscCall(ReducedModesSelect(&all, n, kept, modes));
-  PetscCall(ReducedModesDestroy(&all));
-  PetscCall(PetscFree(kept));
-  PetscFunctionReturn(0);
-}
-
 /* One step of corrections at p of the modes that the step before (modes, empty at first) has not settled; worst = what
    they tell about the model before */
 static PetscErrorCode StepApply(GreedyWork *run, const PetscReal p[], ReducedModes *modes, PetscInt *n_added,
@@ -119,7 +89,7 @@ static PetscErrorCode StepApply(GreedyWork *run, const PetscReal p[], ReducedMod
   PetscFunctionBeginUser;
   PetscCall(ReducedSolve(&run->basis->reduced, p, &run->guarded, modes));
   PetscCall(ReducedModesBroadcast(run->basis->comm, 0, modes)); /* control flow must be alike on all ranks */
-  PetscCall(ModesDropSettled(&before, SETTLED * run->greedy->rtol, modes));
+  PetscCall(CorrectionDropSettled(&before, SETTLED * run->greedy->rtol, modes));
   PetscCall(ReducedModesDestroy(&before));
   PetscCall(CorrectionApplySides(&run->correction, modes, run->sides, run->drop, run->basis, n_added));
   PetscCall(ReducedEstimate(&run->basis->reduced, p, modes));
@@ -131,10 +101,13 @@ static PetscErrorCode StepApply(GreedyWork *run, const PetscReal p[], ReducedMod
 /* Whether the basis has as many frictionless modes at p as the full problem */
 static PetscErrorCode SampleCount(GreedyWork *run, const PetscReal p[], PetscBool *complete)
 {
-  PetscInt full, by_basis;
+  PetscInt     full, by_basis;
+  ShiftInvert *counter = run->is_near && run->greedy->window.low < 0.5 * run->greedy->window.high
+                           ? &run->correction.factor
+                           : &run->counter; /* the factors at the upper end are those of the count there */
 
   PetscFunctionBeginUser;
-  PetscCall(CorrectionCount(run->basis, p, &run->greedy->window, run->greedy->progress, &full, &by_basis));
+  PetscCall(CorrectionCount(run->basis, p, &run->greedy->window, counter, &full, &by_basis));
   PetscCallMPI(MPI_Bcast(&by_basis, 1, MPIU_INT, 0, run->basis->comm));
   *complete = full == by_basis ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
@@ -144,8 +117,7 @@ static PetscErrorCode SampleCount(GreedyWork *run, const PetscReal p[], PetscBoo
 static PetscErrorCode FactorMake(GreedyWork *run, const PetscReal p[])
 {
   PetscFunctionBeginUser;
-  if (run->has_factor) PetscCall(ShiftInvertDestroy(&run->correction.factor));
-  PetscCall(CorrectionCreate(run->basis->pencil, p, &run->guarded, run->greedy->progress, &run->correction));
+  PetscCall(CorrectionCreate(run->basis->pencil, p, &run->greedy->window, run->greedy->progress, &run->correction));
   run->has_factor = run->is_near = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
@@ -305,6 +277,15 @@ static PetscErrorCode PointsLook(GreedyWork *run)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode GreedyWorkDestroy(GreedyWork *run)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ShiftInvertDestroy(&run->correction.factor));
+  PetscCall(ShiftInvertDestroy(&run->counter));
+  PetscCall(PetscFree2(run->estimate, run->scale));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], Basis *basis)
 {
   const PetscReal low = greedy->window.low, high = greedy->window.high;
@@ -312,9 +293,10 @@ PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], B
   PetscInt        n_parameters = basis->reduced.n_parameters, next = 0;
 
   PetscFunctionBeginUser;
-  run.drop         = GREEDY_DROP * PetscSqrtReal(greedy->rtol);
-  run.guarded.low  = low < 0.5 * high ? 0 : low * (1 - GUARD);
-  run.guarded.high = high * (1 + GUARD);
+  run.counter.progress = greedy->progress;
+  run.drop             = GREEDY_DROP * PetscSqrtReal(greedy->rtol);
+  run.guarded.low      = low < 0.5 * high ? 0 : low * (1 - GUARD);
+  run.guarded.high     = high * (1 + GUARD);
   PetscCall(PetscMalloc2(n, &run.estimate, n_parameters, &run.scale));
   PetscCall(PointsScale(basis->pencil, n, points, run.scale));
   if (greedy->n_samples) PetscCall(PointNext(&run, &next));
@@ -332,8 +314,7 @@ PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], B
     if (greedy->keep) PetscCall(greedy->keep(greedy->keep_ctx));
     PetscCall(PointNext(&run, &next));
   }
-  if (run.has_factor) PetscCall(ShiftInvertDestroy(&run.correction.factor));
-  PetscCall(PetscFree2(run.estimate, run.scale));
+  PetscCall(GreedyWorkDestroy(&run));
   PetscCheck(next < 0, basis->comm, PETSC_ERR_NOT_CONVERGED,
              "-sweep_rtol %.6g was not reached with %" PetscInt_FMT
              " full solutions, the estimate at the last one was %.2g; raise -sweep_max_samples or narrow the range",

@@ -1,0 +1,103 @@
+/*
+   The unsymmetric stiffness of closed pairs as a product of two matrices with a row for each pair,
+
+      sum_t c_t(p) L_t' R_t = L' R,   L = [c_1 L_1; c_2 L_2; ...],   R = [R_1; R_2; ...]
+
+   so that what is symmetric can be factored by itself (solver/lowrank.h). A row of L is the tangential displacement of
+   a pair (dimensionless), a row of R minus its normal displacement times the penalty per pair or the area; c_t holds
+   k_n mu.
+*/
+#include "terms.h"
+
+/* Whether a term takes part: unsymmetric stiffness with a coefficient */
+static PetscBool TakesPart(const OperatorsTerm *term, const PetscReal p[])
+{
+  return term->kind == OPERATORS_STIFFNESS && term->frictional && OperatorsTermCoefficient(term, p) != 0 ? PETSC_TRUE
+                                                                                                         : PETSC_FALSE;
+}
+
+/* Puts the local rows of A times c into B from its row `first` on */
+static PetscErrorCode RowsCopy(PetscReal c, Mat A, PetscInt first, Mat B)
+{
+  PetscInt begin, end;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetOwnershipRange(A, &begin, &end));
+  for (PetscInt i = begin; i < end; i++, first++) {
+    const PetscInt    *columns;
+    const PetscScalar *values;
+    PetscInt           n;
+
+    PetscCall(MatGetRow(A, i, &n, &columns, &values));
+    for (PetscInt k = 0; k < n; k++) PetscCall(MatSetValue(B, first, columns[k], c * values[k], INSERT_VALUES));
+    PetscCall(MatRestoreRow(A, i, &n, &columns, &values));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Length of the longest local row */
+static PetscErrorCode RowsLongest(Mat A, PetscInt *longest)
+{
+  PetscInt begin, end;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetOwnershipRange(A, &begin, &end));
+  for (PetscInt i = begin; i < end; i++) {
+    PetscInt n;
+
+    PetscCall(MatGetRow(A, i, &n, NULL, NULL));
+    *longest = PetscMax(*longest, n);
+    PetscCall(MatRestoreRow(A, i, &n, NULL, NULL));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* All left factors times their coefficients, or all right factors, below one another */
+static PetscErrorCode FactorsStack(const Terms *terms, const PetscReal p[], PetscBool right, Mat *S)
+{
+  PetscInt n_rows = 0, n, n_columns = 0, longest = 0, first;
+  MPI_Comm comm = MPI_COMM_NULL;
+
+  PetscFunctionBeginUser;
+  for (PetscInt t = 0; t < terms->n; t++) {
+    const Mat A = right ? terms->term[t].right : terms->term[t].left;
+
+    if (!TakesPart(&terms->term[t], p)) continue;
+    PetscCall(PetscObjectGetComm((PetscObject)A, &comm));
+    PetscCall(MatGetLocalSize(A, &n, &n_columns));
+    PetscCall(RowsLongest(A, &longest));
+    n_rows += n;
+  }
+  PetscCall(MatCreateAIJ(comm, n_rows, n_columns, PETSC_DETERMINE, PETSC_DETERMINE, longest, NULL, longest, NULL, S));
+  PetscCall(MatGetOwnershipRange(*S, &first, NULL));
+  for (PetscInt t = 0; t < terms->n; t++) {
+    const OperatorsTerm *term = &terms->term[t];
+
+    if (!TakesPart(term, p)) continue;
+    PetscCall(RowsCopy(right ? 1 : OperatorsTermCoefficient(term, p), right ? term->right : term->left, first, *S));
+    PetscCall(MatGetLocalSize(term->left, &n, NULL));
+    first += n;
+  }
+  PetscCall(MatAssemblyBegin(*S, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*S, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TermsFormFactors(const Terms *terms, const PetscReal p[], Mat *left, Mat *right)
+{
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  *left = *right = NULL;
+  for (PetscInt t = 0; t < terms->n; t++) {
+    const OperatorsTerm *term = &terms->term[t];
+
+    if (!term->frictional || term->kind == OPERATORS_DAMPING || OperatorsTermCoefficient(term, p) == 0) continue;
+    if (!term->left || term->kind != OPERATORS_STIFFNESS) PetscFunctionReturn(0);
+    n++;
+  }
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(FactorsStack(terms, p, PETSC_FALSE, left));
+  PetscCall(FactorsStack(terms, p, PETSC_TRUE, right));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,186 @@
+/*
+   The matrix of a shift and its factors: K - s M, or with damping K + s C + s^2 M, by a KSP with the user's -st_ksp_*,
+   -st_pc_*, -st_mat_mumps_* options. At another shift, and for other values of the same pattern, the matrix is formed in
+   place and the analysis serves again.
+*/
+#include "shiftinvert.h"
+#include <petscksp.h>
+
+/* The stiffness that is factored: the symmetric part where friction is put on by an update */
+static Mat ShiftInvertStiffness(const ShiftInvert *si, const PencilMatrices *pencil)
+{
+  return si->even && !pencil->symmetric ? pencil->K_even : pencil->K;
+}
+
+PetscErrorCode ShiftInvertKeepsPattern(const ShiftInvert *si, const PencilMatrices *pencil, PetscBool *keeps)
+{
+  const Mat        now[3] = {ShiftInvertStiffness(si, pencil), pencil->C, pencil->M};
+  PetscObjectState state;
+
+  PetscFunctionBeginUser;
+  *keeps = si->ksp ? PETSC_TRUE : PETSC_FALSE;
+  for (int i = 0; i < 3 && *keeps; i++) {
+    *keeps = now[i] == si->term[i] ? PETSC_TRUE : PETSC_FALSE;
+    if (!*keeps || !now[i]) continue;
+    PetscCall(MatGetNonzeroState(now[i], &state));
+    *keeps = state == si->pattern[i] ? PETSC_TRUE : PETSC_FALSE;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* K - s M, or K + s C + s^2 M with damping; in place where the pattern is kept */
+static PetscErrorCode ShiftInvertMatrix(const ShiftInvert *si, const PencilMatrices *pencil, PetscBool in_place, Mat *A)
+{
+  const Mat          K       = ShiftInvertStiffness(si, pencil);
+  const MatStructure pattern = in_place ? SUBSET_NONZERO_PATTERN : DIFFERENT_NONZERO_PATTERN;
+  const PetscReal    s       = si->shift;
+
+  PetscFunctionBeginUser;
+  if (in_place) {
+    PetscCall(KSPGetOperators(si->ksp, A, NULL));
+    PetscCall(PetscObjectReference((PetscObject)*A));
+    PetscCall(MatZeroEntries(*A));
+    PetscCall(MatAXPY(*A, 1, K, pattern));
+  } else {
+    PetscCall(MatDuplicate(K, MAT_COPY_VALUES, A));
+  }
+  if (pencil->C) PetscCall(MatAXPY(*A, s, pencil->C, pattern));
+  PetscCall(MatAXPY(*A, pencil->C ? s * s : -s, pencil->M, pattern));
+  PetscCall(MatSetOption(*A, MAT_SYMMETRIC, pencil->symmetric || si->even ? PETSC_TRUE : PETSC_FALSE));
+  PetscFunctionReturn(0);
+}
+
+/* Remembers what was factored */
+static PetscErrorCode ShiftInvertRemember(const PencilMatrices *pencil, ShiftInvert *si)
+{
+  const Mat now[3] = {ShiftInvertStiffness(si, pencil), pencil->C, pencil->M};
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 3; i++) {
+    if (now[i]) PetscCall(PetscObjectReference((PetscObject)now[i]));
+    PetscCall(MatDestroy(&si->term[i]));
+    si->term[i] = now[i];
+    if (now[i]) PetscCall(MatGetNonzeroState(now[i], &si->pattern[i]));
+    if (now[i]) PetscCall(PetscObjectStateGet((PetscObject)now[i], &si->values[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error for a failed factorisation; a singular matrix sets *singular instead */
+static PetscErrorCode ShiftInvertCheck(const ShiftInvert *si, PC pc, PetscBool *singular)
+{
+  PCFailedReason reason;
+  MatSolverType  type;
+  PetscBool      is_mumps = PETSC_FALSE;
+  PetscInt       info = 0, extra = 0, n_null = 0;
+  const MPI_Comm comm = si->comm;
+  Mat            F;
+
+  PetscFunctionBeginUser;
+  *singular = PETSC_FALSE;
+  PetscCall(PCGetFailedReason(pc, &reason));
+  PetscCall(PCFactorGetMatSolverType(pc, &type));
+  if (type) PetscCall(PetscStrcmp(type, MATSOLVERMUMPS, &is_mumps));
+  if (is_mumps) {
+    PetscCall(PCFactorGetMatrix(pc, &F));
+    PetscCall(MatMumpsGetInfog(F, 1, &info));
+    PetscCall(MatMumpsGetInfog(F, 2, &extra));
+    if (si->inertia && !si->counts) PetscCall(MatMumpsGetInfog(F, 28, &n_null));
+  }
+  /* not PETSC_ERR_MEM, for which the message would be another */
+  PetscCheck(info != -8 && info != -9 && info != -14 && info != -15 && info != -17 && info != -20, comm,
+             PETSC_ERR_NOT_CONVERGED,
+             "MUMPS' workspace is too small (INFOG(1) = %" PetscInt_FMT ", INFOG(2) = %" PetscInt_FMT
+             "): raise -st_mat_mumps_icntl_14 (percent of extra workspace) or -st_mat_mumps_icntl_23 (MB per rank)",
+             info, extra);
+  PetscCheck(info != -13 && info != -7 && info != -19 && info != -5, comm, PETSC_ERR_NOT_CONVERGED,
+             "MUMPS ran out of memory (INFOG(1) = %" PetscInt_FMT ", INFOG(2) = %" PetscInt_FMT
+             "): raise -st_mat_mumps_icntl_23 (MB per rank) if it limits, use more ranks or a coarser mesh",
+             info, extra);
+  if (n_null || info == -10 || info == -6 || reason == PC_FACTOR_NUMERIC_ZEROPIVOT ||
+      reason == PC_FACTOR_STRUCT_ZEROPIVOT)
+    *singular = PETSC_TRUE;
+  PetscCheck(*singular || !reason, comm, PETSC_ERR_NOT_CONVERGED,
+             "factorisation failed (MUMPS INFOG(1) = %" PetscInt_FMT ")", info);
+  PetscFunctionReturn(0);
+}
+
+/* Solver with MUMPS as default */
+static PetscErrorCode ShiftInvertCreateSolver(MPI_Comm comm, Mat A, PetscBool symmetric, PetscBool want_inertia,
+                                              KSP *ksp)
+{
+  PC  pc;
+  Mat F;
+
+  PetscFunctionBeginUser;
+  PetscCall(KSPCreate(comm, ksp));
+  PetscCall(KSPSetOptionsPrefix(*ksp, "st_"));
+  PetscCall(KSPSetOperators(*ksp, A, A));
+  PetscCall(KSPSetType(*ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(*ksp, &pc));
+  PetscCall(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
+  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(KSPSetFromOptions(*ksp));
+  if (want_inertia) {
+    PetscCall(PCFactorSetUpMatSolverType(pc));
+    PetscCall(PCFactorGetMatrix(pc, &F));
+    PetscCall(MatMumpsSetIcntl(F, 13, 1)); /* MUMPS counts negative pivots of the root only without ScaLAPACK */
+    PetscCall(MatMumpsSetIcntl(F, 24, 1)); /* null pivots are counted, INFOG(28), instead of an error */
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertStands(const PencilMatrices *pencil, PetscReal shift, const ShiftInvert *si,
+                                 PetscBool *stands)
+{
+  const Mat now[3] = {ShiftInvertStiffness(si, pencil), pencil->C, pencil->M};
+
+  PetscFunctionBeginUser;
+  *stands = PETSC_FALSE;
+  if (!si->even || !si->inertia || si->shift != shift || !si->factored) PetscFunctionReturn(0);
+  PetscCall(ShiftInvertKeepsPattern(si, pencil, stands));
+  for (int i = 0; i < 3 && *stands; i++) {
+    PetscObjectState state;
+
+    if (!now[i]) continue;
+    PetscCall(PetscObjectStateGet((PetscObject)now[i], &state));
+    *stands = state == si->values[i] ? PETSC_TRUE : PETSC_FALSE;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertPrepare(const PencilMatrices *pencil, ShiftInvert *si)
+{
+  PetscBool keeps;
+  Mat       A;
+
+  PetscFunctionBeginUser;
+  si->factored = PETSC_FALSE;
+  PetscCall(ShiftInvertKeepsPattern(si, pencil, &keeps));
+  if (!keeps) PetscCall(KSPDestroy(&si->ksp)); /* before there is another matrix beside its factors */
+  PetscCall(ShiftInvertMatrix(si, pencil, keeps, &A));
+  PetscCall(MatNorm(A, NORM_FROBENIUS, &si->size));
+  if (keeps) {
+    PetscCall(KSPSetOperators(si->ksp, A, A));
+  } else {
+    PetscCall(ShiftInvertCreateSolver(si->comm, A, si->even, si->inertia, &si->ksp));
+    PetscCall(ShiftInvertAnalyse(si, A, &si->cost));
+  }
+  PetscCall(ShiftInvertRemember(pencil, si));
+  PetscCall(MatDestroy(&A));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertFactor(const PencilMatrices *pencil, ShiftInvert *si, PetscBool *singular)
+{
+  PC pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(ShiftInvertPrepare(pencil, si));
+  PetscCall(KSPSetUp(si->ksp));
+  PetscCall(KSPGetPC(si->ksp, &pc));
+  PetscCall(ShiftInvertCheck(si, pc, singular));
+  si->factored = *singular ? PETSC_FALSE : PETSC_TRUE;
+  if (*singular) PetscCall(KSPDestroy(&si->ksp));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,250 @@
+/*
+   Solutions with A + L' R, A symmetric, by factors of A (M. A. Woodbury, Inverting modified matrices, Princeton 1950).
+   With Y = A^-1 R' and C = I + R A^-1 L' = I + (L Y)'
+
+      right        (A + L' R)^-1 b = A^-1 (b - L' C^-1 Y' b)
+      transposed   (A + R' L)^-1 b = z - Y C'^-1 L z,   z = A^-1 b
+
+   so that one set of p vectors and one solve serve both. Without Y, C^-1 Y' b = C^-1 R z, and Y c = A^-1 R' c: two
+   solves. In friction p is the number of closed pairs, L their slip times k_n mu, R their gap.
+*/
+#include "lowrank.h"
+#include <petscblaslapack.h>
+
+#define LOWRANK_BLOCK 64 /* right-hand sides at once */
+
+/* Dense matrix of m columns with as many local rows as A has local columns (or rows) */
+static PetscErrorCode DenseLike(Mat A, PetscBool rows, PetscInt m, Mat *D)
+{
+  PetscInt n_rows, n_columns;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetLocalSize(A, &n_rows, &n_columns));
+  PetscCall(MatCreateDense(PetscObjectComm((PetscObject)A), rows ? n_rows : n_columns, PETSC_DECIDE, PETSC_DETERMINE, m,
+                           NULL, D));
+  PetscFunctionReturn(0);
+}
+
+/* All rows of a distributed p x m matrix D on every rank: c[m][p] */
+static PetscErrorCode PairsGather(Mat D, PetscInt p, PetscInt m, PetscScalar c[])
+{
+  const PetscScalar *d;
+  PetscInt           first, last, stride;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(c, p * m));
+  PetscCall(MatGetOwnershipRange(D, &first, &last));
+  PetscCall(MatDenseGetLDA(D, &stride));
+  PetscCall(MatDenseGetArrayRead(D, &d));
+  for (PetscInt j = 0; j < m; j++) PetscCall(PetscArraycpy(&c[j * p + first], &d[j * stride], last - first));
+  PetscCall(MatDenseRestoreArrayRead(D, &d));
+  PetscCallMPI(
+    MPI_Allreduce(MPI_IN_PLACE, c, (PetscMPIInt)(p * m), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)D)));
+  PetscFunctionReturn(0);
+}
+
+/* c[m][p] = S X for S = L or R */
+static PetscErrorCode PairsOf(Mat S, Mat X, PetscInt p, PetscInt m, PetscScalar c[])
+{
+  Mat D;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatMatMult(S, X, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &D));
+  PetscCall(PairsGather(D, p, m, c));
+  PetscCall(MatDestroy(&D));
+  PetscFunctionReturn(0);
+}
+
+/* X += scale S' c for S = L or R */
+static PetscErrorCode PairsSpread(Mat S, PetscReal scale, PetscInt p, PetscInt m, const PetscScalar c[], Mat X)
+{
+  PetscScalar *d;
+  PetscInt     first, last, stride;
+  Mat          D, SD;
+
+  PetscFunctionBeginUser;
+  PetscCall(DenseLike(S, PETSC_TRUE, m, &D));
+  PetscCall(MatGetOwnershipRange(D, &first, &last));
+  PetscCall(MatDenseGetLDA(D, &stride));
+  PetscCall(MatDenseGetArrayWrite(D, &d));
+  for (PetscInt j = 0; j < m; j++)
+    for (PetscInt i = first; i < last; i++) d[j * stride + i - first] = scale * c[j * p + i];
+  PetscCall(MatDenseRestoreArrayWrite(D, &d));
+  PetscCall(MatTransposeMatMult(S, D, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &SD));
+  PetscCall(MatAXPY(X, 1, SD, SAME_NONZERO_PATTERN));
+  PetscCall(MatDestroy(&SD));
+  PetscCall(MatDestroy(&D));
+  PetscFunctionReturn(0);
+}
+
+/* c[m][p] = Y' B, or with c given B -= Y c: products of the local rows */
+static PetscErrorCode StoredProduct(const LowRank *u, PetscBool subtract, PetscInt m, Mat B, PetscScalar c[])
+{
+  const PetscScalar *y, one = 1, minus = -1, zero = 0;
+  PetscScalar       *b;
+  PetscInt           n_local, stride_b, stride_y;
+  PetscBLASInt       n, p, columns, ldb, ldy;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetLocalSize(u->Y, &n_local, NULL));
+  PetscCall(MatDenseGetLDA(B, &stride_b));
+  PetscCall(MatDenseGetLDA(u->Y, &stride_y));
+  PetscCall(PetscBLASIntCast(n_local, &n));
+  PetscCall(PetscBLASIntCast(u->p, &p));
+  PetscCall(PetscBLASIntCast(m, &columns));
+  PetscCall(PetscBLASIntCast(PetscMax(1, stride_b), &ldb));
+  PetscCall(PetscBLASIntCast(PetscMax(1, stride_y), &ldy));
+  PetscCall(MatDenseGetArrayRead(u->Y, &y));
+  PetscCall(MatDenseGetArray(B, &b));
+  if (subtract)
+    PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &n, &columns, &p, &minus, y, &ldy, c, &p, &one, b, &ldb));
+  else
+    PetscCallBLAS("BLASgemm", BLASgemm_("T", "N", &p, &columns, &n, &one, y, &ldy, b, &ldb, &zero, c, &p));
+  PetscCall(MatDenseRestoreArray(B, &b));
+  PetscCall(MatDenseRestoreArrayRead(u->Y, &y));
+  PetscCall(PetscLogFlops(2. * n_local * u->p * m));
+  if (!subtract) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, c, (PetscMPIInt)(u->p * m), MPIU_SCALAR, MPIU_SUM, u->comm));
+  PetscFunctionReturn(0);
+}
+
+/* c = C^-1 c, or C'^-1 c */
+static PetscErrorCode WoodburySolve(const LowRank *u, PetscBool transposed, PetscInt m, PetscScalar c[])
+{
+  PetscBLASInt p, columns, info;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(u->p, &p));
+  PetscCall(PetscBLASIntCast(m, &columns));
+  PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_(transposed ? "T" : "N", &p, &columns, u->C, &p, u->pivot, c, &p, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK getrs: info %d", (int)info);
+  PetscFunctionReturn(0);
+}
+
+/* Columns first .. first + m - 1 of R' as a dense matrix */
+static PetscErrorCode RightColumns(const LowRank *u, PetscInt first, PetscInt m, Mat *B)
+{
+  PetscScalar *unit;
+
+  PetscFunctionBeginUser;
+  PetscCall(DenseLike(u->R, PETSC_FALSE, m, B));
+  PetscCall(MatZeroEntries(*B));
+  PetscCall(PetscCalloc1(u->p * m, &unit));
+  for (PetscInt j = 0; j < m; j++) unit[j * u->p + first + j] = 1;
+  PetscCall(PairsSpread(u->R, 1, u->p, m, unit, *B));
+  PetscCall(PetscFree(unit));
+  PetscFunctionReturn(0);
+}
+
+/* Columns first .. first + m - 1 of Y, and rows of C = I + (L Y)' */
+static PetscErrorCode LowRankExtend(LowRank *u, PetscInt first, PetscInt m, PetscScalar c[])
+{
+  const PetscInt p = u->p;
+  Mat            B, X;
+
+  PetscFunctionBeginUser;
+  PetscCall(RightColumns(u, first, m, &B));
+  PetscCall(DenseLike(u->R, PETSC_FALSE, m, &X));
+  PetscCall((*u->solve)(u->ctx, B, X));
+  PetscCall(PairsOf(u->L, X, p, m, c));
+  for (PetscInt j = 0; j < m; j++)
+    for (PetscInt i = 0; i < p; i++) u->C[i * p + first + j] = c[j * p + i] + (i == first + j ? 1 : 0);
+  if (u->Y) {
+    Mat part;
+
+    PetscCall(MatDenseGetSubMatrix(u->Y, PETSC_DECIDE, PETSC_DECIDE, first, first + m, &part));
+    PetscCall(MatCopy(X, part, SAME_NONZERO_PATTERN));
+    PetscCall(MatDenseRestoreSubMatrix(u->Y, &part));
+  }
+  PetscCall(MatDestroy(&B));
+  PetscCall(MatDestroy(&X));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LowRankSetUp(Mat L, Mat R, PetscBool store, LowRank *u, PetscBool *singular)
+{
+  PetscScalar *c;
+  PetscBLASInt p, info;
+
+  PetscFunctionBeginUser;
+  u->L = L;
+  u->R = R;
+  PetscCall(PetscObjectGetComm((PetscObject)L, &u->comm));
+  PetscCall(PetscObjectReference((PetscObject)L));
+  PetscCall(PetscObjectReference((PetscObject)R));
+  PetscCall(MatGetSize(L, &u->p, NULL));
+  if (store) PetscCall(DenseLike(R, PETSC_FALSE, u->p, &u->Y));
+  PetscCall(PetscMalloc1(u->p * u->p, &u->C));
+  PetscCall(PetscMalloc1(u->p, &u->pivot));
+  PetscCall(PetscMalloc1(u->p * PetscMin(u->p, LOWRANK_BLOCK), &c));
+  for (PetscInt first = 0; first < u->p; first += LOWRANK_BLOCK)
+    PetscCall(LowRankExtend(u, first, PetscMin(LOWRANK_BLOCK, u->p - first), c));
+  PetscCall(PetscFree(c));
+  PetscCall(PetscBLASIntCast(u->p, &p));
+  PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&p, &p, u->C, &p, u->pivot, &info));
+  *singular = info > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* One solve with A on either side of the small system, or two */
+static PetscErrorCode ApplyRight(const LowRank *u, PetscBool transposed, PetscInt m, PetscScalar c[], Mat B, Mat X)
+{
+  const Mat inner = transposed ? u->L : u->R, outer = transposed ? u->R : u->L;
+  Mat       reduced;
+
+  PetscFunctionBeginUser;
+  if (u->Y) {
+    PetscCall(StoredProduct(u, PETSC_FALSE, m, B, c));
+  } else {
+    PetscCall((*u->solve)(u->ctx, B, X));
+    PetscCall(PairsOf(inner, X, u->p, m, c));
+  }
+  PetscCall(WoodburySolve(u, transposed, m, c));
+  PetscCall(MatDuplicate(B, MAT_COPY_VALUES, &reduced));
+  PetscCall(PairsSpread(outer, -1, u->p, m, c, reduced));
+  PetscCall((*u->solve)(u->ctx, reduced, X));
+  PetscCall(MatDestroy(&reduced));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LowRankApply(const LowRank *u, PetscBool transposed, Mat B, Mat X)
+{
+  PetscScalar *c;
+  PetscInt     m;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetSize(B, NULL, &m));
+  PetscCall(PetscMalloc1(u->p * m, &c));
+  if (u->Y && transposed) {
+    PetscCall((*u->solve)(u->ctx, B, X));
+    PetscCall(PairsOf(u->L, X, u->p, m, c));
+    PetscCall(WoodburySolve(u, PETSC_TRUE, m, c));
+    PetscCall(StoredProduct(u, PETSC_TRUE, m, X, c));
+  } else {
+    PetscCall(ApplyRight(u, transposed, m, c, B, X));
+  }
+  PetscCall(PetscFree(c));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LowRankMultAdd(const LowRank *u, PetscBool transposed, Vec x, Vec r)
+{
+  Vec pairs;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateVecs(u->L, NULL, &pairs));
+  PetscCall(MatMult(transposed ? u->L : u->R, x, pairs));
+  PetscCall(MatMultTransposeAdd(transposed ? u->R : u->L, pairs, r, r));
+  PetscCall(VecDestroy(&pairs));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LowRankDestroy(LowRank *u)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatDestroy(&u->L));
+  PetscCall(MatDestroy(&u->R));
+  PetscCall(MatDestroy(&u->Y));
+  PetscCall(PetscFree(u->C));
+  PetscCall(PetscFree(u->pivot));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,27 @@
+/* Private to solver/: factors of A + L' R from those of the symmetric A, L and R with a row for each of p pairs */
+#pragma once
+
+#include <petscmat.h>
+
+/* One system with many right-hand sides, X = A^-1 B; B and X are dense, columns follow one another */
+typedef PetscErrorCode (*LowRankSolve)(void *ctx, Mat B, Mat X);
+
+typedef struct LowRank {
+  MPI_Comm      comm;
+  Mat           L, R;  /* p x n, sparse */
+  Mat           Y;     /* A^-1 R', n x p dense; NULL: every solution takes two solves with A instead of one */
+  PetscInt      p;     /* pairs */
+  PetscScalar  *C;     /* [p][p] LU of I + R A^-1 L', by columns, on every rank */
+  PetscBLASInt *pivot; /* [p] */
+  LowRankSolve  solve;
+  void         *ctx; /* of solve */
+} LowRank;
+
+/* Makes the update u, whose solve and ctx are set, from p solves. With `store` Y is kept. singular: A + L' R is (A is
+   not). Collective. */
+PETSC_INTERN PetscErrorCode LowRankSetUp(Mat L, Mat R, PetscBool store, LowRank *u, PetscBool *singular);
+/* X = (A + L' R)^-1 B, or with its transpose. Collective. */
+PETSC_INTERN PetscErrorCode LowRankApply(const LowRank *u, PetscBool transposed, Mat B, Mat X);
+/* r += L' R x, or R' L x. Collective. */
+PETSC_INTERN PetscErrorCode LowRankMultAdd(const LowRank *u, PetscBool transposed, Vec x, Vec r);
+PETSC_INTERN PetscErrorCode LowRankDestroy(LowRank *u);
