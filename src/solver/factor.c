@@ -5,6 +5,7 @@
 */
 #include "shiftinvert.h"
 #include <petscksp.h>
+#include <petsc/private/petscimpl.h> /* PetscObjectStateGet() */
 
 /* The stiffness that is factored: the symmetric part where friction is put on by an update */
 static Mat ShiftInvertStiffness(const ShiftInvert *si, const PencilMatrices *pencil)

@@ -11,7 +11,9 @@
 #include "lowrank.h"
 #include <petscblaslapack.h>
 
-#define LOWRANK_BLOCK 64 /* right-hand sides at once */
+#define LOWRANK_BLOCK 64 /* right-hand sides at once, at most and at least */
+#define LOWRANK_FEW   8
+#define LOWRANK_ROOM  16000000 /* their entries: MUMPS and PETSc hold eight copies of a block while it is solved */
 
 /* Dense matrix of m columns with as many local rows as A has local columns (or rows) */
 static PetscErrorCode DenseLike(Mat A, PetscBool rows, PetscInt m, Mat *D)
@@ -164,6 +166,7 @@ PetscErrorCode LowRankSetUp(Mat L, Mat R, PetscBool store, LowRank *u, PetscBool
 {
   PetscScalar *c;
   PetscBLASInt p, info;
+  PetscInt     n, block;
 
   PetscFunctionBeginUser;
   u->L = L;
@@ -171,13 +174,14 @@ PetscErrorCode LowRankSetUp(Mat L, Mat R, PetscBool store, LowRank *u, PetscBool
   PetscCall(PetscObjectGetComm((PetscObject)L, &u->comm));
   PetscCall(PetscObjectReference((PetscObject)L));
   PetscCall(PetscObjectReference((PetscObject)R));
-  PetscCall(MatGetSize(L, &u->p, NULL));
+  PetscCall(MatGetSize(L, &u->p, &n));
+  block = PetscMin(u->p, PetscMax(LOWRANK_FEW, PetscMin(LOWRANK_BLOCK, LOWRANK_ROOM / n)));
   if (store) PetscCall(DenseLike(R, PETSC_FALSE, u->p, &u->Y));
   PetscCall(PetscMalloc1(u->p * u->p, &u->C));
   PetscCall(PetscMalloc1(u->p, &u->pivot));
-  PetscCall(PetscMalloc1(u->p * PetscMin(u->p, LOWRANK_BLOCK), &c));
-  for (PetscInt first = 0; first < u->p; first += LOWRANK_BLOCK)
-    PetscCall(LowRankExtend(u, first, PetscMin(LOWRANK_BLOCK, u->p - first), c));
+  PetscCall(PetscMalloc1(u->p * block, &c));
+  for (PetscInt first = 0; first < u->p; first += block)
+    PetscCall(LowRankExtend(u, first, PetscMin(block, u->p - first), c));
   PetscCall(PetscFree(c));
   PetscCall(PetscBLASIntCast(u->p, &p));
   PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&p, &p, u->C, &p, u->pivot, &info));

@@ -12,6 +12,7 @@
 #include "lowrank.h"
 
 #define UPDATE_STIFF 1e2  /* k_n mu of a pair beside the (geometric) mean of the bodies' stiffnesses: LU from here on */
+#define UPDATE_ROOM  0.8  /* of the memory that is free: vectors that take more beside the factors are not kept */
 #define UPDATE_SHARE 0.75 /* of the entries of LDL': vectors of an update that take no more are kept */
 
 /* Raises the error for what no shift makes regular */
@@ -69,7 +70,10 @@ static PetscErrorCode ShiftInvertChoose(const PencilMatrices *pencil, ShiftInver
   PetscCall(ShiftInvertKeepsPattern(si, pencil, &keeps));
   if (!keeps) PetscCall(ShiftInvertPrepare(pencil, si));
   PetscCall(MatGetSize(pencil->left, &p, &n));
-  *store = (double)n * (double)p <= UPDATE_SHARE * si->cost.entries ? PETSC_TRUE : PETSC_FALSE;
+  *store = (double)n * (double)p <= UPDATE_SHARE * si->cost.entries &&
+               si->cost.needed + 8e-6 * (double)n * (double)p <= UPDATE_ROOM * si->cost.room
+             ? PETSC_TRUE
+             : PETSC_FALSE;
   if (!pencil->prefers_even && !*store && 2 * si->cost.needed <= si->cost.room) si->even = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
