@@ -9,7 +9,7 @@ from .sweep_runs import DEFAULT, SweepRun
 from .tables import BadInput, print_table
 from .timed_runs import Run, median_run, require_same
 
-UNIT = "-modes_factors lu"
+UNIT = "-operators_factors lu"
 LU = "MatLUFactorNum"
 MOST_WHOLE = 7  # units, of one analysis
 BEFORE_MB, MOST_MEMORY = 560, 0.6  # peak of one analysis before this was demanded, and the part of it
@@ -18,6 +18,7 @@ SAME_BOTH = f"{ALL.format('alpha', 100)} {ALL.format('beta', '1e-7')}"
 DAMPINGS = (("disc beta 5e-7 s, pad beta 1e-7 s", "-disc_beta 5e-7 -pad_beta 1e-7", 1.4),
             ("alpha 100 1/s, beta 1e-7 s on all parts", SAME_BOTH, 1.1),
             ("beta 1e-5 s on all parts", ALL.format("beta", "1e-5"), 3))  # most times of the undamped run
+BUSY = 1.2  # wall over processor time of the runs of the unit, from which on the unit is too long to judge by
 LONGEST = "-modes_max_time 600"  # s, of a damped run
 MOST_SWEEP, SWEEP_ERROR, N_HELD_OUT = 35, 1e-6, 10  # units; true error
 LARGE, LARGE_UNKNOWNS = "-modes_band 2500,6000 -output_fields 0", 298011
@@ -26,10 +27,10 @@ MOST_LARGE_TIME, MOST_LARGE_GB = 0.5, 4  # of the other program's time
 
 def unit_of(runs):
     """s of one numeric LU: the shortest, since the log has wall time, which other work on the machine can only lengthen."""
-    times = [value[0] / value[1] for run in runs for (_, event), value in run.log.items() if event == LU and value[1]]
-    if not times:
-        raise BadInput(f"options {UNIT}: no LU was made, hence there is no unit")
-    return min(times)
+    counts = [run.count(LU, stage="Modes") for run in runs]
+    if max(counts) != 1:
+        raise BadInput(f"options {UNIT}: {max(counts)} LU were made, not one, hence there is no unit")
+    return min(run.seconds(LU, stage="Modes") for run in runs)
 
 
 def demand_sweep(program, n_runs, unit):
@@ -47,17 +48,21 @@ def demand_sweep(program, n_runs, unit):
 def part_demands(measure):
     """One line for each demand."""
     args = measure.args
-    plain, all_forced = measure(options=""), [Run(args.program, 1, UNIT) for _ in range(args.runs)]
+    plain, all_forced = measure(ranks=1, options=""), [Run(args.program, 1, UNIT) for _ in range(args.runs)]
     forced, unit = all_forced[0], unit_of(all_forced)
     print(f"\ndemands, one rank: unit {unit:.3f} s, one numeric LU with {forced.entries / 1e6:.1f} M entries; whole run "
           f"{plain.cpu:.2f} s of processor, with LU {forced.cpu:.2f} s and {forced.peak:.0f} MB; "
           f"{plain.n_solves} solutions in {plain.n_calls} calls, with LU {forced.n_solves} in {forced.n_calls}")
+    waits = min(run.wall / run.cpu for run in all_forced)
+    if waits > BUSY:
+        print(f"  the machine is busy: runs take {waits:.1f} times their processor time, and so does the unit, by which costs in "
+              "units seem too small")
     print(f"  frequencies of both ways agree to {require_same(forced, plain):.1e}")
     print_demand("one analysis with left vectors, units", plain.cpu / unit, MOST_WHOLE, ".1f")
     print_demand(f"its memory over {BEFORE_MB} MB", plain.peak / BEFORE_MB, MOST_MEMORY, ".2f")
     for what, options, most in DAMPINGS:
         try:
-            cost = measure(options=f"{options} {LONGEST}").cpu / plain.cpu
+            cost = measure(ranks=1, options=f"{options} {LONGEST}").cpu / plain.cpu
         except BadInput as error:
             print(f"  {what}: {met(False)}: {error}")
             continue

@@ -93,9 +93,9 @@ class Run:
             raise SystemExit(f"options {self.options}: the output lacks {pattern}")
         return float(found[-1].replace("D", "e"))
 
-    def count(self, *events):
-        """How often they happened, in all stages."""
-        return sum(value[1] for (_, event), value in self.log.items() if event in events)
+    def count(self, *events, stage=None):
+        """How often they happened, in one stage or in all."""
+        return sum(value[1] for (s, e), value in self.log.items() if e in events and stage in (None, s))
 
     def seconds(self, *events, stage=None):
         """Time in events, of one stage or of all."""
