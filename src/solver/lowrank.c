@@ -13,7 +13,7 @@
 
 #define LOWRANK_BLOCK 64 /* right-hand sides at once, at most and at least */
 #define LOWRANK_FEW   8
-#define LOWRANK_ROOM  16000000 /* their entries: MUMPS and PETSc hold eight copies of a block while it is solved */
+#define LOWRANK_ROOM  5000000 /* their entries: MUMPS and PETSc hold eight copies of a block while it is solved */
 
 /* Dense matrix of m columns with as many local rows as A has local columns (or rows) */
 static PetscErrorCode DenseLike(Mat A, PetscBool rows, PetscInt m, Mat *D)
