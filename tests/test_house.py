@@ -34,7 +34,8 @@ ROOM_OF_HEADER = {"checksum": "base", "contactstatus": "kernels", "elasticity": 
                   "joint": "kernels", "material": "kernels", "mesh": "kernels", "options": "base",
                   "pencil": "operators", "projector": "contact", "sys": "base"}
 # Signatures that a library lays down
-LAID_DOWN = {"KeepError": "PetscPushErrorHandler()", "DampedStop": "PEPSetStoppingTestFunction()",
+LAID_DOWN = {"KeepError": "PetscPushErrorHandler()", "GroupKeepError": "PetscPushErrorHandler()",
+             "DampedStop": "PEPSetStoppingTestFunction()",
              "UndampedStop": "EPSSetStoppingTestFunction()"}
 STRATA = re.compile(r"\b(DMPlexGet\w*Stratum|DMPlexGet(Vertex|Cell|Point)Numbering|DMGetStratum\w+|DM\w*Label\w*)\s*\(")
 OWN = re.compile(r"(?<![\w.>/}~-])/(work|home|root|Users|mnt)/|\b(this session|worktree|issue #?\d+|AI assistant)\b",
