@@ -15,6 +15,7 @@ PetscErrorCode GroupsCreate(MPI_Comm comm, PetscInt n, const PencilMatrices *pen
   PetscCall(PetscSubcommSetNumber(groups->ranks, n));
   PetscCall(PetscSubcommSetType(groups->ranks, PETSC_SUBCOMM_CONTIGUOUS));
   groups->mine = groups->ranks->color;
+  PetscCall(MatCreateVecs(pencil->K, &groups->like, NULL));
   for (int i = 0; i < 2; i++) {
     const Mat  A = i ? pencil->M : pencil->K;
     Mat *const B = i ? &groups->pencil.M : &groups->pencil.K;
@@ -110,7 +111,7 @@ static PetscErrorCode GroupsGatherVec(const Groups *groups, PetscInt group, Vec 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GroupsGather(const Groups *groups, PetscInt group, Vec like, const Spectrum *from, Spectrum *to)
+PetscErrorCode GroupsGather(const Groups *groups, PetscInt group, const Spectrum *from, Spectrum *to)
 {
   const PetscMPIInt root = GroupsRoot(groups, group);
   PetscInt          n    = from->n;
@@ -119,7 +120,7 @@ PetscErrorCode GroupsGather(const Groups *groups, PetscInt group, Vec like, cons
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Bcast(&n, 1, MPIU_INT, root, groups->comm));
   PetscCall(SpectrumCreate(n, to));
-  for (int k = 0; k < 2; k++) PetscCall(VecDuplicate(like, &v[k]));
+  for (int k = 0; k < 2; k++) PetscCall(VecDuplicate(groups->like, &v[k]));
   for (PetscInt i = 0; i < n; i++) {
     const PetscBool mine      = groups->mine == group ? PETSC_TRUE : PETSC_FALSE;
     PetscReal       lambda[3] = {mine ? from->sigma[i] : 0, mine ? from->omega[i] : 0, mine && from->xi[i] ? 1 : 0};
@@ -143,6 +144,7 @@ PetscErrorCode GroupsAgree(const Groups *groups, PetscInt group, PetscReal *valu
 PetscErrorCode GroupsDestroy(Groups *groups)
 {
   PetscFunctionBeginUser;
+  PetscCall(VecDestroy(&groups->like));
   PetscCall(MatDestroy(&groups->pencil.K));
   PetscCall(MatDestroy(&groups->pencil.M));
   PetscCall(PetscSubcommDestroy(&groups->ranks));

@@ -9,6 +9,7 @@ typedef struct {
   PetscInt       mine; /* the one of this rank */
   PetscSubcomm   ranks;
   PencilMatrices pencil; /* K and M among the ranks of this group */
+  Vec            like;   /* a vector among all ranks */
 } Groups;
 
 /* All of it is collective on all ranks */
@@ -16,9 +17,8 @@ PETSC_INTERN PetscErrorCode GroupsCreate(MPI_Comm comm, PetscInt n, const Pencil
 /* Right and left modes of this group's part (NULL where it has none), in modes->right and modes->left_spectrum, with
    vectors among its ranks. An error of any group is raised by all. */
 PETSC_INTERN PetscErrorCode GroupsSolve(Modes modes, const Groups *groups, Window *part);
-/* What a group found, with vectors like the one given, on all ranks */
-PETSC_INTERN PetscErrorCode GroupsGather(const Groups *groups, PetscInt group, Vec like, const Spectrum *from,
-                                         Spectrum *to);
+/* What a group found, with vectors among all ranks */
+PETSC_INTERN PetscErrorCode GroupsGather(const Groups *groups, PetscInt group, const Spectrum *from, Spectrum *to);
 /* A number of a group's on all ranks */
 PETSC_INTERN PetscErrorCode GroupsAgree(const Groups *groups, PetscInt group, PetscReal *value);
 PETSC_INTERN PetscErrorCode GroupsDestroy(Groups *groups);

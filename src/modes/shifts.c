@@ -146,7 +146,7 @@ static PetscErrorCode ShiftsSolveParts(Modes modes, const PencilMatrices *pencil
 }
 
 /* What the groups found of the parts from `first` on, on all ranks */
-static PetscErrorCode ShiftsGather(Modes modes, const Groups *groups, PetscInt first, const Window part[], Vec like,
+static PetscErrorCode ShiftsGather(Modes modes, const Groups *groups, PetscInt first, const Window part[],
                                    Window *window, Spectrum found[2])
 {
   Spectrum own[2] = {modes->right, modes->left_spectrum};
@@ -156,8 +156,8 @@ static PetscErrorCode ShiftsGather(Modes modes, const Groups *groups, PetscInt f
     PetscReal worst = part[k].worst;
 
     modes->right = modes->left_spectrum = (Spectrum){0};
-    PetscCall(GroupsGather(groups, k - first, like, &own[0], &modes->right));
-    if (modes->left) PetscCall(GroupsGather(groups, k - first, like, &own[1], &modes->left_spectrum));
+    PetscCall(GroupsGather(groups, k - first, &own[0], &modes->right));
+    if (modes->left) PetscCall(GroupsGather(groups, k - first, &own[1], &modes->left_spectrum));
     PetscCall(GroupsAgree(groups, k - first, &worst));
     PetscCall(ShiftsAppend(modes, k ? ShiftsSeam(window, modes->shifts, k) : 0, &found[0], &found[1]));
     window->worst = PetscMax(window->worst, worst);
@@ -173,24 +173,21 @@ static PetscErrorCode ShiftsShare(Modes modes, const PencilMatrices *pencil, Win
   const PetscInt n = modes->shifts;
   Groups         groups;
   Window        *part;
-  Vec            like;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &part));
   for (PetscInt k = 0; k < n; k++) PetscCall(ShiftsPart(modes, pencil, window, k, &part[k]));
   PetscCall(ShiftInvertDestroy(&modes->counter));
   modes->counter = (ShiftInvert){.progress = &modes->progress};
-  PetscCall(MatCreateVecs(pencil->K, &like, NULL));
   PetscCall(GroupsCreate(modes->comm, modes->n_groups, pencil, &groups));
   for (PetscInt first = 0; first < n; first += groups.n) {
     const PetscInt k = first + groups.mine;
 
     PetscCall(GroupsSolve(modes, &groups, k < n ? &part[k] : NULL));
-    PetscCall(ShiftsGather(modes, &groups, first, part, like, window, found));
+    PetscCall(ShiftsGather(modes, &groups, first, part, window, found));
   }
   window->proven = pencil->symmetric;
   PetscCall(GroupsDestroy(&groups));
-  PetscCall(VecDestroy(&like));
   PetscCall(PetscFree(part));
   PetscFunctionReturn(0);
 }
