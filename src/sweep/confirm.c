@@ -63,25 +63,24 @@ static PetscErrorCode OnsetCorrect(Sweep sweep, const Correction *correction, co
 static PetscErrorCode OnsetConverge(Sweep sweep, const BranchLine *line, PetscReal p[], BranchEvent *event,
                                     ReducedModes *critical, PetscReal *change)
 {
-  Correction    correction = {0};
+  Correction   *correction = &sweep->onset_correction;
   ReducedWindow near;
 
   PetscFunctionBeginUser;
   *change = PETSC_MAX_REAL;
   BranchLineSet(line, event->critical, p);
   near = WindowNear(sweep, p, event);
-  PetscCall(CorrectionCreate(sweep->pencil, p, &near, &sweep->progress, &correction));
+  PetscCall(CorrectionCreate(sweep->pencil, p, &near, &sweep->progress, correction));
   for (int step = 0; step < ONSET_STEPS && event->found && *change > CONFIRMED * PetscAbsReal(event->critical);
        step++) {
     const PetscReal before = event->critical;
 
     BranchLineSet(line, before, p);
-    if (step) PetscCall(CorrectionMove(sweep->pencil, p, &correction));
-    PetscCall(OnsetCorrect(sweep, &correction, p, &near, event, critical));
+    if (step) PetscCall(CorrectionMove(sweep->pencil, p, correction));
+    PetscCall(OnsetCorrect(sweep, correction, p, &near, event, critical));
     PetscCall(OnsetReduced(sweep, line, event, critical));
     *change = PetscAbsReal(event->critical - before);
   }
-  PetscCall(ShiftInvertDestroy(&correction.factor));
   PetscFunctionReturn(0);
 }
 
@@ -161,6 +160,7 @@ PetscErrorCode SweepOnsets(Sweep sweep)
     PetscCall(ProgressStep(&progress));
   }
   PetscCall(ProgressEnd(&progress));
+  PetscCall(ShiftInvertDestroy(&sweep->onset_correction.factor));
   OnsetsSort(sweep);
   PetscFunctionReturn(0);
 }

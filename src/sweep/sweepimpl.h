@@ -82,9 +82,10 @@ struct _p_Sweep {
   PetscBool      whole; /* the basis is the whole space */
   BranchName    *label; /* [n_branches] */
   BranchEvents   events;
-  PetscBool     *is_confirmed; /* [onsets] on the full problem */
-  SweepCheck    *check;        /* [n_checks] */
-  SweepRisk     *risk;         /* [n_risks] */
+  PetscBool     *is_confirmed;     /* [onsets] on the full problem */
+  Correction     onset_correction; /* of the onset under way, whose analysis serves the next one */
+  SweepCheck    *check;            /* [n_checks] */
+  SweepRisk     *risk;             /* [n_risks] */
   PetscInt       n_checks, n_risks, n_combinations;
   PetscReal      worst_risk; /* largest estimated relative error of all combinations */
   const char    *folder;     /* of the restart files */
