@@ -102,8 +102,8 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
   else if (modes->left)
     PetscCall(PetscSNPrintf(text, size,
                             "none was found missing: right and left vectors, sought from different starts with one "
-                            "shared factorisation, give the same eigenvalues%s, to %.1e%s",
-                            region, (double)window->worst, frictionless));
+                            "shared factorisation%s, give the same eigenvalues%s, to %.1e%s",
+                            modes->shifts > 1 ? " a shift" : "", region, (double)window->worst, frictionless));
   else
     PetscCall(PetscSNPrintf(text, size, "completeness was not checked, since -modes_left is off%s", frictionless));
   PetscCall(PetscStrlcat(text, route, size));
