@@ -51,7 +51,7 @@ frequency of f2
 .  -modes_left <true>        - compute left vectors (condition and error need them)
 .  -modes_filters <false>    - write modal filters (filters.h5), for the amplitudes of the modes in a transient
 .  -modes_disc <disc>        - part whose modes are labelled by nodal circles and diameters
-.  -modes_damping <pep>      - route of a damped solution: auto, project (on undamped modes), pep
+.  -modes_damping <auto>     - route of a damped solution: auto, project (on undamped modes), pep
 -  -modes_contact <all|static> - whether the pencil that is set is to be one with all pairs closed, or
 about the sliding state (statics.h)
    The solvers take -eps_*, -pep_*, -st_*.

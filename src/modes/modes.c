@@ -17,7 +17,7 @@ PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
   (*modes)->left     = PETSC_TRUE;
   (*modes)->count    = 20;
   (*modes)->max_time = 3600;
-  (*modes)->damping  = DAMPING_PEP;
+  (*modes)->damping  = DAMPING_AUTO;
   PetscCall(PetscStrncpy((*modes)->disc, "disc", sizeof((*modes)->disc)));
   PetscCall(OrderingRegister());
   PetscCall(BlockKrylovRegister());

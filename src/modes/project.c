@@ -16,10 +16,11 @@
 #include "projection.h"
 
 #define DAMPING_WEAK   0.5
-#define PROJECT_GUARD  10 /* undamped modes beyond the window */
+#define DAMPING_NONE   1e-10 /* measure of damping that leaves the vectors as they are */
+#define PROJECT_GUARD  4     /* undamped modes beyond the window */
 #define PROJECT_ROUNDS 8
 #define PROJECT_RIGHT  1e-14 /* backward errors of settled right and left vectors */
-#define PROJECT_LEFT   1e-12
+#define PROJECT_LEFT   1e-11
 
 /* Removes what lies farther from the shift than the distance */
 static PetscErrorCode SpectrumTrim(PetscReal shift, PetscReal distance, Spectrum *s)
@@ -102,23 +103,33 @@ static PetscErrorCode InfoRound(const Projection *p, const ProjectionModes *foun
   PetscFunctionReturn(0);
 }
 
+/* The modes on the present basis: followed from what they were, or all anew */
+static PetscErrorCode FindModes(const Projection *p, PetscBool anew, ProjectionModes *found)
+{
+  ProjectionModes before = *found;
+  PetscBool       followed;
+
+  PetscFunctionBeginUser;
+  if (!anew) PetscCall(ProjectionFollow(p, &before, found, &followed));
+  if (anew || !followed) PetscCall(ProjectionEigen(p, found));
+  if (!anew) PetscCall(ProjectionModesDestroy(&before));
+  PetscFunctionReturn(0);
+}
+
 /* Corrects the modes until all have settled; settled = they have, and the window is covered */
 static PetscErrorCode Iterate(Projection *p, ProjectionModes *found, PetscBool *settled)
 {
-  const PetscReal limits[2] = {PROJECT_RIGHT, PROJECT_LEFT};
-  PetscInt        n_columns = 1;
+  PetscInt n_columns = 1;
 
   PetscFunctionBeginUser;
   *settled = PETSC_FALSE;
-  for (int round = 0; round < PROJECT_ROUNDS; round++) {
-    PetscCall(ProjectionEigen(p, found));
+  for (int round = 0; round < PROJECT_ROUNDS && n_columns; round++) {
+    PetscCall(FindModes(p, round ? PETSC_FALSE : PETSC_TRUE, found));
     if (found->lambda_reach > p->reach) break;
-    PetscCall(ProjectionCorrect(p, limits, found, &n_columns));
+    PetscCall(ProjectionCorrect(p, found, &n_columns));
     PetscCall(InfoRound(p, found, n_columns));
-    if (!n_columns) *settled = PETSC_TRUE;
-    if (!n_columns) break;
-    if (round + 1 < PROJECT_ROUNDS) PetscCall(ProjectionModesDestroy(found));
   }
+  *settled = n_columns ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -145,6 +156,8 @@ static PetscErrorCode Project(Projection *p, Window *window, const char **why)
   PetscBool       settled;
 
   PetscFunctionBeginUser;
+  p->limit[0] = PROJECT_RIGHT;
+  p->limit[1] = PROJECT_LEFT;
   PetscCall(ProjectionFit(p, &modes->right, &modes->left_spectrum));
   PetscCall(ProjectionAddSpectrum(p, &modes->right));
   PetscCall(ProjectionAddSpectrum(p, &modes->left_spectrum));
@@ -153,6 +166,7 @@ static PetscErrorCode Project(Projection *p, Window *window, const char **why)
   if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionMeasureBeyond(p, &window->beyond));
   if (window->beyond > DAMPING_WEAK) *why = "damping is strong";
   if (*why) PetscFunctionReturn(0);
+  if (window->beyond > DAMPING_NONE) PetscCall(ProjectionStart(p, &modes->right, &modes->left_spectrum));
   PetscCall(Iterate(p, &found, &settled));
   if (settled) PetscCall(PutModes(p, &found));
   if (!settled)

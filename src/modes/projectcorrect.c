@@ -9,8 +9,7 @@
 
 #define CORRECT_DROP 1e-13 /* M-norm of corrections to vectors of length one: less is rounding */
 
-/* Vectors of the modes of one side as real columns, those with backward error above the limit or all where it is
-   negative */
+/* Vectors of the modes of one side as real columns, those with backward errors above the limit */
 static PetscErrorCode SideCollect(const ProjectionModes *modes, PetscBool left, PetscReal limit, ComplexColumns *c,
                                   PetscReal **coordinates)
 {
@@ -33,21 +32,27 @@ static PetscErrorCode SideCollect(const ProjectionModes *modes, PetscBool left, 
   PetscFunctionReturn(0);
 }
 
-/* Backward errors from the norms of the columns of residuals and vectors */
-static PetscErrorCode SideMeasure(const Projection *p, const ComplexColumns *c, Mat X, Mat R, PetscReal backward[])
+/* Backward errors of the modes that are among the columns, those above the limit, from the norms of residuals and
+   vectors; wanted[columns] = those still above it */
+static PetscErrorCode SideMeasure(const Projection *p, PetscBool left, const ComplexColumns *c, Mat X, Mat R,
+                                  ProjectionModes *modes, PetscBool wanted[])
 {
-  PetscReal *x, *r;
+  PetscReal *x, *r, *backward = modes->backward[left];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(c->n_columns, &x, c->n_columns, &r));
   PetscCall(MatGetColumnNorms(X, NORM_2, x));
   PetscCall(MatGetColumnNorms(R, NORM_2, r));
-  for (PetscInt i = 0; i < c->m; i++) {
-    const PetscInt  at = c->column[i], two = c->column[i + 1] - at == 2;
-    const PetscReal size  = cabs(c->lambda[i]);
+  for (PetscInt i = 0, k = 0; i < modes->n; i++) {
+    const PetscReal size  = cabs(modes->lambda[i]);
     const PetscReal bound = size * size * p->norms[2] + size * p->norms[1] + p->norms[0];
+    PetscInt        at, two;
 
+    if (backward[i] <= p->limit[left]) continue;
+    at          = c->column[k];
+    two         = c->column[k + 1] - at == 2;
     backward[i] = hypot(r[at], two ? r[at + 1] : 0) / (bound * hypot(x[at], two ? x[at + 1] : 0));
+    wanted[k++] = backward[i] > p->limit[left] && size > p->window->scale ? PETSC_TRUE : PETSC_FALSE;
   }
   PetscCall(PetscFree2(x, r));
   PetscFunctionReturn(0);
@@ -86,8 +91,7 @@ static PetscErrorCode SideSolve(const Projection *p, PetscBool left, const Compl
 }
 
 /* Residuals of one side; corrections is NULL where all have settled */
-static PetscErrorCode SideCorrect(const Projection *p, PetscBool left, PetscReal limit, ProjectionModes *modes,
-                                  BV *corrections)
+static PetscErrorCode SideCorrect(const Projection *p, PetscBool left, ProjectionModes *modes, BV *corrections)
 {
   const PencilMatrices side = {.K         = left ? p->transposed[0] : p->pencil->K,
                                .C         = left ? p->transposed[1] : p->pencil->C,
@@ -100,28 +104,30 @@ static PetscErrorCode SideCorrect(const Projection *p, PetscBool left, PetscReal
   Mat                  X, R;
 
   PetscFunctionBeginUser;
-  PetscCall(SideCollect(modes, left, -1, &columns, &coordinates));
-  PetscCall(ProjectionCreateBlock(p, columns.n_columns, &vectors));
-  PetscCall(ProjectionCreateBlock(p, columns.n_columns, &residuals));
-  PetscCall(BlockLift(p->V, p->k, columns.n_columns, coordinates, vectors));
-  PetscCall(BVGetMat(vectors, &X));
-  PetscCall(BVGetMat(residuals, &R));
-  PetscCall(ResidualMake(&side, PETSC_FALSE, &columns, X, R));
-  PetscCall(SideMeasure(p, &columns, X, R, modes->backward[left]));
-  PetscCall(BVRestoreMat(residuals, &R));
-  PetscCall(BVRestoreMat(vectors, &X));
-  PetscCall(PetscMalloc1(modes->n, &wanted));
-  for (PetscInt i = 0; i < modes->n; i++) wanted[i] = modes->backward[left][i] > limit ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(SideSolve(p, left, &columns, wanted, residuals, corrections));
-  PetscCall(PetscFree(wanted));
+  *corrections = NULL;
+  PetscCall(SideCollect(modes, left, p->limit[left], &columns, &coordinates));
+  if (columns.m) {
+    PetscCall(ProjectionCreateBlock(p, columns.n_columns, &vectors));
+    PetscCall(ProjectionCreateBlock(p, columns.n_columns, &residuals));
+    PetscCall(BlockLift(p->V, p->k, columns.n_columns, coordinates, vectors));
+    PetscCall(BVGetMat(vectors, &X));
+    PetscCall(BVGetMat(residuals, &R));
+    PetscCall(PetscMalloc1(columns.m, &wanted));
+    PetscCall(ResidualMake(&side, PETSC_FALSE, &columns, X, R));
+    PetscCall(SideMeasure(p, left, &columns, X, R, modes, wanted));
+    PetscCall(BVRestoreMat(residuals, &R));
+    PetscCall(BVRestoreMat(vectors, &X));
+    PetscCall(SideSolve(p, left, &columns, wanted, residuals, corrections));
+    PetscCall(PetscFree(wanted));
+    PetscCall(BVDestroy(&vectors));
+    PetscCall(BVDestroy(&residuals));
+  }
   PetscCall(PetscFree(coordinates));
   PetscCall(ComplexColumnsDestroy(&columns));
-  PetscCall(BVDestroy(&vectors));
-  PetscCall(BVDestroy(&residuals));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ProjectionCorrect(Projection *p, const PetscReal limits[2], ProjectionModes *modes, PetscInt *n_columns)
+PetscErrorCode ProjectionCorrect(Projection *p, ProjectionModes *modes, PetscInt *n_columns)
 {
   BV block[2] = {NULL, NULL};
 
@@ -129,8 +135,8 @@ PetscErrorCode ProjectionCorrect(Projection *p, const PetscReal limits[2], Proje
   *n_columns = 0;
   if (!modes->n) PetscFunctionReturn(0);
   PetscCall(EventBegin(EVENT_CORRECT));
-  PetscCall(SideCorrect(p, PETSC_FALSE, limits[0], modes, &block[0]));
-  if (p->modes->left) PetscCall(SideCorrect(p, PETSC_TRUE, limits[1], modes, &block[1]));
+  PetscCall(SideCorrect(p, PETSC_FALSE, modes, &block[0]));
+  if (p->modes->left) PetscCall(SideCorrect(p, PETSC_TRUE, modes, &block[1]));
   for (int side = 0; side < 2; side++) {
     PetscInt n;
 
@@ -140,6 +146,63 @@ PetscErrorCode ProjectionCorrect(Projection *p, const PetscReal limits[2], Proje
     PetscCall(ProjectionAdd(p, CORRECT_DROP, block[side], NULL));
     PetscCall(BVDestroy(&block[side]));
   }
+  PetscCall(EventEnd(EVENT_CORRECT));
+  PetscFunctionReturn(0);
+}
+
+/* Whether a mode of the undamped problem is in the window */
+static PetscBool StartsWith(const Projection *p, const Spectrum *s, PetscInt i)
+{
+  const Window *w = p->window;
+
+  return w->count || (s->omega[i] >= w->edge[0] && s->omega[i] <= w->edge[1]) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Z = P^-1 C x, or P^-T C' y, scaled to what lambda of the window's upper end makes of it beside |x|_M = 1 */
+static PetscErrorCode StartSide(Projection *p, PetscBool left, const Spectrum *s)
+{
+  const PetscReal top = PetscMax(p->window->high, p->window->target);
+  PetscInt        n   = 0;
+  BV              rest, corrections;
+  Mat             B, Z;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < s->n; i++) n += StartsWith(p, s, i) ? (s->xi[i] ? 2 : 1) : 0;
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(ProjectionCreateBlock(p, n, &rest));
+  PetscCall(ProjectionCreateBlock(p, n, &corrections));
+  n = 0;
+  for (PetscInt i = 0; i < s->n; i++)
+    for (int part = 0; part < 2 && StartsWith(p, s, i); part++) {
+      const Vec x = part ? s->xi[i] : s->xr[i];
+      Vec       b;
+      PetscReal square;
+
+      if (!x) continue;
+      PetscCall(BVGetColumn(rest, n, &b));
+      PetscCall(MatMult(p->pencil->M, x, b));
+      PetscCall(VecDot(b, x, &square));
+      PetscCall(MatMult(left ? p->transposed[1] : p->pencil->C, x, b));
+      PetscCall(VecScale(b, square > 0 ? top / PetscSqrtReal(square) : 0));
+      PetscCall(BVRestoreColumn(rest, n++, &b));
+    }
+  PetscCall(BVGetMat(rest, &B));
+  PetscCall(BVGetMat(corrections, &Z));
+  PetscCall(ShiftInvertApplyBlock(&p->si, left, B, Z));
+  PetscCall(BVRestoreMat(corrections, &Z));
+  PetscCall(BVRestoreMat(rest, &B));
+  PetscCall(ProjectionAdd(p, CORRECT_DROP, corrections, NULL));
+  PetscCall(BVDestroy(&rest));
+  PetscCall(BVDestroy(&corrections));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ProjectionStart(Projection *p, const Spectrum *right, const Spectrum *left)
+{
+  PetscFunctionBeginUser;
+  PetscCall(EventBegin(EVENT_CORRECT));
+  PetscCall(StartSide(p, PETSC_FALSE, right));
+  if (left->n) PetscCall(StartSide(p, PETSC_TRUE, left));
   PetscCall(EventEnd(EVENT_CORRECT));
   PetscFunctionReturn(0);
 }

@@ -6,9 +6,11 @@
    w the upper end of the window, which leaves |mu| <= 1 there. Left vectors: u^H A = mu u^H, y = conj of u's second half.
 */
 #include "projection.h"
-#include "solver/dense.h"
+#include "solver/densepencil.h"
 
-#define EDGE_POINTS 64 /* on each side of the window's edge, where kappa(lambda) is looked at */
+#define FOLLOW_FAR  1e-3  /* relative change of lambda that is another mode's */
+#define FOLLOW_SAME 0.999 /* cosine of the angle of two vectors that are one */
+#define EDGE_POINTS 64    /* on each side of the window's edge, where kappa(lambda) is looked at */
 
 /* A, [2 k * 2 k], column-major */
 static void CompanionFill(const Projection *p, PetscReal w, PetscReal A[])
@@ -24,7 +26,8 @@ static void CompanionFill(const Projection *p, PetscReal w, PetscReal A[])
   }
 }
 
-/* Whether an eigenvalue belongs to the window: within its growth, or that of an undamped mode in it */
+/* Whether an eigenvalue belongs to the window: within its growth, or that of an undamped mode in it, or where V holds
+   every mode */
 static PetscBool LambdaIsInside(const Projection *p, PetscComplex lambda)
 {
   const Window      *w     = p->window;
@@ -33,7 +36,7 @@ static PetscBool LambdaIsInside(const Projection *p, PetscComplex lambda)
 
   if (w->count) return cabs(kappa - p->si.shift) <= p->reach ? PETSC_TRUE : PETSC_FALSE;
   if (omega < w->edge[0] || omega > w->edge[1]) return PETSC_FALSE;
-  if (PetscAbsReal(creal(lambda)) <= w->growth) return PETSC_TRUE;
+  if (PetscAbsReal(creal(lambda)) <= w->growth || p->reach == PETSC_MAX_REAL) return PETSC_TRUE;
   return creal(kappa) >= PetscSqr(w->edge[0]) && creal(kappa) <= PetscSqr(w->edge[1]) ? PETSC_TRUE : PETSC_FALSE;
 }
 
@@ -49,6 +52,9 @@ static PetscReal EdgeReach(const Projection *p, PetscReal d)
   const Window *w       = p->window;
   PetscReal     largest = 0;
 
+  /* at the pole -1 / beta overdamped modes gather; above the real axis kappa is largest on the edge */
+  if (!w->count && w->low <= 0 && p->beta * w->growth >= 1) return PETSC_MAX_REAL;
+  if (w->count && p->beta * d >= 1) return PETSC_MAX_REAL;
   for (int i = 0; i <= EDGE_POINTS; i++) {
     const PetscReal t = (PetscReal)i / EDGE_POINTS, sigma = (2 * t - 1) * w->growth;
     const PetscReal omega = w->low + t * (w->high - w->low);
@@ -82,19 +88,25 @@ static void KeepNearest(const Window *window, const PetscComplex lambda[], Petsc
   *d = *n ? cabs(lambda[list[*n - 1]] - target) : 0;
 }
 
-/* Copies a vector of LAPACK's real storage, scaled to length one; left ones are conjugated */
-static void VectorCopy(PetscInt k, const PetscReal *re, const PetscReal *im, PetscBool conjugate, PetscComplex x[])
+/* Scales a vector to length one and turns a complex one so that x^T x is real and positive */
+static void VectorTurn(PetscInt k, PetscBool is_real, PetscComplex x[])
 {
   PetscReal    length = 0;
   PetscComplex square = 0;
 
   for (PetscInt i = 0; i < k; i++) {
-    x[i] = CMPLX(re[i], im ? (conjugate ? -im[i] : im[i]) : 0);
-    length += creal(x[i]) * creal(x[i]) + cimag(x[i]) * cimag(x[i]);
+    length += creal(conj(x[i]) * x[i]);
     square += x[i] * x[i];
   }
-  square = im && cabs(square) > 0 ? conj(csqrt(square / cabs(square))) : 1;
+  square = !is_real && cabs(square) > 0 ? conj(csqrt(square / cabs(square))) : 1;
   for (PetscInt i = 0; i < k; i++) x[i] *= square / sqrt(length);
+}
+
+/* Copies a vector of LAPACK's real storage; left ones are conjugated */
+static void VectorCopy(PetscInt k, const PetscReal *re, const PetscReal *im, PetscBool conjugate, PetscComplex x[])
+{
+  for (PetscInt i = 0; i < k; i++) x[i] = CMPLX(re[i], im ? (conjugate ? -im[i] : im[i]) : 0);
+  VectorTurn(k, im ? PETSC_FALSE : PETSC_TRUE, x);
 }
 
 /* Room for n modes of a model of this size */
@@ -103,7 +115,8 @@ static PetscErrorCode ProjectionModesCreate(PetscInt n, PetscInt size, Projectio
   PetscFunctionBeginUser;
   *modes = (ProjectionModes){.n = n, .size = size};
   PetscCall(PetscMalloc3(n, &modes->lambda, n * size, &modes->vectors[0], n * size, &modes->vectors[1]));
-  PetscCall(PetscCalloc2(n, &modes->backward[0], n, &modes->backward[1]));
+  PetscCall(PetscMalloc2(n, &modes->backward[0], n, &modes->backward[1]));
+  for (PetscInt i = 0; i < n; i++) modes->backward[0][i] = modes->backward[1][i] = INFINITY;
   PetscFunctionReturn(0);
 }
 
@@ -160,5 +173,79 @@ PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes)
   }
   modes->lambda_reach = EdgeReach(p, d);
   PetscCall(PetscFree4(lambda, L, R, list));
+  PetscFunctionReturn(0);
+}
+
+/* Whether two of the modes are one and the same */
+static PetscBool HasTwice(const ProjectionModes *m)
+{
+  for (PetscInt i = 0; i < m->n; i++)
+    for (PetscInt j = 0; j < i; j++) {
+      PetscComplex dot = 0;
+
+      if (cabs(m->lambda[i] - m->lambda[j]) > FOLLOW_FAR * cabs(m->lambda[i]) || m->lambda[i] == 0) continue;
+      for (PetscInt k = 0; k < m->size; k++)
+        dot += conj(m->vectors[0][i * m->size + k]) * m->vectors[0][j * m->size + k];
+      if (cabs(dot) > FOLLOW_SAME && cabs(m->lambda[i] - m->lambda[j]) < 1e-9 * cabs(m->lambda[i])) return PETSC_TRUE;
+    }
+  return PETSC_FALSE;
+}
+
+/* The values of rank 0 on all */
+static PetscErrorCode ModesShare(MPI_Comm comm, ProjectionModes *m)
+{
+  PetscMPIInt count;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMPIIntCast(2 * m->n * m->size, &count));
+  PetscCallMPI(MPI_Bcast(m->lambda, (PetscMPIInt)(2 * m->n), MPIU_REAL, 0, comm));
+  for (int side = 0; side < 2; side++) PetscCallMPI(MPI_Bcast(m->vectors[side], count, MPIU_REAL, 0, comm));
+  PetscFunctionReturn(0);
+}
+
+/* Mode i from what it was before */
+static PetscErrorCode FollowMode(const Projection *p, const DensePencil *dense, const ProjectionModes *before,
+                                 PetscInt i, ProjectionModes *modes, PetscBool *found)
+{
+  const PetscComplex was     = before->lambda[i];
+  const PetscBool    is_real = cimag(was) == 0 ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  *found           = PETSC_TRUE;
+  modes->lambda[i] = was;
+  for (int side = 0; side < 2; side++) {
+    PetscComplex *x = &modes->vectors[side][i * p->k];
+
+    PetscCall(PetscArrayzero(x, p->k));
+    PetscCall(PetscArraycpy(x, &before->vectors[side][i * before->size], before->size));
+    if (before->backward[side][i] <= p->limit[side]) modes->backward[side][i] = before->backward[side][i];
+  }
+  if (cabs(was) <= p->window->scale || (isfinite(modes->backward[0][i]) && isfinite(modes->backward[1][i])))
+    PetscFunctionReturn(0);
+  PetscCall(
+    DensePencilFollow(dense, &modes->lambda[i], &modes->vectors[0][i * p->k], &modes->vectors[1][i * p->k], found));
+  if (is_real) modes->lambda[i] = creal(modes->lambda[i]);
+  if (!(cabs(modes->lambda[i] - was) <= FOLLOW_FAR * cabs(was))) *found = PETSC_FALSE;
+  for (int side = 0; side < 2; side++) VectorTurn(p->k, is_real, &modes->vectors[side][i * p->k]);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ProjectionFollow(const Projection *p, const ProjectionModes *before, ProjectionModes *modes,
+                                PetscBool *followed)
+{
+  DensePencil dense = {.n = p->k, .damped = PETSC_TRUE, .K = p->K, .C = p->C};
+
+  PetscFunctionBeginUser;
+  PetscCall(ProjectionModesCreate(before->n, p->k, modes));
+  modes->lambda_reach = before->lambda_reach;
+  PetscCall(PetscCalloc1(p->k * p->k, &dense.M));
+  for (PetscInt j = 0; j < p->k; j++) dense.M[j * (p->k + 1)] = 1;
+  *followed = PETSC_TRUE;
+  for (PetscInt i = 0; i < before->n && *followed; i++) PetscCall(FollowMode(p, &dense, before, i, modes, followed));
+  if (*followed && HasTwice(modes)) *followed = PETSC_FALSE;
+  PetscCallMPI(MPI_Bcast(followed, 1, MPIU_BOOL, 0, p->modes->comm));
+  if (*followed) PetscCall(ModesShare(p->modes->comm, modes));
+  if (!*followed) PetscCall(ProjectionModesDestroy(modes));
+  PetscCall(PetscFree(dense.M));
   PetscFunctionReturn(0);
 }

@@ -13,6 +13,7 @@ typedef struct {
   PetscReal             alpha, beta; /* of the fit C = alpha M + beta K + R on the modes of the window */
   PetscReal             reach;       /* all undamped kappa with |kappa - s| below this are in V */
   PetscReal             norms[3];    /* of K, C, M, Frobenius */
+  PetscReal             limit[2];    /* backward errors of settled right and left vectors */
   BV                    V;
   PetscInt              k;     /* columns of V */
   PetscReal            *K, *C; /* V'KV, V'CV [k * k], column-major */
@@ -24,7 +25,7 @@ typedef struct {
   PetscInt      n, size;
   PetscComplex *lambda;       /* [n] rad/s */
   PetscComplex *vectors[2];   /* [n][size] right and left, in coordinates of V */
-  PetscReal    *backward[2];  /* [n] */
+  PetscReal    *backward[2];  /* [n], infinite before they are known */
   PetscReal     lambda_reach; /* largest |kappa(lambda) - s| on the edge of what the window claims */
 } ProjectionModes;
 
@@ -55,10 +56,17 @@ PETSC_INTERN PetscErrorCode ProjectionMeasureBeyond(const Projection *p, PetscRe
 PETSC_INTERN PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes);
 PETSC_INTERN PetscErrorCode ProjectionModesDestroy(ProjectionModes *modes);
 
-/* projectcorrect.c - backward errors of all modes; adds P^-1 r, P^-T s of those above the limits (right, left) to the
-   basis: n_columns of them, 0 where all have settled */
-PETSC_INTERN PetscErrorCode ProjectionCorrect(Projection *p, const PetscReal limits[2], ProjectionModes *modes,
-                                              PetscInt *n_columns);
+/* The modes on the basis that has grown since, each followed from what it was but for settled ones; followed = false where
+   one is lost or found twice */
+PETSC_INTERN PetscErrorCode ProjectionFollow(const Projection *p, const ProjectionModes *before, ProjectionModes *modes,
+                                             PetscBool *followed);
+
+/* projectcorrect.c - adds to the basis P^-1 C x of right vectors of the window and P^-T C' y of left ones, which damping
+   of first order adds to them */
+PETSC_INTERN PetscErrorCode ProjectionStart(Projection *p, const Spectrum *right, const Spectrum *left);
+/* Backward errors of the modes that had not settled; adds P^-1 r, P^-T s of those above the limits to the basis:
+   n_columns of them, 0 where all have settled */
+PETSC_INTERN PetscErrorCode ProjectionCorrect(Projection *p, ProjectionModes *modes, PetscInt *n_columns);
 /* The vectors V x, or V y, as a spectrum */
 PETSC_INTERN PetscErrorCode ProjectionLift(const Projection *p, const ProjectionModes *modes, PetscBool left,
                                            Spectrum *s);

@@ -4,20 +4,37 @@
 #include "projection.h"
 #include "solver/orthonormal.h"
 
-/* A' where a term of this kind is not symmetric, else A itself */
-static PetscErrorCode TransposeTerm(Modes modes, OperatorsTermKind kind, Mat A, Mat *At)
+#define SPACE_SYMMETRIC 1e-13 /* of |A x| |y|: less is rounding */
+
+/* Whether A is symmetric, by y'A x = x'A y of two random vectors */
+static PetscErrorCode LooksSymmetric(Mat A, PetscBool *symmetric)
 {
-  const OperatorsTerm *term;
-  const PetscReal     *values;
-  PetscBool            symmetric = PETSC_TRUE;
-  PetscInt             n;
+  PetscReal   yAx, xAy, Ax, y;
+  PetscRandom random;
+  Vec         v[3];
 
   PetscFunctionBeginUser;
-  PetscCall(PencilGetTerms(modes->pencil, &n, &term));
-  PetscCall(PencilGetParameters(modes->pencil, NULL, NULL, &values));
-  for (PetscInt t = 0; t < n; t++)
-    if (term[t].kind == kind && !term[t].symmetric && OperatorsTermCoefficient(&term[t], values) != 0)
-      symmetric = PETSC_FALSE;
+  PetscCall(MatCreateVecs(A, &v[0], NULL));
+  for (int i = 1; i < 3; i++) PetscCall(VecDuplicate(v[0], &v[i]));
+  PetscCall(PetscRandomCreate(PetscObjectComm((PetscObject)A), &random));
+  for (int i = 0; i < 2; i++) PetscCall(VecSetRandom(v[i], random));
+  PetscCall(PetscRandomDestroy(&random));
+  PetscCall(MatMult(A, v[0], v[2]));
+  PetscCall(VecDot(v[2], v[1], &yAx));
+  PetscCall(VecNorm(v[2], NORM_2, &Ax));
+  PetscCall(VecNorm(v[1], NORM_2, &y));
+  PetscCall(MatMult(A, v[1], v[2]));
+  PetscCall(VecDot(v[2], v[0], &xAy));
+  *symmetric = PetscAbsReal(yAx - xAy) <= SPACE_SYMMETRIC * Ax * y ? PETSC_TRUE : PETSC_FALSE;
+  for (int i = 0; i < 3; i++) PetscCall(VecDestroy(&v[i]));
+  PetscFunctionReturn(0);
+}
+
+/* A', or A itself where it is symmetric */
+static PetscErrorCode TransposeCreate(Mat A, PetscBool symmetric, Mat *At)
+{
+  PetscFunctionBeginUser;
+  if (!symmetric) PetscCall(LooksSymmetric(A, &symmetric));
   if (symmetric)
     PetscCall(PetscObjectReference((PetscObject)A));
   else
@@ -28,14 +45,13 @@ static PetscErrorCode TransposeTerm(Modes modes, OperatorsTermKind kind, Mat A, 
 
 PetscErrorCode ProjectionCreate(Modes modes, const PencilMatrices *pencil, const Window *window, Projection *p)
 {
-  static const OperatorsTermKind kind[3]   = {OPERATORS_STIFFNESS, OPERATORS_DAMPING, OPERATORS_MASS};
-  const Mat                      matrix[3] = {pencil->K, pencil->C, pencil->M};
-  Vec                            u;
+  const Mat matrix[3] = {pencil->K, pencil->C, pencil->M};
+  Vec       u;
 
   PetscFunctionBeginUser;
   *p = (Projection){.modes = modes, .pencil = pencil, .window = window};
   for (int i = 0; i < 3; i++) {
-    PetscCall(TransposeTerm(modes, kind[i], matrix[i], &p->transposed[i]));
+    PetscCall(TransposeCreate(matrix[i], pencil->symmetric, &p->transposed[i]));
     PetscCall(MatNorm(matrix[i], NORM_FROBENIUS, &p->norms[i]));
   }
   PetscCall(MatCreateVecs(pencil->M, &u, NULL));
@@ -95,6 +111,7 @@ PetscErrorCode ProjectionAddSpectrum(Projection *p, const Spectrum *s)
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < s->n; i++) n += s->xi[i] ? 2 : 1;
+  if (!n) PetscFunctionReturn(0);
   PetscCall(ProjectionCreateBlock(p, n, &block));
   n = 0;
   for (PetscInt i = 0; i < s->n; i++) {

@@ -9,10 +9,6 @@ PetscErrorCode ReducedPencil(const Reduced *reduced, const PetscReal p[], PetscI
 /* eigen.c - eigenvalues in the window with omega >= 0 and vectors of any length, rigid modes
    first and once each, the others in any order */
 PetscErrorCode DensePencilEigen(const DensePencil *pencil, const ReducedWindow *window, ReducedModes *modes);
-/* follow.c - from a guess lambda, x, y [n] the eigenvalue with vectors of any length that Newton's method finds; found =
-   false where it does not settle or Q(lambda) stays singular */
-PetscErrorCode DensePencilFollow(const DensePencil *pencil, PetscComplex *lambda, PetscComplex x[], PetscComplex y[],
-                                 PetscBool *found);
 /* What rounding in the leading n x n block of K does to kappa = -lambda^2 times y^T M x: eps sqrt(sum_i |K_ii| |x_i|^2
    sum_i |K_ii| |y_i|^2) */
 PetscReal DensePencilNoise(const DensePencil *pencil, PetscInt n, const PetscComplex x[], const PetscComplex y[]);

@@ -10,23 +10,6 @@
 */
 #include "standard.h"
 
-void DensePencilEvaluate(const DensePencil *q, PetscComplex lambda, PetscInt first, PetscInt n, PetscComplex Q[])
-{
-  for (PetscInt j = 0; j < n; j++)
-    for (PetscInt i = 0; i < n; i++) {
-      const PetscInt at = (first + j) * q->n + first + i;
-
-      Q[j * n + i] = q->K[at] + (q->damped ? lambda * q->C[at] : 0) + lambda * lambda * q->M[at];
-    }
-}
-
-PetscErrorCode DensePencilDestroy(DensePencil *pencil)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree3(pencil->K, pencil->C, pencil->M));
-  PetscFunctionReturn(0);
-}
-
 PetscInt StandardSize(const StandardForm *f)
 {
   return f->damped ? 2 * f->n : f->n;

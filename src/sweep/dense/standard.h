@@ -1,19 +1,7 @@
 /* Private to sweep/: the pencil of one point as a linear problem A z = s B z (see standard.c) */
 #pragma once
 
-#include "solver/dense.h"
-
-/* Q(lambda) = lambda^2 M + lambda C + K, [n * n] each */
-typedef struct {
-  PetscInt   n;
-  PetscBool  damped;    /* C is not zero */
-  PetscBool  symmetric; /* all terms, and no damping */
-  PetscReal *K, *C, *M;
-} DensePencil;
-
-/* Q(lambda) on the unknowns first .. first + n - 1, [n * n] */
-void DensePencilEvaluate(const DensePencil *pencil, PetscComplex lambda, PetscInt first, PetscInt n, PetscComplex Q[]);
-PetscErrorCode DensePencilDestroy(DensePencil *pencil);
+#include "solver/densepencil.h"
 
 /* The leading n unknowns of the pencil; damped may be set where the pencil of another point is */
 typedef struct {

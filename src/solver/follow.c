@@ -8,12 +8,29 @@
    where v^T Q' x = v^T Q u, so that the step does not multiply by a stiff K. Convergence is cubic: three or four complex
    factorisations of size n, where all eigenvalues with their vectors cost a hundred.
 */
-#include "eigen.h"
+#include "densepencil.h"
 #include "base/events.h"
 
 #define FOLLOW_STEPS 10
 #define FOLLOW_END   (4 * PETSC_MACHINE_EPSILON) /* relative change of lambda that is none */
 #define FOLLOW_SMALL 1e-12                       /* a change that no longer shrinks is rounding below this */
+
+void DensePencilEvaluate(const DensePencil *q, PetscComplex lambda, PetscInt first, PetscInt n, PetscComplex Q[])
+{
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscInt at = (first + j) * q->n + first + i;
+
+      Q[j * n + i] = q->K[at] + (q->damped ? lambda * q->C[at] : 0) + lambda * lambda * q->M[at];
+    }
+}
+
+PetscErrorCode DensePencilDestroy(DensePencil *pencil)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(pencil->K, pencil->C, pencil->M));
+  PetscFunctionReturn(0);
+}
 
 /* z = op(Q'(lambda)) x = 2 lambda op(M) x + op(C) x */
 static PetscErrorCode DerivativeApply(const DensePencil *q, PetscComplex lambda, PetscBool transposed,
