@@ -15,12 +15,14 @@
 */
 #include "projection.h"
 
-#define DAMPING_WEAK   0.5
-#define DAMPING_NONE   1e-10 /* measure of damping that leaves the vectors as they are */
-#define PROJECT_GUARD  4     /* undamped modes beyond the window */
+#define DAMPING_WEAK   0.9
+#define PROJECT_GUARD  4 /* undamped modes beyond the window */
 #define PROJECT_ROUNDS 8
 #define PROJECT_RIGHT  1e-14 /* backward errors of settled right and left vectors */
 #define PROJECT_LEFT   1e-11
+
+static const char why_whole[] = "all modes of the system are in the window or next to it"; /* small: said nowhere */
+static const char why_guard[] = "damping moves modes by more than the guard";
 
 /* Removes what lies farther from the shift than the distance */
 static PetscErrorCode SpectrumTrim(PetscReal shift, PetscReal distance, Spectrum *s)
@@ -66,15 +68,6 @@ static PetscErrorCode SolveUndamped(Modes modes, const PencilMatrices *undamped,
   wide.low = 0, wide.high = PETSC_MAX_REAL, wide.count = 0;
   if (*complete) PetscCall(LeftMatch(modes, &wide, &window->worst, complete));
   PetscFunctionReturn(0);
-}
-
-/* Rigid modes: their frequency is zero within rounding */
-static PetscInt CountZeros(const Window *window, const Spectrum *s)
-{
-  PetscInt n = 0;
-
-  for (PetscInt i = 0; i < s->n; i++) n += hypot(s->sigma[i], s->omega[i]) <= window->scale;
-  return n;
 }
 
 /* Forgets the spectra */
@@ -148,7 +141,26 @@ static PetscErrorCode PutModes(Projection *p, const ProjectionModes *found)
   PetscFunctionReturn(0);
 }
 
-/* From the undamped modes to the damped ones; why is set where the route ends before */
+/* Where damping leaves the vectors as they are */
+static PetscErrorCode MapModes(Projection *p, Window *window, const char **why)
+{
+  Modes    modes = p->modes;
+  Spectrum right, left = {.n = 0};
+
+  PetscFunctionBeginUser;
+  window->beyond = 0;
+  PetscCall(ProjectionMap(p, &modes->right, &right));
+  if (modes->left) PetscCall(ProjectionMap(p, modes->left_spectrum.n ? &modes->left_spectrum : &modes->right, &left));
+  PetscCall(SpectraDestroy(modes));
+  modes->right         = right;
+  modes->left_spectrum = left;
+  PetscCall(WindowSelect(window, &modes->right));
+  PetscCall(WindowSelect(window, &modes->left_spectrum));
+  if (ProjectionEdge(p, window->count ? WindowNearest(window, &modes->right) : 0) > p->reach) *why = why_guard;
+  PetscFunctionReturn(0);
+}
+
+/* By Galerkin's method and corrections */
 static PetscErrorCode Project(Projection *p, Window *window, const char **why)
 {
   Modes           modes = p->modes;
@@ -158,20 +170,38 @@ static PetscErrorCode Project(Projection *p, Window *window, const char **why)
   PetscFunctionBeginUser;
   p->limit[0] = PROJECT_RIGHT;
   p->limit[1] = PROJECT_LEFT;
-  PetscCall(ProjectionFit(p, &modes->right, &modes->left_spectrum));
   PetscCall(ProjectionAddSpectrum(p, &modes->right));
   PetscCall(ProjectionAddSpectrum(p, &modes->left_spectrum));
   window->beyond = 0;
-  window->rigid  = CountZeros(window, &modes->right);
   if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionMeasureBeyond(p, &window->beyond));
-  if (window->beyond > DAMPING_WEAK) *why = "damping is strong";
+  if (window->beyond > (modes->damping == DAMPING_AUTO ? DAMPING_WEAK : 1)) *why = "damping is strong";
   if (*why) PetscFunctionReturn(0);
-  if (window->beyond > DAMPING_NONE) PetscCall(ProjectionStart(p, &modes->right, &modes->left_spectrum));
+  if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionStart(p, &modes->right, &modes->left_spectrum));
   PetscCall(Iterate(p, &found, &settled));
   if (settled) PetscCall(PutModes(p, &found));
-  if (!settled)
-    *why = found.lambda_reach > p->reach ? "damping moves modes by more than the guard" : "corrections do not settle";
+  if (!settled) *why = found.lambda_reach > p->reach ? why_guard : "corrections do not settle";
   PetscCall(ProjectionModesDestroy(&found));
+  PetscFunctionReturn(0);
+}
+
+/* From the undamped modes to the damped ones; why is set where the route ends before */
+static PetscErrorCode AddDamping(Projection *p, Window *window, const char **why)
+{
+  Modes     modes = p->modes;
+  PetscBool exact, zero;
+
+  PetscFunctionBeginUser;
+  window->rigid = 0;
+  for (PetscInt i = 0; i < modes->right.n; i++) {
+    PetscCall(ProjectionIsZero(p, &modes->right, i, &zero));
+    window->rigid += zero;
+  }
+  PetscCall(ProjectionFit(p, &modes->right, &modes->left_spectrum));
+  PetscCall(ProjectionIsExact(p, &modes->right, &exact));
+  if (!exact && p->reach == PETSC_MAX_REAL && modes->damping == DAMPING_AUTO)
+    *why = why_whole;
+  else
+    PetscCall(exact ? MapModes(p, window, why) : Project(p, window, why));
   PetscFunctionReturn(0);
 }
 
@@ -193,9 +223,9 @@ PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *w
     if (!complete) window->extra += 10 + modes->right.n / 2;
   }
   if (!complete && !why) why = "undamped right and left modes differ";
-  if (!why) PetscCall(Project(&p, window, &why));
+  if (!why) PetscCall(AddDamping(&p, window, &why));
   *done = why ? PETSC_FALSE : PETSC_TRUE;
-  if (why) PetscCall(PetscStrncpy(window->why, why, sizeof(window->why)));
+  if (why && why != why_whole) PetscCall(PetscStrncpy(window->why, why, sizeof(window->why)));
   if (why) PetscCall(SpectraDestroy(modes));
   if (why) window->extra = 6, window->rigid = 0;
   PetscCall(ProjectionDestroy(&p));

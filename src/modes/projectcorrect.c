@@ -32,17 +32,15 @@ static PetscErrorCode SideCollect(const ProjectionModes *modes, PetscBool left, 
   PetscFunctionReturn(0);
 }
 
-/* Backward errors of the modes that are among the columns, those above the limit, from the norms of residuals and
-   vectors; wanted[columns] = those still above it */
-static PetscErrorCode SideMeasure(const Projection *p, PetscBool left, const ComplexColumns *c, Mat X, Mat R,
-                                  ProjectionModes *modes, PetscBool wanted[])
+/* Backward errors of the modes that are among the columns, those above the limit, from the norms of vectors and
+   residuals; wanted[columns] = those still above it */
+static PetscErrorCode SideMeasure(const Projection *p, PetscBool left, const ComplexColumns *c,
+                                  const PetscReal *const norms[2], ProjectionModes *modes, PetscBool wanted[])
 {
-  PetscReal *x, *r, *backward = modes->backward[left];
+  const PetscReal *x = norms[0], *r = norms[1];
+  PetscReal       *backward = modes->backward[left];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(c->n_columns, &x, c->n_columns, &r));
-  PetscCall(MatGetColumnNorms(X, NORM_2, x));
-  PetscCall(MatGetColumnNorms(R, NORM_2, r));
   for (PetscInt i = 0, k = 0; i < modes->n; i++) {
     const PetscReal size  = cabs(modes->lambda[i]);
     const PetscReal bound = size * size * p->norms[2] + size * p->norms[1] + p->norms[0];
@@ -52,9 +50,9 @@ static PetscErrorCode SideMeasure(const Projection *p, PetscBool left, const Com
     at          = c->column[k];
     two         = c->column[k + 1] - at == 2;
     backward[i] = hypot(r[at], two ? r[at + 1] : 0) / (bound * hypot(x[at], two ? x[at + 1] : 0));
-    wanted[k++] = backward[i] > p->limit[left] && size > p->window->scale ? PETSC_TRUE : PETSC_FALSE;
+    wanted[k++] =
+      backward[i] > p->limit[left] && (!p->window->rigid || size > p->window->scale) ? PETSC_TRUE : PETSC_FALSE;
   }
-  PetscCall(PetscFree2(x, r));
   PetscFunctionReturn(0);
 }
 
@@ -98,7 +96,7 @@ static PetscErrorCode SideCorrect(const Projection *p, PetscBool left, Projectio
                                .M         = left ? p->transposed[2] : p->pencil->M,
                                .symmetric = p->pencil->symmetric};
   ComplexColumns       columns;
-  PetscReal           *coordinates;
+  PetscReal           *coordinates, *norms[2];
   PetscBool           *wanted;
   BV                   vectors, residuals;
   Mat                  X, R;
@@ -114,7 +112,11 @@ static PetscErrorCode SideCorrect(const Projection *p, PetscBool left, Projectio
     PetscCall(BVGetMat(residuals, &R));
     PetscCall(PetscMalloc1(columns.m, &wanted));
     PetscCall(ResidualMake(&side, PETSC_FALSE, &columns, X, R));
-    PetscCall(SideMeasure(p, left, &columns, X, R, modes, wanted));
+    PetscCall(PetscMalloc2(columns.n_columns, &norms[0], columns.n_columns, &norms[1]));
+    PetscCall(MatGetColumnNorms(X, NORM_2, norms[0]));
+    PetscCall(MatGetColumnNorms(R, NORM_2, norms[1]));
+    PetscCall(SideMeasure(p, left, &columns, (const PetscReal *[2]){norms[0], norms[1]}, modes, wanted));
+    PetscCall(PetscFree2(norms[0], norms[1]));
     PetscCall(BVRestoreMat(residuals, &R));
     PetscCall(BVRestoreMat(vectors, &X));
     PetscCall(SideSolve(p, left, &columns, wanted, residuals, corrections));

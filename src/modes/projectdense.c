@@ -8,9 +8,10 @@
 #include "projection.h"
 #include "solver/densepencil.h"
 
-#define FOLLOW_FAR  1e-3  /* relative change of lambda that is another mode's */
-#define FOLLOW_SAME 0.999 /* cosine of the angle of two vectors that are one */
-#define EDGE_POINTS 64    /* on each side of the window's edge, where kappa(lambda) is looked at */
+#define FOLLOW_FAR   1e-3  /* relative change of lambda that is another mode's */
+#define FOLLOW_ONE   0.999 /* cosine of the angle of two vectors that are one */
+#define POLISH_STIFF 1e4   /* |K| beside the square of the upper end */
+#define EDGE_POINTS  64    /* on each side of the window's edge, where kappa(lambda) is looked at */
 
 /* A, [2 k * 2 k], column-major */
 static void CompanionFill(const Projection *p, PetscReal w, PetscReal A[])
@@ -26,9 +27,7 @@ static void CompanionFill(const Projection *p, PetscReal w, PetscReal A[])
   }
 }
 
-/* Whether an eigenvalue belongs to the window: within its growth, or that of an undamped mode in it, or where V holds
-   every mode */
-static PetscBool LambdaIsInside(const Projection *p, PetscComplex lambda)
+PetscBool ProjectionHas(const Projection *p, PetscComplex lambda)
 {
   const Window      *w     = p->window;
   const PetscReal    omega = cimag(lambda);
@@ -45,9 +44,7 @@ static PetscReal LambdaFar(const Projection *p, PetscComplex lambda)
   return cabs(ProjectionKappa(p, lambda) - p->si.shift);
 }
 
-/* Largest |kappa(lambda) - s| on the edge of the window's claim: |sigma| <= growth, low <= omega <= high; or, d away from
-   a target */
-static PetscReal EdgeReach(const Projection *p, PetscReal d)
+PetscReal ProjectionEdge(const Projection *p, PetscReal d)
 {
   const Window *w       = p->window;
   PetscReal     largest = 0;
@@ -149,33 +146,6 @@ static PetscErrorCode CompanionSolve(const Projection *p, PetscComplex lambda[],
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes)
-{
-  const PetscInt k = p->k, n = 2 * k;
-  PetscComplex  *lambda;
-  PetscReal     *L, *R, d = 0;
-  PetscInt      *list, m = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(n, &lambda, n * n, &L, n * n, &R, n, &list));
-  PetscCall(CompanionSolve(p, lambda, L, R));
-  for (PetscInt i = 0; i < n; i++)
-    if (cimag(lambda[i]) >= 0 && LambdaIsInside(p, lambda[i])) list[m++] = i;
-  if (p->window->count) KeepNearest(p->window, lambda, list, &m, &d);
-  PetscCall(ProjectionModesCreate(m, k, modes));
-  for (PetscInt i = 0; i < m; i++) {
-    const PetscInt  at     = list[i] * n;
-    const PetscBool paired = cimag(lambda[list[i]]) > 0 ? PETSC_TRUE : PETSC_FALSE;
-
-    modes->lambda[i] = lambda[list[i]];
-    VectorCopy(k, &R[at], paired ? &R[at + n] : NULL, PETSC_FALSE, &modes->vectors[0][i * k]);
-    VectorCopy(k, &L[at + k], paired ? &L[at + n + k] : NULL, PETSC_TRUE, &modes->vectors[1][i * k]);
-  }
-  modes->lambda_reach = EdgeReach(p, d);
-  PetscCall(PetscFree4(lambda, L, R, list));
-  PetscFunctionReturn(0);
-}
-
 /* Whether two of the modes are one and the same */
 static PetscBool HasTwice(const ProjectionModes *m)
 {
@@ -186,7 +156,7 @@ static PetscBool HasTwice(const ProjectionModes *m)
       if (cabs(m->lambda[i] - m->lambda[j]) > FOLLOW_FAR * cabs(m->lambda[i]) || m->lambda[i] == 0) continue;
       for (PetscInt k = 0; k < m->size; k++)
         dot += conj(m->vectors[0][i * m->size + k]) * m->vectors[0][j * m->size + k];
-      if (cabs(dot) > FOLLOW_SAME && cabs(m->lambda[i] - m->lambda[j]) < 1e-9 * cabs(m->lambda[i])) return PETSC_TRUE;
+      if (cabs(dot) > FOLLOW_ONE && cabs(m->lambda[i] - m->lambda[j]) < 1e-9 * cabs(m->lambda[i])) return PETSC_TRUE;
     }
   return PETSC_FALSE;
 }
@@ -220,13 +190,61 @@ static PetscErrorCode FollowMode(const Projection *p, const DensePencil *dense, 
     PetscCall(PetscArraycpy(x, &before->vectors[side][i * before->size], before->size));
     if (before->backward[side][i] <= p->limit[side]) modes->backward[side][i] = before->backward[side][i];
   }
-  if (cabs(was) <= p->window->scale || (isfinite(modes->backward[0][i]) && isfinite(modes->backward[1][i])))
+  if ((p->window->rigid && cabs(was) <= p->window->scale) ||
+      (isfinite(modes->backward[0][i]) && isfinite(modes->backward[1][i])))
     PetscFunctionReturn(0);
   PetscCall(
     DensePencilFollow(dense, &modes->lambda[i], &modes->vectors[0][i * p->k], &modes->vectors[1][i * p->k], found));
   if (is_real) modes->lambda[i] = creal(modes->lambda[i]);
   if (!(cabs(modes->lambda[i] - was) <= FOLLOW_FAR * cabs(was))) *found = PETSC_FALSE;
   for (int side = 0; side < 2; side++) VectorTurn(p->k, is_real, &modes->vectors[side][i * p->k]);
+  PetscFunctionReturn(0);
+}
+
+/* Where the model is stiff beside the window, its eigenvalues have errors of that many roundings: improves them one by
+   one, where that is found */
+static PetscErrorCode ModesPolish(const Projection *p, ProjectionModes *modes)
+{
+  const PetscReal w    = PetscMax(p->window->high, p->window->target);
+  PetscReal       norm = 0;
+  ProjectionModes better;
+  PetscBool       followed;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < p->k * p->k; i++) norm = PetscMax(norm, PetscAbsReal(p->K[i]));
+  if (norm <= POLISH_STIFF * w * w) PetscFunctionReturn(0);
+  PetscCall(ProjectionFollow(p, modes, &better, &followed));
+  if (!followed) PetscFunctionReturn(0);
+  PetscCall(ProjectionModesDestroy(modes));
+  *modes = better;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes)
+{
+  const PetscInt k = p->k, n = 2 * k;
+  PetscComplex  *lambda;
+  PetscReal     *L, *R, d = 0;
+  PetscInt      *list, m = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(n, &lambda, n * n, &L, n * n, &R, n, &list));
+  PetscCall(CompanionSolve(p, lambda, L, R));
+  for (PetscInt i = 0; i < n; i++)
+    if (cimag(lambda[i]) >= 0 && ProjectionHas(p, lambda[i])) list[m++] = i;
+  if (p->window->count) KeepNearest(p->window, lambda, list, &m, &d);
+  PetscCall(ProjectionModesCreate(m, k, modes));
+  for (PetscInt i = 0; i < m; i++) {
+    const PetscInt  at     = list[i] * n;
+    const PetscBool paired = cimag(lambda[list[i]]) > 0 ? PETSC_TRUE : PETSC_FALSE;
+
+    modes->lambda[i] = lambda[list[i]];
+    VectorCopy(k, &R[at], paired ? &R[at + n] : NULL, PETSC_FALSE, &modes->vectors[0][i * k]);
+    VectorCopy(k, &L[at + k], paired ? &L[at + n + k] : NULL, PETSC_TRUE, &modes->vectors[1][i * k]);
+  }
+  modes->lambda_reach = ProjectionEdge(p, d);
+  PetscCall(ModesPolish(p, modes));
+  PetscCall(PetscFree4(lambda, L, R, list));
   PetscFunctionReturn(0);
 }
 

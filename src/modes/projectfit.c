@@ -56,6 +56,8 @@ PetscErrorCode ProjectionFit(Projection *p, const Spectrum *right, const Spectru
   det = sum[0] * sum[2] - sum[1] * sum[1];
   if (det > FIT_DISTINCT * sum[0] * sum[2]) p->beta = PetscMax(0, (sum[0] * sum[4] - sum[1] * sum[3]) / det);
   if (sum[0] > 0) p->alpha = PetscMax(0, (sum[3] - p->beta * sum[1]) / sum[0]);
+  if (p->beta < FIT_DISTINCT * FIT_DISTINCT * p->alpha) p->beta = 0;
+  if (p->alpha < FIT_DISTINCT * FIT_DISTINCT * p->beta) p->alpha = 0;
   p->beta /= unit;
   PetscFunctionReturn(0);
 }
@@ -63,18 +65,20 @@ PetscErrorCode ProjectionFit(Projection *p, const Spectrum *right, const Spectru
 /* Z = P^-1 R W for the active columns of W and Z */
 static PetscErrorCode BeyondApply(const Projection *p, BV W, BV Z)
 {
-  Mat w, z, Aw[2], b;
+  Mat w, z, Aw, b;
 
   PetscFunctionBeginUser;
   PetscCall(BVGetMat(W, &w));
   PetscCall(BVGetMat(Z, &z));
-  PetscCall(MatMatMult(p->pencil->C, w, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &b));
-  PetscCall(MatMatMult(p->pencil->M, w, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &Aw[0]));
-  PetscCall(MatMatMult(p->pencil->K, w, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &Aw[1]));
-  PetscCall(MatAXPY(b, -p->alpha, Aw[0], SAME_NONZERO_PATTERN));
-  PetscCall(MatAXPY(b, -p->beta, Aw[1], SAME_NONZERO_PATTERN));
+  PetscCall(MatDuplicate(z, MAT_DO_NOT_COPY_VALUES, &b));
+  PetscCall(MatDuplicate(z, MAT_DO_NOT_COPY_VALUES, &Aw));
+  PetscCall(BlockMultiply(p->pencil->C, w, b));
+  PetscCall(BlockMultiply(p->pencil->M, w, Aw));
+  PetscCall(MatAXPY(b, -p->alpha, Aw, SAME_NONZERO_PATTERN));
+  PetscCall(BlockMultiply(p->pencil->K, w, Aw));
+  PetscCall(MatAXPY(b, -p->beta, Aw, SAME_NONZERO_PATTERN));
   PetscCall(ShiftInvertApplyBlock(&p->si, PETSC_FALSE, b, z));
-  for (int i = 0; i < 2; i++) PetscCall(MatDestroy(&Aw[i]));
+  PetscCall(MatDestroy(&Aw));
   PetscCall(MatDestroy(&b));
   PetscCall(BVRestoreMat(Z, &z));
   PetscCall(BVRestoreMat(W, &w));

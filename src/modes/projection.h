@@ -52,7 +52,19 @@ PETSC_INTERN PetscErrorCode ProjectionFit(Projection *p, const Spectrum *right, 
    |lambda| at the top of the window, estimated from a random block */
 PETSC_INTERN PetscErrorCode ProjectionMeasureBeyond(const Projection *p, PetscReal *rho);
 
-/* projectdense.c - eigenvalues of the dense model in the window */
+/* projectmap.c - whether C = alpha M + beta K; the spectrum of the damped problem then, right or left */
+PETSC_INTERN PetscErrorCode ProjectionIsExact(const Projection *p, const Spectrum *right, PetscBool *exact);
+/* Whether an undamped mode is rigid: kappa is zero within rounding */
+PETSC_INTERN PetscErrorCode ProjectionIsZero(const Projection *p, const Spectrum *s, PetscInt i, PetscBool *zero);
+PETSC_INTERN PetscErrorCode ProjectionMap(const Projection *p, const Spectrum *from, Spectrum *to);
+
+/* projectdense.c - whether an eigenvalue belongs to the window: within its growth, or that of an undamped mode in it, or
+   where V holds every mode */
+PETSC_INTERN PetscBool ProjectionHas(const Projection *p, PetscComplex lambda);
+/* Largest |kappa(lambda) - s| on the edge of the window's claim: |sigma| <= growth, low <= omega <= high; or, d away from
+   a target */
+PETSC_INTERN PetscReal ProjectionEdge(const Projection *p, PetscReal d);
+/* Eigenvalues of the dense model in the window */
 PETSC_INTERN PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes);
 PETSC_INTERN PetscErrorCode ProjectionModesDestroy(ProjectionModes *modes);
 

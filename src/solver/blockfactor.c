@@ -33,7 +33,7 @@ static PetscErrorCode PassMeasure(BV V, PetscInt n, Mat M, BV W, BlockPass *pass
   PetscFunctionBeginUser;
   if (M) {
     PetscCall(BVDuplicateResize(W, pass->m, &MW));
-    PetscCall(BVMatMult(W, M, MW));
+    PetscCall(BlockMultiplyVectors(M, W, MW));
   }
   PetscCall(BVSetActiveColumns(V, 0, n));
   PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, pass->m, NULL, &pass->C));

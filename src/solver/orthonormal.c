@@ -21,7 +21,7 @@ PetscErrorCode BlockProducts(BV X, Mat A, BV Y, Mat *H)
   PetscCall(BVGetActiveColumns(Y, NULL, &ny));
   if (A) {
     PetscCall(BVDuplicateResize(Y, ny, &AY));
-    PetscCall(BVMatMult(Y, A, AY));
+    PetscCall(BlockMultiplyVectors(A, Y, AY));
   }
   PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, nx, ny, NULL, H));
   PetscCall(BVDot(AY, X, *H));

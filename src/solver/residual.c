@@ -2,6 +2,7 @@
    Residuals of eigenpairs of the quadratic problem on real matrices; see residual.h.
 */
 #include "residual.h"
+#include "orthonormal.h"
 
 PetscErrorCode ComplexColumnsCreate(PetscInt capacity, ComplexColumns *c)
 {
@@ -36,10 +37,12 @@ static PetscErrorCode ResidualAdd(Mat A, PetscBool transposed, const ComplexColu
   Mat                AX;
 
   PetscFunctionBeginUser;
-  if (transposed)
+  if (transposed) {
     PetscCall(MatTransposeMatMult(A, X, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &AX));
-  else
-    PetscCall(MatMatMult(A, X, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &AX));
+  } else {
+    PetscCall(MatDuplicate(X, MAT_DO_NOT_COPY_VALUES, &AX));
+    PetscCall(BlockMultiply(A, X, AX));
+  }
   PetscCall(MatGetLocalSize(AX, &n, NULL));
   PetscCall(MatDenseGetLDA(AX, &ldx));
   PetscCall(MatDenseGetLDA(R, &ldr));
