@@ -4,6 +4,7 @@
 
       undamped symmetric   K x = kappa M x, kappa = -lambda^2          EPS GHEP,  LDL' of K - s M
       undamped, friction   the same, K unsymmetric                     EPS GNHEP, LU
+      weakly damped        its projection on undamped modes            corrections with the factors of K - s M
       damped               the quadratic problem                       PEP TOAR,  LU of K + s C + s^2 M
 
    Left vectors solve the transposed problem with the transposed factors, from a start vector of their own; what one
