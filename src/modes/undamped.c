@@ -12,14 +12,16 @@
 #include <complex.h>
 
 /* Without a target, or with one near zero, the shift lies below zero, where rigid modes may be. Rounding of an eigenvalue there by its inverse,
-   1 / (kappa - shift), spoils the others by as much: 1e-8 |K| / |M| below leaves 1e-8 of the largest at worst. */
+   1 / (kappa - shift), spoils the others by as much: 1e-8 |K| / |M| below leaves 1e-8 of the largest at worst.
+   In a band it lies amid kappa, so that few modes outside are as near as those inside; where the band begins at low
+   frequencies, which there lose digits, at a quarter. */
 PetscReal UndampedShift(const Window *window)
 {
   const PetscReal low = window->low * window->low, high = window->high * window->high;
 
   if (window->count)
     return window->target > 10 * window->scale ? window->target * window->target : -PetscSqr(10 * window->scale);
-  return low + 0.25 * (high - low);
+  return low + PetscMin(0.5, 0.25 + 1.5 * low / high) * (high - low);
 }
 
 /* Radius about the shift, in the plane of kappa = -lambda^2, that the converged eigenvalues must exceed. Band: the

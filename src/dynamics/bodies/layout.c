@@ -7,9 +7,9 @@
 */
 #include "bodiesimpl.h"
 
-#define SAME_AXIS 1e-8 /* of centres that ranks find, relative to the mesh */
-#define LEAF      256  /* nodes, with their sums about 15 kB */
-#define TILT      0.02 /* of planes of nodes: few of a regular mesh share one, which quicksort is slow with */
+#define SAME_AXIS  1e-8 /* of centres that ranks find, relative to the mesh */
+#define NODES_LEAF 256  /* nodes, with their sums about 15 kB */
+#define TILT       0.02 /* of planes of nodes: few of a regular mesh share one, which quicksort is slow with */
 
 static PetscInt LayoutRoundUp(PetscInt n)
 {
@@ -194,7 +194,7 @@ static void SweptLayOut(const SweptBody *swept, Layout *layout)
     }
 }
 
-/* Sorts nodes along the longest side of their box, and those of each half of it again, down to LEAF: what rows of
+/* Sorts nodes along the longest side of their box, and those of each half of it again, down to NODES_LEAF: what rows of
    neighbours read and add to stays in the nearest cache, and neighbouring rows are of like lengths */
 static PetscErrorCode VerticesSort(const Mesh *mesh, PetscInt n, PetscInt vertex[], PetscReal key[])
 {
@@ -216,7 +216,7 @@ static PetscErrorCode VerticesSort(const Mesh *mesh, PetscInt n, PetscInt vertex
     key[i] = x[longest] + TILT * (x[(longest + 1) % 3] + TILT * x[(longest + 2) % 3]);
   }
   PetscCall(PetscSortRealWithArrayInt(n, key, vertex));
-  if (n <= LEAF) PetscFunctionReturn(0);
+  if (n <= NODES_LEAF) PetscFunctionReturn(0);
   PetscCall(VerticesSort(mesh, n / 2, vertex, key));
   PetscCall(VerticesSort(mesh, n - n / 2, vertex + n / 2, key));
   PetscFunctionReturn(0);

@@ -103,12 +103,14 @@ static PetscErrorCode SectionFindKeys(PetscInt n_lines, ColumnSection *section)
   PetscFunctionReturn(0);
 }
 
-/* Adds the block of nodes a and b of a column's cell, scaled; pqc [3] places of p, q, c among the components */
-static void ColumnAddBlock(const Column *column, const BodiesCell *cell, PetscInt a, PetscInt b, const PetscInt pqc[3],
+/* Adds the block of nodes a and b = pair / 8, pair % 8 of a column's cell, scaled; pqc [3] places of p, q, c among the
+   components */
+static void ColumnAddBlock(const Column *column, const BodiesCell *cell, PetscInt pair, const PetscInt pqc[3],
                            PetscReal scale, ColumnBlocks *blocks)
 {
-  PetscReal *sum = column->second[a] ? (column->second[b] ? blocks->before : blocks->down)
-                                     : (column->second[b] ? blocks->up : blocks->after);
+  const PetscInt a = pair / 8, b = pair % 8;
+  PetscReal     *sum = column->second[a] ? (column->second[b] ? blocks->before : blocks->down)
+                                         : (column->second[b] ? blocks->up : blocks->after);
 
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) sum[3 * i + j] += scale * cell->stiffness[24 * (3 * a + pqc[i]) + 3 * b + pqc[j]];
@@ -134,8 +136,8 @@ static PetscErrorCode ColumnSectionSum(Bodies b, const SweptBody *s, ColumnSecti
 
       PetscCall(
         PetscFindInt(column->line[i / 8] * s->lines->n_lines + column->line[i % 8], section->n_keys, section->key, &k));
-      ColumnAddBlock(column, &cell, i / 8, i % 8, pqc, 1, &section->stiffness[k]);
-      ColumnAddBlock(column, &cell, i / 8, i % 8, pqc, cell.beta, &section->damping[k]);
+      ColumnAddBlock(column, &cell, i, pqc, 1, &section->stiffness[k]);
+      ColumnAddBlock(column, &cell, i, pqc, cell.beta, &section->damping[k]);
     }
   }
   PetscFunctionReturn(0);
