@@ -212,5 +212,9 @@ PetscErrorCode ShiftsSolve(Modes modes, const PencilMatrices *pencil, Window *wi
   }
   modes->right         = found[0];
   modes->left_spectrum = found[1];
+  PetscCheck(!window->proven || found[0].n == window->expected, modes->comm, PETSC_ERR_NOT_CONVERGED,
+             "%" PetscInt_FMT " shifts found %" PetscInt_FMT " modes of the %" PetscInt_FMT
+             " in the band; give another number of -modes_shifts",
+             modes->shifts, found[0].n, window->expected);
   PetscFunctionReturn(0);
 }

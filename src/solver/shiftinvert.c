@@ -55,7 +55,7 @@ static PetscErrorCode UpdateIsStiff(const PencilMatrices *pencil, PetscBool *sti
    they are not kept. */
 static PetscErrorCode ShiftInvertChoose(const PencilMatrices *pencil, ShiftInvert *si, PetscBool *store)
 {
-  PetscInt  n, p;
+  PetscInt  n, n_local, p;
   PetscBool keeps, stiff;
 
   PetscFunctionBeginUser;
@@ -70,7 +70,10 @@ static PetscErrorCode ShiftInvertChoose(const PencilMatrices *pencil, ShiftInver
   PetscCall(ShiftInvertKeepsPattern(si, pencil, &keeps));
   if (!keeps) PetscCall(ShiftInvertPrepare(pencil, si));
   PetscCall(MatGetSize(pencil->left, &p, &n));
+  PetscCall(MatGetLocalSize(pencil->K_even, &n_local, NULL));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_local, 1, MPIU_INT, MPI_MAX, si->comm));
   *store = (double)n * (double)p <= UPDATE_SHARE * si->cost.entries &&
+               (double)n_local * (double)p <= PETSC_MAX_INT && /* PETSc counts the entries of a rank */
                si->cost.needed + 8e-6 * (double)n * (double)p <= UPDATE_ROOM * si->cost.room
              ? PETSC_TRUE
              : PETSC_FALSE;

@@ -101,10 +101,13 @@ static PetscErrorCode StepApply(GreedyWork *run, const PetscReal p[], ReducedMod
 /* Whether the basis has as many frictionless modes at p as the full problem */
 static PetscErrorCode SampleCount(GreedyWork *run, const PetscReal p[], PetscBool *complete)
 {
-  PetscInt     full, by_basis;
-  ShiftInvert *counter = run->is_near && run->greedy->window.low < 0.5 * run->greedy->window.high
-                           ? &run->correction.factor
-                           : &run->counter; /* the factors at the upper end are those of the count there */
+  PetscInt full, by_basis;
+  /* LDL' factors at the upper end are those of the count there; an LU would have to be made again after it */
+  const PetscBool shared =
+    run->is_near && run->correction.factor.even && run->greedy->window.low < 0.5 * run->greedy->window.high
+      ? PETSC_TRUE
+      : PETSC_FALSE;
+  ShiftInvert *counter = shared ? &run->correction.factor : &run->counter;
 
   PetscFunctionBeginUser;
   PetscCall(CorrectionCount(run->basis, p, &run->greedy->window, counter, &full, &by_basis));
