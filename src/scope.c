@@ -48,6 +48,8 @@ static PetscErrorCode ScopeCheckContact(MPI_Comm comm, const Scope *s, const Con
     PetscSNPrintf(other, sizeof(other), "not used with -%s_law constraint, which is as stiff as can be", c->name));
   if (!s->transient && c->law == CONTACT_CONSTRAINT && !c->identify) PetscCall(ScopeRefuse(comm, c->name, "kn", other));
   if (!s->transient && c->law == CONTACT_CONSTRAINT) PetscCall(ScopeRefuse(comm, c->name, "kn_per_area", other));
+  PetscCall(PetscSNPrintf(other, sizeof(other), "not used with -%s_law constraint, which needs LU", c->name));
+  if (s->modes && c->law == CONTACT_CONSTRAINT) PetscCall(ScopeRefuse(comm, "operators", "factors", other));
   if (s->transient && c->law == CONTACT_PENALTY) PetscCall(ScopeRefuse(comm, c->name, "law", exact));
   if (s->transient) PetscCall(ScopeRefuse(comm, c->name, "kn", exact));
   if (s->transient) PetscCall(ScopeRefuse(comm, c->name, "kn_per_area", exact));
@@ -111,14 +113,21 @@ static PetscErrorCode ScopeGetDamping(const Scope *s, PetscBool *damped, PetscBo
 /* Options of the eigensolver that is not needed */
 static PetscErrorCode ScopeCheckEigensolver(MPI_Comm comm, const Scope *s)
 {
-  PetscBool damped, undamped, has_band;
+  static const char pep_alone[] = "not used by -modes_damping pep in a band, which -pep_* solves";
+  static const char unsolved[]  = "not used by -modes_damping pep in a band, which LU solves";
+  PetscBool         damped, undamped, has_band, may_project, may_pep;
 
   PetscFunctionBeginUser;
   PetscCall(ScopeGetDamping(s, &damped, &undamped));
   PetscCall(ModesHaveBand(s->linear, &has_band)); /* without a band the undamped modes tell how far to look */
-  if (!undamped && has_band)
-    PetscCall(OptionsRefusePrefix(comm, "-eps_", "not used by damped modes in a band, which -pep_* solves"));
+  PetscCall(ModesGetRoutes(s->linear, &may_project, &may_pep));
+  if (!undamped && has_band && !may_project) {
+    PetscCall(OptionsRefusePrefix(comm, "-eps_", pep_alone));
+    PetscCall(ScopeRefuse(comm, "operators", "factors", unsolved));
+  }
   if (!damped) PetscCall(OptionsRefusePrefix(comm, "-pep_", "not used by modes without damping, which -eps_* solves"));
+  if (!undamped && !may_pep)
+    PetscCall(OptionsRefusePrefix(comm, "-pep_", "not used by -modes_damping project, which -eps_* solves"));
   PetscFunctionReturn(0);
 }
 
@@ -212,6 +221,7 @@ static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool st
   if (s->transient)
     PetscCall(ScopeRefuse(comm, "operators", "mass", "not used by -analysis transient, whose mass is lumped"));
   if (!s->transient && !s->modes) PetscCall(ScopeRefuse(comm, "operators", "mass", "not used by -analysis static"));
+  if (!s->modes) PetscCall(ScopeRefuse(comm, "operators", "factors", "used by modes, sweeps and frequency responses"));
   PetscFunctionReturn(0);
 }
 

@@ -69,6 +69,10 @@ PetscErrorCode ModesGetBand(Modes modes, PetscReal band[2], PetscReal *growth);
 /*@ ModesHaveBand - whether the modes of a band are asked for, not those nearest to a target. Not collective. @*/
 PetscErrorCode ModesHaveBand(Modes modes, PetscBool *has_band);
 
+/*@ ModesGetRoutes - whether damped modes may be found by projection on undamped ones, and whether by PEP, as
+    -modes_damping says. Not collective. @*/
+PetscErrorCode ModesGetRoutes(Modes modes, PetscBool *may_project, PetscBool *may_pep);
+
 /*@ ModesSetBand - another band, Hz. Not collective. @*/
 PetscErrorCode ModesSetBand(Modes modes, const PetscReal band[2]);
 

@@ -57,30 +57,32 @@ static PetscErrorCode DescribeProjection(const Window *window, const char region
                             "undamped right and left vectors, sought from different starts with one shared "
                             "factorisation, give the same eigenvalues, to %.1e",
                             (double)window->worst));
-  PetscCall(PetscSNPrintf(text, size,
-                          "none was found missing: %s, and damping, projected on them, has a measure of %.2g beyond "
-                          "them, where less than 1 brings none%s%s",
-                          undamped, (double)window->beyond, region, rest));
+  PetscCall(
+    PetscSNPrintf(text, size,
+                  "none was found missing: %s; damping brings none%s from beyond them, since its strength there is "
+                  "%.2g, and 1 would be needed%s",
+                  undamped, region, (double)window->beyond, rest));
   PetscFunctionReturn(0);
 }
 
 /* Why a damped solution was not done by projection */
 static PetscErrorCode DescribeRoute(const Window *window, char text[], size_t size)
 {
-  char measure[32] = "";
+  char measure[80] = "";
 
   PetscFunctionBeginUser;
   text[0] = '\0';
   if (!window->why[0]) PetscFunctionReturn(0);
   if (window->beyond >= 0)
-    PetscCall(PetscSNPrintf(measure, sizeof(measure), " (measure %.2g)", (double)window->beyond));
+    PetscCall(PetscSNPrintf(measure, sizeof(measure), " (strength %.2g beyond the undamped modes of the window)",
+                            (double)window->beyond));
   PetscCall(PetscSNPrintf(text, size, "; by PEP, since %s%s", window->why, measure));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode WindowDescribe(Modes modes, const Window *window)
 {
-  char         frictionless[384], region[64] = "", route[128];
+  char         frictionless[384], region[64] = "", route[192];
   char        *text = modes->completeness;
   const size_t size = sizeof(modes->completeness);
 

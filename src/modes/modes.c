@@ -58,6 +58,14 @@ PetscErrorCode ModesGetBand(Modes modes, PetscReal band[2], PetscReal *growth)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModesGetRoutes(Modes modes, PetscBool *may_project, PetscBool *may_pep)
+{
+  PetscFunctionBeginUser;
+  *may_project = modes->damping != DAMPING_PEP ? PETSC_TRUE : PETSC_FALSE;
+  *may_pep     = modes->damping != DAMPING_PROJECT ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModesHaveBand(Modes modes, PetscBool *has_band)
 {
   PetscFunctionBeginUser;

@@ -51,7 +51,7 @@ struct _p_Modes {
   double     *part_percent; /* participation of the parts [n][parts], NULL for matrices without a mesh */
   PetscInt    shifts;       /* in use */
   char        completeness[1024];
-  char        solver[64]; /* type of the undamped eigensolver, and its block */
+  char        solver[96]; /* type of the undamped eigensolver, its block and factors */
   ShiftInvert factor;     /* of the solution where keep is set */
   ShiftInvert counter;    /* of the last count by inertia, from which the solution takes its analysis */
   /* of the solution under way */

@@ -139,16 +139,17 @@ static PetscErrorCode UndampedTranspose(PencilMatrices *problem)
   PetscFunctionReturn(0);
 }
 
-/* The solver in words */
-static PetscErrorCode UndampedDescribe(EPS eps, size_t size, char text[])
+/* The solver and what it solves with, in words */
+static PetscErrorCode UndampedDescribe(EPS eps, const ShiftInvert *si, size_t size, char text[])
 {
-  EPSType  type;
-  PetscInt block;
+  const char *const factors = si->update ? "LDL' and an update for friction" : si->even ? "LDL'" : "LU";
+  EPSType           type;
+  PetscInt          block;
 
   PetscFunctionBeginUser;
   PetscCall(EPSGetType(eps, &type));
   PetscCall(BlockKrylovGetBlock(eps, &block));
-  PetscCall(PetscSNPrintf(text, size, "%s, blocks of %" PetscInt_FMT, type, block));
+  PetscCall(PetscSNPrintf(text, size, "%s, blocks of %" PetscInt_FMT ", %s", type, block, factors));
   PetscFunctionReturn(0);
 }
 
@@ -174,7 +175,7 @@ PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Wi
     PetscCall(ProgressBegin(&modes->progress, transposed ? "left vectors" : "right vectors", 2 * nev + nev / 4));
     PetscCall(EPSSolve(eps));
     PetscCall(ProgressEnd(&modes->progress));
-    PetscCall(UndampedDescribe(eps, sizeof(modes->solver), modes->solver));
+    PetscCall(UndampedDescribe(eps, si, sizeof(modes->solver), modes->solver));
     PetscCall(UndampedCollect(eps, si->shift, n, spectrum));
     covered =
       spectrum->reach > UndampedRadius(window, si->shift, spectrum) || spectrum->n == n ? PETSC_TRUE : PETSC_FALSE;

@@ -107,7 +107,7 @@ static PetscErrorCode AnalysisCheck(MPI_Comm comm, Mat A, const FactorCost *cost
       PetscSNPrintf(disk, sizeof(disk), ", or factors on disk by -st_mat_mumps_icntl_22 1 (%.0f MB)", cost->disk));
   PetscCheck(cost->needed <= cost->room, comm, PETSC_ERR_USER_INPUT,
              "the factors of %" PetscInt_FMT
-             " unknowns need %.0f MB on one machine by MUMPS' estimate, and %s %.0f MB: "
+             " unknowns need %.0f MB on one machine by MUMPS' estimate, and %s %.6g MB: "
              "take a coarser mesh, more machines%s%s",
              n, cost->needed, given ? "-squeal_memory allows" : "there are free", cost->room, disk,
              given ? "" : "; -squeal_memory MB says otherwise");

@@ -25,15 +25,16 @@ static PetscErrorCode BlockKrylovSizes(EPS eps)
   const PetscInt   block = PetscMin(ctx->size ? ctx->size : BLOCK, eps->n);
 
   PetscFunctionBegin;
+  PetscCheck(ctx->size <= eps->n, PetscObjectComm((PetscObject)eps), PETSC_ERR_USER_INPUT,
+             BLOCKKRYLOV_SIZE " %" PetscInt_FMT " must be at most %" PetscInt_FMT ", the unknowns", ctx->size, eps->n);
   if (eps->ncv <= 0) eps->ncv = PetscMin(eps->n, PetscMax(2 * eps->nev, eps->nev + 20) + 2 * block);
   PetscCheck(eps->ncv >= PetscMin(eps->n, eps->nev + 2), PetscObjectComm((PetscObject)eps), PETSC_ERR_USER_INPUT,
              "-eps_ncv %" PetscInt_FMT " must be at least %" PetscInt_FMT ": the eigenvalues asked for and two more",
              eps->ncv, eps->nev + 2);
   ctx->block = eps->ncv < eps->n ? PetscMin(block, (eps->ncv - eps->nev) / 2) : block;
-  PetscCheck(!ctx->size || ctx->size >= eps->n || ctx->block == ctx->size, PetscObjectComm((PetscObject)eps),
-             PETSC_ERR_USER_INPUT,
-             "-eps_blockkrylovschur_size %" PetscInt_FMT " must be at most %" PetscInt_FMT
-             ": half of what -eps_ncv %" PetscInt_FMT " leaves beside %" PetscInt_FMT " eigenvalues",
+  PetscCheck(!ctx->size || ctx->block == ctx->size, PetscObjectComm((PetscObject)eps), PETSC_ERR_USER_INPUT,
+             BLOCKKRYLOV_SIZE " %" PetscInt_FMT " must be at most %" PetscInt_FMT
+                              ": half of what -eps_ncv %" PetscInt_FMT " leaves beside %" PetscInt_FMT " eigenvalues",
              ctx->size, ctx->block, eps->ncv, eps->nev);
   eps->mpd = eps->ncv;
   if (eps->max_it <= 0) eps->max_it = PetscMax(100, 2 * eps->n / eps->ncv);
@@ -278,11 +279,11 @@ static PetscErrorCode EPSSetFromOptions_BlockKrylov(EPS eps, PetscOptionItems *P
 
   PetscFunctionBegin;
   PetscOptionsHeadBegin(PetscOptionsObject, "EPS block Krylov-Schur options");
-  PetscCall(PetscOptionsInt("-eps_blockkrylovschur_size", "vectors in a block (0: 8, or as many as there is room for)",
+  PetscCall(PetscOptionsInt(BLOCKKRYLOV_SIZE, "vectors in a block (0: 8, or as many as there is room for)",
                             "blockkrylov.h", ctx->size, &ctx->size, NULL));
   PetscOptionsHeadEnd();
   PetscCheck(ctx->size >= 0, PetscObjectComm((PetscObject)eps), PETSC_ERR_USER_INPUT,
-             "-eps_blockkrylovschur_size %" PetscInt_FMT " must not be negative", ctx->size);
+             BLOCKKRYLOV_SIZE " %" PetscInt_FMT " must not be negative", ctx->size);
   PetscFunctionReturn(0);
 }
 

@@ -4,6 +4,7 @@
 #include <slepceps.h>
 
 #define EPSBLOCKKRYLOVSCHUR "blockkrylovschur"
+#define BLOCKKRYLOV_SIZE    "-eps_blockkrylovschur_size"
 
 /* Makes -eps_type blockkrylovschur known to SLEPc. Call once after SlepcInitialize(). Not collective.
 
@@ -12,8 +13,8 @@
    solves with many right-hand sides. An iteration fills the space once. It ends with EPS_DIVERGED_BREAKDOWN where there
    are no more finite eigenvalues.
 
-   Options: -eps_blockkrylovschur_size b: vectors in a block (default 8, less in a smaller space or problem); all of EPS but balancing,
-   regions, two-sided, true residuals, and orders other than by magnitude. */
+   Options: -eps_blockkrylovschur_size b: vectors in a block, at most the unknowns (0: 8, less in a smaller space or
+   problem); all of EPS but balancing, regions, two-sided, true residuals, and orders other than by magnitude. */
 PETSC_INTERN PetscErrorCode BlockKrylovRegister(void);
 
 /* Vectors in a block of a solver that is set up, 1 for another type */

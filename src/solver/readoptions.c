@@ -102,6 +102,9 @@ static PetscErrorCode SolverCheckTypes(MPI_Comm comm)
              "-eps_type %s: not offered, other modes would be found; valid are " EPSBLOCKKRYLOVSCHUR
              " and " EPSKRYLOVSCHUR,
              value);
+  if (single)
+    PetscCall(OptionsRefuse(comm, BLOCKKRYLOV_SIZE,
+                            "not used by -eps_type " EPSKRYLOVSCHUR ", which has no blocks; leave one out"));
   PetscFunctionReturn(0);
 }
 
