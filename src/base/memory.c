@@ -25,7 +25,8 @@ static const struct {
   {"memory:", "/sys/fs/cgroup/memory", "memory.limit_in_bytes", "total_rss"}
 };
 
-static PetscReal allowed = 0; /* -squeal_memory, MB */
+static PetscReal allowed       = 0; /* -squeal_memory, MB */
+static int       machine_ranks = 1; /* log handle: ranks of the run on this machine */
 
 /* Bytes of address space that this process may have, 0 without bound */
 static double MemoryLimit(void)
@@ -141,9 +142,19 @@ void MemoryReturn(void)
 #endif
 }
 
+int MemoryRanks(void)
+{
+  return machine_ranks;
+}
+
 PetscErrorCode MemorySetFromOptions(MPI_Comm comm)
 {
+  MPI_Comm machine;
+
   PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine));
+  PetscCallMPI(MPI_Comm_size(machine, &machine_ranks));
+  PetscCallMPI(MPI_Comm_free(&machine));
   PetscOptionsBegin(comm, NULL, "Memory", NULL);
   PetscCall(PetscOptionsReal("-squeal_memory",
                              "MB that a factorisation may take on one machine, of all ranks there (0: what is free)",

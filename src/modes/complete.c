@@ -57,11 +57,11 @@ static PetscErrorCode DescribeProjection(const Window *window, const char region
                             "undamped right and left vectors, sought from different starts with one shared "
                             "factorisation, give the same eigenvalues, to %.1e",
                             (double)window->worst));
-  PetscCall(
-    PetscSNPrintf(text, size,
-                  "none was found missing: %s; damping brings none%s from beyond them, since its strength there is "
-                  "%.2g, and 1 would be needed%s",
-                  undamped, region, (double)window->beyond, rest));
+  PetscCall(PetscSNPrintf(
+    text, size,
+    "none was found missing: %s; damping brings none%s from beyond them, since its estimated strength there is "
+    "%.2g, and 1 would be needed%s",
+    undamped, region, (double)window->beyond, rest));
   PetscFunctionReturn(0);
 }
 

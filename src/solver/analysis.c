@@ -56,14 +56,14 @@ static PetscErrorCode AnalysisRun(PC pc, Mat A, PetscBool symmetric)
 static PetscErrorCode AnalysisEstimate(MPI_Comm comm, Mat F, FactorCost *cost)
 {
   PetscInt    entries, low_rank, on_disk, core, disk;
-  PetscMPIInt rank;
+  PetscMPIInt rank, ranks;
   PetscBool   given;
   MPI_Comm    machine;
   struct {
     double lack;
     int    rank;
   } worst;
-  double mb[3];
+  double mb[3], share;
 
   PetscFunctionBeginUser;
   PetscCall(MatMumpsGetInfog(F, 3, &entries));
@@ -76,10 +76,12 @@ static PetscErrorCode AnalysisEstimate(MPI_Comm comm, Mat F, FactorCost *cost)
   PetscCallMPI(MPI_Allreduce(mb, &cost->all, 1, MPI_DOUBLE, MPI_SUM, comm));
   PetscCallMPI(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mb, 2, MPI_DOUBLE, MPI_SUM, machine));
+  PetscCallMPI(MPI_Comm_size(machine, &ranks));
+  share = (double)ranks / MemoryRanks(); /* the other groups of ranks make factors at the same time */
   PetscCallMPI(MPI_Comm_free(&machine));
   if (cost->all >= RETURN_FROM) MemoryReturn();
   PetscCallMPI(MPI_Barrier(comm)); /* all ranks have, before any looks what is free */
-  mb[2] = MemoryRoom(&given);
+  mb[2] = MemoryRoom(&given) * share;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   worst.lack = mb[0] - mb[2];
   worst.rank = rank;

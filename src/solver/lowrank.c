@@ -185,6 +185,7 @@ PetscErrorCode LowRankSetUp(Mat L, Mat R, PetscBool store, LowRank *u, PetscBool
   PetscCall(PetscFree(c));
   PetscCall(PetscBLASIntCast(u->p, &p));
   PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&p, &p, u->C, &p, u->pivot, &info));
+  PetscCheck(info >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK getrf: info %d", (int)info);
   *singular = info > 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
