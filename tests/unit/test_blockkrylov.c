@@ -150,6 +150,8 @@ static PetscErrorCode MakeSolver(const Case *c, Mat K, Mat M, PetscInt block, EP
   PC   pc;
 
   PetscFunctionBeginUser;
+  block = PetscMin(block, c->n); /* larger ones are refused */
+  if (c->ncv && c->ncv < c->n) block = PetscMin(block, (c->ncv - c->nev) / 2);
   PetscCall(PetscSNPrintf(value, sizeof(value), "%d", (int)block));
   PetscCall(PetscOptionsSetValue(NULL, "-eps_blockkrylovschur_size", value));
   PetscCall(EPSCreate(PETSC_COMM_WORLD, eps));
