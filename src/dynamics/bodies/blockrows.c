@@ -53,7 +53,7 @@ STENCIL_INLINE void BlockRowsApplyBoth(const BlockRows *rows, PetscInt i, const 
     StencilLanes      *at = (StencilLanes *)&y[4 * j], g = {0};
 
     a += 9;
-    PETSC_Prefetch((const char *)a + AHEAD, 0, PETSC_PREFETCH_HINT_T0);
+    __builtin_prefetch((const char *)a + AHEAD, 0, 3);
     for (int c = 0; c < 3; c++) {
       StencilLanes row;
 
