@@ -17,6 +17,7 @@ from pathlib import Path
 
 OPTIONS = Path(__file__).resolve().parents[1] / "options"
 COARSE = "-rig_disc_elements 6,12,1 -rig_pad_elements 3,3,2 -rig_beam_elements 4 -modes_band 1000,8000".split()
+FINE = "-rig_disc_elements 36,144,4 -rig_pad_elements 12,12,12 -modes_band 0,20000".split()  # some ten seconds of solutions
 SCENE = ["-options_file", OPTIONS / "massi2005.yaml"]
 
 
@@ -90,7 +91,7 @@ def check_stages(r):
 
 def check_left_and_interrupt(r):
     """The time left within a loop of the eigensolver, then ^C."""
-    process = subprocess.Popen([r.squeal, *SCENE, "-modes_band", "0,20000", "-squeal_progress", "1", "-output_dir", "long"],
+    process = subprocess.Popen([r.squeal, *SCENE, *FINE, "-squeal_progress", "1", "-output_dir", "long"],
                                cwd=r.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     lines, begun = [], time.time()
     while time.time() - begun < 100 and not (lines and "left" in lines[-1]):
@@ -115,7 +116,7 @@ def check_stop_in_statics(r):
 def check_stop_on_ranks(r):
     """mpirun asks all ranks; one speaks."""
     environment = {**os.environ, "OMPI_MCA_odls_base_sigkill_timeout": "2"}
-    process = subprocess.Popen([r.launcher, "-n", "2", r.squeal, *SCENE, "-modes_band", "0,20000", "-squeal_progress", "1",
+    process = subprocess.Popen([r.launcher, "-n", "2", r.squeal, *SCENE, *FINE, "-squeal_progress", "1",
                                 "-output_dir", "ranks"], cwd=r.folder, env=environment, stdin=subprocess.DEVNULL,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     while not (line := process.stderr.readline()).startswith("Modes"):
