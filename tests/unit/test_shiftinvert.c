@@ -3,7 +3,7 @@
    above the local rows), as newer SLEPc hands them out, and the products with such matrices that the sweep relies on.
 
    Then solver/lowrank.c: friction as an update of the factors of the symmetric part, with its vectors kept (2 pairs) and
-   not (9 pairs), at two shifts with one analysis.
+   not (40 pairs), at two shifts with one analysis.
 
    Reference: X is chosen at random, B = A X made column by column with MatMult() or MatMultTranspose().
 */
@@ -324,7 +324,7 @@ int main(int argc, char **argv)
     PetscCall(TestSolve(PETSC_FALSE, PETSC_TRUE, apart[i], &failed));
   }
   PetscCall(TestUpdate(2, PETSC_TRUE, &failed));
-  PetscCall(TestUpdate(9, PETSC_FALSE, &failed));
+  PetscCall(TestUpdate(40, PETSC_FALSE, &failed));
   PetscCall(TestTrust(&failed));
   PetscCall(TestProducts(&failed));
   PetscCall(PetscFinalize());
