@@ -9,6 +9,7 @@
    solves. In friction p is the number of closed pairs, L their slip times k_n mu, R their gap.
 */
 #include "lowrank.h"
+#include "dense.h"
 #include <petscblaslapack.h>
 
 #define LOWRANK_BLOCK 64 /* right-hand sides at once, at most and at least */
@@ -109,19 +110,6 @@ static PetscErrorCode StoredProduct(const LowRank *u, PetscBool subtract, PetscI
   PetscFunctionReturn(0);
 }
 
-/* c = C^-1 c, or C'^-1 c */
-static PetscErrorCode WoodburySolve(const LowRank *u, PetscBool transposed, PetscInt m, PetscScalar c[])
-{
-  PetscBLASInt p, columns, info;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(u->p, &p));
-  PetscCall(PetscBLASIntCast(m, &columns));
-  PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_(transposed ? "T" : "N", &p, &columns, u->C, &p, u->pivot, c, &p, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK getrs: info %d", (int)info);
-  PetscFunctionReturn(0);
-}
-
 /* Columns first .. first + m - 1 of R' as a dense matrix */
 static PetscErrorCode RightColumns(const LowRank *u, PetscInt first, PetscInt m, Mat *B)
 {
@@ -165,7 +153,6 @@ static PetscErrorCode LowRankExtend(LowRank *u, PetscInt first, PetscInt m, Pets
 PetscErrorCode LowRankSetUp(Mat L, Mat R, PetscBool store, LowRank *u, PetscBool *singular)
 {
   PetscScalar *c;
-  PetscBLASInt p, info;
   PetscInt     n, block;
 
   PetscFunctionBeginUser;
@@ -183,10 +170,7 @@ PetscErrorCode LowRankSetUp(Mat L, Mat R, PetscBool store, LowRank *u, PetscBool
   for (PetscInt first = 0; first < u->p; first += block)
     PetscCall(LowRankExtend(u, first, PetscMin(block, u->p - first), c));
   PetscCall(PetscFree(c));
-  PetscCall(PetscBLASIntCast(u->p, &p));
-  PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&p, &p, u->C, &p, u->pivot, &info));
-  PetscCheck(info >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK getrf: info %d", (int)info);
-  *singular = info > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(DenseFactor(u->p, u->C, u->pivot, singular));
   PetscFunctionReturn(0);
 }
 
@@ -203,7 +187,7 @@ static PetscErrorCode ApplyRight(const LowRank *u, PetscBool transposed, PetscIn
     PetscCall((*u->solve)(u->ctx, B, X));
     PetscCall(PairsOf(inner, X, u->p, m, c));
   }
-  PetscCall(WoodburySolve(u, transposed, m, c));
+  PetscCall(DenseSolve(u->p, u->C, u->pivot, transposed, m, c));
   PetscCall(MatDuplicate(B, MAT_COPY_VALUES, &reduced));
   PetscCall(PairsSpread(outer, -1, u->p, m, c, reduced));
   PetscCall((*u->solve)(u->ctx, reduced, X));
@@ -222,7 +206,7 @@ PetscErrorCode LowRankApply(const LowRank *u, PetscBool transposed, Mat B, Mat X
   if (u->Y && transposed) {
     PetscCall((*u->solve)(u->ctx, B, X));
     PetscCall(PairsOf(u->L, X, u->p, m, c));
-    PetscCall(WoodburySolve(u, PETSC_TRUE, m, c));
+    PetscCall(DenseSolve(u->p, u->C, u->pivot, PETSC_TRUE, m, c));
     PetscCall(StoredProduct(u, PETSC_TRUE, m, X, c));
   } else {
     PetscCall(ApplyRight(u, transposed, m, c, B, X));
