@@ -1,66 +1,168 @@
 #!/usr/bin/env python3
-"""What is installed serves a program of one's own: the flags of squeal.pc compile and link it, and it runs. Breaks when
-a header is missing or needs one of src, when a library is not named, or when the flags are those of the build.
+"""What is installed works from wherever its prefix is moved to, without the folder of the sources or of the build:
+
+  library     tests/library/onset.c, built with the flags of squeal.pc alone, where PKG_CONFIG_PATH has that one file only:
+              it prints the modes that the installed program writes, and its errors are one line
+  scripts     every script of scripts/plot and each on top that is not for the sources alone is there as squeal-NAME, answers
+              --help, and those for modes make their files from results of the installed program
+  manual      every option of -help stands in squeal.1, with its default; man has no warning
+  completion  bash is offered the options of the program, the names of a scene, the words of a choice, files
+  paths       no text names the folders of sources or build
+
+Breaks when a header is missing or needs one of src, when a library is not named, or when a script is forgotten.
 
     test_install.py MESON BUILD MPIRUN"""
 
+import csv
 import os
+import re
+import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-PROGRAM = """
-#include <squeal/squeal.h>
+SOURCE = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(SOURCE / "scripts"))
+from squeal.help_text import ask, options_of
 
-int main(int argc, char **argv)
-{
-  PetscErrorCode error = SquealInitialize(&argc, &argv, "a program of one's own");
-  Model          model;
-
-  if (!error) error = ModelCreate(PETSC_COMM_WORLD, &model);
-  if (!error) error = ModelSetFromOptions(model);
-  if (!error) error = ModelSetUp(model);
-  if (!error) error = ModelView(model, PETSC_VIEWER_STDOUT_WORLD);
-  if (!error) error = ModelDestroy(&model);
-  return SquealFinalize(error);
-}
+FOR_SOURCES = {"run", "test", "setup.sh", "paper", "test_debian", "manual", "packages.txt", "completion.bash", "README.md"}
+SCENE = """model: {source: rig}
+parts: disc,pad,beam
+rig: {disc_elements: "6,24,1", pad_elements: "2,2,2", beam_elements: 3}
+beam: {young: 2.1e11, poisson: 0.3, density: 7800}
+disc: {young: 2.1e11, poisson: 0.3, density: 7800}
+pad: {young: 8e9, poisson: 0.3, density: 2500}
+supports: hub
+hub: {set: disc_inner, fix: xyz}
+contacts: contact
+contact: {surfaces: "pad_face,disc_face", kn: 1e8, mu: 0.9, slip: "0,1,0"}
+modes: {band: "500,9000"}
 """
-OPTIONS = ("-model_source rig -parts disc -rig_pad 0 -rig_disc_elements 3,12,1 -rig_disc_mesh axisymmetric "
-           "-disc_young 2e11 -disc_density 7800")
+
+
+class Faults(list):
+    """What is wrong, printed as it is found."""
+
+    def check(self, holds, what):
+        print("ok  " if holds else "FAIL", what)
+        if not holds:
+            self.append(what)
 
 
 def run(*command, **more):
     """Output of a command that must succeed."""
-    done = subprocess.run(command, capture_output=True, text=True, **more)
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False, **more)
     if done.returncode:
         sys.exit(f"{' '.join(map(str, command))}\n{done.stdout}{done.stderr}")
     return done.stdout
 
 
+def check_library(top, place, mpirun, faults):
+    """The example, against the table of the program."""
+    pc = next(place.rglob("squeal.pc"))
+    env = {key: value for key, value in os.environ.items() if key != "PKG_CONFIG_PATH"}
+    fixed = re.search(r"^prefix=(/.*)$", pc.read_text(), re.MULTILINE)
+    if fixed:
+        print("note: this build was set up before its pkg-config file could be moved; meson configure -Dpkgconfig.relocatable=true")
+        pc.write_text(pc.read_text().replace(fixed[0], f"prefix={place}{fixed[1]}"))
+    flags = run("pkg-config", "--cflags", "--libs", "squeal", env=env | {"PKG_CONFIG_PATH": str(pc.parent)}).split()
+    shutil.copy(SOURCE / "tests/library/onset.c", top)
+    run("cc", "-std=c17", "-Wall", "-Wextra", "-Werror", "onset.c", *flags, "-o", "onset", cwd=top)
+    shown = run(mpirun, "-n", 1, top / "onset", "-options_file", "scene.yaml", "-mu_values", "0,0.9", cwd=top)
+    rows = [line.split(", ") for line in shown.splitlines()]
+    with (top / "out/modes.csv").open(newline="") as lines:
+        wanted = [(float(row["freq_hz"]), float(row["growth_rad_s"])) for row in csv.DictReader(lines)]
+    found = [(float(row[1]), float(row[2])) for row in rows if float(row[0]) > 0]
+    same = len(found) == len(wanted) and all(abs(a - b) < 1e-9 * f[0] for f, w in zip(found, wanted) for a, b in zip(f, w))
+    grown = max(row[1] for row in wanted)
+    faults.check(same and grown > 1, f"library: {len(found)} modes as in modes.csv, one of which grows by {grown:.1f} 1/s")
+    still = [abs(float(row[2])) < 1e-6 * float(row[1]) for row in rows if float(row[0]) == 0]
+    faults.check(still and all(still), f"library: none of {len(still)} grows without friction")
+    for words, said in ((("-options_file", "scene.yaml"), "-mu_values is missing"), (("-options_file", "no.yaml"), "no.yaml")):
+        done = subprocess.run([mpirun, "-n", "1", top / "onset", *words], capture_output=True, text=True, cwd=top, check=False)
+        faults.check(done.returncode == 1 and said in done.stderr and done.stderr.count("\n") == 1, f"library: one line on {said}")
+
+
+def check_scripts(top, bin_dir, faults):
+    """All are there and begin; pictures and exports of a run."""
+    on_top = {path.name for path in (SOURCE / "scripts").iterdir() if path.is_file()} - FOR_SOURCES
+    plots = {f"plot-{path.name}" for path in (SOURCE / "scripts/plot").iterdir() if path.is_file()}
+    for name in sorted(on_top | plots):
+        program = bin_dir / f"squeal-{name.replace('_', '-')}"
+        if not program.exists():
+            faults.check(False, f"scripts: {program.name} is missing")
+        elif name != "mpirun":
+            faults.check("usage" in run(program, "--help", cwd=top), f"scripts: {program.name} --help")
+    for words in (["squeal-plot-modes", "-o", "modes.png", "out"], ["squeal-report", "out"]):
+        file = top / run(bin_dir / words[0], *words[1:], cwd=top).strip()
+        faults.check(file.stat().st_size > 10000, f"scripts: {' '.join(words)} writes {file.name}")
+    page = (top / "out/report.html").read_text()
+    faults.check("squeal-plot-modes out" in page and "scripts/plot" not in page, "scripts: the page names installed ones")
+    for program in sorted({"squeal-plot-modes", "squeal-report"}):
+        done = subprocess.run([bin_dir / program, "nowhere"], capture_output=True, text=True, cwd=top, check=False)
+        faults.check(done.returncode == 1 and done.stderr.count("\n") == 1, f"scripts: {program} has one line for a folder that is not there")
+
+
+def check_manual(place, squeal, faults):
+    """The page beside -help of the program that is installed."""
+    page = next(place.rglob("man1/squeal.1"))
+    options = options_of(ask(squeal, "-help", folder=place))
+    text = page.read_text().replace("\\-", "-").replace("\\(aq", "'")
+    lost = [option.name for option in options if f".B -{option.name}\n" not in text
+            or option.default and f"[default {option.default}]" not in text.partition(f".B -{option.name}\n")[2].partition(".TP")[0]]
+    faults.check(len(options) > 150 and not lost, f"manual: {len(options)} options with their defaults, missing {lost}")
+    if shutil.which("man"):
+        done = subprocess.run(["man", "-l", "--warnings", page], capture_output=True, text=True, check=False,
+                              env=os.environ | {"LC_ALL": "C", "MANWIDTH": "100"})
+        faults.check(not done.returncode and not done.stderr and "-contact_mu" in done.stdout, f"manual: man shows it {done.stderr}")
+
+
+def check_completion(top, place, squeal, faults):
+    """What bash is offered for the last word."""
+    file = next(place.rglob("completions/squeal"))
+    script = f"""set -u; source '{file}'; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _squeal; printf '%s\\n' "${{COMPREPLY[@]}}" """
+    for words, wanted, absent in (
+            (["-analy"], {"-analysis"}, {"-contact_mu"}),
+            (["-analysis", ""], {"modes", "sweep", "static", "transient", "frf"}, {"-analysis"}),
+            (["-options_file", "scene.yaml", "-pad_y"], {"-pad_young"}, {"-part_young"}),
+            (["-options_file", "sc"], {"scene.yaml"}, {"scene.txt"}),
+            (["-output_dir", "o"], {"out"}, {"onset"}),
+            (["-output_fields", "f"], {"false"}, {"true"}),
+            (["-options_file", "no.yaml", "-modes_ba"], {"-modes_band"}, set())):
+        offered = set(run("bash", "-c", script, "bash", squeal, *words, cwd=top).split())
+        faults.check(wanted <= offered and not absent & offered, f"completion: {' '.join(words)} gives {' '.join(sorted(wanted))}")
+
+
+def check_paths(place, build, faults):
+    """Words of the build in files that are text."""
+    for path in sorted(place.rglob("*")):
+        if path.is_symlink():
+            faults.check(not os.path.isabs(os.readlink(path)) and path.exists(), f"paths: {path.name} is a link within the prefix")
+        elif path.is_file() and path.suffix not in (".a", ".png") and path.name != "squeal":
+            if any(str(folder) in path.read_text(errors="replace") for folder in (build, SOURCE)):
+                faults.check(False, f"paths: {path.relative_to(place)} names the folder of sources or build")
+
+
 def main():
     meson, build, mpirun = sys.argv[1], *(Path(name).resolve() for name in sys.argv[2:])
+    faults = Faults()
     with tempfile.TemporaryDirectory() as folder:
         top = Path(folder)
-        run(meson, "install", "-C", build, "--no-rebuild", "--quiet", "--destdir", top)
-        pc = next(top.rglob("squeal.pc"))
-        lines = pc.read_text().splitlines()
-        prefix = next(line.removeprefix("prefix=") for line in lines if line.startswith("prefix="))
-        pc.write_text("\n".join(lines).replace(f"prefix={prefix}", f"prefix={top}{prefix}") + "\n")
-        where = [str(pc.parent), os.environ.get("PKG_CONFIG_PATH", ""),
-                 *(f"/usr/lib/{name}dir/{name}-real/lib/pkgconfig" for name in ("petsc", "slepc"))]
-        flags = run("pkg-config", "--cflags", "--libs", "squeal",
-                    env=os.environ | {"PKG_CONFIG_PATH": ":".join(filter(None, where))}).split()
-        print("flags:", " ".join(flags))
-        if any(str(build.parent) in flag for flag in flags):
-            sys.exit("the flags name the folder of the build")
-        (top / "one.c").write_text(PROGRAM)
-        run("cc", "-std=c17", "-Wall", "-Wextra", "-Werror", "one.c", *flags, "-o", "one", cwd=top)
-        shown = run(mpirun, "-n", "1", top / "one", *OPTIONS.split(), cwd=top)
-        print(shown)
-        if "disc" not in shown:
-            sys.exit("the model does not show its part disc")
+        run(meson, "install", "-C", build, "--no-rebuild", "--quiet", "--destdir", top / "first")
+        place = (top / "first").rename(top / "moved")
+        bin_dir = next(place.rglob("bin"))
+        for name in ("scene.yaml", "scene.txt"):
+            (top / name).write_text(SCENE)
+        run(bin_dir / "squeal-mpirun", "-n", 1, bin_dir / "squeal", "-options_file", "scene.yaml", "-output_dir", "out", cwd=top)
+        squeal = [bin_dir / "squeal-mpirun", "-n", "1", bin_dir / "squeal"]
+        check_library(top, place, mpirun, faults)
+        check_scripts(top, bin_dir, faults)
+        check_manual(place, squeal, faults)
+        check_completion(top, place, bin_dir / "squeal", faults)
+        check_paths(place, build, faults)
+    return 1 if faults else 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -5,10 +5,12 @@ own, and the other way round. Breaks when an option or a default changes and the
     test_options.py SQUEAL"""
 
 import re
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
+from squeal.help_text import ask, options_of
 
 PAGE = Path(__file__).resolve().parents[1] / "options/README.md"
 
@@ -16,15 +18,7 @@ PAGE = Path(__file__).resolve().parents[1] / "options/README.md"
 def of_help(squeal):
     """Name -> (default, text) as -help prints them."""
     with tempfile.TemporaryDirectory() as folder:
-        text = subprocess.run([squeal, "-help"], capture_output=True, text=True, cwd=folder, check=True).stdout
-    options = {}
-    for line in text.splitlines():
-        match = re.match(r"  -(\w+)", line)
-        if match:
-            rest = line[max(32, match.end() + 1):]
-            default, meaning = ("", rest) if not rest[:14].strip() else rest.split(" ", 1)
-            options[match[1]] = (default, meaning.strip())
-    return options
+        return {option.name: (option.default, option.text) for option in options_of(ask([squeal], "-help", folder=folder))}
 
 
 def of_page():

@@ -11,6 +11,14 @@ from .tables import STOPPED, BadInput
 ROOT = Path(__file__).resolve().parents[2]
 
 
+def called(script):
+    """What one types for a script of scripts/: its path in a checkout, or its name where it is installed."""
+    if (ROOT / "meson.build").is_file():
+        return f"scripts/{script}"
+    folder, _, name = script.rpartition("/")
+    return "-".join(filter(None, ("squeal", folder if folder == "plot" else "", name.replace("_", "-"))))
+
+
 def compiled_program():
     """Sets up and compiles as scripts/run does."""
     command = ["bash", "-c", 'source "$0" && set_up squeal >&2 && echo "$build/squeal"', ROOT / "scripts/setup.sh"]

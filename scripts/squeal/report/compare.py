@@ -1,5 +1,6 @@
 """Several folders side by side: what each says, the options in which they differ, eigenvalues of all modes together."""
 
+from ..program import called
 from ..tables import BadInput
 from .charts import Axis, Chart, Panel
 from .markup import Column, figure, fixed, legend, missing, section, signed, table, tag
@@ -55,7 +56,7 @@ def eigenvalues(tables):
     chart = Chart("growth rate against frequency of all folders", axis, [panel]).markup("all-eigenvalues-chart")
     words = " ".join(folder.command("report").split(" ", 1)[1] for folder, _ in tables)
     return figure("all-eigenvalues", "Eigenvalues of all folders", [keys, chart], "Full dots are unstable.",
-                  f"scripts/report {words}")
+                  f"{called('report')} {words}")
 
 
 def partner(row, modes):

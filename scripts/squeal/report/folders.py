@@ -4,6 +4,7 @@ import shlex
 from pathlib import Path
 from typing import NamedTuple
 
+from ..program import called
 from ..provenance import Provenance
 from ..tables import BadInput
 from .markup import missing
@@ -69,4 +70,4 @@ class Folder:
     def command(self, script, *words):
         """What draws one of its pictures again; the page itself where no script does."""
         script = script if (SCRIPTS / script).exists() else "report"
-        return " ".join([f"scripts/{script}", shlex.quote(self.name), *words])
+        return " ".join([called(script), shlex.quote(self.name), *words])
