@@ -16,6 +16,8 @@
       p = mu l_n e + alpha E (p + s)   hence   p = mu l_n e - alpha E z,   s = - e e'z - (1 - alpha) E z
 
    for any z in the plane, from slip without a direction of its own (alpha = 0) to the border of stick (alpha = 1).
+   Where mu falls with the length of slip, fall = d mu / d|s| (1/m), p has fall l_n e (e's - |s|) more, of which |s| is
+   that at the present l, w: |q| - mu l_n.
 */
 #pragma once
 
@@ -28,6 +30,7 @@ typedef struct {
   double mu, k;    /* k may be infinite */
   double g0;       /* m */
   double slip0[2]; /* w_t, w_b from which slip counts, m */
+  double fall;     /* d mu / d|s| at the present slip, 1/m */
 } CoulombPair;
 
 /* Linear law of one status; only the leading d rows and columns are used */
@@ -59,16 +62,17 @@ static inline void CoulombSlipRows(const CoulombPair *pair, const double l[], co
   double       q[2], e[2] = {1, 0};
   const double length = CoulombTrial(pair, l, w, q), cone = pair->mu * fmax(0, l[0]);
   const double alpha = cone == 0 ? 0 : length > cone ? cone / length : 1;
+  const double fall  = pair->fall * fmax(0, l[0]);
 
   for (int i = 0; i < 2 && length > 0; i++) e[i] = q[i] / length;
   for (int i = 0; i < 2; i++) {
     law->P[1 + i][0] = -pair->mu * e[i] * law->P[0][0];
-    law->p0[1 + i]   = -pair->mu * e[i] * law->p0[0];
+    law->p0[1 + i]   = -pair->mu * e[i] * law->p0[0] + fall * fmax(0, length - cone) * e[i];
     law->q0[1 + i]   = pair->slip0[i];
     for (int j = 0; j < 2; j++) {
       const double E = (i == j) - e[i] * e[j];
 
-      law->P[1 + i][1 + j] = alpha * E;
+      law->P[1 + i][1 + j] = alpha * E + fall * e[i] * e[j];
       law->Q[1 + i][1 + j] = (i == j) - alpha * E;
     }
   }

@@ -1,0 +1,211 @@
+/* ContactCompliance: what it owns, the order of the methods, reports */
+#include "complianceimpl.h"
+
+#define COMPLIANCE_RTOL      1e-12
+#define COMPLIANCE_SYMMETRIC 1e-10 /* of the larger of two diagonals */
+#define COMPLIANCE_DEFINITE  1e-10 /* of the largest diagonal */
+#define COMPLIANCE_MAX_IT    40    /* of Newton's method */
+
+/* Finite, symmetric, with a diagonal that is not negative */
+static PetscErrorCode MatrixCheck(PetscInt n, const PetscReal W[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < n; j++) {
+    PetscCheck(W[j * n + j] >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "Compliance of pair %" PetscInt_FMT ": %g on the diagonal must not be negative", j / 3,
+               (double)W[j * n + j]);
+    for (PetscInt i = 0; i < j; i++) {
+      const PetscReal a = W[j * n + i], b = W[i * n + j], size = PetscMax(W[j * n + j], W[i * n + i]);
+
+      PetscCheck(PetscAbsReal(a - b) <= COMPLIANCE_SYMMETRIC * size, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+                 "Compliance of pairs %" PetscInt_FMT " and %" PetscInt_FMT " is not symmetric or not finite: %g, %g",
+                 i / 3, j / 3, (double)a, (double)b);
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* kappa = 3 / trace W_pp; that of the mean where a pair is held in all directions */
+static void StiffnessSet(ContactCompliance c)
+{
+  const PetscInt N   = 3 * c->n;
+  PetscReal      sum = 0;
+
+  for (PetscInt i = 0; i < N; i++) sum += c->W[i * N + i];
+  for (PetscInt p = 0; p < c->n; p++) {
+    PetscReal trace = 0;
+
+    for (PetscInt i = 3 * p; i < 3 * p + 3; i++) trace += c->W[i * N + i];
+    c->kappa[p] = trace > 0 ? 3 / trace : sum > 0 ? N / sum : 1;
+  }
+}
+
+PetscErrorCode ContactComplianceCreate(PetscInt n, const PetscReal W[], ContactCompliance *compliance)
+{
+  ContactCompliance c;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatrixCheck(3 * n, W));
+  PetscCall(PetscNew(&c));
+  c->n    = n;
+  c->W    = W;
+  c->rtol = COMPLIANCE_RTOL;
+  c->dt   = 1;
+  PetscCall(PetscCalloc4(n, &c->kappa, n, &c->mu, n, &c->slope, n, &c->speed));
+  PetscCall(PetscCalloc7(3 * n, &c->free, 3 * n, &c->l, 3 * n, &c->v, 3 * n, &c->l0, 3 * n, &c->v0, 3 * n, &c->best,
+                         3 * n, &c->force));
+  PetscCall(PetscCalloc3(n, &c->status, n, &c->law, n, &c->closed));
+  StiffnessSet(c);
+  c->totals   = (ComplianceReport){.converged = PETSC_TRUE, .worst = -1};
+  *compliance = c;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactComplianceCheckDefinite(ContactCompliance c, PetscBool *definite)
+{
+  const PetscInt     N    = 3 * c->n;
+  const PetscBLASInt rows = (PetscBLASInt)N;
+  PetscReal         *A, size = 0;
+  PetscBLASInt       info;
+
+  PetscFunctionBeginUser;
+  *definite = PETSC_TRUE;
+  if (!N) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(N * N, &A));
+  PetscCall(PetscArraycpy(A, c->W, N * N));
+  for (PetscInt i = 0; i < N; i++) size = PetscMax(size, A[i * N + i]);
+  for (PetscInt i = 0; i < N; i++) A[i * N + i] += COMPLIANCE_DEFINITE * size;
+  PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &rows, A, &rows, &info));
+  PetscCheck(info >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK potrf: info %d", (int)info);
+  if (info && size > 0) *definite = PETSC_FALSE;
+  PetscCall(PetscFree(A));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactComplianceSetFriction(ContactCompliance c, const ComplianceFriction *friction)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!friction->slope || (friction->dt > 0 && friction->speed), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "Step of friction that changes with the slip speed is %g s; must be positive", (double)friction->dt);
+  for (PetscInt p = 0; p < c->n; p++) {
+    const PetscReal mu = friction->mu[p];
+
+    PetscCheck(mu >= 0 && !PetscIsInfOrNanReal(mu), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "Friction coefficient of pair %" PetscInt_FMT " is %g; must be finite and not negative", p, (double)mu);
+    c->mu[p]    = mu;
+    c->slope[p] = friction->slope ? friction->slope[p] : 0;
+    c->speed[p] = friction->slope ? friction->speed[p] : 0;
+  }
+  if (friction->slope) c->dt = friction->dt;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactComplianceSetTolerance(ContactCompliance c, PetscReal rtol)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(rtol > 0 && rtol < 1, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "Tolerance of contact on a compliance is %g; must be between 0 and 1", (double)rtol);
+  c->rtol = rtol;
+  PetscFunctionReturn(0);
+}
+
+/* Motions without forces, and the guess; a guess that pulls or drives is none */
+static PetscErrorCode StepBegin(ContactCompliance c, const PetscReal q[], const PetscReal slip0[],
+                                const PetscReal lambda[])
+{
+  PetscFunctionBeginUser;
+  c->blend  = 0;
+  c->report = (ComplianceReport){.worst = -1, .steps = 1};
+  for (PetscInt p = 0; p < c->n; p++) {
+    for (PetscInt i = 0; i < 3; i++) {
+      const PetscReal at = q[3 * p + i] - (i ? slip0[2 * p + i - 1] : 0), force = lambda[3 * p + i] / c->kappa[p];
+
+      PetscCheck(!PetscIsInfOrNanReal(at) && !PetscIsInfOrNanReal(force), PETSC_COMM_SELF, PETSC_ERR_FP,
+                 "Contact pair %" PetscInt_FMT ": displacement %g m or force %g N is not finite", p, (double)at,
+                 (double)lambda[3 * p + i]);
+      c->free[3 * p + i] = at;
+      c->l[3 * p + i]    = lambda[3 * p] > 0 ? force : 0;
+    }
+    c->status[p] = lambda[3 * p] > 0 ? CONTACT_SLIP : CONTACT_OPEN;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Forces and displacements out, statuses decided */
+static void StepEnd(ContactCompliance c, const PetscReal slip0[], PetscReal lambda[], PetscReal r[])
+{
+  ComplianceChoose(c);
+  for (PetscInt p = 0; p < c->n; p++) {
+    for (PetscInt i = 0; i < 3; i++) {
+      lambda[3 * p + i] = c->kappa[p] * c->l[3 * p + i];
+      if (r) r[3 * p + i] = c->v[3 * p + i] + (i ? slip0[2 * p + i - 1] : 0);
+    }
+  }
+}
+
+/* Adds the report of the step to that of all */
+static void StepReport(ContactCompliance c, const ComplianceMiss *miss)
+{
+  ComplianceReport *one = &c->report, *all = &c->totals;
+
+  one->converged = ComplianceIsSolved(c, miss);
+  one->residual  = miss->largest > 0 ? miss->largest / (miss->scale + miss->noise / c->rtol) : 0;
+  one->worst     = miss->worst;
+  one->routes[one->route]++;
+  all->converged = one->converged && all->converged ? PETSC_TRUE : PETSC_FALSE;
+  all->route     = PetscMax(all->route, one->route);
+  all->iterations += one->iterations;
+  all->factors += one->factors;
+  all->steps++;
+  for (PetscInt i = 0; i < COMPLIANCE_N_ROUTES; i++) all->routes[i] += one->routes[i];
+  if (!(one->residual > all->residual)) return;
+  all->residual = one->residual;
+  all->worst    = one->worst;
+}
+
+PetscErrorCode ContactComplianceSolve(ContactCompliance c, const PetscReal q[], const PetscReal slip0[],
+                                      PetscReal lambda[], PetscReal r[], ComplianceReport *report)
+{
+  ComplianceMiss miss;
+
+  PetscFunctionBeginUser;
+  PetscCall(StepBegin(c, q, slip0, lambda));
+  PetscCall(ComplianceIterate(c, PETSC_FALSE, COMPLIANCE_MAX_IT, &miss));
+  for (c->report.route = COMPLIANCE_NEWTON; !ComplianceIsSolved(c, &miss) && c->report.route < COMPLIANCE_PATH;) {
+    c->report.route++;
+    if (c->report.route == COMPLIANCE_DAMPED) PetscCall(ComplianceIterate(c, PETSC_TRUE, COMPLIANCE_MAX_IT, &miss));
+    if (c->report.route == COMPLIANCE_PATH) PetscCall(ComplianceFollow(c, &miss));
+  }
+  StepReport(c, &miss);
+  StepEnd(c, slip0, lambda, r);
+  if (report) *report = c->report;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactComplianceGetStatus(ContactCompliance c, const ContactStatus **status)
+{
+  PetscFunctionBeginUser;
+  *status = c->status;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactComplianceGetTotals(ContactCompliance c, ComplianceReport *report)
+{
+  PetscFunctionBeginUser;
+  *report = c->totals;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactComplianceDestroy(ContactCompliance *compliance)
+{
+  ContactCompliance c = *compliance;
+
+  PetscFunctionBeginUser;
+  if (!c) PetscFunctionReturn(0);
+  PetscCall(PetscFree4(c->kappa, c->mu, c->slope, c->speed));
+  PetscCall(PetscFree7(c->free, c->l, c->v, c->l0, c->v0, c->best, c->force));
+  PetscCall(PetscFree3(c->status, c->law, c->closed));
+  PetscCall(PetscFree3(c->A, c->rhs, c->pivot));
+  PetscCall(PetscFree(*compliance));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,104 @@
+/*
+   ContactCompliance - contact and Coulomb friction of pairs on a dense compliance, exactly. Private to the rooms above
+   contact/. No MPI and no options.
+
+   Relative displacements of the pairs r [n][3] (slave less master: gap, two tangents; m) and forces on the slaves
+   lambda [n][3] (N) obey
+
+      r = q + W lambda,     d = r_T - slip0       (slip of the step, sliding included)
+      normal    0 <= lambda_n,  0 <= r_n,  lambda_n r_n = 0
+      Coulomb   |lambda_T| <= mu lambda_n,  d = 0 (stick)  or  lambda_T = -mu lambda_n d / |d| (slip)
+      mu        max(0, mu + slope (|d| / dt - speed)) (kernels/friction.h), at the end of the step
+
+   with W (m/N) symmetric and positive semidefinite. A pair of normal stiffness k_n has 1 / k_n on its diagonal of W. A
+   solution exists for any mu where W is definite; it need not be the only one: the one near the guess is looked for
+   first. Friction that W couples with the normal may have none where W is singular (a wedge that jams).
+
+   Residual: natural map per pair in metres, forces divided by the pair's stiffness kappa = 3 / trace W_pp,
+      |l_n - max(0, l_n - r_n)|,  |p - Proj(p + d)| on the disc of radius mu l_n,     l = lambda / kappa,  p = -l_T,
+   relative to the largest l; what rounding of q and W lambda leaves is never asked for.
+
+   Methods, each where the one before does not end (newton.c, path.c): semismooth Newton on the statuses of the
+   pairs; the same with a line search on the natural map; the path of solutions from pairs that do
+   not feel each other to W, followed through its folds. All have limits: a step always ends, and
+   tells whether it converged.
+*/
+#pragma once
+
+#include <petscsys.h>
+#include <squeal/contactstatus.h>
+
+typedef struct _p_ContactCompliance *ContactCompliance;
+
+/* The method that ended */
+typedef enum { COMPLIANCE_NEWTON, COMPLIANCE_DAMPED, COMPLIANCE_PATH, COMPLIANCE_N_ROUTES } ComplianceRoute;
+
+/* Friction of all pairs, each array [n]; slope and speed NULL for mu alone */
+typedef struct {
+  const PetscReal *mu, *slope /* s/m */, *speed /* m/s */;
+  PetscReal        dt; /* s, read where there is a slope */
+} ComplianceFriction;
+
+/* One step; or, by ContactComplianceGetTotals(), sums and the worst of all steps */
+typedef struct {
+  PetscBool       converged;                   /* in all steps */
+  ComplianceRoute route;                       /* the last one tried */
+  PetscReal       residual;                    /* relative */
+  PetscInt        worst;                       /* pair of that residual, -1 for none */
+  PetscInt        iterations;                  /* of Newton, on the path too */
+  PetscInt        factors;                     /* LU factors */
+  PetscInt        steps;                       /* 1 */
+  PetscInt        routes[COMPLIANCE_N_ROUTES]; /* steps that ended so */
+} ComplianceReport;
+
+/*@
+   ContactComplianceCreate - for n pairs. Not collective.
+
+   Input Parameters:
++  n - pairs
+-  W - compliance, m/N, [3 n][3 n]; borrowed until destroyed
+
+   Errors: PETSC_ERR_ARG_OUTOFRANGE where W is not finite, not symmetric to 1e-10, or has a negative diagonal.
+@*/
+PETSC_INTERN PetscErrorCode ContactComplianceCreate(PetscInt n, const PetscReal W[], ContactCompliance *compliance);
+
+/*@ ContactComplianceCheckDefinite - whether W is positive semidefinite to rounding (1e-10 of its largest diagonal), by
+    a Cholesky factor. Not collective. @*/
+PETSC_INTERN PetscErrorCode ContactComplianceCheckDefinite(ContactCompliance compliance, PetscBool *definite);
+
+/*@ ContactComplianceSetFriction - copied. Errors: PETSC_ERR_ARG_OUTOFRANGE where mu is negative or not finite, or dt
+    not positive beside a slope. Not collective. @*/
+PETSC_INTERN PetscErrorCode ContactComplianceSetFriction(ContactCompliance         compliance,
+                                                         const ComplianceFriction *friction);
+
+/*@ ContactComplianceSetTolerance - relative residual, 1e-12 unless set. Not collective. @*/
+PETSC_INTERN PetscErrorCode ContactComplianceSetTolerance(ContactCompliance compliance, PetscReal rtol);
+
+/*@
+   ContactComplianceSolve - one step. Not collective.
+
+   Input Parameters:
++  q      - relative displacements without forces of this step, m, [n][3]
+-  slip0  - r_T from which slip counts (that of the step before less the sliding of the step), m, [n][2]
+
+   Input/Output Parameter:
+.  lambda - guess and solution, N, [n][3]
+
+   Output Parameters:
++  r      - relative displacements, m, [n][3]; or NULL
+-  report - of this step; or NULL
+
+   Errors: PETSC_ERR_FP where q, slip0 or the guess is not finite. That it does not converge is no error: see the report.
+@*/
+PETSC_INTERN PetscErrorCode ContactComplianceSolve(ContactCompliance compliance, const PetscReal q[],
+                                                   const PetscReal slip0[], PetscReal lambda[], PetscReal r[],
+                                                   ComplianceReport *report);
+
+/*@ ContactComplianceGetStatus - of the pairs in the last step, [n] (borrowed until the next). Not collective. @*/
+PETSC_INTERN PetscErrorCode ContactComplianceGetStatus(ContactCompliance compliance, const ContactStatus **status);
+
+/*@ ContactComplianceGetTotals - of all steps since it was created. Not collective. @*/
+PETSC_INTERN PetscErrorCode ContactComplianceGetTotals(ContactCompliance compliance, ComplianceReport *report);
+
+/*@ ContactComplianceDestroy - frees all. Not collective. @*/
+PETSC_INTERN PetscErrorCode ContactComplianceDestroy(ContactCompliance *compliance);

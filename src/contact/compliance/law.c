@@ -1,0 +1,96 @@
+/*
+   The laws of all pairs at forces l (divided by the stiffness of their pair, m) and motions v = free + W kappa l
+   (kernels/coulomb.h, with w = -v); (1 - t) W kappa + t I stands for W kappa on the way of path.c.
+*/
+#include "complianceimpl.h"
+
+#define MOTION_NOISE 4 /* roundings of v by its terms */
+
+/* The pair with its coefficient of friction at the present slip, and how that changes with it */
+static CoulombPair LawOfPair(const ContactCompliance c, PetscInt p)
+{
+  const PetscReal slip = hypot(c->v[3 * p + 1], c->v[3 * p + 2]), slope = c->slope ? c->slope[p] / c->dt : 0;
+  CoulombPair     pair = {.d = 3, .mu = c->mu[p], .k = INFINITY};
+
+  if (slope == 0) return pair;
+  pair.mu   = FrictionCoefficient(c->mu[p], slope, c->speed[p] * c->dt, slip);
+  pair.fall = pair.mu > 0 ? slope : 0;
+  return pair;
+}
+
+PetscErrorCode ComplianceMove(ContactCompliance c)
+{
+  const PetscReal    one = 1;
+  const PetscBLASInt inc = 1, rows = (PetscBLASInt)(3 * c->n);
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < 3 * c->n; i++) {
+    c->v[i]     = c->free[i] + c->blend * c->l[i];
+    c->force[i] = (1 - c->blend) * c->kappa[i / 3] * c->l[i];
+  }
+  for (PetscInt p = 0, end; p < c->n; p = end + 1) {
+    PetscBLASInt columns;
+
+    while (p < c->n && c->force[3 * p] == 0 && c->force[3 * p + 1] == 0 && c->force[3 * p + 2] == 0) p++;
+    for (end = p; end < c->n && (c->force[3 * end] != 0 || c->force[3 * end + 1] != 0 || c->force[3 * end + 2] != 0);)
+      end++;
+    columns = (PetscBLASInt)(3 * (end - p));
+    if (columns)
+      PetscCallBLAS("BLASgemv", BLASgemv_("N", &rows, &columns, &one, &c->W[3 * p * 3 * c->n], &rows, &c->force[3 * p],
+                                          &inc, &one, c->v, &inc));
+  }
+  PetscFunctionReturn(0);
+}
+
+void ComplianceMeasure(const ContactCompliance c, ComplianceMiss *miss)
+{
+  PetscReal sum = 0, size = 0;
+
+  *miss = (ComplianceMiss){.worst = -1};
+  for (PetscInt p = 0; p < c->n; p++) {
+    const CoulombPair pair = LawOfPair(c, p);
+    const PetscReal  *l = &c->l[3 * p], *v = &c->v[3 * p];
+    const PetscReal   w[3]   = {-v[0], -v[1], -v[2]};
+    const PetscReal   normal = PetscAbsReal(l[0] - PetscMax(0, l[0] - v[0])), friction = CoulombResidual(&pair, l, w);
+    const PetscReal   square = PetscSqr(normal) + PetscSqr(friction);
+
+    sum += square;
+    for (PetscInt i = 0; i < 3; i++) {
+      miss->scale = PetscMax(miss->scale, PetscAbsReal(l[i]));
+      if (l[0] > 0) size = PetscMax(size, PetscAbsReal(c->free[3 * p + i]) + PetscAbsReal(v[i]));
+    }
+    if (square <= PetscSqr(miss->largest)) continue; /* takes what is no number */
+    miss->largest = PetscSqrtReal(square);
+    miss->worst   = p;
+  }
+  miss->norm  = PetscSqrtReal(sum);
+  miss->noise = MOTION_NOISE * PETSC_MACHINE_EPSILON * size;
+}
+
+PetscBool ComplianceIsSolved(const ContactCompliance c, const ComplianceMiss *miss)
+{
+  return miss->largest <= c->rtol * miss->scale + miss->noise ? PETSC_TRUE : PETSC_FALSE;
+}
+
+void ComplianceChoose(ContactCompliance c)
+{
+  for (PetscInt p = 0; p < c->n; p++) {
+    const CoulombPair pair = LawOfPair(c, p);
+    const PetscReal  *v = &c->v[3 * p], w[3] = {-v[0], -v[1], -v[2]};
+
+    c->status[p] = CoulombDecide(&pair, c->status[p], &c->l[3 * p], w, 0);
+  }
+}
+
+void ComplianceLinearise(ContactCompliance c)
+{
+  c->n_closed = 0;
+  for (PetscInt p = 0; p < c->n; p++) {
+    const CoulombPair pair = LawOfPair(c, p);
+    const PetscReal  *v = &c->v[3 * p], w[3] = {-v[0], -v[1], -v[2]};
+
+    if (c->status[p] == CONTACT_OPEN) continue;
+    c->closed[c->n_closed++] = p;
+    CoulombLinearise(&pair, c->status[p], &c->l[3 * p], w, &c->law[p]);
+  }
+}

@@ -1,0 +1,113 @@
+/*
+   Semismooth Newton method on the laws of the pairs (P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991,
+   353): the statuses that l, v ask for make all laws linear; the linear system of the closed pairs gives the next l, v.
+   Damped, the step is shortened until the norm of the natural map is below the largest of the last few (L. Grippo,
+   F. Lampariello, S. Lucidi, SIAM J. Numer. Anal. 23, 1986, 707). Both give up where that does not fall any more; what
+   they leave is the best that they have seen.
+*/
+#include "complianceimpl.h"
+
+#define NEWTON_PATIENCE 8       /* steps in a row without a lower residual */
+#define NEWTON_MEMORY   5       /* norms that a damped step is compared with */
+#define NEWTON_ENOUGH   1e-4    /* of the decrease that a step promises */
+#define NEWTON_SHORTEST 1. / 64 /* of a step */
+
+/* The matrix at the present laws, factored; shifted where it is singular */
+static PetscErrorCode NewtonFactor(ContactCompliance c, PetscBool *singular)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ComplianceAssemble(c, 0));
+  PetscCall(ComplianceFactor(c, 0, singular));
+  if (!*singular) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(c->l, c->l0, 3 * c->n));
+  PetscCall(PetscArraycpy(c->v, c->v0, 3 * c->n));
+  PetscCall(ComplianceAssemble(c, 0));
+  ComplianceShift(c, 0);
+  PetscCall(ComplianceFactor(c, 0, singular));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ComplianceStep(ContactCompliance c, PetscBool *singular)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(c->l0, c->l, 3 * c->n));
+  PetscCall(PetscArraycpy(c->v0, c->v, 3 * c->n));
+  ComplianceChoose(c);
+  ComplianceLinearise(c);
+  PetscCall(NewtonFactor(c, singular));
+  PetscCall(ComplianceBackSolve(c, 0));
+  ComplianceTake(c);
+  PetscCall(ComplianceMove(c));
+  c->report.iterations++;
+  PetscFunctionReturn(0);
+}
+
+/* Shortens the step from l0, v0, along which v is linear, until the norm is below `above`; true where it is */
+static PetscBool NewtonShorten(ContactCompliance c, PetscReal above, ComplianceMiss *miss)
+{
+  for (PetscReal t = 1; t > NEWTON_SHORTEST; t /= 2) {
+    if (miss->norm <= (1 - NEWTON_ENOUGH * t) * above) return PETSC_TRUE;
+    for (PetscInt i = 0; i < 3 * c->n; i++) {
+      c->l[i] = 0.5 * (c->l[i] + c->l0[i]);
+      c->v[i] = 0.5 * (c->v[i] + c->v0[i]);
+    }
+    ComplianceMeasure(c, miss);
+  }
+  return PETSC_FALSE;
+}
+
+/* Norms that damped steps are compared with */
+typedef struct {
+  PetscReal norm[NEWTON_MEMORY];
+  PetscInt  n;
+} NewtonMemory;
+
+static PetscReal NewtonLargest(const NewtonMemory *memory)
+{
+  PetscReal largest = 0;
+
+  for (PetscInt i = 0; i < PetscMin(memory->n, NEWTON_MEMORY); i++) largest = PetscMax(largest, memory->norm[i]);
+  return largest;
+}
+
+/* Keeps the best l; true as long as there is a better one from time to time */
+static PetscErrorCode NewtonKeep(ContactCompliance c, const ComplianceMiss *miss, ComplianceMiss *best, PetscInt *since,
+                                 PetscBool *hope)
+{
+  PetscFunctionBeginUser;
+  (*since)++;
+  if (miss->largest < best->largest) {
+    *best  = *miss;
+    *since = 0;
+    PetscCall(PetscArraycpy(c->best, c->l, 3 * c->n));
+  }
+  *hope = *since < NEWTON_PATIENCE && !PetscIsInfOrNanReal(miss->norm) ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ComplianceIterate(ContactCompliance c, PetscBool damped, PetscInt max_it, ComplianceMiss *miss)
+{
+  NewtonMemory   memory = {.n = 0};
+  ComplianceMiss best;
+  PetscInt       since = 0;
+  PetscBool      hope  = PETSC_TRUE, singular;
+
+  PetscFunctionBeginUser;
+  PetscCall(ComplianceMove(c));
+  ComplianceMeasure(c, miss);
+  best = *miss;
+  PetscCall(PetscArraycpy(c->best, c->l, 3 * c->n));
+  for (PetscInt it = 0; it < max_it && hope && !ComplianceIsSolved(c, miss); it++) {
+    memory.norm[memory.n++ % NEWTON_MEMORY] = miss->norm;
+    PetscCall(ComplianceStep(c, &singular));
+    ComplianceMeasure(c, miss);
+    if (damped) hope = NewtonShorten(c, NewtonLargest(&memory), miss);
+    if (hope) PetscCall(NewtonKeep(c, miss, &best, &since, &hope));
+  }
+  if (!ComplianceIsSolved(c, miss)) {
+    *miss = best;
+    PetscCall(PetscArraycpy(c->l, c->best, 3 * c->n));
+    PetscCall(ComplianceMove(c));
+  }
+  PetscFunctionReturn(0);
+}
