@@ -51,9 +51,10 @@ struct _p_Modes {
   double     *part_percent; /* participation of the parts [n][parts], NULL for matrices without a mesh */
   PetscInt    shifts;       /* in use */
   char        completeness[1024];
-  char        solver[96]; /* type of the undamped eigensolver, its block and factors */
-  ShiftInvert factor;     /* of the solution where keep is set */
-  ShiftInvert counter;    /* of the last count by inertia, from which the solution takes its analysis */
+  char        solver[96];  /* type of the undamped eigensolver, its block and factors */
+  ShiftInvert factor;      /* of the solution where keep is set */
+  EPS         left_solver; /* undamped, whose space has grown beside that of the right vectors; NULL: none has */
+  ShiftInvert counter;     /* of the last count by inertia, from which the solution takes its analysis */
   /* of the solution under way */
   PetscLogDouble begun;         /* s */
   PetscBool      over;          /* max_time is */
@@ -66,6 +67,7 @@ typedef struct {
   PetscReal low, high, growth;
   PetscInt  expected, below; /* frictionless modes in the window and below it, by inertia; negative when not known */
   PetscInt  extra;           /* eigenvalues to compute beyond those expected */
+  PetscBool guard;           /* those are wanted even where all of the window are found without */
   PetscInt  rigid;           /* damped: rigid modes, each a double zero; listed once */
   PetscInt  twins;           /* the other zeros, which were left out */
   PetscInt  count;           /* > 0: this many nearest to target instead, low and high unknown */

@@ -217,6 +217,7 @@ PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *w
   PetscCall(ProjectionCreate(modes, pencil, window, &p));
   PetscCall(ModesFactor(modes, &undamped, UndampedShift(window), &p.si));
   window->extra += PROJECT_GUARD;
+  window->guard = PETSC_TRUE;
   for (int attempt = 0; attempt < 3 && !complete && !why; attempt++) {
     PetscCall(SpectraDestroy(modes));
     PetscCall(SolveUndamped(modes, &undamped, window, &p.si, &p.reach, &complete));
@@ -227,6 +228,7 @@ PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *w
   *done = why ? PETSC_FALSE : PETSC_TRUE;
   if (why && why != why_whole) PetscCall(PetscStrncpy(window->why, why, sizeof(window->why)));
   if (why) PetscCall(SpectraDestroy(modes));
+  window->guard = PETSC_FALSE;
   if (why) window->extra = 6, window->rigid = 0;
   PetscCall(ProjectionDestroy(&p));
   PetscFunctionReturn(0);

@@ -40,8 +40,9 @@ PetscReal UndampedRadius(const Window *window, PetscReal shift, const Spectrum *
 }
 
 /* Puts the converged pairs into a spectrum; reach = distance of the farthest from the shift, infinite when all n are
-   there */
-static PetscErrorCode UndampedCollect(EPS eps, PetscReal shift, PetscInt n, Spectrum *s)
+   there; covered = nothing is missing in the radius */
+static PetscErrorCode UndampedCollect(EPS eps, PetscReal shift, PetscInt n, const Window *window, Spectrum *s,
+                                      PetscBool *covered)
 {
   PetscInt           n_converged;
   EPSConvergedReason reason;
@@ -67,6 +68,8 @@ static PetscErrorCode UndampedCollect(EPS eps, PetscReal shift, PetscInt n, Spec
   PetscCall(EPSGetConvergedReason(eps, &reason));
   if (n_converged >= n || reason == EPS_DIVERGED_BREAKDOWN)
     s->reach = PETSC_MAX_REAL; /* breakdown: M is singular, no more finite ones */
+  PetscCall(BlockKrylovReached(eps, covered));
+  if (s->reach > UndampedRadius(window, shift, s) || s->n == n) *covered = PETSC_TRUE;
   PetscCall(VecDestroy(&xr));
   PetscCall(VecDestroy(&xi));
   PetscCall(SpectrumSort(s));
@@ -86,30 +89,6 @@ PetscErrorCode SolverSeed(BV bv, unsigned long seed)
   PetscFunctionReturn(0);
 }
 
-/* Solver for nev eigenvalues about the shift; the transposed problem starts from another random vector */
-static PetscErrorCode UndampedCreateSolver(const PencilMatrices *pencil, ShiftInvert *si, PetscBool transposed,
-                                           PetscInt nev, EPS *eps)
-{
-  BV bv;
-  ST st;
-
-  PetscFunctionBeginUser;
-  PetscCall(EPSCreate(si->comm, eps));
-  PetscCall(EPSSetOperators(*eps, pencil->K, pencil->M));
-  PetscCall(EPSSetProblemType(*eps, pencil->symmetric ? EPS_GHEP : EPS_GNHEP));
-  PetscCall(EPSSetType(*eps, EPSBLOCKKRYLOVSCHUR));
-  PetscCall(EPSSetDimensions(*eps, nev, PETSC_DEFAULT, PETSC_DEFAULT));
-  PetscCall(EPSSetTolerances(*eps, 1e-11, 200));
-  PetscCall(EPSGetST(*eps, &st));
-  PetscCall(ShiftInvertAttach(si, transposed, st));
-  PetscCall(EPSSetFromOptions(*eps));
-  PetscCall(EPSSetWhichEigenpairs(*eps, EPS_TARGET_MAGNITUDE));
-  PetscCall(EPSSetTarget(*eps, si->shift));
-  PetscCall(EPSGetBV(*eps, &bv));
-  PetscCall(SolverSeed(bv, transposed ? 20051 : 2005));
-  PetscFunctionReturn(0);
-}
-
 /* SLEPc's own test after every restart, and the limit in time; ctx is the Modes */
 static PetscErrorCode UndampedStop(EPS eps, PetscInt its, PetscInt max_it, PetscInt n, PetscInt nev,
                                    EPSConvergedReason *reason, void *ctx)
@@ -123,19 +102,108 @@ static PetscErrorCode UndampedStop(EPS eps, PetscInt its, PetscInt max_it, Petsc
   PetscFunctionReturn(0);
 }
 
-/* M itself where it is known to be symmetric, else its transpose: formed, since products with blocks of vectors need it */
-static PetscErrorCode UndampedTranspose(PencilMatrices *problem)
+/* K' and M itself where it is known to be symmetric, else its transpose: formed, since products with blocks of vectors need
+   it */
+static PetscErrorCode UndampedTranspose(const PencilMatrices *pencil, Mat problem[2])
 {
   PetscBool known, symmetric;
-  Mat       K = problem->K, M = problem->M;
 
   PetscFunctionBeginUser;
-  PetscCall(MatCreateTranspose(K, &problem->K));
-  PetscCall(MatIsSymmetricKnown(M, &known, &symmetric));
+  PetscCall(MatCreateTranspose(pencil->K, &problem[0]));
+  PetscCall(MatIsSymmetricKnown(pencil->M, &known, &symmetric));
+  problem[1] = pencil->M;
   if (known && symmetric)
-    PetscCall(PetscObjectReference((PetscObject)M));
+    PetscCall(PetscObjectReference((PetscObject)pencil->M));
   else
-    PetscCall(MatTranspose(M, MAT_INITIAL_MATRIX, &problem->M));
+    PetscCall(MatTranspose(pencil->M, MAT_INITIAL_MATRIX, &problem[1]));
+  PetscFunctionReturn(0);
+}
+
+/* What an eigensolver is made for */
+typedef struct {
+  Modes                 modes;
+  const PencilMatrices *pencil;
+  const Window         *window;
+  ShiftInvert          *si;
+} Undamped;
+
+/* Matrices of the problem, or of the transposed one */
+static PetscErrorCode UndampedSetOperators(const Undamped *u, PetscBool transposed, EPS eps)
+{
+  Mat problem[2];
+
+  PetscFunctionBeginUser;
+  if (!transposed) {
+    PetscCall(EPSSetOperators(eps, u->pencil->K, u->pencil->M));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(UndampedTranspose(u->pencil, problem));
+  PetscCall(EPSSetOperators(eps, problem[0], problem[1]));
+  for (int i = 0; i < 2; i++) PetscCall(MatDestroy(&problem[i]));
+  PetscFunctionReturn(0);
+}
+
+/* Solver for nev eigenvalues about the shift; the transposed problem starts from another random vector */
+static PetscErrorCode UndampedCreateSolver(const Undamped *u, PetscBool transposed, PetscInt nev, EPS *eps)
+{
+  const Window *window = u->window;
+  BV            bv;
+  ST            st;
+
+  PetscFunctionBeginUser;
+  PetscCall(EPSCreate(u->si->comm, eps));
+  PetscCall(UndampedSetOperators(u, transposed, *eps));
+  PetscCall(EPSSetProblemType(*eps, u->pencil->symmetric ? EPS_GHEP : EPS_GNHEP));
+  PetscCall(EPSSetType(*eps, EPSBLOCKKRYLOVSCHUR));
+  PetscCall(EPSSetDimensions(*eps, nev, PETSC_DEFAULT, PETSC_DEFAULT));
+  PetscCall(EPSSetTolerances(*eps, 1e-11, 200));
+  PetscCall(EPSGetST(*eps, &st));
+  PetscCall(ShiftInvertAttach(u->si, transposed, st));
+  PetscCall(EPSSetFromOptions(*eps));
+  PetscCall(EPSSetWhichEigenpairs(*eps, EPS_TARGET_MAGNITUDE));
+  PetscCall(EPSSetTarget(*eps, u->si->shift));
+  PetscCall(EPSGetBV(*eps, &bv));
+  PetscCall(SolverSeed(bv, transposed ? 20051 : 2005));
+  PetscCall(EPSSetStoppingTestFunction(*eps, UndampedStop, u->modes, NULL));
+  if (!window->count && !window->guard)
+    PetscCall(BlockKrylovSetReach(*eps, UndampedRadius(window, u->si->shift, NULL)));
+  PetscFunctionReturn(0);
+}
+
+/* With LDL' and an update one call solves for right and left blocks: the solver of the left problem goes along, from its
+   own start, and is kept */
+static PetscErrorCode UndampedPair(const Undamped *u, PetscInt nev, EPS right, PetscBool *paired)
+{
+  Modes modes = u->modes;
+
+  PetscFunctionBeginUser;
+  *paired = PETSC_FALSE;
+  PetscCall(EPSDestroy(&modes->left_solver));
+  if (!modes->left || !u->si->update) PetscFunctionReturn(0);
+  PetscCall(UndampedCreateSolver(u, PETSC_TRUE, nev, &modes->left_solver));
+  PetscCall(BlockKrylovSetOther(right, modes->left_solver, ShiftInvertApplyBoth, u->si, paired));
+  if (!*paired) PetscCall(EPSDestroy(&modes->left_solver));
+  PetscFunctionReturn(0);
+}
+
+/* The solver of an attempt: the one that has gone along with the right problem, or a new one */
+static PetscErrorCode UndampedGetSolver(const Undamped *u, PetscBool transposed, PetscInt nev, EPS *eps)
+{
+  Modes       modes  = u->modes;
+  PetscBool   paired = PETSC_FALSE;
+  const char *what   = transposed ? "left vectors" : "right vectors";
+
+  PetscFunctionBeginUser;
+  if (transposed && modes->left_solver) {
+    *eps               = modes->left_solver;
+    modes->left_solver = NULL;
+  } else {
+    PetscCall(UndampedCreateSolver(u, transposed, nev, eps));
+    if (!transposed) PetscCall(UndampedPair(u, nev, *eps, &paired));
+  }
+  PetscCall(LimitAttach(modes, nev, u->si));
+  PetscCall(
+    ProgressBegin(&modes->progress, paired ? "right and left vectors" : what, (paired ? 2 : 1) * (2 * nev + nev / 4)));
   PetscFunctionReturn(0);
 }
 
@@ -156,7 +224,7 @@ static PetscErrorCode UndampedDescribe(EPS eps, const ShiftInvert *si, size_t si
 PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
                              PetscBool transposed, Spectrum *spectrum)
 {
-  PencilMatrices problem = *pencil;
+  const Undamped u = {modes, pencil, window, si};
   PetscInt       n, nev = window->extra + (window->count           ? window->count + window->count / 2
                                            : window->expected >= 0 ? window->expected
                                                                    : 40);
@@ -164,28 +232,20 @@ PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Wi
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(pencil->K, &n, NULL));
-  if (transposed) PetscCall(UndampedTranspose(&problem));
   for (int attempt = 0; attempt < 8 && !covered; attempt++, nev += nev / 2) {
     EPS eps;
 
     nev = PetscMin(nev, n);
-    PetscCall(UndampedCreateSolver(&problem, si, transposed, nev, &eps));
-    PetscCall(EPSSetStoppingTestFunction(eps, UndampedStop, modes, NULL));
-    PetscCall(LimitAttach(modes, nev, si));
-    PetscCall(ProgressBegin(&modes->progress, transposed ? "left vectors" : "right vectors", 2 * nev + nev / 4));
+    PetscCall(UndampedGetSolver(&u, transposed, nev, &eps));
     PetscCall(EPSSolve(eps));
     PetscCall(ProgressEnd(&modes->progress));
     PetscCall(UndampedDescribe(eps, si, sizeof(modes->solver), modes->solver));
-    PetscCall(UndampedCollect(eps, si->shift, n, spectrum));
-    covered =
-      spectrum->reach > UndampedRadius(window, si->shift, spectrum) || spectrum->n == n ? PETSC_TRUE : PETSC_FALSE;
+    PetscCall(UndampedCollect(eps, si->shift, n, window, spectrum, &covered));
     if (!covered) PetscCall(LimitCheck(modes, PETSC_FALSE, spectrum));
     if (!covered && nev < n) PetscCall(SpectrumDestroy(spectrum));
     PetscCall(EPSDestroy(&eps));
     if (nev == n) break;
   }
   if (!covered) PetscCall(WindowComplain(modes, window, "eps"));
-  if (transposed) PetscCall(MatDestroy(&problem.K));
-  if (transposed) PetscCall(MatDestroy(&problem.M));
   PetscFunctionReturn(0);
 }

@@ -55,6 +55,7 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
   window->expected = -1;
   window->below    = -1;
   window->extra    = 6;
+  window->guard    = PETSC_FALSE;
   window->project  = PETSC_FALSE;
   window->beyond   = -1;
   window->counted  = PETSC_FALSE;

@@ -2,7 +2,8 @@
    Solves with many right-hand sides at once. PETSc hands the array of a dense matrix to MUMPS as it is and MUMPS takes
    each column to begin where the one before ends, so columns that lie apart in memory (leading dimension above the local
    rows, as in the matrices of BVGetMat() since SLEPc 3.20) would be answered wrongly without a word. They are copied
-   here. What a library does otherwise than assumed shows in the last column, whose backward error
+   here. What a library does otherwise than assumed shows in the last column (of a right and a left block that are solved
+   together in the last one of either in turn), whose backward error
 
       |A x - b| / (|A|_F |x| + |b|)
 
@@ -36,8 +37,8 @@ static PetscErrorCode BlockPack(Mat A, PetscBool copy, Mat *packed)
   PetscFunctionReturn(0);
 }
 
-/* Raises an error where the last column of X does not solve the system */
-static PetscErrorCode BlockCheck(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X)
+/* Raises an error where column k of X does not solve the system */
+static PetscErrorCode BlockCheck(const ShiftInvert *si, PetscBool transposed, PetscInt k, Mat B, Mat X)
 {
   PetscReal residual, size_x, size_b, backward;
   PetscInt  n;
@@ -47,18 +48,18 @@ static PetscErrorCode BlockCheck(const ShiftInvert *si, PetscBool transposed, Ma
   PetscFunctionBeginUser;
   PetscCall(KSPGetOperators(si->ksp, &A, NULL));
   PetscCall(MatGetSize(B, NULL, &n));
-  PetscCall(MatDenseGetColumnVecRead(B, n - 1, &b));
-  PetscCall(MatDenseGetColumnVecRead(X, n - 1, &x));
+  PetscCall(MatDenseGetColumnVecRead(B, k, &b));
+  PetscCall(MatDenseGetColumnVecRead(X, k, &x));
   PetscCall(VecDuplicate(b, &r));
-  PetscCall(transposed ? MatMultTranspose(A, x, r) : MatMult(A, x, r));
+  PetscCall(transposed && !si->even ? MatMultTranspose(A, x, r) : MatMult(A, x, r));
   if (si->update) PetscCall(LowRankMultAdd(si->update, transposed, x, r));
   PetscCall(VecAXPY(r, -1, b));
   PetscCall(VecNorm(r, NORM_2, &residual));
   PetscCall(VecNorm(x, NORM_2, &size_x));
   PetscCall(VecNorm(b, NORM_2, &size_b));
   PetscCall(VecDestroy(&r));
-  PetscCall(MatDenseRestoreColumnVecRead(X, n - 1, &x));
-  PetscCall(MatDenseRestoreColumnVecRead(B, n - 1, &b));
+  PetscCall(MatDenseRestoreColumnVecRead(X, k, &x));
+  PetscCall(MatDenseRestoreColumnVecRead(B, k, &b));
   backward = residual > 0 ? residual / (si->size * size_x + size_b) : residual;
   PetscCheck(backward <= BLOCK_TRUST, si->comm, PETSC_ERR_LIB,
              "MUMPS solved %" PetscInt_FMT " systems at once with a backward error of %.2g, where %.0g is the most to "
@@ -146,10 +147,29 @@ PetscErrorCode ShiftInvertApplyFactors(void *ctx, Mat B, Mat X)
 
 PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X)
 {
+  PetscInt n;
+
   PetscFunctionBeginUser;
+  PetscCall(MatGetSize(B, NULL, &n));
   PetscCall(EventBegin(EVENT_SOLVE));
-  PetscCall(si->update ? LowRankApply(si->update, transposed, B, X) : BlockSolve(si->ksp, transposed, B, X));
-  PetscCall(BlockCheck(si, transposed, B, X));
+  PetscCall(si->update ? LowRankApply(si->update, transposed ? 0 : n, B, X) : BlockSolve(si->ksp, transposed, B, X));
+  PetscCall(BlockCheck(si, transposed, n - 1, B, X));
   PetscCall(EventEnd(EVENT_SOLVE));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertApplyBoth(void *ctx, PetscInt n_right, Mat B, Mat X)
+{
+  ShiftInvert *si = ctx;
+  PetscInt     n;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetSize(B, NULL, &n));
+  PetscCall(EventBegin(EVENT_SOLVE));
+  PetscCall(LowRankApply(si->update, n_right, B, X));
+  PetscCall(BlockCheck(si, si->turn, si->turn ? n - 1 : n_right - 1, B, X));
+  si->turn = !si->turn;
+  PetscCall(EventEnd(EVENT_SOLVE));
+  PetscCall(ShiftInvertStepped(si, n));
   PetscFunctionReturn(0);
 }

@@ -13,9 +13,28 @@
    solves with many right-hand sides. An iteration fills the space once. It ends with EPS_DIVERGED_BREAKDOWN where there
    are no more finite eigenvalues.
 
+   BlockKrylovSetReach() ends a solution as soon as all out to a distance from the target have converged, though these be
+   less than were asked for. BlockKrylovSetOther() solves K x = kappa M x and K' y = kappa M' y at once: two spaces that
+   have nothing in common but the calls in which their systems are solved, with twice as many right-hand sides.
+
    Options: -eps_blockkrylovschur_size b: vectors in a block, at most the unknowns (0: 8, less in a smaller space or
    problem); all of EPS but balancing, regions, two-sided, true residuals, and orders other than by magnitude. */
 PETSC_INTERN PetscErrorCode BlockKrylovRegister(void);
 
 /* Vectors in a block of a solver that is set up, 1 for another type */
 PETSC_INTERN PetscErrorCode BlockKrylovGetBlock(EPS eps, PetscInt *block);
+
+/* The solution ends where all that lies within the distance from the target has converged: the next Ritz value is known
+   well enough to lie beyond it. Not collective. Another type has no reach. */
+PETSC_INTERN PetscErrorCode BlockKrylovSetReach(EPS eps, PetscReal reach);
+/* Whether it ended so */
+PETSC_INTERN PetscErrorCode BlockKrylovReached(EPS eps, PetscBool *reached);
+
+/* X = A^-1 B for the first n_right columns and X = A^-T B for the others */
+typedef PetscErrorCode (*BlockKrylovSolve)(void *ctx, PetscInt n_right, Mat B, Mat X);
+
+/* EPSSolve(right) lets the space of `left`, of the transposed problem, grow along with its own: `left` is as far then as
+   its own EPSSolve() finds it, which must follow. Both are of this type, generalised problems of the same target by
+   shift-and-invert; nothing is done else, paired says so. Collective. */
+PETSC_INTERN PetscErrorCode BlockKrylovSetOther(EPS right, EPS left, BlockKrylovSolve solve, void *ctx,
+                                                PetscBool *paired);

@@ -12,6 +12,7 @@ PetscErrorCode BlockSpaceCreate(ST st, BV V, Mat M, PetscInt ncv, PetscInt block
 {
   PetscFunctionBeginUser;
   *s = (BlockSpace){.st = st, .V = V, .M = M, .ncv = ncv, .block = block};
+  if (M) PetscCall(PetscObjectReference((PetscObject)M));
   PetscCall(BVGetSizes(V, NULL, &s->n, NULL));
   PetscCall(BVDuplicateResize(V, block, &s->W));
   PetscCall(PetscCalloc2(ncv * (ncv + block), &s->G, block * (ncv + block), &s->scratch));
@@ -83,18 +84,80 @@ PetscErrorCode BlockSpaceStart(BlockSpace *s)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BlockSpaceExtend(BlockSpace *s)
+/* Takes in W, which is Op times the last block */
+static PetscErrorCode SpaceTake(BlockSpace *s)
 {
   const PetscInt n = s->m + s->p, ld = s->ncv + s->block;
   PetscInt       rank;
 
   PetscFunctionBeginUser;
-  PetscCall(BlockSpaceApply(s, s->m, s->p));
   PetscCall(PetscArrayzero(s->G + s->m * ld, s->p * ld));
   PetscCall(SpaceAppend(s, n, VANISHED, s->G + s->m * ld, &rank));
+  s->applied += s->p;
   s->m = n;
   s->p = rank;
   PetscCall(SpaceFill(s));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlockSpaceExtend(BlockSpace *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(BlockSpaceApply(s, s->m, s->p));
+  PetscCall(SpaceTake(s));
+  PetscFunctionReturn(0);
+}
+
+/* The last block times the matrix of the right-hand side, in the columns of B from `first` on */
+static PetscErrorCode SpaceMultiply(const BlockSpace *s, PetscInt first, Mat B)
+{
+  Mat M, x, b;
+
+  PetscFunctionBeginUser;
+  PetscCall(STGetMatrix(s->st, 1, &M));
+  PetscCall(BVSetActiveColumns(s->V, s->m, s->m + s->p));
+  PetscCall(BVGetMat(s->V, &x));
+  PetscCall(MatDenseGetSubMatrix(B, PETSC_DECIDE, PETSC_DECIDE, first, first + s->p, &b));
+  PetscCall(BlockMultiply(M, x, b));
+  PetscCall(MatDenseRestoreSubMatrix(B, &b));
+  PetscCall(BVRestoreMat(s->V, &x));
+  PetscFunctionReturn(0);
+}
+
+/* Takes in the columns of X from `first` on */
+static PetscErrorCode SpaceTakeColumns(BlockSpace *s, PetscInt first, Mat X)
+{
+  Mat x, w;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVSetActiveColumns(s->W, 0, s->p));
+  PetscCall(BVGetMat(s->W, &w));
+  PetscCall(MatDenseGetSubMatrix(X, PETSC_DECIDE, PETSC_DECIDE, first, first + s->p, &x));
+  PetscCall(MatCopy(x, w, SAME_NONZERO_PATTERN));
+  PetscCall(MatDenseRestoreSubMatrix(X, &x));
+  PetscCall(BVRestoreMat(s->W, &w));
+  PetscCall(SpaceTake(s));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlockSpaceExtendBoth(BlockSpace *right, BlockSpace *left, BlockKrylovSolve solve, void *ctx)
+{
+  const PetscInt n_right = right->p, n = right->p + left->p;
+  PetscInt       n_local;
+  Mat            B, X;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetSizes(right->V, &n_local, NULL, NULL));
+  PetscCall(
+    MatCreateDense(PetscObjectComm((PetscObject)right->V), n_local, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &B));
+  PetscCall(MatDuplicate(B, MAT_DO_NOT_COPY_VALUES, &X));
+  PetscCall(SpaceMultiply(right, 0, B));
+  PetscCall(SpaceMultiply(left, n_right, B));
+  PetscCall((*solve)(ctx, n_right, B, X));
+  PetscCall(MatDestroy(&B));
+  PetscCall(SpaceTakeColumns(right, 0, X));
+  PetscCall(SpaceTakeColumns(left, n_right, X));
+  PetscCall(MatDestroy(&X));
   PetscFunctionReturn(0);
 }
 
@@ -175,6 +238,7 @@ PetscErrorCode BlockSpaceDestroy(BlockSpace *s)
 {
   PetscFunctionBeginUser;
   PetscCall(BVDestroy(&s->W));
+  PetscCall(MatDestroy(&s->M));
   PetscCall(PetscFree2(s->G, s->scratch));
   PetscFunctionReturn(0);
 }

@@ -6,7 +6,7 @@
    (G. W. Stewart, SIAM J. Matrix Anal. Appl. 23, 2001; Y. Zhou, Y. Saad, Numer. Algorithms 47, 2008) */
 #pragma once
 
-#include <slepcst.h>
+#include "blockkrylov.h"
 
 typedef struct {
   ST           st;
@@ -15,6 +15,7 @@ typedef struct {
   PetscInt     n;    /* unknowns */
   PetscInt     ncv, block;
   PetscInt     m, p;
+  PetscInt     applied; /* columns that Op was applied to, in all restarts */
   PetscScalar *G;       /* [ncv][ncv + block] */
   PetscScalar *scratch; /* [block][ncv + block] */
 } BlockSpace;
@@ -25,6 +26,9 @@ PETSC_INTERN PetscErrorCode BlockSpaceCreate(ST st, BV V, Mat M, PetscInt ncv, P
 PETSC_INTERN PetscErrorCode BlockSpaceStart(BlockSpace *space);
 /* Applies Op to the last block: m grows by p. Directions that ended are replaced by random ones. */
 PETSC_INTERN PetscErrorCode BlockSpaceExtend(BlockSpace *space);
+/* The same of the spaces of K x = kappa M x and of K' y = kappa M' y by shift-and-invert, with one call of solve */
+PETSC_INTERN PetscErrorCode BlockSpaceExtendBoth(BlockSpace *right, BlockSpace *left, BlockKrylovSolve solve,
+                                                 void *ctx);
 /* V := V_m Q and T = Q' G Q of `converged` + `kept` columns, of which the first `locked` are as they were and the converged
    are not coupled to the last block any more */
 PETSC_INTERN PetscErrorCode BlockSpaceRestart(BlockSpace *space, PetscInt locked, PetscInt converged, PetscInt kept,

@@ -174,43 +174,91 @@ PetscErrorCode LowRankSetUp(Mat L, Mat R, PetscBool store, LowRank *u, PetscBool
   PetscFunctionReturn(0);
 }
 
-/* One solve with A on either side of the small system, or two */
-static PetscErrorCode ApplyRight(const LowRank *u, PetscBool transposed, PetscInt m, PetscScalar c[], Mat B, Mat X)
+/* The columns of X and c of one side, right or left; m may be zero */
+typedef struct {
+  PetscBool    left;
+  PetscInt     first, m;
+  PetscScalar *c; /* [m][p] */
+} Side;
+
+/* c := C^-1 S X or C^-T S X, S = R or L, or with Y the right ones C^-1 Y' X */
+static PetscErrorCode SideReduce(const LowRank *u, const Side *side, Mat X)
 {
-  const Mat inner = transposed ? u->L : u->R, outer = transposed ? u->R : u->L;
-  Mat       reduced;
+  Mat x;
 
   PetscFunctionBeginUser;
-  if (u->Y) {
-    PetscCall(StoredProduct(u, PETSC_FALSE, m, B, c));
-  } else {
-    PetscCall((*u->solve)(u->ctx, B, X));
-    PetscCall(PairsOf(inner, X, u->p, m, c));
-  }
-  PetscCall(DenseSolve(u->p, u->C, u->pivot, transposed, m, c));
+  if (!side->m) PetscFunctionReturn(0);
+  PetscCall(MatDenseGetSubMatrix(X, PETSC_DECIDE, PETSC_DECIDE, side->first, side->first + side->m, &x));
+  if (u->Y && !side->left)
+    PetscCall(StoredProduct(u, PETSC_FALSE, side->m, x, side->c));
+  else
+    PetscCall(PairsOf(side->left ? u->L : u->R, x, u->p, side->m, side->c));
+  PetscCall(MatDenseRestoreSubMatrix(X, &x));
+  PetscCall(DenseSolve(u->p, u->C, u->pivot, side->left, side->m, side->c));
+  PetscFunctionReturn(0);
+}
+
+/* B -= S' c, S = L or R, or with Y the left ones B -= Y c */
+static PetscErrorCode SideSubtract(const LowRank *u, const Side *side, Mat B)
+{
+  Mat b;
+
+  PetscFunctionBeginUser;
+  if (!side->m) PetscFunctionReturn(0);
+  PetscCall(MatDenseGetSubMatrix(B, PETSC_DECIDE, PETSC_DECIDE, side->first, side->first + side->m, &b));
+  if (u->Y && side->left)
+    PetscCall(StoredProduct(u, PETSC_TRUE, side->m, b, side->c));
+  else
+    PetscCall(PairsSpread(side->left ? u->R : u->L, -1, u->p, side->m, side->c, b));
+  PetscCall(MatDenseRestoreSubMatrix(B, &b));
+  PetscFunctionReturn(0);
+}
+
+/* With Y: the right ones are changed before the solve, the left ones after it */
+static PetscErrorCode ApplyStored(const LowRank *u, const Side *right, const Side *left, Mat B, Mat X)
+{
+  Mat reduced = B;
+
+  PetscFunctionBeginUser;
+  PetscCall(SideReduce(u, right, B));
+  if (right->m) PetscCall(MatDuplicate(B, MAT_COPY_VALUES, &reduced));
+  PetscCall(SideSubtract(u, right, reduced));
+  PetscCall((*u->solve)(u->ctx, reduced, X));
+  if (right->m) PetscCall(MatDestroy(&reduced));
+  PetscCall(SideReduce(u, left, X));
+  PetscCall(SideSubtract(u, left, X));
+  PetscFunctionReturn(0);
+}
+
+/* Without Y: two solves of all */
+static PetscErrorCode ApplyTwice(const LowRank *u, const Side *right, const Side *left, Mat B, Mat X)
+{
+  Mat reduced;
+
+  PetscFunctionBeginUser;
+  PetscCall((*u->solve)(u->ctx, B, X));
+  PetscCall(SideReduce(u, right, X));
+  PetscCall(SideReduce(u, left, X));
   PetscCall(MatDuplicate(B, MAT_COPY_VALUES, &reduced));
-  PetscCall(PairsSpread(outer, -1, u->p, m, c, reduced));
+  PetscCall(SideSubtract(u, right, reduced));
+  PetscCall(SideSubtract(u, left, reduced));
   PetscCall((*u->solve)(u->ctx, reduced, X));
   PetscCall(MatDestroy(&reduced));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LowRankApply(const LowRank *u, PetscBool transposed, Mat B, Mat X)
+PetscErrorCode LowRankApply(const LowRank *u, PetscInt n_right, Mat B, Mat X)
 {
-  PetscScalar *c;
   PetscInt     m;
+  PetscScalar *c;
+  Side         right, left;
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(B, NULL, &m));
   PetscCall(PetscMalloc1(u->p * m, &c));
-  if (u->Y && transposed) {
-    PetscCall((*u->solve)(u->ctx, B, X));
-    PetscCall(PairsOf(u->L, X, u->p, m, c));
-    PetscCall(DenseSolve(u->p, u->C, u->pivot, PETSC_TRUE, m, c));
-    PetscCall(StoredProduct(u, PETSC_TRUE, m, X, c));
-  } else {
-    PetscCall(ApplyRight(u, transposed, m, c, B, X));
-  }
+  right = (Side){PETSC_FALSE, 0, n_right, c};
+  left  = (Side){PETSC_TRUE, n_right, m - n_right, c + n_right * u->p};
+  PetscCall(u->Y ? ApplyStored(u, &right, &left, B, X) : ApplyTwice(u, &right, &left, B, X));
   PetscCall(PetscFree(c));
   PetscFunctionReturn(0);
 }

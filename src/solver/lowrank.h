@@ -20,8 +20,8 @@ typedef struct LowRank {
 /* Makes the update u, whose solve and ctx are set, from p solves. With `store` Y is kept. singular: A + L' R is (A is
    not). Collective. */
 PETSC_INTERN PetscErrorCode LowRankSetUp(Mat L, Mat R, PetscBool store, LowRank *u, PetscBool *singular);
-/* X = (A + L' R)^-1 B, or with its transpose. Collective. */
-PETSC_INTERN PetscErrorCode LowRankApply(const LowRank *u, PetscBool transposed, Mat B, Mat X);
+/* X = (A + L' R)^-1 B for the first n_right columns, and with its transpose for the others. Collective. */
+PETSC_INTERN PetscErrorCode LowRankApply(const LowRank *u, PetscInt n_right, Mat B, Mat X);
 /* r += L' R x, or R' L x. Collective. */
 PETSC_INTERN PetscErrorCode LowRankMultAdd(const LowRank *u, PetscBool transposed, Vec x, Vec r);
 PETSC_INTERN PetscErrorCode LowRankDestroy(LowRank *u);

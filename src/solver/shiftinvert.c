@@ -146,7 +146,7 @@ static PetscErrorCode UpdateSolve(const ShiftInvert *si, PetscBool transposed, V
   PetscCall(VecGetArrayWrite(x, &out));
   PetscCall(MatCreateDense(si->comm, n_local, PETSC_DECIDE, n, 1, in, &B));
   PetscCall(MatCreateDense(si->comm, n_local, PETSC_DECIDE, n, 1, out, &X));
-  PetscCall(LowRankApply(si->update, transposed, B, X));
+  PetscCall(LowRankApply(si->update, transposed ? 0 : 1, B, X));
   PetscCall(MatDestroy(&B));
   PetscCall(MatDestroy(&X));
   PetscCall(VecRestoreArrayWrite(x, &out));
@@ -171,6 +171,14 @@ PetscErrorCode ShiftInvertSolve(const ShiftInvert *si, PetscBool transposed, Vec
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ShiftInvertStepped(const ShiftInvert *si, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < n; j++) PetscCall(ProgressStep(si->progress));
+  if (si->after) PetscCall((*si->after)(si->after_ctx));
+  PetscFunctionReturn(0);
+}
+
 /* y = A^-1 x or A^-T x, a step of the eigensolver */
 static PetscErrorCode ShiftInvertRun(PC pc, PetscBool transposed, Vec x, Vec y)
 {
@@ -181,8 +189,7 @@ static PetscErrorCode ShiftInvertRun(PC pc, PetscBool transposed, Vec x, Vec y)
   PetscCall(EventBegin(EVENT_SOLVE));
   PetscCall(ShiftInvertSolve(si, transposed, x, y));
   PetscCall(EventEnd(EVENT_SOLVE));
-  PetscCall(ProgressStep(si->progress));
-  if (si->after) PetscCall((*si->after)(si->after_ctx));
+  PetscCall(ShiftInvertStepped(si, 1));
   PetscFunctionReturn(0);
 }
 
@@ -206,8 +213,7 @@ static PetscErrorCode ShiftInvertRunBlock(PC pc, PetscBool transposed, Mat X, Ma
   PetscCall(PCShellGetContext(pc, &si));
   PetscCall(ShiftInvertApplyBlock(si, transposed, X, Y));
   PetscCall(MatGetSize(X, NULL, &n));
-  for (PetscInt j = 0; j < n; j++) PetscCall(ProgressStep(si->progress));
-  if (si->after) PetscCall((*si->after)(si->after_ctx));
+  PetscCall(ShiftInvertStepped(si, n));
   PetscFunctionReturn(0);
 }
 

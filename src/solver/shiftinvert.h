@@ -27,6 +27,7 @@ typedef struct ShiftInvert {
   PetscBool even;            /* the matrix that is factored is symmetric: LDL' */
   Mat       term[3];         /* K, C, M of it */
   PetscObjectState pattern[3], values[3]; /* of those */
+  PetscBool        turn;                  /* the next check of right and left blocks together is of the left one */
   FactorCost       cost;                  /* of its factors */
   struct LowRank  *update;                /* friction beside that matrix; NULL for none */
   Progress        *progress;
@@ -44,6 +45,8 @@ PETSC_INTERN PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, Pets
 PETSC_INTERN PetscErrorCode ShiftInvertMove(const PencilMatrices *pencil, PetscReal shift, ShiftInvert *si);
 PETSC_INTERN PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st);
 PETSC_INTERN PetscErrorCode ShiftInvertDestroy(ShiftInvert *si);
+/* Counts n steps of the eigensolver, and calls what is to be called after them */
+PETSC_INTERN PetscErrorCode ShiftInvertStepped(const ShiftInvert *si, PetscInt n);
 /* x = A^-1 b, or A^-T b. PETSC_ERR_NOT_CONVERGED where an iterative solver of the user's did not converge */
 PETSC_INTERN PetscErrorCode ShiftInvertSolve(const ShiftInvert *si, PetscBool transposed, Vec b, Vec x);
 /* analysis.c - symbolic analysis of A, which the factorisation then finds done; with MUMPS only.
@@ -65,7 +68,10 @@ PETSC_INTERN PetscBool ShiftInvertShows(void);
 /* block.c - X = A^-1 B, or A^-T B, for dense B, X of the same size and any leading dimension: many right-hand sides at
    once. PETSC_ERR_LIB where the last column does not solve its system: a library behaves otherwise than assumed */
 PETSC_INTERN PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X);
-/* The same by the factors of the symmetric matrix alone; ctx is the KSP */
+/* X = A^-1 B for the first n_right columns, at least one, and A^-T B for the others, at least one, by one block of solves;
+   ctx is a ShiftInvert with an update. As many steps of the eigensolver. */
+PETSC_INTERN PetscErrorCode ShiftInvertApplyBoth(void *ctx, PetscInt n_right, Mat B, Mat X);
+/* X = A^-1 B by the factors of the symmetric matrix alone; ctx is the KSP */
 PETSC_INTERN PetscErrorCode ShiftInvertApplyFactors(void *ctx, Mat B, Mat X);
 /* Frictionless modes with frequency below *omega (rad/s) by Sylvester's law of inertia; symmetric undamped pencil. A null
    pivot is an eigenvalue at *omega itself, which has no sign: *omega is then moved by its part `away` (of either sign).
