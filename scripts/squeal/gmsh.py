@@ -8,7 +8,7 @@ from .program import ROOT
 from .tables import BadInput
 
 TRI6, TET10, QUAD8, HEX20 = 9, 11, 16, 17  # numbers of types
-SURFACES = 2, 3, TRI6, 10, QUAD8
+DIMENSION = {1: 1, 8: 1} | dict.fromkeys((2, 3, TRI6, 10, QUAD8), 2)  # of others 3
 
 
 def run_gmsh(script, path, *options, form="msh41"):
@@ -53,7 +53,7 @@ def read_22(part):
     elements = []
     for row in part["Elements"][1:]:
         _, kind, n_tags, group, *rest = map(int, row)
-        elements.append((name[2 if kind in SURFACES else 3, group], kind, rest[n_tags - 1:]))
+        elements.append((name[DIMENSION.get(kind, 3), group], kind, rest[n_tags - 1:]))
     return nodes, elements
 
 

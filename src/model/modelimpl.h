@@ -141,8 +141,12 @@ PETSC_INTERN PetscErrorCode SharesCreate(Model model, const char owner[], const 
 PETSC_INTERN PetscErrorCode GroundedSetUp(Model model);
 PETSC_INTERN PetscErrorCode GroundedView(const Grounded *grounded, const char kind[], PetscViewer viewer);
 
-/* set.c - points of this rank that carry the label, NULL when there are none; an error when no rank has any.
-   Collective */
+/* Values of a set's label: at a point that is in it with all nodes on it and around it, or at one whose own node alone is
+   in it (in the middle of an edge or face) */
+enum { SET_CLOSED = 1, SET_ALONE = 2 };
+
+/* set.c - points of this rank that are in a set with all nodes around them, NULL when there are none; an error when no rank has a
+   point of the set. Collective */
 PETSC_INTERN PetscErrorCode SetGetPoints(Model model, const char set[], IS *points);
 
 /* face.c - faces of a set with cells on both sides, of all ranks; each is counted at least once. Collective */

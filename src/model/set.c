@@ -44,8 +44,10 @@ PetscErrorCode SetGetPoints(Model model, const char set[], IS *points)
   PetscFunctionBeginUser;
   *points = NULL;
   PetscCall(DMGetLabel(model->dm, set, &label));
-  if (label) PetscCall(DMLabelGetStratumIS(label, 1, points));
-  if (*points) PetscCall(ISGetLocalSize(*points, &n));
+  if (label) PetscCall(DMLabelGetStratumIS(label, SET_CLOSED, points));
+  if (label) PetscCall(DMLabelGetStratumSize(label, SET_ALONE, &n));
+  if (*points) PetscCall(ISGetLocalSize(*points, &n_all));
+  if (*points) n += n_all;
   PetscCallMPI(MPI_Allreduce(&n, &n_all, 1, MPIU_INT, MPI_SUM, model->comm));
   if (!n_all) PetscCall(ModelComplainSet(model, "set", set));
   PetscFunctionReturn(0);
@@ -73,6 +75,27 @@ static PetscErrorCode MarkClosure(Model model, IS points, PetscScalar mark[])
   PetscFunctionReturn(0);
 }
 
+/* The same of the nodes that are in the set without those around */
+static PetscErrorCode MarkAlone(Model model, const char set[], PetscScalar mark[])
+{
+  const PetscInt *p;
+  PetscInt        n;
+  DMLabel         label;
+  IS              points;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMGetLabel(model->dm, set, &label));
+  PetscCall(DMLabelGetStratumIS(label, SET_ALONE, &points));
+  if (!points) PetscFunctionReturn(0);
+  PetscCall(ISGetLocalSize(points, &n));
+  PetscCall(ISGetIndices(points, &p));
+  for (PetscInt i = 0; i < n; i++)
+    if (model->node_of[p[i]] >= 0) mark[3 * model->node_of[p[i]]] += 1;
+  PetscCall(ISRestoreIndices(points, &p));
+  PetscCall(ISDestroy(&points));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelGetSetNodes(Model model, const char set[], IS *vertices)
 {
   PetscScalar *mark;
@@ -85,6 +108,7 @@ PetscErrorCode ModelGetSetNodes(Model model, const char set[], IS *vertices)
   PetscCall(ModelCreateNodal(model, &marks));
   PetscCall(VecGetArray(marks, &mark));
   if (points) PetscCall(MarkClosure(model, points, mark));
+  PetscCall(MarkAlone(model, set, mark));
   PetscCall(VecRestoreArray(marks, &mark));
   PetscCall(ModelSumShared(model, marks));
   PetscCall(PetscMalloc1(model->mesh.n_nodes, &list));

@@ -180,14 +180,19 @@ static PetscErrorCode FindPoints(DM dm, const GmshElement *element, PetscInt cel
 }
 
 /* Marks what stands for an element in each of its groups */
-static PetscErrorCode LabelElement(DM dm, const GmshMesh *mesh, const GmshElement *element, PetscInt cell,
-                                   const PetscInt vertex[], ReaderError *error)
+static PetscErrorCode LabelElement(DM dm, const GmshVolumes *volumes, const GmshElement *element, PetscInt cell,
+                                   ReaderError *error)
 {
+  const GmshMesh   *mesh   = volumes->mesh;
   const GmshEntity *entity = &mesh->entities[element->entity];
-  PetscInt          n      = 0, points[GMSH_MAX_NODES];
+  PetscInt          n = 0, value = SET_CLOSED, points[GMSH_MAX_NODES];
 
   PetscFunctionBeginUser;
-  PetscCall(FindPoints(dm, element, cell, vertex, &n, points));
+  PetscCall(FindPoints(dm, element, cell, volumes->vertex, &n, points));
+  if (!n && element->shape->dim == 0 && volumes->point[element->node[0]] >= 0) {
+    points[n++] = volumes->point[element->node[0]];
+    value       = SET_ALONE;
+  }
   for (PetscInt g = 0; g < mesh->n_groups; g++) {
     const GmshGroup *group = &mesh->groups[g];
 
@@ -198,27 +203,29 @@ static PetscErrorCode LabelElement(DM dm, const GmshMesh *mesh, const GmshElemen
                        "element %" PetscInt_FMT " of physical group \"%s\" is no part of a volume element",
                        element->number, group->name);
       }
-      for (PetscInt i = 0; i < n; i++) PetscCall(DMSetLabelValue(dm, group->name, points[i], 1));
+      for (PetscInt i = 0; i < n; i++) PetscCall(DMSetLabelValue(dm, group->name, points[i], value));
     }
   }
   PetscFunctionReturn(0);
 }
 
 /* Fills the labels; a group without elements is an error, since a support or contact on it would do nothing */
-static PetscErrorCode FillLabels(DM dm, const GmshMesh *mesh, const PetscInt vertex[], ReaderError *error)
+static PetscErrorCode FillLabels(DM dm, const GmshVolumes *volumes, ReaderError *error)
 {
-  PetscInt cell = 0, n;
+  const GmshMesh *mesh = volumes->mesh;
+  PetscInt        cell = 0, n, n_alone;
 
   PetscFunctionBeginUser;
   for (PetscInt e = 0; e < mesh->n_elements; e++) {
     const GmshElement *element = &mesh->elements[e];
 
-    if (element->entity >= 0) PetscCall(LabelElement(dm, mesh, element, cell, vertex, error));
+    if (element->entity >= 0) PetscCall(LabelElement(dm, volumes, element, cell, error));
     if (element->shape->dim == 3) cell++;
   }
   for (PetscInt g = 0; g < mesh->n_groups; g++) {
-    PetscCall(DMGetStratumSize(dm, mesh->groups[g].name, 1, &n));
-    if (n) continue;
+    PetscCall(DMGetStratumSize(dm, mesh->groups[g].name, SET_CLOSED, &n));
+    PetscCall(DMGetStratumSize(dm, mesh->groups[g].name, SET_ALONE, &n_alone));
+    if (n || n_alone) continue;
     ReaderErrorSet(error, PETSC_ERR_USER_INPUT,
                    "physical group \"%s\" has no elements (format 2.2 loses them with Mesh.SaveAll)",
                    mesh->groups[g].name);
@@ -247,15 +254,15 @@ PetscErrorCode ImportGmsh(MPI_Comm comm, const char file[], DM *dm)
   if (rank == 0 && !error.code) PetscCall(FindNodes(&mesh, &error));
   if (rank == 0) volumes.n_cells = CountCells(&mesh, &error);
   PetscCall(RaiseError(comm, file, &error));
-  PetscCall(PetscMalloc1(mesh.n_nodes, &volumes.vertex));
+  PetscCall(PetscMalloc2(mesh.n_nodes, &volumes.vertex, mesh.n_nodes, &volumes.point));
   if (rank == 0) volumes.n_vertices = NumberVertices(&mesh, volumes.vertex);
   PetscCall(VolumesCreateMesh(comm, &volumes, &error, dm));
   PetscCall(CheckOverlap(*dm, &error));
   PetscCall(RaiseError(comm, file, &error));
   PetscCall(CreateLabels(*dm, file, &mesh));
-  PetscCall(FillLabels(*dm, &mesh, volumes.vertex, &error));
+  PetscCall(FillLabels(*dm, &volumes, &error));
   PetscCall(RaiseError(comm, file, &error));
-  PetscCall(PetscFree(volumes.vertex));
+  PetscCall(PetscFree2(volumes.vertex, volumes.point));
   PetscCall(GmshMeshDestroy(&mesh));
   PetscFunctionReturn(0);
 }

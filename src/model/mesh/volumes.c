@@ -119,14 +119,12 @@ static PetscErrorCode CellCheckOrder(DM dm, PetscInt cell, const GmshElement *el
   PetscFunctionReturn(0);
 }
 
-/* Checks that no node of the file stands at two points: a corner of one element in the middle of another's edge or face */
-static PetscErrorCode PointsCheckNodes(const GmshMesh *mesh, PetscInt n_points, const PetscInt node[],
-                                       ReaderError *error)
+/* The point of each node of the file. No node may stand at two: a corner of one element in the middle of another's edge
+   or face */
+static PetscErrorCode NodesSetPoints(const GmshMesh *mesh, PetscInt n_points, const PetscInt node[], PetscInt point[],
+                                     ReaderError *error)
 {
-  PetscInt *point;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(mesh->n_nodes, &point));
   for (PetscInt i = 0; i < mesh->n_nodes; i++) point[i] = -1;
   for (PetscInt p = 0; p < n_points; p++) {
     if (node[p] < 0) continue;
@@ -138,7 +136,6 @@ static PetscErrorCode PointsCheckNodes(const GmshMesh *mesh, PetscInt n_points, 
                      mesh->node_tags[node[p]]);
     point[node[p]] = p;
   }
-  PetscCall(PetscFree(point));
   PetscFunctionReturn(0);
 }
 
@@ -165,7 +162,7 @@ static PetscErrorCode PointsSetNodes(DM dm, const GmshVolumes *volumes, PetscInt
     }
     c++;
   }
-  PetscCall(PointsCheckNodes(mesh, pEnd, node, error));
+  PetscCall(NodesSetPoints(mesh, pEnd, node, volumes->point, error));
   c = 0;
   for (PetscInt e = 0; e < mesh->n_elements && second; e++)
     if (mesh->elements[e].shape->dim == 3) PetscCall(CellCheckOrder(dm, c++, &mesh->elements[e], node, error));

@@ -8,8 +8,10 @@ typedef struct {
   const GmshMesh *mesh;
   PetscInt        n_cells, n_vertices;
   PetscInt       *vertex; /* [nodes of the file] vertex of the DM, -1 for a node that is the corner of no cell */
+  PetscInt       *point;  /* [nodes of the file] point of the DM that bears the node, -1 without any */
 } GmshVolumes;
 
 /* volumes.c - interpolated DMPlex of the cells, whose coordinates stand at the points that bear a node: vertices, and
-   edges, faces and cells of elements of second order. What is wrong goes to the error of rank 0. Collective. */
+   edges, faces and cells of elements of second order; fills volumes->point. What is wrong goes to the error of rank 0.
+   Collective. */
 PETSC_INTERN PetscErrorCode VolumesCreateMesh(MPI_Comm comm, const GmshVolumes *volumes, ReaderError *error, DM *dm);

@@ -1,0 +1,16 @@
+"""Decks of other codes as a mesh and a starting scene of squeal, for scripts/import.
+
+  elements.py   shapes: corners, edges, faces, numbers and order of nodes of Gmsh
+  deck.py       what is in a deck, whichever code it is of: nodes, blocks of elements, sets, surfaces, materials, holders
+  text.py       files as bytes; tables of numbers with commas or in columns, all at once, and line by line where one is wrong
+  abaqus.py     Abaqus and CalculiX: keywords, parts and instances; abaqus_mesh.py nodes, elements, sets, surfaces;
+                abaqus_material.py materials and sections; abaqus_model.py holders, contact, loads, steps; springs.py
+  elastic.py    engineering constants of a stiffness
+  units.py      which units a deck is in, and factors to SI
+  assemble.py   a deck to named sets, parts and scene entries; ties merged; holders.py supports, springs, loads, contacts;
+                names.py names that squeal takes
+  faces.py      faces of the cells: of sets of nodes, on the boundary, by their corners
+  gmsh_file.py  the mesh as a file of Gmsh 4.1, binary
+  scene_file.py the scene in YAML, with where each line comes from
+  convert.py    the way from a file to these two
+"""

@@ -1,0 +1,248 @@
+"""A deck as a mesh with named sets and a scene: ties merged, nodes that no element has left out, parts by their sections,
+holders and loads that say the same joined in one set."""
+
+from dataclasses import dataclass, field
+
+import numpy
+
+from ..tables import BadInput
+from .deck import Material, Section, firsts_of
+from .faces import surface_nodes
+from .holders import add_contacts, add_loads, add_springs, add_supports
+from .names import Names
+
+CLOSE = 1e-6  # of the model's size: nodes that are nearer are in one place
+MOST_CELL_SETS = 12  # that are no parts: a volume of a file of Gmsh is in 16 groups at most
+MOST_RECORDS = 64  # names in one list of squeal
+
+
+@dataclass
+class Entry:
+    """One thing of the scene, by its list: name, set, values with the place that each is from."""
+    kind: str
+    name: str
+    rows: list = field(default_factory=list)  # (key, value, comment)
+    hints: list = field(default_factory=list)  # lines that are comments only
+
+
+@dataclass
+class Result:
+    """What is written."""
+    x: numpy.ndarray
+    blocks: list
+    volumes: dict = field(default_factory=dict)  # name -> cells
+    surfaces: dict = field(default_factory=dict)  # name -> faces (cell, face)
+    points: dict = field(default_factory=dict)  # name -> nodes
+    entries: list = field(default_factory=list)
+
+    def firsts(self):
+        return firsts_of(self.blocks)
+
+
+def coincident(x, slaves, masters, limit):
+    """For each slave the master within `limit`, or -1."""
+    along = numpy.array([0.4824, 0.6411, 0.5968])
+    key_m, key_s = x[masters] @ along, x[slaves] @ along
+    order = numpy.argsort(key_m)
+    first = numpy.searchsorted(key_m[order], key_s - 2 * limit)
+    last = numpy.searchsorted(key_m[order], key_s + 2 * limit)
+    found, best = numpy.full(len(slaves), -1), numpy.full(len(slaves), limit)
+    for step in range(int((last - first).max(initial=0))):
+        rows = numpy.flatnonzero(first + step < last)
+        candidate = masters[order[first[rows] + step]]
+        distance = numpy.linalg.norm(x[candidate] - x[slaves[rows]], axis=1)
+        nearer = distance <= best[rows]
+        found[rows[nearer]], best[rows[nearer]] = candidate[nearer], distance[nearer]
+    return found
+
+
+def merge_ties(deck, size):
+    """Makes one node of each slave node and the master node in its place; ties where one is missing are listed. Returns the
+    node that each one became."""
+    into = numpy.arange(deck.n_nodes)
+    for tie in deck.ties:
+        slaves, masters = (surface_nodes(deck, deck.surfaces[name][0]) for name in (tie.slave, tie.master))
+        found = coincident(deck.x, slaves, masters, CLOSE * size)
+        if (found < 0).any():
+            deck.note(tie.place, f"*TIE {tie.name}: {(found < 0).sum()} of {len(slaves)} nodes of {tie.slave} are not where "
+                                 f"{tie.master} has one; squeal ties nothing but nodes that are shared: NOT TIED")
+            continue
+        for slave, master in zip(slaves, found):
+            into[into == into[slave]] = into[master]
+    return into
+
+
+def model_size(deck):
+    """Length of the diagonal of the box around all nodes of elements."""
+    used = used_nodes(deck)
+    x = deck.x[used]
+    return float(numpy.linalg.norm(x.max(axis=0) - x.min(axis=0)))
+
+
+def used_nodes(deck):
+    """Which nodes elements have."""
+    used = numpy.zeros(deck.n_nodes, bool)
+    for block in deck.blocks:
+        used[block.nodes] = True
+    return used
+
+
+def give_sections(deck):
+    """Where a deck has no sections, its sets of elements or blocks become parts without a material."""
+    if deck.sections:
+        return
+    left = numpy.ones(deck.n_cells, bool)
+    for name, (cells, place) in sorted(deck.cell_sets.items(), key=lambda item: -len(item[1][0])):
+        if len(cells) and left[cells].all():
+            left[cells] = False
+            deck.sections.append(Section(name, cells, "", None, place))
+            deck.note(place, f"set {name} has no section: it becomes a part without a material")
+    if left.any():
+        place = deck.blocks[0].place
+        deck.sections.append(Section("body", numpy.flatnonzero(left), "", None, place))
+        deck.note(place, f"{left.sum()} elements have no section and no set of their own: they become a part `body`")
+
+
+class Assembly:
+    """Names and groups while the result is made."""
+
+    def __init__(self, deck, result, into):
+        self.deck, self.result, self.into = deck, result, into
+        self.sets, self.things = Names(), Names(reserved=True)
+        self.of_nodes, self.of_faces = {}, {}  # name in the deck -> name of the set
+
+    def parts(self, used):
+        """Parts by sections; no cell is in two, none is in no part."""
+        part_of = numpy.full(self.deck.n_cells, -1)
+        for number, section in enumerate(self.deck.sections):
+            if not len(section.cells):
+                self.deck.note(section.place, f"section of {section.name}: has no elements")
+                continue
+            if (part_of[section.cells] >= 0).any():
+                other = self.deck.sections[part_of[section.cells].max()]
+                raise section.place.wrong(f"some elements of {section.name} have the section of {other.name} too")
+            part_of[section.cells] = number
+            name = self.things.new(self.sets.new(section.name))
+            self.result.volumes[name] = section.cells
+            self.result.entries.append(part_entry(name, section, used[section.material]))
+        if (part_of < 0).any():
+            cell = int(numpy.flatnonzero(part_of < 0)[0])
+            number = numpy.searchsorted(self.deck.firsts(), cell, side="right") - 1
+            block = self.deck.blocks[number]
+            raise block.place.wrong(f"element {block.ids[cell - self.deck.firsts()[number]]} ({(part_of < 0).sum()} in all) has no "
+                                    "section, hence no material")
+
+    def node_set(self, nodes, name, fallback):
+        """The name of a set of points; "" where no element has any of its nodes."""
+        if name and name in self.of_nodes:
+            return self.of_nodes[name]
+        members = numpy.unique(self.into[nodes])
+        members = members[members >= 0]
+        if not len(members):
+            return ""
+        written = self.sets.new(name or fallback)
+        self.result.points[written] = members
+        if name:
+            self.of_nodes[name] = written
+        return written
+
+    def face_set(self, faces, name, fallback):
+        """The name of a surface."""
+        if name and name in self.of_faces:
+            return self.of_faces[name]
+        written = self.sets.new(name or fallback)
+        self.result.surfaces[written] = numpy.unique(faces, axis=0)
+        if name:
+            self.of_faces[name] = written
+        return written
+
+    def add(self, kind, name, rows, hints=()):
+        self.result.entries.append(Entry(kind, self.things.new(name), rows, list(hints)))
+
+    def all_sets(self):
+        """What the deck names and the scene does not use; names that begin with _ are those of a preprocessor."""
+        for name, (faces, _) in self.deck.surfaces.items():
+            if len(faces):
+                self.face_set(faces, name, "")
+        for name, (nodes, place) in self.deck.node_sets.items():
+            if name in self.of_nodes or name.rpartition(".")[2].startswith("_"):
+                continue
+            if len(nodes) >= self.deck.n_nodes:
+                self.deck.note(place, f"set {name} is all nodes: not written")
+            elif not self.node_set(nodes, name, ""):
+                self.deck.note(place, f"set {name}: no element has one of its nodes")
+        parts = {cells.tobytes() for cells in map(numpy.unique, self.result.volumes.values())}
+        extra = 0
+        for name, (cells, place) in self.deck.cell_sets.items():
+            cells = numpy.unique(cells)
+            if not len(cells) or cells.tobytes() in parts or name.rpartition(".")[2].startswith("_"):
+                continue
+            if len(cells) == self.deck.n_cells or extra == MOST_CELL_SETS:
+                self.deck.note(place, f"set of elements {name}: not written" +
+                               (", it is all of them" if len(cells) == self.deck.n_cells else f", {extra} others are"))
+                continue
+            extra += 1
+            self.result.volumes[self.sets.new(name)] = cells
+
+
+def part_entry(name, section, material):
+    """Material and axes of a part."""
+    entry = Entry("parts", name)
+    if not material.young:
+        entry.hints.append(f"{name}: {{young: ?, poisson: ?, density: ?}}   no material is in the file: give it")
+        return entry
+
+    def row(key, value, keyword):
+        entry.rows.append((key, value, f"{material.places.get(keyword, material.place)} {material.name}"))
+
+    row("young", ("stress", material.young), "ELASTIC")
+    row("poisson", ("", material.poisson), "ELASTIC")
+    if material.shear:
+        row("shear", ("stress", material.shear), "ELASTIC")
+        if section.axes is None:
+            entry.rows += [("axis_1", ("", (1, 0, 0)), f"{section.place} no orientation: those of space"),
+                           ("axis_2", ("", (0, 1, 0)), f"{section.place} no orientation: those of space")]
+    if section.axes is not None and material.shear:
+        keys = ("cylinder_axis", "cylinder_centre") if section.axes.cylinder else ("axis_1", "axis_2")
+        units = "", "length" if section.axes.cylinder else ""
+        for key, unit, value in zip(keys, units, (section.axes.first, section.axes.second)):
+            entry.rows.append((key, (unit, tuple(value)), str(section.axes.place)))
+    if material.density is None:
+        entry.hints.append(f"{name}_density is not in the file: give it")
+    else:
+        row("density", ("density", (material.density,)), "DENSITY")
+    if material.alpha:
+        row("alpha", ("rate", (material.alpha,)), "DAMPING")
+    if material.beta:
+        row("beta", ("time", (material.beta,)), "DAMPING")
+    return entry
+
+
+def assemble(deck, size):
+    """The result of a deck."""
+    if not deck.n_cells:
+        raise BadInput(f"{deck.path}: there are no volume elements that squeal has")
+    merged = merge_ties(deck, size)
+    for block in deck.blocks:
+        block.nodes = merged[block.nodes]
+        if (numpy.diff(numpy.sort(block.nodes, axis=1)) == 0).any():
+            raise block.place.wrong("a tie makes one node of two nodes of an element")
+    used = used_nodes(deck)
+    number = numpy.cumsum(used) - 1
+    number[~used] = -1
+    result = Result(deck.x[used], deck.blocks)
+    assembly = Assembly(deck, result, number[merged])
+    materials = dict(deck.materials) | {"": Material("", None)}
+    assembly.parts(materials)
+    add_supports(assembly)
+    add_springs(assembly)
+    add_loads(assembly)
+    add_contacts(assembly)
+    assembly.all_sets()
+    for block in deck.blocks:
+        block.nodes = number[block.nodes]
+    for kind in {entry.kind for entry in result.entries}:
+        count = sum(entry.kind == kind for entry in result.entries)
+        if count > MOST_RECORDS:
+            deck.notes.append((deck.path, f"{count} {kind}: squeal takes {MOST_RECORDS} in one list; join some"))
+    return result

@@ -1,0 +1,59 @@
+"""From a file to a mesh and a scene."""
+
+import re
+from pathlib import Path
+
+import numpy
+
+from ..tables import BadInput
+from .abaqus import read_abaqus
+from .assemble import assemble, give_sections, model_size
+from .gmsh_file import write_mesh
+from .scene_file import remarks, scene_lines, write_scene
+from .units import guess, named
+
+READERS = {".inp": read_abaqus}
+
+
+def read_deck(path):
+    """The deck of a file, by its ending."""
+    reader = READERS.get(path.suffix.lower())
+    if reader is None:
+        raise BadInput(f"{path}: files that end in '{path.suffix}' are not read; those in {', '.join(READERS)} are")
+    return reader(path)
+
+
+def clean(text):
+    """One line of printable characters."""
+    return re.sub(r"[^\x20-\x7e]", "?", text)
+
+
+def convert(path, units=None, output=None, strict=False):
+    """Writes OUTPUT.msh and OUTPUT.yaml; returns the lines to print."""
+    chosen = named(units) if units else None
+    deck = read_deck(path)
+    if not deck.n_cells:
+        raise BadInput(f"{path}: there are no volume elements that squeal has")
+    give_sections(deck)
+    size = model_size(deck)
+    if not 0 < size < 1e300:
+        raise BadInput(f"{path}: all nodes are in one place")
+    used = [deck.materials[section.material] for section in deck.sections if section.material]
+    chosen, why = (chosen, f"units {chosen.name}, given by --units") if chosen else guess(deck, size, used)
+    result = assemble(deck, size)
+    result.x = result.x * chosen.length
+    if not numpy.isfinite(result.x).all():
+        raise BadInput(f"{path}: places are not finite")
+    output = output or Path(path.stem)
+    mesh, scene = (output.with_name(output.name + ending) for ending in (".msh", ".yaml"))
+    lines, notes = scene_lines(deck, result, chosen, why, mesh), [clean(note) for note in remarks(deck)]
+    if strict and deck.notes:
+        raise BadInput(f"{clean(str(deck.notes[0][0]))}: {clean(deck.notes[0][1])} ({len(deck.notes)} such lines; --strict)")
+    try:
+        write_mesh(mesh, result)
+        write_scene(scene, [clean(line) for line in lines], notes)
+    except OSError as error:
+        raise BadInput(f"{error.filename}: {error.strerror}") from None
+    cells = sum(len(block.ids) for block in result.blocks)
+    return [clean(why), f"{len(result.x)} nodes, {cells} elements, {len(result.volumes)} volumes, {len(result.surfaces)} surfaces, "
+            f"{len(result.points)} sets of nodes", *notes, f"{mesh} {scene}"]

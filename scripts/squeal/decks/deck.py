@@ -1,0 +1,232 @@
+"""What a deck says, whichever code it is of. Nodes are indices into `x`, cells numbers of all volume elements from 0 in the
+order of the blocks; values are in the units of the deck."""
+
+from dataclasses import dataclass, field
+
+import numpy
+
+from ..tables import BadInput
+from .elements import SHAPES
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where something stands."""
+    file: str
+    line: int
+
+    def __str__(self):
+        return f"{self.file}:{self.line}"
+
+    def wrong(self, text):
+        """The error for it."""
+        return BadInput(f"{self}: {text}")
+
+
+@dataclass
+class Block:
+    """Volume elements of one type."""
+    shape: object
+    kind: str  # as the deck names it
+    ids: numpy.ndarray  # [n]
+    nodes: numpy.ndarray  # [n][nodes], indices
+    place: Place
+
+
+@dataclass
+class Axes:
+    """Of a material: directions 1 and 2, or an axis and a point of it."""
+    cylinder: bool
+    first: numpy.ndarray  # direction 1; of a cylinder the direction of the axis
+    second: numpy.ndarray  # direction 2; of a cylinder a point of the axis
+    place: Place
+
+
+@dataclass
+class Material:
+    """`young` etc. hold one or three values; what is not given is None."""
+    name: str
+    place: Place
+    young: tuple = ()
+    poisson: tuple = ()
+    shear: tuple = ()
+    density: float = None
+    alpha: float = 0
+    beta: float = 0
+    places: dict = field(default_factory=dict)
+
+
+@dataclass
+class Section:
+    """Cells of one material: a part of the scene."""
+    name: str
+    cells: numpy.ndarray
+    material: str
+    axes: Axes
+    place: Place
+
+
+@dataclass
+class Support:
+    """Directions 0, 1, 2 -> value of nodes; `name` where they are a named set."""
+    nodes: numpy.ndarray
+    values: dict
+    name: str
+    place: Place
+
+
+@dataclass
+class Spring:
+    """To the ground, at every node."""
+    nodes: numpy.ndarray
+    stiffness: numpy.ndarray  # [3]
+    name: str
+    place: Place
+
+
+@dataclass
+class Load:
+    """Either `force` [3] at every one of the nodes, or a pressure on faces (cell, face), into the body."""
+    name: str
+    place: Place
+    nodes: numpy.ndarray = None
+    force: numpy.ndarray = None
+    faces: numpy.ndarray = None
+    pressure: float = 0
+
+
+@dataclass
+class Contact:
+    """Slave and master are names of surfaces."""
+    name: str
+    slave: str
+    master: str
+    place: Place
+    mu: float = None
+    stiffness: float = None  # per area
+    rotation: tuple = ()
+    centre: tuple = ()
+
+
+@dataclass
+class Tie:
+    name: str
+    slave: str
+    master: str
+    place: Place
+
+
+class Index:
+    """Numbers of nodes or elements -> places in their array; a number that stands twice is an error."""
+
+    def __init__(self):
+        self.parts, self.lines, self.n, self.ready = [], [], 0, None
+
+    def add(self, ids, at, lines, file):
+        """Numbers, their places, lines of the file."""
+        self.parts.append((ids, at))
+        self.lines.append((len(ids), lines, file))
+        self.n += len(ids)
+        self.ready = None
+
+    def sorted(self, what):
+        """Numbers in rising order and their places."""
+        if self.ready is None:
+            ids = numpy.concatenate([ids for ids, _ in self.parts] or [numpy.empty(0, int)])
+            at = numpy.concatenate([at for _, at in self.parts] or [numpy.empty(0, int)])
+            order = numpy.argsort(ids, kind="stable")
+            twice = numpy.flatnonzero(ids[order][1:] == ids[order][:-1])
+            if len(twice):
+                later = order[twice + 1].min()
+                raise self.line_of(later).wrong(f"{what} {ids[later]} stands twice")
+            self.ready = ids[order], at[order]
+        return self.ready
+
+    def line_of(self, number):
+        """Place of the number-th entry."""
+        for n, lines, file in self.lines:
+            if number < n:
+                return Place(file, int(lines[number]))
+            number -= n
+        raise IndexError(number)
+
+    def find(self, ids, what):
+        """Places of numbers [...], and which of them are missing."""
+        known, at = self.sorted(what)
+        ids = numpy.asarray(ids, int)
+        if not len(known):
+            return numpy.zeros(ids.shape, int), numpy.ones(ids.shape, bool)
+        first = numpy.minimum(numpy.searchsorted(known, ids), len(known) - 1)
+        return at[first], known[first] != ids
+
+    def need(self, ids, what, place):
+        """Places of numbers, all of which must be there; `place` tells where the i-th stands."""
+        at, missing = self.find(ids, what)
+        if missing.any():
+            first = tuple(numpy.argwhere(missing)[0])
+            where = place(int(first[0])) if callable(place) else place
+            raise where.wrong(f"{what} {numpy.asarray(ids)[first]} is not in the file")
+        return at
+
+
+class Deck:
+    """All that was understood, and notes of all else."""
+
+    def __init__(self, path, form):
+        self.path, self.form = str(path), form
+        self.x_parts, self.n_nodes, self.blocks, self.n_cells = [], 0, [], 0
+        self.node_sets, self.cell_sets, self.surfaces = {}, {}, {}  # name -> (indices or faces [n][2], Place)
+        self.materials, self.sections = {}, []
+        self.supports, self.springs, self.loads, self.contacts, self.ties = [], [], [], [], []
+        self.gravity = None  # (vector, Place)
+        self.modes = None  # (count, lowest, highest, Place)
+        self.notes, self.differs = [], {}
+
+    def note(self, place, text):
+        """Something that is not in the scene."""
+        self.notes.append((place, text))
+
+    def differ(self, place, text):
+        """A formulation that differs, said once."""
+        self.differs.setdefault(text, place)
+
+    def add_nodes(self, x):
+        """Coordinates [n][3]; returns their indices."""
+        self.x_parts.append(x)
+        self.n_nodes += len(x)
+        return numpy.arange(self.n_nodes - len(x), self.n_nodes)
+
+    @property
+    def x(self):
+        """Coordinates of all nodes."""
+        if len(self.x_parts) != 1:
+            self.x_parts = [numpy.concatenate(self.x_parts or [numpy.empty((0, 3))])]
+        return self.x_parts[0]
+
+    def add_block(self, block):
+        """Returns the numbers of its cells."""
+        check_twice(block)
+        self.blocks.append(block)
+        self.n_cells += len(block.ids)
+        return numpy.arange(self.n_cells - len(block.ids), self.n_cells)
+
+    def firsts(self):
+        return firsts_of(self.blocks)
+
+
+def firsts_of(blocks):
+    """Number of the first cell of each block, and of all cells."""
+    return numpy.cumsum([0, *(len(block.ids) for block in blocks)])
+
+
+def check_twice(block):
+    """No node may stand twice in an element."""
+    rows = numpy.sort(block.nodes, axis=1)
+    twice = (rows[:, 1:] == rows[:, :-1]).any(axis=1)
+    if twice.any():
+        number = block.ids[numpy.flatnonzero(twice)[0]]
+        raise block.place.wrong(f"element {number} of type {block.kind} has a node twice")
+
+
+def shape_of(name):
+    return SHAPES[name]

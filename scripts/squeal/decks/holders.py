@@ -1,0 +1,149 @@
+"""What holds, presses and rubs, as entries of the scene: lines of a deck that say the same of nodes become one set."""
+
+import numpy
+
+DIRECTIONS = "xyz"
+
+
+def summary(places):
+    """Places as a comment: the first, and how many more."""
+    shown = str(places[0])
+    return shown if len(places) == 1 else f"{shown} and {len(places) - 1} more"
+
+
+def grouped(rows, n):
+    """Nodes with equal rows: dictionary node -> values [n] as (values, nodes) in the order of first appearance."""
+    nodes = numpy.array(list(rows), int)
+    values = numpy.array([rows[node] for node in rows], float).reshape(-1, n)
+    unique, first, inverse = numpy.unique(values, axis=0, return_index=True, return_inverse=True)
+    for group in numpy.argsort(first, kind="stable"):
+        yield unique[group], nodes[inverse.ravel() == group]
+
+
+def add_supports(assembly):
+    """Directions that are held; those that are moved become motions."""
+    named, single, places = {}, {}, {}
+    for support in assembly.deck.supports:
+        if support.name:
+            values, where, _ = named.setdefault(support.name, ({}, [], support.nodes))
+            values.update(support.values)
+            where.append(support.place)
+            continue
+        for node in support.nodes.tolist():
+            row = single.setdefault(node, [numpy.nan] * 3)
+            for direction, value in support.values.items():
+                row[direction] = value
+            places.setdefault(node, support.place)
+    for name, (values, where, nodes) in named.items():
+        support_entries(assembly, (name, name), nodes, values, where)
+    for row, nodes in grouped(numpy_free(single), 3):
+        values = {d: float(v) for d, v in enumerate(row) if v < 1e300}
+        support_entries(assembly, ("", "support"), nodes, values, [places[int(node)] for node in nodes])
+
+
+def numpy_free(rows):
+    """nan is not equal to itself: a huge number stands for it."""
+    return {node: [1e301 if value != value else value for value in row] for node, row in rows.items()}
+
+
+def support_entries(assembly, names, nodes, values, where):
+    """Entries of a set: what is held at its place, and what is moved."""
+    written = assembly.node_set(nodes, *names)
+    if not written:
+        held = "a reference node?" if len(nodes) == 1 else "reference nodes?"
+        for place in where:
+            assembly.deck.note(place, f"support of nodes that no volume element has ({held}): not in the scene")
+        return
+    fixed = "".join(DIRECTIONS[d] for d in sorted(values) if values[d] == 0)
+    moved = [d for d in sorted(values) if values[d] != 0]
+    comment = summary(where)
+    if fixed:
+        assembly.add("supports", written, [("set", written, comment), ("fix", fixed, comment)])
+    if moved:
+        vector = tuple(values.get(d, 0) if d in moved else 0.0 for d in range(3))
+        assembly.add("motions", f"{written}_motion", [
+            ("set", written, comment), ("displacement", ("length", vector), comment),
+            ("directions", "".join(DIRECTIONS[d] for d in moved), comment)])
+
+
+def add_springs(assembly):
+    """Springs to the ground, summed at each node."""
+    rows, places = {}, {}
+    for spring in assembly.deck.springs:
+        for node in assembly.into[spring.nodes].tolist():
+            rows[node] = rows.get(node, numpy.zeros(3)) + spring.stiffness
+            places.setdefault(node, spring.place)
+    back = {int(new): old for old, new in enumerate(assembly.into.tolist())} if rows else {}
+    for stiffness, nodes in grouped(rows, 3):
+        comment = summary([places[int(node)] for node in nodes])
+        if not stiffness.any():
+            assembly.deck.note(places[int(nodes[0])], "springs without stiffness: not in the scene")
+            continue
+        written = assembly.node_set(numpy.array([back[int(node)] for node in nodes]), "", "spring")
+        assembly.add("springs", written, [("set", written, comment),
+                                          ("stiffness", ("stiffness", tuple(stiffness)), f"{comment} per node")])
+
+
+def add_loads(assembly):
+    """Forces on nodes, summed over a set; pressures on surfaces; gravity is of the scene as a whole."""
+    named, single, places, pressed = {}, {}, {}, {}
+    for load in assembly.deck.loads:
+        if load.faces is not None:
+            pressed.setdefault((load.name, load.pressure), []).append(load)
+        elif load.name:
+            force, where, _ = named.setdefault(load.name, (numpy.zeros(3), [], load.nodes))
+            force += load.force
+            where.append(load.place)
+        else:
+            for node in load.nodes.tolist():
+                single[node] = single.get(node, numpy.zeros(3)) + load.force
+                places.setdefault(node, load.place)
+    for name, (force, where, nodes) in named.items():
+        force_entry(assembly, (name, name), nodes, force, where)
+    for force, nodes in grouped(single, 3):
+        force_entry(assembly, ("", "force"), nodes, force, [places[int(node)] for node in nodes])
+    for (name, pressure), loads in pressed.items():
+        comment = summary([load.place for load in loads])
+        faces = numpy.concatenate([load.faces for load in loads])
+        written = assembly.face_set(faces, name, "pressed")
+        assembly.add("loads", f"{written}_pressure", [("set", written, comment),
+                                                      ("pressure", ("stress", (pressure,)), f"{comment} into the body")])
+
+
+def force_entry(assembly, names, nodes, force, where):
+    """A force at every node, as the total of a set of points, over which squeal spreads it evenly."""
+    written = assembly.node_set(nodes, *names)
+    if not written:
+        for place in where:
+            assembly.deck.note(place, "force on nodes that no volume element has: not in the scene")
+        return
+    n, comment = len(assembly.result.points[written]), summary(where)
+    if n != len(nodes):
+        assembly.deck.note(where[0], f"force on {len(nodes)} nodes, of which elements have {n}")
+    assembly.add("loads", f"{written}_force", [
+        ("set", written, comment), ("force", ("force", tuple(n * force)), f"{comment} total of {n} nodes")])
+
+
+def add_contacts(assembly):
+    """Pairs of surfaces; what a deck does not say is a hint."""
+    surfaces = assembly.deck.surfaces
+    for contact in assembly.deck.contacts:
+        empty = [name for name in (contact.slave, contact.master) if not len(surfaces[name][0])]
+        if empty:
+            assembly.deck.note(contact.place, f"contact {contact.slave}, {contact.master}: {empty[0]} has no faces; not in the scene")
+            continue
+        slave, master = (assembly.face_set(surfaces[name][0], name, "") for name in (contact.slave, contact.master))
+        comment = str(contact.place)
+        rows = [("surfaces", f"{slave},{master}", f"{comment} slave,master")]
+        if contact.stiffness:
+            rows.append(("kn_per_area", ("stiffness_per_area", (contact.stiffness,)), comment))
+        else:
+            rows.append(("law", "constraint", f"{comment} no stiffness is given: exact contact"))
+        hints = []
+        if contact.mu is not None:
+            rows.append(("mu", ("", (contact.mu,)), comment))
+        if contact.rotation:
+            rows += [("rotation", ("rate", contact.rotation), comment), ("center", ("length", contact.centre), comment)]
+        elif contact.mu:
+            hints.append('slip: "0,1,0"   the slave\'s sliding direction is not in the file: give it, or rotation: "x,y,z" in rad/s')
+        assembly.add("contacts", contact.name, rows, hints)

@@ -1,0 +1,67 @@
+"""The scene in YAML: what was understood, with the place that each line is from, then all that was not."""
+
+from ..tables import whole
+
+LISTS = ("parts", "supports", "springs", "motions", "loads", "contacts")
+FACTORS = {"": lambda u: 1, "length": lambda u: u.length, "stress": lambda u: u.stress, "density": lambda u: u.density,
+           "force": lambda u: u.force, "stiffness": lambda u: u.stiffness, "time": lambda u: u.time,
+           "rate": lambda u: 1 / u.time, "stiffness_per_area": lambda u: u.stiffness_per_area}
+
+
+def shown(value, units):
+    """A word, or a quantity (its kind, values) in SI."""
+    if isinstance(value, str):
+        return f'"{value}"' if "," in value else value
+    kind, values = value
+    words = [f"{number * FACTORS[kind](units):.15g}" for number in values]
+    return words[0] if len(words) == 1 else '"' + ",".join(words) + '"'
+
+
+def entry_lines(entry, units):
+    """Lines of one thing."""
+    lines = [f"{entry.name}:"] if entry.rows else []
+    rows = [(f"  {key}: {shown(value, units)}", comment) for key, value, comment in entry.rows]
+    width = max([len(text) for text, _ in rows] or [0])
+    lines += [f"{text:{width}}  # {comment}" for text, comment in rows]
+    return lines + [f"  # {hint}" for hint in entry.hints]
+
+
+def mode_lines(deck, units):
+    """The modes that are asked for."""
+    if deck.modes is None:
+        return ["modes: {target: 1, count: 20}  # the lowest 20: the file asks for none"]
+    count, lowest, highest, place = deck.modes
+    if highest > 0:
+        return [f'modes: {{band: "{lowest / units.time:.15g},{highest / units.time:.15g}"}}  # {place} Hz']
+    return [f"modes: {{target: 1, count: {max(int(count), 1)}}}  # {place} the lowest"]
+
+
+def scene_lines(deck, result, units, why, mesh):
+    """All lines."""
+    lines = [f"# From {deck.path} ({deck.form}). Everything here is in SI.", f"# {why}", "",
+             f"model: {{mesh: {mesh}}}" if deck.gravity is None else "model:"]
+    if deck.gravity is not None:
+        vector, place = deck.gravity
+        factor = units.length / units.time**2
+        lines += [f"  mesh: {mesh}", '  gravity: "' + ",".join(f"{g * factor:.15g}" for g in vector) + f'"  # {place}']
+    for kind in LISTS:
+        entries = [entry for entry in result.entries if entry.kind == kind]
+        if entries:
+            lines += ["", f"{kind}: {','.join(entry.name for entry in entries)}"]
+            lines += [line for entry in entries for line in entry_lines(entry, units)]
+    lines += ["", *mode_lines(deck, units)]
+    return lines
+
+
+def remarks(deck):
+    """What differs, and what is not in the scene, a line each."""
+    return ([f"{place}: differs: {text}" for text, place in deck.differs.items()] +
+            [f"{place}: {text}" for place, text in deck.notes])
+
+
+def write_scene(path, lines, notes):
+    """Writes the file, whole or not at all."""
+    if notes:
+        lines = [*lines, "", "# What differs or is not in this scene:", *(f"# {note}" for note in notes)]
+    with whole(path) as part:
+        part.write_text("\n".join(lines) + "\n", encoding="utf-8", errors="replace")

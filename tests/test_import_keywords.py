@@ -1,0 +1,120 @@
+#!/usr/bin/env python3
+"""What scripts/import makes of each keyword: small decks, written as the manuals of the codes show them, and the scene that
+they should give, worked out by hand; every line that is not understood must be listed with its file and line. The forces
+of a run are those of the deck. Breaks when a keyword is read wrongly or passed over in silence.
+
+    test_import_keywords.py SQUEAL MPIRUN"""
+
+import csv
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
+from squeal.decks.convert import convert, read_deck
+from squeal.tables import BadInput
+
+import decks_abaqus
+import numpy as np
+
+FAILED = []
+
+
+def check(about, kept, shown=""):
+    print(f"{'ok    ' if kept else 'FAILED'} {about} {'' if kept else shown}")
+    if not kept:
+        FAILED.append(about)
+
+
+def scene(folder, name):
+    """Lines of a scene without comments, as {option: value}, and the comments at the end."""
+    text = (folder / f"{name}.yaml").read_text()
+    options, top = {}, ""
+    for line in text.splitlines():
+        code = re.sub(r"\s+#.*", "", line)
+        if not code or code.startswith("#"):
+            continue
+        indent = code.startswith(" ")
+        key, _, value = code.strip().partition(":")
+        if value.strip().startswith("{"):
+            for pair in re.findall(r"(\w+): (\"[^\"]*\"|[^,}]+)", value):
+                options[f"{key}_{pair[0]}"] = pair[1].strip('"')
+        elif value.strip():
+            options[f"{top}_{key}" if indent else key] = value.strip().strip('"')
+        else:
+            top = key
+    return options, [line[2:] for line in text.partition("# What differs")[2].splitlines()[1:]]
+
+
+def same(wanted, found):
+    """Whether two values are the same words or numbers."""
+    try:
+        return np.allclose([float(w) for w in wanted.split(",")], [float(w) for w in found.split(",")], rtol=1e-9, atol=1e-12)
+    except ValueError:
+        return wanted == found
+
+
+def check_scene(folder, case):
+    """One case: files, the scene, what is listed."""
+    for name, text in case.FILES.items():
+        (folder / name).write_text(text)
+    main = next(iter(case.FILES))
+    convert(folder / main, getattr(case, "UNITS", None), folder / "scene")
+    options, listed = scene(folder, "scene")
+    for key, value in case.SCENE.items():
+        check(f"{main}: {key} is {value}", same(value, options.pop(key, "")), f"found {scene(folder, 'scene')[0].get(key)}")
+    options.pop("model_mesh", None), options.pop("mesh", None)
+    check(f"{main}: nothing else", not options, options)
+    where = [line.replace(f"{folder}/", "") for line in listed]
+    for line in case.LISTED:
+        hits = [found for found in where if found.startswith(line)]
+        check(f"{main}: listed: {line}", len(hits) == 1, where)
+        where = [found for found in where if found not in hits]
+    check(f"{main}: nothing else is listed", not where, where)
+
+
+def forces(folder):
+    """Total of each load, N, by a run for the sliding state."""
+    command = [sys.argv[2], "-n", 1, sys.argv[1], "-options_file", folder / "scene.yaml", "-analysis", "static",
+               "-model_mesh", folder / "scene.msh", "-output_dir", folder / "out", "-output_fields", 0]
+    done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise SystemExit(done.stderr)
+    with (folder / "out/reactions.csv").open(newline="") as rows:
+        return {row["name"]: [float(row[f"force_{d}_n"]) for d in "xyz"] for row in csv.DictReader(rows) if row["kind"] == "load"}
+
+
+def check_refused(folder, case):
+    """Decks that are wrong: the message, with file and line."""
+    for text, message in case.REFUSED:
+        (folder / "wrong.inp").write_text(text)
+        try:
+            convert(folder / "wrong.inp", output=folder / "wrong")
+            check(f"refused: {message}", False, "it was not")
+        except BadInput as error:
+            check(f"refused: {message}", message in str(error) and "\n" not in str(error), str(error))
+
+
+def abaqus(folder):
+    check_scene(folder, decks_abaqus.Assembly)
+    deck = read_deck(folder / next(iter(decks_abaqus.Assembly.FILES)))
+    corner = np.array(decks_abaqus.Assembly.PLACE)
+    check("instance: moved, then turned", (abs(deck.x - corner).max(axis=1) < 1e-9).any(), deck.x)
+    found = forces(folder)
+    for name, force in decks_abaqus.Assembly.FORCES.items():
+        check(f"force of {name}: {force} N", np.allclose(found.get(name, np.nan), force, atol=1e-9), found)
+    check_scene(folder, decks_abaqus.Flat)
+    check_refused(folder, decks_abaqus)
+
+
+def main():
+    sys.argv[1:] = [str(Path(word).resolve()) for word in sys.argv[1:]]
+    with tempfile.TemporaryDirectory(prefix="squeal-") as name:
+        abaqus(Path(name))
+    return 1 if FAILED else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
