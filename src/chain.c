@@ -183,6 +183,7 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   if (!folder[0]) PetscFunctionReturn(0);
   PetscCall(ChainLinearise(chain));
   PetscCall(PencilSave(chain->pencil));
+  PetscCall(StaticsSaveLoad(chain->statics, chain->p, chain->pencil));
   PetscFunctionReturn(0);
 }
 

@@ -48,9 +48,9 @@ PetscErrorCode OperatorsSetModel(Operators operators, Model model, Contact conta
 .  -operators_factors <auto|lu|symmetric> - with friction LU, or LDL' of the symmetric part with an update for the closed
 pairs; auto takes what needs less memory
 .  -contact_mu <mu>                      - friction coefficient of K + mu H for loaded or dense matrices
--  -operators_save <dir>                 - write K.bin, M.bin and, where there are any, C.bin and H.bin; with the
-contact
-                                          constraint the projected matrices, friction included in K.bin and M.bin
+-  -operators_save <dir>                 - write K.bin, M.bin and, where there are any, C.bin, H.bin and the loads F.bin;
+                                          with the contact constraint the projected matrices, friction included in
+                                          K.bin and M.bin
 @*/
 PetscErrorCode OperatorsSetFromOptions(Operators operators);
 

@@ -144,6 +144,10 @@ PetscErrorCode PencilGetOperators(Pencil pencil, Operators *operators);
 /*@ PencilSave - writes the matrices into the folder of -operators_save. Collective. @*/
 PetscErrorCode PencilSave(Pencil pencil);
 
+/*@ PencilSaveLoad - writes a force f on all unknowns, N, as F.bin beside the matrices, Zl' f where these are of the
+    unknowns that constraints leave. Collective. @*/
+PetscErrorCode PencilSaveLoad(Pencil pencil, Vec f);
+
 /*@ PencilView - sizes and kinds in words. Collective. @*/
 PetscErrorCode PencilView(Pencil pencil, PetscViewer viewer);
 

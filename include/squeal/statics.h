@@ -124,6 +124,10 @@ PetscErrorCode StaticsIdentify(Statics statics, const PetscReal p[], PetscInt in
     @*/
 PetscErrorCode StaticsIdentifyAll(Statics statics, PetscReal p[], PetscViewer viewer);
 
+/*@ StaticsSaveLoad - writes the loads, the weight and what motions exert at p as F.bin beside the matrices of
+    -operators_save, for the equations of the pencil; nothing where there are none. Collective. @*/
+PetscErrorCode StaticsSaveLoad(Statics statics, const PetscReal p[], Pencil pencil);
+
 /*@ StaticsAddChecksum - adds the loads and how the sliding state is found. Collective. @*/
 PetscErrorCode StaticsAddChecksum(Statics statics, Checksum checksum);
 

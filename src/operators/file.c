@@ -175,8 +175,8 @@ PetscErrorCode OperatorsLoad(Operators o)
   PetscFunctionReturn(0);
 }
 
-/* Writes one matrix under a temporary name, then renames it */
-static PetscErrorCode PencilSaveMatrix(Operators o, const char name[], Mat A)
+/* Writes one matrix or vector under a temporary name, then renames it */
+static PetscErrorCode PencilSaveObject(Operators o, const char name[], PetscObject A)
 {
   char           file[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
   PetscViewer    viewer;
@@ -194,7 +194,7 @@ static PetscErrorCode PencilSaveMatrix(Operators o, const char name[], Mat A)
   PetscCall(PetscViewerFileSetName(viewer, part));
   PetscCallMPI(MPI_Comm_rank(o->comm, &rank));
   PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
-  error = MatView(A, viewer);
+  error = PetscObjectView(A, viewer);
   PetscCall(PetscPopErrorHandler());
   if (error) (void)unlink(part);
   PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write '%s' of -operators_save: %s", file,
@@ -222,9 +222,23 @@ PetscErrorCode PencilSave(Pencil pencil)
              strerror(failed));
   PetscCall(PencilGetMatrices(pencil, &m));
   if (!pencil->Zr) PetscCall(PencilGetParts(pencil, &parts));
-  PetscCall(PencilSaveMatrix(o, "K", parts.K ? parts.K : m.K));
-  PetscCall(PencilSaveMatrix(o, "M", m.M));
-  if (m.C) PetscCall(PencilSaveMatrix(o, "C", m.C));
-  if (parts.H) PetscCall(PencilSaveMatrix(o, "H", parts.H));
+  PetscCall(PencilSaveObject(o, "K", (PetscObject)(parts.K ? parts.K : m.K)));
+  PetscCall(PencilSaveObject(o, "M", (PetscObject)m.M));
+  if (m.C) PetscCall(PencilSaveObject(o, "C", (PetscObject)m.C));
+  if (parts.H) PetscCall(PencilSaveObject(o, "H", (PetscObject)parts.H));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilSaveLoad(Pencil pencil, Vec f)
+{
+  PencilMatrices m;
+  Vec            g;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetMatrices(pencil, &m));
+  PetscCall(MatCreateVecs(m.K, NULL, &g));
+  PetscCall(PencilProjectForce(pencil, PETSC_FALSE, f, g));
+  PetscCall(PencilSaveObject(pencil->operators, "F", (PetscObject)g));
+  PetscCall(VecDestroy(&g));
   PetscFunctionReturn(0);
 }

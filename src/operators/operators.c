@@ -39,8 +39,9 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
     "-operators_factors",
     "with friction LU, or LDL' of the symmetric part and an update for the closed pairs, or what needs less memory",
     "operators.h", factors, 3, factors[0], &operators->factors, NULL));
-  PetscCall(PetscOptionsString("-operators_save", "folder for K.bin, M.bin, C.bin, H.bin (PETSc binary)", "operators.h",
-                               operators->save, operators->save, sizeof(operators->save), NULL));
+  PetscCall(PetscOptionsString("-operators_save",
+                               "folder for K.bin, M.bin, C.bin, H.bin and the loads F.bin (PETSc binary)",
+                               "operators.h", operators->save, operators->save, sizeof(operators->save), NULL));
   PetscCall(OperatorsHaveMatrices(operators, &have));
   if (have)
     PetscCall(PetscOptionsReal("-contact_mu", "friction coefficient of K + mu H", "operators.h", operators->loaded_mu,

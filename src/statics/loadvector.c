@@ -53,3 +53,16 @@ PetscErrorCode StaticsCreateLoad(Operators operators, const PetscReal p[], Vec *
   PetscCall(VecDestroy(&local));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode StaticsSaveLoad(Statics statics, const PetscReal p[], Pencil pencil)
+{
+  PetscReal size;
+  Vec       f;
+
+  PetscFunctionBeginUser;
+  if (!statics->model) PetscFunctionReturn(0);
+  PetscCall(StaticsCreateLoad(statics->operators, p, &f, &size));
+  if (size > 0) PetscCall(PencilSaveLoad(pencil, f));
+  PetscCall(VecDestroy(&f));
+  PetscFunctionReturn(0);
+}

@@ -3,7 +3,7 @@
 
     tests/verify/sparse.py RUN MU FREQUENCY_HZ
 
-RUN has, of -operators_save, K.bin, M.bin and H.bin. No test runs it, since SciPy is none of scripts/packages.txt; the
+RUN has, of -operators_save, K.bin, M.bin and H.bin. No test runs it, since its meshes take long; the
 numbers that a case has from it say so."""
 
 import sys
