@@ -44,6 +44,8 @@ PetscErrorCode OperatorsSetModel(Operators operators, Model model, Contact conta
    Options Database Keys:
 +  -operators_load_k, _m, _c, _h <file>  - PETSc binary matrices; K and M are required together
 .  -operators_dense_k, _m, _c, _h <list> - small dense matrices inline, rows one after another
+.  -terms <names>                        - matrices, each the prefix of -.._file or _dense, _kind <stiffness|damping|mass>,
+_parameter <names>, _power <integers>, _scale, _symmetry <any|symmetric|skew>: K, C and M are sums of scale prod_i p_i^n_i A
 .  -operators_mass <consistent|lumped>   - mass matrix of a model
 .  -operators_factors <auto|lu|symmetric> - with friction LU, or LDL' of the symmetric part with an update for the closed
 pairs; auto takes what needs less memory
@@ -74,7 +76,7 @@ PetscErrorCode OperatorsGetSave(Operators operators, const char **folder);
    turn_stiffness (N m/rad), viscosity (N s/m), turn_viscosity (N m s/rad) alike, of a point mass (kg); of each part that
    spins spin (rad/s), on which pencils alone depend; of each contact mu, kn (N/m, penalty), and with friction damping
    mu_slope (s/m), force (N) and speed (m/s), or rotation (rad/s) where that is what was given; contact_mu for loaded or
-   dense matrices with H (borrowed). An interface of which nothing says along what it slides has no mu. Not collective.
+   dense matrices with H, and what -terms name (borrowed). An interface of which nothing says along what it slides has no mu. Not collective.
 @*/
 PetscErrorCode OperatorsGetParameters(Operators operators, PetscInt *n, const OperatorsParameter **parameters);
 

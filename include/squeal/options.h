@@ -32,6 +32,10 @@ typedef PetscOptionItems OptionsItems;
 PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], PetscInt max, PetscInt *n,
                                char *names[]);
 
+/*@ OptionsCheckName - raises the error of OptionsGetNames() for a word that `option` gives as the name of an option of its
+    own: it is no identifier, or other options begin with it or with what stands before its first underscore. Collective. @*/
+PetscErrorCode OptionsCheckName(MPI_Comm comm, const char option[], const char name[]);
+
 /* A list of the scene, and how one of its records is read */
 typedef struct {
   const char *option, *help; /* as of OptionsGetNames() */
@@ -92,8 +96,8 @@ PetscErrorCode ValuesParse(MPI_Comm comm, const char option[], const char text[]
                            PetscBool *is_log);
 
 /*@
-   OptionsGetPath - reads the path of something to be read, without a prefix, between PetscOptionsBegin() and
-   PetscOptionsEnd(). Collective.
+   OptionsGetPath - reads the path of something to be read, between PetscOptionsBegin() and PetscOptionsEnd().
+   Collective.
 
    A relative path in an options file begins at the folder of that file, and where there is nothing of that name, at the
    working folder, as one on the command line does. The option's value becomes the absolute path.

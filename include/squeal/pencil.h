@@ -27,14 +27,14 @@ typedef enum { OPERATORS_STIFFNESS, OPERATORS_DAMPING, OPERATORS_MASS } Operator
 typedef struct {
   OperatorsTermKind kind;
   Mat               A;          /* in the unknowns of the pencil (borrowed); several terms may share one */
-  PetscBool         frictional; /* vanishes without friction or spin */
+  PetscBool         frictional; /* vanishes without friction or spin; or an unsymmetric one of -terms */
   PetscBool         symmetric;  /* A is; never so for a frictional term */
   Mat       left, right; /* A = left' right, a row for each pair (borrowed); NULL where A is not such a product */
   PetscReal scale;
   PetscInt  n; /* factors */
   struct {
     PetscInt  parameter; /* index */
-    PetscInt  power;     /* 1 or -1 */
+    PetscInt  power;     /* not 0; of terms of a model 1 or -1 */
     PetscBool absolute;
   } factor[OPERATORS_MAX_FACTORS];
 } OperatorsTerm;
@@ -49,7 +49,8 @@ typedef struct {
   PetscBool prefers_even; /* -operators_factors symmetric */
 } PencilMatrices;
 
-/* Matrices of all unknowns, before any projection: K + mu H, M, C; borrowed; C and H may be NULL */
+/* Matrices of all unknowns, before any projection: K + mu H, M, C; borrowed; C and H may be NULL. With -terms K is
+   whole */
 typedef struct {
   Mat       K, M, C, H;
   PetscReal mu; /* the largest friction coefficient in absolute value */

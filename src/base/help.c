@@ -44,7 +44,7 @@ static const char names_of_all[] =
   "-loads load -load_set S -load_force 0,0,1 -contacts contact -contact_surfaces S,M -contact_kn 1 -contact_slip 1,0,0 "
   "-probes probe -probe_at 0,0,0 -motions motion -motion_set S -motion_directions z "
   "-circles circle -circle_radius 1 -circle_count 8 -impulses impulse -impulse_at 0,0,0 "
-  "-impulse_impulse 0,0,1";
+  "-impulse_impulse 0,0,1 -terms term";
 
 /* Where the printers below put what they are told. PETSc's printers are bare function pointers without context: hence
    the one static record, alive only inside HelpCollect(). */
@@ -278,7 +278,7 @@ static PetscErrorCode HelpPrintOption(MPI_Comm comm, const HelpOption *option, P
 /* Whether options of names, or matrices, tell of a scene */
 static PetscErrorCode SceneIsGiven(PetscBool *given)
 {
-  static const char *const first[] = {"-options_file", "-parts", "-operators_load_k", "-operators_dense_k"};
+  static const char *const first[] = {"-options_file", "-parts", "-operators_load_k", "-operators_dense_k", "-terms"};
 
   PetscFunctionBeginUser;
   *given = PETSC_FALSE;
@@ -305,6 +305,15 @@ static PetscErrorCode HelpPrint(MPI_Comm comm, const HelpList *list, PetscBool e
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode HelpIsAsked(PetscBool *asked, PetscBool *all)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsHasHelp(NULL, asked));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-help_all", all));
+  *asked = *asked || *all ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SquealViewOptions(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx,
                                  PetscBool *asked)
 {
@@ -312,9 +321,7 @@ PetscErrorCode SquealViewOptions(MPI_Comm comm, PetscErrorCode (*read_again)(MPI
   PetscBool all, given;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsHasHelp(NULL, asked));
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-help_all", &all));
-  *asked = *asked || all ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(HelpIsAsked(asked, &all));
   if (!*asked) PetscFunctionReturn(0);
   PetscCall(SceneIsGiven(&given));
   if (!given) PetscCall(PetscOptionsInsertString(NULL, names_of_all));

@@ -30,15 +30,36 @@ static PetscBool ListHolds(const char list[], const char value[])
   return PETSC_FALSE;
 }
 
+/* The value of an option, without making it one that has been read; text empty where it is not given */
+static PetscErrorCode GivenText(const char option[], size_t size, char text[])
+{
+  char       *all, *rest, name[MAX_NAME];
+  const char *value;
+  PetscBool   more;
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  rest = all;
+  PetscCall(OptionsNextGiven(&rest, sizeof(name), name, &value, &more));
+  while (more) {
+    if (!strcasecmp(name, option + 1)) PetscCall(PetscStrncpy(text, value, size));
+    PetscCall(OptionsNextGiven(&rest, sizeof(name), name, &value, &more));
+  }
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
 /* Raises an error for a name that the program's own options begin with, or that another list of the scene has too */
 static PetscErrorCode NameCheckFree(MPI_Comm comm, const char option[], const char name[])
 {
   static const char *const own[]   = {"dynamics",  "frf", "model",  "modes",  "operators", "output",
                                       "projector", "rig", "squeal", "static", "statics",   "sweep"};
-  static const char *const lists[] = {"-parts",  "-supports", "-springs",  "-dashpots", "-loads",  "-contacts",
-                                      "-probes", "-motions",  "-impulses", "-circles",  "-joints", "-points"};
+  static const char *const lists[] = {"-parts",    "-supports", "-springs", "-dashpots", "-loads",
+                                      "-contacts", "-probes",   "-motions", "-impulses", "-circles",
+                                      "-joints",   "-points",   "-terms"};
   char                     list[MAX_LIST];
-  PetscBool                taken = PETSC_FALSE, set;
+  PetscBool                taken = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(own) && !taken; i++)
@@ -47,8 +68,8 @@ static PetscErrorCode NameCheckFree(MPI_Comm comm, const char option[], const ch
   PetscCheck(!taken, comm, PETSC_ERR_USER_INPUT, "%s '%s' is no name: other options begin with -%s_; choose another",
              option, name, name);
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(lists); i++) {
-    PetscCall(PetscOptionsGetString(NULL, NULL, lists[i], list, sizeof(list), &set));
-    PetscCheck(!set || !strcmp(lists[i], option) || !ListHolds(list, name), comm, PETSC_ERR_USER_INPUT,
+    PetscCall(GivenText(lists[i], sizeof(list), list));
+    PetscCheck(!list[0] || !strcmp(lists[i], option) || !ListHolds(list, name), comm, PETSC_ERR_USER_INPUT,
                "%s and %s both name '%s', whose options begin with -%s_: choose another name in one of them", lists[i],
                option, name, name);
   }
@@ -73,6 +94,19 @@ PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char he
     PetscCall(NameCheckFree(comm, option, names[i]));
   }
   *n = count;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsCheckName(MPI_Comm comm, const char option[], const char name[])
+{
+  char first[MAX_NAME];
+
+  PetscFunctionBeginUser;
+  PetscCheck(NameIsIdentifier(name), comm, PETSC_ERR_USER_INPUT,
+             "%s '%s' is no name: use letters, digits and underscores, a letter first", option, name);
+  PetscCall(PetscSNPrintf(first, sizeof(first), "%.*s", (int)strcspn(name, "_"), name));
+  PetscCall(NameCheckFree(comm, option, name));
+  PetscCall(NameCheckFree(comm, option, first));
   PetscFunctionReturn(0);
 }
 

@@ -1,14 +1,13 @@
 /*
    Matrices without a mesh: PETSc binary files (MatLoad) or dense lists in the options, rows one after another. Each is
-   one term, H with the coefficient contact_mu, which is the only parameter. K, M and C count as terms that are there
-   without friction, symmetric or not.
+   one term, H with the coefficient contact_mu; matrixterm.c has those of the list -terms. K, M and C count as terms that
+   are there without friction, symmetric or not.
 */
+#include "matrixterm.h"
 #include "pencilimpl.h"
 #include <errno.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#define OPERATORS_MAX_DENSE 10000 /* entries of an inline matrix: 100 x 100 */
 
 static const char *const letters[N_OPERATORS]  = {"k", "m", "c", "h"};
 static const char *const meanings[N_OPERATORS] = {"stiffness, N/m", "mass, kg", "damping, N s/m",
@@ -70,23 +69,22 @@ PetscErrorCode OperatorsAddChecksum(Operators o, Checksum c)
   PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){o->lump}));
   if (o->model) PetscFunctionReturn(0);
   PetscCall(ChecksumAddReals(c, 1, &o->loaded_mu));
+  PetscCall(NamedAddChecksum(o, c));
   for (PetscInt t = 0; t < o->terms.n; t++) PetscCall(MatrixAddChecksum(o->terms.term[t].A, c));
   PetscFunctionReturn(0);
 }
 
-/* Sparse matrix from a dense list */
-static PetscErrorCode OperatorsReadDense(MPI_Comm comm, const char letter[], PetscInt n_values,
-                                         const PetscReal values[], Mat *A)
+PetscErrorCode MatrixReadDense(MPI_Comm comm, const char option[], PetscInt n_values, const PetscReal values[], Mat *A)
 {
   const PetscInt n = (PetscInt)(PetscSqrtReal((PetscReal)n_values) + 0.5);
   PetscInt       first, last;
 
   PetscFunctionBeginUser;
   PetscCheck(n * n == n_values, comm, PETSC_ERR_USER_INPUT,
-             "-operators_dense_%s has %" PetscInt_FMT " values, which is no square number", letter, n_values);
+             "%s has %" PetscInt_FMT " values, which is no square number", option, n_values);
   for (PetscInt i = 0; i < n_values; i++)
     PetscCheck(PetscAbsReal(values[i]) <= MATRIX_LARGEST, comm, PETSC_ERR_USER_INPUT,
-               "-operators_dense_%s value %.6g must be of at most %g", letter, (double)values[i], MATRIX_LARGEST);
+               "%s value %.6g must be of at most %g", option, (double)values[i], MATRIX_LARGEST);
   PetscCall(MatCreateAIJ(comm, PETSC_DECIDE, PETSC_DECIDE, n, n, n, NULL, n, NULL, A));
   PetscCall(MatGetOwnershipRange(*A, &first, &last));
   for (PetscInt i = first; i < last; i++)
@@ -96,13 +94,12 @@ static PetscErrorCode OperatorsReadDense(MPI_Comm comm, const char letter[], Pet
   PetscFunctionReturn(0);
 }
 
-/* One matrix from its file */
-static PetscErrorCode OperatorsReadFile(MPI_Comm comm, const char letter[], const char file[], Mat *A)
+PetscErrorCode MatrixReadFile(MPI_Comm comm, const char option[], const char file[], Mat *A)
 {
   PetscViewer viewer;
 
   PetscFunctionBeginUser;
-  PetscCall(MatrixFileCheck(comm, letter, file));
+  PetscCall(MatrixFileCheck(comm, option, file));
   PetscCall(PetscViewerBinaryOpen(comm, file, FILE_MODE_READ, &viewer));
   PetscCall(MatCreate(comm, A));
   PetscCall(MatSetType(*A, MATAIJ));
@@ -121,32 +118,47 @@ static PetscErrorCode OperatorsAddMatrices(Operators o, Mat A[N_OPERATORS])
   for (int i = OPERATOR_K; i <= OPERATOR_C; i++)
     if (A[i]) PetscCall(TermsAdd(&o->terms, kind[i], A[i], PETSC_TRUE, 0, NULL));
   if (!A[OPERATOR_H]) PetscFunctionReturn(0);
-  PetscCall(OperatorsAddMu(o, "contact", o->loaded_mu, &mu));
+  mu = ParametersFind(&o->parameters, "contact_mu");
+  if (mu < 0) PetscCall(OperatorsAddMu(o, "contact", o->loaded_mu, &mu));
   PetscCall(TermsAdd(&o->terms, OPERATORS_STIFFNESS, A[OPERATOR_H], PETSC_FALSE, 1, &mu));
   PetscFunctionReturn(0);
 }
 
-/* Raises an error for matrices that do not fit */
+/* Raises an error for matrices that do not fit each other */
 static PetscErrorCode OperatorsCheckMatrices(Operators o, Mat A[N_OPERATORS])
 {
-  PetscInt n, rows, columns;
+  PetscInt n = -1, rows, columns, first = 0;
 
   PetscFunctionBeginUser;
-  for (int i = OPERATOR_K; i <= OPERATOR_M; i++)
+  for (int i = OPERATOR_K; i <= OPERATOR_M && !o->n_named; i++)
     PetscCheck(A[i], o->comm, PETSC_ERR_USER_INPUT,
                "-operators_load_%s or -operators_dense_%s is missing: K and M are both needed", letters[i], letters[i]);
-  PetscCall(MatGetSize(A[OPERATOR_K], &n, NULL));
   for (int i = 0; i < N_OPERATORS; i++) {
     if (!A[i]) continue;
     PetscCall(MatGetSize(A[i], &rows, &columns));
+    if (n < 0) n = rows, first = i;
     PetscCheck(rows == n && columns == n, o->comm, PETSC_ERR_USER_INPUT,
-               "matrix %s is %" PetscInt_FMT " x %" PetscInt_FMT ", but K has %" PetscInt_FMT
+               "matrix %s is %" PetscInt_FMT " x %" PetscInt_FMT ", but %c has %" PetscInt_FMT
                " rows: all must be square and alike",
-               letters[i], rows, columns, n);
+               letters[i], rows, columns, "KMCH"[first], n);
   }
-  PetscCall(MassCheck(A[OPERATOR_M]));
-  PetscCheck(A[OPERATOR_H] || o->loaded_mu == 0, o->comm, PETSC_ERR_USER_INPUT,
-             "-contact_mu %.6g does nothing without -operators_load_h or -operators_dense_h", (double)o->loaded_mu);
+  PetscCheck(A[OPERATOR_H] || o->loaded_mu == 0 || ParametersFind(&o->parameters, "contact_mu") >= 0, o->comm,
+             PETSC_ERR_USER_INPUT, "-contact_mu %.6g does nothing without -operators_load_h or -operators_dense_h",
+             (double)o->loaded_mu);
+  PetscFunctionReturn(0);
+}
+
+/* One of the four, from its file or its list; NULL where neither is given */
+static PetscErrorCode OperatorsReadMatrix(Operators o, int i, Mat *A)
+{
+  char option[64];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(option, sizeof(option), "-operators_%s_%s", o->load[i][0] ? "load" : "dense", letters[i]));
+  if (o->load[i][0])
+    PetscCall(MatrixReadFile(o->comm, option, o->load[i], A));
+  else if (o->n_dense[i])
+    PetscCall(MatrixReadDense(o->comm, option, o->n_dense[i], o->dense[i], A));
   PetscFunctionReturn(0);
 }
 
@@ -155,21 +167,18 @@ PetscErrorCode OperatorsLoad(Operators o)
   Mat A[N_OPERATORS] = {NULL};
 
   PetscFunctionBeginUser;
-  for (int i = 0; i < N_OPERATORS; i++) {
-    if (o->load[i][0])
-      PetscCall(OperatorsReadFile(o->comm, letters[i], o->load[i], &A[i]));
-    else if (o->n_dense[i])
-      PetscCall(OperatorsReadDense(o->comm, letters[i], o->n_dense[i], o->dense[i], &A[i]));
-  }
+  for (int i = 0; i < N_OPERATORS; i++) PetscCall(OperatorsReadMatrix(o, i, &A[i]));
   PetscCall(OperatorsCheckMatrices(o, A));
+  if (!o->n_named) PetscCall(MassCheck(A[OPERATOR_M]));
   for (int i = OPERATOR_K; i <= OPERATOR_C && o->symmetric; i++) {
     PetscReal largest;
 
     if (!A[i]) continue;
     PetscCall(MatNorm(A[i], NORM_FROBENIUS, &largest));
-    PetscCall(MatIsSymmetric(A[i], 1e-14 * largest, &o->symmetric));
+    PetscCall(MatIsSymmetric(A[i], MATRIX_SYMMETRIC * largest, &o->symmetric));
   }
   PetscCall(OperatorsAddMatrices(o, A));
+  if (o->n_named) PetscCall(OperatorsAddNamed(o));
   for (PetscInt t = 0; t < o->terms.n && !o->symmetric; t++) o->terms.term[t].symmetric = PETSC_FALSE;
   for (int i = 0; i < N_OPERATORS; i++) PetscCall(MatDestroy(&A[i]));
   PetscFunctionReturn(0);

@@ -137,7 +137,7 @@ static PetscErrorCode MatrixFileRead(const char file[], MatrixFile *f)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MatrixFileCheck(MPI_Comm comm, const char letter[], const char file[])
+PetscErrorCode MatrixFileCheck(MPI_Comm comm, const char option[], const char file[])
 {
   MatrixFile  f = {.stream = NULL};
   PetscMPIInt rank;
@@ -147,8 +147,7 @@ PetscErrorCode MatrixFileCheck(MPI_Comm comm, const char letter[], const char fi
   if (rank == 0) PetscCall(MatrixFileRead(file, &f));
   PetscCallMPI(MPI_Bcast(f.fault, sizeof(f.fault), MPI_CHAR, 0, comm));
   PetscCheck(!f.fault[0], comm, PETSC_ERR_FILE_UNEXPECTED,
-             "cannot read '%s' of -operators_load_%s: %s; give a file written by -operators_save or MatView()", file,
-             letter, f.fault);
+             "cannot read '%s' of %s: %s; give a file written by -operators_save or MatView()", file, option, f.fault);
   PetscFunctionReturn(0);
 }
 

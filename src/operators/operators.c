@@ -1,7 +1,7 @@
 /*
    Operators: life cycle, parameters, and the matrices of the bodies alone.
 */
-#include "operatorsimpl.h"
+#include "matrixterm.h"
 #include "base/events.h"
 #include <math.h>
 
@@ -30,6 +30,7 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
   PetscBool                have;
 
   PetscFunctionBeginUser;
+  PetscCall(NamedSetFromOptions(operators));
   PetscOptionsBegin(operators->comm, NULL, "Operators", NULL);
   PetscCall(OperatorsLoadFromOptions(operators, PetscOptionsObject));
   PetscCall(PetscOptionsEList(
@@ -47,6 +48,7 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
     PetscCall(PetscOptionsReal("-contact_mu", "friction coefficient of K + mu H", "operators.h", operators->loaded_mu,
                                &operators->loaded_mu, NULL));
   PetscOptionsEnd();
+  PetscCall(NamedAddParameters(operators));
   operators->lump = mass == 1 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
@@ -57,6 +59,8 @@ PetscErrorCode OperatorsHaveMatrices(Operators operators, PetscBool *have)
   *have = PETSC_FALSE;
   for (int i = 0; i < N_OPERATORS; i++)
     if (operators->load[i][0] || operators->n_dense[i]) *have = PETSC_TRUE;
+  for (PetscInt t = 0; t < operators->n_named; t++)
+    if (operators->named[t].file[0] || operators->named[t].n_dense) *have = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -64,6 +68,8 @@ PetscErrorCode OperatorsHaveDamping(Operators operators, PetscBool *have)
 {
   PetscFunctionBeginUser;
   *have = operators->load[OPERATOR_C][0] || operators->n_dense[OPERATOR_C] ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt t = 0; t < operators->n_named; t++)
+    if (operators->named[t].kind == OPERATORS_DAMPING) *have = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -127,8 +133,21 @@ PetscErrorCode OperatorsCreatePoint(Operators operators, PetscReal **p)
 
 PetscErrorCode OperatorsCheckParameter(Operators operators, PetscInt parameter, PetscReal value)
 {
+  PetscReal *p;
+
   PetscFunctionBeginUser;
   PetscCall(ParameterCheck(operators->comm, &operators->parameters.list[parameter], value));
+  if (!operators->n_named) PetscFunctionReturn(0);
+  PetscCall(OperatorsCreatePoint(operators, &p));
+  p[parameter] = value;
+  for (PetscInt t = 0; t < operators->terms.n; t++) {
+    const PetscReal c = OperatorsTermCoefficient(&operators->terms.term[t], p);
+
+    PetscCheck(PetscAbsReal(c) <= MATRIX_LARGEST, operators->comm, PETSC_ERR_USER_INPUT,
+               "%s %.6g makes a matrix of -terms %g times as large: at most %g",
+               operators->parameters.list[parameter].name, (double)value, (double)c, MATRIX_LARGEST);
+  }
+  PetscCall(PetscFree(p));
   PetscFunctionReturn(0);
 }
 
@@ -234,6 +253,7 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   PetscCall(MatDestroy(&o->rigid_E));
   PetscCall(PetscFree(o->mu));
   PetscCall(ParametersDestroy(&o->parameters));
+  PetscCall(NamedDestroy(o));
   PetscCall(PetscFree(*operators));
   PetscFunctionReturn(0);
 }

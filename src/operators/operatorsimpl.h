@@ -40,6 +40,8 @@ struct _p_Operators {
   PetscBool  lump;
   PetscInt   factors;   /* OPERATORS_AUTO, OPERATORS_LU or OPERATORS_EVEN */
   PetscReal  loaded_mu; /* -contact_mu of loaded or dense matrices */
+  PetscInt   n_named;   /* matrices of -terms */
+  struct _p_MatrixTerm *named;
   /* built by OperatorsSetUp() */
   Parameters           parameters;       /* at the values of the scene */
   PetscInt             n_mu, *mu;        /* parameters that are friction coefficients */

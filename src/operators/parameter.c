@@ -3,6 +3,7 @@
 */
 #include "terms.h"
 #include <math.h>
+#include <string.h>
 
 PetscErrorCode ParametersAdd(Parameters *parameters, const char owner[], const char what[],
                              const OperatorsParameter *like, PetscInt *index)
@@ -20,6 +21,13 @@ PetscErrorCode ParametersAdd(Parameters *parameters, const char owner[], const c
   parameters->p[parameters->n] = q->value;
   *index                       = parameters->n++;
   PetscFunctionReturn(0);
+}
+
+PetscInt ParametersFind(const Parameters *parameters, const char name[])
+{
+  for (PetscInt i = 0; i < parameters->n; i++)
+    if (!strcmp(parameters->list[i].name, name)) return i;
+  return -1;
 }
 
 PetscErrorCode ParameterCheck(MPI_Comm comm, const OperatorsParameter *q, PetscReal value)

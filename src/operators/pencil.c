@@ -100,7 +100,7 @@ static PetscErrorCode PencilFormSum(Pencil pencil, PencilSum which, Mat *A)
   PetscFunctionReturn(0);
 }
 
-/* H: the one given, at any mu, or that of a model, which vanishes with mu */
+/* H: the one given, at any mu, or that of a model, which vanishes with mu; with -terms it is part of K */
 static PetscErrorCode PencilFormFriction(Pencil pencil, Mat *H)
 {
   const OperatorsTerm *last = &pencil->base.term[pencil->base.n - 1];
@@ -109,18 +109,20 @@ static PetscErrorCode PencilFormFriction(Pencil pencil, Mat *H)
   if (pencil->operators->model)
     PetscCall(PencilFormSum(pencil, SUM_H, H));
   else
-    *H = last->frictional ? last->A : NULL;
+    *H = last->frictional && !pencil->operators->n_named ? last->A : NULL;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode PencilGetParts(Pencil pencil, PencilParts *parts)
 {
+  const PetscBool named = pencil->operators->n_named ? PETSC_TRUE : PETSC_FALSE;
+
   PetscFunctionBeginUser;
-  PetscCall(PencilFormSum(pencil, SUM_K, &parts->K));
+  PetscCall(PencilFormSum(pencil, named ? PENCIL_K : SUM_K, &parts->K));
   PetscCall(PencilFormSum(pencil, SUM_M, &parts->M));
   PetscCall(PencilFormSum(pencil, SUM_C, &parts->C));
   PetscCall(PencilFormFriction(pencil, &parts->H));
-  parts->mu = OperatorsLargestMu(pencil->operators, pencil->parameters.p);
+  parts->mu = named ? 0 : OperatorsLargestMu(pencil->operators, pencil->parameters.p);
   PetscFunctionReturn(0);
 }
 
@@ -319,9 +321,10 @@ PetscErrorCode PencilView(Pencil pencil, PetscViewer viewer)
     TermsVanish(&pencil->operators->spin, TERMS_ALL, PETSC_FALSE, pencil->parameters.p) ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(PetscViewerASCIIPrintf(
     viewer, "operators: %" PetscInt_FMT " unknowns, %.0f nonzeros, %s, %s, %s mass\n", n_pencil, (double)info.nz_used,
-    m.symmetric ? "no friction: symmetric"
-    : spinning  ? "spin or friction: unsymmetric"
-                : "friction: unsymmetric",
+    pencil->operators->n_named ? (m.symmetric ? "symmetric" : "unsymmetric")
+    : m.symmetric              ? "no friction: symmetric"
+    : spinning                 ? "spin or friction: unsymmetric"
+                               : "friction: unsymmetric",
     m.C ? "damped: quadratic problem" : "undamped", pencil->operators->lump ? "lumped" : "consistent"));
   if (n_pencil < n)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " unknowns eliminated by constraints\n", n - n_pencil));

@@ -61,5 +61,5 @@ PETSC_INTERN PetscErrorCode PencilDestroyNullSpaces(Pencil pencil);
 
 /* matrixfile.c - raises an error for a file that does not hold a real matrix of finite numbers, alike on all ranks; and
    for a mass matrix whose symmetric part is not positive definite on the unknowns that have mass */
-PETSC_INTERN PetscErrorCode MatrixFileCheck(MPI_Comm comm, const char letter[], const char file[]);
+PETSC_INTERN PetscErrorCode MatrixFileCheck(MPI_Comm comm, const char option[], const char file[]);
 PETSC_INTERN PetscErrorCode MassCheck(Mat M);

@@ -32,6 +32,15 @@ PetscErrorCode TermsAdd(Terms *terms, OperatorsTermKind kind, Mat A, PetscBool s
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode TermsSetPowers(Terms *terms, const PetscInt power[])
+{
+  OperatorsTerm *term = &terms->term[terms->n - 1];
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < term->n; i++) term->factor[i].power = power[i];
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode TermsSetFactors(Terms *terms, Mat left, Mat right)
 {
   OperatorsTerm *term = &terms->term[terms->n - 1];
@@ -44,12 +53,21 @@ PetscErrorCode TermsSetFactors(Terms *terms, Mat left, Mat right)
   PetscFunctionReturn(0);
 }
 
+/* x^n, without the rounding of pow() at n = 1, -1 and 2 */
+static PetscReal Power(PetscReal x, PetscInt n)
+{
+  PetscReal y = 1;
+
+  for (PetscInt i = 0; i < PetscAbsInt(n); i++) y *= x;
+  return n < 0 ? 1 / y : y;
+}
+
 /* Value of factor i */
 static PetscReal FactorValue(const OperatorsTerm *term, const PetscReal p[], PetscInt i)
 {
   const PetscReal value = p[term->factor[i].parameter], base = term->factor[i].absolute ? PetscAbsReal(value) : value;
 
-  return term->factor[i].power < 0 ? 1 / base : base;
+  return Power(base, term->factor[i].power);
 }
 
 /* Derivative of factor i by its parameter */
@@ -57,8 +75,10 @@ static PetscReal FactorDerivative(const OperatorsTerm *term, const PetscReal p[]
 {
   const PetscReal value = p[term->factor[i].parameter];
   const PetscReal sign  = !term->factor[i].absolute ? 1 : (PetscReal)((value > 0) - (value < 0));
+  const PetscReal base  = term->factor[i].absolute ? PetscAbsReal(value) : value;
+  const PetscInt  power = term->factor[i].power;
 
-  return term->factor[i].power < 0 ? -sign / (value * value) : sign;
+  return sign * (PetscReal)power * Power(base, power - 1);
 }
 
 PetscReal OperatorsTermCoefficient(const OperatorsTerm *term, const PetscReal p[])

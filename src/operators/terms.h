@@ -31,6 +31,8 @@ typedef struct {
    kinds, are zero at p */
 PETSC_INTERN PetscErrorCode TermsAdd(Terms *terms, OperatorsTermKind kind, Mat A, PetscBool symmetric, PetscInt n,
                                      const PetscInt parameter[]);
+/* Gives the factors of the last term powers that are not 1 */
+PETSC_INTERN PetscErrorCode TermsSetPowers(Terms *terms, const PetscInt power[]);
 /* Tells that the last term is left' right */
 PETSC_INTERN PetscErrorCode TermsSetFactors(Terms *terms, Mat left, Mat right);
 PETSC_INTERN PetscErrorCode TermsAppend(Terms *terms, const Terms *more);
@@ -59,5 +61,6 @@ typedef struct {
    it is 0; raises the error for a value outside its limits */
 PETSC_INTERN PetscErrorCode ParametersAdd(Parameters *parameters, const char owner[], const char what[],
                                           const OperatorsParameter *like, PetscInt *index);
+PETSC_INTERN PetscInt       ParametersFind(const Parameters *parameters, const char name[]); /* index, or -1 */
 PETSC_INTERN PetscErrorCode ParameterCheck(MPI_Comm comm, const OperatorsParameter *parameter, PetscReal value);
 PETSC_INTERN PetscErrorCode ParametersDestroy(Parameters *parameters);
