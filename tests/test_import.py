@@ -27,7 +27,7 @@ FAILED = []
 
 
 def modes(folder, words):
-    """Hz, of a run of squeal."""
+    """Hz, of a run of squeal: the lowest."""
     command = [sys.argv[2], "-n", 1, sys.argv[1], *words, "-output_dir", folder / "out", "-output_fields", 0]
     done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode:
@@ -66,10 +66,57 @@ def abaqus(folder):
                 judge(f"{about}: deck of Abaqus, CalculiX", ours, theirs, CALCULIX)
 
 
+def nastran(folder):
+    """The same of Nastran, in its three kinds of fields; small ones hold the numbers of a box that is not distorted."""
+    for kind, form, options in (("hex8", "small", ()), ("hex20", "large", ("--curve",)), ("tet10", "free", ("--curve",)),
+                                ("hex+wedge2", "large", ()), ("wedge+tet1", "free", ())):
+        shaken = () if form == "small" else ("--distort", "3", "--renumber", "5", *options)
+        solid = decks.Solid(kind, folder, *shaken)
+        for constants in ((decks.YOUNG, decks.POISSON), decks.ORTHOTROPIC):
+            ours = imported(folder, "deck.bdf", decks.nastran(solid, form, constants))
+            about = f"{kind}, {'isotropic' if len(constants) == 2 else 'orthotropic'}: deck of Nastran, {form} fields"
+            judge(f"{about}, own scene", ours, modes(folder, decks.scene_words(solid.path, constants)), SAME)
+
+
+def ansys(folder):
+    """The same of Ansys: tetrahedra of their own types, or folded hexahedra, as are wedges."""
+    for kind, plain in (("hex8", False), ("hex20", False), ("tet10", True), ("tet10", False), ("wedge15", False), ("tet4", True),
+                        ("hex+wedge2", False), ("wedge+tet1", False)):
+        solid = decks.Solid(kind, folder, "--distort", "3", "--renumber", "5", *(("--curve",) if kind[-1] in "05" else ()))
+        for constants in ((decks.YOUNG, decks.POISSON), decks.ORTHOTROPIC):
+            ours = imported(folder, "deck.cdb", decks.ansys(solid, constants, plain=plain))
+            words = decks.scene_words(solid.path, constants)
+            words[words.index("-springs"):words.index("-modes_target")] = []
+            about = f"{kind}, {'isotropic' if len(constants) == 2 else 'orthotropic'}: archive of Ansys"
+            judge(f"{about}{'' if plain else ', folded'}, own scene", ours, modes(folder, words), SAME)
+
+
+def meshio(folder):
+    """Meshes that meshio reads: free bodies from VTK and VTU; from MED, whose elements are the other way round, the scene of
+    the other decks, with its groups of cells, faces and nodes."""
+    material = ["young", 210e9, "poisson", 0.3, "density", 7800]
+    for kind, ending in (("hex20", ".vtk"), ("wedge15", ".vtu"), ("wedge+tet1", ".vtu"), ("tet10", ".vtk"), ("hex8", ".med"),
+                         ("hex20", ".med"), ("wedge15", ".med"), ("wedge+tet1", ".med")):
+        solid = decks.Solid(kind, folder, "--distort", "3", "--renumber", "5")
+        path = folder / f"mesh{ending}"
+        decks.meshio_file(solid, path)
+        convert(path, "mm-t-s", folder / "mesh")
+        if ending == ".med":
+            words = decks.scene_words(solid.path)
+            theirs = [{"-model_mesh": "mesh.msh"}.get(before, word) for before, word in zip(["", *words], words)]
+        else:
+            words = ["-parts", "bar", *(word for key, value in zip(material[::2], material[1::2]) for word in (f"-bar_{key}", value)),
+                     "-model_mesh", solid.path, "-modes_band", "1000,200000"]
+            theirs = [str(word).replace("bar", "part_4") if word != solid.path else "mesh.msh" for word in words]
+        judge(f"{kind}: {ending} by meshio, own mesh", modes(folder, theirs), modes(folder, words), SAME)
+
+
 def main():
     sys.argv[1:] = [str(Path(word).resolve()) for word in sys.argv[1:]]
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
-        abaqus(Path(name))
+        for compare in (abaqus, nastran, ansys, meshio):
+            if len(sys.argv) < 4 or compare.__name__ in sys.argv[3]:
+                compare(Path(name))
     return 1 if FAILED else 0
 
 

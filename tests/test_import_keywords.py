@@ -17,6 +17,7 @@ from squeal.decks.convert import convert, read_deck
 from squeal.tables import BadInput
 
 import decks_abaqus
+import decks_others
 import numpy as np
 
 FAILED = []
@@ -86,15 +87,21 @@ def forces(folder):
         return {row["name"]: [float(row[f"force_{d}_n"]) for d in "xyz"] for row in csv.DictReader(rows) if row["kind"] == "load"}
 
 
-def check_refused(folder, case):
+def check_refused(folder, ending, cases):
     """Decks that are wrong: the message, with file and line."""
-    for text, message in case.REFUSED:
-        (folder / "wrong.inp").write_text(text)
+    for text, message in cases:
+        (folder / f"wrong.{ending}").write_text(text)
         try:
-            convert(folder / "wrong.inp", output=folder / "wrong")
+            convert(folder / f"wrong.{ending}", output=folder / "wrong")
             check(f"refused: {message}", False, "it was not")
         except BadInput as error:
             check(f"refused: {message}", message in str(error) and "\n" not in str(error), str(error))
+
+
+def check_forces(folder, case):
+    found = forces(folder)
+    for name, force in case.FORCES.items():
+        check(f"force of {name}: {force} N", np.allclose(found.get(name, np.nan), force, atol=1e-9), found)
 
 
 def abaqus(folder):
@@ -102,17 +109,24 @@ def abaqus(folder):
     deck = read_deck(folder / next(iter(decks_abaqus.Assembly.FILES)))
     corner = np.array(decks_abaqus.Assembly.PLACE)
     check("instance: moved, then turned", (abs(deck.x - corner).max(axis=1) < 1e-9).any(), deck.x)
-    found = forces(folder)
-    for name, force in decks_abaqus.Assembly.FORCES.items():
-        check(f"force of {name}: {force} N", np.allclose(found.get(name, np.nan), force, atol=1e-9), found)
+    check_forces(folder, decks_abaqus.Assembly)
     check_scene(folder, decks_abaqus.Flat)
-    check_refused(folder, decks_abaqus)
+    check_refused(folder, "inp", decks_abaqus.REFUSED)
+
+
+def others(folder):
+    for case in (decks_others.Nastran, decks_others.Ansys):
+        check_scene(folder, case)
+        check_forces(folder, case)
+    for ending, cases in decks_others.REFUSED.items():
+        check_refused(folder, ending, cases)
 
 
 def main():
     sys.argv[1:] = [str(Path(word).resolve()) for word in sys.argv[1:]]
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
         abaqus(Path(name))
+        others(Path(name))
     return 1 if FAILED else 0
 
 

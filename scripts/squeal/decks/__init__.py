@@ -5,6 +5,10 @@
   text.py       files as bytes; tables of numbers with commas or in columns, all at once, and line by line where one is wrong
   abaqus.py     Abaqus and CalculiX: keywords, parts and instances; abaqus_mesh.py nodes, elements, sets, surfaces;
                 abaqus_material.py materials and sections; abaqus_model.py holders, contact, loads, steps; springs.py
+  nastran.py    Nastran: cards in fields; nastran_mesh.py grid points and solids; nastran_model.py properties, materials,
+                supports; nastran_loads.py springs, loads, contact
+  ansys.py      Ansys' archive: blocks and commands; ansys_mesh.py, ansys_model.py
+  meshes.py     what meshio reads: Code_Aster's .med, .vtk, .vtu
   elastic.py    engineering constants of a stiffness
   units.py      which units a deck is in, and factors to SI
   assemble.py   a deck to named sets, parts and scene entries; ties merged; holders.py supports, springs, loads, contacts;

@@ -7,12 +7,16 @@ import numpy
 
 from ..tables import BadInput
 from .abaqus import read_abaqus
+from .ansys import read_ansys
 from .assemble import assemble, give_sections, model_size
 from .gmsh_file import write_mesh
+from .meshes import read_meshes
+from .nastran import read_nastran
 from .scene_file import remarks, scene_lines, write_scene
 from .units import guess, named
 
-READERS = {".inp": read_abaqus}
+READERS = {".inp": read_abaqus, ".bdf": read_nastran, ".nas": read_nastran, ".dat": read_nastran,
+           ".cdb": read_ansys, ".med": read_meshes, ".vtk": read_meshes, ".vtu": read_meshes}
 
 
 def read_deck(path):

@@ -66,11 +66,20 @@ def surface_nodes(deck, faces):
     return numpy.unique(numpy.concatenate(parts or [numpy.empty(0, int)]))
 
 
-def faces_by_corners(deck, corners):
-    """Faces (cell, face) with these corners [n][3 or 4], and which are none of a cell; of two cells that share one, the
-    first."""
-    keys, faces = all_faces(deck)
+def faces_by_three(deck, three):
+    """Faces (cell, face) with these three corners [n][3] among theirs, and which are none of a cell; of two cells that share
+    one, the first."""
+    keys, faces = [], []
+    for first, block in zip(deck.firsts(), deck.blocks):
+        cells = numpy.arange(first, first + len(block.ids))
+        for number, nodes in enumerate(block.shape.faces()):
+            n = 3 if len(nodes) in (3, 6) else 4
+            for left_out in range(n if n == 4 else 1):
+                kept = [nodes[k] for k in range(n) if n == 3 or k != left_out]
+                keys.append(keys_of(block.nodes[:, kept]))
+                faces.append(numpy.stack([cells, numpy.full(len(cells), number)], axis=1))
+    keys, faces = numpy.concatenate(keys), numpy.concatenate(faces)
     order = numpy.argsort(keys, kind="stable")
-    wanted = keys_of(corners)
+    wanted = keys_of(three)
     at = numpy.minimum(numpy.searchsorted(keys[order], wanted), len(keys) - 1)
     return faces[order[at]], keys[order[at]] != wanted

@@ -1,0 +1,212 @@
+"""Ansys: materials, parts, supports, forces, pressures, contact."""
+
+import numpy
+
+from .ansys_mesh import FACES
+from .deck import Axes, Contact, Load, Material, Section, Support
+from .faces import boundary_faces, faces_by_three
+
+KNOWN = {"MP", "MPDATA", "D", "F", "SF", "SFE", "ACEL", "MODOPT"}
+LABELS = {"EX", "EY", "EZ", "PRXY", "PRYZ", "PRXZ", "NUXY", "NUYZ", "NUXZ", "GXY", "GYZ", "GXZ", "DENS", "ALPD", "BETD", "MU"}
+
+
+def read_model(deck, commands, mesh):
+    values = read_constants(deck, commands)
+    for number, constants in values.items():
+        make_material(deck, number, constants)
+    read_parts(deck, mesh)
+    pending = {"D": support, "F": force, "SFE": pressure_on_face, "SF": pressure_on_nodes, "ACEL": gravity, "MODOPT": modes}
+    for command in commands:
+        if command.words[0] in pending:
+            pending[command.words[0]](deck, mesh, command)
+    read_contact(deck, mesh, values)
+
+
+def read_constants(deck, commands):
+    """Number of a material -> {label: (value, place)} of MP and MPDATA, at the first temperature."""
+    found = {}
+    for command in commands:
+        if command.words[0] not in ("MP", "MPDATA"):
+            continue
+        words = command.words
+        if words[0] == "MPDATA":
+            if command.word(1).upper().startswith("R5"):
+                command.words = [words[0], *words[3:]]
+            if command.whole(3, 1) != 1 or sum(bool(word) for word in command.words[4:]) > 1:
+                deck.note(command.place, "MPDATA: more than one temperature; the first value is taken")
+            if command.whole(3, 1) != 1:
+                continue
+            command.words = [*command.words[:3], *command.words[4:]]
+        label, number = command.word(1).upper(), command.whole(2)
+        if label not in LABELS or number < 1:
+            deck.note(command.place, f"{words[0]} {label[:20]}: not understood")
+            continue
+        if not command.word(3):
+            raise command.place.wrong(f"{words[0]} {label} has no value")
+        found.setdefault(number, {})[label] = command.real(3), command.place
+        if any(command.words[4:]) and words[0] == "MP":
+            deck.note(command.place, f"MP {label}: depends on the temperature; the constant is taken")
+    return found
+
+
+def make_material(deck, number, constants):
+    """Isotropic by EX, else by EX, EY, EZ; Poisson's ratios PR.. are those of squeal, NU.. the others: nu_21 = NUXY."""
+    value = {label: number for label, (number, _) in constants.items()}
+    place = next(iter(constants.values()))[1]
+    material = deck.materials[str(number)] = Material(str(number), place)
+    material.places = {"ELASTIC": constants["EX"][1]} if "EX" in constants else {}
+    if "DENS" in constants:
+        material.places["DENSITY"] = constants["DENS"][1]
+    if "ALPD" in constants or "BETD" in constants:
+        material.places["DAMPING"] = (constants.get("ALPD") or constants["BETD"])[1]
+    material.density, material.alpha, material.beta = value.get("DENS") or None, value.get("ALPD", 0.0), value.get("BETD", 0.0)
+    if (material.density or 1) < 0:
+        raise constants["DENS"][1].wrong("the density must not be negative")
+    if "EX" not in value:
+        return
+    if min(value[label] for label in value if label[0] in "EG") <= 0:
+        raise place.wrong(f"material {number}: moduli must be positive")
+    if not {"EY", "EZ"} & set(value):
+        material.young, material.poisson = (value["EX"],), (value.get("PRXY", value.get("NUXY", 0.3)),)
+        if not {"PRXY", "NUXY"} & set(value):
+            deck.note(constants["EX"][1], f"material {number} has no Poisson's ratio: Ansys takes 0.3, and so is it here")
+        return
+    missing = [label for label in ("EY", "EZ", "GXY", "GYZ", "GXZ") if label not in value]
+    if missing:
+        raise constants["EX"][1].wrong(f"material {number} is orthotropic and has no {missing[0]}")
+    material.young = value["EX"], value["EY"], value["EZ"]
+    material.shear = value["GXY"], value["GXZ"], value["GYZ"]
+    ratios = []
+    for pair in ("XY", "XZ", "YZ"):
+        if f"PR{pair}" in value:
+            ratios.append(value[f"PR{pair}"])
+        elif f"NU{pair}" in value:
+            ratios.append(value[f"NU{pair}"] * value[f"E{pair[0]}"] / value[f"E{pair[1]}"])
+        else:
+            raise constants["EX"][1].wrong(f"material {number} is orthotropic and has neither PR{pair} nor NU{pair}")
+    material.poisson = tuple(ratios)
+
+
+def read_parts(deck, mesh):
+    """Elements of one material and system, by the name of a component that is the same."""
+    material, system = numpy.concatenate(mesh.materials or [[]]), numpy.concatenate(mesh.systems_of or [[]])
+    names = {members.tobytes(): name for name, (kind, members) in mesh.components.items() if kind == "ELEM"}
+    for number, axes in sorted({pair for pair in zip(material.tolist(), system.tolist())}):
+        cells = numpy.flatnonzero((material == number) & (system == axes))
+        place = mesh.cells.line_of(0)
+        if str(number) not in deck.materials:
+            raise place.wrong(f"there is no material {number} (MP, MPDATA)")
+        if axes not in mesh.systems:
+            raise place.wrong(f"there is no coordinate system {axes} (LOCAL)")
+        title = names.get(cells.tobytes()) or f"part_{number}" + (f"_{axes}" if axes else "")
+        cylinder, rows, origin = mesh.systems[axes]
+        turned = Axes(True, rows[2], origin, place) if cylinder else Axes(False, rows[0], rows[1], place)
+        deck.sections.append(Section(title, cells, str(number), turned if axes else None, place))
+
+
+def nodes_of(mesh, command):
+    """Nodes by a number, by a component, or all; and the name of the component."""
+    word = command.word(1).upper()
+    if word in mesh.components and mesh.components[word][0] == "NODE":
+        return mesh.components[word][1], word
+    if word == "ALL":
+        return mesh.nodes.sorted("node")[1], ""
+    number = command.whole(1, -1)
+    return mesh.nodes.need(numpy.array([number]), "node", command.place), ""
+
+
+def is_turned(deck, mesh, nodes, command):
+    """Whether displacements of a node are in axes of its own; then the line is listed."""
+    if mesh.turned and any(node in mesh.turned for node in nodes.tolist()):
+        deck.note(command.place, f"{command.words[0]}: in the turned axes of a node, not taken")
+        return True
+    return False
+
+
+def support(deck, mesh, command):
+    """D, node, UX, value."""
+    nodes, name = nodes_of(mesh, command)
+    label, value = command.word(2).upper(), command.real(3)
+    if label not in ("UX", "UY", "UZ", "ALL"):
+        deck.note(command.place, f"D {label[:10]}: not understood")
+    elif any(command.words[4:]) and command.real(4):
+        deck.note(command.place, "D with an imaginary part: not taken")
+    elif not is_turned(deck, mesh, nodes, command):
+        held = (0, 1, 2) if label == "ALL" else ("XYZ".index(label[1]),)
+        deck.supports.append(Support(nodes, {d: value for d in held}, name, command.place))
+
+
+def force(deck, mesh, command):
+    """F, node, FX, value."""
+    nodes, name = nodes_of(mesh, command)
+    label, value = command.word(2).upper(), command.real(3)
+    if label not in ("FX", "FY", "FZ"):
+        deck.note(command.place, f"F {label[:10]}: not understood")
+    elif value and not is_turned(deck, mesh, nodes, command):
+        vector = numpy.zeros(3)
+        vector["XYZ".index(label[1])] = value
+        deck.loads.append(Load(name, command.place, nodes=nodes, force=vector))
+
+
+def pressure_on_face(deck, mesh, command):
+    """SFE, element, face, PRES, , values at its corners."""
+    if command.word(3).upper() != "PRES" or command.whole(4) > 1:
+        deck.note(command.place, f"SFE {command.word(3)[:10]}: not understood")
+        return
+    values = [command.real(k) for k in range(5, len(command.words)) if command.word(k)]
+    cell = int(mesh.cells.need(numpy.array([command.whole(1, -1)]), "element", command.place)[0])
+    at = numpy.searchsorted(deck.firsts(), cell, side="right") - 1
+    face = FACES[deck.blocks[at].shape.family].get(command.whole(2))
+    if face is None or not values:
+        raise command.place.wrong(f"SFE: face {command.word(2)} of element {command.word(1)} has no pressure, or there is no such face")
+    if any(value not in (values[0], 0.0) for value in values) or (0.0 in values and len(values) > 1 and values[1] != 0.0):
+        deck.note(command.place, "SFE: a pressure that varies: not taken")
+        return
+    deck.loads.append(Load("", command.place, faces=numpy.array([[cell, face]]), pressure=values[0]))
+
+
+def pressure_on_nodes(deck, mesh, command):
+    """SF, nodes, PRES, value: on faces all of whose nodes are among these."""
+    if command.word(2).upper() != "PRES":
+        deck.note(command.place, f"SF {command.word(2)[:10]}: not understood")
+        return
+    nodes, name = nodes_of(mesh, command)
+    faces = boundary_faces(deck, nodes)
+    if not len(faces):
+        raise command.place.wrong("SF: no face of an element has all of its nodes there")
+    deck.loads.append(Load(f"{name}_face" if name else "", command.place, faces=faces, pressure=command.real(3)))
+
+
+def gravity(deck, _, command):
+    """ACEL: the acceleration of the supports, against which gravity acts."""
+    vector = numpy.array([command.real(k) for k in (1, 2, 3)])
+    if vector.any():
+        deck.gravity = -vector, command.place
+
+
+def modes(deck, _, command):
+    """MODOPT, method, number, lowest, highest."""
+    deck.modes = command.whole(2), command.real(3), command.real(4), command.place
+
+
+def read_contact(deck, mesh, values):
+    """Pairs of contact and target elements with one set of real constants; friction by MU of the material."""
+    for number in sorted({number for number, _ in mesh.facets}):
+        sides = {}
+        for kind in ("contact", "target"):
+            for nodes, head, place in mesh.facets.get((number, kind), []):
+                corners = mesh.nodes.need(numpy.where(nodes[:, :3] > 0, nodes[:, :3], nodes[:, :1]), "node", place)
+                faces, missing = faces_by_three(deck, corners)
+                if missing.any():
+                    deck.note(place, f"{missing.sum()} {kind} elements of real constants {number} are on no face of a solid")
+                found = sides.setdefault(kind, ([], head, place))
+                found[0].append(faces[~missing])
+        if len(sides) < 2:
+            place = next(iter(sides.values()))[2]
+            deck.note(place, f"real constants {number}: {next(iter(sides))} elements without their counterpart; not taken")
+            continue
+        for kind, (faces, _, place) in sides.items():
+            deck.surfaces[f"{kind}_{number}"] = numpy.concatenate(faces), place
+        _, head, place = sides["contact"]
+        mu = values.get(int(head[0, 0]), {}).get("MU", (0.0, None))[0]
+        deck.contacts.append(Contact(f"pair_{number}", f"contact_{number}", f"target_{number}", place, mu=mu))

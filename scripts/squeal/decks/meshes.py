@@ -1,0 +1,145 @@
+"""Files that meshio reads: VTK, VTU, Code_Aster's MED. They hold meshes and groups, hence no material and no scene. Elements
+of the other orientation (MED has them all so, and writers of VTK differ on wedges) are mirrored."""
+
+import contextlib
+import io
+
+import numpy
+
+from ..tables import BadInput
+from .deck import Block, Deck, Place, shape_of
+from .elements import signed_volumes
+from .faces import faces_by_three
+
+SHAPES = {"tetra": "tet4", "tetra10": "tet10", "wedge": "wedge6", "wedge15": "wedge15", "hexahedron": "hex8",
+          "hexahedron20": "hex20", "hexahedron27": "hex27"}
+FACES = {"triangle": 3, "triangle6": 3, "quad": 4, "quad8": 4, "quad9": 4}
+MOST = 64  # values of a field of whole numbers that tells parts
+
+
+def load(path):
+    """meshio's mesh; whatever it stumbles over is one line."""
+    try:
+        import meshio
+    except ImportError:
+        raise BadInput("meshio is missing: apt-get install python3-meshio") from None
+    getattr(meshio._mesh, "topological_dimension", {}).setdefault("wedge15", 3)  # pylint: disable=protected-access
+    reader = {".med": "med", ".vtk": "vtk", ".vtu": "vtu"}[path.suffix.lower()]
+    if not path.is_file():
+        raise BadInput(f"{path}: no such file")
+    said = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), numpy.errstate(all="ignore"):
+            return getattr(meshio, reader).read(str(path))
+    except MemoryError:
+        raise BadInput(f"{path}:1: announces more than there is memory for: is the file damaged?") from None
+    except (Exception, SystemExit) as error:  # pylint: disable=broad-except
+        text = " ".join(str(error).split())[:160] or type(error).__name__
+        raise BadInput(f"{path}:1: meshio cannot read it ({text}): is the file damaged?") from None
+
+
+def right_way(shape, nodes, x):
+    """Nodes of elements, all of them mirrored where all are the wrong way round."""
+    volumes = signed_volumes(shape, x[nodes[:, :shape.n_corners]])
+    return nodes[:, shape.mirror_order()] if len(volumes) and (volumes < 0).all() else nodes
+
+
+def checked(deck, mesh):
+    """Coordinates and blocks of nodes, without what cannot be."""
+    place = Place(deck.path, 1)
+    x = numpy.asarray(mesh.points, float)
+    if x.ndim != 2 or x.shape[1] != 3 or not len(x):
+        raise place.wrong("its points are not in space")
+    if not numpy.isfinite(x).all() or abs(x).max() > 1e300:
+        raise place.wrong(f"point {int(numpy.argwhere(~(abs(x) < 1e300))[0][0]) + 1} is not finite")
+    for cells in mesh.cells:
+        nodes = numpy.asarray(cells.data)
+        if nodes.dtype.kind not in "iu" or nodes.ndim != 2:
+            raise place.wrong(f"cells of type {cells.type} are no table of nodes")
+        if len(nodes) and (nodes.min() < 0 or nodes.max() >= len(x)):
+            raise place.wrong(f"a cell of type {cells.type} has a node that is not in the file")
+    return x
+
+
+def tags_of(mesh, number, block, name):
+    """A field of whole numbers of a block of cells, or None."""
+    values = mesh.cell_data.get(name)
+    if values is None or number >= len(values):
+        return None
+    values = numpy.asarray(values[number])
+    return values if values.ndim == 1 and len(values) == len(block) and values.dtype.kind in "iu" else None
+
+
+def field_of_parts(deck, mesh):
+    """The field of cells that tells parts: the first of whole numbers with few values."""
+    solids = [k for k, cells in enumerate(mesh.cells) if cells.type in SHAPES]
+    chosen = None
+    for name in mesh.cell_data:
+        found = [tags_of(mesh, k, mesh.cells[k].data, name) for k in solids]
+        if chosen is None and all(values is not None for values in found) and len(
+                numpy.unique(numpy.concatenate(found or [numpy.empty(0)]))) <= MOST:
+            chosen = name
+        else:
+            deck.note(Place(deck.path, 1), f"field '{name}' of cells: not taken")
+    for name in mesh.point_data:
+        if name != "point_tags":
+            deck.note(Place(deck.path, 1), f"field '{name}' of points: not taken")
+    return chosen
+
+
+def read_meshes(path):
+    """The deck of a file."""
+    mesh, deck, place = load(path), Deck(path, "mesh by meshio"), Place(str(path), 1)
+    x = checked(deck, mesh)
+    deck.add_nodes(x)
+    med = getattr(mesh, "cell_tags", None) is not None and "cell_tags" in mesh.cell_data
+    field, first, groups, surfaces = field_of_parts(deck, mesh), 1, {}, []
+    for number, cells in enumerate(mesh.cells):
+        nodes = numpy.asarray(cells.data, int)
+        tags = tags_of(mesh, number, nodes, field) if field else None
+        if cells.type in SHAPES:
+            shape = shape_of(SHAPES[cells.type])
+            if nodes.shape[1] != shape.n_nodes:
+                raise place.wrong(f"cells of type {cells.type} have {nodes.shape[1]} nodes")
+            block = Block(shape, cells.type, numpy.arange(first, first + len(nodes)), right_way(shape, nodes, x), place)
+            first += len(nodes)
+            added = deck.add_block(block)
+            for tag in numpy.unique(tags).tolist() if tags is not None else ():
+                groups.setdefault(tag, []).append(added[tags == tag])
+        elif cells.type in FACES and med:
+            surfaces.append((nodes[:, :3], tags_of(mesh, number, nodes, "cell_tags")))
+        else:
+            deck.note(place, f"{len(nodes)} cells of type {cells.type}: not taken")
+    if med:
+        add_groups(deck, mesh, groups, surfaces)
+    else:
+        for tag, parts in groups.items():
+            deck.cell_sets[f"part_{tag}"] = numpy.concatenate(parts), place
+    return deck
+
+
+def add_groups(deck, mesh, groups, surfaces):
+    """Groups of MED: a family, the tag, is in some of them."""
+    place, members, faces = Place(deck.path, 1), {}, {}
+    for tag, parts in groups.items():
+        for name in mesh.cell_tags.get(tag, ["rest"] if tag == 0 else []):
+            members.setdefault(name, []).extend(parts)
+    for name, parts in members.items():
+        deck.cell_sets[name] = numpy.sort(numpy.concatenate(parts)), place
+    for three, tags in surfaces:
+        found, missing = faces_by_three(deck, three)
+        for tag in numpy.unique(tags).tolist() if tags is not None else ():
+            chosen = tags == tag
+            for name in mesh.cell_tags.get(tag, []):
+                if missing[chosen].any():
+                    raise place.wrong(f"group {name} has cells that are no face of a volume element")
+                faces.setdefault(name, []).append(found[chosen])
+    for name, parts in faces.items():
+        deck.surfaces[name] = numpy.concatenate(parts), place
+    tags = mesh.point_data.get("point_tags")
+    for tag, names in (mesh.point_tags if tags is not None else {}).items():
+        for name in names:
+            nodes = numpy.flatnonzero(numpy.asarray(tags) == tag)
+            before = deck.node_sets.get(name, (numpy.empty(0, int),))[0]
+            if len(nodes):
+                deck.node_sets[name] = numpy.concatenate([before, nodes]), place
