@@ -101,7 +101,7 @@ static PetscErrorCode LabelsAdd(Modes modes, Model model, PetscInt i, Labels *l)
     share[0] = WeightedDot(n, m, l->y[0], l->x[0]) - WeightedDot(n, m, l->y[1], l->x[1]);
     share[1] = WeightedDot(n, m, l->y[0], l->x[1]) + WeightedDot(n, m, l->y[1], l->x[0]);
   }
-  for (int k = 0; k < 2 && l->disc >= 0; k++) DiscProject(&l->frame, 2 * i + k, l->x[k], &l->energy[2 * i]);
+  for (int k = 0; k < (xi ? 2 : 1) && l->disc >= 0; k++) DiscProject(&l->frame, 2 * i + k, l->x[k], &l->energy[2 * i]);
   PetscFunctionReturn(0);
 }
 

@@ -8,7 +8,9 @@
    (F. Tisseur, Lin. Alg. Appl. 309, 2000, for the quadratic problem.)
 */
 #include "complexvec.h"
+#include "solver/orthonormal.h"
 
+#define QUALITY_BLOCK    8    /* modes whose products are made at once */
 #define QUALITY_BACKWARD 1e-6 /* largest backward error that is a solution */
 #define ROUNDINGS        3
 #define QUALITY_NOISE    100 /* lambda^2 below this many times its error is a rigid mode */
@@ -21,6 +23,8 @@ typedef struct {
   Vec                   diagonal, scratch; /* diagonal of K */
   ComplexVec            Mx, z;             /* unknowns of the pencil */
   ComplexVec            full;              /* all unknowns */
+  Mat                   KX, MX, MY;        /* products of a block of modes, MY where M is the pencil's own */
+  PetscInt              next[2];           /* columns of the next mode in KX and MX, in MY */
 } Quality;
 
 /* Length of a complex vector from the parts of a real quadratic form: x^H z for z = A x with A symmetric, or z = x */
@@ -35,13 +39,96 @@ static PetscErrorCode ComplexVecSquare(ComplexVec x, ComplexVec z, PetscReal *sq
   PetscFunctionReturn(0);
 }
 
-/* Scales to norm one and returns the norm before: sqrt(x^H M x) of a vector of all unknowns */
-static PetscErrorCode QualityNormalise(Quality *q, ComplexVec x, PetscReal *norm)
+/* A times the vectors of n modes, by columns: the real part, and the imaginary one where there is one */
+static PetscErrorCode QualityMultiply(const Spectrum *s, PetscInt first, PetscInt n, Mat A, Mat *AX)
+{
+  PetscInt n_local, n_columns = n, column = 0;
+  Mat      X;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = first; i < first + n; i++) n_columns += s->xi[i] ? 1 : 0;
+  PetscCall(MatGetLocalSize(A, &n_local, NULL));
+  PetscCall(
+    MatCreateDense(PetscObjectComm((PetscObject)A), n_local, PETSC_DECIDE, PETSC_DETERMINE, n_columns, NULL, &X));
+  for (PetscInt i = first; i < first + n; i++)
+    for (int part = 0; part < 2; part++) {
+      const Vec from = part ? s->xi[i] : s->xr[i];
+      Vec       to;
+
+      if (!from) continue;
+      PetscCall(MatDenseGetColumnVecWrite(X, column, &to));
+      PetscCall(VecCopy(from, to));
+      PetscCall(MatDenseRestoreColumnVecWrite(X, column++, &to));
+    }
+  PetscCall(MatDuplicate(X, MAT_DO_NOT_COPY_VALUES, AX));
+  PetscCall(BlockMultiply(A, X, *AX));
+  PetscCall(MatDestroy(&X));
+  PetscFunctionReturn(0);
+}
+
+/* The products of a block of modes */
+static PetscErrorCode QualityBegin(const Modes modes, Quality *q, PetscInt first, PetscInt n)
 {
   PetscFunctionBeginUser;
-  PetscCall(ComplexVecMult(q->M, x, q->full));
-  PetscCall(ComplexVecSquare(x, q->full, norm));
-  *norm = PetscSqrtReal(*norm);
+  PetscCall(QualityMultiply(&modes->right, first, n, q->pencil->K, &q->KX));
+  PetscCall(QualityMultiply(&modes->right, first, n, q->pencil->M, &q->MX));
+  if (modes->left_spectrum.n && q->M == q->pencil->M)
+    PetscCall(QualityMultiply(&modes->left_spectrum, first, n, q->M, &q->MY));
+  q->next[0] = q->next[1] = 0;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode QualityEnd(Quality *q)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatDestroy(&q->KX));
+  PetscCall(MatDestroy(&q->MX));
+  PetscCall(MatDestroy(&q->MY));
+  PetscFunctionReturn(0);
+}
+
+/* z = A x from the columns of A X */
+static PetscErrorCode QualityTake(Mat AX, PetscInt column, ComplexVec x, ComplexVec z)
+{
+  Vec product;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatDenseGetColumnVecRead(AX, column, &product));
+  PetscCall(VecCopy(product, z.r));
+  PetscCall(MatDenseRestoreColumnVecRead(AX, column, &product));
+  PetscCall(VecSet(z.i, 0));
+  if (!x.i) PetscFunctionReturn(0);
+  PetscCall(MatDenseGetColumnVecRead(AX, column + 1, &product));
+  PetscCall(VecCopy(product, z.i));
+  PetscCall(MatDenseRestoreColumnVecRead(AX, column + 1, &product));
+  PetscFunctionReturn(0);
+}
+
+/* Mx, z = K x, and where M is the pencil's own x^H M x and y^H M y, of the next mode of the block */
+static PetscErrorCode QualityNext(Quality *q, ComplexVec x, ComplexVec y, PetscReal square[2])
+{
+  PetscFunctionBeginUser;
+  PetscCall(QualityTake(q->KX, q->next[0], x, q->z));
+  PetscCall(QualityTake(q->MX, q->next[0], x, q->Mx));
+  q->next[0] += x.i ? 2 : 1;
+  if (q->M != q->pencil->M) PetscFunctionReturn(0);
+  PetscCall(ComplexVecSquare(x, q->Mx, &square[0]));
+  if (!y.r) PetscFunctionReturn(0);
+  PetscCall(QualityTake(q->MY, q->next[1], y, q->full));
+  q->next[1] += y.i ? 2 : 1;
+  PetscCall(ComplexVecSquare(y, q->full, &square[1]));
+  PetscFunctionReturn(0);
+}
+
+/* Scales a vector of all unknowns to norm one and returns the norm before, sqrt(x^H M x), whose square may be known */
+static PetscErrorCode QualityNormalise(Quality *q, ComplexVec x, PetscReal square, PetscReal *norm)
+{
+  PetscFunctionBeginUser;
+  if (q->M != q->pencil->M) {
+    PetscCall(ComplexVecMult(q->M, x, q->full));
+    PetscCall(ComplexVecSquare(x, q->full, &square));
+  }
+  *norm = PetscSqrtReal(square);
   PetscCall(VecScale(x.r, 1 / *norm));
   if (x.i) PetscCall(VecScale(x.i, 1 / *norm));
   PetscFunctionReturn(0);
@@ -53,7 +140,7 @@ static PetscErrorCode QualityExpand(Quality *q, Pencil pencil, PetscBool left, V
   Vec u;
 
   PetscFunctionBeginUser;
-  if (!*x) PetscFunctionReturn(0);
+  if (!*x || q->M == q->pencil->M) PetscFunctionReturn(0);
   PetscCall(VecDuplicate(q->full.r, &u));
   PetscCall(PencilExpand(pencil, left, *x, u));
   PetscCall(VecDestroy(x));
@@ -83,7 +170,7 @@ typedef struct {
   PetscComplex product; /* y^T D x */
 } QualityProducts;
 
-/* The products with y are not touched without a left vector */
+/* From Mx and z = K x, which it overwrites; the products with y are not touched without a left vector */
 static PetscErrorCode QualityResidual(Quality *q, PetscComplex lambda, ComplexVec x, ComplexVec y, QualityProducts *p)
 {
   const PencilMatrices *pencil = q->pencil;
@@ -92,8 +179,6 @@ static PetscErrorCode QualityResidual(Quality *q, PetscComplex lambda, ComplexVe
   PetscComplex          dot;
 
   PetscFunctionBeginUser;
-  PetscCall(ComplexVecMult(pencil->M, x, q->Mx));
-  PetscCall(ComplexVecMult(pencil->K, x, q->z));
   PetscCall(ComplexVecAXPY(lambda * lambda, q->Mx, q->z));
   if (pencil->C) PetscCall(ComplexVecMultAdd(pencil->C, lambda, x, q->scratch, q->z));
   PetscCall(ComplexVecSquare(x, x, &length));
@@ -109,12 +194,13 @@ static PetscErrorCode QualityResidual(Quality *q, PetscComplex lambda, ComplexVe
 }
 
 /* Expands both parts of a vector to all unknowns in place, and normalises it */
-static PetscErrorCode QualityFinish(Quality *q, Pencil pencil, PetscBool left, Vec *r, Vec *i, PetscReal *norm)
+static PetscErrorCode QualityFinish(Quality *q, Pencil pencil, PetscBool left, Vec *r, Vec *i, PetscReal square,
+                                    PetscReal *norm)
 {
   PetscFunctionBeginUser;
   PetscCall(QualityExpand(q, pencil, left, r));
   PetscCall(QualityExpand(q, pencil, left, i));
-  PetscCall(QualityNormalise(q, (ComplexVec){*r, *i}, norm));
+  PetscCall(QualityNormalise(q, (ComplexVec){*r, *i}, square, norm));
   PetscFunctionReturn(0);
 }
 
@@ -126,14 +212,15 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
   const PetscBool    has_left = left->n ? PETSC_TRUE : PETSC_FALSE;
   const PetscComplex lambda   = SpectrumLambda(right, i);
   const ComplexVec x = {right->xr[i], right->xi[i]}, y = {has_left ? left->xr[i] : NULL, has_left ? left->xi[i] : NULL};
-  PetscReal        size = cabs(lambda), norm_x, norm_y = 1, noise, square;
+  PetscReal        size = cabs(lambda), norm_x, norm_y = 1, noise, square, squares[2];
   QualityProducts  p = {.y_Dx = 1};
 
   PetscFunctionBeginUser;
+  PetscCall(QualityNext(q, x, y, squares));
   PetscCall(QualityResidual(q, lambda, x, y, &p));
   PetscCall(QualityNoise(q, x, &noise));
-  PetscCall(QualityFinish(q, modes->pencil, PETSC_FALSE, &right->xr[i], &right->xi[i], &norm_x));
-  if (has_left) PetscCall(QualityFinish(q, modes->pencil, PETSC_TRUE, &left->xr[i], &left->xi[i], &norm_y));
+  PetscCall(QualityFinish(q, modes->pencil, PETSC_FALSE, &right->xr[i], &right->xi[i], squares[0], &norm_x));
+  if (has_left) PetscCall(QualityFinish(q, modes->pencil, PETSC_TRUE, &left->xr[i], &left->xi[i], squares[1], &norm_y));
   mode->backward_error = p.backward;
   mode->sigma          = creal(lambda);
   mode->omega          = cimag(lambda);
@@ -166,8 +253,7 @@ static PetscErrorCode QualityCreate(Modes modes, const PencilMatrices *pencil, Q
   Vec *const work[] = {&q->diagonal, &q->scratch, &q->Mx.r, &q->Mx.i, &q->z.r, &q->z.i};
 
   PetscFunctionBeginUser;
-  q->pencil   = pencil;
-  q->norms[1] = 0;
+  *q = (Quality){.pencil = pencil};
   PetscCall(MatNorm(pencil->K, NORM_FROBENIUS, &q->norms[0]));
   if (pencil->C) PetscCall(MatNorm(pencil->C, NORM_FROBENIUS, &q->norms[1]));
   PetscCall(MatNorm(pencil->M, NORM_FROBENIUS, &q->norms[2]));
@@ -197,7 +283,13 @@ PetscErrorCode QualityMeasure(Modes modes, const PencilMatrices *pencil)
   if (modes->left_spectrum.n) PetscCall(LeftBiorthogonalise(modes, pencil, (Vec[]){q.scratch, q.z.r, q.z.i}));
   modes->n = modes->right.n;
   PetscCall(PetscCalloc1(modes->n, &modes->mode));
-  for (PetscInt i = 0; i < modes->n; i++) PetscCall(QualityMeasureMode(modes, &q, i));
+  for (PetscInt first = 0; first < modes->n; first += QUALITY_BLOCK) {
+    const PetscInt n = PetscMin(QUALITY_BLOCK, modes->n - first);
+
+    PetscCall(QualityBegin(modes, &q, first, n));
+    for (PetscInt i = first; i < first + n; i++) PetscCall(QualityMeasureMode(modes, &q, i));
+    PetscCall(QualityEnd(&q));
+  }
   PetscCall(QualityDestroy(&q));
   PetscFunctionReturn(0);
 }
