@@ -8,6 +8,8 @@
 #include <petscsys.h>
 #include <stdint.h>
 
+#define SCENE_MOST 60 /* pairs */
+
 typedef struct {
   PetscInt   n;
   PetscReal *W, *q, *slip0, *mu; /* [3n][3n], [n][3], [n][2], [n] */
@@ -41,7 +43,7 @@ static inline PetscErrorCode SceneDestroy(ComplianceScene *s)
 static inline void SceneAddRandom(ComplianceScene *s, PetscInt rank, PetscReal size, PetscReal normal)
 {
   const PetscInt N = 3 * s->n;
-  PetscReal      x[192];
+  PetscReal      x[3 * SCENE_MOST];
 
   for (PetscInt k = 0; k < rank; k++) {
     for (PetscInt i = 0; i < N; i++) x[i] = SceneDraw(s) * (i % 3 ? 1 : normal);
@@ -77,7 +79,7 @@ static inline void SceneAddHalfSpace(ComplianceScene *s, PetscReal size, PetscRe
 static inline void SceneAddHolder(ComplianceScene *s, PetscReal size)
 {
   const PetscInt N = 3 * s->n, side = (PetscInt)ceil(sqrt((double)s->n));
-  PetscReal      u[192];
+  PetscReal      u[3 * SCENE_MOST];
 
   for (int k = 0; k < 6; k++) {
     PetscReal m[6];
@@ -93,6 +95,57 @@ static inline void SceneAddHolder(ComplianceScene *s, PetscReal size)
     for (PetscInt i = 0; i < N; i++)
       for (PetscInt j = 0; j < N; j++) s->W[i * N + j] += size * u[i] * u[j];
   }
+}
+
+/* Compliances of scenes: well-posed, ill-conditioned (1e5), singular */
+typedef enum { BODY_HALF_SPACE, BODY_RANDOM, BODY_HOLDER, BODY_STIFF, BODY_RIGID, BODY_TWICE, BODY_N } SceneBody;
+
+static const char *const scene_bodies[] = {"half-space",        "random",          "on a holder", "stiff on a holder",
+                                           "rigid on a holder", "every pair twice"};
+
+static inline void SceneAddBody(ComplianceScene *s, SceneBody body)
+{
+  const PetscInt  N       = 3 * s->n;
+  const PetscReal sizes[] = {1, 0, 0.3, 1e-3, 0, 1};
+
+  if (body == BODY_RANDOM) SceneAddRandom(s, N, 1, 1);
+  if (sizes[body] > 0) SceneAddHalfSpace(s, sizes[body], 0.5);
+  if (body >= BODY_HOLDER && body != BODY_TWICE) SceneAddHolder(s, 1);
+  if (body != BODY_TWICE) return;
+  for (PetscInt j = 0; j < N; j++) /* an odd pair is the one before it */
+    for (PetscInt i = 0; i < N; i++) s->W[j * N + i] = s->W[(j / 6 * 6 + j % 3) * N + i / 6 * 6 + i % 3];
+}
+
+/* mu, and motions of order 1 about a mean approach and sliding */
+static inline void SceneDrawMotion(ComplianceScene *s, PetscReal mu, PetscReal normal, PetscReal sliding)
+{
+  for (PetscInt p = 0; p < s->n; p++) {
+    s->mu[p]            = mu;
+    s->q[3 * p]         = normal + SceneDraw(s);
+    s->q[3 * p + 1]     = SceneDraw(s);
+    s->q[3 * p + 2]     = SceneDraw(s);
+    s->slip0[2 * p]     = -sliding;
+    s->slip0[2 * p + 1] = 0.1 * SceneDraw(s);
+  }
+}
+
+/* Motions that the singular W could undo, q = W x: what shares a force moves alike */
+static inline PetscErrorCode SceneMakeConsistent(ComplianceScene *s)
+{
+  const PetscInt N = 3 * s->n;
+  PetscReal     *x;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(N, &x));
+  for (PetscInt i = 0; i < N; i++) {
+    x[i]    = s->q[i] - (i % 3 ? s->slip0[i / 3 * 2 + i % 3 - 1] : 0);
+    s->q[i] = 0;
+  }
+  for (PetscInt i = 0; i < 2 * s->n; i++) s->slip0[i] = 0;
+  for (PetscInt i = 0; i < N; i++)
+    for (PetscInt j = 0; j < N; j++) s->q[i] += s->W[j * N + i] * x[j];
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(0);
 }
 
 /* Compliance of a pair at its own place, mean of the three directions */

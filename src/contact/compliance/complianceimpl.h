@@ -15,11 +15,27 @@ typedef struct {
   PetscInt  worst;   /* pair of `largest` */
 } ComplianceMiss;
 
+/* Factors of a base set of unknowns (chord.c); indices are rows of W */
+typedef struct {
+  PetscBool     exists;
+  PetscInt      m, *index;         /* of the base, ascending, [m] */
+  PetscReal    *turn;              /* d: friction over normal force of sliding pairs, [n][2] */
+  PetscReal    *LU;                /* [m][m] */
+  PetscBLASInt *pivot, *small;     /* of LU and of S */
+  PetscInt     *place, *column;    /* of an index: in the base, in V; -1 where it is not there, [3 n] */
+  PetscInt      most, n_columns;   /* columns that V has room for, and has */
+  PetscReal    *V, *S;             /* [n_columns][m] A0^-1 of columns; Schur complement */
+  PetscInt      n_border, *border; /* indices that joined or left; -1: not factored */
+  PetscInt     *want, *next;       /* work: [3 n] */
+  PetscReal    *b, *s;             /* work: [3 n] */
+} ComplianceChord;
+
 struct _p_ContactCompliance {
   PetscInt         n;
   const PetscReal *W;
   PetscReal       *kappa;              /* N/m, [n] */
   PetscReal       *mu, *slope, *speed; /* [n] */
+  PetscReal        weight;             /* a: statuses are decided by l - a v */
   PetscReal        dt, rtol;
   PetscReal       *free;    /* v without forces, [n][3] */
   PetscReal       *l, *v;   /* now, [n][3] */
@@ -33,6 +49,7 @@ struct _p_ContactCompliance {
   PetscReal       *A, *rhs; /* [rows][rows] of closed pairs and a border, [rows] */
   PetscBLASInt    *pivot;
   PetscInt         n_room; /* rows that there is room for */
+  ComplianceChord  chord;
   ComplianceReport report, totals;
 };
 
@@ -41,6 +58,7 @@ PETSC_INTERN PetscErrorCode ComplianceMove(ContactCompliance c);
 PETSC_INTERN void           ComplianceMeasure(const ContactCompliance c, ComplianceMiss *miss);
 PETSC_INTERN PetscBool      ComplianceIsSolved(const ContactCompliance c, const ComplianceMiss *miss);
 PETSC_INTERN void           ComplianceChoose(ContactCompliance c);
+PETSC_INTERN void           ComplianceTurn(const ContactCompliance c, PetscInt p, PetscReal d[2]);
 PETSC_INTERN void           ComplianceLinearise(ContactCompliance c);
 
 /* linear.c - matrix of the closed pairs at the present laws, its factors */
@@ -50,10 +68,40 @@ PETSC_INTERN void           ComplianceShift(ContactCompliance c, PetscInt border
 PETSC_INTERN PetscErrorCode ComplianceBackSolve(const ContactCompliance c, PetscInt border);
 PETSC_INTERN void           ComplianceTake(ContactCompliance c);
 
+/* chord.c - the base becomes chord.index [m] with chord.turn; A0^-1 times the column that an index adds, NULL where the
+   store is full; Newton's method with factors of the steps before */
+PETSC_INTERN PetscErrorCode ComplianceChordSetBase(ContactCompliance c);
+PETSC_INTERN PetscErrorCode ComplianceChordColumn(ContactCompliance c, PetscInt j, const PetscReal **v);
+PETSC_INTERN PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss);
+
 /* newton.c - one step on l, v; iterations, at most max_it; damped = with a line search */
 PETSC_INTERN PetscErrorCode ComplianceStep(ContactCompliance c, PetscBool *singular);
 PETSC_INTERN PetscErrorCode ComplianceIterate(ContactCompliance c, PetscBool damped, PetscInt max_it,
                                               ComplianceMiss *miss);
+
+/* A point and its tangent */
+typedef struct {
+  PetscReal *l, x;           /* accepted */
+  PetscReal *ahead, x_ahead; /* predicted */
+  PetscReal *tangent, t_x;   /* unit length */
+  PetscReal  cost;           /* cubes of unknowns factored so far */
+  PetscReal  size;           /* |l| of the accepted point */
+  PetscInt   sign;           /* of the determinant */
+} CompliancePath;
+
+/* pathpoint.c - t at x; |l|; the system at the present l, v, x, factored, and how far ahead of the plane that is; point and
+   tangent from one path to another; takes the point, with its tangent; cosine of two tangents; the point at a distance */
+PETSC_INTERN PetscErrorCode CompliancePathCreate(ContactCompliance c, CompliancePath *path);
+PETSC_INTERN PetscErrorCode CompliancePathDestroy(CompliancePath *path);
+PETSC_INTERN PetscReal      CompliancePathBlend(PetscReal x);
+PETSC_INTERN PetscReal      CompliancePathNorm(const ContactCompliance c, const PetscReal l[]);
+PETSC_INTERN PetscErrorCode CompliancePathFactor(ContactCompliance c, const CompliancePath *path, PetscReal x,
+                                                 PetscReal *ahead, PetscBool *singular);
+PETSC_INTERN PetscErrorCode CompliancePathCopy(ContactCompliance c, const CompliancePath *from, CompliancePath *to);
+PETSC_INTERN PetscErrorCode CompliancePathTangent(ContactCompliance c, CompliancePath *path, PetscReal x);
+PETSC_INTERN PetscReal      CompliancePathAlong(const ContactCompliance c, const CompliancePath *path,
+                                                const CompliancePath *before);
+PETSC_INTERN void           CompliancePathPredict(const ContactCompliance c, CompliancePath *path, PetscReal step);
 
 /* path.c - from W kappa = I */
 PETSC_INTERN PetscErrorCode ComplianceFollow(ContactCompliance c, ComplianceMiss *miss);

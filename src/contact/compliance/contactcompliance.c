@@ -4,6 +4,7 @@
 #define COMPLIANCE_RTOL      1e-12
 #define COMPLIANCE_SYMMETRIC 1e-10 /* of the larger of two diagonals */
 #define COMPLIANCE_DEFINITE  1e-10 /* of the largest diagonal */
+#define COMPLIANCE_POWER     30    /* iterations for the largest eigenvalue */
 #define COMPLIANCE_MAX_IT    40    /* of Newton's method */
 
 /* Finite, symmetric, with a diagonal that is not negative */
@@ -40,6 +41,31 @@ static void StiffnessSet(ContactCompliance c)
   }
 }
 
+/* Statuses are decided by l - a v, a = 1 / sqrt(largest eigenvalue of W kappa): between what a pair feels alone, 1, and what
+   all feel together. With 1, a motion of all pairs that hardly changes their forces would change all their statuses. */
+static void WeightSet(ContactCompliance c)
+{
+  const PetscReal    zero = 0, one = 1;
+  const PetscBLASInt N = (PetscBLASInt)(3 * c->n), inc = 1;
+  PetscReal          largest = 1;
+
+  for (PetscInt i = 0; i < N; i++) c->l[i] = 1 + 0.3 * PetscSinReal((PetscReal)i);
+  for (PetscInt k = 0; k < COMPLIANCE_POWER && N; k++) {
+    PetscReal before = 0, after = 0;
+
+    for (PetscInt i = 0; i < N; i++) c->force[i] = c->kappa[i / 3] * c->l[i];
+    BLASgemv_("N", &N, &N, &one, c->W, &N, c->force, &inc, &zero, c->v, &inc);
+    for (PetscInt i = 0; i < N; i++) {
+      before += c->kappa[i / 3] * PetscSqr(c->l[i]);
+      after += c->kappa[i / 3] * PetscSqr(c->v[i]);
+    }
+    if (!(after > 0)) break;
+    largest = PetscSqrtReal(after / before);
+    for (PetscInt i = 0; i < N; i++) c->l[i] = c->v[i] / PetscSqrtReal(after);
+  }
+  c->weight = 1 / PetscSqrtReal(PetscMax(1, largest));
+}
+
 PetscErrorCode ContactComplianceCreate(PetscInt n, const PetscReal W[], ContactCompliance *compliance)
 {
   ContactCompliance c;
@@ -55,7 +81,11 @@ PetscErrorCode ContactComplianceCreate(PetscInt n, const PetscReal W[], ContactC
   PetscCall(PetscCalloc7(3 * n, &c->free, 3 * n, &c->l, 3 * n, &c->v, 3 * n, &c->l0, 3 * n, &c->v0, 3 * n, &c->best,
                          3 * n, &c->force));
   PetscCall(PetscCalloc3(n, &c->status, n, &c->law, n, &c->closed));
+  PetscCall(PetscMalloc7(3 * n, &c->chord.index, 3 * n, &c->chord.place, 3 * n, &c->chord.column, 3 * n,
+                         &c->chord.border, 3 * n, &c->chord.want, 3 * n, &c->chord.next, 3 * n, &c->chord.b));
+  PetscCall(PetscCalloc2(2 * n, &c->chord.turn, 3 * n, &c->chord.s));
   StiffnessSet(c);
+  WeightSet(c);
   c->totals   = (ComplianceReport){.converged = PETSC_TRUE, .worst = -1};
   *compliance = c;
   PetscFunctionReturn(0);
@@ -170,9 +200,10 @@ PetscErrorCode ContactComplianceSolve(ContactCompliance c, const PetscReal q[], 
 
   PetscFunctionBeginUser;
   PetscCall(StepBegin(c, q, slip0, lambda));
-  PetscCall(ComplianceIterate(c, PETSC_FALSE, COMPLIANCE_MAX_IT, &miss));
-  for (c->report.route = COMPLIANCE_NEWTON; !ComplianceIsSolved(c, &miss) && c->report.route < COMPLIANCE_PATH;) {
+  PetscCall(ComplianceChordIterate(c, &miss));
+  for (c->report.route = COMPLIANCE_CHORD; !ComplianceIsSolved(c, &miss) && c->report.route < COMPLIANCE_PATH;) {
     c->report.route++;
+    if (c->report.route == COMPLIANCE_NEWTON) PetscCall(ComplianceIterate(c, PETSC_FALSE, COMPLIANCE_MAX_IT, &miss));
     if (c->report.route == COMPLIANCE_DAMPED) PetscCall(ComplianceIterate(c, PETSC_TRUE, COMPLIANCE_MAX_IT, &miss));
     if (c->report.route == COMPLIANCE_PATH) PetscCall(ComplianceFollow(c, &miss));
   }
@@ -206,6 +237,10 @@ PetscErrorCode ContactComplianceDestroy(ContactCompliance *compliance)
   PetscCall(PetscFree7(c->free, c->l, c->v, c->l0, c->v0, c->best, c->force));
   PetscCall(PetscFree3(c->status, c->law, c->closed));
   PetscCall(PetscFree3(c->A, c->rhs, c->pivot));
+  PetscCall(PetscFree7(c->chord.index, c->chord.place, c->chord.column, c->chord.border, c->chord.want, c->chord.next,
+                       c->chord.b));
+  PetscCall(PetscFree2(c->chord.turn, c->chord.s));
+  PetscCall(PetscFree5(c->chord.LU, c->chord.V, c->chord.S, c->chord.pivot, c->chord.small));
   PetscCall(PetscFree(*compliance));
   PetscFunctionReturn(0);
 }

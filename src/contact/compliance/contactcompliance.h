@@ -18,10 +18,10 @@
       |l_n - max(0, l_n - r_n)|,  |p - Proj(p + d)| on the disc of radius mu l_n,     l = lambda / kappa,  p = -l_T,
    relative to the largest l; what rounding of q and W lambda leaves is never asked for.
 
-   Methods, each where the one before does not end (newton.c, path.c): semismooth Newton on the statuses of the
-   pairs; the same with a line search on the natural map; the path of solutions from pairs that do
-   not feel each other to W, followed through its folds. All have limits: a step always ends, and
-   tells whether it converged.
+   Methods, each where the one before does not end: Newton on the statuses of the pairs with factors of the steps before,
+   bordered by what has changed (chord.c); semismooth Newton (newton.c); the same with a line search on the natural map;
+   the path of solutions from pairs that do not feel each other to W, followed through its folds (path.c). All have
+   limits: a step always ends, and tells whether it converged.
 */
 #pragma once
 
@@ -31,7 +31,13 @@
 typedef struct _p_ContactCompliance *ContactCompliance;
 
 /* The method that ended */
-typedef enum { COMPLIANCE_NEWTON, COMPLIANCE_DAMPED, COMPLIANCE_PATH, COMPLIANCE_N_ROUTES } ComplianceRoute;
+typedef enum {
+  COMPLIANCE_CHORD,
+  COMPLIANCE_NEWTON,
+  COMPLIANCE_DAMPED,
+  COMPLIANCE_PATH,
+  COMPLIANCE_N_ROUTES
+} ComplianceRoute;
 
 /* Friction of all pairs, each array [n]; slope and speed NULL for mu alone */
 typedef struct {
@@ -96,6 +102,15 @@ PETSC_INTERN PetscErrorCode ContactComplianceSolve(ContactCompliance compliance,
 
 /*@ ContactComplianceGetStatus - of the pairs in the last step, [n] (borrowed until the next). Not collective. @*/
 PETSC_INTERN PetscErrorCode ContactComplianceGetStatus(ContactCompliance compliance, const ContactStatus **status);
+
+/*@ ContactComplianceGetMemory - what must be kept so that the next steps are bitwise the same after a restart: n
+    numbers, which the caller frees. Not collective. @*/
+PETSC_INTERN PetscErrorCode ContactComplianceGetMemory(ContactCompliance compliance, PetscInt *n, PetscReal **values);
+
+/*@ ContactComplianceSetMemory - takes them back. Errors: PETSC_ERR_FILE_UNEXPECTED where they are of other pairs. Not
+    collective. @*/
+PETSC_INTERN PetscErrorCode ContactComplianceSetMemory(ContactCompliance compliance, PetscInt n,
+                                                       const PetscReal values[]);
 
 /*@ ContactComplianceGetTotals - of all steps since it was created. Not collective. @*/
 PETSC_INTERN PetscErrorCode ContactComplianceGetTotals(ContactCompliance compliance, ComplianceReport *report);

@@ -6,15 +6,16 @@
 
 #define MOTION_NOISE 4 /* roundings of v by its terms */
 
-/* The pair with its coefficient of friction at the present slip, and how that changes with it */
-static CoulombPair LawOfPair(const ContactCompliance c, PetscInt p)
+/* The pair with its coefficient of friction at the present slip, and how that changes with it; w = -weight v */
+static CoulombPair LawOfPair(const ContactCompliance c, PetscInt p, PetscReal weight, PetscReal w[3])
 {
   const PetscReal slip = hypot(c->v[3 * p + 1], c->v[3 * p + 2]), slope = c->slope ? c->slope[p] / c->dt : 0;
   CoulombPair     pair = {.d = 3, .mu = c->mu[p], .k = INFINITY};
 
+  for (PetscInt i = 0; i < 3; i++) w[i] = -weight * c->v[3 * p + i];
   if (slope == 0) return pair;
   pair.mu   = FrictionCoefficient(c->mu[p], slope, c->speed[p] * c->dt, slip);
-  pair.fall = pair.mu > 0 ? slope : 0;
+  pair.fall = pair.mu > 0 ? slope / weight : 0;
   return pair;
 }
 
@@ -48,9 +49,9 @@ void ComplianceMeasure(const ContactCompliance c, ComplianceMiss *miss)
 
   *miss = (ComplianceMiss){.worst = -1};
   for (PetscInt p = 0; p < c->n; p++) {
-    const CoulombPair pair = LawOfPair(c, p);
+    PetscReal         w[3];
+    const CoulombPair pair = LawOfPair(c, p, 1, w);
     const PetscReal  *l = &c->l[3 * p], *v = &c->v[3 * p];
-    const PetscReal   w[3]   = {-v[0], -v[1], -v[2]};
     const PetscReal   normal = PetscAbsReal(l[0] - PetscMax(0, l[0] - v[0])), friction = CoulombResidual(&pair, l, w);
     const PetscReal   square = PetscSqr(normal) + PetscSqr(friction);
 
@@ -72,11 +73,20 @@ PetscBool ComplianceIsSolved(const ContactCompliance c, const ComplianceMiss *mi
   return miss->largest <= c->rtol * miss->scale + miss->noise ? PETSC_TRUE : PETSC_FALSE;
 }
 
+void ComplianceTurn(const ContactCompliance c, PetscInt p, PetscReal d[2])
+{
+  PetscReal         w[3];
+  const CoulombPair pair   = LawOfPair(c, p, c->weight, w);
+  const PetscReal   length = CoulombTrial(&pair, &c->l[3 * p], w, d);
+
+  for (PetscInt i = 0; i < 2; i++) d[i] *= length > 0 ? -pair.mu / length : 0;
+}
+
 void ComplianceChoose(ContactCompliance c)
 {
   for (PetscInt p = 0; p < c->n; p++) {
-    const CoulombPair pair = LawOfPair(c, p);
-    const PetscReal  *v = &c->v[3 * p], w[3] = {-v[0], -v[1], -v[2]};
+    PetscReal         w[3];
+    const CoulombPair pair = LawOfPair(c, p, c->weight, w);
 
     c->status[p] = CoulombDecide(&pair, c->status[p], &c->l[3 * p], w, 0);
   }
@@ -86,8 +96,8 @@ void ComplianceLinearise(ContactCompliance c)
 {
   c->n_closed = 0;
   for (PetscInt p = 0; p < c->n; p++) {
-    const CoulombPair pair = LawOfPair(c, p);
-    const PetscReal  *v = &c->v[3 * p], w[3] = {-v[0], -v[1], -v[2]};
+    PetscReal         w[3];
+    const CoulombPair pair = LawOfPair(c, p, c->weight, w);
 
     if (c->status[p] == CONTACT_OPEN) continue;
     c->closed[c->n_closed++] = p;

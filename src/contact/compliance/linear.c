@@ -1,7 +1,7 @@
 /*
-   Linear system of the closed pairs. With the laws l = P z + p0, w = Q z + q0 and w = -v,
+   Linear system of the closed pairs. With the laws l = P z + p0, w = Q z + q0 and w = -a v,
 
-      [Q + W kappa P] dz = -[Q z0 + q0 + free + W kappa (P z0 + p0)],     l = P (z0 + dz) + p0
+      [Q + a W kappa P] dz = -[Q z0 + q0 + a free + a W kappa (P z0 + p0)],     l = P (z0 + dz) + p0
 
    z0 is taken from the present l, v, so that what rounding or a shift of the matrix leaves is found again in the next
    step. A border of one row and column is the path's. Singular matrices (pairs that share what they carry) get a shift
@@ -45,7 +45,7 @@ static void LinearColumns(ContactCompliance c, PetscInt k, PetscInt rows)
 {
   const PetscInt    p = c->closed[k], N = 3 * c->n;
   const CoulombLaw *law   = &c->law[p];
-  const PetscReal   kappa = (1 - c->blend) * c->kappa[p];
+  const PetscReal   kappa = c->weight * (1 - c->blend) * c->kappa[p];
   const PetscReal  *W[3]  = {&c->W[3 * p * N], &c->W[(3 * p + 1) * N], &c->W[(3 * p + 2) * N]};
 
   for (PetscInt j = 0; j < 3; j++) {
@@ -58,7 +58,7 @@ static void LinearColumns(ContactCompliance c, PetscInt k, PetscInt rows)
 
         column[3 * m + i] = a * W[0][at] + b * W[1][at] + d * W[2][at];
       }
-    for (PetscInt i = 0; i < 3; i++) column[3 * k + i] += law->Q[i][j] + c->blend * law->P[i][j];
+    for (PetscInt i = 0; i < 3; i++) column[3 * k + i] += law->Q[i][j] + c->weight * c->blend * law->P[i][j];
   }
 }
 
@@ -87,7 +87,7 @@ PetscErrorCode ComplianceAssemble(ContactCompliance c, PetscInt border)
   for (PetscInt p = 0; p < c->n; p++)
     if (c->status[p] == CONTACT_OPEN) c->l[3 * p] = c->l[3 * p + 1] = c->l[3 * p + 2] = 0;
   PetscCall(ComplianceMove(c));
-  for (PetscInt k = 0; k < 3 * c->n_closed; k++) c->rhs[k] -= c->v[3 * c->closed[k / 3] + k % 3];
+  for (PetscInt k = 0; k < 3 * c->n_closed; k++) c->rhs[k] -= c->weight * c->v[3 * c->closed[k / 3] + k % 3];
   PetscFunctionReturn(0);
 }
 

@@ -1,0 +1,46 @@
+/* What a restart needs so that the next steps are bitwise those of a run that goes on: base, directions, columns kept */
+#include "complianceimpl.h"
+
+PetscErrorCode ContactComplianceGetMemory(ContactCompliance c, PetscInt *n, PetscReal **values)
+{
+  const ComplianceChord *h = &c->chord;
+  PetscReal             *to;
+
+  PetscFunctionBeginUser;
+  *n = h->exists ? 1 + h->m + 2 * c->n + h->n_columns : 0;
+  PetscCall(PetscMalloc1(*n, values));
+  to = *values;
+  if (!*n) PetscFunctionReturn(0);
+  *to++ = (PetscReal)h->m;
+  for (PetscInt i = 0; i < h->m; i++) *to++ = (PetscReal)h->index[i];
+  for (PetscInt i = 0; i < 2 * c->n; i++) *to++ = h->turn[i];
+  for (PetscInt i = 0; i < 3 * c->n; i++)
+    if (h->column[i] >= 0) to[h->column[i]] = (PetscReal)i;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactComplianceSetMemory(ContactCompliance c, PetscInt n, const PetscReal values[])
+{
+  ComplianceChord *h = &c->chord;
+  PetscInt         n_columns;
+
+  PetscFunctionBeginUser;
+  h->exists = PETSC_FALSE;
+  if (!n) PetscFunctionReturn(0);
+  h->m      = (PetscInt)values[0];
+  n_columns = n - 1 - h->m - 2 * c->n;
+  PetscCheck(h->m >= 0 && h->m <= 3 * c->n && n_columns >= 0 && n_columns <= 3 * c->n, PETSC_COMM_SELF,
+             PETSC_ERR_FILE_UNEXPECTED,
+             "Memory of contact on a compliance: %" PetscInt_FMT " numbers are not those of %" PetscInt_FMT " pairs", n,
+             c->n);
+  values++;
+  for (PetscInt i = 0; i < h->m; i++) h->index[i] = (PetscInt)*values++;
+  for (PetscInt i = 0; i < 2 * c->n; i++) h->turn[i] = *values++;
+  PetscCall(ComplianceChordSetBase(c));
+  for (PetscInt k = 0; k < n_columns && h->exists; k++) {
+    const PetscReal *v;
+
+    PetscCall(ComplianceChordColumn(c, (PetscInt)values[k], &v));
+  }
+  PetscFunctionReturn(0);
+}
