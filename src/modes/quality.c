@@ -104,31 +104,33 @@ static PetscErrorCode QualityTake(Mat AX, PetscInt column, ComplexVec x, Complex
   PetscFunctionReturn(0);
 }
 
-/* Mx, z = K x, and where M is the pencil's own x^H M x and y^H M y, of the next mode of the block */
-static PetscErrorCode QualityNext(Quality *q, ComplexVec x, ComplexVec y, PetscReal square[2])
+/* Mx, z = K x, and where M is the pencil's own the norms of x and y in it, of the next mode of the block */
+static PetscErrorCode QualityNext(Quality *q, ComplexVec x, ComplexVec y, PetscReal *norm_x, PetscReal *norm_y)
 {
   PetscFunctionBeginUser;
   PetscCall(QualityTake(q->KX, q->next[0], x, q->z));
   PetscCall(QualityTake(q->MX, q->next[0], x, q->Mx));
   q->next[0] += x.i ? 2 : 1;
   if (q->M != q->pencil->M) PetscFunctionReturn(0);
-  PetscCall(ComplexVecSquare(x, q->Mx, &square[0]));
+  PetscCall(ComplexVecSquare(x, q->Mx, norm_x));
+  *norm_x = PetscSqrtReal(*norm_x);
   if (!y.r) PetscFunctionReturn(0);
   PetscCall(QualityTake(q->MY, q->next[1], y, q->full));
   q->next[1] += y.i ? 2 : 1;
-  PetscCall(ComplexVecSquare(y, q->full, &square[1]));
+  PetscCall(ComplexVecSquare(y, q->full, norm_y));
+  *norm_y = PetscSqrtReal(*norm_y);
   PetscFunctionReturn(0);
 }
 
-/* Scales a vector of all unknowns to norm one and returns the norm before, sqrt(x^H M x), whose square may be known */
-static PetscErrorCode QualityNormalise(Quality *q, ComplexVec x, PetscReal square, PetscReal *norm)
+/* Scales a vector of all unknowns to norm one; the norm before, sqrt(x^H M x), is known where M is the pencil's own */
+static PetscErrorCode QualityNormalise(Quality *q, ComplexVec x, PetscReal *norm)
 {
   PetscFunctionBeginUser;
   if (q->M != q->pencil->M) {
     PetscCall(ComplexVecMult(q->M, x, q->full));
-    PetscCall(ComplexVecSquare(x, q->full, &square));
+    PetscCall(ComplexVecSquare(x, q->full, norm));
+    *norm = PetscSqrtReal(*norm);
   }
-  *norm = PetscSqrtReal(square);
   PetscCall(VecScale(x.r, 1 / *norm));
   if (x.i) PetscCall(VecScale(x.i, 1 / *norm));
   PetscFunctionReturn(0);
@@ -194,13 +196,12 @@ static PetscErrorCode QualityResidual(Quality *q, PetscComplex lambda, ComplexVe
 }
 
 /* Expands both parts of a vector to all unknowns in place, and normalises it */
-static PetscErrorCode QualityFinish(Quality *q, Pencil pencil, PetscBool left, Vec *r, Vec *i, PetscReal square,
-                                    PetscReal *norm)
+static PetscErrorCode QualityFinish(Quality *q, Pencil pencil, PetscBool left, Vec *r, Vec *i, PetscReal *norm)
 {
   PetscFunctionBeginUser;
   PetscCall(QualityExpand(q, pencil, left, r));
   PetscCall(QualityExpand(q, pencil, left, i));
-  PetscCall(QualityNormalise(q, (ComplexVec){*r, *i}, square, norm));
+  PetscCall(QualityNormalise(q, (ComplexVec){*r, *i}, norm));
   PetscFunctionReturn(0);
 }
 
@@ -212,15 +213,15 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
   const PetscBool    has_left = left->n ? PETSC_TRUE : PETSC_FALSE;
   const PetscComplex lambda   = SpectrumLambda(right, i);
   const ComplexVec x = {right->xr[i], right->xi[i]}, y = {has_left ? left->xr[i] : NULL, has_left ? left->xi[i] : NULL};
-  PetscReal        size = cabs(lambda), norm_x, norm_y = 1, noise, square, squares[2];
+  PetscReal        size = cabs(lambda), norm_x, norm_y = 1, noise, square;
   QualityProducts  p = {.y_Dx = 1};
 
   PetscFunctionBeginUser;
-  PetscCall(QualityNext(q, x, y, squares));
+  PetscCall(QualityNext(q, x, y, &norm_x, &norm_y));
   PetscCall(QualityResidual(q, lambda, x, y, &p));
   PetscCall(QualityNoise(q, x, &noise));
-  PetscCall(QualityFinish(q, modes->pencil, PETSC_FALSE, &right->xr[i], &right->xi[i], squares[0], &norm_x));
-  if (has_left) PetscCall(QualityFinish(q, modes->pencil, PETSC_TRUE, &left->xr[i], &left->xi[i], squares[1], &norm_y));
+  PetscCall(QualityFinish(q, modes->pencil, PETSC_FALSE, &right->xr[i], &right->xi[i], &norm_x));
+  if (has_left) PetscCall(QualityFinish(q, modes->pencil, PETSC_TRUE, &left->xr[i], &left->xi[i], &norm_y));
   mode->backward_error = p.backward;
   mode->sigma          = creal(lambda);
   mode->omega          = cimag(lambda);

@@ -118,23 +118,56 @@ static PetscErrorCode BlockApplyFactor(Mat F, PetscBool transposed, Mat B, Mat X
   PetscFunctionReturn(0);
 }
 
-/* X = A^-1 B by the solver of the matrix that is factored */
-static PetscErrorCode BlockSolve(KSP ksp, PetscBool transposed, Mat B, Mat X)
+/* The factors that a solver works with, NULL where it is another solver */
+static PetscErrorCode BlockGetFactor(KSP ksp, Mat *F)
 {
   PetscBool direct, factored;
-  Mat       F;
   PC        pc;
 
   PetscFunctionBeginUser;
+  *F = NULL;
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PetscObjectTypeCompare((PetscObject)ksp, KSPPREONLY, &direct));
   PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, &factored, PCLU, PCCHOLESKY, ""));
-  if (direct && factored) {
-    PetscCall(PCFactorGetMatrix(pc, &F));
-    PetscCall(BlockApplyFactor(F, transposed, B, X));
-  } else {
-    PetscCall(BlockApplyColumns(ksp, transposed, B, X));
-  }
+  if (direct && factored) PetscCall(PCFactorGetMatrix(pc, F));
+  PetscFunctionReturn(0);
+}
+
+/* X = A^-1 B by the solver of the matrix that is factored */
+static PetscErrorCode BlockSolve(KSP ksp, PetscBool transposed, Mat B, Mat X)
+{
+  Mat F;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlockGetFactor(ksp, &F));
+  PetscCall(F ? BlockApplyFactor(F, transposed, B, X) : BlockApplyColumns(ksp, transposed, B, X));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertSolvesRows(KSP ksp, PetscBool *solves)
+{
+  PetscMPIInt   size;
+  MatSolverType type;
+  Mat           F;
+
+  PetscFunctionBeginUser;
+  *solves = PETSC_FALSE;
+  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)ksp), &size));
+  PetscCall(BlockGetFactor(ksp, &F));
+  if (size > 1 || !F) PetscFunctionReturn(0);
+  PetscCall(MatFactorGetSolverType(F, &type));
+  PetscCall(PetscStrcmp(type, MATSOLVERMUMPS, solves));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertApplyRows(void *ctx, Mat rows, Mat X)
+{
+  Mat F;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlockGetFactor((KSP)ctx, &F));
+  PetscCall(MatMatTransposeSolve(F, rows, X));
+  PetscCall(BlockCount(X));
   PetscFunctionReturn(0);
 }
 

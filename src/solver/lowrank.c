@@ -110,18 +110,36 @@ static PetscErrorCode StoredProduct(const LowRank *u, PetscBool subtract, PetscI
   PetscFunctionReturn(0);
 }
 
-/* Columns first .. first + m - 1 of R' as a dense matrix */
-static PetscErrorCode RightColumns(const LowRank *u, PetscInt first, PetscInt m, Mat *B)
+/* X = A^-1 R' for m rows of R from `first` on, dense right-hand sides */
+static PetscErrorCode SolveDense(const LowRank *u, PetscInt first, PetscInt m, Mat X)
 {
   PetscScalar *unit;
+  Mat          B;
 
   PetscFunctionBeginUser;
-  PetscCall(DenseLike(u->R, PETSC_FALSE, m, B));
-  PetscCall(MatZeroEntries(*B));
+  PetscCall(MatDuplicate(X, MAT_DO_NOT_COPY_VALUES, &B));
+  PetscCall(MatZeroEntries(B));
   PetscCall(PetscCalloc1(u->p * m, &unit));
   for (PetscInt j = 0; j < m; j++) unit[j * u->p + first + j] = 1;
-  PetscCall(PairsSpread(u->R, 1, u->p, m, unit, *B));
+  PetscCall(PairsSpread(u->R, 1, u->p, m, unit, B));
   PetscCall(PetscFree(unit));
+  PetscCall((*u->solve)(u->ctx, B, X));
+  PetscCall(MatDestroy(&B));
+  PetscFunctionReturn(0);
+}
+
+/* The same with sparse right-hand sides, of which a solver knows that most of its forward substitution is zero */
+static PetscErrorCode SolveSparse(const LowRank *u, PetscInt first, PetscInt m, Mat X)
+{
+  IS  rows;
+  Mat part;
+
+  PetscFunctionBeginUser;
+  PetscCall(ISCreateStride(u->comm, m, first, 1, &rows));
+  PetscCall(MatCreateSubMatrix(u->R, rows, NULL, MAT_INITIAL_MATRIX, &part));
+  PetscCall((*u->solve_rows)(u->ctx, part, X));
+  PetscCall(MatDestroy(&part));
+  PetscCall(ISDestroy(&rows));
   PetscFunctionReturn(0);
 }
 
@@ -129,12 +147,11 @@ static PetscErrorCode RightColumns(const LowRank *u, PetscInt first, PetscInt m,
 static PetscErrorCode LowRankExtend(LowRank *u, PetscInt first, PetscInt m, PetscScalar c[])
 {
   const PetscInt p = u->p;
-  Mat            B, X;
+  Mat            X;
 
   PetscFunctionBeginUser;
-  PetscCall(RightColumns(u, first, m, &B));
   PetscCall(DenseLike(u->R, PETSC_FALSE, m, &X));
-  PetscCall((*u->solve)(u->ctx, B, X));
+  PetscCall(u->solve_rows ? SolveSparse(u, first, m, X) : SolveDense(u, first, m, X));
   PetscCall(PairsOf(u->L, X, p, m, c));
   for (PetscInt j = 0; j < m; j++)
     for (PetscInt i = 0; i < p; i++) u->C[i * p + first + j] = c[j * p + i] + (i == first + j ? 1 : 0);
@@ -145,7 +162,6 @@ static PetscErrorCode LowRankExtend(LowRank *u, PetscInt first, PetscInt m, Pets
     PetscCall(MatCopy(X, part, SAME_NONZERO_PATTERN));
     PetscCall(MatDenseRestoreSubMatrix(u->Y, &part));
   }
-  PetscCall(MatDestroy(&B));
   PetscCall(MatDestroy(&X));
   PetscFunctionReturn(0);
 }

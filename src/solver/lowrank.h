@@ -14,10 +14,11 @@ typedef struct LowRank {
   PetscScalar  *C;     /* [p][p] LU of I + R A^-1 L', by columns, on every rank */
   PetscBLASInt *pivot; /* [p] */
   LowRankSolve  solve;
-  void         *ctx; /* of solve */
+  LowRankSolve  solve_rows; /* the same of B' sparse in place of B; NULL: not offered */
+  void         *ctx;        /* of solve */
 } LowRank;
 
-/* Makes the update u, whose solve and ctx are set, from p solves. With `store` Y is kept. singular: A + L' R is (A is
+/* Makes the update u, whose solve, solve_rows and ctx are set, from p solves. With `store` Y is kept. singular: A + L' R is (A is
    not). Collective. */
 PETSC_INTERN PetscErrorCode LowRankSetUp(Mat L, Mat R, PetscBool store, LowRank *u, PetscBool *singular);
 /* X = (A + L' R)^-1 B for the first n_right columns, and with its transpose for the others. Collective. */

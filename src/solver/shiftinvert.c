@@ -92,8 +92,12 @@ static PetscErrorCode UpdateDestroy(ShiftInvert *si)
 /* Friction on the factors of the symmetric part */
 static PetscErrorCode UpdateCreate(const PencilMatrices *pencil, PetscBool store, ShiftInvert *si, PetscBool *singular)
 {
+  PetscBool rows;
+
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, &si->update));
+  PetscCall(ShiftInvertSolvesRows(si->ksp, &rows));
+  if (rows) si->update->solve_rows = ShiftInvertApplyRows;
   si->update->solve = ShiftInvertApplyFactors;
   si->update->ctx   = si->ksp;
   PetscCall(LowRankSetUp(pencil->left, pencil->right, store, si->update, singular));

@@ -73,6 +73,10 @@ PETSC_INTERN PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBo
 PETSC_INTERN PetscErrorCode ShiftInvertApplyBoth(void *ctx, PetscInt n_right, Mat B, Mat X);
 /* X = A^-1 B by the factors of the symmetric matrix alone; ctx is the KSP */
 PETSC_INTERN PetscErrorCode ShiftInvertApplyFactors(void *ctx, Mat B, Mat X);
+/* The same of sparse rows, A X = rows', whether it can be done: MUMPS takes sparse right-hand sides on one rank (on more
+   it wants all of them on the first) */
+PETSC_INTERN PetscErrorCode ShiftInvertSolvesRows(KSP ksp, PetscBool *solves);
+PETSC_INTERN PetscErrorCode ShiftInvertApplyRows(void *ctx, Mat rows, Mat X);
 /* Frictionless modes with frequency below *omega (rad/s) by Sylvester's law of inertia; symmetric undamped pencil. A null
    pivot is an eigenvalue at *omega itself, which has no sign: *omega is then moved by its part `away` (of either sign).
    PETSC_ERR_MAT_LU_ZRPVT where null pivots stay. */
