@@ -26,9 +26,11 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from squeal.calculix import SOLIDS, body_cards, lines_of, node_cards, run_calculix, set_cards
+from squeal.calculix import run_calculix
 from squeal.disc_pad import Mesh, calculix_cards, squeal_words
-from squeal.gmsh import HEX20, QUAD8, TET10, TRI6, read_mesh
+from squeal.export.inp import deck_cards
+from squeal.export.options import Options
+from squeal.export.scene_deck import scene_deck
 from squeal.sweep_runs import distances, eigenvalues
 from squeal.tables import read_table
 
@@ -55,11 +57,8 @@ body[] = Extrude {{0, 0, 0.01}, {0, 0, 1}, {0, 0, 0}, 1.2} {Surface{face[1]}; La
 Physical Volume("body") = {body[1]};
 Physical Surface("root") = {face[1]};
 """
-# name -> geometry, options of gmsh, types of the solid and of its faces in the file
-MESHES = {
-    "tet10": (BLOCK, "-clmin 0.011", TET10, TRI6),
-    "hex20": (RING, "-setnumber Mesh.SecondOrderIncomplete 1", HEX20, QUAD8),
-}
+# name -> geometry, options of gmsh
+MESHES = {"tet10": (BLOCK, "-clmin 0.011"), "hex20": (RING, "-setnumber Mesh.SecondOrderIncomplete 1")}
 
 
 def made(command, folder):
@@ -70,39 +69,32 @@ def made(command, folder):
     return done.stdout
 
 
-def material_cards(name):
-    young, poisson, shear = MATERIALS[name]
-    cards = ["*MATERIAL, NAME=M", "*ELASTIC" + (", TYPE=ENGINEERING CONSTANTS" if shear else "")]
-    cards += lines_of([[*young, *poisson, *shear[:2]], shear[2:]] if shear else [[*young, *poisson]])
-    cards += ["*DENSITY", str(DENSITY), "*ORIENTATION, NAME=A, SYSTEM=RECTANGULAR", *lines_of([AXES[0] + AXES[1]])]
-    return [*cards, "*SOLID SECTION, ELSET=BODY, MATERIAL=M" + (", ORIENTATION=A" if shear else "")]
+def words_of(folder, mesh, material):
+    """The scene."""
+    young, poisson, shear = (",".join(map(str, values or [])) for values in MATERIALS[material])
+    words = ["-model_mesh", folder / f"{mesh}.msh", "-parts", "body", "-body_young", young, "-body_poisson", poisson,
+             "-body_density", DENSITY, "-supports", "clamp", "-clamp_set", "root", "-clamp_fix", "xyz", "-modes_target", 1,
+             "-modes_count", COUNT]
+    if shear:
+        words += ["-body_shear", shear]
+        words += [word for k in (0, 1) for word in (f"-body_axis_{k + 1}", ",".join(map(str, AXES[k])))]
+    return words
 
 
-def read(folder, mesh):
-    """Places, m; nodes of each element; held nodes."""
-    _, _, solid, face = MESHES[mesh]
-    places, sets = read_mesh(folder / f"{mesh}.msh")
-    return places, sets["body", solid], np.unique(sets["root", face])
+def exported(folder, mesh, material):
+    """Its deck."""
+    deck, _ = scene_deck(Options.of_words(words_of(folder, mesh, material)), folder / f"{mesh}.msh")
+    return deck
 
 
 def calculix(folder, mesh, material):
     """Hz, ascending."""
-    places, cells, held = read(folder, mesh)
-    cards = [*node_cards(places), *body_cards("BODY", MESHES[mesh][2], cells), *set_cards("ROOT", held)]
-    cards += [*material_cards(material), "*BOUNDARY", "ROOT, 1, 3", "*STEP", "*FREQUENCY", str(COUNT), "*END STEP"]
-    return run_calculix(folder, cards)[0].imag[:COUNT] / (2 * np.pi)
+    return run_calculix(folder, deck_cards(exported(folder, mesh, material)))[0].imag[:COUNT] / (2 * np.pi)
 
 
 def squeal(folder, mesh, material):
     """The same."""
-    young, poisson, shear = (",".join(map(str, values or [])) for values in MATERIALS[material])
-    words = ["-model_mesh", f"{mesh}.msh", "-parts", "body", "-body_young", young, "-body_poisson", poisson,
-             "-body_density", DENSITY, "-supports", "clamp", "-clamp_set", "root", "-clamp_fix", "xyz"]
-    if shear:
-        words += ["-body_shear", shear]
-        words += [word for k in (0, 1) for word in (f"-body_axis_{k + 1}", ",".join(map(str, AXES[k])))]
-    made([sys.argv[2], "-n", 1, sys.argv[1], *words, "-modes_target", 1, "-modes_count", COUNT, "-output_dir", "out",
-          "-output_fields", 0], folder)
+    made([sys.argv[2], "-n", 1, sys.argv[1], *words_of(folder, mesh, material), "-output_dir", "out", "-output_fields", 0], folder)
     with (folder / "out/modes.csv").open(newline="") as lines:
         return np.array([float(row["freq_hz"]) for row in csv.DictReader(lines)][:COUNT])
 
@@ -128,10 +120,10 @@ def turned():
 
 def between(folder, mesh, material):
     """Frequencies of the third: with exact mass, with that of 4 points."""
-    places, cells, held = read(folder, mesh)
+    deck = exported(folder, mesh, material)
     stiffness = rotated(compliance(material), turned())
-    cells = cells[:, SOLIDS[TET10][1]]
-    return [frequencies(places, cells, held, stiffness, DENSITY, four)[:COUNT] for four in (False, True)]
+    cells, held = deck.blocks[0].nodes, deck.supports[0].nodes
+    return [frequencies(deck.x, cells, held, stiffness, DENSITY, four)[:COUNT] for four in (False, True)]
 
 
 def judge(names, one, other, rtol=RTOL):
@@ -179,7 +171,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
         folder = Path(name)
         kept = friction(folder)
-        for mesh, (geometry, options, *_) in MESHES.items():
+        for mesh, (geometry, options) in MESHES.items():
             (folder / f"{mesh}.geo").write_text(geometry)
             made(["gmsh", "-3", "-order", 2, *options.split(), "-format", "msh22", f"{mesh}.geo", "-o", f"{mesh}.msh"],
                  folder)

@@ -3,25 +3,20 @@ words of squeal and as a deck of CalculiX.
 
 Both have the same contact by penalty, of STIFFNESS, 1e5 times that of the pad, so that it is of no account that squeal
 has springs between nodes and CalculiX at the integration points of the faces. All are closed, and friction is mu times
-the normal force, along y. In CalculiX a static step makes them slip everywhere and equally: each body moves as a whole,
-the pad by DEPTH into the disc and by SLIDE along y. It starts as much before its place, so that meshes match after it.
-*FREQUENCY about this state asks again whether each point slips, by comparing two sides that are equal: rounding would
-decide, half of the points would stick and frequencies be off by 1e-3. Hence the static step has a friction coefficient
-that is larger by EXCESS. Across the direction of slip CalculiX leaves the slope of sticking, SLOPE, 1e-6 of the pad's
-stiffness. Eigenvalues then differ by less than 1e-6.
+the normal force, along y; export/sliding.py says how CalculiX comes into this state. Eigenvalues then differ by less than 1e-6.
 """
 
 from dataclasses import dataclass
 from math import cos, pi, sin
 
-import numpy
-
-from .calculix import body_cards, face_cards, node_cards, set_cards
-from .gmsh import HEX20, QUAD8, read_mesh, run_gmsh
+from .export.options import Options
+from .export.scene_deck import scene_deck
+from .export.sliding import sliding_cards
+from .gmsh import run_gmsh
 
 INNER, OUTER, THICK, HEIGHT = 0.05, 0.15, 0.012, 0.02  # m, of the disc, and height of the pad
 MATERIALS = {"disc": (210e9, 0.3, 7800), "pad": (25e9, 0.3, 2500)}  # Pa, -, kg/m^3
-STIFFNESS, SLOPE, DEPTH, SLIDE, EXCESS = 1e18, 1e6, 1e-14, 1e-2, 1e-2  # N/m^3, N/m^3, m, m, -
+STIFFNESS = 1e18  # N/m^3
 
 
 def layers(n):
@@ -83,32 +78,8 @@ def squeal_words(path, mu, band):
     return words
 
 
-def contact_cards(mu):
-    """Springs between the faces, with friction or none."""
-    friction = ["*FRICTION", f"{mu * (1 + EXCESS):.12g}, {SLOPE:g}"] if mu else []
-    return ["*SURFACE INTERACTION, NAME=RUB", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{STIFFNESS:g}", *friction,
-            "*CONTACT PAIR, INTERACTION=RUB, TYPE=SURFACE TO SURFACE", "PAD_FACE, DISC_FACE"]
-
-
-def step_cards(mu, count):
-    """The state of slip, and so many of the lowest modes about it."""
-    changed = ["*CHANGE FRICTION, INTERACTION=RUB", "*FRICTION", f"{mu:.12g}, {SLOPE:g}"] if mu else []
-    return ["*STEP", "*STATIC, DIRECT", "1., 1.", "*BOUNDARY", "DISC, 1, 3", "PAD, 1, 1", f"PAD, 2, 2, {SLIDE:g}",
-            f"PAD, 3, 3, {-DEPTH:g}", "*END STEP", "*STEP, PERTURBATION", *changed, "*BOUNDARY, OP=NEW", "HUB, 1, 3",
-            "BACK, 1, 3", "*FREQUENCY", str(count), "*END STEP"]
-
-
 def calculix_cards(path, mu, count):
-    """The deck."""
-    places, sets = read_mesh(path)
-    disc, pad = (sets[name, HEX20] for name in MATERIALS)
-    places[numpy.unique(pad), 1] -= SLIDE
-    cards = [*node_cards(places), *body_cards("DISC", HEX20, disc), *body_cards("PAD", HEX20, pad, 1 + len(disc))]
-    for name, (young, poisson, density) in MATERIALS.items():
-        cards += [f"*MATERIAL, NAME={name}", "*ELASTIC", f"{young:g}, {poisson:g}", "*DENSITY", f"{density:g}",
-                  f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"]
-    for name, nodes in (("DISC", disc), ("PAD", pad), ("HUB", sets["hub", QUAD8]), ("BACK", sets["back", QUAD8])):
-        cards += set_cards(name, nodes)
-    cards += face_cards("DISC_FACE", sets["disc_face", QUAD8], disc)
-    cards += face_cards("PAD_FACE", sets["pad_face", QUAD8], pad, 1 + len(disc))
-    return [*cards, *contact_cards(mu), *step_cards(mu, count)]
+    """The deck, for so many of the lowest modes."""
+    words = [*squeal_words(path, mu, (0, 1)), "-modes_target", 1, "-modes_count", count]
+    deck, _ = scene_deck(Options.of_words(words), path, sliding=True)
+    return sliding_cards(deck)

@@ -1,6 +1,8 @@
 """Meshes that the program gmsh makes of the scripts of options/ and others, and what stands in its files, in text."""
 
 import subprocess
+import tempfile
+from pathlib import Path
 
 import numpy
 
@@ -8,12 +10,12 @@ from .program import ROOT
 from .tables import BadInput
 
 TRI6, TET10, QUAD8, HEX20 = 9, 11, 16, 17  # numbers of types
-DIMENSION = {1: 1, 8: 1} | dict.fromkeys((2, 3, TRI6, 10, QUAD8), 2)  # of others 3
+DIMENSION = {15: 0, 1: 1, 8: 1} | dict.fromkeys((2, 3, TRI6, 10, QUAD8), 2)  # of others 3
 
 
-def run_gmsh(script, path, *options, form="msh41"):
+def run_gmsh(script, path, *options, form="msh41", dimension=3):
     """Has gmsh mesh a script into a file; what it calls an error is one."""
-    words = ["gmsh", "-3", "-format", form, script, "-o", path, *options]
+    words = ["gmsh", f"-{dimension}", "-format", form, script, "-o", path, *options]
     try:
         done = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False)
     except OSError:
@@ -27,6 +29,22 @@ def make_mesh(name, path, form="msh41", **numbers):
     """Has gmsh mesh options/NAME.geo into a file, with numbers of the script set."""
     options = [word for key, value in numbers.items() for word in ("-setnumber", key, value)]
     run_gmsh(ROOT / f"options/{name}.geo", path, *options, form=form)
+
+
+def as_text(path, folder):
+    """The file itself where it is of format 2.2 in text, else one in `folder` that gmsh makes of it."""
+    try:
+        with path.open("rb") as file:
+            head = file.read(64)
+    except OSError as error:
+        raise BadInput(f"{path}: cannot be read: {error.strerror}") from None
+    if not head.startswith(b"$MeshFormat"):
+        raise BadInput(f"{path}: is no file of Gmsh")
+    if head.split()[1:3] == [b"2.2", b"0"]:
+        return path
+    made = folder / "text.msh"
+    run_gmsh(path, made, form="msh22", dimension=0)
+    return made
 
 
 def sections(path):
@@ -53,7 +71,8 @@ def read_22(part):
     elements = []
     for row in part["Elements"][1:]:
         _, kind, n_tags, group, *rest = map(int, row)
-        elements.append((name[DIMENSION.get(kind, 3), group], kind, rest[n_tags - 1:]))
+        if (DIMENSION.get(kind, 3), group) in name:
+            elements.append((name[DIMENSION.get(kind, 3), group], kind, rest[n_tags - 1:]))
     return nodes, elements
 
 
@@ -85,3 +104,17 @@ def read_mesh(path):
     for name, kind, corners in elements:
         sets.setdefault((name, kind), []).append(corners)
     return numpy.array(list(nodes.values()), float), {key: index[numpy.array(rows)] for key, rows in sets.items()}
+
+
+def read_any(path):
+    """The same of any file of Gmsh, in text or binary, by gmsh where it is not of format 2.2 in text; a damaged one is one line."""
+    with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
+        text = as_text(path, Path(folder))
+        try:
+            part = sections(text)
+            for name in ("Nodes", "Elements"):
+                if len(part[name]) != 1 + int(part[name][0][0]) or f"$End{name}" not in text.read_text():
+                    raise BadInput(f"{path}: has not as many lines of ${name} as it says; was the file cut off?")
+            return read_mesh(text)
+        except (KeyError, ValueError, IndexError, TypeError):
+            raise BadInput(f"{path}: cannot be read; was the file damaged?") from None

@@ -106,6 +106,7 @@ class Contact:
     stiffness: float = None  # per area
     rotation: tuple = ()
     centre: tuple = ()
+    slip: tuple = ()  # direction of the slave
 
 
 @dataclass
