@@ -27,6 +27,7 @@ PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis)
   PetscCall(PencilGetTerms(pencil, &basis->reduced.n_terms, &basis->reduced.term));
   PetscCall(PetscCalloc1(basis->reduced.n_terms, &basis->reduced.A));
   PetscCall(PetscCalloc1(basis->reduced.n_terms, &basis->reduced.D));
+  PetscCall(PetscCalloc1(basis->reduced.n_terms, &basis->rows));
   PetscFunctionReturn(0);
 }
 
@@ -38,30 +39,77 @@ PetscErrorCode BasisCreateBlock(const Basis *basis, PetscInt n, BV *block)
   PetscFunctionReturn(0);
 }
 
-/* One V' |diag A| V, extended likewise */
-static PetscErrorCode DiagonalExtend(const Basis *basis, const OperatorsTerm *term, BV block, PetscInt first,
-                                     PetscInt n, PetscReal **reduced)
+/* The rows of a term, found when it is first asked for */
+static PetscErrorCode BasisGetEntryRows(Basis *basis, PetscInt t, const EntryRows **rows)
 {
-  BV  scaled;
-  Mat H;
-  Vec diagonal;
+  PetscFunctionBeginUser;
+  if (!basis->rows[t].made) PetscCall(EntryRowsCreate(basis->reduced.term[t].A, &basis->rows[t]));
+  *rows = &basis->rows[t];
+  PetscFunctionReturn(0);
+}
+
+/* One V' |diag A| V, extended likewise */
+static PetscErrorCode DiagonalExtend(Basis *basis, PetscInt t, BV block, PetscInt first, PetscInt n)
+{
+  PetscReal      **reduced = &basis->reduced.D[t];
+  const EntryRows *rows;
+  Mat              H;
+  Vec              diagonal;
 
   PetscFunctionBeginUser;
+  PetscCall(BasisGetEntryRows(basis, t, &rows));
   PetscCall(BlockGrow(first, n, reduced));
-  PetscCall(MatCreateVecs(term->A, &diagonal, NULL));
-  PetscCall(MatGetDiagonal(term->A, diagonal));
+  PetscCall(MatCreateVecs(basis->reduced.term[t].A, &diagonal, NULL));
+  PetscCall(MatGetDiagonal(basis->reduced.term[t].A, diagonal));
   PetscCall(VecAbs(diagonal));
-  PetscCall(BVDuplicateResize(block, n - first, &scaled));
-  PetscCall(BVCopy(block, scaled));
-  PetscCall(BVGetMat(scaled, &H));
-  PetscCall(MatDiagonalScale(H, diagonal, NULL));
-  PetscCall(BVRestoreMat(scaled, &H));
-  PetscCall(BlockProducts(basis->vectors, NULL, scaled, &H));
+  PetscCall(EntryRowsProducts(rows, basis->vectors, diagonal, block, &H));
   PetscCall(BlockCopy(H, PETSC_FALSE, n, *reduced + first * n));
   PetscCall(BlockCopy(H, PETSC_TRUE, n, *reduced + first));
   PetscCall(MatDestroy(&H));
-  PetscCall(BVDestroy(&scaled));
   PetscCall(VecDestroy(&diagonal));
+  PetscFunctionReturn(0);
+}
+
+/* H = X' A Y for the active columns, A with few rows */
+static PetscErrorCode TermProducts(const EntryRows *rows, BV X, Mat A, BV Y, Mat *H)
+{
+  PetscInt n;
+  BV       AY;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetActiveColumns(Y, NULL, &n));
+  PetscCall(BVDuplicateResize(Y, n, &AY));
+  PetscCall(BlockMultiplyVectors(A, Y, AY));
+  PetscCall(EntryRowsProducts(rows, X, NULL, AY, H));
+  PetscCall(BVDestroy(&AY));
+  PetscFunctionReturn(0);
+}
+
+/* One V' A V, extended by the columns of the block, the last ones of V */
+static PetscErrorCode TermExtend(Basis *basis, PetscInt t, BV block, PetscInt first, PetscInt n)
+{
+  const OperatorsTerm *term    = &basis->reduced.term[t];
+  PetscReal          **reduced = &basis->reduced.A[t];
+  const EntryRows     *rows;
+  Mat                  H;
+
+  PetscFunctionBeginUser;
+  PetscCall(BasisGetEntryRows(basis, t, &rows));
+  if (!rows->few) {
+    PetscCall(BlockExtend(basis->vectors, term->A, term->symmetric, block, first, reduced));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(BlockGrow(first, n, reduced));
+  PetscCall(TermProducts(rows, basis->vectors, term->A, block, &H));
+  PetscCall(BlockCopy(H, PETSC_FALSE, n, *reduced + first * n));
+  if (term->symmetric) {
+    PetscCall(BlockCopy(H, PETSC_TRUE, n, *reduced + first));
+  } else { /* its products with all of V cost little */
+    PetscCall(MatDestroy(&H));
+    PetscCall(TermProducts(rows, block, term->A, basis->vectors, &H));
+    PetscCall(BlockCopy(H, PETSC_FALSE, n, *reduced + first));
+  }
+  PetscCall(MatDestroy(&H));
   PetscFunctionReturn(0);
 }
 
@@ -91,10 +139,9 @@ static PetscErrorCode ReducedExtend(Basis *basis, BV block)
       PetscCall(BlockGrow(first, n, &r->A[t]));
       PetscCall(PetscArraycpy(r->A[t], r->A[same], n * n));
     } else {
-      PetscCall(BlockExtend(basis->vectors, r->term[t].A, r->term[t].symmetric, block, first, &r->A[t]));
+      PetscCall(TermExtend(basis, t, block, first, n));
     }
-    if (r->term[t].kind == OPERATORS_STIFFNESS)
-      PetscCall(DiagonalExtend(basis, &r->term[t], block, first, n, &r->D[t]));
+    if (r->term[t].kind == OPERATORS_STIFFNESS) PetscCall(DiagonalExtend(basis, t, block, first, n));
   }
   r->n = n;
   PetscFunctionReturn(0);
@@ -152,7 +199,9 @@ PetscErrorCode BasisDestroy(Basis *basis)
   for (PetscInt t = 0; t < basis->reduced.n_terms && basis->reduced.A; t++) {
     PetscCall(PetscFree(basis->reduced.A[t]));
     PetscCall(PetscFree(basis->reduced.D[t]));
+    PetscCall(EntryRowsDestroy(&basis->rows[t]));
   }
+  PetscCall(PetscFree(basis->rows));
   PetscCall(PetscFree(basis->reduced.A));
   PetscCall(PetscFree(basis->reduced.D));
   PetscCall(BVDestroy(&basis->vectors));

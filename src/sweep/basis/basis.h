@@ -3,19 +3,20 @@
 
 #include "sweep/dense/reduced.h"
 #include <squeal/modes.h>
-#include <slepcbv.h>
+#include "entryrows.h"
 
 /* [V Z], orthonormal in the mass matrix of the scene's own parameters. The leading reduced.n_used vectors are the
    model (those added become part of it when the caller raises that number), the others estimate its error. */
 #define BASIS_MAX_BLOCKS 1024
 
 typedef struct {
-  MPI_Comm comm;
-  Pencil   pencil;
-  BV       vectors;
-  Mat      M;
-  Reduced  reduced;
-  PetscInt n_blocks, block_end[BASIS_MAX_BLOCKS]; /* vectors after each BasisAdd() */
+  MPI_Comm   comm;
+  Pencil     pencil;
+  BV         vectors;
+  Mat        M;
+  Reduced    reduced;
+  EntryRows *rows;                                  /* [n_terms] of the terms' matrices; not made until asked for */
+  PetscInt   n_blocks, block_end[BASIS_MAX_BLOCKS]; /* vectors after each BasisAdd() */
 } Basis;
 
 PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis);
