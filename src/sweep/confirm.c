@@ -1,14 +1,35 @@
 /*
    Onsets: the critical values of the first parameter. Each is found on the reduced model by iteration (onset.c); then
-   the full pencil is factored at that value, the vectors of the pair are corrected with it, the basis takes the
-   corrections in, and the value is found again. It counts as confirmed when this no longer changes it.
+   the vectors of the pair are corrected by the full pencil at that value, the basis takes the corrections in, and the
+   value is found again. It counts as confirmed when this no longer changes it.
+
+   Corrections take factors of the full pencil, not those at the very value: with P from another point they are the
+   errors of the vectors times P^-1 Q, and Galerkin's method scales them. The error of an eigenvalue, of second order, then
+   falls at least by ((c - 1) / (c + 1))^2, c the condition of P^-1 Q (L. V. Kantorovich, Uspekhi Mat. Nauk 3, 1948), so
+   that (c - 1)^2 / (4 c) of the change remains. Onsets with a small c are corrected together, by one factorisation, as
+   long as their changes fall; then each is alone, with factors of its own next to the pair.
 */
 #include "sweepimpl.h"
 
-#define CONFIRMED   1e-7 /* relative change of the critical value by a further full correction */
-#define ONSET_WIDTH 1e-2 /* half width of the frequencies around the pair, relative */
-#define ONSET_DROP  1e-9
-#define ONSET_STEPS 5
+#define CONFIRMED    1e-7 /* relative change of the critical value by a further full correction */
+#define ONSET_WIDTH  1e-2 /* half width of the frequencies around the pair, relative */
+#define ONSET_DROP   1e-9
+#define ONSET_STEPS  5
+#define ONSET_SPREAD 16  /* c up to which factors serve */
+#define ONSET_BLOCK  16  /* onsets corrected together */
+#define ONSET_FALLS  0.1 /* of a change by the next one, as long as factors of another point serve */
+
+/* An onset on its way */
+typedef struct {
+  PetscInt      e;
+  BranchEvent  *event;
+  SweepPlace    place;
+  BranchLine    line;
+  ReducedModes  critical; /* those that take part */
+  ReducedWindow near;
+  PetscReal    *p, change;      /* all parameters at the critical value; what the last correction says of its error */
+  PetscBool     pending, alone; /* to be corrected; with factors of its own */
+} OnsetWork;
 
 /* Finds the value on the reduced model, and the modes there; alike on all ranks */
 static PetscErrorCode OnsetReduced(Sweep sweep, const BranchLine *line, BranchEvent *event, ReducedModes *critical)
@@ -40,79 +61,140 @@ static ReducedWindow WindowNear(Sweep sweep, const PetscReal p[], const BranchEv
   return near;
 }
 
-/* The basis takes in corrections at p: of a simple mode itself, critical, else of the modes in the window */
-static PetscErrorCode OnsetCorrect(Sweep sweep, const Correction *correction, const PetscReal p[],
-                                   const ReducedWindow *near, BranchEvent *event, ReducedModes *critical)
+/* Adds the residuals at an onset: of a simple mode itself, else of the modes next to it */
+static PetscErrorCode OnsetCollect(Sweep sweep, OnsetWork *w, CorrectionBlock *block)
 {
-  PetscInt n_added;
+  Correction *correction = &sweep->greedy.correction;
 
   PetscFunctionBeginUser;
-  if (!OnsetIsSimple(sweep, p, event)) {
-    PetscCall(ReducedModesDestroy(critical));
-    PetscCall(ReducedSolve(&sweep->basis.reduced, p, near, critical));
-    PetscCall(ReducedModesBroadcast(sweep->comm, 0, critical));
-    event->n_solved++;
+  if (!OnsetIsSimple(sweep, w->p, w->event)) {
+    PetscCall(ReducedModesDestroy(&w->critical));
+    PetscCall(ReducedSolve(&sweep->basis.reduced, w->p, &w->near, &w->critical));
+    PetscCall(ReducedModesBroadcast(sweep->comm, 0, &w->critical));
+    w->event->n_solved++;
   }
-  PetscCall(CorrectionApply(correction, critical, ONSET_DROP, &sweep->basis, &n_added));
+  PetscCall(CorrectionMove(sweep->pencil, w->p, correction));
+  PetscCall(CorrectionCollect(correction, &w->critical, CORRECT_BOTH, &sweep->basis, block));
+  w->event->n_corrected++;
+  PetscFunctionReturn(0);
+}
+
+/* Finds the value again after a correction; spread = condition of the factors there */
+static PetscErrorCode OnsetAgain(Sweep sweep, PetscReal spread, OnsetWork *w)
+{
+  const PetscReal before = w->event->critical, change = w->change, rest = PetscSqr(spread - 1) / (4 * spread);
+
+  PetscFunctionBeginUser;
+  PetscCall(OnsetReduced(sweep, &w->line, w->event, &w->critical));
+  w->change = PetscAbsReal(w->event->critical - before) * PetscMax(1, rest);
+  w->pending =
+    w->event->found && w->change > CONFIRMED * PetscAbsReal(w->event->critical) && w->event->n_corrected < ONSET_STEPS
+      ? PETSC_TRUE
+      : PETSC_FALSE;
+  if (w->change > ONSET_FALLS * change) w->alone = PETSC_TRUE;
+  BranchLineSet(&w->line, w->event->critical, w->p);
+  PetscFunctionReturn(0);
+}
+
+/* Corrects some onsets together with the factors there are, and finds them again */
+static PetscErrorCode OnsetsCorrect(Sweep sweep, PetscInt n, OnsetWork *some[])
+{
+  const Correction *correction = &sweep->greedy.correction;
+  CorrectionBlock   block      = {0};
+  PetscInt          n_added;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) PetscCall(OnsetCollect(sweep, some[i], &block));
+  PetscCall(CorrectionApply(correction, ONSET_DROP, &sweep->basis, &block, &n_added));
   sweep->basis.reduced.n_used = sweep->basis.reduced.n;
-  event->n_corrected++;
-  PetscFunctionReturn(0);
-}
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal spread = some[i]->alone ? 1 : CorrectionSpread(correction, &sweep->basis.reduced, some[i]->p);
 
-/* Alternates corrections by the full problem and the reduced iteration; change = the last one of the critical value */
-static PetscErrorCode OnsetConverge(Sweep sweep, const BranchLine *line, PetscReal p[], BranchEvent *event,
-                                    ReducedModes *critical, PetscReal *change)
-{
-  Correction   *correction = &sweep->onset_correction;
-  ReducedWindow near;
-
-  PetscFunctionBeginUser;
-  *change = PETSC_MAX_REAL;
-  BranchLineSet(line, event->critical, p);
-  near = WindowNear(sweep, p, event);
-  PetscCall(CorrectionCreate(sweep->pencil, p, &near, &sweep->progress, correction));
-  for (int step = 0; step < ONSET_STEPS && event->found && *change > CONFIRMED * PetscAbsReal(event->critical);
-       step++) {
-    const PetscReal before = event->critical;
-
-    BranchLineSet(line, before, p);
-    if (step) PetscCall(CorrectionMove(sweep->pencil, p, correction));
-    PetscCall(OnsetCorrect(sweep, correction, p, &near, event, critical));
-    PetscCall(OnsetReduced(sweep, line, event, critical));
-    *change = PetscAbsReal(event->critical - before);
+    PetscCall(OnsetAgain(sweep, spread, some[i]));
   }
   PetscFunctionReturn(0);
 }
 
-/* One onset to the end */
-static PetscErrorCode OnsetConfirm(Sweep sweep, PetscInt e)
+/* Factors for an onset: of its own, next to the pair, where it is alone; else any that are near, or new ones for all.
+   *owner = the onset alone whose factors they are, or NULL */
+static PetscErrorCode OnsetFactor(Sweep sweep, OnsetWork *w, OnsetWork **owner)
 {
-  BranchEvent *event  = &sweep->events.event[e];
-  PetscReal    change = PETSC_MAX_REAL, *p;
-  BranchLine   line   = {sweep->grid.n_moved[0], sweep->grid.n[0], sweep->grid.parameter[0], sweep->grid.value[0], NULL,
-                         &sweep->window};
-  SweepPlace   place  = sweep->grid.place[event->place];
-  ReducedModes critical = {0};
+  Correction          *correction = &sweep->greedy.correction;
+  const ReducedWindow *window     = w->alone ? &w->near : &sweep->window;
+  OnsetWork           *wanted     = w->alone ? w : NULL;
+  PetscBool            serves     = correction->has_factor && *owner == wanted ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
-  GridFill(&sweep->grid, &place, p);
-  line.base = p;
-  PetscCall(OnsetReduced(sweep, &line, event, &critical));
-  if (event->found && sweep->method == SWEEP_REDUCED)
-    PetscCall(OnsetConverge(sweep, &line, p, event, &critical, &change));
-  PetscCall(ReducedModesDestroy(&critical));
-  sweep->is_confirmed[e] =
-    event->found && change <= CONFIRMED * PetscAbsReal(event->critical) ? PETSC_TRUE : PETSC_FALSE;
-  if (change < PETSC_MAX_REAL) event->error = PetscMax(change, event->error);
-  if (sweep->is_confirmed[e] && sweep->statics) { /* the same pairs must be closed as where it was found */
+  if (serves && !w->alone)
+    serves = CorrectionSpread(correction, &sweep->basis.reduced, w->p) <= ONSET_SPREAD ? PETSC_TRUE : PETSC_FALSE;
+  if (!serves) PetscCall(CorrectionFactor(sweep->pencil, w->p, window, &sweep->progress, correction));
+  *owner = wanted;
+  PetscFunctionReturn(0);
+}
+
+/* Corrects until nothing is pending */
+static PetscErrorCode OnsetsConverge(Sweep sweep, PetscInt n, OnsetWork work[])
+{
+  const Correction *correction = &sweep->greedy.correction;
+  OnsetWork        *some[ONSET_BLOCK], *owner = NULL;
+
+  PetscFunctionBeginUser;
+  for (PetscInt first = 0; first < n;) {
+    PetscInt m = 0;
+
+    if (!work[first].pending) {
+      first++;
+      continue;
+    }
+    PetscCall(OnsetFactor(sweep, &work[first], &owner));
+    some[m++] = &work[first];
+    for (PetscInt i = first + 1; i < n && m < ONSET_BLOCK && !owner; i++)
+      if (work[i].pending && !work[i].alone &&
+          CorrectionSpread(correction, &sweep->basis.reduced, work[i].p) <= ONSET_SPREAD)
+        some[m++] = &work[i];
+    PetscCall(OnsetsCorrect(sweep, m, some));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Finds an onset on the reduced model */
+static PetscErrorCode OnsetStart(Sweep sweep, PetscInt e, OnsetWork *w)
+{
+  const SweepGrid *grid = &sweep->grid;
+
+  PetscFunctionBeginUser;
+  w->e     = e;
+  w->event = &sweep->events.event[e];
+  w->place = grid->place[w->event->place];
+  PetscCall(PetscMalloc1(grid->n_parameters, &w->p));
+  GridFill(grid, &w->place, w->p);
+  w->line   = (BranchLine){grid->n_moved[0], grid->n[0], grid->parameter[0], grid->value[0], w->p, &sweep->window};
+  w->change = PETSC_MAX_REAL;
+  PetscCall(OnsetReduced(sweep, &w->line, w->event, &w->critical));
+  w->pending = w->event->found && sweep->method == SWEEP_REDUCED ? PETSC_TRUE : PETSC_FALSE;
+  if (w->event->found) BranchLineSet(&w->line, w->event->critical, w->p);
+  if (w->event->found) w->near = WindowNear(sweep, w->p, w->event);
+  PetscFunctionReturn(0);
+}
+
+/* What became of an onset */
+static PetscErrorCode OnsetEnd(Sweep sweep, OnsetWork *w)
+{
+  BranchEvent *event     = w->event;
+  PetscBool   *confirmed = &sweep->is_confirmed[w->e];
+
+  PetscFunctionBeginUser;
+  *confirmed = event->found && w->change <= CONFIRMED * PetscAbsReal(event->critical) ? PETSC_TRUE : PETSC_FALSE;
+  if (w->change < PETSC_MAX_REAL) event->error = PetscMax(w->change, event->error);
+  if (*confirmed && sweep->statics) { /* the same pairs must be closed as where it was found */
     PetscInt status;
 
-    place.value[0] = event->critical;
-    PetscCall(SweepStatusSolve(sweep, &place, &status));
-    sweep->is_confirmed[e] = status == place.status ? PETSC_TRUE : PETSC_FALSE;
+    w->place.value[0] = event->critical;
+    PetscCall(SweepStatusSolve(sweep, &w->place, &status));
+    *confirmed = status == w->place.status ? PETSC_TRUE : PETSC_FALSE;
   }
-  PetscCall(PetscFree(p));
+  PetscCall(ReducedModesDestroy(&w->critical));
+  PetscCall(PetscFree(w->p));
   PetscFunctionReturn(0);
 }
 
@@ -147,20 +229,26 @@ static void OnsetsSort(Sweep sweep)
 
 PetscErrorCode SweepOnsets(Sweep sweep)
 {
-  Progress progress;
-  PetscInt n = 0;
+  OnsetWork *work;
+  Progress   progress;
+  PetscInt   n = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(PetscMax(1, sweep->events.n), &sweep->is_confirmed));
+  PetscCall(PetscCalloc1(PetscMax(1, sweep->events.n), &work));
   for (PetscInt e = 0; e < sweep->events.n; e++) n += sweep->events.event[e].kind != EVENT_JUMP;
   PetscCall(ProgressBegin(&progress, "onsets", n));
+  n = 0;
   for (PetscInt e = 0; e < sweep->events.n; e++) {
     if (sweep->events.event[e].kind == EVENT_JUMP) continue;
-    PetscCall(OnsetConfirm(sweep, e));
+    PetscCall(OnsetStart(sweep, e, &work[n++]));
     PetscCall(ProgressStep(&progress));
   }
   PetscCall(ProgressEnd(&progress));
-  PetscCall(ShiftInvertDestroy(&sweep->onset_correction.factor));
+  PetscCall(OnsetsConverge(sweep, n, work));
+  for (PetscInt i = 0; i < n; i++) PetscCall(OnsetEnd(sweep, &work[i]));
+  PetscCall(PetscFree(work));
+  PetscCall(CorrectionDestroy(&sweep->greedy.correction));
   OnsetsSort(sweep);
   PetscFunctionReturn(0);
 }

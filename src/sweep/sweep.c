@@ -142,6 +142,7 @@ PetscErrorCode SweepSetFromOptions(Sweep sweep)
              (int)size);
   sweep->groups.comm     = sweep->comm;
   sweep->groups.n_groups = sweep->n_groups ? sweep->n_groups : size;
+  sweep->groups.store    = &sweep->store;
   PetscFunctionReturn(0);
 }
 
@@ -221,6 +222,8 @@ static PetscErrorCode LinesSolve(Sweep sweep)
     PetscCall(SweepLinesForget(sweep));
     PetscCall(SweepLines(sweep));
   }
+  PetscCall(PointStoreDestroy(&sweep->store));
+  sweep->groups.store = NULL;
   sweep->greedy.keep  = NULL;
   sweep->greedy.worst = SweepWorst(sweep);
   PetscCheck(sweep->method != SWEEP_REDUCED || sweep->whole || sweep->greedy.worst <= sweep->rtol, sweep->comm,
@@ -301,6 +304,7 @@ PetscErrorCode SweepDestroy(Sweep *sweep)
   PetscCall(PetscFree(s->is_confirmed));
   PetscCall(ChecksumDestroy(&s->scene));
   PetscCall(BranchEventsDestroy(&s->events));
+  PetscCall(PointStoreDestroy(&s->store));
   PetscCall(GreedyDestroy(&s->greedy));
   PetscCall(BasisDestroy(&s->basis));
   PetscCall(GridDestroy(&s->grid));

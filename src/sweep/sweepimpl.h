@@ -71,6 +71,7 @@ struct _p_Sweep {
   /* results */
   SweepGrid      grid;
   PointGroups    groups;
+  PointStore     store;
   ReducedWindow  window;
   Basis          basis;
   Greedy         greedy;
@@ -83,7 +84,6 @@ struct _p_Sweep {
   BranchName    *label; /* [n_branches] */
   BranchEvents   events;
   PetscBool     *is_confirmed;     /* [onsets] on the full problem */
-  Correction     onset_correction; /* of the onset under way, whose analysis serves the next one */
   SweepCheck    *check;            /* [n_checks] */
   SweepRisk     *risk;             /* [n_risks] */
   PetscInt       n_checks, n_risks, n_combinations;

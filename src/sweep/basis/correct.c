@@ -17,18 +17,33 @@
 
 #define COUNT_AWAY 1e-7 /* relative move of the end of a band that an eigenvalue lies on */
 
-PetscErrorCode CorrectionCreate(Pencil pencil, const PetscReal p[], const ReducedWindow *window, Progress *progress,
+PetscErrorCode CorrectionFactor(Pencil pencil, const PetscReal p[], const ReducedWindow *window, Progress *progress,
                                 Correction *c)
 {
-  PencilMatrices undamped;
+  const OperatorsParameter *parameters;
+  PencilMatrices            undamped;
+  PetscInt                  n;
 
   PetscFunctionBeginUser;
+  PetscCall(PencilGetParameters(pencil, &n, &parameters, NULL));
+  if (!c->p) PetscCall(PetscMalloc1(n, &c->p));
+  PetscCall(PetscArraycpy(c->p, p, n));
   PetscCall(CorrectionMove(pencil, p, c));
   undamped           = c->matrices;
   undamped.C         = NULL;
   c->factor.progress = progress;
   c->factor.inertia  = PETSC_TRUE;
   PetscCall(ShiftInvertMove(&undamped, window->high * window->high, &c->factor));
+  c->has_factor = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CorrectionDestroy(Correction *c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ShiftInvertDestroy(&c->factor));
+  PetscCall(PetscFree(c->p));
+  c->has_factor = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
@@ -38,6 +53,22 @@ PetscErrorCode CorrectionMove(Pencil pencil, const PetscReal p[], Correction *c)
   PetscCall(PencilSetParameters(pencil, p));
   PetscCall(PencilGetMatrices(pencil, &c->matrices));
   PetscFunctionReturn(0);
+}
+
+PetscReal CorrectionSpread(const Correction *c, const Reduced *reduced, const PetscReal p[])
+{
+  PetscReal least = PETSC_MAX_REAL, largest = 0;
+
+  for (PetscInt t = 0; t < reduced->n_terms; t++) {
+    const OperatorsTerm *term = &reduced->term[t];
+    const PetscReal      now = OperatorsTermCoefficient(term, p), then = OperatorsTermCoefficient(term, c->p);
+
+    if (term->kind == OPERATORS_DAMPING || (now == 0 && then == 0)) continue;
+    if (!(now * then > 0)) return INFINITY;
+    least   = PetscMin(least, now / then);
+    largest = PetscMax(largest, now / then);
+  }
+  return largest > 0 ? largest / least : 1;
 }
 
 /* Whether mode i needs vectors of its own: of a pair of conjugates of kappa, one is enough */
@@ -77,58 +108,91 @@ static PetscErrorCode ColumnsCollect(const ReducedModes *modes, PetscBool damped
   PetscFunctionReturn(0);
 }
 
-/* Corrections of right or left vectors in the block's columns from *n on; *n grows */
-static PetscErrorCode CorrectionSide(const Correction *c, const ReducedModes *modes, PetscBool left, const Basis *basis,
-                                     BV block, PetscInt *n)
+/* Makes room for m columns behind those that there are, which become the active ones */
+static PetscErrorCode BlockAppend(const Basis *basis, PetscInt m, BV *side, PetscInt *n)
+{
+  PetscFunctionBeginUser;
+  if (*side)
+    PetscCall(BVResize(*side, *n + m, PETSC_TRUE));
+  else
+    PetscCall(BasisCreateBlock(basis, m, side));
+  PetscCall(BVSetActiveColumns(*side, *n, *n + m));
+  *n += m;
+  PetscFunctionReturn(0);
+}
+
+/* Residuals of right or left vectors */
+static PetscErrorCode CollectSide(const Correction *c, const ReducedModes *modes, PetscBool left, const Basis *basis,
+                                  CorrectionBlock *block)
 {
   Columns columns;
   BV      vectors;
-  Mat     X, R, Z;
+  Mat     X, R;
 
   PetscFunctionBeginUser;
   PetscCall(ColumnsCollect(modes, c->matrices.C ? PETSC_TRUE : PETSC_FALSE, left ? modes->y : modes->x, &columns));
   PetscCall(BasisCreateBlock(basis, columns.of.n_columns, &vectors));
   PetscCall(BasisLift(basis, modes->size, columns.of.n_columns, columns.coordinates, vectors));
-  PetscCall(BVSetActiveColumns(block, *n, *n + columns.of.n_columns));
+  PetscCall(BlockAppend(basis, columns.of.n_columns, &block->side[left], &block->n[left]));
   PetscCall(BVGetMat(vectors, &X));
-  PetscCall(MatDuplicate(X, MAT_DO_NOT_COPY_VALUES, &R));
+  PetscCall(BVGetMat(block->side[left], &R));
   PetscCall(ResidualMake(&c->matrices, left, &columns.of, X, R));
-  PetscCall(BVGetMat(block, &Z));
-  PetscCall(ShiftInvertApplyBlock(&c->factor, left, R, Z));
-  PetscCall(BVRestoreMat(block, &Z));
-  PetscCall(MatDestroy(&R));
+  PetscCall(BVRestoreMat(block->side[left], &R));
   PetscCall(BVRestoreMat(vectors, &X));
   PetscCall(BVDestroy(&vectors));
-  *n += columns.of.n_columns;
   PetscCall(ComplexColumnsDestroy(&columns.of));
   PetscCall(PetscFree(columns.coordinates));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CorrectionApply(const Correction *c, const ReducedModes *modes, PetscReal drop, Basis *basis,
-                               PetscInt *n_added)
+PetscErrorCode CorrectionCollect(const Correction *c, const ReducedModes *modes, CorrectionSides sides,
+                                 const Basis *basis, CorrectionBlock *block)
 {
   PetscFunctionBeginUser;
-  PetscCall(CorrectionApplySides(c, modes, CORRECT_BOTH, drop, basis, n_added));
+  if (!modes->n) PetscFunctionReturn(0);
+  PetscCall(EventBegin(EVENT_CORRECT));
+  if (sides != CORRECT_LEFT) PetscCall(CollectSide(c, modes, PETSC_FALSE, basis, block));
+  if (sides != CORRECT_RIGHT) PetscCall(CollectSide(c, modes, PETSC_TRUE, basis, block));
+  PetscCall(EventEnd(EVENT_CORRECT));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CorrectionApplySides(const Correction *c, const ReducedModes *modes, CorrectionSides sides,
-                                    PetscReal drop, Basis *basis, PetscInt *n_added)
+/* Z = P^-1 R or P^-T S in the columns of Z from first on; the residuals go */
+static PetscErrorCode ApplySide(const Correction *c, PetscBool left, CorrectionBlock *block, PetscInt first, BV Z)
 {
-  PetscInt n = 0;
-  BV       block;
+  const PetscInt n = block->n[left];
+  Mat            R, X;
+
+  PetscFunctionBeginUser;
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(BVSetActiveColumns(block->side[left], 0, n));
+  PetscCall(BVSetActiveColumns(Z, first, first + n));
+  PetscCall(BVGetMat(block->side[left], &R));
+  PetscCall(BVGetMat(Z, &X));
+  PetscCall(ShiftInvertApplyBlock(&c->factor, left, R, X));
+  PetscCall(BVRestoreMat(Z, &X));
+  PetscCall(BVRestoreMat(block->side[left], &R));
+  PetscCall(BVDestroy(&block->side[left]));
+  block->n[left] = 0;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CorrectionApply(const Correction *c, PetscReal drop, Basis *basis, CorrectionBlock *block,
+                               PetscInt *n_added)
+{
+  const PetscInt n_right = block->n[0], n = n_right + block->n[1];
+  BV             Z;
 
   PetscFunctionBeginUser;
   *n_added = 0;
-  if (!modes->n) PetscFunctionReturn(0);
+  if (!n) PetscFunctionReturn(0);
   PetscCall(EventBegin(EVENT_CORRECT));
-  PetscCall(BasisCreateBlock(basis, 4 * modes->n, &block));
-  if (sides != CORRECT_LEFT) PetscCall(CorrectionSide(c, modes, PETSC_FALSE, basis, block, &n));
-  if (sides != CORRECT_RIGHT) PetscCall(CorrectionSide(c, modes, PETSC_TRUE, basis, block, &n));
-  PetscCall(BVSetActiveColumns(block, 0, n));
-  if (n) PetscCall(BasisAdd(basis, block, drop, n_added));
-  PetscCall(BVDestroy(&block));
+  PetscCall(BasisCreateBlock(basis, n, &Z));
+  PetscCall(ApplySide(c, PETSC_FALSE, block, 0, Z));
+  PetscCall(ApplySide(c, PETSC_TRUE, block, n_right, Z));
+  PetscCall(BVSetActiveColumns(Z, 0, n));
+  PetscCall(BasisAdd(basis, Z, drop, n_added));
+  PetscCall(BVDestroy(&Z));
   PetscCall(EventEnd(EVENT_CORRECT));
   PetscFunctionReturn(0);
 }

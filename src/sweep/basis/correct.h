@@ -4,28 +4,39 @@
 #include "basis.h"
 #include "solver/shiftinvert.h"
 
-/* The full pencil at a point and its factorisation */
+/* The full pencil at a point and a factorisation, which may be that of another point; begins as {0} */
 typedef struct {
   PencilMatrices matrices;
   ShiftInvert    factor;
+  PetscReal     *p;          /* [n_parameters] where it was factored */
+  PetscBool      has_factor; /* and at the upper end of the window */
 } Correction;
 
 typedef enum { CORRECT_BOTH, CORRECT_RIGHT, CORRECT_LEFT } CorrectionSides;
 
-/* Sets the pencil to p and factors it at the upper end of the window; the correction is all zeros, or that of another
-   point, whose analysis serves again. The caller destroys the factor. */
-PetscErrorCode CorrectionCreate(Pencil pencil, const PetscReal p[], const ReducedWindow *window, Progress *progress,
-                                Correction *correction);
-/* Moves to other values p nearby: the pencil is made for them, the factorisation stays */
-PetscErrorCode CorrectionMove(Pencil pencil, const PetscReal p[], Correction *correction);
-/* Appends to the basis the corrections of all modes (right and left vectors) whose M-norm exceeds drop; n_added =
-   vectors gained */
-PetscErrorCode CorrectionApply(const Correction *correction, const ReducedModes *modes, PetscReal drop, Basis *basis,
-                               PetscInt *n_added);
+/* Residuals of modes at any number of points, whose corrections are then solved for together; begins as {0} */
+typedef struct {
+  BV       side[2]; /* of right and left vectors */
+  PetscInt n[2];    /* columns */
+} CorrectionBlock;
 
-/* The same of right or left vectors only */
-PetscErrorCode CorrectionApplySides(const Correction *correction, const ReducedModes *modes, CorrectionSides sides,
-                                    PetscReal drop, Basis *basis, PetscInt *n_added);
+/* Sets the pencil to p and factors it at the upper end of the window; where the correction is that of another point its
+   analysis serves again */
+PetscErrorCode CorrectionFactor(Pencil pencil, const PetscReal p[], const ReducedWindow *window, Progress *progress,
+                                Correction *correction);
+PetscErrorCode CorrectionDestroy(Correction *correction);
+/* Moves to other values p: the pencil is made for them, the factorisation stays */
+PetscErrorCode CorrectionMove(Pencil pencil, const PetscReal p[], Correction *correction);
+/* How well the factorisation serves p: the largest over the least ratio of a coefficient of the stiffness at p and where
+   it was factored, one at the same point, not finite where a term comes, goes, or changes its sign. The eigenvalues of
+   P^-1 K(p), P factored below all of them and without friction, lie between those two ratios. */
+PetscReal CorrectionSpread(const Correction *correction, const Reduced *reduced, const PetscReal p[]);
+/* Adds the residuals of modes at the point that the pencil is at */
+PetscErrorCode CorrectionCollect(const Correction *correction, const ReducedModes *modes, CorrectionSides sides,
+                                 const Basis *basis, CorrectionBlock *block);
+/* Appends to the basis the corrections whose M-norm exceeds drop, n_added = vectors gained, and empties the block */
+PetscErrorCode CorrectionApply(const Correction *correction, PetscReal drop, Basis *basis, CorrectionBlock *block,
+                               PetscInt *n_added);
 
 /* Leaves out the modes that the step before has settled: known there, with an error below the tolerance */
 PetscErrorCode CorrectionDropSettled(const ReducedModes *before, PetscReal tolerance, ReducedModes *modes);

@@ -12,183 +12,10 @@
    Corrections of one point tell little of the error at others. Before it ends, the points farthest from all others are
    therefore looked at with the factors of the last one, a block solve each, which estimates the error from then on.
 */
-#include "greedy.h"
+#include "greedywork.h"
 
-#define GUARD        0.03 /* relative width beyond the band of modes that the basis holds */
-#define SAFE         0.01 /* what is asked at a point that corrections come from, beside rtol */
-#define SETTLED      1e-3 /* beside rtol: a mode that needs no more corrections at this point */
-#define GREEDY_STEPS 8
-#define GREEDY_DROP  1e-3 /* vectors shorter than this beside the root of rtol add nothing to the model */
-#define LOOK_DROP    3e-2 /* beside that: vectors that tell an error, as the square times a ratio of stiffnesses, 1e4 */
-
-/* What the run knows */
-typedef struct {
-  Greedy          *greedy;
-  Basis           *basis;
-  ReducedWindow    guarded; /* a little wider */
-  PetscInt         n;
-  const PetscReal *points;
-  PetscReal       *estimate; /* [n] */
-  PetscReal       *scale;    /* [n_parameters] */
-  PetscReal        drop;
-  CorrectionSides  sides;
-  PetscInt         first; /* sample from which on distances are measured */
-  Correction       correction;
-  ShiftInvert      counter;             /* where the factors of the correction do not serve */
-  PetscBool        has_factor, is_near; /* is_near: the factors are those of the point */
-} GreedyWork;
-
-/* New entry of the list of full solutions */
-static PetscErrorCode SampleAdd(GreedyWork *run, const PetscReal p[], PetscBool krylov, PetscInt n_vectors,
-                                PetscReal estimate)
-{
-  Greedy        *g            = run->greedy;
-  const PetscInt n_parameters = run->basis->reduced.n_parameters;
-  GreedySample  *sample       = &g->sample[g->n_samples++];
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n_parameters, &sample->p));
-  PetscCall(PetscArraycpy(sample->p, p, n_parameters));
-  sample->krylov    = krylov;
-  sample->n_vectors = n_vectors;
-  sample->estimate  = estimate;
-  PetscFunctionReturn(0);
-}
-
-/* Solves point p by the eigensolver */
-static PetscErrorCode SampleKrylov(GreedyWork *run, const PetscReal p[], PetscReal estimate)
-{
-  const PetscReal wide[2] = {run->guarded.low / (2 * PETSC_PI), run->guarded.high / (2 * PETSC_PI)};
-  const Mode     *mode;
-  PetscReal       band[2], growth;
-  PetscInt        n, n_vectors;
-  BV              block;
-
-  PetscFunctionBeginUser;
-  PetscCall(PencilSetParameters(run->basis->pencil, p));
-  PetscCall(ModesGetBand(run->greedy->modes, band, &growth));
-  PetscCall(ModesSetBand(run->greedy->modes, wide));
-  PetscCall(ModesSolve(run->greedy->modes));
-  PetscCall(ModesSetBand(run->greedy->modes, band));
-  PetscCall(ModesGet(run->greedy->modes, &n, &mode));
-  PetscCall(BasisCreateModes(run->basis, run->greedy->modes, n, 4, &block));
-  PetscCall(BasisAdd(run->basis, block, run->drop, &n_vectors));
-  PetscCall(BVDestroy(&block));
-  run->basis->reduced.n_used = run->basis->reduced.n;
-  PetscCall(SampleAdd(run, p, PETSC_TRUE, n_vectors, estimate));
-  PetscFunctionReturn(0);
-}
-
-/* One step of corrections at p of the modes that the step before (modes, empty at first) has not settled; worst = what
-   they tell about the model before */
-static PetscErrorCode StepApply(GreedyWork *run, const PetscReal p[], ReducedModes *modes, PetscInt *n_added,
-                                PetscReal *worst)
-{
-  ReducedModes before = *modes;
-
-  PetscFunctionBeginUser;
-  PetscCall(ReducedSolve(&run->basis->reduced, p, &run->guarded, modes));
-  PetscCall(ReducedModesBroadcast(run->basis->comm, 0, modes)); /* control flow must be alike on all ranks */
-  PetscCall(CorrectionDropSettled(&before, SETTLED * run->greedy->rtol, modes));
-  PetscCall(ReducedModesDestroy(&before));
-  PetscCall(CorrectionApplySides(&run->correction, modes, run->sides, run->drop, run->basis, n_added));
-  PetscCall(ReducedEstimate(&run->basis->reduced, p, modes));
-  PetscCall(ReducedModesBroadcast(run->basis->comm, 0, modes));
-  *worst = ReducedModesWorst(modes, &run->greedy->window, PETSC_FALSE);
-  PetscFunctionReturn(0);
-}
-
-/* Whether the basis has as many frictionless modes at p as the full problem */
-static PetscErrorCode SampleCount(GreedyWork *run, const PetscReal p[], PetscBool *complete)
-{
-  PetscInt full, by_basis;
-  /* LDL' factors at the upper end are those of the count there; an LU would have to be made again after it */
-  const PetscBool shared =
-    run->is_near && run->correction.factor.even && run->greedy->window.low < 0.5 * run->greedy->window.high
-      ? PETSC_TRUE
-      : PETSC_FALSE;
-  ShiftInvert *counter = shared ? &run->correction.factor : &run->counter;
-
-  PetscFunctionBeginUser;
-  PetscCall(CorrectionCount(run->basis, p, &run->greedy->window, counter, &full, &by_basis));
-  PetscCallMPI(MPI_Bcast(&by_basis, 1, MPIU_INT, 0, run->basis->comm));
-  *complete = full == by_basis ? PETSC_TRUE : PETSC_FALSE;
-  PetscFunctionReturn(0);
-}
-
-/* The factors at p in place of those before */
-static PetscErrorCode FactorMake(GreedyWork *run, const PetscReal p[])
-{
-  PetscFunctionBeginUser;
-  PetscCall(CorrectionCreate(run->basis->pencil, p, &run->greedy->window, run->greedy->progress, &run->correction));
-  run->has_factor = run->is_near = PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
-/* The pencil at p with the factors of the last point that has any; a run that goes on makes these anew */
-static PetscErrorCode FactorKeep(GreedyWork *run, const PetscReal p[])
-{
-  PetscInt last = run->greedy->n_samples - 1;
-
-  PetscFunctionBeginUser;
-  while (last > 0 && !run->greedy->sample[last].factored) last--;
-  if (!run->has_factor) PetscCall(FactorMake(run, run->greedy->sample[last].p));
-  PetscCall(CorrectionMove(run->basis->pencil, p, &run->correction));
-  run->is_near = PETSC_FALSE;
-  PetscFunctionReturn(0);
-}
-
-/* How often p has been looked at, or, factored, corrected with factors of its own */
-static PetscInt PointTimes(const GreedyWork *run, const PetscReal p[], PetscBool factored)
-{
-  PetscInt times = 0;
-
-  for (PetscInt j = 0; j < run->greedy->n_samples; j++) {
-    const GreedySample *sample = &run->greedy->sample[j];
-    PetscBool           same   = sample->factored || !factored ? PETSC_TRUE : PETSC_FALSE;
-
-    for (PetscInt k = 0; k < run->basis->reduced.n_parameters && same; k++)
-      same = sample->p[k] == p[k] ? PETSC_TRUE : PETSC_FALSE;
-    times += same ? 1 : 0;
-  }
-  return times;
-}
-
-/* Looks at point p: first = the estimate there before; where it exceeds rtol, the basis takes the point in */
-static PetscErrorCode SampleCorrect(GreedyWork *run, const PetscReal p[], PetscReal *first)
-{
-  const PetscReal drop  = run->drop;
-  ReducedModes    modes = {0};
-  PetscReal       worst;
-  PetscInt        n_added, n_vectors = 0;
-  PetscBool       complete = PETSC_TRUE;
-
-  PetscFunctionBeginUser;
-  if (PointTimes(run, p, PETSC_TRUE)) run->drop *= LOOK_DROP; /* what was left out is what errs */
-  if (run->greedy->n_samples > 1 && !PointTimes(run, p, PETSC_FALSE))
-    PetscCall(FactorKeep(run, p));
-  else
-    PetscCall(FactorMake(run, p));
-  PetscCall(StepApply(run, p, &modes, &n_added, first));
-  worst = *first;
-  if (worst > SAFE * run->greedy->rtol && !run->is_near) PetscCall(FactorMake(run, p));
-  for (int step = 1; step < GREEDY_STEPS && worst > SAFE * run->greedy->rtol; step++) {
-    n_vectors += n_added;
-    run->basis->reduced.n_used = run->basis->reduced.n;
-    PetscCall(StepApply(run, p, &modes, &n_added, &worst));
-  }
-  PetscCall(ReducedModesDestroy(&modes));
-  run->drop = drop;
-  PetscCall(SampleCount(run, p, &complete));
-  run->greedy->n_passed = *first <= SAFE * run->greedy->rtol && complete ? run->greedy->n_passed + 1 : 0;
-  PetscCall(SampleAdd(run, p, PETSC_FALSE, n_vectors, *first));
-  run->greedy->sample[run->greedy->n_samples - 1].factored = run->is_near;
-  if (!complete && run->greedy->n_samples < run->greedy->max_samples) {
-    *first = PETSC_MAX_REAL;
-    PetscCall(SampleKrylov(run, p, *first));
-  }
-  PetscFunctionReturn(0);
-}
+#define GUARD       0.03 /* relative width beyond the band of modes that the basis holds */
+#define GREEDY_DROP 1e-3 /* vectors shorter than this beside the root of rtol add nothing to the model */
 
 /* Distance of point i from the nearest full solution, in parts of the extent */
 static PetscReal PointDistance(const GreedyWork *run, PetscInt i)
@@ -283,7 +110,6 @@ static PetscErrorCode PointsLook(GreedyWork *run)
 static PetscErrorCode GreedyWorkDestroy(GreedyWork *run)
 {
   PetscFunctionBeginUser;
-  PetscCall(ShiftInvertDestroy(&run->correction.factor));
   PetscCall(ShiftInvertDestroy(&run->counter));
   PetscCall(PetscFree2(run->estimate, run->scale));
   PetscFunctionReturn(0);
@@ -292,7 +118,12 @@ static PetscErrorCode GreedyWorkDestroy(GreedyWork *run)
 PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], Basis *basis)
 {
   const PetscReal low = greedy->window.low, high = greedy->window.high;
-  GreedyWork      run = {.greedy = greedy, .basis = basis, .n = n, .points = points, .guarded = greedy->window};
+  GreedyWork      run          = {.greedy     = greedy,
+                                  .basis      = basis,
+                                  .n          = n,
+                                  .points     = points,
+                                  .guarded    = greedy->window,
+                                  .correction = &greedy->correction};
   PetscInt        n_parameters = basis->reduced.n_parameters, next = 0;
 
   PetscFunctionBeginUser;
@@ -330,5 +161,6 @@ PetscErrorCode GreedyDestroy(Greedy *greedy)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < greedy->n_samples; i++) PetscCall(PetscFree(greedy->sample[i].p));
   PetscCall(PetscFree(greedy->sample));
+  PetscCall(CorrectionDestroy(&greedy->correction));
   PetscFunctionReturn(0);
 }

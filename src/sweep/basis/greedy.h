@@ -23,11 +23,12 @@ typedef struct {
   PetscReal          rtol;
   PetscInt           max_samples;
   PetscInt           n_samples;
-  GreedySample      *sample;   /* [max_samples] */
-  PetscReal          worst;    /* largest estimated relative error at all points when it ended */
-  PetscReal          last;     /* estimate at the last point before it was taken in */
-  PetscInt           n_passed; /* points in a row that needed nothing */
-  PetscBool          looked;   /* at other points since the last full solution */
+  GreedySample      *sample;     /* [max_samples] */
+  PetscReal          worst;      /* largest estimated relative error at all points when it ended */
+  PetscReal          last;       /* estimate at the last point before it was taken in */
+  PetscInt           n_passed;   /* points in a row that needed nothing */
+  PetscBool          looked;     /* at other points since the last full solution */
+  Correction         correction; /* the last factors, kept for what comes after */
   Progress          *progress;
   PetscErrorCode (*keep)(void *ctx); /* called after every full solution; may be NULL */
   void *keep_ctx;

@@ -1,13 +1,9 @@
 /*
-   Many points on the reduced model. The errors handed on are POINTS_MARGIN times those of estimate.c: these are sharp
-   at the points that the corrections come from, and see less in between (scripts/study/sweep compares them with the
-   truth). Each point is a dense problem of its own, so ranks share the points, not a point; the results are then sent
+   Many points on the reduced model. Each point is a dense problem of its own, so ranks share the points, not a point; the results are then sent
    to all ranks, bit by bit the same.
 */
 #include "points.h"
 #include "base/progress.h"
-
-#define POINTS_MARGIN 30 /* between the estimate where corrections come from and elsewhere */
 
 /* The rank that solves point i */
 static PetscMPIInt PointGroupsOwner(const PointGroups *groups, PetscInt i)
@@ -26,18 +22,6 @@ PetscReal ReducedModesWorst(const ReducedModes *modes, const ReducedWindow *wind
     if (!modes->rigid[i] && cimag(modes->lambda[i]) >= window->low && cimag(modes->lambda[i]) <= window->high)
       worst = PetscMax(worst, (modes->error[i] - (rounding ? 0 : modes->noise[i])) / cabs(modes->lambda[i]));
   return worst;
-}
-
-/* Solution with errors at one point */
-static PetscErrorCode SolveWithErrors(const Reduced *reduced, const ReducedWindow *window, const PetscReal p[],
-                                      ReducedModes *modes)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ReducedSolve(reduced, p, window, modes));
-  PetscCall(ReducedEstimate(reduced, p, modes));
-  for (PetscInt i = 0; i < modes->n; i++)
-    modes->error[i] = POINTS_MARGIN * (modes->error[i] - modes->noise[i]) + modes->noise[i];
-  PetscFunctionReturn(0);
 }
 
 PetscErrorCode ReducedModesBroadcast(MPI_Comm comm, PetscMPIInt owner, ReducedModes *modes)
@@ -76,7 +60,7 @@ PetscErrorCode PointsSolve(const PointGroups *groups, const Reduced *reduced, co
   PetscCall(ProgressBegin(&progress, "points", n));
   for (PetscInt i = 0; i < n; i++) {
     if (PointGroupsOwner(groups, i) == rank)
-      PetscCall(SolveWithErrors(reduced, window, &points[i * reduced->n_parameters], &modes[i]));
+      PetscCall(PointStoreSolve(groups->store, reduced, window, &points[i * reduced->n_parameters], &modes[i]));
     PetscCall(ProgressStep(&progress));
   }
   PetscCall(ProgressEnd(&progress));
@@ -100,7 +84,7 @@ PetscErrorCode PointsEstimate(const PointGroups *groups, const Reduced *reduced,
     worst[i] = 0;
     PetscCall(ProgressStep(&progress));
     if (PointGroupsOwner(groups, i) != rank) continue;
-    PetscCall(SolveWithErrors(reduced, window, &points[i * reduced->n_parameters], &modes));
+    PetscCall(PointStoreSolve(groups->store, reduced, window, &points[i * reduced->n_parameters], &modes));
     worst[i] = ReducedModesWorst(&modes, window, PETSC_FALSE);
     PetscCall(ReducedModesDestroy(&modes));
   }

@@ -3,17 +3,33 @@
 
 #include "sweep/dense/reduced.h"
 
-#define RATIO_FROM 5 /* a range whose ends differ by this factor is measured in ratios */
+#define POINTS_MARGIN 30 /* between the estimate where corrections come from and elsewhere */
+#define RATIO_FROM    5  /* a range whose ends differ by this factor is measured in ratios */
+
+/* Solutions that stay right as long as the model does, each on the rank that made it; begins as {0} */
+typedef struct {
+  PetscInt      n, n_used; /* points; vectors of the model */
+  PetscInt     *estimated; /* [n] size of the basis that the errors are from */
+  PetscReal    *p;         /* [n][n_parameters] */
+  ReducedModes *modes;     /* [n] */
+  ReducedWindow window;
+} PointStore;
 
 /* Groups of ranks, each of which takes its share of the points */
 typedef struct {
-  MPI_Comm comm;
-  PetscInt n_groups;
+  MPI_Comm    comm;
+  PetscInt    n_groups;
+  PointStore *store; /* NULL: nothing is kept */
 } PointGroups;
 
 /* Modes with estimated errors at n points [n][n_parameters], alike on all ranks. Collective. */
 PetscErrorCode PointsSolve(const PointGroups *groups, const Reduced *reduced, const ReducedWindow *window, PetscInt n,
                            const PetscReal points[], ReducedModes modes[]);
+/* store.c - one point with estimated errors, taken from the store (may be NULL) where it has it, which keeps it. Not
+   collective. */
+PetscErrorCode PointStoreSolve(PointStore *store, const Reduced *reduced, const ReducedWindow *window,
+                               const PetscReal p[], ReducedModes *modes);
+PetscErrorCode PointStoreDestroy(PointStore *store);
 /* Gives all ranks the modes of one of them, freeing what they had. Collective. */
 PetscErrorCode ReducedModesBroadcast(MPI_Comm comm, PetscMPIInt owner, ReducedModes *modes);
 /* Largest estimated relative error of the modes in the window, with or without rounding; rigid ones do not count */

@@ -57,3 +57,6 @@ void ModeFrameOverlap(const ModeFrame *frame, const PetscComplex w[], const Pets
    frame->refine */
 PetscErrorCode ModePlaneRefine(const ModeFrame *frame, PetscInt k, const PetscInt member[], PetscReal X[],
                                PetscReal Y[]);
+/* The same of modes that are guessed; settled = whether the iteration ended at a plane */
+PetscErrorCode ModePlaneFollow(const ModeFrame *frame, PetscInt k, const PetscInt member[], PetscReal X[],
+                               PetscReal Y[], PetscBool *settled);

@@ -15,8 +15,8 @@
    The zero is bracketed by the points of the event and found by Brent's method (R. P. Brent, Algorithms for
    Minimization without Derivatives, Prentice-Hall 1973, chapter 4). At each trial value the mode, or the plane, is the
    one with the largest product with those of the nearer end of the bracket. The mode of a damped system is followed by
-   Newton's method (dense/follow.c); all modes are solved for only where what that finds is not the same one for
-   certain.
+   Newton's method (dense/follow.c), the plane by inverse iteration; all modes are solved for only where what that finds
+   is not the same one for certain.
 
    Error of the critical value: |delta g| / |g'|, where sigma carries three times the estimated error of the eigenvalue
    and what rounding does to it, kappa that times 2 |lambda| + error, with damping times kappa / lambda at the unstable
@@ -65,6 +65,21 @@ static PetscErrorCode OnsetFollow(Onset *onset, PetscReal value, const Trial *re
   PetscFunctionReturn(0);
 }
 
+/* Follows the plane of a pair between both ends of the bracket */
+static PetscErrorCode OnsetFollowPair(Onset *onset, PetscReal value, const Trial *reference, Trial *trial,
+                                      PetscBool *found)
+{
+  const Trial    *a = &onset->end[0], *b = &onset->end[1];
+  const PetscBool between = b->frame && a->frame->value != b->frame->value ? PETSC_TRUE : PETSC_FALSE;
+  PetscReal       m;
+
+  PetscFunctionBeginUser;
+  if (onset->kind != ONSET_PAIR || !between || onset->source.estimate) PetscFunctionReturn(0);
+  m = a->m + (value - a->frame->value) / (b->frame->value - a->frame->value) * (b->m - a->m);
+  PetscCall(TrialFollowPlane(&onset->source, value, m, reference, trial, found));
+  PetscFunctionReturn(0);
+}
+
 /* The trial at a value, by the nearer end of the bracket */
 static PetscErrorCode OnsetTry(Onset *onset, PetscReal value, Trial *trial, PetscBool *found)
 {
@@ -74,6 +89,7 @@ static PetscErrorCode OnsetTry(Onset *onset, PetscReal value, Trial *trial, Pets
 
   PetscFunctionBeginUser;
   PetscCall(OnsetFollow(onset, value, reference, trial, found));
+  if (!*found) PetscCall(OnsetFollowPair(onset, value, reference, trial, found));
   if (!*found) {
     PetscCall(ModeSourceSolve(&onset->source, value, &trial->frame));
     PetscCall(TrialIdentify(reference, trial, found));

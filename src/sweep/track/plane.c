@@ -13,6 +13,8 @@
 #include "frame.h"
 #include <petscblaslapack.h>
 
+#define PLANE_SETTLED 1e-9 /* change by a step after which the plane is an invariant one */
+
 /* The k leading orthonormal columns of Re and Im of the given k vectors; columns that are missing are filled with
    numbers that have no structure, for the iteration to turn into the plane */
 static PetscErrorCode PlaneReal(PetscInt N, PetscInt k, const PetscInt member[], const PetscComplex vectors[],
@@ -79,7 +81,8 @@ static PetscErrorCode PlaneStep(const PlaneWork *w, PetscBool transposed, PetscR
 
 /* Undamped: real orthonormal bases of the right and left invariant planes of K x = kappa M x about the shift, from
    starting bases X, Y [k][size], by inverse iteration of the plane, which a defective pair does not disturb */
-static PetscErrorCode PlaneIterate(const ModeFrame *f, PetscReal shift, PetscInt k, PetscReal X[], PetscReal Y[])
+static PetscErrorCode PlaneIterate(const ModeFrame *f, PetscReal shift, PetscInt k, PetscReal X[], PetscReal Y[],
+                                   PetscBool *settled)
 {
   const PetscInt size     = f->form.n;
   PlaneWork      w        = {.frame = f, .k = k};
@@ -97,6 +100,7 @@ static PetscErrorCode PlaneIterate(const ModeFrame *f, PetscReal shift, PetscInt
     PetscCall(PlaneStep(&w, PETSC_TRUE, Y, &change_y));
     if (step > 3 && before < 1e-12 && PetscMax(change_x, change_y) > 0.3 * before) break;
   }
+  *settled = !singular && PetscMax(change_x, change_y) < PLANE_SETTLED ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(PetscFree5(w.LU, w.old, w.work, w.R, w.pivot));
   PetscFunctionReturn(0);
 }
@@ -124,13 +128,24 @@ static PetscBool PlaneShift(const ModeFrame *f, PetscInt k, const PetscInt membe
   return spread + offset < 0.3 * distance ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscErrorCode ModePlaneRefine(const ModeFrame *f, PetscInt k, const PetscInt member[], PetscReal X[], PetscReal Y[])
+PetscErrorCode ModePlaneFollow(const ModeFrame *f, PetscInt k, const PetscInt member[], PetscReal X[], PetscReal Y[],
+                               PetscBool *settled)
 {
   PetscReal shift;
 
   PetscFunctionBeginUser;
+  *settled = PETSC_FALSE;
   PetscCall(PlaneReal(f->form.n, k, member, f->modes.x, X));
   PetscCall(PlaneReal(f->form.n, k, member, f->modes.y, Y));
-  if (f->refine && PlaneShift(f, k, member, &shift)) PetscCall(PlaneIterate(f, shift, k, X, Y));
+  if (f->refine && PlaneShift(f, k, member, &shift)) PetscCall(PlaneIterate(f, shift, k, X, Y, settled));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModePlaneRefine(const ModeFrame *f, PetscInt k, const PetscInt member[], PetscReal X[], PetscReal Y[])
+{
+  PetscBool settled;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModePlaneFollow(f, k, member, X, Y, &settled));
   PetscFunctionReturn(0);
 }

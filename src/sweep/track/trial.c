@@ -39,7 +39,7 @@ static PetscErrorCode PlaneDiscriminant(Trial *trial)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc6(k * n, &X, k * n, &Y, k * n, &Z, k * k, &G, k * k, &S, k, &pivot));
-  PetscCall(ModePlaneRefine(f, k, trial->member, X, Y));
+  PetscCall(ModePlaneFollow(f, k, trial->member, X, Y, &trial->settled));
   PetscCall(PlaneProduct(trial, f->pencil.M, X, Y, Z, G));
   PetscCall(PlaneProduct(trial, f->pencil.K, X, Y, Z, S));
   PetscCall(DenseFactor(k, G, pivot, NULL));
@@ -122,6 +122,52 @@ PetscBool TrialIsSame(const Trial *reference, const Trial *trial)
   if (cimag(b->modes.lambda[0]) <= 0) return PETSC_FALSE;
   ModeFrameOverlap(b, a->W + i * a->N, a->X + i * a->N, &sum);
   return cabs(sum - 1) < FOLLOW_SAME ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* k modes of one eigenvalue, sqrt(m) i, in the plane of the reference */
+static PetscErrorCode PlaneGuess(const Trial *reference, PetscReal m, ReducedModes *guess)
+{
+  const ModeFrame *a = reference->frame;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedModesCreate(reference->k, a->N, guess));
+  for (PetscInt r = 0; r < reference->k; r++) {
+    guess->lambda[r] = CMPLX(0, PetscSqrtReal(m));
+    PetscCall(PetscArraycpy(guess->x + r * a->N, a->X + reference->member[r] * a->N, a->N));
+    PetscCall(PetscArraycpy(guess->y + r * a->N, a->Y + reference->member[r] * a->N, a->N));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TrialFollowPlane(ModeSource *source, PetscReal value, PetscReal m, const Trial *reference, Trial *trial,
+                                PetscBool *found)
+{
+  const ModeFrame *a = reference->frame;
+  ReducedModes     guess;
+  PetscComplex    *sum;
+  ModeFrame       *b;
+
+  PetscFunctionBeginUser;
+  *found = PETSC_FALSE;
+  if (m <= 0) PetscFunctionReturn(0);
+  source->n_followed++;
+  PetscCall(PlaneGuess(reference, m, &guess));
+  PetscCall(ModeSourceTake(source, value, &guess, &trial->frame));
+  PetscCall(ReducedModesDestroy(&guess));
+  b        = trial->frame;
+  trial->k = reference->k;
+  PetscCall(PetscMalloc1(trial->k, &trial->member));
+  for (PetscInt r = 0; r < trial->k; r++) trial->member[r] = r;
+  PetscCall(PetscArraycpy(b->modes.x, b->X, trial->k * b->N));
+  PetscCall(PetscArraycpy(b->modes.y, b->Y, trial->k * b->N));
+  PetscCall(PlaneDiscriminant(trial));
+  PetscCall(PetscCalloc1(trial->k, &sum));
+  for (PetscInt r = 0; r < trial->k; r++)
+    ModeFrameOverlap(b, a->W + reference->member[r] * a->N, a->X + reference->member[r] * a->N, sum);
+  *found = trial->settled && cabs(sum[0] / trial->k - 1) < FOLLOW_SAME ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(PetscFree(sum));
+  if (!*found) PetscCall(TrialDestroy(trial));
+  PetscFunctionReturn(0);
 }
 
 /* Makes member 0 of a frame of one mode the trial's, or lets the frame go */

@@ -1,0 +1,40 @@
+/* Private to sweep/: a run of the greedy choice, shared by greedy.c and sample.c */
+#pragma once
+
+#include "greedy.h"
+
+#define LOOK_DROP                                                                                                      \
+  3e-2 /* beside GREEDY_DROP: vectors that tell an error, as the square times a ratio of stiffnesses, 1e4 */
+
+/* What the run knows */
+typedef struct {
+  Greedy          *greedy;
+  Basis           *basis;
+  ReducedWindow    guarded; /* a little wider */
+  PetscInt         n;
+  const PetscReal *points;
+  PetscReal       *estimate; /* [n] */
+  PetscReal       *scale;    /* [n_parameters] */
+  PetscReal        drop;
+  CorrectionSides  sides;
+  PetscInt         first;      /* sample from which on distances are measured */
+  Correction      *correction; /* the greedy's */
+  ShiftInvert      counter;    /* where the factors of the correction do not serve */
+  PetscBool        is_near;    /* the factors are those of the point */
+} GreedyWork;
+
+/* sample.c - appends to the list of full solutions */
+PetscErrorCode SampleAdd(GreedyWork *run, const PetscReal p[], PetscBool krylov, PetscInt n_vectors,
+                         PetscReal estimate);
+/* Solves point p by the eigensolver */
+PetscErrorCode SampleKrylov(GreedyWork *run, const PetscReal p[], PetscReal estimate);
+/* Looks at point p: first = the estimate there before; where it exceeds rtol, the basis takes the point in */
+PetscErrorCode SampleCorrect(GreedyWork *run, const PetscReal p[], PetscReal *first);
+/* One step of corrections at p of the modes that the step before (modes, empty at first) has not settled; worst = what
+   they tell about the model before */
+PetscErrorCode StepApply(GreedyWork *run, const PetscReal p[], ReducedModes *modes, PetscInt *n_added,
+                         PetscReal *worst);
+/* The pencil at p with the factors of the last point that has any */
+PetscErrorCode FactorKeep(GreedyWork *run, const PetscReal p[]);
+/* How often p has been looked at, or, factored, corrected with factors of its own */
+PetscInt PointTimes(const GreedyWork *run, const PetscReal p[], PetscBool factored);

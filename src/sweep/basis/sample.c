@@ -1,0 +1,172 @@
+/*
+   One full solution of the greedy choice (greedy.c): by the eigensolver, or by corrections, with factors and counts.
+*/
+#include "greedywork.h"
+
+#define SAFE         (1. / POINTS_MARGIN) /* what is asked at a point that corrections come from, beside rtol */
+#define SETTLED      (0.3 * SAFE)         /* beside rtol: a mode that needs no more corrections at this point */
+#define GREEDY_STEPS 8
+
+PetscErrorCode SampleAdd(GreedyWork *run, const PetscReal p[], PetscBool krylov, PetscInt n_vectors, PetscReal estimate)
+{
+  Greedy        *g            = run->greedy;
+  const PetscInt n_parameters = run->basis->reduced.n_parameters;
+  GreedySample  *sample       = &g->sample[g->n_samples++];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n_parameters, &sample->p));
+  PetscCall(PetscArraycpy(sample->p, p, n_parameters));
+  sample->krylov    = krylov;
+  sample->n_vectors = n_vectors;
+  sample->estimate  = estimate;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SampleKrylov(GreedyWork *run, const PetscReal p[], PetscReal estimate)
+{
+  const PetscReal wide[2] = {run->guarded.low / (2 * PETSC_PI), run->guarded.high / (2 * PETSC_PI)};
+  const Mode     *mode;
+  PetscReal       band[2], growth;
+  PetscInt        n, n_vectors;
+  BV              block;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilSetParameters(run->basis->pencil, p));
+  PetscCall(ModesGetBand(run->greedy->modes, band, &growth));
+  PetscCall(ModesSetBand(run->greedy->modes, wide));
+  PetscCall(ModesSolve(run->greedy->modes));
+  PetscCall(ModesSetBand(run->greedy->modes, band));
+  PetscCall(ModesGet(run->greedy->modes, &n, &mode));
+  PetscCall(BasisCreateModes(run->basis, run->greedy->modes, n, 4, &block));
+  PetscCall(BasisAdd(run->basis, block, run->drop, &n_vectors));
+  PetscCall(BVDestroy(&block));
+  run->basis->reduced.n_used = run->basis->reduced.n;
+  PetscCall(SampleAdd(run, p, PETSC_TRUE, n_vectors, estimate));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StepApply(GreedyWork *run, const PetscReal p[], ReducedModes *modes, PetscInt *n_added, PetscReal *worst)
+{
+  ReducedModes    before = *modes;
+  CorrectionBlock block  = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedSolve(&run->basis->reduced, p, &run->guarded, modes));
+  PetscCall(ReducedModesBroadcast(run->basis->comm, 0, modes)); /* control flow must be alike on all ranks */
+  PetscCall(CorrectionDropSettled(&before, SETTLED * run->greedy->rtol, modes));
+  PetscCall(ReducedModesDestroy(&before));
+  PetscCall(CorrectionCollect(run->correction, modes, run->sides, run->basis, &block));
+  PetscCall(CorrectionApply(run->correction, run->drop, run->basis, &block, n_added));
+  PetscCall(ReducedEstimate(&run->basis->reduced, p, modes));
+  PetscCall(ReducedModesBroadcast(run->basis->comm, 0, modes));
+  *worst = ReducedModesWorst(modes, &run->greedy->window, PETSC_FALSE);
+  PetscFunctionReturn(0);
+}
+
+/* Whether the basis has as many frictionless modes at p as the full problem */
+static PetscErrorCode SampleCount(GreedyWork *run, const PetscReal p[], PetscBool *complete)
+{
+  PetscInt full, by_basis;
+  /* LDL' factors at the upper end are those of the count there; an LU would have to be made again after it */
+  const PetscBool shared =
+    run->is_near && run->correction->factor.even && run->greedy->window.low < 0.5 * run->greedy->window.high
+      ? PETSC_TRUE
+      : PETSC_FALSE;
+  ShiftInvert *counter = shared ? &run->correction->factor : &run->counter;
+
+  PetscFunctionBeginUser;
+  PetscCall(CorrectionCount(run->basis, p, &run->greedy->window, counter, &full, &by_basis));
+  PetscCallMPI(MPI_Bcast(&by_basis, 1, MPIU_INT, 0, run->basis->comm));
+  *complete = full == by_basis ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* The factors at p in place of those before */
+static PetscErrorCode FactorMake(GreedyWork *run, const PetscReal p[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(CorrectionFactor(run->basis->pencil, p, &run->greedy->window, run->greedy->progress, run->correction));
+  run->is_near = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscInt PointTimes(const GreedyWork *run, const PetscReal p[], PetscBool factored)
+{
+  PetscInt times = 0;
+
+  for (PetscInt j = 0; j < run->greedy->n_samples; j++) {
+    const GreedySample *sample = &run->greedy->sample[j];
+    PetscBool           same   = sample->factored || !factored ? PETSC_TRUE : PETSC_FALSE;
+
+    for (PetscInt k = 0; k < run->basis->reduced.n_parameters && same; k++)
+      same = sample->p[k] == p[k] ? PETSC_TRUE : PETSC_FALSE;
+    times += same ? 1 : 0;
+  }
+  return times;
+}
+
+/* Makes the factors of the last point that has any where there are none, as in a run that goes on */
+static PetscErrorCode FactorRenew(GreedyWork *run)
+{
+  PetscInt last = run->greedy->n_samples - 1;
+
+  PetscFunctionBeginUser;
+  if (run->correction->has_factor) PetscFunctionReturn(0);
+  while (last > 0 && !run->greedy->sample[last].factored) last--;
+  PetscCall(FactorMake(run, run->greedy->sample[last].p));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FactorKeep(GreedyWork *run, const PetscReal p[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(FactorRenew(run));
+  PetscCall(CorrectionMove(run->basis->pencil, p, run->correction));
+  run->is_near = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Factors for the first look at point p. LDL' factors of its own serve the count too; LU factors do not, and those of
+   the point before may do */
+static PetscErrorCode FactorFirst(GreedyWork *run, const PetscReal p[])
+{
+  PetscFunctionBeginUser;
+  if (run->greedy->n_samples > 1) PetscCall(FactorRenew(run));
+  if (run->greedy->n_samples > 1 && !run->correction->factor.even && !PointTimes(run, p, PETSC_FALSE))
+    PetscCall(FactorKeep(run, p));
+  else
+    PetscCall(FactorMake(run, p));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SampleCorrect(GreedyWork *run, const PetscReal p[], PetscReal *first)
+{
+  const PetscReal drop  = run->drop;
+  ReducedModes    modes = {0};
+  PetscReal       worst;
+  PetscInt        n_added, n_vectors = 0;
+  PetscBool       complete = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  if (PointTimes(run, p, PETSC_TRUE)) run->drop *= LOOK_DROP; /* what was left out is what errs */
+  PetscCall(FactorFirst(run, p));
+  PetscCall(StepApply(run, p, &modes, &n_added, first));
+  worst = *first;
+  if (worst > SAFE * run->greedy->rtol && !run->is_near) PetscCall(FactorMake(run, p));
+  for (int step = 1; step < GREEDY_STEPS && worst > SAFE * run->greedy->rtol; step++) {
+    n_vectors += n_added;
+    run->basis->reduced.n_used = run->basis->reduced.n;
+    PetscCall(StepApply(run, p, &modes, &n_added, &worst));
+  }
+  PetscCall(ReducedModesDestroy(&modes));
+  run->drop = drop;
+  PetscCall(SampleCount(run, p, &complete));
+  run->greedy->n_passed = *first <= SAFE * run->greedy->rtol && complete ? run->greedy->n_passed + 1 : 0;
+  PetscCall(SampleAdd(run, p, PETSC_FALSE, n_vectors, *first));
+  run->greedy->sample[run->greedy->n_samples - 1].factored = run->is_near;
+  if (!complete && run->greedy->n_samples < run->greedy->max_samples) {
+    *first = PETSC_MAX_REAL;
+    PetscCall(SampleKrylov(run, p, *first));
+  }
+  PetscFunctionReturn(0);
+}
