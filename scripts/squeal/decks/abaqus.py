@@ -218,6 +218,8 @@ class Reader:
     def finish(self):
         """What needs all of the deck."""
         abaqus_model.finish(self)
+        if not self.steps:
+            self.deck.note(Place(self.deck.path, 1), "there is no *STEP: is the file whole?")
         for scope in [self.main, *self.instances.values()]:
             scope.nodes.sorted("node")
             scope.cells.sorted("element")
@@ -255,5 +257,5 @@ def read_abaqus(path):
     reader = Reader(path)
     cards = list(read_cards(path))
     if not any(card.keyword == "NODE" for card in cards):
-        raise BadInput(f"{path}: there is no *NODE; is this a deck of Abaqus or CalculiX?")
+        raise BadInput(f"{path}:1: there is no *NODE; is this a deck of Abaqus or CalculiX?")
     return reader.run(cards)

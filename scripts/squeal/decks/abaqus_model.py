@@ -83,7 +83,7 @@ def do_spring(reader, scope, card):
         return
     lines = [text.split(b"\n") for text, _ in card.pieces]
     blank = bool(lines and not lines[0][0].strip())
-    dofs, values = ([], rows) if blank or len(rows) == 1 else (rows[0], rows[1:])
+    dofs, values = ([], rows) if blank or len(rows) < 2 else (rows[0], rows[1:])
     if not values or not values[0]:
         raise card.place.wrong("*SPRING has no stiffness")
     if values[0][0] < 0:

@@ -15,6 +15,8 @@ FORMAT = re.compile(r"\(\s*(\d+)\s*i\s*(\d+)\s*(?:,\s*(\d+)\s*e\s*(\d+)\.\d+(?:e
 END = {"NBLOCK": re.compile(rb"^[ \t]*(?:N[ \t]*,|-1[ \t]*$)[^\n]*", re.IGNORECASE | re.MULTILINE),
        "EBLOCK": re.compile(rb"^[ \t]*-1[ \t]*$", re.MULTILINE)}
 # Say nothing of the model
+CONTROL = {"/COM", "/PREP7", "/NOPR", "/GOPR", "/GO", "/TITLE", "/SOLU", "/UNITS", "/BATCH", "/POST1", "*IF", "*ENDIF", "*ELSE",
+           "/WB", "/DEBUG", "/CONFIG", "/STATUS", "/FILNAME"}
 PLAIN = {"DOF", "NUMOFF", "EXTOPT", "FINISH", "FINI", "SHPP", "TREF", "IRLF", "BFUNIF", "ERESX", "_CDRDOFF=", "MPTEMP", "N",
          "ANTYPE", "SOLVE", "MXPAND", "CSYS", "CM"}
 
@@ -106,9 +108,9 @@ def commands_of(path, text, first):
     found = []
     for number, line in enumerate(text.decode("latin-1").split("\n"), first):
         line = line.partition("!")[0].strip()
-        if not line or line[0] in "/*(":
-            continue
         words = [word.strip() for word in line.split(",")]
+        if not line or words[0].upper().split(" ")[0] in CONTROL:
+            continue
         if re.match(r"[-+.\d]", words[0]) and found and found[-1].words[-1].upper().startswith("R5"):
             found[-1].words[-1:] = words[0].split() if len(words) == 1 else words
             continue
@@ -130,10 +132,12 @@ def read_ansys(path):
         block, at = read_block(path, data, starts, match)
         blocks.append(block)
     if not any(block.header.words[0] == "NBLOCK" for block in blocks):
-        raise BadInput(f"{path}: there is no NBLOCK; is this an archive of Ansys (CDWRITE, blocked)?")
+        raise BadInput(f"{path}:1: there is no NBLOCK; is this an archive of Ansys (CDWRITE, blocked)?")
     deck = Deck(path, "Ansys")
     mesh = ansys_mesh.read_mesh(deck, blocks, commands)
     ansys_model.read_model(deck, commands, mesh)
+    if not any(command.words[0] in ("FINISH", "FINI") for command in commands):
+        deck.note(Place(str(path), len(starts) - 1), "there is no FINISH: is the file whole?")
     for command in commands:
         if command.words[0] not in PLAIN | ansys_mesh.KNOWN | ansys_model.KNOWN:
             deck.note(command.place, f"{command.words[0][:20]}: not understood")

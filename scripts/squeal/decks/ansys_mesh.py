@@ -200,6 +200,8 @@ def read_mesh(deck, blocks, commands):
     mesh = Mesh()
     for command in commands:
         if command.words[0] == "ET":
+            if not command.word(1) or not command.word(2):
+                raise command.place.wrong("ET needs a number and a type")
             mesh.types[command.whole(1)] = command.whole(2)
     read_systems(mesh, commands)
     for name, read in (("NBLOCK", read_nodes), ("EBLOCK", read_elements), ("CMBLOCK", read_component)):

@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 
 import numpy
 
-from ..tables import BadInput
 from .deck import Material, Section, firsts_of
 from .faces import surface_nodes
 from .holders import add_contacts, add_loads, add_springs, add_supports
@@ -220,8 +219,6 @@ def part_entry(name, section, material):
 
 def assemble(deck, size):
     """The result of a deck."""
-    if not deck.n_cells:
-        raise BadInput(f"{deck.path}: there are no volume elements that squeal has")
     merged = merge_ties(deck, size)
     for block in deck.blocks:
         block.nodes = merged[block.nodes]

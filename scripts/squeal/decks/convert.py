@@ -37,17 +37,17 @@ def convert(path, units=None, output=None, strict=False):
     chosen = named(units) if units else None
     deck = read_deck(path)
     if not deck.n_cells:
-        raise BadInput(f"{path}: there are no volume elements that squeal has")
+        raise BadInput(f"{path}:1: there are no volume elements that squeal has")
     give_sections(deck)
     size = model_size(deck)
-    if not 0 < size < 1e300:
-        raise BadInput(f"{path}: all nodes are in one place")
+    if not 0 < size < 1e100:
+        raise BadInput(f"{path}:1: all nodes are in one place")
     used = [deck.materials[section.material] for section in deck.sections if section.material]
     chosen, why = (chosen, f"units {chosen.name}, given by --units") if chosen else guess(deck, size, used)
     result = assemble(deck, size)
     result.x = result.x * chosen.length
     if not numpy.isfinite(result.x).all():
-        raise BadInput(f"{path}: places are not finite")
+        raise BadInput(f"{path}:1: places are not finite")
     output = output or Path(path.stem)
     mesh, scene = (output.with_name(output.name + ending) for ending in (".msh", ".yaml"))
     lines, notes = scene_lines(deck, result, chosen, why, mesh), [clean(note) for note in remarks(deck)]

@@ -50,8 +50,8 @@ def checked(deck, mesh):
     x = numpy.asarray(mesh.points, float)
     if x.ndim != 2 or x.shape[1] != 3 or not len(x):
         raise place.wrong("its points are not in space")
-    if not numpy.isfinite(x).all() or abs(x).max() > 1e300:
-        raise place.wrong(f"point {int(numpy.argwhere(~(abs(x) < 1e300))[0][0]) + 1} is not finite")
+    if not numpy.isfinite(x).all() or abs(x).max() > 1e100:
+        raise place.wrong(f"point {int(numpy.argwhere(~(abs(x) <= 1e100))[0][0]) + 1} is not finite")
     for cells in mesh.cells:
         nodes = numpy.asarray(cells.data)
         if nodes.dtype.kind not in "iu" or nodes.ndim != 2:

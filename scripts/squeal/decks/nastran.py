@@ -106,10 +106,14 @@ def tables_of(data, first, file):
         matrix[row, int(comment[row].argmax()):] = ord(" ")
     owner = numpy.flatnonzero(~goes_on)
     count = numpy.diff(numpy.append(owner, len(matrix)))
-    is_free = numpy.add.reduceat(free, owner) > 0
+    n_free = numpy.add.reduceat(free.astype(int), owner)
+    is_free = n_free > 0
     large = (matrix[:, :8] == ord("*")).any(axis=1)
-    mixed = numpy.add.reduceat(large, owner)
+    mixed = numpy.add.reduceat(large.astype(int), owner)
     lines = first + filled
+    bad = numpy.flatnonzero(is_free & (n_free != count))
+    if len(bad):
+        raise Place(file, int(lines[owner[bad[0]]])).wrong("a card of which some lines have commas and others have not")
     found = free_tables([(matrix[at:at + n], int(lines[at])) for at, n in zip(owner[is_free], count[is_free])], file)
     bad = numpy.flatnonzero(~is_free & (mixed != 0) & (mixed != count))
     if len(bad):
@@ -166,6 +170,8 @@ def read_tables(deck, path, depth=0):
     first, last = begin.end() if begin else 0, end.start() if end else len(data)
     if last < first:
         raise Place(str(path), data.count(b"\n", 0, last) + 1).wrong("ENDDATA before BEGIN BULK")
+    if not end and not depth:
+        deck.note(Place(str(path), data.count(b"\n") + 1), "there is no ENDDATA: is the file whole?")
     if begin:
         list_case(deck, path, data[:begin.start()])
     bulk = data[first:last]
@@ -195,7 +201,7 @@ def read_nastran(path):
     deck = Deck(path, "Nastran")
     tables = read_tables(deck, path)
     if not any(table.name == "GRID" for table in tables):
-        raise BadInput(f"{path}: there is no GRID; is this a deck of Nastran?")
+        raise BadInput(f"{path}:1: there is no GRID; is this a deck of Nastran?")
     mesh = nastran_mesh.read_mesh(deck, tables)
     nastran_model.read_model(deck, tables, mesh)
     nastran_loads.read_acting(deck, tables, mesh)

@@ -67,6 +67,8 @@ def read_systems(mesh, tables):
     waiting = [(table, row) for table in named(tables, "CORD2R", "CORD2C") for row in range(len(table))]
     for table in named(tables, "CORD2R", "CORD2C"):
         check_rows(table, 1, 16)
+        if table.width < 11:
+            raise table.place(0).wrong(f"{table.name}: the line with the third point is missing")
     while waiting:
         later = []
         for table, row in waiting:
@@ -102,6 +104,11 @@ def read_grid(deck, mesh, tables):
         check_rows(table, 1, 8)
         ids, systems, x = table.whole(0, 1)[:, 0], table.whole(1, 2)[:, 0], table.real(2, 5)
         positive(table, ids, "a grid point")
+        if table.width < 5:
+            raise table.place(0).wrong("GRID: the line with the third coordinate is missing")
+        blank = (table.part(2, 5).reshape(len(table), 3, -1) == ord(" ")).all(axis=2).any(axis=1)
+        if blank.any():
+            deck.note(table.place(int(blank.argmax())), f"GRID: {blank.sum()} grid points with a blank coordinate, which is 0")
         x = x.copy()
         for number in numpy.unique(systems).tolist():
             rows = numpy.flatnonzero(systems == number)

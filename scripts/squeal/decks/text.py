@@ -11,6 +11,8 @@ from .deck import Place
 
 WHOLE = re.compile(r"[+-]?\d{1,15}$")
 REAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?$")
+EMPTY = re.compile(rb"(?:\A|,)[\s+-]*(?:,|\Z)")  # a field without a number
+CONTROL = re.compile(rb"[\x00-\x08\x0b\x0e-\x1f\x7f]")
 CHUNK = 200000  # lines that become a matrix of characters at once
 
 
@@ -22,6 +24,9 @@ def read_bytes(path):
         raise BadInput(f"{path}: {error.strerror}") from None
     if b"\r" in data:
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    control = CONTROL.search(data)
+    if control:
+        raise Place(str(path), data.count(b"\n", 0, control.start()) + 1).wrong(f"the byte {control[0][0]} is no text")
     return data
 
 
@@ -45,7 +50,9 @@ def real(text, place, what="a number"):
 
 
 def parse_all(flat, kind):
-    """Numbers with commas between, or None where one is none."""
+    """Numbers with commas between, or None where one is none. (numpy takes blanks for -1, and a sign alone for 0.)"""
+    if EMPTY.search(flat):
+        return None
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:

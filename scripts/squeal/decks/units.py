@@ -76,5 +76,5 @@ def guess(deck, size, used):
                        f"{density[0] * units.density:.4g} kg/m^3" + (f", {young[0] * units.stress:.4g} Pa" if young else ""))
     why = (f"could be {' or '.join(units.name for units in known)}" if known else "fit none of them") if density else \
         "there is no density to guess them by"
-    raise BadInput(f"{deck.path}: units are in doubt ({values}; {why}); give --units, one of {', '.join(SYSTEMS)}, or metres, "
+    raise BadInput(f"{deck.path}:1: units are in doubt ({values}; {why}); give --units, one of {', '.join(SYSTEMS)}, or metres, "
                    "kilograms, seconds in a unit, e.g. --units 0.001,1000,1")

@@ -1,0 +1,184 @@
+"""A plain reading of the nodes and solid elements of decks, line by line, for test_import_fuzz.py: the places of the nodes of
+each element, in the units of the deck. Nothing is checked, since what is read has been accepted."""
+
+import re
+
+import numpy as np
+
+ABAQUS = {"C3D4": 4, "C3D6": 6, "C3D8": 8, "C3D8I": 8, "C3D8R": 8, "C3D10": 10, "C3D10M": 10, "C3D15": 15, "C3D20": 20,
+          "C3D20R": 20, "C3D27": 27} | {f"C3D{n}H": n for n in (4, 6, 8, 10, 15, 20)} | {"C3D10MH": 10}
+
+
+def cards(text):
+    """(keyword, options, lines of data) of a deck of Abaqus."""
+    found, header = [], None
+    for line in text.split("\n"):
+        if line.startswith("**"):
+            header = None
+            continue
+        if line.startswith("*") or header is not None:
+            header = line if line.startswith("*") else header + line
+            if line.startswith("*"):
+                found.append([None, None, []])
+            words = [word.strip() for word in header.split(",")]
+            options = dict(word.partition("=")[::2] for word in words[1:])
+            found[-1][:2] = " ".join(words[0][1:].split()).upper(), {key.strip().upper(): value.strip().upper() for key, value in options.items()}
+            header = header if line.rstrip().endswith(",") else None
+        elif found and line.strip():
+            found[-1][2].append(line)
+    return found
+
+
+def numbers(lines, width):
+    """Rows of so many numbers, which go on over lines."""
+    flat = [float(re.sub("[dD]", "e", word)) for line in lines for word in line.split(",") if word.strip()]
+    return np.array(flat).reshape(-1, width) if flat else np.empty((0, width))
+
+
+def moved(rows):
+    """Matrix and shift of an instance."""
+    values = [[float(re.sub("[dD]", "e", word)) if word.strip() else 0.0 for word in row.rstrip().rstrip(",").split(",")] for row in rows if row.strip()]
+    shift, turn = np.array(values[0]) if values else np.zeros(3), np.eye(3)
+    if len(values) > 1:
+        a, b, angle = np.array(values[1][:3]), np.array(values[1][3:6]), np.radians(values[1][6])
+        n = (b - a) / np.linalg.norm(b - a)
+        turn = np.array([np.cos(angle) * e + (1 - np.cos(angle)) * (n @ e) * n + np.sin(angle) * np.cross(n, e) for e in np.eye(3)]).T
+        shift = turn @ (shift - a) + a
+    return turn, shift
+
+
+def read_abaqus(text):
+    parts, inside, outside, placed = {}, None, [], []
+    for card in cards(text):
+        if card[0] in ("PART", "INSTANCE"):
+            inside = card, []
+        elif inside and card[0] == f"END {inside[0][0]}":
+            name = inside[0][1].get("NAME", "").strip('"')
+            if inside[0][0] == "PART":
+                parts[name] = inside[1]
+            else:
+                part = inside[0][1].get("PART", "").strip('"').strip()
+                placed.append((parts.get(part, []) + inside[1], moved(inside[0][2])))
+            inside = None
+        elif inside:
+            inside[1].append(card)
+        else:
+            outside.append(card)
+    placed.append((outside, (np.eye(3), np.zeros(3))))
+    return [nodes for members, motion in placed for nodes in elements_of(members, motion)]
+
+
+def elements_of(members, motion):
+    """Places of the nodes of the elements of one part."""
+    place, found = {}, []
+    for keyword, options, rows in members:
+        if keyword == "NODE":
+            for number, *x in numbers(rows, 4):
+                if options.get("SYSTEM") == "C":
+                    x = [x[0] * np.cos(np.radians(x[1])), x[0] * np.sin(np.radians(x[1])), x[2]]
+                place[int(number)] = motion[0] @ np.array(x) + motion[1]
+    for keyword, options, rows in members:
+        n = ABAQUS.get(options.get("TYPE", "").strip('"')) if keyword == "ELEMENT" else None
+        found += [[place[int(k)] for k in row[1:]] for row in numbers(rows, n + 1)] if n else []
+    return found
+
+
+def nastran_real(word):
+    return float(re.sub(r"(?<=[\d.])[eEdD]?([-+]\d+)$", r"e\1", re.sub("[dD](?=[0-9])", "e", word))) if word else 0.0
+
+
+def nastran_fields(text):
+    """Names and fields of cards."""
+    found = []
+    begin, end = re.search(r"(?im)^[ \t]*begin[ \t]+bulk.*$", text), re.search(r"(?im)^[ \t]*enddata\b", text)
+    for line in text[begin.end() if begin else 0:end.start() if end else None].split("\n"):
+        line = line[:80].partition("$")[0] if "$" in line[:72] else line[:80]
+        if not line[:72].strip():
+            continue
+        if "," in line[:72]:
+            head, *words = (word.strip() for word in line.split(","))
+            words = (words + [""] * 8)[:4 if head.endswith("*") else 8]
+        else:
+            wide = 16 if "*" in line[:8] else 8
+            head, words = line[:8].strip(), [line[at:at + wide].strip() for at in range(8, 72, wide)]
+        if line[0] in "+*, " and found:
+            found[-1][1].extend(words)
+        else:
+            found.append((head.rstrip("*").strip().upper(), words))
+    return found
+
+
+def read_nastran(text):
+    fields = nastran_fields(text)
+    systems = {0: (np.eye(3), np.zeros(3), False)}
+    waiting = [(name, words) for name, words in fields if name in ("CORD2R", "CORD2C")]
+    for _ in range(len(waiting) + 1):
+        for name, words in waiting:
+            base = int(words[1] or 0)
+            if base in systems and int(words[0]) not in systems:
+                a, b, c = (placed(systems[base], [nastran_real(word) for word in words[k:k + 3]]) for k in (2, 5, 8))
+                z = (b - a) / np.linalg.norm(b - a)
+                y = np.cross(z, c - a) / np.linalg.norm(np.cross(z, c - a))
+                systems[int(words[0])] = np.array([np.cross(y, z), y, z]), a, name.endswith("C")
+    place = {int(words[0]): placed(systems[int(words[1] or 0)], [nastran_real(word) for word in words[2:5]])
+             for name, words in fields if name == "GRID"}
+    corners = {"CTETRA": 4, "CPENTA": 6, "CHEXA": 8}
+    return [[place[int(word)] for word in words[2:] if word and int(word)] for name, words in fields if name in corners]
+
+
+def placed(system, x):
+    axes, origin, cylinder = system
+    if cylinder:
+        x = [x[0] * np.cos(np.radians(x[1])), x[0] * np.sin(np.radians(x[1])), x[2]]
+    return np.array(x) @ axes + origin
+
+
+SOLIDS = {185: 8, 45: 8, 186: 20, 95: 20, 187: 10, 92: 10, 285: 4}
+
+
+def read_ansys(text):
+    rows, place, kinds, found, k = text.split("\n"), {}, {}, [], 0
+    for row in rows:
+        words = [word.strip() for word in row.partition("!")[0].split(",")]
+        if words[0].upper() == "ET":
+            kinds[int(words[1])] = int(words[2])
+    while k < len(rows):
+        name = rows[k].split(",")[0].strip().upper()
+        k += 1
+        if name not in ("NBLOCK", "EBLOCK"):
+            continue
+        form = [int(word) for word in re.findall(r"\d+", rows[k].split(".")[0])]
+        k, lines = k + 1, []
+        while not re.match(r"\s*-1\s*$", rows[k]) and not (name == "NBLOCK" and re.match(r"\s*N\s*,", rows[k], re.IGNORECASE)):
+            lines.append(rows[k])
+            k += 1
+        wide = form[1]
+        for at, row in enumerate(lines):
+            values = [int(row[c:c + wide] if row[c:c + wide].strip() else 0) for c in range(0, wide * form[0], wide)]
+            if name == "NBLOCK":
+                start = wide * form[0]
+                place[values[0]] = [float(re.sub("[dD]", "e", row[c:c + form[3]].strip() or "0")) for c in range(start, start + 3 * form[3], form[3])]
+            else:
+                found.append((at, values))
+        if name == "EBLOCK":
+            blocks = found
+    elements, at = [], 0
+    for at_, values in skip_second(blocks):
+        n = SOLIDS.get(kinds[values[1]])
+        if n:
+            nodes = (values[11:19] + at_)[:n]
+            elements.append([place[number] for number in dict.fromkeys(nodes)])
+    return elements
+
+
+def skip_second(rows):
+    """Elements with the numbers of their second line."""
+    at = 0
+    while at < len(rows):
+        values = rows[at][1]
+        long = values[8] > 8
+        yield (rows[at + 1][1] if long else []), values
+        at += 1 + long
+
+
+READ = {"inp": read_abaqus, "bdf": read_nastran, "cdb": read_ansys}
