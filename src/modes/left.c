@@ -7,13 +7,16 @@
       y_i^T D((lambda_i + lambda_j) / 2) x_j = delta_ij,   D(s) = M + C / (2 s),
 
    which holds for different eigenvalues of the quadratic problem as well. Without that neither condition, error nor
-   residue would mean anything for a double mode.
+   residue would mean anything for a double mode. Right vectors of one multiple eigenvalue are any basis of their space, and
+   |x_i| |y_i| depends on it: they are made orthogonal in M before, x_i^H M x_j = 0, the basis for which it is least.
 */
 #include "complexvec.h"
 #include <petscblaslapack.h>
 
-#define LEFT_MATCH 1e-5 /* left and right eigenvalues farther apart than this, relative, are different ones */
-#define LEFT_RIGID 1e-5 /* both smaller than this beside the largest of the window: zeros */
+#define LEFT_MATCH 1e-5  /* left and right eigenvalues farther apart than this, relative, are different ones */
+#define LEFT_EQUAL 1e-11 /* right eigenvalues no farther apart, relative, are one: any combination is an eigenvector */
+#define LEFT_APART 0.999999 /* square of the cosine of two vectors, above which they are parallel */
+#define LEFT_RIGID 1e-5     /* both smaller than this beside the largest of the window: zeros */
 
 /* Nearest entry of the left spectrum that is not used yet */
 static PetscInt LeftNearest(const Spectrum *left, const PetscBool used[], PetscComplex lambda, PetscReal *distance)
@@ -123,6 +126,57 @@ static PetscErrorCode ComplexInverse(PetscInt m, const PetscComplex G[], PetscCo
   PetscFunctionReturn(0);
 }
 
+/* w^H z */
+static PetscErrorCode LeftInner(ComplexVec w, ComplexVec z, PetscComplex *inner)
+{
+  PetscComplex rest = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(ComplexVecDot((ComplexVec){w.r, NULL}, z, inner));
+  if (w.i) PetscCall(ComplexVecDot((ComplexVec){w.i, NULL}, z, &rest));
+  *inner -= I * rest;
+  PetscFunctionReturn(0);
+}
+
+/* Makes right vector i orthogonal in M to right vector j, unless they are parallel: an eigenvalue with one vector alone */
+static PetscErrorCode LeftOrthogonalisePair(Spectrum *right, Mat M, PetscInt i, PetscInt j, ComplexVec z)
+{
+  const ComplexVec w = {right->xr[j], right->xi[j]};
+  ComplexVec       x = {right->xr[i], right->xi[i]};
+  PetscComplex     xx, wx, ww;
+
+  PetscFunctionBeginUser;
+  PetscCall(ComplexVecMult(M, x, z));
+  PetscCall(LeftInner(x, z, &xx));
+  PetscCall(LeftInner(w, z, &wx));
+  PetscCall(ComplexVecMult(M, w, z));
+  PetscCall(LeftInner(w, z, &ww));
+  if (!(PetscSqr(cabs(wx)) < LEFT_APART * creal(xx) * creal(ww))) PetscFunctionReturn(0);
+  if (w.i && !x.i) {
+    PetscCall(VecDuplicate(x.r, &right->xi[i]));
+    PetscCall(VecSet(right->xi[i], 0));
+    x.i = right->xi[i];
+  }
+  PetscCall(ComplexVecAXPY(x.i ? -wx / ww : -creal(wx / ww), w, x));
+  PetscFunctionReturn(0);
+}
+
+/* The same for all right vectors of one eigenvalue among first .. first + m - 1, twice as rounding wants it */
+static PetscErrorCode LeftOrthogonalise(Modes modes, const PencilMatrices *pencil, PetscInt first, PetscInt m,
+                                        Vec work[])
+{
+  Spectrum       *right   = &modes->right;
+  const PetscReal largest = LeftLargest(right);
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = first; i < first + m; i++)
+    for (int pass = 0; pass < 2; pass++)
+      for (PetscInt j = first; j < i; j++)
+        if (LeftDistance(SpectrumLambda(right, i), SpectrumLambda(right, j), largest) <= LEFT_EQUAL)
+          PetscCall(LeftOrthogonalisePair(right, pencil->M, i, j, (ComplexVec){work[1], work[2]}));
+  PetscFunctionReturn(0);
+}
+
 /* G_ij = y_i^T D((lambda_i + lambda_j) / 2) x_j of the vectors first .. first + m - 1, row-major */
 static PetscErrorCode LeftForm(Modes modes, const PencilMatrices *pencil, PetscInt first, PetscInt m, Vec work[],
                                PetscComplex G[])
@@ -151,6 +205,7 @@ static PetscErrorCode LeftBiorthogonaliseCluster(Modes modes, const PencilMatric
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(m * m, &G, m * m, &inverse));
+  PetscCall(LeftOrthogonalise(modes, pencil, first, m, work));
   PetscCall(LeftForm(modes, pencil, first, m, work, G));
   PetscCall(ComplexInverse(m, G, inverse));
   PetscCall(VecDuplicateVecs(work[0], m, &yr));
