@@ -27,7 +27,7 @@ import scipy.sparse.linalg
 SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "scripts"))
 from squeal.calculix import eigenvalues
-from squeal.export.matrices import read_matrix, read_vector
+from squeal.petsc_matrix import read_matrix, read_vector
 from squeal.provenance import Provenance
 
 SAME, CALCULIX = 1e-9, 1e-5

@@ -108,7 +108,7 @@ def opened(path):
     try:
         with h5py.File(path) as file:
             yield file
-    except (OSError, KeyError, IndexError, ValueError, RuntimeError) as error:  # RuntimeError: h5py's of torn files
+    except (OSError, KeyError, IndexError, ValueError, RuntimeError, TypeError) as error:  # the last two: h5py's of torn files
         raise BadInput(f"{path}: cannot be read: {error}") from None
 
 

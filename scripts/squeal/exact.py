@@ -1,12 +1,13 @@
 """Eigenvalues of small matrices far below double precision: Newton's method with both vectors, residuals in extended
 precision (64 bits of mantissa). Matrices are those of `-operators_save`, as squeal solves them."""
 
-import struct
 from pathlib import Path
 
 import numpy
 
-MATRIX_ID = 1211216  # of PETSc's binary files
+from .petsc_matrix import read_matrix
+from .tables import BadInput
+
 STEPS = 3
 SMALL = 0.01  # last step beside the stated error
 CLOSE = 1e-6  # relative distance of eigenvalues whose vectors mean little one by one
@@ -16,15 +17,9 @@ class Sparse:
     """A matrix of a PETSc binary file, with products in extended precision."""
 
     def __init__(self, path):
-        data = Path(path).read_bytes()
-        kind, rows, columns, entries = struct.unpack(">4i", data[:16])
-        if kind != MATRIX_ID or rows != columns:
-            raise ValueError(f"{path}: no square matrix")
-        self.n = rows
-        lengths = numpy.frombuffer(data, ">i4", rows, 16)
-        self.column = numpy.frombuffer(data, ">i4", entries, 16 + 4 * rows).astype(int)
-        self.value = numpy.frombuffer(data, ">f8", entries, 16 + 4 * (rows + entries)).astype(float)
-        self.row = numpy.repeat(numpy.arange(rows), lengths)
+        self.n, columns, self.row, self.column, self.value = read_matrix(Path(path))
+        if columns != self.n:
+            raise BadInput(f"{path}: no square matrix")
 
     def dense(self):
         full = numpy.zeros((self.n, self.n))

@@ -97,7 +97,8 @@ def run(name, work):
     try:
         print(work())
     except BadInput as error:
-        print(f"{name}: {error}", file=sys.stderr)
+        text = "".join(letter if letter.isprintable() else "?" for letter in str(error))  # a damaged file's too
+        print(f"{name}: {text}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print(f"{name}: stopped", file=sys.stderr)

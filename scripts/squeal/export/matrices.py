@@ -3,47 +3,10 @@ F; 17 digits, hence the same numbers. Reference: R. Boisvert, R. Pozo, K. Reming
 
 import numpy
 
+from ..petsc_matrix import read_matrix, read_vector
 from ..tables import BadInput, whole
 
-MATRIX, VECTOR = 1211216, 1211214  # first word of PETSc's files
 MEANINGS = {"K": "stiffness, N/m", "M": "mass, kg", "C": "damping, N s/m", "H": "friction part per unit mu, N/m", "F": "loads, N"}
-
-
-def read_words(path):
-    """The bytes of a file, and its first four words, as far as it has them."""
-    data = path.read_bytes()
-    return data, numpy.frombuffer(data[:min(16, len(data) // 4 * 4)], ">i4")
-
-
-def read_matrix(path):
-    """Rows, columns of a sparse matrix, and row, column and value of each entry, row by row."""
-    data, head = read_words(path)
-    if len(head) < 4 or head[0] != MATRIX or min(head[1:]) < 0:
-        raise BadInput(f"{path}: is no sparse matrix in PETSc's binary form; see -operators_save")
-    rows, columns, n = map(int, head[1:])
-    if len(data) != 16 + 4 * rows + 12 * n:
-        raise BadInput(f"{path}: has {len(data)} bytes, where {16 + 4 * rows + 12 * n} would hold its {n} entries")
-    count = numpy.frombuffer(data, ">i4", rows, 16)
-    column = numpy.frombuffer(data, ">i4", n, 16 + 4 * rows).astype(numpy.int64)
-    value = numpy.frombuffer(data, ">f8", n, 16 + 4 * (rows + n)).astype(float)
-    if (count < 0).any() or count.sum() != n or (n and not 0 <= column.min() <= column.max() < columns):
-        raise BadInput(f"{path}: rows and columns of its entries are not those of its head; was the file damaged?")
-    return rows, columns, numpy.repeat(numpy.arange(rows), count), column, finite(path, value)
-
-
-def read_vector(path):
-    """Values of a vector."""
-    data, head = read_words(path)
-    if len(head) < 2 or head[0] != VECTOR or len(data) != 8 + 8 * int(head[1]):
-        raise BadInput(f"{path}: is no vector in PETSc's binary form; see -operators_save")
-    return finite(path, numpy.frombuffer(data, ">f8", int(head[1]), 8).astype(float))
-
-
-def finite(path, value):
-    """Values, if all are numbers."""
-    if not numpy.isfinite(value).all():
-        raise BadInput(f"{path}: entry {int(numpy.argmin(numpy.isfinite(value)))} is not finite")
-    return value
 
 
 def is_symmetric(row, column, value):
