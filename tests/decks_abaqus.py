@@ -25,6 +25,7 @@ class Assembly:
 1, 1, 2, 3, 4, 5, 6, 7, 8
 *NSET, NSET=Hub, GENERATE
 1, 4, 1
+*NSET, NSET=Every, ELSET=All
 *ELSET, ELSET=top_
 1
 *SURFACE, NAME=Face, TYPE=ELEMENT
@@ -86,6 +87,8 @@ Corner, 3, -5.
 Corner, 1, 1.5
 *DLOAD
 , GRAV, 9810., 0., 0., -1.
+*MOTION, ROTATION, TYPE=VELOCITY
+disc-1.Every, 12., 1., 2., 0., 1., 2., -5.
 *OUTPUT, FIELD
 *END STEP
 """, "material.inc": """*MATERIAL, NAME=Iron
@@ -116,9 +119,10 @@ Corner, 1, 1.5
              "loads": "corner_force,piston_pressure", "corner_force_set": "corner", "corner_force_force": "1.5,0,-5",
              "piston_pressure_set": "piston", "piston_pressure_pressure": "2e6",
              "contacts": "rubbing", "rubbing_surfaces": "rubs,disc_1_face", "rubbing_kn_per_area": "2e14", "rubbing_mu": "0.4",
+             "rubbing_rotation": "0,0,-12", "rubbing_center": "1e-3,2e-3,0",
              "modes_target": "1", "modes_count": "20"}
     FORCES = {"corner_force": (1.5, 0, -5), "piston_pressure": (0, 0, -200)}
-    LISTED = ["brake.inp:14: differs: C3D8 ", "brake.inp:34: differs: C3D8R ", "brake.inp:88: *OUTPUT", "brake.inp:80: *STATIC",
+    LISTED = ["brake.inp:67: differs: *TIE glue: 4 nodes", "brake.inp:14: differs: C3D8 ", "brake.inp:35: differs: C3D8R ", "brake.inp:91: *OUTPUT", "brake.inp:81: *STATIC",
               "material.inc:13: *EXPANSION"]
 
 

@@ -13,7 +13,9 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
+from squeal.decks import abaqus_mesh, abaqus_model, ansys_model, nastran_loads, nastran_mesh, nastran_model
 from squeal.decks.convert import convert, read_deck
+from squeal.decks.units import SYSTEMS
 from squeal.tables import BadInput
 
 import decks_abaqus
@@ -76,10 +78,10 @@ def check_scene(folder, case):
     check(f"{main}: nothing else is listed", not where, where)
 
 
-def forces(folder):
+def forces(folder, words):
     """Total of each load, N, by a run for the sliding state."""
     command = [sys.argv[2], "-n", 1, sys.argv[1], "-options_file", folder / "scene.yaml", "-analysis", "static",
-               "-model_mesh", folder / "scene.msh", "-output_dir", folder / "out", "-output_fields", 0]
+               "-model_mesh", folder / "scene.msh", "-output_dir", folder / "out", "-output_fields", 0, *words]
     done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode:
         raise SystemExit(done.stderr)
@@ -99,7 +101,7 @@ def check_refused(folder, ending, cases):
 
 
 def check_forces(folder, case):
-    found = forces(folder)
+    found = forces(folder, getattr(case, "WORDS", []))
     for name, force in case.FORCES.items():
         check(f"force of {name}: {force} N", np.allclose(found.get(name, np.nan), force, atol=1e-9), found)
 
@@ -122,11 +124,21 @@ def others(folder):
         check_refused(folder, ending, cases)
 
 
+def page():
+    """Every keyword that is read stands in the table of scripts/README.md."""
+    text = (Path(__file__).resolve().parents[1] / "scripts/README.md").read_text().partition("## A brake from Abaqus")[2]
+    known = set(abaqus_mesh.CARDS) | set(abaqus_model.CARDS) | nastran_mesh.KNOWN | nastran_model.KNOWN | nastran_loads.KNOWN
+    known |= ansys_model.KNOWN | {f"C3D{n}" for n in (4, 6, 10, 15, 20)} | set(SYSTEMS)
+    missing = [word for word in sorted(known - {"CORD1R", "CORD1C"}) if not re.search(rf"\b{word}\b", text)]
+    check("every keyword stands in scripts/README.md", not missing, missing)
+
+
 def main():
     sys.argv[1:] = [str(Path(word).resolve()) for word in sys.argv[1:]]
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
         abaqus(Path(name))
         others(Path(name))
+    page()
     return 1 if FAILED else 0
 
 

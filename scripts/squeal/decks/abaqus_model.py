@@ -5,7 +5,7 @@ import numpy
 from .abaqus_material import CARDS as MATERIAL_CARDS
 from .abaqus_material import first_row, numbers, other_rows
 from .abaqus_mesh import SPRINGS, check_faces, reader_cells, reader_nodes
-from .deck import Contact, Load, Support, Tie
+from .deck import Contact, Load, Support, Tie, Turning
 from .springs import ground_springs
 from .text import real, whole
 
@@ -18,7 +18,7 @@ KNOWN = {"MATERIAL": {"NAME"}, "DENSITY": set(), "ELASTIC": {"TYPE"}, "DAMPING":
          "CONTACT PAIR": {"INTERACTION", "TYPE", "SMALL SLIDING", "ADJUST", "CPSET", "NO THICKNESS", "MECHANICAL CONSTRAINT"},
          "SURFACE INTERACTION": {"NAME"}, "FRICTION": set(), "SURFACE BEHAVIOR": {"PRESSURE-OVERCLOSURE"},
          "CHANGE FRICTION": {"INTERACTION"}, "CLOAD": {"OP"}, "DLOAD": {"OP"}, "DSLOAD": {"OP"},
-         "STEP": {"NAME", "PERTURBATION", "INC"}, "FREQUENCY": {"EIGENSOLVER", "STORAGE", "NORMALIZATION", "SOLVER"}}
+         "MOTION": {"ROTATION", "TYPE"}, "STEP": {"NAME", "PERTURBATION", "INC"}, "FREQUENCY": {"EIGENSOLVER", "STORAGE", "NORMALIZATION", "SOLVER"}}
 
 
 def direction(word, place, keyword, reader):
@@ -202,6 +202,22 @@ def do_dsload(reader, scope, card):
         reader.deck.loads.append(Load(name, place, faces=reader.deck.surfaces[name][0], pressure=real(fields[2], place)))
 
 
+def do_motion(reader, scope, card):
+    """Nodes that turn: a set, rad per time, two points of the axis, by the right-hand rule from the first to the second."""
+    if "ROTATION" not in card.options or card.options.get("TYPE", "VELOCITY").upper() != "VELOCITY":
+        reader.deck.note(card.place, "*MOTION: only ROTATION with TYPE=VELOCITY is understood")
+        return
+    for place, fields in card.rows():
+        if len(fields) != 8:
+            raise place.wrong(f"*MOTION: {len(fields)} fields, expected a set, a velocity and two points")
+        nodes = reader_nodes(reader, scope, fields[0], place)
+        values = numpy.array([real(word or "0", place) for word in fields[1:]])
+        axis = values[4:7] - values[1:4]
+        if not numpy.linalg.norm(axis) > 0:
+            raise place.wrong("*MOTION: the two points of the axis are the same")
+        reader.deck.turnings.append(Turning(nodes, values[0] * axis / numpy.linalg.norm(axis), values[1:4], place))
+
+
 def do_step(reader, _, card):
     reader.steps += 1
     if reader.steps == 2:
@@ -241,4 +257,4 @@ CARDS = {keyword: listed(do) for keyword, do in (MATERIAL_CARDS | {
     "BOUNDARY": do_boundary, "SPRING": do_spring, "TIE": do_tie,
     "SURFACE INTERACTION": do_interaction, "FRICTION": do_friction, "SURFACE BEHAVIOR": do_behavior,
     "CHANGE FRICTION": do_change_friction, "CONTACT PAIR": do_pair, "CLOAD": do_cload, "DLOAD": do_dload,
-    "DSLOAD": do_dsload, "STEP": do_step, "FREQUENCY": do_frequency}).items()}
+    "DSLOAD": do_dsload, "MOTION": do_motion, "STEP": do_step, "FREQUENCY": do_frequency}).items()}

@@ -3,10 +3,10 @@
 import numpy
 
 from .ansys_mesh import FACES
-from .deck import Axes, Contact, Load, Material, Section, Support
+from .deck import Axes, Contact, Load, Material, Section, Support, Turning
 from .faces import boundary_faces, faces_by_three
 
-KNOWN = {"MP", "MPDATA", "D", "F", "SF", "SFE", "ACEL", "MODOPT"}
+KNOWN = {"MP", "MPDATA", "D", "F", "SF", "SFE", "ACEL", "MODOPT", "CMROTATE"}
 LABELS = {"EX", "EY", "EZ", "PRXY", "PRYZ", "PRXZ", "NUXY", "NUYZ", "NUXZ", "GXY", "GYZ", "GXZ", "DENS", "ALPD", "BETD", "MU"}
 
 
@@ -15,7 +15,8 @@ def read_model(deck, commands, mesh):
     for number, constants in values.items():
         make_material(deck, number, constants)
     read_parts(deck, mesh)
-    pending = {"D": support, "F": force, "SFE": pressure_on_face, "SF": pressure_on_nodes, "ACEL": gravity, "MODOPT": modes}
+    pending = {"D": support, "F": force, "SFE": pressure_on_face, "SF": pressure_on_nodes, "ACEL": gravity, "MODOPT": modes,
+               "CMROTATE": turning}
     for command in commands:
         if command.words[0] in pending:
             pending[command.words[0]](deck, mesh, command)
@@ -182,6 +183,21 @@ def gravity(deck, _, command):
     vector = numpy.array([command.real(k) for k in (1, 2, 3)])
     if vector.any():
         deck.gravity = -vector, command.place
+
+
+def turning(deck, mesh, command):
+    """CMROTATE, component of elements, velocity about the line through two points, or its components about a point."""
+    kind, members = mesh.components.get(command.word(1).upper(), ("", None))
+    if kind != "ELEM":
+        raise command.place.wrong(f"CMROTATE: there is no component '{command.word(1)[:40]}' of elements")
+    values = numpy.array([command.real(k) for k in range(2, 11)])
+    omega, centre, axis = values[:3], values[3:6], values[6:] - values[3:6]
+    if any(command.words[8:11]) and numpy.linalg.norm(axis) > 0:
+        omega = values[0] * axis / numpy.linalg.norm(axis)
+    firsts = deck.firsts()
+    nodes = [block.nodes[members[(members >= low) & (members < high)] - low].ravel()
+             for block, low, high in zip(deck.blocks, firsts, firsts[1:])]
+    deck.turnings.append(Turning(numpy.unique(numpy.concatenate(nodes)), omega, centre, command.place))
 
 
 def modes(deck, _, command):

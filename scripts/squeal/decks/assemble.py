@@ -68,6 +68,7 @@ def merge_ties(deck, size):
             continue
         for slave, master in zip(slaves, found):
             into[into == into[slave]] = into[master]
+        deck.differ(tie.place, f"*TIE {tie.name}: {len(slaves)} nodes of {tie.slave} become those of {tie.master} in their place")
     return into
 
 

@@ -107,6 +107,16 @@ class Contact:
     rotation: tuple = ()
     centre: tuple = ()
     slip: tuple = ()  # direction of the slave
+    turning: Place = None  # where the rotation is from
+
+
+@dataclass
+class Turning:
+    """Nodes that turn at `omega` [3], rad/time, about an axis through `centre`."""
+    nodes: numpy.ndarray
+    omega: numpy.ndarray
+    centre: numpy.ndarray
+    place: Place
 
 
 @dataclass
@@ -178,7 +188,7 @@ class Deck:
         self.x_parts, self.n_nodes, self.blocks, self.n_cells = [], 0, [], 0
         self.node_sets, self.cell_sets, self.surfaces = {}, {}, {}  # name -> (indices or faces [n][2], Place)
         self.materials, self.sections = {}, []
-        self.supports, self.springs, self.loads, self.contacts, self.ties = [], [], [], [], []
+        self.supports, self.springs, self.loads, self.contacts, self.ties, self.turnings = [], [], [], [], [], []
         self.gravity = None  # (vector, Place)
         self.modes = None  # (count, lowest, highest, Place)
         self.notes, self.differs = [], {}

@@ -2,6 +2,8 @@
 
 import numpy
 
+from .faces import surface_nodes
+
 DIRECTIONS = "xyz"
 
 
@@ -124,8 +126,25 @@ def force_entry(assembly, names, nodes, force, where):
         ("set", written, comment), ("force", ("force", tuple(n * force)), f"{comment} total of {n} nodes")])
 
 
+def set_turning(deck):
+    """Angular velocity of the master of each contact, by the nodes that turn: all of the master's, or all of the slave's."""
+    used = set()
+    for contact in deck.contacts:
+        sides = [surface_nodes(deck, deck.surfaces[name][0]) for name in (contact.master, contact.slave)]
+        for number, turning in enumerate(deck.turnings):
+            inside = [len(nodes) > 0 and numpy.isin(nodes, turning.nodes).all() for nodes in sides]
+            if inside[0] != inside[1] and turning.omega.any():
+                contact.rotation = tuple(turning.omega if inside[0] else -turning.omega)
+                contact.centre, contact.turning = tuple(turning.centre), turning.place
+                used.add(number)
+    for number, turning in enumerate(deck.turnings):
+        if number not in used:
+            deck.note(turning.place, "nodes that turn, and no contact has one of its two surfaces among them: not in the scene")
+
+
 def add_contacts(assembly):
     """Pairs of surfaces; what a deck does not say is a hint."""
+    set_turning(assembly.deck)
     surfaces = assembly.deck.surfaces
     for contact in assembly.deck.contacts:
         empty = [name for name in (contact.slave, contact.master) if not len(surfaces[name][0])]
@@ -143,7 +162,8 @@ def add_contacts(assembly):
         if contact.mu is not None:
             rows.append(("mu", ("", (contact.mu,)), comment))
         if contact.rotation:
-            rows += [("rotation", ("rate", contact.rotation), comment), ("center", ("length", contact.centre), comment)]
+            rows += [("rotation", ("rate", contact.rotation), f"{contact.turning} of the master"),
+                     ("center", ("length", contact.centre), str(contact.turning))]
         elif contact.mu:
             hints.append('slip: "0,1,0"   the slave\'s sliding direction is not in the file: give it, or rotation: "x,y,z" in rad/s')
         assembly.add("contacts", contact.name, rows, hints)
