@@ -12,15 +12,15 @@
       [E_D' 0     0  ] [y  ]   [0  ]
 
    (P. E. Gill, W. Murray, M. A. Saunders, M. H. Wright, Math. Program. 45, 1989, 437). An iteration solves A dx = -v; then
-   sliding pairs turn their friction to where they slide. That contracts by mu l_n / |slip| times compliances: small where
-   the sliding of a step is large beside what forces move. Where it does not contract, newton.c follows.
+   sliding pairs turn their friction to where they slide. Alone that contracts by mu l_n / |slip| times compliances, which
+   all pairs turning together make as large as 1; mix.c makes it converge there too. Where it does not, newton.c follows.
 */
 #include "complianceimpl.h"
 
 #define CHORD_MAX_IT   40
 #define CHORD_RENEWALS 4     /* of the factors in a step */
 #define CHORD_SLOW     0.5   /* residual over the one before, of an iteration without change of status */
-#define CHORD_PATIENCE 3     /* slow iterations */
+#define CHORD_PATIENCE 4     /* slow iterations */
 #define CHORD_SHARE    8     /* a base of m indices is bordered by m / CHORD_SHARE at most */
 #define CHORD_LEAST    8     /* or by this */
 #define CHORD_PIVOT    1e-10 /* smallest pivot beside the largest, below which newton.c shifts the matrix */
@@ -241,9 +241,12 @@ static void ChordPut(ContactCompliance c, PetscInt p, const PetscReal l[3])
   }
 }
 
-/* New statuses; a pair that opens loses its force at once, and one that starts to slide has the friction of its cone */
-static void ChordChoose(ContactCompliance c)
+/* New statuses, true where there are any; a pair that opens loses its force at once, and one that starts to slide has the
+   friction of its cone */
+static PetscBool ChordChoose(ContactCompliance c)
 {
+  PetscBool changed = PETSC_FALSE;
+
   for (PetscInt p = 0; p < c->n; p++) c->chord.next[p] = (PetscInt)c->status[p];
   ComplianceChoose(c);
   for (PetscInt p = 0; p < c->n; p++) {
@@ -251,11 +254,13 @@ static void ChordChoose(ContactCompliance c)
     PetscReal        d[2];
 
     if (c->chord.next[p] == (PetscInt)c->status[p]) continue;
+    changed = PETSC_TRUE;
     if (c->status[p] == CONTACT_OPEN) ChordPut(c, p, zero);
     if (c->status[p] != CONTACT_SLIP) continue;
     ComplianceTurn(c, p, d);
     ChordPut(c, p, (PetscReal[3]){l[0], d[0] * l[0], d[1] * l[0]});
   }
+  return changed;
 }
 
 /* Adds dx: friction of sliding pairs is turned to where they slide at the present v */
@@ -280,7 +285,8 @@ static PetscErrorCode ChordPrepare(ContactCompliance c, PetscInt *renewals, Pets
   PetscCall(ChordBorder(c, good));
   if (*renewals == CHORD_RENEWALS || (*good && *slow < CHORD_PATIENCE)) PetscFunctionReturn(0);
   (*renewals)++;
-  *slow = 0;
+  *slow            = 0;
+  c->chord.n_mixed = -1;
   PetscCall(ChordRenew(c));
   PetscCall(ChordBorder(c, good));
   PetscFunctionReturn(0);
@@ -294,14 +300,17 @@ PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss)
   PetscFunctionBeginUser;
   PetscCall(ComplianceMove(c));
   ComplianceMeasure(c, miss);
+  c->chord.n_mixed = -1;
   for (PetscInt it = 0; it < CHORD_MAX_IT && slow <= CHORD_PATIENCE && !ComplianceIsSolved(c, miss); it++) {
     const PetscReal last = miss->norm;
 
-    ChordChoose(c);
+    if (ChordChoose(c)) c->chord.n_mixed = -1;
     PetscCall(ChordPrepare(c, &renewals, &slow, &good));
     if (!good) break;
+    PetscCall(PetscArraycpy(c->v0, c->l, 3 * c->n));
     PetscCall(ChordSolve(c, c->l0));
     ChordTake(c, c->l0);
+    ComplianceMix(c, c->v0);
     PetscCall(ComplianceMove(c));
     ComplianceMeasure(c, miss);
     c->report.iterations++;

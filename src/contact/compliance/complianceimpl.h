@@ -15,6 +15,8 @@ typedef struct {
   PetscInt  worst;   /* pair of `largest` */
 } ComplianceMiss;
 
+#define COMPLIANCE_MIXED 8 /* differences of iterates that are combined */
+
 /* Factors of a base set of unknowns (chord.c); indices are rows of W */
 typedef struct {
   PetscBool     exists;
@@ -28,6 +30,10 @@ typedef struct {
   PetscInt      n_border, *border; /* indices that joined or left; -1: not factored */
   PetscInt     *want, *next;       /* work: [3 n] */
   PetscReal    *b, *s;             /* work: [3 n] */
+  PetscInt      n_mixed;           /* differences kept in this step, -1: no iterate before */
+  PetscReal    *x, *f;             /* iterate before, and how G changes it, [3 n] */
+  PetscReal    *change[COMPLIANCE_MIXED], *fall[COMPLIANCE_MIXED]; /* differences of x, f */
+  PetscReal    *basis[COMPLIANCE_MIXED], *step[COMPLIANCE_MIXED];  /* work */
 } ComplianceChord;
 
 struct _p_ContactCompliance {
@@ -73,6 +79,9 @@ PETSC_INTERN void           ComplianceTake(ContactCompliance c);
 PETSC_INTERN PetscErrorCode ComplianceChordSetBase(ContactCompliance c);
 PETSC_INTERN PetscErrorCode ComplianceChordColumn(ContactCompliance c, PetscInt j, const PetscReal **v);
 PETSC_INTERN PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss);
+
+/* mix.c - l = G(x) becomes a combination of it and what the iterations before made of theirs */
+PETSC_INTERN void ComplianceMix(ContactCompliance c, PetscReal x[]);
 
 /* newton.c - one step on l, v; iterations, at most max_it; damped = with a line search */
 PETSC_INTERN PetscErrorCode ComplianceStep(ContactCompliance c, PetscBool *singular);
