@@ -1,6 +1,6 @@
 /*
-   Damped problem Q(lambda) x = (lambda^2 M + lambda C + K) x = 0 by projection on the undamped modes of the window and a
-   guard beyond it, right and left ones, K x = kappa M x, found with one real factorisation P = K - s M. Galerkin's method
+   Damped problem Q(lambda) x = (lambda^2 M + lambda C + K) x = 0 by projection on the undamped modes of the window and some
+   beyond it, right and left ones, K x = kappa M x, found with one real factorisation P = K - s M. Galerkin's method
    with one real basis V for both sides (two bases make the dense problem ill-conditioned) gives lambda, x, y with residuals
 
       r = Q(lambda) x,   s = Q(lambda)' y,
@@ -14,15 +14,18 @@
    damped.c.
 */
 #include "projection.h"
+#include "solver/orthonormal.h"
 
-#define DAMPING_WEAK   0.9
-#define PROJECT_GUARD  4 /* undamped modes beyond the window */
-#define PROJECT_ROUNDS 8
-#define PROJECT_RIGHT  1e-14 /* backward errors of settled right and left vectors */
-#define PROJECT_LEFT   1e-11
+#define DAMPING_WEAK     0.9
+#define PROJECT_ATTEMPTS 3 /* with ever more undamped modes */
+#define PROJECT_ROUNDS   8
+#define PROJECT_RIGHT    1e-14 /* backward errors of settled right and left vectors */
+#define PROJECT_LEFT     1e-11
+#define PROJECT_DISTINCT 1e-9 /* undamped vectors that differ by less are one */
 
-static const char why_whole[] = "all modes of the system are in the window or next to it"; /* small: said nowhere */
-static const char why_guard[] = "damping moves modes by more than the guard";
+static const char why_whole[]  = "all modes of the system are in the window or next to it"; /* small: said nowhere */
+static const char why_guard[]  = "damping moves modes by more than the guard";
+static const char why_differ[] = "undamped right and left modes differ";
 
 /* Removes what lies farther from the shift than the distance */
 static PetscErrorCode SpectrumTrim(PetscReal shift, PetscReal distance, Spectrum *s)
@@ -160,8 +163,21 @@ static PetscErrorCode MapModes(Projection *p, Window *window, const char **why)
   PetscFunctionReturn(0);
 }
 
+/* Undamped vectors in the basis; those of the block stay */
+static PetscErrorCode AddModal(Projection *p, const ModalBlock *modal)
+{
+  BV block;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlockCreate(p->V, modal->n, &block));
+  PetscCall(BVCopy(modal->x, block));
+  PetscCall(ProjectionAdd(p, PROJECT_DISTINCT, block));
+  PetscCall(BVDestroy(&block));
+  PetscFunctionReturn(0);
+}
+
 /* By Galerkin's method and corrections */
-static PetscErrorCode Project(Projection *p, Window *window, const char **why)
+static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window, const char **why)
 {
   Modes           modes = p->modes;
   ProjectionModes found;
@@ -170,13 +186,12 @@ static PetscErrorCode Project(Projection *p, Window *window, const char **why)
   PetscFunctionBeginUser;
   p->limit[0] = PROJECT_RIGHT;
   p->limit[1] = PROJECT_LEFT;
-  PetscCall(ProjectionAddSpectrum(p, &modes->right));
-  PetscCall(ProjectionAddSpectrum(p, &modes->left_spectrum));
+  for (int side = 0; side < 2 && modal[side].n; side++) PetscCall(AddModal(p, &modal[side]));
   window->beyond = 0;
   if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionMeasureBeyond(p, &window->beyond));
   if (window->beyond > (modes->damping == DAMPING_AUTO ? DAMPING_WEAK : 1)) *why = "damping is strong";
   if (*why) PetscFunctionReturn(0);
-  if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionStart(p, &modes->right, &modes->left_spectrum));
+  if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionStart(p, &modes->right, &modes->left_spectrum, modal));
   PetscCall(Iterate(p, &found, &settled));
   if (settled) PetscCall(PutModes(p, &found));
   if (!settled) *why = found.lambda_reach > p->reach ? why_guard : "corrections do not settle";
@@ -187,8 +202,9 @@ static PetscErrorCode Project(Projection *p, Window *window, const char **why)
 /* From the undamped modes to the damped ones; why is set where the route ends before */
 static PetscErrorCode AddDamping(Projection *p, Window *window, const char **why)
 {
-  Modes     modes = p->modes;
-  PetscBool exact, zero;
+  Modes      modes = p->modes;
+  ModalBlock modal[2];
+  PetscBool  exact, zero;
 
   PetscFunctionBeginUser;
   window->rigid = 0;
@@ -196,19 +212,21 @@ static PetscErrorCode AddDamping(Projection *p, Window *window, const char **why
     PetscCall(ProjectionIsZero(p, &modes->right, i, &zero));
     window->rigid += zero;
   }
-  PetscCall(ProjectionFit(p, &modes->right, &modes->left_spectrum));
+  PetscCall(ModalBlocksCreate(p, &modes->right, &modes->left_spectrum, modal));
+  PetscCall(ProjectionFit(p, &modes->right, modal));
   PetscCall(ProjectionIsExact(p, &modes->right, &exact));
   if (!exact && p->reach == PETSC_MAX_REAL && modes->damping == DAMPING_AUTO)
     *why = why_whole;
   else
-    PetscCall(exact ? MapModes(p, window, why) : Project(p, window, why));
+    PetscCall(exact ? MapModes(p, window, why) : Project(p, modal, window, why));
+  PetscCall(ModalBlocksDestroy(modal));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *window, PetscBool *done)
 {
   PencilMatrices undamped = *pencil;
-  const char    *why      = NULL;
+  const char    *why      = why_differ;
   Projection     p;
   PetscBool      complete = PETSC_FALSE;
 
@@ -216,15 +234,15 @@ PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *w
   undamped.C = NULL;
   PetscCall(ProjectionCreate(modes, pencil, window, &p));
   PetscCall(ModesFactor(modes, &undamped, UndampedShift(window), &p.si));
-  window->extra += PROJECT_GUARD;
   window->guard = PETSC_TRUE;
-  for (int attempt = 0; attempt < 3 && !complete && !why; attempt++) {
+  for (int attempt = 0; attempt < PROJECT_ATTEMPTS && (why == why_differ || why == why_guard); attempt++) {
+    if (attempt) window->extra += 10 + (complete ? 0 : modes->right.n / 2);
     PetscCall(SpectraDestroy(modes));
+    PetscCall(ProjectionForget(&p));
     PetscCall(SolveUndamped(modes, &undamped, window, &p.si, &p.reach, &complete));
-    if (!complete) window->extra += 10 + modes->right.n / 2;
+    why = complete ? NULL : why_differ;
+    if (complete) PetscCall(AddDamping(&p, window, &why));
   }
-  if (!complete && !why) why = "undamped right and left modes differ";
-  if (!why) PetscCall(AddDamping(&p, window, &why));
   *done = why ? PETSC_FALSE : PETSC_TRUE;
   if (why && why != why_whole) PetscCall(PetscStrncpy(window->why, why, sizeof(window->why)));
   if (why) PetscCall(SpectraDestroy(modes));

@@ -19,40 +19,45 @@
 #define BEYOND_STEPS 3
 #define FIT_DISTINCT 1e-6 /* variance of kappa beside its mean square: below it beta cannot be told from alpha */
 
-/* y'Cx / y'Mx of a real vector; NAN where that says nothing */
-static PetscErrorCode ModeDamping(const Projection *p, Vec x, Vec y, Vec work, PetscReal *damping)
+/* y'Cx / y'Mx of column j; NAN where that says nothing */
+static PetscErrorCode ModeDamping(const ModalBlock modal[2], PetscInt j, PetscReal *damping)
 {
-  PetscReal yCx, yMx;
+  const PetscBool paired = modal[1].n == modal[0].n ? PETSC_TRUE : PETSC_FALSE;
+  PetscReal       product[2];
+  Vec             y, Ax;
 
   PetscFunctionBeginUser;
-  PetscCall(MatMult(p->pencil->C, x, work));
-  PetscCall(VecDot(work, y, &yCx));
-  PetscCall(MatMult(p->pencil->M, x, work));
-  PetscCall(VecDot(work, y, &yMx));
-  *damping = yMx != 0 ? yCx / yMx : NAN;
+  PetscCall(BVGetColumn(modal[paired].x, j, &y));
+  for (int i = 0; i < 2; i++) {
+    const BV images = i ? modal[0].Mx : modal[0].Cx;
+
+    PetscCall(BVGetColumn(images, j, &Ax));
+    PetscCall(VecDot(Ax, y, &product[i]));
+    PetscCall(BVRestoreColumn(images, j, &Ax));
+  }
+  PetscCall(BVRestoreColumn(modal[paired].x, j, &y));
+  *damping = product[1] != 0 ? product[0] / product[1] : NAN;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ProjectionFit(Projection *p, const Spectrum *right, const Spectrum *left)
+PetscErrorCode ProjectionFit(Projection *p, const Spectrum *right, const ModalBlock modal[2])
 {
   PetscReal sum[5] = {0, 0, 0, 0, 0}; /* 1, kappa, kappa^2, c, c kappa, with kappa relative to the window's */
   PetscReal unit   = PetscSqr(PetscMax(p->window->high, p->window->target)), det;
-  Vec       work;
 
   PetscFunctionBeginUser;
   p->alpha = p->beta = 0;
   unit               = PetscMax(unit, PetscSqr(p->window->scale));
-  PetscCall(MatCreateVecs(p->pencil->K, &work, NULL));
-  for (PetscInt i = 0; i < right->n; i++) {
+  for (PetscInt j = 0; j < modal[0].n; j++) {
+    const PetscInt  i     = modal[0].mode[j];
     const PetscReal kappa = right->omega[i] * right->omega[i] / unit;
     PetscReal       c;
 
     if (right->xi[i] || right->sigma[i] != 0) continue;
-    PetscCall(ModeDamping(p, right->xr[i], left->n ? left->xr[i] : right->xr[i], work, &c));
+    PetscCall(ModeDamping(modal, j, &c));
     if (!isfinite(c)) continue;
     sum[0] += 1, sum[1] += kappa, sum[2] += kappa * kappa, sum[3] += c, sum[4] += c * kappa;
   }
-  PetscCall(VecDestroy(&work));
   det = sum[0] * sum[2] - sum[1] * sum[1];
   if (det > FIT_DISTINCT * sum[0] * sum[2]) p->beta = PetscMax(0, (sum[0] * sum[4] - sum[1] * sum[3]) / det);
   if (sum[0] > 0) p->alpha = PetscMax(0, (sum[3] - p->beta * sum[1]) / sum[0]);
@@ -109,7 +114,7 @@ static PetscErrorCode BeyondArnoldi(const Projection *p, BV U, BV images, PetscI
   PetscCall(BVDuplicateResize(p->V, p->k + BEYOND_BLOCK * BEYOND_STEPS, &all));
   PetscCall(BVSetActiveColumns(all, 0, p->k));
   PetscCall(BVCopy(p->V, all));
-  PetscCall(ProjectionCreateBlock(p, BEYOND_BLOCK, &block));
+  PetscCall(BlockCreate(p->V, BEYOND_BLOCK, &block));
   PetscCall(SolverSeed(block, 1984));
   for (PetscInt j = 0; j < BEYOND_BLOCK; j++) PetscCall(BVSetRandomColumn(block, j));
   *n = 0;
@@ -117,7 +122,7 @@ static PetscErrorCode BeyondArnoldi(const Projection *p, BV U, BV images, PetscI
     PetscCall(BlockOrthonormalise(all, p->k + *n, p->pencil->M, 0, block));
     PetscCall(BVGetActiveColumns(block, NULL, &m));
     if (!m) break;
-    PetscCall(ProjectionCreateBlock(p, m, &image));
+    PetscCall(BlockCreate(p->V, m, &image));
     PetscCall(BeyondApply(p, block, image));
     PetscCall(BVSetActiveColumns(all, p->k + *n, p->k + *n + m));
     PetscCall(BVCopy(block, all));
@@ -144,8 +149,8 @@ PetscErrorCode ProjectionMeasureBeyond(const Projection *p, PetscReal *rho)
   PetscReal         *H;
 
   PetscFunctionBeginUser;
-  PetscCall(ProjectionCreateBlock(p, BEYOND_BLOCK * BEYOND_STEPS, &U));
-  PetscCall(ProjectionCreateBlock(p, BEYOND_BLOCK * BEYOND_STEPS, &images));
+  PetscCall(BlockCreate(p->V, BEYOND_BLOCK * BEYOND_STEPS, &U));
+  PetscCall(BlockCreate(p->V, BEYOND_BLOCK * BEYOND_STEPS, &images));
   PetscCall(BeyondArnoldi(p, U, images, &n));
   *rho = 0;
   if (n) {

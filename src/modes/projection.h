@@ -3,11 +3,21 @@
 
 #include "complexvec.h"
 
+#define PROJECTION_KEEP 1e-3 /* of the residual of a mode: less of it is left to the next round */
+
+/* Undamped vectors of one side as real columns, a complex one as two, with C and M times them; or with C' and M' */
+typedef struct {
+  PetscInt  n;
+  PetscInt *mode; /* [n] whose column it is in the spectrum */
+  BV        x, Cx, Mx;
+} ModalBlock;
+
 /* One real basis V for right and left vectors, orthonormal in M, and the dense model on it */
 typedef struct {
   Modes                 modes;
   const PencilMatrices *pencil;
   Mat                   transposed[3]; /* K', C', M' where these differ from K, C, M; else references to them */
+  Mat                   spread;        /* right' where K = K_even + left' right; transposed[0] is K_even then */
   const Window         *window;
   ShiftInvert           si;          /* of P = K - s M */
   PetscReal             alpha, beta; /* of the fit C = alpha M + beta K + R on the modes of the window */
@@ -15,8 +25,9 @@ typedef struct {
   PetscReal             norms[3];    /* of K, C, M, Frobenius */
   PetscReal             limit[2];    /* backward errors of settled right and left vectors */
   BV                    V;
-  PetscInt              k;     /* columns of V */
-  PetscReal            *K, *C; /* V'KV, V'CV [k * k], column-major */
+  BV                    pairs[2]; /* left V, right V where there is `spread` */
+  PetscInt              k;        /* columns of V */
+  PetscReal            *K, *C;    /* V'KV, V'CV [k * k], column-major */
 } Projection;
 
 /* Eigenvalues of the dense model that belong to the window, omega >= 0, with right and left vectors x' x = y' y = 1,
@@ -38,16 +49,28 @@ static inline PetscComplex ProjectionKappa(const Projection *p, PetscComplex lam
 /* projectspace.c - the basis and its model */
 PETSC_INTERN PetscErrorCode ProjectionCreate(Modes modes, const PencilMatrices *pencil, const Window *window,
                                              Projection *p);
-PETSC_INTERN PetscErrorCode ProjectionCreateBlock(const Projection *p, PetscInt n, BV *block);
-/* Takes in what the block (overwritten) holds beyond V, leaving out directions with an M-norm below drop; n_added may be
-   NULL */
-PETSC_INTERN PetscErrorCode ProjectionAdd(Projection *p, PetscReal drop, BV block, PetscInt *n_added);
-/* Those of a spectrum, right or left; of conjugate pairs of kappa one is enough */
-PETSC_INTERN PetscErrorCode ProjectionAddSpectrum(Projection *p, const Spectrum *s);
+/* Y += right' left X, what friction adds to transposed[0] X; nothing where that is K' */
+PETSC_INTERN PetscErrorCode ProjectionAddFriction(const Projection *p, Mat X, Mat Y);
+/* Y = A X for the active columns of X and Y, A one of the pencil's or transposed[], which stands for K' */
+PETSC_INTERN PetscErrorCode ProjectionMultiply(const Projection *p, Mat A, BV X, BV Y);
+/* Takes in what the block (overwritten) holds beyond V, leaving out directions shorter than drop beside its longest
+   column */
+PETSC_INTERN PetscErrorCode ProjectionAdd(Projection *p, PetscReal drop, BV block);
+/* Empties the basis */
+PETSC_INTERN PetscErrorCode ProjectionForget(Projection *p);
 PETSC_INTERN PetscErrorCode ProjectionDestroy(Projection *p);
 
+/* projectstart.c - blocks of both spectra; of conjugate pairs of kappa one vector is enough */
+PETSC_INTERN PetscErrorCode ModalBlocksCreate(const Projection *p, const Spectrum *right, const Spectrum *left,
+                                              ModalBlock modal[2]);
+PETSC_INTERN PetscErrorCode ModalBlocksDestroy(ModalBlock modal[2]);
+/* Adds to the basis P^-1 r of right vectors of the window and P^-T s of left ones, r and s what damping of first order
+   leaves of their residuals; C x of the blocks is overwritten */
+PETSC_INTERN PetscErrorCode ProjectionStart(Projection *p, const Spectrum *right, const Spectrum *left,
+                                            ModalBlock modal[2]);
+
 /* projectfit.c - alpha and beta; exact where R x vanishes for all vectors of the window */
-PETSC_INTERN PetscErrorCode ProjectionFit(Projection *p, const Spectrum *right, const Spectrum *left);
+PETSC_INTERN PetscErrorCode ProjectionFit(Projection *p, const Spectrum *right, const ModalBlock modal[2]);
 /* The measure of damping: the spectral radius of (K - s M)^-1 lambda R / (1 + beta lambda) on the complement of V,
    |lambda| at the top of the window, estimated from a random block */
 PETSC_INTERN PetscErrorCode ProjectionMeasureBeyond(const Projection *p, PetscReal *rho);
@@ -73,10 +96,12 @@ PETSC_INTERN PetscErrorCode ProjectionModesDestroy(ProjectionModes *modes);
 PETSC_INTERN PetscErrorCode ProjectionFollow(const Projection *p, const ProjectionModes *before, ProjectionModes *modes,
                                              PetscBool *followed);
 
-/* projectcorrect.c - adds to the basis P^-1 C x of right vectors of the window and P^-T C' y of left ones, which damping
-   of first order adds to them */
-PETSC_INTERN PetscErrorCode ProjectionStart(Projection *p, const Spectrum *right, const Spectrum *left);
-/* Backward errors of the modes that had not settled; adds P^-1 r, P^-T s of those above the limits to the basis:
+/* projectextend.c - adds P^-1 r of the right residuals and P^-T s of the left ones to the basis, as few as span them
+   within the tolerances of their columns; either block may be NULL, they are overwritten. n_columns = how many, may be
+   NULL */
+PETSC_INTERN PetscErrorCode ProjectionExtend(Projection *p, BV residuals[2], PetscReal *const tolerance[2],
+                                             PetscInt *n_columns);
+/* projectcorrect.c - backward errors of the modes that had not settled; adds P^-1 r, P^-T s of those above the limits to the basis:
    n_columns of them, 0 where all have settled */
 PETSC_INTERN PetscErrorCode ProjectionCorrect(Projection *p, ProjectionModes *modes, PetscInt *n_columns);
 /* The vectors V x, or V y, as a spectrum */

@@ -2,6 +2,7 @@
    The basis of a projection and its dense model; see project.c.
 */
 #include "projection.h"
+#include "base/events.h"
 #include "solver/orthonormal.h"
 
 #define SPACE_SYMMETRIC 1e-13 /* of |A x| |y|: less is rounding */
@@ -43,6 +44,25 @@ static PetscErrorCode TransposeCreate(Mat A, PetscBool symmetric, Mat *At)
   PetscFunctionReturn(0);
 }
 
+/* K' by K_even and the pairs */
+static PetscErrorCode ProjectionSplit(Projection *p)
+{
+  Vec pairs;
+
+  PetscFunctionBeginUser;
+  p->transposed[0] = p->pencil->K_even;
+  PetscCall(PetscObjectReference((PetscObject)p->pencil->K_even));
+  PetscCall(MatTranspose(p->pencil->right, MAT_INITIAL_MATRIX, &p->spread));
+  PetscCall(MatCreateVecs(p->pencil->left, NULL, &pairs));
+  for (int i = 0; i < 2; i++) {
+    PetscCall(BVCreate(p->modes->comm, &p->pairs[i]));
+    PetscCall(BVSetType(p->pairs[i], BVMAT));
+    PetscCall(BVSetSizesFromVec(p->pairs[i], pairs, 1));
+  }
+  PetscCall(VecDestroy(&pairs));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ProjectionCreate(Modes modes, const PencilMatrices *pencil, const Window *window, Projection *p)
 {
   const Mat matrix[3] = {pencil->K, pencil->C, pencil->M};
@@ -50,8 +70,9 @@ PetscErrorCode ProjectionCreate(Modes modes, const PencilMatrices *pencil, const
 
   PetscFunctionBeginUser;
   *p = (Projection){.modes = modes, .pencil = pencil, .window = window};
+  if (pencil->left) PetscCall(ProjectionSplit(p));
   for (int i = 0; i < 3; i++) {
-    PetscCall(TransposeCreate(matrix[i], pencil->symmetric, &p->transposed[i]));
+    if (!p->transposed[i]) PetscCall(TransposeCreate(matrix[i], pencil->symmetric, &p->transposed[i]));
     PetscCall(MatNorm(matrix[i], NORM_FROBENIUS, &p->norms[i]));
   }
   PetscCall(MatCreateVecs(pencil->M, &u, NULL));
@@ -62,64 +83,157 @@ PetscErrorCode ProjectionCreate(Modes modes, const PencilMatrices *pencil, const
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ProjectionCreateBlock(const Projection *p, PetscInt n, BV *block)
+PetscErrorCode ProjectionAddFriction(const Projection *p, Mat X, Mat Y)
 {
+  PetscInt n_local, m;
+  Mat      forces, gaps;
+
   PetscFunctionBeginUser;
-  PetscCall(BVDuplicateResize(p->V, n, block));
-  PetscCall(BVSetActiveColumns(*block, 0, n));
+  if (!p->spread) PetscFunctionReturn(0);
+  PetscCall(MatGetLocalSize(p->pencil->left, &n_local, NULL));
+  PetscCall(MatGetSize(X, NULL, &m));
+  PetscCall(MatCreateDense(p->modes->comm, n_local, PETSC_DECIDE, PETSC_DETERMINE, m, NULL, &gaps));
+  PetscCall(MatDuplicate(Y, MAT_DO_NOT_COPY_VALUES, &forces));
+  PetscCall(BlockMultiply(p->pencil->left, X, gaps));
+  PetscCall(BlockMultiply(p->spread, gaps, forces));
+  PetscCall(MatAXPY(Y, 1, forces, SAME_NONZERO_PATTERN));
+  PetscCall(MatDestroy(&gaps));
+  PetscCall(MatDestroy(&forces));
   PetscFunctionReturn(0);
 }
 
-/* V' A V of a matrix with its transpose, extended by the block */
-static PetscErrorCode ModelExtend(const Projection *p, Mat A, Mat At, BV block, PetscInt first, PetscReal **model)
+PetscErrorCode ProjectionMultiply(const Projection *p, Mat A, BV X, BV Y)
 {
-  Mat H;
+  Mat x, y;
 
   PetscFunctionBeginUser;
-  PetscCall(BlockExtend(p->V, A, PETSC_TRUE, block, first, model));
-  if (A == At) PetscFunctionReturn(0);
-  PetscCall(BlockProducts(p->V, At, block, &H));
-  PetscCall(BlockCopy(H, PETSC_TRUE, p->k, *model + first));
+  PetscCall(BVGetMat(X, &x));
+  PetscCall(BVGetMat(Y, &y));
+  PetscCall(BlockMultiply(A, x, y));
+  if (A == p->transposed[0]) PetscCall(ProjectionAddFriction(p, x, y));
+  PetscCall(BVRestoreMat(Y, &y));
+  PetscCall(BVRestoreMat(X, &x));
+  PetscFunctionReturn(0);
+}
+
+/* The columns of the block behind the first ones of V */
+static PetscErrorCode BasisAppend(PetscInt first, BV block, BV V)
+{
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetActiveColumns(block, NULL, &n));
+  PetscCall(BVResize(V, first + n, PETSC_TRUE));
+  PetscCall(BVSetActiveColumns(V, first, first + n));
+  PetscCall(BVCopy(block, V));
+  PetscCall(BVSetActiveColumns(V, 0, first + n));
+  PetscFunctionReturn(0);
+}
+
+/* From H = V'K W, [k * n], W the last n columns of V, V'K'W = H + (R V)' L W - (L V)' R W; L V and R V are extended */
+static PetscErrorCode PairsExtend(Projection *p, PetscInt first, BV block, PetscScalar H[])
+{
+  const Mat sides[2] = {p->pencil->left, p->pencil->right};
+  PetscInt  n;
+  BV        images[2];
+  Mat       product, sum;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetActiveColumns(block, NULL, &n));
+  for (int i = 0; i < 2; i++) {
+    PetscCall(BlockCreate(p->pairs[i], n, &images[i]));
+    PetscCall(ProjectionMultiply(p, sides[i], block, images[i]));
+    PetscCall(BasisAppend(first, images[i], p->pairs[i]));
+  }
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, p->k, n, H, &sum));
+  for (int i = 0; i < 2; i++) {
+    PetscCall(BlockProducts(p->pairs[1 - i], NULL, images[i], &product));
+    PetscCall(MatAXPY(sum, i ? -1 : 1, product, SAME_NONZERO_PATTERN));
+    PetscCall(MatDestroy(&product));
+  }
+  PetscCall(MatDestroy(&sum));
+  for (int i = 0; i < 2; i++) PetscCall(BVDestroy(&images[i]));
+  PetscFunctionReturn(0);
+}
+
+/* The products of V with columns first .. first + n - 1 of the images into the last columns of a model, or its last rows */
+static PetscErrorCode ModelFill(const Projection *p, PetscBool rows, PetscInt n, PetscScalar H[], PetscReal model[])
+{
+  const PetscInt k = p->k, first = k - n;
+  Mat            part;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, k, n, H, &part));
+  PetscCall(BlockCopy(part, rows, k, rows ? model + first : model + first * k));
+  PetscCall(MatDestroy(&part));
+  PetscFunctionReturn(0);
+}
+
+/* V'KV and V'CV, extended by the block: its products with all matrices at once, of which friction of pairs needs one less */
+static PetscErrorCode ModelsExtend(Projection *p, PetscInt first, BV block)
+{
+  const Mat    A[4]     = {p->pencil->K, p->pencil->C, p->transposed[0], p->transposed[1]};
+  PetscReal  **model[2] = {&p->K, &p->C};
+  PetscInt     n, m = 0, at[4];
+  PetscScalar *h;
+  BV           images;
+  Mat          H;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetActiveColumns(block, NULL, &n));
+  for (int i = 0; i < 4; i++) at[i] = i < 2 || (A[i] != A[i - 2] && (i == 3 || !p->spread)) ? n * m++ : at[i - 2];
+  PetscCall(BlockCreate(p->V, n * m, &images));
+  for (int i = 0; i < 4; i++) {
+    if (i >= 2 && at[i] == at[i - 2]) continue;
+    PetscCall(BVSetActiveColumns(images, at[i], at[i] + n));
+    PetscCall(ProjectionMultiply(p, A[i], block, images));
+  }
+  PetscCall(BVSetActiveColumns(images, 0, n * m));
+  PetscCall(BlockProducts(p->V, NULL, images, &H));
+  PetscCall(BVDestroy(&images));
+  PetscCall(MatDenseGetArray(H, &h));
+  for (int i = 0; i < 4; i++) {
+    if (i < 2) PetscCall(BlockGrow(first, p->k, model[i]));
+    if (i == 2 && p->spread) PetscCall(PairsExtend(p, first, block, &h[at[i] * p->k]));
+    PetscCall(ModelFill(p, i < 2 ? PETSC_FALSE : PETSC_TRUE, n, &h[at[i] * p->k], *model[i % 2]));
+  }
+  PetscCall(MatDenseRestoreArray(H, &h));
   PetscCall(MatDestroy(&H));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ProjectionAdd(Projection *p, PetscReal drop, BV block, PetscInt *n_added)
+PetscErrorCode ProjectionAdd(Projection *p, PetscReal drop, BV block)
 {
   const PetscInt first = p->k;
   PetscInt       n;
+  BlockFactors   factors = {.drop = drop};
 
   PetscFunctionBeginUser;
-  PetscCall(BlockOrthonormalise(p->V, first, p->pencil->M, drop, block));
+  PetscCall(EventBegin(EVENT_ORTHOGONALISE));
   PetscCall(BVGetActiveColumns(block, NULL, &n));
-  if (n_added) *n_added = n;
-  if (!n) PetscFunctionReturn(0);
-  p->k = first + n;
-  PetscCall(BVResize(p->V, p->k, PETSC_TRUE));
-  PetscCall(BVSetActiveColumns(p->V, first, p->k));
-  PetscCall(BVCopy(block, p->V));
-  PetscCall(BVSetActiveColumns(p->V, 0, p->k));
-  PetscCall(ModelExtend(p, p->pencil->K, p->transposed[0], block, first, &p->K));
-  PetscCall(ModelExtend(p, p->pencil->C, p->transposed[1], block, first, &p->C));
+  factors.ld   = first + n;
+  factors.most = n;
+  PetscCall(PetscMalloc1(factors.ld * n, &factors.H));
+  PetscCall(BlockFactorise(p->V, first, p->pencil->M, block, &factors));
+  PetscCall(PetscFree(factors.H));
+  PetscCall(BVGetActiveColumns(block, NULL, &n));
+  if (n) {
+    p->k = first + n;
+    PetscCall(BasisAppend(first, block, p->V));
+    PetscCall(ModelsExtend(p, first, block));
+  }
+  PetscCall(EventEnd(EVENT_ORTHOGONALISE));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ProjectionAddSpectrum(Projection *p, const Spectrum *s)
+PetscErrorCode ProjectionForget(Projection *p)
 {
-  PetscInt n = 0;
-  BV       block;
-
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < s->n; i++) n += s->xi[i] ? 2 : 1;
-  if (!n) PetscFunctionReturn(0);
-  PetscCall(ProjectionCreateBlock(p, n, &block));
-  n = 0;
-  for (PetscInt i = 0; i < s->n; i++) {
-    PetscCall(BVInsertVec(block, n++, s->xr[i]));
-    if (s->xi[i]) PetscCall(BVInsertVec(block, n++, s->xi[i]));
-  }
-  PetscCall(ProjectionAdd(p, 0, block, NULL));
-  PetscCall(BVDestroy(&block));
+  p->k = 0;
+  PetscCall(PetscFree(p->K));
+  PetscCall(PetscFree(p->C));
+  PetscCall(BVResize(p->V, 1, PETSC_FALSE));
+  for (int i = 0; i < 2 && p->spread; i++) PetscCall(BVResize(p->pairs[i], 1, PETSC_FALSE));
   PetscFunctionReturn(0);
 }
 
@@ -127,6 +241,8 @@ PetscErrorCode ProjectionDestroy(Projection *p)
 {
   PetscFunctionBeginUser;
   for (int i = 0; i < 3; i++) PetscCall(MatDestroy(&p->transposed[i]));
+  for (int i = 0; i < 2; i++) PetscCall(BVDestroy(&p->pairs[i]));
+  PetscCall(MatDestroy(&p->spread));
   PetscCall(BVDestroy(&p->V));
   PetscCall(PetscFree(p->K));
   PetscCall(PetscFree(p->C));

@@ -3,6 +3,7 @@
    column, four at a time, and fetches an entry of each from another place in memory; here BLOCK_WIDTH of them lie side by
    side, so that one entry of A meets as many neighbours. The sums of a row are in the order of MatMult().
 */
+#include "base/versions.h"
 #include "orthonormal.h"
 
 #define BLOCK_WIDTH 16
@@ -22,7 +23,8 @@ typedef struct {
 } Rows;
 
 /* Rows times packed columns; y [m] columns, stride apart */
-static void RowsMultiply(const Rows *rows, const PetscScalar packed[], PetscInt m, PetscInt stride, PetscScalar y[])
+static VERSIONS void RowsMultiply(const Rows *rows, const PetscScalar packed[], PetscInt m, PetscInt stride,
+                                  PetscScalar y[])
 {
   for (PetscInt i = 0; i < rows->n; i++) {
     PetscScalar sum[BLOCK_WIDTH] = {0};

@@ -9,7 +9,8 @@
 #include "orthonormal.h"
 #include <petscblaslapack.h>
 
-#define REORTHOGONALISE 1e-9 /* a direction smaller than this beside its block is rounding */
+#define REORTHOGONALISE   1e-9  /* a direction smaller than this beside its block is rounding */
+#define COMPRESS_ROUNDING 1e-13 /* the same of squares */
 
 PetscErrorCode BlockProducts(BV X, Mat A, BV Y, Mat *H)
 {
@@ -98,6 +99,43 @@ PetscErrorCode BlockOrthonormalise(BV V, PetscInt n, Mat M, PetscReal drop, BV W
   if (!m) PetscFunctionReturn(0);
   PetscCall(BlockProject(V, n, M, W));
   PetscCall(BlockScale(M, 0.1, W));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlockCreate(BV like, PetscInt n, BV *block)
+{
+  PetscFunctionBeginUser;
+  PetscCall(BVDuplicateResize(like, n, block));
+  PetscCall(BVSetActiveColumns(*block, 0, n));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlockCompress(const PetscReal tolerance[], BV B, PetscReal sigma[])
+{
+  PetscInt     m, kept = 0;
+  PetscScalar *G;
+  PetscReal   *square;
+  Mat          gram;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetActiveColumns(B, NULL, &m));
+  if (!m) PetscFunctionReturn(0);
+  PetscCall(BlockProducts(B, NULL, B, &gram));
+  PetscCall(PetscMalloc1(m, &square));
+  PetscCall(MatDenseGetArray(gram, &G));
+  for (PetscInt j = 0; j < m; j++)
+    for (PetscInt i = 0; i < m; i++) G[j * m + i] /= tolerance[i] * tolerance[j];
+  PetscCall(GramEigen(PetscObjectComm((PetscObject)B), m, G, square));
+  while (kept < m && square[m - 1 - kept] > PetscMax(1, COMPRESS_ROUNDING * square[m - 1])) kept++;
+  for (PetscInt k = 0; k < kept; k++) {
+    sigma[k] = PetscSqrtReal(square[m - kept + k]);
+    for (PetscInt i = 0; i < m; i++) G[k * m + i] = G[(m - kept + k) * m + i] / (sigma[k] * tolerance[i]);
+  }
+  PetscCall(MatDenseRestoreArray(gram, &G));
+  PetscCall(BVMultInPlace(B, gram, 0, kept));
+  PetscCall(BVSetActiveColumns(B, 0, kept));
+  PetscCall(MatDestroy(&gram));
+  PetscCall(PetscFree(square));
   PetscFunctionReturn(0);
 }
 

@@ -15,6 +15,12 @@ PETSC_INTERN PetscErrorCode BlockCopy(Mat H, PetscBool transposed, PetscInt n, P
 PETSC_INTERN PetscErrorCode BlockOrthonormalise(BV V, PetscInt n, Mat M, PetscReal drop, BV W);
 /* Room for an n x n matrix with the old one, first x first, in its corner. Not collective. */
 PETSC_INTERN PetscErrorCode BlockGrow(PetscInt first, PetscInt n, PetscReal **A);
+/* A block of n active columns like those of another. Collective. */
+PETSC_INTERN PetscErrorCode BlockCreate(BV like, PetscInt n, BV *block);
+/* Replaces the active columns of B by fewer ones of length one that span column j within about tolerance[j] in the sum of
+   squares: left singular vectors of B diag(1 / tolerance), whose singular values, ascending, are in sigma[columns of B]; those
+   below one are left out. Collective; alike on all ranks. */
+PETSC_INTERN PetscErrorCode BlockCompress(const PetscReal tolerance[], BV B, PetscReal sigma[]);
 /* V' A V, so far of the first columns of V, extended by those of the block, the last ones among V's active columns */
 PETSC_INTERN PetscErrorCode BlockExtend(BV V, Mat A, PetscBool symmetric, BV block, PetscInt first,
                                         PetscReal **reduced);
