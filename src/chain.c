@@ -45,6 +45,8 @@ static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
   PetscCall(DynamicsCreate(comm, &chain->dynamics));
   if (chain->model) PetscCall(DynamicsSetModel(chain->dynamics, chain->model, chain->contact));
   PetscCall(DynamicsSetFromOptions(chain->dynamics));
+  PetscCall(ReducedCreate(comm, &chain->reduced));
+  PetscCall(ReducedSetFromOptions(chain->reduced));
   PetscCall(OptionsClaim(chain->claims, READER_DYNAMICS));
   PetscCall(StaticsCreate(comm, &chain->statics));
   PetscCall(StaticsSetFromOptions(chain->statics));
@@ -80,6 +82,7 @@ PetscErrorCode ChainDestroy(Chain *chain)
   for (int i = 0; i < N_SHOWN; i++) PetscCall(PetscViewerDestroy(&chain->viewer[i]));
   PetscCall(OptionsClaimsDestroy(&chain->claims));
   PetscCall(ResultsDestroy(&chain->results));
+  PetscCall(ReducedDestroy(&chain->reduced));
   PetscCall(DynamicsDestroy(&chain->dynamics));
   PetscCall(FrfDestroy(&chain->frf));
   PetscCall(SweepDestroy(&chain->sweep));
@@ -106,7 +109,8 @@ PetscErrorCode ChainCheckOptions(MPI_Comm comm, const Chain *chain)
                              .linear    = chain->modes,
                              .operators = chain->operators,
                              .varied    = chain->sweep,
-                             .dynamics  = chain->dynamics};
+                             .dynamics  = chain->dynamics,
+                             .reduced   = chain->reduced};
 
   PetscFunctionBeginUser;
   PetscCall(ScopeCheck(comm, &scope, chain->claims));
@@ -118,12 +122,15 @@ PetscErrorCode ChainCheckOptions(MPI_Comm comm, const Chain *chain)
 static PetscErrorCode ChainAssemble(Chain *chain)
 {
   const PetscBool transient = chain->analysis == ANALYSIS_TRANSIENT ? PETSC_TRUE : PETSC_FALSE;
-  PetscBool       pairs     = PETSC_TRUE;
+  PetscBool       pairs = PETSC_TRUE, reduced = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   if (transient) PetscCall(DynamicsNeedsPairs(chain->dynamics, &pairs));
+  if (transient) PetscCall(ReducedIsAsked(chain->reduced, &reduced));
+  if (reduced) PetscCall(OperatorsLump(chain->operators));
+  if (reduced) pairs = PETSC_TRUE;
   if (chain->model) {
-    if (transient) PetscCall(ModelKeepSlabs(chain->model));
+    if (transient && !reduced) PetscCall(ModelKeepSlabs(chain->model));
     if (pairs) PetscCall(ModelHoldMotions(chain->model)); /* in time they move */
     PetscCall(SquealStageBegin(SQUEAL_MODEL));
     PetscCall(ModelSetUp(chain->model));
@@ -169,6 +176,7 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscFunctionBeginUser;
   PetscCall(StaticsSetOperators(chain->statics, chain->operators));
   PetscCall(DynamicsSetOperators(chain->dynamics, chain->operators, chain->statics));
+  PetscCall(ReducedSetRooms(chain->reduced, chain->dynamics, chain->modes));
   PetscCall(ModesGetContact(chain->modes, &is_static));
   PetscCall(StaticsCheckUse(chain->statics, is_static && chain->analysis != ANALYSIS_STATIC));
   PetscCall(OperatorsCreatePoint(chain->operators, &chain->p));
@@ -208,6 +216,18 @@ static PetscErrorCode ChainWriteFrf(Chain *chain)
   PetscFunctionReturn(0);
 }
 
+/* In time on the mesh, or reduced */
+static PetscErrorCode ChainIntegrate(Chain *chain)
+{
+  PetscBool reduced;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedIsAsked(chain->reduced, &reduced));
+  PetscCall(reduced ? ReducedIntegrate(chain->reduced, chain->results)
+                    : DynamicsSolve(chain->dynamics, chain->results));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ChainRun(Chain *chain)
 {
   static const struct {
@@ -234,7 +254,7 @@ PetscErrorCode ChainRun(Chain *chain)
   if (analysis == ANALYSIS_MODES) PetscCall(ModesSolve(chain->modes));
   if (analysis == ANALYSIS_SWEEP) PetscCall(SweepSolve(chain->sweep, chain->results));
   if (analysis == ANALYSIS_STATIC) PetscCall(StaticsSolve(chain->statics, chain->p));
-  if (analysis == ANALYSIS_TRANSIENT) PetscCall(DynamicsSolve(chain->dynamics, chain->results));
+  if (analysis == ANALYSIS_TRANSIENT) PetscCall(ChainIntegrate(chain));
   if (analysis == ANALYSIS_FRF) PetscCall(FrfSolve(chain->frf));
   PetscCall(SquealStageEnd(run[analysis].stage));
   PetscCall(ChainShow(chain, run[analysis].shown, PETSC_TRUE));

@@ -31,6 +31,7 @@ typedef struct {
   Sweep         sweep;
   Frf           frf;
   Dynamics      dynamics;
+  ReducedRun       reduced; /* the same runs on few coordinates, where asked for */
   Results       results;
   Analysis      analysis;
   OptionsClaims claims; /* who read what stands on the command line */

@@ -34,6 +34,17 @@ PetscErrorCode ChainCheckViewers(MPI_Comm comm, const Chain *chain)
   PetscFunctionReturn(0);
 }
 
+/* The run in time */
+static PetscErrorCode TransientView(Chain *chain, PetscViewer viewer)
+{
+  PetscBool reduced;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedIsAsked(chain->reduced, &reduced));
+  PetscCall(reduced ? ReducedView(chain->reduced, viewer) : DynamicsView(chain->dynamics, viewer));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ShownView(Chain *chain, Shown what, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
@@ -45,7 +56,7 @@ static PetscErrorCode ShownView(Chain *chain, Shown what, PetscViewer viewer)
   if (what == SHOWN_MODES) PetscCall(ModesView(chain->modes, viewer));
   if (what == SHOWN_SWEEP) PetscCall(SweepView(chain->sweep, viewer));
   if (what == SHOWN_FRF) PetscCall(FrfView(chain->frf, viewer));
-  if (what == SHOWN_DYNAMICS) PetscCall(DynamicsView(chain->dynamics, viewer));
+  if (what == SHOWN_DYNAMICS) PetscCall(TransientView(chain, viewer));
   PetscFunctionReturn(0);
 }
 

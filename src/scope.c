@@ -9,11 +9,14 @@ static PetscErrorCode ScopeNeedsStatics(const Scope *s, PetscBool *needs)
 {
   const ContactInterface *interfaces;
   PetscInt                n = 0;
+  PetscBool               reduced;
 
   PetscFunctionBeginUser;
   *needs = PETSC_TRUE;
   if (s->modes) PetscCall(ModesGetContact(s->linear, needs));
   if (s->transient) PetscCall(DynamicsNeedsPairs(s->dynamics, needs));
+  if (s->transient) PetscCall(ReducedIsAsked(s->reduced, &reduced));
+  if (s->transient && reduced) *needs = PETSC_TRUE;
   if (s->contact) PetscCall(ContactGetInterfaces(s->contact, &n, &interfaces));
   for (PetscInt i = 0; i < n; i++)
     if (interfaces[i].identify) *needs = PETSC_TRUE;
@@ -238,9 +241,11 @@ PetscErrorCode ScopeCheck(MPI_Comm comm, const Scope *s, OptionsClaims claims)
     [READER_FRF]       = {s->frf,       "-analysis frf"                                                             },
     [READER_DYNAMICS]  = {s->transient, "-analysis transient"                                                       },
   };
-  PetscBool statics;
+  PetscBool statics, reduced;
 
   PetscFunctionBeginUser;
+  PetscCall(ReducedIsAsked(s->reduced, &reduced));
+  if (s->transient && reduced) readers[READER_MODES].in_force = readers[READER_FACTOR].in_force = PETSC_TRUE;
   PetscCall(ScopeNeedsStatics(s, &statics));
   readers[READER_STATICS].in_force = statics;
   if (statics) readers[READER_FACTOR].in_force = PETSC_TRUE;

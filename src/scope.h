@@ -27,6 +27,7 @@ typedef struct {
   Modes       linear;
   Sweep       varied;
   Dynamics    dynamics;
+  ReducedRun     reduced;
 } Scope;
 
 /* Raises an error for an option of the command line that a reader claimed of whom the run has no need. Collective. */

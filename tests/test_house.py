@@ -26,6 +26,7 @@ MOST_FILE, MOST_MAIN, MOST_BODY, MOST_ARGUMENTS, MOST_README = 350, 80, 80, 6, 2
 CHAIN = ("base", "kernels", "model", "contact", "operators", "solver", "statics", "modes", "sweep")
 BELOW = {room: {*CHAIN[:k + 1], *(("results",) if k > 1 else ())} for k, room in enumerate(CHAIN)}
 BELOW["frf"] = BELOW["modes"] | {"frf"}
+BELOW["reduced"] = BELOW["modes"] | {"dynamics", "reduced"}
 BELOW |= {"results": {"base", "kernels", "results"},
           "dynamics": {"base", "kernels", "model", "contact", "operators", "statics", "results", "dynamics"}}
 LAYERS = {"dense": {"dense"}, "basis": {"dense", "basis"}, "track": {"dense", "track"}}

@@ -63,6 +63,10 @@ PetscErrorCode OperatorsHaveMatrices(Operators operators, PetscBool *have);
 /*@ OperatorsHaveDamping - whether there is a damping one among them. Not collective. @*/
 PetscErrorCode OperatorsHaveDamping(Operators operators, PetscBool *have);
 
+/*@ OperatorsLump - the mass matrix is lumped whatever the options say, as that of transients. Before OperatorsSetUp(). Not
+    collective. @*/
+PetscErrorCode OperatorsLump(Operators operators);
+
 /*@ OperatorsSetUp - assembles the bodies or loads the matrices. Collective. @*/
 PetscErrorCode OperatorsSetUp(Operators operators);
 

@@ -72,6 +72,12 @@ PetscErrorCode ContactProjectorSetUp(ContactProjector projector);
 PetscErrorCode ContactProjectorGetTurning(ContactProjector projector, PetscInt interface, PetscBool *turns,
                                           PetscReal rotation[3]);
 
+/*@ ContactProjectorGetWay - what the ramp of the sliding velocity of an interface leaves of the time from t0 to t1,
+    int r dt (s), and whether its master moves (-contact_kinematics turning); no ContactProjectorSetUp() is needed. Not
+    collective. @*/
+PetscErrorCode ContactProjectorGetWay(ContactProjector projector, PetscInt interface, const PetscReal t[2],
+                                      PetscReal *way, PetscBool *turning);
+
 /*@ ContactProjectorGetNodes - local nodes (from 0) of contact surfaces on this rank, copies included, [n]
     (borrowed). Not collective. @*/
 PetscErrorCode ContactProjectorGetNodes(ContactProjector projector, PetscInt *n, const PetscInt **vertex);

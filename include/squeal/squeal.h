@@ -14,4 +14,5 @@
 #include <squeal/frf.h>
 #include <squeal/projector.h>
 #include <squeal/dynamics.h>
+#include <squeal/reduced.h>
 #include <squeal/results.h>

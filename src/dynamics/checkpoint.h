@@ -8,6 +8,9 @@
 
 #define CHECKPOINT_FILE "checkpoint.bin"
 
+/* Numbers of a struct that is made of reals alone */
+#define N_REALS(type) ((PetscInt)(sizeof(type) / sizeof(PetscReal)))
+
 /* Array of this rank; n and values are of the writer, at reading n must agree (n < 0: any, the reader allocates values)
  */
 typedef struct {

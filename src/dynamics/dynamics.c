@@ -4,8 +4,6 @@
 #include "dynamicsimpl.h"
 #include "stop.h"
 
-#define STOP_INTERVAL 50 /* steps between two looks at signals */
-
 PetscErrorCode DynamicsCreate(MPI_Comm comm, Dynamics *dynamics)
 {
   PetscFunctionBeginUser;
@@ -92,8 +90,7 @@ static PetscErrorCode DynamicsCreateState(Dynamics d)
   PetscFunctionReturn(0);
 }
 
-/* A step that divides the time that is left, where the run shall end exactly at -ts_max_time */
-static PetscErrorCode DynamicsMatchEnd(Dynamics d, PetscReal *dt)
+PetscErrorCode DynamicsMatchEnd(Dynamics d, PetscReal *dt)
 {
   TSExactFinalTimeOption end;
   PetscReal              begin, time;
@@ -127,7 +124,7 @@ static PetscErrorCode DynamicsChooseStep(Dynamics d)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode DynamicsCheckEnd(Dynamics d, PetscReal *end)
+PetscErrorCode DynamicsCheckEnd(Dynamics d, PetscReal dt, PetscReal *end)
 {
   PetscInt max_steps;
 
@@ -137,12 +134,7 @@ static PetscErrorCode DynamicsCheckEnd(Dynamics d, PetscReal *end)
   PetscCheck(*end < PETSC_MAX_REAL || max_steps < PETSC_MAX_INT, d->comm, PETSC_ERR_USER_INPUT,
              "-ts_max_time must be given: how long to integrate (s); or -ts_max_steps");
   PetscCheck(*end > 0, d->comm, PETSC_ERR_USER_INPUT, "-ts_max_time %.6g must be a positive time (s)", (double)*end);
-  if (*end >= PETSC_MAX_REAL) {
-    PetscReal dt;
-
-    PetscCall(TSGetTimeStep(d->ts, &dt));
-    *end = dt * (PetscReal)max_steps;
-  }
+  if (*end >= PETSC_MAX_REAL) *end = dt * (PetscReal)max_steps;
   PetscFunctionReturn(0);
 }
 
@@ -184,8 +176,8 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscCall(DynamicsCreateState(d));
   PetscCall(DynamicsFindCriticalStep(d));
   PetscCall(DynamicsChooseStep(d));
-  PetscCall(DynamicsCheckEnd(d, &end));
   PetscCall(TSGetTimeStep(d->ts, &dt));
+  PetscCall(DynamicsCheckEnd(d, dt, &end));
   PetscCall(HistorySetUp(
     d->history, &(HistorySource){d->model, d->layout, d->projector, d->n_interfaces, d->interfaces, results}, end, dt));
   PetscCall(TSSetUp(d->ts));

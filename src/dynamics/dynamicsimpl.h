@@ -7,6 +7,7 @@
 #include "dynamics/external/external.h"
 #include "dynamics/history/history.h"
 #include "dynamics/central/tscentral.h"
+#include "run.h"
 
 typedef enum { START_REST, START_STATIC, N_STARTS } DynamicsStart;
 
@@ -66,6 +67,11 @@ struct _p_Dynamics {
   PetscBool      ended;   /* all steps are done: the last balance is due */
 };
 
+/* dynamics.c - a step that divides the time that is left, where the run shall end exactly at -ts_max_time; when it ends, s,
+   with steps dt */
+PETSC_INTERN PetscErrorCode DynamicsMatchEnd(Dynamics dynamics, PetscReal *dt);
+PETSC_INTERN PetscErrorCode DynamicsCheckEnd(Dynamics dynamics, PetscReal dt, PetscReal *end);
+
 /* forces.c - callbacks of the TS: forces, contact, and what is recorded when they are complete */
 PETSC_INTERN PetscErrorCode DynamicsForce(TS ts, const CentralStep *step, void *ctx);
 PETSC_INTERN PetscErrorCode DynamicsConstrain(TS ts, const CentralStep *step, void *ctx);
@@ -87,7 +93,8 @@ PETSC_INTERN PetscErrorCode StateVectorFromVec(Model model, const Layout *layout
 PETSC_INTERN PetscErrorCode StateVectorFromDisplacements(Model model, const Layout *layout, Vec u, PetscReal state[]);
 PETSC_INTERN PetscErrorCode StateVectorToVec(Model model, const Layout *layout, const PetscReal state[], Vec x);
 
-/* startstate.c - displacements and velocities at the start */
+/* startstate.c - displacements and velocities at the start; raises errors for what a static start has no place for */
+PETSC_INTERN PetscErrorCode DynamicsCheckStatic(Dynamics dynamics);
 PETSC_INTERN PetscErrorCode DynamicsStartState(Dynamics dynamics);
 
 /* filters.c - modal filters of -dynamics_filters for the history, which solves the sliding state; frees them */
@@ -98,8 +105,5 @@ PETSC_INTERN PetscErrorCode DynamicsDestroyFilters(Dynamics dynamics);
 PETSC_INTERN PetscErrorCode DynamicsKeep(Dynamics dynamics);
 PETSC_INTERN PetscErrorCode DynamicsGoOn(Dynamics dynamics);
 
-/* takes away the checkpoint of an earlier run, whose tables a run that starts anew replaces: nothing must go on from it
-   with these. Collective. */
-PETSC_INTERN PetscErrorCode DynamicsForget(Dynamics dynamics);
 /* raises an error where that would lose the checkpoint of an unfinished run, or a file that is not squeal's. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsCheckEarlier(Dynamics dynamics);

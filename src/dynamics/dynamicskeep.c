@@ -7,8 +7,6 @@
 #include <errno.h>
 #include <unistd.h>
 
-#define N_REALS(type) ((PetscInt)(sizeof(type) / sizeof(PetscReal)))
-
 /* Scalars of a run */
 typedef struct {
   PetscReal     time, dt, dt_old, step;
@@ -33,14 +31,13 @@ typedef enum {
 
 /* What a run must share with the one that it goes on with. The end, intervals of what is recorded and tolerances of the
    contact forces may change */
-static PetscErrorCode DynamicsAddChecksum(Dynamics d, Checksum c)
+PetscErrorCode DynamicsAddRunChecksum(Dynamics d, Checksum c)
 {
   PetscFunctionBeginUser;
   PetscCall(ModelAddChecksum(d->model, PETSC_TRUE, c));
   if (d->contact) PetscCall(ContactAddChecksum(d->contact, c));
   if (d->projector) PetscCall(ContactProjectorAddChecksum(d->projector, c));
   PetscCall(ExternalAddChecksum(d->external, c));
-  PetscCall(BodiesAddChecksum(d->bodies, c));
   PetscCall(HistoryAddChecksum(d->history, c));
   if (d->start == START_STATIC) PetscCall(StaticsAddChecksum(d->statics, c));
   PetscCall(ChecksumSetPart(c, "the start"));
@@ -48,6 +45,15 @@ static PetscErrorCode DynamicsAddChecksum(Dynamics d, Checksum c)
   PetscCall(ChecksumAddString(c, d->shape));
   if (d->shape[0]) PetscCall(ChecksumAddInts(c, 1, &d->shape_mode));
   if (d->shape[0]) PetscCall(ChecksumAddReals(c, 1, &d->shape_amplitude));
+  PetscFunctionReturn(0);
+}
+
+/* And what concerns the integrator */
+static PetscErrorCode DynamicsAddChecksum(Dynamics d, Checksum c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(DynamicsAddRunChecksum(d, c));
+  PetscCall(BodiesAddChecksum(d->bodies, c));
   PetscCall(ChecksumSetPart(c, "-ts_central_b"));
   PetscCall(ChecksumAddReals(c, 1, &d->b));
   PetscCall(ChecksumSetPart(c, "-dynamics_step_fraction"));

@@ -4,7 +4,7 @@
 */
 #include "dynamicsimpl.h"
 
-static PetscErrorCode LedgerView(const Ledger *l, PetscViewer viewer)
+PetscErrorCode LedgerView(const Ledger *l, PetscViewer viewer)
 {
   const struct {
     const char *name;

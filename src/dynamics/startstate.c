@@ -28,7 +28,7 @@ static PetscErrorCode StartCheckAbsent(Dynamics d, const char name[], const char
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode StartCheckStatic(Dynamics d)
+PetscErrorCode DynamicsCheckStatic(Dynamics d)
 {
   static const char *const ramps[]    = {"_ramp", "_delay"};
   const ContactInterface  *interfaces = d->interfaces;
@@ -49,35 +49,52 @@ static PetscErrorCode StartCheckStatic(Dynamics d)
   PetscFunctionReturn(0);
 }
 
-/* u += A re, v += A (sigma re - omega im) */
-static PetscErrorCode StartAddShape(Dynamics d, PetscReal u[], PetscReal v[])
+PetscErrorCode DynamicsGetShape(Dynamics d, PetscReal u[], PetscReal v[])
 {
-  const PetscInt n = d->layout->n_vertices;
-  PetscReal     *re, *im, lambda[2], largest = 0;
+  const Mesh *mesh;
+  PetscInt    n;
+  PetscReal  *re, *im, lambda[2], largest = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(3 * n, &re, 3 * n, &im));
+  PetscCall(ModelGetMesh(d->model, &mesh));
+  n = 3 * mesh->n_nodes;
+  PetscCall(PetscArrayzero(u, n));
+  PetscCall(PetscArrayzero(v, n));
+  if (!d->shape[0]) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc2(n, &re, n, &im));
   PetscCall(ShapeRead(d->model,
                       &(ShapeSource){"-dynamics_shape", "-dynamics_shape_mode", "-output_fields", d->shape, "modes.h5",
                                      "", d->shape_mode},
                       re, im, lambda));
-  for (PetscInt i = 0; i < 3 * n; i++) largest = PetscMax(largest, PetscAbsReal(re[i]));
+  for (PetscInt i = 0; i < n; i++) largest = PetscMax(largest, PetscAbsReal(re[i]));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPI_MAX, d->comm));
   PetscCheck(largest > 0, d->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_shape_mode %" PetscInt_FMT " of -dynamics_shape %s has no real part", d->shape_mode, d->shape);
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal scale = d->shape_amplitude / largest;
-    PetscReal       du[3], dv[3];
 
-    for (int c = 0; c < 3; c++) {
-      du[c] = scale * re[3 * i + c];
-      dv[c] = scale * (lambda[0] * re[3 * i + c] - lambda[1] * im[3 * i + c]);
-    }
-    if (d->layout->at[i] < 0) continue;
-    LayoutAdd(d->layout, i, du, u);
-    LayoutAdd(d->layout, i, dv, v);
+    u[i] = scale * re[i];
+    v[i] = scale * (lambda[0] * re[i] - lambda[1] * im[i]);
   }
   PetscCall(PetscFree2(re, im));
+  PetscFunctionReturn(0);
+}
+
+/* u += A re, v += A (sigma re - omega im) */
+static PetscErrorCode StartAddShape(Dynamics d, PetscReal u[], PetscReal v[])
+{
+  const PetscInt n = d->layout->n_vertices;
+  PetscReal     *du, *dv;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(3 * n, &du, 3 * n, &dv));
+  PetscCall(DynamicsGetShape(d, du, dv));
+  for (PetscInt i = 0; i < n; i++) {
+    if (d->layout->at[i] < 0) continue;
+    LayoutAdd(d->layout, i, &du[3 * i], u);
+    LayoutAdd(d->layout, i, &dv[3 * i], v);
+  }
+  PetscCall(PetscFree2(du, dv));
   PetscFunctionReturn(0);
 }
 
@@ -125,7 +142,7 @@ PetscErrorCode DynamicsStartState(Dynamics d)
   if (d->start == START_STATIC) {
     Vec displacement;
 
-    PetscCall(StartCheckStatic(d));
+    PetscCall(DynamicsCheckStatic(d));
     PetscCall(StaticsSolve(d->statics, NULL));
     PetscCall(StaticsGetState(d->statics, NULL, &displacement));
     PetscCall(StateVectorFromDisplacements(d->model, d->layout, displacement, u));

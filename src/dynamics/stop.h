@@ -14,6 +14,8 @@
 
 #include <petscsys.h>
 
+#define STOP_INTERVAL 50 /* steps between two looks at signals */
+
 /*@ StopInstall - begins to listen; the mark is taken away. Not collective. @*/
 PETSC_INTERN PetscErrorCode StopInstall(void);
 

@@ -228,10 +228,13 @@ PetscErrorCode PencilAddContact(Pencil pencil)
 PetscErrorCode PencilCheckSliding(Pencil pencil)
 {
   const ContactInterface *c;
-  PetscInt                n;
+  PetscInt                n, n_closed = 0;
 
   PetscFunctionBeginUser;
   if (!pencil->operators->model) PetscFunctionReturn(0);
+  for (PetscInt p = 0; p < pencil->n_pairs; p++) n_closed += pencil->group[p] >= 0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_closed, 1, MPIU_INT, MPI_SUM, pencil->comm));
+  if (pencil->from_state && !n_closed) PetscFunctionReturn(0); /* the bodies alone */
   PetscCall(ContactGetInterfaces(pencil->operators->contact, &n, &c));
   for (PetscInt i = 0; i < n; i++) {
     PetscCheck(c[i].slides || (c[i].mu == 0 && !c[i].damping), pencil->comm, PETSC_ERR_USER_INPUT,

@@ -53,6 +53,13 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OperatorsLump(Operators operators)
+{
+  PetscFunctionBeginUser;
+  operators->lump = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OperatorsHaveMatrices(Operators operators, PetscBool *have)
 {
   PetscFunctionBeginUser;

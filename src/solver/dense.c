@@ -88,7 +88,8 @@ PetscErrorCode DenseEigen(PetscInt size, PetscReal A[], PetscReal wr[], PetscRea
   PetscCall(PetscBLASIntCast(size, &n));
   PetscCall(PetscBLASIntCast(66 * size + 64, &work_size)); /* blocks of 64 columns */
   PetscCall(PetscMalloc1(work_size, &work));
-  PetscCallBLAS("LAPACKgeev", LAPACKgeev_("V", "V", &n, A, &n, wr, wi, L, &n, R, &n, work, &work_size, &info));
+  PetscCallBLAS("LAPACKgeev",
+                LAPACKgeev_(L ? "V" : "N", R ? "V" : "N", &n, A, &n, wr, wi, L, &n, R, &n, work, &work_size, &info));
   PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED, "LAPACK geev: info %d", (int)info);
   PetscCall(PetscFree(work));
   PetscFunctionReturn(0);

@@ -13,7 +13,8 @@ PetscErrorCode DenseSolve(PetscInt n, const PetscReal LU[], const PetscBLASInt p
 PetscErrorCode DenseComplexFactor(PetscInt n, PetscComplex A[], PetscBLASInt pivot[], PetscBool *singular);
 PetscErrorCode DenseComplexSolve(PetscInt n, const PetscComplex LU[], const PetscBLASInt pivot[], PetscBool transposed,
                                  PetscInt m, PetscComplex B[]);
-/* Eigenvalues wr + i wi of A (overwritten), right vectors R and left ones L in LAPACK's real storage, u^H A = w u^H */
+/* Eigenvalues wr + i wi of A (overwritten), right vectors R and left ones L in LAPACK's real storage, u^H A = w u^H; NULL for
+   not */
 PetscErrorCode DenseEigen(PetscInt n, PetscReal A[], PetscReal wr[], PetscReal wi[], PetscReal L[], PetscReal R[]);
 /* A x = w B x, A symmetric, B positive definite (else *definite is false) or NULL for the identity: w ascending,
    vectors in place of A */

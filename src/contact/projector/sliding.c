@@ -85,6 +85,17 @@ void SlidingFrame(const ContactInterface *c, const ContactSliding *sliding, Pets
     for (int d = 0; d < 3; d++) frame->shift[d] = -way * sliding->axis[d];
 }
 
+PetscErrorCode ContactProjectorGetWay(ContactProjector p, PetscInt interface, const PetscReal t[2], PetscReal *way,
+                                      PetscBool *turning)
+{
+  const ContactSliding *sliding = &p->sliding[interface];
+
+  PetscFunctionBeginUser;
+  *way     = RampIntegral(&sliding->ramp, t[1]) - RampIntegral(&sliding->ramp, t[0]);
+  *turning = sliding->turning;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SlidingView(const ContactInterface *c, const ContactSliding *sliding, PetscViewer viewer)
 {
   PetscFunctionBeginUser;

@@ -94,6 +94,17 @@ PETSC_INTERN PetscBool ExternalIsHitting(External external);
 PETSC_INTERN PetscErrorCode ExternalCountHits(External external, PetscInt *n);
 PETSC_INTERN PetscErrorCode ExternalGetHit(External external, PetscInt i, ExternalHit *hit);
 
+/* ExternalGetLoadFactor - the factor of load i of the scene at time t. Not collective. */
+PETSC_INTERN PetscReal ExternalGetLoadFactor(External external, PetscInt i, PetscReal t);
+
+/* ExternalFindHit - the impulse i of the scene, due at `time` (s), and its node: local on one rank that has it, -1 on all
+   others; no ExternalSetUp() is needed. Collective. Errors: PETSC_ERR_USER_INPUT for a node that is held in its
+   direction. */
+PETSC_INTERN PetscErrorCode ExternalFindHit(External external, PetscInt i, ExternalHit *hit, PetscInt *vertex);
+
+/* ExternalGetVelocity - of the parts at the start, [parts][3], m/s (borrowed). Not collective. */
+PETSC_INTERN const PetscReal *ExternalGetVelocity(External external);
+
 /* ExternalGetMemory - what must be kept between two steps for a bitwise restart: n numbers of this rank (borrowed, and
    written in place; valid until the next ExternalSetFrame() of another part). Not collective. */
 PETSC_INTERN PetscErrorCode ExternalGetMemory(External external, PetscInt *n, PetscReal **values);

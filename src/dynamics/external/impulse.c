@@ -89,6 +89,16 @@ static PetscErrorCode ImpulsePlace(External external, PetscInt vertex, Impulse *
   PetscFunctionReturn(0);
 }
 
+/* Raises the error for an impulse that does nothing */
+static PetscErrorCode ImpulseCheckMoves(External external, const Impulse *hit, PetscBool moves)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(moves, external->comm, PETSC_ERR_USER_INPUT,
+             "-%s_impulse does nothing: the node at %.6g, %.6g, %.6g m is held in its direction", hit->name,
+             (double)hit->x[0], (double)hit->x[1], (double)hit->x[2]);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ImpulsesSetUp(External external)
 {
   PetscFunctionBeginUser;
@@ -101,9 +111,7 @@ PetscErrorCode ImpulsesSetUp(External external)
     PetscCall(ImpulseFindCopy(external->model, &vertex));
     PetscCall(ForcePatternCreate(external->layout, vertex >= 0, &vertex, hit->impulse, &hit->pattern));
     PetscCall(ImpulsePlace(external, vertex, hit, &moves));
-    PetscCheck(moves, external->comm, PETSC_ERR_USER_INPUT,
-               "-%s_impulse does nothing: the node at %.6g, %.6g, %.6g m is held in its direction", hit->name,
-               (double)hit->x[0], (double)hit->x[1], (double)hit->x[2]);
+    PetscCall(ImpulseCheckMoves(external, hit, moves));
   }
   PetscFunctionReturn(0);
 }
@@ -149,6 +157,28 @@ PetscErrorCode ExternalGetHit(External external, PetscInt i, ExternalHit *hit)
 
   PetscFunctionBeginUser;
   *hit = (ExternalHit){.name = from->name, .time = from->last[1]};
+  PetscCall(PetscArraycpy(hit->x, from->x, 3));
+  PetscCall(PetscArraycpy(hit->impulse, from->impulse, 3));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExternalFindHit(External external, PetscInt i, ExternalHit *hit, PetscInt *vertex)
+{
+  Impulse    *from = &external->impulses[i];
+  const Mesh *mesh;
+  PetscReal   here[4] = {0, 0, 0, 0};
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(external->model, &mesh));
+  PetscCall(ModelFindNode(external->model, from->part, from->at, vertex));
+  for (int d = 0; d < 3 && *vertex >= 0; d++) {
+    here[d] = mesh->x[3 * *vertex + d];
+    if (mesh->unknown[3 * *vertex + d] >= 0) here[3] += PetscAbsReal(from->impulse[d]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, here, 4, MPIU_REAL, MPI_SUM, external->comm));
+  PetscCall(PetscArraycpy(from->x, here, 3));
+  PetscCall(ImpulseCheckMoves(external, from, here[3] > 0 ? PETSC_TRUE : PETSC_FALSE));
+  *hit = (ExternalHit){.name = from->name, .time = from->time};
   PetscCall(PetscArraycpy(hit->x, from->x, 3));
   PetscCall(PetscArraycpy(hit->impulse, from->impulse, 3));
   PetscFunctionReturn(0);

@@ -78,6 +78,11 @@ PetscErrorCode TimedLoadsAdvance(External external, const ExternalStep *step, Ex
   PetscFunctionReturn(0);
 }
 
+PetscReal ExternalGetLoadFactor(External external, PetscInt i, PetscReal t)
+{
+  return RampValue(&external->loads[i].ramp, t);
+}
+
 PetscErrorCode TimedLoadsView(External external, PetscViewer viewer)
 {
   char words[160];

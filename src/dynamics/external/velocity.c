@@ -85,6 +85,11 @@ PetscErrorCode ExternalSetVelocity(External external, PetscReal v[])
   PetscFunctionReturn(0);
 }
 
+const PetscReal *ExternalGetVelocity(External external)
+{
+  return external->velocity;
+}
+
 PetscErrorCode VelocityView(External external, PetscViewer viewer)
 {
   const ModelScene *scene;

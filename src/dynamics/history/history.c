@@ -17,8 +17,8 @@ typedef struct {
 
 #define N_KEPT (PetscInt)(sizeof(HistoryKept) / sizeof(PetscReal))
 
-void HistoryMotion(const Layout *layout, const HistoryState *state, PetscInt i, PetscReal u[3], PetscReal v[3],
-                   PetscReal a[3])
+static void LayoutMotion(const Layout *layout, const HistoryState *state, PetscInt i, PetscReal u[3], PetscReal v[3],
+                         PetscReal a[3])
 {
   const Layout    one  = {.at = (PetscInt[]){0}, .step = (PetscInt[]){1}, .basis = &layout->basis[9 * i]};
   const PetscReal kick = state->dt * state->b, kick_old = state->dt * (0.5 - state->b);
@@ -35,6 +35,15 @@ void HistoryMotion(const Layout *layout, const HistoryState *state, PetscInt i, 
   LayoutGet(&one, 0, local_u, u);
   LayoutGet(&one, 0, local_v, v);
   LayoutGet(&one, 0, local_a, a);
+}
+
+void HistoryMotion(const Layout *layout, const HistoryState *state, PetscInt i, PetscReal u[3], PetscReal v[3],
+                   PetscReal a[3])
+{
+  if (state->motions)
+    state->motions->at(state->motions->ctx, i, u, v, a);
+  else
+    LayoutMotion(layout, state, i, u, v, a);
 }
 
 PetscErrorCode HistoryCreate(MPI_Comm comm, History *history)
@@ -109,6 +118,13 @@ PetscErrorCode HistorySetFilters(History history, const HistoryFilters *filters)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode HistoryHasFields(History history, PetscBool *fields)
+{
+  PetscFunctionBeginUser;
+  *fields = history->frames.interval > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 PetscBool HistoryIsDue(History history, PetscReal t, PetscReal dt)
 {
   return ScheduleIsDue(&history->rows, t, dt) || ScheduleIsDue(&history->pairs, t, dt) ||
@@ -171,13 +187,16 @@ static PetscErrorCode HistoryBeginTables(History history, const ResultsMark mark
 }
 
 /* States of the pairs in the step from t_n */
-static PetscErrorCode HistoryRecordPairs(History history, PetscReal time)
+static PetscErrorCode HistoryRecordPairs(History history, const HistoryState *state)
 {
   HistoryPairs p;
 
   PetscFunctionBeginUser;
-  PetscCall(ContactProjectorGetStates(history->source.projector, &p.n, &p.state, &p.interface, &p.number, &p.x));
-  PetscCall(HistoryWritePairs(history->pair_table, history->comm, history->source.interfaces, time, &p));
+  if (state->pairs)
+    p = *state->pairs;
+  else
+    PetscCall(ContactProjectorGetStates(history->source.projector, &p.n, &p.state, &p.interface, &p.number, &p.x));
+  PetscCall(HistoryWritePairs(history->pair_table, history->comm, history->source.interfaces, state->time, &p));
   PetscFunctionReturn(0);
 }
 
@@ -192,7 +211,7 @@ PetscErrorCode HistoryRecord(History history, const HistoryState *state)
     if (history->n_circles) PetscCall(HistoryWriteCircles(history, state));
     PetscCall(LiveShow(history, state));
   }
-  if (ScheduleMeet(&history->pairs, state->time, state->dt)) PetscCall(HistoryRecordPairs(history, state->time));
+  if (ScheduleMeet(&history->pairs, state->time, state->dt)) PetscCall(HistoryRecordPairs(history, state));
   if (ScheduleMeet(&history->frames, state->time, state->dt)) PetscCall(SnapshotWrite(history, state));
   PetscFunctionReturn(0);
 }

@@ -10,21 +10,40 @@
 
 typedef struct _p_History *History;
 
+/* States of this rank's pairs in the step from t_n */
+typedef struct {
+  PetscInt            n;
+  const ContactState *state;     /* [n] */
+  const PetscInt     *interface; /* [n] */
+  const PetscInt     *number;    /* [n] global nodes */
+  const PetscReal    *x;         /* [n][3], m */
+} HistoryPairs;
+
+/* Where motions come from that are in no state vectors: Cartesian displacement (m), velocity (m/s) and acceleration
+   (m/s^2) of the local node of a probe; displacements and velocities [nodes][3] of all, collective */
+typedef struct {
+  void *ctx;
+  void (*at)(void *ctx, PetscInt node, PetscReal u[3], PetscReal v[3], PetscReal a[3]);
+  PetscErrorCode (*lift)(void *ctx, PetscReal u[], PetscReal v[]);
+} HistoryMotions;
+
 /* State at t_n, when the forces are complete: velocity v_n = before + dt minv ((1/2 - b) f_old + b f), acceleration a
    = minv f; b = 0 and f_old NULL in the first step, where before is v_0 */
 typedef struct {
-  PetscInt           step;
-  PetscReal          time, dt, b;
-  const PetscReal   *u, *before, *f, *minv, *f_old; /* state vectors; f_old NULL for b = 1/2 */
-  const Ledger      *ledger;                        /* of the half step before t_n */
-  PetscInt           n_interfaces;
-  const ContactSums *sums; /* [n_interfaces] of the step from t_n */
+  PetscInt              step;
+  PetscReal             time, dt, b;
+  const PetscReal      *u, *before, *f, *minv, *f_old; /* state vectors; f_old NULL for b = 1/2 */
+  const Ledger         *ledger;                        /* of the half step before t_n */
+  PetscInt              n_interfaces;
+  const ContactSums    *sums;    /* [n_interfaces] of the step from t_n */
+  const HistoryMotions *motions; /* NULL: those of the state vectors */
+  const HistoryPairs   *pairs;   /* NULL: those of the projector */
 } HistoryState;
 
 /* What is recorded, and where; all borrowed */
 typedef struct {
   Model                   model;
-  const Layout           *layout;
+  const Layout           *layout;    /* NULL beside HistoryMotions */
   ContactProjector        projector; /* NULL without contacts */
   PetscInt                n_interfaces;
   const ContactInterface *interfaces; /* NULL: without columns and pairs of their own */
@@ -54,6 +73,9 @@ PETSC_INTERN PetscErrorCode HistorySetFilters(History history, const HistoryFilt
 /* Whether a row (or a snapshot) is due at step n, time t: the same answer on every rank, and cheap; multiples k of
    the interval are met at the first t >= k interval - dt / 2 */
 PETSC_INTERN PetscBool HistoryIsDue(History history, PetscReal t, PetscReal dt);
+
+/* Whether snapshots are asked for; after HistorySetUp() */
+PETSC_INTERN PetscErrorCode HistoryHasFields(History history, PetscBool *fields);
 
 /* writes what is due: row, snapshot, live line (step, time, time left, open/stick/slip, growth of the vibration).
    Collective. */

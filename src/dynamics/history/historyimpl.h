@@ -66,14 +66,6 @@ PETSC_INTERN PetscErrorCode HistoryCreateHeader(History history, char **header);
 PETSC_INTERN PetscErrorCode HistoryWriteRow(History history, const HistoryState *state);
 
 /* historypairs.c - rows of the states of all ranks, by interface and number of the slave */
-typedef struct {
-  PetscInt            n;
-  const ContactState *state;     /* [n] */
-  const PetscInt     *interface; /* [n] */
-  const PetscInt     *number;    /* [n] global nodes */
-  const PetscReal    *x;         /* [n][3], m */
-} HistoryPairs;
-
 PETSC_INTERN PetscErrorCode HistoryWritePairs(ResultsTable table, MPI_Comm comm, const ContactInterface interfaces[],
                                               PetscReal time, const HistoryPairs *pairs);
 

@@ -16,13 +16,18 @@ PetscErrorCode SnapshotsCreate(History history)
 
 PetscErrorCode SnapshotWrite(History history, const HistoryState *state)
 {
-  const PetscInt n = history->source.layout->n_vertices;
-  PetscReal     *u, *v, a[3];
-  char           title[64];
+  const Mesh *mesh;
+  PetscInt    n;
+  PetscReal  *u, *v, a[3];
+  char        title[64];
 
   PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(history->source.model, &mesh));
+  n = mesh->n_nodes;
   PetscCall(PetscMalloc2(3 * n, &u, 3 * n, &v));
-  for (PetscInt i = 0; i < n; i++) HistoryMotion(history->source.layout, state, i, &u[3 * i], &v[3 * i], a);
+  if (state->motions) PetscCall(state->motions->lift(state->motions->ctx, u, v));
+  for (PetscInt i = 0; i < n && !state->motions; i++)
+    HistoryMotion(history->source.layout, state, i, &u[3 * i], &v[3 * i], a);
   PetscCall(PetscSNPrintf(title, sizeof(title), "step %" PetscInt_FMT ", t = %.6g ms", state->step,
                           (double)(1e3 * state->time)));
   PetscCall(ResultsFilmWrite(history->film, state->time, title, 2,

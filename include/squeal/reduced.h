@@ -1,0 +1,147 @@
+/*
+   Reduced - transients on few coordinates: free modes of the separate, unconnected bodies, and the static compliance of
+   what the modes leave out, with exact unilateral contact and Coulomb friction.
+
+   Ports are directions in which forces act on the bodies and displacements are looked at: three for each pair of the
+   contact (opening along n, slip of the slave along t and b), one for each load, three for each probe. With the modes
+   Phi of K x = omega^2 M x below the cut-off (supports and springs included, contact left out, M lumped as in all
+   transients, Phi'M Phi = I), V the ports as vectors of all unknowns, P = V'Phi, forces p at the ports (N), lambda those of the pairs:
+
+      eta'' + C eta' + Omega^2 eta + Cm q' = P'p + Phi'J delta(t - T),     y = P eta + W p, but q in place of lambda
+      W q + Cx q' + Cm'eta' = W lambda   in W of the pairs: q = lambda without damping
+      W = V'X,   X = (1 - Phi Phi'M) (K - s M)^-1 (1 - M Phi Phi') V,   s = -(cut-off / 1e4)^2
+      C = Phi'D Phi,  Cm = Phi'D X,  Cx = X'D X,                          D = alpha M + beta K + ...
+
+   y the displacements at the ports (m): what is above the cut-off is massless, and damped as the bodies are (left
+   undamped, growth would be wrong by percents). s changes 1e-8 of it at most.
+
+   Step from t_n to t_{n+1} = t_n + dt. Forces act on the modes as means (p_n + p_{n+1}) / 2, and these answer exactly
+   (exponential of the coupled first-order system: C need not be diagonal, and modes may be overdamped); q obeys its law in
+   the mean. This is of second order in dt, exact in statics, and stable for every dt, since energy
+
+      E = 1/2 |eta'|^2 + 1/2 eta'Omega^2 eta + 1/2 p'W p (q in place of lambda),
+      E_{n+1} - E_n = mean(p) . (y_{n+1} - y_n) - int (eta', q')'[C Cm; Cm' Cx] (eta', q') dt     (constant loads), exactly.
+
+   lambda_{n+1} obeys at t_{n+1} the laws of projector.h, exactly:
+      normal    0 <= lambda_n,  0 <= gap,  lambda_n gap = 0,   gap = g0 + y_n
+      Coulomb   |lambda_T| <= mu lambda_n, slip of the step 0 (stick) or lambda_T = mu lambda_n d on the master, d the
+                direction of the slip of the step (y_T less that at t_n, plus the prescribed sliding)
+   on the dense compliance dy_{n+1} / dlambda_{n+1} (stepper.c). mu is that of the slip speed of the step (contact.h).
+
+   What is said of a body that turns: a disc in a fixed frame with prescribed sliding is served, one that moves under the
+   pad (-contact_kinematics turning) is refused. Pairs stay what they are in the mesh.
+*/
+#pragma once
+
+#include <squeal/dynamics.h>
+#include <squeal/modes.h>
+
+typedef struct _p_ReducedRun *ReducedRun;
+
+/* The reduced bodies: dense, alike on every rank. Matrices are column-major. Ports: normal, t, b of pair 0, of pair 1 and
+   so on, then the loads, then x, y, z of each probe */
+typedef struct {
+  PetscInt   m, n_pairs, n_loads, n_probes, n_ports;
+  PetscReal *omega2;             /* [m] (rad/s)^2, ascending, 0 for rigid modes */
+  PetscReal *C;                  /* [m][m] 1/s, symmetric; NULL without damping */
+  PetscReal *P;                  /* [n_ports][m], m numbers for each port, 1/sqrt(kg) */
+  PetscReal *W;                  /* [n_ports][n_ports], m/N */
+  PetscReal *Cm;                 /* [3 n_pairs][m] Phi'C X, s / sqrt(kg); NULL without damping */
+  PetscReal *Cx;                 /* [3 n_pairs][3 n_pairs] X'C X, m s/N, symmetric; NULL without damping */
+  PetscReal *gap;                /* [n_pairs] g0, m, positive open */
+  PetscReal *mu, *slope, *speed; /* [n_pairs] friction: at the stated speed (-), s/m, m/s */
+} ReducedModel;
+
+/* A state at t_n */
+typedef struct {
+  PetscReal  time;       /* s */
+  PetscReal *eta, *rate; /* [m] coordinates, m sqrt(kg), and rates */
+  PetscReal *p,
+    *last;          /* [n_ports] forces at t_n and t_{n-1}, N: lambda of the pairs (on the slave: normal, t, b), factors
+                                of the loads */
+  PetscReal     *q; /* [3 n_pairs] forces on the residual, N: lambda, delayed by its damping */
+  PetscReal     *y; /* [3 n_pairs] displacements at the pairs, m */
+  ContactStatus *status; /* [n_pairs] */
+} ReducedState;
+
+/* What acts in a step */
+typedef struct {
+  const PetscReal *loads;   /* [n_loads] factors at t_{n+1} */
+  const PetscReal *sliding; /* [n_pairs] prescribed sliding of the slave along t in the step, m */
+  const PetscReal *kick;    /* [m] Phi'J of the impulses at t_n, m sqrt(kg)/s; NULL for none */
+} ReducedDrive;
+
+/* What a step did: works on the bodies, J */
+typedef struct {
+  PetscReal  external, damping;
+  PetscReal *contact, *friction, *heat; /* [n_pairs] */
+  PetscReal *slip;                      /* [2 n_pairs] of the step, along t and b, m */
+  PetscReal  residual;                  /* of the laws, natural map relative to the largest force of a pair */
+  PetscInt   its;                       /* of the contact solver */
+} ReducedReport;
+
+typedef struct _p_ReducedStepper *ReducedStepper;
+
+/*@ ReducedStateCreate, ReducedStateCopy, ReducedStateDestroy - a state of zeros; from one into another; frees it. Not
+    collective. @*/
+PetscErrorCode ReducedStateCreate(const ReducedModel *model, ReducedState *state);
+PetscErrorCode ReducedStateCopy(const ReducedModel *model, const ReducedState *from, ReducedState *to);
+PetscErrorCode ReducedStateDestroy(ReducedState *state);
+
+/*@ ReducedReportCreate, ReducedReportDestroy - room for what a step did. Not collective. @*/
+PetscErrorCode ReducedReportCreate(const ReducedModel *model, ReducedReport *report);
+PetscErrorCode ReducedReportDestroy(ReducedReport *report);
+
+/*@ ReducedStepperCreate - the matrices of a step of length dt > 0 (s) and tolerance of the contact laws, relative. The
+    model is borrowed until ReducedStepperDestroy(). Not collective. Errors: PETSC_ERR_USER_INPUT for a compliance of the
+    pairs that is not positive definite. @*/
+PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, PetscReal rtol, ReducedStepper *stepper);
+PetscErrorCode ReducedStepperDestroy(ReducedStepper *stepper);
+
+/*@ ReducedStep - one step from the state at t_n, which becomes that at t_{n+1}. Not collective.
+    Errors: PETSC_ERR_NOT_CONVERGED from the contact laws. @*/
+PetscErrorCode ReducedStep(ReducedStepper stepper, const ReducedDrive *drive, ReducedState *state,
+                           ReducedReport *report);
+
+/*@ ReducedEnergy - kinetic energy of the modes, and strain energy of modes and residual, J. Not collective. @*/
+void ReducedEnergy(const ReducedModel *model, const ReducedState *state, PetscReal *kinetic, PetscReal *strain);
+
+/*@ ReducedLinearise - eigenvalues lambda [2 m] (rad/s) of the model about steady sliding, closed [n_pairs] telling the pairs
+    that are closed, which all slide along t; a real one twice in a row is two. Not collective. @*/
+PetscErrorCode ReducedLinearise(const ReducedModel *model, const PetscBool closed[], PetscReal sigma[],
+                                PetscReal omega[]);
+
+/*@ ReducedCreate - makes an integrator. Collective. @*/
+PetscErrorCode ReducedCreate(MPI_Comm comm, ReducedRun *reduced);
+
+/*@
+   ReducedSetFromOptions - reads whether and how to reduce. Collective.
+
+   Options Database Keys:
++  -dynamics_model <full|reduced> - the mesh, or modes and compliance
+.  -dynamics_compare <true>       - with -modes_band: eigenvalues about the sliding state beside those of the mesh
+-  -dynamics_cutoff <f>           - of the modes, Hz; without it 4 times the upper end of -modes_band, or 20 kHz
+@*/
+PetscErrorCode ReducedSetFromOptions(ReducedRun reduced);
+
+/*@ ReducedIsAsked - whether the options ask for it. Not collective. @*/
+PetscErrorCode ReducedIsAsked(ReducedRun reduced, PetscBool *asked);
+
+/*@ ReducedSetRooms - the run in time, of which loads, motions, histories and options are those of `dynamics` (referenced
+    until ReducedDestroy()), and the solver of the mesh's modes. Not collective. @*/
+PetscErrorCode ReducedSetRooms(ReducedRun reduced, Dynamics dynamics, Modes modes);
+
+/*@
+   ReducedIntegrate - reduces the bodies, compares with the mesh where -modes_band says a band, integrates, and writes what
+   DynamicsSolve() writes. Collective.
+
+   Errors: PETSC_ERR_USER_INPUT for a cut-off without modes below it, or below an unstable mode of the mesh; PETSC_ERR_SUP
+   naming what a reduced model cannot do.
+@*/
+PetscErrorCode ReducedIntegrate(ReducedRun reduced, Results results);
+
+/*@ ReducedView - modes, cut-off, step, cost, errors, ledger in words. Collective. @*/
+PetscErrorCode ReducedView(ReducedRun reduced, PetscViewer viewer);
+
+/*@ ReducedDestroy - frees the integrator. Collective. @*/
+PetscErrorCode ReducedDestroy(ReducedRun *reduced);

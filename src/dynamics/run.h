@@ -1,0 +1,46 @@
+/*
+   Run (private to dynamics/ and to rooms that integrate the same scenes by other means) - what the options of a transient
+   ask for, and the histories that record it.
+*/
+#pragma once
+
+#include <squeal/dynamics.h>
+#include "dynamics/external/external.h"
+#include "dynamics/history/history.h"
+
+/* All borrowed */
+typedef struct {
+  Model                   model;
+  Contact                 contact;
+  PetscInt                n_interfaces;
+  const ContactInterface *interfaces;
+  Operators               operators;
+  Statics                 statics;
+  External                external;  /* not set up: ramps, impulses, velocities at the start */
+  ContactProjector        projector; /* not set up: the ramps of sliding; NULL without contacts */
+  History                 history;
+  PetscReal               dt, end; /* s */
+  PetscInt                n_steps; /* at most */
+  PetscInt                checkpoint_interval;
+  PetscBool               from_static, restart, view_kkt;
+} DynamicsRun;
+
+/* DynamicsGetRun - begins a run of the same scene that the caller integrates: step `dt` where -ts_dt does not say one,
+   DynamicsCheckEarlier() done. Collective. Errors: PETSC_ERR_USER_INPUT as of DynamicsSolve(), and for options that belong
+   to the explicit integrator alone, which `by` names as the option that leaves them without effect. */
+PETSC_INTERN PetscErrorCode DynamicsGetRun(Dynamics dynamics, Results results, const char by[], PetscReal dt,
+                                           DynamicsRun *run);
+
+/* DynamicsGetShape - what -dynamics_shape adds to the start at the local nodes: displacements and velocities, [nodes][3], m
+   and m/s; zeros without. Collective. */
+PETSC_INTERN PetscErrorCode DynamicsGetShape(Dynamics dynamics, PetscReal u[], PetscReal v[]);
+
+/* DynamicsAddRunChecksum - what a run must share with the one that it goes on with, but for what concerns the integrator. Collective. */
+PETSC_INTERN PetscErrorCode DynamicsAddRunChecksum(Dynamics dynamics, Checksum checksum);
+
+/* DynamicsForget - takes away the checkpoint of an earlier run, whose tables a run that starts anew replaces: nothing must go on from it
+   with these. Collective. */
+PETSC_INTERN PetscErrorCode DynamicsForget(Dynamics dynamics);
+
+/* LedgerView - the balance in words, J */
+PETSC_INTERN PetscErrorCode LedgerView(const Ledger *ledger, PetscViewer viewer);

@@ -1,0 +1,170 @@
+/*
+   Modes of the separate bodies, K x = omega^2 M x below the cut-off: the pencil of the operators with every pair open and
+   without damping, solved and proven complete by modes/. What it leaves out, damping, is projected exactly: C = Phi'C Phi.
+*/
+#include "reducedimpl.h"
+#include "solver/orthonormal.h"
+
+#define ORTHONORMAL 1e-7 /* largest |Phi'M Phi - I| */
+
+/* Whether a parameter is one of damping or spin, which real modes know nothing of */
+static PetscErrorCode ParameterIsGyration(const char name[], PetscBool *is)
+{
+  static const char *const words[] = {"_alpha", "_beta", "_viscosity", "_spin"};
+
+  PetscFunctionBeginUser;
+  *is = PETSC_FALSE;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(words) && !*is; i++) {
+    char *found;
+
+    PetscCall(PetscStrrstr(name, words[i], &found));
+    if (found) *is = PETSC_TRUE;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The pencil of the bodies: every pair open, neither damping nor spin */
+static PetscErrorCode ReducedCreatePencil(ReducedRun r)
+{
+  const OperatorsParameter *parameter;
+  const PetscReal          *p;
+  PetscInt                  n_pairs, n_all, n, *open;
+  const ContactPair        *pair;
+  PetscReal                *still;
+  SlidingState              state;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetPairs(r->run.contact, &n_pairs, &n_all, &pair));
+  PetscCall(PetscMalloc1(n_pairs, &open));
+  for (PetscInt i = 0; i < n_pairs; i++) open[i] = -1;
+  PetscCall(SlidingStateCreate(n_pairs, 0, open, &state));
+  PetscCall(PetscFree(open));
+  PetscCall(OperatorsLinearise(r->run.operators, &state, &r->bodies));
+  PetscCall(SlidingStateDestroy(&state));
+  PetscCall(PencilGetParameters(r->bodies, &n, &parameter, &p));
+  PetscCall(PetscMalloc1(n, &still));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscBool is;
+
+    PetscCall(ParameterIsGyration(parameter[i].name, &is));
+    still[i] = is ? 0 : p[i];
+  }
+  PetscCall(PencilSetParameters(r->bodies, still));
+  PetscCall(PetscFree(still));
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error for a cut-off without modes below it */
+static PetscErrorCode ReducedCountModes(ReducedRun r, const PencilMatrices *pencil)
+{
+  PetscReal   omega = 2 * PETSC_PI * r->cutoff;
+  PetscInt    n, n_unknowns;
+  ShiftInvert counter;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetSize(pencil->K, &n_unknowns, NULL));
+  PetscCall(ShiftInvertCreate(pencil, omega * omega, PETSC_TRUE, &r->progress, &counter));
+  PetscCall(ShiftInvertCountBelow(pencil, 1e-4, &counter, &omega, &n));
+  PetscCall(ShiftInvertDestroy(&counter));
+  PetscCheck(n > 0, r->comm, PETSC_ERR_USER_INPUT,
+             "-dynamics_cutoff %.6g Hz: the unconnected bodies have no mode below it; take a higher one",
+             (double)r->cutoff);
+  PetscCheck(n < n_unknowns, r->comm, PETSC_ERR_USER_INPUT,
+             "-dynamics_cutoff %.6g Hz: all %" PetscInt_FMT
+             " modes lie below it, and no compliance is left for the pairs; "
+             "take a lower one",
+             (double)r->cutoff, n);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedWeighModes(ReducedRun r)
+{
+  PencilMatrices pencil;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetMatrices(r->bodies, &pencil));
+  PetscCall(BlockMultiply(pencil.M, r->Phi, r->MPhi));
+  PetscFunctionReturn(0);
+}
+
+/* Vectors and frequencies from the solver of the modes */
+static PetscErrorCode ReducedTakeModes(ReducedRun r, Mat M)
+{
+  const Mode *mode;
+  PetscInt    m, n_own;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesGet(r->body_modes, &m, &mode));
+  PetscCall(MatGetLocalSize(M, &n_own, NULL));
+  PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, m, NULL, &r->Phi));
+  PetscCall(PetscCalloc1(m, &r->model.omega2));
+  for (PetscInt k = 0; k < m; k++) {
+    Vec x, column;
+
+    PetscCall(ModesGetVectors(r->body_modes, k, &x, NULL, NULL, NULL));
+    PetscCall(MatDenseGetColumnVecWrite(r->Phi, k, &column));
+    PetscCall(VecCopy(x, column));
+    PetscCall(MatDenseRestoreColumnVecWrite(r->Phi, k, &column));
+    r->model.omega2[k] = mode[k].rigid ? 0 : PetscSqr(mode[k].omega);
+  }
+  r->model.m = m;
+  PetscCall(MatDuplicate(r->Phi, MAT_DO_NOT_COPY_VALUES, &r->MPhi));
+  PetscCall(ReducedWeighModes(r));
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for vectors that are not orthonormal in M */
+static PetscErrorCode ReducedCheckModes(ReducedRun r)
+{
+  const PetscInt m = r->model.m;
+  PetscReal     *H;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(m * m, &H));
+  PetscCall(ReducedGram(r->Phi, r->MPhi, H));
+  for (PetscInt i = 0; i < m * m; i++) r->orthonormal = PetscMax(r->orthonormal, PetscAbsReal(H[i] - (i % m == i / m)));
+  PetscCall(PetscFree(H));
+  PetscCheck(r->orthonormal < ORTHONORMAL, r->comm, PETSC_ERR_PLIB, "modes of the bodies are orthonormal to %.2e only",
+             (double)r->orthonormal);
+  PetscFunctionReturn(0);
+}
+
+/* Phi'C Phi */
+static PetscErrorCode ReducedSetDamping(ReducedRun r)
+{
+  const PetscInt m = r->model.m;
+  Mat            C, CPhi;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetBodies(r->run.operators, NULL, NULL, NULL, &C));
+  if (!C) PetscFunctionReturn(0);
+  PetscCall(MatDuplicate(r->Phi, MAT_DO_NOT_COPY_VALUES, &CPhi));
+  PetscCall(BlockMultiply(C, r->Phi, CPhi));
+  PetscCall(PetscMalloc1(m * m, &r->model.C));
+  PetscCall(ReducedGram(r->Phi, CPhi, r->model.C));
+  for (PetscInt j = 0; j < m; j++)
+    for (PetscInt i = 0; i < j; i++)
+      r->model.C[i + m * j] = r->model.C[j + m * i] = 0.5 * (r->model.C[i + m * j] + r->model.C[j + m * i]);
+  PetscCall(MatDestroy(&CPhi));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedFindModes(ReducedRun r)
+{
+  const PetscReal band[2] = {0, r->cutoff};
+  PencilMatrices  pencil;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedCreatePencil(r));
+  PetscCall(PencilGetMatrices(r->bodies, &pencil));
+  PetscCheck(!pencil.C, r->comm, PETSC_ERR_PLIB, "modes of the bodies see damping");
+  PetscCall(ReducedCountModes(r, &pencil));
+  PetscCall(ModesCreate(r->comm, &r->body_modes));
+  PetscCall(ModesSetPencil(r->body_modes, r->bodies));
+  PetscCall(ModesSetBand(r->body_modes, band));
+  PetscCall(ModesSolve(r->body_modes));
+  PetscCall(ReducedTakeModes(r, pencil.M));
+  PetscCall(ReducedCheckModes(r));
+  PetscCall(ReducedSetDamping(r));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,145 @@
+/*
+   The reduced model about steady sliding: pairs that are closed stay so and slide along t, so that their forces are
+   lambda = e lambda_n with e = (1, -mu, 0) on the slave, and their gaps N y do not change. With N, E the matrices of these and
+   S = (N W E)^-1 N P, without damping lambda_n = -S eta. With it, to first order in the damping of the residual,
+
+      T = (N W E)^-1 N (Cm' - Cx E S),   lambda_n = -S eta + T eta',
+      eta'' + (C - Cm E S - P'E T) eta' + (Omega^2 + P'E S) eta = 0.
+*/
+#include "reducedimpl.h"
+
+/* The closed pairs, and work */
+typedef struct {
+  const ReducedModel *model;
+  PetscInt            n, *pair; /* [n] */
+  PetscReal          *A;        /* [n][n] LU factors of N W E */
+  PetscBLASInt       *pivot;
+  PetscReal          *S, *T; /* [m][n] */
+} ClosedPairs;
+
+static PetscErrorCode ClosedCreate(const ReducedModel *model, const PetscBool closed[], ClosedPairs *c)
+{
+  const PetscInt N = model->n_ports;
+  PetscInt       n = 0;
+  PetscBool      singular;
+
+  PetscFunctionBeginUser;
+  *c = (ClosedPairs){.model = model};
+  PetscCall(PetscMalloc1(model->n_pairs, &c->pair));
+  for (PetscInt i = 0; i < model->n_pairs; i++)
+    if (closed[i]) c->pair[n++] = i;
+  c->n = n;
+  PetscCall(PetscCalloc4(n * n, &c->A, n, &c->pivot, n * model->m, &c->S, n * model->m, &c->T));
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscReal *w = &model->W[3 * c->pair[i] + N * (3 * c->pair[j])];
+
+      c->A[i + n * j] = w[0] - model->mu[c->pair[j]] * w[N];
+    }
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(DenseFactor(n, c->A, c->pivot, &singular));
+  PetscCheck(!singular, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT,
+             "the compliance of the closed pairs is singular: take a lower -dynamics_cutoff");
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ClosedDestroy(ClosedPairs *c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(c->pair));
+  PetscCall(PetscFree4(c->A, c->pivot, c->S, c->T));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ClosedSolveStiffness(ClosedPairs *c)
+{
+  const PetscInt m = c->model->m, n = c->n;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < m; k++)
+    for (PetscInt i = 0; i < n; i++) c->S[i + n * k] = c->model->P[k + m * 3 * c->pair[i]];
+  PetscCall(DenseSolve(n, c->A, c->pivot, PETSC_FALSE, m, c->S));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ClosedSolveDamping(ClosedPairs *c)
+{
+  const PetscInt m = c->model->m, n = c->n, N = 3 * c->model->n_pairs;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < m; k++) {
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscReal *x = &c->model->Cx[3 * c->pair[i]];
+
+      c->T[i + n * k] = c->model->Cm[k + m * 3 * c->pair[i]];
+      for (PetscInt j = 0; j < n; j++) {
+        const PetscReal *here = &x[N * 3 * c->pair[j]];
+
+        c->T[i + n * k] -= (here[0] - c->model->mu[c->pair[j]] * here[N]) * c->S[j + n * k];
+      }
+    }
+  }
+  PetscCall(DenseSolve(n, c->A, c->pivot, PETSC_FALSE, m, c->T));
+  PetscFunctionReturn(0);
+}
+
+/* K += scale Q E S, Q [3 n_pairs][m] with m numbers for each port */
+static void ClosedAdd(const ClosedPairs *c, PetscReal scale, const PetscReal Q[], const PetscReal S[], PetscReal K[])
+{
+  const PetscInt m = c->model->m;
+
+  for (PetscInt i = 0; i < c->n; i++) {
+    const PetscReal *q = &Q[m * 3 * c->pair[i]], mu = c->model->mu[c->pair[i]];
+
+    for (PetscInt k = 0; k < m; k++)
+      for (PetscInt l = 0; l < m; l++) K[l + m * k] += scale * (q[l] - mu * q[m + l]) * S[i + c->n * k];
+  }
+}
+
+/* Eigenvalues of the first-order system of K and C */
+static PetscErrorCode QuadraticEigen(PetscInt m, const PetscReal K[], const PetscReal C[], PetscReal sigma[],
+                                     PetscReal omega[])
+{
+  const PetscInt n = 2 * m;
+  PetscReal     *A;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n * n, &A));
+  for (PetscInt k = 0; k < m; k++) {
+    A[k + n * (m + k)] = 1;
+    for (PetscInt l = 0; l < m; l++) {
+      A[m + l + n * k]       = -K[l + m * k];
+      A[m + l + n * (m + k)] = -C[l + m * k];
+    }
+  }
+  PetscCall(DenseEigen(n, A, sigma, omega, NULL, NULL));
+  PetscCall(PetscFree(A));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedLinearise(const ReducedModel *model, const PetscBool closed[], PetscReal sigma[],
+                                PetscReal omega[])
+{
+  const PetscInt m = model->m;
+  PetscReal     *K, *C;
+  ClosedPairs    c;
+
+  PetscFunctionBeginUser;
+  PetscCall(ClosedCreate(model, closed, &c));
+  PetscCall(PetscCalloc2(m * m, &K, m * m, &C));
+  for (PetscInt k = 0; k < m; k++) K[k + m * k] = model->omega2[k];
+  if (model->C) PetscCall(PetscArraycpy(C, model->C, m * m));
+  if (c.n) {
+    PetscCall(ClosedSolveStiffness(&c));
+    ClosedAdd(&c, 1, model->P, c.S, K);
+  }
+  if (c.n && model->Cx) {
+    PetscCall(ClosedSolveDamping(&c));
+    ClosedAdd(&c, -1, model->Cm, c.S, C);
+    ClosedAdd(&c, -1, model->P, c.T, C);
+  }
+  PetscCall(QuadraticEigen(m, K, C, sigma, omega));
+  PetscCall(PetscFree2(K, C));
+  PetscCall(ClosedDestroy(&c));
+  PetscFunctionReturn(0);
+}

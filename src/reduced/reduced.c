@@ -1,0 +1,240 @@
+/*
+   Reduced: life cycle and the flow of a run: modes of the bodies -> ports -> residual -> comparison with the mesh -> state at
+   the start -> steps -> histories.
+*/
+#include "reducedimpl.h"
+#include "dynamics/stop.h"
+#include <squeal/options.h>
+
+#define BY          "-dynamics_model reduced"
+#define CUTOFF      20e3 /* Hz, where nothing says which band is of interest */
+#define CUTOFF_BAND 4    /* times the upper end of -modes_band */
+
+PetscErrorCode ReducedCreate(MPI_Comm comm, ReducedRun *reduced)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(reduced));
+  (*reduced)->comm    = comm;
+  (*reduced)->compare = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedSetFromOptions(ReducedRun r)
+{
+  static const char *const models[] = {"full", "reduced"};
+  PetscInt                 model    = 0;
+
+  PetscFunctionBeginUser;
+  PetscOptionsBegin(r->comm, NULL, "Reduced model", "Dynamics");
+  PetscCall(PetscOptionsEList("-dynamics_model", "the mesh, or its bodies' modes and the pairs' compliance",
+                              "reduced.h", models, 2, models[0], &model, NULL));
+  PetscCall(PetscOptionsReal("-dynamics_cutoff",
+                             "of the modes of a reduced model, Hz; 0: 4 times the end of -modes_band, or 20 kHz",
+                             "reduced.h", r->cutoff, &r->cutoff, NULL));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_compare",
+                           "eigenvalues of a reduced model beside those of the mesh in -modes_band", &r->compare));
+  PetscOptionsEnd();
+  PetscCheck(r->cutoff >= 0 && r->cutoff < 1e30, r->comm, PETSC_ERR_USER_INPUT,
+             "-dynamics_cutoff %.6g must be a positive frequency (Hz), or 0 to have it chosen", (double)r->cutoff);
+  r->asked = model == 1 ? PETSC_TRUE : PETSC_FALSE;
+  if (!r->asked) PetscCall(OptionsRefuse(r->comm, "-dynamics_cutoff", "not used without " BY));
+  if (!r->asked) PetscCall(OptionsRefuse(r->comm, "-dynamics_compare", "not used without " BY));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedIsAsked(ReducedRun r, PetscBool *asked)
+{
+  PetscFunctionBeginUser;
+  *asked = r->asked;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedSetRooms(ReducedRun r, Dynamics dynamics, Modes modes)
+{
+  PetscFunctionBeginUser;
+  r->dynamics   = dynamics;
+  r->mesh_modes = modes;
+  PetscFunctionReturn(0);
+}
+
+/* The cut-off that is asked for, or that the band of interest tells */
+static PetscErrorCode ReducedChooseCutoff(ReducedRun r)
+{
+  PetscBool has_band;
+  PetscReal band[2], growth;
+
+  PetscFunctionBeginUser;
+  r->why = "as -dynamics_cutoff says";
+  if (r->cutoff > 0) PetscFunctionReturn(0);
+  PetscCall(ModesHaveBand(r->mesh_modes, &has_band));
+  if (has_band) PetscCall(ModesGetBand(r->mesh_modes, band, &growth));
+  r->cutoff = has_band ? CUTOFF_BAND * band[1] : CUTOFF;
+  r->why    = has_band ? "4 times the end of -modes_band" : "no -modes_band says which frequencies are of interest";
+  PetscFunctionReturn(0);
+}
+
+/* Room for states and steps */
+static PetscErrorCode ReducedCreateState(ReducedRun r)
+{
+  PetscInt n_own;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedStateCreate(&r->model, &r->state));
+  PetscCall(ReducedReportCreate(&r->model, &r->report));
+  PetscCall(PetscCalloc3(r->model.m, &r->acceleration, r->model.n_ports, &r->p_rate, r->model.n_ports, &r->shown));
+  PetscCall(MatGetLocalSize(r->Phi, &n_own, NULL));
+  PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, 1, NULL, &r->column));
+  PetscCall(ReducedDriveCreate(r));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
+{
+  PetscBool fields;
+
+  PetscFunctionBeginUser;
+  r->results = results;
+  PetscCall(ReducedChooseCutoff(r));
+  PetscCall(DynamicsGetRun(r->dynamics, results, BY, 1 / (2 * PETSC_PI * r->cutoff), &r->run));
+  PetscCall(ReducedRefuse(r));
+  r->dt = r->run.dt;
+  PetscCall(ReducedFindModes(r));
+  PetscCall(ReducedSetPorts(r));
+  PetscCall(ReducedSetResidual(r));
+  PetscCall(ReducedSetPairs(r));
+  PetscCall(ReducedCompare(r));
+  PetscCall(ReducedCreateState(r));
+  PetscCall(HistorySetUp(
+    r->run.history,
+    &(HistorySource){r->run.model, NULL, r->run.projector, r->run.n_interfaces, r->run.interfaces, results}, r->run.end,
+    r->dt));
+  PetscCall(HistoryHasFields(r->run.history, &fields));
+  if (!fields) PetscCall(ShiftInvertDestroy(&r->inverse));
+  if (r->run.restart) {
+    PetscCall(ReducedGoOn(r));
+  } else {
+    PetscCall(ReducedStart(r));
+    PetscCall(ReducedStepperCreate(&r->model, r->dt, REDUCED_RTOL, &r->stepper));
+    PetscCall(DynamicsForget(r->dynamics));
+  }
+  PetscCall(ReducedTakePairs(r, PETSC_FALSE));
+  PetscFunctionReturn(0);
+}
+
+/* One step and its account */
+static PetscErrorCode ReducedAdvance(ReducedRun r)
+{
+  ReducedDrive drive;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedDriveSet(r, &drive));
+  PetscCall(ReducedStep(r->stepper, &drive, &r->state, &r->report));
+  r->step++;
+  r->n_steps++;
+  r->n_its += (PetscReal)r->report.its;
+  r->ledger.part.external += r->report.external;
+  r->ledger.part.damping += r->report.damping;
+  PetscCall(ReducedTakePairs(r, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+/* Checkpoints where they are due, and whether a signal asks for the end */
+static PetscErrorCode ReducedAfterStep(ReducedRun r, PetscBool *stop)
+{
+  const PetscInt interval = r->run.checkpoint_interval;
+
+  PetscFunctionBeginUser;
+  *stop = PETSC_FALSE;
+  if (r->step % STOP_INTERVAL == 0) {
+    *stop = StopRequested();
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, stop, 1, MPIU_BOOL, MPI_LOR, r->comm));
+  }
+  if (interval > 0 && (*stop || r->step % interval == 0)) PetscCall(ReducedKeep(r));
+  PetscFunctionReturn(0);
+}
+
+/* Steps until the end; rows on the way */
+static PetscErrorCode ReducedMarch(ReducedRun r, PetscBool *stop)
+{
+  const PetscReal end = r->run.end - 1e-9 * r->dt;
+
+  PetscFunctionBeginUser;
+  *stop = PETSC_FALSE;
+  for (PetscBool first = PETSC_TRUE; !*stop; first = PETSC_FALSE) {
+    const PetscBool done = r->state.time >= end || r->step >= r->run.n_steps ? PETSC_TRUE : PETSC_FALSE;
+
+    if (done || HistoryIsDue(r->run.history, r->state.time, r->dt) || r->step == 0)
+      PetscCall(ReducedRecord(r, first && r->step == 0 ? PETSC_TRUE : PETSC_FALSE));
+    if (done) break;
+    PetscCall(ReducedAdvance(r));
+    PetscCall(ReducedAfterStep(r, stop));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedIntegrate(ReducedRun r, Results results)
+{
+  PetscLogDouble begin, ready, end;
+  PetscBool      stop;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&begin));
+  PetscCall(ReducedSetUp(r, results));
+  PetscCall(PetscTime(&ready));
+  PetscCall(StopInstall());
+  PetscCall(ReducedMarch(r, &stop));
+  PetscCall(StopRemove());
+  PetscCall(PetscTime(&end));
+  r->setup_seconds = ready - begin;
+  r->seconds       = end - ready;
+  if (!stop || r->run.checkpoint_interval == 0) PetscCall(HistoryClose(r->run.history));
+  PetscCheck(!stop, r->comm, PETSC_ERR_USER, "stopped by a signal after step %" PetscInt_FMT ", %.6g s; %s", r->step,
+             (double)r->state.time,
+             r->run.checkpoint_interval > 0 ? "-dynamics_restart goes on from there"
+                                            : "transient.csv holds the rows until then");
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReducedModelDestroy(ReducedModel *model)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(model->omega2));
+  PetscCall(PetscFree(model->C));
+  PetscCall(PetscFree(model->P));
+  PetscCall(PetscFree(model->W));
+  PetscCall(PetscFree(model->Cm));
+  PetscCall(PetscFree(model->Cx));
+  PetscCall(PetscFree4(model->gap, model->mu, model->slope, model->speed));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedDestroy(ReducedRun *reduced)
+{
+  ReducedRun r = *reduced;
+
+  PetscFunctionBeginUser;
+  if (!r) PetscFunctionReturn(0);
+  PetscCall(ReducedStepperDestroy(&r->stepper));
+  PetscCall(ReducedStateDestroy(&r->state));
+  PetscCall(ReducedReportDestroy(&r->report));
+  PetscCall(ReducedModelDestroy(&r->model));
+  PetscCall(PetscFree3(r->acceleration, r->p_rate, r->shown));
+  PetscCall(PetscFree3(r->loads, r->sliding, r->kick));
+  PetscCall(PetscFree2(r->pairs, r->sums));
+  PetscCall(PetscFree(r->pair));
+  PetscCall(PetscFree2(r->hits, r->hit_due));
+  PetscCall(PetscFree(r->hit_time));
+  PetscCall(PetscFree(r->vertex_port));
+  PetscCall(PetscFree(r->compared));
+  PetscCall(MatDestroy(&r->column));
+  PetscCall(MatDestroy(&r->Phi));
+  PetscCall(MatDestroy(&r->MPhi));
+  PetscCall(MatDestroy(&r->G));
+  PetscCall(MatDestroy(&r->others));
+  PetscCall(ShiftInvertDestroy(&r->inverse));
+  PetscCall(ModesDestroy(&r->body_modes));
+  PetscCall(PencilDestroy(&r->bodies));
+  PetscCall(ChecksumDestroy(&r->scene));
+  PetscCall(PetscFree(*reduced));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,136 @@
+/* Private to reduced/: the stepper, the record of a run, and the files that fill it */
+#pragma once
+
+#include <squeal/reduced.h>
+#include "contact/compliance/contactcompliance.h"
+#include "dynamics/checkpoint.h"
+#include "dynamics/history/history.h"
+#include "dynamics/run.h"
+#include "solver/dense.h"
+#include "solver/shiftinvert.h"
+
+#define REDUCED_RTOL 1e-12 /* of the contact laws */
+
+struct _p_ReducedStepper {
+  const ReducedModel *model;
+  PetscReal           dt, rtol, w; /* s; -; frequency that balances the exponential, rad/s */
+  PetscReal          *E, *F;       /* [2 m][2 m], [m][2 m]: z(dt) = E z + F g, by columns */
+  PetscReal          *Q;           /* [3 m][3 m] of damping; NULL without */
+  PetscReal          *W;           /* [3 n_pairs][3 n_pairs] compliance of the pairs in a step, m/N */
+  PetscReal          *H, *G; /* [3 n_pairs]^2 q = H (...), [3 n_pairs][m] F Cm / dt of the coordinates; NULL undamped */
+  ContactCompliance   laws;  /* NULL without pairs */
+  PetscReal          *x, *next, *product;      /* work: [3 m] z and g; [3 m] z(dt); [3 m] */
+  PetscReal          *mean, *free, *slip0, *r; /* work: [n_ports], [3 n_pairs], [2 n_pairs], [3 n_pairs] */
+  PetscReal          *q, *dq, *sum, *port;     /* work: [3 n_pairs] q_{n+1}, change of q, right-hand side; [n_ports] */
+};
+
+/* An eigenvalue of the mesh about the sliding state beside that of the reduced model, rad/s */
+typedef struct {
+  PetscReal mesh[2], reduced[2]; /* growth and frequency */
+  char      label[32];
+} ReducedPair;
+
+struct _p_ReducedRun {
+  MPI_Comm comm;
+  /* set by options */
+  PetscBool asked, compare;
+  PetscReal cutoff; /* Hz, 0: to be chosen */
+  /* rooms */
+  Dynamics    dynamics;
+  Modes       mesh_modes;
+  Results     results;
+  DynamicsRun run;
+  /* reduction */
+  const char  *why;    /* the cut-off is what it is */
+  Pencil       bodies; /* every pair open, undamped */
+  Modes        body_modes;
+  Mat          Phi, MPhi; /* [unknowns][m] modes, and M Phi, dense */
+  Mat          G, others; /* ports: [3 pairs][unknowns] of the pairs, sparse; [unknowns][loads, probes] dense */
+  ShiftInvert  inverse;   /* of K - s M; kept for snapshots */
+  Progress     progress;
+  ReducedModel model;
+  PetscReal    orthonormal;    /* largest |Phi'M Phi - I| */
+  PetscInt     n_local, begin; /* pairs of this rank, the first of them */
+  ContactPair *pair;           /* [n_pairs] */
+  PetscInt    *vertex_port;    /* [nodes] first port of a node that is looked at, -1 for none */
+  PetscInt     n_hits;
+  PetscReal   *hits, *hit_due; /* [n_hits][m] Phi'J, m sqrt(kg)/s; [n_hits] s */
+  /* the mesh beside it */
+  const char  *not_compared; /* why; NULL where it is */
+  PetscInt     n_closed, n_compared;
+  ReducedPair *compared;
+  /* state */
+  PetscReal      dt;
+  PetscInt       step;
+  ReducedStepper stepper;
+  ReducedState   state;
+  ReducedReport  report;
+  ContactState  *pairs;    /* [n_pairs] */
+  ContactSums   *sums;     /* [interfaces] */
+  PetscReal     *hit_time; /* [n_hits] t_n of the step in which each acted, s, -1 before */
+  LedgerAccount  ledger;
+  /* work */
+  PetscReal *loads, *sliding, *kick;        /* [n_loads], [n_pairs], [m] */
+  PetscReal *acceleration, *p_rate, *shown; /* [m] eta'', [n_ports] N/s, [n_ports] q and loads */
+  Mat        column;                        /* [unknowns][1] */
+  Checksum   scene;                         /* NULL until one is needed */
+  /* statistics */
+  PetscReal      n_its;   /* of the contact laws */
+  ContactKKT     kkt;     /* the worst of all steps */
+  PetscInt       n_steps; /* of this call */
+  PetscLogDouble setup_seconds, seconds;
+};
+
+/* product.c - Y = A X and Y = A'X of dense blocks, Y without gaps between its columns; X'Y of dense matrices of all ranks,
+   H [columns of X][columns of Y] by columns, on every rank */
+PETSC_INTERN void           ReducedTimes(const DenseBlock *A, const DenseBlock *X, PetscReal Y[]);
+PETSC_INTERN void           ReducedTimesTransposed(const DenseBlock *A, const DenseBlock *X, PetscReal Y[]);
+PETSC_INTERN PetscErrorCode ReducedGram(Mat X, Mat Y, PetscReal H[]);
+/* y += X coefficients. Collective */
+PETSC_INTERN PetscErrorCode ReducedAddCombination(Mat X, const PetscReal coefficients[], Vec y);
+
+/* step.c - displacement at a port, m */
+PETSC_INTERN PetscReal ReducedPortDisplacement(const ReducedModel *model, const PetscReal eta[], const PetscReal p[],
+                                               PetscInt port);
+/* y += scale op(A) x */
+PETSC_INTERN void ReducedBlockTimes(const DenseBlock *A, PetscBool transposed, PetscReal scale, const PetscReal x[],
+                                    PetscReal y[]);
+
+/* bodymodes.c - modes of the unconnected bodies below the cut-off: omega2, C and the vectors */
+PETSC_INTERN PetscErrorCode ReducedFindModes(ReducedRun reduced);
+/* M Phi of the modes that there are */
+PETSC_INTERN PetscErrorCode ReducedWeighModes(ReducedRun reduced);
+
+/* ports.c - ports as vectors of all unknowns, impulses, and P */
+PETSC_INTERN PetscErrorCode ReducedSetPorts(ReducedRun reduced);
+
+/* residual.c - W; X := R X of a dense block, R = (K - s M)^-1 on the complement of the modes, MX work of the same size */
+PETSC_INTERN PetscErrorCode ReducedSetResidual(ReducedRun reduced);
+PETSC_INTERN PetscErrorCode ReducedApplyResidual(ReducedRun reduced, Mat B, Mat X);
+
+/* pairs.c - gaps and laws of the pairs of all ranks; their states and sums after a step; residuals of the laws */
+PETSC_INTERN PetscErrorCode ReducedSetPairs(ReducedRun reduced);
+PETSC_INTERN PetscErrorCode ReducedTakePairs(ReducedRun reduced, PetscBool stepped);
+
+/* drive.c - what acts in the step from t_n; way (m) that pair i slides in it as prescribed; factors [n_loads] of the loads at t */
+PETSC_INTERN PetscErrorCode ReducedGetWay(ReducedRun reduced, PetscInt i, PetscReal *way);
+PETSC_INTERN PetscErrorCode ReducedDriveCreate(ReducedRun reduced);
+PETSC_INTERN PetscErrorCode ReducedDriveSet(ReducedRun reduced, ReducedDrive *drive);
+PETSC_INTERN void           ReducedSetLoads(ReducedRun reduced, PetscReal t, PetscReal factor[]);
+
+/* start.c - the state at t = 0 */
+PETSC_INTERN PetscErrorCode ReducedStart(ReducedRun reduced);
+
+/* compare.c - eigenvalues beside those of the mesh */
+PETSC_INTERN PetscErrorCode ReducedCompare(ReducedRun reduced);
+PETSC_INTERN PetscErrorCode ReducedCompareView(ReducedRun reduced, PetscViewer viewer);
+
+/* record.c - ledger, rows, fields of t_n */
+PETSC_INTERN PetscErrorCode ReducedRecord(ReducedRun reduced, PetscBool first);
+
+/* keep.c - checkpoints; the stepper is made from the model that is read back */
+PETSC_INTERN PetscErrorCode ReducedKeep(ReducedRun reduced);
+PETSC_INTERN PetscErrorCode ReducedGoOn(ReducedRun reduced);
+
+/* refuse.c - raises the error for what a reduced model cannot do */
+PETSC_INTERN PetscErrorCode ReducedRefuse(ReducedRun reduced);

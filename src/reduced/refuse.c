@@ -1,0 +1,31 @@
+/*
+   What a reduced model cannot do, by name.
+*/
+#include "reducedimpl.h"
+
+PetscErrorCode ReducedRefuse(ReducedRun r)
+{
+  const char *const full = "-dynamics_model full does";
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(r->run.model, &scene));
+  for (PetscInt i = 0; i < r->run.n_interfaces; i++) {
+    PetscReal way;
+    PetscBool turning;
+
+    PetscCall(ContactProjectorGetWay(r->run.projector, i, (const PetscReal[]){0, 1}, &way, &turning));
+    PetscCheck(!turning, r->comm, PETSC_ERR_SUP,
+               "-%s_kinematics turning: a reduced model keeps the pairs of the mesh, and no body can turn under the "
+               "other; take prescribed sliding, or %s",
+               r->run.interfaces[i].name, full);
+  }
+  PetscCheck(!scene->n_motions, r->comm, PETSC_ERR_SUP, "motion %s: a reduced model knows no prescribed motions; %s",
+             scene->n_motions ? scene->motions[0].name : "", full);
+  for (PetscInt i = 0; i < scene->n_points; i++)
+    PetscCheck(!scene->points[i].rigid, r->comm, PETSC_ERR_SUP,
+               "point %s: a reduced model knows no sets that are joined rigidly; %s", scene->points[i].name, full);
+  PetscCheck(r->run.n_interfaces, r->comm, PETSC_ERR_SUP,
+             "-dynamics_model reduced needs -contacts: without them -analysis frf tells the response");
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,174 @@
+/*
+   What the modes leave out: R = (1 - Phi Phi'M) (K - s M)^-1 (1 - M Phi Phi'), W = V'R V. The right-hand sides lose the modes
+   before the solution and the solutions after it, so that neither the shift nor the modes that are nearly free show by
+   rounding. s = -(cut-off / 1e4)^2: of what lies above the cut-off it changes 1e-8 at most.
+*/
+#include "reducedimpl.h"
+#include "solver/orthonormal.h"
+
+#define RESIDUAL_BLOCK 64  /* right-hand sides at once */
+#define RESIDUAL_SHIFT 1e4 /* cut-off over the root of -s */
+
+/* X -= A (B'X), A and B [unknowns][m] */
+static PetscErrorCode ComplementOf(Mat A, Mat B, Mat X)
+{
+  const PetscScalar *a;
+  PetscScalar       *x, *product;
+  PetscInt           n, m, columns, lda, ldx;
+  PetscReal         *H;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetLocalSize(A, &n, NULL));
+  PetscCall(MatGetSize(A, NULL, &m));
+  PetscCall(MatGetSize(X, NULL, &columns));
+  PetscCall(PetscMalloc2(m * columns, &H, n * columns, &product));
+  PetscCall(ReducedGram(B, X, H));
+  PetscCall(MatDenseGetLDA(A, &lda));
+  PetscCall(MatDenseGetLDA(X, &ldx));
+  PetscCall(MatDenseGetArrayRead(A, &a));
+  ReducedTimes(&(DenseBlock){a, n, m, lda}, &(DenseBlock){H, m, columns, m}, product);
+  PetscCall(MatDenseRestoreArrayRead(A, &a));
+  PetscCall(MatDenseGetArray(X, &x));
+  for (PetscInt j = 0; j < columns; j++)
+    for (PetscInt i = 0; i < n; i++) x[j * ldx + i] -= product[j * n + i];
+  PetscCall(MatDenseRestoreArray(X, &x));
+  PetscCall(PetscFree2(H, product));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedApplyResidual(ReducedRun r, Mat B, Mat X)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ComplementOf(r->MPhi, r->Phi, B));
+  PetscCall(ShiftInvertApplyBlock(&r->inverse, PETSC_FALSE, B, X));
+  PetscCall(ComplementOf(r->Phi, r->MPhi, X));
+  PetscFunctionReturn(0);
+}
+
+/* Columns first .. of V as the dense B: of G' or of the others */
+static PetscErrorCode PortsGetColumns(ReducedRun r, Mat Gt, PetscInt first, Mat B)
+{
+  const PetscInt     n_pairs = 3 * r->model.n_pairs;
+  PetscInt           begin, end, stride, ldo, n;
+  PetscScalar       *b;
+  const PetscScalar *o;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetSize(B, NULL, &n));
+  PetscCall(MatGetOwnershipRange(Gt, &begin, &end));
+  PetscCall(MatZeroEntries(B));
+  PetscCall(MatDenseGetLDA(B, &stride));
+  PetscCall(MatDenseGetLDA(r->others, &ldo));
+  PetscCall(MatDenseGetArray(B, &b));
+  PetscCall(MatDenseGetArrayRead(r->others, &o));
+  for (PetscInt i = begin; i < end; i++) {
+    const PetscInt    *column;
+    const PetscScalar *v;
+    PetscInt           n_row;
+
+    PetscCall(MatGetRow(Gt, i, &n_row, &column, &v));
+    for (PetscInt k = 0; k < n_row; k++)
+      if (column[k] >= first && column[k] < first + n) b[(column[k] - first) * stride + i - begin] = v[k];
+    PetscCall(MatRestoreRow(Gt, i, &n_row, &column, &v));
+  }
+  for (PetscInt k = PetscMax(first, n_pairs); k < first + n; k++)
+    PetscCall(PetscArraycpy(&b[(k - first) * stride], &o[(k - n_pairs) * ldo], end - begin));
+  PetscCall(MatDenseRestoreArrayRead(r->others, &o));
+  PetscCall(MatDenseRestoreArray(B, &b));
+  PetscFunctionReturn(0);
+}
+
+/* Columns first .. of A [N] from X: V'X, rows of pairs of this rank; of the others, where N has them, the sum over all */
+static PetscErrorCode ResidualTake(ReducedRun r, Mat X, PetscInt first, PetscInt N, PetscReal A[])
+{
+  const PetscInt     n_others = N - 3 * r->model.n_pairs;
+  const PetscScalar *value;
+  PetscReal         *H;
+  PetscInt           n, stride;
+  Mat                GX;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetSize(X, NULL, &n));
+  PetscCall(MatMatMult(r->G, X, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &GX));
+  PetscCall(MatDenseGetLDA(GX, &stride));
+  PetscCall(MatDenseGetArrayRead(GX, &value));
+  for (PetscInt k = 0; k < n; k++)
+    for (PetscInt i = 0; i < 3 * r->n_local; i++) A[(first + k) * N + 3 * r->begin + i] = value[k * stride + i];
+  PetscCall(MatDenseRestoreArrayRead(GX, &value));
+  PetscCall(MatDestroy(&GX));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &A[first * N], (PetscMPIInt)(n * N), MPIU_REAL, MPI_SUM, r->comm));
+  if (!n_others) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(n_others * n, &H));
+  PetscCall(ReducedGram(r->others, X, H));
+  for (PetscInt k = 0; k < n; k++)
+    PetscCall(PetscArraycpy(&A[(first + k) * N + N - n_others], &H[k * n_others], n_others));
+  PetscCall(PetscFree(H));
+  PetscFunctionReturn(0);
+}
+
+/* Columns of Cm and Cx from X of pairs: Phi'C X and X'C X = V'R C X; B is work */
+static PetscErrorCode ResidualTakeDamping(ReducedRun r, Mat C, Mat X, PetscInt first, Mat B)
+{
+  PetscFunctionBeginUser;
+  PetscCall(BlockMultiply(C, X, B));
+  PetscCall(ReducedGram(r->Phi, B, &r->model.Cm[first * r->model.m]));
+  PetscCall(ReducedApplyResidual(r, B, X));
+  PetscCall(ResidualTake(r, X, first, 3 * r->model.n_pairs, r->model.Cx));
+  PetscFunctionReturn(0);
+}
+
+/* Symmetric to the last bit */
+static void ResidualSymmetrise(PetscInt N, PetscReal A[])
+{
+  for (PetscInt j = 0; j < N; j++)
+    for (PetscInt i = 0; i < j; i++) A[i + N * j] = A[j + N * i] = 0.5 * (A[i + N * j] + A[j + N * i]);
+}
+
+/* Columns first .. first + n - 1 of all that is made of V */
+static PetscErrorCode ResidualBlock(ReducedRun r, Mat Gt, Mat C, PetscInt first, PetscInt n)
+{
+  const PetscInt N = r->model.n_ports;
+  PetscInt       n_own;
+  Mat            B, X;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetLocalSize(Gt, &n_own, NULL));
+  PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &B));
+  PetscCall(PortsGetColumns(r, Gt, first, B));
+  PetscCall(MatDuplicate(B, MAT_DO_NOT_COPY_VALUES, &X));
+  PetscCall(ReducedApplyResidual(r, B, X));
+  PetscCall(ResidualTake(r, X, first, N, r->model.W));
+  if (C && first < 3 * r->model.n_pairs) PetscCall(ResidualTakeDamping(r, C, X, first, B));
+  PetscCall(MatDestroy(&B));
+  PetscCall(MatDestroy(&X));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedSetResidual(ReducedRun r)
+{
+  const PetscInt  N = r->model.n_ports, n_pairs = 3 * r->model.n_pairs;
+  const PetscReal shift = -PetscSqr(2 * PETSC_PI * r->cutoff / RESIDUAL_SHIFT);
+  PencilMatrices  pencil;
+  PetscInt        n;
+  Mat             Gt, C;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetBodies(r->run.operators, NULL, NULL, NULL, &C));
+  PetscCall(PencilGetMatrices(r->bodies, &pencil));
+  PetscCall(ShiftInvertCreate(&pencil, shift, PETSC_FALSE, &r->progress, &r->inverse));
+  PetscCall(MatTranspose(r->G, MAT_INITIAL_MATRIX, &Gt));
+  PetscCall(PetscCalloc1(N * N, &r->model.W));
+  if (C) PetscCall(PetscCalloc1(n_pairs * n_pairs, &r->model.Cx));
+  if (C) PetscCall(PetscCalloc1(n_pairs * r->model.m, &r->model.Cm));
+  PetscCall(ProgressBegin(&r->progress, "compliance of the ports, blocks", (N + RESIDUAL_BLOCK - 1) / RESIDUAL_BLOCK));
+  for (PetscInt first = 0; first < N; first += n) {
+    n = PetscMin(RESIDUAL_BLOCK, (first < n_pairs ? n_pairs : N) - first);
+    PetscCall(ResidualBlock(r, Gt, C, first, n));
+    PetscCall(ProgressStep(&r->progress));
+  }
+  PetscCall(ProgressEnd(&r->progress));
+  PetscCall(MatDestroy(&Gt));
+  ResidualSymmetrise(N, r->model.W);
+  if (C) ResidualSymmetrise(n_pairs, r->model.Cx);
+  PetscFunctionReturn(0);
+}

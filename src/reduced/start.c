@@ -1,0 +1,176 @@
+/*
+   The state at t = 0: at rest with the velocities of the parts, or the sliding state (statics.h) with its contact forces; on top of
+   either the shape of a mode. Nodal values v become coordinates by Phi'M v; of what no mode below the cut-off moves, the
+   residual keeps no velocity.
+*/
+#include "reducedimpl.h"
+#include "base/gather.h"
+
+/* coordinates += Phi'M x of all unknowns */
+static PetscErrorCode StartProject(ReducedRun r, Vec x, PetscReal coordinates[])
+{
+  const PetscScalar *value;
+  PetscInt           n;
+  PetscReal         *sum;
+  Mat                X;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(x, &n));
+  PetscCall(VecGetArrayRead(x, &value));
+  PetscCall(MatCreateDense(r->comm, n, PETSC_DECIDE, PETSC_DETERMINE, 1, (PetscScalar *)value, &X));
+  PetscCall(PetscMalloc1(r->model.m, &sum));
+  PetscCall(ReducedGram(r->MPhi, X, sum));
+  for (PetscInt k = 0; k < r->model.m; k++) coordinates[k] += sum[k];
+  PetscCall(PetscFree(sum));
+  PetscCall(MatDestroy(&X));
+  PetscCall(VecRestoreArrayRead(x, &value));
+  PetscFunctionReturn(0);
+}
+
+/* The same of nodal values [nodes][3] */
+static PetscErrorCode StartProjectNodal(ReducedRun r, const PetscReal nodal[], PetscReal coordinates[])
+{
+  const Mesh  *mesh;
+  PetscScalar *value;
+  Vec          x;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(r->run.model, &mesh));
+  PetscCall(OperatorsCreateVec(r->run.operators, &x));
+  PetscCall(VecGetArray(x, &value));
+  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) {
+    const PetscInt row = mesh->unknown[i] - mesh->first_own;
+
+    if (mesh->unknown[i] >= 0 && row >= 0 && row < mesh->n_own) value[row] = nodal[i];
+  }
+  PetscCall(VecRestoreArray(x, &value));
+  PetscCall(StartProject(r, x, coordinates));
+  PetscCall(VecDestroy(&x));
+  PetscFunctionReturn(0);
+}
+
+/* Velocities of the parts, the mean where they share a node */
+static PetscErrorCode StartVelocities(ReducedRun r)
+{
+  const PetscReal  *velocity = ExternalGetVelocity(r->run.external);
+  const ModelScene *scene;
+  const Mesh       *mesh;
+  PetscReal        *nodal;
+  PetscInt         *count;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(r->run.model, &scene));
+  PetscCall(ModelGetMesh(r->run.model, &mesh));
+  PetscCall(PetscCalloc2(3 * mesh->n_nodes, &nodal, mesh->n_nodes, &count));
+  for (PetscInt i = 0; i < scene->n_parts; i++) {
+    const PetscInt *node;
+    PetscInt        n;
+    IS              is;
+
+    PetscCall(ModelGetSetNodes(r->run.model, scene->parts[i].name, &is));
+    PetscCall(ISGetLocalSize(is, &n));
+    PetscCall(ISGetIndices(is, &node));
+    for (PetscInt k = 0; k < n; k++) {
+      for (int d = 0; d < 3; d++) nodal[3 * node[k] + d] += velocity[3 * i + d];
+      count[node[k]]++;
+    }
+    PetscCall(ISRestoreIndices(is, &node));
+    PetscCall(ISDestroy(&is));
+  }
+  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) nodal[i] /= PetscMax(1, count[i / 3]);
+  PetscCall(StartProjectNodal(r, nodal, r->state.rate));
+  PetscCall(PetscFree2(nodal, count));
+  PetscFunctionReturn(0);
+}
+
+/* Forces and displacements of the sliding state */
+static PetscErrorCode StartSliding(ReducedRun r)
+{
+  const ContactState *local;
+  ContactState       *all;
+  Vec                 u;
+
+  PetscFunctionBeginUser;
+  PetscCall(StaticsSolve(r->run.statics, NULL));
+  PetscCall(StaticsGetState(r->run.statics, &local, &u));
+  PetscCall(GatherRecords(r->comm, r->n_local, sizeof(*local), local, NULL, &all));
+  for (PetscInt i = 0; i < r->model.n_pairs; i++) {
+    r->state.p[3 * i] = all[i].lambda_n;
+    for (int d = 0; d < 2; d++) r->state.p[3 * i + 1 + d] = -all[i].lambda_t[d];
+    r->state.status[i] = all[i].status;
+  }
+  PetscCall(PetscFree(all));
+  PetscCall(StartProject(r, u, r->state.eta));
+  PetscCall(StaticsRelease(r->run.statics));
+  PetscFunctionReturn(0);
+}
+
+/* What -dynamics_shape adds */
+static PetscErrorCode StartShape(ReducedRun r)
+{
+  const Mesh *mesh;
+  PetscReal  *u, *v;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(r->run.model, &mesh));
+  PetscCall(PetscMalloc2(3 * mesh->n_nodes, &u, 3 * mesh->n_nodes, &v));
+  PetscCall(DynamicsGetShape(r->dynamics, u, v));
+  PetscCall(StartProjectNodal(r, u, r->state.eta));
+  PetscCall(StartProjectNodal(r, v, r->state.rate));
+  PetscCall(PetscFree2(u, v));
+  PetscFunctionReturn(0);
+}
+
+/* Forces of the pairs that obey the laws at the start, on the compliance of the residual, with slip along what is prescribed:
+   those that are there are the guess. Without it the first step would be of first order */
+static PetscErrorCode StartLaws(ReducedRun r)
+{
+  const ReducedModel  *model = &r->model;
+  const PetscInt       n     = 3 * model->n_pairs;
+  PetscReal           *W, *q, *slip0;
+  ComplianceReport     solved;
+  const ContactStatus *status;
+  ContactCompliance    laws;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(n * n, &W, n, &q, 2 * model->n_pairs, &slip0));
+  for (PetscInt j = 0; j < n; j++) PetscCall(PetscArraycpy(&W[n * j], &model->W[model->n_ports * j], n));
+  for (PetscInt i = 0; i < n; i++) {
+    q[i] = ReducedPortDisplacement(model, r->state.eta, r->state.p, i) + (i % 3 ? 0 : model->gap[i / 3]);
+    if (i % 3) slip0[2 * (i / 3) + i % 3 - 1] = q[i];
+    for (PetscInt j = 0; j < n; j++) q[i] -= W[i + n * j] * r->state.p[j];
+  }
+  for (PetscInt i = 0; i < model->n_pairs; i++) {
+    PetscReal way;
+
+    PetscCall(ReducedGetWay(r, i, &way));
+    slip0[2 * i] -= way;
+  }
+  PetscCall(ContactComplianceCreate(model->n_pairs, W, &laws));
+  PetscCall(ContactComplianceSetFriction(laws, &(ComplianceFriction){model->mu, model->slope, model->speed, r->dt}));
+  PetscCall(ContactComplianceSolve(laws, q, slip0, r->state.p, NULL, &solved));
+  PetscCheck(solved.converged, r->comm, PETSC_ERR_NOT_CONVERGED,
+             "contact forces do not converge at the start: residual %.2e of pair %" PetscInt_FMT,
+             (double)solved.residual, solved.worst + 1);
+  PetscCall(ContactComplianceGetStatus(laws, &status));
+  PetscCall(PetscArraycpy(r->state.status, status, model->n_pairs));
+  PetscCall(ContactComplianceDestroy(&laws));
+  PetscCall(PetscFree3(W, q, slip0));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedStart(ReducedRun r)
+{
+  ReducedState *s = &r->state;
+
+  PetscFunctionBeginUser;
+  PetscCall(StartVelocities(r));
+  if (r->run.from_static) PetscCall(StartSliding(r));
+  PetscCall(StartShape(r));
+  ReducedSetLoads(r, 0, &s->p[3 * r->model.n_pairs]);
+  PetscCall(StartLaws(r));
+  PetscCall(PetscArraycpy(s->last, s->p, r->model.n_ports));
+  PetscCall(PetscArraycpy(s->q, s->p, 3 * r->model.n_pairs));
+  for (PetscInt i = 0; i < 3 * r->model.n_pairs; i++) s->y[i] = ReducedPortDisplacement(&r->model, s->eta, s->p, i);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,285 @@
+/*
+   One step of the reduced model (reduced.h) and its account of energy: first with lambda_{n+1} = 0, which gives the free
+   displacements of the pairs, then lambda_{n+1} from the laws, then with it.
+*/
+#include "reducedimpl.h"
+#include <petscblaslapack.h>
+
+PetscErrorCode ReducedStateCreate(const ReducedModel *model, ReducedState *state)
+{
+  PetscFunctionBeginUser;
+  *state = (ReducedState){.time = 0};
+  PetscCall(PetscCalloc4(model->m, &state->eta, model->m, &state->rate, model->n_ports, &state->p, model->n_ports,
+                         &state->last));
+  PetscCall(PetscCalloc3(3 * model->n_pairs, &state->q, 3 * model->n_pairs, &state->y, model->n_pairs, &state->status));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedStateCopy(const ReducedModel *model, const ReducedState *from, ReducedState *to)
+{
+  PetscFunctionBeginUser;
+  to->time = from->time;
+  PetscCall(PetscArraycpy(to->eta, from->eta, model->m));
+  PetscCall(PetscArraycpy(to->rate, from->rate, model->m));
+  PetscCall(PetscArraycpy(to->p, from->p, model->n_ports));
+  PetscCall(PetscArraycpy(to->last, from->last, model->n_ports));
+  PetscCall(PetscArraycpy(to->q, from->q, 3 * model->n_pairs));
+  PetscCall(PetscArraycpy(to->y, from->y, 3 * model->n_pairs));
+  PetscCall(PetscArraycpy(to->status, from->status, model->n_pairs));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedStateDestroy(ReducedState *state)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree4(state->eta, state->rate, state->p, state->last));
+  PetscCall(PetscFree3(state->q, state->y, state->status));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedReportCreate(const ReducedModel *model, ReducedReport *report)
+{
+  const PetscInt n = model->n_pairs;
+
+  PetscFunctionBeginUser;
+  *report = (ReducedReport){.external = 0};
+  PetscCall(PetscCalloc4(n, &report->contact, n, &report->friction, n, &report->heat, 2 * n, &report->slip));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedReportDestroy(ReducedReport *report)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree4(report->contact, report->friction, report->heat, report->slip));
+  PetscFunctionReturn(0);
+}
+
+void ReducedBlockTimes(const DenseBlock *A, PetscBool transposed, PetscReal scale, const PetscReal x[], PetscReal y[])
+{
+  const PetscReal    one  = 1;
+  const PetscBLASInt rows = (PetscBLASInt)A->rows, columns = (PetscBLASInt)A->columns, stride = (PetscBLASInt)A->stride;
+  const PetscBLASInt unit = 1;
+
+  if (rows && columns)
+    BLASgemv_(transposed ? "T" : "N", &rows, &columns, &scale, A->A, &stride, x, &unit, &one, y, &unit);
+}
+
+void ReducedEnergy(const ReducedModel *model, const ReducedState *s, PetscReal *kinetic, PetscReal *strain)
+{
+  const PetscInt n = model->n_ports, n_pairs = 3 * model->n_pairs;
+
+  *kinetic = *strain = 0;
+  for (PetscInt k = 0; k < model->m; k++) {
+    *kinetic += 0.5 * s->rate[k] * s->rate[k];
+    *strain += 0.5 * model->omega2[k] * s->eta[k] * s->eta[k];
+  }
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscReal pj = j < n_pairs ? s->q[j] : s->p[j];
+
+    for (PetscInt i = 0; i < n && pj != 0; i++)
+      *strain += 0.5 * (i < n_pairs ? s->q[i] : s->p[i]) * model->W[i + n * j] * pj;
+  }
+}
+
+PetscReal ReducedPortDisplacement(const ReducedModel *model, const PetscReal eta[], const PetscReal p[], PetscInt port)
+{
+  PetscReal y = 0;
+
+  for (PetscInt k = 0; k < model->m; k++) y += model->P[k + model->m * port] * eta[k];
+  for (PetscInt i = 0; i < model->n_ports; i++) y += model->W[i + model->n_ports * port] * p[i];
+  return y;
+}
+
+/* Impulses act at the beginning; the work that they do, J */
+static PetscReal StepperKick(ReducedStepper s, const PetscReal kick[], const ReducedState *state)
+{
+  const PetscInt m    = s->model->m;
+  PetscReal      work = 0;
+
+  for (PetscInt k = 0; k < m; k++) {
+    s->x[k]     = state->eta[k];
+    s->x[m + k] = state->rate[k] + (kick ? kick[k] : 0);
+    if (kick) work += kick[k] * 0.5 * (state->rate[k] + s->x[m + k]);
+  }
+  return work;
+}
+
+/* next = E z + F g with g = P mean - Cm dq / dt */
+static void StepperRespond(ReducedStepper s)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * model->n_pairs;
+
+  for (PetscInt k = 0; k < m; k++) s->x[2 * m + k] = 0;
+  ReducedBlockTimes(&(DenseBlock){model->P, m, model->n_ports, m}, PETSC_FALSE, 1, s->mean, &s->x[2 * m]);
+  if (s->H) ReducedBlockTimes(&(DenseBlock){model->Cm, m, n, m}, PETSC_FALSE, -1 / s->dt, s->dq, &s->x[2 * m]);
+  for (PetscInt i = 0; i < 2 * m; i++) s->next[i] = 0;
+  ReducedBlockTimes(&(DenseBlock){s->E, 2 * m, 2 * m, 2 * m}, PETSC_FALSE, 1, s->x, s->next);
+  ReducedBlockTimes(&(DenseBlock){s->F, 2 * m, m, 2 * m}, PETSC_FALSE, 1, &s->x[2 * m], s->next);
+}
+
+/* q_{n+1} and dq = q_{n+1} - q_n with lambda_{n+1} in the mean forces: W mean(q) + Cx dq / dt + Cm'(eta_{n+1} - eta_n) / dt = W
+   mean(lambda). `next` holds the answer without dq, then with it */
+static void StepperSolveResidual(ReducedStepper s, const ReducedState *state)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * model->n_pairs;
+
+  for (PetscInt i = 0; i < n; i++) s->dq[i] = 0;
+  StepperRespond(s);
+  for (PetscInt i = 0; i < n; i++) {
+    s->q[i]   = s->H ? state->q[i] : state->p[i];
+    s->sum[i] = 0;
+    s->r[i]   = s->mean[i] - state->q[i]; /* work */
+  }
+  if (!s->H) return;
+  for (PetscInt k = 0; k < m; k++) s->product[k] = -(s->next[k] - s->x[k]) / s->dt;
+  ReducedBlockTimes(&(DenseBlock){model->W, n, n, model->n_ports}, PETSC_FALSE, 1, s->r, s->sum);
+  ReducedBlockTimes(&(DenseBlock){model->Cm, m, n, m}, PETSC_TRUE, 1, s->product, s->sum);
+  ReducedBlockTimes(&(DenseBlock){s->H, n, n, n}, PETSC_FALSE, 1, s->sum, s->dq);
+  for (PetscInt i = 0; i < n; i++) s->q[i] += s->dq[i];
+  StepperRespond(s);
+}
+
+/* y_{n+1} of the pairs: P eta + W q + W loads */
+static void StepperSetDisplacements(ReducedStepper s, const ReducedState *state, PetscReal y[])
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * model->n_pairs, N = model->n_ports;
+
+  for (PetscInt i = 0; i < n; i++) y[i] = 0;
+  ReducedBlockTimes(&(DenseBlock){model->P, m, n, m}, PETSC_TRUE, 1, s->next, y);
+  ReducedBlockTimes(&(DenseBlock){model->W, n, n, N}, PETSC_FALSE, 1, s->q, y);
+  ReducedBlockTimes(&(DenseBlock){&model->W[N * n], n, model->n_loads, N}, PETSC_FALSE, 1, &state->p[n], y);
+}
+
+/* Mean forces of the step, with lambda_{n+1} or without */
+static void StepperSetMean(ReducedStepper s, const ReducedState *state, PetscBool without)
+{
+  const PetscInt n = 3 * s->model->n_pairs;
+
+  for (PetscInt i = 0; i < s->model->n_ports; i++)
+    s->mean[i] = 0.5 * (state->last[i] + (i < n && without ? 0 : state->p[i]));
+}
+
+/* Free displacements and what slip counts from */
+static void StepperSetFree(ReducedStepper s, const ReducedDrive *drive, const ReducedState *state)
+{
+  const ReducedModel *model = s->model;
+
+  StepperSetDisplacements(s, state, s->free);
+  for (PetscInt i = 0; i < model->n_pairs; i++) {
+    s->free[3 * i] += model->gap[i];
+    s->slip0[2 * i]     = state->y[3 * i + 1] - drive->sliding[i];
+    s->slip0[2 * i + 1] = state->y[3 * i + 2];
+  }
+}
+
+/* Forces and statuses of the pairs at t_{n+1} */
+static PetscErrorCode StepperSolveLaws(ReducedStepper s, ReducedState *state, ReducedReport *report)
+{
+  const PetscInt       n = s->model->n_pairs;
+  const ContactStatus *status;
+  ComplianceReport     solved;
+
+  PetscFunctionBeginUser;
+  report->residual = 0;
+  report->its      = 0;
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(ContactComplianceSolve(s->laws, s->free, s->slip0, state->p, NULL, &solved));
+  PetscCheck(solved.converged, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED,
+             "contact forces do not converge at %.6g s: residual %.2e of pair %" PetscInt_FMT
+             ", must be %.0e; take a smaller "
+             "-ts_dt",
+             (double)(state->time + s->dt), (double)solved.residual, solved.worst + 1, (double)s->rtol);
+  PetscCall(ContactComplianceGetStatus(s->laws, &status));
+  PetscCall(PetscArraycpy(state->status, status, n));
+  report->residual = solved.residual;
+  report->its      = solved.iterations;
+  PetscFunctionReturn(0);
+}
+
+/* Works of the pairs with the mean forces, J, and their slip; y becomes that at t_{n+1} */
+static void StepperAccount(ReducedStepper s, const ReducedDrive *drive, ReducedState *state, ReducedReport *report)
+{
+  StepperSetDisplacements(s, state, s->r);
+  for (PetscInt i = 0; i < s->model->n_pairs; i++) {
+    const PetscReal *mean = &s->mean[3 * i];
+    PetscReal        dy[3];
+
+    for (int d = 0; d < 3; d++) {
+      dy[d]               = s->r[3 * i + d] - state->y[3 * i + d];
+      state->y[3 * i + d] = s->r[3 * i + d];
+    }
+    report->contact[i]      = mean[0] * dy[0];
+    report->friction[i]     = mean[1] * dy[1] + mean[2] * dy[2];
+    report->heat[i]         = -report->friction[i] - mean[1] * drive->sliding[i];
+    report->slip[2 * i]     = dy[1] + drive->sliding[i];
+    report->slip[2 * i + 1] = dy[2];
+  }
+}
+
+/* Work of the loads, J: mean . (change of their displacements), less what only lambda - q makes of a load that changes */
+static PetscReal StepperLoadWork(ReducedStepper s, const ReducedState *state)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, N = model->n_ports, n = 3 * model->n_pairs;
+  PetscReal           work = 0;
+
+  for (PetscInt i = 0; i < N; i++) s->port[i] = i < n ? s->q[i] - state->q[i] : state->p[i] - state->last[i];
+  for (PetscInt j = n; j < n + model->n_loads; j++) {
+    const PetscReal *w  = &model->W[N * j];
+    PetscReal        dy = 0, lag = 0;
+
+    for (PetscInt k = 0; k < m; k++) dy += model->P[k + m * j] * (s->next[k] - s->x[k]);
+    for (PetscInt i = 0; i < N; i++) dy += w[i] * s->port[i];
+    for (PetscInt i = 0; i < n; i++) lag += w[i] * (s->mean[i] - 0.5 * (s->q[i] + state->q[i]));
+    work += s->mean[j] * dy - lag * s->port[j];
+  }
+  return work;
+}
+
+/* Work that damping takes, J: x'Q x of the modes, x = (z at the beginning, g), and that of the residual */
+static PetscReal StepperDamping(ReducedStepper s)
+{
+  const PetscInt m = s->model->m, n = 3 * s->model->n_pairs;
+  PetscReal      work = 0;
+
+  if (!s->Q) return 0;
+  for (PetscInt i = 0; i < 3 * m; i++) s->product[i] = 0;
+  ReducedBlockTimes(&(DenseBlock){s->Q, 3 * m, 3 * m, 3 * m}, PETSC_FALSE, 1, s->x, s->product);
+  for (PetscInt i = 0; i < 3 * m; i++) work += s->x[i] * s->product[i];
+  if (!s->H) return work;
+  for (PetscInt i = 0; i < n; i++) s->sum[i] = 0;
+  ReducedBlockTimes(&(DenseBlock){s->model->Cx, n, n, n}, PETSC_FALSE, 1, s->dq, s->sum);
+  for (PetscInt k = 0; k < m; k++) s->product[k] = s->next[k] - s->x[k];
+  ReducedBlockTimes(&(DenseBlock){s->model->Cm, m, n, m}, PETSC_TRUE, 2, s->product, s->sum);
+  for (PetscInt i = 0; i < n; i++) work += s->dq[i] * s->sum[i] / s->dt;
+  return work;
+}
+
+PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedState *state, ReducedReport *report)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * model->n_pairs;
+
+  PetscFunctionBeginUser;
+  report->external = StepperKick(s, drive->kick, state);
+  PetscCall(PetscArraycpy(state->last, state->p, model->n_ports));
+  for (PetscInt i = 0; i < model->n_loads; i++) state->p[n + i] = drive->loads[i];
+  StepperSetMean(s, state, PETSC_TRUE);
+  StepperSolveResidual(s, state);
+  if (!s->H) PetscCall(PetscArrayzero(s->q, n));
+  StepperSetFree(s, drive, state);
+  PetscCall(StepperSolveLaws(s, state, report));
+  StepperSetMean(s, state, PETSC_FALSE);
+  StepperSolveResidual(s, state);
+  StepperAccount(s, drive, state, report);
+  report->external += StepperLoadWork(s, state);
+  report->damping = -StepperDamping(s);
+  PetscCall(PetscArraycpy(state->q, s->q, n));
+  PetscCall(PetscArraycpy(state->eta, s->next, m));
+  PetscCall(PetscArraycpy(state->rate, &s->next[m], m));
+  state->time += s->dt;
+  PetscFunctionReturn(0);
+}

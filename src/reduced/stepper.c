@@ -1,0 +1,225 @@
+/*
+   The matrices of a step, exact for forces g on the modes that stay constant in it. z = (eta, rate) obeys z' = A z + (0, g):
+
+      z(dt) = E z + F g,   [E F; 0 I] = exp(dt [A (0 I)'; 0 0]),     A = [0 I; -Omega^2 -C]
+
+   so that overdamped and almost rigid modes need no formula of their own. Rates are divided by the highest angular frequency,
+   which balances A. Damping takes int rate'C rate dt, with x = (z, g) the form x'Q x (C. F. Van Loan, IEEE Trans. Automat.
+   Contr. 23, 1978):
+
+      exp(dt [-B' S; 0 B]) = [. G; 0 X],   Q = X'G,     B = [A (0 I)'; 0 0],  S = diag(0, C, 0).
+*/
+#include "reducedimpl.h"
+#include <slepcfn.h>
+#include <petscblaslapack.h>
+
+/* X := exp(X), [n][n] */
+static PetscErrorCode ExponentialOf(PetscInt n, PetscScalar X[])
+{
+  FN           fn;
+  Mat          A, B;
+  PetscScalar *value;
+
+  PetscFunctionBeginUser;
+  PetscCall(FNCreate(PETSC_COMM_SELF, &fn));
+  PetscCall(FNSetType(fn, FNEXP));
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, n, X, &A));
+  PetscCall(MatDuplicate(A, MAT_DO_NOT_COPY_VALUES, &B));
+  PetscCall(FNEvaluateFunctionMat(fn, A, B));
+  PetscCall(MatDenseGetArray(B, &value));
+  PetscCall(PetscArraycpy(X, value, n * n));
+  PetscCall(MatDenseRestoreArray(B, &value));
+  PetscCall(MatDestroy(&B));
+  PetscCall(MatDestroy(&A));
+  PetscCall(FNDestroy(&fn));
+  PetscFunctionReturn(0);
+}
+
+/* dt B in the corner of X [size][size], rates and forces in units of the frequency w */
+static void StepperSetGenerator(const ReducedModel *model, PetscReal dt, PetscReal w, PetscInt size, PetscReal X[])
+{
+  const PetscInt m = model->m;
+
+  for (PetscInt i = 0; i < m; i++) {
+    X[i + size * (m + i)]         = dt * w;
+    X[m + i + size * i]           = -dt * model->omega2[i] / w;
+    X[m + i + size * (2 * m + i)] = dt / w;
+    for (PetscInt j = 0; j < m && model->C; j++) X[m + i + size * (m + j)] = -dt * model->C[i + m * j];
+  }
+}
+
+/* E and F from exp(dt B), back to rates in m sqrt(kg)/s */
+static PetscErrorCode StepperSetResponse(ReducedStepper s)
+{
+  const PetscInt m = s->model->m, n = 3 * m;
+  PetscReal     *X;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n * n, &X));
+  StepperSetGenerator(s->model, s->dt, s->w, n, X);
+  PetscCall(ExponentialOf(n, X));
+  for (PetscInt j = 0; j < n; j++) {
+    for (PetscInt i = 0; i < 2 * m; i++) {
+      const PetscReal unit = (i >= m ? s->w : 1) / (j >= m && j < 2 * m ? s->w : 1);
+
+      if (j < 2 * m)
+        s->E[i + 2 * m * j] = unit * X[i + n * j];
+      else
+        s->F[i + 2 * m * (j - 2 * m)] = unit * X[i + n * j];
+    }
+  }
+  PetscCall(PetscFree(X));
+  PetscFunctionReturn(0);
+}
+
+/* Q [3 m][3 m] of the work that damping takes in the step */
+static PetscErrorCode StepperSetDamping(ReducedStepper s)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * m, N = 2 * n;
+  PetscReal          *X, *B;
+
+  PetscFunctionBeginUser;
+  if (!model->C) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc2(N * N, &X, n * n, &B));
+  PetscCall(PetscCalloc1(n * n, &s->Q));
+  StepperSetGenerator(model, s->dt, s->w, n, B);
+  for (PetscInt i = 0; i < n; i++) {
+    for (PetscInt j = 0; j < n; j++) {
+      X[i + N * j]           = -B[j + n * i];
+      X[n + i + N * (n + j)] = B[i + n * j];
+    }
+  }
+  for (PetscInt i = 0; i < m; i++)
+    for (PetscInt j = 0; j < m; j++) X[m + i + N * (n + m + j)] = s->dt * s->w * s->w * model->C[i + m * j];
+  PetscCall(ExponentialOf(N, X));
+  for (PetscInt i = 0; i < n; i++) {
+    for (PetscInt j = 0; j < n; j++) {
+      const PetscReal unit = 1 / ((i >= m && i < 2 * m ? s->w : 1) * (j >= m && j < 2 * m ? s->w : 1));
+      PetscReal       sum  = 0;
+
+      for (PetscInt k = 0; k < n; k++) sum += X[n + k + N * (n + i)] * X[k + N * (n + j)];
+      s->Q[i + n * j] = unit * sum;
+    }
+  }
+  PetscCall(PetscFree2(X, B));
+  PetscFunctionReturn(0);
+}
+
+/* What the damping of the residual adds (reduced.h). With F that of the coordinates, eta_{n+1} = e - G q_{n+1} + F P' lambda_{n+1} / 2,
+
+      q_{n+1} = H (W lambda_{n+1} / 2 - Cm' F P' lambda_{n+1} / (2 dt) + what is known),   H = (W / 2 + Cx / dt - Cm'G / dt)^-1,
+      G = F Cm / dt */
+static PetscErrorCode StepperSetResidual(ReducedStepper s)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * model->n_pairs;
+  PetscReal          *CG;
+  PetscBLASInt       *pivot;
+  PetscBool           singular;
+
+  PetscFunctionBeginUser;
+  if (!model->Cx || !n) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(n * n, &s->H, n * m, &s->G));
+  PetscCall(PetscMalloc2(n * n, &CG, n, &pivot));
+  ReducedTimes(&(DenseBlock){s->F, m, m, 2 * m}, &(DenseBlock){model->Cm, m, n, m}, s->G);
+  for (PetscInt i = 0; i < n * m; i++) s->G[i] /= s->dt;
+  ReducedTimesTransposed(&(DenseBlock){model->Cm, m, n, m}, &(DenseBlock){s->G, m, n, m}, CG);
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) {
+      CG[i + n * j]   = 0.5 * model->W[i + model->n_ports * j] + (model->Cx[i + n * j] - CG[i + n * j]) / s->dt;
+      s->H[i + n * j] = i == j;
+    }
+  PetscCall(DenseFactor(n, CG, pivot, &singular));
+  PetscCheck(!singular, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT,
+             "the compliance of the contact pairs is singular: take a lower -dynamics_cutoff");
+  PetscCall(DenseSolve(n, CG, pivot, PETSC_FALSE, n, s->H));
+  PetscCall(PetscFree2(CG, pivot));
+  PetscFunctionReturn(0);
+}
+
+/* dy / dlambda of the pairs: with D = W - Cm' F P' / dt, (P'F P + D'H D) / 2; undamped W + P'F P / 2 */
+static PetscErrorCode StepperSetCompliance(ReducedStepper s)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * model->n_pairs;
+  PetscReal          *FP, *PFP, *D, *HD;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(m * n, &FP, n * n, &PFP, n * n, &D, n * n, &HD));
+  ReducedTimes(&(DenseBlock){s->F, m, m, 2 * m}, &(DenseBlock){model->P, m, n, m}, FP);
+  ReducedTimesTransposed(&(DenseBlock){model->P, m, n, m}, &(DenseBlock){FP, m, n, m}, PFP);
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) s->W[i + n * j] = 2 * model->W[i + model->n_ports * j];
+  if (s->H) {
+    ReducedTimesTransposed(&(DenseBlock){model->Cm, m, n, m}, &(DenseBlock){FP, m, n, m}, D);
+    for (PetscInt i = 0; i < n * n; i++) D[i] = 0.5 * s->W[i] - D[i] / s->dt;
+    ReducedTimes(&(DenseBlock){s->H, n, n, n}, &(DenseBlock){D, n, n, n}, HD);
+    ReducedTimesTransposed(&(DenseBlock){D, n, n, n}, &(DenseBlock){HD, n, n, n}, s->W);
+  }
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i <= j; i++)
+      s->W[i + n * j] = s->W[j + n * i] = 0.25 * (s->W[i + n * j] + s->W[j + n * i] + PFP[i + n * j] + PFP[j + n * i]);
+  PetscCall(PetscFree4(FP, PFP, D, HD));
+  PetscFunctionReturn(0);
+}
+
+/* The solver of the contact laws on that compliance */
+static PetscErrorCode StepperSetLaws(ReducedStepper s)
+{
+  const ReducedModel *model = s->model;
+  PetscBool           definite;
+
+  PetscFunctionBeginUser;
+  if (!model->n_pairs) PetscFunctionReturn(0);
+  PetscCall(ContactComplianceCreate(model->n_pairs, s->W, &s->laws));
+  PetscCall(ContactComplianceCheckDefinite(s->laws, &definite));
+  PetscCheck(
+    definite, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+    "the compliance of the contact pairs is not positive definite: rounding of a -dynamics_cutoff that leaves too "
+    "little above it; take a lower one");
+  PetscCall(ContactComplianceSetFriction(s->laws, &(ComplianceFriction){model->mu, model->slope, model->speed, s->dt}));
+  PetscCall(ContactComplianceSetTolerance(s->laws, s->rtol));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, PetscReal rtol, ReducedStepper *stepper)
+{
+  const PetscInt m = model->m, n = 3 * model->n_pairs;
+  ReducedStepper s;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(stepper));
+  s        = *stepper;
+  s->model = model;
+  s->dt    = dt;
+  s->rtol  = rtol;
+  s->w     = PetscMax(1 / dt, m ? PetscSqrtReal(model->omega2[m - 1]) : 0);
+  PetscCall(PetscMalloc3(4 * m * m, &s->E, 2 * m * m, &s->F, n * n, &s->W));
+  PetscCall(PetscCalloc5(3 * m, &s->x, 3 * m, &s->next, 3 * m, &s->product, n, &s->free, n, &s->slip0));
+  PetscCall(PetscCalloc3(model->n_ports, &s->mean, n, &s->r, model->n_ports, &s->port));
+  PetscCall(PetscCalloc3(n, &s->q, n, &s->dq, n, &s->sum));
+  PetscCall(StepperSetResponse(s));
+  PetscCall(StepperSetDamping(s));
+  PetscCall(StepperSetResidual(s));
+  PetscCall(StepperSetCompliance(s));
+  PetscCall(StepperSetLaws(s));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedStepperDestroy(ReducedStepper *stepper)
+{
+  ReducedStepper s = *stepper;
+
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(0);
+  PetscCall(ContactComplianceDestroy(&s->laws));
+  PetscCall(PetscFree3(s->E, s->F, s->W));
+  PetscCall(PetscFree(s->Q));
+  PetscCall(PetscFree2(s->H, s->G));
+  PetscCall(PetscFree5(s->x, s->next, s->product, s->free, s->slip0));
+  PetscCall(PetscFree3(s->mean, s->r, s->port));
+  PetscCall(PetscFree3(s->q, s->dq, s->sum));
+  PetscCall(PetscFree(*stepper));
+  PetscFunctionReturn(0);
+}

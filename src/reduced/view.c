@@ -1,0 +1,31 @@
+/*
+   What a reduced run says when it is over: size and cut-off with why, the comparison with the mesh, steps and cost, laws,
+   energy.
+*/
+#include "reducedimpl.h"
+
+PetscErrorCode ReducedView(ReducedRun r, PetscViewer viewer)
+{
+  const double seconds = (double)r->seconds;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer,
+    "reduced model: %" PetscInt_FMT " modes of the unconnected bodies below %.6g Hz (%s), lumped mass, %s; static "
+    "compliance of %" PetscInt_FMT " pairs\n",
+    r->model.m, (double)r->cutoff, r->why, r->model.C ? "damped" : "undamped", r->model.n_pairs));
+  PetscCall(ExternalView(r->run.external, viewer));
+  PetscCall(ReducedCompareView(r, viewer));
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer,
+    "%" PetscInt_FMT " steps of %.6g s to %.6g s in %.4g s: %.4g us per step, %.3g iterations "
+    "of the contact laws; set-up %.4g s\n",
+    r->n_steps, (double)r->dt, (double)r->state.time, seconds, 1e6 * seconds / (double)PetscMax(1, r->n_steps),
+    (double)(r->n_its / (PetscReal)PetscMax(1, r->step)), (double)r->setup_seconds));
+  PetscCall(LedgerView(&r->ledger.total, viewer));
+  if (r->run.view_kkt) {
+    PetscCall(PetscViewerASCIIPrintf(viewer, "the worst of all steps:\n"));
+    PetscCall(ContactViewKKT(&r->kkt, viewer));
+  }
+  PetscFunctionReturn(0);
+}

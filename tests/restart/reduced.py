@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""A transient on modes that goes on from a checkpoint ends with the same bytes as one that was never stopped: tables, states of pairs,
+snapshots; and another cut-off is refused. Factors on several ranks are the same to rounding only: there two runs that go on from
+the same checkpoint end with the same tables. Breaks when a number of the model, of the state, of the contact laws' factors or
+of the ledger is not kept.
+
+    reduced.py SQUEAL LAUNCHER [--ranks 1]"""
+
+import argparse
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from runs import SOURCE, arrays, fail
+
+OPTIONS = """-rig_disc_elements 8,24,1 -rig_pad_elements 4,4,2 -rig_beam_elements 5 -press_ramp 2e-4 -tap_time 3e-4 -contact_speed 0.02
+             -dynamics_cutoff 20e3 -dynamics_compare false -dynamics_live 0 -dynamics_checkpoint_interval 37
+             -dynamics_pairs_interval 1e-4 -dynamics_snapshot_interval 5e-4""".split()
+TABLES = ("transient.csv", "contact_pairs.csv")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("squeal")
+    parser.add_argument("launcher")
+    parser.add_argument("--ranks", default="1")
+    arguments = parser.parse_args()
+
+    def run(folder, *options):
+        return subprocess.run([arguments.launcher, "-n", arguments.ranks, arguments.squeal, "-options_file",
+                               SOURCE / "options/massi2005_reduced.yaml", *OPTIONS, "-output_dir", folder, *options],
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+
+    with tempfile.TemporaryDirectory() as folder:
+        whole, parts = Path(folder) / "whole", Path(folder) / "parts"
+        outcome = [run(parts, "-ts_max_time", "1e-3")]
+        if arguments.ranks != "1":
+            shutil.copytree(parts, whole)
+        outcome += [run(whole, "-ts_max_time", "2e-3", *(["-dynamics_restart"] if whole.exists() else [])),
+                   run(parts, "-ts_max_time", "2e-3", "-dynamics_restart", "-dynamics_cutoff", "21e3", "-ts_dt", "7e-6"),
+                   run(parts, "-ts_max_time", "2e-3", "-dynamics_restart")]
+        if [end.returncode > 0 for end in outcome] != [False, False, True, False]:
+            fail("\n".join(end.stderr for end in outcome))
+        if "-dynamics_cutoff" not in outcome[2].stderr:
+            fail(f"the other cut-off is not named: {outcome[2].stderr}")
+        for table in TABLES:
+            if (whole / table).read_bytes() != (parts / table).read_bytes():
+                fail(f"{table} differs")
+        frames = sorted(path.name for path in whole.glob("snapshot_*.h5"))
+        if len(frames) < 4 or frames != sorted(path.name for path in parts.glob("snapshot_*.h5")):
+            fail(f"snapshots {frames}")
+        for frame in frames:
+            if arguments.ranks == "1" and arrays(whole / frame) != arrays(parts / frame):
+                fail(f"{frame} differs")
+        rows = (whole / "contact_pairs.csv").read_text()
+        print(f"{len(frames)} snapshots, {rows.count(',slip')} pairs slip, {rows.count(',stick')} stick, "
+              f"{rows.count(',open')} are open: the same")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
