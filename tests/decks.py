@@ -102,17 +102,17 @@ def abaqus_material(name="STEEL", constants=(YOUNG, POISSON)):
     return [*cards, "*ELASTIC, TYPE=ENGINEERING CONSTANTS", *lines([[*young, *poisson, *shear]], 8)]
 
 
-def abaqus(solid, constants=(YOUNG, POISSON), count=8, more=()):
-    """A deck of the box, clamped on its left side, with springs on the right one along y."""
+def abaqus(solid, constants=(YOUNG, POISSON), count=8, springs=None):
+    """A deck of the box, clamped on its left side, with springs along y on the right one, or at other nodes."""
     turned = len(constants) == 3
     cards = [*abaqus_mesh(solid), *abaqus_material(constants=constants)]
     if turned:
         cards += ["*ORIENTATION, NAME=TURNED, SYSTEM=RECTANGULAR", *lines([AXES[0] + AXES[1]])]
     cards += ["*SOLID SECTION, ELSET=BAR, MATERIAL=STEEL" + (", ORIENTATION=TURNED" if turned else "")]
-    springs = solid.nodes("right")
+    springs = solid.nodes("right") if springs is None else springs
     cards += ["*ELEMENT, TYPE=SPRING1, ELSET=ROWS", *(f"{100000 + i}, {n + 1}" for i, n in enumerate(springs))]
     cards += ["*SPRING, ELSET=ROWS", "2", repr(STIFFNESS)]
-    return [*cards, "*BOUNDARY", "LEFT, 1, 3", *more, "*STEP, PERTURBATION", "*FREQUENCY", str(count), "*END STEP"]
+    return [*cards, "*BOUNDARY", "LEFT, 1, 3", "*STEP, PERTURBATION", "*FREQUENCY", str(count), "*END STEP"]
 
 
 STIFFNESS = 50.0  # N/mm, of each spring

@@ -235,6 +235,7 @@ REFUSED = [
     (BODY + STEEL + "*STEP\n*STATIC\n", "wrong.inp:17: *STEP has no *END STEP: is the file cut off?"),
     (BODY + "*INCLUDE, INPUT=gone.inp\n", "wrong.inp:12: *INCLUDE: "),
     (BODY + STEEL.replace("*DENSITY\n7.8e-9\n", "") + "*SOLID SECTION, ELSET=E, MATERIAL=M\n", "units are in doubt"),
+    (BODY + "*NGEN\n1, 3, 1\n", "wrong.inp:12: *NGEN is not read"),
     ("1, 2, 3\n", "wrong.inp:1: '1,': a deck begins with a keyword"),
     ("", "there is no *NODE"),
 ]

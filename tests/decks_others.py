@@ -110,10 +110,12 @@ REFUSED = {"bdf": [
     (GRIDS + HEXA.replace(",8\n", ",8,9\n") + PROPERTY, "wrong.bdf:9: CHEXA with some of its nodes"),
     (GRIDS.replace("10.,10.,0.", "10.,1x.,0.") + HEXA + PROPERTY, "wrong.bdf:3: GRID: field 5 '1x.' should be a number"),
     (GRIDS.replace("10.,10.,0.", "10.,nan,0.") + HEXA + PROPERTY, "wrong.bdf:3: GRID: field 5 'nan' should be a number"),
-    (GRIDS + HEXA, "wrong.bdf:9: there is no PSOLID 1"),
+    (GRIDS + HEXA, "units are in doubt"),
+    (GRIDS + HEXA + PROPERTY.replace("PSOLID,1,", "PSOLID,2,"), "wrong.bdf:9: there is no PSOLID 1"),
     (GRIDS + HEXA + "PSOLID,1,2\n", "wrong.bdf:11: PSOLID 1: there is no material 2"),
     ("BEGIN BULK\n" + GRIDS + HEXA + PROPERTY, "BEGIN BULK has no ENDDATA: is the file cut off?"),
     (GRIDS + HEXA + PROPERTY + "SPC1,1,123,77\n", "wrong.bdf:13: grid point 77 is not in the file"),
+    (GRIDS + HEXA + PROPERTY + "GRDSET,,,,,,,,123\n", "wrong.bdf:13: GRDSET is not read"),
     ("CHEXA,1,1\n", "there is no GRID"),
 ], "cdb": [
     (NBLOCK.replace("SOLID,8,8", "SOLID,8,9") + EBLOCK, "wrong.cdb:2: NBLOCK announces 9 nodes and has 8"),

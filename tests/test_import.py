@@ -26,9 +26,9 @@ SAME, CALCULIX, COUNT = 1e-9, 1e-5, 8
 FAILED = []
 
 
-def modes(folder, words):
+def modes(folder, words, ranks=1):
     """Hz, of a run of squeal: the lowest."""
-    command = [sys.argv[2], "-n", 1, sys.argv[1], *words, "-output_dir", folder / "out", "-output_fields", 0]
+    command = [sys.argv[2], "-n", ranks, sys.argv[1], *words, "-output_dir", folder / "out", "-output_fields", 0]
     done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode:
         raise SystemExit(f"{' '.join(map(str, words))}: {done.stderr}")
@@ -64,6 +64,22 @@ def abaqus(folder):
             if kind == "hex20" and shutil.which("ccx"):
                 theirs = run_calculix(folder, deck)[0].imag[:COUNT] / (2 * np.pi)
                 judge(f"{about}: deck of Abaqus, CalculiX", ours, theirs, CALCULIX)
+
+
+def middles(folder):
+    """Springs at nodes in the middle of edges alone, without the corners beside them: as CalculiX has it, on one rank and two."""
+    solid = decks.Solid("hex20", folder, "--elements", "4,2,2")
+    corners = set(solid.cells["hex20"][:, :8].ravel().tolist())
+    deck = decks.abaqus(solid, springs=[node for node in solid.nodes("right") if node not in corners])
+    ours = imported(folder, "deck.inp", deck)
+    whole = modes(folder, decks.scene_words(solid.path))
+    judge("springs in the middle of edges: one rank, two", ours, modes(folder, ["-options_file", "deck.yaml"], 2), SAME)
+    apart = max(abs(ours / whole - 1))
+    print(f"       and by {apart:.1e} from springs at all nodes")
+    if not apart > 1e-3:
+        FAILED.append("springs in the middle of edges do nothing of their own")
+    if shutil.which("ccx"):
+        judge("springs in the middle of edges: CalculiX", ours, run_calculix(folder, deck)[0].imag[:COUNT] / (2 * np.pi), CALCULIX)
 
 
 def nastran(folder):
@@ -114,7 +130,7 @@ def meshio(folder):
 def main():
     sys.argv[1:] = [str(Path(word).resolve()) for word in sys.argv[1:]]
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
-        for compare in (abaqus, nastran, ansys, meshio):
+        for compare in (abaqus, middles, nastran, ansys, meshio):
             if len(sys.argv) < 4 or compare.__name__ in sys.argv[3]:
                 compare(Path(name))
     return 1 if FAILED else 0

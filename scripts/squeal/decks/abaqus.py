@@ -15,6 +15,7 @@ PHASES = {"NODE": 0, "ELEMENT": 1, "NSET": 2, "ELSET": 2, "SURFACE": 3, "ORIENTA
 OUTPUT = {"NODE PRINT", "EL PRINT", "NODE FILE", "EL FILE", "NODE OUTPUT", "ELEMENT OUTPUT", "OUTPUT", "RESTART", "PREPRINT",
           "CONTACT FILE", "CONTACT PRINT", "CONTACT OUTPUT", "ENERGY OUTPUT", "ENERGY PRINT", "FILE FORMAT", "MONITOR",
           "SECTION PRINT", "PRINT", "MODAL FILE"}
+GEOMETRY = {"SYSTEM", "NMAP", "NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY"}  # without them the mesh is another
 PLAIN = {"HEADING", "END STEP", "ASSEMBLY", "END ASSEMBLY"}  # say nothing of the model
 
 
@@ -208,6 +209,8 @@ class Reader:
             do = abaqus_mesh.CARDS.get(card.keyword) or abaqus_model.CARDS.get(card.keyword)
             if do:
                 do(self, scope, card)
+            elif card.keyword in GEOMETRY:
+                raise card.place.wrong(f"*{card.keyword} is not read, and without it the mesh is another: write out all nodes and elements")
             elif card.keyword in OUTPUT:
                 self.deck.note(card.place, f"*{card.keyword}: output, not needed here")
             elif card.keyword not in PLAIN:

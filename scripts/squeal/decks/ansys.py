@@ -17,8 +17,8 @@ END = {"NBLOCK": re.compile(rb"^[ \t]*(?:N[ \t]*,|-1[ \t]*$)[^\n]*", re.IGNORECA
 # Say nothing of the model
 CONTROL = {"/COM", "/PREP7", "/NOPR", "/GOPR", "/GO", "/TITLE", "/SOLU", "/UNITS", "/BATCH", "/POST1", "*IF", "*ENDIF", "*ELSE",
            "/WB", "/DEBUG", "/CONFIG", "/STATUS", "/FILNAME"}
-PLAIN = {"DOF", "NUMOFF", "EXTOPT", "FINISH", "FINI", "SHPP", "TREF", "IRLF", "BFUNIF", "ERESX", "_CDRDOFF=", "MPTEMP", "N",
-         "ANTYPE", "SOLVE", "MXPAND", "CSYS", "CM"}
+PLAIN = {"DOF", "NUMOFF", "EXTOPT", "FINISH", "FINI", "SHPP", "TREF", "IRLF", "BFUNIF", "ERESX", "_CDRDOFF=", "MPTEMP",
+         "ANTYPE", "SOLVE", "MXPAND", "CSYS"}
 
 
 @dataclass
@@ -110,6 +110,8 @@ def commands_of(path, text, first):
         line = line.partition("!")[0].strip()
         words = [word.strip() for word in line.split(",")]
         if not line or words[0].upper().split(" ")[0] in CONTROL:
+            continue
+        if found and found[-1].words[0] == "RLBLOCK" and re.match(r"[(\-+.\d]", words[0]):
             continue
         if re.match(r"[-+.\d]", words[0]) and found and found[-1].words[-1].upper().startswith("R5"):
             found[-1].words[-1:] = words[0].split() if len(words) == 1 else words

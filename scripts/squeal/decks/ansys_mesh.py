@@ -4,7 +4,7 @@ import numpy
 
 from .deck import Block, Index, shape_of
 
-KNOWN = {"ET", "KEYOP", "KEYOPT", "R", "RLBLOCK", "RMODIF", "TYPE", "LOCAL", "SECTYPE", "SECDATA", "SECBLOCK"}
+KNOWN = {"ET", "LOCAL"}
 MOST = 10**9
 # Number of a type -> nodes
 SOLIDS = {185: 8, 45: 8, 186: 20, 95: 20, 187: 10, 92: 10, 285: 4}

@@ -88,11 +88,12 @@ def used_nodes(deck):
 
 
 def give_sections(deck):
-    """Where a deck has no sections, its sets of elements or blocks become parts without a material."""
+    """Where a deck has no sections, its sets of elements or blocks become parts without a material: the largest first, and of
+    those with the same elements the last one."""
     if deck.sections:
         return
     left = numpy.ones(deck.n_cells, bool)
-    for name, (cells, place) in sorted(deck.cell_sets.items(), key=lambda item: -len(item[1][0])):
+    for name, (cells, place) in sorted(reversed(deck.cell_sets.items()), key=lambda item: -len(item[1][0])):
         if len(cells) and left[cells].all():
             left[cells] = False
             deck.sections.append(Section(name, cells, "", None, place))

@@ -67,6 +67,7 @@ def tags_of(mesh, number, block, name):
     if values is None or number >= len(values):
         return None
     values = numpy.asarray(values[number])
+    values = values[:, 0] if values.ndim == 2 and values.shape[1] == 1 else values
     return values if values.ndim == 1 and len(values) == len(block) and values.dtype.kind in "iu" else None
 
 

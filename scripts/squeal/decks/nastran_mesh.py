@@ -4,7 +4,7 @@ import numpy
 
 from .deck import Block, Index, shape_of
 
-KNOWN = {"GRID", "CTETRA", "CPENTA", "CHEXA", "CORD2R", "CORD2C", "CORD1R", "CORD1C"}
+KNOWN = {"GRID", "CTETRA", "CPENTA", "CHEXA", "CORD2R", "CORD2C", "CORD1R", "CORD1C", "CORD1S", "CORD2S", "GRDSET", "SPOINT"}
 MOST = 10**9
 # Name -> corners, shapes of first and second order, order of Nastran's nodes in ours (second order)
 SOLIDS = {"CTETRA": (4, ("tet4", "tet10"), range(10)),
@@ -83,8 +83,8 @@ def read_systems(mesh, tables):
             table, row = later[0]
             raise table.place(row).wrong(f"{table.name}: there is no coordinate system {table.whole(1, 2)[row, 0]}")
         waiting = later
-    for table in named(tables, "CORD1R", "CORD1C"):
-        raise table.place(0).wrong(f"{table.name}: only CORD2R and CORD2C are read")
+    for table in named(tables, "CORD1R", "CORD1C", "CORD1S", "CORD2S", "GRDSET", "SPOINT"):
+        raise table.place(0).wrong(f"{table.name} is not read, and without it the grid points are others; only CORD2R and CORD2C are")
 
 
 def new_system(table, row, base):

@@ -101,6 +101,9 @@ def read_properties(deck, tables, mesh):
             if system not in mesh.systems:
                 raise table.place(row).wrong(f"PSOLID {number}: there is no coordinate system {system}")
             properties[number] = str(material), axes_of(mesh.systems[system], table.place(row)), table.place(row)
+    if not properties:
+        bare_parts(deck, mesh)
+        return
     groups = {}
     for cells, numbers in mesh.blocks:
         for number in numpy.unique(numbers).tolist():
@@ -113,6 +116,16 @@ def read_properties(deck, tables, mesh):
         deck.sections.append(Section(f"part_{number}", numpy.concatenate(parts), material, axes, place))
     for number, (*_, place) in properties.items():
         deck.note(place, f"PSOLID {number}: no element has it")
+
+
+def bare_parts(deck, mesh):
+    """A mesh without properties: sets of elements by their numbers."""
+    groups = {}
+    for cells, numbers in mesh.blocks:
+        for number in numpy.unique(numbers).tolist():
+            groups.setdefault(number, []).append(cells[numbers == number])
+    for number, parts in groups.items():
+        deck.cell_sets[f"part_{number}"] = numpy.concatenate(parts), mesh.cells.line_of(int(parts[0][0]))
 
 
 def axes_of(system, place):

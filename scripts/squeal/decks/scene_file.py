@@ -2,6 +2,7 @@
 
 from ..tables import whole
 
+MOST_ALIKE = 3
 LISTS = ("parts", "supports", "springs", "motions", "loads", "contacts")
 FACTORS = {"": lambda u: 1, "length": lambda u: u.length, "stress": lambda u: u.stress, "density": lambda u: u.density,
            "force": lambda u: u.force, "stiffness": lambda u: u.stiffness, "time": lambda u: u.time,
@@ -54,9 +55,17 @@ def scene_lines(deck, result, units, why, mesh):
 
 
 def remarks(deck):
-    """What differs, and what is not in the scene, a line each."""
-    return ([f"{place}: differs: {text}" for text, place in deck.differs.items()] +
-            [f"{place}: {text}" for place, text in deck.notes])
+    """What differs, and what is not in the scene, a line each; of more than MOST_ALIKE that say the same the first and last."""
+    alike = {}
+    for place, text in deck.notes:
+        alike.setdefault((getattr(place, "file", ""), text), []).append(place)
+    lines = [f"{place}: differs: {text}" for text, place in deck.differs.items()]
+    for (_, text), places in alike.items():
+        if len(places) > MOST_ALIKE:
+            lines.append(f"{places[0]}: {text} (and {len(places) - 1} more, the last on line {places[-1].line})")
+        else:
+            lines += [f"{place}: {text}" for place in places]
+    return lines
 
 
 def write_scene(path, lines, notes):
