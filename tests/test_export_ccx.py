@@ -6,6 +6,7 @@
               the same frequencies and growth, and its loads do the same work, to 1e-9
   contact     two boxes in sliding contact, the same; the direction of slip, which no deck has, is given again
   CalculiX    finds the frequencies of squeal in the decks of hex20 with springs, to 1e-5, where there is ccx
+  rig         the built-in rig, in the file of -rig_save, has the same modes; and in a deck
   notes       what a deck does not have is listed, an option a line
   bad         one line, status 1, and no deck
 
@@ -68,6 +69,20 @@ oil: {set: block_top, viscosity: "0,0,10"}
 probes: tip
 tip: {at: "0,0,0.03"}
 modes: {target: 1, count: 12, growth: 5000}
+"""
+RIG = """model: {source: rig}
+rig: {disc_elements: "6,24,1", pad_elements: "2,2,2", beam_elements: 3}
+parts: disc,pad,beam
+disc: {young: 2.1e11, poisson: 0.3, density: 7800}
+pad: {young: 8e9, poisson: 0.3, density: 2500}
+beam: {young: 2.1e11, poisson: 0.3, density: 7800}
+supports: hub
+hub: {set: disc_inner, fix: xyz}
+springs: rows
+rows: {set: beam_rows, stiffness: "0,8e6,0"}
+contacts: contact
+contact: {surfaces: "pad_face,disc_face", kn_per_area: 1e13, mu: 0.9, slip: "0,1,0"}
+modes: {band: "500,9000", growth: 6000}
 """
 FAULTS = []
 
@@ -161,6 +176,27 @@ def check_contact(top):
           "notes: all others are in the deck")
 
 
+def check_rig(top):
+    """The built-in rig, its mesh in a file, and its deck."""
+    (top / "rig.yaml").write_text(RIG)
+    for ranks in (1, 2):
+        run(top, sys.argv[2], "-n", ranks, sys.argv[1], "-options_file", "rig.yaml", "-rig_save", f"rig{ranks}.msh", "-output_dir",
+            f"rig{ranks}", "-output_fields", 0)
+    check((top / "rig1.msh").read_bytes() == (top / "rig2.msh").read_bytes(), "rig: the same file on two ranks")
+    (top / "file.yaml").write_text("model: {mesh: rig1.msh}\n" + "".join(
+        line + "\n" for line in RIG.splitlines() if not line.startswith(("model", "rig"))))
+    squeal(top, "file.yaml", "of_file", "-output_fields", 0)
+    modes = modes_of(top / "rig1")
+    check(apart(modes, modes_of(top / "of_file")) < 1e-11 and max(modes.real) > 1, f"rig: as a file, apart by {apart(modes, modes_of(top / 'of_file')):.1e}")
+    run(top, SOURCE / "scripts/export_ccx", "rig1")
+    run(top, SOURCE / "scripts/import", "rig1/deck.inp", "-o", "of_deck", "--units", "m-kg-s")
+    squeal(top, "of_deck.yaml", "of_deck", "-output_fields", 0, f"-{contact_of(top / 'of_deck.yaml')}_slip", "0,1,0", "-modes_growth", 6000)
+    check(apart(modes, modes_of(top / "of_deck")) < SAME, f"rig: as a deck and back, apart by {apart(modes, modes_of(top / 'of_deck')):.1e}")
+    done = subprocess.run([sys.argv[1], "-options_file", "rig.yaml", "-rig_save", "nowhere/rig.msh", "-output_dir", "no"], cwd=top,
+                          capture_output=True, text=True, check=False)
+    check(done.returncode == 1 and "cannot write 'nowhere/rig.msh' of -rig_save" in done.stderr, f"rig: {done.stderr.strip()}")
+
+
 def contact_of(path):
     """Name of the contact of an imported scene."""
     return next(line.split()[1] for line in path.read_text().splitlines() if line.startswith("contacts:"))
@@ -180,7 +216,7 @@ def check_bad(top):
     (top / "gone/scene.yaml").write_text(scene.replace("pair.msh", "gone.msh"))
     (top / "torn.msh").write_bytes((top / "pair.msh").read_bytes()[:2000])
     (top / "short.msh").write_bytes((top / "hex27.msh").read_bytes()[:-400])
-    for words, said in ((["nowhere"], "no such folder"), (["empty"], "scene.yaml"), (["of27"], "hex27"), (["rig"], "built-in rig"),
+    for words, said in ((["nowhere"], "no such folder"), (["empty"], "scene.yaml"), (["of27"], "hex27"), (["rig"], "-rig_save"),
                         (["gone"], "gone.msh"), (["out", "--mesh", "torn.msh"], "torn.msh"), (["out", "--mesh", "short.msh"], "short.msh"), (["out", "--mesh", "pair.yaml"], "no file of Gmsh"),
                         (["out", "--mesh", "hex27.msh"], "no volume named base"), (["out", "-o", "empty/no/deck.inp"], "deck.inp"),
                         (["of27", "--sliding"], "hex27")):
@@ -195,6 +231,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
         check_solids(Path(name))
         check_contact(Path(name))
+        check_rig(Path(name))
         check_bad(Path(name))
     print("\n".join([f"{len(FAULTS)} faults", *FAULTS]))
     return 1 if FAULTS else 0

@@ -109,6 +109,7 @@ PetscErrorCode ModelSetUp(Model model)
     PetscCall(ImportGmsh(model->comm, model->file, &model->dm));
   PetscCall(MeshTabulate(model));
   PetscCall(MeshCheck(model));
+  if (!strcmp(model->source, "rig")) PetscCall(RigSave(model));
   PetscCall(SpinsCheck(model));
   PetscCall(PartitionMesh(model));
   PetscCall(MeshLayOut(model));

@@ -19,7 +19,8 @@ typedef struct {
   PetscInt  pad_n[3];                               /* 10, 10, 10 */
   PetscReal beam_height;                            /* 100 mm; its section is the pad's */
   PetscInt  beam_nz;                                /* 20 */
-  PetscReal beam_rows[2]; /* heights of the two spring rows above the beam's lower end, 20 and 80 mm */
+  PetscReal beam_rows[2];             /* heights of the two spring rows above the beam's lower end, 20 and 80 mm */
+  char      save[PETSC_MAX_PATH_LEN]; /* file of Gmsh to write, "" for none */
 } Rig;
 
 /* What a part takes up */
@@ -52,6 +53,9 @@ PETSC_INTERN PetscErrorCode PartView(Model model, PetscInt part, PetscViewer vie
 
 /* rig.c - dimensions and counts of the rig; errors for impossible ones */
 PETSC_INTERN PetscErrorCode RigSetFromOptions(MPI_Comm comm, Rig *rig);
+
+/* rigsave.c - writes the rig's mesh and sets to the file of -rig_save, before it is cut. Collective */
+PETSC_INTERN PetscErrorCode RigSave(Model model);
 
 /* generate.c - the rig on rank 0 as an interpolated DMPlex with the sets disc, pad, beam (cells), disc_inner,
    disc_face, pad_face, beam_top (faces), beam_rows (nodes); error for a beam with too few node levels for its rows

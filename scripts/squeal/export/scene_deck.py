@@ -228,8 +228,6 @@ def contact_stiffness(build, owner, slave):
 
 def scene_deck(options, mesh, count=0, sliding=False):
     """The deck with its notes; `count` modes where the scene has a band; `sliding` for sliding.py."""
-    if options.text("model_source", "file") == "rig" and not options.has("model_mesh"):
-        raise BadInput(f"{options.path}: has the built-in rig, whose sets are in no file; a scene with -model_mesh can be written")
     build = Builder(options, mesh)
     for add in (add_materials, add_holders, add_loads):
         add(build)
@@ -240,5 +238,5 @@ def scene_deck(options, mesh, count=0, sliding=False):
     if target and options.number("modes_target") > 1:
         build.notes.append(f"modes_target {options.text('modes_target')}: CalculiX finds the lowest modes")
     build.deck.modes = (count or wanted, 0.0 if target else low, 0.0 if target else high, Place("modes", 0))
-    options.used |= {"model_mesh", "analysis"}
+    options.used |= {"model_mesh", "model_source", "analysis", *(name for name in options.given if name.startswith("rig_"))}
     return build.deck, build.notes + list(options.left())

@@ -55,6 +55,8 @@ def read_grid(file):
         raise BadInput(f"{file.filename}: cells name nodes that are not there; was the file damaged?")
     part = group["CellData/part"]
     names = [name.decode() for name in part.attrs["names"]]
+    if not len(part) == len(group["Types"]) == len(offsets) - 1 or (part[:] < 0).any() or (part[:] >= len(names)).any():
+        raise BadInput(f"{file.filename}: types, parts and nodes of its cells do not fit together; was the file damaged?")
     return Grid(points, read_cells(group), part[:], names)
 
 

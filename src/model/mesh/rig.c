@@ -89,7 +89,8 @@ static PetscErrorCode RigCheck(MPI_Comm comm, const Rig *rig)
 .  -rig_pad_elements <10,10,10>               - in x, y, z
 .  -rig_beam_height <0.1>                     - m
 .  -rig_beam_elements <20>                    - over the height
--  -rig_beam_rows <0.02,0.08>                 - heights of the rows of spring nodes above the beam's lower end, m
+.  -rig_beam_rows <0.02,0.08>                 - heights of the rows of spring nodes above the beam's lower end, m
+-  -rig_save <file>                           - write mesh and sets as a Gmsh file
 
    Errors: PETSC_ERR_USER_INPUT for impossible dimensions and counts.
 */
@@ -144,6 +145,8 @@ PetscErrorCode RigSetFromOptions(MPI_Comm comm, Rig *rig)
   PetscCall(OptionsGetReals(PetscOptionsObject, "-beam_rows",
                             "Heights of the spring rows above the beam's lower end (m; 0.02,0.08)", 2, rig->beam_rows,
                             NULL));
+  PetscCall(PetscOptionsString("-save", "file of Gmsh to write the mesh and its sets to", "model.h", rig->save,
+                               rig->save, sizeof(rig->save), NULL));
   PetscOptionsEnd();
   PetscCall(RigCheck(comm, rig));
   PetscFunctionReturn(0);
