@@ -51,6 +51,9 @@ const Element *ElementFind(DMPolytopeType shape, PetscInt n_nodes, const char fo
 /*@ ElementGet - row i of the table, NULL after the last. Not collective. @*/
 const Element *ElementGet(PetscInt i);
 
+/*@ ElementPoint - a cell that is a node, for output of points; no row of the table. Not collective. @*/
+const Element *ElementPoint(void);
+
 /*@ ElementIsFormulation - whether some row has this formulation. Not collective. @*/
 PetscBool ElementIsFormulation(const char formulation[]);
 

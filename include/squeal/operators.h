@@ -46,6 +46,7 @@ PetscErrorCode OperatorsSetModel(Operators operators, Model model, Contact conta
 .  -operators_dense_k, _m, _c, _h <list> - small dense matrices inline, rows one after another
 .  -terms <names>                        - matrices, each the prefix of -.._file or _dense, _kind <stiffness|damping|mass>,
 _parameter <names>, _power <integers>, _scale, _symmetry <any|symmetric|skew>: K, C and M are sums of scale prod_i p_i^n_i A
+.  -operators_nodes <file>               - table unknown,node,direction,x,y,z[,part] of matrices, for shapes and their names
 .  -operators_mass <consistent|lumped>   - mass matrix of a model
 .  -operators_factors <auto|lu|symmetric> - with friction LU, or LDL' of the symmetric part with an update for the closed
 pairs; auto takes what needs less memory
@@ -154,6 +155,14 @@ PetscErrorCode OperatorsCreateGeometric(Operators operators, const PetscReal p[]
 
 /*@ OperatorsCreateVec - a vector of all unknowns. Collective. @*/
 PetscErrorCode OperatorsCreateVec(Operators operators, Vec *u);
+
+/*@ OperatorsGetMesh - the mesh of the model, or the points of -operators_nodes as a mesh whose cells are points, NULL where
+    there is neither (borrowed). Not collective; after OperatorsSetUp(). @*/
+PetscErrorCode OperatorsGetMesh(Operators operators, const Mesh **mesh);
+
+/*@ OperatorsGetNodal - displacements of a vector of all unknowns, or of none for NULL, at the nodes of that mesh, shape
+    [local nodes][3], zero where there is no unknown. Collective. @*/
+PetscErrorCode OperatorsGetNodal(Operators operators, Vec u, PetscReal nodal[]);
 
 /*@ OperatorsGetModel - the model and contact, NULL for loaded matrices (borrowed). Not collective. @*/
 PetscErrorCode OperatorsGetModel(Operators operators, Model *model, Contact *contact);

@@ -125,6 +125,19 @@ const Element *ElementGet(PetscInt i)
   return i < (PetscInt)N_ELEMENTS ? &elements[i] : NULL;
 }
 
+const Element *ElementPoint(void)
+{
+  static const Element point = {.name        = "point",
+                                .xdmf        = "Polyvertex",
+                                .shape       = DM_POLYTOPE_POINT,
+                                .vtk         = 1,
+                                .xdmf_number = 1,
+                                .n_nodes     = 1,
+                                .n_corners   = 1};
+
+  return &point;
+}
+
 PetscBool ElementIsFormulation(const char formulation[])
 {
   for (size_t i = 0; i < N_ELEMENTS; i++)

@@ -23,47 +23,10 @@
 #define MAX_PARTS  64
 #define DISC_SHARE 0.25 /* participation from which on a mode is named after the disc's shape */
 
-/* Masses of the nodes of a cell (kg): equal ones, or the lumped ones of elements of second order */
-static PetscErrorCode CellMasses(const Element *element, const PetscReal x[], PetscReal density, PetscReal mass[])
-{
-  const Elasticity unit = ElasticityFromEngineering(1, 0, density);
-  PetscReal        volume, jacobian, ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
-
-  PetscFunctionBeginUser;
-  if (element->n_nodes > element->n_corners) {
-    PetscCall(ElementMatrices(element, x, &unit, ke, me));
-    ElementLump(element, me, mass);
-    PetscFunctionReturn(0);
-  }
-  element->measure(element->solid, x, &volume, &jacobian);
-  for (PetscInt i = 0; i < element->n_nodes; i++) mass[i] = density * volume / (PetscReal)element->n_nodes;
-  PetscFunctionReturn(0);
-}
-
-/* Nodal mass (kg) of one part, shape [local nodes]: only what this rank's cells give */
-static PetscErrorCode PartMasses(Model model, PetscInt part, PetscReal density, PetscReal **mass)
-{
-  const Mesh *mesh;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(model, &mesh));
-  PetscCall(PetscCalloc1(mesh->n_nodes, mass));
-  for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const Element *element;
-    PetscInt       nodes[ELEMENT_MAX_NODES];
-    PetscReal      x[ELEMENT_MAX_DOFS], share[ELEMENT_MAX_NODES];
-
-    if (mesh->cell_part[c] != part) continue;
-    PetscCall(ModelGetCell(model, c, &element, nodes, x));
-    PetscCall(CellMasses(element, x, density, share));
-    for (PetscInt i = 0; i < element->n_nodes; i++) (*mass)[nodes[i]] += share[i];
-  }
-  PetscFunctionReturn(0);
-}
-
 /* Participation of the parts and the disc's fit of all modes, summed over ranks */
 typedef struct {
   PetscInt    n_parts, n_vertices, disc; /* disc = its part, or -1 */
+  PetscBool   by_unknown;                /* what is no disc is named after the unknown that moves most */
   PetscReal **mass;                      /* [part][local node] */
   PetscReal  *share;                     /* [mode][part][2]: y^T M_p x, real and imaginary */
   PetscReal  *energy;                    /* [mode][2]: the ring's kinetic energy of x, all and out of plane */
@@ -82,16 +45,16 @@ static PetscReal WeightedDot(PetscInt n, const PetscReal m[], const PetscReal a[
 }
 
 /* Adds participation and the disc's right-hand sides of mode i; without left vectors y = conj(x) */
-static PetscErrorCode LabelsAdd(Modes modes, Model model, PetscInt i, Labels *l)
+static PetscErrorCode LabelsAdd(Modes modes, Operators operators, PetscInt i, Labels *l)
 {
   Vec xr, xi, yr, yi;
 
   PetscFunctionBeginUser;
   PetscCall(ModesGetVectors(modes, i, &xr, &xi, &yr, &yi));
-  PetscCall(ModelGetNodal(model, xr, l->x[0]));
-  PetscCall(ModelGetNodal(model, xi, l->x[1]));
-  PetscCall(ModelGetNodal(model, yr ? yr : xr, l->y[0]));
-  PetscCall(ModelGetNodal(model, yr ? yi : xi, l->y[1]));
+  PetscCall(OperatorsGetNodal(operators, xr, l->x[0]));
+  PetscCall(OperatorsGetNodal(operators, xi, l->x[1]));
+  PetscCall(OperatorsGetNodal(operators, yr ? yr : xr, l->y[0]));
+  PetscCall(OperatorsGetNodal(operators, yr ? yi : xi, l->y[1]));
   for (PetscInt v = 0; v < 3 * l->n_vertices && !yr; v++) l->y[1][v] = -l->y[1][v];
   for (PetscInt part = 0; part < l->n_parts; part++) {
     const PetscInt   n     = l->n_vertices;
@@ -106,7 +69,7 @@ static PetscErrorCode LabelsAdd(Modes modes, Model model, PetscInt i, Labels *l)
 }
 
 /* Writes the name of mode i, and its participation in per cent */
-static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Part parts[], PetscInt i)
+static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Mesh *mesh, PetscInt i)
 {
   double *const percent = &modes->part_percent[i * l->n_parts];
   PetscReal     share[MAX_PARTS], total = 0;
@@ -126,8 +89,8 @@ static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Part parts[
   if (l->disc >= 0 && share[l->disc] > DISC_SHARE * total && l->energy[2 * i + 1] > 0.5 * l->energy[2 * i] &&
       !mode->rigid)
     PetscCall(DiscName(&l->frame, i, mode->label, sizeof(mode->label)));
-  else
-    PetscCall(PetscSNPrintf(mode->label, sizeof(mode->label), "%s%s", parts[most].name, mode->rigid ? " rigid" : ""));
+  else if (!l->by_unknown || mode->rigid)
+    PetscCall(PetscSNPrintf(mode->label, sizeof(mode->label), "%s%s", mesh->part[most], mode->rigid ? " rigid" : ""));
   PetscFunctionReturn(0);
 }
 
@@ -154,46 +117,67 @@ static PetscErrorCode SurfacesMark(Model model, Contact contact, PetscInt n_vert
   PetscFunctionReturn(0);
 }
 
-/* Masses, the disc's frame and fit; disc stays -1 where no part of that name exists or it is no disc */
-static PetscErrorCode LabelsCreate(Modes modes, Model model, Contact contact, PetscInt n_parts, const Part parts[],
-                                   Labels *l)
+/* Whether points that nobody calls a disc are flat as one: a square bar has an axis too */
+static PetscErrorCode PointsAreFlat(const Mesh *mesh, const Disc *disc, PetscBool *flat)
 {
-  const PetscReal *p;
-  PetscReal        centre[3];
-  const Mesh      *mesh;
-  PetscBool        same, found, *surface;
-  Operators        operators;
+  PetscReal farthest = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PencilGetOperators(modes->pencil, &operators));
-  PetscCall(PencilGetParameters(modes->pencil, NULL, NULL, &p));
-  PetscCall(ModelGetMesh(model, &mesh));
-  l->n_parts    = n_parts;
-  l->n_vertices = mesh->n_nodes;
-  l->disc       = -1;
-  PetscCall(PetscMalloc1(n_parts, &l->mass));
-  PetscCall(PetscCalloc2(2 * modes->n * n_parts, &l->share, 2 * modes->n, &l->energy));
-  PetscCall(PetscMalloc4(3 * l->n_vertices, &l->x[0], 3 * l->n_vertices, &l->x[1], 3 * l->n_vertices, &l->y[0],
-                         3 * l->n_vertices, &l->y[1]));
-  for (PetscInt part = 0; part < n_parts; part++) {
-    OperatorsMaterial material;
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) {
+    PetscReal along = 0;
 
-    PetscCall(OperatorsGetMaterial(operators, p, part, &material));
-    PetscCall(PartMasses(model, part, material.density, &l->mass[part]));
-    PetscCall(PetscStrcmp(parts[part].name, modes->disc, &same));
+    for (int d = 0; d < 3; d++) along += (mesh->x[3 * v + d] - disc->centre[d]) * disc->axis[d];
+    farthest = PetscMax(farthest, PetscAbsReal(along));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &farthest, 1, MPIU_REAL, MPI_MAX, disc->comm));
+  *flat = farthest < 0.5 * disc->r_outer ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* The disc's frame and fit; disc stays -1 where no part of that name exists or it is no disc. Points without parts may be
+   one */
+static PetscErrorCode LabelsFindDisc(Modes modes, Model model, Contact contact, const Mesh *mesh, Labels *l)
+{
+  PetscReal centre[3];
+  PetscBool same, found = PETSC_FALSE, *surface = NULL;
+
+  PetscFunctionBeginUser;
+  l->disc = model || mesh->n_parts > 1 ? -1 : 0;
+  for (PetscInt part = 0; part < mesh->n_parts; part++) {
+    PetscCall(PetscStrcmp(mesh->part[part], modes->disc, &same));
     if (same) l->disc = part;
   }
   PetscCall(PetscStrcmp(modes->disc, "disc", &same));
   PetscCheck(l->disc >= 0 || same, modes->comm, PETSC_ERR_USER_INPUT, "-modes_disc '%s' is none of the -parts",
              modes->disc);
   if (l->disc < 0) PetscFunctionReturn(0);
-  PetscCall(ContactGetCentre(contact, centre, &found));
-  PetscCall(SurfacesMark(model, contact, l->n_vertices, &surface));
+  if (model) PetscCall(ContactGetCentre(contact, centre, &found));
+  if (model) PetscCall(SurfacesMark(model, contact, l->n_vertices, &surface));
   PetscCall(DiscCreate(modes->comm,
                        &(DiscPart){l->n_vertices, mesh->x, l->mass[l->disc], found ? centre : NULL, surface}, modes->n,
                        &l->frame, &same));
   PetscCall(PetscFree(surface));
+  if (same && !model && mesh->n_parts == 1) PetscCall(PointsAreFlat(mesh, &l->frame, &same));
   if (!same) l->disc = -1;
+  PetscFunctionReturn(0);
+}
+
+/* Masses, room and the disc */
+static PetscErrorCode LabelsCreate(Modes modes, Operators operators, const Mesh *mesh, Labels *l)
+{
+  Model   model;
+  Contact contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(operators, &model, &contact));
+  l->n_parts    = mesh->n_parts;
+  l->n_vertices = mesh->n_nodes;
+  PetscCall(PetscMalloc1(l->n_parts, &l->mass));
+  PetscCall(PetscCalloc2(2 * modes->n * l->n_parts, &l->share, 2 * modes->n, &l->energy));
+  PetscCall(PetscMalloc4(3 * l->n_vertices, &l->x[0], 3 * l->n_vertices, &l->x[1], 3 * l->n_vertices, &l->y[0],
+                         3 * l->n_vertices, &l->y[1]));
+  PetscCall(LabelsWeigh(modes, mesh, l->mass));
+  PetscCall(LabelsFindDisc(modes, model, contact, mesh, l));
   PetscFunctionReturn(0);
 }
 
@@ -236,29 +220,31 @@ static PetscErrorCode LabelUnknown(Modes modes)
 
 PetscErrorCode ModesLabel(Modes modes)
 {
-  Labels            l = {0};
-  const ModelScene *scene;
-  Model             model;
-  Contact           contact;
-  Operators         operators;
+  Labels      l = {0};
+  const Mesh *mesh;
+  Model       model;
+  Operators   operators;
+  PetscInt    n;
 
   PetscFunctionBeginUser;
   PetscCall(PencilGetOperators(modes->pencil, &operators));
-  PetscCall(OperatorsGetModel(operators, &model, &contact));
-  if (!model) {
+  PetscCall(OperatorsGetModel(operators, &model, NULL));
+  PetscCall(OperatorsGetMesh(operators, &mesh));
+  if (!mesh) {
     PetscCall(LabelUnknown(modes));
     PetscFunctionReturn(0);
   }
-  PetscCall(ModelGetScene(model, &scene));
-  PetscCall(LabelsCreate(modes, model, contact, scene->n_parts, scene->parts, &l));
-  for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelsAdd(modes, model, i, &l));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.share, (PetscMPIInt)(2 * modes->n * scene->n_parts), MPIU_REAL, MPI_SUM,
-                             modes->comm));
+  n = modes->n * mesh->n_parts;
+  PetscCall(LabelsCreate(modes, operators, mesh, &l));
+  l.by_unknown = !model && mesh->n_parts == 1 ? PETSC_TRUE : PETSC_FALSE; /* better than one name for all */
+  if (l.by_unknown) PetscCall(LabelUnknown(modes));
+  for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelsAdd(modes, operators, i, &l));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.share, (PetscMPIInt)(2 * n), MPIU_REAL, MPI_SUM, modes->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.energy, (PetscMPIInt)(2 * modes->n), MPIU_REAL, MPI_SUM, modes->comm));
   if (l.disc >= 0) PetscCall(DiscSolve(&l.frame));
   PetscCall(PetscFree(modes->part_percent));
-  PetscCall(PetscMalloc1(modes->n * scene->n_parts, &modes->part_percent));
-  for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelWrite(modes, &l, scene->parts, i));
+  PetscCall(PetscMalloc1(n, &modes->part_percent));
+  for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelWrite(modes, &l, mesh, i));
   PetscCall(LabelsDestroy(&l));
   PetscFunctionReturn(0);
 }

@@ -149,6 +149,9 @@ PETSC_INTERN PetscErrorCode LeftBiorthogonalise(Modes modes, const PencilMatrice
 /* quality.c - measures the errors, expands the vectors to all unknowns and normalises them */
 PETSC_INTERN PetscErrorCode QualityMeasure(Modes modes, const PencilMatrices *pencil);
 
+/* weigh.c - masses of the nodes of each part, mass[parts][local nodes], kg; the caller frees each */
+PETSC_INTERN PetscErrorCode LabelsWeigh(Modes modes, const Mesh *mesh, PetscReal *mass[]);
+
 /* filter.c - filters.h5 and filters.xmf: modal filters of all modes but rigid ones */
 PETSC_INTERN PetscErrorCode ModesWriteFilters(Modes modes, Model model, Results results);
 

@@ -71,7 +71,7 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
 }
 
 /* Header of modes.csv; further columns only at its end, since others read it */
-static PetscErrorCode ModesOpenTable(const ModelScene *scene, Results results, ResultsTable *table)
+static PetscErrorCode ModesOpenTable(const Mesh *mesh, Results results, ResultsTable *table)
 {
   char header[16384], column[256];
 
@@ -79,8 +79,8 @@ static PetscErrorCode ModesOpenTable(const ModelScene *scene, Results results, R
   PetscCall(PetscStrncpy(header,
                          "mode,freq_hz,growth_rad_s,damping_ratio,backward_error,condition,unstable,label,error_hz",
                          sizeof(header)));
-  for (PetscInt part = 0; scene && part < scene->n_parts; part++) {
-    PetscCall(PetscSNPrintf(column, sizeof(column), ",part_%s_percent", scene->parts[part].name));
+  for (PetscInt part = 0; mesh && part < mesh->n_parts; part++) {
+    PetscCall(PetscSNPrintf(column, sizeof(column), ",part_%s_percent", mesh->part[part]));
     PetscCall(PetscStrlcat(header, column, sizeof(header)));
   }
   PetscCall(ResultsTableOpen(results, "modes", header, table));
@@ -88,20 +88,18 @@ static PetscErrorCode ModesOpenTable(const ModelScene *scene, Results results, R
 }
 
 /* modes.csv */
-static PetscErrorCode ModesWriteTable(Modes modes, Model model, Results results)
+static PetscErrorCode ModesWriteTable(Modes modes, const Mesh *mesh, Results results)
 {
-  const ModelScene *scene = NULL;
-  ResultsTable      table;
+  ResultsTable table;
 
   PetscFunctionBeginUser;
-  if (model) PetscCall(ModelGetScene(model, &scene));
-  PetscCall(ModesOpenTable(scene, results, &table));
+  PetscCall(ModesOpenTable(mesh, results, &table));
   for (PetscInt i = 0; i < modes->n; i++) {
     const Mode *m             = &modes->mode[i];
     char        percent[2048] = "", number[32];
 
-    for (PetscInt part = 0; scene && part < scene->n_parts; part++) {
-      PetscCall(PetscSNPrintf(number, sizeof(number), ",%.15g", modes->part_percent[i * scene->n_parts + part]));
+    for (PetscInt part = 0; mesh && part < mesh->n_parts; part++) {
+      PetscCall(PetscSNPrintf(number, sizeof(number), ",%.15g", modes->part_percent[i * mesh->n_parts + part]));
       PetscCall(PetscStrlcat(percent, number, sizeof(percent)));
     }
     PetscCall(ResultsTableRow(table, "%d,%.15g,%.15g,%.15g,%.15g,%.15g,%d,\"%s\",%.15g%s", (int)i + 1,
@@ -114,14 +112,12 @@ static PetscErrorCode ModesWriteTable(Modes modes, Model model, Results results)
 }
 
 /* modes.h5 and modes.xmf */
-static PetscErrorCode ModesWriteShapes(Modes modes, Model model, Results results)
+static PetscErrorCode ModesWriteShapes(Modes modes, Operators operators, const Mesh *mesh, Results results)
 {
-  const Mesh  *mesh;
   PetscReal   *re, *im;
   ResultsField field;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(PetscMalloc2(3 * mesh->n_nodes, &re, 3 * mesh->n_nodes, &im));
   PetscCall(ResultsFieldOpen(results, "modes", mesh, &field));
   for (PetscInt i = 0; i < modes->n; i++) {
@@ -131,8 +127,8 @@ static PetscErrorCode ModesWriteShapes(Modes modes, Model model, Results results
     PetscCall(PetscSNPrintf(key, sizeof(key), "mode_%03d", (int)i + 1));
     PetscCall(PetscSNPrintf(title, sizeof(title), "%d: %.6g Hz, growth %.4g 1/s, %s", (int)i + 1,
                             (double)ModeFrequency(m), (double)m->sigma, m->label));
-    PetscCall(ModelGetNodal(model, modes->right.xr[i], re));
-    PetscCall(ModelGetNodal(model, modes->right.xi[i], im));
+    PetscCall(OperatorsGetNodal(operators, modes->right.xr[i], re));
+    PetscCall(OperatorsGetNodal(operators, modes->right.xi[i], im));
     PetscCall(ResultsFieldWriteMode(field, key, title, re, im));
   }
   PetscCall(ResultsFieldClose(&field));
@@ -142,15 +138,19 @@ static PetscErrorCode ModesWriteShapes(Modes modes, Model model, Results results
 
 PetscErrorCode ModesWrite(Modes modes, Results results)
 {
-  PetscBool wanted;
-  Model     model;
+  PetscBool   wanted;
+  Model       model;
+  Operators   operators;
+  const Mesh *mesh;
 
   PetscFunctionBeginUser;
   PetscCall(ModesGetModel(modes, &model, NULL));
-  PetscCall(ModesWriteTable(modes, model, results));
+  PetscCall(PencilGetOperators(modes->pencil, &operators));
+  PetscCall(OperatorsGetMesh(operators, &mesh));
+  PetscCall(ModesWriteTable(modes, mesh, results));
   PetscCall(ResultsNote(results, "completeness", "%s", modes->completeness));
   PetscCall(ResultsWantFields(results, &wanted));
-  if (model && wanted) PetscCall(ModesWriteShapes(modes, model, results));
+  if (mesh && wanted) PetscCall(ModesWriteShapes(modes, operators, mesh, results));
   if (modes->filters) PetscCall(ModesWriteFilters(modes, model, results));
   PetscFunctionReturn(0);
 }

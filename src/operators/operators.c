@@ -2,6 +2,7 @@
    Operators: life cycle, parameters, and the matrices of the bodies alone.
 */
 #include "matrixterm.h"
+#include "nodetable.h"
 #include "base/events.h"
 #include <math.h>
 
@@ -43,7 +44,12 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
   PetscCall(PetscOptionsString("-operators_save",
                                "folder for K.bin, M.bin, C.bin, H.bin and the loads F.bin (PETSc binary)",
                                "operators.h", operators->save, operators->save, sizeof(operators->save), NULL));
+  PetscCall(OptionsGetPath(PetscOptionsObject, "-operators_nodes",
+                           "of matrices without a mesh: table unknown,node,direction,x,y,z of their nodes",
+                           operators->nodes, NULL));
   PetscCall(OperatorsHaveMatrices(operators, &have));
+  PetscCheck(have || !operators->nodes[0], operators->comm, PETSC_ERR_USER_INPUT,
+             "-operators_nodes %s is of matrices that are loaded; a mesh knows its nodes", operators->nodes);
   if (have)
     PetscCall(PetscOptionsReal("-contact_mu", "friction coefficient of K + mu H", "operators.h", operators->loaded_mu,
                                &operators->loaded_mu, NULL));
@@ -92,6 +98,7 @@ PetscErrorCode OperatorsSetUp(Operators operators)
     PetscCall(OperatorsAddContactParameters(operators));
   } else {
     PetscCall(OperatorsLoad(operators));
+    if (operators->nodes[0]) PetscCall(CloudCreate(operators));
   }
   for (PetscInt i = 0; i < operators->parameters.n; i++) {
     const OperatorsParameter *q = &operators->parameters.list[i];
@@ -261,6 +268,7 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   PetscCall(PetscFree(o->mu));
   PetscCall(ParametersDestroy(&o->parameters));
   PetscCall(NamedDestroy(o));
+  PetscCall(CloudDestroy(o));
   PetscCall(PetscFree(*operators));
   PetscFunctionReturn(0);
 }

@@ -42,6 +42,8 @@ struct _p_Operators {
   PetscReal  loaded_mu; /* -contact_mu of loaded or dense matrices */
   PetscInt   n_named;   /* matrices of -terms */
   struct _p_MatrixTerm *named;
+  char                  nodes[PETSC_MAX_PATH_LEN]; /* -operators_nodes */
+  struct _p_Cloud      *cloud;                     /* their points, NULL without */
   /* built by OperatorsSetUp() */
   Parameters           parameters;       /* at the values of the scene */
   PetscInt             n_mu, *mu;        /* parameters that are friction coefficients */

@@ -127,21 +127,29 @@ static PetscErrorCode FieldWriteHead(ResultsField field)
   PetscFunctionReturn(0);
 }
 
+/* Row i of the table of elements, after which points follow */
+static const Element *FieldElement(PetscInt i)
+{
+  const Element *element = ElementGet(i);
+
+  return !element && i > 0 && ElementGet(i - 1) ? ElementPoint() : element;
+}
+
 /* The element that all cells of all ranks are of, NULL where there are several */
 static PetscErrorCode FieldFindElement(MPI_Comm comm, const Mesh *mesh, const Element **element)
 {
   PetscInt row[2] = {-ELEMENT_MAX_ROWS, -1}; /* the negative first and the last row of the table */
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; ElementGet(i); i++)
+  for (PetscInt i = 0; FieldElement(i); i++)
     for (PetscInt c = 0; c < mesh->n_cells; c++) {
-      if (mesh->element[c] != ElementGet(i)) continue;
+      if (mesh->element[c] != FieldElement(i)) continue;
       row[0] = PetscMax(row[0], -i);
       row[1] = i;
       break;
     }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, row, 2, MPIU_INT, MPI_MAX, comm));
-  *element = -row[0] == row[1] ? ElementGet(row[1]) : NULL;
+  *element = -row[0] == row[1] ? FieldElement(row[1]) : NULL;
   PetscFunctionReturn(0);
 }
 

@@ -81,8 +81,9 @@ static PetscErrorCode XdmfMesh(Xdmf *xdmf)
   OutFile *file = &xdmf->file;
 
   PetscFunctionBeginUser;
-  PetscCall(OutFilePrint(file, "        <Topology TopologyType=\"%s\" NumberOfElements=\"%" PetscInt_FMT "\">\n",
-                         xdmf->element ? xdmf->element->xdmf : "Mixed", xdmf->n_cells));
+  PetscCall(OutFilePrint(file, "        <Topology TopologyType=\"%s\" NumberOfElements=\"%" PetscInt_FMT "\"%s>\n",
+                         xdmf->element ? xdmf->element->xdmf : "Mixed", xdmf->n_cells,
+                         xdmf->element && xdmf->element->n_nodes == 1 ? " NodesPerElement=\"1\"" : ""));
   PetscCall(XdmfItem(xdmf, "Int", sizeof(PetscInt), xdmf->n_ids + (xdmf->element ? 0 : xdmf->n_cells), 1,
                      xdmf->element ? "Connectivity" : "Mixed"));
   PetscCall(OutFilePrint(file, "        </Topology>\n        <Geometry GeometryType=\"XYZ\">\n"));

@@ -123,7 +123,7 @@ def write_unknowns(folder, labels, places):
     return name, lost
 
 
-def write_scene(folder, found, lines):
+def write_scene(folder, found, table, lines):
     """The options file, whose terms are the matrices of known kind."""
     known = [matrix for matrix in found if kind_of(matrix.name)]
     with whole(folder / "matrices.yaml") as part:
@@ -134,6 +134,8 @@ def write_scene(folder, found, lines):
                 kind = kind_of(matrix.name)
                 out.write(f"{'' if kind else '# give its kind, and add it to terms: '}{matrix.name.lower()}: "
                           f"{{file: {matrix.name}.bin, kind: {kind or '?'}}}\n")
+            if table == "nodes.csv":
+                out.write("operators: {nodes: nodes.csv}\n")
 
 
 def write(folder, found, places):
@@ -150,7 +152,7 @@ def write(folder, found, places):
                          + (f"; {one.how}" if one.how else ""))
         table, lost = write_unknowns(folder, labels, places)
         lines += [f"has no place: {unknown_name(label)}" for label in lost]
-        write_scene(folder, found, lines)
+        write_scene(folder, found, table, lines)
     except OSError as error:
         raise BadInput(f"{error.filename or folder}: {error.strerror}") from None
     return lines + [f"{table}: nodes and directions of the unknowns"] * bool(table)
