@@ -51,12 +51,20 @@ def imported(folder, name, text):
     return modes(folder, ["-options_file", f"{path.stem}.yaml"])
 
 
+def materials(kind):
+    """Constants: hex20 with both, of the others those of first order isotropic, those of second order orthotropic."""
+    isotropic = decks.YOUNG, decks.POISSON
+    if kind == "hex20":
+        return isotropic, decks.ORTHOTROPIC
+    return [decks.ORTHOTROPIC if kind[-1] in "025" else isotropic]
+
+
 def abaqus(folder):
     """All shapes as decks of Abaqus; CalculiX on those of hex20."""
     for kind, options in (("hex8", ()), ("hex20", ("--curve",)), ("tet10", ("--curve",)), ("tet4", ()), ("wedge15", ("--curve",)),
                           ("wedge6", ()), ("hex+wedge2", ()), ("wedge+tet1", ())):
         solid = decks.Solid(kind, folder, "--distort", "3", "--renumber", "5", *options)
-        for constants in ((decks.YOUNG, decks.POISSON), decks.ORTHOTROPIC):
+        for constants in materials(kind):
             deck = decks.abaqus(solid, constants)
             about = f"{kind}, {'isotropic' if len(constants) == 2 else 'orthotropic'}"
             ours = imported(folder, "deck.inp", deck)
@@ -88,7 +96,7 @@ def nastran(folder):
                                 ("hex+wedge2", "large", ()), ("wedge+tet1", "free", ())):
         shaken = () if form == "small" else ("--distort", "3", "--renumber", "5", *options)
         solid = decks.Solid(kind, folder, *shaken)
-        for constants in ((decks.YOUNG, decks.POISSON), decks.ORTHOTROPIC):
+        for constants in materials(kind):
             ours = imported(folder, "deck.bdf", decks.nastran(solid, form, constants))
             about = f"{kind}, {'isotropic' if len(constants) == 2 else 'orthotropic'}: deck of Nastran, {form} fields"
             judge(f"{about}, own scene", ours, modes(folder, decks.scene_words(solid.path, constants)), SAME)
@@ -99,7 +107,7 @@ def ansys(folder):
     for kind, plain in (("hex8", False), ("hex20", False), ("tet10", True), ("tet10", False), ("wedge15", False), ("tet4", True),
                         ("hex+wedge2", False), ("wedge+tet1", False)):
         solid = decks.Solid(kind, folder, "--distort", "3", "--renumber", "5", *(("--curve",) if kind[-1] in "05" else ()))
-        for constants in ((decks.YOUNG, decks.POISSON), decks.ORTHOTROPIC):
+        for constants in materials(kind):
             ours = imported(folder, "deck.cdb", decks.ansys(solid, constants, plain=plain))
             words = decks.scene_words(solid.path, constants)
             words[words.index("-springs"):words.index("-modes_target")] = []
