@@ -105,6 +105,9 @@ def test_disc(runs):
           and abs(vtk_to_numpy(grid.GetPointData().GetArray("mode_001_re"))).max() > 0)
     text = (runs.folder / "cloud2/modes.xmf").read_text()
     check("XDMF is of points", f'TopologyType="Polyvertex" NumberOfElements="{len(free)}" NodesPerElement="1"' in text)
+    page = subprocess.run([SOURCE / "scripts/report", "cloud2"], cwd=runs.folder, capture_output=True, text=True)
+    check("scripts/report writes its page without bodies", page.returncode == 0 and "which have no faces" in page.stderr + page.stdout,
+          page.stderr)
     write_nodes(runs.folder / "parts.csv", mesh[1], lambda x: "rim" if numpy.hypot(x[0], x[1]) > 0.11 else "inside")
     parts = runs.modes("parts", 2, *loaded, "parts.csv")
     shares = [float(row["part_rim_percent"]) + float(row["part_inside_percent"]) for row in parts[0]]

@@ -81,6 +81,8 @@ def read_cells(group):
     types, offsets = group["Types"][:], group["Offsets"][:]
     nodes = group["Connectivity"][:]
     unknown = set(numpy.unique(types)) - set(CELLS)
+    if unknown == {1}:
+        raise BadInput(f"{group.file.filename}: holds nodes of matrices, which have no faces; ParaView shows them as points")
     if unknown:
         raise BadInput(f"{group.file.filename}: cells of VTK's type {min(unknown)}; known are {sorted(CELLS)}")
     found = {}
