@@ -217,7 +217,8 @@ static PetscErrorCode UndampedDescribe(EPS eps, const ShiftInvert *si, size_t si
   PetscFunctionBeginUser;
   PetscCall(EPSGetType(eps, &type));
   PetscCall(BlockKrylovGetBlock(eps, &block));
-  PetscCall(PetscSNPrintf(text, size, "%s, blocks of %" PetscInt_FMT ", %s", type, block, factors));
+  PetscCall(PetscSNPrintf(text, size, "%s, blocks of %" PetscInt_FMT ", %s%s%s", type, block, factors,
+                          si->why ? ": " : "", si->why ? si->why : ""));
   PetscFunctionReturn(0);
 }
 

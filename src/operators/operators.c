@@ -39,7 +39,7 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
     "operators.h", masses, 2, masses[0], &mass, NULL));
   PetscCall(PetscOptionsEList(
     "-operators_factors",
-    "with friction LU, or LDL' of the symmetric part and an update for the closed pairs, or what needs less memory",
+    "with friction LU, or LDL' of the symmetric part and an update for the closed pairs, or what memory and flops speak for",
     "operators.h", factors, 3, factors[0], &operators->factors, NULL));
   PetscCall(PetscOptionsString("-operators_save",
                                "folder for K.bin, M.bin, C.bin, H.bin and the loads F.bin (PETSc binary)",

@@ -63,10 +63,12 @@ static PetscErrorCode AnalysisEstimate(MPI_Comm comm, Mat F, FactorCost *cost)
     double lack;
     int    rank;
   } worst;
-  double mb[3], share;
+  PetscReal flops;
+  double    mb[3], share;
 
   PetscFunctionBeginUser;
   PetscCall(MatMumpsGetInfog(F, 3, &entries));
+  PetscCall(MatMumpsGetRinfog(F, 1, &flops));
   PetscCall(MatMumpsGetIcntl(F, 22, &on_disk));
   PetscCall(MatMumpsGetIcntl(F, 35, &low_rank));
   PetscCall(MatMumpsGetInfo(F, low_rank ? 30 : 15, &core));
@@ -88,6 +90,7 @@ static PetscErrorCode AnalysisEstimate(MPI_Comm comm, Mat F, FactorCost *cost)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm));
   PetscCallMPI(MPI_Bcast(mb, 3, MPI_DOUBLE, worst.rank, comm));
   cost->entries = entries < 0 ? -1e6 * (double)entries : (double)entries;
+  cost->flops   = flops;
   cost->needed  = mb[0];
   cost->disk    = mb[1];
   cost->room    = mb[2];

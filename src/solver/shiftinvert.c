@@ -13,6 +13,7 @@
 
 #define UPDATE_STIFF 1e2  /* k_n mu of a pair beside the (geometric) mean of the bodies' stiffnesses: LU from here on */
 #define UPDATE_ROOM  0.8  /* of the memory that is free: vectors that take more beside the factors are not kept */
+#define UPDATE_SLOW  1.5  /* flops of the solves that make it beside those that LU takes more: LU from here on */
 #define UPDATE_SHARE 0.75 /* of the entries of LDL': vectors of an update that take no more are kept */
 
 /* Raises the error for what no shift makes regular */
@@ -50,34 +51,57 @@ static PetscErrorCode UpdateIsStiff(const PencilMatrices *pencil, PetscBool *sti
   PetscFunctionReturn(0);
 }
 
+/* Whether the vectors of an update, one a pair, fit beside the factors */
+static PetscErrorCode UpdateFits(const PencilMatrices *pencil, const ShiftInvert *si, double n, double p,
+                                 PetscBool *fits)
+{
+  PetscInt n_local;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetLocalSize(pencil->K_even, &n_local, NULL));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_local, 1, MPIU_INT, MPI_MAX, si->comm));
+  *fits = n * p <= UPDATE_SHARE * si->cost.entries &&
+              n_local * p <= PETSC_MAX_INT && /* as PETSc counts a rank's entries */
+              si->cost.needed + 8e-6 * n * p <= UPDATE_ROOM * si->cost.room
+            ? PETSC_TRUE
+            : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Why LU is better than LDL' and an update of p vectors, NULL where it is not. LU has twice the entries e of LDL' and takes
+   twice the flops F to make; a solve takes 4 e flops with either. So an update costs 4 e p flops and LU F; both run about as
+   fast, and afterwards the update saves some, since it solves for right and left vectors at once. Where the vectors are not
+   kept every solve is two. */
+static const char *UpdateIsWorse(const FactorCost *cost, double p, PetscBool fits)
+{
+  if (2 * cost->needed > cost->room) return NULL;
+  if (!fits) return "an update for friction would take more memory";
+  return 4 * cost->entries * p > UPDATE_SLOW * cost->flops ? "an update for friction would take longer" : NULL;
+}
+
 /* Whether friction is to be put on factors of the symmetric part by an update (lowrank.h), and whether its vectors, one
-   a pair, are kept. LU has twice the entries of LDL'; where the vectors would make more than that and LU does not fit,
-   they are not kept. */
+   a pair, are kept */
 static PetscErrorCode ShiftInvertChoose(const PencilMatrices *pencil, ShiftInvert *si, PetscBool *store)
 {
-  PetscInt  n, n_local, p;
+  PetscInt  n, p;
   PetscBool keeps, stiff;
 
   PetscFunctionBeginUser;
   *store   = PETSC_FALSE;
+  si->why  = NULL;
   si->even = !pencil->C && (pencil->symmetric || pencil->left) ? PETSC_TRUE : PETSC_FALSE;
   if (!si->even || pencil->symmetric) PetscFunctionReturn(0);
   PetscCall(UpdateIsStiff(pencil, &stiff));
-  if (stiff && !pencil->prefers_even) {
-    si->even = PETSC_FALSE;
-    PetscFunctionReturn(0);
+  if (stiff) si->why = "pairs too stiff for an update";
+  if (!stiff || pencil->prefers_even) {
+    PetscCall(ShiftInvertKeepsPattern(si, pencil, &keeps));
+    if (!keeps) PetscCall(ShiftInvertPrepare(pencil, si));
+    PetscCall(MatGetSize(pencil->left, &p, &n));
+    PetscCall(UpdateFits(pencil, si, n, p, store));
+    si->why = UpdateIsWorse(&si->cost, p, *store);
   }
-  PetscCall(ShiftInvertKeepsPattern(si, pencil, &keeps));
-  if (!keeps) PetscCall(ShiftInvertPrepare(pencil, si));
-  PetscCall(MatGetSize(pencil->left, &p, &n));
-  PetscCall(MatGetLocalSize(pencil->K_even, &n_local, NULL));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_local, 1, MPIU_INT, MPI_MAX, si->comm));
-  *store = (double)n * (double)p <= UPDATE_SHARE * si->cost.entries &&
-               (double)n_local * (double)p <= PETSC_MAX_INT && /* PETSc counts the entries of a rank */
-               si->cost.needed + 8e-6 * (double)n * (double)p <= UPDATE_ROOM * si->cost.room
-             ? PETSC_TRUE
-             : PETSC_FALSE;
-  if (!pencil->prefers_even && !*store && 2 * si->cost.needed <= si->cost.room) si->even = PETSC_FALSE;
+  if (pencil->prefers_even) si->why = NULL;
+  if (si->why) si->even = *store = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 

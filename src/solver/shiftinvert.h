@@ -8,6 +8,7 @@
 /* Cost of factors by MUMPS' estimate */
 typedef struct {
   double entries;      /* of the factors, all ranks */
+  double flops;        /* of the factorisation */
   double all;          /* MB of all ranks */
   double needed, disk; /* MB of one machine, the one that has least room for it; the same with factors on disk */
   double room;         /* MB on that machine */
@@ -29,6 +30,7 @@ typedef struct ShiftInvert {
   PetscObjectState pattern[3], values[3]; /* of those */
   PetscBool        turn;                  /* the next check of right and left blocks together is of the left one */
   FactorCost       cost;                  /* of its factors */
+  const char      *why;                   /* LU in place of an update, in words; NULL where there is no choice */
   struct LowRank  *update;                /* friction beside that matrix; NULL for none */
   Progress        *progress;
   /* called after every solve of an eigensolver, alike on all ranks; NULL for nothing. An error ends the solution */
