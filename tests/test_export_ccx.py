@@ -28,8 +28,10 @@ import scipy.sparse.linalg
 SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "scripts"))
 from squeal.calculix import eigenvalues
+from squeal.disc_pad import Mesh, squeal_words
 from squeal.petsc_matrix import read_matrix, read_vector
 from squeal.provenance import Provenance
+from squeal.sweep_runs import distances
 
 SAME, CALCULIX = 1e-9, 1e-5
 MATERIALS = {"isotropic": "young: 2e11, poisson: 0.3",
@@ -197,6 +199,22 @@ def check_rig(top):
     check(done.returncode == 1 and "cannot write 'nowhere/rig.msh' of -rig_save" in done.stderr, f"rig: {done.stderr.strip()}")
 
 
+def check_sliding(top):
+    """The deck of --sliding, in which CalculiX finds the modes of a disc and a pad that flutter."""
+    if not shutil.which("ccx"):
+        return
+    Mesh((6, 8, 1), 3, 5, 3, 2).write(top / "disc.msh")
+    run(top, sys.argv[2], "-n", 1, sys.argv[1], *squeal_words(top / "disc.msh", 0.6, (0, 12000)), "-output_dir", "sliding", "-output_fields", 0)
+    run(top, SOURCE / "scripts/export_ccx", "sliding", "--sliding")
+    run(top / "sliding", "ccx", "deck")
+    modes, theirs = modes_of(top / "sliding"), eigenvalues(top / "sliding/deck.dat")
+    worst = max(distances(modes, theirs).max(), distances(theirs, modes).max()) if len(modes) == len(theirs) else np.inf
+    check(worst < CALCULIX and max(modes.real) > 1, f"CalculiX: --sliding, {len(modes)} modes apart by {worst:.1e}, growth to {max(modes.real):.1f} 1/s")
+    done = subprocess.run([SOURCE / "scripts/export_ccx", "out", "--sliding", "-o", "s.inp", "--mesh", "pair.msh"], cwd=top,
+                          capture_output=True, text=True, check=False)
+    check(done.returncode == 0, "sliding: of boxes on each other too")
+
+
 def contact_of(path):
     """Name of the contact of an imported scene."""
     return next(line.split()[1] for line in path.read_text().splitlines() if line.startswith("contacts:"))
@@ -232,6 +250,7 @@ def main():
         check_solids(Path(name))
         check_contact(Path(name))
         check_rig(Path(name))
+        check_sliding(Path(name))
         check_bad(Path(name))
     print("\n".join([f"{len(FAULTS)} faults", *FAULTS]))
     return 1 if FAULTS else 0
