@@ -237,6 +237,7 @@ PetscErrorCode SweepOnsets(Sweep sweep)
   PetscCall(PetscCalloc1(PetscMax(1, sweep->events.n), &sweep->is_confirmed));
   PetscCall(PetscCalloc1(PetscMax(1, sweep->events.n), &work));
   for (PetscInt e = 0; e < sweep->events.n; e++) n += sweep->events.event[e].kind != EVENT_JUMP;
+  if (n) PetscCall(BasisTruncate(&sweep->basis)); /* what tells errors elsewhere would only make the problems larger */
   PetscCall(ProgressBegin(&progress, "onsets", n));
   n = 0;
   for (PetscInt e = 0; e < sweep->events.n; e++) {

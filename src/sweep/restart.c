@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#define VERSION         4       /* of the format */
+#define VERSION         5       /* of the format */
 #define SWEEP_MAX_PARTS 1000    /* of a scene; more are none */
 #define PIECE           1048576 /* bytes read at once */
 
@@ -18,6 +18,7 @@
 typedef struct {
   PetscReal last;
   PetscInt  version, n_parts, n_parameters, n_samples, n_passed, n_used, first, n, n_blocks, n_local;
+  PetscReal fall;
 } Header;
 
 /* A file; good until something fails */
@@ -183,6 +184,7 @@ PetscErrorCode SweepKeep(void *ctx)
   h.n_parameters = sweep->grid.n_parameters;
   h.last         = sweep->greedy.last;
   h.n_passed     = sweep->greedy.n_passed;
+  h.fall         = sweep->greedy.fall;
   h.n_samples = sweep->greedy.n_samples, h.n_used = basis->reduced.n_used;
   h.first = sweep->n_kept, h.n = basis->reduced.n, h.n_blocks = basis->n_blocks;
   PetscCall(BVGetSizes(basis->vectors, &h.n_local, NULL, NULL));
@@ -262,6 +264,7 @@ static PetscErrorCode FileTake(Sweep sweep, Stream *s, const Header *h)
   sweep->greedy.n_samples = h->n_samples;
   sweep->greedy.last      = h->last;
   sweep->greedy.n_passed  = h->n_passed;
+  sweep->greedy.fall      = h->fall;
   sweep->n_kept           = h->n;
   PetscFunctionReturn(0);
 }

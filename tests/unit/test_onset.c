@@ -129,6 +129,13 @@ static PetscErrorCode TestPlane(int *failed)
   PetscFunctionReturn(0);
 }
 
+/* Both ends and the critical value need all modes; between them the plane is followed, unless an end is the value */
+static int CheckPlanes(const BranchEvent *event, int at_end)
+{
+  return CheckTrue("  all modes are solved for thrice at most", event->n_solved <= 3, event->n_solved) +
+         CheckTrue("  the plane is followed", at_end || event->n_followed > 0, event->n_followed);
+}
+
 /* Breaks when: the discriminant is taken from two nearly equal eigenvalues (1e-8), or from another pair, or a point of
    the sweep is the critical value itself. Reference: PHYSICS section 3, mu_c = (b + (a - d)^2 / (4 b)) / c = 0.75, 0.78
    */
@@ -146,6 +153,7 @@ static PetscErrorCode TestUndamped(int *failed)
     *failed += CheckTrue("events", events.n == 1, (double)events.n);
     *failed += CheckOnset("lock-in at 0.75", &events, 0, 0.75, 1e-12);
     if (events.n) *failed += CheckClose("  omega^2 = (a + d) / 2", PetscSqr(events.event[0].omega), 2, 1e-10);
+    if (events.n) *failed += CheckPlanes(&events.event[0], c % 3 == 2);
     PetscCall(BranchEventsDestroy(&events));
     Friction(&dense, sizes[c / 3], 2.4, 0, 0);
     PetscCall(FindOnsets(&dense, &everything, 0, 1, points[c % 3], &events));

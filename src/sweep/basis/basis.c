@@ -147,6 +147,31 @@ static PetscErrorCode ReducedExtend(Basis *basis, BV block)
   PetscFunctionReturn(0);
 }
 
+/* The leading block n x n of an old one, first x first */
+static PetscErrorCode BlockShrink(PetscInt first, PetscInt n, PetscReal **A)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt j = 1; j < n; j++) PetscCall(PetscArraymove(&(*A)[j * n], &(*A)[j * first], n));
+  PetscCall(PetscRealloc(sizeof(PetscReal) * (size_t)(n * n), A));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BasisTruncate(Basis *basis)
+{
+  Reduced *r = &basis->reduced;
+
+  PetscFunctionBeginUser;
+  for (PetscInt t = 0; t < r->n_terms; t++) {
+    PetscCall(BlockShrink(r->n, r->n_used, &r->A[t]));
+    if (r->D[t]) PetscCall(BlockShrink(r->n, r->n_used, &r->D[t]));
+  }
+  r->n = r->n_used;
+  while (basis->n_blocks > 1 && basis->block_end[basis->n_blocks - 2] >= r->n) basis->n_blocks--;
+  basis->block_end[basis->n_blocks - 1] = r->n;
+  PetscCall(BVResize(basis->vectors, r->n, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BasisAdd(Basis *basis, BV block, PetscReal drop, PetscInt *n_added)
 {
   const PetscInt first = basis->reduced.n;

@@ -28,6 +28,8 @@ PetscErrorCode BasisCreateModes(const Basis *basis, Modes modes, PetscInt n, Pet
 /* Appends what the block holds beyond the basis, leaving out directions whose M-norm is below drop; the block is
    overwritten, n_added (may be NULL) = vectors gained. The dense model follows. */
 PetscErrorCode BasisAdd(Basis *basis, BV block, PetscReal drop, PetscInt *n_added);
+/* Forgets the vectors that are not used by the model */
+PetscErrorCode BasisTruncate(Basis *basis);
 /* Makes the dense model of vectors read from elsewhere, block by block as BasisAdd() did */
 PetscErrorCode BasisRebuild(Basis *basis, PetscInt n_blocks);
 /* block = V coordinates, coordinates [m][size] with size <= n, real */

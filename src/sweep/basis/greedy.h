@@ -26,6 +26,7 @@ typedef struct {
   GreedySample      *sample;     /* [max_samples] */
   PetscReal          worst;      /* largest estimated relative error at all points when it ended */
   PetscReal          last;       /* estimate at the last point before it was taken in */
+  PetscReal          fall;       /* slowest fall of an estimate by a step of corrections so far; 0: none was seen */
   PetscInt           n_passed;   /* points in a row that needed nothing */
   PetscBool          looked;     /* at other points since the last full solution */
   Correction         correction; /* the last factors, kept for what comes after */

@@ -154,9 +154,13 @@ PetscErrorCode SampleCorrect(GreedyWork *run, const PetscReal p[], PetscReal *fi
   worst = *first;
   if (worst > SAFE * run->greedy->rtol && !run->is_near) PetscCall(FactorMake(run, p));
   for (int step = 1; step < GREEDY_STEPS && worst > SAFE * run->greedy->rtol; step++) {
+    const PetscReal before = worst, fall = run->greedy->fall;
+
     n_vectors += n_added;
     run->basis->reduced.n_used = run->basis->reduced.n;
+    if (fall > 0 && fall * worst <= SAFE * run->greedy->rtol) break; /* the vectors just taken in are enough */
     PetscCall(StepApply(run, p, &modes, &n_added, &worst));
+    run->greedy->fall = PetscMax(fall, worst / before);
   }
   PetscCall(ReducedModesDestroy(&modes));
   run->drop = drop;

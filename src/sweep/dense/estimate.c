@@ -237,22 +237,21 @@ static PetscErrorCode Together(const Estimate *e, PetscInt first, const PetscInt
 static PetscErrorCode AddFloor(const Estimate *e, const Reduced *reduced, const PetscReal p[], ReducedModes *modes)
 {
   const PetscInt n = e->n_v;
-  PetscComplex  *work;
-  PetscReal     *E;
+  PetscReal     *E, *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n * n, &E, n, &work));
+  PetscCall(PetscMalloc2(n * n, &E, modes->n, &mesh));
   RoundingEnergy(reduced, p, E);
+  PetscCall(RoundingProducts(n, E, modes->n, modes->x, modes->y, mesh));
   for (PetscInt i = 0; i < modes->n; i++) {
-    const PetscComplex *x = modes->x + i * n, *y = modes->y + i * n;
-    const PetscReal     mesh  = RoundingProduct(n, E, x, y, work);
-    const PetscReal     noise = SOLVER_ROUNDING * DensePencilNoise(&e->pencil, n, x, y) + MESH_ROUNDING * mesh;
+    const PetscReal own   = DensePencilNoise(&e->pencil, n, modes->x + i * n, modes->y + i * n);
+    const PetscReal noise = SOLVER_ROUNDING * own + MESH_ROUNDING * mesh[i];
 
     modes->noise[i] = LambdaChange(modes, i, KappaChange(modes, i, noise));
     modes->error[i] += modes->noise[i];
     modes->sharp[i] += modes->noise[i];
   }
-  PetscCall(PetscFree2(E, work));
+  PetscCall(PetscFree2(E, mesh));
   PetscFunctionReturn(0);
 }
 

@@ -64,13 +64,13 @@ PetscBool ReducedIsDamped(const Reduced *reduced, const PetscReal p[]);
 /* Labels cluster [n] = first member: puts j and all of its cluster into the cluster of i */
 void ReducedClusterJoin(PetscInt n, PetscInt i, PetscInt j, PetscInt cluster[]);
 
-/* rounding.c - E [n_used * n_used] of the mesh's rounding; its effect on kappa, times |y^T D x|, work [n]; marks the
-   modes that are zero within it */
+/* rounding.c - E [n_used * n_used] of the mesh's rounding; its effects on kappa, times |y^T D x|, of m modes with vectors
+   X, Y [m][n]; marks the modes that are zero within it */
 #define ROUNDING_SMALL 1e-3 /* beside the window: frequencies that may be zeros */
 #define ROUNDING_RIGID 100  /* kappa below this many times its rounding is zero */
 void           RoundingEnergy(const Reduced *reduced, const PetscReal p[], PetscReal E[]);
-PetscReal      RoundingProduct(PetscInt n, const PetscReal E[], const PetscComplex x[], const PetscComplex y[],
-                               PetscComplex work[]);
+PetscErrorCode RoundingProducts(PetscInt n, const PetscReal E[], PetscInt m, const PetscComplex X[],
+                                const PetscComplex Y[], PetscReal product[]);
 PetscErrorCode RoundingMarkRigid(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
                                  ReducedModes *modes);
 

@@ -7,6 +7,7 @@
    ones.
 */
 #include "reduced.h"
+#include "solver/dense.h"
 
 void RoundingEnergy(const Reduced *reduced, const PetscReal p[], PetscReal E[])
 {
@@ -21,44 +22,56 @@ void RoundingEnergy(const Reduced *reduced, const PetscReal p[], PetscReal E[])
   }
 }
 
-/* x^H E x with real symmetric E [n * n]; work [n] */
-static PetscReal Energy(PetscInt n, const PetscReal E[], const PetscComplex x[], PetscComplex work[])
+/* x^H E x of m vectors X [m][n] with real symmetric E [n * n] */
+static PetscErrorCode Energies(PetscInt n, const PetscReal E[], PetscInt m, const PetscComplex X[], PetscReal energy[])
 {
-  PetscReal sum = 0;
+  PetscComplex *EX;
 
-  for (PetscInt j = 0; j < n; j++) {
-    work[j] = 0;
-    for (PetscInt i = 0; i < n; i++) work[j] += E[j * n + i] * x[i];
-    sum += creal(conj(x[j]) * work[j]);
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(m * n, &EX));
+  PetscCall(DenseTimes(&(DenseBlock){E, n, n, n}, PETSC_FALSE, m, X, EX));
+  for (PetscInt i = 0; i < m; i++) {
+    PetscReal sum = 0;
+
+    for (PetscInt k = i * n; k < (i + 1) * n; k++) sum += creal(conj(X[k]) * EX[k]);
+    energy[i] = PetscMax(sum, 0);
   }
-  return PetscMax(sum, 0);
+  PetscCall(PetscFree(EX));
+  PetscFunctionReturn(0);
 }
 
-PetscReal RoundingProduct(PetscInt n, const PetscReal E[], const PetscComplex x[], const PetscComplex y[],
-                          PetscComplex work[])
+PetscErrorCode RoundingProducts(PetscInt n, const PetscReal E[], PetscInt m, const PetscComplex X[],
+                                const PetscComplex Y[], PetscReal product[])
 {
-  return PETSC_MACHINE_EPSILON * PetscSqrtReal(Energy(n, E, x, work)) * PetscSqrtReal(Energy(n, E, y, work));
+  PetscReal *left;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(m, &left));
+  PetscCall(Energies(n, E, m, X, product));
+  PetscCall(Energies(n, E, m, Y, left));
+  for (PetscInt i = 0; i < m; i++)
+    product[i] = PETSC_MACHINE_EPSILON * PetscSqrtReal(product[i]) * PetscSqrtReal(left[i]);
+  PetscCall(PetscFree(left));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode RoundingMarkRigid(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
                                  ReducedModes *modes)
 {
   const PetscInt n = modes->size;
-  PetscReal     *E = NULL;
-  PetscComplex  *work;
+  PetscReal     *E = NULL, noise;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < modes->n && cabs(modes->lambda[i]) < ROUNDING_SMALL * window->high; i++) {
     if (!E) {
-      PetscCall(PetscMalloc2(n * n, &E, n, &work));
+      PetscCall(PetscMalloc1(n * n, &E));
       RoundingEnergy(reduced, p, E);
     }
-    if (PetscSqr(cabs(modes->lambda[i])) * cabs(modes->product[i]) >
-        ROUNDING_RIGID * RoundingProduct(n, E, modes->x + i * n, modes->y + i * n, work))
-      continue;
+    PetscCall(RoundingProducts(n, E, 1, modes->x + i * n, modes->y + i * n, &noise));
+    if (PetscSqr(cabs(modes->lambda[i])) * cabs(modes->product[i]) > ROUNDING_RIGID * noise) continue;
     modes->lambda[i] = 0;
     modes->rigid[i]  = PETSC_TRUE;
   }
-  if (E) PetscCall(PetscFree2(E, work));
+  PetscCall(PetscFree(E));
   PetscFunctionReturn(0);
 }
