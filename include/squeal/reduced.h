@@ -119,6 +119,7 @@ PetscErrorCode ReducedCreate(MPI_Comm comm, ReducedRun *reduced);
 
    Options Database Keys:
 +  -dynamics_model <full|reduced> - the mesh, or modes and compliance
+.  -dynamics_verify <false>       - runs again with half the step, and with 1.5 times the cut-off: how the force differs
 .  -dynamics_compare <true>       - with -modes_band: eigenvalues about the sliding state beside those of the mesh
 -  -dynamics_cutoff <f>           - of the modes, Hz; without it 4 times the upper end of -modes_band, or 20 kHz
 @*/

@@ -8,8 +8,8 @@
    command line */
 static PetscErrorCode RunRefuse(Dynamics d, const char by[])
 {
-  static const char *const idle[] = {"-ts_central_b", "-dynamics_step_fraction", "-dynamics_step_force",
-                                     "-dynamics_kernel", "-projector_max_it"};
+  static const char *const idle[] = {"-ts_central_b",    "-dynamics_step_fraction", "-dynamics_step_force",
+                                     "-dynamics_kernel", "-projector_max_it",       "-projector_rtol"};
   char                     why[160];
 
   PetscFunctionBeginUser;

@@ -33,12 +33,16 @@ PetscErrorCode ReducedSetFromOptions(ReducedRun r)
                              "reduced.h", r->cutoff, &r->cutoff, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_compare",
                            "eigenvalues of a reduced model beside those of the mesh in -modes_band", &r->compare));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_verify",
+                           "after a reduced run once more with half the step, and with 1.5 times the cut-off",
+                           &r->verify));
   PetscOptionsEnd();
   PetscCheck(r->cutoff >= 0 && r->cutoff < 1e30, r->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_cutoff %.6g must be a positive frequency (Hz), or 0 to have it chosen", (double)r->cutoff);
   r->asked = model == 1 ? PETSC_TRUE : PETSC_FALSE;
   if (!r->asked) PetscCall(OptionsRefuse(r->comm, "-dynamics_cutoff", "not used without " BY));
   if (!r->asked) PetscCall(OptionsRefuse(r->comm, "-dynamics_compare", "not used without " BY));
+  if (!r->asked) PetscCall(OptionsRefuse(r->comm, "-dynamics_verify", "not used without " BY));
   PetscFunctionReturn(0);
 }
 
@@ -73,12 +77,15 @@ static PetscErrorCode ReducedChooseCutoff(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
-/* Room for states and steps */
-static PetscErrorCode ReducedCreateState(ReducedRun r)
+PetscErrorCode ReducedReduce(ReducedRun r)
 {
   PetscInt n_own;
 
   PetscFunctionBeginUser;
+  PetscCall(ReducedFindModes(r));
+  PetscCall(ReducedSetPorts(r));
+  PetscCall(ReducedSetResidual(r));
+  PetscCall(ReducedSetPairs(r));
   PetscCall(ReducedStateCreate(&r->model, &r->state));
   PetscCall(ReducedReportCreate(&r->model, &r->report));
   PetscCall(PetscCalloc3(r->model.m, &r->acceleration, r->model.n_ports, &r->p_rate, r->model.n_ports, &r->shown));
@@ -98,12 +105,10 @@ static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
   PetscCall(DynamicsGetRun(r->dynamics, results, BY, 1 / (2 * PETSC_PI * r->cutoff), &r->run));
   PetscCall(ReducedRefuse(r));
   r->dt = r->run.dt;
-  PetscCall(ReducedFindModes(r));
-  PetscCall(ReducedSetPorts(r));
-  PetscCall(ReducedSetResidual(r));
-  PetscCall(ReducedSetPairs(r));
+  PetscCheck(!r->verify || !r->run.restart, r->comm, PETSC_ERR_USER_INPUT,
+             "-dynamics_verify compares whole runs: leave it out of -dynamics_restart, or start anew");
+  PetscCall(ReducedReduce(r));
   PetscCall(ReducedCompare(r));
-  PetscCall(ReducedCreateState(r));
   PetscCall(HistorySetUp(
     r->run.history,
     &(HistorySource){r->run.model, NULL, r->run.projector, r->run.n_interfaces, r->run.interfaces, results}, r->run.end,
@@ -135,6 +140,7 @@ static PetscErrorCode ReducedAdvance(ReducedRun r)
   r->ledger.part.external += r->report.external;
   r->ledger.part.damping += r->report.damping;
   PetscCall(ReducedTakePairs(r, PETSC_TRUE));
+  if (r->verify) PetscCall(ReducedKeepForce(r));
   PetscFunctionReturn(0);
 }
 
@@ -188,6 +194,7 @@ PetscErrorCode ReducedIntegrate(ReducedRun r, Results results)
   r->setup_seconds = ready - begin;
   r->seconds       = end - ready;
   if (!stop || r->run.checkpoint_interval == 0) PetscCall(HistoryClose(r->run.history));
+  if (!stop && r->verify) PetscCall(ReducedVerify(r));
   PetscCheck(!stop, r->comm, PETSC_ERR_USER, "stopped by a signal after step %" PetscInt_FMT ", %.6g s; %s", r->step,
              (double)r->state.time,
              r->run.checkpoint_interval > 0 ? "-dynamics_restart goes on from there"
@@ -226,6 +233,7 @@ PetscErrorCode ReducedDestroy(ReducedRun *reduced)
   PetscCall(PetscFree(r->hit_time));
   PetscCall(PetscFree(r->vertex_port));
   PetscCall(PetscFree(r->compared));
+  PetscCall(PetscFree(r->force));
   PetscCall(MatDestroy(&r->column));
   PetscCall(MatDestroy(&r->Phi));
   PetscCall(MatDestroy(&r->MPhi));

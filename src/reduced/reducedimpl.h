@@ -30,10 +30,18 @@ typedef struct {
   char      label[32];
 } ReducedPair;
 
+/* How the normal force of another run differs */
+typedef struct {
+  PetscReal cutoff, dt;   /* of it, Hz, s */
+  PetscReal rms, largest; /* of the difference, over the force's own rms about its mean and its largest value */
+  PetscReal level;        /* rms about the mean in the last half of the time, relative difference */
+  PetscReal open;         /* share of the last half without force, difference */
+} ReducedDifference;
+
 struct _p_ReducedRun {
   MPI_Comm comm;
   /* set by options */
-  PetscBool asked, compare;
+  PetscBool asked, compare, verify;
   PetscReal cutoff; /* Hz, 0: to be chosen */
   /* rooms */
   Dynamics    dynamics;
@@ -74,6 +82,10 @@ struct _p_ReducedRun {
   PetscReal *acceleration, *p_rate, *shown; /* [m] eta'', [n_ports] N/s, [n_ports] q and loads */
   Mat        column;                        /* [unknowns][1] */
   Checksum   scene;                         /* NULL until one is needed */
+  /* error */
+  PetscInt          n_force;       /* steps of which the force is kept, for -dynamics_verify */
+  PetscReal        *force;         /* [n_force] normal force at t_1, t_2, ..., N */
+  ReducedDifference finer, higher; /* with half the step; with a higher cut-off */
   /* statistics */
   PetscReal      n_its;   /* of the contact laws */
   ContactKKT     kkt;     /* the worst of all steps */
@@ -124,6 +136,14 @@ PETSC_INTERN PetscErrorCode ReducedStart(ReducedRun reduced);
 /* compare.c - eigenvalues beside those of the mesh */
 PETSC_INTERN PetscErrorCode ReducedCompare(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedCompareView(ReducedRun reduced, PetscViewer viewer);
+
+/* reduced.c - model and room for states and steps, from cut-off, step and run */
+PETSC_INTERN PetscErrorCode ReducedReduce(ReducedRun reduced);
+
+/* verify.c - keeps the normal force of a step; runs again, and says how the force differs */
+PETSC_INTERN PetscErrorCode ReducedKeepForce(ReducedRun reduced);
+PETSC_INTERN PetscErrorCode ReducedVerify(ReducedRun reduced);
+PETSC_INTERN PetscErrorCode ReducedVerifyView(ReducedRun reduced, PetscViewer viewer);
 
 /* record.c - ledger, rows, fields of t_n */
 PETSC_INTERN PetscErrorCode ReducedRecord(ReducedRun reduced, PetscBool first);

@@ -4,6 +4,26 @@
 */
 #include "reducedimpl.h"
 
+/* By which route the contact laws were solved, in steps of this call */
+static PetscErrorCode ReducedViewLaws(ReducedRun r, PetscViewer viewer)
+{
+  static const char *const routes[COMPLIANCE_N_ROUTES] = {[COMPLIANCE_CHORD]  = "factors of steps before",
+                                                          [COMPLIANCE_NEWTON] = "Newton",
+                                                          [COMPLIANCE_DAMPED] = "line search",
+                                                          [COMPLIANCE_PATH]   = "path"};
+  ComplianceReport         total;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactComplianceGetTotals(r->stepper->laws, &total));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "contact laws: %" PetscInt_FMT " iterations, %" PetscInt_FMT " factors; steps by",
+                                   total.iterations, total.factors));
+  for (int i = 0; i < COMPLIANCE_N_ROUTES; i++)
+    PetscCall(PetscViewerASCIIPrintf(viewer, " %s %" PetscInt_FMT "%s", routes[i], total.routes[i],
+                                     i + 1 < COMPLIANCE_N_ROUTES ? "," : "\n"));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ReducedView(ReducedRun r, PetscViewer viewer)
 {
   const double seconds = (double)r->seconds;
@@ -22,6 +42,8 @@ PetscErrorCode ReducedView(ReducedRun r, PetscViewer viewer)
     "of the contact laws; set-up %.4g s\n",
     r->n_steps, (double)r->dt, (double)r->state.time, seconds, 1e6 * seconds / (double)PetscMax(1, r->n_steps),
     (double)(r->n_its / (PetscReal)PetscMax(1, r->step)), (double)r->setup_seconds));
+  PetscCall(ReducedViewLaws(r, viewer));
+  if (r->verify) PetscCall(ReducedVerifyView(r, viewer));
   PetscCall(LedgerView(&r->ledger.total, viewer));
   if (r->run.view_kkt) {
     PetscCall(PetscViewerASCIIPrintf(viewer, "the worst of all steps:\n"));

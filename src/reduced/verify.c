@@ -1,0 +1,114 @@
+/*
+   The error of a run after it, on request: the same run with half the step, and with 1.5 times the cut-off, whose normal forces
+   f' at the times of the steps are put beside those of the run, f. Where an instability has grown into a cycle, phases
+   drift and the difference says little; then the level of the vibration and the time without contact are the answer.
+*/
+#include "reducedimpl.h"
+
+#define HIGHER 1.5 /* times the cut-off */
+
+PetscErrorCode ReducedKeepForce(ReducedRun r)
+{
+  PetscReal sum = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < r->model.n_pairs; i++) sum += r->state.p[3 * i];
+  if (r->n_force % 1024 == 0) PetscCall(PetscRealloc((size_t)(r->n_force + 1024) * sizeof(PetscReal), &r->force));
+  r->force[r->n_force++] = sum;
+  PetscFunctionReturn(0);
+}
+
+/* The run with another cut-off and step, n steps of which every `every`-th is kept */
+static PetscErrorCode VerifyRun(ReducedRun r, PetscReal cutoff, PetscInt every, ReducedRun *other)
+{
+  ReducedDrive drive;
+  ReducedRun   o;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedCreate(r->comm, other));
+  o             = *other;
+  o->dynamics   = r->dynamics;
+  o->mesh_modes = r->mesh_modes;
+  o->run        = r->run;
+  o->cutoff     = cutoff;
+  o->dt         = r->dt / (PetscReal)every;
+  PetscCall(ReducedReduce(o));
+  PetscCall(ShiftInvertDestroy(&o->inverse));
+  PetscCall(ReducedStart(o));
+  PetscCall(ReducedStepperCreate(&o->model, o->dt, REDUCED_RTOL, &o->stepper));
+  for (PetscInt i = 1; i <= every * r->n_force; i++) {
+    PetscCall(ReducedDriveSet(o, &drive));
+    PetscCall(ReducedStep(o->stepper, &drive, &o->state, &o->report));
+    if (i % every == 0) PetscCall(ReducedKeepForce(o));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Rms of n forces about their mean, and the share of them that vanishes */
+static void ForceMeasure(PetscInt n, const PetscReal force[], PetscReal *rms, PetscReal *open)
+{
+  PetscReal mean = 0;
+
+  *rms = *open = 0;
+  for (PetscInt i = 0; i < n; i++) mean += force[i] / (PetscReal)n;
+  for (PetscInt i = 0; i < n; i++) {
+    *rms += PetscSqr(force[i] - mean) / (PetscReal)n;
+    *open += (force[i] <= 0) / (PetscReal)n;
+  }
+  *rms = PetscSqrtReal(*rms);
+}
+
+static PetscErrorCode VerifyOne(ReducedRun r, PetscReal cutoff, PetscInt every, ReducedDifference *d)
+{
+  const PetscInt n = r->n_force, half = n / 2;
+  PetscReal      rms[3], open[3], largest = 0, miss = 0, square = 0;
+  ReducedRun     other;
+
+  PetscFunctionBeginUser;
+  PetscCall(VerifyRun(r, cutoff, every, &other));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal difference = other->force[i] - r->force[i];
+
+    largest = PetscMax(largest, PetscAbsReal(r->force[i]));
+    miss    = PetscMax(miss, PetscAbsReal(difference));
+    square += difference * difference / (PetscReal)n;
+  }
+  ForceMeasure(n, r->force, &rms[0], &open[0]);
+  ForceMeasure(n - half, &r->force[half], &rms[1], &open[1]);
+  ForceMeasure(n - half, &other->force[half], &rms[2], &open[2]);
+  *d = (ReducedDifference){.cutoff  = cutoff,
+                           .dt      = r->dt / (PetscReal)every,
+                           .rms     = rms[0] > 0 ? PetscSqrtReal(square) / rms[0] : 0,
+                           .largest = largest > 0 ? miss / largest : 0,
+                           .level   = rms[1] > 0 ? rms[2] / rms[1] - 1 : 0,
+                           .open    = open[2] - open[1]};
+  PetscCall(ReducedDestroy(&other));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedVerify(ReducedRun r)
+{
+  PetscFunctionBeginUser;
+  if (!r->n_force) PetscFunctionReturn(0);
+  PetscCall(VerifyOne(r, r->cutoff, 2, &r->finer));
+  PetscCall(VerifyOne(r, HIGHER * r->cutoff, 1, &r->higher));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedVerifyView(ReducedRun r, PetscViewer viewer)
+{
+  const ReducedDifference *both[2] = {&r->finer, &r->higher};
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 2; i++) {
+    const ReducedDifference *d = both[i];
+
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "once more with steps of %.6g s below %.6g Hz: normal force off by %.2e of its "
+                                     "rms, %.2e of its largest value at most; in "
+                                     "the last half of the time its rms by %+.2e, the time without contact by %+.2e\n",
+                                     (double)d->dt, (double)d->cutoff, (double)d->rms, (double)d->largest,
+                                     (double)d->level, (double)d->open));
+  }
+  PetscFunctionReturn(0);
+}
