@@ -192,6 +192,8 @@ static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window
   if (window->beyond > (modes->damping == DAMPING_AUTO ? DAMPING_WEAK : 1)) *why = "damping is strong";
   if (*why) PetscFunctionReturn(0);
   if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionStart(p, &modes->right, &modes->left_spectrum, modal));
+  PetscCall(ModalBlocksDestroy(modal)); /* room for what follows */
+  PetscCall(SpectraDestroy(modes));
   PetscCall(Iterate(p, &found, &settled));
   if (settled) PetscCall(PutModes(p, &found));
   if (!settled) *why = found.lambda_reach > p->reach ? why_guard : "corrections do not settle";

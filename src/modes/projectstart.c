@@ -62,6 +62,7 @@ PetscErrorCode ModalBlocksDestroy(ModalBlock modal[2])
 {
   PetscFunctionBeginUser;
   for (int side = 0; side < 2; side++) {
+    modal[side].n = 0;
     PetscCall(PetscFree(modal[side].mode));
     PetscCall(BVDestroy(&modal[side].x));
     PetscCall(BVDestroy(&modal[side].Cx));

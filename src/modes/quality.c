@@ -21,10 +21,10 @@ typedef struct {
   Mat                   M; /* of all unknowns; the pencil's own without constraints */
   PetscReal             norms[3];
   Vec                   diagonal, scratch; /* diagonal of K */
-  ComplexVec            Mx, z;             /* unknowns of the pencil */
+  ComplexVec            Mx, Cx, z;         /* unknowns of the pencil */
   ComplexVec            full;              /* all unknowns */
-  Mat                   KX, MX, MY;        /* products of a block of modes, MY where M is the pencil's own */
-  PetscInt              next[2];           /* columns of the next mode in KX and MX, in MY */
+  Mat                   KX, CX, MX, MY;    /* products of a block of modes, MY where M is the pencil's own */
+  PetscInt              next[2];           /* columns of the next mode in KX, CX and MX, in MY */
 } Quality;
 
 /* Length of a complex vector from the parts of a real quadratic form: x^H z for z = A x with A symmetric, or z = x */
@@ -72,6 +72,7 @@ static PetscErrorCode QualityBegin(const Modes modes, Quality *q, PetscInt first
   PetscFunctionBeginUser;
   PetscCall(QualityMultiply(&modes->right, first, n, q->pencil->K, &q->KX));
   PetscCall(QualityMultiply(&modes->right, first, n, q->pencil->M, &q->MX));
+  if (q->pencil->C) PetscCall(QualityMultiply(&modes->right, first, n, q->pencil->C, &q->CX));
   if (modes->left_spectrum.n && q->M == q->pencil->M)
     PetscCall(QualityMultiply(&modes->left_spectrum, first, n, q->M, &q->MY));
   q->next[0] = q->next[1] = 0;
@@ -82,6 +83,7 @@ static PetscErrorCode QualityEnd(Quality *q)
 {
   PetscFunctionBeginUser;
   PetscCall(MatDestroy(&q->KX));
+  PetscCall(MatDestroy(&q->CX));
   PetscCall(MatDestroy(&q->MX));
   PetscCall(MatDestroy(&q->MY));
   PetscFunctionReturn(0);
@@ -104,12 +106,13 @@ static PetscErrorCode QualityTake(Mat AX, PetscInt column, ComplexVec x, Complex
   PetscFunctionReturn(0);
 }
 
-/* Mx, z = K x, and where M is the pencil's own the norms of x and y in it, of the next mode of the block */
+/* Mx, Cx, z = K x, and where M is the pencil's own the norms of x and y in it, of the next mode of the block */
 static PetscErrorCode QualityNext(Quality *q, ComplexVec x, ComplexVec y, PetscReal *norm_x, PetscReal *norm_y)
 {
   PetscFunctionBeginUser;
   PetscCall(QualityTake(q->KX, q->next[0], x, q->z));
   PetscCall(QualityTake(q->MX, q->next[0], x, q->Mx));
+  if (q->CX) PetscCall(QualityTake(q->CX, q->next[0], x, q->Cx));
   q->next[0] += x.i ? 2 : 1;
   if (q->M != q->pencil->M) PetscFunctionReturn(0);
   PetscCall(ComplexVecSquare(x, q->Mx, norm_x));
@@ -172,7 +175,7 @@ typedef struct {
   PetscComplex product; /* y^T D x */
 } QualityProducts;
 
-/* From Mx and z = K x, which it overwrites; the products with y are not touched without a left vector */
+/* From Mx, Cx and z = K x; it overwrites Mx and z; the products with y are not touched without a left vector */
 static PetscErrorCode QualityResidual(Quality *q, PetscComplex lambda, ComplexVec x, ComplexVec y, QualityProducts *p)
 {
   const PencilMatrices *pencil = q->pencil;
@@ -182,14 +185,14 @@ static PetscErrorCode QualityResidual(Quality *q, PetscComplex lambda, ComplexVe
 
   PetscFunctionBeginUser;
   PetscCall(ComplexVecAXPY(lambda * lambda, q->Mx, q->z));
-  if (pencil->C) PetscCall(ComplexVecMultAdd(pencil->C, lambda, x, q->scratch, q->z));
+  if (pencil->C) PetscCall(ComplexVecAXPY(lambda, q->Cx, q->z));
   PetscCall(ComplexVecSquare(x, x, &length));
   PetscCall(ComplexVecSquare(q->z, q->z, &residual));
   p->backward = PetscSqrtReal(residual / length) / bound;
   if (!y.r) PetscFunctionReturn(0);
   PetscCall(ComplexVecDot(y, q->z, &dot));
   p->y_Qx = cabs(dot);
-  if (pencil->C && size > 0) PetscCall(ComplexVecMultAdd(pencil->C, 1 / (2 * lambda), x, q->scratch, q->Mx));
+  if (pencil->C && size > 0) PetscCall(ComplexVecAXPY(1 / (2 * lambda), q->Cx, q->Mx));
   PetscCall(ComplexVecDot(y, q->Mx, &p->product));
   p->y_Dx = cabs(p->product);
   PetscFunctionReturn(0);
@@ -251,7 +254,7 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
 /* Norms and work vectors */
 static PetscErrorCode QualityCreate(Modes modes, const PencilMatrices *pencil, Quality *q)
 {
-  Vec *const work[] = {&q->diagonal, &q->scratch, &q->Mx.r, &q->Mx.i, &q->z.r, &q->z.i};
+  Vec *const work[] = {&q->diagonal, &q->scratch, &q->Mx.r, &q->Mx.i, &q->Cx.r, &q->Cx.i, &q->z.r, &q->z.i};
 
   PetscFunctionBeginUser;
   *q = (Quality){.pencil = pencil};
@@ -268,7 +271,8 @@ static PetscErrorCode QualityCreate(Modes modes, const PencilMatrices *pencil, Q
 
 static PetscErrorCode QualityDestroy(Quality *q)
 {
-  Vec *const work[] = {&q->diagonal, &q->scratch, &q->Mx.r, &q->Mx.i, &q->z.r, &q->z.i, &q->full.r, &q->full.i};
+  Vec *const work[] = {&q->diagonal, &q->scratch, &q->Mx.r, &q->Mx.i,   &q->Cx.r,
+                       &q->Cx.i,     &q->z.r,     &q->z.i,  &q->full.r, &q->full.i};
 
   PetscFunctionBeginUser;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(work); k++) PetscCall(VecDestroy(work[k]));
