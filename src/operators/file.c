@@ -215,6 +215,19 @@ static PetscErrorCode PencilSaveObject(Operators o, const char name[], PetscObje
   PetscFunctionReturn(0);
 }
 
+/* An earlier run's file of what this one does not have */
+static PetscErrorCode PencilRemoveObject(const Operators o, const char name[])
+{
+  char        file[PETSC_MAX_PATH_LEN];
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(file, sizeof(file), "%s/%s.bin", o->save, name));
+  PetscCallMPI(MPI_Comm_rank(o->comm, &rank));
+  if (rank == 0) (void)unlink(file); /* mostly there is none */
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode PencilSave(Pencil pencil)
 {
   Operators      o = pencil->operators;
@@ -233,8 +246,9 @@ PetscErrorCode PencilSave(Pencil pencil)
   if (!pencil->Zr) PetscCall(PencilGetParts(pencil, &parts));
   PetscCall(PencilSaveObject(o, "K", (PetscObject)(parts.K ? parts.K : m.K)));
   PetscCall(PencilSaveObject(o, "M", (PetscObject)m.M));
-  if (m.C) PetscCall(PencilSaveObject(o, "C", (PetscObject)m.C));
-  if (parts.H) PetscCall(PencilSaveObject(o, "H", (PetscObject)parts.H));
+  PetscCall(m.C ? PencilSaveObject(o, "C", (PetscObject)m.C) : PencilRemoveObject(o, "C"));
+  PetscCall(parts.H ? PencilSaveObject(o, "H", (PetscObject)parts.H) : PencilRemoveObject(o, "H"));
+  PetscCall(PencilRemoveObject(o, "F"));
   PetscFunctionReturn(0);
 }
 
