@@ -61,8 +61,7 @@ PetscErrorCode FrfSpaceCreate(const PencilMatrices *pencil, PetscInt size, FrfSp
 PetscErrorCode FrfSpaceCreateBlock(const FrfSpace *space, PetscInt n, BV *block)
 {
   PetscFunctionBeginUser;
-  PetscCall(BVDuplicateResize(space->V, n, block));
-  PetscCall(BVSetActiveColumns(*block, 0, n));
+  PetscCall(BlockCreate(space->V, n, block));
   PetscFunctionReturn(0);
 }
 

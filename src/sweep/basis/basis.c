@@ -34,8 +34,7 @@ PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis)
 PetscErrorCode BasisCreateBlock(const Basis *basis, PetscInt n, BV *block)
 {
   PetscFunctionBeginUser;
-  PetscCall(BVDuplicateResize(basis->vectors, n, block));
-  PetscCall(BVSetActiveColumns(*block, 0, n));
+  PetscCall(BlockCreate(basis->vectors, n, block));
   PetscFunctionReturn(0);
 }
 
