@@ -116,6 +116,64 @@ def abaqus(folder):
     check_refused(folder, "inp", decks_abaqus.REFUSED)
 
 
+def sections(folder, name, text):
+    """Options of the scene of a deck, and what is listed without the folder."""
+    (folder / name).write_text(text)
+    convert(folder / name, "mm-t-s", folder / "scene")
+    options, listed = scene(folder, "scene")
+    return options, [line.replace(f"{folder}/", "") for line in listed]
+
+
+def steps(folder):
+    """Loads of a later step replace those of an earlier one (OP=MOD), or all of them (OP=NEW); in one step they add up."""
+    one, two, three = "*CLOAD\n7, 3, -1.\nTOP, 1, 2.\n", "*CLOAD{}\n7, 3, -5.\n7, 3, -1.\n", "*DSLOAD{}\nUP, P, 4.\n"
+    whole = decks_abaqus.BODY + "*NSET, NSET=TOP\n5, 6\n*SURFACE, NAME=UP\nE, S2\n" + decks_abaqus.STEEL + (
+        "*SOLID SECTION, ELSET=E, MATERIAL=M\n")
+
+    def deck(*parts):
+        return whole + "".join(f"*STEP\n{part}*END STEP\n" for part in parts)
+
+    options, _ = sections(folder, "steps.inp", deck(one + three.format(""), two.format(""), three.format("").replace("4.", "9.")))
+    check("OP=MOD: the force of a node is that of the last step", same("0,0,-6", options["force_force_force"]), options)
+    check("OP=MOD: the force of another set stays", same("4,0,0", options["top_force_force"]), options)
+    check("OP=MOD: one pressure, the last", options["up_pressure_pressure"] == "9000000" and "up_pressure_2" not in options["loads"], options)
+    options, _ = sections(folder, "steps.inp", deck(one, two.format(", OP=NEW")))
+    check("OP=NEW: other forces are gone", options["loads"] == "force_force" and same("0,0,-6", options["force_force_force"]), options)
+    options, _ = sections(folder, "steps.inp", deck(one, "*CLOAD\n7, 3, 0.\n"))
+    check("OP=MOD: a force that becomes 0 is gone", options["loads"] == "top_force", options)
+
+
+def not_taken(folder):
+    """What is read in part, or would be something else in squeal, is listed and makes nothing in the scene."""
+    body, steel = decks_abaqus.BODY, decks_abaqus.STEEL + "*SOLID SECTION, ELSET=E, MATERIAL=M\n"
+    rest = "*SURFACE, NAME=S\nE, S1\n*SURFACE, NAME=T\nE, S2\n*SURFACE INTERACTION, NAME=I\n*FRICTION\n0.3, 5e4\n"
+    pair = "*CONTACT PAIR, INTERACTION=I\nS, T\n"
+    options, listed = sections(folder, "deck.inp", body + steel + rest + pair)
+    check("contact is there", options.get("contacts") == "i", options)
+    check("*FRICTION: a second number is listed", any(line.startswith("deck.inp:23: *FRICTION: only") for line in listed), listed)
+    for about, text in (("SURFACE BEHAVIOR", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TIED\n1e6\n" + pair),
+                        ("CONTACT PAIR", pair.replace("=I\n", "=I, TIED\n"))):
+        options, listed = sections(folder, "deck.inp", body + steel + rest + text)
+        check(f"{about}: tied is no contact", "contacts" not in options and sum("NOT TIED" in line for line in listed) == 1, listed)
+    _, listed = sections(folder, "deck.inp", f"*PART, NAME=P\n*NODE\n1, 0., 0., 0.\n*END PART\n{body}{steel}")
+    check("a part without an instance is listed", any(line.startswith("deck.inp:1: *PART P: no") for line in listed), listed)
+    nastran = "CELAS2,5,1.,7,3,,,0.04\nPBUSH,6,K,1.,2.,3.,4.\n,B,5.\nPELAS,7,1.,0.1\nENDDATA\n"
+    text = decks_others.GRIDS + decks_others.HEXA + decks_others.PROPERTY.replace("PSOLID,1,1", "PSOLID,1,1,,2") + nastran
+    _, listed = sections(folder, "deck.bdf", text)
+    for start in ("deck.bdf:11: PSOLID 1: integration", "deck.bdf:13: CELAS2: only", "deck.bdf:14: PBUSH: only", "deck.bdf:16: PELAS: only"):
+        check(f"listed: {start}", sum(line.startswith(start) for line in listed) == 1, listed)
+    ansys = "D,1,UX,0,0,4\nD,2,UX,0,,,,UY\nF,5,FZ,1,,8\nSFE,1,6,PRES,1,10,0,0,10\nSFE,1,1,PRES,1,3,0,0,0\nFINISH\n"
+    text = decks_others.NBLOCK + decks_others.EBLOCK + "MP,EX,1,2.1E5\nMP,PRXY,1,0.3\nMP,DENS,1,7.8E-9\n" + ansys
+    options, listed = sections(folder, "deck.cdb", text)
+    for start in ("deck.cdb:20: D with", "deck.cdb:21: D with", "deck.cdb:22: F with", "deck.cdb:23: SFE: a pressure that varies"):
+        check(f"listed: {start}", sum(line.startswith(start) for line in listed) == 1, listed)
+    check("not taken: ranges and what varies", "supports" not in options and options["loads"] == "pressed_pressure", options)
+    name = next(iter(decks_others.Ansys.FILES))
+    text = decks_others.Ansys.FILES[name].replace("ET,2,174", "ET,2,174\nKEYOPT,2,12,5")
+    options, listed = sections(folder, name, text)
+    check("bonded contact of Ansys is none", "contacts" not in options and any("KEYOPT(12) = 5" in line for line in listed), listed)
+
+
 def others(folder):
     for case in (decks_others.Nastran, decks_others.Ansys):
         check_scene(folder, case)
@@ -138,6 +196,8 @@ def main():
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
         abaqus(Path(name))
         others(Path(name))
+        steps(Path(name))
+        not_taken(Path(name))
     page()
     return 1 if FAILED else 0
 

@@ -140,7 +140,8 @@ class Reader:
         self.main, self.instances, self.parts = Scope(self.deck), {}, {}
         self.material = self.interaction = self.changed = None
         self.interactions, self.turned, self.spring_cards, self.pairs = {}, {}, [], []
-        self.steps, self.loads = 0, {}
+        self.unplaced = {}  # name of a part without an instance so far -> its place
+        self.steps, self.loads = 0, {}  # keyword, set, direction of a load -> (step, loads)
 
     def split(self, name, scope):
         """Scope and local name of INSTANCE.NAME."""
@@ -193,7 +194,7 @@ class Reader:
             name = card.need("NAME")
             if name in self.parts:
                 raise card.place.wrong(f"part {name} stands twice")
-            self.parts[name] = inside
+            self.parts[name], self.unplaced[name] = inside, card.place
             return
         name, part = card.need("NAME"), name_of(card.options.get("PART", ""))
         if name in self.instances:
@@ -201,6 +202,7 @@ class Reader:
         if part and part not in self.parts:
             raise card.place.wrong(f"*INSTANCE: there is no part {part}")
         self.instances[name] = Scope(self.deck, name, *motion(card))
+        self.unplaced.pop(part, None)
         self.replay([*self.parts.get(part, []), *inside], self.instances[name])
 
     def replay(self, cards, scope):
@@ -221,6 +223,8 @@ class Reader:
     def finish(self):
         """What needs all of the deck."""
         abaqus_model.finish(self)
+        for name, place in self.unplaced.items():
+            self.deck.note(place, f"*PART {name}: no *INSTANCE places it, not in the mesh")
         if not self.steps:
             self.deck.note(Place(self.deck.path, 1), "there is no *STEP: is the file whole?")
         for scope in [self.main, *self.instances.values()]:

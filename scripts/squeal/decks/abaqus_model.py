@@ -15,7 +15,8 @@ HELD = {"ENCASTRE": (0, 1, 2), "PINNED": (0, 1, 2), "XSYMM": (0,), "YSYMM": (1,)
 KNOWN = {"MATERIAL": {"NAME"}, "DENSITY": set(), "ELASTIC": {"TYPE"}, "DAMPING": {"ALPHA", "BETA"},
          "SOLID SECTION": {"ELSET", "MATERIAL", "ORIENTATION", "CONTROLS"}, "ORIENTATION": {"NAME", "SYSTEM", "DEFINITION"},
          "BOUNDARY": {"OP", "FIXED"}, "SPRING": {"ELSET"}, "TIE": {"NAME", "POSITION TOLERANCE", "ADJUST", "TYPE"},
-         "CONTACT PAIR": {"INTERACTION", "TYPE", "SMALL SLIDING", "ADJUST", "CPSET", "NO THICKNESS", "MECHANICAL CONSTRAINT"},
+         "CONTACT PAIR": {"INTERACTION", "TYPE", "SMALL SLIDING", "ADJUST", "CPSET", "NO THICKNESS", "MECHANICAL CONSTRAINT",
+                          "TIED"},
          "SURFACE INTERACTION": {"NAME"}, "FRICTION": set(), "SURFACE BEHAVIOR": {"PRESSURE-OVERCLOSURE"},
          "CHANGE FRICTION": {"INTERACTION"}, "CLOAD": {"OP"}, "DLOAD": {"OP"}, "DSLOAD": {"OP"},
          "MOTION": {"ROTATION", "TYPE"}, "STEP": {"NAME", "PERTURBATION", "INC"}, "FREQUENCY": {"EIGENSOLVER", "STORAGE", "NORMALIZATION", "SOLVER"}}
@@ -125,6 +126,8 @@ def do_friction(reader, _, card):
     if "mu" in values:
         reader.deck.note(values["friction"], f"*FRICTION {values['mu']:g}: another one follows on line {card.place.line}")
     values["mu"], values["friction"] = row[0], card.place
+    if any(row[1:]):
+        reader.deck.note(card.place, "*FRICTION: only the first number, mu, is taken")
     other_rows(reader, card, rest)
 
 
@@ -137,6 +140,8 @@ def do_behavior(reader, _, card):
         values["stiffness"] = first_row(card, 1)[0][0]
         if not values["stiffness"] > 0:
             raise card.place.wrong("*SURFACE BEHAVIOR: the stiffness must be positive")
+    elif kind == "TIED":
+        values["tied"] = True
     elif kind != "HARD":
         reader.deck.note(card.place, f"*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE={kind}: not understood, contact is exact")
 
@@ -150,31 +155,47 @@ def do_change_friction(reader, _, card):
 def do_pair(reader, scope, card):
     interaction = card.need("INTERACTION")
     for place, fields in card.rows():
-        reader.pairs.append((Contact(interaction, *surface_pair(reader, scope, place, fields), place), interaction))
+        reader.pairs.append((Contact(interaction, *surface_pair(reader, scope, place, fields), place), interaction, "TIED" in card.options))
+
+
+def forget(reader, card):
+    """OP=NEW: the loads of earlier steps act no longer."""
+    if card.options.get("OP", "MOD").upper() == "NEW":
+        reader.loads = {key: value for key, value in reader.loads.items() if key[0] != card.keyword or value[0] == reader.steps}
+
+
+def act(reader, key, load=None):
+    """Adds a load, None where it is 0; the same in an earlier step acts no longer (OP=MOD)."""
+    step, loads = reader.loads.get(key, (0, []))
+    kept = loads if step == reader.steps else []
+    reader.loads[key] = reader.steps, kept + ([load] if load else [])
 
 
 def do_cload(reader, scope, card):
+    forget(reader, card)
     for place, fields in card.rows():
         if len(fields) != 3:
             raise place.wrong(f"*CLOAD: {len(fields)} fields, expected a node or set, a direction, a force")
         nodes, d = reader_nodes(reader, scope, fields[0], place), direction(fields[1], place, card.keyword, reader)
         value = real(fields[2], place)
-        if d is None or not value or is_turned(reader, nodes, place, card.keyword):
+        if d is None or is_turned(reader, nodes, place, card.keyword):
             continue
         force = numpy.zeros(3)
         force[d] = value
         name = "" if fields[0].isdigit() else set_name(reader, scope, fields[0])
-        reader.deck.loads.append(Load(name, place, nodes=nodes, force=force))
+        key = (card.keyword, name or int(nodes[0]), d)
+        act(reader, key, Load(name, place, nodes=nodes, force=force) if value else None)
 
 
 def do_dload(reader, scope, card):
+    forget(reader, card)
     for place, fields in card.rows():
         kind = fields[1].upper() if len(fields) > 1 else ""
         if kind == "GRAV":
             gravity(reader, scope, place, fields)
         elif len(kind) == 2 and kind[0] == "P" and kind[1].isdigit() and len(fields) == 3:
             faces = check_faces(reader.deck, reader_cells(reader, scope, fields[0], place), int(kind[1]), place)
-            reader.deck.loads.append(Load("", place, faces=faces, pressure=real(fields[2], place)))
+            act(reader, (card.keyword, faces.tobytes()), Load("", place, faces=faces, pressure=real(fields[2], place)))
         else:
             reader.deck.note(place, f"*DLOAD {kind}: not understood")
 
@@ -194,12 +215,14 @@ def gravity(reader, scope, place, fields):
 
 
 def do_dsload(reader, scope, card):
+    forget(reader, card)
     for place, fields in card.rows():
         if len(fields) != 3 or fields[1].upper() != "P":
             reader.deck.note(place, f"*DSLOAD {', '.join(fields[1:2])}: not understood")
             continue
         name = surface_pair(reader, scope, place, [fields[0], fields[0]])[0]
-        reader.deck.loads.append(Load(name, place, faces=reader.deck.surfaces[name][0], pressure=real(fields[2], place)))
+        load = Load(name, place, faces=reader.deck.surfaces[name][0], pressure=real(fields[2], place))
+        act(reader, (card.keyword, name), load)
 
 
 def do_motion(reader, scope, card):
@@ -221,7 +244,7 @@ def do_motion(reader, scope, card):
 def do_step(reader, _, card):
     reader.steps += 1
     if reader.steps == 2:
-        reader.deck.note(card.place, "*STEP: supports and loads of all steps are put together in the scene; see which you want")
+        reader.deck.note(card.place, "*STEP: the scene has the supports and loads of all steps, of the same set and direction the last one; see which you want")
 
 
 def do_frequency(reader, _, card):
@@ -231,11 +254,15 @@ def do_frequency(reader, _, card):
 
 
 def finish(reader):
-    """Options that were not used, contact of all pairs, springs."""
-    for contact, interaction in reader.pairs:
+    """Loads that act, contact of all pairs, springs."""
+    reader.deck.loads += [load for _, loads in reader.loads.values() for load in loads]
+    for contact, interaction, tied in reader.pairs:
         values = reader.interactions.get(interaction)
         if values is None:
             raise contact.place.wrong(f"there is no *SURFACE INTERACTION {interaction}")
+        if tied or values.get("tied"):
+            reader.deck.note(contact.place, f"*CONTACT PAIR {contact.slave}, {contact.master}: tied, not in the scene: NOT TIED")
+            continue
         contact.mu, contact.stiffness = values.get("mu"), values.get("stiffness")
         reader.deck.contacts.append(contact)
     ground_springs(reader, SPRINGS)

@@ -20,7 +20,7 @@ def read_model(deck, commands, mesh):
     for command in commands:
         if command.words[0] in pending:
             pending[command.words[0]](deck, mesh, command)
-    read_contact(deck, mesh, values)
+    read_contact(deck, mesh, values, behaviours(commands))
 
 
 def read_constants(deck, commands):
@@ -130,8 +130,8 @@ def support(deck, mesh, command):
     label, value = command.word(2).upper(), command.real(3)
     if label not in ("UX", "UY", "UZ", "ALL"):
         deck.note(command.place, f"D {label[:10]}: not understood")
-    elif any(command.words[4:]) and command.real(4):
-        deck.note(command.place, "D with an imaginary part: not taken")
+    elif any(command.words[5:]) or command.real(4):
+        deck.note(command.place, "D with an imaginary part, a range of nodes or more labels: not taken")
     elif not is_turned(deck, mesh, nodes, command):
         held = (0, 1, 2) if label == "ALL" else ("XYZ".index(label[1]),)
         deck.supports.append(Support(nodes, {d: value for d in held}, name, command.place))
@@ -143,6 +143,8 @@ def force(deck, mesh, command):
     label, value = command.word(2).upper(), command.real(3)
     if label not in ("FX", "FY", "FZ"):
         deck.note(command.place, f"F {label[:10]}: not understood")
+    elif any(command.words[5:]) or command.real(4):
+        deck.note(command.place, "F with an imaginary part or a range of nodes: not taken")
     elif value and not is_turned(deck, mesh, nodes, command):
         vector = numpy.zeros(3)
         vector["XYZ".index(label[1])] = value
@@ -160,7 +162,7 @@ def pressure_on_face(deck, mesh, command):
     face = FACES[deck.blocks[at].shape.family].get(command.whole(2))
     if face is None or not values:
         raise command.place.wrong(f"SFE: face {command.word(2)} of element {command.word(1)} has no pressure, or there is no such face")
-    if any(value not in (values[0], 0.0) for value in values) or (0.0 in values and len(values) > 1 and values[1] != 0.0):
+    if any(values[1:]) and any(value != values[0] for value in values):
         deck.note(command.place, "SFE: a pressure that varies: not taken")
         return
     deck.loads.append(Load("", command.place, faces=numpy.array([[cell, face]]), pressure=values[0]))
@@ -205,7 +207,13 @@ def modes(deck, _, command):
     deck.modes = command.whole(2), command.real(3), command.real(4), command.place
 
 
-def read_contact(deck, mesh, values):
+def behaviours(commands):
+    """Number of a type of elements -> KEYOPT(12), what contact does where it is not 0: rough, without separation, bonded."""
+    return {command.whole(1): command.whole(3) for command in commands
+            if command.words[0] in ("KEYOPT", "KEYO") and command.word(2) == "12"}
+
+
+def read_contact(deck, mesh, values, behaviour):
     """Pairs of contact and target elements with one set of real constants; friction by MU of the material."""
     for number in sorted({number for number, _ in mesh.facets}):
         sides = {}
@@ -224,5 +232,9 @@ def read_contact(deck, mesh, values):
         for kind, (faces, _, place) in sides.items():
             deck.surfaces[f"{kind}_{number}"] = numpy.concatenate(faces), place
         _, head, place = sides["contact"]
+        kind = behaviour.get(int(head[0, 1]), 0)
+        if kind:
+            deck.note(place, f"real constants {number}: KEYOPT(12) = {kind}, rough, bonded or without separation; not taken: NOT TIED")
+            continue
         mu = values.get(int(head[0, 0]), {}).get("MU", (0.0, None))[0]
         deck.contacts.append(Contact(f"pair_{number}", f"contact_{number}", f"target_{number}", place, mu=mu))

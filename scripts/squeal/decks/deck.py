@@ -106,7 +106,6 @@ class Contact:
     stiffness: float = None  # per area
     rotation: tuple = ()
     centre: tuple = ()
-    slip: tuple = ()  # direction of the slave
     turning: Place = None  # where the rotation is from
 
 

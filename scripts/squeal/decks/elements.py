@@ -90,10 +90,3 @@ def signed_volumes(shape, x):
     ends = {"tet": (1, 2, 3), "wedge": (1, 2, 3), "hex": (1, 3, 4)}[shape.family]
     edges = [x[:, end] - x[:, 0] for end in ends]
     return numpy.einsum("ij,ij->i", numpy.cross(edges[0], edges[1]), edges[2])
-
-
-# Nodes of the faces of triangles and quadrilaterals with corners that are given
-def sorted_corners(nodes, n):
-    """Keys of faces [m][>= n]: their n corners in rising order, padded to four by -1."""
-    keys = numpy.sort(nodes[:, :n], axis=1)
-    return keys if n == 4 else numpy.hstack([keys, numpy.full((len(keys), 4 - n), -1)])

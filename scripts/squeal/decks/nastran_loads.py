@@ -28,21 +28,35 @@ def property_values(tables, name, read):
     return found
 
 
-def bush_stiffness(table, row):
-    """K1 to K6 behind the word K of PBUSH."""
+def note_rest(deck, table, row, words, read):
+    """Lists what a card of springs has beside the stiffness."""
+    if any(words):
+        deck.note(table.place(row), f"{table.name}: only {read} read; {', '.join(filter(None, words))}: not taken")
+
+
+def bar_stiffness(deck, table, row):
+    """K of PELAS."""
+    note_rest(deck, table, row, table.words(row)[2:], "K is")
+    return float(table.real(1, 2)[row, 0])
+
+
+def bush_stiffness(deck, table, row):
+    """K1 to K3 behind the word K of PBUSH; it may also have K4 to K6, damping behind B, loss factors behind GE."""
     words = table.words(row)
     at = words.index("K") if "K" in words else -1
+    note_rest(deck, table, row, words[1:max(at, 1)] + words[at + 4 if at >= 0 else 1:], "K1 to K3 are")
     return table.real(at + 1, at + 4)[row] if at >= 0 else numpy.zeros(3)
 
 
 def read_springs(deck, tables, mesh):
     """CELAS1, CELAS2, CBUSH with one grid point, the other end of which is the ground."""
-    stiffness = property_values(tables, "PELAS", lambda table, row: float(table.real(1, 2)[row, 0]))
+    stiffness = property_values(tables, "PELAS", lambda table, row: bar_stiffness(deck, table, row))
     for table in named(tables, "CELAS1", "CELAS2"):
         for row, values in enumerate(table.whole(2, 6).tolist()):
             place, number = table.place(row), int(table.whole(1, 2)[row, 0]) if table.name == "CELAS1" else 0
             if table.name == "CELAS1" and number not in stiffness:
                 raise place.wrong(f"there is no PELAS {number}")
+            note_rest(deck, table, row, table.words(row)[6:], "the stiffness is")
             value = stiffness[number] if table.name == "CELAS1" else float(table.real(1, 2)[row, 0])
             ends = [(node, direction) for node, direction in (values[:2], values[2:]) if node]
             if len(ends) != 1 or not 1 <= ends[0][1] <= 3:
@@ -51,7 +65,7 @@ def read_springs(deck, tables, mesh):
             along = numpy.zeros(3)
             along[ends[0][1] - 1] = value
             spring(deck, mesh, ends[0][0], along, place, table.name)
-    bushes = property_values(tables, "PBUSH", bush_stiffness)
+    bushes = property_values(tables, "PBUSH", lambda table, row: bush_stiffness(deck, table, row))
     for table in named(tables, "CBUSH"):
         for row, (number, first, second) in enumerate(table.whole(1, 4).tolist()):
             place = table.place(row)
