@@ -236,6 +236,8 @@ REFUSED = [
     (BODY + "*INCLUDE, INPUT=gone.inp\n", "wrong.inp:12: *INCLUDE: "),
     (BODY + STEEL.replace("*DENSITY\n7.8e-9\n", "") + "*SOLID SECTION, ELSET=E, MATERIAL=M\n", "units are in doubt"),
     (BODY + "*NGEN\n1, 3, 1\n", "wrong.inp:12: *NGEN is not read"),
+    (BODY + "*SURFACE INTERACTION, NAME=I\n*FRICTION, ROUGH\n", "wrong.inp:13: *FRICTION, ROUGH: squeal has no contact"),
+    (BODY + "*MATERIAL, NAME=M\n*DENSITY\n", "wrong.inp:13: *DENSITY needs 1 number at least"),
     ("1, 2, 3\n", "wrong.inp:1: '1,': a deck begins with a keyword"),
     ("", "there is no *NODE"),
 ]

@@ -174,6 +174,16 @@ def not_taken(folder):
     check("bonded contact of Ansys is none", "contacts" not in options and any("KEYOPT(12) = 5" in line for line in listed), listed)
 
 
+def closed_pipe(folder):
+    """`scripts/import FILE | head`: no traceback where nobody reads to the end."""
+    (folder / "pipe.inp").write_text(decks_abaqus.BODY + decks_abaqus.STEEL + "*SOLID SECTION, ELSET=E, MATERIAL=M\n")
+    program = Path(__file__).resolve().parents[1] / "scripts/import"
+    with subprocess.Popen([program, "pipe.inp"], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as started:
+        started.stdout.close()
+        said = started.stderr.read()
+    check("a closed pipe: nothing on stderr, status 0", not said and started.returncode == 0, said)
+
+
 def others(folder):
     for case in (decks_others.Nastran, decks_others.Ansys):
         check_scene(folder, case)
@@ -198,6 +208,7 @@ def main():
         others(Path(name))
         steps(Path(name))
         not_taken(Path(name))
+        closed_pipe(Path(name))
     page()
     return 1 if FAILED else 0
 

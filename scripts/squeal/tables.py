@@ -3,6 +3,7 @@
 import contextlib
 import csv
 import math
+import os
 import sys
 
 
@@ -95,7 +96,9 @@ def print_row(*cells):
 def run(name, work):
     """Does the work and prints the file that it returns; returns the exit status."""
     try:
-        print(work())
+        print(work(), flush=True)
+    except BrokenPipeError:  # who reads has enough, as `head` has; what is left goes nowhere
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except BadInput as error:
         text = "".join(letter if letter.isprintable() else "?" for letter in str(error))  # a damaged file's too
         print(f"{name}: {text}", file=sys.stderr)

@@ -20,7 +20,7 @@ def first_row(card, least):
     """Numbers of the first line; more lines (other temperatures) are listed."""
     rows = numbers(card)
     if not rows or len(rows[0][1]) < least:
-        raise (rows[0][0] if rows else card.place).wrong(f"*{card.keyword} needs {least} numbers at least")
+        raise (rows[0][0] if rows else card.place).wrong(f"*{card.keyword} needs {least} number{'s' * (least > 1)} at least")
     return rows[0][1], rows[1:]
 
 

@@ -117,6 +117,8 @@ def do_interaction(reader, _, card):
 
 
 def do_friction(reader, _, card):
+    if "ROUGH" in card.options:
+        raise card.place.wrong("*FRICTION, ROUGH: squeal has no contact without slip; give mu")
     row, rest = first_row(card, 1)
     values = reader.interactions.get(reader.interaction)
     if values is None:
