@@ -34,6 +34,7 @@ static PetscErrorCode DynamicsStartFromOptions(Dynamics d, OptionsItems PetscOpt
   PetscCall(PetscOptionsReal("-dynamics_shape_amplitude", "its largest displacement, m", "dynamics.h",
                              d->shape_amplitude, &d->shape_amplitude, NULL));
   if (!d->shape[0]) PetscCall(OptionsRefuse(d->comm, "-dynamics_shape_mode", "not used without -dynamics_shape"));
+  if (!d->shape[0]) PetscCall(OptionsRefuse(d->comm, "-dynamics_shape_amplitude", "not used without -dynamics_shape"));
   d->start = (DynamicsStart)start;
   PetscFunctionReturn(0);
 }

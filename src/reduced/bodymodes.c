@@ -7,19 +7,15 @@
 
 #define ORTHONORMAL 1e-7 /* largest |Phi'M Phi - I| */
 
-/* Whether a parameter is one of damping or spin, which real modes know nothing of */
-static PetscErrorCode ParameterIsGyration(const char name[], PetscBool *is)
+/* Whether a parameter is one of damping or spin, which real modes know nothing of: by its unit, since names begin with those
+   that the user gave */
+static PetscErrorCode ParameterIsGyration(const char unit[], PetscBool *is)
 {
-  static const char *const words[] = {"_alpha", "_beta", "_viscosity", "_spin"};
+  static const char *const units[] = {"1/s", "s", "N s/m", "N s/m^3", "N m s/rad", "rad/s"};
 
   PetscFunctionBeginUser;
   *is = PETSC_FALSE;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(words) && !*is; i++) {
-    char *found;
-
-    PetscCall(PetscStrrstr(name, words[i], &found));
-    if (found) *is = PETSC_TRUE;
-  }
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(units) && !*is; i++) PetscCall(PetscStrcmp(unit, units[i], is));
   PetscFunctionReturn(0);
 }
 
@@ -46,7 +42,7 @@ static PetscErrorCode ReducedCreatePencil(ReducedRun r)
   for (PetscInt i = 0; i < n; i++) {
     PetscBool is;
 
-    PetscCall(ParameterIsGyration(parameter[i].name, &is));
+    PetscCall(ParameterIsGyration(parameter[i].unit, &is));
     still[i] = is ? 0 : p[i];
   }
   PetscCall(PencilSetParameters(r->bodies, still));

@@ -17,8 +17,8 @@ PetscErrorCode ReducedRefuse(ReducedRun r)
     PetscCall(ContactProjectorGetWay(r->run.projector, i, (const PetscReal[]){0, 1}, &way, &turning));
     PetscCheck(!turning, r->comm, PETSC_ERR_SUP,
                "-%s_kinematics turning: a reduced model keeps the pairs of the mesh, and no body can turn under the "
-               "other; take prescribed sliding, or %s",
-               r->run.interfaces[i].name, full);
+               "other; take prescribed sliding, or -dynamics_model full",
+               r->run.interfaces[i].name);
   }
   PetscCheck(!scene->n_motions, r->comm, PETSC_ERR_SUP, "motion %s: a reduced model knows no prescribed motions; %s",
              scene->n_motions ? scene->motions[0].name : "", full);
