@@ -228,6 +228,7 @@ def check_bad(top):
     run(top, sys.argv[2], "-n", 1, sys.argv[1], "-model_source", "rig", "-parts", "disc", "-rig_pad", 0, "-rig_disc_elements", "3,12,1",
         "-rig_disc_mesh", "axisymmetric", "-disc_young", "2e11", "-disc_density", 7800, "-modes_target", 1, "-modes_count", 8,
         "-output_dir", "rig", "-output_fields", 0)
+    squeal(top, SOURCE / "options/affine.yaml", "matrices", "-output_fields", 0)
     (top / "empty").mkdir()
     (top / "gone").mkdir()
     scene = (top / "out/scene.yaml").read_text()
@@ -235,6 +236,7 @@ def check_bad(top):
     (top / "torn.msh").write_bytes((top / "pair.msh").read_bytes()[:2000])
     (top / "short.msh").write_bytes((top / "hex27.msh").read_bytes()[:-400])
     for words, said in ((["nowhere"], "no such folder"), (["empty"], "scene.yaml"), (["of27"], "hex27"), (["rig"], "-rig_save"),
+                        (["matrices"], "is of matrices"),
                         (["gone"], "gone.msh"), (["out", "--mesh", "torn.msh"], "torn.msh"), (["out", "--mesh", "short.msh"], "short.msh"), (["out", "--mesh", "pair.yaml"], "no file of Gmsh"),
                         (["out", "--mesh", "hex27.msh"], "no volume named base"), (["out", "-o", "empty/no/deck.inp"], "deck.inp"),
                         (["of27", "--sliding"], "hex27")):

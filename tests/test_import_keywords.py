@@ -98,6 +98,11 @@ def check_refused(folder, ending, cases):
             check(f"refused: {message}", False, "it was not")
         except BadInput as error:
             check(f"refused: {message}", message in str(error) and "\n" not in str(error), str(error))
+    try:
+        convert(folder / f"wrong.{ending}", output=folder / "nowhere/wrong")
+        check("refused: a folder that is not there", False, "it was not")
+    except BadInput as error:
+        check("refused: a folder that is not there", "nowhere: no such folder" in str(error), str(error))
 
 
 def check_forces(folder, case):

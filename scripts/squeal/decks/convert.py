@@ -35,6 +35,9 @@ def clean(text):
 def convert(path, units=None, output=None, strict=False):
     """Writes OUTPUT.msh and OUTPUT.yaml; returns the lines to print."""
     chosen = named(units) if units else None
+    output = output or Path(path.stem)
+    if not output.parent.is_dir():
+        raise BadInput(f"{output.parent}: no such folder; make it, or give --output another")
     deck = read_deck(path)
     if not deck.n_cells:
         raise BadInput(f"{path}:1: there are no volume elements that squeal has")
@@ -48,7 +51,6 @@ def convert(path, units=None, output=None, strict=False):
     result.x = result.x * chosen.length
     if not numpy.isfinite(result.x).all():
         raise BadInput(f"{path}:1: places are not finite")
-    output = output or Path(path.stem)
     mesh, scene = (output.with_name(output.name + ending) for ending in (".msh", ".yaml"))
     lines, notes = scene_lines(deck, result, chosen, why, mesh), [clean(note) for note in remarks(deck)]
     if strict and deck.notes:
