@@ -28,6 +28,9 @@
                 direction of the slip of the step (y_T less that at t_n, plus the prescribed sliding)
    on the dense compliance dy_{n+1} / dlambda_{n+1} (stepper.c). mu is that of the slip speed of the step (contact.h).
 
+   At the start nodal velocities and shapes v become Phi'M v; the modes must hold 90 % of v'M v. Impulses have no end of
+   frequencies: only the modes receive them.
+
    What is said of a body that turns: a disc in a fixed frame with prescribed sliding is served, one that moves under the
    pad (-contact_kinematics turning) is refused. Pairs stay what they are in the mesh.
 */
@@ -136,7 +139,8 @@ PetscErrorCode ReducedSetRooms(ReducedRun reduced, Dynamics dynamics, Modes mode
    ReducedIntegrate - reduces the bodies, compares with the mesh where -modes_band says a band, integrates, and writes what
    DynamicsSolve() writes. Collective.
 
-   Errors: PETSC_ERR_USER_INPUT for a cut-off without modes below it, or below an unstable mode of the mesh; PETSC_ERR_SUP
+   Errors: PETSC_ERR_USER_INPUT for a cut-off without modes below it, below an unstable mode of the mesh, or with modes
+   that hold less than 90 % of the starting velocities or shape; PETSC_ERR_SUP
    naming what a reduced model cannot do.
 @*/
 PetscErrorCode ReducedIntegrate(ReducedRun reduced, Results results);

@@ -38,6 +38,11 @@ typedef struct {
   PetscReal open;         /* share of the last half without force, difference */
 } ReducedDifference;
 
+/* Shares of v'M v that the modes hold; 0 for what is not there */
+typedef struct {
+  PetscReal velocities, displacements, rates; /* of the parts; of -dynamics_shape */
+} ReducedShares;
+
 struct _p_ReducedRun {
   MPI_Comm comm;
   /* set by options */
@@ -49,20 +54,21 @@ struct _p_ReducedRun {
   Results     results;
   DynamicsRun run;
   /* reduction */
-  const char  *why;    /* the cut-off is what it is */
-  Pencil       bodies; /* every pair open, undamped */
-  Modes        body_modes;
-  Mat          Phi, MPhi; /* [unknowns][m] modes, and M Phi, dense */
-  Mat          G, others; /* ports: [3 pairs][unknowns] of the pairs, sparse; [unknowns][loads, probes] dense */
-  ShiftInvert  inverse;   /* of K - s M; kept for snapshots */
-  Progress     progress;
-  ReducedModel model;
-  PetscReal    orthonormal;    /* largest |Phi'M Phi - I| */
-  PetscInt     n_local, begin; /* pairs of this rank, the first of them */
-  ContactPair *pair;           /* [n_pairs] */
-  PetscInt    *vertex_port;    /* [nodes] first port of a node that is looked at, -1 for none */
-  PetscInt     n_hits;
-  PetscReal   *hits, *hit_due; /* [n_hits][m] Phi'J, m sqrt(kg)/s; [n_hits] s */
+  const char   *why;    /* the cut-off is what it is */
+  Pencil        bodies; /* every pair open, undamped */
+  Modes         body_modes;
+  Mat           Phi, MPhi; /* [unknowns][m] modes, and M Phi, dense */
+  Mat           G, others; /* ports: [3 pairs][unknowns] of the pairs, sparse; [unknowns][loads, probes] dense */
+  ShiftInvert   inverse;   /* of K - s M; kept for snapshots */
+  Progress      progress;
+  ReducedModel  model;
+  PetscReal     orthonormal;    /* largest |Phi'M Phi - I| */
+  PetscInt      n_local, begin; /* pairs of this rank, the first of them */
+  ContactPair  *pair;           /* [n_pairs] */
+  PetscInt     *vertex_port;    /* [nodes] first port of a node that is looked at, -1 for none */
+  ReducedShares held;           /* at the start */
+  PetscInt      n_hits;
+  PetscReal    *hits, *hit_due; /* [n_hits][m] Phi'J, m sqrt(kg)/s; [n_hits] s */
   /* the mesh beside it */
   const char  *not_compared; /* why; NULL where it is */
   PetscInt     n_closed, n_compared;

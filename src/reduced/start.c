@@ -1,13 +1,32 @@
 /*
    The state at t = 0: at rest with the velocities of the parts, or the sliding state (statics.h) with its contact forces; on top of
    either the shape of a mode. Nodal values v become coordinates by Phi'M v; of what no mode below the cut-off moves, the
-   residual keeps no velocity.
+   residual keeps no velocity: a motion is refused whose v'M v the modes do not hold, by Parseval |Phi'M v|^2 of it.
 */
 #include "reducedimpl.h"
 #include "base/gather.h"
 
-/* coordinates += Phi'M x of all unknowns */
-static PetscErrorCode StartProject(ReducedRun r, Vec x, PetscReal coordinates[])
+#define START_SHARE 0.9 /* of v'M v that the modes must hold, at least */
+
+/* x'M x of all unknowns */
+static PetscErrorCode StartWeigh(ReducedRun r, Vec x, PetscReal *square)
+{
+  PencilMatrices pencil;
+  PetscScalar    product;
+  Vec            Mx;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetMatrices(r->bodies, &pencil));
+  PetscCall(VecDuplicate(x, &Mx));
+  PetscCall(MatMult(pencil.M, x, Mx));
+  PetscCall(VecDot(Mx, x, &product));
+  PetscCall(VecDestroy(&Mx));
+  *square = PetscRealPart(product);
+  PetscFunctionReturn(0);
+}
+
+/* coordinates += Phi'M x of all unknowns; square = |Phi'M x|^2, what the modes hold of x'M x, or NULL */
+static PetscErrorCode StartProject(ReducedRun r, Vec x, PetscReal coordinates[], PetscReal *square)
 {
   const PetscScalar *value;
   PetscInt           n;
@@ -20,18 +39,25 @@ static PetscErrorCode StartProject(ReducedRun r, Vec x, PetscReal coordinates[])
   PetscCall(MatCreateDense(r->comm, n, PETSC_DECIDE, PETSC_DETERMINE, 1, (PetscScalar *)value, &X));
   PetscCall(PetscMalloc1(r->model.m, &sum));
   PetscCall(ReducedGram(r->MPhi, X, sum));
-  for (PetscInt k = 0; k < r->model.m; k++) coordinates[k] += sum[k];
+  if (square) *square = 0;
+  for (PetscInt k = 0; k < r->model.m; k++) {
+    coordinates[k] += sum[k];
+    if (square) *square += PetscSqr(sum[k]);
+  }
   PetscCall(PetscFree(sum));
   PetscCall(MatDestroy(&X));
   PetscCall(VecRestoreArrayRead(x, &value));
   PetscFunctionReturn(0);
 }
 
-/* The same of nodal values [nodes][3] */
-static PetscErrorCode StartProjectNodal(ReducedRun r, const PetscReal nodal[], PetscReal coordinates[])
+/* The same of nodal values [nodes][3]; share = what the modes hold of their square, 0 where all are zero. Raises the error
+   where that is too little */
+static PetscErrorCode StartProjectNodal(ReducedRun r, const char what[], const PetscReal nodal[],
+                                        PetscReal coordinates[], PetscReal *share)
 {
   const Mesh  *mesh;
   PetscScalar *value;
+  PetscReal    held, whole;
   Vec          x;
 
   PetscFunctionBeginUser;
@@ -44,8 +70,15 @@ static PetscErrorCode StartProjectNodal(ReducedRun r, const PetscReal nodal[], P
     if (mesh->unknown[i] >= 0 && row >= 0 && row < mesh->n_own) value[row] = nodal[i];
   }
   PetscCall(VecRestoreArray(x, &value));
-  PetscCall(StartProject(r, x, coordinates));
+  PetscCall(StartWeigh(r, x, &whole));
+  PetscCall(StartProject(r, x, coordinates, &held));
   PetscCall(VecDestroy(&x));
+  *share = whole > 0 ? held / whole : 0;
+  PetscCheck(
+    whole == 0 || *share >= START_SHARE, r->comm, PETSC_ERR_USER_INPUT,
+    "-dynamics_cutoff %.6g Hz: the modes below it hold %.2g %% of the %s, must be %.0f %% at least; take a higher "
+    "one, or -dynamics_model full",
+    (double)r->cutoff, (double)(100 * *share), what, 100 * START_SHARE);
   PetscFunctionReturn(0);
 }
 
@@ -78,7 +111,8 @@ static PetscErrorCode StartVelocities(ReducedRun r)
     PetscCall(ISDestroy(&is));
   }
   for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) nodal[i] /= PetscMax(1, count[i / 3]);
-  PetscCall(StartProjectNodal(r, nodal, r->state.rate));
+  PetscCall(
+    StartProjectNodal(r, "kinetic energy of the starting velocities", nodal, r->state.rate, &r->held.velocities));
   PetscCall(PetscFree2(nodal, count));
   PetscFunctionReturn(0);
 }
@@ -100,7 +134,7 @@ static PetscErrorCode StartSliding(ReducedRun r)
     r->state.status[i] = all[i].status;
   }
   PetscCall(PetscFree(all));
-  PetscCall(StartProject(r, u, r->state.eta));
+  PetscCall(StartProject(r, u, r->state.eta, NULL));
   PetscCall(StaticsRelease(r->run.statics));
   PetscFunctionReturn(0);
 }
@@ -115,8 +149,8 @@ static PetscErrorCode StartShape(ReducedRun r)
   PetscCall(ModelGetMesh(r->run.model, &mesh));
   PetscCall(PetscMalloc2(3 * mesh->n_nodes, &u, 3 * mesh->n_nodes, &v));
   PetscCall(DynamicsGetShape(r->dynamics, u, v));
-  PetscCall(StartProjectNodal(r, u, r->state.eta));
-  PetscCall(StartProjectNodal(r, v, r->state.rate));
+  PetscCall(StartProjectNodal(r, "displacements of -dynamics_shape", u, r->state.eta, &r->held.displacements));
+  PetscCall(StartProjectNodal(r, "velocities of -dynamics_shape", v, r->state.rate, &r->held.rates));
   PetscCall(PetscFree2(u, v));
   PetscFunctionReturn(0);
 }

@@ -24,6 +24,28 @@ static PetscErrorCode ReducedViewLaws(ReducedRun r, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
+/* What the modes hold of a motion that is there */
+static PetscErrorCode ReducedViewShare(const char what[], PetscReal share, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  if (share == 0) PetscFunctionReturn(0);
+  PetscCall(
+    PetscViewerASCIIPrintf(viewer, "  the modes hold %.6g %% of the %s\n", (double)PetscMin(100, 100 * share), what));
+  PetscFunctionReturn(0);
+}
+
+/* What the cut-off makes of starts and impulses */
+static PetscErrorCode ReducedViewShares(ReducedRun r, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReducedViewShare("kinetic energy of the starting velocities", r->held.velocities, viewer));
+  PetscCall(ReducedViewShare("displacements of -dynamics_shape (squares, by mass)", r->held.displacements, viewer));
+  PetscCall(ReducedViewShare("velocities of -dynamics_shape (squares, by mass)", r->held.rates, viewer));
+  if (r->n_hits)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  only the modes below %.6g Hz receive impulses\n", (double)r->cutoff));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ReducedView(ReducedRun r, PetscViewer viewer)
 {
   const double seconds = (double)r->seconds;
@@ -35,6 +57,7 @@ PetscErrorCode ReducedView(ReducedRun r, PetscViewer viewer)
     "compliance of %" PetscInt_FMT " pairs\n",
     r->model.m, (double)r->cutoff, r->why, r->model.C ? "damped" : "undamped", r->model.n_pairs));
   PetscCall(ExternalView(r->run.external, viewer));
+  PetscCall(ReducedViewShares(r, viewer));
   PetscCall(ReducedCompareView(r, viewer));
   PetscCall(PetscViewerASCIIPrintf(
     viewer,
