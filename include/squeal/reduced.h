@@ -31,6 +31,8 @@
    At the start nodal velocities and shapes v become Phi'M v; the modes must hold 90 % of v'M v. Impulses have no end of
    frequencies: only the modes receive them.
 
+   Of what DynamicsSolve() writes impulses.csv is left out: transient.csv tells times and numbers of open and sticking pairs.
+
    What is said of a body that turns: a disc in a fixed frame with prescribed sliding is served, one that moves under the
    pad (-contact_kinematics turning) is refused. Pairs stay what they are in the mesh.
 */
@@ -137,7 +139,7 @@ PetscErrorCode ReducedSetRooms(ReducedRun reduced, Dynamics dynamics, Modes mode
 
 /*@
    ReducedIntegrate - reduces the bodies, compares with the mesh where -modes_band says a band, integrates, and writes what
-   DynamicsSolve() writes. Collective.
+   DynamicsSolve() writes but for impulses.csv. Collective.
 
    Errors: PETSC_ERR_USER_INPUT for a cut-off without modes below it, below an unstable mode of the mesh, or with modes
    that hold less than 90 % of the starting velocities or shape; PETSC_ERR_SUP

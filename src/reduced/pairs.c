@@ -8,7 +8,8 @@
 #include "contact/judge.h"
 #include "kernels/friction.h"
 
-#define SLACK 1e-10 /* penetration that is rounding, of the model's size */
+#define SLACK     1e-10 /* penetration that is rounding, of the model's size */
+#define PAIR_HELD 1e-10 /* part of a unit normal that is rounding */
 
 /* The largest coordinate of any node, m */
 static PetscErrorCode ReducedFindSize(ReducedRun r, PetscReal *size)
@@ -23,6 +24,35 @@ static PetscErrorCode ReducedFindSize(ReducedRun r, PetscReal *size)
   PetscFunctionReturn(0);
 }
 
+/* Raises the error for a pair that no force can open: both bodies are held along its normal, and its row of G is zero */
+static PetscErrorCode ReducedCheckHeld(ReducedRun r)
+{
+  PetscInt                row, held = r->model.n_pairs;
+  const ContactPair      *pair;
+  const ContactInterface *c;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetOwnershipRange(r->G, &row, NULL));
+  for (PetscInt i = 0; i < r->n_local; i++) {
+    const PetscScalar *value;
+    PetscInt           n;
+    PetscReal          square = 0;
+
+    PetscCall(MatGetRow(r->G, row + 3 * i, &n, NULL, &value));
+    for (PetscInt k = 0; k < n; k++) square += PetscSqr(value[k]);
+    PetscCall(MatRestoreRow(r->G, row + 3 * i, &n, NULL, &value));
+    if (square < PetscSqr(PAIR_HELD)) held = PetscMin(held, r->begin + i);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &held, 1, MPIU_INT, MPI_MIN, r->comm));
+  if (held == r->model.n_pairs) PetscFunctionReturn(0);
+  pair = &r->pair[held];
+  c    = &r->run.interfaces[pair->interface];
+  SETERRQ(r->comm, PETSC_ERR_USER_INPUT,
+          "contact %s: at %.6g, %.6g, %.6g m both %s and %s are held along the normal, so that no force can keep them "
+          "apart; free one of them, or take it out of the surface",
+          c->name, (double)pair->x[0], (double)pair->x[1], (double)pair->x[2], c->slave, c->master);
+}
+
 PetscErrorCode ReducedSetPairs(ReducedRun r)
 {
   const PetscInt     n = r->model.n_pairs;
@@ -33,6 +63,7 @@ PetscErrorCode ReducedSetPairs(ReducedRun r)
   PetscFunctionBeginUser;
   PetscCall(ContactGetPairs(r->run.contact, &n_local, &n_all, &local));
   PetscCall(GatherRecords(r->comm, n_local, sizeof(*local), local, NULL, &r->pair));
+  PetscCall(ReducedCheckHeld(r));
   PetscCall(PetscCalloc4(n, &r->model.gap, n, &r->model.mu, n, &r->model.slope, n, &r->model.speed));
   PetscCall(PetscCalloc2(n, &r->pairs, r->run.n_interfaces, &r->sums));
   PetscCall(ReducedFindSize(r, &size));

@@ -84,8 +84,8 @@ PetscErrorCode ReducedReduce(ReducedRun r)
   PetscFunctionBeginUser;
   PetscCall(ReducedFindModes(r));
   PetscCall(ReducedSetPorts(r));
-  PetscCall(ReducedSetResidual(r));
   PetscCall(ReducedSetPairs(r));
+  PetscCall(ReducedSetResidual(r));
   PetscCall(ReducedStateCreate(&r->model, &r->state));
   PetscCall(ReducedReportCreate(&r->model, &r->report));
   PetscCall(PetscCalloc3(r->model.m, &r->acceleration, r->model.n_ports, &r->p_rate, r->model.n_ports, &r->shown));
