@@ -31,6 +31,12 @@
    At the start nodal velocities and shapes v become Phi'M v; the modes must hold 90 % of v'M v. Impulses have no end of
    frequencies: only the modes receive them.
 
+   Limit: mean forces on a massless compliance keep what alternates from step to step; only damping of the bodies takes it. On
+   a stiff light body at a low cut-off the force is right in the mean of two steps: a block at rest under 9.81 N has 9.758 and
+   9.862 N in turn (0.5 %), with 6 modes below 1000 Hz.
+
+   Steps are longer than a period of the cut-off in no run: ReducedIntegrate() refuses them, since contact cannot follow.
+
    Of what DynamicsSolve() writes impulses.csv is left out: transient.csv tells times and numbers of open and sticking pairs.
 
    What is said of a body that turns: a disc in a fixed frame with prescribed sliding is served, one that moves under the
@@ -99,7 +105,7 @@ PetscErrorCode ReducedReportDestroy(ReducedReport *report);
 
 /*@ ReducedStepperCreate - the matrices of a step of length dt > 0 (s) and tolerance of the contact laws, relative. The
     model is borrowed until ReducedStepperDestroy(). Not collective. Errors: PETSC_ERR_USER_INPUT for a compliance of the
-    pairs that is not positive definite. @*/
+    pairs that is not positive semidefinite to 1e-10 of its largest diagonal. @*/
 PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, PetscReal rtol, ReducedStepper *stepper);
 PetscErrorCode ReducedStepperDestroy(ReducedStepper *stepper);
 

@@ -105,6 +105,10 @@ static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
   PetscCall(DynamicsGetRun(r->dynamics, results, BY, 1 / (2 * PETSC_PI * r->cutoff), &r->run));
   PetscCall(ReducedRefuse(r));
   r->dt = r->run.dt;
+  PetscCheck(
+    r->dt * r->cutoff <= 1 + 1e-9, r->comm, PETSC_ERR_USER_INPUT,
+    "-ts_dt %.6g is longer than a period of -dynamics_cutoff %.6g Hz: contact cannot follow; take at most %.6g",
+    (double)r->dt, (double)r->cutoff, 1 / (double)r->cutoff);
   PetscCheck(!r->verify || !r->run.restart, r->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_verify compares whole runs: leave it out of -dynamics_restart, or start anew");
   PetscCall(ReducedReduce(r));

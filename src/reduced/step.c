@@ -189,9 +189,10 @@ static PetscErrorCode StepperSolveLaws(ReducedStepper s, ReducedState *state, Re
   PetscCall(ContactComplianceSolve(s->laws, s->free, s->slip0, state->p, NULL, &solved));
   PetscCheck(solved.converged, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED,
              "contact forces do not converge at %.6g s: residual %.2e of pair %" PetscInt_FMT
-             ", must be %.0e; take a smaller "
-             "-ts_dt",
-             (double)(state->time + s->dt), (double)solved.residual, solved.worst + 1, (double)s->rtol);
+             ", must be %.0e; friction of mu %.3g may have no solution on these bodies: take "
+             "-dynamics_model full",
+             (double)(state->time + s->dt), (double)solved.residual, solved.worst + 1, (double)s->rtol,
+             (double)s->model->mu[PetscMax(0, solved.worst)]);
   PetscCall(ContactComplianceGetStatus(s->laws, &status));
   PetscCall(PetscArraycpy(state->status, status, n));
   report->residual = solved.residual;

@@ -5,9 +5,10 @@
 
    so that overdamped and almost rigid modes need no formula of their own. Rates are divided by the highest angular frequency,
    which balances A. Damping takes int rate'C rate dt, with x = (z, g) the form x'Q x (C. F. Van Loan, IEEE Trans. Automat.
-   Contr. 23, 1978):
+   Contr. 23, 1978) in a part h = dt / 2^k that is short, since exp(-h B') grows, and then k times over twice the time:
 
-      exp(dt [-B' S; 0 B]) = [. G; 0 X],   Q = X'G,     B = [A (0 I)'; 0 0],  S = diag(0, C, 0).
+      exp(h [-B' S; 0 B]) = [. G; 0 X],   Q = X'G,     B = [A (0 I)'; 0 0],  S = diag(0, C, 0)
+      Q(2 h) = Q + X'Q X,   X(2 h) = X X.
 */
 #include "reducedimpl.h"
 #include <slepcfn.h>
@@ -72,37 +73,73 @@ static PetscErrorCode StepperSetResponse(ReducedStepper s)
   PetscFunctionReturn(0);
 }
 
-/* Q [3 m][3 m] of the work that damping takes in the step */
-static PetscErrorCode StepperSetDamping(ReducedStepper s)
+/* Halvings k of the step after which no column of dt B [n][n] exceeds 1 */
+static int StepperCountHalvings(PetscInt n, const PetscReal B[])
 {
-  const ReducedModel *model = s->model;
-  const PetscInt      m = model->m, n = 3 * m, N = 2 * n;
-  PetscReal          *X, *B;
+  PetscReal largest = 0;
+  int       k       = 0;
+
+  for (PetscInt j = 0; j < n; j++) {
+    PetscReal sum = 0;
+
+    for (PetscInt i = 0; i < n; i++) sum += PetscAbsReal(B[i + n * j]);
+    largest = PetscMax(largest, sum);
+  }
+  for (; largest > 1; largest /= 2) k++;
+  return k;
+}
+
+/* X [n][n] and Q over h; the generator is h of dt B, S in those units */
+static PetscErrorCode StepperSetShortDamping(ReducedStepper s, PetscReal h, const PetscReal B[], PetscReal X[],
+                                             PetscReal Q[])
+{
+  const PetscInt m = s->model->m, n = 3 * m, N = 2 * n;
+  PetscReal     *Y;
 
   PetscFunctionBeginUser;
-  if (!model->C) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc2(N * N, &X, n * n, &B));
-  PetscCall(PetscCalloc1(n * n, &s->Q));
-  StepperSetGenerator(model, s->dt, s->w, n, B);
+  PetscCall(PetscCalloc1(N * N, &Y));
   for (PetscInt i = 0; i < n; i++) {
     for (PetscInt j = 0; j < n; j++) {
-      X[i + N * j]           = -B[j + n * i];
-      X[n + i + N * (n + j)] = B[i + n * j];
+      Y[i + N * j]           = -h * B[j + n * i];
+      Y[n + i + N * (n + j)] = h * B[i + n * j];
     }
   }
   for (PetscInt i = 0; i < m; i++)
-    for (PetscInt j = 0; j < m; j++) X[m + i + N * (n + m + j)] = s->dt * s->w * s->w * model->C[i + m * j];
-  PetscCall(ExponentialOf(N, X));
-  for (PetscInt i = 0; i < n; i++) {
-    for (PetscInt j = 0; j < n; j++) {
-      const PetscReal unit = 1 / ((i >= m && i < 2 * m ? s->w : 1) * (j >= m && j < 2 * m ? s->w : 1));
-      PetscReal       sum  = 0;
+    for (PetscInt j = 0; j < m; j++) Y[m + i + N * (n + m + j)] = h * s->dt * s->w * s->w * s->model->C[i + m * j];
+  PetscCall(ExponentialOf(N, Y));
+  for (PetscInt j = 0; j < n; j++) PetscCall(PetscArraycpy(&X[n * j], &Y[n + N * (n + j)], n));
+  ReducedTimesTransposed(&(DenseBlock){X, n, n, n}, &(DenseBlock){&Y[N * n], n, n, N}, Q);
+  PetscCall(PetscFree(Y));
+  PetscFunctionReturn(0);
+}
 
-      for (PetscInt k = 0; k < n; k++) sum += X[n + k + N * (n + i)] * X[k + N * (n + j)];
-      s->Q[i + n * j] = unit * sum;
-    }
+/* Q [3 m][3 m] of the work that damping takes in the step */
+static PetscErrorCode StepperSetDamping(ReducedStepper s)
+{
+  const PetscInt m = s->model->m, n = 3 * m;
+  PetscReal     *B, *X, *Y;
+  int            k;
+
+  PetscFunctionBeginUser;
+  if (!s->model->C) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc3(n * n, &B, n * n, &X, n * n, &Y));
+  PetscCall(PetscCalloc1(n * n, &s->Q));
+  StepperSetGenerator(s->model, s->dt, s->w, n, B);
+  k = StepperCountHalvings(n, B);
+  PetscCall(StepperSetShortDamping(s, PetscPowReal(2, -(PetscReal)k), B, X, s->Q));
+  for (; k > 0; k--) {
+    const DenseBlock x = {X, n, n, n};
+
+    ReducedTimes(&(DenseBlock){s->Q, n, n, n}, &x, B);
+    ReducedTimesTransposed(&x, &(DenseBlock){B, n, n, n}, Y);
+    for (PetscInt i = 0; i < n * n; i++) s->Q[i] += Y[i];
+    ReducedTimes(&x, &x, Y);
+    PetscCall(PetscArraycpy(X, Y, n * n));
   }
-  PetscCall(PetscFree2(X, B));
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++)
+      s->Q[i + n * j] /= (i >= m && i < 2 * m ? s->w : 1) * (j >= m && j < 2 * m ? s->w : 1);
+  PetscCall(PetscFree3(B, X, Y));
   PetscFunctionReturn(0);
 }
 
@@ -176,7 +213,7 @@ static PetscErrorCode StepperSetLaws(ReducedStepper s)
   PetscCall(ContactComplianceCheckDefinite(s->laws, &definite));
   PetscCheck(
     definite, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-    "the compliance of the contact pairs is not positive definite: rounding of a -dynamics_cutoff that leaves too "
+    "the compliance of the contact pairs is not positive semidefinite: rounding of a -dynamics_cutoff that leaves too "
     "little above it; take a lower one");
   PetscCall(ContactComplianceSetFriction(s->laws, &(ComplianceFriction){model->mu, model->slope, model->speed, s->dt}));
   PetscCall(ContactComplianceSetTolerance(s->laws, s->rtol));
