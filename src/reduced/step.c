@@ -259,6 +259,17 @@ static PetscReal StepperDamping(ReducedStepper s)
   return work;
 }
 
+/* The forces of the pairs go on as they did, the guess of the laws; those at t_n are kept */
+static void StepperGuess(PetscInt n, PetscInt n_ports, ReducedState *state)
+{
+  for (PetscInt i = 0; i < n_ports; i++) {
+    const PetscReal p = state->p[i];
+
+    if (i < n) state->p[i] = 2 * p - state->last[i];
+    state->last[i] = p;
+  }
+}
+
 PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedState *state, ReducedReport *report)
 {
   const ReducedModel *model = s->model;
@@ -266,7 +277,7 @@ PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedS
 
   PetscFunctionBeginUser;
   report->external = StepperKick(s, drive->kick, state);
-  PetscCall(PetscArraycpy(state->last, state->p, model->n_ports));
+  StepperGuess(n, model->n_ports, state);
   for (PetscInt i = 0; i < model->n_loads; i++) state->p[n + i] = drive->loads[i];
   StepperSetMean(s, state, PETSC_TRUE);
   StepperSolveResidual(s, state);
