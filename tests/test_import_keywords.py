@@ -197,6 +197,21 @@ def others(folder):
         check_refused(folder, ending, cases)
 
 
+def strict(folder):
+    """--strict takes output and analyses for what they are, and refuses the rest."""
+    plain = "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n*ELEMENT,TYPE=C3D4,ELSET=E\n1,1,2,3,4\n"
+    plain += "*MATERIAL,NAME=M\n*ELASTIC\n2e11,0.3\n*DENSITY\n7800\n*SOLID SECTION,ELSET=E,MATERIAL=M\n"
+    plain += "*STEP\n*STATIC\n*OUTPUT, FIELD\n*END STEP\n"
+    for more, expected in (("", None), ("*EXPANSION\n1e-5\n", "strict.inp:18: *EXPANSION: not understood (1 such lines; --strict)")):
+        (folder / "strict.inp").write_text(plain + more)
+        try:
+            convert(folder / "strict.inp", "m-kg-s", folder / "strict", strict=True)
+            said = None
+        except BadInput as error:
+            said = str(error).removeprefix(f"{folder}/")
+        check(f"strict: {expected}", said == expected, said)
+
+
 def page():
     """Every keyword that is read stands in the table of scripts/README.md."""
     text = (Path(__file__).resolve().parents[1] / "scripts/README.md").read_text().partition("## A brake from Abaqus")[2]
@@ -214,6 +229,7 @@ def main():
         steps(Path(name))
         not_taken(Path(name))
         closed_pipe(Path(name))
+        strict(Path(name))
     page()
     return 1 if FAILED else 0
 

@@ -5,7 +5,7 @@
      cc onset.c $(pkg-config --cflags --libs squeal) -o onset
      ./onset -options_file scene.yaml -modes_band 1000,5000 -mu_values 0,0.3,0.6
 
-   Prints lines "mu, frequency (Hz), growth (rad/s), label".
+   The contact of the scene is named `contact`. Prints lines "mu, frequency (Hz), growth (rad/s), label".
 */
 #include <squeal/squeal.h>
 #include <string.h>

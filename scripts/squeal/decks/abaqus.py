@@ -7,7 +7,7 @@ import numpy
 
 from ..tables import BadInput
 from . import abaqus_material, abaqus_mesh, abaqus_model
-from .deck import Deck, Index, Place
+from .deck import NOT_NEEDED, Deck, Index, Place
 from .text import read_bytes, real
 
 DEEPEST = 10  # files that include each other
@@ -15,6 +15,7 @@ PHASES = {"NODE": 0, "ELEMENT": 1, "NSET": 2, "ELSET": 2, "SURFACE": 3, "ORIENTA
 OUTPUT = {"NODE PRINT", "EL PRINT", "NODE FILE", "EL FILE", "NODE OUTPUT", "ELEMENT OUTPUT", "OUTPUT", "RESTART", "PREPRINT",
           "CONTACT FILE", "CONTACT PRINT", "CONTACT OUTPUT", "ENERGY OUTPUT", "ENERGY PRINT", "FILE FORMAT", "MONITOR",
           "SECTION PRINT", "PRINT", "MODAL FILE"}
+ANALYSES = {"STATIC", "DYNAMIC", "COMPLEX FREQUENCY", "BUCKLE", "MODAL DYNAMIC", "STEADY STATE DYNAMICS", "CONTROLS", "SOLVER CONTROLS"}
 GEOMETRY = {"SYSTEM", "NMAP", "NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY"}  # without them the mesh is another
 PLAIN = {"HEADING", "END STEP", "ASSEMBLY", "END ASSEMBLY"}  # say nothing of the model
 
@@ -214,7 +215,9 @@ class Reader:
             elif card.keyword in GEOMETRY:
                 raise card.place.wrong(f"*{card.keyword} is not read, and without it the mesh is another: write out all nodes and elements")
             elif card.keyword in OUTPUT:
-                self.deck.note(card.place, f"*{card.keyword}: output, not needed here")
+                self.deck.note(card.place, f"*{card.keyword}: output, {NOT_NEEDED}")
+            elif card.keyword in ANALYSES:
+                self.deck.note(card.place, f"*{card.keyword}: an analysis, {NOT_NEEDED}")
             elif card.keyword not in PLAIN:
                 self.deck.note(card.place, f"*{card.keyword}: not understood")
             if card.keyword not in abaqus_material.KEEP_MATERIAL:

@@ -53,8 +53,9 @@ def convert(path, units=None, output=None, strict=False):
         raise BadInput(f"{path}:1: places are not finite")
     mesh, scene = (output.with_name(output.name + ending) for ending in (".msh", ".yaml"))
     lines, notes = scene_lines(deck, result, chosen, why, mesh), [clean(note) for note in remarks(deck)]
-    if strict and deck.notes:
-        raise BadInput(f"{clean(str(deck.notes[0][0]))}: {clean(deck.notes[0][1])} ({len(deck.notes)} such lines; --strict)")
+    missing = deck.missing()
+    if strict and missing:
+        raise BadInput(f"{clean(str(missing[0][0]))}: {clean(missing[0][1])} ({len(missing)} such lines; --strict)")
     try:
         write_mesh(mesh, result)
         write_scene(scene, [clean(line) for line in lines], notes)

@@ -8,6 +8,8 @@ import numpy
 from ..tables import BadInput
 from .elements import SHAPES
 
+NOT_NEEDED = "not needed here"  # how notes of what is no part of a scene end
+
 
 @dataclass(frozen=True)
 class Place:
@@ -191,6 +193,10 @@ class Deck:
         self.gravity = None  # (vector, Place)
         self.modes = None  # (count, lowest, highest, Place)
         self.notes, self.differs = [], {}
+
+    def missing(self):
+        """Notes of what the scene may need: those but output and analyses."""
+        return [note for note in self.notes if not note[1].endswith(NOT_NEEDED)]
 
     def note(self, place, text):
         """Something that is not in the scene."""
