@@ -24,6 +24,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+from small_brake import SCENE
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOHDF import vtkHDFReader
 from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader
@@ -32,21 +33,6 @@ SOURCE = Path(__file__).resolve().parents[1]
 EXPORT = SOURCE / "scripts/export"
 SOLIDS = ["tet4", "tet10", "wedge6", "wedge15", "hex8", "hex20", "hex27", "hex+wedge2", "wedge+tet1"]
 BAR = "-parts bar -bar_young 210e9 -bar_density 7800 -bar_poisson 0.3 -modes_band 0,60000".split()
-SCENE = """model: {source: rig}
-parts: disc,pad,beam
-rig: {disc_elements: "6,24,1", pad_elements: "2,2,2", beam_elements: 3}
-beam: {young: 2.1e11, poisson: 0.3, density: 7800}
-disc: {young: 2.1e11, poisson: 0.3, density: 7800}
-pad: {young: 8e9, poisson: 0.3, density: 2500}
-supports: hub
-hub: {set: disc_inner, fix: xyz}
-springs: rows
-rows: {set: beam_rows, stiffness: "0,8e6,0"}
-loads: press
-press: {set: beam_top, force: "0,0,-100"}
-contacts: contact
-contact: {surfaces: "pad_face,disc_face", kn: 1e8, mu: 0.9, slip: "0,1,0", speed: 1}
-"""
 FAULTS = []
 
 

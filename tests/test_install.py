@@ -24,20 +24,11 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "scripts"))
+from small_brake import SCENE as BRAKE
 from squeal.help_text import ask, options_of
 
 FOR_SOURCES = {"run", "test", "setup.sh", "paper", "test_debian", "manual", "packages.txt", "completion.bash", "README.md"}
-SCENE = """model: {source: rig}
-parts: disc,pad,beam
-rig: {disc_elements: "6,24,1", pad_elements: "2,2,2", beam_elements: 3}
-beam: {young: 2.1e11, poisson: 0.3, density: 7800}
-disc: {young: 2.1e11, poisson: 0.3, density: 7800}
-pad: {young: 8e9, poisson: 0.3, density: 2500}
-supports: hub
-hub: {set: disc_inner, fix: xyz}
-contacts: contact
-contact: {surfaces: "pad_face,disc_face", kn: 1e8, mu: 0.9, slip: "0,1,0"}
-modes: {band: "500,9000"}
+SCENE = BRAKE + """modes: {band: "500,9000"}
 """
 
 

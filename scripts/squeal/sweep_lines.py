@@ -228,8 +228,9 @@ def legend(axes, study, branches, loud, bars):
         handles.append(Line2D([], [], ls="", marker="|", ms=10, color=INK, label="estimated error"))
     if jump_places(study):
         handles.append(Line2D([], [], color=LEADER, lw=0.7, label="contact status changes"))
-    if len(branches) > len(loud):
-        handles.append(Line2D([], [], color=QUIET, lw=1.2, label=f"{len(branches) - len(loud)} other modes"))
+    others = len(branches) - len(loud)
+    if others:
+        handles.append(Line2D([], [], color=QUIET, lw=1.2, label=f"{others} other mode{'s' if others > 1 else ''}"))
     axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.62 / axes.get_position().height /
                 axes.figure.get_figheight()), ncol=len(handles), frameon=False, borderaxespad=0, columnspacing=1.6)
 
@@ -265,7 +266,7 @@ def draw_panel(axes, study, branches, loud, quantity, scale):
 
 def make_panels(panels, longest):
     """Figure and axes of fixed margins, in inches; the right one is for labels of up to `longest` letters."""
-    left, right, top, bottom, between = 0.85, max(1.05, 0.4 + 0.1 * longest), 0.75, 1.05, 0.2
+    left, right, top, bottom, between = 1.05, max(1.05, 0.4 + 0.1 * longest), 0.75, 1.05, 0.2
     height = sum(HEIGHTS[name] for name in panels) + top + bottom + between * (len(panels) - 1)
     figure = plt.figure(figsize=(WIDTH, height))
     axes, above = {}, height - top
