@@ -65,9 +65,11 @@ typedef struct {
    a cell are near each other in the list. On several ranks these are the local cells. */
 typedef struct {
   PetscBool turned;           /* swept about the axis, else along it */
-  PetscInt  axis;             /* 0, 1, 2 for x, y, z */
+  PetscBool oblique;          /* the axis is none of x, y, z */
+  PetscInt  axis;             /* 0, 1, 2 for the rows of `frame` */
+  PetscReal frame[9];         /* orthonormal, right-handed rows: x, y, z where it is not oblique */
   PetscReal centre[3];        /* a point of the axis, m */
-  PetscReal begin, step;      /* angle (rad, from the axis + 1 towards axis + 2) or place (m) of node 0, and the step */
+  PetscReal begin, step;      /* angle (rad, from row axis + 1 towards axis + 2) or place (m) of node 0, and the step */
   PetscInt  n_lines, n_nodes; /* lines, nodes of each */
   PetscBool closed;           /* all around: node n_nodes is node 0 again */
   PetscInt *vertex;           /* [n_lines][n_nodes] local nodes from 0 */

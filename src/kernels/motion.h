@@ -1,16 +1,21 @@
 /*
    Motion - the rigid motion that takes one face of a hexahedron to the opposite one: a shift along a coordinate axis,
-   or a turn about a line parallel to one.
+   or a turn about a line parallel to one; MotionDirection() finds the axis of any other.
 
    With p_i -> q_i, i = 0..3, along the edges between the two faces, in the plane across the axis e: the angle phi of
    the turn is that from p_j - p_0 to q_j - q_0, j the farthest from 0, and its centre
       c = (p_0 + q_0)/2 + e x (q_0 - p_0) / (2 tan(phi/2)),
    rounded to ten decimals of the size of the body, so that a centre at the origin is exactly there, and the cells of an
    arc have the same centre whichever of them is asked. Lengths in m, angles in rad.
+
+   An axis of any direction is that of the turn R with R (p_j - p_0) = q_j - q_0: with a = p_1 - p_0, b = p_2 - p_0,
+   n = a x b, their images a', b', n', and the dual vectors A = b x n / n.n, B = n x a / n.n, N = n / n.n
+      R = a' A' + b' B' + n' N',   A x a' + B x b' + N x n' = 2 sin(phi) e;
+   without a turn it is that of q_0 - p_0. In coordinates with e among them Motion then is as above.
 */
 #pragma once
 
-#include <math.h>
+#include "base/vec3.h"
 
 #define MOTION_PAIRS       3    /* pairs of opposite faces */
 #define MOTION_LEAST_ANGLE 1e-6 /* a smaller turn is taken for a shift */
@@ -49,12 +54,41 @@ static inline int MotionIsShift(const double x[8][3], int pair, int axis, double
   return holds;
 }
 
-/* Rounds to MOTION_DECIMALS decimals of the power of ten next above the size */
+/* Rounds to MOTION_DECIMALS decimals of the power of ten next above the size; not at all for 0 */
 static inline double MotionRound(double x, double size)
 {
-  const double decimals = pow(10, MOTION_DECIMALS - ceil(log10(size)));
+  const double decimals = size > 0 ? pow(10, MOTION_DECIMALS - ceil(log10(size))) : 0;
 
-  return round(x * decimals) / decimals;
+  return size > 0 ? round(x * decimals) / decimals : x;
+}
+
+/* Unit vector along the axis of the motion between the two faces of a pair; 0 where the faces have no area */
+static inline int MotionDirection(const double x[8][3], int pair, double direction[3])
+{
+  double side[2][3][3], dual[3][3], twice[3] = {0, 0, 0}, area;
+
+  for (int end = 0; end < 2; end++) {
+    for (int i = 0; i < 2; i++)
+      for (int d = 0; d < 3; d++)
+        side[end][i][d] = MotionPoint(x, pair, i + 1, end)[d] - MotionPoint(x, pair, 0, end)[d];
+    Vec3Cross(side[end][0], side[end][1], side[end][2]);
+  }
+  area = Vec3Dot(side[0][2], side[0][2]);
+  if (!(area > 0)) return 0;
+  Vec3Cross(side[0][1], side[0][2], dual[0]);
+  Vec3Cross(side[0][2], side[0][0], dual[1]);
+  for (int d = 0; d < 3; d++) dual[2][d] = side[0][2][d];
+  for (int i = 0; i < 3; i++) {
+    double part[3];
+
+    Vec3Cross(dual[i], side[1][i], part);
+    for (int d = 0; d < 3; d++) twice[d] += part[d] / area;
+  }
+  for (int d = 0; d < 3; d++)
+    direction[d] = Vec3Length(twice) > 2 * MOTION_LEAST_ANGLE
+                     ? twice[d]
+                     : MotionPoint(x, pair, 0, 1)[d] - MotionPoint(x, pair, 0, 0)[d];
+  return Vec3Normalise(direction) > 0;
 }
 
 /* Point of the edge, of the four, whose begin is farthest from that of edge 0 across the axis */
@@ -75,7 +109,7 @@ static inline int MotionFarthest(const double x[8][3], int pair, int a, int b)
   return j;
 }
 
-/* Centre of the turn about the axis; whether it takes all four points to their partners' distance and height */
+/* Centre of the turn about the axis, rounded for a size that is not 0; whether it takes all four points to their partners' distance and height */
 static inline int MotionIsTurn(const double x[8][3], int pair, int axis, double size, double tolerance,
                                double centre[3])
 {
@@ -104,15 +138,21 @@ static inline int MotionIsTurn(const double x[8][3], int pair, int axis, double 
 /*
    MotionFind - the motion between the two faces of one pair of a hexahedron with corners x (m); 0 where there is none.
 
-   size is that of the body, tolerance the largest error of a place, m.
+   size is that of the body, tolerance the largest error of a place, m. MotionFindAlong() asks one axis alone, and does
+   not round the centre where size is 0.
 */
+static inline int MotionFindAlong(const double x[8][3], int pair, int axis, double size, double tolerance,
+                                  Motion *motion)
+{
+  *motion = (Motion){.turned = 0, .axis = axis};
+  if (MotionIsShift(x, pair, axis, tolerance)) return 1;
+  motion->turned = 1;
+  return MotionIsTurn(x, pair, axis, size, tolerance, motion->centre);
+}
+
 static inline int MotionFind(const double x[8][3], int pair, double size, double tolerance, Motion *motion)
 {
-  for (int axis = 0; axis < 3; axis++) {
-    *motion = (Motion){.turned = 0, .axis = axis};
-    if (MotionIsShift(x, pair, axis, tolerance)) return 1;
-    motion->turned = 1;
-    if (MotionIsTurn(x, pair, axis, size, tolerance, motion->centre)) return 1;
-  }
+  for (int axis = 0; axis < 3; axis++)
+    if (MotionFindAlong(x, pair, axis, size, tolerance, motion)) return 1;
   return 0;
 }

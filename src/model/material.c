@@ -87,17 +87,18 @@ PetscErrorCode ModelCheckAxes(Model model)
 PetscBool ModelMaterialIsSwept(Model model, PetscInt part, const ModelLines *lines)
 {
   const Anisotropy *a     = &model->scene.parts[part].anisotropy;
-  PetscReal         scale = 0;
+  PetscReal         scale = 0, off[3];
 
   if (!a->n) return PETSC_TRUE;
   if (!a->cylinder && (!lines->turned || a->n != 2)) return lines->turned ? PETSC_FALSE : PETSC_TRUE;
   for (PetscInt i = 0; i < lines->n_lines * lines->n_nodes; i++)
     for (int d = 0; d < 3; d++) scale = PetscMax(scale, PetscAbsReal(model->mesh.x[3 * lines->vertex[i] + d]));
-  for (int d = 0; d < 3; d++) {
-    if (d == lines->axis) continue;
-    if (PetscAbsReal(a->axis[2][d]) > CARRIED) return PETSC_FALSE;
-    if (a->cylinder && lines->turned && PetscAbsReal(a->centre[d] - lines->centre[d]) > CARRIED * scale)
-      return PETSC_FALSE;
+  for (int d = 0; d < 3; d++) off[d] = a->centre[d] - lines->centre[d];
+  for (int i = 1; i < 3; i++) {
+    const PetscReal *across = &lines->frame[3 * ((lines->axis + i) % 3)];
+
+    if (PetscAbsReal(Vec3Dot(a->axis[2], across)) > CARRIED) return PETSC_FALSE;
+    if (a->cylinder && lines->turned && PetscAbsReal(Vec3Dot(off, across)) > CARRIED * scale) return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }

@@ -4,10 +4,12 @@
 #include "bodies.h"
 #include "kernels/stencil.h"
 
-/* Axis about which a body is swept, at least on some rank; the same on all ranks */
+/* Axis about which a body is swept, or an oblique one along which it is, at least on some rank; the same on all ranks.
+   Without either its components are x, y, z */
 typedef struct {
-  PetscBool turned;
-  PetscInt  axis;
+  PetscBool turned, oblique;
+  PetscInt  axis;   /* row of `row` */
+  PetscReal row[9]; /* orthonormal, x, y, z where it is not oblique */
   PetscReal centre[3];
 } BodiesFrame;
 

@@ -36,6 +36,22 @@ static PetscErrorCode BodiesViewBlocks(Bodies b, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
+/* How a body is swept */
+static PetscErrorCode BodiesViewAxis(const BodiesFrame *frame, PetscViewer viewer)
+{
+  const PetscReal *along = &frame->row[3 * frame->axis];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(viewer, ", swept %s ", frame->turned ? "about" : "along"));
+  if (frame->oblique)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%.6g,%.6g,%.6g", (double)along[0], (double)along[1], (double)along[2]));
+  else if (frame->turned)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%c", "xyz"[frame->axis]));
+  else
+    PetscCall(PetscViewerASCIIPrintf(viewer, "an axis"));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BodiesView(Bodies b, PetscViewer viewer)
 {
   PetscInt *n_swept, *n_all;
@@ -47,10 +63,7 @@ PetscErrorCode BodiesView(Bodies b, PetscViewer viewer)
     const PetscInt n_rows = n_all[i] - n_swept[i];
 
     PetscCall(PetscViewerASCIIPrintf(viewer, "  body %" PetscInt_FMT ": %" PetscInt_FMT " elements", i + 1, n_all[i]));
-    if (b->frame[i].turned)
-      PetscCall(PetscViewerASCIIPrintf(viewer, ", swept about %c", "xyz"[b->frame[i].axis]));
-    else if (n_swept[i])
-      PetscCall(PetscViewerASCIIPrintf(viewer, ", swept along an axis"));
+    if (n_swept[i] || b->frame[i].turned) PetscCall(BodiesViewAxis(&b->frame[i], viewer));
     if (n_swept[i])
       PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " by a stencil along lines", n_swept[i]));
     if (n_rows) PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " by rows of 3 x 3 blocks", n_rows));

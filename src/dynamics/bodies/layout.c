@@ -1,11 +1,13 @@
 /*
    Layout of the state vectors. A body has cylindrical components, on all ranks, where some rank finds its cells swept
    about an axis, no other one about another, and its supports can be said in them: along the axis, and in the plane
-   either both directions or none. On each rank a body whose cells are swept there stands line after line, padded so
+   either both directions or none. About or along an axis that is none of x, y, z the components are along it, too, where
+   supports and motions hold all directions of a node or none. On each rank a body whose cells are swept there stands line after line, padded so
    that blocks of nodes can be loaded with their neighbours; all other nodes follow node after node, those that ranks
    share first.
 */
 #include "bodiesimpl.h"
+#include "base/vec3.h"
 
 #define SAME_AXIS  1e-8 /* of centres that ranks find, relative to the mesh */
 #define NODES_LEAF 256  /* nodes, with their sums about 15 kB */
@@ -26,28 +28,81 @@ static PetscErrorCode BodiesFlagLocal(Bodies b, PetscBool local[])
   PetscFunctionReturn(0);
 }
 
-/* Whether the directions held at the nodes of a body, and their places, allow components about an axis */
-static PetscErrorCode BodiesFrameSuits(Bodies b, PetscInt body, const BodiesFrame *frame, PetscBool *suits)
+/* Whether a node of the body has some directions prescribed and others free */
+static PetscErrorCode BodiesMotionSplits(Bodies b, PetscInt body, PetscBool *splits)
 {
-  const PetscInt j = (frame->axis + 1) % 3, k = (frame->axis + 2) % 3;
-  const Mesh    *mesh = b->mesh;
+  const ModelScene *scene;
 
   PetscFunctionBeginUser;
-  *suits = PETSC_TRUE;
-  for (PetscInt v = 0; v < b->layout.n_vertices; v++) {
-    if (b->body[v] != body) continue;
-    if ((mesh->unknown[3 * v + j] < 0) != (mesh->unknown[3 * v + k] < 0)) *suits = PETSC_FALSE;
-    if (mesh->x[3 * v + j] == frame->centre[j] && mesh->x[3 * v + k] == frame->centre[k]) *suits = PETSC_FALSE;
+  *splits = PETSC_FALSE;
+  PetscCall(ModelGetScene(b->model, &scene));
+  for (PetscInt i = 0; i < scene->n_motions; i++) {
+    const PetscBool *along = scene->motions[i].direction;
+    const PetscInt  *vertices;
+    PetscInt         n;
+    IS               is;
+
+    if (along[0] == along[1] && along[1] == along[2]) continue;
+    PetscCall(ModelGetSetNodes(b->model, scene->motions[i].set, &is));
+    PetscCall(ISGetLocalSize(is, &n));
+    PetscCall(ISGetIndices(is, &vertices));
+    for (PetscInt k = 0; k < n; k++)
+      if (b->body[vertices[k]] == body) *splits = PETSC_TRUE;
+    PetscCall(ISRestoreIndices(is, &vertices));
+    PetscCall(ISDestroy(&is));
   }
   PetscFunctionReturn(0);
 }
 
-/* Whether two centres are the same but for rounding; scale (m) */
+/* From the axis to a place, along the two rows across it, m */
+static void FrameAcross(const BodiesFrame *frame, const PetscReal x[3], PetscReal across[2])
+{
+  const PetscReal off[3] = {x[0] - frame->centre[0], x[1] - frame->centre[1], x[2] - frame->centre[2]};
+
+  for (int i = 0; i < 2; i++) across[i] = Vec3Dot(off, &frame->row[3 * ((frame->axis + 1 + i) % 3)]);
+}
+
+/* Whether the directions held at the nodes of a body, and their places, allow components of the frame */
+static PetscErrorCode BodiesFrameSuits(Bodies b, PetscInt body, const BodiesFrame *frame, PetscBool *suits)
+{
+  const PetscInt j = (frame->axis + 1) % 3, k = (frame->axis + 2) % 3;
+  const Mesh    *mesh   = b->mesh;
+  PetscBool      splits = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (frame->oblique) PetscCall(BodiesMotionSplits(b, body, &splits));
+  *suits = splits ? PETSC_FALSE : PETSC_TRUE;
+  for (PetscInt v = 0; v < b->layout.n_vertices; v++) {
+    const PetscInt *unknown = &mesh->unknown[3 * v];
+    PetscReal       across[2];
+
+    if (b->body[v] != body) continue;
+    if ((unknown[j] < 0) != (unknown[k] < 0)) *suits = PETSC_FALSE;
+    if (frame->oblique && (unknown[frame->axis] < 0) != (unknown[k] < 0)) *suits = PETSC_FALSE;
+    FrameAcross(frame, &mesh->x[3 * v], across);
+    if (frame->turned && across[0] == 0 && across[1] == 0) *suits = PETSC_FALSE;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Whether lines ask for components of their own */
+static PetscBool LinesNeedFrame(const ModelLines *lines)
+{
+  return lines && (lines->turned || lines->oblique) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Whether two frames are the same but for rounding; scale (m) */
 static PetscBool BodiesFrameAgrees(const BodiesFrame *a, const ModelLines *lines, PetscReal scale)
 {
-  if (a->axis != lines->axis) return PETSC_FALSE;
-  for (int d = 0; d < 3; d++)
-    if (d != a->axis && PetscAbsReal(a->centre[d] - lines->centre[d]) > SAME_AXIS * scale) return PETSC_FALSE;
+  const PetscReal *along = &lines->frame[3 * lines->axis];
+  PetscReal        across[2];
+
+  if (a->turned != lines->turned || a->oblique != lines->oblique) return PETSC_FALSE;
+  FrameAcross(a, lines->centre, across);
+  for (int i = 0; i < 2; i++) {
+    if (PetscAbsReal(Vec3Dot(along, &a->row[3 * ((a->axis + 1 + i) % 3)])) > SAME_AXIS) return PETSC_FALSE;
+    if (a->turned && PetscAbsReal(across[i]) > SAME_AXIS * scale) return PETSC_FALSE;
+  }
   return PETSC_TRUE;
 }
 
@@ -61,8 +116,8 @@ static PetscErrorCode BodiesFindScale(Bodies b, PetscReal *scale)
   PetscFunctionReturn(0);
 }
 
-/* Axis + 1, 0 for none, and centre [n_bodies][4] that the lowest rank with turned lines of each body finds */
-static PetscErrorCode BodiesProposeFrames(Bodies b, ModelLines *const lines[], PetscReal axes[])
+/* Frames that the lowest rank with lines that need one finds for each body */
+static PetscErrorCode BodiesProposeFrames(Bodies b, ModelLines *const lines[])
 {
   PetscMPIInt rank, size, *first;
 
@@ -70,15 +125,19 @@ static PetscErrorCode BodiesProposeFrames(Bodies b, ModelLines *const lines[], P
   PetscCallMPI(MPI_Comm_rank(b->comm, &rank));
   PetscCallMPI(MPI_Comm_size(b->comm, &size));
   PetscCall(PetscMalloc1(b->n_bodies, &first));
-  for (PetscInt i = 0; i < b->n_bodies; i++) first[i] = lines[i] && lines[i]->turned ? rank : size;
+  for (PetscInt i = 0; i < b->n_bodies; i++) first[i] = LinesNeedFrame(lines[i]) ? rank : size;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, first, (PetscMPIInt)b->n_bodies, MPI_INT, MPI_MIN, b->comm));
-  PetscCall(PetscArrayzero(axes, 4 * b->n_bodies));
   for (PetscInt i = 0; i < b->n_bodies; i++) {
-    if (first[i] != rank) continue;
-    axes[4 * i] = lines[i]->axis + 1;
-    for (int d = 0; d < 3; d++) axes[4 * i + 1 + d] = lines[i]->centre[d];
+    BodiesFrame *frame = &b->frame[i];
+
+    if (first[i] == size) continue;
+    if (first[i] == rank) {
+      *frame = (BodiesFrame){.turned = lines[i]->turned, .oblique = lines[i]->oblique, .axis = lines[i]->axis};
+      PetscCall(PetscArraycpy(frame->row, lines[i]->frame, 9));
+      PetscCall(PetscArraycpy(frame->centre, lines[i]->centre, 3));
+    }
+    PetscCallMPI(MPI_Bcast(frame, sizeof(*frame), MPI_BYTE, first[i], b->comm));
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, axes, (PetscMPIInt)(4 * b->n_bodies), MPIU_REAL, MPI_SUM, b->comm));
   PetscCall(PetscFree(first));
   PetscFunctionReturn(0);
 }
@@ -86,55 +145,59 @@ static PetscErrorCode BodiesProposeFrames(Bodies b, ModelLines *const lines[], P
 /* Frames of all bodies, the same on every rank */
 static PetscErrorCode BodiesFindFrames(Bodies b, ModelLines *const lines[])
 {
-  PetscReal *axes, scale;
-  PetscBool *turned;
+  PetscReal  scale;
+  PetscBool *agreed;
 
   PetscFunctionBeginUser;
   PetscCall(BodiesFindScale(b, &scale));
-  PetscCall(PetscMalloc2(4 * b->n_bodies, &axes, b->n_bodies, &turned));
-  PetscCall(BodiesProposeFrames(b, lines, axes));
+  PetscCall(PetscMalloc1(b->n_bodies, &agreed));
+  PetscCall(BodiesProposeFrames(b, lines));
   for (PetscInt i = 0; i < b->n_bodies; i++) {
-    BodiesFrame *frame = &b->frame[i];
+    const BodiesFrame *frame = &b->frame[i];
 
-    turned[i] = axes[4 * i] > 0 ? PETSC_TRUE : PETSC_FALSE;
-    if (!turned[i]) continue;
-    frame->axis = (PetscInt)axes[4 * i] - 1;
-    for (int d = 0; d < 3; d++) frame->centre[d] = axes[4 * i + 1 + d];
-    PetscCall(BodiesFrameSuits(b, i, frame, &turned[i]));
-    if (lines[i] && lines[i]->turned && !BodiesFrameAgrees(frame, lines[i], scale)) turned[i] = PETSC_FALSE;
+    agreed[i] = frame->turned || frame->oblique ? PETSC_TRUE : PETSC_FALSE;
+    if (!agreed[i]) continue;
+    PetscCall(BodiesFrameSuits(b, i, frame, &agreed[i]));
+    if (LinesNeedFrame(lines[i]) && !BodiesFrameAgrees(frame, lines[i], scale)) agreed[i] = PETSC_FALSE;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, turned, (PetscMPIInt)b->n_bodies, MPIU_BOOL, MPI_LAND, b->comm));
-  for (PetscInt i = 0; i < b->n_bodies; i++) b->frame[i].turned = turned[i];
-  PetscCall(PetscFree2(axes, turned));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, agreed, (PetscMPIInt)b->n_bodies, MPIU_BOOL, MPI_LAND, b->comm));
+  for (PetscInt i = 0; i < b->n_bodies; i++)
+    if (!agreed[i]) b->frame[i].turned = b->frame[i].oblique = PETSC_FALSE;
+  PetscCall(PetscFree(agreed));
   PetscFunctionReturn(0);
 }
 
-/* Bases of the nodes: along the axis, radial, tangential; or x, y, z */
+/* Rows along the axis, radial, tangential at a place */
+static void FrameTurnedBasis(const BodiesFrame *frame, const PetscReal x[3], PetscReal q[9])
+{
+  const PetscReal *along = &frame->row[3 * frame->axis];
+  const PetscReal *j = &frame->row[3 * ((frame->axis + 1) % 3)], *k = &frame->row[3 * ((frame->axis + 2) % 3)];
+  PetscReal        r[2], length;
+
+  FrameAcross(frame, x, r);
+  length = PetscSqrtReal(r[0] * r[0] + r[1] * r[1]);
+  for (int d = 0; d < 3; d++) {
+    q[d]     = along[d];
+    q[3 + d] = r[0] / length * j[d] + r[1] / length * k[d];
+    q[6 + d] = -r[1] / length * j[d] + r[0] / length * k[d];
+  }
+}
+
+/* Bases of the nodes: along the axis, radial, tangential; the rows of an oblique frame; or x, y, z */
 static PetscErrorCode LayoutFindBases(Bodies b)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(9 * b->layout.n_vertices, &b->layout.basis));
   for (PetscInt v = 0; v < b->layout.n_vertices; v++) {
-    const PetscReal   *x = &b->mesh->x[3 * v];
-    PetscReal         *q = &b->layout.basis[9 * v], r[2], length;
-    const BodiesFrame *frame;
-    PetscInt           i, j, k;
+    PetscReal         *q     = &b->layout.basis[9 * v];
+    const BodiesFrame *frame = b->body[v] < 0 ? NULL : &b->frame[b->body[v]];
 
     q[0] = q[4] = q[8] = 1;
-    if (b->body[v] < 0 || !b->frame[b->body[v]].turned) continue;
-    frame = &b->frame[b->body[v]];
-    i     = frame->axis;
-    j     = (i + 1) % 3;
-    k     = (i + 2) % 3;
-    PetscCall(PetscArrayzero(q, 9));
-    r[0]     = x[j] - frame->centre[j];
-    r[1]     = x[k] - frame->centre[k];
-    length   = PetscSqrtReal(r[0] * r[0] + r[1] * r[1]);
-    q[i]     = 1;
-    q[3 + j] = r[0] / length;
-    q[3 + k] = r[1] / length;
-    q[6 + j] = -r[1] / length;
-    q[6 + k] = r[0] / length;
+    if (!frame) continue;
+    if (frame->turned)
+      FrameTurnedBasis(frame, &b->mesh->x[3 * v], q);
+    else if (frame->oblique)
+      PetscCall(PetscArraycpy(q, frame->row, 9));
   }
   PetscFunctionReturn(0);
 }
@@ -147,7 +210,7 @@ static PetscErrorCode BodiesKeepSwept(Bodies b, PetscInt body, ModelLines **line
 
   PetscFunctionBeginUser;
   if (!*lines) PetscFunctionReturn(0);
-  if ((*lines)->turned == b->frame[body].turned) {
+  if ((*lines)->turned == b->frame[body].turned && (*lines)->oblique == b->frame[body].oblique) {
     *swept        = (SweptBody){.body = body, .lines = *lines, .along = (*lines)->turned ? 2 : (*lines)->axis};
     *lines        = NULL;
     swept->stride = LayoutRoundUp(swept->lines->n_nodes + 2);

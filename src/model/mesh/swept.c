@@ -278,7 +278,6 @@ static PetscErrorCode SweptFillLines(const Piece *piece, const SweptColumn *swep
                          .n_lines = piece->n_nodes / n,
                          .n_nodes = n,
                          .closed  = swept->closed};
-  PetscCall(PetscArraycpy((*lines)->centre, swept->motion.centre, 3));
   PetscCall(PetscMalloc1(piece->n_nodes, &(*lines)->vertex));
   for (PetscInt i = 0; i < piece->n_nodes; i++) {
     const PetscInt place = (swept->start + i % n) % n;

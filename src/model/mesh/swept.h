@@ -17,5 +17,6 @@ typedef struct {
   PetscReal  size;    /* diagonal of the bounding box, m */
 } Piece;
 
-/* swept.c - the lines of a body that the motion sweeps, NULL where it does not. Not collective. */
+/* swept.c - the lines of a body that the motion sweeps, in the coordinates of both, hence without a frame and centre; NULL
+   where it does not. Not collective. */
 PETSC_INTERN PetscErrorCode SweptCreateLines(const Piece *piece, const Motion *motion, ModelLines **lines);

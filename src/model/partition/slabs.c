@@ -13,6 +13,7 @@
 */
 #include "model/modelimpl.h"
 #include "partition.h"
+#include "base/vec3.h"
 
 /* Cost of a cell relative to half of one turned about an axis, whose kernel takes about 13 ns: lines along an axis are
    shorter, hence vectorise less well, and blocks of a sparse matrix take 50 to 60 ns (bound by memory) */
@@ -197,10 +198,12 @@ static PetscInt OthersFind(const Slabs *slabs, const Clusters *clusters, PetscIn
 static PetscInt ChainBegin(const SlabChain *chain, PetscReal share, const PetscReal x[3])
 {
   const ModelLines *lines = chain->lines;
-  const PetscInt    a = (lines->axis + 1) % 3, b = (lines->axis + 2) % 3, n = chain->n_slabs;
-  const PetscReal   angle = atan2(x[b] - lines->centre[b], x[a] - lines->centre[a]);
-  const PetscReal   half  = PetscMin(share / (PetscReal)chain->cost, (PetscReal)n) / 2;
-  const PetscInt    k     = (PetscInt)PetscFloorReal((angle - lines->begin) / lines->step - half + 0.5 + 1e-6);
+  const PetscReal  *a = &lines->frame[3 * ((lines->axis + 1) % 3)], *b = &lines->frame[3 * ((lines->axis + 2) % 3)];
+  const PetscReal   off[3] = {x[0] - lines->centre[0], x[1] - lines->centre[1], x[2] - lines->centre[2]};
+  const PetscReal   angle  = atan2(Vec3Dot(off, b), Vec3Dot(off, a));
+  const PetscInt    n      = chain->n_slabs;
+  const PetscReal   half   = PetscMin(share / (PetscReal)chain->cost, (PetscReal)n) / 2;
+  const PetscInt    k      = (PetscInt)PetscFloorReal((angle - lines->begin) / lines->step - half + 0.5 + 1e-6);
 
   return lines->closed ? (k % n + n) % n : 0;
 }
