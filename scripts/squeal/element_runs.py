@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy
 
@@ -26,13 +27,14 @@ class Problem:
 
 @dataclass(frozen=True)
 class Result:
-    """Of a run: element, its size in m, unknowns (0: no mesh without inverted elements), s of processor, MB, Hz ascending."""
+    """Of a run: element, its size in m, unknowns (0: no mesh without inverted elements), s of processor, MB, Hz ascending, where."""
     element: str
     size: float
     unknowns: int
     seconds: float
     megabytes: float
     frequencies: numpy.ndarray
+    folder: Path
 
     def error(self, reference):
         """The worst of the lowest modes, relative; nan where the band lacks some of them."""
@@ -56,8 +58,9 @@ def solve(args, problem, element, size, counts=None, more=""):
     mesh = folder / "mesh.msh"
     if not mesh.exists():
         mesh_body(mesh, problem.body, element, size, counts)
-    words = ["-model_mesh", mesh, "-parts", "body", *STEEL.split(), *options.split(), *problem.options.split(), *more.split(),
-             "-modes_band", ",".join(map(str, problem.band)), "-output_fields", 0, "-squeal_progress", 0, "-squeal_view"]
+    words = ["-model_mesh", mesh, "-parts", "body", *STEEL.split(), *options.split(), *problem.options.split(),
+             "-modes_band", ",".join(map(str, problem.band)), "-output_fields", 0, "-squeal_progress", 0, "-squeal_view",
+             *more.split()]
     run = KeptRun(args.program, 1, folder, words)
     if not run.is_complete():
         text, seconds, megabytes = measured(run.begin(), name, is_hopeless)
@@ -65,4 +68,5 @@ def solve(args, problem, element, size, counts=None, more=""):
     seconds, megabytes = map(float, run.text().split()[0:4:2])
     count = re.search(r" (\d+) unknowns", run.text())
     rows = [] if is_hopeless(run.text()) else read_table(folder / "modes.csv", {"freq_hz": float})
-    return Result(element, size, int(count[1]) if count else 0, seconds, megabytes, numpy.array([row["freq_hz"] for row in rows]))
+    return Result(element, size, int(count[1]) if count else 0, seconds, megabytes, numpy.array([row["freq_hz"] for row in rows]),
+                  folder)

@@ -20,7 +20,9 @@ def called(script):
 
 
 def compiled_program():
-    """Sets up and compiles as scripts/run does."""
+    """Sets up and compiles as scripts/run does; of an installed script the program of the same prefix."""
+    if not (ROOT / "meson.build").is_file():
+        return ROOT.parents[1] / "bin/squeal"
     command = ["bash", "-c", 'source "$0" && set_up squeal >&2 && echo "$build/squeal"', ROOT / "scripts/setup.sh"]
     process = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
     if process.returncode:
