@@ -61,6 +61,8 @@ PetscErrorCode ResultsFilmSetTimes(ResultsFilm film, PetscInt n, const PetscReal
   PetscCall(FilmReserve(film, n));
   PetscCall(PetscArraycpy(film->time, times, n));
   film->n_frames = n;
+  PetscCall(PetscSNPrintf(file, sizeof(file), "%s.xmf", film->name));
+  if (n > 0) PetscCall(ResultsKeep(film->results, file)); /* it stays, also where no frame follows */
   for (PetscInt k = 0; k < n; k++) {
     PetscCall(FrameName(film, k, name));
     PetscCall(PetscSNPrintf(file, sizeof(file), "%s.h5", name));

@@ -1,17 +1,19 @@
 /*
    HDF5 files written by all ranks. The first rank creates groups, attributes and datasets; a dataset is contiguous and
    allocated at once, so that row r of width w lies at byte offset + r w size, where each rank writes its own rows.
-   Space is reserved before HDF5 is given anything to write, since it does not survive a file that it cannot flush when
-   it closes it.
+   HDF5 crashes at its end when it could not write or close a file. Hence it is given a file in memory, which holds
+   nothing where the rows are; all the rest is copied from there when HDF5 has closed it.
    Reference: The HDF Group, HDF5 Reference Manual, H5Dget_offset, H5Pset_alloc_time.
 */
 #include "resultsimpl.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
-/* Bytes kept free at the end of the file for the records that HDF5 adds between two reservations */
-#define H5_ROOM 65536
+#define H5_BLOCK 65536 /* bytes copied at a time */
+#define H5_ROOM  65536 /* bytes for what HDF5 adds between two datasets */
 
 /* Evaluates an HDF5 call that returns a negative value on failure; reasons are reported by us, hence silence here */
 #define H5Quietly(result, call)                                                                                        \
@@ -32,33 +34,70 @@ static PetscErrorCode OutFileH5Note(OutFile *file, PetscInt64 result)
   PetscFunctionReturn(0);
 }
 
-/* Reserves `size` further bytes of the disk */
-static PetscErrorCode OutFileReserve(OutFile *file, hsize_t size)
+/* Whether a file may have `size` more bytes, and some: `ulimit -f` holds in memory, too */
+static PetscErrorCode OutFileH5Room(OutFile *file, hsize_t size)
 {
-  hsize_t used = 0;
-  herr_t  result;
+  struct rlimit limit;
+  hsize_t       used = 0;
+  herr_t        result;
 
   PetscFunctionBeginUser;
+  if (getrlimit(RLIMIT_FSIZE, &limit) || limit.rlim_cur == RLIM_INFINITY) PetscFunctionReturn(0);
   if (file->h5 >= 0) {
     H5Quietly(result, H5Fget_filesize(file->h5, &used));
     PetscCall(OutFileH5Note(file, result));
   }
-  errno = posix_fallocate(file->fd, (off_t)used, (off_t)(size + H5_ROOM));
-  PetscCall(OutFileNote(file, errno ? PETSC_TRUE : PETSC_FALSE));
+  errno = EFBIG;
+  PetscCall(OutFileNote(file, used + size + H5_ROOM > limit.rlim_cur ? PETSC_TRUE : PETSC_FALSE));
   PetscFunctionReturn(0);
 }
 
-/* Creates the file on the first rank, if the disk has room for its head */
+/* A file in memory without a name; negative where there is none */
+static int MemoryFile(void)
+{
+  char name[64];
+  int  fd;
+
+  (void)snprintf(name, sizeof(name), "/squeal-%ld", (long)getpid());
+  fd = shm_open(name, O_RDWR | O_CREAT | O_EXCL, 0600);
+  if (fd >= 0) (void)shm_unlink(name);
+  return fd;
+}
+
+/* Puts the file in memory below HDF5, with what it has written already */
+static PetscErrorCode OutFileH5Detach(OutFile *file)
+{
+  const off_t end   = lseek(file->fd, 0, SEEK_END);
+  char       *block = NULL;
+  void       *below = NULL; /* of the driver that HDF5 has by default: its descriptor */
+  herr_t      result;
+
+  PetscFunctionBeginUser;
+  PetscCall(OutFileNote(file, end < 0 || end > H5_BLOCK ? PETSC_TRUE : PETSC_FALSE));
+  PetscCall(PetscCalloc1(H5_BLOCK, &block));
+  if (!file->error)
+    PetscCall(OutFileNote(file, pread(file->fd, block, (size_t)end, 0) != end ||
+                                  pwrite(file->memory, block, (size_t)end, 0) != end));
+  PetscCall(PetscFree(block));
+  H5Quietly(result, H5Fget_vfd_handle(file->h5, H5P_DEFAULT, &below));
+  PetscCall(OutFileH5Note(file, result));
+  if (below) PetscCall(OutFileNote(file, dup2(file->memory, *(int *)below) < 0 ? PETSC_TRUE : PETSC_FALSE));
+  PetscFunctionReturn(0);
+}
+
+/* Creates the file on the first rank, which HDF5 then leaves alone */
 static PetscErrorCode OutFileCreateH5(OutFile *file)
 {
   PetscFunctionBeginUser;
   file->fd = open(file->part, O_RDWR | O_CREAT | O_TRUNC, 0666);
   PetscCall(OutFileNote(file, file->fd < 0 ? PETSC_TRUE : PETSC_FALSE));
-  if (!file->error) PetscCall(OutFileReserve(file, 0));
+  PetscCall(OutFileH5Room(file, 0));
+  file->memory = MemoryFile();
+  PetscCall(OutFileNote(file, file->memory < 0 ? PETSC_TRUE : PETSC_FALSE));
   if (file->error) PetscFunctionReturn(0);
   H5Quietly(file->h5, H5Fcreate(file->part, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
   PetscCall(OutFileH5Note(file, file->h5));
-  PetscCall(OutFileReserve(file, 0)); /* again, since HDF5 has emptied the file */
+  if (file->h5 >= 0) PetscCall(OutFileH5Detach(file));
   PetscFunctionReturn(0);
 }
 
@@ -117,6 +156,19 @@ static PetscErrorCode OutFileH5Dataset(OutFile *file, const char path[], hid_t t
   PetscFunctionReturn(0);
 }
 
+/* Notes that bytes of the file are rows, in the order of their offsets */
+static PetscErrorCode OutFileH5Rows(OutFile *file, uint64_t offset, uint64_t size)
+{
+  PetscInt i = file->n_rows++;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscRealloc((size_t)file->n_rows * sizeof(*file->rows), &file->rows));
+  for (; i > 0 && file->rows[i - 1].offset > offset; i--) file->rows[i] = file->rows[i - 1];
+  file->rows[i].offset = offset;
+  file->rows[i].size   = size;
+  PetscFunctionReturn(0);
+}
+
 /*
    Writes a dataset of shape [rows->n_global] (width 1) or [rows->n_global][width]; every rank gives its rows. The type
    is that of the values in memory. Collective; failures are noted.
@@ -129,8 +181,9 @@ PetscErrorCode OutFileH5Write(OutFile *file, const char path[], hid_t type, cons
   uint64_t      offset  = HADDR_UNDEF;
 
   PetscFunctionBeginUser;
-  if (file->h5 >= 0 && !file->error) PetscCall(OutFileReserve(file, row * dims[0]));
+  if (file->h5 >= 0 && !file->error) PetscCall(OutFileH5Room(file, row * dims[0]));
   if (file->h5 >= 0 && !file->error) PetscCall(OutFileH5Dataset(file, path, type, width > 1 ? 2 : 1, dims, &offset));
+  if (offset != HADDR_UNDEF) PetscCall(OutFileH5Rows(file, offset, row * dims[0]));
   PetscCallMPI(MPI_Bcast(&offset, 1, MPI_UINT64_T, 0, file->comm));
   if (offset == HADDR_UNDEF) PetscFunctionReturn(0); /* noted by the first rank, or nothing to write */
   PetscCall(OutFileWriteAt(file, values, row * (size_t)rows->n_local, (off_t)(offset + row * (uint64_t)rows->first)));
@@ -196,21 +249,57 @@ PetscErrorCode OutFileH5Strings(OutFile *file, const char path[], const char att
   PetscFunctionReturn(0);
 }
 
-/* Closes the file on this rank, if it is open, and gives back the room that was not used */
+/* Copies bytes [from, to) of HDF5's file in memory */
+static PetscErrorCode OutFileH5Copy(OutFile *file, uint64_t from, uint64_t to)
+{
+  char *block;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(H5_BLOCK, &block));
+  for (; from < to && !file->error; from += H5_BLOCK) {
+    const size_t size = (size_t)PetscMin(H5_BLOCK, to - from);
+
+    PetscCall(
+      OutFileNote(file, pread(file->memory, block, size, (off_t)from) == (ssize_t)size ? PETSC_FALSE : PETSC_TRUE));
+    PetscCall(OutFileWriteAt(file, block, size, (off_t)from));
+  }
+  PetscCall(PetscFree(block));
+  PetscFunctionReturn(0);
+}
+
+/* Copies all that HDF5 has put between the rows, when it has closed its file */
+static PetscErrorCode OutFileH5CopyRest(OutFile *file)
+{
+  const off_t end  = lseek(file->memory, 0, SEEK_END);
+  uint64_t    from = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(OutFileNote(file, end < 0 ? PETSC_TRUE : PETSC_FALSE));
+  for (PetscInt i = 0; i < file->n_rows && !file->error; i++) {
+    PetscCall(OutFileH5Copy(file, from, file->rows[i].offset));
+    from = file->rows[i].offset + file->rows[i].size;
+  }
+  if (!file->error) PetscCall(OutFileH5Copy(file, from, (uint64_t)end));
+  if (!file->error) PetscCall(OutFileNote(file, ftruncate(file->fd, end) ? PETSC_TRUE : PETSC_FALSE));
+  PetscFunctionReturn(0);
+}
+
+/* Closes the file on this rank, if it is open */
 PetscErrorCode OutFileH5Close(OutFile *file)
 {
-  hsize_t used = 0;
-  herr_t  result;
+  herr_t result;
 
   PetscFunctionBeginUser;
   if (file->h5 >= 0) {
-    H5Quietly(result, H5Fget_filesize(file->h5, &used));
-    PetscCall(OutFileH5Note(file, result));
     H5Quietly(result, H5Fclose(file->h5));
     PetscCall(OutFileH5Note(file, result));
-    PetscCall(OutFileNote(file, ftruncate(file->fd, (off_t)used) ? PETSC_TRUE : PETSC_FALSE));
     file->h5 = H5I_INVALID_HID;
+    if (!file->error) PetscCall(OutFileH5CopyRest(file));
   }
+  PetscCall(PetscFree(file->rows));
+  file->n_rows = 0;
+  if (file->memory >= 0) (void)close(file->memory);
+  file->memory = -1;
   if (file->fd >= 0) {
     PetscCall(OutFileNote(file, close(file->fd) ? PETSC_TRUE : PETSC_FALSE));
     file->fd = -1;

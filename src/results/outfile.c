@@ -21,6 +21,9 @@ PetscErrorCode OutFileSetName(Results results, const char name[], const char ext
   file->stream = NULL;
   file->h5     = H5I_INVALID_HID;
   file->fd     = -1;
+  file->memory = -1;
+  file->n_rows = 0;
+  file->rows   = NULL;
   file->sum    = CHECKSUM_BEGIN;
   file->summed = 0;
   PetscCall(PetscSNPrintf(file->name, sizeof(file->name), "%s/%s%s", results->dir, name, extension));

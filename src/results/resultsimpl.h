@@ -42,8 +42,13 @@ typedef struct {
   FILE      *stream; /* text: open on the first rank */
   uint64_t   sum;    /* text: checksum of its first `summed` bytes, whole blocks */
   PetscInt64 summed;
-  hid_t      h5; /* HDF5: open on the first rank, else H5I_INVALID_HID */
-  int        fd; /* HDF5, binary: for the rows or pieces of this rank, else -1 */
+  hid_t      h5;     /* HDF5: open on the first rank, else H5I_INVALID_HID */
+  int        memory; /* HDF5: what the library writes, on the first rank, else -1 */
+  PetscInt   n_rows; /* HDF5: bytes of the file that are rows, in order */
+  struct {
+    uint64_t offset, size;
+  } * rows;
+  int fd; /* HDF5, binary: for the rows or pieces of this rank, else -1 */
 } OutFile;
 
 /* Rows of a distributed table of values that this rank holds: [first, first + n_local) of n_global */

@@ -1,0 +1,231 @@
+#!/usr/bin/env python3
+"""One call of a run fails: each allocation that squeal asks for, each opening, writing, flushing, renaming and closing of a file of its
+results, in turn; from one write on, all of them, as on a full disk; or the run is killed, or asked to end, at one of these calls. Judged is
+
+  end      no signal, and an end within the time limit
+  message  a failure says one line, "squeal: error: ...", with exit status 1; a run that does without what failed has the results of one
+           that nobody disturbed
+  files    what has a final name is whole: that of an undisturbed run, or that of the earlier run that was in the folder, which is there
+           as long as nothing new has taken its place
+  later    the same command, going on from what a killed or stopped run has kept, ends with the results of an undisturbed run
+
+    fault.py build/squeal build/tests/libsqueal_fault.so [--every 7] [--ranks 2] [--scene modes] [--kind memory] [--one N]
+
+--every takes each 7th call, from the first on. Exit status: 0, or 1."""
+
+import argparse
+import csv
+import errno
+import math
+import re
+import shutil
+import signal
+import sys
+import tempfile
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import h5py
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+import scenes  # noqa: E402
+import served  # noqa: E402
+
+# Kinds of faults: calls that are counted, and the rest of the plan
+KINDS = {
+    "memory": (served.OWN, {"error": errno.ENOMEM}),
+    "library": (served.PETSC, {"error": errno.ENOMEM}),
+    "files": (served.FILES, {"error": errno.EIO}),
+    "disk": (served.OPEN | served.WRITE | served.SYNC, {"error": errno.ENOSPC, "stay": 1}),
+    "kill": (served.FILES, {"signal": int(signal.SIGKILL)}),
+    "stop": (served.FILES, {"signal": int(signal.SIGTERM)}),
+}
+EARLIER = ("-contact_mu", "0.2")  # of the run that was in the folder before
+CHANGING = re.compile(r"^# (cost|end|stages|in|command|repeat|files|.*seconds).*$", re.MULTILINE)
+TOLERANCE = 1e-6  # between runs on several ranks, where the order of sums depends on the moment
+
+
+def content(path, ranks):
+    """What is compared of a file: bytes, values of datasets, lines that do not tell of the run itself; None where it cannot be read."""
+    try:
+        if path.suffix == ".h5":
+            found = {}
+            with h5py.File(path) as file:
+                file.visititems(lambda key, it: found.update({key: it[()].tobytes() if ranks == 1 else it.shape})
+                                if isinstance(it, h5py.Dataset) else None)
+            return found
+        if path.suffix == ".yaml":
+            return CHANGING.sub("", path.read_text())
+        if path.suffix == ".csv" and ranks > 1:
+            return Table(path)
+        return path.read_bytes() if ranks == 1 or path.suffix == ".xmf" else path.stat().st_size
+    except (OSError, ValueError, KeyError, RuntimeError):
+        return None
+
+
+class Table:
+    """A table that is equal to another one but for rounding."""
+
+    def __init__(self, path):
+        self.rows = list(csv.reader(path.open(newline="")))
+        if any(len(row) != len(self.rows[0]) for row in self.rows):
+            raise ValueError("rows of different lengths")
+
+    def __eq__(self, other):
+        return len(self.rows) == len(other.rows) and all(self.near(*cells) for rows in zip(self.rows, other.rows)
+                                                         for cells in zip(*rows))
+
+    @staticmethod
+    def near(one, other):
+        try:
+            return math.isclose(float(one), float(other), rel_tol=TOLERANCE, abs_tol=TOLERANCE)
+        except ValueError:
+            return one == other
+
+
+def contents(folder, ranks):
+    """Files with final names."""
+    paths = [path for path in folder.glob("*") if path.suffix != ".part" and "_restart_" not in path.name]
+    return {path.name: content(path, ranks) for path in paths}
+
+
+class Faults:
+    """One scene, its undisturbed results, and what becomes of it when calls fail."""
+
+    def __init__(self, arguments, scene, folder):
+        self.arguments, self.scene, self.folder, self.ranks = arguments, scene, folder, arguments.ranks
+        folder.mkdir()
+        scenes.make(folder)
+        self.report = folder / "report"
+        self.serve = served.Served(arguments.squeal, arguments.library, arguments.limit) if self.ranks == 1 else None
+        self.well = self.undisturbed()
+        self.before = folder / "before"
+        self.earlier = self.undisturbed(*EARLIER)
+        (folder / "out").rename(self.before)
+        self.failed = 0
+
+    def run(self, environment, *more):
+        words = (*self.scene.words, *more)
+        if self.serve:
+            return self.serve.run(self.folder, words, environment)
+        return served.launch(self.arguments.squeal, self.arguments.library, self.folder, words, environment, self.ranks,
+                             self.arguments.limit)
+
+    def undisturbed(self, *more):
+        shutil.rmtree(self.folder / "out", ignore_errors=True)
+        outcome = self.run({}, *more)
+        if outcome.status != 0:
+            raise SystemExit(f"FAILED: {self.scene.name} without faults: {outcome.stderr}")
+        return contents(self.folder / "out", self.ranks)
+
+    def disturbed(self, kind, at):
+        """A run whose call number `at` of that kind fails; how it ended, and which call that was."""
+        calls, more = KINDS[kind]
+        out = self.folder / "out"
+        shutil.rmtree(out, ignore_errors=True)
+        shutil.copytree(self.before, out)
+        rank = 1 if self.ranks > 1 and at % 2 == 0 and kind in ("memory", "library") else 0
+        outcome = self.run(served.plan("out", self.report, calls, at, rank=rank, **more))
+        return outcome, served.told(self.report)
+
+    def whole(self, name, value):
+        """Whether a file is one of an undisturbed run; of those that change during a run, the list of snapshots names what is there,
+        and the next run tells of the checkpoint."""
+        if self.scene.goes_on and name == "transient.xmf":
+            named = re.findall(r"(snapshot_\d+\.h5):", value.decode())
+            ElementTree.fromstring(value)
+            return named and all((self.folder / "out" / h5).exists() for h5 in named)
+        return value in (self.well.get(name), self.earlier.get(name)) or (self.scene.goes_on and name == "checkpoint.bin")
+
+    def judge_files(self, outcome):
+        found = contents(self.folder / "out", self.ranks)
+        torn = [name for name, value in found.items() if value is None or not self.whole(name, value)]
+        if torn:
+            return f"{' '.join(sorted(torn))} neither as before nor as of a run to the end"
+        gone = [name for name in self.earlier if name not in found and not (self.scene.goes_on and name == "checkpoint.bin")
+                and (outcome.status != 0 or name in self.well)]
+        if gone:
+            return f"{' '.join(sorted(gone))} of the earlier run gone"
+        if outcome.status == 0 and {name: found.get(name) for name in self.well} != self.well:
+            return "exit status 0 with other results"
+        return ""
+
+    def judge_later(self):
+        """The next run takes up what is there."""
+        kept = (self.folder / "out/checkpoint.bin").exists() and \
+            content(self.folder / "out/checkpoint.bin", self.ranks) != self.earlier.get("checkpoint.bin")
+        later = self.run({}, *([self.scene.goes_on] if self.scene.goes_on and kept else []))
+        if later.status != 0:
+            return f"the next run: exit status {later.status}: {later.stderr[-300:]}"
+        found = contents(self.folder / "out", self.ranks)
+        apart = [name for name in self.well if found.get(name) != self.well[name]]
+        return f"the next run: {' '.join(sorted(apart))} differ" if apart else ""
+
+    def judge(self, kind, outcome, failed):
+        if outcome.status is None:
+            return "no end"
+        if not failed:
+            return "the call did not come: the run is not the same each time" if kind != "library" and self.ranks == 1 else ""
+        if kind == "kill":
+            well = outcome.status in (-signal.SIGKILL, 128 + signal.SIGKILL) or self.ranks > 1
+        elif kind == "stop":
+            well = outcome.refused() or (len(outcome.errors) == 1 and outcome.status in (-signal.SIGTERM, 128 + signal.SIGTERM))
+        else:
+            well = outcome.refused() or (outcome.status == 0 and not outcome.errors)
+        if not well:
+            return f"exit status {outcome.status}: {outcome.stderr[:400]!r}"
+        wrong = self.judge_files(outcome)
+        later = kind in ("kill", "stop") or (kind == "disk" and self.scene.goes_on)
+        return wrong or (self.judge_later() if later else "")
+
+    def one(self, kind, at):
+        outcome, (_, failed, words) = self.disturbed(kind, at)
+        wrong = self.judge(kind, outcome, failed)
+        if wrong:
+            self.failed += 1
+            print(f"FAILED {self.scene.name}, {kind} {at}, {words}: {wrong}", flush=True)
+        elif self.arguments.list:
+            print(f"{self.scene.name}, {kind} {at}, {words}: {outcome.status} {outcome.stderr.strip()}", flush=True)
+
+    def all(self, kind):
+        outcome, (n, _, _) = self.disturbed(kind, 0)
+        if outcome.status != 0 or n == 0:
+            raise SystemExit(f"FAILED: {self.scene.name}, {kind}: {n} calls, exit status {outcome.status}: {outcome.stderr}")
+        chosen = range(1, n + 1, self.arguments.every) if self.arguments.one is None else [self.arguments.one]
+        for at in chosen:
+            self.one(kind, at)
+        print(f"{self.scene.name}, {kind}: {n} calls, {len(chosen)} of them tried", flush=True)
+
+    def end(self):
+        if self.serve:
+            self.serve.end()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("squeal", type=lambda name: Path(name).resolve())
+    parser.add_argument("library", type=lambda name: Path(name).resolve())
+    parser.add_argument("--scene", action="append", choices=[scene.name for scene in scenes.SCENES])
+    parser.add_argument("--kind", action="append", choices=list(KINDS))
+    parser.add_argument("--every", type=int, default=1)
+    parser.add_argument("--one", type=int)
+    parser.add_argument("--ranks", type=int, default=1)
+    parser.add_argument("--limit", type=float, default=30, help="seconds a run may take")
+    parser.add_argument("--list", action="store_true", help="say how each run ended")
+    arguments = parser.parse_args()
+    failed = 0
+    with tempfile.TemporaryDirectory(prefix="squeal-fault-") as name:
+        for scene in scenes.SCENES:
+            if arguments.scene and scene.name not in arguments.scene:
+                continue
+            faults = Faults(arguments, scene, Path(name) / scene.name)
+            for kind in arguments.kind or ["memory", "files", "disk", "kill"]:
+                faults.all(kind)
+            faults.end()
+            failed += faults.failed
+    print(f"{failed} faults not handled")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

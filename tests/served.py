@@ -1,0 +1,99 @@
+"""Runs the program many times, its libraries loaded once, and with the N-th call of a kind failing where that is asked: the Python side
+of tests/fault/serve.c and inject.c, which say how."""
+
+import errno
+import os
+import shutil
+import signal
+import struct
+import subprocess
+import tempfile
+import threading
+from pathlib import Path
+
+LAUNCHER = Path(__file__).resolve().parents[1] / "scripts/mpirun"
+OPEN, WRITE, SYNC, RENAME, CLOSE, OWN, PETSC = (1 << bit for bit in range(7))
+FILES = OPEN | WRITE | SYNC | RENAME | CLOSE
+# What a process alone does not need, and costs half of its start: networks
+LEAN = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_btl": "self",
+        "OMPI_MCA_pml": "ob1", "OMPI_MCA_mtl": "^psm,psm2,ofi"}
+
+
+def plan(folder, report, calls, at, **more):
+    """The environment of a fault: kinds of calls on files below a folder, and which one fails; more: error, stay, signal, rank."""
+    words = {"DIR": folder, "REPORT": report, "CALLS": calls, "AT": at, **{key.upper(): value for key, value in more.items()}}
+    words["ERRNO"] = words.pop("ERROR", errno.EIO)
+    return {f"FAULT_{key}": str(value) for key, value in words.items()}
+
+
+def told(report):
+    """Of a run under a plan: number of calls, how many failed, and the first of them in words."""
+    count, failed, words = struct.unpack("qq240s", Path(report).read_bytes().ljust(256, b"\0"))
+    return count, failed, words.split(b"\0")[0].decode(errors="replace")
+
+
+class Outcome:
+    """How a run ended: exit status, negative for a signal, None for no end in time; what it said on both streams."""
+
+    def __init__(self, status, stdout, stderr):
+        self.status, self.stdout, self.stderr = status, stdout, stderr
+        lines = [line for line in stderr.split("\n") if line.strip()]
+        self.errors = [line for line in lines if not line.startswith("squeal: warning: ")]
+
+    def refused(self):
+        """Whether it failed as it should, with one line."""
+        return self.status == 1 and len(self.errors) == 1 and self.errors[0].startswith("squeal: error: ") and \
+            len(self.errors[0]) >= 40
+
+
+class Served:
+    """The program behind a loop that forks: run() may be called from one thread at a time."""
+
+    def __init__(self, program, library, limit):
+        self.program, self.limit = str(program), limit
+        self.folder = Path(tempfile.mkdtemp(prefix="squeal-served-"))
+        environment = {**os.environ, **LEAN, "LD_PRELOAD": str(library), "FAULT_SERVE": "1"}
+        self.loop = subprocess.Popen([self.program], env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0)
+
+    def read(self):
+        data = b""
+        while len(data) < 4:
+            more = self.loop.stdout.read(4 - len(data))
+            if not more:
+                raise SystemExit("FAILED: the loop that starts the program has ended")
+            data += more
+        return struct.unpack("i", data)[0]
+
+    def run(self, work, words, environment=()):
+        """Runs in a folder; None as the status when it had to be killed."""
+        stdout, stderr = self.folder / "stdout", self.folder / "stderr"
+        lines = [f"{key}={value}" for key, value in dict(environment).items()]
+        strings = [work, stdout, stderr, len(lines), *lines, self.program, *words]
+        data = b"".join(os.fsencode(str(s) if not isinstance(s, bytes) else s) + b"\0" for s in strings)
+        self.loop.stdin.write(struct.pack("i", len(data)) + data)
+        child, late = self.read(), []
+        watch = threading.Timer(self.limit, lambda: (late.append(1), os.kill(child, signal.SIGKILL)))
+        watch.start()
+        status = self.read()
+        watch.cancel()
+        said = [path.read_bytes().decode(errors="replace") for path in (stdout, stderr)]
+        return Outcome(None if late else os.waitstatus_to_exitcode(status), *said)
+
+    def end(self):
+        self.loop.stdin.close()
+        self.loop.wait()
+        shutil.rmtree(self.folder)
+
+
+def launch(program, library, work, words, environment, ranks, limit):
+    """The same on several ranks, started anew each time."""
+    before = ["env", f"LD_PRELOAD={library}", *(f"{key}={value}" for key, value in environment.items())]
+    process = subprocess.Popen([LAUNCHER, "-n", str(ranks), *before, program, *words], cwd=work, start_new_session=True,
+                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    try:
+        stdout, stderr = process.communicate(timeout=limit)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+        return Outcome(None, "", "")
+    return Outcome(process.returncode, stdout.decode(errors="replace"), stderr.decode(errors="replace"))
