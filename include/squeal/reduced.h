@@ -79,7 +79,8 @@ typedef struct {
 typedef struct {
   const PetscReal *loads;   /* [n_loads] factors at t_{n+1} */
   const PetscReal *sliding; /* [n_pairs] prescribed sliding of the slave along t in the step, m */
-  const PetscReal *kick;    /* [m] Phi'J of the impulses at t_n, m sqrt(kg)/s; NULL for none */
+  const PetscReal *kick; /* [m] Phi'J of the impulses at t_n, shares of those between two times included, m sqrt(kg)/s;
+                               NULL for none */
 } ReducedDrive;
 
 /* What a step did: works on the bodies, J */

@@ -42,7 +42,7 @@ typedef struct {
 static inline double CoulombTrial(const CoulombPair *pair, const double l[], const double w[], double q[2])
 {
   for (int i = 0; i < 2; i++) q[i] = -l[1 + i] - (w[1 + i] - pair->slip0[i]);
-  return hypot(q[0], q[1]);
+  return sqrt(q[0] * q[0] + q[1] * q[1]);
 }
 
 /* Normal row of a closed pair: the larger of force and displacement is the parameter */

@@ -1,5 +1,7 @@
 /*
-   What acts in the step from t_n: factors of the loads at its end, the way of the prescribed sliding, impulses that fall into it.
+   What acts in the step from t_n: factors of the loads at its end, the way of the prescribed sliding, impulses. One at T
+   between two times of the run acts at both, in the shares max(0, 1 - |T - t_n| / dt), so that its mean time is T: all at
+   one of them would shift the phase of what it starts by up to omega dt.
 */
 #include "reducedimpl.h"
 
@@ -7,8 +9,6 @@ PetscErrorCode ReducedDriveCreate(ReducedRun r)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc3(r->model.n_loads, &r->loads, r->model.n_pairs, &r->sliding, r->model.m, &r->kick));
-  PetscCall(PetscMalloc1(r->n_hits, &r->hit_time));
-  for (PetscInt i = 0; i < r->n_hits; i++) r->hit_time[i] = -1;
   PetscFunctionReturn(0);
 }
 
@@ -20,8 +20,8 @@ void ReducedSetLoads(ReducedRun r, PetscReal t, PetscReal factor[])
     factor[i] = i < n && !r->run.from_static ? ExternalGetLoadFactor(r->run.external, i, t) : 1;
 }
 
-/* Sum of Phi'J of the impulses that are due before `end` and have not acted; hit is false where there is none */
-static PetscErrorCode DriveKick(ReducedRun r, PetscReal end, PetscBool *hit)
+/* Sum of the shares of Phi'J; hit is false where there is none */
+static PetscErrorCode DriveKick(ReducedRun r, PetscBool *hit)
 {
   const PetscInt m = r->model.m;
 
@@ -29,10 +29,11 @@ static PetscErrorCode DriveKick(ReducedRun r, PetscReal end, PetscBool *hit)
   *hit = PETSC_FALSE;
   PetscCall(PetscArrayzero(r->kick, m));
   for (PetscInt i = 0; i < r->n_hits; i++) {
-    if (r->hit_time[i] >= 0 || r->hit_due[i] >= end) continue;
-    for (PetscInt k = 0; k < m; k++) r->kick[k] += r->hits[m * i + k];
-    r->hit_time[i] = r->state.time;
-    *hit           = PETSC_TRUE;
+    const PetscReal share = 1 - PetscAbsReal(r->hit_due[i] - r->state.time) / r->dt;
+
+    if (!(share > 0)) continue;
+    for (PetscInt k = 0; k < m; k++) r->kick[k] += share * r->hits[m * i + k];
+    *hit = PETSC_TRUE;
   }
   PetscFunctionReturn(0);
 }
@@ -56,7 +57,7 @@ PetscErrorCode ReducedDriveSet(ReducedRun r, ReducedDrive *drive)
   PetscFunctionBeginUser;
   ReducedSetLoads(r, end, r->loads);
   for (PetscInt i = 0; i < r->model.n_pairs; i++) PetscCall(ReducedGetWay(r, i, &r->sliding[i]));
-  PetscCall(DriveKick(r, end, &hit));
+  PetscCall(DriveKick(r, &hit));
   *drive = (ReducedDrive){r->loads, r->sliding, hit ? r->kick : NULL};
   PetscFunctionReturn(0);
 }

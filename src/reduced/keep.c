@@ -30,7 +30,7 @@ typedef enum {
   KEPT_DISPLACEMENTS,
   KEPT_STATUS,
   KEPT_SLIP,
-  KEPT_HITS,
+  KEPT_SHOWN,
   KEPT_SUMS,
   KEPT_LAWS,
   KEPT_HISTORY,
@@ -79,7 +79,7 @@ static void ReducedListItems(ReducedRun r, ReducedScalars *scalars, PetscReal st
   item[KEPT_DISPLACEMENTS] = (CheckpointItem){"displacements", 3 * n, r->state.y};
   item[KEPT_STATUS]        = (CheckpointItem){"status", n, status};
   item[KEPT_SLIP]          = (CheckpointItem){"slip", 2 * n, r->report.slip};
-  item[KEPT_HITS]          = (CheckpointItem){"impulses", r->n_hits, r->hit_time};
+  item[KEPT_SHOWN]         = (CheckpointItem){"rates of forces", 2 * N, r->p_rate};
   item[KEPT_SUMS]          = (CheckpointItem){"sums", r->run.n_interfaces * N_REALS(ContactSums), (PetscReal *)r->sums};
   item[KEPT_LAWS]          = (CheckpointItem){"contact laws", 0, NULL};
   item[KEPT_HISTORY]       = (CheckpointItem){"history", 0, NULL};

@@ -1,14 +1,30 @@
 /*
    What is recorded at t_n: the ledger (residual part included), rows of the histories, fields that are lifted to the mesh,
 
-      u = Phi eta + X p (q in place of lambda),   v = Phi eta' + X (p_n - p_{n-1}) / dt,   at probes a = Phi eta''
+      u = Phi eta + X p (q in place of lambda),   v = Phi eta' + X p',   at probes a = Phi eta''
+      p' = (3 p_n - 4 p_{n-1} + p_{n-2}) / (2 dt)
 
    with X of reduced.h: two solutions for a snapshot, none for a probe.
 */
 #include "reducedimpl.h"
 #include "base/events.h"
 
-/* Accelerations eta'', what acts on the residual and its rate */
+/* What acts on the residual, q and the loads, and after a step the rate of that */
+void ReducedSetShown(ReducedRun r, PetscBool start)
+{
+  const PetscInt N = r->model.n_ports, n = 3 * r->model.n_pairs;
+
+  for (PetscInt i = 0; i < N; i++) {
+    const PetscReal now = i < n ? r->state.q[i] : r->state.p[i], mean = (now - r->shown[i]) / r->dt;
+
+    r->shown[i] = now;
+    if (start) continue;
+    r->p_rate[i]     = 1.5 * mean - 0.5 * r->p_rate[N + i];
+    r->p_rate[N + i] = mean;
+  }
+}
+
+/* Accelerations eta'' */
 static PetscErrorCode RecordAccelerate(ReducedRun r)
 {
   const ReducedModel *model = &r->model;
@@ -20,10 +36,6 @@ static PetscErrorCode RecordAccelerate(ReducedRun r)
   for (PetscInt k = 0; k < m; k++) {
     r->acceleration[k] -= model->omega2[k] * r->state.eta[k];
     for (PetscInt j = 0; j < m && model->C; j++) r->acceleration[k] -= model->C[k + m * j] * r->state.rate[j];
-  }
-  for (PetscInt i = 0; i < model->n_ports; i++) {
-    r->p_rate[i] = (r->state.p[i] - r->state.last[i]) / r->dt;
-    r->shown[i]  = i < 3 * model->n_pairs ? r->state.q[i] : r->state.p[i];
   }
   PetscFunctionReturn(0);
 }

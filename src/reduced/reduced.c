@@ -88,7 +88,7 @@ PetscErrorCode ReducedReduce(ReducedRun r)
   PetscCall(ReducedSetResidual(r));
   PetscCall(ReducedStateCreate(&r->model, &r->state));
   PetscCall(ReducedReportCreate(&r->model, &r->report));
-  PetscCall(PetscCalloc3(r->model.m, &r->acceleration, r->model.n_ports, &r->p_rate, r->model.n_ports, &r->shown));
+  PetscCall(PetscCalloc3(r->model.m, &r->acceleration, 2 * r->model.n_ports, &r->p_rate, r->model.n_ports, &r->shown));
   PetscCall(MatGetLocalSize(r->Phi, &n_own, NULL));
   PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, 1, NULL, &r->column));
   PetscCall(ReducedDriveCreate(r));
@@ -126,6 +126,7 @@ static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
     PetscCall(ReducedStepperCreate(&r->model, r->dt, REDUCED_RTOL, &r->stepper));
     PetscCall(DynamicsForget(r->dynamics));
   }
+  ReducedSetShown(r, PETSC_TRUE);
   PetscCall(ReducedTakePairs(r, PETSC_FALSE));
   PetscFunctionReturn(0);
 }
@@ -138,6 +139,7 @@ static PetscErrorCode ReducedAdvance(ReducedRun r)
   PetscFunctionBeginUser;
   PetscCall(ReducedDriveSet(r, &drive));
   PetscCall(ReducedStep(r->stepper, &drive, &r->state, &r->report));
+  ReducedSetShown(r, PETSC_FALSE);
   r->step++;
   r->n_steps++;
   r->n_its += (PetscReal)r->report.its;
@@ -234,7 +236,6 @@ PetscErrorCode ReducedDestroy(ReducedRun *reduced)
   PetscCall(PetscFree2(r->pairs, r->sums));
   PetscCall(PetscFree(r->pair));
   PetscCall(PetscFree2(r->hits, r->hit_due));
-  PetscCall(PetscFree(r->hit_time));
   PetscCall(PetscFree(r->vertex_port));
   PetscCall(PetscFree(r->compared));
   PetscCall(PetscFree(r->force));

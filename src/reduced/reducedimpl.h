@@ -17,11 +17,11 @@ struct _p_ReducedStepper {
   PetscReal          *E, *F;       /* [2 m][2 m], [m][2 m]: z(dt) = E z + F g, by columns */
   PetscReal          *Q;           /* [3 m][3 m] of damping; NULL without */
   PetscReal          *W;           /* [3 n_pairs][3 n_pairs] compliance of the pairs in a step, m/N */
-  PetscReal          *H, *G; /* [3 n_pairs]^2 q = H (...), [3 n_pairs][m] F Cm / dt of the coordinates; NULL undamped */
-  ContactCompliance   laws;  /* NULL without pairs */
-  PetscReal          *x, *next, *product;      /* work: [3 m] z and g; [3 m] z(dt); [3 m] */
-  PetscReal          *mean, *free, *slip0, *r; /* work: [n_ports], [3 n_pairs], [2 n_pairs], [3 n_pairs] */
-  PetscReal          *q, *dq, *sum, *port;     /* work: [3 n_pairs] q_{n+1}, change of q, right-hand side; [n_ports] */
+  PetscReal *HW, *HC;     /* [3 n_pairs]^2, [m][3 n_pairs] H W and H Cm' of the residual (stepper.c); NULL undamped */
+  ContactCompliance laws; /* NULL without pairs */
+  PetscReal        *x, *next, *product;      /* work: [3 m] z and g; [3 m] z(dt); [3 m] */
+  PetscReal        *mean, *free, *slip0, *r; /* work: [n_ports], [3 n_pairs], [2 n_pairs], [3 n_pairs] */
+  PetscReal        *q, *dq, *y, *port;       /* work: [3 n_pairs] q_{n+1}, its change, gaps and slips; [n_ports] */
 };
 
 /* An eigenvalue of the mesh about the sliding state beside that of the reduced model, rad/s */
@@ -79,15 +79,15 @@ struct _p_ReducedRun {
   ReducedStepper stepper;
   ReducedState   state;
   ReducedReport  report;
-  ContactState  *pairs;    /* [n_pairs] */
-  ContactSums   *sums;     /* [interfaces] */
-  PetscReal     *hit_time; /* [n_hits] t_n of the step in which each acted, s, -1 before */
+  ContactState  *pairs; /* [n_pairs] */
+  ContactSums   *sums;  /* [interfaces] */
   LedgerAccount  ledger;
   /* work */
-  PetscReal *loads, *sliding, *kick;        /* [n_loads], [n_pairs], [m] */
-  PetscReal *acceleration, *p_rate, *shown; /* [m] eta'', [n_ports] N/s, [n_ports] q and loads */
-  Mat        column;                        /* [unknowns][1] */
-  Checksum   scene;                         /* NULL until one is needed */
+  PetscReal *loads, *sliding, *kick; /* [n_loads], [n_pairs], [m] */
+  PetscReal *acceleration, *shown;   /* [m] eta'', [n_ports] q and loads */
+  PetscReal *p_rate;                 /* [2][n_ports] N/s of what is shown, at t_n, and its mean in the last step */
+  Mat        column;                 /* [unknowns][1] */
+  Checksum   scene;                  /* NULL until one is needed */
   /* error */
   PetscInt          n_force;       /* steps of which the force is kept, for -dynamics_verify */
   PetscReal        *force;         /* [n_force] normal force at t_1, t_2, ..., N */
@@ -153,6 +153,7 @@ PETSC_INTERN PetscErrorCode ReducedVerifyView(ReducedRun reduced, PetscViewer vi
 
 /* record.c - ledger, rows, fields of t_n */
 PETSC_INTERN PetscErrorCode ReducedRecord(ReducedRun reduced, PetscBool first);
+PETSC_INTERN void           ReducedSetShown(ReducedRun reduced, PetscBool start);
 
 /* keep.c - checkpoints; the stepper is made from the model that is read back */
 PETSC_INTERN PetscErrorCode ReducedKeep(ReducedRun reduced);

@@ -64,23 +64,6 @@ void ReducedBlockTimes(const DenseBlock *A, PetscBool transposed, PetscReal scal
     BLASgemv_(transposed ? "T" : "N", &rows, &columns, &scale, A->A, &stride, x, &unit, &one, y, &unit);
 }
 
-void ReducedEnergy(const ReducedModel *model, const ReducedState *s, PetscReal *kinetic, PetscReal *strain)
-{
-  const PetscInt n = model->n_ports, n_pairs = 3 * model->n_pairs;
-
-  *kinetic = *strain = 0;
-  for (PetscInt k = 0; k < model->m; k++) {
-    *kinetic += 0.5 * s->rate[k] * s->rate[k];
-    *strain += 0.5 * model->omega2[k] * s->eta[k] * s->eta[k];
-  }
-  for (PetscInt j = 0; j < n; j++) {
-    const PetscReal pj = j < n_pairs ? s->q[j] : s->p[j];
-
-    for (PetscInt i = 0; i < n && pj != 0; i++)
-      *strain += 0.5 * (i < n_pairs ? s->q[i] : s->p[i]) * model->W[i + n * j] * pj;
-  }
-}
-
 PetscReal ReducedPortDisplacement(const ReducedModel *model, const PetscReal eta[], const PetscReal p[], PetscInt port)
 {
   PetscReal y = 0;
@@ -104,6 +87,36 @@ static PetscReal StepperKick(ReducedStepper s, const PetscReal kick[], const Red
   return work;
 }
 
+/* x'A x of a symmetric A [n][n], columns stride apart: half of it is read */
+static PetscReal SymmetricForm(PetscInt n, PetscInt stride, const PetscReal A[], const PetscReal x[])
+{
+  const PetscBLASInt one = 1;
+  PetscReal          sum = 0;
+
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscBLASInt rows = (PetscBLASInt)j;
+    const PetscReal   *a    = &A[stride * j];
+
+    if (x[j] != 0) sum += x[j] * (2 * BLASdot_(&rows, a, &one, x, &one) + a[j] * x[j]);
+  }
+  return sum;
+}
+
+void ReducedEnergy(const ReducedModel *model, const ReducedState *s, PetscReal *kinetic, PetscReal *strain)
+{
+  const PetscInt n = 3 * model->n_pairs, n_others = model->n_ports - n;
+
+  *kinetic = *strain = 0;
+  for (PetscInt k = 0; k < model->m; k++) {
+    *kinetic += 0.5 * s->rate[k] * s->rate[k];
+    *strain += 0.5 * model->omega2[k] * s->eta[k] * s->eta[k];
+  }
+  *strain += 0.5 * SymmetricForm(n, model->n_ports, model->W, s->q);
+  *strain += 0.5 * SymmetricForm(n_others, model->n_ports, &model->W[(model->n_ports + 1) * n], &s->p[n]);
+  for (PetscInt j = n; j < model->n_ports; j++)
+    for (PetscInt i = 0; i < n && s->p[j] != 0; i++) *strain += s->q[i] * model->W[i + model->n_ports * j] * s->p[j];
+}
+
 /* next = E z + F g with g = P mean - Cm dq / dt */
 static void StepperRespond(ReducedStepper s)
 {
@@ -112,7 +125,7 @@ static void StepperRespond(ReducedStepper s)
 
   for (PetscInt k = 0; k < m; k++) s->x[2 * m + k] = 0;
   ReducedBlockTimes(&(DenseBlock){model->P, m, model->n_ports, m}, PETSC_FALSE, 1, s->mean, &s->x[2 * m]);
-  if (s->H) ReducedBlockTimes(&(DenseBlock){model->Cm, m, n, m}, PETSC_FALSE, -1 / s->dt, s->dq, &s->x[2 * m]);
+  if (s->HW) ReducedBlockTimes(&(DenseBlock){model->Cm, m, n, m}, PETSC_FALSE, -1 / s->dt, s->dq, &s->x[2 * m]);
   for (PetscInt i = 0; i < 2 * m; i++) s->next[i] = 0;
   ReducedBlockTimes(&(DenseBlock){s->E, 2 * m, 2 * m, 2 * m}, PETSC_FALSE, 1, s->x, s->next);
   ReducedBlockTimes(&(DenseBlock){s->F, 2 * m, m, 2 * m}, PETSC_FALSE, 1, &s->x[2 * m], s->next);
@@ -128,29 +141,15 @@ static void StepperSolveResidual(ReducedStepper s, const ReducedState *state)
   for (PetscInt i = 0; i < n; i++) s->dq[i] = 0;
   StepperRespond(s);
   for (PetscInt i = 0; i < n; i++) {
-    s->q[i]   = s->H ? state->q[i] : state->p[i];
-    s->sum[i] = 0;
-    s->r[i]   = s->mean[i] - state->q[i]; /* work */
+    s->q[i] = s->HW ? state->q[i] : state->p[i];
+    s->r[i] = s->mean[i] - state->q[i]; /* work */
   }
-  if (!s->H) return;
+  if (!s->HW) return;
   for (PetscInt k = 0; k < m; k++) s->product[k] = -(s->next[k] - s->x[k]) / s->dt;
-  ReducedBlockTimes(&(DenseBlock){model->W, n, n, model->n_ports}, PETSC_FALSE, 1, s->r, s->sum);
-  ReducedBlockTimes(&(DenseBlock){model->Cm, m, n, m}, PETSC_TRUE, 1, s->product, s->sum);
-  ReducedBlockTimes(&(DenseBlock){s->H, n, n, n}, PETSC_FALSE, 1, s->sum, s->dq);
+  ReducedBlockTimes(&(DenseBlock){s->HW, n, n, n}, PETSC_FALSE, 1, s->r, s->dq);
+  ReducedBlockTimes(&(DenseBlock){s->HC, n, m, n}, PETSC_FALSE, 1, s->product, s->dq);
   for (PetscInt i = 0; i < n; i++) s->q[i] += s->dq[i];
   StepperRespond(s);
-}
-
-/* y_{n+1} of the pairs: P eta + W q + W loads */
-static void StepperSetDisplacements(ReducedStepper s, const ReducedState *state, PetscReal y[])
-{
-  const ReducedModel *model = s->model;
-  const PetscInt      m = model->m, n = 3 * model->n_pairs, N = model->n_ports;
-
-  for (PetscInt i = 0; i < n; i++) y[i] = 0;
-  ReducedBlockTimes(&(DenseBlock){model->P, m, n, m}, PETSC_TRUE, 1, s->next, y);
-  ReducedBlockTimes(&(DenseBlock){model->W, n, n, N}, PETSC_FALSE, 1, s->q, y);
-  ReducedBlockTimes(&(DenseBlock){&model->W[N * n], n, model->n_loads, N}, PETSC_FALSE, 1, &state->p[n], y);
 }
 
 /* Mean forces of the step, with lambda_{n+1} or without */
@@ -162,14 +161,17 @@ static void StepperSetMean(ReducedStepper s, const ReducedState *state, PetscBoo
     s->mean[i] = 0.5 * (state->last[i] + (i < n && without ? 0 : state->p[i]));
 }
 
-/* Free displacements and what slip counts from */
+/* Free displacements P eta + W q + W loads, and what slip counts from */
 static void StepperSetFree(ReducedStepper s, const ReducedDrive *drive, const ReducedState *state)
 {
   const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * model->n_pairs, N = model->n_ports;
 
-  StepperSetDisplacements(s, state, s->free);
+  for (PetscInt i = 0; i < n; i++) s->free[i] = i % 3 ? 0 : model->gap[i / 3];
+  ReducedBlockTimes(&(DenseBlock){model->P, m, n, m}, PETSC_TRUE, 1, s->next, s->free);
+  ReducedBlockTimes(&(DenseBlock){model->W, n, n, N}, PETSC_FALSE, 1, s->q, s->free);
+  ReducedBlockTimes(&(DenseBlock){&model->W[N * n], n, model->n_loads, N}, PETSC_FALSE, 1, &state->p[n], s->free);
   for (PetscInt i = 0; i < model->n_pairs; i++) {
-    s->free[3 * i] += model->gap[i];
     s->slip0[2 * i]     = state->y[3 * i + 1] - drive->sliding[i];
     s->slip0[2 * i + 1] = state->y[3 * i + 2];
   }
@@ -186,7 +188,7 @@ static PetscErrorCode StepperSolveLaws(ReducedStepper s, ReducedState *state, Re
   report->residual = 0;
   report->its      = 0;
   if (!n) PetscFunctionReturn(0);
-  PetscCall(ContactComplianceSolve(s->laws, s->free, s->slip0, state->p, NULL, &solved));
+  PetscCall(ContactComplianceSolve(s->laws, s->free, s->slip0, state->p, s->y, &solved));
   PetscCheck(solved.converged, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED,
              "contact forces do not converge at %.6g s: residual %.2e of pair %" PetscInt_FMT
              ", must be %.0e; friction of mu %.3g may have no solution on these bodies: take "
@@ -203,14 +205,15 @@ static PetscErrorCode StepperSolveLaws(ReducedStepper s, ReducedState *state, Re
 /* Works of the pairs with the mean forces, J, and their slip; y becomes that at t_{n+1} */
 static void StepperAccount(ReducedStepper s, const ReducedDrive *drive, ReducedState *state, ReducedReport *report)
 {
-  StepperSetDisplacements(s, state, s->r);
   for (PetscInt i = 0; i < s->model->n_pairs; i++) {
     const PetscReal *mean = &s->mean[3 * i];
     PetscReal        dy[3];
 
     for (int d = 0; d < 3; d++) {
-      dy[d]               = s->r[3 * i + d] - state->y[3 * i + d];
-      state->y[3 * i + d] = s->r[3 * i + d];
+      const PetscReal y = s->y[3 * i + d] - (d ? 0 : s->model->gap[i]);
+
+      dy[d]               = y - state->y[3 * i + d];
+      state->y[3 * i + d] = y;
     }
     report->contact[i]      = mean[0] * dy[0];
     report->friction[i]     = mean[1] * dy[1] + mean[2] * dy[2];
@@ -250,13 +253,11 @@ static PetscReal StepperDamping(ReducedStepper s)
   for (PetscInt i = 0; i < 3 * m; i++) s->product[i] = 0;
   ReducedBlockTimes(&(DenseBlock){s->Q, 3 * m, 3 * m, 3 * m}, PETSC_FALSE, 1, s->x, s->product);
   for (PetscInt i = 0; i < 3 * m; i++) work += s->x[i] * s->product[i];
-  if (!s->H) return work;
-  for (PetscInt i = 0; i < n; i++) s->sum[i] = 0;
-  ReducedBlockTimes(&(DenseBlock){s->model->Cx, n, n, n}, PETSC_FALSE, 1, s->dq, s->sum);
-  for (PetscInt k = 0; k < m; k++) s->product[k] = s->next[k] - s->x[k];
-  ReducedBlockTimes(&(DenseBlock){s->model->Cm, m, n, m}, PETSC_TRUE, 2, s->product, s->sum);
-  for (PetscInt i = 0; i < n; i++) work += s->dq[i] * s->sum[i] / s->dt;
-  return work;
+  if (!s->HW) return work;
+  for (PetscInt k = 0; k < m; k++) s->product[k] = 0;
+  ReducedBlockTimes(&(DenseBlock){s->model->Cm, m, n, m}, PETSC_FALSE, 2, s->dq, s->product);
+  for (PetscInt k = 0; k < m; k++) work += (s->next[k] - s->x[k]) * s->product[k] / s->dt;
+  return work + SymmetricForm(n, n, s->model->Cx, s->dq) / s->dt;
 }
 
 /* The forces of the pairs go on as they did, the guess of the laws; those at t_n are kept */
@@ -281,7 +282,7 @@ PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedS
   for (PetscInt i = 0; i < model->n_loads; i++) state->p[n + i] = drive->loads[i];
   StepperSetMean(s, state, PETSC_TRUE);
   StepperSolveResidual(s, state);
-  if (!s->H) PetscCall(PetscArrayzero(s->q, n));
+  if (!s->HW) PetscCall(PetscArrayzero(s->q, n));
   StepperSetFree(s, drive, state);
   PetscCall(StepperSolveLaws(s, state, report));
   StepperSetMean(s, state, PETSC_FALSE);

@@ -146,32 +146,37 @@ static PetscErrorCode StepperSetDamping(ReducedStepper s)
 /* What the damping of the residual adds (reduced.h). With F that of the coordinates, eta_{n+1} = e - G q_{n+1} + F P' lambda_{n+1} / 2,
 
       q_{n+1} = H (W lambda_{n+1} / 2 - Cm' F P' lambda_{n+1} / (2 dt) + what is known),   H = (W / 2 + Cx / dt - Cm'G / dt)^-1,
-      G = F Cm / dt */
+      G = F Cm / dt
+
+   of which the step needs H W and H Cm' */
 static PetscErrorCode StepperSetResidual(ReducedStepper s)
 {
   const ReducedModel *model = s->model;
   const PetscInt      m = model->m, n = 3 * model->n_pairs;
-  PetscReal          *CG;
+  PetscReal          *G, *CG;
   PetscBLASInt       *pivot;
   PetscBool           singular;
 
   PetscFunctionBeginUser;
   if (!model->Cx || !n) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc2(n * n, &s->H, n * m, &s->G));
-  PetscCall(PetscMalloc2(n * n, &CG, n, &pivot));
-  ReducedTimes(&(DenseBlock){s->F, m, m, 2 * m}, &(DenseBlock){model->Cm, m, n, m}, s->G);
-  for (PetscInt i = 0; i < n * m; i++) s->G[i] /= s->dt;
-  ReducedTimesTransposed(&(DenseBlock){model->Cm, m, n, m}, &(DenseBlock){s->G, m, n, m}, CG);
-  for (PetscInt j = 0; j < n; j++)
+  PetscCall(PetscMalloc2(n * n, &s->HW, n * m, &s->HC));
+  PetscCall(PetscMalloc3(n * n, &CG, n, &pivot, n * m, &G));
+  ReducedTimes(&(DenseBlock){s->F, m, m, 2 * m}, &(DenseBlock){model->Cm, m, n, m}, G);
+  for (PetscInt i = 0; i < n * m; i++) G[i] /= s->dt;
+  ReducedTimesTransposed(&(DenseBlock){model->Cm, m, n, m}, &(DenseBlock){G, m, n, m}, CG);
+  for (PetscInt j = 0; j < n; j++) {
     for (PetscInt i = 0; i < n; i++) {
-      CG[i + n * j]   = 0.5 * model->W[i + model->n_ports * j] + (model->Cx[i + n * j] - CG[i + n * j]) / s->dt;
-      s->H[i + n * j] = i == j;
+      s->HW[i + n * j] = model->W[i + model->n_ports * j];
+      CG[i + n * j]    = 0.5 * s->HW[i + n * j] + (model->Cx[i + n * j] - CG[i + n * j]) / s->dt;
     }
+    for (PetscInt k = 0; k < m; k++) s->HC[j + n * k] = model->Cm[k + m * j];
+  }
   PetscCall(DenseFactor(n, CG, pivot, &singular));
   PetscCheck(!singular, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT,
              "the compliance of the contact pairs is singular: take a lower -dynamics_cutoff");
-  PetscCall(DenseSolve(n, CG, pivot, PETSC_FALSE, n, s->H));
-  PetscCall(PetscFree2(CG, pivot));
+  PetscCall(DenseSolve(n, CG, pivot, PETSC_FALSE, n, s->HW));
+  PetscCall(DenseSolve(n, CG, pivot, PETSC_FALSE, m, s->HC));
+  PetscCall(PetscFree3(CG, pivot, G));
   PetscFunctionReturn(0);
 }
 
@@ -188,10 +193,11 @@ static PetscErrorCode StepperSetCompliance(ReducedStepper s)
   ReducedTimesTransposed(&(DenseBlock){model->P, m, n, m}, &(DenseBlock){FP, m, n, m}, PFP);
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt i = 0; i < n; i++) s->W[i + n * j] = 2 * model->W[i + model->n_ports * j];
-  if (s->H) {
+  if (s->HW) {
+    ReducedTimes(&(DenseBlock){s->HC, n, m, n}, &(DenseBlock){FP, m, n, m}, HD);
+    for (PetscInt i = 0; i < n * n; i++) HD[i] = s->HW[i] - HD[i] / s->dt;
     ReducedTimesTransposed(&(DenseBlock){model->Cm, m, n, m}, &(DenseBlock){FP, m, n, m}, D);
     for (PetscInt i = 0; i < n * n; i++) D[i] = 0.5 * s->W[i] - D[i] / s->dt;
-    ReducedTimes(&(DenseBlock){s->H, n, n, n}, &(DenseBlock){D, n, n, n}, HD);
     ReducedTimesTransposed(&(DenseBlock){D, n, n, n}, &(DenseBlock){HD, n, n, n}, s->W);
   }
   for (PetscInt j = 0; j < n; j++)
@@ -235,7 +241,7 @@ PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, Pet
   PetscCall(PetscMalloc3(4 * m * m, &s->E, 2 * m * m, &s->F, n * n, &s->W));
   PetscCall(PetscCalloc5(3 * m, &s->x, 3 * m, &s->next, 3 * m, &s->product, n, &s->free, n, &s->slip0));
   PetscCall(PetscCalloc3(model->n_ports, &s->mean, n, &s->r, model->n_ports, &s->port));
-  PetscCall(PetscCalloc3(n, &s->q, n, &s->dq, n, &s->sum));
+  PetscCall(PetscCalloc3(n, &s->q, n, &s->dq, n, &s->y));
   PetscCall(StepperSetResponse(s));
   PetscCall(StepperSetDamping(s));
   PetscCall(StepperSetResidual(s));
@@ -253,10 +259,10 @@ PetscErrorCode ReducedStepperDestroy(ReducedStepper *stepper)
   PetscCall(ContactComplianceDestroy(&s->laws));
   PetscCall(PetscFree3(s->E, s->F, s->W));
   PetscCall(PetscFree(s->Q));
-  PetscCall(PetscFree2(s->H, s->G));
+  PetscCall(PetscFree2(s->HW, s->HC));
   PetscCall(PetscFree5(s->x, s->next, s->product, s->free, s->slip0));
   PetscCall(PetscFree3(s->mean, s->r, s->port));
-  PetscCall(PetscFree3(s->q, s->dq, s->sum));
+  PetscCall(PetscFree3(s->q, s->dq, s->y));
   PetscCall(PetscFree(*stepper));
   PetscFunctionReturn(0);
 }

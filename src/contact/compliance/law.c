@@ -9,11 +9,13 @@
 /* The pair with its coefficient of friction at the present slip, and how that changes with it; w = -weight v */
 static CoulombPair LawOfPair(const ContactCompliance c, PetscInt p, PetscReal weight, PetscReal w[3])
 {
-  const PetscReal slip = hypot(c->v[3 * p + 1], c->v[3 * p + 2]), slope = c->slope ? c->slope[p] / c->dt : 0;
+  const PetscReal slope = c->slope[p] / c->dt;
+  PetscReal       slip;
   CoulombPair     pair = {.d = 3, .mu = c->mu[p], .k = INFINITY};
 
   for (PetscInt i = 0; i < 3; i++) w[i] = -weight * c->v[3 * p + i];
   if (slope == 0) return pair;
+  slip      = hypot(c->v[3 * p + 1], c->v[3 * p + 2]);
   pair.mu   = FrictionCoefficient(c->mu[p], slope, c->speed[p] * c->dt, slip);
   pair.fall = pair.mu > 0 ? slope / weight : 0;
   return pair;
@@ -49,12 +51,13 @@ void ComplianceMeasure(const ContactCompliance c, ComplianceMiss *miss)
 
   *miss = (ComplianceMiss){.worst = -1};
   for (PetscInt p = 0; p < c->n; p++) {
-    PetscReal         w[3];
-    const CoulombPair pair = LawOfPair(c, p, 1, w);
-    const PetscReal  *l = &c->l[3 * p], *v = &c->v[3 * p];
-    const PetscReal   normal = PetscAbsReal(l[0] - PetscMax(0, l[0] - v[0])), friction = CoulombResidual(&pair, l, w);
-    const PetscReal   square = PetscSqr(normal) + PetscSqr(friction);
+    const PetscReal *l = &c->l[3 * p], *v = &c->v[3 * p];
+    PetscReal        w[3], square;
+    CoulombPair      pair;
 
+    if (l[0] == 0 && l[1] == 0 && l[2] == 0 && v[0] >= 0) continue; /* open */
+    pair   = LawOfPair(c, p, 1, w);
+    square = PetscSqr(l[0] - PetscMax(0, l[0] - v[0])) + PetscSqr(CoulombResidual(&pair, l, w));
     sum += square;
     for (PetscInt i = 0; i < 3; i++) {
       miss->scale = PetscMax(miss->scale, PetscAbsReal(l[i]));

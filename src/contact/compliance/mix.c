@@ -7,6 +7,21 @@
 
 #define MIX_ALIKE 1e-8 /* a difference that is new by less says nothing */
 
+static PetscReal MixDot(PetscInt n, const PetscReal x[], const PetscReal y[])
+{
+  const PetscBLASInt rows = (PetscBLASInt)n, one = 1;
+
+  return BLASdot_(&rows, x, &one, y, &one);
+}
+
+/* y += a x */
+static void MixAdd(PetscInt n, PetscReal a, const PetscReal x[], PetscReal y[])
+{
+  const PetscBLASInt rows = (PetscBLASInt)n, one = 1;
+
+  BLASaxpy_(&rows, &a, x, &one, y, &one);
+}
+
 /* Projects f out of the differences kept, from the newest, each made orthogonal to those before it in `basis`; l loses
    what they promise */
 static void MixProject(ContactCompliance c, PetscReal f[])
@@ -16,33 +31,28 @@ static void MixProject(ContactCompliance c, PetscReal f[])
 
   for (PetscInt k = 0; k < n; k++) {
     const PetscInt at    = (h->n_mixed - 1 - k) % COMPLIANCE_MIXED;
-    PetscReal     *basis = h->basis[k], *step = h->step[k], length = 0, whole = 0, part = 0;
+    PetscReal     *basis = h->basis[k], *step = h->step[k], length, whole, part;
 
     for (PetscInt i = 0; i < N; i++) {
       basis[i] = h->fall[at][i];
       step[i]  = h->change[at][i] + h->fall[at][i];
-      whole += PetscSqr(basis[i]);
     }
+    whole = MixDot(N, basis, basis);
     for (PetscInt j = 0; j < k; j++) {
-      PetscReal along = 0;
+      const PetscReal along = MixDot(N, h->basis[j], basis);
 
-      for (PetscInt i = 0; i < N; i++) along += h->basis[j][i] * basis[i];
-      for (PetscInt i = 0; i < N; i++) {
-        basis[i] -= along * h->basis[j][i];
-        step[i] -= along * h->step[j][i];
-      }
+      MixAdd(N, -along, h->basis[j], basis);
+      MixAdd(N, -along, h->step[j], step);
     }
-    for (PetscInt i = 0; i < N; i++) length += PetscSqr(basis[i]);
+    length = MixDot(N, basis, basis);
     length = length > PetscSqr(MIX_ALIKE) * whole ? 1 / PetscSqrtReal(length) : 0;
     for (PetscInt i = 0; i < N; i++) {
       basis[i] *= length;
       step[i] *= length;
-      part += basis[i] * f[i];
     }
-    for (PetscInt i = 0; i < N; i++) {
-      f[i] -= part * basis[i];
-      c->l[i] -= part * step[i];
-    }
+    part = MixDot(N, basis, f);
+    MixAdd(N, -part, basis, f);
+    MixAdd(N, -part, step, c->l);
   }
 }
 
