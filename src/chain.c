@@ -118,11 +118,27 @@ PetscErrorCode ChainCheckOptions(MPI_Comm comm, const Chain *chain)
   PetscFunctionReturn(0);
 }
 
+/* Whether a run in time reads matrices: for a sliding state, for filters of modes, for files, to press */
+static PetscErrorCode ChainNeedsMatrices(const Chain *chain, PetscBool pairs, PetscBool *needs)
+{
+  const ContactInterface *interfaces;
+  const char             *folder;
+  PetscInt                n;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetSave(chain->operators, &folder));
+  PetscCall(ContactGetInterfaces(chain->contact, &n, &interfaces));
+  *needs = pairs || folder[0] ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt i = 0; i < n; i++)
+    if (interfaces[i].identify) *needs = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
 /* Model, pairs and terms */
 static PetscErrorCode ChainAssemble(Chain *chain)
 {
   const PetscBool transient = chain->analysis == ANALYSIS_TRANSIENT ? PETSC_TRUE : PETSC_FALSE;
-  PetscBool       pairs = PETSC_TRUE, reduced = PETSC_FALSE;
+  PetscBool       pairs = PETSC_TRUE, reduced = PETSC_FALSE, matrices = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   if (transient) PetscCall(DynamicsNeedsPairs(chain->dynamics, &pairs));
@@ -138,6 +154,8 @@ static PetscErrorCode ChainAssemble(Chain *chain)
     PetscCall(SquealStageBegin(SQUEAL_CONTACT));
     if (pairs) PetscCall(ContactSetUp(chain->contact));
     PetscCall(SquealStageEnd(SQUEAL_CONTACT));
+    PetscCall(ChainNeedsMatrices(chain, pairs, &matrices));
+    if (!matrices) PetscCall(OperatorsOmitMatrices(chain->operators));
   }
   PetscCall(SquealStageBegin(SQUEAL_OPERATORS));
   PetscCall(OperatorsSetUp(chain->operators));

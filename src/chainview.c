@@ -41,6 +41,7 @@ static PetscErrorCode TransientView(Chain *chain, PetscViewer viewer)
 
   PetscFunctionBeginUser;
   PetscCall(ReducedIsAsked(chain->reduced, &reduced));
+  PetscCall(OperatorsViewOmitted(chain->operators, viewer));
   PetscCall(reduced ? ReducedView(chain->reduced, viewer) : DynamicsView(chain->dynamics, viewer));
   PetscFunctionReturn(0);
 }

@@ -68,6 +68,13 @@ PetscErrorCode OperatorsHaveDamping(Operators operators, PetscBool *have);
     collective. @*/
 PetscErrorCode OperatorsLump(Operators operators);
 
+/*@ OperatorsOmitMatrices - leaves the matrices of a model out: there are parameters alone, which is all that kernels in
+    time ask for. Nothing that forms a matrix may be called then. Before OperatorsSetUp(). Not collective. @*/
+PetscErrorCode OperatorsOmitMatrices(Operators operators);
+
+/*@ OperatorsViewOmitted - says so, and about how much memory that saves; nothing where matrices are there. Collective. @*/
+PetscErrorCode OperatorsViewOmitted(Operators operators, PetscViewer viewer);
+
 /*@ OperatorsSetUp - assembles the bodies or loads the matrices. Collective. @*/
 PetscErrorCode OperatorsSetUp(Operators operators);
 

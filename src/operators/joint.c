@@ -148,6 +148,9 @@ static PetscErrorCode PointAddMass(Operators o, const Joint *joint, PetscInt *in
   if (joint->mass > 0) {
     PetscCall(ParametersAdd(&o->parameters, joint->name, "mass",
                             &(OperatorsParameter){.unit = "kg", .value = joint->mass, .closed = PETSC_TRUE}, index));
+  }
+  if (o->omit) PetscFunctionReturn(0);
+  if (joint->mass > 0) {
     PetscCall(JointHalfCreate(o, &half, all, &A));
     PetscCall(TermsAdd(&o->terms, OPERATORS_MASS, A, PETSC_TRUE, 1, index));
     PetscCall(MatDestroy(&A));

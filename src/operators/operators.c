@@ -37,10 +37,10 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
   PetscCall(PetscOptionsEList(
     "-operators_mass", "mass matrix of the bodies; lumped: row sums, or of tet10, wedge15, hex20 the scaled diagonal",
     "operators.h", masses, 2, masses[0], &mass, NULL));
-  PetscCall(PetscOptionsEList(
-    "-operators_factors",
-    "with friction LU, or LDL' of the symmetric part and an update for the closed pairs, or what memory and flops speak for",
-    "operators.h", factors, 3, factors[0], &operators->factors, NULL));
+  PetscCall(PetscOptionsEList("-operators_factors",
+                              "with friction LU, or LDL' of the symmetric part and an update for the closed pairs, or "
+                              "what memory and flops speak for",
+                              "operators.h", factors, 3, factors[0], &operators->factors, NULL));
   PetscCall(PetscOptionsString("-operators_save",
                                "folder for K.bin, M.bin, C.bin, H.bin and the loads F.bin (PETSc binary)",
                                "operators.h", operators->save, operators->save, sizeof(operators->save), NULL));
@@ -63,6 +63,13 @@ PetscErrorCode OperatorsLump(Operators operators)
 {
   PetscFunctionBeginUser;
   operators->lump = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsOmitMatrices(Operators operators)
+{
+  PetscFunctionBeginUser;
+  operators->omit = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 

@@ -37,7 +37,7 @@ struct _p_Operators {
   char       load[N_OPERATORS][PETSC_MAX_PATH_LEN], save[PETSC_MAX_PATH_LEN];
   PetscReal *dense[N_OPERATORS];   /* [OPERATORS_MAX_DENSE] entries of -operators_dense_k and the like, by rows */
   PetscInt   n_dense[N_OPERATORS]; /* entries given: the square of the number of unknowns; 0 for none */
-  PetscBool  lump;
+  PetscBool  lump, omit;
   PetscInt   factors;   /* OPERATORS_AUTO, OPERATORS_LU or OPERATORS_EVEN */
   PetscReal  loaded_mu; /* -contact_mu of loaded or dense matrices */
   PetscInt   n_named;   /* matrices of -terms */

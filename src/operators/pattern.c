@@ -147,3 +147,27 @@ PetscErrorCode PatternCreate(Model model, PetscInt part, PetscBool lumped, Mat *
   PetscCall(PetscFree2(inside, outside));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode OperatorsViewOmitted(Operators o, PetscViewer viewer)
+{
+  const ModelScene *scene;
+  const Mesh       *mesh;
+  PetscInt         *inside, *outside;
+  PetscReal         neighbours = 0;
+
+  PetscFunctionBeginUser;
+  if (!o->omit) PetscFunctionReturn(0);
+  PetscCall(ModelGetScene(o->model, &scene));
+  PetscCall(ModelGetMesh(o->model, &mesh));
+  for (PetscInt part = 0; part < scene->n_parts; part++) {
+    PetscCall(PetscCalloc2(mesh->n_own, &inside, mesh->n_own, &outside));
+    PetscCall(PatternCountRows(o->comm, o->model, part, inside, outside));
+    for (PetscInt i = 0; i < mesh->n_own; i++) neighbours += (PetscReal)(inside[i] + outside[i]);
+    PetscCall(PetscFree2(inside, outside));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &neighbours, 1, MPIU_REAL, MPI_SUM, o->comm));
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer, "matrices: none, since no kernel reads K and M: saves the time to assemble them, and about %.3g MB\n",
+    4e-6 * (double)neighbours * (sizeof(PetscScalar) + sizeof(PetscInt)))); /* three directions in K, one in M */
+  PetscFunctionReturn(0);
+}

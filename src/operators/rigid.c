@@ -138,6 +138,18 @@ static PetscBool RigidIsKept(const RigidSet *set, PetscInt i)
   return PETSC_FALSE;
 }
 
+/* Unknowns of this rank */
+static PetscErrorCode RigidGetRange(Operators o, PetscInt *first, PetscInt *last)
+{
+  const Mesh *mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(o->model, &mesh));
+  *first = mesh->first_own;
+  *last  = mesh->first_own + mesh->n_own;
+  PetscFunctionReturn(0);
+}
+
 /* Column of each unknown of this rank, -1 for those that are eliminated; and their number */
 static PetscErrorCode RigidCountColumns(Operators o, PetscInt n_sets, const RigidSet set[], PetscInt *n_columns,
                                         PetscInt column[])
@@ -145,7 +157,7 @@ static PetscErrorCode RigidCountColumns(Operators o, PetscInt n_sets, const Rigi
   PetscInt first, last, n = 0, twice = 0, *times;
 
   PetscFunctionBeginUser;
-  PetscCall(MatGetOwnershipRange(o->terms.term[0].A, &first, &last));
+  PetscCall(RigidGetRange(o, &first, &last));
   PetscCall(PetscCalloc1(last - first, &times));
   for (PetscInt i = 0; i < last - first; i++) column[i] = 0;
   for (PetscInt s = 0; s < n_sets; s++)
@@ -192,7 +204,7 @@ static PetscErrorCode RigidCreateSpaces(Operators o, PetscInt n_sets, const Rigi
   Mat     *spaces[2] = {&o->rigid_E, &o->rigid_Z};
 
   PetscFunctionBeginUser;
-  PetscCall(MatGetOwnershipRange(o->terms.term[0].A, &first, &last));
+  PetscCall(RigidGetRange(o, &first, &last));
   n = last - first;
   PetscCall(PetscMalloc1(n, &column));
   PetscCall(RigidCountColumns(o, n_sets, set, &n_columns, column));
