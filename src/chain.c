@@ -2,7 +2,7 @@
 #include "chain.h"
 #include "solver/shiftinvert.h"
 
-static const char *const analyses[N_ANALYSES] = {"modes", "sweep", "static", "transient", "frf"};
+static const char *const analyses[N_ANALYSES] = {"modes", "sweep", "static", "transient", "frf", "map"};
 
 /* What every analysis needs */
 static PetscErrorCode ChainCreateScene(MPI_Comm comm, Chain *chain)
@@ -48,6 +48,9 @@ static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
   PetscCall(ReducedCreate(comm, &chain->reduced));
   PetscCall(ReducedSetFromOptions(chain->reduced));
   PetscCall(OptionsClaim(chain->claims, READER_DYNAMICS));
+  PetscCall(MapCreate(comm, &chain->map));
+  PetscCall(MapSetFromOptions(chain->map));
+  PetscCall(OptionsClaim(chain->claims, READER_MAP));
   PetscCall(StaticsCreate(comm, &chain->statics));
   PetscCall(StaticsSetFromOptions(chain->statics));
   PetscCall(OptionsClaim(chain->claims, READER_STATICS));
@@ -82,6 +85,7 @@ PetscErrorCode ChainDestroy(Chain *chain)
   for (int i = 0; i < N_SHOWN; i++) PetscCall(PetscViewerDestroy(&chain->viewer[i]));
   PetscCall(OptionsClaimsDestroy(&chain->claims));
   PetscCall(ResultsDestroy(&chain->results));
+  PetscCall(MapDestroy(&chain->map));
   PetscCall(ReducedDestroy(&chain->reduced));
   PetscCall(DynamicsDestroy(&chain->dynamics));
   PetscCall(FrfDestroy(&chain->frf));
@@ -101,7 +105,8 @@ PetscErrorCode ChainCheckOptions(MPI_Comm comm, const Chain *chain)
   const Analysis analysis = chain->analysis;
   const Scope    scope    = {.analysis  = analyses[analysis],
                              .sweep     = analysis == ANALYSIS_SWEEP,
-                             .transient = analysis == ANALYSIS_TRANSIENT,
+                             .transient = analysis == ANALYSIS_TRANSIENT || analysis == ANALYSIS_MAP,
+                             .map       = analysis == ANALYSIS_MAP,
                              .frf       = analysis == ANALYSIS_FRF,
                              .modes     = analysis <= ANALYSIS_SWEEP || analysis == ANALYSIS_FRF,
                              .model     = chain->model,
@@ -137,8 +142,9 @@ static PetscErrorCode ChainNeedsMatrices(const Chain *chain, PetscBool pairs, Pe
 /* Model, pairs and terms */
 static PetscErrorCode ChainAssemble(Chain *chain)
 {
-  const PetscBool transient = chain->analysis == ANALYSIS_TRANSIENT ? PETSC_TRUE : PETSC_FALSE;
-  PetscBool       pairs = PETSC_TRUE, reduced = PETSC_FALSE, matrices = PETSC_TRUE;
+  const PetscBool transient =
+    chain->analysis == ANALYSIS_TRANSIENT || chain->analysis == ANALYSIS_MAP ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool pairs = PETSC_TRUE, reduced = PETSC_FALSE, matrices = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   if (transient) PetscCall(DynamicsNeedsPairs(chain->dynamics, &pairs));
@@ -202,6 +208,7 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscCall(SweepSetOperators(chain->sweep, chain->operators, chain->p));
   PetscCall(SweepSetModes(chain->sweep, chain->modes));
   if (is_static) PetscCall(SweepSetStatics(chain->sweep, chain->statics));
+  PetscCall(MapSetRooms(chain->map, chain->reduced, chain->operators, chain->p));
   PetscCall(FrfSetOperators(chain->frf, chain->operators));
   PetscCall(FrfSetModes(chain->frf, chain->modes));
   if (chain->analysis == ANALYSIS_FRF) PetscCall(FrfSetUp(chain->frf));
@@ -256,7 +263,8 @@ PetscErrorCode ChainRun(Chain *chain)
     [ANALYSIS_SWEEP]     = {SQUEAL_SWEEP,    SHOWN_SWEEP   },
     [ANALYSIS_STATIC]    = {SQUEAL_STATICS,  SHOWN_STATICS },
     [ANALYSIS_TRANSIENT] = {SQUEAL_DYNAMICS, SHOWN_DYNAMICS},
-    [ANALYSIS_FRF]       = {SQUEAL_FRF,      SHOWN_FRF     }
+    [ANALYSIS_FRF]       = {SQUEAL_FRF,      SHOWN_FRF     },
+    [ANALYSIS_MAP]       = {SQUEAL_DYNAMICS, SHOWN_MAP     }
   };
   const Analysis analysis = chain->analysis;
 
@@ -274,9 +282,10 @@ PetscErrorCode ChainRun(Chain *chain)
   if (analysis == ANALYSIS_STATIC) PetscCall(StaticsSolve(chain->statics, chain->p));
   if (analysis == ANALYSIS_TRANSIENT) PetscCall(ChainIntegrate(chain));
   if (analysis == ANALYSIS_FRF) PetscCall(FrfSolve(chain->frf));
+  if (analysis == ANALYSIS_MAP) PetscCall(MapSolve(chain->map, chain->results));
   PetscCall(SquealStageEnd(run[analysis].stage));
   PetscCall(ChainShow(chain, run[analysis].shown, PETSC_TRUE));
-  if (analysis == ANALYSIS_TRANSIENT) PetscFunctionReturn(0); /* which writes as it goes */
+  if (analysis == ANALYSIS_TRANSIENT || analysis == ANALYSIS_MAP) PetscFunctionReturn(0); /* which write as they go */
   PetscCall(SquealStageBegin(SQUEAL_RESULTS));
   if (analysis == ANALYSIS_MODES) PetscCall(ModesWrite(chain->modes, chain->results));
   if (analysis == ANALYSIS_SWEEP) PetscCall(SweepWrite(chain->sweep, chain->results));

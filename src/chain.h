@@ -3,7 +3,15 @@
 
 #include "scope.h"
 
-typedef enum { ANALYSIS_MODES, ANALYSIS_SWEEP, ANALYSIS_STATIC, ANALYSIS_TRANSIENT, ANALYSIS_FRF, N_ANALYSES } Analysis;
+typedef enum {
+  ANALYSIS_MODES,
+  ANALYSIS_SWEEP,
+  ANALYSIS_STATIC,
+  ANALYSIS_TRANSIENT,
+  ANALYSIS_FRF,
+  ANALYSIS_MAP,
+  N_ANALYSES
+} Analysis;
 
 /* What shows itself, on stdout or where its own option says */
 typedef enum {
@@ -15,6 +23,7 @@ typedef enum {
   SHOWN_SWEEP,
   SHOWN_FRF,
   SHOWN_DYNAMICS,
+  SHOWN_MAP,
   N_SHOWN
 } Shown;
 
@@ -31,7 +40,8 @@ typedef struct {
   Sweep         sweep;
   Frf           frf;
   Dynamics      dynamics;
-  ReducedRun       reduced; /* the same runs on few coordinates, where asked for */
+  ReducedRun    reduced; /* the same runs on few coordinates, where asked for */
+  Map           map;
   Results       results;
   Analysis      analysis;
   OptionsClaims claims; /* who read what stands on the command line */

@@ -7,13 +7,14 @@ static const struct {
   const char *option, *help;
   unsigned    in; /* bits of the analyses that have something to show */
 } shown[N_SHOWN] = {
-  [SHOWN_MODEL]     = {"-model_view",     "show mesh, parts, supports, springs and loads",           31                                     },
+  [SHOWN_MODEL]     = {"-model_view",     "show mesh, parts, supports, springs and loads",           (1 << N_ANALYSES) - 1                  },
   [SHOWN_CONTACT]   = {"-contact_view",   "show interfaces and their pairs",                         7 | LINEAR                             },
   [SHOWN_OPERATORS] = {"-operators_view", "show the pencil of modes and sweeps, and its parameters", LINEAR                                 },
   [SHOWN_STATICS]   = {"-statics_view",   "show the equilibrium",                                    1 << ANALYSIS_STATIC                   },
   [SHOWN_MODES]     = {"-modes_view",     "show the modes found",                                    1 << ANALYSIS_MODES | 1 << ANALYSIS_FRF},
   [SHOWN_SWEEP]     = {"-sweep_view",     "show what a sweep found",                                 1 << ANALYSIS_SWEEP                    },
   [SHOWN_FRF]       = {"-frf_view",       "show the frequency response and its peaks",               1 << ANALYSIS_FRF                      },
+  [SHOWN_MAP]       = {"-map_view",       "show regimes and cost of a map",                          1 << ANALYSIS_MAP                      },
   [SHOWN_DYNAMICS]  = {"-dynamics_view",  "show bodies, step and balances of a run in time",         1 << ANALYSIS_TRANSIENT                },
 };
 
@@ -58,6 +59,7 @@ static PetscErrorCode ShownView(Chain *chain, Shown what, PetscViewer viewer)
   if (what == SHOWN_SWEEP) PetscCall(SweepView(chain->sweep, viewer));
   if (what == SHOWN_FRF) PetscCall(FrfView(chain->frf, viewer));
   if (what == SHOWN_DYNAMICS) PetscCall(TransientView(chain, viewer));
+  if (what == SHOWN_MAP) PetscCall(MapView(chain->map, viewer));
   PetscFunctionReturn(0);
 }
 
@@ -77,7 +79,8 @@ PetscErrorCode ChainView(Chain *chain)
 {
   PetscFunctionBeginUser;
   if (chain->model) PetscCall(ChainShow(chain, SHOWN_MODEL, chain->view));
-  if (chain->contact && chain->analysis != ANALYSIS_TRANSIENT) PetscCall(ChainShow(chain, SHOWN_CONTACT, chain->view));
+  if (chain->contact && chain->analysis != ANALYSIS_TRANSIENT && chain->analysis != ANALYSIS_MAP)
+    PetscCall(ChainShow(chain, SHOWN_CONTACT, chain->view));
   if (LINEAR >> chain->analysis & 1) PetscCall(ChainShow(chain, SHOWN_OPERATORS, chain->view));
   PetscFunctionReturn(0);
 }

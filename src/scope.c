@@ -240,6 +240,7 @@ PetscErrorCode ScopeCheck(MPI_Comm comm, const Scope *s, OptionsClaims claims)
     [READER_SWEEP]     = {s->sweep,     "-analysis sweep"                                                           },
     [READER_FRF]       = {s->frf,       "-analysis frf"                                                             },
     [READER_DYNAMICS]  = {s->transient, "-analysis transient"                                                       },
+    [READER_MAP]       = {s->map,       "-analysis map"                                                             },
   };
   PetscBool statics, reduced;
 

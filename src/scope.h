@@ -14,20 +14,21 @@ typedef enum {
   READER_SWEEP,
   READER_FRF,
   READER_DYNAMICS,
+  READER_MAP,
   N_READERS
 } Reader;
 
 /* A run; model and contact are NULL for matrices without a mesh */
 typedef struct {
   const char *analysis;
-  PetscBool   modes, sweep, frf, transient;
+  PetscBool   modes, sweep, frf, transient, map;
   Model       model;
   Contact     contact;
   Operators   operators;
   Modes       linear;
   Sweep       varied;
   Dynamics    dynamics;
-  ReducedRun     reduced;
+  ReducedRun  reduced;
 } Scope;
 
 /* Raises an error for an option of the command line that a reader claimed of whom the run has no need. Collective. */

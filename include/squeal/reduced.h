@@ -110,6 +110,10 @@ PetscErrorCode ReducedReportDestroy(ReducedReport *report);
 PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, PetscReal rtol, ReducedStepper *stepper);
 PetscErrorCode ReducedStepperDestroy(ReducedStepper *stepper);
 
+/*@ ReducedStepperTakeFriction - takes the friction of the model again, of which mu, slope or speed have changed, and forgets
+    factors of steps before. Not collective. @*/
+PetscErrorCode ReducedStepperTakeFriction(ReducedStepper stepper);
+
 /*@ ReducedStep - one step from the state at t_n, which becomes that at t_{n+1}. Not collective.
     Errors: PETSC_ERR_NOT_CONVERGED from the contact laws. @*/
 PetscErrorCode ReducedStep(ReducedStepper stepper, const ReducedDrive *drive, ReducedState *state,
@@ -122,6 +126,27 @@ void ReducedEnergy(const ReducedModel *model, const ReducedState *state, PetscRe
     that are closed, which all slide along t; a real one twice in a row is two. Not collective. @*/
 PetscErrorCode ReducedLinearise(const ReducedModel *model, const PetscBool closed[], PetscReal sigma[],
                                 PetscReal omega[]);
+
+/*@ ReducedLineariseSliding - the same with what friction damps, as -contact_friction_damping does: with the normal forces
+    lambda_n [n_pairs] (N) of the state, speed v and slope mu', a pair has mu lambda_n / v (N s/m) along b and mu' lambda_n along t;
+    NULL for none. Not collective. @*/
+PetscErrorCode ReducedLineariseSliding(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
+                                       PetscReal sigma[], PetscReal omega[]);
+
+/*@
+   ReducedEquilibrium - the sliding state: 0 = -Omega^2 eta + P'p with every closed pair sliding along t, lambda_T = -mu
+   lambda_n on the slave, 0 <= lambda_n, 0 <= gap, lambda_n gap = 0, by an active set. Rigid modes that nothing resists are
+   held by 1e-12 of the highest omega^2. Not collective.
+
+   Input Parameter:
+.  loads - [n_loads] their factors
+
+   Output Parameters:
++  state - at rest there; time 0
+-  found - false where the set does not settle: friction too large for the geometry, or loads that lift off
+@*/
+PetscErrorCode ReducedEquilibrium(const ReducedModel *model, const PetscReal loads[], ReducedState *state,
+                                  PetscBool *found);
 
 /*@ ReducedCreate - makes an integrator. Collective. @*/
 PetscErrorCode ReducedCreate(MPI_Comm comm, ReducedRun *reduced);
@@ -143,6 +168,26 @@ PetscErrorCode ReducedIsAsked(ReducedRun reduced, PetscBool *asked);
 /*@ ReducedSetRooms - the run in time, of which loads, motions, histories and options are those of `dynamics` (referenced
     until ReducedDestroy()), and the solver of the mesh's modes. Not collective. @*/
 PetscErrorCode ReducedSetRooms(ReducedRun reduced, Dynamics dynamics, Modes modes);
+
+/*@ ReducedPrepare - cut-off, step and times of the run, without reducing; raises the errors of ReducedIntegrate() for what
+    cannot be. For rooms that run reduced models by themselves. Collective. @*/
+PetscErrorCode ReducedPrepare(ReducedRun reduced, Results results);
+
+/*@ ReducedReduceAt - the bodies reduced below a cut-off (Hz, 0: that of `reduced`) with parameters p of the operators, NULL for
+    the values of the scene; after ReducedPrepare(). The caller destroys it. Collective. @*/
+PetscErrorCode ReducedReduceAt(ReducedRun reduced, PetscReal cutoff, const PetscReal p[], ReducedRun *at);
+
+/*@ ReducedGetModel - the dense model (borrowed), alike on all ranks; mu, slope and speed may be changed. Not collective. @*/
+PetscErrorCode ReducedGetModel(ReducedRun reduced, ReducedModel **model);
+
+/*@ ReducedGetRun - cut-off (Hz), step and end (s); NULL for what is not needed. Not collective. @*/
+PetscErrorCode ReducedGetRun(ReducedRun reduced, PetscReal *cutoff, PetscReal *dt, PetscReal *end);
+
+/*@ ReducedGetHits - the impulses: Phi'J [n][m], m sqrt(kg)/s, and when they are due, s (borrowed). Not collective. @*/
+PetscErrorCode ReducedGetHits(ReducedRun reduced, PetscInt *n, const PetscReal **hits, const PetscReal **due);
+
+/*@ ReducedGetInterface - the interface of a pair. Not collective. @*/
+PetscErrorCode ReducedGetInterface(ReducedRun reduced, PetscInt pair, PetscInt *interface);
 
 /*@
    ReducedIntegrate - reduces the bodies, compares with the mesh where -modes_band says a band, integrates, and writes what

@@ -15,4 +15,5 @@
 #include <squeal/projector.h>
 #include <squeal/dynamics.h>
 #include <squeal/reduced.h>
+#include <squeal/map.h>
 #include <squeal/results.h>

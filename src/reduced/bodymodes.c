@@ -38,6 +38,7 @@ static PetscErrorCode ReducedCreatePencil(ReducedRun r)
   PetscCall(OperatorsLinearise(r->run.operators, &state, &r->bodies));
   PetscCall(SlidingStateDestroy(&state));
   PetscCall(PencilGetParameters(r->bodies, &n, &parameter, &p));
+  if (r->p) p = r->p;
   PetscCall(PetscMalloc1(n, &still));
   for (PetscInt i = 0; i < n; i++) {
     PetscBool is;
@@ -132,7 +133,7 @@ static PetscErrorCode ReducedSetDamping(ReducedRun r)
   Mat            C, CPhi;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetBodies(r->run.operators, NULL, NULL, NULL, &C));
+  PetscCall(OperatorsGetBodies(r->run.operators, r->p, NULL, NULL, &C));
   if (!C) PetscFunctionReturn(0);
   PetscCall(MatDuplicate(r->Phi, MAT_DO_NOT_COPY_VALUES, &CPhi));
   PetscCall(BlockMultiply(C, r->Phi, CPhi));

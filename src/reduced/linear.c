@@ -5,6 +5,9 @@
 
       T = (N W E)^-1 N (Cm' - Cx E S),   lambda_n = -S eta + T eta',
       eta'' + (C - Cm E S - P'E T) eta' + (Omega^2 + P'E S) eta = 0.
+
+   Friction turns against the direction of the slip velocity v t + (r_t', r_b'): to first order its change is -mu' lambda_n r_t' along
+   t and -mu lambda_n r_b' / v along b, dampers between the bodies (the residual moves 1e-4 as fast and is left out there).
 */
 #include "reducedimpl.h"
 
@@ -117,8 +120,62 @@ static PetscErrorCode QuadraticEigen(PetscInt m, const PetscReal K[], const Pets
   PetscFunctionReturn(0);
 }
 
+/* C += d L R of a damper d (N s/m) at a port: its displacement R eta, modal force L of a force there, both with the gaps of the
+   closed pairs kept: R = P_i - W_i E S, L = P_i' - P'E (N W E)^-1 N W_i */
+static PetscErrorCode ClosedAddDamper(ClosedPairs *c, PetscInt port, PetscReal d, PetscReal C[])
+{
+  const ReducedModel *model = c->model;
+  const PetscInt      m = model->m, n = c->n, N = model->n_ports;
+  PetscReal          *x, *L, *R;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(n, &x, m, &L, m, &R));
+  for (PetscInt j = 0; j < n; j++) x[j] = model->W[3 * c->pair[j] + N * port];
+  PetscCall(DenseSolve(n, c->A, c->pivot, PETSC_FALSE, 1, x));
+  for (PetscInt k = 0; k < m; k++) L[k] = R[k] = model->P[k + m * port];
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscInt   other = 3 * c->pair[j];
+    const PetscReal *P = &model->P[m * other], mu = model->mu[c->pair[j]];
+    const PetscReal  w = model->W[port + N * other] - mu * model->W[port + N * (other + 1)];
+
+    for (PetscInt k = 0; k < m; k++) {
+      L[k] -= (P[k] - mu * P[m + k]) * x[j];
+      R[k] -= w * c->S[j + n * k];
+    }
+  }
+  for (PetscInt k = 0; k < m; k++)
+    for (PetscInt l = 0; l < m; l++) C[l + m * k] += d * L[l] * R[k];
+  PetscCall(PetscFree3(x, L, R));
+  PetscFunctionReturn(0);
+}
+
+/* What friction damps: mu lambda_n / v along b, mu' lambda_n along t */
+static PetscErrorCode ClosedAddFriction(ClosedPairs *c, const PetscReal lambda_n[], PetscReal C[])
+{
+  const ReducedModel *model = c->model;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < c->n; i++) {
+    const PetscInt  p      = c->pair[i];
+    const PetscReal along  = model->slope[p] * lambda_n[p];
+    const PetscReal across = model->speed[p] > 0 ? model->mu[p] * lambda_n[p] / model->speed[p] : 0;
+
+    if (along != 0) PetscCall(ClosedAddDamper(c, 3 * p + 1, along, C));
+    if (across != 0) PetscCall(ClosedAddDamper(c, 3 * p + 2, across, C));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ReducedLinearise(const ReducedModel *model, const PetscBool closed[], PetscReal sigma[],
                                 PetscReal omega[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReducedLineariseSliding(model, closed, NULL, sigma, omega));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedLineariseSliding(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
+                                       PetscReal sigma[], PetscReal omega[])
 {
   const PetscInt m = model->m;
   PetscReal     *K, *C;
@@ -138,6 +195,7 @@ PetscErrorCode ReducedLinearise(const ReducedModel *model, const PetscBool close
     ClosedAdd(&c, -1, model->Cm, c.S, C);
     ClosedAdd(&c, -1, model->P, c.T, C);
   }
+  if (c.n && lambda_n) PetscCall(ClosedAddFriction(&c, lambda_n, C));
   PetscCall(QuadraticEigen(m, K, C, sigma, omega));
   PetscCall(PetscFree2(K, C));
   PetscCall(ClosedDestroy(&c));

@@ -77,7 +77,7 @@ static PetscErrorCode PortsSetLoads(ReducedRun r)
     if (i < scene->n_loads)
       PetscCall(ModelAddLoad(r->run.model, i, nodal));
     else
-      PetscCall(OperatorsAddWeight(r->run.operators, NULL, nodal, total));
+      PetscCall(OperatorsAddWeight(r->run.operators, r->p, nodal, total));
     PetscCall(PortSetNodal(r, nodal, i, r->others));
     PetscCall(VecDestroy(&nodal));
   }

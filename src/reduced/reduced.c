@@ -95,10 +95,8 @@ PetscErrorCode ReducedReduce(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
+PetscErrorCode ReducedPrepare(ReducedRun r, Results results)
 {
-  PetscBool fields;
-
   PetscFunctionBeginUser;
   r->results = results;
   PetscCall(ReducedChooseCutoff(r));
@@ -109,6 +107,69 @@ static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
     r->dt * r->cutoff <= 1 + 1e-9, r->comm, PETSC_ERR_USER_INPUT,
     "-ts_dt %.6g is longer than a period of -dynamics_cutoff %.6g Hz: contact cannot follow; take at most %.6g",
     (double)r->dt, (double)r->cutoff, 1 / (double)r->cutoff);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedReduceAt(ReducedRun r, PetscReal cutoff, const PetscReal p[], ReducedRun *other)
+{
+  const OperatorsParameter *list;
+  PetscInt                  n;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedCreate(r->comm, other));
+  (*other)->dynamics   = r->dynamics;
+  (*other)->mesh_modes = r->mesh_modes;
+  (*other)->run        = r->run;
+  (*other)->cutoff     = cutoff > 0 ? cutoff : r->cutoff;
+  (*other)->dt         = r->dt;
+  if (p) {
+    PetscCall(OperatorsGetParameters(r->run.operators, &n, &list));
+    PetscCall(OperatorsCreatePoint(r->run.operators, &(*other)->p));
+    PetscCall(PetscArraycpy((*other)->p, p, n));
+  }
+  PetscCall(ReducedReduce(*other));
+  PetscCall(ShiftInvertDestroy(&(*other)->inverse));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedGetModel(ReducedRun r, ReducedModel **model)
+{
+  PetscFunctionBeginUser;
+  *model = &r->model;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedGetRun(ReducedRun r, PetscReal *cutoff, PetscReal *dt, PetscReal *end)
+{
+  PetscFunctionBeginUser;
+  if (cutoff) *cutoff = r->cutoff;
+  if (dt) *dt = r->dt;
+  if (end) *end = r->run.end;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedGetHits(ReducedRun r, PetscInt *n, const PetscReal **hits, const PetscReal **due)
+{
+  PetscFunctionBeginUser;
+  *n    = r->n_hits;
+  *hits = r->hits;
+  *due  = r->hit_due;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedGetInterface(ReducedRun r, PetscInt pair, PetscInt *interface)
+{
+  PetscFunctionBeginUser;
+  *interface = r->pair[pair].interface;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
+{
+  PetscBool fields;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedPrepare(r, results));
   PetscCheck(!r->verify || !r->run.restart, r->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_verify compares whole runs: leave it out of -dynamics_restart, or start anew");
   PetscCall(ReducedReduce(r));
@@ -237,6 +298,7 @@ PetscErrorCode ReducedDestroy(ReducedRun *reduced)
   PetscCall(PetscFree(r->pair));
   PetscCall(PetscFree2(r->hits, r->hit_due));
   PetscCall(PetscFree(r->vertex_port));
+  PetscCall(PetscFree(r->p));
   PetscCall(PetscFree(r->compared));
   PetscCall(PetscFree(r->force));
   PetscCall(MatDestroy(&r->column));

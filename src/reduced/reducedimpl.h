@@ -46,8 +46,9 @@ typedef struct {
 struct _p_ReducedRun {
   MPI_Comm comm;
   /* set by options */
-  PetscBool asked, compare, verify;
-  PetscReal cutoff; /* Hz, 0: to be chosen */
+  PetscBool  asked, compare, verify;
+  PetscReal  cutoff; /* Hz, 0: to be chosen */
+  PetscReal *p;      /* parameters of the operators, NULL: those of the scene */
   /* rooms */
   Dynamics    dynamics;
   Modes       mesh_modes;

@@ -153,7 +153,7 @@ PetscErrorCode ReducedSetResidual(ReducedRun r)
   Mat             Gt, C;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetBodies(r->run.operators, NULL, NULL, NULL, &C));
+  PetscCall(OperatorsGetBodies(r->run.operators, r->p, NULL, NULL, &C));
   PetscCall(PencilGetMatrices(r->bodies, &pencil));
   PetscCall(ShiftInvertCreate(&pencil, shift, PETSC_FALSE, &r->progress, &r->inverse));
   PetscCall(MatTranspose(r->G, MAT_INITIAL_MATRIX, &Gt));

@@ -207,6 +207,17 @@ static PetscErrorCode StepperSetCompliance(ReducedStepper s)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ReducedStepperTakeFriction(ReducedStepper s)
+{
+  const ReducedModel *model = s->model;
+
+  PetscFunctionBeginUser;
+  if (!model->n_pairs) PetscFunctionReturn(0);
+  PetscCall(ContactComplianceSetFriction(s->laws, &(ComplianceFriction){model->mu, model->slope, model->speed, s->dt}));
+  PetscCall(ContactComplianceSetMemory(s->laws, 0, NULL));
+  PetscFunctionReturn(0);
+}
+
 /* The solver of the contact laws on that compliance */
 static PetscErrorCode StepperSetLaws(ReducedStepper s)
 {

@@ -25,15 +25,9 @@ static PetscErrorCode VerifyRun(ReducedRun r, PetscReal cutoff, PetscInt every, 
   ReducedRun   o;
 
   PetscFunctionBeginUser;
-  PetscCall(ReducedCreate(r->comm, other));
-  o             = *other;
-  o->dynamics   = r->dynamics;
-  o->mesh_modes = r->mesh_modes;
-  o->run        = r->run;
-  o->cutoff     = cutoff;
-  o->dt         = r->dt / (PetscReal)every;
-  PetscCall(ReducedReduce(o));
-  PetscCall(ShiftInvertDestroy(&o->inverse));
+  PetscCall(ReducedReduceAt(r, cutoff, r->p, other));
+  o     = *other;
+  o->dt = r->dt / (PetscReal)every;
   PetscCall(ReducedStart(o));
   PetscCall(ReducedStepperCreate(&o->model, o->dt, REDUCED_RTOL, &o->stepper));
   for (PetscInt i = 1; i <= every * r->n_force; i++) {

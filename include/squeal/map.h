@@ -1,0 +1,64 @@
+/*
+   Map - what the brake does over one or two parameters: regime, amplitude and frequency of its vibration, by a transient of the
+   reduced model (reduced.h) at every point. Along the first parameter each point goes on from the end of its neighbour, upwards
+   and downwards, so that states that depend on the way are found on both: hysteresis. Each line of the map begins with the
+   sliding state of its first point, and the scene's impulses hit it anew at every point.
+
+   Parameters. mu and its slope, sliding speeds and loads leave the reduced bodies as they are. All others (moduli, densities,
+   springs, damping) need bodies of their own and hence come second: the bodies are reduced once for each value.
+
+   A transient is looked at in windows of -map_window, T. Of the total normal force f in a window: mean, rms about it, the
+   largest value, the share of the time without force and the share in which all closed pairs stick. It ends
+
+     decays   where no mode of the sliding state grows (damping of friction included), and the rms falls: in two windows in turn
+              in which no pair changes its status, so that the motion is linear, or in four of a vibration below 1 % of the
+              mean force
+     settled  where the rms of three windows in turn agrees within -map_rtol, pairs changing their status; error_estimate is
+              the largest difference between them
+     time     at -ts_max_time; numbers are means over the last half, error_estimate is the standard error of the rms from
+              window to window there, which is large for a vibration that does not repeat itself
+     failed   where the contact laws have no solution; the next point begins with its own sliding state
+
+   Regime: stable; growth, where at the end the rms still grows by half from a quarter of the time to the next; cycle; sticking,
+   a vibration in which all closed pairs stick together in more than 1 % of the time. The error of the cut-off and of the step
+   is not in error_estimate: -dynamics_verify of a transient at a point tells it.
+*/
+#pragma once
+
+#include <squeal/reduced.h>
+
+typedef struct _p_Map *Map;
+
+/*@ MapCreate - makes a map. Collective. @*/
+PetscErrorCode MapCreate(MPI_Comm comm, Map *map);
+
+/*@
+   MapSetFromOptions - reads what to vary. Collective.
+
+   Options Database Keys:
++  -map_parameter <name[,name]> - as -sweep_parameter, and also the speed and mu_slope of a contact and the force or pressure
+of a load (press_force: its length, N)
+.  -map_values <first:last:n>   - as -sweep_values: first:last:n, first:last:n:log, or v1,v2,...
+.  -map_values_2 <values>       - those of the second parameter
+.  -map_link <name,name[:...]>  - as -sweep_link: parameters of one unit that take the same value
+.  -map_direction <both>        - both, up or down along the first parameter, in the order of its values
+.  -map_window <5e-3>           - s, of which amplitude and frequency are taken
+-  -map_rtol <0.01>             - relative change of the rms below which an amplitude is settled
+@*/
+PetscErrorCode MapSetFromOptions(Map map);
+
+/*@ MapSetRooms - the reduced model and the operators of the scene, at p (referenced until MapDestroy()). Not collective. @*/
+PetscErrorCode MapSetRooms(Map map, ReducedRun reduced, Operators operators, const PetscReal p[]);
+
+/*@
+   MapSolve - all points, and map.csv as lines are finished. Collective; each rank runs lines of its own.
+
+   Errors: PETSC_ERR_USER_INPUT for names, values and scenes that cannot be.
+@*/
+PetscErrorCode MapSolve(Map map, Results results);
+
+/*@ MapView - regimes, hysteresis and cost in words. Collective. @*/
+PetscErrorCode MapView(Map map, PetscViewer viewer);
+
+/*@ MapDestroy - frees the map. Collective. @*/
+PetscErrorCode MapDestroy(Map *map);

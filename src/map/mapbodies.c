@@ -1,0 +1,135 @@
+/*
+   Bodies of a line of the map, reduced with its value of the second parameter where that is one of theirs, and what acts on them
+   at a place: friction, sliding and loads of the model that belong to the values there.
+*/
+#include "mapimpl.h"
+
+/* Copies n numbers, NULL for none */
+static PetscErrorCode RealsCopy(PetscInt n, const PetscReal from[], PetscReal **to)
+{
+  PetscFunctionBeginUser;
+  *to = NULL;
+  if (!from) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(n, to));
+  PetscCall(PetscArraycpy(*to, from, n));
+  PetscFunctionReturn(0);
+}
+
+/* The dense model of a run that will be no more */
+static PetscErrorCode MapModelCopy(const ReducedModel *from, ReducedModel *to)
+{
+  const PetscInt m = from->m, n = from->n_pairs, N = from->n_ports;
+
+  PetscFunctionBeginUser;
+  *to = *from;
+  PetscCall(RealsCopy(m, from->omega2, &to->omega2));
+  PetscCall(RealsCopy(m * m, from->C, &to->C));
+  PetscCall(RealsCopy(m * N, from->P, &to->P));
+  PetscCall(RealsCopy(N * N, from->W, &to->W));
+  PetscCall(RealsCopy(3 * n * m, from->Cm, &to->Cm));
+  PetscCall(RealsCopy(9 * n * n, from->Cx, &to->Cx));
+  PetscCall(RealsCopy(n, from->gap, &to->gap));
+  PetscCall(RealsCopy(n, from->mu, &to->mu));
+  PetscCall(RealsCopy(n, from->slope, &to->slope));
+  PetscCall(RealsCopy(n, from->speed, &to->speed));
+  PetscFunctionReturn(0);
+}
+
+/* What is kept of a reduced run */
+static PetscErrorCode MapBodiesTake(ReducedRun run, MapBodies *b)
+{
+  ReducedModel    *model;
+  const PetscReal *hits, *due;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedGetModel(run, &model));
+  PetscCall(MapModelCopy(model, &b->model));
+  PetscCall(RealsCopy(model->n_pairs, model->mu, &b->mu));
+  PetscCall(RealsCopy(model->n_pairs, model->slope, &b->slope));
+  PetscCall(RealsCopy(model->n_pairs, model->speed, &b->speed));
+  PetscCall(PetscMalloc1(model->n_pairs, &b->interface));
+  for (PetscInt i = 0; i < model->n_pairs; i++) PetscCall(ReducedGetInterface(run, i, &b->interface[i]));
+  PetscCall(ReducedGetHits(run, &b->n_hits, &hits, &due));
+  PetscCall(RealsCopy(b->n_hits * model->m, hits, &b->hits));
+  PetscCall(RealsCopy(b->n_hits, due, &b->due));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapBodiesCreate(Map map, PetscInt line, MapBodies *b)
+{
+  const OperatorsParameter *list;
+  PetscReal                *p;
+  PetscInt                  n;
+  ReducedRun                run;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(b, sizeof(*b)));
+  PetscCall(OperatorsGetParameters(map->operators, &n, &list));
+  PetscCall(PetscMalloc1(n, &p));
+  PetscCall(PetscArraycpy(p, map->p, n));
+  for (PetscInt k = 1; k < map->n_axes; k++)
+    for (PetscInt i = 0; i < map->axis[k].n_moved; i++)
+      if (map->axis[k].moved[i].kind == MAP_BODY) p[map->axis[k].moved[i].index] = map->axis[k].value[line];
+  PetscCall(ReducedReduceAt(map->reduced, 0, p, &run));
+  PetscCall(MapBodiesTake(run, b));
+  PetscCall(ReducedDestroy(&run));
+  PetscCall(PetscFree(p));
+  PetscCheck(b->n_hits > 0, map->comm, PETSC_ERR_USER_INPUT,
+             "-analysis map needs -impulses: without a blow at every point squeal would have to grow from rounding");
+  map->n_reductions++;
+  map->m       = b->model.m;
+  map->n_pairs = b->model.n_pairs;
+  PetscFunctionReturn(0);
+}
+
+/* Gives a parameter its value at a place */
+static void MapBodiesSet(MapBodies *b, const MapParameter *p, PetscReal value, PetscReal loads[])
+{
+  if (p->kind == MAP_LOAD) loads[p->index] = value / p->value;
+  for (PetscInt i = 0; i < b->model.n_pairs; i++) {
+    if (b->interface[i] != p->index) continue;
+    if (p->kind == MAP_MU) b->model.mu[i] = value;
+    if (p->kind == MAP_SLOPE) b->model.slope[i] = value;
+    if (p->kind == MAP_SPEED) b->model.speed[i] = b->speed[i] * value / p->value;
+  }
+}
+
+PetscErrorCode MapBodiesMove(Map map, const MapPoint *at, MapBodies *b, PetscReal sliding[], PetscReal loads[])
+{
+  const PetscInt n = b->model.n_pairs, index[MAP_MAX_AXES] = {at->place, at->line};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(b->model.mu, b->mu, n));
+  PetscCall(PetscArraycpy(b->model.slope, b->slope, n));
+  PetscCall(PetscArraycpy(b->model.speed, b->speed, n));
+  for (PetscInt i = 0; i < b->model.n_loads; i++) loads[i] = 1;
+  for (PetscInt k = 0; k < map->n_axes; k++)
+    for (PetscInt i = 0; i < map->axis[k].n_moved; i++)
+      MapBodiesSet(b, &map->axis[k].moved[i], map->axis[k].value[index[k]], loads);
+  for (PetscInt i = 0; i < n; i++) sliding[i] = b->model.speed[i] * map->dt;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapBodiesDestroy(MapBodies *b)
+{
+  ReducedModel *model = &b->model;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(model->omega2));
+  PetscCall(PetscFree(model->C));
+  PetscCall(PetscFree(model->P));
+  PetscCall(PetscFree(model->W));
+  PetscCall(PetscFree(model->Cm));
+  PetscCall(PetscFree(model->Cx));
+  PetscCall(PetscFree(model->gap));
+  PetscCall(PetscFree(model->mu));
+  PetscCall(PetscFree(model->slope));
+  PetscCall(PetscFree(model->speed));
+  PetscCall(PetscFree(b->mu));
+  PetscCall(PetscFree(b->slope));
+  PetscCall(PetscFree(b->speed));
+  PetscCall(PetscFree(b->interface));
+  PetscCall(PetscFree(b->hits));
+  PetscCall(PetscFree(b->due));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,203 @@
+/*
+   The axes of a map: names of parameters, links, values. Named as in sweeps; what acts on the bodies from outside comes first.
+*/
+#include "mapimpl.h"
+#include "sweep/grid.h"
+#include <squeal/options.h>
+#include <string.h>
+
+/* A name that is looked for */
+typedef struct {
+  PetscBool    found;
+  MapParameter p;
+  char         valid[2048];
+} MapSearch;
+
+/* Takes candidate <owner>_<what> where it is the name looked for, and adds it to the valid ones */
+static PetscErrorCode ParameterTry(const char name[], const char owner[], const char what[],
+                                   const MapParameter *candidate, MapSearch *search)
+{
+  MapParameter p = *candidate;
+  PetscBool    same;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(p.name, sizeof(p.name), "%s%s%s", owner, what[0] ? "_" : "", what));
+  PetscCall(PetscStrlcat(search->valid, search->valid[0] ? ", " : "", sizeof(search->valid)));
+  PetscCall(PetscStrlcat(search->valid, p.name, sizeof(search->valid)));
+  PetscCall(PetscStrcmp(p.name, name, &same));
+  if (same && !search->found) search->p = p;
+  if (same) search->found = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* Friction and speed of a contact */
+static PetscErrorCode ParameterOfContact(const char name[], const ContactInterface *c, PetscInt i, MapSearch *search)
+{
+  const MapParameter mu    = {.unit = "-", .kind = MAP_MU, .index = i, .value = c->mu};
+  const MapParameter slope = {.unit = "s/m", .kind = MAP_SLOPE, .index = i, .value = c->mu_slope};
+  const MapParameter speed = {.unit = "m/s", .kind = MAP_SPEED, .index = i, .value = c->speed};
+
+  PetscFunctionBeginUser;
+  PetscCall(ParameterTry(name, c->name, "mu", &mu, search));
+  PetscCall(ParameterTry(name, c->name, "mu_slope", &slope, search));
+  if (c->speed > 0) PetscCall(ParameterTry(name, c->name, "speed", &speed, search));
+  PetscFunctionReturn(0);
+}
+
+/* Length of a force, or a pressure */
+static PetscErrorCode ParameterOfLoad(const char name[], const Load *load, PetscInt i, MapSearch *search)
+{
+  const PetscReal force = hypot(hypot(load->force[0], load->force[1]), load->force[2]);
+  const PetscReal size  = load->is_pressure ? load->pressure : force;
+  MapParameter    p     = {.unit = load->is_pressure ? "Pa" : "N", .kind = MAP_LOAD, .index = i, .value = size};
+
+  PetscFunctionBeginUser;
+  if (size != 0) PetscCall(ParameterTry(name, load->name, load->is_pressure ? "pressure" : "force", &p, search));
+  PetscFunctionReturn(0);
+}
+
+/* Parameters of the bodies, not those of contacts */
+static PetscErrorCode ParameterOfBodies(Map map, const char name[], MapSearch *search)
+{
+  const OperatorsParameter *list;
+  PetscInt                  n;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetParameters(map->operators, &n, &list));
+  for (PetscInt i = 0; i < n; i++) {
+    const MapParameter p = {.unit = list[i].unit, .kind = MAP_BODY, .index = i, .value = map->p[i]};
+
+    if (list[i].body) PetscCall(ParameterTry(name, list[i].name, "", &p, search));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The parameter of that name; errors list the valid ones */
+static PetscErrorCode MapParameterFind(Map map, const char option[], const char name[], MapParameter *p)
+{
+  const ModelScene       *scene;
+  const ContactInterface *c;
+  PetscInt                n;
+  Model                   model;
+  Contact                 contact;
+  MapSearch               search = {.found = PETSC_FALSE};
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(map->operators, &model, &contact));
+  PetscCall(ModelGetScene(model, &scene));
+  PetscCall(ContactGetInterfaces(contact, &n, &c));
+  for (PetscInt i = 0; i < n; i++) PetscCall(ParameterOfContact(name, &c[i], i, &search));
+  for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(ParameterOfLoad(name, &scene->loads[i], i, &search));
+  PetscCall(ParameterOfBodies(map, name, &search));
+  PetscCheck(search.found, map->comm, PETSC_ERR_USER_INPUT, "%s '%s' is no parameter that a map can vary; valid are %s",
+             option, name, search.valid);
+  *p = search.p;
+  PetscFunctionReturn(0);
+}
+
+PetscBool MapAxisIsBody(const MapAxis *axis)
+{
+  for (PetscInt i = 0; i < axis->n_moved; i++)
+    if (axis->moved[i].kind == MAP_BODY) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Adds a parameter to an axis */
+static PetscErrorCode MapAxisAdd(Map map, const char option[], const char name[], MapAxis *axis)
+{
+  PetscBool same;
+
+  PetscFunctionBeginUser;
+  PetscCheck(axis->n_moved < (PetscInt)PETSC_STATIC_ARRAY_LENGTH(axis->moved), map->comm, PETSC_ERR_USER_INPUT,
+             "%s names more than %d parameters for one axis", option, (int)PETSC_STATIC_ARRAY_LENGTH(axis->moved));
+  for (PetscInt k = 0; k <= map->n_axes && k < MAP_MAX_AXES; k++)
+    for (PetscInt i = 0; i < map->axis[k].n_moved; i++)
+      PetscCheck(strcmp(map->axis[k].moved[i].name, name), map->comm, PETSC_ERR_USER_INPUT, "%s names '%s' twice",
+                 option, name);
+  PetscCall(MapParameterFind(map, option, name, &axis->moved[axis->n_moved]));
+  PetscCall(PetscStrcmp(axis->moved[0].unit, axis->moved[axis->n_moved].unit, &same));
+  PetscCheck(same, map->comm, PETSC_ERR_USER_INPUT,
+             "%s names %s, of %s, with %s, of %s: what takes the same values has the same unit", option, name,
+             axis->moved[axis->n_moved].unit, axis->moved[0].name, axis->moved[0].unit);
+  axis->n_moved++;
+  PetscFunctionReturn(0);
+}
+
+/* One link: the axis of the named parameter that it holds gets the others */
+static PetscErrorCode MapLinkTake(Map map, const char text[])
+{
+  MapAxis *axis = NULL;
+  char   **names;
+  int      n;
+
+  PetscFunctionBeginUser;
+  PetscCall(ValuesSplit(map->comm, "-map_link", text, ',', &n, &names));
+  PetscCheck(n > 1, map->comm, PETSC_ERR_USER_INPUT,
+             "-map_link '%s' must name two or more parameters, e.g. inner_mu,outer_mu", text);
+  for (PetscInt k = 0; k < map->n_axes; k++)
+    for (int i = 0; i < n; i++)
+      if (!strcmp(names[i], map->axis[k].moved[0].name)) axis = &map->axis[k];
+  PetscCheck(axis, map->comm, PETSC_ERR_USER_INPUT,
+             "-map_link '%s' does nothing: it must hold what is varied, -map_parameter %s", text, map->parameter);
+  for (int i = 0; i < n; i++)
+    if (strcmp(names[i], axis->moved[0].name)) PetscCall(MapAxisAdd(map, "-map_link", names[i], axis));
+  PetscCall(PetscStrToArrayDestroy(n, names));
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error for a value that a parameter cannot have */
+static PetscErrorCode MapValueCheck(Map map, const MapParameter *p, PetscReal value)
+{
+  PetscBool good = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  if (p->kind == MAP_BODY) PetscCall(OperatorsCheckParameter(map->operators, p->index, value));
+  if (p->kind == MAP_MU) good = value >= 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (p->kind == MAP_SPEED || p->kind == MAP_LOAD) good = value > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscCheck(good, map->comm, PETSC_ERR_USER_INPUT, "-map_values: %s %.6g must %s", p->name, (double)value,
+             p->kind == MAP_MU ? "not be negative" : "be positive");
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MapAxisValues(Map map, PetscInt k)
+{
+  static const char *const options[] = {"-map_values", "-map_values_2"};
+  MapAxis                 *axis      = &map->axis[k];
+
+  PetscFunctionBeginUser;
+  PetscCheck(map->values[k][0], map->comm, PETSC_ERR_USER_INPUT, "-map_parameter %s needs %s, e.g. first:last:n",
+             axis->moved[0].name, options[k]);
+  PetscCall(GridValuesParse(map->comm, options[k], map->values[k], &axis->n, &axis->value, &axis->ratio));
+  for (PetscInt i = 0; i < axis->n; i++)
+    for (PetscInt j = 0; j < axis->n_moved; j++) PetscCall(MapValueCheck(map, &axis->moved[j], axis->value[i]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapAxes(Map map)
+{
+  char **names;
+  int    n;
+
+  PetscFunctionBeginUser;
+  PetscCheck(map->parameter[0], map->comm, PETSC_ERR_USER_INPUT,
+             "-analysis map needs -map_parameter: one or two options of the scene, e.g. contact_mu,press_force");
+  PetscCall(ValuesSplit(map->comm, "-map_parameter", map->parameter, ',', &n, &names));
+  PetscCheck(n == 1 || n == 2, map->comm, PETSC_ERR_USER_INPUT,
+             "-map_parameter '%s' must name one or two options of the scene, e.g. contact_mu,press_force",
+             map->parameter);
+  PetscCheck((n == 2) == (map->values[1][0] != '\0'), map->comm, PETSC_ERR_USER_INPUT,
+             "-map_values_2 belongs to a second -map_parameter: give both or neither");
+  for (int k = 0; k < n; k++, map->n_axes++) PetscCall(MapAxisAdd(map, "-map_parameter", names[k], &map->axis[k]));
+  PetscCall(PetscStrToArrayDestroy(n, names));
+  if (map->linked) {
+    PetscCall(ValuesSplit(map->comm, "-map_link", map->link, ':', &n, &names));
+    for (int i = 0; i < n; i++) PetscCall(MapLinkTake(map, names[i]));
+    PetscCall(PetscStrToArrayDestroy(n, names));
+  }
+  PetscCheck(!MapAxisIsBody(&map->axis[0]), map->comm, PETSC_ERR_USER_INPUT,
+             "-map_parameter %s: %s changes the bodies, whose motion the next point cannot go on with; name it second, "
+             "after one that leaves them as they are, such as contact_mu",
+             map->parameter, map->axis[0].moved[0].name);
+  for (PetscInt k = 0; k < map->n_axes; k++) PetscCall(MapAxisValues(map, k));
+  PetscFunctionReturn(0);
+}

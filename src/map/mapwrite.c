@@ -1,0 +1,110 @@
+/*
+   map.csv: a row for each point and direction.
+*/
+#include "mapimpl.h"
+
+static const char *const regimes[MAP_N_REGIMES] = {[MAP_STABLE]   = "stable",
+                                                   [MAP_GROWTH]   = "growth",
+                                                   [MAP_STICKING] = "sticking",
+                                                   [MAP_CYCLE]    = "cycle",
+                                                   [MAP_UNKNOWN]  = "unknown"};
+static const char *const ends[MAP_N_ENDS]       = {
+        [MAP_DECAYS] = "decays", [MAP_SETTLED] = "settled", [MAP_TIME] = "time", [MAP_FAILED] = "failed"};
+
+PetscErrorCode MapTableOpen(Results results, ResultsTable *table)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ResultsTableOpen(
+    results, "map",
+    "point,parameter,value,parameter_2,value_2,direction,regime,freq_hz,freq_error_hz,force_rms_n,force_peak_n,"
+    "force_mean_n,open_share,stick_share,growth_rad_s,growth_freq_hz,index,error_estimate,steps,time_s,status",
+    table));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapTableAdd(Map map, ResultsTable table, const MapPoint *r)
+{
+  const MapAxis *x = &map->axis[0], *y = &map->axis[1];
+  char           second[192] = ",";
+
+  PetscFunctionBeginUser;
+  if (map->n_axes > 1)
+    PetscCall(PetscSNPrintf(second, sizeof(second), "%s,%.15g", y->moved[0].name, (double)y->value[r->line]));
+  PetscCall(ResultsTableRow(
+    table, "%d,%s,%.15g,%s,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%d,%.15g,%s",
+    (int)(r->line * x->n + r->place + 1), x->moved[0].name, (double)x->value[r->place], second, r->down ? "down" : "up",
+    regimes[r->regime], (double)r->freq, (double)r->freq_error, (double)r->rms, (double)r->peak, (double)r->mean,
+    (double)r->open, (double)r->stick, (double)r->growth, (double)r->mode_freq, (double)r->index, (double)r->error,
+    (int)r->steps, (double)r->time, ends[r->end]));
+  PetscFunctionReturn(0);
+}
+
+/* Rows of a regime */
+static PetscInt MapCount(Map map, MapRegime regime)
+{
+  PetscInt n = 0;
+
+  for (PetscInt i = 0; i < map->n_rows; i++) n += map->row[i].regime == regime;
+  return n;
+}
+
+static PetscBool MapVibrates(const MapPoint *row)
+{
+  return row->regime == MAP_CYCLE || row->regime == MAP_STICKING ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Points that vibrate in one direction and are stable in the other */
+static PetscInt MapCountBistable(Map map)
+{
+  PetscInt n = 0;
+
+  for (PetscInt i = 0; i < map->n_rows; i++)
+    for (PetscInt j = 0; j < map->n_rows; j++) {
+      const MapPoint *a = &map->row[i], *b = &map->row[j];
+
+      n += a->line == b->line && a->place == b->place && MapVibrates(a) && b->regime == MAP_STABLE;
+    }
+  return n;
+}
+
+static PetscErrorCode MapViewAxis(const MapAxis *axis, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  %s", axis->moved[0].name));
+  for (PetscInt i = 1; i < axis->n_moved; i++) PetscCall(PetscViewerASCIIPrintf(viewer, ", %s", axis->moved[i].name));
+  PetscCall(PetscViewerASCIIPrintf(viewer, " %.6g to %.6g %s, %" PetscInt_FMT " values%s\n", (double)axis->value[0],
+                                   (double)axis->value[axis->n - 1], axis->moved[0].unit, axis->n,
+                                   MapAxisIsBody(axis) ? ", bodies reduced for each" : ""));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapView(Map map, PetscViewer viewer)
+{
+  PetscReal steps = 0;
+  PetscInt  early = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < map->n_rows; i++) {
+    steps += (PetscReal)map->row[i].steps;
+    early += map->row[i].end == MAP_DECAYS || map->row[i].end == MAP_SETTLED;
+  }
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer,
+    "map: %" PetscInt_FMT " transients of %" PetscInt_FMT " modes below %.6g Hz and %" PetscInt_FMT
+    " pairs, steps of %.6g s, of at most %.6g s each\n",
+    map->n_rows, map->m, (double)map->cutoff, map->n_pairs, (double)map->dt, (double)map->end));
+  for (PetscInt k = 0; k < map->n_axes; k++) PetscCall(MapViewAxis(&map->axis[k], viewer));
+  PetscCall(PetscViewerASCIIPrintf(viewer, " "));
+  for (int k = 0; k < MAP_N_REGIMES; k++)
+    PetscCall(PetscViewerASCIIPrintf(viewer, " %s %" PetscInt_FMT "%s", regimes[k], MapCount(map, (MapRegime)k),
+                                     k + 1 < MAP_N_REGIMES ? "," : "\n"));
+  if (map->direction == MAP_BOTH)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " points vibrate one way and are stable the other\n",
+                                     MapCountBistable(map)));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "  %" PetscInt_FMT " transients ended before their time, their regime known; %.0f "
+                                   "steps, %.3g s; %" PetscInt_FMT " reductions of the bodies, %.3g s\n",
+                                   early, (double)steps, (double)map->seconds[1], map->n_reductions,
+                                   (double)map->seconds[0]));
+  PetscFunctionReturn(0);
+}
