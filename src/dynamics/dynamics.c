@@ -12,6 +12,7 @@ PetscErrorCode DynamicsCreate(MPI_Comm comm, Dynamics *dynamics)
   (*dynamics)->comm            = comm;
   (*dynamics)->fraction        = 0.9;
   (*dynamics)->shape_mode      = 1;
+  (*dynamics)->laws.interval   = 100000;
   (*dynamics)->shape_amplitude = 1e-9;
   PetscCall(TSCreate(comm, &(*dynamics)->ts));
   PetscCall(TSSetType((*dynamics)->ts, TSCENTRAL));
@@ -156,16 +157,15 @@ static PetscErrorCode DynamicsSetUpPoints(Dynamics d)
 
 static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
 {
-  PetscReal   end, dt;
-  const Mesh *mesh;
+  PetscReal end, dt;
 
   PetscFunctionBeginUser;
   PetscCheck(d->model, d->comm, PETSC_ERR_USER_INPUT,
              "-analysis transient needs a mesh: loaded matrices have no contact surfaces");
   d->results = results;
   if (!d->restart) PetscCall(DynamicsCheckEarlier(d));
-  PetscCall(ModelGetMesh(d->model, &mesh));
-  d->n_elements = mesh->n_cells;
+  PetscCall(ModelGetMesh(d->model, &d->mesh));
+  d->n_elements = d->mesh->n_cells;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &d->n_elements, 1, MPIU_INT, MPI_SUM, d->comm));
   PetscCall(BodiesSetUp(d->bodies, d->operators));
   PetscCall(BodiesGetLayout(d->bodies, &d->layout));
@@ -201,6 +201,7 @@ static PetscErrorCode DynamicsAfterStep(TS ts)
   PetscCall(TSGetApplicationContext(ts, &d));
   PetscCall(TSGetStepNumber(ts, &n));
   d->n_steps++;
+  PetscCall(DynamicsLookEnd(d));
   if (n % STOP_INTERVAL == 0) {
     stop = StopRequested();
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPIU_BOOL, MPI_LOR, d->comm));

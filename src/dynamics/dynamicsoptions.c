@@ -70,6 +70,10 @@ static PetscErrorCode DynamicsRunFromOptions(Dynamics d, OptionsItems PetscOptio
                            "print the residuals of the contact laws at the end", &d->view_kkt));
   PetscCall(PetscOptionsInt("-dynamics_checkpoint_interval", "steps between checkpoints, 0 for none", "dynamics.h",
                             d->checkpoint_interval, &d->checkpoint_interval, NULL));
+  PetscCall(PetscOptionsInt("-dynamics_check_interval", "steps between looks at the laws by second paths, 0 for none",
+                            "dynamics.h", d->laws.interval, &d->laws.interval, NULL));
+  PetscCheck(d->laws.interval >= 0, d->comm, PETSC_ERR_USER_INPUT,
+             "-dynamics_check_interval %" PetscInt_FMT " must be a number of steps, 0 for none", d->laws.interval);
   PetscCheck(d->checkpoint_interval >= 0, d->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_checkpoint_interval %" PetscInt_FMT " must be a number of steps, 0 for none",
              d->checkpoint_interval);

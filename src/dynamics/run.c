@@ -8,8 +8,9 @@
    command line */
 static PetscErrorCode RunRefuse(Dynamics d, const char by[])
 {
-  static const char *const idle[]     = {"-ts_central_b",    "-dynamics_step_fraction", "-dynamics_step_force",
-                                         "-dynamics_kernel", "-projector_max_it",       "-projector_rtol"};
+  static const char *const idle[]     = {"-ts_central_b",    "-dynamics_step_fraction",  "-dynamics_step_force",
+                                         "-dynamics_kernel", "-dynamics_check_interval", "-projector_max_it",
+                                         "-projector_rtol"};
   static const char *const prefixes[] = {"-ts_monitor", "-ts_view", "-ts_adapt_", "-ts_trajectory_", "-ts_event_"};
   char                     why[160];
 

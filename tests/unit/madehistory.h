@@ -104,7 +104,9 @@ static inline void MadeState(Made *m, PetscInt n, const Ledger *ledger, HistoryS
 /* Records step n with energies and contact sums that depend on n alone */
 static inline PetscErrorCode MadeRecord(Made *m, History history, PetscInt n)
 {
-  const Ledger      ledger = {n + 0.25, 2, 3, 4, 5, 6, 7, 8, 0, 9, 10, 0};
+  const Ledger ledger = {
+    n + 0.25, 2, 3, 4, 5, 6, 7, 8, 0, 9, 10, 0, {11, 12, 13, 14, 15}
+  };
   const ContactSums sums[] = {
     {.n = {1, 2, 3}, .normal = 100 + n, .friction = 20, .residual = 1e-11, .sweeps = 3 * n * n, .steps = n},
     {.n = {4, 5, 6}, .normal = 0.5,     .friction = 7,  .residual = 2e-11, .sweeps = 5 * n * n, .steps = n},

@@ -151,6 +151,7 @@ static PetscErrorCode RootProject(ContactProjector p, const ContactStep *step, P
     NodesPredict(p, step->dt);
     head[HEAD_SEARCH] = ProjectorNeedsSearch(p, p->nodes.predicted) ? 1 : 0;
   }
+  p->noise            = convergence.noise / step->kick;
   head[HEAD_RESIDUAL] = convergence.residual;
   head[HEAD_SWEEPS]   = (PetscReal)convergence.sweeps;
   head[HEAD_FAILED]   = convergence.converged ? 0 : 1;
@@ -176,6 +177,7 @@ PetscErrorCode ContactProject(ContactProjector p, const ContactStep *step, const
   PetscReal head[SHARE_HEAD] = {0};
 
   PetscFunctionBeginUser;
+  p->last = *step;
   PetscCall(ShareGather(&p->share, 3, (const PetscReal *const[]){u, before, v},
                         (PetscReal *const[]){p->nodes.u, p->nodes.before, p->nodes.v}));
   PetscCall(RootProject(p, step, head));

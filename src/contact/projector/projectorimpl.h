@@ -141,7 +141,9 @@ struct _p_ContactProjector {
   PetscReal       *slave_x;            /* [n_pairs][3] their places */
   ContactSums      sums[CONTACT_MAX];
   /* on all ranks */
-  PetscBool search_next; /* all nodes are active, and the next step begins with a search */
+  PetscReal   noise;      /* rounding of its forces, N; on the root */
+  ContactStep last;        /* the step made */
+  PetscBool   search_next; /* all nodes are active, and the next step begins with a search */
 };
 
 /* sliding.c - options of the sliding of interface i, after its own ones */

@@ -170,6 +170,16 @@ PetscErrorCode BodiesApply(Bodies b, const PetscReal x[], PetscReal kx[], PetscR
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode BodiesGetElementForces(Bodies b, const PetscReal u[], PetscReal ku[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(ku, b->layout.n));
+  PetscCall(BodiesCellsAddForces(b, u, ku));
+  PointsAddForces(b, u, ku);
+  PetscCall(JointsAddForces(b, u, ku));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BodiesSetState(Bodies b, const PetscReal u[], const PetscReal v[], PetscReal ku[])
 {
   BodiesWork w = {.dt = 0, .u = u, .v = (PetscReal *)v, .ku = b->work[0], .f = b->work[1], .d = b->layout.damping};
@@ -179,10 +189,17 @@ PetscErrorCode BodiesSetState(Bodies b, const PetscReal u[], const PetscReal v[]
     PetscCall(PetscArrayzero(b->work[0], b->layout.n));
     for (int early = 1; early >= 0; early--) PetscCall(BodiesAdvanceKernels(b, (PetscBool)early, &w));
   }
-  PetscCall(PetscArrayzero(ku, b->layout.n));
-  PetscCall(BodiesCellsAddForces(b, u, ku));
-  PointsAddForces(b, u, ku);
-  PetscCall(JointsAddForces(b, u, ku));
+  PetscCall(BodiesGetElementForces(b, u, ku));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesGetGroundForces(Bodies b, const PetscReal u[], PetscReal g[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(g, b->layout.n));
+  PointsAddForces(b, u, g);
+  PetscCall(JointsAddForces(b, u, g));
+  for (PetscInt i = 0; i < b->layout.n && b->damped; i++) g[i] += b->layout.damping[i];
   PetscFunctionReturn(0);
 }
 

@@ -4,7 +4,7 @@
 */
 #include "historyimpl.h"
 
-#define N_FIRST     17 /* columns before those of interfaces and probes */
+#define N_FIRST     22 /* columns before those of interfaces and probes */
 #define N_PER_FACE  2
 #define N_PER_PROBE 9
 #define NAME_ROOM   40 /* characters of a column besides the name of its interface or probe */
@@ -12,7 +12,7 @@
 static const char first_columns[] =
   "time_s,normal_force_n,friction_force_n,n_closed,n_stick,kinetic_j,strain_j,external_work_j,friction_work_j,"
   "contact_work_j,damping_work_j,energy_error_j,integrator_work_j,friction_heat_j,n_open,projector_residual,"
-  "projector_sweeps";
+  "projector_sweeps,looks,stiffness_error,friction_error,momentum_error,moment_error";
 static const char *const face_columns[N_PER_FACE]   = {"normal_force_n", "friction_force_n"};
 static const char *const probe_columns[N_PER_PROBE] = {"x_m",    "y_m",     "z_m",     "vx_m_s", "vy_m_s",
                                                        "vz_m_s", "ax_m_s2", "ay_m_s2", "az_m_s2"};
@@ -93,6 +93,11 @@ static void HistoryRowLedger(const Ledger *ledger, PetscReal row[N_FIRST])
   row[11] = ledger->error;
   row[12] = ledger->integrator;
   row[13] = ledger->heat;
+  row[17] = ledger->laws.looks;
+  row[18] = ledger->laws.stiffness;
+  row[19] = ledger->laws.friction;
+  row[20] = ledger->laws.momentum;
+  row[21] = ledger->laws.moment;
 }
 
 /* Motions of the probes, [n_probes][9], on rank 0; each is known to one rank */

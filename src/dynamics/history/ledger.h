@@ -6,16 +6,25 @@
 #include "dynamics/external/external.h"
 #include <squeal/projector.h>
 
+/* What the balance of energy cannot see, since it closes with any forces: the worst so far of what laws.h looks at, relative */
+typedef struct {
+  PetscReal looks;            /* steps looked at */
+  PetscReal stiffness;        /* K u kept by the kernels beside that of the elements */
+  PetscReal friction;         /* work of friction beside Coulomb's law on the slip by places */
+  PetscReal momentum, moment; /* change of the momenta beside the sum of what acts */
+} LedgerLaws;
+
 /* Over all ranks */
 typedef struct {
-  PetscReal kinetic, strain;             /* present */
-  PetscReal external, friction, contact; /* works on the bodies since the start */
-  PetscReal damping, integrator;         /* likewise; negative takes energy away */
-  PetscReal heat;                        /* dissipated by slip, >= 0 */
-  PetscReal start;                       /* kinetic + strain at the first half step */
-  PetscReal error;                       /* kinetic + strain - start - works */
-  PetscReal throughput;                  /* the largest of all the above so far, that errors are relative to */
-  PetscReal predicted; /* what contact took within one step, at most: rounding of it is left where nothing moves */
+  PetscReal  kinetic, strain;             /* present */
+  PetscReal  external, friction, contact; /* works on the bodies since the start */
+  PetscReal  damping, integrator;         /* likewise; negative takes energy away */
+  PetscReal  heat;                        /* dissipated by slip, >= 0 */
+  PetscReal  start;                       /* kinetic + strain at the first half step */
+  PetscReal  error;                       /* kinetic + strain - start - works */
+  PetscReal  throughput;                  /* the largest of all the above so far, that errors are relative to */
+  PetscReal  predicted; /* what contact took within one step, at most: rounding of it is left where nothing moves */
+  LedgerLaws laws;
 } Ledger;
 
 /* This rank's part, gathered step by step: works since the start */
