@@ -2,7 +2,15 @@
 #include "chain.h"
 #include "solver/shiftinvert.h"
 
-static const char *const analyses[N_ANALYSES] = {"modes", "sweep", "static", "transient", "frf", "map"};
+static const char *const analyses[N_ANALYSES] = {"modes", "sweep", "static", "transient", "frf", "map", "cycle"};
+
+/* Whether the analysis is a run in time, or is made of such runs */
+static PetscBool ChainIsInTime(const Chain *chain)
+{
+  const Analysis a = chain->analysis;
+
+  return a == ANALYSIS_TRANSIENT || a == ANALYSIS_MAP || a == ANALYSIS_CYCLE ? PETSC_TRUE : PETSC_FALSE;
+}
 
 /* What every analysis needs */
 static PetscErrorCode ChainCreateScene(MPI_Comm comm, Chain *chain)
@@ -51,6 +59,9 @@ static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
   PetscCall(MapCreate(comm, &chain->map));
   PetscCall(MapSetFromOptions(chain->map));
   PetscCall(OptionsClaim(chain->claims, READER_MAP));
+  PetscCall(CycleCreate(comm, &chain->cycle));
+  PetscCall(CycleSetFromOptions(chain->cycle));
+  PetscCall(OptionsClaim(chain->claims, READER_CYCLE));
   PetscCall(StaticsCreate(comm, &chain->statics));
   PetscCall(StaticsSetFromOptions(chain->statics));
   PetscCall(OptionsClaim(chain->claims, READER_STATICS));
@@ -86,6 +97,7 @@ PetscErrorCode ChainDestroy(Chain *chain)
   PetscCall(OptionsClaimsDestroy(&chain->claims));
   PetscCall(ResultsDestroy(&chain->results));
   PetscCall(MapDestroy(&chain->map));
+  PetscCall(CycleDestroy(&chain->cycle));
   PetscCall(ReducedDestroy(&chain->reduced));
   PetscCall(DynamicsDestroy(&chain->dynamics));
   PetscCall(FrfDestroy(&chain->frf));
@@ -105,8 +117,9 @@ PetscErrorCode ChainCheckOptions(MPI_Comm comm, const Chain *chain)
   const Analysis analysis = chain->analysis;
   const Scope    scope    = {.analysis  = analyses[analysis],
                              .sweep     = analysis == ANALYSIS_SWEEP,
-                             .transient = analysis == ANALYSIS_TRANSIENT || analysis == ANALYSIS_MAP,
+                             .transient = ChainIsInTime(chain),
                              .map       = analysis == ANALYSIS_MAP,
+                             .cycle     = analysis == ANALYSIS_CYCLE,
                              .frf       = analysis == ANALYSIS_FRF,
                              .modes     = analysis <= ANALYSIS_SWEEP || analysis == ANALYSIS_FRF,
                              .model     = chain->model,
@@ -142,9 +155,8 @@ static PetscErrorCode ChainNeedsMatrices(const Chain *chain, PetscBool pairs, Pe
 /* Model, pairs and terms */
 static PetscErrorCode ChainAssemble(Chain *chain)
 {
-  const PetscBool transient =
-    chain->analysis == ANALYSIS_TRANSIENT || chain->analysis == ANALYSIS_MAP ? PETSC_TRUE : PETSC_FALSE;
-  PetscBool pairs = PETSC_TRUE, reduced = PETSC_FALSE, matrices = PETSC_TRUE;
+  const PetscBool transient = ChainIsInTime(chain);
+  PetscBool       pairs = PETSC_TRUE, reduced = PETSC_FALSE, matrices = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   if (transient) PetscCall(DynamicsNeedsPairs(chain->dynamics, &pairs));
@@ -201,6 +213,7 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscCall(StaticsSetOperators(chain->statics, chain->operators));
   PetscCall(DynamicsSetOperators(chain->dynamics, chain->operators, chain->statics));
   PetscCall(ReducedSetRooms(chain->reduced, chain->dynamics, chain->modes));
+  PetscCall(CycleSetReduced(chain->cycle, chain->reduced));
   PetscCall(ModesGetContact(chain->modes, &is_static));
   PetscCall(StaticsCheckUse(chain->statics, is_static && chain->analysis != ANALYSIS_STATIC));
   PetscCall(OperatorsCreatePoint(chain->operators, &chain->p));
@@ -264,7 +277,8 @@ PetscErrorCode ChainRun(Chain *chain)
     [ANALYSIS_STATIC]    = {SQUEAL_STATICS,  SHOWN_STATICS },
     [ANALYSIS_TRANSIENT] = {SQUEAL_DYNAMICS, SHOWN_DYNAMICS},
     [ANALYSIS_FRF]       = {SQUEAL_FRF,      SHOWN_FRF     },
-    [ANALYSIS_MAP]       = {SQUEAL_DYNAMICS, SHOWN_MAP     }
+    [ANALYSIS_MAP]       = {SQUEAL_DYNAMICS, SHOWN_MAP     },
+    [ANALYSIS_CYCLE]     = {SQUEAL_DYNAMICS, SHOWN_CYCLE   }
   };
   const Analysis analysis = chain->analysis;
 
@@ -283,9 +297,10 @@ PetscErrorCode ChainRun(Chain *chain)
   if (analysis == ANALYSIS_TRANSIENT) PetscCall(ChainIntegrate(chain));
   if (analysis == ANALYSIS_FRF) PetscCall(FrfSolve(chain->frf));
   if (analysis == ANALYSIS_MAP) PetscCall(MapSolve(chain->map, chain->results));
+  if (analysis == ANALYSIS_CYCLE) PetscCall(CycleSolve(chain->cycle, chain->results));
   PetscCall(SquealStageEnd(run[analysis].stage));
   PetscCall(ChainShow(chain, run[analysis].shown, PETSC_TRUE));
-  if (analysis == ANALYSIS_TRANSIENT || analysis == ANALYSIS_MAP) PetscFunctionReturn(0); /* which write as they go */
+  if (ChainIsInTime(chain)) PetscFunctionReturn(0); /* which write as they go */
   PetscCall(SquealStageBegin(SQUEAL_RESULTS));
   if (analysis == ANALYSIS_MODES) PetscCall(ModesWrite(chain->modes, chain->results));
   if (analysis == ANALYSIS_SWEEP) PetscCall(SweepWrite(chain->sweep, chain->results));

@@ -10,6 +10,7 @@ typedef enum {
   ANALYSIS_TRANSIENT,
   ANALYSIS_FRF,
   ANALYSIS_MAP,
+  ANALYSIS_CYCLE,
   N_ANALYSES
 } Analysis;
 
@@ -24,6 +25,7 @@ typedef enum {
   SHOWN_FRF,
   SHOWN_DYNAMICS,
   SHOWN_MAP,
+  SHOWN_CYCLE,
   N_SHOWN
 } Shown;
 
@@ -42,6 +44,7 @@ typedef struct {
   Dynamics      dynamics;
   ReducedRun    reduced; /* the same runs on few coordinates, where asked for */
   Map           map;
+  LimitCycle    cycle; /* limit cycles of it */
   Results       results;
   Analysis      analysis;
   OptionsClaims claims; /* who read what stands on the command line */

@@ -16,6 +16,7 @@ static const struct {
   [SHOWN_FRF]       = {"-frf_view",       "show the frequency response and its peaks",               1 << ANALYSIS_FRF                      },
   [SHOWN_MAP]       = {"-map_view",       "show regimes and cost of a map",                          1 << ANALYSIS_MAP                      },
   [SHOWN_DYNAMICS]  = {"-dynamics_view",  "show bodies, step and balances of a run in time",         1 << ANALYSIS_TRANSIENT                },
+  [SHOWN_CYCLE]     = {"-cycle_view",     "show cycles, their stability and errors",                 1 << ANALYSIS_CYCLE                    },
 };
 
 PetscErrorCode ChainGetViewers(MPI_Comm comm, Chain *chain)
@@ -60,6 +61,7 @@ static PetscErrorCode ShownView(Chain *chain, Shown what, PetscViewer viewer)
   if (what == SHOWN_FRF) PetscCall(FrfView(chain->frf, viewer));
   if (what == SHOWN_DYNAMICS) PetscCall(TransientView(chain, viewer));
   if (what == SHOWN_MAP) PetscCall(MapView(chain->map, viewer));
+  if (what == SHOWN_CYCLE) PetscCall(CycleView(chain->cycle, viewer));
   PetscFunctionReturn(0);
 }
 
@@ -79,7 +81,7 @@ PetscErrorCode ChainView(Chain *chain)
 {
   PetscFunctionBeginUser;
   if (chain->model) PetscCall(ChainShow(chain, SHOWN_MODEL, chain->view));
-  if (chain->contact && chain->analysis != ANALYSIS_TRANSIENT && chain->analysis != ANALYSIS_MAP)
+  if (chain->contact && chain->analysis != ANALYSIS_TRANSIENT && chain->analysis < ANALYSIS_MAP)
     PetscCall(ChainShow(chain, SHOWN_CONTACT, chain->view));
   if (LINEAR >> chain->analysis & 1) PetscCall(ChainShow(chain, SHOWN_OPERATORS, chain->view));
   PetscFunctionReturn(0);

@@ -241,6 +241,7 @@ PetscErrorCode ScopeCheck(MPI_Comm comm, const Scope *s, OptionsClaims claims)
     [READER_FRF]       = {s->frf,       "-analysis frf"                                                             },
     [READER_DYNAMICS]  = {s->transient, "-analysis transient"                                                       },
     [READER_MAP]       = {s->map,       "-analysis map"                                                             },
+    [READER_CYCLE]     = {s->cycle,     "-analysis cycle"                                                           },
   };
   PetscBool statics, reduced;
 

@@ -15,13 +15,14 @@ typedef enum {
   READER_FRF,
   READER_DYNAMICS,
   READER_MAP,
+  READER_CYCLE,
   N_READERS
 } Reader;
 
 /* A run; model and contact are NULL for matrices without a mesh */
 typedef struct {
   const char *analysis;
-  PetscBool   modes, sweep, frf, transient, map;
+  PetscBool   modes, sweep, frf, transient /* and what is made of such runs */, map, cycle;
   Model       model;
   Contact     contact;
   Operators   operators;

@@ -32,7 +32,7 @@ BELOW |= {"results": {"base", "kernels", "results"},
           "dynamics": {"base", "kernels", "model", "contact", "operators", "statics", "results", "dynamics"}}
 LAYERS = {"dense": {"dense"}, "basis": {"dense", "basis"}, "track": {"dense", "track"}}
 # Public headers of which the name is not their room's
-ROOM_OF_HEADER = {"checksum": "base", "contactstatus": "kernels", "elasticity": "kernels", "element": "kernels",
+ROOM_OF_HEADER = {"checksum": "base", "cycle": "reduced", "contactstatus": "kernels", "elasticity": "kernels", "element": "kernels",
                   "joint": "kernels", "material": "kernels", "mesh": "kernels", "options": "base",
                   "pencil": "operators", "projector": "contact", "sys": "base"}
 # Signatures that a library lays down

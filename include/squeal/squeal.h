@@ -16,4 +16,5 @@
 #include <squeal/dynamics.h>
 #include <squeal/reduced.h>
 #include <squeal/map.h>
+#include <squeal/cycle.h>
 #include <squeal/results.h>

@@ -115,6 +115,18 @@ PETSC_INTERN PetscReal ReducedPortDisplacement(const ReducedModel *model, const 
 PETSC_INTERN void ReducedBlockTimes(const DenseBlock *A, PetscBool transposed, PetscReal scale, const PetscReal x[],
                                     PetscReal y[]);
 
+/* z_{n+1}, q_{n+1} and y_{n+1} of a state without loads, lambda_n in `last` and lambda_{n+1} in p: the linear part of a step */
+PETSC_INTERN void ReducedStepRespond(ReducedStepper stepper, const ReducedState *state, PetscReal next[], PetscReal q[],
+                                     PetscReal y[]);
+
+/* steptangent.c - derivative of the last step: x = (eta, rate, lambda, q where the residual is damped) of so many numbers;
+   the changes X [columns][size] at t_n, at most as many as numbers, become those at t_{n+1} */
+typedef struct _p_ReducedTangent *ReducedTangent;
+PETSC_INTERN PetscInt             ReducedTangentSize(const ReducedModel *model);
+PETSC_INTERN PetscErrorCode       ReducedTangentCreate(ReducedStepper stepper, ReducedTangent *tangent);
+PETSC_INTERN PetscErrorCode       ReducedTangentApply(ReducedTangent tangent, PetscInt columns, PetscReal X[]);
+PETSC_INTERN PetscErrorCode       ReducedTangentDestroy(ReducedTangent *tangent);
+
 /* bodymodes.c - modes of the unconnected bodies below the cut-off: omega2, C and the vectors */
 PETSC_INTERN PetscErrorCode ReducedFindModes(ReducedRun reduced);
 /* M Phi of the modes that there are */

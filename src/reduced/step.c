@@ -161,6 +161,23 @@ static void StepperSetMean(ReducedStepper s, const ReducedState *state, PetscBoo
     s->mean[i] = 0.5 * (state->last[i] + (i < n && without ? 0 : state->p[i]));
 }
 
+void ReducedStepRespond(ReducedStepper s, const ReducedState *state, PetscReal next[], PetscReal q[], PetscReal y[])
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * model->n_pairs;
+
+  (void)StepperKick(s, NULL, state);
+  StepperSetMean(s, state, PETSC_FALSE);
+  StepperSolveResidual(s, state);
+  for (PetscInt i = 0; i < 2 * m; i++) next[i] = s->next[i];
+  for (PetscInt i = 0; i < n; i++) {
+    q[i] = s->q[i];
+    y[i] = 0;
+  }
+  ReducedBlockTimes(&(DenseBlock){model->P, m, n, m}, PETSC_TRUE, 1, next, y);
+  ReducedBlockTimes(&(DenseBlock){model->W, n, n, model->n_ports}, PETSC_FALSE, 1, q, y);
+}
+
 /* Free displacements P eta + W q + W loads, and what slip counts from */
 static void StepperSetFree(ReducedStepper s, const ReducedDrive *drive, const ReducedState *state)
 {

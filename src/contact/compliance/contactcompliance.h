@@ -100,6 +100,21 @@ PETSC_INTERN PetscErrorCode ContactComplianceSolve(ContactCompliance compliance,
                                                    const PetscReal slip0[], PetscReal lambda[], PetscReal r[],
                                                    ComplianceReport *report);
 
+/*@
+   ContactComplianceTangent - derivative of the forces of the last step, which must have converged. Not collective.
+
+   Input Parameters:
++  n  - columns
+-  dv - changes of q, along the tangents less those of slip0, m, [n][pairs][3]
+
+   Output Parameter:
+.  dlambda - changes of lambda, N, [n][pairs][3]
+
+   Errors: PETSC_ERR_MAT_LU_ZRPVT where the compliance of the closed pairs is singular.
+@*/
+PETSC_INTERN PetscErrorCode ContactComplianceTangent(ContactCompliance compliance, PetscInt n, const PetscReal dv[],
+                                                     PetscReal dlambda[]);
+
 /*@ ContactComplianceGetStatus - of the pairs in the last step, [n] (borrowed until the next). Not collective. @*/
 PETSC_INTERN PetscErrorCode ContactComplianceGetStatus(ContactCompliance compliance, const ContactStatus **status);
 

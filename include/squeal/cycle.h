@@ -1,0 +1,54 @@
+/*
+   Cycle - limit cycles of the reduced model (reduced.h) directly: a periodic motion under constant loads and sliding, by
+   shooting with Newton's method, its stability by Floquet multipliers, and the branch of such cycles over a friction
+   coefficient through folds.
+
+   The state x = (eta, rate, lambda, q) at t_n is all that a step knows of the past. N steps of length T / N are the map
+   Phi(x, T, mu); its derivative M = dPhi/dx is the product of the derivatives of the steps, exact where no status of a pair
+   changes at once: the laws are solved for the statuses that each step ended with. Then (solver/shooting.h)
+
+      Phi(x, T, mu) = x,     phase,     and along a branch the distance in (eta, rate, T, mu): pseudo-arclength.
+
+   A cycle is stable where all eigenvalues of M but that of the phase lie inside the unit circle. The phase's is 1 in
+   continuous time; steps in which pairs open and close break the symmetry in time, and it is off by their length.
+
+   Directions in which nothing holds the bodies, so that a shift changes no force, are taken out: without that M - I is singular.
+
+   The error of a cycle is its difference to that of 2 N steps.
+*/
+#pragma once
+
+#include <squeal/reduced.h>
+
+typedef struct _p_LimitCycle *LimitCycle;
+
+/*@ CycleCreate - makes a solver of cycles. Collective. @*/
+PetscErrorCode CycleCreate(MPI_Comm comm, LimitCycle *cycle);
+
+/*@
+   CycleSetFromOptions - reads what is looked for. Collective.
+
+   Options Database Keys:
++  -cycle_steps <0>        - steps in a period; 0: as long as those of the transient
+.  -cycle_rtol <1e-9>      - of Phi - x, relative to the size of the vibration
+.  -cycle_max_it <30>      - of Newton's method
+-  -cycle_verify <true>    - once more with twice the steps, for the errors
+@*/
+PetscErrorCode CycleSetFromOptions(LimitCycle cycle);
+
+/*@ CycleSetReduced - the reduced run, at whose end a cycle is looked for (borrowed). Collective. @*/
+PetscErrorCode CycleSetReduced(LimitCycle cycle, ReducedRun reduced);
+
+/*@
+   CycleSolve - runs the transient, finds the cycle at its end and the branch, and writes cycle.csv. Collective.
+
+   Errors: those of ReducedIntegrate(); PETSC_ERR_USER_INPUT where loads or sliding still change, for a transient that ends at rest, or with a
+   motion that does not return; PETSC_ERR_NOT_CONVERGED from shooting.
+@*/
+PetscErrorCode CycleSolve(LimitCycle cycle, Results results);
+
+/*@ CycleView - cycles, stability and errors in words. Collective. @*/
+PetscErrorCode CycleView(LimitCycle cycle, PetscViewer viewer);
+
+/*@ CycleDestroy - frees it. Collective. @*/
+PetscErrorCode CycleDestroy(LimitCycle *cycle);

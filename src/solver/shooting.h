@@ -1,0 +1,83 @@
+/*
+   Shooting - periodic solutions of autonomous systems by Newton's method, their stability, branches of them. Private to
+   the rooms above solver/. Dense: hundreds of unknowns. No MPI, no options.
+
+   A flow takes a state x [n] through a time T at a value p of a parameter: y = Phi(x, T, p). Cycles obey
+
+      Phi(x, T, p) = x,     c . (x - x0) = 0,     c = S^2 dPhi/dT at the guess x0, S diagonal: the phase.
+
+   Newton's equations, with M = dPhi/dx, f = dPhi/dT, g = dPhi/dp and a third row that fixes p, or the distance along a
+   branch with the tangent t = (t_x, t_T, t_p) at y = (x, T, p) predicted (pseudo-arclength; H. B. Keller, Applications of
+   Bifurcation Theory, 1977, 359):
+
+      [M - I    f    g  ] [dx]   [x - Phi                 ]
+      [c        0    0  ] [dT] = [-c . (x - x0)           ]
+      [t_x S^2 ..       ] [dp]   [-<t, y - y_predicted>   ]
+
+   Where the flow is the same after any shift along e (a body that nothing holds along a flat contact), M e = e for every motion, and
+   Phi = x is asked for but for a drift d e, a further unknown; S^2 e . dx = 0.
+
+   f and g are central differences of the flow. Eigenvalues of M (Floquet multipliers) tell stability: one is that of the
+   phase, 1 but for the discretisation of the flow (with steps that break the symmetry in time it is off by their order); the
+   cycle is stable where all others lie inside the unit circle.
+*/
+#pragma once
+
+#include <petscsys.h>
+
+/* y [n]; M [n][n] by columns, or NULL */
+typedef PetscErrorCode (*ShootingFlow)(void *ctx, const PetscReal x[], PetscReal period, PetscReal value, PetscReal y[],
+                                       PetscReal M[]);
+
+typedef struct {
+  PetscInt     n;
+  ShootingFlow flow;
+  void        *ctx;
+  PetscReal   *size;   /* [n] of what changes in a cycle: residuals are divided by it */
+  PetscReal   *weight; /* [n] S: 1 / size where the phase and the arclength count x, else 0 */
+  PetscReal    span;   /* of the parameter, likewise */
+  PetscInt     n_free; /* directions in which a shift changes nothing: a cycle may drift along them */
+  PetscReal   *free;   /* [n_free][n], orthonormal in S x, the caller's */
+  PetscReal    rtol;   /* of |(Phi - x) / size| */
+  PetscInt     max_it;
+  PetscBool    phase_free; /* a state of rest: T is given, and no phase is asked for */
+} Shooting;
+
+/* A cycle, or a guess of it */
+typedef struct {
+  PetscReal *x; /* [n], the caller's */
+  PetscReal *M; /* [n][n] at x, the caller's */
+  PetscReal  period, value;
+  PetscReal  residual;
+  PetscInt   its;
+  PetscBool  converged;
+} ShootingCycle;
+
+/* Direction of a branch, of unit length in (S x, T / period, p / span) */
+typedef struct {
+  PetscReal *x; /* [n], the caller's */
+  PetscReal  period, value;
+} ShootingTangent;
+
+/* Multipliers but that of the phase */
+typedef struct {
+  PetscReal phase[2];   /* the one that is nearest to 1 */
+  PetscReal largest[2]; /* of the others */
+} ShootingStability;
+
+/*@ ShootingSolve - the cycle near a guess, at its value of the parameter. Not collective. That it does not converge is
+    told by `converged`; then x is the best that was seen. @*/
+PETSC_INTERN PetscErrorCode ShootingSolve(const Shooting *s, ShootingCycle *cycle);
+
+/*@ ShootingGetStability - multipliers of a cycle that has converged. Not collective. @*/
+PETSC_INTERN PetscErrorCode ShootingGetStability(const Shooting *s, const ShootingCycle *cycle,
+                                                 ShootingStability *stability);
+
+/*@ ShootingGetTangent - direction of the branch at a cycle, along which the tangent before (of length 0 for none, then p
+    grows) goes on. Not collective. @*/
+PETSC_INTERN PetscErrorCode ShootingGetTangent(const Shooting *s, const ShootingCycle *cycle, ShootingTangent *tangent);
+
+/*@ ShootingAdvance - the cycle at a distance along a branch, in place of `cycle`, which stays what it was where there is
+    none (converged is then false). Folds are passed. Not collective. @*/
+PETSC_INTERN PetscErrorCode ShootingAdvance(const Shooting *s, PetscReal step, const ShootingTangent *tangent,
+                                            ShootingCycle *cycle);

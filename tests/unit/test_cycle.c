@@ -1,0 +1,192 @@
+/*
+   Unit test of reduced/cycle: an oscillator of two modes whose friction couples them (flutter), and which lifts off in
+   each period, so that it ends in a limit cycle; its cycle without steps is that of tests/verify/cycle_oscillator.py, by
+   matrix exponentials between the events.
+*/
+#include "check.h"
+#include "petscmain.h"
+#include "reduced/cycle/cycleimpl.h"
+#include <slepcsys.h>
+
+#define PORTS 4 /* of one pair, and of the load */
+
+/* The oscillator, and where it is in its cycle */
+typedef struct {
+  ReducedModel  model;
+  PetscReal     omega2[2], C[4], P[2 * PORTS], W[PORTS * PORTS], gap, mu, slope, speed;
+  CycleFlow     flow;
+  Shooting      shooting;
+  ShootingCycle cycle;
+  PetscReal     size[7], weight[7];
+} Oscillator;
+
+static PetscErrorCode OscillatorCreate(PetscReal mu, Oscillator *o)
+{
+  const PetscReal normal[2] = {0.8, 0.6}, tangent[2] = {-0.6, 0.8};
+
+  PetscFunctionBeginUser;
+  *o = (Oscillator){
+    .omega2 = {1,  2.2 },
+      .C = { 0.04, 0, 0, 0.04},
+      .mu = mu, .speed = 10
+  };
+  o->model = (ReducedModel){.m       = 2,
+                            .n_pairs = 1,
+                            .n_loads = 1,
+                            .n_ports = PORTS,
+                            .omega2  = o->omega2,
+                            .C       = o->C,
+                            .P       = o->P,
+                            .W       = o->W,
+                            .gap     = &o->gap,
+                            .mu      = &o->mu,
+                            .slope   = &o->slope,
+                            .speed   = &o->speed};
+  for (int k = 0; k < 2; k++) {
+    o->P[k]     = normal[k];
+    o->P[2 + k] = tangent[k];
+    o->P[6 + k] = -normal[k];
+  }
+  for (int i = 0; i < 3; i++) o->W[i * (PORTS + 1)] = 1;
+  o->flow = (CycleFlow){.model = &o->model, .n = ReducedTangentSize(&o->model), .span = 1};
+  PetscCall(PetscCalloc3(1, &o->flow.loads, 1, &o->flow.speed, 1, &o->flow.way));
+  PetscCall(PetscCalloc1(1, &o->flow.varies));
+  PetscCall(ReducedStateCreate(&o->model, &o->flow.state));
+  PetscCall(ReducedReportCreate(&o->model, &o->flow.report));
+  o->flow.loads[0]  = 1;
+  o->flow.speed[0]  = 10;
+  o->flow.varies[0] = PETSC_TRUE;
+  for (PetscInt i = 0; i < o->flow.n; i++) {
+    o->size[i]   = 1;
+    o->weight[i] = i < 4;
+  }
+  o->shooting = (Shooting){.n      = o->flow.n,
+                           .flow   = CycleFlowRun,
+                           .ctx    = &o->flow,
+                           .size   = o->size,
+                           .weight = o->weight,
+                           .span   = 1,
+                           .rtol   = 1e-11,
+                           .max_it = 20};
+  PetscCall(PetscCalloc2(o->flow.n, &o->cycle.x, PetscSqr(o->flow.n), &o->cycle.M));
+  o->cycle.value = mu;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode OscillatorDestroy(Oscillator *o)
+{
+  PetscFunctionBeginUser;
+  PetscCall(CycleFlowDestroy(&o->flow));
+  PetscCall(PetscFree2(o->cycle.x, o->cycle.M));
+  PetscFunctionReturn(0);
+}
+
+/* In time until it is near its cycle */
+static PetscErrorCode OscillatorSettle(Oscillator *o, PetscReal period)
+{
+  PetscReal y[7];
+
+  PetscFunctionBeginUser;
+  o->cycle.x[0] = -0.5;
+  PetscCall(CycleFlowSetSteps(&o->flow, 64));
+  for (int i = 0; i < 60; i++) {
+    PetscCall(CycleFlowRun(&o->flow, o->cycle.x, period, o->cycle.value, y, NULL));
+    PetscCall(PetscArraycpy(o->cycle.x, y, o->flow.n));
+  }
+  o->cycle.period = period;
+  PetscFunctionReturn(0);
+}
+
+/* What a cycle is known by */
+typedef struct {
+  PetscReal mu, period, peak, multiplier /* modulus of the largest but for the phase's */, phase /* that less 1 */;
+} Known;
+
+static PetscErrorCode OscillatorSolve(Oscillator *o, PetscInt n, Known *found, int *failed)
+{
+  ShootingStability stability;
+  CycleMeasure      measure;
+
+  PetscFunctionBeginUser;
+  PetscCall(CycleFlowSetSteps(&o->flow, n));
+  PetscCall(ShootingSolve(&o->shooting, &o->cycle));
+  PetscCall(ShootingGetStability(&o->shooting, &o->cycle, &stability));
+  CycleFlowMeasure(&o->flow, o->cycle.period, &measure);
+  *found = (Known){o->cycle.value, o->cycle.period, measure.peak, hypot(stability.largest[0], stability.largest[1]),
+                   hypot(stability.phase[0] - 1, stability.phase[1])};
+  *failed += CheckTrue("converged in few steps of Newton's method", o->cycle.converged && o->cycle.its <= 5,
+                       (double)o->cycle.its);
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: the step or its derivative is wrong, or shooting converges to something else. The error of the step is of
+   second order, that of the phase's multiplier of first, since events break the symmetry in time */
+static PetscErrorCode TestKnown(const Known *known, int *failed)
+{
+  Oscillator o;
+  Known      coarse, found;
+
+  PetscFunctionBeginUser;
+  PetscCall(OscillatorCreate(known->mu, &o));
+  PetscCall(OscillatorSettle(&o, 1.003 * known->period));
+  PetscCall(OscillatorSolve(&o, 256, &found, failed));
+  *failed += CheckClose("256 steps: period", found.period, known->period, 1e-5 * known->period);
+  PetscCall(OscillatorSolve(&o, 4096, &coarse, failed));
+  PetscCall(OscillatorSolve(&o, 16384, &found, failed));
+  *failed += CheckClose("16384 steps: period", found.period, known->period, 1e-8 * known->period);
+  *failed +=
+    CheckClose("largest force, extrapolated", (16 * found.peak - coarse.peak) / 15, known->peak, 1e-8 * known->peak);
+  *failed += CheckClose("multiplier", found.multiplier, known->multiplier, 1e-7);
+  *failed += CheckClose("multiplier of the phase less 1", found.phase, 0, 5e-4);
+  PetscCall(OscillatorDestroy(&o));
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: the branch turns the wrong way, or the tangent is not that of the branch: from mu 0.8 by arclength beyond
+   1, and back to it at that value */
+static PetscErrorCode TestBranch(const Known known[2], int *failed)
+{
+  Oscillator      o;
+  Known           found;
+  ShootingTangent tangent = {.period = 0, .value = 0};
+  int             n       = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(OscillatorCreate(known[0].mu, &o));
+  PetscCall(PetscCalloc1(o.flow.n, &tangent.x));
+  PetscCall(OscillatorSettle(&o, 1.003 * known[0].period));
+  PetscCall(OscillatorSolve(&o, 512, &found, failed));
+  for (; n < 60 && o.cycle.value < known[1].mu; n++) {
+    PetscCall(ShootingGetTangent(&o.shooting, &o.cycle, &tangent));
+    PetscCall(ShootingAdvance(&o.shooting, 0.1, &tangent, &o.cycle));
+    if (!o.cycle.converged) break;
+  }
+  *failed += CheckTrue("the branch passes mu 1", o.cycle.value > known[1].mu, (double)o.cycle.value);
+  o.cycle.value = known[1].mu;
+  PetscCall(OscillatorSolve(&o, 4096, &found, failed));
+  *failed += CheckClose("mu 1 from the branch: period", found.period, known[1].period, 1e-7 * known[1].period);
+  PetscCall(PetscFree(tangent.x));
+  PetscCall(OscillatorDestroy(&o));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  const Known known[2] = {
+    {0.8, 4.3887041961153, 0.95737523205229, 0.9159677852,   0},
+    {1.0, 4.5481402173278, 1.5984947760782,  0.913051671821, 0}
+  };
+
+  PetscFunctionBeginUser;
+  (void)size;
+  PetscCall(SlepcInitialize(NULL, NULL, NULL, NULL)); /* of matrix functions */
+  for (int i = 0; i < 2; i++) PetscCall(TestKnown(&known[i], failed));
+  PetscCall(TestBranch(known, failed));
+  PetscCall(SlepcFinalize());
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  return PetscMain(argc, argv, Tests);
+}
