@@ -16,7 +16,7 @@ OPEN, WRITE, SYNC, RENAME, CLOSE, OWN, PETSC = (1 << bit for bit in range(7))
 FILES = OPEN | WRITE | SYNC | RENAME | CLOSE
 # What a process alone does not need, and costs half of its start: networks
 LEAN = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_btl": "self",
-        "OMPI_MCA_pml": "ob1", "OMPI_MCA_mtl": "^psm,psm2,ofi"}
+        "OMPI_MCA_pml": "ob1", "OMPI_MCA_mtl": "^psm,psm2,ofi", "OMPI_MCA_orte_create_session_dirs": "0"}
 
 
 def plan(folder, report, calls, at, **more):

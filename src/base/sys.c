@@ -80,7 +80,7 @@ static PetscErrorCode KeepError(MPI_Comm comm, int line, const char *function, c
   if (type != PETSC_ERROR_INITIAL || kept[0]) return code;
   if (!text || !text[0]) (void)PetscErrorMessage(code, &text, NULL);
   (void)snprintf(kept, MAX_MESSAGE, "%.*s", text ? (int)strcspn(text, "\n") : 13, text ? text : "unknown error");
-  if (code == PETSC_ERR_MEM || (function && strstr(function, "PetscMalloc")))
+  if (code == PETSC_ERR_MEM || (function && (strstr(function, "PetscMalloc") || strstr(function, "PetscRealloc"))))
     MemoryExplain(kept, MAX_MESSAGE); /* 3.18: other code */
   if (!OptionsExplainValue(kept, better, sizeof(better)) && better[0]) (void)snprintf(kept, MAX_MESSAGE, "%s", better);
   return code;

@@ -190,7 +190,7 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscFunctionReturn(0);
 }
 
-/* After every step: checkpoints where they are due, and the end where a signal asks for it */
+/* After every step: checkpoints where they are due, and the end where a signal asks for it, never without one */
 static PetscErrorCode DynamicsAfterStep(TS ts)
 {
   Dynamics  d;
@@ -206,8 +206,8 @@ static PetscErrorCode DynamicsAfterStep(TS ts)
     stop = StopRequested();
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPIU_BOOL, MPI_LOR, d->comm));
   }
-  due = d->checkpoint_interval > 0 && (stop || n % d->checkpoint_interval == 0) ? PETSC_TRUE : PETSC_FALSE;
-  if (due) PetscCall(DynamicsKeep(d));
+  due = d->checkpoint_interval > 0 && n % d->checkpoint_interval == 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (stop || due) PetscCall(DynamicsKeep(d));
   if (stop) PetscCall(TSSetConvergedReason(ts, TS_CONVERGED_USER));
   d->stopped = stop;
   PetscFunctionReturn(0);
@@ -223,8 +223,7 @@ static PetscErrorCode DynamicsComplainStopped(Dynamics d)
   PetscCall(TSGetTime(d->ts, &time));
   PetscCall(TSGetStepNumber(d->ts, &n));
   SETERRQ(d->comm, PETSC_ERR_USER, "stopped by a signal after step %" PetscInt_FMT ", %.6g s; %s", n, (double)time,
-          d->checkpoint_interval > 0 ? "-dynamics_restart goes on from there"
-                                     : "transient.csv holds the rows until then");
+          d->checkpoint_interval > 0 ? STOP_GOES_ON : STOP_ROWS STOP_GOES_ON);
 }
 
 PetscErrorCode DynamicsSolve(Dynamics d, Results results)

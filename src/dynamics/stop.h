@@ -15,6 +15,9 @@
 #include <petscsys.h>
 
 #define STOP_INTERVAL 50 /* steps between two looks at signals */
+/* What a run says that was stopped; the rows are under their final name where no checkpoints were asked for */
+#define STOP_GOES_ON "-dynamics_restart goes on from there"
+#define STOP_ROWS    "transient.csv holds the rows until then, "
 
 /*@ StopInstall - begins to listen; the mark is taken away. Not collective. @*/
 PETSC_INTERN PetscErrorCode StopInstall(void);

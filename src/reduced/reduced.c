@@ -211,7 +211,7 @@ static PetscErrorCode ReducedAdvance(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
-/* Checkpoints where they are due, and whether a signal asks for the end */
+/* Checkpoints where they are due, and whether a signal asks for the end, which is not without one */
 static PetscErrorCode ReducedAfterStep(ReducedRun r, PetscBool *stop)
 {
   const PetscInt interval = r->run.checkpoint_interval;
@@ -222,7 +222,7 @@ static PetscErrorCode ReducedAfterStep(ReducedRun r, PetscBool *stop)
     *stop = StopRequested();
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, stop, 1, MPIU_BOOL, MPI_LOR, r->comm));
   }
-  if (interval > 0 && (*stop || r->step % interval == 0)) PetscCall(ReducedKeep(r));
+  if (*stop || (interval > 0 && r->step % interval == 0)) PetscCall(ReducedKeep(r));
   PetscFunctionReturn(0);
 }
 
@@ -263,9 +263,7 @@ PetscErrorCode ReducedIntegrate(ReducedRun r, Results results)
   if (!stop || r->run.checkpoint_interval == 0) PetscCall(HistoryClose(r->run.history));
   if (!stop && r->verify) PetscCall(ReducedVerify(r));
   PetscCheck(!stop, r->comm, PETSC_ERR_USER, "stopped by a signal after step %" PetscInt_FMT ", %.6g s; %s", r->step,
-             (double)r->state.time,
-             r->run.checkpoint_interval > 0 ? "-dynamics_restart goes on from there"
-                                            : "transient.csv holds the rows until then");
+             (double)r->state.time, r->run.checkpoint_interval > 0 ? STOP_GOES_ON : STOP_ROWS STOP_GOES_ON);
   PetscFunctionReturn(0);
 }
 

@@ -78,6 +78,17 @@ def transient(program, folder):
     return first
 
 
+def reduced(program, folder, first):
+    """The checkpoint of a transient on modes."""
+    words = (*first, "-dynamics_model", "reduced", "-dynamics_cutoff", "3000", "-dynamics_compare", "false")
+    done = run(program, folder, *words, "-ts_max_steps", "40", "-output_dir", "reduced")
+    assert done.returncode == 0 and (folder / "reduced/checkpoint.bin").exists(), done.stderr
+    base = Base("reduced", damage.BYTES, ("out/checkpoint.bin",), (*words, "-ts_max_steps", "50", "-dynamics_restart"),
+                "transient.csv")
+    base.folder, base.sealed = folder / "reduced", True
+    return base
+
+
 def sweep(program, folder):
     """A sweep that was killed, and kept its full solutions; the command that goes on with them."""
     words = ("-options_file", "brake.yaml", "-model_mesh", "finer.msh", "-analysis", "sweep", "-modes_band", "0,6000",
@@ -127,6 +138,7 @@ def bases(program, folder):
                                                               "-dynamics_shape_mode", "1", "-dynamics_shape_amplitude", "1e-6"),
                  "transient.csv")
     found += [restart, history, shape]
+    found.append(reduced(program, folder, first))
     words = sweep(program, folder)
     files = tuple(f"out/{path.name}" for path in sorted((folder / "stopped").glob("sweep_restart_*_rank0")))
     kept = Base("sweep", damage.BYTES, files, words, "sweep.csv")

@@ -70,8 +70,8 @@ def ask(runs, name, number, whom, *options):
 
 
 def check_signals(runs):
-    """One rank is asked, all stop at one step: with a checkpoint, from which the run goes on; or with the rows so
-    far."""
+    """One rank is asked, all stop at one step, with a checkpoint from which the run goes on; where none were asked for,
+    also with the rows so far."""
     cases = [(signal.SIGUSR1, "launcher"), (signal.SIGINT, "rank"), (signal.SIGTERM, "rank")]
     for i, (number, whom) in enumerate(cases):
         line = ask(runs, f"stopped_{i}", number, whom, "-dynamics_checkpoint_interval", "1000000000")
@@ -82,10 +82,12 @@ def check_signals(runs):
         compare(runs, "undisturbed", f"stopped_{i}")
     line = ask(runs, "cut", signal.SIGUSR1, "launcher")
     rows = runs.path("cut", "transient.csv").read_bytes()
-    if "transient.csv holds the rows until then" not in line or runs.path("cut", "checkpoint.bin").exists():
+    if "transient.csv holds the rows until then" not in line or "-dynamics_restart goes on from there" not in line:
         fail(f"{runs.scene}: stopped without a checkpoint: {line}")
     if len(rows) < 50000 or not runs.path("undisturbed", "transient.csv").read_bytes().startswith(rows):
         fail(f"{runs.scene}: stopped without a checkpoint: the rows are not the first ones of the whole run")
+    runs.complete("cut", RESTART)
+    compare(runs, "undisturbed", "cut")
     names = ", ".join(number.name for number, _ in cases)
     print(f"{runs.scene}: stopped by {names}, gone on: bitwise the same", flush=True)
 
