@@ -159,26 +159,28 @@ static PetscBool ParseOption(const char line[], HelpOption *option)
 }
 
 /* Keeps the option of a whole line, or the title of those that follow */
-static void CollectLine(const char line[])
+static PetscErrorCode CollectLine(const char line[])
 {
   HelpList *const list   = collecting.list;
   HelpOption      option = {0};
   const size_t    length = strlen(line);
 
+  PetscFunctionBeginUser;
   if (!ParseOption(line, &option)) {
     if (length && line[0] != ' ' && line[length - 1] == ':' && strncmp(line, "Viewer (", 8))
       Cut(line, line + length - 1, collecting.group, sizeof(collecting.group));
-    return;
+    PetscFunctionReturn(0);
   }
   if (list->n == list->max) {
     HelpOption *more = realloc(list->option, (size_t)(2 * list->max + 64) * sizeof(*more));
 
-    if (!more) return;
+    PetscCheck(more, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the list of options");
     list->option = more;
     list->max    = 2 * list->max + 64;
   }
   strcpy(option.group, collecting.group);
   list->option[list->n++] = option;
+  PetscFunctionReturn(0);
 }
 
 /* Stands in for PetscHelpPrintf, which may be told a line in pieces */
@@ -196,7 +198,7 @@ static PetscErrorCode CollectHelp(MPI_Comm comm, const char format[], ...)
   va_end(args);
   while ((end = strchr(collecting.line, '\n'))) {
     *end = '\0';
-    CollectLine(collecting.line);
+    PetscCall(CollectLine(collecting.line));
     (void)memmove(collecting.line, end + 1, strlen(end + 1) + 1);
   }
   PetscFunctionReturn(0);
