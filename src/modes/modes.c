@@ -274,6 +274,7 @@ PetscErrorCode ModesSolve(Modes modes)
   if (window.rigid) PetscCall(TwinsDrop(modes, &window));
   if (window.rigid) PetscCall(NullVectorsRefine(modes, &pencil, &window));
   PetscCall(WindowDescribe(modes, &window));
+  PetscCall(SavedByDamping(modes, &pencil, &window));
   PetscCall(ModesLabel(modes));
   PetscFunctionReturn(0);
 }

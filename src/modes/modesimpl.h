@@ -30,6 +30,11 @@ enum { DAMPING_AUTO, DAMPING_PROJECT, DAMPING_PEP };
 
 #define MODES_DAMPING "-modes_damping"
 
+/* What a choice saved, in words */
+enum { SAVED_FACTORS, SAVED_DAMPING, N_SAVED };
+
+#define SAVED_LENGTH 192
+
 struct _p_Modes {
   MPI_Comm comm;
   Pencil   pencil;
@@ -51,6 +56,7 @@ struct _p_Modes {
   double     *part_percent; /* participation of the parts [n][parts], NULL for matrices without a mesh */
   PetscInt    shifts;       /* in use */
   char        completeness[1024];
+  char        saved[N_SAVED][SAVED_LENGTH];
   char        solver[96];  /* type of the undamped eigensolver, its block and factors */
   ShiftInvert factor;      /* of the solution where keep is set */
   EPS         left_solver; /* undamped, whose space has grown beside that of the right vectors; NULL: none has */
@@ -72,16 +78,19 @@ typedef struct {
   PetscInt  twins;           /* the other zeros, which were left out */
   PetscInt  count;           /* > 0: this many nearest to target instead, low and high unknown */
   PetscReal target;          /* rad/s */
-  PetscReal scale;           /* far below any elastic mode yet above rounding: 1e-5 sqrt(|K| / |M|), rad/s */
-  PetscReal edge[2];         /* ends of the band by which modes were counted and are selected, rad/s */
-  PetscReal damping;         /* |C| / |K|, s: with stiffness damping beta the overdamped modes gather at -1 / beta */
-  PetscInt  within;          /* damped: modes about as near to the shift as the window's corners; negative: not known */
-  PetscBool proven;          /* inertia counts what was found */
-  PetscReal worst;           /* largest relative difference of right and left eigenvalues */
-  PetscBool project;         /* damped: by projection (project.c) */
-  PetscBool counted;         /* there: inertia counts the undamped modes */
-  PetscReal beyond;          /* measure of damping there, or negative */
-  char      why[64];         /* why not by projection; empty where it was not tried */
+  PetscBool mapped;          /* damping left the vectors as they were: C = alpha M + beta K */
+  PetscReal mapped_alpha, mapped_beta; /* 1/s, s */
+  PetscInt  n_basis;                   /* vectors of a projection */
+  PetscReal scale;                     /* far below any elastic mode yet above rounding: 1e-5 sqrt(|K| / |M|), rad/s */
+  PetscReal edge[2];                   /* ends of the band by which modes were counted and are selected, rad/s */
+  PetscReal damping; /* |C| / |K|, s: with stiffness damping beta the overdamped modes gather at -1 / beta */
+  PetscInt  within;  /* damped: modes about as near to the shift as the window's corners; negative: not known */
+  PetscBool proven;  /* inertia counts what was found */
+  PetscReal worst;   /* largest relative difference of right and left eigenvalues */
+  PetscBool project; /* damped: by projection (project.c) */
+  PetscBool counted; /* there: inertia counts the undamped modes */
+  PetscReal beyond;  /* measure of damping there, or negative */
+  char      why[64]; /* why not by projection; empty where it was not tried */
 } Window;
 
 /* modes.c - factors of K - shift M, or with damping of K + shift C + shift^2 M; those of the last count are given up, and
@@ -157,6 +166,11 @@ PETSC_INTERN PetscErrorCode ModesWriteFilters(Modes modes, Model model, Results 
 
 /* twins.c - lists a rigid mode of a damped system once, and trims the list to the modes asked for */
 PETSC_INTERN PetscErrorCode TwinsDrop(Modes modes, Window *window);
+
+/* saved.c - keep in words what factors, and what the route of damping, saved; and show them */
+PETSC_INTERN PetscErrorCode SavedByFactors(Modes modes, const ShiftInvert *si);
+PETSC_INTERN PetscErrorCode SavedByDamping(Modes modes, const PencilMatrices *pencil, const Window *window);
+PETSC_INTERN PetscErrorCode SavedView(Modes modes, PetscViewer viewer);
 
 /* nullvectors.c - vectors of the rigid modes of a damped system where those of the eigensolver are bad. Errors:
    PETSC_ERR_NOT_CONVERGED where K has no such vector */

@@ -151,7 +151,10 @@ static PetscErrorCode MapModes(Projection *p, Window *window, const char **why)
   Spectrum right, left = {.n = 0};
 
   PetscFunctionBeginUser;
-  window->beyond = 0;
+  window->beyond       = 0;
+  window->mapped       = PETSC_TRUE;
+  window->mapped_alpha = p->alpha;
+  window->mapped_beta  = p->beta;
   PetscCall(ProjectionMap(p, &modes->right, &right));
   if (modes->left) PetscCall(ProjectionMap(p, modes->left_spectrum.n ? &modes->left_spectrum : &modes->right, &left));
   PetscCall(SpectraDestroy(modes));
@@ -196,6 +199,7 @@ static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window
   PetscCall(SpectraDestroy(modes));
   PetscCall(Iterate(p, &found, &settled));
   if (settled) PetscCall(PutModes(p, &found));
+  window->n_basis = found.size;
   if (!settled) *why = found.lambda_reach > p->reach ? why_guard : "corrections do not settle";
   PetscCall(ProjectionModesDestroy(&found));
   PetscFunctionReturn(0);
@@ -209,7 +213,8 @@ static PetscErrorCode AddDamping(Projection *p, Window *window, const char **why
   PetscBool  exact, zero;
 
   PetscFunctionBeginUser;
-  window->rigid = 0;
+  window->rigid  = 0;
+  window->mapped = PETSC_FALSE;
   for (PetscInt i = 0; i < modes->right.n; i++) {
     PetscCall(ProjectionIsZero(p, &modes->right, i, &zero));
     window->rigid += zero;

@@ -241,6 +241,7 @@ PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Wi
     PetscCall(EPSSolve(eps));
     PetscCall(ProgressEnd(&modes->progress));
     PetscCall(UndampedDescribe(eps, si, sizeof(modes->solver), modes->solver));
+    PetscCall(SavedByFactors(modes, si));
     PetscCall(UndampedCollect(eps, si->shift, n, window, spectrum, &covered));
     if (!covered) PetscCall(LimitCheck(modes, PETSC_FALSE, spectrum));
     if (!covered && nev < n) PetscCall(SpectrumDestroy(spectrum));

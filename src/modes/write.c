@@ -66,6 +66,7 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
   if (ShiftInvertShows() && modes->solver[0])
     PetscCall(PetscViewerASCIIPrintf(viewer, "undamped modes: %s, %" PetscInt_FMT " shift%s\n", modes->solver,
                                      modes->shifts, modes->shifts == 1 ? "" : "s"));
+  if (ShiftInvertShows()) PetscCall(SavedView(modes, viewer));
   PetscCall(ModesViewState(modes, viewer));
   PetscFunctionReturn(0);
 }

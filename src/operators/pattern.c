@@ -167,7 +167,7 @@ PetscErrorCode OperatorsViewOmitted(Operators o, PetscViewer viewer)
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &neighbours, 1, MPIU_REAL, MPI_SUM, o->comm));
   PetscCall(PetscViewerASCIIPrintf(
-    viewer, "matrices: none, since no kernel reads K and M: saves the time to assemble them, and about %.3g MB\n",
+    viewer, "saved: no matrices, since no kernel reads K and M: the time to assemble them and about %.3g MB\n",
     4e-6 * (double)neighbours * (sizeof(PetscScalar) + sizeof(PetscInt)))); /* three directions in K, one in M */
   PetscFunctionReturn(0);
 }

@@ -46,6 +46,22 @@ static PetscErrorCode ReducedViewShares(ReducedRun r, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
+/* Unknowns that a step does without */
+static PetscErrorCode ReducedViewSaved(ReducedRun r, PetscViewer viewer)
+{
+  const Mesh *mesh;
+  Model       model;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(r->run.operators, &model, NULL));
+  PetscCall(ModelGetMesh(model, &mesh));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "saved: %" PetscInt_FMT " modes and %" PetscInt_FMT
+                                   " pairs in each step instead of %" PetscInt_FMT " unknowns\n",
+                                   r->model.m, r->model.n_pairs, mesh->n_unknowns));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ReducedView(ReducedRun r, PetscViewer viewer)
 {
   const double seconds = (double)r->seconds;
@@ -56,6 +72,7 @@ PetscErrorCode ReducedView(ReducedRun r, PetscViewer viewer)
     "reduced model: %" PetscInt_FMT " modes of the unconnected bodies below %.6g Hz (%s), lumped mass, %s; static "
     "compliance of %" PetscInt_FMT " pairs\n",
     r->model.m, (double)r->cutoff, r->why, r->model.C ? "damped" : "undamped", r->model.n_pairs));
+  PetscCall(ReducedViewSaved(r, viewer));
   PetscCall(ExternalView(r->run.external, viewer));
   PetscCall(ReducedViewShares(r, viewer));
   PetscCall(ReducedCompareView(r, viewer));

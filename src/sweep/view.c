@@ -302,6 +302,10 @@ PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer)
                                      "basis of %" PetscInt_FMT " vectors; largest estimated error %.1e (an estimate, "
                                      "not a bound); modes counted without friction at the full solutions\n",
                                      sweep->basis.reduced.n_used, (double)sweep->greedy.worst));
+  if (sweep->method == SWEEP_REDUCED && !sweep->whole)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "saved: %" PetscInt_FMT " full solutions of the %" PetscInt_FMT " points, by the basis\n",
+      PetscMax(0, GridSize(&sweep->grid) - sweep->greedy.n_samples), GridSize(&sweep->grid)));
   if (sweep->is_confirmed) PetscCall(OnsetCostView(sweep, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, "time: basis %.2f s, points %.2f s, onsets %.2f s, checks %.2f s",
                                    sweep->seconds[0], sweep->seconds[1], sweep->seconds[2], sweep->seconds[3]));

@@ -36,6 +36,28 @@ static PetscErrorCode BodiesViewBlocks(Bodies b, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
+/* What stencils read in the place of blocks, of which a symmetric matrix has the upper half, 10^6 bytes of all ranks */
+static PetscErrorCode BodiesViewSaved(Bodies b, PetscViewer viewer)
+{
+  PetscReal n[2] = {0, 0}; /* coefficients, blocks */
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < b->n_swept; i++) {
+    const SweptBody *s = &b->swept[i];
+
+    for (PetscInt l = 0; l < s->lines->n_lines; l++) {
+      n[0] += (PetscReal)(STENCIL_COEFFICIENTS * s->stiffness[l].n);
+      n[1] += 0.5 * (PetscReal)((3 * s->stiffness[l].n + 1) * s->lines->n_nodes);
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n, 2, MPIU_REAL, MPI_SUM, b->comm));
+  if (n[1] == 0) PetscFunctionReturn(0);
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer, "  saved: stencils read %.3g MB of coefficients in each step instead of %.3g MB of blocks (estimate)\n",
+    1e-6 * (double)n[0] * sizeof(double), 1e-6 * (double)n[1] * (9 * sizeof(PetscReal) + sizeof(PetscInt))));
+  PetscFunctionReturn(0);
+}
+
 /* How a body is swept */
 static PetscErrorCode BodiesViewAxis(const BodiesFrame *frame, PetscViewer viewer)
 {
@@ -70,6 +92,7 @@ PetscErrorCode BodiesView(Bodies b, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
   }
   PetscCall(BodiesViewBlocks(b, viewer));
+  PetscCall(BodiesViewSaved(b, viewer));
   PetscCall(PetscFree2(n_swept, n_all));
   PetscFunctionReturn(0);
 }
