@@ -1,0 +1,173 @@
+"""What the studies of speed against error share: runs that are timed in units of one that is repeated between them, a table, a
+picture with the cost on one axis and the error on the other, and three sentences that say what to take for which accuracy.
+
+A study is a short file: its runs, its reference and its error make Points; main() does the rest. Times are of the processor, medians
+over rounds, of the whole process; a study of ranks takes those of the clock."""
+
+import argparse
+import csv
+import math
+import statistics
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+from matplotlib.ticker import FuncFormatter
+
+from .picture import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILION, place_texts, save_picture
+from .program import compiled_program, machine_text, measured_run, scene
+from .tables import BadInput, print_table, run, whole
+
+LEAST = 1e-16  # errors of nothing are drawn here
+COLORS = BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, GREY, INK
+MARKERS = "osD^v<>P"
+UNIT = (*scene("massi2005"), "-rig_disc_elements", "12,56,1", "-rig_pad_elements", "5,5,5", "-rig_beam_elements", 10,
+        "-modes_band", "1000,9000", "-output_fields", 0, "-squeal_progress", 0)
+UNIT_TEXT = "all modes of a coarse brake of 5,760 unknowns from 1 to 9 kHz"
+
+
+class Point(NamedTuple):
+    """One setting of one method: its error, relative, and its cost in s and in units."""
+    series: str
+    setting: str
+    error: float
+    seconds: float
+    units: float
+
+
+class Bench:
+    """Runs of one study: program, folder, rounds, whether all is smaller, and the unit of time."""
+
+    def __init__(self, args):
+        self.program, self.folder, self.quick = args.program.resolve(), args.output, args.quick
+        self.rounds = 1 if args.quick else args.rounds
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.unit_times = []
+        self.points = []
+
+    def once(self, words, name, ranks=1, clock=False):
+        """Folder, text and s of processor (or of the clock) of a run."""
+        folder = self.folder / name
+        folder.mkdir(parents=True, exist_ok=True)
+        begun = time.perf_counter()
+        text, seconds, _ = measured_run(self.program, ranks, [*words, "-output_dir", folder], name)
+        return folder, text, time.perf_counter() - begun if clock else seconds
+
+    def timed(self, words, name, ranks=1, clock=False):
+        """The same with the median of the rounds, each after a run of the unit."""
+        times = []
+        for _ in range(self.rounds):
+            self.unit_times.append(self.once(UNIT, "unit", clock=clock)[2])
+            folder, text, seconds = self.once(words, name, ranks, clock)
+            times.append(seconds)
+        return folder, text, statistics.median(times)
+
+    @property
+    def unit(self):
+        """s of the unit, the median of its runs so far."""
+        return statistics.median(self.unit_times)
+
+    def add(self, series, setting, error, seconds):
+        """A point, printed as it comes; its units are known at the end."""
+        print(f"  {series}, {setting}: error {error:.2g}, {seconds:.3g} s", flush=True)
+        self.points.append(Point(series, setting, float(error), seconds, math.nan))
+
+    def finished(self):
+        """The points with their units."""
+        return [point._replace(units=point.seconds / self.unit) for point in self.points]
+
+
+def write_points(path, points):
+    """All of them."""
+    with whole(path) as part, part.open("w", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(["series", "setting", "error", "seconds", "units"])
+        table.writerows([p.series, p.setting, f"{p.error:.6e}", f"{p.seconds:.4f}", f"{p.units:.4f}"] for p in points)
+
+
+def draw(path, title, error_name, points):
+    """Error over cost, both logarithmic; each point has its setting beside it, where there is room."""
+    figure, axes = plt.subplots(figsize=(9, 5.2), layout="constrained")
+    texts = []
+    for i, series in enumerate(dict.fromkeys(point.series for point in points)):
+        own = [point for point in points if point.series == series]
+        x, y = [point.units for point in own], [max(point.error, LEAST) for point in own]
+        axes.loglog(x, y, "-" if i < len(COLORS) else "--", marker=MARKERS[i % len(MARKERS)], color=COLORS[i % len(COLORS)], markersize=5, linewidth=1.1, label=series)
+        texts += [((a, b), point.setting) for a, b, point in zip(x, y, own)]
+    axes.grid(True, which="major", linewidth=0.3)
+    axes.margins(0.08)
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if f"{value:.0e}"[0] in "25" else ""))
+    axes.set_xlabel(f"time, in units of {UNIT_TEXT}")
+    axes.set_ylabel(error_name)
+    axes.set_title(title, fontsize=11)
+    axes.legend(fontsize=8)
+    figure.canvas.draw()
+    place_texts(axes, texts, [(0, 9), (0, -10), (24, 0), (-24, 0), (0, 18), (0, -19)], [axes.get_legend().get_window_extent()], fontsize=7)
+    save_picture(figure, path, dpi=110)
+    plt.close(figure)
+
+
+def sentence(points, level, knob=""):
+    """What to take for an error: the cheapest, and the cheapest of another method. level: a number, or (number, series) where series
+    are not methods but things that have errors; knob: the option that the settings are values of."""
+    level, of = level if isinstance(level, tuple) else (level, None)
+    points = [point for point in points if of in (None, point.series)]
+    good = sorted((point for point in points if point.error <= level), key=lambda point: point.units)
+    if not good:
+        best = min(points, key=lambda point: point.error)
+        return f"An error of {level:g} is reached by none of these; the least is {best.error:.1g}, of {best.series} with {knob}{best.setting}."
+    best = good[0]
+    named = f"For an error of {level:g} of {of} take {knob}{best.setting}" if of else f"For an error of {level:g} take {best.series} with {knob}{best.setting}"
+    other = next((point for point in good if point.series != best.series), None)
+    text = f"{named}: {best.units:.3g} units (error {best.error:.1g})"
+    if of:
+        return f"{text}; {knob}{good[-1].setting}, the dearest of those that reach it, needs {good[-1].units:.3g}."
+    return f"{text}; {other.series} needs {other.units:.3g} with {knob}{other.setting}." if other else f"{text}; no other method is so exact."
+
+
+def arguments(doc, name):
+    """The command line of a study."""
+    parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true", help="fewer settings, one round")
+    parser.add_argument("--rounds", type=int, default=3, metavar="N", help="of which times are medians, default: 3")
+    parser.add_argument("--output", type=Path, default=Path("results/studies") / name, metavar="DIR",
+                        help=f"where study.csv, study.png, study.txt and runs go, default: results/studies/{name}")
+    parser.add_argument("--program", type=Path, metavar="FILE", help="squeal; default: compiled as by scripts/run")
+    args = parser.parse_args()
+    if args.rounds < 1:
+        parser.error(f"--rounds {args.rounds}: must be 1 or more")
+    args.program = args.program or compiled_program()
+    return args
+
+
+def main(doc, name, work, levels, error_name, knob=""):
+    """Runs a study: work(bench) adds its points and returns what its reference is, in a sentence; knob: as sentence() has it. Exit
+    status."""
+    args = arguments(doc, name)
+
+    def whole_study():
+        bench = Bench(args)
+        begun = time.perf_counter()
+        print(machine_text())
+        reference = work(bench)
+        points = bench.finished()
+        if not points or not all(math.isfinite(point.error) for point in points):
+            raise BadInput(f"{name}: a point has no error")
+        write_points(bench.folder / "study.csv", points)
+        title = doc.splitlines()[0].rstrip(".")
+        draw(bench.folder / "study.png", title, error_name, points)
+        print_table(title, ("method", "setting", "error", "s", "units"), *(
+            (p.series, p.setting, f"{p.error:.2e}", f"{p.seconds:.3f}", f"{p.units:.3f}") for p in points))
+        lines = [sentence(points, level, knob) for level in levels]
+        about = (f"{reference} The unit is {UNIT_TEXT}, here {bench.unit:.2f} s; times are medians of {bench.rounds}. "
+                 f"{machine_text().capitalize()}; the study took {time.perf_counter() - begun:.0f} s.")
+        (bench.folder / "study.txt").write_text("\n".join([title, about, *lines]) + "\n", encoding="utf-8")
+        print("\n" + "\n".join(["", about, *lines]))
+        return bench.folder / "study.csv"
+
+    return run(f"study/{name}", whole_study)

@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+"""What the studies of speed against error share, on made-up points and a matrix with known eigenvalues:
+
+  sentences  name the cheapest setting that reaches an error and the cheapest of another method, or say that none does
+  files      table and picture hold all points
+  exact      eigenvalues 4 sin^2(k pi / (2 n + 2)) of a chain of masses, damped by alpha, from guesses of ten digits, to 1e-15; what is
+             no eigenvalue is not taken for one
+  struck     a mass on a spring hit with 1 m/s: in time sin(omega t) / omega, in steps of central differences their recursion
+
+Breaks when a dearer setting is named, when an exact value only repeats its guess, or when a reference is that of another scheme."""
+
+import math
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse
+
+SOURCE = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "tests")]
+from check import Failure, require
+from squeal.exact_sparse import refined
+from squeal.petsc_matrix import write_matrix
+from squeal.speed_error import Point, draw, sentence, write_points
+from squeal.struck_body import Struck
+
+POINTS = [Point("fast", "a", 1e-3, 1.0, 2.0), Point("fast", "b", 1e-6, 3.0, 6.0), Point("exact", "c", 1e-9, 4.0, 8.0),
+          Point("dear", "d", 1e-4, 9.0, 18.0)]
+SAID = ((1e-2, "take fast with -x a: 2 units (error 0.001); exact needs 8 with -x c."),
+        (1e-5, "take fast with -x b: 6 units (error 1e-06); exact needs 8 with -x c."), (1e-8, "take exact with -x c: 8 units"),
+        (1e-8, "no other method is so exact"), (1e-12, "reached by none of these; the least is 1e-09, of exact with -x c"),
+        ((1e-5, "fast"), "of fast take -x b: 6 units"))
+
+
+def sentences(_):
+    for level, said in SAID:
+        text = sentence(POINTS, level, "-x ")
+        require(said in text, f"{level}: '{text}' does not say '{said}'")
+
+
+def files(folder):
+    write_points(folder / "study.csv", POINTS)
+    lines = (folder / "study.csv").read_text().splitlines()
+    require(len(lines) == 5 and lines[3] == "exact,c,1.000000e-09,4.0000,8.0000", f"table: {lines}")
+    draw(folder / "study.png", "made up", "error", POINTS)
+    require((folder / "study.png").stat().st_size > 5000, "the picture has nothing on it")
+
+
+def exact(folder):
+    n, alpha = 60, 0.01
+    ones = np.ones(n)
+    chain = scipy.sparse.diags([-ones[1:], 2 * ones, -ones[1:]], [-1, 0, 1])
+    for name, matrix in (("K", chain), ("M", scipy.sparse.eye(n)), ("C", alpha * scipy.sparse.eye(n))):
+        write_matrix(folder / f"{name}.bin", matrix)
+    values = [-alpha / 2 + 1j * math.sqrt((2 * math.sin(k * math.pi / (2 * n + 2)))**2 - alpha**2 / 4) for k in (1, 7, 30, 60)]
+    found = refined(folder, 0.0, [value * (1 + 3e-11) for value in values])
+    far = abs(found / np.array(values) - 1)
+    require(far.max() < 1e-15, f"a chain of masses: {far}")
+
+
+def struck(folder):
+    (folder / "one").mkdir()
+    write_matrix(folder / "one/K.bin", scipy.sparse.diags([4.0, 9.0, 25.0]))
+    write_matrix(folder / "one/M.bin", scipy.sparse.eye(3))
+    body, omega, step = Struck(folder / "one"), 5.0, 0.01
+    times = np.arange(400) * step
+    require(abs(body.at(times)[:, 2] - np.sin(omega * times) / omega).max() < 1e-14, "a mass on a spring in time")
+    u = [0.0, step]
+    while len(u) < 400:
+        u.append(2 * u[-1] - u[-2] - (omega * step)**2 * u[-1])
+    require(abs(body.stepped(np.arange(400), step)[:, 2] - u).max() < 1e-11, "a mass on a spring in steps")
+    rows = [{"time_s": t, "tip_z_m": value} for t, value in zip(times, u)]
+    body.find(rows)
+    require(body.tip == 2 and body.error_of_steps(rows, step) < 1e-11 < body.error(rows) < 1e-2, "errors of a history")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        for part in (sentences, files, exact, struck):
+            part(Path(folder))
+            print(part.__name__)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except Failure as failure:
+        sys.exit(str(failure))
