@@ -8,9 +8,11 @@
       C := C + C' R,   R := T^-1 R,   T^-1 = D^1/2 U' S,
 
    with S the square root of the diagonal of G and D not below rounding: T is always regular, so what one pass does not
-   resolve the next one does. A row of R is the size of its direction.
+   resolve the next one does. A row of R is the size of its direction. Without M a pass measures what the next one needs
+   while it has V at hand (panel.h).
 */
 #include "orthonormal.h"
+#include "panel.h"
 
 #define ROUNDING 1e-14 /* what a pass does not resolve beside what there is */
 #define PASSES   8     /* each makes a condition up to 1e7 times better; two are usual */
@@ -18,43 +20,96 @@
 /* One pass over a block of m columns, which were `columns` at the beginning */
 typedef struct {
   PetscInt     m, columns;
-  Mat          C, T;          /* V' M W; W' M W, then T */
+  PetscScalar *C, *T;         /* [m][n] V' M W; [m][m] W' M W, then T; one behind the other */
+  PetscBool    measured;      /* they are those of the block as it is */
   PetscReal   *size, *spread; /* [m] S; D */
   PetscScalar *R;             /* [columns][columns] rows of R, before and after */
   PetscReal    norm;          /* of the longest column at the beginning */
   PetscBool    clean;         /* the block was orthonormal to a half before, so that it is now to rounding */
 } BlockPass;
 
-/* C and W' M W */
-static PetscErrorCode PassMeasure(BV V, PetscInt n, Mat M, BV W, BlockPass *pass)
+/* The local rows of the active columns of a block; A is to be restored with it */
+static PetscErrorCode PanelGet(BV V, Mat *A, Panel *panel)
 {
-  BV MW = W;
+  PetscFunctionBeginUser;
+  PetscCall(BVGetMat(V, A));
+  PetscCall(MatGetLocalSize(*A, &panel->rows, NULL));
+  PetscCall(MatGetSize(*A, NULL, &panel->columns));
+  PetscCall(MatDenseGetLDA(*A, &panel->stride));
+  PetscCall(MatDenseGetArray(*A, &panel->a));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PanelRestore(BV V, Mat *A, Panel *panel)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatDenseRestoreArray(*A, &panel->a));
+  PetscCall(BVRestoreMat(V, A));
+  PetscFunctionReturn(0);
+}
+
+/* Sums C and T of all ranks, in one message */
+static PetscErrorCode PassSum(BV W, PetscInt n, BlockPass *pass)
+{
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, pass->C, (PetscMPIInt)(pass->m * (n + pass->m)), MPIU_SCALAR, MPIU_SUM,
+                             PetscObjectComm((PetscObject)W)));
+  pass->measured = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* C and W' M W by the products of SLEPc, where M comes between them */
+static PetscErrorCode PassMeasureMass(BV V, PetscInt n, Mat M, BV W, BlockPass *pass)
+{
+  Mat C, T;
+  BV  MW;
 
   PetscFunctionBeginUser;
-  if (M) {
-    PetscCall(BVDuplicateResize(W, pass->m, &MW));
-    PetscCall(BlockMultiplyVectors(M, W, MW));
-  }
+  PetscCall(BVDuplicateResize(W, pass->m, &MW));
+  PetscCall(BlockMultiplyVectors(M, W, MW));
   PetscCall(BVSetActiveColumns(V, 0, n));
-  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, pass->m, NULL, &pass->C));
-  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, pass->m, pass->m, NULL, &pass->T));
-  if (n) PetscCall(BVDot(MW, V, pass->C));
-  PetscCall(BVDot(MW, W, pass->T));
-  if (M) PetscCall(BVDestroy(&MW));
+  pass->T = pass->C + pass->m * n;
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, pass->m, pass->C, &C));
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, pass->m, pass->m, pass->T, &T));
+  if (n) PetscCall(BVDot(MW, V, C));
+  PetscCall(BVDot(MW, W, T));
+  PetscCall(MatDestroy(&C));
+  PetscCall(MatDestroy(&T));
+  PetscCall(BVDestroy(&MW));
+  pass->measured = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* C and W' W */
+static PetscErrorCode PassMeasure(BV V, PetscInt n, BV W, BlockPass *pass)
+{
+  Panel v, w;
+  Mat   A, B;
+
+  PetscFunctionBeginUser;
+  PetscCall(PanelGet(W, &B, &w));
+  if (n) {
+    PetscCall(BVSetActiveColumns(V, 0, n));
+    PetscCall(PanelGet(V, &A, &v));
+    PetscCall(PanelProduct(&v, &w, pass->C));
+    PetscCall(PanelRestore(V, &A, &v));
+  }
+  pass->T = pass->C + pass->m * n;
+  PetscCall(PanelProduct(&w, &w, pass->T));
+  PetscCall(PanelRestore(W, &B, &w));
+  PetscCall(PassSum(W, n, pass));
   PetscFunctionReturn(0);
 }
 
 /* U and D of G, which is left in T, and S */
 static PetscErrorCode PassDecompose(MPI_Comm comm, PetscInt n, PetscBool first, BlockPass *pass)
 {
-  const PetscInt     m = pass->m;
-  const PetscScalar *C;
-  PetscScalar       *G;
-  PetscReal          moved = 0;
+  const PetscInt           m     = pass->m;
+  const PetscScalar *const C     = pass->C;
+  PetscScalar *const       G     = pass->T;
+  PetscReal                moved = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(MatDenseGetArrayRead(pass->C, &C));
-  PetscCall(MatDenseGetArray(pass->T, &G));
   for (PetscInt j = 0; j < m; j++) {
     const PetscReal before = PetscMax(G[j * m + j], 0);
 
@@ -73,21 +128,16 @@ static PetscErrorCode PassDecompose(MPI_Comm comm, PetscInt n, PetscBool first, 
   PetscCall(GramEigen(comm, m, G, pass->spread));
   if (m && pass->spread[0] < 0.5) pass->clean = PETSC_FALSE;
   for (PetscInt i = 0; i < m; i++) pass->spread[i] = PetscMax(pass->spread[i], ROUNDING * pass->spread[m - 1]);
-  PetscCall(MatDenseRestoreArray(pass->T, &G));
-  PetscCall(MatDenseRestoreArrayRead(pass->C, &C));
   PetscFunctionReturn(0);
 }
 
 /* C and R after the pass; T from U, D and S */
-static PetscErrorCode PassAccumulate(PetscInt n, BlockPass *pass, BlockFactors *factors)
+static void PassAccumulate(PetscInt n, BlockPass *pass, BlockFactors *factors)
 {
-  const PetscInt     m = pass->m, ld = factors->ld;
-  const PetscScalar *C;
-  PetscScalar       *U;
+  const PetscInt           m = pass->m, ld = factors->ld;
+  const PetscScalar *const C = pass->C;
+  PetscScalar *const       U = pass->T;
 
-  PetscFunctionBeginUser;
-  PetscCall(MatDenseGetArrayRead(pass->C, &C));
-  PetscCall(MatDenseGetArray(pass->T, &U));
   for (PetscInt j = 0; j < pass->columns; j++) {
     PetscScalar *const H = factors->H + j * ld, *const R = pass->R;
 
@@ -103,8 +153,43 @@ static PetscErrorCode PassAccumulate(PetscInt n, BlockPass *pass, BlockFactors *
   }
   for (PetscInt i = 0; i < m; i++)
     for (PetscInt k = 0; k < m; k++) U[i * m + k] /= pass->size[k] * PetscSqrtReal(pass->spread[i]);
-  PetscCall(MatDenseRestoreArray(pass->T, &U));
-  PetscCall(MatDenseRestoreArrayRead(pass->C, &C));
+}
+
+/* W := (W - V C) T by the products of SLEPc */
+static PetscErrorCode PassApplyMass(BV V, PetscInt n, BV W, BlockPass *pass)
+{
+  Mat C, T;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, pass->m, pass->C, &C));
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, pass->m, pass->m, pass->T, &T));
+  if (n) PetscCall(BVSetActiveColumns(V, 0, n));
+  if (n) PetscCall(BVMult(W, -1, 1, V, C));
+  PetscCall(BVMultInPlace(W, T, 0, pass->m));
+  PetscCall(MatDestroy(&C));
+  PetscCall(MatDestroy(&T));
+  pass->measured = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* The same, and where another pass will follow what it measures, so that V is read once for both */
+static PetscErrorCode PassApply(BV V, PetscInt n, BV W, BlockPass *pass)
+{
+  const PetscBool    again = pass->clean ? PETSC_FALSE : PETSC_TRUE;
+  PetscScalar *const C = pass->C, *const T = pass->T;
+  Panel v, w;
+  Mat   A, B;
+
+  PetscFunctionBeginUser;
+  PetscCall(PanelGet(W, &B, &w));
+  v = (Panel){w.rows, 0, w.rows, NULL};
+  if (n) PetscCall(BVSetActiveColumns(V, 0, n));
+  if (n) PetscCall(PanelGet(V, &A, &v));
+  PetscCall(PanelUpdate(&v, C, T, &w, again ? C : NULL, again ? T : NULL));
+  if (n) PetscCall(PanelRestore(V, &A, &v));
+  PetscCall(PanelRestore(W, &B, &w));
+  pass->measured = PETSC_FALSE;
+  if (again) PetscCall(PassSum(W, n, pass));
   PetscFunctionReturn(0);
 }
 
@@ -123,6 +208,7 @@ static PetscErrorCode PassDrop(PetscInt n, PetscInt i, BV W, BlockFactors *facto
 {
   PetscFunctionBeginUser;
   pass->m--;
+  pass->measured = PETSC_FALSE;
   for (PetscInt j = 0; j < pass->columns; j++) {
     PetscScalar *const R = factors->H + j * factors->ld + n;
 
@@ -155,13 +241,10 @@ static PetscErrorCode PassTrim(PetscInt n, BV W, BlockFactors *factors, BlockPas
 static PetscErrorCode PassRun(BV V, PetscInt n, Mat M, BV W, BlockFactors *factors, BlockPass *pass)
 {
   PetscFunctionBeginUser;
-  PetscCall(PassMeasure(V, n, M, W, pass));
+  if (!pass->measured) PetscCall(M ? PassMeasureMass(V, n, M, W, pass) : PassMeasure(V, n, W, pass));
   PetscCall(PassDecompose(PetscObjectComm((PetscObject)W), n, pass->norm < 0 ? PETSC_TRUE : PETSC_FALSE, pass));
-  PetscCall(PassAccumulate(n, pass, factors));
-  if (n) PetscCall(BVMult(W, -1, 1, V, pass->C));
-  PetscCall(BVMultInPlace(W, pass->T, 0, pass->m));
-  PetscCall(MatDestroy(&pass->C));
-  PetscCall(MatDestroy(&pass->T));
+  PassAccumulate(n, pass, factors);
+  PetscCall(M ? PassApplyMass(V, n, W, pass) : PassApply(V, n, W, pass));
   PetscCall(PassTrim(n, W, factors, pass));
   PetscFunctionReturn(0);
 }
@@ -174,12 +257,12 @@ PetscErrorCode BlockFactorise(BV V, PetscInt n, Mat M, BV W, BlockFactors *facto
   PetscCall(BVGetActiveColumns(W, NULL, &pass.columns));
   pass.m = pass.columns;
   if (!pass.m) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc3(pass.m, &pass.size, pass.m, &pass.spread, pass.m, &pass.R));
+  PetscCall(PetscMalloc4(pass.m, &pass.size, pass.m, &pass.spread, pass.m, &pass.R, pass.m * (n + pass.m), &pass.C));
   for (PetscInt j = 0; j < pass.m; j++) {
     PetscCall(PetscArrayzero(factors->H + j * factors->ld, n + pass.m));
     factors->H[j * factors->ld + n + j] = 1;
   }
   for (int i = 0; i < PASSES && pass.m && !pass.clean; i++) PetscCall(PassRun(V, n, M, W, factors, &pass));
-  PetscCall(PetscFree3(pass.size, pass.spread, pass.R));
+  PetscCall(PetscFree4(pass.size, pass.spread, pass.R, pass.C));
   PetscFunctionReturn(0);
 }

@@ -10,7 +10,7 @@
 */
 #include "lowrank.h"
 #include "dense.h"
-#include <petscblaslapack.h>
+#include "panel.h"
 
 #define LOWRANK_BLOCK 64 /* right-hand sides at once, at most and at least */
 #define LOWRANK_FEW   8
@@ -83,29 +83,20 @@ static PetscErrorCode PairsSpread(Mat S, PetscReal scale, PetscInt p, PetscInt m
 /* c[m][p] = Y' B, or with c given B -= Y c: products of the local rows */
 static PetscErrorCode StoredProduct(const LowRank *u, PetscBool subtract, PetscInt m, Mat B, PetscScalar c[])
 {
-  const PetscScalar *y, one = 1, minus = -1, zero = 0;
-  PetscScalar       *b;
-  PetscInt           n_local, stride_b, stride_y;
-  PetscBLASInt       n, p, columns, ldb, ldy;
+  PetscInt n_local, stride_b, stride_y;
+  Panel    y, b;
 
   PetscFunctionBeginUser;
   PetscCall(MatGetLocalSize(u->Y, &n_local, NULL));
   PetscCall(MatDenseGetLDA(B, &stride_b));
   PetscCall(MatDenseGetLDA(u->Y, &stride_y));
-  PetscCall(PetscBLASIntCast(n_local, &n));
-  PetscCall(PetscBLASIntCast(u->p, &p));
-  PetscCall(PetscBLASIntCast(m, &columns));
-  PetscCall(PetscBLASIntCast(PetscMax(1, stride_b), &ldb));
-  PetscCall(PetscBLASIntCast(PetscMax(1, stride_y), &ldy));
-  PetscCall(MatDenseGetArrayRead(u->Y, &y));
-  PetscCall(MatDenseGetArray(B, &b));
-  if (subtract)
-    PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &n, &columns, &p, &minus, y, &ldy, c, &p, &one, b, &ldb));
-  else
-    PetscCallBLAS("BLASgemm", BLASgemm_("T", "N", &p, &columns, &n, &one, y, &ldy, b, &ldb, &zero, c, &p));
-  PetscCall(MatDenseRestoreArray(B, &b));
-  PetscCall(MatDenseRestoreArrayRead(u->Y, &y));
-  PetscCall(PetscLogFlops(2. * n_local * u->p * m));
+  y = (Panel){n_local, u->p, stride_y, NULL};
+  b = (Panel){n_local, m, stride_b, NULL};
+  PetscCall(MatDenseGetArrayRead(u->Y, (const PetscScalar **)&y.a));
+  PetscCall(MatDenseGetArray(B, &b.a));
+  PetscCall(subtract ? PanelUpdate(&y, c, NULL, &b, NULL, NULL) : PanelProduct(&y, &b, c));
+  PetscCall(MatDenseRestoreArray(B, &b.a));
+  PetscCall(MatDenseRestoreArrayRead(u->Y, (const PetscScalar **)&y.a));
   if (!subtract) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, c, (PetscMPIInt)(u->p * m), MPIU_SCALAR, MPIU_SUM, u->comm));
   PetscFunctionReturn(0);
 }

@@ -1,0 +1,126 @@
+/*
+   Unit test of solver/panel: products of tall matrices with narrow blocks against sums in long double, for numbers of rows
+   and columns about the sizes of a slice and of a step. What a slice or a rest of it leaves out or takes twice, and columns
+   that lie apart, would show.
+*/
+#include "solver/panel.h"
+#include "check.h"
+#include "petscmain.h"
+
+#define APART 3 /* rows between the columns */
+
+/* Entries between -1 and 1, alike in every run */
+static PetscErrorCode PanelMake(PetscInt rows, PetscInt columns, PetscReal phase, Panel *P)
+{
+  PetscFunctionBeginUser;
+  *P = (Panel){rows, columns, rows + APART, NULL};
+  PetscCall(PetscMalloc1((rows + APART) * columns + 1, &P->a));
+  for (PetscInt i = 0; i < (rows + APART) * columns; i++) P->a[i] = sin(phase + 1.7 * i + 1e-3 * i * (PetscReal)i);
+  PetscFunctionReturn(0);
+}
+
+/* Column i of V times column j of W */
+static PetscReal Dot(const Panel *V, PetscInt i, const Panel *W, PetscInt j)
+{
+  long double sum = 0;
+
+  for (PetscInt r = 0; r < V->rows; r++) sum += (long double)V->a[i * V->stride + r] * W->a[j * W->stride + r];
+  return (PetscReal)sum;
+}
+
+/* Largest |product - V' W| */
+static PetscReal Difference(const Panel *V, const Panel *W, const PetscScalar product[])
+{
+  PetscReal worst = 0;
+
+  for (PetscInt j = 0; j < W->columns; j++)
+    for (PetscInt i = 0; i < V->columns; i++)
+      worst = PetscMax(worst, PetscAbsReal(product[j * V->columns + i] - Dot(V, i, W, j)));
+  return worst;
+}
+
+/* (W - V C) T, row r, column j */
+static PetscReal Updated(const Panel *V, const Panel *C, const Panel *T, const Panel *W, PetscInt r, PetscInt j)
+{
+  long double sum = 0;
+
+  for (PetscInt i = 0; i < W->columns; i++) {
+    long double w = W->a[i * W->stride + r];
+
+    for (PetscInt k = 0; k < V->columns; k++) w -= (long double)V->a[k * V->stride + r] * C->a[i * V->columns + k];
+    sum += w * (T ? T->a[j * W->columns + i] : (i == j));
+  }
+  return (PetscReal)sum;
+}
+
+/* Largest difference of the update by C and T, and of what is measured meanwhile */
+static PetscErrorCode UpdateDiffers(const Panel *V, const Panel *C, const Panel *T, const Panel *W, PetscReal *worst)
+{
+  const PetscInt n = V->columns, m = W->columns;
+  PetscScalar   *product, *gram;
+  Panel          X = *W;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(W->stride * m, &X.a, n * m + 1, &product, m * m, &gram));
+  PetscCall(PetscArraycpy(X.a, W->a, W->stride * m));
+  PetscCall(PanelUpdate(V, C->a, T ? T->a : NULL, &X, product, gram));
+  *worst = PetscMax(Difference(V, &X, product), Difference(&X, &X, gram)) / (1 + W->rows);
+  for (PetscInt j = 0; j < m; j++)
+    for (PetscInt r = 0; r < W->stride; r++) {
+      const PetscReal expected = r < W->rows ? Updated(V, C, T, W, r, j) : W->a[j * W->stride + r];
+
+      *worst = PetscMax(*worst, PetscAbsReal(X.a[j * W->stride + r] - expected));
+    }
+  PetscCall(PetscFree3(X.a, product, gram));
+  PetscFunctionReturn(0);
+}
+
+/* One size: the worst of all differences */
+static PetscErrorCode SizeDiffers(PetscInt rows, PetscInt n, PetscInt m, PetscReal *worst)
+{
+  PetscReal    other;
+  PetscScalar *product;
+  Panel        V, W, C, T;
+
+  PetscFunctionBeginUser;
+  PetscCall(PanelMake(rows, n, 0.3, &V));
+  PetscCall(PanelMake(rows, m, 1.1, &W));
+  PetscCall(PanelMake(n, m, 2.3, &C)); /* taken as [m][n] */
+  PetscCall(PanelMake(m, m, 0.7, &T));
+  PetscCall(PetscMalloc1(n * m + 1, &product));
+  PetscCall(PanelProduct(&V, &W, product));
+  *worst = Difference(&V, &W, product) / (1 + rows);
+  PetscCall(UpdateDiffers(&V, &C, &T, &W, &other));
+  *worst = PetscMax(*worst, other);
+  PetscCall(UpdateDiffers(&V, &C, NULL, &W, &other));
+  *worst = PetscMax(*worst, other);
+  PetscCall(PetscFree(product));
+  PetscCall(PetscFree(V.a));
+  PetscCall(PetscFree(W.a));
+  PetscCall(PetscFree(C.a));
+  PetscCall(PetscFree(T.a));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TestPanel(PetscMPIInt size, int *failed)
+{
+  const PetscInt rows[] = {0, 1, 7, 8, 9, 255, 256, 263, 264, 521}, columns[] = {0, 1, 2, 7, 40},
+                 widths[] = {1, 3, 4, 5, 8, 13};
+  PetscReal worst         = 0, one;
+
+  PetscFunctionBeginUser;
+  (void)size;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(rows); i++)
+    for (size_t j = 0; j < PETSC_STATIC_ARRAY_LENGTH(columns); j++)
+      for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(widths); k++) {
+        PetscCall(SizeDiffers(rows[i], columns[j], widths[k], &one));
+        worst = PetscMax(worst, one);
+      }
+  *failed += CheckClose("300 sizes, largest difference", worst, 0, 1e-12);
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  return PetscMain(argc, argv, TestPanel);
+}
