@@ -4,6 +4,7 @@ label, against another run or other ranks, and bounds."""
 import cmath
 import csv
 import math
+import re
 import shlex
 import subprocess
 import sys
@@ -11,6 +12,41 @@ import sys
 
 class Failure(Exception):
     """What the test found wrong, for people."""
+
+
+class Line(str):
+    """What a check found, for people; where it compares numbers also the worst one and what it may be."""
+
+    measured = allowed = None
+
+    @classmethod
+    def of(cls, text, measured, allowed):
+        line = cls(text)
+        line.measured, line.allowed = float(measured), float(allowed)
+        return line
+
+    def like(self, line):
+        """With the numbers of another line."""
+        self.measured, self.allowed = line.measured, line.allowed
+        return self
+
+    def used(self):
+        """Share of what is allowed that is used up; 0 for nothing of nothing."""
+        if self.measured is None:
+            return -1
+        return self.measured / self.allowed if self.allowed else math.inf if self.measured else 0.0
+
+
+def worst_of(lines):
+    """All lines as one, with the numbers of the one that uses most of what is allowed."""
+    worst = max(lines, key=Line.used)
+    return Line("; ".join(lines)).like(worst)
+
+
+def measured_in(text):
+    """Numbers that a script says it has measured, as "measured 1e-12, allowed 1e-9", as a line."""
+    found = [Line.of(text, *pair) for pair in re.findall(r"measured ([-+.\w]+), allowed ([-+.\w]+)", text)]
+    return max(found, key=Line.used, default=Line(text))
 
 
 def require(condition, message):
@@ -77,15 +113,16 @@ def compare(pairs, check):
     if any(isinstance(reference, str) for _, reference in pairs):
         wrong = [f"{value} for {reference}" for value, reference in pairs if value != reference]
         require(not wrong, "; ".join(wrong))
-        return f"{len(pairs)} texts equal"
+        return Line(f"{len(pairs)} texts equal")
     rtol, atol = check.get("rtol", 0), check.get("atol", 0)
     errors = [(abs(value - reference), atol + rtol * abs(reference), value, reference) for value, reference in pairs]
     error, allowed, value, reference = max(errors, key=lambda e: e[0] / e[1] if e[1] else e[0])
     line = f"{len(pairs)} values, worst {value:.12g} for {reference:.12g}, error {error:.2e}, allowed {allowed:.2e}"
+    line = Line.of(line, error, allowed)
     require(all(e[0] <= e[1] for e in errors), line)
     if "rms" in check:
         rms = math.sqrt(sum(abs((value - reference) / reference) ** 2 for value, reference in pairs) / len(pairs))
-        line += f", rms {rms:.2e}, allowed {check['rms']:.2e}"
+        line = worst_of([line, Line.of(f"rms {rms:.2e}, allowed {check['rms']:.2e}", rms, check["rms"])])
         require(rms <= check["rms"], line)
     return line
 
@@ -103,12 +140,15 @@ class Checker:
         name = check.get("run", next(iter(self.runner.case["run"])))
         if "command" in check:
             command = [sys.executable, *self.runner.expand(check["command"])]
-            require(subprocess.run(command).returncode == 0, f"failed: {shlex.join(command)}")
-            return f"{check['command']} succeeded"
+            process = subprocess.run(command, stdout=subprocess.PIPE, text=True)
+            print(process.stdout, end="", flush=True)
+            found = measured_in(process.stdout)
+            require(process.returncode == 0, Line(f"failed: {shlex.join(command)}").like(found))
+            return Line(f"{check['command']} succeeded").like(found)
         rows = self.rows(self.runner, name, check)
         lines = [*self.references(rows, name, check), *self.bounds(rows, check)]
         require(lines or "across_ranks" in check, "the check has no reference")
-        return "; ".join(lines)
+        return worst_of(lines) if lines else ""
 
     def references(self, rows, name, check):
         column = check.get("column", "eigenvalue")
@@ -142,11 +182,14 @@ class Checker:
     @staticmethod
     def bounds(rows, check):
         if "count" in check:
-            require(len(rows) == check["count"], f"{len(rows)} rows, but {check['count']} were expected")
-            yield f"{len(rows)} rows"
+            require(len(rows) == check["count"],
+                    Line.of(f"{len(rows)} rows, but {check['count']} were expected", len(rows), check["count"]))
+            yield Line(f"{len(rows)} rows")
         if "min" in check or "max" in check:
             require(rows, "no row is selected")
             values = column_of(rows, check["column"])
-            line = f"{check['column']} from {min(values):.6g} to {max(values):.6g}"
+            line = Line(f"{check['column']} from {min(values):.6g} to {max(values):.6g}")
+            if "max" in check:
+                line = Line.of(line, max(values), check["max"])
             require(check.get("min", -math.inf) <= min(values) and max(values) <= check.get("max", math.inf), line)
             yield line

@@ -41,6 +41,9 @@ A case is a TOML file. Only `run` is required.
     atol = 0
     rms = 0.01
 
+    hard = "a scene in mm"       # a hard case that this check is the answer to, in a run: that it fails as it should;
+    wrong = "a constant has a unit"    # what can go wrong in it: scripts/study/hard lists both, `why` and the margin
+
     [[check]]
     run = "NAME"
     command = "{source}/tests/verify/fields.py {NAME}/modes.xmf"   # a Python script that must succeed
@@ -62,7 +65,7 @@ import tempfile
 import tomllib
 from pathlib import Path
 
-from check import Checker, Failure, require
+from check import Checker, Failure, Line, require
 
 SOURCE = Path(__file__).resolve().parent.parent
 FINAL_SUFFIXES = {".csv", ".h5", ".xmf", ".bin", ".info"}
@@ -201,7 +204,17 @@ class Runner:
             if self.names(check) <= set(self.made):
                 title = check.get("why", f"check {index}")
                 results.append(attempt(f"{title} on {self.ranks}", checker.make, check))
+                self.write_margin(check, title, results[-1])
         return results
+
+    def write_margin(self, check, title, result):
+        """Adds a line about a hard case to the file of --margins."""
+        if not self.arguments.margins or "hard" not in check:
+            return
+        line = result if isinstance(result, Line) else Line(result)
+        with self.arguments.margins.open("a", newline="") as file:
+            csv.writer(file).writerow([check["hard"], check.get("wrong", ""), title, self.arguments.case.stem,
+                                       self.ranks, line.measured, line.allowed, int(result.passed)])
 
     def names(self, check):
         """Runs that a check looks at."""
@@ -223,14 +236,37 @@ class Runner:
         require(worst <= WORST_RATIO, f"a mode errs by {worst:.1f} times what is printed")
 
 
+class Result(Line):
+    """What an action found; true where it passed."""
+
+    def __bool__(self):
+        return self.passed
+
+
 def attempt(title, action, *arguments):
-    """Whether the action passed; prints what it found."""
+    """What the action found, true where it passed; prints it."""
     try:
-        print(f"ok     {title}: {action(*arguments) or 'as expected'}")
-        return True
+        line, passed = action(*arguments) or "as expected", True
     except Failure as failure:
-        print(f"FAILED {title}: {failure}")
-        return False
+        line, passed = failure.args[0], False
+    print(f"{'ok    ' if passed else 'FAILED'} {title}: {line}")
+    result = Result(line)
+    result.passed = passed
+    result.measured, result.allowed = getattr(line, "measured", None), getattr(line, "allowed", None)
+    return result
+
+
+def keep_hard(case):
+    """Leaves the checks of hard cases alone, and the runs that these look at or come from."""
+    runs, case["check"] = case["run"], [check for check in case.get("check", []) if "hard" in check]
+    default = next(iter(runs))
+    text = " ".join(f"{{{check.get('run', default)}}} {{{check.get('equals_run', '')}}} {check.get('command', '')}"
+                    for check in case["check"])
+    kept, more = set(), {name for name in runs if f"{{{name}}}" in text}
+    while more - kept:
+        kept |= more
+        more = {name for name in runs for other in kept if f"{{{name}}}" in runs[other].get("options", "")}
+    case["run"] = {name: run for name, run in runs.items() if name in kept or "hard" in run}
 
 
 def main():
@@ -241,9 +277,12 @@ def main():
     parser.add_argument("--ranks", type=int, action="append", help="instead of the ranks of the case")
     parser.add_argument("--timeout", type=float, default=240, help="seconds allowed to each run")
     parser.add_argument("--core", choices=CORES, help="processor whose kernels OpenBLAS takes")
+    parser.add_argument("--margins", type=Path, help="only checks of hard cases, about each of which a line is added here")
     arguments = parser.parse_args()
     arguments.squeal = arguments.squeal.resolve()
     case = tomllib.loads(arguments.case.read_text())
+    if arguments.margins:
+        keep_hard(case)
     absent = [name for name in case.get("needs", []) if not (importlib.util.find_spec(name) or shutil.which(name))]
     reason = f"no module or program {' '.join(absent)}" if absent else arguments.core and choose_core(arguments.core)
     if reason:
@@ -264,7 +303,9 @@ def main():
         for ranks in chosen:
             runner = Runner(arguments, case, Path(folder), ranks)
             first = first or runner
-            results += [attempt(f"run {name} on {ranks}", runner.make, name) for name in runner.made]
+            for name in runner.made:
+                results.append(attempt(f"run {name} on {ranks}", runner.make, name))
+                runner.write_margin(case["run"][name], case["run"][name].get("why", f"run {name}"), results[-1])
             results += runner.check(Checker(runner, first))
     return 0 if all(results) else 1
 

@@ -235,7 +235,7 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
   square      = PetscMax(noise, has_left && p.y_Dx > 0 ? p.y_Qx / p.y_Dx : 0); /* error of lambda^2 */
   mode->rigid = size * size <= QUALITY_NOISE * square ? PETSC_TRUE : PETSC_FALSE;
   square      = ROUNDINGS * noise + (has_left && p.y_Dx > 0 ? p.y_Qx / p.y_Dx : 0);
-  mode->error = mode->rigid ? PetscMax(size, PetscSqrtReal(square)) : square / (2 * size);
+  mode->error = mode->rigid ? PetscSqrtReal(size * size + square) : square / (2 * size);
   if (mode->rigid) mode->sigma = mode->omega = 0;
   mode->unstable =
     mode->sigma > mode->error && mode->sigma > (has_left ? 1e-9 : 1e-6) * size ? PETSC_TRUE : PETSC_FALSE;

@@ -94,6 +94,7 @@ static void PairSetFriction(const ContactProjector p, ProjectorPair *pair)
   last       = pair->slip;
   pair->slip = hypot(q[1] + pair->drift[1], q[2] + pair->drift[2]);
   if (last < 0) last = pair->slip;
+  pair->slip_before = last;
   pair->mu = FrictionCoefficient(c->mu, c->mu_slope, pair->speed, PetscMax(0, 1.5 * pair->slip - 0.5 * last));
 }
 

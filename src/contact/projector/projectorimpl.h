@@ -54,6 +54,7 @@ typedef struct {
   PetscReal     speed;        /* stated sliding speed, 0 where nothing slides as told, m/s */
   PetscBool     no_slip;      /* friction needs the sliding velocity, which has no part in the surface here */
   PetscReal     mu, slip;     /* slip speed of v_{n-1/2}, m/s, -1 where it is not known: for mu */
+  PetscReal     slip_before;  /* that of v_{n-3/2}, as far as it is known */
   PetscReal     p[3], q[3];   /* impulse on the slave, N s; relative velocity with the offset, m/s */
   ContactStatus status;
   int           n; /* nodes of the facet, four at least: those of a triangle have a fourth of weight 0 */
@@ -141,7 +142,7 @@ struct _p_ContactProjector {
   PetscReal       *slave_x;            /* [n_pairs][3] their places */
   ContactSums      sums[CONTACT_MAX];
   /* on all ranks */
-  PetscReal   noise;      /* rounding of its forces, N; on the root */
+  PetscReal   noise;       /* rounding of its forces, N; on the root */
   ContactStep last;        /* the step made */
   PetscBool   search_next; /* all nodes are active, and the next step begins with a search */
 };

@@ -6,25 +6,24 @@
 
    P the projection on the tangent plane, d_s the displacement of the slave in the frame of the master, t and `way` direction and
    length of a sliding that is prescribed. Coulomb's law with the coefficient of the interface asks
-   for the work mu lambda_n |s| (J); lambda_T . s is what the forces did. Where mu falls with speed, it is that of the mean of the
-   slips over this step and the one before, and what the extrapolation of mu (prepare.c) may differ by is allowed.
+   for the work mu lambda_n |s| (J); lambda_T . s is what the forces did. Where mu falls with speed, it is that of the slip
+   of v_{n-1/2}, from the velocities of the nodes, and of the slip before that, extrapolated to t_n (prepare.c).
 */
 #include "projectorimpl.h"
 #include "base/vec3.h"
 
 #define SLIP_NOISE 16 /* roundings of a displacement */
 
-/* What is looked at: displacements of all nodes at t_n and t_{n+1}, m, and the slip that is prescribed per speed, s,
-   and how much longer that is than in the step before */
+/* What is looked at: displacements of all nodes at t_n and t_{n+1}, m, and the slip that is prescribed per speed, s */
 typedef struct {
   const PetscReal *u0, *u1;
-  PetscReal        dt, kick, way[CONTACT_MAX], more[CONTACT_MAX];
+  PetscReal        dt, kick, way[CONTACT_MAX];
 } SlipStep;
 
-/* One pair: slip (m) along t and b, slip over the step before, and with the sliding velocity of
-   this one (m), the largest motion of one of its nodes, rounding of s */
+/* One pair: slip (m) along t and b, slip over the step before with the sliding velocity of this one (m), the
+   largest motion of one of its nodes, rounding of s */
 typedef struct {
-  PetscReal s[2], before[2], as_now[2], motion, noise;
+  PetscReal s[2], before[2], motion, noise;
 } PairSlipped;
 
 static void PairMotion(ContactProjector p, const ProjectorPair *pair, const SlipStep *step, PairSlipped *slip)
@@ -54,43 +53,41 @@ static void PairMotion(ContactProjector p, const ProjectorPair *pair, const Slip
   PairVelocity(pair, p->nodes.before, q);
   for (int i = 0; i < 2; i++) {
     slip->s[i]      = Vec3Dot(pair->e[1 + i], along);
-    slip->before[i] = slip->as_now[i] = step->dt * (q[1 + i] + pair->drift[1 + i]);
+    slip->before[i] = step->dt * (q[1 + i] + pair->drift[1 + i]);
   }
   slip->s[0] += pair->speed * step->way[pair->interface];
-  slip->before[0] -= pair->speed * step->more[pair->interface];
 }
 
 static void SlipWorkAdd(ContactProjector p, const ProjectorPair *pair, const SlipStep *step, ContactSlipWork *work)
 {
   const ContactInterface *c      = &p->contact->interfaces[pair->interface];
   const PetscReal         normal = pair->p[0] / step->kick, T[2] = {-pair->p[1] / step->kick, -pair->p[2] / step->kick};
-  PetscReal               mu = c->mu, length, change, done, law, allowed, force;
+  PetscReal               mu = c->mu, length, done, law, allowed;
   PairSlipped             slip;
 
   PairMotion(p, pair, step, &slip);
   length = hypot(slip.s[0], slip.s[1]);
-  change = hypot(slip.s[0] - slip.before[0], slip.s[1] - slip.before[1]);
   if (c->mu_slope != 0)
-    mu = FrictionCoefficient(c->mu, c->mu_slope, pair->speed,
-                             0.5 * (length + hypot(slip.as_now[0], slip.as_now[1])) / step->dt);
+    mu = FrictionCoefficient(
+      c->mu, c->mu_slope, pair->speed,
+      PetscMax(0, 1.5 * hypot(slip.before[0], slip.before[1]) / step->dt - 0.5 * pair->slip_before));
   done    = T[0] * slip.s[0] + T[1] * slip.s[1];
   law     = mu * normal * length;
-  force   = p->noise + 2 * PetscAbsReal(c->mu_slope) * change / step->dt * normal; /* what mu lambda_n may be off by */
-  allowed = 2 * mu * normal * slip.noise + force * length;
+  allowed = 2 * mu * normal * slip.noise + p->noise * length;
   work->done += done;
   work->law += law;
-  work->heat += 0.5 * (done + T[0] * slip.as_now[0] + T[1] * slip.as_now[1]);
+  work->heat += 0.5 * (done + T[0] * slip.before[0] + T[1] * slip.before[1]);
   work->miss += PetscMax(0, PetscAbsReal(done - law) - allowed);
   work->noise += allowed;
   work->size += mu * normal * PetscMax(PetscMax(length, slip.motion), slip.noise);
-  work->over += PetscMax(0, hypot(T[0], T[1]) - mu * normal - force);
+  work->over += PetscMax(0, hypot(T[0], T[1]) - mu * normal - p->noise);
   work->normal += normal;
 }
 
-/* Way of a prescribed sliding of 1 m/s from time t on, s: that at the middle of the step; 0 where the frame of the master moves */
-static PetscReal SlidingWay(const ContactSliding *sliding, PetscReal t, PetscReal dt)
+/* Way of a prescribed sliding of 1 m/s, s: that at the middle of the step; 0 where the frame of the master moves */
+static PetscReal SlidingWay(const ContactSliding *sliding, const ContactStep *step)
 {
-  return sliding->turning ? 0 : dt * RampValue(&sliding->ramp, t + 0.5 * dt);
+  return sliding->turning ? 0 : step->dt * RampValue(&sliding->ramp, step->time + 0.5 * step->dt);
 }
 
 PetscErrorCode ContactProjectorGetSlipWork(ContactProjector p, const PetscReal u[], ContactSlipWork *work)
@@ -105,8 +102,7 @@ PetscErrorCode ContactProjectorGetSlipWork(ContactProjector p, const PetscReal u
   PetscCall(ShareGather(&p->share, 1, (const PetscReal *const[]){u}, (PetscReal *const[]){u1}));
   step.u1 = u1;
   for (PetscInt i = 0; i < p->n_interfaces; i++) {
-    step.way[i]  = SlidingWay(&p->sliding[i], p->last.time, step.dt);
-    step.more[i] = step.way[i] - SlidingWay(&p->sliding[i], p->last.time - step.dt, step.dt);
+    step.way[i] = SlidingWay(&p->sliding[i], &p->last);
   }
   for (PetscInt k = 0; root && k < p->n_pairs; k++)
     if (p->pair[k].facet >= 0 && p->pair[k].p[0] > 0) SlipWorkAdd(p, &p->pair[k], &step, work);

@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""Hard cases against exact answers; each prints what it measured and what is allowed.
+
+    hard.py eigenvalues RESULTS EXACT.csv F   true errors of modes.csv below F Hz over stated ones, error_hz; exact eigenvalues by
+                                              tests/hard.py; all must be there, and none twice; as of any solution
+                                              one in a hundred may be beyond, by three times at most
+    hard.py matrices RESULTS SAVED            true errors over stated ones, on the matrices of -operators_save: as many modes as
+                                              LAPACK has, refined in extended precision
+    hard.py nearly RESULTS F                  distance of F, Hz, from the mode that may be it, over its stated error
+    hard.py scaled RESULTS OTHER FACTOR LIMIT frequencies against FACTOR times those of another run, relative
+    hard.py ledger RESULTS LIMIT              energy that is left over, of the largest work or energy
+    hard.py cycles RESULTS PAIRS TIME F LIMIT onsets of PAIRS sticking pairs a second against F, Hz, relative
+    hard.py last RESULTS OTHER COLUMN LIMIT   a column of the last row of transient.csv against that of another run, relative
+    hard.py force RESULTS FROM FORCE LIMIT    mean normal force after FROM, s, against FORCE, N"""
+
+import csv
+import math
+import sys
+from pathlib import Path
+
+import numpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
+
+
+def rows(path):
+    with Path(path).open(newline="") as table:
+        return [{key: float(cell) if key not in ("label", "unstable") else cell for key, cell in row.items()}
+                for row in csv.DictReader(table)]
+
+
+def judge(measured, allowed):
+    print(f"measured {measured:.3e}, allowed {allowed:g}")
+    return 0 if measured <= allowed else 1
+
+
+def eigenvalues(results, exact, top):
+    import scipy.optimize
+    truth = numpy.array([complex(row["growth_rad_s"], row["omega_rad_s"]) for row in rows(exact)])
+    truth = truth[truth.imag < 2 * math.pi * float(top)]
+    table = [row for row in rows(Path(results) / "modes.csv") if row["freq_hz"] < float(top)]
+    found = numpy.array([complex(row["growth_rad_s"], 2 * math.pi * row["freq_hz"]) for row in table])
+    if len(found) != len(truth):
+        print(f"{len(found)} eigenvalues, must be {len(truth)}")
+        return 1
+    distance = abs(found[:, None] - truth)
+    place, exact_place = scipy.optimize.linear_sum_assignment(distance)
+    error, stated = distance[place, exact_place], 2 * math.pi * numpy.array([table[i]["error_hz"] for i in place])
+    ratio = error / stated
+    print(f"{len(found)} eigenvalues, errors up to {error.max():.1e} rad/s, stated up to {stated.max():.1e}, "
+          f"{(ratio > 1).sum()} beyond what is stated; worst over that")
+    return judge(ratio.max(), 3 if len(found) >= 100 and (ratio > 1).mean() <= 0.01 else 1)
+
+
+def matrices(results, saved):
+    import scipy.linalg
+    from squeal.exact import Pencil
+    pencil, table = Pencil(saved, 0), rows(Path(results) / "modes.csv")
+    count = numpy.sqrt(abs(scipy.linalg.eigh(pencil.stiffness.full, pencil.mass.full, eigvals_only=True))) / (2 * math.pi)
+    found = numpy.array([row["freq_hz"] for row in table])
+    count = (count > found.min() / 2) & (count < found.max() * (1 + 1e-6))
+    if count.sum() != len(found):
+        print(f"{len(found)} modes, LAPACK has {count.sum()}")
+        return 1
+    exact = numpy.array([abs(complex(pencil.refine(2j * math.pi * f)[0])) / (2 * math.pi) for f in found])
+    if len(numpy.unique(exact.round(9))) != len(found):
+        print("two modes are one")
+        return 1
+    stated = numpy.array([row["error_hz"] for row in table])
+    print(f"{len(found)} frequencies, errors up to {abs(found - exact).max():.1e} Hz; over what is stated")
+    return judge((abs(found - exact) / stated).max(), 1)
+
+
+def nearly(results, frequency):
+    row = min(rows(Path(results) / "modes.csv"), key=lambda row: abs(row["freq_hz"] - float(frequency)) / row["error_hz"])
+    return judge(abs(row["freq_hz"] - float(frequency)) / row["error_hz"], 1)
+
+
+def scaled(results, other, factor, limit):
+    found, exact = ([row["freq_hz"] for row in rows(Path(folder) / "modes.csv")] for folder in (results, other))
+    if len(found) != len(exact):
+        print(f"{len(found)} modes, must be {len(exact)}")
+        return 1
+    return judge(max(abs(a / (float(factor) * b) - 1) for a, b in zip(found, exact)), float(limit))
+
+
+def ledger(results, limit):
+    table = rows(Path(results) / "transient.csv")
+    names = [name for name in table[0] if name.endswith("_j") and name not in ("energy_error_j", "friction_heat_j")]
+    largest = max(abs(row[name]) for row in table for name in names)
+    return judge(max(abs(row["energy_error_j"]) for row in table) / largest, float(limit))
+
+
+def force(results, begin, expected, limit):
+    table = [row for row in rows(Path(results) / "transient.csv") if row["time_s"] > float(begin)]
+    mean = sum(row["normal_force_n"] for row in table) / len(table)
+    return judge(abs(mean / float(expected) - 1), float(limit))
+
+
+def cycles(results, pairs, time, frequency, limit):
+    sticks = [row["n_stick"] == float(pairs) for row in rows(Path(results) / "transient.csv")]
+    onsets = sum(after and not before for before, after in zip(sticks, sticks[1:]))
+    return judge(abs(onsets / float(time) / float(frequency) - 1), float(limit))
+
+
+def last(results, other, column, limit):
+    found, exact = (rows(Path(folder) / "transient.csv")[-1][column] for folder in (results, other))
+    return judge(abs(found / exact - 1), float(limit))
+
+
+if __name__ == "__main__":
+    sys.exit(globals()[sys.argv[1]](*sys.argv[2:]))
