@@ -5,7 +5,8 @@
 #include "reducedimpl.h"
 #include "solver/orthonormal.h"
 
-#define ORTHONORMAL 1e-7 /* largest |Phi'M Phi - I| */
+#define ORTHONORMAL  1e-7 /* largest |Phi'M Phi - I| */
+#define CUTOFF_NOISE 10   /* roundings of the largest K_ii / M_ii that the square of the cut-off exceeds */
 
 /* Whether a parameter is one of damping or spin, which real modes know nothing of: by its unit, since names begin with those
    that the user gave */
@@ -48,6 +49,34 @@ static PetscErrorCode ReducedCreatePencil(ReducedRun r)
   }
   PetscCall(PencilSetParameters(r->bodies, still));
   PetscCall(PetscFree(still));
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error for a cut-off whose square is rounding of the largest K_ii / M_ii */
+static PetscErrorCode ReducedCheckCutoff(ReducedRun r, const PencilMatrices *pencil)
+{
+  const PetscScalar *k, *m;
+  PetscInt           n;
+  PetscReal          largest = 0, least;
+  Vec                K, M;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateVecs(pencil->K, &K, &M));
+  PetscCall(MatGetDiagonal(pencil->K, K));
+  PetscCall(MatGetDiagonal(pencil->M, M));
+  PetscCall(VecGetLocalSize(K, &n));
+  PetscCall(VecGetArrayRead(K, &k));
+  PetscCall(VecGetArrayRead(M, &m));
+  for (PetscInt i = 0; i < n; i++) largest = PetscMax(largest, m[i] > 0 ? k[i] / m[i] : 0);
+  PetscCall(VecRestoreArrayRead(K, &k));
+  PetscCall(VecRestoreArrayRead(M, &m));
+  PetscCall(VecDestroy(&K));
+  PetscCall(VecDestroy(&M));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPI_MAX, r->comm));
+  least = PetscSqrtReal(CUTOFF_NOISE * PETSC_MACHINE_EPSILON * largest) / (2 * PETSC_PI);
+  PetscCheck(r->cutoff >= least, r->comm, PETSC_ERR_USER_INPUT,
+             "-dynamics_cutoff %.6g Hz is rounding of the stiffness: on this mesh it must be %.3g Hz at least",
+             (double)r->cutoff, (double)least);
   PetscFunctionReturn(0);
 }
 
@@ -155,6 +184,7 @@ PetscErrorCode ReducedFindModes(ReducedRun r)
   PetscCall(ReducedCreatePencil(r));
   PetscCall(PencilGetMatrices(r->bodies, &pencil));
   PetscCheck(!pencil.C, r->comm, PETSC_ERR_PLIB, "modes of the bodies see damping");
+  PetscCall(ReducedCheckCutoff(r, &pencil));
   PetscCall(ReducedCountModes(r, &pencil));
   PetscCall(ModesCreate(r->comm, &r->body_modes));
   PetscCall(ModesSetPencil(r->body_modes, r->bodies));

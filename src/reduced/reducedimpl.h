@@ -21,7 +21,7 @@ struct _p_ReducedStepper {
   ContactCompliance laws; /* NULL without pairs */
   PetscReal        *x, *next, *product;      /* work: [3 m] z and g; [3 m] z(dt); [3 m] */
   PetscReal        *mean, *free, *slip0, *r; /* work: [n_ports], [3 n_pairs], [2 n_pairs], [3 n_pairs] */
-  PetscReal        *q, *dq, *y, *port;       /* work: [3 n_pairs] q_{n+1}, its change, gaps and slips; [n_ports] */
+  PetscReal        *q, *dq, *slip, *port;    /* work: [3 n_pairs] q_{n+1}, its change, gaps and slips; [n_ports] */
 };
 
 /* An eigenvalue of the mesh about the sliding state beside that of the reduced model, rad/s */

@@ -45,34 +45,24 @@ PetscErrorCode ReducedApplyResidual(ReducedRun r, Mat B, Mat X)
   PetscFunctionReturn(0);
 }
 
-/* Columns first .. of V as the dense B: of G' or of the others */
+/* Columns first .. of V as the dense B: of G' and of the others */
 static PetscErrorCode PortsGetColumns(ReducedRun r, Mat Gt, PetscInt first, Mat B)
 {
   const PetscInt     n_pairs = 3 * r->model.n_pairs;
-  PetscInt           begin, end, stride, ldo, n;
+  PetscInt           n_own, n, stride, ldo;
   PetscScalar       *b;
   const PetscScalar *o;
 
   PetscFunctionBeginUser;
+  PetscCall(BlockTakeColumns(Gt, first, B));
+  PetscCall(MatGetLocalSize(B, &n_own, NULL));
   PetscCall(MatGetSize(B, NULL, &n));
-  PetscCall(MatGetOwnershipRange(Gt, &begin, &end));
-  PetscCall(MatZeroEntries(B));
   PetscCall(MatDenseGetLDA(B, &stride));
   PetscCall(MatDenseGetLDA(r->others, &ldo));
   PetscCall(MatDenseGetArray(B, &b));
   PetscCall(MatDenseGetArrayRead(r->others, &o));
-  for (PetscInt i = begin; i < end; i++) {
-    const PetscInt    *column;
-    const PetscScalar *v;
-    PetscInt           n_row;
-
-    PetscCall(MatGetRow(Gt, i, &n_row, &column, &v));
-    for (PetscInt k = 0; k < n_row; k++)
-      if (column[k] >= first && column[k] < first + n) b[(column[k] - first) * stride + i - begin] = v[k];
-    PetscCall(MatRestoreRow(Gt, i, &n_row, &column, &v));
-  }
   for (PetscInt k = PetscMax(first, n_pairs); k < first + n; k++)
-    PetscCall(PetscArraycpy(&b[(k - first) * stride], &o[(k - n_pairs) * ldo], end - begin));
+    PetscCall(PetscArraycpy(&b[(k - first) * stride], &o[(k - n_pairs) * ldo], n_own));
   PetscCall(MatDenseRestoreArrayRead(r->others, &o));
   PetscCall(MatDenseRestoreArray(B, &b));
   PetscFunctionReturn(0);

@@ -199,13 +199,14 @@ static PetscErrorCode StepperSolveLaws(ReducedStepper s, ReducedState *state, Re
 {
   const PetscInt       n = s->model->n_pairs;
   const ContactStatus *status;
+  const PetscReal     *slip;
   ComplianceReport     solved;
 
   PetscFunctionBeginUser;
   report->residual = 0;
   report->its      = 0;
   if (!n) PetscFunctionReturn(0);
-  PetscCall(ContactComplianceSolve(s->laws, s->free, s->slip0, state->p, s->y, &solved));
+  PetscCall(ContactComplianceSolve(s->laws, s->free, s->slip0, state->p, NULL, &solved));
   PetscCheck(solved.converged, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED,
              "contact forces do not converge at %.6g s: residual %.2e of pair %" PetscInt_FMT
              ", must be %.0e; friction of mu %.3g may have no solution on these bodies: take "
@@ -214,6 +215,8 @@ static PetscErrorCode StepperSolveLaws(ReducedStepper s, ReducedState *state, Re
              (double)s->model->mu[PetscMax(0, solved.worst)]);
   PetscCall(ContactComplianceGetStatus(s->laws, &status));
   PetscCall(PetscArraycpy(state->status, status, n));
+  PetscCall(ContactComplianceGetSlip(s->laws, &slip));
+  PetscCall(PetscArraycpy(s->slip, slip, 3 * n));
   report->residual = solved.residual;
   report->its      = solved.iterations;
   PetscFunctionReturn(0);
@@ -227,16 +230,15 @@ static void StepperAccount(ReducedStepper s, const ReducedDrive *drive, ReducedS
     PetscReal        dy[3];
 
     for (int d = 0; d < 3; d++) {
-      const PetscReal y = s->y[3 * i + d] - (d ? 0 : s->model->gap[i]);
+      const PetscReal y = s->slip[3 * i + d] + (d ? s->slip0[2 * i + d - 1] : -s->model->gap[i]);
 
       dy[d]               = y - state->y[3 * i + d];
       state->y[3 * i + d] = y;
     }
-    report->contact[i]      = mean[0] * dy[0];
-    report->friction[i]     = mean[1] * dy[1] + mean[2] * dy[2];
-    report->heat[i]         = -report->friction[i] - mean[1] * drive->sliding[i];
-    report->slip[2 * i]     = dy[1] + drive->sliding[i];
-    report->slip[2 * i + 1] = dy[2];
+    report->contact[i]  = mean[0] * dy[0];
+    report->friction[i] = mean[1] * dy[1] + mean[2] * dy[2];
+    report->heat[i]     = -report->friction[i] - mean[1] * drive->sliding[i];
+    for (int d = 0; d < 2; d++) report->slip[2 * i + d] = s->slip[3 * i + 1 + d];
   }
 }
 

@@ -252,7 +252,7 @@ PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, Pet
   PetscCall(PetscMalloc3(4 * m * m, &s->E, 2 * m * m, &s->F, n * n, &s->W));
   PetscCall(PetscCalloc5(3 * m, &s->x, 3 * m, &s->next, 3 * m, &s->product, n, &s->free, n, &s->slip0));
   PetscCall(PetscCalloc3(model->n_ports, &s->mean, n, &s->r, model->n_ports, &s->port));
-  PetscCall(PetscCalloc3(n, &s->q, n, &s->dq, n, &s->y));
+  PetscCall(PetscCalloc3(n, &s->q, n, &s->dq, n, &s->slip));
   PetscCall(StepperSetResponse(s));
   PetscCall(StepperSetDamping(s));
   PetscCall(StepperSetResidual(s));
@@ -273,7 +273,7 @@ PetscErrorCode ReducedStepperDestroy(ReducedStepper *stepper)
   PetscCall(PetscFree2(s->HW, s->HC));
   PetscCall(PetscFree5(s->x, s->next, s->product, s->free, s->slip0));
   PetscCall(PetscFree3(s->mean, s->r, s->port));
-  PetscCall(PetscFree3(s->q, s->dq, s->y));
+  PetscCall(PetscFree3(s->q, s->dq, s->slip));
   PetscCall(PetscFree(*stepper));
   PetscFunctionReturn(0);
 }

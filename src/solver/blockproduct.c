@@ -72,6 +72,31 @@ static PetscErrorCode ApplySequential(Mat A, Mat X, Mat Y)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode BlockTakeColumns(Mat A, PetscInt first, Mat X)
+{
+  PetscInt     begin, end, stride, n;
+  PetscScalar *x;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetSize(X, NULL, &n));
+  PetscCall(MatGetOwnershipRange(A, &begin, &end));
+  PetscCall(MatZeroEntries(X));
+  PetscCall(MatDenseGetLDA(X, &stride));
+  PetscCall(MatDenseGetArray(X, &x));
+  for (PetscInt i = begin; i < end; i++) {
+    const PetscInt    *column;
+    const PetscScalar *v;
+    PetscInt           n_row;
+
+    PetscCall(MatGetRow(A, i, &n_row, &column, &v));
+    for (PetscInt k = 0; k < n_row; k++)
+      if (column[k] >= first && column[k] < first + n) x[(column[k] - first) * stride + i - begin] = v[k];
+    PetscCall(MatRestoreRow(A, i, &n_row, &column, &v));
+  }
+  PetscCall(MatDenseRestoreArray(X, &x));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BlockMultiply(Mat A, Mat X, Mat Y)
 {
   PetscBool sequential, dense;

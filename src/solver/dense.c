@@ -168,6 +168,21 @@ PetscErrorCode DenseTimes(const DenseBlock *block, PetscBool transposed, PetscIn
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode DenseEnergies(PetscInt n, const PetscReal E[], PetscInt m, const PetscComplex X[], PetscReal energy[])
+{
+  PetscComplex *EX;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(m * n, &EX));
+  PetscCall(DenseTimes(&(DenseBlock){E, n, n, n}, PETSC_FALSE, m, X, EX));
+  for (PetscInt i = 0; i < m; i++) {
+    energy[i] = 0;
+    for (PetscInt k = i * n; k < (i + 1) * n; k++) energy[i] += creal(conj(X[k]) * EX[k]);
+  }
+  PetscCall(PetscFree(EX));
+  PetscFunctionReturn(0);
+}
+
 PetscComplex DenseDot(PetscInt n, const PetscComplex x[], const PetscComplex y[])
 {
   PetscComplex sum = 0;

@@ -29,6 +29,8 @@ typedef struct {
 /* Y = op(A) X, X [m][columns], Y [m][rows] */
 PetscErrorCode DenseTimes(const DenseBlock *block, PetscBool transposed, PetscInt m, const PetscComplex X[],
                           PetscComplex Y[]);
+/* x^H E x of m vectors X [m][n], E real and symmetric */
+PetscErrorCode DenseEnergies(PetscInt n, const PetscReal E[], PetscInt m, const PetscComplex X[], PetscReal energy[]);
 /* Real parts, then imaginary parts [2 n] of x [n], and back */
 void DenseSplit(PetscInt n, const PetscComplex x[], PetscReal parts[]);
 void DenseUnite(PetscInt n, const PetscReal parts[], PetscComplex x[]);

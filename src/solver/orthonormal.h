@@ -38,6 +38,8 @@ typedef struct {
    NULL). Q, orthonormal in itself and to V, takes the place of W, and its active columns become those that there are.
    Unlike BlockOrthonormalise() it resolves directions of any length. Collective; alike on all ranks. */
 PETSC_INTERN PetscErrorCode BlockFactorise(BV V, PetscInt n, Mat M, BV W, BlockFactors *factors);
-/* blockproduct.c - Y = A X of dense X and Y; the same of the active columns of X and Y */
+/* blockproduct.c - columns first, first + 1, ... of a sparse A as the dense X, zeros where A has no more; Y = A X of dense X
+   and Y; the same of the active columns of X and Y */
+PETSC_INTERN PetscErrorCode BlockTakeColumns(Mat A, PetscInt first, Mat X);
 PETSC_INTERN PetscErrorCode BlockMultiply(Mat A, Mat X, Mat Y);
 PETSC_INTERN PetscErrorCode BlockMultiplyVectors(Mat A, BV X, BV Y);

@@ -16,6 +16,7 @@
 #include "staticsimpl.h"
 #include "base/gather.h"
 #include "operators/terms.h"
+#include "solver/orthonormal.h"
 
 #define KAPPA_SHARE      0.1 /* of the stiffness of a node */
 #define COMPLIANCE_BLOCK 64  /* right-hand sides at once */
@@ -70,31 +71,6 @@ PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, P
   PetscCall(MatAXPY(*A, kappa, GG, DIFFERENT_NONZERO_PATTERN));
   PetscCall(MatSetOption(*A, MAT_SYMMETRIC, PETSC_TRUE));
   PetscCall(MatDestroy(&GG));
-  PetscFunctionReturn(0);
-}
-
-/* Columns first .. first + n - 1 of G', as a dense matrix; Gt = G' */
-static PetscErrorCode ComplianceSetColumns(Mat Gt, PetscInt first, PetscInt n, Mat columns)
-{
-  PetscInt     begin, end, stride;
-  PetscScalar *value;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatGetOwnershipRange(Gt, &begin, &end));
-  PetscCall(MatZeroEntries(columns));
-  PetscCall(MatDenseGetLDA(columns, &stride));
-  PetscCall(MatDenseGetArray(columns, &value));
-  for (PetscInt i = begin; i < end; i++) {
-    const PetscInt    *column;
-    const PetscScalar *v;
-    PetscInt           n_row;
-
-    PetscCall(MatGetRow(Gt, i, &n_row, &column, &v));
-    for (PetscInt k = 0; k < n_row; k++)
-      if (column[k] >= first && column[k] < first + n) value[(column[k] - first) * stride + i - begin] = v[k];
-    PetscCall(MatRestoreRow(Gt, i, &n_row, &column, &v));
-  }
-  PetscCall(MatDenseRestoreArray(columns, &value));
   PetscFunctionReturn(0);
 }
 
@@ -199,7 +175,7 @@ static PetscErrorCode ComplianceFormDense(Compliance *c)
     Mat            B, Y;
 
     PetscCall(MatCreateDense(rows->comm, n_unknowns, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &B));
-    PetscCall(ComplianceSetColumns(Gt, first, n, B));
+    PetscCall(BlockTakeColumns(Gt, first, B));
     PetscCall(MatDuplicate(B, MAT_DO_NOT_COPY_VALUES, &Y));
     PetscCall(ComplianceApplyBlock(c, B, Y));
     PetscCall(ComplianceTakeRows(c, rows->G, Y, first, local[0]));

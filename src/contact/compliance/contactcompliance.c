@@ -211,6 +211,7 @@ PetscErrorCode ContactComplianceSolve(ContactCompliance c, const PetscReal q[], 
     if (c->report.route == COMPLIANCE_DAMPED) PetscCall(ComplianceIterate(c, PETSC_TRUE, COMPLIANCE_MAX_IT, &miss));
     if (c->report.route == COMPLIANCE_PATH) PetscCall(ComplianceFollow(c, &miss));
   }
+  if (ComplianceIsSolved(c, &miss)) PetscCall(ComplianceRefine(c, &miss));
   StepReport(c, &miss);
   StepEnd(c, slip0, lambda, r);
   if (report) *report = c->report;
@@ -221,6 +222,13 @@ PetscErrorCode ContactComplianceGetStatus(ContactCompliance c, const ContactStat
 {
   PetscFunctionBeginUser;
   *status = c->status;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactComplianceGetSlip(ContactCompliance c, const PetscReal **slip)
+{
+  PetscFunctionBeginUser;
+  *slip = c->v;
   PetscFunctionReturn(0);
 }
 

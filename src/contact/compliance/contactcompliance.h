@@ -118,6 +118,10 @@ PETSC_INTERN PetscErrorCode ContactComplianceTangent(ContactCompliance complianc
 /*@ ContactComplianceGetStatus - of the pairs in the last step, [n] (borrowed until the next). Not collective. @*/
 PETSC_INTERN PetscErrorCode ContactComplianceGetStatus(ContactCompliance compliance, const ContactStatus **status);
 
+/*@ ContactComplianceGetSlip - gap and slip [n][3] of the pairs in the last step, m, as the laws have them: r less slip0
+    without the rounding of r, which may exceed a short slip (borrowed until the next). Not collective. @*/
+PETSC_INTERN PetscErrorCode ContactComplianceGetSlip(ContactCompliance compliance, const PetscReal **slip);
+
 /*@ ContactComplianceGetMemory - what must be kept so that the next steps are bitwise the same after a restart: n
     numbers, which the caller frees. Not collective. @*/
 PETSC_INTERN PetscErrorCode ContactComplianceGetMemory(ContactCompliance compliance, PetscInt *n, PetscReal **values);

@@ -10,6 +10,8 @@
 #define NEWTON_PATIENCE 8       /* steps in a row without a lower residual */
 #define NEWTON_MEMORY   5       /* norms that a damped step is compared with */
 #define NEWTON_ENOUGH   1e-4    /* of the decrease that a step promises */
+#define NEWTON_REFINE   3       /* steps at most on what is solved, */
+#define NEWTON_ALONG    1e-10   /* until friction is along slip to this part of the largest force */
 #define NEWTON_SHORTEST 1. / 64 /* of a step */
 
 /* The matrix at the present laws, factored; shifted where it is singular */
@@ -82,6 +84,43 @@ static PetscErrorCode NewtonKeep(ContactCompliance c, const ComplianceMiss *miss
     PetscCall(PetscArraycpy(c->best, c->l, 3 * c->n));
   }
   *hope = *since < NEWTON_PATIENCE && !PetscIsInfOrNanReal(miss->norm) ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* How far friction is off the direction of slip, relative to the largest force: the natural map hardly feels the direction
+   of a slip that is short beside l */
+static PetscReal NewtonDirection(ContactCompliance c, const ComplianceMiss *miss)
+{
+  PetscReal off = 0;
+
+  ComplianceChoose(c);
+  for (PetscInt p = 0; p < c->n; p++) {
+    const PetscReal *l = &c->l[3 * p], *v = &c->v[3 * p], slip = hypot(v[1], v[2]);
+
+    if (c->status[p] == CONTACT_SLIP && slip > 0) off = PetscMax(off, PetscAbsReal(l[1] * v[2] - l[2] * v[1]) / slip);
+  }
+  return off / miss->scale;
+}
+
+PetscErrorCode ComplianceRefine(ContactCompliance c, ComplianceMiss *miss)
+{
+  const PetscInt N = 3 * c->n;
+
+  PetscFunctionBeginUser;
+  for (PetscInt it = 0; it < NEWTON_REFINE; it++) {
+    const ComplianceMiss last = *miss;
+    PetscBool            singular;
+
+    if (NewtonDirection(c, miss) <= NEWTON_ALONG) break;
+    PetscCall(PetscArraycpy(c->best, c->l, N));
+    PetscCall(ComplianceStep(c, &singular));
+    ComplianceMeasure(c, miss);
+    if (miss->largest < last.largest) continue;
+    *miss = last;
+    PetscCall(PetscArraycpy(c->l, c->best, N));
+    PetscCall(ComplianceMove(c));
+    break;
+  }
   PetscFunctionReturn(0);
 }
 

@@ -95,12 +95,12 @@ static PetscErrorCode PathTurn(ContactCompliance c, CompliancePath *path, PetscR
   PetscFunctionReturn(0);
 }
 
-/* The solution at t near 1, and the tangent towards smaller ones */
-static PetscErrorCode PathBegin(ContactCompliance c, CompliancePath *path, PetscBool *begun)
+/* The solution at t near 1, and the tangent towards smaller ones; where no pair carries there, as none penetrates without
+   forces, that is a solution at t = 0 as well */
+static PetscErrorCode PathBegin(ContactCompliance c, CompliancePath *path, ComplianceMiss *miss, PetscBool *begun)
 {
   const PetscInt N     = 3 * c->n;
   PetscReal      large = 0, x;
-  ComplianceMiss miss;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < N; i++) {
@@ -112,12 +112,17 @@ static PetscErrorCode PathBegin(ContactCompliance c, CompliancePath *path, Petsc
   x        = PetscLogReal(PATH_LARGE * PetscMax(1, large));
   c->blend = CompliancePathBlend(x);
   for (PetscInt i = 0; i < N; i++) c->l[i] = i % 3 ? 0 : PetscMax(0, -c->free[i]);
-  PetscCall(ComplianceIterate(c, PETSC_FALSE, PATH_TRY_IT, &miss));
-  *begun     = ComplianceIsSolved(c, &miss);
+  PetscCall(ComplianceIterate(c, PETSC_FALSE, PATH_TRY_IT, miss));
+  *begun     = ComplianceIsSolved(c, miss);
   path->t_x  = -1;
   path->sign = 0;
   path->size = CompliancePathNorm(c, c->l);
-  if (path->size == 0) *begun = PETSC_FALSE;
+  if (path->size == 0) {
+    *begun   = PETSC_FALSE;
+    c->blend = 0;
+    PetscCall(ComplianceMove(c));
+    ComplianceMeasure(c, miss);
+  }
   if (!*begun) PetscFunctionReturn(0);
   PetscCall(CompliancePathTangent(c, path, x));
   PetscFunctionReturn(0);
@@ -212,10 +217,10 @@ PetscErrorCode ComplianceFollow(ContactCompliance c, ComplianceMiss *miss)
   PetscCall(CompliancePathCreate(c, &before));
   PetscCall(PetscMalloc1(3 * c->n, &l));
   PetscCall(PetscArraycpy(l, c->l, 3 * c->n));
-  PetscCall(PathBegin(c, &path, &begun));
+  PetscCall(PathBegin(c, &path, miss, &begun));
   if (begun) PetscCall(PathWalk(c, &path, &before, miss));
   c->blend = 0;
-  if (!begun || !ComplianceIsSolved(c, miss)) {
+  if (!ComplianceIsSolved(c, miss) || (!begun && path.size > 0)) {
     PetscCall(PetscArraycpy(c->l, l, 3 * c->n));
     PetscCall(ComplianceMove(c));
     *miss = best;

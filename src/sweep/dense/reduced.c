@@ -230,20 +230,17 @@ static PetscErrorCode ClustersTreat(const PetscComplex Dx[], ReducedModes *modes
 /* Scales all vectors X [m][n] to X^H Ms X = 1 */
 static PetscErrorCode VectorsNormalise(PetscInt n, PetscInt m, const PetscReal Ms[], PetscComplex X[])
 {
-  PetscComplex *MX;
+  PetscReal *square;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(m * n, &MX));
-  PetscCall(DenseTimes(&(DenseBlock){Ms, n, n, n}, PETSC_FALSE, m, X, MX));
+  PetscCall(PetscMalloc1(m, &square));
+  PetscCall(DenseEnergies(n, Ms, m, X, square));
   for (PetscInt i = 0; i < m; i++) {
-    PetscReal square = 0;
-
-    for (PetscInt k = i * n; k < (i + 1) * n; k++) square += creal(conj(X[k]) * MX[k]);
-    PetscCheck(square > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+    PetscCheck(square[i] > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
                "mode without mass: the mass matrix is not positive");
-    for (PetscInt k = i * n; k < (i + 1) * n; k++) X[k] /= PetscSqrtReal(square);
+    for (PetscInt k = i * n; k < (i + 1) * n; k++) X[k] /= PetscSqrtReal(square[i]);
   }
-  PetscCall(PetscFree(MX));
+  PetscCall(PetscFree(square));
   PetscFunctionReturn(0);
 }
 

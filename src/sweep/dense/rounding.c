@@ -22,24 +22,6 @@ void RoundingEnergy(const Reduced *reduced, const PetscReal p[], PetscReal E[])
   }
 }
 
-/* x^H E x of m vectors X [m][n] with real symmetric E [n * n] */
-static PetscErrorCode Energies(PetscInt n, const PetscReal E[], PetscInt m, const PetscComplex X[], PetscReal energy[])
-{
-  PetscComplex *EX;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(m * n, &EX));
-  PetscCall(DenseTimes(&(DenseBlock){E, n, n, n}, PETSC_FALSE, m, X, EX));
-  for (PetscInt i = 0; i < m; i++) {
-    PetscReal sum = 0;
-
-    for (PetscInt k = i * n; k < (i + 1) * n; k++) sum += creal(conj(X[k]) * EX[k]);
-    energy[i] = PetscMax(sum, 0);
-  }
-  PetscCall(PetscFree(EX));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode RoundingProducts(PetscInt n, const PetscReal E[], PetscInt m, const PetscComplex X[],
                                 const PetscComplex Y[], PetscReal product[])
 {
@@ -47,10 +29,10 @@ PetscErrorCode RoundingProducts(PetscInt n, const PetscReal E[], PetscInt m, con
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(m, &left));
-  PetscCall(Energies(n, E, m, X, product));
-  PetscCall(Energies(n, E, m, Y, left));
+  PetscCall(DenseEnergies(n, E, m, X, product));
+  PetscCall(DenseEnergies(n, E, m, Y, left));
   for (PetscInt i = 0; i < m; i++)
-    product[i] = PETSC_MACHINE_EPSILON * PetscSqrtReal(product[i]) * PetscSqrtReal(left[i]);
+    product[i] = PETSC_MACHINE_EPSILON * PetscSqrtReal(PetscMax(product[i], 0)) * PetscSqrtReal(PetscMax(left[i], 0));
   PetscCall(PetscFree(left));
   PetscFunctionReturn(0);
 }
