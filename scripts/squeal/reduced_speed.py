@@ -15,8 +15,8 @@ SCENE = ROOT / "options/massi2005_reduced.yaml"
 BAND = 3300, 3700  # Hz, of the mode that grows
 TIME = 50e-3  # s
 STEP = 8e-6  # s, at 20 kHz
-POINTS = ((10e3, 2), (20e3, 4), (20e3, 2), (20e3, 1), (20e3, 0.5), (40e3, 1), (40e3, 0.5), (80e3, 1), (80e3, 0.25))
-CYCLES = (10e3, 2), (20e3, 4), (20e3, 2), (20e3, 1), (20e3, 0.5), (40e3, 1), (40e3, 0.5)  # the last one is the finest
+POINTS = (10e3, 2), (20e3, 4), (20e3, 2), (20e3, 1), (20e3, 0.5), (40e3, 1), (40e3, 0.5)  # Hz, of STEP
+CYCLES = (20e3, 4), (20e3, 2), (20e3, 1), (40e3, 0.5)  # the last one is the finest
 
 
 class Point(NamedTuple):
