@@ -25,14 +25,16 @@ ABOVE = [(x, -y) for x, y in BELOW]
 
 
 class Branch:
-    """One mode over the parameter; x in the unit of the axis, nan where the branch leaves the band."""
+    """One mode over the parameter, or points of a label that are no branch (number below 0); x in the unit of the axis,
+    nan where the branch leaves the band."""
 
     def __init__(self, number, rows, place, axis, scale):
-        self.number, self.colour = number, QUIET
-        self.x, self.frequency, self.growth, self.error = (numpy.full(len(place), math.nan) for _ in range(4))
-        self.kind = numpy.full(len(place), "stable", dtype=object)
-        for row in rows:
-            at = place[row["value"]]
+        self.number, self.colour, self.n_rows = number, QUIET, len(rows)
+        size = len(place) if number >= 0 else len(rows)
+        self.x, self.frequency, self.growth, self.error = (numpy.full(size, math.nan) for _ in range(4))
+        self.kind = numpy.full(size, "stable", dtype=object)
+        for i, row in enumerate(sorted(rows, key=lambda row: row["value"])):
+            at = place[row["value"]] if number >= 0 else i
             self.x[at], self.frequency[at] = row["value"] * axis.factor, row["freq_hz"] * scale
             self.growth[at], self.error[at], self.kind[at] = row["growth_rad_s"], row["error_hz"], row["class"]
         self.label = collections.Counter(row["label"] for row in rows).most_common(1)[0][0]
@@ -41,6 +43,11 @@ class Branch:
     def errors(self, quantity, scale):
         """In the unit of the quantity's axis: an error of lambda / 2 pi (Hz) is 2 pi times as much in growth (1/s)."""
         return self.error * (scale if quantity == "frequency" else 2 * math.pi)
+
+
+def n_modes(branches):
+    """How many: a branch is one, points that are none are as many."""
+    return sum(1 if branch.number >= 0 else branch.n_rows for branch in branches)
 
 
 def branches_of(study, scale):
@@ -65,10 +72,12 @@ def draw_branches(axes, branches, quantity, scale):
     shown = False
     for branch in branches:
         y, loud = getattr(branch, quantity), branch.colour != QUIET
-        axes.plot(branch.x, y, "-", marker="o", ms=2.6 if loud or branch.number < 0 else 1.2, color=branch.colour, lw=1.6 if loud else 0.8,
-                  zorder=3 if loud else 2)
+        line = "-" if branch.number >= 0 else "none"
+        axes.plot(branch.x, y, ls=line, marker="o", ms=2.6 if loud or line == "none" else 1.2, color=branch.colour,
+                  lw=1.6 if loud else 0.8, zorder=3 if loud else 2)
         bad = branch.kind == "unstable"
-        axes.plot(numpy.where(bad, branch.x, math.nan), y, "-", marker="o", ms=5.5, color=VERMILION, lw=3, zorder=4)
+        axes.plot(numpy.where(bad, branch.x, math.nan), y, ls=line, marker="o", ms=5.5, color=VERMILION, lw=3,
+                  zorder=4)
         axes.plot(branch.x[branch.kind == "numerical"], y[branch.kind == "numerical"], "o", ms=6, mfc="white",
                   mec=VERMILION, mew=1.2, zorder=5)
         error = branch.errors(quantity, scale)
@@ -189,7 +198,6 @@ def name_branches(axes, branches):
     left out among the grey branches, evenly."""
     height, right, scale = 13 * axes.figure.dpi / 72, axes.bbox.x1, 72 / axes.figure.dpi
     low, high = axes.bbox.y0, axes.bbox.y1
-    branches = [b for b in branches if b.number >= 0 or b.last == len(b.x) - 1]
     ends = [(axes.transData.transform((b.x[b.last], b.frequency[b.last]))[1], b) for b in branches]
     ends = sorted((end for end in ends if low - 1 <= end[0] <= high + 1), key=lambda end: (end[0], end[1].label))
     ends = thin_out(ends, int((high - low) / height))
@@ -228,7 +236,7 @@ def legend(axes, study, branches, loud, bars):
         handles.append(Line2D([], [], ls="", marker="|", ms=10, color=INK, label="estimated error"))
     if jump_places(study):
         handles.append(Line2D([], [], color=LEADER, lw=0.7, label="contact status changes"))
-    others = len(branches) - len(loud)
+    others = n_modes(branches) - n_modes(loud)
     if others:
         handles.append(Line2D([], [], color=QUIET, lw=1.2, label=f"{others} other mode{'s' if others > 1 else ''}"))
     axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.62 / axes.get_position().height /
@@ -310,4 +318,4 @@ def summary(study, branches, loud):
     points = len({row["value"] for row in study.rows})
     points = f"{points} value{'s' * (points > 1)}"
     bad = ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
-    return f"{points}, {len(branches)} modes; unstable: {bad or 'none'}"
+    return f"{points}, {n_modes(branches)} modes; unstable: {bad or 'none'}"

@@ -47,8 +47,9 @@ class Study:
     def __init__(self, folder, band, at):
         path = folder / "sweep.csv"
         self.rows = read_table(path, SWEEP)
-        for i, row in enumerate(self.rows):  # -sweep_method full follows none: each row stands alone
-            row["branch"] = -1 - i if row["branch"] != row["branch"] else int(row["branch"])
+        labels = list(dict.fromkeys(row["label"] for row in self.rows))
+        for row in self.rows:  # -sweep_method full follows no modes: those of a label are drawn alike, below 0
+            row["branch"] = -1 - labels.index(row["label"]) if row["branch"] != row["branch"] else int(row["branch"])
         self.parameters = read_table(folder / "parameters.csv", PARAMETERS)
         onsets = folder / "onsets.csv"
         self.onsets = read_table(onsets, ONSETS) if onsets.exists() else []

@@ -1,14 +1,20 @@
 """What the tests of the scripts share: running one, what it must say when it fails, and whether a picture is one."""
 
-import subprocess
 import sys
 from pathlib import Path
 
+import matplotlib
+
+matplotlib.use("agg")
 import matplotlib.image
+import matplotlib.pyplot  # for scripts that run in children of this process
 import numpy
 
-SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
-sys.path.insert(0, str(SCRIPTS))  # for squeal
+TESTS = Path(__file__).resolve().parents[1]
+SCRIPTS = TESTS.parent / "scripts"
+sys.path[:0] = [str(SCRIPTS), str(TESTS)]  # for squeal and forked
+
+from forked import run_script
 
 
 def require(condition, message):
@@ -19,8 +25,7 @@ def require(condition, message):
 
 def script(name, *arguments):
     """Runs a script of scripts/."""
-    command = [sys.executable, SCRIPTS / name, *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, check=False)
+    return run_script(SCRIPTS / name, arguments)
 
 
 def fails(name, folder, options, expected):
