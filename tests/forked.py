@@ -10,6 +10,15 @@ import traceback
 from pathlib import Path
 
 
+def run_command(words, folder=None):
+    """What subprocess.run() returns of a command in a working folder; Python scripts run in children."""
+    words = [str(word) for word in words]
+    path = Path(words[0])
+    if path.is_file() and path.open("rb").readline().rstrip().endswith(b"python3"):
+        return run_script(path, words[1:], folder)
+    return subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)
+
+
 def run_script(script, words=(), folder=None):
     """What subprocess.run() returns of a script with arguments `words` in a working folder."""
     words = [str(word) for word in words]

@@ -16,7 +16,6 @@ Breaks when an order of nodes is another one, a field is lost or stands under an
 import csv
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 import xml.etree.ElementTree as xml
@@ -24,6 +23,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+from forked import run_command
 from small_brake import SCENE
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOHDF import vtkHDFReader
@@ -44,7 +44,7 @@ def check(holds, what):
 
 def run(*words):
     """Output of a command that must succeed."""
-    done = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False)
+    done = run_command(words)
     if done.returncode:
         raise SystemExit(f"{' '.join(map(str, words))}: {done.stderr}")
     return done.stdout
@@ -238,7 +238,7 @@ def check_bad(top):
                         (("matrices", top / "empty"), "K.bin and M.bin"), (("matrices", top / "torn"), "K.bin"),
                         (("matrices", top / "flipped"), "K.bin"), (("matrices", top / "mixed"), "several runs"),
                         (("matrices", top / "matrices", "-o", top / "file"), "file")):
-        done = subprocess.run([EXPORT, *map(str, words)], capture_output=True, text=True, cwd=top, check=False)
+        done = run_command([EXPORT, *words], top)
         one = done.returncode == 1 and done.stderr.count("\n") == 1 and said in done.stderr and not done.stdout
         check(one, f"bad: {' '.join(str(word).removeprefix(str(top)) for word in words)}: {done.stderr.strip()[-300:]}")
     made = [path for name in ("empty", "torn", "flipped", "other", "mixed") for path in (top / name).rglob("*")

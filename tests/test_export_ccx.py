@@ -27,6 +27,7 @@ import scipy.sparse.linalg
 
 SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "scripts"))
+from forked import run_command
 from squeal.calculix import eigenvalues
 from squeal.disc_pad import Mesh, squeal_words
 from squeal.petsc_matrix import read_matrix, read_vector
@@ -97,7 +98,7 @@ def check(holds, what):
 
 def run(folder, *words):
     """What a command that must succeed says on stderr."""
-    done = subprocess.run([str(word) for word in words], cwd=folder, capture_output=True, text=True, check=False)
+    done = run_command(words, folder)
     if done.returncode:
         raise SystemExit(f"{' '.join(map(str, words))}: {done.stdout[-300:]}{done.stderr}")
     return done.stderr
@@ -210,8 +211,7 @@ def check_sliding(top):
     modes, theirs = modes_of(top / "sliding"), eigenvalues(top / "sliding/deck.dat")
     worst = max(distances(modes, theirs).max(), distances(theirs, modes).max()) if len(modes) == len(theirs) else np.inf
     check(worst < CALCULIX and max(modes.real) > 1, f"CalculiX: --sliding, {len(modes)} modes apart by {worst:.1e}, growth to {max(modes.real):.1f} 1/s")
-    done = subprocess.run([SOURCE / "scripts/export_ccx", "out", "--sliding", "-o", "s.inp", "--mesh", "pair.msh"], cwd=top,
-                          capture_output=True, text=True, check=False)
+    done = run_command([SOURCE / "scripts/export_ccx", "out", "--sliding", "-o", "s.inp", "--mesh", "pair.msh"], top)
     check(done.returncode == 0, "sliding: of boxes on each other too")
 
 
@@ -240,7 +240,7 @@ def check_bad(top):
                         (["gone"], "gone.msh"), (["out", "--mesh", "torn.msh"], "torn.msh"), (["out", "--mesh", "short.msh"], "short.msh"), (["out", "--mesh", "pair.yaml"], "no file of Gmsh"),
                         (["out", "--mesh", "hex27.msh"], "no volume named base"), (["out", "-o", "empty/no/deck.inp"], "deck.inp"),
                         (["of27", "--sliding"], "hex27")):
-        done = subprocess.run([SOURCE / "scripts/export_ccx", *words], cwd=top, capture_output=True, text=True, check=False)
+        done = run_command([SOURCE / "scripts/export_ccx", *words], top)
         check(done.returncode == 1 and done.stderr.count("\n") == 1 and said in done.stderr and not done.stdout,
               f"bad: {' '.join(words)}: {done.stderr.strip()[-300:]}")
     check(not list(top.glob("gone/deck*")) and not list(top.glob("of27/deck*")), "bad: no deck is left")

@@ -8,7 +8,6 @@ or a section that says so. Numbers are compared with the files that squeal wrote
 import random
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 import warnings
@@ -16,6 +15,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 from brake_results import SOURCE, make_results
+from forked import run_script
 from fuzz.damage import BYTES, LINES
 from report_checks import (check_cost, check_frf, check_map, check_modes, check_shapes, check_static, check_sweep,
                            check_together, check_transient)
@@ -71,8 +71,7 @@ class Test:
             self.faults.append(what)
 
     def script(self, name, *words):
-        return subprocess.run(["/usr/bin/python3", SOURCE / "scripts" / name, *map(str, words)], cwd=self.folder,
-                              capture_output=True, text=True, check=False)
+        return run_script(SOURCE / "scripts" / name, words, self.folder)
 
     def page(self, *words, told=None):
         """The page of some folders; told: what a line on stderr must hold, without it there is none."""
