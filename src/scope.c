@@ -7,8 +7,8 @@
 /* Whether something asks for an equilibrium */
 static PetscErrorCode ScopeNeedsStatics(const Scope *s, PetscBool *needs)
 {
-  const ContactInterface *interfaces;
-  PetscInt                n = 0;
+  const ContactInterface *interfaces = NULL;
+  PetscInt                n          = 0;
   PetscBool               reduced;
 
   PetscFunctionBeginUser;
@@ -87,8 +87,8 @@ static PetscErrorCode ScopeCheckDensity(MPI_Comm comm, const ModelScene *scene)
 static PetscErrorCode ScopeGetDamping(const Scope *s, PetscBool *damped, PetscBool *undamped)
 {
   const ModelScene       *scene;
-  const ContactInterface *interfaces;
-  PetscInt                n = 0;
+  const ContactInterface *interfaces = NULL;
+  PetscInt                n          = 0;
   PetscBool               sure, varied, real;
 
   PetscFunctionBeginUser;
@@ -212,8 +212,8 @@ static PetscErrorCode ScopeCheckIntegrator(MPI_Comm comm)
 /* What every reader reads, and this analysis has no use for */
 static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool statics)
 {
-  const ContactInterface *interfaces;
-  PetscInt                n = 0;
+  const ContactInterface *interfaces = NULL;
+  PetscInt                n          = 0;
 
   PetscFunctionBeginUser;
   if (s->model) PetscCall(ScopeCheckModel(comm, s, statics));

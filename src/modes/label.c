@@ -71,8 +71,8 @@ static PetscErrorCode LabelsAdd(Modes modes, Operators operators, PetscInt i, La
 /* Writes the name of mode i, and its participation in per cent */
 static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Mesh *mesh, PetscInt i)
 {
-  double *const percent = &modes->part_percent[i * l->n_parts];
-  PetscReal     share[MAX_PARTS], total = 0;
+  double *const percent          = &modes->part_percent[i * l->n_parts];
+  PetscReal     share[MAX_PARTS] = {0}, total = 0;
   PetscInt      most = 0;
   Mode         *mode = &modes->mode[i];
 

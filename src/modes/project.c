@@ -102,8 +102,8 @@ static PetscErrorCode InfoRound(const Projection *p, const ProjectionModes *foun
 /* The modes on the present basis: followed from what they were, or all anew */
 static PetscErrorCode FindModes(const Projection *p, PetscBool anew, ProjectionModes *found)
 {
-  ProjectionModes before = *found;
-  PetscBool       followed;
+  ProjectionModes before   = *found;
+  PetscBool       followed = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   if (!anew) PetscCall(ProjectionFollow(p, &before, found, &followed));

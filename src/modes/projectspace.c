@@ -174,7 +174,7 @@ static PetscErrorCode ModelsExtend(Projection *p, PetscInt first, BV block)
 {
   const Mat    A[4]     = {p->pencil->K, p->pencil->C, p->transposed[0], p->transposed[1]};
   PetscReal  **model[2] = {&p->K, &p->C};
-  PetscInt     n, m = 0, at[4];
+  PetscInt     n, m = 0, at[4] = {0};
   PetscScalar *h;
   BV           images;
   Mat          H;
