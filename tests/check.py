@@ -6,8 +6,9 @@ import csv
 import math
 import re
 import shlex
-import subprocess
-import sys
+
+import numpy  # noqa: F401, for scripts in children
+from forked import run_script
 
 
 class Failure(Exception):
@@ -139,11 +140,11 @@ class Checker:
     def make(self, check):
         name = check.get("run", next(iter(self.runner.case["run"])))
         if "command" in check:
-            command = [sys.executable, *self.runner.expand(check["command"])]
-            process = subprocess.run(command, stdout=subprocess.PIPE, text=True)
-            print(process.stdout, end="", flush=True)
-            found = measured_in(process.stdout)
-            require(process.returncode == 0, Line(f"failed: {shlex.join(command)}").like(found))
+            command = self.runner.expand(check["command"])
+            done = run_script(command[0], command[1:])
+            print(done.stdout, done.stderr, sep="", end="", flush=True)
+            found = measured_in(done.stdout)
+            require(done.returncode == 0, Line(f"failed: {shlex.join(command)}").like(found))
             return Line(f"{check['command']} succeeded").like(found)
         rows = self.rows(self.runner, name, check)
         lines = [*self.references(rows, name, check), *self.bounds(rows, check)]

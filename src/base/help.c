@@ -132,7 +132,7 @@ static void ParseValues(const char *begin, const char *end, HelpOption *option)
   if (middle < end)
     Cut(middle, end, option->initial, sizeof(option->initial));
   else
-    strcpy(option->initial, option->value);
+    memcpy(option->initial, option->value, sizeof(option->initial));
   CutPoint(option->value);
   CutPoint(option->initial);
 }
@@ -178,7 +178,7 @@ static PetscErrorCode CollectLine(const char line[])
     list->option = more;
     list->max    = 2 * list->max + 64;
   }
-  strcpy(option.group, collecting.group);
+  memcpy(option.group, collecting.group, sizeof(option.group));
   list->option[list->n++] = option;
   PetscFunctionReturn(0);
 }

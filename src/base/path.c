@@ -5,6 +5,7 @@
 #include "path.h"
 #include <squeal/options.h>
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -98,7 +99,7 @@ int PathMakeFolders(const char dir[])
   char        path[PETSC_MAX_PATH_LEN];
   struct stat status;
 
-  strcpy(path, dir);
+  if (snprintf(path, sizeof(path), "%s", dir) >= (int)sizeof(path)) return ENAMETOOLONG;
   for (char *end = path + 1; *end; end++) {
     if (*end != '/') continue;
     *end = '\0';

@@ -19,8 +19,8 @@ typedef struct {
 
 static void FacetEntries(const ContactFacet *facet, TurningEntries *e)
 {
-  double    c[FACET_NODES][FACET_NODES][3];
-  const int n = facet->n;
+  double    c[FACET_NODES][FACET_NODES][3] = {0};
+  const int n                              = facet->n;
 
   FacetTurning(n, (const double(*)[3])facet->x, c);
   for (int ij = 0; ij < n * n; ij++) {

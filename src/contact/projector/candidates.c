@@ -101,7 +101,7 @@ static PetscReal MasterMotion(const ContactProjector p, const ProjectorMaster *s
 PetscBool ProjectorNeedsSearch(ContactProjector p, const PetscReal u[])
 {
   PetscInt  interface = -1;
-  PetscReal mean[3], limit = 0;
+  PetscReal mean[3] = {0}, limit = 0;
 
   for (PetscInt k = 0; k < p->n_pairs; k++) {
     const PetscInt i = p->pair[k].interface, node = p->pair[k].slave;
