@@ -320,8 +320,8 @@ static const FacetShape facet_square9 = {
 static const FacetShape *const facet_shapes[FACET_NODES + 1] = {
   0, 0, 0, &facet_triangle3, &facet_square4, 0, &facet_triangle6, 0, &facet_square8, &facet_square9};
 
-/* The shape of n nodes, 0 where there is none */
+/* The shape of n nodes: 3, 4, 6, 8 or 9 */
 static inline const FacetShape *FacetShapeOf(int n)
 {
-  return n >= 0 && n <= FACET_NODES ? facet_shapes[n] : 0;
+  return facet_shapes[n];
 }
