@@ -241,6 +241,7 @@ PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *w
   undamped.C = NULL;
   PetscCall(ProjectionCreate(modes, pencil, window, &p));
   PetscCall(ModesFactor(modes, &undamped, UndampedShift(window), &p.si));
+  PetscCall(ShiftInvertRelease(&p.si));
   window->guard = PETSC_TRUE;
   for (int attempt = 0; attempt < PROJECT_ATTEMPTS && (why == why_differ || why == why_guard); attempt++) {
     if (attempt) window->extra += 10 + (complete ? 0 : modes->right.n / 2);

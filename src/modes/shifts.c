@@ -200,6 +200,7 @@ PetscErrorCode ShiftsSolve(Modes modes, const PencilMatrices *pencil, Window *wi
   PetscFunctionBeginUser;
   if (modes->shifts == 1) {
     PetscCall(ModesFactor(modes, pencil, shift, si));
+    if (!modes->keep) PetscCall(ShiftInvertRelease(si));
     PetscCall(ModesSolveWindow(modes, pencil, window, si));
     PetscFunctionReturn(0);
   }

@@ -4,6 +4,7 @@
    place and the analysis serves again.
 */
 #include "shiftinvert.h"
+#include "base/memory.h"
 #include <petscksp.h>
 #include <petsc/private/petscimpl.h> /* PetscObjectStateGet() */
 
@@ -19,7 +20,7 @@ PetscErrorCode ShiftInvertKeepsPattern(const ShiftInvert *si, const PencilMatric
   PetscObjectState state;
 
   PetscFunctionBeginUser;
-  *keeps = si->ksp ? PETSC_TRUE : PETSC_FALSE;
+  *keeps = si->ksp && !si->released ? PETSC_TRUE : PETSC_FALSE;
   for (int i = 0; i < 3 && *keeps; i++) {
     *keeps = now[i] == si->term[i] ? PETSC_TRUE : PETSC_FALSE;
     if (!*keeps || !now[i]) continue;
@@ -158,6 +159,7 @@ PetscErrorCode ShiftInvertPrepare(const PencilMatrices *pencil, ShiftInvert *si)
   PetscFunctionBeginUser;
   si->factored = PETSC_FALSE;
   PetscCall(ShiftInvertKeepsPattern(si, pencil, &keeps));
+  si->released = PETSC_FALSE;
   if (!keeps) PetscCall(KSPDestroy(&si->ksp)); /* before there is another matrix beside its factors */
   PetscCall(ShiftInvertMatrix(si, pencil, keeps, &A));
   PetscCall(MatNorm(A, NORM_FROBENIUS, &si->size));
@@ -183,5 +185,77 @@ PetscErrorCode ShiftInvertFactor(const PencilMatrices *pencil, ShiftInvert *si, 
   PetscCall(ShiftInvertCheck(si, pc, singular));
   si->factored = *singular ? PETSC_FALSE : PETSC_TRUE;
   if (*singular) PetscCall(KSPDestroy(&si->ksp));
+  PetscFunctionReturn(0);
+}
+
+/* K - s M that is not formed */
+typedef struct {
+  Mat       K, M;
+  PetscReal s;
+} Shifted;
+
+static PetscErrorCode ShiftedMult(Mat A, Vec x, Vec y)
+{
+  Shifted *shifted;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &shifted));
+  PetscCall(MatMult(shifted->M, x, y));
+  PetscCall(VecScale(y, -shifted->s));
+  PetscCall(MatMultAdd(shifted->K, x, y, y));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ShiftedDestroy(Mat A)
+{
+  Shifted *shifted;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &shifted));
+  PetscCall(MatDestroy(&shifted->K));
+  PetscCall(MatDestroy(&shifted->M));
+  PetscCall(PetscFree(shifted));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ShiftedCreate(const ShiftInvert *si, Mat *A)
+{
+  PetscInt n_local, n;
+  Shifted *shifted;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&shifted));
+  *shifted = (Shifted){si->term[0], si->term[2], si->shift};
+  PetscCall(PetscObjectReference((PetscObject)shifted->K));
+  PetscCall(PetscObjectReference((PetscObject)shifted->M));
+  PetscCall(MatGetLocalSize(shifted->K, &n_local, NULL));
+  PetscCall(MatGetSize(shifted->K, &n, NULL));
+  PetscCall(MatCreateShell(si->comm, n_local, n_local, n, n, shifted, A));
+  PetscCall(MatShellSetOperation(*A, MATOP_MULT, (void (*)(void))ShiftedMult));
+  PetscCall(MatShellSetOperation(*A, MATOP_DESTROY, (void (*)(void))ShiftedDestroy));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertRelease(ShiftInvert *si)
+{
+  PetscBool     direct, cholesky, is_mumps = PETSC_FALSE;
+  MatSolverType type;
+  PC            pc;
+  Mat           A;
+
+  PetscFunctionBeginUser;
+  if (!si->even || !si->factored || si->released) PetscFunctionReturn(0);
+  PetscCall(KSPGetPC(si->ksp, &pc));
+  PetscCall(PetscObjectTypeCompare((PetscObject)si->ksp, KSPPREONLY, &direct));
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCCHOLESKY, &cholesky));
+  PetscCall(PCFactorGetMatSolverType(pc, &type));
+  if (type) PetscCall(PetscStrcmp(type, MATSOLVERMUMPS, &is_mumps));
+  if (!direct || !cholesky || !is_mumps) PetscFunctionReturn(0);
+  PetscCall(ShiftedCreate(si, &A));
+  PetscCall(KSPSetReusePreconditioner(si->ksp, PETSC_TRUE));
+  PetscCall(KSPSetOperators(si->ksp, A, A));
+  PetscCall(MatDestroy(&A));
+  si->released = PETSC_TRUE;
+  MemoryReturn();
   PetscFunctionReturn(0);
 }

@@ -25,6 +25,7 @@ typedef struct ShiftInvert {
   PetscReal size;            /* |A|_F of the matrix that is factored */
   PetscBool inertia, counts; /* negative pivots can be counted; they are being, so that null pivots are no error */
   PetscBool factored;        /* there are factors, not the analysis alone */
+  PetscBool released;        /* the matrix is not there any more */
   PetscBool even;            /* the matrix that is factored is symmetric: LDL' */
   Mat       term[3];         /* K, C, M of it */
   PetscObjectState pattern[3], values[3]; /* of those */
@@ -64,6 +65,9 @@ PETSC_INTERN PetscErrorCode ShiftInvertKeepsPattern(const ShiftInvert *si, const
 PETSC_INTERN PetscErrorCode ShiftInvertStands(const PencilMatrices *pencil, PetscReal shift, const ShiftInvert *si,
                                               PetscBool *stands);
 PETSC_INTERN PetscErrorCode ShiftInvertFactor(const PencilMatrices *pencil, ShiftInvert *si, PetscBool *singular);
+/* Gives up the symmetric matrix that MUMPS has factored, a copy of the pattern of K: products with it are made from K and M
+   then. For the last shift: another one needs another analysis. */
+PETSC_INTERN PetscErrorCode ShiftInvertRelease(ShiftInvert *si);
 /* Whether the estimate is shown on stdout before factorisations, not by default */
 PETSC_INTERN void      ShiftInvertShow(PetscBool show);
 PETSC_INTERN PetscBool ShiftInvertShows(void);
