@@ -41,8 +41,10 @@ of a load (press_force: its length, N)
 .  -map_values <first:last:n>   - as -sweep_values: first:last:n, first:last:n:log, or v1,v2,...
 .  -map_values_2 <values>       - those of the second parameter
 .  -map_link <name,name[:...]>  - as -sweep_link: parameters of one unit that take the same value
-.  -map_direction <both>        - both, up or down along the first parameter, in the order of its values
+.  -map_direction <both>        - both, up or down along the first parameter, in the order of its values; apart: every point
+from its own sliding state
 .  -map_window <5e-3>           - s, of which amplitude and frequency are taken
+.  -map_restart <true>          - go on where a map of the same scene in -output_dir was stopped
 -  -map_rtol <0.01>             - relative change of the rms below which an amplitude is settled
 @*/
 PetscErrorCode MapSetFromOptions(Map map);

@@ -186,6 +186,9 @@ PetscErrorCode ReducedGetRun(ReducedRun reduced, PetscReal *cutoff, PetscReal *d
 /*@ ReducedGetHits - the impulses: Phi'J [n][m], m sqrt(kg)/s, and when they are due, s (borrowed). Not collective. @*/
 PetscErrorCode ReducedGetHits(ReducedRun reduced, PetscInt *n, const PetscReal **hits, const PetscReal **due);
 
+/*@ ReducedAddChecksum - adds what runs must share that go on with each other, but for step and end. Collective. @*/
+PetscErrorCode ReducedAddChecksum(ReducedRun reduced, Checksum checksum);
+
 /*@ ReducedGetInterface - the interface of a pair. Not collective. @*/
 PetscErrorCode ReducedGetInterface(ReducedRun reduced, PetscInt pair, PetscInt *interface);
 

@@ -14,15 +14,16 @@ PetscErrorCode MapCreate(MPI_Comm comm, Map *map)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, map));
-  (*map)->comm   = comm;
-  (*map)->window = WINDOW;
-  (*map)->rtol   = RTOL;
+  (*map)->comm    = comm;
+  (*map)->window  = WINDOW;
+  (*map)->rtol    = RTOL;
+  (*map)->restart = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode MapSetFromOptions(Map map)
 {
-  static const char *const directions[] = {"both", "up", "down"};
+  static const char *const directions[] = {"both", "up", "down", "apart"};
   PetscInt                 direction    = 0;
 
   PetscFunctionBeginUser;
@@ -37,12 +38,16 @@ PetscErrorCode MapSetFromOptions(Map map)
                                "map.h", map->link, map->link, sizeof(map->link), &map->linked));
   PetscCall(PetscOptionsEList("-map_direction",
                               "ways through the values of the first parameter, each from the end of "
-                              "its neighbour",
-                              "map.h", directions, 3, directions[0], &direction, NULL));
+                              "its neighbour, or every point from its own sliding state",
+                              "map.h", directions, 4, directions[0], &direction, NULL));
   PetscCall(PetscOptionsReal("-map_window", "of which amplitude and frequency are taken, s", "map.h", map->window,
                              &map->window, NULL));
   PetscCall(PetscOptionsReal("-map_rtol", "change of the rms between windows below which an amplitude is settled",
                              "map.h", map->rtol, &map->rtol, NULL));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-map_restart",
+                           "go on where a map of the same scene in -output_dir was "
+                           "stopped",
+                           &map->restart));
   PetscOptionsEnd();
   PetscCheck(map->window > 0 && map->window < 1e6, map->comm, PETSC_ERR_USER_INPUT,
              "-map_window %.6g must be a positive time (s)", (double)map->window);
@@ -68,7 +73,7 @@ PetscErrorCode MapSetRooms(Map map, ReducedRun reduced, Operators operators, con
 }
 
 /* Rows of a round, in the order of the chains */
-static PetscErrorCode MapTakeRound(Map map, PetscInt n, const MapPoint row[], ResultsTable table)
+static PetscErrorCode MapTakeRound(Map map, PetscInt n, const MapPoint row[], ResultsTable table[2])
 {
   MapPoint *all;
   PetscInt  n_all;
@@ -76,16 +81,17 @@ static PetscErrorCode MapTakeRound(Map map, PetscInt n, const MapPoint row[], Re
   PetscFunctionBeginUser;
   PetscCall(GatherRecords(map->comm, n, sizeof(*row), row, &n_all, &all));
   for (PetscInt i = 0; i < n_all; i++) {
-    PetscCall(MapTableAdd(map, table, &all[i]));
+    PetscCall(MapTableAdd(map, table[0], &all[i]));
+    PetscCall(MapModesAdd(map, table[1], &all[i]));
     map->row[map->n_rows++] = all[i];
   }
-  PetscCall(ResultsTableCheck(table));
+  for (int k = 0; k < 2; k++) PetscCall(ResultsTableCheck(table[k]));
   PetscCall(PetscFree(all));
   PetscFunctionReturn(0);
 }
 
 /* Chains first .. last - 1 on these bodies [lines], or on one for all */
-static PetscErrorCode MapRounds(Map map, MapBodies bodies[], PetscInt first, PetscInt last, ResultsTable table)
+static PetscErrorCode MapRounds(Map map, MapBodies bodies[], PetscInt first, PetscInt last, ResultsTable table[2])
 {
   const PetscInt  n = map->axis[0].n, n_ways = map->direction == MAP_BOTH ? 2 : 1;
   const PetscBool each = map->n_axes > 1 && MapAxisIsBody(&map->axis[1]) ? PETSC_TRUE : PETSC_FALSE;
@@ -106,8 +112,22 @@ static PetscErrorCode MapRounds(Map map, MapBodies bodies[], PetscInt first, Pet
   PetscFunctionReturn(0);
 }
 
+/* Bodies that an earlier run has kept, or made and kept */
+static PetscErrorCode MapBodiesGet(Map map, PetscInt line, MapBodies *bodies)
+{
+  PetscBool good;
+
+  PetscFunctionBeginUser;
+  PetscCall(MapResumeBodies(map, line, bodies, &good));
+  if (!good) PetscCall(MapBodiesCreate(map, line, bodies));
+  if (!good) PetscCall(MapKeepBodies(map, line, bodies));
+  map->m       = bodies->model.m;
+  map->n_pairs = bodies->model.n_pairs;
+  PetscFunctionReturn(0);
+}
+
 /* All lines, some at a time where each has bodies of its own: so many that no rank is idle */
-static PetscErrorCode MapLines(Map map, ResultsTable table)
+static PetscErrorCode MapLines(Map map, ResultsTable table[2])
 {
   const PetscInt  n_ways = map->direction == MAP_BOTH ? 2 : 1, n_lines = map->n_axes > 1 ? map->axis[1].n : 1;
   const PetscBool each = map->n_axes > 1 && MapAxisIsBody(&map->axis[1]) ? PETSC_TRUE : PETSC_FALSE;
@@ -124,7 +144,7 @@ static PetscErrorCode MapLines(Map map, ResultsTable table)
     const PetscInt n = PetscMin(batch, n_lines - line), n_bodies = each ? n : 1;
 
     PetscCall(PetscTime(&begin));
-    for (PetscInt i = 0; i < n_bodies; i++) PetscCall(MapBodiesCreate(map, line + i, &bodies[i]));
+    for (PetscInt i = 0; i < n_bodies; i++) PetscCall(MapBodiesGet(map, line + i, &bodies[i]));
     PetscCall(PetscTime(&ready));
     PetscCall(MapRounds(map, bodies, n_ways * line, n_ways * (line + n), table));
     for (PetscInt i = 0; i < n_bodies; i++) PetscCall(MapBodiesDestroy(&bodies[i]));
@@ -141,7 +161,7 @@ PetscErrorCode MapSolve(Map map, Results results)
   const PetscInt n_ways = map->direction == MAP_BOTH ? 2 : 1;
   PetscInt       n_rows;
   PetscMPIInt    size;
-  ResultsTable   table;
+  ResultsTable   table[2];
 
   PetscFunctionBeginUser;
   PetscCall(MapCheck(map));
@@ -154,11 +174,16 @@ PetscErrorCode MapSolve(Map map, Results results)
   n_rows = n_ways * map->axis[0].n * (map->n_axes > 1 ? map->axis[1].n : 1);
   PetscCall(PetscCalloc1(n_rows, &map->row));
   PetscCallMPI(MPI_Comm_size(map->comm, &size));
-  PetscCall(MapTableOpen(results, &table));
+  PetscCall(ResultsGetDirectory(results, &map->folder));
+  PetscCall(MapSumScene(map));
+  PetscCall(MapTableOpen(results, &table[0]));
+  PetscCall(MapModesOpen(results, &table[1]));
   PetscCall(ProgressBegin(&map->progress, "points of the map", (n_rows + size - 1) / size));
   PetscCall(MapLines(map, table));
   PetscCall(ProgressEnd(&map->progress));
-  PetscCall(ResultsTableClose(&table));
+  for (int k = 0; k < 2; k++) PetscCall(ResultsTableClose(&table[k]));
+  PetscCall(MapForget(map));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &map->n_resumed, 1, MPIU_INT, MPI_SUM, map->comm));
   PetscFunctionReturn(0);
 }
 

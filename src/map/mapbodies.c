@@ -50,8 +50,9 @@ static PetscErrorCode MapBodiesTake(ReducedRun run, MapBodies *b)
   PetscCall(PetscMalloc1(model->n_pairs, &b->interface));
   for (PetscInt i = 0; i < model->n_pairs; i++) PetscCall(ReducedGetInterface(run, i, &b->interface[i]));
   PetscCall(ReducedGetHits(run, &b->n_hits, &hits, &due));
-  PetscCall(RealsCopy(b->n_hits * model->m, hits, &b->hits));
-  PetscCall(RealsCopy(b->n_hits, due, &b->due));
+  PetscCall(PetscMalloc1(b->n_hits * (model->m + 1), &b->hits));
+  PetscCall(PetscArraycpy(b->hits, hits, b->n_hits * model->m));
+  PetscCall(PetscArraycpy(&b->hits[b->n_hits * model->m], due, b->n_hits));
   PetscFunctionReturn(0);
 }
 
@@ -77,8 +78,6 @@ PetscErrorCode MapBodiesCreate(Map map, PetscInt line, MapBodies *b)
   PetscCheck(b->n_hits > 0, map->comm, PETSC_ERR_USER_INPUT,
              "-analysis map needs -impulses: without a blow at every point squeal would have to grow from rounding");
   map->n_reductions++;
-  map->m       = b->model.m;
-  map->n_pairs = b->model.n_pairs;
   PetscFunctionReturn(0);
 }
 
@@ -130,6 +129,5 @@ PetscErrorCode MapBodiesDestroy(MapBodies *b)
   PetscCall(PetscFree(b->speed));
   PetscCall(PetscFree(b->interface));
   PetscCall(PetscFree(b->hits));
-  PetscCall(PetscFree(b->due));
   PetscFunctionReturn(0);
 }

@@ -21,6 +21,7 @@ typedef struct {
   ReducedReport  report;
   PetscReal     *sliding, *loads, *kick; /* [n_pairs] m, [n_loads], [m] */
   PetscInt       n, n_windows, n_most;   /* steps of a window; windows of the point, at most */
+  PetscReal     *slip;                   /* [n_most n] mean slip speed along t, m/s */
   PetscReal     *force;                  /* [n_most n] N */
   ContactStatus *status;                 /* [n_pairs] at the beginning of the window */
   PetscBool     *closed, *known;         /* [n_pairs]; those of which `growth` is */
@@ -41,8 +42,8 @@ static PetscErrorCode MarchWorkCreate(Map map, MapBodies *bodies, MarchWork *w)
   PetscCall(ReducedStateCreate(model, &w->rest));
   PetscCall(ReducedReportCreate(model, &w->report));
   PetscCall(ReducedStepperCreate(model, map->dt, MARCH_RTOL, &w->stepper));
-  PetscCall(PetscCalloc5(model->n_pairs, &w->sliding, model->n_loads, &w->loads, model->m, &w->kick, w->n_most * w->n,
-                         &w->force, w->n_most, &w->sample));
+  PetscCall(PetscCalloc6(model->n_pairs, &w->sliding, model->n_loads, &w->loads, model->m, &w->kick, w->n_most * w->n,
+                         &w->slip, w->n_most * w->n, &w->force, w->n_most, &w->sample));
   PetscCall(PetscCalloc6(model->n_pairs, &w->status, model->n_pairs, &w->closed, model->n_pairs, &w->known,
                          model->n_pairs, &w->lambda_n, 2 * model->m, &w->sigma, 2 * model->m, &w->omega));
   PetscFunctionReturn(0);
@@ -55,7 +56,7 @@ static PetscErrorCode MarchWorkDestroy(MarchWork *w)
   PetscCall(ReducedStateDestroy(&w->state));
   PetscCall(ReducedStateDestroy(&w->rest));
   PetscCall(ReducedReportDestroy(&w->report));
-  PetscCall(PetscFree5(w->sliding, w->loads, w->kick, w->force, w->sample));
+  PetscCall(PetscFree6(w->sliding, w->loads, w->kick, w->slip, w->force, w->sample));
   PetscCall(PetscFree6(w->status, w->closed, w->known, w->lambda_n, w->sigma, w->omega));
   PetscFunctionReturn(0);
 }
@@ -95,7 +96,7 @@ static const PetscReal *MarchKick(MarchWork *w)
   PetscBool        any = PETSC_FALSE;
 
   for (PetscInt i = 0; i < b->n_hits; i++) {
-    const PetscReal share = 1 - PetscAbsReal(b->due[i] - w->state.time) / w->map->dt;
+    const PetscReal share = 1 - PetscAbsReal(b->hits[m * b->n_hits + i] - w->state.time) / w->map->dt;
 
     if (!(share > 0)) continue;
     for (PetscInt k = 0; k < m; k++) w->kick[k] = (any ? w->kick[k] : 0) + share * b->hits[m * i + k];
@@ -119,11 +120,12 @@ static void MarchLook(MarchWork *w, MapSample *sample)
   sample->stick += (n_closed && n_stick == n_closed) / (PetscReal)w->n;
 }
 
-/* The steps of the next window and what its forces are like */
+/* The steps of the next window, and what its forces are like */
 static PetscErrorCode MarchWindow(MarchWork *w, MapPoint *row)
 {
   const PetscInt n_pairs = w->bodies->model.n_pairs;
   PetscReal     *force   = &w->force[w->n * w->n_windows];
+  PetscReal     *slip    = &w->slip[w->n * w->n_windows];
   MapSample     *now     = &w->sample[w->n_windows];
 
   PetscFunctionBeginUser;
@@ -134,8 +136,11 @@ static PetscErrorCode MarchWindow(MarchWork *w, MapPoint *row)
 
     if (kick) now->changed = PETSC_TRUE;
     PetscCall(ReducedStep(w->stepper, &(ReducedDrive){w->loads, w->sliding, kick}, &w->state, &w->report));
-    force[k] = 0;
-    for (PetscInt i = 0; i < n_pairs; i++) force[k] += w->state.p[3 * i];
+    force[k] = slip[k] = 0;
+    for (PetscInt i = 0; i < n_pairs; i++) {
+      force[k] += w->state.p[3 * i];
+      slip[k] += w->report.slip[2 * i] / (w->map->dt * (PetscReal)n_pairs);
+    }
     MarchLook(w, now);
     row->steps++;
   }
@@ -238,9 +243,9 @@ static void MarchJudge(MarchWork *w, MapPoint *row)
   if (row->end == MAP_SETTLED) row->error = change;
   if (row->regime == MAP_CYCLE && row->stick > MARCH_STICKING) row->regime = MAP_STICKING;
   if (row->regime == MAP_STABLE) return;
-  row->freq       = MapForceLine(last - first, n, &w->force[n * first], dt);
-  row->freq_error = half ? PetscAbsReal(MapForceLine(half, n, &w->force[n * first], dt) -
-                                        MapForceLine(half, n, &w->force[n * (last - half)], dt))
+  row->freq       = MapForceLine(last - first, n, &w->slip[n * first], dt);
+  row->freq_error = half ? PetscAbsReal(MapForceLine(half, n, &w->slip[n * first], dt) -
+                                        MapForceLine(half, n, &w->slip[n * (last - half)], dt))
                          : 0;
 }
 
@@ -260,6 +265,16 @@ static PetscErrorCode MarchRun(MarchWork *w, MapPoint *row)
   PetscFunctionReturn(0);
 }
 
+/* The modes of the last linearisation that grow */
+static void MarchTakeModes(MarchWork *w, MapPoint *row)
+{
+  for (PetscInt k = 0; k < 2 * w->bodies->model.m && row->n_modes < MAP_MAX_MODES; k++) {
+    if (!(w->omega[k] > 0) || !(w->sigma[k] > 0)) continue;
+    row->sigma[row->n_modes]   = w->sigma[k];
+    row->omega[row->n_modes++] = w->omega[k];
+  }
+}
+
 /* The sliding state of a point, its eigenvalues, and where the point begins: there, or where the one before ended */
 static PetscErrorCode MarchBegin(MarchWork *w, PetscBool go_on, MapPoint *row, PetscBool *begun)
 {
@@ -272,6 +287,7 @@ static PetscErrorCode MarchBegin(MarchWork *w, PetscBool go_on, MapPoint *row, P
   PetscCall(ReducedEquilibrium(model, w->loads, &w->rest, &found));
   row->growth = row->mode_freq = row->index = NAN;
   if (found) PetscCall(MarchLinearise(w, w->rest.status, &row->growth, &row->mode_freq, &row->index));
+  if (found) MarchTakeModes(w, row);
   if (found) PetscCall(PetscArraycpy(w->known, w->closed, model->n_pairs));
   if (found && !go_on) PetscCall(ReducedStateCopy(model, &w->rest, &w->state));
   w->growth     = row->growth;
@@ -304,16 +320,22 @@ static PetscErrorCode MarchPoint(MarchWork *w, PetscBool go_on, MapPoint *row, P
 PetscErrorCode MapChain(Map map, MapBodies *bodies, PetscInt chain, MapPoint row[])
 {
   const PetscInt n = map->axis[0].n, n_ways = map->direction == MAP_BOTH ? 2 : 1;
+  PetscInt       first;
   PetscBool      good = PETSC_FALSE;
+  MapKept        kept;
   MarchWork      w;
 
   PetscFunctionBeginUser;
   PetscCall(MarchWorkCreate(map, bodies, &w));
-  for (PetscInt k = 0; k < n; k++) {
+  kept = (MapKept){&bodies->model, &w.state};
+  PetscCall(MapResumeChain(map, chain, &first, row, &kept));
+  if (first) good = row[first - 1].end != MAP_FAILED ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt k = first; k < n; k++) {
     const PetscInt down = n_ways == 2 ? chain % 2 : map->direction == MAP_DOWN;
 
     row[k] = (MapPoint){.line = chain / n_ways, .down = down, .place = down ? n - 1 - k : k};
-    PetscCall(MarchPoint(&w, good, &row[k], &good));
+    PetscCall(MarchPoint(&w, good && map->direction != MAP_APART, &row[k], &good));
+    PetscCall(MapKeepChain(map, chain, k + 1, row, &kept));
     PetscCall(ProgressStep(&map->progress));
   }
   PetscCall(MarchWorkDestroy(&w));

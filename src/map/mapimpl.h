@@ -5,13 +5,14 @@
 #include <squeal/results.h>
 #include "base/progress.h"
 
-#define MAP_MAX_AXES 2
-#define MAP_MAX_TEXT 65536 /* length of a list of values */
+#define MAP_MAX_AXES  2
+#define MAP_MAX_TEXT  65536 /* length of a list of values */
+#define MAP_MAX_MODES 24    /* that grow at a point and are listed */
 
 typedef enum { MAP_MU, MAP_SLOPE, MAP_SPEED, MAP_LOAD, MAP_BODY } MapKind;
 typedef enum { MAP_STABLE, MAP_GROWTH, MAP_STICKING, MAP_CYCLE, MAP_UNKNOWN, MAP_N_REGIMES } MapRegime;
 typedef enum { MAP_DECAYS, MAP_SETTLED, MAP_TIME, MAP_FAILED, MAP_N_ENDS } MapEnd;
-typedef enum { MAP_BOTH, MAP_UP, MAP_DOWN } MapDirection;
+typedef enum { MAP_BOTH, MAP_UP, MAP_DOWN, MAP_APART } MapDirection;
 
 /* A number that may be varied */
 typedef struct {
@@ -43,6 +44,8 @@ typedef struct {
   PetscReal error; /* of the rms, relative */
   PetscReal time;  /* s */
   PetscInt  steps;
+  PetscInt  n_modes;                                    /* that grow, of the sliding state */
+  PetscReal sigma[MAP_MAX_MODES], omega[MAP_MAX_MODES]; /* rad/s */
 } MapPoint;
 
 /* What forces in a window are like */
@@ -57,7 +60,7 @@ typedef struct {
   PetscInt    *interface;          /* [n_pairs] */
   PetscReal   *mu, *slope, *speed; /* [n_pairs] of the scene */
   PetscInt     n_hits;
-  PetscReal   *hits, *due; /* [n_hits][m], [n_hits] */
+  PetscReal   *hits; /* [n_hits][m] Phi'J, m sqrt(kg)/s, then [n_hits] when they are due, s */
 } MapBodies;
 
 struct _p_Map {
@@ -82,6 +85,11 @@ struct _p_Map {
   MapPoint      *row; /* [n_rows] */
   PetscInt       n_reductions, m, n_pairs;
   PetscLogDouble seconds[2]; /* reductions, transients */
+  /* restart */
+  PetscBool   restart;
+  const char *folder;
+  uint64_t    scene;     /* checksum */
+  PetscInt    n_resumed; /* rows of this rank */
 };
 
 /* mapparameter.c - names, links and values of the axes */
@@ -101,10 +109,28 @@ PETSC_INTERN PetscErrorCode MapBodiesDestroy(MapBodies *bodies);
 /* mapchain.c - all points of a line in one direction, row [n of the first axis]; not collective */
 PETSC_INTERN PetscErrorCode MapChain(Map map, MapBodies *bodies, PetscInt chain, MapPoint row[]);
 
+/* The end of a chain, to be kept or taken up */
+typedef struct {
+  const ReducedModel *model;
+  ReducedState       *state;
+} MapKept;
+
+/* mapkeep.c - checksum of the scene; bodies and chains that a killed map goes on with: good is false, and the number of rows 0,
+   where there are none of this scene; takes their files away. Chains are not collective */
+PETSC_INTERN PetscErrorCode MapSumScene(Map map);
+PETSC_INTERN PetscErrorCode MapKeepBodies(Map map, PetscInt line, MapBodies *bodies);
+PETSC_INTERN PetscErrorCode MapResumeBodies(Map map, PetscInt line, MapBodies *bodies, PetscBool *good);
+PETSC_INTERN PetscErrorCode MapKeepChain(Map map, PetscInt chain, PetscInt n_rows, MapPoint row[], const MapKept *kept);
+PETSC_INTERN PetscErrorCode MapResumeChain(Map map, PetscInt chain, PetscInt *n_rows, MapPoint row[],
+                                           const MapKept *kept);
+PETSC_INTERN PetscErrorCode MapForget(Map map);
+
 /* mapforce.c - pure: what n forces are like, f <= 0 being none; main line of forces dt apart, in records of n, Hz, 0 for none */
 PETSC_INTERN void      MapForceMeasure(PetscInt n, const PetscReal f[], MapSample *sample);
 PETSC_INTERN PetscReal MapForceLine(PetscInt n_records, PetscInt n, const PetscReal f[], PetscReal dt);
 
-/* mapwrite.c - the table */
+/* mapwrite.c - the tables */
 PETSC_INTERN PetscErrorCode MapTableOpen(Results results, ResultsTable *table);
 PETSC_INTERN PetscErrorCode MapTableAdd(Map map, ResultsTable table, const MapPoint *point);
+PETSC_INTERN PetscErrorCode MapModesOpen(Results results, ResultsTable *table);
+PETSC_INTERN PetscErrorCode MapModesAdd(Map map, ResultsTable table, const MapPoint *point);

@@ -32,10 +32,35 @@ PetscErrorCode MapTableAdd(Map map, ResultsTable table, const MapPoint *r)
     PetscCall(PetscSNPrintf(second, sizeof(second), "%s,%.15g", y->moved[0].name, (double)y->value[r->line]));
   PetscCall(ResultsTableRow(
     table, "%d,%s,%.15g,%s,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%d,%.15g,%s",
-    (int)(r->line * x->n + r->place + 1), x->moved[0].name, (double)x->value[r->place], second, r->down ? "down" : "up",
+    (int)(r->line * x->n + r->place + 1), x->moved[0].name, (double)x->value[r->place], second,
+    map->direction == MAP_APART ? "apart"
+    : r->down                   ? "down"
+                                : "up",
     regimes[r->regime], (double)r->freq, (double)r->freq_error, (double)r->rms, (double)r->peak, (double)r->mean,
     (double)r->open, (double)r->stick, (double)r->growth, (double)r->mode_freq, (double)r->index, (double)r->error,
     (int)r->steps, (double)r->time, ends[r->end]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapModesOpen(Results results, ResultsTable *table)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ResultsTableOpen(results, "map_modes", "point,value,value_2,freq_hz,growth_rad_s,damping_ratio", table));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapModesAdd(Map map, ResultsTable table, const MapPoint *r)
+{
+  const MapAxis *x = &map->axis[0], *y = &map->axis[1];
+  char           second[64] = "";
+
+  PetscFunctionBeginUser;
+  if (r->down && map->direction == MAP_BOTH) PetscFunctionReturn(0);
+  if (map->n_axes > 1) PetscCall(PetscSNPrintf(second, sizeof(second), "%.15g", (double)y->value[r->line]));
+  for (PetscInt k = 0; k < r->n_modes; k++)
+    PetscCall(ResultsTableRow(table, "%d,%.15g,%s,%.15g,%.15g,%.15g", (int)(r->line * x->n + r->place + 1),
+                              (double)x->value[r->place], second, (double)(r->omega[k] / (2 * PETSC_PI)),
+                              (double)r->sigma[k], (double)(-r->sigma[k] / hypot(r->sigma[k], r->omega[k]))));
   PetscFunctionReturn(0);
 }
 
@@ -93,6 +118,8 @@ PetscErrorCode MapView(Map map, PetscViewer viewer)
     "map: %" PetscInt_FMT " transients of %" PetscInt_FMT " modes below %.6g Hz and %" PetscInt_FMT
     " pairs, steps of %.6g s, of at most %.6g s each\n",
     map->n_rows, map->m, (double)map->cutoff, map->n_pairs, (double)map->dt, (double)map->end));
+  if (map->n_resumed)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " of them kept by an earlier run\n", map->n_resumed));
   for (PetscInt k = 0; k < map->n_axes; k++) PetscCall(MapViewAxis(&map->axis[k], viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, " "));
   for (int k = 0; k < MAP_N_REGIMES; k++)

@@ -37,14 +37,21 @@ typedef enum {
   KEPT_N_ITEMS
 } ReducedItem;
 
+PetscErrorCode ReducedAddChecksum(ReducedRun r, Checksum checksum)
+{
+  PetscFunctionBeginUser;
+  PetscCall(DynamicsAddRunChecksum(r->dynamics, checksum));
+  PetscCall(ChecksumSetPart(checksum, "-dynamics_cutoff"));
+  PetscCall(ChecksumAddReals(checksum, 1, &r->cutoff));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ReducedSumScene(ReducedRun r)
 {
   PetscFunctionBeginUser;
   if (r->scene) PetscFunctionReturn(0);
   PetscCall(ChecksumCreate(r->comm, &r->scene));
-  PetscCall(DynamicsAddRunChecksum(r->dynamics, r->scene));
-  PetscCall(ChecksumSetPart(r->scene, "-dynamics_cutoff"));
-  PetscCall(ChecksumAddReals(r->scene, 1, &r->cutoff));
+  PetscCall(ReducedAddChecksum(r, r->scene));
   PetscFunctionReturn(0);
 }
 

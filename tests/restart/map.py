@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+"""A map that is killed goes on where it stopped, with the same bytes, also on another number of ranks; that of another scene begins
+anew and says so. Breaks when a number of the bodies, of the state or of a row is not kept, when a point depends on more than
+these, or when files of another scene are taken.
+
+    map.py SQUEAL LAUNCHER"""
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from runs import SOURCE, fail
+
+OPTIONS = "-map_values 0.3,0.5,0.6 -map_values_2 100,200 -ts_max_time 32e-3 -map_view".split()
+TABLES = "map.csv", "map_modes.csv"
+PATIENCE = 120  # s
+
+
+def command(squeal, launcher, ranks, folder, *options):
+    return [launcher, "-n", str(ranks), squeal, "-options_file", SOURCE / "options/small_brake_map.yaml", *OPTIONS,
+            "-output_dir", folder, *options]
+
+
+def main(squeal, launcher):
+    with tempfile.TemporaryDirectory() as root:
+        whole, parts = Path(root) / "whole", Path(root) / "parts"
+
+        def run(ranks, folder, *options):
+            done = subprocess.run(command(squeal, launcher, ranks, folder, *options), stdin=subprocess.DEVNULL,
+                                  capture_output=True, text=True, check=False)
+            if done.returncode:
+                fail(done.stderr)
+            return done.stdout + done.stderr
+
+        run(1, whole)
+        with subprocess.Popen(command(squeal, launcher, 1, parts), start_new_session=True, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL) as process:
+            end = time.monotonic() + PATIENCE
+            while not (parts / "map_restart_chain_000001").exists() and process.poll() is None:
+                if time.monotonic() > end:
+                    fail("no chain is kept")
+                time.sleep(0.01)
+            os.killpg(process.pid, signal.SIGKILL)
+        if (parts / "map.csv").exists():
+            fail("the map ended before it could be killed")
+        said = run(2, parts)
+        if " of them kept by an earlier run" not in said or "warning" in said or "0 reductions" not in said:
+            fail(f"it did not go on: {said}")
+        for table in TABLES:
+            if (whole / table).read_bytes() != (parts / table).read_bytes():
+                fail(f"{table} differs")
+        if list(parts.glob("map_restart_*")):
+            fail("files of the restart are left")
+        (parts / "map_restart_bodies_000000").write_bytes(b"none")
+        if "is of another scene or damaged; the map begins anew there" not in run(1, parts, "-map_direction", "up"):
+            fail("a damaged file is not named")
+        print("the same bytes on two ranks as on one that was not killed")
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:3]))
