@@ -49,7 +49,8 @@ static PetscErrorCode StateAdd(FrfChain *chain, PetscReal a[])
     }
   length = StateScale(chain, a);
   if (length < STATE_DEPENDENT || chain->n == chain->capacity) PetscFunctionReturn(0);
-  PetscCall(PetscArraycpy(&chain->state[chain->n++ * chain->length], a, chain->length));
+  PetscCall(PetscArraycpy(&chain->state[chain->n * chain->length], a, chain->length));
+  chain->n++;
   PetscFunctionReturn(0);
 }
 
