@@ -23,6 +23,7 @@ from .program import compiled_program, machine_text, measured_run, scene
 from .tables import BadInput, print_table, run, whole
 
 LEAST = 1e-16  # errors of nothing are drawn here
+LEAST_RANGE = 4  # of costs in a picture, last to first
 COLORS = BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, GREY, INK
 MARKERS = "osD^v<>P"
 UNIT = (*scene("massi2005"), "-rig_disc_elements", "12,56,1", "-rig_pad_elements", "5,5,5", "-rig_beam_elements", 10,
@@ -100,8 +101,13 @@ def draw(path, title, error_name, points):
         texts += [((a, b), point.setting) for a, b, point in zip(x, y, own)]
     axes.grid(True, which="major", linewidth=0.3)
     axes.margins(0.08)
+    low, high = axes.get_xlim()
+    if high < LEAST_RANGE * low:  # so that what costs the same looks so
+        axes.set_xlim(math.sqrt(low * high / LEAST_RANGE), math.sqrt(low * high * LEAST_RANGE))
+    low, high = axes.get_xlim()
+    digits = "25" if high > 10 * low else "23456789"
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if f"{value:.0e}"[0] in "25" else ""))
+    axes.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if f"{value:.0e}"[0] in digits else ""))
     axes.set_xlabel(f"time, in units of {UNIT_TEXT}")
     axes.set_ylabel(error_name)
     axes.set_title(title, fontsize=11)

@@ -3,6 +3,7 @@
 
   sentences  name the cheapest setting that reaches an error and the cheapest of another method, or say that none does
   files      table and picture hold all points
+  page       scripts/study/all has sentences, picture and what a study printed; of one that failed its status and message
   exact      eigenvalues 4 sin^2(k pi / (2 n + 2)) of a chain of masses, damped by alpha, from guesses of ten digits, to 1e-15; what is
              no eigenvalue is not taken for one
   struck     a mass on a spring hit with 1 m/s: in time sin(omega t) / omega, in steps of central differences their recursion
@@ -12,7 +13,10 @@ Breaks when a dearer setting is named, when an exact value only repeats its gues
 import math
 import sys
 import tempfile
+from importlib.machinery import SourceFileLoader
+from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import scipy.sparse
@@ -47,6 +51,19 @@ def files(folder):
     require((folder / "study.png").stat().st_size > 5000, "the picture has nothing on it")
 
 
+def page(folder):
+    loader = SourceFileLoader("study_all", str(SOURCE / "scripts/study/all"))
+    every = module_from_spec(spec_from_loader("study_all", loader))
+    loader.exec_module(every)
+    draw(folder / "study.png", "made up", "error", POINTS)
+    (folder / "study.txt").write_text("Made up\nThe reference is 1 < 2.\nTake fast.\n")
+    (folder / "none").mkdir()
+    studies = [every.Study("study/ranks", folder, 0, 3.0, "printed"), every.Study("study/reduced", folder / "none", 1, 3.0, "no <mesh>")]
+    text = every.page(studies, SimpleNamespace(quick=True))
+    for said in ("<li>Take fast.</li>", "data:image/png;base64,", "1 &lt; 2", "status 1", "no &lt;mesh&gt;", "scripts/study/ranks"):
+        require(said in text, f"the page has no {said}")
+
+
 def exact(folder):
     n, alpha = 60, 0.01
     ones = np.ones(n)
@@ -77,8 +94,9 @@ def struck(folder):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        for part in (sentences, files, exact, struck):
-            part(Path(folder))
+        for part in (sentences, files, page, exact, struck):
+            (Path(folder) / part.__name__).mkdir()
+            part(Path(folder) / part.__name__)
             print(part.__name__)
 
 
