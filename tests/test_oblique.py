@@ -25,6 +25,7 @@ OPTIONS = ["-rows_stiffness", "8e6,8e6,8e6", "-press_ramp", "2e-5", "-contact_sp
            "-tap_time", "1e-4", "-ts_dt", "5e-8", "-ts_max_steps", "4000"]
 AXIS, TURN, SHIFT = numpy.array([2.0, -1.0, 1.5]), 0.7, numpy.array([0.0123, -0.21, 0.0457])
 RTOL = 1e-9
+COMPARED = ["normal_force_n", *(f"{name}_j" for name in "kinetic strain external_work friction_work damping_work friction_heat".split())]
 failed = []
 
 
@@ -93,7 +94,7 @@ def turned_back(table, turn):
         found = re.match(r"((?:edge|face)_v?)x(_.*)", name)
         if found:
             columns[name] = numpy.stack([table[f"{found[1]}{d}{found[2]}"] for d in "xyz"], -1) @ turn
-        elif not re.match(r"(edge|face)_|n_|projector|energy|contact_work|integrator|friction_force", name):
+        elif name in COMPARED:
             columns[name] = table[name]
     return columns
 
