@@ -203,15 +203,18 @@ static PetscErrorCode PencilSaveObject(Operators o, const char name[], PetscObje
   PetscCall(PetscViewerFileSetName(viewer, part));
   PetscCallMPI(MPI_Comm_rank(o->comm, &rank));
   PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  errno = 0;
   error = PetscObjectView(A, viewer);
+  if (!error) error = PetscViewerDestroy(&viewer); /* some disks tell only here that they are full */
+  failed = errno;
   PetscCall(PetscPopErrorHandler());
   if (error) (void)unlink(part);
   PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write '%s' of -operators_save: %s", file,
-             strerror(errno));
-  PetscCall(PetscViewerDestroy(&viewer));
-  if (rank == 0) failed = rename(part, file);
+             strerror(failed));
+  failed = rank == 0 && rename(part, file) ? errno : 0;
   PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
-  PetscCheck(!failed, o->comm, PETSC_ERR_FILE_WRITE, "cannot write '%s' of -operators_save", file);
+  PetscCheck(!failed, o->comm, PETSC_ERR_FILE_WRITE, "cannot write '%s' of -operators_save: %s", file,
+             strerror(failed));
   PetscFunctionReturn(0);
 }
 

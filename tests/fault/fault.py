@@ -41,7 +41,7 @@ KINDS = {
     "stop": (served.FILES, {"signal": int(signal.SIGTERM)}),
 }
 EARLIER = ("-contact_mu", "0.2")  # of the run that was in the folder before
-CHANGING = re.compile(r"^# (cost|end|stages|in|command|repeat|files|.*seconds).*$", re.MULTILINE)
+CHANGING = re.compile(r"^# (completeness|cost|end|stages|in|command|repeat|files|.*seconds).*$", re.MULTILINE)
 TOLERANCE = 1e-6  # between runs on several ranks, where the order of sums depends on the moment
 
 
@@ -142,7 +142,7 @@ class Faults:
         torn = [name for name, value in found.items() if value is None or not self.whole(name, value)]
         if torn:
             return f"{' '.join(sorted(torn))} neither as before nor as of a run to the end"
-        gone = [name for name in self.earlier if name not in found and not (self.scene.goes_on and name == "checkpoint.bin")
+        gone = [name for name in self.earlier if name not in found and name not in self.scene.loses
                 and (outcome.status != 0 or name in self.well)]
         if gone:
             return f"{' '.join(sorted(gone))} of the earlier run gone"

@@ -14,14 +14,17 @@ TIME = ("-analysis", "transient", "-press_ramp", "1e-4", "-dynamics_live", "0", 
 
 class Scene:
     """A command; goes_on: the option with which a later run takes up what a killed one kept, None where it begins anew, whose files
-    change while it runs: the checkpoint, which an earlier run loses, and the list of snapshots."""
+    change while it runs: the checkpoint, which an earlier run loses, and the list of snapshots. loses: files of an earlier run that
+    may go before this one writes its own."""
 
-    def __init__(self, name, words, goes_on=None):
+    def __init__(self, name, words, goes_on=None, loses=()):
         self.name, self.words, self.goes_on = name, (*words, "-output_dir", "out"), goes_on
+        self.loses = {*loses, *(("checkpoint.bin",) if goes_on else ())}
 
 
 SCENES = (
     Scene("modes", BRAKE),
+    Scene("matrices", (*BRAKE, "-operators_save", "out", "-output_fields", "0"), loses=("F.bin",)),  # loads of other matrices
     Scene("sweep", (*FINER, "-analysis", "sweep", "-sweep_rtol", "1e-9")),
     Scene("static", (*BRAKE, "-analysis", "static")),
     Scene("frf", (*BRAKE, "-analysis", "frf", "-probes", "tip", "-tip_at", "0,0,0.1", "-tip_part", "block", "-frf_force",
