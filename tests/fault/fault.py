@@ -216,7 +216,7 @@ def main():
     parser.add_argument("--most", type=int, help="calls of each kind and scene")
     parser.add_argument("--one", type=int, nargs="+", help="these calls alone")
     parser.add_argument("--ranks", type=int, default=1)
-    parser.add_argument("--limit", type=float, default=30, help="seconds a run may take")
+    parser.add_argument("--limit", type=float, default=90, help="seconds a run may take")
     parser.add_argument("--list", action="store_true", help="say how each run ended")
     arguments = parser.parse_args()
     failed = 0

@@ -226,7 +226,7 @@ def main():
     parser.add_argument("--count", type=int, default=500)
     parser.add_argument("--seed", default="2005")
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--limit", type=float, default=20, help="seconds a run may take")
+    parser.add_argument("--limit", type=float, default=90, help="seconds a run may take")
     parser.add_argument("--only", help="one kind")
     parser.add_argument("--list", action="store_true", help="say what was done to each input, and its exit status")
     parser.add_argument("--one", type=int, help="one input, whose folder is kept")
