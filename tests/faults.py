@@ -25,6 +25,8 @@ FAULTS = (
     ("gap of the wrong side", "src/contact/foot.c", "  return gap;\n", "  return -gap;\n", "static_motions"),
     ("mu is 1e-6 less in the step of dynamics: the balance of energy closes", "src/contact/projector/prepare.c",
      "  pair->mu = c->mu;\n", "  pair->mu = (1 - 1e-6) * c->mu;\n", "transient_laws"),
+    ("mu is 1e-6 less in a reduced model", "src/reduced/pairs.c", "r->model.mu[i]    = c->mu;",
+     "r->model.mu[i]    = (1 - 1e-6) * c->mu;", "transient_laws"),
     ("friction drives: it has the sign of the slip", "src/kernels/friction.h", "return square <= radius * radius ? 1 : radius / sqrt(square)",
      "return square <= radius * radius ? 1 : -radius / sqrt(square)", "slipwork-1 transient_laws"),
     ("heat of friction that the ledger does not need, 1e-6 more", "src/contact/projector/record.c", "sums->heat += dt *",

@@ -11,8 +11,8 @@ static PetscErrorCode LawsView(const LedgerLaws *laws, PetscViewer viewer)
     const char *name;
     PetscReal   value;
   } line[] = {
-    {"K u of the kernels beside that of the elements", laws->stiffness},
     {"work of friction beside mu N on the way slid",   laws->friction },
+    {"K u of the kernels beside that of the elements", laws->stiffness},
     {"change of momentum beside what acts",            laws->momentum },
     {"of angular momentum",                            laws->moment   },
   };
@@ -21,7 +21,7 @@ static PetscErrorCode LawsView(const LedgerLaws *laws, PetscViewer viewer)
   if (laws->looks == 0) PetscFunctionReturn(0);
   PetscCall(PetscViewerASCIIPrintf(viewer, "laws by second paths in %.0f steps, largest relative difference\n",
                                    (double)laws->looks));
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(line); i++)
+  for (size_t i = 0; i < (laws->friction_alone != 0 ? 1 : PETSC_STATIC_ARRAY_LENGTH(line)); i++)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %-46s %8.1e\n", line[i].name, (double)line[i].value));
   PetscFunctionReturn(0);
 }

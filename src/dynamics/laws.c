@@ -42,21 +42,19 @@ static const LawsWhich LAWS_ALL    = {.free = PETSC_TRUE, .held = PETSC_TRUE};
 static const LawsWhich LAWS_FREE   = {.free = PETSC_TRUE};
 static const LawsWhich LAWS_COPIES = {.copies = PETSC_TRUE, .free = PETSC_TRUE, .held = PETSC_TRUE};
 
-/* Whether step n is looked at */
+/* Whether the step is looked at; the last one is */
 static PetscErrorCode LawsAreDue(Dynamics d, const CentralStep *step, PetscBool *due)
 {
-  PetscReal end, ten = 10;
+  PetscReal end;
   PetscInt  n, most;
 
   PetscFunctionBeginUser;
   PetscCall(TSGetStepNumber(d->ts, &n));
   PetscCall(TSGetMaxSteps(d->ts, &most));
   PetscCall(TSGetMaxTime(d->ts, &end));
-  while (ten < (PetscReal)n) ten *= 10;
-  *due = PETSC_FALSE;
-  if (!d->laws.interval || d->ended || n == 0) PetscFunctionReturn(0);
-  if ((PetscReal)n == ten || n % d->laws.interval == 0 || n + 1 >= most || step->time + step->dt >= end)
-    *due = PETSC_TRUE;
+  *due = LedgerIsLooked(n, d->laws.interval);
+  if (n + 1 >= most || step->time + step->dt >= end) *due = d->laws.interval > 0 && n > 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (d->ended) *due = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 

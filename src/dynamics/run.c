@@ -8,9 +8,8 @@
    command line */
 static PetscErrorCode RunRefuse(Dynamics d, const char by[])
 {
-  static const char *const idle[]     = {"-ts_central_b",    "-dynamics_step_fraction",  "-dynamics_step_force",
-                                         "-dynamics_kernel", "-dynamics_check_interval", "-projector_max_it",
-                                         "-projector_rtol"};
+  static const char *const idle[]     = {"-ts_central_b",    "-dynamics_step_fraction", "-dynamics_step_force",
+                                         "-dynamics_kernel", "-projector_max_it",       "-projector_rtol"};
   static const char *const prefixes[] = {"-ts_monitor", "-ts_view", "-ts_adapt_", "-ts_trajectory_", "-ts_event_"};
   char                     why[160];
 
@@ -47,6 +46,7 @@ PetscErrorCode DynamicsGetRun(Dynamics d, Results results, const char by[], Pets
                        .history             = d->history,
                        .dt                  = d->dt_asked > 0 ? d->dt_asked : dt,
                        .checkpoint_interval = d->checkpoint_interval,
+                       .check_interval      = d->laws.interval,
                        .from_static         = d->start == START_STATIC ? PETSC_TRUE : PETSC_FALSE,
                        .restart             = d->restart,
                        .view_kkt            = d->view_kkt};

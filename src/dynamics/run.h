@@ -21,7 +21,7 @@ typedef struct {
   History                 history;
   PetscReal               dt, end; /* s */
   PetscInt                n_steps; /* at most */
-  PetscInt                checkpoint_interval;
+  PetscInt                checkpoint_interval, check_interval;
   PetscBool               from_static, restart, view_kkt;
 } DynamicsRun;
 

@@ -198,6 +198,7 @@ static PetscErrorCode ReducedAdvance(ReducedRun r)
   ReducedDrive drive;
 
   PetscFunctionBeginUser;
+  PetscCall(ReducedLookBegin(r));
   PetscCall(ReducedDriveSet(r, &drive));
   PetscCall(ReducedStep(r->stepper, &drive, &r->state, &r->report));
   ReducedSetShown(r, PETSC_FALSE);
@@ -207,6 +208,7 @@ static PetscErrorCode ReducedAdvance(ReducedRun r)
   r->ledger.part.external += r->report.external;
   r->ledger.part.damping += r->report.damping;
   PetscCall(ReducedTakePairs(r, PETSC_TRUE));
+  PetscCall(ReducedLookEnd(r));
   if (r->verify) PetscCall(ReducedKeepForce(r));
   PetscFunctionReturn(0);
 }

@@ -105,7 +105,7 @@ static inline void MadeState(Made *m, PetscInt n, const Ledger *ledger, HistoryS
 static inline PetscErrorCode MadeRecord(Made *m, History history, PetscInt n)
 {
   const Ledger ledger = {
-    n + 0.25, 2, 3, 4, 5, 6, 7, 8, 0, 9, 10, 0, {11, 12, 13, 14, 15}
+    n + 0.25, 2, 3, 4, 5, 6, 7, 8, 0, 9, 10, 0, {11, 12, 13, 14, 15, 0}
   };
   const ContactSums sums[] = {
     {.n = {1, 2, 3}, .normal = 100 + n, .friction = 20, .residual = 1e-11, .sweeps = 3 * n * n, .steps = n},

@@ -89,6 +89,15 @@ PetscErrorCode LedgerClose(MPI_Comm comm, LedgerAccount *account, PetscInt n, co
   PetscFunctionReturn(0);
 }
 
+PetscBool LedgerIsLooked(PetscInt n, PetscInt interval)
+{
+  PetscReal ten = 10;
+
+  if (!interval || n == 0) return PETSC_FALSE;
+  while (ten < (PetscReal)n) ten *= 10;
+  return (PetscReal)n == ten || n % interval == 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode LedgerJudge(MPI_Comm comm, const Ledger *l, PetscReal fraction, PetscInt step, PetscReal time)
 {
   const PetscReal scale = LEDGER_RTOL * (l->throughput + l->predicted);

@@ -12,6 +12,7 @@ typedef struct {
   PetscReal stiffness;        /* K u kept by the kernels beside that of the elements */
   PetscReal friction;         /* work of friction beside Coulomb's law on the slip by places */
   PetscReal momentum, moment; /* change of the momenta beside the sum of what acts */
+  PetscReal friction_alone;   /* 1 of a reduced model, where only that is looked at */
 } LedgerLaws;
 
 /* Over all ranks */
@@ -46,6 +47,9 @@ typedef struct {
   LedgerPart   part;
   LedgerOrigin origin;
 } LedgerAccount;
+
+/* Whether the laws are looked at in step n: 10, 100, 1000, ..., and the multiples of the interval; 0 for never */
+PETSC_INTERN PetscBool LedgerIsLooked(PetscInt n, PetscInt interval);
 
 /* The bodies' sums at the beginning of a step: completes the damping work of the step before, of length dt_old */
 PETSC_INTERN void LedgerAddBodies(LedgerPart *part, const BodiesSums *sums, PetscReal dt_old);
