@@ -213,7 +213,7 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscCall(StaticsSetOperators(chain->statics, chain->operators));
   PetscCall(DynamicsSetOperators(chain->dynamics, chain->operators, chain->statics));
   PetscCall(ReducedSetRooms(chain->reduced, chain->dynamics, chain->modes));
-  PetscCall(CycleSetReduced(chain->cycle, chain->reduced));
+  PetscCall(CycleSetRooms(chain->cycle, chain->reduced, chain->contact));
   PetscCall(ModesGetContact(chain->modes, &is_static));
   PetscCall(StaticsCheckUse(chain->statics, is_static && chain->analysis != ANALYSIS_STATIC));
   PetscCall(OperatorsCreatePoint(chain->operators, &chain->p));

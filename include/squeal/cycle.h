@@ -14,7 +14,10 @@
 
    Directions in which nothing holds the bodies, so that a shift changes no force, are taken out: without that M - I is singular.
 
-   The error of a cycle is its difference to that of 2 N steps.
+   N is odd: forces of pairs that stay closed may alternate from step to step (reduced.h), which after an odd number is a multiplier of
+   -1, but after an even one would be 1, and M - I singular.
+
+   The error of a cycle is its difference to that of 2 N + 1 steps.
 */
 #pragma once
 
@@ -29,18 +32,21 @@ PetscErrorCode CycleCreate(MPI_Comm comm, LimitCycle *cycle);
    CycleSetFromOptions - reads what is looked for. Collective.
 
    Options Database Keys:
-+  -cycle_steps <0>        - steps in a period; 0: as long as those of the transient
++  -cycle_steps <0>        - steps in a period, odd; 0: as long as those of the transient
 .  -cycle_rtol <1e-9>      - of Phi - x, relative to the size of the vibration
 .  -cycle_max_it <30>      - of Newton's method
--  -cycle_verify <true>    - once more with twice the steps, for the errors
+.  -cycle_verify <true>    - once more with twice the steps, for the errors
+.  -cycle_parameter <name> - a contact's friction coefficient, e.g. contact_mu, over which the branch is followed
+.  -cycle_range <lo,hi>    - where the branch ends
+-  -cycle_points <60>      - cycles on it, at most; half of them each way
 @*/
 PetscErrorCode CycleSetFromOptions(LimitCycle cycle);
 
-/*@ CycleSetReduced - the reduced run, at whose end a cycle is looked for (borrowed). Collective. @*/
-PetscErrorCode CycleSetReduced(LimitCycle cycle, ReducedRun reduced);
+/*@ CycleSetRooms - the reduced run, at whose end a cycle is looked for, and the contacts (borrowed). Collective. @*/
+PetscErrorCode CycleSetRooms(LimitCycle cycle, ReducedRun reduced, Contact contact);
 
 /*@
-   CycleSolve - runs the transient, finds the cycle at its end and the branch, and writes cycle.csv. Collective.
+   CycleSolve - runs the transient, finds the cycle at its end and the branch through it, and writes cycle.csv. Collective.
 
    Errors: those of ReducedIntegrate(); PETSC_ERR_USER_INPUT where loads or sliding still change, for a transient that ends at rest, or with a
    motion that does not return; PETSC_ERR_NOT_CONVERGED from shooting.

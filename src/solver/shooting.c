@@ -4,6 +4,9 @@
 
 #define SHOOTING_DIFFERENCE 1e-6 /* of period and span */
 #define SHOOTING_FALL       0.9  /* of the residual that a shortened step must reach */
+#define SHOOTING_LOST       3.0  /* residual beyond which no cycle is near */
+#define SHOOTING_PHASE      0.3  /* of 1, where the multiplier of the phase is sought */
+#define SHOOTING_STEPS      0.02 /* what steps make of it at least: where two are as near, the vector decides */
 #define SHOOTING_SHORTEST   (1. / 8)
 
 /* One problem: the guess, the branch and work */
@@ -67,8 +70,8 @@ static PetscErrorCode ShotDifference(ShootingWork *w, const ShootingCycle *c, Pe
 
   PetscFunctionBeginUser;
   PetscCall(s->flow(s->ctx, c->x, c->period + dT, c->value + dp, d, NULL));
-  PetscCall(s->flow(s->ctx, c->x, c->period - dT, c->value - dp, w->trial, NULL));
-  for (PetscInt i = 0; i < s->n; i++) d[i] = (d[i] - w->trial[i]) / (2 * (dT + dp));
+  PetscCall(s->flow(s->ctx, c->x, c->period - dT, PetscMax(s->least, c->value - dp), w->trial, NULL));
+  for (PetscInt i = 0; i < s->n; i++) d[i] = (d[i] - w->trial[i]) / (2 * dT + dp + PetscMin(dp, c->value - s->least));
   PetscFunctionReturn(0);
 }
 
@@ -142,7 +145,7 @@ static PetscErrorCode ShotStep(ShootingWork *w, ShootingCycle *c)
   for (PetscReal part = 1; part >= SHOOTING_SHORTEST; part /= 2) {
     for (PetscInt i = 0; i < n; i++) c->x[i] = w->trial[i] + part * w->rhs[i];
     c->period = PetscMax(0.5 * T, T + part * w->rhs[n]);
-    c->value  = p + part * w->rhs[n + 1];
+    c->value  = PetscMax(w->s->least, p + part * w->rhs[n + 1]);
     PetscCall(ShotFlow(w, c));
     if (c->residual <= SHOOTING_FALL * before || c->residual <= w->s->rtol) break;
   }
@@ -159,7 +162,7 @@ static PetscErrorCode ShootingIterate(const Shooting *s, const ShootingTangent *
   c->its = 0;
   PetscCall(ShotCreate(s, c, tangent, &w));
   PetscCall(ShotFlow(&w, c));
-  while (c->residual > s->rtol && c->its < s->max_it && c->residual < PETSC_MAX_REAL) {
+  while (c->residual > s->rtol && c->its < s->max_it && c->residual < SHOOTING_LOST) {
     const PetscInt its = c->its;
 
     PetscCall(ShotStep(&w, c));
@@ -179,33 +182,78 @@ PetscErrorCode ShootingSolve(const Shooting *s, ShootingCycle *cycle)
   PetscFunctionReturn(0);
 }
 
+/* Cosine between the motion along the cycle, v, and the right vector of eigenvalue i, in LAPACK's real storage */
+static PetscReal StabilityAlong(const Shooting *s, const PetscReal v[], const PetscReal im[], const PetscReal R[],
+                                PetscInt i)
+{
+  const PetscInt   n  = s->n;
+  const PetscReal *re = &R[n * (im[i] < 0 ? i - 1 : i)], *ri = im[i] == 0 ? NULL : re + n;
+  PetscReal        dot[2] = {0, 0}, length = 0, size = 0;
+
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal w = PetscSqr(s->weight[k]), b = ri ? ri[k] : 0;
+
+    dot[0] += w * v[k] * re[k];
+    dot[1] += w * v[k] * b;
+    length += w * (PetscSqr(re[k]) + PetscSqr(b));
+    size += w * PetscSqr(v[k]);
+  }
+  return length > 0 && size > 0 ? hypot(dot[0], dot[1]) / PetscSqrtReal(length * size) : 0;
+}
+
+/* Which of the eigenvalues near 1 that are left is that of the phase: its vector is the motion along the cycle */
+static PetscErrorCode StabilityFindPhase(const Shooting *s, const ShootingCycle *cycle, PetscReal *const eigen[3],
+                                         PetscInt *phase)
+{
+  const PetscReal dT = SHOOTING_DIFFERENCE * cycle->period, *re = eigen[0], *im = eigen[1];
+  PetscReal      *v, *before, best                                              = -1;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(s->n, &v, s->n, &before));
+  PetscCall(s->flow(s->ctx, cycle->x, cycle->period - dT, cycle->value, before, NULL));
+  PetscCall(s->flow(s->ctx, cycle->x, cycle->period + dT, cycle->value, v, NULL));
+  for (PetscInt i = 0; i < s->n; i++) v[i] -= before[i];
+  *phase = 0;
+  for (PetscInt i = 0; i < s->n; i++) {
+    const PetscReal off   = hypot(re[i] - 1, im[i]);
+    const PetscReal along = off < SHOOTING_PHASE ? StabilityAlong(s, v, im, eigen[2], i) / (off + SHOOTING_STEPS) : -1;
+
+    if (along > best) *phase = i;
+    best = PetscMax(best, along);
+  }
+  PetscCall(PetscFree2(v, before));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ShootingGetStability(const Shooting *s, const ShootingCycle *cycle, ShootingStability *stability)
 {
-  const PetscInt n    = s->n;
-  PetscInt       near = 0;
-  PetscReal     *A, *re, *im;
+  const PetscInt n = s->n;
+  PetscInt       at;
+  PetscReal     *A, *re, *im, *R;
 
   PetscFunctionBeginUser;
   *stability = (ShootingStability){
     .phase = {0, 0}
   };
-  PetscCall(PetscMalloc3(n * n, &A, n, &re, n, &im));
+  PetscCall(PetscMalloc4(n * n, &A, n, &re, n, &im, n * n, &R));
   PetscCall(PetscArraycpy(A, cycle->M, n * n));
-  PetscCall(DenseEigen(n, A, re, im, NULL, NULL));
-  for (PetscInt k = 0; k <= s->n_free; k++) { /* shifts along free directions change nothing: exactly 1 */
-    for (PetscInt i = near = k; i < n; i++)
-      if (hypot(re[i] - 1, im[i]) < hypot(re[near] - 1, im[near])) near = i;
-    stability->phase[0] = re[near];
-    stability->phase[1] = im[near];
-    re[near]            = re[k];
-    im[near]            = im[k];
+  PetscCall(DenseEigen(n, A, re, im, NULL, R));
+  for (PetscInt k = 0; k < s->n_free;
+       k++) { /* shifts along free directions change nothing: exactly 1, and counted out */
+    for (PetscInt i = at = 0; i < n; i++)
+      if (hypot(re[i] - 1, im[i]) < hypot(re[at] - 1, im[at])) at = i;
+    re[at] = im[at] = 0;
   }
-  for (PetscInt i = s->n_free + 1; i < n; i++) {
+  PetscCall(StabilityFindPhase(s, cycle, (PetscReal *const[3]){re, im, R}, &at));
+  stability->phase[0] = re[at];
+  stability->phase[1] = im[at];
+  re[at] = im[at] = 0;
+  for (PetscInt i = 0; i < n; i++) {
     if (hypot(re[i], im[i]) <= hypot(stability->largest[0], stability->largest[1])) continue;
     stability->largest[0] = re[i];
     stability->largest[1] = PetscAbsReal(im[i]);
   }
-  PetscCall(PetscFree3(A, re, im));
+  PetscCall(PetscFree4(A, re, im, R));
   PetscFunctionReturn(0);
 }
 
@@ -263,7 +311,7 @@ PetscErrorCode ShootingAdvance(const Shooting *s, PetscReal step, const Shooting
   PetscCall(PetscArraycpy(M, cycle->M, n * n));
   for (PetscInt i = 0; i < n; i++) cycle->x[i] += step * tangent->x[i];
   cycle->period += step * tangent->period;
-  cycle->value += step * tangent->value;
+  cycle->value = PetscMax(s->least, cycle->value + step * tangent->value);
   PetscCall(ShootingIterate(s, tangent, cycle));
   if (!cycle->converged) {
     const PetscInt its = cycle->its;

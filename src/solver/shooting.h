@@ -35,6 +35,7 @@ typedef struct {
   void        *ctx;
   PetscReal   *size;   /* [n] of what changes in a cycle: residuals are divided by it */
   PetscReal   *weight; /* [n] S: 1 / size where the phase and the arclength count x, else 0 */
+  PetscReal    least;  /* of the parameter */
   PetscReal    span;   /* of the parameter, likewise */
   PetscInt     n_free; /* directions in which a shift changes nothing: a cycle may drift along them */
   PetscReal   *free;   /* [n_free][n], orthonormal in S x, the caller's */
@@ -61,7 +62,7 @@ typedef struct {
 
 /* Multipliers but that of the phase */
 typedef struct {
-  PetscReal phase[2];   /* the one that is nearest to 1 */
+  PetscReal phase[2];   /* the one near 1 whose vector is the motion along the cycle */
   PetscReal largest[2]; /* of the others */
 } ShootingStability;
 

@@ -170,6 +170,34 @@ static PetscErrorCode TestBranch(const Known known[2], int *failed)
   PetscFunctionReturn(0);
 }
 
+/* Breaks when: the branch does not turn where the pair stays closed all the time: there the motion is linear, and all
+   amplitudes have the friction of the onset. Reference: mu, at which an eigenvalue of the closed oscillator is imaginary, and its period */
+static PetscErrorCode TestOnset(const Known *known, int *failed)
+{
+  Oscillator      o;
+  Known           found;
+  CycleMeasure    measure;
+  ShootingTangent tangent = {.period = 0, .value = -1};
+
+  PetscFunctionBeginUser;
+  PetscCall(OscillatorCreate(known->mu, &o));
+  PetscCall(PetscCalloc1(o.flow.n, &tangent.x));
+  PetscCall(OscillatorSettle(&o, 1.003 * known->period));
+  PetscCall(OscillatorSolve(&o, 513, &found, failed));
+  for (int n = 0; n < 4; n++) {
+    PetscCall(ShootingGetTangent(&o.shooting, &o.cycle, &tangent));
+    PetscCall(ShootingAdvance(&o.shooting, 0.1, &tangent, &o.cycle));
+    *failed += CheckTrue("towards the onset", o.cycle.converged, (double)o.cycle.value);
+  }
+  CycleFlowMeasure(&o.flow, o.cycle.period, &measure);
+  *failed += CheckTrue("the pair stays closed", measure.least > 0.1, (double)measure.least);
+  *failed += CheckClose("mu of the onset", o.cycle.value, 0.773194444444, 1e-4);
+  *failed += CheckClose("its period", o.cycle.period, 4.33580978345, 1e-4);
+  PetscCall(PetscFree(tangent.x));
+  PetscCall(OscillatorDestroy(&o));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Tests(PetscMPIInt size, int *failed)
 {
   const Known known[2] = {
@@ -182,6 +210,7 @@ static PetscErrorCode Tests(PetscMPIInt size, int *failed)
   PetscCall(SlepcInitialize(NULL, NULL, NULL, NULL)); /* of matrix functions */
   for (int i = 0; i < 2; i++) PetscCall(TestKnown(&known[i], failed));
   PetscCall(TestBranch(known, failed));
+  PetscCall(TestOnset(known, failed));
   PetscCall(SlepcFinalize());
   PetscFunctionReturn(0);
 }

@@ -7,7 +7,7 @@ off in each period. Between the events the motion is linear, and matrix exponent
 Unknown are the state when contact begins and how long the contact and the flight last. The vector field is continuous at
 the events, so that the monodromy matrix is the product of the two exponentials.
 
-    cycle_oscillator.py           prints period, force when contact is deepest, multipliers for each mu
+    cycle_oscillator.py           prints the onset and its period; then period, force when contact is deepest, multipliers for each mu
 """
 
 import numpy
@@ -64,7 +64,15 @@ def cycle(mu):
     return z[4] + z[5], force, values[numpy.argsort(-abs(values))]
 
 
+def onset():
+    """mu at which an eigenvalue of the closed oscillator is imaginary, and the period of that motion."""
+    values = lambda mu: numpy.linalg.eigvals(generator(mu, True)[:4, :4])
+    mu = brentq(lambda mu: values(mu).real.max(), 0.7, 0.9, xtol=1e-15)
+    return mu, 2 * numpy.pi / abs(values(mu)[values(mu).real.argmax()].imag)
+
+
 if __name__ == "__main__":
+    print("onset", *(f"{value:.12g}" for value in onset()))
     for mu in (0.8, 1.0):
         period, force, values = cycle(mu)
         print(mu, f"{period:.14g} {force:.14g}", *(f"{value:.12g}" for value in values), f"{abs(values[1]):.12g}")

@@ -2,43 +2,74 @@
 #include "cycleimpl.h"
 #include <squeal/options.h>
 
-#define CYCLE_BY "-analysis cycle"
+#define CYCLE_BY     "-analysis cycle"
+#define CYCLE_STABLE (1 + 1e-9) /* modulus of a multiplier, with rounding */
 
 PetscErrorCode CycleCreate(MPI_Comm comm, LimitCycle *cycle)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(cycle));
-  (*cycle)->comm   = comm;
-  (*cycle)->rtol   = 1e-9;
-  (*cycle)->max_it = 30;
-  (*cycle)->verify = PETSC_TRUE;
+  (*cycle)->comm       = comm;
+  (*cycle)->rtol       = 1e-9;
+  (*cycle)->max_it     = 30;
+  (*cycle)->verify     = PETSC_TRUE;
+  (*cycle)->max_points = 60;
+  PetscFunctionReturn(0);
+}
+
+/* A branch has a parameter and a range */
+static PetscErrorCode CycleCheckBranch(LimitCycle c, PetscBool has_range)
+{
+  PetscFunctionBeginUser;
+  if (!c->parameter[0]) PetscFunctionReturn(0);
+  PetscCheck(has_range, c->comm, PETSC_ERR_USER_INPUT,
+             "-cycle_parameter %s needs -cycle_range: its least and largest value, e.g. 0.1,0.6", c->parameter);
+  PetscCheck(c->range[0] >= 0 && c->range[1] > c->range[0] && c->range[1] < 1e30, c->comm, PETSC_ERR_USER_INPUT,
+             "-cycle_range %.6g,%.6g must be two values of a friction coefficient, the smaller one first",
+             (double)c->range[0], (double)c->range[1]);
+  PetscCheck(c->max_points >= 2, c->comm, PETSC_ERR_USER_INPUT, "-cycle_points %" PetscInt_FMT " must be 2 at least",
+             c->max_points);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode CycleSetFromOptions(LimitCycle c)
 {
+  PetscBool has_range;
+
   PetscFunctionBeginUser;
   PetscOptionsBegin(c->comm, NULL, "Limit cycles", "Cycle");
-  PetscCall(PetscOptionsInt("-cycle_steps", "steps in a period; 0: as long as those of the transient", "cycle.h",
+  PetscCall(PetscOptionsInt("-cycle_steps", "steps in a period, odd; 0: as long as those of the transient", "cycle.h",
                             c->steps, &c->steps, NULL));
   PetscCall(PetscOptionsReal("-cycle_rtol", "how far a period may end from where it began, over the vibration's size",
                              "cycle.h", c->rtol, &c->rtol, NULL));
   PetscCall(PetscOptionsInt("-cycle_max_it", "iterations of Newton's method", "cycle.h", c->max_it, &c->max_it, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-cycle_verify", "errors, by the cycle of twice the steps", &c->verify));
+  PetscCall(PetscOptionsString("-cycle_parameter",
+                               "friction coefficient over which cycles are followed, e.g. contact_mu", "cycle.h",
+                               c->parameter, c->parameter, sizeof(c->parameter), NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-cycle_range", "where it ends, least and largest value", 2, c->range,
+                            &has_range));
+  PetscCall(PetscOptionsInt("-cycle_points", "cycles on the branch, at most; half of them each way", "cycle.h",
+                            c->max_points, &c->max_points, NULL));
   PetscOptionsEnd();
-  PetscCheck(c->steps == 0 || c->steps >= 6, c->comm, PETSC_ERR_USER_INPUT,
-             "-cycle_steps %" PetscInt_FMT " must be 6 at least, or 0 for those of the transient", c->steps);
+  PetscCheck(c->steps == 0 || (c->steps >= 7 && c->steps % 2), c->comm, PETSC_ERR_USER_INPUT,
+             "-cycle_steps %" PetscInt_FMT " must be an odd number, 7 at least, or 0 for those of the transient",
+             c->steps);
   PetscCheck(c->rtol > 0 && c->rtol < 1, c->comm, PETSC_ERR_USER_INPUT, "-cycle_rtol %.6g must be between 0 and 1",
              (double)c->rtol);
   PetscCheck(c->max_it > 0, c->comm, PETSC_ERR_USER_INPUT, "-cycle_max_it %" PetscInt_FMT " must be positive",
              c->max_it);
+  if (!c->parameter[0]) PetscCall(OptionsRefuse(c->comm, "-cycle_range", "not used without -cycle_parameter"));
+  if (!c->parameter[0]) PetscCall(OptionsRefuse(c->comm, "-cycle_points", "not used without -cycle_parameter"));
+  PetscCall(CycleCheckBranch(c, has_range));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CycleSetReduced(LimitCycle c, ReducedRun reduced)
+PetscErrorCode CycleSetRooms(LimitCycle c, ReducedRun reduced, Contact contact)
 {
   PetscFunctionBeginUser;
   c->reduced = reduced;
+  c->contact = contact;
   PetscFunctionReturn(0);
 }
 
@@ -51,7 +82,7 @@ static PetscErrorCode CycleRefine(LimitCycle c, const ShootingCycle *at, CyclePo
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &finer.x, n * n, &finer.M));
   PetscCall(PetscArraycpy(finer.x, at->x, n));
-  PetscCall(CycleFlowSetSteps(&c->flow, 2 * steps));
+  PetscCall(CycleFlowSetSteps(&c->flow, 2 * steps + 1));
   PetscCall(ShootingSolve(&c->shooting, &finer));
   point->has_finer = finer.converged;
   if (finer.converged) CycleFlowMeasure(&c->flow, finer.period, &point->finer);
@@ -60,8 +91,7 @@ static PetscErrorCode CycleRefine(LimitCycle c, const ShootingCycle *at, CyclePo
   PetscFunctionReturn(0);
 }
 
-/* The cycle in numbers, with its stability and error */
-static PetscErrorCode CycleTake(LimitCycle c, const ShootingCycle *at)
+PetscErrorCode CycleTake(LimitCycle c, const ShootingCycle *at)
 {
   CyclePoint *point;
 
@@ -75,7 +105,38 @@ static PetscErrorCode CycleTake(LimitCycle c, const ShootingCycle *at)
   PetscFunctionReturn(0);
 }
 
-/* Rows of cycle.csv; errors are empty where there is no finer cycle */
+/* A number and how far that of twice the steps is from it; nothing where there is none */
+static PetscErrorCode CyclePrintError(const CyclePoint *p, PetscReal found, PetscReal finer, size_t size, char text[])
+{
+  PetscFunctionBeginUser;
+  text[0] = 0;
+  if (p->has_finer) PetscCall(PetscSNPrintf(text, size, "%.15g", (double)PetscAbsReal(found - finer)));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CycleWriteRow(LimitCycle c, PetscInt i, ResultsTable table)
+{
+  const CyclePoint   *p = &c->point[i];
+  const CycleMeasure *a = &p->found, *b = &p->finer;
+  const PetscReal    *large = p->stability.largest, *phase = p->stability.phase, size = hypot(large[0], large[1]);
+  char                error[3][32], value[32] = "";
+
+  PetscFunctionBeginUser;
+  PetscCall(CyclePrintError(p, a->freq, b->freq, sizeof(error[0]), error[0]));
+  PetscCall(CyclePrintError(p, a->rms, b->rms, sizeof(error[1]), error[1]));
+  PetscCall(CyclePrintError(p, a->peak, b->peak, sizeof(error[2]), error[2]));
+  if (c->parameter[0]) PetscCall(PetscSNPrintf(value, sizeof(value), "%.15g", (double)p->value));
+  PetscCall(ResultsTableRow(table,
+                            "%" PetscInt_FMT ",%s,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%s,%.15g,%.15g,%.15g,%.15g,%.15g,"
+                            "%.15g,%d,%" PetscInt_FMT ",%.15g,%" PetscInt_FMT,
+                            i + 1, c->parameter, value, (double)a->freq, error[0], (double)a->mean, (double)a->rms,
+                            error[1], (double)a->peak, error[2], (double)a->open, (double)size, (double)large[0],
+                            (double)large[1], (double)phase[0], (double)phase[1], size > CYCLE_STABLE, p->n_steps,
+                            (double)p->residual, p->its));
+  PetscFunctionReturn(0);
+}
+
+/* cycle.csv */
 static PetscErrorCode CycleWrite(LimitCycle c, Results results)
 {
   ResultsTable table;
@@ -83,23 +144,11 @@ static PetscErrorCode CycleWrite(LimitCycle c, Results results)
   PetscFunctionBeginUser;
   PetscCall(ResultsTableOpen(
     results, "cycle",
-    "point,value,freq_hz,freq_error_hz,force_mean_n,force_rms_n,force_rms_error_n,force_peak_n,force_peak_error_n,"
-    "open_share,multiplier_abs,multiplier_re,multiplier_im,phase_multiplier_re,phase_multiplier_im,unstable,steps,"
-    "residual,iterations",
+    "point,parameter,value,freq_hz,freq_error_hz,force_mean_n,force_rms_n,force_rms_error_n,force_peak_n,"
+    "force_peak_error_n,open_share,multiplier_abs,multiplier_re,multiplier_im,phase_multiplier_re,phase_multiplier_im,"
+    "unstable,steps,residual,iterations",
     &table));
-  for (PetscInt i = 0; i < c->n_points; i++) {
-    const CyclePoint   *p = &c->point[i];
-    const CycleMeasure *a = &p->found, *b = &p->finer;
-    const PetscReal    *large = p->stability.largest, *phase = p->stability.phase, size = hypot(large[0], large[1]);
-    const PetscReal     none = NAN;
-
-    PetscCall(ResultsTableNumbers(
-      table, 19,
-      (PetscReal[]){(PetscReal)i + 1, p->value, a->freq, p->has_finer ? PetscAbsReal(a->freq - b->freq) : none, a->mean,
-                    a->rms, p->has_finer ? PetscAbsReal(a->rms - b->rms) : none, a->peak,
-                    p->has_finer ? PetscAbsReal(a->peak - b->peak) : none, a->open, size, large[0], large[1], phase[0],
-                    phase[1], size > 1, (PetscReal)p->n_steps, p->residual, (PetscReal)p->its}));
-  }
+  for (PetscInt i = 0; i < c->n_points; i++) PetscCall(CycleWriteRow(c, i, table));
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
 }
@@ -111,7 +160,7 @@ static PetscErrorCode CycleFind(LimitCycle c, ShootingCycle *at)
 
   PetscFunctionBeginUser;
   PetscCall(CycleGuess(c, at));
-  steps              = c->steps ? c->steps : (PetscInt)PetscFloorReal(at->period / c->reduced->dt + 0.5);
+  steps              = c->steps ? c->steps : 2 * (PetscInt)PetscFloorReal(0.5 * at->period / c->reduced->dt) + 1;
   c->shooting.flow   = CycleFlowRun;
   c->shooting.ctx    = &c->flow;
   c->shooting.span   = c->flow.span;
@@ -136,14 +185,45 @@ PetscErrorCode CycleSolve(LimitCycle c, Results results)
   PetscFunctionBeginUser;
   PetscCall(ReducedIsAsked(c->reduced, &asked));
   PetscCheck(asked, c->comm, PETSC_ERR_USER_INPUT, CYCLE_BY " needs -dynamics_model reduced");
+  if (c->contact) PetscCall(CycleFindParameter(c));
   PetscCall(ReducedIntegrate(c->reduced, results));
   PetscCall(CycleFlowCreate(c->reduced, &c->flow));
   n = c->flow.n;
   PetscCall(PetscMalloc2(n, &at.x, n * n, &at.M));
+  PetscCall(CycleSetParameter(c));
+  at.value = c->value;
   PetscCall(CycleFind(c, &at));
   PetscCall(CycleTake(c, &at));
+  if (c->parameter[0]) PetscCall(CycleFollow(c, &at));
   PetscCall(PetscFree2(at.x, at.M));
   PetscCall(CycleWrite(c, results));
+  PetscFunctionReturn(0);
+}
+
+/* One cycle in words */
+static PetscErrorCode CycleViewPoint(LimitCycle c, const CyclePoint *p, PetscViewer viewer)
+{
+  const CycleMeasure *a = &p->found, *b = &p->finer;
+  const PetscReal    *large = p->stability.largest, *phase = p->stability.phase;
+  const double        size = hypot(large[0], large[1]);
+
+  PetscFunctionBeginUser;
+  if (c->parameter[0]) PetscCall(PetscViewerASCIIPrintf(viewer, "%s %.6g: ", c->parameter, (double)p->value));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "cycle of %.9g Hz in %" PetscInt_FMT
+                                   " steps: normal force %.6g N, rms %.6g N, %.6g to %.6g N, open %.4g of the time\n",
+                                   (double)a->freq, p->n_steps, (double)a->mean, (double)a->rms, (double)a->least,
+                                   (double)a->peak, (double)a->open));
+  if (p->has_finer)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "  with twice the steps: frequency off by %+.1e Hz, rms by %+.1e N, largest force by %+.1e N\n",
+      (double)(b->freq - a->freq), (double)(b->rms - a->rms), (double)(b->peak - a->peak)));
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer,
+    "  %s: largest multiplier %.6g%+.6gi (%.6g), that of the phase 1%+.1e%+.1ei; residual %.1e after %" PetscInt_FMT
+    " steps of Newton's method\n",
+    size > CYCLE_STABLE ? "unstable" : "stable", (double)large[0], (double)large[1], size, (double)(phase[0] - 1),
+    (double)phase[1], (double)p->residual, p->its));
   PetscFunctionReturn(0);
 }
 
@@ -151,21 +231,10 @@ PetscErrorCode CycleView(LimitCycle c, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
   PetscCall(ReducedView(c->reduced, viewer));
-  for (PetscInt i = 0; i < c->n_points; i++) {
-    const CyclePoint   *p = &c->point[i];
-    const CycleMeasure *a = &p->found, *b = &p->finer;
-    const PetscReal    *large = p->stability.largest, *phase = p->stability.phase;
-
-    PetscCall(PetscViewerASCIIPrintf(
-      viewer,
-      "cycle of %.9g Hz (+- %.1e) in %" PetscInt_FMT " steps: normal force %.6g N, rms %.6g N (+- %.1e), %.6g to %.6g "
-      "N, open %.4g of the time\n  %s: largest multiplier %.6g%+.6gi (%.6g), that of the phase 1%+.1e%+.1ei; residual "
-      "%.1e after %" PetscInt_FMT " steps of Newton's method\n",
-      (double)a->freq, p->has_finer ? (double)PetscAbsReal(a->freq - b->freq) : NAN, p->n_steps, (double)a->mean,
-      (double)a->rms, p->has_finer ? (double)PetscAbsReal(a->rms - b->rms) : NAN, (double)a->least, (double)a->peak,
-      (double)a->open, hypot(large[0], large[1]) > 1 ? "unstable" : "stable", (double)large[0], (double)large[1],
-      hypot(large[0], large[1]), (double)(phase[0] - 1), (double)phase[1], (double)p->residual, p->its));
-  }
+  if (c->parameter[0])
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " cycles over %s; the first: %s; the last: %s\n",
+                                     c->n_points, c->parameter, c->end[0], c->end[1]));
+  for (PetscInt i = 0; i < c->n_points; i++) PetscCall(CycleViewPoint(c, &c->point[i], viewer));
   PetscFunctionReturn(0);
 }
 

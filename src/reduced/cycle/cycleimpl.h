@@ -41,15 +41,21 @@ typedef struct {
 
 struct _p_LimitCycle {
   MPI_Comm    comm;
-  PetscInt    steps, max_it; /* options */
-  PetscReal   rtol;
+  PetscInt    steps, max_it, max_points; /* options */
+  PetscReal   rtol, range[2];
+  char        parameter[256];
   PetscBool   verify;
   ReducedRun  reduced;
+  Contact     contact;
+  PetscInt    varied; /* interface of the parameter, -1 for none */
+  PetscReal   value;  /* of the parameter, in the scene */
   CycleFlow   flow;
   Shooting    shooting;
   PetscReal   closure; /* of the guess: distance over the size of the vibration */
   PetscInt    n_points;
   CyclePoint *point;
+  PetscReal   rms;    /* of the first cycle, N */
+  const char *end[2]; /* why the branch ends, both ways; NULL for no branch */
 };
 
 /* flow.c - the model of a run at its end, loads and sliding constant from there; the state of a run as x, and back; Phi, M
@@ -64,3 +70,11 @@ PETSC_INTERN PetscErrorCode CycleFlowDestroy(CycleFlow *flow);
 
 /* guess.c - period and state at the end of the run, and the sizes of what changes */
 PETSC_INTERN PetscErrorCode CycleGuess(LimitCycle cycle, ShootingCycle *guess);
+
+/* cycle.c - the cycle in numbers, with its stability and error, becomes a row */
+PETSC_INTERN PetscErrorCode CycleTake(LimitCycle cycle, const ShootingCycle *at);
+
+/* branch.c - the parameter, before the transient, and in the flow; the branch, in order, through the one cycle that was taken */
+PETSC_INTERN PetscErrorCode CycleFindParameter(LimitCycle cycle);
+PETSC_INTERN PetscErrorCode CycleSetParameter(LimitCycle cycle);
+PETSC_INTERN PetscErrorCode CycleFollow(LimitCycle cycle, const ShootingCycle *start);

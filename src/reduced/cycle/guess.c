@@ -6,7 +6,7 @@
 
 #define GUESS_STEPS   3000 /* of the window */
 #define GUESS_BEGIN   6    /* steps in a period, at least */
-#define GUESS_NEAR    0.05 /* distances below it, and below GUESS_TIMES the nearest, are returns */
+#define GUESS_NEAR    0.12 /* distances below it, and below GUESS_TIMES the nearest, are returns */
 #define GUESS_TIMES   2
 #define GUESS_AWAY    1.0   /* the motion must have been away so far before it returns */
 #define GUESS_NONE    0.5   /* no return */
