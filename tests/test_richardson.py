@@ -7,7 +7,8 @@
   limit     a clamped bar without Poisson's ratio: what its stretching lacks to the exact sqrt(E / rho) / (4 L), to a hundredth
   brake     what is per node or pair is divided so that it is the same in all; doublets and labels find their partners; the onset of
             -sweep_parameter is in onsets_mesh.csv
-  bad       one line and status 1: matrices, factors that do not fit, too large meshes, per-node parameters swept
+  bad       one line and status 1: matrices, factors that do not fit, too large meshes, folders that cannot be made, per-node
+            parameters swept; status 2 before any run: numbers that are none, options that are set for each mesh
 
 Breaks when nodes of neighbours are not the same, when an order is guessed, when modes are matched by number, or when the error
 has the wrong sign.
@@ -39,7 +40,9 @@ TETRAHEDRA = {"tet": [[0, 1, 2, 3]], "wedge": [[0, 1, 2, 3], [1, 2, 3, 4], [2, 3
               "hex": [[0, 1, 3, 4], [1, 2, 3, 6], [1, 6, 4, 5], [3, 4, 6, 7], [1, 3, 4, 6]]}
 BAD = (("oscillator.yaml", [], "matrices have no mesh"), ("cantilever.yaml", ["--refine", "1.5"], "is cut into whole numbers"),
        ("cantilever.yaml", ["--most", "1000"], "no finer mesh has --most 1000"),
-       ("plate.yaml", ["-rig_disc_elements", "2,12,1", "--refine", "1.2"], "would be rounded"))
+       ("plate.yaml", ["-rig_disc_elements", "2,12,1", "--refine", "1.2"], "would be rounded"),
+       ("plate.yaml", ["--output", SOURCE / "README.md/out"], "README.md/out/mesh1: Not a directory"))
+REFUSED = ["--refine", "nan"], ["--refine", "inf"], ["--ranks", "0"], ["--most", "-1"], ["-analysis", "static"], ["-output_fields", "0"]
 
 
 def solid(folder, element, *words):
@@ -133,6 +136,9 @@ def bad(work):
         lines = done.stderr.strip().splitlines()
         require(done.returncode == 1 and len(lines) == 1 and said in lines[0], f"{name} {words}: {done.stderr}")
         require(not (work.folder / "out/modes_mesh.csv").exists(), f"{name} {words}: wrote a table")
+    for words in REFUSED:
+        done = work.run("plate.yaml", *words)
+        require(done.returncode == 2 and words[0] in done.stderr and not (work.folder / "out").exists(), f"{words}: {done.stderr}")
     done = work.run(work.folder / "brake.yaml", "-sweep_parameter", "contact_kn", "-sweep_values", "1e8:2e8:2")
     require(done.returncode == 1 and "is per node or pair" in done.stderr, f"a swept kn: {done.stderr}")
 

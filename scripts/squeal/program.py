@@ -30,6 +30,13 @@ def compiled_program():
     return Path(process.stdout.strip())
 
 
+def chosen_program(path):
+    """The program of --program, or the compiled one where none is given."""
+    if path and not (path.is_file() and os.access(path, os.X_OK)):
+        raise SystemExit(f"--program {path}: {'is no program' if path.exists() else 'no such file'}; needed is squeal")
+    return (path or compiled_program()).resolve()
+
+
 def scene(*names):
     """Words of the options files of options/, named without their ending, in their order."""
     return [word for name in names for word in ("-options_file", ROOT / f"options/{name}.yaml")]
@@ -78,7 +85,7 @@ def parse(parser, **least):
     for name, low in least.items():
         if getattr(args, name) < low:
             parser.error(f"--{name.replace('_', '-')} {getattr(args, name)}: must be {low} or more")
-    args.program = args.program or compiled_program()
+    args.program = chosen_program(args.program)
     return args
 
 

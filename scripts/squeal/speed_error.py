@@ -19,7 +19,7 @@ import matplotlib.pyplot as plt
 from matplotlib.ticker import FuncFormatter
 
 from .picture import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILION, place_texts, save_picture
-from .program import compiled_program, machine_text, measured_run, scene
+from .program import chosen_program, machine_text, measured_run, scene
 from .tables import BadInput, print_table, run, whole
 
 LEAST = 1e-16  # errors of nothing are drawn here
@@ -44,7 +44,7 @@ class Bench:
     """Runs of one study: program, folder, rounds, whether all is smaller, and the unit of time."""
 
     def __init__(self, args):
-        self.program, self.folder, self.quick = args.program.resolve(), args.output, args.quick
+        self.program, self.folder, self.quick = args.program, args.output, args.quick
         self.rounds = 1 if args.quick else args.rounds
         self.folder.mkdir(parents=True, exist_ok=True)
         self.unit_times = []
@@ -147,7 +147,7 @@ def arguments(doc, name):
     args = parser.parse_args()
     if args.rounds < 1:
         parser.error(f"--rounds {args.rounds}: must be 1 or more")
-    args.program = args.program or compiled_program()
+    args.program = chosen_program(args.program)
     return args
 
 

@@ -99,8 +99,9 @@ def run(name, work):
         print(work(), flush=True)
     except BrokenPipeError:  # who reads has enough, as `head` has; what is left goes nowhere
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except BadInput as error:
-        text = "".join(letter if letter.isprintable() else "?" for letter in str(error))  # a damaged file's too
+    except (BadInput, OSError) as error:  # the latter where a folder cannot be made, or a disk is full
+        said = f"{error.filename}: {error.strerror}" if getattr(error, "filename", None) else str(error)
+        text = "".join(letter if letter.isprintable() else "?" for letter in said)  # a damaged file's too
         print(f"{name}: {text}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:

@@ -5,7 +5,7 @@
   files      table and picture hold all points
   page       scripts/study/all has sentences, picture and what a study printed; of one that failed its status and message
   exact      eigenvalues 4 sin^2(k pi / (2 n + 2)) of a chain of masses, damped by alpha, from guesses of ten digits, to 1e-15; what is
-             no eigenvalue is not taken for one
+             no eigenvalue is not taken for one; a run with a mode too few or too many errs by 1
   struck     a mass on a spring hit with 1 m/s: in time sin(omega t) / omega, in steps of central differences their recursion
 
 Breaks when a dearer setting is named, when an exact value only repeats its guess, or when a reference is that of another scheme."""
@@ -24,6 +24,7 @@ import scipy.sparse
 SOURCE = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "tests")]
 from check import Failure, require
+from squeal.exact_modes import worst
 from squeal.exact_sparse import refined
 from squeal.petsc_matrix import write_matrix
 from squeal.speed_error import Point, draw, sentence, write_points
@@ -74,6 +75,9 @@ def exact(folder):
     found = refined(folder, 0.0, [value * (1 + 3e-11) for value in values])
     far = abs(found / np.array(values) - 1)
     require(far.max() < 1e-15, f"a chain of masses: {far}")
+    between = refined(folder, 0.0, [(values[0] + values[1]) / 2])
+    require(np.isnan(between).all(), f"{between} is taken for an eigenvalue")
+    require(worst(found, found) == 0 and worst(found[1:], found) == worst(found, found[1:]) == 1, "a mode too few or too many is no error")
 
 
 def struck(folder):
