@@ -5,7 +5,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-from .picture import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILION, save_picture
+from .picture import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILION, plain_ticks, save_picture
 
 STYLES = {"tet4": (GREY, "v", "--"), "tet10": (VERMILION, "v", "-"), "wedge6": (SKY, "<", "--"), "wedge15": (PURPLE, "<", "-"),
           "hex8 full": (INK, "s", ":"), "hex8 QM6": (BLUE, "s", "--"), "hex20": (GREEN, "o", "-"), "hex27": (ORANGE, "D", "-")}
@@ -24,6 +24,7 @@ def draw_errors(path, problems, asked):
                             color=color, marker=marker, markersize=4, linewidth=1.2, label=element)
             axes.axhline(100 * asked, color=INK, linewidth=0.7)
             axes.grid(True, which="major", linewidth=0.3)
+            plain_ticks(axes.xaxis, "258")
             axes.set_xlabel(label)
         row[0].set_ylabel("worst error, %")
         row[0].set_ylim(bottom=0.005)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy
 from matplotlib.text import Text
+from matplotlib.ticker import FuncFormatter
 from matplotlib.transforms import Bbox
 
 from .tables import BadInput
@@ -75,6 +76,12 @@ def spread(places, least):
     out = numpy.empty_like(moved)
     out[order] = moved
     return out
+
+
+def plain_ticks(axis, digits):
+    """Numbers of a logarithmic axis as one writes them: powers of ten, and those between that begin with one of `digits`."""
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if f"{value:.0e}"[0] in digits else ""))
 
 
 def save_picture(figure, output, dpi="figure"):

@@ -16,9 +16,8 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-from matplotlib.ticker import FuncFormatter
 
-from .picture import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILION, place_texts, save_picture
+from .picture import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILION, place_texts, plain_ticks, save_picture
 from .program import chosen_program, machine_text, measured_run, scene
 from .tables import BadInput, print_table, run, whole
 
@@ -90,7 +89,7 @@ def write_points(path, points):
         table.writerows([p.series, p.setting, f"{p.error:.6e}", f"{p.seconds:.4f}", f"{p.units:.4f}"] for p in points)
 
 
-def draw(path, title, error_name, points):
+def draw(path, title, error_name, points, knob=""):
     """Error over cost, both logarithmic; each point has its setting beside it, where there is room."""
     figure, axes = plt.subplots(figsize=(9, 5.2), layout="constrained")
     texts = []
@@ -105,13 +104,11 @@ def draw(path, title, error_name, points):
     if high < LEAST_RANGE * low:  # so that what costs the same looks so
         axes.set_xlim(math.sqrt(low * high / LEAST_RANGE), math.sqrt(low * high * LEAST_RANGE))
     low, high = axes.get_xlim()
-    digits = "25" if high > 10 * low else "23456789"
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if f"{value:.0e}"[0] in digits else ""))
+    plain_ticks(axes.xaxis, "25" if high > 10 * low else "23456789")
     axes.set_xlabel(f"time, in units of {UNIT_TEXT}")
     axes.set_ylabel(error_name)
     axes.set_title(title, fontsize=11)
-    axes.legend(fontsize=8)
+    axes.legend(fontsize=8, title=f"at the points: {knob.strip()}" if knob else None, title_fontsize=8)
     figure.canvas.draw()
     place_texts(axes, texts, [(0, 9), (0, -10), (24, 0), (-24, 0), (0, 18), (0, -19)], [axes.get_legend().get_window_extent()], fontsize=7)
     save_picture(figure, path, dpi=110)
@@ -131,6 +128,8 @@ def sentence(points, level, knob=""):
     named = f"For an error of {level:g} of {of} take {knob}{best.setting}" if of else f"For an error of {level:g} take {best.series} with {knob}{best.setting}"
     other = next((point for point in good if point.series != best.series), None)
     text = f"{named}: {best.units:.3g} units (error {best.error:.1g})"
+    if of and len(good) == 1:
+        return f"{text}; no other setting is so exact."
     if of:
         return f"{text}; {knob}{good[-1].setting}, the dearest of those that reach it, needs {good[-1].units:.3g}."
     return f"{text}; {other.series} needs {other.units:.3g} with {knob}{other.setting}." if other else f"{text}; no other method is so exact."
@@ -166,7 +165,7 @@ def main(doc, name, work, levels, error_name, knob=""):
             raise BadInput(f"{name}: a point has no error")
         write_points(bench.folder / "study.csv", points)
         title = doc.splitlines()[0].rstrip(".")
-        draw(bench.folder / "study.png", title, error_name, points)
+        draw(bench.folder / "study.png", title, error_name, points, knob)
         print_table(title, ("method", "setting", "error", "s", "units"), *(
             (p.series, p.setting, f"{p.error:.2e}", f"{p.seconds:.3f}", f"{p.units:.3f}") for p in points))
         lines = [sentence(points, level, knob) for level in levels]

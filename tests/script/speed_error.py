@@ -35,7 +35,8 @@ POINTS = [Point("fast", "a", 1e-3, 1.0, 2.0), Point("fast", "b", 1e-6, 3.0, 6.0)
 SAID = ((1e-2, "take fast with -x a: 2 units (error 0.001); exact needs 8 with -x c."),
         (1e-5, "take fast with -x b: 6 units (error 1e-06); exact needs 8 with -x c."), (1e-8, "take exact with -x c: 8 units"),
         (1e-8, "no other method is so exact"), (1e-12, "reached by none of these; the least is 1e-09, of exact with -x c"),
-        ((1e-5, "fast"), "of fast take -x b: 6 units"))
+        ((1e-5, "fast"), "of fast take -x b: 6 units (error 1e-06); no other setting is so exact."),
+        ((1e-2, "fast"), "take -x a: 2 units (error 0.001); -x b, the dearest of those that reach it, needs 6."))
 
 
 def sentences(_):
