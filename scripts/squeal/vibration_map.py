@@ -20,7 +20,8 @@ UNITS = {"young": "Pa", "pressure": "Pa", "force": "N", "speed": "m/s", "density
          "mu": "-", "alpha": "1/s", "beta": "s", "mu_slope": "s/m"}
 VIBRATES = "cycle", "sticking", "growth"
 STABLE, UNKNOWN = "#F1F1F1", "white"
-WAYS = {"up": ("upwards", BLUE, "^"), "down": ("downwards", VERMILION, "v")}
+WAYS = {"up": ("upwards", BLUE, "^"), "down": ("downwards", VERMILION, "v"),
+        "apart": ("each point apart", BLUE, "o")}
 
 
 def unit_of(name):
@@ -100,17 +101,17 @@ def draw_grid(table):
         for x, y in table.bistable:
             axes.plot(x * table.axes[0].factor, y * table.axes[1].factor, "o", ms=8, mfc="none", mec=GREEN, mew=2)
     figure.get_layout_engine().set(rect=(0.005, 0.08, 0.99, 0.915))  # the layout leaves no room for it
-    figure.legend(handles=[Patch(facecolor=STABLE, edgecolor="#BBBBBB", label="stable"),
-                           Line2D([], [], color=INK, lw=1.6, label="border of linear stability"),
-                           Line2D([], [], ls="", marker="o", ms=8, mfc="none", mec=GREEN, mew=2,
-                                  label="vibrates one way, stable the other")],
-                  loc="lower center", ncol=3, frameon=False)
+    handles = [Patch(facecolor=STABLE, edgecolor="#BBBBBB", label="stable"),
+               Line2D([], [], color=INK, lw=1.6, label="border of linear stability"),
+               Line2D([], [], ls="", marker="o", ms=8, mfc="none", mec=GREEN, mew=2,
+                      label="vibrates one way, stable the other")]
+    figure.legend(handles=handles if table.bistable else handles[:2], loc="lower center", ncol=3, frameon=False)
     return figure
 
 
 def draw_line(table):
     """One parameter: amplitude with error bars, time without contact, frequency."""
-    figure, panels = plt.subplots(3, 1, figsize=(7.5, 8.5), sharex=True, layout="constrained")
+    figure, panels = plt.subplots(3, 1, figsize=(8, 8.5), sharex=True, layout="constrained")
     factor = table.axes[0].factor
     for way in table.ways:
         rows = sorted((row for row in table.rows if row["direction"] == way and row["regime"] != "unknown"),
