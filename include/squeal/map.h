@@ -20,9 +20,10 @@
               window to window there, which is large for a vibration that does not repeat itself
      failed   where the contact laws have no solution; the next point begins with its own sliding state
 
-   Regime: stable; growth, where at the end the rms still grows by half from a quarter of the time to the next; cycle; sticking,
-   a vibration in which all closed pairs stick together in more than 1 % of the time. The error of the cut-off and of the step
-   is not in error_estimate: -dynamics_verify of a transient at a point tells it.
+   Regime: stable; growth; cycle; sticking, a vibration in which all closed pairs stick together in more than 1 % of the time.
+   Growth, where at the end the rms still grows by half from a quarter of the time to the next; or where a mode grows, and over the
+   last half the rms rises from window to window by more than -map_rtol, or no pair changes its status, so that the motion is linear.
+   The error of the cut-off and of the step is not in error_estimate: -dynamics_verify of a transient at a point tells it.
 */
 #pragma once
 

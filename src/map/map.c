@@ -171,6 +171,9 @@ PetscErrorCode MapSolve(Map map, Results results)
   PetscCheck(map->window >= 32 * map->dt && map->end >= 8 * map->window, map->comm, PETSC_ERR_USER_INPUT,
              "-map_window %.6g s must be 32 steps of %.6g s at least, and -ts_max_time %.6g s 8 windows",
              (double)map->window, (double)map->dt, (double)map->end);
+  PetscCheck(map->end <= MAP_MAX_STEPS * map->dt, map->comm, PETSC_ERR_USER_INPUT,
+             "-ts_max_time %.6g s is %.3g steps of %.6g s; a point of a map takes at most %.0e", (double)map->end,
+             (double)(map->end / map->dt), (double)map->dt, MAP_MAX_STEPS);
   n_rows = n_ways * map->axis[0].n * (map->n_axes > 1 ? map->axis[1].n : 1);
   PetscCall(PetscCalloc1(n_rows, &map->row));
   PetscCallMPI(MPI_Comm_size(map->comm, &size));

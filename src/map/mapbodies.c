@@ -56,6 +56,24 @@ static PetscErrorCode MapBodiesTake(ReducedRun run, MapBodies *b)
   PetscFunctionReturn(0);
 }
 
+/* Raises the error for a contact of which a pair does not slide */
+static PetscErrorCode MapBodiesCheckSliding(Map map, const MapBodies *b)
+{
+  const ContactInterface *c;
+  PetscInt                n;
+  Model                   model;
+  Contact                 contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(map->operators, &model, &contact));
+  PetscCall(ContactGetInterfaces(contact, &n, &c));
+  for (PetscInt i = 0; i < b->model.n_pairs; i++)
+    PetscCheck(b->speed[i] != 0, map->comm, PETSC_ERR_USER_INPUT,
+               "contact %s: a map is about sliding, and its speed is 0; say it by -%s_speed", c[b->interface[i]].name,
+               c[b->interface[i]].name);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode MapBodiesCreate(Map map, PetscInt line, MapBodies *b)
 {
   const OperatorsParameter *list;
@@ -77,6 +95,7 @@ PetscErrorCode MapBodiesCreate(Map map, PetscInt line, MapBodies *b)
   PetscCall(PetscFree(p));
   PetscCheck(b->n_hits > 0, map->comm, PETSC_ERR_USER_INPUT,
              "-analysis map needs -impulses: without a blow at every point squeal would have to grow from rounding");
+  PetscCall(MapBodiesCheckSliding(map, b));
   map->n_reductions++;
   PetscFunctionReturn(0);
 }

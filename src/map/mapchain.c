@@ -149,14 +149,21 @@ static PetscErrorCode MarchWindow(MarchWork *w, MapPoint *row)
   PetscFunctionReturn(0);
 }
 
+/* Whether `growth` is that of the pairs that are closed now, all of which slip */
+static PetscBool MarchIsKnown(const MarchWork *w)
+{
+  for (PetscInt i = 0; i < w->bodies->model.n_pairs; i++)
+    if (w->state.status[i] != (w->known[i] ? CONTACT_SLIP : CONTACT_OPEN)) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
 /* Whether the last motion dies out: no mode of the sliding state, or with the pairs that are closed now, grows, and the rms falls
    from window to window: two of them in which no pair changed its status, or four of a small vibration */
 static PetscErrorCode MarchDiesOut(MarchWork *w, PetscBool *dies)
 {
   const MapSample *s    = &w->sample[w->n_windows - 1];
   const PetscBool  tiny = s->rms <= MARCH_TINY * s->mean, small = s->rms <= MARCH_SMALL * s->mean;
-  const PetscInt   n    = s->changed ? 4 : 2;
-  PetscBool        same = PETSC_TRUE;
+  const PetscInt   n = s->changed ? 4 : 2;
   PetscReal        freq, index;
 
   PetscFunctionBeginUser;
@@ -164,9 +171,7 @@ static PetscErrorCode MarchDiesOut(MarchWork *w, PetscBool *dies)
   if (w->n_windows < n || (s->changed && !small)) PetscFunctionReturn(0);
   for (PetscInt k = 1; k < n && !tiny; k++)
     if (s[1 - k].rms >= s[-k].rms) PetscFunctionReturn(0);
-  for (PetscInt i = 0; i < w->bodies->model.n_pairs; i++)
-    if (w->known[i] != (w->state.status[i] != CONTACT_OPEN)) same = PETSC_FALSE;
-  if (!same && !s->changed) {
+  if (!MarchIsKnown(w) && !s->changed) {
     PetscCall(MarchLinearise(w, w->state.status, &w->growth, &freq, &index));
     PetscCall(PetscArraycpy(w->known, w->closed, w->bodies->model.n_pairs));
   }
@@ -188,26 +193,24 @@ static PetscBool MarchIsSettled(const MarchWork *w, PetscReal *change)
   return *change <= w->map->rtol ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Root of the mean square of windows first .. last - 1, and its relative standard error, as if they were independent */
-static PetscReal MarchLevel(const MarchWork *w, PetscInt first, PetscInt last, PetscReal *error)
-{
-  const PetscReal n      = (PetscReal)(last - first);
-  PetscReal       square = 0, spread = 0;
-
-  for (PetscInt k = first; k < last; k++) square += PetscSqr(w->sample[k].rms) / n;
-  for (PetscInt k = first; k < last; k++) spread += PetscSqr(PetscSqr(w->sample[k].rms) - square) / n;
-  *error = n > 1 && square > 0 ? 0.5 * PetscSqrtReal(spread / (n - 1)) / square : 0;
-  return PetscSqrtReal(square);
-}
-
-/* What a transient that did not settle is: by the last quarter of its windows beside the one before */
+/* What a transient that did not settle is. It grows where the rms of the last quarter of the windows is that much beyond the one
+   before, or, where a mode grows, where it rises in each window of the last half, or where no pair changed its status there, so
+   that the motion is linear */
 static MapRegime MarchTrend(const MarchWork *w)
 {
-  const PetscInt  n = w->n_windows;
-  PetscReal       error;
-  const PetscReal ratio = MarchLevel(w, n - n / 4, n, &error) / MarchLevel(w, n - 2 * (n / 4), n - n / 4, &error);
+  const PetscInt   n      = w->n_windows;
+  const MapSample *s      = w->sample;
+  PetscBool        linear = MarchIsKnown(w), rises = PETSC_TRUE;
+  PetscReal        error;
+  const PetscReal  ratio =
+    MapForceLevel(n / 4, &s[n - n / 4], &error) / MapForceLevel(n / 4, &s[n - 2 * (n / 4)], &error);
 
-  if (ratio >= MARCH_TREND) return MAP_GROWTH;
+  for (PetscInt k = n - n / 2; k < n; k++) {
+    if (s[k].changed) linear = PETSC_FALSE;
+    if (s[k].rms <= (1 + w->map->rtol) * s[k - 1].rms) rises = PETSC_FALSE;
+  }
+  if (linear && w->growth < 0) return MAP_STABLE;
+  if (ratio >= MARCH_TREND || (w->growth > 0 && (linear || rises))) return MAP_GROWTH;
   if (ratio <= 1 / MARCH_TREND && w->growth < 0) return MAP_STABLE;
   return MAP_CYCLE;
 }
@@ -236,7 +239,7 @@ static void MarchJudge(MarchWork *w, MapPoint *row)
   const PetscReal dt = w->map->dt, change = row->error;
 
   MarchAverage(w, first, row);
-  row->rms    = MarchLevel(w, first, last, &row->error);
+  row->rms    = MapForceLevel(last - first, &w->sample[first], &row->error);
   row->time   = w->state.time;
   row->regime = row->end == MAP_DECAYS ? MAP_STABLE : row->end == MAP_SETTLED ? MAP_CYCLE : MarchTrend(w);
   if (row->end == MAP_DECAYS) row->error = NAN;
@@ -303,8 +306,6 @@ static PetscErrorCode MarchPoint(MarchWork *w, PetscBool go_on, MapPoint *row, P
   PetscBool      begun;
 
   PetscFunctionBeginUser;
-  row->regime = MAP_UNKNOWN;
-  row->end    = MAP_FAILED;
   PetscCall(MarchBegin(w, go_on, row, &begun));
   if (begun) {
     PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));

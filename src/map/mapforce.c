@@ -26,6 +26,16 @@ void MapForceMeasure(PetscInt n, const PetscReal f[], MapSample *s)
   s->rms = PetscSqrtReal(square);
 }
 
+PetscReal MapForceLevel(PetscInt n, const MapSample s[], PetscReal *error)
+{
+  PetscReal square = 0, spread = 0;
+
+  for (PetscInt k = 0; k < n; k++) square += PetscSqr(s[k].rms) / (PetscReal)n;
+  for (PetscInt k = 0; k < n; k++) spread += PetscSqr(PetscSqr(s[k].rms) - square) / (PetscReal)n;
+  *error = n > 1 && square > 0 ? 0.5 * PetscSqrtReal(spread / (PetscReal)(n - 1)) / square : 0;
+  return PetscSqrtReal(square);
+}
+
 /* Magnitude of bin k under Hann's window */
 static PetscReal ForceBin(PetscInt n, const PetscReal f[], PetscReal mean, PetscInt k)
 {

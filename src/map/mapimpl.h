@@ -8,6 +8,7 @@
 #define MAP_MAX_AXES  2
 #define MAP_MAX_TEXT  65536 /* length of a list of values */
 #define MAP_MAX_MODES 24    /* that grow at a point and are listed */
+#define MAP_MAX_STEPS 1e8   /* of a transient, whose record is kept until its regime is known */
 
 typedef enum { MAP_MU, MAP_SLOPE, MAP_SPEED, MAP_LOAD, MAP_BODY } MapKind;
 typedef enum { MAP_STABLE, MAP_GROWTH, MAP_STICKING, MAP_CYCLE, MAP_UNKNOWN, MAP_N_REGIMES } MapRegime;
@@ -125,8 +126,10 @@ PETSC_INTERN PetscErrorCode MapResumeChain(Map map, PetscInt chain, PetscInt *n_
                                            const MapKept *kept);
 PETSC_INTERN PetscErrorCode MapForget(Map map);
 
-/* mapforce.c - pure: what n forces are like, f <= 0 being none; main line of forces dt apart, in records of n, Hz, 0 for none */
+/* mapforce.c - pure: what n forces are like, f <= 0 being none; root of the mean square over n windows, and its relative standard
+   error, as if they were independent; main line of forces dt apart, in records of n, Hz, 0 for none */
 PETSC_INTERN void      MapForceMeasure(PetscInt n, const PetscReal f[], MapSample *sample);
+PETSC_INTERN PetscReal MapForceLevel(PetscInt n, const MapSample sample[], PetscReal *error);
 PETSC_INTERN PetscReal MapForceLine(PetscInt n_records, PetscInt n, const PetscReal f[], PetscReal dt);
 
 /* mapwrite.c - the tables */

@@ -6,7 +6,9 @@
 */
 #include "mapimpl.h"
 #include <squeal/checksum.h>
+#include <dirent.h>
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
 
 #define KEEP_VERSION  1
@@ -216,18 +218,23 @@ PetscErrorCode MapResumeBodies(Map map, PetscInt line, MapBodies *b, PetscBool *
   PetscFunctionReturn(0);
 }
 
+/* Takes away what this map and killed ones before it have kept in the folder */
 PetscErrorCode MapForget(Map map)
 {
-  static const char *const kinds[] = {"bodies", "chain"};
-  const PetscInt           n       = 2 * (map->n_axes > 1 ? map->axis[1].n : 1);
-  char                     name[PETSC_MAX_PATH_LEN];
+  static const char begin[] = "map_restart_";
+  char              name[PETSC_MAX_PATH_LEN];
+  PetscMPIInt       rank;
+  DIR              *folder = NULL;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Barrier(map->comm));
-  for (PetscInt k = 0; k < n; k++)
-    for (int i = 0; i < 2; i++) {
-      KeptName(map, kinds[i], k, "", name);
-      (void)unlink(name);
-    }
+  PetscCallMPI(MPI_Comm_rank(map->comm, &rank));
+  if (!rank) folder = opendir(map->folder);
+  for (const struct dirent *entry = folder ? readdir(folder) : NULL; entry; entry = readdir(folder)) {
+    if (strncmp(entry->d_name, begin, sizeof(begin) - 1) != 0) continue;
+    (void)snprintf(name, sizeof(name), "%s/%s", map->folder, entry->d_name);
+    (void)unlink(name);
+  }
+  if (folder) (void)closedir(folder);
   PetscFunctionReturn(0);
 }

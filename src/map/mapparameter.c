@@ -146,7 +146,7 @@ static PetscErrorCode MapLinkTake(Map map, const char text[])
 }
 
 /* Raises the error for a value that a parameter cannot have */
-static PetscErrorCode MapValueCheck(Map map, const MapParameter *p, PetscReal value)
+static PetscErrorCode MapValueCheck(Map map, const char option[], const MapParameter *p, PetscReal value)
 {
   PetscBool good = PETSC_TRUE;
 
@@ -154,7 +154,7 @@ static PetscErrorCode MapValueCheck(Map map, const MapParameter *p, PetscReal va
   if (p->kind == MAP_BODY) PetscCall(OperatorsCheckParameter(map->operators, p->index, value));
   if (p->kind == MAP_MU) good = value >= 0 ? PETSC_TRUE : PETSC_FALSE;
   if (p->kind == MAP_SPEED || p->kind == MAP_LOAD) good = value > 0 ? PETSC_TRUE : PETSC_FALSE;
-  PetscCheck(good, map->comm, PETSC_ERR_USER_INPUT, "-map_values: %s %.6g must %s", p->name, (double)value,
+  PetscCheck(good, map->comm, PETSC_ERR_USER_INPUT, "%s: %s %.6g must %s", option, p->name, (double)value,
              p->kind == MAP_MU ? "not be negative" : "be positive");
   PetscFunctionReturn(0);
 }
@@ -169,7 +169,14 @@ static PetscErrorCode MapAxisValues(Map map, PetscInt k)
              axis->moved[0].name, options[k]);
   PetscCall(GridValuesParse(map->comm, options[k], map->values[k], &axis->n, &axis->value, &axis->ratio));
   for (PetscInt i = 0; i < axis->n; i++)
-    for (PetscInt j = 0; j < axis->n_moved; j++) PetscCall(MapValueCheck(map, &axis->moved[j], axis->value[i]));
+    for (PetscInt j = 0; j < axis->n_moved; j++)
+      PetscCall(MapValueCheck(map, options[k], &axis->moved[j], axis->value[i]));
+  for (PetscInt i = 1; i < axis->n && k == 0 && map->direction != MAP_APART; i++)
+    PetscCheck(
+      axis->value[i] > axis->value[i - 1], map->comm, PETSC_ERR_USER_INPUT,
+      "-map_values: %s %.6g after %.6g: values of the first parameter must ascend, since points go on from their "
+      "neighbours; -map_direction down goes through them backwards",
+      axis->moved[0].name, (double)axis->value[i], (double)axis->value[i - 1]);
   PetscFunctionReturn(0);
 }
 

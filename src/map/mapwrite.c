@@ -22,12 +22,16 @@ PetscErrorCode MapTableOpen(Results results, ResultsTable *table)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MapTableAdd(Map map, ResultsTable table, const MapPoint *r)
+PetscErrorCode MapTableAdd(Map map, ResultsTable table, const MapPoint *point)
 {
-  const MapAxis *x = &map->axis[0], *y = &map->axis[1];
-  char           second[192] = ",";
+  const MapAxis  *x = &map->axis[0], *y = &map->axis[1];
+  MapPoint        known       = *point;
+  const MapPoint *r           = &known;
+  char            second[192] = ",";
 
   PetscFunctionBeginUser;
+  if (r->end == MAP_FAILED)
+    known.freq = known.freq_error = known.rms = known.peak = known.mean = known.open = known.stick = known.error = NAN;
   if (map->n_axes > 1)
     PetscCall(PetscSNPrintf(second, sizeof(second), "%s,%.15g", y->moved[0].name, (double)y->value[r->line]));
   PetscCall(ResultsTableRow(

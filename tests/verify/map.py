@@ -6,6 +6,8 @@
     verify/map.py level TRANSIENT MAP MU FORCE PART       rms of the normal force in the last half of a transient beside it
     verify/map.py regimes MAP                             upwards stable where no mode grows and a vibration where one does by
                                                           100 1/s; downwards a vibration at some point without growing mode
+    verify/map.py regime MAP REGIME                       all rows are of it
+    verify/map.py failed MAP                              all rows have failed, and no number of a vibration is told
 """
 
 import csv
@@ -54,5 +56,18 @@ def regimes(folder):
     return bool(faults) or not lingers or len(up) * 2 != len(table)
 
 
+def regime(folder, name):
+    found = [row["regime"] for row in rows(folder, "map.csv")]
+    print(f"regimes {found}, must be {name}")
+    return not found or any(each != name for each in found)
+
+
+def failed(folder):
+    told = [(row["status"], row[name]) for row in rows(folder, "map.csv")
+            for name in ("freq_hz", "force_rms_n", "force_mean_n", "open_share", "error_estimate")]
+    print(f"status and numbers {told}")
+    return not told or any(status != "failed" or number != "nan" for status, number in told)
+
+
 if __name__ == "__main__":
-    sys.exit({"growth": growth, "level": level, "regimes": regimes}[sys.argv[1]](*sys.argv[2:]))
+    sys.exit({"growth": growth, "level": level, "regimes": regimes, "regime": regime, "failed": failed}[sys.argv[1]](*sys.argv[2:]))
