@@ -1,6 +1,7 @@
 """Runs the program many times, its libraries loaded once, and with the N-th call of a kind failing where that is asked: the Python side
 of tests/fault/serve.c and inject.c, which say how."""
 
+import argparse
 import errno
 import os
 import shutil
@@ -44,6 +45,14 @@ class Outcome:
         """Whether it failed as it should, with one line."""
         return self.status == 1 and len(self.errors) == 1 and self.errors[0].startswith("squeal: error: ") and \
             len(self.errors[0]) >= 40
+
+
+def existing(name):
+    """A file of the command line."""
+    path = Path(name).resolve()
+    if not path.is_file():
+        raise argparse.ArgumentTypeError(f"{name}: no such file; ninja makes it")
+    return path
 
 
 class Served:

@@ -1,6 +1,7 @@
 """squeal as the studies and benchmarks run it: compiled where it is not, each run checked, parts chosen by --part."""
 
 import argparse
+import contextlib
 import os
 import subprocess
 import sys
@@ -94,17 +95,23 @@ def machine_text():
     return f"machine: {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}"
 
 
+@contextlib.contextmanager
+def one_line(name):
+    """Bad input ends the script `name` with one line, and so does ^C."""
+    try:
+        yield
+    except BadInput as error:
+        raise SystemExit(f"{name}: {error}") from None
+    except KeyboardInterrupt:
+        print(f"{name}: stopped", file=sys.stderr)
+        raise SystemExit(STOPPED) from None
+
+
 def do_parts(name, parts, chosen, *given):
-    """The chosen parts, or all, each with what is given; bad input ends the script `name` with one line, and
-    so does ^C."""
+    """The chosen parts, or all, each with what is given."""
     for part in chosen or parts:
-        try:
+        with one_line(name):
             parts[part](*given)
-        except BadInput as error:
-            raise SystemExit(f"{name}: {error}") from None
-        except KeyboardInterrupt:
-            print(f"{name}: stopped", file=sys.stderr)
-            raise SystemExit(STOPPED) from None
         sys.stdout.flush()
 
 

@@ -9,7 +9,7 @@ results, in turn; from one write on, all of them, as on a full disk; or the run 
            as long as nothing new has taken its place
   later    the same command, going on from what a killed or stopped run has kept, ends with the results of an undisturbed run
 
-    fault.py build/squeal build/tests/libsqueal_fault.so [--most 7] [--ranks 2] [--scene modes] [--kind memory] [--one N]
+    fault.py build/squeal build/tests/libfault.so [--most 7] [--ranks 2] [--scene modes] [--kind memory] [--one N]
 
 --most takes an even sample of the calls. Exit status: 0, or 1."""
 
@@ -209,8 +209,8 @@ class Faults:
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("squeal", type=lambda name: Path(name).resolve())
-    parser.add_argument("library", type=lambda name: Path(name).resolve())
+    parser.add_argument("squeal", type=served.existing)
+    parser.add_argument("library", type=served.existing, help="build/tests/libfault.so")
     parser.add_argument("--scene", action="append", choices=[scene.name for scene in scenes.SCENES])
     parser.add_argument("--kind", action="append", choices=list(KINDS))
     parser.add_argument("--most", type=int, help="calls of each kind and scene")

@@ -221,8 +221,8 @@ class Fuzz:
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("squeal", type=lambda name: Path(name).resolve())
-    parser.add_argument("library", type=lambda name: Path(name).resolve())
+    parser.add_argument("squeal", type=served.existing)
+    parser.add_argument("library", type=served.existing, help="build/tests/libfault.so")
     parser.add_argument("--count", type=int, default=500)
     parser.add_argument("--seed", default="2005")
     parser.add_argument("--jobs", type=int, default=2)
