@@ -33,7 +33,7 @@ PetscErrorCode CycleCreate(MPI_Comm comm, LimitCycle *cycle);
 
    Options Database Keys:
 +  -cycle_steps <0>        - steps in a period, odd; 0: as long as those of the transient
-.  -cycle_rtol <1e-9>      - of Phi - x, relative to the size of the vibration
+.  -cycle_rtol <1e-9>      - of Phi - x, relative to the size of the vibration; 1e-13 to 1e-3
 .  -cycle_max_it <30>      - of Newton's method
 .  -cycle_verify <true>    - once more with twice the steps, for the errors
 .  -cycle_parameter <name> - a contact's friction coefficient, e.g. contact_mu, over which the branch is followed

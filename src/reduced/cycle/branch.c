@@ -119,13 +119,15 @@ static PetscErrorCode BranchWalk(LimitCycle c, PetscReal direction, ShootingCycl
   PetscCall(PetscCalloc1(c->flow.n, &tangent.x));
   PetscCall(ShootingGetTangent(&c->shooting, at, &tangent));
   while (on) {
-    PetscBool taken;
+    PetscBool taken, beyond;
 
     PetscCall(ShootingAdvance(&c->shooting, step, &tangent, at));
-    taken = at->converged;
-    if (taken && (at->value < c->range[0] || at->value > c->range[1])) PetscCall(BranchClip(c, at, &taken));
+    taken  = at->converged;
+    beyond = taken && (at->value < c->range[0] || at->value > c->range[1]) ? PETSC_TRUE : PETSC_FALSE;
+    if (beyond) PetscCall(BranchClip(c, at, &taken));
+    if (beyond && !taken) *end = "none is found at the end of -cycle_range"; /* `at` is no cycle to go on from */
     if (taken) PetscCall(CycleTake(c, at));
-    on = BranchGoesOn(c, at, &step, end);
+    on = *end ? PETSC_FALSE : BranchGoesOn(c, at, &step, end);
     if (taken && on) PetscCall(ShootingGetTangent(&c->shooting, at, &tangent));
   }
   PetscCall(PetscFree(tangent.x));

@@ -55,8 +55,8 @@ PetscErrorCode CycleSetFromOptions(LimitCycle c)
   PetscCheck(c->steps == 0 || (c->steps >= 7 && c->steps % 2), c->comm, PETSC_ERR_USER_INPUT,
              "-cycle_steps %" PetscInt_FMT " must be an odd number, 7 at least, or 0 for those of the transient",
              c->steps);
-  PetscCheck(c->rtol > 0 && c->rtol < 1, c->comm, PETSC_ERR_USER_INPUT, "-cycle_rtol %.6g must be between 0 and 1",
-             (double)c->rtol);
+  PetscCheck(c->rtol >= 1e-13 && c->rtol <= 1e-3, c->comm, PETSC_ERR_USER_INPUT,
+             "-cycle_rtol %.6g must lie between 1e-13, which rounding allows, and 1e-3", (double)c->rtol);
   PetscCheck(c->max_it > 0, c->comm, PETSC_ERR_USER_INPUT, "-cycle_max_it %" PetscInt_FMT " must be positive",
              c->max_it);
   if (!c->parameter[0]) PetscCall(OptionsRefuse(c->comm, "-cycle_range", "not used without -cycle_parameter"));
@@ -170,8 +170,8 @@ static PetscErrorCode CycleFind(LimitCycle c, ShootingCycle *at)
   PetscCall(ShootingSolve(&c->shooting, at));
   PetscCheck(at->converged, c->comm, PETSC_ERR_NOT_CONVERGED,
              CYCLE_BY ": no cycle of %.6g Hz is found: after %" PetscInt_FMT " steps of Newton's method a period ends "
-                      "%.1e of the vibration's size from where it began, must be %.0e; a longer -ts_max_time or more "
-                      "-cycle_steps may help",
+                      "%.1e of the vibration's size from where it began, must be %.0e; a longer -ts_max_time, more "
+                      "-cycle_steps or a larger -cycle_max_it may help",
              1 / (double)at->period, at->its, (double)at->residual, (double)c->rtol);
   PetscFunctionReturn(0);
 }
@@ -218,6 +218,8 @@ static PetscErrorCode CycleViewPoint(LimitCycle c, const CyclePoint *p, PetscVie
     PetscCall(PetscViewerASCIIPrintf(
       viewer, "  with twice the steps: frequency off by %+.1e Hz, rms by %+.1e N, largest force by %+.1e N\n",
       (double)(b->freq - a->freq), (double)(b->rms - a->rms), (double)(b->peak - a->peak)));
+  else if (c->verify)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  none is found with twice the steps: its error is unknown\n"));
   PetscCall(PetscViewerASCIIPrintf(
     viewer,
     "  %s: largest multiplier %.6g%+.6gi (%.6g), that of the phase 1%+.1e%+.1ei; residual %.1e after %" PetscInt_FMT
