@@ -52,7 +52,8 @@ static PetscErrorCode JointColumnsCreate(Operators o, const Joint *joint, JointC
 
     if (unknown < 0) continue;
     own[n].unknown = unknown;
-    PetscCall(PetscArraycpy(own[n++].b, &mean->b[6 * i], 6));
+    PetscCall(PetscArraycpy(own[n].b, &mean->b[6 * i], 6));
+    n++;
   }
   PetscCall(GatherRecords(o->comm, n, sizeof(*own), own, &c->n, &c->column));
   PetscCall(PetscFree(own));

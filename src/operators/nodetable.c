@@ -89,7 +89,7 @@ static PetscInt NodeFilePart(NodeFile *f, char *const word[], NodeTable *table)
                    NODES_MAX_PARTS);
     return 0;
   }
-  (void)strcpy(table->part[table->n_parts], name);
+  (void)snprintf(table->part[table->n_parts], NODES_MAX_NAME, "%s", name);
   return table->n_parts++;
 }
 
@@ -137,7 +137,7 @@ static void NodeFileSort(NodeFile *f, NodeTable *table)
     if (a->direction == b->direction && a->direction)
       (void)snprintf(f->fault, sizeof(f->fault), "direction %d of node %d stands twice", (int)a->direction,
                      (int)a->node);
-    else if (memcmp(a->x, b->x, sizeof(a->x)) || a->part != b->part)
+    else if (a->x[0] != b->x[0] || a->x[1] != b->x[1] || a->x[2] != b->x[2] || a->part != b->part)
       (void)snprintf(f->fault, sizeof(f->fault), "node %d has two places or parts", (int)a->node);
   }
   if (!table->n && !f->fault[0]) (void)snprintf(f->fault, sizeof(f->fault), "it has no nodes");

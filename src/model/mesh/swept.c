@@ -209,7 +209,7 @@ static PetscBool SlabsOrder(PetscInt n_cells, const PetscBool has[], SweptColumn
 /* Whether the cells of every column are one in each slab, all of the same part */
 static PetscBool ColumnsHold(PetscInt n_cells, PetscInt n_slabs, Block block[])
 {
-  if (n_cells % n_slabs) return PETSC_FALSE;
+  if (n_slabs < 1 || n_cells % n_slabs) return PETSC_FALSE;
   qsort(block, (size_t)n_cells, sizeof(*block), BlockCompare);
   for (PetscInt c = 0; c < n_cells; c++) {
     const Block *first = &block[c - c % n_slabs];
