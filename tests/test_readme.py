@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What the READMEs say of the repository is so: every path that they name exists, every test of the table in
-tests/README.md is one, and README.md has at most 200 lines. Breaks when a file is moved and a README is forgotten. Exit
-status: 0, or 1.
+tests/README.md is one, faults of tests/faults.py are in its other table and can be planted in the sources as they are, and
+README.md has at most 200 lines. Breaks when a file is moved or changed and a README or a fault is forgotten. Exit status: 0, or 1.
 
 A path is a word between backticks, or in an indented block, that begins with a folder of the top; NAME in it stands for
 anything. Names of C and Python files without a folder are looked for in all of them. Links are relative to the
@@ -10,6 +10,8 @@ README."""
 import re
 import sys
 from pathlib import Path
+
+import faults as planted
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDERS = ("include/", "options/", "scripts/", "src/", "tests/")
@@ -62,9 +64,21 @@ def unknown_tests():
     return sorted(names - known)
 
 
+def lost_faults():
+    """Faults whose words are not in the sources any more, or that tests/README.md does not list with their tests."""
+    table = (ROOT / "tests/README.md").read_text().splitlines()
+    for what, name, text, _, tests in planted.FAULTS:
+        if text not in (ROOT / name).read_text():
+            yield f"tests/faults.py: {what}: {name} does not hold {text!r}"
+        row = f"| {what} | {', '.join(f'`{test}`' for test in tests.split())} |"
+        if row not in table:
+            yield f"tests/README.md: there is no row {row}"
+
+
 def main():
     found = [f"{readme.relative_to(ROOT)}: {fault}" for readme in readmes() for fault in faults(readme)]
     found += [f"tests/README.md: there is no test {name}" for name in unknown_tests()]
+    found += lost_faults()
     n_lines = len((ROOT / "README.md").read_text().splitlines())
     if n_lines > MOST_LINES:
         found.append(f"README.md: {n_lines} lines, more than {MOST_LINES}")

@@ -24,7 +24,7 @@ static const char usage[] =
 static const char most_used[] =
   "Units are m, kg, s, N, Pa, Hz, or another consistent set. The ten options most used, as one gives them:\n"
   "  -options_file FILE         the scene; a later file overrides an earlier one, the command line overrides both\n"
-  "  -analysis static           or modes (default), sweep, transient, frf\n"
+  "  -analysis static           or modes (default), sweep, transient, frf, map, cycle\n"
   "  -output_dir results        folder of tables and shapes\n"
   "  -modes_band 1000,10000     all modes between these frequencies, Hz\n"
   "  -modes_contact static      modes about the pairs that touch while the bodies slide\n"
