@@ -2,7 +2,8 @@
 """A limit cycle of cycle.csv beside the end of the transient that it was found from: frequency by the times at which the
 normal force rises through its mean, rms and largest force of whole periods.
 
-    cycle.py FOLDER FREQUENCY FORCE     largest relative differences"""
+    cycle.py FOLDER FREQUENCY FORCE     largest relative differences
+    cycle.py errors COARSE FINER PART   errors that COARSE states beside its differences to FINER, of them"""
 
 import sys
 from pathlib import Path
@@ -17,7 +18,21 @@ def read(folder, name):
     return numpy.atleast_1d(numpy.genfromtxt(Path(folder) / name, delimiter=",", names=True))
 
 
+def errors(coarse, finer, part):
+    """Whether a stated error is off."""
+    a, b = (read(folder, "cycle.csv")[0] for folder in (coarse, finer))
+    faults = 0
+    for value, error in (("freq_hz", "freq_error_hz"), ("force_rms_n", "force_rms_error_n"),
+                         ("force_peak_n", "force_peak_error_n"), ("multiplier_abs", "multiplier_error")):
+        known = abs(a[value] - b[value])
+        faults += not abs(a[error] - known) <= float(part) * known
+        print(f"{error} {a[error]:.6g}, difference {known:.6g}")
+    return faults > 0
+
+
 def main():
+    if sys.argv[1] == "errors":
+        return errors(*sys.argv[2:])
     folder, frequency, force = sys.argv[1], float(sys.argv[2]), float(sys.argv[3])
     cycle, record = read(folder, "cycle.csv")[0], read(folder, "transient.csv")
     time, normal = record["time_s"], record["normal_force_n"]

@@ -86,6 +86,7 @@ static PetscErrorCode CycleRefine(LimitCycle c, const ShootingCycle *at, CyclePo
   PetscCall(ShootingSolve(&c->shooting, &finer));
   point->has_finer = finer.converged;
   if (finer.converged) CycleFlowMeasure(&c->flow, finer.period, &point->finer);
+  if (finer.converged) PetscCall(ShootingGetStability(&c->shooting, &finer, &point->finer_stability));
   PetscCall(CycleFlowSetSteps(&c->flow, steps));
   PetscCall(PetscFree2(finer.x, finer.M));
   PetscFunctionReturn(0);
@@ -114,25 +115,32 @@ static PetscErrorCode CyclePrintError(const CyclePoint *p, PetscReal found, Pets
   PetscFunctionReturn(0);
 }
 
+/* Magnitude of the largest multiplier */
+static PetscReal CycleMultiplier(const ShootingStability *stability)
+{
+  return hypot(stability->largest[0], stability->largest[1]);
+}
+
 static PetscErrorCode CycleWriteRow(LimitCycle c, PetscInt i, ResultsTable table)
 {
   const CyclePoint   *p = &c->point[i];
   const CycleMeasure *a = &p->found, *b = &p->finer;
-  const PetscReal    *large = p->stability.largest, *phase = p->stability.phase, size = hypot(large[0], large[1]);
-  char                error[3][32], value[32] = "";
+  const PetscReal    *large = p->stability.largest, *phase = p->stability.phase, size = CycleMultiplier(&p->stability);
+  char                error[4][32], value[32] = "";
 
   PetscFunctionBeginUser;
   PetscCall(CyclePrintError(p, a->freq, b->freq, sizeof(error[0]), error[0]));
   PetscCall(CyclePrintError(p, a->rms, b->rms, sizeof(error[1]), error[1]));
   PetscCall(CyclePrintError(p, a->peak, b->peak, sizeof(error[2]), error[2]));
+  PetscCall(CyclePrintError(p, size, CycleMultiplier(&p->finer_stability), sizeof(error[3]), error[3]));
   if (c->parameter[0]) PetscCall(PetscSNPrintf(value, sizeof(value), "%.15g", (double)p->value));
   PetscCall(ResultsTableRow(table,
-                            "%" PetscInt_FMT ",%s,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%s,%.15g,%.15g,%.15g,%.15g,%.15g,"
+                            "%" PetscInt_FMT ",%s,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%.15g,%.15g,"
                             "%.15g,%d,%" PetscInt_FMT ",%.15g,%" PetscInt_FMT,
                             i + 1, c->parameter, value, (double)a->freq, error[0], (double)a->mean, (double)a->rms,
-                            error[1], (double)a->peak, error[2], (double)a->open, (double)size, (double)large[0],
-                            (double)large[1], (double)phase[0], (double)phase[1], size > CYCLE_STABLE, p->n_steps,
-                            (double)p->residual, p->its));
+                            error[1], (double)a->peak, error[2], (double)a->open, (double)size, error[3],
+                            (double)large[0], (double)large[1], (double)phase[0], (double)phase[1], size > CYCLE_STABLE,
+                            p->n_steps, (double)p->residual, p->its));
   PetscFunctionReturn(0);
 }
 
@@ -145,7 +153,8 @@ static PetscErrorCode CycleWrite(LimitCycle c, Results results)
   PetscCall(ResultsTableOpen(
     results, "cycle",
     "point,parameter,value,freq_hz,freq_error_hz,force_mean_n,force_rms_n,force_rms_error_n,force_peak_n,"
-    "force_peak_error_n,open_share,multiplier_abs,multiplier_re,multiplier_im,phase_multiplier_re,phase_multiplier_im,"
+    "force_peak_error_n,open_share,multiplier_abs,multiplier_error,multiplier_re,multiplier_im,phase_multiplier_re,"
+    "phase_multiplier_im,"
     "unstable,steps,residual,iterations",
     &table));
   for (PetscInt i = 0; i < c->n_points; i++) PetscCall(CycleWriteRow(c, i, table));
@@ -205,7 +214,7 @@ static PetscErrorCode CycleViewPoint(LimitCycle c, const CyclePoint *p, PetscVie
 {
   const CycleMeasure *a = &p->found, *b = &p->finer;
   const PetscReal    *large = p->stability.largest, *phase = p->stability.phase;
-  const double        size = hypot(large[0], large[1]);
+  const double        size = CycleMultiplier(&p->stability);
 
   PetscFunctionBeginUser;
   if (c->parameter[0]) PetscCall(PetscViewerASCIIPrintf(viewer, "%s %.6g: ", c->parameter, (double)p->value));
@@ -216,8 +225,11 @@ static PetscErrorCode CycleViewPoint(LimitCycle c, const CyclePoint *p, PetscVie
                                    (double)a->peak, (double)a->open));
   if (p->has_finer)
     PetscCall(PetscViewerASCIIPrintf(
-      viewer, "  with twice the steps: frequency off by %+.1e Hz, rms by %+.1e N, largest force by %+.1e N\n",
-      (double)(b->freq - a->freq), (double)(b->rms - a->rms), (double)(b->peak - a->peak)));
+      viewer,
+      "  with twice the steps: frequency off by %+.1e Hz, rms by %+.1e N, largest force by %+.1e N, multiplier by "
+      "%+.1e\n",
+      (double)(b->freq - a->freq), (double)(b->rms - a->rms), (double)(b->peak - a->peak),
+      CycleMultiplier(&p->finer_stability) - size));
   else if (c->verify)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  none is found with twice the steps: its error is unknown\n"));
   PetscCall(PetscViewerASCIIPrintf(

@@ -36,7 +36,7 @@ typedef struct {
   PetscReal         residual;
   CycleMeasure      found, finer; /* finer: with twice the steps, where asked for */
   PetscBool         has_finer;
-  ShootingStability stability;
+  ShootingStability stability, finer_stability;
 } CyclePoint;
 
 struct _p_LimitCycle {
