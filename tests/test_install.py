@@ -27,7 +27,8 @@ sys.path.insert(0, str(SOURCE / "scripts"))
 from small_brake import SCENE as BRAKE
 from squeal.help_text import ask, options_of
 
-FOR_SOURCES = {"run", "test", "setup.sh", "paper", "test_debian", "manual", "packages.txt", "completion.bash", "README.md"}
+FOR_SOURCES = {"run", "test", "test_sanitized", "test_debian", "coverage", "lint", "setup.sh", "paper", "manual", "packages.txt",
+               "completion.bash", "README.md"}
 SCENE = BRAKE + """modes: {band: "500,9000"}
 """
 
