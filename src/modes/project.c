@@ -7,7 +7,8 @@
 
    and V is extended by P^-1 r and P^-T s of all modes together until every backward error is at rounding level: a step of
    shift-and-invert subspace iteration each (M. E. Hochstenbach, G. L. G. Sleijpen, Linear Algebra Appl. 358, 2003). The
-   error of an eigenvalue is the product of those of its two vectors, hence left vectors need less.
+   error of an eigenvalue is the product of those of its two vectors, hence left vectors need less. Where rounding lies is
+   not known beforehand: corrections that no longer add a direction to V have settled, too, within PROJECT_ROUNDING.
 
    No mode is missing: the undamped modes are complete as right and left ones agree (or by inertia), and damping brings none
    from beyond them where its measure is below one (projectfit.c). Where it is above DAMPING_WEAK the route is that of
@@ -21,6 +22,7 @@
 #define PROJECT_ROUNDS   8
 #define PROJECT_RIGHT    1e-14 /* backward errors of settled right and left vectors */
 #define PROJECT_LEFT     1e-11
+#define PROJECT_ROUNDING 10   /* times these, where corrections add nothing to the basis any more */
 #define PROJECT_DISTINCT 1e-9 /* undamped vectors that differ by less are one */
 
 static const char why_whole[]  = "all modes of the system are in the window or next to it"; /* small: said nowhere */
@@ -82,14 +84,33 @@ static PetscErrorCode SpectraDestroy(Modes modes)
   PetscFunctionReturn(0);
 }
 
+/* The largest backward errors of right and left vectors */
+static void WorstErrors(const ProjectionModes *found, PetscReal worst[2])
+{
+  worst[0] = worst[1] = 0;
+  for (PetscInt i = 0; i < found->n; i++)
+    for (int side = 0; side < 2; side++) worst[side] = PetscMax(worst[side], found->backward[side][i]);
+}
+
+/* Whether the modes have no more digits than these on a basis that corrections left as it was */
+static PetscBool AtRounding(const Projection *p, const ProjectionModes *found, PetscInt size_before)
+{
+  PetscReal worst[2];
+
+  WorstErrors(found, worst);
+  return found->size == size_before && worst[0] <= PROJECT_ROUNDING * p->limit[0] &&
+             worst[1] <= PROJECT_ROUNDING * p->limit[1]
+           ? PETSC_TRUE
+           : PETSC_FALSE;
+}
+
 /* With -info */
 static PetscErrorCode InfoRound(const Projection *p, const ProjectionModes *found, PetscInt n_columns)
 {
-  PetscReal worst[2] = {0, 0};
+  PetscReal worst[2];
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < found->n; i++)
-    for (int side = 0; side < 2; side++) worst[side] = PetscMax(worst[side], found->backward[side][i]);
+  WorstErrors(found, worst);
   PetscCall(PetscInfo(p->V,
                       "%" PetscInt_FMT " modes on %" PetscInt_FMT
                       " vectors: backward errors %.1e right, %.1e left, %" PetscInt_FMT
@@ -115,15 +136,16 @@ static PetscErrorCode FindModes(const Projection *p, PetscBool anew, ProjectionM
 /* Corrects the modes until all have settled; settled = they have, and the window is covered */
 static PetscErrorCode Iterate(Projection *p, ProjectionModes *found, PetscBool *settled)
 {
-  PetscInt n_columns = 1;
+  PetscInt n_columns = 1, size = 0;
 
   PetscFunctionBeginUser;
   *settled = PETSC_FALSE;
-  for (int round = 0; round < PROJECT_ROUNDS && n_columns; round++) {
+  for (int round = 0; round < PROJECT_ROUNDS && n_columns; round++, size = found->size) {
     PetscCall(FindModes(p, round ? PETSC_FALSE : PETSC_TRUE, found));
     if (found->lambda_reach > p->reach) break;
     PetscCall(ProjectionCorrect(p, found, &n_columns));
     PetscCall(InfoRound(p, found, n_columns));
+    if (AtRounding(p, found, size)) n_columns = 0;
   }
   *settled = n_columns ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(0);
