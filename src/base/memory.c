@@ -96,6 +96,16 @@ static double MemoryRead(const char path[], const char word[])
   return value;
 }
 
+/* VmHWM of proc(5); getrusage(2) would tell the program's that started this one, where that was larger */
+double MemoryPeak(void)
+{
+  const double  peak = 1024 * MemoryRead("/proc/self/status", "VmHWM:");
+  struct rusage usage;
+
+  if (isfinite(peak)) return peak;
+  return getrusage(RUSAGE_SELF, &usage) ? 0 : 1024 * (double)usage.ru_maxrss;
+}
+
 /* Bytes that a control group and those above it leave; path is that of the group and is shortened to nothing */
 static double GroupFree(int version, char path[])
 {

@@ -9,6 +9,9 @@ PETSC_INTERN PetscErrorCode MemoryPrepare(MPI_Comm comm);
 /* Writes what is to be done when an allocation has failed; allocates nothing */
 PETSC_INTERN void MemoryExplain(char message[], size_t size);
 
+/* The most bytes that this process had at any time */
+PETSC_INTERN double MemoryPeak(void);
+
 /* Gives freed memory back to the system, which the C library keeps otherwise */
 PETSC_INTERN void MemoryReturn(void);
 

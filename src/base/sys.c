@@ -18,7 +18,6 @@
 #include <petsctime.h>
 #include <signal.h>
 #include <stdlib.h>
-#include <sys/resource.h>
 
 #define MAX_MESSAGE 1024
 
@@ -177,10 +176,8 @@ PetscErrorCode SquealGetStages(MPI_Comm comm, PetscInt *n, SquealStageCost cost[
 
 PetscErrorCode SquealGetPeak(MPI_Comm comm, double *megabytes)
 {
-  struct rusage usage;
-
   PetscFunctionBeginUser;
-  *megabytes = getrusage(RUSAGE_SELF, &usage) ? 0 : 1.024e-3 * (double)usage.ru_maxrss; /* KB */
+  *megabytes = 1e-6 * MemoryPeak();
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, megabytes, 1, MPI_DOUBLE, MPI_SUM, comm));
   PetscFunctionReturn(0);
 }
