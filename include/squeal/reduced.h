@@ -94,6 +94,10 @@ typedef struct {
 
 typedef struct _p_ReducedStepper *ReducedStepper;
 
+/*@ ReducedModelCopy, ReducedModelDestroy - a model of its own like another; frees it. Not collective. @*/
+PetscErrorCode ReducedModelCopy(const ReducedModel *from, ReducedModel *to);
+PetscErrorCode ReducedModelDestroy(ReducedModel *model);
+
 /*@ ReducedStateCreate, ReducedStateCopy, ReducedStateDestroy - a state of zeros; from one into another; frees it. Not
     collective. @*/
 PetscErrorCode ReducedStateCreate(const ReducedModel *model, ReducedState *state);

@@ -4,34 +4,12 @@
 */
 #include "mapimpl.h"
 
-/* Copies n numbers, NULL for none */
+/* Copies n numbers */
 static PetscErrorCode RealsCopy(PetscInt n, const PetscReal from[], PetscReal **to)
 {
   PetscFunctionBeginUser;
-  *to = NULL;
-  if (!from) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(n, to));
   PetscCall(PetscArraycpy(*to, from, n));
-  PetscFunctionReturn(0);
-}
-
-/* The dense model of a run that will be no more */
-static PetscErrorCode MapModelCopy(const ReducedModel *from, ReducedModel *to)
-{
-  const PetscInt m = from->m, n = from->n_pairs, N = from->n_ports;
-
-  PetscFunctionBeginUser;
-  *to = *from;
-  PetscCall(RealsCopy(m, from->omega2, &to->omega2));
-  PetscCall(RealsCopy(m * m, from->C, &to->C));
-  PetscCall(RealsCopy(m * N, from->P, &to->P));
-  PetscCall(RealsCopy(N * N, from->W, &to->W));
-  PetscCall(RealsCopy(3 * n * m, from->Cm, &to->Cm));
-  PetscCall(RealsCopy(9 * n * n, from->Cx, &to->Cx));
-  PetscCall(RealsCopy(n, from->gap, &to->gap));
-  PetscCall(RealsCopy(n, from->mu, &to->mu));
-  PetscCall(RealsCopy(n, from->slope, &to->slope));
-  PetscCall(RealsCopy(n, from->speed, &to->speed));
   PetscFunctionReturn(0);
 }
 
@@ -43,7 +21,7 @@ static PetscErrorCode MapBodiesTake(ReducedRun run, MapBodies *b)
 
   PetscFunctionBeginUser;
   PetscCall(ReducedGetModel(run, &model));
-  PetscCall(MapModelCopy(model, &b->model));
+  PetscCall(ReducedModelCopy(model, &b->model));
   PetscCall(RealsCopy(model->n_pairs, model->mu, &b->mu));
   PetscCall(RealsCopy(model->n_pairs, model->slope, &b->slope));
   PetscCall(RealsCopy(model->n_pairs, model->speed, &b->speed));
@@ -130,19 +108,8 @@ PetscErrorCode MapBodiesMove(Map map, const MapPoint *at, MapBodies *b, PetscRea
 
 PetscErrorCode MapBodiesDestroy(MapBodies *b)
 {
-  ReducedModel *model = &b->model;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(model->omega2));
-  PetscCall(PetscFree(model->C));
-  PetscCall(PetscFree(model->P));
-  PetscCall(PetscFree(model->W));
-  PetscCall(PetscFree(model->Cm));
-  PetscCall(PetscFree(model->Cx));
-  PetscCall(PetscFree(model->gap));
-  PetscCall(PetscFree(model->mu));
-  PetscCall(PetscFree(model->slope));
-  PetscCall(PetscFree(model->speed));
+  PetscCall(ReducedModelDestroy(&b->model));
   PetscCall(PetscFree(b->mu));
   PetscCall(PetscFree(b->slope));
   PetscCall(PetscFree(b->speed));

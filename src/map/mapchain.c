@@ -299,7 +299,7 @@ static PetscErrorCode MarchBegin(MarchWork *w, PetscBool go_on, MapPoint *row, P
   PetscFunctionReturn(0);
 }
 
-/* A point; false where it failed, of which no other rank knows */
+/* A point; false where it failed, of which no other rank knows: laws without solution, or a motion beyond all numbers */
 static PetscErrorCode MarchPoint(MarchWork *w, PetscBool go_on, MapPoint *row, PetscBool *good)
 {
   PetscErrorCode error = 0;
@@ -312,6 +312,8 @@ static PetscErrorCode MarchPoint(MarchWork *w, PetscBool go_on, MapPoint *row, P
     error = MarchRun(w, row);
     PetscCall(PetscPopErrorHandler());
   }
+  PetscCheck(!error || error == PETSC_ERR_NOT_CONVERGED || error == PETSC_ERR_FP, PETSC_COMM_SELF, error,
+             "a transient of the map ended by PETSc's error %d", (int)error);
   *good = begun && !error ? PETSC_TRUE : PETSC_FALSE;
   if (!*good) row->regime = MAP_UNKNOWN;
   if (!*good) row->end = MAP_FAILED;
