@@ -1,22 +1,23 @@
 /* Views of the objects of a run: -model_view and its like, and -squeal_view for all */
 #include "chain.h"
 
-#define LINEAR (1 << ANALYSIS_MODES | 1 << ANALYSIS_SWEEP | 1 << ANALYSIS_FRF)
+#define MODAL  (1 << ANALYSIS_MODES | 1 << ANALYSIS_FRF)
+#define LINEAR (MODAL | 1 << ANALYSIS_SWEEP)
 
 static const struct {
   const char *option, *help;
   unsigned    in; /* bits of the analyses that have something to show */
 } shown[N_SHOWN] = {
-  [SHOWN_MODEL]     = {"-model_view",     "show mesh, parts, supports, springs and loads",           (1 << N_ANALYSES) - 1                  },
-  [SHOWN_CONTACT]   = {"-contact_view",   "show interfaces and their pairs",                         7 | LINEAR                             },
-  [SHOWN_OPERATORS] = {"-operators_view", "show the pencil of modes and sweeps, and its parameters", LINEAR                                 },
-  [SHOWN_STATICS]   = {"-statics_view",   "show the equilibrium",                                    1 << ANALYSIS_STATIC                   },
-  [SHOWN_MODES]     = {"-modes_view",     "show the modes found",                                    1 << ANALYSIS_MODES | 1 << ANALYSIS_FRF},
-  [SHOWN_SWEEP]     = {"-sweep_view",     "show what a sweep found",                                 1 << ANALYSIS_SWEEP                    },
-  [SHOWN_FRF]       = {"-frf_view",       "show the frequency response and its peaks",               1 << ANALYSIS_FRF                      },
-  [SHOWN_MAP]       = {"-map_view",       "show regimes and cost of a map",                          1 << ANALYSIS_MAP                      },
-  [SHOWN_DYNAMICS]  = {"-dynamics_view",  "show bodies, step and balances of a run in time",         1 << ANALYSIS_TRANSIENT                },
-  [SHOWN_CYCLE]     = {"-cycle_view",     "show cycles, their stability and errors",                 1 << ANALYSIS_CYCLE                    },
+  [SHOWN_MODEL]     = {"-model_view",     "show mesh, parts, supports, springs and loads",           (1 << N_ANALYSES) - 1  },
+  [SHOWN_CONTACT]   = {"-contact_view",   "show interfaces and their pairs",                         7 | LINEAR             },
+  [SHOWN_OPERATORS] = {"-operators_view", "show the pencil of modes and sweeps, and its parameters", LINEAR                 },
+  [SHOWN_STATICS]   = {"-statics_view",   "show the equilibrium",                                    1 << ANALYSIS_STATIC   },
+  [SHOWN_MODES]     = {"-modes_view",     "show the modes found",                                    MODAL                  },
+  [SHOWN_SWEEP]     = {"-sweep_view",     "show what a sweep found",                                 1 << ANALYSIS_SWEEP    },
+  [SHOWN_FRF]       = {"-frf_view",       "show the frequency response and its peaks",               1 << ANALYSIS_FRF      },
+  [SHOWN_MAP]       = {"-map_view",       "show regimes and cost of a map",                          1 << ANALYSIS_MAP      },
+  [SHOWN_DYNAMICS]  = {"-dynamics_view",  "show bodies, step and balances of a run in time",         1 << ANALYSIS_TRANSIENT},
+  [SHOWN_CYCLE]     = {"-cycle_view",     "show cycles, their stability and errors",                 1 << ANALYSIS_CYCLE    },
 };
 
 PetscErrorCode ChainGetViewers(MPI_Comm comm, Chain *chain)

@@ -3,9 +3,10 @@
 
     boxes.py FILE NAME:KIND:x0,y0,z0:x1,y1,z1:nx,ny,nz [...] [--cylinder R]
 
-Places in m, numbers of cells. A box makes the sets NAME (volume), NAME_left, NAME_right (least and largest x), NAME_front, NAME_back (y),
-NAME_bottom and NAME_top (z), and NAME_inside, the faces between the first two layers of cells along x. KIND as in tests/solids.py. --cylinder bends planes of equal z into cylinders, that of z = 0
-to the radius R: with s = R + z and angle = y / R, y becomes s sin(angle), z s cos(angle) - R.
+Places in m, numbers of cells. A box makes the sets NAME (volume), NAME_left, NAME_right (least and largest x),
+NAME_front, NAME_back (y), NAME_bottom and NAME_top (z), and NAME_inside, the faces between the first two layers of
+cells along x. KIND as in tests/solids.py. --cylinder bends planes of equal z into cylinders, that of z = 0 to the
+radius R: with s = R + z and angle = y / R, y becomes s sin(angle), z s cos(angle) - R.
 """
 
 import argparse

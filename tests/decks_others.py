@@ -76,7 +76,8 @@ class Ansys:
         "MP,GYZ,2,1200", "MP,GXZ,2,1500", "MP,DENS,2,2.5e-9", "MP,ALPD,2,10", "MP,BETD,2,1e-7", "MP,MU,3,0.45", "MP,KXX,1,50",
         "LOCAL,12,1,1.0,2.0,3.0,0,90,0",
         "D,FOOT,ALL,0", "D,15,UX,0.0,0.0", "D,16,UX,0.5", "D,18,UY,0", "F,16,FZ,-4.0", "F,17,FZ,-4.0", "F,17,MX,1",
-        "SFE,2,6,PRES,0,R5.0", "  2.0  2.0  2.0  2.0", "SF,TOP,PRES,1.5", "ACEL,0,0,9810", "CMROTATE,LOWER,0,0,3,1,2,0", "MODOPT,LANB,12", "BFE,1,TEMP,1,20",
+        "SFE,2,6,PRES,0,R5.0", "  2.0  2.0  2.0  2.0", "SF,TOP,PRES,1.5", "ACEL,0,0,9810", "CMROTATE,LOWER,0,0,3,1,2,0",
+        "MODOPT,LANB,12", "BFE,1,TEMP,1,20",
         "FINISH"]) + "\n"}
     # The axis of the cylinder: z turned by 90 degrees about x is -y
     SCENE = {"model_gravity": "0,0,-9.81", "parts": "lower,part_2_12", "lower_young": "210e9", "lower_poisson": "0.3",

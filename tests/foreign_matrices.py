@@ -112,7 +112,8 @@ def op4_binary(path, A, name, sparse=None, order="<"):
         return mark + data + mark
 
     rows, columns = A.shape
-    out = record(struct.pack(order + "4i8s", columns, -rows if sparse == "bigmat" else rows, 6 if (A == A.T).all() else 1, 2, name.ljust(8).encode()))
+    out = record(struct.pack(order + "4i8s", columns, -rows if sparse == "bigmat" else rows, 6 if (A == A.T).all() else 1, 2,
+                             name.ljust(8).encode()))
     for j in range(columns):
         pieces, body = list(runs(A[:, j])), b""
         if not pieces:

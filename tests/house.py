@@ -1,7 +1,8 @@
-"""C files as the rules of the house see them (test_house.py): definitions with their lines, without a compiler.
-Comments and strings are blanked out, so that every character keeps its place; what stands at depth 0 of the braces is
-read."""
+"""C and Python files as the rules of the house see them (test_house.py): definitions with their lines, without a compiler.
+In C, comments and strings are blanked out, so that every character keeps its place; what stands at depth 0 of the braces
+is read."""
 
+import ast
 import re
 from collections import namedtuple
 
@@ -99,3 +100,25 @@ def declared(text, at, line):
     forms = (r"\(\s*\*\s*(\w+)\s*\)\s*\(", r"(\w+)\s*\([^()]*\)\s*;$", r"(\w+)\s*(?:\[[^\]]*\]\s*)*;$")
     name = next(filter(None, (re.search(form, flat) for form in forms)))
     yield Name("type", name[1], line(at + name.start(1)))
+
+
+class Script:
+    """One Python file: text, functions and classes, names that it imports and does not use."""
+
+    def __init__(self, path):
+        self.path = path
+        self.text = path.read_text()
+        nodes = list(ast.walk(ast.parse(self.text)))
+        self.definitions = [node for node in nodes if isinstance(node, (ast.FunctionDef, ast.ClassDef))]
+        used = {node.id for node in nodes if isinstance(node, ast.Name)}
+        self.unused = sorted({(name, node.lineno) for node in nodes if isinstance(node, (ast.Import, ast.ImportFrom))
+                              for name in map(imported_name, node.names) if name not in used and not self.excused(node)})
+
+    def excused(self, node):
+        """Whether the line of an import says that nothing uses it here."""
+        return "noqa" in self.text.splitlines()[node.lineno - 1]
+
+
+def imported_name(alias):
+    """What a name of an import statement is called after it."""
+    return alias.asname or alias.name.split(".")[0]

@@ -22,7 +22,8 @@ def cards(text):
                 found.append([None, None, []])
             words = [word.strip() for word in header.split(",")]
             options = dict(word.partition("=")[::2] for word in words[1:])
-            found[-1][:2] = " ".join(words[0][1:].split()).upper(), {key.strip().upper(): value.strip().upper() for key, value in options.items()}
+            options = {key.strip().upper(): value.strip().upper() for key, value in options.items()}
+            found[-1][:2] = " ".join(words[0][1:].split()).upper(), options
             header = header if line.rstrip().endswith(",") else None
         elif found and line.strip():
             found[-1][2].append(line)
@@ -37,7 +38,8 @@ def numbers(lines, width):
 
 def moved(rows):
     """Matrix and shift of an instance."""
-    values = [[float(re.sub("[dD]", "e", word)) if word.strip() else 0.0 for word in row.rstrip().rstrip(",").split(",")] for row in rows if row.strip()]
+    values = [[float(re.sub("[dD]", "e", word)) if word.strip() else 0.0 for word in row.rstrip().rstrip(",").split(",")]
+              for row in rows if row.strip()]
     shift, turn = np.array(values[0]) if values else np.zeros(3), np.eye(3)
     if len(values) > 1:
         a, b, angle = np.array(values[1][:3]), np.array(values[1][3:6]), np.radians(values[1][6])
@@ -157,7 +159,8 @@ def read_ansys(text):
             values = [int(row[c:c + wide] if row[c:c + wide].strip() else 0) for c in range(0, wide * form[0], wide)]
             if name == "NBLOCK":
                 start = wide * form[0]
-                place[values[0]] = [float(re.sub("[dD]", "e", row[c:c + form[3]].strip() or "0")) for c in range(start, start + 3 * form[3], form[3])]
+                place[values[0]] = [float(re.sub("[dD]", "e", row[c:c + form[3]].strip() or "0"))
+                                    for c in range(start, start + 3 * form[3], form[3])]
             else:
                 found.append((at, values))
         if name == "EBLOCK":

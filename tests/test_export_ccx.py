@@ -145,7 +145,8 @@ def check_solids(top):
         squeal(folder, "back.yaml", "again", "-output_fields", 0, "-operators_save", "other")
         modes = modes_of(folder / "out")
         worst = apart(modes, modes_of(folder / "again")), apart(compliance(folder / "one"), compliance(folder / "other"))
-        check(len(modes) == 8 and max(worst) < SAME, f"round trip: {kind}, {name}: modes apart by {worst[0]:.1e}, work of loads {worst[1]:.1e}")
+        check(len(modes) == 8 and max(worst) < SAME,
+              f"round trip: {kind}, {name}: modes apart by {worst[0]:.1e}, work of loads {worst[1]:.1e}")
         if kind == "hex20" and name != "cylinder" and shutil.which("ccx"):
             run(folder / "out", "ccx", "deck")
             theirs = eigenvalues(folder / "out/deck.dat").imag
@@ -168,7 +169,8 @@ def check_contact(top):
           f"contact: {len(modes)} modes apart by {apart(modes, again):.1e}, growth to {max(modes.real):.1f} 1/s")
     said = run(top, SOURCE / "scripts/export_ccx", "oiled").splitlines()
     named = {line.split(": ")[1].split()[0] for line in said}
-    check({"oil_set", "oil_viscosity", "tip_at", "rub_slip", "modes_growth"} <= named and all(line.startswith("export_ccx: ") for line in said),
+    check({"oil_set", "oil_viscosity", "tip_at", "rub_slip", "modes_growth"} <= named
+          and all(line.startswith("export_ccx: ") for line in said),
           f"notes: {len(said)} lines name {', '.join(sorted(named))}")
     head = (top / "oiled/deck.inp").read_text()
     check(all(line.removeprefix("export_ccx: ") in head for line in said), "notes: the deck has them too")
@@ -190,11 +192,13 @@ def check_rig(top):
         line + "\n" for line in RIG.splitlines() if not line.startswith(("model", "rig"))))
     squeal(top, "file.yaml", "of_file", "-output_fields", 0)
     modes = modes_of(top / "rig1")
-    check(apart(modes, modes_of(top / "of_file")) < 1e-11 and max(modes.real) > 1, f"rig: as a file, apart by {apart(modes, modes_of(top / 'of_file')):.1e}")
+    check(apart(modes, modes_of(top / "of_file")) < 1e-11 and max(modes.real) > 1,
+          f"rig: as a file, apart by {apart(modes, modes_of(top / 'of_file')):.1e}")
     run(top, SOURCE / "scripts/export_ccx", "rig1")
     run(top, SOURCE / "scripts/import", "rig1/deck.inp", "-o", "of_deck", "--units", "m-kg-s")
     squeal(top, "of_deck.yaml", "of_deck", "-output_fields", 0, f"-{contact_of(top / 'of_deck.yaml')}_slip", "0,1,0", "-modes_growth", 6000)
-    check(apart(modes, modes_of(top / "of_deck")) < SAME, f"rig: as a deck and back, apart by {apart(modes, modes_of(top / 'of_deck')):.1e}")
+    check(apart(modes, modes_of(top / "of_deck")) < SAME,
+          f"rig: as a deck and back, apart by {apart(modes, modes_of(top / 'of_deck')):.1e}")
     done = subprocess.run([sys.argv[1], "-options_file", "rig.yaml", "-rig_save", "nowhere/rig.msh", "-output_dir", "no"], cwd=top,
                           capture_output=True, text=True, check=False)
     check(done.returncode == 1 and "cannot write 'nowhere/rig.msh' of -rig_save" in done.stderr, f"rig: {done.stderr.strip()}")
@@ -205,12 +209,14 @@ def check_sliding(top):
     if not shutil.which("ccx"):
         return
     Mesh((6, 8, 1), 3, 5, 3, 2).write(top / "disc.msh")
-    run(top, sys.argv[2], "-n", 1, sys.argv[1], *squeal_words(top / "disc.msh", 0.6, (0, 12000)), "-output_dir", "sliding", "-output_fields", 0)
+    run(top, sys.argv[2], "-n", 1, sys.argv[1], *squeal_words(top / "disc.msh", 0.6, (0, 12000)), "-output_dir", "sliding",
+        "-output_fields", 0)
     run(top, SOURCE / "scripts/export_ccx", "sliding", "--sliding")
     run(top / "sliding", "ccx", "deck")
     modes, theirs = modes_of(top / "sliding"), eigenvalues(top / "sliding/deck.dat")
     worst = max(distances(modes, theirs).max(), distances(theirs, modes).max()) if len(modes) == len(theirs) else np.inf
-    check(worst < CALCULIX and max(modes.real) > 1, f"CalculiX: --sliding, {len(modes)} modes apart by {worst:.1e}, growth to {max(modes.real):.1f} 1/s")
+    check(worst < CALCULIX and max(modes.real) > 1,
+          f"CalculiX: --sliding, {len(modes)} modes apart by {worst:.1e}, growth to {max(modes.real):.1f} 1/s")
     done = run_command([SOURCE / "scripts/export_ccx", "out", "--sliding", "-o", "s.inp", "--mesh", "pair.msh"], top)
     check(done.returncode == 0, "sliding: of boxes on each other too")
 
@@ -237,7 +243,8 @@ def check_bad(top):
     (top / "short.msh").write_bytes((top / "hex27.msh").read_bytes()[:-400])
     for words, said in ((["nowhere"], "no such folder"), (["empty"], "scene.yaml"), (["of27"], "hex27"), (["rig"], "-rig_save"),
                         (["matrices"], "is of matrices"),
-                        (["gone"], "gone.msh"), (["out", "--mesh", "torn.msh"], "torn.msh"), (["out", "--mesh", "short.msh"], "short.msh"), (["out", "--mesh", "pair.yaml"], "no file of Gmsh"),
+                        (["gone"], "gone.msh"), (["out", "--mesh", "torn.msh"], "torn.msh"),
+                        (["out", "--mesh", "short.msh"], "short.msh"), (["out", "--mesh", "pair.yaml"], "no file of Gmsh"),
                         (["out", "--mesh", "hex27.msh"], "no volume named base"), (["out", "-o", "empty/no/deck.inp"], "deck.inp"),
                         (["of27", "--sliding"], "hex27")):
         done = run_command([SOURCE / "scripts/export_ccx", *words], top)

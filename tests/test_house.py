@@ -4,24 +4,28 @@
   names      no type, macro, constant or function has one name twice in src and include, static functions included
   includes   a room includes only those below it (BELOW), a layer of the sweep only its own and lower ones (LAYERS), and
              nobody another room's private header (*impl.h)
-  lengths    no file of src, include, scripts, tests above 350 lines, main.c not above 80, no function body above 80, no
-             function of more than six arguments
+  lengths    no file of src, include, scripts, tests above 350 lines, main.c not above 80, no function above 80, no
+             function of C with more than six arguments
+  columns    no line of C, Python or the shell beyond 140 columns
   strata     only src/model knows how a DMPlex numbers its points
   readmes    each folder of src has a README.md of at most 25 lines, or one above it that names the folder
   options    no option is read by two functions
+  unused     nothing of Python is imported or defined in vain: each function and class is named somewhere else
   words      nothing of who wrote it where: no paths of somebody's own folders, no day's work, no numbers of tasks
 
 All violations are printed with file:line. The same rules then run on a small house with one violation of each kind
 planted in it (PLANTED): a rule that finds nothing there would be no rule. Exit status: 0, or 1."""
 
+import ast
+import collections
 import re
 import sys
 import tempfile
 from pathlib import Path
 
-from house import Source
+from house import Script, Source
 
-MOST_FILE, MOST_MAIN, MOST_BODY, MOST_ARGUMENTS, MOST_README = 350, 80, 80, 6, 25
+MOST_FILE, MOST_MAIN, MOST_BODY, MOST_ARGUMENTS, MOST_README, MOST_COLUMNS = 350, 80, 80, 6, 25, 140
 
 CHAIN = ("base", "kernels", "model", "contact", "operators", "solver", "statics", "modes", "sweep")
 BELOW = {room: {*CHAIN[:k + 1], *(("results",) if k > 1 else ())} for k, room in enumerate(CHAIN)}
@@ -50,6 +54,9 @@ class House:
     def __init__(self, root):
         self.root = root
         self.c = [Source(path) for top in ("src", "include") for path in sorted((root / top).rglob("*.[ch]"))]
+        programs = {path: first_line(path) for path in self.files("src", "include", "scripts", "tests")}
+        self.code = [path for path, first in programs.items() if path.suffix in (".c", ".h", ".py") or first[:2] == b"#!"]
+        self.python = [Script(path) for path in self.code if path.suffix == ".py" or programs[path].endswith(b"python3")]
 
     def say(self, path, line, text):
         return f"{path.relative_to(self.root)}:{line}: {text}"
@@ -58,6 +65,12 @@ class House:
         """Files of the folders, without what Python leaves."""
         return (path for top in tops for path in sorted((self.root / top).rglob("*"))
                 if path.is_file() and "__pycache__" not in path.parts)
+
+
+def first_line(path):
+    """First line of a file, bytes."""
+    with path.open("rb") as file:
+        return file.readline(80).rstrip()
 
 
 def room(path):
@@ -119,9 +132,9 @@ def includes(house):
 
 def lengths(house):
     """What is too long."""
-    for path in house.files("src", "include", "scripts", "tests"):
+    for path in house.code:
         n_lines = path.read_bytes().count(b"\n")
-        if n_lines > MOST_FILE and (path.suffix in (".c", ".h", ".py") or path.read_bytes()[:2] == b"#!"):
+        if n_lines > MOST_FILE:
             yield house.say(path, n_lines, f"longer than {MOST_FILE} lines")
         if path.name == "main.c" and n_lines > MOST_MAIN:
             yield house.say(path, n_lines, f"longer than {MOST_MAIN} lines, a screen")
@@ -132,6 +145,18 @@ def lengths(house):
             if f.n_arguments > MOST_ARGUMENTS and f.name not in LAID_DOWN:
                 said = f"{f.name} has {f.n_arguments} arguments, more than {MOST_ARGUMENTS}"
                 yield house.say(source.path, f.line, said)
+    for script in house.python:
+        for f in script.definitions:
+            if not isinstance(f, ast.ClassDef) and f.end_lineno - f.lineno > MOST_BODY:
+                yield house.say(script.path, f.lineno, f"body of {f.name} has {f.end_lineno - f.lineno} lines, more than {MOST_BODY}")
+
+
+def columns(house):
+    """What is too wide."""
+    for path in house.code:
+        for n, line in enumerate(path.read_text().splitlines(), 1):
+            if len(line) > MOST_COLUMNS:
+                yield house.say(path, n, f"{len(line)} columns, more than {MOST_COLUMNS}")
 
 
 def strata(house):
@@ -192,6 +217,18 @@ def options(house):
                 yield f"{here[1]}-{name} is read at {before[1][:-2]} too"
 
 
+def unused(house):
+    """Python that nothing uses. What begins with handle_ the standard library calls."""
+    named = collections.Counter(word for script in house.python for word in set(re.findall(r"\w+", script.text)))
+    for script in house.python:
+        for name, line in script.unused:
+            yield house.say(script.path, line, f"{name} is imported in vain")
+        own = collections.Counter(re.findall(r"\w+", script.text))
+        for f in script.definitions:
+            if named[f.name] == 1 and own[f.name] == 1 and not f.name.startswith(("__", "handle_")):
+                yield house.say(script.path, f.lineno, f"nothing names {f.name}")
+
+
 def words(house):
     """What speaks of its author's folders or work."""
     tops = [top for top in ("src", "include", "scripts", "tests", "options") if (house.root / top).is_dir()]
@@ -204,7 +241,7 @@ def words(house):
                 yield house.say(path, n, f"'{OWN.search(line)[0]}' is nobody's business here")
 
 
-RULES = (names, includes, lengths, strata, readmes, options, words)
+RULES = (names, includes, lengths, columns, strata, readmes, options, unused, words)
 
 # Files that break one rule each: rule, words of what it says, files
 MANY = "void Many(int a, int b, int c, int d,\n  int e, int f, int (*g)(int, int))\n{\n}\n"
@@ -236,11 +273,16 @@ PLANTED = (
     (lengths, "a screen", {"src/main.c": 81 * "\n"}),
     (lengths, "body of Long", {"src/model/a.c": "void Long(void)\n{\n" + 81 * "  ;\n" + "}\n"}),
     (lengths, "Many has 7 arguments", {"src/model/a.c": MANY}),
+    (lengths, "body of long", {"tests/a.py": "def long():\n" + 81 * "    pass\n" + "long()\n"}),
+    (columns, "141 columns", {"src/model/a.c": "/*" + 137 * "a" + "*/\n"}),
+    (columns, "141 columns", {"scripts/a": "#!/bin/sh\n" + 141 * "#" + "\n"}),
     (strata, "DMPlexGetDepthStratum", {"src/modes/a.c": "void A(void)\n{\n  DMPlexGetDepthStratum(dm, 0);\n}\n"}),
     (readmes, "no README.md", {"src/solver/a.c": ""}),
     (readmes, "longer than", {"src/model/README.md": 26 * "\n"}),
     (options, "-mu is read", {"src/model/a.c": MU, "src/modes/b.c": MU_TOO}),
     (options, "-law is read", {f"src/model/{k}.c": LAW % k for k in "ab"}),
+    (unused, "nothing names gone", {"tests/a.py": "def gone():\n    pass\n"}),
+    (unused, "os is imported in vain", {"scripts/a": "#!/usr/bin/env python3\nimport os\nimport sys  # noqa: F401\n"}),
     (words, "nobody's business", {"options/a.yaml": "# see " + "/".join(("", "home", "me")) + "/notes\n"}),
 )
 

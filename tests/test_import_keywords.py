@@ -141,7 +141,8 @@ def steps(folder):
     options, _ = sections(folder, "steps.inp", deck(one + three.format(""), two.format(""), three.format("").replace("4.", "9.")))
     check("OP=MOD: the force of a node is that of the last step", same("0,0,-6", options["force_force_force"]), options)
     check("OP=MOD: the force of another set stays", same("4,0,0", options["top_force_force"]), options)
-    check("OP=MOD: one pressure, the last", options["up_pressure_pressure"] == "9000000" and "up_pressure_2" not in options["loads"], options)
+    check("OP=MOD: one pressure, the last",
+          options["up_pressure_pressure"] == "9000000" and "up_pressure_2" not in options["loads"], options)
     options, _ = sections(folder, "steps.inp", deck(one, two.format(", OP=NEW")))
     check("OP=NEW: other forces are gone", options["loads"] == "force_force" and same("0,0,-6", options["force_force_force"]), options)
     options, _ = sections(folder, "steps.inp", deck(one, "*CLOAD\n7, 3, 0.\n"))
@@ -165,7 +166,8 @@ def not_taken(folder):
     nastran = "CELAS2,5,1.,7,3,,,0.04\nPBUSH,6,K,1.,2.,3.,4.\n,B,5.\nPELAS,7,1.,0.1\nENDDATA\n"
     text = decks_others.GRIDS + decks_others.HEXA + decks_others.PROPERTY.replace("PSOLID,1,1", "PSOLID,1,1,,2") + nastran
     _, listed = sections(folder, "deck.bdf", text)
-    for start in ("deck.bdf:11: PSOLID 1: integration", "deck.bdf:13: CELAS2: only", "deck.bdf:14: PBUSH: only", "deck.bdf:16: PELAS: only"):
+    for start in ("deck.bdf:11: PSOLID 1: integration", "deck.bdf:13: CELAS2: only", "deck.bdf:14: PBUSH: only",
+                  "deck.bdf:16: PELAS: only"):
         check(f"listed: {start}", sum(line.startswith(start) for line in listed) == 1, listed)
     ansys = "D,1,UX,0,0,4\nD,2,UX,0,,,,UY\nF,5,FZ,1,,8\nSFE,1,6,PRES,1,10,0,0,10\nSFE,1,1,PRES,1,3,0,0,0\nFINISH\n"
     text = decks_others.NBLOCK + decks_others.EBLOCK + "MP,EX,1,2.1E5\nMP,PRXY,1,0.3\nMP,DENS,1,7.8E-9\n" + ansys

@@ -7,7 +7,6 @@ frequencies of CalculiX's matrices are CalculiX's; damaged files are refused in 
 import argparse
 import csv
 import importlib.util
-import os
 import random
 import shutil
 import subprocess
@@ -17,9 +16,9 @@ from importlib.machinery import SourceFileLoader
 from pathlib import Path
 
 try:
-    import h5py
+    import h5py  # noqa: F401, for matrices of Matlab
     import numpy
-    import scipy.sparse
+    import scipy.sparse  # noqa: F401, for foreign_matrices
 except ImportError as error:
     print(f"skipped: no Python module {error.name}")
     sys.exit(77)
@@ -116,7 +115,8 @@ def test_unknowns(folder):
     M.write_text("2,1,2,1, 1.\n1,1,1,1, 4.\n5,1,5,1, 0.\n")
     deck = folder / "job.inp"
     deck.write_text("*HEADING\n*NODE\n1, 0., 0., 0.5\n2, 1., 0.\n*ELEMENT, TYPE=T2D2\n1, 1, 2\n")
-    status = subprocess.run([SOURCE / "scripts/import_matrices", K, M, "--nodes", deck, "-o", folder / "job"], capture_output=True, text=True)
+    status = subprocess.run([SOURCE / "scripts/import_matrices", K, M, "--nodes", deck, "-o", folder / "job"],
+                            capture_output=True, text=True)
     check("Abaqus: the command", status.returncode == 0, status.stderr)
     check("Abaqus: what was left out is named", "1e+36 on the diagonal holds it: node 1 y" in status.stdout and
           "zero in all matrices: node 5 x" in status.stdout and "Lagrange multiplier is: node -3 x" in status.stdout and
@@ -125,10 +125,13 @@ def test_unknowns(folder):
     check("Abaqus: M", numpy.array_equal(read_petsc(folder / "job/M.bin"), numpy.diag([0, 4, 1])))
     check("Abaqus: places", (folder / "job/nodes.csv").read_text() == "unknown,node,direction,x,y,z\n2,1,1,0,0,0.5\n3,2,1,1,0,0\n")
     mapping = folder / "k.mapping"
-    mapping.write_text("Matrix Eqn   Node   DOF\n" + "".join(f"{i + 1} {node} {'UX UY UZ'.split()[d - 1]}\n" for i, (node, d) in enumerate(foreign.unknowns())))
+    lines = [f"{i + 1} {node} {'UX UY UZ'.split()[d - 1]}\n" for i, (node, d) in enumerate(foreign.unknowns())]
+    mapping.write_text("Matrix Eqn   Node   DOF\n" + "".join(lines))
     foreign.harwell(folder / "K.matrix", foreign.model()["K"])
-    status = subprocess.run([SOURCE / "scripts/import_matrices", folder / "K.matrix", "--mapping", mapping, "-o", folder / "hb"], capture_output=True, text=True)
-    check("Ansys: mapping", status.returncode == 0 and (folder / "hb/unknowns.csv").read_text().splitlines()[1:3] == ["1,7,1", "2,7,2"], status.stderr)
+    status = subprocess.run([SOURCE / "scripts/import_matrices", folder / "K.matrix", "--mapping", mapping, "-o", folder / "hb"],
+                            capture_output=True, text=True)
+    check("Ansys: mapping", status.returncode == 0
+          and (folder / "hb/unknowns.csv").read_text().splitlines()[1:3] == ["1,7,1", "2,7,2"], status.stderr)
 
 
 def test_refused(folder):
@@ -141,7 +144,8 @@ def test_refused(folder):
            "wide.mtx": "%%MatrixMarket matrix coordinate real general\n2 3 1\n1 3 1\n",
            "both.mtx": "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1\n1 2 1\n",
            "lost.sti": "1 1 1.\n1 3 1.\n3 3 1.\n", "end.sti": "1 1 1.\n2 2 1."}
-    words = ["no such file", "is no ending", "its field is complex", "line 3: 'nan'", "entry (1, 1) stands twice", "2 entries, its size says 3",
+    words = ["no such file", "is no ending", "its field is complex", "line 3: 'nan'", "entry (1, 1) stands twice",
+             "2 entries, its size says 3",
              "it must be square", "above the diagonal", "its diagonal has not one entry", "its last line has no end"]
     for (name, text), why in zip(bad.items(), words):
         if text is not None:
@@ -205,7 +209,8 @@ def test_damage(folder, count):
             if apart > 4:
                 worst = worst or f"{i}: {apart} entries differ"
                 (here / f"accepted_{i}").write_bytes(data)
-        check(f"{count} damaged files, {form}", not worst and counts["refused"] > count / 4, ", ".join(f"{n} {what}" for what, n in counts.items()) + f" {worst}")
+        check(f"{count} damaged files, {form}", not worst and counts["refused"] > count / 4,
+              ", ".join(f"{n} {what}" for what, n in counts.items()) + f" {worst}")
 
 
 DECK = """*NODE,NSET=ALL
@@ -243,9 +248,11 @@ def test_calculix(folder, squeal, launcher):
     convert([folder / "stored.sti"], folder / "bar")  # alone, then with the mass
     command = [SOURCE / "scripts/import_matrices", "stored.sti", "stored.mas", "--nodes", "stored.inp", "-o", "bar"]
     status = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-    run = subprocess.run([launcher, "-n", "1", squeal, "-options_file", "bar/matrices.yaml", "-modes_target", "0", "-modes_count", "6", "-output_dir", "modes"],
+    run = subprocess.run([launcher, "-n", "1", squeal, "-options_file", "bar/matrices.yaml", "-modes_target", "0",
+                          "-modes_count", "6", "-output_dir", "modes"],
                          cwd=folder, capture_output=True, text=True)
-    check("CalculiX: shapes at the nodes of the deck", (folder / "modes/modes.xmf").exists() and "nodes.csv" in (folder / "bar/matrices.yaml").read_text())
+    check("CalculiX: shapes at the nodes of the deck",
+          (folder / "modes/modes.xmf").exists() and "nodes.csv" in (folder / "bar/matrices.yaml").read_text())
     check("CalculiX: matrices", status.returncode == run.returncode == 0, status.stderr + run.stderr)
     with (folder / "modes/modes.csv").open(newline="") as table:
         found = numpy.array([float(row["freq_hz"]) for row in csv.DictReader(table)])

@@ -93,7 +93,8 @@ def check_scripts(top, bin_dir, faults):
     faults.check("squeal-plot-modes out" in page and "scripts/plot" not in page, "scripts: the page names installed ones")
     for program in sorted({"squeal-plot-modes", "squeal-report"}):
         done = subprocess.run([bin_dir / program, "nowhere"], capture_output=True, text=True, cwd=top, check=False)
-        faults.check(done.returncode == 1 and done.stderr.count("\n") == 1, f"scripts: {program} has one line for a folder that is not there")
+        faults.check(done.returncode == 1 and done.stderr.count("\n") == 1,
+                     f"scripts: {program} has one line for a folder that is not there")
 
 
 def check_manual(place, squeal, faults):

@@ -41,7 +41,8 @@ class Runs:
 
     def run(self, ranks, *options):
         """Exit status and what it says."""
-        return subprocess.run([self.launcher, "-n", str(ranks), self.squeal, *map(str, options)], cwd=self.folder, capture_output=True, text=True)
+        return subprocess.run([self.launcher, "-n", str(ranks), self.squeal, *map(str, options)], cwd=self.folder,
+                              capture_output=True, text=True)
 
     def modes(self, name, ranks, *options):
         """Rows of modes.csv, places and displacements."""
@@ -115,8 +116,9 @@ def test_disc(runs):
     ring = runs.modes("ring", 1, *loaded, "parts.csv", "-modes_disc", "rim")
     check("-modes_disc of a table", [row["label"] for row in ring[0]] == labels)
     sweep = runs.run(1, "-terms", "k,m,g", "-k_file", "saved/K.bin", "-k_kind", "stiffness", "-m_file", "saved/M.bin", "-m_kind", "mass",
-                     "-g_file", "saved/K.bin", "-g_kind", "stiffness", "-g_parameter", "warmth", "-g_scale", "-1e-3", "-warmth", 1, "-operators_nodes",
-                     "nodes.csv", "-modes_band", "0,700", "-analysis", "sweep", "-sweep_parameter", "warmth", "-sweep_values", "1:10:3", "-output_dir", "sweep")
+                     "-g_file", "saved/K.bin", "-g_kind", "stiffness", "-g_parameter", "warmth", "-g_scale", "-1e-3", "-warmth", 1,
+                     "-operators_nodes", "nodes.csv", "-modes_band", "0,700", "-analysis", "sweep", "-sweep_parameter", "warmth",
+                     "-sweep_values", "1:10:3", "-output_dir", "sweep")
     with (runs.folder / "sweep/sweep.csv").open(newline="") as table:
         rows = list(csv.DictReader(table))
     kept = [(float(row["freq_hz"]) / (1 - 1e-3 * float(row["value"]))**0.5, row["label"]) for row in rows]

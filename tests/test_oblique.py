@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""A brake in space whose disc, pad and beam have no coordinate axis: the same kernels serve it in time, with the same motion. The
-reference is its own unmoved mesh, which is that of the built-in brake; springs have no direction, and what the table says of a
-probe is turned back. Loads are so large that the rounding of places, which gaps and the contact forces of single steps see, is
-small beside the motion; accelerations and the friction force of a single step still hold it and are not compared. Breaks where an axis is not found, or bases, supports, springs or masses go by x, y, z. With one direction
-of the disc held alone it must fall back on rows of blocks, and say the same as with those.
+"""A brake in space whose disc, pad and beam have no coordinate axis: the same kernels serve it in time, with the same
+motion. The reference is its own unmoved mesh, which is that of the built-in brake; springs have no direction, and what
+the table says of a probe is turned back. Loads are so large that the rounding of places, which gaps and the contact
+forces of single steps see, is small beside the motion; accelerations and the friction force of a single step still hold
+it and are not compared. Breaks where an axis is not found, or bases, supports, springs or masses go by x, y, z. With
+one direction of the disc held alone it must fall back on rows of blocks, and say the same as with those.
 
     test_oblique.py SQUEAL LAUNCHER"""
 
@@ -122,7 +123,8 @@ def main(squeal, launcher):
         still, first = runs.run("still", 1, *scene("rig.msh", numpy.eye(3), 0 * SHIFT))
         check("the brake's bodies are swept", len(kernels(still)) == 2 and kernels(still) == kernels(text), str(kernels(still)))
         closed = first["n_closed"]
-        check("contact events among what is compared", len(set(closed)) > 3 and first["n_stick"].max() > 0, f"{closed.min():g} to {closed.max():g} closed")
+        check("contact events among what is compared", len(set(closed)) > 3 and first["n_stick"].max() > 0,
+              f"{closed.min():g} to {closed.max():g} closed")
         reference = turned_back(first, numpy.eye(3))
         for ranks in 1, 2:
             said, table = runs.run("moved", ranks, *scene("moved.msh", turn, SHIFT))

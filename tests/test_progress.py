@@ -98,7 +98,8 @@ def check_left_and_interrupt(r):
         lines.append(process.stderr.readline())
         if not lines[-1]:
             break
-    r.check(re.fullmatch(r"(right and left|right|left) vectors: \d+ of about \d+, \d+ s left\n", lines[-1]), "time left of a loop", "".join(lines))
+    r.check(re.fullmatch(r"(right and left|right|left) vectors: \d+ of about \d+, \d+ s left\n", lines[-1]),
+            "time left of a loop", "".join(lines))
     r.check_stop(process, signal.SIGINT, "long")
 
 

@@ -71,12 +71,14 @@ def check_scene(r):
         text = (r.folder / "out/scene.yaml").read_text()
         r.check(done.returncode == 0 and (r.folder / "out/modes.csv").exists(), f"modes on {ranks}", done)
         for word in ('contact_mu: "0.25"', 'squeal_view: "true"', 'modes_contact: "static"', "# versions: squeal ", "MUMPS",
-                     f"# cost: {ranks} rank", "# stages: Model ", "# completeness: none was found missing: ", "# contact_tolerance: 1e-05", "# command: ", "modes.csv"):
+                     f"# cost: {ranks} rank", "# stages: Model ", "# completeness: none was found missing: ",
+                     "# contact_tolerance: 1e-05", "# command: ", "modes.csv"):
             r.check(word in text, f"scene.yaml on {ranks} says {word}", done)
         repeat = re.search(r"# repeat: (?:mpirun -n (\d+) )?squeal (.*)", text)
         options = repeat[2].replace(f"-output_dir {r.folder}/out", "-output_dir again").split()
         again = r.run(*options, ranks=int(repeat[1] or 1), cwd=elsewhere)
-        r.check(again.returncode == 0 and alike(elsewhere / "again/modes.csv", r.folder / "out/modes.csv"), f"scene.yaml repeats the run on {ranks}, from another folder", again)
+        r.check(again.returncode == 0 and alike(elsewhere / "again/modes.csv", r.folder / "out/modes.csv"),
+                f"scene.yaml repeats the run on {ranks}, from another folder", again)
         r.check("option" not in again.stderr, "nothing in scene.yaml is unused", again)
 
 
@@ -120,7 +122,8 @@ def check_users(r):
     for analysis in ("modes", "transient", "modes"):
         done = r.scene(analysis, "-output_fields", "0", out="users")
         r.check(done.returncode == 0 and set(names) <= set(r.files("users"))
-                and all((r.folder / "users" / name).read_text() == "precious" for name in names), f"{analysis} removes no file of the user", done)
+                and all((r.folder / "users" / name).read_text() == "precious" for name in names),
+                f"{analysis} removes no file of the user", done)
     listed = (r.folder / "users/scene.yaml").read_text()
     r.check("transient.csv" not in r.files("users") and "static.csv" not in listed, "but those of the run before", done)
 

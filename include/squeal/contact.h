@@ -4,8 +4,8 @@
    Pair p joins a slave node s and the point of the master surface that it faces, which moves as u_m = sum_i w_i u_i
    of the nodes of one master facet, with its own shape functions w_i, which may be negative where it is of second order:
    one node of weight 1 where the meshes match, up to nine where they do not. Every node of a slave face is a slave, those
-   between its corners too. n is the master's outward normal, t the direction of the slave's sliding velocity relative to the master, b = n x t. For
-   displacements u (m)
+   between its corners too. n is the master's outward normal, t the direction of the slave's sliding velocity relative
+   to the master, b = n x t. For displacements u (m)
       (N u)_p = n . (u_m - u_s)     closing of the gap
       (T u)_p = t . (u_m - u_s)     slip
       (B u)_p = b . (u_m - u_s)     transverse slip

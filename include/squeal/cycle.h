@@ -48,8 +48,8 @@ PetscErrorCode CycleSetRooms(LimitCycle cycle, ReducedRun reduced, Contact conta
 /*@
    CycleSolve - runs the transient, finds the cycle at its end and the branch through it, and writes cycle.csv. Collective.
 
-   Errors: those of ReducedIntegrate(); PETSC_ERR_USER_INPUT where loads or sliding still change, for a transient that ends at rest, or with a
-   motion that does not return; PETSC_ERR_NOT_CONVERGED from shooting.
+   Errors: those of ReducedIntegrate(); PETSC_ERR_USER_INPUT where loads or sliding still change, for a transient that
+   ends at rest, or with a motion that does not return; PETSC_ERR_NOT_CONVERGED from shooting.
 @*/
 PetscErrorCode CycleSolve(LimitCycle cycle, Results results);
 

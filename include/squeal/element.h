@@ -57,9 +57,7 @@ const Element *ElementPoint(void);
 /*@ ElementIsFormulation - whether some row has this formulation. Not collective. @*/
 PetscBool ElementIsFormulation(const char formulation[]);
 
-/*@ ElementNames - the elements as "tet4, tet10, ...", the formulations as "incompatible, full", for messages. Not
-    collective. @*/
-const char *ElementNames(void);
+/*@ ElementFormulations - the formulations as "incompatible, full", for messages. Not collective. @*/
 const char *ElementFormulations(void);
 
 /*@

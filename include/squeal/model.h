@@ -118,7 +118,8 @@ PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
 +  -model_source <rig|file> - where the mesh comes from
 .  -model_mesh <file>       - Gmsh file, format 2.2 or 4.1
 .  -model_element <incompatible|full> - formulation of 8-node hexahedra
-.  -parts, -supports, -springs, -dashpots, -joints, -points, -loads, -motions, -probes, -circles <names> - lists; each name is the prefix of its own options
+.  -parts, -supports, -springs, -dashpots, -joints, -points, -loads, -motions, -probes, -circles <names> - lists; each
+   name is the prefix of its own options
 .  -<part>_young, _poisson, _shear, _axis_1, _axis_2, _axis_3, _cylinder_axis, _cylinder_centre - elasticity, isotropic
    or not: model/scene/anisotropic.c
 .  -<part>_spin, _spin_axis, _spin_centre - steady spin of a body of revolution, rad/s, in modes

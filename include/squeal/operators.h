@@ -88,7 +88,8 @@ PetscErrorCode OperatorsGetSave(Operators operators, const char **folder);
    turn_stiffness (N m/rad), viscosity (N s/m), turn_viscosity (N m s/rad) alike, of a point mass (kg); of each part that
    spins spin (rad/s), on which pencils alone depend; of each contact mu, kn (N/m, penalty), and with friction damping
    mu_slope (s/m), force (N) and speed (m/s), or rotation (rad/s) where that is what was given; contact_mu for loaded or
-   dense matrices with H, and what -terms name (borrowed). An interface of which nothing says along what it slides has no mu. Not collective.
+   dense matrices with H, and what -terms name (borrowed). An interface of which nothing says along what it slides has
+   no mu. Not collective.
 @*/
 PetscErrorCode OperatorsGetParameters(Operators operators, PetscInt *n, const OperatorsParameter **parameters);
 

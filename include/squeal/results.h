@@ -180,9 +180,9 @@ PetscErrorCode ResultsNote(Results results, const char key[], const char format[
    ResultsFinish - ends a run that did what was asked. Collective.
 
    It writes scene.yaml: the commands of this run and of its repetition, versions, ranks, time, memory, both of each
-   stage too, what ResultsNote() was told, the files, and all options in force, as a file that -options_file reads. Then the files go that the scene.yaml of an earlier run in
-   the folder lists. All others stay, and so does what a killed run goes on from: a transient while its table is
-   unfinished, sweep_restart_*. Errors: as ResultsTableClose().
+   stage too, what ResultsNote() was told, the files, and all options in force, as a file that -options_file reads. Then
+   the files go that the scene.yaml of an earlier run in the folder lists. All others stay, and so does what a killed
+   run goes on from: a transient while its table is unfinished, sweep_restart_*. Errors: as ResultsTableClose().
 @*/
 PetscErrorCode ResultsFinish(Results results);
 

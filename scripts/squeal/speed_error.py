@@ -96,7 +96,8 @@ def draw(path, title, error_name, points, knob=""):
     for i, series in enumerate(dict.fromkeys(point.series for point in points)):
         own = [point for point in points if point.series == series]
         x, y = [point.units for point in own], [max(point.error, LEAST) for point in own]
-        axes.loglog(x, y, "-" if i < len(COLORS) else "--", marker=MARKERS[i % len(MARKERS)], color=COLORS[i % len(COLORS)], markersize=5, linewidth=1.1, label=series)
+        axes.loglog(x, y, "-" if i < len(COLORS) else "--", marker=MARKERS[i % len(MARKERS)], color=COLORS[i % len(COLORS)],
+                    markersize=5, linewidth=1.1, label=series)
         texts += [((a, b), point.setting) for a, b, point in zip(x, y, own)]
     axes.grid(True, which="major", linewidth=0.3)
     axes.margins(0.08)
@@ -123,16 +124,20 @@ def sentence(points, level, knob=""):
     good = sorted((point for point in points if point.error <= level), key=lambda point: point.units)
     if not good:
         best = min(points, key=lambda point: point.error)
-        return f"An error of {level:g} is reached by none of these; the least is {best.error:.1g}, of {best.series} with {knob}{best.setting}."
+        return (f"An error of {level:g} is reached by none of these; the least is {best.error:.1g}, of {best.series} with "
+                f"{knob}{best.setting}.")
     best = good[0]
-    named = f"For an error of {level:g} of {of} take {knob}{best.setting}" if of else f"For an error of {level:g} take {best.series} with {knob}{best.setting}"
+    choice = f"of {of} take {knob}{best.setting}" if of else f"take {best.series} with {knob}{best.setting}"
+    named = f"For an error of {level:g} {choice}"
     other = next((point for point in good if point.series != best.series), None)
     text = f"{named}: {best.units:.3g} units (error {best.error:.1g})"
     if of and len(good) == 1:
         return f"{text}; no other setting is so exact."
     if of:
         return f"{text}; {knob}{good[-1].setting}, the dearest of those that reach it, needs {good[-1].units:.3g}."
-    return f"{text}; {other.series} needs {other.units:.3g} with {knob}{other.setting}." if other else f"{text}; no other method is so exact."
+    if not other:
+        return f"{text}; no other method is so exact."
+    return f"{text}; {other.series} needs {other.units:.3g} with {knob}{other.setting}."
 
 
 def arguments(doc, name):

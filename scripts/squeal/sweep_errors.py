@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy
 
 from .exact import Pencil, exact_values
-from .program import ROOT, scene
+from .program import scene
 
 # Parameter: range around the scene's value, as a factor or as ends
 SWEPT = {"contact_kn": (1e-4, 1e4, True), "contact_mu": (0.0, 1.2, False), "pad_young": (0.25, 4, True),

@@ -109,7 +109,8 @@ static inline int MotionFarthest(const double x[8][3], int pair, int a, int b)
   return j;
 }
 
-/* Centre of the turn about the axis, rounded for a size that is not 0; whether it takes all four points to their partners' distance and height */
+/* Centre of the turn about the axis, rounded for a size that is not 0; whether it takes all four points to their
+   partners' distance and height */
 static inline int MotionIsTurn(const double x[8][3], int pair, int axis, double size, double tolerance,
                                double centre[3])
 {

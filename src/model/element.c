@@ -150,11 +150,6 @@ const char *ElementFormulations(void)
   return INCOMPATIBLE ", " FULL;
 }
 
-const char *ElementNames(void)
-{
-  return "tet4, tet10, wedge6, wedge15, hex8, hex20, hex27";
-}
-
 PetscErrorCode ElementMatrices(const Element *e, const PetscReal x[], const Elasticity *material, PetscReal stiffness[],
                                PetscReal mass[])
 {

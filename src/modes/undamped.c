@@ -11,10 +11,10 @@
 #include "solver/blockkrylov.h"
 #include <complex.h>
 
-/* Without a target, or with one near zero, the shift lies below zero, where rigid modes may be. Rounding of an eigenvalue there by its inverse,
-   1 / (kappa - shift), spoils the others by as much: 1e-8 |K| / |M| below leaves 1e-8 of the largest at worst.
-   In a band it lies amid kappa, so that few modes outside are as near as those inside; where the band begins at low
-   frequencies, which there lose digits, at a quarter. */
+/* Without a target, or with one near zero, the shift lies below zero, where rigid modes may be. Rounding of an
+   eigenvalue there by its inverse, 1 / (kappa - shift), spoils the others by as much: 1e-8 |K| / |M| below leaves 1e-8
+   of the largest at worst. In a band it lies amid kappa, so that few modes outside are as near as those inside; where
+   the band begins at low frequencies, which there lose digits, at a quarter. */
 PetscReal UndampedShift(const Window *window)
 {
   const PetscReal low = window->low * window->low, high = window->high * window->high;

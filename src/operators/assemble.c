@@ -1,6 +1,7 @@
 /*
    Terms of the bodies, springs and dashpots. Of each part p, at its Poisson's ratio, K_p (m) per unit Young's modulus E
-   (E_1 where it is not isotropic: all other moduli keep their ratio to it) and M_p (m^3) per unit density rho; of each list of springs or dashpots the diagonal matrix of its nodes' shares:
+   (E_1 where it is not isotropic: all other moduli keep their ratio to it) and M_p (m^3) per unit density rho; of each
+   list of springs or dashpots the diagonal matrix of its nodes' shares:
       K = sum_p E_p K_p + sum_s k_s D_s,   M = sum_p rho_p M_p,
       C = sum_p (alpha_p rho_p M_p + beta_p E_p K_p) + sum_d c_d D_d
    and those of bushings and points (joint.c).

@@ -3,11 +3,11 @@
       K += k_n N'N + mu k_n (-T'N)             normal stiffness and friction          (seed paper, eq. 1); with a k_n
                                                per area N'A N and -T'A N, A the areas of the pairs
       C += |mu| N / V B'B_w + mu' N T'T_w      friction damping across and along the slip, mu' = d mu / d v
-   of each interface. N is its total normal force (of the sliding state, or -contact_force), V its sliding speed or, where the slip comes from a rotation, the
-   angular velocity; B'B_w and T'T_w carry N0 / N and V / v of each pair. Only closed pairs take part; those of a group
-   g make terms of their own, with the parameter closed_g as one more factor. Signs: slip velocity of the slave relative
-   to the master is v t - d/dt (T u) t - d/dt (B u) b, friction on the master acts along it, and internal forces stand
-   on the left.
+   of each interface. N is its total normal force (of the sliding state, or -contact_force), V its sliding speed or,
+   where the slip comes from a rotation, the angular velocity; B'B_w and T'T_w carry N0 / N and V / v of each pair. Only
+   closed pairs take part; those of a group g make terms of their own, with the parameter closed_g as one more factor.
+   Signs: slip velocity of the slave relative to the master is v t - d/dt (T u) t - d/dt (B u) b, friction on the master
+   acts along it, and internal forces stand on the left.
 */
 #include "pencilimpl.h"
 #include "base/vec3.h"

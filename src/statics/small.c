@@ -3,10 +3,10 @@
 
       [Q + (W - V D) P - W Q] z = rhs - q0 - (W - V D) p0 + W q0.
 
-   Dense, it is factored by LAPACK on every rank alike, or solved by least squares where it is singular; too large for that, it is solved by GMRES, each application of W
-   and V one pair of triangular solves. The determinant is positive without friction whatever is open or closed (a
-   column is either one of W, whose eigenvalues lie in (0, 1], or one of I - W); where friction has turned its sign, the
-   equilibrium lies beyond one at which the bodies jam.
+   Dense, it is factored by LAPACK on every rank alike, or solved by least squares where it is singular; too large for
+   that, it is solved by GMRES, each application of W and V one pair of triangular solves. The determinant is positive
+   without friction whatever is open or closed (a column is either one of W, whose eigenvalues lie in (0, 1], or one of
+   I - W); where friction has turned its sign, the equilibrium lies beyond one at which the bodies jam.
 */
 #include "staticsimpl.h"
 #include "base/gather.h"

@@ -108,9 +108,9 @@ PETSC_INTERN PetscErrorCode SweepClassify(Sweep sweep);
 /* axes.c - parameters, links and values of the axes, and the places of the grid */
 PETSC_INTERN PetscErrorCode SweepAxes(Sweep sweep);
 /* sliding.c - statuses of all places and checks from the sliding state, changes of status bracketed, groups of pairs as
-   further parameters of the pencil; the status at a place, NULL for the scene's own values, and that of a sliding state; pairs closed at a point
-   (-1 without contact), and whether the point before it has another status; fewest and most pairs closed at all
-   places, and whether their statuses differ */
+   further parameters of the pencil; the status at a place, NULL for the scene's own values, and that of a sliding
+   state; pairs closed at a point (-1 without contact), and whether the point before it has another status; fewest and
+   most pairs closed at all places, and whether their statuses differ */
 PETSC_INTERN PetscErrorCode SweepStatuses(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepStatusSolve(Sweep sweep, const SweepPlace *place, PetscInt *status);
 PETSC_INTERN PetscErrorCode SweepStatusTake(Sweep sweep, const SlidingState *state, PetscInt *status);

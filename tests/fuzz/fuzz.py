@@ -16,7 +16,6 @@ import argparse
 import collections
 import csv
 import math
-import os
 import random
 import re
 import shutil

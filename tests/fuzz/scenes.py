@@ -119,7 +119,8 @@ def bases(program, folder):
     mesh(folder, "finer.msh", "blocks", "--elements", "2,2,2")
     matrices(folder)
     found = [Base("options", damage.LINES, (), OPTIONS),
-             Base("yaml", (*damage.LINES, damage.lines_shuffled, damage.lines_shuffled), ("brake.yaml",), ("-options_file", "brake.yaml", "-model_mesh", "blocks.msh")),
+             Base("yaml", (*damage.LINES, damage.lines_shuffled, damage.lines_shuffled), ("brake.yaml",),
+                  ("-options_file", "brake.yaml", "-model_mesh", "blocks.msh")),
              Base("matrix", damage.BYTES, ("K.bin", "M.bin"), ("-operators_load_k", "K.bin", "-operators_load_m", "M.bin",
                                                                "-modes_target", "0", "-modes_count", "3"))]
     for version, binary in (("2.2", ()), ("2.2", ("--binary",)), ("4.1", ()), ("4.1", ("--binary",))):

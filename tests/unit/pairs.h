@@ -50,7 +50,8 @@ static inline PetscErrorCode GroupsMake(Contact contact, PetscInt n_groups, Pets
   PetscFunctionReturn(0);
 }
 
-/* Breaks when: a pencil with all pairs closed is not what it was at first, whatever other pencils were made. Reference: copies of the first pencil */
+/* Breaks when: a pencil with all pairs closed is not what it was at first, whatever other pencils were made. Reference:
+   copies of the first pencil */
 static inline PetscErrorCode TestSame(Operators o, Mat K, Mat C, int *failed)
 {
   PencilMatrices m;

@@ -94,6 +94,28 @@ static PetscComplex RodExact(PetscReal freq, PetscReal b, PetscInt j)
   return csin(j * t) / (k * (csin((N_MASSES + 1) * t) - csin(N_MASSES * t)));
 }
 
+/* Breaks when: a maximum over the frequencies is missed, or another is told; magnitude [n] of the closed form, m/N */
+static PetscErrorCode CheckPeaks(const Run *r, PetscInt n, const PetscReal freq[], const PetscReal magnitude[],
+                                 int *failed)
+{
+  const FrfPeak *peak;
+  PetscInt       n_peaks, found = 0;
+  PetscReal      wrong = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(FrfGetPeaks(r->frf, &n_peaks, &peak));
+  for (PetscInt i = 1; i + 1 < n; i++) {
+    if (magnitude[i] <= magnitude[i - 1] || magnitude[i] < magnitude[i + 1]) continue;
+    if (found < n_peaks && peak[found].freq_hz == freq[i])
+      wrong = PetscMax(wrong, PetscAbsReal(peak[found].magnitude / magnitude[i] - 1));
+    else wrong = PETSC_MAX_REAL;
+    found++;
+  }
+  *failed += CheckTrue("peaks", found > 0 && found == n_peaks, (double)found);
+  *failed += CheckTrue("peaks where and as high as in closed form", wrong < 1e-8, wrong);
+  PetscFunctionReturn(0);
+}
+
 /* Breaks when: the residual term, the force's or the outputs' place, or the real form of complex numbers is wrong */
 static PetscErrorCode TestRod(const Scratch *s, PetscReal b, int *failed)
 {
@@ -101,6 +123,7 @@ static PetscErrorCode TestRod(const Scratch *s, PetscReal b, int *failed)
   char                  options[4 * PETSC_MAX_PATH_LEN];
   const FrfOutput      *output;
   const PetscReal      *freq, *re, *im;
+  PetscReal             magnitude[12];
   PetscInt              n, n_outputs;
   Run                   r;
 
@@ -128,7 +151,9 @@ static PetscErrorCode TestRod(const Scratch *s, PetscReal b, int *failed)
     }
     *failed += CheckClose(b > 0 ? "damped rod, relative error" : "rod, relative error", wrong / size, 0, 1e-8);
     *failed += CheckTrue("its error as stated, or rounding", wrong <= 3 * error + 1e-11 * size, wrong / error);
+    magnitude[i] = size;
   }
+  PetscCall(CheckPeaks(&r, n, freq, magnitude, failed));
   PetscCall(RunDestroy(&r));
   *failed += !ScratchRemove(s, "K.bin") || !ScratchRemove(s, "M.bin") || !ScratchRemove(s, "C.bin");
   for (int k = 0; k < 3; k++) (void)ScratchRemove(s, (const char *[]){"K.bin.info", "M.bin.info", "C.bin.info"}[k]);

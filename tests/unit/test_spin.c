@@ -60,7 +60,8 @@ static void Exact(const double p[4], const double q[4], double exact[5])
   }
 }
 
-/* mixed: of the products in the fields. Breaks when: e x (x - c) has the other sign, the axis is not taken off r, or a factor of two is lost */
+/* mixed: of the products in the fields. Breaks when: e x (x - c) has the other sign, the axis is not taken off r, or a
+   factor of two is lost */
 static int TestBox(const char name[], const Solid *solid, const double *x, double mixed)
 {
   const double         p[4] = {0.3, -1.2, 0.7, mixed}, q[4] = {0.8, 0.5, 2, -mixed};

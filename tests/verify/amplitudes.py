@@ -4,7 +4,8 @@
     verify/amplitudes.py MODES TRANSIENT [--from 2e-5] [--growth 1e-2] [--frequency 1e-4]
 
 MODES and TRANSIENT are output folders, the latter with amplitudes.csv. Each column c must obey c' = lambda c from that
-time (s) on: the slope of ln |c| is the growth, that of the phase the angular frequency, to relative tolerances. No pair changes between open and closed.
+time (s) on: the slope of ln |c| is the growth, that of the phase the angular frequency, to relative tolerances. No pair
+changes between open and closed.
 """
 
 import argparse

@@ -3,10 +3,11 @@
 transient: transient.xmf and the snapshots that it lists), as VTK and ParaView see them.
 
 VTK's HDF reader must see the hexahedra, none inverted, every node used, all parts, and for each mode of the table a
-finite shape that is not zero. With --kinds it must see cells of these types of VTK in place of hexahedra of first order,
-with the nodes between corners in the middle of VTK's edges and faces, of a mesh with straight edges. The XDMF file must name datasets that exist, with their true sizes, and the same
-attributes at each step, since ParaView steps through them. A wrong order of corners, a node lost or doubled between
-ranks, a shape under the wrong mode and a stale path all fail here.
+finite shape that is not zero. With --kinds it must see cells of these types of VTK in place of hexahedra of first
+order, with the nodes between corners in the middle of VTK's edges and faces, of a mesh with straight edges. The XDMF
+file must name datasets that exist, with their true sizes, and the same attributes at each step, since ParaView steps
+through them. A wrong order of corners, a node lost or doubled between ranks, a shape under the wrong mode and a stale
+path all fail here.
 
 The frames of a film must be numbered from 0, have growing times and the mesh, and displacements and velocities that
 are finite, and not all zero in the last one. A frame left out or listed twice fails.

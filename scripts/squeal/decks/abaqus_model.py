@@ -19,7 +19,8 @@ KNOWN = {"MATERIAL": {"NAME"}, "DENSITY": set(), "ELASTIC": {"TYPE"}, "DAMPING":
                           "TIED"},
          "SURFACE INTERACTION": {"NAME"}, "FRICTION": set(), "SURFACE BEHAVIOR": {"PRESSURE-OVERCLOSURE"},
          "CHANGE FRICTION": {"INTERACTION"}, "CLOAD": {"OP"}, "DLOAD": {"OP"}, "DSLOAD": {"OP"},
-         "MOTION": {"ROTATION", "TYPE"}, "STEP": {"NAME", "PERTURBATION", "INC"}, "FREQUENCY": {"EIGENSOLVER", "STORAGE", "NORMALIZATION", "SOLVER"}}
+         "MOTION": {"ROTATION", "TYPE"}, "STEP": {"NAME", "PERTURBATION", "INC"},
+         "FREQUENCY": {"EIGENSOLVER", "STORAGE", "NORMALIZATION", "SOLVER"}}
 
 
 def direction(word, place, keyword, reader):
@@ -246,7 +247,8 @@ def do_motion(reader, scope, card):
 def do_step(reader, _, card):
     reader.steps += 1
     if reader.steps == 2:
-        reader.deck.note(card.place, "*STEP: the scene has the supports and loads of all steps, of the same set and direction the last one; see which you want")
+        reader.deck.note(card.place, "*STEP: the scene has the supports and loads of all steps, of the same set and direction "
+                                     "the last one; see which you want")
 
 
 def do_frequency(reader, _, card):

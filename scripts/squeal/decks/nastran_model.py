@@ -101,7 +101,8 @@ def read_properties(deck, tables, mesh):
             if system not in mesh.systems:
                 raise table.place(row).wrong(f"PSOLID {number}: there is no coordinate system {system}")
             if any(table.words(row)[3:]):
-                deck.note(table.place(row), f"PSOLID {number}: integration and output ({', '.join(filter(None, table.words(row)[3:]))}) are not read")
+                deck.note(table.place(row),
+                          f"PSOLID {number}: integration and output ({', '.join(filter(None, table.words(row)[3:]))}) are not read")
             properties[number] = str(material), axes_of(mesh.systems[system], table.place(row)), table.place(row)
     if not properties:
         bare_parts(deck, mesh)

@@ -103,7 +103,8 @@ def pair_cards(contact):
 def frequency_cards(deck, perturbed=False):
     """The modes that are asked for: so many of a band, or the lowest."""
     count, low, high, _ = deck.modes
-    return ["*STEP, PERTURBATION" if perturbed else "*STEP", "*FREQUENCY", f"{count}, {real(low)}, {real(high)}" if high > 0 else str(count),
+    return ["*STEP, PERTURBATION" if perturbed else "*STEP", "*FREQUENCY",
+            f"{count}, {real(low)}, {real(high)}" if high > 0 else str(count),
             "*END STEP"]
 
 

@@ -222,7 +222,8 @@ def contact_stiffness(build, owner, slave):
     faces = build.face_nodes(slave)
     area = sum(face_shares(build.x[nodes], False).sum() for nodes in faces)
     count = len(numpy.unique(numpy.concatenate([nodes.ravel() for nodes in faces])))
-    build.notes.append(f"{owner}_kn {options.text(f'{owner}_kn')}: N/m of each of {count} pairs becomes N/m^3 on {area:.6g} m^2, their mean")
+    build.notes.append(f"{owner}_kn {options.text(f'{owner}_kn')}: N/m of each of {count} pairs becomes N/m^3 on {area:.6g} m^2, "
+                       "their mean")
     return options.number(f"{owner}_kn") * count / area
 
 

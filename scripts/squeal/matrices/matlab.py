@@ -179,5 +179,6 @@ def read_hdf5(path):
             elif isinstance(item, h5py.Group) and "jc" in item and "ir" in item:
                 start = values(path, item["jc"], whole)
                 if int(item.attrs["MATLAB_sparse"]) == len(start) - 1:
-                    found.append(sparse(path, name, len(start) - 1, values(path, item["ir"], whole), start, values(path, item["data"], real)))
+                    found.append(sparse(path, name, len(start) - 1, values(path, item["ir"], whole), start,
+                                        values(path, item["data"], real)))
     return found

@@ -30,7 +30,8 @@ def finish(path, name, head, row, column, value):
     """Entries of one matrix; zeros of dense columns are left out."""
     columns, rows, form, kind = head
     some = [i for i, number in enumerate(value) if number != 0]
-    one = entries(name, path, (abs(rows), columns), [row[i] for i in some], [column[i] for i in some], [value[i] for i in some], FORMS[form])
+    one = entries(name, path, (abs(rows), columns), [row[i] for i in some], [column[i] for i in some], [value[i] for i in some],
+                  FORMS[form])
     if form == 6 and (rows == columns or -rows == columns) and (one.matrix() != one.matrix().T).nnz:
         raise BadInput(f"{path}: {name} is said to be symmetric, and is not")
     return one

@@ -69,6 +69,6 @@ def print_onsets(rows, limits):
     """One line for each onset."""
     print_table("onsets", ("parameter", "value", "its mesh", "%", "order", "freq, Hz", "its mesh", "kind", "label"), *(
         (row["parameter"], f"{row['critical_value']:.6g}", short(value.error, ".3g"),
-         short(100 * value.error / row["critical_value"], ".2g") if row["critical_value"] else "-", order_text(value), f"{row['freq_hz']:.2f}",
-         short(freq.error, ".3g"), row["kind"], row["label"]) for row, (value, freq) in zip(rows, limits)))
+         short(100 * value.error / row["critical_value"], ".2g") if row["critical_value"] else "-", order_text(value),
+         f"{row['freq_hz']:.2f}", short(freq.error, ".3g"), row["kind"], row["label"]) for row, (value, freq) in zip(rows, limits)))
     print_legend([value for value, _ in limits])

@@ -33,8 +33,8 @@ typedef struct {
   PetscReal       *f;  /* internal forces, N */
 } BodiesStep;
 
-/* Kinetic energy is that of points, too. Sums over this rank (a number shared by ranks is counted once over all of them), at the call of BodiesAdvance() with
-   u_{n+1}, v = v_{n+1/2} */
+/* Kinetic energy is that of points, too. Sums over this rank (a number shared by ranks is counted once over all of
+   them), at the call of BodiesAdvance() with u_{n+1}, v = v_{n+1/2} */
 typedef struct {
   PetscReal kinetic;     /* 1/2 v'M v, J */
   PetscReal strain;      /* 1/2 u_{n+1}'K u_n, springs included, J */
@@ -97,8 +97,8 @@ PetscErrorCode BodiesSetPoints(Bodies bodies, PetscInt n_contact, const PetscInt
     BodiesSetPoints(). Collective. @*/
 PetscErrorCode BodiesMakeRigid(Bodies bodies, PetscReal x[]);
 
-/*@ BodiesAddInertia - adds the inertial forces of points, and those that hold rigid sets together, to f, N, which holds all others but those of contact, complete
-    at every copy: then minv f is the acceleration. Collective. @*/
+/*@ BodiesAddInertia - adds the inertial forces of points, and those that hold rigid sets together, to f, N, which holds
+    all others but those of contact, complete at every copy: then minv f is the acceleration. Collective. @*/
 PetscErrorCode BodiesAddInertia(Bodies bodies, PetscReal f[]);
 
 /*@ BodiesApply - kx = K x and cx = C x (NULL where not needed), complete at shared nodes. Collective. @*/

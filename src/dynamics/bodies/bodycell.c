@@ -1,6 +1,7 @@
 /*
-   Cells of the bodies: stiffness K_e (N/m) with the present Young's modulus, lumped mass (kg) and Rayleigh factors of their part, C_e = alpha M_e + beta K_e; and forces K_e u_e cell by cell, with displacements
-   relative to the first node of each, so that a translation gives none.
+   Cells of the bodies: stiffness K_e (N/m) with the present Young's modulus, lumped mass (kg) and Rayleigh factors of
+   their part, C_e = alpha M_e + beta K_e; and forces K_e u_e cell by cell, with displacements relative to the first
+   node of each, so that a translation gives none.
 */
 #include "bodiesimpl.h"
 

@@ -1,6 +1,6 @@
 /*
-   Many points on the reduced model. Each point is a dense problem of its own, so ranks share the points, not a point; the results are then sent
-   to all ranks, bit by bit the same.
+   Many points on the reduced model. Each point is a dense problem of its own, so ranks share the points, not a point;
+   the results are then sent to all ranks, bit by bit the same.
 */
 #include "points.h"
 #include "base/progress.h"

@@ -37,8 +37,8 @@ PetscReal ReducedModesWorst(const ReducedModes *modes, const ReducedWindow *wind
 /* The same at n points, without rounding. Collective. */
 PetscErrorCode PointsEstimate(const PointGroups *groups, const Reduced *reduced, const ReducedWindow *window,
                               PetscInt n, const PetscReal points[], PetscReal worst[]);
-/* Extent of the points along each parameter, scale[n_parameters] of points [n][n_parameters]: the length of the range, or the negative logarithm of
-   its ratio where the ends differ by a factor of RATIO_FROM; 0 for a parameter that does not vary. Groups of pairs that
-   open or close count as one parameter together: the distance of two statuses, squared, is the share of the groups in
-   which they differ. */
+/* Extent of the points along each parameter, scale[n_parameters] of points [n][n_parameters]: the length of the range,
+   or the negative logarithm of its ratio where the ends differ by a factor of RATIO_FROM; 0 for a parameter that does
+   not vary. Groups of pairs that open or close count as one parameter together: the distance of two statuses, squared,
+   is the share of the groups in which they differ. */
 PetscErrorCode PointsScale(Pencil pencil, PetscInt n_points, const PetscReal points[], PetscReal scale[]);
