@@ -1,18 +1,32 @@
 /*
    Products of a sparse matrix with many vectors at once, Y = A X. PETSc's MatMatMult() takes the vectors column by
-   column, four at a time, and fetches an entry of each from another place in memory; here BLOCK_WIDTH of them lie side by
-   side, so that one entry of A meets as many neighbours. The sums of a row are in the order of MatMult().
+   column, four at a time, and fetches an entry of each from another place in memory; here BLOCK_WIDTH of them, or
+   BLOCK_NARROW where there are no more, lie side by side, so that one entry of A meets as many neighbours, and the three
+   rows of a node go together. The sums of a row are in the order of MatMult().
 */
 #include "base/versions.h"
 #include "orthonormal.h"
 
-#define BLOCK_WIDTH 16
+#define BLOCK_WIDTH  16
+#define BLOCK_NARROW 8
+#define PACK_ROWS    64
+#define LANES        8
 
-/* Columns first .. first + m - 1 of x side by side, [n][BLOCK_WIDTH], zeros where there are fewer */
-static void ColumnsPack(PetscInt n, PetscInt m, PetscInt stride, const PetscScalar x[], PetscScalar packed[])
+#define ROWS_TOGETHER 3 /* of a node, so that no sum waits for the one before */
+
+typedef PetscScalar BlockLanes __attribute__((vector_size(64), aligned(8), may_alias));
+
+/* Columns 0 .. m - 1 of x side by side, [n][width], zeros where there are fewer; a few rows at a time, whose packed
+   columns stay in the cache */
+static void ColumnsPack(PetscInt n, PetscInt m, PetscInt width, PetscInt stride, const PetscScalar x[],
+                        PetscScalar packed[])
 {
-  for (PetscInt j = 0; j < BLOCK_WIDTH; j++)
-    for (PetscInt i = 0; i < n; i++) packed[i * BLOCK_WIDTH + j] = j < m ? x[j * stride + i] : 0;
+  for (PetscInt first = 0; first < n; first += PACK_ROWS) {
+    const PetscInt last = PetscMin(n, first + PACK_ROWS);
+
+    for (PetscInt j = 0; j < width; j++)
+      for (PetscInt i = first; i < last; i++) packed[i * width + j] = j < m ? x[j * stride + i] : 0;
+  }
 }
 
 /* Compressed rows */
@@ -22,20 +36,72 @@ typedef struct {
   const PetscScalar *a;
 } Rows;
 
-/* Rows times packed columns; y [m] columns, stride apart */
-static VERSIONS void RowsMultiply(const Rows *rows, const PetscScalar packed[], PetscInt m, PetscInt stride,
-                                  PetscScalar y[])
+/* Columns side by side, and the m of them, stride apart, that the products of rows are put into */
+typedef struct {
+  const PetscScalar *packed;
+  PetscInt           m, stride;
+  PetscScalar       *y;
+} Columns;
+
+/* Rows i .. i + count - 1, which are as long and, where alike, have the same columns, times `width` columns */
+INTO_VERSIONS void RowsTimes(const Rows *rows, PetscInt i, PetscInt count, PetscBool alike, PetscInt width,
+                             const Columns *columns)
 {
-  for (PetscInt i = 0; i < rows->n; i++) {
-    PetscScalar sum[BLOCK_WIDTH] = {0};
+  const PetscInt     n = rows->ia[i + 1] - rows->ia[i], *ja = &rows->ja[rows->ia[i]], parts = width / LANES;
+  const PetscScalar *a = &rows->a[rows->ia[i]];
+  BlockLanes         sum[ROWS_TOGETHER][BLOCK_WIDTH / LANES];
 
-    for (PetscInt k = rows->ia[i]; k < rows->ia[i + 1]; k++) {
-      const PetscScalar *x = &packed[rows->ja[k] * BLOCK_WIDTH], value = rows->a[k];
+  for (PetscInt c = 0; c < count; c++)
+    for (PetscInt h = 0; h < parts; h++) sum[c][h] = (BlockLanes){0};
+  for (PetscInt k = 0; k < n; k++)
+    for (PetscInt c = 0; c < count; c++) {
+      const BlockLanes *x = (const BlockLanes *)&columns->packed[ja[(alike ? 0 : c * n) + k] * width];
 
-      for (PetscInt j = 0; j < BLOCK_WIDTH; j++) sum[j] += value * x[j];
+      for (PetscInt h = 0; h < parts; h++) sum[c][h] += a[c * n + k] * x[h];
     }
-    for (PetscInt j = 0; j < m; j++) y[j * stride + i] = sum[j];
+  for (PetscInt c = 0; c < count; c++)
+    for (PetscInt j = 0; j < columns->m; j++) columns->y[j * columns->stride + i + c] = sum[c][j / LANES][j % LANES];
+}
+
+/* Whether rows i .. i + ROWS_TOGETHER - 1 are as long as one another; alike: they have the same columns, as those of a node
+   have in a stiffness */
+INTO_VERSIONS PetscBool RowsMatch(const Rows *rows, PetscInt i, PetscBool *alike)
+{
+  const PetscInt *ia = rows->ia, *ja = rows->ja;
+
+  *alike = PETSC_FALSE;
+  if (i + ROWS_TOGETHER > rows->n) return PETSC_FALSE;
+  for (PetscInt c = 1; c < ROWS_TOGETHER; c++)
+    if (ia[i + c + 1] - ia[i + c] != ia[i + 1] - ia[i]) return PETSC_FALSE;
+  *alike = PETSC_TRUE;
+  for (PetscInt c = 1; c < ROWS_TOGETHER; c++)
+    if (memcmp(&ja[ia[i]], &ja[ia[i + c]], (size_t)(ia[i + 1] - ia[i]) * sizeof(*ja))) *alike = PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* All rows */
+INTO_VERSIONS void RowsPass(const Rows *rows, PetscInt width, const Columns *columns)
+{
+  for (PetscInt i = 0, count; i < rows->n; i += count) {
+    PetscBool       alike;
+    const PetscBool together = RowsMatch(rows, i, &alike);
+
+    count = together ? ROWS_TOGETHER : 1;
+    if (!together)
+      RowsTimes(rows, i, 1, PETSC_TRUE, width, columns);
+    else if (alike)
+      RowsTimes(rows, i, ROWS_TOGETHER, PETSC_TRUE, width, columns);
+    else
+      RowsTimes(rows, i, ROWS_TOGETHER, PETSC_FALSE, width, columns);
   }
+}
+
+static VERSIONS void RowsMultiply(const Rows *rows, PetscInt width, const Columns *columns)
+{
+  if (width == BLOCK_NARROW)
+    RowsPass(rows, BLOCK_NARROW, columns);
+  else
+    RowsPass(rows, BLOCK_WIDTH, columns);
 }
 
 /* On one rank */
@@ -58,10 +124,11 @@ static PetscErrorCode ApplySequential(Mat A, Mat X, Mat Y)
   PetscCall(MatDenseGetArray(Y, &y));
   PetscCall(PetscMalloc1(n_rows * BLOCK_WIDTH, &packed));
   for (PetscInt first = 0; first < n_columns; first += BLOCK_WIDTH) {
-    const PetscInt m = PetscMin(BLOCK_WIDTH, n_columns - first);
+    const PetscInt m     = PetscMin(BLOCK_WIDTH, n_columns - first);
+    const PetscInt width = m <= BLOCK_NARROW ? BLOCK_NARROW : BLOCK_WIDTH;
 
-    ColumnsPack(n_rows, m, ldx, &x[first * ldx], packed);
-    RowsMultiply(&rows, packed, m, ldy, &y[first * ldy]);
+    ColumnsPack(n_rows, m, width, ldx, &x[first * ldx], packed);
+    RowsMultiply(&rows, width, &(Columns){packed, m, ldy, &y[first * ldy]});
   }
   PetscCall(PetscFree(packed));
   PetscCall(PetscLogFlops(2. * rows.ia[rows.n] * n_columns));

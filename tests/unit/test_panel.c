@@ -1,8 +1,10 @@
 /*
    Unit test of solver/panel: products of tall matrices with narrow blocks against sums in long double, for numbers of rows
    and columns about the sizes of a slice and of a step. What a slice or a rest of it leaves out or takes twice, and columns
-   that lie apart, would show.
+   that lie apart, would show. And solver/blockproduct, a sparse matrix times so many vectors, against MatMult(): what takes
+   rows for alike that are not, or a rest of rows or columns for none, would show.
 */
+#include "solver/orthonormal.h"
 #include "solver/panel.h"
 #include "check.h"
 #include "petscmain.h"
@@ -111,6 +113,79 @@ static PetscErrorCode SizeDiffers(PetscInt rows, PetscInt n, PetscInt m, PetscRe
   PetscFunctionReturn(0);
 }
 
+/* A sparse matrix whose rows are of many kinds: three with the same columns, three as long with others, and three that are
+   longer and longer, of which the first may be empty */
+static PetscErrorCode SparseMake(PetscInt rows, PetscInt columns, Mat *A)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, rows, columns, columns, NULL, A));
+  for (PetscInt i = 0; i < rows; i++) {
+    const PetscInt kind = i / 3 % 3, length = kind == 2 ? i % 3 * 4 : 7, first = kind == 0 ? i / 3 : 2 * i;
+
+    for (PetscInt k = 0; k < length; k++)
+      PetscCall(MatSetValue(*A, i, (first + 5 * k) % columns, sin(i + 0.3 * k), INSERT_VALUES));
+  }
+  PetscCall(MatAssemblyBegin(*A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*A, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+/* Raises *worst to the largest difference of A X from its columns by MatMult(), for m columns that lie apart */
+static PetscErrorCode ProductDiffers(Mat A, PetscInt m, PetscReal *worst)
+{
+  PetscInt  rows, columns;
+  PetscReal norm;
+  Panel     x, y;
+  Mat       X, Y;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetSize(A, &rows, &columns));
+  PetscCall(PanelMake(columns, m, 0.4, &x));
+  PetscCall(PanelMake(rows, m, 0.9, &y));
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, columns, m, x.a, &X));
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, rows, m, y.a, &Y));
+  PetscCall(MatDenseSetLDA(X, x.stride));
+  PetscCall(MatDenseSetLDA(Y, y.stride));
+  PetscCall(BlockMultiply(A, X, Y));
+  for (PetscInt j = 0; j < m; j++) {
+    Vec u, v, expected;
+
+    PetscCall(MatDenseGetColumnVecRead(X, j, &u));
+    PetscCall(MatDenseGetColumnVecRead(Y, j, &v));
+    PetscCall(VecDuplicate(v, &expected));
+    PetscCall(MatMult(A, u, expected));
+    PetscCall(VecAXPY(expected, -1, v));
+    PetscCall(VecNorm(expected, NORM_INFINITY, &norm));
+    *worst = Worse(*worst, norm);
+    PetscCall(VecDestroy(&expected));
+    PetscCall(MatDenseRestoreColumnVecRead(Y, j, &v));
+    PetscCall(MatDenseRestoreColumnVecRead(X, j, &u));
+  }
+  PetscCall(MatDestroy(&X));
+  PetscCall(MatDestroy(&Y));
+  PetscCall(PetscFree(x.a));
+  PetscCall(PetscFree(y.a));
+  PetscFunctionReturn(0);
+}
+
+/* Sparse products of many sizes */
+static PetscErrorCode TestSparse(int *failed)
+{
+  const PetscInt rows[] = {1, 3, 64, 200}, widths[] = {1, 7, 8, 9, 16, 19, 33};
+  PetscReal      worst = 0;
+
+  PetscFunctionBeginUser;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(rows); i++) {
+    Mat A;
+
+    PetscCall(SparseMake(rows[i], 150, &A));
+    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(widths); k++) PetscCall(ProductDiffers(A, widths[k], &worst));
+    PetscCall(MatDestroy(&A));
+  }
+  *failed += CheckClose("sparse products of 28 sizes, largest difference", worst, 0, 1e-14);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode TestPanel(PetscMPIInt size, int *failed)
 {
   const PetscInt rows[] = {0, 1, 7, 8, 9, 255, 256, 263, 264, 521}, columns[] = {0, 1, 2, 7, 40},
@@ -126,6 +201,7 @@ static PetscErrorCode TestPanel(PetscMPIInt size, int *failed)
         worst = Worse(worst, one);
       }
   *failed += CheckClose("300 sizes, largest difference", worst, 0, 1e-12);
+  PetscCall(TestSparse(failed));
   PetscFunctionReturn(0);
 }
 
