@@ -41,11 +41,11 @@ typedef struct {
   const PetscScalar *packed;
   PetscInt           m, stride;
   PetscScalar       *y;
-} Columns;
+} PackedColumns;
 
 /* Rows i .. i + count - 1, which are as long and, where alike, have the same columns, times `width` columns */
 INTO_VERSIONS void RowsTimes(const Rows *rows, PetscInt i, PetscInt count, PetscBool alike, PetscInt width,
-                             const Columns *columns)
+                             const PackedColumns *columns)
 {
   const PetscInt     n = rows->ia[i + 1] - rows->ia[i], *ja = &rows->ja[rows->ia[i]], parts = width / LANES;
   const PetscScalar *a = &rows->a[rows->ia[i]];
@@ -80,7 +80,7 @@ INTO_VERSIONS PetscBool RowsMatch(const Rows *rows, PetscInt i, PetscBool *alike
 }
 
 /* All rows */
-INTO_VERSIONS void RowsPass(const Rows *rows, PetscInt width, const Columns *columns)
+INTO_VERSIONS void RowsPass(const Rows *rows, PetscInt width, const PackedColumns *columns)
 {
   for (PetscInt i = 0, count; i < rows->n; i += count) {
     PetscBool       alike;
@@ -96,7 +96,7 @@ INTO_VERSIONS void RowsPass(const Rows *rows, PetscInt width, const Columns *col
   }
 }
 
-static VERSIONS void RowsMultiply(const Rows *rows, PetscInt width, const Columns *columns)
+static VERSIONS void RowsMultiply(const Rows *rows, PetscInt width, const PackedColumns *columns)
 {
   if (width == BLOCK_NARROW)
     RowsPass(rows, BLOCK_NARROW, columns);
@@ -128,7 +128,7 @@ static PetscErrorCode ApplySequential(Mat A, Mat X, Mat Y)
     const PetscInt width = m <= BLOCK_NARROW ? BLOCK_NARROW : BLOCK_WIDTH;
 
     ColumnsPack(n_rows, m, width, ldx, &x[first * ldx], packed);
-    RowsMultiply(&rows, width, &(Columns){packed, m, ldy, &y[first * ldy]});
+    RowsMultiply(&rows, width, &(PackedColumns){packed, m, ldy, &y[first * ldy]});
   }
   PetscCall(PetscFree(packed));
   PetscCall(PetscLogFlops(2. * rows.ia[rows.n] * n_columns));
