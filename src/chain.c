@@ -213,7 +213,6 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscCall(StaticsSetOperators(chain->statics, chain->operators));
   PetscCall(DynamicsSetOperators(chain->dynamics, chain->operators, chain->statics));
   PetscCall(ReducedSetRooms(chain->reduced, chain->dynamics, chain->modes));
-  PetscCall(CycleSetRooms(chain->cycle, chain->reduced, chain->contact));
   PetscCall(ModesGetContact(chain->modes, &is_static));
   PetscCall(StaticsCheckUse(chain->statics, is_static && chain->analysis != ANALYSIS_STATIC));
   PetscCall(OperatorsCreatePoint(chain->operators, &chain->p));
@@ -222,6 +221,7 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscCall(SweepSetModes(chain->sweep, chain->modes));
   if (is_static) PetscCall(SweepSetStatics(chain->sweep, chain->statics));
   PetscCall(MapSetRooms(chain->map, chain->reduced, chain->operators, chain->p));
+  PetscCall(CycleSetRooms(chain->cycle, chain->reduced, chain->operators, chain->p));
   PetscCall(FrfSetOperators(chain->frf, chain->operators));
   PetscCall(FrfSetModes(chain->frf, chain->modes));
   if (chain->analysis == ANALYSIS_FRF) PetscCall(FrfSetUp(chain->frf));

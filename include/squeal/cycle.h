@@ -1,16 +1,26 @@
 /*
    Cycle - limit cycles of the reduced model (reduced.h) directly: a periodic motion under constant loads and sliding, by
-   shooting with Newton's method, its stability by Floquet multipliers, and the branch of such cycles over a friction
-   coefficient through folds.
+   shooting with Newton's method, its stability by Floquet multipliers, and the branch of such cycles over a parameter through
+   folds: friction, its slope or the speed of a contact, a load, or a parameter of the bodies such as a modulus.
 
    The state x = (eta, rate, lambda, q) at t_n is all that a step knows of the past. N steps of length T / N are the map
-   Phi(x, T, mu); its derivative M = dPhi/dx is the product of the derivatives of the steps, exact where no status of a pair
+   Phi(x, T, p), p the parameter; its derivative M = dPhi/dx is the product of the derivatives of the steps, exact where no status of a pair
    changes at once: the laws are solved for the statuses that each step ended with. Then (solver/shooting.h)
 
-      Phi(x, T, mu) = x,     phase,     and along a branch the distance in (eta, rate, T, mu): pseudo-arclength.
+      Phi(x, T, p) = x,     phase,     and along a branch the distance in (eta, rate, T, p): pseudo-arclength.
+
+   A parameter of the bodies changes their modes: they are reduced at Chebyshev points of its range, brought to common coordinates,
+   and the matrices interpolated (src/reduced/cycle/family.c), to a stated error. Derivatives in T and p are central differences of
+   the flow.
 
    A cycle is stable where all eigenvalues of M but that of the phase lie inside the unit circle. The phase's is 1 in
-   continuous time; steps in which pairs open and close break the symmetry in time, and it is off by their length.
+   continuous time; steps in which pairs open and close break the symmetry in time, and it is off by their length. It is told by
+   its vector, the motion along the cycle. Where a second vector is as near to that (at a fold), or the largest modulus is nearer to 1
+   than its own error, the class is `numerical`: stability cannot be told.
+
+   A branch begins at the end of a transient, or where a mode of the sliding state becomes unstable (src/reduced/cycle/onset.c). Where
+   its parameter turns back the fold is found, dp/ds = 0; the error of its parameter is that of finding it and the
+   difference to the fold of twice the steps.
 
    Directions in which nothing holds the bodies, so that a shift changes no force, are taken out: without that M - I is singular.
 
@@ -36,20 +46,25 @@ PetscErrorCode CycleCreate(MPI_Comm comm, LimitCycle *cycle);
 .  -cycle_rtol <1e-9>      - of Phi - x, relative to the size of the vibration; 1e-13 to 1e-3
 .  -cycle_max_it <30>      - of Newton's method
 .  -cycle_verify <true>    - once more with twice the steps, for the errors
-.  -cycle_parameter <name> - a contact's friction coefficient, e.g. contact_mu, over which the branch is followed
+.  -cycle_parameter <name> - an option of the scene, e.g. contact_mu or pad_young, over which the branch is followed
 .  -cycle_range <lo,hi>    - where the branch ends
--  -cycle_points <60>      - cycles on it, at most; half of them each way
+.  -cycle_points <60>      - cycles on it, at most; half of them the first way
+.  -cycle_start <transient|mode> - the first cycle: at the end of the transient, or near the onset of a mode's instability
+-  -cycle_amplitude <0.3>  - change of the pairs' normal forces in the latter, of those at rest
 @*/
 PetscErrorCode CycleSetFromOptions(LimitCycle cycle);
 
-/*@ CycleSetRooms - the reduced run, at whose end a cycle is looked for, and the contacts (borrowed). Collective. @*/
-PetscErrorCode CycleSetRooms(LimitCycle cycle, ReducedRun reduced, Contact contact);
+/*@ CycleSetRooms - the reduced run, at whose end a cycle is looked for, and the operators (borrowed), with the values p
+    [parameters] of their parameters, NULL for those of the scene. Collective. @*/
+PetscErrorCode CycleSetRooms(LimitCycle cycle, ReducedRun reduced, Operators operators, const PetscReal p[]);
 
 /*@
-   CycleSolve - runs the transient, finds the cycle at its end and the branch through it, and writes cycle.csv. Collective.
+   CycleSolve - runs the transient, finds the cycle at its end and the branch through it, or that from an onset, and writes cycle.csv and
+   cycle_probes.csv, whole with each cycle. Collective.
 
-   Errors: those of ReducedIntegrate(); PETSC_ERR_USER_INPUT where loads or sliding still change, for a transient that
-   ends at rest, or with a motion that does not return; PETSC_ERR_NOT_CONVERGED from shooting.
+   Errors: those of ReducedIntegrate(); PETSC_ERR_USER_INPUT for a parameter that cannot be varied or a range in which it cannot
+   be, where loads or sliding still change, for a transient that ends at rest, or with a motion that does not return, and where no mode
+   becomes unstable; PETSC_ERR_NOT_CONVERGED where shooting finds no first cycle.
 @*/
 PetscErrorCode CycleSolve(LimitCycle cycle, Results results);
 

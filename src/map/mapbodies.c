@@ -66,7 +66,7 @@ PetscErrorCode MapBodiesCreate(Map map, PetscInt line, MapBodies *b)
   PetscCall(PetscArraycpy(p, map->p, n));
   for (PetscInt k = 1; k < map->n_axes; k++)
     for (PetscInt i = 0; i < map->axis[k].n_moved; i++)
-      if (map->axis[k].moved[i].kind == MAP_BODY) p[map->axis[k].moved[i].index] = map->axis[k].value[line];
+      if (map->axis[k].moved[i].kind == REDUCED_BODY) p[map->axis[k].moved[i].index] = map->axis[k].value[line];
   PetscCall(ReducedReduceAt(map->reduced, 0, p, &run));
   PetscCall(MapBodiesTake(run, b));
   PetscCall(ReducedDestroy(&run));
@@ -78,21 +78,10 @@ PetscErrorCode MapBodiesCreate(Map map, PetscInt line, MapBodies *b)
   PetscFunctionReturn(0);
 }
 
-/* Gives a parameter its value at a place */
-static void MapBodiesSet(MapBodies *b, const MapParameter *p, PetscReal value, PetscReal loads[])
-{
-  if (p->kind == MAP_LOAD) loads[p->index] = value / p->value;
-  for (PetscInt i = 0; i < b->model.n_pairs; i++) {
-    if (b->interface[i] != p->index) continue;
-    if (p->kind == MAP_MU) b->model.mu[i] = value;
-    if (p->kind == MAP_SLOPE) b->model.slope[i] = value;
-    if (p->kind == MAP_SPEED) b->model.speed[i] = b->speed[i] * value / p->value;
-  }
-}
-
 PetscErrorCode MapBodiesMove(Map map, const MapPoint *at, MapBodies *b, PetscReal sliding[], PetscReal loads[])
 {
-  const PetscInt n = b->model.n_pairs, index[MAP_MAX_AXES] = {at->place, at->line};
+  const PetscInt     n = b->model.n_pairs, index[MAP_MAX_AXES] = {at->place, at->line};
+  const ReducedMoved moved = {&b->model, b->interface, b->speed, loads};
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(b->model.mu, b->mu, n));
@@ -101,7 +90,7 @@ PetscErrorCode MapBodiesMove(Map map, const MapPoint *at, MapBodies *b, PetscRea
   for (PetscInt i = 0; i < b->model.n_loads; i++) loads[i] = 1;
   for (PetscInt k = 0; k < map->n_axes; k++)
     for (PetscInt i = 0; i < map->axis[k].n_moved; i++)
-      MapBodiesSet(b, &map->axis[k].moved[i], map->axis[k].value[index[k]], loads);
+      ReducedParameterMove(&map->axis[k].moved[i], map->axis[k].value[index[k]], &moved);
   for (PetscInt i = 0; i < n; i++) sliding[i] = b->model.speed[i] * map->dt;
   PetscFunctionReturn(0);
 }

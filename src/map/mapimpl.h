@@ -4,32 +4,23 @@
 #include <squeal/map.h>
 #include <squeal/results.h>
 #include "base/progress.h"
+#include "reduced/parameter.h"
 
 #define MAP_MAX_AXES  2
 #define MAP_MAX_TEXT  65536 /* length of a list of values */
 #define MAP_MAX_MODES 24    /* that grow at a point and are listed */
 #define MAP_MAX_STEPS 1e8   /* of a transient, whose record is kept until its regime is known */
 
-typedef enum { MAP_MU, MAP_SLOPE, MAP_SPEED, MAP_LOAD, MAP_BODY } MapKind;
 typedef enum { MAP_STABLE, MAP_GROWTH, MAP_STICKING, MAP_CYCLE, MAP_UNKNOWN, MAP_N_REGIMES } MapRegime;
 typedef enum { MAP_DECAYS, MAP_SETTLED, MAP_TIME, MAP_FAILED, MAP_N_ENDS } MapEnd;
 typedef enum { MAP_BOTH, MAP_UP, MAP_DOWN, MAP_APART } MapDirection;
 
-/* A number that may be varied */
 typedef struct {
-  char        name[128];
-  const char *unit;
-  MapKind     kind;
-  PetscInt    index; /* of the interface, the load, or the parameter of the operators */
-  PetscReal   value; /* of the scene */
-} MapParameter;
-
-typedef struct {
-  PetscInt     n_moved; /* parameters that take its values: the named one, then those linked with it */
-  MapParameter moved[8];
-  PetscInt     n;
-  PetscReal   *value; /* [n] */
-  PetscBool    ratio;
+  PetscInt         n_moved; /* parameters that take its values: the named one, then those linked with it */
+  ReducedParameter moved[8];
+  PetscInt         n;
+  PetscReal       *value; /* [n] */
+  PetscBool        ratio;
 } MapAxis;
 
 /* A row of map.csv; forces in N */

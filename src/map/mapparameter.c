@@ -1,104 +1,15 @@
 /*
-   The axes of a map: names of parameters, links, values. Named as in sweeps; what acts on the bodies from outside comes first.
+   The axes of a map: names of parameters, links, values.
 */
 #include "mapimpl.h"
 #include "sweep/grid.h"
 #include <squeal/options.h>
 #include <string.h>
 
-/* A name that is looked for */
-typedef struct {
-  PetscBool    found;
-  MapParameter p;
-  char         valid[2048];
-} MapSearch;
-
-/* Takes candidate <owner>_<what> where it is the name looked for, and adds it to the valid ones */
-static PetscErrorCode ParameterTry(const char name[], const char owner[], const char what[],
-                                   const MapParameter *candidate, MapSearch *search)
-{
-  MapParameter p = *candidate;
-  PetscBool    same;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(p.name, sizeof(p.name), "%s%s%s", owner, what[0] ? "_" : "", what));
-  PetscCall(PetscStrlcat(search->valid, search->valid[0] ? ", " : "", sizeof(search->valid)));
-  PetscCall(PetscStrlcat(search->valid, p.name, sizeof(search->valid)));
-  PetscCall(PetscStrcmp(p.name, name, &same));
-  if (same && !search->found) search->p = p;
-  if (same) search->found = PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
-/* Friction and speed of a contact */
-static PetscErrorCode ParameterOfContact(const char name[], const ContactInterface *c, PetscInt i, MapSearch *search)
-{
-  const MapParameter mu    = {.unit = "-", .kind = MAP_MU, .index = i, .value = c->mu};
-  const MapParameter slope = {.unit = "s/m", .kind = MAP_SLOPE, .index = i, .value = c->mu_slope};
-  const MapParameter speed = {.unit = "m/s", .kind = MAP_SPEED, .index = i, .value = c->speed};
-
-  PetscFunctionBeginUser;
-  PetscCall(ParameterTry(name, c->name, "mu", &mu, search));
-  PetscCall(ParameterTry(name, c->name, "mu_slope", &slope, search));
-  if (c->speed > 0) PetscCall(ParameterTry(name, c->name, "speed", &speed, search));
-  PetscFunctionReturn(0);
-}
-
-/* Length of a force, or a pressure */
-static PetscErrorCode ParameterOfLoad(const char name[], const Load *load, PetscInt i, MapSearch *search)
-{
-  const PetscReal force = hypot(hypot(load->force[0], load->force[1]), load->force[2]);
-  const PetscReal size  = load->is_pressure ? load->pressure : force;
-  MapParameter    p     = {.unit = load->is_pressure ? "Pa" : "N", .kind = MAP_LOAD, .index = i, .value = size};
-
-  PetscFunctionBeginUser;
-  if (size != 0) PetscCall(ParameterTry(name, load->name, load->is_pressure ? "pressure" : "force", &p, search));
-  PetscFunctionReturn(0);
-}
-
-/* Parameters of the bodies, not those of contacts */
-static PetscErrorCode ParameterOfBodies(Map map, const char name[], MapSearch *search)
-{
-  const OperatorsParameter *list;
-  PetscInt                  n;
-
-  PetscFunctionBeginUser;
-  PetscCall(OperatorsGetParameters(map->operators, &n, &list));
-  for (PetscInt i = 0; i < n; i++) {
-    const MapParameter p = {.unit = list[i].unit, .kind = MAP_BODY, .index = i, .value = map->p[i]};
-
-    if (list[i].body) PetscCall(ParameterTry(name, list[i].name, "", &p, search));
-  }
-  PetscFunctionReturn(0);
-}
-
-/* The parameter of that name; errors list the valid ones */
-static PetscErrorCode MapParameterFind(Map map, const char option[], const char name[], MapParameter *p)
-{
-  const ModelScene       *scene;
-  const ContactInterface *c;
-  PetscInt                n;
-  Model                   model;
-  Contact                 contact;
-  MapSearch               search = {.found = PETSC_FALSE};
-
-  PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(map->operators, &model, &contact));
-  PetscCall(ModelGetScene(model, &scene));
-  PetscCall(ContactGetInterfaces(contact, &n, &c));
-  for (PetscInt i = 0; i < n; i++) PetscCall(ParameterOfContact(name, &c[i], i, &search));
-  for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(ParameterOfLoad(name, &scene->loads[i], i, &search));
-  PetscCall(ParameterOfBodies(map, name, &search));
-  PetscCheck(search.found, map->comm, PETSC_ERR_USER_INPUT, "%s '%s' is no parameter that a map can vary; valid are %s",
-             option, name, search.valid);
-  *p = search.p;
-  PetscFunctionReturn(0);
-}
-
 PetscBool MapAxisIsBody(const MapAxis *axis)
 {
   for (PetscInt i = 0; i < axis->n_moved; i++)
-    if (axis->moved[i].kind == MAP_BODY) return PETSC_TRUE;
+    if (axis->moved[i].kind == REDUCED_BODY) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -114,7 +25,8 @@ static PetscErrorCode MapAxisAdd(Map map, const char option[], const char name[]
     for (PetscInt i = 0; i < map->axis[k].n_moved; i++)
       PetscCheck(strcmp(map->axis[k].moved[i].name, name), map->comm, PETSC_ERR_USER_INPUT, "%s names '%s' twice",
                  option, name);
-  PetscCall(MapParameterFind(map, option, name, &axis->moved[axis->n_moved]));
+  PetscCall(
+    ReducedParameterFind(map->operators, map->p, option, "that a map can vary", name, &axis->moved[axis->n_moved]));
   PetscCall(PetscStrcmp(axis->moved[0].unit, axis->moved[axis->n_moved].unit, &same));
   PetscCheck(same, map->comm, PETSC_ERR_USER_INPUT,
              "%s names %s, of %s, with %s, of %s: what takes the same values has the same unit", option, name,
@@ -145,20 +57,6 @@ static PetscErrorCode MapLinkTake(Map map, const char text[])
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for a value that a parameter cannot have */
-static PetscErrorCode MapValueCheck(Map map, const char option[], const MapParameter *p, PetscReal value)
-{
-  PetscBool good = PETSC_TRUE;
-
-  PetscFunctionBeginUser;
-  if (p->kind == MAP_BODY) PetscCall(OperatorsCheckParameter(map->operators, p->index, value));
-  if (p->kind == MAP_MU) good = value >= 0 ? PETSC_TRUE : PETSC_FALSE;
-  if (p->kind == MAP_SPEED || p->kind == MAP_LOAD) good = value > 0 ? PETSC_TRUE : PETSC_FALSE;
-  PetscCheck(good, map->comm, PETSC_ERR_USER_INPUT, "%s: %s %.6g must %s", option, p->name, (double)value,
-             p->kind == MAP_MU ? "not be negative" : "be positive");
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode MapAxisValues(Map map, PetscInt k)
 {
   static const char *const options[] = {"-map_values", "-map_values_2"};
@@ -170,7 +68,7 @@ static PetscErrorCode MapAxisValues(Map map, PetscInt k)
   PetscCall(GridValuesParse(map->comm, options[k], map->values[k], &axis->n, &axis->value, &axis->ratio));
   for (PetscInt i = 0; i < axis->n; i++)
     for (PetscInt j = 0; j < axis->n_moved; j++)
-      PetscCall(MapValueCheck(map, options[k], &axis->moved[j], axis->value[i]));
+      PetscCall(ReducedParameterCheck(map->operators, options[k], &axis->moved[j], axis->value[i]));
   for (PetscInt i = 1; i < axis->n && k == 0 && map->direction != MAP_APART; i++)
     PetscCheck(
       axis->value[i] > axis->value[i - 1], map->comm, PETSC_ERR_USER_INPUT,

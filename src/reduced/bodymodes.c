@@ -1,24 +1,15 @@
 /*
    Modes of the separate bodies, K x = omega^2 M x below the cut-off: the pencil of the operators with every pair open and
    without damping, solved and proven complete by modes/. What it leaves out, damping, is projected exactly: C = Phi'C Phi.
+
+   Of bodies that a parameter has changed a little those modes are taken, as many, that resemble the ones of another reduction.
 */
 #include "reducedimpl.h"
+#include "parameter.h"
 #include "solver/orthonormal.h"
 
 #define ORTHONORMAL  1e-7 /* largest |Phi'M Phi - I| */
 #define CUTOFF_NOISE 10   /* roundings of the largest K_ii / M_ii that the square of the cut-off exceeds */
-
-/* Whether a parameter is one of damping or spin, which real modes know nothing of: by its unit, since names begin with those
-   that the user gave */
-static PetscErrorCode ParameterIsGyration(const char unit[], PetscBool *is)
-{
-  static const char *const units[] = {"1/s", "s", "N s/m", "N s/m^3", "N m s/rad", "rad/s"};
-
-  PetscFunctionBeginUser;
-  *is = PETSC_FALSE;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(units) && !*is; i++) PetscCall(PetscStrcmp(unit, units[i], is));
-  PetscFunctionReturn(0);
-}
 
 /* The pencil of the bodies: every pair open, neither damping nor spin */
 static PetscErrorCode ReducedCreatePencil(ReducedRun r)
@@ -44,7 +35,7 @@ static PetscErrorCode ReducedCreatePencil(ReducedRun r)
   for (PetscInt i = 0; i < n; i++) {
     PetscBool is;
 
-    PetscCall(ParameterIsGyration(parameter[i].unit, &is));
+    PetscCall(ReducedUnitIsGyration(parameter[i].unit, &is));
     still[i] = is ? 0 : p[i];
   }
   PetscCall(PencilSetParameters(r->bodies, still));
@@ -110,6 +101,58 @@ PetscErrorCode ReducedWeighModes(ReducedRun r)
   PetscFunctionBeginUser;
   PetscCall(PencilGetMatrices(r->bodies, &pencil));
   PetscCall(BlockMultiply(pencil.M, r->Phi, r->MPhi));
+  PetscFunctionReturn(0);
+}
+
+/* Columns of A in the order of `chosen` [m] in its place */
+static PetscErrorCode ColumnsKeep(PetscInt m, const PetscInt chosen[], Mat *A)
+{
+  PetscInt n_own;
+  MPI_Comm comm;
+  Mat      B;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscObjectGetComm((PetscObject)*A, &comm));
+  PetscCall(MatGetLocalSize(*A, &n_own, NULL));
+  PetscCall(MatCreateDense(comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, m, NULL, &B));
+  for (PetscInt k = 0; k < m; k++) {
+    Vec from, to;
+
+    PetscCall(MatDenseGetColumnVecRead(*A, chosen[k], &from));
+    PetscCall(MatDenseGetColumnVecWrite(B, k, &to));
+    PetscCall(VecCopy(from, to));
+    PetscCall(MatDenseRestoreColumnVecWrite(B, k, &to));
+    PetscCall(MatDenseRestoreColumnVecRead(*A, chosen[k], &from));
+  }
+  PetscCall(MatDestroy(A));
+  *A = B;
+  PetscFunctionReturn(0);
+}
+
+/* Keeps of all modes those that hold most of the modes of `like`: the largest rows of Phi'M Phi_like */
+static PetscErrorCode ReducedKeepAlike(ReducedRun r)
+{
+  const PetscInt n = r->model.m, m = r->like->model.m;
+  PetscInt      *order;
+  PetscReal     *A, *share;
+
+  PetscFunctionBeginUser;
+  PetscCheck(n >= m, r->comm, PETSC_ERR_PLIB, "%" PetscInt_FMT " modes, fewer than the %" PetscInt_FMT " to resemble",
+             n, m);
+  PetscCall(PetscMalloc3(n * m, &A, n, &share, n, &order));
+  PetscCall(ReducedGram(r->MPhi, r->like->Phi, A));
+  for (PetscInt i = 0; i < n; i++) {
+    order[i] = i;
+    share[i] = 0;
+    for (PetscInt j = 0; j < m; j++) share[i] -= PetscSqr(A[i + n * j]);
+  }
+  PetscCall(PetscSortRealWithArrayInt(n, share, order));
+  PetscCall(PetscSortInt(m, order)); /* frequencies ascend again */
+  for (PetscInt k = 0; k < m; k++) r->model.omega2[k] = r->model.omega2[order[k]];
+  PetscCall(ColumnsKeep(m, order, &r->Phi));
+  PetscCall(ColumnsKeep(m, order, &r->MPhi));
+  r->model.m = m;
+  PetscCall(PetscFree3(A, share, order));
   PetscFunctionReturn(0);
 }
 
@@ -191,6 +234,7 @@ PetscErrorCode ReducedFindModes(ReducedRun r)
   PetscCall(ModesSetBand(r->body_modes, band));
   PetscCall(ModesSolve(r->body_modes));
   PetscCall(ReducedTakeModes(r, pencil.M));
+  if (r->like) PetscCall(ReducedKeepAlike(r));
   PetscCall(ReducedCheckModes(r));
   PetscCall(ReducedSetDamping(r));
   PetscFunctionReturn(0);

@@ -99,9 +99,9 @@ static void ClosedAdd(const ClosedPairs *c, PetscReal scale, const PetscReal Q[]
   }
 }
 
-/* Eigenvalues of the first-order system of K and C */
-static PetscErrorCode QuadraticEigen(PetscInt m, const PetscReal K[], const PetscReal C[], PetscReal sigma[],
-                                     PetscReal omega[])
+/* Eigenvalues of the first-order system of K and C, and vectors [2 m][2 m] in LAPACK's real storage, or NULL */
+static PetscErrorCode QuadraticEigen(PetscInt m, PetscReal *const system[2], PetscReal sigma[], PetscReal omega[],
+                                     PetscReal vectors[])
 {
   const PetscInt n = 2 * m;
   PetscReal     *A;
@@ -111,11 +111,11 @@ static PetscErrorCode QuadraticEigen(PetscInt m, const PetscReal K[], const Pets
   for (PetscInt k = 0; k < m; k++) {
     A[k + n * (m + k)] = 1;
     for (PetscInt l = 0; l < m; l++) {
-      A[m + l + n * k]       = -K[l + m * k];
-      A[m + l + n * (m + k)] = -C[l + m * k];
+      A[m + l + n * k]       = -system[0][l + m * k];
+      A[m + l + n * (m + k)] = -system[1][l + m * k];
     }
   }
-  PetscCall(DenseEigen(n, A, sigma, omega, NULL, NULL));
+  PetscCall(DenseEigen(n, A, sigma, omega, NULL, vectors));
   PetscCall(PetscFree(A));
   PetscFunctionReturn(0);
 }
@@ -166,6 +166,28 @@ static PetscErrorCode ClosedAddFriction(ClosedPairs *c, const PetscReal lambda_n
   PetscFunctionReturn(0);
 }
 
+/* K and C [m][m] of the model about sliding */
+static PetscErrorCode ClosedFill(ClosedPairs *c, const PetscReal lambda_n[], PetscReal K[], PetscReal C[])
+{
+  const ReducedModel *model = c->model;
+  const PetscInt      m     = model->m;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < m; k++) K[k + m * k] = model->omega2[k];
+  if (model->C) PetscCall(PetscArraycpy(C, model->C, m * m));
+  if (c->n) {
+    PetscCall(ClosedSolveStiffness(c));
+    ClosedAdd(c, 1, model->P, c->S, K);
+  }
+  if (c->n && model->Cx) {
+    PetscCall(ClosedSolveDamping(c));
+    ClosedAdd(c, -1, model->Cm, c->S, C);
+    ClosedAdd(c, -1, model->P, c->T, C);
+  }
+  if (c->n && lambda_n) PetscCall(ClosedAddFriction(c, lambda_n, C));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ReducedLinearise(const ReducedModel *model, const PetscBool closed[], PetscReal sigma[],
                                 PetscReal omega[])
 {
@@ -184,20 +206,61 @@ PetscErrorCode ReducedLineariseSliding(const ReducedModel *model, const PetscBoo
   PetscFunctionBeginUser;
   PetscCall(ClosedCreate(model, closed, &c));
   PetscCall(PetscCalloc2(m * m, &K, m * m, &C));
-  for (PetscInt k = 0; k < m; k++) K[k + m * k] = model->omega2[k];
-  if (model->C) PetscCall(PetscArraycpy(C, model->C, m * m));
-  if (c.n) {
-    PetscCall(ClosedSolveStiffness(&c));
-    ClosedAdd(&c, 1, model->P, c.S, K);
-  }
-  if (c.n && model->Cx) {
-    PetscCall(ClosedSolveDamping(&c));
-    ClosedAdd(&c, -1, model->Cm, c.S, C);
-    ClosedAdd(&c, -1, model->P, c.T, C);
-  }
-  if (c.n && lambda_n) PetscCall(ClosedAddFriction(&c, lambda_n, C));
-  PetscCall(QuadraticEigen(m, K, C, sigma, omega));
+  PetscCall(ClosedFill(&c, lambda_n, K, C));
+  PetscCall(QuadraticEigen(m, (PetscReal *const[2]){K, C}, sigma, omega, NULL));
   PetscCall(PetscFree2(K, C));
+  PetscCall(ClosedDestroy(&c));
+  PetscFunctionReturn(0);
+}
+
+/* The state of a mode of which z = (eta, rate): lambda_n = -S eta + T rate, lambda = e lambda_n */
+static void ClosedSetMode(const ClosedPairs *c, const PetscReal z[], ReducedState *mode)
+{
+  const PetscInt m = c->model->m;
+
+  for (PetscInt k = 0; k < m; k++) {
+    mode->eta[k]  = z[k];
+    mode->rate[k] = z[m + k];
+  }
+  for (PetscInt i = 0; i < c->model->n_ports; i++) mode->p[i] = 0;
+  for (PetscInt i = 0; i < 3 * c->model->n_pairs; i++) mode->q[i] = 0;
+  for (PetscInt i = 0; i < c->n; i++) {
+    const PetscInt port   = 3 * c->pair[i];
+    PetscReal      lambda = 0;
+
+    for (PetscInt k = 0; k < m; k++) lambda += c->T[i + c->n * k] * z[m + k] - c->S[i + c->n * k] * z[k];
+    mode->p[port]     = lambda;
+    mode->p[port + 1] = -c->model->mu[c->pair[i]] * lambda;
+    mode->q[port]     = mode->p[port];
+    mode->q[port + 1] = mode->p[port + 1];
+  }
+}
+
+PetscErrorCode ReducedFastestMode(const ReducedModel *model, const ReducedState *sliding, PetscReal eigenvalue[2],
+                                  ReducedState mode[2])
+{
+  const PetscInt m = model->m, n = 2 * m;
+  PetscInt       at = -1;
+  PetscReal     *K, *C, *sigma, *omega, *R, *lambda_n;
+  PetscBool     *closed;
+  ClosedPairs    c;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc7(m * m, &K, m * m, &C, n, &sigma, n, &omega, n * n, &R, model->n_pairs, &lambda_n,
+                         model->n_pairs, &closed));
+  for (PetscInt i = 0; i < model->n_pairs; i++) {
+    closed[i]   = sliding->status[i] != CONTACT_OPEN ? PETSC_TRUE : PETSC_FALSE;
+    lambda_n[i] = sliding->p[3 * i];
+  }
+  PetscCall(ClosedCreate(model, closed, &c));
+  PetscCall(ClosedFill(&c, lambda_n, K, C));
+  PetscCall(QuadraticEigen(m, (PetscReal *const[2]){K, C}, sigma, omega, R));
+  for (PetscInt k = 0; k < n; k++)
+    if (omega[k] > 0 && (at < 0 || sigma[k] > sigma[at])) at = k;
+  eigenvalue[0] = at < 0 ? -PETSC_INFINITY : sigma[at];
+  eigenvalue[1] = at < 0 ? 0 : omega[at];
+  for (int i = 0; i < 2 && at >= 0 && mode; i++) ClosedSetMode(&c, &R[n * (at + i)], &mode[i]);
+  PetscCall(PetscFree7(K, C, sigma, omega, R, lambda_n, closed));
   PetscCall(ClosedDestroy(&c));
   PetscFunctionReturn(0);
 }

@@ -110,7 +110,9 @@ PetscErrorCode ReducedPrepare(ReducedRun r, Results results)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ReducedReduceAt(ReducedRun r, PetscReal cutoff, const PetscReal p[], ReducedRun *other)
+/* The bodies below a cut-off with parameters p, in the modes that resemble those of `like`, or in all */
+static PetscErrorCode ReducedReduceOther(ReducedRun r, PetscReal cutoff, const PetscReal p[], ReducedRun like,
+                                         ReducedRun *other)
 {
   const OperatorsParameter *list;
   PetscInt                  n;
@@ -122,6 +124,7 @@ PetscErrorCode ReducedReduceAt(ReducedRun r, PetscReal cutoff, const PetscReal p
   (*other)->run        = r->run;
   (*other)->cutoff     = cutoff > 0 ? cutoff : r->cutoff;
   (*other)->dt         = r->dt;
+  (*other)->like       = like;
   if (p) {
     PetscCall(OperatorsGetParameters(r->run.operators, &n, &list));
     PetscCall(OperatorsCreatePoint(r->run.operators, &(*other)->p));
@@ -129,6 +132,20 @@ PetscErrorCode ReducedReduceAt(ReducedRun r, PetscReal cutoff, const PetscReal p
   }
   PetscCall(ReducedReduce(*other));
   PetscCall(ShiftInvertDestroy(&(*other)->inverse));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedReduceAt(ReducedRun r, PetscReal cutoff, const PetscReal p[], ReducedRun *at)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReducedReduceOther(r, cutoff, p, NULL, at));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedReduceLike(ReducedRun r, PetscReal cutoff, const PetscReal p[], ReducedRun *at)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReducedReduceOther(r, cutoff, p, r, at));
   PetscFunctionReturn(0);
 }
 
@@ -266,41 +283,6 @@ PetscErrorCode ReducedIntegrate(ReducedRun r, Results results)
   if (!stop && r->verify) PetscCall(ReducedVerify(r));
   PetscCheck(!stop, r->comm, PETSC_ERR_USER, "stopped by a signal after step %" PetscInt_FMT ", %.6g s; %s", r->step,
              (double)r->state.time, r->run.checkpoint_interval > 0 ? STOP_GOES_ON : STOP_ROWS STOP_GOES_ON);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ReducedModelCopy(const ReducedModel *from, ReducedModel *to)
-{
-  const PetscInt   m = from->m, n = from->n_pairs, N = from->n_ports;
-  const PetscInt   size[]   = {m, m * m, m * N, N * N, 3 * n * m, 9 * n * n};
-  const PetscReal *source[] = {from->omega2, from->C, from->P, from->W, from->Cm, from->Cx};
-  PetscReal      **copy[]   = {&to->omega2, &to->C, &to->P, &to->W, &to->Cm, &to->Cx};
-
-  PetscFunctionBeginUser;
-  *to = *from;
-  for (int i = 0; i < 6; i++) {
-    if (!source[i]) continue;
-    PetscCall(PetscMalloc1(size[i], copy[i]));
-    PetscCall(PetscArraycpy(*copy[i], source[i], size[i]));
-  }
-  PetscCall(PetscMalloc4(n, &to->gap, n, &to->mu, n, &to->slope, n, &to->speed));
-  PetscCall(PetscArraycpy(to->gap, from->gap, n));
-  PetscCall(PetscArraycpy(to->mu, from->mu, n));
-  PetscCall(PetscArraycpy(to->slope, from->slope, n));
-  PetscCall(PetscArraycpy(to->speed, from->speed, n));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ReducedModelDestroy(ReducedModel *model)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree(model->omega2));
-  PetscCall(PetscFree(model->C));
-  PetscCall(PetscFree(model->P));
-  PetscCall(PetscFree(model->W));
-  PetscCall(PetscFree(model->Cm));
-  PetscCall(PetscFree(model->Cx));
-  PetscCall(PetscFree4(model->gap, model->mu, model->slope, model->speed));
   PetscFunctionReturn(0);
 }
 

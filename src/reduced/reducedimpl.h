@@ -49,6 +49,7 @@ struct _p_ReducedRun {
   PetscBool  asked, compare, verify;
   PetscReal  cutoff; /* Hz, 0: to be chosen */
   PetscReal *p;      /* parameters of the operators, NULL: those of the scene */
+  ReducedRun like;   /* whose modes those taken resemble, as many; NULL: all below the cut-off are */
   /* rooms */
   Dynamics    dynamics;
   Modes       mesh_modes;
@@ -136,6 +137,11 @@ PETSC_INTERN PetscErrorCode ReducedWeighModes(ReducedRun reduced);
 /* ports.c - ports as vectors of all unknowns, impulses, and P */
 PETSC_INTERN PetscErrorCode ReducedSetPorts(ReducedRun reduced);
 
+/* linear.c - of the modes about a sliding state that turn in time the one that grows fastest: eigenvalue (rad/s), -infinity and 0 for
+   none; real and imaginary part of its motion and forces, without loads, or NULL */
+PETSC_INTERN PetscErrorCode ReducedFastestMode(const ReducedModel *model, const ReducedState *sliding,
+                                               PetscReal eigenvalue[2], ReducedState mode[2]);
+
 /* residual.c - W; X := R X of a dense block, R = (K - s M)^-1 on the complement of the modes, MX work of the same size */
 PETSC_INTERN PetscErrorCode ReducedSetResidual(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedApplyResidual(ReducedRun reduced, Mat B, Mat X);
@@ -159,6 +165,11 @@ PETSC_INTERN PetscErrorCode ReducedCompareView(ReducedRun reduced, PetscViewer v
 
 /* reduced.c - model and room for states and steps, from cut-off, step and run */
 PETSC_INTERN PetscErrorCode ReducedReduce(ReducedRun reduced);
+
+/* The bodies of a run that was reduced with other parameters p [parameters], in as many modes, which resemble its own and lie
+   below `cutoff` (Hz). The caller destroys them. Collective */
+PETSC_INTERN PetscErrorCode ReducedReduceLike(ReducedRun reduced, PetscReal cutoff, const PetscReal p[],
+                                              ReducedRun *at);
 
 /* verify.c - keeps the normal force of a step; runs again, and says how the force differs */
 PETSC_INTERN PetscErrorCode ReducedKeepForce(ReducedRun reduced);

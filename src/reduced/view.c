@@ -76,6 +76,7 @@ PetscErrorCode ReducedView(ReducedRun r, PetscViewer viewer)
   PetscCall(ExternalView(r->run.external, viewer));
   PetscCall(ReducedViewShares(r, viewer));
   PetscCall(ReducedCompareView(r, viewer));
+  if (!r->stepper) PetscFunctionReturn(0); /* nothing has run in time */
   PetscCall(PetscViewerASCIIPrintf(
     viewer,
     "%" PetscInt_FMT " steps of %.6g s to %.6g s in %.4g s: %.4g us per step, %.3g iterations "

@@ -2,12 +2,11 @@
 #include "shooting.h"
 #include "dense.h"
 
-#define SHOOTING_DIFFERENCE 1e-6 /* of period and span */
-#define SHOOTING_FALL       0.9  /* of the residual that a shortened step must reach */
-#define SHOOTING_LOST       3.0  /* residual beyond which no cycle is near */
-#define SHOOTING_PHASE      0.3  /* of 1, where the multiplier of the phase is sought */
-#define SHOOTING_STEPS      0.02 /* what steps make of it at least: where two are as near, the vector decides */
-#define SHOOTING_SHORTEST   (1. / 8)
+#define SHOOTING_FALL     0.9 /* of the residual that a shortened step must reach */
+#define SHOOTING_LOST     3.0 /* residual beyond which no cycle is near */
+#define SHOOTING_SHORTEST (1. / 8)
+#define FOLD_MAX_IT       12
+#define FOLD_RTOL         1e-4 /* of the slope dp/ds between the two cycles: the parameter is off by the square of that */
 
 /* One problem: the guess, the branch and work */
 typedef struct {
@@ -182,81 +181,6 @@ PetscErrorCode ShootingSolve(const Shooting *s, ShootingCycle *cycle)
   PetscFunctionReturn(0);
 }
 
-/* Cosine between the motion along the cycle, v, and the right vector of eigenvalue i, in LAPACK's real storage */
-static PetscReal StabilityAlong(const Shooting *s, const PetscReal v[], const PetscReal im[], const PetscReal R[],
-                                PetscInt i)
-{
-  const PetscInt   n  = s->n;
-  const PetscReal *re = &R[n * (im[i] < 0 ? i - 1 : i)], *ri = im[i] == 0 ? NULL : re + n;
-  PetscReal        dot[2] = {0, 0}, length = 0, size = 0;
-
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscReal w = PetscSqr(s->weight[k]), b = ri ? ri[k] : 0;
-
-    dot[0] += w * v[k] * re[k];
-    dot[1] += w * v[k] * b;
-    length += w * (PetscSqr(re[k]) + PetscSqr(b));
-    size += w * PetscSqr(v[k]);
-  }
-  return length > 0 && size > 0 ? hypot(dot[0], dot[1]) / PetscSqrtReal(length * size) : 0;
-}
-
-/* Which of the eigenvalues near 1 that are left is that of the phase: its vector is the motion along the cycle */
-static PetscErrorCode StabilityFindPhase(const Shooting *s, const ShootingCycle *cycle, PetscReal *const eigen[3],
-                                         PetscInt *phase)
-{
-  const PetscReal dT = SHOOTING_DIFFERENCE * cycle->period, *re = eigen[0], *im = eigen[1];
-  PetscReal      *v, *before, best                                              = -1;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(s->n, &v, s->n, &before));
-  PetscCall(s->flow(s->ctx, cycle->x, cycle->period - dT, cycle->value, before, NULL));
-  PetscCall(s->flow(s->ctx, cycle->x, cycle->period + dT, cycle->value, v, NULL));
-  for (PetscInt i = 0; i < s->n; i++) v[i] -= before[i];
-  *phase = 0;
-  for (PetscInt i = 0; i < s->n; i++) {
-    const PetscReal off   = hypot(re[i] - 1, im[i]);
-    const PetscReal along = off < SHOOTING_PHASE ? StabilityAlong(s, v, im, eigen[2], i) / (off + SHOOTING_STEPS) : -1;
-
-    if (along > best) *phase = i;
-    best = PetscMax(best, along);
-  }
-  PetscCall(PetscFree2(v, before));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ShootingGetStability(const Shooting *s, const ShootingCycle *cycle, ShootingStability *stability)
-{
-  const PetscInt n = s->n;
-  PetscInt       at;
-  PetscReal     *A, *re, *im, *R;
-
-  PetscFunctionBeginUser;
-  *stability = (ShootingStability){
-    .phase = {0, 0}
-  };
-  PetscCall(PetscMalloc4(n * n, &A, n, &re, n, &im, n * n, &R));
-  PetscCall(PetscArraycpy(A, cycle->M, n * n));
-  PetscCall(DenseEigen(n, A, re, im, NULL, R));
-  for (PetscInt k = 0; k < s->n_free;
-       k++) { /* shifts along free directions change nothing: exactly 1, and counted out */
-    for (PetscInt i = at = 0; i < n; i++)
-      if (hypot(re[i] - 1, im[i]) < hypot(re[at] - 1, im[at])) at = i;
-    re[at] = im[at] = 0;
-  }
-  PetscCall(StabilityFindPhase(s, cycle, (PetscReal *const[3]){re, im, R}, &at));
-  stability->phase[0] = re[at];
-  stability->phase[1] = im[at];
-  re[at] = im[at] = 0;
-  for (PetscInt i = 0; i < n; i++) {
-    if (hypot(re[i], im[i]) <= hypot(stability->largest[0], stability->largest[1])) continue;
-    stability->largest[0] = re[i];
-    stability->largest[1] = PetscAbsReal(im[i]);
-  }
-  PetscCall(PetscFree4(A, re, im, R));
-  PetscFunctionReturn(0);
-}
-
 /* <a, b> in (S x, T / scale, p / span) */
 static PetscReal TangentDot(const Shooting *s, PetscReal scale, const ShootingTangent *a, const PetscReal b[])
 {
@@ -266,36 +190,42 @@ static PetscReal TangentDot(const Shooting *s, PetscReal scale, const ShootingTa
   return sum;
 }
 
-PetscErrorCode ShootingGetTangent(const Shooting *s, const ShootingCycle *cycle, ShootingTangent *tangent)
+/* Whether a tangent has no length */
+static PetscBool TangentIsNone(const Shooting *s, const ShootingTangent *t)
 {
-  const PetscInt  n     = s->n;
-  ShootingTangent along = *tangent, none;
-  ShootingWork    w;
-  PetscBool       singular;
-  PetscReal       length;
+  if (t->period != 0 || t->value != 0) return PETSC_FALSE;
+  for (PetscInt i = 0; i < s->n; i++)
+    if (s->weight[i] != 0 && t->x[i] != 0) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+PetscErrorCode ShootingGetTangent(const Shooting *s, const ShootingCycle *cycle, ShootingTangent *tangent,
+                                  PetscBool *found)
+{
+  const PetscInt n = s->n;
+  ShootingWork   w;
+  PetscBool      singular;
+  PetscReal      length;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(n, &none.x));
-  none.period = 0;
-  none.value  = s->span;
-  if (along.period == 0 && along.value == 0) along = none;
-  PetscCall(ShotCreate(s, cycle, &along, &w));
+  if (TangentIsNone(s, tangent)) tangent->value = s->span;
+  PetscCall(ShotCreate(s, cycle, tangent, &w));
   PetscCall(ShotDifferentiate(&w, cycle));
   PetscCall(ShotFactor(&w, cycle, &singular));
-  PetscCheck(!singular, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED,
-             "a branch of cycles has no direction: it splits there");
-  PetscCall(PetscArrayzero(w.rhs, n + 2 + s->n_free));
-  w.rhs[n + 1] = 1;
-  PetscCall(DenseSolve(n + 2 + s->n_free, w.A, w.pivot, PETSC_FALSE, 1, w.rhs));
-  PetscCall(PetscArraycpy(tangent->x, w.rhs, n));
-  tangent->period = w.rhs[n];
-  tangent->value  = w.rhs[n + 1];
-  length          = PetscSqrtReal(TangentDot(s, w.scale, tangent, w.rhs));
-  for (PetscInt i = 0; i < n; i++) tangent->x[i] /= length;
-  tangent->period /= length;
-  tangent->value /= length;
+  *found = PETSC_FALSE;
+  if (!singular) {
+    PetscCall(PetscArrayzero(w.rhs, n + 2 + s->n_free));
+    w.rhs[n + 1] = 1;
+    PetscCall(DenseSolve(n + 2 + s->n_free, w.A, w.pivot, PETSC_FALSE, 1, w.rhs));
+    length = PetscSqrtReal(TangentDot(s, w.scale, &(ShootingTangent){w.rhs, w.rhs[n], w.rhs[n + 1]}, w.rhs));
+    *found = length > 0 && !PetscIsInfOrNanReal(length) ? PETSC_TRUE : PETSC_FALSE;
+  }
+  if (*found) {
+    for (PetscInt i = 0; i < n; i++) tangent->x[i] = w.rhs[i] / length;
+    tangent->period = w.rhs[n] / length;
+    tangent->value  = w.rhs[n + 1] / length;
+  }
   PetscCall(ShotDestroy(&w));
-  PetscCall(PetscFree(none.x));
   PetscFunctionReturn(0);
 }
 
@@ -323,5 +253,67 @@ PetscErrorCode ShootingAdvance(const Shooting *s, PetscReal step, const Shooting
     PetscCall(PetscArraycpy(cycle->M, M, n * n));
   }
   PetscCall(PetscFree2(x, M));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShootingCopy(PetscInt n, const ShootingCycle *from, ShootingCycle *to)
+{
+  PetscReal *x = to->x, *M = to->M;
+
+  PetscFunctionBeginUser;
+  *to   = *from;
+  to->x = x;
+  to->M = M;
+  PetscCall(PetscArraycpy(x, from->x, n));
+  PetscCall(PetscArraycpy(M, from->M, n * n));
+  PetscFunctionReturn(0);
+}
+
+/* The cycle at a distance from `start` along `along`, and the branch's direction there; found is false where there is none */
+static PetscErrorCode FoldTry(const Shooting *s, PetscReal step, const ShootingCycle *start,
+                              const ShootingTangent *along, ShootingPlace *at, PetscBool *found)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ShootingCopy(s->n, start, &at->cycle));
+  PetscCall(ShootingAdvance(s, step, along, &at->cycle));
+  PetscCall(PetscArraycpy(at->tangent.x, along->x, s->n));
+  at->tangent.period = along->period;
+  at->tangent.value  = along->value;
+  *found             = at->cycle.converged;
+  if (*found) PetscCall(ShootingGetTangent(s, &at->cycle, &at->tangent, found));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShootingFindFold(const Shooting *s, const ShootingPlace *start, PetscReal step, PetscReal beyond,
+                                ShootingPlace *fold, PetscReal *error)
+{
+  PetscReal a = 0, b = step, va = start->tangent.value, vb = beyond;
+  PetscBool found = PETSC_TRUE;
+  int       side  = 0;
+
+  PetscFunctionBeginUser;
+  *error = -1;
+  for (int it = 0; it < FOLD_MAX_IT && found; it++) {
+    const PetscReal at = (a * vb - b * va) / (vb - va);
+    PetscReal       v;
+
+    PetscCall(FoldTry(s, at, &start->cycle, &start->tangent, fold, &found));
+    if (!found) break;
+    v      = fold->tangent.value;
+    *error = 0.5 * PetscAbsReal(v) * (b - a); /* p is a parabola there, of slope v at `at` */
+    if (PetscAbsReal(v) <= FOLD_RTOL * PetscAbsReal(start->tangent.value - beyond)) break;
+    if ((v > 0) == (va > 0)) { /* regula falsi; the end that stays counts half (Illinois) */
+      a  = at;
+      va = v;
+      if (side == 1) vb /= 2;
+      side = 1;
+    } else {
+      b  = at;
+      vb = v;
+      if (side == 2) va /= 2;
+      side = 2;
+    }
+  }
+  if (!found) *error = -1;
   PetscFunctionReturn(0);
 }

@@ -25,7 +25,9 @@
 
 #include <petscsys.h>
 
-/* y [n]; M [n][n] by columns, or NULL */
+#define SHOOTING_DIFFERENCE 1e-6 /* of the period and of the span, for derivatives of the flow */
+
+/* y [n], infinite where the flow ends before T; M [n][n] by columns, or NULL */
 typedef PetscErrorCode (*ShootingFlow)(void *ctx, const PetscReal x[], PetscReal period, PetscReal value, PetscReal y[],
                                        PetscReal M[]);
 
@@ -60,10 +62,16 @@ typedef struct {
   PetscReal  period, value;
 } ShootingTangent;
 
-/* Multipliers but that of the phase */
+/* A cycle of a branch, and the branch's direction there */
 typedef struct {
-  PetscReal phase[2];   /* the one near 1 whose vector is the motion along the cycle */
+  ShootingCycle   cycle;
+  ShootingTangent tangent;
+} ShootingPlace;
+
+typedef struct {
+  PetscReal phase[2];   /* the multiplier whose vector is the motion along the cycle */
   PetscReal largest[2]; /* of the others */
+  PetscBool told;       /* no other vector is as near to that motion: at folds two are */
 } ShootingStability;
 
 /*@ ShootingSolve - the cycle near a guess, at its value of the parameter. Not collective. That it does not converge is
@@ -75,10 +83,30 @@ PETSC_INTERN PetscErrorCode ShootingGetStability(const Shooting *s, const Shooti
                                                  ShootingStability *stability);
 
 /*@ ShootingGetTangent - direction of the branch at a cycle, along which the tangent before (of length 0 for none, then p
-    grows) goes on. Not collective. @*/
-PETSC_INTERN PetscErrorCode ShootingGetTangent(const Shooting *s, const ShootingCycle *cycle, ShootingTangent *tangent);
+    grows) goes on. Where the branch splits there is none: found is false, and the tangent stays. Not collective. @*/
+PETSC_INTERN PetscErrorCode ShootingGetTangent(const Shooting *s, const ShootingCycle *cycle, ShootingTangent *tangent,
+                                               PetscBool *found);
 
 /*@ ShootingAdvance - the cycle at a distance along a branch, in place of `cycle`, which stays what it was where there is
     none (converged is then false). Folds are passed. Not collective. @*/
 PETSC_INTERN PetscErrorCode ShootingAdvance(const Shooting *s, PetscReal step, const ShootingTangent *tangent,
                                             ShootingCycle *cycle);
+
+/*@ ShootingCopy - a cycle into the arrays of another. Not collective. @*/
+PETSC_INTERN PetscErrorCode ShootingCopy(PetscInt n, const ShootingCycle *from, ShootingCycle *to);
+
+/*@
+   ShootingFindFold - where the parameter turns back between a place of a branch and the one `step` further, dp/ds = 0, by regula
+   falsi on that slope. Not collective.
+
+   Input Parameters:
++  start  - a place
+.  step   - how far to go at most
+-  beyond - dp/ds there, of the other sign than at the start
+
+   Output Parameters:
++  fold  - its arrays the caller's
+-  error - how far its parameter may be from that of the fold of this flow; -1 where it was not found
+@*/
+PETSC_INTERN PetscErrorCode ShootingFindFold(const Shooting *s, const ShootingPlace *start, PetscReal step,
+                                             PetscReal beyond, ShootingPlace *fold, PetscReal *error);

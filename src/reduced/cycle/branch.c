@@ -1,161 +1,185 @@
 /*
    The branch of cycles through the one that was found, both ways by pseudo-arclength (solver/shooting.h), through folds, until
    the parameter leaves its range, the vibration vanishes or no further cycle is found. Distances are those of (eta, rate)
-   over their rms in the first cycle, of T over itself and of the parameter over its range.
+   over their rms in a vibration that is told before, of T over itself and of the parameter over its range. Where dp/ds changes its
+   sign between two cycles the fold is looked for.
 */
 #include "cycleimpl.h"
 
-#define BRANCH_STEP    0.1 /* the first */
-#define BRANCH_LONGEST 0.25
-#define BRANCH_SHRINKS                                                                                                 \
-  0.7 /* times the rms over that of the first cycle, at most: the vibration is not passed by zero */
+#define BRANCH_STEP     0.1 /* the first */
+#define BRANCH_LONGEST  0.25
+#define BRANCH_SHRINKS  0.7 /* times the rms over that of the vibration, at most: it is not passed by zero */
 #define BRANCH_SHORTEST 1e-4
 #define BRANCH_EASY     3 /* steps of Newton's method after which the next step is longer */
 #define BRANCH_MAX_IT   8
-#define BRANCH_VANISHED 0.05 /* rms of the force over that of the first cycle */
+#define BRANCH_VANISHED 0.05 /* rms of the force over that of the vibration */
+#define BRANCH_SPLITS   "the branch splits, and has no direction"
+#define BRANCH_BEYOND   0.01 /* of the span, and twice that of an end: how far a step may go beyond it */
 
-/* The interface of which the parameter is the friction coefficient, -1 for none */
-static PetscErrorCode BranchFind(LimitCycle c, PetscInt n, const ContactInterface interfaces[], PetscInt *found)
+/* One way along the branch */
+typedef struct {
+  ShootingPlace here, next, fold;
+  PetscReal     step;
+  PetscInt      most;  /* points after which it ends */
+  PetscBool     split; /* the next place has no direction */
+  const char   *end;
+} BranchWay;
+
+/* A step that goes beyond the range by a little at most, where there are no models */
+static PetscReal BranchLimit(const LimitCycle c, const BranchWay *w)
 {
-  char name[256], valid[1024] = "";
+  const PetscReal slope = w->here.tangent.value, end = c->range[slope > 0];
+  const PetscReal least = PetscMin(BRANCH_BEYOND * (c->range[1] - c->range[0]), 2 * BRANCH_BEYOND * PetscAbsReal(end));
+  const PetscReal far   = PetscAbsReal(end - w->here.cycle.value) + PetscMax(least, PETSC_SMALL);
 
-  PetscFunctionBeginUser;
-  *found = -1;
-  for (PetscInt k = 0; k < n; k++) {
-    PetscBool same;
-
-    PetscCall(PetscSNPrintf(name, sizeof(name), "%s_mu", interfaces[k].name));
-    PetscCall(PetscStrcmp(name, c->parameter, &same));
-    if (same) *found = k;
-    if (k) PetscCall(PetscStrlcat(valid, ", ", sizeof(valid)));
-    PetscCall(PetscStrlcat(valid, name, sizeof(valid)));
-  }
-  PetscCheck(*found >= 0, c->comm, PETSC_ERR_USER_INPUT,
-             "-cycle_parameter '%s' is no parameter along which cycles can be followed; valid are %s", c->parameter,
-             valid);
-  PetscFunctionReturn(0);
+  return slope != 0 ? PetscMin(w->step, far / PetscAbsReal(slope)) : w->step;
 }
 
-PetscErrorCode CycleFindParameter(LimitCycle c)
+/* The next cycle, that at the end of the range from one beyond it; taken is false where there is none */
+static PetscErrorCode BranchStep(LimitCycle c, PetscReal step, BranchWay *w, PetscBool *taken)
 {
-  const ContactInterface *interfaces;
-  PetscInt                n;
+  ShootingCycle *at = &w->next.cycle;
+  PetscReal      inside;
 
   PetscFunctionBeginUser;
-  c->varied = -1;
-  if (!c->parameter[0]) PetscFunctionReturn(0);
-  PetscCall(ContactGetInterfaces(c->contact, &n, &interfaces));
-  PetscCall(BranchFind(c, n, interfaces, &c->varied));
-  c->value = interfaces[c->varied].mu;
-  PetscCheck(c->value >= c->range[0] && c->value <= c->range[1], c->comm, PETSC_ERR_USER_INPUT,
-             "-cycle_range %.6g,%.6g must hold -%s %.6g, where the transient finds the first cycle",
-             (double)c->range[0], (double)c->range[1], c->parameter, (double)c->value);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode CycleSetParameter(LimitCycle c)
-{
-  const ReducedRun r = c->reduced;
-
-  PetscFunctionBeginUser;
-  if (c->varied < 0) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(r->model.n_pairs, &c->flow.varies));
-  for (PetscInt i = 0; i < r->model.n_pairs; i++) c->flow.varies[i] = r->pair[i].interface == c->varied;
-  c->flow.span = c->range[1] - c->range[0];
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode BranchCopy(PetscInt n, const ShootingCycle *from, ShootingCycle *to)
-{
-  PetscReal *x = to->x, *M = to->M;
-
-  PetscFunctionBeginUser;
-  *to   = *from;
-  to->x = x;
-  to->M = M;
-  PetscCall(PetscArraycpy(x, from->x, n));
-  PetscCall(PetscArraycpy(M, from->M, n * n));
-  PetscFunctionReturn(0);
-}
-
-/* The cycle at the end of the range, from one beyond it */
-static PetscErrorCode BranchClip(LimitCycle c, ShootingCycle *at, PetscBool *taken)
-{
-  PetscFunctionBeginUser;
-  at->value = PetscMin(c->range[1], PetscMax(c->range[0], at->value));
+  PetscCall(ShootingCopy(c->flow.n, &w->here.cycle, at));
+  PetscCall(ShootingAdvance(&c->shooting, step, &w->here.tangent, at));
+  *taken = at->converged;
+  inside = PetscMin(c->range[1], PetscMax(c->range[0], at->value));
+  if (!*taken || inside == at->value) PetscFunctionReturn(0);
+  at->value = inside;
   PetscCall(ShootingSolve(&c->shooting, at));
   *taken = at->converged;
+  w->end = *taken ? "end of -cycle_range" : "none is found at the end of -cycle_range";
   PetscFunctionReturn(0);
 }
 
-/* Whether to go on after a step, and how far the next one goes; why not, else */
-static PetscBool BranchGoesOn(const LimitCycle c, const ShootingCycle *at, PetscReal *step, const char **end)
+/* Direction at the next place, and the fold where the parameter has turned back */
+static PetscErrorCode BranchTurn(LimitCycle c, PetscReal step, BranchWay *w)
 {
-  if (!at->converged) {
-    *step /= 2;
-    if (*step < BRANCH_SHORTEST) *end = "no further cycle is found";
-    return *end ? PETSC_FALSE : PETSC_TRUE;
-  }
-  *step = at->its <= BRANCH_EASY ? PetscMin(1.5 * *step, BRANCH_LONGEST) : *step;
-  *step = PetscMin(*step, BRANCH_SHRINKS * c->point[c->n_points - 1].found.rms / c->rms);
-  if (at->value <= c->range[0] || at->value >= c->range[1])
-    *end = "end of -cycle_range";
-  else if (c->point[c->n_points - 1].found.rms < BRANCH_VANISHED * c->rms)
-    *end = "the vibration vanishes";
-  else if (c->n_points >= c->max_points)
-    *end = "-cycle_points";
-  return *end ? PETSC_FALSE : PETSC_TRUE;
-}
-
-/* One way along the branch, the parameter falling or rising at first */
-static PetscErrorCode BranchWalk(LimitCycle c, PetscReal direction, ShootingCycle *at, const char **end)
-{
-  ShootingTangent tangent = {.period = 0, .value = direction * c->flow.span};
-  PetscReal       step    = BRANCH_STEP;
-  PetscBool       on      = PETSC_TRUE;
+  ShootingTangent *t = &w->next.tangent;
+  PetscBool        found;
+  PetscReal        error;
 
   PetscFunctionBeginUser;
-  *end = NULL;
-  PetscCall(PetscCalloc1(c->flow.n, &tangent.x));
-  PetscCall(ShootingGetTangent(&c->shooting, at, &tangent));
-  while (on) {
-    PetscBool taken, beyond;
-
-    PetscCall(ShootingAdvance(&c->shooting, step, &tangent, at));
-    taken  = at->converged;
-    beyond = taken && (at->value < c->range[0] || at->value > c->range[1]) ? PETSC_TRUE : PETSC_FALSE;
-    if (beyond) PetscCall(BranchClip(c, at, &taken));
-    if (beyond && !taken) *end = "none is found at the end of -cycle_range"; /* `at` is no cycle to go on from */
-    if (taken) PetscCall(CycleTake(c, at));
-    on = *end ? PETSC_FALSE : BranchGoesOn(c, at, &step, end);
-    if (taken && on) PetscCall(ShootingGetTangent(&c->shooting, at, &tangent));
-  }
-  PetscCall(PetscFree(tangent.x));
+  PetscCall(PetscArraycpy(t->x, w->here.tangent.x, c->flow.n));
+  t->period = w->here.tangent.period;
+  t->value  = w->here.tangent.value;
+  PetscCall(ShootingGetTangent(&c->shooting, &w->next.cycle, t, &found));
+  w->split = found ? PETSC_FALSE : PETSC_TRUE;
+  if (!found || (t->value > 0) == (w->here.tangent.value > 0)) PetscFunctionReturn(0);
+  PetscCall(ShootingFindFold(&c->shooting, &w->here, step, t->value, &w->fold, &error));
+  if (error >= 0) PetscCall(CycleTakeFold(c, &w->fold, error));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CycleFollow(LimitCycle c, const ShootingCycle *start)
+/* How far the next step goes, and why there is none */
+static void BranchGoOn(const LimitCycle c, PetscBool taken, BranchWay *w)
 {
-  const PetscInt n = c->flow.n, max_it = c->shooting.max_it, max_points = c->max_points;
-  ShootingCycle  at;
+  const CyclePoint *last = &c->point[c->in_front ? 0 : c->n_points - 1];
+
+  if (w->end) return;
+  if (!taken) {
+    w->step /= 2;
+    if (w->step < BRANCH_SHORTEST) w->end = "no further cycle is found";
+    return;
+  }
+  if (w->next.cycle.its <= BRANCH_EASY) w->step = PetscMin(1.5 * w->step, BRANCH_LONGEST);
+  w->step = PetscMin(w->step, BRANCH_SHRINKS * last->found.rms / c->rms);
+  if (w->split)
+    w->end = BRANCH_SPLITS;
+  else if (last->found.rms < BRANCH_VANISHED * c->rms)
+    w->end = "the vibration vanishes";
+  else if (c->n_points >= w->most)
+    w->end = "-cycle_points";
+}
+
+/* Direction, first step, and whether there is any */
+static PetscErrorCode BranchLeave(LimitCycle c, BranchWay *w)
+{
+  const PetscReal value = w->here.cycle.value;
+  PetscBool       found;
 
   PetscFunctionBeginUser;
-  c->rms             = c->point[0].found.rms;
+  w->step = BRANCH_STEP;
+  w->end  = NULL;
+  PetscCall(ShootingGetTangent(&c->shooting, &w->here.cycle, &w->here.tangent, &found));
+  if (!found) w->end = BRANCH_SPLITS;
+  if (w->here.tangent.value > 0 ? value >= c->range[1] : value <= c->range[0]) w->end = "end of -cycle_range";
+  PetscFunctionReturn(0);
+}
+
+/* One way along the branch, from a place on */
+static PetscErrorCode BranchWalk(LimitCycle c, BranchWay *w)
+{
+  PetscFunctionBeginUser;
+  PetscCall(BranchLeave(c, w));
+  while (!w->end) {
+    const PetscReal     step = BranchLimit(c, w);
+    const ShootingPlace here = w->here;
+    PetscBool           taken;
+
+    w->step = step;
+    PetscCall(BranchStep(c, step, w, &taken));
+    if (taken && !w->end) PetscCall(BranchTurn(c, step, w));
+    if (taken) PetscCall(CycleTake(c, &w->next.cycle));
+    BranchGoOn(c, taken, w);
+    if (!taken) continue;
+    w->here = w->next;
+    w->next = here;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PlaceCreate(PetscInt n, ShootingPlace *place)
+{
+  PetscFunctionBeginUser;
+  *place = (ShootingPlace){.cycle.period = 0};
+  PetscCall(PetscCalloc3(n, &place->cycle.x, n * n, &place->cycle.M, n, &place->tangent.x));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PlaceDestroy(ShootingPlace *place)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(place->cycle.x, place->cycle.M, place->tangent.x));
+  PetscFunctionReturn(0);
+}
+
+/* The start, and the way from it: of the parameter, or along `growing` */
+static PetscErrorCode BranchBegin(LimitCycle c, const ShootingCycle *start, const ShootingTangent *growing,
+                                  PetscReal sign, BranchWay *w)
+{
+  ShootingTangent *t = &w->here.tangent;
+
+  PetscFunctionBeginUser;
+  PetscCall(ShootingCopy(c->flow.n, start, &w->here.cycle));
+  for (PetscInt i = 0; i < c->flow.n; i++) t->x[i] = growing ? sign * growing->x[i] : 0;
+  t->period = growing ? sign * growing->period : 0;
+  t->value  = growing ? sign * growing->value : sign * c->shooting.span;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CycleFollow(LimitCycle c, const ShootingCycle *start, const ShootingTangent *growing)
+{
+  const PetscInt n = c->flow.n, max_it = c->shooting.max_it;
+  BranchWay      w = {.end = NULL};
+
+  PetscFunctionBeginUser;
   c->shooting.max_it = BRANCH_MAX_IT;
-  PetscCall(PetscMalloc2(n, &at.x, n * n, &at.M));
+  PetscCall(PlaceCreate(n, &w.here));
+  PetscCall(PlaceCreate(n, &w.next));
+  PetscCall(PlaceCreate(n, &w.fold));
   for (int way = 0; way < 2; way++) {
-    PetscCall(BranchCopy(n, start, &at));
-    c->max_points = way ? c->n_points + max_points / 2 : 1 + max_points / 2;
-    PetscCall(BranchWalk(c, way ? 1 : -1, &at, &c->end[way]));
-    for (PetscInt i = 0, j = c->n_points - 1; !way && i < j; i++, j--) {
-      const CyclePoint first = c->point[i];
-
-      c->point[i] = c->point[j];
-      c->point[j] = first;
-    }
+    PetscCall(BranchBegin(c, start, growing, way ? 1 : -1, &w));
+    c->in_front = way ? PETSC_FALSE : PETSC_TRUE;
+    w.most      = way ? c->max_points : PetscMax(2, (c->max_points + 1) / 2);
+    PetscCall(BranchWalk(c, &w));
+    c->end[way] = w.end;
   }
-  c->max_points      = max_points;
   c->shooting.max_it = max_it;
-  PetscCall(PetscFree2(at.x, at.M));
+  PetscCall(PlaceDestroy(&w.here));
+  PetscCall(PlaceDestroy(&w.next));
+  PetscCall(PlaceDestroy(&w.fold));
   PetscFunctionReturn(0);
 }

@@ -1,9 +1,9 @@
-/* Cycle: options, the flow of a run, the table */
+/* Cycle: options, the flow of a run */
 #include "cycleimpl.h"
 #include <squeal/options.h>
 
-#define CYCLE_BY     "-analysis cycle"
-#define CYCLE_STABLE (1 + 1e-9) /* modulus of a multiplier, with rounding */
+#define CYCLE_AMPLITUDE 0.3
+#define CYCLE_FAR       1e3 /* s, when ramps are over */
 
 PetscErrorCode CycleCreate(MPI_Comm comm, LimitCycle *cycle)
 {
@@ -14,19 +14,24 @@ PetscErrorCode CycleCreate(MPI_Comm comm, LimitCycle *cycle)
   (*cycle)->max_it     = 30;
   (*cycle)->verify     = PETSC_TRUE;
   (*cycle)->max_points = 60;
+  (*cycle)->amplitude  = CYCLE_AMPLITUDE;
   PetscFunctionReturn(0);
 }
 
-/* A branch has a parameter and a range */
+/* A branch has a parameter and a range, and begins somewhere */
 static PetscErrorCode CycleCheckBranch(LimitCycle c, PetscBool has_range)
 {
   PetscFunctionBeginUser;
+  PetscCheck(c->parameter[0] || !c->from_mode, c->comm, PETSC_ERR_USER_INPUT,
+             "-cycle_start mode needs -cycle_parameter: cycles begin where a mode becomes unstable over it");
+  PetscCheck(c->amplitude > 0 && c->amplitude <= 10, c->comm, PETSC_ERR_USER_INPUT,
+             "-cycle_amplitude %.6g must be positive and 10 at most", (double)c->amplitude);
   if (!c->parameter[0]) PetscFunctionReturn(0);
   PetscCheck(has_range, c->comm, PETSC_ERR_USER_INPUT,
              "-cycle_parameter %s needs -cycle_range: its least and largest value, e.g. 0.1,0.6", c->parameter);
-  PetscCheck(c->range[0] >= 0 && c->range[1] > c->range[0] && c->range[1] < 1e30, c->comm, PETSC_ERR_USER_INPUT,
-             "-cycle_range %.6g,%.6g must be two values of a friction coefficient, the smaller one first",
-             (double)c->range[0], (double)c->range[1]);
+  PetscCheck(c->range[1] > c->range[0] && PetscAbsReal(c->range[0]) < 1e30 && PetscAbsReal(c->range[1]) < 1e30, c->comm,
+             PETSC_ERR_USER_INPUT, "-cycle_range %.6g,%.6g must be two values of %s, the smaller one first",
+             (double)c->range[0], (double)c->range[1], c->parameter);
   PetscCheck(c->max_points >= 2, c->comm, PETSC_ERR_USER_INPUT, "-cycle_points %" PetscInt_FMT " must be 2 at least",
              c->max_points);
   PetscFunctionReturn(0);
@@ -34,7 +39,9 @@ static PetscErrorCode CycleCheckBranch(LimitCycle c, PetscBool has_range)
 
 PetscErrorCode CycleSetFromOptions(LimitCycle c)
 {
-  PetscBool has_range;
+  static const char *const starts[] = {"transient", "mode"};
+  PetscInt                 start    = 0;
+  PetscBool                has_range;
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(c->comm, NULL, "Limit cycles", "Cycle");
@@ -45,13 +52,22 @@ PetscErrorCode CycleSetFromOptions(LimitCycle c)
   PetscCall(PetscOptionsInt("-cycle_max_it", "iterations of Newton's method", "cycle.h", c->max_it, &c->max_it, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-cycle_verify", "errors, by the cycle of twice the steps", &c->verify));
   PetscCall(PetscOptionsString("-cycle_parameter",
-                               "friction coefficient over which cycles are followed, e.g. contact_mu", "cycle.h",
-                               c->parameter, c->parameter, sizeof(c->parameter), NULL));
+                               "option of the scene over which cycles are followed, e.g. contact_mu, pad_young",
+                               "cycle.h", c->parameter, c->parameter, sizeof(c->parameter), NULL));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-cycle_range", "where it ends, least and largest value", 2, c->range,
                             &has_range));
-  PetscCall(PetscOptionsInt("-cycle_points", "cycles on the branch, at most; half of them each way", "cycle.h",
+  PetscCall(PetscOptionsInt("-cycle_points", "cycles on the branch, at most; half of them the first way", "cycle.h",
                             c->max_points, &c->max_points, NULL));
+  PetscCall(PetscOptionsEList("-cycle_start",
+                              "the first cycle: at the end of a transient, or near the value at which "
+                              "a mode of the sliding state becomes unstable",
+                              "cycle.h", starts, 2, starts[0], &start, NULL));
+  PetscCall(PetscOptionsReal("-cycle_amplitude",
+                             "change of the pairs' normal forces in the first cycle of -cycle_start mode, of those at "
+                             "rest",
+                             "cycle.h", c->amplitude, &c->amplitude, NULL));
   PetscOptionsEnd();
+  c->from_mode = start == 1 ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(c->steps == 0 || (c->steps >= 7 && c->steps % 2), c->comm, PETSC_ERR_USER_INPUT,
              "-cycle_steps %" PetscInt_FMT " must be an odd number, 7 at least, or 0 for those of the transient",
              c->steps);
@@ -61,127 +77,195 @@ PetscErrorCode CycleSetFromOptions(LimitCycle c)
              c->max_it);
   if (!c->parameter[0]) PetscCall(OptionsRefuse(c->comm, "-cycle_range", "not used without -cycle_parameter"));
   if (!c->parameter[0]) PetscCall(OptionsRefuse(c->comm, "-cycle_points", "not used without -cycle_parameter"));
+  if (!c->from_mode) PetscCall(OptionsRefuse(c->comm, "-cycle_amplitude", "not used without -cycle_start mode"));
   PetscCall(CycleCheckBranch(c, has_range));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CycleSetRooms(LimitCycle c, ReducedRun reduced, Contact contact)
+PetscErrorCode CycleSetRooms(LimitCycle c, ReducedRun reduced, Operators operators, const PetscReal p[])
 {
+  const OperatorsParameter *list;
+  PetscInt                  n;
+
   PetscFunctionBeginUser;
-  c->reduced = reduced;
-  c->contact = contact;
+  c->reduced   = reduced;
+  c->operators = operators;
+  PetscCall(OperatorsGetParameters(operators, &n, &list));
+  PetscCall(PetscFree(c->p));
+  PetscCall(OperatorsCreatePoint(operators, &c->p));
+  if (p) PetscCall(PetscArraycpy(c->p, p, n));
   PetscFunctionReturn(0);
 }
 
-/* The same cycle with twice the steps */
-static PetscErrorCode CycleRefine(LimitCycle c, const ShootingCycle *at, CyclePoint *point)
+/* The parameter, before anything runs */
+static PetscErrorCode CycleFindParameter(LimitCycle c)
+{
+  ReducedParameter *v = &c->varied;
+  Model             model;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(c->operators, &model, NULL));
+  if (!c->parameter[0] || !model) PetscFunctionReturn(0);
+  PetscCall(ReducedParameterFind(c->operators, c->p, "-cycle_parameter", "along which cycles can be followed",
+                                 c->parameter, v));
+  for (int i = 0; i < 2; i++) PetscCall(ReducedParameterCheck(c->operators, "-cycle_range", v, c->range[i]));
+  if (v->kind == REDUCED_BODY) PetscCall(OperatorsCheckMoved(c->operators, "-cycle_parameter", 1, &v->index));
+  PetscCheck(c->from_mode || (v->value >= c->range[0] && v->value <= c->range[1]), c->comm, PETSC_ERR_USER_INPUT,
+             "-cycle_range %.6g,%.6g must hold -%s %.6g, where the transient finds the first cycle",
+             (double)c->range[0], (double)c->range[1], c->parameter, (double)v->value);
+  PetscFunctionReturn(0);
+}
+
+/* The parameter in the flow, and models over it where it is one of the bodies */
+static PetscErrorCode CycleSetParameter(LimitCycle c)
+{
+  PetscFunctionBeginUser;
+  c->shooting.span = 1;
+  if (!c->parameter[0]) PetscFunctionReturn(0);
+  c->shooting.span  = c->range[1] - c->range[0];
+  c->shooting.least = c->varied.kind == REDUCED_SLOPE ? -PETSC_MAX_REAL : PETSC_SMALL * c->range[1];
+  if (c->varied.kind == REDUCED_MU) c->shooting.least = 0;
+  c->flow.varied = &c->varied;
+  c->flow.value  = c->varied.value;
+  if (c->varied.kind != REDUCED_BODY) PetscFunctionReturn(0);
+  PetscCall(CycleFamilyCreate(c->reduced, &c->varied, c->range, c->p, &c->family));
+  c->flow.family = c->family;
+  c->flow.model  = &c->family->model;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CycleSetShooting(LimitCycle c, PetscReal period)
+{
+  PetscFunctionBeginUser;
+  c->flow.n_steps    = c->steps ? c->steps : 2 * (PetscInt)PetscFloorReal(0.5 * period / c->reduced->dt) + 1;
+  c->shooting.flow   = CycleFlowRun;
+  c->shooting.ctx    = &c->flow;
+  c->shooting.rtol   = c->rtol;
+  c->shooting.max_it = c->max_it;
+  PetscFunctionReturn(0);
+}
+
+/* The same cycle with twice the steps; of a fold, whose parameter is a result, the one at the same distance along the branch */
+static PetscErrorCode CycleRefine(LimitCycle c, const ShootingCycle *at, const ShootingTangent *along,
+                                  CyclePoint *point)
 {
   const PetscInt n = c->flow.n, steps = c->flow.n_steps;
-  ShootingCycle  finer = *at;
+  ShootingCycle  finer;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &finer.x, n * n, &finer.M));
-  PetscCall(PetscArraycpy(finer.x, at->x, n));
-  PetscCall(CycleFlowSetSteps(&c->flow, 2 * steps + 1));
-  PetscCall(ShootingSolve(&c->shooting, &finer));
+  PetscCall(ShootingCopy(n, at, &finer));
+  c->flow.n_steps = 2 * steps + 1;
+  PetscCall(along ? ShootingAdvance(&c->shooting, 0, along, &finer) : ShootingSolve(&c->shooting, &finer));
   point->has_finer = finer.converged;
-  if (finer.converged) CycleFlowMeasure(&c->flow, finer.period, &point->finer);
-  if (finer.converged) PetscCall(ShootingGetStability(&c->shooting, &finer, &point->finer_stability));
-  PetscCall(CycleFlowSetSteps(&c->flow, steps));
+  if (finer.converged) {
+    PetscCall(CycleFlowMeasure(&c->flow, &finer, &point->finer, point->finer_probe));
+    PetscCall(ShootingGetStability(&c->shooting, &finer, &point->finer_stability));
+    if (along) point->value_error += PetscAbsReal(finer.value - at->value);
+  }
+  c->flow.n_steps = steps;
   PetscCall(PetscFree2(finer.x, finer.M));
+  PetscFunctionReturn(0);
+}
+
+/* A place in front of the cycles that are there, or behind them */
+static PetscErrorCode CycleAddPoint(LimitCycle c, CyclePoint **point)
+{
+  const PetscInt n = c->n_points++;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscRealloc((size_t)(n + 1) * sizeof(*c->point), &c->point));
+  for (PetscInt i = n; i > 0 && c->in_front; i--) c->point[i] = c->point[i - 1];
+  *point  = &c->point[c->in_front ? 0 : n];
+  **point = (CyclePoint){.value_error = -1, .n_steps = c->flow.n_steps};
+  PetscCall(PetscCalloc2(c->flow.n_looked, &(*point)->probe, c->flow.n_looked, &(*point)->finer_probe));
+  PetscFunctionReturn(0);
+}
+
+/* A cycle, or with `along` a fold of which the parameter is known to `error` */
+static PetscErrorCode CycleAdd(LimitCycle c, const ShootingCycle *at, const ShootingTangent *along, PetscReal error)
+{
+  CyclePoint *point;
+
+  PetscFunctionBeginUser;
+  PetscCall(CycleAddPoint(c, &point));
+  point->value       = at->value;
+  point->value_error = error;
+  point->fold        = along ? PETSC_TRUE : PETSC_FALSE;
+  point->its         = at->its;
+  point->residual    = at->residual;
+  PetscCall(CycleFlowMeasure(&c->flow, at, &point->found, point->probe));
+  PetscCall(ShootingGetStability(&c->shooting, at, &point->stability));
+  if (c->verify) PetscCall(CycleRefine(c, at, along, point));
+  PetscCall(CycleWrite(c));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode CycleTake(LimitCycle c, const ShootingCycle *at)
 {
-  CyclePoint *point;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscRealloc((size_t)(c->n_points + 1) * sizeof(*c->point), &c->point));
-  point  = &c->point[c->n_points++];
-  *point = (CyclePoint){.value = at->value, .n_steps = c->flow.n_steps, .its = at->its, .residual = at->residual};
-  CycleFlowMeasure(&c->flow, at->period, &point->found);
-  PetscCall(ShootingGetStability(&c->shooting, at, &point->stability));
-  if (c->verify) PetscCall(CycleRefine(c, at, point));
+  PetscCall(CycleAdd(c, at, NULL, -1));
   PetscFunctionReturn(0);
 }
 
-/* A number and how far that of twice the steps is from it; nothing where there is none */
-static PetscErrorCode CyclePrintError(const CyclePoint *p, PetscReal found, PetscReal finer, size_t size, char text[])
+PetscErrorCode CycleTakeFold(LimitCycle c, const ShootingPlace *fold, PetscReal error)
 {
   PetscFunctionBeginUser;
-  text[0] = 0;
-  if (p->has_finer) PetscCall(PetscSNPrintf(text, size, "%.15g", (double)PetscAbsReal(found - finer)));
-  PetscFunctionReturn(0);
-}
-
-/* Magnitude of the largest multiplier */
-static PetscReal CycleMultiplier(const ShootingStability *stability)
-{
-  return hypot(stability->largest[0], stability->largest[1]);
-}
-
-static PetscErrorCode CycleWriteRow(LimitCycle c, PetscInt i, ResultsTable table)
-{
-  const CyclePoint   *p = &c->point[i];
-  const CycleMeasure *a = &p->found, *b = &p->finer;
-  const PetscReal    *large = p->stability.largest, *phase = p->stability.phase, size = CycleMultiplier(&p->stability);
-  char                error[4][32], value[32] = "";
-
-  PetscFunctionBeginUser;
-  PetscCall(CyclePrintError(p, a->freq, b->freq, sizeof(error[0]), error[0]));
-  PetscCall(CyclePrintError(p, a->rms, b->rms, sizeof(error[1]), error[1]));
-  PetscCall(CyclePrintError(p, a->peak, b->peak, sizeof(error[2]), error[2]));
-  PetscCall(CyclePrintError(p, size, CycleMultiplier(&p->finer_stability), sizeof(error[3]), error[3]));
-  if (c->parameter[0]) PetscCall(PetscSNPrintf(value, sizeof(value), "%.15g", (double)p->value));
-  PetscCall(ResultsTableRow(table,
-                            "%" PetscInt_FMT ",%s,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%.15g,%.15g,"
-                            "%.15g,%d,%" PetscInt_FMT ",%.15g,%" PetscInt_FMT,
-                            i + 1, c->parameter, value, (double)a->freq, error[0], (double)a->mean, (double)a->rms,
-                            error[1], (double)a->peak, error[2], (double)a->open, (double)size, error[3],
-                            (double)large[0], (double)large[1], (double)phase[0], (double)phase[1], size > CYCLE_STABLE,
-                            p->n_steps, (double)p->residual, p->its));
-  PetscFunctionReturn(0);
-}
-
-/* cycle.csv */
-static PetscErrorCode CycleWrite(LimitCycle c, Results results)
-{
-  ResultsTable table;
-
-  PetscFunctionBeginUser;
-  PetscCall(ResultsTableOpen(
-    results, "cycle",
-    "point,parameter,value,freq_hz,freq_error_hz,force_mean_n,force_rms_n,force_rms_error_n,force_peak_n,"
-    "force_peak_error_n,open_share,multiplier_abs,multiplier_error,multiplier_re,multiplier_im,phase_multiplier_re,"
-    "phase_multiplier_im,"
-    "unstable,steps,residual,iterations",
-    &table));
-  for (PetscInt i = 0; i < c->n_points; i++) PetscCall(CycleWriteRow(c, i, table));
-  PetscCall(ResultsTableClose(&table));
+  PetscCall(CycleAdd(c, &fold->cycle, &fold->tangent, error));
   PetscFunctionReturn(0);
 }
 
 /* The cycle at the end of the transient */
 static PetscErrorCode CycleFind(LimitCycle c, ShootingCycle *at)
 {
-  PetscInt steps;
-
   PetscFunctionBeginUser;
   PetscCall(CycleGuess(c, at));
-  steps              = c->steps ? c->steps : 2 * (PetscInt)PetscFloorReal(0.5 * at->period / c->reduced->dt) + 1;
-  c->shooting.flow   = CycleFlowRun;
-  c->shooting.ctx    = &c->flow;
-  c->shooting.span   = c->flow.span;
-  c->shooting.rtol   = c->rtol;
-  c->shooting.max_it = c->max_it;
-  PetscCall(CycleFlowSetSteps(&c->flow, steps));
+  PetscCall(CycleSetParameter(c));
+  at->value = c->varied.value;
+  PetscCall(CycleSetShooting(c, at->period));
   PetscCall(ShootingSolve(&c->shooting, at));
   PetscCheck(at->converged, c->comm, PETSC_ERR_NOT_CONVERGED,
              CYCLE_BY ": no cycle of %.6g Hz is found: after %" PetscInt_FMT " steps of Newton's method a period ends "
                       "%.1e of the vibration's size from where it began, must be %.0e; a longer -ts_max_time, more "
                       "-cycle_steps or a larger -cycle_max_it may help",
              1 / (double)at->period, at->its, (double)at->residual, (double)c->rtol);
+  PetscCall(CycleTake(c, at));
+  c->rms = c->point[0].found.rms;
+  if (c->parameter[0]) PetscCall(CycleFollow(c, at, NULL));
+  PetscFunctionReturn(0);
+}
+
+/* The branch from the onset of a mode on */
+static PetscErrorCode CycleFindOnset(LimitCycle c, ShootingCycle *at)
+{
+  ShootingTangent growing;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(c->flow.n, &growing.x));
+  PetscCall(CycleSetParameter(c));
+  PetscCall(CycleBegin(c, at, &growing));
+  PetscCall(CycleTake(c, at));
+  c->rms = c->point[0].found.rms / c->amplitude;
+  PetscCall(CycleFollow(c, at, &growing));
+  PetscCall(PetscFree(growing.x));
+  PetscFunctionReturn(0);
+}
+
+/* Without a transient: the bodies, and a time after all ramps */
+static PetscErrorCode CycleReduce(LimitCycle c, Results results)
+{
+  static const char *const idle[] = {"-dynamics_start",   "-dynamics_shape",  "-dynamics_history_interval",
+                                     "-dynamics_restart", "-dynamics_verify", "-dynamics_snapshot_interval",
+                                     "-ts_max_time",      "-ts_max_steps",    "-dynamics_checkpoint_interval"};
+
+  PetscFunctionBeginUser;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(idle); i++)
+    PetscCall(OptionsRefuse(c->comm, idle[i], "not used by -cycle_start mode, which runs no transient"));
+  PetscCall(ReducedPrepare(c->reduced, results));
+  PetscCall(ReducedReduce(c->reduced));
+  PetscCall(ReducedCompare(c->reduced));
+  PetscCall(ShiftInvertDestroy(&c->reduced->inverse));
+  c->reduced->state.time = CYCLE_FAR;
   PetscFunctionReturn(0);
 }
 
@@ -194,61 +278,14 @@ PetscErrorCode CycleSolve(LimitCycle c, Results results)
   PetscFunctionBeginUser;
   PetscCall(ReducedIsAsked(c->reduced, &asked));
   PetscCheck(asked, c->comm, PETSC_ERR_USER_INPUT, CYCLE_BY " needs -dynamics_model reduced");
-  if (c->contact) PetscCall(CycleFindParameter(c));
-  PetscCall(ReducedIntegrate(c->reduced, results));
+  c->results = results;
+  PetscCall(CycleFindParameter(c));
+  PetscCall(c->from_mode ? CycleReduce(c, results) : ReducedIntegrate(c->reduced, results));
   PetscCall(CycleFlowCreate(c->reduced, &c->flow));
   n = c->flow.n;
-  PetscCall(PetscMalloc2(n, &at.x, n * n, &at.M));
-  PetscCall(CycleSetParameter(c));
-  at.value = c->value;
-  PetscCall(CycleFind(c, &at));
-  PetscCall(CycleTake(c, &at));
-  if (c->parameter[0]) PetscCall(CycleFollow(c, &at));
+  PetscCall(PetscCalloc2(n, &at.x, n * n, &at.M));
+  PetscCall(c->from_mode ? CycleFindOnset(c, &at) : CycleFind(c, &at));
   PetscCall(PetscFree2(at.x, at.M));
-  PetscCall(CycleWrite(c, results));
-  PetscFunctionReturn(0);
-}
-
-/* One cycle in words */
-static PetscErrorCode CycleViewPoint(LimitCycle c, const CyclePoint *p, PetscViewer viewer)
-{
-  const CycleMeasure *a = &p->found, *b = &p->finer;
-  const PetscReal    *large = p->stability.largest, *phase = p->stability.phase;
-  const double        size = CycleMultiplier(&p->stability);
-
-  PetscFunctionBeginUser;
-  if (c->parameter[0]) PetscCall(PetscViewerASCIIPrintf(viewer, "%s %.6g: ", c->parameter, (double)p->value));
-  PetscCall(PetscViewerASCIIPrintf(viewer,
-                                   "cycle of %.9g Hz in %" PetscInt_FMT
-                                   " steps: normal force %.6g N, rms %.6g N, %.6g to %.6g N, open %.4g of the time\n",
-                                   (double)a->freq, p->n_steps, (double)a->mean, (double)a->rms, (double)a->least,
-                                   (double)a->peak, (double)a->open));
-  if (p->has_finer)
-    PetscCall(PetscViewerASCIIPrintf(
-      viewer,
-      "  with twice the steps: frequency off by %+.1e Hz, rms by %+.1e N, largest force by %+.1e N, multiplier by "
-      "%+.1e\n",
-      (double)(b->freq - a->freq), (double)(b->rms - a->rms), (double)(b->peak - a->peak),
-      CycleMultiplier(&p->finer_stability) - size));
-  else if (c->verify)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  none is found with twice the steps: its error is unknown\n"));
-  PetscCall(PetscViewerASCIIPrintf(
-    viewer,
-    "  %s: largest multiplier %.6g%+.6gi (%.6g), that of the phase 1%+.1e%+.1ei; residual %.1e after %" PetscInt_FMT
-    " steps of Newton's method\n",
-    size > CYCLE_STABLE ? "unstable" : "stable", (double)large[0], (double)large[1], size, (double)(phase[0] - 1),
-    (double)phase[1], (double)p->residual, p->its));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode CycleView(LimitCycle c, PetscViewer viewer)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ReducedView(c->reduced, viewer));
-  if (c->parameter[0])
-    PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " cycles over %s; the first: %s; the last: %s\n",
-                                     c->n_points, c->parameter, c->end[0], c->end[1]));
-  for (PetscInt i = 0; i < c->n_points; i++) PetscCall(CycleViewPoint(c, &c->point[i], viewer));
   PetscFunctionReturn(0);
 }
 
@@ -259,9 +296,12 @@ PetscErrorCode CycleDestroy(LimitCycle *cycle)
   PetscFunctionBeginUser;
   if (!c) PetscFunctionReturn(0);
   PetscCall(CycleFlowDestroy(&c->flow));
+  PetscCall(CycleFamilyDestroy(&c->family));
   PetscCall(PetscFree2(c->shooting.size, c->shooting.weight));
   PetscCall(PetscFree(c->shooting.free));
+  for (PetscInt i = 0; i < c->n_points; i++) PetscCall(PetscFree2(c->point[i].probe, c->point[i].finer_probe));
   PetscCall(PetscFree(c->point));
+  PetscCall(PetscFree(c->p));
   PetscCall(PetscFree(*cycle));
   PetscFunctionReturn(0);
 }

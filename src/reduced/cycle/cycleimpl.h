@@ -1,26 +1,58 @@
-/* Private to reduced/cycle/: the flow of the reduced model, and what is found */
+/* Private to reduced/cycle/: the flow of the reduced model, models over a parameter, and what is found */
 #pragma once
 
 #include <squeal/cycle.h>
+#include "reduced/parameter.h"
 #include "reduced/reducedimpl.h"
 #include "solver/shooting.h"
 
-/* A reduced model under constant loads and sliding */
+#define CYCLE_BY "-analysis cycle"
+
+/* Matrices of a reduced model that a parameter of the bodies changes */
+typedef enum { FAMILY_K, FAMILY_C, FAMILY_P, FAMILY_W, FAMILY_CM, FAMILY_CX, FAMILY_N_PARTS } CycleFamilyPart;
+
+/* Reduced models over a parameter of the bodies */
 typedef struct {
-  ReducedModel  *model;      /* borrowed; its friction changes */
-  PetscReal     *loads;      /* [n_loads] factors */
-  PetscReal     *speed;      /* [n_pairs] prescribed sliding, m/s */
-  PetscReal     *way;        /* [n_pairs] in a step, m */
-  PetscBool     *varies;     /* [n_pairs] mu of these is the parameter; NULL for none */
-  PetscReal      span;       /* of the parameter */
-  PetscInt       n_steps, n; /* in a period; unknowns of the state */
-  PetscReal     *force;      /* [n_steps] normal force after each, N */
-  PetscReal      dt;         /* of the stepper */
-  ReducedStepper stepper;
-  ReducedTangent tangent;
-  ReducedState   state;
-  ReducedReport  report;
-  PetscInt       n_flows; /* periods that were integrated */
+  ReducedRun              scene; /* borrowed, as are the next two */
+  const ReducedParameter *parameter;
+  PetscReal              *p; /* [parameters] of the operators */
+  PetscReal               range[2];
+  PetscBool               logarithmic;
+  PetscInt                n, size[FAMILY_N_PARTS];
+  PetscReal *(*part)[FAMILY_N_PARTS]; /* [n] matrices at the points, from the end of the range to its beginning */
+  PetscReal      error;               /* of the interpolation, relative */
+  ReducedModel   model;               /* at `value` */
+  PetscReal      value, *Q;           /* [m][m] modes of the model in coordinates of the scene */
+  PetscInt       n_reductions;
+  PetscLogDouble seconds;
+} CycleFamily;
+
+/* What probes do in a cycle, one direction: rms and largest distance from the mean, m; rms and largest velocity, m/s */
+typedef struct {
+  PetscReal displacement_rms, displacement_peak, velocity_rms, velocity_peak;
+} CycleProbe;
+
+/* A reduced model under constant loads and sliding; x is in coordinates of the scene */
+typedef struct {
+  ReducedModel           *model;           /* borrowed; what is varied changes in it */
+  const ReducedParameter *varied;          /* borrowed; NULL for none */
+  CycleFamily            *family;          /* its models, where it changes the bodies */
+  PetscReal               value;           /* of the parameter in the model */
+  PetscInt               *interface;       /* [n_pairs] */
+  PetscReal              *loads;           /* [n_loads] factors */
+  PetscReal              *speed;           /* [n_pairs] of the scene, m/s */
+  PetscReal              *share;           /* [n_pairs] of the speed that is prescribed as sliding: 1 after ramps */
+  PetscReal              *way;             /* [n_pairs] in a step, m */
+  PetscInt                n_steps, n;      /* in a period; unknowns of the state */
+  PetscInt                first, n_looked; /* ports of the probes */
+  PetscReal              *force; /* [n_steps] normal force after each, N; NULL but while a cycle is measured */
+  PetscReal              *shown; /* [n_steps][3][n_looked] displacement, residual part of it, velocity of the modes */
+  PetscReal               dt;    /* of the stepper */
+  ReducedStepper          stepper;
+  ReducedTangent          tangent;
+  ReducedState            state;
+  ReducedReport           report;
+  PetscInt                n_flows; /* periods that were integrated */
 } CycleFlow;
 
 /* A cycle in numbers */
@@ -31,50 +63,78 @@ typedef struct {
 } CycleMeasure;
 
 typedef struct {
-  PetscReal         value;
+  PetscReal         value, value_error; /* the latter of folds, else negative */
   PetscInt          n_steps, its;
   PetscReal         residual;
   CycleMeasure      found, finer; /* finer: with twice the steps, where asked for */
-  PetscBool         has_finer;
+  PetscBool         has_finer, fold;
   ShootingStability stability, finer_stability;
+  CycleProbe       *probe, *finer_probe; /* [n_looked] */
 } CyclePoint;
 
 struct _p_LimitCycle {
-  MPI_Comm    comm;
-  PetscInt    steps, max_it, max_points; /* options */
-  PetscReal   rtol, range[2];
-  char        parameter[256];
-  PetscBool   verify;
-  ReducedRun  reduced;
-  Contact     contact;
-  PetscInt    varied; /* interface of the parameter, -1 for none */
-  PetscReal   value;  /* of the parameter, in the scene */
-  CycleFlow   flow;
-  Shooting    shooting;
-  PetscReal   closure; /* of the guess: distance over the size of the vibration */
-  PetscInt    n_points;
-  CyclePoint *point;
-  PetscReal   rms;    /* of the first cycle, N */
-  const char *end[2]; /* why the branch ends, both ways; NULL for no branch */
+  MPI_Comm         comm;
+  PetscInt         steps, max_it, max_points; /* options */
+  PetscReal        rtol, range[2], amplitude;
+  char             parameter[256];
+  PetscBool        verify, from_mode;
+  ReducedRun       reduced;
+  Operators        operators;
+  Results          results;
+  PetscReal       *p; /* [parameters] of the operators */
+  ReducedParameter varied;
+  CycleFamily     *family;
+  CycleFlow        flow;
+  Shooting         shooting;
+  PetscReal        closure;  /* of the guess: distance over the size of the vibration */
+  PetscReal        onset[3]; /* parameter, growth (1/s) and frequency (Hz) where -cycle_start mode begins */
+  PetscInt         n_points;
+  CyclePoint      *point;
+  PetscBool        in_front; /* cycles that are taken come before those that are there */
+  PetscReal        rms;      /* of the vibration that distances are over, N */
+  const char      *end[2];   /* why the branch ends, both ways; NULL for no branch */
 };
 
-/* flow.c - the model of a run at its end, loads and sliding constant from there; the state of a run as x, and back; Phi, M
-   (ShootingFlow); the last period in numbers */
+/* family.c - the models, p [parameters] borrowed; that at a value; eta of columns `stride` apart from the scene's coordinates to those
+   of the model, or back */
+PETSC_INTERN PetscErrorCode CycleFamilyCreate(ReducedRun scene, const ReducedParameter *parameter,
+                                              const PetscReal range[2], PetscReal p[], CycleFamily **family);
+PETSC_INTERN PetscErrorCode CycleFamilySet(CycleFamily *family, PetscReal value);
+PETSC_INTERN PetscErrorCode CycleFamilyTurn(const CycleFamily *family, PetscBool to_scene, PetscInt columns,
+                                            PetscInt stride, PetscReal X[]);
+PETSC_INTERN PetscErrorCode CycleFamilyDestroy(CycleFamily **family);
+
+/* flow.c - the model of a run, loads and sliding constant from its time on; the state of a run as x; Phi, M (ShootingFlow); the
+   parameter in the model */
 PETSC_INTERN PetscErrorCode CycleFlowCreate(ReducedRun reduced, CycleFlow *flow);
-PETSC_INTERN void           CycleFlowPack(const CycleFlow *flow, const ReducedState *state, PetscReal x[]);
-PETSC_INTERN PetscErrorCode CycleFlowSetSteps(CycleFlow *flow, PetscInt n_steps);
+PETSC_INTERN PetscErrorCode CycleFlowPack(const CycleFlow *flow, const ReducedState *state, PetscReal x[]);
+PETSC_INTERN PetscErrorCode CycleFlowSetValue(CycleFlow *flow, PetscReal value);
 PETSC_INTERN PetscErrorCode CycleFlowRun(void *flow, const PetscReal x[], PetscReal period, PetscReal value,
                                          PetscReal y[], PetscReal M[]);
-PETSC_INTERN void           CycleFlowMeasure(const CycleFlow *flow, PetscReal period, CycleMeasure *measure);
 PETSC_INTERN PetscErrorCode CycleFlowDestroy(CycleFlow *flow);
 
-/* guess.c - period and state at the end of the run, and the sizes of what changes */
+/* measure.c - a cycle in numbers; probe [n_looked] or NULL */
+PETSC_INTERN PetscErrorCode CycleFlowMeasure(CycleFlow *flow, const ShootingCycle *cycle, CycleMeasure *measure,
+                                             CycleProbe probe[]);
+
+/* guess.c - period and state at the end of the run, and the sizes of what changes: rms of eta, of rates and of forces */
 PETSC_INTERN PetscErrorCode CycleGuess(LimitCycle cycle, ShootingCycle *guess);
+PETSC_INTERN PetscErrorCode CycleSetSizes(LimitCycle cycle, const PetscReal size[3]);
 
-/* cycle.c - the cycle in numbers, with its stability and error, becomes a row */
+/* onset.c - where a mode of the sliding state becomes unstable, and the cycle of an amplitude that begins there; the direction
+   from rest to it */
+PETSC_INTERN PetscErrorCode CycleBegin(LimitCycle cycle, ShootingCycle *at, ShootingTangent *growing);
+
+/* cycle.c - how shooting goes about it; the cycle in numbers, with its stability and error, becomes a row */
+PETSC_INTERN PetscErrorCode CycleSetShooting(LimitCycle cycle, PetscReal period);
 PETSC_INTERN PetscErrorCode CycleTake(LimitCycle cycle, const ShootingCycle *at);
+PETSC_INTERN PetscErrorCode CycleTakeFold(LimitCycle cycle, const ShootingPlace *fold, PetscReal error);
 
-/* branch.c - the parameter, before the transient, and in the flow; the branch, in order, through the one cycle that was taken */
-PETSC_INTERN PetscErrorCode CycleFindParameter(LimitCycle cycle);
-PETSC_INTERN PetscErrorCode CycleSetParameter(LimitCycle cycle);
-PETSC_INTERN PetscErrorCode CycleFollow(LimitCycle cycle, const ShootingCycle *start);
+/* branch.c - the branch, in order, through the one cycle that was taken; `growing`: the direction along it that is gone last,
+   NULL for rising values */
+PETSC_INTERN PetscErrorCode CycleFollow(LimitCycle cycle, const ShootingCycle *start, const ShootingTangent *growing);
+
+/* write.c - all tables as they are by now; the class of a cycle: stable, unstable, or numerical where it cannot be told */
+PETSC_INTERN PetscErrorCode CycleWrite(LimitCycle cycle);
+PETSC_INTERN const char    *CycleClass(const CyclePoint *point);
+PETSC_INTERN PetscReal      CycleMultiplier(const ShootingStability *stability);

@@ -1,17 +1,18 @@
 /*
    The flow of the reduced model through a period: N steps of length T / N from the state x = (eta, rate, lambda, q), and its
-   derivative M, the product of those of the steps (steptangent.c).
+   derivative M, the product of those of the steps (steptangent.c). A step whose contact laws have no solution ends the period:
+   Phi is then infinite, which no cycle comes from.
 */
 #include "cycleimpl.h"
 
 #define FLOW_FAR 1e3 /* s, when ramps are over */
 
-/* Loads and sliding at the end of the run; raises the error where they go on to change */
+/* Loads and sliding from the time of the run on; raises the error where they go on to change */
 static PetscErrorCode FlowSetDrive(ReducedRun r, CycleFlow *f)
 {
   const PetscReal   now = r->state.time;
   const ModelScene *scene;
-  PetscReal        *later, way;
+  PetscReal        *later, way[2];
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(r->run.model, &scene));
@@ -20,48 +21,46 @@ static PetscErrorCode FlowSetDrive(ReducedRun r, CycleFlow *f)
   ReducedSetLoads(r, now + FLOW_FAR, later);
   for (PetscInt i = 0; i < r->model.n_loads; i++)
     PetscCheck(f->loads[i] == later[i], r->comm, PETSC_ERR_USER_INPUT,
-               "-analysis cycle: load %s still changes when the transient ends at %.6g s: take a longer "
-               "-ts_max_time, or a shorter ramp",
+               CYCLE_BY ": load %s still changes when the transient ends at %.6g s: take a longer "
+                        "-ts_max_time, or a shorter ramp",
                scene->loads[i].name, (double)now);
   PetscCall(PetscFree(later));
   for (PetscInt i = 0; i < r->model.n_pairs; i++) {
-    PetscCall(ReducedGetWay(r, i, &f->speed[i]));
+    PetscCall(ReducedGetWay(r, i, &way[0]));
     r->state.time = now + FLOW_FAR;
-    PetscCall(ReducedGetWay(r, i, &way));
+    PetscCall(ReducedGetWay(r, i, &way[1]));
     r->state.time = now;
-    PetscCheck(PetscAbsReal(way - f->speed[i]) <= 1e-6 * PetscAbsReal(way), r->comm, PETSC_ERR_USER_INPUT,
-               "-analysis cycle: the sliding still changes when the transient ends at %.6g s: take a longer "
-               "-ts_max_time, or a shorter ramp",
+    PetscCheck(PetscAbsReal(way[1] - way[0]) <= 1e-6 * PetscAbsReal(way[1]), r->comm, PETSC_ERR_USER_INPUT,
+               CYCLE_BY ": the sliding still changes when the transient ends at %.6g s: take a longer "
+                        "-ts_max_time, or a shorter ramp",
                (double)now);
-    f->speed[i] /= r->dt;
+    f->share[i] = f->speed[i] != 0 ? way[0] / (f->speed[i] * r->dt) : 0;
   }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode CycleFlowCreate(ReducedRun r, CycleFlow *f)
 {
+  const PetscInt n = r->model.n_pairs;
+
   PetscFunctionBeginUser;
-  *f = (CycleFlow){.model = &r->model, .n = ReducedTangentSize(&r->model), .span = 1};
-  PetscCall(PetscCalloc3(r->model.n_loads, &f->loads, r->model.n_pairs, &f->speed, r->model.n_pairs, &f->way));
+  *f          = (CycleFlow){.model = &r->model, .n = ReducedTangentSize(&r->model)};
+  f->first    = 3 * n + r->model.n_loads;
+  f->n_looked = r->model.n_ports - f->first;
+  PetscCall(PetscCalloc5(r->model.n_loads, &f->loads, n, &f->share, n, &f->way, n, &f->speed, n, &f->interface));
+  PetscCall(PetscArraycpy(f->speed, r->model.speed, n));
+  for (PetscInt i = 0; i < n; i++) f->interface[i] = r->pair[i].interface;
   PetscCall(ReducedStateCreate(f->model, &f->state));
   PetscCall(ReducedReportCreate(f->model, &f->report));
   PetscCall(FlowSetDrive(r, f));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CycleFlowSetSteps(CycleFlow *f, PetscInt n_steps)
-{
-  PetscFunctionBeginUser;
-  f->n_steps = n_steps;
-  PetscCall(PetscFree(f->force));
-  PetscCall(PetscMalloc1(n_steps, &f->force));
-  PetscFunctionReturn(0);
-}
-
-void CycleFlowPack(const CycleFlow *f, const ReducedState *s, PetscReal x[])
+PetscErrorCode CycleFlowPack(const CycleFlow *f, const ReducedState *s, PetscReal x[])
 {
   const PetscInt m = f->model->m, n = 3 * f->model->n_pairs;
 
+  PetscFunctionBeginUser;
   for (PetscInt i = 0; i < m; i++) {
     x[i]     = s->eta[i];
     x[m + i] = s->rate[i];
@@ -70,19 +69,22 @@ void CycleFlowPack(const CycleFlow *f, const ReducedState *s, PetscReal x[])
     x[2 * m + i] = s->p[i];
     if (f->model->Cx) x[2 * m + n + i] = s->q[i];
   }
+  if (f->family) PetscCall(CycleFamilyTurn(f->family, PETSC_TRUE, 2, m, x));
+  PetscFunctionReturn(0);
 }
 
 /* The state that x stands for; y follows from it */
-static void FlowUnpack(CycleFlow *f, const PetscReal x[])
+static PetscErrorCode FlowUnpack(CycleFlow *f, const PetscReal x[])
 {
   const ReducedModel *model = f->model;
   const PetscInt      m = model->m, n = 3 * model->n_pairs, N = model->n_ports;
   ReducedState       *s = &f->state;
 
-  for (PetscInt i = 0; i < m; i++) {
-    s->eta[i]  = x[i];
-    s->rate[i] = x[m + i];
-  }
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(s->eta, x, m));
+  PetscCall(PetscArraycpy(s->rate, &x[m], m));
+  if (f->family) PetscCall(CycleFamilyTurn(f->family, PETSC_FALSE, 1, m, s->eta));
+  if (f->family) PetscCall(CycleFamilyTurn(f->family, PETSC_FALSE, 1, m, s->rate));
   for (PetscInt i = 0; i < n; i++) {
     s->p[i] = x[2 * m + i];
     s->q[i] = model->Cx ? x[2 * m + n + i] : s->p[i];
@@ -93,6 +95,7 @@ static void FlowUnpack(CycleFlow *f, const PetscReal x[])
   ReducedBlockTimes(&(DenseBlock){model->P, m, n, m}, PETSC_TRUE, 1, s->eta, s->y);
   ReducedBlockTimes(&(DenseBlock){model->W, n, n, N}, PETSC_FALSE, 1, s->q, s->y);
   ReducedBlockTimes(&(DenseBlock){&model->W[N * n], n, model->n_loads, N}, PETSC_FALSE, 1, f->loads, s->y);
+  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode FlowForget(CycleFlow *f)
@@ -103,81 +106,104 @@ static PetscErrorCode FlowForget(CycleFlow *f)
   PetscFunctionReturn(0);
 }
 
-/* Stepper for the period, its friction for the parameter */
-static PetscErrorCode FlowPrepare(CycleFlow *f, PetscReal period, PetscReal value, PetscBool tangent)
+PetscErrorCode CycleFlowSetValue(CycleFlow *f, PetscReal value)
 {
-  const PetscReal dt      = period / (PetscReal)f->n_steps;
-  PetscBool       changed = PETSC_FALSE;
+  const ReducedMoved moved = {f->model, f->interface, f->speed, f->loads};
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < f->model->n_pairs && f->varies; i++) {
-    if (!f->varies[i] || f->model->mu[i] == value) continue;
-    f->model->mu[i] = value;
-    changed         = PETSC_TRUE;
-  }
+  if (!f->varied || f->value == value) PetscFunctionReturn(0);
+  f->value = value;
+  if (f->family) PetscCall(FlowForget(f));
+  if (f->family) PetscCall(CycleFamilySet(f->family, value));
+  ReducedParameterMove(f->varied, value, &moved);
+  if (f->stepper && f->stepper->laws)
+    PetscCall(ContactComplianceSetFriction(
+      f->stepper->laws, &(ComplianceFriction){f->model->mu, f->model->slope, f->model->speed, f->dt}));
+  PetscFunctionReturn(0);
+}
+
+/* Stepper for the period and the parameter */
+static PetscErrorCode FlowPrepare(CycleFlow *f, PetscReal period, PetscReal value, PetscBool tangent)
+{
+  const PetscReal dt = period / (PetscReal)f->n_steps;
+
+  PetscFunctionBeginUser;
+  PetscCall(CycleFlowSetValue(f, value));
   if (f->stepper && f->dt != dt) PetscCall(FlowForget(f));
-  if (!f->stepper) {
-    PetscCall(ReducedStepperCreate(f->model, dt, REDUCED_RTOL, &f->stepper));
-    f->dt = dt;
-  } else if (changed && f->stepper->laws) {
-    PetscCall(ContactComplianceSetFriction(f->stepper->laws,
-                                           &(ComplianceFriction){f->model->mu, f->model->slope, f->model->speed, dt}));
-  }
+  if (!f->stepper) PetscCall(ReducedStepperCreate(f->model, dt, REDUCED_RTOL, &f->stepper));
+  f->dt = dt;
   if (tangent && !f->tangent) PetscCall(ReducedTangentCreate(f->stepper, &f->tangent));
-  for (PetscInt i = 0; i < f->model->n_pairs; i++) f->way[i] = f->speed[i] * dt;
+  for (PetscInt i = 0; i < f->model->n_pairs; i++) f->way[i] = f->share[i] * f->model->speed[i] * dt;
+  PetscFunctionReturn(0);
+}
+
+/* The normal force after step k, and what probes show: displacement, of it that of the residual, and velocity of the modes */
+static void FlowLook(CycleFlow *f, PetscInt k)
+{
+  const ReducedModel *model = f->model;
+  const PetscInt      m = model->m, n = f->n_looked, pairs = 3 * model->n_pairs, N = model->n_ports;
+  PetscReal          *u = &f->shown[3 * n * k], *residual = u + n, *v = residual + n;
+  const DenseBlock    P = {&model->P[m * f->first], m, n, m};
+
+  f->force[k] = 0;
+  for (PetscInt i = 0; i < model->n_pairs; i++) f->force[k] += f->state.p[3 * i];
+  for (PetscInt i = 0; i < 3 * n; i++) u[i] = 0;
+  if (!n) return;
+  ReducedBlockTimes(&(DenseBlock){&model->W[N * f->first], pairs, n, N}, PETSC_TRUE, 1, f->state.q, residual);
+  ReducedBlockTimes(&(DenseBlock){&model->W[N * f->first + pairs], model->n_loads, n, N}, PETSC_TRUE, 1, f->loads,
+                    residual);
+  ReducedBlockTimes(&P, PETSC_TRUE, 1, f->state.eta, u);
+  ReducedBlockTimes(&P, PETSC_TRUE, 1, f->state.rate, v);
+  for (PetscInt i = 0; i < n; i++) u[i] += residual[i];
+}
+
+/* All steps of the period from the state on */
+static PetscErrorCode FlowSteps(CycleFlow *f, PetscReal M[])
+{
+  const ReducedDrive drive = {f->loads, f->way, NULL};
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < f->n_steps; k++) {
+    PetscCall(ReducedStep(f->stepper, &drive, &f->state, &f->report));
+    if (M) PetscCall(ReducedTangentApply(f->tangent, f->n, M));
+    if (f->force) FlowLook(f, k);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Columns of M, changes of eta and rate, to the coordinates of the model or back */
+static PetscErrorCode FlowTurn(CycleFlow *f, PetscBool to_scene, PetscReal M[])
+{
+  PetscFunctionBeginUser;
+  if (!M || !f->family) PetscFunctionReturn(0);
+  for (PetscInt part = 0; part < 2; part++)
+    PetscCall(CycleFamilyTurn(f->family, to_scene, f->n, f->n, &M[part * f->model->m]));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode CycleFlowRun(void *ctx, const PetscReal x[], PetscReal period, PetscReal value, PetscReal y[],
                             PetscReal M[])
 {
-  CycleFlow         *f     = ctx;
-  const ReducedDrive drive = {f->loads, f->way, NULL};
+  CycleFlow     *f = ctx;
+  PetscErrorCode error;
 
   PetscFunctionBeginUser;
   PetscCall(FlowPrepare(f, period, value, M ? PETSC_TRUE : PETSC_FALSE));
-  FlowUnpack(f, x);
+  PetscCall(FlowUnpack(f, x));
   f->n_flows++;
   if (M) PetscCall(PetscArrayzero(M, f->n * f->n));
   for (PetscInt i = 0; i < f->n && M; i++) M[i + f->n * i] = 1;
-  for (PetscInt k = 0; k < f->n_steps; k++) {
-    PetscCall(ReducedStep(f->stepper, &drive, &f->state, &f->report));
-    if (M) PetscCall(ReducedTangentApply(f->tangent, f->n, M));
-    f->force[k] = 0;
-    for (PetscInt i = 0; i < f->model->n_pairs; i++) f->force[k] += f->state.p[3 * i];
-  }
-  CycleFlowPack(f, &f->state, y);
+  PetscCall(FlowTurn(f, PETSC_FALSE, M));
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  error = FlowSteps(f, M);
+  PetscCall(PetscPopErrorHandler());
+  PetscCheck(!error || error == PETSC_ERR_NOT_CONVERGED || error == PETSC_ERR_FP || error == PETSC_ERR_MAT_LU_ZRPVT,
+             PETSC_COMM_SELF, error, "a period of a cycle ended by PETSc's error %d", (int)error);
+  PetscCall(FlowTurn(f, PETSC_TRUE, M));
+  PetscCall(CycleFlowPack(f, &f->state, y));
+  for (PetscInt i = 0; i < f->n && error; i++) y[i] = PETSC_INFINITY;
+  if (error) PetscCall(FlowForget(f)); /* factors of what went wrong */
   PetscFunctionReturn(0);
-}
-
-/* The largest force, by the parabola through three steps; 0 where all is open */
-static PetscReal FlowPeak(const CycleFlow *f)
-{
-  const PetscInt n    = f->n_steps;
-  PetscReal      peak = 0;
-
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscReal before = f->force[(k + n - 1) % n], here = f->force[k], after = f->force[(k + 1) % n];
-    const PetscReal bend = before - 2 * here + after;
-
-    if (here < before || here < after) continue;
-    peak = PetscMax(peak, here - (bend < 0 ? PetscSqr(after - before) / (8 * bend) : 0));
-  }
-  return peak;
-}
-
-void CycleFlowMeasure(const CycleFlow *f, PetscReal period, CycleMeasure *m)
-{
-  const PetscReal n = (PetscReal)f->n_steps;
-
-  *m = (CycleMeasure){.freq = 1 / period, .peak = FlowPeak(f), .least = f->force[0]};
-  for (PetscInt k = 0; k < f->n_steps; k++) {
-    m->mean += f->force[k] / n;
-    m->least = PetscMin(m->least, f->force[k]);
-    m->open += (f->force[k] <= 0) / n;
-  }
-  for (PetscInt k = 0; k < f->n_steps; k++) m->rms += PetscSqr(f->force[k] - m->mean) / n;
-  m->rms = PetscSqrtReal(m->rms);
 }
 
 PetscErrorCode CycleFlowDestroy(CycleFlow *f)
@@ -187,8 +213,6 @@ PetscErrorCode CycleFlowDestroy(CycleFlow *f)
   PetscCall(FlowForget(f));
   PetscCall(ReducedStateDestroy(&f->state));
   PetscCall(ReducedReportDestroy(&f->report));
-  PetscCall(PetscFree3(f->loads, f->speed, f->way));
-  PetscCall(PetscFree(f->varies));
-  PetscCall(PetscFree(f->force));
+  PetscCall(PetscFree5(f->loads, f->share, f->way, f->speed, f->interface));
   PetscFunctionReturn(0);
 }

@@ -31,7 +31,7 @@ static PetscErrorCode WindowRun(LimitCycle c, PetscReal x[], GuessWindow *w)
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(n, &sum, n, &square));
-  CycleFlowPack(&c->flow, &r->state, x);
+  PetscCall(CycleFlowPack(&c->flow, &r->state, x));
   for (PetscInt k = 0; k < w->n; k++) {
     w->force[k] = 0;
     for (PetscInt i = 0; i < m; i++) {
@@ -119,21 +119,6 @@ static PetscReal WindowReturn(const GuessWindow *w, PetscReal *nearest)
   return found;
 }
 
-/* The sizes of all unknowns, and what of them counts for the phase */
-static PetscErrorCode GuessSetSizes(LimitCycle c, const GuessWindow *w)
-{
-  const PetscInt m = w->m;
-
-  PetscFunctionBeginUser;
-  c->shooting.n = c->flow.n;
-  PetscCall(PetscMalloc2(c->flow.n, &c->shooting.size, c->flow.n, &c->shooting.weight));
-  for (PetscInt i = 0; i < c->flow.n; i++) {
-    c->shooting.size[i]   = w->size[PetscMin(2, i / m)];
-    c->shooting.weight[i] = i < 2 * m ? 1 / c->shooting.size[i] : 0;
-  }
-  PetscFunctionReturn(0);
-}
-
 /* Free directions: rigid motions of the bodies that change no gap, nothing but slip being felt of them; unit length in S x */
 static PetscErrorCode GuessSetFree(LimitCycle c)
 {
@@ -156,6 +141,21 @@ static PetscErrorCode GuessSetFree(LimitCycle c)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode CycleSetSizes(LimitCycle c, const PetscReal size[3])
+{
+  const PetscInt m = c->reduced->model.m;
+
+  PetscFunctionBeginUser;
+  c->shooting.n = c->flow.n;
+  PetscCall(PetscMalloc2(c->flow.n, &c->shooting.size, c->flow.n, &c->shooting.weight));
+  for (PetscInt i = 0; i < c->flow.n; i++) {
+    c->shooting.size[i]   = size[PetscMin(2, i / m)];
+    c->shooting.weight[i] = i < 2 * m ? 1 / c->shooting.size[i] : 0;
+  }
+  PetscCall(GuessSetFree(c));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode CycleGuess(LimitCycle c, ShootingCycle *guess)
 {
   const PetscInt m = c->reduced->model.m;
@@ -167,18 +167,17 @@ PetscErrorCode CycleGuess(LimitCycle c, ShootingCycle *guess)
   PetscCall(WindowRun(c, guess->x, &w));
   PetscCall(WindowMeasure(&w));
   PetscCheck(w.rest > GUESS_AT_REST && w.size[0] > 0 && w.size[1] > 0 && w.size[2] > 0, c->comm, PETSC_ERR_USER_INPUT,
-             "-analysis cycle: the transient ends at rest (normal force constant to %.1e), where there is no cycle: "
-             "start it with more, or take a parameter at which the sliding state is unstable",
+             CYCLE_BY ": the transient ends at rest (normal force constant to %.1e), where there is no cycle: "
+                      "start it with more, or take a parameter at which the sliding state is unstable",
              (double)w.rest);
   steps = WindowReturn(&w, &c->closure);
   PetscCheck(steps > 0 && c->closure <= GUESS_NONE, c->comm, PETSC_ERR_USER_INPUT,
-             "-analysis cycle: the motion at the end of the transient does not return to itself (%.2g of its size at "
-             "the nearest within %" PetscInt_FMT " steps): it is no cycle, or has not settled: take a longer "
-             "-ts_max_time",
+             CYCLE_BY ": the motion at the end of the transient does not return to itself (%.2g of its size at "
+                      "the nearest within %" PetscInt_FMT " steps): it is no cycle, or has not settled: take a longer "
+                      "-ts_max_time",
              (double)c->closure, w.n);
   guess->period = steps * c->reduced->dt;
-  PetscCall(GuessSetSizes(c, &w));
-  PetscCall(GuessSetFree(c));
+  PetscCall(CycleSetSizes(c, w.size));
   PetscCall(PetscFree2(w.z, w.force));
   PetscFunctionReturn(0);
 }

@@ -1,0 +1,172 @@
+/*
+   Where the branch begins: at the value of the parameter at which a mode v, sigma + i omega, of the sliding state x_0 becomes unstable
+   (Hopf bifurcation). The growth of the fastest mode is looked at over the range and its zero next to the value of the scene
+   bracketed. Cycles of small amplitude a near it are
+
+      x = x_0 + a Re(v exp(i omega t)),    T = 2 pi / omega,
+
+   from which Newton's method goes on at that amplitude: the plane of pseudo-arclength is normal to v, and the parameter is left free.
+   While all pairs stay closed and slide the motion is linear, and the parameter that of the onset whatever a; it moves when
+   pairs begin to open. Amplitude 1 is that at which normal forces of the pairs change by as much as they are at rest, in the root
+   of the sum of their squares.
+*/
+#include "cycleimpl.h"
+
+#define ONSET_LOOKS 33 /* values over the range */
+#define ONSET_RTOL  1e-12
+
+/* The sliding state at a value, and its fastest mode */
+typedef struct {
+  PetscReal    value, eigenvalue[2]; /* rad/s */
+  ReducedState rest, mode[2];
+} OnsetLook;
+
+static PetscErrorCode LookCreate(const ReducedModel *model, OnsetLook *look)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReducedStateCreate(model, &look->rest));
+  for (int i = 0; i < 2; i++) PetscCall(ReducedStateCreate(model, &look->mode[i]));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode LookDestroy(OnsetLook *look)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReducedStateDestroy(&look->rest));
+  for (int i = 0; i < 2; i++) PetscCall(ReducedStateDestroy(&look->mode[i]));
+  PetscFunctionReturn(0);
+}
+
+/* Growth at a value, 1/s; not a number where there is no sliding state */
+static PetscErrorCode OnsetGrowth(LimitCycle c, PetscReal value, OnsetLook *look, PetscReal *growth)
+{
+  PetscBool found;
+
+  PetscFunctionBeginUser;
+  PetscCall(CycleFlowSetValue(&c->flow, value));
+  look->value = value;
+  *growth     = NAN;
+  PetscCall(ReducedEquilibrium(c->flow.model, c->flow.loads, &look->rest, &found));
+  if (!found) PetscFunctionReturn(0);
+  PetscCall(ReducedFastestMode(c->flow.model, &look->rest, look->eigenvalue, look->mode));
+  *growth = look->eigenvalue[0];
+  PetscFunctionReturn(0);
+}
+
+/* Two values next to that of the scene between which growth changes its sign; its least and largest value over the range */
+static PetscErrorCode HopfBracket(LimitCycle c, OnsetLook *look, PetscReal at[2], PetscReal growth[2],
+                                  PetscReal span[2])
+{
+  PetscReal before = NAN, last = 0, nearest = PETSC_MAX_REAL;
+
+  PetscFunctionBeginUser;
+  span[0] = PETSC_MAX_REAL;
+  span[1] = -PETSC_MAX_REAL;
+  for (int k = 0; k < ONSET_LOOKS; k++) {
+    const PetscReal value = c->range[0] + (c->range[1] - c->range[0]) * k / (ONSET_LOOKS - 1);
+    PetscReal       now, far;
+
+    PetscCall(OnsetGrowth(c, value, look, &now));
+    if (!PetscIsNanReal(now)) span[0] = PetscMin(span[0], now);
+    if (!PetscIsNanReal(now)) span[1] = PetscMax(span[1], now);
+    far = PetscAbsReal(0.5 * (last + value) - c->varied.value);
+    if ((before > 0 && now <= 0) || (before <= 0 && now > 0)) {
+      if (far < nearest) {
+        at[0]     = last;
+        at[1]     = value;
+        growth[0] = before;
+        growth[1] = now;
+      }
+      nearest = PetscMin(nearest, far);
+    }
+    before = now;
+    last   = value;
+  }
+  if (nearest == PETSC_MAX_REAL) at[0] = at[1] = NAN;
+  PetscFunctionReturn(0);
+}
+
+/* The onset by bisection, which jumps of the closed pairs do not disturb */
+static PetscErrorCode HopfFind(LimitCycle c, OnsetLook *look)
+{
+  PetscReal at[2], growth[2], span[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(HopfBracket(c, look, at, growth, span));
+  PetscCheck(
+    !PetscIsNanReal(at[0]), c->comm, PETSC_ERR_USER_INPUT,
+    "-cycle_start mode: no mode becomes unstable for %s between %.6g and %.6g, the fastest grows by %.3g to %.3g "
+    "1/s: take another -cycle_range, or -cycle_start transient",
+    c->varied.name, (double)c->range[0], (double)c->range[1], (double)span[0], (double)span[1]);
+  while (PetscAbsReal(at[1] - at[0]) > ONSET_RTOL * PetscAbsReal(at[1])) {
+    const PetscReal middle = 0.5 * (at[0] + at[1]);
+    PetscReal       now;
+
+    if (middle == at[0] || middle == at[1]) break;
+    PetscCall(OnsetGrowth(c, middle, look, &now));
+    at[(now > 0) == (growth[1] > 0)] = middle;
+  }
+  PetscCall(OnsetGrowth(c, at[1], look, &growth[1]));
+  c->onset[0] = at[1];
+  c->onset[1] = look->eigenvalue[0];
+  c->onset[2] = look->eigenvalue[1] / (2 * PETSC_PI);
+  PetscFunctionReturn(0);
+}
+
+/* Normal forces of pairs, the root of the sum of their squares */
+static PetscReal OnsetForce(const ReducedModel *model, const ReducedState *a, const ReducedState *b)
+{
+  PetscReal sum = 0;
+
+  for (PetscInt i = 0; i < model->n_pairs; i++) sum += PetscSqr(a->p[3 * i]) + (b ? PetscSqr(b->p[3 * i]) : 0);
+  return PetscSqrtReal(sum);
+}
+
+/* Rms of eta, rates and forces of the mode's motion, `scale` times its vector */
+static void OnsetSizes(const ReducedModel *model, const OnsetLook *look, PetscReal scale, PetscReal size[3])
+{
+  PetscReal square[3] = {0, 0, 0};
+
+  for (int part = 0; part < 2; part++) {
+    const ReducedState *v = &look->mode[part];
+
+    for (PetscInt k = 0; k < model->m; k++) {
+      square[0] += PetscSqr(v->eta[k]);
+      square[1] += PetscSqr(v->rate[k]);
+    }
+    for (PetscInt i = 0; i < 3 * model->n_pairs; i++) square[2] += PetscSqr(v->p[i]);
+  }
+  for (int i = 0; i < 3; i++) size[i] = scale * PetscSqrtReal(0.5 * square[i]);
+}
+
+PetscErrorCode CycleBegin(LimitCycle c, ShootingCycle *at, ShootingTangent *growing)
+{
+  const ReducedModel *model = c->flow.model;
+  PetscReal           scale, size[3], length = 0;
+  OnsetLook           look;
+
+  PetscFunctionBeginUser;
+  PetscCall(LookCreate(model, &look));
+  PetscCall(HopfFind(c, &look));
+  scale = OnsetForce(model, &look.rest, NULL) / OnsetForce(model, &look.mode[0], &look.mode[1]);
+  OnsetSizes(model, &look, scale, size);
+  PetscCall(CycleSetSizes(c, size));
+  at->value  = look.value;
+  at->period = 2 * PETSC_PI / look.eigenvalue[1];
+  PetscCall(CycleFlowPack(&c->flow, &look.rest, at->x));
+  PetscCall(CycleFlowPack(&c->flow, &look.mode[0], growing->x));
+  for (PetscInt i = 0; i < c->flow.n; i++) length += PetscSqr(c->shooting.weight[i] * growing->x[i]);
+  length          = PetscSqrtReal(length);
+  growing->period = growing->value = 0;
+  for (PetscInt i = 0; i < c->flow.n; i++) growing->x[i] /= length;
+  PetscCall(CycleSetShooting(c, at->period));
+  PetscCall(ShootingAdvance(&c->shooting, c->amplitude * scale * length, growing, at));
+  PetscCheck(
+    at->converged, c->comm, PETSC_ERR_NOT_CONVERGED,
+    "-cycle_start mode: at %s %.6g, where a mode of %.6g Hz becomes unstable, Newton's method finds no cycle of "
+    "-cycle_amplitude %.3g in %" PetscInt_FMT " steps: take another amplitude, more -cycle_steps, or "
+    "-cycle_start transient",
+    c->varied.name, (double)c->onset[0], (double)c->onset[2], (double)c->amplitude, at->its);
+  PetscCall(LookDestroy(&look));
+  PetscFunctionReturn(0);
+}

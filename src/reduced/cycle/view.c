@@ -1,0 +1,69 @@
+/* What a run says of the cycles that it found */
+#include "cycleimpl.h"
+
+/* One cycle in words */
+static PetscErrorCode CycleViewPoint(LimitCycle c, const CyclePoint *p, PetscViewer viewer)
+{
+  const CycleMeasure *a = &p->found, *b = &p->finer;
+  const PetscReal    *large = p->stability.largest, *phase = p->stability.phase;
+  const double        size = CycleMultiplier(&p->stability);
+
+  PetscFunctionBeginUser;
+  if (c->parameter[0])
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%s%s %.6g", p->fold ? "fold at " : "", c->parameter, (double)p->value));
+  if (p->value_error >= 0) PetscCall(PetscViewerASCIIPrintf(viewer, " +- %.1e", (double)p->value_error));
+  if (c->parameter[0]) PetscCall(PetscViewerASCIIPrintf(viewer, ": "));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "cycle of %.9g Hz in %" PetscInt_FMT
+                                   " steps: normal force %.6g N, rms %.6g N, %.6g to %.6g N, open %.4g of the time\n",
+                                   (double)a->freq, p->n_steps, (double)a->mean, (double)a->rms, (double)a->least,
+                                   (double)a->peak, (double)a->open));
+  if (p->has_finer)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer,
+      "  with twice the steps: frequency off by %+.1e Hz, rms by %+.1e N, largest force by %+.1e N, multiplier by "
+      "%+.1e\n",
+      (double)(b->freq - a->freq), (double)(b->rms - a->rms), (double)(b->peak - a->peak),
+      CycleMultiplier(&p->finer_stability) - size));
+  else if (c->verify)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  none is found with twice the steps: its error is unknown\n"));
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer,
+    "  %s: largest multiplier %.6g%+.6gi (%.6g), that of the phase 1%+.1e%+.1ei; residual %.1e after %" PetscInt_FMT
+    " steps of Newton's method\n",
+    CycleClass(p), (double)large[0], (double)large[1], size, (double)(phase[0] - 1), (double)phase[1],
+    (double)p->residual, p->its));
+  PetscFunctionReturn(0);
+}
+
+/* Models over the parameter, and where the branch begins */
+static PetscErrorCode CycleViewStart(LimitCycle c, PetscViewer viewer)
+{
+  const CycleFamily *f = c->family;
+
+  PetscFunctionBeginUser;
+  if (f)
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "bodies reduced at %" PetscInt_FMT " values of %s in %.4g s, interpolated between "
+                                     "them: last coefficients %.1e of the largest entries\n",
+                                     f->n, c->parameter, (double)f->seconds, (double)f->error));
+  if (c->from_mode)
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "a mode of %.9g Hz of the sliding state becomes unstable at %s %.9g (growth %.1e "
+                                     "1/s there): the branch begins with pairs' forces changed by %.3g of themselves\n",
+                                     (double)c->onset[2], c->parameter, (double)c->onset[0], (double)c->onset[1],
+                                     (double)c->amplitude));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CycleView(LimitCycle c, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReducedView(c->reduced, viewer));
+  if (c->parameter[0])
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " cycles over %s; the first: %s; the last: %s\n",
+                                     c->n_points, c->parameter, c->end[0], c->end[1]));
+  PetscCall(CycleViewStart(c, viewer));
+  for (PetscInt i = 0; i < c->n_points; i++) PetscCall(CycleViewPoint(c, &c->point[i], viewer));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,132 @@
+/* Tables of cycles, written anew with each one, so that a run that ends early leaves all that it has found */
+#include "cycleimpl.h"
+
+#define CLASS_ROUNDING 1e-9 /* of the modulus of a multiplier */
+
+#define CYCLE_COLUMNS                                                                                                  \
+  "point,parameter,value,value_error,kind,freq_hz,freq_error_hz,force_mean_n,force_rms_n,force_rms_error_n,"           \
+  "force_peak_n,force_peak_error_n,open_share,multiplier_abs,multiplier_error,multiplier_re,multiplier_im,"            \
+  "phase_multiplier_re,phase_multiplier_im,class,steps,residual,iterations"
+#define PROBE_COLUMNS                                                                                                  \
+  "point,parameter,value,probe,direction,displacement_rms_m,displacement_rms_error_m,displacement_peak_m,"             \
+  "displacement_peak_error_m,velocity_rms_m_s,velocity_rms_error_m_s,velocity_peak_m_s,velocity_peak_error_m_s"
+
+PetscReal CycleMultiplier(const ShootingStability *stability)
+{
+  return hypot(stability->largest[0], stability->largest[1]);
+}
+
+const char *CycleClass(const CyclePoint *p)
+{
+  const PetscReal size   = CycleMultiplier(&p->stability);
+  const PetscReal error  = p->has_finer ? PetscAbsReal(size - CycleMultiplier(&p->finer_stability)) : 0;
+  const PetscReal margin = PetscMax(error, CLASS_ROUNDING);
+  const PetscBool told   = p->stability.told && (!p->has_finer || p->finer_stability.told) ? PETSC_TRUE : PETSC_FALSE;
+
+  if (!told || PetscAbsReal(size - 1) <= margin) return "numerical";
+  return size > 1 ? "unstable" : "stable";
+}
+
+typedef char Cell[32];
+
+/* How far the number of twice the steps is from one that was found; nothing where there is none */
+static PetscErrorCode CellPrintError(const CyclePoint *p, PetscReal found, PetscReal finer, Cell cell)
+{
+  PetscFunctionBeginUser;
+  cell[0] = 0;
+  if (p->has_finer) PetscCall(PetscSNPrintf(cell, sizeof(Cell), "%.15g", (double)PetscAbsReal(found - finer)));
+  PetscFunctionReturn(0);
+}
+
+/* Parameter, and its error where it is one of the results */
+static PetscErrorCode CellPrintValue(LimitCycle c, const CyclePoint *p, Cell cell[2])
+{
+  PetscFunctionBeginUser;
+  cell[0][0] = cell[1][0] = 0;
+  if (c->parameter[0]) PetscCall(PetscSNPrintf(cell[0], sizeof(Cell), "%.15g", (double)p->value));
+  if (p->value_error >= 0) PetscCall(PetscSNPrintf(cell[1], sizeof(Cell), "%.15g", (double)p->value_error));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CycleWriteRow(LimitCycle c, PetscInt i, ResultsTable table)
+{
+  const CyclePoint   *p = &c->point[i];
+  const CycleMeasure *a = &p->found, *b = &p->finer;
+  const PetscReal    *large = p->stability.largest, *phase = p->stability.phase, size = CycleMultiplier(&p->stability);
+  Cell                error[4], value[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(CellPrintValue(c, p, value));
+  PetscCall(CellPrintError(p, a->freq, b->freq, error[0]));
+  PetscCall(CellPrintError(p, a->rms, b->rms, error[1]));
+  PetscCall(CellPrintError(p, a->peak, b->peak, error[2]));
+  PetscCall(CellPrintError(p, size, CycleMultiplier(&p->finer_stability), error[3]));
+  PetscCall(ResultsTableRow(
+    table,
+    "%" PetscInt_FMT ",%s,%s,%s,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%.15g,"
+    "%.15g,%.15g,%s,%" PetscInt_FMT ",%.15g,%" PetscInt_FMT,
+    i + 1, c->parameter, value[0], value[1], p->fold ? "fold" : "cycle", (double)a->freq, error[0], (double)a->mean,
+    (double)a->rms, error[1], (double)a->peak, error[2], (double)a->open, (double)size, error[3], (double)large[0],
+    (double)large[1], (double)phase[0], (double)phase[1], CycleClass(p), p->n_steps, (double)p->residual, p->its));
+  PetscFunctionReturn(0);
+}
+
+/* The three directions of one probe, the first of which is port k of those that are looked at */
+static PetscErrorCode CycleWriteProbe(LimitCycle c, PetscInt i, PetscInt k, const char name[], ResultsTable table)
+{
+  const CyclePoint *p = &c->point[i];
+  Cell              error[4], value[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(CellPrintValue(c, p, value));
+  for (int d = 0; d < 3; d++) {
+    const CycleProbe *a = &p->probe[k + d], *b = &p->finer_probe[k + d];
+
+    PetscCall(CellPrintError(p, a->displacement_rms, b->displacement_rms, error[0]));
+    PetscCall(CellPrintError(p, a->displacement_peak, b->displacement_peak, error[1]));
+    PetscCall(CellPrintError(p, a->velocity_rms, b->velocity_rms, error[2]));
+    PetscCall(CellPrintError(p, a->velocity_peak, b->velocity_peak, error[3]));
+    PetscCall(ResultsTableRow(table, "%" PetscInt_FMT ",%s,%s,%s,%c,%.15g,%s,%.15g,%s,%.15g,%s,%.15g,%s", i + 1,
+                              c->parameter, value[0], name, 'x' + d, (double)a->displacement_rms, error[0],
+                              (double)a->displacement_peak, error[1], (double)a->velocity_rms, error[2],
+                              (double)a->velocity_peak, error[3]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* cycle_probes.csv, of probes and nodes of circles in the order of their ports */
+static PetscErrorCode CycleWriteProbes(LimitCycle c)
+{
+  const ModelScene *scene;
+  Model             model;
+  ResultsTable      table;
+
+  PetscFunctionBeginUser;
+  if (!c->flow.n_looked) PetscFunctionReturn(0);
+  PetscCall(OperatorsGetModel(c->operators, &model, NULL));
+  PetscCall(ModelGetScene(model, &scene));
+  PetscCall(ResultsTableOpen(c->results, "cycle_probes", PROBE_COLUMNS, &table));
+  for (PetscInt i = 0; i < c->n_points; i++) {
+    PetscInt port = 0;
+
+    for (PetscInt k = 0; k < scene->n_probes; k++, port += 3)
+      PetscCall(CycleWriteProbe(c, i, port, scene->probes[k].name, table));
+    for (PetscInt j = 0; j < scene->n_circles; j++)
+      for (PetscInt k = 0; k < scene->circles[j].n; k++, port += 3)
+        PetscCall(CycleWriteProbe(c, i, port, scene->circles[j].probe[k].name, table));
+  }
+  PetscCall(ResultsTableClose(&table));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CycleWrite(LimitCycle c)
+{
+  ResultsTable table;
+
+  PetscFunctionBeginUser;
+  PetscCall(ResultsTableOpen(c->results, "cycle", CYCLE_COLUMNS, &table));
+  for (PetscInt i = 0; i < c->n_points; i++) PetscCall(CycleWriteRow(c, i, table));
+  PetscCall(ResultsTableClose(&table));
+  PetscCall(CycleWriteProbes(c));
+  PetscFunctionReturn(0);
+}

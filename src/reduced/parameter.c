@@ -1,0 +1,137 @@
+/* Parameters that reduced models are varied over: see parameter.h. Named as in sweeps; what acts on the bodies from outside
+   comes first. */
+#include "parameter.h"
+
+/* A name that is looked for */
+typedef struct {
+  const char       *name;
+  PetscBool         found;
+  ReducedParameter *p;
+  char              valid[2048];
+} ParameterSearch;
+
+/* Takes candidate <owner>_<what> where it is the name looked for, and adds it to the valid ones */
+static PetscErrorCode ParameterTry(const char owner[], const char what[], const ReducedParameter *candidate,
+                                   ParameterSearch *search)
+{
+  ReducedParameter p = *candidate;
+  PetscBool        same;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(p.name, sizeof(p.name), "%s%s%s", owner, what[0] ? "_" : "", what));
+  PetscCall(PetscStrlcat(search->valid, search->valid[0] ? ", " : "", sizeof(search->valid)));
+  PetscCall(PetscStrlcat(search->valid, p.name, sizeof(search->valid)));
+  PetscCall(PetscStrcmp(p.name, search->name, &same));
+  if (same && !search->found) *search->p = p;
+  if (same) search->found = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* Friction and speed of a contact */
+static PetscErrorCode ParameterOfContact(const ContactInterface *c, PetscInt i, ParameterSearch *search)
+{
+  const ReducedParameter mu    = {.unit = "-", .kind = REDUCED_MU, .index = i, .value = c->mu};
+  const ReducedParameter slope = {.unit = "s/m", .kind = REDUCED_SLOPE, .index = i, .value = c->mu_slope};
+  const ReducedParameter speed = {.unit = "m/s", .kind = REDUCED_SPEED, .index = i, .value = c->speed};
+
+  PetscFunctionBeginUser;
+  PetscCall(ParameterTry(c->name, "mu", &mu, search));
+  PetscCall(ParameterTry(c->name, "mu_slope", &slope, search));
+  if (c->speed > 0) PetscCall(ParameterTry(c->name, "speed", &speed, search));
+  PetscFunctionReturn(0);
+}
+
+/* Length of a force, or a pressure */
+static PetscErrorCode ParameterOfLoad(const Load *load, PetscInt i, ParameterSearch *search)
+{
+  const PetscReal force = hypot(hypot(load->force[0], load->force[1]), load->force[2]);
+  const PetscReal size  = load->is_pressure ? load->pressure : force;
+
+  const ReducedParameter p = {.unit = load->is_pressure ? "Pa" : "N", .kind = REDUCED_LOAD, .index = i, .value = size};
+
+  PetscFunctionBeginUser;
+  if (size != 0) PetscCall(ParameterTry(load->name, load->is_pressure ? "pressure" : "force", &p, search));
+  PetscFunctionReturn(0);
+}
+
+/* Parameters of the bodies, not those of contacts */
+static PetscErrorCode ParameterOfBodies(Operators operators, const PetscReal values[], ParameterSearch *search)
+{
+  const OperatorsParameter *list;
+  PetscInt                  n;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetParameters(operators, &n, &list));
+  for (PetscInt i = 0; i < n; i++) {
+    const ReducedParameter p = {.unit = list[i].unit, .kind = REDUCED_BODY, .index = i, .value = values[i]};
+
+    if (list[i].body) PetscCall(ParameterTry(list[i].name, "", &p, search));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedParameterFind(Operators operators, const PetscReal p[], const char option[], const char what[],
+                                    const char name[], ReducedParameter *parameter)
+{
+  const ModelScene       *scene;
+  const ContactInterface *c;
+  PetscInt                n;
+  MPI_Comm                comm;
+  Model                   model;
+  Contact                 contact;
+  ParameterSearch         search = {.name = name, .p = parameter};
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(operators, &model, &contact));
+  PetscCall(ModelGetComm(model, &comm));
+  PetscCall(ModelGetScene(model, &scene));
+  PetscCall(ContactGetInterfaces(contact, &n, &c));
+  for (PetscInt i = 0; i < n; i++) PetscCall(ParameterOfContact(&c[i], i, &search));
+  for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(ParameterOfLoad(&scene->loads[i], i, &search));
+  PetscCall(ParameterOfBodies(operators, p, &search));
+  PetscCheck(search.found, comm, PETSC_ERR_USER_INPUT, "%s '%s' is no parameter %s; valid are %s", option, name, what,
+             search.valid);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedParameterCheck(Operators operators, const char option[], const ReducedParameter *p,
+                                     PetscReal value)
+{
+  PetscBool good = PETSC_TRUE;
+  MPI_Comm  comm;
+  Model     model;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(operators, &model, NULL));
+  PetscCall(ModelGetComm(model, &comm));
+  if (p->kind == REDUCED_BODY) PetscCall(OperatorsCheckParameter(operators, p->index, value));
+  if (p->kind == REDUCED_MU) good = value >= 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (p->kind == REDUCED_SPEED || p->kind == REDUCED_LOAD) good = value > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscCheck(good, comm, PETSC_ERR_USER_INPUT, "%s: %s %.6g must %s", option, p->name, (double)value,
+             p->kind == REDUCED_MU ? "not be negative" : "be positive");
+  PetscFunctionReturn(0);
+}
+
+void ReducedParameterMove(const ReducedParameter *p, PetscReal value, const ReducedMoved *moved)
+{
+  const ReducedModel *model = moved->model;
+
+  if (p->kind == REDUCED_LOAD) moved->loads[p->index] = value / p->value;
+  if (p->kind > REDUCED_SPEED) return;
+  for (PetscInt i = 0; i < model->n_pairs; i++) {
+    if (moved->interface[i] != p->index) continue;
+    if (p->kind == REDUCED_MU) model->mu[i] = value;
+    if (p->kind == REDUCED_SLOPE) model->slope[i] = value;
+    if (p->kind == REDUCED_SPEED) model->speed[i] = moved->speed[i] * value / p->value;
+  }
+}
+
+PetscErrorCode ReducedUnitIsGyration(const char unit[], PetscBool *is)
+{
+  static const char *const units[] = {"1/s", "s", "N s/m", "N s/m^3", "N m s/rad", "rad/s"};
+
+  PetscFunctionBeginUser;
+  *is = PETSC_FALSE;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(units) && !*is; i++) PetscCall(PetscStrcmp(unit, units[i], is));
+  PetscFunctionReturn(0);
+}

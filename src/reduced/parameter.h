@@ -1,0 +1,42 @@
+/*
+   Parameter - a number of the scene that rooms which run reduced models may vary. Private to them. It is named like the
+   option that sets it: friction, its slope and the speed of a contact, force or pressure of a load leave the reduced bodies
+   as they are; those of parts, springs and dashpots (operators.h) change them.
+*/
+#pragma once
+
+#include <squeal/reduced.h>
+
+typedef enum { REDUCED_MU, REDUCED_SLOPE, REDUCED_SPEED, REDUCED_LOAD, REDUCED_BODY } ReducedParameterKind;
+
+typedef struct {
+  char                 name[128];
+  const char          *unit;
+  ReducedParameterKind kind;
+  PetscInt             index; /* of the interface, the load, or the parameter of the operators */
+  PetscReal            value; /* of the scene */
+} ReducedParameter;
+
+/* What a parameter moves that leaves the bodies as they are */
+typedef struct {
+  ReducedModel    *model;     /* mu, slope, speed */
+  const PetscInt  *interface; /* [n_pairs] */
+  const PetscReal *speed;     /* [n_pairs] of the scene, m/s */
+  PetscReal       *loads;     /* [n_loads] factors, 1 in the scene */
+} ReducedMoved;
+
+/* ReducedParameterFind - the parameter of that name, p [parameters] being the values of the operators. Collective. Errors:
+   PETSC_ERR_USER_INPUT "<option> '<name>' is no parameter <what>; valid are ...". */
+PETSC_INTERN PetscErrorCode ReducedParameterFind(Operators operators, const PetscReal p[], const char option[],
+                                                 const char what[], const char name[], ReducedParameter *parameter);
+
+/* ReducedParameterCheck - raises PETSC_ERR_USER_INPUT for a value of `option` that it cannot have. Collective. */
+PETSC_INTERN PetscErrorCode ReducedParameterCheck(Operators operators, const char option[],
+                                                  const ReducedParameter *parameter, PetscReal value);
+
+/* ReducedParameterMove - gives one that is none of the bodies a value. Not collective. */
+PETSC_INTERN void ReducedParameterMove(const ReducedParameter *parameter, PetscReal value, const ReducedMoved *moved);
+
+/* ReducedUnitIsGyration - whether a parameter is one of damping or spin, which real modes know nothing of: by its unit, since
+   names begin with those that the user gave. Not collective. */
+PETSC_INTERN PetscErrorCode ReducedUnitIsGyration(const char unit[], PetscBool *is);
