@@ -15,8 +15,9 @@
 
    A cycle is stable where all eigenvalues of M but that of the phase lie inside the unit circle. The phase's is 1 in
    continuous time; steps in which pairs open and close break the symmetry in time, and it is off by their length. It is told by
-   its vector, the motion along the cycle. Where a second vector is as near to that (at a fold), or the largest modulus is nearer to 1
-   than its own error, the class is `numerical`: stability cannot be told.
+   its vector, which makes most of the motion along the cycle. Where others have about as much part in that (at a fold, or where steps mix
+   them) and it depends on which is taken, or where the largest modulus is nearer to 1 than its own error, the class is `numerical`:
+   stability cannot be told.
 
    A branch begins at the end of a transient, or where a mode of the sliding state becomes unstable (src/reduced/cycle/onset.c). Where
    its parameter turns back the fold is found, dp/ds = 0; the error of its parameter is that of finding it and the

@@ -71,7 +71,7 @@ typedef struct {
 typedef struct {
   PetscReal phase[2];   /* the multiplier whose vector is the motion along the cycle */
   PetscReal largest[2]; /* of the others */
-  PetscBool told;       /* no other vector is as near to that motion: at folds two are */
+  PetscReal worst; /* modulus of the largest, if the phase's is another one that has as large a part in that motion */
 } ShootingStability;
 
 /*@ ShootingSolve - the cycle near a guess, at its value of the parameter. Not collective. That it does not converge is

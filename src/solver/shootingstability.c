@@ -46,10 +46,10 @@ static PetscReal StabilityPart(const Shooting *s, const Multipliers *m, PetscInt
   return PetscAbsComplex(StabilityDot(n, l, im, v, NULL)) / self * PetscSqrtReal(length / size);
 }
 
-/* Which of the eigenvalues is that of the phase, -1 for none: its vector makes most of the motion along the cycle. Where a second
-   one has as much part in it (a fold, at which two vectors become one) the nearer to 1 is taken, and which it is is not told */
+/* Which of the eigenvalues is that of the phase, -1 for none: its vector makes most of the motion along the cycle. Where others
+   have about as much part in it (at a fold two vectors become one) the nearest to 1 is taken; how many there are */
 static PetscErrorCode StabilityFindPhase(const Shooting *s, const ShootingCycle *cycle, const Multipliers *m,
-                                         PetscInt *phase, PetscBool *told)
+                                         PetscInt *phase, PetscInt *n_candidates)
 {
   const PetscReal dT = SHOOTING_DIFFERENCE * cycle->period;
   PetscReal      *v, *before, *part, best = 0;
@@ -64,11 +64,11 @@ static PetscErrorCode StabilityFindPhase(const Shooting *s, const ShootingCycle 
     if (hypot(m->re[i] - 1, m->im[i]) < SHOOTING_FAR) part[i] = m->im[i] < 0 ? part[i - 1] : StabilityPart(s, m, i, v);
     best = PetscMax(best, part[i]);
   }
-  *phase = -1;
-  *told  = best > 0 ? PETSC_TRUE : PETSC_FALSE;
+  *phase        = -1;
+  *n_candidates = 0;
   for (PetscInt i = 0; i < s->n; i++) {
     if (part[i] <= 0 || part[i] < SHOOTING_MUCH * best) continue;
-    if (*phase >= 0) *told = PETSC_FALSE;
+    (*n_candidates)++;
     if (*phase < 0 || hypot(m->re[i] - 1, m->im[i]) < hypot(m->re[*phase] - 1, m->im[*phase])) *phase = i;
   }
   PetscCall(PetscFree3(v, before, part));
@@ -93,7 +93,7 @@ static void StabilityDrop(const Shooting *s, Multipliers *m)
 PetscErrorCode ShootingGetStability(const Shooting *s, const ShootingCycle *cycle, ShootingStability *stability)
 {
   const PetscInt n = s->n;
-  PetscInt       phase;
+  PetscInt       phase, n_candidates;
   Multipliers    m;
 
   PetscFunctionBeginUser;
@@ -104,7 +104,8 @@ PetscErrorCode ShootingGetStability(const Shooting *s, const ShootingCycle *cycl
   PetscCall(PetscArraycpy(m.A, cycle->M, n * n));
   PetscCall(DenseEigen(n, m.A, m.re, m.im, m.left, m.right));
   StabilityDrop(s, &m);
-  PetscCall(StabilityFindPhase(s, cycle, &m, &phase, &stability->told));
+  PetscCall(StabilityFindPhase(s, cycle, &m, &phase, &n_candidates));
+  for (PetscInt i = 0; i < n; i++) stability->worst = PetscMax(stability->worst, hypot(m.re[i], m.im[i]));
   if (phase >= 0) {
     stability->phase[0] = m.re[phase];
     stability->phase[1] = m.im[phase];
@@ -115,6 +116,7 @@ PetscErrorCode ShootingGetStability(const Shooting *s, const ShootingCycle *cycl
     stability->largest[0] = m.re[i];
     stability->largest[1] = PetscAbsReal(m.im[i]);
   }
+  if (n_candidates == 1) stability->worst = hypot(stability->largest[0], stability->largest[1]);
   PetscCall(PetscFree5(m.A, m.re, m.im, m.left, m.right));
   PetscFunctionReturn(0);
 }

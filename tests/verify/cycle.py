@@ -3,7 +3,9 @@
 normal force rises through its mean, rms and largest force of whole periods.
 
     cycle.py FOLDER FREQUENCY FORCE     largest relative differences
-    cycle.py errors COARSE FINER PART   errors that COARSE states beside its differences to FINER, of them"""
+    cycle.py errors COARSE FINER PART   errors that COARSE states beside its differences to FINER, of them
+    cycle.py same BRANCH VALUE SINGLE FREQUENCY FORCE   the cycle of a branch at a value of its parameter beside the one that SINGLE
+                                        found without a branch: largest relative differences"""
 
 import sys
 from pathlib import Path
@@ -30,9 +32,21 @@ def errors(coarse, finer, part):
     return faults > 0
 
 
+def same(branch, value, single, frequency, force):
+    """Whether a cycle of a branch is another one than that of its own scene."""
+    rows, alone = read(branch, "cycle.csv"), read(single, "cycle.csv")[0]
+    row = rows[numpy.argmin(abs(rows["value"] - float(value)))]
+    faults = not abs(row["value"] / float(value) - 1) < 1e-12
+    for name, most in (("freq_hz", frequency), ("force_rms_n", force), ("force_peak_n", force)):
+        apart = abs(row[name] / alone[name] - 1)
+        faults += not apart <= float(most)
+        print(f"{name} at {value}: branch {row[name]:.12g}, alone {alone[name]:.12g}, apart by {apart:.1e}, at most {most}")
+    return faults > 0
+
+
 def main():
-    if sys.argv[1] == "errors":
-        return errors(*sys.argv[2:])
+    if sys.argv[1] in ("errors", "same"):
+        return {"errors": errors, "same": same}[sys.argv[1]](*sys.argv[2:])
     folder, frequency, force = sys.argv[1], float(sys.argv[2]), float(sys.argv[3])
     cycle, record = read(folder, "cycle.csv")[0], read(folder, "transient.csv")
     time, normal = record["time_s"], record["normal_force_n"]

@@ -16,15 +16,21 @@ PetscReal CycleMultiplier(const ShootingStability *stability)
   return hypot(stability->largest[0], stability->largest[1]);
 }
 
+/* 1 outside the unit circle, -1 inside, 0 where the margin leaves that open */
+static int MultiplierSide(PetscReal size, PetscReal margin)
+{
+  return PetscAbsReal(size - 1) <= margin ? 0 : size > 1 ? 1 : -1;
+}
+
 const char *CycleClass(const CyclePoint *p)
 {
   const PetscReal size   = CycleMultiplier(&p->stability);
   const PetscReal error  = p->has_finer ? PetscAbsReal(size - CycleMultiplier(&p->finer_stability)) : 0;
   const PetscReal margin = PetscMax(error, CLASS_ROUNDING);
-  const PetscBool told   = p->stability.told && (!p->has_finer || p->finer_stability.told) ? PETSC_TRUE : PETSC_FALSE;
+  const int       side   = MultiplierSide(size, margin);
 
-  if (!told || PetscAbsReal(size - 1) <= margin) return "numerical";
-  return size > 1 ? "unstable" : "stable";
+  if (!side || side != MultiplierSide(p->stability.worst, margin)) return "numerical";
+  return side > 0 ? "unstable" : "stable";
 }
 
 typedef char Cell[32];
