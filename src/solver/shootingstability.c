@@ -27,8 +27,9 @@ static PetscComplex StabilityDot(PetscInt n, const PetscReal l[], PetscReal im, 
   return PetscCMPLX(re, i);
 }
 
-/* The part that vector r_i has in the motion v = sum_i r_i (l_i^H v) / (l_i^H r_i), over the length of v, both in S x: 1 for the phase and 0
-   for all others without errors, however alike the vectors are. i is the first of a conjugate pair */
+/* The part that vector r_i has in the motion v = sum_i r_i (l_i^H v) / (l_i^H r_i), over the length of v, both in S x:
+   1 for the phase and 0 for all others without errors, however alike the vectors are. i is the first of a conjugate
+   pair */
 static PetscReal StabilityPart(const Shooting *s, const Multipliers *m, PetscInt i, const PetscReal v[])
 {
   const PetscInt   n = s->n;
@@ -75,8 +76,8 @@ static PetscErrorCode StabilityFindPhase(const Shooting *s, const ShootingCycle 
   PetscFunctionReturn(0);
 }
 
-/* Takes out the n_free eigenvalues nearest to 1, as shifts along free directions change nothing, and those that are -1, where forces alternate
-   from step to step for ever, as nothing moves by them */
+/* Takes out the n_free eigenvalues nearest to 1, as shifts along free directions change nothing, and those that are -1,
+   where forces alternate from step to step for ever, as nothing moves by them */
 static void StabilityDrop(const Shooting *s, Multipliers *m)
 {
   for (PetscInt k = 0; k < s->n_free; k++) {
