@@ -78,10 +78,18 @@ def spread(places, least):
     return out
 
 
+def plain_number(value):
+    """As one writes it, thousands with a k."""
+    return f"{value / 1000:g}k" if value >= 1000 else f"{value:g}"
+
+
 def plain_ticks(axis, digits):
-    """Numbers of a logarithmic axis as one writes them: powers of ten, and those between that begin with one of `digits`."""
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if f"{value:.0e}"[0] in digits else ""))
+    """Numbers of a logarithmic axis, drawn already: powers of ten, and those between that begin with one of `digits`, or with 2 or 5
+    where it has more than a decade."""
+    low, high = axis.get_view_interval()
+    shown = "25" if high > 10 * low else digits
+    axis.set_major_formatter(FuncFormatter(lambda value, _: plain_number(value)))
+    axis.set_minor_formatter(FuncFormatter(lambda value, _: plain_number(value) if f"{value:.0e}"[0] in shown else ""))
 
 
 def save_picture(figure, output, dpi="figure"):

@@ -17,12 +17,13 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-from .picture import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILION, place_texts, plain_ticks, save_picture
+from .picture import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILION, boxes_about, place_texts, plain_ticks, save_picture
 from .program import chosen_program, machine_text, measured_run, scene
-from .tables import BadInput, print_table, run, whole
+from .tables import BadInput, print_table, read_table, run, whole
 
 LEAST = 1e-16  # errors of nothing are drawn here
 LEAST_RANGE = 4  # of costs in a picture, last to first
+ALIKE = 1.05  # costs that differ by less are the same
 COLORS = BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, GREY, INK
 MARKERS = "osD^v<>P"
 UNIT = (*scene("massi2005"), "-rig_disc_elements", "12,56,1", "-rig_pad_elements", "5,5,5", "-rig_beam_elements", 10,
@@ -89,6 +90,12 @@ def write_points(path, points):
         table.writerows([p.series, p.setting, f"{p.error:.6e}", f"{p.seconds:.4f}", f"{p.units:.4f}"] for p in points)
 
 
+def read_points(path):
+    """Those of a table."""
+    kinds = {"series": str, "setting": str, "error": float, "seconds": float, "units": float}
+    return [Point(*row.values()) for row in read_table(path, kinds)]
+
+
 def draw(path, title, error_name, points, knob=""):
     """Error over cost, both logarithmic; each point has its setting beside it, where there is room."""
     figure, axes = plt.subplots(figsize=(9, 5.2), layout="constrained")
@@ -104,40 +111,74 @@ def draw(path, title, error_name, points, knob=""):
     low, high = axes.get_xlim()
     if high < LEAST_RANGE * low:  # so that what costs the same looks so
         axes.set_xlim(math.sqrt(low * high / LEAST_RANGE), math.sqrt(low * high * LEAST_RANGE))
-    low, high = axes.get_xlim()
-    plain_ticks(axes.xaxis, "25" if high > 10 * low else "23456789")
+    plain_ticks(axes.xaxis, "23456789")
     axes.set_xlabel(f"time, in units of {UNIT_TEXT}")
     axes.set_ylabel(error_name)
     axes.set_title(title, fontsize=11)
     axes.legend(fontsize=8, title=f"at the points: {knob.strip()}" if knob else None, title_fontsize=8)
     figure.canvas.draw()
-    place_texts(axes, texts, [(0, 9), (0, -10), (24, 0), (-24, 0), (0, 18), (0, -19)], [axes.get_legend().get_window_extent()], fontsize=7)
+    taken = [axes.get_legend().get_window_extent(), *boxes_about(axes, [place for place, _ in texts], 4)]
+    place_texts(axes, texts, [(0, 9), (0, -10), (24, 0), (-24, 0), (0, 18), (0, -19)], taken, fontsize=7)
     save_picture(figure, path, dpi=110)
     plt.close(figure)
 
 
+def settings(points, among, knob):
+    """Points in words, by method in order of their cost: three settings or more that stand side by side as first to last."""
+    said = []
+    for series in dict.fromkeys(point.series for point in points):
+        order = [point.setting for point in among if point.series == series]
+        own, spans = {point.setting for point in points if point.series == series}, []
+        for before, setting in zip((None, *order), order):
+            if setting in own and before in own:
+                spans[-1].append(setting)
+            elif setting in own:
+                spans.append([setting])
+        texts = [f"{span[0]} to {span[-1]}" if len(span) > 2 else " or ".join(span) for span in spans]
+        said.append(f"{series} with {knob}{' or '.join(texts)}")
+    return ", ".join(said)
+
+
+def others(good, alike, knob):
+    """What the cheapest setting of every other method needs, the first of them named."""
+    first = {}
+    for point in good:
+        first.setdefault(point.series, point)
+    dearer = [point for series, point in first.items() if series not in {same.series for same in alike}]
+    if not dearer:
+        return "" if len({point.series for point in alike}) > 1 else "; no other method is so exact"
+    named = f"; {dearer[0].series} needs {dearer[0].units:.3g} with {knob}{dearer[0].setting}"
+    return named + "".join(f", {point.series} {point.units:.3g}" for point in dearer[1:])
+
+
 def sentence(points, level, knob=""):
-    """What to take for an error: the cheapest, and the cheapest of another method. level: a number, or (number, series) where series
-    are not methods but things that have errors; knob: the option that the settings are values of."""
+    """What to take for an error: of the settings that cost the least, alike within ALIKE, the most exact, within a factor of 2 the
+    first of the study; the others of these; and what other methods need. level: a number; with the methods among which to choose
+    where not all do the same; or with one series where these are not methods but things that have errors. knob: the option that the
+    settings are values of."""
     level, of = level if isinstance(level, tuple) else (level, None)
-    points = [point for point in points if of in (None, point.series)]
+    among, of = (of, None) if isinstance(of, tuple) else (of and (of,), of)
+    points = [point for point in points if not among or point.series in among]
     good = sorted((point for point in points if point.error <= level), key=lambda point: point.units)
     if not good:
         best = min(points, key=lambda point: point.error)
         return (f"An error of {level:g} is reached by none of these; the least is {best.error:.1g}, of {best.series} with "
                 f"{knob}{best.setting}.")
-    best = good[0]
-    choice = f"of {of} take {knob}{best.setting}" if of else f"take {best.series} with {knob}{best.setting}"
-    named = f"For an error of {level:g} {choice}"
-    other = next((point for point in good if point.series != best.series), None)
+    alike = [point for point in good if point.units <= ALIKE * good[0].units]
+    best = next(point for point in points if point in alike and point.error <= 2 * min(same.error for same in alike))
+    named = f"For an error of {level:g} {f'of {of} take' if of else f'take {best.series} with'} {knob}{best.setting}"
     text = f"{named}: {best.units:.3g} units (error {best.error:.1g})"
-    if of and len(good) == 1:
+    within = f"within {100 * (ALIKE - 1):.0f} %"
+    if of and len(good) > 1 and good[-1].units <= ALIKE * best.units:
+        return f"{text}; all {len(good)} settings that reach it cost the same {within}."
+    if len(alike) > 1:
+        same = settings([point for point in alike if point is not best], points, knob)
+        text += f"; as cheap {within}: {same.removeprefix(f'{of} with ') if of else same}"
+    if not of:
+        return f"{text}{others(good, alike, knob)}."
+    if len(good) == 1:
         return f"{text}; no other setting is so exact."
-    if of:
-        return f"{text}; {knob}{good[-1].setting}, the dearest of those that reach it, needs {good[-1].units:.3g}."
-    if not other:
-        return f"{text}; no other method is so exact."
-    return f"{text}; {other.series} needs {other.units:.3g} with {knob}{other.setting}."
+    return f"{text}; {knob}{good[-1].setting}, the dearest of those that reach it, needs {good[-1].units:.3g}."
 
 
 def arguments(doc, name):
@@ -148,36 +189,58 @@ def arguments(doc, name):
     parser.add_argument("--output", type=Path, default=Path("results/studies") / name, metavar="DIR",
                         help=f"where study.csv, study.png, study.txt and runs go, default: results/studies/{name}")
     parser.add_argument("--program", type=Path, metavar="FILE", help="squeal; default: compiled as by scripts/run")
+    parser.add_argument("--redraw", action="store_true", help="no runs: picture and sentences anew from the study.csv of --output")
     args = parser.parse_args()
     if args.rounds < 1:
         parser.error(f"--rounds {args.rounds}: must be 1 or more")
-    args.program = chosen_program(args.program)
+    args.program = None if args.redraw else chosen_program(args.program)
     return args
 
 
-def main(doc, name, work, levels, error_name, knob=""):
-    """Runs a study: work(bench) adds its points and returns what its reference is, in a sentence; knob: as sentence() has it. Exit
-    status."""
-    args = arguments(doc, name)
+class Study(NamedTuple):
+    """What a study says of its points, as main() has it."""
+    title: str
+    levels: tuple
+    error_name: str
+    knob: str
 
-    def whole_study():
-        bench = Bench(args)
-        begun = time.perf_counter()
+    def tell(self, folder, points, about):
+        """Picture and sentences; these."""
+        draw(folder / "study.png", self.title, self.error_name, points, self.knob)
+        lines = [sentence(points, level, self.knob) for level in self.levels]
+        with whole(folder / "study.txt") as part:
+            part.write_text("\n".join([self.title, about, *lines]) + "\n", encoding="utf-8")
+        print("\n" + "\n".join(["", about, *lines]))
+
+    def again(self, folder):
+        """The same of a study that ran before; its table."""
+        said = folder / "study.txt"
+        points = read_points(folder / "study.csv")
+        about = said.read_text(encoding="utf-8").splitlines()[1:2]
+        if not points or not about:
+            raise BadInput(f"{said if points else folder / 'study.csv'}: holds nothing; without --redraw the study runs")
+        self.tell(folder, points, about[0])
+        return folder / "study.csv"
+
+    def made(self, args, name, work):
+        """The runs, and what is said of them; the table."""
+        bench, begun = Bench(args), time.perf_counter()
         print(machine_text())
         reference = work(bench)
         points = bench.finished()
         if not points or not all(math.isfinite(point.error) for point in points):
             raise BadInput(f"{name}: a point has no error")
         write_points(bench.folder / "study.csv", points)
-        title = doc.splitlines()[0].rstrip(".")
-        draw(bench.folder / "study.png", title, error_name, points, knob)
-        print_table(title, ("method", "setting", "error", "s", "units"), *(
+        print_table(self.title, ("method", "setting", "error", "s", "units"), *(
             (p.series, p.setting, f"{p.error:.2e}", f"{p.seconds:.3f}", f"{p.units:.3f}") for p in points))
-        lines = [sentence(points, level, knob) for level in levels]
-        about = (f"{reference} The unit is {UNIT_TEXT}, here {bench.unit:.2f} s; times are medians of {bench.rounds}. "
-                 f"{machine_text().capitalize()}; the study took {time.perf_counter() - begun:.0f} s.")
-        (bench.folder / "study.txt").write_text("\n".join([title, about, *lines]) + "\n", encoding="utf-8")
-        print("\n" + "\n".join(["", about, *lines]))
+        self.tell(bench.folder, points, f"{reference} The unit is {UNIT_TEXT}, here {bench.unit:.2f} s; times are medians of "
+                  f"{bench.rounds}. {machine_text().capitalize()}; the study took {time.perf_counter() - begun:.0f} s.")
         return bench.folder / "study.csv"
 
-    return run(f"study/{name}", whole_study)
+
+def main(doc, name, work, levels, error_name, knob=""):
+    """Runs a study: work(bench) adds its points and returns what its reference is, in a sentence; knob: as sentence() has it. Exit
+    status."""
+    args = arguments(doc, name)
+    study = Study(doc.splitlines()[0].rstrip("."), levels, error_name, knob)
+    return run(f"study/{name}", lambda: study.again(args.output) if args.redraw else study.made(args, name, work))

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """What the studies of speed against error share, on made-up points and a matrix with known eigenvalues:
 
-  sentences  name the cheapest setting that reaches an error and the cheapest of another method, or say that none does
+  sentences  name the cheapest setting that reaches an error and the cheapest of other methods, or say that none does; costs within
+             5 % are the same
   files      table and picture hold all points
+  redraw     makes picture and sentences anew from the table, runs nothing, and says what is missing
   page       scripts/study/all has sentences, picture and what a study printed; of one that failed its status and message
   exact      eigenvalues 4 sin^2(k pi / (2 n + 2)) of a chain of masses, damped by alpha, from guesses of ten digits, to 1e-15; what is
              no eigenvalue is not taken for one; a run with a mode too few or too many errs by 1
@@ -24,6 +26,7 @@ import scipy.sparse
 SOURCE = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "tests")]
 from check import Failure, require
+from forked import run_script
 from squeal.exact_modes import worst
 from squeal.exact_sparse import refined
 from squeal.petsc_matrix import write_matrix
@@ -32,17 +35,30 @@ from squeal.struck_body import Struck
 
 POINTS = [Point("fast", "a", 1e-3, 1.0, 2.0), Point("fast", "b", 1e-6, 3.0, 6.0), Point("exact", "c", 1e-9, 4.0, 8.0),
           Point("dear", "d", 1e-4, 9.0, 18.0)]
-SAID = ((1e-2, "take fast with -x a: 2 units (error 0.001); exact needs 8 with -x c."),
+SAID = ((1e-2, "take fast with -x a: 2 units (error 0.001); exact needs 8 with -x c, dear 18."),
         (1e-5, "take fast with -x b: 6 units (error 1e-06); exact needs 8 with -x c."), (1e-8, "take exact with -x c: 8 units"),
         (1e-8, "no other method is so exact"), (1e-12, "reached by none of these; the least is 1e-09, of exact with -x c"),
         ((1e-5, "fast"), "of fast take -x b: 6 units (error 1e-06); no other setting is so exact."),
         ((1e-2, "fast"), "take -x a: 2 units (error 0.001); -x b, the dearest of those that reach it, needs 6."))
+# Costs within 5 %: the most exact of them is named, the others by method, neighbours as first to last; methods that do not compete
+ALIKE = [*(Point("many", f"{k}", 10.0**-k, 1.0, 2 + 0.01 * (k % 3)) for k in range(1, 7)), Point("one", "e", 1e-4, 1.0, 2.05),
+         Point("slow", "f", 1e-9, 1.0, 2.2), Point("slow", "g", 1e-5, 1.0, 2.25), Point("slow", "h", 1e-5, 1.0, 4.4)]
+SAID_ALIKE = (
+    (1.0, "take many with -x 6: 2 units (error 1e-06); as cheap within 5 %: many with -x 1 to 5, one with -x e; slow needs 2.2 with -x f."),
+    (1e-5, "take many with -x 6: 2 units (error 1e-06); as cheap within 5 %: many with -x 5; slow needs 2.2 with -x f."),
+    ((1e-4, "many"), "of many take -x 6: 2 units (error 1e-06); all 3 settings that reach it cost the same within 5 %."),
+    ((1e-2, "many"), "of many take -x 6: 2 units (error 1e-06); all 5 settings that reach it cost the same within 5 %."),
+    ((1e-4, "slow"), "of slow take -x f: 2.2 units (error 1e-09); as cheap within 5 %: -x g; "
+     "-x h, the dearest of those that reach it, needs 4.4."),
+    ((1e-3, ("one", "slow")), "take one with -x e: 2.05 units (error 0.0001); slow needs 2.2 with -x f."),
+    ((1e-3, ("one",)), "take one with -x e: 2.05 units (error 0.0001); no other method is so exact."))
 
 
 def sentences(_):
-    for level, said in SAID:
-        text = sentence(POINTS, level, "-x ")
-        require(said in text, f"{level}: '{text}' does not say '{said}'")
+    for points, expected in ((POINTS, SAID), (ALIKE, SAID_ALIKE)):
+        for level, said in expected:
+            text = sentence(points, level, "-x ")
+            require(said in text, f"{level}: '{text}' does not say '{said}'")
 
 
 def files(folder):
@@ -51,6 +67,18 @@ def files(folder):
     require(len(lines) == 5 and lines[3] == "exact,c,1.000000e-09,4.0000,8.0000", f"table: {lines}")
     draw(folder / "study.png", "made up", "error", POINTS)
     require((folder / "study.png").stat().st_size > 5000, "the picture has nothing on it")
+
+
+def redraw(folder):
+    study = [run_script(SOURCE / "scripts/study/integrator", ["--redraw", "--output", folder])]
+    write_points(folder / "study.csv", POINTS)
+    (folder / "study.txt").write_text("Old\nWhat the reference is.\nAn old sentence.\n")
+    study.append(run_script(SOURCE / "scripts/study/integrator", ["--redraw", "--output", folder]))
+    require(study[0].returncode == 1 and "study.csv: no such file" in study[0].stderr, f"without a table: {study[0].stderr}")
+    title, about, first, *_ = (folder / "study.txt").read_text().splitlines()
+    require(study[1].returncode == 0 and title == "Integrator in time: the parameter b and the step" and about == "What the reference is."
+            and first.startswith("For an error of 0.01 take fast with -dynamics_step_fraction a:"), f"drawn again: {title} {about} {first}")
+    require((folder / "study.png").stat().st_size > 5000, "drawn again: the picture has nothing on it")
 
 
 def page(folder):
@@ -99,7 +127,7 @@ def struck(folder):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        for part in (sentences, files, page, exact, struck):
+        for part in (sentences, files, redraw, page, exact, struck):
             (Path(folder) / part.__name__).mkdir()
             part(Path(folder) / part.__name__)
             print(part.__name__)
