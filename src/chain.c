@@ -291,7 +291,7 @@ PetscErrorCode ChainRun(Chain *chain)
   }
   if (analysis == ANALYSIS_SWEEP) PetscCall(PencilDestroy(&chain->pencil)); /* a sweep makes its own */
   PetscCall(SquealStageBegin(run[analysis].stage));
-  if (analysis == ANALYSIS_MODES) PetscCall(ModesSolve(chain->modes));
+  if (analysis == ANALYSIS_MODES) PetscCall(ModesSolveParities(chain->modes));
   if (analysis == ANALYSIS_SWEEP) PetscCall(SweepSolve(chain->sweep, chain->results));
   if (analysis == ANALYSIS_STATIC) PetscCall(StaticsSolve(chain->statics, chain->p));
   if (analysis == ANALYSIS_TRANSIENT) PetscCall(ChainIntegrate(chain));

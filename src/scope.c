@@ -209,6 +209,15 @@ static PetscErrorCode ScopeCheckIntegrator(MPI_Comm comm)
   PetscFunctionReturn(0);
 }
 
+/* What modes alone read of the matrices */
+static PetscErrorCode ScopeCheckSymmetry(MPI_Comm comm, const Scope *s)
+{
+  PetscFunctionBeginUser;
+  if (!s->modes || s->sweep || s->frf)
+    PetscCall(OptionsRefuse(comm, "-symmetry", "used by -analysis modes alone; leave it out"));
+  PetscFunctionReturn(0);
+}
+
 /* What every reader reads, and this analysis has no use for */
 static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool statics)
 {
@@ -219,6 +228,7 @@ static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool st
   if (s->model) PetscCall(ScopeCheckModel(comm, s, statics));
   if (s->contact) PetscCall(ContactGetInterfaces(s->contact, &n, &interfaces));
   for (PetscInt i = 0; i < n; i++) PetscCall(ScopeCheckContact(comm, s, &interfaces[i]));
+  PetscCall(ScopeCheckSymmetry(comm, s));
   if (s->modes && !s->frf) PetscCall(ScopeCheckEigensolver(comm, s)); /* which takes both */
   if (s->transient) PetscCall(ScopeCheckIntegrator(comm));
   if (s->transient)

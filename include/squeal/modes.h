@@ -92,6 +92,11 @@ PetscErrorCode ModesGetFactor(Modes modes, const struct ShiftInvert **factor);
 /*@ ModesSolve - computes eigenvalues, vectors, errors and labels, and checks that none is missing. Collective. @*/
 PetscErrorCode ModesSolve(Modes modes);
 
+/*@ ModesSolveParities - the same with -symmetry: the modes of each parity (pencil.h) by themselves, one after the other, and
+    all of them in one table, with the vectors of all unknowns; without planes of symmetry ModesSolve(). Collective.
+    Errors: those of PencilGetParities(). @*/
+PetscErrorCode ModesSolveParities(Modes modes);
+
 /*@ ModesGet - the modes in order of frequency (borrowed). Not collective. @*/
 PetscErrorCode ModesGet(Modes modes, PetscInt *n, const Mode **mode);
 

@@ -195,14 +195,14 @@ PetscErrorCode ModesSolveWindow(Modes modes, const PencilMatrices *pencil, Windo
   PetscFunctionReturn(0);
 }
 
-/* Forgets the last solution */
-static PetscErrorCode ModesReset(Modes modes)
+PetscErrorCode ModesReset(Modes modes)
 {
   PetscFunctionBeginUser;
   PetscCall(SpectrumDestroy(&modes->right));
   PetscCall(SpectrumDestroy(&modes->left_spectrum));
   PetscCall(PetscFree(modes->mode));
   PetscCall(PetscFree(modes->part_percent));
+  PetscCall(PetscFree(modes->parity));
   PetscCall(EPSDestroy(&modes->left_solver));
   PetscCall(ShiftInvertDestroy(&modes->factor));
   PetscCall(ShiftInvertDestroy(&modes->counter));
@@ -248,33 +248,53 @@ static PetscErrorCode SolveProjected(Modes modes, const PencilMatrices *pencil, 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModesSolve(Modes modes)
+PetscErrorCode ModesFind(Modes modes, Window *window, PetscBool *none)
 {
   PencilMatrices pencil;
-  Window         window;
 
   PetscFunctionBeginUser;
-  PetscCall(ModesReset(modes));
   modes->counter = (ShiftInvert){.progress = &modes->progress};
-  PetscCall(LimitBegin(modes));
   PetscCall(PencilGetMatrices(modes->pencil, &pencil));
   if (modes->has_route && !pencil.C)
     PetscCall(OptionsRefuse(modes->comm, MODES_DAMPING, "not used without damping; leave it out"));
-  PetscCall(WindowFind(modes, &window));
-  PetscCheck(window.expected != 0 || !pencil.symmetric || pencil.C, modes->comm, PETSC_ERR_USER_INPUT,
-             "-modes_band %.6g,%.6g Hz contains no mode (%" PetscInt_FMT " lie below it); widen it",
-             (double)modes->band[0], (double)modes->band[1], window.below);
-  PetscCall(ShiftsChoose(modes, &pencil, &window));
-  PetscCall(SolveProjected(modes, &pencil, &window));
-  if (!window.project) PetscCall(SolveWhole(modes, &pencil, &window));
-  PetscCheck(modes->right.n, modes->comm, PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g Hz contains no mode; widen it",
-             (double)modes->band[0], (double)modes->band[1]);
+  PetscCall(WindowFind(modes, window));
+  *none = window->expected == 0 && pencil.symmetric && !pencil.C ? PETSC_TRUE : PETSC_FALSE;
+  if (*none) PetscFunctionReturn(0);
+  PetscCall(ShiftsChoose(modes, &pencil, window));
+  PetscCall(SolveProjected(modes, &pencil, window));
+  if (!window->project) PetscCall(SolveWhole(modes, &pencil, window));
+  *none = modes->right.n ? PETSC_FALSE : PETSC_TRUE;
+  if (*none) window->below = -1; /* which says nothing of a mode with friction or damping */
+  if (*none) PetscFunctionReturn(0);
   PetscCall(QualityMeasure(modes, &pencil));
   PetscCall(ShiftInvertDestroy(&modes->counter));
-  if (window.rigid) PetscCall(TwinsDrop(modes, &window));
-  if (window.rigid) PetscCall(NullVectorsRefine(modes, &pencil, &window));
-  PetscCall(WindowDescribe(modes, &window));
-  PetscCall(SavedByDamping(modes, &pencil, &window));
+  if (window->rigid) PetscCall(TwinsDrop(modes, window));
+  if (window->rigid) PetscCall(NullVectorsRefine(modes, &pencil, window));
+  PetscCall(WindowDescribe(modes, window));
+  PetscCall(SavedByDamping(modes, &pencil, window));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesComplainNone(Modes modes, PetscInt below)
+{
+  char lower[64] = "";
+
+  PetscFunctionBeginUser;
+  if (below >= 0) PetscCall(PetscSNPrintf(lower, sizeof(lower), " (%" PetscInt_FMT " lie below it)", below));
+  SETERRQ(modes->comm, PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g Hz contains no mode%s; widen it",
+          (double)modes->band[0], (double)modes->band[1], lower);
+}
+
+PetscErrorCode ModesSolve(Modes modes)
+{
+  Window    window;
+  PetscBool none;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesReset(modes));
+  PetscCall(LimitBegin(modes));
+  PetscCall(ModesFind(modes, &window, &none));
+  if (none) PetscCall(ModesComplainNone(modes, window.below));
   PetscCall(ModesLabel(modes));
   PetscFunctionReturn(0);
 }

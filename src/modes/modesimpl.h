@@ -20,6 +20,8 @@ typedef struct {
 PETSC_INTERN PetscErrorCode SpectrumCreate(PetscInt capacity, Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode SpectrumAdd(Spectrum *spectrum, PetscReal sigma, PetscReal omega, Vec xr, Vec xi);
 PETSC_INTERN PetscErrorCode SpectrumSort(Spectrum *spectrum);
+PETSC_INTERN PetscErrorCode SpectrumOrder(const Spectrum *spectrum, PetscInt order[]); /* entry order[k] stands at k */
+PETSC_INTERN PetscErrorCode SpectrumPermute(Spectrum *spectrum, const PetscInt order[]);
 PETSC_INTERN PetscErrorCode SpectrumKeep(Spectrum *spectrum, PetscInt first, PetscInt n);
 PETSC_INTERN PetscErrorCode SpectrumRemove(Spectrum *spectrum, PetscInt i);
 PETSC_INTERN PetscErrorCode SpectrumAppend(Spectrum *from, Spectrum *to); /* moves the entries; `from` is destroyed */
@@ -31,9 +33,10 @@ enum { DAMPING_AUTO, DAMPING_PROJECT, DAMPING_PEP };
 #define MODES_DAMPING "-modes_damping"
 
 /* What a choice saved, in words */
-enum { SAVED_FACTORS, SAVED_DAMPING, N_SAVED };
+enum { SAVED_FACTORS, SAVED_DAMPING, SAVED_SYMMETRY, N_SAVED };
 
-#define SAVED_LENGTH 192
+#define SAVED_LENGTH 256
+#define PARITY_LENGTH 16 /* of "even odd even" */
 
 struct _p_Modes {
   MPI_Comm comm;
@@ -55,8 +58,10 @@ struct _p_Modes {
   PetscInt    n;
   double     *part_percent; /* participation of the parts [n][parts], NULL for matrices without a mesh */
   PetscInt    shifts;       /* in use */
-  char        completeness[1024];
+  char (*parity)[PARITY_LENGTH]; /* [n] with -symmetry, else NULL */
+  char        completeness[4096];
   char        saved[N_SAVED][SAVED_LENGTH];
+  double      entries;     /* of the factors of the undamped eigensolver, about; 0: not known */
   char        solver[96];  /* type of the undamped eigensolver, its block and factors */
   ShiftInvert factor;      /* of the solution where keep is set */
   EPS         left_solver; /* undamped, whose space has grown beside that of the right vectors; NULL: none has */
@@ -142,6 +147,11 @@ PETSC_INTERN PetscReal UndampedRadius(const Window *window, PetscReal shift, con
 PETSC_INTERN PetscReal UndampedShift(const Window *window);
 PETSC_INTERN PetscReal DampedShift(const Window *window);
 
+/* modes.c - all modes of the pencil in the window, but for their names; none = there is none in it. Collective. */
+PETSC_INTERN PetscErrorCode ModesFind(Modes modes, Window *window, PetscBool *none);
+PETSC_INTERN PetscErrorCode ModesReset(Modes modes); /* forgets the last solution */
+PETSC_INTERN PetscErrorCode ModesComplainNone(Modes modes, PetscInt below);
+
 /* modes.c - right and left spectra of a window that agree, with a factorisation about its shift */
 PETSC_INTERN PetscErrorCode ModesSolveWindow(Modes modes, const PencilMatrices *pencil, Window *window,
                                              ShiftInvert *si);
@@ -167,7 +177,10 @@ PETSC_INTERN PetscErrorCode ModesWriteFilters(Modes modes, Model model, Results 
 /* twins.c - lists a rigid mode of a damped system once, and trims the list to the modes asked for */
 PETSC_INTERN PetscErrorCode TwinsDrop(Modes modes, Window *window);
 
-/* saved.c - keep in words what factors, and what the route of damping, saved; and show them */
+/* saved.c - keep in words what factors, the route of damping, and symmetry saved; and show them. n [parities] unknowns of n_whole,
+   entries of the largest factors */
+PETSC_INTERN PetscErrorCode SavedBySymmetry(Modes modes, PetscInt n_parities, const PetscInt n[], PetscInt n_whole,
+                                            double entries);
 PETSC_INTERN PetscErrorCode SavedByFactors(Modes modes, const ShiftInvert *si);
 PETSC_INTERN PetscErrorCode SavedByDamping(Modes modes, const PencilMatrices *pencil, const Window *window);
 PETSC_INTERN PetscErrorCode SavedView(Modes modes, PetscViewer viewer);

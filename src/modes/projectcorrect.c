@@ -141,8 +141,8 @@ PetscErrorCode ProjectionLift(const Projection *p, const ProjectionModes *modes,
 
   PetscFunctionBeginUser;
   PetscCall(SideCollect(modes, left, -1, &c, &coordinates));
-  PetscCall(BlockCreate(p->V, c.n_columns, &vectors));
-  PetscCall(BlockLift(p->V, p->k, c.n_columns, coordinates, vectors));
+  PetscCall(BlockCreate(p->V, PetscMax(1, c.n_columns), &vectors)); /* the window may hold no mode */
+  if (c.n_columns) PetscCall(BlockLift(p->V, p->k, c.n_columns, coordinates, vectors));
   PetscCall(SpectrumCreate(modes->n, s));
   for (PetscInt i = 0; i < modes->n; i++) {
     const PetscInt at = c.column[i], two = c.column[i + 1] - at == 2;

@@ -58,6 +58,36 @@ PetscErrorCode SpectrumSort(Spectrum *s)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SpectrumOrder(const Spectrum *s, PetscInt order[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < s->n; i++) {
+    PetscInt k = i;
+
+    for (; k > 0 && SpectrumIsAfter(s, order[k - 1], i); k--) order[k] = order[k - 1];
+    order[k] = i;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SpectrumPermute(Spectrum *s, const PetscInt order[])
+{
+  Spectrum sorted;
+
+  PetscFunctionBeginUser;
+  PetscCall(SpectrumCreate(s->n, &sorted));
+  for (PetscInt k = 0; k < s->n; k++) {
+    sorted.sigma[k] = s->sigma[order[k]], sorted.omega[k] = s->omega[order[k]];
+    sorted.xr[k] = s->xr[order[k]], sorted.xi[k] = s->xi[order[k]];
+  }
+  sorted.n     = s->n;
+  sorted.reach = s->reach;
+  s->n         = 0; /* its vectors have gone over */
+  PetscCall(SpectrumDestroy(s));
+  *s = sorted;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SpectrumRemove(Spectrum *s, PetscInt i)
 {
   PetscFunctionBeginUser;

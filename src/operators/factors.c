@@ -16,6 +16,19 @@ static PetscBool TakesPart(const OperatorsTerm *term, const PetscReal p[])
                                                                                                          : PETSC_FALSE;
 }
 
+PetscErrorCode RowCopy(PetscReal c, Mat A, PetscInt i, PetscInt row, Mat B)
+{
+  const PetscInt    *columns;
+  const PetscScalar *values;
+  PetscInt           n;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetRow(A, i, &n, &columns, &values));
+  for (PetscInt k = 0; k < n; k++) PetscCall(MatSetValue(B, row, columns[k], c * values[k], INSERT_VALUES));
+  PetscCall(MatRestoreRow(A, i, &n, &columns, &values));
+  PetscFunctionReturn(0);
+}
+
 /* Puts the local rows of A times c into B from its row `first` on */
 static PetscErrorCode RowsCopy(PetscReal c, Mat A, PetscInt first, Mat B)
 {
@@ -23,20 +36,11 @@ static PetscErrorCode RowsCopy(PetscReal c, Mat A, PetscInt first, Mat B)
 
   PetscFunctionBeginUser;
   PetscCall(MatGetOwnershipRange(A, &begin, &end));
-  for (PetscInt i = begin; i < end; i++, first++) {
-    const PetscInt    *columns;
-    const PetscScalar *values;
-    PetscInt           n;
-
-    PetscCall(MatGetRow(A, i, &n, &columns, &values));
-    for (PetscInt k = 0; k < n; k++) PetscCall(MatSetValue(B, first, columns[k], c * values[k], INSERT_VALUES));
-    PetscCall(MatRestoreRow(A, i, &n, &columns, &values));
-  }
+  for (PetscInt i = begin; i < end; i++) PetscCall(RowCopy(c, A, i, first++, B));
   PetscFunctionReturn(0);
 }
 
-/* Length of the longest local row */
-static PetscErrorCode RowsLongest(Mat A, PetscInt *longest)
+PetscErrorCode RowsLongest(Mat A, PetscInt *longest)
 {
   PetscInt begin, end;
 

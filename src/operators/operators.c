@@ -50,6 +50,9 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
   PetscCall(OperatorsHaveMatrices(operators, &have));
   PetscCheck(have || !operators->nodes[0], operators->comm, PETSC_ERR_USER_INPUT,
              "-operators_nodes %s is of matrices that are loaded; a mesh knows its nodes", operators->nodes);
+  PetscCall(MirrorsSetFromOptions(operators, PetscOptionsObject));
+  PetscCheck(!have || !operators->n_planes, operators->comm, PETSC_ERR_USER_INPUT,
+             "-symmetry needs a mesh, on which mirror images are found; loaded matrices have none");
   if (have)
     PetscCall(PetscOptionsReal("-contact_mu", "friction coefficient of K + mu H", "operators.h", operators->loaded_mu,
                                &operators->loaded_mu, NULL));

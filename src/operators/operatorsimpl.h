@@ -26,6 +26,8 @@ typedef struct {
   PetscInt stiffness[6], viscosity[6], mass;
 } JointParameters;
 
+#define OPERATORS_MAX_PLANES 3
+
 /* -operators_factors */
 enum { OPERATORS_AUTO, OPERATORS_LU, OPERATORS_EVEN };
 
@@ -40,6 +42,8 @@ struct _p_Operators {
   PetscBool  lump, omit;
   PetscInt   factors;   /* OPERATORS_AUTO, OPERATORS_LU or OPERATORS_EVEN */
   PetscReal  loaded_mu; /* -contact_mu of loaded or dense matrices */
+  PetscInt   n_planes;  /* of symmetry */
+  ModelPlane plane[OPERATORS_MAX_PLANES];
   PetscInt   n_named;   /* matrices of -terms */
   struct _p_MatrixTerm *named;
   char                  nodes[PETSC_MAX_PATH_LEN]; /* -operators_nodes */
@@ -111,6 +115,9 @@ PETSC_INTERN PetscErrorCode PatternCreate(Model model, PetscInt part, PetscBool 
 
 /* friction.c - parameters of the contact */
 PETSC_INTERN PetscErrorCode OperatorsAddContactParameters(Operators operators);
+
+/* mirror.c - the planes of symmetry */
+PETSC_INTERN PetscErrorCode MirrorsSetFromOptions(Operators operators, OptionsItems PetscOptionsObject);
 
 /* file.c - matrices from files and options, and to files */
 PETSC_INTERN PetscErrorCode OperatorsLoadFromOptions(Operators operators, OptionsItems PetscOptionsObject);

@@ -163,13 +163,9 @@ static PetscErrorCode PencilGetFactors(Pencil pencil, PencilMatrices *m)
   PetscFunctionBeginUser;
   m->K_even = m->left = m->right = NULL;
   m->prefers_even                = pencil->operators->factors == OPERATORS_EVEN ? PETSC_TRUE : PETSC_FALSE;
-  if (m->symmetric || !pencil->operators->symmetric || pencil->Zr) PetscFunctionReturn(0);
+  if (m->symmetric || !pencil->operators->symmetric || pencil->n_left) PetscFunctionReturn(0);
   if (pencil->operators->factors == OPERATORS_LU) PetscFunctionReturn(0);
-  if (!pencil->has_factors) {
-    for (int i = 0; i < 2; i++) PetscCall(MatDestroy(&pencil->factor[i]));
-    PetscCall(TermsFormFactors(&pencil->base, pencil->parameters.p, &pencil->factor[0], &pencil->factor[1]));
-    pencil->has_factors = PETSC_TRUE;
-  }
+  PetscCall(PencilFormFactors(pencil));
   if (!pencil->factor[0]) PetscFunctionReturn(0);
   PetscCall(PencilFormSum(pencil, PROJECTED_K, &m->K_even));
   m->left  = pencil->factor[0];
@@ -224,14 +220,15 @@ PetscErrorCode PencilReleaseTerms(Pencil pencil)
 
   PetscFunctionBeginUser;
   if (!o->model || pencil->released) PetscFunctionReturn(0);
+  if (!pencil->is_part) PetscCall(OperatorsReleaseBodies(o));
+  if (!pencil->is_part && o->n_planes) PetscFunctionReturn(0); /* of which its parities are made */
   PetscCall(PencilGetMatrices(pencil, &m));
   PetscCall(PencilGetFrictionless(pencil, &m));
-  PetscCall(PencilGetParts(pencil, &parts));
+  if (!pencil->is_part) PetscCall(PencilGetParts(pencil, &parts));
   PetscCall(TermsRelease(&pencil->base));
   PetscCall(TermsRelease(&pencil->projected));
-  PetscCall(TermsRelease(&o->terms));
-  PetscCall(TermsRelease(&o->spin));
-  PetscCall(OperatorsReleaseBodies(o));
+  if (!pencil->is_part) PetscCall(TermsRelease(&o->terms));
+  if (!pencil->is_part) PetscCall(TermsRelease(&o->spin));
   pencil->released = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
@@ -339,6 +336,7 @@ PetscErrorCode PencilDestroy(Pencil *pencil)
   if (!s) PetscFunctionReturn(0);
   for (int i = 0; i < N_PENCIL_SUMS; i++) PetscCall(TermsSumDestroy(&s->sum[i]));
   for (int i = 0; i < 2; i++) PetscCall(MatDestroy(&s->factor[i]));
+  for (int i = 0; i < OPERATORS_MAX_PLANES; i++) PetscCall(MatDestroy(&s->mirror[i]));
   PetscCall(PencilDestroyNullSpaces(s));
   PetscCall(TermsDestroy(&s->base));
   PetscCall(ParametersDestroy(&s->parameters));

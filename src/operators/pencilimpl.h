@@ -40,7 +40,18 @@ struct _p_Pencil {
   PetscBool released;    /* the terms are gone */
   PetscBool has_factors; /* left' right was formed at the present point */
   Mat       factor[2];   /* left and right factor of the unsymmetric stiffness, NULL where it has none */
+  /* symmetry */
+  PetscBool is_part;                      /* it is one parity of another pencil */
+  Mat       mirror[OPERATORS_MAX_PLANES]; /* R of each plane, made when asked for */
+  PetscReal asymmetry;                    /* largest entry by which a matrix differs from its image, of its row's */
 };
+
+/* pairrows.c - forms both factors of the unsymmetric stiffness at the present point, where they are not there yet */
+PETSC_INTERN PetscErrorCode PencilFormFactors(Pencil pencil);
+
+/* mirror.c - R of each plane in the unknowns of the pencil, once; raises an error where the scene is not its own image */
+PETSC_INTERN PetscErrorCode PencilCreateMirrors(Pencil pencil);
+PETSC_INTERN PetscErrorCode MirrorGetRow(Mat R, PetscInt row, PetscInt *column, PetscReal *sign);
 
 /* rigid.c - null space of points that are joined rigidly, where there is none of the contact. Collective. */
 PETSC_INTERN PetscErrorCode PencilTakeRigid(Pencil pencil);

@@ -164,7 +164,7 @@ static PetscErrorCode ScenePrintNotes(Results results, OutFile *file)
 
 PetscErrorCode ResultsNote(Results results, const char key[], const char format[], ...)
 {
-  char    text[1024], line[1100];
+  char    text[4096], line[4200];
   va_list values;
 
   PetscFunctionBeginUser;
