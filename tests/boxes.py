@@ -6,7 +6,8 @@
 Places in m, numbers of cells. A box makes the sets NAME (volume), NAME_left, NAME_right (least and largest x),
 NAME_front, NAME_back (y), NAME_bottom and NAME_top (z), and NAME_inside, the faces between the first two layers of
 cells along x. KIND as in tests/solids.py. --cylinder bends planes of equal z into cylinders, that of z = 0 to the
-radius R: with s = R + z and angle = y / R, y becomes s sin(angle), z s cos(angle) - R.
+radius R: with s = R + z and angle = y / R, y becomes s sin(angle), z s cos(angle) - R. --lean L,COT leans planes of x >= L
+above z = 0 over to the left, by z COT, and those before in proportion to x, so that what ends at L is a wedge.
 """
 
 import argparse
@@ -50,12 +51,16 @@ def main():
     parser.add_argument("file", type=Path)
     parser.add_argument("boxes", nargs="+")
     parser.add_argument("--cylinder", type=float, metavar="R")
+    parser.add_argument("--lean", default="0,0", metavar="L,COT")
     args = parser.parse_args()
     groups, x = [], {}
     for i, text in enumerate(args.boxes):
         more, places = box(text, 100000 * i)
         groups += more
         x.update(places)
+    length, slope = map(float, args.lean.split(","))
+    if slope:
+        x = {p: np.array([a - max(z, 0) * slope * min(a / length, 1), y, z]) for p, (a, y, z) in x.items()}
     if args.cylinder:
         for p, (a, y, z) in x.items():
             s, angle = args.cylinder + z, y / args.cylinder

@@ -11,7 +11,13 @@
     hard.py ledger RESULTS LIMIT              energy that is left over, of the largest work or energy
     hard.py cycles RESULTS PAIRS TIME F LIMIT onsets of PAIRS sticking pairs a second against F, Hz, relative
     hard.py last RESULTS OTHER COLUMN LIMIT   a column of the last row of transient.csv against that of another run, relative
-    hard.py force RESULTS FROM FORCE LIMIT    mean normal force after FROM, s, against FORCE, N"""
+    hard.py force RESULTS FROM FORCE LIMIT    mean normal force after FROM, s, against FORCE, N
+    hard.py even RESULTS NAME PA LIMIT        pressures of all pairs of the contact NAME against PA, relative
+    hard.py total RESULTS NAME FORCE LIMIT    sum of the normal forces of the contact NAME against FORCE, N, relative
+    hard.py bar RESULTS N L C KN DENSITY LIMIT  frequencies of a bar of N linear elements, length L (m), wave speed C (m/s), on
+                                              springs of KN (N/m^3) at one end, those in the band, four at least, against
+                                              the nearest ones found, relative
+    hard.py rests RESULTS PROBE TIME WAY LIMIT  a probe that stops at TIME, s, after WAY, m, along y: the way, and what it moves after"""
 
 import csv
 import math
@@ -95,6 +101,47 @@ def force(results, begin, expected, limit):
     table = [row for row in rows(Path(results) / "transient.csv") if row["time_s"] > float(begin)]
     mean = sum(row["normal_force_n"] for row in table) / len(table)
     return judge(abs(mean / float(expected) - 1), float(limit))
+
+
+def pairs(results, name):
+    with (Path(results) / "static.csv").open(newline="") as table:
+        found = [row for row in csv.DictReader(table) if row["interface"] == name]
+    if not found:
+        raise SystemExit(f"no pair of {name}")
+    return found
+
+
+def even(results, name, pressure, limit):
+    return judge(max(abs(float(row["pressure_pa"]) / float(pressure) - 1) for row in pairs(results, name)), float(limit))
+
+
+def total(results, name, expected, limit):
+    return judge(abs(sum(float(row["lambda_n_n"]) for row in pairs(results, name)) / float(expected) - 1), float(limit))
+
+
+def bar(results, n, length, speed, stiffness, density, limit):
+    """Linear elements, consistent mass: of unit area, K = rho c^2 / h [1 -1; -1 1], M = rho h / 6 [2 1; 1 2]."""
+    import scipy.linalg
+    n, h = int(n), float(length) / int(n)
+    off = numpy.eye(n + 1, k=1) + numpy.eye(n + 1, k=-1)
+    inner = numpy.diag([1, *[2] * (n - 1), 1])
+    K = float(density) * float(speed)**2 / h * (inner - off)
+    K[0, 0] += float(stiffness)
+    exact = numpy.sqrt(scipy.linalg.eigh(K, float(density) * h / 6 * (2 * inner + off), eigvals_only=True)) / (2 * math.pi)
+    found = numpy.array([row["freq_hz"] for row in rows(Path(results) / "modes.csv")])
+    exact = exact[exact < found.max()]
+    if len(exact) < 4:
+        raise SystemExit("the band has fewer than four")
+    print(f"{len(exact)} frequencies from {exact[0]:.6g} to {exact[-1]:.6g} Hz among {len(found)}")
+    return judge(max(abs(found / f - 1).min() for f in exact), float(limit))
+
+
+def rests(results, probe, time, way, limit):
+    table = rows(Path(results) / "transient.csv")
+    after = [row[f"{probe}_y_m"] for row in table if row["time_s"] > 1.05 * float(time)]
+    if len(after) < 10:
+        raise SystemExit("the run ends before it rests")
+    return judge(max(abs(value / float(way) - 1) for value in after), float(limit))
 
 
 def cycles(results, pairs, time, frequency, limit):
