@@ -111,6 +111,6 @@ def draw_branch(branch, probe=None):
                     label=kind.replace("numerical", "stability within its error"))
              for kind in COLOURS if kind in branch.column("class")]
     panels[0].legend(handles=[*marks, Line2D([], [], color=INK, marker="_", ls="", label="error, twice the steps")],
-                     loc="upper left")
+                     loc="best")
     panels[0].set_title(f"limit cycles over {branch.parameter}")
     return figure

@@ -197,6 +197,7 @@ static PetscErrorCode CycleAdd(LimitCycle c, const ShootingCycle *at, const Shoo
   PetscCall(CycleFlowMeasure(&c->flow, at, &point->found, point->probe));
   PetscCall(ShootingGetStability(&c->shooting, at, &point->stability));
   if (c->verify) PetscCall(CycleRefine(c, at, along, point));
+  if (!point->has_finer) point->value_error = -1; /* the steps' part of it is unknown */
   PetscCall(CycleWrite(c));
   PetscFunctionReturn(0);
 }

@@ -1,7 +1,7 @@
 /* Tables of cycles, written anew with each one, so that a run that ends early leaves all that it has found */
 #include "cycleimpl.h"
 
-#define CLASS_ROUNDING 1e-9 /* of the modulus of a multiplier */
+#define CLASS_ROUNDING 1e-6 /* of the modulus of a multiplier, what tolerances of Newton's method leave */
 
 #define CYCLE_COLUMNS                                                                                                  \
   "point,parameter,value,value_error,kind,freq_hz,freq_error_hz,force_mean_n,force_rms_n,force_rms_error_n,"           \
