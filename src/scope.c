@@ -37,12 +37,14 @@ static PetscErrorCode ScopeRefuse(MPI_Comm comm, const char name[], const char w
 /* What an interface reads and this analysis has no use for */
 static PetscErrorCode ScopeCheckContact(MPI_Comm comm, const Scope *s, const ContactInterface *c)
 {
-  static const char exact[]  = "not used by -analysis transient, whose contact is exact: no penalty, no linearisation";
   static const char steady[] = "not used by -analysis static: the loads tell the forces, and nothing moves";
-  char              linear[256], other[256];
+  char              linear[256], other[256], exact[256];
   const PetscBool   is_static = !s->modes && !s->transient ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(exact, sizeof(exact),
+                          "not used by -analysis %s, whose contact is exact: no penalty, no linearisation",
+                          s->analysis));
   PetscCall(PetscSNPrintf(linear, sizeof(linear), "not used by modes without -%s_friction_damping", c->name));
   PetscCall(PetscSNPrintf(other, sizeof(other), "not used beside -%s_rotation; give one", c->name));
   if (Vec3Dot(c->rotation, c->rotation) > 0 && Vec3Dot(c->slip, c->slip) > 0)
@@ -172,10 +174,13 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
   static const char all[]      = "not used by modes with all pairs closed; give -modes_contact static";
   static const char no_probe[] = "not used without -analysis transient or frf";
   static const char unloaded[] = "not used by -analysis static, which is found without the load of the spin";
-  static const char turning[] = "not used by -analysis transient; a contact's -..._kinematics turning turns its master";
   const ModelScene *scene;
+  char              turning[160];
 
   PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(turning, sizeof(turning),
+                          "not used by -analysis %s; a contact's -..._kinematics turning turns its master",
+                          s->analysis));
   PetscCall(ModelGetScene(s->model, &scene));
   if (s->modes && !statics) PetscCall(ScopeRefuse(comm, "model", "gravity", all));
   if (!s->transient && !s->modes) PetscCall(ScopeCheckStill(comm, scene));
@@ -195,17 +200,20 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
   PetscFunctionReturn(0);
 }
 
-/* What TS reads for integrators that are implicit or choose their steps */
-static PetscErrorCode ScopeCheckIntegrator(MPI_Comm comm)
+/* What runs in time leave out: what TS reads for integrators that are implicit or choose their steps, another mass */
+static PetscErrorCode ScopeCheckIntegrator(MPI_Comm comm, const Scope *s)
 {
   static const char *const others[] = {"-ts_rtol",      "-ts_atol",         "-ts_adapt_",   "-ts_max_reject",
                                        "-ts_max_snes_", "-ts_error_if_",    "-ts_fd_color", "-ts_use_splitrhs",
                                        "-ts_time_span", "-ts_rhs_jacobian_"};
+  char                     why[160];
 
   PetscFunctionBeginUser;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(others); i++)
-    PetscCall(OptionsRefusePrefix(comm, others[i],
-                                  "not used, the steps of -analysis transient are explicit and of one length"));
+  PetscCall(
+    PetscSNPrintf(why, sizeof(why), "not used, the steps of -analysis %s are explicit and of one length", s->analysis));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(others); i++) PetscCall(OptionsRefusePrefix(comm, others[i], why));
+  PetscCall(PetscSNPrintf(why, sizeof(why), "not used by -analysis %s, whose mass is lumped", s->analysis));
+  PetscCall(ScopeRefuse(comm, "operators", "mass", why));
   PetscFunctionReturn(0);
 }
 
@@ -230,9 +238,7 @@ static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool st
   for (PetscInt i = 0; i < n; i++) PetscCall(ScopeCheckContact(comm, s, &interfaces[i]));
   PetscCall(ScopeCheckSymmetry(comm, s));
   if (s->modes && !s->frf) PetscCall(ScopeCheckEigensolver(comm, s)); /* which takes both */
-  if (s->transient) PetscCall(ScopeCheckIntegrator(comm));
-  if (s->transient)
-    PetscCall(ScopeRefuse(comm, "operators", "mass", "not used by -analysis transient, whose mass is lumped"));
+  if (s->transient) PetscCall(ScopeCheckIntegrator(comm, s));
   if (!s->transient && !s->modes) PetscCall(ScopeRefuse(comm, "operators", "mass", "not used by -analysis static"));
   if (!s->modes) PetscCall(ScopeRefuse(comm, "operators", "factors", "used by modes, sweeps and frequency responses"));
   PetscFunctionReturn(0);

@@ -31,7 +31,7 @@ CHAIN = ("base", "kernels", "model", "contact", "operators", "solver", "statics"
 BELOW = {room: {*CHAIN[:k + 1], *(("results",) if k > 1 else ())} for k, room in enumerate(CHAIN)}
 BELOW["frf"] = BELOW["modes"] | {"frf"}
 BELOW["reduced"] = BELOW["modes"] | {"dynamics", "reduced"}
-BELOW["map"] = BELOW["reduced"] | {"sweep", "map"}
+BELOW["map"] = BELOW["reduced"] | {"map"}
 BELOW |= {"results": {"base", "kernels", "results"},
           "dynamics": {"base", "kernels", "model", "contact", "operators", "statics", "results", "dynamics"}}
 LAYERS = {"dense": {"dense"}, "basis": {"dense", "basis"}, "track": {"dense", "track"}}

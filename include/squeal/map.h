@@ -16,6 +16,9 @@
               mean force
      settled  where the rms of three windows in turn agrees within -map_rtol, pairs changing their status; error_estimate is
               the largest difference between them
+     steady   where a vibration does not repeat itself, but its level does: over the last half of eight windows or more, in all of
+              which pairs change their status, the standard error of the rms is within -map_rtol, and the two halves of
+              these differ by twice that at most; numbers are means over them, error_estimate is that standard error
      time     at -ts_max_time; numbers are means over the last half, error_estimate is the standard error of the rms from
               window to window there, which is large for a vibration that does not repeat itself
      failed   where the contact laws have no solution; the next point begins with its own sliding state
@@ -23,7 +26,11 @@
    Regime: stable; growth; cycle; sticking, a vibration in which all closed pairs stick together in more than 1 % of the time.
    Growth, where at the end the rms still grows by half from a quarter of the time to the next; or where a mode grows, and over the
    last half the rms rises from window to window by more than -map_rtol, or no pair changes its status, so that the motion is linear.
-   The error of the cut-off and of the step is not in error_estimate: -dynamics_verify of a transient at a point tells it.
+   Growth is that of the fastest mode about the sliding state, damping of friction included; of divergence, a real eigenvalue,
+   the frequency is 0.
+
+   The error of the cut-off and of the step is not in error_estimate: -map_verify tells it at some points, by transients from
+   their own sliding states with half the step, and with 1.5 times the cut-off.
 */
 #pragma once
 
@@ -46,8 +53,10 @@ of a load (press_force: its length, N)
 .  -map_direction <both>        - both, up or down along the first parameter, in the order of its values; apart: every point
 from its own sliding state
 .  -map_window <5e-3>           - s, of which amplitude and frequency are taken
+.  -map_verify <0>              - points, spread evenly over the map, that are run again with half the step and with 1.5 times
+the cut-off: map_errors.csv
 .  -map_restart <true>          - go on where a map of the same scene in -output_dir was stopped
--  -map_rtol <0.01>             - relative change of the rms below which an amplitude is settled
+-  -map_rtol <0.01>             - relative change of the rms, or standard error of its mean, below which an amplitude is settled
 @*/
 PetscErrorCode MapSetFromOptions(Map map);
 
@@ -55,7 +64,7 @@ PetscErrorCode MapSetFromOptions(Map map);
 PetscErrorCode MapSetRooms(Map map, ReducedRun reduced, Operators operators, const PetscReal p[]);
 
 /*@
-   MapSolve - all points, and map.csv as lines are finished. Collective; each rank runs lines of its own.
+   MapSolve - all points, and map.csv. Collective; each rank runs lines in one direction, or points apart, as it becomes free.
 
    Errors: PETSC_ERR_USER_INPUT for names, values and scenes that cannot be.
 @*/

@@ -46,10 +46,15 @@ typedef struct {
   PetscReal heat_before;   /* that before the last step */
   PetscReal residual;      /* natural map, relative to the largest impulse, worst step since the start */
   PetscReal sweeps, checks, steps;  /* since the start: of Gauss-Seidel, looks at all pairs, steps */
-  PetscReal marked;                 /* value of `steps` at ContactProjectorMark(), 0 for never */
+  PetscReal marked;                 /* value of `steps` at the mark, 0 for never */
   PetscReal mark[CONTACT_N_STATUS]; /* `n` then */
   PetscReal changed, most; /* steps since then with other numbers of pairs in `n`, and the most pairs that differ */
 } ContactSums;
+
+/*@ ContactSumsMark, ContactSumsCompare - keeps the numbers of pairs of each status, unless some are kept; tells after a step
+    whether they differ from these, and by how many pairs. Not collective. @*/
+void ContactSumsMark(ContactSums *sums);
+void ContactSumsCompare(ContactSums *sums);
 
 /* Friction in one step by a second path: slip from places, the law's coefficient from the interface (slipwork.c) */
 typedef struct {

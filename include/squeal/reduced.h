@@ -37,8 +37,6 @@
 
    Steps are longer than a period of the cut-off in no run: ReducedIntegrate() refuses them, since contact cannot follow.
 
-   Of what DynamicsSolve() writes impulses.csv is left out: transient.csv tells times and numbers of open and sticking pairs.
-
    What is said of a body that turns: a disc in a fixed frame with prescribed sliding is served, one that moves under the
    pad (-contact_kinematics turning) is refused. Pairs stay what they are in the mesh.
 */
@@ -83,8 +81,9 @@ typedef struct {
                                NULL for none */
 } ReducedDrive;
 
-/* What a step did: works on the bodies, J */
+/* What a step did: works on the bodies, J; without `works`, which cost a tenth of a step, slip alone */
 typedef struct {
+  PetscBool  works;
   PetscReal  external, damping;
   PetscReal *contact, *friction, *heat; /* [n_pairs] */
   PetscReal *slip;                      /* [2 n_pairs] of the step, along t and b, m */
@@ -104,7 +103,7 @@ PetscErrorCode ReducedStateCreate(const ReducedModel *model, ReducedState *state
 PetscErrorCode ReducedStateCopy(const ReducedModel *model, const ReducedState *from, ReducedState *to);
 PetscErrorCode ReducedStateDestroy(ReducedState *state);
 
-/*@ ReducedReportCreate, ReducedReportDestroy - room for what a step did. Not collective. @*/
+/*@ ReducedReportCreate, ReducedReportDestroy - room for what a step did, works included. Not collective. @*/
 PetscErrorCode ReducedReportCreate(const ReducedModel *model, ReducedReport *report);
 PetscErrorCode ReducedReportDestroy(ReducedReport *report);
 
@@ -187,7 +186,8 @@ PetscErrorCode ReducedGetModel(ReducedRun reduced, ReducedModel **model);
 /*@ ReducedGetRun - cut-off (Hz), step and end (s); NULL for what is not needed. Not collective. @*/
 PetscErrorCode ReducedGetRun(ReducedRun reduced, PetscReal *cutoff, PetscReal *dt, PetscReal *end);
 
-/*@ ReducedGetHits - the impulses: Phi'J [n][m], m sqrt(kg)/s, and when they are due, s (borrowed). Not collective. @*/
+/*@ ReducedGetHits - the impulses, after ReducedPrepare(): their number, and of bodies that are reduced Phi'J [n][m], m sqrt(kg)/s,
+    and when they are due, s (borrowed; NULL for what is not needed). Not collective. @*/
 PetscErrorCode ReducedGetHits(ReducedRun reduced, PetscInt *n, const PetscReal **hits, const PetscReal **due);
 
 /*@ ReducedAddChecksum - adds what runs must share that go on with each other, but for step and end. Collective. @*/
@@ -198,7 +198,7 @@ PetscErrorCode ReducedGetInterface(ReducedRun reduced, PetscInt pair, PetscInt *
 
 /*@
    ReducedIntegrate - reduces the bodies, compares with the mesh where -modes_band says a band, integrates, and writes what
-   DynamicsSolve() writes but for impulses.csv. Collective.
+   DynamicsSolve() writes but for amplitudes.csv, which -dynamics_filters asks for in vain. Collective.
 
    Errors: PETSC_ERR_USER_INPUT for a cut-off without modes below it, below an unstable mode of the mesh, or with modes
    that hold less than 90 % of the starting velocities or shape; PETSC_ERR_SUP

@@ -59,11 +59,11 @@ def winner_of(modes, freq):
 
 
 def scenes_of(args, rows, damping):
-    """The brakes of a map with two or more unstable modes, the fastest of which grows by LEAST."""
+    """The brakes of a map with two or more unstable modes that vibrate, the fastest of which grows by LEAST."""
     folder = map_of(args, rows, damping)
     modes = read_table(folder / "map_modes.csv", MODE)
     for point in read_table(folder / "map.csv", POINT):
-        own = [mode for mode in modes if mode["point"] == point["point"]]
+        own = [mode for mode in modes if mode["point"] == point["point"] and mode["freq_hz"] > 0]
         if len(own) > 1 and max(mode["growth_rad_s"] for mode in own) >= LEAST and point["status"] != "failed":
             yield Many(rows, damping, point["value_2"], point["value"], own, point, winner_of(own, point["freq_hz"]))
 

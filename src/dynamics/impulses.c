@@ -10,12 +10,12 @@ typedef struct {
   PetscReal steps, changed, most;
 } ImpulseEffect;
 
-static ImpulseEffect ImpulseMeasure(const Dynamics d)
+static ImpulseEffect ImpulseMeasure(PetscInt n_interfaces, const ContactSums sums[])
 {
   ImpulseEffect effect = {0, 0, 0};
 
-  for (PetscInt i = 0; i < d->n_interfaces; i++) {
-    const ContactSums *s = &d->sums[i];
+  for (PetscInt i = 0; i < n_interfaces; i++) {
+    const ContactSums *s = &sums[i];
 
     if (s->marked == 0) continue;
     effect.steps   = s->steps - s->marked;
@@ -32,9 +32,9 @@ PetscErrorCode DynamicsMarkImpulse(Dynamics d)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DynamicsReportImpulses(Dynamics d)
+PetscErrorCode DynamicsWriteImpulses(Dynamics d, const ContactSums sums[], const PetscReal time[])
 {
-  const ImpulseEffect effect = ImpulseMeasure(d);
+  const ImpulseEffect effect = ImpulseMeasure(d->n_interfaces, sums);
   ResultsTable        table;
   PetscInt            n;
 
@@ -49,9 +49,9 @@ PetscErrorCode DynamicsReportImpulses(Dynamics d)
     ExternalHit hit;
 
     PetscCall(ExternalGetHit(d->external, i, &hit));
-    if (hit.time <= 0) continue; /* the run ended before */
+    if (time[i] < 0) continue; /* the run ended before */
     PetscCall(ResultsTableRow(table, "%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g", hit.name,
-                              (double)hit.time, (double)hit.x[0], (double)hit.x[1], (double)hit.x[2],
+                              (double)time[i], (double)hit.x[0], (double)hit.x[1], (double)hit.x[2],
                               (double)hit.impulse[0], (double)hit.impulse[1], (double)hit.impulse[2],
                               (double)effect.steps, (double)effect.changed, (double)effect.most));
   }
@@ -61,5 +61,24 @@ PetscErrorCode DynamicsReportImpulses(Dynamics d)
                           "after the impulse %.0f of %.0f steps have other numbers of open or sticking pairs than "
                           "before it, by %.0f at most: the response is not linear\n",
                           (double)effect.changed, (double)effect.steps, (double)effect.most));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsReportImpulses(Dynamics d)
+{
+  PetscReal *time;
+  PetscInt   n;
+
+  PetscFunctionBeginUser;
+  PetscCall(ExternalCountHits(d->external, &n));
+  PetscCall(PetscMalloc1(n, &time));
+  for (PetscInt i = 0; i < n; i++) {
+    ExternalHit hit;
+
+    PetscCall(ExternalGetHit(d->external, i, &hit));
+    time[i] = hit.time > 0 ? hit.time : -1;
+  }
+  PetscCall(DynamicsWriteImpulses(d, d->sums, time));
+  PetscCall(PetscFree(time));
   PetscFunctionReturn(0);
 }

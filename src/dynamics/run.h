@@ -35,6 +35,10 @@ PETSC_INTERN PetscErrorCode DynamicsGetRun(Dynamics dynamics, Results results, c
    and m/s; zeros without. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsGetShape(Dynamics dynamics, PetscReal u[], PetscReal v[]);
 
+/* DynamicsWriteImpulses - impulses.csv of a run that is over, and in words whether the response is linear: sums over the
+   interfaces, and when each impulse acted, s, negative where it did not. Collective. */
+PETSC_INTERN PetscErrorCode DynamicsWriteImpulses(Dynamics dynamics, const ContactSums sums[], const PetscReal time[]);
+
 /* DynamicsAddRunChecksum - what a run must share with the one that it goes on with, but for what concerns the integrator. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsAddRunChecksum(Dynamics dynamics, Checksum checksum);
 

@@ -10,6 +10,9 @@
 #define WINDOW 5e-3 /* s */
 #define RTOL   0.01
 
+#define MAP_BATCH  8     /* times the lines that ranks need at once, of which bodies are reduced before any is run */
+#define MAP_MEMORY 2.5e8 /* bytes for their bodies on each rank */
+
 PetscErrorCode MapCreate(MPI_Comm comm, Map *map)
 {
   PetscFunctionBeginUser;
@@ -42,8 +45,14 @@ PetscErrorCode MapSetFromOptions(Map map)
                               "map.h", directions, 4, directions[0], &direction, NULL));
   PetscCall(PetscOptionsReal("-map_window", "of which amplitude and frequency are taken, s", "map.h", map->window,
                              &map->window, NULL));
-  PetscCall(PetscOptionsReal("-map_rtol", "change of the rms between windows below which an amplitude is settled",
-                             "map.h", map->rtol, &map->rtol, NULL));
+  PetscCall(PetscOptionsReal(
+    "-map_rtol",
+    "change of the rms between windows, or standard error of its mean, below which an amplitude is settled", "map.h",
+    map->rtol, &map->rtol, NULL));
+  PetscCall(PetscOptionsInt("-map_verify",
+                            "points, spread over the map, run again with half the step and with 1.5 times "
+                            "the cut-off",
+                            "map.h", map->n_verify, &map->n_verify, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-map_restart",
                            "go on where a map of the same scene in -output_dir was "
                            "stopped",
@@ -53,6 +62,8 @@ PetscErrorCode MapSetFromOptions(Map map)
              "-map_window %.6g must be a positive time (s)", (double)map->window);
   PetscCheck(map->rtol > 0 && map->rtol < 1, map->comm, PETSC_ERR_USER_INPUT, "-map_rtol %.6g must lie between 0 and 1",
              (double)map->rtol);
+  PetscCheck(map->n_verify >= 0, map->comm, PETSC_ERR_USER_INPUT,
+             "-map_verify %" PetscInt_FMT " must not be negative: a number of points", map->n_verify);
   map->direction = (MapDirection)direction;
   PetscFunctionReturn(0);
 }
@@ -72,43 +83,58 @@ PetscErrorCode MapSetRooms(Map map, ReducedRun reduced, Operators operators, con
   PetscFunctionReturn(0);
 }
 
-/* Rows of a round, in the order of the chains */
-static PetscErrorCode MapTakeRound(Map map, PetscInt n, const MapPoint row[], ResultsTable table[2])
+/* Where a point stands among all rows: lines, directions, places */
+static PetscInt MapRowIndex(Map map, const MapPoint *row)
+{
+  const PetscInt both = map->direction == MAP_BOTH ? 1 : 0;
+
+  return ((1 + both) * row->line + both * row->down) * map->axis[0].n + row->place;
+}
+
+/* Rows of the ranks, of chains ends[0] .. ends[1] - 1 */
+static PetscErrorCode MapTakeRows(Map map, PetscInt n, const MapPoint row[], const PetscInt ends[2],
+                                  ResultsTable table[2])
 {
   MapPoint *all;
   PetscInt  n_all;
 
   PetscFunctionBeginUser;
   PetscCall(GatherRecords(map->comm, n, sizeof(*row), row, &n_all, &all));
-  for (PetscInt i = 0; i < n_all; i++) {
-    PetscCall(MapTableAdd(map, table[0], &all[i]));
-    PetscCall(MapModesAdd(map, table[1], &all[i]));
-    map->row[map->n_rows++] = all[i];
+  for (PetscInt i = 0; i < n_all; i++) map->row[MapRowIndex(map, &all[i])] = all[i];
+  PetscCall(PetscFree(all));
+  map->n_rows += n_all;
+  for (PetscInt i = ends[0] * map->n_linked; i < ends[1] * map->n_linked; i++) {
+    MapPoint at;
+
+    MapChainPlace(map, i / map->n_linked, i % map->n_linked, &at);
+    PetscCall(MapTableAdd(map, table[0], &map->row[MapRowIndex(map, &at)]));
+    PetscCall(MapModesAdd(map, table[1], &map->row[MapRowIndex(map, &at)]));
   }
   for (int k = 0; k < 2; k++) PetscCall(ResultsTableCheck(table[k]));
-  PetscCall(PetscFree(all));
   PetscFunctionReturn(0);
 }
 
-/* Chains first .. last - 1 on these bodies [lines], or on one for all */
-static PetscErrorCode MapRounds(Map map, MapBodies bodies[], PetscInt first, PetscInt last, ResultsTable table[2])
+/* Chains ends[0] .. ends[1] - 1 on these bodies [lines], or on one for all; row [their points], of which n are this rank's */
+static PetscErrorCode MapShareChains(Map map, MapBodies bodies[], const PetscInt ends[2], PetscInt *n, MapPoint row[])
 {
-  const PetscInt  n = map->axis[0].n, n_ways = map->direction == MAP_BOTH ? 2 : 1;
-  const PetscBool each = map->n_axes > 1 && MapAxisIsBody(&map->axis[1]) ? PETSC_TRUE : PETSC_FALSE;
-  PetscMPIInt     rank, size;
-  MapPoint       *row;
+  PetscInt k, line = -1;
+  MapMarch march = NULL;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(map->comm, &rank));
-  PetscCallMPI(MPI_Comm_size(map->comm, &size));
-  PetscCall(PetscCalloc1(n, &row));
-  for (PetscInt round = first; round < last; round += size) {
-    const PetscInt chain = round + rank;
+  *n = 0;
+  PetscCall(MapShareBegin(&map->share, map->comm));
+  PetscCall(MapShareNext(&map->share, &k));
+  while (k < ends[1] - ends[0]) {
+    const PetscInt own = map->lines_differ ? k / map->n_ways : 0;
 
-    if (chain < last) PetscCall(MapChain(map, &bodies[each ? (chain - first) / n_ways : 0], chain, row));
-    PetscCall(MapTakeRound(map, chain < last ? n : 0, row, table));
+    if (own != line) PetscCall(MapMarchDestroy(&march));
+    if (own != line) PetscCall(MapMarchCreate(map, &bodies[own], map->dt, &march));
+    line = own;
+    PetscCall(MapChain(march, ends[0] + k, &row[*n]));
+    *n += map->n_linked;
+    PetscCall(MapShareNext(&map->share, &k));
   }
-  PetscCall(PetscFree(row));
+  PetscCall(MapMarchDestroy(&march));
   PetscFunctionReturn(0);
 }
 
@@ -119,53 +145,70 @@ static PetscErrorCode MapBodiesGet(Map map, PetscInt line, MapBodies *bodies)
 
   PetscFunctionBeginUser;
   PetscCall(MapResumeBodies(map, line, bodies, &good));
-  if (!good) PetscCall(MapBodiesCreate(map, line, bodies));
+  if (!good) PetscCall(MapBodiesCreate(map, line, 0, bodies));
   if (!good) PetscCall(MapKeepBodies(map, line, bodies));
   map->m       = bodies->model.m;
   map->n_pairs = bodies->model.n_pairs;
   PetscFunctionReturn(0);
 }
 
-/* All lines, some at a time where each has bodies of its own: so many that no rank is idle */
-static PetscErrorCode MapLines(Map map, ResultsTable table[2])
+/* Lines at a time: where each has bodies of its own, so many that no rank is idle for long, as far as bodies are small */
+static PetscErrorCode MapCountBatch(Map map, PetscInt *batch)
 {
-  const PetscInt  n_ways = map->direction == MAP_BOTH ? 2 : 1, n_lines = map->n_axes > 1 ? map->axis[1].n : 1;
-  const PetscBool each = map->n_axes > 1 && MapAxisIsBody(&map->axis[1]) ? PETSC_TRUE : PETSC_FALSE;
-  PetscMPIInt     size;
-  PetscInt        batch;
-  PetscLogDouble  begin, ready, end;
-  MapBodies      *bodies;
+  const PetscInt n_lines = map->n_axes > 1 ? map->axis[1].n : 1;
+  PetscMPIInt    size;
+  PetscInt       least;
 
   PetscFunctionBeginUser;
+  *batch = n_lines;
+  if (!map->lines_differ) PetscFunctionReturn(0);
   PetscCallMPI(MPI_Comm_size(map->comm, &size));
-  batch = each ? (size + n_ways - 1) / n_ways : n_lines;
+  least  = (size + map->n_ways - 1) / map->n_ways;
+  *batch = PetscMin(n_lines, PetscMax(least, PetscMin(MAP_BATCH * least, (PetscInt)(MAP_MEMORY / map->bytes))));
+  PetscFunctionReturn(0);
+}
+
+/* All lines */
+static PetscErrorCode MapLines(Map map, ResultsTable table[2])
+{
+  const PetscInt n_lines = map->n_axes > 1 ? map->axis[1].n : 1;
+  PetscInt       batch, n_own;
+  PetscLogDouble begin, ready, end;
+  MapBodies     *bodies;
+  MapPoint      *row;
+
+  PetscFunctionBeginUser;
+  PetscCall(MapCountBatch(map, &batch));
   PetscCall(PetscCalloc1(batch, &bodies));
+  PetscCall(PetscCalloc1(batch * map->n_ways * map->n_linked, &row));
   for (PetscInt line = 0; line < n_lines; line += batch) {
-    const PetscInt n = PetscMin(batch, n_lines - line), n_bodies = each ? n : 1;
+    const PetscInt n = PetscMin(batch, n_lines - line), n_bodies = map->lines_differ ? n : 1;
+    const PetscInt ends[2] = {map->n_ways * line, map->n_ways * (line + n)};
 
     PetscCall(PetscTime(&begin));
     for (PetscInt i = 0; i < n_bodies; i++) PetscCall(MapBodiesGet(map, line + i, &bodies[i]));
     PetscCall(PetscTime(&ready));
-    PetscCall(MapRounds(map, bodies, n_ways * line, n_ways * (line + n), table));
+    PetscCall(MapShareChains(map, bodies, ends, &n_own, row));
+    PetscCall(MapTakeRows(map, n_own, row, ends, table));
     for (PetscInt i = 0; i < n_bodies; i++) PetscCall(MapBodiesDestroy(&bodies[i]));
     PetscCall(PetscTime(&end));
     map->seconds[0] += ready - begin;
     map->seconds[1] += end - ready;
   }
+  PetscCall(PetscFree(row));
   PetscCall(PetscFree(bodies));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MapSolve(Map map, Results results)
+/* Scene, axes, times, and how many chains there are */
+static PetscErrorCode MapSetUp(Map map, Results results)
 {
-  const PetscInt n_ways = map->direction == MAP_BOTH ? 2 : 1;
-  PetscInt       n_rows;
-  PetscMPIInt    size;
-  ResultsTable   table[2];
+  PetscInt n_points;
 
   PetscFunctionBeginUser;
   PetscCall(MapCheck(map));
   PetscCall(ReducedPrepare(map->reduced, results));
+  PetscCall(MapCheckPrepared(map));
   PetscCall(MapAxes(map));
   PetscCall(ReducedGetRun(map->reduced, &map->cutoff, &map->dt, &map->end));
   PetscCheck(map->window >= 32 * map->dt && map->end >= 8 * map->window, map->comm, PETSC_ERR_USER_INPUT,
@@ -174,16 +217,37 @@ PetscErrorCode MapSolve(Map map, Results results)
   PetscCheck(map->end <= MAP_MAX_STEPS * map->dt, map->comm, PETSC_ERR_USER_INPUT,
              "-ts_max_time %.6g s is %.3g steps of %.6g s; a point of a map takes at most %.0e", (double)map->end,
              (double)(map->end / map->dt), (double)map->dt, MAP_MAX_STEPS);
-  n_rows = n_ways * map->axis[0].n * (map->n_axes > 1 ? map->axis[1].n : 1);
-  PetscCall(PetscCalloc1(n_rows, &map->row));
-  PetscCallMPI(MPI_Comm_size(map->comm, &size));
+  map->n_ways   = map->direction == MAP_BOTH ? 2 : map->direction == MAP_APART ? map->axis[0].n : 1;
+  map->n_linked = map->direction == MAP_APART ? 1 : map->axis[0].n;
+  n_points      = map->axis[0].n * (map->n_axes > 1 ? map->axis[1].n : 1);
+  if (map->n_axes > 1) map->lines_differ = MapAxisIsBody(&map->axis[1]);
+  PetscCheck(map->n_verify <= n_points, map->comm, PETSC_ERR_USER_INPUT,
+             "-map_verify %" PetscInt_FMT " must be at most the %" PetscInt_FMT " points of the map", map->n_verify,
+             n_points);
   PetscCall(ResultsGetDirectory(results, &map->folder));
   PetscCall(MapSumScene(map));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapSolve(Map map, Results results)
+{
+  PetscInt     n_rows;
+  PetscMPIInt  size;
+  ResultsTable table[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(MapSetUp(map, results));
+  n_rows = map->n_ways * map->n_linked * (map->n_axes > 1 ? map->axis[1].n : 1);
+  PetscCall(PetscCalloc1(n_rows, &map->row));
+  PetscCallMPI(MPI_Comm_size(map->comm, &size));
   PetscCall(MapTableOpen(results, &table[0]));
   PetscCall(MapModesOpen(results, &table[1]));
+  PetscCall(MapShareCreate(map->comm, &map->share));
   PetscCall(ProgressBegin(&map->progress, "points of the map", (n_rows + size - 1) / size));
   PetscCall(MapLines(map, table));
   PetscCall(ProgressEnd(&map->progress));
+  PetscCall(MapVerify(map, results));
+  PetscCall(MapShareDestroy(&map->share));
   for (int k = 0; k < 2; k++) PetscCall(ResultsTableClose(&table[k]));
   PetscCall(MapForget(map));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &map->n_resumed, 1, MPIU_INT, MPI_SUM, map->comm));

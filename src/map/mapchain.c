@@ -1,20 +1,20 @@
 /*
-   A line of the map in one direction: point after point, each from the end of the one before, until its regime is known (map.h).
-   Runs on one rank, without messages. What a point begins with besides the state is made anew, so that it is the same
-   whichever points were before it in this process.
+   A chain: a line of the map in one direction, point after point, each from the end of the one before, until its regime is known
+   (map.h), or a point alone. Runs on one rank, without messages. What a point begins with besides the state is made anew, so
+   that it is the same whichever points were before it in this process.
 */
 #include "mapimpl.h"
 
-#define MARCH_RTOL     1e-12 /* of the contact laws */
-#define MARCH_TINY     1e-9  /* of the mean force: a vibration that is rounding */
-#define MARCH_SMALL    0.01  /* of the mean force: a vibration that is small */
-#define MARCH_STICKING 0.01  /* share of the time */
-#define MARCH_SETTLED  3     /* windows that agree */
-#define MARCH_TREND    1.5   /* of the rms, from a quarter of the windows to the next: growth */
+#define MARCH_RTOL     1e-8 /* of the contact laws */
+#define MARCH_TINY     1e-9 /* of the mean force: a vibration that is rounding */
+#define MARCH_SMALL    0.01 /* of the mean force: a vibration that is small */
+#define MARCH_STICKING 0.01 /* share of the time */
+#define MARCH_TREND    1.5  /* of the rms, from a quarter of the windows to the next: growth */
 
-/* Work of a chain */
-typedef struct {
+/* Bodies, and work */
+struct _p_MapMarch {
   Map            map;
+  PetscReal      dt; /* s */
   MapBodies     *bodies;
   ReducedStepper stepper;
   ReducedState   state, rest; /* the motion; the sliding state of the point */
@@ -28,20 +28,26 @@ typedef struct {
   PetscReal      growth;
   PetscReal     *lambda_n, *sigma, *omega; /* [n_pairs] N, [2 m] */
   MapSample     *sample;                   /* [n_most] */
-} MarchWork;
+};
 
-static PetscErrorCode MarchWorkCreate(Map map, MapBodies *bodies, MarchWork *w)
+PetscErrorCode MapMarchCreate(Map map, MapBodies *bodies, PetscReal dt, MapMarch *march)
 {
   const ReducedModel *model = &bodies->model;
+  MapMarch            w;
 
   PetscFunctionBeginUser;
-  *w        = (MarchWork){.map = map, .bodies = bodies};
-  w->n      = (PetscInt)(map->window / map->dt + 0.5);
-  w->n_most = (PetscInt)(map->end / ((PetscReal)w->n * map->dt) + 1e-9);
+  PetscCall(PetscNew(march));
+  w         = *march;
+  w->map    = map;
+  w->bodies = bodies;
+  w->dt     = dt;
+  w->n      = (PetscInt)(map->window / dt + 0.5);
+  w->n_most = (PetscInt)(map->end / ((PetscReal)w->n * dt) + 1e-9);
   PetscCall(ReducedStateCreate(model, &w->state));
   PetscCall(ReducedStateCreate(model, &w->rest));
   PetscCall(ReducedReportCreate(model, &w->report));
-  PetscCall(ReducedStepperCreate(model, map->dt, MARCH_RTOL, &w->stepper));
+  w->report.works = PETSC_FALSE;
+  PetscCall(ReducedStepperCreate(model, dt, MARCH_RTOL, &w->stepper));
   PetscCall(PetscCalloc6(model->n_pairs, &w->sliding, model->n_loads, &w->loads, model->m, &w->kick, w->n_most * w->n,
                          &w->slip, w->n_most * w->n, &w->force, w->n_most, &w->sample));
   PetscCall(PetscCalloc6(model->n_pairs, &w->status, model->n_pairs, &w->closed, model->n_pairs, &w->known,
@@ -49,22 +55,24 @@ static PetscErrorCode MarchWorkCreate(Map map, MapBodies *bodies, MarchWork *w)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode MarchWorkDestroy(MarchWork *w)
+PetscErrorCode MapMarchDestroy(MapMarch *march)
 {
+  MapMarch w = *march;
+
   PetscFunctionBeginUser;
+  if (!w) PetscFunctionReturn(0);
   PetscCall(ReducedStepperDestroy(&w->stepper));
   PetscCall(ReducedStateDestroy(&w->state));
   PetscCall(ReducedStateDestroy(&w->rest));
   PetscCall(ReducedReportDestroy(&w->report));
   PetscCall(PetscFree6(w->sliding, w->loads, w->kick, w->slip, w->force, w->sample));
   PetscCall(PetscFree6(w->status, w->closed, w->known, w->lambda_n, w->sigma, w->omega));
+  PetscCall(PetscFree(*march));
   PetscFunctionReturn(0);
 }
 
-/* Eigenvalues about sliding with the pairs of `status` closed: growth and frequency of the fastest mode, and the largest growth
-   over angular frequency */
-static PetscErrorCode MarchLinearise(MarchWork *w, const ContactStatus status[], PetscReal *growth, PetscReal *freq,
-                                     PetscReal *index)
+/* Eigenvalues about sliding with the pairs of `status` closed */
+static PetscErrorCode MarchLinearise(MapMarch w, const ContactStatus status[], MapFastest *fastest)
 {
   const ReducedModel *model = &w->bodies->model;
 
@@ -74,29 +82,21 @@ static PetscErrorCode MarchLinearise(MarchWork *w, const ContactStatus status[],
     w->lambda_n[i] = w->rest.p[3 * i];
   }
   PetscCall(ReducedLineariseSliding(model, w->closed, w->lambda_n, w->sigma, w->omega));
-  *growth = *index = -PETSC_INFINITY;
-  *freq            = 0;
-  for (PetscInt k = 0; k < 2 * model->m; k++) {
-    const PetscReal size = hypot(w->sigma[k], w->omega[k]);
-
-    if (!(w->omega[k] > 0)) continue;
-    *index = PetscMax(*index, w->sigma[k] / size);
-    if (w->sigma[k] <= *growth) continue;
-    *growth = w->sigma[k];
-    *freq   = w->omega[k] / (2 * PETSC_PI);
-  }
+  MapModesJudge(2 * model->m, w->sigma, w->omega, fastest);
+  w->growth = fastest->growth;
+  PetscCall(PetscArraycpy(w->known, w->closed, model->n_pairs));
   PetscFunctionReturn(0);
 }
 
 /* Sum of the impulses that act at t_n, or NULL: one between two steps acts at both in shares, as in any reduced run */
-static const PetscReal *MarchKick(MarchWork *w)
+static const PetscReal *MarchKick(MapMarch w)
 {
   const MapBodies *b   = w->bodies;
   const PetscInt   m   = b->model.m;
   PetscBool        any = PETSC_FALSE;
 
   for (PetscInt i = 0; i < b->n_hits; i++) {
-    const PetscReal share = 1 - PetscAbsReal(b->hits[m * b->n_hits + i] - w->state.time) / w->map->dt;
+    const PetscReal share = 1 - PetscAbsReal(b->hits[m * b->n_hits + i] - w->state.time) / w->dt;
 
     if (!(share > 0)) continue;
     for (PetscInt k = 0; k < m; k++) w->kick[k] = (any ? w->kick[k] : 0) + share * b->hits[m * i + k];
@@ -106,7 +106,7 @@ static const PetscReal *MarchKick(MarchWork *w)
 }
 
 /* Statuses at t_{n+1}: whether they are those at the beginning of the window, and whether all closed pairs stick */
-static void MarchLook(MarchWork *w, MapSample *sample)
+static void MarchLook(MapMarch w, MapSample *sample)
 {
   PetscInt n_closed = 0, n_stick = 0;
 
@@ -121,7 +121,7 @@ static void MarchLook(MarchWork *w, MapSample *sample)
 }
 
 /* The steps of the next window, and what its forces are like */
-static PetscErrorCode MarchWindow(MarchWork *w, MapPoint *row)
+static PetscErrorCode MarchWindow(MapMarch w, MapPoint *row)
 {
   const PetscInt n_pairs = w->bodies->model.n_pairs;
   PetscReal     *force   = &w->force[w->n * w->n_windows];
@@ -139,7 +139,7 @@ static PetscErrorCode MarchWindow(MarchWork *w, MapPoint *row)
     force[k] = slip[k] = 0;
     for (PetscInt i = 0; i < n_pairs; i++) {
       force[k] += w->state.p[3 * i];
-      slip[k] += w->report.slip[2 * i] / (w->map->dt * (PetscReal)n_pairs);
+      slip[k] += w->report.slip[2 * i] / (w->dt * (PetscReal)n_pairs);
     }
     MarchLook(w, now);
     row->steps++;
@@ -150,7 +150,7 @@ static PetscErrorCode MarchWindow(MarchWork *w, MapPoint *row)
 }
 
 /* Whether `growth` is that of the pairs that are closed now, all of which slip */
-static PetscBool MarchIsKnown(const MarchWork *w)
+static PetscBool MarchIsKnown(const MapMarch w)
 {
   for (PetscInt i = 0; i < w->bodies->model.n_pairs; i++)
     if (w->state.status[i] != (w->known[i] ? CONTACT_SLIP : CONTACT_OPEN)) return PETSC_FALSE;
@@ -159,44 +159,27 @@ static PetscBool MarchIsKnown(const MarchWork *w)
 
 /* Whether the last motion dies out: no mode of the sliding state, or with the pairs that are closed now, grows, and the rms falls
    from window to window: two of them in which no pair changed its status, or four of a small vibration */
-static PetscErrorCode MarchDiesOut(MarchWork *w, PetscBool *dies)
+static PetscErrorCode MarchDiesOut(MapMarch w, PetscBool *dies)
 {
   const MapSample *s    = &w->sample[w->n_windows - 1];
   const PetscBool  tiny = s->rms <= MARCH_TINY * s->mean, small = s->rms <= MARCH_SMALL * s->mean;
   const PetscInt   n = s->changed ? 4 : 2;
-  PetscReal        freq, index;
+  MapFastest       fastest;
 
   PetscFunctionBeginUser;
   *dies = PETSC_FALSE;
   if (w->n_windows < n || (s->changed && !small)) PetscFunctionReturn(0);
   for (PetscInt k = 1; k < n && !tiny; k++)
     if (s[1 - k].rms >= s[-k].rms) PetscFunctionReturn(0);
-  if (!MarchIsKnown(w) && !s->changed) {
-    PetscCall(MarchLinearise(w, w->state.status, &w->growth, &freq, &index));
-    PetscCall(PetscArraycpy(w->known, w->closed, w->bodies->model.n_pairs));
-  }
+  if (!MarchIsKnown(w) && !s->changed) PetscCall(MarchLinearise(w, w->state.status, &fastest));
   *dies = w->growth < 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
-}
-
-/* Whether the rms of the last windows agrees in a vibration in which pairs change their status; the largest relative difference */
-static PetscBool MarchIsSettled(const MarchWork *w, PetscReal *change)
-{
-  const MapSample *s = &w->sample[w->n_windows - 1];
-
-  *change = 0;
-  if (w->n_windows < MARCH_SETTLED) return PETSC_FALSE;
-  for (PetscInt k = 1; k < MARCH_SETTLED; k++) {
-    if (!s[-k].changed || !s->changed || !(s->rms > 0)) return PETSC_FALSE;
-    *change = PetscMax(*change, PetscAbsReal(s[-k].rms / s->rms - 1));
-  }
-  return *change <= w->map->rtol ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* What a transient that did not settle is. It grows where the rms of the last quarter of the windows is that much beyond the one
    before, or, where a mode grows, where it rises in each window of the last half, or where no pair changed its status there, so
    that the motion is linear */
-static MapRegime MarchTrend(const MarchWork *w)
+static MapRegime MarchTrend(const MapMarch w)
 {
   const PetscInt   n      = w->n_windows;
   const MapSample *s      = w->sample;
@@ -216,7 +199,7 @@ static MapRegime MarchTrend(const MarchWork *w)
 }
 
 /* Means over windows first .. */
-static void MarchAverage(MarchWork *w, PetscInt first, MapPoint *row)
+static void MarchAverage(MapMarch w, PetscInt first, MapPoint *row)
 {
   const PetscReal n = (PetscReal)(w->n_windows - first);
 
@@ -231,29 +214,32 @@ static void MarchAverage(MarchWork *w, PetscInt first, MapPoint *row)
 }
 
 /* The regime of a transient that has ended, and its numbers: of the windows that agree, or the last half of all */
-static void MarchJudge(MarchWork *w, MapPoint *row)
+static void MarchJudge(MapMarch w, MapPoint *row)
 {
   const PetscInt  n = w->n, last = w->n_windows;
-  const PetscInt  first = row->end == MAP_DECAYS ? last - 1 : row->end == MAP_SETTLED ? last - MARCH_SETTLED : last / 2;
+  const PetscInt  first = row->end == MAP_DECAYS    ? last - 1
+                          : row->end == MAP_SETTLED ? last - MAP_SETTLED_WINDOWS
+                                                    : last / 2;
   const PetscInt  half  = (last - first) / 2;
-  const PetscReal dt = w->map->dt, change = row->error;
+  const PetscReal dt = w->dt, change = row->error;
 
   MarchAverage(w, first, row);
   row->rms    = MapForceLevel(last - first, &w->sample[first], &row->error);
   row->time   = w->state.time;
-  row->regime = row->end == MAP_DECAYS ? MAP_STABLE : row->end == MAP_SETTLED ? MAP_CYCLE : MarchTrend(w);
+  row->regime = row->end == MAP_DECAYS ? MAP_STABLE : row->end == MAP_TIME ? MarchTrend(w) : MAP_CYCLE;
   if (row->end == MAP_DECAYS) row->error = NAN;
   if (row->end == MAP_SETTLED) row->error = change;
   if (row->regime == MAP_CYCLE && row->stick > MARCH_STICKING) row->regime = MAP_STICKING;
+  row->freq = row->freq_error = NAN;
   if (row->regime == MAP_STABLE) return;
-  row->freq       = MapForceLine(last - first, n, &w->slip[n * first], dt);
-  row->freq_error = half ? PetscAbsReal(MapForceLine(half, n, &w->slip[n * first], dt) -
-                                        MapForceLine(half, n, &w->slip[n * (last - half)], dt))
-                         : 0;
+  row->freq = MapForceLine(last - first, n, &w->slip[n * first], dt);
+  if (half)
+    row->freq_error = PetscAbsReal(MapForceLine(half, n, &w->slip[n * first], dt) -
+                                   MapForceLine(half, n, &w->slip[n * (last - half)], dt));
 }
 
 /* Windows until the regime is known or the time is over */
-static PetscErrorCode MarchRun(MarchWork *w, MapPoint *row)
+static PetscErrorCode MarchRun(MapMarch w, MapPoint *row)
 {
   PetscBool dies;
 
@@ -261,46 +247,42 @@ static PetscErrorCode MarchRun(MarchWork *w, MapPoint *row)
   for (w->n_windows = 0; w->n_windows < w->n_most;) {
     PetscCall(MarchWindow(w, row));
     PetscCall(MarchDiesOut(w, &dies));
-    row->end = dies ? MAP_DECAYS : MarchIsSettled(w, &row->error) ? MAP_SETTLED : MAP_TIME;
+    row->end = dies                                                               ? MAP_DECAYS
+               : MapIsSettled(w->n_windows, w->sample, w->map->rtol, &row->error) ? MAP_SETTLED
+               : MapIsSteady(w->n_windows, w->sample, w->map->rtol, &row->error)  ? MAP_STEADY
+                                                                                  : MAP_TIME;
     if (row->end != MAP_TIME) break;
   }
   MarchJudge(w, row);
   PetscFunctionReturn(0);
 }
 
-/* The modes of the last linearisation that grow */
-static void MarchTakeModes(MarchWork *w, MapPoint *row)
-{
-  for (PetscInt k = 0; k < 2 * w->bodies->model.m && row->n_modes < MAP_MAX_MODES; k++) {
-    if (!(w->omega[k] > 0) || !(w->sigma[k] > 0)) continue;
-    row->sigma[row->n_modes]   = w->sigma[k];
-    row->omega[row->n_modes++] = w->omega[k];
-  }
-}
-
 /* The sliding state of a point, its eigenvalues, and where the point begins: there, or where the one before ended */
-static PetscErrorCode MarchBegin(MarchWork *w, PetscBool go_on, MapPoint *row, PetscBool *begun)
+static PetscErrorCode MarchBegin(MapMarch w, PetscBool go_on, MapPoint *row, PetscBool *begun)
 {
-  const ReducedModel *model = &w->bodies->model;
+  const ReducedModel *model   = &w->bodies->model;
+  MapFastest          fastest = {NAN, NAN, NAN};
   PetscBool           found;
 
   PetscFunctionBeginUser;
   PetscCall(MapBodiesMove(w->map, row, w->bodies, w->sliding, w->loads));
+  for (PetscInt i = 0; i < model->n_pairs; i++) w->sliding[i] *= w->dt;
   PetscCall(ReducedStepperTakeFriction(w->stepper));
   PetscCall(ReducedEquilibrium(model, w->loads, &w->rest, &found));
-  row->growth = row->mode_freq = row->index = NAN;
-  if (found) PetscCall(MarchLinearise(w, w->rest.status, &row->growth, &row->mode_freq, &row->index));
-  if (found) MarchTakeModes(w, row);
-  if (found) PetscCall(PetscArraycpy(w->known, w->closed, model->n_pairs));
+  w->growth = NAN;
+  if (found) PetscCall(MarchLinearise(w, w->rest.status, &fastest));
+  if (found) MapModesTake(2 * model->m, w->sigma, w->omega, row);
   if (found && !go_on) PetscCall(ReducedStateCopy(model, &w->rest, &w->state));
-  w->growth     = row->growth;
-  w->state.time = 0;
-  *begun        = found || go_on ? PETSC_TRUE : PETSC_FALSE;
+  row->growth    = fastest.growth;
+  row->mode_freq = fastest.freq;
+  row->index     = fastest.index;
+  w->state.time  = 0;
+  *begun         = found || go_on ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
 /* A point; false where it failed, of which no other rank knows: laws without solution, or a motion beyond all numbers */
-static PetscErrorCode MarchPoint(MarchWork *w, PetscBool go_on, MapPoint *row, PetscBool *good)
+static PetscErrorCode MarchPoint(MapMarch w, PetscBool go_on, MapPoint *row, PetscBool *good)
 {
   PetscErrorCode error = 0;
   PetscBool      begun;
@@ -320,27 +302,38 @@ static PetscErrorCode MarchPoint(MarchWork *w, PetscBool go_on, MapPoint *row, P
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MapChain(Map map, MapBodies *bodies, PetscInt chain, MapPoint row[])
+void MapChainPlace(Map map, PetscInt chain, PetscInt k, MapPoint *row)
 {
-  const PetscInt n = map->axis[0].n, n_ways = map->direction == MAP_BOTH ? 2 : 1;
-  PetscInt       first;
-  PetscBool      good = PETSC_FALSE;
-  MapKept        kept;
-  MarchWork      w;
+  const PetscInt way = chain % map->n_ways, down = map->direction == MAP_BOTH ? way : map->direction == MAP_DOWN;
+  const PetscInt place = map->direction == MAP_APART ? way : down ? map->n_linked - 1 - k : k;
+
+  *row = (MapPoint){.line = chain / map->n_ways, .place = place, .down = down};
+}
+
+PetscErrorCode MapChain(MapMarch w, PetscInt chain, MapPoint row[])
+{
+  Map       map  = w->map;
+  PetscBool good = PETSC_FALSE;
+  PetscInt  first;
+  MapKept   kept = {&w->bodies->model, &w->state, 0};
 
   PetscFunctionBeginUser;
-  PetscCall(MarchWorkCreate(map, bodies, &w));
-  kept = (MapKept){&bodies->model, &w.state};
   PetscCall(MapResumeChain(map, chain, &first, row, &kept));
   if (first) good = row[first - 1].end != MAP_FAILED ? PETSC_TRUE : PETSC_FALSE;
-  for (PetscInt k = first; k < n; k++) {
-    const PetscInt down = n_ways == 2 ? chain % 2 : map->direction == MAP_DOWN;
-
-    row[k] = (MapPoint){.line = chain / n_ways, .down = down, .place = down ? n - 1 - k : k};
-    PetscCall(MarchPoint(&w, good && map->direction != MAP_APART, &row[k], &good));
+  for (PetscInt k = first; k < map->n_linked; k++) {
+    MapChainPlace(map, chain, k, &row[k]);
+    PetscCall(MarchPoint(w, good, &row[k], &good));
     PetscCall(MapKeepChain(map, chain, k + 1, row, &kept));
     PetscCall(ProgressStep(&map->progress));
   }
-  PetscCall(MarchWorkDestroy(&w));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapMarchAlone(MapMarch w, MapPoint *row)
+{
+  PetscBool good;
+
+  PetscFunctionBeginUser;
+  PetscCall(MarchPoint(w, PETSC_FALSE, row, &good));
   PetscFunctionReturn(0);
 }

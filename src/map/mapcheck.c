@@ -64,3 +64,39 @@ PetscErrorCode MapCheck(Map map)
   PetscCall(CheckIdleAll(map, scene, n, c));
   PetscFunctionReturn(0);
 }
+
+/* The first contact of which a pair does not slide, of all ranks; n for none */
+static PetscErrorCode CheckFindResting(Map map, Contact contact, PetscInt n, PetscInt *resting)
+{
+  const ContactPair *pair;
+  PetscInt           n_pairs, n_all;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetPairs(contact, &n_pairs, &n_all, &pair));
+  map->bytes = (1 + 3 * PetscSqr(3 * (PetscReal)n_all)) * sizeof(PetscReal); /* W, Cx, and the step's */
+  *resting   = n;
+  for (PetscInt i = 0; i < n_pairs; i++)
+    if (pair[i].speed == 0) *resting = PetscMin(*resting, pair[i].interface);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, resting, 1, MPIU_INT, MPI_MIN, map->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapCheckPrepared(Map map)
+{
+  const ContactInterface *c;
+  PetscInt                n, n_hits, resting;
+  Model                   model;
+  Contact                 contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedGetHits(map->reduced, &n_hits, NULL, NULL));
+  PetscCheck(n_hits > 0, map->comm, PETSC_ERR_USER_INPUT,
+             "-analysis map needs -impulses: without a blow at every point squeal would have to grow from rounding");
+  PetscCall(OperatorsGetModel(map->operators, &model, &contact));
+  PetscCall(ContactGetInterfaces(contact, &n, &c));
+  PetscCall(CheckFindResting(map, contact, n, &resting));
+  PetscCheck(resting == n, map->comm, PETSC_ERR_USER_INPUT,
+             "contact %s: a map is about sliding, and its speed is 0; say it by -%s_speed",
+             resting < n ? c[resting].name : "", resting < n ? c[resting].name : "");
+  PetscFunctionReturn(0);
+}

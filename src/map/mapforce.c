@@ -9,7 +9,8 @@
 */
 #include "mapimpl.h"
 
-#define LEAST_PERIODS 4
+#define LEAST_PERIODS  4
+#define STEADY_WINDOWS 8 /* at least */
 
 void MapForceMeasure(PetscInt n, const PetscReal f[], MapSample *s)
 {
@@ -79,8 +80,38 @@ PetscReal MapForceLine(PetscInt n_records, PetscInt n, const PetscReal f[], Pets
     largest = here;
     best    = k;
   }
-  if (!(largest > 1e-12 * PetscAbsReal(sample.mean) * (PetscReal)n)) return 0;
+  if (!(largest > 1e-12 * PetscAbsReal(sample.mean) * (PetscReal)n)) return NAN;
   for (int i = 0; i < 2; i++) side[i] = ForceBins(n_records, n, f, sample.mean, best - 1 + 2 * i);
   a = PetscMax(side[0], side[1]) / largest;
   return ((PetscReal)best + (side[1] > side[0] ? 1 : -1) * (2 * a - 1) / (a + 1)) / ((PetscReal)n * dt);
+}
+
+PetscBool MapIsSettled(PetscInt n, const MapSample sample[], PetscReal rtol, PetscReal *error)
+{
+  const MapSample *s = &sample[n - 1];
+
+  *error = 0;
+  if (n < MAP_SETTLED_WINDOWS) return PETSC_FALSE;
+  for (PetscInt k = 1; k < MAP_SETTLED_WINDOWS; k++) {
+    if (!s[-k].changed || !s->changed || !(s->rms > 0)) return PETSC_FALSE;
+    *error = PetscMax(*error, PetscAbsReal(s[-k].rms / s->rms - 1));
+  }
+  return *error <= rtol ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The last half of the windows, and the two halves of it */
+PetscBool MapIsSteady(PetscInt n, const MapSample sample[], PetscReal rtol, PetscReal *error)
+{
+  const PetscInt   half = n - n / 2, part = half / 2;
+  const MapSample *s = &sample[n / 2];
+  PetscReal        unused, level[2];
+
+  *error = 0;
+  if (n < STEADY_WINDOWS) return PETSC_FALSE;
+  for (PetscInt k = 0; k < half; k++)
+    if (!s[k].changed) return PETSC_FALSE;
+  (void)MapForceLevel(half, s, error);
+  level[0] = MapForceLevel(part, s, &unused);
+  level[1] = MapForceLevel(part, &s[half - part], &unused);
+  return *error <= rtol && PetscAbsReal(level[0] / level[1] - 1) <= 2 * rtol ? PETSC_TRUE : PETSC_FALSE;
 }

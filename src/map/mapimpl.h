@@ -6,13 +6,15 @@
 #include "base/progress.h"
 #include "reduced/parameter.h"
 
-#define MAP_MAX_AXES  2
-#define MAP_MAX_TEXT  65536 /* length of a list of values */
-#define MAP_MAX_MODES 24    /* that grow at a point and are listed */
-#define MAP_MAX_STEPS 1e8   /* of a transient, whose record is kept until its regime is known */
+#define MAP_MAX_AXES        2
+#define MAP_MAX_TEXT        65536 /* length of a list of values */
+#define MAP_MAX_MODES       24    /* that grow at a point and are listed */
+#define MAP_SETTLED_WINDOWS 3     /* that agree */
+#define MAP_MAX_POINTS      100000
+#define MAP_MAX_STEPS       1e8 /* of a transient, whose record is kept until its regime is known */
 
 typedef enum { MAP_STABLE, MAP_GROWTH, MAP_STICKING, MAP_CYCLE, MAP_UNKNOWN, MAP_N_REGIMES } MapRegime;
-typedef enum { MAP_DECAYS, MAP_SETTLED, MAP_TIME, MAP_FAILED, MAP_N_ENDS } MapEnd;
+typedef enum { MAP_DECAYS, MAP_SETTLED, MAP_STEADY, MAP_TIME, MAP_FAILED, MAP_N_ENDS } MapEnd;
 typedef enum { MAP_BOTH, MAP_UP, MAP_DOWN, MAP_APART } MapDirection;
 
 typedef struct {
@@ -20,7 +22,6 @@ typedef struct {
   ReducedParameter moved[8];
   PetscInt         n;
   PetscReal       *value; /* [n] */
-  PetscBool        ratio;
 } MapAxis;
 
 /* A row of map.csv; forces in N */
@@ -28,7 +29,7 @@ typedef struct {
   PetscInt  line, place, down; /* indices of the values; 1: the values are gone through backwards */
   MapRegime regime;
   MapEnd    end;
-  PetscReal freq, freq_error; /* Hz, of the main line */
+  PetscReal freq, freq_error; /* Hz, of the main line; NAN without */
   PetscReal mean, rms, peak;  /* of the normal force */
   PetscReal open, stick;      /* shares of the time */
   PetscReal growth, mode_freq,
@@ -36,9 +37,14 @@ typedef struct {
   PetscReal error; /* of the rms, relative */
   PetscReal time;  /* s */
   PetscInt  steps;
-  PetscInt  n_modes;                                    /* that grow, of the sliding state */
-  PetscReal sigma[MAP_MAX_MODES], omega[MAP_MAX_MODES]; /* rad/s */
+  PetscInt  n_growing;                                  /* modes of the sliding state that grow */
+  PetscReal sigma[MAP_MAX_MODES], omega[MAP_MAX_MODES]; /* of the fastest of these, rad/s */
 } MapPoint;
+
+/* The mode that grows fastest, 1/s and Hz (0 of divergence), and the largest growth over angular frequency */
+typedef struct {
+  PetscReal growth, freq, index;
+} MapFastest;
 
 /* What forces in a window are like */
 typedef struct {
@@ -55,6 +61,18 @@ typedef struct {
   PetscReal   *hits; /* [n_hits][m] Phi'J, m sqrt(kg)/s, then [n_hits] when they are due, s */
 } MapBodies;
 
+/* Differences of a run at a point from that of the map, or the largest of all points and the number of other regimes */
+typedef struct {
+  PetscInt  regime;
+  PetscReal rms, freq, growth; /* relative; Hz; 1/s */
+} MapError;
+
+/* A counter that ranks share */
+typedef struct {
+  MPI_Win window;
+  int    *counter; /* [1] on rank 0 */
+} MapShare;
+
 struct _p_Map {
   MPI_Comm   comm;
   ReducedRun reduced;
@@ -65,18 +83,24 @@ struct _p_Map {
   PetscBool    linked;
   MapDirection direction;
   PetscReal    window, rtol;
+  PetscInt     n_verify; /* points of which errors are told */
   /* the grid */
   PetscInt   n_axes;
   MapAxis    axis[MAP_MAX_AXES];
-  PetscReal *p;        /* of the operators */
-  PetscReal  dt, end;  /* s */
-  PetscReal  cutoff;   /* Hz */
-  PetscInt   n_chains; /* lines in one direction each */
+  PetscReal *p;            /* of the operators */
+  PetscReal  dt, end;      /* s */
+  PetscReal  cutoff;       /* Hz */
+  PetscBool  lines_differ; /* each has bodies of its own */
+  PetscInt   n_ways;       /* chains of a line: its directions, or its points */
+  PetscInt   n_linked;     /* points of a chain */
+  PetscReal  bytes;        /* of reduced bodies, about */
+  MapShare   share;
   /* results */
   PetscInt       n_rows;
-  MapPoint      *row; /* [n_rows] */
+  MapPoint      *row; /* [n_rows] lines, ways, places */
   PetscInt       n_reductions, m, n_pairs;
   PetscLogDouble seconds[2]; /* reductions, transients */
+  MapError       error[2];   /* of half the step, of a higher cut-off */
   /* restart */
   PetscBool   restart;
   const char *folder;
@@ -89,42 +113,71 @@ PETSC_INTERN PetscErrorCode MapAxes(Map map);
 /* Whether an axis has a parameter of the bodies */
 PETSC_INTERN PetscBool MapAxisIsBody(const MapAxis *axis);
 
-/* mapcheck.c - raises the error for a scene of which no map can be made, and for options of the command line that do nothing */
+/* mapcheck.c - raises the error for a scene of which no map can be made, and for options of the command line that do
+   nothing; after ReducedPrepare() for a scene without impulses or sliding */
 PETSC_INTERN PetscErrorCode MapCheck(Map map);
+PETSC_INTERN PetscErrorCode MapCheckPrepared(Map map);
 
-/* mapbodies.c - bodies of a line of the map; their friction, sliding [n_pairs] of a step (m) and loads [n_loads] at a place */
-PETSC_INTERN PetscErrorCode MapBodiesCreate(Map map, PetscInt line, MapBodies *bodies);
-PETSC_INTERN PetscErrorCode MapBodiesMove(Map map, const MapPoint *at, MapBodies *bodies, PetscReal sliding[],
+/* mapmodes.c - pure: of n eigenvalues (rad/s) the fastest mode; into the row those that grow, fastest first */
+PETSC_INTERN void MapModesJudge(PetscInt n, const PetscReal sigma[], const PetscReal omega[], MapFastest *fastest);
+PETSC_INTERN void MapModesTake(PetscInt n, const PetscReal sigma[], const PetscReal omega[], MapPoint *row);
+
+/* mapbodies.c - bodies of a line of the map below a cut-off, Hz, 0: the map's; their friction, speeds of sliding
+   [n_pairs] (m/s) and loads [n_loads] at a place */
+PETSC_INTERN PetscErrorCode MapBodiesCreate(Map map, PetscInt line, PetscReal cutoff, MapBodies *bodies);
+PETSC_INTERN PetscErrorCode MapBodiesMove(Map map, const MapPoint *at, MapBodies *bodies, PetscReal speed[],
                                           PetscReal loads[]);
 PETSC_INTERN PetscErrorCode MapBodiesDestroy(MapBodies *bodies);
 
-/* mapchain.c - all points of a line in one direction, row [n of the first axis]; not collective */
-PETSC_INTERN PetscErrorCode MapChain(Map map, MapBodies *bodies, PetscInt chain, MapPoint row[]);
+/* mapshare.c - numbers 0, 1, ... for ranks that ask; Begin anew is collective, Next is not */
+PETSC_INTERN PetscErrorCode MapShareCreate(MPI_Comm comm, MapShare *share);
+PETSC_INTERN PetscErrorCode MapShareBegin(MapShare *share, MPI_Comm comm);
+PETSC_INTERN PetscErrorCode MapShareNext(MapShare *share, PetscInt *k);
+PETSC_INTERN PetscErrorCode MapShareDestroy(MapShare *share);
+
+/* mapchain.c - the k-th point of a chain, without numbers; steps dt on some bodies (borrowed); all points of a chain, row [n_linked], and a
+   point from its own sliding state, row with its place; not collective */
+typedef struct _p_MapMarch *MapMarch;
+PETSC_INTERN void           MapChainPlace(Map map, PetscInt chain, PetscInt k, MapPoint *row);
+PETSC_INTERN PetscErrorCode MapMarchCreate(Map map, MapBodies *bodies, PetscReal dt, MapMarch *march);
+PETSC_INTERN PetscErrorCode MapChain(MapMarch march, PetscInt chain, MapPoint row[]);
+PETSC_INTERN PetscErrorCode MapMarchAlone(MapMarch march, MapPoint *row);
+PETSC_INTERN PetscErrorCode MapMarchDestroy(MapMarch *march);
 
 /* The end of a chain, to be kept or taken up */
 typedef struct {
   const ReducedModel *model;
   ReducedState       *state;
+  uint64_t            sum; /* of its rows */
 } MapKept;
 
 /* mapkeep.c - checksum of the scene; bodies and chains that a killed map goes on with: good is false, and the number of rows 0,
-   where there are none of this scene; takes their files away. Chains are not collective */
+   where there are none of this scene; takes their files away. Chains are not collective; their last row is written, and those
+   before it are there */
 PETSC_INTERN PetscErrorCode MapSumScene(Map map);
 PETSC_INTERN PetscErrorCode MapKeepBodies(Map map, PetscInt line, MapBodies *bodies);
 PETSC_INTERN PetscErrorCode MapResumeBodies(Map map, PetscInt line, MapBodies *bodies, PetscBool *good);
-PETSC_INTERN PetscErrorCode MapKeepChain(Map map, PetscInt chain, PetscInt n_rows, MapPoint row[], const MapKept *kept);
-PETSC_INTERN PetscErrorCode MapResumeChain(Map map, PetscInt chain, PetscInt *n_rows, MapPoint row[],
-                                           const MapKept *kept);
+PETSC_INTERN PetscErrorCode MapKeepChain(Map map, PetscInt chain, PetscInt n_rows, MapPoint row[], MapKept *kept);
+PETSC_INTERN PetscErrorCode MapResumeChain(Map map, PetscInt chain, PetscInt *n_rows, MapPoint row[], MapKept *kept);
 PETSC_INTERN PetscErrorCode MapForget(Map map);
 
 /* mapforce.c - pure: what n forces are like, f <= 0 being none; root of the mean square over n windows, and its relative standard
-   error, as if they were independent; main line of forces dt apart, in records of n, Hz, 0 for none */
+   error, as if they were independent; main line of forces dt apart, in records of n, Hz, NAN for none */
 PETSC_INTERN void      MapForceMeasure(PetscInt n, const PetscReal f[], MapSample *sample);
 PETSC_INTERN PetscReal MapForceLevel(PetscInt n, const MapSample sample[], PetscReal *error);
 PETSC_INTERN PetscReal MapForceLine(PetscInt n_records, PetscInt n, const PetscReal f[], PetscReal dt);
+/* whether n windows end in a vibration that is settled, or steady in the mean (map.h), and its error then */
+PETSC_INTERN PetscBool MapIsSettled(PetscInt n, const MapSample sample[], PetscReal rtol, PetscReal *error);
+PETSC_INTERN PetscBool MapIsSteady(PetscInt n, const MapSample sample[], PetscReal rtol, PetscReal *error);
+
+/* mapverify.c - errors of step and cut-off at some points, into map_errors.csv */
+PETSC_INTERN PetscErrorCode MapVerify(Map map, Results results);
 
 /* mapwrite.c - the tables */
 PETSC_INTERN PetscErrorCode MapTableOpen(Results results, ResultsTable *table);
 PETSC_INTERN PetscErrorCode MapTableAdd(Map map, ResultsTable table, const MapPoint *point);
 PETSC_INTERN PetscErrorCode MapModesOpen(Results results, ResultsTable *table);
 PETSC_INTERN PetscErrorCode MapModesAdd(Map map, ResultsTable table, const MapPoint *point);
+PETSC_INTERN PetscErrorCode MapErrorsOpen(Results results, ResultsTable *table);
+PETSC_INTERN PetscErrorCode MapErrorsAdd(Map map, ResultsTable table, const char run[], const MapPoint *point,
+                                         const MapError *error);

@@ -2,7 +2,8 @@
    What a killed map goes on with, in files of the output folder until it is complete: the reduced bodies, since made anew on
    several ranks they differ by rounding and by signs, and of every chain its rows and the state at the end of the last one. A
    point depends on these alone, so that the map is the same bit by bit, on any number of ranks. Each file begins with the
-   checksum of the scene and ends with that of itself; it gets its name when it is whole.
+   checksum of the scene and ends with that of itself; it gets its name when it is whole. Rows of a chain are added to a
+   file of their own, of which the chain's knows number and checksum.
 */
 #include "mapimpl.h"
 #include <squeal/checksum.h>
@@ -11,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#define KEEP_VERSION  1
+#define KEEP_VERSION  2
 #define KEEP_MAX_ROWS 1000000
 #define N_DIMS        8
 #define N_BODIES      15
@@ -55,7 +56,17 @@ static void KeptName(Map map, const char kind[], PetscInt k, const char ending[]
   (void)snprintf(name, PETSC_MAX_PATH_LEN, "%s/map_restart_%s_%06d%s", map->folder, kind, (int)k, ending);
 }
 
-/* Writes the pieces; a map that cannot is one that begins anew */
+/* A map that cannot keep its points is one that begins anew */
+static PetscErrorCode KeptComplain(Map map, const char name[])
+{
+  PetscFunctionBeginUser;
+  map->restart = PETSC_FALSE;
+  PetscCall(
+    PetscFPrintf(PETSC_COMM_SELF, stderr, "squeal: warning: cannot write '%s'; a killed map will begin anew\n", name));
+  PetscFunctionReturn(0);
+}
+
+/* Writes the pieces */
 static PetscErrorCode KeptWrite(Map map, const char kind[], PetscInt k, PetscInt n, const KeptPiece piece[])
 {
   char     name[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
@@ -79,9 +90,7 @@ static PetscErrorCode KeptWrite(Map map, const char kind[], PetscInt k, PetscInt
   if (good && rename(part, name)) good = 0;
   if (good) PetscFunctionReturn(0);
   (void)unlink(part);
-  map->restart = PETSC_FALSE;
-  PetscCall(
-    PetscFPrintf(PETSC_COMM_SELF, stderr, "squeal: warning: cannot write '%s'; a killed map will begin anew\n", name));
+  PetscCall(KeptComplain(map, name));
   PetscFunctionReturn(0);
 }
 
@@ -124,29 +133,66 @@ static PetscInt KeptState(const ReducedModel *model, ReducedState *s, KeptPiece 
   return k;
 }
 
-PetscErrorCode MapKeepChain(Map map, PetscInt chain, PetscInt n_rows, MapPoint row[], const MapKept *kept)
+/* Puts row k of a chain where it belongs, after those before it */
+static PetscErrorCode KeptAddRow(Map map, PetscInt chain, PetscInt k, const MapPoint *row)
+{
+  char  name[PETSC_MAX_PATH_LEN];
+  FILE *file;
+  int   good;
+
+  PetscFunctionBeginUser;
+  if (!map->restart) PetscFunctionReturn(0);
+  KeptName(map, "rows", chain, "", name);
+  file = fopen(name, k ? "r+b" : "wb");
+  good =
+    file && fseek(file, (long)((size_t)k * sizeof(*row)), SEEK_SET) == 0 && fwrite(row, sizeof(*row), 1, file) == 1;
+  if (file && fclose(file)) good = 0;
+  if (!good) PetscCall(KeptComplain(map, name));
+  PetscFunctionReturn(0);
+}
+
+/* Whether n rows of a chain are there, with that checksum */
+static PetscBool KeptReadRows(Map map, PetscInt chain, PetscInt n, MapPoint row[], uint64_t sum)
+{
+  char     name[PETSC_MAX_PATH_LEN];
+  uint64_t found = CHECKSUM_BEGIN;
+  FILE    *file;
+  int      good;
+
+  KeptName(map, "rows", chain, "", name);
+  file = fopen(name, "rb");
+  good = file && fread(row, sizeof(*row), (size_t)n, file) == (size_t)n;
+  if (file) (void)fclose(file);
+  for (PetscInt k = 0; k < n && good; k++) found = ChecksumBytes(found, &row[k], sizeof(*row));
+  return good && found == sum ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode MapKeepChain(Map map, PetscInt chain, PetscInt n_rows, MapPoint row[], MapKept *kept)
 {
   KeptPiece piece[9] = {
-    {&n_rows, sizeof(n_rows)               },
-    {row,     (size_t)n_rows * sizeof(*row)}
+    {&n_rows,    sizeof(n_rows)   },
+    {&kept->sum, sizeof(kept->sum)}
   };
 
   PetscFunctionBeginUser;
+  PetscCall(KeptAddRow(map, chain, n_rows - 1, &row[n_rows - 1]));
+  kept->sum = ChecksumBytes(n_rows > 1 ? kept->sum : CHECKSUM_BEGIN, &row[n_rows - 1], sizeof(*row));
   PetscCall(KeptWrite(map, "chain", chain, 2 + KeptState(kept->model, kept->state, &piece[2]), piece));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MapResumeChain(Map map, PetscInt chain, PetscInt *n_rows, MapPoint row[], const MapKept *kept)
+PetscErrorCode MapResumeChain(Map map, PetscInt chain, PetscInt *n_rows, MapPoint row[], MapKept *kept)
 {
-  const KeptPiece first    = {n_rows, sizeof(*n_rows)};
-  KeptPiece       piece[9] = {first};
-  PetscBool       good;
+  KeptPiece piece[9] = {
+    {n_rows,     sizeof(*n_rows)  },
+    {&kept->sum, sizeof(kept->sum)}
+  };
+  PetscBool good;
 
   PetscFunctionBeginUser;
-  good = KeptRead(map, "chain", chain, 1, &first, PETSC_FALSE);
-  if (good && (*n_rows < 1 || *n_rows > map->axis[0].n)) good = PETSC_FALSE;
-  if (good) piece[1] = (KeptPiece){row, (size_t)*n_rows * sizeof(*row)};
-  if (good) good = KeptRead(map, "chain", chain, 2 + KeptState(kept->model, kept->state, &piece[2]), piece, PETSC_TRUE);
+  good = KeptRead(map, "chain", chain, 2 + KeptState(kept->model, kept->state, &piece[2]), piece, PETSC_TRUE);
+  if (good && (*n_rows < 1 || *n_rows > map->n_linked)) good = PETSC_FALSE;
+  if (good) good = KeptReadRows(map, chain, *n_rows, row, kept->sum);
   if (!good) *n_rows = 0;
   map->n_resumed += *n_rows;
   PetscFunctionReturn(0);

@@ -2,7 +2,7 @@
    The axes of a map: names of parameters, links, values.
 */
 #include "mapimpl.h"
-#include "sweep/grid.h"
+#include "base/axes.h"
 #include <squeal/options.h>
 #include <string.h>
 
@@ -13,47 +13,19 @@ PetscBool MapAxisIsBody(const MapAxis *axis)
   return PETSC_FALSE;
 }
 
-/* Adds a parameter to an axis */
-static PetscErrorCode MapAxisAdd(Map map, const char option[], const char name[], MapAxis *axis)
+/* A parameter of axis k */
+static PetscErrorCode MapAxisAdd(void *ctx, const char option[], const char name[], PetscInt k, const char **unit)
 {
-  PetscBool same;
+  const Map map  = ctx;
+  MapAxis  *axis = &map->axis[k];
 
   PetscFunctionBeginUser;
   PetscCheck(axis->n_moved < (PetscInt)PETSC_STATIC_ARRAY_LENGTH(axis->moved), map->comm, PETSC_ERR_USER_INPUT,
              "%s names more than %d parameters for one axis", option, (int)PETSC_STATIC_ARRAY_LENGTH(axis->moved));
-  for (PetscInt k = 0; k <= map->n_axes && k < MAP_MAX_AXES; k++)
-    for (PetscInt i = 0; i < map->axis[k].n_moved; i++)
-      PetscCheck(strcmp(map->axis[k].moved[i].name, name), map->comm, PETSC_ERR_USER_INPUT, "%s names '%s' twice",
-                 option, name);
   PetscCall(
     ReducedParameterFind(map->operators, map->p, option, "that a map can vary", name, &axis->moved[axis->n_moved]));
-  PetscCall(PetscStrcmp(axis->moved[0].unit, axis->moved[axis->n_moved].unit, &same));
-  PetscCheck(same, map->comm, PETSC_ERR_USER_INPUT,
-             "%s names %s, of %s, with %s, of %s: what takes the same values has the same unit", option, name,
-             axis->moved[axis->n_moved].unit, axis->moved[0].name, axis->moved[0].unit);
-  axis->n_moved++;
-  PetscFunctionReturn(0);
-}
-
-/* One link: the axis of the named parameter that it holds gets the others */
-static PetscErrorCode MapLinkTake(Map map, const char text[])
-{
-  MapAxis *axis = NULL;
-  char   **names;
-  int      n;
-
-  PetscFunctionBeginUser;
-  PetscCall(ValuesSplit(map->comm, "-map_link", text, ',', &n, &names));
-  PetscCheck(n > 1, map->comm, PETSC_ERR_USER_INPUT,
-             "-map_link '%s' must name two or more parameters, e.g. inner_mu,outer_mu", text);
-  for (PetscInt k = 0; k < map->n_axes; k++)
-    for (int i = 0; i < n; i++)
-      if (!strcmp(names[i], map->axis[k].moved[0].name)) axis = &map->axis[k];
-  PetscCheck(axis, map->comm, PETSC_ERR_USER_INPUT,
-             "-map_link '%s' does nothing: it must hold what is varied, -map_parameter %s", text, map->parameter);
-  for (int i = 0; i < n; i++)
-    if (strcmp(names[i], axis->moved[0].name)) PetscCall(MapAxisAdd(map, "-map_link", names[i], axis));
-  PetscCall(PetscStrToArrayDestroy(n, names));
+  *unit       = axis->moved[axis->n_moved++].unit;
+  map->n_axes = PetscMax(map->n_axes, k + 1);
   PetscFunctionReturn(0);
 }
 
@@ -61,11 +33,14 @@ static PetscErrorCode MapAxisValues(Map map, PetscInt k)
 {
   static const char *const options[] = {"-map_values", "-map_values_2"};
   MapAxis                 *axis      = &map->axis[k];
+  PetscBool                is_log;
 
   PetscFunctionBeginUser;
   PetscCheck(map->values[k][0], map->comm, PETSC_ERR_USER_INPUT, "-map_parameter %s needs %s, e.g. first:last:n",
              axis->moved[0].name, options[k]);
-  PetscCall(GridValuesParse(map->comm, options[k], map->values[k], &axis->n, &axis->value, &axis->ratio));
+  PetscCheck(strlen(map->values[k]) < MAP_MAX_TEXT - 1, map->comm, PETSC_ERR_USER_INPUT,
+             "%s is longer than %d characters; give a range first:last:n", options[k], MAP_MAX_TEXT);
+  PetscCall(ValuesParse(map->comm, options[k], map->values[k], &axis->n, &axis->value, &is_log));
   for (PetscInt i = 0; i < axis->n; i++)
     for (PetscInt j = 0; j < axis->n_moved; j++)
       PetscCall(ReducedParameterCheck(map->operators, options[k], &axis->moved[j], axis->value[i]));
@@ -80,29 +55,23 @@ static PetscErrorCode MapAxisValues(Map map, PetscInt k)
 
 PetscErrorCode MapAxes(Map map)
 {
-  char **names;
-  int    n;
+  const AxesGiven given = {map->comm,
+                           "map",
+                           "varied",
+                           map->parameter,
+                           map->linked ? map->link : NULL,
+                           map->values[1][0] ? PETSC_TRUE : PETSC_FALSE};
 
   PetscFunctionBeginUser;
   PetscCheck(map->parameter[0], map->comm, PETSC_ERR_USER_INPUT,
              "-analysis map needs -map_parameter: one or two options of the scene, e.g. contact_mu,press_force");
-  PetscCall(ValuesSplit(map->comm, "-map_parameter", map->parameter, ',', &n, &names));
-  PetscCheck(n == 1 || n == 2, map->comm, PETSC_ERR_USER_INPUT,
-             "-map_parameter '%s' must name one or two options of the scene, e.g. contact_mu,press_force",
-             map->parameter);
-  PetscCheck((n == 2) == (map->values[1][0] != '\0'), map->comm, PETSC_ERR_USER_INPUT,
-             "-map_values_2 belongs to a second -map_parameter: give both or neither");
-  for (int k = 0; k < n; k++, map->n_axes++) PetscCall(MapAxisAdd(map, "-map_parameter", names[k], &map->axis[k]));
-  PetscCall(PetscStrToArrayDestroy(n, names));
-  if (map->linked) {
-    PetscCall(ValuesSplit(map->comm, "-map_link", map->link, ':', &n, &names));
-    for (int i = 0; i < n; i++) PetscCall(MapLinkTake(map, names[i]));
-    PetscCall(PetscStrToArrayDestroy(n, names));
-  }
+  PetscCall(AxesRead(&given, MapAxisAdd, map));
   PetscCheck(!MapAxisIsBody(&map->axis[0]), map->comm, PETSC_ERR_USER_INPUT,
              "-map_parameter %s: %s changes the bodies, whose motion the next point cannot go on with; name it second, "
              "after one that leaves them as they are, such as contact_mu",
              map->parameter, map->axis[0].moved[0].name);
   for (PetscInt k = 0; k < map->n_axes; k++) PetscCall(MapAxisValues(map, k));
+  PetscCheck(map->n_axes == 1 || map->axis[0].n <= MAP_MAX_POINTS / map->axis[1].n, map->comm, PETSC_ERR_USER_INPUT,
+             "-map_values and -map_values_2 span more than %d points", MAP_MAX_POINTS);
   PetscFunctionReturn(0);
 }

@@ -8,8 +8,11 @@ static const char *const regimes[MAP_N_REGIMES] = {[MAP_STABLE]   = "stable",
                                                    [MAP_STICKING] = "sticking",
                                                    [MAP_CYCLE]    = "cycle",
                                                    [MAP_UNKNOWN]  = "unknown"};
-static const char *const ends[MAP_N_ENDS]       = {
-        [MAP_DECAYS] = "decays", [MAP_SETTLED] = "settled", [MAP_TIME] = "time", [MAP_FAILED] = "failed"};
+static const char *const ends[MAP_N_ENDS]       = {[MAP_DECAYS]  = "decays",
+                                                   [MAP_SETTLED] = "settled",
+                                                   [MAP_STEADY]  = "steady",
+                                                   [MAP_TIME]    = "time",
+                                                   [MAP_FAILED]  = "failed"};
 
 PetscErrorCode MapTableOpen(Results results, ResultsTable *table)
 {
@@ -17,7 +20,8 @@ PetscErrorCode MapTableOpen(Results results, ResultsTable *table)
   PetscCall(ResultsTableOpen(
     results, "map",
     "point,parameter,value,parameter_2,value_2,direction,regime,freq_hz,freq_error_hz,force_rms_n,force_peak_n,"
-    "force_mean_n,open_share,stick_share,growth_rad_s,growth_freq_hz,index,error_estimate,steps,time_s,status",
+    "force_mean_n,open_share,stick_share,growth_rad_s,growth_freq_hz,index,error_estimate,steps,time_s,status,n_"
+    "growing",
     table));
   PetscFunctionReturn(0);
 }
@@ -35,14 +39,14 @@ PetscErrorCode MapTableAdd(Map map, ResultsTable table, const MapPoint *point)
   if (map->n_axes > 1)
     PetscCall(PetscSNPrintf(second, sizeof(second), "%s,%.15g", y->moved[0].name, (double)y->value[r->line]));
   PetscCall(ResultsTableRow(
-    table, "%d,%s,%.15g,%s,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%d,%.15g,%s",
+    table, "%d,%s,%.15g,%s,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%d,%.15g,%s,%d",
     (int)(r->line * x->n + r->place + 1), x->moved[0].name, (double)x->value[r->place], second,
     map->direction == MAP_APART ? "apart"
     : r->down                   ? "down"
                                 : "up",
     regimes[r->regime], (double)r->freq, (double)r->freq_error, (double)r->rms, (double)r->peak, (double)r->mean,
     (double)r->open, (double)r->stick, (double)r->growth, (double)r->mode_freq, (double)r->index, (double)r->error,
-    (int)r->steps, (double)r->time, ends[r->end]));
+    (int)r->steps, (double)r->time, ends[r->end], (int)r->n_growing));
   PetscFunctionReturn(0);
 }
 
@@ -61,10 +65,35 @@ PetscErrorCode MapModesAdd(Map map, ResultsTable table, const MapPoint *r)
   PetscFunctionBeginUser;
   if (r->down && map->direction == MAP_BOTH) PetscFunctionReturn(0);
   if (map->n_axes > 1) PetscCall(PetscSNPrintf(second, sizeof(second), "%.15g", (double)y->value[r->line]));
-  for (PetscInt k = 0; k < r->n_modes; k++)
+  for (PetscInt k = 0; k < PetscMin(r->n_growing, MAP_MAX_MODES); k++)
     PetscCall(ResultsTableRow(table, "%d,%.15g,%s,%.15g,%.15g,%.15g", (int)(r->line * x->n + r->place + 1),
                               (double)x->value[r->place], second, (double)(r->omega[k] / (2 * PETSC_PI)),
                               (double)r->sigma[k], (double)(-r->sigma[k] / hypot(r->sigma[k], r->omega[k]))));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapErrorsOpen(Results results, ResultsTable *table)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ResultsTableOpen(results, "map_errors",
+                             "point,value,value_2,run,regime,freq_hz,force_rms_n,growth_rad_s,growth_freq_hz,"
+                             "freq_error_hz,force_rms_error,growth_error_rad_s,steps,time_s,status",
+                             table));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapErrorsAdd(Map map, ResultsTable table, const char run[], const MapPoint *r, const MapError *error)
+{
+  const MapAxis *x = &map->axis[0], *y = &map->axis[1];
+  char           second[64] = "";
+
+  PetscFunctionBeginUser;
+  if (map->n_axes > 1) PetscCall(PetscSNPrintf(second, sizeof(second), "%.15g", (double)y->value[r->line]));
+  PetscCall(ResultsTableRow(table, "%d,%.15g,%s,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%d,%.15g,%s",
+                            (int)(r->line * x->n + r->place + 1), (double)x->value[r->place], second, run,
+                            regimes[r->regime], (double)r->freq, (double)(r->end == MAP_FAILED ? NAN : r->rms),
+                            (double)r->growth, (double)r->mode_freq, (double)error->freq, (double)error->rms,
+                            (double)error->growth, (int)r->steps, (double)r->time, ends[r->end]));
   PetscFunctionReturn(0);
 }
 
@@ -85,14 +114,23 @@ static PetscBool MapVibrates(const MapPoint *row)
 /* Points that vibrate in one direction and are stable in the other */
 static PetscInt MapCountBistable(Map map)
 {
+  const PetscInt n     = map->axis[0].n;
+  PetscInt       count = 0;
+
+  for (PetscInt i = 0; i < map->n_rows; i++) {
+    const MapPoint *a = &map->row[i], *b = &map->row[i + (i % (2 * n) < n ? n : -n)];
+
+    count += MapVibrates(a) && b->regime == MAP_STABLE;
+  }
+  return count;
+}
+
+/* Points of which map_modes.csv lists some of the growing modes alone */
+static PetscInt MapCountCrowded(Map map)
+{
   PetscInt n = 0;
 
-  for (PetscInt i = 0; i < map->n_rows; i++)
-    for (PetscInt j = 0; j < map->n_rows; j++) {
-      const MapPoint *a = &map->row[i], *b = &map->row[j];
-
-      n += a->line == b->line && a->place == b->place && MapVibrates(a) && b->regime == MAP_STABLE;
-    }
+  for (PetscInt i = 0; i < map->n_rows; i++) n += map->row[i].n_growing > MAP_MAX_MODES;
   return n;
 }
 
@@ -115,7 +153,7 @@ PetscErrorCode MapView(Map map, PetscViewer viewer)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < map->n_rows; i++) {
     steps += (PetscReal)map->row[i].steps;
-    early += map->row[i].end == MAP_DECAYS || map->row[i].end == MAP_SETTLED;
+    early += map->row[i].end < MAP_TIME;
   }
   PetscCall(PetscViewerASCIIPrintf(
     viewer,
@@ -132,10 +170,23 @@ PetscErrorCode MapView(Map map, PetscViewer viewer)
   if (map->direction == MAP_BOTH)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " points vibrate one way and are stable the other\n",
                                      MapCountBistable(map)));
+  if (MapCountCrowded(map))
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer,
+      "  %" PetscInt_FMT " points have more than %d growing modes, of which map_modes.csv lists the fastest %d\n",
+      MapCountCrowded(map), MAP_MAX_MODES, MAP_MAX_MODES));
   PetscCall(PetscViewerASCIIPrintf(viewer,
                                    "  %" PetscInt_FMT " transients ended before their time, their regime known; %.0f "
                                    "steps, %.3g s; %" PetscInt_FMT " reductions of the bodies, %.3g s\n",
                                    early, (double)steps, (double)map->seconds[1], map->n_reductions,
                                    (double)map->seconds[0]));
+  for (int k = 0; k < 2 && map->n_verify; k++)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer,
+      "  %s at %" PetscInt_FMT
+      " points: force_rms_n off by %.2g %% at most, freq_hz by %.2g, growth_rad_s by %.2g; %" PetscInt_FMT
+      " of another regime\n",
+      k ? "1.5 times the cut-off" : "half the step", map->n_verify, 100 * (double)map->error[k].rms,
+      (double)map->error[k].freq, (double)map->error[k].growth, map->error[k].regime));
   PetscFunctionReturn(0);
 }

@@ -66,7 +66,8 @@ static PetscErrorCode ReducedCheckCutoff(ReducedRun r, const PencilMatrices *pen
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPI_MAX, r->comm));
   least = PetscSqrtReal(CUTOFF_NOISE * PETSC_MACHINE_EPSILON * largest) / (2 * PETSC_PI);
   PetscCheck(r->cutoff >= least, r->comm, PETSC_ERR_USER_INPUT,
-             "-dynamics_cutoff %.6g Hz is rounding of the stiffness: on this mesh it must be %.3g Hz at least",
+             "-dynamics_cutoff %.6g Hz is too low: on this mesh frequencies below %.3g Hz are rounding; take one above "
+             "the highest frequency of interest",
              (double)r->cutoff, (double)least);
   PetscFunctionReturn(0);
 }

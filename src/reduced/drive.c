@@ -38,6 +38,19 @@ static PetscErrorCode DriveKick(ReducedRun r, PetscBool *hit)
   PetscFunctionReturn(0);
 }
 
+/* One that acts in some step before t_n has acted */
+PetscErrorCode ReducedReportHits(ReducedRun r)
+{
+  PetscReal *time;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(r->n_hits, &time));
+  for (PetscInt i = 0; i < r->n_hits; i++) time[i] = r->hit_due[i] < r->state.time ? r->hit_due[i] : -1;
+  PetscCall(DynamicsWriteImpulses(r->dynamics, r->sums, time));
+  PetscCall(PetscFree(time));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ReducedGetWay(ReducedRun r, PetscInt i, PetscReal *way)
 {
   const PetscReal t[2] = {r->state.time, r->state.time + r->dt};

@@ -162,6 +162,7 @@ PetscErrorCode ReducedTakePairs(ReducedRun r, PetscBool stepped)
   for (PetscInt i = 0; i < r->model.n_pairs; i++) PairSetState(r, i);
   for (PetscInt k = 0; k < r->run.n_interfaces; k++) {
     SumsTake(r, k, &r->sums[k]);
+    if (stepped) ContactSumsCompare(&r->sums[k]);
     r->sums[k].sweeps += stepped ? (PetscReal)r->report.its : 0;
     r->sums[k].steps += stepped ? 1 : 0;
   }

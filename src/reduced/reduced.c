@@ -102,6 +102,7 @@ PetscErrorCode ReducedPrepare(ReducedRun r, Results results)
   PetscCall(ReducedChooseCutoff(r));
   PetscCall(DynamicsGetRun(r->dynamics, results, BY, 1 / (2 * PETSC_PI * r->cutoff), &r->run));
   PetscCall(ReducedRefuse(r));
+  PetscCall(ExternalCountHits(r->run.external, &r->n_hits));
   r->dt = r->run.dt;
   PetscCheck(
     r->dt * r->cutoff <= 1 + 1e-9, r->comm, PETSC_ERR_USER_INPUT,
@@ -168,9 +169,9 @@ PetscErrorCode ReducedGetRun(ReducedRun r, PetscReal *cutoff, PetscReal *dt, Pet
 PetscErrorCode ReducedGetHits(ReducedRun r, PetscInt *n, const PetscReal **hits, const PetscReal **due)
 {
   PetscFunctionBeginUser;
-  *n    = r->n_hits;
-  *hits = r->hits;
-  *due  = r->hit_due;
+  *n = r->n_hits;
+  if (hits) *hits = r->hits;
+  if (due) *due = r->hit_due;
   PetscFunctionReturn(0);
 }
 
@@ -217,6 +218,7 @@ static PetscErrorCode ReducedAdvance(ReducedRun r)
   PetscFunctionBeginUser;
   PetscCall(ReducedLookBegin(r));
   PetscCall(ReducedDriveSet(r, &drive));
+  for (PetscInt i = 0; i < r->run.n_interfaces && drive.kick; i++) ContactSumsMark(&r->sums[i]);
   PetscCall(ReducedStep(r->stepper, &drive, &r->state, &r->report));
   ReducedSetShown(r, PETSC_FALSE);
   r->step++;
@@ -279,7 +281,10 @@ PetscErrorCode ReducedIntegrate(ReducedRun r, Results results)
   PetscCall(PetscTime(&end));
   r->setup_seconds = ready - begin;
   r->seconds       = end - ready;
-  if (!stop || r->run.checkpoint_interval == 0) PetscCall(HistoryClose(r->run.history));
+  if (!stop || r->run.checkpoint_interval == 0) {
+    PetscCall(HistoryClose(r->run.history));
+    PetscCall(ReducedReportHits(r));
+  }
   if (!stop && r->verify) PetscCall(ReducedVerify(r));
   PetscCheck(!stop, r->comm, PETSC_ERR_USER, "stopped by a signal after step %" PetscInt_FMT ", %.6g s; %s", r->step,
              (double)r->state.time, r->run.checkpoint_interval > 0 ? STOP_GOES_ON : STOP_ROWS STOP_GOES_ON);

@@ -150,7 +150,9 @@ PETSC_INTERN PetscErrorCode ReducedApplyResidual(ReducedRun reduced, Mat B, Mat 
 PETSC_INTERN PetscErrorCode ReducedSetPairs(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedTakePairs(ReducedRun reduced, PetscBool stepped);
 
-/* drive.c - what acts in the step from t_n; way (m) that pair i slides in it as prescribed; factors [n_loads] of the loads at t */
+/* drive.c - impulses.csv of what has acted until t_n; what acts in the step from t_n; way (m) that pair i slides in
+   it as prescribed; factors [n_loads] of the loads at t */
+PETSC_INTERN PetscErrorCode ReducedReportHits(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedGetWay(ReducedRun reduced, PetscInt i, PetscReal *way);
 PETSC_INTERN PetscErrorCode ReducedDriveCreate(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedDriveSet(ReducedRun reduced, ReducedDrive *drive);

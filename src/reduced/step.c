@@ -42,7 +42,7 @@ PetscErrorCode ReducedReportCreate(const ReducedModel *model, ReducedReport *rep
   const PetscInt n = model->n_pairs;
 
   PetscFunctionBeginUser;
-  *report = (ReducedReport){.external = 0};
+  *report = (ReducedReport){.works = PETSC_TRUE};
   PetscCall(PetscCalloc4(n, &report->contact, n, &report->friction, n, &report->heat, 2 * n, &report->slip));
   PetscFunctionReturn(0);
 }
@@ -117,18 +117,28 @@ void ReducedEnergy(const ReducedModel *model, const ReducedState *s, PetscReal *
     for (PetscInt i = 0; i < n && s->p[j] != 0; i++) *strain += s->q[i] * model->W[i + model->n_ports * j] * s->p[j];
 }
 
-/* next = E z + F g with g = P mean - Cm dq / dt */
+/* next = E z + F g with g = P mean */
 static void StepperRespond(ReducedStepper s)
 {
   const ReducedModel *model = s->model;
-  const PetscInt      m = model->m, n = 3 * model->n_pairs;
+  const PetscInt      m     = model->m;
 
   for (PetscInt k = 0; k < m; k++) s->x[2 * m + k] = 0;
   ReducedBlockTimes(&(DenseBlock){model->P, m, model->n_ports, m}, PETSC_FALSE, 1, s->mean, &s->x[2 * m]);
-  if (s->HW) ReducedBlockTimes(&(DenseBlock){model->Cm, m, n, m}, PETSC_FALSE, -1 / s->dt, s->dq, &s->x[2 * m]);
   for (PetscInt i = 0; i < 2 * m; i++) s->next[i] = 0;
   ReducedBlockTimes(&(DenseBlock){s->E, 2 * m, 2 * m, 2 * m}, PETSC_FALSE, 1, s->x, s->next);
   ReducedBlockTimes(&(DenseBlock){s->F, 2 * m, m, 2 * m}, PETSC_FALSE, 1, &s->x[2 * m], s->next);
+}
+
+/* Adds -Cm dq / dt to g, and what it changes to next */
+static void StepperDrag(ReducedStepper s)
+{
+  const PetscInt m = s->model->m, n = 3 * s->model->n_pairs;
+
+  for (PetscInt k = 0; k < m; k++) s->product[k] = 0;
+  ReducedBlockTimes(&(DenseBlock){s->model->Cm, m, n, m}, PETSC_FALSE, -1 / s->dt, s->dq, s->product);
+  ReducedBlockTimes(&(DenseBlock){s->F, 2 * m, m, 2 * m}, PETSC_FALSE, 1, s->product, s->next);
+  for (PetscInt k = 0; k < m; k++) s->x[2 * m + k] += s->product[k];
 }
 
 /* q_{n+1} and dq = q_{n+1} - q_n with lambda_{n+1} in the mean forces: W mean(q) + Cx dq / dt + Cm'(eta_{n+1} - eta_n) / dt = W
@@ -149,7 +159,7 @@ static void StepperSolveResidual(ReducedStepper s, const ReducedState *state)
   ReducedBlockTimes(&(DenseBlock){s->HW, n, n, n}, PETSC_FALSE, 1, s->r, s->dq);
   ReducedBlockTimes(&(DenseBlock){s->HC, n, m, n}, PETSC_FALSE, 1, s->product, s->dq);
   for (PetscInt i = 0; i < n; i++) s->q[i] += s->dq[i];
-  StepperRespond(s);
+  StepperDrag(s);
 }
 
 /* Mean forces of the step, with lambda_{n+1} or without */
@@ -235,10 +245,11 @@ static void StepperAccount(ReducedStepper s, const ReducedDrive *drive, ReducedS
       dy[d]               = y - state->y[3 * i + d];
       state->y[3 * i + d] = y;
     }
+    for (int d = 0; d < 2; d++) report->slip[2 * i + d] = s->slip[3 * i + 1 + d];
+    if (!report->works) continue;
     report->contact[i]  = mean[0] * dy[0];
     report->friction[i] = mean[1] * dy[1] + mean[2] * dy[2];
     report->heat[i]     = -report->friction[i] - mean[1] * drive->sliding[i];
-    for (int d = 0; d < 2; d++) report->slip[2 * i + d] = s->slip[3 * i + 1 + d];
   }
 }
 
@@ -307,8 +318,8 @@ PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedS
   StepperSetMean(s, state, PETSC_FALSE);
   StepperSolveResidual(s, state);
   StepperAccount(s, drive, state, report);
-  report->external += StepperLoadWork(s, state);
-  report->damping = -StepperDamping(s);
+  if (report->works) report->external += StepperLoadWork(s, state);
+  if (report->works) report->damping = -StepperDamping(s);
   PetscCall(PetscArraycpy(state->q, s->q, n));
   PetscCall(PetscArraycpy(state->eta, s->next, m));
   PetscCall(PetscArraycpy(state->rate, &s->next[m], m));

@@ -5,7 +5,7 @@
       d lambda / d p = sum_i d lambda / d p_i    over the parameters i of the link.
 */
 #include "sweepimpl.h"
-#include <squeal/options.h>
+#include "base/axes.h"
 #include <string.h>
 
 #define MAX_POINTS 1000000 /* of a grid */
@@ -55,78 +55,22 @@ static PetscErrorCode AxisCheck(Sweep sweep, const char name[])
   PetscFunctionReturn(0);
 }
 
-/* Adds a parameter of a link to the axis of the swept one */
-static PetscErrorCode LinkAdd(Sweep sweep, PetscInt axis, PetscInt index)
+/* A parameter of axis k */
+static PetscErrorCode AxisAdd(void *ctx, const char option[], const char name[], PetscInt k, const char **unit)
 {
-  SweepGrid                *grid = &sweep->grid;
-  const OperatorsParameter *list, *swept, *added;
-  PetscInt                  n;
-  PetscBool                 same;
+  const Sweep               sweep = ctx;
+  SweepGrid                *grid  = &sweep->grid;
+  const OperatorsParameter *list;
+  PetscInt                  n, index;
 
   PetscFunctionBeginUser;
+  PetscCall(GridParameterFind(sweep->comm, sweep->operators, option, name, &index));
+  PetscCall(AxisCheck(sweep, name));
   PetscCall(OperatorsGetParameters(sweep->operators, &n, &list));
-  swept = &list[grid->parameter[axis][0]];
-  added = &list[index];
-  PetscCall(PetscStrcmp(swept->unit, added->unit, &same));
-  PetscCheck(same, sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_link names %s, of %s, with %s, of %s: what takes the same values has the same unit", added->name,
-             added->unit[0] ? added->unit : "no unit", swept->name, swept->unit[0] ? swept->unit : "no unit");
-  PetscCheck(GridAxisOf(grid, index) < 0, sweep->comm, PETSC_ERR_USER_INPUT, "-sweep_link '%s' names '%s' twice",
-             sweep->link, added->name);
-  PetscCall(AxisCheck(sweep, added->name));
-  PetscCall(PetscRealloc((size_t)(grid->n_moved[axis] + 1) * sizeof(PetscInt), &grid->parameter[axis]));
-  grid->parameter[axis][grid->n_moved[axis]++] = index;
-  PetscFunctionReturn(0);
-}
-
-/* Takes one link; seen [n_axes] = whether the swept parameter was already in a link */
-static PetscErrorCode LinkTake(Sweep sweep, const char text[], PetscBool seen[])
-{
-  SweepGrid *grid = &sweep->grid;
-  PetscInt  *index, axis = -1;
-  char     **names;
-  int        n;
-
-  PetscFunctionBeginUser;
-  PetscCall(ValuesSplit(sweep->comm, "-sweep_link", text, ',', &n, &names));
-  PetscCheck(n > 1, sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_link '%s' must name two or more parameters, e.g. inner_mu,outer_mu", text);
-  PetscCall(PetscMalloc1(n, &index));
-  for (int i = 0; i < n; i++) {
-    PetscCall(GridParameterFind(sweep->comm, sweep->operators, "-sweep_link", names[i], &index[i]));
-    for (PetscInt k = 0; k < grid->n_axes; k++) {
-      if (index[i] != grid->parameter[k][0]) continue;
-      PetscCheck(axis < 0 || axis == k, sweep->comm, PETSC_ERR_USER_INPUT,
-                 "-sweep_link '%s' holds both parameters that are swept; it must hold one of them", text);
-      PetscCheck(!seen[k], sweep->comm, PETSC_ERR_USER_INPUT, "-sweep_link '%s' names '%s' twice", sweep->link,
-                 names[i]);
-      axis    = k;
-      seen[k] = PETSC_TRUE;
-    }
-  }
-  PetscCheck(axis >= 0, sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_link '%s' does nothing: it must hold what is swept, -sweep_parameter %s", text, sweep->parameter);
-  for (int i = 0; i < n; i++)
-    if (index[i] != grid->parameter[axis][0]) PetscCall(LinkAdd(sweep, axis, index[i]));
-  PetscCall(PetscFree(index));
-  PetscCall(PetscStrToArrayDestroy(n, names));
-  PetscFunctionReturn(0);
-}
-
-/* The parameters that move with the swept ones */
-static PetscErrorCode LinksTake(Sweep sweep)
-{
-  PetscBool seen[GRID_MAX_AXES] = {PETSC_FALSE};
-  char    **links;
-  int       n;
-
-  PetscFunctionBeginUser;
-  if (!sweep->linked) PetscFunctionReturn(0);
-  PetscCall(ValuesSplit(sweep->comm, "-sweep_link", sweep->link, ':', &n, &links));
-  PetscCheck(n > 0, sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_link '%s' must name two or more parameters, e.g. inner_mu,outer_mu", sweep->link);
-  for (int i = 0; i < n; i++) PetscCall(LinkTake(sweep, links[i], seen));
-  PetscCall(PetscStrToArrayDestroy(n, links));
+  *unit = list[index].unit;
+  PetscCall(PetscRealloc((size_t)(grid->n_moved[k] + 1) * sizeof(PetscInt), &grid->parameter[k]));
+  grid->parameter[k][grid->n_moved[k]++] = index;
+  grid->n_axes                           = PetscMax(grid->n_axes, k + 1);
   PetscFunctionReturn(0);
 }
 
@@ -148,33 +92,21 @@ static PetscErrorCode AxisValues(Sweep sweep, PetscInt k)
 
 PetscErrorCode SweepAxes(Sweep sweep)
 {
-  SweepGrid *grid = &sweep->grid;
-  char     **names;
-  int        n_names;
+  SweepGrid      *grid  = &sweep->grid;
+  const AxesGiven given = {sweep->comm,
+                           "sweep",
+                           "swept",
+                           sweep->parameter,
+                           sweep->linked ? sweep->link : NULL,
+                           sweep->values[1][0] ? PETSC_TRUE : PETSC_FALSE};
 
   PetscFunctionBeginUser;
-  PetscCall(ValuesSplit(sweep->comm, "-sweep_parameter", sweep->parameter, ',', &n_names, &names));
-  PetscCheck(n_names == 1 || n_names == 2, sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_parameter '%s' must name one or two options of the scene, e.g. pad_young", sweep->parameter);
-  PetscCheck((n_names == 2) == (sweep->values[1][0] != '\0'), sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_values_2 belongs to a second -sweep_parameter: give both or neither");
-  for (; grid->n_axes < n_names; grid->n_axes++) {
-    const PetscInt k = grid->n_axes;
-
-    PetscCall(PetscMalloc1(1, &grid->parameter[k]));
-    PetscCall(GridParameterFind(sweep->comm, sweep->operators, "-sweep_parameter", names[k], grid->parameter[k]));
-    PetscCall(AxisCheck(sweep, names[k]));
-    PetscCheck(GridAxisOf(grid, grid->parameter[k][0]) < 0, sweep->comm, PETSC_ERR_USER_INPUT,
-               "-sweep_parameter names '%s' twice", names[k]);
-    grid->n_moved[k] = 1;
-  }
-  PetscCall(PetscStrToArrayDestroy(n_names, names));
-  PetscCall(LinksTake(sweep));
+  PetscCall(AxesRead(&given, AxisAdd, sweep));
   for (PetscInt k = 0; k < grid->n_axes; k++)
     PetscCall(OperatorsCheckMoved(sweep->operators, "-sweep_parameter", grid->n_moved[k], grid->parameter[k]));
   if (sweep->sensitivities) PetscCall(OperatorsCheckMoved(sweep->operators, "-sweep_sensitivities", 0, NULL));
   for (PetscInt k = 0; k < grid->n_axes; k++) PetscCall(AxisValues(sweep, k));
-  PetscCheck(n_names == 1 || grid->n[0] <= MAX_POINTS / grid->n[1], sweep->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(grid->n_axes == 1 || grid->n[0] <= MAX_POINTS / grid->n[1], sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_values and -sweep_values_2 span more than %d points", MAX_POINTS);
   PetscCheck(!sweep->n_verify || grid->n[0] > 1, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_verify looks between the -sweep_values: give two or more");

@@ -18,7 +18,7 @@ from runs import SOURCE, arrays, fail
 OPTIONS = """-rig_disc_elements 8,24,1 -rig_pad_elements 4,4,2 -rig_beam_elements 5 -press_ramp 2e-4 -tap_time 3e-4 -contact_speed 0.02
              -dynamics_cutoff 20e3 -dynamics_compare false -dynamics_live 0 -dynamics_checkpoint_interval 37
              -dynamics_pairs_interval 1e-4 -dynamics_snapshot_interval 5e-4""".split()
-TABLES = ("transient.csv", "contact_pairs.csv")
+TABLES = ("transient.csv", "contact_pairs.csv", "impulses.csv")
 
 
 def main():

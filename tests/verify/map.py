@@ -5,7 +5,8 @@
                                                           and frequency by 2e-4
     verify/map.py level TRANSIENT MAP MU FORCE PART       rms of the normal force in the last half of a transient beside it
     verify/map.py regimes MAP                             upwards stable where no mode grows and a vibration where one does by
-                                                          100 1/s; downwards a vibration at some point without growing mode
+                                                          100 1/s; downwards a vibration at some point without growing
+                                                          mode; a frequency where there is one
     verify/map.py regime MAP REGIME                       all rows are of it
     verify/map.py failed MAP                              all rows have failed, and no number of a vibration is told
 """
@@ -53,7 +54,9 @@ def regimes(folder):
     lingers = [row for row in table if row["direction"] == "down" and float(row["growth_rad_s"]) < 0
                and row["regime"] == "cycle"]
     print(f"{len(faults)} of {len(up)} regimes upwards against the growth; {len(lingers)} points squeal downwards alone")
-    return bool(faults) or not lingers or len(up) * 2 != len(table)
+    heard = [row for row in table if (row["regime"] == "stable") == (row["freq_hz"] != "nan")]
+    print(f"{len(heard)} rows have a frequency without a vibration, or none with one")
+    return bool(faults) or bool(heard) or not lingers or len(up) * 2 != len(table)
 
 
 def regime(folder, name):

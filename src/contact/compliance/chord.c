@@ -18,7 +18,7 @@
 #include "complianceimpl.h"
 
 #define CHORD_MAX_IT   40
-#define CHORD_BEYOND   1e-3  /* of the tolerance: what is solved is made this much better where it costs little */
+#define CHORD_BEYOND   1e9   /* times the square of the tolerance: what is solved is made as good, 1e-15 for 1e-12 */
 #define CHORD_NONE     -2    /* pair of the worst residual where no iterate solves the laws */
 #define CHORD_RENEWALS 4     /* of the factors in a step */
 #define CHORD_SLOW     0.5   /* residual over the one before, of an iteration without change of status */
@@ -305,7 +305,8 @@ static PetscErrorCode ChordKeep(ContactCompliance c, const ComplianceMiss *miss,
     PetscCall(PetscArraycpy(c->best, c->l, 3 * c->n));
   }
   if (best->worst == CHORD_NONE) PetscFunctionReturn(0);
-  if (best->largest <= CHORD_BEYOND * c->rtol * best->scale + best->noise || !(miss->norm < CHORD_SLOW * last))
+  if (best->largest <= PetscMin(c->rtol, CHORD_BEYOND * c->rtol * c->rtol) * best->scale + best->noise ||
+      !(miss->norm < CHORD_SLOW * last))
     *done = PETSC_TRUE;
   PetscFunctionReturn(0);
 }

@@ -15,7 +15,7 @@ typedef struct {
   PetscInt  worst;   /* pair of `largest` */
 } ComplianceMiss;
 
-#define COMPLIANCE_MIXED 8 /* differences of iterates that are combined */
+#define COMPLIANCE_MIXED 12 /* differences of iterates that are combined */
 
 /* Factors of a base set of unknowns (chord.c); indices are rows of W */
 typedef struct {
@@ -32,8 +32,7 @@ typedef struct {
   PetscReal    *b, *s;             /* work: [3 n] */
   PetscInt      n_mixed;           /* differences kept in this step, -1: no iterate before */
   PetscReal    *x, *f;             /* iterate before, and how G changes it, [3 n] */
-  PetscReal    *change[COMPLIANCE_MIXED], *fall[COMPLIANCE_MIXED]; /* differences of x, f */
-  PetscReal    *basis[COMPLIANCE_MIXED], *step[COMPLIANCE_MIXED];  /* work */
+  PetscReal    *basis, *step;      /* differences of f, orthonormal, and of x + f, [COMPLIANCE_MIXED][3 n] */
 } ComplianceChord;
 
 struct _p_ContactCompliance {

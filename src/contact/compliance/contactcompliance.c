@@ -85,9 +85,7 @@ PetscErrorCode ContactComplianceCreate(PetscInt n, const PetscReal W[], ContactC
                          &c->chord.border, 3 * n, &c->chord.want, 3 * n, &c->chord.next, 3 * n, &c->chord.b));
   PetscCall(PetscCalloc2(2 * n, &c->chord.turn, 3 * n, &c->chord.s));
   PetscCall(PetscCalloc2(3 * n, &c->chord.x, 3 * n, &c->chord.f));
-  for (PetscInt k = 0; k < COMPLIANCE_MIXED; k++)
-    PetscCall(PetscCalloc4(3 * n, &c->chord.change[k], 3 * n, &c->chord.fall[k], 3 * n, &c->chord.basis[k], 3 * n,
-                           &c->chord.step[k]));
+  PetscCall(PetscMalloc2(3 * n * COMPLIANCE_MIXED, &c->chord.basis, 3 * n * COMPLIANCE_MIXED, &c->chord.step));
   StiffnessSet(c);
   WeightSet(c);
   c->totals   = (ComplianceReport){.converged = PETSC_TRUE, .worst = -1};
@@ -253,8 +251,7 @@ PetscErrorCode ContactComplianceDestroy(ContactCompliance *compliance)
                        c->chord.b));
   PetscCall(PetscFree2(c->chord.turn, c->chord.s));
   PetscCall(PetscFree2(c->chord.x, c->chord.f));
-  for (PetscInt k = 0; k < COMPLIANCE_MIXED; k++)
-    PetscCall(PetscFree4(c->chord.change[k], c->chord.fall[k], c->chord.basis[k], c->chord.step[k]));
+  PetscCall(PetscFree2(c->chord.basis, c->chord.step));
   PetscCall(PetscFree5(c->chord.LU, c->chord.V, c->chord.S, c->chord.pivot, c->chord.small));
   PetscCall(PetscFree(*compliance));
   PetscFunctionReturn(0);

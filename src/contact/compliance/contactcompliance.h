@@ -17,7 +17,8 @@
    Residual: natural map per pair in metres, forces divided by the pair's stiffness kappa = 3 / trace W_pp,
       |l_n - max(0, l_n - r_n)|,  |p - Proj(p + d)| on the disc of radius mu l_n,     l = lambda / kappa,  p = -l_T,
    relative to the largest l; what rounding of q and W lambda leaves is never asked for. It hardly feels the direction of
-   a slip that is short beside l: Newton's method goes on until friction is along slip to 1e-10 of the largest force.
+   a slip that is short beside l: Newton's method goes on until friction is along slip to 100 tolerances, 1e-10 of the largest
+   force for 1e-12.
 
    Methods, each where the one before does not end: Newton on the statuses of the pairs with factors of the steps before,
    bordered by what has changed (chord.c); semismooth Newton (newton.c); the same with a line search on the natural map;

@@ -11,7 +11,7 @@
 #define NEWTON_MEMORY   5       /* norms that a damped step is compared with */
 #define NEWTON_ENOUGH   1e-4    /* of the decrease that a step promises */
 #define NEWTON_REFINE   3       /* steps at most on what is solved, */
-#define NEWTON_ALONG    1e-10   /* until friction is along slip to this part of the largest force */
+#define NEWTON_ALONG    100     /* tolerances: until friction is along slip to this part of the largest force */
 #define NEWTON_SHORTEST 1. / 64 /* of a step */
 
 /* The matrix at the present laws, factored; shifted where it is singular */
@@ -111,7 +111,7 @@ PetscErrorCode ComplianceRefine(ContactCompliance c, ComplianceMiss *miss)
     const ComplianceMiss last = *miss;
     PetscBool            singular;
 
-    if (NewtonDirection(c, miss) <= NEWTON_ALONG) break;
+    if (NewtonDirection(c, miss) <= NEWTON_ALONG * c->rtol) break;
     PetscCall(PetscArraycpy(c->best, c->l, N));
     PetscCall(ComplianceStep(c, &singular));
     ComplianceMeasure(c, miss);

@@ -209,13 +209,8 @@ PetscErrorCode ContactProjectorGetStates(ContactProjector p, PetscInt *n, const 
 PetscErrorCode ContactProjectorMark(ContactProjector p)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < p->n_interfaces; i++) {
-    ContactSums *s = &p->sums[i];
-
-    if (s->marked > 0 || s->steps == 0) continue;
-    s->marked = s->steps;
-    PetscCall(PetscArraycpy(s->mark, s->n, CONTACT_N_STATUS));
-  }
+  for (PetscInt i = 0; i < p->n_interfaces; i++)
+    if (p->sums[i].steps > 0) ContactSumsMark(&p->sums[i]);
   PetscFunctionReturn(0);
 }
 

@@ -113,8 +113,15 @@ static void SumsBegin(ContactSums *sums, const ProjectorConvergence *convergence
   sums->steps++;
 }
 
+void ContactSumsMark(ContactSums *sums)
+{
+  if (sums->marked > 0) return;
+  sums->marked = PetscMax(sums->steps, PETSC_MACHINE_EPSILON); /* 0 is never */
+  for (int i = 0; i < CONTACT_N_STATUS; i++) sums->mark[i] = sums->n[i];
+}
+
 /* Pairs that are open or stick now and were not at the mark, or the other way round, by their numbers */
-static void SumsCompare(ContactSums *sums)
+void ContactSumsCompare(ContactSums *sums)
 {
   PetscReal most = 0;
 
@@ -151,7 +158,7 @@ VERSIONS void PairsRecord(ContactProjector p, const ContactStep *step, const Pro
   }
   for (PetscInt i = 0; i < p->n_interfaces; i++) {
     p->sums[i].friction = FrictionAlong(&directions[i]);
-    SumsCompare(&p->sums[i]);
+    ContactSumsCompare(&p->sums[i]);
   }
 }
 

@@ -86,7 +86,8 @@ PETSC_INTERN PetscErrorCode ExternalFinish(External external, PetscReal dt, cons
 PETSC_INTERN PetscErrorCode ExternalGetResultant(External external, PetscReal time, PetscReal force[3],
                                                  PetscBool *known);
 
-/* A blow: place of its node, m; momentum, N s; the time t_n of the step in which it acted, s, 0 before that */
+/* A blow: place of its node, m; momentum, N s; the time t_n of the step in which it acted, s, 0 before
+   that and without ExternalSetUp() */
 typedef struct {
   const char *name;
   PetscReal   x[3], impulse[3], time;

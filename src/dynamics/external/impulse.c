@@ -156,7 +156,7 @@ PetscErrorCode ExternalGetHit(External external, PetscInt i, ExternalHit *hit)
   const Impulse *from = &external->impulses[i];
 
   PetscFunctionBeginUser;
-  *hit = (ExternalHit){.name = from->name, .time = from->last[1]};
+  *hit = (ExternalHit){.name = from->name, .time = from->last ? from->last[1] : 0};
   PetscCall(PetscArraycpy(hit->x, from->x, 3));
   PetscCall(PetscArraycpy(hit->impulse, from->impulse, 3));
   PetscFunctionReturn(0);

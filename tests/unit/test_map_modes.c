@@ -1,0 +1,121 @@
+/*
+   Unit test of map/mapmodes: what eigenvalues about sliding say of a point of a map, and of map/mapforce: its main line, and
+   when a vibration has settled.
+
+   References: two modes of 1 and 2 rad/s and one pair that slides, of which the forces act on the first mode alone, opening and
+   slipping by 1 per unit of it, compliance 1: K = diag(1 + 1 - mu, 4), so that with mu = 5 lambda = +- sqrt 3 and +- 2 i, by hand;
+   lists of eigenvalues made up; a cosine of known frequency.
+*/
+#include "check.h"
+#include "map/mapimpl.h"
+#include "petscmain.h"
+
+/* Breaks when: divergence is not growth, or an oscillation beside it hides it */
+static PetscErrorCode TestDivergence(int *failed)
+{
+  PetscReal       omega2[2] = {1, 4}, P[6] = {1, 0, 1, 0, 0, 0}, W[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  PetscReal       gap[1] = {0}, mu[1] = {5}, slope[1] = {0}, speed[1] = {1}, sigma[4], omega[4];
+  const PetscBool closed[1] = {PETSC_TRUE};
+  ReducedModel    model     = {.m       = 2,
+                               .n_pairs = 1,
+                               .n_ports = 3,
+                               .omega2  = omega2,
+                               .P       = P,
+                               .W       = W,
+                               .gap     = gap,
+                               .mu      = mu,
+                               .slope   = slope,
+                               .speed   = speed};
+  MapFastest      fastest;
+  MapPoint        row = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedLinearise(&model, closed, sigma, omega));
+  MapModesJudge(4, sigma, omega, &fastest);
+  MapModesTake(4, sigma, omega, &row);
+  *failed += CheckClose("divergence: growth", fastest.growth, sqrt(3), 1e-14);
+  *failed += CheckClose("its frequency", fastest.freq, 0, 0);
+  *failed += CheckClose("index: growth over |lambda|", fastest.index, 1, 1e-15);
+  *failed += CheckTrue("one mode grows", row.n_growing == 1 && row.omega[0] == 0, row.n_growing);
+  mu[0] = 1.5;
+  PetscCall(ReducedLinearise(&model, closed, sigma, omega));
+  MapModesJudge(4, sigma, omega, &fastest);
+  *failed += CheckClose("without it nothing grows", fastest.growth, 0, 1e-14);
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: a rigid mode in rounding counts as divergence, an overdamped one as the fastest, or modes beyond those that are
+   listed displace faster ones */
+static int TestLists(void)
+{
+  const PetscReal sigma[] = {1e-6, -3, -50, -50, 20, 20}, omega[] = {0, 0, 1e5, -1e5, 2e4, -2e4};
+  PetscReal       many[2 * (MAP_MAX_MODES + 3)], turns[2 * (MAP_MAX_MODES + 3)];
+  const PetscInt  n_most = MAP_MAX_MODES + 3;
+  MapFastest      fastest;
+  MapPoint        row    = {0};
+  int             failed = 0, ordered = 1;
+
+  MapModesJudge(6, sigma, omega, &fastest);
+  failed += CheckClose("fastest beside rigid and overdamped modes", fastest.growth, 20, 0);
+  MapModesJudge(4, sigma, omega, &fastest);
+  failed += CheckClose("stable beside them", fastest.growth, -50, 0);
+  for (PetscInt k = 0; k < n_most; k++) {
+    many[2 * k] = many[2 * k + 1] = 1 + (PetscReal)((7 * k) % n_most);
+    turns[2 * k]                  = 1e4;
+    turns[2 * k + 1]              = -1e4;
+  }
+  MapModesTake(2 * n_most, many, turns, &row);
+  for (PetscInt k = 0; k < MAP_MAX_MODES; k++)
+    if (row.sigma[k] != (PetscReal)(n_most - k)) ordered = 0;
+  failed += CheckTrue("all are counted", row.n_growing == n_most, row.n_growing);
+  return failed + CheckTrue("the fastest are listed, in order", ordered, row.sigma[0]);
+}
+
+/* Breaks when: the line is off, or there is one where nothing moves. One line between bins: exact but for its mirror image */
+static int TestLine(void)
+{
+  PetscReal f[1000], still[1000];
+
+  for (int i = 0; i < 1000; i++) {
+    f[i]     = 3 + cos(2 * M_PI * 81.3 * i / 1000.);
+    still[i] = 3;
+  }
+  return CheckClose("main line between bins", MapForceLine(1, 1000, f, 1e-3), 81.3, 1e-4) +
+         CheckTrue("no line where nothing moves", isnan(MapForceLine(1, 1000, still, 1e-3)), 0);
+}
+
+/* Breaks when: what still grows is settled or steady, or what scatters about a level is neither. Windows scatter by +-10 %: the
+   relative standard error of the mean square of n is about 0.2 / sqrt n, of the rms half of that, 0.035 for 8 */
+static int TestEnds(void)
+{
+  MapSample scatter[16], grow[16];
+  PetscReal error = 0;
+  int       failed;
+
+  for (int k = 0; k < 16; k++) {
+    scatter[k] = (MapSample){.rms = 1 + (k % 2 ? 0.1 : -0.1), .changed = PETSC_TRUE};
+    grow[k]    = (MapSample){.rms = exp(0.05 * k), .changed = PETSC_TRUE};
+  }
+  failed = CheckTrue("scatter is not settled", !MapIsSettled(16, scatter, 0.05, &error), error);
+  failed += CheckTrue("but steady", MapIsSteady(16, scatter, 0.05, &error), error);
+  failed += CheckClose("its error", error, 0.1 / sqrt(7), 1e-3);
+  failed += CheckTrue("not to 3 %", !MapIsSteady(16, scatter, 0.03, &error), error);
+  failed += CheckTrue("growth by 5 % a window is not settled", !MapIsSettled(16, grow, 0.05, &error), error);
+  failed += CheckTrue("nor steady", !MapIsSteady(16, grow, 0.05, &error), error);
+  scatter[12].changed = PETSC_FALSE;
+  return failed + CheckTrue("nor is what was linear for a while", !MapIsSteady(16, scatter, 0.05, &error), error);
+}
+
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  PetscFunctionBeginUser;
+  (void)size;
+  PetscCall(TestDivergence(failed));
+  *failed += TestLists() + TestLine() + TestEnds();
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  return PetscMain(argc, argv, Tests);
+}
