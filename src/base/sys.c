@@ -65,6 +65,16 @@ static const char citation[] = "@inproceedings{massi2005,\n  author = {Massi, F.
 static PetscBool  cited      = PETSC_FALSE;
 static PetscBool  traced     = PETSC_FALSE; /* -squeal_traceback */
 
+/* Whether no more memory is to be had. MUMPS says so by -13 and -7, which PETSc passes on as an error of a library where
+   it solves; 3.18 has another code than PETSC_ERR_MEM for its own */
+static PetscBool IsOfMemory(PetscErrorCode code, const char function[], const char message[])
+{
+  if (code == PETSC_ERR_MEM) return PETSC_TRUE;
+  if (function && (strstr(function, "PetscMalloc") || strstr(function, "PetscRealloc"))) return PETSC_TRUE;
+  if (!strstr(message, "MUMPS")) return PETSC_FALSE;
+  return strstr(message, "INFOG(1)=-13") || strstr(message, "INFOG(1)=-7") ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* Keeps the first line of the first message; the codes of the callers above add nothing for a user. The traceback is
    that of PETSC_COMM_SELF, since PETSc aborts the higher ranks of another communicator. */
 static PetscErrorCode KeepError(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
@@ -79,8 +89,7 @@ static PetscErrorCode KeepError(MPI_Comm comm, int line, const char *function, c
   if (type != PETSC_ERROR_INITIAL || kept[0]) return code;
   if (!text || !text[0]) (void)PetscErrorMessage(code, &text, NULL);
   (void)snprintf(kept, MAX_MESSAGE, "%.*s", text ? (int)strcspn(text, "\n") : 13, text ? text : "unknown error");
-  if (code == PETSC_ERR_MEM || (function && (strstr(function, "PetscMalloc") || strstr(function, "PetscRealloc"))))
-    MemoryExplain(kept, MAX_MESSAGE); /* 3.18: other code */
+  if (IsOfMemory(code, function, kept)) MemoryExplain(kept, MAX_MESSAGE);
   if (!OptionsExplainValue(kept, better, sizeof(better)) && better[0]) (void)snprintf(kept, MAX_MESSAGE, "%s", better);
   return code;
 }
