@@ -66,6 +66,8 @@ import tomllib
 from pathlib import Path
 
 from check import Checker, Failure, Line, require
+from forked import run_command
+from served import served_program
 
 SOURCE = Path(__file__).resolve().parent.parent
 FINAL_SUFFIXES = {".csv", ".h5", ".xmf", ".bin", ".info"}
@@ -122,6 +124,7 @@ class Runner:
     def __init__(self, arguments, case, folder, ranks):
         self.arguments, self.case, self.folder, self.ranks = arguments, case, folder, ranks
         self.made = [name for name, run in case["run"].items() if ranks in run.get("ranks", [ranks])]
+        self.served = arguments.served
 
     def output(self, name):
         return self.folder / f"{name}-{self.ranks}"
@@ -139,15 +142,32 @@ class Runner:
 
     def execute(self, name, run):
         command = [self.arguments.launcher, "-n", str(self.ranks), self.arguments.squeal]
-        environment = {key: value for key, value in os.environ.items() if key != "PETSC_OPTIONS"}
-        command += ["-output_dir", str(self.output(name)), "-malloc_dump", "-options_left"]
-        command += self.expand(self.case.get("options", "") + " " + run.get("options", ""))
+        words = ["-output_dir", str(self.output(name)), "-malloc_dump", "-options_left"]
+        words += self.expand(self.case.get("options", "") + " " + run.get("options", ""))
         if "file_limit" in run:
             command = ["prlimit", f"--fsize={run['file_limit']}", *command]
-            environment["OMPI_MCA_btl_sm_segment_size"] = "4194304"  # Open MPI 5 shares memory by files
         self.link(name, run)
-        print("$", shlex.join(map(str, command)), flush=True)
-        process = subprocess.Popen(command, cwd=self.folder, env=environment, text=True,
+        print("$", shlex.join(map(str, [*command, *words])), flush=True)
+        if "file_limit" in run:
+            return self.launch([*command, *words], {"OMPI_MCA_btl_sm_segment_size": "4194304"})  # Open MPI 5 shares memory by files
+        if not self.served:
+            return self.launch([*command, *words], {})
+        return self.fork(words) if self.ranks == 1 else self.join(command, words)
+
+    def fork(self, words):
+        """Runs it on one rank, as a child of a process in which the libraries are loaded, most of what a short run costs."""
+        outcome = self.served.run(self.folder, words)
+        require(outcome.status is not None, f"no end within {self.arguments.timeout:g} s")
+        return outcome.status, outcome.stdout, outcome.stderr
+
+    def join(self, command, words):
+        """Runs it by the launcher, each rank as such a child."""
+        joined = Path(os.environ["SQUEAL_START"]) / "join"
+        return self.launch([*command[:-1], joined, command[-1], *words], {"SQUEAL_SERVED": self.served.socket})
+
+    def launch(self, command, more):
+        """Runs it by the launcher, with more in its environment."""
+        process = subprocess.Popen(command, cwd=self.folder, env={**os.environ, **more}, text=True,
                                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         try:
             stdout, stderr = process.communicate(timeout=self.arguments.timeout)
@@ -280,6 +300,7 @@ def main():
     parser.add_argument("--margins", type=Path, help="only checks of hard cases, about each of which a line is added here")
     arguments = parser.parse_args()
     arguments.squeal = arguments.squeal.resolve()
+    os.environ.pop("PETSC_OPTIONS", None)
     case = tomllib.loads(arguments.case.read_text())
     if arguments.margins:
         keep_hard(case)
@@ -294,11 +315,14 @@ def main():
     never = [name for name, run in case["run"].items() if not set(run.get("ranks", chosen)) & set(chosen)]
     if never and not arguments.ranks:
         parser.error(f"runs on no number of ranks: {' '.join(never)}")
+    arguments.served = served_program(arguments.squeal, arguments.timeout)
     with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
         for name, text in case.get("file", {}).items():
             (Path(folder) / name).write_text(text)
         for command in case.get("make", []):
-            subprocess.run([sys.executable, *shlex.split(command.format(source=SOURCE))], cwd=folder, check=True)
+            made = run_command(shlex.split(command.format(source=SOURCE)), folder)
+            if made.returncode:
+                sys.exit(f"{command}: {made.stderr}")
         first = None
         for ranks in chosen:
             runner = Runner(arguments, case, Path(folder), ranks)
@@ -307,6 +331,8 @@ def main():
                 results.append(attempt(f"run {name} on {ranks}", runner.make, name))
                 runner.write_margin(case["run"][name], case["run"][name].get("why", f"run {name}"), results[-1])
             results += runner.check(Checker(runner, first))
+    if arguments.served:
+        arguments.served.end()
     return 0 if all(results) else 1
 
 

@@ -6,6 +6,7 @@ import errno
 import os
 import shutil
 import signal
+import socket
 import struct
 import subprocess
 import tempfile
@@ -15,9 +16,10 @@ from pathlib import Path
 LAUNCHER = Path(__file__).resolve().parents[1] / "scripts/mpirun"
 OPEN, WRITE, SYNC, RENAME, CLOSE, OWN, PETSC = (1 << bit for bit in range(7))
 FILES = OPEN | WRITE | SYNC | RENAME | CLOSE
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 # What a process alone does not need, and costs half of its start: networks
-LEAN = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_btl": "self",
-        "OMPI_MCA_pml": "ob1", "OMPI_MCA_mtl": "^psm,psm2,ofi", "OMPI_MCA_orte_create_session_dirs": "0"}
+LEAN = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_btl": "self", "OMPI_MCA_pml": "ob1", "OMPI_MCA_mtl": "^psm,psm2,ofi",
+        "OMPI_MCA_orte_create_session_dirs": "0"}
 
 
 def plan(folder, report, calls, at, **more):
@@ -56,30 +58,35 @@ def existing(name):
 
 
 class Served:
-    """The program behind a loop that forks: run() may be called from one thread at a time."""
+    """The program behind a loop that forks: run() may be called from one thread at a time; `socket` is where others may ask as well."""
 
     def __init__(self, program, library, limit):
         self.program, self.limit = str(program), limit
         self.folder = Path(tempfile.mkdtemp(prefix="squeal-served-"))
-        environment = {**os.environ, **LEAN, "LD_PRELOAD": str(library), "FAULT_SERVE": "1"}
-        self.loop = subprocess.Popen([self.program], env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0)
+        self.socket = str(self.folder / "socket")
+        preload = f"{library} {os.environ.get('LD_PRELOAD', '')}".strip()
+        with socket.socket(socket.AF_UNIX) as listener:
+            listener.bind(self.socket)
+            listener.listen(64)
+            environment = {**os.environ, **ONE_THREAD, "LD_PRELOAD": preload, "FAULT_SERVE": str(listener.fileno())}
+            self.loop = subprocess.Popen([self.program], env=environment, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                                         pass_fds=[listener.fileno()])
+        self.connection = socket.socket(socket.AF_UNIX)
+        self.connection.connect(self.socket)
 
     def read(self):
-        data = b""
-        while len(data) < 4:
-            more = self.loop.stdout.read(4 - len(data))
-            if not more:
-                raise SystemExit("FAILED: the loop that starts the program has ended")
-            data += more
+        data = self.connection.recv(4, socket.MSG_WAITALL)
+        if len(data) < 4:
+            raise SystemExit("FAILED: the loop that starts the program has ended")
         return struct.unpack("i", data)[0]
 
     def run(self, work, words, environment=()):
         """Runs in a folder; None as the status when it had to be killed."""
         stdout, stderr = self.folder / "stdout", self.folder / "stderr"
-        lines = [f"{key}={value}" for key, value in dict(environment).items()]
+        lines = [f"{key}={value}" for key, value in {**LEAN, **dict(environment)}.items()]
         strings = [work, stdout, stderr, len(lines), *lines, self.program, *words]
         data = b"".join(os.fsencode(str(s) if not isinstance(s, bytes) else s) + b"\0" for s in strings)
-        self.loop.stdin.write(struct.pack("i", len(data)) + data)
+        self.connection.sendall(struct.pack("i", len(data)) + data)
         child, late = self.read(), []
         watch = threading.Timer(self.limit, lambda: (late.append(1), os.kill(child, signal.SIGKILL)))
         watch.start()
@@ -89,14 +96,23 @@ class Served:
         return Outcome(None if late else os.waitstatus_to_exitcode(status), *said)
 
     def end(self):
+        self.connection.close()
         self.loop.stdin.close()
         self.loop.wait()
         shutil.rmtree(self.folder)
 
 
+def served_program(program, limit):
+    """The program behind such a loop, by the library in the folder that SQUEAL_START names, build/tests; None where it names none, as
+    under a sanitizer."""
+    folder = os.environ.get("SQUEAL_START")
+    return Served(program, Path(folder) / "libfault.so", limit) if folder else None
+
+
 def launch(program, library, work, words, environment, ranks, limit):
     """The same on several ranks, started anew each time."""
-    before = ["env", f"LD_PRELOAD={library}", *(f"{key}={value}" for key, value in environment.items())]
+    others = os.environ.get("LD_PRELOAD", "")
+    before = ["env", f"LD_PRELOAD={library} {others}".strip(), *(f"{key}={value}" for key, value in environment.items())]
     process = subprocess.Popen([LAUNCHER, "-n", str(ranks), *before, program, *words], cwd=work, start_new_session=True,
                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     try:
