@@ -115,18 +115,23 @@ def check_stop_in_statics(r):
 
 
 def check_stop_on_ranks(r):
-    """mpirun asks all ranks; one speaks."""
+    """mpirun asks all ranks; one speaks, in the log too, which is where it is read of Open MPI 5: its mpirun passes nothing on any more
+    after ^C."""
     environment = {**os.environ, "OMPI_MCA_odls_base_sigkill_timeout": "2"}
     process = subprocess.Popen([r.launcher, "-n", "2", r.squeal, *SCENE, *FINE, "-squeal_progress", "1",
-                                "-output_dir", "ranks"], cwd=r.folder, env=environment, stdin=subprocess.DEVNULL,
+                                "-squeal_log", "ranks.log", "-output_dir", "ranks"], cwd=r.folder, env=environment, stdin=subprocess.DEVNULL,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     while not (line := process.stderr.readline()).startswith("Modes"):
         if not line:
             break
     process.send_signal(signal.SIGINT)
     rest = process.communicate(timeout=30)[1]
-    lines = [line for line in rest.splitlines() if line.startswith("squeal: error")]
-    r.check(process.returncode and lines == [STOPPED.format("SIGTERM")], "^C of mpirun: one rank says so", rest)
+    said, logged = ([line for line in text.splitlines() if line.startswith("squeal: error")]
+                    for text in (rest, (r.folder / "ranks.log").read_text()))
+    version = subprocess.run([r.launcher, "--version"], capture_output=True, text=True).stdout
+    silent = not re.search(r"Open MPI\) 4\.", version)
+    r.check(process.returncode and logged == [STOPPED.format("SIGTERM")] and (said == logged or silent and not said),
+            "^C of mpirun: one rank says so", f"{rest}\n{logged}\n{version}")
 
 
 def main():
