@@ -71,12 +71,20 @@ def draw_line(axes, branch, name, error=None):
                       zorder=3)
 
 
+def inwards(branch, value, distance):
+    """How a text beside a value stands towards the middle of the range: offset in points, and alignment."""
+    values = branch.column("value")
+    right = value > (min(values) + max(values)) / 2
+    return (-distance, "right") if right else (distance, "left")
+
+
 def draw_amplitude(axes, branch, columns, label):
     """Largest value and rms of what vibrates."""
+    last = branch.rows[-1]
+    offset, side = inwards(branch, last["value"], 6)
     for name, text in zip(columns, ("largest", "rms about the mean")):
         draw_line(axes, branch, name, name.replace("_n", "_error_n").replace("_m_s", "_error_m_s"))
-        axes.annotate(text, (branch.rows[-1]["value"], branch.rows[-1][name]), (-6, -18), ha="right",
-                      textcoords="offset points")
+        axes.annotate(text, (last["value"], last[name]), (offset, -18), ha=side, textcoords="offset points")
     axes.set_ylabel(label)
     axes.set_ylim(bottom=0)
 
@@ -104,8 +112,9 @@ def draw_branch(branch, probe=None):
     for value, error in branch.folds():
         for axes in panels[:2]:
             axes.axvline(value, color=INK, lw=0.8, ls=":")
-        panels[1].annotate(f"fold{fold_text(value, error)}", (value, 0.04), (4, 0), xycoords=("data", "axes fraction"),
-                           textcoords="offset points", fontsize="small")
+        offset, side = inwards(branch, value, 4)
+        panels[1].annotate(f"fold{fold_text(value, error)}", (value, 0.04), (offset, 0), ha=side, fontsize="small",
+                           xycoords=("data", "axes fraction"), textcoords="offset points")
     marks = [Line2D([], [], color=COLOURS[kind], marker="o", ls="-" if kind == "stable" else "--",
                     mfc=COLOURS[kind] if kind == "stable" else "white",
                     label=kind.replace("numerical", "stability within its error"))

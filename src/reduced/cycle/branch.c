@@ -13,8 +13,10 @@
 #define BRANCH_EASY     3 /* steps of Newton's method after which the next step is longer */
 #define BRANCH_MAX_IT   8
 #define BRANCH_VANISHED 0.05 /* rms of the force over that of the vibration */
-#define BRANCH_SPLITS   "the branch splits, and has no direction"
-#define BRANCH_BEYOND   0.01 /* of the span, and twice that of an end: how far a step may go beyond it */
+#define BRANCH_UPRIGHT                                                                                                 \
+  1e-5 /* slope over the span below which a branch has no fold: linear vibrations of any amplitude at an onset */
+#define BRANCH_SPLITS "the branch splits, and has no direction"
+#define BRANCH_BEYOND 0.01 /* of the span, and twice that of an end: how far a step may go beyond it */
 
 /* One way along the branch */
 typedef struct {
@@ -68,6 +70,8 @@ static PetscErrorCode BranchTurn(LimitCycle c, PetscReal step, BranchWay *w)
   PetscCall(ShootingGetTangent(&c->shooting, &w->next.cycle, t, &found));
   w->split = found ? PETSC_FALSE : PETSC_TRUE;
   if (!found || (t->value > 0) == (w->here.tangent.value > 0)) PetscFunctionReturn(0);
+  if (PetscMax(PetscAbsReal(t->value), PetscAbsReal(w->here.tangent.value)) < BRANCH_UPRIGHT * c->shooting.span)
+    PetscFunctionReturn(0);
   PetscCall(ShootingFindFold(&c->shooting, &w->here, step, t->value, &w->fold, &error));
   if (error >= 0) PetscCall(CycleTakeFold(c, &w->fold, error));
   PetscFunctionReturn(0);
