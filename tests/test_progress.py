@@ -119,7 +119,8 @@ def check_stop_on_ranks(r):
     after ^C."""
     environment = {**os.environ, "OMPI_MCA_odls_base_sigkill_timeout": "2"}
     process = subprocess.Popen([r.launcher, "-n", "2", r.squeal, *SCENE, *FINE, "-squeal_progress", "1",
-                                "-squeal_log", "ranks.log", "-output_dir", "ranks"], cwd=r.folder, env=environment, stdin=subprocess.DEVNULL,
+                                "-squeal_log", "ranks.log", "-output_dir", "ranks"], cwd=r.folder, env=environment,
+                                stdin=subprocess.DEVNULL,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     while not (line := process.stderr.readline()).startswith("Modes"):
         if not line:
