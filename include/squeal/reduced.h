@@ -161,7 +161,9 @@ PetscErrorCode ReducedCreate(MPI_Comm comm, ReducedRun *reduced);
 +  -dynamics_model <full|reduced> - the mesh, or modes and compliance
 .  -dynamics_verify <false>       - runs again with half the step, and with 1.5 times the cut-off: how the force differs
 .  -dynamics_compare <true>       - with -modes_band: eigenvalues about the sliding state beside those of the mesh
--  -dynamics_cutoff <f>           - of the modes, Hz; without it 4 times the upper end of -modes_band, or 20 kHz
+.  -dynamics_cutoff <f>           - of the modes, Hz; without it 4 times the upper end of -modes_band, or 20 kHz, and more where
+                                    the comparison asks for it
+-  -dynamics_growth_rtol <5e-3>   - what growth of unstable modes in -modes_band may be off by where cut-off and step are chosen
 @*/
 PetscErrorCode ReducedSetFromOptions(ReducedRun reduced);
 

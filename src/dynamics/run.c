@@ -26,6 +26,15 @@ static PetscErrorCode RunRefuse(Dynamics d, const char by[])
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode DynamicsGetStep(Dynamics d, PetscReal dt, DynamicsRun *run)
+{
+  PetscFunctionBeginUser;
+  run->dt = d->dt_asked > 0 ? d->dt_asked : dt;
+  PetscCall(DynamicsMatchEnd(d, &run->dt));
+  PetscCall(DynamicsCheckEnd(d, run->dt, &run->end));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode DynamicsGetRun(Dynamics d, Results results, const char by[], PetscReal dt, DynamicsRun *run)
 {
   PetscFunctionBeginUser;
@@ -44,14 +53,12 @@ PetscErrorCode DynamicsGetRun(Dynamics d, Results results, const char by[], Pets
                        .external            = d->external,
                        .projector           = d->projector,
                        .history             = d->history,
-                       .dt                  = d->dt_asked > 0 ? d->dt_asked : dt,
                        .checkpoint_interval = d->checkpoint_interval,
                        .check_interval      = d->laws.interval,
                        .from_static         = d->start == START_STATIC ? PETSC_TRUE : PETSC_FALSE,
                        .restart             = d->restart,
                        .view_kkt            = d->view_kkt};
-  PetscCall(DynamicsMatchEnd(d, &run->dt));
-  PetscCall(DynamicsCheckEnd(d, run->dt, &run->end));
+  PetscCall(DynamicsGetStep(d, dt, run));
   PetscCall(TSGetMaxSteps(d->ts, &run->n_steps));
   if (d->restart) PetscCall(ResultsKeep(results, CHECKPOINT_FILE));
   if (d->shape[0]) PetscCall(ResultsKeepFolder(results, d->shape));

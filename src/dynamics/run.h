@@ -31,6 +31,9 @@ typedef struct {
 PETSC_INTERN PetscErrorCode DynamicsGetRun(Dynamics dynamics, Results results, const char by[], PetscReal dt,
                                            DynamicsRun *run);
 
+/* DynamicsGetStep - step and end of a run whose caller takes another `dt` where -ts_dt does not say one. Collective. */
+PETSC_INTERN PetscErrorCode DynamicsGetStep(Dynamics dynamics, PetscReal dt, DynamicsRun *run);
+
 /* DynamicsGetShape - what -dynamics_shape adds to the start at the local nodes: displacements and velocities, [nodes][3], m
    and m/s; zeros without. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsGetShape(Dynamics dynamics, PetscReal u[], PetscReal v[]);

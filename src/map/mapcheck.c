@@ -24,7 +24,8 @@ static PetscErrorCode CheckIdleAll(Map map, const ModelScene *scene, PetscInt n,
   static const char *const idle[] = {
     "-dynamics_start",  "-dynamics_shape",   "-dynamics_history_interval",    "-dynamics_pairs_interval",
     "-dynamics_live",   "-dynamics_restart", "-dynamics_snapshot_interval",   "-dynamics_compare",
-    "-dynamics_verify", "-contact_view_kkt", "-dynamics_checkpoint_interval", "-ts_max_steps"};
+    "-dynamics_verify", "-contact_view_kkt", "-dynamics_checkpoint_interval", "-ts_max_steps",
+    "-dynamics_growth_rtol"};
   static const char *const ramps[] = {"ramp", "ramp_shape", "delay"};
 
   PetscFunctionBeginUser;

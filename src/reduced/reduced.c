@@ -1,14 +1,13 @@
 /*
-   Reduced: life cycle and the flow of a run: modes of the bodies -> ports -> residual -> comparison with the mesh -> state at
-   the start -> steps -> histories.
+   Reduced: life cycle and the flow of a run: modes of the bodies -> ports -> residual -> comparison with the
+   mesh, which may choose cut-off and step -> state at the start -> steps -> histories.
 */
 #include "reducedimpl.h"
 #include "dynamics/stop.h"
 #include <squeal/options.h>
 
 #define BY          "-dynamics_model reduced"
-#define CUTOFF      20e3 /* Hz, where nothing says which band is of interest */
-#define CUTOFF_BAND 4    /* times the upper end of -modes_band */
+#define GROWTH_RTOL 5e-3
 
 PetscErrorCode ReducedCreate(MPI_Comm comm, ReducedRun *reduced)
 {
@@ -16,6 +15,7 @@ PetscErrorCode ReducedCreate(MPI_Comm comm, ReducedRun *reduced)
   PetscCall(PetscNew(reduced));
   (*reduced)->comm    = comm;
   (*reduced)->compare = PETSC_TRUE;
+  (*reduced)->growth_rtol = GROWTH_RTOL;
   PetscFunctionReturn(0);
 }
 
@@ -31,6 +31,9 @@ PetscErrorCode ReducedSetFromOptions(ReducedRun r)
   PetscCall(PetscOptionsReal("-dynamics_cutoff",
                              "of the modes of a reduced model, Hz; 0: 4 times the end of -modes_band, or 20 kHz",
                              "reduced.h", r->cutoff, &r->cutoff, NULL));
+  PetscCall(PetscOptionsReal("-dynamics_growth_rtol",
+                             "error of growth in -modes_band for which a cut-off and a step are chosen", "reduced.h",
+                             r->growth_rtol, &r->growth_rtol, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_compare",
                            "eigenvalues of a reduced model beside those of the mesh in -modes_band", &r->compare));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_verify",
@@ -39,8 +42,13 @@ PetscErrorCode ReducedSetFromOptions(ReducedRun r)
   PetscOptionsEnd();
   PetscCheck(r->cutoff >= 0 && r->cutoff < 1e30, r->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_cutoff %.6g must be a positive frequency (Hz), or 0 to have it chosen", (double)r->cutoff);
+  PetscCheck(r->growth_rtol > 0 && r->growth_rtol < 1, r->comm, PETSC_ERR_USER_INPUT,
+             "-dynamics_growth_rtol %.6g must be between 0 and 1", (double)r->growth_rtol);
   r->asked = model == 1 ? PETSC_TRUE : PETSC_FALSE;
+  if (r->cutoff > 0)
+    PetscCall(OptionsRefuse(r->comm, "-dynamics_growth_rtol", "not used where -dynamics_cutoff says the cut-off"));
   if (!r->asked) PetscCall(OptionsRefuse(r->comm, "-dynamics_cutoff", "not used without " BY));
+  if (!r->asked) PetscCall(OptionsRefuse(r->comm, "-dynamics_growth_rtol", "not used without " BY));
   if (!r->asked) PetscCall(OptionsRefuse(r->comm, "-dynamics_compare", "not used without " BY));
   if (!r->asked) PetscCall(OptionsRefuse(r->comm, "-dynamics_verify", "not used without " BY));
   PetscFunctionReturn(0);
@@ -58,22 +66,6 @@ PetscErrorCode ReducedSetRooms(ReducedRun r, Dynamics dynamics, Modes modes)
   PetscFunctionBeginUser;
   r->dynamics   = dynamics;
   r->mesh_modes = modes;
-  PetscFunctionReturn(0);
-}
-
-/* The cut-off that is asked for, or that the band of interest tells */
-static PetscErrorCode ReducedChooseCutoff(ReducedRun r)
-{
-  PetscBool has_band;
-  PetscReal band[2], growth;
-
-  PetscFunctionBeginUser;
-  r->why = "as -dynamics_cutoff says";
-  if (r->cutoff > 0) PetscFunctionReturn(0);
-  PetscCall(ModesHaveBand(r->mesh_modes, &has_band));
-  if (has_band) PetscCall(ModesGetBand(r->mesh_modes, band, &growth));
-  r->cutoff = has_band ? CUTOFF_BAND * band[1] : CUTOFF;
-  r->why    = has_band ? "4 times the end of -modes_band" : "no -modes_band says which frequencies are of interest";
   PetscFunctionReturn(0);
 }
 
@@ -103,11 +95,7 @@ PetscErrorCode ReducedPrepare(ReducedRun r, Results results)
   PetscCall(DynamicsGetRun(r->dynamics, results, BY, 1 / (2 * PETSC_PI * r->cutoff), &r->run));
   PetscCall(ReducedRefuse(r));
   PetscCall(ExternalCountHits(r->run.external, &r->n_hits));
-  r->dt = r->run.dt;
-  PetscCheck(
-    r->dt * r->cutoff <= 1 + 1e-9, r->comm, PETSC_ERR_USER_INPUT,
-    "-ts_dt %.6g is longer than a period of -dynamics_cutoff %.6g Hz: contact cannot follow; take at most %.6g",
-    (double)r->dt, (double)r->cutoff, 1 / (double)r->cutoff);
+  PetscCall(ReducedSetStep(r, r->run.dt));
   PetscFunctionReturn(0);
 }
 
@@ -190,8 +178,7 @@ static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
   PetscCall(ReducedPrepare(r, results));
   PetscCheck(!r->verify || !r->run.restart, r->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_verify compares whole runs: leave it out of -dynamics_restart, or start anew");
-  PetscCall(ReducedReduce(r));
-  PetscCall(ReducedCompare(r));
+  PetscCall(ReducedChoose(r));
   PetscCall(HistorySetUp(
     r->run.history,
     &(HistorySource){r->run.model, NULL, r->run.projector, r->run.n_interfaces, r->run.interfaces, results}, r->run.end,
@@ -291,13 +278,9 @@ PetscErrorCode ReducedIntegrate(ReducedRun r, Results results)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ReducedDestroy(ReducedRun *reduced)
+PetscErrorCode ReducedForget(ReducedRun r)
 {
-  ReducedRun r = *reduced;
-
   PetscFunctionBeginUser;
-  if (!r) PetscFunctionReturn(0);
-  PetscCall(ReducedStepperDestroy(&r->stepper));
   PetscCall(ReducedStateDestroy(&r->state));
   PetscCall(ReducedReportDestroy(&r->report));
   PetscCall(ReducedModelDestroy(&r->model));
@@ -307,9 +290,6 @@ PetscErrorCode ReducedDestroy(ReducedRun *reduced)
   PetscCall(PetscFree(r->pair));
   PetscCall(PetscFree2(r->hits, r->hit_due));
   PetscCall(PetscFree(r->vertex_port));
-  PetscCall(PetscFree(r->p));
-  PetscCall(PetscFree(r->compared));
-  PetscCall(PetscFree(r->force));
   PetscCall(MatDestroy(&r->column));
   PetscCall(MatDestroy(&r->Phi));
   PetscCall(MatDestroy(&r->MPhi));
@@ -319,6 +299,22 @@ PetscErrorCode ReducedDestroy(ReducedRun *reduced)
   PetscCall(ModesDestroy(&r->body_modes));
   PetscCall(PencilDestroy(&r->bodies));
   PetscCall(ChecksumDestroy(&r->scene));
+  r->begin = 0;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedDestroy(ReducedRun *reduced)
+{
+  ReducedRun r = *reduced;
+
+  PetscFunctionBeginUser;
+  if (!r) PetscFunctionReturn(0);
+  PetscCall(ReducedStepperDestroy(&r->stepper));
+  PetscCall(ReducedForget(r));
+  PetscCall(PetscFree(r->p));
+  PetscCall(PetscFree(r->closed));
+  PetscCall(PetscFree(r->compared));
+  PetscCall(PetscFree(r->force));
   PetscCall(PetscFree(*reduced));
   PetscFunctionReturn(0);
 }

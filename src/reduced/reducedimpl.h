@@ -26,7 +26,8 @@ struct _p_ReducedStepper {
 
 /* An eigenvalue of the mesh about the sliding state beside that of the reduced model, rad/s */
 typedef struct {
-  PetscReal mesh[2], reduced[2]; /* growth and frequency */
+  PetscReal mesh[2], reduced[2], steps[2]; /* growth and frequency; steps: as the steps of the run see the reduced model */
+  PetscBool unstable;
   char      label[32];
 } ReducedPair;
 
@@ -36,6 +37,7 @@ typedef struct {
   PetscReal rms, largest; /* of the difference, over the force's own rms about its mean and its largest value */
   PetscReal level;        /* rms about the mean in the last half of the time, relative difference */
   PetscReal open;         /* share of the last half without force, difference */
+  PetscReal level_error, open_error; /* standard errors of the two, from pieces of the time */
 } ReducedDifference;
 
 /* Shares of v'M v that the modes hold; 0 for what is not there */
@@ -48,6 +50,7 @@ struct _p_ReducedRun {
   /* set by options */
   PetscBool  asked, compare, verify;
   PetscReal  cutoff; /* Hz, 0: to be chosen */
+  PetscReal  growth_rtol;
   PetscReal *p;      /* parameters of the operators, NULL: those of the scene */
   ReducedRun like;   /* whose modes those taken resemble, as many; NULL: all below the cut-off are */
   /* rooms */
@@ -56,7 +59,8 @@ struct _p_ReducedRun {
   Results     results;
   DynamicsRun run;
   /* reduction */
-  const char   *why;    /* the cut-off is what it is */
+  const char   *why;     /* the cut-off is what it is */
+  PetscBool     chooses; /* cut-off, and the step where -ts_dt leaves it open */
   Pencil        bodies; /* every pair open, undamped */
   Modes         body_modes;
   Mat           Phi, MPhi; /* [unknowns][m] modes, and M Phi, dense */
@@ -75,6 +79,8 @@ struct _p_ReducedRun {
   const char  *not_compared; /* why; NULL where it is */
   PetscInt     n_closed, n_compared;
   ReducedPair *compared;
+  PetscBool   *closed;                 /* [n_pairs] in the sliding state */
+  PetscReal    miss_model, miss_steps; /* largest error of growth of an unstable mode; what steps add, relative */
   /* state */
   PetscReal      dt;
   PetscInt       step;
@@ -161,12 +167,29 @@ PETSC_INTERN void           ReducedSetLoads(ReducedRun reduced, PetscReal t, Pet
 /* start.c - the state at t = 0 */
 PETSC_INTERN PetscErrorCode ReducedStart(ReducedRun reduced);
 
-/* compare.c - eigenvalues beside those of the mesh */
+/* compare.c - eigenvalues of the mesh, once; those of the reduced model beside them */
+PETSC_INTERN PetscErrorCode ReducedCompareMesh(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedCompare(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedCompareView(ReducedRun reduced, PetscViewer viewer);
 
-/* reduced.c - model and room for states and steps, from cut-off, step and run */
+/* warp.c - ReducedLinearise() as steps of length dt (s) see the model */
+PETSC_INTERN PetscErrorCode ReducedLineariseSteps(const ReducedModel *model, PetscReal dt, const PetscBool closed[],
+                                                  PetscReal sigma[], PetscReal omega[]);
+
+/* choose.c - the cut-off to begin with; the step where -ts_dt leaves it open; reduces and compares with the mesh, with another
+   cut-off and step where the first ones do not do */
+PETSC_INTERN PetscErrorCode ReducedChooseCutoff(ReducedRun reduced);
+PETSC_INTERN PetscErrorCode ReducedSetStep(ReducedRun reduced, PetscReal dt);
+PETSC_INTERN PetscErrorCode ReducedChoose(ReducedRun reduced);
+
+/* reduced.c - model and room for states and steps, from cut-off, step and run; frees these */
 PETSC_INTERN PetscErrorCode ReducedReduce(ReducedRun reduced);
+PETSC_INTERN PetscErrorCode ReducedForget(ReducedRun reduced);
+
+/* The bodies of a run that was reduced with other parameters p [parameters], in as many modes, which resemble its own and lie
+   below `cutoff` (Hz). The caller destroys them. Collective */
+PETSC_INTERN PetscErrorCode ReducedReduceLike(ReducedRun reduced, PetscReal cutoff, const PetscReal p[],
+                                              ReducedRun *at);
 
 /* The bodies of a run that was reduced with other parameters p [parameters], in as many modes, which resemble its own and lie
    below `cutoff` (Hz). The caller destroys them. Collective */
