@@ -138,6 +138,11 @@ PetscErrorCode PencilNameParity(Pencil pencil, PetscInt c, size_t size, char nam
     must stay until PencilDestroy(). @*/
 PetscErrorCode PencilCreateParity(Pencil pencil, PetscInt c, Pencil *parity);
 
+/*@ PencilReleaseSymmetric - frees K_even, which is also K of PencilGetFrictionless(), once it has been factored; nothing
+    before PencilReleaseTerms(), or without K_even. What was got before is gone; the next call for either makes it again, as
+    K - left' right. Collective. @*/
+PetscErrorCode PencilReleaseSymmetric(Pencil pencil);
+
 /*@ PencilGetMatrices - the matrices with friction. Collective. @*/
 PetscErrorCode PencilGetMatrices(Pencil pencil, PencilMatrices *matrices);
 

@@ -151,6 +151,20 @@ static PetscBool ShiftSpoils(const Spectrum *s, PetscReal shift)
   return nearest < MODES_NEAR * farthest ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Factors at another shift; K_even may have been released meanwhile */
+static PetscErrorCode ModesMove(Modes modes, const PencilMatrices *pencil, PetscReal shift, ShiftInvert *si)
+{
+  PencilMatrices again = *pencil, whole;
+
+  PetscFunctionBeginUser;
+  if (again.K_even) {
+    PetscCall(PencilGetMatrices(modes->pencil, &whole));
+    again.K_even = whole.K_even;
+  }
+  PetscCall(ShiftInvertMove(&again, shift, si));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si)
 {
   PetscFunctionBeginUser;
@@ -159,7 +173,7 @@ PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *pencil, const 
     const PetscReal shift = si->shift * (1 + 1e-3 * attempt);
 
     PetscCall(SpectrumDestroy(&modes->right));
-    PetscCall(ShiftInvertMove(pencil, shift, si));
+    PetscCall(ModesMove(modes, pencil, shift, si));
     PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_FALSE, &modes->right));
   }
   PetscFunctionReturn(0);

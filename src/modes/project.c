@@ -15,6 +15,7 @@
    damped.c.
 */
 #include "projection.h"
+#include "base/memory.h"
 #include "solver/orthonormal.h"
 
 #define DAMPING_WEAK     0.9
@@ -263,7 +264,8 @@ PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *w
   undamped.C = NULL;
   PetscCall(ProjectionCreate(modes, pencil, window, &p));
   PetscCall(ModesFactor(modes, &undamped, UndampedShift(window), &p.si));
-  PetscCall(ShiftInvertRelease(&p.si));
+  PetscCall(ShiftInvertRelease(&undamped, &p.si));
+  MemoryReturn();
   window->guard = PETSC_TRUE;
   for (int attempt = 0; attempt < PROJECT_ATTEMPTS && (why == why_differ || why == why_guard); attempt++) {
     if (attempt) window->extra += 10 + (complete ? 0 : modes->right.n / 2);

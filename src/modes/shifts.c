@@ -8,6 +8,7 @@
    solutions of one mode, and the members of a pair with one frequency, cannot be parted by it.
 */
 #include "groups.h"
+#include "base/memory.h"
 
 #define SHIFTS_STRIP 1e-3 /* relative half width of the strip about a seam */
 #define SHIFTS_MODES 300  /* modes from which orthogonalisation costs more than another factorisation saves */
@@ -192,6 +193,16 @@ static PetscErrorCode ShiftsShare(Modes modes, const PencilMatrices *pencil, Win
   PetscFunctionReturn(0);
 }
 
+/* Gives up the matrix that was factored, and what it was made of */
+static PetscErrorCode ShiftsRelease(Modes modes, const PencilMatrices *pencil, ShiftInvert *si)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ShiftInvertRelease(pencil, si));
+  if (si->released && si->update) PetscCall(PencilReleaseSymmetric(modes->pencil));
+  MemoryReturn();
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ShiftsSolve(Modes modes, const PencilMatrices *pencil, Window *window, ShiftInvert *si)
 {
   const PetscReal shift    = pencil->C ? DampedShift(window) : UndampedShift(window);
@@ -200,7 +211,7 @@ PetscErrorCode ShiftsSolve(Modes modes, const PencilMatrices *pencil, Window *wi
   PetscFunctionBeginUser;
   if (modes->shifts == 1) {
     PetscCall(ModesFactor(modes, pencil, shift, si));
-    if (!modes->keep) PetscCall(ShiftInvertRelease(si));
+    if (!modes->keep) PetscCall(ShiftsRelease(modes, pencil, si));
     PetscCall(ModesSolveWindow(modes, pencil, window, si));
     PetscFunctionReturn(0);
   }

@@ -8,6 +8,7 @@
    farthest converged one lies outside the circle about the shift through the ends of the window.
 */
 #include "modesimpl.h"
+#include "base/memory.h"
 #include "solver/blockkrylov.h"
 #include <complex.h>
 
@@ -239,6 +240,7 @@ PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Wi
     nev = PetscMin(nev, n);
     PetscCall(UndampedGetSolver(&u, transposed, nev, &eps));
     PetscCall(EPSSolve(eps));
+    MemoryReturn(); /* what solves with blocks took, before vectors are copied */
     PetscCall(ProgressEnd(&modes->progress));
     PetscCall(UndampedDescribe(eps, si, sizeof(modes->solver), modes->solver));
     PetscCall(SavedByFactors(modes, si));

@@ -7,7 +7,7 @@
    a pair (dimensionless), a row of R minus its normal displacement times the penalty per pair or the area; c_t holds
    k_n mu.
 */
-#include "terms.h"
+#include "pencilimpl.h"
 
 /* Whether a term takes part: unsymmetric stiffness with a coefficient */
 static PetscBool TakesPart(const OperatorsTerm *term, const PetscReal p[])
@@ -103,5 +103,26 @@ PetscErrorCode TermsFormFactors(const Terms *terms, const PetscReal p[], Mat *le
   if (!n) PetscFunctionReturn(0);
   PetscCall(FactorsStack(terms, p, PETSC_FALSE, left));
   PetscCall(FactorsStack(terms, p, PETSC_TRUE, right));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilReleaseSymmetric(Pencil pencil)
+{
+  PetscFunctionBeginUser;
+  if (pencil->released && pencil->has_factors && pencil->factor[0]) PetscCall(TermsSumDestroy(&pencil->sum[SUM_K]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilRestoreSymmetric(Pencil pencil)
+{
+  TermsSum *const sum = &pencil->sum[SUM_K];
+  Mat             friction;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatTransposeMatMult(pencil->factor[0], pencil->factor[1], MAT_INITIAL_MATRIX, PETSC_DEFAULT, &friction));
+  PetscCall(MatDuplicate(pencil->sum[PENCIL_K].A, MAT_COPY_VALUES, &sum->A));
+  PetscCall(MatAXPY(sum->A, -1, friction, DIFFERENT_NONZERO_PATTERN));
+  PetscCall(MatDestroy(&friction));
+  sum->current = PETSC_TRUE;
   PetscFunctionReturn(0);
 }

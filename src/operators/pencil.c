@@ -1,6 +1,5 @@
 /*
-   Pencil: life cycle, point, and access. Everything that is handed out is a sum of terms at the present point, formed
-   when it is asked for.
+   Pencil: life cycle, point, access. What is handed out is a sum of terms at the present point, formed when asked for.
 */
 #include "pencilimpl.h"
 
@@ -93,7 +92,8 @@ static PetscErrorCode PencilFormSum(Pencil pencil, PencilSum which, Mat *A)
   if (!sum->current) {
     if (projected) PetscCall(PencilProjectTerms(pencil));
     if (at == SUM_H && mu != 0) kind.scale = 1 / mu;
-    PetscCall(TermsSumForm(projected ? &pencil->projected : &pencil->base, &kind, p, sum));
+    PetscCall(pencil->released ? PencilRestoreSymmetric(pencil)
+                               : TermsSumForm(projected ? &pencil->projected : &pencil->base, &kind, p, sum));
     if (sum->A) PetscCall(MatSetOption(sum->A, MAT_SYMMETRIC, sums[at].symmetric && pencil->operators->symmetric));
   }
   *A = sum->A;

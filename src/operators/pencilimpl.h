@@ -53,6 +53,9 @@ PETSC_INTERN PetscErrorCode PencilFormFactors(Pencil pencil);
 PETSC_INTERN PetscErrorCode PencilCreateMirrors(Pencil pencil);
 PETSC_INTERN PetscErrorCode MirrorGetRow(Mat R, PetscInt row, PetscInt *column, PetscReal *sign);
 
+/* factors.c - K without friction where it was released, as K - left' right. Collective. */
+PETSC_INTERN PetscErrorCode PencilRestoreSymmetric(Pencil pencil);
+
 /* rigid.c - null space of points that are joined rigidly, where there is none of the contact. Collective. */
 PETSC_INTERN PetscErrorCode PencilTakeRigid(Pencil pencil);
 

@@ -4,7 +4,7 @@
    place and the analysis serves again.
 */
 #include "shiftinvert.h"
-#include "base/memory.h"
+#include "lowrank.h"
 #include <petscksp.h>
 #include <petsc/private/petscimpl.h> /* PetscObjectStateGet() */
 
@@ -188,9 +188,9 @@ PetscErrorCode ShiftInvertFactor(const PencilMatrices *pencil, ShiftInvert *si, 
   PetscFunctionReturn(0);
 }
 
-/* K - s M that is not formed */
+/* K - left' right - s M that is not formed; left and right may be NULL */
 typedef struct {
-  Mat       K, M;
+  Mat       K, M, left, right;
   PetscReal s;
 } Shifted;
 
@@ -201,7 +201,9 @@ static PetscErrorCode ShiftedMult(Mat A, Vec x, Vec y)
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &shifted));
   PetscCall(MatMult(shifted->M, x, y));
-  PetscCall(VecScale(y, -shifted->s));
+  PetscCall(VecScale(y, shifted->s));
+  if (shifted->left) PetscCall(LowRankMultAdd(&(LowRank){.L = shifted->left, .R = shifted->right}, PETSC_FALSE, x, y));
+  PetscCall(VecScale(y, -1));
   PetscCall(MatMultAdd(shifted->K, x, y, y));
   PetscFunctionReturn(0);
 }
@@ -214,20 +216,26 @@ static PetscErrorCode ShiftedDestroy(Mat A)
   PetscCall(MatShellGetContext(A, &shifted));
   PetscCall(MatDestroy(&shifted->K));
   PetscCall(MatDestroy(&shifted->M));
+  PetscCall(MatDestroy(&shifted->left));
+  PetscCall(MatDestroy(&shifted->right));
   PetscCall(PetscFree(shifted));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ShiftedCreate(const ShiftInvert *si, Mat *A)
+/* From what is there anyway: with an update K itself, not its symmetric part */
+static PetscErrorCode ShiftedCreate(const ShiftInvert *si, const PencilMatrices *pencil, Mat *A)
 {
   PetscInt n_local, n;
   Shifted *shifted;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&shifted));
-  *shifted = (Shifted){si->term[0], si->term[2], si->shift};
+  *shifted =
+    (Shifted){pencil->K, pencil->M, si->update ? pencil->left : NULL, si->update ? pencil->right : NULL, si->shift};
   PetscCall(PetscObjectReference((PetscObject)shifted->K));
   PetscCall(PetscObjectReference((PetscObject)shifted->M));
+  if (shifted->left) PetscCall(PetscObjectReference((PetscObject)shifted->left));
+  if (shifted->right) PetscCall(PetscObjectReference((PetscObject)shifted->right));
   PetscCall(MatGetLocalSize(shifted->K, &n_local, NULL));
   PetscCall(MatGetSize(shifted->K, &n, NULL));
   PetscCall(MatCreateShell(si->comm, n_local, n_local, n, n, shifted, A));
@@ -236,7 +244,7 @@ static PetscErrorCode ShiftedCreate(const ShiftInvert *si, Mat *A)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ShiftInvertRelease(ShiftInvert *si)
+PetscErrorCode ShiftInvertRelease(const PencilMatrices *pencil, ShiftInvert *si)
 {
   PetscBool     direct, cholesky, is_mumps = PETSC_FALSE;
   MatSolverType type;
@@ -251,11 +259,11 @@ PetscErrorCode ShiftInvertRelease(ShiftInvert *si)
   PetscCall(PCFactorGetMatSolverType(pc, &type));
   if (type) PetscCall(PetscStrcmp(type, MATSOLVERMUMPS, &is_mumps));
   if (!direct || !cholesky || !is_mumps) PetscFunctionReturn(0);
-  PetscCall(ShiftedCreate(si, &A));
+  PetscCall(ShiftedCreate(si, pencil, &A));
   PetscCall(KSPSetReusePreconditioner(si->ksp, PETSC_TRUE));
   PetscCall(KSPSetOperators(si->ksp, A, A));
   PetscCall(MatDestroy(&A));
+  PetscCall(MatDestroy(&si->term[0]));
   si->released = PETSC_TRUE;
-  MemoryReturn();
   PetscFunctionReturn(0);
 }

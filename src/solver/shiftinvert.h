@@ -65,9 +65,9 @@ PETSC_INTERN PetscErrorCode ShiftInvertKeepsPattern(const ShiftInvert *si, const
 PETSC_INTERN PetscErrorCode ShiftInvertStands(const PencilMatrices *pencil, PetscReal shift, const ShiftInvert *si,
                                               PetscBool *stands);
 PETSC_INTERN PetscErrorCode ShiftInvertFactor(const PencilMatrices *pencil, ShiftInvert *si, PetscBool *singular);
-/* Gives up the symmetric matrix that MUMPS has factored, a copy of the pattern of K: products with it are made from K and M
-   then. For the last shift: another one needs another analysis. */
-PETSC_INTERN PetscErrorCode ShiftInvertRelease(ShiftInvert *si);
+/* Gives up the symmetric matrix that MUMPS has factored, a copy of the pattern of K, and with an update its reference to
+   K_even: products with it are made from K, M and the pairs then. For the last shift: another one needs another analysis. */
+PETSC_INTERN PetscErrorCode ShiftInvertRelease(const PencilMatrices *pencil, ShiftInvert *si);
 /* Whether the estimate is shown on stdout before factorisations, not by default */
 PETSC_INTERN void      ShiftInvertShow(PetscBool show);
 PETSC_INTERN PetscBool ShiftInvertShows(void);

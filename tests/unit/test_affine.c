@@ -240,8 +240,8 @@ static PetscErrorCode TestProjection(Chain *chain, PetscBool constrained, int *f
   PetscFunctionReturn(0);
 }
 
-/* Breaks when: a pencil whose terms are gone lacks a matrix at its point, or moves all the same. Reference: the other
-   chain, moved to that point */
+/* Breaks when: a pencil whose terms are gone lacks a matrix at its point, K without friction made again too, or moves
+   all the same. Reference: the other chain, moved to that point */
 static PetscErrorCode TestReleased(Chain chain[2], const PetscReal away[], int *failed)
 {
   const OperatorsTerm *term;
@@ -254,6 +254,8 @@ static PetscErrorCode TestReleased(Chain chain[2], const PetscReal away[], int *
   PetscCall(PencilGetParameters(chain[0].pencil, NULL, NULL, &p));
   PetscCall(PencilSetParameters(chain[1].pencil, p));
   PetscCall(PencilReleaseTerms(chain[0].pencil));
+  PetscCall(TestSame(chain[0].pencil, chain[1].pencil, failed));
+  PetscCall(PencilReleaseSymmetric(chain[0].pencil));
   PetscCall(TestSame(chain[0].pencil, chain[1].pencil, failed));
   PetscCall(PetscPushErrorHandler(ScratchKeepError, &keep));
   moved = PencilSetParameters(chain[0].pencil, away);
