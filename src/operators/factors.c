@@ -109,13 +109,14 @@ PetscErrorCode TermsFormFactors(const Terms *terms, const PetscReal p[], Mat *le
 PetscErrorCode PencilReleaseSymmetric(Pencil pencil)
 {
   PetscFunctionBeginUser;
-  if (pencil->released && pencil->has_factors && pencil->factor[0]) PetscCall(TermsSumDestroy(&pencil->sum[SUM_K]));
+  if (pencil->released && pencil->has_factors && pencil->factor[0])
+    PetscCall(TermsSumDestroy(&pencil->sum[PencilEven(pencil)]));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode PencilRestoreSymmetric(Pencil pencil)
 {
-  TermsSum *const sum = &pencil->sum[SUM_K];
+  TermsSum *const sum = &pencil->sum[PencilEven(pencil)];
   Mat             friction;
 
   PetscFunctionBeginUser;

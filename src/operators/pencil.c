@@ -92,8 +92,9 @@ static PetscErrorCode PencilFormSum(Pencil pencil, PencilSum which, Mat *A)
   if (!sum->current) {
     if (projected) PetscCall(PencilProjectTerms(pencil));
     if (at == SUM_H && mu != 0) kind.scale = 1 / mu;
-    PetscCall(pencil->released ? PencilRestoreSymmetric(pencil)
-                               : TermsSumForm(projected ? &pencil->projected : &pencil->base, &kind, p, sum));
+    PetscCall(pencil->released && at == PencilEven(pencil)
+                ? PencilRestoreSymmetric(pencil)
+                : TermsSumForm(projected ? &pencil->projected : &pencil->base, &kind, p, sum));
     if (sum->A) PetscCall(MatSetOption(sum->A, MAT_SYMMETRIC, sums[at].symmetric && pencil->operators->symmetric));
   }
   *A = sum->A;

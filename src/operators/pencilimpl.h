@@ -53,6 +53,12 @@ PETSC_INTERN PetscErrorCode PencilFormFactors(Pencil pencil);
 PETSC_INTERN PetscErrorCode PencilCreateMirrors(Pencil pencil);
 PETSC_INTERN PetscErrorCode MirrorGetRow(Mat R, PetscInt row, PetscInt *column, PetscReal *sign);
 
+/* The sum that is K without friction in the unknowns of the pencil */
+static inline PencilSum PencilEven(Pencil pencil)
+{
+  return pencil->Zr ? PROJECTED_K : SUM_K;
+}
+
 /* factors.c - K without friction where it was released, as K - left' right. Collective. */
 PETSC_INTERN PetscErrorCode PencilRestoreSymmetric(Pencil pencil);
 
