@@ -8,9 +8,11 @@ or where elements are not their own mirror images.
     test_halves.py SQUEAL LAUNCHER"""
 
 import csv
+import re
 import subprocess
 import sys
 import tempfile
+from collections import Counter
 from pathlib import Path
 
 try:
@@ -85,6 +87,11 @@ class Runs:
             row["lambda"] = float(row["growth_rad_s"]) + 2j * numpy.pi * float(row["freq_hz"])
         return rows
 
+    def told(self, name):
+        """How many modes of each parity the provenance tells."""
+        said = re.search(r"^.*completeness:(.*)$", (self.folder / name / "scene.yaml").read_text(), re.MULTILINE)
+        return Counter({parity: int(n) for parity, n in re.findall(r"((?:even|odd)(?: even| odd)*): (\d+) modes", said[1])})
+
 
 def apart(found, reference):
     """Largest relative difference of the eigenvalues; infinite where their numbers differ."""
@@ -123,7 +130,9 @@ def kinds(runs):
     for name, options, planes in KINDS:
         folder = "".join(letter for letter in name if letter.isalnum())
         whole = runs.rows(f"{folder}_whole", "whole.msh", options=options)
-        yield f"{name}, {len(whole)} modes", apart(runs.rows(folder, "whole.msh", options=f"{options} -symmetry {planes}"), whole)
+        found = runs.rows(folder, "whole.msh", options=f"{options} -symmetry {planes}")
+        yield f"{name}, {len(whole)} modes", apart(found, whole)
+        yield f"{name}, modes of each parity as told", float(runs.told(folder) != Counter(row["symmetry"] for row in found))
 
 
 def main(squeal, launcher):

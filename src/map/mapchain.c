@@ -5,7 +5,7 @@
 */
 #include "mapimpl.h"
 
-#define MARCH_RTOL     1e-8 /* of the contact laws */
+#define MARCH_RTOL     1e-9 /* of the contact laws */
 #define MARCH_TINY     1e-9 /* of the mean force: a vibration that is rounding */
 #define MARCH_SMALL    0.01 /* of the mean force: a vibration that is small */
 #define MARCH_STICKING 0.01 /* share of the time */

@@ -12,10 +12,11 @@
 #include <string.h>
 #include <unistd.h>
 
-#define KEEP_VERSION  2
+#define KEEP_VERSION  3
 #define KEEP_MAX_ROWS 1000000
 #define N_DIMS        8
 #define N_BODIES      15
+#define N_FRICTION    4 /* of these, made at once: the model frees them so */
 
 /* A piece of a file */
 typedef struct {
@@ -204,14 +205,15 @@ static PetscErrorCode KeptBodies(MapBodies *b, const PetscInt dims[N_DIMS], Pets
 {
   ReducedModel  *a = &b->model;
   const PetscInt m = dims[0], n = dims[1], N = dims[4], c = dims[6];
-  PetscReal    **array[N_BODIES - 1] = {&a->omega2, &a->C,     &a->P,     &a->W,  &a->Cm,    &a->Cx,    &a->gap,
-                                        &a->mu,     &a->slope, &a->speed, &b->mu, &b->slope, &b->speed, &b->hits};
-  const PetscInt size[N_BODIES - 1]  = {m, c * m * m, m * N, N * N, c * 3 * n * m,    c * 9 * n * n, n, n, n,
-                                        n, n,         n,     n,     dims[5] * (m + 1)};
+  PetscReal    **array[N_BODIES - 1] = {&a->gap,    &a->mu, &a->slope, &a->speed, &b->mu, &b->slope, &b->speed,
+                                        &a->omega2, &a->C,  &a->P,     &a->W,     &a->Cm, &a->Cx,    &b->hits};
+  const PetscInt size[N_BODIES - 1]  = {n, n,         n,     n,     n,             n,             n,
+                                        m, c * m * m, m * N, N * N, c * 3 * n * m, c * 9 * n * n, dims[5] * (m + 1)};
 
   PetscFunctionBeginUser;
+  if (allocate) PetscCall(PetscMalloc4(n, &a->gap, n, &a->mu, n, &a->slope, n, &a->speed));
   for (int i = 0; i < N_BODIES - 1; i++) {
-    if (allocate && size[i]) PetscCall(PetscMalloc1(size[i], array[i]));
+    if (allocate && i >= N_FRICTION && size[i]) PetscCall(PetscMalloc1(size[i], array[i]));
     piece[i] = (KeptPiece){*array[i], (size_t)size[i] * sizeof(PetscReal)};
   }
   if (allocate) PetscCall(PetscMalloc1(n, &b->interface));

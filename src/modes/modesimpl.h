@@ -35,7 +35,7 @@ enum { DAMPING_AUTO, DAMPING_PROJECT, DAMPING_PEP };
 /* What a choice saved, in words */
 enum { SAVED_FACTORS, SAVED_DAMPING, SAVED_SYMMETRY, N_SAVED };
 
-#define SAVED_LENGTH 256
+#define SAVED_LENGTH 512
 #define PARITY_LENGTH 16 /* of "even odd even" */
 
 struct _p_Modes {

@@ -4,6 +4,7 @@
    all, is freed before the next one begins.
 */
 #include "modesimpl.h"
+#include <string.h>
 
 /* What was found of the parities so far */
 typedef struct {
@@ -12,7 +13,8 @@ typedef struct {
   Spectrum right, left;                /* vectors of all unknowns */
   Mode    *mode;                       /* [n] */
   char (*parity)[PARITY_LENGTH];       /* [n] */
-  char     completeness[4096];
+  PetscInt found[8];                   /* modes of each, */
+  char    *said[8];                    /* and what is said of their completeness */
   double   entries; /* of the largest factors */
   PetscInt shifts;
 } Parities;
@@ -35,16 +37,24 @@ static PetscErrorCode ParitiesAppend(Modes modes, PetscInt c, Pencil whole, Pari
   PetscFunctionReturn(0);
 }
 
-/* Adds what is said of the completeness of one parity */
-static PetscErrorCode ParitiesDescribe(Modes modes, PetscInt c, PetscBool none, Pencil whole, Parities *all)
+/* Into modes->completeness how many modes of each parity are left, and what is said of their completeness */
+static PetscErrorCode ParitiesDescribe(Modes modes, Pencil whole, Parities *all)
 {
-  char name[PARITY_LENGTH], text[sizeof(modes->completeness)];
+  char name[PARITY_LENGTH], text[sizeof(modes->completeness)], found[48];
 
   PetscFunctionBeginUser;
-  PetscCall(PencilNameParity(whole, c, sizeof(name), name));
-  PetscCall(PetscSNPrintf(text, sizeof(text), "%s%s: %" PetscInt_FMT " modes, %s", c ? "; " : "", name, modes->n,
-                          none ? "none in the band" : modes->completeness));
-  PetscCall(PetscStrlcat(all->completeness, text, sizeof(all->completeness)));
+  modes->completeness[0] = 0;
+  for (PetscInt c = 0; c < all->n_parities; c++) {
+    PetscInt n = 0;
+
+    PetscCall(PencilNameParity(whole, c, sizeof(name), name));
+    for (PetscInt i = 0; i < all->n; i++) n += strcmp(all->parity[i], name) == 0;
+    PetscCall(PetscSNPrintf(found, sizeof(found), " of %" PetscInt_FMT " found", all->found[c]));
+    PetscCall(PetscSNPrintf(text, sizeof(text), "%s%s: %" PetscInt_FMT " modes%s, %s", c ? "; " : "", name, n,
+                            n < all->found[c] ? found : "", all->said[c]));
+    PetscCall(PetscStrlcat(modes->completeness, text, sizeof(modes->completeness)));
+    PetscCall(PetscFree(all->said[c]));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -69,7 +79,8 @@ static PetscErrorCode ParitySolve(Modes modes, PetscInt c, Pencil whole, Paritie
   modes->entries   = 0;
   if (n) PetscCall(PencilReleaseTerms(part));
   if (n) PetscCall(ModesFind(modes, &window, &none));
-  PetscCall(ParitiesDescribe(modes, c, none, whole, all));
+  all->found[c] = none ? 0 : modes->n;
+  PetscCall(PetscStrallocpy(none ? "none in the band" : modes->completeness, &all->said[c]));
   if (!none) PetscCall(ParitiesAppend(modes, c, whole, all));
   all->below    = all->below < 0 || window.below < 0 ? -1 : all->below + window.below;
   modes->pencil = whole;
@@ -117,7 +128,6 @@ static PetscErrorCode ParitiesMerge(Modes modes, Parities *all)
   modes->shifts        = all->shifts;
   modes->right         = all->right;
   modes->left_spectrum = all->left;
-  PetscCall(PetscStrncpy(modes->completeness, all->completeness, sizeof(modes->completeness)));
   PetscCall(PetscFree(order));
   PetscCall(PetscFree(all->mode));
   PetscCall(PetscFree(all->parity));
@@ -140,6 +150,7 @@ PetscErrorCode ModesSolveParities(Modes modes)
   for (PetscInt c = 0; c < all.n_parities; c++) PetscCall(ParitySolve(modes, c, whole, &all));
   if (!all.n) PetscCall(ModesComplainNone(modes, all.below));
   PetscCall(ParitiesTrim(modes, &all));
+  PetscCall(ParitiesDescribe(modes, whole, &all));
   PetscCall(ParitiesMerge(modes, &all));
   for (PetscInt c = 0; c < all.n_parities; c++) n_whole += all.unknowns[c];
   PetscCall(SavedBySymmetry(modes, all.n_parities, all.unknowns, n_whole, all.entries));

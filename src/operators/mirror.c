@@ -90,7 +90,8 @@ PetscErrorCode MirrorGetRow(Mat R, PetscInt row, PetscInt *column, PetscReal *si
   PetscInt           n;
 
   PetscFunctionBeginUser;
-  *sign = 0;
+  *column = -1;
+  *sign   = 0;
   PetscCall(MatGetRow(R, row, &n, &columns, &values));
   for (PetscInt k = 0; k < n; k++)
     if (PetscAbsScalar(values[k]) > 0.5) *column = columns[k], *sign = PetscRealPart(values[k]) > 0 ? 1 : -1;

@@ -54,26 +54,67 @@ static PetscBool TwinsAreAlike(const TwinRow *a, const TwinRow *b, const PetscRe
   return PETSC_TRUE;
 }
 
-/* Weight of each row of this rank, of which `first` is the first of all; returns how many stand for any */
-static PetscInt TwinsWeigh(PetscInt n_all, const TwinRow all[], PetscInt first, PetscInt n, TwinRow own[])
+/* Magnitudes of the products with rows of right, in ascending order: the k-th is of row order[k] */
+static PetscErrorCode TwinsSort(PetscInt n, const TwinRow all[], PetscReal size[], PetscInt order[])
 {
-  PetscReal largest[2] = {0, 0};
-  PetscInt  n_kept     = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) {
+    size[i]  = PetscAbsReal(all[i].product[1]);
+    order[i] = i;
+  }
+  PetscCall(PetscSortRealWithArrayInt(n, size, order));
+  PetscFunctionReturn(0);
+}
 
+/* How many of n ascending numbers are below x */
+static PetscInt TwinsCountBelow(PetscInt n, const PetscReal size[], PetscReal x)
+{
+  PetscInt low = 0;
+
+  while (low < n) {
+    const PetscInt middle = low + (n - low) / 2;
+
+    if (size[middle] < x) low = middle + 1;
+    else n = middle;
+  }
+  return low;
+}
+
+/* Weight of row i of all: rows that are alike, found among those of about the same product, where i is the first of them */
+static PetscInt TwinsCount(PetscInt i, PetscInt n_all, const TwinRow all[], const PetscReal size[],
+                           const PetscInt order[], const PetscReal largest[2])
+{
+  const PetscReal here = PetscAbsReal(all[i].product[1]), near = 2 * TWINS_ALIKE * largest[1];
+  PetscInt        weight = 0;
+
+  if (!(here > TWINS_ZERO * largest[1])) return 0;
+  for (PetscInt k = TwinsCountBelow(n_all, size, here - near); k < n_all && size[k] <= here + near; k++) {
+    if (!TwinsAreAlike(&all[i], &all[order[k]], largest)) continue;
+    if (order[k] < i) return 0;
+    weight++;
+  }
+  return weight;
+}
+
+/* Weight of each row of this rank, of which `first` is the first of all, and how many stand for any */
+static PetscErrorCode TwinsWeigh(PetscInt n_all, const TwinRow all[], PetscInt first, PetscInt n, TwinRow own[],
+                                 PetscInt *n_kept)
+{
+  PetscReal largest[2] = {0, 0}, *size;
+  PetscInt *order;
+
+  PetscFunctionBeginUser;
+  *n_kept = 0;
   for (PetscInt i = 0; i < 2 * n_all; i++)
     largest[i % 2] = PetscMax(largest[i % 2], PetscAbsReal(all[i / 2].product[i % 2]));
+  PetscCall(PetscMalloc2(n_all, &size, n_all, &order));
+  PetscCall(TwinsSort(n_all, all, size, order));
   for (PetscInt i = 0; i < n; i++) {
-    PetscBool kept = PetscAbsReal(own[i].product[1]) > TWINS_ZERO * largest[1] ? PETSC_TRUE : PETSC_FALSE;
-
-    for (PetscInt j = 0; j < n_all && kept; j++) {
-      if (!TwinsAreAlike(&own[i], &all[j], largest)) continue;
-      if (j < first + i) kept = PETSC_FALSE;
-      own[i].weight++;
-    }
-    if (!kept) own[i].weight = 0;
-    n_kept += kept;
+    own[i].weight = TwinsCount(first + i, n_all, all, size, order, largest);
+    *n_kept += own[i].weight > 0;
   }
-  return n_kept;
+  PetscCall(PetscFree2(size, order));
+  PetscFunctionReturn(0);
 }
 
 /* Rows of A with a weight, times that for the left factor */
@@ -106,7 +147,7 @@ static PetscErrorCode TwinsCombine(Mat factor[2])
   PetscCall(TwinsMultiply(factor, &n, &own));
   PetscCall(GatherRecords(PetscObjectComm((PetscObject)factor[0]), n, sizeof(*own), own, &n_all, &all));
   PetscCall(MatGetOwnershipRange(factor[0], &first, NULL));
-  n_kept = TwinsWeigh(n_all, all, first, n, own);
+  PetscCall(TwinsWeigh(n_all, all, first, n, own, &n_kept));
   for (int k = 0; k < 2; k++) {
     Mat kept;
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A map that is killed goes on where it stopped, with the same bytes, also on another number of ranks; that of another scene begins
 anew and says so. Breaks when a number of the bodies, of the state or of a row is not kept, when a point depends on more than
-these, or when files of another scene are taken.
+these, when memory of kept bodies is left, or when files of another scene are taken.
 
     map.py SQUEAL LAUNCHER"""
 
@@ -47,7 +47,9 @@ def main(squeal, launcher):
             os.killpg(process.pid, signal.SIGKILL)
         if (parts / "map.csv").exists():
             fail("the map ended before it could be killed")
-        said = run(2, parts)
+        said = run(2, parts, "-malloc_coalesce", "-malloc_debug", "-malloc_dump")
+        if " bytes " in said:
+            fail(f"memory of kept bodies is left: {said}")
         if " of them kept by an earlier run" not in said or "warning" in said or "0 reductions" not in said:
             fail(f"it did not go on: {said}")
         for table in TABLES:
