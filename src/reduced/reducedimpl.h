@@ -15,7 +15,7 @@ struct _p_ReducedStepper {
   const ReducedModel *model;
   PetscReal           dt, rtol, w; /* s; -; frequency that balances the exponential, rad/s */
   PetscReal          *E, *F;       /* [2 m][2 m], [m][2 m]: z(dt) = E z + F g, by columns */
-  PetscReal          *Q;           /* [3 m][3 m] of damping; NULL without */
+  PetscReal          *Q;           /* [3 m][3 m] of the work of damping; NULL without, and until works are asked for */
   PetscReal          *W;           /* [3 n_pairs][3 n_pairs] compliance of the pairs in a step, m/N */
   PetscReal *HW, *HC;     /* [3 n_pairs]^2, [m][3 n_pairs] H W and H Cm' of the residual (stepper.c); NULL undamped */
   ContactCompliance laws; /* NULL without pairs */
@@ -26,7 +26,8 @@ struct _p_ReducedStepper {
 
 /* An eigenvalue of the mesh about the sliding state beside that of the reduced model, rad/s */
 typedef struct {
-  PetscReal mesh[2], reduced[2], steps[2]; /* growth and frequency; steps: as the steps of the run see the reduced model */
+  PetscReal mesh[2], reduced[2],
+    steps[2]; /* growth and frequency; steps: as the steps of the run see the reduced model */
   PetscBool unstable;
   char      label[32];
 } ReducedPair;
@@ -51,8 +52,8 @@ struct _p_ReducedRun {
   PetscBool  asked, compare, verify;
   PetscReal  cutoff; /* Hz, 0: to be chosen */
   PetscReal  growth_rtol;
-  PetscReal *p;      /* parameters of the operators, NULL: those of the scene */
-  ReducedRun like;   /* whose modes those taken resemble, as many; NULL: all below the cut-off are */
+  PetscReal *p;    /* parameters of the operators, NULL: those of the scene */
+  ReducedRun like; /* whose modes those taken resemble, as many; NULL: all below the cut-off are */
   /* rooms */
   Dynamics    dynamics;
   Modes       mesh_modes;
@@ -61,7 +62,7 @@ struct _p_ReducedRun {
   /* reduction */
   const char   *why;     /* the cut-off is what it is */
   PetscBool     chooses; /* cut-off, and the step where -ts_dt leaves it open */
-  Pencil        bodies; /* every pair open, undamped */
+  Pencil        bodies;  /* every pair open, undamped */
   Modes         body_modes;
   Mat           Phi, MPhi; /* [unknowns][m] modes, and M Phi, dense */
   Mat           G, others; /* ports: [3 pairs][unknowns] of the pairs, sparse; [unknowns][loads, probes] dense */
@@ -191,10 +192,8 @@ PETSC_INTERN PetscErrorCode ReducedForget(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedReduceLike(ReducedRun reduced, PetscReal cutoff, const PetscReal p[],
                                               ReducedRun *at);
 
-/* The bodies of a run that was reduced with other parameters p [parameters], in as many modes, which resemble its own and lie
-   below `cutoff` (Hz). The caller destroys them. Collective */
-PETSC_INTERN PetscErrorCode ReducedReduceLike(ReducedRun reduced, PetscReal cutoff, const PetscReal p[],
-                                              ReducedRun *at);
+/* stepper.c - Q of the work of damping, where it is not there yet: only who asks for works needs it */
+PETSC_INTERN PetscErrorCode ReducedStepperSetDamping(ReducedStepper stepper);
 
 /* verify.c - keeps the normal force of a step; runs again, and says how the force differs */
 PETSC_INTERN PetscErrorCode ReducedKeepForce(ReducedRun reduced);

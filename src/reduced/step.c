@@ -319,6 +319,7 @@ PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedS
   StepperSolveResidual(s, state);
   StepperAccount(s, drive, state, report);
   if (report->works) report->external += StepperLoadWork(s, state);
+  if (report->works) PetscCall(ReducedStepperSetDamping(s));
   if (report->works) report->damping = -StepperDamping(s);
   PetscCall(PetscArraycpy(state->q, s->q, n));
   PetscCall(PetscArraycpy(state->eta, s->next, m));

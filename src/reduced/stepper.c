@@ -113,15 +113,14 @@ static PetscErrorCode StepperSetShortDamping(ReducedStepper s, PetscReal h, cons
   PetscFunctionReturn(0);
 }
 
-/* Q [3 m][3 m] of the work that damping takes in the step */
-static PetscErrorCode StepperSetDamping(ReducedStepper s)
+PetscErrorCode ReducedStepperSetDamping(ReducedStepper s)
 {
   const PetscInt m = s->model->m, n = 3 * m;
   PetscReal     *B, *X, *Y;
   int            k;
 
   PetscFunctionBeginUser;
-  if (!s->model->C) PetscFunctionReturn(0);
+  if (!s->model->C || s->Q) PetscFunctionReturn(0);
   PetscCall(PetscCalloc3(n * n, &B, n * n, &X, n * n, &Y));
   PetscCall(PetscCalloc1(n * n, &s->Q));
   StepperSetGenerator(s->model, s->dt, s->w, n, B);
@@ -254,7 +253,6 @@ PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, Pet
   PetscCall(PetscCalloc3(model->n_ports, &s->mean, n, &s->r, model->n_ports, &s->port));
   PetscCall(PetscCalloc3(n, &s->q, n, &s->dq, n, &s->slip));
   PetscCall(StepperSetResponse(s));
-  PetscCall(StepperSetDamping(s));
   PetscCall(StepperSetResidual(s));
   PetscCall(StepperSetCompliance(s));
   PetscCall(StepperSetLaws(s));

@@ -2,8 +2,8 @@
 #include "cycleimpl.h"
 #include <squeal/options.h>
 
-#define CYCLE_AMPLITUDE 0.3
-#define CYCLE_FAR       1e3 /* s, when ramps are over */
+#define CYCLE_AMPLITUDE  0.3
+#define CYCLE_MOST_STEPS 1000001 /* in a period: more than any needs, and still counted twice over */
 
 PetscErrorCode CycleCreate(MPI_Comm comm, LimitCycle *cycle)
 {
@@ -68,9 +68,10 @@ PetscErrorCode CycleSetFromOptions(LimitCycle c)
                              "cycle.h", c->amplitude, &c->amplitude, NULL));
   PetscOptionsEnd();
   c->from_mode = start == 1 ? PETSC_TRUE : PETSC_FALSE;
-  PetscCheck(c->steps == 0 || (c->steps >= 7 && c->steps % 2), c->comm, PETSC_ERR_USER_INPUT,
-             "-cycle_steps %" PetscInt_FMT " must be an odd number, 7 at least, or 0 for those of the transient",
-             c->steps);
+  PetscCheck(c->steps == 0 || (c->steps >= 7 && c->steps <= CYCLE_MOST_STEPS && c->steps % 2), c->comm,
+             PETSC_ERR_USER_INPUT,
+             "-cycle_steps %" PetscInt_FMT " must be an odd number, 7 to %d, or 0 for those of the transient", c->steps,
+             CYCLE_MOST_STEPS);
   PetscCheck(c->rtol >= 1e-13 && c->rtol <= 1e-3, c->comm, PETSC_ERR_USER_INPUT,
              "-cycle_rtol %.6g must lie between 1e-13, which rounding allows, and 1e-3", (double)c->rtol);
   PetscCheck(c->max_it > 0, c->comm, PETSC_ERR_USER_INPUT, "-cycle_max_it %" PetscInt_FMT " must be positive",
@@ -161,7 +162,7 @@ static PetscErrorCode CycleRefine(LimitCycle c, const ShootingCycle *at, const S
   if (finer.converged) {
     PetscCall(CycleFlowMeasure(&c->flow, &finer, &point->finer, point->finer_probe));
     PetscCall(ShootingGetStability(&c->shooting, &finer, &point->finer_stability));
-    if (along) point->value_error += PetscAbsReal(finer.value - at->value);
+    if (along) point->value_error += CycleError(at->value, finer.value);
   }
   c->flow.n_steps = steps;
   PetscCall(PetscFree2(finer.x, finer.M));

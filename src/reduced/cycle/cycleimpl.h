@@ -6,7 +6,8 @@
 #include "reduced/reducedimpl.h"
 #include "solver/shooting.h"
 
-#define CYCLE_BY "-analysis cycle"
+#define CYCLE_BY  "-analysis cycle"
+#define CYCLE_FAR 1e3 /* s, when ramps are over */
 
 /* Matrices of a reduced model that a parameter of the bodies changes */
 typedef enum { FAMILY_K, FAMILY_C, FAMILY_P, FAMILY_W, FAMILY_CM, FAMILY_CX, FAMILY_N_PARTS } CycleFamilyPart;
@@ -134,7 +135,9 @@ PETSC_INTERN PetscErrorCode CycleTakeFold(LimitCycle cycle, const ShootingPlace 
    NULL for rising values */
 PETSC_INTERN PetscErrorCode CycleFollow(LimitCycle cycle, const ShootingCycle *start, const ShootingTangent *growing);
 
-/* write.c - all tables as they are by now; the class of a cycle: stable, unstable, or numerical where it cannot be told */
+/* write.c - all tables as they are by now; the error of a number beside that of twice the steps; the class of a cycle that was found
+   to `rtol`: stable, unstable, or numerical where it cannot be told */
 PETSC_INTERN PetscErrorCode CycleWrite(LimitCycle cycle);
-PETSC_INTERN const char    *CycleClass(const CyclePoint *point);
+PETSC_INTERN PetscReal      CycleError(PetscReal found, PetscReal finer);
+PETSC_INTERN const char    *CycleClass(const CyclePoint *point, PetscReal rtol);
 PETSC_INTERN PetscReal      CycleMultiplier(const ShootingStability *stability);

@@ -5,35 +5,31 @@
 */
 #include "cycleimpl.h"
 
-#define FLOW_FAR 1e3 /* s, when ramps are over */
-
 /* Loads and sliding from the time of the run on; raises the error where they go on to change */
 static PetscErrorCode FlowSetDrive(ReducedRun r, CycleFlow *f)
 {
   const PetscReal   now = r->state.time;
   const ModelScene *scene;
   PetscReal        *later, way[2];
+  const char *const when = now < CYCLE_FAR ? "when the transient ends at" : "after all ramps, at";
+  const char *const what = now < CYCLE_FAR ? "take a longer -ts_max_time, or a shorter ramp" : "take what is constant";
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(r->run.model, &scene));
   PetscCall(PetscCalloc1(r->model.n_loads, &later));
   ReducedSetLoads(r, now, f->loads);
-  ReducedSetLoads(r, now + FLOW_FAR, later);
+  ReducedSetLoads(r, now + CYCLE_FAR, later);
   for (PetscInt i = 0; i < r->model.n_loads; i++)
-    PetscCheck(f->loads[i] == later[i], r->comm, PETSC_ERR_USER_INPUT,
-               CYCLE_BY ": load %s still changes when the transient ends at %.6g s: take a longer "
-                        "-ts_max_time, or a shorter ramp",
-               scene->loads[i].name, (double)now);
+    PetscCheck(f->loads[i] == later[i], r->comm, PETSC_ERR_USER_INPUT, CYCLE_BY ": load %s still changes %s %.6g s: %s",
+               scene->loads[i].name, when, (double)now, what);
   PetscCall(PetscFree(later));
   for (PetscInt i = 0; i < r->model.n_pairs; i++) {
     PetscCall(ReducedGetWay(r, i, &way[0]));
-    r->state.time = now + FLOW_FAR;
+    r->state.time = now + CYCLE_FAR;
     PetscCall(ReducedGetWay(r, i, &way[1]));
     r->state.time = now;
     PetscCheck(PetscAbsReal(way[1] - way[0]) <= 1e-6 * PetscAbsReal(way[1]), r->comm, PETSC_ERR_USER_INPUT,
-               CYCLE_BY ": the sliding still changes when the transient ends at %.6g s: take a longer "
-                        "-ts_max_time, or a shorter ramp",
-               (double)now);
+               CYCLE_BY ": the sliding still changes %s %.6g s: %s", when, (double)now, what);
     f->share[i] = f->speed[i] != 0 ? way[0] / (f->speed[i] * r->dt) : 0;
   }
   PetscFunctionReturn(0);
@@ -52,6 +48,7 @@ PetscErrorCode CycleFlowCreate(ReducedRun r, CycleFlow *f)
   for (PetscInt i = 0; i < n; i++) f->interface[i] = r->pair[i].interface;
   PetscCall(ReducedStateCreate(f->model, &f->state));
   PetscCall(ReducedReportCreate(f->model, &f->report));
+  f->report.works = PETSC_FALSE;
   PetscCall(FlowSetDrive(r, f));
   PetscFunctionReturn(0);
 }

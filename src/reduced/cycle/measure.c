@@ -66,12 +66,17 @@ static void PortMeasure(const CycleFlow *f, PetscReal u[], CycleProbe *probe)
 
 PetscErrorCode CycleFlowMeasure(CycleFlow *f, const ShootingCycle *cycle, CycleMeasure *measure, CycleProbe probe[])
 {
-  PetscReal *y;
+  const size_t steps = (size_t)f->n_steps;
+  PetscReal   *y;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(f->n, &y));
-  PetscCall(PetscMalloc2(f->n_steps, &f->force, f->n_steps * 3 * f->n_looked, &f->shown));
+  PetscCall(PetscMalloc2(steps, &f->force, steps * 3 * (size_t)f->n_looked, &f->shown));
   PetscCall(CycleFlowRun(f, cycle->x, cycle->period, cycle->value, y, NULL));
+  PetscCheck(!PetscIsInfOrNanReal(y[0]), PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED,
+             CYCLE_BY ": a cycle of %.6g Hz was found, but the contact laws have no solution when it is run once more: "
+                      "take more -cycle_steps",
+             1 / (double)cycle->period);
   PeriodMeasure(f, cycle->period, measure);
   for (PetscInt i = 0; i < f->n_looked && probe; i++) PortMeasure(f, &f->shown[i], &probe[i]);
   PetscCall(PetscFree2(f->force, f->shown));

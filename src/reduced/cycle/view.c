@@ -31,7 +31,7 @@ static PetscErrorCode CycleViewPoint(LimitCycle c, const CyclePoint *p, PetscVie
     viewer,
     "  %s: largest multiplier %.6g%+.6gi (%.6g), that of the phase 1%+.1e%+.1ei; residual %.1e after %" PetscInt_FMT
     " steps of Newton's method\n",
-    CycleClass(p), (double)large[0], (double)large[1], size, (double)(phase[0] - 1), (double)phase[1],
+    CycleClass(p, c->rtol), (double)large[0], (double)large[1], size, (double)(phase[0] - 1), (double)phase[1],
     (double)p->residual, p->its));
   PetscFunctionReturn(0);
 }

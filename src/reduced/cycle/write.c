@@ -1,7 +1,9 @@
 /* Tables of cycles, written anew with each one, so that a run that ends early leaves all that it has found */
 #include "cycleimpl.h"
 
-#define CLASS_ROUNDING 1e-6 /* of the modulus of a multiplier, what tolerances of Newton's method leave */
+/* A number of second order in the step is off by 4/3 of its difference to twice the steps, one of first order by twice that */
+#define ERROR_SECOND_ORDER (4.0 / 3)
+#define ERROR_FIRST_ORDER  2
 
 #define CYCLE_COLUMNS                                                                                                  \
   "point,parameter,value,value_error,kind,freq_hz,freq_error_hz,force_mean_n,force_rms_n,force_rms_error_n,"           \
@@ -16,31 +18,43 @@ PetscReal CycleMultiplier(const ShootingStability *stability)
   return hypot(stability->largest[0], stability->largest[1]);
 }
 
+PetscReal CycleError(PetscReal found, PetscReal finer)
+{
+  return ERROR_SECOND_ORDER * PetscAbsReal(found - finer);
+}
+
+/* Of the modulus of the largest multiplier: pairs that open and close between two steps leave multipliers of first order */
+static PetscReal MultiplierError(const CyclePoint *p)
+{
+  return ERROR_FIRST_ORDER * PetscAbsReal(CycleMultiplier(&p->stability) - CycleMultiplier(&p->finer_stability));
+}
+
 /* 1 outside the unit circle, -1 inside, 0 where the margin leaves that open */
 static int MultiplierSide(PetscReal size, PetscReal margin)
 {
   return PetscAbsReal(size - 1) <= margin ? 0 : size > 1 ? 1 : -1;
 }
 
-const char *CycleClass(const CyclePoint *p)
+/* A residual r moves the cycle by r / |1 - m| along the vector of a multiplier m, and m by as much: it is told where
+   |1 - m|^2 > r */
+const char *CycleClass(const CyclePoint *p, PetscReal rtol)
 {
   const PetscReal size   = CycleMultiplier(&p->stability);
-  const PetscReal error  = p->has_finer ? PetscAbsReal(size - CycleMultiplier(&p->finer_stability)) : 0;
-  const PetscReal margin = PetscMax(error, CLASS_ROUNDING);
+  const PetscReal margin = PetscMax(MultiplierError(p), PetscSqrtReal(rtol));
   const int       side   = MultiplierSide(size, margin);
 
-  if (!side || side != MultiplierSide(p->stability.worst, margin)) return "numerical";
+  if (!p->has_finer || !side || side != MultiplierSide(p->stability.worst, margin)) return "numerical";
   return side > 0 ? "unstable" : "stable";
 }
 
 typedef char Cell[32];
 
-/* How far the number of twice the steps is from one that was found; nothing where there is none */
-static PetscErrorCode CellPrintError(const CyclePoint *p, PetscReal found, PetscReal finer, Cell cell)
+/* An error; nothing where there is no cycle of twice the steps */
+static PetscErrorCode CellPrintError(const CyclePoint *p, PetscReal error, Cell cell)
 {
   PetscFunctionBeginUser;
   cell[0] = 0;
-  if (p->has_finer) PetscCall(PetscSNPrintf(cell, sizeof(Cell), "%.15g", (double)PetscAbsReal(found - finer)));
+  if (p->has_finer) PetscCall(PetscSNPrintf(cell, sizeof(Cell), "%.15g", (double)error));
   PetscFunctionReturn(0);
 }
 
@@ -63,17 +77,18 @@ static PetscErrorCode CycleWriteRow(LimitCycle c, PetscInt i, ResultsTable table
 
   PetscFunctionBeginUser;
   PetscCall(CellPrintValue(c, p, value));
-  PetscCall(CellPrintError(p, a->freq, b->freq, error[0]));
-  PetscCall(CellPrintError(p, a->rms, b->rms, error[1]));
-  PetscCall(CellPrintError(p, a->peak, b->peak, error[2]));
-  PetscCall(CellPrintError(p, size, CycleMultiplier(&p->finer_stability), error[3]));
-  PetscCall(ResultsTableRow(
-    table,
-    "%" PetscInt_FMT ",%s,%s,%s,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%.15g,"
-    "%.15g,%.15g,%s,%" PetscInt_FMT ",%.15g,%" PetscInt_FMT,
-    i + 1, c->parameter, value[0], value[1], p->fold ? "fold" : "cycle", (double)a->freq, error[0], (double)a->mean,
-    (double)a->rms, error[1], (double)a->peak, error[2], (double)a->open, (double)size, error[3], (double)large[0],
-    (double)large[1], (double)phase[0], (double)phase[1], CycleClass(p), p->n_steps, (double)p->residual, p->its));
+  PetscCall(CellPrintError(p, CycleError(a->freq, b->freq), error[0]));
+  PetscCall(CellPrintError(p, CycleError(a->rms, b->rms), error[1]));
+  PetscCall(CellPrintError(p, CycleError(a->peak, b->peak), error[2]));
+  PetscCall(CellPrintError(p, MultiplierError(p), error[3]));
+  PetscCall(ResultsTableRow(table,
+                            "%" PetscInt_FMT ",%s,%s,%s,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%.15g,"
+                            "%.15g,%.15g,%s,%" PetscInt_FMT ",%.15g,%" PetscInt_FMT,
+                            i + 1, c->parameter, value[0], value[1], p->fold ? "fold" : "cycle", (double)a->freq,
+                            error[0], (double)a->mean, (double)a->rms, error[1], (double)a->peak, error[2],
+                            (double)a->open, (double)size, error[3], (double)large[0], (double)large[1],
+                            (double)phase[0], (double)phase[1], CycleClass(p, c->rtol), p->n_steps, (double)p->residual,
+                            p->its));
   PetscFunctionReturn(0);
 }
 
@@ -88,10 +103,10 @@ static PetscErrorCode CycleWriteProbe(LimitCycle c, PetscInt i, PetscInt k, cons
   for (int d = 0; d < 3; d++) {
     const CycleProbe *a = &p->probe[k + d], *b = &p->finer_probe[k + d];
 
-    PetscCall(CellPrintError(p, a->displacement_rms, b->displacement_rms, error[0]));
-    PetscCall(CellPrintError(p, a->displacement_peak, b->displacement_peak, error[1]));
-    PetscCall(CellPrintError(p, a->velocity_rms, b->velocity_rms, error[2]));
-    PetscCall(CellPrintError(p, a->velocity_peak, b->velocity_peak, error[3]));
+    PetscCall(CellPrintError(p, CycleError(a->displacement_rms, b->displacement_rms), error[0]));
+    PetscCall(CellPrintError(p, CycleError(a->displacement_peak, b->displacement_peak), error[1]));
+    PetscCall(CellPrintError(p, CycleError(a->velocity_rms, b->velocity_rms), error[2]));
+    PetscCall(CellPrintError(p, CycleError(a->velocity_peak, b->velocity_peak), error[3]));
     PetscCall(ResultsTableRow(table, "%" PetscInt_FMT ",%s,%s,%s,%c,%.15g,%s,%.15g,%s,%.15g,%s,%.15g,%s", i + 1,
                               c->parameter, value[0], name, 'x' + d, (double)a->displacement_rms, error[0],
                               (double)a->displacement_peak, error[1], (double)a->velocity_rms, error[2],
