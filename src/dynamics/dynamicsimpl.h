@@ -67,6 +67,7 @@ struct _p_Dynamics {
   PetscInt       n_elements, n_steps; /* of this call */
   PetscLogDouble seconds;
   PetscBool      stopped; /* by a signal */
+  PetscBool      endless; /* no end is asked for: nothing is integrated up to one */
   PetscBool      ended;   /* all steps are done: the last balance is due */
 };
 

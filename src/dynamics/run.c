@@ -26,10 +26,19 @@ static PetscErrorCode RunRefuse(Dynamics d, const char by[])
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode DynamicsSetEndless(Dynamics d)
+{
+  PetscFunctionBeginUser;
+  d->endless = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode DynamicsGetStep(Dynamics d, PetscReal dt, DynamicsRun *run)
 {
   PetscFunctionBeginUser;
-  run->dt = d->dt_asked > 0 ? d->dt_asked : dt;
+  run->dt  = d->dt_asked > 0 ? d->dt_asked : dt;
+  run->end = 0;
+  if (d->endless) PetscFunctionReturn(0);
   PetscCall(DynamicsMatchEnd(d, &run->dt));
   PetscCall(DynamicsCheckEnd(d, run->dt, &run->end));
   PetscFunctionReturn(0);

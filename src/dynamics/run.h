@@ -31,6 +31,10 @@ typedef struct {
 PETSC_INTERN PetscErrorCode DynamicsGetRun(Dynamics dynamics, Results results, const char by[], PetscReal dt,
                                            DynamicsRun *run);
 
+/* DynamicsSetEndless - the caller takes the scene and the step, and integrates nothing from a beginning to an end: none is asked for,
+   and the run's is 0. Not collective. */
+PETSC_INTERN PetscErrorCode DynamicsSetEndless(Dynamics dynamics);
+
 /* DynamicsGetStep - step and end of a run whose caller takes another `dt` where -ts_dt does not say one. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsGetStep(Dynamics dynamics, PetscReal dt, DynamicsRun *run);
 

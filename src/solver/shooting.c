@@ -74,15 +74,18 @@ static PetscErrorCode ShotDifference(ShootingWork *w, const ShootingCycle *c, Pe
   PetscFunctionReturn(0);
 }
 
-/* f, g at the cycle, and the phase at the guess */
-static PetscErrorCode ShotDifferentiate(ShootingWork *w, const ShootingCycle *c)
+/* f, g at the cycle, and the phase at the guess; has is false where the flow fails next to the cycle */
+static PetscErrorCode ShotDifferentiate(ShootingWork *w, const ShootingCycle *c, PetscBool *has)
 {
   const Shooting *s = w->s;
 
   PetscFunctionBeginUser;
+  *has = PETSC_TRUE;
   if (!s->phase_free) PetscCall(ShotDifference(w, c, SHOOTING_DIFFERENCE * c->period, 0, w->f));
   if (w->tangent) PetscCall(ShotDifference(w, c, 0, SHOOTING_DIFFERENCE * s->span, w->g));
-  if (w->has_phase) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < s->n; i++)
+    if (PetscIsInfOrNanReal(w->f[i]) || PetscIsInfOrNanReal(w->g[i])) *has = PETSC_FALSE;
+  if (!*has || w->has_phase) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < s->n; i++) w->c[i] = s->phase_free ? 0 : w->f[i] * PetscSqr(s->weight[i]) * w->scale;
   w->has_phase = PETSC_TRUE;
   PetscFunctionReturn(0);
@@ -131,10 +134,11 @@ static PetscErrorCode ShotStep(ShootingWork *w, ShootingCycle *c)
 {
   const PetscInt  n = w->s->n;
   const PetscReal T = c->period, p = c->value, before = c->residual;
-  PetscBool       singular;
+  PetscBool       has, singular;
 
   PetscFunctionBeginUser;
-  PetscCall(ShotDifferentiate(w, c));
+  PetscCall(ShotDifferentiate(w, c, &has));
+  if (!has) PetscFunctionReturn(0);
   PetscCall(ShotFactor(w, c, &singular));
   if (singular) PetscFunctionReturn(0);
   for (PetscInt i = n; i < n + 2 + w->s->n_free; i++) w->rhs[i] = 0;
@@ -200,27 +204,27 @@ static PetscBool TangentIsNone(const Shooting *s, const ShootingTangent *t)
 }
 
 PetscErrorCode ShootingGetTangent(const Shooting *s, const ShootingCycle *cycle, ShootingTangent *tangent,
-                                  PetscBool *found)
+                                  ShootingDirection *direction)
 {
   const PetscInt n = s->n;
   ShootingWork   w;
-  PetscBool      singular;
+  PetscBool      has, singular = PETSC_TRUE;
   PetscReal      length;
 
   PetscFunctionBeginUser;
   if (TangentIsNone(s, tangent)) tangent->value = s->span;
   PetscCall(ShotCreate(s, cycle, tangent, &w));
-  PetscCall(ShotDifferentiate(&w, cycle));
-  PetscCall(ShotFactor(&w, cycle, &singular));
-  *found = PETSC_FALSE;
+  PetscCall(ShotDifferentiate(&w, cycle, &has));
+  if (has) PetscCall(ShotFactor(&w, cycle, &singular));
+  *direction = has ? SHOOTING_SPLITS : SHOOTING_NO_DERIVATIVE;
   if (!singular) {
     PetscCall(PetscArrayzero(w.rhs, n + 2 + s->n_free));
     w.rhs[n + 1] = 1;
     PetscCall(DenseSolve(n + 2 + s->n_free, w.A, w.pivot, PETSC_FALSE, 1, w.rhs));
     length = PetscSqrtReal(TangentDot(s, w.scale, &(ShootingTangent){w.rhs, w.rhs[n], w.rhs[n + 1]}, w.rhs));
-    *found = length > 0 && !PetscIsInfOrNanReal(length) ? PETSC_TRUE : PETSC_FALSE;
+    if (length > 0 && !PetscIsInfOrNanReal(length)) *direction = SHOOTING_ALONG;
   }
-  if (*found) {
+  if (*direction == SHOOTING_ALONG) {
     for (PetscInt i = 0; i < n; i++) tangent->x[i] = w.rhs[i] / length;
     tangent->period = w.rhs[n] / length;
     tangent->value  = w.rhs[n + 1] / length;
@@ -273,14 +277,16 @@ PetscErrorCode ShootingCopy(PetscInt n, const ShootingCycle *from, ShootingCycle
 static PetscErrorCode FoldTry(const Shooting *s, PetscReal step, const ShootingCycle *start,
                               const ShootingTangent *along, ShootingPlace *at, PetscBool *found)
 {
+  ShootingDirection direction = SHOOTING_SPLITS;
+
   PetscFunctionBeginUser;
   PetscCall(ShootingCopy(s->n, start, &at->cycle));
   PetscCall(ShootingAdvance(s, step, along, &at->cycle));
   PetscCall(PetscArraycpy(at->tangent.x, along->x, s->n));
   at->tangent.period = along->period;
   at->tangent.value  = along->value;
-  *found             = at->cycle.converged;
-  if (*found) PetscCall(ShootingGetTangent(s, &at->cycle, &at->tangent, found));
+  if (at->cycle.converged) PetscCall(ShootingGetTangent(s, &at->cycle, &at->tangent, &direction));
+  *found = direction == SHOOTING_ALONG ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 

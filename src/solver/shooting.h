@@ -74,8 +74,12 @@ typedef struct {
   PetscReal worst; /* modulus of the largest, if the phase's is another one that has as large a part in that motion */
 } ShootingStability;
 
+/* What a branch does at a cycle: it goes on along a tangent; it splits, Newton's matrix is singular; the flow fails next to
+   the cycle, at another period or parameter, and has no derivative there */
+typedef enum { SHOOTING_ALONG, SHOOTING_SPLITS, SHOOTING_NO_DERIVATIVE } ShootingDirection;
+
 /*@ ShootingSolve - the cycle near a guess, at its value of the parameter. Not collective. That it does not converge is
-    told by `converged`; then x is the best that was seen. @*/
+    told by `converged`; then x is where the iteration stopped, which may be further off than the guess. @*/
 PETSC_INTERN PetscErrorCode ShootingSolve(const Shooting *s, ShootingCycle *cycle);
 
 /*@ ShootingGetStability - multipliers of a cycle that has converged. Not collective. @*/
@@ -83,9 +87,9 @@ PETSC_INTERN PetscErrorCode ShootingGetStability(const Shooting *s, const Shooti
                                                  ShootingStability *stability);
 
 /*@ ShootingGetTangent - direction of the branch at a cycle, along which the tangent before (of length 0 for none, then p
-    grows) goes on. Where the branch splits there is none: found is false, and the tangent stays. Not collective. @*/
+    grows) goes on; where there is none the tangent stays. Not collective. @*/
 PETSC_INTERN PetscErrorCode ShootingGetTangent(const Shooting *s, const ShootingCycle *cycle, ShootingTangent *tangent,
-                                               PetscBool *found);
+                                               ShootingDirection *direction);
 
 /*@ ShootingAdvance - the cycle at a distance along a branch, in place of `cycle`, which stays what it was where there is
     none (converged is then false). Folds are passed. Not collective. @*/

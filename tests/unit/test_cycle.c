@@ -148,11 +148,11 @@ static PetscErrorCode TestKnown(const Known *known, int *failed)
    1, and back to it at that value */
 static PetscErrorCode TestBranch(const Known known[2], int *failed)
 {
-  Oscillator      o;
-  Known           found;
-  ShootingTangent tangent = {.period = 0, .value = 0};
-  PetscBool       straight;
-  int             n = 0;
+  Oscillator        o;
+  Known             found;
+  ShootingTangent   tangent = {.period = 0, .value = 0};
+  ShootingDirection straight;
+  int               n = 0;
 
   PetscFunctionBeginUser;
   PetscCall(OscillatorCreate(known[0].mu, &o));
@@ -177,11 +177,11 @@ static PetscErrorCode TestBranch(const Known known[2], int *failed)
    amplitudes have the friction of the onset. Reference: mu, at which an eigenvalue of the closed oscillator is imaginary, and its period */
 static PetscErrorCode TestOnset(const Known *known, int *failed)
 {
-  Oscillator      o;
-  Known           found;
-  CycleMeasure    measure;
-  ShootingTangent tangent = {.period = 0, .value = -1};
-  PetscBool       straight;
+  Oscillator        o;
+  Known             found;
+  CycleMeasure      measure;
+  ShootingTangent   tangent = {.period = 0, .value = -1};
+  ShootingDirection straight;
 
   PetscFunctionBeginUser;
   PetscCall(OscillatorCreate(known->mu, &o));

@@ -15,16 +15,15 @@
 #define BRANCH_VANISHED 0.05 /* rms of the force over that of the vibration */
 #define BRANCH_UPRIGHT                                                                                                 \
   1e-5 /* slope over the span below which a branch has no fold: linear vibrations of any amplitude at an onset */
-#define BRANCH_SPLITS "the branch splits, and has no direction"
 #define BRANCH_BEYOND 0.01 /* of the span, and twice that of an end: how far a step may go beyond it */
 
 /* One way along the branch */
 typedef struct {
-  ShootingPlace here, next, fold;
-  PetscReal     step;
-  PetscInt      most;  /* points after which it ends */
-  PetscBool     split; /* the next place has no direction */
-  const char   *end;
+  ShootingPlace     here, next, fold;
+  PetscReal         step;
+  PetscInt          most;      /* points after which it ends */
+  ShootingDirection direction; /* of the branch at the next place */
+  const char       *end;
 } BranchWay;
 
 /* A step that goes beyond the range by a little at most, where there are no models */
@@ -56,20 +55,25 @@ static PetscErrorCode BranchStep(LimitCycle c, PetscReal step, BranchWay *w, Pet
   PetscFunctionReturn(0);
 }
 
-/* Direction at the next place, and the fold where the parameter has turned back */
+/* Why the branch ends at a place without direction; NULL where there is one */
+static const char *BranchNoWay(ShootingDirection direction)
+{
+  if (direction == SHOOTING_NO_DERIVATIVE) return "the motion has no derivative there";
+  return direction == SHOOTING_SPLITS ? "the branch splits, and has no direction" : NULL;
+}
+
+/* Direction at the next place, and the fold where the parameter has turned back, if there is a row left for it */
 static PetscErrorCode BranchTurn(LimitCycle c, PetscReal step, BranchWay *w)
 {
   ShootingTangent *t = &w->next.tangent;
-  PetscBool        found;
   PetscReal        error;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(t->x, w->here.tangent.x, c->flow.n));
   t->period = w->here.tangent.period;
   t->value  = w->here.tangent.value;
-  PetscCall(ShootingGetTangent(&c->shooting, &w->next.cycle, t, &found));
-  w->split = found ? PETSC_FALSE : PETSC_TRUE;
-  if (!found || (t->value > 0) == (w->here.tangent.value > 0)) PetscFunctionReturn(0);
+  PetscCall(ShootingGetTangent(&c->shooting, &w->next.cycle, t, &w->direction));
+  if (w->direction != SHOOTING_ALONG || (t->value > 0) == (w->here.tangent.value > 0)) PetscFunctionReturn(0);
   if (PetscMax(PetscAbsReal(t->value), PetscAbsReal(w->here.tangent.value)) < BRANCH_UPRIGHT * c->shooting.span)
     PetscFunctionReturn(0);
   PetscCall(ShootingFindFold(&c->shooting, &w->here, step, t->value, &w->fold, &error));
@@ -90,9 +94,9 @@ static void BranchGoOn(const LimitCycle c, PetscBool taken, BranchWay *w)
   }
   if (w->next.cycle.its <= BRANCH_EASY) w->step = PetscMin(1.5 * w->step, BRANCH_LONGEST);
   w->step = PetscMin(w->step, BRANCH_SHRINKS * last->found.rms / c->rms);
-  if (w->split)
-    w->end = BRANCH_SPLITS;
-  else if (last->found.rms < BRANCH_VANISHED * c->rms)
+  w->end  = BranchNoWay(w->direction);
+  if (w->end) return;
+  if (last->found.rms < BRANCH_VANISHED * c->rms)
     w->end = "the vibration vanishes";
   else if (c->n_points >= w->most)
     w->end = "-cycle_points";
@@ -102,14 +106,13 @@ static void BranchGoOn(const LimitCycle c, PetscBool taken, BranchWay *w)
 static PetscErrorCode BranchLeave(LimitCycle c, BranchWay *w)
 {
   const PetscReal value = w->here.cycle.value;
-  PetscBool       found;
 
   PetscFunctionBeginUser;
   w->step = BRANCH_STEP;
-  w->end  = NULL;
-  PetscCall(ShootingGetTangent(&c->shooting, &w->here.cycle, &w->here.tangent, &found));
-  if (!found) w->end = BRANCH_SPLITS;
+  PetscCall(ShootingGetTangent(&c->shooting, &w->here.cycle, &w->here.tangent, &w->direction));
+  w->end = BranchNoWay(w->direction);
   if (w->here.tangent.value > 0 ? value >= c->range[1] : value <= c->range[0]) w->end = "end of -cycle_range";
+  if (c->n_points >= w->most) w->end = "-cycle_points";
   PetscFunctionReturn(0);
 }
 
@@ -126,7 +129,7 @@ static PetscErrorCode BranchWalk(LimitCycle c, BranchWay *w)
     w->step = step;
     PetscCall(BranchStep(c, step, w, &taken));
     if (taken && !w->end) PetscCall(BranchTurn(c, step, w));
-    if (taken) PetscCall(CycleTake(c, &w->next.cycle));
+    if (taken && c->n_points < w->most) PetscCall(CycleTake(c, &w->next.cycle));
     BranchGoOn(c, taken, w);
     if (!taken) continue;
     w->here = w->next;

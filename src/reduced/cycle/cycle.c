@@ -263,9 +263,9 @@ static PetscErrorCode CycleReduce(LimitCycle c, Results results)
   PetscFunctionBeginUser;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(idle); i++)
     PetscCall(OptionsRefuse(c->comm, idle[i], "not used by -cycle_start mode, which runs no transient"));
+  PetscCall(DynamicsSetEndless(c->reduced->dynamics));
   PetscCall(ReducedPrepare(c->reduced, results));
-  PetscCall(ReducedReduce(c->reduced));
-  PetscCall(ReducedCompare(c->reduced));
+  PetscCall(ReducedChoose(c->reduced));
   PetscCall(ShiftInvertDestroy(&c->reduced->inverse));
   c->reduced->state.time = CYCLE_FAR;
   PetscFunctionReturn(0);

@@ -12,8 +12,8 @@
 */
 #include "cycleimpl.h"
 
-#define ONSET_LOOKS 33 /* values over the range */
-#define ONSET_RTOL  1e-12
+#define ONSET_LOOKS 33    /* values over the range */
+#define ONSET_RTOL  1e-12 /* of the range */
 
 /* The sliding state at a value, and its fastest mode */
 typedef struct {
@@ -86,6 +86,18 @@ static PetscErrorCode HopfBracket(LimitCycle c, OnsetLook *look, PetscReal at[2]
   PetscFunctionReturn(0);
 }
 
+/* Growth at a value where there must be a sliding state, since there is one on both sides of it */
+static PetscErrorCode HopfGrowth(LimitCycle c, PetscReal value, OnsetLook *look, PetscReal *growth)
+{
+  PetscFunctionBeginUser;
+  PetscCall(OnsetGrowth(c, value, look, growth));
+  PetscCheck(!PetscIsNanReal(*growth), c->comm, PETSC_ERR_USER_INPUT,
+             "-cycle_start mode: no sliding state is found at %s %.6g, next to where a mode becomes unstable: take "
+             "another -cycle_range, or -cycle_start transient",
+             c->varied.name, (double)value);
+  PetscFunctionReturn(0);
+}
+
 /* The onset by bisection, which jumps of the closed pairs do not disturb */
 static PetscErrorCode HopfFind(LimitCycle c, OnsetLook *look)
 {
@@ -93,20 +105,23 @@ static PetscErrorCode HopfFind(LimitCycle c, OnsetLook *look)
 
   PetscFunctionBeginUser;
   PetscCall(HopfBracket(c, look, at, growth, span));
+  PetscCheck(span[0] <= span[1], c->comm, PETSC_ERR_USER_INPUT,
+             "-cycle_start mode: no sliding state is found for %s between %.6g and %.6g: do -loads press the contacts?",
+             c->varied.name, (double)c->range[0], (double)c->range[1]);
   PetscCheck(
     !PetscIsNanReal(at[0]), c->comm, PETSC_ERR_USER_INPUT,
     "-cycle_start mode: no mode becomes unstable for %s between %.6g and %.6g, the fastest grows by %.3g to %.3g "
     "1/s: take another -cycle_range, or -cycle_start transient",
     c->varied.name, (double)c->range[0], (double)c->range[1], (double)span[0], (double)span[1]);
-  while (PetscAbsReal(at[1] - at[0]) > ONSET_RTOL * PetscAbsReal(at[1])) {
+  while (PetscAbsReal(at[1] - at[0]) > ONSET_RTOL * (c->range[1] - c->range[0])) {
     const PetscReal middle = 0.5 * (at[0] + at[1]);
     PetscReal       now;
 
     if (middle == at[0] || middle == at[1]) break;
-    PetscCall(OnsetGrowth(c, middle, look, &now));
+    PetscCall(HopfGrowth(c, middle, look, &now));
     at[(now > 0) == (growth[1] > 0)] = middle;
   }
-  PetscCall(OnsetGrowth(c, at[1], look, &growth[1]));
+  PetscCall(HopfGrowth(c, at[1], look, &growth[1]));
   c->onset[0] = at[1];
   c->onset[1] = look->eigenvalue[0];
   c->onset[2] = look->eigenvalue[1] / (2 * PETSC_PI);
@@ -139,6 +154,45 @@ static void OnsetSizes(const ReducedModel *model, const OnsetLook *look, PetscRe
   for (int i = 0; i < 3; i++) size[i] = scale * PetscSqrtReal(0.5 * square[i]);
 }
 
+/* All pairs slide: the states whose modes are looked at are those of sliding */
+static PetscErrorCode OnsetCheckSliding(LimitCycle c)
+{
+  const ContactInterface *list;
+  PetscInt                n;
+  Model                   model;
+  Contact                 contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(c->operators, &model, &contact));
+  PetscCall(ContactGetInterfaces(contact, &n, &list));
+  for (PetscInt i = 0; i < c->flow.model->n_pairs; i++) {
+    const char *name = list[c->flow.interface[i]].name;
+
+    PetscCheck(c->flow.speed[i] != 0, c->comm, PETSC_ERR_USER_INPUT,
+               "contact %s: -cycle_start mode is about sliding, and its speed is 0; say it by -%s_slip and -%s_speed",
+               name, name, name);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The cycle near the mode's motion `length` away from rest, which must lie in the range */
+static PetscErrorCode OnsetAdvance(LimitCycle c, PetscReal length, const ShootingTangent *growing, ShootingCycle *at)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ShootingAdvance(&c->shooting, length, growing, at));
+  PetscCheck(
+    at->converged, c->comm, PETSC_ERR_NOT_CONVERGED,
+    "-cycle_start mode: at %s %.6g, where a mode of %.6g Hz becomes unstable, Newton's method finds no cycle of "
+    "-cycle_amplitude %.3g in %" PetscInt_FMT " steps: take another amplitude, more -cycle_steps, or "
+    "-cycle_start transient",
+    c->varied.name, (double)c->onset[0], (double)c->onset[2], (double)c->amplitude, at->its);
+  PetscCheck(at->value >= c->range[0] && at->value <= c->range[1], c->comm, PETSC_ERR_USER_INPUT,
+             "-cycle_range %.6g,%.6g must hold %s %.6g, where the first cycle, of -cycle_amplitude %.3g, is: take a "
+             "wider range, or another amplitude",
+             (double)c->range[0], (double)c->range[1], c->varied.name, (double)at->value, (double)c->amplitude);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode CycleBegin(LimitCycle c, ShootingCycle *at, ShootingTangent *growing)
 {
   const ReducedModel *model = c->flow.model;
@@ -146,6 +200,7 @@ PetscErrorCode CycleBegin(LimitCycle c, ShootingCycle *at, ShootingTangent *grow
   OnsetLook           look;
 
   PetscFunctionBeginUser;
+  PetscCall(OnsetCheckSliding(c));
   PetscCall(LookCreate(model, &look));
   PetscCall(HopfFind(c, &look));
   scale = OnsetForce(model, &look.rest, NULL) / OnsetForce(model, &look.mode[0], &look.mode[1]);
@@ -160,13 +215,7 @@ PetscErrorCode CycleBegin(LimitCycle c, ShootingCycle *at, ShootingTangent *grow
   growing->period = growing->value = 0;
   for (PetscInt i = 0; i < c->flow.n; i++) growing->x[i] /= length;
   PetscCall(CycleSetShooting(c, at->period));
-  PetscCall(ShootingAdvance(&c->shooting, c->amplitude * scale * length, growing, at));
-  PetscCheck(
-    at->converged, c->comm, PETSC_ERR_NOT_CONVERGED,
-    "-cycle_start mode: at %s %.6g, where a mode of %.6g Hz becomes unstable, Newton's method finds no cycle of "
-    "-cycle_amplitude %.3g in %" PetscInt_FMT " steps: take another amplitude, more -cycle_steps, or "
-    "-cycle_start transient",
-    c->varied.name, (double)c->onset[0], (double)c->onset[2], (double)c->amplitude, at->its);
+  PetscCall(OnsetAdvance(c, c->amplitude * scale * length, growing, at));
   PetscCall(LookDestroy(&look));
   PetscFunctionReturn(0);
 }
