@@ -138,8 +138,11 @@ static PetscErrorCode ReducedKeepAlike(ReducedRun r)
   PetscReal     *A, *share;
 
   PetscFunctionBeginUser;
-  PetscCheck(n >= m, r->comm, PETSC_ERR_PLIB, "%" PetscInt_FMT " modes, fewer than the %" PetscInt_FMT " to resemble",
-             n, m);
+  PetscCheck(n >= m, r->comm, PETSC_ERR_USER_INPUT,
+             "-cycle_range: at one of its values the bodies have %" PetscInt_FMT
+             " modes below %.6g Hz, fewer than the %" PetscInt_FMT
+             " of the scene: take a range nearer to the value of the scene, which must not be 0",
+             n, (double)r->cutoff, m);
   PetscCall(PetscMalloc3(n * m, &A, n, &share, n, &order));
   PetscCall(ReducedGram(r->MPhi, r->like->Phi, A));
   for (PetscInt i = 0; i < n; i++) {

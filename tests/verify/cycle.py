@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """A limit cycle of cycle.csv beside the end of the transient that it was found from: frequency by the times at which the
-normal force rises through its mean, rms and largest force of whole periods.
+normal force rises through its mean, rms and largest force of whole periods; rms and peaks of probes where there are any.
 
-    cycle.py FOLDER FREQUENCY FORCE     largest relative differences
+    cycle.py FOLDER FREQUENCY FORCE [PROBE]   largest relative differences
     cycle.py errors COARSE FINER PART   errors that COARSE states beside its differences to FINER: 4/3 of them, twice that of multipliers
     cycle.py same BRANCH VALUE SINGLE FREQUENCY FORCE   the cycle of a branch at a value of its parameter beside the one that SINGLE
                                         found without a branch: largest relative differences"""
 
+import csv
 import sys
 from pathlib import Path
 
@@ -44,6 +45,30 @@ def same(branch, value, single, frequency, force):
     return faults > 0
 
 
+def probes(folder, record, at, most):
+    """How many numbers of cycle_probes.csv are not those of the transient's own columns about their mean, in periods that
+    begin at those times. Pairs open and close at other parts of a step in each period, in the cycle in the same: they are apart by
+    something of first order in the step. Peaks are the mean of those of the periods; all is over the largest of the directions."""
+    path, faults = Path(folder) / "cycle_probes.csv", 0
+    if not path.exists():
+        return 0
+    inside = (record["time_s"] >= at[0]) & (record["time_s"] < at[-1])
+    period = numpy.searchsorted(at, record["time_s"][inside], side="right")
+    with open(path, encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        for what, column, unit in (("displacement", "", "m"), ("velocity", "v", "m_s")):
+            name = f"{row['probe']}_{column}{row['direction']}_{unit}"
+            moves = record[name][inside] - record[name][inside].mean()
+            for kind, value in (("rms", moves.std()),
+                                ("peak", numpy.mean([abs(moves[period == k]).max() for k in range(1, len(at))]))):
+                size = max(float(other[f"{what}_{kind}_{unit}"]) for other in rows if other["probe"] == row["probe"])
+                wrong = abs(value - float(row[f"{what}_{kind}_{unit}"])) / size
+                faults += not wrong <= most
+                print(f"{kind} of {name}: transient {value:.9g}, apart by {wrong:.1e}, at most {most:.0e}")
+    return faults if rows else 1
+
+
 def main():
     if sys.argv[1] in ("errors", "same"):
         return {"errors": errors, "same": same}[sys.argv[1]](*sys.argv[2:])
@@ -55,9 +80,9 @@ def main():
     at = time[rise] - above[rise] * (time[rise + 1] - time[rise]) / (above[rise + 1] - above[rise])
     keep = numpy.concatenate([numpy.diff(at) > 0.5 / cycle["freq_hz"], [True]])  # one in each period
     at = at[keep][-PERIODS - 1:]
-    inside = normal[(time >= at[0]) & (time < at[-1])]
-    found = (len(at) - 1) / (at[-1] - at[0]), inside.std(), inside.max()
-    faults = 0
+    inside = (time >= at[0]) & (time < at[-1])
+    found = (len(at) - 1) / (at[-1] - at[0]), normal[inside].std(), normal[inside].max()
+    faults = probes(folder, record, at, float(sys.argv[4])) if sys.argv[4:] else 0
     for what, value, known, most in zip(("frequency", "rms of the force", "largest force"), found,
                                         (cycle["freq_hz"], cycle["force_rms_n"], cycle["force_peak_n"]),
                                         (frequency, force, force)):

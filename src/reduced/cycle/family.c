@@ -14,7 +14,7 @@
    K = Q Omega^2 Q' has the modes of the model again, of which the coordinates are Q'eta.
 
    5 points become 9 and 17 of them until the last coefficients of the Chebyshev series fall below FAMILY_RTOL of the largest
-   entry: what the series leaves out is smaller.
+   entry, those of K_ij below FAMILY_RTOL omega_i omega_j: what the series leaves out is smaller.
 */
 #include "cycleimpl.h"
 #include <petsctime.h>
@@ -123,21 +123,33 @@ static PetscErrorCode FamilyTakeModel(CycleFamily *f, const ReducedModel *model,
   PetscFunctionReturn(0);
 }
 
+/* What no frequency of the bodies rises by more than from the scene to a value: the root of a stiffness, or of one over a mass */
+static PetscErrorCode FamilyGetRise(const ReducedParameter *p, PetscReal value, PetscReal *rise)
+{
+  PetscBool damps, weighs;
+
+  PetscFunctionBeginUser;
+  *rise = 1;
+  PetscCall(ReducedUnitIsGyration(p->unit, &damps));
+  PetscCall(PetscStrncmp(p->unit, "kg", 2, &weighs));
+  if (damps || value <= 0 || p->value <= 0) PetscFunctionReturn(0);
+  *rise = PetscSqrtReal(PetscMax(1, weighs ? p->value / value : value / p->value));
+  PetscFunctionReturn(0);
+}
+
 /* Reduces the bodies at t */
 static PetscErrorCode FamilyReduce(CycleFamily *f, PetscReal t, PetscReal *part[])
 {
-  const PetscReal value = FamilyValue(f, t), scene = f->parameter->value;
-  PetscReal       ratio = 1;
-  const PetscReal was   = f->p[f->parameter->index];
-  PetscBool       same, damps;
+  const PetscReal value = FamilyValue(f, t), was = f->p[f->parameter->index];
+  PetscBool       same;
+  PetscReal       rise;
   PetscReal      *T;
   ReducedRun      at;
 
   PetscFunctionBeginUser;
-  PetscCall(ReducedUnitIsGyration(f->parameter->unit, &damps));
-  if (!damps && value > 0 && scene > 0) ratio = PetscMax(value / scene, scene / value); /* no mode rises more */
+  PetscCall(FamilyGetRise(f->parameter, value, &rise));
   f->p[f->parameter->index] = value;
-  PetscCall(ReducedReduceLike(f->scene, PetscSqrtReal(ratio) * f->scene->cutoff, f->p, &at));
+  PetscCall(ReducedReduceLike(f->scene, rise * f->scene->cutoff, f->p, &at));
   f->p[f->parameter->index] = was;
   same                      = !at->model.C == !f->scene->model.C ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(same, f->scene->comm, PETSC_ERR_USER_INPUT,
@@ -161,27 +173,49 @@ static PetscReal FamilyCosine(PetscInt n, PetscInt j, PetscInt k)
   return 2 * ends * PetscCosReal(PETSC_PI * (PetscReal)(j * k) / (PetscReal)(n - 1)) / (PetscReal)(n - 1);
 }
 
-/* The largest of the last two coefficients of all entries, over the largest entry of their matrix */
+/* The larger of the last two coefficients of an entry; `largest` becomes its size where that is larger */
+static PetscReal FamilyLast(const CycleFamily *f, int part, PetscInt i, PetscReal *largest)
+{
+  const PetscInt n    = f->n;
+  PetscReal      c[2] = {0, 0};
+
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal a = f->part[k][part][i];
+
+    *largest = PetscMax(*largest, PetscAbsReal(a));
+    c[0] += FamilyCosine(n, n - 1, k) * a;
+    c[1] += FamilyCosine(n, n - 2, k) * a;
+  }
+  return PetscMax(PetscAbsReal(c[0]), PetscAbsReal(c[1]));
+}
+
+/* Of K_ij over omega_i omega_j of the scene, so that no frequency is off by more, however far below the cut-off; modes that are
+   rigid count as the lowest one that is not */
+static PetscReal FamilyStiffnessError(const CycleFamily *f)
+{
+  const ReducedModel *scene = &f->scene->model;
+  const PetscInt      m     = scene->m;
+  PetscReal           least = scene->omega2[m - 1], error = 0, unused = 0;
+
+  for (PetscInt i = 0; i < m; i++)
+    if (scene->omega2[i] > FAMILY_RIGID * scene->omega2[m - 1]) least = PetscMin(least, scene->omega2[i]);
+  for (PetscInt j = 0; j < m; j++)
+    for (PetscInt i = 0; i < m; i++) {
+      const PetscReal size = PetscSqrtReal(PetscMax(least, scene->omega2[i]) * PetscMax(least, scene->omega2[j]));
+
+      error = PetscMax(error, FamilyLast(f, FAMILY_K, i + m * j, &unused) / size);
+    }
+  return error;
+}
+
+/* Of the other matrices over the largest entry of each */
 static void FamilySetError(CycleFamily *f)
 {
-  const PetscInt n = f->n;
-
-  f->error = 0;
-  for (int part = 0; part < FAMILY_N_PARTS; part++) {
+  f->error = FamilyStiffnessError(f);
+  for (int part = FAMILY_K + 1; part < FAMILY_N_PARTS; part++) {
     PetscReal largest = 0, last = 0;
 
-    for (PetscInt i = 0; i < f->size[part]; i++) {
-      PetscReal c[2] = {0, 0};
-
-      for (PetscInt k = 0; k < n; k++) {
-        const PetscReal a = f->part[k][part][i];
-
-        largest = PetscMax(largest, PetscAbsReal(a));
-        c[0] += FamilyCosine(n, n - 1, k) * a;
-        c[1] += FamilyCosine(n, n - 2, k) * a;
-      }
-      last = PetscMax(last, PetscMax(PetscAbsReal(c[0]), PetscAbsReal(c[1])));
-    }
+    for (PetscInt i = 0; i < f->size[part]; i++) last = PetscMax(last, FamilyLast(f, part, i, &largest));
     f->error = PetscMax(f->error, largest > 0 ? last / largest : 0);
   }
 }

@@ -45,7 +45,7 @@ static PetscErrorCode CycleViewStart(LimitCycle c, PetscViewer viewer)
   if (f)
     PetscCall(PetscViewerASCIIPrintf(viewer,
                                      "bodies reduced at %" PetscInt_FMT " values of %s in %.4g s, interpolated between "
-                                     "them: last coefficients %.1e of the largest entries\n",
+                                     "them: to %.1e by the last coefficients\n",
                                      f->n, c->parameter, (double)f->seconds, (double)f->error));
   if (c->from_mode)
     PetscCall(PetscViewerASCIIPrintf(viewer,
