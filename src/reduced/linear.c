@@ -213,7 +213,8 @@ PetscErrorCode ReducedLineariseSliding(const ReducedModel *model, const PetscBoo
   PetscFunctionReturn(0);
 }
 
-/* The state of a mode of which z = (eta, rate): lambda_n = -S eta + T rate, lambda = e lambda_n */
+/* The state of a mode of which z = (eta, rate): lambda_n = -S eta + T rate, lambda = e lambda_n. Forces are without those that
+   friction itself damps with, which the eigenvalue and z know of: they are a guess of the cycle, and its size */
 static void ClosedSetMode(const ClosedPairs *c, const PetscReal z[], ReducedState *mode)
 {
   const PetscInt m = c->model->m;

@@ -135,3 +135,16 @@ PetscErrorCode ReducedUnitIsGyration(const char unit[], PetscBool *is)
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(units) && !*is; i++) PetscCall(PetscStrcmp(unit, units[i], is));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode ReducedParameterGetRise(const ReducedParameter *p, PetscReal value, PetscReal *rise)
+{
+  PetscBool damps, weighs;
+
+  PetscFunctionBeginUser;
+  *rise = 1;
+  PetscCall(ReducedUnitIsGyration(p->unit, &damps));
+  PetscCall(PetscStrncmp(p->unit, "kg", 2, &weighs));
+  if (damps || value <= 0 || p->value <= 0) PetscFunctionReturn(0);
+  *rise = PetscSqrtReal(PetscMax(1, weighs ? p->value / value : value / p->value));
+  PetscFunctionReturn(0);
+}

@@ -123,20 +123,6 @@ static PetscErrorCode FamilyTakeModel(CycleFamily *f, const ReducedModel *model,
   PetscFunctionReturn(0);
 }
 
-/* What no frequency of the bodies rises by more than from the scene to a value: the root of a stiffness, or of one over a mass */
-static PetscErrorCode FamilyGetRise(const ReducedParameter *p, PetscReal value, PetscReal *rise)
-{
-  PetscBool damps, weighs;
-
-  PetscFunctionBeginUser;
-  *rise = 1;
-  PetscCall(ReducedUnitIsGyration(p->unit, &damps));
-  PetscCall(PetscStrncmp(p->unit, "kg", 2, &weighs));
-  if (damps || value <= 0 || p->value <= 0) PetscFunctionReturn(0);
-  *rise = PetscSqrtReal(PetscMax(1, weighs ? p->value / value : value / p->value));
-  PetscFunctionReturn(0);
-}
-
 /* Reduces the bodies at t */
 static PetscErrorCode FamilyReduce(CycleFamily *f, PetscReal t, PetscReal *part[])
 {
@@ -147,7 +133,7 @@ static PetscErrorCode FamilyReduce(CycleFamily *f, PetscReal t, PetscReal *part[
   ReducedRun      at;
 
   PetscFunctionBeginUser;
-  PetscCall(FamilyGetRise(f->parameter, value, &rise));
+  PetscCall(ReducedParameterGetRise(f->parameter, value, &rise));
   f->p[f->parameter->index] = value;
   PetscCall(ReducedReduceLike(f->scene, rise * f->scene->cutoff, f->p, &at));
   f->p[f->parameter->index] = was;
