@@ -50,8 +50,8 @@ PetscErrorCode MapSetFromOptions(Map map)
     "change of the rms between windows, or standard error of its mean, below which an amplitude is settled", "map.h",
     map->rtol, &map->rtol, NULL));
   PetscCall(PetscOptionsInt("-map_verify",
-                            "points, spread over the map, run again with half the step and with 1.5 times "
-                            "the cut-off",
+                            "points, spread over the map, run again with half the step, with the contact laws "
+                            "to 1e-12, and with 1.5 times the cut-off",
                             "map.h", map->n_verify, &map->n_verify, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-map_restart",
                            "go on where a map of the same scene in -output_dir was "
@@ -128,7 +128,7 @@ static PetscErrorCode MapShareChains(Map map, MapBodies bodies[], const PetscInt
     const PetscInt own = map->lines_differ ? k / map->n_ways : 0;
 
     if (own != line) PetscCall(MapMarchDestroy(&march));
-    if (own != line) PetscCall(MapMarchCreate(map, &bodies[own], map->dt, &march));
+    if (own != line) PetscCall(MapMarchCreate(map, &bodies[own], map->dt, MAP_RTOL, &march));
     line = own;
     PetscCall(MapChain(march, ends[0] + k, &row[*n]));
     *n += map->n_linked;
@@ -152,8 +152,7 @@ static PetscErrorCode MapBodiesGet(Map map, PetscInt line, MapBodies *bodies)
   PetscFunctionReturn(0);
 }
 
-/* Lines at a time: where each has bodies of its own, so many that no rank is idle for long, as far as bodies are small */
-static PetscErrorCode MapCountBatch(Map map, PetscInt *batch)
+PetscErrorCode MapCountBatch(Map map, PetscInt n_jobs, PetscInt n_bodies, PetscInt *batch)
 {
   const PetscInt n_lines = map->n_axes > 1 ? map->axis[1].n : 1;
   PetscMPIInt    size;
@@ -163,8 +162,9 @@ static PetscErrorCode MapCountBatch(Map map, PetscInt *batch)
   *batch = n_lines;
   if (!map->lines_differ) PetscFunctionReturn(0);
   PetscCallMPI(MPI_Comm_size(map->comm, &size));
-  least  = (size + map->n_ways - 1) / map->n_ways;
-  *batch = PetscMin(n_lines, PetscMax(least, PetscMin(MAP_BATCH * least, (PetscInt)(MAP_MEMORY / map->bytes))));
+  least  = (size + n_jobs - 1) / n_jobs;
+  *batch = PetscMin(MAP_BATCH * least, (PetscInt)(MAP_MEMORY / ((PetscReal)n_bodies * map->bytes)));
+  *batch = PetscMin(n_lines, PetscMax(least, *batch));
   PetscFunctionReturn(0);
 }
 
@@ -178,7 +178,7 @@ static PetscErrorCode MapLines(Map map, ResultsTable table[2])
   MapPoint      *row;
 
   PetscFunctionBeginUser;
-  PetscCall(MapCountBatch(map, &batch));
+  PetscCall(MapCountBatch(map, map->n_ways, 1, &batch));
   PetscCall(PetscCalloc1(batch, &bodies));
   PetscCall(PetscCalloc1(batch * map->n_ways * map->n_linked, &row));
   for (PetscInt line = 0; line < n_lines; line += batch) {

@@ -5,7 +5,6 @@
 */
 #include "mapimpl.h"
 
-#define MARCH_RTOL     1e-9 /* of the contact laws */
 #define MARCH_TINY     1e-9 /* of the mean force: a vibration that is rounding */
 #define MARCH_SMALL    0.01 /* of the mean force: a vibration that is small */
 #define MARCH_STICKING 0.01 /* share of the time */
@@ -30,7 +29,7 @@ struct _p_MapMarch {
   MapSample     *sample;                   /* [n_most] */
 };
 
-PetscErrorCode MapMarchCreate(Map map, MapBodies *bodies, PetscReal dt, MapMarch *march)
+PetscErrorCode MapMarchCreate(Map map, MapBodies *bodies, PetscReal dt, PetscReal rtol, MapMarch *march)
 {
   const ReducedModel *model = &bodies->model;
   MapMarch            w;
@@ -47,7 +46,7 @@ PetscErrorCode MapMarchCreate(Map map, MapBodies *bodies, PetscReal dt, MapMarch
   PetscCall(ReducedStateCreate(model, &w->rest));
   PetscCall(ReducedReportCreate(model, &w->report));
   w->report.works = PETSC_FALSE;
-  PetscCall(ReducedStepperCreate(model, dt, MARCH_RTOL, &w->stepper));
+  PetscCall(ReducedStepperCreate(model, dt, rtol, &w->stepper));
   PetscCall(PetscCalloc6(model->n_pairs, &w->sliding, model->n_loads, &w->loads, model->m, &w->kick, w->n_most * w->n,
                          &w->slip, w->n_most * w->n, &w->force, w->n_most, &w->sample));
   PetscCall(PetscCalloc6(model->n_pairs, &w->status, model->n_pairs, &w->closed, model->n_pairs, &w->known,

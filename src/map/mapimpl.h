@@ -6,6 +6,7 @@
 #include "base/progress.h"
 #include "reduced/parameter.h"
 
+#define MAP_RTOL            1e-9 /* of the contact laws (map.h) */
 #define MAP_MAX_AXES        2
 #define MAP_MAX_TEXT        65536 /* length of a list of values */
 #define MAP_MAX_MODES       24    /* that grow at a point and are listed */
@@ -15,6 +16,7 @@
 
 typedef enum { MAP_STABLE, MAP_GROWTH, MAP_STICKING, MAP_CYCLE, MAP_UNKNOWN, MAP_N_REGIMES } MapRegime;
 typedef enum { MAP_DECAYS, MAP_SETTLED, MAP_STEADY, MAP_TIME, MAP_FAILED, MAP_N_ENDS } MapEnd;
+typedef enum { MAP_HALF_STEP, MAP_TIGHT_LAWS, MAP_HIGHER_CUTOFF, MAP_N_CHECKS } MapCheckRun; /* of -map_verify */
 typedef enum { MAP_BOTH, MAP_UP, MAP_DOWN, MAP_APART } MapDirection;
 
 typedef struct {
@@ -61,9 +63,9 @@ typedef struct {
   PetscReal   *hits; /* [n_hits][m] Phi'J, m sqrt(kg)/s, then [n_hits] when they are due, s */
 } MapBodies;
 
-/* Differences of a run at a point from that of the map, or the largest of all points and the number of other regimes */
+/* Differences of a run at a point from that of the map, NAN of what is not compared; or the largest of all points */
 typedef struct {
-  PetscInt  regime;
+  PetscInt  n, regime, failed; /* points: compared, since they vibrate in both runs alike; of another regime; failed */
   PetscReal rms, freq, growth; /* relative; Hz; 1/s */
 } MapError;
 
@@ -100,7 +102,7 @@ struct _p_Map {
   MapPoint      *row; /* [n_rows] lines, ways, places */
   PetscInt       n_reductions, m, n_pairs;
   PetscLogDouble seconds[2]; /* reductions, transients */
-  MapError       error[2];   /* of half the step, of a higher cut-off */
+  MapError       error[MAP_N_CHECKS];
   /* restart */
   PetscBool   restart;
   const char *folder;
@@ -135,11 +137,15 @@ PETSC_INTERN PetscErrorCode MapShareBegin(MapShare *share, MPI_Comm comm);
 PETSC_INTERN PetscErrorCode MapShareNext(MapShare *share, PetscInt *k);
 PETSC_INTERN PetscErrorCode MapShareDestroy(MapShare *share);
 
-/* mapchain.c - the k-th point of a chain, without numbers; steps dt on some bodies (borrowed); all points of a chain, row [n_linked], and a
-   point from its own sliding state, row with its place; not collective */
+/* map.c - lines at a time: where each has bodies of its own, so many that no rank is idle for long, as far as their bodies are
+   small. A line has n_jobs for the ranks, and n_bodies */
+PETSC_INTERN PetscErrorCode MapCountBatch(Map map, PetscInt n_jobs, PetscInt n_bodies, PetscInt *batch);
+
+/* mapchain.c - the k-th point of a chain, without numbers; steps dt on some bodies (borrowed), laws to rtol; all points of a
+   chain, row [n_linked], and a point from its own sliding state, row with its place; not collective */
 typedef struct _p_MapMarch *MapMarch;
 PETSC_INTERN void           MapChainPlace(Map map, PetscInt chain, PetscInt k, MapPoint *row);
-PETSC_INTERN PetscErrorCode MapMarchCreate(Map map, MapBodies *bodies, PetscReal dt, MapMarch *march);
+PETSC_INTERN PetscErrorCode MapMarchCreate(Map map, MapBodies *bodies, PetscReal dt, PetscReal rtol, MapMarch *march);
 PETSC_INTERN PetscErrorCode MapChain(MapMarch march, PetscInt chain, MapPoint row[]);
 PETSC_INTERN PetscErrorCode MapMarchAlone(MapMarch march, MapPoint *row);
 PETSC_INTERN PetscErrorCode MapMarchDestroy(MapMarch *march);
@@ -170,7 +176,7 @@ PETSC_INTERN PetscReal MapForceLine(PetscInt n_records, PetscInt n, const PetscR
 PETSC_INTERN PetscBool MapIsSettled(PetscInt n, const MapSample sample[], PetscReal rtol, PetscReal *error);
 PETSC_INTERN PetscBool MapIsSteady(PetscInt n, const MapSample sample[], PetscReal rtol, PetscReal *error);
 
-/* mapverify.c - errors of step and cut-off at some points, into map_errors.csv */
+/* mapverify.c - errors of step, contact laws and cut-off at some points, into map_errors.csv */
 PETSC_INTERN PetscErrorCode MapVerify(Map map, Results results);
 
 /* mapwrite.c - the tables */

@@ -15,7 +15,7 @@ typedef struct {
   char (*parity)[PARITY_LENGTH];       /* [n] */
   PetscInt found[8];                   /* modes of each, */
   char    *said[8];                    /* and what is said of their completeness */
-  double   entries; /* of the largest factors */
+  double   entries;                    /* of the largest factors */
   PetscInt shifts;
 } Parities;
 
@@ -136,9 +136,9 @@ static PetscErrorCode ParitiesMerge(Modes modes, Parities *all)
 
 PetscErrorCode ModesSolveParities(Modes modes)
 {
-  Parities  all   = {0};
-  Pencil    whole = modes->pencil;
-  PetscInt  n_whole = 0;
+  Parities all     = {0};
+  Pencil   whole   = modes->pencil;
+  PetscInt n_whole = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PencilGetParities(whole, &all.n_parities, NULL));

@@ -74,8 +74,10 @@ static PetscInt TwinsCountBelow(PetscInt n, const PetscReal size[], PetscReal x)
   while (low < n) {
     const PetscInt middle = low + (n - low) / 2;
 
-    if (size[middle] < x) low = middle + 1;
-    else n = middle;
+    if (size[middle] < x)
+      low = middle + 1;
+    else
+      n = middle;
   }
   return low;
 }
@@ -130,8 +132,7 @@ static PetscErrorCode TwinsCopy(Mat A, PetscBool is_left, PetscInt n_kept, const
                          NULL, longest, NULL, B));
   PetscCall(MatGetOwnershipRange(*B, &row, NULL));
   for (PetscInt i = first; i < last; i++)
-    if (own[i - first].weight)
-      PetscCall(RowCopy(is_left ? (PetscReal)own[i - first].weight : 1, A, i, row++, *B));
+    if (own[i - first].weight) PetscCall(RowCopy(is_left ? (PetscReal)own[i - first].weight : 1, A, i, row++, *B));
   PetscCall(MatAssemblyBegin(*B, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*B, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(0);

@@ -8,12 +8,18 @@
                                                           100 1/s; downwards a vibration at some point without growing
                                                           mode; a frequency where there is one
     verify/map.py regime MAP REGIME                       all rows are of it
+    verify/map.py errors STEP HALF MAP MU WINDOW          map_errors.csv: rms of the normal force over the last half of the windows
+                                                          by two transients, to 1e-6; its main line to 20 Hz; no error
+                                                          of a stable run, and of growth for other bodies alone
+    verify/map.py linked MAP MU LESS MORE FALL            growth falls by it, 1/s, from one second value to the other, to 0.2
     verify/map.py failed MAP                              all rows have failed, and no number of a vibration is told
 """
 
 import csv
 import sys
 from pathlib import Path
+
+import numpy
 
 
 def rows(folder, name):
@@ -65,12 +71,50 @@ def regime(folder, name):
     return not found or any(each != name for each in found)
 
 
+def measured(transient, steps, window):
+    """rms about the mean of each window, and the main line (Hz), of the normal force in the last half of the windows."""
+    table = rows(transient, "transient.csv")[:steps + 1]
+    dt = float(table[1]["time_s"])
+    n = round(window / dt)
+    normal = numpy.array([float(row["normal_force_n"]) for row in table[1:]]).reshape(-1, n)[steps // n // 2:]
+    bins = (numpy.abs(numpy.fft.rfft((normal - normal.mean()) * numpy.hanning(n + 1)[:-1]))**2).sum(0)**0.5
+    best = 4 + int(bins[4:-1].argmax())
+    side = 1 if bins[best + 1] > bins[best - 1] else -1
+    ratio = bins[best + side] / bins[best]
+    return normal.var(axis=1).mean()**0.5, (best + side * (2 * ratio - 1) / (ratio + 1)) / (n * dt)
+
+
+def errors(step, half, folder, value, window):
+    table = rows(folder, "map_errors.csv")
+    found = {row["run"]: row for row in table if float(row["value"]) == float(value)}
+    level, line = zip(*(measured(transient, int(found[run]["steps"]), float(window))
+                        for transient, run in ((step, "map"), (half, "half_step"))))
+    told = {"rms of the map": float(found["map"]["force_rms_n"]) / level[0] - 1,
+            "rms error of the step": float(found["half_step"]["force_rms_error"]) - (level[1] / level[0] - 1),
+            "frequency, 1e-6 of 20 Hz": (float(found["map"]["freq_hz"]) - line[0]) / 20 * 1e-6,
+            "its error": (float(found["half_step"]["freq_error_hz"]) - (line[1] - line[0])) / 20 * 1e-6}
+    print(f"rms {level}, main line {line}: {told}")
+    idle = [row for row in table for name in ("force_rms_error", "freq_error_hz")
+            if (row[name] == "nan") != (row["regime"] == "stable" or row["run"] == "map")]
+    idle += [row for row in table if (row["growth_error_rad_s"] == "nan") != (row["run"] != "higher_cutoff")]
+    print(f"{len(table)} rows, {len(idle)} with an error of nothing, or none of something")
+    return not all(abs(off) < 1e-6 for off in told.values()) or bool(idle) or len(table) != 8
+
+
+def linked(folder, value, less, more, fall):
+    growths = [float(at(folder, value, second)[0]["growth_rad_s"]) for second in (less, more)]
+    print(f"growth {growths} 1/s, must fall by {fall}")
+    return not abs(growths[0] - growths[1] - float(fall)) < 0.2
+
+
 def failed(folder):
     told = [(row["status"], row[name]) for row in rows(folder, "map.csv")
             for name in ("freq_hz", "force_rms_n", "force_mean_n", "open_share", "error_estimate")]
+    told += [(row["status"], row[name]) for row in rows(folder, "map_errors.csv")
+             for name in ("freq_hz", "force_rms_n", "freq_error_hz", "force_rms_error")]
     print(f"status and numbers {told}")
     return not told or any(status != "failed" or number != "nan" for status, number in told)
 
 
 if __name__ == "__main__":
-    sys.exit({"growth": growth, "level": level, "regimes": regimes, "regime": regime, "failed": failed}[sys.argv[1]](*sys.argv[2:]))
+    sys.exit({"growth": growth, "level": level, "regimes": regimes, "regime": regime, "errors": errors, "linked": linked, "failed": failed}[sys.argv[1]](*sys.argv[2:]))
