@@ -117,4 +117,5 @@ def failed(folder):
 
 
 if __name__ == "__main__":
-    sys.exit({"growth": growth, "level": level, "regimes": regimes, "regime": regime, "errors": errors, "linked": linked, "failed": failed}[sys.argv[1]](*sys.argv[2:]))
+    sys.exit({"growth": growth, "level": level, "regimes": regimes, "regime": regime,
+              "errors": errors, "linked": linked, "failed": failed}[sys.argv[1]](*sys.argv[2:]))
