@@ -202,6 +202,39 @@ static PetscErrorCode TestOnset(const Known *known, int *failed)
   PetscFunctionReturn(0);
 }
 
+/* A rotation by T about (p, 0), which fails beyond period 2 pi: a cycle of any x with that period, at the edge of what there is */
+static PetscErrorCode EdgeFlow(void *ctx, const PetscReal x[], PetscReal T, PetscReal p, PetscReal y[], PetscReal M[])
+{
+  const PetscReal c = cos(T), s = sin(T);
+
+  PetscFunctionBeginUser;
+  y[0] = T > 2 * PETSC_PI ? *(PetscReal *)ctx : p + c * (x[0] - p) + s * x[1];
+  y[1] = c * x[1] - s * (x[0] - p);
+  for (int i = 0; i < 4 && M; i++) M[i] = (PetscReal[]){c, -s, s, c}[i];
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: a cycle next to which the flow fails is told to be one at which the branch splits */
+static PetscErrorCode TestEdge(int *failed)
+{
+  PetscReal         infinite = PETSC_INFINITY, x[2] = {1, 0}, M[4] = {1, 0, 0, 1}, t[2] = {0, 0}, one[2] = {1, 1};
+  ShootingTangent   tangent = {.x = t};
+  ShootingDirection direction;
+  Shooting          shooting = {.n = 2, .flow = EdgeFlow, .ctx = &infinite, .size = one, .weight = one, .least = -1};
+  ShootingCycle     cycle    = {.x = x, .M = M, .period = 2 * PETSC_PI};
+
+  PetscFunctionBeginUser;
+  shooting.span = 1;
+  PetscCall(ShootingGetTangent(&shooting, &cycle, &tangent, &direction));
+  *failed += CheckTrue("no derivative where the flow fails", direction == SHOOTING_NO_DERIVATIVE, (double)direction);
+  cycle.period = 1.9 * PETSC_PI; /* M - I alone is regular there: the branch goes on, with p */
+  PetscCall(EdgeFlow(&infinite, x, cycle.period, 0, t, M));
+  t[0] = t[1] = 0;
+  PetscCall(ShootingGetTangent(&shooting, &cycle, &tangent, &direction));
+  *failed += CheckTrue("a direction next to it", direction == SHOOTING_ALONG, (double)direction);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Tests(PetscMPIInt size, int *failed)
 {
   const Known known[2] = {
@@ -212,6 +245,7 @@ static PetscErrorCode Tests(PetscMPIInt size, int *failed)
   PetscFunctionBeginUser;
   (void)size;
   PetscCall(SlepcInitialize(NULL, NULL, NULL, NULL)); /* of matrix functions */
+  PetscCall(TestEdge(failed));
   for (int i = 0; i < 2; i++) PetscCall(TestKnown(&known[i], failed));
   PetscCall(TestBranch(known, failed));
   PetscCall(TestOnset(known, failed));

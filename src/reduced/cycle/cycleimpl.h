@@ -96,10 +96,11 @@ struct _p_LimitCycle {
   const char      *end[2];   /* why the branch ends, both ways; NULL for no branch */
 };
 
-/* family.c - the models, p [parameters] borrowed; that at a value; eta of columns `stride` apart from the scene's coordinates to those
-   of the model, or back */
+/* family.c - the models, p [parameters] borrowed; whether there is one at a value; that at it; eta of columns `stride` apart from the
+   scene's coordinates to those of the model, or back */
 PETSC_INTERN PetscErrorCode CycleFamilyCreate(ReducedRun scene, const ReducedParameter *parameter,
                                               const PetscReal range[2], PetscReal p[], CycleFamily **family);
+PETSC_INTERN PetscBool      CycleFamilyHolds(const CycleFamily *family, PetscReal value);
 PETSC_INTERN PetscErrorCode CycleFamilySet(CycleFamily *family, PetscReal value);
 PETSC_INTERN PetscErrorCode CycleFamilyTurn(const CycleFamily *family, PetscBool to_scene, PetscInt columns,
                                             PetscInt stride, PetscReal X[]);

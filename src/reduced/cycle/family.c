@@ -44,9 +44,13 @@ static PetscReal FamilyCoordinate(const CycleFamily *f, PetscReal p)
   const PetscReal a = f->logarithmic ? PetscLogReal(f->range[0]) : f->range[0];
   const PetscReal b = f->logarithmic ? PetscLogReal(f->range[1]) : f->range[1];
   const PetscReal x = f->logarithmic ? PetscLogReal(PetscMax(p, PETSC_SMALL * f->range[0])) : p;
-  const PetscReal t = (2 * x - a - b) / (b - a);
 
-  return PetscMax(-FAMILY_BEYOND, PetscMin(FAMILY_BEYOND, t));
+  return (2 * x - a - b) / (b - a);
+}
+
+PetscBool CycleFamilyHolds(const CycleFamily *f, PetscReal value)
+{
+  return PetscAbsReal(FamilyCoordinate(f, value)) <= FAMILY_BEYOND ? PETSC_TRUE : PETSC_FALSE;
 }
 
 static PetscReal FamilyValue(const CycleFamily *f, PetscReal t)
@@ -292,6 +296,9 @@ PetscErrorCode CycleFamilySet(CycleFamily *f, PetscReal value)
   PetscReal      weight[FAMILY_MOST], *work;
 
   PetscFunctionBeginUser;
+  PetscCheck(CycleFamilyHolds(f, value), f->scene->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "there is no reduced model at %s %.6g, which is beyond -cycle_range %.6g,%.6g", f->parameter->name,
+             (double)value, (double)f->range[0], (double)f->range[1]);
   FamilyWeigh(f->n, FamilyCoordinate(f, value), weight);
   PetscCall(PetscMalloc1(m * PetscMax(m, N), &work));
   FamilyCombine(f, weight, FAMILY_K, f->Q);

@@ -185,6 +185,8 @@ PetscErrorCode CycleFlowRun(void *ctx, const PetscReal x[], PetscReal period, Pe
   PetscErrorCode error;
 
   PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < f->n; i++) y[i] = PETSC_INFINITY;
+  if (f->family && !CycleFamilyHolds(f->family, value)) PetscFunctionReturn(0);
   PetscCall(FlowPrepare(f, period, value, M ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(FlowUnpack(f, x));
   f->n_flows++;
@@ -197,8 +199,7 @@ PetscErrorCode CycleFlowRun(void *ctx, const PetscReal x[], PetscReal period, Pe
   PetscCheck(!error || error == PETSC_ERR_NOT_CONVERGED || error == PETSC_ERR_FP || error == PETSC_ERR_MAT_LU_ZRPVT,
              PETSC_COMM_SELF, error, "a period of a cycle ended by PETSc's error %d", (int)error);
   PetscCall(FlowTurn(f, PETSC_TRUE, M));
-  PetscCall(CycleFlowPack(f, &f->state, y));
-  for (PetscInt i = 0; i < f->n && error; i++) y[i] = PETSC_INFINITY;
+  if (!error) PetscCall(CycleFlowPack(f, &f->state, y));
   if (error) PetscCall(FlowForget(f)); /* factors of what went wrong */
   PetscFunctionReturn(0);
 }
