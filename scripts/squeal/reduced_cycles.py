@@ -38,10 +38,10 @@ def full_run(args, name, young):
 
 def reduced_run(args, name, young):
     """Folder of the reduced run."""
-    folder = args.runs.parent / f"reduced/{name.replace('/', '-')}-{young:g}GPa-{args.cutoff:g}Hz"
+    folder = args.runs.parent / f"reduced/{name.replace('/', '-')}-{young:g}GPa-{args.cutoff:g}Hz-{args.step:g}s"
     return run(args.program, args.ranks, folder,
                f"-pad_young {young}e9 -dynamics_live 0 {SETS[name]} -dynamics_model reduced -dynamics_cutoff "
-               f"{args.cutoff:g} -dynamics_compare false -squeal_view")
+               f"{args.cutoff:g} -dynamics_compare false -squeal_view" + (f" -ts_dt {args.step:g}" if args.step else ""))
 
 
 def growth_phase(vibration):
@@ -101,7 +101,7 @@ def part_cycles(args):
         scene = f"{name} {young:g} GPa"
         folders = full_run(args, name, young), reduced_run(args, name, young)
         rows += demands_of(scene, folders)
-    print(f"\n{SCENE.name}, 50 ms: the mesh beside modes below {args.cutoff:g} Hz\n")
+    print(f"\n{SCENE.name}, 50 ms: the mesh beside modes below {args.cutoff:g} Hz, {f'steps of {args.step:g} s' if args.step else 'its own step'}\n")
     print_row("rows of springs, pad", "", "mesh", "reduced", "difference", "asked", "")
     print_row("---", "---", "--:", "--:", "--:", "--:", "---")
     for row in rows:
