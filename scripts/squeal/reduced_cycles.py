@@ -101,7 +101,8 @@ def part_cycles(args):
         scene = f"{name} {young:g} GPa"
         folders = full_run(args, name, young), reduced_run(args, name, young)
         rows += demands_of(scene, folders)
-    print(f"\n{SCENE.name}, 50 ms: the mesh beside modes below {args.cutoff:g} Hz, {f'steps of {args.step:g} s' if args.step else 'its own step'}\n")
+    step = f"steps of {args.step:g} s" if args.step else "its own step"
+    print(f"\n{SCENE.name}, 50 ms: the mesh beside modes below {args.cutoff:g} Hz, {step}\n")
     print_row("rows of springs, pad", "", "mesh", "reduced", "difference", "asked", "")
     print_row("---", "---", "--:", "--:", "--:", "--:", "---")
     for row in rows:
