@@ -100,7 +100,8 @@ PetscErrorCode ContactCreate(Model model, Contact *contact);
 `contact`
 .  -contact_surfaces <slave,master> - named surfaces
 .  -contact_law <penalty|constraint> - k_n per pair, or k_n to infinity
-.  -contact_mu <0>                - friction coefficient at the stated sliding speed
+.  -contact_mu <0>                - friction coefficient at the stated sliding speed; a negative one drags the
+                                   master against t, as if the slave slid the other way; not in time
 .  -contact_mu_slope <0>          - its slope with the slip speed, s/m
 .  -contact_kn <N/m|identify>     - penalty stiffness per pair, or found by pressing (statics.h)
 .  -contact_slip <x,y,z>          - direction of the slave's velocity relative to the master
