@@ -2,41 +2,29 @@
    What a map cannot do, and what does nothing in it: how a single transient begins, what it records.
 */
 #include "mapimpl.h"
+#include "reduced/idle.h"
 #include <squeal/options.h>
 
 static const char nothing[] =
   "not used by -analysis map, whose lines begin with the sliding state and which keeps no histories";
 
-/* Refuses -<owner>_<what> */
-static PetscErrorCode CheckIdle(Map map, const char owner[], const char what[])
+/* What a transient reads, and what the command line says of places that are looked at */
+static PetscErrorCode CheckIdle(Map map, const ModelScene *scene)
 {
-  char option[256];
+  static const char *const idle[] = {"-dynamics_compare", "-dynamics_growth_rtol"};
+  char                     option[256];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_%s", owner, what));
-  PetscCall(OptionsRefuse(map->comm, option, nothing));
-  PetscFunctionReturn(0);
-}
-
-/* Ramps and histories, which the command line gives in vain */
-static PetscErrorCode CheckIdleAll(Map map, const ModelScene *scene, PetscInt n, const ContactInterface c[])
-{
-  static const char *const idle[] = {
-    "-dynamics_start",  "-dynamics_shape",   "-dynamics_history_interval",    "-dynamics_pairs_interval",
-    "-dynamics_live",   "-dynamics_restart", "-dynamics_snapshot_interval",   "-dynamics_compare",
-    "-dynamics_verify", "-contact_view_kkt", "-dynamics_checkpoint_interval", "-ts_max_steps",
-    "-dynamics_growth_rtol"};
-  static const char *const ramps[] = {"ramp", "ramp_shape", "delay"};
-
-  PetscFunctionBeginUser;
+  PetscCall(ReducedRefuseIdle(map->comm, map->operators, nothing));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(idle); i++) PetscCall(OptionsRefuse(map->comm, idle[i], nothing));
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(ramps); k++) {
-    for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(CheckIdle(map, scene->loads[i].name, ramps[k]));
-    for (PetscInt i = 0; i < n; i++) PetscCall(CheckIdle(map, c[i].name, ramps[k]));
+  for (PetscInt i = 0; i < scene->n_probes; i++) {
+    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_at", scene->probes[i].name));
+    PetscCall(OptionsRefuse(map->comm, option, nothing));
   }
-  for (PetscInt i = 0; i < scene->n_parts; i++) PetscCall(CheckIdle(map, scene->parts[i].name, "velocity"));
-  for (PetscInt i = 0; i < scene->n_probes; i++) PetscCall(CheckIdle(map, scene->probes[i].name, "at"));
-  for (PetscInt i = 0; i < scene->n_circles; i++) PetscCall(CheckIdle(map, scene->circles[i].name, "radius"));
+  for (PetscInt i = 0; i < scene->n_circles; i++) {
+    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_radius", scene->circles[i].name));
+    PetscCall(OptionsRefuse(map->comm, option, nothing));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -62,7 +50,7 @@ PetscErrorCode MapCheck(Map map)
                "contact %s: a map is about sliding; say along what by -%s_slip and -%s_speed", c[i].name, c[i].name,
                c[i].name);
   PetscCheck(scene->n_loads > 0, map->comm, PETSC_ERR_USER_INPUT, "-analysis map needs -loads that press the contact");
-  PetscCall(CheckIdleAll(map, scene, n, c));
+  PetscCall(CheckIdle(map, scene));
   PetscFunctionReturn(0);
 }
 

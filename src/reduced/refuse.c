@@ -1,7 +1,9 @@
 /*
-   What a reduced model cannot do, by name.
+   What a reduced model cannot do, by name, and what does nothing where no transient runs from its beginning to its end.
 */
 #include "reducedimpl.h"
+#include "idle.h"
+#include <squeal/options.h>
 
 PetscErrorCode ReducedRefuse(ReducedRun r)
 {
@@ -27,5 +29,77 @@ PetscErrorCode ReducedRefuse(ReducedRun r)
                "point %s: a reduced model knows no sets that are joined rigidly; %s", scene->points[i].name, full);
   PetscCheck(r->run.n_interfaces, r->comm, PETSC_ERR_SUP,
              "-dynamics_model reduced needs -contacts: without them -analysis frf tells the response");
+  PetscFunctionReturn(0);
+}
+
+/* Refuses -<owner>_<what> */
+static PetscErrorCode IdleCheck(MPI_Comm comm, const char owner[], const char what[], const char why[])
+{
+  char option[256];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_%s", owner, what));
+  PetscCall(OptionsRefuse(comm, option, why));
+  PetscFunctionReturn(0);
+}
+
+/* Ramps of loads and of sliding, velocities at the start */
+static PetscErrorCode IdleCheckScene(MPI_Comm comm, Operators operators, const char why[])
+{
+  static const char *const ramps[] = {"ramp", "ramp_shape", "delay"};
+  const ModelScene        *scene;
+  const ContactInterface  *c;
+  PetscInt                 n;
+  Model                    model;
+  Contact                  contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(operators, &model, &contact));
+  PetscCall(ModelGetScene(model, &scene));
+  PetscCall(ContactGetInterfaces(contact, &n, &c));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(ramps); k++) {
+    for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(IdleCheck(comm, scene->loads[i].name, ramps[k], why));
+    for (PetscInt i = 0; i < n; i++) PetscCall(IdleCheck(comm, c[i].name, ramps[k], why));
+  }
+  for (PetscInt i = 0; i < scene->n_parts; i++) PetscCall(IdleCheck(comm, scene->parts[i].name, "velocity", why));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedRefuseIdle(MPI_Comm comm, Operators operators, const char why[])
+{
+  static const char *const idle[] = {"-dynamics_start",
+                                     "-dynamics_shape",
+                                     "-dynamics_history_interval",
+                                     "-dynamics_pairs_interval",
+                                     "-dynamics_snapshot_interval",
+                                     "-dynamics_live",
+                                     "-dynamics_restart",
+                                     "-dynamics_checkpoint_interval",
+                                     "-dynamics_check_interval",
+                                     "-dynamics_verify",
+                                     "-contact_view_kkt",
+                                     "-ts_max_steps"};
+
+  PetscFunctionBeginUser;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(idle); i++) PetscCall(OptionsRefuse(comm, idle[i], why));
+  PetscCall(IdleCheckScene(comm, operators, why));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedRefuseImpulses(ReducedRun r, const char why[])
+{
+  static const char *const parts[] = {"at", "part", "impulse", "time"};
+  PetscInt                 n;
+
+  PetscFunctionBeginUser;
+  PetscCall(OptionsRefuse(r->comm, "-impulses", why));
+  PetscCall(ExternalCountHits(r->run.external, &n));
+  for (PetscInt i = 0; i < n; i++) {
+    ExternalHit hit;
+
+    PetscCall(ExternalGetHit(r->run.external, i, &hit));
+    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(parts); k++)
+      PetscCall(IdleCheck(r->comm, hit.name, parts[k], why));
+  }
   PetscFunctionReturn(0);
 }

@@ -1,5 +1,6 @@
 /* Cycle: options, the flow of a run */
 #include "cycleimpl.h"
+#include "reduced/idle.h"
 #include <squeal/options.h>
 
 #define CYCLE_AMPLITUDE  0.3
@@ -256,15 +257,14 @@ static PetscErrorCode CycleFindOnset(LimitCycle c, ShootingCycle *at)
 /* Without a transient: the bodies, and a time after all ramps */
 static PetscErrorCode CycleReduce(LimitCycle c, Results results)
 {
-  static const char *const idle[] = {"-dynamics_start",   "-dynamics_shape",  "-dynamics_history_interval",
-                                     "-dynamics_restart", "-dynamics_verify", "-dynamics_snapshot_interval",
-                                     "-ts_max_time",      "-ts_max_steps",    "-dynamics_checkpoint_interval"};
+  static const char idle[] = "not used by -cycle_start mode, which runs no transient";
 
   PetscFunctionBeginUser;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(idle); i++)
-    PetscCall(OptionsRefuse(c->comm, idle[i], "not used by -cycle_start mode, which runs no transient"));
+  PetscCall(ReducedRefuseIdle(c->comm, c->operators, idle));
+  PetscCall(OptionsRefuse(c->comm, "-ts_max_time", idle));
   PetscCall(DynamicsSetEndless(c->reduced->dynamics));
   PetscCall(ReducedPrepare(c->reduced, results));
+  PetscCall(ReducedRefuseImpulses(c->reduced, idle));
   PetscCall(ReducedChoose(c->reduced));
   PetscCall(ShiftInvertDestroy(&c->reduced->inverse));
   c->reduced->state.time = CYCLE_FAR;
