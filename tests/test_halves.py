@@ -73,7 +73,7 @@ class Runs:
     def __init__(self, folder, squeal, launcher):
         self.folder, self.squeal, self.launcher = folder, squeal, launcher
 
-    def rows(self, name, mesh, fix="", options=f"{PENALTY} {BAND}", ranks=1):
+    def rows(self, name, mesh, fix="", options=f"{PENALTY} {BAND}", ranks=1, table="modes"):
         """Table of a run that holds the slab's start, and directions of the cut, with lambda [rad/s] of each row."""
         words = [*SCENE.split(), "-model_mesh", mesh, "-output_dir", name, "-supports", "clamp,plane" if fix else "clamp",
                  "-clamp_set", "slab_start", "-clamp_fix", "xyz", *(["-plane_set", "cut", "-plane_fix", fix] if fix else []),
@@ -81,11 +81,15 @@ class Runs:
         done = subprocess.run([self.launcher, "-n", str(ranks), self.squeal, *words], cwd=self.folder, capture_output=True, text=True)
         if done.returncode:
             sys.exit(f"FAILED run {name}: {done.stderr}")
-        with (self.folder / name / "modes.csv").open(newline="") as table:
-            rows = list(csv.DictReader(table))
+        rows = self.table(name, table)
         for row in rows:
             row["lambda"] = float(row["growth_rad_s"]) + 2j * numpy.pi * float(row["freq_hz"])
         return rows
+
+    def table(self, name, table):
+        """Rows of a table of a run."""
+        with (self.folder / name / f"{table}.csv").open(newline="") as file:
+            return list(csv.DictReader(file))
 
     def told(self, name):
         """How many modes of each parity the provenance tells."""
@@ -135,6 +139,28 @@ def kinds(runs):
         yield f"{name}, modes of each parity as told", float(runs.told(folder) != Counter(row["symmetry"] for row in found))
 
 
+SWEEP = (f"-analysis sweep -sweep_parameter rub_mu -sweep_values 0.55,0.7 -sweep_rtol 1e-9 {PENALTY} {UNDAMPED} "
+         "-modes_band 500,28000")
+
+
+def sweeps(runs):
+    """Sweeps of each parity against that of the whole: every eigenvalue, the onset and which parity it is of."""
+    whole = runs.rows("sweep_whole", "whole.msh", options=SWEEP, table="sweep")
+    onsets = runs.table("sweep_whole", "onsets")
+    for name, more, ranks in (("sweep", "", 1), ("sweep2", "", 2), ("sweep_full", "-sweep_method full", 1)):
+        found = runs.rows(name, "whole.msh", options=f"{SWEEP} {more} -symmetry y", ranks=ranks, table="sweep")
+        yield f"{name}, {len(whole)} eigenvalues", max(
+            apart([row for row in found if row["point"] == point], [row for row in whole if row["point"] == point])
+            for point in ("1", "2"))
+        yield f"{name}, modes of both parities", float({row["symmetry"] for row in found} != {"even", "odd"})
+        if more:
+            continue
+        same = [float(row["critical_value"]) for row in runs.table(name, "onsets")
+                if row["confirmed"] == "1" and row["symmetry"] == "even"]
+        yield f"{name}, {len(onsets)} onset of an even pair", max(
+            (abs(a / float(row["critical_value"]) - 1) for a, row in zip(same, onsets, strict=True)), default=numpy.inf)
+
+
 def main(squeal, launcher):
     """Prints what differs."""
     with tempfile.TemporaryDirectory() as name:
@@ -143,7 +169,7 @@ def main(squeal, launcher):
         write_mesh(runs.folder / "half.msh", True)
         whole = runs.rows("whole", "whole.msh")
         found = [("modes that do not grow of " + str(len(whole)), float(all(row["lambda"].real <= 1 for row in whole))),
-                 *halves(runs, whole), *kinds(runs)]
+                 *halves(runs, whole), *kinds(runs), *sweeps(runs)]
     for what, worst in found:
         print(f"{what}: differ by {worst:.1e}, {RTOL:g} allowed")
     sys.exit(0 if all(worst <= RTOL for _, worst in found) else "FAILED")

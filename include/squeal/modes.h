@@ -97,6 +97,13 @@ PetscErrorCode ModesSolve(Modes modes);
     Errors: those of PencilGetParities(). @*/
 PetscErrorCode ModesSolveParities(Modes modes);
 
+/*@ ModesSolveAny - ModesSolve() where a band may hold no mode: n is their number, 0 then. Collective. @*/
+PetscErrorCode ModesSolveAny(Modes modes, PetscInt *n);
+
+/*@ ModesGetParity - "even" or "odd", a word for each plane of -symmetry (borrowed); NULL for modes of ModesSolve(). Not
+    collective. @*/
+PetscErrorCode ModesGetParity(Modes modes, PetscInt i, const char **parity);
+
 /*@ ModesGet - the modes in order of frequency (borrowed). Not collective. @*/
 PetscErrorCode ModesGet(Modes modes, PetscInt *n, const Mode **mode);
 

@@ -115,7 +115,8 @@ PetscReal OperatorsTermDerivative(const OperatorsTerm *term, const PetscReal p[]
 PetscErrorCode PencilReleaseTerms(Pencil pencil);
 
 /*@
-   PencilGetParities - into how many parts the planes of -symmetry part the pencil: 2^planes, 1 without planes. Collective.
+   PencilGetParities - into how many parts the planes of -symmetry part the pencil at its present point: 2^planes, 1 without
+   planes. Collective.
 
    With R u the mirror image of displacements u, a vector is even in a plane where R u = u, odd where R u = -u. Where K, M
    and C are their own images, R Q R = Q, each mode is one or the other: there are orthonormal maps S_c with S_c' Q S_d = 0
@@ -125,10 +126,13 @@ PetscErrorCode PencilReleaseTerms(Pencil pencil);
 +  n         - parities c = 0 .. n - 1, of which bit p tells that c is odd in plane p
 -  asymmetry - largest entry by which a matrix was found to differ from its image, of the largest of its row; or NULL
 
-   Errors: PETSC_ERR_USER_INPUT where nodes have no image, or the matrix that it names is not its own, as where the slip
-   of a contact leads across the plane; PETSC_ERR_SUP for points that are joined rigidly.
+   Errors: PETSC_ERR_USER_INPUT where nodes have no image, or the matrix that it names is not its own at this point, as
+   where the slip of a contact leads across the plane; PETSC_ERR_SUP for points that are joined rigidly.
 @*/
 PetscErrorCode PencilGetParities(Pencil pencil, PetscInt *n, PetscReal *asymmetry);
+
+/*@ PencilCountParities - their number without the proof, 1 without planes. Not collective. @*/
+PetscErrorCode PencilCountParities(Pencil pencil, PetscInt *n);
 
 /*@ PencilNameParity - "even" or "odd", one word for each plane. Not collective. @*/
 PetscErrorCode PencilNameParity(Pencil pencil, PetscInt c, size_t size, char name[]);
@@ -137,6 +141,10 @@ PetscErrorCode PencilNameParity(Pencil pencil, PetscInt c, size_t size, char nam
     u = S_c q (u = Zr S_c q with constraints), so that PencilExpand() gives vectors of all unknowns. Collective. The whole
     must stay until PencilDestroy(). @*/
 PetscErrorCode PencilCreateParity(Pencil pencil, PetscInt c, Pencil *parity);
+
+/*@ PencilReleaseParity - frees all matrices of the pencil of a parity. Terms and their coefficients stay; nothing can be got
+    afterwards. Collective. @*/
+PetscErrorCode PencilReleaseParity(Pencil parity);
 
 /*@ PencilReleaseSymmetric - frees K_even, which is also K of PencilGetFrictionless(), once it has been factored; nothing
     before PencilReleaseTerms(), or without K_even. What was got before is gone; the next call for either makes it again, as

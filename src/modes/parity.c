@@ -157,3 +157,24 @@ PetscErrorCode ModesSolveParities(Modes modes)
   PetscCall(ModesLabel(modes));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode ModesSolveAny(Modes modes, PetscInt *n)
+{
+  Window    window;
+  PetscBool none;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesReset(modes));
+  PetscCall(LimitBegin(modes));
+  PetscCall(ModesFind(modes, &window, &none));
+  if (!none) PetscCall(ModesLabel(modes));
+  *n = modes->n;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesGetParity(Modes modes, PetscInt i, const char **parity)
+{
+  PetscFunctionBeginUser;
+  *parity = modes->parity ? modes->parity[i] : NULL;
+  PetscFunctionReturn(0);
+}

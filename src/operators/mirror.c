@@ -45,7 +45,7 @@ PetscErrorCode MirrorsSetFromOptions(Operators o, OptionsItems PetscOptionsObjec
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsString("-symmetry",
                                "planes of which the scene is its own mirror image, by their normals: x, y, z (in the "
-                               "middle of the mesh), x=0.05 (m); its modes are found apart for each parity",
+                               "middle of the mesh), x=0.05 (m); each parity is solved by itself",
                                "operators.h", text, text, sizeof(text), &set));
   if (!set) PetscFunctionReturn(0);
   PetscCall(ValuesSplit(o->comm, "-symmetry", text, ',', &n, &items));
@@ -194,6 +194,24 @@ static PetscErrorCode MirrorMeasure(Mat Q, Mat R, Vec size, PetscReal *largest, 
   PetscFunctionReturn(0);
 }
 
+/* "at pad_young 1e+10, ": parameters whose values are not those of the scene, for messages */
+static PetscErrorCode MirrorPoint(Pencil pencil, size_t size, char text[])
+{
+  const Parameters *scene = &pencil->operators->parameters;
+  char              one[192];
+
+  PetscFunctionBeginUser;
+  text[0] = 0;
+  for (PetscInt i = 0; i < pencil->n_scene; i++) {
+    if (pencil->parameters.p[i] == scene->list[i].value) continue;
+    PetscCall(PetscSNPrintf(one, sizeof(one), "%s%s %.6g", text[0] ? " and " : "at ", scene->list[i].name,
+                            (double)pencil->parameters.p[i]));
+    PetscCall(PetscStrlcat(text, one, size));
+  }
+  if (text[0]) PetscCall(PetscStrlcat(text, " ", size));
+  PetscFunctionReturn(0);
+}
+
 /* Raises an error where a matrix is not its own mirror image; `what` tells its name and what it is made of */
 static PetscErrorCode MirrorCheck(Pencil pencil, PetscInt i, Mat Q, const char what[])
 {
@@ -201,6 +219,7 @@ static PetscErrorCode MirrorCheck(Pencil pencil, PetscInt i, Mat Q, const char w
   PetscReal         largest, most, place[4];
   PetscInt          at;
   Vec               size;
+  char              point[256];
 
   PetscFunctionBeginUser;
   if (!Q) PetscFunctionReturn(0);
@@ -213,10 +232,11 @@ static PetscErrorCode MirrorCheck(Pencil pencil, PetscInt i, Mat Q, const char w
   pencil->asymmetry = PetscMax(pencil->asymmetry, largest);
   if (largest <= MIRROR_ROUNDING) PetscFunctionReturn(0);
   PetscCall(MirrorLocate(pencil, at, place));
+  PetscCall(MirrorPoint(pencil, sizeof(point), point));
   SETERRQ(pencil->comm, PETSC_ERR_USER_INPUT,
-          "-symmetry %c: the scene is not its own mirror image in %c = %g m: %s differs by %.1e of its row (%.0e "
+          "-symmetry %c: %sthe scene is not its own mirror image in %c = %g m: %s differs by %.1e of its row (%.0e "
           "allowed), most at the node (%g, %g, %g) m along %c",
-          "xyz"[plane->axis], "xyz"[plane->axis], (double)plane->at, what, (double)largest, MIRROR_ROUNDING,
+          "xyz"[plane->axis], point, "xyz"[plane->axis], (double)plane->at, what, (double)largest, MIRROR_ROUNDING,
           (double)place[0], (double)place[1], (double)place[2], "xyz"[(int)place[3]]);
 }
 
@@ -236,16 +256,39 @@ static PetscErrorCode MirrorCheckAll(Pencil pencil, PetscInt i)
   PetscFunctionReturn(0);
 }
 
+/* Proves at the present point that the scene is its own image, where that is not known yet */
+static PetscErrorCode MirrorsProve(Pencil pencil)
+{
+  const PetscInt n    = pencil->parameters.n;
+  PetscBool      same = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (pencil->proven) PetscCall(PetscArraycmp(pencil->parameters.p, pencil->proven, n, &same));
+  if (same) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < pencil->operators->n_planes; i++) PetscCall(MirrorCheckAll(pencil, i));
+  if (!pencil->proven) PetscCall(PetscMalloc1(n, &pencil->proven));
+  PetscCall(PetscArraycpy(pencil->proven, pencil->parameters.p, n));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode PencilCreateMirrors(Pencil pencil)
 {
   Operators o = pencil->operators;
 
   PetscFunctionBeginUser;
-  if (pencil->mirror[0]) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < o->n_planes; i++) {
+    if (pencil->mirror[i]) continue;
     PetscCall(MirrorCreate(o, &o->plane[i], &pencil->mirror[i]));
     PetscCall(MirrorProject(pencil, &o->plane[i], &pencil->mirror[i]));
   }
-  for (PetscInt i = 0; i < o->n_planes; i++) PetscCall(MirrorCheckAll(pencil, i));
+  PetscCall(MirrorsProve(pencil));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilDestroyMirrors(Pencil pencil)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < OPERATORS_MAX_PLANES; i++) PetscCall(MatDestroy(&pencil->mirror[i]));
+  PetscCall(PetscFree(pencil->proven));
   PetscFunctionReturn(0);
 }

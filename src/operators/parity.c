@@ -42,7 +42,7 @@ static PetscErrorCode OrbitsCreate(Pencil pencil, Orbits *orbits)
   Mat      G[1 << OPERATORS_MAX_PLANES] = {NULL};
 
   PetscFunctionBeginUser;
-  orbits->n_group = 1 << pencil->operators->n_planes;
+  PetscCall(PencilCountParities(pencil, &orbits->n_group));
   PetscCall(MatGetOwnershipRange(pencil->mirror[0], &orbits->first, &last));
   orbits->n = last - orbits->first;
   PetscCall(PetscMalloc2(orbits->n * orbits->n_group, &orbits->image, orbits->n * orbits->n_group, &orbits->sign));
@@ -122,10 +122,17 @@ static PetscErrorCode ParityCreateMap(const Orbits *orbits, MPI_Comm comm, Petsc
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PencilGetParities(Pencil pencil, PetscInt *n, PetscReal *asymmetry)
+PetscErrorCode PencilCountParities(Pencil pencil, PetscInt *n)
 {
   PetscFunctionBeginUser;
   *n = 1 << pencil->operators->n_planes;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilGetParities(Pencil pencil, PetscInt *n, PetscReal *asymmetry)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PencilCountParities(pencil, n));
   if (*n > 1) PetscCall(PencilCreateMirrors(pencil));
   if (asymmetry) *asymmetry = pencil->asymmetry;
   PetscFunctionReturn(0);
@@ -216,5 +223,16 @@ PetscErrorCode PencilCreateParity(Pencil whole, PetscInt c, Pencil *part)
   for (PetscInt i = 0; i < s->n_left; i++) PetscCall(ParityCompose(whole->left[i], S, &s->left[i]));
   PetscCall(MatDestroy(&S));
   *part = s;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilReleaseParity(Pencil part)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ParityReleaseSums(part));
+  PetscCall(TermsSumDestroy(&part->sum[SUM_M]));
+  PetscCall(TermsRelease(&part->base));
+  PetscCall(TermsRelease(&part->projected));
+  part->released = PETSC_TRUE;
   PetscFunctionReturn(0);
 }

@@ -205,14 +205,6 @@ PetscErrorCode PencilGetFrictionless(Pencil pencil, PencilMatrices *m)
   PetscFunctionReturn(0);
 }
 
-/* Destroys the matrices of a list of terms, which otherwise stays */
-static PetscErrorCode TermsRelease(Terms *terms)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < terms->n; t++) PetscCall(MatDestroy(&terms->term[t].A));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode PencilReleaseTerms(Pencil pencil)
 {
   Operators      o = pencil->operators;
@@ -337,7 +329,7 @@ PetscErrorCode PencilDestroy(Pencil *pencil)
   if (!s) PetscFunctionReturn(0);
   for (int i = 0; i < N_PENCIL_SUMS; i++) PetscCall(TermsSumDestroy(&s->sum[i]));
   for (int i = 0; i < 2; i++) PetscCall(MatDestroy(&s->factor[i]));
-  for (int i = 0; i < OPERATORS_MAX_PLANES; i++) PetscCall(MatDestroy(&s->mirror[i]));
+  PetscCall(PencilDestroyMirrors(s));
   PetscCall(PencilDestroyNullSpaces(s));
   PetscCall(TermsDestroy(&s->base));
   PetscCall(ParametersDestroy(&s->parameters));

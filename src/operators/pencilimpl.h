@@ -44,13 +44,16 @@ struct _p_Pencil {
   PetscBool is_part;                      /* it is one parity of another pencil */
   Mat       mirror[OPERATORS_MAX_PLANES]; /* R of each plane, made when asked for */
   PetscReal asymmetry;                    /* largest entry by which a matrix differs from its image, of its row's */
+  PetscReal *proven; /* [parameters] the last point at which the scene was found to be its own image; NULL for none */
 };
 
 /* pairrows.c - forms both factors of the unsymmetric stiffness at the present point, where they are not there yet */
 PETSC_INTERN PetscErrorCode PencilFormFactors(Pencil pencil);
 
-/* mirror.c - R of each plane in the unknowns of the pencil, once; raises an error where the scene is not its own image */
+/* mirror.c - R of each plane in the unknowns of the pencil, once; raises an error where the scene is not its own image at
+   the present point */
 PETSC_INTERN PetscErrorCode PencilCreateMirrors(Pencil pencil);
+PETSC_INTERN PetscErrorCode PencilDestroyMirrors(Pencil pencil);
 PETSC_INTERN PetscErrorCode MirrorGetRow(Mat R, PetscInt row, PetscInt *column, PetscReal *sign);
 
 /* The sum that is K without friction in the unknowns of the pencil */

@@ -128,6 +128,13 @@ PetscErrorCode TermsAppend(Terms *terms, const Terms *more)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode TermsRelease(Terms *terms)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt t = 0; t < terms->n; t++) PetscCall(MatDestroy(&terms->term[t].A));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode TermsDestroy(Terms *terms)
 {
   PetscFunctionBeginUser;

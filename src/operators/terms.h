@@ -38,6 +38,8 @@ PETSC_INTERN PetscErrorCode TermsSetFactors(Terms *terms, Mat left, Mat right);
 PETSC_INTERN PetscErrorCode TermsAppend(Terms *terms, const Terms *more);
 PETSC_INTERN PetscBool TermsVanish(const Terms *terms, TermsChoice choice, PetscBool mass_only, const PetscReal p[]);
 PETSC_INTERN PetscErrorCode TermsDestroy(Terms *terms);
+/* Destroys the matrices of a list, which otherwise stays */
+PETSC_INTERN PetscErrorCode TermsRelease(Terms *terms);
 /* friction.c - scale L' W R with W = diag(weights), or the identity where weights is NULL */
 PETSC_INTERN PetscErrorCode TermsProduct(PetscReal scale, Mat L, Vec weights, Mat R, Mat *A);
 

@@ -13,7 +13,8 @@ static PetscErrorCode PointSolve(Sweep sweep, PetscInt i, const PetscReal p[])
   PetscFunctionBeginUser;
   if (!sweep->statics) {
     PetscCall(PencilSetParameters(sweep->pencil, p));
-    PetscCall(ModesSolve(sweep->modes));
+    PetscCall(SweepNameParities(sweep, sweep->pencil));
+    PetscCall(ModesSolveParities(sweep->modes));
     PetscFunctionReturn(0);
   }
   PetscCall(StaticsSolveSliding(sweep->statics, p, &state));
@@ -22,7 +23,8 @@ static PetscErrorCode PointSolve(Sweep sweep, PetscInt i, const PetscReal p[])
   PetscCall(OperatorsLinearise(sweep->operators, &state, &pencil));
   PetscCall(SlidingStateDestroy(&state));
   PetscCall(ModesSetPencil(sweep->modes, pencil));
-  PetscCall(ModesSolve(sweep->modes));
+  PetscCall(SweepNameParities(sweep, pencil));
+  PetscCall(ModesSolveParities(sweep->modes));
   PetscCall(ModesSetPencil(sweep->modes, NULL));
   PetscCall(PencilDestroy(&pencil));
   PetscFunctionReturn(0);
@@ -44,8 +46,11 @@ PetscErrorCode SweepBrute(Sweep sweep)
     PetscCall(ModesGet(sweep->modes, &point->n, &mode));
     PetscCall(PetscCalloc1(point->n, &point->mode));
     for (PetscInt k = 0; k < point->n; k++) {
-      SweepMode *m = &point->mode[k];
+      SweepMode  *m = &point->mode[k];
+      const char *parity;
 
+      PetscCall(ModesGetParity(sweep->modes, k, &parity));
+      m->parity    = parity ? SweepFindParity(sweep, parity) : 0;
       m->sigma     = mode[k].sigma;
       m->omega     = mode[k].omega;
       m->error     = mode[k].error;
@@ -110,7 +115,10 @@ static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
   PetscCall(PointsSolve(&sweep->groups, &sweep->basis.reduced, &wide, 1, p, &reduced));
   PetscCall(PencilSetParameters(sweep->pencil, p));
   PetscCall(PetscFree(p));
-  PetscCall(ModesSolve(sweep->modes));
+  if (sweep->parity < 0)
+    PetscCall(ModesSolve(sweep->modes));
+  else
+    PetscCall(ModesSolveAny(sweep->modes, &check->n_full));
   PetscCall(ModesGet(sweep->modes, &check->n_full, &full));
   for (PetscInt i = 0; i < check->n_full; i++)
     check->n_unstable_full += ReducedIsUnstable(CMPLX(full[i].sigma, full[i].omega), full[i].error);

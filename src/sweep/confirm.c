@@ -213,7 +213,7 @@ static PetscBool OnsetIsAfter(Sweep sweep, PetscInt e)
   return event[0].critical > event[1].critical ? PETSC_TRUE : PETSC_FALSE;
 }
 
-static void OnsetsSort(Sweep sweep)
+void SweepSortOnsets(Sweep sweep)
 {
   for (PetscInt i = 1; i < sweep->events.n; i++)
     for (PetscInt e = i - 1; e >= 0 && OnsetIsAfter(sweep, e); e--) {
@@ -250,6 +250,6 @@ PetscErrorCode SweepOnsets(Sweep sweep)
   for (PetscInt i = 0; i < n; i++) PetscCall(OnsetEnd(sweep, &work[i]));
   PetscCall(PetscFree(work));
   PetscCall(CorrectionDestroy(&sweep->greedy.correction));
-  OnsetsSort(sweep);
+  SweepSortOnsets(sweep);
   PetscFunctionReturn(0);
 }

@@ -65,7 +65,7 @@ static PetscErrorCode SweepAddChecksum(Sweep sweep, Checksum c)
   PetscCall(OperatorsGetParameters(sweep->operators, &n, &parameters));
   PetscCallMPI(MPI_Comm_size(sweep->comm, &size));
   PetscCall(ChecksumSetPart(c, "the sweep"));
-  PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){size}));
+  PetscCall(ChecksumAddInts(c, 2, (const PetscInt[]){size, sweep->parity}));
   PetscCall(ChecksumAddReals(c, 1, &sweep->rtol));
   for (PetscInt k = 0; k < grid->n_axes; k++) {
     PetscCall(ChecksumAddInts(c, 1, &grid->n_moved[k]));
@@ -80,11 +80,13 @@ static PetscErrorCode SweepAddChecksum(Sweep sweep, Checksum c)
 static PetscErrorCode FileName(Sweep sweep, PetscInt k, const char ending[], char name[PETSC_MAX_PATH_LEN])
 {
   PetscMPIInt rank;
+  char        parity[16] = "";
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(sweep->comm, &rank));
-  PetscCall(PetscSNPrintf(name, PETSC_MAX_PATH_LEN, "%s/sweep_restart_%03d_rank%d%s", sweep->folder, (int)k, (int)rank,
-                          ending));
+  if (sweep->parity >= 0) PetscCall(PetscSNPrintf(parity, sizeof(parity), "parity%d_", (int)sweep->parity));
+  PetscCall(PetscSNPrintf(name, PETSC_MAX_PATH_LEN, "%s/sweep_restart_%s%03d_rank%d%s", sweep->folder, parity, (int)k,
+                          (int)rank, ending));
   PetscFunctionReturn(0);
 }
 
@@ -314,8 +316,9 @@ PetscErrorCode SweepResume(Sweep sweep)
     if (good) sweep->n_files++;
   }
   if (sweep->n_files)
-    PetscCall(PetscPrintf(sweep->comm, "going on with %" PetscInt_FMT " full solutions kept in %s\n",
-                          sweep->greedy.n_samples, sweep->folder));
+    PetscCall(PetscPrintf(sweep->comm, "going on with %" PetscInt_FMT " full solutions%s%s kept in %s\n",
+                          sweep->greedy.n_samples, sweep->parity < 0 ? "" : ", ",
+                          sweep->parity < 0 ? "" : sweep->parity_name[sweep->parity], sweep->folder));
   PetscFunctionReturn(0);
 }
 
@@ -324,6 +327,8 @@ PetscErrorCode SweepForget(Sweep sweep)
   char name[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < SWEEP_PARITIES; c++)
+    if (sweep->part[c]) PetscCall(SweepForget(sweep->part[c]));
   for (PetscInt k = 0, left = 1; left && sweep->restart; k++) { /* also those of an earlier, longer sweep */
     PetscCall(FileName(sweep, k, "", name));
     PetscCall(FileName(sweep, k, ".part", part));

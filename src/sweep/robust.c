@@ -90,6 +90,11 @@ static PetscReal VanDerCorput(PetscInt i, PetscInt base)
   return value;
 }
 
+static PetscInt BoxCorners(const ParameterBox *box)
+{
+  return PetscMin(MAX_CORNERS, 1 << PetscMin(box->n, 10));
+}
+
 /* Point i: 0 the scene itself, then corners, then the inside */
 static void BoxPoint(const ParameterBox *box, const PetscReal base[], PetscInt n_parameters, PetscInt n_corners,
                      PetscInt i, PetscReal p[])
@@ -103,6 +108,26 @@ static void BoxPoint(const ParameterBox *box, const PetscReal base[], PetscInt n
 
     for (PetscInt m = 0; m < box->n_moved[k]; m++) p[box->moved[k][m]] *= 1 + side * box->half[k];
   }
+}
+
+PetscErrorCode SweepUncertainProve(Sweep sweep)
+{
+  const PetscInt n_parameters = sweep->grid.n_parameters;
+  PetscInt       n, n_corners;
+  PetscReal     *p;
+  ParameterBox   box;
+
+  PetscFunctionBeginUser;
+  PetscCall(BoxRead(sweep, &box));
+  n_corners = BoxCorners(&box);
+  PetscCall(PetscMalloc1(n_parameters, &p));
+  for (PetscInt i = 0; i <= n_corners; i++) {
+    BoxPoint(&box, sweep->grid.base, n_parameters, n_corners, i, p);
+    PetscCall(PencilSetParameters(sweep->pencil, p));
+    PetscCall(PencilGetParities(sweep->pencil, &n, NULL));
+  }
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
 }
 
 /* Risks of the modes of the nominal point, by what they become at the others; the last entry is for modes that the
@@ -164,7 +189,7 @@ PetscErrorCode SweepRobustness(Sweep sweep)
 
   PetscFunctionBeginUser;
   PetscCall(BoxRead(sweep, &box));
-  n_corners = PetscMin(MAX_CORNERS, 1 << PetscMin(box.n, 10));
+  n_corners = BoxCorners(&box);
   n         = 1 + n_corners + N_INSIDE;
   PetscCall(PetscMalloc2(n * n_parameters, &points, n, &modes));
   for (PetscInt i = 0; i < n; i++)

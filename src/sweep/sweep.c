@@ -20,6 +20,8 @@ PetscErrorCode SweepCreate(MPI_Comm comm, Sweep *sweep)
   (*sweep)->n_real      = 80;
   (*sweep)->onsets      = PETSC_TRUE;
   (*sweep)->restart     = PETSC_TRUE;
+  (*sweep)->parity      = -1;
+  (*sweep)->n_parities  = 1;
   PetscFunctionReturn(0);
 }
 
@@ -244,8 +246,7 @@ static PetscErrorCode Clock(Sweep sweep, int phase, PetscLogDouble *since)
   PetscFunctionReturn(0);
 }
 
-/* Basis, points and what is asked of them */
-static PetscErrorCode SolveReduced(Sweep sweep, PetscLogDouble *since)
+PetscErrorCode SweepReduced(Sweep sweep, PetscLogDouble *since)
 {
   PetscFunctionBeginUser;
   PetscCall(ModelMake(sweep));
@@ -282,9 +283,29 @@ PetscErrorCode SweepSolve(Sweep sweep, Results results)
   if (sweep->method == SWEEP_FULL) {
     PetscCall(SweepBrute(sweep));
     PetscCall(Clock(sweep, 0, &since));
-  } else { /* each point has its own status among the parameters */
-    PetscCall(SolveReduced(sweep, &since));
+    PetscFunctionReturn(0);
   }
+  PetscCall(SweepNameParities(sweep, sweep->pencil)); /* each point has its own status among the parameters */
+  PetscCall(sweep->n_parities > 1 ? SweepParities(sweep) : SweepReduced(sweep, &since));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepDestroyResults(Sweep s)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; s->point && i < GridSize(&s->grid); i++) PetscCall(PetscFree(s->point[i].mode));
+  PetscCall(PetscFree(s->point));
+  PetscCall(PetscFree(s->check));
+  PetscCall(PetscFree(s->risk));
+  PetscCall(PetscFree(s->label));
+  PetscCall(PetscFree(s->worst));
+  PetscCall(PetscFree(s->is_confirmed));
+  PetscCall(ChecksumDestroy(&s->scene));
+  PetscCall(BranchEventsDestroy(&s->events));
+  PetscCall(PointStoreDestroy(&s->store));
+  PetscCall(GreedyDestroy(&s->greedy));
+  PetscCall(BasisDestroy(&s->basis));
+  PetscCall(PencilDestroy(&s->pencil));
   PetscFunctionReturn(0);
 }
 
@@ -294,22 +315,14 @@ PetscErrorCode SweepDestroy(Sweep *sweep)
 
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(0);
-  for (PetscInt i = 0; s->point && i < GridSize(&s->grid); i++) PetscCall(PetscFree(s->point[i].mode));
-  PetscCall(PetscFree(s->point));
-  PetscCall(PetscFree(s->check));
-  PetscCall(PetscFree(s->risk));
+  for (PetscInt c = 0; c < SWEEP_PARITIES; c++) {
+    if (s->part[c]) PetscCall(SweepDestroyResults(s->part[c]));
+    PetscCall(PetscFree(s->part[c]));
+  }
+  PetscCall(SweepDestroyResults(s));
   PetscCall(PetscFree(s->percent));
-  PetscCall(PetscFree(s->label));
-  PetscCall(PetscFree(s->worst));
-  PetscCall(PetscFree(s->is_confirmed));
-  PetscCall(ChecksumDestroy(&s->scene));
-  PetscCall(BranchEventsDestroy(&s->events));
-  PetscCall(PointStoreDestroy(&s->store));
-  PetscCall(GreedyDestroy(&s->greedy));
-  PetscCall(BasisDestroy(&s->basis));
   PetscCall(GridDestroy(&s->grid));
   PetscCall(StatusListDestroy(&s->statuses));
-  PetscCall(PencilDestroy(&s->pencil));
   PetscCall(PetscFree(*sweep));
   PetscFunctionReturn(0);
 }

@@ -2,6 +2,7 @@
    What a person wants to know of a sweep: how it was made, where it is stable, the onsets, the errors.
 */
 #include "sweepimpl.h"
+#include <math.h>
 
 #define MAX_STRETCHES 12 /* of one contact status, that are listed */
 
@@ -271,6 +272,51 @@ static PetscErrorCode RisksView(Sweep sweep, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
+/* What the reduced model is made of, and what it saves */
+static PetscErrorCode BasisView(Sweep sweep, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  if (sweep->whole)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "basis of all %" PetscInt_FMT " unknowns: no error but rounding\n",
+                                     sweep->basis.reduced.n_used));
+  else if (sweep->method == SWEEP_REDUCED)
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "basis of %" PetscInt_FMT " vectors; largest estimated error %.1e (an estimate, "
+                                     "not a bound); modes counted without friction at the full solutions\n",
+                                     sweep->basis.reduced.n_used, (double)sweep->greedy.worst));
+  if (sweep->method == SWEEP_REDUCED && !sweep->whole)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "saved: %" PetscInt_FMT " full solutions of the %" PetscInt_FMT " points, by the basis\n",
+      PetscMax(0, GridSize(&sweep->grid) - sweep->greedy.n_samples), GridSize(&sweep->grid)));
+  PetscFunctionReturn(0);
+}
+
+/* The reduced model of each parity, and what they save; that of the whole without planes of symmetry. entries of factors as
+   n^(4/3), see modes/saved.c */
+static PetscErrorCode ModelsView(Sweep sweep, const OperatorsParameter parameters[], PetscViewer viewer)
+{
+  PetscInt most = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < SWEEP_PARITIES; c++) {
+    if (!sweep->part[c]) continue;
+    most = PetscMax(most, sweep->part[c]->unknowns);
+    PetscCall(PetscViewerASCIIPrintf(viewer, "symmetry %s: %" PetscInt_FMT " unknowns, %" PetscInt_FMT " branches\n",
+                                     sweep->parity_name[c], sweep->part[c]->unknowns, sweep->part[c]->n_branches));
+    PetscCall(ModelsView(sweep->part[c], parameters, viewer));
+  }
+  if (most)
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "saved: by symmetry matrices of at most %" PetscInt_FMT
+                                     " unknowns instead of %" PetscInt_FMT ", with factors of about %.0f %% (estimate)\n",
+                                     most, sweep->whole_unknowns,
+                                     100 * pow((double)most / (double)sweep->whole_unknowns, 4. / 3)));
+  if (most) PetscFunctionReturn(0);
+  PetscCall(SamplesView(sweep, parameters, viewer));
+  PetscCall(BasisView(sweep, viewer));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer)
 {
   const OperatorsParameter *parameters;
@@ -285,7 +331,6 @@ PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer)
     }
   PetscCall(LinksView(sweep, parameters, viewer));
   PetscCall(StatusView(sweep, viewer));
-  PetscCall(SamplesView(sweep, parameters, viewer));
   PetscCall(BranchesView(sweep, viewer));
   if (sweep->is_confirmed) PetscCall(OnsetsView(sweep, &parameters[sweep->grid.parameter[0][0]], viewer));
   PetscCall(ChecksView(sweep, viewer));
@@ -294,18 +339,7 @@ PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer)
                                    "%" PetscInt_FMT " points, %" PetscInt_FMT " branches, %" PetscInt_FMT
                                    " unstable eigenvalues, %" PetscInt_FMT " more numerical only\n",
                                    GridSize(&sweep->grid), sweep->n_branches, n_unstable, n_numerical));
-  if (sweep->whole)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "basis of all %" PetscInt_FMT " unknowns: no error but rounding\n",
-                                     sweep->basis.reduced.n_used));
-  else if (sweep->method == SWEEP_REDUCED)
-    PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "basis of %" PetscInt_FMT " vectors; largest estimated error %.1e (an estimate, "
-                                     "not a bound); modes counted without friction at the full solutions\n",
-                                     sweep->basis.reduced.n_used, (double)sweep->greedy.worst));
-  if (sweep->method == SWEEP_REDUCED && !sweep->whole)
-    PetscCall(PetscViewerASCIIPrintf(
-      viewer, "saved: %" PetscInt_FMT " full solutions of the %" PetscInt_FMT " points, by the basis\n",
-      PetscMax(0, GridSize(&sweep->grid) - sweep->greedy.n_samples), GridSize(&sweep->grid)));
+  PetscCall(ModelsView(sweep, parameters, viewer));
   if (sweep->is_confirmed) PetscCall(OnsetCostView(sweep, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, "time: basis %.2f s, points %.2f s, onsets %.2f s, checks %.2f s",
                                    sweep->seconds[0], sweep->seconds[1], sweep->seconds[2], sweep->seconds[3]));

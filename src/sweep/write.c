@@ -25,6 +25,29 @@ static Number SecondValue(Sweep sweep, PetscInt line)
   return NumberOrEmpty(sweep->grid.n_axes == 2 ? sweep->grid.value[1][line] : NAN);
 }
 
+/* The last column with planes of symmetry, else nothing */
+typedef struct {
+  char text[40];
+} SymmetryColumn;
+
+static SymmetryColumn ParityOf(Sweep sweep, PetscInt parity)
+{
+  SymmetryColumn column = {""};
+
+  if (sweep->n_parities > 1) (void)snprintf(column.text, sizeof(column.text), ",%s", sweep->parity_name[parity]);
+  return column;
+}
+
+/* The parity of a branch: that of the last part that begins no later */
+static PetscInt BranchParity(Sweep sweep, PetscInt branch)
+{
+  PetscInt parity = 0;
+
+  for (PetscInt c = 1; c < sweep->n_parities; c++)
+    if (sweep->part[c] && sweep->part[c]->first_branch <= branch) parity = c;
+  return parity;
+}
+
 /* Distance of a point to the nearest onset of a branch, relative, or NaN. Growth near a lock-in goes as the square root
    of the distance of the parameter from its critical value, and so does the error bar there: hence it is listed. */
 static PetscReal OnsetDistance(Sweep sweep, PetscInt point, PetscInt branch)
@@ -54,14 +77,14 @@ static PetscErrorCode PointRow(Sweep sweep, PetscInt i, const SweepMode *m, Resu
 
   PetscFunctionBeginUser;
   PetscCall(ResultsTableRow(
-    table, "%d,%.15g,%s,%.15g,%.15g,%s,%d,\"%s\",%s,%s,%s,%s,%s,%s,%d", (int)i + 1, (double)sweep->grid.value[0][i % n],
+    table, "%d,%.15g,%s,%.15g,%.15g,%s,%d,\"%s\",%s,%s,%s,%s,%s,%s,%d%s", (int)i + 1, (double)sweep->grid.value[0][i % n],
     NumberOrEmpty(m->branch < 0 ? NAN : m->branch + 1).text, (double)(m->omega / (2 * PETSC_PI)), (double)m->sigma,
     NumberOrEmpty(size > 0 ? m->error / size : NAN).text, (int)m->unstable, m->label, SecondValue(sweep, i / n).text,
     m->unstable    ? "unstable"
     : m->numerical ? "numerical"
                    : "stable",
     NumberOrEmpty(m->error / (2 * PETSC_PI)).text, NumberOrEmpty(m->condition).text, NumberOrEmpty(distance).text,
-    NumberOrEmpty(n_closed < 0 ? NAN : n_closed).text, (int)jump));
+    NumberOrEmpty(n_closed < 0 ? NAN : n_closed).text, (int)jump, ParityOf(sweep, m->parity).text));
   PetscFunctionReturn(0);
 }
 
@@ -84,12 +107,13 @@ static PetscErrorCode OnsetRows(Sweep sweep, ResultsTable table)
     const BranchEvent *event = &sweep->events.event[e];
 
     if (!event->found) continue;
-    PetscCall(ResultsTableRow(table, "%s,%.15g,%.15g,%s,\"%s\",%.15g,%d,%s,%d,%s",
+    PetscCall(ResultsTableRow(table, "%s,%.15g,%.15g,%s,\"%s\",%.15g,%d,%s,%d,%s%s",
                               parameters[sweep->grid.parameter[0][0]].name, (double)event->critical,
                               (double)(event->omega / (2 * PETSC_PI)), event_kinds[event->kind],
                               sweep->label[event->branch[0]].text, (double)event->error, (int)event->branch[0] + 1,
                               NumberOrEmpty(event->branch[1] < 0 ? NAN : event->branch[1] + 1).text,
-                              (int)sweep->is_confirmed[e], SecondValue(sweep, SweepEventLine(sweep, e)).text));
+                              (int)sweep->is_confirmed[e], SecondValue(sweep, SweepEventLine(sweep, e)).text,
+                              ParityOf(sweep, BranchParity(sweep, event->branch[0])).text));
   }
   PetscFunctionReturn(0);
 }
@@ -133,9 +157,9 @@ static PetscErrorCode RiskRows(Sweep sweep, ResultsTable table)
   for (PetscInt i = 0; i < sweep->n_risks; i++) {
     const SweepRisk *r = &sweep->risk[i];
 
-    PetscCall(ResultsTableRow(table, "\"%s\",%.15g,%s,%.15g,%.15g,%d,%d", r->label, (double)(r->omega / (2 * PETSC_PI)),
+    PetscCall(ResultsTableRow(table, "\"%s\",%.15g,%s,%.15g,%.15g,%d,%d%s", r->label, (double)(r->omega / (2 * PETSC_PI)),
                               NumberOrEmpty(r->nominal).text, (double)r->largest, (double)r->error, (int)r->n_unstable,
-                              (int)sweep->n_combinations));
+                              (int)sweep->n_combinations, ParityOf(sweep, r->parity).text));
   }
   PetscFunctionReturn(0);
 }
@@ -186,7 +210,7 @@ static PetscErrorCode ModeSensitivityRows(Sweep sweep, PetscInt point, const Pet
       near = k;
   }
   PetscCall(PetscSNPrintf(row, sizeof(row), "%d,%.15g,%d,%.15g", (int)point + 1, (double)p[grid->parameter[0][0]],
-                          (int)sweep->point[point].mode[near].branch + 1,
+                          (int)(sweep->first_branch + sweep->point[point].mode[near].branch) + 1,
                           (double)(cimag(modes->lambda[i]) / (2 * PETSC_PI))));
   for (PetscInt j = 0; j < n && !parameters[j].internal; j++)
     PetscCall(DerivativeRow(row, parameters[j].name, p[j], d[j], table));
@@ -207,6 +231,9 @@ static PetscErrorCode SensitivityRows(Sweep sweep, ResultsTable table)
   PetscReal *p;
 
   PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < SWEEP_PARITIES; c++)
+    if (sweep->part[c]) PetscCall(SensitivityRows(sweep->part[c], table));
+  if (!sweep->basis.reduced.n) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
   for (PetscInt i = 0; i < GridSize(&sweep->grid); i++) {
     ReducedModes modes;
@@ -221,14 +248,18 @@ static PetscErrorCode SensitivityRows(Sweep sweep, ResultsTable table)
   PetscFunctionReturn(0);
 }
 
-/* Table `name` of the rows */
+/* Table `name` of the rows; with planes of symmetry the parity comes last, but where there is no one parity to a row */
 static PetscErrorCode TableWrite(Sweep sweep, Results results, PetscErrorCode (*rows)(Sweep, ResultsTable),
                                  const char name[], const char header[])
 {
-  ResultsTable table;
+  const PetscBool parity = rows == PointRows || rows == OnsetRows || rows == RiskRows ? PETSC_TRUE : PETSC_FALSE;
+  ResultsTable    table;
+  char            columns[512];
 
   PetscFunctionBeginUser;
-  PetscCall(ResultsTableOpen(results, name, header, &table));
+  PetscCall(PetscSNPrintf(columns, sizeof(columns), "%s%s", header,
+                          parity && sweep->n_parities > 1 ? ",symmetry" : ""));
+  PetscCall(ResultsTableOpen(results, name, columns, &table));
   PetscCall(rows(sweep, table));
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
@@ -253,7 +284,7 @@ PetscErrorCode SweepWrite(Sweep sweep, Results results)
     PetscCall(TableWrite(sweep, results, RiskRows, "robustness",
                          "label,freq_hz,growth_nominal_rad_s,growth_largest_rad_s,error_rad_s,unstable_combinations,"
                          "combinations"));
-  if (sweep->sensitivities && sweep->basis.reduced.n)
+  if (sweep->sensitivities && (sweep->basis.reduced.n || sweep->n_parities > 1))
     PetscCall(TableWrite(sweep, results, SensitivityRows, "sensitivities",
                          "point,value,branch,freq_hz,parameter,freq_hz_per_unit,growth_rad_s_per_unit,"
                          "freq_hz_per_percent,growth_rad_s_per_percent"));

@@ -6,6 +6,7 @@
 #define SAFE         (1. / POINTS_MARGIN) /* what is asked at a point that corrections come from, beside rtol */
 #define SETTLED      (0.3 * SAFE)         /* beside rtol: a mode that needs no more corrections at this point */
 #define GREEDY_STEPS 8
+#define SAMPLE_NEAREST 4 /* modes taken in where the band has none */
 
 PetscErrorCode SampleAdd(GreedyWork *run, const PetscReal p[], PetscBool krylov, PetscInt n_vectors, PetscReal estimate)
 {
@@ -22,20 +23,37 @@ PetscErrorCode SampleAdd(GreedyWork *run, const PetscReal p[], PetscBool krylov,
   PetscFunctionReturn(0);
 }
 
+/* The modes at the present point in a band, Hz, which is then again the one before; where it may hold none, those nearest
+   to its middle */
+static PetscErrorCode SampleModes(GreedyWork *run, const PetscReal wide[2])
+{
+  const Modes modes = run->greedy->modes;
+  PetscReal   band[2], growth;
+  PetscInt    n = 1;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesGetBand(modes, band, &growth));
+  PetscCall(ModesSetBand(modes, wide));
+  if (run->greedy->may_be_none)
+    PetscCall(ModesSolveAny(modes, &n));
+  else
+    PetscCall(ModesSolve(modes));
+  if (!n) PetscCall(ModesSetNearest(modes, 0.5 * (wide[0] + wide[1]), SAMPLE_NEAREST));
+  if (!n) PetscCall(ModesSolve(modes));
+  PetscCall(ModesSetBand(modes, band));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SampleKrylov(GreedyWork *run, const PetscReal p[], PetscReal estimate)
 {
   const PetscReal wide[2] = {run->guarded.low / (2 * PETSC_PI), run->guarded.high / (2 * PETSC_PI)};
   const Mode     *mode;
-  PetscReal       band[2], growth;
   PetscInt        n, n_vectors;
   BV              block;
 
   PetscFunctionBeginUser;
   PetscCall(PencilSetParameters(run->basis->pencil, p));
-  PetscCall(ModesGetBand(run->greedy->modes, band, &growth));
-  PetscCall(ModesSetBand(run->greedy->modes, wide));
-  PetscCall(ModesSolve(run->greedy->modes));
-  PetscCall(ModesSetBand(run->greedy->modes, band));
+  PetscCall(SampleModes(run, wide));
   PetscCall(ModesGet(run->greedy->modes, &n, &mode));
   PetscCall(BasisCreateModes(run->basis, run->greedy->modes, n, 4, &block));
   PetscCall(BasisAdd(run->basis, block, run->drop, &n_vectors));

@@ -1,0 +1,229 @@
+/*
+   Sweeps with planes of symmetry (-symmetry): one for each parity, with a basis, branches and onsets of its own, on the
+   same points, then all of them in one table. The proof that the scene is its own mirror image is made before at points
+   that tell it for all: coefficients of the matrices are products of powers p, 1 / p and of |p|, so that a
+   difference that vanishes at four values of a parameter vanishes at all others.
+*/
+#include "sweepimpl.h"
+#include <petsctime.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PROOF_VALUES 4 /* of each axis */
+
+PetscErrorCode SweepNameParities(Sweep sweep, Pencil pencil)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PencilCountParities(pencil, &sweep->n_parities));
+  for (PetscInt c = 0; c < sweep->n_parities; c++)
+    PetscCall(PencilNameParity(pencil, c, sizeof(sweep->parity_name[c]), sweep->parity_name[c]));
+  PetscFunctionReturn(0);
+}
+
+PetscInt SweepFindParity(Sweep sweep, const char name[])
+{
+  PetscInt c = sweep->n_parities - 1;
+
+  while (c > 0 && strcmp(sweep->parity_name[c], name) != 0) c--;
+  return c;
+}
+
+/* Whether value i of n is one of those at which the proof is made */
+static PetscBool ProofTakes(PetscInt i, PetscInt n)
+{
+  for (PetscInt k = 0; k < PROOF_VALUES; k++)
+    if (i == k * (n - 1) / (PROOF_VALUES - 1)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Raises an error where the scene is not its own mirror image at some point of the sweep */
+static PetscErrorCode ParitiesProve(Sweep sweep)
+{
+  const SweepGrid *grid = &sweep->grid;
+  PetscBool       *seen; /* [statuses] of the contact */
+  PetscReal       *p;
+  PetscInt         n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(PetscMax(1, sweep->statuses.n), &seen));
+  PetscCall(PetscMalloc1(grid->n_parameters, &p));
+  for (PetscInt k = 0; k < grid->n_places; k++) {
+    const SweepPlace *place = &grid->place[k];
+    const PetscInt    i = place->point % grid->n[0], j = place->point / grid->n[0];
+    const PetscBool   taken =
+      place->point >= 0 && ProofTakes(i, grid->n[0]) && (grid->n_axes == 1 || ProofTakes(j, grid->n[1])) ? PETSC_TRUE
+                                                                                                         : PETSC_FALSE;
+
+    if (!taken && seen[place->status]) continue;
+    seen[place->status] = PETSC_TRUE;
+    GridFill(grid, place, p);
+    PetscCall(PencilSetParameters(sweep->pencil, p));
+    PetscCall(PencilGetParities(sweep->pencil, &n, NULL));
+  }
+  if (sweep->uncertain[0]) PetscCall(SweepUncertainProve(sweep));
+  PetscCall(PetscFree(seen));
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
+}
+
+/* The sweep of one parity: options, points and contact statuses are those of the whole */
+static PetscErrorCode PartCreate(Sweep sweep, PetscInt c, Sweep *part)
+{
+  PencilMatrices matrices;
+  Sweep          s;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(1, &s));
+  *s        = *sweep;
+  s->parity = c;
+  s->pencil = NULL;
+  s->risk   = NULL;
+  s->label  = NULL;
+  s->worst  = NULL;
+  s->events = (BranchEvents){0};
+  s->n_branches = s->n_risks = 0;
+  s->worst_risk              = 0;
+  s->is_confirmed            = NULL;
+  PetscCall(PetscArrayzero(s->part, SWEEP_PARITIES));
+  PetscCall(PetscArrayzero(s->seconds, PETSC_STATIC_ARRAY_LENGTH(s->seconds)));
+  *part = s;
+  PetscCall(PencilCreateParity(sweep->pencil, c, &s->pencil));
+  PetscCall(PencilGetFrictionless(s->pencil, &matrices));
+  PetscCall(MatGetSize(matrices.K, &s->unknowns, NULL));
+  PetscCall(PetscCalloc1(GridSize(&s->grid), &s->point));
+  PetscCall(PetscCalloc1(s->n_checks, &s->check));
+  for (PetscInt i = 0; i < s->n_checks; i++) s->check[i].at = sweep->check[i].at;
+  s->groups.store       = &s->store;
+  s->greedy.may_be_none = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* Adds the modes of a part to those of each point */
+static PetscErrorCode PartTakePoints(Sweep sweep, const Sweep part)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < GridSize(&sweep->grid); i++) {
+    SweepPoint       *all = &sweep->point[i];
+    const SweepPoint *own = &part->point[i];
+
+    PetscCall(PetscRealloc((size_t)PetscMax(1, all->n + own->n) * sizeof(*all->mode), &all->mode));
+    PetscCall(PetscArraycpy(&all->mode[all->n], own->mode, own->n));
+    for (PetscInt k = all->n; k < all->n + own->n; k++) {
+      all->mode[k].branch += sweep->n_branches;
+      all->mode[k].parity = part->parity;
+    }
+    all->n += own->n;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Adds the onsets of a part, and whether they are confirmed */
+static PetscErrorCode PartTakeOnsets(Sweep sweep, const Sweep part)
+{
+  BranchEvents  *all = &sweep->events;
+  const PetscInt n   = all->n + part->events.n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscRealloc((size_t)PetscMax(1, n) * sizeof(*all->event), &all->event));
+  PetscCall(PetscArraycpy(&all->event[all->n], part->events.event, part->events.n));
+  for (PetscInt e = all->n; e < n; e++)
+    for (int k = 0; k < 2; k++)
+      if (all->event[e].branch[k] >= 0) all->event[e].branch[k] += sweep->n_branches;
+  if (part->is_confirmed) {
+    PetscCall(PetscRealloc((size_t)PetscMax(1, n) * sizeof(*sweep->is_confirmed), &sweep->is_confirmed));
+    PetscCall(PetscArraycpy(&sweep->is_confirmed[all->n], part->is_confirmed, part->events.n));
+  }
+  all->n = n;
+  PetscFunctionReturn(0);
+}
+
+/* Adds what full solutions said of a part */
+static void PartTakeChecks(Sweep sweep, const Sweep part)
+{
+  for (PetscInt i = 0; i < sweep->n_checks; i++) {
+    SweepCheck       *all = &sweep->check[i];
+    const SweepCheck *own = &part->check[i];
+
+    if (own->error >= all->error) all->omega = own->omega;
+    all->n_full += own->n_full;
+    all->n_reduced += own->n_reduced;
+    all->n_unstable_full += own->n_unstable_full;
+    all->n_unstable_reduced += own->n_unstable_reduced;
+    all->n_beyond += own->n_beyond;
+    all->error    = PetscMax(all->error, own->error);
+    all->estimate = PetscMax(all->estimate, own->estimate);
+    all->full     = PetscMax(all->full, own->full);
+    all->ratio    = PetscMax(all->ratio, own->ratio);
+  }
+}
+
+/* Adds names and risks of a part */
+static PetscErrorCode PartTakeNames(Sweep sweep, const Sweep part)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscRealloc((size_t)PetscMax(1, sweep->n_branches + part->n_branches) * sizeof(*sweep->label),
+                         &sweep->label));
+  PetscCall(PetscArraycpy(&sweep->label[sweep->n_branches], part->label, part->n_branches));
+  PetscCall(PetscRealloc((size_t)PetscMax(1, sweep->n_risks + part->n_risks) * sizeof(*sweep->risk), &sweep->risk));
+  PetscCall(PetscArraycpy(&sweep->risk[sweep->n_risks], part->risk, part->n_risks));
+  for (PetscInt i = 0; i < part->n_risks; i++) sweep->risk[sweep->n_risks + i].parity = part->parity;
+  sweep->n_risks += part->n_risks;
+  sweep->n_combinations = part->n_combinations;
+  sweep->worst_risk     = PetscMax(sweep->worst_risk, part->worst_risk);
+  PetscFunctionReturn(0);
+}
+
+/* Adds a part, of which the dense model stays */
+static PetscErrorCode PartTake(Sweep sweep, Sweep part)
+{
+  PetscFunctionBeginUser;
+  part->first_branch = sweep->n_branches;
+  PetscCall(PartTakePoints(sweep, part));
+  PetscCall(PartTakeOnsets(sweep, part));
+  PartTakeChecks(sweep, part);
+  PetscCall(PartTakeNames(sweep, part));
+  sweep->n_branches += part->n_branches;
+  sweep->whole_unknowns += part->unknowns;
+  sweep->statuses = part->statuses; /* onsets look at the sliding state again */
+  sweep->n_static = part->n_static;
+  for (int i = 0; i < 4; i++) sweep->seconds[i] += part->seconds[i];
+  PetscCall(CorrectionDestroy(&part->greedy.correction));
+  PetscCall(BVDestroy(&part->basis.vectors));
+  PetscCall(MatDestroy(&part->basis.M));
+  PetscCall(PencilReleaseParity(part->pencil));
+  PetscFunctionReturn(0);
+}
+
+static int ModeCompare(const void *a, const void *b)
+{
+  const PetscReal x = ((const SweepMode *)a)->omega, y = ((const SweepMode *)b)->omega;
+
+  return (x > y) - (x < y);
+}
+
+PetscErrorCode SweepParities(Sweep sweep)
+{
+  PetscLogDouble since;
+  PetscInt       n_modes = 0;
+  PetscReal      band[2], growth;
+
+  PetscFunctionBeginUser;
+  PetscCall(ParitiesProve(sweep));
+  for (PetscInt c = 0; c < sweep->n_parities; c++) {
+    PetscCall(PartCreate(sweep, c, &sweep->part[c]));
+    PetscCall(ModesSetPencil(sweep->modes, sweep->part[c]->pencil));
+    PetscCall(PetscTime(&since));
+    if (sweep->part[c]->unknowns) PetscCall(SweepReduced(sweep->part[c], &since));
+    PetscCall(PartTake(sweep, sweep->part[c]));
+  }
+  PetscCall(ModesSetPencil(sweep->modes, sweep->pencil));
+  if (sweep->is_confirmed) SweepSortOnsets(sweep);
+  for (PetscInt i = 0; i < GridSize(&sweep->grid); i++) {
+    qsort(sweep->point[i].mode, (size_t)sweep->point[i].n, sizeof(SweepMode), ModeCompare);
+    n_modes += sweep->point[i].n;
+  }
+  PetscCall(ModesGetBand(sweep->modes, band, &growth));
+  PetscCheck(n_modes, sweep->comm, PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g Hz contains no mode at any point; widen it",
+             (double)band[0], (double)band[1]);
+  PetscFunctionReturn(0);
+}
