@@ -13,11 +13,12 @@
    and the matrices interpolated (src/reduced/cycle/family.c), to a stated error. Derivatives in T and p are central differences of
    the flow.
 
-   A cycle is stable where all eigenvalues of M but that of the phase lie inside the unit circle. The phase's is 1 in
-   continuous time; steps in which pairs open and close break the symmetry in time, and it is off by their length. It is told by
-   its vector, which makes most of the motion along the cycle. Where others have about as much part in that (at a fold, or where steps mix
-   them) and it depends on which is taken, where the largest modulus is nearer to 1 than its own error or the root of -cycle_rtol, or where
-   that error is not known, the class is `numerical`: stability cannot be told.
+   A cycle is stable where all eigenvalues of M but that of the phase lie inside the unit circle. The phase's is 1 in continuous
+   time. Steps in which pairs open and close break the symmetry in time: the period T depends on the shift theta of the steps
+   against the motion, again the same after T / N, and the phase's multiplier is 1 - dT/dtheta nearly, above 1 and below it in turn.
+   It is told by its vector, which makes most of the motion along the cycle. Where others have about as much part in that (at a
+   fold, or where steps mix them) and it depends on which is taken, where the largest modulus is nearer to 1 than its own error or
+   the root of -cycle_rtol, or where that error is not known, the class is `numerical`: stability cannot be told.
 
    A branch begins at the end of a transient, or where a mode of the sliding state becomes unstable (src/reduced/cycle/onset.c). Where
    its parameter turns back the fold is found, dp/ds = 0; the error of its parameter is that of finding it and the
@@ -28,9 +29,10 @@
    N is odd: forces of pairs that stay closed may alternate from step to step (reduced.h), which after an odd number is a multiplier of
    -1, but after an even one would be 1, and M - I singular.
 
-   The error of a cycle is an estimate by that of 2 N + 1 steps: 4/3 of the difference where the error is of second order in the
-   step (frequency, force, probes, the parameter of a fold), twice the difference for multipliers, which pairs that open and close
-   leave of first order. It is that of the steps only: not of the interpolation, and not of -dynamics_cutoff.
+   The error of a cycle is an estimate by that of 2 N + 1 steps and by two of N steps that begin a third and two thirds of a step
+   later: 4/3 of the difference to the former where the error is of second order in the step (frequency, force, probes, the parameter
+   of a fold), and the largest to the latter; for multipliers, which pairs that open and close leave of first order, the larger of twice
+   the former and the latter. It is that of the steps only: not of the interpolation, and not of -dynamics_cutoff.
 */
 #pragma once
 
@@ -48,7 +50,7 @@ PetscErrorCode CycleCreate(MPI_Comm comm, LimitCycle *cycle);
 +  -cycle_steps <0>        - steps in a period, odd, 7 to 1000001; 0: as long as those of the transient
 .  -cycle_rtol <1e-9>      - of Phi - x, relative to the size of the vibration; 1e-13 to 1e-3
 .  -cycle_max_it <30>      - of Newton's method
-.  -cycle_verify <true>    - once more with twice the steps, for the errors and the class
+.  -cycle_verify <true>    - once more with twice the steps, and twice with steps that begin elsewhere, for the errors and the class
 .  -cycle_parameter <name> - an option of the scene, e.g. contact_mu or pad_young, over which the branch is followed
 .  -cycle_range <lo,hi>    - where the branch ends
 .  -cycle_points <60>      - cycles on it, at most; half of them the first way

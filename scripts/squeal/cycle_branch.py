@@ -119,7 +119,7 @@ def draw_branch(branch, probe=None):
                     mfc=COLOURS[kind] if kind == "stable" else "white",
                     label=kind.replace("numerical", "stability within its error"))
              for kind in COLOURS if kind in branch.column("class")]
-    panels[0].legend(handles=[*marks, Line2D([], [], color=INK, marker="_", ls="", label="error, twice the steps")],
+    panels[0].legend(handles=[*marks, Line2D([], [], color=INK, marker="_", ls="", label="error of the steps")],
                      loc="best")
     panels[0].set_title(f"limit cycles over {branch.parameter}")
     return figure

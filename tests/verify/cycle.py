@@ -3,7 +3,10 @@
 normal force rises through its mean, rms and largest force of whole periods; rms and peaks of probes where there are any.
 
     cycle.py FOLDER FREQUENCY FORCE [PROBE]   largest relative differences
-    cycle.py errors COARSE FINER PART   errors that COARSE states beside its differences to FINER: 4/3 of them, twice that of multipliers
+    cycle.py errors COARSE FINER LATER PART   what COARSE states beside its differences to FINER, of twice the steps, 4/3 of them, and to
+                                        LATER, whose steps lie elsewhere: the rest is 3/4 to 3 times those; of multipliers twice the
+                                        former at least
+    cycle.py within COARSE FINE [VALUE] whether COARSE is FINE to the error that FINE or COARSE states, at a value of the parameter
     cycle.py same BRANCH VALUE SINGLE FREQUENCY FORCE   the cycle of a branch at a value of its parameter beside the one that SINGLE
                                         found without a branch: largest relative differences"""
 
@@ -21,15 +24,33 @@ def read(folder, name):
     return numpy.atleast_1d(numpy.genfromtxt(Path(folder) / name, delimiter=",", names=True))
 
 
-def errors(coarse, finer, part):
+STATED = ("freq_hz", "freq_error_hz"), ("force_rms_n", "force_rms_error_n"), ("force_peak_n", "force_peak_error_n")
+
+
+def errors(coarse, finer, later, part):
     """Whether a stated error is off."""
-    a, b = (read(folder, "cycle.csv")[0] for folder in (coarse, finer))
-    faults = 0
-    for value, error, times in (("freq_hz", "freq_error_hz", 4 / 3), ("force_rms_n", "force_rms_error_n", 4 / 3),
-                                ("force_peak_n", "force_peak_error_n", 4 / 3), ("multiplier_abs", "multiplier_error", 2)):
-        known = times * abs(a[value] - b[value])
-        faults += not abs(a[error] - known) <= float(part) * known
-        print(f"{error} {a[error]:.6g}, by the difference {known:.6g}")
+    a, b, c = (read(folder, "cycle.csv")[0] for folder in (coarse, finer, later))
+    twice = 2 * abs(a["multiplier_abs"] - b["multiplier_abs"])
+    faults = not (1 - float(part)) * twice <= a["multiplier_error"] <= 3 * twice
+    print(f"multiplier_error {a['multiplier_error']:.6g}, by the difference {twice:.6g}")
+    for value, error in STATED:
+        finer, place = 4 / 3 * abs(a[value] - b[value]), abs(a[value] - c[value])
+        rest = a[error] - finer
+        faults += not 0.75 * place <= rest <= 3 * place
+        print(f"{error} {a[error]:.6g}, by twice the steps {finer:.6g}, rest {rest:.6g}, to other steps {place:.6g}")
+    return faults > 0
+
+
+def within(coarse, fine, value=None):
+    """Whether two cycles are further apart than the errors that are stated."""
+    faults, pair = 0, []
+    for folder in (coarse, fine):
+        rows = read(folder, "cycle.csv")
+        pair.append(rows[0] if len(rows) == 1 else rows[numpy.argmin(abs(rows["value"] - float(value)))])
+    for name, error in STATED:
+        apart, stated = abs(pair[0][name] - pair[1][name]), sum(row[error] for row in pair if row[error] > 0)
+        faults += not 0 < apart <= stated
+        print(f"{name}: {pair[0][name]:.9g} and {pair[1][name]:.9g}, apart by {apart:.3g}, stated {stated:.3g}")
     return faults > 0
 
 
@@ -70,8 +91,8 @@ def probes(folder, record, at, most):
 
 
 def main():
-    if sys.argv[1] in ("errors", "same"):
-        return {"errors": errors, "same": same}[sys.argv[1]](*sys.argv[2:])
+    if sys.argv[1] in ("errors", "same", "within"):
+        return {"errors": errors, "same": same, "within": within}[sys.argv[1]](*sys.argv[2:])
     folder, frequency, force = sys.argv[1], float(sys.argv[2]), float(sys.argv[3])
     cycle, record = read(folder, "cycle.csv")[0], read(folder, "transient.csv")
     time, normal = record["time_s"], record["normal_force_n"]

@@ -51,7 +51,8 @@ PetscErrorCode CycleSetFromOptions(LimitCycle c)
   PetscCall(PetscOptionsReal("-cycle_rtol", "how far a period may end from where it began, over the vibration's size",
                              "cycle.h", c->rtol, &c->rtol, NULL));
   PetscCall(PetscOptionsInt("-cycle_max_it", "iterations of Newton's method", "cycle.h", c->max_it, &c->max_it, NULL));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-cycle_verify", "errors, by the cycle of twice the steps", &c->verify));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-cycle_verify",
+                           "errors, by the cycles of twice the steps and of steps that begin elsewhere", &c->verify));
   PetscCall(PetscOptionsString("-cycle_parameter",
                                "option of the scene over which cycles are followed, e.g. contact_mu, pad_young",
                                "cycle.h", c->parameter, c->parameter, sizeof(c->parameter), NULL));
@@ -147,29 +148,6 @@ PetscErrorCode CycleSetShooting(LimitCycle c, PetscReal period)
   PetscFunctionReturn(0);
 }
 
-/* The same cycle with twice the steps; of a fold, whose parameter is a result, the one at the same distance along the branch */
-static PetscErrorCode CycleRefine(LimitCycle c, const ShootingCycle *at, const ShootingTangent *along,
-                                  CyclePoint *point)
-{
-  const PetscInt n = c->flow.n, steps = c->flow.n_steps;
-  ShootingCycle  finer;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n, &finer.x, n * n, &finer.M));
-  PetscCall(ShootingCopy(n, at, &finer));
-  c->flow.n_steps = 2 * steps + 1;
-  PetscCall(along ? ShootingAdvance(&c->shooting, 0, along, &finer) : ShootingSolve(&c->shooting, &finer));
-  point->has_finer = finer.converged;
-  if (finer.converged) {
-    PetscCall(CycleFlowMeasure(&c->flow, &finer, &point->finer, point->finer_probe));
-    PetscCall(ShootingGetStability(&c->shooting, &finer, &point->finer_stability));
-    if (along) point->value_error += CycleError(at->value, finer.value);
-  }
-  c->flow.n_steps = steps;
-  PetscCall(PetscFree2(finer.x, finer.M));
-  PetscFunctionReturn(0);
-}
-
 /* A place in front of the cycles that are there, or behind them */
 static PetscErrorCode CycleAddPoint(LimitCycle c, CyclePoint **point)
 {
@@ -180,7 +158,8 @@ static PetscErrorCode CycleAddPoint(LimitCycle c, CyclePoint **point)
   for (PetscInt i = n; i > 0 && c->in_front; i--) c->point[i] = c->point[i - 1];
   *point  = &c->point[c->in_front ? 0 : n];
   **point = (CyclePoint){.value_error = -1, .n_steps = c->flow.n_steps};
-  PetscCall(PetscCalloc2(c->flow.n_looked, &(*point)->probe, c->flow.n_looked, &(*point)->finer_probe));
+  PetscCall(PetscCalloc3(c->flow.n_looked, &(*point)->probe, c->flow.n_looked, &(*point)->finer_probe, c->flow.n_looked,
+                         &(*point)->spread_probe));
   PetscFunctionReturn(0);
 }
 
@@ -301,7 +280,8 @@ PetscErrorCode CycleDestroy(LimitCycle *cycle)
   PetscCall(CycleFamilyDestroy(&c->family));
   PetscCall(PetscFree2(c->shooting.size, c->shooting.weight));
   PetscCall(PetscFree(c->shooting.free));
-  for (PetscInt i = 0; i < c->n_points; i++) PetscCall(PetscFree2(c->point[i].probe, c->point[i].finer_probe));
+  for (PetscInt i = 0; i < c->n_points; i++)
+    PetscCall(PetscFree3(c->point[i].probe, c->point[i].finer_probe, c->point[i].spread_probe));
   PetscCall(PetscFree(c->point));
   PetscCall(PetscFree(c->p));
   PetscCall(PetscFree(*cycle));

@@ -68,9 +68,11 @@ typedef struct {
   PetscInt          n_steps, its;
   PetscReal         residual;
   CycleMeasure      found, finer; /* finer: with twice the steps, where asked for */
+  CycleMeasure      spread;       /* largest differences of frequency, rms and peak where the steps begin elsewhere */
   PetscBool         has_finer, fold;
   ShootingStability stability, finer_stability;
-  CycleProbe       *probe, *finer_probe; /* [n_looked] */
+  PetscReal         multiplier_spread;
+  CycleProbe       *probe, *finer_probe, *spread_probe; /* [n_looked] */
 } CyclePoint;
 
 struct _p_LimitCycle {
@@ -132,13 +134,19 @@ PETSC_INTERN PetscErrorCode CycleSetShooting(LimitCycle cycle, PetscReal period)
 PETSC_INTERN PetscErrorCode CycleTake(LimitCycle cycle, const ShootingCycle *at);
 PETSC_INTERN PetscErrorCode CycleTakeFold(LimitCycle cycle, const ShootingPlace *fold, PetscReal error);
 
+/* refine.c - the same cycle with other steps, for its errors; of a fold, whose parameter is a result, the one at the same distance
+   `along` the branch */
+PETSC_INTERN PetscErrorCode CycleRefine(LimitCycle cycle, const ShootingCycle *at, const ShootingTangent *along,
+                                        CyclePoint *point);
+
 /* branch.c - the branch, in order, through the one cycle that was taken; `growing`: the direction along it that is gone last,
    NULL for rising values */
 PETSC_INTERN PetscErrorCode CycleFollow(LimitCycle cycle, const ShootingCycle *start, const ShootingTangent *growing);
 
-/* write.c - all tables as they are by now; the error of a number beside that of twice the steps; the class of a cycle that was found
+/* write.c - all tables as they are by now; the error of a number beside that of twice the steps and the spread over where
+   steps begin; the class of a cycle that was found
    to `rtol`: stable, unstable, or numerical where it cannot be told */
 PETSC_INTERN PetscErrorCode CycleWrite(LimitCycle cycle);
-PETSC_INTERN PetscReal      CycleError(PetscReal found, PetscReal finer);
+PETSC_INTERN PetscReal      CycleError(PetscReal found, PetscReal finer, PetscReal spread);
 PETSC_INTERN const char    *CycleClass(const CyclePoint *point, PetscReal rtol);
 PETSC_INTERN PetscReal      CycleMultiplier(const ShootingStability *stability);

@@ -25,8 +25,15 @@ static PetscErrorCode CycleViewPoint(LimitCycle c, const CyclePoint *p, PetscVie
       "%+.1e\n",
       (double)(b->freq - a->freq), (double)(b->rms - a->rms), (double)(b->peak - a->peak),
       CycleMultiplier(&p->finer_stability) - size));
+  if (p->has_finer)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer,
+      "  with steps that begin elsewhere: frequency off by up to %.1e Hz, rms by %.1e N, "
+      "largest force by %.1e N, multiplier by %.1e\n",
+      (double)p->spread.freq, (double)p->spread.rms, (double)p->spread.peak, (double)p->multiplier_spread));
   else if (c->verify)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  none is found with twice the steps: its error is unknown\n"));
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "  none is found with twice the steps, or with steps that begin elsewhere: its error is unknown\n"));
   PetscCall(PetscViewerASCIIPrintf(
     viewer,
     "  %s: largest multiplier %.6g%+.6gi (%.6g), that of the phase 1%+.1e%+.1ei; residual %.1e after %" PetscInt_FMT

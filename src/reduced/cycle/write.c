@@ -1,7 +1,8 @@
 /* Tables of cycles, written anew with each one, so that a run that ends early leaves all that it has found */
 #include "cycleimpl.h"
 
-/* A number of second order in the step is off by 4/3 of its difference to twice the steps, one of first order by twice that */
+/* A number of second order in the step is off by 4/3 of its difference to twice the steps, one of first order by twice that; and
+   by what it owes to the place of the steps */
 #define ERROR_SECOND_ORDER (4.0 / 3)
 #define ERROR_FIRST_ORDER  2
 
@@ -18,15 +19,18 @@ PetscReal CycleMultiplier(const ShootingStability *stability)
   return hypot(stability->largest[0], stability->largest[1]);
 }
 
-PetscReal CycleError(PetscReal found, PetscReal finer)
+PetscReal CycleError(PetscReal found, PetscReal finer, PetscReal spread)
 {
-  return ERROR_SECOND_ORDER * PetscAbsReal(found - finer);
+  return ERROR_SECOND_ORDER * PetscAbsReal(found - finer) + spread;
 }
 
-/* Of the modulus of the largest multiplier: pairs that open and close between two steps leave multipliers of first order */
+/* Of the modulus of the largest multiplier: pairs that open and close between two steps leave multipliers of first order, which both
+   differences tell */
 static PetscReal MultiplierError(const CyclePoint *p)
 {
-  return ERROR_FIRST_ORDER * PetscAbsReal(CycleMultiplier(&p->stability) - CycleMultiplier(&p->finer_stability));
+  const PetscReal finer = PetscAbsReal(CycleMultiplier(&p->stability) - CycleMultiplier(&p->finer_stability));
+
+  return PetscMax(ERROR_FIRST_ORDER * finer, p->multiplier_spread);
 }
 
 /* 1 outside the unit circle, -1 inside, 0 where the margin leaves that open */
@@ -49,7 +53,7 @@ const char *CycleClass(const CyclePoint *p, PetscReal rtol)
 
 typedef char Cell[32];
 
-/* An error; nothing where there is no cycle of twice the steps */
+/* An error; nothing where there are no cycles of other steps */
 static PetscErrorCode CellPrintError(const CyclePoint *p, PetscReal error, Cell cell)
 {
   PetscFunctionBeginUser;
@@ -71,15 +75,15 @@ static PetscErrorCode CellPrintValue(LimitCycle c, const CyclePoint *p, Cell cel
 static PetscErrorCode CycleWriteRow(LimitCycle c, PetscInt i, ResultsTable table)
 {
   const CyclePoint   *p = &c->point[i];
-  const CycleMeasure *a = &p->found, *b = &p->finer;
+  const CycleMeasure *a = &p->found, *b = &p->finer, *spread = &p->spread;
   const PetscReal    *large = p->stability.largest, *phase = p->stability.phase, size = CycleMultiplier(&p->stability);
   Cell                error[4], value[2];
 
   PetscFunctionBeginUser;
   PetscCall(CellPrintValue(c, p, value));
-  PetscCall(CellPrintError(p, CycleError(a->freq, b->freq), error[0]));
-  PetscCall(CellPrintError(p, CycleError(a->rms, b->rms), error[1]));
-  PetscCall(CellPrintError(p, CycleError(a->peak, b->peak), error[2]));
+  PetscCall(CellPrintError(p, CycleError(a->freq, b->freq, spread->freq), error[0]));
+  PetscCall(CellPrintError(p, CycleError(a->rms, b->rms, spread->rms), error[1]));
+  PetscCall(CellPrintError(p, CycleError(a->peak, b->peak, spread->peak), error[2]));
   PetscCall(CellPrintError(p, MultiplierError(p), error[3]));
   PetscCall(ResultsTableRow(table,
                             "%" PetscInt_FMT ",%s,%s,%s,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%.15g,"
@@ -101,12 +105,14 @@ static PetscErrorCode CycleWriteProbe(LimitCycle c, PetscInt i, PetscInt k, cons
   PetscFunctionBeginUser;
   PetscCall(CellPrintValue(c, p, value));
   for (int d = 0; d < 3; d++) {
-    const CycleProbe *a = &p->probe[k + d], *b = &p->finer_probe[k + d];
+    const CycleProbe *a = &p->probe[k + d], *b = &p->finer_probe[k + d], *spread = &p->spread_probe[k + d];
 
-    PetscCall(CellPrintError(p, CycleError(a->displacement_rms, b->displacement_rms), error[0]));
-    PetscCall(CellPrintError(p, CycleError(a->displacement_peak, b->displacement_peak), error[1]));
-    PetscCall(CellPrintError(p, CycleError(a->velocity_rms, b->velocity_rms), error[2]));
-    PetscCall(CellPrintError(p, CycleError(a->velocity_peak, b->velocity_peak), error[3]));
+    PetscCall(
+      CellPrintError(p, CycleError(a->displacement_rms, b->displacement_rms, spread->displacement_rms), error[0]));
+    PetscCall(
+      CellPrintError(p, CycleError(a->displacement_peak, b->displacement_peak, spread->displacement_peak), error[1]));
+    PetscCall(CellPrintError(p, CycleError(a->velocity_rms, b->velocity_rms, spread->velocity_rms), error[2]));
+    PetscCall(CellPrintError(p, CycleError(a->velocity_peak, b->velocity_peak, spread->velocity_peak), error[3]));
     PetscCall(ResultsTableRow(table, "%" PetscInt_FMT ",%s,%s,%s,%c,%.15g,%s,%.15g,%s,%.15g,%s,%.15g,%s", i + 1,
                               c->parameter, value[0], name, 'x' + d, (double)a->displacement_rms, error[0],
                               (double)a->displacement_peak, error[1], (double)a->velocity_rms, error[2],
