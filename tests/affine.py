@@ -37,16 +37,34 @@ def model(n=100):
     }
 
 
-def eigenvalues(matrices, w):
-    """All of them by LAPACK, from the first companion form."""
+def companion(matrices, w):
+    """The first companion form at a speed."""
     dense = {name: matrix.toarray() for name, matrix in matrices.items()}
     M = dense["M"]
     C = dense["D1"] + dense["DR"] / w + w * dense["DG"]
     K = dense["K1"] + dense["KR"] + w**2 * dense["KGEO"]
     n = len(M)
     lu = scipy.linalg.lu_factor(M)
-    A = numpy.block([[numpy.zeros((n, n)), numpy.eye(n)], [-scipy.linalg.lu_solve(lu, K), -scipy.linalg.lu_solve(lu, C)]])
-    return numpy.linalg.eigvals(A)
+    return numpy.block([[numpy.zeros((n, n)), numpy.eye(n)], [-scipy.linalg.lu_solve(lu, K), -scipy.linalg.lu_solve(lu, C)]])
+
+
+def eigenvalues(matrices, w):
+    """All of them by LAPACK."""
+    return numpy.linalg.eigvals(companion(matrices, w))
+
+
+def eigenvalue_near(matrices, w, place):
+    """The one nearest to a place beside which all others are far: inverse iteration with LAPACK's factors."""
+    A = companion(matrices, w)
+    lu = scipy.linalg.lu_factor(A - place * numpy.eye(len(A)))
+    x, value = numpy.random.default_rng(5).random(len(A)) + 0j, numpy.inf
+    for _ in range(40):
+        x /= numpy.linalg.norm(x)
+        y = scipy.linalg.lu_solve(lu, x)
+        before, value, x = value, place + 1 / (x.conj() @ y), y
+        if abs(value - before) < 1e-14 * abs(place):
+            return value
+    raise SystemExit(f"speed {w}: no eigenvalue stands alone near {place}")
 
 
 def main():

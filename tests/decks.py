@@ -1,7 +1,6 @@
 """Decks of other codes, as their manuals show them, for the boxes of solids.py: lengths in mm, stresses in MPa, masses in t.
 The order of nodes is that of the manuals, by the corners that each node is between."""
 
-import subprocess
 import sys
 from pathlib import Path
 
@@ -9,6 +8,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
 from squeal.gmsh import read_mesh
 
 import numpy as np
+from forked import run_well
 from solids import EDGES, FIRST, SIDES, TYPES
 
 MM = 1000
@@ -42,8 +42,7 @@ class Solid:
 
     def __init__(self, kind, folder, *options):
         self.path = folder / f"{kind.replace('+', '_')}.msh"
-        words = [Path(__file__).with_name("solids.py"), kind, self.path, "--format", "2.2", *options]
-        subprocess.run([sys.executable, *map(str, words)], check=True)
+        run_well(Path(__file__).with_name("solids.py"), kind, self.path, "--format", "2.2", *options)
         self.x, sets = read_mesh(self.path)
         self.cells = {NAMES[kind]: nodes for (name, kind), nodes in sets.items() if name == "bar"}
         self.sides = {}

@@ -34,6 +34,14 @@ def run_script(script, words=(), folder=None):
         return subprocess.CompletedProcess([str(script), *words], status, out.read(), err.read())
 
 
+def run_well(script, *words):
+    """What a script says, which must succeed."""
+    done = run_script(script, words)
+    if done.returncode:
+        raise SystemExit(f"{script} {' '.join(map(str, words))}: {done.stderr}")
+    return done.stdout
+
+
 def _be(script, words, folder, out, err):
     """Exit status of the script, which this process becomes."""
     try:

@@ -14,6 +14,7 @@ A case is a TOML file. Only `run` is required.
     [run.NAME]               # made in the order of the file
     options = "-contact_mu 1"    # {OTHER} is the output folder of an earlier run
     ranks = [1]                  # of the case's; checks of runs that are not made on a number of ranks are left out there
+    night = [2]                  # on these too with --night, when a day's run proves the same with less
     stdout = ["regex"]           # found in the output
     files = ["modes.csv"]        # written, not empty
     link = {"modes.csv.part" = "/dev/full"}    # symbolic links put into the output folder before
@@ -123,7 +124,7 @@ class Runner:
 
     def __init__(self, arguments, case, folder, ranks):
         self.arguments, self.case, self.folder, self.ranks = arguments, case, folder, ranks
-        self.made = [name for name, run in case["run"].items() if ranks in run.get("ranks", [ranks])]
+        self.made = [name for name, run in case["run"].items() if ranks in run["ranks"]]
         self.served = arguments.served
 
     def output(self, name):
@@ -289,6 +290,13 @@ def keep_hard(case):
     case["run"] = {name: run for name, run in runs.items() if name in kept or "hard" in run}
 
 
+def ranks_of_runs(case, chosen, night):
+    """Gives each run its numbers of ranks, by night those of the night too; names of runs that are made on none of `chosen`."""
+    for run in case["run"].values():
+        run["ranks"] = run.get("ranks", chosen) + (run.get("night", []) if night else [])
+    return [name for name, run in case["run"].items() if not set(run["ranks"] + run.get("night", [])) & set(chosen)]
+
+
 def main():
     parser = argparse.ArgumentParser(description="Runs one application test of squeal.")
     parser.add_argument("case", type=Path)
@@ -297,6 +305,7 @@ def main():
     parser.add_argument("--ranks", type=int, action="append", help="instead of the ranks of the case")
     parser.add_argument("--timeout", type=float, default=240, help="seconds allowed to each run")
     parser.add_argument("--core", choices=CORES, help="processor whose kernels OpenBLAS takes")
+    parser.add_argument("--night", action="store_true", help="runs on the ranks of the night as well")
     parser.add_argument("--margins", type=Path, help="only checks of hard cases, about each of which a line is added here")
     arguments = parser.parse_args()
     arguments.squeal = arguments.squeal.resolve()
@@ -312,7 +321,7 @@ def main():
 
     results = []
     chosen = arguments.ranks or case.get("ranks", [1])
-    never = [name for name, run in case["run"].items() if not set(run.get("ranks", chosen)) & set(chosen)]
+    never = ranks_of_runs(case, chosen, arguments.night)
     if never and not arguments.ranks:
         parser.error(f"runs on no number of ranks: {' '.join(never)}")
     arguments.served = served_program(arguments.squeal, arguments.timeout)

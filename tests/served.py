@@ -109,6 +109,26 @@ def served_program(program, limit):
     return Served(program, Path(folder) / "libfault.so", limit) if folder else None
 
 
+class Launched:
+    """The program started anew each time, on one rank."""
+
+    def __init__(self, program, limit):
+        self.program, self.limit = str(program), limit
+
+    def run(self, work, words):
+        done = subprocess.run([LAUNCHER, "-n", "1", self.program, *map(str, words)], cwd=work, stdin=subprocess.DEVNULL,
+                              capture_output=True, text=True, timeout=self.limit, check=False)
+        return Outcome(done.returncode, done.stdout, done.stderr)
+
+    def end(self):
+        pass
+
+
+def starter(program, limit=240):
+    """Runs the program in a folder with words of a command line, the cheapest way there is here."""
+    return served_program(program, limit) or Launched(program, limit)
+
+
 def launch(program, library, work, words, environment, ranks, limit):
     """The same on several ranks, started anew each time."""
     others = os.environ.get("LD_PRELOAD", "")

@@ -1,14 +1,17 @@
 #!/usr/bin/env python3
 """The checks of tests/check.py on made-up tables: what is not finite passes none. Breaks when bounds are compared with min()
-and max() alone, of which a nan is neither. And what tests/run.py takes for the program's own words. Exit status: 0, or 1."""
+and max() alone, of which a nan is neither. What tests/run.py takes for the program's own words. And that each case with runs of the
+night has a test there, which makes them beside those of the day. Exit status: 0, or 1."""
 
+import re
 import sys
 import tempfile
+import tomllib
 from pathlib import Path
 from types import SimpleNamespace
 
 from check import Checker, Failure, Line, measured_in, worst_of
-from run import own_words
+from run import own_words, ranks_of_runs
 
 CHECKS = ({"min": 0}, {"max": 10}, {"min": 0, "max": 10}, {"equals": [1, 2, 3], "rtol": 1}, {"equals_run": "run", "rtol": 1})
 
@@ -40,10 +43,26 @@ def margins_fail():
     return len(wrong)
 
 
+def nights_fail():
+    """How many cases with runs of the night have no test there, or lose one of them."""
+    tests, wrong = Path(__file__).resolve().parent, []
+    named = set(re.findall(r"\['(\w+)', \d+, 'night'\]", (tests / "meson.build").read_text()))
+    for path in sorted((tests / "cases").glob("*.toml")):
+        case = tomllib.loads(path.read_text())
+        chosen, nights = case.get("ranks", [1]), {name: run["night"] for name, run in case["run"].items() if "night" in run}
+        never = ranks_of_runs(case, chosen, True)
+        lost = [name for name, ranks in nights.items() if not set(ranks) <= set(chosen) & set(case["run"][name]["ranks"])]
+        if bool(nights) != (path.stem in named) or never or lost:
+            wrong.append(path.stem)
+    for name in wrong:
+        print(f"FAILED night of {name}")
+    return len(wrong)
+
+
 def main():
     rule = 60 * "-"
     remarks = ("", f"{rule}\nabort\n{rule}\n", f"{rule}\nabort\n{rule}\n\0", f"\0{rule}\nabort\n{rule}\n")
-    failed = [own(remark) for remark in remarks].count(False) + margins_fail()
+    failed = [own(remark) for remark in remarks].count(False) + margins_fail() + nights_fail()
     with tempfile.TemporaryDirectory() as name:
         for check in CHECKS:
             for cell, expected in (("2", True), ("nan", False), ("inf", False), ("-inf", False)):

@@ -252,7 +252,7 @@ def main():
         top = Path(name)
         (top / "scene.yaml").write_text(SCENE)
         for kind in SOLIDS:
-            run(sys.executable, SOURCE / "tests/solids.py", kind, "--distort", 1, "--curve", top / f"{kind}.msh")
+            run(SOURCE / "tests/solids.py", kind, "--distort", 1, "--curve", top / f"{kind}.msh")
             squeal(*BAR, "-model_mesh", top / f"{kind}.msh", "-output_dir", top / kind, "-operators_save", top / "small")
             check_vtu(top / kind)
             check_unv(top / kind)

@@ -9,6 +9,7 @@ the deck says.
 The comparison with CalculiX is left out without `ccx`."""
 
 import csv
+import functools
 import shutil
 import subprocess
 import sys
@@ -21,17 +22,29 @@ from squeal.decks.convert import convert
 
 import decks
 import numpy as np
+from served import starter
 
 SAME, CALCULIX, COUNT = 1e-9, 1e-5, 8
 FAILED = []
 
 
+@functools.cache
+def program():
+    """squeal, on one rank."""
+    return starter(sys.argv[1])
+
+
 def modes(folder, words, ranks=1):
     """Hz, of a run of squeal: the lowest."""
-    command = [sys.argv[2], "-n", ranks, sys.argv[1], *words, "-output_dir", folder / "out", "-output_fields", 0]
-    done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise SystemExit(f"{' '.join(map(str, words))}: {done.stderr}")
+    words = [str(word) for word in [*words, "-output_dir", folder / "out", "-output_fields", 0]]
+    if ranks == 1:
+        done = program().run(folder, words)
+        status, stderr = done.status, done.stderr
+    else:
+        done = subprocess.run([sys.argv[2], "-n", str(ranks), sys.argv[1], *words], cwd=folder, capture_output=True, text=True, check=False)
+        status, stderr = done.returncode, done.stderr
+    if status != 0:
+        raise SystemExit(f"{' '.join(words)}: {stderr}")
     with (folder / "out/modes.csv").open(newline="") as rows:
         return np.array([float(row["freq_hz"]) for row in csv.DictReader(rows)][:COUNT])
 
@@ -141,6 +154,7 @@ def main():
         for compare in (abaqus, middles, nastran, ansys, meshio):
             if len(sys.argv) < 4 or compare.__name__ in sys.argv[3]:
                 compare(Path(name))
+    program().end()
     return 1 if FAILED else 0
 
 

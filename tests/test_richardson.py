@@ -16,7 +16,7 @@ has the wrong sign.
     test_richardson.py SQUEAL MPIRUN"""
 
 import math
-import subprocess
+import shutil
 import sys
 import tempfile
 from pathlib import Path
@@ -31,6 +31,8 @@ from squeal.mesh_error.subdivide import subdivide, write_mesh
 from squeal.tables import optional, read_table
 
 from check import Failure, require
+from forked import run_script, run_well
+from served import starter
 from small_brake import SCENE
 from solids import SIZE
 
@@ -48,7 +50,7 @@ REFUSED = ["--refine", "nan"], ["--refine", "inf"], ["--ranks", "0"], ["--most",
 def solid(folder, element, *words):
     """Places and sets of a box."""
     path = folder / f"{element}.msh"
-    subprocess.run([sys.executable, SOURCE / "tests/solids.py", element, "--elements", "3,2,2", *words, path], check=True)
+    run_well(SOURCE / "tests/solids.py", element, "--elements", "3,2,2", *words, path)
     return read_any(path)
 
 
@@ -107,7 +109,7 @@ def cuts(work):
 
 
 def limit(work):
-    subprocess.run([sys.executable, SOURCE / "tests/mesh.py", "beam", "--elements", "10,2,1", work.folder / "cantilever.msh"], check=True)
+    run_well(SOURCE / "tests/mesh.py", "beam", "--elements", "10,2,1", work.folder / "cantilever.msh")
     rows = work.table(work.done("cantilever.yaml"), "modes_mesh.csv", {"freq_hz": float, "freq_limit_hz": optional,
                                                                       "error_mesh_hz": optional, "order": optional, "how": str})
     stretch = min(rows, key=lambda row: abs(row["freq_hz"] - STRETCH))
@@ -147,20 +149,19 @@ class Work:
     """Folder and programs."""
 
     def __init__(self, folder, program):
-        self.folder, self.program = folder, program
+        self.folder, self.program, self.start = folder, program, starter(program)
 
     def modes(self, name, *words):
         """Frequencies of a run of squeal, Hz."""
-        command = [self.program, *words, "-output_dir", self.folder / f"modes{name}"]
-        subprocess.run([str(word) for word in command], cwd=self.folder, check=True, capture_output=True)
+        done = self.start.run(self.folder, [*words, "-output_dir", self.folder / f"modes{name}"])
+        require(done.status == 0, f"modes{name}: {done.stderr}")
         return np.array([row["freq_hz"] for row in read_table(self.folder / f"modes{name}/modes.csv", {"freq_hz": float})])
 
     def run(self, scene, *words):
         """The script, with results in out."""
         scene = scene if isinstance(scene, Path) else SOURCE / "options" / scene
-        command = [SOURCE / "scripts/richardson", scene, "--program", self.program, "--output", "out", *words]
-        subprocess.run(["rm", "-rf", self.folder / "out"], check=True)
-        return subprocess.run([str(word) for word in command], cwd=self.folder, capture_output=True, text=True, check=False)
+        shutil.rmtree(self.folder / "out", ignore_errors=True)
+        return run_script(SOURCE / "scripts/richardson", [scene, "--program", self.program, "--output", "out", *words], self.folder)
 
     def done(self, scene, *words):
         """The same, which must succeed."""
@@ -180,6 +181,7 @@ def main():
         for part in (orders, cuts, limit, brake, bad):
             part(work)
             print(part.__name__)
+        work.start.end()
 
 
 if __name__ == "__main__":
