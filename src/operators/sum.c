@@ -5,12 +5,12 @@
    comes.
 */
 #include "terms.h"
+#include "base/matrixadd.h"
 
-/* Columns of one row from several matrices, and room for scaled values */
+/* Columns of one row from several matrices */
 typedef struct {
-  PetscInt     size, n;
-  PetscInt    *column;
-  PetscScalar *value;
+  PetscInt  size, n;
+  PetscInt *column;
 } SumRow;
 
 static PetscErrorCode SumRowReserve(SumRow *row, PetscInt size)
@@ -19,7 +19,6 @@ static PetscErrorCode SumRowReserve(SumRow *row, PetscInt size)
   if (size <= row->size) PetscFunctionReturn(0);
   row->size = 2 * size;
   PetscCall(PetscRealloc((size_t)row->size * sizeof(*row->column), &row->column));
-  PetscCall(PetscRealloc((size_t)row->size * sizeof(*row->value), &row->value));
   PetscFunctionReturn(0);
 }
 
@@ -27,7 +26,6 @@ static PetscErrorCode SumRowDestroy(SumRow *row)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(row->column));
-  PetscCall(PetscFree(row->value));
   PetscFunctionReturn(0);
 }
 
@@ -54,50 +52,94 @@ static PetscErrorCode SumRowUnite(const Terms *terms, const PetscBool has[], Pet
   PetscFunctionReturn(0);
 }
 
-/* Empty matrix, preallocated exactly for the union of the terms that the sum has */
-static PetscErrorCode SumCreateUnion(const Terms *terms, const PetscBool has[], Mat *A)
+/* Local entries of the terms that the sum has, at least as many as it has itself */
+static PetscErrorCode SumBound(const Terms *terms, const PetscBool has[], PetscInt *bound)
 {
-  const Mat like = terms->term[0].A;
-  PetscInt  first, last, left, right, *inside, *outside;
-  SumRow    row = {0};
-
   PetscFunctionBeginUser;
-  PetscCall(MatGetOwnershipRange(like, &first, &last));
-  PetscCall(MatGetOwnershipRangeColumn(like, &left, &right));
-  PetscCall(PetscCalloc2(last - first, &inside, last - first, &outside));
-  for (PetscInt i = 0; i < last - first; i++) {
-    PetscCall(SumRowUnite(terms, has, first + i, &row));
-    for (PetscInt k = 0; k < row.n; k++) inside[i] += row.column[k] >= left && row.column[k] < right;
-    outside[i] = row.n - inside[i];
+  *bound = 0;
+  for (PetscInt t = 0; t < terms->n; t++) {
+    MatInfo info;
+
+    if (!has[t]) continue;
+    PetscCall(MatGetInfo(terms->term[t].A, MAT_LOCAL, &info));
+    *bound += (PetscInt)info.nz_used;
   }
-  PetscCall(MatCreateAIJ(PetscObjectComm((PetscObject)like), last - first, right - left, PETSC_DETERMINE,
-                         PETSC_DETERMINE, 0, inside, 0, outside, A));
-  PetscCall(MatSetOption(*A, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
-  PetscCall(PetscFree2(inside, outside));
-  PetscCall(SumRowDestroy(&row));
   PetscFunctionReturn(0);
 }
 
-/* A += scale X */
-static PetscErrorCode SumAddRows(PetscReal scale, Mat X, Mat A)
+/* Compressed rows [rows + 1], [entries], [entries] */
+typedef struct {
+  PetscInt    *ia, *ja;
+  PetscScalar *a;
+} SumArrays;
+
+static PetscErrorCode SumArraysDestroy(void *ctx)
 {
-  PetscInt first, last;
-  SumRow   row = {0};
+  SumArrays *arrays = ctx;
 
   PetscFunctionBeginUser;
-  PetscCall(MatGetOwnershipRange(X, &first, &last));
-  for (PetscInt i = first; i < last; i++) {
-    const PetscInt    *columns;
-    const PetscScalar *values;
-    PetscInt           n;
+  PetscCall(PetscFree3(arrays->ia, arrays->ja, arrays->a));
+  PetscCall(PetscFree(arrays));
+  PetscFunctionReturn(0);
+}
 
-    PetscCall(MatGetRow(X, i, &n, &columns, &values));
-    PetscCall(SumRowReserve(&row, n));
-    for (PetscInt k = 0; k < n; k++) row.value[k] = scale * values[k];
-    if (n) PetscCall(MatSetValues(A, 1, &i, n, columns, row.value, ADD_VALUES));
-    PetscCall(MatRestoreRow(X, i, &n, &columns, &values));
+/* The union of the terms that the sum has in the local rows `first` .. `first` + n - 1, with zeros */
+static PetscErrorCode SumArraysCreate(const Terms *terms, const PetscBool has[], PetscInt first, PetscInt n,
+                                      SumArrays **arrays)
+{
+  PetscInt   bound;
+  SumRow     row = {0};
+  SumArrays *s;
+
+  PetscFunctionBeginUser;
+  PetscCall(SumBound(terms, has, &bound));
+  PetscCall(PetscNew(&s));
+  PetscCall(PetscCalloc3(n + 1, &s->ia, bound, &s->ja, bound, &s->a));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(SumRowUnite(terms, has, first + i, &row));
+    PetscCall(PetscArraycpy(&s->ja[s->ia[i]], row.column, row.n));
+    s->ia[i + 1] = s->ia[i] + row.n;
   }
   PetscCall(SumRowDestroy(&row));
+  *arrays = s;
+  PetscFunctionReturn(0);
+}
+
+/* The matrix of such arrays: on one rank it works in them and takes them along, on several it copies them */
+static PetscErrorCode SumCreateMatrix(MPI_Comm comm, PetscInt n_rows, PetscInt n_columns, SumArrays *arrays, Mat *A)
+{
+  PetscMPIInt    size;
+  PetscContainer owner;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  if (size > 1) {
+    PetscCall(MatCreateMPIAIJWithArrays(comm, n_rows, n_columns, PETSC_DETERMINE, PETSC_DETERMINE, arrays->ia,
+                                        arrays->ja, arrays->a, A));
+    PetscCall(SumArraysDestroy(arrays));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(MatCreateSeqAIJWithArrays(comm, n_rows, n_columns, arrays->ia, arrays->ja, arrays->a, A));
+  PetscCall(PetscContainerCreate(comm, &owner));
+  PetscCall(PetscContainerSetPointer(owner, arrays));
+  PetscCall(PetscContainerSetUserDestroy(owner, SumArraysDestroy));
+  PetscCall(PetscObjectCompose((PetscObject)*A, "squeal_rows", (PetscObject)owner));
+  PetscCall(PetscContainerDestroy(&owner));
+  PetscFunctionReturn(0);
+}
+
+/* Matrix of zeros in the union of the terms that the sum has */
+static PetscErrorCode SumCreateUnion(const Terms *terms, const PetscBool has[], Mat *A)
+{
+  const Mat  like = terms->term[0].A;
+  PetscInt   first, n_rows, n_columns;
+  SumArrays *arrays;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetOwnershipRange(like, &first, NULL));
+  PetscCall(MatGetLocalSize(like, &n_rows, &n_columns));
+  PetscCall(SumArraysCreate(terms, has, first, n_rows, &arrays));
+  PetscCall(SumCreateMatrix(PetscObjectComm((PetscObject)like), n_rows, n_columns, arrays, A));
   PetscFunctionReturn(0);
 }
 
@@ -168,10 +210,13 @@ PetscErrorCode TermsSumForm(const Terms *terms, const TermsSumKind *kind, const 
     PetscCall(TermsSumDestroy(sum));
   } else {
     PetscCall(SumCoverPattern(terms, c, sum));
-    for (PetscInt t = 0; t < terms->n; t++)
-      if (sum->has[t]) PetscCall(SumAddRows(c[t], terms->term[t].A, sum->A));
-    PetscCall(MatAssemblyBegin(sum->A, MAT_FINAL_ASSEMBLY));
-    PetscCall(MatAssemblyEnd(sum->A, MAT_FINAL_ASSEMBLY));
+    for (PetscInt t = 0; t < terms->n; t++) {
+      PetscBool added = PETSC_TRUE;
+
+      if (sum->has[t]) PetscCall(MatrixAdd(c[t], terms->term[t].A, sum->A, &added));
+      PetscCheck(added, PetscObjectComm((PetscObject)sum->A), PETSC_ERR_PLIB,
+                 "a term is not in the pattern of its sum");
+    }
   }
   sum->current = PETSC_TRUE;
   PetscCall(PetscFree(sum->c));

@@ -30,8 +30,8 @@ PETSC_INTERN PetscErrorCode BlockKrylovSetReach(EPS eps, PetscReal reach);
 /* Whether it ended so */
 PETSC_INTERN PetscErrorCode BlockKrylovReached(EPS eps, PetscBool *reached);
 
-/* X = A^-1 B for the first n_right columns and X = A^-T B for the others */
-typedef PetscErrorCode (*BlockKrylovSolve)(void *ctx, PetscInt n_right, Mat B, Mat X);
+/* X := A^-1 X for the first n_right columns and A^-T X for the others */
+typedef PetscErrorCode (*BlockKrylovSolve)(void *ctx, PetscInt n_right, Mat X);
 
 /* EPSSolve(right) lets the space of `left`, of the transposed problem, grow along with its own: `left` is as far then as
    its own EPSSolve() finds it, which must follow. Both are of this type, generalised problems of the same target by

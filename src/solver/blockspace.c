@@ -144,20 +144,20 @@ PetscErrorCode BlockSpaceExtendBoth(BlockSpace *right, BlockSpace *left, BlockKr
 {
   const PetscInt n_right = right->p, n = right->p + left->p;
   PetscInt       n_local;
-  Mat            B, X;
+  PetscScalar   *x; /* not set to zero before it is written, as the matrix' own would be */
+  Mat            X;
 
   PetscFunctionBeginUser;
   PetscCall(BVGetSizes(right->V, &n_local, NULL, NULL));
-  PetscCall(
-    MatCreateDense(PetscObjectComm((PetscObject)right->V), n_local, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &B));
-  PetscCall(MatDuplicate(B, MAT_DO_NOT_COPY_VALUES, &X));
-  PetscCall(SpaceMultiply(right, 0, B));
-  PetscCall(SpaceMultiply(left, n_right, B));
-  PetscCall((*solve)(ctx, n_right, B, X));
-  PetscCall(MatDestroy(&B));
+  PetscCall(PetscMalloc1(n_local * n, &x));
+  PetscCall(MatCreateDense(PetscObjectComm((PetscObject)right->V), n_local, PETSC_DECIDE, PETSC_DETERMINE, n, x, &X));
+  PetscCall(SpaceMultiply(right, 0, X));
+  PetscCall(SpaceMultiply(left, n_right, X));
+  PetscCall((*solve)(ctx, n_right, X));
   PetscCall(SpaceTakeColumns(right, 0, X));
   PetscCall(SpaceTakeColumns(left, n_right, X));
   PetscCall(MatDestroy(&X));
+  PetscCall(PetscFree(x));
   PetscFunctionReturn(0);
 }
 

@@ -4,6 +4,7 @@
    place and the analysis serves again.
 */
 #include "shiftinvert.h"
+#include "base/matrixadd.h"
 #include "lowrank.h"
 #include <petscksp.h>
 #include <petsc/private/petscimpl.h> /* PetscObjectStateGet() */
@@ -30,6 +31,17 @@ PetscErrorCode ShiftInvertKeepsPattern(const ShiftInvert *si, const PencilMatric
   PetscFunctionReturn(0);
 }
 
+/* A += c X, in place where the pattern of A has that of X */
+static PetscErrorCode ShiftInvertAdd(PetscReal c, Mat X, MatStructure pattern, Mat A)
+{
+  PetscBool added;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatrixAdd(c, X, A, &added));
+  if (!added) PetscCall(MatAXPY(A, c, X, pattern));
+  PetscFunctionReturn(0);
+}
+
 /* K - s M, or K + s C + s^2 M with damping; in place where the pattern is kept */
 static PetscErrorCode ShiftInvertMatrix(const ShiftInvert *si, const PencilMatrices *pencil, PetscBool in_place, Mat *A)
 {
@@ -42,12 +54,12 @@ static PetscErrorCode ShiftInvertMatrix(const ShiftInvert *si, const PencilMatri
     PetscCall(KSPGetOperators(si->ksp, A, NULL));
     PetscCall(PetscObjectReference((PetscObject)*A));
     PetscCall(MatZeroEntries(*A));
-    PetscCall(MatAXPY(*A, 1, K, pattern));
+    PetscCall(ShiftInvertAdd(1, K, pattern, *A));
   } else {
     PetscCall(MatDuplicate(K, MAT_COPY_VALUES, A));
   }
-  if (pencil->C) PetscCall(MatAXPY(*A, s, pencil->C, pattern));
-  PetscCall(MatAXPY(*A, pencil->C ? s * s : -s, pencil->M, pattern));
+  if (pencil->C) PetscCall(ShiftInvertAdd(s, pencil->C, pattern, *A));
+  PetscCall(ShiftInvertAdd(pencil->C ? s * s : -s, pencil->M, pattern, *A));
   PetscCall(MatSetOption(*A, MAT_SYMMETRIC, pencil->symmetric || si->even ? PETSC_TRUE : PETSC_FALSE));
   PetscFunctionReturn(0);
 }
@@ -162,7 +174,6 @@ PetscErrorCode ShiftInvertPrepare(const PencilMatrices *pencil, ShiftInvert *si)
   si->released = PETSC_FALSE;
   if (!keeps) PetscCall(KSPDestroy(&si->ksp)); /* before there is another matrix beside its factors */
   PetscCall(ShiftInvertMatrix(si, pencil, keeps, &A));
-  PetscCall(MatNorm(A, NORM_FROBENIUS, &si->size));
   if (keeps) {
     PetscCall(KSPSetOperators(si->ksp, A, A));
   } else {

@@ -58,14 +58,43 @@ static PetscErrorCode PairsOf(Mat S, Mat X, PetscInt p, PetscInt m, PetscScalar 
   PetscFunctionReturn(0);
 }
 
+/* The same of a sequential S, whose few entries go where they belong */
+static PetscErrorCode RowsSpread(Mat S, PetscReal scale, PetscInt p, PetscInt m, const PetscScalar c[], Mat X)
+{
+  PetscScalar *x;
+  PetscInt     stride;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatDenseGetLDA(X, &stride));
+  PetscCall(MatDenseGetArray(X, &x));
+  for (PetscInt i = 0; i < p; i++) {
+    const PetscInt    *column;
+    const PetscScalar *s;
+    PetscInt           n;
+
+    PetscCall(MatGetRow(S, i, &n, &column, &s));
+    for (PetscInt j = 0; j < m; j++)
+      for (PetscInt k = 0; k < n; k++) x[j * stride + column[k]] += scale * s[k] * c[j * p + i];
+    PetscCall(MatRestoreRow(S, i, &n, &column, &s));
+  }
+  PetscCall(MatDenseRestoreArray(X, &x));
+  PetscFunctionReturn(0);
+}
+
 /* X += scale S' c for S = L or R */
 static PetscErrorCode PairsSpread(Mat S, PetscReal scale, PetscInt p, PetscInt m, const PetscScalar c[], Mat X)
 {
   PetscScalar *d;
   PetscInt     first, last, stride;
+  PetscBool    sequential;
   Mat          D, SD;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscObjectTypeCompare((PetscObject)S, MATSEQAIJ, &sequential));
+  if (sequential) {
+    PetscCall(RowsSpread(S, scale, p, m, c, X));
+    PetscFunctionReturn(0);
+  }
   PetscCall(DenseLike(S, PETSC_TRUE, m, &D));
   PetscCall(MatGetOwnershipRange(D, &first, &last));
   PetscCall(MatDenseGetLDA(D, &stride));
@@ -105,17 +134,14 @@ static PetscErrorCode StoredProduct(const LowRank *u, PetscBool subtract, PetscI
 static PetscErrorCode SolveDense(const LowRank *u, PetscInt first, PetscInt m, Mat X)
 {
   PetscScalar *unit;
-  Mat          B;
 
   PetscFunctionBeginUser;
-  PetscCall(MatDuplicate(X, MAT_DO_NOT_COPY_VALUES, &B));
-  PetscCall(MatZeroEntries(B));
+  PetscCall(MatZeroEntries(X));
   PetscCall(PetscCalloc1(u->p * m, &unit));
   for (PetscInt j = 0; j < m; j++) unit[j * u->p + first + j] = 1;
-  PetscCall(PairsSpread(u->R, 1, u->p, m, unit, B));
+  PetscCall(PairsSpread(u->R, 1, u->p, m, unit, X));
   PetscCall(PetscFree(unit));
-  PetscCall((*u->solve)(u->ctx, B, X));
-  PetscCall(MatDestroy(&B));
+  PetscCall((*u->solve)(u->ctx, X));
   PetscFunctionReturn(0);
 }
 
@@ -205,67 +231,63 @@ static PetscErrorCode SideReduce(const LowRank *u, const Side *side, Mat X)
   PetscFunctionReturn(0);
 }
 
-/* B -= S' c, S = L or R, or with Y the left ones B -= Y c */
-static PetscErrorCode SideSubtract(const LowRank *u, const Side *side, Mat B)
+/* X -= S' c, S = L or R, or with Y the left ones X -= Y c */
+static PetscErrorCode SideSubtract(const LowRank *u, const Side *side, Mat X)
 {
-  Mat b;
+  Mat x;
 
   PetscFunctionBeginUser;
   if (!side->m) PetscFunctionReturn(0);
-  PetscCall(MatDenseGetSubMatrix(B, PETSC_DECIDE, PETSC_DECIDE, side->first, side->first + side->m, &b));
+  PetscCall(MatDenseGetSubMatrix(X, PETSC_DECIDE, PETSC_DECIDE, side->first, side->first + side->m, &x));
   if (u->Y && side->left)
-    PetscCall(StoredProduct(u, PETSC_TRUE, side->m, b, side->c));
+    PetscCall(StoredProduct(u, PETSC_TRUE, side->m, x, side->c));
   else
-    PetscCall(PairsSpread(side->left ? u->R : u->L, -1, u->p, side->m, side->c, b));
-  PetscCall(MatDenseRestoreSubMatrix(B, &b));
+    PetscCall(PairsSpread(side->left ? u->R : u->L, -1, u->p, side->m, side->c, x));
+  PetscCall(MatDenseRestoreSubMatrix(X, &x));
   PetscFunctionReturn(0);
 }
 
 /* With Y: the right ones are changed before the solve, the left ones after it */
-static PetscErrorCode ApplyStored(const LowRank *u, const Side *right, const Side *left, Mat B, Mat X)
+static PetscErrorCode ApplyStored(const LowRank *u, const Side *right, const Side *left, Mat X)
 {
-  Mat reduced = B;
-
   PetscFunctionBeginUser;
-  PetscCall(SideReduce(u, right, B));
-  if (right->m) PetscCall(MatDuplicate(B, MAT_COPY_VALUES, &reduced));
-  PetscCall(SideSubtract(u, right, reduced));
-  PetscCall((*u->solve)(u->ctx, reduced, X));
-  if (right->m) PetscCall(MatDestroy(&reduced));
+  PetscCall(SideReduce(u, right, X));
+  PetscCall(SideSubtract(u, right, X));
+  PetscCall((*u->solve)(u->ctx, X));
   PetscCall(SideReduce(u, left, X));
   PetscCall(SideSubtract(u, left, X));
   PetscFunctionReturn(0);
 }
 
 /* Without Y: two solves of all */
-static PetscErrorCode ApplyTwice(const LowRank *u, const Side *right, const Side *left, Mat B, Mat X)
+static PetscErrorCode ApplyTwice(const LowRank *u, const Side *right, const Side *left, Mat X)
 {
-  Mat reduced;
+  Mat Z;
 
   PetscFunctionBeginUser;
-  PetscCall((*u->solve)(u->ctx, B, X));
-  PetscCall(SideReduce(u, right, X));
-  PetscCall(SideReduce(u, left, X));
-  PetscCall(MatDuplicate(B, MAT_COPY_VALUES, &reduced));
-  PetscCall(SideSubtract(u, right, reduced));
-  PetscCall(SideSubtract(u, left, reduced));
-  PetscCall((*u->solve)(u->ctx, reduced, X));
-  PetscCall(MatDestroy(&reduced));
+  PetscCall(MatDuplicate(X, MAT_COPY_VALUES, &Z));
+  PetscCall((*u->solve)(u->ctx, Z));
+  PetscCall(SideReduce(u, right, Z));
+  PetscCall(SideReduce(u, left, Z));
+  PetscCall(MatDestroy(&Z));
+  PetscCall(SideSubtract(u, right, X));
+  PetscCall(SideSubtract(u, left, X));
+  PetscCall((*u->solve)(u->ctx, X));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LowRankApply(const LowRank *u, PetscInt n_right, Mat B, Mat X)
+PetscErrorCode LowRankApply(const LowRank *u, PetscInt n_right, Mat X)
 {
   PetscInt     m;
   PetscScalar *c;
   Side         right, left;
 
   PetscFunctionBeginUser;
-  PetscCall(MatGetSize(B, NULL, &m));
+  PetscCall(MatGetSize(X, NULL, &m));
   PetscCall(PetscMalloc1(u->p * m, &c));
   right = (Side){PETSC_FALSE, 0, n_right, c};
   left  = (Side){PETSC_TRUE, n_right, m - n_right, c + n_right * u->p};
-  PetscCall(u->Y ? ApplyStored(u, &right, &left, B, X) : ApplyTwice(u, &right, &left, B, X));
+  PetscCall(u->Y ? ApplyStored(u, &right, &left, X) : ApplyTwice(u, &right, &left, X));
   PetscCall(PetscFree(c));
   PetscFunctionReturn(0);
 }

@@ -3,26 +3,28 @@
 
 #include <petscmat.h>
 
-/* One system with many right-hand sides, X = A^-1 B; B and X are dense, columns follow one another */
-typedef PetscErrorCode (*LowRankSolve)(void *ctx, Mat B, Mat X);
+/* One system with many right-hand sides, X := A^-1 X, X dense */
+typedef PetscErrorCode (*LowRankSolve)(void *ctx, Mat X);
+/* X = A^-1 B with B' sparse */
+typedef PetscErrorCode (*LowRankSolveRows)(void *ctx, Mat rows, Mat X);
 
 typedef struct LowRank {
-  MPI_Comm      comm;
-  Mat           L, R;  /* p x n, sparse */
-  Mat           Y;     /* A^-1 R', n x p dense; NULL: every solution takes two solves with A instead of one */
-  PetscInt      p;     /* pairs */
-  PetscScalar  *C;     /* [p][p] LU of I + R A^-1 L', by columns, on every rank */
-  PetscBLASInt *pivot; /* [p] */
-  LowRankSolve  solve;
-  LowRankSolve  solve_rows; /* the same of B' sparse in place of B; NULL: not offered */
-  void         *ctx;        /* of solve */
+  MPI_Comm         comm;
+  Mat              L, R;  /* p x n, sparse */
+  Mat              Y;     /* A^-1 R', n x p dense; NULL: every solution takes two solves with A instead of one */
+  PetscInt         p;     /* pairs */
+  PetscScalar     *C;     /* [p][p] LU of I + R A^-1 L', by columns, on every rank */
+  PetscBLASInt    *pivot; /* [p] */
+  LowRankSolve     solve;
+  LowRankSolveRows solve_rows; /* NULL: not offered */
+  void            *ctx;        /* of both */
 } LowRank;
 
 /* Makes the update u, whose solve, solve_rows and ctx are set, from p solves. With `store` Y is kept. singular: A + L' R is (A is
    not). Collective. */
 PETSC_INTERN PetscErrorCode LowRankSetUp(Mat L, Mat R, PetscBool store, LowRank *u, PetscBool *singular);
-/* X = (A + L' R)^-1 B for the first n_right columns, and with its transpose for the others. Collective. */
-PETSC_INTERN PetscErrorCode LowRankApply(const LowRank *u, PetscInt n_right, Mat B, Mat X);
+/* X := (A + L' R)^-1 X for the first n_right columns, and with its transpose for the others. Collective. */
+PETSC_INTERN PetscErrorCode LowRankApply(const LowRank *u, PetscInt n_right, Mat X);
 /* r += L' R x, or R' L x. Collective. */
 PETSC_INTERN PetscErrorCode LowRankMultAdd(const LowRank *u, PetscBool transposed, Vec x, Vec r);
 PETSC_INTERN PetscErrorCode LowRankDestroy(LowRank *u);

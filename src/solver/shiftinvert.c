@@ -147,6 +147,7 @@ PetscErrorCode ShiftInvertMove(const PencilMatrices *pencil, PetscReal shift, Sh
     stands = PETSC_FALSE;
   }
   PetscCall(ShiftInvertRegular(si->comm, singular ? PETSC_FALSE : PETSC_TRUE, shift));
+  if (!si->counts) PetscCall(ShiftInvertMakeTrial(si));
   PetscCall(EventEnd(EVENT_FACTOR));
   PetscFunctionReturn(0);
 }
@@ -164,21 +165,18 @@ PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, PetscReal shift, 
 static PetscErrorCode UpdateSolve(const ShiftInvert *si, PetscBool transposed, Vec b, Vec x)
 {
   PetscInt     n_local, n;
-  PetscScalar *in, *out;
-  Mat          B, X;
+  PetscScalar *out;
+  Mat          X;
 
   PetscFunctionBeginUser;
   PetscCall(VecGetLocalSize(b, &n_local));
   PetscCall(VecGetSize(b, &n));
-  PetscCall(VecGetArrayRead(b, (const PetscScalar **)&in));
-  PetscCall(VecGetArrayWrite(x, &out));
-  PetscCall(MatCreateDense(si->comm, n_local, PETSC_DECIDE, n, 1, in, &B));
+  PetscCall(VecCopy(b, x));
+  PetscCall(VecGetArray(x, &out));
   PetscCall(MatCreateDense(si->comm, n_local, PETSC_DECIDE, n, 1, out, &X));
-  PetscCall(LowRankApply(si->update, transposed ? 0 : 1, B, X));
-  PetscCall(MatDestroy(&B));
+  PetscCall(LowRankApply(si->update, transposed ? 0 : 1, X));
   PetscCall(MatDestroy(&X));
-  PetscCall(VecRestoreArrayWrite(x, &out));
-  PetscCall(VecRestoreArrayRead(b, (const PetscScalar **)&in));
+  PetscCall(VecRestoreArray(x, &out));
   PetscFunctionReturn(0);
 }
 
@@ -305,6 +303,7 @@ PetscErrorCode ShiftInvertDestroy(ShiftInvert *si)
 {
   PetscFunctionBeginUser;
   PetscCall(UpdateDestroy(si));
+  PetscCall(ShiftInvertDestroyTrial(si));
   PetscCall(KSPDestroy(&si->ksp));
   for (int i = 0; i < 3; i++) PetscCall(MatDestroy(&si->term[i]));
   PetscFunctionReturn(0);

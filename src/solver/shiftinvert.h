@@ -22,17 +22,17 @@ typedef struct ShiftInvert {
   MPI_Comm  comm;
   KSP       ksp;
   PetscReal shift;           /* kappa (rad/s)^2 when undamped, lambda (rad/s) when damped */
-  PetscReal size;            /* |A|_F of the matrix that is factored */
   PetscBool inertia, counts; /* negative pivots can be counted; they are being, so that null pivots are no error */
   PetscBool factored;        /* there are factors, not the analysis alone */
   PetscBool released;        /* the matrix is not there any more */
   PetscBool even;            /* the matrix that is factored is symmetric: LDL' */
   Mat       term[3];         /* K, C, M of it */
   PetscObjectState pattern[3], values[3]; /* of those */
-  PetscBool        turn;                  /* the next check of right and left blocks together is of the left one */
-  FactorCost       cost;                  /* of its factors */
-  const char      *why;                   /* LU in place of an update, in words; NULL where there is no choice */
-  struct LowRank  *update;                /* friction beside that matrix; NULL for none */
+  Vec              trial[3];  /* what solutions are checked by: w at random, A' w and A w, A with its update */
+  PetscReal        length[3]; /* of those */
+  FactorCost       cost;      /* of its factors */
+  const char      *why;       /* LU in place of an update, in words; NULL where there is no choice */
+  struct LowRank  *update;    /* friction beside that matrix; NULL for none */
   Progress        *progress;
   /* called after every solve of an eigensolver, alike on all ranks; NULL for nothing. An error ends the solution */
   PetscErrorCode (*after)(void *ctx);
@@ -72,17 +72,27 @@ PETSC_INTERN PetscErrorCode ShiftInvertRelease(const PencilMatrices *pencil, Shi
 PETSC_INTERN void      ShiftInvertShow(PetscBool show);
 PETSC_INTERN PetscBool ShiftInvertShows(void);
 /* block.c - X = A^-1 B, or A^-T B, for dense B, X of the same size and any leading dimension: many right-hand sides at
-   once. PETSC_ERR_LIB where the last column does not solve its system: a library behaves otherwise than assumed */
+   once. PETSC_ERR_LIB where a column does not solve its system: a library behaves otherwise than assumed */
 PETSC_INTERN PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X);
-/* X = A^-1 B for the first n_right columns, at least one, and A^-T B for the others, at least one, by one block of solves;
+/* X := A^-1 X for the first n_right columns, at least one, and A^-T X for the others, at least one, by one block of solves;
    ctx is a ShiftInvert with an update. As many steps of the eigensolver. */
-PETSC_INTERN PetscErrorCode ShiftInvertApplyBoth(void *ctx, PetscInt n_right, Mat B, Mat X);
-/* X = A^-1 B by the factors of the symmetric matrix alone; ctx is the KSP */
-PETSC_INTERN PetscErrorCode ShiftInvertApplyFactors(void *ctx, Mat B, Mat X);
+PETSC_INTERN PetscErrorCode ShiftInvertApplyBoth(void *ctx, PetscInt n_right, Mat X);
+/* X := A^-1 X by the factors of the symmetric matrix alone; ctx is the KSP */
+PETSC_INTERN PetscErrorCode ShiftInvertApplyFactors(void *ctx, Mat X);
 /* The same of sparse rows, A X = rows', whether it can be done: MUMPS takes sparse right-hand sides on one rank (on more
    it wants all of them on the first) */
 PETSC_INTERN PetscErrorCode ShiftInvertSolvesRows(KSP ksp, PetscBool *solves);
 PETSC_INTERN PetscErrorCode ShiftInvertApplyRows(void *ctx, Mat rows, Mat X);
+/* trial.c - makes what the solutions with si are checked by, from its matrix and its update */
+PETSC_INTERN PetscErrorCode ShiftInvertMakeTrial(ShiftInvert *si);
+PETSC_INTERN PetscErrorCode ShiftInvertDestroyTrial(ShiftInvert *si);
+/* Sums by which a block is judged, one [2] a column: with the trial vector v, of the right-hand side w, v'b and b'b; of a
+   solution A' w (the first n_right) or A w. Collective. */
+PETSC_INTERN PetscErrorCode TrialSums(const ShiftInvert *si, PetscBool solution, PetscInt n_right, Mat X,
+                                      PetscScalar sums[][2]);
+/* PETSC_ERR_LIB where one of n solutions does not fit its right-hand side */
+PETSC_INTERN PetscErrorCode TrialCheck(const ShiftInvert *si, PetscInt n_right, PetscInt n, PetscScalar b[][2],
+                                       PetscScalar x[][2]);
 /* Frictionless modes with frequency below *omega (rad/s) by Sylvester's law of inertia; symmetric undamped pencil. A null
    pivot is an eigenvalue at *omega itself, which has no sign: *omega is then moved by its part `away` (of either sign).
    PETSC_ERR_MAT_LU_ZRPVT where null pivots stay. */

@@ -1,12 +1,41 @@
 /*
    Unit test of operators/parameter: limits of the values, and the parameter of loaded matrices, on one and on several
-   ranks.
+   ranks. And of base/matrixadd, by which sums of terms are formed.
 */
+#include "base/matrixadd.h"
 #include "brake.h"
 #include "check.h"
 #include "scratch.h"
 #include "petscmain.h"
 #include <string.h>
+
+/* Breaks when: a sum in place meets another column than its own, also of another rank, or changes a matrix that has no place
+   for it. Reference: MatAXPY() */
+static PetscErrorCode TestSum(int *failed)
+{
+  PetscReal apart;
+  PetscBool added, refused;
+  Mat       K, wide, sum;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, PETSC_DECIDE, 40, 40, 4, NULL, 4, NULL, &K));
+  for (PetscInt i = 0; i < 40; i++)
+    for (PetscInt j = 0; j < 40; j += 13)
+      PetscCall(MatSetValue(K, i, (i + j) % 40, 1 + 0.1 * i - 0.3 * j, INSERT_VALUES));
+  PetscCall(MatAssemblyBegin(K, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(K, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatMatMult(K, K, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &wide));
+  PetscCall(MatDuplicate(wide, MAT_COPY_VALUES, &sum));
+  PetscCall(MatrixAdd(0.3, wide, K, &refused));
+  PetscCall(MatrixAdd(0.3, K, sum, &added));
+  *failed += CheckTrue("a sum in a wider pattern, none in a narrower one", added && !refused, added + 2 * refused);
+  PetscCall(MatAXPY(wide, 0.3, K, DIFFERENT_NONZERO_PATTERN));
+  PetscCall(MatAXPY(sum, -1, wide, DIFFERENT_NONZERO_PATTERN));
+  PetscCall(MatNorm(sum, NORM_FROBENIUS, &apart));
+  *failed += CheckClose("beside MatAXPY()", apart, 0, 1e-13);
+  for (int i = 0; i < 3; i++) PetscCall(MatDestroy((Mat *[]){&K, &wide, &sum}[i]));
+  PetscFunctionReturn(0);
+}
 
 /* Breaks when: a bad value passes, or its message does not name parameter, value, limits and unit */
 static PetscErrorCode TestBad(Pencil o, const char name[], PetscReal bad, const char expected[], int *failed)
@@ -83,6 +112,7 @@ static PetscErrorCode Tests(PetscMPIInt size, int *failed)
   (void)size;
   PetscCall(TestLimits(failed));
   PetscCall(TestDense(failed));
+  PetscCall(TestSum(failed));
   PetscFunctionReturn(0);
 }
 

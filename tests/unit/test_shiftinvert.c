@@ -159,6 +159,7 @@ static PetscErrorCode TestTrust(int *failed)
   PetscCall(ShiftInvertApplyBlock(&si, PETSC_FALSE, B, X));
   PetscCall(KSPGetOperators(si.ksp, &A, NULL));
   PetscCall(MatShift(A, 1e-3));
+  PetscCall(ShiftInvertMakeTrial(&si));
   PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
   error = ShiftInvertApplyBlock(&si, PETSC_FALSE, B, X);
   PetscCall(PetscPopErrorHandler());
