@@ -17,9 +17,9 @@ LAUNCHER = Path(__file__).resolve().parents[1] / "scripts/mpirun"
 OPEN, WRITE, SYNC, RENAME, CLOSE, OWN, PETSC = (1 << bit for bit in range(7))
 FILES = OPEN | WRITE | SYNC | RENAME | CLOSE
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-# What a process alone does not need, and costs half of its start: networks
+# What a process alone does not need, and costs half of its start: networks, and to look for devices
 LEAN = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_btl": "self", "OMPI_MCA_pml": "ob1", "OMPI_MCA_mtl": "^psm,psm2,ofi",
-        "OMPI_MCA_orte_create_session_dirs": "0"}
+        "OMPI_MCA_orte_create_session_dirs": "0", "HWLOC_COMPONENTS": "-pci,-linuxio,-opencl,-gl"}
 
 
 def plan(folder, report, calls, at, **more):
@@ -61,7 +61,7 @@ class Served:
     """The program behind a loop that forks: run() may be called from one thread at a time; `socket` is where others may ask as well."""
 
     def __init__(self, program, library, limit):
-        self.program, self.limit = str(program), limit
+        self.program, self.library, self.limit = str(program), Path(library), limit
         self.folder = Path(tempfile.mkdtemp(prefix="squeal-served-"))
         self.socket = str(self.folder / "socket")
         preload = f"{library} {os.environ.get('LD_PRELOAD', '')}".strip()
@@ -94,6 +94,11 @@ class Served:
         watch.cancel()
         said = [path.read_bytes().decode(errors="replace") for path in (stdout, stderr)]
         return Outcome(None if late else os.waitstatus_to_exitcode(status), *said)
+
+    def join(self, work, words, ranks):
+        """The same on several ranks, each a child of the loop."""
+        command = [LAUNCHER, "-n", str(ranks), self.library.with_name("join"), self.program, *words]
+        return finish(command, work, self.limit, {"SQUEAL_SERVED": self.socket})
 
     def end(self):
         self.connection.close()
@@ -133,8 +138,13 @@ def launch(program, library, work, words, environment, ranks, limit):
     """The same on several ranks, started anew each time."""
     others = os.environ.get("LD_PRELOAD", "")
     before = ["env", f"LD_PRELOAD={library} {others}".strip(), *(f"{key}={value}" for key, value in environment.items())]
-    process = subprocess.Popen([LAUNCHER, "-n", str(ranks), *before, program, *words], cwd=work, start_new_session=True,
-                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    return finish([LAUNCHER, "-n", str(ranks), *before, program, *words], work, limit, {})
+
+
+def finish(command, work, limit, more):
+    """Outcome of a command of several processes, with more in their environment, all of which are killed at the limit of time."""
+    process = subprocess.Popen(command, cwd=work, env={**os.environ, **more}, start_new_session=True, stdin=subprocess.DEVNULL,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     try:
         stdout, stderr = process.communicate(timeout=limit)
     except subprocess.TimeoutExpired:

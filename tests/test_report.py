@@ -28,24 +28,27 @@ class Page(HTMLParser):
 
     def __init__(self, path):
         super().__init__()
-        self.elements, self.open = [], []
+        self.elements, self.open, self.pieces = [], [], []
         self.source = path.read_text()
         self.feed(self.source)
         self.close()
+        self.handle_endtag("")
 
     def handle_starttag(self, tag, attributes):
-        element = {"tag": tag, "text": "", "inside": [other.get("id") for other in self.open], **dict(attributes)}
+        element = {"tag": tag, "text": "", "inside": [other.get("id") for other, _ in self.open], **dict(attributes)}
         self.elements.append(element)
         if tag not in ("meta", "link", "img", "br", "input"):
-            self.open.append(element)
+            self.open.append((element, len(self.pieces)))
 
     def handle_endtag(self, tag):
-        while self.open and self.open.pop()["tag"] != tag:
-            pass
+        while self.open:
+            element, first = self.open.pop()
+            element["text"] = "".join(self.pieces[first:])
+            if element["tag"] == tag:
+                break
 
     def handle_data(self, data):
-        for element in self.open:
-            element["text"] += data
+        self.pieces.append(data)
 
     def find(self, tag, inside=None, **attributes):
         """Elements of a tag with these attributes within the element of an id."""

@@ -93,16 +93,13 @@ class Fuzz:
         self.mine, self.loops = threading.local(), []
 
     def launch(self, work, words, ranks=1):
-        """On one rank behind the loop of this thread, which has the libraries already."""
+        """Behind the loop of this thread, which has the libraries already."""
         words = (*words, "-output_dir", "out", "-output_fields", "0")
-        if ranks > 1:
-            result = served.launch(self.arguments.squeal, self.arguments.library, work, words, {}, ranks, self.arguments.limit)
-            return result.status, REMARK.sub("", result.stderr)
         if not hasattr(self.mine, "loop"):
             self.mine.loop = served.Served(self.arguments.squeal, self.arguments.library, self.arguments.limit)
             self.loops.append(self.mine.loop)
-        result = self.mine.loop.run(work, words)
-        return result.status, result.stderr
+        result = self.mine.loop.run(work, words) if ranks == 1 else self.mine.loop.join(work, words, ranks)
+        return result.status, REMARK.sub("", result.stderr)
 
     def answer(self, base):
         """Of the undamaged input."""

@@ -19,11 +19,11 @@ import time
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
-SMALL = 'rig: {disc: {elements: "8,24,1"}, pad: {elements: "4,4,2"}, beam: {elements: 10}}\nmodes: {band: "100,12000"}\n'
+SMALL = 'rig: {disc: {elements: "6,20,1"}, pad: {elements: "3,3,2"}, beam: {elements: 8}}\nmodes: {band: "100,6000"}\n'
 TABLES = ("sweep.csv", "onsets.csv", "parameters.csv")
 # What differs, and the options that make it so
 CHANGES = (("contact contact", "-contact_mu", "0.4"), ("materials", "-beam_poisson", "0.29"),
-           ("modes", "-modes_band", "100,11000"),
+           ("modes", "-modes_band", "100,5500"),
            ("supports", "-supports", "hub,foot", "-foot_set", "beam_rows", "-foot_fix", "x"),
            ("contact contact", "-contact_slip", "1,0,0", "-rows_stiffness", "1e6,8.422e6,0"),
            ("the mesh", "-model_element", "full"),
