@@ -64,7 +64,8 @@ PetscErrorCode SquealViewOptions(MPI_Comm comm, PetscErrorCode (*read_again)(MPI
 .  -squeal_log <file> - all that is printed on stdout and stderr, but for progress, goes to this file as well; also
                         -log_file
 .  -squeal_progress   - the stage and the time left, on stderr; by default where that is a terminal
--  -squeal_memory <mb> - that a factorisation may take on one machine, all ranks there together; by default what is free
+-  -squeal_memory <mb> - that factors, or models over -cycle_parameter, may take on one machine, all ranks there together; by default
+                        what is free
 
    Errors: PETSC_ERR_FILE_OPEN for a log that cannot be written, or would replace a file that is no log.
 @*/

@@ -16,10 +16,13 @@ from .tables import BadInput, optional, read_table
 COLUMNS = {"parameter": str, "value": float, "parameter_2": str, "value_2": optional, "direction": str, "regime": str,
            "freq_hz": float, "freq_error_hz": optional, "force_rms_n": float, "force_mean_n": float,
            "open_share": float, "growth_rad_s": optional, "error_estimate": optional, "status": str}
+ERRORS = {"value": float, "value_2": optional, "run": str, "regime": str, "freq_error_hz": optional,
+          "force_rms_error": optional}
 UNITS = {"young": "Pa", "pressure": "Pa", "force": "N", "speed": "m/s", "density": "kg/m^3", "stiffness": "N/m",
          "mu": "-", "alpha": "1/s", "beta": "s", "mu_slope": "s/m"}
 VIBRATES = "cycle", "sticking", "growth"
 STABLE, UNKNOWN = "#F1F1F1", "white"
+TOLD = "\u00b1: another step, laws, cut-off"
 WAYS = {"up": ("upwards", BLUE, "^"), "down": ("downwards", VERMILION, "v"),
         "apart": ("each point apart", BLUE, "o")}
 
@@ -42,6 +45,24 @@ class Table:
                      if self.rows[0][name] and not math.isnan(self.rows[0][value])]
         self.ways = [way for way in WAYS if any(row["direction"] == way for row in self.rows)]
         self.bistable = self.find_bistable()
+        path = folder / "map_errors.csv"
+        self.errors = self.find_errors(read_table(path, ERRORS)) if path.exists() else {}
+
+    @staticmethod
+    def find_errors(rows):
+        """Of the points of -map_verify: largest differences of the rms (relative) and the frequency (Hz) of the other runs from
+        that of the map; None where one is of another regime, no entry where nothing vibrates."""
+        found = {}
+        for row in rows:
+            found.setdefault((row["value"], row["value_2"]), []).append(row)
+        result = {}
+        for point, runs in found.items():
+            first, others = next(row for row in runs if row["run"] == "map"), [row for row in runs if row["run"] != "map"]
+            if any(row["regime"] != first["regime"] for row in others):
+                result[point] = None
+            elif first["regime"] in VIBRATES:
+                result[point] = tuple(max(abs(row[name]) for row in others) for name in ("force_rms_error", "freq_error_hz"))
+        return result
 
     def find_bistable(self):
         """Values of the points that vibrate one way and are stable the other."""
@@ -80,6 +101,14 @@ def draw_field(figure, axes, table, grid, field, **style):
     return mesh
 
 
+def write_errors(axes, table):
+    """What -map_verify tells of points, in their cells."""
+    for (x, y), error in table.errors.items():
+        text = "?" if error is None else f"\u00b1{100 * error[0]:.2g} %"
+        axes.text(x * table.axes[0].factor, y * table.axes[1].factor, text, ha="center", va="center", fontsize=8.5,
+                  color=INK)
+
+
 def draw_grid(table):
     """Two parameters: amplitude in each direction, then the frequency."""
     grids = {way: Grid(table, way) for way in table.ways}
@@ -97,16 +126,29 @@ def draw_grid(table):
     figure.colorbar(mesh, ax=panels[-1], pad=0.02).set_label("main line, kHz")
     panels[-1].set_title(f"Frequency, {WAYS[last][0]}", loc="left")
     panels[0].set_ylabel(table.axes[1].title())
+    write_errors(panels[0], table)
     for axes in panels:
         for x, y in table.bistable:
             axes.plot(x * table.axes[0].factor, y * table.axes[1].factor, "o", ms=8, mfc="none", mec=GREEN, mew=2)
     figure.get_layout_engine().set(rect=(0.005, 0.08, 0.99, 0.915))  # the layout leaves no room for it
     handles = [Patch(facecolor=STABLE, edgecolor="#BBBBBB", label="stable"),
-               Line2D([], [], color=INK, lw=1.6, label="border of linear stability"),
-               Line2D([], [], ls="", marker="o", ms=8, mfc="none", mec=GREEN, mew=2,
-                      label="vibrates one way, stable the other")]
-    figure.legend(handles=handles if table.bistable else handles[:2], loc="lower center", ncol=3, frameon=False)
+               Line2D([], [], color=INK, lw=1.6, label="border of linear stability")]
+    handles += [Line2D([], [], ls="", marker="o", ms=8, mfc="none", mec=GREEN, mew=2,
+                      label="vibrates one way, stable the other")] if table.bistable else []
+    handles += [Line2D([], [], ls="", label=TOLD)] if table.errors else []
+    figure.legend(handles=handles, loc="lower center", ncol=len(handles), frameon=False)
     return figure
+
+
+def draw_told(panels, table):
+    """What -map_verify tells of points, as bars at those of the first direction: of the rms and of the frequency."""
+    rows = [row for row in table.rows if row["direction"] == table.ways[0] and table.errors.get((row["value"], row["value_2"]))]
+    x = [row["value"] * table.axes[0].factor for row in rows]
+    told = [table.errors[row["value"], row["value_2"]] for row in rows]
+    style = {"ls": "", "color": INK, "elinewidth": 2.2, "capsize": 6, "zorder": 3}
+    panels[0].errorbar(x, [row["force_rms_n"] for row in rows],
+                       [row["force_rms_n"] * error[0] for row, error in zip(rows, told)], label=TOLD, **style)
+    panels[1].errorbar(x, [row["freq_hz"] * 1e-3 for row in rows], [error[1] * 1e-3 for error in told], **style)
 
 
 def draw_line(table):
@@ -125,6 +167,8 @@ def draw_line(table):
         loud = [row for row in rows if row["regime"] in VIBRATES]
         panels[2].errorbar([row["value"] * factor for row in loud], [row["freq_hz"] * 1e-3 for row in loud],
                            [row["freq_error_hz"] * 1e-3 for row in loud], color=colour, marker=marker, ms=5, capsize=3)
+    if any(table.errors.values()):
+        draw_told((panels[0], panels[2]), table)
     growing = sorted({row["value"] * factor for row in table.rows if row["growth_rad_s"] > 0})
     for axes in panels:
         if growing:

@@ -166,9 +166,11 @@ PetscErrorCode MemorySetFromOptions(MPI_Comm comm)
   PetscCallMPI(MPI_Comm_size(machine, &machine_ranks));
   PetscCallMPI(MPI_Comm_free(&machine));
   PetscOptionsBegin(comm, NULL, "Memory", NULL);
-  PetscCall(PetscOptionsReal("-squeal_memory",
-                             "MB that a factorisation may take on one machine, of all ranks there (0: what is free)",
-                             "sys.h", allowed, &allowed, NULL));
+  PetscCall(
+    PetscOptionsReal("-squeal_memory",
+                     "MB that factors, or models over -cycle_parameter, may take on one machine, of all ranks there "
+                     "(0: what is free)",
+                     "sys.h", allowed, &allowed, NULL));
   PetscOptionsEnd();
   PetscCheck(allowed >= 0, comm, PETSC_ERR_USER_INPUT, "-squeal_memory %.6g must not be negative (MB)", allowed);
   PetscFunctionReturn(0);

@@ -17,7 +17,7 @@ PETSC_INTERN void MemoryReturn(void);
 
 /* Reads -squeal_memory */
 PETSC_INTERN PetscErrorCode MemorySetFromOptions(MPI_Comm comm);
-/* MB that a factorisation may take on this machine, all ranks there together: -squeal_memory where given, else what is
+/* MB that factors or models may take on this machine, all ranks there together: -squeal_memory where given, else what is
    free, infinite where nothing tells */
 PETSC_INTERN double MemoryRoom(PetscBool *given);
 /* Ranks of the whole run on this machine. Not collective. */

@@ -2,7 +2,8 @@
 """Draws made-up maps with scripts/plot/map, in every direction and over one or two parameters, and looks for their colours. Exit
 status: 0, or 1.
 
-Breaks when a direction is not drawn, when a point that failed stops it, or when hysteresis is not marked.
+Breaks when a direction is not drawn, when a point that failed stops it, when hysteresis is not marked, or when the errors of
+-map_verify are not there.
 """
 
 import tempfile
@@ -11,7 +12,7 @@ from pathlib import Path
 import numpy
 from drawing import drawn, fails, require
 from matplotlib.colors import to_rgb
-from squeal.picture import BLUE, GREEN, VERMILION
+from squeal.picture import BLUE, GREEN, INK, VERMILION
 
 NAMES = ("parameter,value,parameter_2,value_2,direction,regime,freq_hz,freq_error_hz,force_rms_n,force_mean_n,open_share,"
          "growth_rad_s,error_estimate,status")
@@ -35,6 +36,17 @@ def write(folder, ways, forces=FORCES):
     return folder
 
 
+def add_errors(folder):
+    """Errors at the last value, 20 % by half the step, and at the first one, where nothing vibrates."""
+    rows = ["value,value_2,run,regime,freq_error_hz,force_rms_error"]
+    for force in FORCES:
+        for run, freq, rms in (("map", "nan", "nan"), ("half_step", 12, -0.2), ("higher_cutoff", 5, 0.1)):
+            rows.append(f"{FRICTION[-1]},{force},{run},cycle,{freq},{rms}")
+            rows.append(f"{FRICTION[0]},{force},{run},stable,nan,nan")
+    (folder / "map_errors.csv").write_text("\n".join(rows) + "\n")
+    return folder
+
+
 def count(colours, colour):
     return int((abs(colours - 255 * numpy.array(to_rgb(colour))) < 1.5).all(axis=1).sum())
 
@@ -47,6 +59,10 @@ def main():
             require((count(grid, GREEN) > 200) == (len(ways) == 2), f"{ways}: circles of hysteresis")
             require((count(line, VERMILION) > 300) == ("down" in ways), f"{ways}: the line downwards")
             require((count(line, BLUE) > 300) == (ways != ["down"]), f"{ways}: the line upwards or of points apart")
+        for forces, name in ((FORCES, "grid_up_down"), (FORCES[1:], "told")):
+            folder = Path(root) / name if len(forces) > 1 else write(Path(root) / name, ["up"], forces)
+            before = count(drawn("plot/map", folder), INK)
+            require(count(drawn("plot/map", add_errors(folder)), INK) > before + 50, f"{name}: errors of -map_verify")
         empty = Path(root) / "empty"
         empty.mkdir()
         (empty / "map.csv").write_text(NAMES + "\n")

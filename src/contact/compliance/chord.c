@@ -20,7 +20,7 @@
 #define CHORD_MAX_IT   40
 #define CHORD_BEYOND   1e9   /* times the square of the tolerance: what is solved is made as good, 1e-15 for 1e-12 */
 #define CHORD_NONE     -2    /* pair of the worst residual where no iterate solves the laws */
-#define CHORD_RENEWALS 4     /* of the factors in a step */
+#define CHORD_RENEWALS 2     /* of the factors in a step: one costs as much as a step of newton.c */
 #define CHORD_SLOW     0.5   /* residual over the one before, of an iteration without change of status */
 #define CHORD_PATIENCE 4     /* slow iterations */
 #define CHORD_SHARE    8     /* a base of m indices is bordered by m / CHORD_SHARE at most */

@@ -48,8 +48,10 @@ struct _p_ContactCompliance {
   PetscReal       *best;    /* l of the least residual, [n][3] */
   PetscReal       *force;   /* kappa l, [n][3] */
   ContactStatus   *status;  /* [n] */
-  CoulombLaw      *law;     /* [n], of closed pairs */
+  CoulombLaw      *law;     /* [n], of closed pairs, in the frame of each (linear.c) */
+  PetscReal       *slide;   /* e, [n][2], of pairs that slide */
   PetscInt         n_closed, *closed;
+  PetscInt        *row;     /* first row of each closed pair in A, and after the last, [n + 1] */
   PetscReal        blend;   /* t: (1 - t) W kappa + t I stands for W kappa */
   PetscReal       *A, *rhs; /* [rows][rows] of closed pairs and a border, [rows] */
   PetscBLASInt    *pivot;
@@ -58,15 +60,19 @@ struct _p_ContactCompliance {
   ComplianceReport report, totals;
 };
 
-/* law.c - v at l; its natural map; statuses that l, v ask for and the laws of the closed pairs there */
+/* law.c - v at l; its natural map; the pair with its coefficient of friction at the present slip, w = -weight v; statuses that l, v
+   ask for */
 PETSC_INTERN PetscErrorCode ComplianceMove(ContactCompliance c);
 PETSC_INTERN void           ComplianceMeasure(const ContactCompliance c, ComplianceMiss *miss);
 PETSC_INTERN PetscBool      ComplianceIsSolved(const ContactCompliance c, const ComplianceMiss *miss);
 PETSC_INTERN void           ComplianceChoose(ContactCompliance c);
 PETSC_INTERN void           ComplianceTurn(const ContactCompliance c, PetscInt p, PetscReal d[2]);
-PETSC_INTERN void           ComplianceLinearise(ContactCompliance c);
+PETSC_INTERN CoulombPair    ComplianceGetPair(const ContactCompliance c, PetscInt p, PetscReal weight, PetscReal w[3]);
 
-/* linear.c - matrix of the closed pairs at the present laws, its factors */
+/* linear.c - the laws of the closed pairs at the present l, v; x [3] along the rows of closed pair k; matrix of these, its
+   factors; row[n_closed] rows and the border */
+PETSC_INTERN void ComplianceLinearise(ContactCompliance c);
+PETSC_INTERN void ComplianceAlongRows(const ContactCompliance c, PetscInt k, const PetscReal x[], PetscReal y[]);
 PETSC_INTERN PetscErrorCode ComplianceAssemble(ContactCompliance c, PetscInt border);
 PETSC_INTERN PetscErrorCode ComplianceFactor(ContactCompliance c, PetscInt border, PetscBool *singular);
 PETSC_INTERN void           ComplianceShift(ContactCompliance c, PetscInt border);

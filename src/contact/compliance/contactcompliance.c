@@ -80,7 +80,7 @@ PetscErrorCode ContactComplianceCreate(PetscInt n, const PetscReal W[], ContactC
   PetscCall(PetscCalloc4(n, &c->kappa, n, &c->mu, n, &c->slope, n, &c->speed));
   PetscCall(PetscCalloc7(3 * n, &c->free, 3 * n, &c->l, 3 * n, &c->v, 3 * n, &c->l0, 3 * n, &c->v0, 3 * n, &c->best,
                          3 * n, &c->force));
-  PetscCall(PetscCalloc3(n, &c->status, n, &c->law, n, &c->closed));
+  PetscCall(PetscCalloc5(n, &c->status, n, &c->law, n, &c->closed, n + 1, &c->row, 2 * n, &c->slide));
   PetscCall(PetscMalloc7(3 * n, &c->chord.index, 3 * n, &c->chord.place, 3 * n, &c->chord.column, 3 * n,
                          &c->chord.border, 3 * n, &c->chord.want, 3 * n, &c->chord.next, 3 * n, &c->chord.b));
   PetscCall(PetscCalloc2(2 * n, &c->chord.turn, 3 * n, &c->chord.s));
@@ -245,7 +245,7 @@ PetscErrorCode ContactComplianceDestroy(ContactCompliance *compliance)
   if (!c) PetscFunctionReturn(0);
   PetscCall(PetscFree4(c->kappa, c->mu, c->slope, c->speed));
   PetscCall(PetscFree7(c->free, c->l, c->v, c->l0, c->v0, c->best, c->force));
-  PetscCall(PetscFree3(c->status, c->law, c->closed));
+  PetscCall(PetscFree5(c->status, c->law, c->closed, c->row, c->slide));
   PetscCall(PetscFree3(c->A, c->rhs, c->pivot));
   PetscCall(PetscFree7(c->chord.index, c->chord.place, c->chord.column, c->chord.border, c->chord.want, c->chord.next,
                        c->chord.b));

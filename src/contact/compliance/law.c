@@ -6,8 +6,7 @@
 
 #define MOTION_NOISE 4 /* roundings of v by its terms */
 
-/* The pair with its coefficient of friction at the present slip, and how that changes with it; w = -weight v */
-static CoulombPair LawOfPair(const ContactCompliance c, PetscInt p, PetscReal weight, PetscReal w[3])
+CoulombPair ComplianceGetPair(const ContactCompliance c, PetscInt p, PetscReal weight, PetscReal w[3])
 {
   const PetscReal slope = c->slope[p] / c->dt;
   PetscReal       slip;
@@ -56,7 +55,7 @@ void ComplianceMeasure(const ContactCompliance c, ComplianceMiss *miss)
     CoulombPair      pair;
 
     if (l[0] == 0 && l[1] == 0 && l[2] == 0 && v[0] >= 0) continue; /* open */
-    pair   = LawOfPair(c, p, 1, w);
+    pair   = ComplianceGetPair(c, p, 1, w);
     square = PetscSqr(l[0] - PetscMax(0, l[0] - v[0])) + PetscSqr(CoulombResidual(&pair, l, w));
     sum += square;
     for (PetscInt i = 0; i < 3; i++) {
@@ -79,7 +78,7 @@ PetscBool ComplianceIsSolved(const ContactCompliance c, const ComplianceMiss *mi
 void ComplianceTurn(const ContactCompliance c, PetscInt p, PetscReal d[2])
 {
   PetscReal         w[3];
-  const CoulombPair pair   = LawOfPair(c, p, c->weight, w);
+  const CoulombPair pair   = ComplianceGetPair(c, p, c->weight, w);
   const PetscReal   length = CoulombTrial(&pair, &c->l[3 * p], w, d);
 
   for (PetscInt i = 0; i < 2; i++) d[i] *= length > 0 ? -pair.mu / length : 0;
@@ -89,21 +88,8 @@ void ComplianceChoose(ContactCompliance c)
 {
   for (PetscInt p = 0; p < c->n; p++) {
     PetscReal         w[3];
-    const CoulombPair pair = LawOfPair(c, p, c->weight, w);
+    const CoulombPair pair = ComplianceGetPair(c, p, c->weight, w);
 
     c->status[p] = CoulombDecide(&pair, c->status[p], &c->l[3 * p], w, 0);
-  }
-}
-
-void ComplianceLinearise(ContactCompliance c)
-{
-  c->n_closed = 0;
-  for (PetscInt p = 0; p < c->n; p++) {
-    PetscReal         w[3];
-    const CoulombPair pair = LawOfPair(c, p, c->weight, w);
-
-    if (c->status[p] == CONTACT_OPEN) continue;
-    c->closed[c->n_closed++] = p;
-    CoulombLinearise(&pair, c->status[p], &c->l[3 * p], w, &c->law[p]);
   }
 }

@@ -3,6 +3,10 @@
 
       [Q + a W kappa P] dz = -[Q z0 + q0 + a free + a W kappa (P z0 + p0)],     l = P (z0 + dz) + p0
 
+   A pair that slides along e with a friction that does not change with the slip has P z = P (1 - e e') z: how far it slides makes no
+   force. Its z and rows are turned to (n, across e, e), where Q is diagonal, and the last of both left out: two rows instead of
+   three, and what z_e is follows from v.
+
    z0 is taken from the present l, v, so that what rounding or a shift of the matrix leaves is found again in the next
    step. A border of one row and column is the path's. Singular matrices (pairs that share what they carry) get a shift
    of their diagonal: the force changes least.
@@ -12,21 +16,77 @@
 #define SINGULAR_SHIFT 1e-10 /* of the diagonal, which is of order 1 */
 #define SINGULAR_PIVOT 1e-13 /* smallest pivot beside the largest */
 
-/* z of a pair at its present l, v: the point where its law was linearised */
-static void LinearPoint(const ContactCompliance c, PetscInt p, PetscReal z[3])
+/* Rows of closed pair k */
+static inline PetscInt LinearRows(const ContactCompliance c, PetscInt k)
 {
+  return c->row[k + 1] - c->row[k];
+}
+
+/* A law along (n, across e, e) */
+static void LinearTurn(const PetscReal e[2], CoulombLaw *law)
+{
+  const PetscReal F[2][2] = {
+    {-e[1], e[0]},
+    {e[0],  e[1]}
+  };
+  CoulombLaw old = *law;
+
+  for (int i = 0; i < 2; i++) {
+    law->q0[1 + i] = F[i][0] * old.q0[1] + F[i][1] * old.q0[2];
+    for (int j = 0; j < 2; j++) {
+      law->P[1 + i][1 + j] = old.P[1 + i][1] * F[j][0] + old.P[1 + i][2] * F[j][1];
+      law->Q[1 + i][1 + j] = 0;
+      for (int k = 0; k < 2; k++)
+        law->Q[1 + i][1 + j] += F[i][k] * (old.Q[1 + k][1] * F[j][0] + old.Q[1 + k][2] * F[j][1]);
+    }
+  }
+}
+
+void ComplianceLinearise(ContactCompliance c)
+{
+  c->n_closed = 0;
+  c->row[0]   = 0;
+  for (PetscInt p = 0; p < c->n; p++) {
+    PetscReal        *e      = &c->slide[2 * p], w[3], length;
+    const CoulombPair pair   = ComplianceGetPair(c, p, c->weight, w);
+    const PetscBool   slides = c->status[p] == CONTACT_SLIP && pair.fall == 0 ? PETSC_TRUE : PETSC_FALSE;
+    const PetscInt    row    = c->row[c->n_closed];
+
+    if (c->status[p] == CONTACT_OPEN) continue;
+    CoulombLinearise(&pair, c->status[p], &c->l[3 * p], w, &c->law[p]);
+    length = CoulombTrial(&pair, &c->l[3 * p], w, e);
+    for (PetscInt i = 0; i < 2; i++) e[i] = length > 0 ? e[i] / length : 1 - i;
+    if (slides) LinearTurn(e, &c->law[p]);
+    c->closed[c->n_closed++] = p;
+    c->row[c->n_closed]      = row + (slides ? 2 : 3);
+  }
+}
+
+void ComplianceAlongRows(const ContactCompliance c, PetscInt k, const PetscReal x[], PetscReal y[])
+{
+  const PetscReal *e = &c->slide[2 * c->closed[k]];
+
+  y[0] = x[0];
+  y[1] = LinearRows(c, k) == 2 ? e[0] * x[2] - e[1] * x[1] : x[1];
+  if (LinearRows(c, k) == 3) y[2] = x[2];
+}
+
+/* z of a closed pair at its present l, v: the point where its law was linearised; of its rows */
+static void LinearPoint(const ContactCompliance c, PetscInt k, PetscReal z[3])
+{
+  const PetscInt    p = c->closed[k];
   const PetscReal  *l = &c->l[3 * p], *v = &c->v[3 * p];
   const CoulombLaw *law    = &c->law[p];
   const PetscReal   q[2]   = {v[1] - l[1], v[2] - l[2]};
-  PetscReal         length = hypot(q[0], q[1]);
+  PetscReal         length = hypot(q[0], q[1]), x[3];
 
-  for (PetscInt i = 0; i < 3; i++) z[i] = l[i];
-  if (c->status[p] != CONTACT_SLIP) return;
-  for (PetscInt i = 1; i < 3; i++) {
+  for (PetscInt i = 0; i < 3; i++) x[i] = l[i];
+  for (PetscInt i = 1; i < 3 && c->status[p] == CONTACT_SLIP; i++) {
     const PetscReal e = length > 0 ? q[i - 1] / length : 2 - i;
 
-    z[i] = -law->P[i][0] * l[0] - length * e;
+    x[i] = -law->P[i][0] * l[0] - length * e;
   }
+  ComplianceAlongRows(c, k, x, z);
 }
 
 /* Room for the matrix of m rows */
@@ -40,31 +100,35 @@ static PetscErrorCode LinearReserve(ContactCompliance c, PetscInt m)
   PetscFunctionReturn(0);
 }
 
-/* Three columns of the matrix, of closed pair k */
+/* The columns of closed pair k */
 static void LinearColumns(ContactCompliance c, PetscInt k, PetscInt rows)
 {
   const PetscInt    p = c->closed[k], N = 3 * c->n;
   const CoulombLaw *law   = &c->law[p];
   const PetscReal   kappa = c->weight * (1 - c->blend) * c->kappa[p];
   const PetscReal  *W[3]  = {&c->W[3 * p * N], &c->W[(3 * p + 1) * N], &c->W[(3 * p + 2) * N]};
+  PetscReal         blended[3];
 
-  for (PetscInt j = 0; j < 3; j++) {
-    PetscReal      *column = &c->A[(3 * k + j) * rows];
+  for (PetscInt j = 0; j < LinearRows(c, k); j++) {
+    PetscReal      *column = &c->A[(c->row[k] + j) * rows];
     const PetscReal a = kappa * law->P[0][j], b = kappa * law->P[1][j], d = kappa * law->P[2][j];
 
-    for (PetscInt m = 0; m < c->n_closed; m++)
-      for (PetscInt i = 0; i < 3; i++) {
-        const PetscInt at = 3 * c->closed[m] + i;
+    for (PetscInt m = 0; m < c->n_closed; m++) {
+      const PetscInt at = 3 * c->closed[m];
+      PetscReal      x[3];
 
-        column[3 * m + i] = a * W[0][at] + b * W[1][at] + d * W[2][at];
-      }
-    for (PetscInt i = 0; i < 3; i++) column[3 * k + i] += law->Q[i][j] + c->weight * c->blend * law->P[i][j];
+      for (PetscInt i = 0; i < 3; i++) x[i] = a * W[0][at + i] + b * W[1][at + i] + d * W[2][at + i];
+      ComplianceAlongRows(c, m, x, &column[c->row[m]]);
+    }
+    ComplianceAlongRows(c, k, (PetscReal[3]){law->P[0][j], law->P[1][j], law->P[2][j]}, blended);
+    for (PetscInt i = 0; i < LinearRows(c, k); i++)
+      column[c->row[k] + i] += law->Q[i][j] + c->weight * c->blend * blended[i];
   }
 }
 
 PetscErrorCode ComplianceAssemble(ContactCompliance c, PetscInt border)
 {
-  const PetscInt rows = 3 * c->n_closed + border;
+  const PetscInt rows = c->row[c->n_closed] + border;
 
   PetscFunctionBeginUser;
   PetscCall(LinearReserve(c, rows));
@@ -74,31 +138,38 @@ PetscErrorCode ComplianceAssemble(ContactCompliance c, PetscInt border)
     const CoulombLaw *law = &c->law[p];
     PetscReal         z[3];
 
-    LinearPoint(c, p, z);
+    LinearPoint(c, k, z);
     for (PetscInt i = 0; i < 3; i++) {
-      c->l[3 * p + i]   = law->p0[i];
-      c->rhs[3 * k + i] = -law->q0[i];
-      for (PetscInt j = 0; j < 3; j++) {
-        c->l[3 * p + i] += law->P[i][j] * z[j];
-        c->rhs[3 * k + i] -= law->Q[i][j] * z[j];
-      }
+      c->l[3 * p + i] = law->p0[i];
+      for (PetscInt j = 0; j < LinearRows(c, k); j++) c->l[3 * p + i] += law->P[i][j] * z[j];
+    }
+    for (PetscInt i = 0; i < LinearRows(c, k); i++) {
+      c->rhs[c->row[k] + i] = -law->q0[i];
+      for (PetscInt j = 0; j < LinearRows(c, k); j++) c->rhs[c->row[k] + i] -= law->Q[i][j] * z[j];
     }
   }
   for (PetscInt p = 0; p < c->n; p++)
     if (c->status[p] == CONTACT_OPEN) c->l[3 * p] = c->l[3 * p + 1] = c->l[3 * p + 2] = 0;
   PetscCall(ComplianceMove(c));
-  for (PetscInt k = 0; k < 3 * c->n_closed; k++) c->rhs[k] -= c->weight * c->v[3 * c->closed[k / 3] + k % 3];
+  for (PetscInt k = 0; k < c->n_closed; k++) {
+    PetscReal v[3];
+
+    ComplianceAlongRows(c, k, &c->v[3 * c->closed[k]], v);
+    for (PetscInt i = 0; i < LinearRows(c, k); i++) c->rhs[c->row[k] + i] -= c->weight * v[i];
+  }
   PetscFunctionReturn(0);
 }
 
 void ComplianceShift(ContactCompliance c, PetscInt border)
 {
-  for (PetscInt i = 0; i < 3 * c->n_closed; i++) c->A[i * (3 * c->n_closed + border + 1)] += SINGULAR_SHIFT;
+  const PetscInt rows = c->row[c->n_closed];
+
+  for (PetscInt i = 0; i < rows; i++) c->A[i * (rows + border + 1)] += SINGULAR_SHIFT;
 }
 
 PetscErrorCode ComplianceFactor(ContactCompliance c, PetscInt border, PetscBool *singular)
 {
-  const PetscInt     rows  = 3 * c->n_closed + border;
+  const PetscInt     rows  = c->row[c->n_closed] + border;
   const PetscBLASInt m     = (PetscBLASInt)rows;
   PetscBLASInt       info  = 0;
   PetscReal          least = PETSC_MAX_REAL, largest = 0;
@@ -117,7 +188,7 @@ PetscErrorCode ComplianceFactor(ContactCompliance c, PetscInt border, PetscBool 
 
 PetscErrorCode ComplianceBackSolve(const ContactCompliance c, PetscInt border)
 {
-  const PetscBLASInt m = (PetscBLASInt)(3 * c->n_closed + border), one = 1;
+  const PetscBLASInt m = (PetscBLASInt)(c->row[c->n_closed] + border), one = 1;
   PetscBLASInt       info = 0;
 
   PetscFunctionBeginUser;
@@ -130,5 +201,6 @@ void ComplianceTake(ContactCompliance c)
 {
   for (PetscInt k = 0; k < c->n_closed; k++)
     for (PetscInt i = 0; i < 3; i++)
-      for (PetscInt j = 0; j < 3; j++) c->l[3 * c->closed[k] + i] += c->law[c->closed[k]].P[i][j] * c->rhs[3 * k + j];
+      for (PetscInt j = 0; j < LinearRows(c, k); j++)
+        c->l[3 * c->closed[k] + i] += c->law[c->closed[k]].P[i][j] * c->rhs[c->row[k] + j];
 }

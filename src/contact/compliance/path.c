@@ -50,10 +50,10 @@ static PetscErrorCode PathCorrect(ContactCompliance c, const CompliancePath *pat
   for (*it = 0; *it < PATH_MAX_IT && !good; (*it)++) {
     PetscCall(CompliancePathFactor(c, path, *x, &ahead, &singular));
     if (singular) break;
-    c->rhs[3 * c->n_closed] = -ahead;
+    c->rhs[c->row[c->n_closed]] = -ahead;
     PetscCall(ComplianceBackSolve(c, 1));
     ComplianceTake(c);
-    *x += c->rhs[3 * c->n_closed] / path->size;
+    *x += c->rhs[c->row[c->n_closed]] / path->size;
     if (!(PetscAbsReal(*x - path->x) <= 2 * step)) break;
     c->blend = CompliancePathBlend(*x);
     PetscCall(ComplianceMove(c));
@@ -173,7 +173,7 @@ static PetscErrorCode PathAdvance(ContactCompliance c, CompliancePath *path, Pet
   *taken = PETSC_FALSE;
   CompliancePathPredict(c, path, *step);
   PetscCall(PathCorrect(c, path, *step, &x, &it));
-  path->cost += (PetscReal)(it + 1) * PetscPowReal((PetscReal)(3 * c->n_closed), 3);
+  path->cost += (PetscReal)(it + 1) * PetscPowReal((PetscReal)c->row[c->n_closed], 3);
   if (it <= PATH_MAX_IT) PetscCall(PathAccept(c, path, x, before, taken));
   if (*taken) {
     if (it <= PATH_EASY) *step = PetscMin(PATH_LONGEST, 2 * *step);

@@ -20,17 +20,22 @@ PetscReal CompliancePathNorm(const ContactCompliance c, const PetscReal l[])
 /* Border of the system at l, v, x, for size dx; returns t . (y - y_p) size */
 static PetscReal PathBorder(ContactCompliance c, const CompliancePath *path, PetscReal x)
 {
-  const PetscInt  m = 3 * c->n_closed, rows = m + 1;
+  const PetscInt  m = c->row[c->n_closed], rows = m + 1;
   const PetscReal weight = c->weight * c->blend / path->size;
   PetscReal       ahead  = path->size * path->t_x * (x - path->x_ahead);
 
-  for (PetscInt k = 0; k < m; k++) {
-    const PetscInt    p   = c->closed[k / 3];
+  for (PetscInt k = 0; k < c->n_closed; k++) {
+    const PetscInt    p   = c->closed[k];
     const CoulombLaw *law = &c->law[p];
+    PetscReal         x[3];
 
-    c->A[m * rows + k] = weight * (c->l[3 * p + k % 3] - c->v[3 * p + k % 3] + c->free[3 * p + k % 3]);
-    c->A[k * rows + m] = 0;
-    for (PetscInt i = 0; i < 3; i++) c->A[k * rows + m] += path->tangent[3 * p + i] * law->P[i][k % 3] / path->size;
+    for (PetscInt i = 0; i < 3; i++) x[i] = weight * (c->l[3 * p + i] - c->v[3 * p + i] + c->free[3 * p + i]);
+    ComplianceAlongRows(c, k, x, &c->A[m * rows + c->row[k]]);
+    for (PetscInt j = c->row[k]; j < c->row[k + 1]; j++) {
+      c->A[j * rows + m] = 0;
+      for (PetscInt i = 0; i < 3; i++)
+        c->A[j * rows + m] += path->tangent[3 * p + i] * law->P[i][j - c->row[k]] / path->size;
+    }
   }
   c->A[m * rows + m] = path->t_x;
   for (PetscInt i = 0; i < 3 * c->n; i++) ahead += path->tangent[i] * (c->l[i] - path->ahead[i]) / path->size;
@@ -40,7 +45,7 @@ static PetscReal PathBorder(ContactCompliance c, const CompliancePath *path, Pet
 /* Sign of the determinant of the factors, with the border */
 static PetscInt PathSign(const ContactCompliance c)
 {
-  const PetscInt rows = 3 * c->n_closed + 1;
+  const PetscInt rows = c->row[c->n_closed] + 1;
   PetscInt       sign = 1;
 
   for (PetscInt i = 0; i < rows; i++)
@@ -83,13 +88,13 @@ PetscErrorCode CompliancePathTangent(ContactCompliance c, CompliancePath *path, 
   PetscCall(CompliancePathFactor(c, path, x, &ahead, &singular));
   PetscCall(PetscArraycpy(path->l, c->l, 3 * c->n));
   path->x = x;
-  PetscCall(PetscArrayzero(c->rhs, 3 * c->n_closed));
-  c->rhs[3 * c->n_closed] = 1;
+  PetscCall(PetscArrayzero(c->rhs, c->row[c->n_closed]));
+  c->rhs[c->row[c->n_closed]] = 1;
   PetscCall(ComplianceBackSolve(c, 1));
   PetscCall(PetscArrayzero(c->l, 3 * c->n));
   ComplianceTake(c);
   PetscCall(PetscArraycpy(path->tangent, c->l, 3 * c->n));
-  path->t_x  = c->rhs[3 * c->n_closed] / size;
+  path->t_x  = c->rhs[c->row[c->n_closed]] / size;
   path->size = PetscMax(CompliancePathNorm(c, path->l), PETSC_SQRT_MACHINE_EPSILON * size);
   length     = PetscSqrtReal(PetscSqr(path->t_x) + PetscSqr(CompliancePathNorm(c, path->tangent) / path->size));
   if (!path->sign) path->sign = PathSign(c);

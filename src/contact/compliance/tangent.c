@@ -38,10 +38,12 @@ PetscErrorCode ContactComplianceTangent(ContactCompliance c, PetscInt n, const P
   PetscCall(TangentFactor(c));
   PetscCall(PetscArrayzero(dlambda, n * N));
   if (!c->n_closed || !n) PetscFunctionReturn(0);
-  rows = (PetscBLASInt)(3 * c->n_closed);
+  rows = (PetscBLASInt)c->row[c->n_closed];
   PetscCall(PetscMalloc1(rows * n, &z));
   for (PetscInt j = 0; j < n; j++)
-    for (PetscInt k = 0; k < rows; k++) z[j * rows + k] = -c->weight * dv[j * N + 3 * c->closed[k / 3] + k % 3];
+    for (PetscInt k = 0; k < c->n_closed; k++)
+      ComplianceAlongRows(c, k, &dv[j * N + 3 * c->closed[k]], &z[j * rows + c->row[k]]);
+  for (PetscInt k = 0; k < rows * n; k++) z[k] *= -c->weight;
   PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &rows, &columns, c->A, &rows, c->pivot, z, &rows, &info));
   PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK getrs: info %d", (int)info);
   for (PetscInt j = 0; j < n; j++)
@@ -50,8 +52,8 @@ PetscErrorCode ContactComplianceTangent(ContactCompliance c, PetscInt n, const P
       const CoulombLaw *law = &c->law[p];
 
       for (PetscInt i = 0; i < 3; i++)
-        for (PetscInt d = 0; d < 3; d++)
-          dlambda[j * N + 3 * p + i] += c->kappa[p] * law->P[i][d] * z[j * rows + 3 * k + d];
+        for (PetscInt d = 0; d < c->row[k + 1] - c->row[k]; d++)
+          dlambda[j * N + 3 * p + i] += c->kappa[p] * law->P[i][d] * z[j * rows + c->row[k] + d];
     }
   PetscCall(PetscFree(z));
   PetscFunctionReturn(0);

@@ -108,6 +108,9 @@ PETSC_INTERN PetscErrorCode CycleFamilyTurn(const CycleFamily *family, PetscBool
                                             PetscInt stride, PetscReal X[]);
 PETSC_INTERN PetscErrorCode CycleFamilyDestroy(CycleFamily **family);
 
+/* memory.c - shows what `most` of its models take, and raises the error where there is less. Collective */
+PETSC_INTERN PetscErrorCode CycleFamilyCheckMemory(const CycleFamily *family, PetscInt most);
+
 /* flow.c - the model of a run, loads and sliding constant from its time on; the state of a run as x; Phi, M (ShootingFlow); the
    parameter in the model */
 PETSC_INTERN PetscErrorCode CycleFlowCreate(ReducedRun reduced, CycleFlow *flow);
@@ -145,8 +148,8 @@ PETSC_INTERN PetscErrorCode CycleFollow(LimitCycle cycle, const ShootingCycle *s
 
 /* write.c - all tables as they are by now; the error of a number beside that of twice the steps and the spread over where
    steps begin; the class of a cycle that was found
-   to `rtol`: stable, unstable, or numerical where it cannot be told */
+   to `rtol`: stable, unstable, or numerical where it cannot be told, and why that is, NULL for the others */
 PETSC_INTERN PetscErrorCode CycleWrite(LimitCycle cycle);
 PETSC_INTERN PetscReal      CycleError(PetscReal found, PetscReal finer, PetscReal spread);
-PETSC_INTERN const char    *CycleClass(const CyclePoint *point, PetscReal rtol);
+PETSC_INTERN const char    *CycleClass(const CyclePoint *point, PetscReal rtol, const char **why);
 PETSC_INTERN PetscReal      CycleMultiplier(const ShootingStability *stability);

@@ -246,6 +246,7 @@ PetscErrorCode CycleFamilyCreate(ReducedRun scene, const ReducedParameter *param
   f->logarithmic = range[0] > 0 ? PETSC_TRUE : PETSC_FALSE;
   f->value       = parameter->value;
   FamilyListSizes(&scene->model, f->size);
+  PetscCall(CycleFamilyCheckMemory(f, FAMILY_MOST));
   PetscCall(ReducedModelCopy(&scene->model, &f->model));
   PetscCall(PetscMalloc1(f->size[FAMILY_K], &f->Q));
   do {

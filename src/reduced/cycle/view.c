@@ -7,6 +7,7 @@ static PetscErrorCode CycleViewPoint(LimitCycle c, const CyclePoint *p, PetscVie
   const CycleMeasure *a = &p->found, *b = &p->finer;
   const PetscReal    *large = p->stability.largest, *phase = p->stability.phase;
   const double        size = CycleMultiplier(&p->stability);
+  const char         *why, *class = CycleClass(p, c->rtol, &why);
 
   PetscFunctionBeginUser;
   if (c->parameter[0])
@@ -34,12 +35,15 @@ static PetscErrorCode CycleViewPoint(LimitCycle c, const CyclePoint *p, PetscVie
   else if (c->verify)
     PetscCall(PetscViewerASCIIPrintf(
       viewer, "  none is found with twice the steps, or with steps that begin elsewhere: its error is unknown\n"));
-  PetscCall(PetscViewerASCIIPrintf(
-    viewer,
-    "  %s: largest multiplier %.6g%+.6gi (%.6g), that of the phase 1%+.1e%+.1ei; residual %.1e after %" PetscInt_FMT
-    " steps of Newton's method\n",
-    CycleClass(p, c->rtol), (double)large[0], (double)large[1], size, (double)(phase[0] - 1), (double)phase[1],
-    (double)p->residual, p->its));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "  %s%s%s%s: largest multiplier %.6g%+.6gi (%.6g), that of the phase 1%+.1e%+.1ei; "
+                                   "residual %.1e after %" PetscInt_FMT " steps of Newton's method\n",
+                                   class, why ? " (" : "",
+                                   !why        ? ""
+                                   : c->verify ? why
+                                               : "-cycle_verify false leaves its error unknown",
+                                   why ? ")" : "", (double)large[0], (double)large[1], size, (double)(phase[0] - 1),
+                                   (double)phase[1], (double)p->residual, p->its));
   PetscFunctionReturn(0);
 }
 

@@ -41,13 +41,20 @@ static int MultiplierSide(PetscReal size, PetscReal margin)
 
 /* A residual r moves the cycle by r / |1 - m| along the vector of a multiplier m, and m by as much: it is told where
    |1 - m|^2 > r */
-const char *CycleClass(const CyclePoint *p, PetscReal rtol)
+const char *CycleClass(const CyclePoint *p, PetscReal rtol, const char **why)
 {
   const PetscReal size   = CycleMultiplier(&p->stability);
   const PetscReal margin = PetscMax(MultiplierError(p), PetscSqrtReal(rtol));
   const int       side   = MultiplierSide(size, margin);
 
-  if (!p->has_finer || !side || side != MultiplierSide(p->stability.worst, margin)) return "numerical";
+  *why = NULL;
+  if (!p->has_finer)
+    *why = "no cycle of other steps tells the error of the multiplier";
+  else if (!side)
+    *why = "the multiplier is nearer to 1 than its error";
+  else if (side != MultiplierSide(p->stability.worst, margin))
+    *why = "another multiplier may be that of the phase";
+  if (*why) return "numerical";
   return side > 0 ? "unstable" : "stable";
 }
 
@@ -77,6 +84,7 @@ static PetscErrorCode CycleWriteRow(LimitCycle c, PetscInt i, ResultsTable table
   const CyclePoint   *p = &c->point[i];
   const CycleMeasure *a = &p->found, *b = &p->finer, *spread = &p->spread;
   const PetscReal    *large = p->stability.largest, *phase = p->stability.phase, size = CycleMultiplier(&p->stability);
+  const char         *why;
   Cell                error[4], value[2];
 
   PetscFunctionBeginUser;
@@ -91,8 +99,8 @@ static PetscErrorCode CycleWriteRow(LimitCycle c, PetscInt i, ResultsTable table
                             i + 1, c->parameter, value[0], value[1], p->fold ? "fold" : "cycle", (double)a->freq,
                             error[0], (double)a->mean, (double)a->rms, error[1], (double)a->peak, error[2],
                             (double)a->open, (double)size, error[3], (double)large[0], (double)large[1],
-                            (double)phase[0], (double)phase[1], CycleClass(p, c->rtol), p->n_steps, (double)p->residual,
-                            p->its));
+                            (double)phase[0], (double)phase[1], CycleClass(p, c->rtol, &why), p->n_steps,
+                            (double)p->residual, p->its));
   PetscFunctionReturn(0);
 }
 
