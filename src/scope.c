@@ -221,8 +221,8 @@ static PetscErrorCode ScopeCheckIntegrator(MPI_Comm comm, const Scope *s)
 static PetscErrorCode ScopeCheckSymmetry(MPI_Comm comm, const Scope *s)
 {
   PetscFunctionBeginUser;
-  if (!s->modes || s->frf)
-    PetscCall(OptionsRefuse(comm, "-symmetry", "used by -analysis modes and sweep alone; leave it out"));
+  if (s->transient || s->frf)
+    PetscCall(OptionsRefuse(comm, "-symmetry", "used by -analysis modes, sweep and static alone; leave it out"));
   PetscFunctionReturn(0);
 }
 

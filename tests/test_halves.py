@@ -25,8 +25,9 @@ WIDTH = 0.02  # half of it, m
 BODIES = {"slab": ((-0.05, 0.05), (-0.01, 0.0), (10, 4, 2)), "pad": ((-0.02, 0.02), (0.0, 0.015), (4, 4, 3))}  # x, z, cells of a half
 SCENE = """-parts slab,pad -slab_young 210e9 -slab_poisson 0.3 -slab_density 7800 -slab_alpha 20 -pad_young 12e9 -pad_poisson 0.3
     -pad_density 2500 -pad_alpha 20 -contacts rub -rub_surfaces pad_bottom,slab_top
-    -rub_mu 0.7 -rub_slip 1,0,0 -springs holder -holder_set pad_top -holder_stiffness_per_area 2e10,3e10,1e11
+    -rub_mu 0.7 -rub_slip 1,0,0
     -output_fields 0"""
+HOLDER = ["-springs", "holder", "-holder_set", "pad_top", "-holder_stiffness_per_area", "2e10,3e10,1e11"]
 PENALTY, EXACT, UNDAMPED = "-rub_law penalty -rub_kn_per_area 2e14", "-rub_law constraint", "-slab_alpha 0 -pad_alpha 0"
 BAND = "-modes_band 500,60000"
 RTOL = 1e-9
@@ -73,14 +74,20 @@ class Runs:
     def __init__(self, folder, squeal, launcher):
         self.folder, self.squeal, self.launcher = folder, squeal, launcher
 
-    def rows(self, name, mesh, fix="", options=f"{PENALTY} {BAND}", ranks=1, table="modes"):
-        """Table of a run that holds the slab's start, and directions of the cut, with lambda [rad/s] of each row."""
-        words = [*SCENE.split(), "-model_mesh", mesh, "-output_dir", name, "-supports", "clamp,plane" if fix else "clamp",
+    def run(self, name, mesh, fix="", options="", ranks=1, fails=False):
+        """A run that holds the slab's start, directions of the cut, and the pad but where it is free; returns its errors."""
+        words = ["-options_file", "scene.txt", *([] if name.startswith("free") else HOLDER), "-model_mesh", mesh,
+                 "-output_dir", name, "-supports", "clamp,plane" if fix else "clamp",
                  "-clamp_set", "slab_start", "-clamp_fix", "xyz", *(["-plane_set", "cut", "-plane_fix", fix] if fix else []),
                  *options.split()]
         done = subprocess.run([self.launcher, "-n", str(ranks), self.squeal, *words], cwd=self.folder, capture_output=True, text=True)
-        if done.returncode:
-            sys.exit(f"FAILED run {name}: {done.stderr}")
+        if bool(done.returncode) != fails:
+            sys.exit(f"FAILED run {name}, exit status {done.returncode}: {done.stderr}")
+        return done.stderr
+
+    def rows(self, name, mesh, fix="", options=f"{PENALTY} {BAND}", ranks=1, table="modes"):
+        """Table of such a run, with lambda [rad/s] of each row."""
+        self.run(name, mesh, fix, options, ranks)
         rows = self.table(name, table)
         for row in rows:
             row["lambda"] = float(row["growth_rad_s"]) + 2j * numpy.pi * float(row["freq_hz"])
@@ -161,15 +168,58 @@ def sweeps(runs):
             (abs(a / float(row["critical_value"]) - 1) for a, row in zip(same, onsets, strict=True)), default=numpy.inf)
 
 
+STATIC = ("-analysis static -loads press -press_set pad_top "
+          f"{EXACT} -rub_slip 0,0,0 -rub_mu 0.3")
+STATICS = (  # name, options, ranks, planes: friction that sticks and slips in all directions, sliding, no springs but rigid motions left
+    ("free, friction", "-press_force 100,0,-1000", 2, "y"),
+    ("friction, two planes", "-press_force 0,0,-1000 -supports clamp,far -far_set slab_end -far_fix xyz", 1, "y,x"),
+    ("friction by GMRES", f"-press_force 300,0,-1000 -static_dense 0 {PENALTY}", 1, "y"),
+    ("sliding", "-press_force 0,0,-1000 -rub_slip 1,0,0", 1, "y"),
+    ("free, without friction", "-press_force 0,0,-1000 -rub_mu 0", 1, "y"))
+
+
+def statics(runs):
+    """The even half of equilibria against the whole: statuses and forces of all pairs."""
+    for name, options, ranks, planes in STATICS:
+        folder = "".join(letter for letter in name if letter.isalnum())
+        options = f"{STATIC} {options}"
+        runs.run(f"{folder}_whole", "whole.msh", options=options)
+        runs.run(folder, "whole.msh", options=f"{options} -symmetry {planes}", ranks=ranks)
+        whole, found = ({(row["x_m"], row["y_m"]): row for row in runs.table(run, "static")} for run in (f"{folder}_whole", folder))
+        yield f"static, {name}, statuses of {len(whole)} pairs", float(any(found[at]["status"] != whole[at]["status"] for at in whole))
+        for column in ("lambda_n_n", "lambda_t_n", "lambda_b_n"):
+            values = numpy.array([[float(rows[at][column]) for at in whole] for rows in (whole, found)])
+            yield f"static, {name}, {column}, {ranks} ranks", abs(values[1] - values[0]).max() / max(abs(values[0]).max(), 1e-9)
+
+
+REFUSED = (  # name, options, planes, message
+    ("loads across the plane", f"{STATIC} -press_force 0,100,-1000", "y", "the -loads, the weight or -motions differ by 2.0e-01 of the"),
+    ("slip across the plane", f"{STATIC} -press_force 0,0,-1000 -rub_slip 0,1,0", "y", "slip directions differ by 2.0e\\+00"),
+    ("a support at one end", f"{STATIC} -press_force 0,0,-1000", "x", "support or motion holds x at one alone"),
+    ("a set joined rigidly", f"{PENALTY} {BAND} -points hub -hub_set slab_end -hub_join rigid -hub_mass 0.1", "y",
+     "what constraints leave is not its own mirror image: -points that are joined rigidly are not supported with it"),
+    ("in time", "-analysis transient", "y", "used by -analysis modes, sweep and static alone; leave it out"))
+
+
+def refusals(runs):
+    """Scenes that are not their own mirror images, or cannot be halved."""
+    for name, options, planes, message in REFUSED:
+        said = runs.run("refused", "whole.msh", options=f"{options} -symmetry {planes}", fails=True)
+        if not re.fullmatch(f"squeal: error: -symmetry {planes}: .*{message}.*\n", said):
+            print(f"{name}: said {said}")
+        yield f"refused: {name}", float(not re.fullmatch(f"squeal: error: -symmetry {planes}: .*{message}.*\n", said))
+
+
 def main(squeal, launcher):
     """Prints what differs."""
     with tempfile.TemporaryDirectory() as name:
         runs = Runs(Path(name), str(Path(squeal).resolve()), str(Path(launcher).resolve()))
+        (runs.folder / "scene.txt").write_text(re.sub(r"\s(-[a-z])", r"\n\1", SCENE) + "\n")
         write_mesh(runs.folder / "whole.msh", False)
         write_mesh(runs.folder / "half.msh", True)
         whole = runs.rows("whole", "whole.msh")
         found = [("modes that do not grow of " + str(len(whole)), float(all(row["lambda"].real <= 1 for row in whole))),
-                 *halves(runs, whole), *kinds(runs), *sweeps(runs)]
+                 *halves(runs, whole), *kinds(runs), *sweeps(runs), *statics(runs), *refusals(runs)]
     for what, worst in found:
         print(f"{what}: differ by {worst:.1e}, {RTOL:g} allowed")
     sys.exit(0 if all(worst <= RTOL for _, worst in found) else "FAILED")

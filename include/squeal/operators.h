@@ -138,6 +138,19 @@ PetscErrorCode OperatorsGetJoint(Operators operators, const PetscReal p[], Petsc
     are kept; NULL without such points (borrowed). Forces of the constraint are those with Z'f = 0. Not collective. @*/
 PetscErrorCode OperatorsGetRigid(Operators operators, Mat *Z, Mat *E);
 
+/*@ OperatorsGetMirrors - the planes of -symmetry (their number is 0 without), and for each the signed permutation R of all
+    unknowns that takes displacements to their mirror image (borrowed). Collective; after OperatorsSetUp().
+    Errors: those of ModelMirror(). @*/
+PetscErrorCode OperatorsGetMirrors(Operators operators, PetscInt *n, const ModelPlane **plane, const Mat **R);
+
+/*@ OperatorsGetEven - orthonormal columns S of all unknowns that span what is even in every plane, R S = S; NULL without planes
+    (borrowed). Collective. Errors: PETSC_ERR_SUP for points that are joined rigidly. @*/
+PetscErrorCode OperatorsGetEven(Operators operators, Mat *S);
+
+/*@ OperatorsProveEven - raises the error PETSC_ERR_USER_INPUT where the stiffness of the bodies at p, or a force f on all
+    unknowns, N, that `what` names, is not its own mirror image; nothing without planes. Collective. @*/
+PetscErrorCode OperatorsProveEven(Operators operators, const PetscReal p[], Vec f, const char what[]);
+
 /*@ OperatorsInternalForces - K_e u_e of all elements at p and the forces of bushings and points, summed over ranks, N,
    into a local vector of three values per node in the layout of the coordinates, held directions included: at a
    support they are its reaction. Springs and contact are no part of it. Collective. @*/

@@ -20,7 +20,8 @@
    K. Kunisch, SIAM J. Optim. 13, 2002; friction: P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991).
    kappa is only a device: it drops out of the solution. Where the iteration does not settle, friction (or the load) is
    raised in steps. Rigid motions that neither supports nor springs nor any pair resists are held at single unknowns,
-   whose reactions vanish in equilibrium; u has no part of them.
+   whose reactions vanish in equilibrium; u has no part of them. With planes of symmetry (-symmetry) loads and pairs must be
+   their own mirror images, and the even half of K_a is factored alone (mirror.c).
 */
 #pragma once
 

@@ -1,6 +1,6 @@
 /*
-   Planes of symmetry (-symmetry): for each the signed permutation R of the unknowns of a pencil, R^2 = 1, that takes a
-   vector to its mirror image, and the proof that the scene is its own,
+   Mirror images in the unknowns of a pencil: for each plane of symmetry (planes.c) the signed permutation R, R^2 = 1, that
+   takes a vector to its image, and the proof that the scene is its own,
 
       R Q R = Q   for Q = K, M, C,   |(R Q R x - Q x)_i| <= MIRROR_ROUNDING max_j |Q_ij| sum over the row of |x|
 
@@ -8,79 +8,13 @@
    = q, R_q = E' R E, which is a signed permutation where the frames of the pairs are mirror images too.
 */
 #include "pencilimpl.h"
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #define MIRROR_ROUNDING 1e-11
 #define MIRROR_FLOOR    1e-8 /* of the largest entry: rows below are compared with that */
 #define MIRROR_VECTORS  2
 
-/* One item of the list: x, or x=0.05 */
-static PetscErrorCode PlaneParse(MPI_Comm comm, const char text[], const char item[], ModelPlane *plane)
-{
-  const char *axis  = item[0] ? strchr("xyz", item[0]) : NULL;
-  char       *end   = NULL;
-  PetscBool   valid = axis && (!item[1] || (item[1] == '=' && item[2])) ? PETSC_TRUE : PETSC_FALSE;
+#define MIRROR_STIFFNESS "the stiffness K of its parts, springs and contacts differs"
 
-  PetscFunctionBeginUser;
-  *plane = (ModelPlane){.axis = axis ? (int)(axis - "xyz") : 0, .has_at = valid && item[1] ? PETSC_TRUE : PETSC_FALSE};
-  if (plane->has_at) {
-    plane->at = strtod(&item[2], &end);
-    valid     = !*end && isfinite(plane->at) ? PETSC_TRUE : PETSC_FALSE;
-  }
-  PetscCheck(valid, comm, PETSC_ERR_USER_INPUT,
-             "-symmetry %s: '%s' is no plane; give x, y or z, its normal, and where it is not in the middle of the mesh "
-             "its place in m, as x=0.05",
-             text, item);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode MirrorsSetFromOptions(Operators o, OptionsItems PetscOptionsObject)
-{
-  char      text[128] = "", **items;
-  int       n         = 0;
-  PetscBool set, twice = PETSC_FALSE;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsString("-symmetry",
-                               "planes of which the scene is its own mirror image, by their normals: x, y, z (in the "
-                               "middle of the mesh), x=0.05 (m); each parity is solved by itself",
-                               "operators.h", text, text, sizeof(text), &set));
-  if (!set) PetscFunctionReturn(0);
-  PetscCall(ValuesSplit(o->comm, "-symmetry", text, ',', &n, &items));
-  PetscCheck(n >= 1 && n <= OPERATORS_MAX_PLANES, o->comm, PETSC_ERR_USER_INPUT,
-             "-symmetry %s names %d planes; give one to three of x, y, z", text, n);
-  for (int i = 0; i < n; i++) {
-    PetscCall(PlaneParse(o->comm, text, items[i], &o->plane[i]));
-    for (int j = 0; j < i; j++)
-      if (o->plane[j].axis == o->plane[i].axis) twice = PETSC_TRUE;
-  }
-  PetscCheck(!twice, o->comm, PETSC_ERR_USER_INPUT, "-symmetry %s names a normal twice; each can stand once", text);
-  PetscCall(PetscStrToArrayDestroy(n, items));
-  o->n_planes = n;
-  PetscFunctionReturn(0);
-}
-
-/* R of all unknowns in one plane */
-static PetscErrorCode MirrorCreate(Operators o, ModelPlane *plane, Mat *R)
-{
-  const Mesh *mesh;
-  PetscInt   *image;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(o->model, &mesh));
-  PetscCall(PetscMalloc1(mesh->n_own, &image));
-  PetscCall(ModelMirror(o->model, plane, image));
-  PetscCall(MatCreateAIJ(o->comm, mesh->n_own, mesh->n_own, PETSC_DETERMINE, PETSC_DETERMINE, 1, NULL, 1, NULL, R));
-  for (PetscInt i = 0; i < mesh->n_own; i++)
-    PetscCall(MatSetValue(*R, mesh->first_own + i, image[i] < 0 ? -1 - image[i] : image[i], image[i] < 0 ? -1 : 1,
-                          INSERT_VALUES));
-  PetscCall(MatAssemblyBegin(*R, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(*R, MAT_FINAL_ASSEMBLY));
-  PetscCall(PetscFree(image));
-  PetscFunctionReturn(0);
-}
 
 /* The entry of a row that is a signed permutation's but for rounding: its column and sign; sign 0 for another row */
 PetscErrorCode MirrorGetRow(Mat R, PetscInt row, PetscInt *column, PetscReal *sign)
@@ -125,26 +59,26 @@ static PetscErrorCode MirrorProject(Pencil pencil, const ModelPlane *plane, Mat 
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &wrong, 1, MPIU_INT, MPI_MAX, pencil->comm));
   PetscCheck(!wrong, pencil->comm, PETSC_ERR_SUP,
              "-symmetry %c: what constraints leave is not its own mirror image: %s", "xyz"[plane->axis],
-             pencil->operators->rigid_Z ? "-points that are joined rigidly are not supported with it"
+             pencil->operators->rigid_Z ? MIRROR_NO_RIGID
                                         : "slip directions of -contact_law constraint must lie in the plane");
   PetscFunctionReturn(0);
 }
 
-/* The node (m) and direction of unknown i of a pencil, on all ranks */
-static PetscErrorCode MirrorLocate(Pencil pencil, PetscInt i, PetscReal place[4])
+/* The node (m) and direction of unknown i, of those that E injects where it is not NULL, on all ranks */
+static PetscErrorCode MirrorLocate(Operators o, Mat E, PetscInt i, PetscReal place[4])
 {
   const Mesh *mesh;
   PetscInt    at = i;
   Vec         q, u;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(pencil->operators->model, &mesh));
-  if (pencil->E) {
-    PetscCall(MatCreateVecs(pencil->E, &q, &u));
+  PetscCall(ModelGetMesh(o->model, &mesh));
+  if (E) {
+    PetscCall(MatCreateVecs(E, &q, &u));
     PetscCall(VecSetValue(q, i, 1, ADD_VALUES)); /* on every rank */
     PetscCall(VecAssemblyBegin(q));
     PetscCall(VecAssemblyEnd(q));
-    PetscCall(MatMult(pencil->E, q, u));
+    PetscCall(MatMult(E, q, u));
     PetscCall(VecAbs(u));
     PetscCall(VecMax(u, &at, NULL));
     PetscCall(VecDestroy(&q));
@@ -156,7 +90,7 @@ static PetscErrorCode MirrorLocate(Pencil pencil, PetscInt i, PetscReal place[4]
     for (int d = 0; d < 3; d++) place[d] = mesh->x[k - k % 3 + d];
     place[3] = (PetscReal)(k % 3);
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, place, 4, MPIU_REAL, MPI_MAX, pencil->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, place, 4, MPIU_REAL, MPI_MAX, o->comm));
   PetscFunctionReturn(0);
 }
 
@@ -195,49 +129,116 @@ static PetscErrorCode MirrorMeasure(Mat Q, Mat R, Vec size, PetscReal *largest, 
 }
 
 /* "at pad_young 1e+10, ": parameters whose values are not those of the scene, for messages */
-static PetscErrorCode MirrorPoint(Pencil pencil, size_t size, char text[])
+static PetscErrorCode MirrorPoint(Operators o, const PetscReal p[], size_t size, char text[])
 {
-  const Parameters *scene = &pencil->operators->parameters;
+  const Parameters *scene = &o->parameters;
   char              one[192];
 
   PetscFunctionBeginUser;
   text[0] = 0;
-  for (PetscInt i = 0; i < pencil->n_scene; i++) {
-    if (pencil->parameters.p[i] == scene->list[i].value) continue;
+  for (PetscInt i = 0; i < scene->n; i++) {
+    if (p[i] == scene->list[i].value) continue;
     PetscCall(PetscSNPrintf(one, sizeof(one), "%s%s %.6g", text[0] ? " and " : "at ", scene->list[i].name,
-                            (double)pencil->parameters.p[i]));
+                            (double)p[i]));
     PetscCall(PetscStrlcat(text, one, size));
   }
   if (text[0]) PetscCall(PetscStrlcat(text, " ", size));
   PetscFunctionReturn(0);
 }
 
-/* Raises an error where a matrix is not its own mirror image; `what` tells its name and what it is made of */
-static PetscErrorCode MirrorCheck(Pencil pencil, PetscInt i, Mat Q, const char what[])
+/* What is compared with its mirror image, and how far it is from it at unknown `at`, of what counts there */
+typedef struct {
+  const char *what; /* its name, what it is made of, and a verb */
+  const char *size; /* what it is measured by */
+  Mat         E;    /* as in MirrorLocate() */
+  PetscReal   largest;
+  PetscInt    at;
+} MirrorFinding;
+
+/* Raises the error for what is not its own mirror image in plane i at p */
+static PetscErrorCode MirrorComplain(Operators o, PetscInt i, const PetscReal p[], const MirrorFinding *found)
 {
-  const ModelPlane *plane = &pencil->operators->plane[i];
-  PetscReal         largest, most, place[4];
-  PetscInt          at;
-  Vec               size;
+  const ModelPlane *plane = &o->plane[i];
+  PetscReal         place[4];
   char              point[256];
 
   PetscFunctionBeginUser;
-  if (!Q) PetscFunctionReturn(0);
+  if (found->largest <= MIRROR_ROUNDING) PetscFunctionReturn(0);
+  PetscCall(MirrorLocate(o, found->E, found->at, place));
+  PetscCall(MirrorPoint(o, p, sizeof(point), point));
+  SETERRQ(o->comm, PETSC_ERR_USER_INPUT,
+          "-symmetry %c: %sthe scene is not its own mirror image in %c = %g m: %s by %.1e of %s (%.0e allowed), most at "
+          "the node (%g, %g, %g) m along %c",
+          "xyz"[plane->axis], point, "xyz"[plane->axis], (double)plane->at, found->what, (double)found->largest,
+          found->size, MIRROR_ROUNDING, (double)place[0], (double)place[1], (double)place[2], "xyz"[(int)place[3]]);
+}
+
+/* How far a matrix is from its mirror image */
+static PetscErrorCode MirrorOfMatrix(Mat Q, Mat R, MirrorFinding *found)
+{
+  PetscReal most;
+  Vec       size;
+
+  PetscFunctionBeginUser;
   PetscCall(MatCreateVecs(Q, NULL, &size));
   PetscCall(MatGetRowMaxAbs(Q, size, NULL));
   PetscCall(VecMax(size, NULL, &most));
   PetscCall(VecShift(size, MIRROR_FLOOR * most));
-  PetscCall(MirrorMeasure(Q, pencil->mirror[i], size, &largest, &at));
+  PetscCall(MirrorMeasure(Q, R, size, &found->largest, &found->at));
   PetscCall(VecDestroy(&size));
-  pencil->asymmetry = PetscMax(pencil->asymmetry, largest);
-  if (largest <= MIRROR_ROUNDING) PetscFunctionReturn(0);
-  PetscCall(MirrorLocate(pencil, at, place));
-  PetscCall(MirrorPoint(pencil, sizeof(point), point));
-  SETERRQ(pencil->comm, PETSC_ERR_USER_INPUT,
-          "-symmetry %c: %sthe scene is not its own mirror image in %c = %g m: %s differs by %.1e of its row (%.0e "
-          "allowed), most at the node (%g, %g, %g) m along %c",
-          "xyz"[plane->axis], point, "xyz"[plane->axis], (double)plane->at, what, (double)largest, MIRROR_ROUNDING,
-          (double)place[0], (double)place[1], (double)place[2], "xyz"[(int)place[3]]);
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error where a matrix is not its own mirror image */
+static PetscErrorCode MirrorCheck(Pencil pencil, PetscInt i, Mat Q, const char what[])
+{
+  MirrorFinding found = {.what = what, .size = "its row", .E = pencil->E};
+
+  PetscFunctionBeginUser;
+  if (!Q) PetscFunctionReturn(0);
+  PetscCall(MirrorOfMatrix(Q, pencil->mirror[i], &found));
+  pencil->asymmetry = PetscMax(pencil->asymmetry, found.largest);
+  PetscCall(MirrorComplain(pencil->operators, i, pencil->parameters.p, &found));
+  PetscFunctionReturn(0);
+}
+
+/* How far forces are from their mirror image, of the largest of them */
+static PetscErrorCode MirrorOfForce(Vec f, Mat R, MirrorFinding *found)
+{
+  PetscReal size;
+  Vec       image;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(f, &image));
+  PetscCall(VecNorm(f, NORM_INFINITY, &size));
+  PetscCall(MatMult(R, f, image));
+  PetscCall(VecAXPY(image, -1, f));
+  PetscCall(VecAbs(image));
+  PetscCall(VecMax(image, &found->at, &found->largest));
+  if (size > 0) found->largest /= size;
+  PetscCall(VecDestroy(&image));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsProveEven(Operators o, const PetscReal p[], Vec f, const char what[])
+{
+  MirrorFinding stiffness = {.what = MIRROR_STIFFNESS, .size = "its row"};
+  MirrorFinding force     = {.what = what, .size = "the largest force on a node"};
+  const Mat    *R;
+  PetscInt      n;
+  Mat           K;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetMirrors(o, &n, NULL, &R));
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(OperatorsGetBodies(o, p, &K, NULL, NULL));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(MirrorOfMatrix(K, R[i], &stiffness));
+    PetscCall(MirrorComplain(o, i, OperatorsPoint(o, p), &stiffness));
+    PetscCall(MirrorOfForce(f, R[i], &force));
+    PetscCall(MirrorComplain(o, i, OperatorsPoint(o, p), &force));
+  }
+  PetscFunctionReturn(0);
 }
 
 /* All matrices of the pencil in plane i; friction last, so that what it alone spoils is named so */
@@ -247,12 +248,12 @@ static PetscErrorCode MirrorCheckAll(Pencil pencil, PetscInt i)
 
   PetscFunctionBeginUser;
   PetscCall(PencilGetFrictionless(pencil, &frictionless));
-  PetscCall(MirrorCheck(pencil, i, frictionless.M, "the mass matrix M of its parts"));
-  PetscCall(MirrorCheck(pencil, i, frictionless.K, "the stiffness K of its parts, springs and contacts"));
+  PetscCall(MirrorCheck(pencil, i, frictionless.M, "the mass matrix M of its parts differs"));
+  PetscCall(MirrorCheck(pencil, i, frictionless.K, MIRROR_STIFFNESS));
   PetscCall(PencilGetMatrices(pencil, &m));
-  PetscCall(MirrorCheck(pencil, i, m.C, "the damping matrix C"));
-  if (m.M != frictionless.M) PetscCall(MirrorCheck(pencil, i, m.M, "friction, by the slip of its pairs,"));
-  if (m.K != frictionless.K) PetscCall(MirrorCheck(pencil, i, m.K, "friction, by the slip of its pairs,"));
+  PetscCall(MirrorCheck(pencil, i, m.C, "the damping matrix C differs"));
+  if (m.M != frictionless.M) PetscCall(MirrorCheck(pencil, i, m.M, "friction, by the slip of its pairs, differs"));
+  if (m.K != frictionless.K) PetscCall(MirrorCheck(pencil, i, m.K, "friction, by the slip of its pairs, differs"));
   PetscFunctionReturn(0);
 }
 
@@ -273,12 +274,16 @@ static PetscErrorCode MirrorsProve(Pencil pencil)
 
 PetscErrorCode PencilCreateMirrors(Pencil pencil)
 {
-  Operators o = pencil->operators;
+  Operators  o = pencil->operators;
+  const Mat *R;
+  PetscInt   n;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < o->n_planes; i++) {
+  PetscCall(OperatorsGetMirrors(o, &n, NULL, &R));
+  for (PetscInt i = 0; i < n; i++) {
     if (pencil->mirror[i]) continue;
-    PetscCall(MirrorCreate(o, &o->plane[i], &pencil->mirror[i]));
+    PetscCall(PetscObjectReference((PetscObject)R[i]));
+    pencil->mirror[i] = R[i];
     PetscCall(MirrorProject(pencil, &o->plane[i], &pencil->mirror[i]));
   }
   PetscCall(MirrorsProve(pencil));

@@ -275,6 +275,8 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   PetscCall(PetscFree(o->joint));
   PetscCall(MatDestroy(&o->rigid_Z));
   PetscCall(MatDestroy(&o->rigid_E));
+  for (int i = 0; i < OPERATORS_MAX_PLANES; i++) PetscCall(MatDestroy(&o->mirror[i]));
+  PetscCall(MatDestroy(&o->even));
   PetscCall(PetscFree(o->mu));
   PetscCall(ParametersDestroy(&o->parameters));
   PetscCall(NamedDestroy(o));

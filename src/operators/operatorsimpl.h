@@ -60,6 +60,8 @@ struct _p_Operators {
   PetscBool            symmetric;        /* K, M and C are symmetric without friction; always true for a model */
   Mat                  rigid_Z, rigid_E; /* of points that are joined rigidly; NULL without */
   const char          *rigid_name;       /* of one of them */
+  Mat                  mirror[OPERATORS_MAX_PLANES]; /* R of each plane in all unknowns, made when asked for */
+  Mat                  even;                         /* S of the vectors that are even in all planes, likewise */
   /* formed when asked for */
   TermsSum sum[N_BODIES_SUMS];
 };
@@ -116,7 +118,7 @@ PETSC_INTERN PetscErrorCode PatternCreate(Model model, PetscInt part, PetscBool 
 /* friction.c - parameters of the contact */
 PETSC_INTERN PetscErrorCode OperatorsAddContactParameters(Operators operators);
 
-/* mirror.c - the planes of symmetry */
+/* planes.c - the planes of symmetry */
 PETSC_INTERN PetscErrorCode MirrorsSetFromOptions(Operators operators, OptionsItems PetscOptionsObject);
 
 /* file.c - matrices from files and options, and to files */

@@ -36,22 +36,22 @@ static PetscErrorCode OrbitsFill(Orbits *orbits, PetscInt g, Mat G)
 }
 
 /* G_g = G_(g without its highest bit) times that mirror */
-static PetscErrorCode OrbitsCreate(Pencil pencil, Orbits *orbits)
+static PetscErrorCode OrbitsCreate(PetscInt n_planes, const Mat mirror[], Orbits *orbits)
 {
   PetscInt last;
   Mat      G[1 << OPERATORS_MAX_PLANES] = {NULL};
 
   PetscFunctionBeginUser;
-  PetscCall(PencilCountParities(pencil, &orbits->n_group));
-  PetscCall(MatGetOwnershipRange(pencil->mirror[0], &orbits->first, &last));
+  orbits->n_group = 1 << n_planes;
+  PetscCall(MatGetOwnershipRange(mirror[0], &orbits->first, &last));
   orbits->n = last - orbits->first;
   PetscCall(PetscMalloc2(orbits->n * orbits->n_group, &orbits->image, orbits->n * orbits->n_group, &orbits->sign));
   PetscCall(OrbitsFill(orbits, 0, NULL));
-  for (PetscInt p = 0, bit = 1; p < pencil->operators->n_planes; p++, bit *= 2)
+  for (PetscInt p = 0, bit = 1; p < n_planes; p++, bit *= 2)
     for (PetscInt g = bit; g < 2 * bit; g++) {
-      if (g > bit) PetscCall(MatMatMult(G[g - bit], pencil->mirror[p], MAT_INITIAL_MATRIX, PETSC_DEFAULT, &G[g]));
-      if (g == bit) PetscCall(PetscObjectReference((PetscObject)pencil->mirror[p]));
-      if (g == bit) G[g] = pencil->mirror[p];
+      if (g > bit) PetscCall(MatMatMult(G[g - bit], mirror[p], MAT_INITIAL_MATRIX, PETSC_DEFAULT, &G[g]));
+      if (g == bit) PetscCall(PetscObjectReference((PetscObject)mirror[p]));
+      if (g == bit) G[g] = mirror[p];
       PetscCall(OrbitsFill(orbits, g, G[g]));
     }
   for (PetscInt g = 0; g < orbits->n_group; g++) PetscCall(MatDestroy(&G[g]));
@@ -119,6 +119,24 @@ static PetscErrorCode ParityCreateMap(const Orbits *orbits, MPI_Comm comm, Petsc
   }
   PetscCall(MatAssemblyBegin(*S, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*S, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsGetEven(Operators o, Mat *S)
+{
+  const Mat *R;
+  PetscInt   n;
+  Orbits     orbits;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetMirrors(o, &n, NULL, &R));
+  if (n && !o->even) {
+    PetscCheck(!o->rigid_Z, o->comm, PETSC_ERR_SUP, "-symmetry: " MIRROR_NO_RIGID);
+    PetscCall(OrbitsCreate(n, R, &orbits));
+    PetscCall(ParityCreateMap(&orbits, o->comm, 0, &o->even));
+    PetscCall(OrbitsDestroy(&orbits));
+  }
+  *S = o->even;
   PetscFunctionReturn(0);
 }
 
@@ -212,7 +230,7 @@ PetscErrorCode PencilCreateParity(Pencil whole, PetscInt c, Pencil *part)
   PetscCall(PetscCalloc1(1, &s));
   PetscCall(ParityCopyState(whole, s));
   PetscCall(ParityReleaseSums(whole));
-  PetscCall(OrbitsCreate(whole, &orbits));
+  PetscCall(OrbitsCreate(whole->operators->n_planes, whole->mirror, &orbits));
   PetscCall(ParityCreateMap(&orbits, whole->comm, c, &S));
   PetscCall(OrbitsDestroy(&orbits));
   PetscCall(ParityCompose(whole->Zr, S, &s->Zr));

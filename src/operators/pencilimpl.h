@@ -50,6 +50,8 @@ struct _p_Pencil {
 /* pairrows.c - forms both factors of the unsymmetric stiffness at the present point, where they are not there yet */
 PETSC_INTERN PetscErrorCode PencilFormFactors(Pencil pencil);
 
+#define MIRROR_NO_RIGID "-points that are joined rigidly are not supported with it"
+
 /* mirror.c - R of each plane in the unknowns of the pencil, once; raises an error where the scene is not its own image at
    the present point */
 PETSC_INTERN PetscErrorCode PencilCreateMirrors(Pencil pencil);

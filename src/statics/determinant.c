@@ -5,7 +5,8 @@
       | -G                 Q             | | z |
 
    has the small system Q + (W - V D) P - W Q as its Schur complement, and K_a is positive: both determinants have one
-   sign. MUMPS' LU of the whole tells it.
+   sign. Where u = Z q stand Z'K_a Z, Z'G', Z'S' and G Z; with planes of symmetry Q has c O (P - Q) more
+   (mirror.c). MUMPS' LU of the whole tells it.
 */
 #include "staticsimpl.h"
 
@@ -51,6 +52,36 @@ static PetscErrorCode ForceMatrix(const SmallSystem *s, Mat *B)
   PetscCall(MatAXPY(*B, 1, slide, DIFFERENT_NONZERO_PATTERN));
   PetscCall(MatDestroy(&slide));
   PetscCall(MatDestroy(&law));
+  PetscFunctionReturn(0);
+}
+
+/* Z' times the forces of pairs and their displacements times Z in their place */
+static PetscErrorCode ProjectBlocks(Mat Z, Mat block[4])
+{
+  Mat force, rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatTransposeMatMult(Z, block[1], MAT_INITIAL_MATRIX, PETSC_DEFAULT, &force));
+  PetscCall(MatMatMult(block[2], Z, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &rows));
+  for (int i = 1; i < 3; i++) PetscCall(MatDestroy(&block[i]));
+  block[1] = force;
+  block[2] = rows;
+  PetscFunctionReturn(0);
+}
+
+/* Q, and c O (P - Q) where there is O */
+static PetscErrorCode DisplacementMatrix(const SmallSystem *s, Mat *A)
+{
+  Mat law, more;
+
+  PetscFunctionBeginUser;
+  PetscCall(LawMatrix(s, LAW_DISPLACEMENT, A));
+  if (!s->compliance->odd) PetscFunctionReturn(0);
+  PetscCall(LawMatrix(s, LAW_DIFFERENCE, &law));
+  PetscCall(MatMatMult(s->compliance->odd, law, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &more));
+  PetscCall(MatAXPY(*A, 1 / s->compliance->kappa, more, DIFFERENT_NONZERO_PATTERN));
+  PetscCall(MatDestroy(&law));
+  PetscCall(MatDestroy(&more));
   PetscFunctionReturn(0);
 }
 
@@ -107,7 +138,8 @@ PetscErrorCode SmallIsReversed(const SmallSystem *s, PetscBool *reversed)
   PetscCall(ForceMatrix(s, &block[1]));
   PetscCall(MatDuplicate(s->compliance->rows->G, MAT_COPY_VALUES, &block[2]));
   PetscCall(MatScale(block[2], -1));
-  PetscCall(LawMatrix(s, LAW_DISPLACEMENT, &block[3]));
+  if (s->compliance->Z) PetscCall(ProjectBlocks(s->compliance->Z, block));
+  PetscCall(DisplacementMatrix(s, &block[3]));
   PetscCall(MatCreateNest(s->compliance->rows->comm, 2, NULL, 2, NULL, block, &nest));
   PetscCall(MatConvert(nest, MATAIJ, MAT_INITIAL_MATRIX, &whole));
   PetscCall(DeterminantSign(whole, reversed));

@@ -102,15 +102,38 @@ static PetscErrorCode RigidOrthonormalise(Mat M, Vec weights, PetscInt n, const 
   PetscFunctionReturn(0);
 }
 
-/* Rigid motions of all bodies, orthonormal in diag(A); motion[6 n_bodies] */
-static PetscErrorCode RigidCandidates(Model model, Mat A, PetscInt *n, Vec **motion)
+/* S S'r in the place of r, the even part; false where nothing is left of it */
+static PetscErrorCode RigidTakeEven(Mat S, Vec r, PetscBool *good)
 {
+  PetscReal whole, even;
+  Vec       q;
+
+  PetscFunctionBeginUser;
+  *good = PETSC_TRUE;
+  if (!S) PetscFunctionReturn(0);
+  PetscCall(MatCreateVecs(S, &q, NULL));
+  PetscCall(VecNorm(r, NORM_2, &whole));
+  PetscCall(MatMultTranspose(S, r, q));
+  PetscCall(MatMult(S, q, r));
+  PetscCall(VecNorm(r, NORM_2, &even));
+  PetscCall(VecDestroy(&q));
+  *good = even > RIGID_DEPENDENT * whole ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Rigid motions of all bodies, with planes of symmetry the even ones, orthonormal in diag(A); motion[6 n_bodies] */
+static PetscErrorCode RigidCandidates(Operators operators, Mat A, PetscInt *n, Vec **motion)
+{
+  Model      model;
+  Mat        S;
   RigidBody *rigid;
   PetscInt   n_bodies, *body;
   PetscBool  good;
   Vec        diagonal;
 
   PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(operators, &model, NULL));
+  PetscCall(OperatorsGetEven(operators, &S));
   PetscCall(ModelGetBodies(model, &n_bodies, &body));
   PetscCheck(n_bodies <= RIGID_MAX_BODIES, PetscObjectComm((PetscObject)A), PETSC_ERR_SUP,
              "the mesh falls into %" PetscInt_FMT " pieces, at most %d can be held in equilibrium", n_bodies,
@@ -123,7 +146,8 @@ static PetscErrorCode RigidCandidates(Model model, Mat A, PetscInt *n, Vec **mot
   *n = 0;
   for (PetscInt i = 0; i < 6 * n_bodies; i++) {
     PetscCall(RigidSetMotion(model, body, i / 6, &rigid[i / 6], (int)(i % 6), (*motion)[*n]));
-    PetscCall(RigidOrthonormalise(NULL, diagonal, *n, *motion, (*motion)[*n], &good));
+    PetscCall(RigidTakeEven(S, (*motion)[*n], &good));
+    if (good) PetscCall(RigidOrthonormalise(NULL, diagonal, *n, *motion, (*motion)[*n], &good));
     if (good) (*n)++;
   }
   for (PetscInt i = *n; i < 6 * n_bodies; i++) PetscCall(VecDestroy(&(*motion)[i]));
@@ -162,13 +186,11 @@ PetscErrorCode FreeMotionsCreate(Operators operators, const PetscReal p[], Mat A
   PetscReal *energy, *vectors;
   PetscBool  good;
   Vec       *motion;
-  Model      model;
   Mat        M;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(operators, &model, NULL));
   PetscCall(OperatorsGetBodies(operators, p, NULL, &M, NULL));
-  PetscCall(RigidCandidates(model, A, &n, &motion));
+  PetscCall(RigidCandidates(operators, A, &n, &motion));
   PetscCall(PetscMalloc2(n, &energy, n * n, &vectors));
   PetscCall(RigidEnergies(A, n, motion, energy, vectors));
   while (hold->n < n && energy[hold->n] < RIGID_FREE) hold->n++;
