@@ -47,8 +47,8 @@ def body(first, x, y, z, cells):
     return nodes, hexahedra, side
 
 
-def write_mesh(path, half):
-    """Both bodies, whole or the half of positive y, as a file of Gmsh."""
+def write_mesh(path, half, shift=0, digits=17):
+    """Both bodies, whole or the half of positive y, shifted along y [m], as a file of Gmsh."""
     y, factor = ((0, WIDTH), 1) if half else ((-WIDTH, WIDTH), 2)
     nodes, groups = [], {}
     for name, (x, z, cells) in BODIES.items():
@@ -61,7 +61,7 @@ def write_mesh(path, half):
     lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", str(len(groups))]
     lines += [f'{dimension} {i + 1} "{name}"' for i, (dimension, name) in enumerate(groups)]
     lines += ["$EndPhysicalNames", "$Nodes", str(len(nodes))]
-    lines += [f"{i + 1} {' '.join(repr(float(x)) for x in place)}" for i, place in enumerate(nodes)]
+    lines += [f"{i + 1} {' '.join(f'{x:.{digits}g}' for x in place)}" for i, place in enumerate(nodes + [0, shift, 0])]
     elements = [(5 if dimension == 3 else 3, i + 1, row) for i, ((dimension, _), rows) in enumerate(groups.items()) for row in rows]
     lines += ["$EndNodes", "$Elements", str(len(elements))]
     lines += [f"{k + 1} {kind} 2 {i} {i} {' '.join(map(str, row))}" for k, (kind, i, row) in enumerate(elements)]
@@ -201,6 +201,16 @@ REFUSED = (  # name, options, planes, message
     ("in time", "-analysis transient", "y", "used by -analysis modes, sweep and static alone; leave it out"))
 
 
+def rounded(runs):
+    """A mesh that is mirrored to 7 digits: refused, and with -symmetry_rtol the modes of the mean of scene and image."""
+    write_mesh(runs.folder / "rounded.msh", False, shift=0.0123456789, digits=7)
+    options = f"{PENALTY} {UNDAMPED} {BAND}"
+    said = runs.run("refused", "rounded.msh", options=f"{options} -symmetry y", fails=True)
+    yield "a mesh of 7 digits is refused", float("1e-11 allowed by -symmetry_rtol" not in said)
+    whole = runs.rows("rounded_whole", "rounded.msh", options=options)
+    yield "a mesh of 7 digits", apart(runs.rows("rounded", "rounded.msh", options=f"{options} -symmetry y -symmetry_rtol 1e-5"), whole)
+
+
 def refusals(runs):
     """Scenes that are not their own mirror images, or cannot be halved."""
     for name, options, planes, message in REFUSED:
@@ -219,7 +229,7 @@ def main(squeal, launcher):
         write_mesh(runs.folder / "half.msh", True)
         whole = runs.rows("whole", "whole.msh")
         found = [("modes that do not grow of " + str(len(whole)), float(all(row["lambda"].real <= 1 for row in whole))),
-                 *halves(runs, whole), *kinds(runs), *sweeps(runs), *statics(runs), *refusals(runs)]
+                 *halves(runs, whole), *kinds(runs), *sweeps(runs), *statics(runs), *rounded(runs), *refusals(runs)]
     for what, worst in found:
         print(f"{what}: differ by {worst:.1e}, {RTOL:g} allowed")
     sys.exit(0 if all(worst <= RTOL for _, worst in found) else "FAILED")

@@ -52,6 +52,7 @@ _parameter <names>, _power <integers>, _scale, _symmetry <any|symmetric|skew>: K
 pairs; auto takes what needs less memory
 .  -symmetry <x,y=0.05,..>               - planes of which the scene is its own mirror image, by their normals, and their
 places (m) where they are not in the middle of the mesh: each parity is solved by itself (pencil.h)
+.  -symmetry_rtol <1e-11>                - by which part of the largest entry of its row a matrix may differ from its mirror image
 .  -contact_mu <mu>                      - friction coefficient of K + mu H for loaded or dense matrices
 -  -operators_save <dir>                 - write K.bin, M.bin and, where there are any, C.bin, H.bin and the loads F.bin;
                                           with the contact constraint the projected matrices, friction included in

@@ -7,7 +7,8 @@
 #include "solver/lowrank.h"
 #include <math.h>
 
-#define BYTES_TO_MB 1e-6
+#define BYTES_TO_MB    1e-6
+#define SAVED_ROUNDING 1e-11 /* of a row, that is not worth a word */
 
 PetscErrorCode SavedByFactors(Modes modes, const ShiftInvert *si)
 {
@@ -61,6 +62,7 @@ PetscErrorCode SavedBySymmetry(Modes modes, PetscInt n_parities, const PetscInt 
   char         *text = modes->saved[SAVED_SYMMETRY], part[96], name[PARITY_LENGTH];
   const double  mb   = BYTES_TO_MB * sizeof(PetscScalar) * entries;
   PetscInt      most = 0;
+  PetscReal     asymmetry;
 
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(text, "symmetry:", SAVED_LENGTH));
@@ -76,6 +78,9 @@ PetscErrorCode SavedBySymmetry(Modes modes, PetscInt n_parities, const PetscInt 
     PetscCall(PetscSNPrintf(part, sizeof(part), "; factors of %.3g MB at a time instead of about %.3g MB (estimate)", mb,
                             mb * pow((double)n_whole / (double)most, 4. / 3)));
   if (mb > 0) PetscCall(PetscStrlcat(text, part, SAVED_LENGTH));
+  PetscCall(PencilGetParities(modes->pencil, &most, &asymmetry));
+  PetscCall(PetscSNPrintf(part, sizeof(part), "; left out: %.1e of a row, which is no mirror image", (double)asymmetry));
+  if (asymmetry > SAVED_ROUNDING) PetscCall(PetscStrlcat(text, part, SAVED_LENGTH));
   PetscFunctionReturn(0);
 }
 

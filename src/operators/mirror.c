@@ -2,14 +2,13 @@
    Mirror images in the unknowns of a pencil: for each plane of symmetry (planes.c) the signed permutation R, R^2 = 1, that
    takes a vector to its image, and the proof that the scene is its own,
 
-      R Q R = Q   for Q = K, M, C,   |(R Q R x - Q x)_i| <= MIRROR_ROUNDING max_j |Q_ij| sum over the row of |x|
+      R Q R = Q   for Q = K, M, C,   |(R Q R x - Q x)_i| <= rtol max_j |Q_ij| sum over the row of |x|
 
    with x at random, of which no row that differs leaves zero. Where constraints leave q of the unknowns u = Zr q with E' u
    = q, R_q = E' R E, which is a signed permutation where the frames of the pairs are mirror images too.
 */
 #include "pencilimpl.h"
 
-#define MIRROR_ROUNDING 1e-11
 #define MIRROR_FLOOR    1e-8 /* of the largest entry: rows below are compared with that */
 #define MIRROR_VECTORS  2
 
@@ -163,14 +162,14 @@ static PetscErrorCode MirrorComplain(Operators o, PetscInt i, const PetscReal p[
   char              point[256];
 
   PetscFunctionBeginUser;
-  if (found->largest <= MIRROR_ROUNDING) PetscFunctionReturn(0);
+  if (found->largest <= o->mirror_rtol) PetscFunctionReturn(0);
   PetscCall(MirrorLocate(o, found->E, found->at, place));
   PetscCall(MirrorPoint(o, p, sizeof(point), point));
   SETERRQ(o->comm, PETSC_ERR_USER_INPUT,
-          "-symmetry %c: %sthe scene is not its own mirror image in %c = %g m: %s by %.1e of %s (%.0e allowed), most at "
-          "the node (%g, %g, %g) m along %c",
+          "-symmetry %c: %sthe scene is not its own mirror image in %c = %g m: %s by %.1e of %s (%.0e allowed by -symmetry_rtol), most "
+          "at the node (%g, %g, %g) m along %c",
           "xyz"[plane->axis], point, "xyz"[plane->axis], (double)plane->at, found->what, (double)found->largest,
-          found->size, MIRROR_ROUNDING, (double)place[0], (double)place[1], (double)place[2], "xyz"[(int)place[3]]);
+          found->size, (double)o->mirror_rtol, (double)place[0], (double)place[1], (double)place[2], "xyz"[(int)place[3]]);
 }
 
 /* How far a matrix is from its mirror image */

@@ -43,6 +43,7 @@ struct _p_Operators {
   PetscInt   factors;   /* OPERATORS_AUTO, OPERATORS_LU or OPERATORS_EVEN */
   PetscReal  loaded_mu; /* -contact_mu of loaded or dense matrices */
   PetscInt   n_planes;  /* of symmetry */
+  PetscReal  mirror_rtol; /* of a row: by how much matrices may differ from their mirror images */
   ModelPlane plane[OPERATORS_MAX_PLANES];
   PetscInt   n_named;   /* matrices of -terms */
   struct _p_MatrixTerm *named;
