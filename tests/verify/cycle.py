@@ -6,6 +6,7 @@ normal force rises through its mean, rms and largest force of whole periods; rms
     cycle.py errors COARSE FINER LATER PART   what COARSE states beside its differences to FINER, of twice the steps, 4/3 of them, and to
                                         LATER, whose steps lie elsewhere: the rest is 3/4 to 3 times those; of multipliers twice the
                                         former at least
+    cycle.py cutoff LOWER HIGHER PART   errors of the cut-off that LOWER states beside its difference to HIGHER, in frequency
     cycle.py within COARSE FINE [VALUE] whether COARSE is FINE to the error that FINE or COARSE states, at a value of the parameter
     cycle.py same BRANCH VALUE SINGLE FREQUENCY FORCE   the cycle of a branch at a value of its parameter beside the one that SINGLE
                                         found without a branch: largest relative differences"""
@@ -39,6 +40,14 @@ def errors(coarse, finer, later, part):
         faults += not 0.75 * place <= rest <= 3 * place
         print(f"{error} {a[error]:.6g}, by twice the steps {finer:.6g}, rest {rest:.6g}, to other steps {place:.6g}")
     return faults > 0
+
+
+def cutoff(lower, higher, part):
+    """Whether the stated error of the reduction is off, in the frequency of the first cycle."""
+    a, b = (read(folder, "cycle.csv")[0] for folder in (lower, higher))
+    known = abs(a["freq_hz"] - b["freq_hz"])
+    print(f"freq_cutoff_error_hz {a['freq_cutoff_error_hz']:.6g}, by the difference {known:.6g}")
+    return not abs(a["freq_cutoff_error_hz"] - known) <= float(part) * known
 
 
 def within(coarse, fine, value=None):
@@ -91,8 +100,8 @@ def probes(folder, record, at, most):
 
 
 def main():
-    if sys.argv[1] in ("errors", "same", "within"):
-        return {"errors": errors, "same": same, "within": within}[sys.argv[1]](*sys.argv[2:])
+    if sys.argv[1] in ("errors", "same", "within", "cutoff"):
+        return {"errors": errors, "same": same, "within": within, "cutoff": cutoff}[sys.argv[1]](*sys.argv[2:])
     folder, frequency, force = sys.argv[1], float(sys.argv[2]), float(sys.argv[3])
     cycle, record = read(folder, "cycle.csv")[0], read(folder, "transient.csv")
     time, normal = record["time_s"], record["normal_force_n"]

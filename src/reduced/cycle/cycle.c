@@ -53,6 +53,9 @@ PetscErrorCode CycleSetFromOptions(LimitCycle c)
   PetscCall(PetscOptionsInt("-cycle_max_it", "iterations of Newton's method", "cycle.h", c->max_it, &c->max_it, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-cycle_verify",
                            "errors, by the cycles of twice the steps and of steps that begin elsewhere", &c->verify));
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-cycle_verify_cutoff",
+                           "errors of the reduction too, by cycles with 1.5 times -dynamics_cutoff",
+                           &c->verify_cutoff));
   PetscCall(PetscOptionsString("-cycle_parameter",
                                "option of the scene over which cycles are followed, e.g. contact_mu, pad_young",
                                "cycle.h", c->parameter, c->parameter, sizeof(c->parameter), NULL));
@@ -120,7 +123,7 @@ static PetscErrorCode CycleFindParameter(LimitCycle c)
 }
 
 /* The parameter in the flow, and models over it where it is one of the bodies */
-static PetscErrorCode CycleSetParameter(LimitCycle c)
+PetscErrorCode CycleSetParameter(LimitCycle c)
 {
   PetscFunctionBeginUser;
   c->shooting.span = 1;
@@ -178,6 +181,7 @@ static PetscErrorCode CycleAdd(LimitCycle c, const ShootingCycle *at, const Shoo
   PetscCall(CycleFlowMeasure(&c->flow, at, &point->found, point->probe));
   PetscCall(ShootingGetStability(&c->shooting, at, &point->stability));
   if (c->verify) PetscCall(CycleRefine(c, at, along, point));
+  if (c->higher) PetscCall(CycleHigherLook(c->higher, at, along, point));
   if (!point->has_finer) point->value_error = -1; /* the steps' part of it is unknown */
   PetscCall(CycleWrite(c));
   PetscFunctionReturn(0);
@@ -211,6 +215,7 @@ static PetscErrorCode CycleFind(LimitCycle c, ShootingCycle *at)
                       "%.1e of the vibration's size from where it began, must be %.0e; a longer -ts_max_time, more "
                       "-cycle_steps or a larger -cycle_max_it may help",
              1 / (double)at->period, at->its, (double)at->residual, (double)c->rtol);
+  if (c->verify_cutoff) PetscCall(CycleHigherCreate(c, &c->higher));
   PetscCall(CycleTake(c, at));
   c->rms = c->point[0].found.rms;
   if (c->parameter[0]) PetscCall(CycleFollow(c, at, NULL));
@@ -226,6 +231,7 @@ static PetscErrorCode CycleFindOnset(LimitCycle c, ShootingCycle *at)
   PetscCall(PetscCalloc1(c->flow.n, &growing.x));
   PetscCall(CycleSetParameter(c));
   PetscCall(CycleBegin(c, at, &growing));
+  if (c->verify_cutoff) PetscCall(CycleHigherCreate(c, &c->higher));
   PetscCall(CycleTake(c, at));
   c->rms = c->point[0].found.rms / c->amplitude;
   PetscCall(CycleFollow(c, at, &growing));
@@ -276,6 +282,7 @@ PetscErrorCode CycleDestroy(LimitCycle *cycle)
 
   PetscFunctionBeginUser;
   if (!c) PetscFunctionReturn(0);
+  PetscCall(CycleHigherDestroy(&c->higher));
   PetscCall(CycleFlowDestroy(&c->flow));
   PetscCall(CycleFamilyDestroy(&c->family));
   PetscCall(PetscFree2(c->shooting.size, c->shooting.weight));

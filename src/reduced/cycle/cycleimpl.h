@@ -64,29 +64,32 @@ typedef struct {
 } CycleMeasure;
 
 typedef struct {
-  PetscReal         value, value_error; /* the latter of folds, else negative */
-  PetscInt          n_steps, its;
-  PetscReal         residual;
-  CycleMeasure      found, finer; /* finer: with twice the steps, where asked for */
-  CycleMeasure      spread;       /* largest differences of frequency, rms and peak where the steps begin elsewhere */
-  PetscBool         has_finer, fold;
-  ShootingStability stability, finer_stability;
+  PetscReal    value, value_error; /* the latter of folds, else negative */
+  PetscInt     n_steps, its;
+  PetscReal    residual;
+  CycleMeasure found, finer, higher; /* finer: with twice the steps; higher: with a higher cut-off; where asked for */
+  CycleMeasure spread; /* largest differences of frequency, rms and peak where the steps begin elsewhere */
+  PetscBool    has_finer, has_higher, fold;
+  ShootingStability stability, finer_stability, higher_stability;
   PetscReal         multiplier_spread;
   CycleProbe       *probe, *finer_probe, *spread_probe; /* [n_looked] */
 } CyclePoint;
+
+typedef struct _p_CycleHigher *CycleHigher;
 
 struct _p_LimitCycle {
   MPI_Comm         comm;
   PetscInt         steps, max_it, max_points; /* options */
   PetscReal        rtol, range[2], amplitude;
   char             parameter[256];
-  PetscBool        verify, from_mode;
+  PetscBool        verify, verify_cutoff, from_mode;
   ReducedRun       reduced;
   Operators        operators;
   Results          results;
   PetscReal       *p; /* [parameters] of the operators */
   ReducedParameter varied;
   CycleFamily     *family;
+  CycleHigher      higher; /* bodies with a higher cut-off; NULL unless asked for */
   CycleFlow        flow;
   Shooting         shooting;
   PetscReal        closure;  /* of the guess: distance over the size of the vibration */
@@ -132,7 +135,9 @@ PETSC_INTERN PetscErrorCode CycleSetSizes(LimitCycle cycle, const PetscReal size
    from rest to it */
 PETSC_INTERN PetscErrorCode CycleBegin(LimitCycle cycle, ShootingCycle *at, ShootingTangent *growing);
 
-/* cycle.c - how shooting goes about it; the cycle in numbers, with its stability and error, becomes a row */
+/* cycle.c - the parameter in the flow, and models over it; how shooting goes about it; the cycle in numbers, with its
+   stability and error, becomes a row */
+PETSC_INTERN PetscErrorCode CycleSetParameter(LimitCycle cycle);
 PETSC_INTERN PetscErrorCode CycleSetShooting(LimitCycle cycle, PetscReal period);
 PETSC_INTERN PetscErrorCode CycleTake(LimitCycle cycle, const ShootingCycle *at);
 PETSC_INTERN PetscErrorCode CycleTakeFold(LimitCycle cycle, const ShootingPlace *fold, PetscReal error);
@@ -141,6 +146,13 @@ PETSC_INTERN PetscErrorCode CycleTakeFold(LimitCycle cycle, const ShootingPlace 
    `along` the branch */
 PETSC_INTERN PetscErrorCode CycleRefine(LimitCycle cycle, const ShootingCycle *at, const ShootingTangent *along,
                                         CyclePoint *point);
+
+/* higher.c - the same flow on bodies with 1.5 times the cut-off, after CycleSetSizes(); the cycle there that a cycle is near, `along`
+   as for CycleRefine(): of a fold the change of the parameter adds to its error */
+PETSC_INTERN PetscErrorCode CycleHigherCreate(LimitCycle cycle, CycleHigher *higher);
+PETSC_INTERN PetscErrorCode CycleHigherLook(CycleHigher higher, const ShootingCycle *at, const ShootingTangent *along,
+                                            CyclePoint *point);
+PETSC_INTERN PetscErrorCode CycleHigherDestroy(CycleHigher *higher);
 
 /* branch.c - the branch, in order, through the one cycle that was taken; `growing`: the direction along it that is gone last,
    NULL for rising values */

@@ -1,6 +1,24 @@
 /* What a run says of the cycles that it found */
 #include "cycleimpl.h"
 
+/* What the cut-off makes of a cycle */
+static PetscErrorCode CycleViewHigher(LimitCycle c, const CyclePoint *p, PetscViewer viewer)
+{
+  const CycleMeasure *a = &p->found, *b = &p->higher;
+
+  PetscFunctionBeginUser;
+  if (p->has_higher)
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "  with 1.5 times the cut-off: frequency off by %+.1e Hz, rms by %+.1e N, largest "
+                                     "force by %+.1e N, multiplier by %+.1e\n",
+                                     (double)(b->freq - a->freq), (double)(b->rms - a->rms),
+                                     (double)(b->peak - a->peak),
+                                     CycleMultiplier(&p->higher_stability) - CycleMultiplier(&p->stability)));
+  else if (c->verify_cutoff)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  none is found with 1.5 times the cut-off: that error is unknown\n"));
+  PetscFunctionReturn(0);
+}
+
 /* One cycle in words */
 static PetscErrorCode CycleViewPoint(LimitCycle c, const CyclePoint *p, PetscViewer viewer)
 {
@@ -35,6 +53,7 @@ static PetscErrorCode CycleViewPoint(LimitCycle c, const CyclePoint *p, PetscVie
   else if (c->verify)
     PetscCall(PetscViewerASCIIPrintf(
       viewer, "  none is found with twice the steps, or with steps that begin elsewhere: its error is unknown\n"));
+  PetscCall(CycleViewHigher(c, p, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer,
                                    "  %s%s%s%s: largest multiplier %.6g%+.6gi (%.6g), that of the phase 1%+.1e%+.1ei; "
                                    "residual %.1e after %" PetscInt_FMT " steps of Newton's method\n",
