@@ -14,6 +14,7 @@
 #define UPDATE_STIFF 1e2  /* k_n mu of a pair beside the (geometric) mean of the bodies' stiffnesses: LU from here on */
 #define UPDATE_ROOM  0.8  /* of the memory that is free: vectors that take more beside the factors are not kept */
 #define UPDATE_SLOW  1.5  /* flops of the solves that make it beside those that LU takes more: LU from here on */
+#define UPDATE_DENSE 700  /* flops of LDL' per entry; from here on they run faster than a solve's, as the root of this */
 #define UPDATE_SHARE 0.75 /* of the entries of LDL': vectors of an update that take no more are kept */
 
 /* Raises the error for what no shift makes regular */
@@ -69,14 +70,19 @@ static PetscErrorCode UpdateFits(const PencilMatrices *pencil, const ShiftInvert
 }
 
 /* Why LU is better than LDL' and an update of p vectors, NULL where it is not. LU has twice the entries e of LDL' and takes
-   twice the flops F to make; a solve takes 4 e flops with either. So an update costs 4 e p flops and LU F; both run about as
-   fast, and afterwards the update saves some, since it solves for right and left vectors at once. Where the vectors are not
-   kept every solve is two. */
+   twice the flops F to make; a solve takes 4 e flops with either. So an update costs 4 e p flops and LU F. In small fronts both
+   run about as fast, and afterwards the update saves some, since it solves for right and left vectors at once; fronts that are
+   denser, F / e, make a factorisation faster and no solve. Processor time of the update over that of LU, three scenes: 0.97 with
+   4 e p / F = 1.22 and F / e = 395, 1.04 with 1.35 and 670, 1.15 to 1.25 with 1.14 and 1550 (scripts/bench/choices). Where the
+   vectors are not kept every solve is two. */
 static const char *UpdateIsWorse(const FactorCost *cost, double p, PetscBool fits)
 {
+  PetscReal rate;
+
   if (2 * cost->needed > cost->room) return NULL;
   if (!fits) return "an update for friction would take more memory";
-  return 4 * cost->entries * p > UPDATE_SLOW * cost->flops ? "an update for friction would take longer" : NULL;
+  rate = PetscMax(1, PetscSqrtReal(cost->flops / (UPDATE_DENSE * cost->entries)));
+  return 4 * cost->entries * p * rate > UPDATE_SLOW * cost->flops ? "an update for friction would take longer" : NULL;
 }
 
 /* Whether friction is to be put on factors of the symmetric part by an update (lowrank.h), and whether its vectors, one
