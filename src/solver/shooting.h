@@ -27,7 +27,7 @@
 
 #define SHOOTING_DIFFERENCE 1e-6 /* of the period and of the span, for derivatives of the flow */
 
-/* y [n], infinite where the flow ends before T; M [n][n] by columns, or NULL */
+/* y [n], INFINITY where the flow ends before T (not PETSC_INFINITY, which is finite); M [n][n] by columns, or NULL */
 typedef PetscErrorCode (*ShootingFlow)(void *ctx, const PetscReal x[], PetscReal period, PetscReal value, PetscReal y[],
                                        PetscReal M[]);
 

@@ -202,6 +202,95 @@ static PetscErrorCode TestOnset(const Known *known, int *failed)
   PetscFunctionReturn(0);
 }
 
+/* Its cycle in numbers, with errors */
+static PetscErrorCode OscillatorRefine(Oscillator *o, CyclePoint *p)
+{
+  struct _p_LimitCycle c = {.flow = o->flow, .shooting = o->shooting};
+
+  PetscFunctionBeginUser;
+  c.shooting.ctx = &c.flow;
+  if (o->cycle.converged) PetscCall(CycleFlowMeasure(&c.flow, &o->cycle, &p->found, NULL));
+  if (o->cycle.converged) PetscCall(ShootingGetStability(&c.shooting, &o->cycle, &p->stability));
+  PetscCall(CycleRefine(&c, &o->cycle, NULL, p));
+  o->flow = c.flow;
+  PetscFunctionReturn(0);
+}
+
+/* Frequency, rms, largest force and multiplier of the cycle next to `from`, of n steps that begin a time `later` */
+static PetscErrorCode OscillatorFind(Oscillator *o, const PetscReal from[], PetscInt n, PetscReal later,
+                                     PetscReal found[4], int *failed)
+{
+  CycleMeasure m;
+  Known        known;
+
+  PetscFunctionBeginUser;
+  o->flow.n_steps = 3;
+  PetscCall(PetscArraycpy(o->cycle.x, from, o->flow.n));
+  if (later > 0) PetscCall(CycleFlowRun(&o->flow, from, later, o->cycle.value, o->cycle.x, NULL));
+  PetscCall(OscillatorSolve(o, n, &known, failed));
+  PetscCall(CycleFlowMeasure(&o->flow, &o->cycle, &m, NULL));
+  PetscCall(PetscArraycpy(found, ((PetscReal[]){m.freq, m.rms, m.peak, known.multiplier}), 4));
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: a stated error is not by the cycles that it is said to come from: one place of steps left out, both added, other factors */
+static PetscErrorCode TestErrors(const Known *known, int *failed)
+{
+  static const char *const name[] = {"error of the frequency", "of the rms", "of the peak", "of the multiplier"};
+  const PetscInt           n      = 33;
+  Oscillator               o;
+  Known                    unused;
+  CyclePoint               p = {.n_steps = n};
+  PetscReal                x[7], v[4][4], stated[4];
+  const char              *why;
+
+  PetscFunctionBeginUser;
+  PetscCall(OscillatorCreate(known->mu, &o));
+  PetscCall(OscillatorSettle(&o, 1.003 * known->period));
+  PetscCall(OscillatorSolve(&o, n, &unused, failed));
+  PetscCall(OscillatorRefine(&o, &p));
+  PetscCall(PetscArraycpy(x, o.cycle.x, 7));
+  for (int k = 0; k < 3; k++) PetscCall(OscillatorFind(&o, x, n, k * unused.period / (3 * n), v[k], failed));
+  PetscCall(OscillatorFind(&o, x, 2 * n + 1, 0, v[3], failed));
+  stated[0] = CycleError(p.found.freq, p.finer.freq, p.spread.freq);
+  stated[1] = CycleError(p.found.rms, p.finer.rms, p.spread.rms);
+  stated[2] = CycleError(p.found.peak, p.finer.peak, p.spread.peak);
+  stated[3] = CycleMultiplierError(&p);
+  for (int i = 0; i < 4; i++) {
+    const PetscReal finer = fabs(v[3][i] - v[0][i]), other = fmax(fabs(v[1][i] - v[0][i]), fabs(v[2][i] - v[0][i]));
+    const PetscReal error = i < 3 ? 4. / 3 * finer + other : fmax(2 * finer, other);
+    *failed += CheckClose(name[i], stated[i], error, 2e-3 * error);
+  }
+  *failed += CheckTrue("its class", !strcmp(CycleClass(&p, 1e-9, &why), "stable"), (double)v[0][3]);
+  p.wants_higher = PETSC_TRUE;
+  *failed += CheckTrue("none with a part unknown", strstr(CycleClass(&p, 1e-9, &why), "num") && strstr(why, "cut"), 0);
+  PetscCall(OscillatorDestroy(&o));
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: what a failed flow leaves is taken for a cycle that ends where it began. Laws have no solution far beyond all forces */
+static PetscErrorCode TestFailed(const Known *known, int *failed)
+{
+  Oscillator o;
+  CyclePoint p = {.n_steps = 33};
+  PetscReal  y[7];
+
+  PetscFunctionBeginUser;
+  PetscCall(OscillatorCreate(known->mu, &o));
+  o.flow.n_steps = 33;
+  o.cycle.period = known->period;
+  for (int i = 0; i < 4; i++) o.cycle.x[i] = 1e307;
+  PetscCall(CycleFlowRun(&o.flow, o.cycle.x, known->period, known->mu, y, NULL));
+  *failed += CheckTrue("a flow that fails ends at no number", PetscIsInfOrNanReal(y[0]), (double)y[0]);
+  PetscCall(PetscArraycpy(o.cycle.x, y, o.flow.n));
+  PetscCall(ShootingSolve(&o.shooting, &o.cycle));
+  *failed += CheckTrue("no cycle from there", !o.cycle.converged, (double)o.cycle.residual);
+  PetscCall(OscillatorRefine(&o, &p));
+  *failed += CheckTrue("no error by it", !p.has_finer, (double)p.spread.freq);
+  PetscCall(OscillatorDestroy(&o));
+  PetscFunctionReturn(0);
+}
+
 /* A rotation by T about (p, 0), which fails beyond period 2 pi: a cycle of any x with that period, at the edge of what there is */
 static PetscErrorCode EdgeFlow(void *ctx, const PetscReal x[], PetscReal T, PetscReal p, PetscReal y[], PetscReal M[])
 {
@@ -217,7 +306,7 @@ static PetscErrorCode EdgeFlow(void *ctx, const PetscReal x[], PetscReal T, Pets
 /* Breaks when: a cycle next to which the flow fails is told to be one at which the branch splits */
 static PetscErrorCode TestEdge(int *failed)
 {
-  PetscReal         infinite = PETSC_INFINITY, x[2] = {1, 0}, M[4] = {1, 0, 0, 1}, t[2] = {0, 0}, one[2] = {1, 1};
+  PetscReal         infinite = INFINITY, x[2] = {1, 0}, M[4] = {1, 0, 0, 1}, t[2] = {0, 0}, one[2] = {1, 1};
   ShootingTangent   tangent = {.x = t};
   ShootingDirection direction;
   Shooting          shooting = {.n = 2, .flow = EdgeFlow, .ctx = &infinite, .size = one, .weight = one, .least = -1};
@@ -249,6 +338,8 @@ static PetscErrorCode Tests(PetscMPIInt size, int *failed)
   for (int i = 0; i < 2; i++) PetscCall(TestKnown(&known[i], failed));
   PetscCall(TestBranch(known, failed));
   PetscCall(TestOnset(known, failed));
+  PetscCall(TestErrors(known, failed));
+  PetscCall(TestFailed(known, failed));
   PetscCall(SlepcFinalize());
   PetscFunctionReturn(0);
 }

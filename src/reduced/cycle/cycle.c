@@ -134,7 +134,7 @@ PetscErrorCode CycleSetParameter(LimitCycle c)
   c->flow.varied = &c->varied;
   c->flow.value  = c->varied.value;
   if (c->varied.kind != REDUCED_BODY) PetscFunctionReturn(0);
-  PetscCall(CycleFamilyCreate(c->reduced, &c->varied, c->range, c->p, &c->family));
+  PetscCall(CycleFamilyCreate(c->reduced, &c->varied, c->range, c->p, c->beside, &c->family));
   c->flow.family = c->family;
   c->flow.model  = &c->family->model;
   PetscFunctionReturn(0);
@@ -160,7 +160,7 @@ static PetscErrorCode CycleAddPoint(LimitCycle c, CyclePoint **point)
   PetscCall(PetscRealloc((size_t)(n + 1) * sizeof(*c->point), &c->point));
   for (PetscInt i = n; i > 0 && c->in_front; i--) c->point[i] = c->point[i - 1];
   *point  = &c->point[c->in_front ? 0 : n];
-  **point = (CyclePoint){.value_error = -1, .n_steps = c->flow.n_steps};
+  **point = (CyclePoint){.value_error = -1, .n_steps = c->flow.n_steps, .wants_higher = c->verify_cutoff};
   PetscCall(PetscCalloc3(c->flow.n_looked, &(*point)->probe, c->flow.n_looked, &(*point)->finer_probe, c->flow.n_looked,
                          &(*point)->spread_probe));
   PetscFunctionReturn(0);
@@ -182,7 +182,7 @@ static PetscErrorCode CycleAdd(LimitCycle c, const ShootingCycle *at, const Shoo
   PetscCall(ShootingGetStability(&c->shooting, at, &point->stability));
   if (c->verify) PetscCall(CycleRefine(c, at, along, point));
   if (c->higher) PetscCall(CycleHigherLook(c->higher, at, along, point));
-  if (!point->has_finer) point->value_error = -1; /* the steps' part of it is unknown */
+  if (!point->has_finer || (point->wants_higher && !point->has_higher)) point->value_error = -1; /* a part is unknown */
   PetscCall(CycleWrite(c));
   PetscFunctionReturn(0);
 }

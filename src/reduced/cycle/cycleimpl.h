@@ -13,13 +13,14 @@
 typedef enum { FAMILY_K, FAMILY_C, FAMILY_P, FAMILY_W, FAMILY_CM, FAMILY_CX, FAMILY_N_PARTS } CycleFamilyPart;
 
 /* Reduced models over a parameter of the bodies */
-typedef struct {
-  ReducedRun              scene; /* borrowed, as are the next two */
-  const ReducedParameter *parameter;
-  PetscReal              *p; /* [parameters] of the operators */
-  PetscReal               range[2];
-  PetscBool               logarithmic;
-  PetscInt                n, size[FAMILY_N_PARTS];
+typedef struct CycleModels {
+  ReducedRun                scene; /* borrowed, as are the next two */
+  const ReducedParameter   *parameter;
+  const struct CycleModels *beside; /* further ones that take memory meanwhile, borrowed; NULL for none */
+  PetscReal                *p;      /* [parameters] of the operators */
+  PetscReal                 range[2];
+  PetscBool                 logarithmic;
+  PetscInt                  n, size[FAMILY_N_PARTS];
   PetscReal *(*part)[FAMILY_N_PARTS]; /* [n] matrices at the points, from the end of the range to its beginning */
   PetscReal      error;               /* of the interpolation, relative */
   ReducedModel   model;               /* at `value` */
@@ -69,7 +70,7 @@ typedef struct {
   PetscReal    residual;
   CycleMeasure found, finer, higher; /* finer: with twice the steps; higher: with a higher cut-off; where asked for */
   CycleMeasure spread; /* largest differences of frequency, rms and peak where the steps begin elsewhere */
-  PetscBool    has_finer, has_higher, fold;
+  PetscBool    has_finer, has_higher, wants_higher, fold;
   ShootingStability stability, finer_stability, higher_stability;
   PetscReal         multiplier_spread;
   CycleProbe       *probe, *finer_probe, *spread_probe; /* [n_looked] */
@@ -78,40 +79,42 @@ typedef struct {
 typedef struct _p_CycleHigher *CycleHigher;
 
 struct _p_LimitCycle {
-  MPI_Comm         comm;
-  PetscInt         steps, max_it, max_points; /* options */
-  PetscReal        rtol, range[2], amplitude;
-  char             parameter[256];
-  PetscBool        verify, verify_cutoff, from_mode;
-  ReducedRun       reduced;
-  Operators        operators;
-  Results          results;
-  PetscReal       *p; /* [parameters] of the operators */
-  ReducedParameter varied;
-  CycleFamily     *family;
-  CycleHigher      higher; /* bodies with a higher cut-off; NULL unless asked for */
-  CycleFlow        flow;
-  Shooting         shooting;
-  PetscReal        closure;  /* of the guess: distance over the size of the vibration */
-  PetscReal        onset[3]; /* parameter, growth (1/s) and frequency (Hz) where -cycle_start mode begins */
-  PetscInt         n_points;
-  CyclePoint      *point;
-  PetscBool        in_front; /* cycles that are taken come before those that are there */
-  PetscReal        rms;      /* of the vibration that distances are over, N */
-  const char      *end[2];   /* why the branch ends, both ways; NULL for no branch */
+  MPI_Comm           comm;
+  PetscInt           steps, max_it, max_points; /* options */
+  PetscReal          rtol, range[2], amplitude;
+  char               parameter[256];
+  PetscBool          verify, verify_cutoff, from_mode;
+  ReducedRun         reduced;
+  Operators          operators;
+  Results            results;
+  PetscReal         *p; /* [parameters] of the operators */
+  ReducedParameter   varied;
+  CycleFamily       *family;
+  const CycleFamily *beside; /* borrowed: of the cycles with a lower cut-off */
+  CycleHigher        higher; /* bodies with a higher cut-off; NULL unless asked for */
+  CycleFlow          flow;
+  Shooting           shooting;
+  PetscReal          closure;  /* of the guess: distance over the size of the vibration */
+  PetscReal          onset[3]; /* parameter, growth (1/s) and frequency (Hz) where -cycle_start mode begins */
+  PetscInt           n_points;
+  CyclePoint        *point;
+  PetscBool          in_front; /* cycles that are taken come before those that are there */
+  PetscReal          rms;      /* of the vibration that distances are over, N */
+  const char        *end[2];   /* why the branch ends, both ways; NULL for no branch */
 };
 
-/* family.c - the models, p [parameters] borrowed; whether there is one at a value; that at it; eta of columns `stride` apart from the
-   scene's coordinates to those of the model, or back */
+/* family.c - the models, p [parameters] and others `beside` them, or NULL, borrowed; whether there is one at a value; that at it; eta
+   of columns `stride` apart from the scene's coordinates to those of the model, or back */
 PETSC_INTERN PetscErrorCode CycleFamilyCreate(ReducedRun scene, const ReducedParameter *parameter,
-                                              const PetscReal range[2], PetscReal p[], CycleFamily **family);
+                                              const PetscReal range[2], PetscReal p[], const CycleFamily *beside,
+                                              CycleFamily **family);
 PETSC_INTERN PetscBool      CycleFamilyHolds(const CycleFamily *family, PetscReal value);
 PETSC_INTERN PetscErrorCode CycleFamilySet(CycleFamily *family, PetscReal value);
 PETSC_INTERN PetscErrorCode CycleFamilyTurn(const CycleFamily *family, PetscBool to_scene, PetscInt columns,
                                             PetscInt stride, PetscReal X[]);
 PETSC_INTERN PetscErrorCode CycleFamilyDestroy(CycleFamily **family);
 
-/* memory.c - shows what `most` of its models take, and raises the error where there is less. Collective */
+/* memory.c - shows what `most` of its models take, with those beside it, and raises the error where there is less. Collective */
 PETSC_INTERN PetscErrorCode CycleFamilyCheckMemory(const CycleFamily *family, PetscInt most);
 
 /* flow.c - the model of a run, loads and sliding constant from its time on; the state of a run as x; Phi, M (ShootingFlow); the
@@ -159,9 +162,10 @@ PETSC_INTERN PetscErrorCode CycleHigherDestroy(CycleHigher *higher);
 PETSC_INTERN PetscErrorCode CycleFollow(LimitCycle cycle, const ShootingCycle *start, const ShootingTangent *growing);
 
 /* write.c - all tables as they are by now; the error of a number beside that of twice the steps and the spread over where
-   steps begin; the class of a cycle that was found
-   to `rtol`: stable, unstable, or numerical where it cannot be told, and why that is, NULL for the others */
+   steps begin, and that of the largest multiplier by the steps; the class of a cycle that was found to `rtol`: stable, unstable, or
+   numerical where it cannot be told, and why that is, NULL for the others */
 PETSC_INTERN PetscErrorCode CycleWrite(LimitCycle cycle);
 PETSC_INTERN PetscReal      CycleError(PetscReal found, PetscReal finer, PetscReal spread);
+PETSC_INTERN PetscReal      CycleMultiplierError(const CyclePoint *point);
 PETSC_INTERN const char    *CycleClass(const CyclePoint *point, PetscReal rtol, const char **why);
 PETSC_INTERN PetscReal      CycleMultiplier(const ShootingStability *stability);

@@ -229,7 +229,7 @@ static PetscErrorCode FamilyRefine(CycleFamily *f)
 }
 
 PetscErrorCode CycleFamilyCreate(ReducedRun scene, const ReducedParameter *parameter, const PetscReal range[2],
-                                 PetscReal p[], CycleFamily **family)
+                                 PetscReal p[], const CycleFamily *beside, CycleFamily **family)
 {
   PetscLogDouble begin, end;
   CycleFamily   *f;
@@ -241,10 +241,10 @@ PetscErrorCode CycleFamilyCreate(ReducedRun scene, const ReducedParameter *param
   f->scene       = scene;
   f->parameter   = parameter;
   f->p           = p;
-  f->range[0]    = range[0];
-  f->range[1]    = range[1];
+  f->beside      = beside;
   f->logarithmic = range[0] > 0 ? PETSC_TRUE : PETSC_FALSE;
   f->value       = parameter->value;
+  PetscCall(PetscArraycpy(f->range, range, 2));
   FamilyListSizes(&scene->model, f->size);
   PetscCall(CycleFamilyCheckMemory(f, FAMILY_MOST));
   PetscCall(ReducedModelCopy(&scene->model, &f->model));

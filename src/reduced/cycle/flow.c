@@ -1,7 +1,7 @@
 /*
    The flow of the reduced model through a period: N steps of length T / N from the state x = (eta, rate, lambda, q), and its
    derivative M, the product of those of the steps (steptangent.c). A step whose contact laws have no solution ends the period:
-   Phi is then infinite, which no cycle comes from.
+   Phi is then infinite, which no cycle comes from: INFINITY, not the large number PETSC_INFINITY, two of which have no difference.
 */
 #include "cycleimpl.h"
 
@@ -185,7 +185,7 @@ PetscErrorCode CycleFlowRun(void *ctx, const PetscReal x[], PetscReal period, Pe
   PetscErrorCode error;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < f->n; i++) y[i] = PETSC_INFINITY;
+  for (PetscInt i = 0; i < f->n; i++) y[i] = INFINITY;
   if (f->family && !CycleFamilyHolds(f->family, value)) PetscFunctionReturn(0);
   PetscCall(FlowPrepare(f, period, value, M ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(FlowUnpack(f, x));

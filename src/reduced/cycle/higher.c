@@ -31,6 +31,8 @@ static PetscErrorCode HigherCopy(LimitCycle c, ReducedRun bodies, LimitCycle *co
   (*copy)->range[0] = c->range[0];
   (*copy)->range[1] = c->range[1];
   (*copy)->rtol     = c->rtol;
+  (*copy)->max_it   = c->max_it;
+  (*copy)->beside   = c->family;
   PetscCall(CycleFlowCreate(bodies, &(*copy)->flow));
   PetscCall(CycleSetParameter(*copy));
   PetscCall(CycleSetSizes(*copy, size));

@@ -2,16 +2,30 @@
 #include "cycleimpl.h"
 #include "base/memory.h"
 
+/* Of a model, MB */
+static double FamilyMegabytes(const CycleFamily *f)
+{
+  double mb = 0;
+
+  for (int k = 0; k < FAMILY_N_PARTS; k++) mb += 1e-6 * (double)sizeof(PetscReal) * (double)f->size[k];
+  return mb;
+}
+
 PetscErrorCode CycleFamilyCheckMemory(const CycleFamily *f, PetscInt most)
 {
   const MPI_Comm comm = f->scene->comm;
-  double         one  = 0, mb[2]; /* of a model; of all on one machine, less what is to be had */
+  const double   one  = FamilyMegabytes(f);
+  double         mb[2]; /* of all on one machine, less what is to be had */
+  char           beside[64] = "";
   PetscBool      given;
 
   PetscFunctionBeginUser;
-  for (int k = 0; k < FAMILY_N_PARTS; k++) one += 1e-6 * (double)sizeof(PetscReal) * (double)f->size[k];
   mb[0] = one * (double)most * MemoryRanks();
   mb[1] = -MemoryRoom(&given);
+  if (given && f->beside) { /* of what is free they are gone already */
+    mb[0] += FamilyMegabytes(f->beside) * (double)f->beside->n * MemoryRanks();
+    PetscCall(PetscSNPrintf(beside, sizeof(beside), " and the %" PetscInt_FMT " with the lower cut-off", f->beside->n));
+  }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mb, 2, MPI_DOUBLE, MPI_MAX, comm));
   if (ShiftInvertShows())
     PetscCall(PetscPrintf(comm,
@@ -21,9 +35,9 @@ PetscErrorCode CycleFamilyCheckMemory(const CycleFamily *f, PetscInt most)
   PetscCheck(
     mb[0] <= -mb[1], comm, PETSC_ERR_USER_INPUT,
     "-cycle_parameter %s: up to %" PetscInt_FMT
-    " reduced models need %.3g MB on one machine, and %s %.6g MB: take a lower -dynamics_cutoff, fewer ranks on a "
+    " reduced models%s need %.3g MB on one machine, and %s %.6g MB: take a lower -dynamics_cutoff, fewer ranks on a "
     "machine, or a parameter that leaves the bodies as they are, such as a friction coefficient%s",
-    f->parameter->name, most, mb[0], given ? "-squeal_memory allows" : "there are free", -mb[1],
+    f->parameter->name, most, beside, mb[0], given ? "-squeal_memory allows" : "there are free", -mb[1],
     given ? "" : "; -squeal_memory MB says otherwise");
   PetscFunctionReturn(0);
 }

@@ -27,7 +27,7 @@ PetscReal CycleError(PetscReal found, PetscReal finer, PetscReal spread)
 
 /* Of the modulus of the largest multiplier: pairs that open and close between two steps leave multipliers of first order, which both
    differences tell */
-static PetscReal MultiplierError(const CyclePoint *p)
+PetscReal CycleMultiplierError(const CyclePoint *p)
 {
   const PetscReal finer = PetscAbsReal(CycleMultiplier(&p->stability) - CycleMultiplier(&p->finer_stability));
 
@@ -51,12 +51,14 @@ static int MultiplierSide(PetscReal size, PetscReal margin)
 const char *CycleClass(const CyclePoint *p, PetscReal rtol, const char **why)
 {
   const PetscReal size   = CycleMultiplier(&p->stability);
-  const PetscReal margin = PetscMax(MultiplierError(p) + MultiplierCutoffError(p), PetscSqrtReal(rtol));
+  const PetscReal margin = PetscMax(CycleMultiplierError(p) + MultiplierCutoffError(p), PetscSqrtReal(rtol));
   const int       side   = MultiplierSide(size, margin);
 
   *why = NULL;
   if (!p->has_finer)
     *why = "no cycle of other steps tells the error of the multiplier";
+  else if (p->wants_higher && !p->has_higher)
+    *why = "no cycle with a higher cut-off tells the error of the multiplier";
   else if (!side)
     *why = "the multiplier is nearer to 1 than its error";
   else if (side != MultiplierSide(p->stability.worst, margin))
@@ -99,7 +101,7 @@ static PetscErrorCode CycleWriteRow(LimitCycle c, PetscInt i, ResultsTable table
   PetscCall(CellPrintError(p->has_finer, CycleError(a->freq, b->freq, spread->freq), error[0]));
   PetscCall(CellPrintError(p->has_finer, CycleError(a->rms, b->rms, spread->rms), error[1]));
   PetscCall(CellPrintError(p->has_finer, CycleError(a->peak, b->peak, spread->peak), error[2]));
-  PetscCall(CellPrintError(p->has_finer, MultiplierError(p), error[3]));
+  PetscCall(CellPrintError(p->has_finer, CycleMultiplierError(p), error[3]));
   PetscCall(CellPrintError(p->has_higher, PetscAbsReal(p->higher.freq - a->freq), cutoff[0]));
   PetscCall(CellPrintError(p->has_higher, PetscAbsReal(p->higher.rms - a->rms), cutoff[1]));
   PetscCall(CellPrintError(p->has_higher, PetscAbsReal(p->higher.peak - a->peak), cutoff[2]));
