@@ -9,6 +9,7 @@ or where elements are not their own mirror images.
 
 import csv
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -43,7 +44,8 @@ def body(first, x, y, z, cells):
     ring = [(a, a), (b, a), (b, b), (a, b)]
     hexahedra = numpy.stack([number[i, j, k] for k in (a, b) for i, j in ring], -1).reshape(-1, 8)
     side = {name: numpy.stack([face[i, j] for i, j in ring], -1).reshape(-1, 4) for name, face in
-            {"bottom": number[:, :, 0], "top": number[:, :, -1], "start": number[0], "end": number[-1], "cut": number[:, 0]}.items()}
+            {"bottom": number[:, :, 0], "top": number[:, :, -1], "start": number[0], "end": number[-1], "cut": number[:, 0],
+             "far": number[:, -1]}.items()}
     return nodes, hexahedra, side
 
 
@@ -55,7 +57,7 @@ def write_mesh(path, half, shift=0, digits=17):
         added, groups[3, name], side = body(1 + sum(map(len, nodes)), x, y, z, (cells[0], factor * cells[1], cells[2]))
         nodes.append(added)
         for set_, quads in side.items():
-            key = (2, "cut" if set_ == "cut" else f"{name}_{set_}")
+            key = (2, set_ if set_ in ("cut", "far") else f"{name}_{set_}")
             groups[key] = numpy.concatenate([groups[key], quads]) if key in groups else quads
     nodes = numpy.concatenate(nodes)
     lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", str(len(groups))]
@@ -72,7 +74,7 @@ class Runs:
     """Modes of the scene in a folder, run by run."""
 
     def __init__(self, folder, squeal, launcher):
-        self.folder, self.squeal, self.launcher = folder, squeal, launcher
+        self.folder, self.squeal, self.launcher, self.printed = folder, squeal, launcher, ""
 
     def run(self, name, mesh, fix="", options="", ranks=1, fails=False):
         """A run that holds the slab's start, directions of the cut, and the pad but where it is free; returns its errors."""
@@ -83,20 +85,21 @@ class Runs:
         done = subprocess.run([self.launcher, "-n", str(ranks), self.squeal, *words], cwd=self.folder, capture_output=True, text=True)
         if bool(done.returncode) != fails:
             sys.exit(f"FAILED run {name}, exit status {done.returncode}: {done.stderr}")
+        self.printed = done.stdout
         return done.stderr
 
     def rows(self, name, mesh, fix="", options=f"{PENALTY} {BAND}", ranks=1, table="modes"):
         """Table of such a run, with lambda [rad/s] of each row."""
         self.run(name, mesh, fix, options, ranks)
-        rows = self.table(name, table)
-        for row in rows:
+        return self.table(name, table, True)
+
+    def table(self, name, table, values=False):
+        """Rows of a table of a run, where asked for with lambda [rad/s] of each."""
+        with (self.folder / name / f"{table}.csv").open(newline="") as file:
+            rows = list(csv.DictReader(file))
+        for row in rows if values else []:
             row["lambda"] = float(row["growth_rad_s"]) + 2j * numpy.pi * float(row["freq_hz"])
         return rows
-
-    def table(self, name, table):
-        """Rows of a table of a run."""
-        with (self.folder / name / f"{table}.csv").open(newline="") as file:
-            return list(csv.DictReader(file))
 
     def told(self, name):
         """How many modes of each parity the provenance tells."""
@@ -146,6 +149,12 @@ def kinds(runs):
         yield f"{name}, modes of each parity as told", float(runs.told(folder) != Counter(row["symmetry"] for row in found))
 
 
+def points_apart(found, whole):
+    """As apart(), point by point of a sweep."""
+    return max(apart(*([row for row in rows if row["point"] == point] for rows in (found, whole)))
+               for point in {row["point"] for row in whole})
+
+
 SWEEP = (f"-analysis sweep -sweep_parameter rub_mu -sweep_values 0.55,0.7 -sweep_rtol 1e-9 {PENALTY} {UNDAMPED} "
          "-modes_band 500,28000")
 
@@ -156,9 +165,7 @@ def sweeps(runs):
     onsets = runs.table("sweep_whole", "onsets")
     for name, more, ranks in (("sweep", "", 1), ("sweep2", "", 2), ("sweep_full", "-sweep_method full", 1)):
         found = runs.rows(name, "whole.msh", options=f"{SWEEP} {more} -symmetry y", ranks=ranks, table="sweep")
-        yield f"{name}, {len(whole)} eigenvalues", max(
-            apart([row for row in found if row["point"] == point], [row for row in whole if row["point"] == point])
-            for point in ("1", "2"))
+        yield f"{name}, {len(whole)} eigenvalues", points_apart(found, whole)
         yield f"{name}, modes of both parities", float({row["symmetry"] for row in found} != {"even", "odd"})
         if more:
             continue
@@ -166,6 +173,57 @@ def sweeps(runs):
                 if row["confirmed"] == "1" and row["symmetry"] == "even"]
         yield f"{name}, {len(onsets)} onset of an even pair", max(
             (abs(a / float(row["critical_value"]) - 1) for a, row in zip(same, onsets, strict=True)), default=numpy.inf)
+
+
+KEPT = (f"-analysis sweep -sweep_parameter pad_young,slab_young -sweep_values 6e9,24e9 -sweep_values_2 150e9,210e9 "
+        f"-sweep_rtol 1e-9 {PENALTY} {UNDAMPED} -rub_mu 0 -modes_band 500,14000 -supports clamp,far -far_set slab_end -far_fix xyz")
+
+
+def restarts(runs):
+    """A sweep of a scene with two planes, on two axes, that ended after two full solutions of the even part: it goes on in that
+    plane, begins anew in the other one, and leaves nothing of it behind, in either or without -symmetry."""
+    runs.run("kept", "whole.msh", options=f"{KEPT} -symmetry y -sweep_max_samples 2", fails=True)
+    for name in ("kept_whole", "kept_x"):
+        shutil.copytree(runs.folder / "kept", runs.folder / name)
+    whole = runs.rows("kept_whole", "whole.msh", options=KEPT, table="sweep")
+    said = runs.run("kept_x", "whole.msh", options=f"{KEPT} -symmetry x")
+    yield "restart, another plane begins anew", float("differs in: -symmetry;" not in said or "going on" in runs.printed)
+    yield "restart, another plane", points_apart(runs.table("kept_x", "sweep", True), whole)
+    found = runs.rows("kept", "whole.msh", options=f"{KEPT} -symmetry y", table="sweep")
+    yield "restart goes on", float("going on with 2 full solutions, even" not in runs.printed)
+    yield f"restart, {len(whole)} eigenvalues", points_apart(found, whole)
+    for name in ("kept_whole", "kept_x", "kept"):
+        yield f"restart files left in {name}", float(len(list((runs.folder / name).glob("sweep_restart*"))))
+    real = runs.rows("real", "whole.msh", options=f"{KEPT} -symmetry y -sweep_method real", table="sweep")
+    yield "real modes, where they are exact", apart(*([row for row in rows if row["point"] == "3"] for rows in (real, whole)))
+
+
+MORE = (f"-analysis sweep -sweep_parameter rub_mu -sweep_values 0.6,0.7 -sweep_rtol 1e-9 -sweep_onsets 0 {PENALTY} {UNDAMPED} "
+        "-modes_band 25500,27500 -sweep_percent 5 -sweep_uncertain")
+
+
+def columns(rows, names):
+    """Numbers of some columns, a row each, in the order of the first."""
+    return numpy.array(sorted([float(row[name]) for name in names] for row in rows))
+
+
+def tables(runs):
+    """Risks, sensitivities and checks of a sweep against those of the whole; and parameters of which each alone moves one side,
+    behind so many others that not all their corners are looked at."""
+    whole, found = (f"more{symmetry}" for symmetry in ("_whole", ""))
+    runs.run(whole, "whole.msh", options=f"{MORE} pad_young -sweep_verify 1 -sweep_sensitivities 1")
+    runs.run(found, "whole.msh", options=f"{MORE} pad_young -sweep_verify 1 -sweep_sensitivities 1 -symmetry y", ranks=3)
+    for table, names in (("robustness", ("freq_hz", "growth_largest_rad_s", "unstable_combinations")),
+                         ("verify", ("modes_full", "modes_reduced", "unstable_full", "unstable_reduced")),
+                         ("sensitivities", ("freq_hz", "freq_hz_per_percent", "growth_rad_s_per_percent"))):
+        a, b = (columns(runs.table(name, table), names) for name in (whole, found))
+        yield f"{table}, {len(a)} rows", numpy.max(abs(a - b) / abs(a).max(0).clip(1)) if a.shape == b.shape and len(a) else numpy.inf
+    errors = [float(runs.table(name, "verify")[0]["true_error"]) for name in (whole, found)]
+    yield "verify, a true error as of the whole, to a factor of 10", float(not errors[0] / 10 <= errors[1] <= 10 * errors[0])
+    said = runs.run("refused", "whole.msh", fails=True, options=f"{MORE} slab_young,slab_density,pad_young,pad_density,rub_mu,"
+                    "rub_kn_per_area,left_stiffness_per_area,right_stiffness_per_area -symmetry y -springs holder,left,right "
+                    "-left_set cut -left_stiffness_per_area 0,0,1e10 -right_set far -right_stiffness_per_area 0,0,1e10")
+    yield "refused: the seventh of eight uncertain parameters", float("the scene is not its own mirror image" not in said)
 
 
 STATIC = ("-analysis static -loads press -press_set pad_top "
@@ -229,7 +287,8 @@ def main(squeal, launcher):
         write_mesh(runs.folder / "half.msh", True)
         whole = runs.rows("whole", "whole.msh")
         found = [("modes that do not grow of " + str(len(whole)), float(all(row["lambda"].real <= 1 for row in whole))),
-                 *halves(runs, whole), *kinds(runs), *sweeps(runs), *statics(runs), *rounded(runs), *refusals(runs)]
+                 *halves(runs, whole), *kinds(runs), *sweeps(runs), *restarts(runs), *tables(runs), *statics(runs), *rounded(runs),
+                 *refusals(runs)]
     for what, worst in found:
         print(f"{what}: differ by {worst:.1e}, {RTOL:g} allowed")
     sys.exit(0 if all(worst <= RTOL for _, worst in found) else "FAILED")

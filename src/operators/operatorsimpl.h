@@ -119,8 +119,9 @@ PETSC_INTERN PetscErrorCode PatternCreate(Model model, PetscInt part, PetscBool 
 /* friction.c - parameters of the contact */
 PETSC_INTERN PetscErrorCode OperatorsAddContactParameters(Operators operators);
 
-/* planes.c - the planes of symmetry */
+/* planes.c - the planes of symmetry; adds them and what they leave out to a checksum, as a part of it where there are any */
 PETSC_INTERN PetscErrorCode MirrorsSetFromOptions(Operators operators, OptionsItems PetscOptionsObject);
+PETSC_INTERN PetscErrorCode MirrorsAddChecksum(Operators operators, Checksum c);
 
 /* file.c - matrices from files and options, and to files */
 PETSC_INTERN PetscErrorCode OperatorsLoadFromOptions(Operators operators, OptionsItems PetscOptionsObject);

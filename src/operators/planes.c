@@ -95,3 +95,20 @@ PetscErrorCode OperatorsGetMirrors(Operators o, PetscInt *n, const ModelPlane **
   if (R) *R = o->mirror;
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode MirrorsAddChecksum(Operators o, Checksum c)
+{
+  const ModelPlane *plane;
+  PetscInt          n;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetMirrors(o, &n, &plane, NULL)); /* which finds the place of a plane in the middle of the mesh */
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(ChecksumSetPart(c, "-symmetry"));
+  PetscCall(ChecksumAddReals(c, 1, &o->mirror_rtol));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){plane[i].axis}));
+    PetscCall(ChecksumAddReals(c, 1, &plane[i].at));
+  }
+  PetscFunctionReturn(0);
+}

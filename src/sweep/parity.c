@@ -1,15 +1,18 @@
 /*
    Sweeps with planes of symmetry (-symmetry): one for each parity, with a basis, branches and onsets of its own, on the
-   same points, then all of them in one table. The proof that the scene is its own mirror image is made before at points
-   that tell it for all: coefficients of the matrices are products of powers p, 1 / p and of |p|, so that a
-   difference that vanishes at four values of a parameter vanishes at all others.
+   same points, then all of them in one table. The proof that the scene is its own mirror image is made before, at points
+   that tell it for all: along an axis a difference is a sum of m powers of p > 0, and of others of p < 0, since |p| stands
+   among the coefficients. Where it vanishes at m values of one sign it vanishes at all of them (Descartes' rule of signs).
+   With terms of factors p and 1 / p, of which one parameter has -1, 0, 1 and 2 for power, m is 4; where a link moves
+   several, -1 to the number of factors.
 */
 #include "sweepimpl.h"
 #include <petsctime.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define PROOF_VALUES 4 /* of each axis */
+#define PROOF_VALUES 4                           /* of each sign, of an axis that moves one parameter */
+#define PROOF_LINKED (OPERATORS_MAX_FACTORS + 2) /* of one that moves several */
 
 PetscErrorCode SweepNameParities(Sweep sweep, Pencil pencil)
 {
@@ -28,32 +31,45 @@ PetscInt SweepFindParity(Sweep sweep, const char name[])
   return c;
 }
 
-/* Whether value i of n is one of those at which the proof is made */
-static PetscBool ProofTakes(PetscInt i, PetscInt n)
+/* At which values of an axis the proof is made: so many of each sign, from the first to the last */
+static PetscErrorCode ProofPick(const SweepGrid *grid, PetscInt axis, PetscBool **takes)
 {
-  for (PetscInt k = 0; k < PROOF_VALUES; k++)
-    if (i == k * (n - 1) / (PROOF_VALUES - 1)) return PETSC_TRUE;
-  return PETSC_FALSE;
+  const PetscInt n = grid->n_moved[axis] > 1 ? PROOF_LINKED : PROOF_VALUES;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(grid->n[axis], takes));
+  for (int sign = 0; sign < 2; sign++) {
+    PetscInt n_all = 0, at = 0, next = 0;
+
+    for (PetscInt i = 0; i < grid->n[axis]; i++) n_all += (grid->value[axis][i] < 0) == sign;
+    for (PetscInt i = 0; i < grid->n[axis]; i++) {
+      if ((grid->value[axis][i] < 0) != sign) continue;
+      (*takes)[i] = at == next * (n_all - 1) / (n - 1) ? PETSC_TRUE : PETSC_FALSE;
+      for (; next < n && next * (n_all - 1) / (n - 1) <= at; next++) continue;
+      at++;
+    }
+  }
+  PetscFunctionReturn(0);
 }
 
 /* Raises an error where the scene is not its own mirror image at some point of the sweep */
 static PetscErrorCode ParitiesProve(Sweep sweep)
 {
   const SweepGrid *grid = &sweep->grid;
-  PetscBool       *seen; /* [statuses] of the contact */
+  PetscBool       *takes[GRID_MAX_AXES] = {NULL}; /* [values] of each axis */
+  PetscBool       *seen;                          /* [statuses] of the contact */
   PetscReal       *p;
   PetscInt         n;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(PetscMax(1, sweep->statuses.n), &seen));
   PetscCall(PetscMalloc1(grid->n_parameters, &p));
+  for (PetscInt a = 0; a < grid->n_axes; a++) PetscCall(ProofPick(grid, a, &takes[a]));
   for (PetscInt k = 0; k < grid->n_places; k++) {
     const SweepPlace *place = &grid->place[k];
-    const PetscInt    i = place->point % grid->n[0], j = place->point / grid->n[0];
-    const PetscBool   taken =
-      place->point >= 0 && ProofTakes(i, grid->n[0]) && (grid->n_axes == 1 || ProofTakes(j, grid->n[1])) ? PETSC_TRUE
-                                                                                                         : PETSC_FALSE;
+    PetscBool         taken = place->point >= 0 ? takes[0][place->point % grid->n[0]] : PETSC_FALSE;
 
+    if (grid->n_axes == 2 && taken) taken = takes[1][place->point / grid->n[0]];
     if (!taken && seen[place->status]) continue;
     seen[place->status] = PETSC_TRUE;
     GridFill(grid, place, p);
@@ -61,6 +77,7 @@ static PetscErrorCode ParitiesProve(Sweep sweep)
     PetscCall(PencilGetParities(sweep->pencil, &n, NULL));
   }
   if (sweep->uncertain[0]) PetscCall(SweepUncertainProve(sweep));
+  for (PetscInt a = 0; a < grid->n_axes; a++) PetscCall(PetscFree(takes[a]));
   PetscCall(PetscFree(seen));
   PetscCall(PetscFree(p));
   PetscFunctionReturn(0);

@@ -7,7 +7,9 @@
    damaged ones are named, not read, and in the end replaced.
 */
 #include "sweepimpl.h"
+#include <dirent.h>
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
 
 #define VERSION         5       /* of the format */
@@ -324,16 +326,19 @@ PetscErrorCode SweepResume(Sweep sweep)
 
 PetscErrorCode SweepForget(Sweep sweep)
 {
-  char name[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
+  static const char begin[] = "sweep_restart_";
+  char              name[PETSC_MAX_PATH_LEN];
+  PetscMPIInt       rank;
+  DIR              *folder = NULL;
 
   PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < SWEEP_PARITIES; c++)
-    if (sweep->part[c]) PetscCall(SweepForget(sweep->part[c]));
-  for (PetscInt k = 0, left = 1; left && sweep->restart; k++) { /* also those of an earlier, longer sweep */
-    PetscCall(FileName(sweep, k, "", name));
-    PetscCall(FileName(sweep, k, ".part", part));
-    (void)unlink(part);
-    left = unlink(name) == 0 || k < sweep->n_files;
+  PetscCallMPI(MPI_Comm_rank(sweep->comm, &rank));
+  if (rank == 0 && sweep->restart && sweep->folder) folder = opendir(sweep->folder);
+  for (const struct dirent *file; folder && (file = readdir(folder));) {
+    if (strncmp(file->d_name, begin, strlen(begin)) != 0) continue;
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/%s", sweep->folder, file->d_name));
+    (void)unlink(name);
   }
+  if (folder) (void)closedir(folder);
   PetscFunctionReturn(0);
 }

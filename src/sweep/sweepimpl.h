@@ -86,9 +86,9 @@ struct _p_Sweep {
   PetscBool      whole; /* the basis is the whole space */
   BranchName    *label; /* [n_branches] */
   BranchEvents   events;
-  PetscBool     *is_confirmed;     /* [onsets] on the full problem */
-  SweepCheck    *check;            /* [n_checks] */
-  SweepRisk     *risk;             /* [n_risks] */
+  PetscBool     *is_confirmed; /* [onsets] on the full problem */
+  SweepCheck    *check;        /* [n_checks] */
+  SweepRisk     *risk;         /* [n_risks] */
   PetscInt       n_checks, n_risks, n_combinations;
   PetscReal      worst_risk; /* largest estimated relative error of all combinations */
   const char    *folder;     /* of the restart files */
@@ -96,12 +96,12 @@ struct _p_Sweep {
   PetscInt       n_files, n_kept;
   PetscLogDouble seconds[5]; /* basis, points, onsets, verification, contact statuses */
   /* symmetry */
-  PetscInt       parity;                           /* of a sweep of one parity; -1 for the whole */
-  PetscInt       n_parities;                       /* 1 without planes of symmetry */
-  PetscInt       unknowns, whole_unknowns;         /* of a parity, and of the whole */
-  char           parity_name[SWEEP_PARITIES][32];  /* [n_parities] */
-  struct _p_Sweep *part[SWEEP_PARITIES];           /* sweeps of the parities, made one after the other; NULL for none */
-  PetscInt         first_branch;                   /* of a part, in the table of all */
+  PetscInt         parity;                          /* of a sweep of one parity; -1 for the whole */
+  PetscInt         n_parities;                      /* 1 without planes of symmetry */
+  PetscInt         unknowns, whole_unknowns;        /* of a parity, and of the whole */
+  char             parity_name[SWEEP_PARITIES][32]; /* [n_parities] */
+  struct _p_Sweep *part[SWEEP_PARITIES]; /* sweeps of the parities, made one after the other; NULL for none */
+  PetscInt         first_branch;         /* of a part, in the table of all */
 };
 
 /* sweep.c - basis, points and what is asked of them, of the pencil of the sweep */
@@ -113,7 +113,7 @@ PETSC_INTERN PetscErrorCode SweepParities(Sweep sweep);
 /* The names of the parities, once the pencil of some point is there; the number of one */
 PETSC_INTERN PetscErrorCode SweepNameParities(Sweep sweep, Pencil pencil);
 PETSC_INTERN PetscInt       SweepFindParity(Sweep sweep, const char name[]);
-/* robust.c - proves that the scene is its own mirror image at the corners of the uncertain parameters */
+/* robust.c - proves that the scene is its own mirror image for all values of the uncertain parameters */
 PETSC_INTERN PetscErrorCode SweepUncertainProve(Sweep sweep);
 /* confirm.c - by line, then by critical value */
 PETSC_INTERN void SweepSortOnsets(Sweep sweep);
@@ -152,7 +152,8 @@ PETSC_INTERN PetscErrorCode SweepVerify(Sweep sweep);
 /* robust.c - raises the error for names or percentages that cannot be; combinations of uncertain parameters */
 PETSC_INTERN PetscErrorCode SweepUncertainCheck(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepRobustness(Sweep sweep);
-/* restart.c - keeps the full solutions so far (ctx is the sweep), takes up what an earlier run kept, and deletes it */
+/* restart.c - keeps the full solutions so far (ctx is the sweep), takes up what an earlier run kept, and deletes all that
+   is kept in the folder, also by other parities, by more ranks and by longer sweeps */
 PETSC_INTERN PetscErrorCode SweepKeep(void *ctx);
 PETSC_INTERN PetscErrorCode SweepResume(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepForget(Sweep sweep);

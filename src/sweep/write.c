@@ -248,46 +248,59 @@ static PetscErrorCode SensitivityRows(Sweep sweep, ResultsTable table)
   PetscFunctionReturn(0);
 }
 
-/* Table `name` of the rows; with planes of symmetry the parity comes last, but where there is no one parity to a row */
-static PetscErrorCode TableWrite(Sweep sweep, Results results, PetscErrorCode (*rows)(Sweep, ResultsTable),
-                                 const char name[], const char header[])
+/* A table; with planes of symmetry the parity of each row comes last, where rows have one */
+typedef struct {
+  const char *name, *columns;
+  PetscErrorCode (*rows)(Sweep sweep, ResultsTable table);
+  PetscBool has_parity;
+} SweepTable;
+
+static PetscErrorCode TableWrite(Sweep sweep, Results results, const SweepTable *t)
 {
-  const PetscBool parity = rows == PointRows || rows == OnsetRows || rows == RiskRows ? PETSC_TRUE : PETSC_FALSE;
-  ResultsTable    table;
-  char            columns[512];
+  ResultsTable table;
+  char         columns[512];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(columns, sizeof(columns), "%s%s", header,
-                          parity && sweep->n_parities > 1 ? ",symmetry" : ""));
-  PetscCall(ResultsTableOpen(results, name, columns, &table));
-  PetscCall(rows(sweep, table));
+  PetscCall(PetscSNPrintf(columns, sizeof(columns), "%s%s", t->columns,
+                          t->has_parity && sweep->n_parities > 1 ? ",symmetry" : ""));
+  PetscCall(ResultsTableOpen(results, t->name, columns, &table));
+  PetscCall(t->rows(sweep, table));
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
 }
 
+static const SweepTable point_table = {"sweep",
+                                       "point,value,branch,freq_hz,growth_rad_s,error_estimate,unstable,label,value_2,"
+                                       "class,error_hz,condition,onset_distance,n_closed,jump",
+                                       PointRows, PETSC_TRUE};
+static const SweepTable parameter_table = {"parameters", "parameter,value,unit,swept,link", ParameterRows, PETSC_FALSE};
+static const SweepTable onset_table     = {"onsets",
+                                           "parameter,critical_value,freq_hz,kind,label,error_estimate,branch,partner,"
+                                           "confirmed,value_2",
+                                           OnsetRows, PETSC_TRUE};
+static const SweepTable check_table     = {"verify",
+                                           "value,value_2,modes_full,modes_reduced,unstable_full,unstable_reduced,"
+                                           "true_error,error_estimate,freq_hz,full_error,modes_beyond_error,worst_ratio",
+                                           CheckRows, PETSC_FALSE};
+static const SweepTable risk_table      = {"robustness",
+                                           "label,freq_hz,growth_nominal_rad_s,growth_largest_rad_s,error_rad_s,"
+                                           "unstable_combinations,combinations",
+                                           RiskRows, PETSC_TRUE};
+static const SweepTable sensitivity_table = {"sensitivities",
+                                             "point,value,branch,freq_hz,parameter,freq_hz_per_unit,"
+                                             "growth_rad_s_per_unit,freq_hz_per_percent,growth_rad_s_per_percent",
+                                             SensitivityRows, PETSC_FALSE};
+
 PetscErrorCode SweepWrite(Sweep sweep, Results results)
 {
   PetscFunctionBeginUser;
-  PetscCall(TableWrite(sweep, results, PointRows, "sweep",
-                       "point,value,branch,freq_hz,growth_rad_s,error_estimate,unstable,label,value_2,class,error_hz,"
-                       "condition,onset_distance,n_closed,jump"));
-  PetscCall(TableWrite(sweep, results, ParameterRows, "parameters", "parameter,value,unit,swept,link"));
-  if (sweep->is_confirmed)
-    PetscCall(
-      TableWrite(sweep, results, OnsetRows, "onsets",
-                 "parameter,critical_value,freq_hz,kind,label,error_estimate,branch,partner,confirmed,value_2"));
-  if (sweep->n_checks)
-    PetscCall(TableWrite(sweep, results, CheckRows, "verify",
-                         "value,value_2,modes_full,modes_reduced,unstable_full,unstable_reduced,true_error,"
-                         "error_estimate,freq_hz,full_error,modes_beyond_error,worst_ratio"));
-  if (sweep->n_risks)
-    PetscCall(TableWrite(sweep, results, RiskRows, "robustness",
-                         "label,freq_hz,growth_nominal_rad_s,growth_largest_rad_s,error_rad_s,unstable_combinations,"
-                         "combinations"));
+  PetscCall(TableWrite(sweep, results, &point_table));
+  PetscCall(TableWrite(sweep, results, &parameter_table));
+  if (sweep->is_confirmed) PetscCall(TableWrite(sweep, results, &onset_table));
+  if (sweep->n_checks) PetscCall(TableWrite(sweep, results, &check_table));
+  if (sweep->n_risks) PetscCall(TableWrite(sweep, results, &risk_table));
   if (sweep->sensitivities && (sweep->basis.reduced.n || sweep->n_parities > 1))
-    PetscCall(TableWrite(sweep, results, SensitivityRows, "sensitivities",
-                         "point,value,branch,freq_hz,parameter,freq_hz_per_unit,growth_rad_s_per_unit,"
-                         "freq_hz_per_percent,growth_rad_s_per_percent"));
+    PetscCall(TableWrite(sweep, results, &sensitivity_table));
   PetscCall(SweepForget(sweep));
   PetscFunctionReturn(0);
 }
