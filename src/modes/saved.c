@@ -1,11 +1,9 @@
 /*
    What the choices of a solution saved, a line each for -squeal_view. LU of n unknowns has about twice the entries of LDL',
-   8 bytes each, as MUMPS estimates them; a quadratic problem is a linear one of twice the unknowns. Factors of a body in
-   three dimensions have entries as n^(4/3) (A. George, SIAM J. Numer. Anal. 10, 1973, for nested dissection).
+   8 bytes each, as MUMPS estimates them; a quadratic problem is a linear one of twice the unknowns.
 */
 #include "modesimpl.h"
 #include "solver/lowrank.h"
-#include <math.h>
 
 #define BYTES_TO_MB    1e-6
 #define SAVED_ROUNDING 1e-11 /* of a row, that is not worth a word */
@@ -76,7 +74,7 @@ PetscErrorCode SavedBySymmetry(Modes modes, PetscInt n_parities, const PetscInt 
   PetscCall(PetscStrlcat(text, part, SAVED_LENGTH));
   if (mb > 0)
     PetscCall(PetscSNPrintf(part, sizeof(part), "; factors of %.3g MB at a time instead of about %.3g MB (estimate)", mb,
-                            mb * pow((double)n_whole / (double)most, 4. / 3)));
+                            mb * FactorEntriesTimes((double)n_whole / (double)most)));
   if (mb > 0) PetscCall(PetscStrlcat(text, part, SAVED_LENGTH));
   PetscCall(PencilGetParities(modes->pencil, &most, &asymmetry));
   PetscCall(PetscSNPrintf(part, sizeof(part), "; left out: %.1e of a row, which is no mirror image", (double)asymmetry));

@@ -2,7 +2,6 @@
    The sliding state in words.
 */
 #include "staticsimpl.h"
-#include <math.h>
 
 /* One interface: pairs, forces, and where the normal force acts */
 static PetscErrorCode InterfaceView(const ContactInterface *c, const StaticsResultant *r, PetscViewer viewer)
@@ -22,7 +21,7 @@ static PetscErrorCode InterfaceView(const ContactInterface *c, const StaticsResu
   PetscFunctionReturn(0);
 }
 
-/* What planes of symmetry saved: entries of factors go as n^(4/3), see modes/saved.c */
+/* What planes of symmetry saved */
 static PetscErrorCode SymmetryView(Statics s, PetscViewer viewer)
 {
   const double mb = 1e-6 * sizeof(PetscScalar) * s->entries;
@@ -32,7 +31,7 @@ static PetscErrorCode SymmetryView(Statics s, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(
     viewer, "saved: symmetry: %" PetscInt_FMT " even unknowns instead of %" PetscInt_FMT
             ", factors of %.3g MB instead of about %.3g MB (estimate)\n",
-    s->unknowns[0], s->unknowns[1], mb, mb * pow((double)s->unknowns[1] / (double)s->unknowns[0], 4. / 3)));
+    s->unknowns[0], s->unknowns[1], mb, mb * FactorEntriesTimes((double)s->unknowns[1] / (double)s->unknowns[0])));
   PetscFunctionReturn(0);
 }
 

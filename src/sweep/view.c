@@ -2,7 +2,6 @@
    What a person wants to know of a sweep: how it was made, where it is stable, the onsets, the errors.
 */
 #include "sweepimpl.h"
-#include <math.h>
 
 #define MAX_STRETCHES 12 /* of one contact status, that are listed */
 
@@ -291,8 +290,7 @@ static PetscErrorCode BasisView(Sweep sweep, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
-/* The reduced model of each parity, and what they save; that of the whole without planes of symmetry. entries of factors as
-   n^(4/3), see modes/saved.c */
+/* The reduced model of each parity, and what they save; that of the whole without planes of symmetry */
 static PetscErrorCode ModelsView(Sweep sweep, const OperatorsParameter parameters[], PetscViewer viewer)
 {
   PetscInt most = 0;
@@ -310,7 +308,7 @@ static PetscErrorCode ModelsView(Sweep sweep, const OperatorsParameter parameter
                                      "saved: by symmetry matrices of at most %" PetscInt_FMT
                                      " unknowns instead of %" PetscInt_FMT ", with factors of about %.0f %% (estimate)\n",
                                      most, sweep->whole_unknowns,
-                                     100 * pow((double)most / (double)sweep->whole_unknowns, 4. / 3)));
+                                     100 * FactorEntriesTimes((double)most / (double)sweep->whole_unknowns)));
   if (most) PetscFunctionReturn(0);
   PetscCall(SamplesView(sweep, parameters, viewer));
   PetscCall(BasisView(sweep, viewer));
