@@ -148,6 +148,10 @@ PetscErrorCode OperatorsGetMirrors(Operators operators, PetscInt *n, const Model
     (borrowed). Collective. Errors: PETSC_ERR_SUP for points that are joined rigidly. @*/
 PetscErrorCode OperatorsGetEven(Operators operators, Mat *S);
 
+/*@ OperatorsNeedMirrors - raises the error PETSC_ERR_USER_INPUT where -symmetry_rtol lets matrices differ from their mirror
+    images by more than rounding, for `what`, in the plural, whose errors do not cover that. Collective. @*/
+PetscErrorCode OperatorsNeedMirrors(Operators operators, const char what[]);
+
 /*@ OperatorsProveEven - raises the error PETSC_ERR_USER_INPUT where the stiffness of the bodies at p, or a force f on all
     unknowns, N, that `what` names, is not its own mirror image; nothing without planes. Collective. @*/
 PetscErrorCode OperatorsProveEven(Operators operators, const PetscReal p[], Vec f, const char what[]);

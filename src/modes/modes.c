@@ -301,15 +301,11 @@ PetscErrorCode ModesComplainNone(Modes modes, PetscInt below)
 
 PetscErrorCode ModesSolve(Modes modes)
 {
-  Window    window;
-  PetscBool none;
+  PetscInt n;
 
   PetscFunctionBeginUser;
-  PetscCall(ModesReset(modes));
-  PetscCall(LimitBegin(modes));
-  PetscCall(ModesFind(modes, &window, &none));
-  if (none) PetscCall(ModesComplainNone(modes, window.below));
-  PetscCall(ModesLabel(modes));
+  PetscCall(ModesSolveAny(modes, &n));
+  if (!n) PetscCall(ModesComplainNone(modes, modes->below));
   PetscFunctionReturn(0);
 }
 

@@ -56,6 +56,7 @@ struct _p_Modes {
   Spectrum    right, left_spectrum; /* in the unknowns of the pencil, later expanded to all unknowns */
   Mode       *mode;
   PetscInt    n;
+  PetscInt    below;        /* modes below the band where it holds none; -1: not known */
   double     *part_percent; /* participation of the parts [n][parts], NULL for matrices without a mesh */
   PetscInt    shifts;       /* in use */
   char (*parity)[PARITY_LENGTH]; /* [n] with -symmetry, else NULL */
@@ -167,6 +168,9 @@ PETSC_INTERN PetscErrorCode LeftBiorthogonalise(Modes modes, const PencilMatrice
 
 /* quality.c - measures the errors, expands the vectors to all unknowns and normalises them */
 PETSC_INTERN PetscErrorCode QualityMeasure(Modes modes, const PencilMatrices *pencil);
+
+/* asymmetry.c - adds to the errors of modes of each parity what -symmetry_rtol leaves out, once they are in one table */
+PETSC_INTERN PetscErrorCode AsymmetryMeasure(Modes modes);
 
 /* weigh.c - masses of the nodes of each part, mass[parts][local nodes], kg; the caller frees each */
 PETSC_INTERN PetscErrorCode LabelsWeigh(Modes modes, const Mesh *mesh, PetscReal *mass[]);

@@ -152,6 +152,7 @@ PetscErrorCode ModesSolveParities(Modes modes)
   PetscCall(ParitiesTrim(modes, &all));
   PetscCall(ParitiesDescribe(modes, whole, &all));
   PetscCall(ParitiesMerge(modes, &all));
+  PetscCall(AsymmetryMeasure(modes));
   for (PetscInt c = 0; c < all.n_parities; c++) n_whole += all.unknowns[c];
   PetscCall(SavedBySymmetry(modes, all.n_parities, all.unknowns, n_whole, all.entries));
   PetscCall(ModesLabel(modes));
@@ -168,7 +169,8 @@ PetscErrorCode ModesSolveAny(Modes modes, PetscInt *n)
   PetscCall(LimitBegin(modes));
   PetscCall(ModesFind(modes, &window, &none));
   if (!none) PetscCall(ModesLabel(modes));
-  *n = modes->n;
+  modes->below = window.below;
+  *n           = modes->n;
   PetscFunctionReturn(0);
 }
 

@@ -194,7 +194,7 @@ PetscErrorCode ProjectionMeasureBeyond(const Projection *p, PetscReal *rho)
   PetscCall(BeyondCreate(p, &space));
   for (int step = 1; step <= BEYOND_STEPS && grows; step++) {
     PetscCall(BeyondStep(p, &space, &grows));
-    if (step == 1 || !grows) continue;
+    if (!space.n || (step == 1 && grows)) continue;
     PetscCall(BeyondRadius(p, &space, rho));
     *rho *= factor;
     if (*rho < BEYOND_CLEAR) break;

@@ -9,11 +9,10 @@
 */
 #include "pencilimpl.h"
 
-#define MIRROR_FLOOR    1e-8 /* of the largest entry: rows below are compared with that */
-#define MIRROR_VECTORS  2
+#define MIRROR_FLOOR   1e-8 /* of the largest entry: rows below are compared with that */
+#define MIRROR_VECTORS 2
 
 #define MIRROR_STIFFNESS "the stiffness K of its parts, springs and contacts differs"
-
 
 /* The entry of a row that is a signed permutation's but for rounding: its column and sign; sign 0 for another row */
 PetscErrorCode MirrorGetRow(Mat R, PetscInt row, PetscInt *column, PetscReal *sign)
@@ -67,6 +66,7 @@ static PetscErrorCode MirrorProject(Pencil pencil, const ModelPlane *plane, Mat 
 static PetscErrorCode MirrorLocate(Operators o, Mat E, PetscInt i, PetscReal place[4])
 {
   const Mesh *mesh;
+  PetscReal   largest;
   PetscInt    at = i;
   Vec         q, u;
 
@@ -79,7 +79,7 @@ static PetscErrorCode MirrorLocate(Operators o, Mat E, PetscInt i, PetscReal pla
     PetscCall(VecAssemblyEnd(q));
     PetscCall(MatMult(E, q, u));
     PetscCall(VecAbs(u));
-    PetscCall(VecMax(u, &at, NULL));
+    PetscCall(VecMax(u, &at, &largest));
     PetscCall(VecDestroy(&q));
     PetscCall(VecDestroy(&u));
   }
@@ -149,6 +149,8 @@ static PetscErrorCode MirrorPoint(Operators o, const PetscReal p[], size_t size,
 typedef struct {
   const char *what; /* its name, what it is made of, and a verb */
   const char *size; /* what it is measured by */
+  const char *allowed;
+  PetscReal   rtol; /* so much of it is allowed */
   Mat         E;    /* as in MirrorLocate() */
   PetscReal   largest;
   PetscInt    at;
@@ -162,14 +164,15 @@ static PetscErrorCode MirrorComplain(Operators o, PetscInt i, const PetscReal p[
   char              point[256];
 
   PetscFunctionBeginUser;
-  if (found->largest <= o->mirror_rtol) PetscFunctionReturn(0);
+  if (found->largest <= found->rtol) PetscFunctionReturn(0);
   PetscCall(MirrorLocate(o, found->E, found->at, place));
   PetscCall(MirrorPoint(o, p, sizeof(point), point));
   SETERRQ(o->comm, PETSC_ERR_USER_INPUT,
-          "-symmetry %c: %sthe scene is not its own mirror image in %c = %g m: %s by %.1e of %s (%.0e allowed by -symmetry_rtol), most "
-          "at the node (%g, %g, %g) m along %c",
+          "-symmetry %c: %sthe scene is not its own mirror image in %c = %g m: %s by %.1e of %s (%.0e allowed %s), most at "
+          "the node (%g, %g, %g) m along %c",
           "xyz"[plane->axis], point, "xyz"[plane->axis], (double)plane->at, found->what, (double)found->largest,
-          found->size, (double)o->mirror_rtol, (double)place[0], (double)place[1], (double)place[2], "xyz"[(int)place[3]]);
+          found->size, (double)found->rtol, found->allowed, (double)place[0], (double)place[1], (double)place[2],
+          "xyz"[(int)place[3]]);
 }
 
 /* How far a matrix is from its mirror image */
@@ -191,7 +194,11 @@ static PetscErrorCode MirrorOfMatrix(Mat Q, Mat R, MirrorFinding *found)
 /* Raises an error where a matrix is not its own mirror image */
 static PetscErrorCode MirrorCheck(Pencil pencil, PetscInt i, Mat Q, const char what[])
 {
-  MirrorFinding found = {.what = what, .size = "its row", .E = pencil->E};
+  MirrorFinding found = {.what    = what,
+                         .size    = "its row",
+                         .allowed = "by -symmetry_rtol",
+                         .rtol    = pencil->operators->mirror_rtol,
+                         .E       = pencil->E};
 
   PetscFunctionBeginUser;
   if (!Q) PetscFunctionReturn(0);
@@ -221,8 +228,9 @@ static PetscErrorCode MirrorOfForce(Vec f, Mat R, MirrorFinding *found)
 
 PetscErrorCode OperatorsProveEven(Operators o, const PetscReal p[], Vec f, const char what[])
 {
-  MirrorFinding stiffness = {.what = MIRROR_STIFFNESS, .size = "its row"};
-  MirrorFinding force     = {.what = what, .size = "the largest force on a node"};
+  const char    allowed[] = "in statics, whatever -symmetry_rtol";
+  MirrorFinding stiffness = {MIRROR_STIFFNESS, "its row", allowed, MIRROR_ROUNDING, NULL, 0, 0};
+  MirrorFinding force     = {what, "the largest force on a node", allowed, MIRROR_ROUNDING, NULL, 0, 0};
   const Mat    *R;
   PetscInt      n;
   Mat           K;

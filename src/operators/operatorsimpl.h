@@ -27,6 +27,7 @@ typedef struct {
 } JointParameters;
 
 #define OPERATORS_MAX_PLANES 3
+#define MIRROR_ROUNDING      1e-11 /* of a row: matrices that differ by no more from their images are their own */
 
 /* -operators_factors */
 enum { OPERATORS_AUTO, OPERATORS_LU, OPERATORS_EVEN };
@@ -43,7 +44,7 @@ struct _p_Operators {
   PetscInt   factors;   /* OPERATORS_AUTO, OPERATORS_LU or OPERATORS_EVEN */
   PetscReal  loaded_mu; /* -contact_mu of loaded or dense matrices */
   PetscInt   n_planes;  /* of symmetry */
-  PetscReal  mirror_rtol; /* of a row: by how much matrices may differ from their mirror images */
+  PetscReal  mirror_rtol; /* of a row: by how much those of modes may differ from their mirror images */
   ModelPlane plane[OPERATORS_MAX_PLANES];
   PetscInt   n_named;   /* matrices of -terms */
   struct _p_MatrixTerm *named;

@@ -7,8 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PLANES_ROUNDING 1e-11
-#define PLANES_MOST     1e-3
+#define PLANES_MOST 1e-3
 
 /* One item of the list: x, or x=0.05 */
 static PetscErrorCode PlaneParse(MPI_Comm comm, const char text[], const char item[], ModelPlane *plane)
@@ -37,17 +36,17 @@ PetscErrorCode MirrorsSetFromOptions(Operators o, OptionsItems PetscOptionsObjec
   PetscBool set, twice = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  o->mirror_rtol = PLANES_ROUNDING;
+  o->mirror_rtol = MIRROR_ROUNDING;
   PetscCall(PetscOptionsString("-symmetry",
                                "planes of which the scene is its own mirror image, by their normals: x, y, z (in the "
                                "middle of the mesh), x=0.05 (m); each parity is solved by itself",
                                "operators.h", text, text, sizeof(text), &set));
   PetscCall(PetscOptionsReal("-symmetry_rtol",
                              "by which part of the largest entry of its row a matrix may differ from its mirror image; more "
-                             "for modes and sweeps of a mesh that is mirrored to few digits",
+                             "for modes of a mesh that is mirrored to few digits",
                              "operators.h", o->mirror_rtol, &o->mirror_rtol, NULL));
-  PetscCheck(o->mirror_rtol >= PLANES_ROUNDING && o->mirror_rtol <= PLANES_MOST, o->comm, PETSC_ERR_USER_INPUT,
-             "-symmetry_rtol %g must lie between %g, which is rounding, and %g", (double)o->mirror_rtol, PLANES_ROUNDING,
+  PetscCheck(o->mirror_rtol >= MIRROR_ROUNDING && o->mirror_rtol <= PLANES_MOST, o->comm, PETSC_ERR_USER_INPUT,
+             "-symmetry_rtol %g must lie between %g, which is rounding, and %g", (double)o->mirror_rtol, MIRROR_ROUNDING,
              PLANES_MOST);
   if (!set) PetscCall(OptionsRefuse(o->comm, "-symmetry_rtol", "not used without -symmetry"));
   if (!set) PetscFunctionReturn(0);
@@ -82,6 +81,16 @@ static PetscErrorCode MirrorCreate(Operators o, ModelPlane *plane, Mat *R)
   PetscCall(MatAssemblyBegin(*R, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*R, MAT_FINAL_ASSEMBLY));
   PetscCall(PetscFree(image));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsNeedMirrors(Operators o, const char what[])
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!o->n_planes || o->mirror_rtol <= MIRROR_ROUNDING, o->comm, PETSC_ERR_USER_INPUT,
+             "-symmetry_rtol %g: %s do not measure what it leaves out, so that their errors would not hold; leave it out, "
+             "or -symmetry with it",
+             (double)o->mirror_rtol, what);
   PetscFunctionReturn(0);
 }
 

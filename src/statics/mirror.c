@@ -15,6 +15,7 @@
 #define MIRROR_COMPLIANCE 0.5  /* c, in the middle of the eigenvalues of W */
 #define MIRROR_FRAME      1e-8 /* of the entries of G */
 #define MIRROR_ALIKE      1e-9 /* of friction and stiffness; of the place for gaps */
+#define IMAGES_NEAR       1e-6 /* of the extent of all pairs and their plane: an image lies no farther away */
 #define MIRROR_NORMAL     1e-6 /* squared distance of two unit normals, up to which they are the same */
 
 /* A pair of all ranks */
@@ -55,11 +56,27 @@ static PetscReal ImagesApart(const PetscReal a[3], const PetscReal b[3])
   return PetscSqr(a[0] - b[0]) + PetscSqr(a[1] - b[1]) + PetscSqr(a[2] - b[2]);
 }
 
-/* The pair that stands at the mirror image of one, nearest of those whose normals are images */
-static const ImagePair *ImagesFind(PetscInt n, const ImagePair all[], const ImagePair *of, const ModelPlane *plane)
+/* Squared distance up to which a pair stands at the mirror image of another */
+static PetscReal ImagesNear(PetscInt n, const ImagePair all[], const ModelPlane *plane)
 {
-  const ImagePair *best  = NULL;
-  PetscReal         least = PETSC_MAX_REAL, x[3], normal[3];
+  PetscReal extent = 0;
+
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal from[3] = {all[0].x[0], all[0].x[1], all[0].x[2]};
+
+    from[plane->axis] = plane->at;
+    extent            = PetscMax(extent, ImagesApart(all[i].x, from));
+  }
+  return PetscSqr(IMAGES_NEAR) * extent;
+}
+
+/* The pair that stands at the mirror image of one, nearest of those whose normals are images and that are nearer than the
+   root of `least`; one in the plane is its own */
+static const ImagePair *ImagesFind(PetscInt n, const ImagePair all[], const ImagePair *of, const ModelPlane *plane,
+                                   PetscReal least)
+{
+  const ImagePair *best = NULL;
+  PetscReal        x[3], normal[3];
 
   for (int d = 0; d < 3; d++) {
     x[d]      = d == plane->axis ? 2 * plane->at - of->x[d] : of->x[d];
@@ -68,7 +85,7 @@ static const ImagePair *ImagesFind(PetscInt n, const ImagePair all[], const Imag
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal apart = ImagesApart(all[i].x, x);
 
-    if (apart >= least || ImagesApart(all[i].frame[0], normal) > MIRROR_NORMAL) continue;
+    if (apart > least || ImagesApart(all[i].frame[0], normal) > MIRROR_NORMAL) continue;
     least = apart;
     best  = &all[i];
   }
@@ -88,20 +105,23 @@ static PetscBool ImagesObeyAlike(const ImagePair *a, const ImagePair *b)
   return PETSC_TRUE;
 }
 
-/* P of the rows of this rank; *alone = a place (m) of a pair without image, where there is one */
+/* P of the rows of this rank; *alone = the least of n and the pairs of it without image */
 static PetscErrorCode ImagesFill(const PairRows *rows, const ModelPlane *plane, PetscInt n, const ImagePair all[],
-                                 Mat P, PetscReal alone[3])
+                                 Mat P, PetscInt *alone)
 {
+  const PetscReal near = ImagesNear(n, all, plane);
+
   PetscFunctionBeginUser;
+  *alone = n;
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
-    PetscInt          a = 0;
+    PetscInt         a = 0;
     const ImagePair *of, *to;
 
     while (all[a].first != rows->begin + rows->first[p]) a++;
     of = &all[a];
-    to = ImagesFind(n, all, of, plane);
+    to = ImagesFind(n, all, of, plane, near);
     if (to && !ImagesObeyAlike(of, to)) to = NULL;
-    if (!to) PetscCall(PetscArraycpy(alone, of->x, 3));
+    if (!to) *alone = PetscMin(*alone, a);
     for (PetscInt i = 0; i < of->d; i++) /* room on the diagonal for 1 + P */
       PetscCall(MatSetValue(P, of->first + i, of->first + i, 0, INSERT_VALUES));
     for (PetscInt i = 0; to && i < of->d; i++)
@@ -163,16 +183,19 @@ static PetscErrorCode ImagesCheck(const PairRows *rows, const ModelPlane *plane,
 static PetscErrorCode ImagesCreate(const PairRows *rows, const ModelPlane *plane, Mat R, PetscInt n,
                                    const ImagePair all[], Mat *P)
 {
-  PetscReal alone[3] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL, -PETSC_MAX_REAL};
+  PetscInt         alone; /* the same pair on any number of ranks */
+  const ImagePair *pair;
 
   PetscFunctionBeginUser;
   PetscCall(MatCreateAIJ(rows->comm, rows->n, rows->n, PETSC_DETERMINE, PETSC_DETERMINE, 4, NULL, 3, NULL, P));
-  PetscCall(ImagesFill(rows, plane, n, all, *P, alone));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, alone, 3, MPIU_REAL, MPI_MAX, rows->comm));
-  PetscCheck(alone[0] == -PETSC_MAX_REAL, rows->comm, PETSC_ERR_USER_INPUT,
+  PetscCall(ImagesFill(rows, plane, n, all, *P, &alone));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &alone, 1, MPIU_INT, MPI_MIN, rows->comm));
+  pair = &all[alone < n ? alone : 0];
+  PetscCheck(alone == n, rows->comm, PETSC_ERR_USER_INPUT,
              "-symmetry %c: the pair at (%g, %g, %g) m has no mirror image of the same friction, stiffness and gap in the "
-             "plane %c = %g m", "xyz"[plane->axis],
-             (double)alone[0], (double)alone[1], (double)alone[2], "xyz"[plane->axis], (double)plane->at);
+             "plane %c = %g m",
+             "xyz"[plane->axis], (double)pair->x[0], (double)pair->x[1], (double)pair->x[2], "xyz"[plane->axis],
+             (double)plane->at);
   PetscCall(ImagesCheck(rows, plane, R, *P));
   PetscFunctionReturn(0);
 }

@@ -16,7 +16,11 @@
 
 PetscErrorCode SweepNameParities(Sweep sweep, Pencil pencil)
 {
+  Operators operators;
+
   PetscFunctionBeginUser;
+  PetscCall(PencilGetOperators(pencil, &operators));
+  PetscCall(OperatorsNeedMirrors(operators, "sweeps"));
   PetscCall(PencilCountParities(pencil, &sweep->n_parities));
   for (PetscInt c = 0; c < sweep->n_parities; c++)
     PetscCall(PencilNameParity(pencil, c, sizeof(sweep->parity_name[c]), sweep->parity_name[c]));
