@@ -14,7 +14,7 @@ A case is a TOML file. Only `run` is required.
     [run.NAME]               # made in the order of the file
     options = "-contact_mu 1"    # {OTHER} is the output folder of an earlier run
     ranks = [1]                  # of the case's; checks of runs that are not made on a number of ranks are left out there
-    night = [2]                  # on these too with --night, when a day's run proves the same with less
+    night = [2]                  # on these too with --night, of the case's or not, when a day's run proves the same with less
     stdout = ["regex"]           # found in the output
     files = ["modes.csv"]        # written, not empty
     link = {"modes.csv.part" = "/dev/full"}    # symbolic links put into the output folder before
@@ -68,6 +68,7 @@ from pathlib import Path
 
 from check import Checker, Failure, Line, require
 from forked import run_command
+from ranks import fault_of_ranks, ranks_of_runs
 from served import served_program
 
 SOURCE = Path(__file__).resolve().parent.parent
@@ -290,13 +291,6 @@ def keep_hard(case):
     case["run"] = {name: run for name, run in runs.items() if name in kept or "hard" in run}
 
 
-def ranks_of_runs(case, chosen, night):
-    """Gives each run its numbers of ranks, by night those of the night too; names of runs that are made on none of `chosen`."""
-    for run in case["run"].values():
-        run["ranks"] = run.get("ranks", chosen) + (run.get("night", []) if night else [])
-    return [name for name, run in case["run"].items() if not set(run["ranks"] + run.get("night", [])) & set(chosen)]
-
-
 def main():
     parser = argparse.ArgumentParser(description="Runs one application test of squeal.")
     parser.add_argument("case", type=Path)
@@ -320,10 +314,10 @@ def main():
         return SKIPPED
 
     results = []
-    chosen = arguments.ranks or case.get("ranks", [1])
-    never = ranks_of_runs(case, chosen, arguments.night)
-    if never and not arguments.ranks:
-        parser.error(f"runs on no number of ranks: {' '.join(never)}")
+    fault = fault_of_ranks(case)
+    if fault:
+        parser.error(fault)
+    chosen = ranks_of_runs(case, arguments.ranks or case.get("ranks", [1]), arguments.night)
     arguments.served = served_program(arguments.squeal, arguments.timeout)
     with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
         for name, text in case.get("file", {}).items():

@@ -11,9 +11,11 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from check import Checker, Failure, Line, measured_in, worst_of
-from run import own_words, ranks_of_runs
+from ranks import fault_of_ranks, ranks_of_runs
+from run import own_words
 
 CHECKS = ({"min": 0}, {"max": 10}, {"min": 0, "max": 10}, {"equals": [1, 2, 3], "rtol": 1}, {"equals_run": "run", "rtol": 1})
+EMPTY = (([1, 2], {}, False), ([1], {}, True), ([1, 2], {"ranks": [1]}, True), ([1], {"night": [2]}, False), ([1], {"ranks": [1, 2]}, True))
 
 
 def passes(folder, cell, check):
@@ -50,26 +52,36 @@ def nights_fail():
     for path in sorted((tests / "cases").glob("*.toml")):
         case = tomllib.loads(path.read_text())
         chosen, nights = case.get("ranks", [1]), {name: run["night"] for name, run in case["run"].items() if "night" in run}
-        never = ranks_of_runs(case, chosen, True)
-        lost = [name for name, ranks in nights.items() if not set(ranks) <= set(chosen) & set(case["run"][name]["ranks"])]
-        if bool(nights) != (path.stem in named) or never or lost:
+        fault = fault_of_ranks(case)
+        made = set(ranks_of_runs(case, chosen, True))
+        lost = [name for name, ranks in nights.items() if not set(ranks) <= made & set(case["run"][name]["ranks"])]
+        if bool(nights) != (path.stem in named) or fault or lost:
             wrong.append(path.stem)
     for name in wrong:
         print(f"FAILED night of {name}")
     return len(wrong)
 
 
+def empty_pass():
+    """How many comparisons of ranks that nothing makes, by day or by night, are not refused, or are when something does."""
+    wrong = [(ranks, run) for ranks, run, fault in EMPTY
+             if bool(fault_of_ranks({"ranks": ranks, "run": {"a": run}, "check": [{"across_ranks": True}]})) != fault]
+    for ranks, run in wrong:
+        print(f"FAILED ranks {ranks}, run {run}")
+    return len(wrong)
+
+
 def main():
     rule = 60 * "-"
     remarks = ("", f"{rule}\nabort\n{rule}\n", f"{rule}\nabort\n{rule}\n\0", f"\0{rule}\nabort\n{rule}\n")
-    failed = [own(remark) for remark in remarks].count(False) + margins_fail() + nights_fail()
+    failed = [own(remark) for remark in remarks].count(False) + margins_fail() + nights_fail() + empty_pass()
     with tempfile.TemporaryDirectory() as name:
         for check in CHECKS:
             for cell, expected in (("2", True), ("nan", False), ("inf", False), ("-inf", False)):
                 if passes(Path(name), cell, check) != expected:
                     print(f"FAILED {check}: a table with {cell} {'fails' if expected else 'passes'}")
                     failed += 1
-    print(f"{failed} of {len(remarks) + 4 + 4 * len(CHECKS)} failed")
+    print(f"{failed} of {len(remarks) + 4 + len(EMPTY) + 4 * len(CHECKS)} failed")
     return 1 if failed else 0
 
 

@@ -34,7 +34,8 @@
    of a fold), and the largest to the latter; for multipliers, which pairs that open and close leave of first order, the larger of twice
    the former and the latter. It is that of the steps only. The error of the reduction is told
    on request, -cycle_verify_cutoff, in columns of its own: the difference to the cycle of as many steps on the modes below 1.5
-   times the cut-off, which what lies above these is not in; it counts for the class, and for the parameter of a fold.
+   times the cut-off, which what lies above these is not in; it counts for the class, and for the parameter of a fold: where
+   no such cycle is found the class is `numerical`, and no error of a fold is told.
    The error of the interpolation is in neither.
 */
 #pragma once

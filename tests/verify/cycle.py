@@ -6,8 +6,10 @@ normal force rises through its mean, rms and largest force of whole periods; rms
     cycle.py errors COARSE FINER LATER PART   what COARSE states beside its differences to FINER, of twice the steps, 4/3 of them, and to
                                         LATER, whose steps lie elsewhere: the rest is 3/4 to 3 times those; of multipliers twice the
                                         former at least
-    cycle.py cutoff LOWER HIGHER PART   errors of the cut-off that LOWER states beside its difference to HIGHER, in frequency
-    cycle.py within COARSE FINE [VALUE] whether COARSE is FINE to the error that FINE or COARSE states, at a value of the parameter
+    cycle.py cutoff LOWER HIGHER PART WIDE   errors of the cut-off that LOWER states beside its differences to HIGHER: in frequency, of the
+                                        first cycle; in rms and largest force of the second, HIGHER on the line through both
+    cycle.py within COARSE FINE VALUE MOST   whether COARSE is FINE to the error that FINE or COARSE states, at a value of the
+                                        parameter, and that error at most MOST of the result
     cycle.py same BRANCH VALUE SINGLE FREQUENCY FORCE   the cycle of a branch at a value of its parameter beside the one that SINGLE
                                         found without a branch: largest relative differences"""
 
@@ -42,24 +44,31 @@ def errors(coarse, finer, later, part):
     return faults > 0
 
 
-def cutoff(lower, higher, part):
-    """Whether the stated error of the reduction is off, in the frequency of the first cycle."""
-    a, b = (read(folder, "cycle.csv")[0] for folder in (lower, higher))
-    known = abs(a["freq_hz"] - b["freq_hz"])
-    print(f"freq_cutoff_error_hz {a['freq_cutoff_error_hz']:.6g}, by the difference {known:.6g}")
-    return not abs(a["freq_cutoff_error_hz"] - known) <= float(part) * known
+CUTOFF = ("freq_hz", "freq_cutoff_error_hz"), ("force_rms_n", "force_rms_cutoff_error_n"), ("force_peak_n", "force_peak_cutoff_error_n")
 
 
-def within(coarse, fine, value=None):
-    """Whether two cycles are further apart than the errors that are stated."""
+def cutoff(lower, higher, part, wide):
+    """Whether a stated error of the reduction is off."""
+    a, b = (read(folder, "cycle.csv") for folder in (lower, higher))
+    faults = 0
+    for at, most, (value, error) in zip((0, 1, 1), (part, wide, wide), CUTOFF):
+        slope = (b[value][1] - b[value][0]) / (b["value"][1] - b["value"][0]) if at else 0
+        known = abs(b[value][at] + slope * (a["value"][at] - b["value"][at]) - a[value][at])
+        faults += not abs(a[error][at] - known) <= float(most) * known
+        print(f"{error} of cycle {at + 1}: {a[error][at]:.6g}, by the difference {known:.6g}, allowed {most} of it")
+    return faults > 0
+
+
+def within(coarse, fine, value, most):
+    """Whether two cycles are further apart than the errors that are stated, or these are too large to say so."""
     faults, pair = 0, []
     for folder in (coarse, fine):
         rows = read(folder, "cycle.csv")
         pair.append(rows[0] if len(rows) == 1 else rows[numpy.argmin(abs(rows["value"] - float(value)))])
     for name, error in STATED:
         apart, stated = abs(pair[0][name] - pair[1][name]), sum(row[error] for row in pair if row[error] > 0)
-        faults += not 0 < apart <= stated
-        print(f"{name}: {pair[0][name]:.9g} and {pair[1][name]:.9g}, apart by {apart:.3g}, stated {stated:.3g}")
+        faults += not 0 < apart <= stated <= float(most) * pair[1][name]
+        print(f"{name}: {pair[0][name]:.9g} and {pair[1][name]:.9g}, apart by {apart:.3g}, stated {stated:.3g}, at most {most} of it")
     return faults > 0
 
 

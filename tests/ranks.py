@@ -1,0 +1,22 @@
+"""Numbers of ranks on which the runs of a case of tests/run.py are made, by day and by night."""
+
+
+def fault_of_ranks(case):
+    """What is wrong with the numbers of ranks of a case: a run on none that the case makes, or a comparison that no day or night makes."""
+    own = case.get("ranks", [1])
+    for name, run in case["run"].items():
+        if not set(run.get("ranks", own)) <= set(own):
+            return f"run {name} is on ranks that the case is not made on"
+    for check in case.get("check", []):
+        name = check.get("run", next(iter(case["run"])))
+        run = case["run"][name]
+        if "across_ranks" in check and len({*run.get("ranks", own), *run.get("night", [])}) < 2:
+            return f"across_ranks of {name}, which is made on one number of ranks by day and by night"
+    return None
+
+
+def ranks_of_runs(case, chosen, night):
+    """Gives each run its numbers of ranks, by night those of the night too; all of these, in order, with `chosen` first."""
+    for run in case["run"].values():
+        run["ranks"] = run.get("ranks", chosen) + (run.get("night", []) if night else [])
+    return chosen + sorted({ranks for run in case["run"].values() for ranks in run["ranks"]} - set(chosen)) if night else chosen
