@@ -39,7 +39,8 @@ PetscErrorCode DynamicsSetModel(Dynamics dynamics, Model model, Contact contact)
 .  -dynamics_start <rest|static> - from rest, or from the sliding state under the loads
 .  -dynamics_shape <dir>         - folder of a run of modes, one of which is added to the start:
 .  -dynamics_shape_mode <1>      - its number in modes.csv
-.  -dynamics_shape_amplitude <1e-9> - largest component of its displacement Re(x), m; velocity Re(lambda x)
+.  -dynamics_shape_amplitude <1e-9> - largest component of its displacement x, m, in the phase in which it is positive;
+                                       velocity Re(lambda x)
 .  -dynamics_filters <dir>       - folder of a run of modes about the sliding state, -modes_filters and lumped mass:
                                    their amplitudes in amplitudes.csv, |c| at the largest component of the shape, m
 .  -dynamics_filters_modes <0> - numbers of the modes in modes.csv; 0: all unstable ones

@@ -4,8 +4,8 @@
       static  u_0 of the sliding state under the loads (statics.h) and motions, and its contact forces; v_0 as at
               rest. Then nothing
               moves until something disturbs it: all loads and sliding speeds are in force from the first step.
-   On top of either a mode x of an earlier run, lambda = sigma + i omega: u_0 += A Re(x), v_0 += A Re(lambda x), with A
-   such that the largest component of Re(x) is the amplitude asked for. m, m/s.
+   On top of either a mode x of an earlier run, lambda = sigma + i omega: u_0 += A Re(x), v_0 += A Re(lambda x), in the
+   phase in which the largest component of x is positive, and with A such that it is the amplitude asked for. m, m/s.
 */
 #include "dynamicsimpl.h"
 #include "shape.h"
@@ -49,6 +49,38 @@ PetscErrorCode DynamicsCheckStatic(Dynamics d)
   PetscFunctionReturn(0);
 }
 
+/* Turns the phase of x = re + i im, which eigensolvers leave to chance, to that in which its largest component is real and
+   positive. Returns that component. */
+static PetscErrorCode StartTurn(MPI_Comm comm, PetscInt n, PetscReal re[], PetscReal im[], PetscReal *largest)
+{
+  struct {
+    double size;
+    int    rank;
+  } most = {0};
+  double phase[2] = {1, 0};
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &most.rank));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal size = hypot(re[i], im[i]);
+
+    if (size <= most.size) continue;
+    most.size = size;
+    phase[0]  = re[i] / size;
+    phase[1]  = im[i] / size;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm));
+  PetscCallMPI(MPI_Bcast(phase, 2, MPI_DOUBLE, most.rank, comm));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal r = re[i];
+
+    re[i] = phase[0] * r + phase[1] * im[i];
+    im[i] = phase[0] * im[i] - phase[1] * r;
+  }
+  *largest = most.size;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode DynamicsGetShape(Dynamics d, PetscReal u[], PetscReal v[])
 {
   const Mesh *mesh;
@@ -66,10 +98,9 @@ PetscErrorCode DynamicsGetShape(Dynamics d, PetscReal u[], PetscReal v[])
                       &(ShapeSource){"-dynamics_shape", "-dynamics_shape_mode", "-output_fields", d->shape, "modes.h5",
                                      "", d->shape_mode},
                       re, im, lambda));
-  for (PetscInt i = 0; i < n; i++) largest = PetscMax(largest, PetscAbsReal(re[i]));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPI_MAX, d->comm));
+  PetscCall(StartTurn(d->comm, n, re, im, &largest));
   PetscCheck(largest > 0, d->comm, PETSC_ERR_USER_INPUT,
-             "-dynamics_shape_mode %" PetscInt_FMT " of -dynamics_shape %s has no real part", d->shape_mode, d->shape);
+             "-dynamics_shape_mode %" PetscInt_FMT " of -dynamics_shape %s does not move", d->shape_mode, d->shape);
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal scale = d->shape_amplitude / largest;
 
