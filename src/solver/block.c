@@ -8,18 +8,29 @@
 #include "lowrank.h"
 #include "shiftinvert.h"
 
+/* Whether columns lie apart on any rank: SLEPc rounds the leading dimension up, which some local rows need not */
+static PetscErrorCode BlockIsApart(Mat A, PetscBool *apart)
+{
+  PetscInt n_local, lda;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetLocalSize(A, &n_local, NULL));
+  PetscCall(MatDenseGetLDA(A, &lda));
+  *apart = n_local && lda != n_local ? PETSC_TRUE : PETSC_FALSE;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, apart, 1, MPIU_BOOL, MPI_LOR, PetscObjectComm((PetscObject)A)));
+  PetscFunctionReturn(0);
+}
+
 /* A itself, or on all ranks a matrix of its size whose columns follow one another, with A's values where copy asks */
 static PetscErrorCode BlockPack(Mat A, PetscBool copy, Mat *packed)
 {
-  PetscInt  n_local, n, n_columns, lda;
+  PetscInt  n_local, n, n_columns;
   PetscBool apart;
 
   PetscFunctionBeginUser;
   PetscCall(MatGetLocalSize(A, &n_local, &n));
   PetscCall(MatGetSize(A, NULL, &n_columns));
-  PetscCall(MatDenseGetLDA(A, &lda));
-  apart = n_local && lda != n_local ? PETSC_TRUE : PETSC_FALSE;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &apart, 1, MPIU_BOOL, MPI_LOR, PetscObjectComm((PetscObject)A)));
+  PetscCall(BlockIsApart(A, &apart));
   if (!apart) {
     PetscCall(PetscObjectReference((PetscObject)A));
     *packed = A;
@@ -146,16 +157,16 @@ PetscErrorCode ShiftInvertApplyRows(void *ctx, Mat rows, Mat X)
 /* B = X, or for factors of MUMPS, which copy the right-hand side into the solution first, a matrix on the array of X */
 static PetscErrorCode BlockRightSide(Mat F, Mat X, Mat *B)
 {
-  PetscInt     n_local, n_rows, n, lda;
+  PetscInt     n_local, n_rows, n;
   PetscScalar *x;
-  PetscBool    is_mumps;
+  PetscBool    is_mumps, apart;
 
   PetscFunctionBeginUser;
   PetscCall(BlockIsMumps(F, &is_mumps));
   PetscCall(MatGetLocalSize(X, &n_local, NULL));
   PetscCall(MatGetSize(X, &n_rows, &n));
-  PetscCall(MatDenseGetLDA(X, &lda));
-  if (!is_mumps || lda != n_local) {
+  PetscCall(BlockIsApart(X, &apart));
+  if (!is_mumps || apart) {
     PetscCall(MatDuplicate(X, MAT_COPY_VALUES, B));
     PetscFunctionReturn(0);
   }
