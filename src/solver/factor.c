@@ -9,6 +9,8 @@
 #include <petscksp.h>
 #include <petsc/private/petscimpl.h> /* PetscObjectStateGet() */
 
+#define WORKSPACE_MOST 1000 /* percent that MUMPS may have beyond its estimate before it is given up */
+
 /* The stiffness that is factored: the symmetric part where friction is put on by an update */
 static Mat ShiftInvertStiffness(const ShiftInvert *si, const PencilMatrices *pencil)
 {
@@ -120,24 +122,26 @@ static PetscErrorCode ShiftInvertCheck(const ShiftInvert *si, PC pc, PetscBool *
 }
 
 /* Solver with MUMPS as default */
-static PetscErrorCode ShiftInvertCreateSolver(MPI_Comm comm, Mat A, PetscBool symmetric, PetscBool want_inertia,
-                                              KSP *ksp)
+static PetscErrorCode ShiftInvertCreateSolver(ShiftInvert *si, Mat A)
 {
   PC  pc;
   Mat F;
 
   PetscFunctionBeginUser;
-  PetscCall(KSPCreate(comm, ksp));
-  PetscCall(KSPSetOptionsPrefix(*ksp, "st_"));
-  PetscCall(KSPSetOperators(*ksp, A, A));
-  PetscCall(KSPSetType(*ksp, KSPPREONLY));
-  PetscCall(KSPGetPC(*ksp, &pc));
-  PetscCall(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
+  PetscCall(KSPCreate(si->comm, &si->ksp));
+  PetscCall(KSPSetOptionsPrefix(si->ksp, "st_"));
+  PetscCall(KSPSetOperators(si->ksp, A, A));
+  PetscCall(KSPSetType(si->ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(si->ksp, &pc));
+  PetscCall(PCSetType(pc, si->even ? PCCHOLESKY : PCLU));
   PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  PetscCall(KSPSetFromOptions(*ksp));
-  if (want_inertia) {
+  PetscCall(KSPSetFromOptions(si->ksp));
+  if (si->inertia || si->workspace) {
     PetscCall(PCFactorSetUpMatSolverType(pc));
     PetscCall(PCFactorGetMatrix(pc, &F));
+  }
+  if (si->workspace) PetscCall(MatMumpsSetIcntl(F, 14, si->workspace));
+  if (si->inertia) {
     PetscCall(MatMumpsSetIcntl(F, 13, 1)); /* MUMPS counts negative pivots of the root only without ScaLAPACK */
     PetscCall(MatMumpsSetIcntl(F, 24, 1)); /* null pivots are counted, INFOG(28), instead of an error */
   }
@@ -177,7 +181,7 @@ PetscErrorCode ShiftInvertPrepare(const PencilMatrices *pencil, ShiftInvert *si)
   if (keeps) {
     PetscCall(KSPSetOperators(si->ksp, A, A));
   } else {
-    PetscCall(ShiftInvertCreateSolver(si->comm, A, si->even, si->inertia, &si->ksp));
+    PetscCall(ShiftInvertCreateSolver(si, A));
     PetscCall(ShiftInvertAnalyse(si, A, &si->cost));
   }
   PetscCall(ShiftInvertRemember(pencil, si));
@@ -185,14 +189,42 @@ PetscErrorCode ShiftInvertPrepare(const PencilMatrices *pencil, ShiftInvert *si)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ShiftInvertFactor(const PencilMatrices *pencil, ShiftInvert *si, PetscBool *singular)
+/* Whether MUMPS is to be given more workspace than it estimated, INFOG(1) = -8 or -9, as several ranks on small matrices
+   need; then si->workspace is raised and the factors are gone. What -st_mat_mumps_icntl_14 says stays */
+static PetscErrorCode ShiftInvertWantsSpace(ShiftInvert *si, PC pc, PetscBool *wants)
 {
-  PC pc;
+  MatSolverType type;
+  PetscInt      info = 0, percent;
+  Mat           F;
 
   PetscFunctionBeginUser;
-  PetscCall(ShiftInvertPrepare(pencil, si));
-  PetscCall(KSPSetUp(si->ksp));
-  PetscCall(KSPGetPC(si->ksp, &pc));
+  *wants = PETSC_FALSE;
+  PetscCall(PCFactorGetMatSolverType(pc, &type));
+  if (type) PetscCall(PetscStrcmp(type, MATSOLVERMUMPS, wants));
+  if (!*wants) PetscFunctionReturn(0);
+  PetscCall(PCFactorGetMatrix(pc, &F));
+  PetscCall(MatMumpsGetInfog(F, 1, &info));
+  PetscCall(MatMumpsGetIcntl(F, 14, &percent));
+  PetscCall(PetscOptionsHasName(NULL, "st_", "-mat_mumps_icntl_14", wants));
+  *wants = !*wants && (info == -8 || info == -9) && percent < WORKSPACE_MOST ? PETSC_TRUE : PETSC_FALSE;
+  if (!*wants) PetscFunctionReturn(0);
+  si->workspace = PetscMax(100, 4 * percent);
+  PetscCall(KSPDestroy(&si->ksp));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertFactor(const PencilMatrices *pencil, ShiftInvert *si, PetscBool *singular)
+{
+  PetscBool again = PETSC_TRUE;
+  PC        pc;
+
+  PetscFunctionBeginUser;
+  while (again) {
+    PetscCall(ShiftInvertPrepare(pencil, si));
+    PetscCall(KSPSetUp(si->ksp));
+    PetscCall(KSPGetPC(si->ksp, &pc));
+    PetscCall(ShiftInvertWantsSpace(si, pc, &again));
+  }
   PetscCall(ShiftInvertCheck(si, pc, singular));
   si->factored = *singular ? PETSC_FALSE : PETSC_TRUE;
   if (*singular) PetscCall(KSPDestroy(&si->ksp));

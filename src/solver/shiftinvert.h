@@ -27,6 +27,7 @@ typedef struct ShiftInvert {
   PetscBool factored;        /* there are factors, not the analysis alone */
   PetscBool released;        /* the matrix is not there any more */
   PetscBool even;            /* the matrix that is factored is symmetric: LDL' */
+  PetscInt  workspace;       /* of MUMPS beyond its estimate, percent; 0: its own choice, which is raised where it fails */
   Mat       term[3];         /* K, C, M of it */
   PetscObjectState pattern[3], values[3]; /* of those */
   Vec              trial[3];  /* what solutions are checked by: w at random, A' w and A w, A with its update */

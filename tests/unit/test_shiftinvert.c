@@ -105,19 +105,21 @@ static PetscErrorCode Difference(Mat X, Mat Y, PetscReal *largest)
 }
 
 /* Breaks when: MUMPS is handed columns that lie apart, which it takes for columns that follow one another; the right
-   side is overwritten */
-static PetscErrorCode TestSolve(PetscBool symmetric, PetscBool transposed, const PetscInt apart[2], int *failed)
+   side is overwritten; factors for which MUMPS estimates too little workspace, here by -workspace percent, are an error
+   instead of made with more */
+static PetscErrorCode TestSolve(PetscBool symmetric, PetscBool transposed, PetscInt workspace, const PetscInt apart[2],
+                                int *failed)
 {
   PencilMatrices pencil;
   PetscScalar   *memory[4];
   PetscReal      worst[2];
-  ShiftInvert    si;
   Progress       progress = {0};
+  ShiftInvert    si       = {.progress = &progress, .workspace = workspace};
   Mat            B, Copy, X, Y;
 
   PetscFunctionBeginUser;
   PetscCall(MakePencil(symmetric, &pencil));
-  PetscCall(ShiftInvertCreate(&pencil, 0, PETSC_FALSE, &progress, &si));
+  PetscCall(ShiftInvertMove(&pencil, 0, &si));
   PetscCall(MakeDense(pencil.K, 2, &memory[0], &X));
   PetscCall(MakeDense(pencil.K, apart[0], &memory[1], &B));
   PetscCall(MakeDense(pencil.K, apart[1], &memory[2], &Y));
@@ -130,7 +132,8 @@ static PetscErrorCode TestSolve(PetscBool symmetric, PetscBool transposed, const
   PetscCall(Difference(B, Copy, &worst[1]));
   printf("     %s%s, columns %d and %d apart\n", symmetric ? "symmetric" : "unsymmetric",
          transposed ? ", transposed" : "", (int)apart[0], (int)apart[1]);
-  *failed += CheckClose("largest error of X", worst[0], 0, 1e-12) + CheckClose("change of B", worst[1], 0, 0);
+  *failed += CheckClose("largest error of X", worst[0], 0, 1e-12) + CheckClose("change of B", worst[1], 0, 0) +
+             CheckTrue("workspace is raised where it fails", (si.workspace > workspace) == (workspace < 0), si.workspace);
   PetscCall(ShiftInvertDestroy(&si));
   for (int i = 0; i < 4; i++) PetscCall(MatDestroy((Mat *[]){&X, &B, &Y, &Copy}[i]));
   for (int i = 0; i < 4; i++) PetscCall(PetscFree(memory[i]));
@@ -326,10 +329,11 @@ int main(int argc, char **argv)
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
   PetscCall(OrderingRegister());
   for (int i = 0; i < 4; i++) {
-    PetscCall(TestSolve(PETSC_TRUE, PETSC_FALSE, apart[i], &failed));
-    PetscCall(TestSolve(PETSC_FALSE, PETSC_FALSE, apart[i], &failed));
-    PetscCall(TestSolve(PETSC_FALSE, PETSC_TRUE, apart[i], &failed));
+    PetscCall(TestSolve(PETSC_TRUE, PETSC_FALSE, 0, apart[i], &failed));
+    PetscCall(TestSolve(PETSC_FALSE, PETSC_FALSE, 0, apart[i], &failed));
+    PetscCall(TestSolve(PETSC_FALSE, PETSC_TRUE, 0, apart[i], &failed));
   }
+  PetscCall(TestSolve(PETSC_FALSE, PETSC_FALSE, -90, apart[0], &failed));
   PetscCall(TestUpdate(2, PETSC_TRUE, &failed));
   PetscCall(TestUpdate(40, PETSC_FALSE, &failed));
   PetscCall(TestTrust(1, &failed));
