@@ -74,8 +74,9 @@ from served import served_program
 SOURCE = Path(__file__).resolve().parent.parent
 FINAL_SUFFIXES = {".csv", ".h5", ".xmf", ".bin", ".info"}
 # Open MPI 5 cannot be told to be quiet: remarks between dashes, each ended by a zero byte, which may come late; and now
-# and then a line of its daemon, "[host:pid] PMIX ERROR"
-MPIRUN_REMARK = re.compile(r"^-{40,}\n.*?^-{40,}$|^\[\S+:\d+\] PMIX ERROR[^\n]*$", re.MULTILINE | re.DOTALL)
+# and then a line of its daemon, "[host:pid] PMIX ERROR", or of libevent, "[warn] Epoll"
+MPIRUN_REMARK = re.compile(r"^-{40,}\n.*?^-{40,}$|^\[\S+:\d+\] PMIX ERROR[^\n]*$|^\[warn\] Epoll[^\n]*$",
+                           re.MULTILINE | re.DOTALL)
 SKIPPED = 77
 # Kernels of OpenBLAS, and what a processor must be able to do to run them
 CORES = {"Nehalem": "sse4_2", "Haswell": "avx2", "Zen": "avx2", "SkylakeX": "avx512vl"}
