@@ -23,49 +23,36 @@ static PetscErrorCode ScopeNeedsStatics(const Scope *s, PetscBool *needs)
   PetscFunctionReturn(0);
 }
 
-/* Raises an error for -`name`_`what` on the command line */
-static PetscErrorCode ScopeRefuse(MPI_Comm comm, const char name[], const char what[], const char why[])
-{
-  char option[256];
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_%s", name, what));
-  PetscCall(OptionsRefuse(comm, option, why));
-  PetscFunctionReturn(0);
-}
-
 /* What an interface reads and this analysis has no use for */
 static PetscErrorCode ScopeCheckContact(MPI_Comm comm, const Scope *s, const ContactInterface *c)
 {
-  static const char steady[] = "not used by -analysis static: the loads tell the forces, and nothing moves";
-  char              linear[256], other[256], exact[256];
-  const PetscBool   is_static = !s->modes && !s->transient ? PETSC_TRUE : PETSC_FALSE;
+  static const char steady[]   = "not used by -analysis static: the loads tell the forces, and nothing moves";
+  const PetscBool   constraint = c->law == CONTACT_CONSTRAINT ? PETSC_TRUE : PETSC_FALSE;
+  char              exact[256], stiff[256], lu[256], linear[256], given[256];
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(exact, sizeof(exact),
                           "not used by -analysis %s, whose contact is exact: no penalty, no linearisation",
                           s->analysis));
-  PetscCall(PetscSNPrintf(linear, sizeof(linear), "not used by modes without -%s_friction_damping", c->name));
-  PetscCall(PetscSNPrintf(other, sizeof(other), "not used beside -%s_rotation; give one", c->name));
-  if (Vec3Dot(c->rotation, c->rotation) > 0 && Vec3Dot(c->slip, c->slip) > 0)
-    PetscCall(ScopeRefuse(comm, c->name, "slip", other));
   PetscCall(
-    PetscSNPrintf(other, sizeof(other), "not used with -%s_law constraint, which is as stiff as can be", c->name));
-  if (!s->transient && c->law == CONTACT_CONSTRAINT && !c->identify) PetscCall(ScopeRefuse(comm, c->name, "kn", other));
-  if (!s->transient && c->law == CONTACT_CONSTRAINT) PetscCall(ScopeRefuse(comm, c->name, "kn_per_area", other));
-  PetscCall(PetscSNPrintf(other, sizeof(other), "not used with -%s_law constraint, which needs LU", c->name));
-  if (s->modes && c->law == CONTACT_CONSTRAINT) PetscCall(ScopeRefuse(comm, "operators", "factors", other));
-  if (s->transient && c->law == CONTACT_PENALTY) PetscCall(ScopeRefuse(comm, c->name, "law", exact));
-  if (s->transient) PetscCall(ScopeRefuse(comm, c->name, "kn", exact));
-  if (s->transient) PetscCall(ScopeRefuse(comm, c->name, "kn_per_area", exact));
-  if (s->transient) PetscCall(ScopeRefuse(comm, c->name, "friction_damping", exact));
-  if (s->transient) PetscCall(ScopeRefuse(comm, c->name, "force", exact));
-  if (is_static) PetscCall(ScopeRefuse(comm, c->name, "friction_damping", steady));
-  if (is_static) PetscCall(ScopeRefuse(comm, c->name, "force", steady));
-  if (is_static) PetscCall(ScopeRefuse(comm, c->name, "speed", steady));
-  if (is_static) PetscCall(ScopeRefuse(comm, c->name, "mu_slope", steady));
-  if (s->modes && !c->damping) PetscCall(ScopeRefuse(comm, c->name, "force", linear));
-  if (s->modes && !c->damping && c->mu_slope == 0) PetscCall(ScopeRefuse(comm, c->name, "speed", linear));
+    PetscSNPrintf(stiff, sizeof(stiff), "not used with -%s_law constraint, which is as stiff as can be", c->name));
+  PetscCall(PetscSNPrintf(lu, sizeof(lu), "not used with -%s_law constraint, which needs LU", c->name));
+  PetscCall(PetscSNPrintf(linear, sizeof(linear), "not used by modes without -%s_friction_damping", c->name));
+  PetscCall(PetscSNPrintf(given, sizeof(given), "not used beside -%s_rotation; give one", c->name));
+  if (Vec3Dot(c->rotation, c->rotation) > 0 && Vec3Dot(c->slip, c->slip) > 0)
+    PetscCall(OptionsRefuseOf(comm, c->name, "slip", given));
+  if (s->transient) {
+    if (!constraint) PetscCall(OptionsRefuseOf(comm, c->name, "law", exact));
+    PetscCall(OptionsRefuseOf(comm, c->name, "kn kn_per_area friction_damping force", exact));
+    PetscFunctionReturn(0);
+  }
+  if (constraint) PetscCall(OptionsRefuseOf(comm, c->name, c->identify ? "kn_per_area" : "kn kn_per_area", stiff));
+  if (!s->modes) {
+    PetscCall(OptionsRefuseOf(comm, c->name, "friction_damping force speed mu_slope", steady));
+    PetscFunctionReturn(0);
+  }
+  if (constraint) PetscCall(OptionsRefuse(comm, "-operators_factors", lu));
+  if (!c->damping) PetscCall(OptionsRefuseOf(comm, c->name, c->mu_slope == 0 ? "force speed" : "force", linear));
   PetscFunctionReturn(0);
 }
 
@@ -128,7 +115,7 @@ static PetscErrorCode ScopeCheckEigensolver(MPI_Comm comm, const Scope *s)
   PetscCall(ModesGetRoutes(s->linear, &may_project, &may_pep));
   if (!undamped && has_band && !may_project) {
     PetscCall(OptionsRefusePrefix(comm, "-eps_", pep_alone));
-    PetscCall(ScopeRefuse(comm, "operators", "factors", unsolved));
+    PetscCall(OptionsRefuse(comm, "-operators_factors", unsolved));
   }
   if (!damped) PetscCall(OptionsRefusePrefix(comm, "-pep_", "not used by modes without damping, which -eps_* solves"));
   if (!undamped && !may_pep)
@@ -142,12 +129,11 @@ static const char scope_still[] = "not used by -analysis static, where nothing m
 static PetscErrorCode ScopeCheckJoint(MPI_Comm comm, const ModelScene *scene, const Joint *joint)
 {
   PetscFunctionBeginUser;
-  PetscCall(ScopeRefuse(comm, joint->name, "viscosity", scope_still));
-  PetscCall(ScopeRefuse(comm, joint->name, "turn_viscosity", scope_still));
+  PetscCall(OptionsRefuseOf(comm, joint->name, "viscosity turn_viscosity", scope_still));
   if (!joint->is_point) PetscFunctionReturn(0);
-  PetscCall(ScopeRefuse(comm, joint->name, "inertia", scope_still));
+  PetscCall(OptionsRefuseOf(comm, joint->name, "inertia", scope_still));
   if (Vec3Dot(scene->gravity, scene->gravity) == 0)
-    PetscCall(ScopeRefuse(comm, joint->name, "mass", "not used by -analysis static without -model_gravity"));
+    PetscCall(OptionsRefuseOf(comm, joint->name, "mass", "not used by -analysis static without -model_gravity"));
   PetscFunctionReturn(0);
 }
 
@@ -155,14 +141,11 @@ static PetscErrorCode ScopeCheckJoint(MPI_Comm comm, const ModelScene *scene, co
 static PetscErrorCode ScopeCheckStill(MPI_Comm comm, const ModelScene *scene)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < scene->n_parts; i++) {
-    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "alpha", scope_still));
-    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "beta", scope_still));
-    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "loss_factor", scope_still));
-  }
+  for (PetscInt i = 0; i < scene->n_parts; i++)
+    PetscCall(OptionsRefuseOf(comm, scene->parts[i].name, "alpha beta loss_factor", scope_still));
   PetscCall(ScopeCheckDensity(comm, scene));
   for (PetscInt i = 0; i < scene->n_dashpots; i++)
-    PetscCall(ScopeRefuse(comm, scene->dashpots[i].name, scene->dashpots[i].quantity, scope_still));
+    PetscCall(OptionsRefuseOf(comm, scene->dashpots[i].name, scene->dashpots[i].quantity, scope_still));
   for (PetscInt i = 0; i < scene->n_joints; i++) PetscCall(ScopeCheckJoint(comm, scene, &scene->joints[i]));
   for (PetscInt i = 0; i < scene->n_points; i++) PetscCall(ScopeCheckJoint(comm, scene, &scene->points[i]));
   PetscFunctionReturn(0);
@@ -182,47 +165,32 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
                           "not used by -analysis %s; a contact's -..._kinematics turning turns its master",
                           s->analysis));
   PetscCall(ModelGetScene(s->model, &scene));
-  if (s->modes && !statics) PetscCall(ScopeRefuse(comm, "model", "gravity", all));
+  if (s->modes && !statics) PetscCall(OptionsRefuse(comm, "-model_gravity", all));
   if (!s->transient && !s->modes) PetscCall(ScopeCheckStill(comm, scene));
   for (PetscInt i = 0; i < scene->n_parts && !s->modes; i++)
-    PetscCall(ScopeRefuse(comm, scene->parts[i].name, "spin", s->transient ? turning : unloaded));
+    PetscCall(OptionsRefuseOf(comm, scene->parts[i].name, "spin", s->transient ? turning : unloaded));
   for (PetscInt i = 0; i < scene->n_probes && !s->transient && !s->frf; i++)
-    PetscCall(ScopeRefuse(comm, scene->probes[i].name, "at", no_probe));
+    PetscCall(OptionsRefuseOf(comm, scene->probes[i].name, "at", no_probe));
   for (PetscInt i = 0; i < scene->n_circles && !s->transient && !s->frf; i++)
-    PetscCall(ScopeRefuse(comm, scene->circles[i].name, "radius", no_probe));
-  for (PetscInt i = 0; i < scene->n_loads && s->modes && !statics; i++) {
-    PetscCall(ScopeRefuse(comm, scene->loads[i].name, "force", all));
-    PetscCall(ScopeRefuse(comm, scene->loads[i].name, "pressure", all));
-    PetscCall(ScopeRefuse(comm, scene->loads[i].name, "set", all));
-    PetscCall(ScopeRefuse(comm, scene->loads[i].name, "point", all));
-    PetscCall(ScopeRefuse(comm, scene->loads[i].name, "moment", all));
-  }
+    PetscCall(OptionsRefuseOf(comm, scene->circles[i].name, "radius", no_probe));
+  for (PetscInt i = 0; i < scene->n_loads && s->modes && !statics; i++)
+    PetscCall(OptionsRefuseOf(comm, scene->loads[i].name, "force pressure set point moment", all));
   PetscFunctionReturn(0);
 }
 
 /* What runs in time leave out: what TS reads for integrators that are implicit or choose their steps, another mass */
 static PetscErrorCode ScopeCheckIntegrator(MPI_Comm comm, const Scope *s)
 {
-  static const char *const others[] = {"-ts_rtol",      "-ts_atol",         "-ts_adapt_",   "-ts_max_reject",
-                                       "-ts_max_snes_", "-ts_error_if_",    "-ts_fd_color", "-ts_use_splitrhs",
-                                       "-ts_time_span", "-ts_rhs_jacobian_"};
-  char                     why[160];
+  static const char others[] = "-ts_rtol -ts_atol -ts_adapt_ -ts_max_reject -ts_max_snes_ -ts_error_if_ -ts_fd_color "
+                               "-ts_use_splitrhs -ts_time_span -ts_rhs_jacobian_";
+  char              why[160];
 
   PetscFunctionBeginUser;
   PetscCall(
     PetscSNPrintf(why, sizeof(why), "not used, the steps of -analysis %s are explicit and of one length", s->analysis));
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(others); i++) PetscCall(OptionsRefusePrefix(comm, others[i], why));
+  PetscCall(OptionsRefusePrefix(comm, others, why));
   PetscCall(PetscSNPrintf(why, sizeof(why), "not used by -analysis %s, whose mass is lumped", s->analysis));
-  PetscCall(ScopeRefuse(comm, "operators", "mass", why));
-  PetscFunctionReturn(0);
-}
-
-/* What modes alone read of the matrices */
-static PetscErrorCode ScopeCheckSymmetry(MPI_Comm comm, const Scope *s)
-{
-  PetscFunctionBeginUser;
-  if (s->transient || s->frf)
-    PetscCall(OptionsRefuse(comm, "-symmetry", "used by -analysis modes, sweep and static alone; leave it out"));
+  PetscCall(OptionsRefuse(comm, "-operators_mass", why));
   PetscFunctionReturn(0);
 }
 
@@ -236,11 +204,12 @@ static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool st
   if (s->model) PetscCall(ScopeCheckModel(comm, s, statics));
   if (s->contact) PetscCall(ContactGetInterfaces(s->contact, &n, &interfaces));
   for (PetscInt i = 0; i < n; i++) PetscCall(ScopeCheckContact(comm, s, &interfaces[i]));
-  PetscCall(ScopeCheckSymmetry(comm, s));
+  if (s->transient || s->frf)
+    PetscCall(OptionsRefuse(comm, "-symmetry", "used by -analysis modes, sweep and static alone; leave it out"));
   if (s->modes && !s->frf) PetscCall(ScopeCheckEigensolver(comm, s)); /* which takes both */
   if (s->transient) PetscCall(ScopeCheckIntegrator(comm, s));
-  if (!s->transient && !s->modes) PetscCall(ScopeRefuse(comm, "operators", "mass", "not used by -analysis static"));
-  if (!s->modes) PetscCall(ScopeRefuse(comm, "operators", "factors", "used by modes, sweeps and frequency responses"));
+  if (!s->transient && !s->modes) PetscCall(OptionsRefuse(comm, "-operators_mass", "not used by -analysis static"));
+  if (!s->modes) PetscCall(OptionsRefuse(comm, "-operators_factors", "used by modes, sweeps and frequency responses"));
   PetscFunctionReturn(0);
 }
 

@@ -195,12 +195,15 @@ PetscErrorCode OptionsGetBool(OptionsItems PetscOptionsObject, const char option
     OptionsGetViewer() has read it, and for a list of numbers with an empty item. Collective; when every room has read its options. @*/
 PetscErrorCode OptionsCheckValues(MPI_Comm comm);
 
-/*@ OptionsRefuse - raises an error where the option, such as "-contact_kn", stands on the command line; why ends the
-    message. For what is read, and has no effect. Collective. @*/
-PetscErrorCode OptionsRefuse(MPI_Comm comm, const char option[], const char why[]);
+/*@ OptionsRefuse - raises an error where one of the options, such as "-contact_kn -contact_law", stands on the command
+    line; why ends the message. For what is read, and has no effect. Collective. @*/
+PetscErrorCode OptionsRefuse(MPI_Comm comm, const char options[], const char why[]);
 
-/*@ OptionsRefusePrefix - the same of all options that begin so, such as "-pep_". Collective. @*/
-PetscErrorCode OptionsRefusePrefix(MPI_Comm comm, const char prefix[], const char why[]);
+/*@ OptionsRefuseOf - the same of the options of one owner: "contact", "kn law". Collective. @*/
+PetscErrorCode OptionsRefuseOf(MPI_Comm comm, const char owner[], const char names[], const char why[]);
+
+/*@ OptionsRefusePrefix - the same of all options that begin so, such as "-pep_ -eps_". Collective. @*/
+PetscErrorCode OptionsRefusePrefix(MPI_Comm comm, const char prefixes[], const char why[]);
 
 /*@ OptionsCommandGives - whether the command line itself gives an option, whose name has no dash here. Not collective.
     @*/

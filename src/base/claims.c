@@ -61,17 +61,41 @@ static PetscErrorCode ArgumentsRefuse(MPI_Comm comm, const char option[], size_t
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsRefuse(MPI_Comm comm, const char option[], const char why[])
+/* The same of each word after `begin`; whole = 1 for names, 0 for what names begin with */
+static PetscErrorCode ArgumentsRefuseEach(MPI_Comm comm, const char begin[], const char words[], size_t whole,
+                                          const char why[])
 {
+  char option[256];
+
   PetscFunctionBeginUser;
-  PetscCall(ArgumentsRefuse(comm, option, strlen(option) + 1, why));
+  for (const char *word = words; *word; word += strcspn(word, " "), word += strspn(word, " ")) {
+    PetscCall(PetscSNPrintf(option, sizeof(option), "%s%.*s", begin, (int)strcspn(word, " "), word));
+    PetscCall(ArgumentsRefuse(comm, option, strlen(option) + whole, why));
+  }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsRefusePrefix(MPI_Comm comm, const char prefix[], const char why[])
+PetscErrorCode OptionsRefuse(MPI_Comm comm, const char options[], const char why[])
 {
   PetscFunctionBeginUser;
-  PetscCall(ArgumentsRefuse(comm, prefix, strlen(prefix), why));
+  PetscCall(ArgumentsRefuseEach(comm, "", options, 1, why));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsRefuseOf(MPI_Comm comm, const char owner[], const char names[], const char why[])
+{
+  char begin[256];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(begin, sizeof(begin), "-%s_", owner));
+  PetscCall(ArgumentsRefuseEach(comm, begin, names, 1, why));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsRefusePrefix(MPI_Comm comm, const char prefixes[], const char why[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(ArgumentsRefuseEach(comm, "", prefixes, 0, why));
   PetscFunctionReturn(0);
 }
 

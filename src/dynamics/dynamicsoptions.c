@@ -33,8 +33,9 @@ static PetscErrorCode DynamicsStartFromOptions(Dynamics d, OptionsItems PetscOpt
                             &d->shape_mode, NULL));
   PetscCall(PetscOptionsReal("-dynamics_shape_amplitude", "its largest displacement, m", "dynamics.h",
                              d->shape_amplitude, &d->shape_amplitude, NULL));
-  if (!d->shape[0]) PetscCall(OptionsRefuse(d->comm, "-dynamics_shape_mode", "not used without -dynamics_shape"));
-  if (!d->shape[0]) PetscCall(OptionsRefuse(d->comm, "-dynamics_shape_amplitude", "not used without -dynamics_shape"));
+  if (!d->shape[0])
+    PetscCall(
+      OptionsRefuse(d->comm, "-dynamics_shape_mode -dynamics_shape_amplitude", "not used without -dynamics_shape"));
   d->start = (DynamicsStart)start;
   PetscFunctionReturn(0);
 }

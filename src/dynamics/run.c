@@ -8,16 +8,14 @@
    command line */
 static PetscErrorCode RunRefuse(Dynamics d, const char by[])
 {
-  static const char *const idle[]     = {"-ts_central_b",    "-dynamics_step_fraction", "-dynamics_step_force",
-                                         "-dynamics_kernel", "-projector_max_it",       "-projector_rtol"};
-  static const char *const prefixes[] = {"-ts_monitor", "-ts_view", "-ts_adapt_", "-ts_trajectory_", "-ts_event_"};
-  char                     why[160];
+  static const char idle[] =
+    "-ts_central_b -dynamics_step_fraction -dynamics_step_force -dynamics_kernel -projector_max_it -projector_rtol";
+  char why[160];
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(why, sizeof(why), "not used by %s", by));
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(idle); i++) PetscCall(OptionsRefuse(d->comm, idle[i], why));
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(prefixes); i++)
-    PetscCall(OptionsRefusePrefix(d->comm, prefixes[i], why));
+  PetscCall(OptionsRefuse(d->comm, idle, why));
+  PetscCall(OptionsRefusePrefix(d->comm, "-ts_monitor -ts_view -ts_adapt_ -ts_trajectory_ -ts_event_", why));
   PetscCheck(!d->coriolis && !d->centrifugal, d->comm, PETSC_ERR_SUP,
              "%s knows no inertial forces of parts that turn: leave out -dynamics_coriolis and -dynamics_centrifugal",
              by);

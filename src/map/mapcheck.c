@@ -11,20 +11,13 @@ static const char nothing[] =
 /* What a transient reads, and what the command line says of places that are looked at */
 static PetscErrorCode CheckIdle(Map map, const ModelScene *scene)
 {
-  static const char *const idle[] = {"-dynamics_compare", "-dynamics_growth_rtol"};
-  char                     option[256];
-
   PetscFunctionBeginUser;
   PetscCall(ReducedRefuseIdle(map->comm, map->operators, nothing));
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(idle); i++) PetscCall(OptionsRefuse(map->comm, idle[i], nothing));
-  for (PetscInt i = 0; i < scene->n_probes; i++) {
-    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_at", scene->probes[i].name));
-    PetscCall(OptionsRefuse(map->comm, option, nothing));
-  }
-  for (PetscInt i = 0; i < scene->n_circles; i++) {
-    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_radius", scene->circles[i].name));
-    PetscCall(OptionsRefuse(map->comm, option, nothing));
-  }
+  PetscCall(OptionsRefuse(map->comm, "-dynamics_compare -dynamics_growth_rtol", nothing));
+  for (PetscInt i = 0; i < scene->n_probes; i++)
+    PetscCall(OptionsRefuseOf(map->comm, scene->probes[i].name, "at", nothing));
+  for (PetscInt i = 0; i < scene->n_circles; i++)
+    PetscCall(OptionsRefuseOf(map->comm, scene->circles[i].name, "radius", nothing));
   PetscFunctionReturn(0);
 }
 

@@ -13,8 +13,8 @@ PetscErrorCode ReducedCreate(MPI_Comm comm, ReducedRun *reduced)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(reduced));
-  (*reduced)->comm    = comm;
-  (*reduced)->compare = PETSC_TRUE;
+  (*reduced)->comm        = comm;
+  (*reduced)->compare     = PETSC_TRUE;
   (*reduced)->growth_rtol = GROWTH_RTOL;
   PetscFunctionReturn(0);
 }
@@ -47,10 +47,9 @@ PetscErrorCode ReducedSetFromOptions(ReducedRun r)
   r->asked = model == 1 ? PETSC_TRUE : PETSC_FALSE;
   if (r->cutoff > 0)
     PetscCall(OptionsRefuse(r->comm, "-dynamics_growth_rtol", "not used where -dynamics_cutoff says the cut-off"));
-  if (!r->asked) PetscCall(OptionsRefuse(r->comm, "-dynamics_cutoff", "not used without " BY));
-  if (!r->asked) PetscCall(OptionsRefuse(r->comm, "-dynamics_growth_rtol", "not used without " BY));
-  if (!r->asked) PetscCall(OptionsRefuse(r->comm, "-dynamics_compare", "not used without " BY));
-  if (!r->asked) PetscCall(OptionsRefuse(r->comm, "-dynamics_verify", "not used without " BY));
+  if (!r->asked)
+    PetscCall(OptionsRefuse(r->comm, "-dynamics_cutoff -dynamics_growth_rtol -dynamics_compare -dynamics_verify",
+                            "not used without " BY));
   PetscFunctionReturn(0);
 }
 

@@ -32,64 +32,33 @@ PetscErrorCode ReducedRefuse(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
-/* Refuses -<owner>_<what> */
-static PetscErrorCode IdleCheck(MPI_Comm comm, const char owner[], const char what[], const char why[])
+PetscErrorCode ReducedRefuseIdle(MPI_Comm comm, Operators operators, const char why[])
 {
-  char option[256];
+  static const char idle[]  = "-dynamics_start -dynamics_shape -dynamics_history_interval -dynamics_pairs_interval "
+                              "-dynamics_snapshot_interval -dynamics_live -dynamics_restart "
+                              "-dynamics_checkpoint_interval -dynamics_check_interval -dynamics_verify "
+                              "-contact_view_kkt -ts_max_steps";
+  static const char ramps[] = "ramp ramp_shape delay";
+  const ModelScene *scene;
+  const ContactInterface *c;
+  PetscInt                n;
+  Model                   model;
+  Contact                 contact;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_%s", owner, what));
-  PetscCall(OptionsRefuse(comm, option, why));
-  PetscFunctionReturn(0);
-}
-
-/* Ramps of loads and of sliding, velocities at the start */
-static PetscErrorCode IdleCheckScene(MPI_Comm comm, Operators operators, const char why[])
-{
-  static const char *const ramps[] = {"ramp", "ramp_shape", "delay"};
-  const ModelScene        *scene;
-  const ContactInterface  *c;
-  PetscInt                 n;
-  Model                    model;
-  Contact                  contact;
-
-  PetscFunctionBeginUser;
+  PetscCall(OptionsRefuse(comm, idle, why));
   PetscCall(OperatorsGetModel(operators, &model, &contact));
   PetscCall(ModelGetScene(model, &scene));
   PetscCall(ContactGetInterfaces(contact, &n, &c));
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(ramps); k++) {
-    for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(IdleCheck(comm, scene->loads[i].name, ramps[k], why));
-    for (PetscInt i = 0; i < n; i++) PetscCall(IdleCheck(comm, c[i].name, ramps[k], why));
-  }
-  for (PetscInt i = 0; i < scene->n_parts; i++) PetscCall(IdleCheck(comm, scene->parts[i].name, "velocity", why));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ReducedRefuseIdle(MPI_Comm comm, Operators operators, const char why[])
-{
-  static const char *const idle[] = {"-dynamics_start",
-                                     "-dynamics_shape",
-                                     "-dynamics_history_interval",
-                                     "-dynamics_pairs_interval",
-                                     "-dynamics_snapshot_interval",
-                                     "-dynamics_live",
-                                     "-dynamics_restart",
-                                     "-dynamics_checkpoint_interval",
-                                     "-dynamics_check_interval",
-                                     "-dynamics_verify",
-                                     "-contact_view_kkt",
-                                     "-ts_max_steps"};
-
-  PetscFunctionBeginUser;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(idle); i++) PetscCall(OptionsRefuse(comm, idle[i], why));
-  PetscCall(IdleCheckScene(comm, operators, why));
+  for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(OptionsRefuseOf(comm, scene->loads[i].name, ramps, why));
+  for (PetscInt i = 0; i < n; i++) PetscCall(OptionsRefuseOf(comm, c[i].name, ramps, why));
+  for (PetscInt i = 0; i < scene->n_parts; i++) PetscCall(OptionsRefuseOf(comm, scene->parts[i].name, "velocity", why));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ReducedRefuseImpulses(ReducedRun r, const char why[])
 {
-  static const char *const parts[] = {"at", "part", "impulse", "time"};
-  PetscInt                 n;
+  PetscInt n;
 
   PetscFunctionBeginUser;
   PetscCall(OptionsRefuse(r->comm, "-impulses", why));
@@ -98,8 +67,7 @@ PetscErrorCode ReducedRefuseImpulses(ReducedRun r, const char why[])
     ExternalHit hit;
 
     PetscCall(ExternalGetHit(r->run.external, i, &hit));
-    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(parts); k++)
-      PetscCall(IdleCheck(r->comm, hit.name, parts[k], why));
+    PetscCall(OptionsRefuseOf(r->comm, hit.name, "at part impulse time", why));
   }
   PetscFunctionReturn(0);
 }
