@@ -1,15 +1,16 @@
 /* Views of the objects of a run: -model_view and its like, and -squeal_view for all */
 #include "chain.h"
 
-#define MODAL  (1 << ANALYSIS_MODES | 1 << ANALYSIS_FRF)
-#define LINEAR (MODAL | 1 << ANALYSIS_SWEEP)
+#define MODAL   (1 << ANALYSIS_MODES | 1 << ANALYSIS_FRF)
+#define LINEAR  (MODAL | 1 << ANALYSIS_SWEEP)
+#define AT_REST (LINEAR | 1 << ANALYSIS_STATIC)
 
 static const struct {
   const char *option, *help;
   unsigned    in; /* bits of the analyses that have something to show */
 } shown[N_SHOWN] = {
   [SHOWN_MODEL]     = {"-model_view",     "show mesh, parts, supports, springs and loads",           (1 << N_ANALYSES) - 1  },
-  [SHOWN_CONTACT]   = {"-contact_view",   "show interfaces and their pairs",                         7 | LINEAR             },
+  [SHOWN_CONTACT]   = {"-contact_view",   "show interfaces and their pairs",                         AT_REST                },
   [SHOWN_OPERATORS] = {"-operators_view", "show the pencil of modes and sweeps, and its parameters", LINEAR                 },
   [SHOWN_STATICS]   = {"-statics_view",   "show the equilibrium",                                    1 << ANALYSIS_STATIC   },
   [SHOWN_MODES]     = {"-modes_view",     "show the modes found",                                    MODAL                  },
@@ -19,6 +20,12 @@ static const struct {
   [SHOWN_DYNAMICS]  = {"-dynamics_view",  "show bodies, step and balances of a run in time",         1 << ANALYSIS_TRANSIENT},
   [SHOWN_CYCLE]     = {"-cycle_view",     "show cycles, their stability and errors",                 1 << ANALYSIS_CYCLE    },
 };
+
+/* Whether the analysis has something to show there */
+static PetscBool ChainShows(const Chain *chain, Shown what)
+{
+  return shown[what].in >> chain->analysis & 1 ? PETSC_TRUE : PETSC_FALSE;
+}
 
 PetscErrorCode ChainGetViewers(MPI_Comm comm, Chain *chain)
 {
@@ -32,7 +39,7 @@ PetscErrorCode ChainCheckViewers(MPI_Comm comm, const Chain *chain)
 {
   PetscFunctionBeginUser;
   for (int i = 0; i < N_SHOWN; i++)
-    if (chain->viewer[i] && !(shown[i].in >> chain->analysis & 1))
+    if (chain->viewer[i] && !ChainShows(chain, (Shown)i))
       PetscCall(OptionsRefuse(comm, shown[i].option, "this analysis has nothing to show there"));
   PetscFunctionReturn(0);
 }
@@ -82,8 +89,7 @@ PetscErrorCode ChainView(Chain *chain)
 {
   PetscFunctionBeginUser;
   if (chain->model) PetscCall(ChainShow(chain, SHOWN_MODEL, chain->view));
-  if (chain->contact && chain->analysis != ANALYSIS_TRANSIENT && chain->analysis < ANALYSIS_MAP)
-    PetscCall(ChainShow(chain, SHOWN_CONTACT, chain->view));
-  if (LINEAR >> chain->analysis & 1) PetscCall(ChainShow(chain, SHOWN_OPERATORS, chain->view));
+  if (chain->contact && ChainShows(chain, SHOWN_CONTACT)) PetscCall(ChainShow(chain, SHOWN_CONTACT, chain->view));
+  if (ChainShows(chain, SHOWN_OPERATORS)) PetscCall(ChainShow(chain, SHOWN_OPERATORS, chain->view));
   PetscFunctionReturn(0);
 }

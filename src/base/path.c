@@ -4,6 +4,7 @@
 */
 #include "path.h"
 #include <squeal/options.h>
+#include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -110,4 +111,17 @@ int PathMakeFolders(const char dir[])
   if (stat(path, &status)) return errno;
   if (!S_ISDIR(status.st_mode)) return ENOTDIR;
   return access(path, W_OK | X_OK) ? errno : 0;
+}
+
+void PathForget(const char dir[], const char begin[])
+{
+  DIR *folder = opendir(dir);
+  char name[PETSC_MAX_PATH_LEN];
+
+  for (const struct dirent *file; folder && (file = readdir(folder));) {
+    if (strncmp(file->d_name, begin, strlen(begin)) != 0) continue;
+    (void)snprintf(name, sizeof(name), "%s/%s", dir, file->d_name);
+    (void)unlink(name);
+  }
+  if (folder) (void)closedir(folder);
 }

@@ -37,14 +37,6 @@ static inline double RampValue(const Ramp *ramp, double t)
   return ramp->shape == RAMP_SMOOTH ? 0.5 * (1 - cos(RAMP_PI * x)) : x;
 }
 
-static inline double RampRate(const Ramp *ramp, double t)
-{
-  const double x = RampPlace(ramp, t);
-
-  if (t < ramp->delay || x >= 1) return 0;
-  return (ramp->shape == RAMP_SMOOTH ? 0.5 * RAMP_PI * sin(RAMP_PI * x) : 1) / ramp->length;
-}
-
 static inline double RampIntegral(const Ramp *ramp, double t)
 {
   const double x      = RampPlace(ramp, t);

@@ -179,7 +179,10 @@ PetscErrorCode FrfSolveDirect(Frf frf)
     PetscCall(ProgressStep(&frf->progress));
   }
   PetscCall(ProgressEnd(&frf->progress));
-  for (Vec *v = &d.b; v <= &d.diagonal; v++) PetscCall(VecDestroy(v));
+  PetscCall(VecDestroy(&d.b));
+  PetscCall(VecDestroy(&d.u));
+  PetscCall(VecDestroy(&d.r));
+  PetscCall(VecDestroy(&d.diagonal));
   PetscCall(VecDestroyVecs(frf->n_outputs, &d.l));
   PetscCall(VecDestroyVecs(frf->n_outputs, &d.z));
   PetscCall(FrfFindPeaks(frf, NULL));

@@ -36,7 +36,7 @@ struct _p_Frf {
   PetscReal *impulse; /* [n_times][n_outputs] m/(N s) */
   PetscInt   n_peaks;
   FrfPeak   *peak;
-  PetscInt   n_steps, n_vectors, n_solves, n_factors; /* of the residual term; of the direct method */
+  PetscInt   n_steps, n_vectors, n_solves; /* of the residual term */
   Progress   progress;
 };
 

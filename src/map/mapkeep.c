@@ -6,10 +6,9 @@
    file of their own, of which the chain's knows number and checksum.
 */
 #include "mapimpl.h"
+#include "base/path.h"
 #include <squeal/checksum.h>
-#include <dirent.h>
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 #define KEEP_VERSION  3
@@ -269,20 +268,11 @@ PetscErrorCode MapResumeBodies(Map map, PetscInt line, MapBodies *b, PetscBool *
 /* Takes away what this map and killed ones before it have kept in the folder */
 PetscErrorCode MapForget(Map map)
 {
-  static const char begin[] = "map_restart_";
-  char              name[PETSC_MAX_PATH_LEN];
-  PetscMPIInt       rank;
-  DIR              *folder = NULL;
+  PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Barrier(map->comm));
   PetscCallMPI(MPI_Comm_rank(map->comm, &rank));
-  if (!rank) folder = opendir(map->folder);
-  for (const struct dirent *entry = folder ? readdir(folder) : NULL; entry; entry = readdir(folder)) {
-    if (strncmp(entry->d_name, begin, sizeof(begin) - 1) != 0) continue;
-    (void)snprintf(name, sizeof(name), "%s/%s", map->folder, entry->d_name);
-    (void)unlink(name);
-  }
-  if (folder) (void)closedir(folder);
+  if (!rank) PathForget(map->folder, "map_restart_");
   PetscFunctionReturn(0);
 }

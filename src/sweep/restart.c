@@ -7,9 +7,8 @@
    damaged ones are named, not read, and in the end replaced.
 */
 #include "sweepimpl.h"
-#include <dirent.h>
+#include "base/path.h"
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 #define VERSION         5       /* of the format */
@@ -326,19 +325,10 @@ PetscErrorCode SweepResume(Sweep sweep)
 
 PetscErrorCode SweepForget(Sweep sweep)
 {
-  static const char begin[] = "sweep_restart_";
-  char              name[PETSC_MAX_PATH_LEN];
-  PetscMPIInt       rank;
-  DIR              *folder = NULL;
+  PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(sweep->comm, &rank));
-  if (rank == 0 && sweep->restart && sweep->folder) folder = opendir(sweep->folder);
-  for (const struct dirent *file; folder && (file = readdir(folder));) {
-    if (strncmp(file->d_name, begin, strlen(begin)) != 0) continue;
-    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/%s", sweep->folder, file->d_name));
-    (void)unlink(name);
-  }
-  if (folder) (void)closedir(folder);
+  if (!rank && sweep->restart && sweep->folder) PathForget(sweep->folder, "sweep_restart_");
   PetscFunctionReturn(0);
 }

@@ -290,7 +290,8 @@ PetscErrorCode SweepSolve(Sweep sweep, Results results)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SweepDestroyResults(Sweep s)
+/* Frees results, but not what a part shares with the whole */
+static PetscErrorCode SweepDestroyResults(Sweep s)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; s->point && i < GridSize(&s->grid); i++) PetscCall(PetscFree(s->point[i].mode));

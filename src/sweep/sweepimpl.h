@@ -106,8 +106,6 @@ struct _p_Sweep {
 
 /* sweep.c - basis, points and what is asked of them, of the pencil of the sweep */
 PETSC_INTERN PetscErrorCode SweepReduced(Sweep sweep, PetscLogDouble *since);
-/* Frees results, but not what a part shares with the whole */
-PETSC_INTERN PetscErrorCode SweepDestroyResults(Sweep sweep);
 /* parity.c - a sweep for each parity, and all of them in one; what the parities share is proven before */
 PETSC_INTERN PetscErrorCode SweepParities(Sweep sweep);
 /* The names of the parities, once the pencil of some point is there; the number of one */

@@ -88,9 +88,7 @@ PETSC_INTERN PetscErrorCode ComplianceChordIterate(ContactCompliance c, Complian
 /* mix.c - l = G(x) becomes a combination of it and what the iterations before made of theirs */
 PETSC_INTERN void ComplianceMix(ContactCompliance c, PetscReal x[]);
 
-/* newton.c - one step on l, v; iterations, at most max_it; damped = with a line search; steps on what is solved, until
-   friction is along slip */
-PETSC_INTERN PetscErrorCode ComplianceStep(ContactCompliance c, PetscBool *singular);
+/* newton.c - iterations, at most max_it; damped = with a line search; steps on what is solved, until friction is along slip */
 PETSC_INTERN PetscErrorCode ComplianceIterate(ContactCompliance c, PetscBool damped, PetscInt max_it,
                                               ComplianceMiss *miss);
 PETSC_INTERN PetscErrorCode ComplianceRefine(ContactCompliance c, ComplianceMiss *miss);

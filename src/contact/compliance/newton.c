@@ -29,7 +29,8 @@ static PetscErrorCode NewtonFactor(ContactCompliance c, PetscBool *singular)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ComplianceStep(ContactCompliance c, PetscBool *singular)
+/* One step on l, v */
+static PetscErrorCode NewtonStep(ContactCompliance c, PetscBool *singular)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(c->l0, c->l, 3 * c->n));
@@ -113,7 +114,7 @@ PetscErrorCode ComplianceRefine(ContactCompliance c, ComplianceMiss *miss)
 
     if (NewtonDirection(c, miss) <= NEWTON_ALONG * c->rtol) break;
     PetscCall(PetscArraycpy(c->best, c->l, N));
-    PetscCall(ComplianceStep(c, &singular));
+    PetscCall(NewtonStep(c, &singular));
     ComplianceMeasure(c, miss);
     if (miss->largest < last.largest) continue;
     *miss = last;
@@ -138,7 +139,7 @@ PetscErrorCode ComplianceIterate(ContactCompliance c, PetscBool damped, PetscInt
   PetscCall(PetscArraycpy(c->best, c->l, 3 * c->n));
   for (PetscInt it = 0; it < max_it && hope && !ComplianceIsSolved(c, miss); it++) {
     memory.norm[memory.n++ % NEWTON_MEMORY] = miss->norm;
-    PetscCall(ComplianceStep(c, &singular));
+    PetscCall(NewtonStep(c, &singular));
     ComplianceMeasure(c, miss);
     if (damped) hope = NewtonShorten(c, NewtonLargest(&memory), miss);
     if (hope) PetscCall(NewtonKeep(c, miss, &best, &since, &hope));

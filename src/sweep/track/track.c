@@ -22,7 +22,8 @@ typedef struct {
   PetscInt      solved; /* in the present interval of the line */
 } Tracker;
 
-PetscErrorCode BranchEventsAdd(BranchEvents *events, const BranchEvent *event)
+/* Appends to events; a list begins as {0} */
+static PetscErrorCode BranchEventsAdd(BranchEvents *events, const BranchEvent *event)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscRealloc((events->n + 1) * sizeof(*event), &events->event));

@@ -64,8 +64,6 @@ PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const Red
    only. p = all parameters at b */
 PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], const BranchPoint *a, BranchPoint *b,
                          BranchEvents *events);
-/* Appends to events; a list begins as {0} */
-PetscErrorCode BranchEventsAdd(BranchEvents *events, const BranchEvent *event);
 PetscErrorCode BranchEventsDestroy(BranchEvents *events);
 
 /* onset.c - the critical value of an event on the reduced model, to rounding, and its estimated error; modes (may be
