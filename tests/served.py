@@ -57,22 +57,13 @@ def existing(name):
     return path
 
 
-class Served:
-    """The program behind a loop that forks: run() may be called from one thread at a time; `socket` is where others may ask as well."""
+class Line:
+    """A connection to the loop that starts the program: run() may be called from one thread at a time."""
 
-    def __init__(self, program, library, limit):
-        self.program, self.library, self.limit = str(program), Path(library), limit
-        self.folder = Path(tempfile.mkdtemp(prefix="squeal-served-"))
-        self.socket = str(self.folder / "socket")
-        preload = f"{library} {os.environ.get('LD_PRELOAD', '')}".strip()
-        with socket.socket(socket.AF_UNIX) as listener:
-            listener.bind(self.socket)
-            listener.listen(64)
-            environment = {**os.environ, **ONE_THREAD, "LD_PRELOAD": preload, "FAULT_SERVE": str(listener.fileno())}
-            self.loop = subprocess.Popen([self.program], env=environment, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
-                                         pass_fds=[listener.fileno()])
+    def __init__(self, program, address, folder, limit):
+        self.program, self.folder, self.limit = str(program), folder, limit
         self.connection = socket.socket(socket.AF_UNIX)
-        self.connection.connect(self.socket)
+        self.connection.connect(address)
 
     def read(self):
         data = self.connection.recv(4, socket.MSG_WAITALL)
@@ -95,10 +86,32 @@ class Served:
         said = [path.read_bytes().decode(errors="replace") for path in (stdout, stderr)]
         return Outcome(None if late else os.waitstatus_to_exitcode(status), *said)
 
-    def join(self, work, words, ranks):
+
+class Served(Line):
+    """The program behind a loop that forks, and a connection to it; `socket` is where others may ask as well."""
+
+    def __init__(self, program, library, limit):
+        self.library, folder = Path(library), Path(tempfile.mkdtemp(prefix="squeal-served-"))
+        self.socket = str(folder / "socket")
+        preload = f"{library} {os.environ.get('LD_PRELOAD', '')}".strip()
+        with socket.socket(socket.AF_UNIX) as listener:
+            listener.bind(self.socket)
+            listener.listen(64)
+            environment = {**os.environ, **ONE_THREAD, "LD_PRELOAD": preload, "FAULT_SERVE": str(listener.fileno())}
+            self.loop = subprocess.Popen([str(program)], env=environment, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                                         pass_fds=[listener.fileno()])
+        super().__init__(program, self.socket, folder, limit)
+
+    def line(self, name, limit):
+        """Another connection, whose runs have streams of their own."""
+        folder = self.folder / name
+        folder.mkdir(exist_ok=True)
+        return Line(self.program, self.socket, folder, limit)
+
+    def join(self, work, words, ranks, environment=()):
         """The same on several ranks, each a child of the loop."""
         command = [LAUNCHER, "-n", str(ranks), self.library.with_name("join"), self.program, *words]
-        return finish(command, work, self.limit, {"SQUEAL_SERVED": self.socket})
+        return finish(command, work, self.limit, {"SQUEAL_SERVED": self.socket, **dict(environment)})
 
     def end(self):
         self.connection.close()

@@ -9,9 +9,10 @@ results, in turn; from one write on, all of them, as on a full disk; or the run 
            as long as nothing new has taken its place
   later    the same command, going on from what a killed or stopped run has kept, ends with the results of an undisturbed run
 
-    fault.py build/squeal build/tests/libfault.so [--most 7] [--ranks 2] [--scene modes] [--kind memory] [--one N]
+    fault.py build/squeal build/tests/libfault.so [--most 7] [--ranks 2] [--scene modes] [--kind memory] [--one N] [--passed FILE]
 
---most takes an even sample of the calls. Exit status: 0, or 1."""
+On one rank the calls of a kind fail in copies of one run (branches.py). --most takes an even sample of the calls. With --passed a test
+that was stopped goes on. Exit status: 0, or 1."""
 
 import argparse
 import csv
@@ -30,6 +31,8 @@ import h5py
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 import scenes  # noqa: E402
 import served  # noqa: E402
+from branches import Branches  # noqa: E402
+from passed import Passed  # noqa: E402
 
 # Kinds of faults: calls that are counted, and the rest of the plan
 KINDS = {
@@ -92,24 +95,23 @@ def contents(folder, ranks):
 class Faults:
     """One scene, its undisturbed results, and what becomes of it when calls fail."""
 
-    def __init__(self, arguments, scene, folder):
-        self.arguments, self.scene, self.folder, self.ranks = arguments, scene, folder, arguments.ranks
+    def __init__(self, arguments, scene, folder, passed):
+        self.arguments, self.scene, self.folder, self.ranks, self.passed = arguments, scene, folder, arguments.ranks, passed
         folder.mkdir()
         scenes.make(folder)
         self.report = folder / "report"
-        self.serve = served.Served(arguments.squeal, arguments.library, arguments.limit) if self.ranks == 1 else None
+        self.serve = served.Served(arguments.squeal, arguments.library, arguments.limit)
         self.well = self.undisturbed()
         self.before = folder / "before"
         self.earlier = self.undisturbed(*EARLIER)
         (folder / "out").rename(self.before)
-        self.failed = 0
+        self.failed, self.numbers = 0, {}
 
     def run(self, environment, *more):
         words = (*self.scene.words, *more)
-        if self.serve:
+        if self.ranks == 1:
             return self.serve.run(self.folder, words, environment)
-        return served.launch(self.arguments.squeal, self.arguments.library, self.folder, words, environment, self.ranks,
-                             self.arguments.limit)
+        return self.serve.join(self.folder, words, self.ranks, environment)
 
     def undisturbed(self, *more):
         shutil.rmtree(self.folder / "out", ignore_errors=True)
@@ -118,13 +120,16 @@ class Faults:
             raise SystemExit(f"FAILED: {self.scene.name} without faults: {outcome.stderr}")
         return contents(self.folder / "out", self.ranks)
 
+    def lay_out(self):
+        """The folder of results as the earlier run left it."""
+        shutil.rmtree(self.folder / "out", ignore_errors=True)
+        shutil.copytree(self.before, self.folder / "out")
+
     def disturbed(self, kind, at):
-        """A run whose call number `at` of that kind fails; how it ended, and which call that was."""
+        """A run whose call number `at` of that kind fails, none for 0; how it ended, and which call that was."""
         calls, more = KINDS[kind]
-        out = self.folder / "out"
-        shutil.rmtree(out, ignore_errors=True)
-        shutil.copytree(self.before, out)
         rank = 1 if self.ranks > 1 and at % 2 == 0 and kind in ("memory", "library") else 0
+        self.lay_out()
         outcome = self.run(served.plan("out", self.report, calls, at, rank=rank, **more))
         return outcome, served.told(self.report)
 
@@ -178,23 +183,52 @@ class Faults:
         later = kind in ("kill", "stop") or (kind == "disk" and self.scene.goes_on)
         return wrong or (self.judge_later() if later else "")
 
-    def one(self, kind, at):
-        outcome, (_, failed, words) = self.disturbed(kind, at)
+    def note(self, kind, at, outcome, failed, words):
         wrong = self.judge(kind, outcome, failed)
         if wrong:
             self.failed += 1
             print(f"FAILED {self.scene.name}, {kind} {at}, {words}: {wrong}", flush=True)
-        elif self.arguments.list:
+            return
+        self.passed.add(f"{self.scene.name} {kind} {at}")
+        if self.arguments.list:
             print(f"{self.scene.name}, {kind} {at}, {words}: {outcome.status} {outcome.stderr.strip()}", flush=True)
 
-    def all(self, kind):
-        outcome, (n, _, _) = self.disturbed(kind, 0)
-        if outcome.status != 0 or n == 0:
-            raise SystemExit(f"FAILED: {self.scene.name}, {kind}: {n} calls, exit status {outcome.status}: {outcome.stderr}")
-        chosen = self.arguments.one or self.chosen(n)
+    def one_by_one(self, kind, chosen):
+        """A run for each call; how many came."""
         for at in chosen:
-            self.one(kind, at)
-        print(f"{self.scene.name}, {kind}: {n} calls, {len(chosen)} of them tried", flush=True)
+            outcome, (_, failed, words) = self.disturbed(kind, at)
+            self.note(kind, at, outcome, failed, words)
+        return len(chosen)
+
+    def in_copies(self, kind, chosen):
+        """All of them in copies of one run, which itself must end as if nothing had been; how many came."""
+        calls, more = KINDS[kind]
+        self.lay_out()
+        run, n = Branches(self.serve, self.folder, self.scene.words, served.plan("out", self.report, calls, 0, **more)), 0
+        for at, words, outcome in run.each(chosen):
+            self.note(kind, at, outcome, True, words)
+            n += 1
+        if run.outcome.status != 0 or contents(self.folder / "out", self.ranks) != self.well:
+            raise SystemExit(f"FAILED: {self.scene.name}, {kind}: the run itself changed, exit status {run.outcome.status}: "
+                             f"{run.outcome.stderr[-300:]}")
+        return n
+
+    def number(self, kind):
+        """How many calls of that kind a run makes."""
+        calls = KINDS[kind][0]
+        if calls not in self.numbers:
+            outcome, (self.numbers[calls], _, _) = self.disturbed(kind, 0)
+            if outcome.status != 0 or not self.numbers[calls]:
+                raise SystemExit(f"FAILED: {self.scene.name}, {kind}, undisturbed: exit status {outcome.status}: {outcome.stderr}")
+        return self.numbers[calls]
+
+    def all(self, kind):
+        n = self.number(kind)
+        wanted = self.arguments.one or self.chosen(n)
+        chosen = [at for at in wanted if f"{self.scene.name} {kind} {at}" not in self.passed]
+        before = len(wanted) - len(chosen)
+        tried = self.in_copies(kind, chosen) if self.ranks == 1 else self.one_by_one(kind, chosen)
+        print(f"{self.scene.name}, {kind}: {n} calls, {tried} of them tried{f', {before} before' if before else ''}", flush=True)
 
     def chosen(self, n):
         """Numbers of the calls to try: all, or an even sample whose places differ from scene to scene."""
@@ -203,8 +237,7 @@ class Faults:
         return sorted({1 + int((i + shift) * n / most) for i in range(most)})
 
     def end(self):
-        if self.serve:
-            self.serve.end()
+        self.serve.end()
 
 
 def main():
@@ -218,17 +251,19 @@ def main():
     parser.add_argument("--ranks", type=int, default=1)
     parser.add_argument("--limit", type=float, default=90, help="seconds a run may take")
     parser.add_argument("--list", action="store_true", help="say how each run ended")
+    parser.add_argument("--passed", type=Path, help="a file to note what passed, from which a test that was stopped goes on")
     arguments = parser.parse_args()
-    failed = 0
+    passed, failed = Passed(arguments.passed, arguments.squeal), 0
     with tempfile.TemporaryDirectory(prefix="squeal-fault-") as name:
         for scene in scenes.SCENES:
             if arguments.scene and scene.name not in arguments.scene:
                 continue
-            faults = Faults(arguments, scene, Path(name) / scene.name)
+            faults = Faults(arguments, scene, Path(name) / scene.name, passed)
             for kind in arguments.kind or ["memory", "files", "disk", "kill", "stop"]:
                 faults.all(kind)
             faults.end()
             failed += faults.failed
+    passed.end()
     print(f"{failed} faults not handled")
     return 1 if failed else 0
 

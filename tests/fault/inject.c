@@ -9,6 +9,7 @@
      FAULT_STAY    1: all calls after it fail as well, as on a full disk; the first write then takes half of its bytes
      FAULT_SIGNAL  a signal that the process gets before the call instead of a failure: 9 kills it there
      FAULT_RANK    rank of MPI whose calls count, 0 by default
+     FAULT_ASK     in place of FAULT_AT: a socket of a test that names the calls; at each the run copies itself (branch.c)
      FAULT_REPORT  file for the number of calls, whether one failed, and which one: int64, int64, text
 
    Allocations are told apart by who asks: the program itself (memory.c). serve.c starts the program again and again
@@ -67,7 +68,7 @@ static Report *ReportOpen(const char path[])
 
 void FaultSetUp(void)
 {
-  const char *path = getenv("FAULT_REPORT"), *rank = getenv("OMPI_COMM_WORLD_RANK");
+  const char *path = getenv("FAULT_REPORT"), *rank = getenv("OMPI_COMM_WORLD_RANK"), *ask = getenv("FAULT_ASK");
 
   if (!path || (rank ? atol(rank) : 0) != Number("FAULT_RANK")) return;
   plan.report = ReportOpen(path);
@@ -77,6 +78,7 @@ void FaultSetUp(void)
   plan.stay   = (int)Number("FAULT_STAY");
   plan.signal = (int)Number("FAULT_SIGNAL");
   FaultMemorySetUp();
+  if (ask && !FaultBranchSetUp(ask)) _exit(89);
   if (plan.report) plan.calls = (int)Number("FAULT_CALLS");
 }
 
@@ -85,12 +87,23 @@ int FaultPathWatched(const char path[])
   return plan.report && plan.dir && !strncmp(path, plan.dir, strlen(plan.dir));
 }
 
+/* From here on the calls of this process, a copy, are its own, and this one is to fail */
+static void PlanCopied(int64_t n)
+{
+  static Report own;
+
+  own         = *plan.report;
+  plan.report = &own;
+  plan.at     = n;
+}
+
 int FaultTake(int kind, const char words[])
 {
   int64_t n;
 
   if (!(plan.calls & kind)) return 0;
   n = __atomic_add_fetch(&plan.report->count, 1, __ATOMIC_RELAXED);
+  if (FaultBranch(n, words)) PlanCopied(n);
   if (plan.at == 0 || n < plan.at || (n > plan.at && !plan.stay)) return 0;
   if (n == plan.at) (void)snprintf(plan.report->words, sizeof(plan.report->words), "%s", words);
   plan.report->failed++;

@@ -1,6 +1,7 @@
 /* Shared by the files of the library that tests load before the program's own: see inject.c */
 #pragma once
 
+#include <stdint.h>
 #include <sys/types.h>
 
 /* Kinds of calls that may fail, a bit each */
@@ -28,3 +29,9 @@ ssize_t FaultWrite(int fd, const void *bytes, size_t size);
 int     FaultClose(int fd);
 /* memory.c - puts itself between the program and PETSc's allocations */
 void FaultMemorySetUp(void);
+/* streams.c - opens the open files anew in a copy of this process, whose folder is a copy too, so that places in them are its own */
+void FaultFilesCopied(void);
+/* branch.c - asks the test at that socket at which call this process is to copy itself; whether the test is there */
+int FaultBranchSetUp(const char path[]);
+/* Copies this process where call n is that one; whether this is the copy, in which the call is to fail */
+int FaultBranch(int64_t n, const char words[]);

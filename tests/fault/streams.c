@@ -11,7 +11,9 @@
 #include <fcntl.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
 #include <unistd.h>
@@ -60,6 +62,40 @@ int FaultClose(int fd)
   if (fd >= 0 && fd < MAX_FILES) watched[fd] = 0;
   if (fault) errno = error;
   return fault ? -1 : status;
+}
+
+/* The name of an open file; what lies in FAULT_DIR.kept is that in FAULT_DIR */
+static void FileName(int fd, char path[], size_t size)
+{
+  static const char kept[] = ".kept/";
+  const char *const dir    = getenv("FAULT_DIR");
+  char              link[64], *at;
+  ssize_t           n;
+
+  (void)snprintf(link, sizeof(link), "/proc/self/fd/%d", fd);
+  n = readlink(link, path, size - 1);
+  if (n < 0) _exit(88);
+  path[n] = 0;
+  at      = strstr(path, kept);
+  if (at && at >= path + strlen(dir) && !strncmp(at - strlen(dir), dir, strlen(dir)))
+    (void)memmove(at, at + strlen(kept) - 1, strlen(at + strlen(kept) - 1) + 1);
+}
+
+void FaultFilesCopied(void)
+{
+  char path[4096];
+
+  for (int fd = STDERR_FILENO + 1; fd < MAX_FILES; fd++) {
+    const off_t offset = lseek(fd, 0, SEEK_CUR);
+    struct stat status;
+    int         copy;
+
+    if (offset < 0 || fstat(fd, &status) || !S_ISREG(status.st_mode) || status.st_nlink == 0) continue; /* without a name */
+    FileName(fd, path, sizeof(path));
+    copy = (int)syscall(SYS_openat, AT_FDCWD, path, fcntl(fd, F_GETFL) & (O_ACCMODE | O_APPEND));
+    if (copy < 0 || lseek(copy, offset, SEEK_SET) != offset || syscall(SYS_dup3, copy, fd, 0) < 0) _exit(87);
+    (void)syscall(SYS_close, copy);
+  }
 }
 
 /* --- the system's calls */

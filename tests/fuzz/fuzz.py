@@ -8,9 +8,10 @@ sweep keeps. Each is damaged in one way (damage.py), drawn from a seed, and run 
   answer   on success numbers that are finite; where the damage keeps the meaning, those of the undamaged input; where the file has a
            checksum, too, whatever was changed; of matrices the eigenvalues that another reader of the file finds (oracle.py)
 
-    fuzz.py build/squeal build/tests/libfault.so --count 10000
+    fuzz.py build/squeal build/tests/libfault.so --first 2500 --count 2500 --passed FILE
 
---only KIND runs one kind, --one N one input alone and keeps its folder. Exit status: 0, 1 when an input was not handled."""
+--only KIND runs one kind, --one N one input alone and keeps its folder; with --passed a test that was stopped goes on. Exit status: 0,
+1 when an input was not handled."""
 
 import argparse
 import collections
@@ -32,6 +33,7 @@ import scenes
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 import served  # noqa: E402
+from passed import Passed  # noqa: E402
 
 # Open MPI 5 cannot be told to be quiet: remarks between dashes, and a line of its daemon
 REMARK = re.compile(r"^-{40,}\n.*?^-{40,}$|^\[\S+:\d+\] PMIX ERROR[^\n]*$", re.MULTILINE | re.DOTALL)
@@ -89,7 +91,7 @@ class Fuzz:
         self.made.mkdir()
         self.bases = [base for base in scenes.bases(arguments.squeal, self.made)
                       if not arguments.only or arguments.only in base.name]
-        self.answers = {}
+        self.answers, self.passed = {}, Passed(arguments.passed, arguments.squeal)
         self.mine, self.loops = threading.local(), []
 
     def launch(self, work, words, ranks=1):
@@ -193,13 +195,17 @@ class Fuzz:
         wrong = self.judge(base, work, kept, result)
         if self.arguments.one is None:
             shutil.rmtree(work)
+        if not wrong:
+            self.passed.add(str(n))
         return n, base.name, done if ranks == 1 else f"{done}, on {ranks} ranks", wrong, result[0]
 
     def run(self):
         with ThreadPoolExecutor(self.arguments.jobs) as pool:
             self.answers = dict(zip((base.name for base in self.bases), pool.map(self.answer, self.bases)))
-            chosen = range(self.arguments.count) if self.arguments.one is None else [self.arguments.one]
-            results = list(pool.map(self.make, chosen))
+            first, one = self.arguments.first, self.arguments.one
+            chosen = range(first, first + self.arguments.count) if one is None else [one]
+            results = list(pool.map(self.make, [n for n in chosen if str(n) not in self.passed]))
+        self.passed.end()
         for loop in self.loops:
             loop.end()
         kinds = collections.Counter((name, "ends well" if not status else "refused") for _, name, _, _, status in results)
@@ -211,7 +217,8 @@ class Fuzz:
         wrong = [result for result in results if result[3]]
         for n, name, done, what, _ in wrong:
             print(f"FAILED input {n}, {name}, {done}: {what}")
-        print(f"{len(results)} inputs, {len(wrong)} not handled")
+        before = len(chosen) - len(results)
+        print(f"{len(results)} inputs{f', {before} before' if before else ''}, {len(wrong)} not handled")
         return 1 if wrong else 0
 
 
@@ -220,6 +227,8 @@ def main():
     parser.add_argument("squeal", type=served.existing)
     parser.add_argument("library", type=served.existing, help="build/tests/libfault.so")
     parser.add_argument("--count", type=int, default=500)
+    parser.add_argument("--first", type=int, default=0, help="number of the first input")
+    parser.add_argument("--passed", type=Path, help="a file to note what passed, from which a test that was stopped goes on")
     parser.add_argument("--seed", default="2005")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--limit", type=float, default=90, help="seconds a run may take")
