@@ -9,7 +9,7 @@
 #include <petscksp.h>
 #include <petsc/private/petscimpl.h> /* PetscObjectStateGet() */
 
-#define WORKSPACE_MOST 1000 /* percent that MUMPS may have beyond its estimate before it is given up */
+#define WORKSPACE_MOST 400 /* percent that MUMPS may have beyond its estimate before it is given up */
 
 /* The stiffness that is factored: the symmetric part where friction is put on by an update */
 static Mat ShiftInvertStiffness(const ShiftInvert *si, const PencilMatrices *pencil)
@@ -190,11 +190,13 @@ PetscErrorCode ShiftInvertPrepare(const PencilMatrices *pencil, ShiftInvert *si)
 }
 
 /* Whether MUMPS is to be given more workspace than it estimated, INFOG(1) = -8 or -9, as several ranks on small matrices
-   need; then si->workspace is raised and the factors are gone. What -st_mat_mumps_icntl_14 says stays */
+   need; then si->workspace is raised and the factors are gone. What -st_mat_mumps_icntl_14 says stays, and where ICNTL(23)
+   limits the memory MUMPS takes no notice of more */
 static PetscErrorCode ShiftInvertWantsSpace(ShiftInvert *si, PC pc, PetscBool *wants)
 {
   MatSolverType type;
-  PetscInt      info = 0, percent;
+  PetscInt      info = 0, percent, limit;
+  PetscBool     given;
   Mat           F;
 
   PetscFunctionBeginUser;
@@ -205,10 +207,11 @@ static PetscErrorCode ShiftInvertWantsSpace(ShiftInvert *si, PC pc, PetscBool *w
   PetscCall(PCFactorGetMatrix(pc, &F));
   PetscCall(MatMumpsGetInfog(F, 1, &info));
   PetscCall(MatMumpsGetIcntl(F, 14, &percent));
-  PetscCall(PetscOptionsHasName(NULL, "st_", "-mat_mumps_icntl_14", wants));
-  *wants = !*wants && (info == -8 || info == -9) && percent < WORKSPACE_MOST ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(MatMumpsGetIcntl(F, 23, &limit));
+  PetscCall(PetscOptionsHasName(NULL, "st_", "-mat_mumps_icntl_14", &given));
+  *wants = (info == -8 || info == -9) && !given && limit <= 0 && percent < WORKSPACE_MOST ? PETSC_TRUE : PETSC_FALSE;
   if (!*wants) PetscFunctionReturn(0);
-  si->workspace = PetscMax(100, 4 * percent);
+  si->workspace = PetscMin(PetscMax(100, 4 * percent), WORKSPACE_MOST);
   PetscCall(KSPDestroy(&si->ksp));
   PetscFunctionReturn(0);
 }
