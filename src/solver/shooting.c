@@ -5,8 +5,7 @@
 #define SHOOTING_FALL     0.9 /* of the residual that a shortened step must reach */
 #define SHOOTING_LOST     3.0 /* residual beyond which no cycle is near */
 #define SHOOTING_SHORTEST (1. / 8)
-#define FOLD_MAX_IT       12
-#define FOLD_RTOL         1e-4 /* of the slope dp/ds between the two cycles: the parameter is off by the square of that */
+#define SHOOTING_CLOSE    1e-7 /* of the period: cycles before and after, between which hardly any status changes */
 
 /* One problem: the guess, the branch and work */
 typedef struct {
@@ -260,6 +259,54 @@ PetscErrorCode ShootingAdvance(const Shooting *s, PetscReal step, const Shooting
   PetscFunctionReturn(0);
 }
 
+/* Multiplier of the phase: central difference of the flow from the cycles a little earlier and later, each with its own period */
+static PetscErrorCode ShotMeasurePhase(ShootingWork *w, const ShootingCycle *c, ShootingPhase *phase)
+{
+  const Shooting *s      = w->s;
+  PetscReal       length = 0, speed = 0, part = 0, e;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < s->n; i++) {
+    length += PetscSqr(s->weight[i] * phase->x[i]);
+    speed += PetscSqr(s->weight[i] * w->f[i]);
+  }
+  e = SHOOTING_CLOSE * c->period * PetscSqrtReal(speed / length);
+  PetscCall(PetscArrayzero(w->rhs, s->n));
+  for (int side = -1; side <= 1; side += 2) {
+    for (PetscInt i = 0; i < s->n; i++) w->trial[i] = c->x[i] + side * e * phase->x[i];
+    PetscCall(s->flow(s->ctx, w->trial, c->period + side * e * phase->slope, c->value, w->y, NULL));
+    ShootingHold(s, w->trial, w->y);
+    for (PetscInt i = 0; i < s->n; i++) w->rhs[i] += side * w->y[i] / (2 * e);
+  }
+  for (PetscInt i = 0; i < s->n; i++) part += PetscSqr(s->weight[i]) * phase->x[i] * w->rhs[i];
+  phase->multiplier = part / length;
+  phase->known      = PetscIsInfOrNanReal(phase->multiplier) ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShootingGetPhase(const Shooting *s, const ShootingCycle *cycle, ShootingPhase *phase)
+{
+  const PetscInt n = s->n, N = n + 2 + s->n_free;
+  ShootingWork   w;
+  PetscBool      has, singular = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  PetscCall(ShotCreate(s, cycle, NULL, &w));
+  PetscCall(ShotDifferentiate(&w, cycle, &has));
+  if (has) PetscCall(ShotFactor(&w, cycle, &singular));
+  phase->known = PETSC_FALSE;
+  if (!singular) {
+    PetscCall(PetscArrayzero(w.rhs, N));
+    for (PetscInt i = 0; i < n; i++) w.rhs[n] += w.c[i] * w.f[i];
+    PetscCall(DenseSolve(N, w.A, w.pivot, PETSC_FALSE, 1, w.rhs));
+    PetscCall(PetscArraycpy(phase->x, w.rhs, n));
+    phase->slope = w.rhs[n];
+    PetscCall(ShotMeasurePhase(&w, cycle, phase));
+  }
+  PetscCall(ShotDestroy(&w));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ShootingCopy(PetscInt n, const ShootingCycle *from, ShootingCycle *to)
 {
   PetscReal *x = to->x, *M = to->M;
@@ -270,56 +317,5 @@ PetscErrorCode ShootingCopy(PetscInt n, const ShootingCycle *from, ShootingCycle
   to->M = M;
   PetscCall(PetscArraycpy(x, from->x, n));
   PetscCall(PetscArraycpy(M, from->M, n * n));
-  PetscFunctionReturn(0);
-}
-
-/* The cycle at a distance from `start` along `along`, and the branch's direction there; found is false where there is none */
-static PetscErrorCode FoldTry(const Shooting *s, PetscReal step, const ShootingCycle *start,
-                              const ShootingTangent *along, ShootingPlace *at, PetscBool *found)
-{
-  ShootingDirection direction = SHOOTING_SPLITS;
-
-  PetscFunctionBeginUser;
-  PetscCall(ShootingCopy(s->n, start, &at->cycle));
-  PetscCall(ShootingAdvance(s, step, along, &at->cycle));
-  PetscCall(PetscArraycpy(at->tangent.x, along->x, s->n));
-  at->tangent.period = along->period;
-  at->tangent.value  = along->value;
-  if (at->cycle.converged) PetscCall(ShootingGetTangent(s, &at->cycle, &at->tangent, &direction));
-  *found = direction == SHOOTING_ALONG ? PETSC_TRUE : PETSC_FALSE;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ShootingFindFold(const Shooting *s, const ShootingPlace *start, PetscReal step, PetscReal beyond,
-                                ShootingPlace *fold, PetscReal *error)
-{
-  PetscReal a = 0, b = step, va = start->tangent.value, vb = beyond;
-  PetscBool found = PETSC_TRUE;
-  int       side  = 0;
-
-  PetscFunctionBeginUser;
-  *error = -1;
-  for (int it = 0; it < FOLD_MAX_IT && found; it++) {
-    const PetscReal at = (a * vb - b * va) / (vb - va);
-    PetscReal       v;
-
-    PetscCall(FoldTry(s, at, &start->cycle, &start->tangent, fold, &found));
-    if (!found) break;
-    v      = fold->tangent.value;
-    *error = 0.5 * PetscAbsReal(v) * (b - a); /* p is a parabola there, of slope v at `at` */
-    if (PetscAbsReal(v) <= FOLD_RTOL * PetscAbsReal(start->tangent.value - beyond)) break;
-    if ((v > 0) == (va > 0)) { /* regula falsi; the end that stays counts half (Illinois) */
-      a  = at;
-      va = v;
-      if (side == 1) vb /= 2;
-      side = 1;
-    } else {
-      b  = at;
-      vb = v;
-      if (side == 2) va /= 2;
-      side = 2;
-    }
-  }
-  if (!found) *error = -1;
   PetscFunctionReturn(0);
 }

@@ -18,8 +18,21 @@
    Phi = x is asked for but for a drift d e, a further unknown; S^2 e . dx = 0.
 
    f and g are central differences of the flow. Eigenvalues of M (Floquet multipliers) tell stability: one is that of the
-   phase, 1 but for the discretisation of the flow (with steps that break the symmetry in time it is off by their order); the
-   cycle is stable where all others lie inside the unit circle.
+   phase, and the cycle is stable where all others lie inside the unit circle.
+
+   A flow made of N steps of length T / N breaks the symmetry in time where a force has a kink within a step. Cycles are then a curve
+   x(theta), T(theta), theta the shift of the steps against the motion, with (' = d/dtheta)
+
+      (M - I) x' + f T' = 0,     c . x' = c . f:     Newton's matrix gives x' and T',
+
+   and for every left vector l of M with its eigenvalue m, (m - 1) l . x' = -T' l . f. Hence
+
+   * the eigenvalue of M for the phase is 1 - T' (l . f) / (l . x'), 1 - T' nearly. It is 1 only where T is stationary: a property of
+     M and of where the cycle begins, which no tolerance moves;
+   * the other vectors have next to no part in x' (of the order of T' times that in f), by which the phase's is told;
+   * the return map whose period goes with the phase, x -> Phi(x, T(theta(x)), p), keeps the whole curve, and its multiplier of
+     the phase is 1, as that of a flow in continuous time. With theta that of the phase's left vector, theta' = l / (l . x'), its
+     derivative is M + f T' l' / (l . x'): it has the vectors and the eigenvalues of M but for that one.
 */
 #pragma once
 
@@ -68,8 +81,18 @@ typedef struct {
   ShootingTangent tangent;
 } ShootingPlace;
 
+/* How a cycle changes with the place of its steps in the motion */
 typedef struct {
-  PetscReal phase[2];   /* the multiplier whose vector is the motion along the cycle */
+  PetscReal *x;          /* [n] dx/dtheta, the caller's */
+  PetscReal  slope;      /* dT/dtheta */
+  PetscReal  multiplier; /* of the phase, where the period goes with it: by the flow from the cycles next to this one */
+  PetscBool  known;      /* false where the flow fails next to the cycle, or Newton's matrix is singular */
+} ShootingPhase;
+
+typedef struct {
+  PetscReal fixed[2]; /* the eigenvalue of M whose vector is the motion along the cycle; NaN where none is told */
+  PetscReal phase;    /* multiplier of the phase where the period goes with it, and dT/dtheta; NaN where unknown */
+  PetscReal slope;
   PetscReal largest[2]; /* of the others */
   PetscReal worst; /* modulus of the largest, if the phase's is another one that has as large a part in that motion */
 } ShootingStability;
@@ -81,6 +104,10 @@ typedef enum { SHOOTING_ALONG, SHOOTING_SPLITS, SHOOTING_NO_DERIVATIVE } Shootin
 /*@ ShootingSolve - the cycle near a guess, at its value of the parameter. Not collective. That it does not converge is
     told by `converged`; then x is where the iteration stopped, which may be further off than the guess. @*/
 PETSC_INTERN PetscErrorCode ShootingSolve(const Shooting *s, ShootingCycle *cycle);
+
+/*@ ShootingGetPhase - how a cycle that has converged changes with the place of its steps: by Newton's matrix, and the multiplier of
+    the phase by the flow. Not collective. @*/
+PETSC_INTERN PetscErrorCode ShootingGetPhase(const Shooting *s, const ShootingCycle *cycle, ShootingPhase *phase);
 
 /*@ ShootingGetStability - multipliers of a cycle that has converged. Not collective. @*/
 PETSC_INTERN PetscErrorCode ShootingGetStability(const Shooting *s, const ShootingCycle *cycle,

@@ -1,6 +1,7 @@
 /* Floquet multipliers of a cycle (shooting.h): that of the phase, told by its vector, and the largest of the others */
 #include "shooting.h"
 #include "dense.h"
+#include <math.h>
 
 #define SHOOTING_FAR  0.5 /* from 1: no steps of a cycle move the multiplier of the phase so far */
 #define SHOOTING_MUCH 0.5 /* of the largest part of the motion: parts beside which that one is not told */
@@ -47,19 +48,15 @@ static PetscReal StabilityPart(const Shooting *s, const Multipliers *m, PetscInt
   return PetscAbsComplex(StabilityDot(n, l, im, v, NULL)) / self * PetscSqrtReal(length / size);
 }
 
-/* Which of the eigenvalues is that of the phase, -1 for none: its vector makes most of the motion along the cycle. Where others
+/* Which of the eigenvalues is that of the phase, -1 for none: its vector makes most of the motion v along the cycle. Where others
    have about as much part in it (at a fold two vectors become one) the nearest to 1 is taken; how many there are */
-static PetscErrorCode StabilityFindPhase(const Shooting *s, const ShootingCycle *cycle, const Multipliers *m,
-                                         PetscInt *phase, PetscInt *n_candidates)
+static PetscErrorCode StabilityFindPhase(const Shooting *s, const PetscReal v[], const Multipliers *m, PetscInt *phase,
+                                         PetscInt *n_candidates)
 {
-  const PetscReal dT = SHOOTING_DIFFERENCE * cycle->period;
-  PetscReal      *v, *before, *part, best = 0;
+  PetscReal *part, best = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(s->n, &v, s->n, &before, s->n, &part));
-  PetscCall(s->flow(s->ctx, cycle->x, cycle->period - dT, cycle->value, before, NULL));
-  PetscCall(s->flow(s->ctx, cycle->x, cycle->period + dT, cycle->value, v, NULL));
-  for (PetscInt i = 0; i < s->n; i++) v[i] -= before[i];
+  PetscCall(PetscMalloc1(s->n, &part));
   for (PetscInt i = 0; i < s->n; i++) {
     part[i] = 0;
     if (hypot(m->re[i] - 1, m->im[i]) < SHOOTING_FAR) part[i] = m->im[i] < 0 ? part[i - 1] : StabilityPart(s, m, i, v);
@@ -72,7 +69,7 @@ static PetscErrorCode StabilityFindPhase(const Shooting *s, const ShootingCycle 
     (*n_candidates)++;
     if (*phase < 0 || hypot(m->re[i] - 1, m->im[i]) < hypot(m->re[*phase] - 1, m->im[*phase])) *phase = i;
   }
-  PetscCall(PetscFree3(v, before, part));
+  PetscCall(PetscFree(part));
   PetscFunctionReturn(0);
 }
 
@@ -93,24 +90,31 @@ static void StabilityDrop(const Shooting *s, Multipliers *m)
 
 PetscErrorCode ShootingGetStability(const Shooting *s, const ShootingCycle *cycle, ShootingStability *stability)
 {
-  const PetscInt n = s->n;
-  PetscInt       phase, n_candidates;
+  const PetscInt n     = s->n;
+  PetscInt       found = -1, n_candidates = 0;
+  ShootingPhase  phase;
   Multipliers    m;
 
   PetscFunctionBeginUser;
   *stability = (ShootingStability){
-    .phase = {0, 0}
+    .fixed = {NAN, NAN},
+      .phase = NAN, .slope = NAN
   };
-  PetscCall(PetscMalloc5(n * n, &m.A, n, &m.re, n, &m.im, n * n, &m.left, n * n, &m.right));
+  PetscCall(PetscMalloc6(n * n, &m.A, n, &m.re, n, &m.im, n * n, &m.left, n * n, &m.right, n, &phase.x));
   PetscCall(PetscArraycpy(m.A, cycle->M, n * n));
   PetscCall(DenseEigen(n, m.A, m.re, m.im, m.left, m.right));
   StabilityDrop(s, &m);
-  PetscCall(StabilityFindPhase(s, cycle, &m, &phase, &n_candidates));
+  PetscCall(ShootingGetPhase(s, cycle, &phase));
+  if (phase.known) {
+    stability->phase = phase.multiplier;
+    stability->slope = phase.slope;
+    PetscCall(StabilityFindPhase(s, phase.x, &m, &found, &n_candidates));
+  }
   for (PetscInt i = 0; i < n; i++) stability->worst = PetscMax(stability->worst, hypot(m.re[i], m.im[i]));
-  if (phase >= 0) {
-    stability->phase[0] = m.re[phase];
-    stability->phase[1] = m.im[phase];
-    m.re[phase] = m.im[phase] = 0;
+  if (found >= 0) {
+    stability->fixed[0] = m.re[found];
+    stability->fixed[1] = m.im[found];
+    m.re[found] = m.im[found] = 0;
   }
   for (PetscInt i = 0; i < n; i++) {
     if (hypot(m.re[i], m.im[i]) <= hypot(stability->largest[0], stability->largest[1])) continue;
@@ -118,6 +122,6 @@ PetscErrorCode ShootingGetStability(const Shooting *s, const ShootingCycle *cycl
     stability->largest[1] = PetscAbsReal(m.im[i]);
   }
   if (n_candidates == 1) stability->worst = hypot(stability->largest[0], stability->largest[1]);
-  PetscCall(PetscFree5(m.A, m.re, m.im, m.left, m.right));
+  PetscCall(PetscFree6(m.A, m.re, m.im, m.left, m.right, phase.x));
   PetscFunctionReturn(0);
 }

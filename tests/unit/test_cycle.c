@@ -1,107 +1,15 @@
-/*
-   Unit test of reduced/cycle: an oscillator of two modes whose friction couples them (flutter), and which lifts off in
-   each period, so that it ends in a limit cycle; its cycle without steps is that of tests/verify/cycle_oscillator.py, by
-   matrix exponentials between the events.
-*/
+/* Unit test of reduced/cycle and of shooting: the limit cycle of an oscillator with friction that lifts off */
 #include "check.h"
+#include "oscillator.h"
 #include "petscmain.h"
-#include "reduced/cycle/cycleimpl.h"
 #include <slepcsys.h>
-
-#define PORTS 4 /* of one pair, and of the load */
-
-/* The oscillator, and where it is in its cycle */
-typedef struct {
-  ReducedModel     model;
-  ReducedParameter friction;
-  PetscReal        omega2[2], C[4], P[2 * PORTS], W[PORTS * PORTS], gap, mu, slope, speed;
-  CycleFlow        flow;
-  Shooting         shooting;
-  ShootingCycle    cycle;
-  PetscReal        size[7], weight[7];
-} Oscillator;
-
-static PetscErrorCode OscillatorCreate(PetscReal mu, Oscillator *o)
-{
-  const PetscReal normal[2] = {0.8, 0.6}, tangent[2] = {-0.6, 0.8};
-
-  PetscFunctionBeginUser;
-  *o = (Oscillator){
-    .omega2 = {1,  2.2 },
-      .C = { 0.04, 0, 0, 0.04},
-      .mu = mu, .speed = 10
-  };
-  o->model = (ReducedModel){.m       = 2,
-                            .n_pairs = 1,
-                            .n_loads = 1,
-                            .n_ports = PORTS,
-                            .omega2  = o->omega2,
-                            .C       = o->C,
-                            .P       = o->P,
-                            .W       = o->W,
-                            .gap     = &o->gap,
-                            .mu      = &o->mu,
-                            .slope   = &o->slope,
-                            .speed   = &o->speed};
-  for (int k = 0; k < 2; k++) {
-    o->P[k]     = normal[k];
-    o->P[2 + k] = tangent[k];
-    o->P[6 + k] = -normal[k];
-  }
-  for (int i = 0; i < 3; i++) o->W[i * (PORTS + 1)] = 1;
-  o->flow = (CycleFlow){.model = &o->model, .n = ReducedTangentSize(&o->model), .varied = &o->friction, .value = mu};
-  o->friction = (ReducedParameter){.kind = REDUCED_MU, .value = mu};
-  PetscCall(
-    PetscCalloc5(1, &o->flow.loads, 1, &o->flow.share, 1, &o->flow.way, 1, &o->flow.speed, 1, &o->flow.interface));
-  PetscCall(ReducedStateCreate(&o->model, &o->flow.state));
-  PetscCall(ReducedReportCreate(&o->model, &o->flow.report));
-  o->flow.loads[0] = 1;
-  o->flow.share[0] = 1;
-  o->flow.speed[0] = 10;
-  for (PetscInt i = 0; i < o->flow.n; i++) {
-    o->size[i]   = 1;
-    o->weight[i] = i < 4;
-  }
-  o->shooting = (Shooting){.n      = o->flow.n,
-                           .flow   = CycleFlowRun,
-                           .ctx    = &o->flow,
-                           .size   = o->size,
-                           .weight = o->weight,
-                           .span   = 1,
-                           .rtol   = 1e-11,
-                           .max_it = 20};
-  PetscCall(PetscCalloc2(o->flow.n, &o->cycle.x, PetscSqr(o->flow.n), &o->cycle.M));
-  o->cycle.value = mu;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode OscillatorDestroy(Oscillator *o)
-{
-  PetscFunctionBeginUser;
-  PetscCall(CycleFlowDestroy(&o->flow));
-  PetscCall(PetscFree2(o->cycle.x, o->cycle.M));
-  PetscFunctionReturn(0);
-}
-
-/* In time until it is near its cycle */
-static PetscErrorCode OscillatorSettle(Oscillator *o, PetscReal period)
-{
-  PetscReal y[7];
-
-  PetscFunctionBeginUser;
-  o->cycle.x[0]   = -0.5;
-  o->flow.n_steps = 64;
-  for (int i = 0; i < 60; i++) {
-    PetscCall(CycleFlowRun(&o->flow, o->cycle.x, period, o->cycle.value, y, NULL));
-    PetscCall(PetscArraycpy(o->cycle.x, y, o->flow.n));
-  }
-  o->cycle.period = period;
-  PetscFunctionReturn(0);
-}
 
 /* What a cycle is known by */
 typedef struct {
-  PetscReal mu, period, peak, multiplier /* modulus of the largest but for the phase's */, phase /* that less 1 */;
+  PetscReal mu, period, peak, multiplier /* modulus of the largest but for the phase's */;
+  PetscReal phase,
+    fixed;         /* multiplier of the phase less 1: where the period goes with it, and of steps of one length */
+  PetscReal slope; /* dT/dtheta */
 } Known;
 
 static PetscErrorCode OscillatorSolve(Oscillator *o, PetscInt n, Known *found, int *failed)
@@ -114,15 +22,22 @@ static PetscErrorCode OscillatorSolve(Oscillator *o, PetscInt n, Known *found, i
   PetscCall(ShootingSolve(&o->shooting, &o->cycle));
   PetscCall(ShootingGetStability(&o->shooting, &o->cycle, &stability));
   PetscCall(CycleFlowMeasure(&o->flow, &o->cycle, &measure, NULL));
-  *found = (Known){o->cycle.value, o->cycle.period, measure.peak, hypot(stability.largest[0], stability.largest[1]),
-                   hypot(stability.phase[0] - 1, stability.phase[1])};
+  *found = (Known){
+    .mu         = o->cycle.value,
+    .period     = o->cycle.period,
+    .peak       = measure.peak,
+    .multiplier = hypot(stability.largest[0], stability.largest[1]),
+    .phase      = stability.phase - 1,
+    .fixed      = stability.fixed[0] - 1,
+    .slope      = stability.slope,
+  };
   *failed += CheckTrue("converged in few steps of Newton's method", o->cycle.converged && o->cycle.its <= 5,
                        (double)o->cycle.its);
   PetscFunctionReturn(0);
 }
 
 /* Breaks when: the step or its derivative is wrong, or shooting converges to something else. The error of the step is of
-   second order, that of the phase's multiplier of first, since events break the symmetry in time */
+   second order, dT/dtheta of first, since events break the symmetry in time; the multiplier of the phase owes nothing to it */
 static PetscErrorCode TestKnown(const Known *known, int *failed)
 {
   Oscillator o;
@@ -139,7 +54,9 @@ static PetscErrorCode TestKnown(const Known *known, int *failed)
   *failed +=
     CheckClose("largest force, extrapolated", (16 * found.peak - coarse.peak) / 15, known->peak, 1e-8 * known->peak);
   *failed += CheckClose("multiplier", found.multiplier, known->multiplier, 1e-7);
-  *failed += CheckClose("multiplier of the phase less 1", found.phase, 0, 5e-4);
+  *failed += CheckClose("multiplier of the phase less 1", found.phase, 0, 1e-6);
+  *failed += CheckClose("4096 steps: that", coarse.phase, 0, 1e-6);
+  *failed += CheckClose("dT/dtheta", found.slope, 0, 5e-4);
   PetscCall(OscillatorDestroy(&o));
   PetscFunctionReturn(0);
 }
@@ -230,6 +147,36 @@ static PetscErrorCode OscillatorFind(Oscillator *o, const PetscReal from[], Pets
   PetscCall(OscillatorSolve(o, n, &known, failed));
   PetscCall(CycleFlowMeasure(&o->flow, &o->cycle, &m, NULL));
   PetscCall(PetscArraycpy(found, ((PetscReal[]){m.freq, m.rms, m.peak, known.multiplier}), 4));
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: dT/dtheta is not that of the cycles whose steps lie elsewhere, found by themselves (forward differences of second order),
+   the derivative of a step is wrong, or the eigenvalue of steps of one length is not 1 - dT/dtheta nearly. The unit of theta, by dPhi/dT,
+   is off by the second order in the step */
+static PetscErrorCode TestPhase(const Known *known, int *failed)
+{
+  const PetscInt n = 129;
+  Oscillator     o;
+  Known          found;
+  PetscReal      x[7], v[2][4], later, T[3], slope;
+
+  PetscFunctionBeginUser;
+  PetscCall(OscillatorCreate(known->mu, &o));
+  PetscCall(OscillatorSettle(&o, 1.003 * known->period));
+  PetscCall(OscillatorSolve(&o, n, &found, failed));
+  PetscCall(PetscArraycpy(x, o.cycle.x, 7));
+  later = 0.002 * found.period / n;
+  T[0]  = found.period;
+  for (int k = 0; k < 2; k++) {
+    PetscCall(OscillatorFind(&o, x, n, (k + 1) * later, v[k], failed));
+    T[k + 1] = o.cycle.period;
+  }
+  slope = (4 * T[1] - 3 * T[0] - T[2]) / (2 * later);
+  *failed += CheckTrue("the place of the steps matters", fabs(slope) > 1e-3, slope);
+  *failed += CheckClose("dT/dtheta by cycles whose steps lie elsewhere", found.slope, slope, 5e-3 * fabs(slope));
+  *failed += CheckClose("129 steps: multiplier of the phase less 1", found.phase, 0, 1e-6);
+  *failed += CheckClose("with steps of one length", found.fixed, -slope, 0.02 * fabs(slope));
+  PetscCall(OscillatorDestroy(&o));
   PetscFunctionReturn(0);
 }
 
@@ -327,8 +274,8 @@ static PetscErrorCode TestEdge(int *failed)
 static PetscErrorCode Tests(PetscMPIInt size, int *failed)
 {
   const Known known[2] = {
-    {0.8, 4.3887041961153, 0.95737523205229, 0.9159677852,   0},
-    {1.0, 4.5481402173278, 1.5984947760782,  0.913051671821, 0}
+    {.mu = 0.8, .period = 4.3887041961153, .peak = 0.95737523205229, .multiplier = 0.9159677852  },
+    {.mu = 1.0, .period = 4.5481402173278, .peak = 1.5984947760782,  .multiplier = 0.913051671821}
   };
 
   PetscFunctionBeginUser;
@@ -338,6 +285,7 @@ static PetscErrorCode Tests(PetscMPIInt size, int *failed)
   for (int i = 0; i < 2; i++) PetscCall(TestKnown(&known[i], failed));
   PetscCall(TestBranch(known, failed));
   PetscCall(TestOnset(known, failed));
+  PetscCall(TestPhase(known, failed));
   PetscCall(TestErrors(known, failed));
   PetscCall(TestFailed(known, failed));
   PetscCall(SlepcFinalize());

@@ -1,14 +1,9 @@
 /*
    The errors of a cycle, by the same one with other steps: twice as many, and as many that begin elsewhere.
 
-   In continuous time a cycle may begin anywhere. Steps in which pairs open and close are off by where in the step that happens, so
-   that the cycle of N steps, its period above all, depends on where in the motion the steps lie: x(theta), T(theta), theta the shift
-   in time, with the period T / N in theta. From Phi(x, T) = x
-
-      M dx/dtheta + dPhi/dT dT/dtheta = dx/dtheta,    hence the multiplier of the phase 1 - dT/dtheta, nearly:
-
-   it is off by what the period owes to the place of the steps, and 1 in the mean over all places. The spread is found from two further
-   places, a third of a step apart, which no part that goes as cos(2 pi theta N / T) can hide from.
+   Steps in which pairs open and close are off by where in the step that happens, so that the cycle of N steps, its period above all,
+   depends on where in the motion the steps lie: x(theta), T(theta), theta the shift in time, with the period T / N in theta (cycle.h).
+   The spread is found from two further places, a third of a step apart, which no part that goes as cos(2 pi theta N / T) can hide from.
 */
 #include "cycleimpl.h"
 

@@ -19,13 +19,31 @@ static PetscErrorCode CycleViewHigher(LimitCycle c, const CyclePoint *p, PetscVi
   PetscFunctionReturn(0);
 }
 
+/* Class and multipliers */
+static PetscErrorCode CycleViewStability(LimitCycle c, const CyclePoint *p, PetscViewer viewer)
+{
+  const ShootingStability *s = &p->stability;
+  const char              *why, *class = CycleClass(p, c->rtol, &why);
+
+  PetscFunctionBeginUser;
+  if (why && !c->verify) why = "-cycle_verify false leaves its error unknown";
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  %s%s%s%s: largest multiplier %.6g%+.6gi (%.6g), that of the phase ",
+                                   class, why ? " (" : "", why ? why : "", why ? ")" : "", (double)s->largest[0],
+                                   (double)s->largest[1], (double)CycleMultiplier(s)));
+  if (PetscIsNanReal(s->phase))
+    PetscCall(PetscViewerASCIIPrintf(viewer, "unknown"));
+  else
+    PetscCall(PetscViewerASCIIPrintf(viewer, "1%+.1e with dT/dtheta %+.1e", (double)(s->phase - 1), (double)s->slope));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "; residual %.1e after %" PetscInt_FMT " steps of Newton's method\n",
+                                   (double)p->residual, p->its));
+  PetscFunctionReturn(0);
+}
+
 /* One cycle in words */
 static PetscErrorCode CycleViewPoint(LimitCycle c, const CyclePoint *p, PetscViewer viewer)
 {
   const CycleMeasure *a = &p->found, *b = &p->finer;
-  const PetscReal    *large = p->stability.largest, *phase = p->stability.phase;
   const double        size = CycleMultiplier(&p->stability);
-  const char         *why, *class = CycleClass(p, c->rtol, &why);
 
   PetscFunctionBeginUser;
   if (c->parameter[0])
@@ -54,15 +72,7 @@ static PetscErrorCode CycleViewPoint(LimitCycle c, const CyclePoint *p, PetscVie
     PetscCall(PetscViewerASCIIPrintf(
       viewer, "  none is found with twice the steps, or with steps that begin elsewhere: its error is unknown\n"));
   PetscCall(CycleViewHigher(c, p, viewer));
-  PetscCall(PetscViewerASCIIPrintf(viewer,
-                                   "  %s%s%s%s: largest multiplier %.6g%+.6gi (%.6g), that of the phase 1%+.1e%+.1ei; "
-                                   "residual %.1e after %" PetscInt_FMT " steps of Newton's method\n",
-                                   class, why ? " (" : "",
-                                   !why        ? ""
-                                   : c->verify ? why
-                                               : "-cycle_verify false leaves its error unknown",
-                                   why ? ")" : "", (double)large[0], (double)large[1], size, (double)(phase[0] - 1),
-                                   (double)phase[1], (double)p->residual, p->its));
+  PetscCall(CycleViewStability(c, p, viewer));
   PetscFunctionReturn(0);
 }
 

@@ -9,7 +9,7 @@
 #define CYCLE_COLUMNS                                                                                                  \
   "point,parameter,value,value_error,kind,freq_hz,freq_error_hz,force_mean_n,force_rms_n,force_rms_error_n,"           \
   "force_peak_n,force_peak_error_n,open_share,multiplier_abs,multiplier_error,multiplier_re,multiplier_im,"            \
-  "phase_multiplier_re,phase_multiplier_im,class,steps,residual,iterations,freq_cutoff_error_hz,"                      \
+  "phase_multiplier,period_slope,class,steps,residual,iterations,freq_cutoff_error_hz,"                                \
   "force_rms_cutoff_error_n,force_peak_cutoff_error_n,multiplier_cutoff_error"
 #define PROBE_COLUMNS                                                                                                  \
   "point,parameter,value,probe,direction,displacement_rms_m,displacement_rms_error_m,displacement_peak_m,"             \
@@ -69,12 +69,12 @@ const char *CycleClass(const CyclePoint *p, PetscReal rtol, const char **why)
 
 typedef char Cell[32];
 
-/* An error; nothing where it is not known */
-static PetscErrorCode CellPrintError(PetscBool known, PetscReal error, Cell cell)
+/* A number; nothing where it is not known */
+static PetscErrorCode CellPrintKnown(PetscBool known, PetscReal number, Cell cell)
 {
   PetscFunctionBeginUser;
   cell[0] = 0;
-  if (known) PetscCall(PetscSNPrintf(cell, sizeof(Cell), "%.15g", (double)error));
+  if (known) PetscCall(PetscSNPrintf(cell, sizeof(Cell), "%.15g", (double)number));
   PetscFunctionReturn(0);
 }
 
@@ -92,28 +92,30 @@ static PetscErrorCode CycleWriteRow(LimitCycle c, PetscInt i, ResultsTable table
 {
   const CyclePoint   *p = &c->point[i];
   const CycleMeasure *a = &p->found, *b = &p->finer, *spread = &p->spread;
-  const PetscReal    *large = p->stability.largest, *phase = p->stability.phase, size = CycleMultiplier(&p->stability);
+  const PetscReal    *large = p->stability.largest, size = CycleMultiplier(&p->stability);
   const char         *why;
-  Cell                error[4], cutoff[4], value[2];
+  Cell                error[4], cutoff[4], value[2], phase[2];
 
   PetscFunctionBeginUser;
   PetscCall(CellPrintValue(c, p, value));
-  PetscCall(CellPrintError(p->has_finer, CycleError(a->freq, b->freq, spread->freq), error[0]));
-  PetscCall(CellPrintError(p->has_finer, CycleError(a->rms, b->rms, spread->rms), error[1]));
-  PetscCall(CellPrintError(p->has_finer, CycleError(a->peak, b->peak, spread->peak), error[2]));
-  PetscCall(CellPrintError(p->has_finer, CycleMultiplierError(p), error[3]));
-  PetscCall(CellPrintError(p->has_higher, PetscAbsReal(p->higher.freq - a->freq), cutoff[0]));
-  PetscCall(CellPrintError(p->has_higher, PetscAbsReal(p->higher.rms - a->rms), cutoff[1]));
-  PetscCall(CellPrintError(p->has_higher, PetscAbsReal(p->higher.peak - a->peak), cutoff[2]));
-  PetscCall(CellPrintError(p->has_higher, MultiplierCutoffError(p), cutoff[3]));
+  PetscCall(CellPrintKnown(p->has_finer, CycleError(a->freq, b->freq, spread->freq), error[0]));
+  PetscCall(CellPrintKnown(p->has_finer, CycleError(a->rms, b->rms, spread->rms), error[1]));
+  PetscCall(CellPrintKnown(p->has_finer, CycleError(a->peak, b->peak, spread->peak), error[2]));
+  PetscCall(CellPrintKnown(p->has_finer, CycleMultiplierError(p), error[3]));
+  PetscCall(CellPrintKnown(!PetscIsNanReal(p->stability.phase), p->stability.phase, phase[0]));
+  PetscCall(CellPrintKnown(!PetscIsNanReal(p->stability.slope), p->stability.slope, phase[1]));
+  PetscCall(CellPrintKnown(p->has_higher, PetscAbsReal(p->higher.freq - a->freq), cutoff[0]));
+  PetscCall(CellPrintKnown(p->has_higher, PetscAbsReal(p->higher.rms - a->rms), cutoff[1]));
+  PetscCall(CellPrintKnown(p->has_higher, PetscAbsReal(p->higher.peak - a->peak), cutoff[2]));
+  PetscCall(CellPrintKnown(p->has_higher, MultiplierCutoffError(p), cutoff[3]));
   PetscCall(ResultsTableRow(table,
                             "%" PetscInt_FMT ",%s,%s,%s,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%.15g,"
-                            "%.15g,%.15g,%s,%" PetscInt_FMT ",%.15g,%" PetscInt_FMT ",%s,%s,%s,%s",
+                            "%s,%s,%s,%" PetscInt_FMT ",%.15g,%" PetscInt_FMT ",%s,%s,%s,%s",
                             i + 1, c->parameter, value[0], value[1], p->fold ? "fold" : "cycle", (double)a->freq,
                             error[0], (double)a->mean, (double)a->rms, error[1], (double)a->peak, error[2],
-                            (double)a->open, (double)size, error[3], (double)large[0], (double)large[1],
-                            (double)phase[0], (double)phase[1], CycleClass(p, c->rtol, &why), p->n_steps,
-                            (double)p->residual, p->its, cutoff[0], cutoff[1], cutoff[2], cutoff[3]));
+                            (double)a->open, (double)size, error[3], (double)large[0], (double)large[1], phase[0],
+                            phase[1], CycleClass(p, c->rtol, &why), p->n_steps, (double)p->residual, p->its, cutoff[0],
+                            cutoff[1], cutoff[2], cutoff[3]));
   PetscFunctionReturn(0);
 }
 
@@ -128,14 +130,14 @@ static PetscErrorCode CycleWriteProbe(LimitCycle c, PetscInt i, PetscInt k, cons
   for (int d = 0; d < 3; d++) {
     const CycleProbe *a = &p->probe[k + d], *b = &p->finer_probe[k + d], *spread = &p->spread_probe[k + d];
 
-    PetscCall(CellPrintError(p->has_finer,
+    PetscCall(CellPrintKnown(p->has_finer,
                              CycleError(a->displacement_rms, b->displacement_rms, spread->displacement_rms), error[0]));
-    PetscCall(CellPrintError(
+    PetscCall(CellPrintKnown(
       p->has_finer, CycleError(a->displacement_peak, b->displacement_peak, spread->displacement_peak), error[1]));
     PetscCall(
-      CellPrintError(p->has_finer, CycleError(a->velocity_rms, b->velocity_rms, spread->velocity_rms), error[2]));
+      CellPrintKnown(p->has_finer, CycleError(a->velocity_rms, b->velocity_rms, spread->velocity_rms), error[2]));
     PetscCall(
-      CellPrintError(p->has_finer, CycleError(a->velocity_peak, b->velocity_peak, spread->velocity_peak), error[3]));
+      CellPrintKnown(p->has_finer, CycleError(a->velocity_peak, b->velocity_peak, spread->velocity_peak), error[3]));
     PetscCall(ResultsTableRow(table, "%" PetscInt_FMT ",%s,%s,%s,%c,%.15g,%s,%.15g,%s,%.15g,%s,%.15g,%s", i + 1,
                               c->parameter, value[0], name, 'x' + d, (double)a->displacement_rms, error[0],
                               (double)a->displacement_peak, error[1], (double)a->velocity_rms, error[2],
