@@ -63,6 +63,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import tomllib
 from pathlib import Path
 
@@ -267,12 +268,13 @@ class Result(Line):
 
 
 def attempt(title, action, *arguments):
-    """What the action found, true where it passed; prints it."""
+    """What the action found, true where it passed; prints it, and how long it took by the clock."""
+    begun = time.monotonic()
     try:
         line, passed = action(*arguments) or "as expected", True
     except Failure as failure:
         line, passed = failure.args[0], False
-    print(f"{'ok    ' if passed else 'FAILED'} {title}: {line}")
+    print(f"{'ok    ' if passed else 'FAILED'} {title}, {time.monotonic() - begun:.1f} s: {line}")
     result = Result(line)
     result.passed = passed
     result.measured, result.allowed = getattr(line, "measured", None), getattr(line, "allowed", None)

@@ -138,13 +138,26 @@ class Launched:
                               capture_output=True, text=True, timeout=self.limit, check=False)
         return Outcome(done.returncode, done.stdout, done.stderr)
 
+    def join(self, work, words, ranks):
+        """On several ranks."""
+        return finish([LAUNCHER, "-n", str(ranks), self.program, *words], work, self.limit, {})
+
     def end(self):
         pass
 
 
 def starter(program, limit=240):
     """Runs the program in a folder with words of a command line, the cheapest way there is here."""
+    program = Path(program).resolve()
     return served_program(program, limit) or Launched(program, limit)
+
+
+def outcome_of(starter, work, words, ranks):
+    """How a run on so many ranks ended; one that did not end in time ends the test."""
+    outcome = starter.run(work, words) if ranks == 1 else starter.join(work, words, ranks)
+    if outcome.status is None:
+        raise SystemExit(f"FAILED: no end of {' '.join(map(str, words))}")
+    return outcome
 
 
 def launch(program, library, work, words, environment, ranks, limit):
@@ -152,6 +165,18 @@ def launch(program, library, work, words, environment, ranks, limit):
     others = os.environ.get("LD_PRELOAD", "")
     before = ["env", f"LD_PRELOAD={library} {others}".strip(), *(f"{key}={value}" for key, value in environment.items())]
     return finish([LAUNCHER, "-n", str(ranks), *before, program, *words], work, limit, {})
+
+
+def killed_at(command, file, work=".", calls=OPEN, at=1):
+    """Whether a run by the launcher was killed as it should: on rank 0, before its call number `at` of some kinds on files whose names
+    begin with `file`, whatever else the machine does."""
+    _, _, ranks, program, *words = map(str, command)
+    with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
+        report = Path(folder) / "report"
+        program = Path(program).resolve()
+        launch(program, program.parent / "tests/libfault.so", work, words, plan(file, report, calls, at, signal=int(signal.SIGKILL)),
+               int(ranks), 240)
+        return report.exists() and told(report)[1] > 0
 
 
 def finish(command, work, limit, more):

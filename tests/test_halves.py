@@ -5,12 +5,11 @@ plane, so that growth is among what is compared: modes with damping, modes about
 pair in the plane has half. Breaks where supports, contact stiffness or friction of nodes in the plane count other than by area,
 or where elements are not their own mirror images.
 
-    test_halves.py SQUEAL LAUNCHER"""
+    test_halves.py SQUEAL"""
 
 import csv
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 from collections import Counter
@@ -21,6 +20,7 @@ try:
 except ImportError as error:
     print(f"skipped: no Python module {error.name}")
     sys.exit(77)
+from served import outcome_of, starter
 
 WIDTH = 0.02  # half of it, m
 BODIES = {"slab": ((-0.05, 0.05), (-0.01, 0.0), (10, 4, 2)), "pad": ((-0.02, 0.02), (0.0, 0.015), (4, 4, 3))}  # x, z, cells of a half
@@ -73,8 +73,8 @@ def write_mesh(path, half, shift=0, digits=17):
 class Runs:
     """Modes of the scene in a folder, run by run."""
 
-    def __init__(self, folder, squeal, launcher):
-        self.folder, self.squeal, self.launcher, self.printed = folder, squeal, launcher, ""
+    def __init__(self, folder, squeal):
+        self.folder, self.program, self.printed = folder, starter(squeal), ""
 
     def run(self, name, mesh, fix="", options="", ranks=1, fails=False):
         """A run that holds the slab's start, directions of the cut, and the pad but where it is free; returns its errors."""
@@ -82,9 +82,9 @@ class Runs:
                  "-output_dir", name, "-supports", "clamp,plane" if fix else "clamp",
                  "-clamp_set", "slab_start", "-clamp_fix", "xyz", *(["-plane_set", "cut", "-plane_fix", fix] if fix else []),
                  *options.split()]
-        done = subprocess.run([self.launcher, "-n", str(ranks), self.squeal, *words], cwd=self.folder, capture_output=True, text=True)
-        if bool(done.returncode) != fails:
-            sys.exit(f"FAILED run {name}, exit status {done.returncode}: {done.stderr}")
+        done = outcome_of(self.program, self.folder, words, ranks)
+        if bool(done.status) != fails:
+            sys.exit(f"FAILED run {name}, exit status {done.status}: {done.stderr}")
         self.printed = done.stdout
         return done.stderr
 
@@ -306,10 +306,10 @@ def refusals(runs):
         yield f"refused: {name}", float(not re.fullmatch(f"squeal: error: -symmetry {planes}: .*{message}.*\n", said))
 
 
-def main(squeal, launcher):
+def main(squeal):
     """Prints what differs."""
     with tempfile.TemporaryDirectory() as name:
-        runs = Runs(Path(name), str(Path(squeal).resolve()), str(Path(launcher).resolve()))
+        runs = Runs(Path(name), squeal)
         (runs.folder / "scene.txt").write_text(re.sub(r"\s(-[a-z])", r"\n\1", SCENE) + "\n")
         write_mesh(runs.folder / "whole.msh", False)
         write_mesh(runs.folder / "half.msh", True)
@@ -317,10 +317,11 @@ def main(squeal, launcher):
         found = [("modes that do not grow of " + str(len(whole)), float(all(row["lambda"].real <= 1 for row in whole))),
                  *halves(runs, whole), *kinds(runs), *sweeps(runs), *restarts(runs), *tables(runs), *statics(runs), *rounded(runs),
                  *loose(runs), *refusals(runs)]
+        runs.program.end()
     for what, worst in found:
         print(f"{what}: differ by {worst:.1e}, {RTOL:g} allowed")
     sys.exit(0 if all(worst <= RTOL for _, worst in found) else "FAILED")
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main(sys.argv[1])

@@ -16,7 +16,7 @@ SOURCE = Path(__file__).resolve().parent.parent
 WORDS = re.compile(r"squeal: error: (ulimit -v allows \d+ MB of address space, which leave no room|out of memory: a rank has \d+ MB|"
                    r"MUMPS ran out of memory).*(allow \d+ MB or more|take a coarser mesh|use more ranks or a coarser mesh)")
 BOUNDS = range(350, 851, 50)  # MB
-PATIENCE = 60  # seconds
+PATIENCE = 240  # seconds
 PARENT = 500_000_000  # bytes of this process when it starts a run that takes a fifth of them
 
 

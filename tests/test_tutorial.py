@@ -115,7 +115,7 @@ def main():
         folder = Path(name)
         shutil.copytree(SOURCE / "scripts", folder / "scripts")
         shutil.copytree(SOURCE / "options", folder / "options", ignore=shutil.ignore_patterns("*.msh", "*.png"))
-        (folder / "scripts/run").write_text(f'#!/bin/sh\nexec "{mpirun}" -n 2 "{squeal}" "$@"\n')
+        (folder / "scripts/run").write_text(f'#!/bin/sh\nexec "{mpirun}" -n 1 "{squeal}" "$@"\n')
         for kind, content in blocks(text):
             if kind in files:
                 (folder / files[kind]).write_text(content)

@@ -110,6 +110,7 @@ def band_residues(times, values, band, exponents):
     powers = place[:, None]**numpy.arange(BEYOND)
     columns = numpy.hstack([one + other, 1j * (one - other), powers, 1j * powers])
     lengths = numpy.linalg.norm(columns, axis=0)
+    lengths[lengths == 0] = 1  # the imaginary part of a decay that does not vibrate does nothing
     right = transform(times, values * numpy.exp(-decay * times)[:, None], freq)
     found = numpy.linalg.lstsq(numpy.vstack([(columns / lengths).real, (columns / lengths).imag]),
                                numpy.vstack([right.real, right.imag]), rcond=FINE)[0] / lengths[:, None]

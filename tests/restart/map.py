@@ -5,19 +5,14 @@ these, when memory of kept bodies is left, or when files of another scene are ta
 
     map.py SQUEAL LAUNCHER"""
 
-import os
-import signal
-import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
-from runs import SOURCE, fail
+from runs import SOURCE, fail, killed_at, outcome_of, starter
 
 OPTIONS = "-map_values 0.3,0.5,0.6 -map_values_2 100,200 -ts_max_time 32e-3 -map_view".split()
 TABLES = "map.csv", "map_modes.csv"
-PATIENCE = 120  # s
 
 
 def command(squeal, launcher, ranks, folder, *options):
@@ -26,27 +21,19 @@ def command(squeal, launcher, ranks, folder, *options):
 
 
 def main(squeal, launcher):
+    program = starter(squeal)
     with tempfile.TemporaryDirectory() as root:
         whole, parts = Path(root) / "whole", Path(root) / "parts"
 
         def run(ranks, folder, *options):
-            done = subprocess.run(command(squeal, launcher, ranks, folder, *options), stdin=subprocess.DEVNULL,
-                                  capture_output=True, text=True, check=False)
-            if done.returncode:
-                fail(done.stderr)
-            return done.stdout + done.stderr
+            outcome = outcome_of(program, root, command(squeal, launcher, ranks, folder, *options)[4:], ranks)
+            if outcome.status:
+                fail(outcome.stderr)
+            return outcome.stdout + outcome.stderr
 
         run(1, whole)
-        with subprocess.Popen(command(squeal, launcher, 1, parts), start_new_session=True, stdout=subprocess.DEVNULL,
-                              stderr=subprocess.DEVNULL) as process:
-            end = time.monotonic() + PATIENCE
-            while not (parts / "map_restart_chain_000001").exists() and process.poll() is None:
-                if time.monotonic() > end:
-                    fail("no chain is kept")
-                time.sleep(0.01)
-            os.killpg(process.pid, signal.SIGKILL)
-        if (parts / "map.csv").exists():
-            fail("the map ended before it could be killed")
+        if not killed_at(command(squeal, launcher, 1, parts), parts / "map_restart_chain_000002") or (parts / "map.csv").exists():
+            fail("the map was not killed after its second chain")
         said = run(2, parts, "-malloc_coalesce", "-malloc_debug", "-malloc_dump")
         if " bytes " in said:
             fail(f"memory of kept bodies is left: {said}")
@@ -63,6 +50,7 @@ def main(squeal, launcher):
             fail("a damaged file is not named")
         if list(parts.glob("map_restart_*")):
             fail("files of a larger map that was killed are left")
+        program.end()
         print("the same bytes on two ranks as on one that was not killed")
 
 

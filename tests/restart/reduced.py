@@ -8,12 +8,11 @@ of the ledger is not kept.
 
 import argparse
 import shutil
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-from runs import SOURCE, arrays, fail
+from runs import SOURCE, arrays, fail, outcome_of, starter
 
 OPTIONS = """-rig_disc_elements 8,24,1 -rig_pad_elements 4,4,2 -rig_beam_elements 5 -press_ramp 2e-4 -tap_time 3e-4 -contact_speed 0.02
              -dynamics_cutoff 20e3 -dynamics_compare false -dynamics_live 0 -dynamics_checkpoint_interval 37
@@ -27,11 +26,11 @@ def main():
     parser.add_argument("launcher")
     parser.add_argument("--ranks", default="1")
     arguments = parser.parse_args()
+    program = starter(arguments.squeal)
 
     def run(folder, *options):
-        return subprocess.run([arguments.launcher, "-n", arguments.ranks, arguments.squeal, "-options_file",
-                               SOURCE / "options/massi2005_reduced.yaml", *OPTIONS, "-output_dir", folder, *options],
-                              stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+        words = ["-options_file", SOURCE / "options/massi2005_reduced.yaml", *OPTIONS, "-output_dir", folder, *options]
+        return outcome_of(program, folder.parent, words, int(arguments.ranks))
 
     with tempfile.TemporaryDirectory() as folder:
         whole, parts = Path(folder) / "whole", Path(folder) / "parts"
@@ -41,7 +40,7 @@ def main():
         outcome += [run(whole, "-ts_max_time", "2e-3", *(["-dynamics_restart"] if whole.exists() else [])),
                    run(parts, "-ts_max_time", "2e-3", "-dynamics_restart", "-dynamics_cutoff", "21e3", "-ts_dt", "7e-6"),
                    run(parts, "-ts_max_time", "2e-3", "-dynamics_restart")]
-        if [end.returncode > 0 for end in outcome] != [False, False, True, False]:
+        if [end.status > 0 for end in outcome] != [False, False, True, False]:
             fail("\n".join(end.stderr for end in outcome))
         if "-dynamics_cutoff" not in outcome[2].stderr:
             fail(f"the other cut-off is not named: {outcome[2].stderr}")
@@ -57,6 +56,7 @@ def main():
         rows = (whole / "contact_pairs.csv").read_text()
         print(f"{len(frames)} snapshots, {rows.count(',slip')} pairs slip, {rows.count(',stick')} stick, "
               f"{rows.count(',open')} are open: the same")
+    program.end()
 
 
 if __name__ == "__main__":

@@ -5,11 +5,15 @@ import argparse
 import csv
 import random
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
 
 import h5py
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+from served import RENAME, SYNC, WRITE, killed_at, outcome_of, starter  # noqa: E402, F401, for the tests
 
 SOURCE = Path(__file__).resolve().parents[2]
 SMALL = """
@@ -39,7 +43,7 @@ WATCHED = ("stays watched",)  # scenes with amplitudes of modes
 TABLES = ("transient.csv", "contact_pairs.csv", "circles.csv", "impulses.csv", "transient.xmf")
 RESTART = "-dynamics_restart"
 OFTEN = 200  # steps between checkpoints
-PATIENCE = 60  # seconds
+PATIENCE = 240  # seconds
 
 
 def fail(message):
@@ -49,8 +53,8 @@ def fail(message):
 class Runs:
     """Runs of one scene, each in a folder of its own."""
 
-    def __init__(self, arguments, folder, scene):
-        self.arguments, self.folder, self.scene = arguments, folder, scene
+    def __init__(self, arguments, folder, scene, program):
+        self.arguments, self.folder, self.scene, self.program = arguments, folder, scene, program
 
     def command(self, name, *options):
         (self.folder / "small.yaml").write_text(SMALL)
@@ -74,14 +78,15 @@ class Runs:
         return subprocess.Popen(self.command(name, *options), start_new_session=True, text=True,
                                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
+    def end(self, name, *options):
+        """How a run that nobody disturbs ends."""
+        return outcome_of(self.program, self.folder, self.command(name, *options)[4:], self.arguments.ranks)
+
     def complete(self, name, *options):
-        """Runs to the end; seconds that it took."""
-        begun = time.monotonic()
-        process = self.start(name, *options)
-        stderr = process.communicate(timeout=PATIENCE)[1]
-        if process.returncode:
-            fail(f"{self.scene}, {name}: exit status {process.returncode}: {stderr}")
-        return time.monotonic() - begun
+        """Runs to the end."""
+        outcome = self.end(name, *options)
+        if outcome.status:
+            fail(f"{self.scene}, {name}: exit status {outcome.status}: {outcome.stderr}")
 
     def path(self, name, file):
         return self.folder / name / file
@@ -92,9 +97,8 @@ class Runs:
 
     def restart(self, name, *options):
         """Tries to go on: exit status, and the lines that complain."""
-        process = self.start(name, RESTART, *options)
-        stderr = process.communicate(timeout=PATIENCE)[1]
-        return process.returncode, [line for line in stderr.splitlines() if line.startswith("squeal:")]
+        outcome = self.end(name, RESTART, *options)
+        return outcome.status, [line for line in outcome.stderr.splitlines() if line.startswith("squeal:")]
 
 
 # --- what is equal
@@ -175,8 +179,9 @@ def scenes(description, check):
     arguments = parser.parse_args()
     arguments.squeal = str(Path(arguments.squeal).resolve())
     print(f"seed {arguments.seed}", flush=True)
-    chance = random.Random(arguments.seed)
+    chance, program = random.Random(arguments.seed), starter(arguments.squeal, PATIENCE)
     for scene in arguments.scene or list(SCENES):
         with tempfile.TemporaryDirectory(prefix="squeal-") as name:
-            check(Runs(arguments, Path(name), scene), chance)
+            check(Runs(arguments, Path(name), scene, program), chance)
+    program.end()
     return 0

@@ -8,15 +8,14 @@ import argparse
 import csv
 import filecmp
 import math
-import os
 import re
 import shutil
-import signal
-import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+from served import killed_at, outcome_of, starter  # noqa: E402
 
 SOURCE = Path(__file__).resolve().parents[2]
 SMALL = 'rig: {disc: {elements: "6,20,1"}, pad: {elements: "3,3,2"}, beam: {elements: 8}}\nmodes: {band: "100,6000"}\n'
@@ -34,7 +33,7 @@ DAMAGE = ((20, b"\xff\xff\xff\xff"), (28, b"\x01\0\0\0"), (28, b"\xff\xff\xff\xf
 GROUPS = ("-sweep_parameter", "contact_mu", "-sweep_values", "0.05,0.06,0.07", "-sweep_verify", "0",
           "-sweep_uncertain", "pad_young", "-sweep_percent", "10")
 PLAIN = ("-sweep_onsets", "0")  # where onsets are not looked at
-PATIENCE = 100  # seconds
+PATIENCE = 400  # seconds
 
 
 def command(arguments, folder, output, *options):
@@ -46,11 +45,10 @@ def command(arguments, folder, output, *options):
 
 def complete(arguments, folder, output, *options):
     """Runs to the end; what it printed, then its warnings."""
-    process = subprocess.run(command(arguments, folder, output, *options), capture_output=True, text=True,
-                             timeout=PATIENCE, check=False)
-    if process.returncode:
-        raise SystemExit(f"FAILED: exit status {process.returncode}: {process.stderr}")
-    return process.stdout + process.stderr
+    outcome = outcome_of(arguments.program, folder, command(arguments, folder, output, *options)[4:], arguments.ranks)
+    if outcome.status:
+        raise SystemExit(f"FAILED: exit status {outcome.status}: {outcome.stderr}")
+    return outcome.stdout + outcome.stderr
 
 
 def kept(arguments, folder, output):
@@ -69,15 +67,9 @@ def same(arguments, one, other):
 
 
 def kill_after(arguments, folder, output, n, *options):
-    """Starts the sweep and kills it as soon as it has kept n full solutions."""
-    process = subprocess.Popen(command(arguments, folder, output, *options), start_new_session=True, stdout=subprocess.DEVNULL,
-                               stderr=subprocess.DEVNULL)
-    begun = time.monotonic()
-    while kept(arguments, folder, output) < n and process.poll() is None and time.monotonic() - begun < PATIENCE:
-        time.sleep(0.002)
-    os.killpg(process.pid, signal.SIGKILL)
-    process.wait()
-    if kept(arguments, folder, output) < n:
+    """Starts the sweep, which is killed when it has kept n full solutions and begins to keep the next one."""
+    killed = killed_at(command(arguments, folder, output, *options), folder / output / f"sweep_restart_{n:03d}_rank0")
+    if not killed or kept(arguments, folder, output) != n:
         raise SystemExit(f"FAILED: no {n} solutions were kept before the end")
     if any((folder / output / table).exists() for table in TABLES):
         raise SystemExit("FAILED: a killed sweep left a table")
@@ -118,6 +110,7 @@ def main():
     parser.add_argument("--ranks", type=int, default=1)
     parser.add_argument("--contact", default="all", help="all pairs closed, or static: those of the sliding state")
     arguments = parser.parse_args()
+    arguments.program = starter(arguments.squeal, PATIENCE)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "small.yaml").write_text(SMALL)
@@ -143,6 +136,7 @@ def main():
         if arguments.contact == "static":
             kill_after(arguments, folder, "groups", 1, *GROUPS)
             begin_anew(arguments, folder, "groups", "the sweep", *GROUPS[:6])
+    arguments.program.end()
     print("ok: killed three times, all tables alike")
     return 0
 

@@ -11,7 +11,7 @@ import signal
 import sys
 import time
 
-from runs import OFTEN, PATIENCE, RESTART, compare, fail, ranks_of, scenes, wait
+from runs import OFTEN, PATIENCE, RENAME, RESTART, SYNC, WRITE, compare, fail, killed_at, ranks_of, scenes, wait
 
 
 def changes(path):
@@ -45,13 +45,12 @@ def kill(runs, name, process):
         time.sleep(0.005)
 
 
-def stamp(path):
-    """What tells two checkpoints apart, None without one."""
+def size(path):
+    """Of a file, bytes; 0 without one."""
     try:
-        status = path.stat()
+        return path.stat().st_size
     except FileNotFoundError:
-        return None
-    return status.st_ino, status.st_mtime_ns
+        return 0
 
 
 def time_at(path):
@@ -65,14 +64,11 @@ def go_on(runs, name):
     return [RESTART] if runs.path(name, "checkpoint.bin").exists() else []
 
 
-def kill_once(runs, name, interval, delay, of_checkpoint):
-    """Starts or goes on, waits for a sign of life and then for `delay` seconds, and kills. What the kill met: time of
-    the last row, and whether a checkpoint was being written; None when the run was over before."""
-    sign = runs.path(name, "checkpoint.bin" if of_checkpoint else "transient.csv.part")
-    before = stamp(sign)
-    process = runs.start(name, "-dynamics_checkpoint_interval", str(interval), *go_on(runs, name))
-    met = wait(process, lambda: stamp(sign) != before)
-    time.sleep(delay)
+def kill_once(runs, name, rows):
+    """Starts or goes on, and kills when the table has so many bytes of rows. What the kill met: time of the last row, and whether a
+    checkpoint was being written; None when the run was over before."""
+    process = runs.start(name, "-dynamics_checkpoint_interval", str(OFTEN), *go_on(runs, name))
+    met = wait(process, lambda: size(runs.path(name, "transient.csv.part")) >= rows)
     if not met or process.poll() is not None:
         stderr = process.communicate()[1]
         if process.returncode:
@@ -84,11 +80,11 @@ def kill_once(runs, name, interval, delay, of_checkpoint):
     return time_at(runs.path(name, "transient.csv.part")), runs.path(name, "checkpoint.bin.part").exists()
 
 
-def kill_often(runs, name, chance, n, interval, longest):
+def kill_often(runs, name, chance, n):
     """Kills n times, or until the run is over; the moments."""
-    moments = []
-    for i in range(n):
-        met = kill_once(runs, name, interval, chance.uniform(0, longest), i > 0)
+    moments, whole = [], size(runs.path("undisturbed", "transient.csv"))
+    for part in sorted(chance.uniform(0.05, 0.85) for _ in range(n)):
+        met = kill_once(runs, name, part * whole)
         if met is None:
             break
         moments.append(met)
@@ -96,12 +92,12 @@ def kill_often(runs, name, chance, n, interval, longest):
 
 
 def check_kills(runs, chance):
-    """At random moments; then with a checkpoint every few steps, until one was cut off while it was written."""
-    seconds = runs.complete("undisturbed")
+    """At random moments."""
+    runs.complete("undisturbed")
     n = changes(runs.path("undisturbed", "contact_pairs.csv"))
     if n < 100:
         fail(f"{runs.scene}: only {n} changes of status")
-    moments = kill_often(runs, "killed", chance, 5, OFTEN, 0.25 * seconds)
+    moments = kill_often(runs, "killed", chance, 5)
     runs.complete("killed", "-dynamics_checkpoint_interval", str(OFTEN), *go_on(runs, "killed"))
     compare(runs, "undisturbed", "killed")
     if len(moments) < 2 or len({moment for moment, _ in moments}) < 2:
@@ -113,20 +109,17 @@ def check_kills(runs, chance):
 
 
 def check_torn(runs, chance):
-    """Kills while checkpoints are written, one every other step."""
-    torn = 0
-    tries = 0
-    while torn < 2 and tries < 12:
-        met = kill_once(runs, "torn", 2, chance.uniform(0, 0.05), True)
-        if met is None:
-            break
-        torn += met[1]
-        tries += 1
+    """Kills while checkpoints are written, one every other step: before a random call that writes, flushes or renames one."""
+    for _ in range(2):
+        command = runs.command("torn", "-dynamics_checkpoint_interval", "2", *go_on(runs, "torn"))
+        at = chance.randrange(40, 400)
+        if not killed_at(command, runs.path("torn", "checkpoint.bin"), calls=WRITE | SYNC | RENAME, at=at):
+            fail(f"{runs.scene}: no kill at call {at} on checkpoints")
+        if not runs.path("torn", "checkpoint.bin").exists() or not runs.path("torn", "checkpoint.bin.part").exists():
+            fail(f"{runs.scene}: the kill at call {at} did not leave a checkpoint and part of the next one")
     runs.complete("torn", "-dynamics_checkpoint_interval", str(OFTEN), *go_on(runs, "torn"))
     compare(runs, "undisturbed", "torn")
-    if not torn:
-        fail(f"{runs.scene}: none of {tries} kills met a checkpoint that was being written")
-    print(f"{runs.scene}: {torn} of {tries} kills met a checkpoint being written: bitwise the same", flush=True)
+    print(f"{runs.scene}: killed twice while a checkpoint was being written: bitwise the same", flush=True)
 
 
 # --- going on

@@ -31,11 +31,12 @@ def flutters(pair, mu):
     return inside
 
 
-def lines(folder, band=None, labels="auto"):
-    """The axes of the picture of one parameter."""
+def lines(folder, band=None, labels="auto", render=False):
+    """The axes of the picture of one parameter, where asked for after it was rendered."""
     with plt.rc_context(sweep_tables.FONTS):
         figure = sweep_lines.draw_lines(sweep_tables.Study(folder, band, None), ["frequency", "growth"], labels)
-        figure.canvas.draw()
+        if render:
+            figure.canvas.draw()
     return figure.axes
 
 
@@ -72,7 +73,7 @@ def test_marks(root):
 def test_texts(root):
     """No two labels overlap, and none leaves the picture: breaks when they are not spread."""
     for labels in ("auto", "all"):
-        for axes in lines(root / "flutter", labels=labels):
+        for axes in lines(root / "flutter", labels=labels, render=True):
             texts = [text for text in axes.texts if isinstance(text, Annotation)]
             require(len(texts) >= 3, f"{len(texts)} labels only")
             boxes = [Text.get_window_extent(text) for text in texts]
