@@ -218,13 +218,14 @@ PetscErrorCode ModelAddLoad(Model model, PetscInt i, Vec local);
 @*/
 PetscErrorCode ModelGetBodies(Model model, PetscInt *n_bodies, PetscInt **body);
 
-/*@ ModelGetSetNodes - local nodes of a named set, ascending, also those that other ranks own. Collective.
+/*@ ModelGetSetNodes - local nodes of a named set, node [n], ascending, also those that other ranks own. Collective. The
+    caller frees the array (PetscFree()).
     Errors: PETSC_ERR_USER_INPUT when no rank has the set; the message lists the sets of the mesh. @*/
-PetscErrorCode ModelGetSetNodes(Model model, const char set[], IS *vertices);
+PetscErrorCode ModelGetSetNodes(Model model, const char set[], PetscInt *n, PetscInt **node);
 
 /*@ ModelGetOwnedNodes - as ModelGetSetNodes(), those that this rank owns: each node of the set on exactly one
     rank. Collective. @*/
-PetscErrorCode ModelGetOwnedNodes(Model model, const char set[], IS *vertices);
+PetscErrorCode ModelGetOwnedNodes(Model model, const char set[], PetscInt *n, PetscInt **node);
 
 /*@ ModelCreateShares - the shares s_v of the nodes of a set in a quantity that is spread over it, in the first of three
     places of each local node, complete on every rank that has it: 1; adding up to 1; or area, m^2. Collective. The

@@ -81,24 +81,19 @@ static PetscErrorCode BelowFind(Model model, PetscInt v, const PetscReal normal[
 /* The best local edges of all nodes of a surface on this rank that are not held */
 static PetscErrorCode BelowLocal(Model model, const char set[], PetscInt *n_found, Below **found)
 {
-  const PetscInt *vertices;
   PetscReal      *normals;
-  PetscInt        n;
-  IS              is;
+  PetscInt        n, *vertices;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetSetNormals(model, set, &normals));
-  PetscCall(ModelGetSetNodes(model, set, &is));
-  PetscCall(ISGetLocalSize(is, &n));
-  PetscCall(ISGetIndices(is, &vertices));
+  PetscCall(ModelGetSetNodes(model, set, &n, &vertices));
   PetscCall(PetscMalloc1(n, found));
   *n_found = 0;
   for (PetscInt i = 0; i < n; i++) {
     PetscCall(BelowFind(model, vertices[i], &normals[3 * vertices[i]], &(*found)[*n_found]));
     if ((*found)[*n_found].vertex >= 0) ++*n_found;
   }
-  PetscCall(ISRestoreIndices(is, &vertices));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(vertices));
   PetscCall(PetscFree(normals));
   PetscFunctionReturn(0);
 }

@@ -65,18 +65,14 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const Conta
                                 PairFailure *failure)
 {
   const ContactInterface *c = &contact->interfaces[interface];
-  const PetscInt         *vertices;
   const Mesh             *mesh;
   PetscReal              *normals; /* [node][3], times area, m^2 */
-  PetscInt                n;
-  IS                      is;
+  PetscInt                n, *vertices;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
   PetscCall(ModelGetSetNormals(contact->model, c->slave, &normals));
-  PetscCall(ModelGetOwnedNodes(contact->model, c->slave, &is));
-  PetscCall(ISGetLocalSize(is, &n));
-  PetscCall(ISGetIndices(is, &vertices));
+  PetscCall(ModelGetOwnedNodes(contact->model, c->slave, &n, &vertices));
   PetscCall(PetscRealloc(sizeof(ContactPair) * (size_t)(contact->n_pairs + n), &contact->pairs));
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt v    = vertices[i];
@@ -93,8 +89,7 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const Conta
     }
     if (foot.facet >= 0 && !PairSetMaster(c, surface, &foot, pair)) failure->no_slip = 1;
   }
-  PetscCall(ISRestoreIndices(is, &vertices));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(vertices));
   PetscCall(PetscFree(normals));
   PetscFunctionReturn(0);
 }

@@ -7,21 +7,16 @@
 /* Part that has most cells at a surface: the one that the surface belongs to */
 static PetscErrorCode DynamicsFindPart(Dynamics d, const char set[], PetscInt *part)
 {
-  const PetscInt *vertices;
   const Mesh     *mesh;
-  PetscInt        n, *count;
+  PetscInt        n, *count, *vertices;
   PetscBool      *in_set;
-  IS              is;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(d->model, &mesh));
   PetscCall(PetscCalloc2(mesh->n_parts, &count, mesh->n_nodes, &in_set));
-  PetscCall(ModelGetSetNodes(d->model, set, &is));
-  PetscCall(ISGetLocalSize(is, &n));
-  PetscCall(ISGetIndices(is, &vertices));
+  PetscCall(ModelGetSetNodes(d->model, set, &n, &vertices));
   for (PetscInt i = 0; i < n; i++) in_set[vertices[i]] = PETSC_TRUE;
-  PetscCall(ISRestoreIndices(is, &vertices));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(vertices));
   for (PetscInt c = 0; c < mesh->n_cells; c++)
     for (PetscInt i = mesh->cell_first[c]; i < mesh->cell_first[c + 1]; i++)
       count[mesh->cell_part[c]] += in_set[mesh->cell_node[i]];

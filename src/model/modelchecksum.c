@@ -15,26 +15,21 @@ static uint64_t ModelSumVertices(const Mesh *mesh, PetscInt n, const PetscInt ve
 
 PetscErrorCode ModelAddSetChecksum(Model model, const char set[], PetscBool is_surface, Checksum c)
 {
-  const PetscInt *vertex;
   const Mesh     *mesh;
-  PetscInt        n;
+  PetscInt        n, *vertex;
   ModelFaces      faces = {0, NULL, NULL};
   uint64_t       *piece;
-  IS              is;
 
   PetscFunctionBeginUser;
   PetscCall(ChecksumAddString(c, set));
   PetscCall(ModelGetMesh(model, &mesh));
-  PetscCall(ModelGetOwnedNodes(model, set, &is));
-  PetscCall(ISGetLocalSize(is, &n));
+  PetscCall(ModelGetOwnedNodes(model, set, &n, &vertex));
   if (is_surface) PetscCall(ModelGetSetFaces(model, set, &faces));
   PetscCall(PetscMalloc1(n + faces.n, &piece));
-  PetscCall(ISGetIndices(is, &vertex));
   for (PetscInt i = 0; i < n; i++) piece[i] = ModelSumVertices(mesh, 1, &vertex[i]);
   for (PetscInt i = 0; i < faces.n; i++)
     piece[n + i] = ModelSumVertices(mesh, faces.first[i + 1] - faces.first[i], &faces.node[faces.first[i]]);
-  PetscCall(ISRestoreIndices(is, &vertex));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(vertex));
   PetscCall(ChecksumAddPieces(c, n + faces.n, piece));
   PetscCall(ModelFacesDestroy(&faces));
   PetscCall(PetscFree(piece));

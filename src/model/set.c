@@ -96,10 +96,9 @@ static PetscErrorCode MarkAlone(Model model, const char set[], PetscScalar mark[
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelGetSetNodes(Model model, const char set[], IS *vertices)
+PetscErrorCode ModelGetSetNodes(Model model, const char set[], PetscInt *n, PetscInt **node)
 {
   PetscScalar *mark;
-  PetscInt     n = 0, *list;
   Vec          marks;
   IS           points;
 
@@ -111,34 +110,26 @@ PetscErrorCode ModelGetSetNodes(Model model, const char set[], IS *vertices)
   PetscCall(MarkAlone(model, set, mark));
   PetscCall(VecRestoreArray(marks, &mark));
   PetscCall(ModelSumShared(model, marks));
-  PetscCall(PetscMalloc1(model->mesh.n_nodes, &list));
   PetscCall(VecGetArray(marks, &mark));
-  for (PetscInt v = 0; v < model->mesh.n_nodes; v++)
-    if (PetscRealPart(mark[3 * v]) > 0) list[n++] = v;
+  *n = 0;
+  for (PetscInt v = 0; v < model->mesh.n_nodes; v++) *n += mark[3 * v] > 0;
+  PetscCall(PetscMalloc1(*n, node));
+  for (PetscInt v = 0, i = 0; v < model->mesh.n_nodes; v++)
+    if (mark[3 * v] > 0) (*node)[i++] = v;
   PetscCall(VecRestoreArray(marks, &mark));
-  PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, list, PETSC_COPY_VALUES, vertices));
-  PetscCall(PetscFree(list));
   PetscCall(VecDestroy(&marks));
   PetscCall(ISDestroy(&points));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelGetOwnedNodes(Model model, const char set[], IS *vertices)
+PetscErrorCode ModelGetOwnedNodes(Model model, const char set[], PetscInt *n, PetscInt **node)
 {
-  const PetscInt *v;
-  PetscInt        n, n_owned = 0, *owned;
-  IS              all;
+  PetscInt n_all;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetSetNodes(model, set, &all));
-  PetscCall(ISGetLocalSize(all, &n));
-  PetscCall(ISGetIndices(all, &v));
-  PetscCall(PetscMalloc1(n, &owned));
-  for (PetscInt i = 0; i < n; i++)
-    if (model->mesh.owned[v[i]]) owned[n_owned++] = v[i];
-  PetscCall(ISRestoreIndices(all, &v));
-  PetscCall(ISDestroy(&all));
-  PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n_owned, owned, PETSC_COPY_VALUES, vertices));
-  PetscCall(PetscFree(owned));
+  PetscCall(ModelGetSetNodes(model, set, &n_all, node));
+  *n = 0;
+  for (PetscInt i = 0; i < n_all; i++)
+    if (model->mesh.owned[(*node)[i]]) (*node)[(*n)++] = (*node)[i];
   PetscFunctionReturn(0);
 }

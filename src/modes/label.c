@@ -98,21 +98,16 @@ static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Mesh *mesh,
 static PetscErrorCode SurfacesMark(Model model, Contact contact, PetscInt n_vertices, PetscBool **marks)
 {
   const ContactInterface *interfaces;
-  PetscInt                n_interfaces, n;
+  PetscInt                n_interfaces, n, *vertex;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n_vertices, marks));
   PetscCall(ContactGetInterfaces(contact, &n_interfaces, &interfaces));
   for (PetscInt i = 0; i < 2 * n_interfaces; i++) {
-    const PetscInt *vertex;
-    IS              is;
 
-    PetscCall(ModelGetSetNodes(model, i % 2 ? interfaces[i / 2].master : interfaces[i / 2].slave, &is));
-    PetscCall(ISGetLocalSize(is, &n));
-    PetscCall(ISGetIndices(is, &vertex));
+    PetscCall(ModelGetSetNodes(model, i % 2 ? interfaces[i / 2].master : interfaces[i / 2].slave, &n, &vertex));
     for (PetscInt k = 0; k < n; k++) (*marks)[vertex[k]] = PETSC_TRUE;
-    PetscCall(ISRestoreIndices(is, &vertex));
-    PetscCall(ISDestroy(&is));
+    PetscCall(PetscFree(vertex));
   }
   PetscFunctionReturn(0);
 }

@@ -95,26 +95,21 @@ static PetscErrorCode ShareDiagonalCreate(Operators o, const void *of, const Pet
   const Grounded    *g = of;
   const Mesh        *mesh;
   const PetscScalar *share;
-  const PetscInt    *vertices;
-  PetscInt           n_vertices;
+  PetscInt           n_vertices, *vertices;
   Vec                shares;
-  IS                 is;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(o->model, &mesh));
   PetscCall(MatCreateAIJ(o->comm, mesh->n_own, mesh->n_own, PETSC_DETERMINE, PETSC_DETERMINE, 1, NULL, 0, NULL, D));
   PetscCall(ModelCreateShares(o->model, g->name, g->set, g->spread, &shares));
   PetscCall(VecGetArrayRead(shares, &share));
-  PetscCall(ModelGetOwnedNodes(o->model, g->set, &is));
-  PetscCall(ISGetLocalSize(is, &n_vertices));
-  PetscCall(ISGetIndices(is, &vertices));
+  PetscCall(ModelGetOwnedNodes(o->model, g->set, &n_vertices, &vertices));
   for (PetscInt j = 0; j < 3 * n_vertices; j++) {
     const PetscInt row = mesh->unknown[3 * vertices[j / 3] + j % 3];
 
     if (mask[j % 3]) PetscCall(MatSetValues(*D, 1, &row, 1, &row, &share[3 * vertices[j / 3]], ADD_VALUES));
   }
-  PetscCall(ISRestoreIndices(is, &vertices));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(vertices));
   PetscCall(VecRestoreArrayRead(shares, &share));
   PetscCall(VecDestroy(&shares));
   PetscCall(MatAssemblyBegin(*D, MAT_FINAL_ASSEMBLY));

@@ -96,19 +96,14 @@ static PetscErrorCode StartVelocities(ReducedRun r)
   PetscCall(ModelGetMesh(r->run.model, &mesh));
   PetscCall(PetscCalloc2(3 * mesh->n_nodes, &nodal, mesh->n_nodes, &count));
   for (PetscInt i = 0; i < scene->n_parts; i++) {
-    const PetscInt *node;
-    PetscInt        n;
-    IS              is;
+    PetscInt n, *node;
 
-    PetscCall(ModelGetSetNodes(r->run.model, scene->parts[i].name, &is));
-    PetscCall(ISGetLocalSize(is, &n));
-    PetscCall(ISGetIndices(is, &node));
+    PetscCall(ModelGetSetNodes(r->run.model, scene->parts[i].name, &n, &node));
     for (PetscInt k = 0; k < n; k++) {
       for (int d = 0; d < 3; d++) nodal[3 * node[k] + d] += velocity[3 * i + d];
       count[node[k]]++;
     }
-    PetscCall(ISRestoreIndices(is, &node));
-    PetscCall(ISDestroy(&is));
+    PetscCall(PetscFree(node));
   }
   for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) nodal[i] /= PetscMax(1, count[i / 3]);
   PetscCall(

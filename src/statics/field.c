@@ -48,18 +48,14 @@ static PetscErrorCode PressureSpread(Model model, const char set[], const PetscR
    several surfaces the last one counts, with its normal and area */
 static PetscErrorCode PressureSet(Model model, const char set[], const PetscScalar force[], PetscReal pressure[])
 {
-  const PetscInt *v;
   const Mesh     *mesh;
-  PetscInt        n;
+  PetscInt        n, *v;
   PetscReal      *normals, *along, *spread;
-  IS              is;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(ModelGetSetNormals(model, set, &normals));
-  PetscCall(ModelGetSetNodes(model, set, &is));
-  PetscCall(ISGetLocalSize(is, &n));
-  PetscCall(ISGetIndices(is, &v));
+  PetscCall(ModelGetSetNodes(model, set, &n, &v));
   PetscCall(PetscCalloc2(mesh->n_nodes, &along, mesh->n_nodes, &spread));
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal area = Vec3Length(&normals[3 * v[i]]);
@@ -71,8 +67,7 @@ static PetscErrorCode PressureSet(Model model, const char set[], const PetscScal
   PetscCall(PressureSpread(model, set, along, spread));
   for (PetscInt i = 0; i < n; i++)
     if (Vec3Length(&normals[3 * v[i]]) > 0) pressure[v[i]] = spread[v[i]];
-  PetscCall(ISRestoreIndices(is, &v));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(v));
   PetscCall(PetscFree2(along, spread));
   PetscCall(PetscFree(normals));
   PetscFunctionReturn(0);

@@ -39,16 +39,12 @@ static PetscErrorCode ReactionSum(Model model, const char set[], const PetscBool
                                   PetscReal sum[3])
 {
   PetscScalar    *value;
-  const PetscInt *v;
-  PetscInt        n;
+  PetscInt        n, *v;
   MPI_Comm        comm;
-  IS              is;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetComm(model, &comm));
-  PetscCall(ModelGetOwnedNodes(model, set, &is));
-  PetscCall(ISGetLocalSize(is, &n));
-  PetscCall(ISGetIndices(is, &v));
+  PetscCall(ModelGetOwnedNodes(model, set, &n, &v));
   PetscCall(VecGetArray(local, &value));
   for (int d = 0; d < 3; d++) {
     sum[d] = 0;
@@ -58,8 +54,7 @@ static PetscErrorCode ReactionSum(Model model, const char set[], const PetscBool
     }
   }
   PetscCall(VecRestoreArray(local, &value));
-  PetscCall(ISRestoreIndices(is, &v));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(v));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, comm));
   PetscFunctionReturn(0);
 }

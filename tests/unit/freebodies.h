@@ -30,31 +30,24 @@ static inline PetscErrorCode FieldCreate(const Chain *chain, Field field, const 
 {
   const Mesh        *mesh;
   const PetscScalar *value = NULL;
-  const PetscInt    *vertices;
-  PetscInt           n;
-  IS                 is;
+  PetscInt           n, *vertices = NULL;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsCreateVec(chain->operators, u));
   PetscCall(VecSetOption(*u, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
   PetscCall(ModelGetMesh(chain->model, &mesh));
-  if (set)
-    PetscCall(ModelGetSetNodes(chain->model, set, &is));
-  else
-    PetscCall(ISCreateStride(PETSC_COMM_SELF, mesh->n_nodes, 0, 1, &is));
-  PetscCall(ISGetLocalSize(is, &n));
-  PetscCall(ISGetIndices(is, &vertices));
+  n = mesh->n_nodes;
+  if (set) PetscCall(ModelGetSetNodes(chain->model, set, &n, &vertices));
   if (local) PetscCall(VecGetArrayRead(local, &value));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt v = 3 * vertices[i];
+    const PetscInt v = 3 * (vertices ? vertices[i] : i);
     PetscReal      here[3];
 
     field(&mesh->x[v], value ? &value[v] : NULL, here);
     PetscCall(VecSetValues(*u, 3, &mesh->unknown[v], here, INSERT_VALUES));
   }
   if (local) PetscCall(VecRestoreArrayRead(local, &value));
-  PetscCall(ISRestoreIndices(is, &vertices));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(vertices));
   PetscCall(VecAssemblyBegin(*u));
   PetscCall(VecAssemblyEnd(*u));
   PetscFunctionReturn(0);

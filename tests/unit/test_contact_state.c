@@ -181,25 +181,20 @@ static PetscErrorCode TestShared(Contact contact, int *failed)
    0.3 about y, in place */
 static PetscErrorCode MeshMove(Model model, PetscReal lift)
 {
-  const PetscInt *vertex;
   const Mesh     *mesh;
   PetscReal      *x;
-  PetscInt        n;
-  IS              is;
+  PetscInt        n, *vertex;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(model, &mesh));
   x = (PetscReal *)mesh->x;
-  PetscCall(ModelGetSetNodes(model, "pad_face", &is));
-  PetscCall(ISGetLocalSize(is, &n));
-  PetscCall(ISGetIndices(is, &vertex));
+  PetscCall(ModelGetSetNodes(model, "pad_face", &n, &vertex));
   for (PetscInt i = 0; i < n; i++) {
     x[3 * vertex[i]] += 1e-3;
     x[3 * vertex[i] + 1] += 7e-4;
     x[3 * vertex[i] + 2] += lift;
   }
-  PetscCall(ISRestoreIndices(is, &vertex));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(vertex));
   for (PetscInt v = 0; v < mesh->n_nodes; v++) {
     const PetscReal y = x[3 * v + 1], z = x[3 * v + 2], x0 = x[3 * v], z1 = sin(0.7) * y + cos(0.7) * z;
 

@@ -106,16 +106,12 @@ static PetscErrorCode SetSum(Model model, const char set[], Vec local, PetscReal
 {
   const PetscScalar *f;
   const Mesh        *mesh;
-  const PetscInt    *vertices;
-  PetscInt           n;
-  IS                 is;
+  PetscInt           n, *vertices;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(sum, 6));
   PetscCall(ModelGetMesh(model, &mesh));
-  PetscCall(ModelGetOwnedNodes(model, set, &is));
-  PetscCall(ISGetLocalSize(is, &n));
-  PetscCall(ISGetIndices(is, &vertices));
+  PetscCall(ModelGetOwnedNodes(model, set, &n, &vertices));
   PetscCall(VecGetArrayRead(local, &f));
   for (PetscInt i = 0; i < n; i++)
     for (int d = 0; d < 3; d++) {
@@ -125,8 +121,7 @@ static PetscErrorCode SetSum(Model model, const char set[], Vec local, PetscReal
       sum[3 + d] += mesh->x[v + d1] * f[v + d2] - mesh->x[v + d2] * f[v + d1];
     }
   PetscCall(VecRestoreArrayRead(local, &f));
-  PetscCall(ISRestoreIndices(is, &vertices));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(vertices));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 6, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD));
   PetscFunctionReturn(0);
 }

@@ -15,17 +15,12 @@ typedef struct {
 /* Marks the local nodes (from 0) of a set */
 static PetscErrorCode VerticesMark(Model model, const char set[], PetscBool mark[])
 {
-  const PetscInt *v;
-  PetscInt        n;
-  IS              is;
+  PetscInt n, *v;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetSetNodes(model, set, &is));
-  PetscCall(ISGetLocalSize(is, &n));
-  PetscCall(ISGetIndices(is, &v));
+  PetscCall(ModelGetSetNodes(model, set, &n, &v));
   for (PetscInt i = 0; i < n; i++) mark[v[i]] = PETSC_TRUE;
-  PetscCall(ISRestoreIndices(is, &v));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(v));
   PetscFunctionReturn(0);
 }
 
@@ -88,15 +83,11 @@ static PetscErrorCode NodesFind(ContactProjector p, PetscInt *n_unique, PetscInt
 static PetscErrorCode SlavesAppend(Contact contact, PetscInt interface, PetscInt *n_slaves, Slave **slave)
 {
   const Mesh     *mesh;
-  const PetscInt *v;
-  PetscInt        n;
-  IS              is;
+  PetscInt        n, *v;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
-  PetscCall(ModelGetOwnedNodes(contact->model, contact->interfaces[interface].slave, &is));
-  PetscCall(ISGetLocalSize(is, &n));
-  PetscCall(ISGetIndices(is, &v));
+  PetscCall(ModelGetOwnedNodes(contact->model, contact->interfaces[interface].slave, &n, &v));
   PetscCall(PetscRealloc(sizeof(Slave) * (size_t)(*n_slaves + n), slave));
   for (PetscInt i = 0; i < n; i++) {
     Slave *s = &(*slave)[(*n_slaves)++];
@@ -104,8 +95,7 @@ static PetscErrorCode SlavesAppend(Contact contact, PetscInt interface, PetscInt
     *s = (Slave){.interface = interface, .number = mesh->number[v[i]]};
     PetscCall(PetscArraycpy(s->x, &mesh->x[3 * v[i]], 3));
   }
-  PetscCall(ISRestoreIndices(is, &v));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(v));
   PetscFunctionReturn(0);
 }
 

@@ -28,18 +28,14 @@ static void PointAddBlock(const PetscReal q[9], const PetscReal value[3], PetscR
 /* Adds the springs or the dashpots of a list */
 static PetscErrorCode PointsAddGrounded(Bodies b, const Grounded *grounded, PetscBool is_dashpot, PetscInt of_vertex[])
 {
-  const PetscInt  *vertices;
   const PetscReal *share;
-  PetscInt         n;
+  PetscInt         n, *vertices;
   Vec              shares;
-  IS               is;
 
   PetscFunctionBeginUser;
   PetscCall(ModelCreateShares(b->model, grounded->name, grounded->set, grounded->spread, &shares));
   PetscCall(VecGetArrayRead(shares, &share));
-  PetscCall(ModelGetOwnedNodes(b->model, grounded->set, &is));
-  PetscCall(ISGetLocalSize(is, &n));
-  PetscCall(ISGetIndices(is, &vertices));
+  PetscCall(ModelGetOwnedNodes(b->model, grounded->set, &n, &vertices));
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt v = vertices[i];
     PetscReal      value[3];
@@ -50,8 +46,7 @@ static PetscErrorCode PointsAddGrounded(Bodies b, const Grounded *grounded, Pets
     for (int d = 0; d < 3; d++) value[d] = share[3 * v] * grounded->value[d];
     PointAddBlock(&b->layout.basis[9 * v], value, is_dashpot ? point->damping : point->stiffness);
   }
-  PetscCall(ISRestoreIndices(is, &vertices));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(vertices));
   PetscCall(VecRestoreArrayRead(shares, &share));
   PetscCall(VecDestroy(&shares));
   PetscFunctionReturn(0);

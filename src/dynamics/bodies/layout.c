@@ -38,18 +38,13 @@ static PetscErrorCode BodiesMotionSplits(Bodies b, PetscInt body, PetscBool *spl
   PetscCall(ModelGetScene(b->model, &scene));
   for (PetscInt i = 0; i < scene->n_motions; i++) {
     const PetscBool *along = scene->motions[i].direction;
-    const PetscInt  *vertices;
-    PetscInt         n;
-    IS               is;
+    PetscInt         n, *vertices;
 
     if (along[0] == along[1] && along[1] == along[2]) continue;
-    PetscCall(ModelGetSetNodes(b->model, scene->motions[i].set, &is));
-    PetscCall(ISGetLocalSize(is, &n));
-    PetscCall(ISGetIndices(is, &vertices));
+    PetscCall(ModelGetSetNodes(b->model, scene->motions[i].set, &n, &vertices));
     for (PetscInt k = 0; k < n; k++)
       if (b->body[vertices[k]] == body) *splits = PETSC_TRUE;
-    PetscCall(ISRestoreIndices(is, &vertices));
-    PetscCall(ISDestroy(&is));
+    PetscCall(PetscFree(vertices));
   }
   PetscFunctionReturn(0);
 }

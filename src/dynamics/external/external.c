@@ -62,15 +62,11 @@ PetscErrorCode ExternalFindVertices(External external, const char set[], PetscIn
                                     PetscInt **vertex)
 {
   const Layout   *layout = external->layout;
-  const PetscInt *point;
-  PetscInt        n_all;
-  IS              is;
+  PetscInt        n_all, *point;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetSetNodes(external->model, set, &is));
-  PetscCall(ISGetLocalSize(is, &n_all));
+  PetscCall(ModelGetSetNodes(external->model, set, &n_all, &point));
   PetscCall(PetscMalloc1(n_all, vertex));
-  PetscCall(ISGetIndices(is, &point));
   *n = 0;
   for (int pass = 0; pass < 2; pass++) {
     for (PetscInt k = 0; k < n_all; k++) {
@@ -80,8 +76,7 @@ PetscErrorCode ExternalFindVertices(External external, const char set[], PetscIn
     }
     if (pass == 0) *n_owned = *n;
   }
-  PetscCall(ISRestoreIndices(is, &point));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(point));
   PetscFunctionReturn(0);
 }
 

@@ -66,22 +66,17 @@ PetscErrorCode HistoryWriteCircles(History history, const HistoryState *state)
 static PetscErrorCode CirclesFindContact(History history, PetscReal centre[3], PetscReal *n)
 {
   PetscReal       sum[4] = {0, 0, 0, 0};
-  const PetscInt *vertex;
   const Mesh     *mesh;
-  PetscInt        n_local;
-  IS              is;
+  PetscInt        n_local, *vertex;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(history->source.model, &mesh));
   for (PetscInt i = 0; history->source.interfaces && i < history->source.n_interfaces; i++) {
-    PetscCall(ModelGetOwnedNodes(history->source.model, history->source.interfaces[i].slave, &is));
-    PetscCall(ISGetLocalSize(is, &n_local));
-    PetscCall(ISGetIndices(is, &vertex));
+    PetscCall(ModelGetOwnedNodes(history->source.model, history->source.interfaces[i].slave, &n_local, &vertex));
     for (PetscInt k = 0; k < n_local; k++)
       for (int d = 0; d < 3; d++) sum[d] += mesh->x[3 * vertex[k] + d];
     sum[3] += (PetscReal)n_local;
-    PetscCall(ISRestoreIndices(is, &vertex));
-    PetscCall(ISDestroy(&is));
+    PetscCall(PetscFree(vertex));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, history->comm));
   *n = sum[3];

@@ -10,18 +10,13 @@ static PetscErrorCode SupportsFlag(Model model, PetscBool fixed[][3])
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < model->scene.n_supports; i++) {
     const Support  *support = &model->scene.supports[i];
-    const PetscInt *vertices;
-    PetscInt        n;
-    IS              is;
+    PetscInt        n, *vertices;
 
-    PetscCall(ModelGetSetNodes(model, support->set, &is));
-    PetscCall(ISGetLocalSize(is, &n));
-    PetscCall(ISGetIndices(is, &vertices));
+    PetscCall(ModelGetSetNodes(model, support->set, &n, &vertices));
     for (PetscInt j = 0; j < n; j++)
       for (int d = 0; d < 3; d++)
         if (support->fix[d]) fixed[vertices[j]][d] = PETSC_TRUE;
-    PetscCall(ISRestoreIndices(is, &vertices));
-    PetscCall(ISDestroy(&is));
+    PetscCall(PetscFree(vertices));
   }
   PetscFunctionReturn(0);
 }

@@ -90,28 +90,21 @@ static int RigFileMake(Model model, PetscInt n_surfaces, const ModelFaces faces[
 PetscErrorCode RigSave(Model model)
 {
   const PetscInt  n_surfaces = model->rig.with_pad ? 4 : 2;
-  const PetscInt *rows       = NULL;
-  PetscInt        n_rows     = 0;
+  PetscInt        n_rows = 0, *rows = NULL;
   PetscMPIInt     rank;
   ModelFaces      faces[4];
-  IS              nodes  = NULL;
   int             failed = 0;
 
   PetscFunctionBeginUser;
   if (!model->rig.save[0]) PetscFunctionReturn(0);
   for (PetscInt s = 0; s < n_surfaces; s++) PetscCall(ModelGetSetFaces(model, rig_surfaces[s], &faces[s]));
-  if (model->rig.with_pad) {
-    PetscCall(ModelGetSetNodes(model, rig_rows, &nodes));
-    PetscCall(ISGetLocalSize(nodes, &n_rows));
-    PetscCall(ISGetIndices(nodes, &rows));
-  }
+  if (model->rig.with_pad) PetscCall(ModelGetSetNodes(model, rig_rows, &n_rows, &rows));
   PetscCallMPI(MPI_Comm_rank(model->comm, &rank));
   if (rank == 0) failed = RigFileMake(model, n_surfaces, faces, n_rows, rows);
   PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, model->comm));
   PetscCheck(!failed, model->comm, PETSC_ERR_FILE_WRITE, "cannot write '%s' of -rig_save: %s", model->rig.save,
              strerror(failed));
-  if (nodes) PetscCall(ISRestoreIndices(nodes, &rows));
-  PetscCall(ISDestroy(&nodes));
+  PetscCall(PetscFree(rows));
   for (PetscInt s = 0; s < n_surfaces; s++) PetscCall(ModelFacesDestroy(&faces[s]));
   PetscFunctionReturn(0);
 }

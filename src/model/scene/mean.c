@@ -18,7 +18,7 @@
 /* A set with its shares */
 typedef struct {
   PetscInt         n;
-  const PetscInt  *vertex; /* [n] that this rank owns */
+  PetscInt        *vertex; /* [n] that this rank owns */
   const PetscReal *share;  /* [3 nodes] in the first of three places */
   PetscReal        middle[3], size, inverse[9];
   PetscBool        turns; /* inverse is there */
@@ -119,20 +119,16 @@ static PetscErrorCode MeanVisit(Model model, const ModelMeanWish *wish, const Pe
   PetscReal second[6] = {0};
   MeanSet   m         = {0};
   Vec       shares;
-  IS        is;
 
   PetscFunctionBeginUser;
   PetscCall(ModelCreateShares(model, wish->owner, wish->set, SPREAD_TOTAL, &shares));
   PetscCall(VecGetArrayRead(shares, &m.share));
-  PetscCall(ModelGetOwnedNodes(model, wish->set, &is));
-  PetscCall(ISGetLocalSize(is, &m.n));
-  PetscCall(ISGetIndices(is, &m.vertex));
+  PetscCall(ModelGetOwnedNodes(model, wish->set, &m.n, &m.vertex));
   PetscCall(MeanMoments(model, &m, second));
   PetscCall(MeanInvert(second, &m));
   PetscCall(PetscArraycpy(middle, m.middle, 3));
   if (b) PetscCall(MeanAddRows(model, &m, wish, at, b));
-  PetscCall(ISRestoreIndices(is, &m.vertex));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(m.vertex));
   PetscCall(VecRestoreArrayRead(shares, &m.share));
   PetscCall(VecDestroy(&shares));
   PetscFunctionReturn(0);

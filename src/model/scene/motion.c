@@ -92,14 +92,10 @@ PetscErrorCode ModelDescribeMotion(const PrescribedMotion *motion, size_t size, 
 static PetscErrorCode MotionFlag(Model model, const PrescribedMotion *motion, PetscBT taken, PetscBool fixed[][3],
                                  PetscReal prescribed[])
 {
-  const PetscInt *vertex;
-  PetscInt        n, n_held = 0, n_twice = 0;
-  IS              is;
+  PetscInt n, n_held = 0, n_twice = 0, *vertex;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetSetNodes(model, motion->set, &is));
-  PetscCall(ISGetLocalSize(is, &n));
-  PetscCall(ISGetIndices(is, &vertex));
+  PetscCall(ModelGetSetNodes(model, motion->set, &n, &vertex));
   for (PetscInt i = 0; i < 3 * n; i++) {
     const PetscInt v = vertex[i / 3], d = i % 3, at = 3 * v + d;
 
@@ -111,8 +107,7 @@ static PetscErrorCode MotionFlag(Model model, const PrescribedMotion *motion, Pe
     prescribed[at] = motion->displacement[d];
     n_held++;
   }
-  PetscCall(ISRestoreIndices(is, &vertex));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(vertex));
   PetscCall(ModelCheckMotion(model, motion, n_held, n_twice));
   PetscFunctionReturn(0);
 }

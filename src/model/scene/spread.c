@@ -56,17 +56,12 @@ static PetscErrorCode SurfaceAddWeights(Model model, const char set[], PetscBool
 /* Adds 1 at the nodes of the set that this rank owns to weight[3 v] */
 static PetscErrorCode NodesAddWeights(Model model, const char set[], PetscScalar weight[])
 {
-  const PetscInt *vertices;
-  PetscInt        n;
-  IS              is;
+  PetscInt n, *vertices;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetOwnedNodes(model, set, &is));
-  PetscCall(ISGetLocalSize(is, &n));
-  PetscCall(ISGetIndices(is, &vertices));
+  PetscCall(ModelGetOwnedNodes(model, set, &n, &vertices));
   for (PetscInt j = 0; j < n; j++) weight[3 * vertices[j]] += 1;
-  PetscCall(ISRestoreIndices(is, &vertices));
-  PetscCall(ISDestroy(&is));
+  PetscCall(PetscFree(vertices));
   PetscFunctionReturn(0);
 }
 
