@@ -4,15 +4,27 @@
 */
 #include "historyimpl.h"
 
-#define N_FIRST     22 /* columns before those of interfaces and probes */
 #define N_PER_FACE  2
 #define N_PER_PROBE 9
 #define NAME_ROOM   40 /* characters of a column besides the name of its interface or probe */
 
+/* Columns before those of interfaces and probes */
 static const char first_columns[] =
   "time_s,normal_force_n,friction_force_n,n_closed,n_stick,kinetic_j,strain_j,external_work_j,friction_work_j,"
   "contact_work_j,damping_work_j,energy_error_j,integrator_work_j,friction_heat_j,n_open,projector_residual,"
   "projector_sweeps,looks,stiffness_error,friction_error,momentum_error,moment_error";
+
+/* The same: reals alone */
+typedef struct {
+  PetscReal time, normal, friction, n_closed, n_stick;
+  PetscReal kinetic, strain, external_work, friction_work, contact_work, damping_work, energy_error, integrator_work,
+    heat;
+  PetscReal n_open, residual, sweeps;
+  PetscReal looks, stiffness_error, friction_error, momentum_error, moment_error;
+} FirstColumns;
+
+#define N_FIRST ((PetscInt)(sizeof(FirstColumns) / sizeof(PetscReal)))
+
 static const char *const face_columns[N_PER_FACE]   = {"normal_force_n", "friction_force_n"};
 static const char *const probe_columns[N_PER_PROBE] = {"x_m",    "y_m",     "z_m",     "vx_m_s", "vy_m_s",
                                                        "vz_m_s", "ax_m_s2", "ay_m_s2", "az_m_s2"};
@@ -61,43 +73,25 @@ PetscErrorCode HistoryCreateHeader(History history, char **header)
 }
 
 /* Sums over the interfaces; mean sweeps per step since the last row */
-static void HistoryRowContact(History history, const HistoryState *state, PetscReal row[N_FIRST])
+static void HistoryRowContact(History history, const HistoryState *state, FirstColumns *row)
 {
   PetscReal sweeps = 0, steps = 0;
 
   for (PetscInt i = 0; i < state->n_interfaces; i++) {
     const ContactSums *s = &state->sums[i];
 
-    row[1] += s->normal;
-    row[2] += s->friction;
-    row[3] += s->n[CONTACT_STICK] + s->n[CONTACT_SLIP];
-    row[4] += s->n[CONTACT_STICK];
-    row[14] += s->n[CONTACT_OPEN];
-    row[15] = PetscMax(row[15], s->residual);
+    row->normal += s->normal;
+    row->friction += s->friction;
+    row->n_closed += s->n[CONTACT_STICK] + s->n[CONTACT_SLIP];
+    row->n_stick += s->n[CONTACT_STICK];
+    row->n_open += s->n[CONTACT_OPEN];
+    row->residual = PetscMax(row->residual, s->residual);
     sweeps += s->sweeps;
     steps += s->steps;
   }
-  row[16]         = steps > history->steps ? (sweeps - history->sweeps) / (steps - history->steps) : 0;
+  row->sweeps     = steps > history->steps ? (sweeps - history->sweeps) / (steps - history->steps) : 0;
   history->sweeps = sweeps;
   history->steps  = steps;
-}
-
-static void HistoryRowLedger(const Ledger *ledger, PetscReal row[N_FIRST])
-{
-  row[5]  = ledger->kinetic;
-  row[6]  = ledger->strain;
-  row[7]  = ledger->external;
-  row[8]  = ledger->friction;
-  row[9]  = ledger->contact;
-  row[10] = ledger->damping;
-  row[11] = ledger->error;
-  row[12] = ledger->integrator;
-  row[13] = ledger->heat;
-  row[17] = ledger->laws.looks;
-  row[18] = ledger->laws.stiffness;
-  row[19] = ledger->laws.friction;
-  row[20] = ledger->laws.momentum;
-  row[21] = ledger->laws.moment;
 }
 
 /* Motions of the probes, [n_probes][9], on rank 0; each is known to one rank */
@@ -124,15 +118,30 @@ PetscErrorCode HistoryWriteRow(History history, const HistoryState *state)
 {
   const PetscInt n_faces = HistoryCountFaces(history), n_motions = N_PER_PROBE * history->n_probes;
   const PetscInt n = N_FIRST + N_PER_FACE * n_faces + n_motions;
+  const Ledger  *l     = state->ledger;
+  FirstColumns   first = {.time            = state->time,
+                          .kinetic         = l->kinetic,
+                          .strain          = l->strain,
+                          .external_work   = l->external,
+                          .friction_work   = l->friction,
+                          .contact_work    = l->contact,
+                          .damping_work    = l->damping,
+                          .energy_error    = l->error,
+                          .integrator_work = l->integrator,
+                          .heat            = l->heat,
+                          .looks           = l->laws.looks,
+                          .stiffness_error = l->laws.stiffness,
+                          .friction_error  = l->laws.friction,
+                          .momentum_error  = l->laws.momentum,
+                          .moment_error    = l->laws.moment};
   PetscReal     *row;
 
   PetscFunctionBeginUser;
   PetscCheck(n_faces <= state->n_interfaces, history->comm, PETSC_ERR_ARG_SIZ,
              "sums of %" PetscInt_FMT " interfaces, must be %" PetscInt_FMT, state->n_interfaces, n_faces);
   PetscCall(PetscCalloc1(n, &row));
-  row[0] = state->time;
-  HistoryRowContact(history, state, row);
-  HistoryRowLedger(state->ledger, row);
+  HistoryRowContact(history, state, &first);
+  PetscCall(PetscArraycpy(row, (const PetscReal *)&first, N_FIRST));
   for (PetscInt i = 0; i < n_faces; i++) {
     row[N_FIRST + N_PER_FACE * i]     = state->sums[i].normal;
     row[N_FIRST + N_PER_FACE * i + 1] = state->sums[i].friction;

@@ -64,27 +64,21 @@ PetscErrorCode LedgerClose(MPI_Comm comm, LedgerAccount *account, PetscInt n, co
 {
   LedgerPart *part   = &account->part;
   Ledger     *ledger = &account->total;
-  PetscReal   sum[6];
+  LedgerPart  sum;
 
   PetscFunctionBeginUser;
   if (first) part->external = part->damping = part->integrator = 0;
-  sum[0] = part->kinetic;
-  sum[1] = part->strain;
-  sum[2] = part->external;
-  sum[3] = part->damping;
-  sum[4] = part->integrator;
-  sum[5] = part->predicted;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 6, MPIU_REAL, MPI_SUM, comm));
-  ledger->kinetic    = sum[0];
-  ledger->strain     = sum[1];
-  ledger->external   = sum[2];
-  ledger->damping    = sum[3];
-  ledger->integrator = sum[4];
-  if (first) ledger->start = sum[0] + sum[1];
+  PetscCallMPI(MPI_Allreduce(part, &sum, (PetscMPIInt)(sizeof(sum) / sizeof(PetscReal)), MPIU_REAL, MPI_SUM, comm));
+  ledger->kinetic    = sum.kinetic;
+  ledger->strain     = sum.strain;
+  ledger->external   = sum.external;
+  ledger->damping    = sum.damping;
+  ledger->integrator = sum.integrator;
+  ledger->predicted  = sum.predicted;
+  if (first) ledger->start = sum.kinetic + sum.strain;
   LedgerSetContact(ledger, n, sums, first, &account->origin);
   ledger->error = ledger->kinetic + ledger->strain - ledger->start - ledger->external - ledger->contact -
                   ledger->friction - ledger->damping - ledger->integrator;
-  ledger->predicted = sum[5];
   LedgerRaiseThroughput(ledger);
   PetscFunctionReturn(0);
 }

@@ -28,7 +28,7 @@ typedef struct {
   LedgerLaws laws;
 } Ledger;
 
-/* This rank's part, gathered step by step: works since the start */
+/* This rank's part, gathered step by step: works since the start; reals alone */
 typedef struct {
   PetscReal kinetic, strain;
   PetscReal external, damping, integrator;
