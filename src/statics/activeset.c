@@ -231,7 +231,7 @@ PetscErrorCode ActiveIterate(Active *a, PetscBool sure, ActiveOutcome *outcome)
   const PetscInt max_it    = sure ? ONE_BY_ONE * a->max_it : a->max_it;
   PetscReal      residual  = 0, *l, *w;
   PetscInt       n_changed = 1;
-  Cycle          cycle     = {.n = 0};
+  Repeat         seen      = {.n = 0};
   Safeguard      guard     = {.sure = sure, .linear = ActiveIsLinear(a), .least = PETSC_MAX_INT};
   PetscBool      repeats;
   SmallOutcome   small;
@@ -243,12 +243,12 @@ PetscErrorCode ActiveIterate(Active *a, PetscBool sure, ActiveOutcome *outcome)
   a->rounding = sure ? SURE_ROUNDING : ACTIVE_ROUNDING;
   for (PetscInt it = 0; it < max_it && *outcome == ACTIVE_SLOW; it++, a->n_it++) {
     repeats = PETSC_FALSE;
-    if (n_changed && !(sure && guard.linear)) PetscCall(CycleCheck(a, &cycle, &repeats));
+    if (n_changed && !(sure && guard.linear)) PetscCall(RepeatFind(a, &seen, &repeats));
     PetscCall(PetscArraycpy(l, a->l, a->rows->n));
     PetscCall(PetscArraycpy(w, a->w, a->rows->n));
     PetscCall(Solve(a, PETSC_FALSE, a->free, a->l, a->w, &small));
     if (small != SMALL_GOOD || repeats) {
-      *outcome = repeats ? ACTIVE_CYCLES : small == SMALL_UNSOLVED ? ACTIVE_UNSOLVED : ACTIVE_SINGULAR;
+      *outcome = repeats ? ACTIVE_REPEATS : small == SMALL_UNSOLVED ? ACTIVE_UNSOLVED : ACTIVE_SINGULAR;
       break;
     }
     PetscCall(ActiveFindScale(a));

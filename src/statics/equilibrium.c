@@ -27,7 +27,7 @@ static PetscErrorCode OutcomePrint(const Active *a, ActiveOutcome outcome, size_
   static const char *const how[] = {
     [ACTIVE_CONVERGED] = "",
     [ACTIVE_SINGULAR]  = "the closed pairs leave a motion that nothing resists; give -supports or -springs",
-    [ACTIVE_CYCLES] =
+    [ACTIVE_REPEATS] =
       "the statuses of the pairs go round in a circle; change -static_load_steps or the -loads a little",
     [ACTIVE_SLOW]     = "the pairs do not settle within -static_max_it %" PetscInt_FMT " iterations; allow more",
     [ACTIVE_JAMMED]   = "the bodies jam: friction presses them together by more than they yield",

@@ -85,7 +85,7 @@ typedef struct {
 typedef enum {
   ACTIVE_CONVERGED,
   ACTIVE_SINGULAR,
-  ACTIVE_CYCLES,
+  ACTIVE_REPEATS,
   ACTIVE_SLOW,
   ACTIVE_JAMMED,
   ACTIVE_UNSOLVED
@@ -121,13 +121,13 @@ static inline PetscBool ActiveIsLinear(const Active *active)
 
 #define STATICS_LOADS_DIFFER "the -loads, the weight or -motions differ"
 
-#define CYCLE_LONGEST 64
+#define REPEAT_LONGEST 64
 
 /* Numbers that tell iterates apart: of all statuses, and of forces and displacements, m */
 typedef struct {
   PetscInt  n;
-  PetscReal status[CYCLE_LONGEST], iterate[CYCLE_LONGEST];
-} Cycle;
+  PetscReal status[REPEAT_LONGEST], iterate[REPEAT_LONGEST];
+} Repeat;
 
 struct _p_Statics {
   MPI_Comm  comm;
@@ -219,8 +219,8 @@ PETSC_INTERN PetscErrorCode SmallIsReversed(const SmallSystem *system, PetscBool
 PETSC_INTERN PetscErrorCode PivotSolve(const Compliance *c, PetscReal friction, const PetscReal rhs[],
                                        ContactStatus status[], PetscBool *found);
 
-/* cycle.c - whether the iterate was there before, among the last ones seen; remembers it */
-PETSC_INTERN PetscErrorCode CycleCheck(const Active *active, Cycle *cycle, PetscBool *repeats);
+/* repeat.c - whether the iterate was there before, among the last ones seen; remembers it */
+PETSC_INTERN PetscErrorCode RepeatFind(const Active *active, Repeat *seen, PetscBool *repeats);
 
 /* activeset.c - iterates from the present status at the present friction; sure changes fewer pairs at a time */
 PETSC_INTERN PetscErrorCode ActiveIterate(Active *active, PetscBool sure, ActiveOutcome *outcome);

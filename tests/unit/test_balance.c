@@ -85,7 +85,7 @@ static PetscErrorCode TestLittle(int *failed)
 }
 
 /* Statuses of three pairs with linear laws. Breaks when a circle is not seen, or seen where there is none. */
-static PetscErrorCode TestCycle(int *failed)
+static PetscErrorCode TestRepeat(int *failed)
 {
   static const ContactStatus way[4][3] = {
     {CONTACT_SLIP, CONTACT_SLIP, CONTACT_OPEN},
@@ -97,13 +97,13 @@ static PetscErrorCode TestCycle(int *failed)
   PairRows      rows = {.comm = PETSC_COMM_SELF, .n_pairs = 3, .n_pairs_all = 3, .n = 3, .n_all = 3, .first = first};
   ContactStatus status[3];
   Active        a     = {.rows = &rows, .friction = 1, .status = status};
-  Cycle         cycle = {.n = 0};
+  Repeat        seen  = {.n = 0};
   PetscBool     repeats;
 
   PetscFunctionBeginUser;
   for (int i = 0; i < 4; i++) {
     PetscCall(PetscArraycpy(status, way[i], 3));
-    PetscCall(CycleCheck(&a, &cycle, &repeats));
+    PetscCall(RepeatFind(&a, &seen, &repeats));
     *failed += CheckTrue("a status repeats at the fourth only", repeats == (i == 3), i);
   }
   PetscFunctionReturn(0);
@@ -118,7 +118,7 @@ int main(int argc, char **argv)
   PetscCall(TestPairs(&failed));
   PetscCall(TestTable(&failed));
   PetscCall(TestLittle(&failed));
-  PetscCall(TestCycle(&failed));
+  PetscCall(TestRepeat(&failed));
   PetscCall(PetscFinalize());
   printf("%d failed\n", failed);
   return failed ? 1 : 0;

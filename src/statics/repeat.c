@@ -5,9 +5,9 @@
 */
 #include "staticsimpl.h"
 
-#define CYCLE_SAME 1e-9 /* change of an iterate that repeats, relative */
+#define REPEAT_SAME 1e-9 /* change of an iterate that repeats, relative */
 
-PetscErrorCode CycleCheck(const Active *a, Cycle *cycle, PetscBool *repeats)
+PetscErrorCode RepeatFind(const Active *a, Repeat *seen, PetscBool *repeats)
 {
   const PetscReal golden = 0.61803398874989484820;
   const PetscBool linear = ActiveIsLinear(a);
@@ -22,11 +22,11 @@ PetscErrorCode CycleCheck(const Active *a, Cycle *cycle, PetscBool *repeats)
   for (PetscInt i = 0; i < a->rows->n && !linear; i++) sum[1] += PetscAbsReal(a->l[i]) + PetscAbsReal(a->w[i]);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, a->rows->comm));
   *repeats = PETSC_FALSE;
-  for (PetscInt i = 0; i < PetscMin(cycle->n, CYCLE_LONGEST); i++)
-    if (cycle->status[i] == sum[0] && PetscAbsReal(cycle->iterate[i] - sum[1]) <= CYCLE_SAME * sum[1])
+  for (PetscInt i = 0; i < PetscMin(seen->n, REPEAT_LONGEST); i++)
+    if (seen->status[i] == sum[0] && PetscAbsReal(seen->iterate[i] - sum[1]) <= REPEAT_SAME * sum[1])
       *repeats = PETSC_TRUE;
-  cycle->status[cycle->n % CYCLE_LONGEST]  = sum[0];
-  cycle->iterate[cycle->n % CYCLE_LONGEST] = sum[1];
-  cycle->n++;
+  seen->status[seen->n % REPEAT_LONGEST]  = sum[0];
+  seen->iterate[seen->n % REPEAT_LONGEST] = sum[1];
+  seen->n++;
   PetscFunctionReturn(0);
 }
