@@ -215,7 +215,7 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscCall(ReducedSetRooms(chain->reduced, chain->dynamics, chain->modes));
   PetscCall(ModesGetContact(chain->modes, &is_static));
   PetscCall(StaticsCheckUse(chain->statics, is_static && chain->analysis != ANALYSIS_STATIC));
-  PetscCall(OperatorsCreatePoint(chain->operators, &chain->p));
+  PetscCall(OperatorsCreatePoint(chain->operators, NULL, &chain->p));
   PetscCall(StaticsIdentifyAll(chain->statics, chain->p, viewer));
   PetscCall(SweepSetOperators(chain->sweep, chain->operators, chain->p));
   PetscCall(SweepSetModes(chain->sweep, chain->modes));

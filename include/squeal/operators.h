@@ -96,9 +96,9 @@ PetscErrorCode OperatorsGetSave(Operators operators, const char **folder);
 @*/
 PetscErrorCode OperatorsGetParameters(Operators operators, PetscInt *n, const OperatorsParameter **parameters);
 
-/*@ OperatorsCreatePoint - the values of the scene, p [parameters], to be changed and freed (PetscFree()) by the caller.
-    Not collective. @*/
-PetscErrorCode OperatorsCreatePoint(Operators operators, PetscReal **p);
+/*@ OperatorsCreatePoint - a copy of a point, NULL for the values of the scene, p [parameters], to be changed and freed
+    (PetscFree()) by the caller. Not collective. @*/
+PetscErrorCode OperatorsCreatePoint(Operators operators, const PetscReal from[], PetscReal **p);
 
 /*@ OperatorsCheckParameter - raises PETSC_ERR_USER_INPUT for a value outside the limits of its parameter, naming both.
     Collective. @*/

@@ -70,16 +70,11 @@ PetscErrorCode MapSetFromOptions(Map map)
 
 PetscErrorCode MapSetRooms(Map map, ReducedRun reduced, Operators operators, const PetscReal p[])
 {
-  const OperatorsParameter *list;
-  PetscInt                  n;
-
   PetscFunctionBeginUser;
   map->reduced   = reduced;
   map->operators = operators;
-  PetscCall(OperatorsGetParameters(operators, &n, &list));
   PetscCall(PetscFree(map->p));
-  PetscCall(OperatorsCreatePoint(operators, &map->p));
-  if (p) PetscCall(PetscArraycpy(map->p, p, n));
+  PetscCall(OperatorsCreatePoint(operators, p, &map->p));
   PetscFunctionReturn(0);
 }
 

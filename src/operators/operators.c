@@ -147,11 +147,11 @@ PetscErrorCode OperatorsGetParameters(Operators operators, PetscInt *n, const Op
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsCreatePoint(Operators operators, PetscReal **p)
+PetscErrorCode OperatorsCreatePoint(Operators operators, const PetscReal from[], PetscReal **p)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(operators->parameters.n, p));
-  PetscCall(PetscArraycpy(*p, operators->parameters.p, operators->parameters.n));
+  PetscCall(PetscArraycpy(*p, OperatorsPoint(operators, from), operators->parameters.n));
   PetscFunctionReturn(0);
 }
 
@@ -162,7 +162,7 @@ PetscErrorCode OperatorsCheckParameter(Operators operators, PetscInt parameter, 
   PetscFunctionBeginUser;
   PetscCall(ParameterCheck(operators->comm, &operators->parameters.list[parameter], value));
   if (!operators->n_named) PetscFunctionReturn(0);
-  PetscCall(OperatorsCreatePoint(operators, &p));
+  PetscCall(OperatorsCreatePoint(operators, NULL, &p));
   p[parameter] = value;
   for (PetscInt t = 0; t < operators->terms.n; t++) {
     const PetscReal c = OperatorsTermCoefficient(&operators->terms.term[t], p);

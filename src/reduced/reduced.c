@@ -102,9 +102,6 @@ PetscErrorCode ReducedPrepare(ReducedRun r, Results results)
 static PetscErrorCode ReducedReduceOther(ReducedRun r, PetscReal cutoff, const PetscReal p[], ReducedRun like,
                                          ReducedRun *other)
 {
-  const OperatorsParameter *list;
-  PetscInt                  n;
-
   PetscFunctionBeginUser;
   PetscCall(ReducedCreate(r->comm, other));
   (*other)->dynamics   = r->dynamics;
@@ -113,11 +110,7 @@ static PetscErrorCode ReducedReduceOther(ReducedRun r, PetscReal cutoff, const P
   (*other)->cutoff     = cutoff > 0 ? cutoff : r->cutoff;
   (*other)->dt         = r->dt;
   (*other)->like       = like;
-  if (p) {
-    PetscCall(OperatorsGetParameters(r->run.operators, &n, &list));
-    PetscCall(OperatorsCreatePoint(r->run.operators, &(*other)->p));
-    PetscCall(PetscArraycpy((*other)->p, p, n));
-  }
+  if (p) PetscCall(OperatorsCreatePoint(r->run.operators, p, &(*other)->p));
   PetscCall(ReducedReduce(*other));
   PetscCall(ShiftInvertDestroy(&(*other)->inverse));
   PetscFunctionReturn(0);

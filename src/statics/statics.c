@@ -136,7 +136,7 @@ static PetscErrorCode StaticsCreateRows(Statics s)
   PetscCall(PetscMalloc3(s->rows.n_pairs, &s->status, s->rows.n_pairs, &s->state, s->rows.n_interfaces, &s->resultant));
   for (PetscInt p = 0; p < s->rows.n_pairs; p++) s->status[p] = s->rows.law[p].d == 3 ? CONTACT_STICK : CONTACT_SLIP;
   PetscCall(OperatorsCreateVec(s->operators, &s->u));
-  PetscCall(OperatorsCreatePoint(s->operators, &s->p));
+  PetscCall(OperatorsCreatePoint(s->operators, NULL, &s->p));
   PetscFunctionReturn(0);
 }
 

@@ -41,8 +41,7 @@ PetscErrorCode SweepSetOperators(Sweep sweep, Operators operators, const PetscRe
   sweep->operators = operators;
   PetscCall(OperatorsGetParameters(operators, &grid->n_parameters, &parameters));
   PetscCall(PetscFree(grid->base));
-  PetscCall(OperatorsCreatePoint(operators, &grid->base));
-  if (p) PetscCall(PetscArraycpy(grid->base, p, grid->n_parameters));
+  PetscCall(OperatorsCreatePoint(operators, p, &grid->base));
   PetscFunctionReturn(0);
 }
 

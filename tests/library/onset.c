@@ -44,7 +44,7 @@ static PetscErrorCode Vary(MPI_Comm comm, Operators operators, PetscInt n, const
   PetscCall(OperatorsGetParameters(operators, &n_parameters, &parameter));
   while (which < n_parameters && strcmp(parameter[which].name, "contact_mu")) which++;
   PetscCheck(which < n_parameters, comm, PETSC_ERR_USER_INPUT, "the scene has no contact_mu");
-  PetscCall(OperatorsCreatePoint(operators, &p));
+  PetscCall(OperatorsCreatePoint(operators, NULL, &p));
   PetscCall(OperatorsLinearise(operators, NULL, &pencil));
   for (PetscInt i = 0; i < n; i++) {
     p[which] = mu[i];

@@ -90,16 +90,11 @@ PetscErrorCode CycleSetFromOptions(LimitCycle c)
 
 PetscErrorCode CycleSetRooms(LimitCycle c, ReducedRun reduced, Operators operators, const PetscReal p[])
 {
-  const OperatorsParameter *list;
-  PetscInt                  n;
-
   PetscFunctionBeginUser;
   c->reduced   = reduced;
   c->operators = operators;
-  PetscCall(OperatorsGetParameters(operators, &n, &list));
   PetscCall(PetscFree(c->p));
-  PetscCall(OperatorsCreatePoint(operators, &c->p));
-  if (p) PetscCall(PetscArraycpy(c->p, p, n));
+  PetscCall(OperatorsCreatePoint(operators, p, &c->p));
   PetscFunctionReturn(0);
 }
 
