@@ -70,7 +70,7 @@ PetscErrorCode OperatorsAddChecksum(Operators o, Checksum c)
   PetscCall(MirrorsAddChecksum(o, c));
   if (o->model) PetscFunctionReturn(0);
   PetscCall(ChecksumAddReals(c, 1, &o->loaded_mu));
-  PetscCall(NamedAddChecksum(o, c));
+  PetscCall(MatrixTermsAddChecksum(o, c));
   for (PetscInt t = 0; t < o->terms.n; t++) PetscCall(MatrixAddChecksum(o->terms.term[t].A, c));
   PetscFunctionReturn(0);
 }
@@ -179,7 +179,7 @@ PetscErrorCode OperatorsLoad(Operators o)
     PetscCall(MatIsSymmetric(A[i], MATRIX_SYMMETRIC * largest, &o->symmetric));
   }
   PetscCall(OperatorsAddMatrices(o, A));
-  if (o->n_named) PetscCall(OperatorsAddNamed(o));
+  if (o->n_named) PetscCall(MatrixTermsAdd(o));
   for (PetscInt t = 0; t < o->terms.n && !o->symmetric; t++) o->terms.term[t].symmetric = PETSC_FALSE;
   for (int i = 0; i < N_OPERATORS; i++) PetscCall(MatDestroy(&A[i]));
   PetscFunctionReturn(0);

@@ -25,7 +25,7 @@ static PetscErrorCode MatrixSkewness(Mat A, PetscReal sign, PetscReal *part)
 }
 
 /* Whether it is symmetric; an error where it is not what the option says */
-static PetscErrorCode NamedFindSymmetry(Operators o, struct _p_MatrixTerm *term)
+static PetscErrorCode MatrixTermFindSymmetry(Operators o, MatrixTerm *term)
 {
   static const char *const words[] = {"any", "symmetric", "skew"};
   PetscReal                part, largest;
@@ -44,7 +44,7 @@ static PetscErrorCode NamedFindSymmetry(Operators o, struct _p_MatrixTerm *term)
 }
 
 /* Reads the matrix, and raises an error where its size is not n (-1 for the first one) */
-static PetscErrorCode NamedReadMatrix(Operators o, struct _p_MatrixTerm *term, const char first[], PetscInt *n)
+static PetscErrorCode MatrixTermLoad(Operators o, MatrixTerm *term, const char first[], PetscInt *n)
 {
   char     option[256];
   PetscInt rows, columns;
@@ -62,12 +62,12 @@ static PetscErrorCode NamedReadMatrix(Operators o, struct _p_MatrixTerm *term, c
              "matrix %s has %" PetscInt_FMT " rows, but %s has %" PetscInt_FMT ": all must be alike", term->name, rows,
              first, *n);
   *n = rows;
-  PetscCall(NamedFindSymmetry(o, term));
+  PetscCall(MatrixTermFindSymmetry(o, term));
   PetscFunctionReturn(0);
 }
 
 /* Raises an error where there is no stiffness or no mass, or where a mass is none */
-static PetscErrorCode NamedCheckSystem(Operators o)
+static PetscErrorCode MatrixTermsCheckSystem(Operators o)
 {
   static const TermsSumKind mass = {OPERATORS_MASS, TERMS_ALL, 1};
   PetscInt                  n[3] = {0, 0, 0};
@@ -87,7 +87,7 @@ static PetscErrorCode NamedCheckSystem(Operators o)
 }
 
 /* Adds one term, whose factors are those of the options */
-static PetscErrorCode NamedAddTerm(Operators o, const struct _p_MatrixTerm *term)
+static PetscErrorCode MatrixTermAdd(Operators o, const MatrixTerm *term)
 {
   PetscInt parameter[OPERATORS_MAX_FACTORS];
 
@@ -99,7 +99,7 @@ static PetscErrorCode NamedAddTerm(Operators o, const struct _p_MatrixTerm *term
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsAddNamed(Operators o)
+PetscErrorCode MatrixTermsAdd(Operators o)
 {
   const char *first = o->terms.n ? "what -operators_load_k and its like give" : o->named[0].name;
   PetscInt    n     = -1;
@@ -107,7 +107,7 @@ PetscErrorCode OperatorsAddNamed(Operators o)
 
   PetscFunctionBeginUser;
   if (o->terms.n) PetscCall(MatGetSize(o->terms.term[0].A, &n, NULL));
-  for (PetscInt t = 0; t < o->n_named; t++) PetscCall(NamedReadMatrix(o, &o->named[t], first, &n));
+  for (PetscInt t = 0; t < o->n_named; t++) PetscCall(MatrixTermLoad(o, &o->named[t], first, &n));
   for (PetscInt t = 0; t < o->terms.n; t++)
     if (o->terms.term[t].kind == OPERATORS_STIFFNESS && !o->terms.term[t].frictional) even = PETSC_TRUE;
   for (PetscInt t = 0; t < o->n_named; t++) {
@@ -116,14 +116,14 @@ PetscErrorCode OperatorsAddNamed(Operators o)
   }
   if (!even) o->symmetric = PETSC_FALSE;
   for (PetscInt t = 0; t < o->n_named; t++) {
-    PetscCall(NamedAddTerm(o, &o->named[t]));
+    PetscCall(MatrixTermAdd(o, &o->named[t]));
     PetscCall(MatDestroy(&o->named[t].A));
   }
-  PetscCall(NamedCheckSystem(o));
+  PetscCall(MatrixTermsCheckSystem(o));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode NamedAddChecksum(Operators o, Checksum c)
+PetscErrorCode MatrixTermsAddChecksum(Operators o, Checksum c)
 {
   PetscFunctionBeginUser;
   for (PetscInt t = 0; t < o->n_named; t++) {
@@ -138,7 +138,7 @@ PetscErrorCode NamedAddChecksum(Operators o, Checksum c)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode NamedDestroy(Operators o)
+PetscErrorCode MatrixTermsDestroy(Operators o)
 {
   PetscFunctionBeginUser;
   for (PetscInt t = 0; t < o->n_named; t++) {

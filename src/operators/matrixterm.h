@@ -9,7 +9,7 @@
 /* What -<name>_symmetry says of a matrix */
 typedef enum { MATRIX_ANY, MATRIX_EVEN, MATRIX_SKEW } MatrixSymmetry;
 
-struct _p_MatrixTerm {
+typedef struct _p_MatrixTerm {
   char             *name; /* the prefix of its options */
   char              file[PETSC_MAX_PATH_LEN];
   PetscReal        *dense; /* [n_dense] entries by rows */
@@ -20,19 +20,19 @@ struct _p_MatrixTerm {
   PetscInt          n; /* factors */
   char             *parameter[OPERATORS_MAX_FACTORS];
   PetscInt          power[OPERATORS_MAX_FACTORS];
-  /* read by OperatorsAddNamed() */
+  /* read by MatrixTermsAdd() */
   Mat       A;
   PetscBool even; /* A is symmetric */
-};
+} MatrixTerm;
 
 /* matrixterm.c - the parameters and terms; what they are made with, but for the entries; frees the list */
-PETSC_INTERN PetscErrorCode OperatorsAddNamed(Operators operators);
-PETSC_INTERN PetscErrorCode NamedAddChecksum(Operators operators, Checksum checksum);
-PETSC_INTERN PetscErrorCode NamedDestroy(Operators operators);
+PETSC_INTERN PetscErrorCode MatrixTermsAdd(Operators operators);
+PETSC_INTERN PetscErrorCode MatrixTermsAddChecksum(Operators operators, Checksum checksum);
+PETSC_INTERN PetscErrorCode MatrixTermsDestroy(Operators operators);
 
 /* matrixtermoptions.c - the list and the options of each name; then the parameters that they name */
-PETSC_INTERN PetscErrorCode NamedSetFromOptions(Operators operators);
-PETSC_INTERN PetscErrorCode NamedAddParameters(Operators operators);
+PETSC_INTERN PetscErrorCode MatrixTermsSetFromOptions(Operators operators);
+PETSC_INTERN PetscErrorCode MatrixTermsAddParameters(Operators operators);
 
 /* file.c - a matrix from a list of all its entries, or from a file, that `option` gives */
 PETSC_INTERN PetscErrorCode MatrixReadDense(MPI_Comm comm, const char option[], PetscInt n_values,

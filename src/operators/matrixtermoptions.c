@@ -17,7 +17,7 @@
 #define MAX_POWER 8 /* of one parameter: beyond, products overflow */
 
 /* The entries that are given inline */
-static PetscErrorCode NamedReadDense(OptionsItems PetscOptionsObject, struct _p_MatrixTerm *term)
+static PetscErrorCode MatrixTermReadDense(OptionsItems PetscOptionsObject, MatrixTerm *term)
 {
   PetscReal *value;
   PetscInt   n = OPERATORS_MAX_DENSE;
@@ -37,7 +37,7 @@ static PetscErrorCode NamedReadDense(OptionsItems PetscOptionsObject, struct _p_
 }
 
 /* Factors of the coefficient */
-static PetscErrorCode NamedReadFactors(OptionsItems PetscOptionsObject, struct _p_MatrixTerm *term)
+static PetscErrorCode MatrixTermReadFactors(OptionsItems PetscOptionsObject, MatrixTerm *term)
 {
   const MPI_Comm comm      = PetscOptionsObject->comm;
   char           text[512] = "", option[256], **words;
@@ -73,31 +73,31 @@ static PetscErrorCode NamedReadFactors(OptionsItems PetscOptionsObject, struct _
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode NamedRead(OptionsItems PetscOptionsObject, void *owner, void *record)
+static PetscErrorCode MatrixTermRead(OptionsItems PetscOptionsObject, void *owner, void *record)
 {
   static const char *const kinds[]      = {"stiffness", "damping", "mass"}; /* of OperatorsTermKind */
   static const char *const symmetries[] = {"any", "symmetric", "skew"};
-  struct _p_MatrixTerm    *term         = record;
+  MatrixTerm              *term         = record;
   PetscInt                 kind = 3, symmetry = MATRIX_ANY;
 
   PetscFunctionBeginUser;
   (void)owner;
   PetscCall(OptionsGetPath(PetscOptionsObject, "-file", "PETSc binary file of the matrix", term->file, NULL));
-  PetscCall(NamedReadDense(PetscOptionsObject, term));
+  PetscCall(MatrixTermReadDense(PetscOptionsObject, term));
   PetscCall(PetscOptionsEList("-kind", "what it is part of (required)", "operators.h", kinds, 3, "", &kind, NULL));
   PetscCall(PetscOptionsEList("-symmetry", "what it must be, else the run stops", "operators.h", symmetries, 3,
                               symmetries[0], &symmetry, NULL));
   term->scale = 1;
   PetscCall(
     PetscOptionsReal("-scale", "a number that it is multiplied with", "operators.h", term->scale, &term->scale, NULL));
-  PetscCall(NamedReadFactors(PetscOptionsObject, term));
+  PetscCall(MatrixTermReadFactors(PetscOptionsObject, term));
   term->kind     = (OperatorsTermKind)kind;
   term->symmetry = (MatrixSymmetry)symmetry;
   PetscFunctionReturn(0);
 }
 
 /* Raises an error for a term that is not complete */
-static PetscErrorCode NamedCheck(MPI_Comm comm, const struct _p_MatrixTerm *term)
+static PetscErrorCode MatrixTermCheck(MPI_Comm comm, const MatrixTerm *term)
 {
   PetscFunctionBeginUser;
   PetscCheck(term->file[0] || term->n_dense, comm, PETSC_ERR_USER_INPUT,
@@ -113,7 +113,7 @@ static PetscErrorCode NamedCheck(MPI_Comm comm, const struct _p_MatrixTerm *term
 }
 
 /* The value of the parameter that factor i of a term names, and the limit that the power sets */
-static PetscErrorCode NamedAddParameter(Operators o, const struct _p_MatrixTerm *term, PetscInt i)
+static PetscErrorCode MatrixTermAddParameter(Operators o, const MatrixTerm *term, PetscInt i)
 {
   char                option[256];
   const char         *name  = term->parameter[i];
@@ -142,23 +142,23 @@ static PetscErrorCode NamedAddParameter(Operators o, const struct _p_MatrixTerm 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode NamedSetFromOptions(Operators o)
+PetscErrorCode MatrixTermsSetFromOptions(Operators o)
 {
   static const OptionsList list = {"-terms", "matrices from files, each the prefix of its -file and -kind", "Matrix",
-                                   sizeof(struct _p_MatrixTerm), NamedRead};
+                                   sizeof(MatrixTerm), MatrixTermRead};
   PetscBool                help, all;
 
   PetscFunctionBeginUser;
   PetscCall(OptionsReadList(o->comm, &list, NULL, &o->n_named, &o->named));
   PetscCall(HelpIsAsked(&help, &all));
-  for (PetscInt t = 0; t < o->n_named && !help; t++) PetscCall(NamedCheck(o->comm, &o->named[t]));
+  for (PetscInt t = 0; t < o->n_named && !help; t++) PetscCall(MatrixTermCheck(o->comm, &o->named[t]));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode NamedAddParameters(Operators o)
+PetscErrorCode MatrixTermsAddParameters(Operators o)
 {
   PetscFunctionBeginUser;
   for (PetscInt t = 0; t < o->n_named; t++)
-    for (PetscInt i = 0; i < o->named[t].n; i++) PetscCall(NamedAddParameter(o, &o->named[t], i));
+    for (PetscInt i = 0; i < o->named[t].n; i++) PetscCall(MatrixTermAddParameter(o, &o->named[t], i));
   PetscFunctionReturn(0);
 }

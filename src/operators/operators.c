@@ -31,7 +31,7 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
   PetscBool                have;
 
   PetscFunctionBeginUser;
-  PetscCall(NamedSetFromOptions(operators));
+  PetscCall(MatrixTermsSetFromOptions(operators));
   PetscOptionsBegin(operators->comm, NULL, "Operators", NULL);
   PetscCall(OperatorsLoadFromOptions(operators, PetscOptionsObject));
   PetscCall(PetscOptionsEList(
@@ -57,7 +57,7 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
     PetscCall(PetscOptionsReal("-contact_mu", "friction coefficient of K + mu H", "operators.h", operators->loaded_mu,
                                &operators->loaded_mu, NULL));
   PetscOptionsEnd();
-  PetscCall(NamedAddParameters(operators));
+  PetscCall(MatrixTermsAddParameters(operators));
   operators->lump = mass == 1 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
@@ -279,7 +279,7 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   PetscCall(MatDestroy(&o->even));
   PetscCall(PetscFree(o->mu));
   PetscCall(ParametersDestroy(&o->parameters));
-  PetscCall(NamedDestroy(o));
+  PetscCall(MatrixTermsDestroy(o));
   PetscCall(CloudDestroy(o));
   PetscCall(PetscFree(*operators));
   PetscFunctionReturn(0);
