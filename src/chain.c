@@ -266,6 +266,49 @@ static PetscErrorCode ChainIntegrate(Chain *chain)
   PetscFunctionReturn(0);
 }
 
+/* The pencil of those that are about one point */
+static PetscErrorCode ChainGivePencil(Chain *chain)
+{
+  PetscFunctionBeginUser;
+  if (chain->analysis == ANALYSIS_SWEEP) PetscCall(PencilDestroy(&chain->pencil)); /* a sweep makes its own */
+  if (chain->analysis != ANALYSIS_MODES && chain->analysis != ANALYSIS_FRF) PetscFunctionReturn(0);
+  PetscCall(ChainLinearise(chain));
+  if (chain->analysis == ANALYSIS_MODES) PetscCall(PencilReleaseTerms(chain->pencil)); /* which need one point alone */
+  PetscCall(ModesSetPencil(chain->modes, chain->pencil));
+  PetscCall(FrfSetPencil(chain->frf, chain->pencil));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ChainSolve(Chain *chain)
+{
+  const Analysis analysis = chain->analysis;
+
+  PetscFunctionBeginUser;
+  if (analysis == ANALYSIS_MODES) PetscCall(ModesSolveParities(chain->modes));
+  if (analysis == ANALYSIS_SWEEP) PetscCall(SweepSolve(chain->sweep, chain->results));
+  if (analysis == ANALYSIS_STATIC) PetscCall(StaticsSolve(chain->statics, chain->p));
+  if (analysis == ANALYSIS_TRANSIENT) PetscCall(ChainIntegrate(chain));
+  if (analysis == ANALYSIS_FRF) PetscCall(FrfSolve(chain->frf));
+  if (analysis == ANALYSIS_MAP) PetscCall(MapSolve(chain->map, chain->results));
+  if (analysis == ANALYSIS_CYCLE) PetscCall(CycleSolve(chain->cycle, chain->results));
+  PetscFunctionReturn(0);
+}
+
+/* Tables and fields of what is not in time */
+static PetscErrorCode ChainWrite(Chain *chain)
+{
+  const Analysis analysis = chain->analysis;
+
+  PetscFunctionBeginUser;
+  PetscCall(SquealStageBegin(SQUEAL_RESULTS));
+  if (analysis == ANALYSIS_MODES) PetscCall(ModesWrite(chain->modes, chain->results));
+  if (analysis == ANALYSIS_SWEEP) PetscCall(SweepWrite(chain->sweep, chain->results));
+  if (analysis == ANALYSIS_STATIC) PetscCall(StaticsWrite(chain->statics, chain->results));
+  if (analysis == ANALYSIS_FRF) PetscCall(ChainWriteFrf(chain));
+  PetscCall(SquealStageEnd(SQUEAL_RESULTS));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ChainRun(Chain *chain)
 {
   static const struct {
@@ -280,32 +323,13 @@ PetscErrorCode ChainRun(Chain *chain)
     [ANALYSIS_MAP]       = {SQUEAL_DYNAMICS, SHOWN_MAP     },
     [ANALYSIS_CYCLE]     = {SQUEAL_DYNAMICS, SHOWN_CYCLE   }
   };
-  const Analysis analysis = chain->analysis;
 
   PetscFunctionBeginUser;
-  if (analysis == ANALYSIS_MODES || analysis == ANALYSIS_FRF) {
-    PetscCall(ChainLinearise(chain));
-    if (analysis == ANALYSIS_MODES) PetscCall(PencilReleaseTerms(chain->pencil)); /* which need one point alone */
-    PetscCall(ModesSetPencil(chain->modes, chain->pencil));
-    PetscCall(FrfSetPencil(chain->frf, chain->pencil));
-  }
-  if (analysis == ANALYSIS_SWEEP) PetscCall(PencilDestroy(&chain->pencil)); /* a sweep makes its own */
-  PetscCall(SquealStageBegin(run[analysis].stage));
-  if (analysis == ANALYSIS_MODES) PetscCall(ModesSolveParities(chain->modes));
-  if (analysis == ANALYSIS_SWEEP) PetscCall(SweepSolve(chain->sweep, chain->results));
-  if (analysis == ANALYSIS_STATIC) PetscCall(StaticsSolve(chain->statics, chain->p));
-  if (analysis == ANALYSIS_TRANSIENT) PetscCall(ChainIntegrate(chain));
-  if (analysis == ANALYSIS_FRF) PetscCall(FrfSolve(chain->frf));
-  if (analysis == ANALYSIS_MAP) PetscCall(MapSolve(chain->map, chain->results));
-  if (analysis == ANALYSIS_CYCLE) PetscCall(CycleSolve(chain->cycle, chain->results));
-  PetscCall(SquealStageEnd(run[analysis].stage));
-  PetscCall(ChainShow(chain, run[analysis].shown, PETSC_TRUE));
-  if (ChainIsInTime(chain)) PetscFunctionReturn(0); /* which write as they go */
-  PetscCall(SquealStageBegin(SQUEAL_RESULTS));
-  if (analysis == ANALYSIS_MODES) PetscCall(ModesWrite(chain->modes, chain->results));
-  if (analysis == ANALYSIS_SWEEP) PetscCall(SweepWrite(chain->sweep, chain->results));
-  if (analysis == ANALYSIS_STATIC) PetscCall(StaticsWrite(chain->statics, chain->results));
-  if (analysis == ANALYSIS_FRF) PetscCall(ChainWriteFrf(chain));
-  PetscCall(SquealStageEnd(SQUEAL_RESULTS));
+  PetscCall(ChainGivePencil(chain));
+  PetscCall(SquealStageBegin(run[chain->analysis].stage));
+  PetscCall(ChainSolve(chain));
+  PetscCall(SquealStageEnd(run[chain->analysis].stage));
+  PetscCall(ChainShow(chain, run[chain->analysis].shown, PETSC_TRUE));
+  if (!ChainIsInTime(chain)) PetscCall(ChainWrite(chain)); /* which writes as it goes */
   PetscFunctionReturn(0);
 }

@@ -2,14 +2,14 @@
    Superposition of modes with the residual term: Galerkin's method on the span of the modes' vectors and of Krylov
    vectors at the shift of the modes' own factorisation, which grows until the answer stays what it is.
 */
-#include "chain.h"
+#include "krylov.h"
 #include "schur.h"
 
 #define N_LOOKS 33 /* frequencies that are looked at while the space grows */
 
 typedef struct {
   FrfSpace  space;
-  FrfChain  right, left; /* left is empty for a symmetric pencil */
+  FrfKrylov right, left; /* left is empty for a symmetric pencil */
   Vec       b, *l, *all; /* the force, the outputs, and both */
   PetscReal shift;
   FrfSchur  used, larger; /* the small response before the last step, and after it */
@@ -51,8 +51,8 @@ static PetscErrorCode SuperpositionCreate(Frf frf, Superposition *s)
   s->shift = factor.shift;
   most     = 2 * n_modes + (frf->max_steps + 1) * (frf->n_outputs + 1);
   PetscCall(FrfSpaceCreate(&pencil, n_modes + (frf->max_steps + 1) * (frf->n_outputs + 1), &s->space));
-  PetscCall(FrfChainCreate(&s->space, &factor, PETSC_FALSE, most, &s->right));
-  PetscCall(FrfChainCreate(&s->space, &factor, PETSC_TRUE, pencil.symmetric ? 0 : most, &s->left));
+  PetscCall(FrfKrylovCreate(&s->space, &factor, PETSC_FALSE, most, &s->right));
+  PetscCall(FrfKrylovCreate(&s->space, &factor, PETSC_TRUE, pencil.symmetric ? 0 : most, &s->left));
   s->right.n_solves = s->left.n_solves = &frf->n_solves;
   PetscCall(PetscMalloc1(frf->n_outputs + 1, &s->all));
   s->all[0] = s->b;
@@ -61,8 +61,8 @@ static PetscErrorCode SuperpositionCreate(Frf frf, Superposition *s)
   s->right.n_b = pencil.symmetric ? frf->n_outputs + 1 : 1;
   s->left.b    = s->l;
   s->left.n_b  = pencil.symmetric ? 0 : frf->n_outputs;
-  PetscCall(FrfChainAddModes(frf, &s->right));
-  if (!pencil.symmetric) PetscCall(FrfChainAddModes(frf, &s->left));
+  PetscCall(FrfKrylovAddModes(frf, &s->right));
+  if (!pencil.symmetric) PetscCall(FrfKrylovAddModes(frf, &s->left));
   PetscFunctionReturn(0);
 }
 
@@ -71,7 +71,7 @@ static PetscErrorCode SuperpositionStep(Frf frf, Superposition *s)
 {
   PetscFunctionBeginUser;
   frf->n_steps++;
-  PetscCall(FrfChainsStep(&s->space, (FrfChain *[]){&s->right, &s->left}));
+  PetscCall(FrfKrylovStep(&s->space, (FrfKrylov *[]){&s->right, &s->left}));
   PetscFunctionReturn(0);
 }
 
@@ -216,8 +216,8 @@ static PetscErrorCode SuperpositionDestroy(Frf frf, Superposition *s)
   PetscFunctionBeginUser;
   PetscCall(FrfSchurDestroy(&s->used));
   PetscCall(FrfSchurDestroy(&s->larger));
-  PetscCall(FrfChainDestroy(&s->right));
-  PetscCall(FrfChainDestroy(&s->left));
+  PetscCall(FrfKrylovDestroy(&s->right));
+  PetscCall(FrfKrylovDestroy(&s->left));
   PetscCall(FrfSpaceDestroy(&s->space));
   PetscCall(VecDestroy(&s->b));
   PetscCall(PetscFree(s->all));

@@ -5,7 +5,7 @@
 
 #define FRF_BATCH 16 /* frequencies that are solved together: trsyl takes the norm of T anew in each call */
 
-/* S of chain.h on the first n vectors of the space, as Z T Z' with T quasi-triangular, and the force and outputs there */
+/* S of krylov.h on the first n vectors of the space, as Z T Z' with T quasi-triangular, and the force and outputs there */
 typedef struct {
   PetscInt   n, length, n_outputs;
   PetscBool  damped, rounded;

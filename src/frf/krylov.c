@@ -3,21 +3,21 @@
    pencil; C. Campos, J. E. Roman, SIAM J. Sci. Comput. 38, 2016: states as coordinates in one space). The modes' states
    are in the chain from the beginning, so that steps do not fall back on the modes near the shift.
 */
-#include "chain.h"
+#include "krylov.h"
 
 #define STATE_DEPENDENT 1e-9 /* a state of length one that is nearer than this to those before is one of them */
 
-PetscErrorCode FrfChainCreate(FrfSpace *space, const ShiftInvert *factor, PetscBool transposed, PetscInt capacity,
-                              FrfChain *chain)
+PetscErrorCode FrfKrylovCreate(FrfSpace *space, const ShiftInvert *factor, PetscBool transposed, PetscInt capacity,
+                               FrfKrylov *chain)
 {
   PetscFunctionBeginUser;
-  *chain        = (FrfChain){.space = space, .factor = *factor, .transposed = transposed, .capacity = capacity};
+  *chain        = (FrfKrylov){.space = space, .factor = *factor, .transposed = transposed, .capacity = capacity};
   chain->length = (space->pencil.C ? 2 : 1) * space->small.size;
   PetscCall(PetscCalloc1(capacity * chain->length, &chain->state));
   PetscFunctionReturn(0);
 }
 
-static PetscReal StateDot(const FrfChain *chain, const PetscReal a[], const PetscReal b[])
+static PetscReal StateDot(const FrfKrylov *chain, const PetscReal a[], const PetscReal b[])
 {
   PetscReal sum = 0;
 
@@ -26,7 +26,7 @@ static PetscReal StateDot(const FrfChain *chain, const PetscReal a[], const Pets
 }
 
 /* Scales a state to length one and returns the length before */
-static PetscReal StateScale(const FrfChain *chain, PetscReal a[])
+static PetscReal StateScale(const FrfKrylov *chain, PetscReal a[])
 {
   const PetscReal length = PetscSqrtReal(StateDot(chain, a, a));
 
@@ -35,7 +35,7 @@ static PetscReal StateScale(const FrfChain *chain, PetscReal a[])
 }
 
 /* Takes in what a state (overwritten) holds beyond those of the chain */
-static PetscErrorCode StateAdd(FrfChain *chain, PetscReal a[])
+static PetscErrorCode StateAdd(FrfKrylov *chain, PetscReal a[])
 {
   PetscReal length;
 
@@ -56,7 +56,7 @@ static PetscErrorCode StateAdd(FrfChain *chain, PetscReal a[])
 
 /* States of a mode, real and imaginary part: x, or with damping [t x; x], t = g / (lambda - shift). x[0], x[1] are
    coordinates of the two parts, x[1] NULL for a real vector */
-static PetscErrorCode StateAddMode(FrfChain *chain, PetscComplex lambda, const PetscReal *x[2])
+static PetscErrorCode StateAddMode(FrfKrylov *chain, PetscComplex lambda, const PetscReal *x[2])
 {
   const PetscInt     size = chain->space->small.size, two = chain->length > size;
   const PetscComplex t = chain->factor.shift / (lambda - chain->factor.shift);
@@ -78,7 +78,7 @@ static PetscErrorCode StateAddMode(FrfChain *chain, PetscComplex lambda, const P
 }
 
 /* The block of the modes' vectors, real parts and imaginary ones; column[i] is the first of mode i */
-static PetscErrorCode ModesBlock(Frf frf, const FrfChain *chain, PetscInt n, PetscInt column[], BV *block)
+static PetscErrorCode ModesBlock(Frf frf, const FrfKrylov *chain, PetscInt n, PetscInt column[], BV *block)
 {
   Vec x[4], q;
 
@@ -101,7 +101,7 @@ static PetscErrorCode ModesBlock(Frf frf, const FrfChain *chain, PetscInt n, Pet
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrfChainAddModes(Frf frf, FrfChain *chain)
+PetscErrorCode FrfKrylovAddModes(Frf frf, FrfKrylov *chain)
 {
   const PetscInt size = chain->space->small.size;
   const Mode    *mode;
@@ -129,7 +129,7 @@ PetscErrorCode FrfChainAddModes(Frf frf, FrfChain *chain)
 }
 
 /* Y = A X, or A' X */
-static PetscErrorCode BlockApply(const FrfChain *chain, BV X, Mat A, BV Y)
+static PetscErrorCode BlockApply(const FrfKrylov *chain, BV X, Mat A, BV Y)
 {
   PetscFunctionBeginUser;
   PetscCall(chain->transposed ? BVMatMultTranspose(X, A, Y) : BVMatMult(X, A, Y));
@@ -137,7 +137,7 @@ static PetscErrorCode BlockApply(const FrfChain *chain, BV X, Mat A, BV Y)
 }
 
 /* The columns first .. first + n - 1 of the block: Q0^-1 R, or Q0^-T R */
-static PetscErrorCode ChainSolve(const FrfChain *chain, BV R, PetscInt first, BV block)
+static PetscErrorCode KrylovSolve(const FrfKrylov *chain, BV R, PetscInt first, BV block)
 {
   PetscInt n;
   Mat      right, answer;
@@ -155,7 +155,7 @@ static PetscErrorCode ChainSolve(const FrfChain *chain, BV R, PetscInt first, BV
 }
 
 /* The states [c; old] of n answers with coordinates c[n][size]; old is that of the states that they came from */
-static PetscErrorCode ChainTake(FrfChain *chain, PetscInt n, const PetscReal c[])
+static PetscErrorCode KrylovTake(FrfKrylov *chain, PetscInt n, const PetscReal c[])
 {
   const PetscInt size = chain->space->small.size, from = chain->last;
   PetscReal     *a;
@@ -177,7 +177,7 @@ static PetscErrorCode ChainTake(FrfChain *chain, PetscInt n, const PetscReal c[]
 }
 
 /* R = M P, or with damping -g Q'(shift) P - g^2 M Q = -g^2 M (2 P + Q) - g C P */
-static PetscErrorCode ChainResidual(const FrfChain *chain, PetscInt n, const PetscReal states[], BV R)
+static PetscErrorCode KrylovResidual(const FrfKrylov *chain, PetscInt n, const PetscReal states[], BV R)
 {
   const PencilMatrices *m    = &chain->space->pencil;
   const PetscReal       g    = chain->factor.shift;
@@ -209,16 +209,16 @@ static PetscErrorCode ChainResidual(const FrfChain *chain, PetscInt n, const Pet
 }
 
 /* Right-hand sides of the next step: the n vectors b that the chain begins with, or those of the last states */
-static PetscErrorCode ChainCreateSides(const FrfChain *chain, PetscInt n, BV *R)
+static PetscErrorCode KrylovCreateSides(const FrfKrylov *chain, PetscInt n, BV *R)
 {
   PetscFunctionBeginUser;
   PetscCall(FrfSpaceCreateBlock(chain->space, n, R));
   for (PetscInt j = 0; j < n && !chain->begun; j++) PetscCall(BVInsertVec(*R, j, chain->b[j]));
-  if (chain->begun) PetscCall(ChainResidual(chain, n, &chain->state[chain->last * chain->length], *R));
+  if (chain->begun) PetscCall(KrylovResidual(chain, n, &chain->state[chain->last * chain->length], *R));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrfChainsStep(FrfSpace *space, FrfChain *chain[2])
+PetscErrorCode FrfKrylovStep(FrfSpace *space, FrfKrylov *chain[2])
 {
   PetscInt   n[2];
   PetscReal *c;
@@ -230,20 +230,20 @@ PetscErrorCode FrfChainsStep(FrfSpace *space, FrfChain *chain[2])
   PetscCall(FrfSpaceCreateBlock(space, n[0] + n[1], &block));
   for (int k = 0; k < 2; k++) {
     if (!n[k]) continue;
-    PetscCall(ChainCreateSides(chain[k], n[k], &R));
-    PetscCall(ChainSolve(chain[k], R, k * n[0], block));
+    PetscCall(KrylovCreateSides(chain[k], n[k], &R));
+    PetscCall(KrylovSolve(chain[k], R, k * n[0], block));
     PetscCall(BVDestroy(&R));
   }
   PetscCall(BVSetActiveColumns(block, 0, n[0] + n[1]));
   PetscCall(FrfSpaceAdd(space, block));
   PetscCall(FrfSpaceCoordinates(space, block, &c));
-  for (int k = 0; k < 2; k++) PetscCall(ChainTake(chain[k], n[k], c + k * n[0] * space->small.size));
+  for (int k = 0; k < 2; k++) PetscCall(KrylovTake(chain[k], n[k], c + k * n[0] * space->small.size));
   PetscCall(PetscFree(c));
   PetscCall(BVDestroy(&block));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrfChainDestroy(FrfChain *chain)
+PetscErrorCode FrfKrylovDestroy(FrfKrylov *chain)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(chain->state));

@@ -21,13 +21,13 @@ typedef struct {
   const Vec  *b;                   /* [n_b] in the unknowns of the pencil */
   PetscBool   begun;
   PetscInt   *n_solves; /* counts right-hand sides */
-} FrfChain;
+} FrfKrylov;
 
 /* A chain of up to `capacity` states */
-PETSC_INTERN PetscErrorCode FrfChainCreate(FrfSpace *space, const ShiftInvert *factor, PetscBool transposed,
-                                           PetscInt capacity, FrfChain *chain);
+PETSC_INTERN PetscErrorCode FrfKrylovCreate(FrfSpace *space, const ShiftInvert *factor, PetscBool transposed,
+                                            PetscInt capacity, FrfKrylov *chain);
 /* Puts vectors and states of all modes into space and chain */
-PETSC_INTERN PetscErrorCode FrfChainAddModes(Frf frf, FrfChain *chain);
+PETSC_INTERN PetscErrorCode FrfKrylovAddModes(Frf frf, FrfKrylov *chain);
 /* One step of both chains, either of which may be empty: it begins with Q0^-1 b of its vectors b. The space grows. */
-PETSC_INTERN PetscErrorCode FrfChainsStep(FrfSpace *space, FrfChain *chain[2]);
-PETSC_INTERN PetscErrorCode FrfChainDestroy(FrfChain *chain);
+PETSC_INTERN PetscErrorCode FrfKrylovStep(FrfSpace *space, FrfKrylov *chain[2]);
+PETSC_INTERN PetscErrorCode FrfKrylovDestroy(FrfKrylov *chain);
