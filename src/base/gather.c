@@ -1,34 +1,87 @@
 /*
-   Records of all ranks on every rank: MPI_Allgatherv() of a contiguous datatype as long as one record, so that counts
-   and displacements, which MPI 3 keeps in int, are those of records and not of bytes.
+   Records of all ranks on every rank, or on the rank that each is sent to: MPI_Allgatherv() or MPI_Alltoallv() of a
+   contiguous datatype as long as one record, so that counts and displacements, which MPI 3 keeps in int, are those of
+   records and not of bytes.
 */
 #include "gather.h"
 
-PetscErrorCode GatherRecords(MPI_Comm comm, PetscInt n_local, size_t size, const void *local, PetscInt *n_all,
-                             void *all)
+/* Places of records that come in these numbers from the ranks, or go to them; their sum */
+static PetscErrorCode Places(MPI_Comm comm, const PetscMPIInt count[], PetscMPIInt start[], PetscInt *sum)
 {
-  PetscInt64   total = 0;
-  PetscMPIInt  n_ranks, n, bytes, *count, *start;
-  MPI_Datatype record;
+  PetscInt64  total = 0;
+  PetscMPIInt n_ranks;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(comm, &n_ranks));
-  PetscCall(PetscMalloc2(n_ranks, &count, n_ranks, &start));
-  PetscCall(PetscMPIIntCast(n_local, &n));
-  PetscCall(PetscMPIIntCast((PetscInt)size, &bytes));
-  PetscCallMPI(MPI_Allgather(&n, 1, MPI_INT, count, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < n_ranks; r++) {
     start[r] = (PetscMPIInt)total;
     total += count[r];
   }
   PetscCheck(total <= PETSC_MPI_INT_MAX, comm, PETSC_ERR_SUP, "%" PetscInt64_FMT " records of all ranks exceed an int",
              total);
+  *sum = (PetscInt)total;
+  PetscFunctionReturn(0);
+}
+
+/* A datatype as long as one record */
+static PetscErrorCode RecordCreate(size_t size, MPI_Datatype *record)
+{
+  PetscMPIInt bytes;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMPIIntCast((PetscInt)size, &bytes));
+  PetscCallMPI(MPI_Type_contiguous(bytes, MPI_BYTE, record));
+  PetscCallMPI(MPI_Type_commit(record));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GatherRecords(MPI_Comm comm, PetscInt n_local, size_t size, const void *local, PetscInt *n_all,
+                             void *all)
+{
+  PetscInt     total;
+  PetscMPIInt  n_ranks, n, *count, *start;
+  MPI_Datatype record;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &n_ranks));
+  PetscCall(PetscMalloc2(n_ranks, &count, n_ranks, &start));
+  PetscCall(PetscMPIIntCast(n_local, &n));
+  PetscCallMPI(MPI_Allgather(&n, 1, MPI_INT, count, 1, MPI_INT, comm));
+  PetscCall(Places(comm, count, start, &total));
   PetscCall(PetscMalloc((size_t)total * size, all));
-  PetscCallMPI(MPI_Type_contiguous(bytes, MPI_BYTE, &record));
-  PetscCallMPI(MPI_Type_commit(&record));
+  PetscCall(RecordCreate(size, &record));
   PetscCallMPI(MPI_Allgatherv(local, n, record, *(void **)all, count, start, record, comm));
   PetscCallMPI(MPI_Type_free(&record));
   PetscCall(PetscFree2(count, start));
-  if (n_all) *n_all = (PetscInt)total;
+  if (n_all) *n_all = total;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExchangeRecords(MPI_Comm comm, PetscInt *n, size_t size, const void *local, const PetscMPIInt rank[],
+                               void *in)
+{
+  PetscInt     n_out, total;
+  PetscMPIInt  n_ranks, *to, *to_start, *from, *from_start;
+  char        *out;
+  MPI_Datatype record;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &n_ranks));
+  PetscCall(PetscCalloc4(n_ranks, &to, n_ranks, &to_start, n_ranks, &from, n_ranks, &from_start));
+  for (PetscInt i = 0; i < *n; i++) to[rank[i]]++;
+  PetscCallMPI(MPI_Alltoall(to, 1, MPI_INT, from, 1, MPI_INT, comm));
+  PetscCall(Places(comm, to, to_start, &n_out));
+  PetscCall(Places(comm, from, from_start, &total));
+  PetscCall(PetscMalloc1((size_t)n_out * size, &out));
+  for (PetscInt i = 0; i < n_out; i++)
+    PetscCall(PetscMemcpy(&out[(size_t)to_start[rank[i]]++ * size], (const char *)local + (size_t)i * size, size));
+  PetscCall(Places(comm, to, to_start, &n_out));
+  PetscCall(PetscMalloc((size_t)total * size, in));
+  PetscCall(RecordCreate(size, &record));
+  PetscCallMPI(MPI_Alltoallv(out, to, to_start, record, *(void **)in, from, from_start, record, comm));
+  PetscCallMPI(MPI_Type_free(&record));
+  PetscCall(PetscFree(out));
+  PetscCall(PetscFree4(to, to_start, from, from_start));
+  *n = total;
   PetscFunctionReturn(0);
 }

@@ -1,4 +1,4 @@
-/* Private: arrays of records, pieced together on every rank from those of all */
+/* Private: arrays of records, pieced together on every rank from those of all, or sent to ranks */
 #pragma once
 
 #include <petscsys.h>
@@ -18,3 +18,21 @@
 @*/
 PETSC_INTERN PetscErrorCode GatherRecords(MPI_Comm comm, PetscInt n_local, size_t size, const void *local,
                                           PetscInt *n_all, void *all);
+
+/*@
+   ExchangeRecords - sends each record to a rank; those that arrive are in the order of the ranks that they come from,
+   and of each in its order. Counts as in GatherRecords(). Collective.
+
+   Input/Output Parameter:
+.  n - number of this rank's records, 0 allowed; then of those that arrive
+
+   Input Parameters:
++  size  - of one record, bytes
+.  local - this rank's records
+-  rank  - [n] to which each goes
+
+   Output Parameter:
+.  in - address of the pointer to those that arrive, set for the caller, who frees it with PetscFree()
+@*/
+PETSC_INTERN PetscErrorCode ExchangeRecords(MPI_Comm comm, PetscInt *n, size_t size, const void *local,
+                                            const PetscMPIInt rank[], void *in);

@@ -4,8 +4,9 @@
 
       R a_v = a_w,   a_v = sum over the cells c around v of (middle of c - x_v),
 
-   so that nodes of two bodies at one place, as in a contact, are told apart. Every rank sorts the nodes of all ranks by
-   their place along an oblique direction, where few of them stand at the same, and looks for the images of its own.
+   so that nodes of two bodies at one place, as in a contact, are told apart. A node and its image stand at one place along an
+   oblique direction once space is folded in the plane. Places are cut into an interval for each rank with about as many
+   nodes; a rank gets the nodes of its own, and those next to it, finds the images, and tells the nodes' ranks.
 */
 #include "model/modelimpl.h"
 #include "base/fault.h"
@@ -13,18 +14,38 @@
 #include "base/vec3.h"
 #include <stdlib.h>
 
-#define MIRROR_NEAR 1e-7 /* of the mesh's extent: nodes nearer to an image than this are it */
+#define MIRROR_NEAR    1e-7 /* of the mesh's extent: nodes nearer to an image than this are it */
+#define MIRROR_SAMPLES 64   /* places of each rank on average, from which the intervals are made */
 
-/* A node of all ranks */
 typedef struct {
-  PetscReal x[3], around[3], place; /* m, m, m along the oblique direction */
-  PetscInt  unknown[3];
+  PetscReal   x[3], around[3], place; /* m, m, m along the oblique direction */
+  PetscInt    unknown[3];
+  PetscMPIInt rank; /* whose it is */
 } MirrorNode;
 
-/* An oblique direction, which no row of a regular mesh lies across */
-static PetscReal MirrorPlace(const PetscReal x[3])
+/* Nodes among which images are looked for */
+typedef struct {
+  MPI_Comm          comm;
+  PetscMPIInt       n_ranks;
+  const ModelPlane *plane;
+  PetscReal         near; /* m */
+  PetscReal        *cut;  /* [n_ranks - 1] ends of the ranks' intervals */
+  PetscInt          n;
+  MirrorNode       *node; /* [n] sorted by place */
+} MirrorNodes;
+
+/* Of a node, the unknowns and those of its image */
+typedef struct {
+  PetscInt from[3], to[3];
+} MirrorPair;
+
+/* Along an oblique direction, which no row of a regular mesh lies across, of space folded in the plane */
+static PetscReal MirrorPlace(const ModelPlane *plane, const PetscReal x[3])
 {
-  return Vec3Dot((const PetscReal[]){0.5377, 0.3218, 0.7794}, x);
+  PetscReal folded[3] = {x[0], x[1], x[2]};
+
+  folded[plane->axis] = PetscAbsReal(x[plane->axis] - plane->at);
+  return Vec3Dot((const PetscReal[]){0.5377, 0.3218, 0.7794}, folded);
 }
 
 static int MirrorCompare(const void *a, const void *b)
@@ -57,45 +78,104 @@ static PetscErrorCode MirrorSumCells(Model model, Vec *around)
   PetscFunctionReturn(0);
 }
 
-/* The nodes of all ranks, sorted; to be freed */
-static PetscErrorCode MirrorGather(Model model, PetscInt *n, MirrorNode *node[])
+/* This rank's nodes, without places; to be freed */
+static PetscErrorCode MirrorCollect(Model model, PetscInt *n, MirrorNode *node[])
 {
   const Mesh      *mesh = &model->mesh;
   const PetscReal *a;
-  PetscInt         n_own = 0;
-  MirrorNode      *own;
+  PetscMPIInt      rank;
   Vec              around;
 
   PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)model->dm), &rank));
   PetscCall(MirrorSumCells(model, &around));
   PetscCall(VecGetArrayRead(around, &a));
-  PetscCall(PetscCalloc1(mesh->n_nodes, &own));
+  PetscCall(PetscCalloc1(mesh->n_nodes, node));
+  *n = 0;
   for (PetscInt v = 0; v < mesh->n_nodes; v++) {
+    MirrorNode *own = &(*node)[*n];
+
     if (!mesh->owned[v]) continue;
     for (int d = 0; d < 3; d++) {
-      own[n_own].x[d]       = mesh->x[3 * v + d];
-      own[n_own].around[d]  = a[3 * v + d];
-      own[n_own].unknown[d] = mesh->unknown[3 * v + d];
+      own->x[d]       = mesh->x[3 * v + d];
+      own->around[d]  = a[3 * v + d];
+      own->unknown[d] = mesh->unknown[3 * v + d];
     }
-    own[n_own].place = MirrorPlace(own[n_own].x);
-    n_own++;
+    own->rank = rank;
+    ++*n;
   }
   PetscCall(VecRestoreArrayRead(around, &a));
   PetscCall(VecDestroy(&around));
-  PetscCall(GatherRecords(PetscObjectComm((PetscObject)model->dm), n_own, sizeof(*own), own, n, node));
-  PetscCall(PetscFree(own));
-  qsort(*node, (size_t)*n, sizeof(**node), MirrorCompare);
   PetscFunctionReturn(0);
 }
 
-/* Least and largest coordinate along each axis, m */
-static void MirrorExtent(PetscInt n, const MirrorNode node[], PetscReal low[3], PetscReal high[3])
+/* Least and largest coordinate of all nodes along each axis, m */
+static PetscErrorCode MirrorExtent(const MirrorNodes *s, PetscReal low[3], PetscReal high[3])
 {
+  PetscFunctionBeginUser;
   for (int d = 0; d < 3; d++) low[d] = PETSC_MAX_REAL, high[d] = PETSC_MIN_REAL;
-  for (PetscInt i = 0; i < 3 * n; i++) {
-    low[i % 3]  = PetscMin(low[i % 3], node[i / 3].x[i % 3]);
-    high[i % 3] = PetscMax(high[i % 3], node[i / 3].x[i % 3]);
+  for (PetscInt i = 0; i < 3 * s->n; i++) {
+    low[i % 3]  = PetscMin(low[i % 3], s->node[i / 3].x[i % 3]);
+    high[i % 3] = PetscMax(high[i % 3], s->node[i / 3].x[i % 3]);
   }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, low, 3, MPIU_REAL, MPI_MIN, s->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, high, 3, MPIU_REAL, MPI_MAX, s->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Cuts the intervals by even samples of each rank's sorted nodes, as many as its share of all */
+static PetscErrorCode MirrorCut(MirrorNodes *s)
+{
+  PetscInt   n_all, n_own, n_samples;
+  PetscReal *own, *sample;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(&s->n, &n_all, 1, MPIU_INT, MPI_SUM, s->comm));
+  n_own = PetscMin(s->n, (PetscInt)((PetscReal)s->n / (PetscReal)n_all * MIRROR_SAMPLES * s->n_ranks) + 1);
+  PetscCall(PetscMalloc1(n_own, &own));
+  for (PetscInt i = 0; i < n_own; i++) own[i] = s->node[(PetscInt)((PetscInt64)i * s->n / n_own)].place;
+  PetscCall(GatherRecords(s->comm, n_own, sizeof(*own), own, &n_samples, &sample));
+  PetscCall(PetscSortReal(n_samples, sample));
+  PetscCall(PetscMalloc1(s->n_ranks, &s->cut));
+  for (PetscMPIInt r = 0; r < s->n_ranks - 1; r++) s->cut[r] = sample[(PetscInt64)(r + 1) * n_samples / s->n_ranks];
+  PetscCall(PetscFree(own));
+  PetscCall(PetscFree(sample));
+  PetscFunctionReturn(0);
+}
+
+/* The rank in whose interval a place lies */
+static PetscMPIInt MirrorRank(const MirrorNodes *s, PetscReal place)
+{
+  PetscMPIInt rank = 0;
+
+  while (rank < s->n_ranks - 1 && place >= s->cut[rank]) rank++;
+  return rank;
+}
+
+/* In place of this rank's nodes those of its interval, and of others those within reach of it */
+static PetscErrorCode MirrorShare(MirrorNodes *s)
+{
+  const PetscReal reach  = 2 * s->near;
+  PetscInt        n_sent = 0;
+  PetscMPIInt    *rank;
+  MirrorNode     *sent;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < s->n; i++)
+    n_sent += 1 + MirrorRank(s, s->node[i].place + reach) - MirrorRank(s, s->node[i].place - reach);
+  PetscCall(PetscMalloc2(n_sent, &sent, n_sent, &rank));
+  n_sent = 0;
+  for (PetscInt i = 0; i < s->n; i++)
+    for (PetscMPIInt r = MirrorRank(s, s->node[i].place - reach); r <= MirrorRank(s, s->node[i].place + reach); r++) {
+      rank[n_sent]   = r;
+      sent[n_sent++] = s->node[i];
+    }
+  PetscCall(PetscFree(s->node));
+  s->n = n_sent;
+  PetscCall(ExchangeRecords(s->comm, &s->n, sizeof(*sent), sent, rank, &s->node));
+  PetscCall(PetscFree2(sent, rank));
+  qsort(s->node, (size_t)s->n, sizeof(*s->node), MirrorCompare);
+  PetscFunctionReturn(0);
 }
 
 /* Squared distance of two triples */
@@ -104,27 +184,27 @@ static PetscReal MirrorSquare(const PetscReal a[3], const PetscReal b[3])
   return PetscSqr(a[0] - b[0]) + PetscSqr(a[1] - b[1]) + PetscSqr(a[2] - b[2]);
 }
 
-/* The node within `near` (m) of the place of `image` whose cells lie most as those of `image` do; NULL for none */
-static const MirrorNode *MirrorFind(PetscInt n, const MirrorNode node[], const MirrorNode *image, PetscReal near)
+/* The node near the place of `image` whose cells lie most as those of `image` do; NULL for none */
+static const MirrorNode *MirrorFind(const MirrorNodes *s, const MirrorNode *image)
 {
   const MirrorNode *best = NULL;
   PetscReal         least = PETSC_MAX_REAL;
-  PetscInt          first = 0, last = n;
+  PetscInt          first = 0, last = s->n;
 
   while (first < last) {
     const PetscInt middle = (first + last) / 2;
 
-    if (node[middle].place < image->place - 2 * near)
+    if (s->node[middle].place < image->place - 2 * s->near)
       first = middle + 1;
     else
       last = middle;
   }
-  for (PetscInt i = first; i < n && node[i].place <= image->place + 2 * near; i++) {
-    const PetscReal apart = MirrorSquare(node[i].around, image->around);
+  for (PetscInt i = first; i < s->n && s->node[i].place <= image->place + 2 * s->near; i++) {
+    const PetscReal apart = MirrorSquare(s->node[i].around, image->around);
 
-    if (MirrorSquare(node[i].x, image->x) > near * near || apart >= least) continue;
+    if (MirrorSquare(s->node[i].x, image->x) > s->near * s->near || apart >= least) continue;
     least = apart;
-    best  = &node[i];
+    best  = &s->node[i];
   }
   return best;
 }
@@ -143,66 +223,90 @@ static PetscErrorCode MirrorCheckHeld(const ModelPlane *plane, const MirrorNode 
   PetscFunctionReturn(0);
 }
 
-/* Fills image of the unknowns of one node where they are of this rank */
-static PetscErrorCode MirrorNodeUnknowns(Model model, const ModelPlane *plane, const MirrorNode *from,
-                                         const MirrorNode *to, PetscInt image[])
+/* The image of one of the nodes */
+static PetscErrorCode MirrorMatch(const MirrorNodes *s, const MirrorNode *one, MirrorPair *pair, Fault *fault)
 {
-  const Mesh *mesh = &model->mesh;
+  const ModelPlane *plane    = s->plane;
+  MirrorNode        mirrored = *one;
+  const MirrorNode *found;
 
   PetscFunctionBeginUser;
+  mirrored.x[plane->axis]      = 2 * plane->at - one->x[plane->axis];
+  mirrored.around[plane->axis] = -one->around[plane->axis];
+  found                        = MirrorFind(s, &mirrored);
+  if (!found)
+    PetscCall(FaultNote(fault, PETSC_ERR_USER_INPUT,
+                        "-symmetry %c: the node at (%g, %g, %g) m has no mirror image in the plane %c = %g m; give "
+                        "the place of the plane, as %c=0, or a mesh that is its own mirror image",
+                        "xyz"[plane->axis], (double)one->x[0], (double)one->x[1], (double)one->x[2],
+                        "xyz"[plane->axis], (double)plane->at, "xyz"[plane->axis]));
+  if (found) PetscCall(MirrorCheckHeld(plane, one, found, fault));
   for (int d = 0; d < 3; d++) {
-    const PetscInt own = from->unknown[d] - mesh->first_own;
-
-    if (from->unknown[d] < 0 || own < 0 || own >= mesh->n_own) continue;
-    image[own] = d == plane->axis ? -1 - to->unknown[d] : to->unknown[d];
+    pair->from[d] = one->unknown[d];
+    pair->to[d]   = found ? found->unknown[d] : -1;
   }
   PetscFunctionReturn(0);
 }
 
-/* Images of the nodes of this rank's unknowns */
-static PetscErrorCode MirrorMatch(Model model, const ModelPlane *plane, PetscReal near, PetscInt n,
-                                  const MirrorNode node[], PetscInt image[])
+/* Pairs of the nodes of this rank's interval that have unknowns, each told to the node's rank; to be freed */
+static PetscErrorCode MirrorMatchAll(const MirrorNodes *s, PetscInt *n, MirrorPair *pairs[])
 {
-  const Mesh *mesh  = &model->mesh;
+  PetscMPIInt here, *rank;
+  MirrorPair *pair;
   Fault       fault = {0};
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscInt    any = PetscMax(node[i].unknown[0], PetscMax(node[i].unknown[1], node[i].unknown[2]));
-    MirrorNode        mirrored = node[i];
-    const MirrorNode *found;
+  PetscCallMPI(MPI_Comm_rank(s->comm, &here));
+  PetscCall(PetscMalloc2(s->n, &pair, s->n, &rank));
+  *n = 0;
+  for (PetscInt i = 0; i < s->n; i++) {
+    const MirrorNode *one = &s->node[i];
+    const PetscInt    any = PetscMax(one->unknown[0], PetscMax(one->unknown[1], one->unknown[2]));
 
-    if (any < mesh->first_own || any >= mesh->first_own + mesh->n_own) continue;
-    mirrored.x[plane->axis]      = 2 * plane->at - node[i].x[plane->axis];
-    mirrored.around[plane->axis] = -node[i].around[plane->axis];
-    mirrored.place               = MirrorPlace(mirrored.x);
-    found                        = MirrorFind(n, node, &mirrored, near);
-    if (!found)
-      PetscCall(FaultNote(&fault, PETSC_ERR_USER_INPUT,
-                          "-symmetry %c: the node at (%g, %g, %g) m has no mirror image in the plane %c = %g m; give "
-                          "the place of the plane, as %c=0, or a mesh that is its own mirror image",
-                          "xyz"[plane->axis], (double)node[i].x[0], (double)node[i].x[1], (double)node[i].x[2],
-                          "xyz"[plane->axis], (double)plane->at, "xyz"[plane->axis]));
-    if (!found) continue;
-    PetscCall(MirrorCheckHeld(plane, &node[i], found, &fault));
-    PetscCall(MirrorNodeUnknowns(model, plane, &node[i], found, image));
+    if (any < 0 || MirrorRank(s, one->place) != here) continue;
+    rank[*n] = one->rank;
+    PetscCall(MirrorMatch(s, one, &pair[(*n)++], &fault));
   }
-  PetscCall(FaultsRaise(PetscObjectComm((PetscObject)model->dm), &fault));
+  PetscCall(FaultsRaise(s->comm, &fault));
+  PetscCall(ExchangeRecords(s->comm, n, sizeof(*pair), pair, rank, pairs));
+  PetscCall(PetscFree2(pair, rank));
+  PetscFunctionReturn(0);
+}
+
+/* Pairs of this rank's nodes; finds the place of the plane where it is not given */
+static PetscErrorCode MirrorFindPairs(Model model, ModelPlane *plane, PetscInt *n_pairs, MirrorPair *pairs[])
+{
+  PetscReal   low[3], high[3], extent = 0;
+  MirrorNodes s = {.comm = PetscObjectComm((PetscObject)model->dm), .plane = plane};
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(s.comm, &s.n_ranks));
+  PetscCall(MirrorCollect(model, &s.n, &s.node));
+  PetscCall(MirrorExtent(&s, low, high));
+  for (int d = 0; d < 3; d++) extent = PetscMax(extent, high[d] - low[d]);
+  if (!plane->has_at) plane->at = 0.5 * (low[plane->axis] + high[plane->axis]);
+  s.near = MIRROR_NEAR * extent;
+  for (PetscInt i = 0; i < s.n; i++) s.node[i].place = MirrorPlace(plane, s.node[i].x);
+  qsort(s.node, (size_t)s.n, sizeof(*s.node), MirrorCompare);
+  PetscCall(MirrorCut(&s));
+  PetscCall(MirrorShare(&s));
+  PetscCall(MirrorMatchAll(&s, n_pairs, pairs));
+  PetscCall(PetscFree(s.cut));
+  PetscCall(PetscFree(s.node));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ModelMirror(Model model, ModelPlane *plane, PetscInt image[])
 {
-  PetscInt    n;
-  PetscReal   low[3], high[3], extent = 0;
-  MirrorNode *node;
+  const PetscInt first = model->mesh.first_own;
+  PetscInt       n;
+  MirrorPair    *pair;
 
   PetscFunctionBeginUser;
-  PetscCall(MirrorGather(model, &n, &node));
-  MirrorExtent(n, node, low, high);
-  for (int d = 0; d < 3; d++) extent = PetscMax(extent, high[d] - low[d]);
-  if (!plane->has_at) plane->at = 0.5 * (low[plane->axis] + high[plane->axis]);
-  PetscCall(MirrorMatch(model, plane, MIRROR_NEAR * extent, n, node, image));
-  PetscCall(PetscFree(node));
+  PetscCall(MirrorFindPairs(model, plane, &n, &pair));
+  for (PetscInt i = 0; i < n; i++)
+    for (int d = 0; d < 3; d++)
+      if (pair[i].from[d] >= 0) image[pair[i].from[d] - first] = d == plane->axis ? -1 - pair[i].to[d] : pair[i].to[d];
+  PetscCall(PetscFree(pair));
   PetscFunctionReturn(0);
 }
