@@ -148,8 +148,9 @@ PetscErrorCode PencilReleaseParity(Pencil parity);
 
 /*@ PencilReleaseSymmetric - frees K_even, which is also K of PencilGetFrictionless(), once it has been factored; nothing
     before PencilReleaseTerms(), or without K_even. What was got before is gone; the next call for either makes it again, as
-    K - left' right. Collective. @*/
-PetscErrorCode PencilReleaseSymmetric(Pencil pencil);
+    K - left' right. Where `half` is given, the upper half of K_even - shift M (MATSEQSBAIJ, shift in (rad/s)^2), the pencil
+    keeps a reference to it alone: K is freed as well, and both are made again from it. Collective. @*/
+PetscErrorCode PencilReleaseSymmetric(Pencil pencil, Mat half, PetscReal shift);
 
 /*@ PencilGetMatrices - the matrices with friction. Collective. @*/
 PetscErrorCode PencilGetMatrices(Pencil pencil, PencilMatrices *matrices);

@@ -6,9 +6,11 @@
 #include "matrixadd.h"
 #include <petsc/private/petscimpl.h> /* PetscObjectStateIncrease() */
 
-/* Rows of a sequential matrix; column j stands for number[j] where numbers are given, which grow with j */
+/* Rows of a sequential matrix, whole or from their diagonal on; column j stands for number[j] where numbers are given, which
+   grow with j */
 typedef struct {
   Mat             A;
+  PetscBool       upper;
   PetscInt        n;
   const PetscInt *ia, *ja, *number;
 } AddRows;
@@ -18,6 +20,7 @@ static PetscErrorCode AddRowsGet(Mat A, const PetscInt number[], AddRows *rows)
   PetscBool done;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscObjectTypeCompare((PetscObject)A, MATSEQSBAIJ, &rows->upper));
   rows->A      = A;
   rows->number = number;
   PetscCall(MatGetRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &rows->n, &rows->ia, &rows->ja, &done));
@@ -38,9 +41,10 @@ static PetscErrorCode AddRowsRestore(AddRows *rows)
 static PetscBool RowAdd(PetscInt i, PetscReal c, const AddRows *X, const PetscScalar x[], const AddRows *A,
                         PetscScalar a[])
 {
-  PetscInt k = A->ia[i];
+  PetscInt k = A->ia[i], j = X->ia[i];
 
-  for (PetscInt j = X->ia[i]; j < X->ia[i + 1]; j++, k++) {
+  while (A->upper && j < X->ia[i + 1] && X->ja[j] < i) j++;
+  for (; j < X->ia[i + 1]; j++, k++) {
     const PetscInt column = X->number ? X->number[X->ja[j]] : X->ja[j];
 
     while (k < A->ia[i + 1] && (A->number ? A->number[A->ja[k]] : A->ja[k]) < column) k++;
@@ -58,9 +62,9 @@ static PetscErrorCode SequentialAdd(PetscBool add, PetscReal c, AddRows *X, AddR
 
   PetscFunctionBeginUser;
   if (add) PetscCall(MatSeqAIJGetArrayRead(X->A, &x));
-  if (add) PetscCall(MatSeqAIJGetArray(A->A, &a));
+  if (add) PetscCall(A->upper ? MatSeqSBAIJGetArray(A->A, &a) : MatSeqAIJGetArray(A->A, &a));
   for (PetscInt i = 0; i < A->n && *fits; i++) *fits = RowAdd(i, c, X, x, A, a);
-  if (add) PetscCall(MatSeqAIJRestoreArray(A->A, &a));
+  if (add) PetscCall(A->upper ? MatSeqSBAIJRestoreArray(A->A, &a) : MatSeqAIJRestoreArray(A->A, &a));
   if (add) PetscCall(MatSeqAIJRestoreArrayRead(X->A, &x));
   PetscFunctionReturn(0);
 }
@@ -69,11 +73,13 @@ static PetscErrorCode SequentialAdd(PetscBool add, PetscReal c, AddRows *X, AddR
 static PetscErrorCode AddPartsGet(Mat A, PetscInt *n, AddRows part[2])
 {
   const PetscInt *number;
+  PetscInt        block;
   PetscBool       sequential, parallel;
   Mat             inside, outside;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscObjectTypeCompare((PetscObject)A, MATSEQAIJ, &sequential));
+  PetscCall(MatGetBlockSize(A, &block));
+  PetscCall(PetscObjectTypeCompareAny((PetscObject)A, &sequential, MATSEQAIJ, block == 1 ? MATSEQSBAIJ : MATSEQAIJ, ""));
   PetscCall(PetscObjectTypeCompare((PetscObject)A, MATMPIAIJ, &parallel));
   *n = sequential ? 1 : parallel ? 2 : 0;
   if (sequential) PetscCall(AddRowsGet(A, NULL, &part[0]));
@@ -93,7 +99,7 @@ PetscErrorCode MatrixAdd(PetscReal c, Mat X, Mat A, PetscBool *added)
   PetscFunctionBeginUser;
   PetscCall(AddPartsGet(X, &n, x));
   PetscCall(AddPartsGet(A, &m, a));
-  fits = n && n == m ? PETSC_TRUE : PETSC_FALSE;
+  fits = n && n == m && !x[0].upper ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt i = 0; i < n && fits; i++) PetscCall(SequentialAdd(PETSC_FALSE, c, &x[i], &a[i], &fits));
   PetscCallMPI(MPI_Allreduce(&fits, added, 1, MPIU_BOOL, MPI_LAND, PetscObjectComm((PetscObject)A)));
   for (PetscInt i = 0; i < n && *added; i++) PetscCall(SequentialAdd(PETSC_TRUE, c, &x[i], &a[i], &fits));

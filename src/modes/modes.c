@@ -151,14 +151,15 @@ static PetscBool ShiftSpoils(const Spectrum *s, PetscReal shift)
   return nearest < MODES_NEAR * farthest ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Factors at another shift; K_even may have been released meanwhile */
+/* Factors at another shift; K and K_even may have been released meanwhile */
 static PetscErrorCode ModesMove(Modes modes, const PencilMatrices *pencil, PetscReal shift, ShiftInvert *si)
 {
   PencilMatrices again = *pencil, whole;
 
   PetscFunctionBeginUser;
-  if (again.K_even) {
+  if (si->released) {
     PetscCall(PencilGetMatrices(modes->pencil, &whole));
+    again.K      = whole.K;
     again.K_even = whole.K_even;
   }
   PetscCall(ShiftInvertMove(&again, shift, si));
@@ -267,8 +268,8 @@ PetscErrorCode ModesFind(Modes modes, Window *window, PetscBool *none)
   PencilMatrices pencil;
 
   PetscFunctionBeginUser;
-  modes->counter = (ShiftInvert){.progress = &modes->progress};
   PetscCall(PencilGetMatrices(modes->pencil, &pencil));
+  modes->counter = (ShiftInvert){.progress = &modes->progress, .halves = !pencil.C && !modes->keep};
   if (modes->has_route && !pencil.C)
     PetscCall(OptionsRefuse(modes->comm, MODES_DAMPING, "not used without damping; leave it out"));
   PetscCall(WindowFind(modes, window));
@@ -277,6 +278,7 @@ PetscErrorCode ModesFind(Modes modes, Window *window, PetscBool *none)
   PetscCall(ShiftsChoose(modes, &pencil, window));
   PetscCall(SolveProjected(modes, &pencil, window));
   if (!window->project) PetscCall(SolveWhole(modes, &pencil, window));
+  PetscCall(PencilGetMatrices(modes->pencil, &pencil)); /* which may have been freed meanwhile */
   *none = modes->right.n ? PETSC_FALSE : PETSC_TRUE;
   if (*none) window->below = -1; /* which says nothing of a mode with friction or damping */
   if (*none) PetscFunctionReturn(0);

@@ -193,13 +193,32 @@ static PetscErrorCode ShiftsShare(Modes modes, const PencilMatrices *pencil, Win
   PetscFunctionReturn(0);
 }
 
-/* Gives up the matrix that was factored, and what it was made of */
-static PetscErrorCode ShiftsRelease(Modes modes, const PencilMatrices *pencil, ShiftInvert *si)
+/* Gives up the matrix that was factored, or what it was made of; K is then what makes products with it, NULL where it stays */
+static PetscErrorCode ShiftsRelease(Modes modes, const PencilMatrices *pencil, ShiftInvert *si, Mat *K)
 {
+  Mat half;
+
   PetscFunctionBeginUser;
-  PetscCall(ShiftInvertRelease(pencil, si));
-  if (si->released && si->update) PetscCall(PencilReleaseSymmetric(modes->pencil));
+  PetscCall(ShiftInvertRelease(pencil, si, K));
+  PetscCall(ShiftInvertGetHalf(si, &half));
+  if (si->released && (half || si->update)) PetscCall(PencilReleaseSymmetric(modes->pencil, half, si->shift));
   MemoryReturn();
+  PetscFunctionReturn(0);
+}
+
+/* All modes of the window about one shift; after it the matrices of the pencil are to be got again */
+static PetscErrorCode ShiftsSolveOne(Modes modes, const PencilMatrices *pencil, PetscReal shift, Window *window,
+                                     ShiftInvert *si)
+{
+  PencilMatrices rest = *pencil;
+  Mat            K    = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesFactor(modes, pencil, shift, si));
+  if (!modes->keep) PetscCall(ShiftsRelease(modes, pencil, si, &K));
+  if (K) rest.K = K;
+  PetscCall(ModesSolveWindow(modes, &rest, window, si));
+  PetscCall(MatDestroy(&K));
   PetscFunctionReturn(0);
 }
 
@@ -210,9 +229,7 @@ PetscErrorCode ShiftsSolve(Modes modes, const PencilMatrices *pencil, Window *wi
 
   PetscFunctionBeginUser;
   if (modes->shifts == 1) {
-    PetscCall(ModesFactor(modes, pencil, shift, si));
-    if (!modes->keep) PetscCall(ShiftsRelease(modes, pencil, si));
-    PetscCall(ModesSolveWindow(modes, pencil, window, si));
+    PetscCall(ShiftsSolveOne(modes, pencil, shift, window, si));
     PetscFunctionReturn(0);
   }
   if (modes->n_groups > 1) {

@@ -7,6 +7,7 @@
    a pair (dimensionless), a row of R minus its normal displacement times the penalty per pair or the area; c_t holds
    k_n mu.
 */
+#include "base/matrixadd.h"
 #include "pencilimpl.h"
 
 /* Whether a term takes part: unsymmetric stiffness with a coefficient */
@@ -106,24 +107,58 @@ PetscErrorCode TermsFormFactors(const Terms *terms, const PetscReal p[], Mat *le
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PencilReleaseSymmetric(Pencil pencil)
+PetscErrorCode PencilReleaseSymmetric(Pencil pencil, Mat half, PetscReal shift)
 {
+  TermsSum *const even = &pencil->sum[PencilEven(pencil)], *const whole = &pencil->sum[PENCIL_K];
+  const PetscBool friction = pencil->has_factors && pencil->factor[0] ? PETSC_TRUE : PETSC_FALSE;
+
   PetscFunctionBeginUser;
-  if (pencil->released && pencil->has_factors && pencil->factor[0])
-    PetscCall(TermsSumDestroy(&pencil->sum[PencilEven(pencil)]));
+  if (!pencil->released || !(half || (friction && whole->current))) PetscFunctionReturn(0);
+  if (half) PetscCall(PetscObjectReference((PetscObject)half));
+  PetscCall(MatDestroy(&pencil->half));
+  pencil->half       = half;
+  pencil->half_shift = shift;
+  PetscCall(TermsSumDestroy(even));
+  if (half && friction) PetscCall(TermsSumDestroy(whole));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PencilRestoreSymmetric(Pencil pencil)
+/* sum = A + c left' right */
+static PetscErrorCode AddFriction(Pencil pencil, PetscReal c, Mat A, TermsSum *sum)
 {
-  TermsSum *const sum = &pencil->sum[PencilEven(pencil)];
-  Mat             friction;
+  Mat friction;
 
   PetscFunctionBeginUser;
   PetscCall(MatTransposeMatMult(pencil->factor[0], pencil->factor[1], MAT_INITIAL_MATRIX, PETSC_DEFAULT, &friction));
-  PetscCall(MatDuplicate(pencil->sum[PENCIL_K].A, MAT_COPY_VALUES, &sum->A));
-  PetscCall(MatAXPY(sum->A, -1, friction, DIFFERENT_NONZERO_PATTERN));
+  PetscCall(MatDuplicate(A, MAT_COPY_VALUES, &sum->A));
+  PetscCall(MatAXPY(sum->A, c, friction, DIFFERENT_NONZERO_PATTERN));
   PetscCall(MatDestroy(&friction));
-  sum->current = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* sum = half + shift M */
+static PetscErrorCode AddMass(Pencil pencil, TermsSum *sum)
+{
+  const Mat M = pencil->sum[pencil->Zr ? PROJECTED_M : SUM_M].A;
+  PetscBool added;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatConvert(pencil->half, MATSEQAIJ, MAT_INITIAL_MATRIX, &sum->A));
+  PetscCall(MatDestroy(&pencil->half));
+  PetscCall(MatrixAdd(pencil->half_shift, M, sum->A, &added));
+  PetscCheck(added, pencil->comm, PETSC_ERR_PLIB, "the mass is not in the pattern of what was factored");
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilRestore(Pencil pencil, PencilSum which)
+{
+  TermsSum *const even = &pencil->sum[PencilEven(pencil)], *const whole = &pencil->sum[PENCIL_K];
+
+  PetscFunctionBeginUser;
+  if (!even->current) PetscCall(pencil->half ? AddMass(pencil, even) : AddFriction(pencil, -1, whole->A, even));
+  even->current = PETSC_TRUE;
+  if (which != PENCIL_K) PetscFunctionReturn(0);
+  PetscCall(AddFriction(pencil, 1, even->A, whole));
+  whole->current = PETSC_TRUE;
   PetscFunctionReturn(0);
 }

@@ -92,8 +92,8 @@ static PetscErrorCode PencilFormSum(Pencil pencil, PencilSum which, Mat *A)
   if (!sum->current) {
     if (projected) PetscCall(PencilProjectTerms(pencil));
     if (at == SUM_H && mu != 0) kind.scale = 1 / mu;
-    PetscCall(pencil->released && at == PencilEven(pencil)
-                ? PencilRestoreSymmetric(pencil)
+    PetscCall(pencil->released && (at == PencilEven(pencil) || at == PENCIL_K)
+                ? PencilRestore(pencil, at)
                 : TermsSumForm(projected ? &pencil->projected : &pencil->base, &kind, p, sum));
     if (sum->A) PetscCall(MatSetOption(sum->A, MAT_SYMMETRIC, sums[at].symmetric && pencil->operators->symmetric));
   }
@@ -329,6 +329,7 @@ PetscErrorCode PencilDestroy(Pencil *pencil)
   if (!s) PetscFunctionReturn(0);
   for (int i = 0; i < N_PENCIL_SUMS; i++) PetscCall(TermsSumDestroy(&s->sum[i]));
   for (int i = 0; i < 2; i++) PetscCall(MatDestroy(&s->factor[i]));
+  PetscCall(MatDestroy(&s->half));
   PetscCall(PencilDestroyMirrors(s));
   PetscCall(PencilDestroyNullSpaces(s));
   PetscCall(TermsDestroy(&s->base));

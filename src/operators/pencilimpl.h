@@ -40,6 +40,8 @@ struct _p_Pencil {
   PetscBool released;    /* the terms are gone */
   PetscBool has_factors; /* left' right was formed at the present point */
   Mat       factor[2];   /* left and right factor of the unsymmetric stiffness, NULL where it has none */
+  Mat       half;        /* K without friction - half_shift M, its upper half, of which both K are made again; or NULL */
+  PetscReal half_shift;  /* (rad/s)^2 */
   /* symmetry */
   PetscBool is_part;                      /* it is one parity of another pencil */
   Mat       mirror[OPERATORS_MAX_PLANES]; /* R of each plane, made when asked for */
@@ -64,8 +66,8 @@ static inline PencilSum PencilEven(Pencil pencil)
   return pencil->Zr ? PROJECTED_K : SUM_K;
 }
 
-/* factors.c - K without friction where it was released, as K - left' right. Collective. */
-PETSC_INTERN PetscErrorCode PencilRestoreSymmetric(Pencil pencil);
+/* factors.c - K without friction, or K, where it was released. Collective. */
+PETSC_INTERN PetscErrorCode PencilRestore(Pencil pencil, PencilSum which);
 
 /* rigid.c - null space of points that are joined rigidly, where there is none of the contact. Collective. */
 PETSC_INTERN PetscErrorCode PencilTakeRigid(Pencil pencil);

@@ -44,6 +44,29 @@ static PetscErrorCode ShiftInvertAdd(PetscReal c, Mat X, MatStructure pattern, M
   PetscFunctionReturn(0);
 }
 
+/* The upper half of K - s M, whose values the factorisation then takes where they are; NULL where it is not wanted or the
+   user has a solver of his own */
+static PetscErrorCode ShiftInvertHalf(const ShiftInvert *si, const PencilMatrices *pencil, Mat *A)
+{
+  static const char *const given[] = {"-ksp_type", "-pc_type", "-pc_factor_mat_solver_type"};
+  const Mat                K       = ShiftInvertStiffness(si, pencil);
+  PetscBool                fits    = si->even && si->halves ? PETSC_TRUE : PETSC_FALSE, is;
+
+  PetscFunctionBeginUser;
+  *A = NULL;
+  PetscCall(PetscObjectTypeCompare((PetscObject)K, MATSEQAIJ, &is));
+  if (!is) fits = PETSC_FALSE;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(given) && fits; i++) {
+    PetscCall(PetscOptionsHasName(NULL, "st_", given[i], &is));
+    if (is) fits = PETSC_FALSE;
+  }
+  if (!fits) PetscFunctionReturn(0);
+  PetscCall(MatConvert(K, MATSEQSBAIJ, MAT_INITIAL_MATRIX, A));
+  PetscCall(MatrixAdd(-si->shift, pencil->M, *A, &fits));
+  if (!fits) PetscCall(MatDestroy(A));
+  PetscFunctionReturn(0);
+}
+
 /* K - s M, or K + s C + s^2 M with damping; in place where the pattern is kept */
 static PetscErrorCode ShiftInvertMatrix(const ShiftInvert *si, const PencilMatrices *pencil, PetscBool in_place, Mat *A)
 {
@@ -58,6 +81,8 @@ static PetscErrorCode ShiftInvertMatrix(const ShiftInvert *si, const PencilMatri
     PetscCall(MatZeroEntries(*A));
     PetscCall(ShiftInvertAdd(1, K, pattern, *A));
   } else {
+    PetscCall(ShiftInvertHalf(si, pencil, A));
+    if (*A) PetscFunctionReturn(0);
     PetscCall(MatDuplicate(K, MAT_COPY_VALUES, A));
   }
   if (pencil->C) PetscCall(ShiftInvertAdd(s, pencil->C, pattern, *A));
@@ -231,85 +256,5 @@ PetscErrorCode ShiftInvertFactor(const PencilMatrices *pencil, ShiftInvert *si, 
   PetscCall(ShiftInvertCheck(si, pc, singular));
   si->factored = *singular ? PETSC_FALSE : PETSC_TRUE;
   if (*singular) PetscCall(KSPDestroy(&si->ksp));
-  PetscFunctionReturn(0);
-}
-
-/* K - left' right - s M that is not formed; left and right may be NULL */
-typedef struct {
-  Mat       K, M, left, right;
-  PetscReal s;
-} Shifted;
-
-static PetscErrorCode ShiftedMult(Mat A, Vec x, Vec y)
-{
-  Shifted *shifted;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatShellGetContext(A, &shifted));
-  PetscCall(MatMult(shifted->M, x, y));
-  PetscCall(VecScale(y, shifted->s));
-  if (shifted->left) PetscCall(LowRankMultAdd(&(LowRank){.L = shifted->left, .R = shifted->right}, PETSC_FALSE, x, y));
-  PetscCall(VecScale(y, -1));
-  PetscCall(MatMultAdd(shifted->K, x, y, y));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ShiftedDestroy(Mat A)
-{
-  Shifted *shifted;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatShellGetContext(A, &shifted));
-  PetscCall(MatDestroy(&shifted->K));
-  PetscCall(MatDestroy(&shifted->M));
-  PetscCall(MatDestroy(&shifted->left));
-  PetscCall(MatDestroy(&shifted->right));
-  PetscCall(PetscFree(shifted));
-  PetscFunctionReturn(0);
-}
-
-/* From what is there anyway: with an update K itself, not its symmetric part */
-static PetscErrorCode ShiftedCreate(const ShiftInvert *si, const PencilMatrices *pencil, Mat *A)
-{
-  PetscInt n_local, n;
-  Shifted *shifted;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscNew(&shifted));
-  *shifted =
-    (Shifted){pencil->K, pencil->M, si->update ? pencil->left : NULL, si->update ? pencil->right : NULL, si->shift};
-  PetscCall(PetscObjectReference((PetscObject)shifted->K));
-  PetscCall(PetscObjectReference((PetscObject)shifted->M));
-  if (shifted->left) PetscCall(PetscObjectReference((PetscObject)shifted->left));
-  if (shifted->right) PetscCall(PetscObjectReference((PetscObject)shifted->right));
-  PetscCall(MatGetLocalSize(shifted->K, &n_local, NULL));
-  PetscCall(MatGetSize(shifted->K, &n, NULL));
-  PetscCall(MatCreateShell(si->comm, n_local, n_local, n, n, shifted, A));
-  PetscCall(MatShellSetOperation(*A, MATOP_MULT, (void (*)(void))ShiftedMult));
-  PetscCall(MatShellSetOperation(*A, MATOP_DESTROY, (void (*)(void))ShiftedDestroy));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ShiftInvertRelease(const PencilMatrices *pencil, ShiftInvert *si)
-{
-  PetscBool     direct, cholesky, is_mumps = PETSC_FALSE;
-  MatSolverType type;
-  PC            pc;
-  Mat           A;
-
-  PetscFunctionBeginUser;
-  if (!si->even || !si->factored || si->released) PetscFunctionReturn(0);
-  PetscCall(KSPGetPC(si->ksp, &pc));
-  PetscCall(PetscObjectTypeCompare((PetscObject)si->ksp, KSPPREONLY, &direct));
-  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCCHOLESKY, &cholesky));
-  PetscCall(PCFactorGetMatSolverType(pc, &type));
-  if (type) PetscCall(PetscStrcmp(type, MATSOLVERMUMPS, &is_mumps));
-  if (!direct || !cholesky || !is_mumps) PetscFunctionReturn(0);
-  PetscCall(ShiftedCreate(si, pencil, &A));
-  PetscCall(KSPSetReusePreconditioner(si->ksp, PETSC_TRUE));
-  PetscCall(KSPSetOperators(si->ksp, A, A));
-  PetscCall(MatDestroy(&A));
-  PetscCall(MatDestroy(&si->term[0]));
-  si->released = PETSC_TRUE;
   PetscFunctionReturn(0);
 }

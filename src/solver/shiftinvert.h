@@ -27,6 +27,7 @@ typedef struct ShiftInvert {
   PetscBool factored;        /* there are factors, not the analysis alone */
   PetscBool released;        /* the matrix is not there any more */
   PetscBool even;            /* the matrix that is factored is symmetric: LDL' */
+  PetscBool halves;          /* its upper half will do, on one rank */
   PetscInt  workspace;       /* of MUMPS beyond its estimate, percent; 0: its own choice, which is raised where it fails */
   Mat       term[3];         /* K, C, M of it */
   PetscObjectState pattern[3], values[3]; /* of those */
@@ -73,9 +74,13 @@ PETSC_INTERN PetscErrorCode ShiftInvertKeepsPattern(const ShiftInvert *si, const
 PETSC_INTERN PetscErrorCode ShiftInvertStands(const PencilMatrices *pencil, PetscReal shift, const ShiftInvert *si,
                                               PetscBool *stands);
 PETSC_INTERN PetscErrorCode ShiftInvertFactor(const PencilMatrices *pencil, ShiftInvert *si, PetscBool *singular);
-/* Gives up the symmetric matrix that MUMPS has factored, a copy of the pattern of K, and with an update its reference to
-   K_even: products with it are made from K, M and the pairs then. For the last shift: another one needs another analysis. */
-PETSC_INTERN PetscErrorCode ShiftInvertRelease(const PencilMatrices *pencil, ShiftInvert *si);
+/* release.c - gives up the symmetric matrix that MUMPS has factored, a copy of the pattern of K, and with an update its
+   reference to K_even: products with it are made from K, M and the pairs then. Where it is but the upper half it stays, and K,
+   else NULL, is what makes products with K from it, for the caller to destroy, so that the pencil's own may be freed. For the
+   last shift: another one needs another analysis. */
+PETSC_INTERN PetscErrorCode ShiftInvertRelease(const PencilMatrices *pencil, ShiftInvert *si, Mat *K);
+/* The upper half of K_even - si->shift M that is factored (borrowed), NULL where it is whole */
+PETSC_INTERN PetscErrorCode ShiftInvertGetHalf(const ShiftInvert *si, Mat *half);
 /* Whether the estimate is shown on stdout before factorisations, not by default */
 PETSC_INTERN void      ShiftInvertShow(PetscBool show);
 PETSC_INTERN PetscBool ShiftInvertShows(void);
