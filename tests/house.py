@@ -68,7 +68,7 @@ class Source:
         named = re.search(r"(\w+)\s*\(", head)
         if not named or not head.endswith(")") or "=" in head:
             return False
-        static = re.search(r"\b(static|INTO_VERSIONS)\b", head) is not None
+        static = re.search(r"\b(static|INTO_VERSIONS|STENCIL_INLINE)\b", head) is not None
         n_arguments = count_arguments(head[named.end():-1])
         n_lines = max(code.count("\n", brace, end) - 1, 0)
         line = self.line(begin + named.start())

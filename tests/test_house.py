@@ -11,6 +11,7 @@
   readmes    each folder of src has a README.md of at most 25 lines, or one above it that names the folder
   options    no option is read by two functions
   unused     nothing of Python is imported or defined in vain: each function and class is named somewhere else
+  dead       no function of C is kept alive by a test alone, but for public ones, and what one file uses is static
   words      nothing of who wrote it where: no paths of somebody's own folders, no day's work, no numbers of tasks
 
 All violations are printed with file:line. The same rules then run on a small house with one violation of each kind
@@ -229,6 +230,25 @@ def unused(house):
                 yield house.say(script.path, f.lineno, f"nothing names {f.name}")
 
 
+def dead(house):
+    """Functions of C that no other file of the program names. Those that are static the compiler looks after."""
+    own = {source.path: collections.Counter(re.findall(r"\w+", source.code)) for source in house.c}
+    headers = sum((named for path, named in own.items() if path.suffix == ".h"), collections.Counter())
+    total = sum(own.values(), collections.Counter())
+    public = {word for path, named in own.items() if "include" in path.parts for word in named}
+    tested = set(re.findall(r"\w+", " ".join(path.read_text() for path in house.files("tests") if path.suffix in (".c", ".h"))))
+    for source in house.c:
+        for f in source.functions:
+            here = own[source.path][f.name]
+            others = total[f.name] - here - (headers[f.name] if source.path.suffix == ".c" else 0)
+            if f.name == "main" or others or (f.static and source.path.suffix == ".c"):
+                continue
+            if here == 1 and not (f.name in public & tested):
+                yield house.say(source.path, f.line, f"{f.name} is dead: no file of the program names it")
+            elif source.path.suffix == ".c" and f.name not in tested:
+                yield house.say(source.path, f.line, f"{f.name} must be static: no other file names it")
+
+
 def words(house):
     """What speaks of its author's folders or work."""
     tops = [top for top in ("src", "include", "scripts", "tests", "options") if (house.root / top).is_dir()]
@@ -241,14 +261,14 @@ def words(house):
                 yield house.say(path, n, f"'{OWN.search(line)[0]}' is nobody's business here")
 
 
-RULES = (names, includes, lengths, columns, strata, readmes, options, unused, words)
+RULES = (names, includes, lengths, columns, strata, readmes, options, unused, dead, words)
 
 # Files that break one rule each: rule, words of what it says, files
-MANY = "void Many(int a, int b, int c, int d,\n  int e, int f, int (*g)(int, int))\n{\n}\n"
+MANY = "static void Many(int a, int b, int c, int d,\n  int e, int f, int (*g)(int, int))\n{\n}\n"
 BEGIN = "PetscOptionsBegin(comm, %s, title, NULL);\n  "
-MU = "void A(void)\n{\n  " + BEGIN % "NULL" + 'PetscOptionsReal("-mu", "m", "a.h", m, &m, NULL);\n}\n'
-MU_TOO = 'void B(void)\n{\n  PetscOptionsGetReal(NULL, NULL, "-mu", &m, NULL);\n}\n'
-LAW = ('void Law%s(void)\n{\n  PetscSNPrintf(title, sizeof(title), "Contact %%s", n);\n  ' + BEGIN % "prefix" +
+MU = "static void A(void)\n{\n  " + BEGIN % "NULL" + 'PetscOptionsReal("-mu", "m", "a.h", m, &m, NULL);\n}\n'
+MU_TOO = 'static void B(void)\n{\n  PetscOptionsGetReal(NULL, NULL, "-mu", &m, NULL);\n}\n'
+LAW = ('static void Law%s(void)\n{\n  PetscSNPrintf(title, sizeof(title), "Contact %%s", n);\n  ' + BEGIN % "prefix" +
        'OptionsGetReals(PetscOptionsObject, "-law", 1);\n}\n')
 PLANTED = (
     (names, "function Twice", {"src/model/a.c": "static int Twice(void)\n{\n  return 1;\n}\n",
@@ -271,18 +291,21 @@ PLANTED = (
     (lengths, "longer than", {"scripts/a": "#!/bin/sh\n" + 350 * "\n"}),
     (lengths, "longer than", {"tests/a.py": 351 * "\n"}),
     (lengths, "a screen", {"src/main.c": 81 * "\n"}),
-    (lengths, "body of Long", {"src/model/a.c": "void Long(void)\n{\n" + 81 * "  ;\n" + "}\n"}),
+    (lengths, "body of Long", {"src/model/a.c": "static void Long(void)\n{\n" + 81 * "  ;\n" + "}\n"}),
     (lengths, "Many has 7 arguments", {"src/model/a.c": MANY}),
     (lengths, "body of long", {"tests/a.py": "def long():\n" + 81 * "    pass\n" + "long()\n"}),
     (columns, "141 columns", {"src/model/a.c": "/*" + 137 * "a" + "*/\n"}),
     (columns, "141 columns", {"scripts/a": "#!/bin/sh\n" + 141 * "#" + "\n"}),
-    (strata, "DMPlexGetDepthStratum", {"src/modes/a.c": "void A(void)\n{\n  DMPlexGetDepthStratum(dm, 0);\n}\n"}),
+    (strata, "DMPlexGetDepthStratum", {"src/modes/a.c": "static void A(void)\n{\n  DMPlexGetDepthStratum(dm, 0);\n}\n"}),
     (readmes, "no README.md", {"src/solver/a.c": ""}),
     (readmes, "longer than", {"src/model/README.md": 26 * "\n"}),
     (options, "-mu is read", {"src/model/a.c": MU, "src/modes/b.c": MU_TOO}),
     (options, "-law is read", {f"src/model/{k}.c": LAW % k for k in "ab"}),
     (unused, "nothing names gone", {"tests/a.py": "def gone():\n    pass\n"}),
     (unused, "os is imported in vain", {"scripts/a": "#!/usr/bin/env python3\nimport os\nimport sys  # noqa: F401\n"}),
+    (dead, "Twice is dead", {"src/model/a.c": "int Twice(void)\n{\n  return 1;\n}\n", "src/model/a.h": "int Twice(void);\n",
+                             "tests/a.c": "Twice();\n"}),
+    (dead, "Twice must be static", {"src/model/a.c": "int Twice(void)\n{\n  return 1 ? 1 : Twice();\n}\n"}),
     (words, "nobody's business", {"options/a.yaml": "# see " + "/".join(("", "home", "me")) + "/notes\n"}),
 )
 

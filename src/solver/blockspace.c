@@ -19,7 +19,8 @@ PetscErrorCode BlockSpaceCreate(ST st, BV V, Mat M, PetscInt ncv, PetscInt block
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BlockSpaceApply(BlockSpace *s, PetscInt first, PetscInt n)
+/* W = Op times n columns of V from `first` on */
+static PetscErrorCode SpaceApply(BlockSpace *s, PetscInt first, PetscInt n)
 {
   Mat Op;
 
@@ -59,7 +60,7 @@ static PetscErrorCode SpaceAppendRandom(BlockSpace *s, PetscInt n, PetscInt *ran
   PetscCall(BVCopy(s->V, s->W));
   PetscCall(SpaceAppend(s, first, EXHAUSTED, s->scratch, rank));
   if (!*rank) PetscFunctionReturn(0);
-  PetscCall(BlockSpaceApply(s, first, *rank));
+  PetscCall(SpaceApply(s, first, *rank));
   PetscCall(SpaceAppend(s, first, EXHAUSTED, s->scratch, rank));
   s->p += *rank;
   PetscFunctionReturn(0);
@@ -103,7 +104,7 @@ static PetscErrorCode SpaceTake(BlockSpace *s)
 PetscErrorCode BlockSpaceExtend(BlockSpace *s)
 {
   PetscFunctionBeginUser;
-  PetscCall(BlockSpaceApply(s, s->m, s->p));
+  PetscCall(SpaceApply(s, s->m, s->p));
   PetscCall(SpaceTake(s));
   PetscFunctionReturn(0);
 }
@@ -222,7 +223,7 @@ PetscErrorCode BlockSpacePurify(ST st, BV V, Mat M, PetscInt n, PetscInt block)
   for (PetscInt first = 0; first < n; first += block) {
     const PetscInt last = PetscMin(first + block, n);
 
-    PetscCall(BlockSpaceApply(&s, first, last - first));
+    PetscCall(SpaceApply(&s, first, last - first));
     PetscCall(BVSetActiveColumns(V, first, last));
     PetscCall(BVCopy(s.W, V));
   }

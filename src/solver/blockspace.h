@@ -37,6 +37,4 @@ PETSC_INTERN PetscErrorCode BlockSpaceRestart(BlockSpace *space, PetscInt locked
 PETSC_INTERN PetscReal BlockSpaceResidual(const BlockSpace *space, const PetscScalar x[]);
 /* V := Op V for its first n columns, block by block, each of norm 1 in M then */
 PETSC_INTERN PetscErrorCode BlockSpacePurify(ST st, BV V, Mat M, PetscInt n, PetscInt block);
-/* W = Op times n columns of V */
-PETSC_INTERN PetscErrorCode BlockSpaceApply(BlockSpace *space, PetscInt first, PetscInt n);
 PETSC_INTERN PetscErrorCode BlockSpaceDestroy(BlockSpace *space);
