@@ -272,6 +272,38 @@ static PetscErrorCode TestScenes(SceneBody body, PetscReal mu, PetscInt *n_paths
   PetscFunctionReturn(0);
 }
 
+/* Most pairs stick, some slide, some are open: steps of Newton's method on motions. Breaks when: such a step is another than that on
+   forces, so that Newton's method takes more steps or none ends it; a slope that changes nothing keeps it from that */
+static PetscErrorCode TestDual(int *failed)
+{
+  const PetscInt    n = 49;
+  ComplianceScene   s;
+  ContactCompliance c;
+  ComplianceReport  report[2];
+  PetscReal        *lambda[2], *slope, *speed, off = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(SceneCreate(n, 3, &s));
+  SceneAddBody(&s, BODY_HALF_SPACE);
+  SceneDrawMotion(&s, 1.5, -3, 0);
+  PetscCall(PetscCalloc4(3 * n, &lambda[0], 3 * n, &lambda[1], n, &slope, n, &speed));
+  for (int k = 0; k < 2; k++) {
+    for (PetscInt p = 0; p < n; p++) slope[p] = k * 1e-30;
+    PetscCall(ContactComplianceCreate(n, s.W, &c));
+    PetscCall(ContactComplianceSetFriction(c, &(ComplianceFriction){s.mu, slope, speed, 1}));
+    PetscCall(ContactComplianceSolve(c, s.q, s.slip0, lambda[k], NULL, &report[k]));
+    PetscCall(ContactComplianceDestroy(&c));
+  }
+  for (PetscInt i = 0; i < 3 * n; i++) off = PetscMax(off, PetscAbsReal(lambda[0][i] - lambda[1][i]));
+  *failed += CheckTrue("on motions: by Newton's method", report[0].route == COMPLIANCE_NEWTON, report[0].route);
+  *failed += CheckTrue("on motions: few steps", report[0].iterations < 10, report[0].iterations);
+  *failed += CheckClose("on motions: laws", SceneViolation(&s, lambda[0]), 0, 1e-11);
+  *failed += CheckClose("on motions: forces of the other route", off, 0, 1e-11);
+  PetscCall(PetscFree4(lambda[0], lambda[1], slope, speed));
+  PetscCall(SceneDestroy(&s));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Tests(PetscMPIInt size, int *failed)
 {
   PetscInt n_paths = 0;
@@ -282,6 +314,7 @@ static PetscErrorCode Tests(PetscMPIInt size, int *failed)
   PetscCall(TestFallingFriction(failed));
   PetscCall(TestTwoPairs(failed));
   PetscCall(TestLine(failed));
+  PetscCall(TestDual(failed));
   for (SceneBody body = BODY_HALF_SPACE; body < BODY_N; body++) {
     PetscCall(TestScenes(body, 0.3, &n_paths, failed));
     PetscCall(TestScenes(body, 0.5, &n_paths, failed));

@@ -11,9 +11,9 @@
       [A_B0 A_BB  0  ] [x_B] = [b_B]      solved by the Schur complement on A0, of as many rows as indices changed
       [E_D' 0     0  ] [y  ]   [0  ]
 
-   (P. E. Gill, W. Murray, M. A. Saunders, M. H. Wright, Math. Program. 45, 1989, 437). An iteration solves A dx = -v; then
-   sliding pairs turn their friction to where they slide. Alone that contracts by mu l_n / |slip| times compliances, which
-   all pairs turning together make as large as 1; mix.c makes it converge there too. Where it does not, newton.c follows.
+   (P. E. Gill, W. Murray, M. A. Saunders, M. H. Wright, Math. Program. 45, 1989, 437). An iteration solves A dx = -v; then sliding
+   pairs turn their friction to where they slide. Alone that contracts by mu l_n / |slip| times compliances, which all pairs turning
+   together make as large as 1; mix.c makes it converge there too. Where it does not, newton.c follows.
 */
 #include "complianceimpl.h"
 
@@ -39,13 +39,13 @@ static inline PetscReal ChordEntry(const ContactCompliance c, PetscInt i, PetscI
 /* Smallest pivot beside the largest */
 static PetscReal ChordPivotRatio(PetscInt m, const PetscReal LU[])
 {
-  PetscReal least = PETSC_MAX_REAL, largest = 0;
+  PetscReal least = m ? PETSC_MAX_REAL : 1, largest = m ? 0 : 1;
 
-  for (PetscInt i = 0; i < m; i++) {
-    least   = PetscMin(least, PetscAbsReal(LU[i * (m + 1)]));
-    largest = PetscMax(largest, PetscAbsReal(LU[i * (m + 1)]));
+  for (PetscInt i = 0; i < m * m; i += m + 1) {
+    least   = PetscMin(least, PetscAbsReal(LU[i]));
+    largest = PetscMax(largest, PetscAbsReal(LU[i]));
   }
-  return m ? least / largest : 1;
+  return least / largest;
 }
 
 static PetscErrorCode ChordFactor(PetscInt m, PetscReal A[], PetscBLASInt pivot[], PetscBool *good)
@@ -77,7 +77,6 @@ static PetscErrorCode ChordBackSolve(PetscInt m, const PetscReal LU[], const Pet
 PetscErrorCode ComplianceChordSetBase(ContactCompliance c)
 {
   ComplianceChord *h = &c->chord;
-  PetscBool        good;
 
   PetscFunctionBeginUser;
   h->most = PetscMin(3 * c->n, PetscMax(CHORD_LEAST, h->m / CHORD_SHARE));
@@ -92,8 +91,7 @@ PetscErrorCode ComplianceChordSetBase(ContactCompliance c)
   h->n_columns = 0;
   h->n_border  = -1;
   c->report.factors++;
-  PetscCall(ChordFactor(h->m, h->LU, h->pivot, &good));
-  h->exists = good;
+  PetscCall(ChordFactor(h->m, h->LU, h->pivot, &h->exists));
   PetscFunctionReturn(0);
 }
 
@@ -114,6 +112,7 @@ static PetscErrorCode ChordRenew(ContactCompliance c)
   ComplianceChord *h = &c->chord;
 
   PetscFunctionBeginUser;
+  h->n_mixed = -1;
   h->m = ChordWant(c, h->index);
   for (PetscInt p = 0; p < c->n; p++)
     for (PetscInt i = 0; i < 2; i++)
@@ -183,7 +182,7 @@ static PetscErrorCode ChordBorder(ContactCompliance c, PetscBool *good)
   *good = h->exists && ChordCompare(c, n_want, h->want, &n) ? PETSC_TRUE : PETSC_FALSE;
   if (!*good) PetscFunctionReturn(0);
   same = n == h->n_border ? PETSC_TRUE : PETSC_FALSE;
-  for (PetscInt k = 0; k < n && same; k++) same = h->next[k] == h->border[k] ? PETSC_TRUE : PETSC_FALSE;
+  if (same) PetscCall(PetscArraycmp(h->next, h->border, n, &same));
   if (same) PetscFunctionReturn(0);
   h->n_border = n;
   for (PetscInt b = 0; b < n; b++) {
@@ -280,15 +279,19 @@ static void ChordTake(ContactCompliance c, const PetscReal dx[])
   }
 }
 
-/* Factors for the present statuses, renewed where the border is too large or they no longer contract; *good = they serve */
+/* Factors for the present statuses, renewed where the border is too large or they no longer contract and no dual.c costs less */
 static PetscErrorCode ChordPrepare(ContactCompliance c, PetscInt *renewals, PetscInt *slow, PetscBool *good)
 {
+  PetscBool dual;
+
   PetscFunctionBeginUser;
   PetscCall(ChordBorder(c, good));
   if (*renewals == CHORD_RENEWALS || (*good && *slow < CHORD_PATIENCE)) PetscFunctionReturn(0);
+  PetscCall(ComplianceDualServes(c, &dual));
+  if (dual) *good = PETSC_FALSE;
+  if (dual) PetscFunctionReturn(0);
   (*renewals)++;
-  *slow            = 0;
-  c->chord.n_mixed = -1;
+  *slow = 0;
   PetscCall(ChordRenew(c));
   PetscCall(ChordBorder(c, good));
   PetscFunctionReturn(0);

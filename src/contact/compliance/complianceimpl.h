@@ -35,6 +35,16 @@ typedef struct {
   PetscReal    *basis, *step;      /* differences of f, orthonormal, and of x + f, [COMPLIANCE_MIXED][3 n] */
 } ComplianceChord;
 
+/* Newton's method on motions (dual.c); rows are of the motions that are free */
+typedef struct {
+  PetscBool  tried;
+  PetscReal *V;            /* W^-1, N/m, [3 n][3 n], NULL before it is asked for and where W is nearly singular */
+  PetscInt   n_rows, *at;  /* pair of a row, [3 n] */
+  PetscReal *along, *test; /* direction of its motion; what of V dv at the pair its equation takes; [3 n][3] */
+  PetscReal *own, *x;      /* its motion in its equation; right-hand side, then its motion, m; [3 n] */
+  PetscReal *dv, *force;   /* [3 n] m; V dv, N */
+} ComplianceDual;
+
 struct _p_ContactCompliance {
   PetscInt         n;
   const PetscReal *W;
@@ -57,6 +67,7 @@ struct _p_ContactCompliance {
   PetscBLASInt    *pivot;
   PetscInt         n_room; /* rows that there is room for */
   ComplianceChord  chord;
+  ComplianceDual   dual;
   ComplianceReport report, totals;
 };
 
@@ -69,15 +80,21 @@ PETSC_INTERN void           ComplianceChoose(ContactCompliance c);
 PETSC_INTERN void           ComplianceTurn(const ContactCompliance c, PetscInt p, PetscReal d[2]);
 PETSC_INTERN CoulombPair    ComplianceGetPair(const ContactCompliance c, PetscInt p, PetscReal weight, PetscReal w[3]);
 
-/* linear.c - the laws of the closed pairs at the present l, v; x [3] along the rows of closed pair k; matrix of these, its
-   factors; row[n_closed] rows and the border */
+/* linear.c - the laws of the closed pairs at the present l, v; x [3] along the rows of closed pair k; l as these laws have it, and the
+   right-hand side; that and the matrix; its factors; row[n_closed] rows and the border */
 PETSC_INTERN void ComplianceLinearise(ContactCompliance c);
 PETSC_INTERN void ComplianceAlongRows(const ContactCompliance c, PetscInt k, const PetscReal x[], PetscReal y[]);
+PETSC_INTERN PetscErrorCode ComplianceBegin(ContactCompliance c, PetscInt border);
 PETSC_INTERN PetscErrorCode ComplianceAssemble(ContactCompliance c, PetscInt border);
-PETSC_INTERN PetscErrorCode ComplianceFactor(ContactCompliance c, PetscInt border, PetscBool *singular);
+PETSC_INTERN PetscErrorCode ComplianceFactor(ContactCompliance c, PetscInt rows, PetscBool *singular);
 PETSC_INTERN void           ComplianceShift(ContactCompliance c, PetscInt border);
-PETSC_INTERN PetscErrorCode ComplianceBackSolve(const ContactCompliance c, PetscInt border);
+PETSC_INTERN PetscErrorCode ComplianceBackSolve(const ContactCompliance c, PetscInt rows, PetscReal x[]);
 PETSC_INTERN void           ComplianceTake(ContactCompliance c);
+
+/* dual.c - whether a step of Newton's method at the present statuses is cheaper on motions; that step where it is, into rhs */
+PETSC_INTERN PetscErrorCode ComplianceDualServes(ContactCompliance c, PetscBool *serves);
+PETSC_INTERN PetscErrorCode ComplianceDualSolve(ContactCompliance c, PetscBool *solved);
+PETSC_INTERN PetscErrorCode ComplianceDualDestroy(ContactCompliance c);
 
 /* chord.c - the base becomes chord.index [m] with chord.turn; A0^-1 times the column that an index adds, NULL where the
    store is full; Newton's method with factors of the steps before */

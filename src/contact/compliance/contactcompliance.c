@@ -253,6 +253,7 @@ PetscErrorCode ContactComplianceDestroy(ContactCompliance *compliance)
   PetscCall(PetscFree2(c->chord.x, c->chord.f));
   PetscCall(PetscFree2(c->chord.basis, c->chord.step));
   PetscCall(PetscFree5(c->chord.LU, c->chord.V, c->chord.S, c->chord.pivot, c->chord.small));
+  PetscCall(ComplianceDualDestroy(c));
   PetscCall(PetscFree(*compliance));
   PetscFunctionReturn(0);
 }

@@ -21,7 +21,8 @@
    force for 1e-12.
 
    Methods, each where the one before does not end: Newton on the statuses of the pairs with factors of the steps before,
-   bordered by what has changed (chord.c); semismooth Newton (newton.c); the same with a line search on the natural map;
+   bordered by what has changed (chord.c); semismooth Newton (newton.c), on motions where fewer of these than of forces are free
+   (dual.c); the same with a line search on the natural map;
    the path of solutions from pairs that do not feel each other to W, followed through its folds (path.c). All have
    limits: a step always ends, and tells whether it converged.
 */

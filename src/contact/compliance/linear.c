@@ -126,13 +126,10 @@ static void LinearColumns(ContactCompliance c, PetscInt k, PetscInt rows)
   }
 }
 
-PetscErrorCode ComplianceAssemble(ContactCompliance c, PetscInt border)
+PetscErrorCode ComplianceBegin(ContactCompliance c, PetscInt border)
 {
-  const PetscInt rows = c->row[c->n_closed] + border;
-
   PetscFunctionBeginUser;
-  PetscCall(LinearReserve(c, rows));
-  for (PetscInt k = 0; k < c->n_closed; k++) LinearColumns(c, k, rows);
+  PetscCall(LinearReserve(c, c->row[c->n_closed] + border));
   for (PetscInt k = 0; k < c->n_closed; k++) { /* l = P z0 + p0, for which v is to be found */
     const PetscInt    p   = c->closed[k];
     const CoulombLaw *law = &c->law[p];
@@ -160,6 +157,14 @@ PetscErrorCode ComplianceAssemble(ContactCompliance c, PetscInt border)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ComplianceAssemble(ContactCompliance c, PetscInt border)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ComplianceBegin(c, border));
+  for (PetscInt k = 0; k < c->n_closed; k++) LinearColumns(c, k, c->row[c->n_closed] + border);
+  PetscFunctionReturn(0);
+}
+
 void ComplianceShift(ContactCompliance c, PetscInt border)
 {
   const PetscInt rows = c->row[c->n_closed];
@@ -167,9 +172,8 @@ void ComplianceShift(ContactCompliance c, PetscInt border)
   for (PetscInt i = 0; i < rows; i++) c->A[i * (rows + border + 1)] += SINGULAR_SHIFT;
 }
 
-PetscErrorCode ComplianceFactor(ContactCompliance c, PetscInt border, PetscBool *singular)
+PetscErrorCode ComplianceFactor(ContactCompliance c, PetscInt rows, PetscBool *singular)
 {
-  const PetscInt     rows  = c->row[c->n_closed] + border;
   const PetscBLASInt m     = (PetscBLASInt)rows;
   PetscBLASInt       info  = 0;
   PetscReal          least = PETSC_MAX_REAL, largest = 0;
@@ -186,13 +190,13 @@ PetscErrorCode ComplianceFactor(ContactCompliance c, PetscInt border, PetscBool 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ComplianceBackSolve(const ContactCompliance c, PetscInt border)
+PetscErrorCode ComplianceBackSolve(const ContactCompliance c, PetscInt rows, PetscReal x[])
 {
-  const PetscBLASInt m = (PetscBLASInt)(c->row[c->n_closed] + border), one = 1;
+  const PetscBLASInt m = (PetscBLASInt)rows, one = 1;
   PetscBLASInt       info = 0;
 
   PetscFunctionBeginUser;
-  if (m) PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &m, &one, c->A, &m, c->pivot, c->rhs, &m, &info));
+  if (m) PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &m, &one, c->A, &m, c->pivot, x, &m, &info));
   PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK getrs: info %d", (int)info);
   PetscFunctionReturn(0);
 }

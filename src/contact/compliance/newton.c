@@ -19,26 +19,30 @@ static PetscErrorCode NewtonFactor(ContactCompliance c, PetscBool *singular)
 {
   PetscFunctionBeginUser;
   PetscCall(ComplianceAssemble(c, 0));
-  PetscCall(ComplianceFactor(c, 0, singular));
+  PetscCall(ComplianceFactor(c, c->row[c->n_closed], singular));
   if (!*singular) PetscFunctionReturn(0);
   PetscCall(PetscArraycpy(c->l, c->l0, 3 * c->n));
   PetscCall(PetscArraycpy(c->v, c->v0, 3 * c->n));
   PetscCall(ComplianceAssemble(c, 0));
   ComplianceShift(c, 0);
-  PetscCall(ComplianceFactor(c, 0, singular));
+  PetscCall(ComplianceFactor(c, c->row[c->n_closed], singular));
   PetscFunctionReturn(0);
 }
 
 /* One step on l, v */
 static PetscErrorCode NewtonStep(ContactCompliance c, PetscBool *singular)
 {
+  PetscBool solved;
+
   PetscFunctionBeginUser;
+  *singular = PETSC_FALSE;
   PetscCall(PetscArraycpy(c->l0, c->l, 3 * c->n));
   PetscCall(PetscArraycpy(c->v0, c->v, 3 * c->n));
   ComplianceChoose(c);
   ComplianceLinearise(c);
-  PetscCall(NewtonFactor(c, singular));
-  PetscCall(ComplianceBackSolve(c, 0));
+  PetscCall(ComplianceDualSolve(c, &solved));
+  if (!solved) PetscCall(NewtonFactor(c, singular));
+  if (!solved) PetscCall(ComplianceBackSolve(c, c->row[c->n_closed], c->rhs));
   ComplianceTake(c);
   PetscCall(ComplianceMove(c));
   c->report.iterations++;

@@ -51,7 +51,7 @@ static PetscErrorCode PathCorrect(ContactCompliance c, const CompliancePath *pat
     PetscCall(CompliancePathFactor(c, path, *x, &ahead, &singular));
     if (singular) break;
     c->rhs[c->row[c->n_closed]] = -ahead;
-    PetscCall(ComplianceBackSolve(c, 1));
+    PetscCall(ComplianceBackSolve(c, c->row[c->n_closed] + 1, c->rhs));
     ComplianceTake(c);
     *x += c->rhs[c->row[c->n_closed]] / path->size;
     if (!(PetscAbsReal(*x - path->x) <= 2 * step)) break;

@@ -62,7 +62,7 @@ PetscErrorCode CompliancePathFactor(ContactCompliance c, const CompliancePath *p
   ComplianceLinearise(c);
   PetscCall(ComplianceAssemble(c, 1));
   *ahead = PathBorder(c, path, x);
-  PetscCall(ComplianceFactor(c, 1, singular));
+  PetscCall(ComplianceFactor(c, c->row[c->n_closed] + 1, singular));
   PetscFunctionReturn(0);
 }
 
@@ -90,7 +90,7 @@ PetscErrorCode CompliancePathTangent(ContactCompliance c, CompliancePath *path, 
   path->x = x;
   PetscCall(PetscArrayzero(c->rhs, c->row[c->n_closed]));
   c->rhs[c->row[c->n_closed]] = 1;
-  PetscCall(ComplianceBackSolve(c, 1));
+  PetscCall(ComplianceBackSolve(c, c->row[c->n_closed] + 1, c->rhs));
   PetscCall(PetscArrayzero(c->l, 3 * c->n));
   ComplianceTake(c);
   PetscCall(PetscArraycpy(path->tangent, c->l, 3 * c->n));

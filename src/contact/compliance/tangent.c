@@ -19,7 +19,7 @@ static PetscErrorCode TangentFactor(ContactCompliance c)
   PetscCall(PetscArraycpy(c->v0, c->v, 3 * c->n));
   ComplianceLinearise(c);
   PetscCall(ComplianceAssemble(c, 0));
-  PetscCall(ComplianceFactor(c, 0, &singular));
+  PetscCall(ComplianceFactor(c, c->row[c->n_closed], &singular));
   PetscCall(PetscArraycpy(c->l, c->l0, 3 * c->n));
   PetscCall(PetscArraycpy(c->v, c->v0, 3 * c->n));
   PetscCheck(!singular, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT,
