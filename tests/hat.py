@@ -3,7 +3,7 @@
 edge hangs on a cylinder, r 74..80 mm, z -12..40, closed by a plate, r 30..80 mm, z 40..46; and a pad on the ring.
 Volumes "disc", "pad", surfaces "hub" (the plate's edge), "disc_face" (the ring's, z = 0), "pad_face", "pad_top".
 
-    hat.py hat.msh"""
+    hat.py hat.msh [NAME of the volume "disc"]"""
 
 import sys
 from pathlib import Path
@@ -33,6 +33,8 @@ def main():
     pad_nodes = polar(pad.places(pad.nodes), ring_r[2:5], theta[:5], np.linspace(0, 0.012, 3))
     groups |= {"pad": pad.hexahedra(), "pad_face": pad.side(2, 0), "pad_top": pad.side(2, 2)}
     nodes = np.concatenate([nodes, pad_nodes])
+    if len(sys.argv) > 2:
+        groups[sys.argv[2]] = groups.pop("disc")
     write(Path(sys.argv[1]), "4.1", False, nodes, groups, list(range(1, len(nodes) + 1)),
           list(range(1, sum(map(len, groups.values())) + 1)))
 

@@ -321,6 +321,17 @@ PetscErrorCode ModelDescribeMotion(const PrescribedMotion *motion, size_t size, 
     Collective. @*/
 PetscErrorCode ModelAddSetChecksum(Model model, const char set[], PetscBool is_surface, Checksum checksum);
 
+/*@
+   ModelUnits - the set of units of the scene, by density and modulus of its parts
+
+   Not collective; after ModelSetUp()
+
+   Output Parameter:
+.  units - "mm, t, s, N, MPa" where both are of that set in every part, "m, kg, s, N, Pa" where they are in none; NULL
+           where parts differ or are in doubt
+@*/
+PetscErrorCode ModelUnits(Model model, const char **units);
+
 /*@ ModelView - prints in words what the scene needs: counts, parts, supports, springs. Collective. @*/
 PetscErrorCode ModelView(Model model, PetscViewer viewer);
 

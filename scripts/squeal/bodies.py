@@ -1,24 +1,28 @@
 """Surfaces of the bodies whose fields squeal wrote, and the frame in which a disc and its neighbours are drawn."""
 
 from contextlib import contextmanager
+from pathlib import Path
 
 import numpy
 
 from .cells import boundary_faces, read_cells
+from .provenance import Units
 from .tables import BadInput
 
 LARGEST = 1e30  # of what is a displacement, a velocity or a place
+DISCS = ("disc", "disk", "rotor")  # in the name of a part that is one
 
 
 class Scene:
-    """Surfaces of the bodies, and the frame in which they are drawn."""
+    """Surfaces of the bodies in m, and the frame in which they are drawn."""
 
     def __init__(self, file, disc_name):
         group = file["VTKHDF"]
         self.shapes = group["PointData"]
-        self.points = sound(file.filename, "Points", group["Points"][:])
+        self.points = Units(Path(file.filename).parent).factor("m") * sound(file.filename, "Points", group["Points"][:])
         cells = read_cells(group)
         names = [name.decode() for name in group["CellData/part"].attrs["names"]]
+        disc_name = disc_among(names, disc_name)
         part = group["CellData/part"][:]
         on_disc = part == names.index(disc_name) if disc_name in names else numpy.full(len(part), True)
         self.surfaces = {name: boundary_faces(those(cells, part == i)) for i, name in enumerate(names)
@@ -68,6 +72,12 @@ class Scene:
         return shape * numpy.exp(-0.5j * numpy.angle(numpy.sum(out_of_plane**2)))
 
 
+def disc_among(names, wanted):
+    """Name of the disc: the part of that name; where none is called disc, the only one that is one by its name."""
+    found = [name for name in names if any(disc in name.lower() for disc in DISCS)]
+    return found[0] if wanted == DISCS[0] and wanted not in names and len(found) == 1 else wanted
+
+
 class Skin:
     """The surfaces of a scene in a frame of their own: x along the circumference at the contact, y outward, z along the
     axis, from the middle, in half the largest extent; `extent` in m. `quads` index `nodes` of the scene."""
@@ -113,7 +123,8 @@ def opened(path):
 
 
 def read_states(paths, name, disc_name):
-    """Values of an array at the nodes of each file, with the scene of the first one: they share a mesh."""
+    """Values of an array at the nodes of each file, whose name ends in its unit, in SI, with the scene of the first one:
+    they share a mesh."""
     scene = None
     for path in paths:
         with opened(path) as file:
@@ -121,7 +132,7 @@ def read_states(paths, name, disc_name):
             data = file["VTKHDF/PointData"]
             if name not in data:
                 raise BadInput(f"{path}: no array {name}")
-            yield scene, sound(path, name, data[name][:])
+            yield scene, Units(path.parent).factor(name.partition("_")[2]) * sound(path, name, data[name][:])
 
 
 def those(cells, chosen):

@@ -6,6 +6,7 @@ import matplotlib.pyplot as plt
 from matplotlib.lines import Line2D
 
 from .picture import BLUE, GREY, INK, VERMILION
+from .provenance import Units
 from .tables import BadInput, optional, read_table
 
 COLUMNS = {"point": int, "parameter": str, "value": optional, "value_error": optional, "kind": str, "freq_hz": float,
@@ -52,7 +53,7 @@ class Branch:
         found = {row["point"]: row for row in chosen if row["direction"] == direction}
         for row in self.rows:
             row.update({column: found[row["point"]][column] for column in PROBES if column.startswith("velocity")})
-        return f"velocity of {name} along {direction}, m/s"
+        return f"velocity of {name} along {direction}, {Units(self.folder).name('m/s')}"
 
 
 def draw_line(axes, branch, name, error=None):

@@ -2,6 +2,7 @@
 
 import numpy
 
+from .provenance import Units
 from .tables import BadInput, header, optional, read_table
 
 END = "_re_m_n"
@@ -25,13 +26,16 @@ class Responses:
         rows = read_table(path, dict.fromkeys(columns, float))
         if not rows or not names:
             raise BadInput(f"{path}: has no {'rows' if names else 'column that ends in ' + END}")
-        value = {name: numpy.array([row[name] for row in rows]) for name in columns}
+        scale = Units(folder).factor("m_n")
+        value = {name: (scale if name.endswith("_m_n") else 1) * numpy.array([row[name] for row in rows]) for name in columns}
         self.freq = value["freq_hz"]
         self.outputs = {name: value[f"{name}_re_m_n"] + 1j * value[f"{name}_im_m_n"] for name in names}
         self.coherence = {name: value[f"{name}_coherence"] for name in measured}
         self.error, self.relative = (value.get(name) for name in ERRORS)
         peaks = folder / "peaks.csv"
         self.peaks = read_table(peaks, PEAKS) if peaks.exists() else []
+        for row in self.peaks:
+            row["magnitude_m_n"] *= scale
 
     def strongest(self, n):
         """Names of the n outputs of the largest magnitude, in their order."""

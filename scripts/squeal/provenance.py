@@ -1,10 +1,33 @@
-"""scene.yaml of a result folder: options in force, and where the files come from."""
+"""scene.yaml of a result folder: options in force, where the files come from, and the units of its tables."""
 
 import re
 
 from .tables import BadInput
 
 DEFAULTS = "At their defaults"
+TO_SI = {"mm, t, s, N, MPa": {"m": 1e-3, "m2": 1e-6, "m_s": 1e-3, "m_s2": 1e-3, "m_n": 1e-3, "pa": 1e6}}
+NAMES = {"Pa": "MPa", "m": "mm", "kg": "t", "kg/m^3": "t/mm^3", "N/m": "N/mm", "N/m^3": "N/mm^3", "N m/rad": "N mm/rad",
+         "m/s": "mm/s", "s/m": "s/mm", "N s/m": "N s/mm", "N s/m^3": "N s/mm^3", "N m s/rad": "N mm s/rad"}
+
+
+class Units:
+    """Units of the tables and fields of a folder, whatever their columns are called: `factor("m_s")` makes m/s of what
+    stands in a column that ends so, `name("m/s")` is what a value of an option is in."""
+
+    def __init__(self, folder):
+        try:
+            said = Provenance(folder / "scene.yaml").facts.get("units", "")
+        except BadInput:  # of a run under way, or of tables of one's own
+            said = ""
+        self.factors = TO_SI.get(said, {})
+
+    def factor(self, end):
+        """SI units in one unit of the folder."""
+        return self.factors.get(end, 1.0)
+
+    def name(self, unit):
+        """The unit of the folder that stands for one of SI."""
+        return NAMES.get(unit, unit) if self.factors else unit
 
 
 class Provenance:

@@ -1,4 +1,4 @@
-"""Pairs of a sliding state: static.csv, places in the plane of the surface in contact, cells, rows, sums. Used by
+"""Pairs of a sliding state: static.csv in SI, places in the plane of the surface in contact, cells, rows, sums. Used by
 plot/static and study/static. Lengths are in mm, along two axes in the plane of the pairs: where z is constant these
 are x to the right and y up."""
 
@@ -6,6 +6,7 @@ import math
 
 import numpy
 from matplotlib.tri import Triangulation
+from .provenance import Units
 from .tables import BadInput, header, prefixed, read_table
 
 STATUS = ("open", "stick", "slip")
@@ -13,6 +14,7 @@ COLUMNS = {"pair": int, "x_m": float, "y_m": float, "z_m": float, "lambda_n_n": 
 OPTIONAL = {"interface": str, "gap_m": float, "slip_t_m": float, "area_m2": float, "pressure_pa": float,
             "lambda_b_n": float, "t_x": float, "t_y": float,
             "t_z": float}
+UNITS = {"x_m": "m", "y_m": "m", "z_m": "m", "gap_m": "m", "slip_t_m": "m", "area_m2": "m2", "pressure_pa": "pa"}
 MM = 1e3
 SAME = 1e-6  # places within this part of the extent are one
 MAX_ROWS, BINS = 60, 30  # of the profile: more rows than this are collected in bins, at most so many
@@ -33,6 +35,9 @@ def read_surfaces(path):
     rows = read_table(path, kinds)
     if not rows:
         raise BadInput(f"{path}: has no rows; the model has no contact")
+    units = Units(path.parent)
+    for row in rows:
+        row.update({name: units.factor(unit) * row[name] for name, unit in UNITS.items() if name in row})
     names = dict.fromkeys(row.get("interface", "") for row in rows)
     return [Surface(name, [row for row in rows if row.get("interface", "") == name]) for name in names]
 

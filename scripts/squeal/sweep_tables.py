@@ -1,5 +1,6 @@
 """Tables of a sweep as its pictures need them: rows, onsets, and the swept parameters as axes."""
 
+from .provenance import Units
 from .tables import BadInput, flag, optional, prefixed, read_table
 
 SWEEP = {"value": float, "branch": optional, "freq_hz": float, "growth_rad_s": float, "unstable": flag, "label": str,
@@ -78,7 +79,7 @@ class Study:
         found = [row for row in self.parameters if row["swept"] == swept]
         if len(found) != 1:
             raise BadInput(f"{folder / 'parameters.csv'}: {len(found)} rows with swept = {swept}, must be one")
-        return Axis(found[0]["parameter"], found[0]["unit"], [row[column] for row in self.rows])
+        return Axis(found[0]["parameter"], Units(folder).name(found[0]["unit"]), [row[column] for row in self.rows])
 
     def cut(self, at):
         """One line of the map, at the nearest value of the second parameter."""

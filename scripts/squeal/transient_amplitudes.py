@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy
 
-from .provenance import Provenance
+from .provenance import Provenance, Units
 from .signal import LEAST
 from .tables import BadInput, read_table
 from .transient_history import open_table, read_columns
@@ -69,7 +69,7 @@ class Amplitudes:
             scene = Provenance(folder / "scene.yaml")
         except BadInput:
             scene = None
-        self.time = columns["time_s"]
+        self.time, self.scale = columns["time_s"], Units(folder).factor("m")
         self.start = last_event(scene) if scene else 0.0
         self.source = modes_folder or folder_of_modes(folder, scene)
         known = {row["mode"]: row for row in read_table(self.source / "modes.csv", MODES)} if self.source else {}
@@ -80,7 +80,7 @@ class Amplitudes:
 
     def amplitude(self, number, columns, known):
         """One mode."""
-        values = columns[f"mode_{number}_re_m"] + 1j * columns[f"mode_{number}_im_m"]
+        values = self.scale * (columns[f"mode_{number}_re_m"] + 1j * columns[f"mode_{number}_im_m"])
         if not known:
             return Amplitude(number, values)
         if number not in known:

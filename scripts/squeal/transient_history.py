@@ -5,6 +5,7 @@ import re
 
 import numpy
 
+from .provenance import Units
 from .signal import LEAST, equal_steps
 from .tables import BadInput
 
@@ -76,7 +77,7 @@ def read_columns(path, under_way, needed=NEEDED):
 
 
 class Run:
-    """The table at equal steps: `time` (s), columns by name, names of the probes."""
+    """The table at equal steps: `time` (s), columns by name, names of the probes, whose motion is in SI."""
 
     def __init__(self, folder):
         self.path, self.under_way = open_table(folder)
@@ -87,6 +88,7 @@ class Run:
         names = [name for name in columns if name != "time_s"]
         self.time, *values = equal_steps(columns["time_s"], *(columns[name] for name in names))
         self.columns = dict(zip(names, values))
+        self.units = Units(folder)
         self.probes = list(dict.fromkeys(
             name[:-len(end) - 1] for name in names for end in COMPONENTS.values() if name.endswith(f"_{end}")))
         self.normal, self.friction = self.columns["normal_force_n"], self.columns["friction_force_n"]
@@ -104,7 +106,7 @@ class Run:
         column = f"{name}_{COMPONENTS[quantity]}"
         if column not in self.columns:
             raise BadInput(f"{self.path}: no column {column}")
-        return self.columns[column]
+        return self.units.factor(COMPONENTS[quantity][len(quantity) + 1:]) * self.columns[column]
 
     def acceleration(self, name, component):
         """Mean acceleration from the row before to the row after, by the velocities: the blow that stops a single node

@@ -129,6 +129,42 @@ static PetscErrorCode PointsAreFlat(const Mesh *mesh, const Disc *disc, PetscBoo
   PetscFunctionReturn(0);
 }
 
+/* Whether a part is the disc by its name, in small or capital letters */
+static PetscErrorCode NameIsDisc(const char part[], PetscBool *is_disc)
+{
+  static const char *const names[] = {"disc", "disk", "rotor"};
+  char                     name[256], *at = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrncpy(name, part, sizeof(name)));
+  PetscCall(PetscStrtolower(name));
+  for (size_t i = 0; i < sizeof(names) / sizeof(names[0]) && !at; i++) PetscCall(PetscStrstr(name, names[i], &at));
+  *is_disc = at ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* The part of -modes_disc; where nothing is said and no part is called disc, the only one that is by its name; else -1 */
+static PetscErrorCode LabelsNameDisc(Modes modes, const Mesh *mesh, PetscInt *disc)
+{
+  PetscInt  n = 0, by_name = -1;
+  PetscBool same, said;
+
+  PetscFunctionBeginUser;
+  for (PetscInt part = 0; part < mesh->n_parts; part++) {
+    PetscCall(PetscStrcmp(mesh->part[part], modes->disc, &same));
+    if (same) *disc = part;
+    PetscCall(NameIsDisc(mesh->part[part], &same));
+    n += same;
+    if (same) by_name = part;
+  }
+  PetscCall(PetscStrcmp(modes->disc, "disc", &said));
+  said = !said;
+  PetscCheck(*disc >= 0 || !said, modes->comm, PETSC_ERR_USER_INPUT, "-modes_disc '%s' is none of the -parts",
+             modes->disc);
+  if (*disc < 0 && n == 1) *disc = by_name;
+  PetscFunctionReturn(0);
+}
+
 /* The disc's frame and fit; disc stays -1 where no part of that name exists or it is no disc. Points without parts may be
    one */
 static PetscErrorCode LabelsFindDisc(Modes modes, Model model, Contact contact, const Mesh *mesh, Labels *l)
@@ -138,13 +174,7 @@ static PetscErrorCode LabelsFindDisc(Modes modes, Model model, Contact contact, 
 
   PetscFunctionBeginUser;
   l->disc = model || mesh->n_parts > 1 ? -1 : 0;
-  for (PetscInt part = 0; part < mesh->n_parts; part++) {
-    PetscCall(PetscStrcmp(mesh->part[part], modes->disc, &same));
-    if (same) l->disc = part;
-  }
-  PetscCall(PetscStrcmp(modes->disc, "disc", &same));
-  PetscCheck(l->disc >= 0 || same, modes->comm, PETSC_ERR_USER_INPUT, "-modes_disc '%s' is none of the -parts",
-             modes->disc);
+  PetscCall(LabelsNameDisc(modes, mesh, &l->disc));
   if (l->disc < 0) PetscFunctionReturn(0);
   if (model) PetscCall(ContactGetCentre(contact, centre, &found));
   if (model) PetscCall(SurfacesMark(model, contact, l->n_vertices, &surface));

@@ -54,6 +54,18 @@ def test_lines(root):
     require(seen[0] > 100, f"a large error is not drawn: {seen}")
 
 
+def test_millimetres(root):
+    """mm/N of a scene in mm, t, s and MPa become m/N; breaks when scene.yaml is not asked."""
+    folder = write(root / "millimetres")
+    metres = frf_tables.Responses(folder)
+    (folder / "scene.yaml").write_text('# units: mm, t, s, N, MPa\nparts: "disc"\n')
+    found = frf_tables.Responses(folder)
+    same = [numpy.allclose(1e3 * found.outputs["tip_x"], metres.outputs["tip_x"], rtol=1e-12, atol=0),
+            numpy.allclose(1e3 * found.error, metres.error, rtol=1e-12, atol=0), (found.relative == metres.relative).all(),
+            abs(1e3 * found.peaks[0]["magnitude_m_n"] / metres.peaks[0]["magnitude_m_n"] - 1) < 1e-12]
+    require(all(same), f"outputs, error, relative error, peaks in SI: {same}")
+
+
 def test_coherence(root):
     """A panel more where it was measured."""
     without = frf_tables.Responses(write(root / "computed"))
@@ -77,7 +89,7 @@ def test_bad(root):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        for test in (test_lines, test_coherence, test_bad):
+        for test in (test_lines, test_millimetres, test_coherence, test_bad):
             test(Path(folder))
 
 

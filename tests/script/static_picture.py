@@ -98,6 +98,19 @@ def test_orientation(root):
     require(len(borders) == 12 and pairs.sum() == 121 and pairs.min() > 1, f"rows of a turned grid: {pairs}")
 
 
+def test_millimetres(root):
+    """A scene in mm, t, s and MPa, as scene.yaml says, gives the same surface: breaks when its mm are taken for m."""
+    state = State()
+    metres = surface_of(root / "metres", state.rows())
+    rows = [(row[0], *(1e3 * x for x in row[1:5]), *row[5:9], 1e6 * row[9], 1e-6 * row[10], *row[11:]) for row in state.rows()]
+    (root / "millimetres").mkdir()
+    (root / "millimetres" / "scene.yaml").write_text('# units: mm, t, s, N, MPa\nparts: "disc"\n')
+    surface = surface_of(root / "millimetres", rows)
+    close(surface.place, metres.place, "places")
+    close(surface.value, metres.value, "pressures")
+    require(surface.summary() == metres.summary(), surface.summary())
+
+
 def test_old_columns(root):
     """A table that ends with the status: forces instead of pressures, all pairs one surface, no arrow."""
     state = State()
@@ -138,7 +151,7 @@ def test_errors(root):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        for test in (test_colours, test_numbers, test_orientation, test_old_columns, test_several, test_errors):
+        for test in (test_colours, test_numbers, test_orientation, test_millimetres, test_old_columns, test_several, test_errors):
             test(Path(folder))
 
 

@@ -53,10 +53,14 @@ static PetscErrorCode TimedLoadGather(External external, PetscInt i, Vec local)
 
 PetscErrorCode TimedLoadsSetUp(External external)
 {
-  Vec local;
+  const ModelScene *scene;
+  Vec               local;
 
   PetscFunctionBeginUser;
   if (!external->n_loads) PetscFunctionReturn(0);
+  PetscCall(ModelGetScene(external->model, &scene));
+  for (PetscInt i = 0; i < external->n_loads; i++) /* of a pressure it is known now */
+    PetscCall(PetscArraycpy(external->loads[i].force, scene->loads[i].force, 3));
   PetscCall(ModelCreateNodal(external->model, &local));
   for (PetscInt i = 0; i < external->n_loads; i++) PetscCall(TimedLoadGather(external, i, local));
   PetscCall(VecDestroy(&local));

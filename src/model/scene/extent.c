@@ -67,14 +67,21 @@ static PetscReal PartSlowest(const Part *p)
   return PetscSqrtReal(least / p->density);
 }
 
+/* Whether density and modulus of a part are in t/mm^3 and MPa */
+static PetscBool PartInTonnes(const Part *p)
+{
+  const PetscReal speed = PetscSqrtReal(p->young / p->density);
+
+  return p->density < HEAVIEST_TONNE && speed >= 1e3 * SLOWEST && speed <= 1e3 * FASTEST ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* What the units of a part probably are where they do not fit together; NULL where they do */
 static const char *PartDoubt(const Part *p, const PartExtent *e)
 {
   const PetscReal speed   = PetscSqrtReal(p->young / p->density);
   const PetscReal longest = PetscMax(e->size[0], PetscMax(e->size[1], e->size[2]));
-  const PetscBool tonnes  = p->density < HEAVIEST_TONNE && speed >= 1e3 * SLOWEST && speed <= 1e3 * FASTEST;
 
-  if (tonnes)
+  if (PartInTonnes(p))
     return longest < SMALLEST_MM ? "the mesh is in m, but the material in t/mm^3 and MPa: scale the mesh" : NULL;
   if (p->density < HEAVIEST_TONNE) return "the density is in t/mm^3: give kg/m^3 (steel 7850), or the modulus in MPa";
   if (p->density < LIGHTEST_SI)
@@ -84,6 +91,21 @@ static const char *PartDoubt(const Part *p, const PartExtent *e)
   if (longest > LARGEST_SI) return "the mesh is in mm: scale it to m, or give t/mm^3 and MPa";
   if (e->volume * p->density > HEAVIEST_PART) return "the mesh is in mm or cm: scale it to m";
   return NULL;
+}
+
+PetscErrorCode ModelUnits(Model model, const char **units)
+{
+  PetscInt n_tonnes = 0;
+
+  PetscFunctionBeginUser;
+  *units = NULL;
+  for (PetscInt i = 0; i < model->scene.n_parts; i++) {
+    if (PartDoubt(&model->scene.parts[i], &model->extent[i])) PetscFunctionReturn(0);
+    n_tonnes += PartInTonnes(&model->scene.parts[i]);
+  }
+  if (n_tonnes == model->scene.n_parts) *units = "mm, t, s, N, MPa";
+  if (!n_tonnes) *units = "m, kg, s, N, Pa";
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode PartsCheckUnits(Model model)
