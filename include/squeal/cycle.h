@@ -41,10 +41,11 @@
    The error of a cycle is an estimate by that of 2 N + 1 steps and by two of N steps that begin a third and two thirds of a step
    later: 4/3 of the difference to the former where the error is of second order in the step (frequency, force, probes, the parameter
    of a fold), and the largest to the latter; for multipliers, which pairs that open and close leave of first order, the larger of twice
-   the former and the latter. It is that of the steps only. The error of the reduction is told
-   on request, -cycle_verify_cutoff, in columns of its own: the difference to the cycle of as many steps on the modes below 1.5
-   times the cut-off, which what lies above these is not in; it counts for the class, and for the parameter of a fold: where
-   no such cycle is found the class is `numerical`, and no error of a fold is told.
+   the former and the latter. It is that of the steps only. The error of the reduction is told on request, -cycle_verify_cutoff, in columns
+   of its own: the difference to the cycle of as many steps on the modes below 2.25 times the cut-off. What lies above these is not in
+   it: on a small brake it is what three times the cut-off make, to 1 %, while those below 1.5 times, none of which is more of the
+   pad, told a hundredth of it and less. It counts for the class, and for the parameter of a fold: where no such cycle is found the
+   class is `numerical`, and no error of a fold is told.
    The error of the interpolation is in neither.
 */
 #pragma once
@@ -64,7 +65,7 @@ PetscErrorCode CycleCreate(MPI_Comm comm, LimitCycle *cycle);
 .  -cycle_rtol <1e-9>      - of Phi - x, relative to the size of the vibration; 1e-13 to 1e-3
 .  -cycle_max_it <30>      - of Newton's method
 .  -cycle_verify <true>    - once more with twice the steps, and twice with steps that begin elsewhere, for the errors and the class
-.  -cycle_verify_cutoff <false> - once more with 1.5 times -dynamics_cutoff, for the errors of the reduction
+.  -cycle_verify_cutoff <false> - once more with 2.25 times -dynamics_cutoff, for the errors of the reduction
 .  -cycle_parameter <name> - an option of the scene, e.g. contact_mu or pad_young, over which the branch is followed
 .  -cycle_range <lo,hi>    - where the branch ends
 .  -cycle_points <60>      - cycles on it, at most; half of them the first way

@@ -6,8 +6,10 @@ normal force rises through its mean, rms and largest force of whole periods; rms
     cycle.py errors COARSE FINER LATER PART   what COARSE states beside its differences to FINER, of twice the steps, 4/3 of them, and to
                                         LATER, whose steps lie elsewhere: the rest is 3/4 to 3 times those; of multipliers twice the
                                         former at least
-    cycle.py cutoff LOWER HIGHER PART WIDE   errors of the cut-off that LOWER states beside its differences to HIGHER: in frequency, of the
-                                        first cycle; in rms and largest force of the second, HIGHER on the line through both
+    cycle.py cutoff LOWER HIGHER VALUE LEAST MOST   errors of the cut-off that LOWER states beside its differences to HIGHER at a value of
+                                        the parameter, LEAST to MOST times them: frequency, rms, largest force, multiplier
+    cycle.py fold COARSE FINE MOST      whether COARSE finds the fold of FINE to the error that it states, and that is MOST times
+                                        the truth at most
     cycle.py within COARSE FINE VALUE MOST   whether COARSE is FINE to the error that FINE or COARSE states, at a value of the
                                         parameter, and that error at most MOST of the result
     cycle.py same BRANCH VALUE SINGLE FREQUENCY FORCE   the cycle of a branch at a value of its parameter beside the one that SINGLE
@@ -44,19 +46,36 @@ def errors(coarse, finer, later, part):
     return faults > 0
 
 
-CUTOFF = ("freq_hz", "freq_cutoff_error_hz"), ("force_rms_n", "force_rms_cutoff_error_n"), ("force_peak_n", "force_peak_cutoff_error_n")
+CUTOFF = (("freq_hz", "freq_cutoff_error_hz"), ("force_rms_n", "force_rms_cutoff_error_n"), ("force_peak_n", "force_peak_cutoff_error_n"),
+          ("multiplier_abs", "multiplier_cutoff_error"))
 
 
-def cutoff(lower, higher, part, wide):
+def cutoff(lower, higher, value, least, most):
     """Whether a stated error of the reduction is off."""
-    a, b = (read(folder, "cycle.csv") for folder in (lower, higher))
-    faults = 0
-    for at, most, (value, error) in zip((0, 1, 1), (part, wide, wide), CUTOFF):
-        slope = (b[value][1] - b[value][0]) / (b["value"][1] - b["value"][0]) if at else 0
-        known = abs(b[value][at] + slope * (a["value"][at] - b["value"][at]) - a[value][at])
-        faults += not abs(a[error][at] - known) <= float(most) * known
-        print(f"{error} of cycle {at + 1}: {a[error][at]:.6g}, by the difference {known:.6g}, allowed {most} of it")
+    rows, faults = [], 0
+    for folder in (lower, higher):
+        table = read(folder, "cycle.csv")
+        rows.append(table[numpy.argmin(abs(table["value"] - float(value)))])
+        faults += not abs(rows[-1]["value"] / float(value) - 1) < 1e-12
+    for name, error in CUTOFF:
+        known, stated = abs(rows[1][name] - rows[0][name]), rows[0][error]
+        faults += not float(least) * known <= stated <= float(most) * known
+        print(f"{error} at {value}: {stated:.6g}, by the difference {known:.6g}, {least} to {most} times that")
     return faults > 0
+
+
+def fold(coarse, fine, most):
+    """Whether a stated error of a fold is off, or so large that it says nothing."""
+    rows = []
+    for folder in (coarse, fine):
+        with open(Path(folder) / "cycle.csv", encoding="utf-8", newline="") as file:
+            rows.append([row for row in csv.DictReader(file) if row["kind"] == "fold"])
+    if [len(found) for found in rows] != [1, 1]:
+        print(f"folds: {[len(found) for found in rows]}, must be one each")
+        return 1
+    known, stated = abs(float(rows[0][0]["value"]) - float(rows[1][0]["value"])), float(rows[0][0]["value_error"])
+    print(f"fold {rows[0][0]['value']} +- {stated:.3g}, finer {rows[1][0]['value']}, apart by {known:.3g}, allowed {most} times that")
+    return not known <= stated <= float(most) * known
 
 
 def within(coarse, fine, value, most):
@@ -109,8 +128,9 @@ def probes(folder, record, at, most):
 
 
 def main():
-    if sys.argv[1] in ("errors", "same", "within", "cutoff"):
-        return {"errors": errors, "same": same, "within": within, "cutoff": cutoff}[sys.argv[1]](*sys.argv[2:])
+    parts = {"errors": errors, "same": same, "within": within, "cutoff": cutoff, "fold": fold}
+    if sys.argv[1] in parts:
+        return parts[sys.argv[1]](*sys.argv[2:])
     folder, frequency, force = sys.argv[1], float(sys.argv[2]), float(sys.argv[3])
     cycle, record = read(folder, "cycle.csv")[0], read(folder, "transient.csv")
     time, normal = record["time_s"], record["normal_force_n"]

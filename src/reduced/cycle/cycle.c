@@ -54,7 +54,7 @@ PetscErrorCode CycleSetFromOptions(LimitCycle c)
   PetscCall(OptionsGetBool(PetscOptionsObject, "-cycle_verify",
                            "errors, by the cycles of twice the steps and of steps that begin elsewhere", &c->verify));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-cycle_verify_cutoff",
-                           "errors of the reduction too, by cycles with 1.5 times -dynamics_cutoff",
+                           "errors of the reduction too, by cycles with 2.25 times -dynamics_cutoff",
                            &c->verify_cutoff));
   PetscCall(PetscOptionsString("-cycle_parameter",
                                "option of the scene over which cycles are followed, e.g. contact_mu, pad_young",

@@ -150,7 +150,7 @@ PETSC_INTERN PetscErrorCode CycleTakeFold(LimitCycle cycle, const ShootingPlace 
 PETSC_INTERN PetscErrorCode CycleRefine(LimitCycle cycle, const ShootingCycle *at, const ShootingTangent *along,
                                         CyclePoint *point);
 
-/* higher.c - the same flow on bodies with 1.5 times the cut-off, after CycleSetSizes(); the cycle there that a cycle is near, `along`
+/* higher.c - the same flow on bodies with 2.25 times the cut-off, after CycleSetSizes(); the cycle there that a cycle is near, `along`
    as for CycleRefine(): of a fold the change of the parameter adds to its error */
 PETSC_INTERN PetscErrorCode CycleHigherCreate(LimitCycle cycle, CycleHigher *higher);
 PETSC_INTERN PetscErrorCode CycleHigherLook(CycleHigher higher, const ShootingCycle *at, const ShootingTangent *along,

@@ -1,11 +1,11 @@
 /*
-   The error of the reduction: cycles on bodies that keep the modes below 1.5 times the cut-off. A state eta of the modes Phi is
+   The error of the reduction: cycles on bodies that keep the modes below 2.25 times the cut-off. A state eta of the modes Phi is
    near T eta of the others Phi_h, T = Phi_h'M Phi; forces of the pairs are the same. From there Newton's method goes on
    with as many steps. What lies above the higher cut-off is in no difference.
 */
 #include "cycleimpl.h"
 
-#define HIGHER_CUTOFF 1.5
+#define HIGHER_CUTOFF 2.25
 
 struct _p_CycleHigher {
   LimitCycle       cycle; /* with a flow of its own */
