@@ -8,12 +8,12 @@ static PetscErrorCode CycleViewHigher(LimitCycle c, const CyclePoint *p, PetscVi
 
   PetscFunctionBeginUser;
   if (p->has_higher)
-    PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "  with 2.25 times the cut-off: frequency off by %+.1e Hz, rms by %+.1e N, largest "
-                                     "force by %+.1e N, multiplier by %+.1e\n",
-                                     (double)(b->freq - a->freq), (double)(b->rms - a->rms),
-                                     (double)(b->peak - a->peak),
-                                     CycleMultiplier(&p->higher_stability) - CycleMultiplier(&p->stability)));
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer,
+                             "  with 2.25 times the cut-off: frequency off by %+.1e Hz, rms by %+.1e N, largest "
+                             "force by %+.1e N, multiplier by %+.1e\n",
+                             (double)(b->freq - a->freq), (double)(b->rms - a->rms), (double)(b->peak - a->peak),
+                             CycleMultiplier(&p->higher_stability) - CycleMultiplier(&p->stability)));
   else if (c->verify_cutoff)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  none is found with 2.25 times the cut-off: that error is unknown\n"));
   PetscFunctionReturn(0);
