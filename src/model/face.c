@@ -3,7 +3,6 @@
 */
 #include "modelimpl.h"
 #include "base/vec3.h"
-#include <petscsf.h>
 
 #define FACE_MAX_NODES 9 /* of a biquadratic quadrilateral */
 
@@ -81,30 +80,24 @@ static PetscErrorCode FaceGetNodes(Model model, PetscInt face, PetscInt *n, Pets
 
 PetscErrorCode ModelGetSetFaces(Model model, const char set[], ModelFaces *faces)
 {
-  const PetscInt *p;
-  PetscInt        fStart, fEnd, n_points = 0, n_all;
-  IS              points;
+  PetscInt range[2], n_points, n_all, *p;
 
   PetscFunctionBeginUser;
-  PetscCall(SetGetPoints(model, set, &points));
-  PetscCall(DMPlexGetHeightStratum(model->dm, 1, &fStart, &fEnd));
-  if (points) PetscCall(ISGetLocalSize(points, &n_points));
+  PetscCall(DMPlexGetHeightStratum(model->dm, 1, &range[0], &range[1]));
+  PetscCall(SetGetPoints(model, set, range, &n_points, &p));
   faces->n = 0;
   PetscCall(PetscMalloc2(n_points + 1, &faces->first, FACE_MAX_NODES * n_points, &faces->node));
   faces->first[0] = 0;
-  if (points) PetscCall(ISGetIndices(points, &p));
   for (PetscInt i = 0; i < n_points; i++) {
     const PetscInt begin = faces->first[faces->n];
     PetscInt       n_cells, n;
 
-    if (p[i] < fStart || p[i] >= fEnd) continue;
     PetscCall(DMPlexGetSupportSize(model->dm, p[i], &n_cells));
     if (!n_cells) continue;
     PetscCall(FaceGetNodes(model, p[i], &n, &faces->node[begin]));
     faces->first[++faces->n] = begin + n;
   }
-  if (points) PetscCall(ISRestoreIndices(points, &p));
-  PetscCall(ISDestroy(&points));
+  PetscCall(PetscFree(p));
   PetscCallMPI(MPI_Allreduce(&faces->n, &n_all, 1, MPIU_INT, MPI_SUM, model->comm));
   PetscCheck(n_all, model->comm, PETSC_ERR_USER_INPUT, "the set '%s' has no faces: a surface is needed", set);
   PetscFunctionReturn(0);
@@ -143,28 +136,19 @@ PetscErrorCode ModelFacesDestroy(ModelFaces *faces)
 
 PetscErrorCode ModelCountInnerFaces(Model model, const char set[], PetscInt *n)
 {
-  const PetscInt *p, *shared;
-  PetscInt        fStart, fEnd, n_points = 0, n_shared, n_cells, place;
-  PetscSF         sf;
-  IS              points;
+  PetscInt  range[2], n_points, n_cells, *p;
+  PetscBool elsewhere;
 
   PetscFunctionBeginUser;
   *n = 0;
-  PetscCall(SetGetPoints(model, set, &points));
-  PetscCall(DMPlexGetHeightStratum(model->dm, 1, &fStart, &fEnd));
-  PetscCall(DMGetPointSF(model->dm, &sf));
-  PetscCall(PetscSFGetGraph(sf, NULL, &n_shared, &shared, NULL)); /* points that another rank owns, ascending */
-  if (points) PetscCall(ISGetLocalSize(points, &n_points));
-  if (points) PetscCall(ISGetIndices(points, &p));
+  PetscCall(DMPlexGetHeightStratum(model->dm, 1, &range[0], &range[1]));
+  PetscCall(SetGetPoints(model, set, range, &n_points, &p));
   for (PetscInt i = 0; i < n_points; i++) {
-    if (p[i] < fStart || p[i] >= fEnd) continue;
     PetscCall(DMPlexGetSupportSize(model->dm, p[i], &n_cells));
-    place = -1;
-    if (n_cells == 1 && n_shared > 0) PetscCall(PetscFindInt(p[i], n_shared, shared, &place));
-    *n += n_cells > 1 || place >= 0;
+    PetscCall(PointIsElsewhere(model, p[i], &elsewhere));
+    *n += n_cells > 1 || (n_cells == 1 && elsewhere);
   }
-  if (points) PetscCall(ISRestoreIndices(points, &p));
-  PetscCall(ISDestroy(&points));
+  PetscCall(PetscFree(p));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n, 1, MPIU_INT, MPI_SUM, model->comm));
   PetscFunctionReturn(0);
 }

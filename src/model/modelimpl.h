@@ -149,9 +149,12 @@ PETSC_INTERN PetscErrorCode GroundedView(const Grounded *grounded, const char ki
    in it (in the middle of an edge or face) */
 enum { SET_CLOSED = 1, SET_ALONE = 2 };
 
-/* set.c - points of this rank that are in a set with all nodes around them, NULL when there are none; an error when no rank has a
-   point of the set. Collective */
-PETSC_INTERN PetscErrorCode SetGetPoints(Model model, const char set[], IS *points);
+/* set.c - points of this rank that are in a set with all nodes around them, those of range[0] .. range[1] - 1, NULL for all; the
+   caller frees them. An error when no rank has a point of the set. Collective */
+PETSC_INTERN PetscErrorCode SetGetPoints(Model model, const char set[], const PetscInt range[2], PetscInt *n,
+                                         PetscInt **point);
+/* Whether another rank owns a point. Not collective */
+PETSC_INTERN PetscErrorCode PointIsElsewhere(Model model, PetscInt point, PetscBool *elsewhere);
 
 /* face.c - faces of a set with cells on both sides, of all ranks; each is counted at least once. Collective */
 PETSC_INTERN PetscErrorCode ModelCountInnerFaces(Model model, const char set[], PetscInt *n);

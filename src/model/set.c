@@ -36,32 +36,64 @@ PetscErrorCode ModelComplainSet(Model model, const char what[], const char name[
   SETERRQ(model->comm, PETSC_ERR_USER_INPUT, "the mesh has no %s named '%s'; it names: %s", what, name, list);
 }
 
-PetscErrorCode SetGetPoints(Model model, const char set[], IS *points)
+/* Points of a range, NULL for all, where the label has the value; the caller frees them */
+static PetscErrorCode LabelGetPoints(DMLabel label, PetscInt value, const PetscInt range[2], PetscInt *n,
+                                     PetscInt **point)
 {
-  DMLabel  label;
-  PetscInt n = 0, n_all;
+  const PetscInt *p;
+  PetscInt        n_all;
+  IS              is = NULL;
 
   PetscFunctionBeginUser;
-  *points = NULL;
-  PetscCall(DMGetLabel(model->dm, set, &label));
-  if (label) PetscCall(DMLabelGetStratumIS(label, SET_CLOSED, points));
-  if (label) PetscCall(DMLabelGetStratumSize(label, SET_ALONE, &n));
-  if (*points) PetscCall(ISGetLocalSize(*points, &n_all));
-  if (*points) n += n_all;
-  PetscCallMPI(MPI_Allreduce(&n, &n_all, 1, MPIU_INT, MPI_SUM, model->comm));
-  if (!n_all) PetscCall(ModelComplainSet(model, "set", set));
+  *n     = 0;
+  *point = NULL;
+  if (label) PetscCall(DMLabelGetStratumIS(label, value, &is));
+  if (!is) PetscFunctionReturn(0);
+  PetscCall(ISGetLocalSize(is, &n_all));
+  PetscCall(ISGetIndices(is, &p));
+  PetscCall(PetscMalloc1(n_all, point));
+  for (PetscInt i = 0; i < n_all; i++)
+    if (!range || (p[i] >= range[0] && p[i] < range[1])) (*point)[(*n)++] = p[i];
+  PetscCall(ISRestoreIndices(is, &p));
+  PetscCall(ISDestroy(&is));
   PetscFunctionReturn(0);
 }
 
-/* Marks (adds 1 to the first component of) every node in the closure of the points */
-static PetscErrorCode MarkClosure(Model model, IS points, PetscScalar mark[])
+PetscErrorCode SetGetPoints(Model model, const char set[], const PetscInt range[2], PetscInt *n, PetscInt **point)
 {
-  const PetscInt *p;
-  PetscInt        n, n_closure, *closure = NULL;
+  DMLabel  label;
+  PetscInt size[2] = {0, 0};
 
   PetscFunctionBeginUser;
-  PetscCall(ISGetLocalSize(points, &n));
-  PetscCall(ISGetIndices(points, &p));
+  PetscCall(DMGetLabel(model->dm, set, &label));
+  if (label) PetscCall(DMLabelGetStratumSize(label, SET_CLOSED, &size[0]));
+  if (label) PetscCall(DMLabelGetStratumSize(label, SET_ALONE, &size[1]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, size, 2, MPIU_INT, MPI_SUM, model->comm));
+  if (!size[0] && !size[1]) PetscCall(ModelComplainSet(model, "set", set));
+  PetscCall(LabelGetPoints(label, SET_CLOSED, range, n, point));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PointIsElsewhere(Model model, PetscInt point, PetscBool *elsewhere)
+{
+  const PetscInt *shared; /* points that another rank owns, ascending; n_shared is -1 without a graph */
+  PetscInt        n_shared, place = -1;
+  PetscSF         sf;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMGetPointSF(model->dm, &sf));
+  PetscCall(PetscSFGetGraph(sf, NULL, &n_shared, &shared, NULL));
+  if (n_shared > 0) PetscCall(PetscFindInt(point, n_shared, shared, &place));
+  *elsewhere = place >= 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Marks (adds 1 to the first component of) every node in the closure of n points */
+static PetscErrorCode MarkClosure(Model model, PetscInt n, const PetscInt p[], PetscScalar mark[])
+{
+  PetscInt n_closure, *closure = NULL;
+
+  PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
     PetscCall(DMPlexGetTransitiveClosure(model->dm, p[i], PETSC_TRUE, &n_closure, &closure));
     for (PetscInt j = 0; j < n_closure; j++) {
@@ -71,42 +103,35 @@ static PetscErrorCode MarkClosure(Model model, IS points, PetscScalar mark[])
     }
     PetscCall(DMPlexRestoreTransitiveClosure(model->dm, p[i], PETSC_TRUE, &n_closure, &closure));
   }
-  PetscCall(ISRestoreIndices(points, &p));
   PetscFunctionReturn(0);
 }
 
 /* The same of the nodes that are in the set without those around */
 static PetscErrorCode MarkAlone(Model model, const char set[], PetscScalar mark[])
 {
-  const PetscInt *p;
-  PetscInt        n;
-  DMLabel         label;
-  IS              points;
+  PetscInt n, *p;
+  DMLabel  label;
 
   PetscFunctionBeginUser;
   PetscCall(DMGetLabel(model->dm, set, &label));
-  PetscCall(DMLabelGetStratumIS(label, SET_ALONE, &points));
-  if (!points) PetscFunctionReturn(0);
-  PetscCall(ISGetLocalSize(points, &n));
-  PetscCall(ISGetIndices(points, &p));
+  PetscCall(LabelGetPoints(label, SET_ALONE, NULL, &n, &p));
   for (PetscInt i = 0; i < n; i++)
     if (model->node_of[p[i]] >= 0) mark[3 * model->node_of[p[i]]] += 1;
-  PetscCall(ISRestoreIndices(points, &p));
-  PetscCall(ISDestroy(&points));
+  PetscCall(PetscFree(p));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ModelGetSetNodes(Model model, const char set[], PetscInt *n, PetscInt **node)
 {
   PetscScalar *mark;
+  PetscInt     n_points, *point;
   Vec          marks;
-  IS           points;
 
   PetscFunctionBeginUser;
-  PetscCall(SetGetPoints(model, set, &points));
+  PetscCall(SetGetPoints(model, set, NULL, &n_points, &point));
   PetscCall(ModelCreateNodal(model, &marks));
   PetscCall(VecGetArray(marks, &mark));
-  if (points) PetscCall(MarkClosure(model, points, mark));
+  PetscCall(MarkClosure(model, n_points, point, mark));
   PetscCall(MarkAlone(model, set, mark));
   PetscCall(VecRestoreArray(marks, &mark));
   PetscCall(ModelSumShared(model, marks));
@@ -118,7 +143,7 @@ PetscErrorCode ModelGetSetNodes(Model model, const char set[], PetscInt *n, Pets
     if (mark[3 * v] > 0) (*node)[i++] = v;
   PetscCall(VecRestoreArray(marks, &mark));
   PetscCall(VecDestroy(&marks));
-  PetscCall(ISDestroy(&points));
+  PetscCall(PetscFree(point));
   PetscFunctionReturn(0);
 }
 

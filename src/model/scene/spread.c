@@ -14,7 +14,6 @@
 #include "model/modelimpl.h"
 #include "base/vec3.h"
 #include "kernels/facet.h"
-#include <petscsf.h>
 
 /* Whether any rank has a face of the set */
 static PetscErrorCode SetHasFaces(Model model, const char set[], PetscBool *has)
@@ -84,29 +83,21 @@ static void EdgeAddWeights(const Mesh *mesh, const PetscInt end[2], PetscInt mid
 /* Adds the shares in the length (m) of the edges of a set, each on the rank that owns it, to weight[3 v] */
 static PetscErrorCode CurveAddWeights(Model model, const char set[], PetscScalar weight[])
 {
-  const PetscInt *p, *shared, *ends;
-  PetscInt        eStart, eEnd, n = 0, n_shared, place;
-  PetscSF         sf;
-  IS              points;
+  const PetscInt *ends;
+  PetscInt        range[2], n, *p;
+  PetscBool       elsewhere;
 
   PetscFunctionBeginUser;
-  PetscCall(SetGetPoints(model, set, &points));
-  PetscCall(DMPlexGetDepthStratum(model->dm, 1, &eStart, &eEnd));
-  PetscCall(DMGetPointSF(model->dm, &sf));
-  PetscCall(PetscSFGetGraph(sf, NULL, &n_shared, &shared, NULL)); /* points that another rank owns, ascending */
-  if (points) PetscCall(ISGetLocalSize(points, &n));
-  if (points) PetscCall(ISGetIndices(points, &p));
+  PetscCall(DMPlexGetDepthStratum(model->dm, 1, &range[0], &range[1]));
+  PetscCall(SetGetPoints(model, set, range, &n, &p));
   for (PetscInt i = 0; i < n; i++) {
-    if (p[i] < eStart || p[i] >= eEnd) continue;
-    place = -1;
-    if (n_shared > 0) PetscCall(PetscFindInt(p[i], n_shared, shared, &place));
-    if (place >= 0) continue;
+    PetscCall(PointIsElsewhere(model, p[i], &elsewhere));
+    if (elsewhere) continue;
     PetscCall(DMPlexGetCone(model->dm, p[i], &ends));
     EdgeAddWeights(&model->mesh, (const PetscInt[2]){model->node_of[ends[0]], model->node_of[ends[1]]},
                    model->node_of[p[i]], weight);
   }
-  if (points) PetscCall(ISRestoreIndices(points, &p));
-  PetscCall(ISDestroy(&points));
+  PetscCall(PetscFree(p));
   PetscFunctionReturn(0);
 }
 
