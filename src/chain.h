@@ -58,11 +58,15 @@ PETSC_INTERN PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain);
 PETSC_INTERN PetscErrorCode ChainCheckOptions(MPI_Comm comm, const Chain *chain);
 /* Model, contact and terms; what rooms need of each other; matrices for a file where asked for */
 PETSC_INTERN PetscErrorCode ChainSetUp(Chain *chain, PetscViewer viewer);
-/* Computes, shows and writes what the analysis is for */
-PETSC_INTERN PetscErrorCode ChainRun(Chain *chain);
 PETSC_INTERN PetscErrorCode ChainDestroy(Chain *chain);
 /* The pencil at p: about the sliding state there, or with all pairs closed; made once */
 PETSC_INTERN PetscErrorCode ChainLinearise(Chain *chain);
+
+/* Whether the analysis is a run in time, or is made of such runs */
+PETSC_INTERN PetscBool ChainIsInTime(const Chain *chain);
+
+/* chainrun.c - computes, shows and writes what the analysis is for */
+PETSC_INTERN PetscErrorCode ChainRun(Chain *chain);
 
 /* chainview.c - which objects -X_view asks for */
 PETSC_INTERN PetscErrorCode ChainGetViewers(MPI_Comm comm, Chain *chain);
