@@ -9,6 +9,9 @@ TO_SI = {"mm, t, s, N, MPa": {"m": 1e-3, "m2": 1e-6, "m_s": 1e-3, "m_s2": 1e-3, 
 NAMES = {"Pa": "MPa", "m": "mm", "kg": "t", "kg/m^3": "t/mm^3", "N/m": "N/mm", "N/m^3": "N/mm^3", "N m/rad": "N mm/rad",
          "m/s": "mm/s", "s/m": "s/mm", "N s/m": "N s/mm", "N s/m^3": "N s/mm^3", "N m s/rad": "N mm s/rad"}
 
+OPTIONS = {"Pa": 1e6, "m": 1e-3, "kg": 1e3, "kg/m^3": 1e12, "N/m": 1e3, "N/m^3": 1e9, "m/s": 1e-3, "s/m": 1e3, "N s/m": 1e3,
+           "N s/m^3": 1e9}  # SI units in one of mm, t, s, N, MPa
+
 
 class Units:
     """Units of the tables and fields of a folder, whatever their columns are called: `factor("m_s")` makes m/s of what
@@ -68,6 +71,10 @@ class Provenance:
             return float(self.value(name, default))
         except ValueError:
             return default
+
+    def si(self, unit):
+        """SI units in one of the scene's, for values of options."""
+        return OPTIONS.get(unit, 1.0) if self.facts.get("units", "") in TO_SI else 1.0
 
     def names(self, name):
         """The words of a list."""

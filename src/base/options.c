@@ -129,6 +129,8 @@ PetscErrorCode OptionsReadList(MPI_Comm comm, const OptionsList *list, void *own
   PetscFunctionReturn(0);
 }
 
+#define NUMBER " has no numeric value: write it as 0.3 or 16e9, without a unit, several with commas"
+
 /* Splits a message such as "Input string abc has no numeric value" into the value and what is wrong with it. PETSc 3.22
    refuses what is not finite as "Newly set value nan less than allowed bound ..." */
 static PetscBool MessageSplit(const char message[], char value[MAX_NAME], const char **wrong)
@@ -136,6 +138,7 @@ static PetscBool MessageSplit(const char message[], char value[MAX_NAME], const 
   static const struct {
     const char *start, *end, *wrong; /* wrong NULL: the end says it */
   } forms[] = {
+    {"Input string ",           " has no numeric", NUMBER},
     {"Input string ",           " has no ",  NULL                                },
     {"String of length zero ",  "has no ",   "a number is missing beside a comma"},
     {"Newly set value ",        " less ",    " must be a finite number"          },

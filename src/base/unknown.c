@@ -4,7 +4,8 @@
    An option that nobody read is an error unless its prefix is one of PETSc's or SLEPc's. The valid names are exactly
    those that -help would print, so they are collected by reading all options once more (help.c); this happens only when
    there is something to complain about. Nearest = smallest Damerau-Levenshtein distance (adjacent swaps count once): F.
-   J. Damerau, Comm. ACM 7, 1964; a prefix left out counts as one edit.
+   J. Damerau, Comm. ACM 7, 1964; a prefix left out counts as one edit, that of another name (-contact_mu of a page, where the
+   scene calls its contact brake) as two and a half.
 
    PETSc has read most of its own options before the run. What it reads later is listed below; anything else of its
    prefixes that is left then is never read: an error on the command line, while a file or an environment may be shared
@@ -95,13 +96,18 @@ static int EditDistance(const char a[], const char b[])
   return d[la % 3][lb];
 }
 
-/* How far a valid name is from an unknown one: a prefix left out, as of -contact_mu in -mu, is one edit */
-static int NameDistance(const char unknown[], const char valid[])
-{
-  const size_t lu = strlen(unknown), lv = strlen(valid);
+#define ONE_EDIT     2 /* distances are in halves of an edit */
+#define OTHER_PREFIX 5
 
-  if (lv > lu && valid[lv - lu - 1] == '_' && !strcmp(valid + lv - lu, unknown)) return 1;
-  return EditDistance(unknown, valid);
+/* How far a valid name is from an unknown one: a prefix left out, as of -contact_mu in -mu, is one edit */
+static int NameDistance(const char unknown[], const char valid[], PetscBool is_librarys)
+{
+  const size_t      lu = strlen(unknown), lv = strlen(valid);
+  const char *const tail = strchr(unknown, '_'), *const other = strchr(valid, '_');
+  const int         distance = ONE_EDIT * EditDistance(unknown, valid);
+
+  if (lv > lu && valid[lv - lu - 1] == '_' && !strcmp(valid + lv - lu, unknown)) return ONE_EDIT;
+  return !is_librarys && tail && other && !strcmp(tail, other) ? PetscMin(distance, OTHER_PREFIX) : distance;
 }
 
 /* Options of PETSc's and SLEPc's solvers: read when the rooms read theirs, or when SolverReadEigenOptions() and its like
@@ -156,7 +162,7 @@ typedef struct {
 /* Keeps a valid name where none was nearer; those of TS for implicit steps are not valid */
 static PetscErrorCode UnknownCompare(UnknownOption *u, const char valid[])
 {
-  const int distance = NameDistance(u->name, valid);
+  const int distance = NameDistance(u->name, valid, u->is_librarys);
 
   PetscFunctionBeginUser;
   if (distance >= u->distance || !strncmp(valid, "ksp_", 4) || !strncmp(valid, "pc_", 3)) PetscFunctionReturn(0);
@@ -190,7 +196,7 @@ static PetscErrorCode UnknownTakeFirst(UnknownOption *u)
 /* Raises the error; the names of the libraries are near each other */
 static PetscErrorCode UnknownComplain(MPI_Comm comm, const UnknownOption *u)
 {
-  const int length = (int)strlen(u->name), near = u->is_librarys ? 1 + length / 6 : 2 + length / 3;
+  const int length = (int)strlen(u->name), near = ONE_EDIT * (u->is_librarys ? 1 + length / 6 : 2 + length / 3);
 
   PetscFunctionBeginUser;
   PetscCheck(u->distance > near, comm, PETSC_ERR_USER_INPUT, "unknown option -%s; the nearest valid one is -%s",

@@ -111,9 +111,9 @@ static PetscErrorCode PartnerCheck(MPI_Comm comm, ContactInterface *c, PairFailu
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failure->no_slip, 1, MPIU_REAL, MPI_MAX, comm));
   PetscCheck(worst.distance <= c->tolerance, comm, PETSC_ERR_USER_INPUT,
              "contact %s: the node of %s at %.6g, %.6g, %.6g m finds no partner on %s (nearest %.6g m away, "
-             "-%s_tolerance is %.6g m)",
+             "-%s_tolerance is %.6g m); each node of the first of -%s_surfaces must lie on the second",
              c->name, c->slave, (double)failure->x[0], (double)failure->x[1], (double)failure->x[2], c->master,
-             worst.distance, c->name, (double)c->tolerance);
+             worst.distance, c->name, (double)c->tolerance, c->name);
   c->slides = failure->no_slip == 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(
     c->slides || !given || (c->mu == 0 && !c->damping), comm, PETSC_ERR_USER_INPUT,

@@ -10,8 +10,9 @@ import numpy
 from drawing import drawn, fails, require
 from made_up_static import FORCE, MU, SIDE, State, write_rows
 from matplotlib.colors import to_rgb
-from squeal import static_pairs  # found by drawing
+from squeal import provenance, static_pairs  # found by drawing
 from squeal.picture import BLUE, GREEN
+from squeal.report import words
 
 
 def close(found, expected, message, tolerance=1e-12):
@@ -111,6 +112,43 @@ def test_millimetres(root):
     require(surface.summary() == metres.summary(), surface.summary())
 
 
+SCENE = """parts: "disc"
+disc_young: "{young}"
+disc_density: "{density}"
+springs: "guide"
+guide_set: "lugs"
+guide_stiffness_per_area: "0,{area},0"
+joints: "pin"
+pin_a: "lugs"
+pin_stiffness: "{spring},0,0"
+points: "caliper"
+caliper_set: "lugs"
+caliper_mass: "{mass}"
+loads: "piston"
+piston_set: "back"
+piston_pressure: "{pressure}"
+contacts: "rubbing"
+rubbing_surfaces: "pad,disc"
+rubbing_law: "penalty"
+rubbing_kn_per_area: "{area}"
+"""
+METRES = {"young": "110e9", "density": "7100", "area": "1e13", "spring": "5e7", "mass": "4", "pressure": "1e6"}
+MILLIMETRES = {"young": "110e3", "density": "7.1e-9", "area": "1e4", "spring": "5e4", "mass": "4e-3", "pressure": "1"}
+
+
+def test_words(root):
+    """The scene in words, of either set of units: breaks when a pressure, a stiffness by area, a bushing or a point is
+    said to be nothing, or mm are taken for m."""
+    (root / "words").mkdir()
+    path, said = root / "words" / "scene.yaml", []
+    for units, values in (("m, kg, s, N, Pa", METRES), ("mm, t, s, N, MPa", MILLIMETRES)):
+        path.write_text(f"# units: {units}\n{SCENE.format(**values)}")
+        said.append(str(words.scene_words(provenance.Provenance(path))))
+    require(said[0] == said[1], f"{said[0]} and {said[1]}")
+    for text in ("110 GPa", "7100 kg/m³", "10⁴ GN/m³ along y by area", "50 MN/m along x", "mass of 4 kg", "1 MPa on back"):
+        require(text in said[0], f"{text} is not in {said[0]}")
+
+
 def test_old_columns(root):
     """A table that ends with the status: forces instead of pressures, all pairs one surface, no arrow."""
     state = State()
@@ -151,7 +189,7 @@ def test_errors(root):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        for test in (test_colours, test_numbers, test_orientation, test_millimetres, test_old_columns, test_several, test_errors):
+        for test in (test_colours, test_numbers, test_orientation, test_millimetres, test_words, test_old_columns, test_several, test_errors):
             test(Path(folder))
 
 

@@ -27,9 +27,10 @@ def listed(words):
     return " and ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
 
 
-def vector(text, unit):
-    """0, 0, -100 N along z reads −100 N along z; several components are all named."""
-    parts = [f"{quantity(value, unit)} along {axis}" for value, axis in zip(numbers(text), AXES) if value]
+def vector(scene, name, unit):
+    """An option with a value along each axis: 0,0,-100 reads −100 N along z; several components are all named."""
+    values = zip(numbers(scene.value(name)), AXES)
+    parts = [f"{quantity(scene.si(unit) * value, unit)} along {axis}".replace("^3", "³") for value, axis in values if value]
     return listed(parts) or f"0 {unit}"
 
 
@@ -40,6 +41,27 @@ def direction(text):
         i = next(i for i, value in enumerate(values) if value)
         return ("+" if values[i] > 0 else MINUS) + AXES[i]
     return f"({text})"
+
+
+def grounded_words(scene, name, what, option):
+    """Springs or dashpots: a value per node, of the whole set, or per area, whichever the scene gives."""
+    unit = {"stiffness": "N/m", "viscosity": "N s/m"}[option]
+    ways = ((f"{option}_total", unit, "in total"), (f"{option}_per_area", f"{unit}^3", "by area"), (option, unit, "per node"))
+    end, unit, how = next((way for way in ways if any(numbers(scene.value(f"{name}_{way[0]}")))), ways[-1])
+    return f"{name}: {what} on {scene.value(f'{name}_set')}, {vector(scene, f'{name}_{end}', unit)} {how}."
+
+
+def joint_words(scene, name):
+    """A bushing."""
+    other = scene.value(f"{name}_b")
+    ends = f"between {scene.value(f'{name}_a')} and {other}" if other else f"from {scene.value(f'{name}_a')} to the ground"
+    return f"{name}: a bushing {ends}, {vector(scene, f'{name}_stiffness', 'N/m')}."
+
+
+def point_words(scene, name):
+    """A point that moves with a set."""
+    mass = quantity(scene.si("kg") * scene.number(f"{name}_mass"), "kg")
+    return f"{name}: a point that moves with {scene.value(f'{name}_set')}, with a mass of {mass}."
 
 
 def mesh_words(scene):
@@ -64,10 +86,10 @@ def part_words(scene, name):
     """A material."""
     damping = [f"{sign} = {figures(scene.number(f'{name}_{key}'), 4)} {unit}"
                for key, sign, unit in (("alpha", "α", "1/s"), ("beta", "β", "s")) if scene.number(f"{name}_{key}")]
-    moduli = ", ".join(quantity(value, "Pa") for value in numbers(scene.value(f"{name}_young")))
+    moduli = ", ".join(quantity(scene.si("Pa") * value, "Pa") for value in numbers(scene.value(f"{name}_young")))
     return (f"{name}: E = {moduli}, ν = "
             f"{scene.value(f'{name}_poisson', '0.3').replace(',', ', ')}, "
-            f"ρ = {figures(scene.number(f'{name}_density'))} kg/m³{''.join(f', {text}' for text in damping)}.")
+            f"ρ = {figures(scene.si('kg/m^3') * scene.number(f'{name}_density'), 6)} kg/m³{''.join(f', {text}' for text in damping)}.")
 
 
 def contact_words(scene, name):
@@ -75,16 +97,18 @@ def contact_words(scene, name):
     slave, _, master = scene.value(f"{name}_surfaces").partition(",")
     turn, slip = (numbers(scene.value(f"{name}_{key}")) for key in ("rotation", "slip"))
     if any(turn):
-        motion = f"{master} turns with {vector(scene.value(f'{name}_rotation'), 'rad/s')}"
+        motion = f"{master} turns with {vector(scene, f'{name}_rotation', 'rad/s')}"
     elif any(slip):
         motion = f"{slave} slides towards {direction(scene.value(f'{name}_slip'))}"
     else:
         motion = "no sliding is prescribed"
-    speed, slope = scene.number(f"{name}_speed"), scene.number(f"{name}_mu_slope")
+    speed = scene.si("m/s") * scene.number(f"{name}_speed")
+    slope = scene.si("s/m") * scene.number(f"{name}_mu_slope")
     law = "exact constraint"
     if scene.value(f"{name}_law") == "penalty":
-        kn = numbers(scene.value(f"{name}_kn"))
-        law = f"normal stiffness {quantity(kn[0], 'N/m')} per pair" if kn else "normal stiffness found by pressing"
+        kn, area = numbers(scene.value(f"{name}_kn")), scene.si("N/m^3") * scene.number(f"{name}_kn_per_area")
+        law = (f"normal stiffness {figures(area, 4)} N/m³" if area else "normal stiffness found by pressing" if not kn else
+               f"normal stiffness {quantity(scene.si('N/m') * kn[0], 'N/m')} per pair")
     if scene.value("analysis", "modes") == "transient":
         law = "exact contact in time"
     return (f"{name}: {slave} on {master}, {motion}{f' at {figures(speed, 4)} m/s' if speed else ''}, friction "
@@ -93,23 +117,26 @@ def contact_words(scene, name):
 
 
 def load_words(scene, name):
-    """A force."""
+    """A force, or a pressure."""
+    place = f"{scene.value(f'{name}_set') or scene.value(f'{name}_point')}"
     ramp = scene.number(f"{name}_ramp")
     grown = f", within {figures(1e3 * ramp, 4)} ms" if ramp and scene.value("analysis") == "transient" else ""
-    return f"{name}: {vector(scene.value(f'{name}_force'), 'N')} in total on {scene.value(f'{name}_set')}{grown}."
+    if scene.value(f"{name}_pressure"):
+        return f"{name}: {quantity(scene.si('Pa') * scene.number(f'{name}_pressure'), 'Pa')} on {place}{grown}."
+    return f"{name}: {vector(scene, f'{name}_force', 'N')} in total on {place}{grown}."
 
 
 LISTS = (
     ("parts", part_words),
     ("supports", lambda s, n: f"{n}: {s.value(f'{n}_set')} is held in {listed(s.value(f'{n}_fix', 'xyz'))}."),
-    ("springs", lambda s, n: f"{n}: springs on {s.value(f'{n}_set')}, {vector(s.value(f'{n}_stiffness'), 'N/m')} per "
-                             f"node."),
-    ("dashpots", lambda s, n: f"{n}: dashpots on {s.value(f'{n}_set')}, {vector(s.value(f'{n}_viscosity'), 'N s/m')} "
-                              f"per node."),
+    ("springs", lambda s, n: grounded_words(s, n, "springs", "stiffness")),
+    ("dashpots", lambda s, n: grounded_words(s, n, "dashpots", "viscosity")),
+    ("joints", joint_words),
+    ("points", point_words),
     ("loads", load_words),
-    ("motions", lambda s, n: f"{n}: {s.value(f'{n}_set')} is moved by {vector(s.value(f'{n}_displacement'), 'm')}."),
+    ("motions", lambda s, n: f"{n}: {s.value(f'{n}_set')} is moved by {vector(s, f'{n}_displacement', 'm')}."),
     ("contacts", contact_words),
-    ("impulses", lambda s, n: f"{n}: a blow of {vector(s.value(f'{n}_impulse'), 'N s')} at ({s.value(f'{n}_at')}) m "
+    ("impulses", lambda s, n: f"{n}: a blow of {vector(s, f'{n}_impulse', 'N s')} at ({s.value(f'{n}_at')}) m "
                               f"after "
                               f"{figures(1e3 * s.number(f'{n}_time'), 4)} ms."),
     ("probes", lambda s, n: f"{n}: records the motion at ({s.value(f'{n}_at')}) m."),
