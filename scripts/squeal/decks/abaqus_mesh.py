@@ -89,7 +89,8 @@ def other_elements(reader, scope, card, kind):
                 found.append((whole(fields[0], place, "the number of an element"), place.line))
             goes_on = len(fields) in (8, 16) and line_goes_on(card, place.line)
         ids, lines = (numpy.array(column, int) for column in zip(*found)) if found else (numpy.empty(0, int),) * 2
-        reader.deck.note(card.place, f"*ELEMENT, TYPE={kind}: {len(ids)} elements of a type that squeal has not")
+        plane = "; a surface of Gmsh? its .msh file keeps surfaces, and needs no import" if kind.startswith("CPS") else ""
+        reader.deck.note(card.place, f"*ELEMENT, TYPE={kind}: {len(ids)} elements of a type that squeal has not{plane}")
     scope.others.add(ids, ids, lines, card.place.file)
     if card.options.get("ELSET"):
         scope.other_sets.setdefault(card.need("ELSET"), []).extend(ids.tolist())
