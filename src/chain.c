@@ -151,23 +151,6 @@ static PetscErrorCode ChainNeedsMatrices(const Chain *chain, PetscBool pairs, Pe
   PetscFunctionReturn(0);
 }
 
-/* The set of units goes to scene.yaml. Where it is not that of the words of all lines and tables, a line says so */
-static PetscErrorCode ChainSayUnits(Chain *chain)
-{
-  const char *units;
-  MPI_Comm    comm;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelUnits(chain->model, &units));
-  if (!units) PetscFunctionReturn(0);
-  PetscCall(ResultsNote(chain->results, "units", "%s", units));
-  PetscCall(ModelGetComm(chain->model, &comm));
-  if (units[1] == 'm')
-    PetscCall(PetscPrintf(
-      comm, "units %s, by density and modulus of the parts: read mm, t, MPa, mJ where m, kg, Pa, J stand\n", units));
-  PetscFunctionReturn(0);
-}
-
 /* Model, pairs and terms */
 static PetscErrorCode ChainAssemble(Chain *chain)
 {

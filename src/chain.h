@@ -68,7 +68,9 @@ PETSC_INTERN PetscBool ChainIsInTime(const Chain *chain);
 /* chainrun.c - computes, shows and writes what the analysis is for */
 PETSC_INTERN PetscErrorCode ChainRun(Chain *chain);
 
-/* chainview.c - which objects -X_view asks for */
+/* chainview.c - the set of units to scene.yaml, and in a line where it is not that of the words of lines and tables */
+PETSC_INTERN PetscErrorCode ChainSayUnits(Chain *chain);
+/* Which objects -X_view asks for */
 PETSC_INTERN PetscErrorCode ChainGetViewers(MPI_Comm comm, Chain *chain);
 PETSC_INTERN PetscErrorCode ChainCheckViewers(MPI_Comm comm, const Chain *chain);
 /* Shows an object on stdout where wanted, and where its option says */

@@ -1,4 +1,4 @@
-/* Views of the objects of a run: -model_view and its like, and -squeal_view for all */
+/* Views of the objects of a run: -model_view and its like, and -squeal_view for all; its units */
 #include "chain.h"
 
 #define MODAL   (1 << ANALYSIS_MODES | 1 << ANALYSIS_FRF)
@@ -91,5 +91,21 @@ PetscErrorCode ChainView(Chain *chain)
   if (chain->model) PetscCall(ChainShow(chain, SHOWN_MODEL, chain->view));
   if (chain->contact && ChainShows(chain, SHOWN_CONTACT)) PetscCall(ChainShow(chain, SHOWN_CONTACT, chain->view));
   if (ChainShows(chain, SHOWN_OPERATORS)) PetscCall(ChainShow(chain, SHOWN_OPERATORS, chain->view));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChainSayUnits(Chain *chain)
+{
+  const char *units;
+  MPI_Comm    comm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelUnits(chain->model, &units));
+  if (!units) PetscFunctionReturn(0);
+  PetscCall(ResultsNote(chain->results, "units", "%s", units));
+  PetscCall(ModelGetComm(chain->model, &comm));
+  if (units[1] == 'm')
+    PetscCall(PetscPrintf(
+      comm, "units %s, by density and modulus of the parts: read mm, t, MPa, mJ where m, kg, Pa, J stand\n", units));
   PetscFunctionReturn(0);
 }

@@ -138,12 +138,12 @@ static PetscBool MessageSplit(const char message[], char value[MAX_NAME], const 
   static const struct {
     const char *start, *end, *wrong; /* wrong NULL: the end says it */
   } forms[] = {
-    {"Input string ",           " has no numeric", NUMBER},
-    {"Input string ",           " has no ",  NULL                                },
-    {"String of length zero ",  "has no ",   "a number is missing beside a comma"},
-    {"Newly set value ",        " less ",    " must be a finite number"          },
-    {"Newly set value ",        " greater ", " must be a finite number"          },
-    {"Unknown logical value: ", NULL,        " is neither true nor false"        },
+    {"Input string ",           " has no numeric", NUMBER                              },
+    {"Input string ",           " has no ",        NULL                                },
+    {"String of length zero ",  "has no ",         "a number is missing beside a comma"},
+    {"Newly set value ",        " less ",          " must be a finite number"          },
+    {"Newly set value ",        " greater ",       " must be a finite number"          },
+    {"Unknown logical value: ", NULL,              " is neither true nor false"        },
   };
 
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(forms); i++) {

@@ -104,7 +104,7 @@ static int NameDistance(const char unknown[], const char valid[], PetscBool is_l
 {
   const size_t      lu = strlen(unknown), lv = strlen(valid);
   const char *const tail = strchr(unknown, '_'), *const other = strchr(valid, '_');
-  const int         distance = ONE_EDIT * EditDistance(unknown, valid);
+  const int distance = ONE_EDIT * EditDistance(unknown, valid);
 
   if (lv > lu && valid[lv - lu - 1] == '_' && !strcmp(valid + lv - lu, unknown)) return ONE_EDIT;
   return !is_librarys && tail && other && !strcmp(tail, other) ? PetscMin(distance, OTHER_PREFIX) : distance;

@@ -189,7 +189,8 @@ def test_errors(root):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        for test in (test_colours, test_numbers, test_orientation, test_millimetres, test_words, test_old_columns, test_several, test_errors):
+        for test in (test_colours, test_numbers, test_orientation, test_millimetres, test_words, test_old_columns,
+                     test_several, test_errors):
             test(Path(folder))
 
 

@@ -227,7 +227,8 @@ static PetscErrorCode FillLabels(DM dm, const GmshVolumes *volumes, ReaderError 
     PetscCall(DMGetStratumSize(dm, mesh->groups[g].name, SET_ALONE, &n_alone));
     if (n || n_alone) continue;
     ReaderErrorSet(error, PETSC_ERR_USER_INPUT,
-                   "physical group \"%s\" has no elements: what it was made of is not in the mesh (or format 2.2 lost them by Mesh.SaveAll)",
+                   "physical group \"%s\" has no elements: what it was made of is not in the mesh (or format 2.2 lost "
+                   "them by Mesh.SaveAll)",
                    mesh->groups[g].name);
   }
   PetscFunctionReturn(0);
