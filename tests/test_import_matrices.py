@@ -242,7 +242,7 @@ def test_calculix(folder, squeal, launcher):
     held = "\n".join(f"{number[0, j, k]},1,3" for j in range(3) for k in range(3))
     for name, solver in (("bar", ""), ("stored", ",SOLVER=MATRIXSTORAGE")):
         (folder / f"{name}.inp").write_text(DECK.format(nodes=nodes, cells=cells, held=held, solver=solver))
-        subprocess.run(["ccx", name], cwd=folder, capture_output=True, timeout=60)
+        subprocess.run(["ccx", name], cwd=folder, capture_output=True, timeout=240)
     rows = [line.split() for line in (folder / "bar.dat").read_text().splitlines()]
     exact = [float(row[3]) for row in rows if len(row) == 5 and row[0].isdigit()][:6]
     convert([folder / "stored.sti"], folder / "bar")  # alone, then with the mass

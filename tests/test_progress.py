@@ -17,8 +17,10 @@ from pathlib import Path
 
 OPTIONS = Path(__file__).resolve().parents[1] / "options"
 COARSE = "-rig_disc_elements 6,12,1 -rig_pad_elements 3,3,2 -rig_beam_elements 4 -modes_band 1000,8000".split()
+MEDIUM = "-rig_disc_elements 24,96,3 -rig_pad_elements 10,10,10 -modes_band 0,20000".split()  # some seconds
 FINE = "-rig_disc_elements 36,144,4 -rig_pad_elements 12,12,12 -modes_band 0,20000".split()  # some ten seconds of solutions
 SCENE = ["-options_file", OPTIONS / "massi2005.yaml"]
+PATIENCE = 240  # seconds
 
 
 class Runner:
@@ -31,7 +33,7 @@ class Runner:
     def check_stop(self, process, number, name):
         """Sends the signal: one line, the exit status of a shell's 128 + number, no file under a final name."""
         process.send_signal(number)
-        rest = process.communicate(timeout=20)[1]
+        rest = process.communicate(timeout=PATIENCE)[1]
         said = [line for line in rest.splitlines() if line.startswith("squeal") or "PETSC" in line]
         sign = signal.Signals(number).name
         self.check(process.returncode == -number and said == [STOPPED.format(sign)], f"{sign} ends it with a line", rest)
@@ -94,7 +96,7 @@ def check_left_and_interrupt(r):
     process = subprocess.Popen([r.squeal, *SCENE, *FINE, "-squeal_progress", "1", "-output_dir", "long"],
                                cwd=r.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     lines, begun = [], time.time()
-    while time.time() - begun < 100 and not (lines and "left" in lines[-1]):
+    while time.time() - begun < PATIENCE and not (lines and "left" in lines[-1]):
         lines.append(process.stderr.readline())
         if not lines[-1]:
             break
@@ -118,7 +120,7 @@ def check_stop_on_ranks(r):
     """mpirun asks all ranks; one speaks, in the log too, which is where it is read of Open MPI 5: its mpirun passes nothing on any more
     after ^C."""
     environment = {**os.environ, "OMPI_MCA_odls_base_sigkill_timeout": "2"}
-    process = subprocess.Popen([r.launcher, "-n", "2", r.squeal, *SCENE, *FINE, "-squeal_progress", "1",
+    process = subprocess.Popen([r.launcher, "-n", "2", r.squeal, *SCENE, *MEDIUM, "-squeal_progress", "1",
                                 "-squeal_log", "ranks.log", "-output_dir", "ranks"], cwd=r.folder, env=environment,
                                 stdin=subprocess.DEVNULL,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -126,7 +128,7 @@ def check_stop_on_ranks(r):
         if not line:
             break
     process.send_signal(signal.SIGINT)
-    rest = process.communicate(timeout=30)[1]
+    rest = process.communicate(timeout=PATIENCE)[1]
     said, logged = ([line for line in text.splitlines() if line.startswith("squeal: error")]
                     for text in (rest, (r.folder / "ranks.log").read_text()))
     version = subprocess.run([r.launcher, "--version"], capture_output=True, text=True).stdout

@@ -7,7 +7,7 @@ from pathlib import Path
 
 TESTS = Path(__file__).resolve().parents[1]
 BRAKE = ("-options_file", "brake.yaml", "-model_mesh", "blocks.msh")
-FINER = ("-options_file", "brake.yaml", "-model_mesh", "finer.msh", "-modes_band", "0,6000")
+FINER = ("-options_file", "brake.yaml", "-model_mesh", "finer.msh", "-modes_band", "0,2500")
 TIME = ("-analysis", "transient", "-press_ramp", "1e-4", "-dynamics_live", "0", "-dynamics_checkpoint_interval", "20",
         "-dynamics_pairs_interval", "1e-5", "-probes", "tip", "-tip_at", "0,0,0.1", "-tip_part", "block")
 

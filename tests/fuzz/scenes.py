@@ -4,12 +4,14 @@ import importlib.util
 import shutil
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import damage
 
 TESTS = Path(__file__).resolve().parents[1]
+sys.path.append(str(TESTS))
+import served  # noqa: E402
+
 BODIES = """
 parts: base,block
 base: {young: 2e9, poisson: 0.3, density: 2000}
@@ -91,20 +93,11 @@ def reduced(program, folder, first):
 
 def sweep(program, folder):
     """A sweep that was killed, and kept its full solutions; the command that goes on with them."""
-    words = ("-options_file", "brake.yaml", "-model_mesh", "finer.msh", "-analysis", "sweep", "-modes_band", "0,6000",
-             "-sweep_onsets", "0", "-sweep_rtol", "1e-9")
-    for _ in range(20):
-        shutil.rmtree(folder / "stopped", ignore_errors=True)
-        process = subprocess.Popen([program, *words, "-output_dir", "stopped"], cwd=folder, stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.DEVNULL)
-        while process.poll() is None and not (folder / "stopped/sweep_restart_001_rank0").exists():
-            time.sleep(0.0005)
-        process.kill()
-        process.wait()
-        if (folder / "stopped/sweep_restart_001_rank0").exists() and not (folder / "stopped/sweep.csv").exists():
-            break
-    else:
-        raise SystemExit("no sweep could be killed between its first full solution and its end")
+    words = ("-options_file", "brake.yaml", "-model_mesh", "finer.msh", "-analysis", "sweep", "-modes_band", "0,2000",
+             "-sweep_values", "0,0.6", "-sweep_onsets", "0", "-sweep_rtol", "1e-9")
+    command = [served.LAUNCHER, "-n", 1, program, *words, "-output_dir", "stopped"]
+    if not served.killed_at(command, "stopped/sweep_restart_002", folder):
+        raise SystemExit("the sweep was not killed after its second full solution")
     shutil.copytree(folder / "stopped", folder / "gone on")
     done = run(program, folder, *words, "-output_dir", "gone on")
     assert done.returncode == 0 and "anew" not in done.stderr, done.stderr
