@@ -1,7 +1,7 @@
 /*
    Iteration of the block eigensolver, see blockkrylov.h. The decomposition is in blockspace.c. At every look the projected
    problem G is brought to sorted Schur form T = Q' G Q, and eigenpairs of T, (theta, x = Q s), converge in order by the
-   residual |B x|, B the last rows of G. A full space is restarted: converged Schur vectors are locked, and half of the
+   residual |B x|, B the last rows of G. A full space is restarted: converged Schur vectors are locked, and most of the
    others stay.
 
    A look costs about as much as a few solves. The next one is taken where the residuals, which fall faster and faster, would
@@ -11,6 +11,9 @@
 
 #define LOOK_EARLY  0.6  /* of the way that is left by the last rate */
 #define LOOK_RARELY 0.25 /* of the columns so far: longest way to the next look */
+/* of the others at a restart: on the default brake with 112 columns 0.5, 0.7, 0.8 take 400, 384, 376 solves */
+#define RESTART_KEEP 0.8
+#define BASIS_LOOSE 1e-10 /* products of different vectors of the basis of an unsymmetric problem */
 #define REACH_TRUST 100  /* an eigenvalue is off by less than so many times its residual */
 
 /* Sorted Schur form of the projected problem, the first `locked` columns of which are there already */
@@ -105,11 +108,11 @@ static PetscErrorCode BlockKrylovConverge(EPS eps)
   PetscFunctionReturn(0);
 }
 
-/* Keeps the k converged Schur vectors and about half of the others, not half a complex pair */
+/* Keeps the k converged Schur vectors and most of the others, not half a complex pair */
 static PetscErrorCode BlockKrylovRestart(EPS eps, PetscInt locked, PetscInt k)
 {
   BlockSpace *s    = &((EPS_BlockKrylov *)eps->data)->space;
-  PetscInt    keep = PetscMin((s->m - k) / 2, s->ncv - s->p - k);
+  PetscInt    keep = PetscMin((PetscInt)(RESTART_KEEP * (s->m - k)), s->ncv - s->p - k);
   Mat         Q, T;
 
   PetscFunctionBegin;
@@ -193,6 +196,7 @@ static PetscErrorCode BlockKrylovBegin(EPS eps)
   if (eps->isgeneralized && eps->ispositive) PetscCall(STGetBilinearForm(eps->st, &M));
   PetscCall(BlockSpaceCreate(eps->st, eps->V, M, eps->ncv, ctx->block, &ctx->space));
   PetscCall(MatDestroy(&M));
+  ctx->space.loose = eps->ishermitian ? 0 : BASIS_LOOSE; /* the symmetric G is that of an orthonormal basis */
   PetscCall(BlockSpaceStart(&ctx->space));
   ctx->locked = ctx->converged = ctx->seen = 0;
   ctx->its                                 = 1;

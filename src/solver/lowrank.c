@@ -12,7 +12,7 @@
 #include "dense.h"
 #include "panel.h"
 
-#define LOWRANK_BLOCK 64 /* right-hand sides at once, at most and at least */
+#define LOWRANK_BLOCK 32 /* right-hand sides at once, at most and at least */
 #define LOWRANK_FEW   8
 #define LOWRANK_ROOM  5000000 /* their entries: MUMPS and PETSc hold eight copies of a block while it is solved */
 
