@@ -11,6 +11,7 @@ import struct
 import subprocess
 import tempfile
 import threading
+import time
 from pathlib import Path
 
 LAUNCHER = Path(__file__).resolve().parents[1] / "scripts/mpirun"
@@ -160,23 +161,55 @@ def outcome_of(starter, work, words, ranks):
     return outcome
 
 
-def launch(program, library, work, words, environment, ranks, limit):
-    """The same on several ranks, started anew each time."""
+def preloading(program, library, words, environment, ranks):
+    """The command that starts it anew on some ranks with the library of faults."""
     others = os.environ.get("LD_PRELOAD", "")
     before = ["env", f"LD_PRELOAD={library} {others}".strip(), *(f"{key}={value}" for key, value in environment.items())]
-    return finish([LAUNCHER, "-n", str(ranks), *before, program, *words], work, limit, {})
+    return [LAUNCHER, "-n", str(ranks), *before, program, *words]
+
+
+def launch(program, library, work, words, environment, ranks, limit):
+    """The same on several ranks, started anew each time."""
+    return finish(preloading(program, library, words, environment, ranks), work, limit, {})
+
+
+def session_of(leader):
+    """Processes of the session that one leads."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            if int(path.read_text().rpartition(")")[2].split()[3]) == leader:
+                found.append(int(path.parent.name))
+        except (OSError, IndexError):
+            pass  # ended meanwhile
+    return found
+
+
+def kill_ranks(leader):
+    """Kills all ranks of a launcher at once; it sees to what they leave, since it is killed only where it is the one rank itself. How
+    many that were."""
+    ranks = [number for number in session_of(leader) if number != leader] or [leader]
+    for number in ranks:
+        os.kill(number, signal.SIGKILL)
+    return len(ranks)
 
 
 def killed_at(command, file, work=".", calls=OPEN, at=1):
-    """Whether a run by the launcher was killed as it should: on rank 0, before its call number `at` of some kinds on files whose names
-    begin with `file`, whatever else the machine does."""
+    """Whether a run by the launcher was killed as it should, all of its ranks at once: as rank 0 stops before its call number `at` of
+    some kinds on files whose names begin with `file`, whatever else the machine does. A rank that was asked to end would say so."""
     _, _, ranks, program, *words = map(str, command)
+    program, begun = Path(program).resolve(), time.monotonic()
     with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
-        report = Path(folder) / "report"
-        program = Path(program).resolve()
-        launch(program, program.parent / "tests/libfault.so", work, words, plan(file, report, calls, at, signal=int(signal.SIGKILL)),
-               int(ranks), 240)
-        return report.exists() and told(report)[1] > 0
+        report, said = Path(folder) / "report", Path(folder) / "said"
+        stop = plan(file, report, calls, at, signal=int(signal.SIGSTOP))
+        with said.open("wb") as stream:
+            process = subprocess.Popen(preloading(program, program.parent / "tests/libfault.so", words, stop, ranks), cwd=work,
+                                       start_new_session=True, stdin=subprocess.DEVNULL, stdout=stream, stderr=stream)
+            while process.poll() is None and time.monotonic() - begun < 240 and not (report.exists() and told(report)[1]):
+                time.sleep(0.002)
+            killed = kill_ranks(process.pid) if process.poll() is None else 0
+            process.wait()
+        return killed == int(ranks) and told(report)[1] > 0 and b"stopped by" not in said.read_bytes()
 
 
 def finish(command, work, limit, more):

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """The checks of tests/check.py on made-up tables: what is not finite passes none. Breaks when bounds are compared with min()
 and max() alone, of which a nan is neither. What tests/run.py takes for the program's own words. And that each case with runs of the
-night has a test there, which makes them beside those of the day. Exit status: 0, or 1."""
+night has a test there, which makes them beside those of the day; that of another program or library of faults nothing has passed yet.
+Exit status: 0, or 1."""
 
 import re
 import sys
@@ -11,6 +12,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from check import Checker, Failure, Line, measured_in, worst_of
+from passed import Passed
 from ranks import fault_of_ranks, ranks_of_runs
 from run import own_words
 
@@ -71,17 +73,35 @@ def empty_pass():
     return len(wrong)
 
 
+def passed_of_others(folder):
+    """How many of the files that decide whether a stopped test goes on let it go on when they have changed, or not when none has."""
+    path, program, library = (folder / name for name in ("passed", "program", "library"))
+    wrong = 0
+    for changed in (None, program, library):
+        program.write_bytes(b"1")
+        library.write_bytes(b"1")
+        path.unlink(missing_ok=True)
+        Passed(path, program, library).add("a call")
+        if changed:
+            changed.write_bytes(b"2")
+        if ("a call" in Passed(path, program, library)) == bool(changed):
+            print(f"FAILED what passed, {changed and changed.name} changed")
+            wrong += 1
+    return wrong
+
+
 def main():
     rule = 60 * "-"
     remarks = ("", f"{rule}\nabort\n{rule}\n", f"{rule}\nabort\n{rule}\n\0", f"\0{rule}\nabort\n{rule}\n")
     failed = [own(remark) for remark in remarks].count(False) + margins_fail() + nights_fail() + empty_pass()
     with tempfile.TemporaryDirectory() as name:
+        failed += passed_of_others(Path(name))
         for check in CHECKS:
             for cell, expected in (("2", True), ("nan", False), ("inf", False), ("-inf", False)):
                 if passes(Path(name), cell, check) != expected:
                     print(f"FAILED {check}: a table with {cell} {'fails' if expected else 'passes'}")
                     failed += 1
-    print(f"{failed} of {len(remarks) + 4 + len(EMPTY) + 4 * len(CHECKS)} failed")
+    print(f"{failed} of {len(remarks) + 7 + len(EMPTY) + 4 * len(CHECKS)} failed")
     return 1 if failed else 0
 
 

@@ -256,7 +256,7 @@ def main():
     parser.add_argument("--list", action="store_true", help="say how each run ended")
     parser.add_argument("--passed", type=Path, help="a file to note what passed, from which a test that was stopped goes on")
     arguments = parser.parse_args()
-    passed, failed = Passed(arguments.passed, arguments.squeal), 0
+    passed, failed = Passed(arguments.passed, arguments.squeal, arguments.library), 0
     with tempfile.TemporaryDirectory(prefix="squeal-fault-") as name:
         for scene in scenes.SCENES:
             if arguments.scene and scene.name not in arguments.scene:

@@ -91,7 +91,7 @@ class Fuzz:
         self.made.mkdir()
         self.bases = [base for base in scenes.bases(arguments.squeal, self.made)
                       if not arguments.only or arguments.only in base.name]
-        self.answers, self.passed = {}, Passed(arguments.passed, arguments.squeal)
+        self.answers, self.passed = {}, Passed(arguments.passed, arguments.squeal, arguments.library)
         self.mine, self.loops = threading.local(), []
 
     def launch(self, work, words, ranks=1):

@@ -20,11 +20,13 @@ static int TestValues(void)
   failed += CheckClose("linear, a quarter of the way", RampValue(&linear, 0.375), 0.25, 1e-15);
   failed += CheckClose("smooth, a third of the way: (1 - cos 60) / 2", RampValue(&smooth, 0.25 + 0.5 / 3), 0.25, 1e-15);
   failed += CheckClose("smooth, half way", RampValue(&smooth, 0.5), 0.5, 1e-15);
+  failed += CheckClose("way half a linear ramp: length / 8", RampIntegral(&linear, 0.5), 0.0625, 1e-15);
+  failed += CheckClose("way half a smooth ramp: length (1/4 - 1 / (2 pi))", RampIntegral(&smooth, 0.5), 0.125 - 0.25 / RAMP_PI, 1e-15);
   failed += CheckClose("way after a linear ramp: half of its length is lost", RampIntegral(&linear, 2), 1.5, 1e-15);
   return failed + CheckClose("way after a smooth ramp", RampIntegral(&smooth, 2), 1.5, 1e-15);
 }
 
-/* Breaks when: the integral is not that of the value, inside the ramp or past its ends. Error of a central difference:
+/* Breaks when: the integral is not that of the value but for a constant, inside the ramp or past its ends. Error of a central difference:
    e^2 / 6 r'' with r'' <= (pi / length)^2 / 2 */
 static int TestIntegral(RampShape shape)
 {
