@@ -180,7 +180,7 @@ PetscErrorCode OptionsCheckArguments(int argc, char *const argv[]);
 PetscErrorCode OptionsCheckFile(const char file[], PetscBool is_yaml);
 
 /*@ OptionsCheckNumbers - raises an error for nan, inf and what overflows to it, in the value of any option, whatever
-    PETSc makes of it. Not collective: all ranks have the same options. @*/
+    PETSc makes of it, and for a value of more than one line. Not collective: all ranks have the same options. @*/
 PetscErrorCode OptionsCheckNumbers(void);
 
 /*@ OptionsCheckNumber - the same for one option between PetscOptionsBegin() and PetscOptionsEnd(). Not collective. @*/

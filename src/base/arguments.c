@@ -95,10 +95,11 @@ PetscErrorCode OptionsCheckNumbers(void)
   PetscCall(PetscOptionsGetAll(NULL, &all));
   for (word = strtok_r(all, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
     PetscCall(PetscOptionsValidKey(word, &is_name));
-    if (is_name)
-      PetscCall(PetscStrncpy(name, word, sizeof(name)));
-    else if (strcasecmp(name, "-output_dir"))
-      PetscCall(ValueCheckFinite(name, word));
+    if (is_name) PetscCall(PetscStrncpy(name, word, sizeof(name)));
+    PetscCheck(!word[strcspn(word, "\n\r")], PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s has a value that goes on in a new line after '%.*s'; give it in one line", name,
+               (int)strcspn(word, "\n\r"), word);
+    if (!is_name && strcasecmp(name, "-output_dir")) PetscCall(ValueCheckFinite(name, word));
   }
   PetscCall(PetscFree(all));
   PetscFunctionReturn(0);
