@@ -19,15 +19,18 @@
    for the left vector l of the phase and its eigenvalue m, (m - 1) l . x' = -T' l . f: m = 1 where T' = dT/dtheta = 0 and nowhere else.
    Forces count by their means: a kink at the part a of a step makes c_i h^2 a (1 - a) of T, and theta moves a: T' is h sum c_i (1 - 2 a),
    of first order. To place the kinks better raises that order, and makes T' zero for no steps but the exact flow, the only ones that
-   go on where a shift cuts them. So m is 1 - T' nearly, -1.6e-2 and -2.1e-3 off in 25 and 401 steps of a small brake.
+   go on where a shift cuts them. So m is 1 - T' nearly: 1.4e-2 and -2.2e-3 off in 25 and 401 steps of a small brake, T' -1.6e-2 and
+   2.1e-3; in 103 steps, which mix it with the next one to a conjugate pair, 4.3e-2 and 2.4e-2. To ask for 1e-6 is to ask for the exact
+   flow.
 
-   T' and x' are known exactly, by Newton's matrix (solver/shooting.h). Where the period goes with the phase, T(theta(x)), the whole
-   curve x(theta) returns to itself: the return map of the steps as they are, of which the phase has the multiplier 1, and the others are
-   those of M. `phase_multiplier` is it, measured by the flow from the cycles next to this one: 1 to 1e-9 where M is right (0.1 % off in the
-   derivative of each step makes 6e-4 of it) and no status changes between them; `period_slope` is T'. In M the phase is told by its
-   vector, which makes most of x'. Where others have about as much part in that (at a fold, or where steps mix them) and it depends on which
-   is taken, where the largest modulus is nearer to 1 than its own error or the root of -cycle_rtol, or where that error is not known,
-   the class is `numerical`: stability cannot be told.
+   T' and x' are known exactly, by Newton's matrix (solver/shooting.h): `period_slope` is T', `phase_multiplier` the eigenvalue m of M.
+   `derivative_check` is the part along x' of M x' + f T', M and f by differences of the flow from the cycles next to this one. By x' and
+   T' it is 1 where M and f are those of the flow, where no status changes in between to 1e-9, in 16384 steps to 2e-7 (0.1 % off in the
+   derivative of each step makes 6e-4 of it). It is no multiplier, and tells nothing of how near x is to a cycle: that is the residual.
+
+   In M the phase is told by its vector, which makes most of x'. Where others have about as much part in that (at a fold, or where steps
+   mix them) and it depends on which is taken, where the largest modulus is nearer to 1 than its own error or the root of -cycle_rtol, or
+   where that error is not known, the class is `numerical`: stability cannot be told.
 
    A branch begins at the end of a transient, or where a mode of the sliding state becomes unstable (src/reduced/cycle/onset.c). Where
    its parameter turns back the fold is found, dp/ds = 0; the error of its parameter is that of finding it and the

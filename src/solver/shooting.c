@@ -259,8 +259,8 @@ PetscErrorCode ShootingAdvance(const Shooting *s, PetscReal step, const Shooting
   PetscFunctionReturn(0);
 }
 
-/* Multiplier of the phase: central difference of the flow from the cycles a little earlier and later, each with its own period */
-static PetscErrorCode ShotMeasurePhase(ShootingWork *w, const ShootingCycle *c, ShootingPhase *phase)
+/* The check of the derivative: central difference of the flow from the cycles a little earlier and later, each with its own period */
+static PetscErrorCode ShotCheckDerivative(ShootingWork *w, const ShootingCycle *c, ShootingPhase *phase)
 {
   const Shooting *s      = w->s;
   PetscReal       length = 0, speed = 0, part = 0, e;
@@ -279,8 +279,8 @@ static PetscErrorCode ShotMeasurePhase(ShootingWork *w, const ShootingCycle *c, 
     for (PetscInt i = 0; i < s->n; i++) w->rhs[i] += side * w->y[i] / (2 * e);
   }
   for (PetscInt i = 0; i < s->n; i++) part += PetscSqr(s->weight[i]) * phase->x[i] * w->rhs[i];
-  phase->multiplier = part / length;
-  phase->known      = PetscIsInfOrNanReal(phase->multiplier) ? PETSC_FALSE : PETSC_TRUE;
+  phase->check = part / length;
+  phase->known = PetscIsInfOrNanReal(phase->check) ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -301,7 +301,7 @@ PetscErrorCode ShootingGetPhase(const Shooting *s, const ShootingCycle *cycle, S
     PetscCall(DenseSolve(N, w.A, w.pivot, PETSC_FALSE, 1, w.rhs));
     PetscCall(PetscArraycpy(phase->x, w.rhs, n));
     phase->slope = w.rhs[n];
-    PetscCall(ShotMeasurePhase(&w, cycle, phase));
+    PetscCall(ShotCheckDerivative(&w, cycle, phase));
   }
   PetscCall(ShotDestroy(&w));
   PetscFunctionReturn(0);

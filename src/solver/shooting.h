@@ -83,17 +83,16 @@ typedef struct {
 
 /* How a cycle changes with the place of its steps in the motion */
 typedef struct {
-  PetscReal *x;          /* [n] dx/dtheta, the caller's */
-  PetscReal  slope;      /* dT/dtheta */
-  PetscReal  multiplier; /* of the phase, where the period goes with it: by the flow from the cycles next to this one */
-  PetscBool  known;      /* false where the flow fails next to the cycle, or Newton's matrix is singular */
+  PetscReal *x;     /* [n] dx/dtheta, the caller's */
+  PetscReal  slope; /* dT/dtheta */
+  PetscReal  check; /* part along x' of the flow's own M x' + f T', by differences: 1 where M and f are those of the flow, cycle or not */
+  PetscBool  known; /* false where the flow fails next to the cycle, or Newton's matrix is singular */
 } ShootingPhase;
 
 typedef struct {
-  PetscReal fixed[2]; /* the eigenvalue of M whose vector is the motion along the cycle; NaN where none is told */
-  PetscReal phase;    /* multiplier of the phase where the period goes with it, and dT/dtheta; NaN where unknown */
-  PetscReal slope;
-  PetscReal largest[2]; /* of the others */
+  PetscReal phase[2];     /* the eigenvalue of M whose vector is the motion along the cycle; NaN where none is told */
+  PetscReal slope, check; /* dT/dtheta, and the check of the derivative (ShootingPhase); NaN where unknown */
+  PetscReal largest[2];   /* of the others */
   PetscReal worst; /* modulus of the largest, if the phase's is another one that has as large a part in that motion */
 } ShootingStability;
 
@@ -105,8 +104,8 @@ typedef enum { SHOOTING_ALONG, SHOOTING_SPLITS, SHOOTING_NO_DERIVATIVE } Shootin
     told by `converged`; then x is where the iteration stopped, which may be further off than the guess. @*/
 PETSC_INTERN PetscErrorCode ShootingSolve(const Shooting *s, ShootingCycle *cycle);
 
-/*@ ShootingGetPhase - how a cycle that has converged changes with the place of its steps: by Newton's matrix, and the multiplier of
-    the phase by the flow. Not collective. @*/
+/*@ ShootingGetPhase - how a cycle that has converged changes with the place of its steps, by Newton's matrix, and what the flow
+    says of that matrix. Not collective. @*/
 PETSC_INTERN PetscErrorCode ShootingGetPhase(const Shooting *s, const ShootingCycle *cycle, ShootingPhase *phase);
 
 /*@ ShootingGetStability - multipliers of a cycle that has converged. Not collective. @*/

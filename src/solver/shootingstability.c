@@ -97,8 +97,8 @@ PetscErrorCode ShootingGetStability(const Shooting *s, const ShootingCycle *cycl
 
   PetscFunctionBeginUser;
   *stability = (ShootingStability){
-    .fixed = {NAN, NAN},
-      .phase = NAN, .slope = NAN
+    .phase = {NAN, NAN},
+      .slope = NAN, .check = NAN
   };
   PetscCall(PetscMalloc6(n * n, &m.A, n, &m.re, n, &m.im, n * n, &m.left, n * n, &m.right, n, &phase.x));
   PetscCall(PetscArraycpy(m.A, cycle->M, n * n));
@@ -106,14 +106,14 @@ PetscErrorCode ShootingGetStability(const Shooting *s, const ShootingCycle *cycl
   StabilityDrop(s, &m);
   PetscCall(ShootingGetPhase(s, cycle, &phase));
   if (phase.known) {
-    stability->phase = phase.multiplier;
     stability->slope = phase.slope;
+    stability->check = phase.check;
     PetscCall(StabilityFindPhase(s, phase.x, &m, &found, &n_candidates));
   }
   for (PetscInt i = 0; i < n; i++) stability->worst = PetscMax(stability->worst, hypot(m.re[i], m.im[i]));
   if (found >= 0) {
-    stability->fixed[0] = m.re[found];
-    stability->fixed[1] = m.im[found];
+    stability->phase[0] = m.re[found];
+    stability->phase[1] = m.im[found];
     m.re[found] = m.im[found] = 0;
   }
   for (PetscInt i = 0; i < n; i++) {

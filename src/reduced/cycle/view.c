@@ -30,12 +30,17 @@ static PetscErrorCode CycleViewStability(LimitCycle c, const CyclePoint *p, Pets
   PetscCall(PetscViewerASCIIPrintf(viewer, "  %s%s%s%s: largest multiplier %.6g%+.6gi (%.6g), that of the phase ",
                                    class, why ? " (" : "", why ? why : "", why ? ")" : "", (double)s->largest[0],
                                    (double)s->largest[1], (double)CycleMultiplier(s)));
-  if (PetscIsNanReal(s->phase))
+  if (PetscIsNanReal(s->phase[0]))
     PetscCall(PetscViewerASCIIPrintf(viewer, "unknown"));
   else
-    PetscCall(PetscViewerASCIIPrintf(viewer, "1%+.1e with dT/dtheta %+.1e", (double)(s->phase - 1), (double)s->slope));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "1%+.1e%+.1ei", (double)(s->phase[0] - 1), (double)s->phase[1]));
   PetscCall(PetscViewerASCIIPrintf(viewer, "; residual %.1e after %" PetscInt_FMT " steps of Newton's method\n",
                                    (double)p->residual, p->its));
+  if (!PetscIsNanReal(s->check))
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "  dT/dtheta %+.1e, by which these steps put the multiplier of the phase off; check of "
+                                     "their derivative 1%+.1e\n",
+                                     (double)s->slope, (double)(s->check - 1)));
   PetscFunctionReturn(0);
 }
 

@@ -9,8 +9,8 @@
 #define CYCLE_COLUMNS                                                                                                  \
   "point,parameter,value,value_error,kind,freq_hz,freq_error_hz,force_mean_n,force_rms_n,force_rms_error_n,"           \
   "force_peak_n,force_peak_error_n,open_share,multiplier_abs,multiplier_error,multiplier_re,multiplier_im,"            \
-  "phase_multiplier,period_slope,class,steps,residual,iterations,freq_cutoff_error_hz,"                                \
-  "force_rms_cutoff_error_n,force_peak_cutoff_error_n,multiplier_cutoff_error"
+  "phase_multiplier_re,phase_multiplier_im,class,steps,residual,iterations,freq_cutoff_error_hz,"                      \
+  "force_rms_cutoff_error_n,force_peak_cutoff_error_n,multiplier_cutoff_error,period_slope,derivative_check"
 #define PROBE_COLUMNS                                                                                                  \
   "point,parameter,value,probe,direction,displacement_rms_m,displacement_rms_error_m,displacement_peak_m,"             \
   "displacement_peak_error_m,velocity_rms_m_s,velocity_rms_error_m_s,velocity_peak_m_s,velocity_peak_error_m_s"
@@ -78,6 +78,16 @@ static PetscErrorCode CellPrintKnown(PetscBool known, PetscReal number, Cell cel
   PetscFunctionReturn(0);
 }
 
+/* Multiplier of the phase, how the period changes with the place of the steps, and the check of the derivative */
+static PetscErrorCode CellPrintPhase(const ShootingStability *s, Cell cell[4])
+{
+  const PetscReal number[] = {s->phase[0], s->phase[1], s->slope, s->check};
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 4; i++) PetscCall(CellPrintKnown(!PetscIsNanReal(number[i]), number[i], cell[i]));
+  PetscFunctionReturn(0);
+}
+
 /* Parameter, and its error where it is one of the results */
 static PetscErrorCode CellPrintValue(LimitCycle c, const CyclePoint *p, Cell cell[2])
 {
@@ -94,7 +104,7 @@ static PetscErrorCode CycleWriteRow(LimitCycle c, PetscInt i, ResultsTable table
   const CycleMeasure *a = &p->found, *b = &p->finer, *spread = &p->spread;
   const PetscReal    *large = p->stability.largest, size = CycleMultiplier(&p->stability);
   const char         *why;
-  Cell                error[4], cutoff[4], value[2], phase[2];
+  Cell                error[4], cutoff[4], value[2], phase[4];
 
   PetscFunctionBeginUser;
   PetscCall(CellPrintValue(c, p, value));
@@ -102,20 +112,19 @@ static PetscErrorCode CycleWriteRow(LimitCycle c, PetscInt i, ResultsTable table
   PetscCall(CellPrintKnown(p->has_finer, CycleError(a->rms, b->rms, spread->rms), error[1]));
   PetscCall(CellPrintKnown(p->has_finer, CycleError(a->peak, b->peak, spread->peak), error[2]));
   PetscCall(CellPrintKnown(p->has_finer, CycleMultiplierError(p), error[3]));
-  PetscCall(CellPrintKnown(!PetscIsNanReal(p->stability.phase), p->stability.phase, phase[0]));
-  PetscCall(CellPrintKnown(!PetscIsNanReal(p->stability.slope), p->stability.slope, phase[1]));
+  PetscCall(CellPrintPhase(&p->stability, phase));
   PetscCall(CellPrintKnown(p->has_higher, PetscAbsReal(p->higher.freq - a->freq), cutoff[0]));
   PetscCall(CellPrintKnown(p->has_higher, PetscAbsReal(p->higher.rms - a->rms), cutoff[1]));
   PetscCall(CellPrintKnown(p->has_higher, PetscAbsReal(p->higher.peak - a->peak), cutoff[2]));
   PetscCall(CellPrintKnown(p->has_higher, MultiplierCutoffError(p), cutoff[3]));
   PetscCall(ResultsTableRow(table,
                             "%" PetscInt_FMT ",%s,%s,%s,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%s,%.15g,%.15g,%s,%.15g,%.15g,"
-                            "%s,%s,%s,%" PetscInt_FMT ",%.15g,%" PetscInt_FMT ",%s,%s,%s,%s",
+                            "%s,%s,%s,%" PetscInt_FMT ",%.15g,%" PetscInt_FMT ",%s,%s,%s,%s,%s,%s",
                             i + 1, c->parameter, value[0], value[1], p->fold ? "fold" : "cycle", (double)a->freq,
                             error[0], (double)a->mean, (double)a->rms, error[1], (double)a->peak, error[2],
                             (double)a->open, (double)size, error[3], (double)large[0], (double)large[1], phase[0],
                             phase[1], CycleClass(p, c->rtol, &why), p->n_steps, (double)p->residual, p->its, cutoff[0],
-                            cutoff[1], cutoff[2], cutoff[3]));
+                            cutoff[1], cutoff[2], cutoff[3], phase[2], phase[3]));
   PetscFunctionReturn(0);
 }
 
