@@ -70,23 +70,14 @@ from pathlib import Path
 from check import Checker, Failure, Line, require
 from forked import run_command
 from ranks import fault_of_ranks, ranks_of_runs
-from served import served_program
+from served import own_words, served_program
 
 SOURCE = Path(__file__).resolve().parent.parent
 FINAL_SUFFIXES = {".csv", ".h5", ".xmf", ".bin", ".info"}
-# Open MPI 5 cannot be told to be quiet: remarks between dashes, each ended by a zero byte, which may come late; and now
-# and then a line of its daemon, "[host:pid] PMIX ERROR", or of libevent, "[warn] Epoll"
-MPIRUN_REMARK = re.compile(r"^-{40,}\n.*?^-{40,}$|^\[\S+:\d+\] PMIX ERROR[^\n]*$|^\[warn\] Epoll[^\n]*$",
-                           re.MULTILINE | re.DOTALL)
 SKIPPED = 77
 # Kernels of OpenBLAS, and what a processor must be able to do to run them
 CORES = {"Nehalem": "sse4_2", "Haswell": "avx2", "Zen": "avx2", "SkylakeX": "avx512vl"}
 MOST_BEYOND, WORST_RATIO = 0.01, 3  # of the errors that a sweep states
-
-
-def own_words(stderr):
-    """What the program itself wrote."""
-    return MPIRUN_REMARK.sub("", stderr.replace("\0", ""))
 
 
 def end(process):

@@ -4,6 +4,7 @@ of tests/fault/serve.c and inject.c, which say how."""
 import argparse
 import errno
 import os
+import re
 import shutil
 import signal
 import socket
@@ -21,6 +22,15 @@ ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 # What a process alone does not need, and costs half of its start: networks, and to look for devices
 LEAN = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_btl": "self", "OMPI_MCA_pml": "ob1", "OMPI_MCA_mtl": "^psm,psm2,ofi",
         "OMPI_MCA_orte_create_session_dirs": "0", "HWLOC_COMPONENTS": "-pci,-linuxio,-opencl,-gl"}
+# Open MPI 5 cannot be told to be quiet: remarks between dashes, each ended by a zero byte, which may come late; and now
+# and then a line of its daemon, "[host:pid] PMIX ERROR", or of libevent, "[warn] Epoll"
+MPIRUN_REMARK = re.compile(r"^-{40,}\n.*?^-{40,}$|^\[\S+:\d+\] PMIX ERROR[^\n]*$|^\[warn\] Epoll[^\n]*$",
+                           re.MULTILINE | re.DOTALL)
+
+
+def own_words(stderr):
+    """What the program itself wrote."""
+    return MPIRUN_REMARK.sub("", stderr.replace("\0", ""))
 
 
 def plan(folder, report, calls, at, **more):

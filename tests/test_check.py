@@ -14,7 +14,7 @@ from types import SimpleNamespace
 from check import Checker, Failure, Line, measured_in, worst_of
 from passed import Passed
 from ranks import fault_of_ranks, ranks_of_runs
-from run import own_words
+from served import own_words
 
 CHECKS = ({"min": 0}, {"max": 10}, {"min": 0, "max": 10}, {"equals": [1, 2, 3], "rtol": 1}, {"equals_run": "run", "rtol": 1})
 EMPTY = (([1, 2], {}, False), ([1], {}, True), ([1, 2], {"ranks": [1]}, True), ([1], {"night": [2]}, False), ([1], {"ranks": [1, 2]}, True))

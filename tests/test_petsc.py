@@ -11,7 +11,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from run import own_words
+from served import own_words
 
 OPTIONS = Path(__file__).resolve().parents[1] / "options"
 COARSE = "-rig_disc_elements 6,12,1 -rig_pad_elements 3,3,2 -rig_beam_elements 4"

@@ -18,7 +18,6 @@ import collections
 import csv
 import math
 import random
-import re
 import shutil
 import sys
 import tempfile
@@ -35,8 +34,6 @@ sys.path.append(str(Path(__file__).resolve().parents[1]))
 import served  # noqa: E402
 from passed import Passed  # noqa: E402
 
-# Open MPI 5 cannot be told to be quiet: remarks between dashes, and a line of its daemon
-REMARK = re.compile(r"^-{40,}\n.*?^-{40,}$|^\[\S+:\d+\] PMIX ERROR[^\n]*$", re.MULTILINE | re.DOTALL)
 FINAL = {".csv", ".h5", ".xmf", ".bin"}
 TOLERANCE = 1e-9
 
@@ -101,7 +98,7 @@ class Fuzz:
             self.mine.loop = served.Served(self.arguments.squeal, self.arguments.library, self.arguments.limit)
             self.loops.append(self.mine.loop)
         result = self.mine.loop.run(work, words) if ranks == 1 else self.mine.loop.join(work, words, ranks)
-        return result.status, REMARK.sub("", result.stderr)
+        return result.status, served.own_words(result.stderr)
 
     def answer(self, base):
         """Of the undamaged input."""
