@@ -151,13 +151,14 @@ static PetscBool ShiftSpoils(const Spectrum *s, PetscReal shift)
   return nearest < MODES_NEAR * farthest ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Factors at another shift; K and K_even may have been released meanwhile */
+/* Factors at another shift; K and K_even may have been released before the first one, and the pencil given here has what
+   makes products alone */
 static PetscErrorCode ModesMove(Modes modes, const PencilMatrices *pencil, PetscReal shift, ShiftInvert *si)
 {
   PencilMatrices again = *pencil, whole;
 
   PetscFunctionBeginUser;
-  if (si->released) {
+  if (si->regain) {
     PetscCall(PencilGetMatrices(modes->pencil, &whole));
     again.K      = whole.K;
     again.K_even = whole.K_even;

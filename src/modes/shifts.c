@@ -217,6 +217,7 @@ static PetscErrorCode ShiftsSolveOne(Modes modes, const PencilMatrices *pencil, 
   PetscCall(ModesFactor(modes, pencil, shift, si));
   if (!modes->keep) PetscCall(ShiftsRelease(modes, pencil, si, &K));
   if (K) rest.K = K;
+  if (si->regain) rest.K_even = NULL;
   PetscCall(ModesSolveWindow(modes, &rest, window, si));
   PetscCall(MatDestroy(&K));
   PetscFunctionReturn(0);

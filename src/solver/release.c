@@ -112,6 +112,6 @@ PetscErrorCode ShiftInvertRelease(const PencilMatrices *pencil, ShiftInvert *si,
     PetscCall(MatDestroy(&A));
   }
   PetscCall(MatDestroy(&si->term[0]));
-  si->released = PETSC_TRUE;
+  si->released = si->regain = PETSC_TRUE;
   PetscFunctionReturn(0);
 }

@@ -26,6 +26,7 @@ typedef struct ShiftInvert {
   PetscBool inertia, counts; /* negative pivots can be counted; they are being, so that null pivots are no error */
   PetscBool factored;        /* there are factors, not the analysis alone */
   PetscBool released;        /* the matrix is not there any more */
+  PetscBool regain;          /* K and K_even that it was made of may have been freed: to be got again for another shift */
   PetscBool even;            /* the matrix that is factored is symmetric: LDL' */
   PetscBool halves;          /* its upper half will do, on one rank */
   PetscInt  workspace;       /* of MUMPS beyond its estimate, percent; 0: its own choice, which is raised where it fails */
@@ -77,7 +78,7 @@ PETSC_INTERN PetscErrorCode ShiftInvertFactor(const PencilMatrices *pencil, Shif
 /* release.c - gives up the symmetric matrix that MUMPS has factored, a copy of the pattern of K, and with an update its
    reference to K_even: products with it are made from K, M and the pairs then. Where it is but the upper half it stays, and K,
    else NULL, is what makes products with K from it, for the caller to destroy, so that the pencil's own may be freed. For the
-   last shift: another one needs another analysis. */
+   last shift: another one needs K and K_even again, and another analysis. */
 PETSC_INTERN PetscErrorCode ShiftInvertRelease(const PencilMatrices *pencil, ShiftInvert *si, Mat *K);
 /* The upper half of K_even - si->shift M that is factored (borrowed), NULL where it is whole */
 PETSC_INTERN PetscErrorCode ShiftInvertGetHalf(const ShiftInvert *si, Mat *half);
