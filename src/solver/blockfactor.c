@@ -9,8 +9,7 @@
 
    with S the square root of the diagonal of G and D not below rounding: T is always regular, so what one pass does not
    resolve the next one does. A row of R is the size of its direction. Without M a pass measures what the next one needs
-   while it has V at hand (panel.h), and where that is small enough for who asks there is no next one: W = V C + Q R holds
-   whether Q is orthonormal or not.
+   while it has V at hand (panel.h).
 */
 #include "orthonormal.h"
 #include "panel.h"
@@ -238,19 +237,6 @@ static PetscErrorCode PassTrim(PetscInt n, BV W, BlockFactors *factors, BlockPas
   PetscFunctionReturn(0);
 }
 
-/* Whether what was measured of the block is as near to orthonormal as it need be */
-static PetscBool PassIsNear(PetscInt n, PetscReal loose, const BlockPass *pass)
-{
-  const PetscInt m = pass->m;
-
-  if (!pass->measured) return PETSC_FALSE;
-  for (PetscInt i = 0; i < m * n; i++)
-    if (!(PetscAbsReal(pass->C[i]) <= loose)) return PETSC_FALSE;
-  for (PetscInt i = 0; i < m * m; i++)
-    if (!(PetscAbsReal(pass->T[i] - (i % (m + 1) ? 0 : 1)) <= loose)) return PETSC_FALSE;
-  return PETSC_TRUE;
-}
-
 /* W := (W - V C) T with its factors */
 static PetscErrorCode PassRun(BV V, PetscInt n, Mat M, BV W, BlockFactors *factors, BlockPass *pass)
 {
@@ -260,7 +246,6 @@ static PetscErrorCode PassRun(BV V, PetscInt n, Mat M, BV W, BlockFactors *facto
   PassAccumulate(n, pass, factors);
   PetscCall(M ? PassApplyMass(V, n, W, pass) : PassApply(V, n, W, pass));
   PetscCall(PassTrim(n, W, factors, pass));
-  if (factors->loose > 0 && PassIsNear(n, factors->loose, pass)) pass->clean = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 

@@ -13,7 +13,6 @@
 #define LOOK_RARELY 0.25 /* of the columns so far: longest way to the next look */
 /* of the others at a restart: on the default brake with 112 columns 0.5, 0.7, 0.8 take 400, 384, 376 solves */
 #define RESTART_KEEP 0.8
-#define BASIS_LOOSE 1e-10 /* products of different vectors of the basis of an unsymmetric problem */
 #define REACH_TRUST 100  /* an eigenvalue is off by less than so many times its residual */
 
 /* Sorted Schur form of the projected problem, the first `locked` columns of which are there already */
@@ -196,7 +195,6 @@ static PetscErrorCode BlockKrylovBegin(EPS eps)
   if (eps->isgeneralized && eps->ispositive) PetscCall(STGetBilinearForm(eps->st, &M));
   PetscCall(BlockSpaceCreate(eps->st, eps->V, M, eps->ncv, ctx->block, &ctx->space));
   PetscCall(MatDestroy(&M));
-  ctx->space.loose = eps->ishermitian ? 0 : BASIS_LOOSE; /* the symmetric G is that of an orthonormal basis */
   PetscCall(BlockSpaceStart(&ctx->space));
   ctx->locked = ctx->converged = ctx->seen = 0;
   ctx->its                                 = 1;

@@ -36,7 +36,7 @@ static PetscErrorCode SpaceApply(BlockSpace *s, PetscInt first, PetscInt n)
 /* Makes the block W orthonormal to the first n columns of V, which its columns follow, as many as there are in it */
 static PetscErrorCode SpaceAppend(BlockSpace *s, PetscInt n, PetscReal drop, PetscScalar H[], PetscInt *rank)
 {
-  BlockFactors factors = {.ld = s->ncv + s->block, .most = s->n - n, .H = H, .drop = drop, .loose = s->loose};
+  BlockFactors factors = {.ld = s->ncv + s->block, .most = s->n - n, .H = H, .drop = drop};
 
   PetscFunctionBeginUser;
   PetscCall(BlockFactorise(s->V, n, s->M, s->W, &factors));

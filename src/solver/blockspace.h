@@ -16,7 +16,6 @@ typedef struct {
   PetscInt     ncv, block;
   PetscInt     m, p;
   PetscInt     applied; /* columns that Op was applied to, in all restarts */
-  PetscReal    loose;   /* V may be as far from orthonormal: the decomposition holds in any basis. 0: to rounding */
   PetscScalar *G;       /* [ncv][ncv + block] */
   PetscScalar *scratch; /* [block][ncv + block] */
 } BlockSpace;

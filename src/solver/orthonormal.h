@@ -32,7 +32,6 @@ typedef struct {
   PetscInt     ld, most; /* leading dimension of H; columns that the new block may have at most */
   PetscScalar *H;        /* [columns][ld] C in rows 0 .. n - 1, R in as many rows below as there are columns now */
   PetscReal    drop;     /* directions shorter than this beside the longest column are left out */
-  PetscReal    loose;    /* largest product of different vectors that may stay where it was measured; 0: rounding alone */
 } BlockFactors;
 
 /* W = V C + Q R for the active columns of W and the first n columns of V, which are orthonormal in M (the identity where
