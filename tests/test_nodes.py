@@ -109,12 +109,15 @@ def test_disc(runs):
     page = subprocess.run([SOURCE / "scripts/report", "cloud2"], cwd=runs.folder, capture_output=True, text=True)
     check("scripts/report writes its page without bodies", page.returncode == 0 and "which have no faces" in page.stderr + page.stdout,
           page.stderr)
-    write_nodes(runs.folder / "parts.csv", mesh[1], lambda x: "rim" if numpy.hypot(x[0], x[1]) > 0.11 else "inside")
+    write_nodes(runs.folder / "parts.csv", mesh[1], lambda x: "disclike" if numpy.hypot(x[0], x[1]) > 0.11 else "inside")
     parts = runs.modes("parts", 2, *loaded, "parts.csv")
-    shares = [float(row["part_rim_percent"]) + float(row["part_inside_percent"]) for row in parts[0]]
-    check("parts of a table", {row["label"] for row in parts[0]} <= {"rim", "inside"} and max(abs(share - 100) for share in shares) < 1e-9)
-    ring = runs.modes("ring", 1, *loaded, "parts.csv", "-modes_disc", "rim")
+    shares = [float(row["part_disclike_percent"]) + float(row["part_inside_percent"]) for row in parts[0]]
+    check("parts of a table, none with a disc's name", {row["label"] for row in parts[0]} <= {"disclike", "inside"}
+          and max(abs(share - 100) for share in shares) < 1e-9)
+    ring = runs.modes("ring", 1, *loaded, "parts.csv", "-modes_disc", "disclike")
     check("-modes_disc of a table", [row["label"] for row in ring[0]] == labels)
+    other = runs.run(1, *loaded, "parts.csv", "-modes_disc", "disc", "-output_dir", "other")
+    check("-modes_disc of no part", "-modes_disc 'disc' is none of the -parts" in other.stderr, other.stderr)
     sweep = runs.run(1, "-terms", "k,m,g", "-k_file", "saved/K.bin", "-k_kind", "stiffness", "-m_file", "saved/M.bin", "-m_kind", "mass",
                      "-g_file", "saved/K.bin", "-g_kind", "stiffness", "-g_parameter", "warmth", "-g_scale", "-1e-3", "-warmth", 1,
                      "-operators_nodes", "nodes.csv", "-modes_band", "0,700", "-analysis", "sweep", "-sweep_parameter", "warmth",

@@ -19,6 +19,8 @@
 */
 #include "modesimpl.h"
 #include "disc.h"
+#include <ctype.h>
+#include <string.h>
 
 #define MAX_PARTS  64
 #define DISC_SHARE 0.25 /* participation from which on a mode is named after the disc's shape */
@@ -104,7 +106,6 @@ static PetscErrorCode SurfacesMark(Model model, Contact contact, PetscInt n_vert
   PetscCall(PetscCalloc1(n_vertices, marks));
   PetscCall(ContactGetInterfaces(contact, &n_interfaces, &interfaces));
   for (PetscInt i = 0; i < 2 * n_interfaces; i++) {
-
     PetscCall(ModelGetSetNodes(model, i % 2 ? interfaces[i / 2].master : interfaces[i / 2].slave, &n, &vertex));
     for (PetscInt k = 0; k < n; k++) (*marks)[vertex[k]] = PETSC_TRUE;
     PetscCall(PetscFree(vertex));
@@ -129,17 +130,32 @@ static PetscErrorCode PointsAreFlat(const Mesh *mesh, const Disc *disc, PetscBoo
   PetscFunctionReturn(0);
 }
 
-/* Whether a part is the disc by its name, in small or capital letters */
+/* Whether a word stands in a name, between what are no letters */
+static PetscErrorCode NameHasWord(const char name[], const char word[], PetscBool *has)
+{
+  const char *at = name;
+  size_t      length;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrlen(word, &length));
+  for (*has = PETSC_FALSE; !*has && (at = strstr(at, word)); at++)
+    *has =
+      (at == name || !isalpha((unsigned char)at[-1])) && !isalpha((unsigned char)at[length]) ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Whether a part is the disc by a word of its name, in small or capital letters */
 static PetscErrorCode NameIsDisc(const char part[], PetscBool *is_disc)
 {
   static const char *const names[] = {"disc", "disk", "rotor"};
-  char                     name[256], *at = NULL;
+  char                     name[256];
 
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(name, part, sizeof(name)));
   PetscCall(PetscStrtolower(name));
-  for (size_t i = 0; i < sizeof(names) / sizeof(names[0]) && !at; i++) PetscCall(PetscStrstr(name, names[i], &at));
-  *is_disc = at ? PETSC_TRUE : PETSC_FALSE;
+  *is_disc = PETSC_FALSE;
+  for (size_t i = 0; i < sizeof(names) / sizeof(names[0]) && !*is_disc; i++)
+    PetscCall(NameHasWord(name, names[i], is_disc));
   PetscFunctionReturn(0);
 }
 
@@ -147,7 +163,7 @@ static PetscErrorCode NameIsDisc(const char part[], PetscBool *is_disc)
 static PetscErrorCode LabelsNameDisc(Modes modes, const Mesh *mesh, PetscInt *disc)
 {
   PetscInt  n = 0, by_name = -1;
-  PetscBool same, said;
+  PetscBool same;
 
   PetscFunctionBeginUser;
   for (PetscInt part = 0; part < mesh->n_parts; part++) {
@@ -157,10 +173,8 @@ static PetscErrorCode LabelsNameDisc(Modes modes, const Mesh *mesh, PetscInt *di
     n += same;
     if (same) by_name = part;
   }
-  PetscCall(PetscStrcmp(modes->disc, "disc", &said));
-  said = !said;
-  PetscCheck(*disc >= 0 || !said, modes->comm, PETSC_ERR_USER_INPUT, "-modes_disc '%s' is none of the -parts",
-             modes->disc);
+  PetscCheck(*disc >= 0 || !modes->has_disc, modes->comm, PETSC_ERR_USER_INPUT,
+             "-modes_disc '%s' is none of the -parts", modes->disc);
   if (*disc < 0 && n == 1) *disc = by_name;
   PetscFunctionReturn(0);
 }

@@ -45,7 +45,7 @@ struct _p_Modes {
   PetscReal band[2], target; /* Hz */
   PetscReal growth;          /* rad/s; 0: a tenth of the highest angular frequency */
   PetscReal max_time;        /* s, of one solution; 0: any */
-  PetscBool has_band, has_nearest, has_route, left, is_static, keep, filters;
+  PetscBool has_band, has_nearest, has_route, has_disc, left, is_static, keep, filters;
   PetscInt  count;
   PetscInt  damping;  /* route of a damped solution: DAMPING_AUTO ... */
   PetscInt  n_shifts; /* of a band; 0: chosen */

@@ -31,7 +31,7 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   PetscCall(OptionsGetBool(PetscOptionsObject, "-modes_filters",
                            "write modal filters, which find the modes' amplitudes in a transient", &modes->filters));
   PetscCall(PetscOptionsString("-modes_disc", "part whose shapes are named by nodal circles and diameters", "modes.h",
-                               modes->disc, modes->disc, sizeof(modes->disc), NULL));
+                               modes->disc, modes->disc, sizeof(modes->disc), &modes->has_disc));
   PetscCall(PetscOptionsEList("-modes_contact", "pairs that are closed: every one, or those of the sliding state",
                               "modes.h", contacts, 2, contacts[0], &contact, NULL));
   PetscCall(PetscOptionsEList(
