@@ -5,10 +5,11 @@
 */
 #include "gather.h"
 
-/* Places of records that come in these numbers from the ranks, or go to them; their sum */
+/* Places of records that come in these numbers from the ranks, or go to them; their sum, an error on all ranks where one has
+   too many */
 static PetscErrorCode Places(MPI_Comm comm, const PetscMPIInt count[], PetscMPIInt start[], PetscInt *sum)
 {
-  PetscInt64  total = 0;
+  PetscInt64  total = 0, most;
   PetscMPIInt n_ranks;
 
   PetscFunctionBeginUser;
@@ -17,8 +18,9 @@ static PetscErrorCode Places(MPI_Comm comm, const PetscMPIInt count[], PetscMPII
     start[r] = (PetscMPIInt)total;
     total += count[r];
   }
-  PetscCheck(total <= PETSC_MPI_INT_MAX, comm, PETSC_ERR_SUP, "%" PetscInt64_FMT " records of all ranks exceed an int",
-             total);
+  PetscCallMPI(MPI_Allreduce(&total, &most, 1, MPIU_INT64, MPI_MAX, comm));
+  PetscCheck(most <= PETSC_MPI_INT_MAX, comm, PETSC_ERR_SUP, "%" PetscInt64_FMT " records for one rank exceed an int",
+             most);
   *sum = (PetscInt)total;
   PetscFunctionReturn(0);
 }
@@ -57,8 +59,17 @@ PetscErrorCode GatherRecords(MPI_Comm comm, PetscInt n_local, size_t size, const
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ExchangeRecords(MPI_Comm comm, PetscInt *n, size_t size, const void *local, const PetscMPIInt rank[],
-                               void *in)
+/* The records in the order of the ranks that they go to, each rank's from to_start; to_start is then where each ends */
+static PetscErrorCode RecordsSort(PetscInt n, size_t size, const char local[], const PetscMPIInt rank[],
+                                  PetscMPIInt to_start[], char out[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++)
+    PetscCall(PetscMemcpy(&out[(size_t)to_start[rank[i]]++ * size], &local[(size_t)i * size], size));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExchangeRecords(MPI_Comm comm, PetscInt *n, size_t size, void *local, const PetscMPIInt rank[], void *in)
 {
   PetscInt     n_out, total;
   PetscMPIInt  n_ranks, *to, *to_start, *from, *from_start;
@@ -73,9 +84,9 @@ PetscErrorCode ExchangeRecords(MPI_Comm comm, PetscInt *n, size_t size, const vo
   PetscCall(Places(comm, to, to_start, &n_out));
   PetscCall(Places(comm, from, from_start, &total));
   PetscCall(PetscMalloc1((size_t)n_out * size, &out));
-  for (PetscInt i = 0; i < n_out; i++)
-    PetscCall(PetscMemcpy(&out[(size_t)to_start[rank[i]]++ * size], (const char *)local + (size_t)i * size, size));
-  PetscCall(Places(comm, to, to_start, &n_out));
+  PetscCall(RecordsSort(n_out, size, *(char **)local, rank, to_start, out));
+  PetscCall(PetscFree(*(void **)local));
+  for (PetscMPIInt r = 0; r < n_ranks; r++) to_start[r] -= to[r];
   PetscCall(PetscMalloc((size_t)total * size, in));
   PetscCall(RecordCreate(size, &record));
   PetscCallMPI(MPI_Alltoallv(out, to, to_start, record, *(void **)in, from, from_start, record, comm));

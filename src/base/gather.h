@@ -23,16 +23,16 @@ PETSC_INTERN PetscErrorCode GatherRecords(MPI_Comm comm, PetscInt n_local, size_
    ExchangeRecords - sends each record to a rank; those that arrive are in the order of the ranks that they come from,
    and of each in its order. Counts as in GatherRecords(). Collective.
 
-   Input/Output Parameter:
-.  n - number of this rank's records, 0 allowed; then of those that arrive
+   Input/Output Parameters:
++  n     - number of this rank's records, 0 allowed; then of those that arrive
+-  local - address of the pointer to this rank's records, of PetscMalloc(); they are freed once they are sorted
 
    Input Parameters:
-+  size  - of one record, bytes
-.  local - this rank's records
--  rank  - [n] to which each goes
++  size - of one record, bytes
+-  rank - [n] to which each goes
 
    Output Parameter:
 .  in - address of the pointer to those that arrive, set for the caller, who frees it with PetscFree()
 @*/
-PETSC_INTERN PetscErrorCode ExchangeRecords(MPI_Comm comm, PetscInt *n, size_t size, const void *local,
+PETSC_INTERN PetscErrorCode ExchangeRecords(MPI_Comm comm, PetscInt *n, size_t size, void *local,
                                             const PetscMPIInt rank[], void *in);

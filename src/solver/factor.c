@@ -48,17 +48,22 @@ static PetscErrorCode ShiftInvertAdd(PetscReal c, Mat X, MatStructure pattern, M
    user has a solver of his own */
 static PetscErrorCode ShiftInvertHalf(const ShiftInvert *si, const PencilMatrices *pencil, Mat *A)
 {
-  static const char *const given[] = {"-ksp_type", "-pc_type", "-pc_factor_mat_solver_type"};
-  const Mat                K       = ShiftInvertStiffness(si, pencil);
-  PetscBool                fits    = si->even && si->halves ? PETSC_TRUE : PETSC_FALSE, is;
+  static const char *const given[][2] = {
+    {"-ksp_type",                  KSPPREONLY    },
+    {"-pc_type",                   PCCHOLESKY    },
+    {"-pc_factor_mat_solver_type", MATSOLVERMUMPS}
+  };
+  const Mat K    = ShiftInvertStiffness(si, pencil);
+  PetscBool fits = si->even && si->halves ? PETSC_TRUE : PETSC_FALSE, is, said;
+  char      value[64];
 
   PetscFunctionBeginUser;
   *A = NULL;
   PetscCall(PetscObjectTypeCompare((PetscObject)K, MATSEQAIJ, &is));
   if (!is) fits = PETSC_FALSE;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(given) && fits; i++) {
-    PetscCall(PetscOptionsHasName(NULL, "st_", given[i], &is));
-    if (is) fits = PETSC_FALSE;
+    PetscCall(PetscOptionsGetString(NULL, "st_", given[i][0], value, sizeof(value), &said));
+    if (said) PetscCall(PetscStrcmp(value, given[i][1], &fits));
   }
   if (!fits) PetscFunctionReturn(0);
   PetscCall(MatConvert(K, MATSEQSBAIJ, MAT_INITIAL_MATRIX, A));

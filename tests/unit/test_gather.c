@@ -49,18 +49,20 @@ static int CheckExchanged(int n_ranks, int s, PetscInt n, const Entry in[])
 
 static PetscErrorCode RunExchange(PetscMPIInt rank, PetscMPIInt n_ranks, int *failed)
 {
-  Entry       local[64], *in;
+  Entry      *local, *in;
   PetscMPIInt to[64];
   PetscInt    n = 0;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(64, &local));
   for (int i = 0; i < rank + n_ranks; i++)
     for (int s = 0; s < n_ranks; s++) {
       if (s == rank || i >= rank + s) continue;
       to[n]      = s;
       local[n++] = (Entry){.rank = rank, .place = i, .mark = (char)s};
     }
-  PetscCall(ExchangeRecords(PETSC_COMM_WORLD, &n, sizeof(Entry), local, to, &in));
+  PetscCall(ExchangeRecords(PETSC_COMM_WORLD, &n, sizeof(Entry), &local, to, &in));
+  *failed += CheckTrue("what was sent is freed", !local, local != NULL);
   *failed += CheckExchanged(n_ranks, rank, n, in);
   PetscCall(PetscFree(in));
   PetscFunctionReturn(0);

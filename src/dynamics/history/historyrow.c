@@ -8,19 +8,38 @@
 #define N_PER_PROBE 9
 #define NAME_ROOM   40 /* characters of a column besides the name of its interface or probe */
 
-/* Columns before those of interfaces and probes */
-static const char first_columns[] =
-  "time_s,normal_force_n,friction_force_n,n_closed,n_stick,kinetic_j,strain_j,external_work_j,friction_work_j,"
-  "contact_work_j,damping_work_j,energy_error_j,integrator_work_j,friction_heat_j,n_open,projector_residual,"
-  "projector_sweeps,looks,stiffness_error,friction_error,momentum_error,moment_error";
+/* Columns before those of interfaces and probes: members of FirstColumns, and their names in the header */
+#define FIRST_COLUMNS(X)                                                                                               \
+  X(time, "time_s")                                                                                                    \
+  X(normal, "normal_force_n")                                                                                          \
+  X(friction, "friction_force_n")                                                                                      \
+  X(n_closed, "n_closed")                                                                                              \
+  X(n_stick, "n_stick")                                                                                                \
+  X(kinetic, "kinetic_j")                                                                                              \
+  X(strain, "strain_j")                                                                                                \
+  X(external_work, "external_work_j")                                                                                  \
+  X(friction_work, "friction_work_j")                                                                                  \
+  X(contact_work, "contact_work_j")                                                                                    \
+  X(damping_work, "damping_work_j")                                                                                    \
+  X(energy_error, "energy_error_j")                                                                                    \
+  X(integrator_work, "integrator_work_j")                                                                              \
+  X(heat, "friction_heat_j")                                                                                           \
+  X(n_open, "n_open")                                                                                                  \
+  X(residual, "projector_residual")                                                                                    \
+  X(sweeps, "projector_sweeps")                                                                                        \
+  X(looks, "looks")                                                                                                    \
+  X(stiffness_error, "stiffness_error")                                                                                \
+  X(friction_error, "friction_error")                                                                                  \
+  X(momentum_error, "momentum_error")                                                                                  \
+  X(moment_error, "moment_error")
 
-/* The same: reals alone */
+#define COLUMN_NAME(member, name)   "," name
+#define COLUMN_MEMBER(member, name) PetscReal member;
+
+static const char comma_first_columns[] = FIRST_COLUMNS(COLUMN_NAME);
+
 typedef struct {
-  PetscReal time, normal, friction, n_closed, n_stick;
-  PetscReal kinetic, strain, external_work, friction_work, contact_work, damping_work, energy_error, integrator_work,
-    heat;
-  PetscReal n_open, residual, sweeps;
-  PetscReal looks, stiffness_error, friction_error, momentum_error, moment_error;
+  FIRST_COLUMNS(COLUMN_MEMBER)
 } FirstColumns;
 
 #define N_FIRST ((PetscInt)(sizeof(FirstColumns) / sizeof(PetscReal)))
@@ -52,7 +71,7 @@ static PetscErrorCode HistoryAddColumns(char header[], size_t room, const char n
 PetscErrorCode HistoryCreateHeader(History history, char **header)
 {
   const PetscInt n_faces = HistoryCountFaces(history);
-  size_t         room    = sizeof(first_columns), length;
+  size_t         room    = sizeof(comma_first_columns), length;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n_faces; i++) {
@@ -64,7 +83,7 @@ PetscErrorCode HistoryCreateHeader(History history, char **header)
     room += N_PER_PROBE * (length + NAME_ROOM);
   }
   PetscCall(PetscMalloc1(room, header));
-  PetscCall(PetscStrncpy(*header, first_columns, room));
+  PetscCall(PetscStrncpy(*header, comma_first_columns + 1, room));
   for (PetscInt i = 0; i < n_faces; i++)
     PetscCall(HistoryAddColumns(*header, room, history->source.interfaces[i].name, N_PER_FACE, face_columns));
   for (PetscInt i = 0; i < history->n_probes; i++)
@@ -117,7 +136,7 @@ static PetscErrorCode HistoryRowProbes(History history, const HistoryState *stat
 PetscErrorCode HistoryWriteRow(History history, const HistoryState *state)
 {
   const PetscInt n_faces = HistoryCountFaces(history), n_motions = N_PER_PROBE * history->n_probes;
-  const PetscInt n = N_FIRST + N_PER_FACE * n_faces + n_motions;
+  const PetscInt n     = N_FIRST + N_PER_FACE * n_faces + n_motions;
   const Ledger  *l     = state->ledger;
   FirstColumns   first = {.time            = state->time,
                           .kinetic         = l->kinetic,
