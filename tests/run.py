@@ -13,6 +13,7 @@ A case is a TOML file. Only `run` is required.
 
     [run.NAME]               # made in the order of the file
     options = "-contact_mu 1"    # {OTHER} is the output folder of an earlier run
+    night_options = "-sweep_verify 4"    # after these, with --night
     ranks = [1]                  # of the case's; checks of runs that are not made on a number of ranks are left out there
     night = [2]                  # on these too with --night, of the case's or not, when a day's run proves the same with less
     stdout = ["regex"]           # found in the output
@@ -138,7 +139,8 @@ class Runner:
     def execute(self, name, run):
         command = [self.arguments.launcher, "-n", str(self.ranks), self.arguments.squeal]
         words = ["-output_dir", str(self.output(name)), "-malloc_dump", "-options_left"]
-        words += self.expand(self.case.get("options", "") + " " + run.get("options", ""))
+        night = run.get("night_options", "") if self.arguments.night else ""
+        words += self.expand(" ".join((self.case.get("options", ""), run.get("options", ""), night)))
         if "file_limit" in run:
             command = ["prlimit", f"--fsize={run['file_limit']}", *command]
         self.link(name, run)
