@@ -61,7 +61,7 @@ def same(arguments, one, other):
     if arguments.ranks == 1:
         return filecmp.cmp(one, other, shallow=False)
     rows = [list(csv.DictReader(path.open(newline=""))) for path in (one, other)]
-    keys = [key for key in ("freq_hz", "critical_value", "value") if key in rows[0][0]]
+    keys = [key for key in ("freq_hz", "critical_value", "value") if key in rows[0][0]] if rows[0] else []  # as onsets.csv without an onset
     close = [math.isclose(float(a[key]), float(b[key]), rel_tol=1e-9) for a, b in zip(*rows) for key in keys]
     return len(rows[0]) == len(rows[1]) and all(close)
 
