@@ -33,7 +33,7 @@
    along the slip to 1e-7 of that force. -analysis transient has 1e-12 and 1e-10 there.
 
    The error of the cut-off and of the step is not in error_estimate: -map_verify tells it at some points, by transients from
-   their own sliding states with half the step, with contact laws to 1e-12, and with 1.5 times the cut-off: differences of
+   their own sliding states with half the step, with contact laws to 1e-12, and with 2.25 times the cut-off: differences of
    amplitude and frequency where both runs vibrate, and of growth with the higher cut-off, since it is that of the bodies. A
    vibration that never repeats itself differs by more than its level does.
 */
@@ -59,7 +59,7 @@ of a load (press_force: its length, N)
 from its own sliding state
 .  -map_window <5e-3>           - s, of which amplitude and frequency are taken
 .  -map_verify <0>              - points, spread evenly over the map, that are run again with half the step, with contact laws to
-1e-12, and with 1.5 times the cut-off: map_errors.csv
+1e-12, and with 2.25 times the cut-off: map_errors.csv
 .  -map_restart <true>          - go on where a map of the same scene in -output_dir was stopped
 -  -map_rtol <0.01>             - relative change of the rms, or standard error of its mean, below which an amplitude is settled
 @*/

@@ -51,7 +51,7 @@ PetscErrorCode MapSetFromOptions(Map map)
     map->rtol, &map->rtol, NULL));
   PetscCall(PetscOptionsInt("-map_verify",
                             "points, spread over the map, run again with half the step, with the contact laws "
-                            "to 1e-12, and with 1.5 times the cut-off",
+                            "to 1e-12, and with 2.25 times the cut-off",
                             "map.h", map->n_verify, &map->n_verify, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-map_restart",
                            "go on where a map of the same scene in -output_dir was "

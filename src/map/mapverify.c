@@ -1,13 +1,12 @@
 /*
    The error of the model at some points of a map, on request: the transient from the sliding state of the point, as the map runs
-   it where each point stands apart, then with half the step, with tighter contact laws, and with 1.5 times the cut-off.
+   it where each point stands apart, then with half the step, with tighter contact laws, and with 2.25 times the cut-off.
    Differences are the errors: of amplitude and frequency where both runs vibrate, of growth, which is that of the bodies, where
    these differ.
 */
 #include "mapimpl.h"
 #include "base/gather.h"
 
-#define VERIFY_HIGHER 1.5   /* times the cut-off */
 #define VERIFY_RTOL   1e-12 /* of the contact laws */
 #define VERIFY_RUNS   (1 + MAP_N_CHECKS)
 #define VERIFY_BODIES 2 /* of a line: with the map's cut-off, and with the higher one */
@@ -50,7 +49,7 @@ static PetscErrorCode VerifyBegin(Map map, PetscInt most, VerifyBatch *b)
     if (line < 0 || (map->lines_differ && at.line != line)) {
       if (b->n_lines == most) break;
       PetscCall(MapBodiesCreate(map, at.line, 0, &b->bodies[VERIFY_BODIES * b->n_lines]));
-      PetscCall(MapBodiesCreate(map, at.line, VERIFY_HIGHER * map->cutoff, &b->bodies[VERIFY_BODIES * b->n_lines + 1]));
+      PetscCall(MapBodiesCreate(map, at.line, REDUCED_HIGHER * map->cutoff, &b->bodies[VERIFY_BODIES * b->n_lines + 1]));
       b->n_lines++;
     }
     line             = at.line;

@@ -149,7 +149,7 @@ static PetscErrorCode MapViewAxis(const MapAxis *axis, PetscViewer viewer)
 /* What a run of -map_verify differs by, at the points that vibrate in it as in that of the map */
 static PetscErrorCode MapViewError(Map map, MapCheckRun run, PetscViewer viewer)
 {
-  static const char *const names[] = {"half the step", "contact laws to 1e-12", "1.5 times the cut-off"};
+  static const char *const names[] = {"half the step", "contact laws to 1e-12", "2.25 times the cut-off"};
   const MapError          *e       = &map->error[run];
 
   PetscFunctionBeginUser;

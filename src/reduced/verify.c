@@ -1,13 +1,12 @@
 /*
-   The error of a run after it, on request: the same run with half the step, and with 1.5 times the cut-off, whose normal forces
+   The error of a run after it, on request: the same run with half the step, and with 2.25 times the cut-off, whose normal forces
    f' at the times of the steps are put beside those of the run, f. Where an instability has grown into a cycle, phases
    drift and the difference says little; then the level of the vibration and the time without contact are the answer. Where
    the cycle does not repeat itself these scatter: a standard error is told from equal pieces of the time, of both runs together.
 */
 #include "reducedimpl.h"
 
-#define HIGHER 1.5 /* times the cut-off */
-#define PIECES 8   /* of the last half of the time */
+#define PIECES 8 /* of the last half of the time */
 
 PetscErrorCode ReducedKeepForce(ReducedRun r)
 {
@@ -109,7 +108,7 @@ PetscErrorCode ReducedVerify(ReducedRun r)
   PetscFunctionBeginUser;
   if (!r->n_force) PetscFunctionReturn(0);
   PetscCall(VerifyOne(r, r->cutoff, 2, &r->finer));
-  PetscCall(VerifyOne(r, HIGHER * r->cutoff, 1, &r->higher));
+  PetscCall(VerifyOne(r, REDUCED_HIGHER * r->cutoff, 1, &r->higher));
   PetscFunctionReturn(0);
 }
 

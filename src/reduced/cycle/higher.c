@@ -5,8 +5,6 @@
 */
 #include "cycleimpl.h"
 
-#define HIGHER_CUTOFF 2.25
-
 struct _p_CycleHigher {
   LimitCycle       cycle; /* with a flow of its own */
   ReducedRun       bodies;
@@ -50,7 +48,7 @@ PetscErrorCode CycleHigherCreate(LimitCycle c, CycleHigher *higher)
   h        = *higher;
   h->m     = c->reduced->model.m;
   h->below = &c->flow;
-  PetscCall(ReducedReduceAt(c->reduced, HIGHER_CUTOFF * c->reduced->cutoff, c->p, &h->bodies));
+  PetscCall(ReducedReduceAt(c->reduced, REDUCED_HIGHER * c->reduced->cutoff, c->p, &h->bodies));
   h->bodies->state.time = c->reduced->state.time; /* loads and sliding are those of then */
   PetscCall(PetscMalloc1(h->bodies->model.m * h->m, &h->T));
   PetscCall(ReducedGram(h->bodies->MPhi, c->reduced->Phi, h->T));
