@@ -188,6 +188,7 @@ class Runner:
     def check_error(self, name, run, status, stderr):
         lines = [line for line in own_words(stderr).splitlines() if line.strip()]
         lines = [line for line in lines if "warning" not in run or not re.search(run["warning"], line)]
+        require("warning" not in run or re.search(run["warning"], stderr, re.MULTILINE), f"no warning {run.get('warning')!r}")
         require(status != 0, "exit status 0, but an error was expected")
         require(len(lines) == 1, f"{len(lines)} lines on stderr, but one was expected")
         require(re.search(run["error"], lines[0]), f"the message does not match {run['error']!r}")

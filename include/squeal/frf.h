@@ -41,7 +41,8 @@ typedef struct {
 /* A maximum of the response over the frequencies */
 typedef struct {
   PetscReal freq_hz, magnitude; /* Hz, of the table; m/N, root of the sum of squares over the outputs */
-  PetscInt  mode;               /* that contributes most, as ModesGet() counts from 0; -1 for none */
+  PetscInt  mode;               /* that contributes most, as ModesGet() counts from 0; -1 where its frequency is further away than its
+                                   half width, 3 %, and a step of the table, or there is none */
 } FrfPeak;
 
 /*@ FrfCreate - makes a solver. Collective. @*/

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 
 #define JOINT_MOST 15000 /* unknowns of the sets of one bushing or point: 2.7 GB */
+#define JOINT_MANY 2000  /* nodes, from which on their dense block, of 6000 unknowns, rules a factorisation */
 
 /* One column of B at a number of the displacements */
 typedef struct {
@@ -195,6 +196,26 @@ static const Joint *JointGet(const ModelScene *scene, PetscInt i)
   return i < scene->n_joints ? &scene->joints[i] : &scene->points[i - scene->n_joints];
 }
 
+/* Says why a run will take long: the sets of a joint have many nodes */
+static PetscErrorCode JointWarn(Operators o, const Joint *joint)
+{
+  PetscBool held = JointIsMassive(joint);
+  PetscInt  n;
+
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 6; d++)
+    if (joint->stiffness[d] > 0 || joint->viscosity[d] > 0) held = PETSC_TRUE;
+  n = held && !joint->rigid ? joint->mean.n : 0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT, MPI_SUM, o->comm));
+  if (n < JOINT_MANY) PetscFunctionReturn(0);
+  PetscCall(PetscFPrintf(o->comm, stderr,
+                         "squeal: warning: %s %s couples the %" PetscInt_FMT
+                         " nodes of its sets, each to all others, so that matrices and factors take long; name "
+                         "a surface or a smaller set, or a point with -join rigid\n",
+                         joint->is_point ? "point" : "bushing", joint->name, n));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OperatorsAddJoints(Operators o)
 {
   const ModelScene *scene;
@@ -203,8 +224,10 @@ PetscErrorCode OperatorsAddJoints(Operators o)
   PetscCall(ModelGetScene(o->model, &scene));
   o->n_local = o->parameters.n;
   PetscCall(PetscMalloc1(scene->n_joints + scene->n_points, &o->joint));
-  for (PetscInt i = 0; i < scene->n_joints + scene->n_points; i++)
+  for (PetscInt i = 0; i < scene->n_joints + scene->n_points; i++) {
+    PetscCall(JointWarn(o, JointGet(scene, i)));
     PetscCall(OperatorsAddJoint(o, JointGet(scene, i), &o->joint[i]));
+  }
   PetscFunctionReturn(0);
 }
 
