@@ -7,11 +7,14 @@ than the rest, a row is written twice or lost, or a checkpoint that is not whole
 
 import csv
 import os
+import shutil
 import signal
 import sys
 import time
 
 from runs import OFTEN, PATIENCE, RENAME, RESTART, SYNC, WRITE, compare, fail, killed_at, ranks_of, scenes, wait
+
+TRIES = 5  # of runs, until two kills come before the end
 
 
 def changes(path):
@@ -81,14 +84,20 @@ def kill_once(runs, name, rows):
 
 
 def kill_often(runs, name, chance, n):
-    """Kills n times, or until the run is over; the moments."""
-    moments, whole = [], size(runs.path("undisturbed", "transient.csv"))
-    for part in sorted(chance.uniform(0.05, 0.85) for _ in range(n)):
-        met = kill_once(runs, name, part * whole)
-        if met is None:
-            break
-        moments.append(met)
-    return moments
+    """Kills n times, or until the run is over; the moments. A run that was over before it met two begins anew: on a busy machine
+    it may end before its rows are seen."""
+    whole = size(runs.path("undisturbed", "transient.csv"))
+    for _ in range(TRIES):
+        moments = []
+        for part in sorted(chance.uniform(0.05, 0.85) for _ in range(n)):
+            met = kill_once(runs, name, part * whole)
+            if met is None:
+                break
+            moments.append(met)
+        if len({moment for moment, _ in moments}) >= 2:
+            return moments
+        shutil.rmtree(runs.folder / name)
+    fail(f"{runs.scene}: in {TRIES} runs kills came after the end")
 
 
 def check_kills(runs, chance):
@@ -100,8 +109,6 @@ def check_kills(runs, chance):
     moments = kill_often(runs, "killed", chance, 5)
     runs.complete("killed", "-dynamics_checkpoint_interval", str(OFTEN), *go_on(runs, "killed"))
     compare(runs, "undisturbed", "killed")
-    if len(moments) < 2 or len({moment for moment, _ in moments}) < 2:
-        fail(f"{runs.scene}: {len(moments)} kills came before the end")
     torn = sum(cut for _, cut in moments)
     times = ", ".join(f"{1e3 * moment:.4g}" for moment, _ in moments)
     print(f"{runs.scene}: {n} changes of status, killed at {times} ms,"
