@@ -116,7 +116,9 @@ def compare(pairs, check):
         require(not wrong, "; ".join(wrong))
         return Line(f"{len(pairs)} texts equal")
     rtol, atol = check.get("rtol", 0), check.get("atol", 0)
-    errors = [(abs(value - reference), atol + rtol * abs(reference), value, reference) for value, reference in pairs]
+    atols = atol if isinstance(atol, list) else [atol] * len(pairs)
+    errors = [(abs(value - reference), least + rtol * abs(reference), value, reference)
+              for (value, reference), least in zip(pairs, atols, strict=True)]
     error, allowed, value, reference = max(errors, key=lambda e: e[0] / e[1] if e[1] else e[0])
     line = f"{len(pairs)} values, worst {value:.12g} for {reference:.12g}, error {error:.2e}, allowed {allowed:.2e}"
     line = Line.of(line, error, allowed)

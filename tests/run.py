@@ -40,7 +40,7 @@ A case is a TOML file. Only `run` is required.
     count = 2                    # number of rows
     # with tolerances |a - b| <= atol + rtol |b|, and optionally the root mean square of (a - b)/b:
     rtol = 1e-10
-    atol = 0
+    atol = 0                     # or one for each value, in their order
     rms = 0.01
 
     hard = "a scene in mm"       # a hard case that this check is the answer to, in a run: that it fails as it should;
