@@ -70,6 +70,7 @@ from pathlib import Path
 
 from check import Checker, Failure, Line, require
 from forked import run_command
+from processes import processes_naming
 from ranks import fault_of_ranks, ranks_of_runs
 from served import own_words, served_program
 
@@ -89,18 +90,6 @@ def end(process):
     except subprocess.TimeoutExpired:
         process.kill()
         process.communicate()
-
-
-def processes_naming(text):
-    """Processes whose command line holds `text`."""
-    found = []
-    for entry in Path("/proc").glob("[0-9]*/cmdline"):
-        try:
-            if text.encode() in entry.read_bytes():
-                found.append(entry.parent.name)
-        except OSError:
-            pass  # ended meanwhile
-    return found
 
 
 def choose_core(core):
@@ -196,7 +185,7 @@ class Runner:
         left -= set(run.get("files", []))
         require(not left, f"files left behind: {' '.join(sorted(left))}")
         alive = processes_naming(str(self.output(name)))
-        require(not alive, f"processes left behind: {' '.join(alive)}")
+        require(not alive, f"processes left behind: {*alive,}")
 
     def check_success(self, name, run, status, stdout, stderr):
         require(status == 0, f"exit status {status}")

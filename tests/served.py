@@ -15,6 +15,8 @@ import threading
 import time
 from pathlib import Path
 
+from processes import processes
+
 LAUNCHER = Path(__file__).resolve().parents[1] / "scripts/mpirun"
 OPEN, WRITE, SYNC, RENAME, CLOSE, OWN, PETSC = (1 << bit for bit in range(7))
 FILES = OPEN | WRITE | SYNC | RENAME | CLOSE
@@ -185,14 +187,7 @@ def launch(program, library, work, words, environment, ranks, limit):
 
 def session_of(leader):
     """Processes of the session that one leads."""
-    found = []
-    for path in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            if int(path.read_text().rpartition(")")[2].split()[3]) == leader:
-                found.append(int(path.parent.name))
-        except (OSError, IndexError):
-            pass  # ended meanwhile
-    return found
+    return [number for number, stat in processes("stat") if int(stat.rpartition(b")")[2].split()[3]) == leader]
 
 
 def kill_ranks(leader):

@@ -18,6 +18,7 @@ import time
 from pathlib import Path
 
 from browser import Browser, find_browser
+from processes import processes_naming
 from test_report import Page
 from test_report_browser import Test, check_window
 
@@ -61,15 +62,7 @@ class Paper:
 
     def processes(self):
         """Those that work in the folder."""
-        mine = str(self.folder).encode()
-        found = []
-        for path in Path("/proc").glob("[0-9]*/cmdline"):
-            try:
-                if mine in path.read_bytes():
-                    found.append(path.parent.name)
-            except OSError:
-                continue
-        return found
+        return processes_naming(self.folder)
 
     def made(self, done, n, n_kept, what):
         """So many runs were made and kept."""

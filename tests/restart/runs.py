@@ -13,6 +13,7 @@ from pathlib import Path
 import h5py
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
+from processes import processes  # noqa: E402
 from served import RENAME, SYNC, WRITE, killed_at, outcome_of, starter  # noqa: E402, F401, for the tests
 
 SOURCE = Path(__file__).resolve().parents[2]
@@ -145,14 +146,7 @@ def first_difference(runs, one, other, table):
 
 def ranks_of(folder):
     """Processes that write to a folder: ranks and launcher."""
-    found = []
-    for entry in Path("/proc").glob("[0-9]*/cmdline"):
-        try:
-            if str(folder).encode() in entry.read_bytes().split(b"\0"):
-                found.append(int(entry.parent.name))
-        except OSError:
-            pass  # ended meanwhile
-    return found
+    return [number for number, line in processes("cmdline") if str(folder).encode() in line.split(b"\0")]
 
 
 def wait(process, happened):
