@@ -8,11 +8,14 @@
   manual      every option of -help stands in squeal.1, with its default; man has no warning
   completion  bash is offered the options of the program, the names of a scene, the words of a choice, files
   paths       no text names the folders of sources or build
+  sources     nothing that Python compiles beside its sources is installed
 
-Breaks when a header is missing or needs one of src, when a library is not named, or when a script is forgotten.
+Breaks when a header is missing or needs one of src, when a library is not named, when a script is forgotten, or when a folder of
+scripts/squeal has its __pycache__ installed.
 
     test_install.py MESON BUILD MPIRUN"""
 
+import compileall
 import csv
 import os
 import re
@@ -127,6 +130,19 @@ def check_completion(top, place, squeal, faults):
         faults.check(wanted <= offered and not absent & offered, f"completion: {' '.join(words)} gives {' '.join(sorted(wanted))}")
 
 
+def install(meson, build, place):
+    """Installs below `place` from sources that Python has compiled, whatever PYTHONDONTWRITEBYTECODE says."""
+    compileall.compile_dir(SOURCE / "scripts/squeal", quiet=1)
+    run(meson, "install", "-C", build, "--no-rebuild", "--quiet", "--destdir", place)
+    return place
+
+
+def check_sources(place, faults):
+    """Folders of Python's own, before a script of the prefix has run."""
+    compiled = [str(path.relative_to(place)) for path in place.rglob("__pycache__")]
+    faults.check(not compiled, f"sources: no folder that Python compiles into, but {compiled}")
+
+
 def check_paths(place, build, faults):
     """Words of the build in files that are text."""
     for path in sorted(place.rglob("*")):
@@ -142,8 +158,8 @@ def main():
     faults = Faults()
     with tempfile.TemporaryDirectory() as folder:
         top = Path(folder)
-        run(meson, "install", "-C", build, "--no-rebuild", "--quiet", "--destdir", top / "first")
-        place = (top / "first").rename(top / "moved")
+        place = install(meson, build, top / "first").rename(top / "moved")
+        check_sources(place, faults)
         bin_dir = next(place.rglob("bin"))
         for name in ("scene.yaml", "scene.txt"):
             (top / name).write_text(SCENE)
