@@ -3,7 +3,7 @@
    vectors:
 
       undamped symmetric   K x = kappa M x, kappa = -lambda^2          EPS GHEP,  LDL' of K - s M
-      undamped, friction   the same, K unsymmetric                     EPS GNHEP, LU
+      undamped, friction   the same, K unsymmetric                     EPS GNHEP, LU, or LDL' and an update
       weakly damped        its projection on undamped modes            corrections with the factors of K - s M
       damped               the quadratic problem                       PEP TOAR,  LU of K + s C + s^2 M
 

@@ -18,7 +18,7 @@ PetscErrorCode ModelSetFromOptions(Model model)
   static const char *const sources[] = {"rig", "file"};
   ModelScene *const        scene     = &model->scene;
   PetscInt                 source    = 0;
-  PetscBool                given, has_mesh, has_loss, old;
+  PetscBool                given, has_mesh, has_loss;
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(model->comm, NULL, "Model", NULL);
@@ -37,9 +37,6 @@ PetscErrorCode ModelSetFromOptions(Model model)
   PetscCheck(!has_loss || (scene->loss_frequency > 0 && isfinite(scene->loss_frequency)), model->comm,
              PETSC_ERR_USER_INPUT, "-loss_frequency %.6g must be positive and finite (Hz)",
              (double)scene->loss_frequency);
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-dynamics_gravity", &old));
-  PetscCheck(!old, model->comm, PETSC_ERR_USER_INPUT,
-             "-dynamics_gravity is now -model_gravity: it acts in statics too");
   PetscCall(OptionsCheckFinite(model->comm, "model", "gravity", "m/s^2", scene->gravity));
   PetscCheck(!given || source == 1 || !has_mesh, model->comm, PETSC_ERR_USER_INPUT,
              "-model_mesh %s does nothing with -model_source rig; choose -model_source file", model->file);

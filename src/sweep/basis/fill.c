@@ -1,7 +1,7 @@
 /*
-   Bases that need no choice of points: all unit vectors, for a small system, and the basis of today's tools, for
-   comparison: the lowest real modes of the frictionless, undamped system at one point. That one knows nothing of
-   friction, and no estimate of its error is to be had.
+   Bases that need no choice of points: all unit vectors, for a small system, and, for comparison, the
+   lowest real modes of the frictionless, undamped system at one point, as brake models usually are projected. They know
+   nothing of friction, and no estimate of their error is to be had.
 */
 #include "basis.h"
 
