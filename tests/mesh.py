@@ -11,7 +11,10 @@ blocks  a block of 100 x 100 x 100 mm (x, y around 0, z from 0) on a base that r
       and 20 mm down: volumes "base", "block", surfaces "base_bottom", "base_top", "block_bottom", "block_top",
       "block_left", "block_right" (least and largest y). The nodes of both match; --lift moves the bottom of the block,
       more than its inside, by gap + tilt (y / 100 mm + 1/2) + crown (2 y / 100 mm)^2
-
+bars  two bars of 100 x 10 x 10 mm along x, GAP of --lift apart at x = 0: volumes "left", "right", surfaces "left_start",
+      "left_end", "right_start", "right_end" (least and largest x)
+ball  a quarter of a ball of 10 mm radius, cut by x = 0 and y = 0, GAP of --lift above a plate: volumes "ball", "plate", surfaces
+      "ball_x", "ball_y", "ball_pole" (towards the plate), "plate_top"; --elements N,1,1
 cylinders  a shoe on a shaft, both parts of rings about z: volumes "shaft", "shoe", surfaces "shaft_inner", "shaft_face"
       (outward, 80 mm from the axis), "shoe_face", "shoe_top"; --elements along r, around and along z of the shaft. Its
       facets turn by 160 degrees / the second. The nodes of the faces do not match, and lie on the same cylinder.
@@ -296,9 +299,19 @@ def write(path, version, binary, nodes, groups, node_tags, numbers):
     path.write_bytes(content)
 
 
-def main():
+# What the command line offers, of its elements along x, y, z and its lift
+SHAPES = {"beam": lambda elements, lift: beam(elements),
+          "rig": lambda elements, lift: rig(),
+          "blocks": blocks,
+          "bars": lambda elements, lift: bars(elements, lift[0]),
+          "ball": lambda elements, lift: ball(elements[0], lift[0]),
+          "cylinders": lambda elements, lift: cylinders(elements)}
+
+
+def command_line():
+    """The parser of the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("shape", choices=["beam", "rig", "blocks", "bars", "ball", "cylinders"])
+    parser.add_argument("shape", choices=SHAPES)
     parser.add_argument("file", type=Path)
     parser.add_argument("--elements", default="20,4,2", help="of the beam, the block on its base, a bar, along x, y, z")
     parser.add_argument("--lift", default="0,0,0", metavar="GAP,TILT,CROWN",
@@ -308,21 +321,14 @@ def main():
     parser.add_argument("--renumber", type=int, metavar="SEED")
     parser.add_argument("--move", action="store_true")
     parser.add_argument("--scale", type=float, default=1)
-    arguments = parser.parse_args()
+    return parser
+
+
+def main():
+    arguments = command_line().parse_args()
     elements = [int(n) for n in arguments.elements.split(",")]
     lift = [float(length) for length in arguments.lift.split(",")]
-    if arguments.shape == "beam":
-        nodes, groups = beam(elements)
-    elif arguments.shape == "blocks":
-        nodes, groups = blocks(elements, lift)
-    elif arguments.shape == "bars":
-        nodes, groups = bars(elements, lift[0])
-    elif arguments.shape == "cylinders":
-        nodes, groups = cylinders(elements)
-    elif arguments.shape == "ball":
-        nodes, groups = ball(elements[0], lift[0])
-    else:
-        nodes, groups = rig()
+    nodes, groups = SHAPES[arguments.shape](elements, lift)
     node_tags = list(range(1, len(nodes) + 1))
     numbers = list(range(1, sum(map(len, groups.values())) + 1))
     if arguments.renumber is not None:

@@ -277,7 +277,8 @@ def keep_hard(case):
     case["run"] = {name: run for name, run in runs.items() if name in kept or "hard" in run}
 
 
-def main():
+def command_line():
+    """The parser of the command line."""
     parser = argparse.ArgumentParser(description="Runs one application test of squeal.")
     parser.add_argument("case", type=Path)
     parser.add_argument("--squeal", type=Path, required=True, help="the program")
@@ -287,6 +288,34 @@ def main():
     parser.add_argument("--core", choices=CORES, help="processor whose kernels OpenBLAS takes")
     parser.add_argument("--night", action="store_true", help="runs on the ranks of the night as well")
     parser.add_argument("--margins", type=Path, help="only checks of hard cases, about each of which a line is added here")
+    return parser
+
+
+def make_files(case, folder):
+    """Files of a case, and those that its scripts make."""
+    for name, text in case.get("file", {}).items():
+        (folder / name).write_text(text)
+    for command in case.get("make", []):
+        made = run_command(shlex.split(command.format(source=SOURCE)), folder)
+        if made.returncode:
+            sys.exit(f"{command}: {made.stderr}")
+
+
+def results_of(arguments, case, folder):
+    """Whether each run and check of a case passed, on all of its numbers of ranks; the first is what others are compared with."""
+    results, first = [], None
+    for ranks in ranks_of_runs(case, arguments.ranks or case.get("ranks", [1]), arguments.night):
+        runner = Runner(arguments, case, folder, ranks)
+        first = first or runner
+        for name in runner.made:
+            results.append(attempt(f"run {name} on {ranks}", runner.make, name))
+            runner.write_margin(case["run"][name], case["run"][name].get("why", f"run {name}"), results[-1])
+        results += runner.check(Checker(runner, first))
+    return results
+
+
+def main():
+    parser = command_line()
     arguments = parser.parse_args()
     arguments.squeal = arguments.squeal.resolve()
     os.environ.pop("PETSC_OPTIONS", None)
@@ -298,28 +327,13 @@ def main():
     if reason:
         print(f"skipped: {reason}")
         return SKIPPED
-
-    results = []
     fault = fault_of_ranks(case)
     if fault:
         parser.error(fault)
-    chosen = ranks_of_runs(case, arguments.ranks or case.get("ranks", [1]), arguments.night)
     arguments.served = served_program(arguments.squeal, arguments.timeout)
     with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
-        for name, text in case.get("file", {}).items():
-            (Path(folder) / name).write_text(text)
-        for command in case.get("make", []):
-            made = run_command(shlex.split(command.format(source=SOURCE)), folder)
-            if made.returncode:
-                sys.exit(f"{command}: {made.stderr}")
-        first = None
-        for ranks in chosen:
-            runner = Runner(arguments, case, Path(folder), ranks)
-            first = first or runner
-            for name in runner.made:
-                results.append(attempt(f"run {name} on {ranks}", runner.make, name))
-                runner.write_margin(case["run"][name], case["run"][name].get("why", f"run {name}"), results[-1])
-            results += runner.check(Checker(runner, first))
+        make_files(case, Path(folder))
+        results = results_of(arguments, case, Path(folder))
     if arguments.served:
         arguments.served.end()
     return 0 if all(results) else 1

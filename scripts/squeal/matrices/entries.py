@@ -34,6 +34,22 @@ def entries(name, path, shape, row, column, value, symmetry="general", labels=No
     entry has one across the diagonal."""
     rows, columns = (int(n) for n in shape)
     row, column, value = numpy.asarray(row, numpy.int64), numpy.asarray(column, numpy.int64), numpy.asarray(value, float)
+    check_places(path, (rows, columns), row, column, value)
+    check_values(path, row, column, value)
+    check_once(path, columns, row, column)
+    how = ""
+    if symmetry == "half":
+        symmetry = symmetry_of_half(columns, row, column)
+        how = "half of a symmetric matrix, expanded" if symmetry == "symmetric" else ""
+    if symmetry in ("symmetric", "skew"):
+        row, column, value = mirrored(path, (rows, columns), row, column, value, symmetry)
+        how = how or f"half of a {symmetry} matrix, expanded"
+    return Entries(name, path, (rows, columns), row, column, value, labels, how)
+
+
+def check_places(path, shape, row, column, value):
+    """Raises BadInput for a shape that is none, and for entries outside of it."""
+    rows, columns = shape
     if not 1 <= rows <= MAX_ROWS or not 1 <= columns <= MAX_ROWS:
         raise BadInput(f"{path}: a matrix of {rows} x {columns} is none")
     if not len(row) == len(column) == len(value):
@@ -44,22 +60,22 @@ def entries(name, path, shape, row, column, value, symmetry="general", labels=No
         at = int(outside.argmax())
         raise BadInput(f"{path}: entry ({row[at] + 1}, {column[at] + 1}) lies outside of a matrix of {rows} x "
                        f"{columns}")
+
+
+def check_values(path, row, column, value):
+    """Raises BadInput for an entry that is no number, or too large a one."""
     bad = ~(abs(value) <= LARGEST)
     if bad.any():
         at = int(bad.argmax())
         raise BadInput(f"{path}: entry ({row[at] + 1}, {column[at] + 1}) is {value[at]:g}: numbers must be of at "
                        f"most {LARGEST:g}")
-    check_once(path, columns, row, column)
-    how = ""
-    if symmetry == "half":
-        off = row != column
-        across = numpy.isin(row[off] * columns + column[off], column[off] * columns + row[off]).any()
-        symmetry = "general" if across or not off.any() else "symmetric"
-        how = "half of a symmetric matrix, expanded" if symmetry == "symmetric" else ""
-    if symmetry in ("symmetric", "skew"):
-        row, column, value = mirrored(path, (rows, columns), row, column, value, symmetry)
-        how = how or f"half of a {symmetry} matrix, expanded"
-    return Entries(name, path, (rows, columns), row, column, value, labels, how)
+
+
+def symmetry_of_half(columns, row, column):
+    """General where some entry has one across the diagonal, or none lies off it."""
+    off = row != column
+    across = numpy.isin(row[off] * columns + column[off], column[off] * columns + row[off]).any()
+    return "general" if across or not off.any() else "symmetric"
 
 
 def check_once(path, columns, row, column):
