@@ -13,7 +13,8 @@ PetscErrorCode ModelCreate(MPI_Comm comm, Model *model)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelSetFromOptions(Model model)
+/* Where the mesh comes from (is_rig = the built-in rig, not a file), its elements, and what concerns all parts */
+static PetscErrorCode ModelReadSource(Model model, PetscBool *is_rig)
 {
   static const char *const sources[] = {"rig", "file"};
   ModelScene *const        scene     = &model->scene;
@@ -43,9 +44,20 @@ PetscErrorCode ModelSetFromOptions(Model model)
   if (has_mesh) source = 1;
   model->given = given || has_mesh ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(PetscStrncpy(model->source, sources[source], sizeof(model->source)));
-  if (source == 0) PetscCall(RigSetFromOptions(model->comm, &model->rig));
+  *is_rig = source == 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelSetFromOptions(Model model)
+{
+  ModelScene *const scene = &model->scene;
+  PetscBool         is_rig, given;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelReadSource(model, &is_rig));
+  if (is_rig) PetscCall(RigSetFromOptions(model->comm, &model->rig));
   PetscCall(PetscOptionsHasName(NULL, NULL, parts_list.option, &given));
-  if (!given && source == 0) PetscCall(PetscOptionsSetValue(NULL, parts_list.option, "disc,pad,beam"));
+  if (!given && is_rig) PetscCall(PetscOptionsSetValue(NULL, parts_list.option, "disc,pad,beam"));
   PetscCall(OptionsReadList(model->comm, &parts_list, model, &scene->n_parts, &scene->parts));
   PetscCall(PartsAddLoss(model));
   PetscCall(OptionsReadList(model->comm, &supports_list, model, &scene->n_supports, &scene->supports));
@@ -168,6 +180,14 @@ PetscBool ModelHasGravity(Model model)
   return g[0] != 0 || g[1] != 0 || g[2] != 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
+static PetscErrorCode SupportView(const Support *s, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  support %s holds%s%s%s of %s\n", s->name, s->fix[0] ? " x" : "",
+                                   s->fix[1] ? " y" : "", s->fix[2] ? " z" : "", s->set));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelView(Model model, PetscViewer viewer)
 {
   PetscInt    n_cells = model->mesh.n_cells;
@@ -183,11 +203,7 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
                                    !strcmp(model->source, "rig") ? "built-in rig" : model->file, n_cells,
                                    model->mesh.n_unknowns, size, size == 1 ? "" : "s", words));
   for (PetscInt i = 0; i < model->scene.n_parts; i++) PetscCall(PartView(model, i, viewer));
-  for (PetscInt i = 0; i < model->scene.n_supports; i++)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  support %s holds%s%s%s of %s\n", model->scene.supports[i].name,
-                                     model->scene.supports[i].fix[0] ? " x" : "",
-                                     model->scene.supports[i].fix[1] ? " y" : "",
-                                     model->scene.supports[i].fix[2] ? " z" : "", model->scene.supports[i].set));
+  for (PetscInt i = 0; i < model->scene.n_supports; i++) PetscCall(SupportView(&model->scene.supports[i], viewer));
   for (PetscInt i = 0; i < model->scene.n_springs; i++)
     PetscCall(GroundedView(&model->scene.springs[i], "spring", viewer));
   for (PetscInt i = 0; i < model->scene.n_dashpots; i++)

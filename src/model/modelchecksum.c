@@ -68,54 +68,70 @@ static PetscErrorCode ModelAddMeshChecksum(Model model, PetscBool with_partition
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode PartAddChecksum(const Part *p, Checksum c)
+{
+  const PetscReal all[] = {p->young, p->poisson, p->density, p->alpha, p->beta};
+
+  PetscFunctionBeginUser;
+  PetscCall(ChecksumAddString(c, p->name));
+  PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(all), all));
+  if (p->spin.given) {
+    PetscCall(ChecksumAddReals(c, 1, &p->spin.rate));
+    PetscCall(ChecksumAddReals(c, 3, p->spin.axis));
+    PetscCall(ChecksumAddReals(c, 3, p->spin.centre));
+  }
+  if (!p->anisotropy.n) PetscFunctionReturn(0);
+  PetscCall(ChecksumAddReals(c, ELASTICITY_VOIGT * ELASTICITY_VOIGT, p->anisotropy.C[0]));
+  PetscCall(ChecksumAddReals(c, 9, p->anisotropy.axis[0]));
+  PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){p->anisotropy.cylinder}));
+  PetscCall(ChecksumAddReals(c, 3, p->anisotropy.centre));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SupportAddChecksum(Model model, const Support *s, Checksum c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelAddSetChecksum(model, s->set, PETSC_FALSE, c));
+  PetscCall(ChecksumAddInts(c, 3, (const PetscInt[]){s->fix[0], s->fix[1], s->fix[2]}));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MotionAddChecksum(Model model, const PrescribedMotion *m, Checksum c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ChecksumSetPart(c, "motion %s", m->name));
+  PetscCall(ModelAddSetChecksum(model, m->set, PETSC_FALSE, c));
+  PetscCall(ChecksumAddReals(c, 3, m->displacement));
+  PetscCall(ChecksumAddInts(c, 3, (const PetscInt[]){m->direction[0], m->direction[1], m->direction[2]}));
+  PetscFunctionReturn(0);
+}
+
+/* kind = "spring" or "dashpot" */
+static PetscErrorCode GroundedAddChecksum(Model model, const char kind[], const Grounded *g, Checksum c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ChecksumSetPart(c, "%s %s", kind, g->name));
+  PetscCall(ModelAddSetChecksum(model, g->set, PETSC_FALSE, c));
+  PetscCall(ChecksumAddReals(c, 3, g->value));
+  if (g->spread != SPREAD_EACH) PetscCall(ChecksumAddString(c, g->quantity));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum c)
 {
+  const ModelScene *s = &model->scene;
+
   PetscFunctionBeginUser;
   PetscCall(ModelAddMeshChecksum(model, with_partition, c));
   PetscCall(ChecksumSetPart(c, "materials"));
-  for (PetscInt i = 0; i < model->scene.n_parts; i++) {
-    const Part     *p     = &model->scene.parts[i];
-    const PetscReal all[] = {p->young, p->poisson, p->density, p->alpha, p->beta};
-
-    PetscCall(ChecksumAddString(c, p->name));
-    PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(all), all));
-    if (p->spin.given) {
-      PetscCall(ChecksumAddReals(c, 1, &p->spin.rate));
-      PetscCall(ChecksumAddReals(c, 3, p->spin.axis));
-      PetscCall(ChecksumAddReals(c, 3, p->spin.centre));
-    }
-    if (!p->anisotropy.n) continue;
-    PetscCall(ChecksumAddReals(c, ELASTICITY_VOIGT * ELASTICITY_VOIGT, p->anisotropy.C[0]));
-    PetscCall(ChecksumAddReals(c, 9, p->anisotropy.axis[0]));
-    PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){p->anisotropy.cylinder}));
-    PetscCall(ChecksumAddReals(c, 3, p->anisotropy.centre));
-  }
+  for (PetscInt i = 0; i < s->n_parts; i++) PetscCall(PartAddChecksum(&s->parts[i], c));
   PetscCall(ChecksumSetPart(c, "supports"));
-  for (PetscInt i = 0; i < model->scene.n_supports; i++) {
-    const PetscBool *fix = model->scene.supports[i].fix;
-
-    PetscCall(ModelAddSetChecksum(model, model->scene.supports[i].set, PETSC_FALSE, c));
-    PetscCall(ChecksumAddInts(c, 3, (const PetscInt[]){fix[0], fix[1], fix[2]}));
-  }
-  for (PetscInt i = 0; i < model->scene.n_motions; i++) {
-    const PrescribedMotion *m = &model->scene.motions[i];
-
-    PetscCall(ChecksumSetPart(c, "motion %s", m->name));
-    PetscCall(ModelAddSetChecksum(model, m->set, PETSC_FALSE, c));
-    PetscCall(ChecksumAddReals(c, 3, m->displacement));
-    PetscCall(ChecksumAddInts(c, 3, (const PetscInt[]){m->direction[0], m->direction[1], m->direction[2]}));
-  }
-  for (PetscInt i = 0; i < model->scene.n_springs + model->scene.n_dashpots; i++) {
-    const PetscBool is_spring = i < model->scene.n_springs ? PETSC_TRUE : PETSC_FALSE;
-    const Grounded *g = is_spring ? &model->scene.springs[i] : &model->scene.dashpots[i - model->scene.n_springs];
-
-    PetscCall(ChecksumSetPart(c, "%s %s", is_spring ? "spring" : "dashpot", g->name));
-    PetscCall(ModelAddSetChecksum(model, g->set, PETSC_FALSE, c));
-    PetscCall(ChecksumAddReals(c, 3, g->value));
-    if (g->spread != SPREAD_EACH) PetscCall(ChecksumAddString(c, g->quantity));
-  }
-  for (PetscInt i = 0; i < model->scene.n_joints; i++) PetscCall(JointAddChecksum(model, &model->scene.joints[i], c));
-  for (PetscInt i = 0; i < model->scene.n_points; i++) PetscCall(JointAddChecksum(model, &model->scene.points[i], c));
+  for (PetscInt i = 0; i < s->n_supports; i++) PetscCall(SupportAddChecksum(model, &s->supports[i], c));
+  for (PetscInt i = 0; i < s->n_motions; i++) PetscCall(MotionAddChecksum(model, &s->motions[i], c));
+  for (PetscInt i = 0; i < s->n_springs; i++) PetscCall(GroundedAddChecksum(model, "spring", &s->springs[i], c));
+  for (PetscInt i = 0; i < s->n_dashpots; i++) PetscCall(GroundedAddChecksum(model, "dashpot", &s->dashpots[i], c));
+  for (PetscInt i = 0; i < s->n_joints; i++) PetscCall(JointAddChecksum(model, &s->joints[i], c));
+  for (PetscInt i = 0; i < s->n_points; i++) PetscCall(JointAddChecksum(model, &s->points[i], c));
   PetscFunctionReturn(0);
 }
 

@@ -6,12 +6,34 @@
 
 #define MODES_LARGEST 1e30 /* Hz, 1/s: squares stay finite */
 
+static PetscErrorCode ModesCheckValues(Modes modes)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(modes->left || !modes->filters, modes->comm, PETSC_ERR_USER_INPUT,
+             "-modes_filters needs left vectors: leave out -modes_left false");
+  PetscCheck(!modes->has_band || (modes->band[0] >= 0 && modes->band[1] > modes->band[0]), modes->comm,
+             PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g must satisfy 0 <= f1 < f2 (Hz)", (double)modes->band[0],
+             (double)modes->band[1]);
+  PetscCheck(modes->band[1] <= MODES_LARGEST && modes->target <= MODES_LARGEST && modes->growth <= MODES_LARGEST,
+             modes->comm, PETSC_ERR_USER_INPUT,
+             "-modes_band, -modes_target (Hz) and -modes_growth (1/s) must be of at most %g", MODES_LARGEST);
+  PetscCheck(modes->count > 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_count %" PetscInt_FMT " must be positive",
+             modes->count);
+  PetscCheck(modes->growth >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_growth %.6g must not be negative (1/s)",
+             (double)modes->growth);
+  PetscCheck(modes->max_time >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_max_time %.6g must not be negative (s)",
+             (double)modes->max_time);
+  PetscCheck(modes->target >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_target %.6g must not be negative (Hz)",
+             (double)modes->target);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModesSetFromOptions(Modes modes)
 {
   static const char *const contacts[] = {"all", "static"};
+  static const char *const routes[]   = {"auto", "project", "pep"};
   PetscBool                has_target, has_count;
-  static const char *const routes[] = {"auto", "project", "pep"};
-  PetscInt                 contact  = 0;
+  PetscInt                 contact = 0;
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(modes->comm, NULL, "Modes", NULL);
@@ -40,25 +62,10 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
     "modes.h", routes, 3, routes[modes->damping], &modes->damping, &modes->has_route));
   PetscOptionsEnd();
   modes->is_static = contact ? PETSC_TRUE : PETSC_FALSE;
-  PetscCheck(modes->left || !modes->filters, modes->comm, PETSC_ERR_USER_INPUT,
-             "-modes_filters needs left vectors: leave out -modes_left false");
-  PetscCheck(!modes->has_band || (modes->band[0] >= 0 && modes->band[1] > modes->band[0]), modes->comm,
-             PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g must satisfy 0 <= f1 < f2 (Hz)", (double)modes->band[0],
-             (double)modes->band[1]);
-  PetscCheck(modes->band[1] <= MODES_LARGEST && modes->target <= MODES_LARGEST && modes->growth <= MODES_LARGEST,
-             modes->comm, PETSC_ERR_USER_INPUT,
-             "-modes_band, -modes_target (Hz) and -modes_growth (1/s) must be of at most %g", MODES_LARGEST);
+  PetscCall(ModesCheckValues(modes));
   if (modes->has_band && (has_target || has_count))
     PetscCall(OptionsRefuse(modes->comm, "-modes_band", "not used beside -modes_target or -modes_count; give one"));
   modes->has_nearest = has_target || has_count ? PETSC_TRUE : PETSC_FALSE;
   if (modes->has_nearest) modes->has_band = PETSC_FALSE;
-  PetscCheck(modes->count > 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_count %" PetscInt_FMT " must be positive",
-             modes->count);
-  PetscCheck(modes->growth >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_growth %.6g must not be negative (1/s)",
-             (double)modes->growth);
-  PetscCheck(modes->max_time >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_max_time %.6g must not be negative (s)",
-             (double)modes->max_time);
-  PetscCheck(modes->target >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_target %.6g must not be negative (Hz)",
-             (double)modes->target);
   PetscFunctionReturn(0);
 }

@@ -177,23 +177,13 @@ PetscErrorCode ResultsNote(Results results, const char key[], const char format[
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SceneWrite(Results results)
+/* The command that repeats the run, and the one that was given */
+static PetscErrorCode ScenePrintCommands(Results results, OutFile *file)
 {
-  SquealVersions v;
-  PetscMPIInt    size;
-  OutFile        opened, *file = &opened;
-  double         seconds, megabytes;
-  char           date[32];
-  const time_t   now = time(NULL);
+  PetscMPIInt size;
 
   PetscFunctionBeginUser;
-  SquealGetVersions(&v);
   PetscCallMPI(MPI_Comm_size(results->comm, &size));
-  PetscCall(SceneGetCost(results, &seconds, &megabytes));
-  (void)strftime(date, sizeof(date), "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));
-  PetscCall(OutFileSetName(results, SCENE, ".yaml", file));
-  PetscCall(EarlierRead(results));
-  PetscCall(OutFileOpenText(file));
   PetscCall(
     OutFilePrint(file, "# Where the files of this folder come from, and all options in force. To repeat the run:\n"));
   PetscCall(OutFilePrint(file, "# repeat: "));
@@ -205,10 +195,40 @@ static PetscErrorCode SceneWrite(Results results)
   PetscCall(ScenePrintGiven(results, file, PETSC_FALSE));
   PetscCall(OutFilePrint(file, "\n"));
   PetscCall(ScenePrintCommand(file, size));
+  PetscFunctionReturn(0);
+}
+
+/* Versions of the libraries, ranks, time and memory, the end */
+static PetscErrorCode ScenePrintCost(Results results, OutFile *file)
+{
+  const time_t   now = time(NULL);
+  SquealVersions v;
+  PetscMPIInt    size;
+  double         seconds, megabytes;
+  char           date[32];
+
+  PetscFunctionBeginUser;
+  SquealGetVersions(&v);
+  PetscCallMPI(MPI_Comm_size(results->comm, &size));
+  PetscCall(SceneGetCost(results, &seconds, &megabytes));
+  (void)strftime(date, sizeof(date), "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));
   PetscCall(OutFilePrint(file, "# versions: squeal %s, PETSc %s, SLEPc %s, MUMPS %s, %s\n", v.squeal, v.petsc, v.slepc,
                          v.mumps, v.mpi));
   PetscCall(OutFilePrint(file, "# cost: %d rank%s, %.1f s, %.0f MB at most\n# end: %s\n", size, size == 1 ? "" : "s",
                          seconds, megabytes, date));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SceneWrite(Results results)
+{
+  OutFile opened, *file = &opened;
+
+  PetscFunctionBeginUser;
+  PetscCall(OutFileSetName(results, SCENE, ".yaml", file));
+  PetscCall(EarlierRead(results));
+  PetscCall(OutFileOpenText(file));
+  PetscCall(ScenePrintCommands(results, file));
+  PetscCall(ScenePrintCost(results, file));
   PetscCall(ScenePrintNotes(results, file));
   PetscCall(OutFilePrint(file, SCENE_FILES));
   for (PetscInt i = 0; i < results->n_kept; i++) PetscCall(OutFilePrint(file, " %s", results->kept[i]));

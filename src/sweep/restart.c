@@ -170,6 +170,29 @@ static PetscErrorCode FileSeal(const char name[], PetscBool append, PetscBool *g
   PetscFunctionReturn(0);
 }
 
+/* What the next file holds */
+static PetscErrorCode HeaderSet(Sweep sweep, PetscInt n_parts, Header *h)
+{
+  const Basis  *basis  = &sweep->basis;
+  const Greedy *greedy = &sweep->greedy;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(h, sizeof(*h))); /* what lies between the members is written too */
+  h->version      = VERSION;
+  h->n_parts      = n_parts;
+  h->n_parameters = sweep->grid.n_parameters;
+  h->last         = greedy->last;
+  h->n_passed     = greedy->n_passed;
+  h->fall         = greedy->fall;
+  h->n_samples    = greedy->n_samples;
+  h->n_used       = basis->reduced.n_used;
+  h->first        = sweep->n_kept;
+  h->n            = basis->reduced.n;
+  h->n_blocks     = basis->n_blocks;
+  PetscCall(BVGetSizes(basis->vectors, &h->n_local, NULL, NULL));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SweepKeep(void *ctx)
 {
   Sweep               sweep = (Sweep)ctx;
@@ -178,19 +201,12 @@ PetscErrorCode SweepKeep(void *ctx)
   char                name[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
   Stream              s    = {.write = PETSC_TRUE};
   PetscBool           good = PETSC_TRUE;
+  PetscInt            n_parts;
   Header              h;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMemzero(&h, sizeof(h)));
-  h.version = VERSION;
-  PetscCall(ChecksumGetParts(sweep->scene, &h.n_parts, &scene));
-  h.n_parameters = sweep->grid.n_parameters;
-  h.last         = sweep->greedy.last;
-  h.n_passed     = sweep->greedy.n_passed;
-  h.fall         = sweep->greedy.fall;
-  h.n_samples = sweep->greedy.n_samples, h.n_used = basis->reduced.n_used;
-  h.first = sweep->n_kept, h.n = basis->reduced.n, h.n_blocks = basis->n_blocks;
-  PetscCall(BVGetSizes(basis->vectors, &h.n_local, NULL, NULL));
+  PetscCall(ChecksumGetParts(sweep->scene, &n_parts, &scene));
+  PetscCall(HeaderSet(sweep, n_parts, &h));
   PetscCall(FileName(sweep, sweep->n_files, "", name));
   PetscCall(FileName(sweep, sweep->n_files, ".part", part));
   s.file = fopen(part, "wb");

@@ -26,42 +26,57 @@ static PetscErrorCode GeneralFindCells(Bodies b, GeneralCells *cells)
   PetscFunctionReturn(0);
 }
 
+/* Goes through the pairs of nodes of each cell: at[row] is raised by one for each, and tells its place in `column` where that is
+   not NULL */
+static void NeighboursTake(Bodies b, const GeneralCells *cells, PetscBool upper, PetscInt at[], PetscInt column[])
+{
+  for (PetscInt i = 0; i < cells->n; i++) {
+    const PetscInt  n_nodes = b->mesh->element[cells->cell[i]]->n_nodes;
+    const PetscInt *vertex  = &b->mesh->cell_node[b->mesh->cell_first[cells->cell[i]]];
+
+    for (PetscInt k = 0; k < n_nodes * n_nodes; k++) {
+      const PetscInt row = cells->of_vertex[vertex[k / n_nodes]], other = cells->of_vertex[vertex[k % n_nodes]];
+
+      if (upper && other < row) continue;
+      if (column) column[at[row]] = other;
+      at[row]++;
+    }
+  }
+}
+
+/* Neighbours of all rows, once for each cell that they share: those of a row end before column[end[row]] */
+static PetscErrorCode NeighboursCreate(Bodies b, const GeneralCells *cells, PetscBool upper, PetscInt **end,
+                                       PetscInt **column)
+{
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(b->general.n + 1, end));
+  NeighboursTake(b, cells, upper, *end, NULL);
+  for (PetscInt row = 0; row <= b->general.n; row++) {
+    const PetscInt count = (*end)[row];
+
+    (*end)[row] = n;
+    n += count;
+  }
+  PetscCall(PetscMalloc1(n, column));
+  NeighboursTake(b, cells, upper, *end, *column);
+  PetscFunctionReturn(0);
+}
+
 /* Rows with all nodes that share a cell with each, or `upper` with those that are not before it */
 static PetscErrorCode BlockRowsCreate(Bodies b, const GeneralCells *cells, PetscBool upper, BlockRows *rows)
 {
-  PetscInt n_all = 0, *first, *all;
+  PetscInt *end, *all;
 
   PetscFunctionBeginUser;
   rows->n     = b->general.n;
   rows->upper = upper;
   PetscCall(PetscCalloc1(rows->n + 1, &rows->start));
-  PetscCall(PetscCalloc1(rows->n + 1, &first));
-  for (int pass = 0; pass < 2; pass++) {
-    for (PetscInt i = 0; i < cells->n; i++) {
-      const PetscInt  n_nodes = b->mesh->element[cells->cell[i]]->n_nodes;
-      const PetscInt *vertex  = &b->mesh->cell_node[b->mesh->cell_first[cells->cell[i]]];
-
-      for (PetscInt a = 0; a < n_nodes; a++)
-        for (PetscInt e = 0; e < n_nodes; e++) {
-          const PetscInt row = cells->of_vertex[vertex[a]], column = cells->of_vertex[vertex[e]];
-
-          if (upper && column < row) continue;
-          if (pass) all[first[row]] = column;
-          first[row]++;
-        }
-    }
-    if (pass) break;
-    for (PetscInt row = 0; row <= rows->n; row++) {
-      const PetscInt count = first[row];
-
-      first[row] = n_all;
-      n_all += count;
-    }
-    PetscCall(PetscMalloc1(n_all, &all));
-  }
+  PetscCall(NeighboursCreate(b, cells, upper, &end, &all));
   for (PetscInt row = 0; row < rows->n; row++) {
-    const PetscInt begin = row ? first[row - 1] : 0;
-    PetscInt       n     = first[row] - begin;
+    const PetscInt begin = row ? end[row - 1] : 0;
+    PetscInt       n     = end[row] - begin;
 
     PetscCall(PetscSortRemoveDupsInt(&n, &all[begin]));
     PetscCall(PetscArraymove(&all[rows->start[row]], &all[begin], n));
@@ -70,7 +85,7 @@ static PetscErrorCode BlockRowsCreate(Bodies b, const GeneralCells *cells, Petsc
   PetscCall(PetscMalloc1(rows->start[rows->n], &rows->column));
   PetscCall(PetscArraycpy(rows->column, all, rows->start[rows->n]));
   PetscCall(PetscCalloc1(9 * rows->start[rows->n] + 1, &rows->value));
-  PetscCall(PetscFree(first));
+  PetscCall(PetscFree(end));
   PetscCall(PetscFree(all));
   PetscFunctionReturn(0);
 }

@@ -75,6 +75,59 @@ static PetscErrorCode RigCheck(MPI_Comm comm, const Rig *rig)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode RigReadDisc(OptionsItems PetscOptionsObject, Rig *rig)
+{
+  const char *const meshes[] = {"axisymmetric", "patch"};
+  PetscInt          mesh     = 1, elements[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsReal("-disc_inner", "Inner radius of the disc (m)", "model.h", rig->disc_inner,
+                             &rig->disc_inner, NULL));
+  PetscCall(PetscOptionsReal("-disc_outer", "Outer radius of the disc (m)", "model.h", rig->disc_outer,
+                             &rig->disc_outer, NULL));
+  PetscCall(PetscOptionsReal("-disc_thickness", "Thickness of the disc (m)", "model.h", rig->disc_thickness,
+                             &rig->disc_thickness, NULL));
+  PetscCall(PetscOptionsEList("-disc_mesh", "Grid of the disc: axisymmetric, or with a patch that matches the pad",
+                              "model.h", meshes, 2, meshes[mesh], &mesh, NULL));
+  rig->patch = mesh ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(PetscArraycpy(elements, rig->patch ? ((PetscInt[]){21, 100, 3}) : ((PetscInt[]){16, 160, 4}), 3));
+  PetscCall(OptionsGetInts(PetscOptionsObject, "-disc_elements",
+                           "Elements of the disc: rings, columns, layers (21,100,3, axisymmetric 16,160,4)", 3,
+                           elements));
+  rig->disc_nr     = elements[0];
+  rig->disc_ntheta = elements[1];
+  rig->disc_nz     = elements[2];
+  PetscCall(PetscOptionsReal("-disc_spread", "Rings away from the patch: 0 keep their radii, 1 become uniform (-)",
+                             "model.h", rig->disc_spread, &rig->disc_spread, NULL));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RigReadPad(OptionsItems PetscOptionsObject, Rig *rig)
+{
+  PetscFunctionBeginUser;
+  PetscCall(OptionsGetBool(PetscOptionsObject, "-pad", "Pad and beam as well as the disc", &rig->with_pad));
+  PetscCall(PetscOptionsReal("-pad_radius", "Radius of the pad's centre (m)", "model.h", rig->pad_radius,
+                             &rig->pad_radius, NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-pad_size", "Size of the pad in x, y, z (m; 0.01,0.01,0.01)", 3,
+                            rig->pad_size, NULL));
+  PetscCall(
+    OptionsGetInts(PetscOptionsObject, "-pad_elements", "Elements of the pad in x, y, z (10,10,10)", 3, rig->pad_n));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RigReadBeam(OptionsItems PetscOptionsObject, Rig *rig)
+{
+  PetscFunctionBeginUser;
+  PetscCall(
+    PetscOptionsReal("-beam_height", "Height of the beam (m)", "model.h", rig->beam_height, &rig->beam_height, NULL));
+  PetscCall(PetscOptionsInt("-beam_elements", "Elements of the beam over its height (-)", "model.h", rig->beam_nz,
+                            &rig->beam_nz, NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-beam_rows",
+                            "Heights of the spring rows above the beam's lower end (m; 0.02,0.08)", 2, rig->beam_rows,
+                            NULL));
+  PetscFunctionReturn(0);
+}
+
 /*
    RigSetFromOptions - reads dimensions and counts of the rig. Collective.
 
@@ -96,9 +149,6 @@ static PetscErrorCode RigCheck(MPI_Comm comm, const Rig *rig)
 */
 PetscErrorCode RigSetFromOptions(MPI_Comm comm, Rig *rig)
 {
-  const char *const meshes[] = {"axisymmetric", "patch"};
-  PetscInt          mesh     = 1, elements[3];
-
   PetscFunctionBeginUser;
   *rig = (Rig){
     .disc_inner     = 0.05,
@@ -113,38 +163,9 @@ PetscErrorCode RigSetFromOptions(MPI_Comm comm, Rig *rig)
     .beam_rows      = {0.02,  0.08}
   };
   PetscOptionsBegin(comm, "rig_", "Built-in disc, pad and beam", NULL);
-  PetscCall(PetscOptionsReal("-disc_inner", "Inner radius of the disc (m)", "model.h", rig->disc_inner,
-                             &rig->disc_inner, NULL));
-  PetscCall(PetscOptionsReal("-disc_outer", "Outer radius of the disc (m)", "model.h", rig->disc_outer,
-                             &rig->disc_outer, NULL));
-  PetscCall(PetscOptionsReal("-disc_thickness", "Thickness of the disc (m)", "model.h", rig->disc_thickness,
-                             &rig->disc_thickness, NULL));
-  PetscCall(PetscOptionsEList("-disc_mesh", "Grid of the disc: axisymmetric, or with a patch that matches the pad",
-                              "model.h", meshes, 2, meshes[mesh], &mesh, NULL));
-  rig->patch = mesh ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(PetscArraycpy(elements, rig->patch ? ((PetscInt[]){21, 100, 3}) : ((PetscInt[]){16, 160, 4}), 3));
-  PetscCall(OptionsGetInts(PetscOptionsObject, "-disc_elements",
-                           "Elements of the disc: rings, columns, layers (21,100,3, axisymmetric 16,160,4)", 3,
-                           elements));
-  rig->disc_nr     = elements[0];
-  rig->disc_ntheta = elements[1];
-  rig->disc_nz     = elements[2];
-  PetscCall(PetscOptionsReal("-disc_spread", "Rings away from the patch: 0 keep their radii, 1 become uniform (-)",
-                             "model.h", rig->disc_spread, &rig->disc_spread, NULL));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-pad", "Pad and beam as well as the disc", &rig->with_pad));
-  PetscCall(PetscOptionsReal("-pad_radius", "Radius of the pad's centre (m)", "model.h", rig->pad_radius,
-                             &rig->pad_radius, NULL));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-pad_size", "Size of the pad in x, y, z (m; 0.01,0.01,0.01)", 3,
-                            rig->pad_size, NULL));
-  PetscCall(
-    OptionsGetInts(PetscOptionsObject, "-pad_elements", "Elements of the pad in x, y, z (10,10,10)", 3, rig->pad_n));
-  PetscCall(
-    PetscOptionsReal("-beam_height", "Height of the beam (m)", "model.h", rig->beam_height, &rig->beam_height, NULL));
-  PetscCall(PetscOptionsInt("-beam_elements", "Elements of the beam over its height (-)", "model.h", rig->beam_nz,
-                            &rig->beam_nz, NULL));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-beam_rows",
-                            "Heights of the spring rows above the beam's lower end (m; 0.02,0.08)", 2, rig->beam_rows,
-                            NULL));
+  PetscCall(RigReadDisc(PetscOptionsObject, rig));
+  PetscCall(RigReadPad(PetscOptionsObject, rig));
+  PetscCall(RigReadBeam(PetscOptionsObject, rig));
   PetscCall(PetscOptionsString("-save", "file of Gmsh to write the mesh and its sets to", "model.h", rig->save,
                                rig->save, sizeof(rig->save), NULL));
   PetscOptionsEnd();
