@@ -148,7 +148,7 @@ def check_bad(t):
     for name in ("transient.csv", "amplitudes.csv"):
         (t.folder / "going" / name).rename(t.folder / "going" / f"{name}.part")
     (t.folder / "going/scene.yaml").unlink()
-    page = t.page("going", told="going/scene.yaml: no such file; a run writes it at its end")
+    page = t.page("going", told="going/scene.yaml: no such file; a run writes it with its first table")
     t.check("the run is still under way" in page.source and page.find("figure", id="r1-amplitudes"),
             "a run under way: what it has so far, amplitudes too")
     page = t.page("cut", told="cut/scene.yaml: no such file")

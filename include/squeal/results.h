@@ -159,7 +159,7 @@ PetscErrorCode ResultsKeepFolder(Results results, const char folder[]);
 
 /*@
    ResultsKeepScene - begins the account of the run: its time, and all options of squeal in force. Collective; before
-   anything is written.
+   anything is written. From then on scene.yaml is there before the first file has its final name.
 
    Input Parameters:
 +  read_again - reads all options of all rooms on objects of its own
@@ -179,7 +179,7 @@ PetscErrorCode ResultsNote(Results results, const char key[], const char format[
 /*@
    ResultsFinish - ends a run that did what was asked. Collective.
 
-   It writes scene.yaml: the commands of this run and of its repetition, versions, ranks, time, memory, both of each
+   It writes scene.yaml anew: the commands of this run and of its repetition, versions, ranks, time, memory, both of each
    stage too, what ResultsNote() was told, the files, and all options in force, as a file that -options_file reads. Then
    the files go that the scene.yaml of an earlier run in the folder lists. All others stay, and so does what a killed
    run goes on from: a transient while its table is unfinished, sweep_restart_*. Errors: as ResultsTableClose().

@@ -42,7 +42,7 @@ class Provenance:
         try:
             lines = path.read_text().splitlines()
         except FileNotFoundError:
-            raise BadInput(f"{path}: no such file; a run writes it at its end") from None
+            raise BadInput(f"{path}: no such file; a run writes it with its first table") from None
         except (OSError, ValueError) as error:
             raise BadInput(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
         beyond = False

@@ -100,20 +100,21 @@ static PetscBool NameMayGo(Results results, const char name[])
   return PETSC_FALSE;
 }
 
-/* Whether the file of an earlier run goes when this one ends */
+/* Whether the file of an earlier run goes when this one ends: not where this one wrote or needs it */
 static PetscBool EarlierGoes(Results results, const char name[])
 {
-  return !results->keep_all && NameMayGo(results, name) ? PETSC_TRUE : PETSC_FALSE;
+  if (results->keep_all || NameIsIn(results->n_kept, results->kept, name)) return PETSC_FALSE;
+  return NameMayGo(results, name);
 }
 
-/* Takes the names off one line of an earlier scene.yaml, but for those that this run wrote or needs */
+/* Takes the names off one line of an earlier scene.yaml */
 static PetscErrorCode LineRead(Results results, char line[])
 {
   char *rest;
 
   PetscFunctionBeginUser;
   for (char *name = strtok_r(line, " \n", &rest); name; name = strtok_r(NULL, " \n", &rest))
-    if (!NameIsIn(results->n_kept, results->kept, name) && !NameIsIn(results->n_earlier, results->earlier, name))
+    if (!NameIsIn(results->n_earlier, results->earlier, name))
       PetscCall(NameAdd(&results->n_earlier, &results->earlier, name));
   PetscFunctionReturn(0);
 }
@@ -129,7 +130,8 @@ PetscErrorCode EarlierRead(Results results)
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(results->comm, &rank));
-  if (rank) PetscFunctionReturn(0);
+  if (rank || results->earlier_read) PetscFunctionReturn(0);
+  results->earlier_read = PETSC_TRUE;
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/" SCENE ".yaml", results->dir));
   file = fopen(path, "r");
   if (!file) PetscFunctionReturn(0); /* nothing there is known to be squeal's */
@@ -143,7 +145,7 @@ PetscErrorCode EarlierRead(Results results)
 }
 
 /* The line of the files that stay, so that a later run knows whose they are */
-PetscErrorCode EarlierPrint(Results results, OutFile *file)
+PetscErrorCode EarlierPrint(Results results, PetscBool ended, OutFile *file)
 {
   PetscBool begun = PETSC_FALSE;
   char      path[PETSC_MAX_PATH_LEN];
@@ -151,7 +153,8 @@ PetscErrorCode EarlierPrint(Results results, OutFile *file)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < results->n_earlier; i++) {
     PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", results->dir, results->earlier[i]));
-    if (EarlierGoes(results, results->earlier[i]) || access(path, F_OK)) continue;
+    if (NameIsIn(results->n_kept, results->kept, results->earlier[i])) continue;
+    if ((ended && EarlierGoes(results, results->earlier[i])) || access(path, F_OK)) continue;
     PetscCall(OutFilePrint(file, "%s %s", begun ? "" : SCENE_STAY, results->earlier[i]));
     begun = PETSC_TRUE;
   }

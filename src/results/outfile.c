@@ -15,17 +15,18 @@
 PetscErrorCode OutFileSetName(Results results, const char name[], const char extension[], OutFile *file)
 {
   PetscFunctionBeginUser;
-  file->comm   = results->comm;
-  file->keep   = PETSC_FALSE;
-  file->error  = 0;
-  file->stream = NULL;
-  file->h5     = H5I_INVALID_HID;
-  file->fd     = -1;
-  file->memory = -1;
-  file->n_rows = 0;
-  file->rows   = NULL;
-  file->sum    = CHECKSUM_BEGIN;
-  file->summed = 0;
+  file->comm    = results->comm;
+  file->results = results;
+  file->keep    = PETSC_FALSE;
+  file->error   = 0;
+  file->stream  = NULL;
+  file->h5      = H5I_INVALID_HID;
+  file->fd      = -1;
+  file->memory  = -1;
+  file->n_rows  = 0;
+  file->rows    = NULL;
+  file->sum     = CHECKSUM_BEGIN;
+  file->summed  = 0;
   PetscCall(PetscSNPrintf(file->name, sizeof(file->name), "%s/%s%s", results->dir, name, extension));
   PetscCall(PetscSNPrintf(file->part, sizeof(file->part), "%s/%s%s.part", results->dir, name, extension));
   PetscCall(ResultsKeep(results, file->name + strlen(results->dir) + 1));
@@ -247,11 +248,13 @@ PetscErrorCode OutFilesCheck(PetscInt n, OutFile *const files[])
 }
 
 /*
-   Completes the files and gives them their final names, in this order; an error leaves no temporary file. Collective.
+   Completes the files and gives them their final names, in this order, the first ones of a run after its scene.yaml; an
+   error leaves no temporary file. Collective.
 */
 PetscErrorCode OutFilesPublish(PetscInt n, OutFile *const files[])
 {
-  PetscMPIInt rank;
+  PetscMPIInt    rank;
+  PetscErrorCode failure;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
@@ -259,6 +262,9 @@ PetscErrorCode OutFilesPublish(PetscInt n, OutFile *const files[])
     PetscCall(OutFileH5Close(files[i]));
   }
   PetscCall(OutFilesCheck(n, files));
+  failure = ResultsBeginScene(files[0]->results);
+  for (PetscInt i = 0; i < n && failure; i++) PetscCall(OutFileDiscard(files[i]));
+  PetscCall(failure);
   PetscCallMPI(MPI_Comm_rank(files[0]->comm, &rank));
   for (PetscInt i = 0; i < n && rank == 0; i++) {
     PetscCall(OutFileNote(files[i], rename(files[i]->part, files[i]->name) ? PETSC_TRUE : PETSC_FALSE));

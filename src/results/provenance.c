@@ -1,5 +1,6 @@
 /*
-   Provenance: scene.yaml, which tells where the files of a folder come from and can be run again.
+   Provenance: scene.yaml, which tells where the files of a folder come from and can be run again. It is there before the first of
+   them has its final name, and is written anew at the end: a run that is stopped, or finds no room, leaves no table without it.
 */
 #include "resultsimpl.h"
 #include "base/help.h"
@@ -198,20 +199,20 @@ static PetscErrorCode ScenePrintCommands(Results results, OutFile *file)
   PetscFunctionReturn(0);
 }
 
-/* Versions of the libraries, ranks, time and memory, the end */
-static PetscErrorCode ScenePrintCost(Results results, OutFile *file)
+/* Versions of the libraries, ranks, time and memory, the end, where the run has done what was asked */
+static PetscErrorCode ScenePrintCost(Results results, PetscBool ended, OutFile *file)
 {
   const time_t   now = time(NULL);
   SquealVersions v;
   PetscMPIInt    size;
   double         seconds, megabytes;
-  char           date[32];
+  char           date[64] = "not yet; the run goes on, was stopped, or failed";
 
   PetscFunctionBeginUser;
   SquealGetVersions(&v);
   PetscCallMPI(MPI_Comm_size(results->comm, &size));
   PetscCall(SceneGetCost(results, &seconds, &megabytes));
-  (void)strftime(date, sizeof(date), "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));
+  if (ended) (void)strftime(date, sizeof(date), "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));
   PetscCall(OutFilePrint(file, "# versions: squeal %s, PETSc %s, SLEPc %s, MUMPS %s, %s\n", v.squeal, v.petsc, v.slepc,
                          v.mumps, v.mpi));
   PetscCall(OutFilePrint(file, "# cost: %d rank%s, %.1f s, %.0f MB at most\n# end: %s\n", size, size == 1 ? "" : "s",
@@ -219,7 +220,7 @@ static PetscErrorCode ScenePrintCost(Results results, OutFile *file)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SceneWrite(Results results)
+static PetscErrorCode SceneWrite(Results results, PetscBool ended)
 {
   OutFile opened, *file = &opened;
 
@@ -228,12 +229,12 @@ static PetscErrorCode SceneWrite(Results results)
   PetscCall(EarlierRead(results));
   PetscCall(OutFileOpenText(file));
   PetscCall(ScenePrintCommands(results, file));
-  PetscCall(ScenePrintCost(results, file));
+  PetscCall(ScenePrintCost(results, ended, file));
   PetscCall(ScenePrintNotes(results, file));
   PetscCall(OutFilePrint(file, SCENE_FILES));
   for (PetscInt i = 0; i < results->n_kept; i++) PetscCall(OutFilePrint(file, " %s", results->kept[i]));
   PetscCall(OutFilePrint(file, "\n"));
-  PetscCall(EarlierPrint(results, file));
+  PetscCall(EarlierPrint(results, ended, file));
   PetscCall(OutFilePrint(file, "\n"));
   PetscCall(ScenePrintGiven(results, file, PETSC_TRUE));
   PetscCall(ScenePrintDefaults(&results->options, file));
@@ -241,10 +242,20 @@ static PetscErrorCode SceneWrite(Results results)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ResultsBeginScene(Results results)
+{
+  PetscFunctionBeginUser;
+  if (results->scene_begun || !results->options.n) PetscFunctionReturn(0); /* no run without ResultsKeepScene() */
+  results->scene_begun = PETSC_TRUE;                                       /* it is published as others are */
+  PetscCall(SceneWrite(results, PETSC_FALSE));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ResultsFinish(Results results)
 {
   PetscFunctionBeginUser;
-  PetscCall(SceneWrite(results));
+  results->scene_begun = PETSC_TRUE;
+  PetscCall(SceneWrite(results, PETSC_TRUE));
   PetscCall(EarlierRemove(results));
   PetscCallMPI(MPI_Barrier(results->comm));
   PetscFunctionReturn(0);

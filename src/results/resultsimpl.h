@@ -25,17 +25,20 @@ struct _p_Results {
   char      dir[PETSC_MAX_PATH_LEN];
   PetscBool fields;
   PetscInt  n_kept, n_earlier, n_notes;
-  char    **kept;     /* names of files in the folder that belong to this run */
-  char    **earlier;  /* those that only earlier runs wrote, on the first rank at the end */
-  char    **note;     /* lines of scene.yaml */
-  PetscBool keep_all; /* nothing of earlier runs goes */
-  HelpList  options;  /* all, as the run found them */
-  double    begun;    /* MPI_Wtime() */
+  char    **kept;         /* names of files in the folder that belong to this run */
+  char    **earlier;      /* those that earlier runs wrote, on the first rank */
+  char    **note;         /* lines of scene.yaml */
+  PetscBool keep_all;     /* nothing of earlier runs goes */
+  PetscBool earlier_read; /* on the first rank: `earlier` is what their scene.yaml lists */
+  PetscBool scene_begun;  /* scene.yaml of this run is there */
+  HelpList  options;      /* all, as the run found them */
+  double    begun;        /* MPI_Wtime() */
 };
 
 /* A file that is being written as `part`, to be renamed to `name` */
 typedef struct {
   MPI_Comm   comm;
+  Results    results; /* borrowed */
   char       name[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
   PetscBool  keep;   /* a failure leaves `part`, since a run may go on from what is in it */
   int        error;  /* errno of the first failure on this rank; 0 = none */
@@ -88,10 +91,11 @@ PETSC_INTERN PetscErrorCode OutFilesPublish(PetscInt n, OutFile *const files[]);
 
 /* earlier.c */
 PETSC_INTERN PetscErrorCode EarlierRead(Results results);
-PETSC_INTERN PetscErrorCode EarlierPrint(Results results, OutFile *file);
+PETSC_INTERN PetscErrorCode EarlierPrint(Results results, PetscBool ended, OutFile *file);
 PETSC_INTERN PetscErrorCode EarlierRemove(Results results);
 
 /* provenance.c */
+PETSC_INTERN PetscErrorCode ResultsBeginScene(Results results);
 PETSC_INTERN PetscErrorCode ResultsForget(Results results);
 
 /* h5file.c */

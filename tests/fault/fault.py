@@ -5,8 +5,8 @@ results, in turn; from one write on, all of them, as on a full disk; or the run 
   end      no signal, and an end within the time limit
   message  a failure says one line, "squeal: error: ...", with exit status 1; a run that does without what failed has the results of one
            that nobody disturbed
-  files    what has a final name is whole: that of an undisturbed run, or that of the earlier run that was in the folder, which is there
-           as long as nothing new has taken its place
+  files    what has a final name is whole: that of an undisturbed run, beside the scene.yaml of this run, or that of the earlier run
+           that was in the folder, which is there as long as nothing new has taken its place
   later    the same command, going on from what a killed or stopped run has kept, ends with the results of an undisturbed run
 
     fault.py build/squeal build/tests/libfault.so [--most 7] [--ranks 2] [--scene modes] [--kind memory] [--one N] [--passed FILE]
@@ -45,7 +45,14 @@ KINDS = {
 }
 EARLIER = ("-contact_mu", "0.2")  # of the run that was in the folder before
 CHANGING = re.compile(r"^# (completeness|cost|end|stages|in|command|repeat|files|.*seconds).*$", re.MULTILINE)
+MATRICES = ("K.bin", "M.bin", "C.bin", "H.bin", "F.bin")  # of -operators_save, which may be any folder
+UNDER_WAY = "# end: not yet"  # in the scene.yaml of a run that has not ended
 TOLERANCE = 1e-6  # between runs on several ranks, where the order of sums depends on the moment
+
+
+def options(text):
+    """Lines of a scene.yaml that are options."""
+    return [line for line in text.splitlines() if line and not line.startswith("#")]
 
 
 def content(path, ranks):
@@ -58,7 +65,8 @@ def content(path, ranks):
                                 if isinstance(it, h5py.Dataset) else None)
             return found
         if path.suffix == ".yaml":
-            return CHANGING.sub("", path.read_text())
+            text = path.read_text()
+            return text if UNDER_WAY in text else CHANGING.sub("", text)
         if path.suffix == ".csv" and ranks > 1:
             return Table(path)
         return path.read_bytes() if ranks == 1 or path.suffix == ".xmf" else path.stat().st_size
@@ -143,6 +151,8 @@ class Faults:
             named = re.findall(r"(snapshot_\d+\.h5):", value.decode())
             ElementTree.fromstring(value)
             return named and all((self.folder / "out" / h5).exists() for h5 in named)
+        if name == "scene.yaml" and UNDER_WAY in value:
+            return options(value) == options(self.well[name])
         return value in (self.well.get(name), self.earlier.get(name)) or (self.scene.goes_on and name == "checkpoint.bin")
 
     def judge_files(self, outcome):
@@ -150,6 +160,9 @@ class Faults:
         torn = [name for name, value in found.items() if value is None or not self.whole(name, value)]
         if torn:
             return f"{' '.join(sorted(torn))} neither as before nor as of a run to the end"
+        new = [name for name in found if found[name] == self.well.get(name) != self.earlier.get(name) and name not in MATRICES]
+        if new and options(found.get("scene.yaml", "")) != options(self.well["scene.yaml"]):
+            return f"{' '.join(sorted(new))} without the scene.yaml of the run"
         gone = [name for name in self.earlier if name not in found and name not in self.scene.loses
                 and (outcome.status != 0 or name in self.well)]
         if gone:
