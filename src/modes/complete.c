@@ -82,13 +82,17 @@ static PetscErrorCode DescribeRoute(const Window *window, char text[], size_t si
 
 PetscErrorCode WindowDescribe(Modes modes, const Window *window)
 {
-  char         frictionless[384], region[64] = "", route[192];
+  char         frictionless[384], region[64] = "", route[192], massless[192] = "";
   char        *text = modes->completeness;
   const size_t size = sizeof(modes->completeness);
 
   PetscFunctionBeginUser;
   PetscCall(DescribeFrictionless(modes, window, frictionless, sizeof(frictionless)));
   PetscCall(DescribeRoute(window, route, sizeof(route)));
+  if (window->most < INFINITY)
+    PetscCall(PetscSNPrintf(massless, sizeof(massless),
+                            "; unknowns have no mass, and with these modes of |lambda| above %.6g 1/s are not looked for",
+                            (double)window->most));
   if (!window->count)
     PetscCall(PetscSNPrintf(region, sizeof(region), " with |growth| below %.6g 1/s", (double)window->growth));
   if (window->proven && window->count)
@@ -109,6 +113,7 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
   else
     PetscCall(PetscSNPrintf(text, size, "completeness was not checked, since -modes_left is off%s", frictionless));
   PetscCall(PetscStrlcat(text, route, size));
+  PetscCall(PetscStrlcat(text, massless, size));
   PetscFunctionReturn(0);
 }
 

@@ -8,6 +8,7 @@
 #include <squeal/options.h>
 
 #define MODES_NEAR 1e-9 /* distance of an eigenvalue from the shift, beside the farthest: below it the shift is moved */
+#define MODES_NEAR_SINGULAR 1e-5 /* the same where infinite eigenvalues are to be told from finite ones */
 
 PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
 {
@@ -137,18 +138,17 @@ static PetscErrorCode SpectrumCopy(const Spectrum *from, Spectrum *to)
 }
 
 /* Whether an eigenvalue kappa = -lambda^2 is so near to the shift that rounding of its inverse spoils the others */
-static PetscBool ShiftSpoils(const Spectrum *s, PetscReal shift)
+static PetscBool ShiftSpoils(const Window *window, const Spectrum *s, PetscReal shift)
 {
-  PetscReal nearest = PETSC_MAX_REAL, farthest = 0;
+  PetscReal nearest = PETSC_MAX_REAL, farthest = window->singular && !window->count ? UndampedRadius(window, shift, s) : 0;
 
   for (PetscInt i = 0; i < s->n; i++) {
-    const PetscReal re       = s->omega[i] * s->omega[i] - s->sigma[i] * s->sigma[i] - shift;
-    const PetscReal distance = hypot(re, 2 * s->sigma[i] * s->omega[i]);
+    const PetscReal distance = SpectrumDistance(s, i, shift);
 
     nearest  = PetscMin(nearest, distance);
     farthest = PetscMax(farthest, distance);
   }
-  return nearest < MODES_NEAR * farthest ? PETSC_TRUE : PETSC_FALSE;
+  return nearest < (window->singular ? MODES_NEAR_SINGULAR : MODES_NEAR) * farthest ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Factors at another shift; K and K_even may have been released before the first one, and the pencil given here has what
@@ -171,7 +171,7 @@ PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *pencil, const 
 {
   PetscFunctionBeginUser;
   PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_FALSE, &modes->right));
-  for (int attempt = 1; attempt < 4 && !pencil->C && ShiftSpoils(&modes->right, si->shift); attempt++) {
+  for (int attempt = 1; attempt < 4 && !pencil->C && ShiftSpoils(window, &modes->right, si->shift); attempt++) {
     const PetscReal shift = si->shift * (1 + 1e-3 * attempt);
 
     PetscCall(SpectrumDestroy(&modes->right));
@@ -256,7 +256,10 @@ static PetscErrorCode SolveProjected(Modes modes, const PencilMatrices *pencil, 
 {
   PetscFunctionBeginUser;
   if (!pencil->C || modes->damping == DAMPING_PEP) PetscFunctionReturn(0);
-  PetscCall(ProjectSolve(modes, pencil, window, &window->project));
+  if (window->singular) /* undamped vectors orthonormal in M are no basis of unknowns without mass */
+    PetscCall(PetscStrncpy(window->why, "unknowns have no mass", sizeof(window->why)));
+  else
+    PetscCall(ProjectSolve(modes, pencil, window, &window->project));
   PetscCheck(window->project || modes->damping != DAMPING_PROJECT, modes->comm, PETSC_ERR_NOT_CONVERGED,
              "-modes_damping project cannot be done: %s; use auto or pep", window->why);
   if (window->project && modes->keep)

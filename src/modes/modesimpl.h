@@ -18,6 +18,8 @@ typedef struct {
 } Spectrum;
 
 PETSC_INTERN PetscErrorCode SpectrumCreate(PetscInt capacity, Spectrum *spectrum);
+/* Distance of kappa = -lambda^2 of entry i from a shift */
+PETSC_INTERN PetscReal      SpectrumDistance(const Spectrum *spectrum, PetscInt i, PetscReal shift);
 PETSC_INTERN PetscErrorCode SpectrumAdd(Spectrum *spectrum, PetscReal sigma, PetscReal omega, Vec xr, Vec xi);
 PETSC_INTERN PetscErrorCode SpectrumSort(Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode SpectrumOrder(const Spectrum *spectrum, PetscInt order[]); /* entry order[k] stands at k */
@@ -78,6 +80,9 @@ struct _p_Modes {
 typedef struct {
   PetscReal low, high, growth;
   PetscInt  expected, below; /* frictionless modes in the window and below it, by inertia; negative when not known */
+  PetscInt  massless;        /* negative pivots of K - s M at any s, of unknowns without mass: no modes */
+  PetscBool singular;        /* there are such unknowns */
+  PetscReal most;            /* with these, larger ones are no modes but infinite; infinite where that is not known, rad/s */
   PetscInt  extra;           /* eigenvalues to compute beyond those expected */
   PetscBool guard;           /* those are wanted even where all of the window are found without */
   PetscInt  rigid;           /* damped: rigid modes, each a double zero; listed once */

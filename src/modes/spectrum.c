@@ -3,6 +3,13 @@
 */
 #include "modesimpl.h"
 
+PetscReal SpectrumDistance(const Spectrum *s, PetscInt i, PetscReal shift)
+{
+  const PetscReal re = s->omega[i] * s->omega[i] - s->sigma[i] * s->sigma[i] - shift;
+
+  return hypot(re, 2 * s->sigma[i] * s->omega[i]);
+}
+
 PetscErrorCode SpectrumCreate(PetscInt capacity, Spectrum *s)
 {
   PetscFunctionBeginUser;

@@ -12,6 +12,10 @@
 #include "solver/blockkrylov.h"
 #include <complex.h>
 
+/* Eigenvalues so many times as far from the shift as the nearest are infinite where unknowns are without mass: rounding makes
+   them of the root of machine epsilon, with multipliers, whose infinite eigenvalues are defective */
+#define UNDAMPED_INFINITE 1e6
+
 /* Without a target, or with one near zero, the shift lies below zero, where rigid modes may be. Rounding of an
    eigenvalue there by its inverse, 1 / (kappa - shift), spoils the others by as much: 1e-8 |K| / |M| below leaves 1e-8
    of the largest at worst. In a band it lies amid kappa, so that few modes outside are as near as those inside; where
@@ -38,6 +42,20 @@ PetscReal UndampedRadius(const Window *window, PetscReal shift, const Spectrum *
   if (found->n < window->count) return PETSC_MAX_REAL;
   d = WindowNearest(window, found);
   return 2 * t * d + d * d + PetscAbsReal(shift - t * t);
+}
+
+/* Where unknowns are without mass: takes out what rounding made of infinite eigenvalues */
+static PetscErrorCode UndampedDropInfinite(const Window *window, PetscReal shift, Spectrum *s)
+{
+  PetscReal nearest = PETSC_MAX_REAL;
+
+  PetscFunctionBeginUser;
+  if (!window->singular) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < s->n; i++) nearest = PetscMin(nearest, SpectrumDistance(s, i, shift));
+  for (PetscInt i = s->n; i-- > 0;)
+    if (SpectrumDistance(s, i, shift) > UNDAMPED_INFINITE * nearest || hypot(s->sigma[i], s->omega[i]) > window->most)
+      PetscCall(SpectrumRemove(s, i));
+  PetscFunctionReturn(0);
 }
 
 /* Puts the converged pairs into a spectrum; reach = distance of the farthest from the shift, infinite when all n are
@@ -70,9 +88,10 @@ static PetscErrorCode UndampedCollect(EPS eps, PetscReal shift, PetscInt n, cons
   if (n_converged >= n || reason == EPS_DIVERGED_BREAKDOWN)
     s->reach = PETSC_MAX_REAL; /* breakdown: M is singular, no more finite ones */
   PetscCall(BlockKrylovReached(eps, covered));
-  if (s->reach > UndampedRadius(window, shift, s) || s->n == n) *covered = PETSC_TRUE;
+  if (s->reach > UndampedRadius(window, shift, s) || s->reach == PETSC_MAX_REAL) *covered = PETSC_TRUE;
   PetscCall(VecDestroy(&xr));
   PetscCall(VecDestroy(&xi));
+  PetscCall(UndampedDropInfinite(window, shift, s));
   PetscCall(SpectrumSort(s));
   PetscFunctionReturn(0);
 }

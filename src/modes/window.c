@@ -1,14 +1,18 @@
 /*
    The window of the eigenvalues asked for. With a symmetric pencil without damping and friction the number of
-   eigenvalues kappa = omega^2 below s is the number of negative pivots of K - s M (Sylvester's law of inertia; B. N.
-   Parlett, The Symmetric Eigenvalue Problem, SIAM 1998, sect. 3.3). It sizes the Krylov space, and proves that no
-   real mode is missing.
+   eigenvalues kappa = omega^2 below s follows from the negative pivots of K - s M (solver/inertia.c). It sizes the Krylov
+   space, and proves that no real mode is missing.
+
+   Where unknowns are without mass, as multipliers of constraints are, rounding makes large eigenvalues of any sign of the
+   infinite ones, by the root of rounding at best: 1e8 times what is near the shift. So what is larger than 10 times the
+   band and the growth asked for is no mode then.
 */
 #include "modesimpl.h"
 
 #define MODES_EDGE 1e-8 /* relative width of the band's ends, so that an eigenvalue on an end belongs to it */
 #define MODES_ZERO 1e-2 /* of the scale: lower frequencies cannot be told from zero */
 #define MODES_AWAY 1e-7 /* relative move of an end on which MUMPS finds an eigenvalue */
+#define MODES_MOST 10   /* of the band and of the growth: with unknowns without mass, what is larger is no mode */
 
 /* A frequency (rad/s) that is small beside all elastic modes, from the size of the matrices */
 static PetscErrorCode WindowScale(const PencilMatrices *pencil, PetscReal *scale)
@@ -22,14 +26,32 @@ static PetscErrorCode WindowScale(const PencilMatrices *pencil, PetscReal *scale
   PetscFunctionReturn(0);
 }
 
+/* Limit of the modes where unknowns are without mass, and the negative pivots of these */
+static PetscErrorCode WindowFindMassless(Modes modes, const PencilMatrices *frictionless, Window *window)
+{
+  PetscReal least;
+
+  PetscFunctionBeginUser;
+  window->massless = 0;
+  window->most     = INFINITY;
+  PetscCall(MassHasEmptyRows(frictionless->M, &window->singular));
+  if (!window->singular) PetscFunctionReturn(0);
+  if (modes->has_band) window->most = MODES_MOST * PetscMax(window->high, window->growth);
+  least = PetscMin(window->most, 1e5 * window->scale);
+  if (!frictionless->symmetric) PetscFunctionReturn(0);
+  PetscCall(ShiftInvertCountMassless(frictionless, least, &modes->counter, &window->massless));
+  PetscFunctionReturn(0);
+}
+
 /* Frictionless modes with frequency below *omega (rad/s), which is moved up or down where a mode lies there */
-static PetscErrorCode WindowCountBelow(Modes modes, PetscReal away, PetscReal *omega, PetscInt *n)
+static PetscErrorCode WindowCountBelow(Modes modes, const Window *window, PetscReal away, PetscReal *omega, PetscInt *n)
 {
   PencilMatrices frictionless;
 
   PetscFunctionBeginUser;
   PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
   PetscCall(ShiftInvertCountBelow(&frictionless, away, &modes->counter, omega, n));
+  if (*omega > 0) *n -= window->massless;
   PetscFunctionReturn(0);
 }
 
@@ -62,18 +84,19 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
   window->proven   = PETSC_FALSE;
   window->why[0]   = '\0';
   PetscCall(WindowScale(&frictionless, &window->scale));
+  PetscCall(WindowFindMassless(modes, &frictionless, window));
   if (!frictionless.symmetric) PetscFunctionReturn(0);
   if (!modes->has_band) {
     PetscReal target = window->target < window->scale ? 0 : window->target;
 
-    PetscCall(WindowCountBelow(modes, MODES_AWAY, &target, &window->below));
+    PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &target, &window->below));
     PetscFunctionReturn(0);
   }
   if (window->low < MODES_ZERO * window->scale)
     window->below = 0, window->edge[0] = 0; /* rigid modes belong to the band */
   else
-    PetscCall(WindowCountBelow(modes, -MODES_AWAY, &window->edge[0], &window->below));
-  PetscCall(WindowCountBelow(modes, MODES_AWAY, &window->edge[1], &below_high));
+    PetscCall(WindowCountBelow(modes, window, -MODES_AWAY, &window->edge[0], &window->below));
+  PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &window->edge[1], &below_high));
   window->expected = below_high - window->below;
   PetscFunctionReturn(0);
 }
@@ -101,8 +124,8 @@ PetscErrorCode WindowNarrow(Modes modes, const PencilMatrices *pencil, const Win
   radius  = UndampedRadius(part, middle, NULL);
   edge[0] = pencil->symmetric ? part->edge[0] : PetscSqrtReal(PetscMax(0, middle - radius));
   edge[1] = pencil->symmetric ? part->edge[1] : PetscSqrtReal(middle + radius);
-  PetscCall(WindowCountBelow(modes, -MODES_AWAY, &edge[0], &part->below));
-  PetscCall(WindowCountBelow(modes, MODES_AWAY, &edge[1], &below));
+  PetscCall(WindowCountBelow(modes, whole, -MODES_AWAY, &edge[0], &part->below));
+  PetscCall(WindowCountBelow(modes, whole, MODES_AWAY, &edge[1], &below));
   part->expected = below - part->below;
   if (pencil->symmetric) part->edge[0] = edge[0], part->edge[1] = edge[1];
   PetscFunctionReturn(0);
@@ -122,6 +145,7 @@ PetscErrorCode WindowReach(Modes modes, Window *window)
   PetscCall(WindowSelect(window, &nearest));
   for (PetscInt i = 0; i < nearest.n; i++) window->high = PetscMax(window->high, nearest.omega[i]);
   window->high = PetscMax(window->high, window->scale);
+  if (window->singular) window->most = MODES_MOST * window->high;
   PetscCall(SpectrumDestroy(&nearest));
   PetscCall(ShiftInvertDestroy(&si));
   PetscFunctionReturn(0);
@@ -143,7 +167,7 @@ PetscErrorCode WindowSetDamping(Modes modes, const PencilMatrices *pencil, Windo
   shift          = DampedShift(window);
   corner         = hypot(window->high, shift + window->growth);
   omega          = PetscSqrtReal((corner * corner - shift * shift) / (1 + shift * window->damping));
-  if (omega < window->high) PetscCall(WindowCountBelow(modes, MODES_AWAY, &omega, &window->within));
+  if (omega < window->high) PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &omega, &window->within));
   PetscFunctionReturn(0);
 }
 
@@ -155,7 +179,7 @@ PetscErrorCode WindowCountRigid(Modes modes, Window *window, const Spectrum *s)
   PetscFunctionBeginUser;
   if (!s->n || PetscAbsReal(s->sigma[0]) > window->scale || s->omega[0] > window->scale || window->below < 0)
     PetscFunctionReturn(0);
-  PetscCall(WindowCountBelow(modes, MODES_AWAY, &scale, &window->rigid));
+  PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &scale, &window->rigid));
   PetscFunctionReturn(0);
 }
 
@@ -191,9 +215,12 @@ PetscInt WindowFarthest(const Window *window, const Spectrum *s)
 
 PetscErrorCode WindowSelect(const Window *window, Spectrum *s)
 {
-  PetscInt first = 0, n = s->n;
+  PetscInt first = 0, n;
 
   PetscFunctionBeginUser;
+  for (PetscInt i = s->n; i-- > 0;)
+    if (hypot(s->sigma[i], s->omega[i]) > window->most) PetscCall(SpectrumRemove(s, i));
+  n = s->n;
   if (window->count) {
     while (s->n > window->count + window->rigid) PetscCall(SpectrumRemove(s, WindowFarthest(window, s)));
     PetscFunctionReturn(0);
@@ -213,8 +240,8 @@ PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *s, Petsc
     PetscReal low  = s->omega[0] < window->scale ? 0 : s->omega[0] * (1 - 1e-6);
     PetscReal high = PetscMax(window->scale, s->omega[s->n - 1] * (1 + 1e-6));
 
-    PetscCall(WindowCountBelow(modes, -MODES_AWAY, &low, &below_low));
-    PetscCall(WindowCountBelow(modes, MODES_AWAY, &high, &below_high));
+    PetscCall(WindowCountBelow(modes, window, -MODES_AWAY, &low, &below_low));
+    PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &high, &below_high));
     window->expected = below_high - below_low;
   }
   *complete = s->n == window->expected || (window->count && window->expected >= s->n && s->n == window->count)

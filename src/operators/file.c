@@ -247,10 +247,13 @@ PetscErrorCode PencilSave(Pencil pencil)
   PetscCheck(!failed, o->comm, PETSC_ERR_FILE_OPEN, "cannot make the folder '%s' of -operators_save: %s", o->save,
              strerror(failed));
   PetscCall(PencilGetMatrices(pencil, &m));
-  if (!pencil->Zr) PetscCall(PencilGetParts(pencil, &parts));
-  PetscCall(PencilSaveObject(o, "K", (PetscObject)(parts.K ? parts.K : m.K)));
-  PetscCall(PencilSaveObject(o, "M", (PetscObject)m.M));
-  PetscCall(m.C ? PencilSaveObject(o, "C", (PetscObject)m.C) : PencilRemoveObject(o, "C"));
+  if (!pencil->Zr || !o->model)
+    PetscCall(PencilGetParts(pencil, &parts));
+  else
+    parts = (PencilParts){.K = m.K, .M = m.M, .C = m.C};
+  PetscCall(PencilSaveObject(o, "K", (PetscObject)parts.K));
+  PetscCall(PencilSaveObject(o, "M", (PetscObject)parts.M));
+  PetscCall(parts.C ? PencilSaveObject(o, "C", (PetscObject)parts.C) : PencilRemoveObject(o, "C"));
   PetscCall(parts.H ? PencilSaveObject(o, "H", (PetscObject)parts.H) : PencilRemoveObject(o, "H"));
   PetscCall(PencilRemoveObject(o, "F"));
   PetscFunctionReturn(0);

@@ -123,6 +123,18 @@ PetscErrorCode MatrixTermsAdd(Operators o)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode PencilCheckMass(Pencil pencil, Mat M)
+{
+  const Terms *base   = &pencil->base;
+  PetscBool    varies = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt t = 0; t < base->n && !pencil->operators->model; t++)
+    if (base->term[t].kind == OPERATORS_MASS && base->term[t].n) varies = PETSC_TRUE;
+  if (varies) PetscCall(MassCheck(M));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode MatrixTermsAddChecksum(Operators o, Checksum c)
 {
   PetscFunctionBeginUser;

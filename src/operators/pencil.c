@@ -23,7 +23,7 @@ PetscErrorCode OperatorsLinearise(Operators operators, const SlidingState *state
   if (state && state->follower)
     PetscCall(TermsAdd(&s->base, OPERATORS_STIFFNESS, state->follower, PETSC_FALSE, 0, NULL));
   if (operators->model) PetscCall(PencilCreateNullSpaces(s));
-  if (operators->model) PetscCall(PencilTakeRigid(s));
+  PetscCall(operators->model ? PencilTakeRigid(s) : PencilScaleMultipliers(s));
   PetscFunctionReturn(0);
 }
 
@@ -96,6 +96,7 @@ static PetscErrorCode PencilFormSum(Pencil pencil, PencilSum which, Mat *A)
                 ? PencilRestore(pencil, at)
                 : TermsSumForm(projected ? &pencil->projected : &pencil->base, &kind, p, sum));
     if (sum->A) PetscCall(MatSetOption(sum->A, MAT_SYMMETRIC, sums[at].symmetric && pencil->operators->symmetric));
+    if (sum->A && kind.kind == OPERATORS_MASS) PetscCall(PencilCheckMass(pencil, sum->A));
   }
   *A = sum->A;
   PetscFunctionReturn(0);

@@ -72,6 +72,9 @@ PETSC_INTERN PetscErrorCode PencilRestore(Pencil pencil, PencilSum which);
 /* rigid.c - null space of points that are joined rigidly, where there is none of the contact. Collective. */
 PETSC_INTERN PetscErrorCode PencilTakeRigid(Pencil pencil);
 
+/* multipliers.c - of matrices without a mesh: scales of unknowns without mass as Zr and E, where they are far from one. Collective. */
+PETSC_INTERN PetscErrorCode PencilScaleMultipliers(Pencil pencil);
+
 /* slidingstate.c - takes the groups and forces of a state, or those of the scene; its parameters and point */
 PETSC_INTERN PetscErrorCode PencilTakeState(Pencil pencil, const SlidingState *state);
 
@@ -90,3 +93,5 @@ PETSC_INTERN PetscErrorCode PencilDestroyNullSpaces(Pencil pencil);
    for a mass matrix whose symmetric part is not positive definite on the unknowns that have mass */
 PETSC_INTERN PetscErrorCode MatrixFileCheck(MPI_Comm comm, const char option[], const char file[]);
 PETSC_INTERN PetscErrorCode MassCheck(Mat M);
+/* matrixterm.c - the same of the mass at the present point, where it depends on parameters, which may be of any sign */
+PETSC_INTERN PetscErrorCode PencilCheckMass(Pencil pencil, Mat M);

@@ -17,13 +17,13 @@
 #define UPDATE_DENSE 700  /* flops of LDL' per entry; from here on they run faster than a solve's, as the root of this */
 #define UPDATE_SHARE 0.75 /* of the entries of LDL': vectors of an update that take no more are kept */
 
-/* Raises the error for what no shift makes regular */
-static PetscErrorCode ShiftInvertRegular(MPI_Comm comm, PetscBool regular, PetscReal shift)
+PetscErrorCode ShiftInvertRegular(MPI_Comm comm, PetscBool regular, PetscReal shift)
 {
   PetscFunctionBeginUser;
   PetscCheck(
     regular, comm, PETSC_ERR_MAT_LU_ZRPVT,
-    "the problem is singular at every shift near %.6g: a part without mass or an unknown without stiffness and mass",
+    "the problem is singular at every shift near %.6g: a part without mass, an unknown without stiffness and mass, or a "
+    "constraint that follows from others",
     (double)shift);
   PetscFunctionReturn(0);
 }
@@ -275,33 +275,6 @@ PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st)
   PetscCall(PCShellSetContext(pc, si));
   PetscCall(PCShellSetApply(pc, transposed ? ShiftInvertApplyTranspose : ShiftInvertApply));
   PetscCall(PCShellSetMatApply(pc, transposed ? ShiftInvertMatApplyTranspose : ShiftInvertMatApply));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal away, ShiftInvert *si, PetscReal *omega,
-                                     PetscInt *n)
-{
-  PetscInt n_null = 1;
-
-  PetscFunctionBeginUser;
-  *n = 0;
-  if (*omega <= 0) PetscFunctionReturn(0);
-  si->inertia = PETSC_TRUE;
-  for (int attempt = 0; attempt < 4 && n_null; attempt++) {
-    PetscBool stands;
-    PC        pc;
-    Mat       F;
-
-    *omega *= 1 + attempt * away;
-    PetscCall(ShiftInvertStands(pencil, *omega * *omega, si, &stands));
-    si->counts = PETSC_TRUE;
-    if (!stands) PetscCall(ShiftInvertMove(pencil, *omega * *omega, si));
-    si->counts = PETSC_FALSE;
-    PetscCall(KSPGetPC(si->ksp, &pc));
-    PetscCall(PCFactorGetMatrix(pc, &F));
-    PetscCall(MatGetInertia(F, n, &n_null, NULL));
-  }
-  PetscCall(ShiftInvertRegular(si->comm, n_null ? PETSC_FALSE : PETSC_TRUE, *omega * *omega));
   PetscFunctionReturn(0);
 }
 

@@ -107,11 +107,19 @@ PETSC_INTERN PetscErrorCode TrialSums(const ShiftInvert *si, PetscBool solution,
 /* PETSC_ERR_LIB where one of n solutions does not fit its right-hand side */
 PETSC_INTERN PetscErrorCode TrialCheck(const ShiftInvert *si, PetscInt n_right, PetscInt n, PetscScalar b[][2],
                                        PetscScalar x[][2]);
-/* Frictionless modes with frequency below *omega (rad/s) by Sylvester's law of inertia; symmetric undamped pencil. A null
-   pivot is an eigenvalue at *omega itself, which has no sign: *omega is then moved by its part `away` (of either sign).
+/* Raises the error for what no shift makes regular */
+PETSC_INTERN PetscErrorCode ShiftInvertRegular(MPI_Comm comm, PetscBool regular, PetscReal shift);
+/* inertia.c - negative pivots of K - omega^2 M, 0 where omega is not positive; symmetric undamped pencil. A null pivot is an
+   eigenvalue at *omega itself, which has no sign: *omega is then moved by its part `away` (of either sign).
    PETSC_ERR_MAT_LU_ZRPVT where null pivots stay. */
 PETSC_INTERN PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal away, ShiftInvert *si,
                                                   PetscReal *omega, PetscInt *n);
+/* How many of those belong to no eigenvalue, but to unknowns without mass; with these, and else, 0, also to modes that grow faster than
+   `most`, rad/s */
+PETSC_INTERN PetscErrorCode ShiftInvertCountMassless(const PencilMatrices *pencil, PetscReal most, ShiftInvert *si,
+                                                     PetscInt *n);
+/* Whether unknowns are without mass: rows of M without an entry that is not zero. Collective. */
+PETSC_INTERN PetscErrorCode MassHasEmptyRows(Mat M, PetscBool *empty);
 
 /* readoptions.c - reads the options eps_, pep_ (eigensolvers), st_ (factorisations), and of st_ksp_ those of iterative
    solvers, where some are given and nobody has read them yet, so that what is still unread is unknown */
