@@ -21,6 +21,7 @@ LAUNCHER = Path(__file__).resolve().parents[1] / "scripts/mpirun"
 OPEN, WRITE, SYNC, RENAME, CLOSE, OWN, PETSC = (1 << bit for bit in range(7))
 FILES = OPEN | WRITE | SYNC | RENAME | CLOSE
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+ENDED = "squeal: error: stopped by SIGTERM"
 # What a process alone does not need, and costs half of its start: networks, and to look for devices
 LEAN = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_btl": "self", "OMPI_MCA_pml": "ob1", "OMPI_MCA_mtl": "^psm,psm2,ofi",
         "OMPI_MCA_orte_create_session_dirs": "0", "HWLOC_COMPONENTS": "-pci,-linuxio,-opencl,-gl"}
@@ -54,7 +55,9 @@ class Outcome:
     def __init__(self, status, stdout, stderr):
         self.status, self.stdout, self.stderr = status, stdout, stderr
         lines = [line for line in stderr.split("\n") if line.strip()]
-        self.errors = [line for line in lines if not line.startswith("squeal: warning: ")]
+        errors = [line for line in lines if not line.startswith("squeal: warning: ")]
+        # Where a rank fails alone, the launcher ends the others, of which the first may say so
+        self.errors = [line for line in errors if not line.startswith(ENDED)] or errors
 
     def refused(self):
         """Whether it failed as it should, with one line."""

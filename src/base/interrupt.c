@@ -1,8 +1,9 @@
 /*
    The end by ^C or SIGTERM: one line on stderr and in the log, then the end that the signal brings, hence exit status
    130 or 143 in a shell. mpirun asks all its ranks at once, of which the first speaks; whoever asks a single rank gets
-   the line from that one. A run in time listens itself while it steps (dynamics/stop.h). After an error nothing more is
-   said: MPI_Abort() makes mpirun end all ranks by SIGTERM, also the one that has just given its reason.
+   the line from that one. A run in time listens itself while it steps (dynamics/stop.h). After an error that rank
+   says nothing more: MPI_Abort() makes mpirun end all ranks by SIGTERM. Where another rank failed alone, for want of
+   memory, the first one cannot know that from a request by the user, and may say so in a second line.
 
    A handler may call nothing that locks or allocates, and reaches nothing but static memory.
 */

@@ -47,7 +47,7 @@ EARLIER = ("-contact_mu", "0.2")  # of the run that was in the folder before
 CHANGING = re.compile(r"^# (completeness|cost|end|stages|in|command|repeat|files|.*seconds).*$", re.MULTILINE)
 MATRICES = ("K.bin", "M.bin", "C.bin", "H.bin", "F.bin")  # of -operators_save, which may be any folder
 UNDER_WAY = "# end: not yet"  # in the scene.yaml of a run that has not ended
-TOLERANCE = 1e-6  # between runs on several ranks, where the order of sums depends on the moment
+TOLERANCE = 1e-5  # between runs on several ranks, where the order of sums depends on the moment: conditions of close modes change by 2e-6
 
 
 def options(text):
