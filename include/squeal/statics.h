@@ -36,6 +36,8 @@ typedef struct {
   PetscReal normal;              /* sum of lambda_n, N */
   PetscReal force[3];            /* on the master, normal and friction, N */
   PetscReal friction[3];         /* its part along the surface, N */
+  PetscReal rubbing;             /* sum of the lengths of that of each pair, N */
+  PetscReal moment;              /* with a -rotation: of friction on the master about that axis, against it, N m */
   PetscReal centre[3];           /* of the normal forces, m */
 } StaticsResultant;
 

@@ -55,10 +55,24 @@ static PetscBool PairSetMaster(const ContactInterface *c, const ContactSurface *
   return speed > 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Worst failure over all ranks: distance of a node without partner (m), its position, and whether a slip vanished */
+/* Worst failure over all ranks: distance of a node without partner (m), its position, whether a slip vanished; slaves
+   that are nodes of the master too, and whose surface looks towards the master's or with it */
 typedef struct {
   PetscReal distance, x[3], no_slip;
+  PetscInt  n_common, n_towards, n_with, n;
 } PairFailure;
+
+/* Counts a pair that has one node twice, or of which one surface looks towards the other or where that looks */
+static void PairLook(const ContactPair *pair, const PetscReal normal[3], PairFailure *failure)
+{
+  const PetscReal along = Vec3Dot(normal, pair->n);
+
+  failure->n++;
+  for (PetscInt i = 0; i < pair->n_master; i++)
+    if (pair->corner[i] == pair->vertex && PetscAbsReal(pair->weight[i] - 1) < 1e-9) failure->n_common++;
+  if (along < 0) failure->n_towards++;
+  if (along > 0) failure->n_with++;
+}
 
 /* Pairs the slave nodes that this rank owns with the facets nearest to them; what fails is kept in *failure */
 static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const ContactSurface *surface,
@@ -87,10 +101,28 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const Conta
       failure->distance = foot.distance;
       PetscCall(PetscArraycpy(failure->x, pair->x, 3));
     }
-    if (foot.facet >= 0 && !PairSetMaster(c, surface, &foot, pair)) failure->no_slip = 1;
+    if (foot.facet < 0) continue;
+    if (!PairSetMaster(c, surface, &foot, pair)) failure->no_slip = 1;
+    PairLook(pair, &normals[3 * v], failure);
   }
   PetscCall(PetscFree(vertices));
   PetscCall(PetscFree(normals));
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error for surfaces between which nothing can slide: they share nodes, or one looks where the other does */
+static PetscErrorCode SurfacesCheck(MPI_Comm comm, const ContactInterface *c, PairFailure *failure)
+{
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failure->n_common, 4, MPIU_INT, MPI_SUM, comm));
+  PetscCheck(
+    !failure->n_common, comm, PETSC_ERR_USER_INPUT,
+    "contact %s: %" PetscInt_FMT " of %" PetscInt_FMT
+    " nodes of -%s_surfaces %s,%s are nodes of both, and rub on nothing; give each body nodes of its own there",
+    c->name, failure->n_common, failure->n, c->name, c->slave, c->master);
+  PetscCheck(failure->n_towards || !failure->n_with, comm, PETSC_ERR_USER_INPUT,
+             "contact %s: both of -%s_surfaces %s,%s look the same way; give two that face each other", c->name,
+             c->name, c->slave, c->master);
   PetscFunctionReturn(0);
 }
 
@@ -114,6 +146,7 @@ static PetscErrorCode PartnerCheck(MPI_Comm comm, ContactInterface *c, PairFailu
              "-%s_tolerance is %.6g m); each node of the first of -%s_surfaces must lie on the second",
              c->name, c->slave, (double)failure->x[0], (double)failure->x[1], (double)failure->x[2], c->master,
              worst.distance, c->name, (double)c->tolerance, c->name);
+  PetscCall(SurfacesCheck(comm, c, failure));
   c->slides = failure->no_slip == 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(
     c->slides || !given || (c->mu == 0 && !c->damping), comm, PETSC_ERR_USER_INPUT,
@@ -126,10 +159,7 @@ PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface)
 {
   ContactInterface *c       = &contact->interfaces[interface];
   const PetscInt    first   = contact->n_pairs;
-  PairFailure       failure = {
-          0, {0, 0, 0},
-           0
-  };
+  PairFailure       failure = {.distance = 0};
   const ContactSurface *surface;
   PetscReal             area = 0;
 

@@ -5,37 +5,6 @@
 #include "modelimpl.h"
 #include <petscsf.h>
 
-/* The named sets of the mesh as "disc, pad", for messages; the same text on all ranks */
-static PetscErrorCode SetListNames(DM dm, char list[], size_t size)
-{
-  PetscInt                 n;
-  const char              *name;
-  static const char *const own[] = {"depth", "celltype", "dim", NULL};
-
-  PetscFunctionBeginUser;
-  list[0] = 0;
-  PetscCall(DMGetNumLabels(dm, &n));
-  for (PetscInt i = 0; i < n; i++) {
-    PetscBool skip = PETSC_FALSE;
-
-    PetscCall(DMGetLabelName(dm, i, &name));
-    for (const char *const *o = own; *o && !skip; o++) PetscCall(PetscStrcmp(name, *o, &skip));
-    if (skip) continue;
-    if (list[0]) PetscCall(PetscStrlcat(list, ", ", size));
-    PetscCall(PetscStrlcat(list, name, size));
-  }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModelComplainSet(Model model, const char what[], const char name[])
-{
-  char list[1024];
-
-  PetscFunctionBeginUser;
-  PetscCall(SetListNames(model->dm, list, sizeof(list)));
-  SETERRQ(model->comm, PETSC_ERR_USER_INPUT, "the mesh has no %s named '%s'; it names: %s", what, name, list);
-}
-
 /* Points of a range, NULL for all, where the label has the value; the caller frees them */
 static PetscErrorCode LabelGetPoints(DMLabel label, PetscInt value, const PetscInt range[2], PetscInt *n,
                                      PetscInt **point)
@@ -57,6 +26,62 @@ static PetscErrorCode LabelGetPoints(DMLabel label, PetscInt value, const PetscI
   PetscCall(ISRestoreIndices(is, &p));
   PetscCall(ISDestroy(&is));
   PetscFunctionReturn(0);
+}
+
+/* Whether a named set has cells, on any rank */
+static PetscErrorCode SetHasCells(Model model, const char set[], PetscBool *has)
+{
+  DMLabel  label;
+  PetscInt cells[2], values[2] = {SET_CLOSED, SET_ALONE};
+
+  PetscFunctionBeginUser;
+  *has = PETSC_FALSE;
+  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cells[0], &cells[1]));
+  PetscCall(DMGetLabel(model->dm, set, &label));
+  for (int i = 0; i < 2; i++) {
+    PetscInt n, *point;
+
+    PetscCall(LabelGetPoints(label, values[i], cells, &n, &point));
+    if (n) *has = PETSC_TRUE;
+    PetscCall(PetscFree(point));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, has, 1, MPIU_BOOL, MPI_LOR, model->comm));
+  PetscFunctionReturn(0);
+}
+
+/* The named sets of the mesh as "disc, pad", or those that have cells, for messages; the same text on all ranks */
+static PetscErrorCode SetListNames(Model model, PetscBool cells, char list[], size_t size)
+{
+  PetscInt                 n;
+  const char              *name;
+  static const char *const own[] = {"depth", "celltype", "dim", NULL};
+
+  PetscFunctionBeginUser;
+  list[0] = 0;
+  PetscCall(DMGetNumLabels(model->dm, &n));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscBool skip = PETSC_FALSE, has = PETSC_TRUE;
+
+    PetscCall(DMGetLabelName(model->dm, i, &name));
+    for (const char *const *o = own; *o && !skip; o++) PetscCall(PetscStrcmp(name, *o, &skip));
+    if (skip) continue;
+    if (cells) PetscCall(SetHasCells(model, name, &has));
+    if (!has) continue;
+    if (list[0]) PetscCall(PetscStrlcat(list, ", ", size));
+    PetscCall(PetscStrlcat(list, name, size));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelComplainSet(Model model, const char what[], const char name[])
+{
+  char      list[1024];
+  PetscBool is_volume;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrcmp(what, "volume", &is_volume));
+  PetscCall(SetListNames(model, is_volume, list, sizeof(list)));
+  SETERRQ(model->comm, PETSC_ERR_USER_INPUT, "the mesh has no %s named '%s'; it names: %s", what, name, list);
 }
 
 PetscErrorCode SetGetPoints(Model model, const char set[], const PetscInt range[2], PetscInt *n, PetscInt **point)

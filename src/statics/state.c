@@ -3,6 +3,7 @@
    displacements as they are, not from the small system.
 */
 #include "staticsimpl.h"
+#include "base/vec3.h"
 
 #define STATICS_LOOSE 1e-6 /* of the loads, unbalanced */
 
@@ -24,14 +25,30 @@ static void StaticsSetPairs(const PairRows *rows, PetscReal kappa, const Contact
   }
 }
 
-/* Adds one pair to the sums of its interface */
-static void StaticsAddResultant(const ContactPair *pair, const ContactState *state, StaticsResultant *r)
+/* Moment of the friction f on the master at x about the axis of its rotation w through c, against w: -w (x - c) x f / |w| */
+static PetscReal BrakingMoment(const ContactInterface *c, const PetscReal x[3], const PetscReal f[3])
 {
+  const PetscReal arm[3] = {x[0] - c->center[0], x[1] - c->center[1], x[2] - c->center[2]}, w = Vec3Length(c->rotation);
+  PetscReal       moment[3];
+
+  Vec3Cross(arm, f, moment);
+  return w > 0 ? -Vec3Dot(c->rotation, moment) / w : 0;
+}
+
+/* Adds one pair to the sums of its interface */
+static void StaticsAddResultant(const ContactInterface *c, const ContactPair *pair, const ContactState *state,
+                                StaticsResultant *r)
+{
+  PetscReal f[3];
+
+  for (int d = 0; d < 3; d++) f[d] = state->lambda_t[0] * pair->t[d] + state->lambda_t[1] * pair->b[d];
+  r->rubbing += Vec3Length(f);
+  r->moment += BrakingMoment(c, pair->x, f);
   r->n[state->status]++;
   r->normal += state->lambda_n;
   for (int d = 0; d < 3; d++) {
-    r->force[d] += -state->lambda_n * pair->n[d] + state->lambda_t[0] * pair->t[d] + state->lambda_t[1] * pair->b[d];
-    r->friction[d] += state->lambda_t[0] * pair->t[d] + state->lambda_t[1] * pair->b[d];
+    r->force[d] += -state->lambda_n * pair->n[d] + f[d];
+    r->friction[d] += f[d];
     r->centre[d] += state->lambda_n * pair->x[d];
   }
 }
@@ -40,13 +57,18 @@ static PetscErrorCode StaticsSetResultants(Statics s)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(s->resultant, s->rows.n_interfaces));
-  for (PetscInt p = 0; p < s->rows.n_pairs; p++)
-    StaticsAddResultant(&s->rows.pair[p], &s->state[p], &s->resultant[s->rows.pair[p].interface]);
+  for (PetscInt p = 0; p < s->rows.n_pairs; p++) {
+    const PetscInt i = s->rows.pair[p].interface;
+
+    StaticsAddResultant(&s->rows.interface[i], &s->rows.pair[p], &s->state[p], &s->resultant[i]);
+  }
   for (PetscInt i = 0; i < s->rows.n_interfaces; i++) {
     StaticsResultant *r = &s->resultant[i];
 
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->n, CONTACT_N_STATUS, MPIU_INT, MPI_SUM, s->comm));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &r->normal, 1, MPIU_REAL, MPI_SUM, s->comm));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &r->rubbing, 1, MPIU_REAL, MPI_SUM, s->comm));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &r->moment, 1, MPIU_REAL, MPI_SUM, s->comm));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->friction, 3, MPIU_REAL, MPI_SUM, s->comm));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->force, 3, MPIU_REAL, MPI_SUM, s->comm));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->centre, 3, MPIU_REAL, MPI_SUM, s->comm));

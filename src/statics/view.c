@@ -2,22 +2,26 @@
    The sliding state in words.
 */
 #include "staticsimpl.h"
+#include "base/vec3.h"
 
-/* One interface: pairs, forces, and where the normal force acts */
+/* One interface: pairs, forces, and where the normal force acts. Friction about an axis may cancel as a vector: then its
+   sum over the pairs and its moment say what it does */
 static PetscErrorCode InterfaceView(const ContactInterface *c, const StaticsResultant *r, PetscViewer viewer)
 {
-  const PetscInt   open = r->n[CONTACT_OPEN], stick = r->n[CONTACT_STICK], slip = r->n[CONTACT_SLIP];
-  const PetscReal *t          = r->friction;
-  const PetscReal  tangential = PetscSqrtReal(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
+  const PetscInt  open = r->n[CONTACT_OPEN], stick = r->n[CONTACT_STICK], slip = r->n[CONTACT_SLIP];
+  const PetscBool rotates  = Vec3Length(c->rotation) > 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal friction = rotates ? r->rubbing : Vec3Length(r->friction);
 
   PetscFunctionBeginUser;
   PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %" PetscInt_FMT " of %" PetscInt_FMT " pairs closed", c->name,
                                    stick + slip, open + stick + slip));
   if (!c->slides && c->mu != 0)
     PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " stick and %" PetscInt_FMT " slip", stick, slip));
-  PetscCall(PetscViewerASCIIPrintf(
-    viewer, "; normal force %.9g N, friction %.6g N; centre of force %.6g, %.6g, %.6g m\n", (double)r->normal,
-    (double)tangential, (double)r->centre[0], (double)r->centre[1], (double)r->centre[2]));
+  PetscCall(
+    PetscViewerASCIIPrintf(viewer, "; normal force %.9g N, friction %.6g N", (double)r->normal, (double)friction));
+  if (rotates) PetscCall(PetscViewerASCIIPrintf(viewer, ", %.6g N m about the axis", (double)r->moment));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "; centre of force %.6g, %.6g, %.6g m\n", (double)r->centre[0],
+                                   (double)r->centre[1], (double)r->centre[2]));
   PetscFunctionReturn(0);
 }
 
@@ -28,10 +32,11 @@ static PetscErrorCode SymmetryView(Statics s, PetscViewer viewer)
 
   PetscFunctionBeginUser;
   if (!s->even || !ShiftInvertShows()) PetscFunctionReturn(0);
-  PetscCall(PetscViewerASCIIPrintf(
-    viewer, "saved: symmetry: %" PetscInt_FMT " even unknowns instead of %" PetscInt_FMT
-            ", factors of %.3g MB instead of about %.3g MB (estimate)\n",
-    s->unknowns[0], s->unknowns[1], mb, mb * FactorEntriesTimes((double)s->unknowns[1] / (double)s->unknowns[0])));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "saved: symmetry: %" PetscInt_FMT " even unknowns instead of %" PetscInt_FMT
+                                   ", factors of %.3g MB instead of about %.3g MB (estimate)\n",
+                                   s->unknowns[0], s->unknowns[1], mb,
+                                   mb * FactorEntriesTimes((double)s->unknowns[1] / (double)s->unknowns[0])));
   PetscFunctionReturn(0);
 }
 

@@ -71,6 +71,7 @@ struct _p_Sweep {
   PetscReal   rtol, *percent;
   PetscInt    max_samples, n_real, n_verify, n_groups, n_percent;
   PetscBool   linked, onsets, sensitivities, restart; /* linked: -sweep_link is given */
+  PetscBool   max_given;                              /* -sweep_max_samples is */
   /* results */
   SweepGrid      grid;
   PointGroups    groups;

@@ -308,7 +308,8 @@ PetscErrorCode GmshMeshRead(const char file[], GmshMesh *mesh, ReaderError *erro
     if (line[0] == '$')
       PetscCall(ReadSection(&r, line, mesh));
     else if (!r.version)
-      ReaderErrorSet(error, PETSC_ERR_FILE_READ, "the file does not begin with $MeshFormat");
+      ReaderErrorSet(error, PETSC_ERR_FILE_READ,
+                     "the file does not begin with $MeshFormat, as those of Gmsh do; scripts/import brings in others");
   }
   if (r.file) fclose(r.file);
   if (!mesh->n_elements) ReaderErrorSet(error, PETSC_ERR_FILE_READ, "the file holds no elements");

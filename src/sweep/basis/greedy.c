@@ -150,9 +150,9 @@ PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], B
   }
   PetscCall(GreedyWorkDestroy(&run));
   PetscCheck(next < 0, basis->comm, PETSC_ERR_NOT_CONVERGED,
-             "-sweep_rtol %.6g was not reached with %" PetscInt_FMT
-             " full solutions, the estimate at the last one was %.2g; raise -sweep_max_samples or narrow the range",
-             (double)greedy->rtol, greedy->n_samples, (double)greedy->last);
+             "-sweep_rtol %.6g is not made sure of at all %" PetscInt_FMT " points by %" PetscInt_FMT
+             " full solutions; raise -sweep_max_samples, narrow the range, or give -sweep_method full",
+             (double)greedy->rtol, n, greedy->n_samples);
   PetscFunctionReturn(0);
 }
 
