@@ -34,8 +34,9 @@
 
    The error of the cut-off and of the step is not in error_estimate: -map_verify tells it at some points, by transients from
    their own sliding states with half the step, with contact laws to 1e-12, and with 2.25 times the cut-off: differences of
-   amplitude and frequency where both runs vibrate, and of growth with the higher cut-off, since it is that of the bodies. A
-   vibration that never repeats itself differs by more than its level does.
+   amplitude and frequency where both runs vibrate; what lies above the higher cut-off is not in them. A vibration that never
+   repeats itself differs by more than its level does. The error of growth in the last of these rows is by the inertia of all that
+   the cut-off leaves out (ReducedLineariseInertia()).
 */
 #pragma once
 

@@ -62,6 +62,7 @@ typedef struct {
   PetscReal *W;                  /* [n_ports][n_ports], m/N */
   PetscReal *Cm;                 /* [3 n_pairs][m] Phi'C X, s / sqrt(kg); NULL without damping */
   PetscReal *Cx;                 /* [3 n_pairs][3 n_pairs] X'C X, m s/N, symmetric; NULL without damping */
+  PetscReal *Mx;                 /* [3 n_pairs][3 n_pairs] X'M X, kg (m/N)^2, symmetric; NULL where nobody asks for it */
   PetscReal *gap;                /* [n_pairs] g0, m, positive open */
   PetscReal *mu, *slope, *speed; /* [n_pairs] friction: at the stated speed (-), s/m, m/s */
 } ReducedModel;
@@ -141,6 +142,11 @@ PetscErrorCode ReducedLinearise(const ReducedModel *model, const PetscBool close
 PetscErrorCode ReducedLineariseSliding(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
                                        PetscReal sigma[], PetscReal omega[]);
 
+/*@ ReducedLineariseInertia - as ReducedLineariseSliding() with the inertia of what the modes leave out, to first order in Mx,
+    which the model must have (ReducedWeigh()). The difference is the error of the cut-off. Not collective. @*/
+PetscErrorCode ReducedLineariseInertia(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
+                                       PetscReal sigma[], PetscReal omega[]);
+
 /*@
    ReducedEquilibrium - the sliding state: 0 = -Omega^2 eta + P'p with every closed pair sliding along t, lambda_T = -mu
    lambda_n on the slave, 0 <= lambda_n, 0 <= gap, lambda_n gap = 0, by an active set. Rigid modes that nothing resists are
@@ -168,7 +174,8 @@ PetscErrorCode ReducedCreate(MPI_Comm comm, ReducedRun *reduced);
 .  -dynamics_compare <true>       - with -modes_band: eigenvalues about the sliding state beside those of the mesh
 .  -dynamics_cutoff <f>           - of the modes, Hz; without it 4 times the upper end of -modes_band, or 20 kHz, and more where
                                     the comparison asks for it
--  -dynamics_growth_rtol <5e-3>   - what growth of unstable modes in -modes_band may be off by where cut-off and step are chosen
+-  -dynamics_growth_rtol <5e-3>   - what growth of unstable modes in -modes_band may be off by where cut-off and step are chosen; where
+                                    it is given without a band, of all modes below the cut-off, by their inertia above, the cut-off alone
 @*/
 PetscErrorCode ReducedSetFromOptions(ReducedRun reduced);
 
@@ -186,6 +193,10 @@ PetscErrorCode ReducedPrepare(ReducedRun reduced, Results results);
 /*@ ReducedReduceAt - the bodies reduced below a cut-off (Hz, 0: that of `reduced`) with parameters p of the operators, NULL for
     the values of the scene; after ReducedPrepare(). The caller destroys it. Collective. @*/
 PetscErrorCode ReducedReduceAt(ReducedRun reduced, PetscReal cutoff, const PetscReal p[], ReducedRun *at);
+
+/*@ ReducedWeigh - bodies that are reduced from now on have Mx too, the inertia of what the modes leave out, which costs another
+    block of solutions each. Not collective, alike on all ranks. @*/
+PetscErrorCode ReducedWeigh(ReducedRun reduced, PetscBool weighs);
 
 /*@ ReducedGetModel - the dense model (borrowed), alike on all ranks; mu, slope and speed may be changed. Not collective. @*/
 PetscErrorCode ReducedGetModel(ReducedRun reduced, ReducedModel **model);

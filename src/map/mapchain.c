@@ -87,6 +87,18 @@ static PetscErrorCode MarchLinearise(MapMarch w, const ContactStatus status[], M
   PetscFunctionReturn(0);
 }
 
+/* Growth of the fastest mode about the sliding state with the inertia of what the modes leave out; after MarchLinearise() there */
+static PetscErrorCode MarchWeigh(MapMarch w, MapPoint *row)
+{
+  MapFastest fastest;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedLineariseInertia(&w->bodies->model, w->closed, w->lambda_n, w->sigma, w->omega));
+  MapModesJudge(2 * w->bodies->model.m, w->sigma, w->omega, &fastest);
+  row->whole = fastest.growth;
+  PetscFunctionReturn(0);
+}
+
 /* Sum of the impulses that act at t_n, or NULL: one between two steps acts at both in shares, as in any reduced run */
 static const PetscReal *MarchKick(MapMarch w)
 {
@@ -271,6 +283,7 @@ static PetscErrorCode MarchBegin(MapMarch w, PetscBool go_on, MapPoint *row, Pet
   w->growth = NAN;
   if (found) PetscCall(MarchLinearise(w, w->rest.status, &fastest));
   if (found) MapModesTake(2 * model->m, w->sigma, w->omega, row);
+  if (found && model->Mx) PetscCall(MarchWeigh(w, row));
   if (found && !go_on) PetscCall(ReducedStateCopy(model, &w->rest, &w->state));
   row->growth    = fastest.growth;
   row->mode_freq = fastest.freq;
@@ -296,8 +309,7 @@ static PetscErrorCode MarchPoint(MapMarch w, PetscBool go_on, MapPoint *row, Pet
   PetscCheck(!error || error == PETSC_ERR_NOT_CONVERGED || error == PETSC_ERR_FP, PETSC_COMM_SELF, error,
              "a transient of the map ended by PETSc's error %d", (int)error);
   *good = begun && !error ? PETSC_TRUE : PETSC_FALSE;
-  if (!*good) row->regime = MAP_UNKNOWN;
-  if (!*good) row->end = MAP_FAILED;
+  if (!*good) row->regime = MAP_UNKNOWN, row->end = MAP_FAILED;
   PetscFunctionReturn(0);
 }
 

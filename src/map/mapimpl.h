@@ -36,6 +36,7 @@ typedef struct {
   PetscReal open, stick;      /* shares of the time */
   PetscReal growth, mode_freq,
     index;         /* 1/s, Hz, of the fastest mode; the largest growth over angular frequency of all */
+  PetscReal whole; /* growth with the inertia of what the modes leave out, of bodies that have it */
   PetscReal error; /* of the rms, relative */
   PetscReal time;  /* s */
   PetscInt  steps;

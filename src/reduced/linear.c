@@ -6,6 +6,11 @@
       T = (N W E)^-1 N (Cm' - Cx E S),   lambda_n = -S eta + T eta',
       eta'' + (C - Cm E S - P'E T) eta' + (Omega^2 + P'E S) eta = 0.
 
+   What the modes leave out has in e^(s t) the compliance sum phi phi' / (omega^2 + s^2), to first order W - s^2 Mx, exact
+   in all modes above the cut-off but for (omega / their own frequency)^2 of itself:
+
+      lambda_n = -S eta + (N W E)^-1 N Mx E lambda_n'',   so that eta'' gets the mass 1 + P'E (N W E)^-1 N Mx E S.
+
    Friction turns against the direction of the slip velocity v t + (r_t', r_b'): to first order its change is -mu' lambda_n r_t' along
    t and -mu lambda_n r_b' / v along b, dampers between the bodies (the residual moves 1e-4 as fast and is left out there).
 */
@@ -65,27 +70,6 @@ static PetscErrorCode ClosedSolveStiffness(ClosedPairs *c)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ClosedSolveDamping(ClosedPairs *c)
-{
-  const PetscInt m = c->model->m, n = c->n, N = 3 * c->model->n_pairs;
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < m; k++) {
-    for (PetscInt i = 0; i < n; i++) {
-      const PetscReal *x = &c->model->Cx[3 * c->pair[i]];
-
-      c->T[i + n * k] = c->model->Cm[k + m * 3 * c->pair[i]];
-      for (PetscInt j = 0; j < n; j++) {
-        const PetscReal *here = &x[N * 3 * c->pair[j]];
-
-        c->T[i + n * k] -= (here[0] - c->model->mu[c->pair[j]] * here[N]) * c->S[j + n * k];
-      }
-    }
-  }
-  PetscCall(DenseSolve(n, c->A, c->pivot, PETSC_FALSE, m, c->T));
-  PetscFunctionReturn(0);
-}
-
 /* K += scale Q E S, Q [3 n_pairs][m] with m numbers for each port */
 static void ClosedAdd(const ClosedPairs *c, PetscReal scale, const PetscReal Q[], const PetscReal S[], PetscReal K[])
 {
@@ -97,6 +81,56 @@ static void ClosedAdd(const ClosedPairs *c, PetscReal scale, const PetscReal Q[]
     for (PetscInt k = 0; k < m; k++)
       for (PetscInt l = 0; l < m; l++) K[l + m * k] += scale * (q[l] - mu * q[m + l]) * S[i + c->n * k];
   }
+}
+
+/* Y [m][n] := (N W E)^-1 (Y - N X E S), X [3 n_pairs][3 n_pairs] */
+static PetscErrorCode ClosedSolveForm(ClosedPairs *c, const PetscReal X[], PetscReal Y[])
+{
+  const PetscInt m = c->model->m, n = c->n, N = 3 * c->model->n_pairs;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < m; k++) {
+    for (PetscInt i = 0; i < n; i++) {
+      for (PetscInt j = 0; j < n; j++) {
+        const PetscReal *x = &X[3 * c->pair[i] + N * 3 * c->pair[j]];
+
+        Y[i + n * k] -= (x[0] - c->model->mu[c->pair[j]] * x[N]) * c->S[j + n * k];
+      }
+    }
+  }
+  PetscCall(DenseSolve(n, c->A, c->pivot, PETSC_FALSE, m, Y));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ClosedSolveDamping(ClosedPairs *c)
+{
+  const PetscInt m = c->model->m, n = c->n;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < m; k++)
+    for (PetscInt i = 0; i < n; i++) c->T[i + n * k] = c->model->Cm[k + m * 3 * c->pair[i]];
+  PetscCall(ClosedSolveForm(c, c->model->Cx, c->T));
+  PetscFunctionReturn(0);
+}
+
+/* K and C over the mass 1 + P'E (N W E)^-1 N Mx E S */
+static PetscErrorCode ClosedDivideByMass(ClosedPairs *c, PetscReal K[], PetscReal C[])
+{
+  const PetscInt m = c->model->m;
+  PetscReal     *mass, *Y;
+  PetscBLASInt  *pivot;
+
+  PetscFunctionBeginUser;
+  if (!c->n) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc3(m * m, &mass, m * c->n, &Y, m, &pivot));
+  PetscCall(ClosedSolveForm(c, c->model->Mx, Y));
+  for (PetscInt k = 0; k < m; k++) mass[k + m * k] = 1;
+  ClosedAdd(c, -1, c->model->P, Y, mass);
+  PetscCall(DenseFactor(m, mass, pivot, NULL));
+  PetscCall(DenseSolve(m, mass, pivot, PETSC_FALSE, m, K));
+  PetscCall(DenseSolve(m, mass, pivot, PETSC_FALSE, m, C));
+  PetscCall(PetscFree3(mass, Y, pivot));
+  PetscFunctionReturn(0);
 }
 
 /* Eigenvalues of the first-order system of K and C, and vectors [2 m][2 m] in LAPACK's real storage, or NULL */
@@ -196,8 +230,9 @@ PetscErrorCode ReducedLinearise(const ReducedModel *model, const PetscBool close
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ReducedLineariseSliding(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
-                                       PetscReal sigma[], PetscReal omega[])
+/* Eigenvalues with the inertia of what the modes leave out, or without */
+static PetscErrorCode LineariseAbout(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
+                                     PetscBool inertia, PetscReal sigma[], PetscReal omega[])
 {
   const PetscInt m = model->m;
   PetscReal     *K, *C;
@@ -207,9 +242,26 @@ PetscErrorCode ReducedLineariseSliding(const ReducedModel *model, const PetscBoo
   PetscCall(ClosedCreate(model, closed, &c));
   PetscCall(PetscCalloc2(m * m, &K, m * m, &C));
   PetscCall(ClosedFill(&c, lambda_n, K, C));
+  if (inertia) PetscCall(ClosedDivideByMass(&c, K, C));
   PetscCall(QuadraticEigen(m, (PetscReal *const[2]){K, C}, sigma, omega, NULL));
   PetscCall(PetscFree2(K, C));
   PetscCall(ClosedDestroy(&c));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedLineariseSliding(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
+                                       PetscReal sigma[], PetscReal omega[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(LineariseAbout(model, closed, lambda_n, PETSC_FALSE, sigma, omega));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedLineariseInertia(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
+                                       PetscReal sigma[], PetscReal omega[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(LineariseAbout(model, closed, lambda_n, PETSC_TRUE, sigma, omega));
   PetscFunctionReturn(0);
 }
 

@@ -32,8 +32,9 @@ PetscErrorCode ReducedSetFromOptions(ReducedRun r)
                              "of the modes of a reduced model, Hz; 0: 4 times the end of -modes_band, or 20 kHz",
                              "reduced.h", r->cutoff, &r->cutoff, NULL));
   PetscCall(PetscOptionsReal("-dynamics_growth_rtol",
-                             "error of growth in -modes_band for which a cut-off and a step are chosen", "reduced.h",
-                             r->growth_rtol, &r->growth_rtol, NULL));
+                             "error of growth in -modes_band, or without it of all modes, for which a cut-off and a step "
+                             "are chosen", "reduced.h",
+                             r->growth_rtol, &r->growth_rtol, &r->has_rtol));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_compare",
                            "eigenvalues of a reduced model beside those of the mesh in -modes_band", &r->compare));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_verify",
@@ -110,6 +111,7 @@ static PetscErrorCode ReducedReduceOther(ReducedRun r, PetscReal cutoff, const P
   (*other)->cutoff     = cutoff > 0 ? cutoff : r->cutoff;
   (*other)->dt         = r->dt;
   (*other)->like       = like;
+  (*other)->weighs     = r->weighs;
   if (p) PetscCall(OperatorsCreatePoint(r->run.operators, p, &(*other)->p));
   PetscCall(ReducedReduce(*other));
   PetscCall(ShiftInvertDestroy(&(*other)->inverse));
@@ -127,6 +129,13 @@ PetscErrorCode ReducedReduceLike(ReducedRun r, PetscReal cutoff, const PetscReal
 {
   PetscFunctionBeginUser;
   PetscCall(ReducedReduceOther(r, cutoff, p, r, at));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedWeigh(ReducedRun r, PetscBool weighs)
+{
+  PetscFunctionBeginUser;
+  r->weighs = weighs;
   PetscFunctionReturn(0);
 }
 
@@ -170,7 +179,10 @@ static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
   PetscCall(ReducedPrepare(r, results));
   PetscCheck(!r->verify || !r->run.restart, r->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_verify compares whole runs: leave it out of -dynamics_restart, or start anew");
+  PetscCall(ReducedWeigh(r, r->compare));
   PetscCall(ReducedChoose(r));
+  PetscCall(ReducedWarnGrowth(r));
+  PetscCall(ReducedWeigh(r, PETSC_FALSE));
   PetscCall(HistorySetUp(
     r->run.history,
     &(HistorySource){r->run.model, NULL, r->run.projector, r->run.n_interfaces, r->run.interfaces, results}, r->run.end,

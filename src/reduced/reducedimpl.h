@@ -32,6 +32,14 @@ typedef struct {
   char      label[32];
 } ReducedPair;
 
+#define REDUCED_GROWING 16 /* modes that grow, of which the error of the cut-off is told */
+
+/* A mode about the sliding state: growth without and with the inertia of what the cut-off leaves out, 1/s; frequency, rad/s; what
+   growth is off by, relative */
+typedef struct {
+  PetscReal growth, whole, omega, off;
+} ReducedGrowing;
+
 /* How the normal force of another run differs */
 typedef struct {
   PetscReal cutoff, dt;   /* of it, Hz, s */
@@ -52,6 +60,8 @@ struct _p_ReducedRun {
   PetscBool  asked, compare, verify;
   PetscReal  cutoff; /* Hz, 0: to be chosen */
   PetscReal  growth_rtol;
+  PetscBool  has_rtol; /* somebody says so */
+  PetscBool  weighs; /* Mx too */
   PetscReal *p;    /* parameters of the operators, NULL: those of the scene */
   ReducedRun like; /* whose modes those taken resemble, as many; NULL: all below the cut-off are */
   /* rooms */
@@ -81,6 +91,8 @@ struct _p_ReducedRun {
   PetscInt     n_closed, n_compared;
   ReducedPair *compared;
   PetscBool   *closed;                 /* [n_pairs] in the sliding state */
+  PetscInt       n_growing;
+  ReducedGrowing growing[REDUCED_GROWING];
   PetscReal    miss_model, miss_steps; /* largest error of growth of an unstable mode; what steps add, relative */
   /* state */
   PetscReal      dt;
@@ -172,6 +184,12 @@ PETSC_INTERN PetscErrorCode ReducedStart(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedCompareMesh(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedCompare(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedCompareView(ReducedRun reduced, PetscViewer viewer);
+
+/* inertia.c - modes that grow without and with the inertia of what the cut-off leaves out; the most that one is off by, relative;
+   a warning where that is much */
+PETSC_INTERN PetscErrorCode ReducedWeighGrowth(ReducedRun reduced, PetscReal *off);
+PETSC_INTERN PetscErrorCode ReducedWarnGrowth(ReducedRun reduced);
+PETSC_INTERN PetscErrorCode ReducedGrowthView(ReducedRun reduced, PetscViewer viewer);
 
 /* warp.c - ReducedLinearise() as steps of length dt (s) see the model */
 PETSC_INTERN PetscErrorCode ReducedLineariseSteps(const ReducedModel *model, PetscReal dt, const PetscBool closed[],

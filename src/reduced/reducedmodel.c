@@ -4,13 +4,13 @@
 PetscErrorCode ReducedModelCopy(const ReducedModel *from, ReducedModel *to)
 {
   const PetscInt   m = from->m, n = from->n_pairs, N = from->n_ports;
-  const PetscInt   size[]   = {m, m * m, m * N, N * N, 3 * n * m, 9 * n * n};
-  const PetscReal *source[] = {from->omega2, from->C, from->P, from->W, from->Cm, from->Cx};
-  PetscReal      **copy[]   = {&to->omega2, &to->C, &to->P, &to->W, &to->Cm, &to->Cx};
+  const PetscInt   size[]   = {m, m * m, m * N, N * N, 3 * n * m, 9 * n * n, 9 * n * n};
+  const PetscReal *source[] = {from->omega2, from->C, from->P, from->W, from->Cm, from->Cx, from->Mx};
+  PetscReal      **copy[]   = {&to->omega2, &to->C, &to->P, &to->W, &to->Cm, &to->Cx, &to->Mx};
 
   PetscFunctionBeginUser;
   *to = *from;
-  for (int i = 0; i < 6; i++) {
+  for (int i = 0; i < 7; i++) {
     if (!source[i]) continue;
     PetscCall(PetscMalloc1(size[i], copy[i]));
     PetscCall(PetscArraycpy(*copy[i], source[i], size[i]));
@@ -32,6 +32,7 @@ PetscErrorCode ReducedModelDestroy(ReducedModel *model)
   PetscCall(PetscFree(model->W));
   PetscCall(PetscFree(model->Cm));
   PetscCall(PetscFree(model->Cx));
+  PetscCall(PetscFree(model->Mx));
   PetscCall(PetscFree4(model->gap, model->mu, model->slope, model->speed));
   PetscFunctionReturn(0);
 }

@@ -96,14 +96,21 @@ static PetscErrorCode ResidualTake(ReducedRun r, Mat X, PetscInt first, PetscInt
   PetscFunctionReturn(0);
 }
 
-/* Columns of Cm and Cx from X of pairs: Phi'C X and X'C X = V'R C X; B is work */
-static PetscErrorCode ResidualTakeDamping(ReducedRun r, Mat C, Mat X, PetscInt first, Mat B)
+/* X of the columns first .. of V, and work of its size */
+typedef struct {
+  PetscInt first;
+  Mat      X, B, Y;
+} ResidualColumns;
+
+/* Columns of A = X'D X = V'R D X from X of pairs, and of Phi'D X, or NULL */
+static PetscErrorCode ResidualTakeForm(ReducedRun r, Mat D, const ResidualColumns *c, PetscReal A[], PetscReal mixed[])
 {
   PetscFunctionBeginUser;
-  PetscCall(BlockMultiply(C, X, B));
-  PetscCall(ReducedGram(r->Phi, B, &r->model.Cm[first * r->model.m]));
-  PetscCall(ReducedApplyResidual(r, B, X));
-  PetscCall(ResidualTake(r, X, first, 3 * r->model.n_pairs, r->model.Cx));
+  if (!A) PetscFunctionReturn(0);
+  PetscCall(BlockMultiply(D, c->X, c->B));
+  if (mixed) PetscCall(ReducedGram(r->Phi, c->B, &mixed[c->first * r->model.m]));
+  PetscCall(ReducedApplyResidual(r, c->B, c->Y));
+  PetscCall(ResidualTake(r, c->Y, c->first, 3 * r->model.n_pairs, A));
   PetscFunctionReturn(0);
 }
 
@@ -115,22 +122,27 @@ static void ResidualSymmetrise(PetscInt N, PetscReal A[])
 }
 
 /* Columns first .. first + n - 1 of all that is made of V */
-static PetscErrorCode ResidualBlock(ReducedRun r, Mat Gt, Mat C, PetscInt first, PetscInt n)
+static PetscErrorCode ResidualBlock(ReducedRun r, Mat Gt, const Mat form[2], PetscInt first, PetscInt n)
 {
-  const PetscInt N = r->model.n_ports;
-  PetscInt       n_own;
-  Mat            B, X;
+  const PetscInt  N = r->model.n_ports;
+  PetscInt        n_own;
+  ResidualColumns c = {.first = first};
 
   PetscFunctionBeginUser;
   PetscCall(MatGetLocalSize(Gt, &n_own, NULL));
-  PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &B));
-  PetscCall(PortsGetColumns(r, Gt, first, B));
-  PetscCall(MatDuplicate(B, MAT_DO_NOT_COPY_VALUES, &X));
-  PetscCall(ReducedApplyResidual(r, B, X));
-  PetscCall(ResidualTake(r, X, first, N, r->model.W));
-  if (C && first < 3 * r->model.n_pairs) PetscCall(ResidualTakeDamping(r, C, X, first, B));
-  PetscCall(MatDestroy(&B));
-  PetscCall(MatDestroy(&X));
+  PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &c.B));
+  PetscCall(PortsGetColumns(r, Gt, first, c.B));
+  PetscCall(MatDuplicate(c.B, MAT_DO_NOT_COPY_VALUES, &c.X));
+  PetscCall(ReducedApplyResidual(r, c.B, c.X));
+  PetscCall(ResidualTake(r, c.X, first, N, r->model.W));
+  if (first < 3 * r->model.n_pairs) {
+    PetscCall(MatDuplicate(c.B, MAT_DO_NOT_COPY_VALUES, &c.Y));
+    PetscCall(ResidualTakeForm(r, form[0], &c, r->model.Cx, r->model.Cm));
+    PetscCall(ResidualTakeForm(r, form[1], &c, r->model.Mx, NULL));
+    PetscCall(MatDestroy(&c.Y));
+  }
+  PetscCall(MatDestroy(&c.B));
+  PetscCall(MatDestroy(&c.X));
   PetscFunctionReturn(0);
 }
 
@@ -140,25 +152,29 @@ PetscErrorCode ReducedSetResidual(ReducedRun r)
   const PetscReal shift = -PetscSqr(2 * PETSC_PI * r->cutoff / RESIDUAL_SHIFT);
   PencilMatrices  pencil;
   PetscInt        n;
-  Mat             Gt, C;
+  Mat             Gt, C, form[2]; /* damping, mass */
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetBodies(r->run.operators, r->p, NULL, NULL, &C));
+  form[0] = C;
   PetscCall(PencilGetMatrices(r->bodies, &pencil));
+  PetscCall(PencilGetMass(r->bodies, &form[1]));
   PetscCall(ShiftInvertCreate(&pencil, shift, PETSC_FALSE, &r->progress, &r->inverse));
   PetscCall(MatTranspose(r->G, MAT_INITIAL_MATRIX, &Gt));
   PetscCall(PetscCalloc1(N * N, &r->model.W));
   if (C) PetscCall(PetscCalloc1(n_pairs * n_pairs, &r->model.Cx));
   if (C) PetscCall(PetscCalloc1(n_pairs * r->model.m, &r->model.Cm));
+  if (r->weighs) PetscCall(PetscCalloc1(n_pairs * n_pairs, &r->model.Mx));
   PetscCall(ProgressBegin(&r->progress, "compliance of the ports, blocks", (N + RESIDUAL_BLOCK - 1) / RESIDUAL_BLOCK));
   for (PetscInt first = 0; first < N; first += n) {
     n = PetscMin(RESIDUAL_BLOCK, (first < n_pairs ? n_pairs : N) - first);
-    PetscCall(ResidualBlock(r, Gt, C, first, n));
+    PetscCall(ResidualBlock(r, Gt, form, first, n));
     PetscCall(ProgressStep(&r->progress));
   }
   PetscCall(ProgressEnd(&r->progress));
   PetscCall(MatDestroy(&Gt));
   ResidualSymmetrise(N, r->model.W);
   if (C) ResidualSymmetrise(n_pairs, r->model.Cx);
+  if (r->weighs) ResidualSymmetrise(n_pairs, r->model.Mx);
   PetscFunctionReturn(0);
 }

@@ -76,6 +76,7 @@ PetscErrorCode ReducedView(ReducedRun r, PetscViewer viewer)
   PetscCall(ExternalView(r->run.external, viewer));
   PetscCall(ReducedViewShares(r, viewer));
   PetscCall(ReducedCompareView(r, viewer));
+  PetscCall(ReducedGrowthView(r, viewer));
   if (!r->stepper) PetscFunctionReturn(0); /* nothing has run in time */
   PetscCall(PetscViewerASCIIPrintf(
     viewer,

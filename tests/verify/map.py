@@ -11,6 +11,7 @@
     verify/map.py errors STEP HALF MAP MU WINDOW          map_errors.csv: rms of the normal force over the last half of the windows
                                                           by two transients, to 1e-6; its main line to 20 Hz; no error
                                                           of a stable run, and of growth for other bodies alone
+    verify/map.py told MODES MAP MU PART                  growth_error_rad_s of map_errors.csv: by PART the difference to modes.csv
     verify/map.py linked MAP MU LESS MORE FALL            growth falls by it, 1/s, from one second value to the other, to 0.2
     verify/map.py failed MAP                              all rows have failed, and no number of a vibration is told
 """
@@ -101,6 +102,15 @@ def errors(step, half, folder, value, window):
     return not all(abs(off) < 1e-6 for off in told.values()) or bool(idle) or len(table) != 8
 
 
+def told(modes, folder, value, part):
+    mesh = max(float(row["growth_rad_s"]) for row in rows(modes, "modes.csv"))
+    found = {row["run"]: row for row in rows(folder, "map_errors.csv") if float(row["value"]) == float(value)}
+    error = float(found["higher_cutoff"]["growth_error_rad_s"])
+    true = mesh - float(found["map"]["growth_rad_s"])
+    print(f"error of growth {true:.6g} 1/s, {error:.6g} is told")
+    return not abs(error / true - 1) < float(part)
+
+
 def linked(folder, value, less, more, fall):
     growths = [float(at(folder, value, second)[0]["growth_rad_s"]) for second in (less, more)]
     print(f"growth {growths} 1/s, must fall by {fall}")
@@ -118,4 +128,4 @@ def failed(folder):
 
 if __name__ == "__main__":
     sys.exit({"growth": growth, "level": level, "regimes": regimes, "regime": regime,
-              "errors": errors, "linked": linked, "failed": failed}[sys.argv[1]](*sys.argv[2:]))
+              "errors": errors, "told": told, "linked": linked, "failed": failed}[sys.argv[1]](*sys.argv[2:]))
