@@ -17,6 +17,7 @@ that was stopped goes on. Exit status: 0, or 1."""
 import argparse
 import csv
 import errno
+import filecmp
 import math
 import re
 import shutil
@@ -173,8 +174,8 @@ class Faults:
 
     def judge_later(self):
         """The next run takes up what is there."""
-        kept = (self.folder / "out/checkpoint.bin").exists() and \
-            content(self.folder / "out/checkpoint.bin", self.ranks) != self.earlier.get("checkpoint.bin")
+        now, before = (folder / "checkpoint.bin" for folder in (self.folder / "out", self.before))
+        kept = now.exists() and not (before.exists() and filecmp.cmp(now, before, shallow=False))
         later = self.run({}, *([self.scene.goes_on] if self.scene.goes_on and kept else []))
         if later.status != 0:
             return f"the next run: exit status {later.status}: {later.stderr[-300:]}"
