@@ -282,7 +282,7 @@ def command_line():
     parser = argparse.ArgumentParser(description="Runs one application test of squeal.")
     parser.add_argument("case", type=Path)
     parser.add_argument("--squeal", type=Path, required=True, help="the program")
-    parser.add_argument("--launcher", default=SOURCE / "scripts/mpirun", help="mpirun")
+    parser.add_argument("--launcher", type=Path, default=SOURCE / "scripts/mpirun", help="mpirun")
     parser.add_argument("--ranks", type=int, action="append", help="instead of the ranks of the case")
     parser.add_argument("--timeout", type=float, default=240, help="seconds allowed to each run")
     parser.add_argument("--core", choices=CORES, help="processor whose kernels OpenBLAS takes")
@@ -317,7 +317,7 @@ def results_of(arguments, case, folder):
 def main():
     parser = command_line()
     arguments = parser.parse_args()
-    arguments.squeal = arguments.squeal.resolve()
+    arguments.squeal, arguments.launcher = arguments.squeal.resolve(), arguments.launcher.resolve()
     os.environ.pop("PETSC_OPTIONS", None)
     case = tomllib.loads(arguments.case.read_text())
     if arguments.margins:

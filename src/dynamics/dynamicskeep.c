@@ -123,7 +123,8 @@ static PetscErrorCode KeptScalarsGet(Dynamics d, KeptScalars *s)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode KeptScalarsSet(Dynamics d, const KeptScalars *s)
+/* Raises an error for a step or an end that the run of the checkpoint cannot go on with */
+static PetscErrorCode KeptScalarsCheck(Dynamics d, const KeptScalars *s)
 {
   TSExactFinalTimeOption match;
   PetscReal              end, left;
@@ -153,6 +154,13 @@ static PetscErrorCode KeptScalarsSet(Dynamics d, const KeptScalars *s)
     "-ts_max_time %.6g is no whole number of steps %.6g s after the checkpoint: leave out -ts_exact_final_time "
     "matchstep",
     (double)end, (double)s->dt);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KeptScalarsSet(Dynamics d, const KeptScalars *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(KeptScalarsCheck(d, s));
   PetscCall(TSSetTime(d->ts, s->time));
   if (d->dt_asked == 0) PetscCall(TSSetTimeStep(d->ts, s->dt));
   PetscCall(TSCentralSetLastStep(d->ts, s->dt_old));

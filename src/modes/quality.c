@@ -208,6 +208,21 @@ static PetscErrorCode QualityFinish(Quality *q, Pencil pencil, PetscBool left, V
   PetscFunctionReturn(0);
 }
 
+/* Raises an error for a mode at freq (Hz) that is none, or of which nothing can be told */
+static PetscErrorCode ModeCheck(Modes modes, const Mode *mode, PetscReal freq)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(isfinite(mode->error) && isfinite(mode->sigma) && isfinite(mode->omega), modes->comm,
+             PETSC_ERR_NOT_CONVERGED, "mode at %.6g Hz has an error of %g Hz: whether it grows cannot be told",
+             (double)freq, (double)mode->error);
+  PetscCheck(
+    mode->rigid || mode->backward_error < QUALITY_BACKWARD, modes->comm, PETSC_ERR_NOT_CONVERGED,
+    "the eigensolver returned a mode at %.6g Hz with a backward error of %.2g, more than %.0e: it is none, or the "
+    "matrices are too badly scaled; tighten -eps_tol or -pep_tol where they are given",
+    (double)freq, (double)mode->backward_error, QUALITY_BACKWARD);
+  PetscFunctionReturn(0);
+}
+
 /* Condition, error, and what follows from them; the vectors become vectors of all unknowns with M-norm one */
 static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
 {
@@ -239,15 +254,8 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
   if (mode->rigid) mode->sigma = mode->omega = 0;
   mode->unstable =
     mode->sigma > mode->error && mode->sigma > (has_left ? 1e-9 : 1e-6) * size ? PETSC_TRUE : PETSC_FALSE;
-  PetscCheck(isfinite(mode->error) && isfinite(mode->sigma) && isfinite(mode->omega), modes->comm,
-             PETSC_ERR_NOT_CONVERGED, "mode at %.6g Hz has an error of %g Hz: whether it grows cannot be told",
-             (double)(cimag(lambda) / (2 * PETSC_PI)), (double)mode->error);
+  PetscCall(ModeCheck(modes, mode, cimag(lambda) / (2 * PETSC_PI)));
   if (!has_left) mode->error = NAN;
-  PetscCheck(
-    mode->rigid || mode->backward_error < QUALITY_BACKWARD, modes->comm, PETSC_ERR_NOT_CONVERGED,
-    "the eigensolver returned a mode at %.6g Hz with a backward error of %.2g, more than %.0e: it is none, or the "
-    "matrices are too badly scaled; tighten -eps_tol or -pep_tol where they are given",
-    (double)(cimag(lambda) / (2 * PETSC_PI)), (double)mode->backward_error, QUALITY_BACKWARD);
   PetscFunctionReturn(0);
 }
 

@@ -55,37 +55,12 @@ static PetscErrorCode WindowCountBelow(Modes modes, const Window *window, PetscR
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode WindowFind(Modes modes, Window *window)
+/* Frictionless modes below the target, or in the band, whose edges move where a mode lies on them */
+static PetscErrorCode WindowCount(Modes modes, Window *window)
 {
-  PencilMatrices frictionless;
-  PetscInt       below_high;
+  PetscInt below_high;
 
   PetscFunctionBeginUser;
-  PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
-  window->low      = 2 * PETSC_PI * modes->band[0];
-  window->high     = 2 * PETSC_PI * modes->band[1];
-  window->target   = 2 * PETSC_PI * modes->target;
-  window->count    = modes->has_band ? 0 : modes->count;
-  window->growth   = modes->growth > 0 ? modes->growth : 0.1 * window->high;
-  window->edge[0]  = window->low * (1 - MODES_EDGE);
-  window->edge[1]  = window->high * (1 + MODES_EDGE);
-  window->damping  = 0;
-  window->within   = -1;
-  window->worst    = 0;
-  window->rigid    = 0;
-  window->twins    = 0;
-  window->expected = -1;
-  window->below    = -1;
-  window->extra    = 6;
-  window->guard    = PETSC_FALSE;
-  window->project  = PETSC_FALSE;
-  window->beyond   = -1;
-  window->counted  = PETSC_FALSE;
-  window->proven   = PETSC_FALSE;
-  window->why[0]   = '\0';
-  PetscCall(WindowScale(&frictionless, &window->scale));
-  PetscCall(WindowFindMassless(modes, &frictionless, window));
-  if (!frictionless.symmetric) PetscFunctionReturn(0);
   if (!modes->has_band) {
     PetscReal target = window->target < window->scale ? 0 : window->target;
 
@@ -98,6 +73,30 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
     PetscCall(WindowCountBelow(modes, window, -MODES_AWAY, &window->edge[0], &window->below));
   PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &window->edge[1], &below_high));
   window->expected = below_high - window->below;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode WindowFind(Modes modes, Window *window)
+{
+  const PetscReal low = 2 * PETSC_PI * modes->band[0], high = 2 * PETSC_PI * modes->band[1];
+  PencilMatrices  frictionless;
+
+  PetscFunctionBeginUser;
+  *window = (Window){.low      = low,
+                     .high     = high,
+                     .target   = 2 * PETSC_PI * modes->target,
+                     .count    = modes->has_band ? 0 : modes->count,
+                     .growth   = modes->growth > 0 ? modes->growth : 0.1 * high,
+                     .edge     = {low * (1 - MODES_EDGE), high * (1 + MODES_EDGE)},
+                     .extra    = 6,
+                     .within   = -1,
+                     .expected = -1,
+                     .below    = -1,
+                     .beyond   = -1};
+  PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
+  PetscCall(WindowScale(&frictionless, &window->scale));
+  PetscCall(WindowFindMassless(modes, &frictionless, window));
+  if (frictionless.symmetric) PetscCall(WindowCount(modes, window));
   PetscFunctionReturn(0);
 }
 

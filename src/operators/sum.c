@@ -187,6 +187,20 @@ static PetscErrorCode SumCoverPattern(const Terms *terms, const PetscReal c[], T
   PetscFunctionReturn(0);
 }
 
+/* A = sum_t c_t A_t of the terms in its pattern */
+static PetscErrorCode SumAdd(const Terms *terms, const PetscReal c[], TermsSum *sum)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SumCoverPattern(terms, c, sum));
+  for (PetscInt t = 0; t < terms->n; t++) {
+    PetscBool added = PETSC_TRUE;
+
+    if (sum->has[t]) PetscCall(MatrixAdd(c[t], terms->term[t].A, sum->A, &added));
+    PetscCheck(added, PetscObjectComm((PetscObject)sum->A), PETSC_ERR_PLIB, "a term is not in the pattern of its sum");
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode TermsSumForm(const Terms *terms, const TermsSumKind *kind, const PetscReal p[], TermsSum *sum)
 {
   PetscReal *c;
@@ -209,14 +223,7 @@ PetscErrorCode TermsSumForm(const Terms *terms, const TermsSumKind *kind, const 
   } else if (all_zero) {
     PetscCall(TermsSumDestroy(sum));
   } else {
-    PetscCall(SumCoverPattern(terms, c, sum));
-    for (PetscInt t = 0; t < terms->n; t++) {
-      PetscBool added = PETSC_TRUE;
-
-      if (sum->has[t]) PetscCall(MatrixAdd(c[t], terms->term[t].A, sum->A, &added));
-      PetscCheck(added, PetscObjectComm((PetscObject)sum->A), PETSC_ERR_PLIB,
-                 "a term is not in the pattern of its sum");
-    }
+    PetscCall(SumAdd(terms, c, sum));
   }
   sum->current = PETSC_TRUE;
   PetscCall(PetscFree(sum->c));

@@ -31,41 +31,64 @@ PetscReal PointKinetic(const Joint *joint, const PetscReal q[6])
   return sum;
 }
 
+/* What a node of a point with a mass must not be */
+enum { NODE_DRIVEN, NODE_IN_CONTACT, NODE_OF_RIGID, N_NODE_FAULTS };
+
+/* Whether a node is one of a point that is joined rigidly */
+static PetscBool NodeIsRigid(Bodies b, PetscInt v)
+{
+  for (PetscInt m = 0; m < b->n_joints; m++)
+    for (PetscInt k = 0; k < b->joint[m].n && b->joint[m].like->rigid; k++)
+      if (b->joint[m].vertex[k] == v) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Whether a motion drives direction i % 3 of node i / 3 of a joint: it has no mass of its own, and no support holds it */
+static PetscBool NodeIsDriven(Bodies b, const BodyJoint *joint, PetscInt i)
+{
+  const PetscInt v = joint->vertex[i / 3];
+
+  for (int d = 0; d < 3; d++)
+    if (b->mesh->unknown[3 * v + d] < 0 && b->layout.basis[9 * v + 3 * (i % 3) + d] != 0) return PETSC_FALSE;
+  return b->layout.minv[JointAt(&b->layout, joint, i)] == 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Which of the faults the local nodes of a joint have; contact [n_contact] = nodes that contact forces act on */
+static void PointFindFaults(Bodies b, const BodyJoint *joint, PetscInt n_contact, const PetscInt contact[],
+                            PetscInt fault[N_NODE_FAULTS])
+{
+  for (PetscInt i = 0; i < 3 * joint->n; i++)
+    if (NodeIsDriven(b, joint, i)) fault[NODE_DRIVEN] = 1;
+  for (PetscInt i = 0; i < joint->n; i++) {
+    for (PetscInt k = 0; k < n_contact; k++)
+      if (contact[k] == joint->vertex[i]) fault[NODE_IN_CONTACT] = 1;
+    if (joint->heavy && NodeIsRigid(b, joint->vertex[i])) fault[NODE_OF_RIGID] = 1;
+  }
+}
+
 /* Raises an error for nodes of a point with a mass that a motion drives, or that contact forces act on */
 static PetscErrorCode PointCheckNodes(Bodies b, const BodyJoint *joint, PetscInt n_contact, const PetscInt contact[])
 {
-  const Layout *l     = &b->layout;
-  PetscInt      no[3] = {0, 0, 0};
-  const char   *what  = joint->like->rigid ? "is joined rigidly" : "has a mass";
+  PetscInt     fault[N_NODE_FAULTS] = {0};
+  const Joint *like                 = joint->like;
+  const char  *what                 = like->rigid ? "is joined rigidly" : "has a mass";
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < 3 * joint->n; i++) {
-    const PetscInt v    = joint->vertex[i / 3];
-    PetscBool      held = PETSC_FALSE;
-
-    for (int d = 0; d < 3; d++)
-      if (b->mesh->unknown[3 * v + d] < 0 && l->basis[9 * v + 3 * (i % 3) + d] != 0) held = PETSC_TRUE;
-    if (!held && l->minv[JointAt(l, joint, i)] == 0) no[0] = 1;
-    for (PetscInt k = 0; k < n_contact; k++)
-      if (contact[k] == v) no[1] = 1;
-    for (PetscInt m = 0; m < b->n_joints && i % 3 == 0 && joint->heavy; m++)
-      for (PetscInt k = 0; k < b->joint[m].n && b->joint[m].like->rigid; k++)
-        if (b->joint[m].vertex[k] == v) no[2] = 1;
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, no, 3, MPIU_INT, MPI_MAX, b->comm));
+  PointFindFaults(b, joint, n_contact, contact, fault);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, fault, N_NODE_FAULTS, MPIU_INT, MPI_MAX, b->comm));
   PetscCheck(
-    !no[2], b->comm, PETSC_ERR_SUP,
+    !fault[NODE_OF_RIGID], b->comm, PETSC_ERR_SUP,
     "point %s has a mass, and -%s_set %s has nodes of a point that is joined rigidly, which -analysis transient "
     "does not support: give that one the mass",
-    joint->like->name, joint->like->name, joint->like->set[0]);
-  PetscCheck(!no[0], b->comm, PETSC_ERR_SUP,
+    like->name, like->name, like->set[0]);
+  PetscCheck(!fault[NODE_DRIVEN], b->comm, PETSC_ERR_SUP,
              "point %s %s, and a motion drives nodes of -%s_set %s, which -analysis transient does not support: "
              "use another set",
-             joint->like->name, what, joint->like->name, joint->like->set[0]);
-  PetscCheck(!no[1], b->comm, PETSC_ERR_SUP,
+             like->name, what, like->name, like->set[0]);
+  PetscCheck(!fault[NODE_IN_CONTACT], b->comm, PETSC_ERR_SUP,
              "point %s %s, and -%s_set %s has nodes of a contact surface, which -analysis transient does not "
              "support: use a set apart from it",
-             joint->like->name, what, joint->like->name, joint->like->set[0]);
+             like->name, what, like->name, like->set[0]);
   PetscFunctionReturn(0);
 }
 
