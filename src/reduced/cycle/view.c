@@ -38,8 +38,8 @@ static PetscErrorCode CycleViewStability(LimitCycle c, const CyclePoint *p, Pets
                                    (double)p->residual, p->its));
   if (!PetscIsNanReal(s->check))
     PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "  dT/dtheta %+.1e, by which these steps put the multiplier of the phase off; check of "
-                                     "their derivative 1%+.1e\n",
+                                     "  dT/dtheta %+.1e, by about which these steps put the multiplier of the phase off where no "
+                                     "other is near 1, as one is at a fold; check of their derivative 1%+.1e\n",
                                      (double)s->slope, (double)(s->check - 1)));
   PetscFunctionReturn(0);
 }
