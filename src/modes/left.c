@@ -75,17 +75,17 @@ PetscErrorCode LeftMatch(Modes modes, const Window *window, PetscReal *worst, Pe
     PetscReal       distance;
     PetscInt        j    = LeftNearest(left, used, SpectrumLambda(right, i), &distance);
     const PetscReal size = cabs(SpectrumLambda(right, i));
-    const Spectrum *from = left;
 
     if (j < 0 || distance > LEFT_MATCH * size) {
       *complete = size < tiny ? PETSC_TRUE : PETSC_FALSE;
-      if (!*complete) break;
-      from = right, j = i; /* a zero pairs with any zero; it stays rigid whatever its left vector */
+      if (!*complete) break; /* a zero pairs with any zero; it stays rigid whatever its left vector */
+      PetscCall(SpectrumAdd(&matched, right->sigma[i], right->omega[i], right->xr[i], right->xi[i]));
     } else {
       used[j] = PETSC_TRUE;
       if (size > tiny) *worst = PetscMax(*worst, distance / size);
+      PetscCall(SpectrumTake(&matched, left->sigma[j], left->omega[j], left->xr[j], left->xi[j]));
+      left->xr[j] = left->xi[j] = NULL;
     }
-    PetscCall(SpectrumAdd(&matched, from->sigma[j], from->omega[j], from->xr[j], from->xi[j]));
   }
   for (PetscInt j = 0; j < left->n; j++)
     if (!used[j] && LeftIsInside(window, left, j, tiny)) *complete = PETSC_FALSE;

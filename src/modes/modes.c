@@ -3,6 +3,7 @@
    errors -> labels, with the check that no mode is missing.
 */
 #include "modesimpl.h"
+#include "base/memory.h"
 #include "solver/blockkrylov.h"
 #include "solver/ordering.h"
 #include <squeal/options.h>
@@ -151,22 +152,6 @@ static PetscBool ShiftSpoils(const Window *window, const Spectrum *s, PetscReal 
   return nearest < (window->singular ? MODES_NEAR_SINGULAR : MODES_NEAR) * farthest ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Factors at another shift; K and K_even may have been released before the first one, and the pencil given here has what
-   makes products alone */
-static PetscErrorCode ModesMove(Modes modes, const PencilMatrices *pencil, PetscReal shift, ShiftInvert *si)
-{
-  PencilMatrices again = *pencil, whole;
-
-  PetscFunctionBeginUser;
-  if (si->regain) {
-    PetscCall(PencilGetMatrices(modes->pencil, &whole));
-    again.K      = whole.K;
-    again.K_even = whole.K_even;
-  }
-  PetscCall(ShiftInvertMove(&again, shift, si));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si)
 {
   PetscFunctionBeginUser;
@@ -175,7 +160,7 @@ PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *pencil, const 
     const PetscReal shift = si->shift * (1 + 1e-3 * attempt);
 
     PetscCall(SpectrumDestroy(&modes->right));
-    PetscCall(ModesMove(modes, pencil, shift, si));
+    PetscCall(ShiftInvertMove(pencil, shift, si));
     PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_FALSE, &modes->right));
   }
   PetscFunctionReturn(0);
@@ -226,10 +211,13 @@ PetscErrorCode ModesReset(Modes modes)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModesFactor(Modes modes, const PencilMatrices *pencil, PetscReal shift, ShiftInvert *si)
+PetscErrorCode ModesFactor(Modes modes, const PencilMatrices *pencil, PetscReal shift, ReleaseKind release,
+                           ShiftInvert *si)
 {
   PetscFunctionBeginUser;
   *si            = modes->counter;
+  si->release    = release;
+  si->owner      = modes->pencil;
   modes->counter = (ShiftInvert){.progress = &modes->progress};
   PetscCall(ShiftInvertMove(pencil, shift, si));
   PetscFunctionReturn(0);
@@ -248,6 +236,7 @@ static PetscErrorCode SolveWhole(Modes modes, const PencilMatrices *pencil, Wind
     modes->factor = si;
   else
     PetscCall(ShiftInvertDestroy(&si));
+  MemoryReturn(); /* before K is formed again */
   PetscFunctionReturn(0);
 }
 

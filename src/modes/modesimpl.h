@@ -21,6 +21,7 @@ PETSC_INTERN PetscErrorCode SpectrumCreate(PetscInt capacity, Spectrum *spectrum
 /* Distance of kappa = -lambda^2 of entry i from a shift */
 PETSC_INTERN PetscReal      SpectrumDistance(const Spectrum *spectrum, PetscInt i, PetscReal shift);
 PETSC_INTERN PetscErrorCode SpectrumAdd(Spectrum *spectrum, PetscReal sigma, PetscReal omega, Vec xr, Vec xi);
+PETSC_INTERN PetscErrorCode SpectrumTake(Spectrum *spectrum, PetscReal sigma, PetscReal omega, Vec xr, Vec xi); /* no copies */
 PETSC_INTERN PetscErrorCode SpectrumSort(Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode SpectrumOrder(const Spectrum *spectrum, PetscInt order[]); /* entry order[k] stands at k */
 PETSC_INTERN PetscErrorCode SpectrumPermute(Spectrum *spectrum, const PetscInt order[]);
@@ -106,7 +107,8 @@ typedef struct {
 
 /* modes.c - factors of K - shift M, or with damping of K + shift C + shift^2 M; those of the last count are given up, and
    their analysis serves */
-PETSC_INTERN PetscErrorCode ModesFactor(Modes modes, const PencilMatrices *pencil, PetscReal shift, ShiftInvert *si);
+PETSC_INTERN PetscErrorCode ModesFactor(Modes modes, const PencilMatrices *pencil, PetscReal shift, ReleaseKind release,
+                                        ShiftInvert *si);
 
 /* window.c - the window, and the count of frictionless modes in it by Sylvester's law of inertia */
 PETSC_INTERN PetscErrorCode WindowFind(Modes modes, Window *window);

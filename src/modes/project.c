@@ -259,13 +259,11 @@ PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *w
   const char    *why      = why_differ;
   Projection     p;
   PetscBool      complete = PETSC_FALSE;
-  Mat            K; /* NULL: the matrix that is factored is whole, since K itself is needed as well */
 
   PetscFunctionBeginUser;
   undamped.C = NULL;
   PetscCall(ProjectionCreate(modes, pencil, window, &p));
-  PetscCall(ModesFactor(modes, &undamped, UndampedShift(window), &p.si));
-  PetscCall(ShiftInvertRelease(&undamped, &p.si, &K));
+  PetscCall(ModesFactor(modes, &undamped, UndampedShift(window), RELEASE_MATRIX, &p.si));
   MemoryReturn();
   window->guard = PETSC_TRUE;
   for (int attempt = 0; attempt < PROJECT_ATTEMPTS && (why == why_differ || why == why_guard); attempt++) {

@@ -122,7 +122,7 @@ static PetscErrorCode ShiftsAppend(Modes modes, PetscReal seam, Spectrum *right,
 static PetscErrorCode ShiftsSolvePart(Modes modes, const PencilMatrices *pencil, Window *part, ShiftInvert *si)
 {
   PetscFunctionBeginUser;
-  PetscCall(ModesFactor(modes, pencil, WindowMiddle(part), si));
+  PetscCall(ModesFactor(modes, pencil, WindowMiddle(part), RELEASE_NOTHING, si));
   PetscCall(ModesSolveWindow(modes, pencil, part, si));
   PetscFunctionReturn(0);
 }
@@ -193,29 +193,18 @@ static PetscErrorCode ShiftsShare(Modes modes, const PencilMatrices *pencil, Win
   PetscFunctionReturn(0);
 }
 
-/* Gives up the matrix that was factored, or what it was made of; K is then what makes products with it, NULL where it stays */
-static PetscErrorCode ShiftsRelease(Modes modes, const PencilMatrices *pencil, ShiftInvert *si, Mat *K)
-{
-  Mat half;
-
-  PetscFunctionBeginUser;
-  PetscCall(ShiftInvertRelease(pencil, si, K));
-  PetscCall(ShiftInvertGetHalf(si, &half));
-  if (si->released && (half || si->update)) PetscCall(PencilReleaseSymmetric(modes->pencil, half, si->shift));
-  MemoryReturn();
-  PetscFunctionReturn(0);
-}
-
 /* All modes of the window about one shift; after it the matrices of the pencil are to be got again */
 static PetscErrorCode ShiftsSolveOne(Modes modes, const PencilMatrices *pencil, PetscReal shift, Window *window,
                                      ShiftInvert *si)
 {
   PencilMatrices rest = *pencil;
-  Mat            K    = NULL;
+  Mat            K;
 
   PetscFunctionBeginUser;
-  PetscCall(ModesFactor(modes, pencil, shift, si));
-  if (!modes->keep) PetscCall(ShiftsRelease(modes, pencil, si, &K));
+  PetscCall(ModesFactor(modes, pencil, shift, modes->keep ? RELEASE_NOTHING : RELEASE_PENCIL, si));
+  MemoryReturn(); /* what the update took, before there are spaces of vectors */
+  K = si->product;
+  if (K) PetscCall(PetscObjectReference((PetscObject)K)); /* another shift makes another one */
   if (K) rest.K = K;
   if (si->regain) rest.K_even = NULL;
   PetscCall(ModesSolveWindow(modes, &rest, window, si));

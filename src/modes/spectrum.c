@@ -20,19 +20,30 @@ PetscErrorCode SpectrumCreate(PetscInt capacity, Spectrum *s)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SpectrumAdd(Spectrum *s, PetscReal sigma, PetscReal omega, Vec xr, Vec xi)
+PetscErrorCode SpectrumTake(Spectrum *s, PetscReal sigma, PetscReal omega, Vec xr, Vec xi)
 {
   PetscFunctionBeginUser;
   PetscCheck(s->n < s->capacity, PETSC_COMM_SELF, PETSC_ERR_PLIB, "spectrum is full");
   s->sigma[s->n] = sigma;
   s->omega[s->n] = omega;
-  PetscCall(VecDuplicate(xr, &s->xr[s->n]));
-  PetscCall(VecCopy(xr, s->xr[s->n]));
-  if (xi) {
-    PetscCall(VecDuplicate(xi, &s->xi[s->n]));
-    PetscCall(VecCopy(xi, s->xi[s->n]));
-  }
+  s->xr[s->n]    = xr;
+  s->xi[s->n]    = xi;
   s->n++;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SpectrumAdd(Spectrum *s, PetscReal sigma, PetscReal omega, Vec xr, Vec xi)
+{
+  Vec copy[2] = {NULL, NULL};
+
+  PetscFunctionBeginUser;
+  for (int part = 0; part < (xi ? 2 : 1); part++) {
+    const Vec x = part ? xi : xr;
+
+    PetscCall(VecDuplicate(x, &copy[part]));
+    PetscCall(VecCopy(x, copy[part]));
+  }
+  PetscCall(SpectrumTake(s, sigma, omega, copy[0], copy[1]));
   PetscFunctionReturn(0);
 }
 

@@ -8,7 +8,6 @@
    farthest converged one lies outside the circle about the shift through the ends of the window.
 */
 #include "modesimpl.h"
-#include "base/memory.h"
 #include "solver/blockkrylov.h"
 #include <complex.h>
 
@@ -65,23 +64,21 @@ static PetscErrorCode UndampedCollect(EPS eps, PetscReal shift, PetscInt n, cons
 {
   PetscInt           n_converged;
   EPSConvergedReason reason;
-  Vec                xr, xi;
-  Mat                K;
 
   PetscFunctionBeginUser;
   PetscCall(EPSGetConverged(eps, &n_converged));
-  PetscCall(EPSGetOperators(eps, &K, NULL));
-  PetscCall(MatCreateVecs(K, &xr, &xi));
   PetscCall(SpectrumCreate(n_converged, s));
   for (PetscInt i = 0; i < n_converged; i++) {
     PetscReal    kr, ki;
     PetscComplex lambda;
+    Vec          xr, xi;
 
-    PetscCall(EPSGetEigenpair(eps, i, &kr, &ki, xr, xi));
+    PetscCall(EPSGetEigenvalue(eps, i, &kr, &ki));
+    PetscCall(BlockKrylovTakeVector(eps, i, window->guard, &xr, &xi));
     lambda = csqrt(-CMPLX(kr, ki));
     if (cimag(lambda) < 0) lambda = -lambda;
     if (ki == 0) lambda = kr > 0 ? CMPLX(0, sqrt(kr)) : CMPLX(sqrt(-kr), 0);
-    PetscCall(SpectrumAdd(s, creal(lambda), cimag(lambda), xr, ki != 0 ? xi : NULL));
+    PetscCall(SpectrumTake(s, creal(lambda), cimag(lambda), xr, xi));
     s->reach = PetscMax(s->reach, cabs(CMPLX(kr - shift, ki)));
   }
   PetscCall(EPSGetConvergedReason(eps, &reason));
@@ -89,8 +86,6 @@ static PetscErrorCode UndampedCollect(EPS eps, PetscReal shift, PetscInt n, cons
     s->reach = PETSC_MAX_REAL; /* breakdown: M is singular, no more finite ones */
   PetscCall(BlockKrylovReached(eps, covered));
   if (s->reach > UndampedRadius(window, shift, s) || s->reach == PETSC_MAX_REAL) *covered = PETSC_TRUE;
-  PetscCall(VecDestroy(&xr));
-  PetscCall(VecDestroy(&xi));
   PetscCall(UndampedDropInfinite(window, shift, s));
   PetscCall(SpectrumSort(s));
   PetscFunctionReturn(0);
@@ -259,7 +254,6 @@ PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Wi
     nev = PetscMin(nev, n);
     PetscCall(UndampedGetSolver(&u, transposed, nev, &eps));
     PetscCall(EPSSolve(eps));
-    MemoryReturn(); /* what solves with blocks took, before vectors are copied */
     PetscCall(ProgressEnd(&modes->progress));
     PetscCall(UndampedDescribe(eps, si, sizeof(modes->solver), modes->solver));
     PetscCall(SavedByFactors(modes, si));

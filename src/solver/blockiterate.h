@@ -18,6 +18,7 @@ typedef struct {
   PetscBool  begun; /* there is a space */
   /* the transposed problem, whose solver is not owned; NULL for none */
   EPS              other;
+  PetscBool        paired; /* it is solved along with another one, which may have this one as its other */
   BlockKrylovSolve solve;
   void            *solve_ctx;
 } EPS_BlockKrylov;

@@ -17,8 +17,9 @@
    less than were asked for. BlockKrylovSetOther() solves K x = kappa M x and K' y = kappa M' y at once: two spaces that
    have nothing in common but the calls in which their systems are solved, with twice as many right-hand sides.
 
-   Options: -eps_blockkrylovschur_size b: vectors in a block, at most the unknowns (0: 8, less in a smaller space or
-   problem); all of EPS but balancing, regions, two-sided, true residuals, and orders other than by magnitude. */
+   Options: -eps_blockkrylovschur_size b: vectors in a block, at most the unknowns (0: 8, or 4 of each of two problems at
+   once, less in a smaller space or problem); all of EPS but balancing, regions, two-sided, true residuals, and orders other
+   than by magnitude. */
 PETSC_INTERN PetscErrorCode BlockKrylovRegister(void);
 
 /* Vectors in a block of a solver that is set up, 1 for another type */
@@ -29,6 +30,11 @@ PETSC_INTERN PetscErrorCode BlockKrylovGetBlock(EPS eps, PetscInt *block);
 PETSC_INTERN PetscErrorCode BlockKrylovSetReach(EPS eps, PetscReal reach);
 /* Whether it ended so */
 PETSC_INTERN PetscErrorCode BlockKrylovReached(EPS eps, PetscBool *reached);
+
+/* Vector of eigenpair i of a solution, complex where *xi is not NULL, for the caller to destroy: copies, or of
+   this type the columns of its basis themselves, which they keep: no more memory as long as the solver is there, more
+   afterwards. Then call once for each i. Collective. */
+PETSC_INTERN PetscErrorCode BlockKrylovTakeVector(EPS eps, PetscInt i, PetscBool copy, Vec *xr, Vec *xi);
 
 /* X := A^-1 X for the first n_right columns and A^-T X for the others */
 typedef PetscErrorCode (*BlockKrylovSolve)(void *ctx, PetscInt n_right, Mat X);

@@ -167,19 +167,18 @@ static PetscErrorCode LowRankExtend(LowRank *u, PetscInt first, PetscInt m, Pets
   Mat            X;
 
   PetscFunctionBeginUser;
-  PetscCall(DenseLike(u->R, PETSC_FALSE, m, &X));
+  if (u->Y)
+    PetscCall(MatDenseGetSubMatrix(u->Y, PETSC_DECIDE, PETSC_DECIDE, first, first + m, &X));
+  else
+    PetscCall(DenseLike(u->R, PETSC_FALSE, m, &X));
   PetscCall(u->solve_rows ? SolveSparse(u, first, m, X) : SolveDense(u, first, m, X));
   PetscCall(PairsOf(u->L, X, p, m, c));
   for (PetscInt j = 0; j < m; j++)
     for (PetscInt i = 0; i < p; i++) u->C[i * p + first + j] = c[j * p + i] + (i == first + j ? 1 : 0);
-  if (u->Y) {
-    Mat part;
-
-    PetscCall(MatDenseGetSubMatrix(u->Y, PETSC_DECIDE, PETSC_DECIDE, first, first + m, &part));
-    PetscCall(MatCopy(X, part, SAME_NONZERO_PATTERN));
-    PetscCall(MatDenseRestoreSubMatrix(u->Y, &part));
-  }
-  PetscCall(MatDestroy(&X));
+  if (u->Y)
+    PetscCall(MatDenseRestoreSubMatrix(u->Y, &X));
+  else
+    PetscCall(MatDestroy(&X));
   PetscFunctionReturn(0);
 }
 

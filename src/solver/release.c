@@ -7,6 +7,7 @@
 */
 #include "lowrank.h"
 #include "shiftinvert.h"
+#include "base/memory.h"
 
 /* A + c (left' right + s M) that is not formed; left and right may be NULL */
 typedef struct {
@@ -60,8 +61,7 @@ static PetscErrorCode ShiftedCreate(const ShiftInvert *si, const PencilMatrices 
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&shifted));
-  *shifted =
-    (Shifted){A, pencil->M, si->update ? pencil->left : NULL, si->update ? pencil->right : NULL, c, si->shift};
+  *shifted = (Shifted){A, pencil->M, pencil->left, pencil->right, c, si->shift};
   PetscCall(PetscObjectReference((PetscObject)shifted->A));
   PetscCall(PetscObjectReference((PetscObject)shifted->M));
   if (shifted->left) PetscCall(PetscObjectReference((PetscObject)shifted->left));
@@ -75,43 +75,68 @@ static PetscErrorCode ShiftedCreate(const ShiftInvert *si, const PencilMatrices 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ShiftInvertGetHalf(const ShiftInvert *si, Mat *half)
-{
-  PetscBool is_half;
-
-  PetscFunctionBeginUser;
-  PetscCall(KSPGetOperators(si->ksp, half, NULL));
-  PetscCall(PetscObjectTypeCompare((PetscObject)*half, MATSEQSBAIJ, &is_half));
-  if (!is_half) *half = NULL;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ShiftInvertRelease(const PencilMatrices *pencil, ShiftInvert *si, Mat *K)
+/* Whether the factors are those of MUMPS alone, which has what it needs of a symmetric matrix */
+static PetscErrorCode ReleaseIsSafe(const ShiftInvert *si, PetscBool *safe)
 {
   PetscBool     direct, cholesky, is_mumps = PETSC_FALSE;
   MatSolverType type;
   PC            pc;
-  Mat           A;
 
   PetscFunctionBeginUser;
-  *K = NULL;
-  if (!si->even || !si->factored || si->released) PetscFunctionReturn(0);
   PetscCall(KSPGetPC(si->ksp, &pc));
   PetscCall(PetscObjectTypeCompare((PetscObject)si->ksp, KSPPREONLY, &direct));
   PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCCHOLESKY, &cholesky));
   PetscCall(PCFactorGetMatSolverType(pc, &type));
   if (type) PetscCall(PetscStrcmp(type, MATSOLVERMUMPS, &is_mumps));
-  if (!direct || !cholesky || !is_mumps) PetscFunctionReturn(0);
-  PetscCall(ShiftInvertGetHalf(si, &A));
-  if (A) {
-    PetscCall(ShiftedCreate(si, pencil, A, 1, K));
-  } else {
-    PetscCall(ShiftedCreate(si, pencil, pencil->K, -1, &A));
+  *safe = direct && cholesky && is_mumps ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* K and K_even of the pencil, which the half stands for, or K and the pairs for K_even */
+static PetscErrorCode ReleasePencil(const PencilMatrices *pencil, Mat half, ShiftInvert *si)
+{
+  PetscFunctionBeginUser;
+  if (si->release != RELEASE_PENCIL || (!half && pencil->symmetric)) PetscFunctionReturn(0);
+  PetscCall(MatDestroy(&si->product));
+  if (half) PetscCall(ShiftedCreate(si, pencil, half, 1, &si->product));
+  PetscCall(PencilReleaseSymmetric(si->owner, half, si->shift));
+  si->regain = PETSC_TRUE;
+  MemoryReturn();
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertRelease(const PencilMatrices *pencil, ShiftInvert *si)
+{
+  PetscBool safe, is_half;
+  Mat       A, shell;
+
+  PetscFunctionBeginUser;
+  if (si->release == RELEASE_NOTHING || !si->even || !si->factored || si->released) PetscFunctionReturn(0);
+  PetscCall(ReleaseIsSafe(si, &safe));
+  if (!safe) PetscFunctionReturn(0);
+  PetscCall(KSPGetOperators(si->ksp, &A, NULL));
+  PetscCall(PetscObjectTypeCompare((PetscObject)A, MATSEQSBAIJ, &is_half));
+  if (!is_half) {
+    PetscCall(ShiftedCreate(si, pencil, pencil->K, -1, &shell));
     PetscCall(KSPSetReusePreconditioner(si->ksp, PETSC_TRUE));
-    PetscCall(KSPSetOperators(si->ksp, A, A));
-    PetscCall(MatDestroy(&A));
+    PetscCall(KSPSetOperators(si->ksp, shell, shell));
+    PetscCall(MatDestroy(&shell));
   }
   PetscCall(MatDestroy(&si->term[0]));
-  si->released = si->regain = PETSC_TRUE;
+  si->released = PETSC_TRUE;
+  PetscCall(ReleasePencil(pencil, is_half ? A : NULL, si));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShiftInvertRegain(const PencilMatrices *pencil, const ShiftInvert *si, PencilMatrices *whole)
+{
+  PencilMatrices own;
+
+  PetscFunctionBeginUser;
+  *whole = *pencil;
+  if (!si->regain) PetscFunctionReturn(0);
+  PetscCall(PencilGetMatrices(si->owner, &own));
+  whole->K      = own.K;
+  whole->K_even = own.K_even;
   PetscFunctionReturn(0);
 }

@@ -134,22 +134,38 @@ static PetscErrorCode UpdateCreate(const PencilMatrices *pencil, PetscBool store
   PetscFunctionReturn(0);
 }
 
+/* Factors at si->shift, friction put on them. What is released before is got again where the update is singular. */
+static PetscErrorCode ShiftInvertTry(const PencilMatrices *pencil, PetscBool stands, PetscBool store, ShiftInvert *si,
+                                     PetscBool *singular)
+{
+  PencilMatrices whole;
+
+  PetscFunctionBeginUser;
+  *singular = PETSC_FALSE;
+  PetscCall(ShiftInvertRegain(pencil, si, &whole));
+  if (!stands) PetscCall(ShiftInvertFactor(&whole, si, singular));
+  if (*singular) PetscFunctionReturn(0);
+  PetscCall(ShiftInvertRelease(&whole, si));
+  if (si->even && !pencil->symmetric) PetscCall(UpdateCreate(pencil, store, si, singular));
+  if (*singular) PetscCall(UpdateDestroy(si));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ShiftInvertMove(const PencilMatrices *pencil, PetscReal shift, ShiftInvert *si)
 {
-  PetscBool singular = PETSC_TRUE, store, stands;
+  PetscBool      singular = PETSC_TRUE, store, stands;
+  PencilMatrices whole;
 
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_FACTOR));
   PetscCall(PetscObjectGetComm((PetscObject)pencil->K, &si->comm));
   PetscCall(UpdateDestroy(si));
-  PetscCall(ShiftInvertChoose(pencil, si, &store));
-  PetscCall(ShiftInvertStands(pencil, shift, si, &stands));
+  PetscCall(ShiftInvertRegain(pencil, si, &whole));
+  PetscCall(ShiftInvertChoose(&whole, si, &store));
+  PetscCall(ShiftInvertStands(&whole, shift, si, &stands));
   si->shift = shift;
   for (int attempt = 0; attempt < 4 && singular; attempt++, si->shift *= singular ? 1 + 1e-4 * attempt : 1) {
-    singular = PETSC_FALSE;
-    if (!stands) PetscCall(ShiftInvertFactor(pencil, si, &singular));
-    if (!singular && si->even && !pencil->symmetric) PetscCall(UpdateCreate(pencil, store, si, &singular));
-    if (singular) PetscCall(UpdateDestroy(si));
+    PetscCall(ShiftInvertTry(pencil, stands, store, si, &singular));
     stands = PETSC_FALSE;
   }
   PetscCall(ShiftInvertRegular(si->comm, singular ? PETSC_FALSE : PETSC_TRUE, shift));
@@ -283,6 +299,7 @@ PetscErrorCode ShiftInvertDestroy(ShiftInvert *si)
   PetscFunctionBeginUser;
   PetscCall(UpdateDestroy(si));
   PetscCall(ShiftInvertDestroyTrial(si));
+  PetscCall(MatDestroy(&si->product));
   PetscCall(KSPDestroy(&si->ksp));
   for (int i = 0; i < 3; i++) PetscCall(MatDestroy(&si->term[i]));
   PetscFunctionReturn(0);

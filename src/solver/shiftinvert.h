@@ -17,6 +17,10 @@ typedef struct {
 
 struct LowRank; /* lowrank.h */
 
+/* What need not stay once it is factored (release.c): nothing, where another shift will be asked for; the symmetric matrix
+   that MUMPS has a copy of; K and K_even of the pencil too */
+typedef enum { RELEASE_NOTHING, RELEASE_MATRIX, RELEASE_PENCIL } ReleaseKind;
+
 /* Factorisation of K - s M (undamped) or K + s C + s^2 M (damped), shared by right and left vectors and by inertia
    counts */
 typedef struct ShiftInvert {
@@ -25,8 +29,11 @@ typedef struct ShiftInvert {
   PetscReal shift;           /* kappa (rad/s)^2 when undamped, lambda (rad/s) when damped */
   PetscBool inertia, counts; /* negative pivots can be counted; they are being, so that null pivots are no error */
   PetscBool factored;        /* there are factors, not the analysis alone */
+  ReleaseKind release;       /* before friction is put on the factors */
+  Pencil    owner;           /* of K and K_even, where they may be released */
   PetscBool released;        /* the matrix is not there any more */
-  PetscBool regain;          /* K and K_even that it was made of may have been freed: to be got again for another shift */
+  PetscBool regain;          /* K and K_even were released: to be got again for another shift */
+  Mat       product;         /* what makes products with K then, where the half that is factored is left alone; else NULL */
   PetscBool even;            /* the matrix that is factored is symmetric: LDL' */
   PetscBool halves;          /* its upper half will do, on one rank */
   PetscInt  workspace;       /* of MUMPS beyond its estimate, percent; 0: its own choice, which is raised where it fails */
@@ -75,13 +82,12 @@ PETSC_INTERN PetscErrorCode ShiftInvertKeepsPattern(const ShiftInvert *si, const
 PETSC_INTERN PetscErrorCode ShiftInvertStands(const PencilMatrices *pencil, PetscReal shift, const ShiftInvert *si,
                                               PetscBool *stands);
 PETSC_INTERN PetscErrorCode ShiftInvertFactor(const PencilMatrices *pencil, ShiftInvert *si, PetscBool *singular);
-/* release.c - gives up the symmetric matrix that MUMPS has factored, a copy of the pattern of K, and with an update its
-   reference to K_even: products with it are made from K, M and the pairs then. Where it is but the upper half it stays, and K,
-   else NULL, is what makes products with K from it, for the caller to destroy, so that the pencil's own may be freed. For the
-   last shift: another one needs K and K_even again, and another analysis. */
-PETSC_INTERN PetscErrorCode ShiftInvertRelease(const PencilMatrices *pencil, ShiftInvert *si, Mat *K);
-/* The upper half of K_even - si->shift M that is factored (borrowed), NULL where it is whole */
-PETSC_INTERN PetscErrorCode ShiftInvertGetHalf(const ShiftInvert *si, Mat *half);
+/* release.c - gives up what si->release says, of the matrices that were factored. The symmetric one is a copy of the pattern
+   of K: products with it are made from K, M and the pairs then. Where it is but the upper half it stays, and with
+   RELEASE_PENCIL K goes: si->product makes products with it. K_even goes with friction, or with K. */
+PETSC_INTERN PetscErrorCode ShiftInvertRelease(const PencilMatrices *pencil, ShiftInvert *si);
+/* The pencil with K and K_even of their owner where they were released */
+PETSC_INTERN PetscErrorCode ShiftInvertRegain(const PencilMatrices *pencil, const ShiftInvert *si, PencilMatrices *whole);
 /* Whether the estimate is shown on stdout before factorisations, not by default */
 PETSC_INTERN void      ShiftInvertShow(PetscBool show);
 PETSC_INTERN PetscBool ShiftInvertShows(void);

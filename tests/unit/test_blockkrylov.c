@@ -7,6 +7,7 @@
    the entries of a diagonal.
 */
 #include "check.h"
+#include "takenvectors.h"
 #include "solver/blockkrylov.h"
 
 typedef struct {
@@ -316,7 +317,7 @@ static PetscErrorCode TestBoth(PetscInt block, int *failed)
   for (int side = 0; side < 2; side++) {
     PetscCall(EPSSolve(eps[side]));
     PetscCall(CheckWithin(&c, eps[side], failed));
-    PetscCall(EPSDestroy(&eps[side]));
+    PetscCall(CheckTaken(&eps[side], failed));
     PetscCall(MatDestroy(&K[side]));
   }
   PetscCall(MatDestroy(&M));
