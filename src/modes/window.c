@@ -37,7 +37,7 @@ static PetscErrorCode WindowFindMassless(Modes modes, const PencilMatrices *fric
   PetscCall(MassHasEmptyRows(frictionless->M, &window->singular));
   if (!window->singular) PetscFunctionReturn(0);
   if (modes->has_band) window->most = MODES_MOST * PetscMax(window->high, window->growth);
-  least = PetscMin(window->most, 1e5 * window->scale);
+  least = modes->has_band ? window->most : 1e5 * window->scale;
   if (!frictionless->symmetric) PetscFunctionReturn(0);
   PetscCall(ShiftInvertCountMassless(frictionless, least, &modes->counter, &window->massless));
   PetscFunctionReturn(0);
