@@ -71,6 +71,7 @@ PetscErrorCode ReducedSetPairs(ReducedRun r)
     const ContactPair      *pair = &r->pair[i];
     const ContactInterface *c    = &r->run.interfaces[pair->interface];
 
+    PetscCheck(c->mu >= 0, r->comm, PETSC_ERR_USER_INPUT, "-%s_mu %.6g must not be negative", c->name, (double)c->mu);
     PetscCheck(pair->gap > -SLACK * size, r->comm, PETSC_ERR_USER_INPUT,
                "contact %s: bodies interpenetrate by %.6g m at %.6g, %.6g, %.6g m at the start", c->name,
                (double)-pair->gap, (double)pair->x[0], (double)pair->x[1], (double)pair->x[2]);

@@ -142,43 +142,6 @@ PetscErrorCode ReducedStepperSetDamping(ReducedStepper s)
   PetscFunctionReturn(0);
 }
 
-/* What the damping of the residual adds (reduced.h). With F that of the coordinates, eta_{n+1} = e - G q_{n+1} + F P' lambda_{n+1} / 2,
-
-      q_{n+1} = H (W lambda_{n+1} / 2 - Cm' F P' lambda_{n+1} / (2 dt) + what is known),   H = (W / 2 + Cx / dt - Cm'G / dt)^-1,
-      G = F Cm / dt
-
-   of which the step needs H W and H Cm' */
-static PetscErrorCode StepperSetResidual(ReducedStepper s)
-{
-  const ReducedModel *model = s->model;
-  const PetscInt      m = model->m, n = 3 * model->n_pairs;
-  PetscReal          *G, *CG;
-  PetscBLASInt       *pivot;
-  PetscBool           singular;
-
-  PetscFunctionBeginUser;
-  if (!model->Cx || !n) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc2(n * n, &s->HW, n * m, &s->HC));
-  PetscCall(PetscMalloc3(n * n, &CG, n, &pivot, n * m, &G));
-  ReducedTimes(&(DenseBlock){s->F, m, m, 2 * m}, &(DenseBlock){model->Cm, m, n, m}, G);
-  for (PetscInt i = 0; i < n * m; i++) G[i] /= s->dt;
-  ReducedTimesTransposed(&(DenseBlock){model->Cm, m, n, m}, &(DenseBlock){G, m, n, m}, CG);
-  for (PetscInt j = 0; j < n; j++) {
-    for (PetscInt i = 0; i < n; i++) {
-      s->HW[i + n * j] = model->W[i + model->n_ports * j];
-      CG[i + n * j]    = 0.5 * s->HW[i + n * j] + (model->Cx[i + n * j] - CG[i + n * j]) / s->dt;
-    }
-    for (PetscInt k = 0; k < m; k++) s->HC[j + n * k] = model->Cm[k + m * j];
-  }
-  PetscCall(DenseFactor(n, CG, pivot, &singular));
-  PetscCheck(!singular, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT,
-             "the compliance of the contact pairs is singular: take a lower -dynamics_cutoff");
-  PetscCall(DenseSolve(n, CG, pivot, PETSC_FALSE, n, s->HW));
-  PetscCall(DenseSolve(n, CG, pivot, PETSC_FALSE, m, s->HC));
-  PetscCall(PetscFree3(CG, pivot, G));
-  PetscFunctionReturn(0);
-}
-
 /* dy / dlambda of the pairs: with D = W - Cm' F P' / dt, (P'F P + D'H D) / 2; undamped W + P'F P / 2 */
 static PetscErrorCode StepperSetCompliance(ReducedStepper s)
 {
@@ -253,7 +216,7 @@ PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, Pet
   PetscCall(PetscCalloc3(model->n_ports, &s->mean, n, &s->r, model->n_ports, &s->port));
   PetscCall(PetscCalloc3(n, &s->q, n, &s->dq, n, &s->slip));
   PetscCall(StepperSetResponse(s));
-  PetscCall(StepperSetResidual(s));
+  PetscCall(ReducedStepperSetResidual(s));
   PetscCall(StepperSetCompliance(s));
   PetscCall(StepperSetLaws(s));
   PetscFunctionReturn(0);
@@ -269,6 +232,7 @@ PetscErrorCode ReducedStepperDestroy(ReducedStepper *stepper)
   PetscCall(PetscFree3(s->E, s->F, s->W));
   PetscCall(PetscFree(s->Q));
   PetscCall(PetscFree2(s->HW, s->HC));
+  PetscCall(PetscFree(s->chosen));
   PetscCall(PetscFree5(s->x, s->next, s->product, s->free, s->slip0));
   PetscCall(PetscFree3(s->mean, s->r, s->port));
   PetscCall(PetscFree3(s->q, s->dq, s->slip));

@@ -1,6 +1,6 @@
 /*
-   Small dense problems by LAPACK: getrf, getrs, geev, syev, sygv, ggev. PETSc with real scalars declares the real
-   routines only; the complex ones are declared here.
+   Small dense problems by LAPACK: getrf, getrs, geev, syev, sygv, ggev, pstrf. PETSc with real scalars declares the real
+   routines only, and not pstrf; the others are declared here.
 */
 #include "dense.h"
 #include <petscblaslapack.h>
@@ -8,6 +8,7 @@
 #define LAPACKzgetrf_ PETSCBLASCOMPLEX(getrf, GETRF)
 #define LAPACKzgetrs_ PETSCBLASCOMPLEX(getrs, GETRS)
 #define LAPACKzggev_  PETSCBLASCOMPLEX(ggev, GGEV)
+#define LAPACKpstrf_  PETSCBLAS(pstrf, PSTRF)
 
 BLAS_EXTERN void LAPACKzgetrf_(const PetscBLASInt *, const PetscBLASInt *, PetscComplex *, const PetscBLASInt *,
                                PetscBLASInt *, PetscBLASInt *);
@@ -18,6 +19,8 @@ BLAS_EXTERN void LAPACKzggev_(const char *, const char *, const PetscBLASInt *, 
                               PetscComplex *, const PetscBLASInt *, PetscComplex *, PetscComplex *, PetscComplex *,
                               const PetscBLASInt *, PetscComplex *, const PetscBLASInt *, PetscComplex *,
                               const PetscBLASInt *, PetscReal *, PetscBLASInt *);
+BLAS_EXTERN void LAPACKpstrf_(const char *, const PetscBLASInt *, PetscReal *, const PetscBLASInt *, PetscBLASInt *,
+                              PetscBLASInt *, const PetscReal *, PetscReal *, PetscBLASInt *);
 
 /* Reports a zero pivot to the caller, or stops */
 static PetscErrorCode PivotCheck(PetscBLASInt info, PetscBool *singular)
@@ -38,6 +41,22 @@ PetscErrorCode DenseFactor(PetscInt size, PetscReal A[], PetscBLASInt pivot[], P
   PetscCall(PetscBLASIntCast(size, &n));
   PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&n, &n, A, &n, pivot, &info));
   PetscCall(PivotCheck(info, singular));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DenseChoose(PetscInt size, PetscReal A[], PetscReal tolerance, PetscInt *rank, PetscInt chosen[])
+{
+  PetscBLASInt n, found, info, *pivot;
+  PetscReal   *work;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(size, &n));
+  PetscCall(PetscMalloc2(size, &pivot, 2 * size, &work));
+  PetscCallBLAS("LAPACKpstrf", LAPACKpstrf_("L", &n, A, &n, pivot, &found, &tolerance, work, &info));
+  PetscCheck(info >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK pstrf: info %d", (int)info);
+  *rank = found;
+  for (PetscInt i = 0; i < found; i++) chosen[i] = pivot[i] - 1;
+  PetscCall(PetscFree2(pivot, work));
   PetscFunctionReturn(0);
 }
 

@@ -6,6 +6,9 @@
 
 /* dense.c - LU factors in place of A; singular (may be NULL: then an error) = a pivot is zero */
 PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscBLASInt pivot[], PetscBool *singular);
+/* Rows and columns of a semidefinite symmetric A (overwritten) of which all others are combinations, but for a rest of `tolerance`
+   on the diagonal: chosen [n], `rank` of them */
+PetscErrorCode DenseChoose(PetscInt n, PetscReal A[], PetscReal tolerance, PetscInt *rank, PetscInt chosen[]);
 /* B := op(A)^-1 B from the factors, B [m][n] */
 PetscErrorCode DenseSolve(PetscInt n, const PetscReal LU[], const PetscBLASInt pivot[], PetscBool transposed,
                           PetscInt m, PetscReal B[]);

@@ -13,7 +13,6 @@
 /* A load of the model: F(t) = r(t) F */
 typedef struct {
   char        *name;
-  PetscReal    force[3]; /* N; of a pressure its resultant after TimedLoadsSetUp() */
   Ramp         ramp;
   ForcePattern pattern;
   PetscReal   *last; /* r(t_{n-1}) */

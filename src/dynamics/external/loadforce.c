@@ -17,7 +17,6 @@ PetscErrorCode TimedLoadsSetFromOptions(External external)
     TimedLoad *load = &external->loads[i];
 
     PetscCall(PetscStrallocpy(scene->loads[i].name, &load->name));
-    PetscCall(PetscArraycpy(load->force, scene->loads[i].force, 3));
     PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", load->name));
     PetscCall(PetscSNPrintf(title, sizeof(title), "Load %s in time", load->name));
     PetscOptionsBegin(external->comm, prefix, title, NULL);
@@ -53,14 +52,10 @@ static PetscErrorCode TimedLoadGather(External external, PetscInt i, Vec local)
 
 PetscErrorCode TimedLoadsSetUp(External external)
 {
-  const ModelScene *scene;
-  Vec               local;
+  Vec local;
 
   PetscFunctionBeginUser;
   if (!external->n_loads) PetscFunctionReturn(0);
-  PetscCall(ModelGetScene(external->model, &scene));
-  for (PetscInt i = 0; i < external->n_loads; i++) /* of a pressure it is known now */
-    PetscCall(PetscArraycpy(external->loads[i].force, scene->loads[i].force, 3));
   PetscCall(ModelCreateNodal(external->model, &local));
   for (PetscInt i = 0; i < external->n_loads; i++) PetscCall(TimedLoadGather(external, i, local));
   PetscCall(VecDestroy(&local));
@@ -89,12 +84,14 @@ PetscReal ExternalGetLoadFactor(External external, PetscInt i, PetscReal t)
 
 PetscErrorCode TimedLoadsView(External external, PetscViewer viewer)
 {
-  char words[160];
+  const ModelScene *scene;
+  char              words[160];
 
   PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(external->model, &scene));
   for (PetscInt i = 0; i < external->n_loads; i++) {
     const TimedLoad *load = &external->loads[i];
-    const PetscReal *f    = load->force;
+    const PetscReal *f    = scene->loads[i].force; /* of a pressure it is known since the mesh is */
 
     PetscCall(RampDescribe(&load->ramp, sizeof(words), words));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  load %s: %.6g N, %s\n", load->name, (double)Vec3Length(f), words));
