@@ -247,14 +247,16 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
     const ContactInterface *c = &contact->interfaces[i];
+    const char             *unit;
 
+    PetscCall(ModelGetUnit(contact->model, c->per_area ? "N/m^3" : "N/m", &unit));
     PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %s slides on %s, mu %.6g, ", c->name, c->slave, c->master,
                                      (double)c->mu));
     if (c->identify)
       PetscCall(PetscViewerASCIIPrintf(viewer, "penalty, stiffness identified by pressing\n"));
     else if (c->law == CONTACT_PENALTY)
       PetscCall(
-        PetscViewerASCIIPrintf(viewer, "penalty %.6g %s\n", (double)c->kn, c->per_area ? "N/m^3" : "N/m per pair"));
+        PetscViewerASCIIPrintf(viewer, "penalty %.6g %s%s\n", (double)c->kn, unit, c->per_area ? "" : " per pair"));
     else
       PetscCall(PetscViewerASCIIPrintf(viewer, "exact constraint by elimination\n"));
   }

@@ -69,14 +69,19 @@ static PetscErrorCode FrfViewUnstable(Frf frf, PetscViewer viewer)
 
 PetscErrorCode FrfView(Frf frf, PetscViewer viewer)
 {
+  const char *unit = "m/N";
+  Model       model;
+
   PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(frf->operators, &model, NULL));
+  if (model) PetscCall(ModelGetUnit(model, unit, &unit));
   PetscCall(PetscViewerASCIIPrintf(
     viewer, "response to 1 N on %s: %" PetscInt_FMT " frequencies from %.6g to %.6g Hz, %" PetscInt_FMT " outputs\n",
     frf->input, frf->n, (double)frf->freq[0], (double)frf->freq[frf->n - 1], frf->n_outputs));
   PetscCall(FrfViewMethod(frf, viewer));
   PetscCall(FrfViewUnstable(frf, viewer));
   if (frf->n_peaks)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "   peak Hz     m/N   mode    freq Hz  damping %%  label\n"));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "   peak Hz    %4s   mode    freq Hz  damping %%  label\n", unit));
   for (PetscInt i = 0; i < frf->n_peaks; i++) {
     const FrfPeak *peak = &frf->peak[i];
     PetscReal      freq, ratio;

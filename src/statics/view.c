@@ -6,22 +6,26 @@
 
 /* One interface: pairs, forces, and where the normal force acts. Friction about an axis may cancel as a vector: then its
    sum over the pairs and its moment say what it does */
-static PetscErrorCode InterfaceView(const ContactInterface *c, const StaticsResultant *r, PetscViewer viewer)
+static PetscErrorCode InterfaceView(Model model, const ContactInterface *c, const StaticsResultant *r,
+                                    PetscViewer viewer)
 {
   const PetscInt  open = r->n[CONTACT_OPEN], stick = r->n[CONTACT_STICK], slip = r->n[CONTACT_SLIP];
   const PetscBool rotates  = Vec3Length(c->rotation) > 0 ? PETSC_TRUE : PETSC_FALSE;
   const PetscReal friction = rotates ? r->rubbing : Vec3Length(r->friction);
+  const char     *metre, *moment;
 
   PetscFunctionBeginUser;
+  PetscCall(ModelGetUnit(model, "m", &metre));
+  PetscCall(ModelGetUnit(model, "N m", &moment));
   PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %" PetscInt_FMT " of %" PetscInt_FMT " pairs closed", c->name,
                                    stick + slip, open + stick + slip));
   if (!c->slides && c->mu != 0)
     PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " stick and %" PetscInt_FMT " slip", stick, slip));
   PetscCall(
     PetscViewerASCIIPrintf(viewer, "; normal force %.9g N, friction %.6g N", (double)r->normal, (double)friction));
-  if (rotates) PetscCall(PetscViewerASCIIPrintf(viewer, ", %.6g N m about the axis", (double)r->moment));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "; centre of force %.6g, %.6g, %.6g m\n", (double)r->centre[0],
-                                   (double)r->centre[1], (double)r->centre[2]));
+  if (rotates) PetscCall(PetscViewerASCIIPrintf(viewer, ", %.6g %s about the axis", (double)r->moment, moment));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "; centre of force %.6g, %.6g, %.6g %s\n", (double)r->centre[0],
+                                   (double)r->centre[1], (double)r->centre[2], metre));
   PetscFunctionReturn(0);
 }
 
@@ -44,7 +48,7 @@ PetscErrorCode StaticsView(Statics s, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
-    PetscCall(InterfaceView(&s->rows.interface[i], &s->resultant[i], viewer));
+    PetscCall(InterfaceView(s->model, &s->rows.interface[i], &s->resultant[i], viewer));
   if (s->n_free)
     PetscCall(PetscViewerASCIIPrintf(viewer,
                                      "%" PetscInt_FMT " rigid motion%s that nothing resists or loads %s left out\n",

@@ -108,6 +108,29 @@ PetscErrorCode ModelUnits(Model model, const char **units)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModelGetUnit(Model model, const char si[], const char **unit)
+{
+  static const char *const names[][2] = {
+    {"m",      "mm"    },
+    {"m^3",    "mm^3"  },
+    {"kg",     "t"     },
+    {"kg/m^3", "t/mm^3"},
+    {"Pa",     "MPa"   },
+    {"m/N",    "mm/N"  },
+    {"N/m",    "N/mm"  },
+    {"N/m^3",  "N/mm^3"},
+    {"N m",    "N mm"  }
+  };
+  const char *units;
+
+  PetscFunctionBeginUser;
+  *unit = si;
+  PetscCall(ModelUnits(model, &units));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(names) && units && units[1] == 'm'; i++)
+    if (!strcmp(names[i][0], si)) *unit = names[i][1];
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode PartsCheckUnits(Model model)
 {
   PetscFunctionBeginUser;
@@ -160,11 +183,17 @@ PetscErrorCode PartView(Model model, PetscInt part, PetscViewer viewer)
 {
   const Part       *p = &model->scene.parts[part];
   const PartExtent *e = &model->extent[part];
+  const char       *pascal, *dense, *metre, *volume, *kilogram;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(
-    viewer, "  part %s: E %.6g Pa, nu %.6g, rho %.6g kg/m^3, alpha %.6g 1/s, beta %.6g s\n", p->name, (double)p->young,
-    (double)p->poisson, (double)p->density, (double)p->alpha, (double)p->beta));
+  PetscCall(ModelGetUnit(model, "Pa", &pascal));
+  PetscCall(ModelGetUnit(model, "kg/m^3", &dense));
+  PetscCall(ModelGetUnit(model, "m", &metre));
+  PetscCall(ModelGetUnit(model, "m^3", &volume));
+  PetscCall(ModelGetUnit(model, "kg", &kilogram));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  part %s: E %.6g %s, nu %.6g, rho %.6g %s, alpha %.6g 1/s, beta %.6g s\n",
+                                   p->name, (double)p->young, pascal, (double)p->poisson, (double)p->density, dense,
+                                   (double)p->alpha, (double)p->beta));
   if (p->anisotropy.n) PetscCall(AnisotropyView(&p->anisotropy, viewer));
   if (p->spin.given) PetscCall(SpinView(&p->spin, viewer));
   if (p->loss > 0)
@@ -172,8 +201,8 @@ PetscErrorCode PartView(Model model, PetscInt part, PetscViewer viewer)
       viewer, "    loss factor %.6g at %.6g Hz, in beta: %.6g at half that frequency, %.6g at twice it\n",
       (double)p->loss, (double)model->scene.loss_frequency, (double)(p->loss / 2), (double)(2 * p->loss)));
   PetscCall(PetscViewerASCIIPrintf(viewer,
-                                   "    %.4g x %.4g x %.4g m, %.4g m^3, %.4g kg; a wave along it takes %.3g s\n",
-                                   (double)e->size[0], (double)e->size[1], (double)e->size[2], (double)e->volume,
-                                   (double)(e->volume * p->density), (double)PartCrossing(p, e)));
+                                   "    %.4g x %.4g x %.4g %s, %.4g %s, %.4g %s; a wave along it takes %.3g s\n",
+                                   (double)e->size[0], (double)e->size[1], (double)e->size[2], metre, (double)e->volume,
+                                   volume, (double)(e->volume * p->density), kilogram, (double)PartCrossing(p, e)));
   PetscFunctionReturn(0);
 }
