@@ -50,14 +50,14 @@ def told(report):
 
 
 class Outcome:
-    """How a run ended: exit status, negative for a signal, None for no end in time; what it said on both streams."""
+    """How a run ended: exit status, negative for a signal, None for no end in time; what it said on both streams. Where one of several
+    ranks fails alone, the launcher ends the others, of which the first may say so."""
 
-    def __init__(self, status, stdout, stderr):
+    def __init__(self, status, stdout, stderr, several=False):
         self.status, self.stdout, self.stderr = status, stdout, stderr
         lines = [line for line in stderr.split("\n") if line.strip()]
         errors = [line for line in lines if not line.startswith("squeal: warning: ")]
-        # Where a rank fails alone, the launcher ends the others, of which the first may say so
-        self.errors = [line for line in errors if not line.startswith(ENDED)] or errors
+        self.errors = several and [line for line in errors if not line.startswith(ENDED)] or errors
 
     def refused(self):
         """Whether it failed as it should, with one line."""
@@ -230,4 +230,4 @@ def finish(command, work, limit, more):
         os.killpg(process.pid, signal.SIGKILL)
         process.communicate()
         return Outcome(None, "", "")
-    return Outcome(process.returncode, stdout.decode(errors="replace"), stderr.decode(errors="replace"))
+    return Outcome(process.returncode, stdout.decode(errors="replace"), stderr.decode(errors="replace"), several=True)
