@@ -149,7 +149,7 @@ static PetscBool ShiftSpoils(const Window *window, const Spectrum *s, PetscReal 
     nearest  = PetscMin(nearest, distance);
     farthest = PetscMax(farthest, distance);
   }
-  return nearest < (window->singular ? MODES_NEAR_SINGULAR : MODES_NEAR) * farthest ? PETSC_TRUE : PETSC_FALSE;
+  return nearest < (window->singular && !window->count ? MODES_NEAR_SINGULAR : MODES_NEAR) * farthest ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si)
@@ -185,14 +185,15 @@ PetscErrorCode ModesSolveWindow(Modes modes, const PencilMatrices *pencil, Windo
       PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_TRUE, &modes->left_spectrum));
       PetscCall(LeftMatch(modes, window, &window->worst, &complete));
     }
+    if (!pencil->C && window->finite >= 0 && WindowLacks(window, &modes->right)) complete = PETSC_FALSE;
     if (complete) break;
     window->extra += 10 + modes->right.n / 2;
     PetscCall(SpectrumDestroy(&modes->right));
     PetscCall(SpectrumDestroy(&modes->left_spectrum));
   }
   PetscCheck(complete, modes->comm, PETSC_ERR_NOT_CONVERGED,
-             "modes are missing after three attempts (%s); narrow -modes_band or tighten -eps_tol",
-             proven ? "inertia count" : "left and right differ");
+             "modes are missing after three attempts (%s); %s -modes_band or tighten -eps_tol",
+             proven ? "inertia count" : "left and right differ", window->count ? "give" : "narrow");
   PetscFunctionReturn(0);
 }
 

@@ -83,6 +83,7 @@ typedef struct {
   PetscInt  expected, below; /* frictionless modes in the window and below it, by inertia; negative when not known */
   PetscInt  massless;        /* negative pivots of K - s M at any s, of unknowns without mass: no modes */
   PetscBool singular;        /* there are such unknowns */
+  PetscInt  finite;          /* frictionless modes below `most`, where there are such unknowns and a count is asked for; or -1 */
   PetscReal most;            /* with these, larger ones are no modes but infinite; infinite where that is not known, rad/s */
   PetscInt  extra;           /* eigenvalues to compute beyond those expected */
   PetscBool guard;           /* those are wanted even where all of the window are found without */
@@ -117,6 +118,8 @@ PETSC_INTERN PetscErrorCode WindowCountRigid(Modes modes, Window *window, const 
 PETSC_INTERN PetscErrorCode WindowSetDamping(Modes modes, const PencilMatrices *pencil, Window *window);
 PETSC_INTERN PetscReal      WindowNearest(const Window *window, const Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode WindowSelect(const Window *window, Spectrum *spectrum);
+/* With unknowns without mass: whether fewer modes are there than were asked for and than are finite */
+PETSC_INTERN PetscBool      WindowLacks(const Window *window, const Spectrum *spectrum);
 PETSC_INTERN PetscInt       WindowFarthest(const Window *window, const Spectrum *spectrum);
 /* The part ends[0] to ends[1] (rad/s) of a band, with its own count; frictional: of all modes that its circle may hold */
 PETSC_INTERN PetscErrorCode WindowNarrow(Modes modes, const PencilMatrices *pencil, const Window *whole,

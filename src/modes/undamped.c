@@ -14,6 +14,8 @@
 /* Eigenvalues so many times as far from the shift as the nearest are infinite where unknowns are without mass: rounding makes
    them of the root of machine epsilon, with multipliers, whose infinite eigenvalues are defective */
 #define UNDAMPED_INFINITE 1e6
+#define UNDAMPED_CLEAN    1e4 /* the same up to which vectors keep half their digits, of which rounding takes the square */
+#define UNDAMPED_AWAY     100 /* farther below zero, times, where what is asked for is not nearer than that */
 
 /* Without a target, or with one near zero, the shift lies below zero, where rigid modes may be. Rounding of an
    eigenvalue there by its inverse, 1 / (kappa - shift), spoils the others by as much: 1e-8 |K| / |M| below leaves 1e-8
@@ -22,9 +24,9 @@
 PetscReal UndampedShift(const Window *window)
 {
   const PetscReal low = window->low * window->low, high = window->high * window->high;
+  const PetscReal below = -PetscSqr((window->singular ? 100 : 10) * window->scale);
 
-  if (window->count)
-    return window->target > 10 * window->scale ? window->target * window->target : -PetscSqr(10 * window->scale);
+  if (window->count) return window->target > 10 * window->scale ? window->target * window->target : below;
   return low + PetscMin(0.5, 0.25 + 1.5 * low / high) * (high - low);
 }
 
@@ -237,8 +239,9 @@ static PetscErrorCode UndampedDescribe(EPS eps, const ShiftInvert *si, size_t si
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
-                             PetscBool transposed, Spectrum *spectrum)
+/* The eigenvalues about the shift of the factors */
+static PetscErrorCode UndampedSolveAbout(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
+                                         PetscBool transposed, Spectrum *spectrum)
 {
   const Undamped u = {modes, pencil, window, si};
   PetscInt       n, nev = window->extra + (window->count           ? window->count + window->count / 2
@@ -264,5 +267,43 @@ PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Wi
     if (nev == n) break;
   }
   if (!covered) PetscCall(WindowComplain(modes, window, "eps"));
+  PetscFunctionReturn(0);
+}
+
+/* Whether an eigenvalue that was asked for is missing, or so far beside the nearest that its vector may be spoiled */
+static PetscBool UndampedLacks(const Window *window, PetscReal shift, const Spectrum *s)
+{
+  PetscReal nearest = PETSC_MAX_REAL, farthest = 0, reach;
+
+  if (!window->singular || !window->count) return PETSC_FALSE;
+  if (WindowLacks(window, s)) return PETSC_TRUE;
+  reach = WindowNearest(window, s);
+  for (PetscInt i = 0; i < s->n; i++) {
+    const PetscReal distance = SpectrumDistance(s, i, shift);
+
+    nearest = PetscMin(nearest, distance);
+    if (hypot(s->omega[i] - window->target, s->sigma[i]) <= reach) farthest = PetscMax(farthest, distance);
+  }
+  return farthest > UNDAMPED_CLEAN * nearest ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* With unknowns without mass and an eigenvalue next to the shift, as a rigid mode is, others that were asked for may be as far
+   as infinite ones seem to be: a shift farther below zero has all finite ones nearer */
+PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
+                             PetscBool transposed, Spectrum *spectrum)
+{
+  const PetscReal least = PetscSqr(10 * window->scale);
+  const PetscReal most  = PetscMax(1e8 * PetscSqr(window->scale), UNDAMPED_AWAY * PetscSqr(window->target));
+
+  PetscFunctionBeginUser;
+  PetscCall(UndampedSolveAbout(modes, pencil, window, si, transposed, spectrum));
+  while (UndampedLacks(window, si->shift, spectrum)) {
+    const PetscReal away = UNDAMPED_AWAY * PetscMax(PetscAbsReal(si->shift), least);
+
+    if (away > most * (1 + PETSC_SQRT_MACHINE_EPSILON)) break;
+    PetscCall(SpectrumDestroy(spectrum));
+    PetscCall(ShiftInvertMove(pencil, -away, si));
+    PetscCall(UndampedSolveAbout(modes, pencil, window, si, transposed, spectrum));
+  }
   PetscFunctionReturn(0);
 }

@@ -5,7 +5,7 @@
 
    Where unknowns are without mass, as multipliers of constraints are, rounding makes large eigenvalues of any sign of the
    infinite ones, by the root of rounding at best: 1e8 times what is near the shift. So what is larger than 10 times the
-   band and the growth asked for is no mode then.
+   band and the growth asked for is no mode then; of modes nearest to a target, what is larger than 100 sqrt(K / M).
 */
 #include "modesimpl.h"
 
@@ -13,6 +13,7 @@
 #define MODES_ZERO 1e-2 /* of the scale: lower frequencies cannot be told from zero */
 #define MODES_AWAY 1e-7 /* relative move of an end on which MUMPS finds an eigenvalue */
 #define MODES_MOST 10   /* of the band and of the growth: with unknowns without mass, what is larger is no mode */
+#define MODES_FINITE 1e7 /* of the scale: the same where no band is given */
 
 /* A frequency (rad/s) that is small beside all elastic modes, from the size of the matrices */
 static PetscErrorCode WindowScale(const PencilMatrices *pencil, PetscReal *scale)
@@ -29,17 +30,21 @@ static PetscErrorCode WindowScale(const PencilMatrices *pencil, PetscReal *scale
 /* Limit of the modes where unknowns are without mass, and the negative pivots of these */
 static PetscErrorCode WindowFindMassless(Modes modes, const PencilMatrices *frictionless, Window *window)
 {
-  PetscReal least;
+  PetscReal most;
 
   PetscFunctionBeginUser;
   window->massless = 0;
   window->most     = INFINITY;
   PetscCall(MassHasEmptyRows(frictionless->M, &window->singular));
   if (!window->singular) PetscFunctionReturn(0);
-  if (modes->has_band) window->most = MODES_MOST * PetscMax(window->high, window->growth);
-  least = modes->has_band ? window->most : 1e5 * window->scale;
+  window->most = modes->has_band ? MODES_MOST * PetscMax(window->high, window->growth)
+                                 : PetscMax(MODES_FINITE * window->scale, MODES_MOST * window->target);
   if (!frictionless->symmetric) PetscFunctionReturn(0);
-  PetscCall(ShiftInvertCountMassless(frictionless, least, &modes->counter, &window->massless));
+  PetscCall(ShiftInvertCountMassless(frictionless, window->most, &modes->counter, &window->massless));
+  if (modes->has_band) PetscFunctionReturn(0);
+  most = window->most;
+  PetscCall(ShiftInvertCountBelow(frictionless, MODES_AWAY, &modes->counter, &most, &window->finite));
+  window->finite -= window->massless;
   PetscFunctionReturn(0);
 }
 
@@ -91,6 +96,7 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
                      .extra    = 6,
                      .within   = -1,
                      .expected = -1,
+                     .finite   = -1,
                      .below    = -1,
                      .beyond   = -1};
   PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
@@ -210,6 +216,13 @@ PetscInt WindowFarthest(const Window *window, const Spectrum *s)
   for (PetscInt i = 1; i < s->n; i++)
     if (WindowDistance(window, s, i) >= WindowDistance(window, s, farthest)) farthest = i;
   return farthest;
+}
+
+PetscBool WindowLacks(const Window *window, const Spectrum *s)
+{
+  const PetscInt wanted = window->finite < 0 ? window->count : PetscMin(window->count, window->finite);
+
+  return window->singular && window->count && s->n < wanted ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode WindowSelect(const Window *window, Spectrum *s)

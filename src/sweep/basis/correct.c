@@ -16,7 +16,6 @@
 #include "solver/residual.h"
 
 #define COUNT_AWAY 1e-7 /* relative move of the end of a band that an eigenvalue lies on */
-#define COUNT_MOST 10   /* of the band and of the growth: unknowns without mass have no modes below its negative square */
 
 PetscErrorCode CorrectionFactor(Pencil pencil, const PetscReal p[], const ReducedWindow *window, Progress *progress,
                                 Correction *c)
@@ -245,9 +244,7 @@ PetscErrorCode CorrectionCount(const Basis *basis, const PetscReal p[], const Re
   PetscCall(PetscMalloc1(reduced->n_parameters, &p0));
   PetscCall(PetscArraycpy(p0, p, reduced->n_parameters));
   if (frictionless.symmetric && ReducedFrictionless(reduced, p0)) {
-    PetscCall(w.low > 0
-                ? ShiftInvertCountBelow(&frictionless, -COUNT_AWAY, counter, &w.low, &below)
-                : ShiftInvertCountMassless(&frictionless, COUNT_MOST * PetscMax(w.high, window->growth), counter, &below));
+    PetscCall(ShiftInvertCountBelow(&frictionless, -COUNT_AWAY, counter, &w.low, &below));
     PetscCall(ShiftInvertCountBelow(&frictionless, COUNT_AWAY, counter, &w.high, full));
     PetscCall(ReducedSolve(reduced, p0, &w, &modes));
     *full -= below;
