@@ -29,7 +29,7 @@ PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis)
   PetscCall(BVSetType(basis->vectors, BVMAT));
   PetscCall(BVSetSizesFromVec(basis->vectors, u, 1));
   PetscCall(VecDestroy(&u));
-  PetscCall(PencilGetParameters(pencil, &basis->reduced.n_parameters, NULL, NULL));
+  PetscCall(PencilGetParameters(pencil, &basis->reduced.n_parameters, &basis->reduced.parameter, NULL));
   PetscCall(PencilGetTerms(pencil, &basis->reduced.n_terms, &basis->reduced.term));
   PetscCall(PetscCalloc1(basis->reduced.n_terms, &basis->reduced.A));
   PetscCall(PetscCalloc1(basis->reduced.n_terms, &basis->reduced.D));

@@ -290,6 +290,7 @@ PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const R
   PetscCall(PetscMalloc1(n * n, &Ms));
   PetscCall(ReducedPencil(reduced, p, n, &pencil));
   PetscCall(SumSymmetric(reduced, p, Ms, &pencil.symmetric));
+  PetscCall(ReducedCheckMass(reduced, p, Ms));
   PetscCall(DensePencilEigen(&pencil, window, modes));
   PetscCall(ModesSort(modes));
   PetscCall(ModesFinish(&pencil, Ms, modes));

@@ -13,7 +13,8 @@ typedef struct {
   PetscInt             n, n_used;
   PetscInt             n_terms, n_parameters;
   const OperatorsTerm *term; /* coefficients (borrowed) */
-  PetscReal          **A;    /* [n_terms][n * n] */
+  const OperatorsParameter *parameter; /* [n_parameters] names (borrowed), or NULL */
+  PetscReal               **A;         /* [n_terms][n * n] */
   PetscReal **D; /* V' |diag A_t| V of the stiffness terms, for what rounding in A_t does; NULL, or NULL entries,
                                 where that is no more than rounding in the dense matrices */
 } Reduced;
@@ -57,6 +58,10 @@ PetscErrorCode ReducedModesDestroy(ReducedModes *modes);
 #define REDUCED_TINY 1e-9
 PetscBool ReducedIsUnstable(PetscComplex lambda, PetscReal error);
 PetscBool ReducedModeIsUnstable(const ReducedModes *modes, PetscInt i);
+
+/* mass.c - raises an error where Ms [n_used * n_used], the symmetric part of V' M V at p, is not positive definite; no mass that
+   depends on parameters: nothing to do */
+PetscErrorCode ReducedCheckMass(const Reduced *reduced, const PetscReal p[], const PetscReal Ms[]);
 
 /* Whether a damping term has a coefficient that is not zero */
 PetscBool ReducedIsDamped(const Reduced *reduced, const PetscReal p[]);
