@@ -246,10 +246,12 @@ PetscErrorCode BlockKrylovTakeVector(EPS eps, PetscInt i, PetscBool copy, Vec *x
 {
   const PetscInt   column = eps->perm[i];
   EPS_BlockKrylov *ctx;
+  PetscBool        apart; /* -bv_type vecs has no array of all columns */
 
   PetscFunctionBegin;
   PetscCall(BlockKrylovGet(eps, &ctx));
-  if (!ctx || copy || eps->eigi[column] < 0) {
+  PetscCall(PetscObjectTypeCompare((PetscObject)eps->V, BVVECS, &apart));
+  if (!ctx || copy || apart || eps->eigi[column] < 0) {
     PetscCall(EigenvectorCopy(eps, i, xr, xi));
     PetscFunctionReturn(0);
   }
@@ -283,12 +285,12 @@ PetscErrorCode BlockKrylovSetOther(EPS right, EPS left, BlockKrylovSolve solve, 
   PetscCall(BlockKrylovInverts(left, &other));
   if (!other) *paired = PETSC_FALSE;
   if (*paired) {
-    EPS_BlockKrylov *ctx = right->data, *other = left->data;
+    EPS_BlockKrylov *first = right->data, *second = left->data;
 
-    ctx->other     = left;
-    ctx->solve     = solve;
-    ctx->solve_ctx = solve_ctx;
-    ctx->paired = other->paired = PETSC_TRUE;
+    first->other     = left;
+    first->solve     = solve;
+    first->solve_ctx = solve_ctx;
+    first->paired = second->paired = PETSC_TRUE;
   }
   PetscFunctionReturn(0);
 }

@@ -4,6 +4,17 @@
 #include "check.h"
 #include "solver/blockkrylov.h"
 
+/* As -bv_type vecs: there is no array of all columns, of which one could be taken without a copy */
+static inline PetscErrorCode KeepColumnsApart(EPS eps)
+{
+  BV V;
+
+  PetscFunctionBeginUser;
+  PetscCall(EPSGetBV(eps, &V));
+  PetscCall(BVSetType(V, BVVECS));
+  PetscFunctionReturn(0);
+}
+
 /* Breaks when: vectors that are taken are not those of EPSGetEigenpair(), go with their solver, or share memory */
 static inline PetscErrorCode CheckTaken(EPS *eps, int *failed)
 {

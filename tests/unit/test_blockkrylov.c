@@ -309,6 +309,7 @@ static PetscErrorCode TestBoth(PetscInt block, int *failed)
     PetscCall(MakeSolver(&c, K[side], M, block, &eps[side]));
     PetscCall(BlockKrylovSetReach(eps[side], 5.2));
   }
+  PetscCall(KeepColumnsApart(eps[1]));
   PetscCall(EPSSetUp(eps[0]));
   PetscCall(EPSGetST(eps[0], &st));
   PetscCall(STGetKSP(st, &ksp));
