@@ -4,40 +4,48 @@
       q_{n+1} = H (W lambda_{n+1} / 2 - Cm' F P' lambda_{n+1} / (2 dt) + what is known),   H = (W / 2 + Cx / dt - Cm'G / dt)^-1,
       G = F Cm / dt
 
-   of which the step needs H W and H Cm'. Where both sides of a pair are held in a direction, its rows of W, Cx and P are zero: q is
-   sought on the other ports, and H is the inverse there.
+   of which the step needs H W and H Cm'. Pairs give way in fewer directions than they have where both sides are held in one, or
+   where more slaves than nodes of the master meet: forces z then move nothing, W z = Cx z = Cm z = P z = 0, and q is sought on ports of
+   which the rows of the others are combinations. H is the inverse there.
 
-   W must be regular on these: mean forces on bodies that give way by their modes alone hold back what alternates from step to
-   step by nothing, and it grows
+   W must be regular in all directions in which pairs give way, which are those of P and W together: mean forces on bodies that
+   give way by their modes alone hold back what alternates from step to step by nothing, and it grows
 */
 #include "reducedimpl.h"
 #include <petscblaslapack.h>
 
-/* Of the largest diagonal of W: what is below is rounding, as of ContactComplianceCheckDefinite() */
+/* Of the largest diagonal: what is below is rounding, as of ContactComplianceCheckDefinite() */
 #define RESIDUAL_RANK_RTOL 1e-10
 
-/* Ports of the pairs in which a body moves */
-static PetscInt StepperCountMoving(const ReducedModel *model, PetscReal tolerance)
+/* Directions in which the pairs give way, by modes or by what these leave out: the rank of W + P'P, each over its largest diagonal */
+static PetscErrorCode StepperCountDirections(const ReducedModel *model, PetscReal tolerance, PetscInt *directions)
 {
   const PetscInt n = 3 * model->n_pairs, m = model->m;
-  PetscInt       moving  = 0;
-  PetscReal      largest = 0;
+  PetscReal     *A, largest[2] = {0, 0};
+  PetscInt      *chosen;
 
-  for (PetscInt i = 0; i < m * n; i++) largest = PetscMax(largest, PetscAbsReal(model->P[i]));
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n * n, &A, n, &chosen));
+  ReducedTimesTransposed(&(DenseBlock){model->P, m, n, m}, &(DenseBlock){model->P, m, n, m}, A);
   for (PetscInt i = 0; i < n; i++) {
-    PetscReal p = 0;
-
-    for (PetscInt k = 0; k < m; k++) p = PetscMax(p, PetscAbsReal(model->P[k + m * i]));
-    moving += p > RESIDUAL_RANK_RTOL * largest || model->W[i + model->n_ports * i] > tolerance ? 1 : 0;
+    largest[0] = PetscMax(largest[0], A[i + n * i]);
+    largest[1] = PetscMax(largest[1], model->W[i + model->n_ports * i]);
   }
-  return moving;
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) {
+      if (largest[0] > 0) A[i + n * j] /= largest[0];
+      if (largest[1] > 0) A[i + n * j] += model->W[i + model->n_ports * j] / largest[1];
+    }
+  PetscCall(DenseChoose(n, A, tolerance, directions, chosen));
+  PetscCall(PetscFree2(A, chosen));
+  PetscFunctionReturn(0);
 }
 
 /* The ports on which q is sought */
 static PetscErrorCode StepperChoosePorts(ReducedStepper s)
 {
   const PetscInt n = 3 * s->model->n_pairs, N = s->model->n_ports;
-  PetscInt       moving;
+  PetscInt       directions = n;
   PetscReal     *W, largest = 0;
 
   PetscFunctionBeginUser;
@@ -49,11 +57,11 @@ static PetscErrorCode StepperChoosePorts(ReducedStepper s)
   }
   PetscCall(DenseChoose(n, W, RESIDUAL_RANK_RTOL * largest, &s->rank, s->chosen));
   PetscCall(PetscFree(W));
-  moving = StepperCountMoving(s->model, RESIDUAL_RANK_RTOL * largest);
-  PetscCheck(s->rank >= moving, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+  if (s->rank < n) PetscCall(StepperCountDirections(s->model, RESIDUAL_RANK_RTOL, &directions));
+  PetscCheck(s->rank >= directions, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "-dynamics_cutoff: of the %" PetscInt_FMT " directions in which contact pairs give way only %" PetscInt_FMT
              " are left above it, and their forces would alternate and grow; take a lower one, or -dynamics_model full",
-             moving, s->rank);
+             directions, s->rank);
   for (PetscInt i = 0; i < n && s->rank == n; i++) s->chosen[i] = i; /* all, in their order */
   PetscFunctionReturn(0);
 }
