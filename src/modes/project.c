@@ -134,7 +134,7 @@ static PetscErrorCode FindModes(const Projection *p, PetscBool anew, ProjectionM
   PetscFunctionReturn(0);
 }
 
-/* Corrects the modes until all have settled; settled = they have, the window is covered, and not all of its modes are gone */
+/* Corrects the modes until all have settled; settled = they have, and the window is covered */
 static PetscErrorCode Iterate(Projection *p, ProjectionModes *found, PetscBool *settled)
 {
   PetscInt n_columns = 1, size = 0;
@@ -148,7 +148,7 @@ static PetscErrorCode Iterate(Projection *p, ProjectionModes *found, PetscBool *
     PetscCall(InfoRound(p, found, n_columns));
     if (AtRounding(p, found, size)) n_columns = 0;
   }
-  *settled = n_columns || (!found->n && p->window->expected > 0) ? PETSC_FALSE : PETSC_TRUE;
+  *settled = n_columns ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
