@@ -147,7 +147,13 @@ def check_bad(t):
     shutil.copytree(t.folder / "transient", t.folder / "going")
     for name in ("transient.csv", "amplitudes.csv"):
         (t.folder / "going" / name).rename(t.folder / "going" / f"{name}.part")
-    (t.folder / "going/scene.yaml").unlink()
+    scene = t.folder / "going/scene.yaml"
+    scene.write_text(re.sub(r"^# end: .*", "# end: not yet; the run goes on, was stopped, or failed", scene.read_text(), flags=re.M))
+    page = t.page("going")
+    said = page.find("p", class_="quiet")[0]["text"]
+    t.check("1 run not ended" in said and "computed" not in said and "cost until the first table" in page.source,
+            f"a run that has not ended: its date and cost are not told as if it had: {said}")
+    scene.unlink()
     page = t.page("going", told="going/scene.yaml: no such file; a run writes it with its first table")
     t.check("the run is still under way" in page.source and page.find("figure", id="r1-amplitudes"),
             "a run under way: what it has so far, amplitudes too")

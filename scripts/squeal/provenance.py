@@ -61,6 +61,11 @@ class Provenance:
         elif comment:
             (self.defaults if beyond else self.facts).setdefault(comment[1], comment[2])
 
+    def ended(self):
+        """The day on which the run ended; empty where it goes on, was stopped, or failed, and in a table of one's own."""
+        found = re.match(r"\d{4}-\d\d-\d\d", self.facts.get("end", ""))
+        return found[0] if found else ""
+
     def value(self, name, default=""):
         """An option in force."""
         return self.given.get(name, self.defaults.get(name, default))

@@ -26,8 +26,9 @@ def scene_section(folder, source, bodies):
 
 
 def cost_of(folder):
-    """ranks, seconds, megabytes; None where they are not known."""
-    found = re.match(r"(\d+) ranks?, ([\d.]+) s, (\d+) MB", folder.scene.facts.get("cost", "") if folder.scene else "")
+    """ranks, seconds, megabytes; None where they are not known: scene.yaml of a run under way has those of its first table."""
+    ended = folder.scene and folder.scene.ended()
+    found = re.match(r"(\d+) ranks?, ([\d.]+) s, (\d+) MB", folder.scene.facts.get("cost", "") if ended else "")
     return (int(found[1]), float(found[2]), int(found[3])) if found else None
 
 
@@ -47,7 +48,8 @@ def origin_section(folder, errors):
     if not scene:
         return section(f"{folder.key}-origin", "Errors, cost, origin", pairs(errors),
                        missing(f"No cost, versions and options: {folder.why}."))
-    facts = [(name, scene.facts[key]) for key, name in FACTS.items() if key in scene.facts]
+    facts = [(name if key != "cost" or scene.ended() else "cost until the first table", scene.facts[key])
+             for key, name in FACTS.items() if key in scene.facts]
     commands = [(name, scene.facts[key]) for key, name in (("command", "The command of this run"),
                                                            ("repeat", "The same from its scene.yaml"))
                 if key in scene.facts]

@@ -76,12 +76,14 @@ def navigation(folders, opening):
 
 
 def subtitle(folders):
-    """How many, which version, when."""
-    facts = [folder.scene.facts for folder in folders if folder.scene]
-    versions = {fact["versions"].split(",")[0] for fact in facts if "versions" in fact}
-    ends = sorted(fact["end"][:10] for fact in facts if "end" in fact)
+    """How many, which version, when, how many runs have not ended."""
+    scenes = [folder.scene for folder in folders if folder.scene]
+    versions = {scene.facts["versions"].split(",")[0] for scene in scenes if "versions" in scene.facts}
+    ends = sorted(scene.ended() for scene in scenes if scene.ended())
+    open_runs = sum("end" in scene.facts and not scene.ended() for scene in scenes)
     return ", ".join([count(len(folders), "result folder"), *sorted(versions),
-                      *([f"computed {' to '.join(dict.fromkeys((ends[0], ends[-1])))}"] if ends else [])])
+                      *([f"computed {' to '.join(dict.fromkeys((ends[0], ends[-1])))}"] if ends else []),
+                      *([f"{count(open_runs, 'run')} not ended"] if open_runs else [])])
 
 
 def page(folders, title, opening, share):
