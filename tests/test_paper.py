@@ -23,6 +23,8 @@ from test_report import Page
 from test_report_browser import Test, check_window
 
 SOURCE = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(SOURCE / "scripts"))
+from squeal.provenance import Provenance  # noqa: E402
 N_RUNS = len(re.findall(r"^    (?:Planned|in_time)\(", (SOURCE / "scripts/squeal/paper/plan.py").read_text(), re.M))
 SECTIONS = ["table1", *(f"fig{i}" for i in range(3, 12)), "kn", "cost"]
 BELIEVED = 300  # s that anything may take
@@ -91,7 +93,7 @@ def interrupted(p, sign, n):
     while p.processes() and time.monotonic() - begun < BELIEVED:
         time.sleep(0.05)
     begun = p.under_way()
-    ended = [folder.name for folder in begun if (folder / "scene.yaml").exists()]
+    ended = [folder.name for folder in begun if any(Provenance(scene).ended() for scene in folder.glob("scene.yaml"))]
     p.check(len(ended) < len(begun) and not p.processes(),  # one may end by itself just then
             f"{sign.name} ends the {len(begun)} runs that were under way {ended} {p.processes()}")
     p.check(not (p.folder / "paper.html").exists(), f"{sign.name}: no page of half the runs")
