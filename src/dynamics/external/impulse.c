@@ -107,7 +107,7 @@ PetscErrorCode ImpulsesSetUp(External external)
     PetscInt  vertex;
     PetscBool moves;
 
-    PetscCall(ModelFindNode(external->model, hit->part, hit->at, &vertex));
+    PetscCall(ModelFindNode(external->model, hit->name, hit->part, hit->at, &vertex));
     PetscCall(ImpulseFindCopy(external->model, &vertex));
     PetscCall(ForcePatternCreate(external->layout, vertex >= 0, &vertex, hit->impulse, &hit->pattern));
     PetscCall(ImpulsePlace(external, vertex, hit, &moves));
@@ -170,7 +170,7 @@ PetscErrorCode ExternalFindHit(External external, PetscInt i, ExternalHit *hit, 
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(external->model, &mesh));
-  PetscCall(ModelFindNode(external->model, from->part, from->at, vertex));
+  PetscCall(ModelFindNode(external->model, from->name, from->part, from->at, vertex));
   for (int d = 0; d < 3 && *vertex >= 0; d++) {
     here[d] = mesh->x[3 * *vertex + d];
     if (mesh->unknown[3 * *vertex + d] >= 0) here[3] += PetscAbsReal(from->impulse[d]);

@@ -3,12 +3,15 @@
 
    Of several nodes at the same distance the one with the least x, then y, then z is taken, of coincident nodes that of
    the first part, then the least global number: the same place on any ranks. Of the ranks that share the node
-   the first records it.
+   the first records it. A place may lie off its node by half the diagonal of the part's bounding box, of the largest part
+   where none is named: what is farther is of other units or axes.
 */
 #include "model/modelimpl.h"
 #include "base/gather.h"
 #include <squeal/options.h>
 #include <stdlib.h>
+
+#define PROBE_FAR 0.5 /* of the diagonal */
 
 /* A node that may be the nearest, by what decides */
 typedef struct {
@@ -117,23 +120,51 @@ PetscErrorCode ProbeLocate(Model model, Probe *probe)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ProbesLocate(Model model)
+/* The same; raises the error for a place that is far off its node */
+static PetscErrorCode ProbeLocateNear(Model model, Probe *probe)
 {
+  const PetscReal *at = probe->at, *x = probe->x;
+  PetscReal        distance = 0, size = 0;
+  PetscInt         part;
+
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < model->scene.n_probes; i++) PetscCall(ProbeLocate(model, &model->scene.probes[i]));
+  PetscCall(ProbeLocate(model, probe));
+  PetscCall(ModelFindPart(model, probe->name, probe->part, &part));
+  for (PetscInt i = 0; i < model->scene.n_parts; i++) {
+    const PetscReal *side = model->extent[i].size;
+
+    if (part < 0 || part == i)
+      size = PetscMax(size, PetscSqrtReal(PetscSqr(side[0]) + PetscSqr(side[1]) + PetscSqr(side[2])));
+  }
+  for (int d = 0; d < 3; d++) distance += PetscSqr(x[d] - at[d]);
+  distance = PetscSqrtReal(distance);
+  PetscCheck(distance <= PROBE_FAR * size, model->comm, PETSC_ERR_USER_INPUT,
+             "-%s_at %.6g,%.6g,%.6g is %.4g m off the nearest node%s%s, at %.6g,%.6g,%.6g; half the size of %s, %.4g m, is "
+             "the most",
+             probe->name, (double)at[0], (double)at[1], (double)at[2], (double)distance, part < 0 ? "" : " of ",
+             probe->part, (double)x[0], (double)x[1], (double)x[2], part < 0 ? "the largest part" : "that part",
+             (double)(PROBE_FAR * size));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelFindNode(Model model, const char part[], const PetscReal at[3], PetscInt *vertex)
+PetscErrorCode ProbesLocate(Model model)
 {
-  char  name[] = "node", part_name[256];
-  Probe probe  = {
-     .name = name, .part = part_name, .at = {at[0], at[1], at[2]}
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < model->scene.n_probes; i++) PetscCall(ProbeLocateNear(model, &model->scene.probes[i]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelFindNode(Model model, const char name[], const char part[], const PetscReal at[3], PetscInt *vertex)
+{
+  char  own_name[256], part_name[256];
+  Probe probe = {
+    .name = own_name, .part = part_name, .at = {at[0], at[1], at[2]}
   };
 
   PetscFunctionBeginUser;
+  PetscCall(PetscStrncpy(own_name, name, sizeof(own_name)));
   PetscCall(PetscStrncpy(part_name, part, sizeof(part_name)));
-  PetscCall(ProbeLocate(model, &probe));
+  PetscCall(ProbeLocateNear(model, &probe));
   *vertex = probe.vertex;
   PetscFunctionReturn(0);
 }
