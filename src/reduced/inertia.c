@@ -4,6 +4,7 @@
    -modes_band. Told before the run where one is far off, since a transient that squeals there is of another brake.
 */
 #include "reducedimpl.h"
+#include <stdlib.h>
 
 #define INERTIA_LEAST 1e-3 /* of the angular frequency: what smaller growth is off by is relative to that */
 #define INERTIA_WARN  0.05 /* relative error of growth that is told before the run */
@@ -18,13 +19,24 @@ static PetscInt InertiaMatch(PetscInt n, const PetscReal s[], const PetscReal w[
   return best;
 }
 
-/* Modes below the cut-off that grow without that inertia, or with it; z [2][2][2 m] growth and frequency, without and with */
-static void InertiaTake(ReducedRun r, PetscReal *z[2][2])
+/* Whether the mode a grows faster than b, in either way; for qsort() */
+static int InertiaFaster(const void *a, const void *b)
+{
+  const ReducedGrowing *g = a, *h = b;
+  const PetscReal most = PetscMax(g->growth, g->whole), other = PetscMax(h->growth, h->whole);
+
+  return (most < other) - (most > other);
+}
+
+/* All modes below the cut-off that grow without that inertia, or with it, fastest first; z [2][2][2 m] growth and frequency,
+   without and with */
+static PetscErrorCode InertiaTake(ReducedRun r, PetscReal *z[2][2])
 {
   const PetscInt n = 2 * r->model.m;
 
-  r->n_growing = 0;
-  for (PetscInt i = 0; i < n && r->n_growing < REDUCED_GROWING; i++) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscRealloc((size_t)r->model.m * sizeof(*r->growing), &r->growing)); /* one of a pair of conjugates */
+  for (PetscInt i = 0; i < n; i++) {
     const PetscReal sigma = z[0][0][i], omega = z[0][1][i];
     const PetscInt  k     = InertiaMatch(n, z[1][0], z[1][1], sigma, omega);
     const PetscReal most = PetscMax(sigma, z[1][0][k]), scale = PetscMax(most, INERTIA_LEAST * omega);
@@ -33,6 +45,8 @@ static void InertiaTake(ReducedRun r, PetscReal *z[2][2])
     r->growing[r->n_growing++] =
       (ReducedGrowing){sigma, z[1][0][k], omega, PetscAbsReal(z[1][0][k] - sigma) / scale};
   }
+  qsort(r->growing, (size_t)r->n_growing, sizeof(*r->growing), InertiaFaster);
+  PetscFunctionReturn(0);
 }
 
 /* That which is farthest off, or NULL */
@@ -77,7 +91,7 @@ PetscErrorCode ReducedWeighGrowth(ReducedRun r, PetscReal *off)
   if (found) {
     PetscCall(ReducedLineariseSliding(&r->model, closed, lambda_n, z[0][0], z[0][1]));
     PetscCall(ReducedLineariseInertia(&r->model, closed, lambda_n, z[1][0], z[1][1]));
-    InertiaTake(r, z);
+    PetscCall(InertiaTake(r, z));
   }
   if (InertiaWorst(r)) *off = InertiaWorst(r)->off;
   PetscCall(PetscFree7(loads, closed, lambda_n, z[0][0], z[0][1], z[1][0], z[1][1]));

@@ -318,6 +318,7 @@ PetscErrorCode ReducedDestroy(ReducedRun *reduced)
   PetscCall(PetscFree(r->p));
   PetscCall(PetscFree(r->closed));
   PetscCall(PetscFree(r->compared));
+  PetscCall(PetscFree(r->growing));
   PetscCall(PetscFree(r->force));
   PetscCall(PetscFree(*reduced));
   PetscFunctionReturn(0);

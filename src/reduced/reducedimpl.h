@@ -33,8 +33,6 @@ typedef struct {
   char      label[32];
 } ReducedPair;
 
-#define REDUCED_GROWING 16 /* modes that grow, of which the error of the cut-off is told */
-
 /* A mode about the sliding state: growth without and with the inertia of what the cut-off leaves out, 1/s; frequency, rad/s; what
    growth is off by, relative */
 typedef struct {
@@ -92,8 +90,8 @@ struct _p_ReducedRun {
   PetscInt     n_closed, n_compared;
   ReducedPair *compared;
   PetscBool   *closed;                 /* [n_pairs] in the sliding state */
-  PetscInt       n_growing;
-  ReducedGrowing growing[REDUCED_GROWING];
+  PetscInt        n_growing;
+  ReducedGrowing *growing;             /* fastest first */
   PetscReal    miss_model, miss_steps; /* largest error of growth of an unstable mode; what steps add, relative */
   /* state */
   PetscReal      dt;
