@@ -64,6 +64,21 @@ static PetscErrorCode ChooseJudge(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
+/* Says where what was asked for is not reached, by the cut-off or by the step */
+static PetscErrorCode ChooseWarn(ReducedRun r)
+{
+  const PetscReal off = r->miss_model + r->miss_steps;
+
+  PetscFunctionBeginUser;
+  if (r->has_rtol && off > r->growth_rtol)
+    PetscCall(PetscFPrintf(r->comm, stderr,
+                           "squeal: warning: -dynamics_growth_rtol %.3g is not reached: growth may be off by %.2g of itself with the "
+                           "cut-off %.6g Hz, and by %.2g with the step %.3g s; say a higher -dynamics_cutoff, a shorter -ts_dt\n",
+                           (double)r->growth_rtol, (double)r->miss_model, (double)r->cutoff, (double)r->miss_steps,
+                           (double)r->dt));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ReducedChoose(ReducedRun r)
 {
   const PetscReal half = 0.5 * r->growth_rtol;
@@ -90,5 +105,6 @@ PetscErrorCode ReducedChoose(ReducedRun r)
     if (r->dt == dt) break; /* -ts_dt */
     PetscCall(ReducedCompare(r));
   }
+  PetscCall(ChooseWarn(r));
   PetscFunctionReturn(0);
 }
