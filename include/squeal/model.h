@@ -257,7 +257,8 @@ PetscErrorCode ModelGetSetNormals(Model model, const char set[], PetscReal **are
 /*@ ModelFindNode - the node of a part (empty for any) nearest to a place (m): its local node from 0 on one rank that
     has it, -1 on all others. Collective; after ModelSetUp(). Errors: PETSC_ERR_USER_INPUT, which names the option -name_at, for
     a place farther off it than half the diagonal of the part, or of the largest one where it is any. @*/
-PetscErrorCode ModelFindNode(Model model, const char name[], const char part[], const PetscReal at[3], PetscInt *vertex);
+PetscErrorCode ModelFindNode(Model model, const char name[], const char part[], const PetscReal at[3],
+                             PetscInt *vertex);
 
 /*@ ModelCreateLines - the lines along which the local cells of a body (of ModelGetBodies()) are swept; NULL where they
     are not, or are none. Of several ways it is the one with the longest lines, rather about an axis than along it. Not

@@ -56,14 +56,14 @@ typedef struct _p_ReducedRun *ReducedRun;
    so on, then the loads, then x, y, z of each probe */
 typedef struct {
   PetscInt   m, n_pairs, n_loads, n_probes, n_ports;
-  PetscReal *omega2;             /* [m] (rad/s)^2, ascending, 0 for rigid modes */
-  PetscReal *C;                  /* [m][m] 1/s, symmetric; NULL without damping */
-  PetscReal *P;                  /* [n_ports][m], m numbers for each port, 1/sqrt(kg) */
-  PetscReal *W;                  /* [n_ports][n_ports], m/N */
-  PetscReal *Cm;                 /* [3 n_pairs][m] Phi'C X, s / sqrt(kg); NULL without damping */
-  PetscReal *Cx;                 /* [3 n_pairs][3 n_pairs] X'C X, m s/N, symmetric; NULL without damping */
-  PetscReal *Mx;                 /* [3 n_pairs][3 n_pairs] X'M X, kg (m/N)^2, symmetric; NULL where nobody asks for it */
-  PetscReal *gap;                /* [n_pairs] g0, m, positive open */
+  PetscReal *omega2; /* [m] (rad/s)^2, ascending, 0 for rigid modes */
+  PetscReal *C;      /* [m][m] 1/s, symmetric; NULL without damping */
+  PetscReal *P;      /* [n_ports][m], m numbers for each port, 1/sqrt(kg) */
+  PetscReal *W;      /* [n_ports][n_ports], m/N */
+  PetscReal *Cm;     /* [3 n_pairs][m] Phi'C X, s / sqrt(kg); NULL without damping */
+  PetscReal *Cx;     /* [3 n_pairs][3 n_pairs] X'C X, m s/N, symmetric; NULL without damping */
+  PetscReal *Mx;     /* [3 n_pairs][3 n_pairs] X'M X, kg (m/N)^2, symmetric; NULL where nobody asks for it */
+  PetscReal *gap;    /* [n_pairs] g0, m, positive open */
   PetscReal *mu, *slope, *speed; /* [n_pairs] friction: at the stated speed (-), s/m, m/s */
 } ReducedModel;
 

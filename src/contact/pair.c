@@ -158,9 +158,9 @@ static PetscErrorCode PartnerCheck(MPI_Comm comm, ContactInterface *c, PairFailu
 
 PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface)
 {
-  ContactInterface *c       = &contact->interfaces[interface];
-  const PetscInt    first   = contact->n_pairs;
-  PairFailure       failure = {.distance = 0};
+  ContactInterface     *c       = &contact->interfaces[interface];
+  const PetscInt        first   = contact->n_pairs;
+  PairFailure           failure = {.distance = 0};
   const ContactSurface *surface;
   PetscReal             area = 0;
 

@@ -90,9 +90,10 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
   PetscCall(DescribeFrictionless(modes, window, frictionless, sizeof(frictionless)));
   PetscCall(DescribeRoute(window, route, sizeof(route)));
   if (window->most < INFINITY)
-    PetscCall(PetscSNPrintf(massless, sizeof(massless),
-                            "; unknowns have no mass, and with these modes of |lambda| above %.6g 1/s are not looked for",
-                            (double)window->most));
+    PetscCall(
+      PetscSNPrintf(massless, sizeof(massless),
+                    "; unknowns have no mass, and with these modes of |lambda| above %.6g 1/s are not looked for",
+                    (double)window->most));
   if (!window->count)
     PetscCall(PetscSNPrintf(region, sizeof(region), " with |growth| below %.6g 1/s", (double)window->growth));
   if (window->proven && window->count)

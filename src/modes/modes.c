@@ -8,7 +8,7 @@
 #include "solver/ordering.h"
 #include <squeal/options.h>
 
-#define MODES_NEAR 1e-9 /* distance of an eigenvalue from the shift, beside the farthest: below it the shift is moved */
+#define MODES_NEAR          1e-9 /* distance of an eigenvalue from the shift, beside the farthest: below it the shift is moved */
 #define MODES_NEAR_SINGULAR 1e-5 /* the same where infinite eigenvalues are to be told from finite ones */
 
 PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
@@ -141,7 +141,8 @@ static PetscErrorCode SpectrumCopy(const Spectrum *from, Spectrum *to)
 /* Whether an eigenvalue kappa = -lambda^2 is so near to the shift that rounding of its inverse spoils the others */
 static PetscBool ShiftSpoils(const Window *window, const Spectrum *s, PetscReal shift)
 {
-  PetscReal nearest = PETSC_MAX_REAL, farthest = window->singular && !window->count ? UndampedRadius(window, shift, s) : 0;
+  PetscReal nearest  = PETSC_MAX_REAL,
+            farthest = window->singular && !window->count ? UndampedRadius(window, shift, s) : 0;
 
   for (PetscInt i = 0; i < s->n; i++) {
     const PetscReal distance = SpectrumDistance(s, i, shift);
@@ -149,7 +150,8 @@ static PetscBool ShiftSpoils(const Window *window, const Spectrum *s, PetscReal 
     nearest  = PetscMin(nearest, distance);
     farthest = PetscMax(farthest, distance);
   }
-  return nearest < (window->singular && !window->count ? MODES_NEAR_SINGULAR : MODES_NEAR) * farthest ? PETSC_TRUE : PETSC_FALSE;
+  return nearest < (window->singular && !window->count ? MODES_NEAR_SINGULAR : MODES_NEAR) * farthest ? PETSC_TRUE
+                                                                                                      : PETSC_FALSE;
 }
 
 PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si)

@@ -240,8 +240,8 @@ static PetscErrorCode UndampedDescribe(EPS eps, const ShiftInvert *si, size_t si
 }
 
 /* The eigenvalues about the shift of the factors */
-static PetscErrorCode UndampedSolveAbout(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
-                                         PetscBool transposed, Spectrum *spectrum)
+static PetscErrorCode UndampedSolveAbout(Modes modes, const PencilMatrices *pencil, const Window *window,
+                                         ShiftInvert *si, PetscBool transposed, Spectrum *spectrum)
 {
   const Undamped u = {modes, pencil, window, si};
   PetscInt       n, nev = window->extra + (window->count           ? window->count + window->count / 2

@@ -9,11 +9,11 @@
 */
 #include "modesimpl.h"
 
-#define MODES_EDGE 1e-8 /* relative width of the band's ends, so that an eigenvalue on an end belongs to it */
-#define MODES_ZERO 1e-2 /* of the scale: lower frequencies cannot be told from zero */
-#define MODES_AWAY 1e-7 /* relative move of an end on which MUMPS finds an eigenvalue */
-#define MODES_MOST 10   /* of the band and of the growth: with unknowns without mass, what is larger is no mode */
-#define MODES_FINITE 1e7 /* of the scale: the same where no band is given */
+#define MODES_EDGE   1e-8 /* relative width of the band's ends, so that an eigenvalue on an end belongs to it */
+#define MODES_ZERO   1e-2 /* of the scale: lower frequencies cannot be told from zero */
+#define MODES_AWAY   1e-7 /* relative move of an end on which MUMPS finds an eigenvalue */
+#define MODES_MOST   10   /* of the band and of the growth: with unknowns without mass, what is larger is no mode */
+#define MODES_FINITE 1e7  /* of the scale: the same where no band is given */
 
 /* A frequency (rad/s) that is small beside all elastic modes, from the size of the matrices */
 static PetscErrorCode WindowScale(const PencilMatrices *pencil, PetscReal *scale)
@@ -87,18 +87,20 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
   PencilMatrices  frictionless;
 
   PetscFunctionBeginUser;
-  *window = (Window){.low      = low,
-                     .high     = high,
-                     .target   = 2 * PETSC_PI * modes->target,
-                     .count    = modes->has_band ? 0 : modes->count,
-                     .growth   = modes->growth > 0 ? modes->growth : 0.1 * high,
-                     .edge     = {low * (1 - MODES_EDGE), high * (1 + MODES_EDGE)},
-                     .extra    = 6,
-                     .within   = -1,
-                     .expected = -1,
-                     .finite   = -1,
-                     .below    = -1,
-                     .beyond   = -1};
+  *window = (Window){
+    .low      = low,
+    .high     = high,
+    .target   = 2 * PETSC_PI * modes->target,
+    .count    = modes->has_band ? 0 : modes->count,
+    .growth   = modes->growth > 0 ? modes->growth : 0.1 * high,
+    .edge     = {low * (1 - MODES_EDGE), high * (1 + MODES_EDGE)},
+    .extra    = 6,
+    .within   = -1,
+    .expected = -1,
+    .finite   = -1,
+    .below    = -1,
+    .beyond   = -1
+  };
   PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
   PetscCall(WindowScale(&frictionless, &window->scale));
   PetscCall(WindowFindMassless(modes, &frictionless, window));

@@ -71,11 +71,11 @@ static PetscErrorCode ChooseWarn(ReducedRun r)
 
   PetscFunctionBeginUser;
   if (r->has_rtol && off > r->growth_rtol)
-    PetscCall(PetscFPrintf(r->comm, stderr,
-                           "squeal: warning: -dynamics_growth_rtol %.3g is not reached: growth may be off by %.2g of itself with the "
-                           "cut-off %.6g Hz, and by %.2g with the step %.3g s; say a higher -dynamics_cutoff, a shorter -ts_dt\n",
-                           (double)r->growth_rtol, (double)r->miss_model, (double)r->cutoff, (double)r->miss_steps,
-                           (double)r->dt));
+    PetscCall(PetscFPrintf(
+      r->comm, stderr,
+      "squeal: warning: -dynamics_growth_rtol %.3g is not reached: growth may be off by %.2g of itself with the "
+      "cut-off %.6g Hz, and by %.2g with the step %.3g s; say a higher -dynamics_cutoff, a shorter -ts_dt\n",
+      (double)r->growth_rtol, (double)r->miss_model, (double)r->cutoff, (double)r->miss_steps, (double)r->dt));
   PetscFunctionReturn(0);
 }
 

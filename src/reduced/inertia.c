@@ -23,7 +23,7 @@ static PetscInt InertiaMatch(PetscInt n, const PetscReal s[], const PetscReal w[
 static int InertiaFaster(const void *a, const void *b)
 {
   const ReducedGrowing *g = a, *h = b;
-  const PetscReal most = PetscMax(g->growth, g->whole), other = PetscMax(h->growth, h->whole);
+  const PetscReal       most = PetscMax(g->growth, g->whole), other = PetscMax(h->growth, h->whole);
 
   return (most < other) - (most > other);
 }
@@ -38,12 +38,11 @@ static PetscErrorCode InertiaTake(ReducedRun r, PetscReal *z[2][2])
   PetscCall(PetscRealloc((size_t)r->model.m * sizeof(*r->growing), &r->growing)); /* one of a pair of conjugates */
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal sigma = z[0][0][i], omega = z[0][1][i];
-    const PetscInt  k     = InertiaMatch(n, z[1][0], z[1][1], sigma, omega);
+    const PetscInt  k    = InertiaMatch(n, z[1][0], z[1][1], sigma, omega);
     const PetscReal most = PetscMax(sigma, z[1][0][k]), scale = PetscMax(most, INERTIA_LEAST * omega);
 
     if (omega <= 0 || omega > 2 * PETSC_PI * r->cutoff || most <= 0) continue;
-    r->growing[r->n_growing++] =
-      (ReducedGrowing){sigma, z[1][0][k], omega, PetscAbsReal(z[1][0][k] - sigma) / scale};
+    r->growing[r->n_growing++] = (ReducedGrowing){sigma, z[1][0][k], omega, PetscAbsReal(z[1][0][k] - sigma) / scale};
   }
   qsort(r->growing, (size_t)r->n_growing, sizeof(*r->growing), InertiaFaster);
   PetscFunctionReturn(0);
@@ -105,11 +104,12 @@ PetscErrorCode ReducedWarnGrowth(ReducedRun r)
 
   PetscFunctionBeginUser;
   if (!w || w->off < INERTIA_WARN) PetscFunctionReturn(0);
-  PetscCall(PetscFPrintf(r->comm, stderr,
-                         "squeal: warning: the mode at %.6g Hz grows by %.4g 1/s below -dynamics_cutoff %.6g Hz, and by %.4g with "
-                         "the inertia of what that leaves out: the vibration may be off by as much; raise the cut-off, or leave it "
-                         "out and say -dynamics_growth_rtol\n",
-                         (double)(w->omega / (2 * PETSC_PI)), (double)w->growth, (double)r->cutoff, (double)w->whole));
+  PetscCall(PetscFPrintf(
+    r->comm, stderr,
+    "squeal: warning: the mode at %.6g Hz grows by %.4g 1/s below -dynamics_cutoff %.6g Hz, and by %.4g with "
+    "the inertia of what that leaves out: the vibration may be off by as much; raise the cut-off, or leave it "
+    "out and say -dynamics_growth_rtol\n",
+    (double)(w->omega / (2 * PETSC_PI)), (double)w->growth, (double)r->cutoff, (double)w->whole));
   PetscFunctionReturn(0);
 }
 
@@ -117,8 +117,9 @@ PetscErrorCode ReducedGrowthView(ReducedRun r, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
   if (!r->n_growing) PetscFunctionReturn(0);
-  PetscCall(PetscViewerASCIIPrintf(viewer, "modes below the cut-off that grow about the sliding state: reduced, and with the "
-                                           "inertia of what the cut-off leaves out\n"));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "modes below the cut-off that grow about the sliding state: reduced, and with the "
+                                   "inertia of what the cut-off leaves out\n"));
   for (PetscInt i = 0; i < r->n_growing; i++) {
     const ReducedGrowing *g = &r->growing[i];
 

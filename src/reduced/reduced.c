@@ -31,10 +31,11 @@ PetscErrorCode ReducedSetFromOptions(ReducedRun r)
   PetscCall(PetscOptionsReal("-dynamics_cutoff",
                              "of the modes of a reduced model, Hz; 0: 4 times the end of -modes_band, or 20 kHz",
                              "reduced.h", r->cutoff, &r->cutoff, NULL));
-  PetscCall(PetscOptionsReal("-dynamics_growth_rtol",
-                             "error of growth in -modes_band, or without it of all modes, for which a cut-off and a step "
-                             "are chosen", "reduced.h",
-                             r->growth_rtol, &r->growth_rtol, &r->has_rtol));
+  PetscCall(
+    PetscOptionsReal("-dynamics_growth_rtol",
+                     "error of growth in -modes_band, or without it of all modes, for which a cut-off and a step "
+                     "are chosen",
+                     "reduced.h", r->growth_rtol, &r->growth_rtol, &r->has_rtol));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_compare",
                            "eigenvalues of a reduced model beside those of the mesh in -modes_band", &r->compare));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_verify",

@@ -18,8 +18,8 @@ struct _p_ReducedStepper {
   PetscReal          *Q;           /* [3 m][3 m] of the work of damping; NULL without, and until works are asked for */
   PetscReal          *W;           /* [3 n_pairs][3 n_pairs] compliance of the pairs in a step, m/N */
   PetscInt            rank, *chosen; /* [rank] ports on which q is sought, all where W is regular or nothing damps */
-  PetscReal *HW, *HC;     /* [3 n_pairs]^2, [m][3 n_pairs] H W and H Cm' of the residual (stepresidual.c); NULL undamped */
-  ContactCompliance laws; /* NULL without pairs */
+  PetscReal *HW, *HC; /* [3 n_pairs]^2, [m][3 n_pairs] H W and H Cm' of the residual (stepresidual.c); NULL undamped */
+  ContactCompliance laws;                    /* NULL without pairs */
   PetscReal        *x, *next, *product;      /* work: [3 m] z and g; [3 m] z(dt); [3 m] */
   PetscReal        *mean, *free, *slip0, *r; /* work: [n_ports], [3 n_pairs], [2 n_pairs], [3 n_pairs] */
   PetscReal        *q, *dq, *slip, *port;    /* work: [3 n_pairs] q_{n+1}, its change, gaps and slips; [n_ports] */
@@ -60,9 +60,9 @@ struct _p_ReducedRun {
   PetscReal  cutoff; /* Hz, 0: to be chosen */
   PetscReal  growth_rtol;
   PetscBool  has_rtol; /* somebody says so */
-  PetscBool  weighs; /* Mx too */
-  PetscReal *p;    /* parameters of the operators, NULL: those of the scene */
-  ReducedRun like; /* whose modes those taken resemble, as many; NULL: all below the cut-off are */
+  PetscBool  weighs;   /* Mx too */
+  PetscReal *p;        /* parameters of the operators, NULL: those of the scene */
+  ReducedRun like;     /* whose modes those taken resemble, as many; NULL: all below the cut-off are */
   /* rooms */
   Dynamics    dynamics;
   Modes       mesh_modes;
@@ -86,13 +86,13 @@ struct _p_ReducedRun {
   PetscInt      n_hits;
   PetscReal    *hits, *hit_due; /* [n_hits][m] Phi'J, m sqrt(kg)/s; [n_hits] s */
   /* the mesh beside it */
-  const char  *not_compared; /* why; NULL where it is */
-  PetscInt     n_closed, n_compared;
-  ReducedPair *compared;
-  PetscBool   *closed;                 /* [n_pairs] in the sliding state */
+  const char     *not_compared; /* why; NULL where it is */
+  PetscInt        n_closed, n_compared;
+  ReducedPair    *compared;
+  PetscBool      *closed; /* [n_pairs] in the sliding state */
   PetscInt        n_growing;
-  ReducedGrowing *growing;             /* fastest first */
-  PetscReal    miss_model, miss_steps; /* largest error of growth of an unstable mode; what steps add, relative */
+  ReducedGrowing *growing;                /* fastest first */
+  PetscReal       miss_model, miss_steps; /* largest error of growth of an unstable mode; what steps add, relative */
   /* state */
   PetscReal      dt;
   PetscInt       step;

@@ -74,8 +74,8 @@ static PetscErrorCode ReadMethod(Sweep sweep, OptionsItems PetscOptionsObject)
   PetscCall(PetscOptionsReal("-sweep_rtol", "largest estimated relative error of an eigenvalue (an estimate, no bound)",
                              "sweep.h", sweep->rtol, &sweep->rtol, NULL));
   PetscCall(PetscOptionsInt("-sweep_max_samples",
-                            "most full solutions; by itself more where contact status changes often",
-                            "sweep.h", sweep->max_samples, &sweep->max_samples, &sweep->max_given));
+                            "most full solutions; by itself more where contact status changes often", "sweep.h",
+                            sweep->max_samples, &sweep->max_samples, &sweep->max_given));
   PetscCall(PetscOptionsInt("-sweep_real_modes", "frictionless modes of -sweep_method real", "sweep.h", sweep->n_real,
                             &sweep->n_real, NULL));
   sweep->method = (SweepMethod)method;
@@ -189,11 +189,12 @@ static PetscErrorCode ModelMake(Sweep sweep)
   GridPoint(&sweep->grid, 0, p);
   PetscCall(PencilSetParameters(sweep->pencil, p));
   PetscCall(BasisCreate(sweep->comm, sweep->pencil, &sweep->basis));
-  sweep->greedy.modes       = sweep->modes;
-  sweep->greedy.window      = sweep->window;
-  sweep->greedy.groups      = &sweep->groups;
-  sweep->greedy.rtol        = sweep->rtol;
-  if (!sweep->max_given && sweep->grid.n_groups) sweep->max_samples = PetscMax(sweep->max_samples, sweep->grid.n_places);
+  sweep->greedy.modes  = sweep->modes;
+  sweep->greedy.window = sweep->window;
+  sweep->greedy.groups = &sweep->groups;
+  sweep->greedy.rtol   = sweep->rtol;
+  if (!sweep->max_given && sweep->grid.n_groups)
+    sweep->max_samples = PetscMax(sweep->max_samples, sweep->grid.n_places);
   sweep->greedy.max_samples = sweep->max_samples;
   sweep->greedy.progress    = &sweep->progress;
   PetscCall(PetscCalloc1(2 * sweep->max_samples + 2 + GREEDY_LOOKS, &sweep->greedy.sample));

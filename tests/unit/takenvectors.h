@@ -19,7 +19,7 @@ static inline PetscErrorCode KeepColumnsApart(EPS eps)
 static inline PetscErrorCode CheckTaken(EPS *eps, int *failed)
 {
   Vec       copy[4][2], taken[4][2];
-  PetscReal worst = 0, here;
+  PetscReal worst     = 0, here;
   PetscInt  n_complex = 0;
   BV        V;
 
@@ -42,6 +42,7 @@ static inline PetscErrorCode CheckTaken(EPS *eps, int *failed)
     PetscCall(VecDestroy(x));
     PetscCall(VecDestroy(y));
   }
-  *failed += CheckClose("vectors taken from their solver", worst, 0, 0) + CheckTrue("complex ones", n_complex >= 2, n_complex);
+  *failed +=
+    CheckClose("vectors taken from their solver", worst, 0, 0) + CheckTrue("complex ones", n_complex >= 2, n_complex);
   PetscFunctionReturn(0);
 }

@@ -138,12 +138,12 @@ static PetscErrorCode ProbeLocateNear(Model model, Probe *probe)
   }
   for (int d = 0; d < 3; d++) distance += PetscSqr(x[d] - at[d]);
   distance = PetscSqrtReal(distance);
-  PetscCheck(distance <= PROBE_FAR * size, model->comm, PETSC_ERR_USER_INPUT,
-             "-%s_at %.6g,%.6g,%.6g is %.4g m off the nearest node%s%s, at %.6g,%.6g,%.6g; half the size of %s, %.4g m, is "
-             "the most",
-             probe->name, (double)at[0], (double)at[1], (double)at[2], (double)distance, part < 0 ? "" : " of ",
-             probe->part, (double)x[0], (double)x[1], (double)x[2], part < 0 ? "the largest part" : "that part",
-             (double)(PROBE_FAR * size));
+  PetscCheck(
+    distance <= PROBE_FAR * size, model->comm, PETSC_ERR_USER_INPUT,
+    "-%s_at %.6g,%.6g,%.6g is %.4g m off the nearest node%s%s, at %.6g,%.6g,%.6g; half the size of %s, %.4g m, is "
+    "the most",
+    probe->name, (double)at[0], (double)at[1], (double)at[2], (double)distance, part < 0 ? "" : " of ", probe->part,
+    (double)x[0], (double)x[1], (double)x[2], part < 0 ? "the largest part" : "that part", (double)(PROBE_FAR * size));
   PetscFunctionReturn(0);
 }
 

@@ -19,9 +19,10 @@ PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis)
   basis->pencil = pencil;
   PetscCall(PencilGetFrictionless(pencil, &frictionless));
   PetscCall(MassHasEmptyRows(frictionless.M, &singular)); /* of which vectors orthonormal in M hold nothing */
-  PetscCheck(!singular, comm, PETSC_ERR_SUP,
-             "unknowns have no mass (multipliers, or nodes without inertia): sweeps on a basis are not offered with them; "
-             "give -sweep_method full");
+  PetscCheck(
+    !singular, comm, PETSC_ERR_SUP,
+    "unknowns have no mass (multipliers, or nodes without inertia): sweeps on a basis are not offered with them; "
+    "give -sweep_method full");
   PetscCall(MatDuplicate(frictionless.M, MAT_COPY_VALUES, &basis->M));
   PetscCall(MatSetOption(basis->M, MAT_SYMMETRIC, PETSC_TRUE));
   PetscCall(MatCreateVecs(basis->M, &u, NULL));

@@ -36,11 +36,13 @@ static PetscErrorCode MassRefuse(const Reduced *reduced, const PetscReal p[])
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < reduced->n_parameters && reduced->parameter; k++) {
     if (!MassDepends(reduced, k)) continue;
-    PetscCall(PetscSNPrintf(one, sizeof(one), "%s%s %.6g", text[0] ? ", " : " at ", reduced->parameter[k].name, (double)p[k]));
+    PetscCall(
+      PetscSNPrintf(one, sizeof(one), "%s%s %.6g", text[0] ? ", " : " at ", reduced->parameter[k].name, (double)p[k]));
     PetscCall(PetscStrlcat(text, one, sizeof(text)));
   }
   SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-          "the mass matrix has eigenvalues that are negative or zero%s: it must be positive definite at all points", text);
+          "the mass matrix has eigenvalues that are negative or zero%s: it must be positive definite at all points",
+          text);
 }
 
 PetscErrorCode ReducedCheckMass(const Reduced *reduced, const PetscReal p[], const PetscReal Ms[])

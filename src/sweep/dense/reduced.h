@@ -10,9 +10,9 @@
 /* V' A_t V of every term of the pencil. The leading n_used vectors make the model; the remaining ones, Z, only serve to
    estimate its error. */
 typedef struct {
-  PetscInt             n, n_used;
-  PetscInt             n_terms, n_parameters;
-  const OperatorsTerm *term; /* coefficients (borrowed) */
+  PetscInt                  n, n_used;
+  PetscInt                  n_terms, n_parameters;
+  const OperatorsTerm      *term;      /* coefficients (borrowed) */
   const OperatorsParameter *parameter; /* [n_parameters] names (borrowed), or NULL */
   PetscReal               **A;         /* [n_terms][n * n] */
   PetscReal **D; /* V' |diag A_t| V of the stiffness terms, for what rounding in A_t does; NULL, or NULL entries,
