@@ -21,7 +21,7 @@
 static PetscErrorCode StepperCountDirections(const ReducedModel *model, PetscReal tolerance, PetscInt *directions)
 {
   const PetscInt n = 3 * model->n_pairs, m = model->m;
-  PetscReal     *A, largest[2]             = {0, 0};
+  PetscReal      largest[2] = {0, 0}, *A;
   PetscInt      *chosen;
 
   PetscFunctionBeginUser;

@@ -65,13 +65,10 @@ PetscErrorCode MassHasEmptyRows(Mat M, PetscBool *empty)
 
 PetscErrorCode ShiftInvertCountMassless(const PencilMatrices *pencil, PetscReal most, ShiftInvert *si, PetscInt *n)
 {
-  PetscInt  n_null = 1;
-  PetscBool empty;
+  PetscInt n_null = 1;
 
   PetscFunctionBeginUser;
   *n = 0;
-  PetscCall(MassHasEmptyRows(pencil->M, &empty));
-  if (!empty) PetscFunctionReturn(0);
   for (int attempt = 0; attempt < MOVES && n_null; attempt++) {
     most *= 1 + attempt * MASSLESS_AWAY;
     PetscCall(CountPivots(pencil, -most * most, si, n, &n_null));

@@ -120,8 +120,8 @@ PETSC_INTERN PetscErrorCode ShiftInvertRegular(MPI_Comm comm, PetscBool regular,
    PETSC_ERR_MAT_LU_ZRPVT where null pivots stay. */
 PETSC_INTERN PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal away, ShiftInvert *si,
                                                   PetscReal *omega, PetscInt *n);
-/* How many of those belong to no eigenvalue, but to unknowns without mass; with these, and else, 0, also to modes that grow faster than
-   `most`, rad/s */
+/* Where unknowns are without mass: how many of those pivots belong to no mode but to these unknowns, or to a mode that grows
+   faster than `most`, 1/s */
 PETSC_INTERN PetscErrorCode ShiftInvertCountMassless(const PencilMatrices *pencil, PetscReal most, ShiftInvert *si,
                                                      PetscInt *n);
 /* Whether unknowns are without mass: rows of M without an entry that is not zero. Collective. */
