@@ -123,16 +123,16 @@ PetscErrorCode PencilReleaseSymmetric(Pencil pencil, Mat half, PetscReal shift)
   PetscFunctionReturn(0);
 }
 
-/* sum = A + c left' right */
+/* sum, which is empty, = A + c left' right */
 static PetscErrorCode AddFriction(Pencil pencil, PetscReal c, Mat A, TermsSum *sum)
 {
-  Mat friction;
+  OperatorsTerm both[2] = {{.A = A}, {.A = NULL}};
 
   PetscFunctionBeginUser;
-  PetscCall(MatTransposeMatMult(pencil->factor[0], pencil->factor[1], MAT_INITIAL_MATRIX, PETSC_DEFAULT, &friction));
-  PetscCall(MatDuplicate(A, MAT_COPY_VALUES, &sum->A));
-  PetscCall(MatAXPY(sum->A, c, friction, DIFFERENT_NONZERO_PATTERN));
-  PetscCall(MatDestroy(&friction));
+  PetscCall(MatTransposeMatMult(pencil->factor[0], pencil->factor[1], MAT_INITIAL_MATRIX, PETSC_DEFAULT, &both[1].A));
+  PetscCall(TermsSumAdd(&(Terms){2, both}, (PetscReal[]){1, c}, sum));
+  PetscCall(PetscFree(sum->has)); /* of other terms than the pencil's */
+  PetscCall(MatDestroy(&both[1].A));
   PetscFunctionReturn(0);
 }
 

@@ -94,12 +94,14 @@ static PetscErrorCode SumArraysCreate(const Terms *terms, const PetscBool has[],
   PetscFunctionBeginUser;
   PetscCall(SumBound(terms, has, &bound));
   PetscCall(PetscNew(&s));
-  PetscCall(PetscCalloc3(n + 1, &s->ia, bound, &s->ja, bound, &s->a));
+  PetscCall(PetscMalloc3(n + 1, &s->ia, bound, &s->ja, bound, &s->a));
+  s->ia[0] = 0;
   for (PetscInt i = 0; i < n; i++) {
     PetscCall(SumRowUnite(terms, has, first + i, &row));
     PetscCall(PetscArraycpy(&s->ja[s->ia[i]], row.column, row.n));
     s->ia[i + 1] = s->ia[i] + row.n;
   }
+  PetscCall(PetscArrayzero(s->a, s->ia[n])); /* the bound may be far above, and its memory stays untouched */
   PetscCall(SumRowDestroy(&row));
   *arrays = s;
   PetscFunctionReturn(0);
@@ -187,8 +189,7 @@ static PetscErrorCode SumCoverPattern(const Terms *terms, const PetscReal c[], T
   PetscFunctionReturn(0);
 }
 
-/* A = sum_t c_t A_t of the terms in its pattern */
-static PetscErrorCode SumAdd(const Terms *terms, const PetscReal c[], TermsSum *sum)
+PetscErrorCode TermsSumAdd(const Terms *terms, const PetscReal c[], TermsSum *sum)
 {
   PetscFunctionBeginUser;
   PetscCall(SumCoverPattern(terms, c, sum));
@@ -223,7 +224,7 @@ PetscErrorCode TermsSumForm(const Terms *terms, const TermsSumKind *kind, const 
   } else if (all_zero) {
     PetscCall(TermsSumDestroy(sum));
   } else {
-    PetscCall(SumAdd(terms, c, sum));
+    PetscCall(TermsSumAdd(terms, c, sum));
   }
   sum->current = PETSC_TRUE;
   PetscCall(PetscFree(sum->c));

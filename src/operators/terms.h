@@ -46,6 +46,8 @@ PETSC_INTERN PetscErrorCode TermsProduct(PetscReal scale, Mat L, Vec weights, Ma
 /* sum.c - forms a sum at p: values in place where the pattern allows, nothing where the coefficients are the same */
 PETSC_INTERN PetscErrorCode TermsSumForm(const Terms *terms, const TermsSumKind *kind, const PetscReal p[],
                                          TermsSum *sum);
+/* sum = sum_t c_t A_t, c [terms] */
+PETSC_INTERN PetscErrorCode TermsSumAdd(const Terms *terms, const PetscReal c[], TermsSum *sum);
 PETSC_INTERN PetscErrorCode TermsSumDestroy(TermsSum *sum);
 
 /* factors.c - the sum of the unsymmetric stiffness at p as a product, left' right, the pairs of all terms below one
