@@ -265,7 +265,7 @@ PetscErrorCode ModesFind(Modes modes, Window *window, PetscBool *none)
 
   PetscFunctionBeginUser;
   PetscCall(PencilGetMatrices(modes->pencil, &pencil));
-  modes->counter = (ShiftInvert){.progress = &modes->progress, .halves = !pencil.C && !modes->keep};
+  modes->counter = (ShiftInvert){.progress = &modes->progress, .halves = !modes->keep};
   if (modes->has_route && !pencil.C)
     PetscCall(OptionsRefuse(modes->comm, MODES_DAMPING, "not used without damping; leave it out"));
   PetscCall(WindowFind(modes, window));

@@ -24,6 +24,7 @@
 #define PROJECT_RIGHT    1e-14 /* backward errors of settled right and left vectors */
 #define PROJECT_LEFT     1e-11
 #define PROJECT_ROUNDING 10   /* times these, where corrections add nothing to the basis any more */
+#define PROJECT_ROOM     2.5  /* columns of the basis beside undamped vectors */
 #define PROJECT_DISTINCT 1e-9 /* undamped vectors that differ by less are one */
 
 static const char why_whole[]  = "all modes of the system are in the window or next to it"; /* small: said nowhere */
@@ -189,16 +190,20 @@ static PetscErrorCode MapModes(Projection *p, Window *window, const char **why)
   PetscFunctionReturn(0);
 }
 
-/* Undamped vectors in the basis; those of the block stay */
-static PetscErrorCode AddModal(Projection *p, const ModalBlock *modal)
+/* Undamped vectors in the basis, with what damping leaves of their residuals where there are others beyond them. Of each kind
+   of vectors one set is there at a time: new memory costs as much as products with it. */
+static PetscErrorCode AddModal(Projection *p, ModalBlock modal[2])
 {
-  BV block;
+  Modes modes = p->modes;
 
   PetscFunctionBeginUser;
-  PetscCall(BlockCreate(p->V, modal->n, &block));
-  PetscCall(BVCopy(modal->x, block));
-  PetscCall(ProjectionAdd(p, PROJECT_DISTINCT, block));
-  PetscCall(BVDestroy(&block));
+  if (p->reach < PETSC_MAX_REAL) PetscCall(ModalBlocksReduce(p, &modes->right, &modes->left_spectrum, modal));
+  PetscCall(SpectraDestroy(modes));
+  p->room = (PetscInt)(PROJECT_ROOM * (modal[0].n + modal[1].n));
+  for (int side = 0; side < 2 && modal[side].n; side++) {
+    PetscCall(ProjectionAdd(p, PROJECT_DISTINCT, modal[side].x));
+    PetscCall(BVDestroy(&modal[side].x));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -212,14 +217,13 @@ static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window
   PetscFunctionBeginUser;
   p->limit[0] = PROJECT_RIGHT;
   p->limit[1] = PROJECT_LEFT;
-  for (int side = 0; side < 2 && modal[side].n; side++) PetscCall(AddModal(p, &modal[side]));
+  PetscCall(AddModal(p, modal));
   window->beyond = 0;
   if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionMeasureBeyond(p, &window->beyond));
   if (window->beyond > (modes->damping == DAMPING_AUTO ? DAMPING_WEAK : 1)) *why = "damping is strong";
   if (*why) PetscFunctionReturn(0);
-  if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionStart(p, &modes->right, &modes->left_spectrum, modal));
+  if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionStart(p, modal));
   PetscCall(ModalBlocksDestroy(modal)); /* room for what follows */
-  PetscCall(SpectraDestroy(modes));
   PetscCall(Iterate(p, &found, &settled));
   if (settled) PetscCall(PutModes(p, &found));
   window->n_basis = found.size;

@@ -106,33 +106,36 @@ static PetscErrorCode SpectralRadius(PetscInt n, PetscReal H[], PetscReal *radiu
   PetscFunctionReturn(0);
 }
 
-/* A block Krylov space on the complement of V */
+/* A block Krylov space on the complement of V, whose columns stand behind those of V meanwhile */
 typedef struct {
   PetscInt n;
-  BV all, U, images, block; /* V and U side by side; U, orthonormal, n columns; P^-1 R U; what the next step takes in */
+  BV       U, images, block; /* U, orthonormal, n columns; P^-1 R U; what the next step takes in */
 } BeyondSpace;
 
 /* The empty space, with a random block */
 static PetscErrorCode BeyondCreate(const Projection *p, BeyondSpace *s)
 {
+  PetscInt has;
+
   PetscFunctionBeginUser;
   *s = (BeyondSpace){.n = 0};
   PetscCall(BlockCreate(p->V, BEYOND_BLOCK * BEYOND_STEPS, &s->U));
   PetscCall(BlockCreate(p->V, BEYOND_BLOCK * BEYOND_STEPS, &s->images));
-  PetscCall(BVDuplicateResize(p->V, p->k + BEYOND_BLOCK * BEYOND_STEPS, &s->all));
-  PetscCall(BVSetActiveColumns(s->all, 0, p->k));
-  PetscCall(BVCopy(p->V, s->all));
+  PetscCall(BVGetSizes(p->V, NULL, NULL, &has));
+  if (has < p->k + BEYOND_BLOCK * BEYOND_STEPS)
+    PetscCall(BVResize(p->V, p->k + BEYOND_BLOCK * BEYOND_STEPS, PETSC_TRUE));
   PetscCall(BlockCreate(p->V, BEYOND_BLOCK, &s->block));
   PetscCall(SolverSeed(s->block, 1984));
   for (PetscInt j = 0; j < BEYOND_BLOCK; j++) PetscCall(BVSetRandomColumn(s->block, j));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BeyondDestroy(BeyondSpace *s)
+static PetscErrorCode BeyondDestroy(const Projection *p, BeyondSpace *s)
 {
-  BV *const all[] = {&s->all, &s->U, &s->images, &s->block};
+  BV *const all[] = {&s->U, &s->images, &s->block};
 
   PetscFunctionBeginUser;
+  PetscCall(BVSetActiveColumns(p->V, 0, p->k));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(all); i++) PetscCall(BVDestroy(all[i]));
   PetscFunctionReturn(0);
 }
@@ -144,14 +147,14 @@ static PetscErrorCode BeyondStep(const Projection *p, BeyondSpace *s, PetscBool 
   BV       image;
 
   PetscFunctionBeginUser;
-  PetscCall(BlockOrthonormalise(s->all, p->k + s->n, p->pencil->M, 0, s->block));
+  PetscCall(BlockOrthonormalise(p->V, p->k + s->n, p->pencil->M, 0, s->block));
   PetscCall(BVGetActiveColumns(s->block, NULL, &m));
   *grows = m ? PETSC_TRUE : PETSC_FALSE;
   if (!m) PetscFunctionReturn(0);
   PetscCall(BlockCreate(p->V, m, &image));
   PetscCall(BeyondApply(p, s->block, image));
-  PetscCall(BVSetActiveColumns(s->all, p->k + s->n, p->k + s->n + m));
-  PetscCall(BVCopy(s->block, s->all));
+  PetscCall(BVSetActiveColumns(p->V, p->k + s->n, p->k + s->n + m));
+  PetscCall(BVCopy(s->block, p->V));
   PetscCall(BVSetActiveColumns(s->U, s->n, s->n + m));
   PetscCall(BVCopy(s->block, s->U));
   PetscCall(BVSetActiveColumns(s->images, s->n, s->n + m));
@@ -199,6 +202,6 @@ PetscErrorCode ProjectionMeasureBeyond(const Projection *p, PetscReal *rho)
     *rho *= factor;
     if (*rho < BEYOND_CLEAR) break;
   }
-  PetscCall(BeyondDestroy(&space));
+  PetscCall(BeyondDestroy(p, &space));
   PetscFunctionReturn(0);
 }

@@ -7,9 +7,10 @@
 
 /* Undamped vectors of one side as real columns, a complex one as two, with C and M times them; or with C' and M' */
 typedef struct {
-  PetscInt  n;
-  PetscInt *mode; /* [n] whose column it is in the spectrum */
-  BV        x, Cx, Mx;
+  PetscInt   n;
+  PetscInt  *mode; /* [n] whose column it is in the spectrum */
+  BV         x, Cx, Mx;
+  PetscReal *tolerance; /* what may remain of the columns of Cx, once they are what damping leaves of residuals */
 } ModalBlock;
 
 /* One real basis V for right and left vectors, orthonormal in M, and the dense model on it */
@@ -26,7 +27,7 @@ typedef struct {
   PetscReal             limit[2];    /* backward errors of settled right and left vectors */
   BV                    V;
   BV                    pairs[2]; /* left V, right V where there is `spread` */
-  PetscInt              k;        /* columns of V */
+  PetscInt              k, room;  /* columns of V; for how many there is to be room at least */
   PetscReal            *K, *C;    /* V'KV, V'CV [k * k], column-major */
 } Projection;
 
@@ -64,10 +65,12 @@ PETSC_INTERN PetscErrorCode ProjectionDestroy(Projection *p);
 PETSC_INTERN PetscErrorCode ModalBlocksCreate(const Projection *p, const Spectrum *right, const Spectrum *left,
                                               ModalBlock modal[2]);
 PETSC_INTERN PetscErrorCode ModalBlocksDestroy(ModalBlock modal[2]);
-/* Adds to the basis P^-1 r of right vectors of the window and P^-T s of left ones, r and s what damping of first order
-   leaves of their residuals; C x of the blocks is overwritten */
-PETSC_INTERN PetscErrorCode ProjectionStart(Projection *p, const Spectrum *right, const Spectrum *left,
-                                            ModalBlock modal[2]);
+/* In place of C x what damping of first order leaves of the residuals of vectors of the window, r of right and s of left ones;
+   M x is destroyed */
+PETSC_INTERN PetscErrorCode ModalBlocksReduce(const Projection *p, const Spectrum *right, const Spectrum *left,
+                                              ModalBlock modal[2]);
+/* Adds P^-1 r and P^-T s of them to the basis; they are overwritten */
+PETSC_INTERN PetscErrorCode ProjectionStart(Projection *p, ModalBlock modal[2]);
 
 /* projectfit.c - alpha and beta; exact where R x vanishes for all vectors of the window */
 PETSC_INTERN PetscErrorCode ProjectionFit(Projection *p, const Spectrum *right, const ModalBlock modal[2]);

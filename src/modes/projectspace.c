@@ -6,6 +6,7 @@
 #include "solver/orthonormal.h"
 
 #define SPACE_SYMMETRIC 1e-13 /* of |A x| |y|: less is rounding */
+#define SPACE_WIDTH     16    /* columns that are multiplied at once */
 
 /* Whether A is symmetric, by y'A x = x'A y of two random vectors */
 static PetscErrorCode LooksSymmetric(Mat A, PetscBool *symmetric)
@@ -83,13 +84,13 @@ PetscErrorCode ProjectionCreate(Modes modes, const PencilMatrices *pencil, const
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ProjectionAddFriction(const Projection *p, Mat X, Mat Y)
+/* The same for a few columns */
+static PetscErrorCode AddFrictionPart(const Projection *p, Mat X, Mat Y)
 {
   PetscInt n_local, m;
   Mat      forces, gaps;
 
   PetscFunctionBeginUser;
-  if (!p->spread) PetscFunctionReturn(0);
   PetscCall(MatGetLocalSize(p->pencil->left, &n_local, NULL));
   PetscCall(MatGetSize(X, NULL, &m));
   PetscCall(MatCreateDense(p->modes->comm, n_local, PETSC_DECIDE, PETSC_DETERMINE, m, NULL, &gaps));
@@ -99,6 +100,26 @@ PetscErrorCode ProjectionAddFriction(const Projection *p, Mat X, Mat Y)
   PetscCall(MatAXPY(Y, 1, forces, SAME_NONZERO_PATTERN));
   PetscCall(MatDestroy(&gaps));
   PetscCall(MatDestroy(&forces));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ProjectionAddFriction(const Projection *p, Mat X, Mat Y)
+{
+  PetscInt m;
+
+  PetscFunctionBeginUser;
+  if (!p->spread) PetscFunctionReturn(0);
+  PetscCall(MatGetSize(X, NULL, &m));
+  for (PetscInt first = 0; first < m; first += SPACE_WIDTH) {
+    const PetscInt end = PetscMin(first + SPACE_WIDTH, m);
+    Mat            x, y;
+
+    PetscCall(MatDenseGetSubMatrix(X, PETSC_DECIDE, PETSC_DECIDE, first, end, &x));
+    PetscCall(MatDenseGetSubMatrix(Y, PETSC_DECIDE, PETSC_DECIDE, first, end, &y));
+    PetscCall(AddFrictionPart(p, x, y));
+    PetscCall(MatDenseRestoreSubMatrix(Y, &y));
+    PetscCall(MatDenseRestoreSubMatrix(X, &x));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -116,14 +137,16 @@ PetscErrorCode ProjectionMultiply(const Projection *p, Mat A, BV X, BV Y)
   PetscFunctionReturn(0);
 }
 
-/* The columns of the block behind the first ones of V */
-static PetscErrorCode BasisAppend(PetscInt first, BV block, BV V)
+/* The columns of the block behind the first ones of V, which gets room for `room` columns or a quarter more than it needs: a
+   longer basis is a copy of it */
+static PetscErrorCode BasisAppend(PetscInt first, PetscInt room, BV block, BV V)
 {
-  PetscInt n;
+  PetscInt n, has;
 
   PetscFunctionBeginUser;
   PetscCall(BVGetActiveColumns(block, NULL, &n));
-  PetscCall(BVResize(V, first + n, PETSC_TRUE));
+  PetscCall(BVGetSizes(V, NULL, NULL, &has));
+  if (first + n > has) PetscCall(BVResize(V, PetscMax(room, first + n + (first ? (first + n) / 4 : 0)), PETSC_TRUE));
   PetscCall(BVSetActiveColumns(V, first, first + n));
   PetscCall(BVCopy(block, V));
   PetscCall(BVSetActiveColumns(V, 0, first + n));
@@ -143,7 +166,7 @@ static PetscErrorCode PairsExtend(Projection *p, PetscInt first, BV block, Petsc
   for (int i = 0; i < 2; i++) {
     PetscCall(BlockCreate(p->pairs[i], n, &images[i]));
     PetscCall(ProjectionMultiply(p, sides[i], block, images[i]));
-    PetscCall(BasisAppend(first, images[i], p->pairs[i]));
+    PetscCall(BasisAppend(first, p->room, images[i], p->pairs[i]));
   }
   PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, p->k, n, H, &sum));
   for (int i = 0; i < 2; i++) {
@@ -169,36 +192,63 @@ static PetscErrorCode ModelFill(const Projection *p, PetscBool rows, PetscInt n,
   PetscFunctionReturn(0);
 }
 
-/* V'KV and V'CV, extended by the block: its products with all matrices at once, of which friction of pairs needs one less */
+/* V' A W for SPACE_WIDTH columns of the block W from `first` on and m matrices: h[m][columns of W][k], of which those */
+static PetscErrorCode ModelsMultiply(const Projection *p, PetscInt m, const Mat A[], PetscInt first, BV block,
+                                     PetscScalar h[])
+{
+  PetscInt columns, n;
+  BV       images;
+  Mat      H;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetActiveColumns(block, NULL, &columns));
+  n = PetscMin(SPACE_WIDTH, columns - first);
+  PetscCall(BlockCreate(p->V, n * m, &images));
+  PetscCall(BVSetActiveColumns(block, first, first + n));
+  for (PetscInt i = 0; i < m; i++) {
+    PetscCall(BVSetActiveColumns(images, i * n, (i + 1) * n));
+    PetscCall(ProjectionMultiply(p, A[i], block, images));
+  }
+  PetscCall(BVSetActiveColumns(block, 0, columns));
+  PetscCall(BVSetActiveColumns(images, 0, n * m));
+  PetscCall(BlockProducts(p->V, NULL, images, &H));
+  for (PetscInt i = 0; i < m; i++) {
+    Mat part;
+
+    PetscCall(MatDenseGetSubMatrix(H, PETSC_DECIDE, PETSC_DECIDE, i * n, (i + 1) * n, &part));
+    PetscCall(BlockCopy(part, PETSC_FALSE, p->k, &h[(i * columns + first) * p->k]));
+    PetscCall(MatDenseRestoreSubMatrix(H, &part));
+  }
+  PetscCall(MatDestroy(&H));
+  PetscCall(BVDestroy(&images));
+  PetscFunctionReturn(0);
+}
+
+/* V'KV and V'CV, extended by the block: its products with all matrices, of which friction of pairs needs one less */
 static PetscErrorCode ModelsExtend(Projection *p, PetscInt first, BV block)
 {
   const Mat    A[4]     = {p->pencil->K, p->pencil->C, p->transposed[0], p->transposed[1]};
   PetscReal  **model[2] = {&p->K, &p->C};
   PetscInt     n, m = 0, at[4] = {0};
   PetscScalar *h;
-  BV           images;
-  Mat          H;
+  Mat          needed[4];
 
   PetscFunctionBeginUser;
   PetscCall(BVGetActiveColumns(block, NULL, &n));
-  for (int i = 0; i < 4; i++) at[i] = i < 2 || (A[i] != A[i - 2] && (i == 3 || !p->spread)) ? n * m++ : at[i - 2];
-  PetscCall(BlockCreate(p->V, n * m, &images));
   for (int i = 0; i < 4; i++) {
-    if (i >= 2 && at[i] == at[i - 2]) continue;
-    PetscCall(BVSetActiveColumns(images, at[i], at[i] + n));
-    PetscCall(ProjectionMultiply(p, A[i], block, images));
+    const PetscBool one = i < 2 || (A[i] != A[i - 2] && (i == 3 || !p->spread)) ? PETSC_TRUE : PETSC_FALSE;
+
+    at[i] = one ? n * m : at[i - 2];
+    if (one) needed[m++] = A[i];
   }
-  PetscCall(BVSetActiveColumns(images, 0, n * m));
-  PetscCall(BlockProducts(p->V, NULL, images, &H));
-  PetscCall(BVDestroy(&images));
-  PetscCall(MatDenseGetArray(H, &h));
+  PetscCall(PetscMalloc1(m * n * p->k, &h));
+  for (PetscInt j = 0; j < n; j += SPACE_WIDTH) PetscCall(ModelsMultiply(p, m, needed, j, block, h));
   for (int i = 0; i < 4; i++) {
     if (i < 2) PetscCall(BlockGrow(first, p->k, model[i]));
     if (i == 2 && p->spread) PetscCall(PairsExtend(p, first, block, &h[at[i] * p->k]));
     PetscCall(ModelFill(p, i < 2 ? PETSC_FALSE : PETSC_TRUE, n, &h[at[i] * p->k], *model[i % 2]));
   }
-  PetscCall(MatDenseRestoreArray(H, &h));
-  PetscCall(MatDestroy(&H));
+  PetscCall(PetscFree(h));
   PetscFunctionReturn(0);
 }
 
@@ -219,7 +269,7 @@ PetscErrorCode ProjectionAdd(Projection *p, PetscReal drop, BV block)
   PetscCall(BVGetActiveColumns(block, NULL, &n));
   if (n) {
     p->k = first + n;
-    PetscCall(BasisAppend(first, block, p->V));
+    PetscCall(BasisAppend(first, p->room, block, p->V));
     PetscCall(ModelsExtend(p, first, block));
   }
   PetscCall(EventEnd(EVENT_ORTHOGONALISE));

@@ -64,6 +64,7 @@ PetscErrorCode ModalBlocksDestroy(ModalBlock modal[2])
   for (int side = 0; side < 2; side++) {
     modal[side].n = 0;
     PetscCall(PetscFree(modal[side].mode));
+    PetscCall(PetscFree(modal[side].tolerance));
     PetscCall(BVDestroy(&modal[side].x));
     PetscCall(BVDestroy(&modal[side].Cx));
     PetscCall(BVDestroy(&modal[side].Mx));
@@ -107,10 +108,10 @@ static PetscBool StartsWith(const Projection *p, PetscReal omega)
 }
 
 /* Leaves the residuals of modes in the window, with what may remain of them */
-static PetscErrorCode RestChoose(const Projection *p, PetscBool left, const Spectrum *s, ModalBlock *b,
-                                 PetscReal tolerance[])
+static PetscErrorCode RestChoose(const Projection *p, PetscBool left, const Spectrum *s, ModalBlock *b)
 {
-  PetscInt n = 0;
+  PetscReal *const tolerance = b->tolerance;
+  PetscInt         n         = 0;
 
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < b->n; j++) {
@@ -129,21 +130,28 @@ static PetscErrorCode RestChoose(const Projection *p, PetscBool left, const Spec
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ProjectionStart(Projection *p, const Spectrum *right, const Spectrum *left, ModalBlock modal[2])
+PetscErrorCode ModalBlocksReduce(const Projection *p, const Spectrum *right, const Spectrum *left, ModalBlock modal[2])
 {
   const Spectrum *const spectrum[2] = {right, left};
   const PetscBool       paired      = modal[0].n == modal[1].n ? PETSC_TRUE : PETSC_FALSE;
-  PetscReal            *tolerance[2];
 
   PetscFunctionBeginUser;
-  PetscCall(EventBegin(EVENT_CORRECT));
-  for (int side = 0; side < 2; side++) PetscCall(PetscMalloc1(modal[side].n, &tolerance[side]));
   for (int side = 0; side < 2 && modal[side].n; side++)
     PetscCall(RestMake(p, modal[paired ? 1 - side : side].x, &modal[side]));
-  for (int side = 0; side < 2 && modal[side].n; side++)
-    PetscCall(RestChoose(p, side ? PETSC_TRUE : PETSC_FALSE, spectrum[side], &modal[side], tolerance[side]));
-  PetscCall(ProjectionExtend(p, (BV[]){modal[0].Cx, modal[1].Cx}, tolerance, NULL));
-  for (int side = 0; side < 2; side++) PetscCall(PetscFree(tolerance[side]));
+  for (int side = 0; side < 2 && modal[side].n; side++) {
+    PetscCall(BVDestroy(&modal[side].Mx));
+    PetscCall(PetscMalloc1(modal[side].n, &modal[side].tolerance));
+    PetscCall(RestChoose(p, side ? PETSC_TRUE : PETSC_FALSE, spectrum[side], &modal[side]));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ProjectionStart(Projection *p, ModalBlock modal[2])
+{
+  PetscFunctionBeginUser;
+  PetscCall(EventBegin(EVENT_CORRECT));
+  PetscCall(ProjectionExtend(p, (BV[]){modal[0].Cx, modal[1].Cx},
+                             (PetscReal *[]){modal[0].tolerance, modal[1].tolerance}, NULL));
   PetscCall(EventEnd(EVENT_CORRECT));
   PetscFunctionReturn(0);
 }

@@ -54,7 +54,7 @@ static PetscErrorCode ShiftInvertHalf(const ShiftInvert *si, const PencilMatrice
     {"-pc_factor_mat_solver_type", MATSOLVERMUMPS}
   };
   const Mat K    = ShiftInvertStiffness(si, pencil);
-  PetscBool fits = si->even && si->halves ? PETSC_TRUE : PETSC_FALSE, is, said;
+  PetscBool fits = si->even && si->halves && !pencil->C ? PETSC_TRUE : PETSC_FALSE, is, said;
   char      value[64];
 
   PetscFunctionBeginUser;
