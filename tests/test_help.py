@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
 """What squeal says of itself before it computes: -h, --help, -version, --version, -help, no arguments, typing errors.
 Breaks when PETSc's own help or version shows instead, when a rank more than the first answers, when a pipe that is
-closed early makes a trace, or when a typing error prints more than one line.
+closed early makes a trace, when a typing error prints more than one line, or when slow kernels of the BLAS
+are not told.
 
     test_help.py SQUEAL MPIRUN"""
 
+import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -35,9 +38,14 @@ class Asker:
     def __init__(self, squeal, mpirun, folder):
         self.squeal, self.mpirun, self.folder, self.faults = squeal, mpirun, folder, []
 
-    def ask(self, *options, ranks=None):
+    def ask(self, *options, ranks=None, kernels=None):
         launch = [self.mpirun, "-n", str(ranks)] if ranks else []
-        return subprocess.run([*launch, self.squeal, *options], capture_output=True, text=True, cwd=self.folder)
+        environment = dict(os.environ)
+        if kernels is not None:
+            environment.pop("OPENBLAS_CORETYPE", None)
+        if kernels:
+            environment["OPENBLAS_CORETYPE"] = kernels
+        return subprocess.run([*launch, self.squeal, *options], capture_output=True, text=True, cwd=self.folder, env=environment)
 
     def check(self, holds, what, done):
         print("ok  " if holds else "FAIL", what)
@@ -62,6 +70,20 @@ def check_short(a):
     done = a.ask()
     a.check(done.returncode == 1 and done.stdout.startswith(first) and done.stdout.count("\n") < 10, "no arguments: usage", done)
     a.check(done.stderr.count("\n") == 1, "no arguments: one line of error", done)
+
+
+def check_kernels(a):
+    """The kernels of OpenBLAS are those that it is told to take. Where it chooses old ones by itself, -squeal_view and
+    scripts/setup.sh, which look at the processor each in its own way, advise the same."""
+    done = a.ask("--version", kernels="Nehalem")
+    a.check("OpenBLAS" not in done.stdout or re.search(r"OpenBLAS [\d.]+ \(Nehalem\)", done.stdout), "kernels are told", done)
+    done = a.ask(*SCENE, "-squeal_view", "-output_dir", "out", kernels="")
+    advised = re.search(r"runs old kernels; OPENBLAS_CORETYPE=(\w+)", done.stdout)
+    choose = 'source "$0"; unset OPENBLAS_CORETYPE; build=$1; check_blas 2>/dev/null; echo "${OPENBLAS_CORETYPE-}"'
+    chosen = subprocess.run(["bash", "-c", choose, SOURCE / "scripts/setup.sh", a.squeal.parent], capture_output=True, text=True)
+    a.check(done.returncode == 0 and chosen.stdout.split() == (list(advised.groups()) if advised else []),
+            f"advised {advised and advised[1]}, chosen {chosen.stdout.strip()}", done)
+    shutil.rmtree(a.folder / "out")
 
 
 def check_list(a):
@@ -97,6 +119,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
         a = Asker(squeal, mpirun, Path(folder))
         check_short(a)
+        check_kernels(a)
         check_list(a)
         check_typos(a)
         left = [path.name for path in a.folder.iterdir()]

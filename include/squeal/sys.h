@@ -21,10 +21,11 @@ typedef enum {
 
 /* Versions of the program and of what it stands on */
 typedef struct {
-  char squeal[32], petsc[32], slepc[32], mumps[32], mpi[MPI_MAX_LIBRARY_VERSION_STRING];
+  char squeal[32], petsc[32], slepc[32], mumps[32], blas[64], mpi[MPI_MAX_LIBRARY_VERSION_STRING];
 } SquealVersions;
 
-/*@ SquealGetVersions - e.g. "3.18.5". Not collective; MPI must be up. @*/
+/*@ SquealGetVersions - e.g. "3.18.5"; of OpenBLAS also its kernels, by which results differ in rounding. Not collective; MPI
+    must be up. @*/
 void SquealGetVersions(SquealVersions *versions);
 
 /*@

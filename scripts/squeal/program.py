@@ -21,14 +21,19 @@ def called(script):
 
 
 def compiled_program():
-    """Sets up and compiles as scripts/run does; of an installed script the program of the same prefix."""
+    """Sets up and compiles as scripts/run does, with the kernels of OpenBLAS that it chooses; of an installed script the
+    program of the same prefix."""
     if not (ROOT / "meson.build").is_file():
         return ROOT.parents[1] / "bin/squeal"
-    command = ["bash", "-c", 'source "$0" && set_up squeal >&2 && echo "$build/squeal"', ROOT / "scripts/setup.sh"]
+    command = ["bash", "-c", 'source "$0" && set_up squeal >&2 && echo "$build/squeal" && echo "${OPENBLAS_CORETYPE-}"',
+               ROOT / "scripts/setup.sh"]
     process = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
     if process.returncode:
         raise SystemExit(process.returncode)
-    return Path(process.stdout.strip())
+    program, kernels = process.stdout.splitlines()
+    if kernels:
+        os.environ["OPENBLAS_CORETYPE"] = kernels
+    return Path(program)
 
 
 def chosen_program(path):

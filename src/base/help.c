@@ -6,6 +6,7 @@
    for that time.
 */
 #include "help.h"
+#include "blas.h"
 #include <squeal/sys.h>
 #include <slepcsys.h>
 #include <stdarg.h>
@@ -68,6 +69,7 @@ void SquealGetVersions(SquealVersions *versions)
 #else
   (void)snprintf(versions->mumps, sizeof(versions->mumps), "of PETSc");
 #endif
+  BlasGetName(sizeof(versions->blas), versions->blas);
   (void)MPI_Get_library_version(versions->mpi, &length);
   versions->mpi[strcspn(versions->mpi, ",\n")] = '\0';
 }
@@ -89,7 +91,8 @@ PetscBool HelpAnswer(int argc, char *const argv[])
   if (brief)
     printf("%s%s", usage, most_used);
   else
-    printf("PETSc %s, SLEPc %s, MUMPS %s, %s\n", versions.petsc, versions.slepc, versions.mumps, versions.mpi);
+    printf("PETSc %s, SLEPc %s, MUMPS %s, %s, %s\n", versions.petsc, versions.slepc, versions.mumps, versions.blas,
+           versions.mpi);
   return PETSC_TRUE;
 }
 

@@ -7,6 +7,7 @@
 */
 #include <squeal/sys.h>
 #include <squeal/options.h>
+#include "blas.h"
 #include "events.h"
 #include "help.h"
 #include "interrupt.h"
@@ -191,6 +192,22 @@ PetscErrorCode SquealGetPeak(MPI_Comm comm, double *megabytes)
   PetscFunctionReturn(0);
 }
 
+/* Where the BLAS is slow by choice of its own */
+static PetscErrorCode ViewKernels(PetscViewer viewer)
+{
+  const char *better = BlasBetterKernels();
+  char        name[64];
+
+  PetscFunctionBeginUser;
+  if (!better) PetscFunctionReturn(0);
+  BlasGetName(sizeof(name), name);
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "%s does not know this processor and runs old kernels; OPENBLAS_CORETYPE=%s in the "
+                                   "environment is several times as fast\n",
+                                   name, better));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SquealViewStages(MPI_Comm comm, PetscViewer viewer)
 {
   SquealStageCost cost[SQUEAL_N_STAGES];
@@ -205,6 +222,7 @@ PetscErrorCode SquealViewStages(MPI_Comm comm, PetscViewer viewer)
       PetscViewerASCIIPrintf(viewer, "%-10s %7.2f   %9.0f\n", cost[s].name, cost[s].seconds, cost[s].megabytes));
   PetscCall(SquealGetPeak(comm, &peak));
   PetscCall(PetscViewerASCIIPrintf(viewer, "the most at any time %10.0f\n", peak));
+  PetscCall(ViewKernels(viewer));
   PetscFunctionReturn(0);
 }
 

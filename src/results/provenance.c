@@ -213,8 +213,8 @@ static PetscErrorCode ScenePrintCost(Results results, PetscBool ended, OutFile *
   PetscCallMPI(MPI_Comm_size(results->comm, &size));
   PetscCall(SceneGetCost(results, &seconds, &megabytes));
   if (ended) (void)strftime(date, sizeof(date), "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));
-  PetscCall(OutFilePrint(file, "# versions: squeal %s, PETSc %s, SLEPc %s, MUMPS %s, %s\n", v.squeal, v.petsc, v.slepc,
-                         v.mumps, v.mpi));
+  PetscCall(OutFilePrint(file, "# versions: squeal %s, PETSc %s, SLEPc %s, MUMPS %s, %s, %s\n", v.squeal, v.petsc,
+                         v.slepc, v.mumps, v.blas, v.mpi));
   PetscCall(OutFilePrint(file, "# cost: %d rank%s, %.1f s, %.0f MB at most\n# end: %s\n", size, size == 1 ? "" : "s",
                          seconds, megabytes, date));
   PetscFunctionReturn(0);
