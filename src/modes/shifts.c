@@ -12,6 +12,8 @@
 
 #define SHIFTS_STRIP 1e-3 /* relative half width of the strip about a seam */
 #define SHIFTS_MODES 300  /* modes from which orthogonalisation costs more than another factorisation saves */
+#define SHIFTS_EACH  2.2  /* right-hand sides for each mode of a band, as right or as left vector, */
+#define SHIFTS_FIRST 45   /* and for all of them, as counted with 10 and with 51 modes */
 
 PetscErrorCode ShiftsSetFromOptions(Modes modes, OptionsItems PetscOptionsObject)
 {
@@ -193,6 +195,13 @@ static PetscErrorCode ShiftsShare(Modes modes, const PencilMatrices *pencil, Win
   PetscFunctionReturn(0);
 }
 
+/* Right-hand sides that the modes of a window take about one shift; 0: not known */
+static double ShiftsSolves(Modes modes, const Window *window)
+{
+  if (modes->keep || window->expected <= 0) return 0;
+  return (modes->left ? 2 : 1) * (SHIFTS_EACH * (double)window->expected + SHIFTS_FIRST);
+}
+
 /* All modes of the window about one shift; after it the matrices of the pencil are to be got again */
 static PetscErrorCode ShiftsSolveOne(Modes modes, const PencilMatrices *pencil, PetscReal shift, Window *window,
                                      ShiftInvert *si)
@@ -201,6 +210,7 @@ static PetscErrorCode ShiftsSolveOne(Modes modes, const PencilMatrices *pencil, 
   Mat            K;
 
   PetscFunctionBeginUser;
+  modes->counter.solves = ShiftsSolves(modes, window);
   PetscCall(ModesFactor(modes, pencil, shift, modes->keep ? RELEASE_NOTHING : RELEASE_PENCIL, si));
   MemoryReturn(); /* what the update took, before there are spaces of vectors */
   K = si->product;

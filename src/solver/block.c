@@ -106,17 +106,6 @@ static PetscErrorCode BlockGetFactor(KSP ksp, Mat *F)
   PetscFunctionReturn(0);
 }
 
-/* X = A^-1 B by the solver of the matrix that is factored */
-static PetscErrorCode BlockSolve(KSP ksp, PetscBool transposed, Mat B, Mat X)
-{
-  Mat F;
-
-  PetscFunctionBeginUser;
-  PetscCall(BlockGetFactor(ksp, &F));
-  PetscCall(F ? BlockApplyFactor(F, transposed, B, X) : BlockApplyColumns(ksp, transposed, B, X));
-  PetscFunctionReturn(0);
-}
-
 /* Whether factors are those of MUMPS */
 static PetscErrorCode BlockIsMumps(Mat F, PetscBool *is_mumps)
 {
@@ -130,6 +119,25 @@ static PetscErrorCode BlockIsMumps(Mat F, PetscBool *is_mumps)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ShiftInvertGetFactors(KSP ksp, Mat *F, PetscBool *is_mumps)
+{
+  PetscFunctionBeginUser;
+  PetscCall(BlockGetFactor(ksp, F));
+  PetscCall(BlockIsMumps(*F, is_mumps));
+  PetscFunctionReturn(0);
+}
+
+/* X = A^-1 B by the solver of the matrix that is factored */
+static PetscErrorCode BlockSolve(KSP ksp, PetscBool transposed, Mat B, Mat X)
+{
+  Mat F;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlockGetFactor(ksp, &F));
+  PetscCall(F ? BlockApplyFactor(F, transposed, B, X) : BlockApplyColumns(ksp, transposed, B, X));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ShiftInvertSolvesRows(KSP ksp, PetscBool *solves)
 {
   PetscMPIInt size;
@@ -138,8 +146,7 @@ PetscErrorCode ShiftInvertSolvesRows(KSP ksp, PetscBool *solves)
   PetscFunctionBeginUser;
   *solves = PETSC_FALSE;
   PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)ksp), &size));
-  PetscCall(BlockGetFactor(ksp, &F));
-  if (size == 1) PetscCall(BlockIsMumps(F, solves));
+  if (size == 1) PetscCall(ShiftInvertGetFactors(ksp, &F, solves));
   PetscFunctionReturn(0);
 }
 

@@ -182,10 +182,24 @@ static PetscErrorCode LowRankExtend(LowRank *u, PetscInt first, PetscInt m, Pets
   PetscFunctionReturn(0);
 }
 
+/* Y where it is kept, and C, by solves */
+static PetscErrorCode LowRankSolveAll(LowRank *u, PetscInt n)
+{
+  const PetscInt block = PetscMin(u->p, PetscMax(LOWRANK_FEW, PetscMin(LOWRANK_BLOCK, LOWRANK_ROOM / n)));
+  PetscScalar   *c;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(u->p * block, &c));
+  for (PetscInt first = 0; first < u->p; first += block)
+    PetscCall(LowRankExtend(u, first, PetscMin(block, u->p - first), c));
+  PetscCall(PetscFree(c));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LowRankSetUp(Mat L, Mat R, PetscBool store, LowRank *u, PetscBool *singular)
 {
-  PetscScalar *c;
-  PetscInt     n, block;
+  PetscInt  n;
+  PetscBool made = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   u->L = L;
@@ -194,14 +208,11 @@ PetscErrorCode LowRankSetUp(Mat L, Mat R, PetscBool store, LowRank *u, PetscBool
   PetscCall(PetscObjectReference((PetscObject)L));
   PetscCall(PetscObjectReference((PetscObject)R));
   PetscCall(MatGetSize(L, &u->p, &n));
-  block = PetscMin(u->p, PetscMax(LOWRANK_FEW, PetscMin(LOWRANK_BLOCK, LOWRANK_ROOM / n)));
   if (store) PetscCall(DenseLike(R, PETSC_FALSE, u->p, &u->Y));
   PetscCall(PetscMalloc1(u->p * u->p, &u->C));
   PetscCall(PetscMalloc1(u->p, &u->pivot));
-  PetscCall(PetscMalloc1(u->p * block, &c));
-  for (PetscInt first = 0; first < u->p; first += block)
-    PetscCall(LowRankExtend(u, first, PetscMin(block, u->p - first), c));
-  PetscCall(PetscFree(c));
+  if (!store) PetscCall(LowRankCapacitance(u, &made));
+  if (!made) PetscCall(LowRankSolveAll(u, n));
   PetscCall(DenseFactor(u->p, u->C, u->pivot, singular));
   PetscFunctionReturn(0);
 }

@@ -15,6 +15,7 @@
 #define UPDATE_ROOM  0.8  /* of the memory that is free: vectors that take more beside the factors are not kept */
 #define UPDATE_SLOW  1.5  /* flops of the solves that make it beside those that LU takes more: LU from here on */
 #define UPDATE_DENSE 700  /* flops of LDL' per entry; from here on they run faster than a solve's, as the root of this */
+#define UPDATE_KEPT  2.5  /* pairs for each right-hand side that is expected: more vectors cost more than they save */
 #define UPDATE_SHARE 0.75 /* of the entries of LDL': vectors of an update that take no more are kept */
 
 PetscErrorCode ShiftInvertRegular(MPI_Comm comm, PetscBool regular, PetscReal shift)
@@ -105,6 +106,7 @@ static PetscErrorCode ShiftInvertChoose(const PencilMatrices *pencil, ShiftInver
     PetscCall(MatGetSize(pencil->left, &p, &n));
     PetscCall(UpdateFits(pencil, si, n, p, store));
     si->why = UpdateIsWorse(&si->cost, p, *store);
+    if (si->solves > 0 && p > UPDATE_KEPT * si->solves) *store = PETSC_FALSE;
   }
   if (pencil->prefers_even) si->why = NULL;
   if (si->why) si->even = *store = PETSC_FALSE;
@@ -122,12 +124,14 @@ static PetscErrorCode UpdateDestroy(ShiftInvert *si)
 /* Friction on the factors of the symmetric part */
 static PetscErrorCode UpdateCreate(const PencilMatrices *pencil, PetscBool store, ShiftInvert *si, PetscBool *singular)
 {
-  PetscBool rows;
+  PetscBool rows, inverse;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, &si->update));
   PetscCall(ShiftInvertSolvesRows(si->ksp, &rows));
+  PetscCall(ShiftInvertGivesInverse(si->ksp, &inverse));
   if (rows) si->update->solve_rows = ShiftInvertApplyRows;
+  if (inverse) si->update->inverse = ShiftInvertGetInverse;
   si->update->solve = ShiftInvertApplyFactors;
   si->update->ctx   = si->ksp;
   PetscCall(LowRankSetUp(pencil->left, pencil->right, store, si->update, singular));

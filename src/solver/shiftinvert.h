@@ -16,6 +16,7 @@ typedef struct {
 } FactorCost;
 
 struct LowRank; /* lowrank.h */
+struct InverseBlock;
 
 /* What need not stay once it is factored (release.c): nothing, where another shift will be asked for; the symmetric matrix
    that MUMPS has a copy of; K and K_even of the pencil too */
@@ -36,6 +37,7 @@ typedef struct ShiftInvert {
   Mat       product;         /* what makes products with K then, where the half that is factored is left alone; else NULL */
   PetscBool even;            /* the matrix that is factored is symmetric: LDL' */
   PetscBool halves;          /* its upper half will do, on one rank */
+  double    solves;          /* right-hand sides that are expected; 0: not known */
   PetscInt  workspace;       /* of MUMPS beyond its estimate, percent; 0: its own choice, which is raised where it fails */
   Mat       term[3];         /* K, C, M of it */
   PetscObjectState pattern[3], values[3]; /* of those */
@@ -103,6 +105,11 @@ PETSC_INTERN PetscErrorCode ShiftInvertApplyFactors(void *ctx, Mat X);
    it wants all of them on the first) */
 PETSC_INTERN PetscErrorCode ShiftInvertSolvesRows(KSP ksp, PetscBool *solves);
 PETSC_INTERN PetscErrorCode ShiftInvertApplyRows(void *ctx, Mat rows, Mat X);
+/* The factors that a solver works with, NULL where it is another solver, and whether they are those of MUMPS */
+PETSC_INTERN PetscErrorCode ShiftInvertGetFactors(KSP ksp, Mat *F, PetscBool *is_mumps);
+/* inverse.c - entries of A^-1 by the factors of the symmetric matrix, whether they can be had; ctx is the KSP. Collective. */
+PETSC_INTERN PetscErrorCode ShiftInvertGivesInverse(KSP ksp, PetscBool *gives);
+PETSC_INTERN PetscErrorCode ShiftInvertGetInverse(void *ctx, const struct InverseBlock *block);
 /* trial.c - makes what the solutions with si are checked by, from its matrix and its update */
 PETSC_INTERN PetscErrorCode ShiftInvertMakeTrial(ShiftInvert *si);
 PETSC_INTERN PetscErrorCode ShiftInvertDestroyTrial(ShiftInvert *si);
