@@ -5,6 +5,7 @@ import base64
 import csv
 import json
 import re
+import shutil
 
 import h5py
 import numpy
@@ -167,6 +168,39 @@ def check_static(t, page, key, folder):
     t.check(len(told) == 5 and shown == [float(value) for _, value in told] and shown[0] > 0,
             f"{key}: residuals as squeal prints them: {told} {shown}")
     t.check("10⁻" in facts["forces left over, to the largest"], f"{key}: reactions in balance")
+
+
+def check_words(t, page, key, said):
+    """Sentences about the scene: breaks when a default, such as a pressure of 0, is taken for what the scene gives."""
+    words = [e["text"] for e in page.find("li", inside=f"{key}-scene")]
+    t.check(all(sentence in words for sentence in said), f"{key}: the scene in words: {words}")
+
+
+def check_turned(t, folder):
+    """Pairs that stand in no rows along the axes, those of the static run turned by 10 degrees: breaks when they have no
+    colour, or one of another pair."""
+    turned, angle = t.folder / "turned", numpy.radians(10)
+    shutil.copytree(folder, turned)
+    (turned / "static.h5").unlink()
+    rows = rows_of(folder / "static.csv")
+    for row in rows:
+        x, y = float(row["x_m"]), float(row["y_m"])
+        row["x_m"], row["y_m"] = x * numpy.cos(angle) - y * numpy.sin(angle), x * numpy.sin(angle) + y * numpy.cos(angle)
+    with open(turned / "static.csv", "w", newline="", encoding="utf-8") as file:
+        table = csv.DictWriter(file, rows[0])
+        table.writeheader()
+        table.writerows(rows)
+    page = t.page("turned")
+    straight_cells = [e["style"] for e in first_half(page_cells(t.page(folder.name), "rect"))]
+    patches = first_half(page_cells(page, "path"))
+    told = [e["text"].startswith(f"pair {row['pair']}, ") for e, row in zip(patches, rows)]
+    t.check(len(told) == len(rows) == len(straight_cells) and all(told), f"{len(patches)} areas of {len(rows)} turned pairs")
+    t.check([e["style"].split(";")[0] for e in patches] == straight_cells, "turned pairs have the colours of those in rows")
+
+
+def page_cells(page, kind):
+    """Coloured areas of the pairs."""
+    return [e for e in page.find(kind, inside="r1-contact1-pressure") if e.get("style", "").startswith("fill:")]
 
 
 def check_sweep(t, page, key, folder):

@@ -18,7 +18,8 @@ from brake_results import SOURCE, make_results
 from forked import run_script
 from fuzz.damage import BYTES, LINES
 from report_checks import (check_cost, check_frf, check_map, check_modes, check_shapes, check_static, check_sweep,
-                           check_together, check_transient)
+                           check_together, check_transient, check_turned, check_words)
+from report_vibrations import check_vibrations
 
 LARGEST = 10e6  # bytes
 
@@ -102,7 +103,7 @@ def check_alone(t, page):
     ids = [e["id"] for e in page.elements if e.get("id")]
     t.check(len(ids) == len(set(ids)), "each id stands once")
     for figure in page.find("figure"):
-        picture = [e for e in page.elements if figure["id"] in e["inside"] and e["tag"] in ("svg", "canvas")]
+        picture = [e for e in page.elements if figure["id"] in e["inside"] and e["tag"] in ("svg", "canvas", "img")]
         commands = [e["text"] for e in page.find("code", inside=figure["id"])]
         scripts = [SOURCE / command.split()[0] for command in commands]
         t.check(picture and len(commands) == 1 and scripts[0].exists(), f"{figure['id']} has a picture and its command")
@@ -199,7 +200,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
         t = Test(Path(name))
         make_results(squeal, mpirun, t.folder)
-        names = ("modes", "modes_quiet", "static", "sweep", "transient", "frf", "map")
+        names = ("modes", "modes_quiet", "static", "sweep", "transient", "frf", "map", "vibration", "cycle")
         page = t.page(*names)
         check_alone(t, page)
         for key, folder in (("r1", "modes"), ("r2", "modes_quiet")):
@@ -210,6 +211,10 @@ def main():
         check_transient(t, page, "r5", t.folder / "transient")
         check_frf(t, page, "r6", t.folder / "frf")
         check_map(t, page, "r7", t.folder / "map")
+        check_vibrations(t, page, ("r8", "r9"), [t.folder / name for name in names[-2:]])
+        check_words(t, page, "r3", ("press: −100 N along z in total on beam_top.",
+                                    "hub: disc_inner is held in x, y and z."))
+        check_turned(t, t.folder / "static")
         check_together(t, page, [t.folder / name for name in names])
         for number, name in enumerate(names, 1):
             check_origin(t, page, f"r{number}", t.folder / name)

@@ -127,6 +127,15 @@ class Panel:
 
         self.items.append(draw)
 
+    def patches(self, shapes, colours, tips):
+        """Areas of several polygons [k][2] each."""
+        def ring(place, corners):
+            return path_of(*place(*numpy.transpose(corners))) + "Z"
+
+        self.items.append(lambda place: [
+            titled("path", tip, d="".join(ring(place, corners) for corners in polygons), style=f"fill:{colour};stroke:{colour}")
+            for polygons, colour, tip in zip(shapes, colours, tips) if polygons])
+
     def errors(self, x, y, error, colour):
         """Bars from y - error to y + error."""
         x, y, error = (numpy.asarray(values, float) for values in (x, y, error))

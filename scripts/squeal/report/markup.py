@@ -8,6 +8,7 @@ from typing import Callable, NamedTuple
 from ..picture import MINUS
 
 EMPTY = {"meta", "img", "input", "br", "link"}
+LONG = 60  # letters of a fact that has a line of its own
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -99,7 +100,8 @@ def table(name, columns, rows, mark=lambda row: None, data=lambda row: {}):
 
 def pairs(rows):
     """A list of facts: name and value."""
-    return tag("dl", [tag("div", tag("dt", name), tag("dd", value)) for name, value in rows])
+    return tag("dl", [tag("div", tag("dt", name), tag("dd", value), class_="long" if len(value) > LONG else None)
+                      for name, value in rows])
 
 
 def legend(entries):

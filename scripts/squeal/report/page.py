@@ -13,14 +13,15 @@ from .responses import response_part
 from .statics import static_part
 from .sweeps import sweep_part
 from .transients import transient_part
+from .vibrations import cycle_part, map_part
 
 HERE = Path(__file__).resolve().parent
 LARGEST = 10e6  # bytes of the page
 SHARES = 0.7, 0.35, 0.15, 0.0  # of them for shapes: the first one with which the page is not larger
 TITLES = {"modes": "Modes", "static": "Sliding state", "sweep": "Sweep", "transient": "In time",
-          "frf": "Frequency response"}
+          "frf": "Frequency response", "map": "Map of vibration", "cycle": "Limit cycles"}
 SECTIONS = {"modes": modes_part, "static": static_part, "sweep": sweep_part, "transient": transient_part,
-            "frf": response_part}
+            "frf": response_part, "map": map_part, "cycle": cycle_part}
 
 
 class Opening(NamedTuple):

@@ -7,14 +7,14 @@ import numpy
 from matplotlib.colors import to_hex
 
 from ..bodies import read_states
-from ..static_map import COLOURS
-from ..static_pairs import MM, grid_cells, profile, read_surfaces
+from ..static_map import COLOURS, EMPTY
+from ..static_pairs import MM, SAME, grid_cells, profile, read_surfaces, triangles
 from ..tables import BadInput, read_table
 from .charts import Axis, Chart, Panel
 from .markup import (Column, Markup, Part, count, figure, figures, join, legend, missing, scale, section, table,
                      tag)
 from .shapes import Bodies, Shape, data_script, viewer
-from .words import direction
+from .words import sliding_words
 
 MOST_TIPS = 4000  # pairs that tell their numbers
 REACTIONS = {"name": str, "kind": str, "force_x_n": float, "force_y_n": float, "force_z_n": float}
@@ -58,6 +58,19 @@ def cells_of(surface):
     return limits(cells[0], surface.place[:, 0]), limits(cells[1], surface.place[:, 1])
 
 
+def patches_of(surface):
+    """Polygons [k][2] of the area of each pair where the pairs form no grid: of each triangle between pairs what is nearest
+    to one of its corners."""
+    found = [[] for _ in surface.number]
+    if min(surface.size) > SAME * max(surface.size):
+        for corners in triangles(surface).get_masked_triangles():
+            places = surface.place[corners]
+            for i, pair in enumerate(corners):
+                found[pair].append([places[i], (places[i] + places[i - 2]) / 2, places.mean(axis=0),
+                                    (places[i] + places[i - 1]) / 2])
+    return found
+
+
 def pressure_chart(surface, key):
     """The pairs seen along the normal."""
     (x0, y0), (x1, y1) = surface.limits()
@@ -65,9 +78,11 @@ def pressure_chart(surface, key):
     tips = tips_of(surface) if len(surface.number) <= MOST_TIPS else len(surface.number) * [None]
     cells = cells_of(surface)
     closed = surface.closed
+    colours = [colour if shut else EMPTY for colour, shut in zip(colour_of(surface), closed)]
     if cells:
-        colours = [colour if shut else "#f4f4f4" for colour, shut in zip(colour_of(surface), closed)]
         panel.boxes(*cells, colours, tips)
+    else:
+        panel.patches(patches_of(surface), colours, tips)
     for name, radius, colour in (("open", 4, "dark hollow"), ("slip", 2, "dark"), ("stick", 4, "blue")):
         chosen = numpy.flatnonzero(surface.status == name)
         panel.points(*surface.place[chosen].T, colour, [tips[i] for i in chosen],
@@ -176,11 +191,9 @@ def pair_table(folder, surface, key):
 def surface_figures(folder, surface, number):
     """Map, profile, table of one interface."""
     key, command = f"{folder.key}-contact{number}", folder.command("plot/static")
-    slides = ""
-    if folder.scene and folder.scene.value(f"{surface.name}_slip"):
-        slides = f" The slave slides towards {direction(folder.scene.value(f'{surface.name}_slip'))}."
+    slides = sliding_words(folder.scene, surface.name) if folder.scene else ""
     maps = figure(f"{key}-pressure", f"Pressure {surface.name}".rstrip(), pressure_chart(surface, key),
-                  surface.summary() + "." + slides, command)
+                  f"{surface.summary()}{slides and '; '}{slides}.", command)
     rows = figure(f"{key}-rows", "Rows along the sliding", profile_chart(surface, key),
                   "Friction turns the pad: the leading edge carries more.", command)
     return [tag("div", maps, rows, class_="pair"), pair_table(folder, surface, key)]

@@ -92,16 +92,19 @@ def part_words(scene, name):
             f"ρ = {figures(scene.si('kg/m^3') * scene.number(f'{name}_density'), 6)} kg/m³{''.join(f', {text}' for text in damping)}.")
 
 
-def contact_words(scene, name):
-    """An interface."""
+def sliding_words(scene, name):
+    """How an interface slides; nothing where that is not prescribed."""
     slave, _, master = scene.value(f"{name}_surfaces").partition(",")
     turn, slip = (numbers(scene.value(f"{name}_{key}")) for key in ("rotation", "slip"))
     if any(turn):
-        motion = f"{master} turns with {vector(scene, f'{name}_rotation', 'rad/s')}"
-    elif any(slip):
-        motion = f"{slave} slides towards {direction(scene.value(f'{name}_slip'))}"
-    else:
-        motion = "no sliding is prescribed"
+        return f"{master} turns with {vector(scene, f'{name}_rotation', 'rad/s')}"
+    return f"{slave} slides towards {direction(scene.value(f'{name}_slip'))}" if any(slip) else ""
+
+
+def contact_words(scene, name):
+    """An interface."""
+    slave, _, master = scene.value(f"{name}_surfaces").partition(",")
+    motion = sliding_words(scene, name) or "no sliding is prescribed"
     speed = scene.si("m/s") * scene.number(f"{name}_speed")
     slope = scene.si("s/m") * scene.number(f"{name}_mu_slope")
     law = "exact constraint"
@@ -109,7 +112,7 @@ def contact_words(scene, name):
         kn, area = numbers(scene.value(f"{name}_kn")), scene.si("N/m^3") * scene.number(f"{name}_kn_per_area")
         law = (f"normal stiffness {figures(area, 4)} N/m³" if area else "normal stiffness found by pressing" if not kn else
                f"normal stiffness {quantity(scene.si('N/m') * kn[0], 'N/m')} per pair")
-    if scene.value("analysis", "modes") == "transient":
+    if scene.value("analysis", "modes") in ("transient", "map", "cycle"):
         law = "exact contact in time"
     return (f"{name}: {slave} on {master}, {motion}{f' at {figures(speed, 4)} m/s' if speed else ''}, friction "
             f"coefficient "
@@ -121,9 +124,11 @@ def load_words(scene, name):
     place = f"{scene.value(f'{name}_set') or scene.value(f'{name}_point')}"
     ramp = scene.number(f"{name}_ramp")
     grown = f", within {figures(1e3 * ramp, 4)} ms" if ramp and scene.value("analysis") == "transient" else ""
-    if scene.value(f"{name}_pressure"):
+    if scene.number(f"{name}_pressure"):
         return f"{name}: {quantity(scene.si('Pa') * scene.number(f'{name}_pressure'), 'Pa')} on {place}{grown}."
-    return f"{name}: {vector(scene, f'{name}_force', 'N')} in total on {place}{grown}."
+    moment = numbers(scene.value(f"{name}_moment"))
+    turned = f" and {vector(scene, f'{name}_moment', 'N m')}" if any(moment) else ""
+    return f"{name}: {vector(scene, f'{name}_force', 'N')}{turned} in total on {place}{grown}."
 
 
 LISTS = (
@@ -171,6 +176,10 @@ def analysis_words(scene):
         start = "the sliding state" if scene.value("dynamics_start") == "static" else "rest"
         end = figures(1e3 * scene.number("ts_max_time"), 4)
         return f"Motion in time over {end} ms, from {start}, with exact contact."
+    if kind in ("map", "cycle"):
+        name = "map_parameter" if kind == "map" else "cycle_parameter"
+        over = f" over {listed(scene.names(name))}" if scene.value(name) else ""
+        return f"{'Vibration' if kind == 'map' else 'Limit cycles'}{over}, by motion in time on a few coordinates, with exact contact."
     if kind == "frf":
         return (f"Response to 1 N at {scene.value('frf_force').replace(',', ' along ')}, "
                 f"{range_words(scene.value('frf_frequencies'))}, Hz, about {about}.")
