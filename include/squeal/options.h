@@ -133,6 +133,18 @@ PetscErrorCode OptionsCheckFinite(MPI_Comm comm, const char name[], const char o
                                   const PetscReal value[3]);
 
 /*@
+   OptionsWithValue - names the options that give a value, or a list that holds it, for messages. Not collective.
+
+   Input Parameters:
++  value   - of an option
+-  endings - only options that end so, NULL at the end; NULL: any
+
+   Output Parameter:
+.  text - e.g. "-hub_set", or "-hub_set or -tip_set"; empty for none
+@*/
+PetscErrorCode OptionsWithValue(const char value[], const char *const endings[], char text[], size_t size);
+
+/*@
    OptionsExplainValue - rewrites PETSc's message about a value that is no number, integer or logical so that it names
    the option. Not collective.
 

@@ -31,6 +31,8 @@ PetscErrorCode OptionsCheckArguments(int argc, char *const argv[])
                "'%s' belongs to no option: write -NAME VALUE, where VALUE is one word without spaces, and an options "
                "file as -options_file FILE",
                argv[i]);
+    PetscCheck(!strchr(argv[i], '='), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s: write -NAME VALUE, with a space in place of =", argv[i]);
     PetscCall(ArgumentNamesFile(argv[i], &file, &is_yaml));
     PetscCheck(!file || i + 1 < argc, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s has no value; give a file", argv[i]);
     if (i + 1 == argc) break;

@@ -158,24 +158,44 @@ static PetscBool MessageSplit(const char message[], char value[MAX_NAME], const 
   return PETSC_FALSE;
 }
 
-PetscErrorCode OptionsExplainValue(const char message[], char text[], size_t size)
+/* Whether a name ends in one of the words; in any where there are none */
+static PetscBool NameEnds(const char name[], const char *const endings[])
 {
-  char        value[MAX_NAME], *all, *word, *rest, *name = NULL;
-  const char *wrong;
+  const size_t length = strlen(name);
+
+  for (const char *const *end = endings; end && *end; end++)
+    if (length >= strlen(*end) && !strcasecmp(name + length - strlen(*end), *end)) return PETSC_TRUE;
+  return endings ? PETSC_FALSE : PETSC_TRUE;
+}
+
+PetscErrorCode OptionsWithValue(const char value[], const char *const endings[], char text[], size_t size)
+{
+  char *all, *word, *rest, *name = NULL;
 
   PetscFunctionBeginUser;
   text[0] = '\0';
-  if (!MessageSplit(message, value, &wrong)) PetscFunctionReturn(0);
   PetscCall(PetscOptionsGetAll(NULL, &all));
   for (word = strtok_r(all, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
     if (word[0] == '-' && isalpha((unsigned char)word[1]))
       name = word;
-    else if (name && ListHolds(word, value)) {
+    else if (name && NameEnds(name, endings) && ListHolds(word, value)) {
       PetscCall(PetscStrlcat(text, text[0] ? " or " : "", size));
       PetscCall(PetscStrlcat(text, name, size));
     }
   }
   PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsExplainValue(const char message[], char text[], size_t size)
+{
+  char        value[MAX_NAME];
+  const char *wrong;
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  if (!MessageSplit(message, value, &wrong)) PetscFunctionReturn(0);
+  PetscCall(OptionsWithValue(value, NULL, text, size));
   if (!text[0]) PetscFunctionReturn(0);
   PetscCall(PetscStrlcat(text, ": ", size));
   PetscCall(PetscStrlcat(text, value, size));

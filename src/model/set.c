@@ -3,6 +3,7 @@
    another rank.
 */
 #include "modelimpl.h"
+#include <squeal/options.h>
 #include <petscsf.h>
 
 /* Points of a range, NULL for all, where the label has the value; the caller frees them */
@@ -75,13 +76,16 @@ static PetscErrorCode SetListNames(Model model, PetscBool cells, char list[], si
 
 PetscErrorCode ModelComplainSet(Model model, const char what[], const char name[])
 {
-  char      list[1024];
+  static const char *const of_volumes[] = {"-parts", NULL}, *const of_sets[] = {"_set", "_surfaces", "_a", "_b", NULL};
+  char      list[1024], option[256];
   PetscBool is_volume;
 
   PetscFunctionBeginUser;
   PetscCall(PetscStrcmp(what, "volume", &is_volume));
   PetscCall(SetListNames(model, is_volume, list, sizeof(list)));
-  SETERRQ(model->comm, PETSC_ERR_USER_INPUT, "the mesh has no %s named '%s'; it names: %s", what, name, list);
+  PetscCall(OptionsWithValue(name, is_volume ? of_volumes : of_sets, option, sizeof(option)));
+  SETERRQ(model->comm, PETSC_ERR_USER_INPUT, "%s%sthe mesh has no %s named '%s'; it names: %s", option,
+          option[0] ? ": " : "", what, name, list);
 }
 
 PetscErrorCode SetGetPoints(Model model, const char set[], const PetscInt range[2], PetscInt *n, PetscInt **point)

@@ -18,7 +18,7 @@ static const char *const bad[][2] = {
   {PULL "-pull_ramp -1",               "-pull_ramp -1 must be a time of at least 0 (s)"            },
   {"-head_velocity 1",                 "-head_velocity has 1 values; give 3"                       },
   {"-head_velocity inf,0,0",           "-head_velocity value inf must be a finite number"          },
-  {LIFT "-lift_set hat",               "the mesh has no set named 'hat'; it names: "               },
+  {LIFT "-lift_set hat",               "-lift_set: the mesh has no set named 'hat'; it names: "    },
   {LIFT "-lift_ramp 0",                "-lift_ramp 0 must be given and positive (s)"               },
   {LIFT "-lift_delay -2",              "-lift_delay -2 must be a time of at least 0 (s)"           },
   {LIFT "-lift_set foot_bottom",       "-lift_set foot_bottom is held by supports in all"          },
