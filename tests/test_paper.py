@@ -236,6 +236,7 @@ def check_browser(p):
 
 
 def main():
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # else what nohup and & ignore, the runs ignore too
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     with tempfile.TemporaryDirectory(prefix="squeal-paper-") as root:
         p = Paper(Path(sys.argv[1]).resolve(), Path(root))

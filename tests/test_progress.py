@@ -138,6 +138,7 @@ def check_stop_on_ranks(r):
 
 
 def main():
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # else what nohup and & ignore, the runs ignore too
     with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
         r = Runner(Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), Path(folder))
         check_log(r)

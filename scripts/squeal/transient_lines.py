@@ -5,7 +5,7 @@ import matplotlib.pyplot as plt
 import numpy
 from matplotlib.ticker import MaxNLocator
 
-from .picture import BLUE, GREEN, GREY, INK, MINUS, ORANGE, PURPLE, SKY, SOFT, VERMILION
+from .picture import BLUE, GREEN, GREY, INK, MINUS, ORANGE, PURPLE, SKY, SOFT, VERMILION, place_texts
 from .signal import TWO_PI
 from .transient_cycle import detached_share, figures
 
@@ -184,33 +184,36 @@ def draw_spectrum(vibration, name, case):
     axes.plot(KHZ * frequency[shown], level, color=BLUE, lw=1.3, zorder=3)
     top = level.max()
     floor = max(level.min(), top - 120)
+    end = min(end, max(1.1 * frequency[shown][level > floor][-1], 2.5 * vibration.line[0]))  # nothing is seen beyond
     axes.set_ylim(floor - 3, top + 0.14 * (top - floor))
-    mark_harmonics(axes, vibration, KHZ * end, frequency, decibels(density))
     axes.set_xlim(0, KHZ * end)
+    mark_harmonics(axes, vibration, KHZ * end, frequency, decibels(density))
     axes.set_xlabel("frequency, kHz")
     axes.set_ylabel("dB re 1 (m/s\N{SUPERSCRIPT TWO})\N{SUPERSCRIPT TWO}/Hz")
     return figure
 
 
 def mark_harmonics(axes, vibration, end, frequency, level):
-    """Dotted lines at the multiples of the main line, with their levels."""
+    """Dotted lines at the multiples of the main line, with their levels, and the largest other line."""
+    taken = []
+
+    def name(place, reach, text, **style):
+        top = level[abs(KHZ * frequency - place) <= reach].max()
+        place_texts(axes, [((place, top), signed(text))], [(0, y) for y in (14, 21, 40, 60)], taken, zorder=4,
+                    bbox={"fc": "white", "ec": "none", "pad": 0.6, "alpha": 0.8}, **style)
+
     for number, value in ((1, 0.0), *vibration.harmonics.items()):
         place = KHZ * number * vibration.line[0]
         if place >= end:
             continue
-        near = abs(KHZ * frequency - place) <= max(0.02 * place, 4 * KHZ * frequency[1])
         axes.axvline(place, color=VERMILION if number == 1 else GREY, lw=1, ls=":", zorder=1)
         if value < FAINTEST:
             continue
         text = f"{place:.3f} kHz" if number == 1 else f"{number}\N{MULTIPLICATION SIGN}  {value:.0f} dB"
-        axes.annotate(signed(text), (place, level[near].max()), (0, 5), textcoords="offset points", ha="center",
-                      fontsize=12, color=VERMILION if number == 1 else INK, zorder=4,
-                      bbox={"fc": "white", "ec": "none", "pad": 0.6, "alpha": 0.8})
+        name(place, max(0.02 * place, 4 * KHZ * frequency[1]), text, fontsize=12, color=VERMILION if number == 1 else INK)
     if vibration.other and KHZ * vibration.other[0] < end:
         place = KHZ * vibration.other[0]
-        top = level[abs(KHZ * frequency - place) <= 2 * KHZ * frequency[1]].max()
-        axes.annotate(signed(f"{place:.2f} kHz\n{vibration.other[1]:.0f} dB"), (place, top), (9, -4), color=PURPLE,
-                      textcoords="offset points", ha="left", va="top", fontsize=11, zorder=4)
+        name(place, 2 * KHZ * frequency[1], f"{place:.2f} kHz\n{vibration.other[1]:.0f} dB", fontsize=11, color=PURPLE)
 
 
 def growth_text(vibration):

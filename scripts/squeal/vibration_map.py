@@ -7,6 +7,8 @@ import numpy
 from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
+from matplotlib.ticker import FixedLocator
 
 from .picture import BLUE, GREEN, INK, VERMILION
 from .sweep_map import draw_cells
@@ -22,7 +24,9 @@ UNITS = {"young": "Pa", "pressure": "Pa", "force": "N", "speed": "m/s", "density
          "mu": "-", "alpha": "1/s", "beta": "s", "mu_slope": "s/m"}
 VIBRATES = "cycle", "sticking", "growth"
 STABLE, UNKNOWN = "#F1F1F1", "white"
-TOLD = "\u00b1: another step, laws, cut-off"
+FEW = 6  # values of a parameter that are ticks of their own
+TOLD = "\u00b1: what another step, laws, cut-off change"
+HALO = [withStroke(linewidth=2.6, foreground="white")]
 WAYS = {"up": ("upwards", BLUE, "^"), "down": ("downwards", VERMILION, "v"),
         "apart": ("each point apart", BLUE, "o")}
 
@@ -97,7 +101,8 @@ def draw_field(figure, axes, table, grid, field, **style):
     growth = numpy.ma.masked_invalid(grid.growth)
     if growth.count() and growth.min() < 0 < growth.max():
         x, y = (numpy.array(values) * axis.factor for values, axis in zip(grid.values, table.axes))
-        axes.contour(x, y, growth, levels=[0], colors=INK, linewidths=1.6)
+        for colour, width in (("white", 3.6), (INK, 1.6)):
+            axes.contour(x, y, growth, levels=[0], colors=colour, linewidths=width)
     return mesh
 
 
@@ -105,8 +110,8 @@ def write_errors(axes, table):
     """What -map_verify tells of points, in their cells."""
     for (x, y), error in table.errors.items():
         text = "?" if error is None else f"\u00b1{100 * error[0]:.2g} %"
-        axes.text(x * table.axes[0].factor, y * table.axes[1].factor, text, ha="center", va="center", fontsize=8.5,
-                  color=INK)
+        axes.text(x * table.axes[0].factor, y * table.axes[1].factor, text, ha="center", va="center", fontsize=7.5,
+                  color=INK, zorder=5, path_effects=HALO)
 
 
 def draw_grid(table):
@@ -126,16 +131,20 @@ def draw_grid(table):
     figure.colorbar(mesh, ax=panels[-1], pad=0.02).set_label("main line, kHz")
     panels[-1].set_title(f"Frequency, {WAYS[last][0]}", loc="left")
     panels[0].set_ylabel(table.axes[1].title())
+    for axis, k in ((panels[0].yaxis, 1), *((axes.xaxis, 0) for axes in panels)):
+        values = sorted({row[("value", "value_2")[k]] * table.axes[k].factor for row in table.rows})
+        if len(values) <= FEW and not table.axes[k].logarithmic:
+            axis.set_major_locator(FixedLocator(values))
     write_errors(panels[0], table)
     for axes in panels:
         for x, y in table.bistable:
-            axes.plot(x * table.axes[0].factor, y * table.axes[1].factor, "o", ms=8, mfc="none", mec=GREEN, mew=2)
+            axes.plot(x * table.axes[0].factor, y * table.axes[1].factor, "o", ms=8, mfc="none", mec=GREEN, mew=2, path_effects=HALO)
     figure.get_layout_engine().set(rect=(0.005, 0.08, 0.99, 0.915))  # the layout leaves no room for it
     handles = [Patch(facecolor=STABLE, edgecolor="#BBBBBB", label="stable"),
                Line2D([], [], color=INK, lw=1.6, label="border of linear stability")]
     handles += [Line2D([], [], ls="", marker="o", ms=8, mfc="none", mec=GREEN, mew=2,
                       label="vibrates one way, stable the other")] if table.bistable else []
-    handles += [Line2D([], [], ls="", label=TOLD)] if table.errors else []
+    handles += [Line2D([], [], ls="", label=TOLD + (", ?: the regime" if None in table.errors.values() else ""))] if table.errors else []
     figure.legend(handles=handles, loc="lower center", ncol=len(handles), frameon=False)
     return figure
 

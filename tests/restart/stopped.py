@@ -99,4 +99,5 @@ def check(runs, _):
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # else what nohup and & ignore, the runs ignore too
     sys.exit(scenes(__doc__, check))
