@@ -106,14 +106,14 @@ disc-1.Every, 12., 1., 2., 0., 1., 2., -5.
 *EXPANSION
 1.e-5,
 """}
-    SCENE = {"model_gravity": "0,0,-9.81", "parts": "disc_1_all,pad_1_all,plate_1_all",
-             "disc_1_all_young": "110e9", "disc_1_all_poisson": "0.26", "disc_1_all_density": "7100",
-             "disc_1_all_alpha": "10", "disc_1_all_beta": "1e-7",
-             **{f"{part}_1_all_{key}": value for part in ("pad", "plate") for key, value in {
+    SCENE = {"model_gravity": "0,0,-9.81", "parts": "disc_1,pad_1,plate_1",
+             "disc_1_young": "110e9", "disc_1_poisson": "0.26", "disc_1_density": "7100",
+             "disc_1_alpha": "10", "disc_1_beta": "1e-7",
+             **{f"{part}_1_{key}": value for part in ("pad", "plate") for key, value in {
                  "young": "8e9,7e9,3e9", "poisson": "0.25,0.31,0.17", "shear": "3e9,1.5e9,1.2e9", "density": "2500",
                  "cylinder_axis": "0,0,1"}.items()},
              # the axis of the pad through (1, 0, 10), of the plate (1, 0, 20) turned to (10, 1, 20)
-             "pad_1_all_cylinder_centre": "0.001,0,0.01", "plate_1_all_cylinder_centre": "0.01,0.001,0.02",
+             "pad_1_cylinder_centre": "0.001,0,0.01", "plate_1_cylinder_centre": "0.01,0.001,0.02",
              "supports": "disc_1_hub,pad_1_rear", "disc_1_hub_set": "disc_1_hub", "disc_1_hub_fix": "xyz",
              "pad_1_rear_set": "pad_1_rear", "pad_1_rear_fix": "xy",
              "loads": "corner_force,piston_pressure", "corner_force_set": "corner", "corner_force_force": "1.5,0,-5",

@@ -181,6 +181,35 @@ def not_taken(folder):
     check("bonded contact of Ansys is none", "contacts" not in options and any("KEYOPT(12) = 5" in line for line in listed), listed)
 
 
+def preloaded(folder):
+    """Modes after a *STATIC that presses a contact are about its state, and damped by friction where the deck asks for it;
+    without a load or a contact they are not. Breaks when a step says something and the scene does not, or the reverse."""
+    whole = decks_abaqus.BODY + "*NSET, NSET=TOP\n5, 6\n*SURFACE, NAME=S\nE, S1\n*SURFACE, NAME=T\nE, S2\n" + decks_abaqus.STEEL + (
+        "*SOLID SECTION, ELSET=E, MATERIAL=M\n*SURFACE INTERACTION, NAME=I\n*FRICTION, SLIP TOLERANCE=0.005\n0.3\n")
+    pair, load = "*CONTACT PAIR, INTERACTION=I\nS, T\n", "*CLOAD\n7, 3, -1.\n"
+
+    def deck(before, within, damping, nlgeom="NO"):
+        return (f"{whole}{before}*STEP, NLGEOM={nlgeom}, UNSYMM=YES\n*STATIC\n{within}*END STEP\n"
+                f"*STEP\n*FREQUENCY, SIM=NO\n9\n*END STEP\n*STEP\n*COMPLEX FREQUENCY, FRICTION DAMPING={damping}\n9\n*END STEP\n")
+
+    for about, text, contact, damping, said in (
+            ("pressed", deck(pair, load, "NO", "YES"), "static", None, ("differs: *STEP, NLGEOM", "differs: *FRICTION: slip", )),
+            ("damped by friction", deck(pair, load, "YES"), "static", "true", ()),
+            ("no load", deck(pair, "", "YES"), None, None, ("*STATIC: without", "*COMPLEX FREQUENCY, FRICTION DAMPING: without")),
+            ("no contact", deck("", load, "NO"), None, None, ("*STATIC: without", ))):
+        options, listed = sections(folder, "deck.inp", text)
+        check(f"{about}: modes about the state {contact}",
+              (options.get("modes_contact"), options["modes_count"]) == (contact, "9"), options)
+        check(f"{about}: friction damping {damping}", options.get("i_friction_damping") == damping, options)
+        for words in said:
+            check(f"{about}: listed {words}", sum(words in line for line in listed) == 1, listed)
+        kinds = [line.endswith("not needed here") for line in listed if "differs" not in line]
+        check(f"{about}: what is not needed comes last", kinds == sorted(kinds) and any(kinds), listed)
+    _, listed = sections(folder, "deck.inp", whole + "*COUPLING, CONSTRAINT NAME=C, REF NODE=1, SURFACE=S\n*KINEMATIC\n1, 3\n")
+    check("*COUPLING: listed once, with what squeal has", sum("COUPLING: not in the scene; `points`" in line for line in listed) == 1 and
+          not any("KINEMATIC" in line for line in listed), listed)
+
+
 def closed_pipe(folder):
     """`scripts/import FILE | head`: no traceback where nobody reads to the end."""
     (folder / "pipe.inp").write_text(decks_abaqus.BODY + decks_abaqus.STEEL + "*SOLID SECTION, ELSET=E, MATERIAL=M\n")
@@ -230,6 +259,7 @@ def main():
         others(Path(name))
         steps(Path(name))
         not_taken(Path(name))
+        preloaded(Path(name))
         closed_pipe(Path(name))
         strict(Path(name))
     page()

@@ -15,9 +15,13 @@ PHASES = {"NODE": 0, "ELEMENT": 1, "NSET": 2, "ELSET": 2, "SURFACE": 3, "ORIENTA
 OUTPUT = {"NODE PRINT", "EL PRINT", "NODE FILE", "EL FILE", "NODE OUTPUT", "ELEMENT OUTPUT", "OUTPUT", "RESTART", "PREPRINT",
           "CONTACT FILE", "CONTACT PRINT", "CONTACT OUTPUT", "ENERGY OUTPUT", "ENERGY PRINT", "FILE FORMAT", "MONITOR",
           "SECTION PRINT", "PRINT", "MODAL FILE"}
-ANALYSES = {"STATIC", "DYNAMIC", "COMPLEX FREQUENCY", "BUCKLE", "MODAL DYNAMIC", "STEADY STATE DYNAMICS", "CONTROLS", "SOLVER CONTROLS"}
+ANALYSES = {"DYNAMIC", "BUCKLE", "MODAL DYNAMIC", "STEADY STATE DYNAMICS", "CONTROLS", "SOLVER CONTROLS"}
 GEOMETRY = {"SYSTEM", "NMAP", "NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY"}  # without them the mesh is another
-PLAIN = {"HEADING", "END STEP", "ASSEMBLY", "END ASSEMBLY"}  # say nothing of the model
+PLAIN = {"HEADING", "END STEP", "ASSEMBLY", "END ASSEMBLY",  # say nothing of the model
+         "KINEMATIC", "DISTRIBUTING"}  # or are listed with what they belong to
+POINTS = "`points` of squeal do this, on a set of the mesh"
+INSTEAD = {"COUPLING": POINTS, "RIGID BODY": POINTS, "MASS": POINTS, "ROTARY INERTIA": POINTS,
+           "CONNECTOR SECTION": "`joints` of squeal may do this", "CONTACT": "squeal needs a *CONTACT PAIR of two surfaces"}
 
 
 @dataclass
@@ -143,6 +147,7 @@ class Reader:
         self.interactions, self.turned, self.spring_cards, self.pairs = {}, {}, [], []
         self.unplaced = {}  # name of a part without an instance so far -> its place
         self.steps, self.loads = 0, {}  # keyword, set, direction of a load -> (step, loads)
+        self.preload = self.damping = None  # places of the last *STATIC, and of friction damping
 
     def split(self, name, scope):
         """Scope and local name of INSTANCE.NAME."""
@@ -219,7 +224,8 @@ class Reader:
             elif card.keyword in ANALYSES:
                 self.deck.note(card.place, f"*{card.keyword}: an analysis, {NOT_NEEDED}")
             elif card.keyword not in PLAIN:
-                self.deck.note(card.place, f"*{card.keyword}: not understood")
+                self.deck.note(card.place, f"*{card.keyword}: " + (f"not in the scene; {INSTEAD[card.keyword]}"
+                                                                   if card.keyword in INSTEAD else "not understood"))
             if card.keyword not in abaqus_material.KEEP_MATERIAL:
                 self.material = None if card.keyword != "MATERIAL" else self.material
 

@@ -149,7 +149,8 @@ def do_section(reader, scope, card):
     if axes and local not in inner.axes:
         raise card.place.wrong(f"there is no *ORIENTATION {axes}")
     cells = reader_cells(reader, scope, name, card.place)
-    reader.deck.sections.append(Section(scope.full(name), cells, material, inner.axes[local] if axes else None, card.place))
+    name = scope.prefix if scope.prefix and len(cells) == scope.cells.n else scope.full(name)
+    reader.deck.sections.append(Section(name, cells, material, inner.axes[local] if axes else None, card.place))
 
 
 CARDS = {"MATERIAL": do_material, "DENSITY": do_density, "ELASTIC": do_elastic, "DAMPING": do_damping,

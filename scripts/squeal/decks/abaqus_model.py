@@ -5,7 +5,7 @@ import numpy
 from .abaqus_material import CARDS as MATERIAL_CARDS
 from .abaqus_material import first_row, numbers, other_rows
 from .abaqus_mesh import SPRINGS, check_faces, reader_cells, reader_nodes
-from .deck import Contact, Load, Support, Tie, Turning
+from .deck import NOT_NEEDED, Contact, Load, Support, Tie, Turning
 from .springs import ground_springs
 from .text import real, whole
 
@@ -17,10 +17,12 @@ KNOWN = {"MATERIAL": {"NAME"}, "DENSITY": set(), "ELASTIC": {"TYPE"}, "DAMPING":
          "BOUNDARY": {"OP", "FIXED"}, "SPRING": {"ELSET"}, "TIE": {"NAME", "POSITION TOLERANCE", "ADJUST", "TYPE"},
          "CONTACT PAIR": {"INTERACTION", "TYPE", "SMALL SLIDING", "ADJUST", "CPSET", "NO THICKNESS", "MECHANICAL CONSTRAINT",
                           "TIED"},
-         "SURFACE INTERACTION": {"NAME"}, "FRICTION": set(), "SURFACE BEHAVIOR": {"PRESSURE-OVERCLOSURE"},
+         "SURFACE INTERACTION": {"NAME"}, "FRICTION": {"SLIP TOLERANCE", "ELASTIC SLIP"}, "SURFACE BEHAVIOR": {"PRESSURE-OVERCLOSURE"},
          "CHANGE FRICTION": {"INTERACTION"}, "CLOAD": {"OP"}, "DLOAD": {"OP"}, "DSLOAD": {"OP"},
-         "MOTION": {"ROTATION", "TYPE"}, "STEP": {"NAME", "PERTURBATION", "INC"},
-         "FREQUENCY": {"EIGENSOLVER", "STORAGE", "NORMALIZATION", "SOLVER"}}
+         "MOTION": {"ROTATION", "TYPE"}, "STEP": {"NAME", "PERTURBATION", "INC", "NLGEOM"},
+         "FREQUENCY": {"EIGENSOLVER", "STORAGE", "NORMALIZATION", "SOLVER"}, "STATIC": {"SOLVER"},
+         "COMPLEX FREQUENCY": {"FRICTION DAMPING", "SOLVER", "RIGHT EIGENVECTORS"}}
+IDLE = {"STEP": {"UNSYMM"}, "FREQUENCY": {"SIM", "ACOUSTIC COUPLING"}, "STATIC": {"STABILIZE", "DIRECT", "ADIABATIC"}}
 
 
 def direction(word, place, keyword, reader):
@@ -127,8 +129,10 @@ def do_friction(reader, _, card):
     if row[0] < 0:
         raise card.place.wrong(f"friction coefficient {row[0]:g} must not be negative")
     if "mu" in values:
-        reader.deck.note(values["friction"], f"*FRICTION {values['mu']:g}: another one follows on line {card.place.line}")
+        reader.deck.note(values["friction"], f"*FRICTION {values['mu']:g}: not taken, another one follows on line {card.place.line}")
     values["mu"], values["friction"] = row[0], card.place
+    if {"SLIP TOLERANCE", "ELASTIC SLIP"} & set(card.options):
+        reader.deck.differ(card.place, "*FRICTION: slip that Abaqus allows a pair that sticks; Coulomb's law of squeal allows none")
     if any(row[1:]):
         reader.deck.note(card.place, "*FRICTION: only the first number, mu, is taken")
     other_rows(reader, card, rest)
@@ -251,10 +255,45 @@ def do_step(reader, _, card):
                                      "the last one; see which you want")
 
 
+    if card.options.get("NLGEOM", "NO").upper() in ("", "YES"):
+        reader.deck.differ(card.place, "*STEP, NLGEOM: motion of squeal is small; -static_geometric and -static_follower give "
+                                       "modes the stiffness of the preload")
+
+
+def do_static(reader, _, card):
+    reader.preload = card.place
+
+
 def do_frequency(reader, _, card):
     rows = numbers(card)
     row = (rows[0][1] if rows else []) + [0, 0, 0]
-    reader.deck.modes = row[0], row[1], row[2], card.place
+    reader.deck.modes, reader.deck.preload = (row[0], row[1], row[2], card.place), reader.preload
+
+
+def do_complex(reader, _, card):
+    if card.options.get("FRICTION DAMPING", "NO").upper() == "YES":
+        reader.damping = card.place
+    elif reader.deck.modes:
+        reader.deck.note(card.place, f"*COMPLEX FREQUENCY: modes of squeal are complex, {NOT_NEEDED}")
+    if not reader.deck.modes:
+        do_frequency(reader, _, card)
+
+
+def finish_steps(reader):
+    """Whether modes are about the sliding state, as after a *STATIC that presses; where they are not, that is listed."""
+    deck = reader.deck
+    pressed = deck.loads or deck.gravity or any(any(support.values.values()) for support in deck.supports)
+    if not (deck.contacts and pressed):
+        deck.preload = None
+    if reader.preload and not deck.preload:
+        deck.note(reader.preload, f"*STATIC: {'without contact or load' if deck.modes else 'an analysis'}, {NOT_NEEDED}")
+    if not reader.damping:
+        return
+    if not deck.preload:
+        deck.note(reader.damping, "*COMPLEX FREQUENCY, FRICTION DAMPING: without a *STATIC that presses a contact there is none")
+        return
+    for contact in deck.contacts:
+        contact.damping = reader.damping
 
 
 def finish(reader):
@@ -270,6 +309,7 @@ def finish(reader):
         contact.mu, contact.stiffness = values.get("mu"), values.get("stiffness")
         reader.deck.contacts.append(contact)
     ground_springs(reader, SPRINGS)
+    finish_steps(reader)
     for section in reader.deck.sections:
         if section.material not in reader.deck.materials:
             raise section.place.wrong(f"there is no *MATERIAL {section.material}")
@@ -279,8 +319,9 @@ def listed(do):
     """Lists the options of a card that change what it says and are not known."""
     def done(reader, scope, card):
         do(reader, scope, card)
-        for name in set(card.options) - KNOWN[card.keyword] - {"TYPE"}:
-            reader.deck.note(card.place, f"*{card.keyword}: option {name} is not understood")
+        for name in sorted(set(card.options) - KNOWN[card.keyword] - {"TYPE"}):
+            idle = name in IDLE.get(card.keyword, ())
+            reader.deck.note(card.place, f"*{card.keyword}: option {name}{f', {NOT_NEEDED}' if idle else ' is not understood'}")
     return done
 
 
@@ -288,4 +329,5 @@ CARDS = {keyword: listed(do) for keyword, do in (MATERIAL_CARDS | {
     "BOUNDARY": do_boundary, "SPRING": do_spring, "TIE": do_tie,
     "SURFACE INTERACTION": do_interaction, "FRICTION": do_friction, "SURFACE BEHAVIOR": do_behavior,
     "CHANGE FRICTION": do_change_friction, "CONTACT PAIR": do_pair, "CLOAD": do_cload, "DLOAD": do_dload,
-    "DSLOAD": do_dsload, "MOTION": do_motion, "STEP": do_step, "FREQUENCY": do_frequency}).items()}
+    "DSLOAD": do_dsload, "MOTION": do_motion, "STEP": do_step, "STATIC": do_static, "FREQUENCY": do_frequency,
+    "COMPLEX FREQUENCY": do_complex}).items()}

@@ -64,7 +64,7 @@ def merge_ties(deck, size):
         found = coincident(deck.x, slaves, masters, CLOSE * size)
         if (found < 0).any():
             deck.note(tie.place, f"*TIE {tie.name}: {(found < 0).sum()} of {len(slaves)} nodes of {tie.slave} are not where "
-                                 f"{tie.master} has one; squeal ties nothing but nodes that are shared: NOT TIED")
+                                 f"{tie.master} has one; NOT TIED: the bodies are apart there; give both the same mesh where they touch")
             continue
         for slave, master in zip(slaves, found):
             into[into == into[slave]] = into[master]

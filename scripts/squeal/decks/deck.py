@@ -109,6 +109,7 @@ class Contact:
     rotation: tuple = ()
     centre: tuple = ()
     turning: Place = None  # where the rotation is from
+    damping: Place = None  # where friction damping is from
 
 
 @dataclass
@@ -192,11 +193,16 @@ class Deck:
         self.supports, self.springs, self.loads, self.contacts, self.ties, self.turnings = [], [], [], [], [], []
         self.gravity = None  # (vector, Place)
         self.modes = None  # (count, lowest, highest, Place)
+        self.preload = None  # Place of the step about whose state the modes are
         self.notes, self.differs = [], {}
 
     def missing(self):
         """Notes of what the scene may need: those but output and analyses."""
         return [note for note in self.notes if not note[1].endswith(NOT_NEEDED)]
+
+    def idle(self):
+        """The other ones."""
+        return [note for note in self.notes if note[1].endswith(NOT_NEEDED)]
 
     def note(self, place, text):
         """Something that is not in the scene."""

@@ -117,7 +117,7 @@ def force_entry(assembly, names, nodes, force, where):
     written = assembly.node_set(nodes, *names)
     if not written:
         for place in where:
-            assembly.deck.note(place, "force on nodes that no volume element has: not in the scene")
+            assembly.deck.note(place, "force on nodes that no volume element has (reference nodes?): not in the scene")
         return
     n, comment = len(assembly.result.points[written]), summary(where)
     if n != len(nodes):
@@ -164,6 +164,8 @@ def add_contacts(assembly):
         if contact.rotation:
             rows += [("rotation", ("rate", contact.rotation), f"{contact.turning} of the master"),
                      ("center", ("length", contact.centre), str(contact.turning))]
-        elif contact.mu:
+        if contact.damping and contact.mu:
+            rows.append(("friction_damping", "true", str(contact.damping)))
+        if contact.mu and not contact.rotation:
             hints.append('slip: "0,1,0"   the slave\'s sliding direction is not in the file: give it, or rotation: "x,y,z" in rad/s')
         assembly.add("contacts", contact.name, rows, hints)

@@ -32,9 +32,10 @@ def mode_lines(deck, units):
     if deck.modes is None:
         return ["modes: {target: 1, count: 20}  # the lowest 20: the file asks for none"]
     count, lowest, highest, place = deck.modes
+    about, said = (", contact: static", f", about the state of {deck.preload}") if deck.preload else ("", "")
     if highest > 0:
-        return [f'modes: {{band: "{lowest / units.time:.15g},{highest / units.time:.15g}"}}  # {place} Hz']
-    return [f"modes: {{target: 1, count: {max(int(count), 1)}}}  # {place} the lowest"]
+        return [f'modes: {{band: "{lowest / units.time:.15g},{highest / units.time:.15g}"{about}}}  # {place} Hz{said}']
+    return [f"modes: {{target: 1, count: {max(int(count), 1)}{about}}}  # {place} the lowest{said}"]
 
 
 def scene_lines(deck, result, units, why, mesh):
@@ -57,7 +58,7 @@ def scene_lines(deck, result, units, why, mesh):
 def remarks(deck):
     """What differs, and what is not in the scene, a line each; of more than MOST_ALIKE that say the same the first and last."""
     alike = {}
-    for place, text in deck.notes:
+    for place, text in deck.missing() + deck.idle():
         alike.setdefault((getattr(place, "file", ""), text), []).append(place)
     lines = [f"{place}: differs: {text}" for text, place in deck.differs.items()]
     for (_, text), places in alike.items():
