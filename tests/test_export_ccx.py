@@ -163,13 +163,13 @@ def check_contact(top):
     squeal(top, "dry.yaml", "out", "-output_fields", 0)
     there_and_back(top)
     contact = contact_of(top / "back.yaml")
-    squeal(top, "back.yaml", "again", "-output_fields", 0, f"-{contact}_slip", "0,1,0", "-modes_growth", 5000)
+    squeal(top, "back.yaml", "again", "-output_fields", 0, f"-{contact}_slip", "0,1,0", "-modes_growth", 5000, "-modes_contact", "all")
     modes, again = modes_of(top / "out"), modes_of(top / "again")
     check(apart(modes, again) < SAME and max(modes.real) > 1,
           f"contact: {len(modes)} modes apart by {apart(modes, again):.1e}, growth to {max(modes.real):.1f} 1/s")
     said = run(top, SOURCE / "scripts/export_ccx", "oiled").splitlines()
     named = {line.split(": ")[1].split()[0] for line in said}
-    check({"oil_set", "oil_viscosity", "tip_at", "rub_slip", "modes_growth"} <= named
+    check({"oil_set", "oil_viscosity", "tip_at", "rub_slip", "modes_growth", "modes_contact"} <= named
           and all(line.startswith("export_ccx: ") for line in said),
           f"notes: {len(said)} lines name {', '.join(sorted(named))}")
     head = (top / "oiled/deck.inp").read_text()

@@ -235,7 +235,7 @@ def legend(axes, study, branches, loud, bars):
     if bars:
         handles.append(Line2D([], [], ls="", marker="|", ms=10, color=INK, label="estimated error"))
     if jump_places(study):
-        handles.append(Line2D([], [], color=LEADER, lw=0.7, label="contact status changes"))
+        handles.append(Line2D([], [], color=LEADER, ls="", marker="|", ms=14, label="contact status changes"))
     others = n_modes(branches) - n_modes(loud)
     if others:
         handles.append(Line2D([], [], color=QUIET, lw=1.2, label=f"{others} other mode{'s' if others > 1 else ''}"))

@@ -95,4 +95,6 @@ class Study:
         """Ranges, and the friction coefficients that do not vary."""
         fixed = [f"{row['parameter']} {row['value']:.4g}" for row in self.parameters
                  if row["swept"] == 0 and not row["link"] and row["parameter"].endswith("_mu")]
-        return ", ".join([*(axis.range() for axis in self.axes), *filter(None, [self.where]), *fixed[:3]])
+        linked = [[row["parameter"] for row in self.parameters if row["link"] == axis.name] for axis in self.axes]
+        ranges = [" and ".join([axis.name, *names]) + axis.range().removeprefix(axis.name) for axis, names in zip(self.axes, linked)]
+        return ", ".join([*ranges, *filter(None, [self.where]), *fixed[:3]])

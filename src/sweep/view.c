@@ -283,10 +283,10 @@ static PetscErrorCode BasisView(Sweep sweep, PetscViewer viewer)
                                      "basis of %" PetscInt_FMT " vectors; largest estimated error %.1e (an estimate, "
                                      "not a bound); modes counted without friction at the full solutions\n",
                                      sweep->basis.reduced.n_used, (double)sweep->greedy.worst));
-  if (sweep->method == SWEEP_REDUCED && !sweep->whole)
+  if (sweep->method == SWEEP_REDUCED && !sweep->whole && GridSize(&sweep->grid) > sweep->greedy.n_samples)
     PetscCall(PetscViewerASCIIPrintf(
       viewer, "saved: %" PetscInt_FMT " full solutions of the %" PetscInt_FMT " points, by the basis\n",
-      PetscMax(0, GridSize(&sweep->grid) - sweep->greedy.n_samples), GridSize(&sweep->grid)));
+      GridSize(&sweep->grid) - sweep->greedy.n_samples, GridSize(&sweep->grid)));
   PetscFunctionReturn(0);
 }
 
