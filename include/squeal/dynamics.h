@@ -32,7 +32,7 @@ PetscErrorCode DynamicsSetModel(Dynamics dynamics, Model model, Contact contact)
 
    Options Database Keys:
 +  -ts_max_time <s>, -ts_max_steps <n> - how long; with them all of TS's own options
-.  -ts_dt <s>                    - the step; without it
+.  -ts_dt <s>                    - the step, as long as the run at most; without it, and then cut to the run,
 .  -dynamics_step_fraction <0.9> - of the critical one
 .  -dynamics_step_force <false>  - integrate with a step above the critical one
 .  -ts_central_b <0.5>           - b of the integrator, 0.5 to 1
@@ -46,7 +46,8 @@ PetscErrorCode DynamicsSetModel(Dynamics dynamics, Model model, Contact contact)
 .  -dynamics_filters_modes <0> - numbers of the modes in modes.csv; 0: all unstable ones
 .  -dynamics_coriolis, -dynamics_centrifugal <false> - inertial forces in parts that turn
 .  -dynamics_kernel <auto|general> - internal forces; general: one matrix of blocks for every body
-.  -dynamics_history_interval <5e-6> - between rows of transient.csv, s; rounded to whole steps, as the next two
+.  -dynamics_history_interval <5e-6> - between rows of transient.csv, s; rounded to whole steps, and cut to the run, as the next two:
+                                   longer ones of the command line are refused
 .  -dynamics_pairs_interval <0>  - between states of all pairs in contact_pairs.csv, s; 0 for none
 .  -dynamics_snapshot_interval <0> - between fields, s; 0 for none
 .  -dynamics_live <1>            - between live lines, s of the wall; 0 for none
@@ -60,7 +61,8 @@ PetscErrorCode DynamicsSetModel(Dynamics dynamics, Model model, Contact contact)
 .  -disc_velocity <0,0,0>        - of the part `disc` at the start, m/s
 .  -lift_ramp, -lift_ramp_shape, -lift_delay - the same of the motion `lift` (model.h), whose ramp must be given;
                                    from the sliding state motions are there from the start, and have none
--  -impulses <names>             - at nodes: -hit_at x,y,z (m), -hit_part, -hit_impulse x,y,z (N s), -hit_time (s)
+-  -impulses <names>             - at nodes: -hit_at x,y,z (m), -hit_part, -hit_impulse x,y,z (N s; zeros for none), -hit_time (s), before
+                                   the last step
    Those of contact surfaces are in projector.h.
 @*/
 PetscErrorCode DynamicsSetFromOptions(Dynamics dynamics);
@@ -75,7 +77,8 @@ PetscErrorCode DynamicsSetOperators(Dynamics dynamics, Operators operators, Stat
 /*@
    DynamicsSolve - integrates and writes histories, fields and checkpoints as it goes. Collective.
 
-   Errors: PETSC_ERR_USER_INPUT for a step above the critical one; for bodies that interpenetrate at the start;
+   Errors: PETSC_ERR_USER_INPUT for a step above the critical one or beyond the end, for impulses and intervals beyond it; for bodies
+   that interpenetrate at the start;
    PETSC_ERR_FP for the first node and step that are no number, and for growth of energy that the ledger cannot explain;
    PETSC_ERR_NOT_CONVERGED from the contact forces.
 @*/

@@ -9,7 +9,7 @@
 
    A transient is looked at in windows of -map_window, T. Of the total normal force f in a window: mean, rms about it, the
    largest value, the share of the time without force and the share in which all closed pairs stick; the frequency is the
-   main line of the slip speed along t, the mean of all pairs. It ends
+   main line of the slip speed along t, the mean of all pairs. It ends, after its last impulse,
 
      decays   where no mode of the sliding state grows (damping of friction included), and the rms falls: in two windows in turn
               in which no pair changes its status, so that the motion is linear, or in four of a vibration below 1 % of the

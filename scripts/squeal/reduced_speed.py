@@ -65,7 +65,7 @@ def growth_point(args, modes, mode, cutoff, part):
     name = f"rise-{cutoff:g}-{part:g}"
     folder, text = made(args, name, f"{options_of(cutoff, part)} -dynamics_start static -dynamics_shape {modes} "
                         f"-dynamics_shape_mode {mode['mode']} -dynamics_shape_amplitude {LITTLE} -ts_max_time {RISE} "
-                        "-press_ramp 0 -tap_time 1")
+                        "-press_ramp 0 -tap_impulse 0,0,0")
     table = Run(folder)
     signal = table.probe("edge", "vy")
     found = min(fit_modes(table.time, signal - signal.mean(), BAND, 2), key=lambda fit: abs(fit.freq - mode["freq_hz"]))

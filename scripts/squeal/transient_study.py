@@ -93,7 +93,7 @@ def follow(args, rise):
     time = run(args.program, args.ranks, args.runs / f"rise{name}",
                f"{scene} -dynamics_start static -dynamics_shape {modes} -dynamics_shape_mode {mode['mode']} "
                f"-dynamics_shape_amplitude {LITTLE} -ts_max_time {RISE} -dynamics_live 0 -press_ramp 0 "
-               "-tap_time 1")  # after the end
+               "-tap_impulse 0,0,0")
     table = Run(time)
     signal = table.probe("edge", "vy")
     found = min(fit_modes(table.time, signal - signal.mean(), rise.band, 2),

@@ -54,7 +54,7 @@ static PetscErrorCode ArgumentsRefuse(MPI_Comm comm, const char option[], size_t
 
   PetscFunctionBeginUser;
   PetscCall(ArgumentsGet(&n, &name, &value));
-  for (PetscInt i = 0; i < n; i++)
+  for (PetscInt i = n - 1; i >= 0; i--) /* the last one is in force */
     PetscCheck(strncasecmp(name[i], option, length), comm, PETSC_ERR_USER_INPUT, "%.*s%s%s%s: %s", (int)length, option,
                strlen(name[i]) > length ? name[i] + length : "", value[i] ? " " : "", value[i] ? value[i] : "", why);
   PetscCall(PetscFree2(name, value));

@@ -91,25 +91,36 @@ static PetscErrorCode DynamicsCreateState(Dynamics d)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DynamicsMatchEnd(Dynamics d, PetscReal *dt)
+PetscErrorCode DynamicsFitEnd(Dynamics d, PetscReal *dt, PetscReal *end)
 {
-  TSExactFinalTimeOption end;
+  TSExactFinalTimeOption match;
   PetscReal              begin, time;
+  PetscInt               most;
 
   PetscFunctionBeginUser;
-  PetscCall(TSGetExactFinalTime(d->ts, &end));
-  PetscCheck(end != TS_EXACTFINALTIME_INTERPOLATE, d->comm, PETSC_ERR_USER_INPUT,
+  PetscCall(TSGetExactFinalTime(d->ts, &match));
+  PetscCheck(match != TS_EXACTFINALTIME_INTERPOLATE, d->comm, PETSC_ERR_USER_INPUT,
              "-ts_exact_final_time interpolate is not offered: stepover or matchstep");
   PetscCall(TSGetTime(d->ts, &begin));
   PetscCall(TSGetMaxTime(d->ts, &time));
+  PetscCall(TSGetMaxSteps(d->ts, &most));
   PetscCheck(begin == 0, d->comm, PETSC_ERR_USER_INPUT, "-ts_init_time %.6g must be 0: ramps and motions begin there",
              (double)begin);
-  if (end == TS_EXACTFINALTIME_MATCHSTEP && time < PETSC_MAX_REAL) *dt = time / PetscCeilReal(time / *dt * (1 - 1e-12));
+  PetscCheck(time < PETSC_MAX_REAL || most < PETSC_MAX_INT, d->comm, PETSC_ERR_USER_INPUT,
+             "-ts_max_time must be given: how long to integrate (s); or -ts_max_steps");
+  PetscCheck(time > 0, d->comm, PETSC_ERR_USER_INPUT, "-ts_max_time %.6g must be a positive time (s)", (double)time);
+  PetscCheck(most > 0, d->comm, PETSC_ERR_USER_INPUT, "-ts_max_steps %" PetscInt_FMT " must be positive", most);
+  PetscCheck(d->dt_asked <= time, d->comm, PETSC_ERR_USER_INPUT,
+             "-ts_dt %.6g s is longer than the run: take at most -ts_max_time %.6g", (double)d->dt_asked, (double)time);
+  *dt = PetscMin(*dt, time);
+  if (match == TS_EXACTFINALTIME_MATCHSTEP && time < PETSC_MAX_REAL)
+    *dt = time / PetscCeilReal(time / *dt * (1 - 1e-12));
+  *end = most < PETSC_MAX_INT ? PetscMin(time, *dt * (PetscReal)most) : time;
   PetscFunctionReturn(0);
 }
 
 /* The step asked for, or the stated fraction of the critical one; a larger one is refused */
-static PetscErrorCode DynamicsChooseStep(Dynamics d)
+static PetscErrorCode DynamicsChooseStep(Dynamics d, PetscReal *step, PetscReal *end)
 {
   const PetscReal critical = d->critical.assembled;
   PetscReal       dt       = d->dt_asked > 0 ? d->dt_asked : d->fraction * critical;
@@ -120,22 +131,9 @@ static PetscErrorCode DynamicsChooseStep(Dynamics d)
     "-ts_dt %.6g is above the critical step %.6g s: the fastest oscillations would grow; take at most %.6g, or "
     "-dynamics_step_force",
     (double)dt, (double)critical, (double)(d->fraction * critical));
-  PetscCall(DynamicsMatchEnd(d, &dt));
+  PetscCall(DynamicsFitEnd(d, &dt, end));
   PetscCall(TSSetTimeStep(d->ts, dt));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode DynamicsCheckEnd(Dynamics d, PetscReal dt, PetscReal *end)
-{
-  PetscInt max_steps;
-
-  PetscFunctionBeginUser;
-  PetscCall(TSGetMaxTime(d->ts, end));
-  PetscCall(TSGetMaxSteps(d->ts, &max_steps));
-  PetscCheck(*end < PETSC_MAX_REAL || max_steps < PETSC_MAX_INT, d->comm, PETSC_ERR_USER_INPUT,
-             "-ts_max_time must be given: how long to integrate (s); or -ts_max_steps");
-  PetscCheck(*end > 0, d->comm, PETSC_ERR_USER_INPUT, "-ts_max_time %.6g must be a positive time (s)", (double)*end);
-  if (*end >= PETSC_MAX_REAL) *end = dt * (PetscReal)max_steps;
+  *step = dt;
   PetscFunctionReturn(0);
 }
 
@@ -175,9 +173,8 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscCall(DynamicsSetFrames(d));
   PetscCall(DynamicsCreateState(d));
   PetscCall(DynamicsFindCriticalStep(d));
-  PetscCall(DynamicsChooseStep(d));
-  PetscCall(TSGetTimeStep(d->ts, &dt));
-  PetscCall(DynamicsCheckEnd(d, dt, &end));
+  PetscCall(DynamicsChooseStep(d, &dt, &end));
+  PetscCall(ExternalCheckHits(d->external, end, dt));
   PetscCall(HistorySetUp(
     d->history, &(HistorySource){d->model, d->layout, d->projector, d->n_interfaces, d->interfaces, results}, end, dt));
   PetscCall(TSSetUp(d->ts));

@@ -71,10 +71,9 @@ struct _p_Dynamics {
   PetscBool      ended;   /* all steps are done: the last balance is due */
 };
 
-/* dynamics.c - a step that divides the time that is left, where the run shall end exactly at -ts_max_time; when it ends, s,
-   with steps dt */
-PETSC_INTERN PetscErrorCode DynamicsMatchEnd(Dynamics dynamics, PetscReal *dt);
-PETSC_INTERN PetscErrorCode DynamicsCheckEnd(Dynamics dynamics, PetscReal dt, PetscReal *end);
+/* dynamics.c - when the run ends, s; the step is at most as long, and divides it where the run shall end exactly there. Errors:
+   PETSC_ERR_USER_INPUT for an end that is none, and for a -ts_dt beyond it. Collective. */
+PETSC_INTERN PetscErrorCode DynamicsFitEnd(Dynamics dynamics, PetscReal *dt, PetscReal *end);
 
 /* forces.c - callbacks of the TS: forces, contact, and what is recorded when they are complete */
 PETSC_INTERN PetscErrorCode DynamicsForce(TS ts, const CentralStep *step, void *ctx);

@@ -37,8 +37,7 @@ PetscErrorCode DynamicsGetStep(Dynamics d, PetscReal dt, DynamicsRun *run)
   run->dt  = d->dt_asked > 0 ? d->dt_asked : dt;
   run->end = 0;
   if (d->endless) PetscFunctionReturn(0);
-  PetscCall(DynamicsMatchEnd(d, &run->dt));
-  PetscCall(DynamicsCheckEnd(d, run->dt, &run->end));
+  PetscCall(DynamicsFitEnd(d, &run->dt, &run->end));
   PetscFunctionReturn(0);
 }
 

@@ -206,12 +206,7 @@ static PetscErrorCode MapSetUp(Map map, Results results)
   PetscCall(MapCheckPrepared(map));
   PetscCall(MapAxes(map));
   PetscCall(ReducedGetRun(map->reduced, &map->cutoff, &map->dt, &map->end));
-  PetscCheck(map->window >= 32 * map->dt && map->end >= 8 * map->window, map->comm, PETSC_ERR_USER_INPUT,
-             "-map_window %.6g s must be 32 steps of %.6g s at least, and -ts_max_time %.6g s 8 windows",
-             (double)map->window, (double)map->dt, (double)map->end);
-  PetscCheck(map->end <= MAP_MAX_STEPS * map->dt, map->comm, PETSC_ERR_USER_INPUT,
-             "-ts_max_time %.6g s is %.3g steps of %.6g s; a point of a map takes at most %.0e", (double)map->end,
-             (double)(map->end / map->dt), (double)map->dt, MAP_MAX_STEPS);
+  PetscCall(MapCheckTimes(map));
   map->n_ways   = map->direction == MAP_BOTH ? 2 : map->direction == MAP_APART ? map->axis[0].n : 1;
   map->n_linked = map->direction == MAP_APART ? 1 : map->axis[0].n;
   n_points      = map->axis[0].n * (map->n_axes > 1 ? map->axis[1].n : 1);

@@ -74,6 +74,15 @@ PetscErrorCode MapBodiesMove(Map map, const MapPoint *at, MapBodies *b, PetscRea
   PetscFunctionReturn(0);
 }
 
+PetscBool MapBodiesAreHit(const MapBodies *b, PetscReal t)
+{
+  const PetscReal *due = &b->hits[b->model.m * b->n_hits];
+
+  for (PetscInt i = 0; i < b->n_hits; i++)
+    if (due[i] > t) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
 PetscErrorCode MapBodiesDestroy(MapBodies *b)
 {
   PetscFunctionBeginUser;

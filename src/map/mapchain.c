@@ -1,7 +1,6 @@
 /*
    A chain: a line of the map in one direction, point after point, each from the end of the one before, until its regime is known
-   (map.h), or a point alone. Runs on one rank, without messages. What a point begins with besides the state is made anew, so
-   that it is the same whichever points were before it in this process.
+   (map.h), or a point alone. Runs on one rank, without messages. What a point begins with besides the state is made anew.
 */
 #include "mapimpl.h"
 
@@ -249,7 +248,7 @@ static void MarchJudge(MapMarch w, MapPoint *row)
                                    MapForceLine(half, n, &w->slip[n * (last - half)], dt));
 }
 
-/* Windows until the regime is known or the time is over */
+/* Windows until the regime is known, after the last impulse, or the time is over */
 static PetscErrorCode MarchRun(MapMarch w, MapPoint *row)
 {
   PetscBool dies;
@@ -258,7 +257,8 @@ static PetscErrorCode MarchRun(MapMarch w, MapPoint *row)
   for (w->n_windows = 0; w->n_windows < w->n_most;) {
     PetscCall(MarchWindow(w, row));
     PetscCall(MarchDiesOut(w, &dies));
-    row->end = dies                                                               ? MAP_DECAYS
+    row->end = !MapBodiesAreHit(w->bodies, w->state.time - w->dt)                 ? MAP_TIME
+               : dies                                                             ? MAP_DECAYS
                : MapIsSettled(w->n_windows, w->sample, w->map->rtol, &row->error) ? MAP_SETTLED
                : MapIsSteady(w->n_windows, w->sample, w->map->rtol, &row->error)  ? MAP_STEADY
                                                                                   : MAP_TIME;
@@ -293,7 +293,7 @@ static PetscErrorCode MarchBegin(MapMarch w, PetscBool go_on, MapPoint *row, Pet
   PetscFunctionReturn(0);
 }
 
-/* A point; false where it failed, of which no other rank knows: laws without solution, or a motion beyond all numbers */
+/* A point; false where it failed, of which no other rank knows: laws without solution, or a motion beyond numbers */
 static PetscErrorCode MarchPoint(MapMarch w, PetscBool go_on, MapPoint *row, PetscBool *good)
 {
   PetscErrorCode error = 0;

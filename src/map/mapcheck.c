@@ -1,5 +1,5 @@
 /*
-   What a map cannot do, and what does nothing in it: how a single transient begins, what it records.
+   What a map cannot do, and what does nothing in it: how a single transient begins, what it records, what comes after its end.
 */
 #include "mapimpl.h"
 #include "reduced/idle.h"
@@ -80,5 +80,20 @@ PetscErrorCode MapCheckPrepared(Map map)
   PetscCheck(resting == n, map->comm, PETSC_ERR_USER_INPUT,
              "contact %s: a map is about sliding, and its speed is 0; say it by -%s_speed",
              resting < n ? c[resting].name : "", resting < n ? c[resting].name : "");
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapCheckTimes(Map map)
+{
+  const PetscReal window = map->dt * PetscFloorReal(map->window / map->dt + 0.5);
+
+  PetscFunctionBeginUser;
+  PetscCheck(map->window >= 32 * map->dt && map->end >= 8 * map->window, map->comm, PETSC_ERR_USER_INPUT,
+             "-map_window %.6g s must be 32 steps of %.6g s at least, and -ts_max_time %.6g s 8 windows",
+             (double)map->window, (double)map->dt, (double)map->end);
+  PetscCheck(map->end <= MAP_MAX_STEPS * map->dt, map->comm, PETSC_ERR_USER_INPUT,
+             "-ts_max_time %.6g s is %.3g steps of %.6g s; a point of a map takes at most %.0e", (double)map->end,
+             (double)(map->end / map->dt), (double)map->dt, MAP_MAX_STEPS);
+  PetscCall(ReducedRefuseLate(map->reduced, window * PetscFloorReal(map->end / window + 1e-9)));
   PetscFunctionReturn(0);
 }

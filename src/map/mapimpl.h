@@ -117,9 +117,11 @@ PETSC_INTERN PetscErrorCode MapAxes(Map map);
 PETSC_INTERN PetscBool MapAxisIsBody(const MapAxis *axis);
 
 /* mapcheck.c - raises the error for a scene of which no map can be made, and for options of the command line that do
-   nothing; after ReducedPrepare() for a scene without impulses or sliding */
+   nothing; after ReducedPrepare() for a scene without impulses or sliding; for a window, an end and impulses that do not fit to
+   each other and to the step */
 PETSC_INTERN PetscErrorCode MapCheck(Map map);
 PETSC_INTERN PetscErrorCode MapCheckPrepared(Map map);
+PETSC_INTERN PetscErrorCode MapCheckTimes(Map map);
 
 /* mapmodes.c - pure: of n eigenvalues (rad/s) the fastest mode; into the row those that grow, fastest first */
 PETSC_INTERN void MapModesJudge(PetscInt n, const PetscReal sigma[], const PetscReal omega[], MapFastest *fastest);
@@ -131,6 +133,9 @@ PETSC_INTERN PetscErrorCode MapBodiesCreate(Map map, PetscInt line, PetscReal cu
 PETSC_INTERN PetscErrorCode MapBodiesMove(Map map, const MapPoint *at, MapBodies *bodies, PetscReal speed[],
                                           PetscReal loads[]);
 PETSC_INTERN PetscErrorCode MapBodiesDestroy(MapBodies *bodies);
+
+/* mapbodies.c - whether all impulses of the bodies were due before t, s. Not collective. */
+PETSC_INTERN PetscBool MapBodiesAreHit(const MapBodies *bodies, PetscReal t);
 
 /* mapshare.c - numbers 0, 1, ... for ranks that ask; Begin anew is collective, Next is not */
 PETSC_INTERN PetscErrorCode MapShareCreate(MPI_Comm comm, MapShare *share);

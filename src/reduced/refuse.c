@@ -56,6 +56,13 @@ PetscErrorCode ReducedRefuseIdle(MPI_Comm comm, Operators operators, const char 
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ReducedRefuseLate(ReducedRun r, PetscReal end)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ExternalCheckHits(r->run.external, end, r->dt));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ReducedRefuseImpulses(ReducedRun r, const char why[])
 {
   PetscInt n;

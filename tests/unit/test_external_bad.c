@@ -25,7 +25,7 @@ static const char *const bad[][2] = {
   {LIFT MORE "-more_directions xz",    "-more_set head_edge has nodes that another of the -motions"},
   {"-impulses hit -hit_impulse 1,0,0", "-hit_at must be given: the place x,y,z (m)"                },
   {HIT "-hit_at 0,0,inf",              "-hit_at value inf must be a finite number (m)"             },
-  {HIT "-hit_impulse 0,0,0",           "-hit_impulse must be given: three values, not all zero"    },
+  {"-impulses hit -hit_at 0,0,1",      "-hit_impulse must be given: three values (N s), zeros for" },
   {HIT "-hit_time -1",                 "-hit_time -1 must be a time of at least 0 (s)"             },
   {HIT "-hit_part neck",               "-hit_part neck is none of the -parts: foot, head"          },
   {HIT "-hit_at 0,0,0",                "-hit_impulse does nothing: the node at 0, 0, 0 m is held"  },

@@ -93,6 +93,10 @@ typedef struct {
   PetscReal   x[3], impulse[3], time;
 } ExternalHit;
 
+/* ExternalCheckHits - raises an error for an impulse that is not before the last step of a run of steps dt to `end` (s): the first
+   step in which it acts as a whole would come too late. Collective. */
+PETSC_INTERN PetscErrorCode ExternalCheckHits(External external, PetscReal end, PetscReal dt);
+
 /* ExternalIsHitting - whether an impulse acts in the step that ExternalAdvance() began. Not collective. */
 PETSC_INTERN PetscBool ExternalIsHitting(External external);
 

@@ -7,18 +7,17 @@
 #include <squeal/options.h>
 
 /* Raises an error for an impulse that is not complete */
-static PetscErrorCode ImpulseCheck(External external, const Impulse *hit, PetscBool placed)
+static PetscErrorCode ImpulseCheck(External external, const Impulse *hit, PetscBool placed, PetscBool strong)
 {
-  const PetscReal *J    = hit->impulse;
-  const MPI_Comm   comm = external->comm;
-  PetscInt         part;
+  const MPI_Comm comm = external->comm;
+  PetscInt       part;
 
   PetscFunctionBeginUser;
   PetscCheck(placed, comm, PETSC_ERR_USER_INPUT, "-%s_at must be given: the place x,y,z (m)", hit->name);
   PetscCall(OptionsCheckFinite(comm, hit->name, "at", "m", hit->at));
-  PetscCall(OptionsCheckFinite(comm, hit->name, "impulse", "N s", J));
-  PetscCheck(J[0] != 0 || J[1] != 0 || J[2] != 0, comm, PETSC_ERR_USER_INPUT,
-             "-%s_impulse must be given: three values, not all zero (N s)", hit->name);
+  PetscCall(OptionsCheckFinite(comm, hit->name, "impulse", "N s", hit->impulse));
+  PetscCheck(strong, comm, PETSC_ERR_USER_INPUT, "-%s_impulse must be given: three values (N s), zeros for none",
+             hit->name);
   PetscCheck(hit->time >= 0 && !PetscIsInfOrNanReal(hit->time), comm, PETSC_ERR_USER_INPUT,
              "-%s_time %.6g must be a time of at least 0 (s)", hit->name, (double)hit->time);
   PetscCall(ModelFindPart(external->model, hit->name, hit->part, &part));
@@ -29,18 +28,45 @@ static PetscErrorCode ImpulseRead(OptionsItems PetscOptionsObject, void *owner, 
 {
   Impulse  *hit       = record;
   char      part[256] = "";
-  PetscBool placed;
+  PetscBool placed, strong;
 
   PetscFunctionBeginUser;
   PetscCall(OptionsGetReals(PetscOptionsObject, "-at", "place x,y,z whose nearest node is hit, m (required)", 3,
                             hit->at, &placed));
   PetscCall(
     PetscOptionsString("-part", "body of the node; any without it", "dynamics.h", part, part, sizeof(part), NULL));
-  PetscCall(
-    OptionsGetReals(PetscOptionsObject, "-impulse", "momentum in x,y,z, N s (required)", 3, hit->impulse, NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-impulse", "momentum in x,y,z, N s (required); zeros for none", 3,
+                            hit->impulse, &strong));
   PetscCall(PetscOptionsReal("-time", "when, s", "dynamics.h", hit->time, &hit->time, NULL));
   PetscCall(PetscStrallocpy(part, &hit->part));
-  PetscCall(ImpulseCheck(owner, hit, placed));
+  PetscCall(ImpulseCheck(owner, hit, placed, strong));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ImpulseDestroy(Impulse *hit)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(hit->name));
+  PetscCall(PetscFree(hit->part));
+  PetscCall(ForcePatternDestroy(&hit->pattern));
+  PetscFunctionReturn(0);
+}
+
+/* Takes those out that are zero: so a command line does without one of its files */
+static PetscErrorCode ImpulsesOmitZero(External external)
+{
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < external->n_impulses; i++) {
+    Impulse *hit = &external->impulses[i];
+
+    if (hit->impulse[0] != 0 || hit->impulse[1] != 0 || hit->impulse[2] != 0)
+      external->impulses[n++] = *hit;
+    else
+      PetscCall(ImpulseDestroy(hit));
+  }
+  external->n_impulses = n;
   PetscFunctionReturn(0);
 }
 
@@ -51,6 +77,20 @@ PetscErrorCode ImpulsesSetFromOptions(External external)
 
   PetscFunctionBeginUser;
   PetscCall(OptionsReadList(external->comm, &list, external, &external->n_impulses, &external->impulses));
+  PetscCall(ImpulsesOmitZero(external));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExternalCheckHits(External external, PetscReal end, PetscReal dt)
+{
+  const PetscReal last = dt * (PetscCeilReal(end / dt * (1 - 1e-12)) - 1);
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < external->n_impulses; i++)
+    PetscCheck(external->impulses[i].time < last, external->comm, PETSC_ERR_USER_INPUT,
+               "-%s_time %.6g must be before %.6g s, when the last step of the run begins: take an earlier one, or a "
+               "longer run (-ts_max_time)",
+               external->impulses[i].name, (double)external->impulses[i].time, (double)last);
   PetscFunctionReturn(0);
 }
 
@@ -201,11 +241,7 @@ PetscErrorCode ImpulsesView(External external, PetscViewer viewer)
 PetscErrorCode ImpulsesDestroy(External external)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < external->n_impulses; i++) {
-    PetscCall(PetscFree(external->impulses[i].name));
-    PetscCall(PetscFree(external->impulses[i].part));
-    PetscCall(ForcePatternDestroy(&external->impulses[i].pattern));
-  }
+  for (PetscInt i = 0; i < external->n_impulses; i++) PetscCall(ImpulseDestroy(&external->impulses[i]));
   PetscCall(PetscFree(external->impulses));
   PetscFunctionReturn(0);
 }

@@ -88,23 +88,17 @@ PetscErrorCode HistorySetFromOptions(History h)
 PetscErrorCode HistorySetUp(History history, const HistorySource *source, PetscReal end, PetscReal dt)
 {
   const ModelScene *scene;
-  PetscBool         fields;
 
   PetscFunctionBeginUser;
-  history->source   = *source;
-  history->live.end = end;
-  ScheduleRound(&history->rows, dt);
-  ScheduleRound(&history->pairs, dt);
-  ScheduleRound(&history->frames, dt);
+  history->source        = *source;
+  history->live.end      = end;
   history->growth.window = end > 0 ? PetscMin(end / 20, 1e-3) : 1e-3;
   PetscCall(ModelGetScene(source->model, &scene));
   history->n_probes  = scene->n_probes;
   history->probes    = scene->probes;
   history->n_circles = scene->n_circles;
   history->circles   = scene->circles;
-  PetscCall(ResultsWantFields(source->results, &fields));
-  if (!fields) history->frames.interval = 0;
-  if (!source->projector) history->pairs.interval = 0;
+  PetscCall(HistoryFit(history, end, dt));
   PetscCheck(history->pairs.interval == 0 || source->interfaces, history->comm, PETSC_ERR_ARG_WRONGSTATE,
              "states of pairs need the names of their interfaces");
   if (history->frames.interval > 0) PetscCall(SnapshotsCreate(history));

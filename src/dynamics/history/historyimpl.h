@@ -54,12 +54,14 @@ struct _p_History {
 PETSC_INTERN void HistoryMotion(const Layout *layout, const HistoryState *state, PetscInt i, PetscReal u[3],
                                 PetscReal v[3], PetscReal a[3]);
 
-/* schedule.c - rounds the interval to whole steps; whether one is due; Meet then goes on to the next. Restore takes
+/* schedule.c - whether one is due; Meet then goes on to the next. Restore takes
    over from a run that may have had another interval */
-PETSC_INTERN void      ScheduleRound(Schedule *schedule, PetscReal dt);
 PETSC_INTERN PetscBool ScheduleIsDue(const Schedule *schedule, PetscReal t, PetscReal dt);
 PETSC_INTERN PetscBool ScheduleMeet(Schedule *schedule, PetscReal t, PetscReal dt);
 PETSC_INTERN void      ScheduleRestore(Schedule *schedule, const Schedule *kept);
+
+/* schedule.c - the intervals of a run of steps dt (0 for not rounded) to `end`: errors as of HistorySetUp(). Collective. */
+PETSC_INTERN PetscErrorCode HistoryFit(History history, PetscReal end, PetscReal dt);
 
 /* historyrow.c - header of transient.csv, which the caller frees, and a row */
 PETSC_INTERN PetscErrorCode HistoryCreateHeader(History history, char **header);
