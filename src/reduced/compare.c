@@ -103,7 +103,7 @@ static void CompareJudge(ReducedRun r)
   for (PetscInt i = 0; i < r->n_compared; i++) {
     const ReducedPair *c = &r->compared[i];
 
-    const PetscReal    scale = PetscMax(c->mesh[0], GROWTH_LEAST * c->mesh[1]);
+    const PetscReal scale = PetscMax(c->mesh[0], GROWTH_LEAST * c->mesh[1]);
 
     if (!c->unstable) continue;
     r->miss_model = PetscMax(r->miss_model, PetscAbsReal(c->reduced[0] - c->mesh[0]) / scale);
@@ -137,18 +137,17 @@ PetscErrorCode ReducedCompareView(ReducedRun r, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "eigenvalues of the mesh not compared: %s\n", r->not_compared));
     PetscFunctionReturn(0);
   }
-  PetscCall(PetscViewerASCIIPrintf(
-    viewer,
-    "eigenvalues about the sliding state, %" PetscInt_FMT " of %" PetscInt_FMT
-    " pairs closed: mesh, reduced, reduced in steps of %.6g s\n",
-    r->n_closed, r->model.n_pairs, (double)r->dt));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "eigenvalues about the sliding state, %" PetscInt_FMT " of %" PetscInt_FMT
+                                   " pairs closed: mesh, reduced, reduced in steps of %.6g s\n",
+                                   r->n_closed, r->model.n_pairs, (double)r->dt));
   for (PetscInt i = 0; i < r->n_compared; i++) {
     const ReducedPair *c = &r->compared[i];
 
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %10.4f Hz %+10.4f 1/s   %10.4f Hz %+10.4f 1/s   %10.4f Hz %+10.4f 1/s  %s\n",
-                                     (double)(c->mesh[1] / (2 * PETSC_PI)), (double)c->mesh[0],
-                                     (double)(c->reduced[1] / (2 * PETSC_PI)), (double)c->reduced[0],
-                                     (double)(c->steps[1] / (2 * PETSC_PI)), (double)c->steps[0], c->label));
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "  %10.4f Hz %+10.4f 1/s   %10.4f Hz %+10.4f 1/s   %10.4f Hz %+10.4f 1/s  %s\n",
+      (double)(c->mesh[1] / (2 * PETSC_PI)), (double)c->mesh[0], (double)(c->reduced[1] / (2 * PETSC_PI)),
+      (double)c->reduced[0], (double)(c->steps[1] / (2 * PETSC_PI)), (double)c->steps[0], c->label));
   }
   PetscCall(PetscViewerASCIIPrintf(viewer,
                                    "growth of unstable modes: reduced off by %.2g %% at most, steps by %.2g %% more\n",

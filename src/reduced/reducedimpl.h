@@ -17,7 +17,8 @@ struct _p_ReducedStepper {
   PetscReal          *E, *F;       /* [2 m][2 m], [m][2 m]: z(dt) = E z + F g, by columns */
   PetscReal          *Q;           /* [3 m][3 m] of the work of damping; NULL without, and until works are asked for */
   PetscReal          *W;           /* [3 n_pairs][3 n_pairs] compliance of the pairs in a step, m/N */
-  PetscInt            rank, *chosen; /* [rank] ports on which q is sought, all where W is regular or nothing damps */
+  PetscInt   rank, *chosen; /* [rank] ports on which q is sought, all where W is regular or nothing damps; the others */
+  PetscReal *combined;      /* [n - rank][rank]: what a force on one of the others is on the chosen ones */
   PetscReal *HW, *HC; /* [3 n_pairs]^2, [m][3 n_pairs] H W and H Cm' of the residual (stepresidual.c); NULL undamped */
   ContactCompliance laws;                    /* NULL without pairs */
   PetscReal        *x, *next, *product;      /* work: [3 m] z and g; [3 m] z(dt); [3 m] */
@@ -209,8 +210,10 @@ PETSC_INTERN PetscErrorCode ReducedForget(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedReduceLike(ReducedRun reduced, PetscReal cutoff, const PetscReal p[],
                                               ReducedRun *at);
 
-/* stepresidual.c - HW and HC */
+/* stepresidual.c - HW and HC; q of the step with lambda [n_ports] on the ports on which it is not sought, and as much less on the
+   chosen ones: a force that moves the same */
 PETSC_INTERN PetscErrorCode ReducedStepperSetResidual(ReducedStepper stepper);
+PETSC_INTERN void           ReducedStepperSettle(ReducedStepper stepper, const PetscReal lambda[]);
 
 /* stepper.c - Q of the work of damping, where it is not there yet: only who asks for works needs it */
 PETSC_INTERN PetscErrorCode ReducedStepperSetDamping(ReducedStepper stepper);

@@ -34,12 +34,13 @@ PetscErrorCode ReducedRefuse(ReducedRun r)
 
 PetscErrorCode ReducedRefuseIdle(MPI_Comm comm, Operators operators, const char why[])
 {
-  static const char idle[]  = "-dynamics_start -dynamics_shape -dynamics_history_interval -dynamics_pairs_interval "
-                              "-dynamics_snapshot_interval -dynamics_live -dynamics_restart "
-                              "-dynamics_checkpoint_interval -dynamics_check_interval -dynamics_verify "
-                              "-contact_view_kkt -ts_max_steps";
-  static const char ramps[] = "ramp ramp_shape delay";
-  const ModelScene *scene;
+  static const char       idle[]  = "-dynamics_start -dynamics_shape -dynamics_shape_mode -dynamics_shape_amplitude "
+                                    "-dynamics_history_interval -dynamics_pairs_interval "
+                                    "-dynamics_snapshot_interval -dynamics_live -dynamics_restart "
+                                    "-dynamics_checkpoint_interval -dynamics_check_interval -dynamics_verify "
+                                    "-contact_view_kkt -ts_max_steps";
+  static const char       ramps[] = "ramp ramp_shape delay";
+  const ModelScene       *scene;
   const ContactInterface *c;
   PetscInt                n;
   Model                   model;

@@ -159,6 +159,7 @@ static void StepperSolveResidual(ReducedStepper s, const ReducedState *state)
   ReducedBlockTimes(&(DenseBlock){s->HW, n, n, n}, PETSC_FALSE, 1, s->r, s->dq);
   ReducedBlockTimes(&(DenseBlock){s->HC, n, m, n}, PETSC_FALSE, 1, s->product, s->dq);
   for (PetscInt i = 0; i < n; i++) s->q[i] += s->dq[i];
+  ReducedStepperSettle(s, state->p);
   StepperDrag(s);
 }
 

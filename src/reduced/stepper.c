@@ -233,6 +233,7 @@ PetscErrorCode ReducedStepperDestroy(ReducedStepper *stepper)
   PetscCall(PetscFree(s->Q));
   PetscCall(PetscFree2(s->HW, s->HC));
   PetscCall(PetscFree(s->chosen));
+  PetscCall(PetscFree(s->combined));
   PetscCall(PetscFree5(s->x, s->next, s->product, s->free, s->slip0));
   PetscCall(PetscFree3(s->mean, s->r, s->port));
   PetscCall(PetscFree3(s->q, s->dq, s->slip));

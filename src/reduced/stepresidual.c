@@ -6,7 +6,8 @@
 
    of which the step needs H W and H Cm'. Pairs give way in fewer directions than they have where both sides are held in one, or
    where more slaves than nodes of the master meet: forces z then move nothing, W z = Cx z = Cm z = P z = 0, and q is sought on ports of
-   which the rows of the others are combinations. H is the inverse there.
+   which the rows of the others are combinations. H is the inverse there. Which of the forces that move alike is meant nothing tells: on
+   the others q is lambda_{n+1}, else a step would keep what it began with, and a cycle be one of many.
 
    W must be regular in all directions in which pairs give way, which are those of P and W together: mean forces on bodies that
    give way by their modes alone hold back what alternates from step to step by nothing, and it grows
@@ -66,6 +67,47 @@ static PetscErrorCode StepperChoosePorts(ReducedStepper s)
   PetscFunctionReturn(0);
 }
 
+/* The other ports behind the chosen ones, and their columns of W as sums of those of the chosen */
+static PetscErrorCode StepperCombine(ReducedStepper s)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      n = 3 * model->n_pairs, N = model->n_ports, rank = s->rank;
+  PetscInt            last = rank;
+  PetscReal          *A;
+  PetscBLASInt       *pivot;
+
+  PetscFunctionBeginUser;
+  if (rank == n) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < n; i++) {
+    PetscInt k = 0;
+
+    while (k < rank && s->chosen[k] != i) k++;
+    if (k == rank) s->chosen[last++] = i;
+  }
+  PetscCall(PetscMalloc1(rank * (n - rank), &s->combined));
+  PetscCall(PetscMalloc2(rank * rank, &A, rank, &pivot));
+  for (PetscInt l = 0; l < n; l++)
+    for (PetscInt k = 0; k < rank; k++)
+      *(l < rank ? &A[k + rank * l] : &s->combined[k + rank * (l - rank)]) = model->W[s->chosen[k] + N * s->chosen[l]];
+  PetscCall(DenseFactor(rank, A, pivot, NULL));
+  PetscCall(DenseSolve(rank, A, pivot, PETSC_FALSE, n - rank, s->combined));
+  PetscCall(PetscFree2(A, pivot));
+  PetscFunctionReturn(0);
+}
+
+void ReducedStepperSettle(ReducedStepper s, const PetscReal lambda[])
+{
+  const PetscInt rank = s->rank;
+
+  for (PetscInt l = rank; l < 3 * s->model->n_pairs; l++) {
+    const PetscInt  other = s->chosen[l];
+    const PetscReal off   = s->q[other] - lambda[other];
+
+    s->q[other] = lambda[other];
+    for (PetscInt k = 0; k < rank; k++) s->q[s->chosen[k]] += s->combined[k + rank * (l - rank)] * off;
+  }
+}
+
 /* X [columns][n], of which the chosen rows are known, := H X, zero in the others; A [rank][rank] LU factors */
 static PetscErrorCode StepperApplyH(ReducedStepper s, const PetscReal A[], const PetscBLASInt pivot[], PetscInt columns,
                                     PetscReal X[])
@@ -120,6 +162,7 @@ PetscErrorCode ReducedStepperSetResidual(ReducedStepper s)
   if (!n) PetscFunctionReturn(0);
   PetscCall(StepperChoosePorts(s));
   if (!model->Cx) PetscFunctionReturn(0);
+  PetscCall(StepperCombine(s));
   PetscCall(PetscMalloc2(n * n, &s->HW, n * m, &s->HC));
   PetscCall(PetscMalloc2(s->rank * s->rank, &A, s->rank, &pivot));
   PetscCall(StepperFormResidual(s, A));

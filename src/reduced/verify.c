@@ -91,12 +91,12 @@ static PetscErrorCode VerifyOne(ReducedRun r, PetscReal cutoff, PetscInt every, 
   ForceMeasure(n - half, &other->force[half], &rms[2], &open[2]);
   ForceScatter(n - half, &r->force[half], &error[0][0], &error[0][1]);
   ForceScatter(n - half, &other->force[half], &error[1][0], &error[1][1]);
-  *d = (ReducedDifference){.cutoff  = cutoff,
-                           .dt      = r->dt / (PetscReal)every,
-                           .rms     = rms[0] > 0 ? PetscSqrtReal(square) / rms[0] : 0,
-                           .largest = largest > 0 ? miss / largest : 0,
-                           .level   = rms[1] > 0 ? rms[2] / rms[1] - 1 : 0,
-                           .open    = open[2] - open[1],
+  *d = (ReducedDifference){.cutoff      = cutoff,
+                           .dt          = r->dt / (PetscReal)every,
+                           .rms         = rms[0] > 0 ? PetscSqrtReal(square) / rms[0] : 0,
+                           .largest     = largest > 0 ? miss / largest : 0,
+                           .level       = rms[1] > 0 ? rms[2] / rms[1] - 1 : 0,
+                           .open        = open[2] - open[1],
                            .level_error = rms[1] > 0 ? hypot(error[0][0], error[1][0]) / rms[1] : 0,
                            .open_error  = hypot(error[0][1], error[1][1])};
   PetscCall(ReducedDestroy(&other));
@@ -126,8 +126,7 @@ PetscErrorCode ReducedVerifyView(ReducedRun r, PetscViewer viewer)
                                      "the last half of the time its rms by %+.2e +- %.1e, the time without contact by "
                                      "%+.2e +- %.1e\n",
                                      (double)d->dt, (double)d->cutoff, (double)d->rms, (double)d->largest,
-                                     (double)d->level, (double)d->level_error, (double)d->open,
-                                     (double)d->open_error));
+                                     (double)d->level, (double)d->level_error, (double)d->open, (double)d->open_error));
   }
   PetscFunctionReturn(0);
 }

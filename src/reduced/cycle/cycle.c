@@ -196,6 +196,25 @@ PetscErrorCode CycleTakeFold(LimitCycle c, const ShootingPlace *fold, PetscReal 
   PetscFunctionReturn(0);
 }
 
+/* Raises the error for a guess from which no cycle is found */
+static PetscErrorCode CycleCheckFound(LimitCycle c, const ShootingCycle *at)
+{
+  char miss[160] = "the contact laws have no solution on the way through a period";
+
+  PetscFunctionBeginUser;
+  if (at->residual < PETSC_MAX_REAL)
+    PetscCall(PetscSNPrintf(miss, sizeof(miss),
+                            "a period ends %.1e of the vibration's size from where it began, must be %.0e",
+                            (double)at->residual, (double)c->rtol));
+  PetscCheck(at->converged, c->comm, PETSC_ERR_NOT_CONVERGED,
+             CYCLE_BY
+             ": no cycle of %.6g Hz is found: after %" PetscInt_FMT
+             " steps of Newton's method %s; a longer -ts_max_time, more -cycle_steps or a larger -cycle_max_it "
+             "may help",
+             1 / (double)at->period, at->its, miss);
+  PetscFunctionReturn(0);
+}
+
 /* The cycle at the end of the transient */
 static PetscErrorCode CycleFind(LimitCycle c, ShootingCycle *at)
 {
@@ -205,11 +224,7 @@ static PetscErrorCode CycleFind(LimitCycle c, ShootingCycle *at)
   at->value = c->varied.value;
   PetscCall(CycleSetShooting(c, at->period));
   PetscCall(ShootingSolve(&c->shooting, at));
-  PetscCheck(at->converged, c->comm, PETSC_ERR_NOT_CONVERGED,
-             CYCLE_BY ": no cycle of %.6g Hz is found: after %" PetscInt_FMT " steps of Newton's method a period ends "
-                      "%.1e of the vibration's size from where it began, must be %.0e; a longer -ts_max_time, more "
-                      "-cycle_steps or a larger -cycle_max_it may help",
-             1 / (double)at->period, at->its, (double)at->residual, (double)c->rtol);
+  PetscCall(CycleCheckFound(c, at));
   if (c->verify_cutoff) PetscCall(CycleHigherCreate(c, &c->higher));
   PetscCall(CycleTake(c, at));
   c->rms = c->point[0].found.rms;
@@ -241,7 +256,7 @@ static PetscErrorCode CycleReduce(LimitCycle c, Results results)
 
   PetscFunctionBeginUser;
   PetscCall(ReducedRefuseIdle(c->comm, c->operators, idle));
-  PetscCall(OptionsRefuse(c->comm, "-ts_max_time", idle));
+  PetscCall(OptionsRefuse(c->comm, "-ts_max_time -ts_exact_final_time -ts_init_time", idle));
   PetscCall(DynamicsSetEndless(c->reduced->dynamics));
   PetscCall(ReducedPrepare(c->reduced, results));
   PetscCall(ReducedRefuseImpulses(c->reduced, idle));

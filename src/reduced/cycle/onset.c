@@ -53,22 +53,25 @@ static PetscErrorCode OnsetGrowth(LimitCycle c, PetscReal value, OnsetLook *look
   PetscFunctionReturn(0);
 }
 
-/* Two values next to that of the scene between which growth changes its sign; its least and largest value over the range */
+/* Two values next to that of the scene between which growth changes its sign; how many of those that are looked at have a sliding
+   state; the least and largest growth of modes that oscillate there */
 static PetscErrorCode HopfBracket(LimitCycle c, OnsetLook *look, PetscReal at[2], PetscReal growth[2],
-                                  PetscReal span[2])
+                                  PetscInt *n_found, PetscReal span[2])
 {
   PetscReal before = NAN, last = 0, nearest = PETSC_MAX_REAL;
 
   PetscFunctionBeginUser;
-  span[0] = PETSC_MAX_REAL;
-  span[1] = -PETSC_MAX_REAL;
+  *n_found = 0;
+  span[0]  = PETSC_MAX_REAL;
+  span[1]  = -PETSC_MAX_REAL;
   for (int k = 0; k < ONSET_LOOKS; k++) {
     const PetscReal value = c->range[0] + (c->range[1] - c->range[0]) * k / (ONSET_LOOKS - 1);
     PetscReal       now, far;
 
     PetscCall(OnsetGrowth(c, value, look, &now));
-    if (!PetscIsNanReal(now)) span[0] = PetscMin(span[0], now);
-    if (!PetscIsNanReal(now)) span[1] = PetscMax(span[1], now);
+    if (!PetscIsNanReal(now)) (*n_found)++;
+    if (now > -PETSC_INFINITY) span[0] = PetscMin(span[0], now);
+    if (now > -PETSC_INFINITY) span[1] = PetscMax(span[1], now);
     far = PetscAbsReal(0.5 * (last + value) - c->varied.value);
     if ((before > 0 && now <= 0) || (before <= 0 && now > 0)) {
       if (far < nearest) {
@@ -102,12 +105,18 @@ static PetscErrorCode HopfGrowth(LimitCycle c, PetscReal value, OnsetLook *look,
 static PetscErrorCode HopfFind(LimitCycle c, OnsetLook *look)
 {
   PetscReal at[2], growth[2], span[2];
+  PetscInt  n_found;
 
   PetscFunctionBeginUser;
-  PetscCall(HopfBracket(c, look, at, growth, span));
-  PetscCheck(span[0] <= span[1], c->comm, PETSC_ERR_USER_INPUT,
+  PetscCall(HopfBracket(c, look, at, growth, &n_found, span));
+  PetscCheck(n_found > 0, c->comm, PETSC_ERR_USER_INPUT,
              "-cycle_start mode: no sliding state is found for %s between %.6g and %.6g: do -loads press the contacts?",
              c->varied.name, (double)c->range[0], (double)c->range[1]);
+  PetscCheck(
+    span[0] <= span[1], c->comm, PETSC_ERR_USER_INPUT,
+    "-cycle_start mode: no mode of the sliding state oscillates for %s between %.6g and %.6g: take less damping, or a "
+    "higher -dynamics_cutoff",
+    c->varied.name, (double)c->range[0], (double)c->range[1]);
   PetscCheck(
     !PetscIsNanReal(at[0]), c->comm, PETSC_ERR_USER_INPUT,
     "-cycle_start mode: no mode becomes unstable for %s between %.6g and %.6g, the fastest grows by %.3g to %.3g "

@@ -37,10 +37,11 @@ static PetscErrorCode CycleViewStability(LimitCycle c, const CyclePoint *p, Pets
   PetscCall(PetscViewerASCIIPrintf(viewer, "; residual %.1e after %" PetscInt_FMT " steps of Newton's method\n",
                                    (double)p->residual, p->its));
   if (!PetscIsNanReal(s->check))
-    PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "  dT/dtheta %+.1e, by about which these steps put the multiplier of the phase off where no "
-                                     "other is near 1, as one is at a fold; check of their derivative 1%+.1e\n",
-                                     (double)s->slope, (double)(s->check - 1)));
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer,
+      "  dT/dtheta %+.1e, by about which these steps put the multiplier of the phase off where no "
+      "other is near 1, as one is at a fold; check of their derivative 1%+.1e\n",
+      (double)s->slope, (double)(s->check - 1)));
   PetscFunctionReturn(0);
 }
 
