@@ -29,8 +29,9 @@
    derivative of each step makes 6e-4 of it). It is no multiplier, and tells nothing of how near x is to a cycle: that is the residual.
 
    In M the phase is told by its vector, which makes most of x'. Where others have about as much part in that (at a fold, or where steps
-   mix them) and it depends on which is taken, where the largest modulus is nearer to 1 than its own error or the root of -cycle_rtol, or
-   where that error is not known, the class is `numerical`: stability cannot be told.
+   mix them) and it depends on which is taken, or where the largest modulus is nearer to 1 than its own error or the root of -cycle_rtol,
+   the class is `numerical`: stability cannot be told. Where that error is not known, as without -cycle_verify, it is `unverified`: the
+   multipliers are those of these steps, and nobody knows how far off.
 
    A branch begins at the end of a transient, or where a mode of the sliding state becomes unstable (src/reduced/cycle/onset.c). Where
    its parameter turns back the fold is found, dp/ds = 0; the error of its parameter is that of finding it and the
@@ -48,7 +49,7 @@
    of its own: the difference to the cycle of as many steps on the modes below 2.25 times the cut-off. What lies above these is not in
    it: on a small brake it is what three times the cut-off make, to 1 %, while those below 1.5 times, none of which is more of the
    pad, told a hundredth of it and less. It counts for the class, and for the parameter of a fold: where no such cycle is found the
-   class is `numerical`, and no error of a fold is told.
+   class is `unverified`, and no error of a fold is told.
    The error of the interpolation is in neither.
 */
 #pragma once

@@ -14,7 +14,8 @@ COLUMNS = {"point": int, "parameter": str, "value": optional, "value_error": opt
            "force_peak_error_n": optional, "multiplier_abs": float, "multiplier_error": optional, "class": str}
 PROBES = {"point": int, "probe": str, "direction": str, "velocity_rms_m_s": float, "velocity_rms_error_m_s": optional,
           "velocity_peak_m_s": float, "velocity_peak_error_m_s": optional}
-COLOURS = {"stable": BLUE, "unstable": VERMILION, "numerical": GREY}
+COLOURS = {"stable": BLUE, "unstable": VERMILION, "numerical": GREY, "unverified": GREY}
+TOLD = {"numerical": "stability within its error", "unverified": "stability not verified"}
 
 
 class Branch:
@@ -63,7 +64,7 @@ def draw_line(axes, branch, name, error=None):
     kinds = branch.column("class")
     bars = [0 if math.isnan(e) else e for e in branch.column(error)] if error else [0] * len(x)
     for k in range(len(x) - 1):
-        kind = next((one for one in ("stable", "unstable") if one in kinds[k:k + 2]), "numerical")
+        kind = next((one for one in ("stable", "unstable") if one in kinds[k:k + 2]), kinds[k])
         axes.plot(x[k:k + 2], y[k:k + 2], color=COLOURS[kind], linestyle="-" if kind == "stable" else "--", lw=1.4)
     for kind, colour in COLOURS.items():
         chosen = [k for k in range(len(x)) if kinds[k] == kind]
@@ -118,7 +119,7 @@ def draw_branch(branch, probe=None):
                            xycoords=("data", "axes fraction"), textcoords="offset points")
     marks = [Line2D([], [], color=COLOURS[kind], marker="o", ls="-" if kind == "stable" else "--",
                     mfc=COLOURS[kind] if kind == "stable" else "white",
-                    label=kind.replace("numerical", "stability within its error"))
+                    label=TOLD.get(kind, kind))
              for kind in COLOURS if kind in branch.column("class")]
     panels[0].legend(handles=[*marks, Line2D([], [], color=INK, marker="_", ls="", label="error of the steps")],
                      loc="best")

@@ -162,8 +162,8 @@ PETSC_INTERN PetscErrorCode CycleHigherDestroy(CycleHigher *higher);
 PETSC_INTERN PetscErrorCode CycleFollow(LimitCycle cycle, const ShootingCycle *start, const ShootingTangent *growing);
 
 /* write.c - all tables as they are by now; the error of a number beside that of twice the steps and the spread over where
-   steps begin, and that of the largest multiplier by the steps; the class of a cycle that was found to `rtol`: stable, unstable, or
-   numerical where it cannot be told, and why that is, NULL for the others */
+   steps begin, and that of the largest multiplier by the steps; the class of a cycle that was found to `rtol`: stable, unstable,
+   numerical where its error leaves that open, unverified where the error is not known, and why that is, NULL for the first two */
 PETSC_INTERN PetscErrorCode CycleWrite(LimitCycle cycle);
 PETSC_INTERN PetscReal      CycleError(PetscReal found, PetscReal finer, PetscReal spread);
 PETSC_INTERN PetscReal      CycleMultiplierError(const CyclePoint *point);

@@ -59,7 +59,8 @@ const char *CycleClass(const CyclePoint *p, PetscReal rtol, const char **why)
     *why = "no cycle of other steps tells the error of the multiplier";
   else if (p->wants_higher && !p->has_higher)
     *why = "no cycle with a higher cut-off tells the error of the multiplier";
-  else if (!side)
+  if (*why) return "unverified";
+  if (!side)
     *why = "the multiplier is nearer to 1 than its error";
   else if (side != MultiplierSide(p->stability.worst, margin))
     *why = "another multiplier may be that of the phase";
