@@ -11,6 +11,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from served import RENAME, killed_at
+
 SOURCE = Path(__file__).resolve().parents[1]
 SCENE = """
 model: {mesh: mesh/block.msh}
@@ -148,6 +150,29 @@ def check_unfinished(r):
             "its scene is the whole run")
 
 
+def check_killed(r):
+    """A transient that is killed has listed its snapshots; they and its unfinished tables go when a later one has ended."""
+    options = ("-dynamics_snapshot_interval", "4e-5", "-dynamics_pairs_interval", "4e-5")
+    command = [r.mpirun, "-n", "1", r.squeal, "-options_file", r.folder / "scenes/mine.yaml", "-output_dir", r.folder / "killed",
+               *RUN["transient"], *options]
+    r.check(killed_at(command, r.folder / "killed/snapshot_000003.h5", r.folder, RENAME), "killed at its fourth snapshot")
+    listed = (r.folder / "killed/scene.yaml").read_text()
+    r.check(all(f"snapshot_00000{k}.h5" in listed for k in range(4)), "scene.yaml names the snapshots so far")
+    (r.folder / "killed/snapshot_000007.h5").write_text("precious")
+    done = r.scene("transient", "-output_fields", "0", out="killed")
+    left = ["scene.yaml", "snapshot_000007.h5", "transient.csv"]
+    r.check(done.returncode == 0 and r.files("killed") == left, f"go with the next run: {r.files('killed')}", done)
+
+
+def check_names(r):
+    """All tables of the sources are among those that a later run may remove; load.csv is beside saved matrices."""
+    names = {name for path in (SOURCE / "src").rglob("*.c")
+             for name in re.findall(r'ResultsTableOpen\([^"]*?"(\w+)"', path.read_text())} - {"load"}
+    known = (SOURCE / "src/results/earlier.c").read_text()
+    lost = [name for name in sorted(names) if f'"{name}.csv"' not in known]
+    r.check(len(names) > 10 and not lost, f"tables that no later run removes: {lost}")
+
+
 def check_foreign(r):
     """A user's file under the name of a checkpoint stays; one of a finished run goes with its tables."""
     (r.folder / "foreign").mkdir()
@@ -215,7 +240,8 @@ def main():
         (r.folder / "scenes/mine.yaml").write_text(SCENE)
         subprocess.run([sys.executable, SOURCE / "tests/mesh.py", "blocks", "--elements", "3,3,3",
                         r.folder / "scenes/mesh/block.msh"], check=True)
-        for check in (check_scene, check_stale, check_users, check_unfinished, check_foreign, check_damaged, check_words, check_path):
+        for check in (check_scene, check_stale, check_users, check_unfinished, check_killed, check_names, check_foreign, check_damaged,
+                      check_words, check_path):
             check(r)
     if r.faults:
         print(f"{len(r.faults)} failed: {'; '.join(r.faults)}")

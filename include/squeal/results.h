@@ -159,7 +159,7 @@ PetscErrorCode ResultsKeepFolder(Results results, const char folder[]);
 
 /*@
    ResultsKeepScene - begins the account of the run: its time, and all options of squeal in force. Collective; before
-   anything is written. From then on scene.yaml is there before the first file has its final name.
+   anything is written. From then on scene.yaml names each file before it has its final name.
 
    Input Parameters:
 +  read_again - reads all options of all rooms on objects of its own

@@ -29,6 +29,8 @@ static const struct {
   {"parameters.csv",    NULL                },
   {"frf.csv",           NULL                },
   {"peaks.csv",         NULL                },
+  {"cycle.csv",         NULL                },
+  {"cycle_probes.csv",  NULL                },
   {"map.csv",           NULL                },
   {"map_modes.csv",     NULL                },
   {"map_errors.csv",    NULL                },
@@ -162,16 +164,18 @@ PetscErrorCode EarlierPrint(Results results, PetscBool ended, OutFile *file)
   PetscFunctionReturn(0);
 }
 
-/* Removes the files of earlier runs */
+/* Removes the files of earlier runs, and what a killed one left of them under their temporary names */
 PetscErrorCode EarlierRemove(Results results)
 {
-  char path[PETSC_MAX_PATH_LEN];
+  char path[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < results->n_earlier; i++) {
     if (!EarlierGoes(results, results->earlier[i])) continue;
     PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", results->dir, results->earlier[i]));
+    PetscCall(PetscSNPrintf(part, sizeof(part), "%s.part", path));
     (void)unlink(path); /* it may be gone */
+    (void)unlink(part);
   }
   PetscFunctionReturn(0);
 }

@@ -248,8 +248,8 @@ PetscErrorCode OutFilesCheck(PetscInt n, OutFile *const files[])
 }
 
 /*
-   Completes the files and gives them their final names, in this order, the first ones of a run after its scene.yaml; an
-   error leaves no temporary file. Collective.
+   Completes the files and gives them their final names, in this order, once scene.yaml names them; an error leaves no temporary
+   file. Collective.
 */
 PetscErrorCode OutFilesPublish(PetscInt n, OutFile *const files[])
 {
@@ -262,7 +262,7 @@ PetscErrorCode OutFilesPublish(PetscInt n, OutFile *const files[])
     PetscCall(OutFileH5Close(files[i]));
   }
   PetscCall(OutFilesCheck(n, files));
-  failure = ResultsBeginScene(files[0]->results);
+  failure = ResultsListFiles(files[0]->results);
   for (PetscInt i = 0; i < n && failure; i++) PetscCall(OutFileDiscard(files[i]));
   PetscCall(failure);
   PetscCallMPI(MPI_Comm_rank(files[0]->comm, &rank));

@@ -1,6 +1,6 @@
 /*
-   Provenance: scene.yaml, which tells where the files of a folder come from and can be run again. It is there before the first of
-   them has its final name, and is written anew at the end: a run that is stopped, or finds no room, leaves no table without it.
+   Provenance: scene.yaml, which tells where the files of a folder come from and can be run again. It names each of them before it has
+   its final name, and is written anew at the end: what a run that is stopped, or finds no room, leaves is known to be its.
 */
 #include "resultsimpl.h"
 #include "base/help.h"
@@ -233,6 +233,7 @@ static PetscErrorCode SceneWrite(Results results, PetscBool ended)
   PetscCall(ScenePrintNotes(results, file));
   PetscCall(OutFilePrint(file, SCENE_FILES));
   for (PetscInt i = 0; i < results->n_kept; i++) PetscCall(OutFilePrint(file, " %s", results->kept[i]));
+  results->n_listed = results->n_kept;
   PetscCall(OutFilePrint(file, "\n"));
   PetscCall(EarlierPrint(results, ended, file));
   PetscCall(OutFilePrint(file, "\n"));
@@ -242,11 +243,12 @@ static PetscErrorCode SceneWrite(Results results, PetscBool ended)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ResultsBeginScene(Results results)
+PetscErrorCode ResultsListFiles(Results results)
 {
   PetscFunctionBeginUser;
-  if (results->scene_begun || !results->options.n) PetscFunctionReturn(0); /* no run without ResultsKeepScene() */
-  results->scene_begun = PETSC_TRUE;                                       /* it is published as others are */
+  if (!results->options.n) PetscFunctionReturn(0); /* no run without ResultsKeepScene() */
+  if (results->n_listed == results->n_kept)
+    PetscFunctionReturn(0); /* also scene.yaml itself, published as others are */
   PetscCall(SceneWrite(results, PETSC_FALSE));
   PetscFunctionReturn(0);
 }
@@ -254,7 +256,6 @@ PetscErrorCode ResultsBeginScene(Results results)
 PetscErrorCode ResultsFinish(Results results)
 {
   PetscFunctionBeginUser;
-  results->scene_begun = PETSC_TRUE;
   PetscCall(SceneWrite(results, PETSC_TRUE));
   PetscCall(EarlierRemove(results));
   PetscCallMPI(MPI_Barrier(results->comm));

@@ -30,7 +30,7 @@ struct _p_Results {
   char    **note;         /* lines of scene.yaml */
   PetscBool keep_all;     /* nothing of earlier runs goes */
   PetscBool earlier_read; /* on the first rank: `earlier` is what their scene.yaml lists */
-  PetscBool scene_begun;  /* scene.yaml of this run is there */
+  PetscInt  n_listed;     /* files that scene.yaml of this run names, 0 before it is there */
   HelpList  options;      /* all, as the run found them */
   double    begun;        /* MPI_Wtime() */
 };
@@ -95,7 +95,7 @@ PETSC_INTERN PetscErrorCode EarlierPrint(Results results, PetscBool ended, OutFi
 PETSC_INTERN PetscErrorCode EarlierRemove(Results results);
 
 /* provenance.c */
-PETSC_INTERN PetscErrorCode ResultsBeginScene(Results results);
+PETSC_INTERN PetscErrorCode ResultsListFiles(Results results);
 PETSC_INTERN PetscErrorCode ResultsForget(Results results);
 
 /* h5file.c */
