@@ -174,12 +174,12 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscCall(DynamicsCreateState(d));
   PetscCall(DynamicsFindCriticalStep(d));
   PetscCall(DynamicsChooseStep(d, &dt, &end));
-  PetscCall(ExternalCheckHits(d->external, end, dt));
   PetscCall(HistorySetUp(
     d->history, &(HistorySource){d->model, d->layout, d->projector, d->n_interfaces, d->interfaces, results}, end, dt));
   PetscCall(TSSetUp(d->ts));
   PetscCall(DynamicsSetFilters(d));
   PetscCall(d->restart ? DynamicsGoOn(d) : DynamicsStartState(d));
+  PetscCall(ExternalCheckHits(d->external, end, dt, PETSC_TRUE));
   if (!d->restart) PetscCall(DynamicsForget(d));
   if (d->restart) PetscCall(ResultsKeep(results, CHECKPOINT_FILE));
   if (d->shape[0]) PetscCall(ResultsKeepFolder(results, d->shape));

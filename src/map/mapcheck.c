@@ -94,6 +94,6 @@ PetscErrorCode MapCheckTimes(Map map)
   PetscCheck(map->end <= MAP_MAX_STEPS * map->dt, map->comm, PETSC_ERR_USER_INPUT,
              "-ts_max_time %.6g s is %.3g steps of %.6g s; a point of a map takes at most %.0e", (double)map->end,
              (double)(map->end / map->dt), (double)map->dt, MAP_MAX_STEPS);
-  PetscCall(ReducedRefuseLate(map->reduced, window * PetscFloorReal(map->end / window + 1e-9)));
+  PetscCall(ReducedRefuseLate(map->reduced, window * PetscFloorReal(map->end / window + 1e-9), PETSC_FALSE));
   PetscFunctionReturn(0);
 }

@@ -4,7 +4,6 @@
    for the reduction, by a higher cut-off, one half for the step, whose error falls with its square.
 */
 #include "reducedimpl.h"
-#include "idle.h"
 
 #define CUTOFF      20e3 /* Hz, where nothing says which band is of interest */
 #define CUTOFF_BAND 4    /* times the upper end of -modes_band */
@@ -37,7 +36,6 @@ PetscErrorCode ReducedSetStep(ReducedRun r, PetscReal dt)
     r->dt * r->cutoff <= 1 + 1e-9, r->comm, PETSC_ERR_USER_INPUT,
     "-ts_dt %.6g is longer than a period of -dynamics_cutoff %.6g Hz: contact cannot follow; take at most %.6g",
     (double)r->dt, (double)r->cutoff, 1 / (double)r->cutoff);
-  if (r->run.end > 0) PetscCall(ReducedRefuseLate(r, r->run.end));
   PetscFunctionReturn(0);
 }
 

@@ -3,6 +3,7 @@
    mesh, which may choose cut-off and step -> state at the start -> steps -> histories.
 */
 #include "reducedimpl.h"
+#include "idle.h"
 #include "dynamics/stop.h"
 #include <squeal/options.h>
 
@@ -197,6 +198,7 @@ static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
     PetscCall(ReducedStepperCreate(&r->model, r->dt, REDUCED_RTOL, &r->stepper));
     PetscCall(DynamicsForget(r->dynamics));
   }
+  PetscCall(ReducedRefuseLate(r, r->run.end, PETSC_TRUE));
   ReducedSetShown(r, PETSC_TRUE);
   PetscCall(ReducedTakePairs(r, PETSC_FALSE));
   PetscFunctionReturn(0);

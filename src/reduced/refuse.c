@@ -57,10 +57,10 @@ PetscErrorCode ReducedRefuseIdle(MPI_Comm comm, Operators operators, const char 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ReducedRefuseLate(ReducedRun r, PetscReal end)
+PetscErrorCode ReducedRefuseLate(ReducedRun r, PetscReal end, PetscBool goes_on)
 {
   PetscFunctionBeginUser;
-  PetscCall(ExternalCheckHits(r->run.external, end, r->dt));
+  PetscCall(ExternalCheckHits(r->run.external, end, r->dt, goes_on));
   PetscFunctionReturn(0);
 }
 

@@ -31,7 +31,7 @@ CHANGES = [
     ("-tap_at", "0.12,0,0", "impulse tap"),
     ("-tap_part", "beam -tap_at 0.105,0,0.01", "impulse tap"),
     ("-tap_impulse", "0,1e-9,-1e-3", "impulse tap"),
-    ("-tap_time", "6e-5", "impulse tap"),
+    ("-tap_time", "2e-3", "impulse tap"),
     ("-nudge_set", "beam_rows", "motion nudge"),
     ("-nudge_directions", "xy", "motion nudge"),
     ("-nudge_ramp_shape", "linear", "motion nudge"),

@@ -23,7 +23,7 @@ pad: {young: 39.8e9}
 loads: press
 press: {ramp: 2e-4}
 impulses: tap
-tap: {time: 5e-5, impulse: "0,0,-1e-3"}
+tap: {time: 3e-4, impulse: "0,0,-1e-3"}
 circles: rim
 rim: {radius: 0.12, count: 12}
 motions: nudge

@@ -94,8 +94,9 @@ typedef struct {
 } ExternalHit;
 
 /* ExternalCheckHits - raises an error for an impulse that is not before the last step of a run of steps dt to `end` (s): the first
-   step in which it acts as a whole would come too late. Collective. */
-PETSC_INTERN PetscErrorCode ExternalCheckHits(External external, PetscReal end, PetscReal dt);
+   step in which it acts as a whole would come too late. Where the run goes on by a restart, only for one whose time the command line
+   says; for another a warning. Collective. */
+PETSC_INTERN PetscErrorCode ExternalCheckHits(External external, PetscReal end, PetscReal dt, PetscBool goes_on);
 
 /* ExternalIsHitting - whether an impulse acts in the step that ExternalAdvance() began. Not collective. */
 PETSC_INTERN PetscBool ExternalIsHitting(External external);

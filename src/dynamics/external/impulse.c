@@ -81,16 +81,29 @@ PetscErrorCode ImpulsesSetFromOptions(External external)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ExternalCheckHits(External external, PetscReal end, PetscReal dt)
+PetscErrorCode ExternalCheckHits(External external, PetscReal end, PetscReal dt, PetscBool goes_on)
 {
   const PetscReal last = dt * (PetscCeilReal(end / dt * (1 - 1e-12)) - 1);
+  char            why[160];
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < external->n_impulses; i++)
-    PetscCheck(external->impulses[i].time < last, external->comm, PETSC_ERR_USER_INPUT,
-               "-%s_time %.6g must be before %.6g s, when the last step of the run begins: take an earlier one, or a "
-               "longer run (-ts_max_time)",
-               external->impulses[i].name, (double)external->impulses[i].time, (double)last);
+  PetscCall(
+    PetscSNPrintf(why, sizeof(why),
+                  "must be before %.6g s, when the last step of the run begins: take an earlier one, or a longer "
+                  "run (-ts_max_time)",
+                  (double)last));
+  for (PetscInt i = 0; i < external->n_impulses; i++) {
+    const Impulse *hit = &external->impulses[i];
+
+    if (hit->time < last) continue;
+    PetscCheck(goes_on, external->comm, PETSC_ERR_USER_INPUT, "-%s_time %.6g: %s", hit->name, (double)hit->time, why);
+    PetscCall(OptionsRefuseOf(external->comm, hit->name, "time", why));
+    PetscCall(
+      PetscFPrintf(external->comm, stderr,
+                   "squeal: warning: impulse %s at %.6g s is beyond the end of the run, %.6g s: it comes when the "
+                   "run goes on (-dynamics_restart)\n",
+                   hit->name, (double)hit->time, (double)end));
+  }
   PetscFunctionReturn(0);
 }
 
