@@ -76,13 +76,13 @@ static PetscErrorCode DescribeRoute(const Window *window, char text[], size_t si
   if (window->beyond >= 0)
     PetscCall(PetscSNPrintf(measure, sizeof(measure), " (strength %.2g beyond the undamped modes of the window)",
                             (double)window->beyond));
-  PetscCall(PetscSNPrintf(text, size, "; by PEP, since %s%s", window->why, measure));
+  PetscCall(PetscSNPrintf(text, size, "; solved as a quadratic problem (PEP), since %s%s", window->why, measure));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode WindowDescribe(Modes modes, const Window *window)
 {
-  char         frictionless[384], region[64] = "", route[192], massless[192] = "";
+  char         frictionless[384], region[64] = "", route[256], massless[192] = "";
   char        *text = modes->completeness;
   const size_t size = sizeof(modes->completeness);
 
