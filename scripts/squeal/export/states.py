@@ -107,9 +107,15 @@ def single_state(path, series, name, value, facts):
 
 
 def read_states(folder, wanted=()):
-    """All states of a folder, one after the other; modes may be chosen by number."""
+    """All states of a folder, one after the other; modes may be chosen by number. A folder that is missing is told at once, before
+    anything is written."""
     if not folder.is_dir():
         raise BadInput(f"{folder}: no such folder; name an -output_dir of squeal")
+    return states_of(folder, wanted)
+
+
+def states_of(folder, wanted):
+    """The same of a folder that there is, as a generator."""
     facts, n_states = mode_facts(folder), 0
     for series in ("modes", "filters"):
         path = folder / f"{series}.h5"
