@@ -65,18 +65,30 @@ def branches_of(study, scale):
     return branches, loud
 
 
-def draw_branches(axes, branches, quantity, scale):
-    """Lines, unstable parts, and error bars of more than a point (the limits of the axes are set), without those of the
+def through_onsets(branch, quantity, onsets):
+    """Points of a branch with those of its onsets among them, and which of these its unstable parts reach: between two points of a
+    sweep growth begins at the onset."""
+    own = [(x, y) for (x, y), row in onsets if branch.number in (row["branch"], row["partner"]) and row["kind"] != "jump"]
+    inner = sorted((x, y) for x, y in own if branch.x[0] < x < branch.x[-1] and not numpy.isnan(branch.x).any())
+    at = numpy.searchsorted(branch.x, [x for x, _ in inner])
+    bad = branch.kind == "unstable"
+    return (numpy.insert(branch.x, at, [x for x, _ in inner]), numpy.insert(getattr(branch, quantity), at, [y for _, y in inner]),
+            numpy.insert(bad, at, bad[at - 1] | bad[numpy.minimum(at, len(bad) - 1)] if len(at) else []))
+
+
+def draw_branches(axes, branches, quantity, scale, onsets=()):
+    """Lines through the onsets, unstable parts, and error bars of more than a point (the limits of the axes are set), without those of the
     growth of stable modes, which would hide the rest; returns whether there are such bars."""
     per_unit = axes.bbox.height / axes.figure.dpi * 72 / numpy.ptp(axes.get_ylim())
     shown = False
     for branch in branches:
         y, loud = getattr(branch, quantity), branch.colour != QUIET
         line = "-" if branch.number >= 0 else "none"
-        axes.plot(branch.x, y, ls=line, marker="o", ms=2.6 if loud or line == "none" else 1.2, color=branch.colour,
+        x, through, grows = through_onsets(branch, quantity, onsets) if line == "-" else (branch.x, y, branch.kind == "unstable")
+        given = numpy.isin(x, branch.x)  # onsets have markers of their own
+        axes.plot(x, through, ls=line, marker="o", markevery=given, ms=2.6 if loud or line == "none" else 1.2, color=branch.colour,
                   lw=1.6 if loud else 0.8, zorder=3 if loud else 2)
-        bad = branch.kind == "unstable"
-        axes.plot(numpy.where(bad, branch.x, math.nan), y, ls=line, marker="o", ms=5.5, color=VERMILION, lw=3,
+        axes.plot(numpy.where(grows, x, math.nan), through, ls=line, marker="o", markevery=given, ms=5.5, color=VERMILION, lw=3,
                   zorder=4)
         axes.plot(branch.x[branch.kind == "numerical"], y[branch.kind == "numerical"], "o", ms=6, mfc="white",
                   mec=VERMILION, mew=1.2, zorder=5)
@@ -265,7 +277,7 @@ def draw_panel(axes, study, branches, loud, quantity, scale):
     if quantity == "growth":
         axes.axhline(0, color="black", lw=0.8, zorder=2.5)
         axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}".replace("-", MINUS)))
-    bars = draw_branches(axes, branches, quantity, scale)
+    bars = draw_branches(axes, branches, quantity, scale, list(zip(onset_points(study, quantity, scale), study.onsets)))
     draw_onsets(axes, study, quantity, scale)
     for x in jump_places(study):
         axes.axvline(x, color=LEADER, lw=0.7, zorder=1)

@@ -52,17 +52,22 @@ def test_colours(root):
 
 
 def test_marks(root):
-    """The marked points of each panel are those between the onsets in closed form, `numerical` ones excepted, and one
-    branch with errors of 10 Hz has bars: breaks when rows are mixed up, classes ignored, or all or no bars drawn."""
+    """The marked points of each panel are those between the onsets in closed form, to which their lines reach, `numerical` ones
+    excepted, and one branch with errors of 10 Hz has bars: breaks when rows are mixed up, classes ignored, or all or no bars drawn."""
     write_sweep(root / "numerical", mu=0.5, error_hz={5: 60, 1: 10})
     expected = numpy.sort(numpy.concatenate([VALUES[flutters(pair, 0.5)] / 1e9 for pair in PAIRS[:2]]))
+    critical = numpy.sort([value / 1e9 for pair in PAIRS[:2] for value, _ in onsets(0.5, pair)])
     for axes in lines(root / "numerical"):
         red = [line for line in axes.lines if to_hex(line.get_color()) == VERMILION.lower() and line.get_lw() == 3]
-        x = numpy.concatenate([line.get_xdata()[~numpy.isnan(line.get_xdata())] for line in red])
+        given = [line.get_markevery() & ~numpy.isnan(line.get_xdata()) for line in red]
+        x = numpy.concatenate([line.get_xdata()[marked] for line, marked in zip(red, given)])
+        ends = numpy.concatenate([line.get_xdata()[~line.get_markevery() & ~numpy.isnan(line.get_xdata())] for line in red])
         unsure = numpy.concatenate([line.get_xdata() for line in axes.lines if line.get_mfc() == "white"
                                     and line.get_mec() == VERMILION])
         same = len(x) == len(expected) and numpy.allclose(numpy.sort(x), expected)
         require(same, "other points are red than those that flutter")
+        same = len(ends) == len(critical) and numpy.allclose(numpy.sort(ends), critical)
+        require(same, f"what is red ends at {ends} instead of the onsets {critical}")
         expected_unsure = VALUES[flutters(PAIRS[2], 0.5)] / 1e9
         same = len(unsure) == len(expected_unsure) and numpy.allclose(unsure, expected_unsure)
         require(same, "other points are hollow than the numerical ones")

@@ -3,7 +3,7 @@ verified, sensitivities and robustness."""
 
 import numpy
 
-from ..sweep_lines import MARKERS, QUIET, branches_of, jump_places
+from ..sweep_lines import MARKERS, QUIET, branches_of, jump_places, onset_points, through_onsets
 from ..sweep_tables import Study
 from ..tables import header, optional, read_table
 from .charts import Axis, Chart, Panel
@@ -49,10 +49,11 @@ def branch_panel(study, branches, quantity, scale, unit):
             low, high = (function(branch.frequency) for function in (numpy.nanmin, numpy.nanmax))
             panel.line(branch.x, branch.frequency, "quiet", f"{branch.label}: {figures(low, 5)} to "
                                                             f"{figures(high, 5)} {unit}")
-    for k, branch in enumerate(loud):
-        y, colour, bad = getattr(branch, quantity), LOUD[k % len(LOUD)], branch.kind == "unstable"
-        panel.line(branch.x, y, colour, branch.label)
-        panel.line(numpy.where(bad, branch.x, numpy.nan), y, "vermilion thick", branch.label)
+    for k, branch in sorted(enumerate(loud), key=lambda pair: (pair[1].kind == "unstable").sum()):  # what grows covers its partner
+        y, colour = getattr(branch, quantity), LOUD[k % len(LOUD)]
+        x, through, grows = through_onsets(branch, quantity, zip(onset_points(study, quantity, scale), study.onsets))
+        panel.line(x, through, colour, branch.label)
+        panel.line(numpy.where(grows, x, numpy.nan), through, "vermilion thick", branch.label)
         error = branch.errors(quantity, scale)
         wide = numpy.nan_to_num(error) > 0.004 * (panel.y.high - panel.y.low)
         panel.errors(branch.x[wide], y[wide], error[wide], colour)
