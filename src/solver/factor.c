@@ -219,14 +219,27 @@ PetscErrorCode ShiftInvertPrepare(const PencilMatrices *pencil, ShiftInvert *si)
   PetscFunctionReturn(0);
 }
 
-/* Whether MUMPS is to be given more workspace than it estimated, INFOG(1) = -8 or -9, as several ranks on small matrices
-   need; then si->workspace is raised and the factors are gone. What -st_mat_mumps_icntl_14 says stays, and where ICNTL(23)
-   limits the memory MUMPS takes no notice of more */
+PetscErrorCode FactorWantsSpace(Mat F, const char prefix[], PetscInt most, PetscInt *percent)
+{
+  PetscInt  info, now, limit;
+  PetscBool given;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatMumpsGetInfog(F, 1, &info));
+  PetscCall(MatMumpsGetIcntl(F, 14, &now));
+  PetscCall(MatMumpsGetIcntl(F, 23, &limit));
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-mat_mumps_icntl_14", &given));
+  *percent = 0;
+  if ((info == -8 || info == -9) && !given && limit <= 0 && now < most)
+    *percent = PetscMin(PetscMax(100, 4 * now), most);
+  PetscFunctionReturn(0);
+}
+
+/* Whether to try again with si->workspace raised; then the factors are gone */
 static PetscErrorCode ShiftInvertWantsSpace(ShiftInvert *si, PC pc, PetscBool *wants)
 {
   MatSolverType type;
-  PetscInt      info = 0, percent, limit;
-  PetscBool     given;
+  PetscInt      percent;
   Mat           F;
 
   PetscFunctionBeginUser;
@@ -235,13 +248,10 @@ static PetscErrorCode ShiftInvertWantsSpace(ShiftInvert *si, PC pc, PetscBool *w
   if (type) PetscCall(PetscStrcmp(type, MATSOLVERMUMPS, wants));
   if (!*wants) PetscFunctionReturn(0);
   PetscCall(PCFactorGetMatrix(pc, &F));
-  PetscCall(MatMumpsGetInfog(F, 1, &info));
-  PetscCall(MatMumpsGetIcntl(F, 14, &percent));
-  PetscCall(MatMumpsGetIcntl(F, 23, &limit));
-  PetscCall(PetscOptionsHasName(NULL, "st_", "-mat_mumps_icntl_14", &given));
-  *wants = (info == -8 || info == -9) && !given && limit <= 0 && percent < WORKSPACE_MOST ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(FactorWantsSpace(F, "st_", WORKSPACE_MOST, &percent));
+  *wants = percent > 0 ? PETSC_TRUE : PETSC_FALSE;
   if (!*wants) PetscFunctionReturn(0);
-  si->workspace = PetscMin(PetscMax(100, 4 * percent), WORKSPACE_MOST);
+  si->workspace = percent;
   PetscCall(KSPDestroy(&si->ksp));
   PetscFunctionReturn(0);
 }

@@ -83,13 +83,18 @@ PETSC_INTERN PetscErrorCode ShiftInvertKeepsPattern(const ShiftInvert *si, const
 /* Whether the factors are those of the symmetric part at this shift already, friction put on them or not */
 PETSC_INTERN PetscErrorCode ShiftInvertStands(const PencilMatrices *pencil, PetscReal shift, const ShiftInvert *si,
                                               PetscBool *stands);
+/* The percentage of workspace beyond its estimate, of `most`, that MUMPS is to be given for another try, INFOG(1) = -8 or -9, as
+   several ranks on small matrices and late pivots need; 0 for none: what -mat_mumps_icntl_14 says stays, and where ICNTL(23)
+   limits the memory MUMPS takes no notice of more */
+PETSC_INTERN PetscErrorCode FactorWantsSpace(Mat F, const char prefix[], PetscInt most, PetscInt *percent);
 PETSC_INTERN PetscErrorCode ShiftInvertFactor(const PencilMatrices *pencil, ShiftInvert *si, PetscBool *singular);
 /* release.c - gives up what si->release says, of the matrices that were factored. The symmetric one is a copy of the pattern
    of K: products with it are made from K, M and the pairs then. Where it is but the upper half it stays, and with
    RELEASE_PENCIL K goes: si->product makes products with it. K_even goes with friction, or with K. */
 PETSC_INTERN PetscErrorCode ShiftInvertRelease(const PencilMatrices *pencil, ShiftInvert *si);
 /* The pencil with K and K_even of their owner where they were released */
-PETSC_INTERN PetscErrorCode ShiftInvertRegain(const PencilMatrices *pencil, const ShiftInvert *si, PencilMatrices *whole);
+PETSC_INTERN PetscErrorCode ShiftInvertRegain(const PencilMatrices *pencil, const ShiftInvert *si,
+                                              PencilMatrices *whole);
 /* Whether the estimate is shown on stdout before factorisations, not by default */
 PETSC_INTERN void      ShiftInvertShow(PetscBool show);
 PETSC_INTERN PetscBool ShiftInvertShows(void);

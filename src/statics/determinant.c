@@ -9,6 +9,11 @@
    (mirror.c). MUMPS' LU of the whole tells it.
 */
 #include "staticsimpl.h"
+#include "solver/shiftinvert.h"
+
+/* Percent of workspace beyond MUMPS' estimate: at first, and before it is given up */
+#define DETERMINANT_SPACE 50
+#define DETERMINANT_MOST  5000
 
 /* One factor of the laws as a matrix of all rows: a (P - Q), a P of sliding pairs, or a Q */
 typedef enum { LAW_DIFFERENCE, LAW_SLIDE, LAW_DISPLACEMENT } LawFactor;
@@ -86,8 +91,8 @@ static PetscErrorCode DisplacementMatrix(const SmallSystem *s, Mat *A)
 }
 
 /* Factors A with a percentage of extra workspace and takes the sign of its determinant, which a singular
-   matrix has not: pairs share a force. reason is MUMPS' INFOG(1). */
-static PetscErrorCode DeterminantTry(Mat A, PetscInt extra, PetscInt *reason, PetscBool *negative)
+   matrix has not: pairs share a force. reason is MUMPS' INFOG(1); percent becomes that of another try, 0 for none. */
+static PetscErrorCode DeterminantTry(Mat A, PetscInt *percent, PetscInt *reason, PetscBool *negative)
 {
   MatFactorInfo info;
   PetscReal     mantissa;
@@ -100,13 +105,14 @@ static PetscErrorCode DeterminantTry(Mat A, PetscInt extra, PetscInt *reason, Pe
   PetscCall(MatGetOrdering(A, MATORDERINGEXTERNAL, &rows, &columns));
   PetscCall(MatGetFactor(A, MATSOLVERMUMPS, MAT_FACTOR_LU, &F));
   PetscCall(MatMumpsSetIcntl(F, 33, 1));
-  PetscCall(MatMumpsSetIcntl(F, 14, extra));
+  PetscCall(MatMumpsSetIcntl(F, 14, *percent));
   PetscCall(MatMumpsSetIcntl(F, 24, 1));
   PetscCall(MatLUFactorSymbolic(F, A, rows, columns, &info));
   PetscCall(MatLUFactorNumeric(F, A, &info));
   PetscCall(MatMumpsGetInfog(F, 1, reason));
   PetscCall(MatMumpsGetInfog(F, 28, &n_null));
   PetscCall(MatMumpsGetRinfog(F, 12, &mantissa));
+  PetscCall(FactorWantsSpace(F, NULL, DETERMINANT_MOST, percent));
   *negative = mantissa < 0 && !n_null ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ISDestroy(&rows));
   PetscCall(ISDestroy(&columns));
@@ -117,11 +123,11 @@ static PetscErrorCode DeterminantTry(Mat A, PetscInt extra, PetscInt *reason, Pe
 /* Rows without a stiffness of their own delay pivots by more than MUMPS foresees: then with more room */
 static PetscErrorCode DeterminantSign(Mat A, PetscBool *negative)
 {
-  PetscInt reason = -9;
+  PetscInt reason, percent = DETERMINANT_SPACE;
 
   PetscFunctionBeginUser;
-  for (PetscInt extra = 50; extra <= 5000 && (reason == -8 || reason == -9); extra *= 10)
-    PetscCall(DeterminantTry(A, extra, &reason, negative));
+  do PetscCall(DeterminantTry(A, &percent, &reason, negative));
+  while (percent > 0);
   PetscCheck(reason >= 0 || reason == -10, PetscObjectComm((PetscObject)A), PETSC_ERR_NOT_CONVERGED,
              "whether the bodies jam cannot be said: MUMPS' factorisation failed (INFOG(1) = %" PetscInt_FMT
              "); raise -static_dense to the number of rows",
