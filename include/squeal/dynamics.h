@@ -77,8 +77,8 @@ PetscErrorCode DynamicsSetOperators(Dynamics dynamics, Operators operators, Stat
 /*@
    DynamicsSolve - integrates and writes histories, fields and checkpoints as it goes. Collective.
 
-   Errors: PETSC_ERR_USER_INPUT for a step above the critical one or beyond the end, for impulses (of the command line) and intervals beyond it; for bodies
-   that interpenetrate at the start;
+   Errors: PETSC_ERR_USER_INPUT for a step above the critical one or beyond the end, for impulses and intervals of the command line
+   that come after it; for bodies that interpenetrate at the start;
    PETSC_ERR_FP for the first node and step that are no number, and for growth of energy that the ledger cannot explain;
    PETSC_ERR_NOT_CONVERGED from the contact forces.
 @*/
