@@ -7,9 +7,9 @@
 
       C := C + C' R,   R := T^-1 R,   T^-1 = D^1/2 U' S,
 
-   with S the square root of the diagonal of G and D not below rounding: T is always regular, so what one pass does not
-   resolve the next one does. A row of R is the size of its direction. Without M a pass measures what the next one needs
-   while it has V at hand (panel.h).
+   with S the square root of the diagonal of G and D not below rounding, which it is where V holds all of the block: T is always
+   regular, so what one pass does not resolve the next one does. A row of R is the size of its direction. Without M a pass measures
+   what the next one needs while it has V at hand (panel.h).
 */
 #include "orthonormal.h"
 #include "panel.h"
@@ -127,7 +127,8 @@ static PetscErrorCode PassDecompose(MPI_Comm comm, PetscInt n, PetscBool first, 
   }
   PetscCall(GramEigen(comm, m, G, pass->spread));
   if (m && pass->spread[0] < 0.5) pass->clean = PETSC_FALSE;
-  for (PetscInt i = 0; i < m; i++) pass->spread[i] = PetscMax(pass->spread[i], ROUNDING * pass->spread[m - 1]);
+  for (PetscInt i = 0; i < m; i++)
+    pass->spread[i] = PetscMax(pass->spread[i], ROUNDING * PetscMax(1, pass->spread[m - 1]));
   PetscFunctionReturn(0);
 }
 
@@ -230,9 +231,29 @@ static PetscErrorCode PassTrim(PetscInt n, BV W, BlockFactors *factors, BlockPas
 
     for (PetscInt i = 1; i < pass->m; i++)
       if (pass->size[i] < pass->size[smallest]) smallest = i;
-    if (pass->m <= factors->most && pass->size[smallest] > factors->drop * pass->norm) break;
+    if (pass->norm > 0 && pass->m <= factors->most && pass->size[smallest] > factors->drop * pass->norm) break;
     PetscCall(PassDrop(n, smallest, W, factors, pass));
   }
+  PetscCall(BVSetActiveColumns(W, 0, pass->m));
+  PetscFunctionReturn(0);
+}
+
+/* Leaves out columns that are rounding before they are made directions with the help of others, as with a singular M those are of
+   which it knows nothing: their parts beyond it would grow from pass to pass */
+static PetscErrorCode PassForget(PetscInt n, BV W, BlockFactors *factors, BlockPass *pass)
+{
+  PetscFunctionBeginUser;
+  if (pass->norm < 0) PetscFunctionReturn(0); /* the first pass measures it */
+  PassRows(n, factors, pass);
+  for (PetscInt j = pass->m - 1; j >= 0; j--) {
+    const PetscScalar *C      = &pass->C[j * n];
+    PetscReal          square = pass->T[j * pass->m + j];
+
+    for (PetscInt i = 0; i < n; i++) square -= C[i] * C[i];
+    pass->spread[j] = pass->size[j] * PetscSqrtReal(PetscMax(square, 0)); /* work: its part of W */
+  }
+  for (PetscInt j = pass->m - 1; j >= 0; j--)
+    if (pass->spread[j] <= factors->drop * pass->norm) PetscCall(PassDrop(n, j, W, factors, pass));
   PetscCall(BVSetActiveColumns(W, 0, pass->m));
   PetscFunctionReturn(0);
 }
@@ -241,6 +262,9 @@ static PetscErrorCode PassTrim(PetscInt n, BV W, BlockFactors *factors, BlockPas
 static PetscErrorCode PassRun(BV V, PetscInt n, Mat M, BV W, BlockFactors *factors, BlockPass *pass)
 {
   PetscFunctionBeginUser;
+  if (!pass->measured) PetscCall(M ? PassMeasureMass(V, n, M, W, pass) : PassMeasure(V, n, W, pass));
+  PetscCall(PassForget(n, W, factors, pass));
+  if (!pass->m) PetscFunctionReturn(0);
   if (!pass->measured) PetscCall(M ? PassMeasureMass(V, n, M, W, pass) : PassMeasure(V, n, W, pass));
   PetscCall(PassDecompose(PetscObjectComm((PetscObject)W), n, pass->norm < 0 ? PETSC_TRUE : PETSC_FALSE, pass));
   PassAccumulate(n, pass, factors);
