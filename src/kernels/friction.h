@@ -25,7 +25,8 @@ static inline double FrictionShorten(double square, double radius)
 /* |p - Proj(z)| */
 static inline double FrictionMiss(const double p[2], const double z[2], double radius)
 {
-  const double factor = FrictionShorten(z[0] * z[0] + z[1] * z[1], radius);
+  const double factor  = FrictionShorten(z[0] * z[0] + z[1] * z[1], radius);
+  const double miss[2] = {p[0] - factor * z[0], p[1] - factor * z[1]};
 
-  return hypot(p[0] - factor * z[0], p[1] - factor * z[1]);
+  return sqrt(miss[0] * miss[0] + miss[1] * miss[1]);
 }

@@ -20,6 +20,8 @@ struct _p_ReducedStepper {
   PetscInt   rank, *chosen; /* [rank] ports on which q is sought, all where W is regular or nothing damps; the others */
   PetscReal *combined;      /* [n - rank][rank]: what a force on one of the others is on the chosen ones */
   PetscReal *HW, *HC; /* [3 n_pairs]^2, [m][3 n_pairs] H W and H Cm' of the residual (stepresidual.c); NULL undamped */
+  PetscReal *R,
+    *G; /* [3 n_pairs]^2, NULL undamped; [3 n_pairs][2 m]: q_{n+1} and z(dt) of unit forces of the pairs at t_{n+1} */
   ContactCompliance laws;                    /* NULL without pairs */
   PetscReal        *x, *next, *product;      /* work: [3 m] z and g; [3 m] z(dt); [3 m] */
   PetscReal        *mean, *free, *slip0, *r; /* work: [n_ports], [3 n_pairs], [2 n_pairs], [3 n_pairs] */

@@ -172,6 +172,40 @@ static void StepperSetMean(ReducedStepper s, const ReducedState *state, PetscBoo
     s->mean[i] = 0.5 * (state->last[i] + (i < n && without ? 0 : state->p[i]));
 }
 
+static inline PetscBool Carries(const PetscReal l[3])
+{
+  return l[0] != 0 || l[1] != 0 || l[2] != 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* y += A lambda of the pairs that carry, A [3 n_pairs][rows] */
+static void StepperAddCarrying(const ReducedModel *model, PetscInt rows, const PetscReal A[], const PetscReal lambda[],
+                               PetscReal y[])
+{
+  for (PetscInt i = 0, end; i < model->n_pairs; i = end + 1) {
+    while (i < model->n_pairs && !Carries(&lambda[3 * i])) i++;
+    for (end = i; end < model->n_pairs && Carries(&lambda[3 * end]);) end++;
+    ReducedBlockTimes(&(DenseBlock){&A[3 * i * rows], rows, 3 * (end - i), rows}, PETSC_FALSE, 1, &lambda[3 * i], y);
+  }
+}
+
+/* lambda_{n+1} joins what the step has without it: z(dt), q_{n+1}, and where works are asked for the forces g on the modes */
+static void StepperAddForces(ReducedStepper s, const ReducedState *state, PetscBool works)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * model->n_pairs;
+
+  StepperAddCarrying(model, 2 * m, s->G, state->p, s->next);
+  for (PetscInt i = 0; i < n; i++) s->r[i] = s->HW ? 0 : state->p[i];
+  if (s->HW) StepperAddCarrying(model, n, s->R, state->p, s->r);
+  for (PetscInt i = 0; i < n; i++) {
+    s->q[i] += s->r[i];
+    s->dq[i] += s->HW ? s->r[i] : 0;
+  }
+  if (!works) return;
+  ReducedBlockTimes(&(DenseBlock){model->P, m, n, m}, PETSC_FALSE, 0.5, state->p, &s->x[2 * m]);
+  if (s->HW) ReducedBlockTimes(&(DenseBlock){model->Cm, m, n, m}, PETSC_FALSE, -1 / s->dt, s->r, &s->x[2 * m]);
+}
+
 void ReducedStepRespond(ReducedStepper s, const ReducedState *state, PetscReal next[], PetscReal q[], PetscReal y[])
 {
   const ReducedModel *model = s->model;
@@ -317,7 +351,7 @@ PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedS
   StepperSetFree(s, drive, state);
   PetscCall(StepperSolveLaws(s, state, report));
   StepperSetMean(s, state, PETSC_FALSE);
-  StepperSolveResidual(s, state);
+  StepperAddForces(s, state, report->works);
   StepperAccount(s, drive, state, report);
   if (report->works) report->external += StepperLoadWork(s, state);
   if (report->works) PetscCall(ReducedStepperSetDamping(s));

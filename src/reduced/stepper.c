@@ -180,6 +180,30 @@ PetscErrorCode ReducedStepperTakeFriction(ReducedStepper s)
   PetscFunctionReturn(0);
 }
 
+/* R = HD / 2 and G = (F P - F Cm HD / dt) / 2 of unit forces at t_{n+1}, with D as above; undamped G = F P / 2 */
+static PetscErrorCode StepperSetForces(ReducedStepper s)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * model->n_pairs;
+  const DenseBlock    F = {s->F, 2 * m, m, 2 * m};
+  PetscReal          *drag, *FD;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * m * n, &s->G));
+  ReducedTimes(&F, &(DenseBlock){model->P, m, n, m}, s->G);
+  for (PetscInt i = 0; i < 2 * m * n; i++) s->G[i] *= 0.5;
+  if (!s->HW) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(n * n, &s->R));
+  PetscCall(PetscMalloc2(m * n, &drag, 2 * m * n, &FD));
+  ReducedTimes(&(DenseBlock){s->HC, n, m, n}, &(DenseBlock){s->G, m, n, 2 * m}, s->R);
+  for (PetscInt i = 0; i < n * n; i++) s->R[i] = 0.5 * s->HW[i] - s->R[i] / s->dt;
+  ReducedTimes(&(DenseBlock){model->Cm, m, n, m}, &(DenseBlock){s->R, n, n, n}, drag);
+  ReducedTimes(&F, &(DenseBlock){drag, m, n, m}, FD);
+  for (PetscInt i = 0; i < 2 * m * n; i++) s->G[i] -= FD[i] / s->dt;
+  PetscCall(PetscFree2(drag, FD));
+  PetscFunctionReturn(0);
+}
+
 /* The solver of the contact laws on that compliance */
 static PetscErrorCode StepperSetLaws(ReducedStepper s)
 {
@@ -218,6 +242,7 @@ PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, Pet
   PetscCall(StepperSetResponse(s));
   PetscCall(ReducedStepperSetResidual(s));
   PetscCall(StepperSetCompliance(s));
+  PetscCall(StepperSetForces(s));
   PetscCall(StepperSetLaws(s));
   PetscFunctionReturn(0);
 }
@@ -232,6 +257,8 @@ PetscErrorCode ReducedStepperDestroy(ReducedStepper *stepper)
   PetscCall(PetscFree3(s->E, s->F, s->W));
   PetscCall(PetscFree(s->Q));
   PetscCall(PetscFree2(s->HW, s->HC));
+  PetscCall(PetscFree(s->R));
+  PetscCall(PetscFree(s->G));
   PetscCall(PetscFree(s->chosen));
   PetscCall(PetscFree(s->combined));
   PetscCall(PetscFree5(s->x, s->next, s->product, s->free, s->slip0));

@@ -285,7 +285,7 @@ static PetscErrorCode TestDual(int *failed)
   PetscFunctionBeginUser;
   PetscCall(SceneCreate(n, 3, &s));
   SceneAddBody(&s, BODY_HALF_SPACE);
-  SceneDrawMotion(&s, 1.5, -3, 0);
+  SceneDrawMotion(&s, 3, -10, 0);
   PetscCall(PetscCalloc4(3 * n, &lambda[0], 3 * n, &lambda[1], n, &slope, n, &speed));
   for (int k = 0; k < 2; k++) {
     for (PetscInt p = 0; p < n; p++) slope[p] = k * 1e-30;

@@ -15,24 +15,32 @@ typedef struct {
   PetscInt  worst;   /* pair of `largest` */
 } ComplianceMiss;
 
-#define COMPLIANCE_MIXED 12 /* differences of iterates that are combined */
+#define COMPLIANCE_MIXED 12   /* differences of iterates that are combined */
+#define COMPLIANCE_WEAK  300. /* slip over friction of a pair that chord.c gives no index across its slip */
 
-/* Factors of a base set of unknowns (chord.c); indices are rows of W */
+/* A pair as chord.c holds it */
 typedef struct {
-  PetscBool     exists;
-  PetscInt      m, *index;         /* of the base, ascending, [m] */
-  PetscReal    *turn;              /* d: friction over normal force of sliding pairs, [n][2] */
-  PetscReal    *LU;                /* [m][m] */
-  PetscBLASInt *pivot, *small;     /* of LU and of S */
-  PetscInt     *place, *column;    /* of an index: in the base, in V; -1 where it is not there, [3 n] */
-  PetscInt      most, n_columns;   /* columns that V has room for, and has */
-  PetscReal    *V, *S;             /* [n_columns][m] A0^-1 of columns; Schur complement */
-  PetscInt      n_border, *border; /* indices that joined or left; -1: not factored */
-  PetscInt     *want, *next;       /* work: [3 n] */
-  PetscReal    *b, *s;             /* work: [3 n] */
-  PetscInt      n_mixed;           /* differences kept in this step, -1: no iterate before */
-  PetscReal    *x, *f;             /* iterate before, and how G changes it, [3 n] */
-  PetscReal    *basis, *step;      /* differences of f, orthonormal, and of x + f, [COMPLIANCE_MIXED][3 n] */
+  PetscReal e[2], mu, c; /* direction of slip; friction coefficient; slip over friction, 0 sticks */
+} ComplianceFrame;
+
+/* Factors of a base set of indices (chord.c), four of each pair */
+typedef struct {
+  PetscBool        exists;
+  PetscInt         m, *index, room;   /* of the base, ascending, [m]; that there is room for */
+  ComplianceFrame *frame;             /* [n] */
+  PetscReal       *LU;                /* [m][m] */
+  PetscReal       *row;               /* [m][3] directions of the rows of the base, */
+  PetscInt        *at;                /* [m] and where the displacements of their pairs begin */
+  PetscBLASInt    *small;             /* pivots of S */
+  PetscInt        *place, *column;    /* of an index: in the base, in V; -1 where it is not there, [4 n] */
+  PetscInt         most, n_columns;   /* columns that V may hold, and has */
+  PetscReal       *V, *S;             /* [n_columns][m] A0^-1 of columns; Schur complement */
+  PetscInt         n_border, *border; /* indices that joined or left; -1: not factored */
+  PetscInt        *want, *next;       /* work: [4 n] */
+  PetscReal       *b, *s, *z;         /* work: [4 n] */
+  PetscInt         n_mixed;           /* differences kept in this step, -1: no iterate before */
+  PetscReal       *x, *f;             /* iterate before, and how G changes it, [3 n] */
+  PetscReal       *basis, *step;      /* differences of f, orthonormal, and of x + f, [COMPLIANCE_MIXED][3 n] */
 } ComplianceChord;
 
 /* Newton's method on motions (dual.c); rows are of the motions that are free */
@@ -56,7 +64,8 @@ struct _p_ContactCompliance {
   PetscReal       *l, *v;   /* now, [n][3] */
   PetscReal       *l0, *v0; /* before a step of Newton's method */
   PetscReal       *best;    /* l of the least residual, [n][3] */
-  PetscReal       *force;   /* kappa l, [n][3] */
+  PetscReal       *force;   /* work: forces or displacements, [n][3] */
+  PetscInt        *carries; /* work: columns of W with a force, [3 n] */
   ContactStatus   *status;  /* [n] */
   CoulombLaw      *law;     /* [n], of closed pairs, in the frame of each (linear.c) */
   PetscReal       *slide;   /* e, [n][2], of pairs that slide */
@@ -65,7 +74,8 @@ struct _p_ContactCompliance {
   PetscReal        blend;   /* t: (1 - t) W kappa + t I stands for W kappa */
   PetscReal       *A, *rhs; /* [rows][rows] of closed pairs and a border, [rows] */
   PetscBLASInt    *pivot;
-  PetscInt         n_room; /* rows that there is room for */
+  PetscBool        exchanged; /* rows of A in its factors */
+  PetscInt         n_room;    /* rows that there is room for */
   ComplianceChord  chord;
   ComplianceDual   dual;
   ComplianceReport report, totals;
@@ -81,11 +91,13 @@ PETSC_INTERN void           ComplianceTurn(const ContactCompliance c, PetscInt p
 PETSC_INTERN CoulombPair    ComplianceGetPair(const ContactCompliance c, PetscInt p, PetscReal weight, PetscReal w[3]);
 
 /* linear.c - the laws of the closed pairs at the present l, v; x [3] along the rows of closed pair k; l as these laws have it, and the
-   right-hand side; that and the matrix; its factors; row[n_closed] rows and the border */
+   right-hand side; that and the matrix, row[n_closed] rows and the border; its factors, without exchange of rows where these are
+   good and with it */
 PETSC_INTERN void ComplianceLinearise(ContactCompliance c);
 PETSC_INTERN void ComplianceAlongRows(const ContactCompliance c, PetscInt k, const PetscReal x[], PetscReal y[]);
 PETSC_INTERN PetscErrorCode ComplianceBegin(ContactCompliance c, PetscInt border);
 PETSC_INTERN PetscErrorCode ComplianceAssemble(ContactCompliance c, PetscInt border);
+PETSC_INTERN void           ComplianceFactorFast(ContactCompliance c, PetscInt rows, PetscBool *good);
 PETSC_INTERN PetscErrorCode ComplianceFactor(ContactCompliance c, PetscInt rows, PetscBool *singular);
 PETSC_INTERN void           ComplianceShift(ContactCompliance c, PetscInt border);
 PETSC_INTERN PetscErrorCode ComplianceBackSolve(const ContactCompliance c, PetscInt rows, PetscReal x[]);
@@ -96,11 +108,23 @@ PETSC_INTERN PetscErrorCode ComplianceDualServes(ContactCompliance c, PetscBool 
 PETSC_INTERN PetscErrorCode ComplianceDualSolve(ContactCompliance c, PetscBool *solved);
 PETSC_INTERN PetscErrorCode ComplianceDualDestroy(ContactCompliance c);
 
-/* chord.c - the base becomes chord.index [m] with chord.turn; A0^-1 times the column that an index adds, NULL where the
-   store is full; Newton's method with factors of the steps before */
+/* chordbase.c - the base becomes chord.index [m] with chord.frame; those of the present l, v; A0^-1 times the column that an index
+   adds, NULL where the store is full; the border for the present statuses; A dz against what its rows miss, dz [4 n] */
 PETSC_INTERN PetscErrorCode ComplianceChordSetBase(ContactCompliance c);
+PETSC_INTERN PetscErrorCode ComplianceChordRenew(ContactCompliance c);
 PETSC_INTERN PetscErrorCode ComplianceChordColumn(ContactCompliance c, PetscInt j, const PetscReal **v);
+PETSC_INTERN PetscErrorCode ComplianceChordBorder(ContactCompliance c, PetscBool *good);
+PETSC_INTERN PetscErrorCode ComplianceChordSolve(ContactCompliance c, PetscReal dz[]);
+
+/* chord.c - Newton's method with factors of the steps before */
 PETSC_INTERN PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss);
+
+/* lu.c - LU factors of A [n][n] in its place: smallest pivot over the largest; x := A^-1 x; y += the columns of W times
+   x, both [n], columns of N */
+PETSC_INTERN PetscReal ComplianceLUFactor(PetscInt n, PetscReal A[]);
+PETSC_INTERN void      ComplianceLUSolve(PetscInt n, const PetscReal LU[], PetscReal x[]);
+PETSC_INTERN void      ComplianceAddColumns(PetscInt N, const PetscReal W[], PetscInt n, const PetscInt column[],
+                                            const PetscReal x[], PetscReal y[]);
 
 /* mix.c - l = G(x) becomes a combination of it and what the iterations before made of theirs */
 PETSC_INTERN void ComplianceMix(ContactCompliance c, PetscReal x[]);

@@ -80,10 +80,11 @@ PetscErrorCode ContactComplianceCreate(PetscInt n, const PetscReal W[], ContactC
   PetscCall(PetscCalloc4(n, &c->kappa, n, &c->mu, n, &c->slope, n, &c->speed));
   PetscCall(PetscCalloc7(3 * n, &c->free, 3 * n, &c->l, 3 * n, &c->v, 3 * n, &c->l0, 3 * n, &c->v0, 3 * n, &c->best,
                          3 * n, &c->force));
-  PetscCall(PetscCalloc5(n, &c->status, n, &c->law, n, &c->closed, n + 1, &c->row, 2 * n, &c->slide));
-  PetscCall(PetscMalloc7(3 * n, &c->chord.index, 3 * n, &c->chord.place, 3 * n, &c->chord.column, 3 * n,
-                         &c->chord.border, 3 * n, &c->chord.want, 3 * n, &c->chord.next, 3 * n, &c->chord.b));
-  PetscCall(PetscCalloc2(2 * n, &c->chord.turn, 3 * n, &c->chord.s));
+  PetscCall(
+    PetscCalloc6(n, &c->status, n, &c->law, n, &c->closed, n + 1, &c->row, 2 * n, &c->slide, 3 * n, &c->carries));
+  PetscCall(PetscMalloc6(4 * n, &c->chord.index, 4 * n, &c->chord.place, 4 * n, &c->chord.column, 4 * n,
+                         &c->chord.border, 4 * n, &c->chord.want, 4 * n, &c->chord.next));
+  PetscCall(PetscCalloc4(n, &c->chord.frame, 4 * n, &c->chord.b, 4 * n, &c->chord.s, 4 * n, &c->chord.z));
   PetscCall(PetscCalloc2(3 * n, &c->chord.x, 3 * n, &c->chord.f));
   PetscCall(PetscMalloc2(3 * n * COMPLIANCE_MIXED, &c->chord.basis, 3 * n * COMPLIANCE_MIXED, &c->chord.step));
   StiffnessSet(c);
@@ -245,14 +246,13 @@ PetscErrorCode ContactComplianceDestroy(ContactCompliance *compliance)
   if (!c) PetscFunctionReturn(0);
   PetscCall(PetscFree4(c->kappa, c->mu, c->slope, c->speed));
   PetscCall(PetscFree7(c->free, c->l, c->v, c->l0, c->v0, c->best, c->force));
-  PetscCall(PetscFree5(c->status, c->law, c->closed, c->row, c->slide));
+  PetscCall(PetscFree6(c->status, c->law, c->closed, c->row, c->slide, c->carries));
   PetscCall(PetscFree3(c->A, c->rhs, c->pivot));
-  PetscCall(PetscFree7(c->chord.index, c->chord.place, c->chord.column, c->chord.border, c->chord.want, c->chord.next,
-                       c->chord.b));
-  PetscCall(PetscFree2(c->chord.turn, c->chord.s));
+  PetscCall(PetscFree6(c->chord.index, c->chord.place, c->chord.column, c->chord.border, c->chord.want, c->chord.next));
+  PetscCall(PetscFree4(c->chord.frame, c->chord.b, c->chord.s, c->chord.z));
   PetscCall(PetscFree2(c->chord.x, c->chord.f));
   PetscCall(PetscFree2(c->chord.basis, c->chord.step));
-  PetscCall(PetscFree5(c->chord.LU, c->chord.V, c->chord.S, c->chord.pivot, c->chord.small));
+  PetscCall(PetscFree6(c->chord.LU, c->chord.V, c->chord.S, c->chord.row, c->chord.at, c->chord.small));
   PetscCall(ComplianceDualDestroy(c));
   PetscCall(PetscFree(*compliance));
   PetscFunctionReturn(0);

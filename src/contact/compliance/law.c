@@ -22,25 +22,19 @@ CoulombPair ComplianceGetPair(const ContactCompliance c, PetscInt p, PetscReal w
 
 PetscErrorCode ComplianceMove(ContactCompliance c)
 {
-  const PetscReal    one = 1;
-  const PetscBLASInt inc = 1, rows = (PetscBLASInt)(3 * c->n);
+  const PetscInt N = 3 * c->n;
+  PetscInt       n = 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < 3 * c->n; i++) {
-    c->v[i]     = c->free[i] + c->blend * c->l[i];
-    c->force[i] = (1 - c->blend) * c->kappa[i / 3] * c->l[i];
-  }
-  for (PetscInt p = 0, end; p < c->n; p = end + 1) {
-    PetscBLASInt columns;
+  for (PetscInt i = 0; i < N; i++) {
+    const PetscReal force = (1 - c->blend) * c->kappa[i / 3] * c->l[i];
 
-    while (p < c->n && c->force[3 * p] == 0 && c->force[3 * p + 1] == 0 && c->force[3 * p + 2] == 0) p++;
-    for (end = p; end < c->n && (c->force[3 * end] != 0 || c->force[3 * end + 1] != 0 || c->force[3 * end + 2] != 0);)
-      end++;
-    columns = (PetscBLASInt)(3 * (end - p));
-    if (columns)
-      PetscCallBLAS("BLASgemv", BLASgemv_("N", &rows, &columns, &one, &c->W[3 * p * 3 * c->n], &rows, &c->force[3 * p],
-                                          &inc, &one, c->v, &inc));
+    c->v[i] = c->free[i] + c->blend * c->l[i];
+    if (force == 0) continue;
+    c->force[n]     = force;
+    c->carries[n++] = i;
   }
+  ComplianceAddColumns(N, c->W, n, c->carries, c->force, c->v);
   PetscFunctionReturn(0);
 }
 

@@ -15,6 +15,7 @@
 
 #define SINGULAR_SHIFT 1e-10 /* of the diagonal, which is of order 1 */
 #define SINGULAR_PIVOT 1e-13 /* smallest pivot beside the largest */
+#define FAST_PIVOT     1e-8  /* the same where rows are not exchanged */
 
 /* Rows of closed pair k */
 static inline PetscInt LinearRows(const ContactCompliance c, PetscInt k)
@@ -172,6 +173,13 @@ void ComplianceShift(ContactCompliance c, PetscInt border)
   for (PetscInt i = 0; i < rows; i++) c->A[i * (rows + border + 1)] += SINGULAR_SHIFT;
 }
 
+void ComplianceFactorFast(ContactCompliance c, PetscInt rows, PetscBool *good)
+{
+  *good        = ComplianceLUFactor(rows, c->A) > FAST_PIVOT ? PETSC_TRUE : PETSC_FALSE;
+  c->exchanged = PETSC_FALSE;
+  c->report.factors++;
+}
+
 PetscErrorCode ComplianceFactor(ContactCompliance c, PetscInt rows, PetscBool *singular)
 {
   const PetscBLASInt m     = (PetscBLASInt)rows;
@@ -185,7 +193,8 @@ PetscErrorCode ComplianceFactor(ContactCompliance c, PetscInt rows, PetscBool *s
     least   = PetscMin(least, PetscAbsReal(c->A[i * rows + i]));
     largest = PetscMax(largest, PetscAbsReal(c->A[i * rows + i]));
   }
-  *singular = rows && !(least > SINGULAR_PIVOT * largest) ? PETSC_TRUE : PETSC_FALSE;
+  c->exchanged = PETSC_TRUE;
+  *singular    = rows && !(least > SINGULAR_PIVOT * largest) ? PETSC_TRUE : PETSC_FALSE;
   c->report.factors++;
   PetscFunctionReturn(0);
 }
@@ -196,6 +205,8 @@ PetscErrorCode ComplianceBackSolve(const ContactCompliance c, PetscInt rows, Pet
   PetscBLASInt       info = 0;
 
   PetscFunctionBeginUser;
+  if (!c->exchanged) ComplianceLUSolve(rows, c->A, x);
+  if (!c->exchanged) PetscFunctionReturn(0);
   if (m) PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &m, &one, c->A, &m, c->pivot, x, &m, &info));
   PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK getrs: info %d", (int)info);
   PetscFunctionReturn(0);

@@ -1,4 +1,4 @@
-/* What a restart needs so that the next steps are bitwise those of a run that goes on: base, directions, columns kept */
+/* What a restart needs so that the next steps are bitwise those of a run that goes on: base, frames, columns kept */
 #include "complianceimpl.h"
 
 PetscErrorCode ContactComplianceGetMemory(ContactCompliance c, PetscInt *n, PetscReal **values)
@@ -7,14 +7,15 @@ PetscErrorCode ContactComplianceGetMemory(ContactCompliance c, PetscInt *n, Pets
   PetscReal             *to;
 
   PetscFunctionBeginUser;
-  *n = h->exists ? 1 + h->m + 2 * c->n + h->n_columns : 0;
+  *n = h->exists ? 1 + h->m + 4 * c->n + h->n_columns : 0;
   PetscCall(PetscMalloc1(*n, values));
   to = *values;
   if (!*n) PetscFunctionReturn(0);
   *to++ = (PetscReal)h->m;
   for (PetscInt i = 0; i < h->m; i++) *to++ = (PetscReal)h->index[i];
-  for (PetscInt i = 0; i < 2 * c->n; i++) *to++ = h->turn[i];
-  for (PetscInt i = 0; i < 3 * c->n; i++)
+  PetscCall(PetscArraycpy(to, (const PetscReal *)h->frame, 4 * c->n));
+  to += 4 * c->n;
+  for (PetscInt i = 0; i < 4 * c->n; i++)
     if (h->column[i] >= 0) to[h->column[i]] = (PetscReal)i;
   PetscFunctionReturn(0);
 }
@@ -28,14 +29,15 @@ PetscErrorCode ContactComplianceSetMemory(ContactCompliance c, PetscInt n, const
   h->exists = PETSC_FALSE;
   if (!n) PetscFunctionReturn(0);
   h->m      = (PetscInt)values[0];
-  n_columns = n - 1 - h->m - 2 * c->n;
+  n_columns = n - 1 - h->m - 4 * c->n;
   PetscCheck(h->m >= 0 && h->m <= 3 * c->n && n_columns >= 0 && n_columns <= 3 * c->n, PETSC_COMM_SELF,
              PETSC_ERR_FILE_UNEXPECTED,
              "Memory of contact on a compliance: %" PetscInt_FMT " numbers are not those of %" PetscInt_FMT " pairs", n,
              c->n);
   values++;
   for (PetscInt i = 0; i < h->m; i++) h->index[i] = (PetscInt)*values++;
-  for (PetscInt i = 0; i < 2 * c->n; i++) h->turn[i] = *values++;
+  PetscCall(PetscArraycpy((PetscReal *)h->frame, values, 4 * c->n));
+  values += 4 * c->n;
   PetscCall(ComplianceChordSetBase(c));
   for (PetscInt k = 0; k < n_columns && h->exists; k++) {
     const PetscReal *v;

@@ -14,16 +14,29 @@
 #define NEWTON_ALONG    100     /* tolerances: until friction is along slip to this part of the largest force */
 #define NEWTON_SHORTEST 1. / 64 /* of a step */
 
-/* The matrix at the present laws, factored; shifted where it is singular */
-static PetscErrorCode NewtonFactor(ContactCompliance c, PetscBool *singular)
+/* The matrix at the present laws, as it was before: l and v are what it is made of */
+static PetscErrorCode NewtonAssembleAgain(ContactCompliance c)
 {
   PetscFunctionBeginUser;
-  PetscCall(ComplianceAssemble(c, 0));
-  PetscCall(ComplianceFactor(c, c->row[c->n_closed], singular));
-  if (!*singular) PetscFunctionReturn(0);
   PetscCall(PetscArraycpy(c->l, c->l0, 3 * c->n));
   PetscCall(PetscArraycpy(c->v, c->v0, 3 * c->n));
   PetscCall(ComplianceAssemble(c, 0));
+  PetscFunctionReturn(0);
+}
+
+/* The matrix at the present laws, factored: in the fast way, with exchange of rows, shifted where it is singular */
+static PetscErrorCode NewtonFactor(ContactCompliance c, PetscBool *singular)
+{
+  PetscBool good;
+
+  PetscFunctionBeginUser;
+  PetscCall(ComplianceAssemble(c, 0));
+  ComplianceFactorFast(c, c->row[c->n_closed], &good);
+  if (good) PetscFunctionReturn(0);
+  PetscCall(NewtonAssembleAgain(c));
+  PetscCall(ComplianceFactor(c, c->row[c->n_closed], singular));
+  if (!*singular) PetscFunctionReturn(0);
+  PetscCall(NewtonAssembleAgain(c));
   ComplianceShift(c, 0);
   PetscCall(ComplianceFactor(c, c->row[c->n_closed], singular));
   PetscFunctionReturn(0);

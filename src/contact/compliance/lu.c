@@ -1,0 +1,99 @@
+/*
+   What an iteration spends its time in: sums of columns of W, and LU factors of a hundred rows or two, for which BLAS and LAPACK are
+   slow. Rows are not exchanged: what small pivots spoil shows in their ratio, which ComplianceLUFactor() returns.
+   Columns are eliminated LU_BLOCK at a time, and taken off four others at once.
+*/
+#include "base/versions.h"
+#include "complianceimpl.h"
+
+#define LU_BLOCK 8
+#define LU_OTHER 4
+
+/* `columns` columns P from row k on become their own L and U */
+INTO_VERSIONS void LUFactorBlock(PetscInt n, PetscInt k, PetscInt columns, PetscReal P[])
+{
+  for (PetscInt j = 0; j < columns; j++) {
+    PetscReal      *l     = &P[j * n];
+    const PetscReal scale = 1 / l[k + j];
+
+    for (PetscInt i = k + j + 1; i < n; i++) l[i] *= scale;
+    for (PetscInt q = j + 1; q < columns; q++) {
+      PetscReal      *a = &P[q * n];
+      const PetscReal u = a[k + j];
+
+      for (PetscInt i = k + j + 1; i < n; i++) a[i] -= u * l[i];
+    }
+  }
+}
+
+/* Takes the block P at row k off `others` columns A after it */
+INTO_VERSIONS void LUTakeBlock(PetscInt n, PetscInt k, PetscInt others, const PetscReal *restrict P,
+                               PetscReal *restrict A)
+{
+  PetscReal u[LU_OTHER][LU_BLOCK];
+
+  for (PetscInt q = 0; q < others; q++)
+    for (PetscInt j = 0; j < LU_BLOCK; j++) {
+      u[q][j] = A[q * n + k + j];
+      for (PetscInt m = 0; m < j; m++) u[q][j] -= P[m * n + k + j] * u[q][m];
+      A[q * n + k + j] = u[q][j];
+    }
+  for (PetscInt i = k + LU_BLOCK; i < n; i++) {
+    PetscReal a[LU_OTHER];
+
+    for (PetscInt q = 0; q < others; q++) a[q] = A[q * n + i];
+    for (PetscInt j = 0; j < LU_BLOCK; j++)
+      for (PetscInt q = 0; q < others; q++) a[q] -= P[j * n + i] * u[q][j];
+    for (PetscInt q = 0; q < others; q++) A[q * n + i] = a[q];
+  }
+}
+
+VERSIONS
+PetscReal ComplianceLUFactor(PetscInt n, PetscReal A[])
+{
+  const PetscInt whole = n / LU_BLOCK * LU_BLOCK;
+  PetscReal      least = n ? PETSC_MAX_REAL : 1, largest = n ? 0 : 1;
+
+  for (PetscInt k = 0; k < whole; k += LU_BLOCK) {
+    PetscInt q = k + LU_BLOCK;
+
+    LUFactorBlock(n, k, LU_BLOCK, &A[k * n]);
+    for (; q + LU_OTHER <= n; q += LU_OTHER) LUTakeBlock(n, k, LU_OTHER, &A[k * n], &A[q * n]);
+    for (; q < n; q++) LUTakeBlock(n, k, 1, &A[k * n], &A[q * n]);
+  }
+  LUFactorBlock(n, whole, n - whole, &A[whole * n]);
+  for (PetscInt i = 0; i < n; i++) {
+    least   = PetscMin(least, PetscAbsReal(A[i * (n + 1)]));
+    largest = PetscMax(largest, PetscAbsReal(A[i * (n + 1)]));
+  }
+  return least / largest;
+}
+
+VERSIONS
+void ComplianceLUSolve(PetscInt n, const PetscReal *restrict LU, PetscReal *restrict x)
+{
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = j + 1; i < n; i++) x[i] -= LU[j * n + i] * x[j];
+  for (PetscInt j = n - 1; j >= 0; j--) {
+    x[j] /= LU[j * n + j];
+    for (PetscInt i = 0; i < j; i++) x[i] -= LU[j * n + i] * x[j];
+  }
+}
+
+VERSIONS
+void ComplianceAddColumns(PetscInt N, const PetscReal *restrict W, PetscInt n, const PetscInt column[],
+                          const PetscReal x[], PetscReal *restrict y)
+{
+  for (PetscInt k = 0; k < n; k += LU_BLOCK) {
+    const PetscReal *w[LU_BLOCK];
+    PetscReal        f[LU_BLOCK];
+
+    for (PetscInt j = 0; j < LU_BLOCK; j++) {
+      w[j] = &W[column[PetscMin(k + j, n - 1)] * N];
+      f[j] = k + j < n ? x[k + j] : 0;
+    }
+    for (PetscInt i = 0; i < N; i++)
+      y[i] += ((w[0][i] * f[0] + w[1][i] * f[1]) + (w[2][i] * f[2] + w[3][i] * f[3])) +
+              ((w[4][i] * f[4] + w[5][i] * f[5]) + (w[6][i] * f[6] + w[7][i] * f[7]));
+  }
+}
