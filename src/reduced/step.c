@@ -5,55 +5,6 @@
 #include "reducedimpl.h"
 #include <petscblaslapack.h>
 
-PetscErrorCode ReducedStateCreate(const ReducedModel *model, ReducedState *state)
-{
-  PetscFunctionBeginUser;
-  *state = (ReducedState){.time = 0};
-  PetscCall(PetscCalloc4(model->m, &state->eta, model->m, &state->rate, model->n_ports, &state->p, model->n_ports,
-                         &state->last));
-  PetscCall(PetscCalloc3(3 * model->n_pairs, &state->q, 3 * model->n_pairs, &state->y, model->n_pairs, &state->status));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ReducedStateCopy(const ReducedModel *model, const ReducedState *from, ReducedState *to)
-{
-  PetscFunctionBeginUser;
-  to->time = from->time;
-  PetscCall(PetscArraycpy(to->eta, from->eta, model->m));
-  PetscCall(PetscArraycpy(to->rate, from->rate, model->m));
-  PetscCall(PetscArraycpy(to->p, from->p, model->n_ports));
-  PetscCall(PetscArraycpy(to->last, from->last, model->n_ports));
-  PetscCall(PetscArraycpy(to->q, from->q, 3 * model->n_pairs));
-  PetscCall(PetscArraycpy(to->y, from->y, 3 * model->n_pairs));
-  PetscCall(PetscArraycpy(to->status, from->status, model->n_pairs));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ReducedStateDestroy(ReducedState *state)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree4(state->eta, state->rate, state->p, state->last));
-  PetscCall(PetscFree3(state->q, state->y, state->status));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ReducedReportCreate(const ReducedModel *model, ReducedReport *report)
-{
-  const PetscInt n = model->n_pairs;
-
-  PetscFunctionBeginUser;
-  *report = (ReducedReport){.works = PETSC_TRUE};
-  PetscCall(PetscCalloc4(n, &report->contact, n, &report->friction, n, &report->heat, 2 * n, &report->slip));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ReducedReportDestroy(ReducedReport *report)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree4(report->contact, report->friction, report->heat, report->slip));
-  PetscFunctionReturn(0);
-}
-
 void ReducedBlockTimes(const DenseBlock *A, PetscBool transposed, PetscReal scale, const PetscReal x[], PetscReal y[])
 {
   const PetscReal    one  = 1;
