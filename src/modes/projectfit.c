@@ -72,20 +72,20 @@ PetscErrorCode ProjectionFit(Projection *p, const Spectrum *right, const ModalBl
 /* Z = P^-1 R W for the active columns of W and Z */
 static PetscErrorCode BeyondApply(const Projection *p, BV W, BV Z)
 {
-  Mat w, z, Aw, b;
+  Mat w, z, Mw, Kw, b;
 
   PetscFunctionBeginUser;
   PetscCall(BVGetMat(W, &w));
   PetscCall(BVGetMat(Z, &z));
   PetscCall(MatDuplicate(z, MAT_DO_NOT_COPY_VALUES, &b));
-  PetscCall(MatDuplicate(z, MAT_DO_NOT_COPY_VALUES, &Aw));
-  PetscCall(BlockMultiply(p->pencil->C, w, b));
-  PetscCall(BlockMultiply(p->pencil->M, w, Aw));
-  PetscCall(MatAXPY(b, -p->alpha, Aw, SAME_NONZERO_PATTERN));
-  PetscCall(BlockMultiply(p->pencil->K, w, Aw));
-  PetscCall(MatAXPY(b, -p->beta, Aw, SAME_NONZERO_PATTERN));
+  PetscCall(MatDuplicate(z, MAT_DO_NOT_COPY_VALUES, &Mw));
+  PetscCall(MatDuplicate(z, MAT_DO_NOT_COPY_VALUES, &Kw));
+  PetscCall(BlockMultiplyEach(3, (Mat[]){p->pencil->C, p->pencil->M, p->pencil->K}, w, (Mat[]){b, Mw, Kw}));
+  PetscCall(MatAXPY(b, -p->alpha, Mw, SAME_NONZERO_PATTERN));
+  PetscCall(MatAXPY(b, -p->beta, Kw, SAME_NONZERO_PATTERN));
   PetscCall(ShiftInvertApplyBlock(&p->si, PETSC_FALSE, b, z));
-  PetscCall(MatDestroy(&Aw));
+  PetscCall(MatDestroy(&Kw));
+  PetscCall(MatDestroy(&Mw));
   PetscCall(MatDestroy(&b));
   PetscCall(BVRestoreMat(Z, &z));
   PetscCall(BVRestoreMat(W, &w));

@@ -10,7 +10,7 @@
 #include "complexvec.h"
 #include "solver/orthonormal.h"
 
-#define QUALITY_BLOCK    8    /* modes whose products are made at once */
+#define QUALITY_BLOCK    16   /* modes whose products are made at once */
 #define QUALITY_BACKWARD 1e-6 /* largest backward error that is a solution */
 #define ROUNDINGS        3
 #define QUALITY_NOISE    100 /* lambda^2 below this many times its error is a rigid mode */
@@ -39,17 +39,18 @@ static PetscErrorCode ComplexVecSquare(ComplexVec x, ComplexVec z, PetscReal *sq
   PetscFunctionReturn(0);
 }
 
-/* A times the vectors of n modes, by columns: the real part, and the imaginary one where there is one */
-static PetscErrorCode QualityMultiply(const Spectrum *s, PetscInt first, PetscInt n, Mat A, Mat *AX)
+/* Each A times the vectors of modes first .. first + n - 1, by columns: the real part, and the imaginary one where there is one */
+static PetscErrorCode QualityMultiply(const Spectrum *s, PetscInt first, PetscInt n, PetscInt n_matrices, const Mat A[],
+                                      Mat AX[])
 {
   PetscInt n_local, n_columns = n, column = 0;
   Mat      X;
 
   PetscFunctionBeginUser;
   for (PetscInt i = first; i < first + n; i++) n_columns += s->xi[i] ? 1 : 0;
-  PetscCall(MatGetLocalSize(A, &n_local, NULL));
+  PetscCall(MatGetLocalSize(A[0], &n_local, NULL));
   PetscCall(
-    MatCreateDense(PetscObjectComm((PetscObject)A), n_local, PETSC_DECIDE, PETSC_DETERMINE, n_columns, NULL, &X));
+    MatCreateDense(PetscObjectComm((PetscObject)A[0]), n_local, PETSC_DECIDE, PETSC_DETERMINE, n_columns, NULL, &X));
   for (PetscInt i = first; i < first + n; i++)
     for (int part = 0; part < 2; part++) {
       const Vec from = part ? s->xi[i] : s->xr[i];
@@ -60,8 +61,8 @@ static PetscErrorCode QualityMultiply(const Spectrum *s, PetscInt first, PetscIn
       PetscCall(VecCopy(from, to));
       PetscCall(MatDenseRestoreColumnVecWrite(X, column++, &to));
     }
-  PetscCall(MatDuplicate(X, MAT_DO_NOT_COPY_VALUES, AX));
-  PetscCall(BlockMultiply(A, X, *AX));
+  for (PetscInt i = 0; i < n_matrices; i++) PetscCall(MatDuplicate(X, MAT_DO_NOT_COPY_VALUES, &AX[i]));
+  PetscCall(BlockMultiplyEach(n_matrices, A, X, AX));
   PetscCall(MatDestroy(&X));
   PetscFunctionReturn(0);
 }
@@ -69,12 +70,14 @@ static PetscErrorCode QualityMultiply(const Spectrum *s, PetscInt first, PetscIn
 /* The products of a block of modes */
 static PetscErrorCode QualityBegin(const Modes modes, Quality *q, PetscInt first, PetscInt n)
 {
+  const Mat A[3]  = {q->pencil->K, q->pencil->M, q->pencil->C};
+  Mat       AX[3] = {NULL, NULL, NULL};
+
   PetscFunctionBeginUser;
-  PetscCall(QualityMultiply(&modes->right, first, n, q->pencil->K, &q->KX));
-  PetscCall(QualityMultiply(&modes->right, first, n, q->pencil->M, &q->MX));
-  if (q->pencil->C) PetscCall(QualityMultiply(&modes->right, first, n, q->pencil->C, &q->CX));
+  PetscCall(QualityMultiply(&modes->right, first, n, A[2] ? 3 : 2, A, AX));
+  q->KX = AX[0], q->MX = AX[1], q->CX = AX[2];
   if (modes->left_spectrum.n && q->M == q->pencil->M)
-    PetscCall(QualityMultiply(&modes->left_spectrum, first, n, q->M, &q->MY));
+    PetscCall(QualityMultiply(&modes->left_spectrum, first, n, 1, &q->M, &q->MY));
   q->next[0] = q->next[1] = 0;
   PetscFunctionReturn(0);
 }

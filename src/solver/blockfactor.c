@@ -10,12 +10,17 @@
    with S the square root of the diagonal of G and D not below rounding, which it is where V holds all of the block: T is always
    regular, so what one pass does not resolve the next one does. A row of R is the size of its direction. Without M a pass measures
    what the next one needs while it has V at hand (panel.h).
+
+   Rounding in G, epsilon times W' M W, is as much beside one in the new block as its largest entry beside S S D. Where that is
+   little enough for those who know V' M V, a pass is the last one. A loose V is projected on by C' = (V'MV)^-1 V' M W.
 */
+#include "dense.h"
 #include "orthonormal.h"
 #include "panel.h"
 
 #define ROUNDING 1e-14 /* what a pass does not resolve beside what there is */
 #define PASSES   8     /* each makes a condition up to 1e7 times better; two are usual */
+#define SUMS     10    /* roundings of an entry of G */
 
 /* One pass over a block of m columns, which were `columns` at the beginning */
 typedef struct {
@@ -25,7 +30,7 @@ typedef struct {
   PetscReal   *size, *spread; /* [m] S; D */
   PetscScalar *R;             /* [columns][columns] rows of R, before and after */
   PetscReal    norm;          /* of the longest column at the beginning */
-  PetscBool    clean;         /* the block was orthonormal to a half before, so that it is now to rounding */
+  PetscBool    clean; /* the block was orthonormal to a half before, so that it is now to rounding; or loosely is */
 } BlockPass;
 
 /* The local rows of the active columns of a block; A is to be restored with it */
@@ -101,34 +106,68 @@ static PetscErrorCode PassMeasure(BV V, PetscInt n, BV W, BlockPass *pass)
   PetscFunctionReturn(0);
 }
 
-/* U and D of G, which is left in T, and S */
-static PetscErrorCode PassDecompose(MPI_Comm comm, PetscInt n, PetscBool first, BlockPass *pass)
+/* C := (V'MV)^-1 C where V is loose; products [m][n] = C as it was measured, V' M W */
+static PetscErrorCode PassProject(PetscInt n, const PetscReal gram[], BlockPass *pass, PetscScalar products[])
+{
+  PetscReal    *factors;
+  PetscBLASInt *pivot;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(products, pass->C, pass->m * n));
+  if (!gram || !n) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(n * n, &factors, n, &pivot));
+  PetscCall(PetscArraycpy(factors, gram, n * n));
+  PetscCall(DenseFactor(n, factors, pivot, NULL));
+  PetscCall(DenseSolve(n, factors, pivot, PETSC_FALSE, pass->m, pass->C));
+  PetscCall(PetscFree2(factors, pivot));
+  PetscFunctionReturn(0);
+}
+
+/* S and S^-1 G S^-1 of G = W' M W - C'' C', which takes the place of W' M W in T; lost = the largest part of a square by which
+   it shrinks to that of S */
+static void PassReduce(PetscInt n, PetscBool first, const PetscScalar products[], BlockPass *pass, PetscReal *lost)
 {
   const PetscInt           m     = pass->m;
   const PetscScalar *const C     = pass->C;
   PetscScalar *const       G     = pass->T;
   PetscReal                moved = 0;
 
-  PetscFunctionBeginUser;
+  *lost = 1;
   for (PetscInt j = 0; j < m; j++) {
     const PetscReal before = PetscMax(G[j * m + j], 0);
 
     if (first) pass->norm = PetscMax(pass->norm, PetscSqrtReal(before));
     for (PetscInt i = 0; i < m; i++)
-      for (PetscInt k = 0; k < n; k++) G[j * m + i] -= C[i * n + k] * C[j * n + k];
+      for (PetscInt k = 0; k < n; k++) G[j * m + i] -= products[i * n + k] * C[j * n + k];
     pass->size[j] = PetscSqrtReal(PetscMax(G[j * m + j], ROUNDING * before));
     if (pass->size[j] == 0) pass->size[j] = 1;
     moved = PetscMax(moved, before - G[j * m + j]);
+    *lost = PetscMax(*lost, before / PetscSqr(pass->size[j]));
   }
   pass->clean = moved < 0.5 ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt j = 0; j < m; j++) {
     if (pass->size[j] < 0.7 || pass->size[j] > 1.4) pass->clean = PETSC_FALSE;
     for (PetscInt i = 0; i < m; i++) G[j * m + i] /= pass->size[i] * pass->size[j];
   }
-  PetscCall(GramEigen(comm, m, G, pass->spread));
+}
+
+/* U and D of G, which is left in T, and S */
+static PetscErrorCode PassDecompose(MPI_Comm comm, PetscInt n, const BlockFactors *factors, BlockPass *pass)
+{
+  const PetscInt m = pass->m;
+  PetscReal      lost;
+  PetscScalar   *products;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(m * n, &products));
+  PetscCall(PassProject(n, factors->gram, pass, products));
+  PassReduce(n, pass->norm < 0 ? PETSC_TRUE : PETSC_FALSE, products, pass, &lost);
+  PetscCall(PetscFree(products));
+  PetscCall(GramEigen(comm, m, pass->T, pass->spread));
   if (m && pass->spread[0] < 0.5) pass->clean = PETSC_FALSE;
   for (PetscInt i = 0; i < m; i++)
     pass->spread[i] = PetscMax(pass->spread[i], ROUNDING * PetscMax(1, pass->spread[m - 1]));
+  if (m && SUMS * PETSC_MACHINE_EPSILON * lost / pass->spread[0] <= factors->loose) pass->clean = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -266,7 +305,7 @@ static PetscErrorCode PassRun(BV V, PetscInt n, Mat M, BV W, BlockFactors *facto
   PetscCall(PassForget(n, W, factors, pass));
   if (!pass->m) PetscFunctionReturn(0);
   if (!pass->measured) PetscCall(M ? PassMeasureMass(V, n, M, W, pass) : PassMeasure(V, n, W, pass));
-  PetscCall(PassDecompose(PetscObjectComm((PetscObject)W), n, pass->norm < 0 ? PETSC_TRUE : PETSC_FALSE, pass));
+  PetscCall(PassDecompose(PetscObjectComm((PetscObject)W), n, factors, pass));
   PassAccumulate(n, pass, factors);
   PetscCall(M ? PassApplyMass(V, n, W, pass) : PassApply(V, n, W, pass));
   PetscCall(PassTrim(n, W, factors, pass));

@@ -32,14 +32,19 @@ typedef struct {
   PetscInt     ld, most; /* leading dimension of H; columns that the new block may have at most */
   PetscScalar *H;        /* [columns][ld] C in rows 0 .. n - 1, R in as many rows below as there are columns now */
   PetscReal    drop;     /* directions shorter than this beside the longest column are left out */
+  PetscReal    loose;    /* how far, about, [V Q]'M[V Q] may be from the identity; zero: as far as rounding leaves it */
+  PetscReal   *gram;     /* [n * n] V'MV where V is loose, else NULL */
 } BlockFactors;
 
 /* W = V C + Q R for the active columns of W and the first n columns of V, which are orthonormal in M (the identity where
-   NULL). Q, orthonormal in itself and to V, takes the place of W, and its active columns become those that there are.
-   Unlike BlockOrthonormalise() it resolves directions of any length. Collective; alike on all ranks. */
+   NULL) or loosely so. Q, orthonormal in itself and to V, takes the place of W, and its active columns become those that there
+   are. Unlike BlockOrthonormalise() it resolves directions of any length. Collective; alike on all ranks. */
 PETSC_INTERN PetscErrorCode BlockFactorise(BV V, PetscInt n, Mat M, BV W, BlockFactors *factors);
 /* blockproduct.c - columns first, first + 1, ... of a sparse A as the dense X, zeros where A has no more; Y = A X of dense X
-   and Y; the same of the active columns of X and Y */
+   and Y; Y[i] = A[i] X of n matrices, which costs less than one by one; the same of the active
+   columns of X into as many columns of Y for each; Y = A X of the active columns of X and Y */
 PETSC_INTERN PetscErrorCode BlockTakeColumns(Mat A, PetscInt first, Mat X);
 PETSC_INTERN PetscErrorCode BlockMultiply(Mat A, Mat X, Mat Y);
+PETSC_INTERN PetscErrorCode BlockMultiplyEach(PetscInt n, const Mat A[], Mat X, const Mat Y[]);
+PETSC_INTERN PetscErrorCode BlockMultiplySideBySide(PetscInt n, const Mat A[], BV X, BV Y);
 PETSC_INTERN PetscErrorCode BlockMultiplyVectors(Mat A, BV X, BV Y);

@@ -4,7 +4,7 @@
 #include "residual.h"
 #include "orthonormal.h"
 
-#define RESIDUAL_WIDTH 16 /* columns of a part, as many as BlockMultiply() takes at once */
+#define RESIDUAL_WIDTH 32 /* columns of a part, as many as BlockMultiply() takes at once */
 
 PetscErrorCode ComplexColumnsCreate(PetscInt capacity, ComplexColumns *c)
 {
@@ -31,11 +31,11 @@ PetscErrorCode ComplexColumnsDestroy(ComplexColumns *c)
 }
 
 /* Modes `first` .. `end` - 1 and their columns of the vectors and of the residuals, which stay in a cache while all matrices
-   are multiplied with them, with room for a product */
+   are multiplied with them, with room for products with C and M */
 typedef struct {
   const ComplexColumns *c;
   PetscInt              first, end;
-  Mat                   X, R, AX;
+  Mat                   X, R, AX[2];
 } ResidualPart;
 
 /* R += lambda^power AX, mode by mode */
@@ -77,30 +77,36 @@ static PetscErrorCode ResidualIsSymmetric(Mat A, PetscBool *symmetric)
   PetscFunctionReturn(0);
 }
 
-/* Y = A X, or A' X: products with the rows of A are several times faster than with its columns */
-static PetscErrorCode ResidualMultiply(Mat A, PetscBool transposed, Mat X, Mat Y)
+/* Y = A' X by the columns of A, which takes several times as long as products with its rows */
+static PetscErrorCode ResidualMultiplyTransposed(Mat A, Mat X, Mat Y)
 {
-  PetscBool symmetric;
-  Mat       AX;
+  Mat AX;
 
   PetscFunctionBeginUser;
-  PetscCall(ResidualIsSymmetric(A, &symmetric));
-  if (!transposed || symmetric) {
-    PetscCall(BlockMultiply(A, X, Y));
-    PetscFunctionReturn(0);
-  }
   PetscCall(MatTransposeMatMult(A, X, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &AX));
   PetscCall(MatCopy(AX, Y, SAME_NONZERO_PATTERN));
   PetscCall(MatDestroy(&AX));
   PetscFunctionReturn(0);
 }
 
-/* R += lambda^power A X, or A' X */
-static PetscErrorCode ResidualAdd(Mat A, PetscBool transposed, int power, const ResidualPart *p)
+/* Y[i] = A[i] X, or A[i]' X, of those that are there, by rows of all that have them */
+static PetscErrorCode ResidualMultiply(const Mat A[3], PetscBool transposed, Mat X, const Mat Y[3])
 {
+  Mat      from[3], to[3];
+  PetscInt n = 0;
+
   PetscFunctionBeginUser;
-  PetscCall(ResidualMultiply(A, transposed, p->X, p->AX));
-  PetscCall(ResidualScale(p, power, p->AX));
+  for (int i = 0; i < 3; i++) {
+    PetscBool symmetric = PETSC_TRUE;
+
+    if (!A[i]) continue;
+    if (transposed) PetscCall(ResidualIsSymmetric(A[i], &symmetric));
+    if (symmetric)
+      from[n] = A[i], to[n++] = Y[i];
+    else
+      PetscCall(ResidualMultiplyTransposed(A[i], X, Y[i]));
+  }
+  PetscCall(BlockMultiplyEach(n, from, X, to));
   PetscFunctionReturn(0);
 }
 
@@ -122,16 +128,14 @@ static PetscErrorCode ResidualAddFriction(const PencilMatrices *pencil, const Re
 static PetscErrorCode ResidualMakePart(const PencilMatrices *pencil, PetscBool transposed, const ResidualPart *p)
 {
   const PetscBool pairs = transposed && pencil->K_even ? PETSC_TRUE : PETSC_FALSE;
+  const Mat       A[3] = {pairs ? NULL : pencil->K, pencil->C, pencil->M}, Y[3] = {p->R, p->AX[0], p->AX[1]};
 
   PetscFunctionBeginUser;
-  if (pairs) {
-    PetscCall(BlockMultiply(pencil->K_even, p->X, p->R));
-    PetscCall(ResidualAddFriction(pencil, p));
-  } else {
-    PetscCall(ResidualMultiply(pencil->K, transposed, p->X, p->R));
-  }
-  if (pencil->C) PetscCall(ResidualAdd(pencil->C, transposed, 1, p));
-  PetscCall(ResidualAdd(pencil->M, transposed, 2, p));
+  if (pairs) PetscCall(BlockMultiply(pencil->K_even, p->X, p->R));
+  PetscCall(ResidualMultiply(A, transposed, p->X, Y));
+  if (pairs) PetscCall(ResidualAddFriction(pencil, p));
+  if (pencil->C) PetscCall(ResidualScale(p, 1, p->AX[0]));
+  PetscCall(ResidualScale(p, 2, p->AX[1]));
   PetscFunctionReturn(0);
 }
 
@@ -146,9 +150,9 @@ PetscErrorCode ResidualMake(const PencilMatrices *pencil, PetscBool transposed, 
     for (p.end = p.first + 1; p.end < c->m && c->column[p.end + 1] - from <= RESIDUAL_WIDTH;) p.end++;
     PetscCall(MatDenseGetSubMatrix(X, PETSC_DECIDE, PETSC_DECIDE, from, c->column[p.end], &p.X));
     PetscCall(MatDenseGetSubMatrix(R, PETSC_DECIDE, PETSC_DECIDE, from, c->column[p.end], &p.R));
-    PetscCall(MatDuplicate(p.X, MAT_DO_NOT_COPY_VALUES, &p.AX));
+    for (int i = 0; i < 2; i++) PetscCall(MatDuplicate(p.X, MAT_DO_NOT_COPY_VALUES, &p.AX[i]));
     PetscCall(ResidualMakePart(pencil, transposed, &p));
-    PetscCall(MatDestroy(&p.AX));
+    for (int i = 0; i < 2; i++) PetscCall(MatDestroy(&p.AX[i]));
     PetscCall(MatDenseRestoreSubMatrix(R, &p.R));
     PetscCall(MatDenseRestoreSubMatrix(X, &p.X));
   }
