@@ -1,9 +1,9 @@
 /*
-   The dense quadratic problem (lambda^2 I + lambda C + K) x = 0 of a projection, through A z = mu z with
+   The dense quadratic problem (lambda^2 M + lambda C + K) x = 0 of a projection, M nearly I, through A z = mu z with
 
-      A = [0 I; -K / w^2 -C / w],   z = [x; mu x],   lambda = w mu,
+      A = [0 I; -M^-1 K / w^2 -M^-1 C / w],   z = [x; mu x],   lambda = w mu,
 
-   w the upper end of the window, which leaves |mu| <= 1 there. Left vectors: u^H A = mu u^H, y = conj of u's second half.
+   w the upper end of the window, which leaves |mu| <= 1 there. Left vectors: u^H A = mu u^H, y = M^-T conj of u's second half.
 */
 #include "projection.h"
 #include "solver/densepencil.h"
@@ -13,18 +13,54 @@
 #define POLISH_STIFF 1e4   /* |K| beside the square of the upper end */
 #define EDGE_POINTS  64    /* on each side of the window's edge, where kappa(lambda) is looked at */
 
-/* A, [2 k * 2 k], column-major */
-static void CompanionFill(const Projection *p, PetscReal w, PetscReal A[])
-{
-  const PetscInt k = p->k, n = 2 * k;
+/* Factors of M */
+typedef struct {
+  PetscReal    *LU; /* [k * k] */
+  PetscBLASInt *pivot;
+} MassFactors;
 
-  for (PetscInt j = 0; j < k; j++) {
-    A[(k + j) * n + j] = 1;
-    for (PetscInt i = 0; i < k; i++) {
-      A[j * n + k + i]       = -p->K[j * k + i] / (w * w);
-      A[(k + j) * n + k + i] = -p->C[j * k + i] / w;
-    }
-  }
+static PetscErrorCode MassFactorsCreate(const Projection *p, MassFactors *mass)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(p->k * p->k, &mass->LU, p->k, &mass->pivot));
+  PetscCall(PetscArraycpy(mass->LU, p->M, p->k * p->k));
+  PetscCall(DenseFactor(p->k, mass->LU, mass->pivot, NULL));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MassFactorsDestroy(MassFactors *mass)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree2(mass->LU, mass->pivot));
+  PetscFunctionReturn(0);
+}
+
+/* -scale M^-1 S into the rows k .. 2 k - 1 of k columns of A, [2 k * 2 k] */
+static PetscErrorCode CompanionFillBlock(PetscInt k, const MassFactors *mass, PetscReal scale, const PetscReal S[],
+                                         PetscReal A[])
+{
+  PetscReal *B;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(k * k, &B));
+  PetscCall(PetscArraycpy(B, S, k * k));
+  PetscCall(DenseSolve(k, mass->LU, mass->pivot, PETSC_FALSE, k, B));
+  for (PetscInt j = 0; j < k; j++)
+    for (PetscInt i = 0; i < k; i++) A[2 * j * k + k + i] = -scale * B[j * k + i];
+  PetscCall(PetscFree(B));
+  PetscFunctionReturn(0);
+}
+
+/* A, column-major */
+static PetscErrorCode CompanionFill(const Projection *p, const MassFactors *mass, PetscReal w, PetscReal A[])
+{
+  const PetscInt k = p->k;
+
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < k; j++) A[(k + j) * 2 * k + j] = 1;
+  PetscCall(CompanionFillBlock(k, mass, 1 / (w * w), p->K, A));
+  PetscCall(CompanionFillBlock(k, mass, 1 / w, p->C, A + 2 * k * k));
+  PetscFunctionReturn(0);
 }
 
 PetscBool ProjectionHas(const Projection *p, PetscComplex lambda)
@@ -99,11 +135,23 @@ static void VectorTurn(PetscInt k, PetscBool is_real, PetscComplex x[])
   for (PetscInt i = 0; i < k; i++) x[i] *= square / sqrt(length);
 }
 
-/* Copies a vector of LAPACK's real storage; left ones are conjugated */
-static void VectorCopy(PetscInt k, const PetscReal *re, const PetscReal *im, PetscBool conjugate, PetscComplex x[])
+/* Copies a vector of LAPACK's real storage; left ones are conjugated, and multiplied by M^-T */
+static PetscErrorCode VectorCopy(PetscInt k, const PetscReal *re, const PetscReal *im, const MassFactors *mass,
+                                 PetscComplex x[])
 {
-  for (PetscInt i = 0; i < k; i++) x[i] = CMPLX(re[i], im ? (conjugate ? -im[i] : im[i]) : 0);
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < k; i++) x[i] = CMPLX(re[i], im ? (mass ? -im[i] : im[i]) : 0);
+  if (mass) {
+    PetscReal *parts;
+
+    PetscCall(PetscMalloc1(2 * k, &parts));
+    DenseSplit(k, x, parts);
+    PetscCall(DenseSolve(k, mass->LU, mass->pivot, PETSC_TRUE, 2, parts));
+    DenseUnite(k, parts, x);
+    PetscCall(PetscFree(parts));
+  }
   VectorTurn(k, im ? PETSC_FALSE : PETSC_TRUE, x);
+  PetscFunctionReturn(0);
 }
 
 /* Room for n modes of a model of this size */
@@ -126,7 +174,8 @@ PetscErrorCode ProjectionModesDestroy(ProjectionModes *modes)
 }
 
 /* Eigenvalues (rad/s) and vectors of the companion form, those of rank 0 on all; L, R [2 k][2 k] */
-static PetscErrorCode CompanionSolve(const Projection *p, PetscComplex lambda[], PetscReal L[], PetscReal R[])
+static PetscErrorCode CompanionSolve(const Projection *p, const MassFactors *mass, PetscComplex lambda[], PetscReal L[],
+                                     PetscReal R[])
 {
   const PetscInt  n = 2 * p->k;
   const PetscReal w = PetscMax(PetscMax(p->window->high, p->window->target), PetscSqrtReal(PetscAbsReal(p->si.shift)));
@@ -135,7 +184,7 @@ static PetscErrorCode CompanionSolve(const Projection *p, PetscComplex lambda[],
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n * n, &A));
   PetscCall(PetscMalloc2(n, &wr, n, &wi));
-  CompanionFill(p, w, A);
+  PetscCall(CompanionFill(p, mass, w, A));
   PetscCall(DenseEigen(n, A, wr, wi, L, R));
   for (PetscInt i = 0; i < n; i++) lambda[i] = w * CMPLX(wr[i], wi[i]);
   PetscCallMPI(MPI_Bcast(lambda, (PetscMPIInt)(2 * n), MPIU_REAL, 0, p->modes->comm));
@@ -226,10 +275,12 @@ PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes)
   PetscComplex  *lambda;
   PetscReal     *L, *R, d = 0;
   PetscInt      *list, m = 0;
+  MassFactors    mass;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc4(n, &lambda, n * n, &L, n * n, &R, n, &list));
-  PetscCall(CompanionSolve(p, lambda, L, R));
+  PetscCall(MassFactorsCreate(p, &mass));
+  PetscCall(CompanionSolve(p, &mass, lambda, L, R));
   for (PetscInt i = 0; i < n; i++)
     if (cimag(lambda[i]) >= 0 && ProjectionHas(p, lambda[i])) list[m++] = i;
   if (p->window->count) KeepNearest(p->window, lambda, list, &m, &d);
@@ -239,9 +290,10 @@ PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes)
     const PetscBool paired = cimag(lambda[list[i]]) > 0 ? PETSC_TRUE : PETSC_FALSE;
 
     modes->lambda[i] = lambda[list[i]];
-    VectorCopy(k, &R[at], paired ? &R[at + n] : NULL, PETSC_FALSE, &modes->vectors[0][i * k]);
-    VectorCopy(k, &L[at + k], paired ? &L[at + n + k] : NULL, PETSC_TRUE, &modes->vectors[1][i * k]);
+    PetscCall(VectorCopy(k, &R[at], paired ? &R[at + n] : NULL, NULL, &modes->vectors[0][i * k]));
+    PetscCall(VectorCopy(k, &L[at + k], paired ? &L[at + n + k] : NULL, &mass, &modes->vectors[1][i * k]));
   }
+  PetscCall(MassFactorsDestroy(&mass));
   modes->lambda_reach = ProjectionEdge(p, d);
   PetscCall(ModesPolish(p, modes));
   PetscCall(PetscFree4(lambda, L, R, list));
@@ -251,19 +303,16 @@ PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes)
 PetscErrorCode ProjectionFollow(const Projection *p, const ProjectionModes *before, ProjectionModes *modes,
                                 PetscBool *followed)
 {
-  DensePencil dense = {.n = p->k, .damped = PETSC_TRUE, .K = p->K, .C = p->C};
+  const DensePencil dense = {.n = p->k, .damped = PETSC_TRUE, .K = p->K, .C = p->C, .M = p->M};
 
   PetscFunctionBeginUser;
   PetscCall(ProjectionModesCreate(before->n, p->k, modes));
   modes->lambda_reach = before->lambda_reach;
-  PetscCall(PetscCalloc1(p->k * p->k, &dense.M));
-  for (PetscInt j = 0; j < p->k; j++) dense.M[j * (p->k + 1)] = 1;
-  *followed = PETSC_TRUE;
+  *followed           = PETSC_TRUE;
   for (PetscInt i = 0; i < before->n && *followed; i++) PetscCall(FollowMode(p, &dense, before, i, modes, followed));
   if (*followed && HasTwice(modes)) *followed = PETSC_FALSE;
   PetscCallMPI(MPI_Bcast(followed, 1, MPIU_BOOL, 0, p->modes->comm));
   if (*followed) PetscCall(ModesShare(p->modes->comm, modes));
   if (!*followed) PetscCall(ProjectionModesDestroy(modes));
-  PetscCall(PetscFree(dense.M));
   PetscFunctionReturn(0);
 }

@@ -14,7 +14,7 @@
 
 #define EXTEND_LATER                                                                                                   \
   10 /* times what may remain: directions of M Z and R Z shorter than this are left to the next round */
-#define EXTEND_DROP   0.3 /* of what may remain: directions of corrections that make less are left out */
+#define EXTEND_DROP   0.1 /* of what may remain: directions of corrections that make less are left out */
 #define EXTEND_LEVELS 2   /* of corrections: of the residuals, and of what these leave */
 
 /* Residuals sigma B of one side */
@@ -113,30 +113,24 @@ static PetscErrorCode CorrectionsScale(BV block, const PetscReal sigma[], PetscR
 /* M Z and (C - (alpha + beta s) M) Z - beta B = R Z side by side in a block of twice as many columns */
 static PetscErrorCode RemainFill(const Projection *p, PetscBool left, BV B, BV Z, BV remain)
 {
-  const Mat C = left ? p->transposed[1] : p->pencil->C, M = left ? p->transposed[2] : p->pencil->M;
-  PetscInt  n;
-  Mat       b, z, mz, cz;
+  const Mat       A[2]  = {left ? p->transposed[2] : p->pencil->M, left ? p->transposed[1] : p->pencil->C};
+  const PetscReal drift = p->alpha + p->beta * p->si.shift;
+  PetscInt        n;
 
   PetscFunctionBeginUser;
   PetscCall(BVGetActiveColumns(B, NULL, &n));
-  PetscCall(BVGetMat(Z, &z));
-  PetscCall(MatDuplicate(z, MAT_DO_NOT_COPY_VALUES, &mz));
-  PetscCall(BlockMultiply(M, z, mz));
-  PetscCall(BVSetActiveColumns(remain, n, 2 * n));
-  PetscCall(BVGetMat(remain, &cz));
-  PetscCall(BlockMultiply(C, z, cz));
-  PetscCall(MatAXPY(cz, -(p->alpha + p->beta * p->si.shift), mz, SAME_NONZERO_PATTERN));
-  PetscCall(BVGetMat(B, &b));
-  PetscCall(MatAXPY(cz, -p->beta, b, SAME_NONZERO_PATTERN));
-  PetscCall(BVRestoreMat(B, &b));
-  PetscCall(BVRestoreMat(remain, &cz));
-  PetscCall(BVSetActiveColumns(remain, 0, n));
-  PetscCall(BVGetMat(remain, &cz));
-  PetscCall(MatCopy(mz, cz, SAME_NONZERO_PATTERN));
-  PetscCall(BVRestoreMat(remain, &cz));
-  PetscCall(BVSetActiveColumns(remain, 0, 2 * n));
-  PetscCall(MatDestroy(&mz));
-  PetscCall(BVRestoreMat(Z, &z));
+  PetscCall(BlockMultiplySideBySide(2, A, Z, remain));
+  for (PetscInt j = 0; j < n; j++) {
+    Vec b, mz, cz;
+
+    PetscCall(BVGetColumn(B, j, &b));
+    PetscCall(BVGetColumn(remain, j, &mz));
+    PetscCall(BVGetColumn(remain, n + j, &cz));
+    PetscCall(VecAXPBYPCZ(cz, -drift, -p->beta, 1, mz, b));
+    PetscCall(BVRestoreColumn(remain, n + j, &cz));
+    PetscCall(BVRestoreColumn(remain, j, &mz));
+    PetscCall(BVRestoreColumn(B, j, &b));
+  }
   PetscFunctionReturn(0);
 }
 

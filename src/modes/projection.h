@@ -13,7 +13,7 @@ typedef struct {
   PetscReal *tolerance; /* what may remain of the columns of Cx, once they are what damping leaves of residuals */
 } ModalBlock;
 
-/* One real basis V for right and left vectors, orthonormal in M, and the dense model on it */
+/* One real basis V for right and left vectors, orthonormal in M but for little, which V'MV tells, and the dense model on it */
 typedef struct {
   Modes                 modes;
   const PencilMatrices *pencil;
@@ -28,7 +28,7 @@ typedef struct {
   BV                    V;
   BV                    pairs[2]; /* left V, right V where there is `spread` */
   PetscInt              k, room;  /* columns of V; for how many there is to be room at least */
-  PetscReal            *K, *C;    /* V'KV, V'CV [k * k], column-major */
+  PetscReal            *K, *C, *M; /* V'KV, V'CV, V'MV [k * k], column-major */
 } Projection;
 
 /* Eigenvalues of the dense model that belong to the window, omega >= 0, with right and left vectors x' x = y' y = 1,
@@ -52,8 +52,6 @@ PETSC_INTERN PetscErrorCode ProjectionCreate(Modes modes, const PencilMatrices *
                                              Projection *p);
 /* Y += right' left X, what friction adds to transposed[0] X; nothing where that is K' */
 PETSC_INTERN PetscErrorCode ProjectionAddFriction(const Projection *p, Mat X, Mat Y);
-/* Y = A X for the active columns of X and Y, A one of the pencil's or transposed[], which stands for K' */
-PETSC_INTERN PetscErrorCode ProjectionMultiply(const Projection *p, Mat A, BV X, BV Y);
 /* Takes in what the block (overwritten) holds beyond V, leaving out directions shorter than drop beside its longest
    column */
 PETSC_INTERN PetscErrorCode ProjectionAdd(Projection *p, PetscReal drop, BV block);
@@ -61,7 +59,8 @@ PETSC_INTERN PetscErrorCode ProjectionAdd(Projection *p, PetscReal drop, BV bloc
 PETSC_INTERN PetscErrorCode ProjectionForget(Projection *p);
 PETSC_INTERN PetscErrorCode ProjectionDestroy(Projection *p);
 
-/* projectstart.c - blocks of both spectra; of conjugate pairs of kappa one vector is enough */
+/* projectstart.c - blocks of both spectra, without C' x and M' x of left ones as yet; of conjugate pairs of kappa one vector is
+   enough */
 PETSC_INTERN PetscErrorCode ModalBlocksCreate(const Projection *p, const Spectrum *right, const Spectrum *left,
                                               ModalBlock modal[2]);
 PETSC_INTERN PetscErrorCode ModalBlocksDestroy(ModalBlock modal[2]);

@@ -6,7 +6,8 @@
 #include "solver/orthonormal.h"
 
 #define SPACE_SYMMETRIC 1e-13 /* of |A x| |y|: less is rounding */
-#define SPACE_WIDTH     16    /* columns that are multiplied at once */
+#define SPACE_WIDTH     32    /* columns that are multiplied at once */
+#define SPACE_LOOSE     1e-3  /* V'MV - I may be as large as this: the dense model has it */
 
 /* Whether A is symmetric, by y'A x = x'A y of two random vectors */
 static PetscErrorCode LooksSymmetric(Mat A, PetscBool *symmetric)
@@ -123,7 +124,8 @@ PetscErrorCode ProjectionAddFriction(const Projection *p, Mat X, Mat Y)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ProjectionMultiply(const Projection *p, Mat A, BV X, BV Y)
+/* Y = A X for the active columns of X and Y */
+static PetscErrorCode PairsMultiply(Mat A, BV X, BV Y)
 {
   Mat x, y;
 
@@ -131,7 +133,6 @@ PetscErrorCode ProjectionMultiply(const Projection *p, Mat A, BV X, BV Y)
   PetscCall(BVGetMat(X, &x));
   PetscCall(BVGetMat(Y, &y));
   PetscCall(BlockMultiply(A, x, y));
-  if (A == p->transposed[0]) PetscCall(ProjectionAddFriction(p, x, y));
   PetscCall(BVRestoreMat(Y, &y));
   PetscCall(BVRestoreMat(X, &x));
   PetscFunctionReturn(0);
@@ -153,28 +154,32 @@ static PetscErrorCode BasisAppend(PetscInt first, PetscInt room, BV block, BV V)
   PetscFunctionReturn(0);
 }
 
-/* From H = V'K W, [k * n], W the last n columns of V, V'K'W = H + (R V)' L W - (L V)' R W; L V and R V are extended */
-static PetscErrorCode PairsExtend(Projection *p, PetscInt first, BV block, PetscScalar H[])
+/* From H = V' K_even W, [k * n], W the last n columns of V, V'K W = H + (L V)' R W in its place, and V'K'W = H + (R V)' L W;
+   L V and R V are extended */
+static PetscErrorCode PairsExtend(Projection *p, PetscInt first, BV block, PetscScalar H[], PetscScalar transposed[])
 {
-  const Mat sides[2] = {p->pencil->left, p->pencil->right};
-  PetscInt  n;
-  BV        images[2];
-  Mat       product, sum;
+  const Mat    sides[2] = {p->pencil->left, p->pencil->right};
+  PetscScalar *sums[2]  = {H, transposed};
+  PetscInt     n;
+  BV           images[2];
 
   PetscFunctionBeginUser;
   PetscCall(BVGetActiveColumns(block, NULL, &n));
   for (int i = 0; i < 2; i++) {
     PetscCall(BlockCreate(p->pairs[i], n, &images[i]));
-    PetscCall(ProjectionMultiply(p, sides[i], block, images[i]));
+    PetscCall(PairsMultiply(sides[i], block, images[i]));
     PetscCall(BasisAppend(first, p->room, images[i], p->pairs[i]));
   }
-  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, p->k, n, H, &sum));
+  PetscCall(PetscArraycpy(transposed, H, n * p->k));
   for (int i = 0; i < 2; i++) {
-    PetscCall(BlockProducts(p->pairs[1 - i], NULL, images[i], &product));
-    PetscCall(MatAXPY(sum, i ? -1 : 1, product, SAME_NONZERO_PATTERN));
+    Mat product, sum;
+
+    PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, p->k, n, sums[i], &sum));
+    PetscCall(BlockProducts(p->pairs[i], NULL, images[1 - i], &product));
+    PetscCall(MatAXPY(sum, 1, product, SAME_NONZERO_PATTERN));
     PetscCall(MatDestroy(&product));
+    PetscCall(MatDestroy(&sum));
   }
-  PetscCall(MatDestroy(&sum));
   for (int i = 0; i < 2; i++) PetscCall(BVDestroy(&images[i]));
   PetscFunctionReturn(0);
 }
@@ -205,12 +210,8 @@ static PetscErrorCode ModelsMultiply(const Projection *p, PetscInt m, const Mat 
   n = PetscMin(SPACE_WIDTH, columns - first);
   PetscCall(BlockCreate(p->V, n * m, &images));
   PetscCall(BVSetActiveColumns(block, first, first + n));
-  for (PetscInt i = 0; i < m; i++) {
-    PetscCall(BVSetActiveColumns(images, i * n, (i + 1) * n));
-    PetscCall(ProjectionMultiply(p, A[i], block, images));
-  }
+  PetscCall(BlockMultiplySideBySide(m, A, block, images));
   PetscCall(BVSetActiveColumns(block, 0, columns));
-  PetscCall(BVSetActiveColumns(images, 0, n * m));
   PetscCall(BlockProducts(p->V, NULL, images, &H));
   for (PetscInt i = 0; i < m; i++) {
     Mat part;
@@ -224,31 +225,44 @@ static PetscErrorCode ModelsMultiply(const Projection *p, PetscInt m, const Mat 
   PetscFunctionReturn(0);
 }
 
-/* V'KV and V'CV, extended by the block: its products with all matrices, of which friction of pairs needs one less */
+/* The matrices that the models need products with: K (K_even, where pairs make the rest), C, M, and of their transposed ones
+   those that differ; at[0 .. 2] and at[3 .. 5] = which serves for whom. Returns how many */
+static PetscInt ModelsNeed(const Projection *p, Mat needed[], PetscInt at[])
+{
+  const Mat A[] = {p->spread ? p->transposed[0] : p->pencil->K, p->pencil->C, p->pencil->M};
+  PetscInt  m   = 3;
+
+  for (int i = 0; i < 3; i++) {
+    needed[i] = A[i];
+    at[i] = at[3 + i] = i;
+  }
+  for (int i = 0; i < 3; i++)
+    if (p->transposed[i] != A[i]) at[3 + i] = m, needed[m++] = p->transposed[i];
+  return m;
+}
+
+/* V'KV, V'CV and V'MV, extended by the block */
 static PetscErrorCode ModelsExtend(Projection *p, PetscInt first, BV block)
 {
-  const Mat    A[4]     = {p->pencil->K, p->pencil->C, p->transposed[0], p->transposed[1]};
-  PetscReal  **model[2] = {&p->K, &p->C};
-  PetscInt     n, m = 0, at[4] = {0};
-  PetscScalar *h;
-  Mat          needed[4];
+  PetscReal  **model[] = {&p->K, &p->C, &p->M};
+  PetscInt     n, m, at[6];
+  PetscScalar *h, *transposed;
+  Mat          needed[6];
 
   PetscFunctionBeginUser;
   PetscCall(BVGetActiveColumns(block, NULL, &n));
-  for (int i = 0; i < 4; i++) {
-    const PetscBool one = i < 2 || (A[i] != A[i - 2] && (i == 3 || !p->spread)) ? PETSC_TRUE : PETSC_FALSE;
-
-    at[i] = one ? n * m : at[i - 2];
-    if (one) needed[m++] = A[i];
-  }
-  PetscCall(PetscMalloc1(m * n * p->k, &h));
+  m = ModelsNeed(p, needed, at);
+  PetscCall(PetscMalloc2(m * n * p->k, &h, n * p->k, &transposed));
   for (PetscInt j = 0; j < n; j += SPACE_WIDTH) PetscCall(ModelsMultiply(p, m, needed, j, block, h));
-  for (int i = 0; i < 4; i++) {
-    if (i < 2) PetscCall(BlockGrow(first, p->k, model[i]));
-    if (i == 2 && p->spread) PetscCall(PairsExtend(p, first, block, &h[at[i] * p->k]));
-    PetscCall(ModelFill(p, i < 2 ? PETSC_FALSE : PETSC_TRUE, n, &h[at[i] * p->k], *model[i % 2]));
+  if (p->spread) PetscCall(PairsExtend(p, first, block, h, transposed));
+  for (int i = 0; i < 3; i++) {
+    PetscScalar *const rows = !i && p->spread ? transposed : &h[at[3 + i] * n * p->k];
+
+    PetscCall(BlockGrow(first, p->k, model[i]));
+    PetscCall(ModelFill(p, PETSC_FALSE, n, &h[at[i] * n * p->k], *model[i]));
+    PetscCall(ModelFill(p, PETSC_TRUE, n, rows, *model[i]));
   }
-  PetscCall(PetscFree(h));
+  PetscCall(PetscFree2(h, transposed));
   PetscFunctionReturn(0);
 }
 
@@ -256,7 +270,7 @@ PetscErrorCode ProjectionAdd(Projection *p, PetscReal drop, BV block)
 {
   const PetscInt first = p->k;
   PetscInt       n;
-  BlockFactors   factors = {.drop = drop};
+  BlockFactors   factors = {.drop = drop, .loose = SPACE_LOOSE, .gram = first ? p->M : NULL};
 
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_ORTHOGONALISE));
@@ -282,6 +296,7 @@ PetscErrorCode ProjectionForget(Projection *p)
   p->k = 0;
   PetscCall(PetscFree(p->K));
   PetscCall(PetscFree(p->C));
+  PetscCall(PetscFree(p->M));
   PetscCall(BVResize(p->V, 1, PETSC_FALSE));
   for (int i = 0; i < 2 && p->spread; i++) PetscCall(BVResize(p->pairs[i], 1, PETSC_FALSE));
   PetscFunctionReturn(0);
@@ -296,6 +311,7 @@ PetscErrorCode ProjectionDestroy(Projection *p)
   PetscCall(BVDestroy(&p->V));
   PetscCall(PetscFree(p->K));
   PetscCall(PetscFree(p->C));
+  PetscCall(PetscFree(p->M));
   PetscCall(ShiftInvertDestroy(&p->si));
   PetscFunctionReturn(0);
 }

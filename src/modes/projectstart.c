@@ -44,17 +44,31 @@ static PetscErrorCode ModalFill(const Projection *p, const Spectrum *s, ModalBlo
   PetscFunctionReturn(0);
 }
 
+/* C x and M x, or C' x and M' x */
+static PetscErrorCode ModalMultiply(const Projection *p, PetscBool left, ModalBlock *b)
+{
+  const Mat A[2] = {left ? p->transposed[1] : p->pencil->C, left ? p->transposed[2] : p->pencil->M};
+  Mat       x, y[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(BlockCreate(p->V, b->n, &b->Cx));
+  PetscCall(BlockCreate(p->V, b->n, &b->Mx));
+  PetscCall(BVGetMat(b->x, &x));
+  PetscCall(BVGetMat(b->Cx, &y[0]));
+  PetscCall(BVGetMat(b->Mx, &y[1]));
+  PetscCall(BlockMultiplyEach(2, A, x, y));
+  PetscCall(BVRestoreMat(b->Mx, &y[1]));
+  PetscCall(BVRestoreMat(b->Cx, &y[0]));
+  PetscCall(BVRestoreMat(b->x, &x));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModalBlocksCreate(const Projection *p, const Spectrum *right, const Spectrum *left, ModalBlock modal[2])
 {
   PetscFunctionBeginUser;
   PetscCall(ModalFill(p, right, &modal[0]));
   PetscCall(ModalFill(p, left, &modal[1]));
-  for (int side = 0; side < 2 && modal[side].n; side++) {
-    PetscCall(BlockCreate(p->V, modal[side].n, &modal[side].Cx));
-    PetscCall(BlockCreate(p->V, modal[side].n, &modal[side].Mx));
-    PetscCall(ProjectionMultiply(p, side ? p->transposed[1] : p->pencil->C, modal[side].x, modal[side].Cx));
-    PetscCall(ProjectionMultiply(p, side ? p->transposed[2] : p->pencil->M, modal[side].x, modal[side].Mx));
-  }
+  if (modal[0].n) PetscCall(ModalMultiply(p, PETSC_FALSE, &modal[0]));
   PetscFunctionReturn(0);
 }
 
@@ -136,12 +150,14 @@ PetscErrorCode ModalBlocksReduce(const Projection *p, const Spectrum *right, con
   const PetscBool       paired      = modal[0].n == modal[1].n ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  for (int side = 0; side < 2 && modal[side].n; side++)
-    PetscCall(RestMake(p, modal[paired ? 1 - side : side].x, &modal[side]));
   for (int side = 0; side < 2 && modal[side].n; side++) {
+    const PetscBool is_left = side ? PETSC_TRUE : PETSC_FALSE;
+
+    if (is_left) PetscCall(ModalMultiply(p, is_left, &modal[side]));
+    PetscCall(RestMake(p, modal[paired ? 1 - side : side].x, &modal[side]));
     PetscCall(BVDestroy(&modal[side].Mx));
     PetscCall(PetscMalloc1(modal[side].n, &modal[side].tolerance));
-    PetscCall(RestChoose(p, side ? PETSC_TRUE : PETSC_FALSE, spectrum[side], &modal[side]));
+    PetscCall(RestChoose(p, is_left, spectrum[side], &modal[side]));
   }
   PetscFunctionReturn(0);
 }

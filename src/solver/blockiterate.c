@@ -13,7 +13,7 @@
 #define LOOK_RARELY 0.25 /* of the columns so far: longest way to the next look */
 /* of the others at a restart: on the default brake with 112 columns 0.5, 0.7, 0.8 take 400, 384, 376 solves */
 #define RESTART_KEEP 0.8
-#define REACH_TRUST 100  /* an eigenvalue is off by less than so many times its residual */
+#define REACH_TRUST  100 /* an eigenvalue is off by less than so many times its residual */
 
 /* Sorted Schur form of the projected problem, the first `locked` columns of which are there already */
 static PetscErrorCode BlockKrylovProject(EPS eps, PetscInt locked)
