@@ -58,6 +58,7 @@ PetscErrorCode DynamicsSetModel(Dynamics dynamics, Model model, Contact contact)
 -  -dynamics_restart <false>     - go on from the checkpoint in the output folder
    and of the scene
 +  -press_ramp <0>, -press_ramp_shape <smooth|linear>, -press_delay <0> - ramp of the load `press`, s
+                                     which begins before the end of the run
 .  -disc_velocity <0,0,0>        - of the part `disc` at the start, m/s
 .  -lift_ramp, -lift_ramp_shape, -lift_delay - the same of the motion `lift` (model.h), whose ramp must be given;
                                    from the sliding state motions are there from the start, and have none

@@ -23,7 +23,9 @@ static PetscErrorCode TimeSetFromOptions(OptionsItems PetscOptionsObject, const 
 
 PetscErrorCode RampSetFromOptions(OptionsItems PetscOptionsObject, Ramp *ramp)
 {
-  PetscInt shape = RAMP_SMOOTH;
+  const char *prefix = PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "";
+  PetscInt    shape  = RAMP_SMOOTH;
+  char        option[256], why[256];
 
   PetscFunctionBeginUser;
   *ramp = (Ramp){.shape = RAMP_SMOOTH};
@@ -32,6 +34,10 @@ PetscErrorCode RampSetFromOptions(OptionsItems PetscOptionsObject, Ramp *ramp)
     PetscOptionsEList("-ramp_shape", "how it grows", "ramp.h", shapes, RAMP_N_SHAPES, shapes[shape], &shape, NULL));
   PetscCall(TimeSetFromOptions(PetscOptionsObject, "-delay", "time at which it begins, s", &ramp->delay));
   ramp->shape = (RampShape)shape;
+  if (ramp->length > 0) PetscFunctionReturn(0);
+  PetscCall(PetscSNPrintf(option, sizeof(option), "-%sramp_shape", prefix));
+  PetscCall(PetscSNPrintf(why, sizeof(why), "not used without a positive -%sramp", prefix));
+  PetscCall(OptionsRefuse(PetscOptionsObject->comm, option, why));
   PetscFunctionReturn(0);
 }
 

@@ -58,7 +58,7 @@ static inline double RampIntegral(const Ramp *ramp, double t)
    Output Parameter:
 .  ramp - the defaults where nothing is given, whatever it was before
 
-   Errors: PETSC_ERR_USER_INPUT for a length or delay that is negative or not finite.
+   Errors: PETSC_ERR_USER_INPUT for a length or delay that is negative or not finite, and for a shape of no ramp on the command line.
 @*/
 PETSC_INTERN PetscErrorCode RampSetFromOptions(OptionsItems PetscOptionsObject, Ramp *ramp);
 

@@ -61,8 +61,8 @@ PetscErrorCode ExternalLayMemory(External external)
 PetscErrorCode ExternalFindVertices(External external, const char set[], PetscInt *n, PetscInt *n_owned,
                                     PetscInt **vertex)
 {
-  const Layout   *layout = external->layout;
-  PetscInt        n_all, *point;
+  const Layout *layout = external->layout;
+  PetscInt      n_all, *point;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetSetNodes(external->model, set, &n_all, &point));
@@ -127,6 +127,26 @@ PetscErrorCode ExternalGetResultant(External external, PetscReal time, PetscReal
   *known = external->n_frames == 0 ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt i = 0; i < scene->n_points; i++)
     if (JointIsMassive(&scene->points[i]) && external->weight) *known = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error for what begins when the run is over */
+static PetscErrorCode RampCheckBegins(MPI_Comm comm, const char name[], const Ramp *ramp, PetscReal end)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(ramp->delay < end, comm, PETSC_ERR_USER_INPUT,
+             "-%s_delay %.6g must be before the end of the run at %.6g s: take a shorter one, or a longer -ts_max_time",
+             name, ramp->delay, (double)end);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExternalCheckDelays(External external, PetscReal end)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < external->n_loads; i++)
+    PetscCall(RampCheckBegins(external->comm, external->loads[i].name, &external->loads[i].ramp, end));
+  for (PetscInt i = 0; i < external->n_motions; i++)
+    PetscCall(RampCheckBegins(external->comm, external->motions[i].prescribed->name, &external->motions[i].ramp, end));
   PetscFunctionReturn(0);
 }
 

@@ -98,6 +98,9 @@ typedef struct {
    says; for another a warning. Collective. */
 PETSC_INTERN PetscErrorCode ExternalCheckHits(External external, PetscReal end, PetscReal dt, PetscBool goes_on);
 
+/* ExternalCheckDelays - raises an error for a load or motion that does not begin before the end, s. Collective. */
+PETSC_INTERN PetscErrorCode ExternalCheckDelays(External external, PetscReal end);
+
 /* ExternalIsHitting - whether an impulse acts in the step that ExternalAdvance() began. Not collective. */
 PETSC_INTERN PetscBool ExternalIsHitting(External external);
 
