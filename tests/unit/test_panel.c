@@ -2,14 +2,17 @@
    Unit test of solver/panel: products of tall matrices with narrow blocks against sums in long double, for numbers of rows
    and columns about the sizes of a slice and of a step. What a slice or a rest of it leaves out or takes twice, and columns
    that lie apart, would show. And solver/blockproduct, a sparse matrix times so many vectors, against MatMult(): what takes
-   rows for alike that are not, or a rest of rows or columns for none, would show.
+   rows for alike that are not, or a rest of rows or columns for none, would show. And solver/blockfactor on a basis that is
+   orthonormal but for little.
 */
 #include "solver/orthonormal.h"
 #include "solver/panel.h"
 #include "check.h"
 #include "petscmain.h"
 
-#define APART 3 /* rows between the columns */
+#define APART   3 /* rows between the columns */
+#define LOOSE_V 6 /* columns of a basis that is not orthonormal, and of a block */
+#define LOOSE_W 4
 
 /* Entries between -1 and 1, alike in every run */
 static PetscErrorCode PanelMake(PetscInt rows, PetscInt columns, PetscReal phase, Panel *P)
@@ -186,6 +189,96 @@ static PetscErrorCode TestSparse(int *failed)
   PetscFunctionReturn(0);
 }
 
+/* A diagonal matrix of positive entries */
+static PetscErrorCode MassMake(PetscInt n, Mat *M)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, n, n, 1, NULL, M));
+  for (PetscInt i = 0; i < n; i++) PetscCall(MatSetValue(*M, i, i, 2 + sin(i), INSERT_VALUES));
+  PetscCall(MatAssemblyBegin(*M, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*M, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+/* The largest entry of X' M Y - d I */
+static PetscErrorCode ProductsWorst(BV X, Mat M, BV Y, PetscReal d, PetscReal *worst)
+{
+  Mat H;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlockProducts(X, M, Y, &H));
+  if (d != 0) PetscCall(MatShift(H, -d));
+  PetscCall(MatNorm(H, NORM_FROBENIUS, worst));
+  PetscCall(MatDestroy(&H));
+  PetscFunctionReturn(0);
+}
+
+/* V of LOOSE_V columns with V'MV of the identity but for a hundredth, which is in gram; and W = V c + 1e-4 random */
+static PetscErrorCode LooseMake(Mat M, BV V, BV W, PetscReal gram[])
+{
+  PetscScalar  H[LOOSE_V * LOOSE_V], c[LOOSE_V * LOOSE_W];
+  BlockFactors factors = {.ld = LOOSE_V, .most = LOOSE_V, .H = H};
+  Mat          C, G;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVSetRandom(V));
+  PetscCall(BVSetRandom(W));
+  PetscCall(BlockFactorise(W, 0, M, V, &factors));
+  PetscCall(BVSetActiveColumns(W, 0, LOOSE_W));
+  for (int i = 0; i < LOOSE_V * LOOSE_V; i++) H[i] = i % (LOOSE_V + 1) ? 0.01 * sin(i) : 1;
+  for (int i = 0; i < LOOSE_V * LOOSE_W; i++) c[i] = cos(i);
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, LOOSE_V, LOOSE_V, H, &G));
+  PetscCall(BVMultInPlace(V, G, 0, LOOSE_V));
+  PetscCall(MatDestroy(&G));
+  PetscCall(BlockProducts(V, M, V, &G));
+  PetscCall(BlockCopy(G, PETSC_FALSE, LOOSE_V, gram));
+  PetscCall(MatDestroy(&G));
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, LOOSE_V, LOOSE_W, c, &C));
+  PetscCall(BVMult(W, 1, 1e-4, V, C));
+  PetscCall(MatDestroy(&C));
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: a basis that is not orthonormal is projected on without V'MV, a pass that is the last one leaves too much, or the
+   factors are not those of the block. Reference: the block itself */
+static PetscErrorCode TestLoose(int *failed)
+{
+  PetscScalar  H[(LOOSE_V + LOOSE_W) * LOOSE_W];
+  PetscReal    gram[LOOSE_V * LOOSE_V], worst;
+  BlockFactors factors = {.ld = LOOSE_V + LOOSE_W, .most = LOOSE_W, .H = H, .loose = 1e-3, .gram = gram};
+  Mat          M, all;
+  BV           V, W, before;
+
+  PetscFunctionBeginUser;
+  PetscCall(MassMake(300, &M));
+  PetscCall(BVCreate(PETSC_COMM_SELF, &V));
+  PetscCall(BVSetType(V, BVMAT));
+  PetscCall(BVSetSizes(V, 300, 300, LOOSE_V));
+  PetscCall(BlockCreate(V, LOOSE_W, &W));
+  PetscCall(BlockCreate(V, LOOSE_W, &before));
+  PetscCall(LooseMake(M, V, W, gram));
+  PetscCall(BVCopy(W, before));
+  PetscCall(BlockFactorise(V, LOOSE_V, M, W, &factors));
+  PetscCall(ProductsWorst(V, M, W, 0, &worst));
+  *failed += CheckClose("V'M Q of a loose V", worst, 0, 1e-6);
+  PetscCall(ProductsWorst(W, M, W, 1, &worst));
+  *failed += CheckClose("Q'M Q - I", worst, 0, 1e-6);
+  PetscCall(BVResize(V, LOOSE_V + LOOSE_W, PETSC_TRUE));
+  PetscCall(BVSetActiveColumns(V, LOOSE_V, LOOSE_V + LOOSE_W));
+  PetscCall(BVCopy(W, V));
+  PetscCall(BVSetActiveColumns(V, 0, LOOSE_V + LOOSE_W));
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, LOOSE_V + LOOSE_W, LOOSE_W, H, &all));
+  PetscCall(BVMult(before, -1, 1, V, all));
+  PetscCall(ProductsWorst(before, NULL, before, 0, &worst));
+  *failed += CheckClose("W - V C - Q R, squared", worst, 0, 1e-24);
+  PetscCall(MatDestroy(&all));
+  PetscCall(BVDestroy(&before));
+  PetscCall(BVDestroy(&W));
+  PetscCall(BVDestroy(&V));
+  PetscCall(MatDestroy(&M));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode TestPanel(PetscMPIInt size, int *failed)
 {
   const PetscInt rows[] = {0, 1, 7, 8, 9, 255, 256, 263, 264, 521}, columns[] = {0, 1, 2, 7, 40},
@@ -202,6 +295,9 @@ static PetscErrorCode TestPanel(PetscMPIInt size, int *failed)
       }
   *failed += CheckClose("300 sizes, largest difference", worst, 0, 1e-12);
   PetscCall(TestSparse(failed));
+  PetscCall(SlepcInitialize(NULL, NULL, NULL, NULL));
+  PetscCall(TestLoose(failed));
+  PetscCall(SlepcFinalize());
   PetscFunctionReturn(0);
 }
 
