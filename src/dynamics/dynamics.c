@@ -179,7 +179,7 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscCall(TSSetUp(d->ts));
   PetscCall(DynamicsSetFilters(d));
   PetscCall(d->restart ? DynamicsGoOn(d) : DynamicsStartState(d));
-  PetscCall(ExternalCheckHits(d->external, end, dt, PETSC_TRUE));
+  PetscCall(ExternalCheckLate(d->external, end, dt, PETSC_TRUE));
   if (!d->restart) PetscCall(DynamicsForget(d));
   if (d->restart) PetscCall(ResultsKeep(results, CHECKPOINT_FILE));
   if (d->shape[0]) PetscCall(ResultsKeepFolder(results, d->shape));

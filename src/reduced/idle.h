@@ -10,8 +10,7 @@
    message. Collective. */
 PETSC_INTERN PetscErrorCode ReducedRefuseIdle(MPI_Comm comm, Operators operators, const char why[]);
 
-/* ReducedRefuseLate - impulses that are not before the last step of a run to `end`, s; where the run goes on by a restart those of
-   the command line alone. Collective. */
+/* ReducedRefuseLate - ExternalCheckLate() for a run to `end`, s. Collective. */
 PETSC_INTERN PetscErrorCode ReducedRefuseLate(ReducedRun reduced, PetscReal end, PetscBool goes_on);
 
 /* ReducedRefuseImpulses - -impulses, and what the command line says of each. Collective, after ReducedPrepare(). */

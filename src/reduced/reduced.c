@@ -179,7 +179,6 @@ static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
 
   PetscFunctionBeginUser;
   PetscCall(ReducedPrepare(r, results));
-  PetscCall(ExternalCheckDelays(r->run.external, r->run.end));
   PetscCheck(!r->verify || !r->run.restart, r->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_verify compares whole runs: leave it out of -dynamics_restart, or start anew");
   PetscCall(ReducedWeigh(r, r->compare));

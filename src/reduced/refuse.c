@@ -60,7 +60,7 @@ PetscErrorCode ReducedRefuseIdle(MPI_Comm comm, Operators operators, const char 
 PetscErrorCode ReducedRefuseLate(ReducedRun r, PetscReal end, PetscBool goes_on)
 {
   PetscFunctionBeginUser;
-  PetscCall(ExternalCheckHits(r->run.external, end, r->dt, goes_on));
+  PetscCall(ExternalCheckLate(r->run.external, end, r->dt, goes_on));
   PetscFunctionReturn(0);
 }
 

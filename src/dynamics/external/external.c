@@ -130,26 +130,6 @@ PetscErrorCode ExternalGetResultant(External external, PetscReal time, PetscReal
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for what begins when the run is over */
-static PetscErrorCode RampCheckBegins(MPI_Comm comm, const char name[], const Ramp *ramp, PetscReal end)
-{
-  PetscFunctionBeginUser;
-  PetscCheck(ramp->delay < end, comm, PETSC_ERR_USER_INPUT,
-             "-%s_delay %.6g must be before the end of the run at %.6g s: take a shorter one, or a longer -ts_max_time",
-             name, ramp->delay, (double)end);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ExternalCheckDelays(External external, PetscReal end)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < external->n_loads; i++)
-    PetscCall(RampCheckBegins(external->comm, external->loads[i].name, &external->loads[i].ramp, end));
-  for (PetscInt i = 0; i < external->n_motions; i++)
-    PetscCall(RampCheckBegins(external->comm, external->motions[i].prescribed->name, &external->motions[i].ramp, end));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ExternalFinish(External external, PetscReal dt, const PetscReal f[])
 {
   PetscFunctionBeginUser;

@@ -93,13 +93,10 @@ typedef struct {
   PetscReal   x[3], impulse[3], time;
 } ExternalHit;
 
-/* ExternalCheckHits - raises an error for an impulse that is not before the last step of a run of steps dt to `end` (s): the first
-   step in which it acts as a whole would come too late. Where the run goes on by a restart, only for one whose time the command line
-   says; for another a warning. Collective. */
-PETSC_INTERN PetscErrorCode ExternalCheckHits(External external, PetscReal end, PetscReal dt, PetscBool goes_on);
-
-/* ExternalCheckDelays - raises an error for a load or motion that does not begin before the end, s. Collective. */
-PETSC_INTERN PetscErrorCode ExternalCheckDelays(External external, PetscReal end);
+/* ExternalCheckLate - impulses that are not before the last step of a run of steps dt to `end` (s), in which they act as a whole, and
+   loads and motions that do not begin before the end: an error where the command line says so, or unless the run goes on by a
+   restart; else a warning. Collective. */
+PETSC_INTERN PetscErrorCode ExternalCheckLate(External external, PetscReal end, PetscReal dt, PetscBool goes_on);
 
 /* ExternalIsHitting - whether an impulse acts in the step that ExternalAdvance() began. Not collective. */
 PETSC_INTERN PetscBool ExternalIsHitting(External external);

@@ -81,32 +81,6 @@ PetscErrorCode ImpulsesSetFromOptions(External external)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ExternalCheckHits(External external, PetscReal end, PetscReal dt, PetscBool goes_on)
-{
-  const PetscReal last = dt * (PetscCeilReal(end / dt * (1 - 1e-12)) - 1);
-  char            why[160];
-
-  PetscFunctionBeginUser;
-  PetscCall(
-    PetscSNPrintf(why, sizeof(why),
-                  "must be before %.6g s, when the last step of the run begins: take an earlier one, or a longer "
-                  "run (-ts_max_time)",
-                  (double)last));
-  for (PetscInt i = 0; i < external->n_impulses; i++) {
-    const Impulse *hit = &external->impulses[i];
-
-    if (hit->time < last) continue;
-    PetscCheck(goes_on, external->comm, PETSC_ERR_USER_INPUT, "-%s_time %.6g: %s", hit->name, (double)hit->time, why);
-    PetscCall(OptionsRefuseOf(external->comm, hit->name, "time", why));
-    PetscCall(
-      PetscFPrintf(external->comm, stderr,
-                   "squeal: warning: impulse %s at %.6g s is beyond the end of the run, %.6g s: it comes when the "
-                   "run goes on (-dynamics_restart)\n",
-                   hit->name, (double)hit->time, (double)end));
-  }
-  PetscFunctionReturn(0);
-}
-
 /* This rank's copy of the node that one rank names by a number >= 0, else -1 */
 static PetscErrorCode ImpulseFindCopy(Model model, PetscInt *vertex)
 {

@@ -1,0 +1,57 @@
+/*
+   What the scene prescribes for a time when the run is over. A restart may go on until it comes, so that for what a file
+   says there is a warning. It is an error where the command line says it, or where nothing can go on.
+*/
+#include "externalimpl.h"
+#include <squeal/options.h>
+
+/* What is late, and which time must be before `last`, s */
+typedef struct {
+  const char *name, *option, *why;
+  PetscReal   time, last;
+} Late;
+
+static PetscErrorCode LateCheck(External external, PetscBool goes_on, const Late *late)
+{
+  char why[200];
+
+  PetscFunctionBeginUser;
+  if (late->time < late->last) PetscFunctionReturn(0);
+  PetscCall(PetscSNPrintf(why, sizeof(why),
+                          "must be before %.6g s, when %s: take an earlier one, or a longer -ts_max_time",
+                          (double)late->last, late->why));
+  PetscCheck(goes_on, external->comm, PETSC_ERR_USER_INPUT, "-%s_%s %.6g: %s", late->name, late->option,
+             (double)late->time, why);
+  PetscCall(OptionsRefuseOf(external->comm, late->name, late->option, why));
+  PetscCall(
+    PetscFPrintf(external->comm, stderr,
+                 "squeal: warning: %s begins at %.6g s, after the end of the run: it comes when the run goes on "
+                 "(-dynamics_restart)\n",
+                 late->name, (double)late->time));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExternalCheckLate(External external, PetscReal end, PetscReal dt, PetscBool goes_on)
+{
+  const PetscReal last = dt * (PetscCeilReal(end / dt * (1 - 1e-12)) - 1);
+  Late            step = {.option = "time", .why = "the last step of the run begins", .last = last};
+  Late            ramp = {.option = "delay", .why = "the run ends", .last = end};
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < external->n_impulses; i++) {
+    step.name = external->impulses[i].name;
+    step.time = external->impulses[i].time;
+    PetscCall(LateCheck(external, goes_on, &step));
+  }
+  for (PetscInt i = 0; i < external->n_loads; i++) {
+    ramp.name = external->loads[i].name;
+    ramp.time = external->loads[i].ramp.delay;
+    PetscCall(LateCheck(external, goes_on, &ramp));
+  }
+  for (PetscInt i = 0; i < external->n_motions; i++) {
+    ramp.name = external->motions[i].prescribed->name;
+    ramp.time = external->motions[i].ramp.delay;
+    PetscCall(LateCheck(external, goes_on, &ramp));
+  }
+  PetscFunctionReturn(0);
+}
