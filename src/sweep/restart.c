@@ -279,7 +279,7 @@ static PetscErrorCode FileTake(Sweep sweep, Stream *s, const Header *h)
   PetscCall(AllGood(sweep->comm, &s->good));
   if (!s->good) PetscFunctionReturn(0);
   PetscCall(BasisRebuild(basis, h->n_blocks));
-  basis->reduced.n_used   = h->n_used;
+  PetscCall(BasisUse(basis, h->n_used));
   sweep->greedy.n_samples = h->n_samples;
   sweep->greedy.last      = h->last;
   sweep->greedy.n_passed  = h->n_passed;

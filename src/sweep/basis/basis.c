@@ -147,9 +147,38 @@ static PetscErrorCode ReducedExtend(Basis *basis, BV block)
     } else {
       PetscCall(TermExtend(basis, t, block, first, n));
     }
-    if (r->term[t].kind == OPERATORS_STIFFNESS) PetscCall(DiagonalExtend(basis, t, block, first, n));
   }
   r->n = n;
+  PetscFunctionReturn(0);
+}
+
+/* The vectors first to n - 1 in a block of their own; all n are active then */
+static PetscErrorCode BasisCopyBlock(Basis *basis, PetscInt first, PetscInt n, BV *block)
+{
+  PetscFunctionBeginUser;
+  PetscCall(BasisCreateBlock(basis, n - first, block));
+  PetscCall(BVSetActiveColumns(basis->vectors, first, n));
+  PetscCall(BVCopy(basis->vectors, *block));
+  PetscCall(BVSetActiveColumns(basis->vectors, 0, n));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BasisUse(Basis *basis, PetscInt n)
+{
+  Reduced       *r     = &basis->reduced;
+  const PetscInt first = r->n_used;
+  BV             block;
+
+  PetscFunctionBeginUser;
+  if (n <= first) PetscFunctionReturn(0);
+  PetscCall(EventBegin(EVENT_ORTHOGONALISE));
+  PetscCall(BasisCopyBlock(basis, first, n, &block));
+  for (PetscInt t = 0; t < r->n_terms; t++)
+    if (r->term[t].kind == OPERATORS_STIFFNESS) PetscCall(DiagonalExtend(basis, t, block, first, n));
+  PetscCall(BVDestroy(&block));
+  PetscCall(BVSetActiveColumns(basis->vectors, 0, r->n));
+  r->n_used = n;
+  PetscCall(EventEnd(EVENT_ORTHOGONALISE));
   PetscFunctionReturn(0);
 }
 
@@ -167,10 +196,7 @@ PetscErrorCode BasisTruncate(Basis *basis)
   Reduced *r = &basis->reduced;
 
   PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < r->n_terms; t++) {
-    PetscCall(BlockShrink(r->n, r->n_used, &r->A[t]));
-    if (r->D[t]) PetscCall(BlockShrink(r->n, r->n_used, &r->D[t]));
-  }
+  for (PetscInt t = 0; t < r->n_terms; t++) PetscCall(BlockShrink(r->n, r->n_used, &r->A[t]));
   r->n = r->n_used;
   while (basis->n_blocks > 1 && basis->block_end[basis->n_blocks - 2] >= r->n) basis->n_blocks--;
   basis->block_end[basis->n_blocks - 1] = r->n;
@@ -207,9 +233,7 @@ PetscErrorCode BasisRebuild(Basis *basis, PetscInt n_blocks)
     const PetscInt first = basis->reduced.n, n = basis->block_end[basis->n_blocks];
     BV             block;
 
-    PetscCall(BasisCreateBlock(basis, n - first, &block));
-    PetscCall(BVSetActiveColumns(basis->vectors, first, n));
-    PetscCall(BVCopy(basis->vectors, block));
+    PetscCall(BasisCopyBlock(basis, first, n, &block));
     PetscCall(ReducedExtend(basis, block));
     PetscCall(BVDestroy(&block));
   }

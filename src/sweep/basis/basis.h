@@ -6,7 +6,7 @@
 #include "entryrows.h"
 
 /* [V Z], orthonormal in the mass matrix of the scene's own parameters. The leading reduced.n_used vectors are the
-   model (those added become part of it when the caller raises that number), the others estimate its error. */
+   model (those added become part of it by BasisUse()), the others estimate its error. */
 #define BASIS_MAX_BLOCKS 1024
 
 typedef struct {
@@ -28,6 +28,8 @@ PetscErrorCode BasisCreateModes(const Basis *basis, Modes modes, PetscInt n, Pet
 /* Appends what the block holds beyond the basis, leaving out directions whose M-norm is below drop; the block is
    overwritten, n_added (may be NULL) = vectors gained. The dense model follows. */
 PetscErrorCode BasisAdd(Basis *basis, BV block, PetscReal drop, PetscInt *n_added);
+/* Makes the first n vectors the model, which never shrinks */
+PetscErrorCode BasisUse(Basis *basis, PetscInt n);
 /* Forgets the vectors that are not used by the model */
 PetscErrorCode BasisTruncate(Basis *basis);
 /* Makes the dense model of vectors read from elsewhere, block by block as BasisAdd() did */

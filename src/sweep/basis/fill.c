@@ -32,7 +32,7 @@ static PetscErrorCode BasisTake(Basis *basis, BV *block, PetscInt *n_added)
 {
   PetscFunctionBeginUser;
   PetscCall(BasisAdd(basis, *block, 0, n_added));
-  basis->reduced.n_used = basis->reduced.n;
+  PetscCall(BasisUse(basis, basis->reduced.n));
   PetscCall(BVDestroy(block));
   PetscFunctionReturn(0);
 }

@@ -87,7 +87,7 @@ static PetscErrorCode PointsLook(GreedyWork *run)
   PetscFunctionBeginUser;
   g->looked  = PETSC_TRUE;
   run->first = n_samples - 1;
-  run->drop *= LOOK_DROP;
+  run->drop  = PetscMin(drop, LOOK_DROP);
   for (int look = 0; look < GREEDY_LOOKS; look++) {
     const PetscReal *p     = &run->points[PointFarthest(run, &farthest) * n_parameters];
     ReducedModes     modes = {0};

@@ -3,8 +3,7 @@
 
 #include "greedy.h"
 
-#define LOOK_DROP                                                                                                      \
-  3e-2 /* beside GREEDY_DROP: vectors that tell an error, as the square times a ratio of stiffnesses, 1e4 */
+#define LOOK_DROP 2e-9 /* vectors shorter than this tell no error: its square times a ratio of stiffnesses, 1e8 */
 
 /* What the run knows */
 typedef struct {

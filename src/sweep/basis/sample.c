@@ -58,7 +58,7 @@ PetscErrorCode SampleKrylov(GreedyWork *run, const PetscReal p[], PetscReal esti
   PetscCall(BasisCreateModes(run->basis, run->greedy->modes, n, 4, &block));
   PetscCall(BasisAdd(run->basis, block, run->drop, &n_vectors));
   PetscCall(BVDestroy(&block));
-  run->basis->reduced.n_used = run->basis->reduced.n;
+  PetscCall(BasisUse(run->basis, run->basis->reduced.n));
   PetscCall(SampleAdd(run, p, PETSC_TRUE, n_vectors, estimate));
   PetscFunctionReturn(0);
 }
@@ -166,7 +166,7 @@ PetscErrorCode SampleCorrect(GreedyWork *run, const PetscReal p[], PetscReal *fi
   PetscBool       complete = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  if (PointTimes(run, p, PETSC_TRUE)) run->drop *= LOOK_DROP; /* what was left out is what errs */
+  if (PointTimes(run, p, PETSC_TRUE)) run->drop = PetscMin(drop, LOOK_DROP); /* what was left out is what errs */
   PetscCall(FactorFirst(run, p));
   PetscCall(StepApply(run, p, &modes, &n_added, first));
   worst = *first;
@@ -175,7 +175,7 @@ PetscErrorCode SampleCorrect(GreedyWork *run, const PetscReal p[], PetscReal *fi
     const PetscReal before = worst, fall = run->greedy->fall;
 
     n_vectors += n_added;
-    run->basis->reduced.n_used = run->basis->reduced.n;
+    PetscCall(BasisUse(run->basis, run->basis->reduced.n));
     if (fall > 0 && fall * worst <= SAFE * run->greedy->rtol) break; /* the vectors just taken in are enough */
     PetscCall(StepApply(run, p, &modes, &n_added, &worst));
     run->greedy->fall = PetscMax(fall, worst / before);

@@ -15,8 +15,9 @@ typedef struct {
   const OperatorsTerm      *term;      /* coefficients (borrowed) */
   const OperatorsParameter *parameter; /* [n_parameters] names (borrowed), or NULL */
   PetscReal               **A;         /* [n_terms][n * n] */
-  PetscReal **D; /* V' |diag A_t| V of the stiffness terms, for what rounding in A_t does; NULL, or NULL entries,
-                                where that is no more than rounding in the dense matrices */
+  PetscReal               **D;         /* [n_terms][n_used * n_used] V' |diag A_t| V of the stiffness terms, for what
+                                          rounding in A_t does; NULL, or NULL entries, where that is no more than
+                                          rounding in the dense matrices */
 } Reduced;
 
 /* Eigenvalues to look for: omega in [low, high], |sigma| <= growth, rad/s */

@@ -11,14 +11,14 @@
 
 void RoundingEnergy(const Reduced *reduced, const PetscReal p[], PetscReal E[])
 {
-  const PetscInt n = reduced->n, n_v = reduced->n_used;
+  const PetscInt n_v = reduced->n_used;
 
   for (PetscInt i = 0; i < n_v * n_v; i++) E[i] = 0;
   for (PetscInt t = 0; t < reduced->n_terms && reduced->D; t++) {
     const PetscReal c = PetscAbsReal(OperatorsTermCoefficient(&reduced->term[t], p));
 
     for (PetscInt j = 0; j < n_v && reduced->D[t] && c > 0; j++)
-      for (PetscInt i = 0; i < n_v; i++) E[j * n_v + i] += c * reduced->D[t][j * n + i];
+      for (PetscInt i = 0; i < n_v; i++) E[j * n_v + i] += c * reduced->D[t][j * n_v + i];
   }
 }
 
