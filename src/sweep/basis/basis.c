@@ -163,21 +163,35 @@ static PetscErrorCode BasisCopyBlock(Basis *basis, PetscInt first, PetscInt n, B
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BasisUse(Basis *basis, PetscInt n)
+/* The diagonals of vectors first to n - 1 */
+static PetscErrorCode DiagonalsExtend(Basis *basis, PetscInt first, PetscInt n)
 {
-  Reduced       *r     = &basis->reduced;
-  const PetscInt first = r->n_used;
+  const Reduced *r = &basis->reduced;
   BV             block;
 
   PetscFunctionBeginUser;
-  if (n <= first) PetscFunctionReturn(0);
-  PetscCall(EventBegin(EVENT_ORTHOGONALISE));
   PetscCall(BasisCopyBlock(basis, first, n, &block));
   for (PetscInt t = 0; t < r->n_terms; t++)
     if (r->term[t].kind == OPERATORS_STIFFNESS) PetscCall(DiagonalExtend(basis, t, block, first, n));
   PetscCall(BVDestroy(&block));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BasisUse(Basis *basis, PetscInt n)
+{
+  Reduced *r = &basis->reduced;
+
+  PetscFunctionBeginUser;
+  if (n <= r->n_used) PetscFunctionReturn(0);
+  PetscCall(EventBegin(EVENT_ORTHOGONALISE));
+  for (PetscInt b = 0; r->n_used < n; b++) { /* in the blocks of BasisAdd(), so that a restart has the same sums */
+    const PetscInt first = r->n_used;
+
+    if (basis->block_end[b] <= first) continue;
+    r->n_used = PetscMin(n, basis->block_end[b]);
+    PetscCall(DiagonalsExtend(basis, first, r->n_used));
+  }
   PetscCall(BVSetActiveColumns(basis->vectors, 0, r->n));
-  r->n_used = n;
   PetscCall(EventEnd(EVENT_ORTHOGONALISE));
   PetscFunctionReturn(0);
 }
