@@ -84,14 +84,14 @@ check_blas()
   esac
 }
 
-# choose_kernels BLAS: OpenBLAS has old kernels, several times slower, for a processor that is newer than itself. Exports
+# choose_kernels BLAS: OpenBLAS has old kernels, two to three times slower, for a processor newer than itself. Exports
 # OPENBLAS_CORETYPE for what this one can do, as `squeal -squeal_view` advises (src/base/blas.c); what is set already stays
 choose_kernels()
 {
   local kernels flags
   [ -z "${OPENBLAS_CORETYPE-}" ] || return 0
   kernels=$(OPENBLAS_VERBOSE=2 LD_PRELOAD=$1 "$(type -P true)" 2>&1 | sed -n 's/^Core: //p')
-  case $kernels in '' | Haswell | Zen | SkylakeX | Cooperlake | Sapphirerapids) return 0 ;; esac
+  case ${kernels,,} in '' | excavator | haswell | zen | skylakex | cooperlake | sapphirerapids) return 0 ;; esac
   flags=" $(sed -n 's/^flags[^:]*://p; /^flags/q' /proc/cpuinfo 2>/dev/null) "
   case $flags in
     *' avx512dq '*' avx512vl '*) export OPENBLAS_CORETYPE=SkylakeX ;;

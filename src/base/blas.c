@@ -6,6 +6,7 @@
 */
 #include "blas.h"
 #include <string.h>
+#include <strings.h>
 
 #if defined(__GNUC__)
 #define WEAK __attribute__((weak))
@@ -18,7 +19,7 @@ extern WEAK char *openblas_get_config(void);
 extern WEAK char *openblas_get_corename(void);
 
 /* Its kernels for registers of 32 bytes and more */
-static const char *const wide[] = {"Haswell", "Zen", "SkylakeX", "Cooperlake", "Sapphirerapids"};
+static const char *const wide[] = {"Excavator", "Haswell", "Zen", "SkylakeX", "Cooperlake", "SapphireRapids"};
 
 void BlasGetName(size_t length, char name[])
 {
@@ -36,7 +37,7 @@ const char *BlasBetterKernels(void)
 {
   if (!openblas_get_corename || getenv("OPENBLAS_CORETYPE")) return NULL;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(wide); i++)
-    if (!strcmp(openblas_get_corename(), wide[i])) return NULL;
+    if (!strcasecmp(openblas_get_corename(), wide[i])) return NULL;
 #if defined(__GNUC__) && defined(__x86_64__)
   if (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) return "SkylakeX";
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return "Haswell";

@@ -203,7 +203,7 @@ static PetscErrorCode ViewKernels(PetscViewer viewer)
   BlasGetName(sizeof(name), name);
   PetscCall(PetscViewerASCIIPrintf(viewer,
                                    "%s does not know this processor and runs old kernels; OPENBLAS_CORETYPE=%s in the "
-                                   "environment is several times as fast\n",
+                                   "environment makes factorisations two to three times as fast\n",
                                    name, better));
   PetscFunctionReturn(0);
 }

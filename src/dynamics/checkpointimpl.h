@@ -6,7 +6,7 @@
 
 #define CHECKPOINT_MAGIC   "squealCP"
 #define CHECKPOINT_ORDER   UINT64_C(0x0102030405060708)
-#define CHECKPOINT_VERSION 5
+#define CHECKPOINT_VERSION 6
 #define CHECKPOINT_NAME    32
 
 /* The first five members keep their places in every version */

@@ -134,7 +134,7 @@ PETSC_INTERN PetscErrorCode MapBodiesMove(Map map, const MapPoint *at, MapBodies
                                           PetscReal loads[]);
 PETSC_INTERN PetscErrorCode MapBodiesDestroy(MapBodies *bodies);
 
-/* mapbodies.c - whether all impulses of the bodies were due before t, s. Not collective. */
+/* mapbodies.c - whether all impulses of the bodies are due at t (s) at the latest. Not collective. */
 PETSC_INTERN PetscBool MapBodiesAreHit(const MapBodies *bodies, PetscReal t);
 
 /* mapshare.c - numbers 0, 1, ... for ranks that ask; Begin anew is collective, Next is not */

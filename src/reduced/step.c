@@ -110,7 +110,6 @@ static void StepperSolveResidual(ReducedStepper s, const ReducedState *state)
   ReducedBlockTimes(&(DenseBlock){s->HW, n, n, n}, PETSC_FALSE, 1, s->r, s->dq);
   ReducedBlockTimes(&(DenseBlock){s->HC, n, m, n}, PETSC_FALSE, 1, s->product, s->dq);
   for (PetscInt i = 0; i < n; i++) s->q[i] += s->dq[i];
-  ReducedStepperSettle(s, state->p);
   StepperDrag(s);
 }
 
@@ -165,6 +164,7 @@ void ReducedStepRespond(ReducedStepper s, const ReducedState *state, PetscReal n
   (void)StepperKick(s, NULL, state);
   StepperSetMean(s, state, PETSC_FALSE);
   StepperSolveResidual(s, state);
+  if (s->HW) ReducedStepperSettle(s, state->p);
   for (PetscInt i = 0; i < 2 * m; i++) next[i] = s->next[i];
   for (PetscInt i = 0; i < n; i++) {
     q[i] = s->q[i];
@@ -303,6 +303,7 @@ PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedS
   PetscCall(StepperSolveLaws(s, state, report));
   StepperSetMean(s, state, PETSC_FALSE);
   StepperAddForces(s, state, report->works);
+  if (s->HW) ReducedStepperSettle(s, state->p);
   StepperAccount(s, drive, state, report);
   if (report->works) report->external += StepperLoadWork(s, state);
   if (report->works) PetscCall(ReducedStepperSetDamping(s));

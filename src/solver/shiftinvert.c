@@ -15,7 +15,7 @@
 #define UPDATE_ROOM  0.8  /* of the memory that is free: vectors that take more beside the factors are not kept */
 #define UPDATE_SLOW  1.5  /* flops of the solves that make it beside those that LU takes more: LU from here on */
 #define UPDATE_DENSE 700  /* flops of LDL' per entry; from here on they run faster than a solve's, as the root of this */
-#define UPDATE_KEPT  2.5  /* pairs for each right-hand side that is expected: more vectors cost more than they save */
+#define UPDATE_KEPT  2.5  /* pairs for each right-hand side that is expected: the memory of more vectors is not worth their time */
 #define UPDATE_SHARE 0.75 /* of the entries of LDL': vectors of an update that take no more are kept */
 
 PetscErrorCode ShiftInvertRegular(MPI_Comm comm, PetscBool regular, PetscReal shift)

@@ -253,8 +253,6 @@ def do_step(reader, _, card):
     if reader.steps == 2:
         reader.deck.note(card.place, "*STEP: the scene has the supports and loads of all steps, of the same set and direction "
                                      "the last one; see which you want")
-
-
     if card.options.get("NLGEOM", "NO").upper() in ("", "YES"):
         reader.deck.differ(card.place, "*STEP, NLGEOM: motion of squeal is small; -static_geometric and -static_follower give "
                                        "modes the stiffness of the preload")
@@ -286,7 +284,7 @@ def finish_steps(reader):
     if not (deck.contacts and pressed):
         deck.preload = None
     if reader.preload and not deck.preload:
-        deck.note(reader.preload, f"*STATIC: {'without contact or load' if deck.modes else 'an analysis'}, {NOT_NEEDED}")
+        deck.note(reader.preload, f"*STATIC: {'without contact or load before the modes' if deck.modes else 'an analysis'}, {NOT_NEEDED}")
     if not reader.damping:
         return
     if not deck.preload:

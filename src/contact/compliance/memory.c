@@ -30,7 +30,7 @@ PetscErrorCode ContactComplianceSetMemory(ContactCompliance c, PetscInt n, const
   if (!n) PetscFunctionReturn(0);
   h->m      = (PetscInt)values[0];
   n_columns = n - 1 - h->m - 4 * c->n;
-  PetscCheck(h->m >= 0 && h->m <= 3 * c->n && n_columns >= 0 && n_columns <= 3 * c->n, PETSC_COMM_SELF,
+  PetscCheck(h->m >= 0 && h->m <= 3 * c->n && n_columns >= 0 && n_columns <= 4 * c->n, PETSC_COMM_SELF,
              PETSC_ERR_FILE_UNEXPECTED,
              "Memory of contact on a compliance: %" PetscInt_FMT " numbers are not those of %" PetscInt_FMT " pairs", n,
              c->n);

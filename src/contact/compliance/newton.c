@@ -30,6 +30,7 @@ static PetscErrorCode NewtonFactor(ContactCompliance c, PetscBool *singular)
   PetscBool good;
 
   PetscFunctionBeginUser;
+  *singular = PETSC_FALSE;
   PetscCall(ComplianceAssemble(c, 0));
   ComplianceFactorFast(c, c->row[c->n_closed], &good);
   if (good) PetscFunctionReturn(0);

@@ -94,8 +94,8 @@ typedef struct {
 } ExternalHit;
 
 /* ExternalCheckLate - impulses that are not before the last step of a run of steps dt to `end` (s), in which they act as a whole, and
-   loads and motions that do not begin before the end: an error where the command line says so, or unless the run goes on by a
-   restart; else a warning. Collective. */
+   loads and motions that do not begin before the end: an error where the command line says so, else a warning. Where no restart goes
+   on, impulses alone, an error. Collective. */
 PETSC_INTERN PetscErrorCode ExternalCheckLate(External external, PetscReal end, PetscReal dt, PetscBool goes_on);
 
 /* ExternalIsHitting - whether an impulse acts in the step that ExternalAdvance() began. Not collective. */

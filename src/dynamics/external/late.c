@@ -23,11 +23,10 @@ static PetscErrorCode LateCheck(External external, PetscBool goes_on, const Late
   PetscCheck(goes_on, external->comm, PETSC_ERR_USER_INPUT, "-%s_%s %.6g: %s", late->name, late->option,
              (double)late->time, why);
   PetscCall(OptionsRefuseOf(external->comm, late->name, late->option, why));
-  PetscCall(
-    PetscFPrintf(external->comm, stderr,
-                 "squeal: warning: %s begins at %.6g s, after the end of the run: it comes when the run goes on "
-                 "(-dynamics_restart)\n",
-                 late->name, (double)late->time));
+  PetscCall(PetscFPrintf(external->comm, stderr,
+                         "squeal: warning: %s at %.6g s is not before %.6g s, when %s: it comes when the run goes on "
+                         "(-dynamics_restart)\n",
+                         late->name, (double)late->time, (double)late->last, late->why));
   PetscFunctionReturn(0);
 }
 
@@ -43,6 +42,7 @@ PetscErrorCode ExternalCheckLate(External external, PetscReal end, PetscReal dt,
     step.time = external->impulses[i].time;
     PetscCall(LateCheck(external, goes_on, &step));
   }
+  if (!goes_on) PetscFunctionReturn(0); /* maps know no delays */
   for (PetscInt i = 0; i < external->n_loads; i++) {
     ramp.name = external->loads[i].name;
     ramp.time = external->loads[i].ramp.delay;
