@@ -6,8 +6,9 @@
 
    of which the step needs H W and H Cm'. Pairs give way in fewer directions than they have where both sides are held in one, or
    where more slaves than nodes of the master meet: forces z then move nothing, W z = Cx z = Cm z = P z = 0, and q is sought on ports of
-   which the rows of the others are combinations. H is the inverse there. Which of the forces that move alike is meant nothing tells: on
-   the others q is lambda_{n+1}, else a step would keep what it began with, and a cycle be one of many.
+   which the rows of the others are combinations. H is the inverse there. Forces that differ by such z move
+   the same, and nothing tells them apart. On the others q is lambda_{n+1}: else a step would keep what it began with, and a
+   cycle would be one of many.
 
    W must be regular in all directions in which pairs give way, which are those of P and W together: mean forces on bodies that
    give way by their modes alone hold back what alternates from step to step by nothing, and it grows

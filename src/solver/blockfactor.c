@@ -278,7 +278,7 @@ static PetscErrorCode PassTrim(PetscInt n, BV W, BlockFactors *factors, BlockPas
 }
 
 /* Leaves out columns that are rounding before they are made directions with the help of others, as with a singular M those are of
-   which it knows nothing: their parts beyond it would grow from pass to pass */
+   which it knows nothing: their parts beyond it would grow from pass to pass. A loose V is taken as orthonormal here */
 static PetscErrorCode PassForget(PetscInt n, BV W, BlockFactors *factors, BlockPass *pass)
 {
   PetscFunctionBeginUser;

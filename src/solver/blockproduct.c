@@ -1,8 +1,9 @@
 /*
    Products of sparse matrices with many vectors at once, Y = A X. PETSc's MatMatMult() takes the vectors column by
    column, four at a time, and fetches an entry of each from another place in memory; here up to BLOCK_WIDTH of them lie
-   side by side, so that one entry of A meets as many neighbours, and the three rows of a node go together, STRIP columns
-   at a time, for the next of which their entries are in the first cache. The sums of a row are in the order of MatMult().
+   side by side, so that one entry of A meets as many neighbours. The three rows of a node go together, STRIP columns at a
+   time: their entries are still in the first cache when the next STRIP columns follow. The sums of a row are in the order
+   of MatMult().
 */
 #include "base/versions.h"
 #include "orthonormal.h"
@@ -169,7 +170,7 @@ static PetscErrorCode ApplyRows(Mat A, PetscInt first, PetscInt m, PetscInt widt
   PetscCheck(done, PETSC_COMM_SELF, PETSC_ERR_PLIB, "no rows of a sequential sparse matrix");
   PetscCall(MatSeqAIJGetArrayRead(A, &rows.a));
   PetscCall(MatDenseGetArray(Y, &y));
-  RowsMultiply(&rows, width, &(PackedColumns){packed, m, ldy, &y[first * ldy]});
+  RowsMultiply(&rows, width, &(PackedColumns){packed, m, ldy, &y[(size_t)first * ldy]});
   PetscCall(PetscLogFlops(2. * rows.ia[rows.n] * m));
   PetscCall(MatDenseRestoreArray(Y, &y));
   PetscCall(MatSeqAIJRestoreArrayRead(A, &rows.a));
@@ -188,12 +189,12 @@ static PetscErrorCode ApplySequential(PetscInt n, const Mat A[], Mat X, const Ma
   PetscCall(MatGetSize(X, &n_rows, &n_columns));
   PetscCall(MatDenseGetLDA(X, &ldx));
   PetscCall(MatDenseGetArrayRead(X, &x));
-  PetscCall(PetscMalloc1(n_rows * BLOCK_WIDTH, &packed));
+  PetscCall(PetscMalloc1((size_t)n_rows * BLOCK_WIDTH, &packed));
   for (PetscInt first = 0; first < n_columns; first += BLOCK_WIDTH) {
     const PetscInt m     = PetscMin(BLOCK_WIDTH, n_columns - first);
     const PetscInt width = m <= LANES ? LANES : m <= STRIP ? STRIP : BLOCK_WIDTH;
 
-    ColumnsPack(n_rows, m, width, ldx, &x[first * ldx], packed);
+    ColumnsPack(n_rows, m, width, ldx, &x[(size_t)first * ldx], packed);
     for (PetscInt i = 0; i < n; i++) PetscCall(ApplyRows(A[i], first, m, width, packed, Y[i]));
   }
   PetscCall(PetscFree(packed));

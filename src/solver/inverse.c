@@ -7,7 +7,7 @@
 #include "lowrank.h"
 #include "shiftinvert.h"
 
-#define INVERSE_TOGETHER (-128) /* columns that MUMPS takes at once */
+#define INVERSE_TOGETHER (-128) /* columns that MUMPS takes at once at most, as it reads negative numbers */
 
 /* The pattern of what is asked for, [n][n], with row j for column j of the inverse, all of it on the first rank */
 static PetscErrorCode InversePattern(MPI_Comm comm, PetscInt n, const InverseBlock *b, Mat *T)
