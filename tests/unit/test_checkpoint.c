@@ -179,7 +179,7 @@ static int TestForeign(Test *t)
   int  failed = 0;
 
   snprintf(ranks, sizeof(ranks), "was written by 7 ranks, this run has %d", t->size);
-  snprintf(version, sizeof(version), "has version 9 of the format, this program reads version 5");
+  snprintf(version, sizeof(version), "has version 9 of the format, this program reads version 6");
   failed += CheckTrue("other ranks", RefusedWord(t, RANKS, 7, PETSC_ERR_FILE_UNEXPECTED, ranks), 7);
   failed += CheckTrue("other version", RefusedWord(t, VERSION, 9, PETSC_ERR_FILE_UNEXPECTED, version), 9);
   failed +=
