@@ -40,11 +40,13 @@ typedef struct {
    NULL) or loosely so. Q, orthonormal in itself and to V, takes the place of W, and its active columns become those that there
    are. Unlike BlockOrthonormalise() it resolves directions of any length. Collective; alike on all ranks. */
 PETSC_INTERN PetscErrorCode BlockFactorise(BV V, PetscInt n, Mat M, BV W, BlockFactors *factors);
-/* blockproduct.c - columns first, first + 1, ... of a sparse A as the dense X, zeros where A has no more; Y = A X of dense X
-   and Y; Y[i] = A[i] X of n matrices, which costs less than one by one; the same of the active
-   columns of X into as many columns of Y for each; Y = A X of the active columns of X and Y */
+/* blockproduct.c - columns first, first + 1, ... of a sparse A as the dense X, zeros where A has no more */
 PETSC_INTERN PetscErrorCode BlockTakeColumns(Mat A, PetscInt first, Mat X);
+/* Y = A X of dense X and Y */
 PETSC_INTERN PetscErrorCode BlockMultiply(Mat A, Mat X, Mat Y);
+/* Y[i] = A[i] X of n matrices, which costs less than one by one */
 PETSC_INTERN PetscErrorCode BlockMultiplyEach(PetscInt n, const Mat A[], Mat X, const Mat Y[]);
+/* The same of the active columns of X, into as many columns of Y for each matrix, one after the other */
 PETSC_INTERN PetscErrorCode BlockMultiplySideBySide(PetscInt n, const Mat A[], BV X, BV Y);
+/* Y = A X of the active columns of X and Y */
 PETSC_INTERN PetscErrorCode BlockMultiplyVectors(Mat A, BV X, BV Y);

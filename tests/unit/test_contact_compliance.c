@@ -276,7 +276,8 @@ static PetscErrorCode TestScenes(SceneBody body, PetscReal mu, PetscInt *n_paths
    forces, so that Newton's method takes more steps or none ends it; a slope that changes nothing keeps it from that */
 static PetscErrorCode TestDual(int *failed)
 {
-  const PetscInt    n = 49;
+  const PetscInt    n                       = 49;
+  PetscInt          count[CONTACT_N_STATUS] = {0};
   ComplianceScene   s;
   ContactCompliance c;
   ComplianceReport  report[2];
@@ -295,6 +296,14 @@ static PetscErrorCode TestDual(int *failed)
     PetscCall(ContactComplianceDestroy(&c));
   }
   for (PetscInt i = 0; i < 3 * n; i++) off = PetscMax(off, PetscAbsReal(lambda[0][i] - lambda[1][i]));
+  for (PetscInt p = 0; p < n; p++) {
+    const PetscReal *l = &lambda[0][3 * p];
+
+    count[l[0] <= 0 ? CONTACT_OPEN : hypot(l[1], l[2]) < (1 - 1e-9) * s.mu[p] * l[0] ? CONTACT_STICK : CONTACT_SLIP]++;
+  }
+  *failed +=
+    CheckTrue("on motions: most stick, some slide, some are open",
+              2 * count[CONTACT_STICK] > n && count[CONTACT_SLIP] && count[CONTACT_OPEN], count[CONTACT_STICK]);
   *failed += CheckTrue("on motions: by Newton's method", report[0].route == COMPLIANCE_NEWTON, report[0].route);
   *failed += CheckTrue("on motions: few steps", report[0].iterations < 10, report[0].iterations);
   *failed += CheckClose("on motions: laws", SceneViolation(&s, lambda[0]), 0, 1e-11);
