@@ -43,12 +43,12 @@ static PetscErrorCode ScopeCheckContact(MPI_Comm comm, const Scope *s, const Con
     PetscCall(OptionsRefuseOf(comm, c->name, "slip", given));
   if (s->transient) {
     if (!constraint) PetscCall(OptionsRefuseOf(comm, c->name, "law", exact));
-    PetscCall(OptionsRefuseOf(comm, c->name, "kn kn_per_area friction_damping force", exact));
+    PetscCall(OptionsRefuseOf(comm, c->name, "kn kn_per_area kt kt_per_area friction_damping force", exact));
     PetscFunctionReturn(0);
   }
   if (constraint) PetscCall(OptionsRefuseOf(comm, c->name, c->identify ? "kn_per_area" : "kn kn_per_area", stiff));
   if (!s->modes) {
-    PetscCall(OptionsRefuseOf(comm, c->name, "friction_damping force speed mu_slope", steady));
+    PetscCall(OptionsRefuseOf(comm, c->name, "friction_damping force speed mu_slope kt kt_per_area", steady));
     PetscFunctionReturn(0);
   }
   if (constraint) PetscCall(OptionsRefuse(comm, "-operators_factors", lu));

@@ -78,6 +78,8 @@ typedef struct {
   PetscReal  mu_slope;    /* d mu / d slip speed, s/m */
   PetscReal  kn;          /* stiffness per pair, N/m, or per area, N/m^3 */
   PetscBool  per_area;    /* which of the two: that of a pair is then kn times the area of its slave */
+  PetscReal  kt;          /* stiffness along the surface of a pair that sticks, N/m, or per area, N/m^3; 0: none is given */
+  PetscBool  kt_per_area; /* which of the two */
   PetscBool  identify;    /* kn is to be identified by pressing; until then it is 1 */
   PetscReal  tolerance;   /* pairs farther apart than this are no pairs, m */
   PetscBool  damping;     /* friction damping: mu N0 / v across the slip, mu_slope N0 along it */
@@ -104,6 +106,8 @@ PetscErrorCode ContactCreate(Model model, Contact *contact);
                                    master against t, as if the slave slid the other way; not in time
 .  -contact_mu_slope <0>          - its slope with the slip speed, s/m
 .  -contact_kn <N/m|identify>     - penalty stiffness per pair, or found by pressing (statics.h)
+.  -contact_kt <N/m>              - in modes, of an interface that holds by friction (no slip or rotation is given): stiffness
+                                   along the surface of a pair that sticks; or -contact_kt_per_area <N/m^3>
 .  -contact_slip <x,y,z>          - direction of the slave's velocity relative to the master
 .  -contact_rotation <x,y,z>      - or: angular velocity of the master relative to the slave, rad/s
 .  -contact_center <0,0,0>        - a point of the axis of rotation, m

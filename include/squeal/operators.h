@@ -89,9 +89,9 @@ PetscErrorCode OperatorsGetSave(Operators operators, const char **folder);
    density (kg/m^3), alpha (1/s), beta (s); of each list of springs stiffness (N/m), of dashpots viscosity (N s/m), with
    _x, _y, _z appended where the components that are not zero differ; of each bushing and point stiffness (N/m),
    turn_stiffness (N m/rad), viscosity (N s/m), turn_viscosity (N m s/rad) alike, of a point mass (kg); of each part that
-   spins spin (rad/s), on which pencils alone depend; of each contact mu, kn (N/m, penalty), and with friction damping
-   mu_slope (s/m), force (N) and speed (m/s), or rotation (rad/s) where that is what was given; contact_mu for loaded or
-   dense matrices with H, and what -terms name (borrowed). An interface of which nothing says along what it slides has
+   spins spin (rad/s), on which pencils alone depend; of each contact mu, kn (N/m, penalty), kt (N/m, holding by friction), and
+   with friction damping mu_slope (s/m), force (N) and speed (m/s), or rotation (rad/s) where that is what was given; contact_mu
+   for loaded or dense matrices with H, and what -terms name (borrowed). An interface of which nothing says along what it slides has
    no mu. Not collective.
 @*/
 PetscErrorCode OperatorsGetParameters(Operators operators, PetscInt *n, const OperatorsParameter **parameters);

@@ -62,6 +62,7 @@ typedef struct {
   PetscInt   n_pairs;  /* local pairs */
   PetscInt   n_groups; /* groups that are closed at some points and open at others (penalty law only) */
   PetscInt  *group;    /* [n_pairs] -1 open, 0 closed, g = 1 .. n_groups closed as far as the parameter closed_g is 1 */
+  PetscBool *slips;    /* [n_pairs] of interfaces that hold by friction (-contact_kt): at its limit; NULL: all of them stick */
   PetscBool  has_forces; /* alike on all ranks: lambda_n is known; else -contact_force counts */
   PetscReal *lambda_n;   /* [n_pairs] normal forces, N, for the friction damping */
   Mat        geometric;  /* stiffness of all unknowns that the stress adds, symmetric; NULL for none */
@@ -82,9 +83,9 @@ PetscErrorCode SlidingStateDestroy(SlidingState *state);
    that of the state, or the scene, but that the total normal forces are those of the state where it has forces.
    Collective. The state may be destroyed; the operators are referenced until PencilDestroy().
 
-   Errors: PETSC_ERR_USER_INPUT for an interface with friction of which nothing says along what it slides, and for
-   friction damping without a normal force; PETSC_ERR_SUP for groups with the exact constraint, and where it cannot be
-   eliminated.
+   Errors: PETSC_ERR_USER_INPUT for an interface with friction of which nothing says along what it slides, nor how stiff it
+   holds (-contact_kt), and for friction damping without a normal force; PETSC_ERR_SUP for groups with the exact
+   constraint, and where it cannot be eliminated.
 @*/
 PetscErrorCode OperatorsLinearise(Operators operators, const SlidingState *state, Pencil *pencil);
 
@@ -164,9 +165,14 @@ PetscErrorCode PencilGetParts(Pencil pencil, PencilParts *parts);
 /*@ PencilGetMass - the mass matrix of all unknowns (borrowed). Collective. @*/
 PetscErrorCode PencilGetMass(Pencil pencil, Mat *M);
 
-/*@ PencilGetClosed - over all ranks the pairs that are closed, those of groups included, and whether a sliding state
-    told so. Collective. @*/
-PetscErrorCode PencilGetClosed(Pencil pencil, PetscInt *n_closed, PetscBool *from_state);
+/* Closed pairs over all ranks, those of groups included; of these, in interfaces that hold by friction (-contact_kt), those that
+   stick, and those at the limit of friction */
+typedef struct {
+  PetscInt n, n_stick, n_limit;
+} PencilClosed;
+
+/*@ PencilGetClosed - the closed pairs, and whether a sliding state told so. Collective. @*/
+PetscErrorCode PencilGetClosed(Pencil pencil, PencilClosed *closed, PetscBool *from_state);
 
 /*@ PencilExpand - unknowns of the pencil to all unknowns, u = Zr q (or Zl q for a left vector). Collective. @*/
 PetscErrorCode PencilExpand(Pencil pencil, PetscBool left, Vec q, Vec u);

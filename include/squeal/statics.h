@@ -92,8 +92,8 @@ PetscErrorCode StaticsSolve(Statics statics, const PetscReal p[]);
    edge where -static_rows asks for it), the normal forces, the optional stiffness of the preload, and p. The caller
    destroys it. Collective.
 
-   Errors: also PETSC_ERR_USER_INPUT for an interface with friction of which nothing says along what it slides, and for
-   a normal force that is given although the loads tell it.
+   Errors: also PETSC_ERR_USER_INPUT for an interface with friction of which nothing says along what it slides, nor how stiff
+   it holds (-contact_kt), and for a normal force that is given although the loads tell it.
 @*/
 PetscErrorCode StaticsSolveSliding(Statics statics, const PetscReal p[], SlidingState *state);
 

@@ -42,6 +42,25 @@ static PetscErrorCode StiffnessRead(OptionsItems PetscOptionsObject, ContactInte
   PetscFunctionReturn(0);
 }
 
+/* Reads the stiffness along the surface of pairs that stick */
+static PetscErrorCode HoldRead(OptionsItems PetscOptionsObject, ContactInterface *c)
+{
+  PetscBool set;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsReal("-kt",
+                             "modes, holding by friction: stiffness along the surface of a pair that sticks, N/m",
+                             "contact.h", c->kt, &c->kt, &set));
+  PetscCall(PetscOptionsReal("-kt_per_area", "instead: that per area of the slave, N/m^3", "contact.h", c->kt, &c->kt,
+                             &c->kt_per_area));
+  PetscCheck(!set || !c->kt_per_area, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
+             "-%s_kt and -%s_kt_per_area are given; give one of them", c->name, c->name);
+  PetscCheck((!set && !c->kt_per_area) || (c->kt > 0 && !PetscIsInfReal(c->kt)), PetscOptionsObject->comm,
+             PETSC_ERR_USER_INPUT, "-%s_kt%s %.6g must be positive (N/m%s)", c->name, c->kt_per_area ? "_per_area" : "",
+             (double)c->kt, c->kt_per_area ? "^3" : "");
+  PetscFunctionReturn(0);
+}
+
 /* Raises an error for what is no finite number */
 static PetscErrorCode InterfaceCheckFinite(MPI_Comm comm, const ContactInterface *c)
 {
@@ -77,6 +96,7 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
   PetscCall(PetscOptionsReal("-mu_slope", "its slope with the slip speed about the stated one, s/m", "contact.h",
                              c->mu_slope, &c->mu_slope, NULL));
   PetscCall(StiffnessRead(PetscOptionsObject, c));
+  PetscCall(HoldRead(PetscOptionsObject, c));
   PetscCall(
     PetscOptionsReal("-tolerance", "largest distance of a pair, m", "contact.h", c->tolerance, &c->tolerance, NULL));
   PetscCall(
@@ -109,6 +129,9 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
              c->per_area ? "_per_area" : "", (double)c->kn, c->per_area ? "^3" : "", c->name);
   PetscCheck(c->law == CONTACT_PENALTY || !c->identify, comm, PETSC_ERR_USER_INPUT,
              "-%s_kn identify does nothing with -%s_law constraint; choose -%s_law penalty", c->name, c->name, c->name);
+  PetscCheck(c->kt == 0 || c->mu != 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_kt%s %.6g does nothing without friction; give -%s_mu or leave it out", c->name,
+             c->kt_per_area ? "_per_area" : "", (double)c->kt, c->name);
   PetscCheck(c->tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-%s_tolerance %.6g must be positive (m)", c->name,
              (double)c->tolerance);
   PetscCheck(c->force >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_force %.6g must not be negative (N)", c->name,
@@ -227,8 +250,15 @@ PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
     const ContactInterface *f         = &contact->interfaces[i];
     const PetscInt          flags[]   = {i, f->law, f->identify, f->damping};
-    const PetscReal         numbers[] = {
-              f->mu, f->mu_slope, f->tolerance, f->speed, f->identify ? 0 : f->per_area ? -f->kn : f->kn, f->force};
+    const PetscReal         numbers[] = {f->mu,
+                                         f->mu_slope,
+                                         f->tolerance,
+                                         f->speed,
+                                 f->identify   ? 0
+                                         : f->per_area ? -f->kn
+                                                       : f->kn,
+                                 f->kt_per_area ? -f->kt : f->kt,
+                                         f->force};
 
     PetscCall(ChecksumSetPart(c, "contact %s", f->name));
     PetscCall(ModelAddSetChecksum(contact->model, f->slave, PETSC_TRUE, c));
@@ -249,9 +279,13 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
     const ContactInterface *c = &contact->interfaces[i];
     const char             *unit;
 
+    PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %s %s on %s, mu %.6g, ", c->name, c->slave,
+                                     c->kt > 0 ? "holds" : "slides", c->master, (double)c->mu));
+    PetscCall(ModelGetUnit(contact->model, c->kt_per_area ? "N/m^3" : "N/m", &unit));
+    if (c->kt > 0)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "pairs that stick %.6g %s%s along it, ", (double)c->kt, unit,
+                                       c->kt_per_area ? "" : " per pair"));
     PetscCall(ModelGetUnit(contact->model, c->per_area ? "N/m^3" : "N/m", &unit));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %s slides on %s, mu %.6g, ", c->name, c->slave, c->master,
-                                     (double)c->mu));
     if (c->identify)
       PetscCall(PetscViewerASCIIPrintf(viewer, "penalty, stiffness identified by pressing\n"));
     else if (c->law == CONTACT_PENALTY)

@@ -153,6 +153,9 @@ static PetscErrorCode PartnerCheck(MPI_Comm comm, ContactInterface *c, PairFailu
     c->slides || !given || (c->mu == 0 && !c->damping), comm, PETSC_ERR_USER_INPUT,
     "contact %s: the sliding velocity vanishes in the surface at some pair; give -%s_slip x,y,z along the surface",
     c->name, c->name);
+  PetscCheck(!c->slides || c->kt == 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_kt%s %.6g is of pairs that stick, and contact %s slides; leave it out, or -%s_slip and -%s_rotation",
+             c->name, c->kt_per_area ? "_per_area" : "", (double)c->kt, c->name, c->name, c->name);
   PetscFunctionReturn(0);
 }
 

@@ -32,16 +32,22 @@ static PetscErrorCode ModesViewState(Modes modes, PetscViewer viewer)
 {
   const ContactPair *pair;
   Contact            contact;
-  PetscInt           n, n_all, n_closed;
+  PencilClosed       closed;
+  PetscInt           n, n_all;
   PetscBool          from_state;
 
   PetscFunctionBeginUser;
-  PetscCall(PencilGetClosed(modes->pencil, &n_closed, &from_state));
+  PetscCall(PencilGetClosed(modes->pencil, &closed, &from_state));
   if (!from_state) PetscFunctionReturn(0);
   PetscCall(ModesGetModel(modes, NULL, &contact));
   PetscCall(ContactGetPairs(contact, &n, &n_all, &pair));
   PetscCall(PetscViewerASCIIPrintf(
-    viewer, "about the sliding state: %" PetscInt_FMT " of %" PetscInt_FMT " pairs closed\n", n_closed, n_all));
+    viewer, "about the sliding state: %" PetscInt_FMT " of %" PetscInt_FMT " pairs closed", closed.n, n_all));
+  if (closed.n_stick + closed.n_limit)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "; of those that hold by friction %" PetscInt_FMT " stick, %" PetscInt_FMT " slip freely at its limit",
+      closed.n_stick, closed.n_limit));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
   PetscFunctionReturn(0);
 }
 
@@ -50,9 +56,9 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
   PetscInt n_unstable = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(
-    PetscViewerASCIIPrintf(viewer, "mode    freq Hz   growth 1/s  damping %%  error Hz  condition  backward  label%s\n",
-                           modes->parity ? ", symmetry" : ""));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "mode    freq Hz   growth 1/s  damping %%  error Hz  condition  backward  label%s\n",
+                                   modes->parity ? ", symmetry" : ""));
   for (PetscInt i = 0; i < modes->n; i++) {
     const Mode *m = &modes->mode[i];
 

@@ -2,6 +2,7 @@
    Terms of the contact, linearised about steady sliding with normal force N0 and speed v per pair:
       K += k_n N'N + mu k_n (-T'N)             normal stiffness and friction          (seed paper, eq. 1); with a k_n
                                                per area N'A N and -T'A N, A the areas of the pairs
+      K += k_t (T'T + B'B)                     pairs that stick, of an interface that holds by friction; also per area
       C += |mu| N / V B'B_w + mu' N T'T_w      friction damping across and along the slip, mu' = d mu / d v
    of each interface. N is its total normal force (of the sliding state, or -contact_force), V its sliding speed or,
    where the slip comes from a rotation, the angular velocity; B'B_w and T'T_w carry N0 / N and V / v of each pair. Only
@@ -166,6 +167,49 @@ static PetscErrorCode PenaltyAdd(Pencil pencil, const FrictionGroup *g)
   PetscFunctionReturn(0);
 }
 
+/* 1 or the area of each pair that sticks, 0 of one that slips */
+static PetscErrorCode HoldCreateWeights(Pencil pencil, const FrictionGroup *g, Vec *weights)
+{
+  const ContactPair *pairs;
+  PetscInt           n, n_all, row;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetPairs(pencil->operators->contact, &n, &n_all, &pairs));
+  PetscCall(MatCreateVecs(g->T, NULL, weights));
+  PetscCall(VecGetOwnershipRange(*weights, &row, NULL));
+  for (PetscInt i = 0; i < g->n; i++) {
+    const PetscInt p = g->pair[i];
+
+    PetscCall(VecSetValue(*weights, row + i,
+                          pencil->slips[p]    ? 0
+                          : g->c->kt_per_area ? pairs[p].area
+                                              : 1,
+                          INSERT_VALUES));
+  }
+  PetscCall(VecAssemblyBegin(*weights));
+  PetscCall(VecAssemblyEnd(*weights));
+  PetscFunctionReturn(0);
+}
+
+/* Terms of the pairs that stick */
+static PetscErrorCode HoldAdd(Pencil pencil, const FrictionGroup *g)
+{
+  const PetscInt kt[] = {g->q.kt, g->closed};
+  Vec            weights;
+  Mat            along[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(HoldCreateWeights(pencil, g, &weights));
+  PetscCall(TermsProduct(1, g->T, weights, g->T, &along[0]));
+  PetscCall(TermsProduct(1, g->B, weights, g->B, &along[1]));
+  for (int i = 0; i < 2; i++) {
+    PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, along[i], PETSC_TRUE, 1 + g->more, kt));
+    PetscCall(MatDestroy(&along[i]));
+  }
+  PetscCall(VecDestroy(&weights));
+  PetscFunctionReturn(0);
+}
+
 /* Parameters of one interface */
 static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface *c, InterfaceParameters *q)
 {
@@ -180,6 +224,10 @@ static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface
      c->per_area ? "kn_per_area" : "kn",
      {.unit = c->per_area ? "N/m^3" : "N/m", .value = c->kn},
      &q->kn                                                                                                      },
+    {c->kt > 0,
+     c->kt_per_area ? "kt_per_area" : "kt",
+     {.unit = c->kt_per_area ? "N/m^3" : "N/m", .value = c->kt},
+     &q->kt                                                                                                      },
     {c->damping,                 "mu_slope", {.unit = "s/m", .value = c->mu_slope, .lower = -INFINITY}, &q->slope},
     {c->damping,                 "force",    {.unit = "N", .value = c->force, .closed = PETSC_TRUE},    &q->force},
     {c->damping && turning > 0,  "rotation", {.unit = "rad/s", .value = turning},                       &q->speed},
@@ -187,7 +235,7 @@ static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface
   };
 
   PetscFunctionBeginUser;
-  *q = (InterfaceParameters){-1, -1, -1, -1, -1};
+  *q = (InterfaceParameters){-1, -1, -1, -1, -1, -1};
   if (c->slides) PetscCall(OperatorsAddMu(o, c->name, c->mu, &q->mu));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(what); i++)
     if (what[i].there) PetscCall(ParametersAdd(&o->parameters, c->name, what[i].name, &what[i].like, what[i].index));
@@ -219,6 +267,7 @@ PetscErrorCode PencilAddContact(Pencil pencil)
       PetscCall(FrictionGroupCreate(pencil, i, group, &g));
       PetscCall(MatGetSize(g.N, &n_rows, NULL));
       if (n_rows && c[i].law == CONTACT_PENALTY) PetscCall(PenaltyAdd(pencil, &g));
+      if (n_rows && c[i].kt > 0) PetscCall(HoldAdd(pencil, &g));
       if (n_rows && c[i].damping && c[i].slides && g.total > 0) PetscCall(DampingAdd(pencil, &g));
       PetscCall(FrictionGroupDestroy(&g));
     }
@@ -237,10 +286,10 @@ PetscErrorCode PencilCheckSliding(Pencil pencil)
   if (pencil->from_state && !n_closed) PetscFunctionReturn(0); /* the bodies alone */
   PetscCall(ContactGetInterfaces(pencil->operators->contact, &n, &c));
   for (PetscInt i = 0; i < n; i++) {
-    PetscCheck(c[i].slides || (c[i].mu == 0 && !c[i].damping), pencil->comm, PETSC_ERR_USER_INPUT,
+    PetscCheck(c[i].slides || ((c[i].mu == 0 || c[i].kt > 0) && !c[i].damping), pencil->comm, PETSC_ERR_USER_INPUT,
                "contact %s: the sliding velocity vanishes in the surface at some pair; give -%s_slip x,y,z along the "
-               "surface",
-               c[i].name, c[i].name);
+               "surface, or -%s_kt (N/m per pair) where it holds by friction",
+               c[i].name, c[i].name, c[i].name);
     PetscCheck(!c[i].damping || c[i].force > 0 || pencil->has_forces, pencil->comm, PETSC_ERR_USER_INPUT,
                "-%s_friction_damping needs a positive -%s_force (N), or -modes_contact static", c[i].name, c[i].name);
     PetscCheck(c[i].damping || c[i].mu_slope == 0, pencil->comm, PETSC_ERR_USER_INPUT,

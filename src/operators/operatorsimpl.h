@@ -18,7 +18,7 @@ typedef enum { BODIES_K, BODIES_M, BODIES_C, N_BODIES_SUMS } BodiesSum;
 /* Indices of the parameters of an interface, -1 where there is none */
 typedef struct {
   PetscInt mu; /* none where nothing says along what it slides */
-  PetscInt kn, slope, force, speed;
+  PetscInt kn, kt, slope, force, speed;
 } InterfaceParameters;
 
 /* Indices of the parameters of a bushing or point, -1 where there is none */

@@ -227,16 +227,6 @@ PetscErrorCode PencilReleaseTerms(Pencil pencil)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PencilGetClosed(Pencil pencil, PetscInt *n_closed, PetscBool *from_state)
-{
-  PetscFunctionBeginUser;
-  *from_state = pencil->from_state;
-  *n_closed   = 0;
-  for (PetscInt p = 0; p < pencil->n_pairs; p++) *n_closed += pencil->group[p] >= 0;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n_closed, 1, MPIU_INT, MPI_SUM, pencil->comm));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode PencilExpand(Pencil pencil, PetscBool left, Vec q, Vec u)
 {
   Vec part;
@@ -336,6 +326,7 @@ PetscErrorCode PencilDestroy(Pencil *pencil)
   PetscCall(TermsDestroy(&s->base));
   PetscCall(ParametersDestroy(&s->parameters));
   PetscCall(PetscFree(s->group));
+  PetscCall(PetscFree(s->slips));
   PetscCall(PetscFree(s->force));
   PetscCall(PetscFree(s->total));
   PetscCall(PetscFree(*pencil));

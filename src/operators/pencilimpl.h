@@ -27,6 +27,7 @@ struct _p_Pencil {
   PetscBool  from_state, has_forces; /* there is one, with normal forces */
   PetscInt   n_pairs, n_groups;
   PetscInt  *group; /* [n_pairs] of each local pair as in SlidingState */
+  PetscBool *slips; /* [n_pairs] of an interface that holds: at the limit of friction, hence free along the surface */
   PetscReal *force; /* [n_pairs] normal force, N: of the state, or of -contact_force shared by area */
   PetscReal *total; /* [interfaces] their sums over all ranks */
   /* matrices */
@@ -40,12 +41,12 @@ struct _p_Pencil {
   PetscBool released;    /* the terms are gone */
   PetscBool has_factors; /* left' right was formed at the present point */
   Mat       factor[2];   /* left and right factor of the unsymmetric stiffness, NULL where it has none */
-  Mat       half;        /* K without friction - half_shift M, its upper half, of which both K are made again; or NULL */
-  PetscReal half_shift;  /* (rad/s)^2 */
+  Mat       half;       /* K without friction - half_shift M, its upper half, of which both K are made again; or NULL */
+  PetscReal half_shift; /* (rad/s)^2 */
   /* symmetry */
-  PetscBool is_part;                      /* it is one parity of another pencil */
-  Mat       mirror[OPERATORS_MAX_PLANES]; /* R of each plane, made when asked for */
-  PetscReal asymmetry;                    /* largest entry by which a matrix differs from its image, of its row's */
+  PetscBool  is_part;                      /* it is one parity of another pencil */
+  Mat        mirror[OPERATORS_MAX_PLANES]; /* R of each plane, made when asked for */
+  PetscReal  asymmetry;                    /* largest entry by which a matrix differs from its image, of its row's */
   PetscReal *proven; /* [parameters] the last point at which the scene was found to be its own image; NULL for none */
 };
 

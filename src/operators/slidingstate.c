@@ -18,6 +18,7 @@ PetscErrorCode SlidingStateDestroy(SlidingState *state)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(state->group));
+  PetscCall(PetscFree(state->slips));
   PetscCall(PetscFree(state->lambda_n));
   PetscCall(PetscFree(state->p));
   PetscCall(MatDestroy(&state->geometric));
@@ -57,12 +58,14 @@ static PetscErrorCode StateTakePairs(Pencil pencil, const SlidingState *state)
   PetscCall(ContactGetPairs(contact, &pencil->n_pairs, &n_all, &pairs));
   PetscCall(ContactGetInterfaces(contact, &n_interfaces, &c));
   PetscCall(PetscCalloc1(pencil->n_pairs, &pencil->group));
+  PetscCall(PetscCalloc1(pencil->n_pairs, &pencil->slips));
   PetscCall(PetscMalloc1(pencil->n_pairs, &pencil->force));
   PetscCall(PetscCalloc1(n_interfaces, &pencil->total));
   if (state) {
     PetscCheck(state->n_pairs == pencil->n_pairs, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "state of other pairs");
     PetscCall(StateCheckGroups(pencil, pairs, state));
     PetscCall(PetscArraycpy(pencil->group, state->group, pencil->n_pairs));
+    if (state->slips) PetscCall(PetscArraycpy(pencil->slips, state->slips, pencil->n_pairs));
   }
   for (PetscInt i = 0; i < n_interfaces; i++) pencil->total[i] = pencil->has_forces ? 0 : c[i].force;
   for (PetscInt p = 0; p < pencil->n_pairs; p++) {
@@ -106,5 +109,25 @@ PetscErrorCode PencilTakeState(Pencil pencil, const SlidingState *state)
     PetscCall(PetscArraycpy(pencil->parameters.p, state->p, scene->n));
   }
   if (pencil->operators->model) PetscCall(StateTakePairs(pencil, state));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilGetClosed(Pencil pencil, PencilClosed *closed, PetscBool *from_state)
+{
+  const ContactPair      *pairs = NULL;
+  const ContactInterface *c     = NULL;
+  PetscInt                n;
+
+  PetscFunctionBeginUser;
+  *from_state = pencil->from_state;
+  *closed     = (PencilClosed){0};
+  if (pencil->n_pairs) PetscCall(ContactGetPairs(pencil->operators->contact, &n, &n, &pairs));
+  if (pencil->n_pairs) PetscCall(ContactGetInterfaces(pencil->operators->contact, &n, &c));
+  for (PetscInt p = 0; p < pencil->n_pairs; p++) {
+    if (pencil->group[p] < 0) continue;
+    closed->n++;
+    if (c[pairs[p].interface].kt > 0) *(pencil->slips[p] ? &closed->n_limit : &closed->n_stick) += 1;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, closed, 3, MPIU_INT, MPI_SUM, pencil->comm));
   PetscFunctionReturn(0);
 }

@@ -15,11 +15,11 @@ PetscErrorCode StaticsIsAffine(Statics s, PetscBool *affine)
   *affine = s->geometric || s->follower ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(ContactGetInterfaces(s->contact, &n, &interfaces));
   for (PetscInt i = 0; i < n; i++)
-    if (interfaces[i].damping) *affine = PETSC_FALSE;
+    if (interfaces[i].damping || interfaces[i].kt > 0) *affine = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
-/* Modes about the sliding state need one: every pair slides or is open */
+/* Modes about the sliding state need one: every pair slides, is open, or belongs to an interface that holds by friction */
 static PetscErrorCode StaticsCheckSliding(Statics s)
 {
   const ContactInterface *c = s->rows.interface;
@@ -30,9 +30,11 @@ static PetscErrorCode StaticsCheckSliding(Statics s)
                "-%s_force %.6g does nothing with -modes_contact static, which takes the normal forces from the -loads",
                c[i].name, (double)c[i].force);
   for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
-    PetscCheck(c[i].slides || c[i].mu == 0, s->comm, PETSC_ERR_USER_INPUT,
-               "-modes_contact static needs to know along what contact %s slides: give -%s_slip x,y,z or -%s_rotation",
-               c[i].name, c[i].name, c[i].name);
+    PetscCheck(
+      c[i].slides || c[i].mu == 0 || c[i].kt > 0, s->comm, PETSC_ERR_USER_INPUT,
+      "-modes_contact static needs to know along what contact %s slides: give -%s_slip x,y,z or -%s_rotation, or "
+      "-%s_kt (N/m per pair) where it holds by friction",
+      c[i].name, c[i].name, c[i].name, c[i].name);
   PetscFunctionReturn(0);
 }
 
@@ -52,6 +54,9 @@ PetscErrorCode StaticsSolveSliding(Statics s, const PetscReal p[], SlidingState 
   PetscCall(SlidingStateCreate(s->rows.n_pairs, 0, group, state));
   PetscCall(PetscFree2(closed, group));
   state->has_forces = PETSC_TRUE;
+  PetscCall(PetscMalloc1(state->n_pairs, &state->slips));
+  for (PetscInt i = 0; i < state->n_pairs; i++)
+    state->slips[i] = s->state[i].status == CONTACT_SLIP && !s->rows.interface[s->rows.pair[i].interface].slides;
   PetscCall(PetscMalloc1(state->n_pairs, &state->lambda_n));
   for (PetscInt i = 0; i < state->n_pairs; i++) state->lambda_n[i] = s->state[i].lambda_n;
   state->n_parameters = s->n_parameters;

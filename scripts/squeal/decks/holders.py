@@ -167,5 +167,6 @@ def add_contacts(assembly):
         if contact.damping and contact.mu:
             rows.append(("friction_damping", "true", str(contact.damping)))
         if contact.mu and not contact.rotation:
-            hints.append('slip: "0,1,0"   the slave\'s sliding direction is not in the file: give it, or rotation: "x,y,z" in rad/s')
+            hints.append('slip: "0,1,0"   the slave\'s sliding direction is not in the file: give it, or rotation: "x,y,z" in rad/s, '
+                         'or where it holds by friction kt: its stiffness along the surface')
         assembly.add("contacts", contact.name, rows, hints)
