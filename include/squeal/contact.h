@@ -91,6 +91,25 @@ typedef struct {
   PetscBool  slides;      /* every pair has a slip direction; known after ContactSetUp() */
 } ContactInterface;
 
+/* A tie: nodes of the slave follow the points of the master that they are nearest to (ContactLink) */
+typedef struct {
+  char     *name, *slave, *master; /* a set of nodes; a surface */
+  PetscReal distance;              /* nodes farther off find no foot, m; 0: 5 % of the size of the facet */
+  PetscBool free;                  /* these stay free, else they are an error */
+  PetscInt  n, n_far;              /* nodes that follow, and that stay free, over all ranks */
+  PetscReal offset;                /* largest distance of a node from its foot, m */
+} ContactTie;
+
+/* A node that follows others, u = sum_i follow_i u_i: w_i times the identity where the surfaces touch, and more where a gap is
+   kept as a rigid arm. It lives on the rank that owns the node */
+typedef struct {
+  PetscInt  tie, n_master, node, vertex, corner[CONTACT_MAX_MASTER]; /* local node; global numbers */
+  PetscInt  slave[3], master[CONTACT_MAX_MASTER][3];                 /* unknowns x, y, z; -1 where held */
+  PetscReal weight[CONTACT_MAX_MASTER];                              /* w_i, sum 1 */
+  PetscReal follow[CONTACT_MAX_MASTER][9]; /* [3][3] by rows; rows of directions that a support holds are 0 */
+  PetscReal x[3];                          /* m */
+} ContactLink;
+
 /*@ ContactCreate - makes the interfaces of a model; call before ModelSetUp(). Collective. @*/
 PetscErrorCode ContactCreate(Model model, Contact *contact);
 
@@ -114,7 +133,11 @@ PetscErrorCode ContactCreate(Model model, Contact *contact);
 .  -contact_speed <m/s>           - sliding speed where only the direction is given
 .  -contact_force <N>             - total normal force in the sliding state, shared by area
 .  -contact_friction_damping <bool> - add mu N0 / v across the slip and mu_slope N0 along it
--  -contact_tolerance <m>         - largest distance of the two nodes of a pair
+.  -contact_tolerance <m>         - largest distance of the two nodes of a pair
+.  -ties <names>                  - surfaces glued to others; each name is the prefix of the following, shown for one named `bond`
+.  -bond_surfaces <slave,master>  - a set whose nodes follow, and a surface
+.  -bond_distance <m>             - largest distance of a node from the surface; default 5 % of the size of the facet
+-  -bond_far <error|free>         - what becomes of nodes that are farther off
 @*/
 PetscErrorCode ContactSetFromOptions(Contact contact);
 
@@ -123,7 +146,8 @@ PetscErrorCode ContactSetFromOptions(Contact contact);
 
    Errors: PETSC_ERR_USER_INPUT when a slave node finds no master node within the tolerance: names the interface, the
    position of the node and the distance to the nearest candidate; also when a slip that is given vanishes in the
-   surface at some pair, and friction needs it.
+   surface at some pair, and friction needs it; for a node of a tie that is too far off, or that a support holds in a
+   direction in which it does not hold what the node follows.
 @*/
 PetscErrorCode ContactSetUp(Contact contact);
 
@@ -165,6 +189,17 @@ PetscErrorCode ContactCreateApproach(Contact contact, PetscInt interface, Vec *d
 /*@ ContactNodalForces - forces of the contact on all nodes, N, from the states of the local pairs, into a local vector
    of three values per node in the layout of the coordinates; held nodes included. Collective. @*/
 PetscErrorCode ContactNodalForces(Contact contact, const ContactState state[], Vec local);
+
+/*@ ContactGetTies - ties, none for NULL (borrowed). Not collective; after ContactSetFromOptions(). @*/
+PetscErrorCode ContactGetTies(Contact contact, PetscInt *n, const ContactTie **ties);
+
+/*@ ContactGetLinks - the nodes of this rank that ties make follow others, ordered by tie (borrowed). Not collective; after
+    ContactSetUp(). @*/
+PetscErrorCode ContactGetLinks(Contact contact, PetscInt *n, const ContactLink **links);
+
+/*@ ContactPassForces - of forces on all nodes, N, as in ContactNodalForces(), complete at every copy, moves those on nodes that
+    follow others to these, f_i += follow_i' f, but in directions that a support holds. Collective. @*/
+PetscErrorCode ContactPassForces(Contact contact, Vec local);
 
 /*@
    ContactGrow - moves the front between closed and open pairs by whole rows. Two pairs are neighbours when their slave

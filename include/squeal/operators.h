@@ -135,9 +135,10 @@ PetscErrorCode OperatorsReleaseBodies(Operators operators);
 PetscErrorCode OperatorsGetJoint(Operators operators, const PetscReal p[], PetscInt i, PetscReal stiffness[6],
                                  PetscReal viscosity[6], PetscReal *mass);
 
-/*@ OperatorsGetRigid - of points that are joined rigidly: all displacements u = Z q, and E' u = q, which are those of u that
-    are kept; NULL without such points (borrowed). Forces of the constraint are those with Z'f = 0. Not collective. @*/
-PetscErrorCode OperatorsGetRigid(Operators operators, Mat *Z, Mat *E);
+/*@ OperatorsGetDependents - of points that are joined rigidly and of ties: all displacements u = Z q, and E' u = q, which are
+    those of u that follow no others; NULL without such points and ties (borrowed). Forces of the constraint are those with
+    Z'f = 0. Not collective. @*/
+PetscErrorCode OperatorsGetDependents(Operators operators, Mat *Z, Mat *E);
 
 /*@ OperatorsGetMirrors - the planes of -symmetry (their number is 0 without), and for each the signed permutation R of all
     unknowns that takes displacements to their mirror image (borrowed). Collective; after OperatorsSetUp().
@@ -145,7 +146,7 @@ PetscErrorCode OperatorsGetRigid(Operators operators, Mat *Z, Mat *E);
 PetscErrorCode OperatorsGetMirrors(Operators operators, PetscInt *n, const ModelPlane **plane, const Mat **R);
 
 /*@ OperatorsGetEven - orthonormal columns S of all unknowns that span what is even in every plane, R S = S; NULL without planes
-    (borrowed). Collective. Errors: PETSC_ERR_SUP for points that are joined rigidly. @*/
+    (borrowed). Collective. Errors: PETSC_ERR_SUP for points that are joined rigidly, and for ties. @*/
 PetscErrorCode OperatorsGetEven(Operators operators, Mat *S);
 
 /*@ OperatorsNeedMirrors - raises the error PETSC_ERR_USER_INPUT where -symmetry_rtol lets matrices differ from their mirror

@@ -57,7 +57,7 @@ static PetscErrorCode NameCheckFree(MPI_Comm comm, const char option[], const ch
                                       "projector", "rig", "squeal", "static", "statics",   "sweep"};
   static const char *const lists[] = {"-parts",    "-supports", "-springs", "-dashpots", "-loads",
                                       "-contacts", "-probes",   "-motions", "-impulses", "-circles",
-                                      "-joints",   "-points",   "-terms"};
+                                      "-joints",   "-points",   "-terms",   "-ties"};
   char                     list[MAX_LIST];
   PetscBool                taken = PETSC_FALSE;
 

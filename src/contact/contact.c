@@ -160,6 +160,7 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
     if (c->slave) PetscCall(ModelKeepTogether(contact->model, c->slave));
     if (c->master) PetscCall(ModelKeepTogether(contact->model, c->master));
   }
+  PetscCall(OptionsReadList(contact->comm, &ties_list, contact, &contact->n_ties, &contact->ties));
   PetscFunctionReturn(0);
 }
 
@@ -208,6 +209,7 @@ PetscErrorCode ContactSetUp(Contact contact)
     PetscCall(ContactPairInterface(contact, i));
     PetscCall(InterfaceCheckFaces(contact, &contact->interfaces[i]));
   }
+  PetscCall(ContactTiesSetUp(contact));
   PetscCallMPI(MPI_Allreduce(&contact->n_pairs, &contact->n_pairs_all, 1, MPIU_INT, MPI_SUM, contact->comm));
   PetscCall(EventEnd(EVENT_PAIR));
   PetscFunctionReturn(0);
@@ -269,6 +271,7 @@ PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
     PetscCall(ChecksumAddReals(c, 3, f->rotation));
     PetscCall(ChecksumAddReals(c, 3, f->center));
   }
+  PetscCall(ContactTiesAddChecksum(contact, c));
   PetscFunctionReturn(0);
 }
 
@@ -296,6 +299,7 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
   }
   if (contact->n_interfaces)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " pairs\n", contact->n_pairs_all));
+  PetscCall(ContactTiesView(contact, viewer));
   PetscFunctionReturn(0);
 }
 
@@ -310,6 +314,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
     PetscCall(ContactSurfaceDestroy(&(*contact)->surface[i]));
   }
   PetscCall(PetscFree((*contact)->pairs));
+  PetscCall(ContactTiesDestroy(*contact));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(0);
 }

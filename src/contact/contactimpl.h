@@ -3,6 +3,7 @@
 
 #include "judge.h"
 #include "surface.h"
+#include <squeal/options.h>
 
 #define CONTACT_MAX 16 /* interfaces of one scene */
 
@@ -14,7 +15,18 @@ struct _p_Contact {
   PetscInt         n_pairs, n_pairs_all; /* on this rank, on all ranks */
   ContactPair     *pairs;                /* ordered by interface */
   ContactSurface   surface[CONTACT_MAX]; /* of the masters, made when they are asked for first */
+  PetscInt         n_ties, n_links;      /* links of this rank */
+  ContactTie      *ties;
+  ContactLink     *links; /* ordered by tie */
 };
 
 /* pair.c - appends the pairs of one interface to contact->pairs */
 PETSC_INTERN PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface);
+
+/* tie.c - the list of ties; the links of all of them. Collective. */
+extern const OptionsList    ties_list;
+PETSC_INTERN PetscErrorCode ContactTiesSetUp(Contact contact);
+PETSC_INTERN PetscErrorCode ContactTiesDestroy(Contact contact);
+/* tie.c - adds surfaces and distances; in words. Collective. */
+PETSC_INTERN PetscErrorCode ContactTiesAddChecksum(Contact contact, Checksum checksum);
+PETSC_INTERN PetscErrorCode ContactTiesView(Contact contact, PetscViewer viewer);

@@ -132,6 +132,21 @@ void ContactFootTry(const ContactShape *shape, PetscInt f, const PetscReal x[3],
   if (gap >= -deepest * facet->size * PetscSqrtReal(length) && here.distance < foot->distance) *foot = here;
 }
 
+void ContactFootFind(const ContactSurface *surface, const PetscReal x[3], ContactFoot *foot)
+{
+  const ContactShape rest = {.surface = surface};
+  ContactFoot        walk;
+
+  ContactFootNearest(surface, x, foot);
+  if (foot->facet < 0) return;
+  walk = *foot;
+  ContactFootWalk(&rest, x, &walk);
+  if (walk.facet < 0) return;
+  foot->facet = walk.facet;
+  for (int i = 0; i < 2; i++) foot->natural[i] = walk.natural[i];
+  FacetShapeOf(surface->facet[foot->facet].n)->snap(foot->natural);
+}
+
 /* Unit vector across n and the axis that is most nearly across it */
 static void AnyTangent(const PetscReal n[3], PetscReal t[3])
 {

@@ -8,22 +8,6 @@
 */
 #include "contactimpl.h"
 
-/* Foot of a node on the surface at rest; matching nodes meet exactly. Beyond the border it is the nearest point */
-static void FootFind(const ContactSurface *surface, const PetscReal x[3], ContactFoot *foot)
-{
-  const ContactShape rest = {.surface = surface};
-  ContactFoot        walk;
-
-  ContactFootNearest(surface, x, foot);
-  if (foot->facet < 0) return;
-  walk = *foot;
-  ContactFootWalk(&rest, x, &walk);
-  if (walk.facet < 0) return;
-  foot->facet = walk.facet;
-  for (int i = 0; i < 2; i++) foot->natural[i] = walk.natural[i];
-  FacetShapeOf(surface->facet[foot->facet].n)->snap(foot->natural);
-}
-
 /* Nodes with their weights, directions, speed and gap; false where the slip has no part in the tangent plane. What is
    below 1e-9 of the facet's size is rounding of the coordinates, and no gap. */
 static PetscBool PairSetMaster(const ContactInterface *c, const ContactSurface *surface, const ContactFoot *foot,
@@ -96,7 +80,7 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const Conta
     *pair = (ContactPair){.interface = interface, .vertex = mesh->number[v], .area = Vec3Length(&normals[3 * v])};
     PetscCall(PetscArraycpy(pair->x, &mesh->x[3 * v], 3));
     PetscCall(PetscArraycpy(pair->slave, &mesh->unknown[3 * v], 3));
-    FootFind(surface, pair->x, &foot);
+    ContactFootFind(surface, pair->x, &foot);
     if (foot.distance > failure->distance) {
       failure->distance = foot.distance;
       PetscCall(PetscArraycpy(failure->x, pair->x, 3));

@@ -117,6 +117,9 @@ PETSC_INTERN void ContactFootWalk(const ContactShape *shape, const PetscReal x[3
    sizes of the facet */
 PETSC_INTERN void ContactFootTry(const ContactShape *shape, PetscInt f, const PetscReal x[3], PetscReal deepest,
                                  ContactFoot *foot);
+/* foot.c - foot of a node on the surface at rest: the nearest point, and from there the facet whose normal leads to the node;
+   matching nodes meet exactly. Beyond the border it is the nearest point */
+PETSC_INTERN void ContactFootFind(const ContactSurface *surface, const PetscReal x[3], ContactFoot *foot);
 /* foot.c - weights and n, t, b at natural coordinates, t along a vector; returns the length of its part across n, 0
    where it has none and t is any tangent */
 PETSC_INTERN PetscReal ContactBasis(const ContactFacet *facet, const PetscReal natural[2], const PetscReal along[3],

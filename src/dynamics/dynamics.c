@@ -153,6 +153,19 @@ static PetscErrorCode DynamicsSetUpPoints(Dynamics d)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode DynamicsRefuseTies(Dynamics d)
+{
+  const ContactTie *tie;
+  PetscInt          n;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetTies(d->contact, &n, &tie));
+  PetscCheck(!n, d->comm, PETSC_ERR_SUP,
+             "-ties %s: -analysis transient knows no ties; take modes, frf or static, or give both bodies one mesh there",
+             n ? tie[0].name : "");
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
 {
   PetscReal end, dt;
@@ -162,6 +175,7 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
              "-analysis transient needs a mesh: loaded matrices have no contact surfaces");
   d->results = results;
   if (!d->restart) PetscCall(DynamicsCheckEarlier(d));
+  PetscCall(DynamicsRefuseTies(d));
   PetscCall(ModelGetMesh(d->model, &d->mesh));
   d->n_elements = d->mesh->n_cells;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &d->n_elements, 1, MPIU_INT, MPI_SUM, d->comm));

@@ -284,6 +284,16 @@ PetscErrorCode OperatorsAddJointWeight(Operators o, const PetscReal p[], PetscRe
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OperatorsMarkPart(const Mesh *mesh, PetscInt part, PetscBool **on)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes, on));
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    for (PetscInt i = mesh->cell_first[c]; i < mesh->cell_first[c + 1] && mesh->cell_part[c] == part; i++)
+      (*on)[mesh->cell_node[i]] = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
 /* Whether a node of a point belongs to a part, on any rank */
 static PetscErrorCode PointIsOnPart(Operators o, const Joint *point, PetscInt part, PetscBool *is)
 {
@@ -292,10 +302,7 @@ static PetscErrorCode PointIsOnPart(Operators o, const Joint *point, PetscInt pa
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(o->model, &mesh));
-  PetscCall(PetscCalloc1(mesh->n_nodes, &on));
-  for (PetscInt c = 0; c < mesh->n_cells; c++)
-    for (PetscInt i = mesh->cell_first[c]; i < mesh->cell_first[c + 1] && mesh->cell_part[c] == part; i++)
-      on[mesh->cell_node[i]] = PETSC_TRUE;
+  PetscCall(OperatorsMarkPart(mesh, part, &on));
   *is = PETSC_FALSE;
   for (PetscInt i = 0; i < point->mean.n; i++)
     if (on[point->mean.vertex[i]]) *is = PETSC_TRUE;

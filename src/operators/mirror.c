@@ -57,8 +57,8 @@ static PetscErrorCode MirrorProject(Pencil pencil, const ModelPlane *plane, Mat 
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &wrong, 1, MPIU_INT, MPI_MAX, pencil->comm));
   PetscCheck(!wrong, pencil->comm, PETSC_ERR_SUP,
              "-symmetry %c: what constraints leave is not its own mirror image: %s", "xyz"[plane->axis],
-             pencil->operators->rigid_Z ? MIRROR_NO_RIGID
-                                        : "slip directions of -contact_law constraint must lie in the plane");
+             pencil->operators->Z ? MIRROR_NO_DEPENDENTS
+                                  : "slip directions of -contact_law constraint must lie in the plane");
   PetscFunctionReturn(0);
 }
 

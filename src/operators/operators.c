@@ -102,7 +102,7 @@ PetscErrorCode OperatorsSetUp(Operators operators)
   PetscCall(EventBegin(EVENT_ASSEMBLE));
   if (operators->model) {
     PetscCall(OperatorsAssemble(operators));
-    PetscCall(OperatorsCreateRigid(operators));
+    PetscCall(OperatorsCreateDependents(operators));
     PetscCall(OperatorsAddSpinParameters(operators));
     for (PetscInt i = 0; i < operators->parameters.n; i++) operators->parameters.list[i].body = PETSC_TRUE;
     PetscCall(OperatorsAddContactParameters(operators));
@@ -273,8 +273,8 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   PetscCall(PetscFree(o->spin_of_part));
   PetscCall(PetscFree(o->interface));
   PetscCall(PetscFree(o->joint));
-  PetscCall(MatDestroy(&o->rigid_Z));
-  PetscCall(MatDestroy(&o->rigid_E));
+  PetscCall(MatDestroy(&o->Z));
+  PetscCall(MatDestroy(&o->E));
   for (int i = 0; i < OPERATORS_MAX_PLANES; i++) PetscCall(MatDestroy(&o->mirror[i]));
   PetscCall(MatDestroy(&o->even));
   PetscCall(PetscFree(o->mu));

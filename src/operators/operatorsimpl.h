@@ -60,8 +60,8 @@ struct _p_Operators {
   Terms                spin;             /* of spinning parts, for pencils; made when the first one asks */
   Terms                terms;            /* of the bodies, in all unknowns; with loaded matrices friction too */
   PetscBool            symmetric;        /* K, M and C are symmetric without friction; always true for a model */
-  Mat                  rigid_Z, rigid_E; /* of points that are joined rigidly; NULL without */
-  const char          *rigid_name;       /* of one of them */
+  Mat                  Z, E;             /* u = Z q, q = E'u where some displacements follow others; else NULL */
+  char                 dependent[160];   /* the option that makes them follow */
   Mat                  mirror[OPERATORS_MAX_PLANES]; /* R of each plane in all unknowns, made when asked for */
   Mat                  even;                         /* S of the vectors that are even in all planes, likewise */
   /* formed when asked for */
@@ -107,11 +107,16 @@ PETSC_INTERN PetscErrorCode OperatorsAddJointWeight(Operators operators, const P
 PETSC_INTERN PetscErrorCode OperatorsAddSpinParameters(Operators operators);
 PETSC_INTERN PetscErrorCode OperatorsNeedSpin(Operators operators);
 
-/* joint.c - raises an error for a point with mass, or joined rigidly, on a part that spins. Collective. */
+/* joint.c - which local nodes belong to a part; the caller frees them */
+PETSC_INTERN PetscErrorCode OperatorsMarkPart(const Mesh *mesh, PetscInt part, PetscBool **on);
+
+/* joint.c, dependents.c - raise an error for a point with mass, or joined rigidly, and for a tie, on a part that spins.
+   Collective. */
+PETSC_INTERN PetscErrorCode OperatorsCheckSpinningTies(Operators operators, PetscInt part);
 PETSC_INTERN PetscErrorCode OperatorsCheckSpinningPoints(Operators operators, PetscInt part);
 
-/* rigid.c - the null space of points that are joined rigidly. Collective. */
-PETSC_INTERN PetscErrorCode OperatorsCreateRigid(Operators operators);
+/* dependents.c - Z and E of points that are joined rigidly and of ties. Collective. */
+PETSC_INTERN PetscErrorCode OperatorsCreateDependents(Operators operators);
 
 /* pattern.c - empty matrices of all unknowns, preallocated for the couplings of the cells of one part: K of all
    directions, M (NULL for none) of a mass, lumped or not, which drops zeros that are added to it */

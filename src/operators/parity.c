@@ -131,7 +131,7 @@ PetscErrorCode OperatorsGetEven(Operators o, Mat *S)
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetMirrors(o, &n, NULL, &R));
   if (n && !o->even) {
-    PetscCheck(!o->rigid_Z, o->comm, PETSC_ERR_SUP, "-symmetry: " MIRROR_NO_RIGID);
+    PetscCheck(!o->Z, o->comm, PETSC_ERR_SUP, "-symmetry: " MIRROR_NO_DEPENDENTS);
     PetscCall(OrbitsCreate(n, R, &orbits));
     PetscCall(ParityCreateMap(&orbits, o->comm, 0, &o->even));
     PetscCall(OrbitsDestroy(&orbits));

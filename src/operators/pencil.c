@@ -23,7 +23,7 @@ PetscErrorCode OperatorsLinearise(Operators operators, const SlidingState *state
   if (state && state->follower)
     PetscCall(TermsAdd(&s->base, OPERATORS_STIFFNESS, state->follower, PETSC_FALSE, 0, NULL));
   if (operators->model) PetscCall(PencilCreateNullSpaces(s));
-  PetscCall(operators->model ? PencilTakeRigid(s) : PencilScaleMultipliers(s));
+  PetscCall(operators->model ? PencilTakeDependents(s) : PencilScaleMultipliers(s));
   PetscFunctionReturn(0);
 }
 

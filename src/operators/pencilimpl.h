@@ -53,7 +53,7 @@ struct _p_Pencil {
 /* pairrows.c - forms both factors of the unsymmetric stiffness at the present point, where they are not there yet */
 PETSC_INTERN PetscErrorCode PencilFormFactors(Pencil pencil);
 
-#define MIRROR_NO_RIGID "-points that are joined rigidly are not supported with it"
+#define MIRROR_NO_DEPENDENTS "-points that are joined rigidly and -ties are not supported with it"
 
 /* mirror.c - R of each plane in the unknowns of the pencil, once; raises an error where the scene is not its own image at
    the present point */
@@ -70,8 +70,8 @@ static inline PencilSum PencilEven(Pencil pencil)
 /* factors.c - K without friction, or K, where it was released. Collective. */
 PETSC_INTERN PetscErrorCode PencilRestore(Pencil pencil, PencilSum which);
 
-/* rigid.c - null space of points that are joined rigidly, where there is none of the contact. Collective. */
-PETSC_INTERN PetscErrorCode PencilTakeRigid(Pencil pencil);
+/* dependents.c - null space of displacements that follow others, where there is none of the contact. Collective. */
+PETSC_INTERN PetscErrorCode PencilTakeDependents(Pencil pencil);
 
 /* multipliers.c - of matrices without a mesh: scales of unknowns without mass as Zr and E, where they are far from one. Collective. */
 PETSC_INTERN PetscErrorCode PencilScaleMultipliers(Pencil pencil);

@@ -5,9 +5,9 @@
 
       u = Phi (P Phi)^-1 u_p = T u_p
 
-   is exact. Pencils are projected on Z = [kept unknowns one to one; T at the others], symmetric ones stay symmetric.
+   is exact: all others follow these six (dependents.c).
 */
-#include "pencilimpl.h"
+#include "dependents.h"
 #include "base/gather.h"
 #include <petscblaslapack.h>
 
@@ -18,12 +18,6 @@ typedef struct {
   PetscInt  unknown[3];
   PetscReal x[3];
 } RigidNode;
-
-/* A set of all ranks: T(i, k) = t[6 i + k] at the unknowns [3 n], of which six are kept */
-typedef struct {
-  PetscInt   n, *unknown, kept[6];
-  PetscReal *t;
-} RigidSet;
 
 /* Nodes of a point's set on all ranks; none of them may be held */
 static PetscErrorCode RigidGather(Operators o, const Joint *point, PetscInt *n, RigidNode *node[])
@@ -119,7 +113,8 @@ static PetscErrorCode RigidSetCreate(Operators o, const Joint *point, RigidSet *
 
   PetscFunctionBeginUser;
   PetscCall(RigidGather(o, point, &n, &node));
-  set->n = 3 * n;
+  set->point = point;
+  set->n     = 3 * n;
   PetscCall(PetscMalloc2(set->n, &set->unknown, 6 * set->n, &set->t));
   for (PetscInt i = 0; i < set->n; i++) set->unknown[i] = node[i / 3].unknown[i % 3];
   RigidMotions(n, node, set->t);
@@ -138,131 +133,33 @@ static PetscBool RigidIsKept(const RigidSet *set, PetscInt i)
   return PETSC_FALSE;
 }
 
-/* Unknowns of this rank */
-static PetscErrorCode RigidGetRange(Operators o, PetscInt *first, PetscInt *last)
+PetscErrorCode RigidAddRows(const RigidSet *set, PetscInt by, Dependents *d)
 {
-  const Mesh *mesh;
-
   PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(o->model, &mesh));
-  *first = mesh->first_own;
-  *last  = mesh->first_own + mesh->n_own;
-  PetscFunctionReturn(0);
-}
-
-/* Column of each unknown of this rank, -1 for those that are eliminated; and their number */
-static PetscErrorCode RigidCountColumns(Operators o, PetscInt n_sets, const RigidSet set[], PetscInt *n_columns,
-                                        PetscInt column[])
-{
-  PetscInt first, last, n = 0, twice = 0, *times;
-
-  PetscFunctionBeginUser;
-  PetscCall(RigidGetRange(o, &first, &last));
-  PetscCall(PetscCalloc1(last - first, &times));
-  for (PetscInt i = 0; i < last - first; i++) column[i] = 0;
-  for (PetscInt s = 0; s < n_sets; s++)
-    for (PetscInt i = 0; i < set[s].n; i++) {
-      const PetscInt own = set[s].unknown[i] - first;
-
-      if (own < 0 || own >= last - first) continue;
-      if (times[own]++) twice = 1;
-      if (!RigidIsKept(&set[s], i)) column[own] = -1;
-    }
-  PetscCall(PetscFree(times));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &twice, 1, MPIU_INT, MPI_MAX, o->comm));
-  PetscCheck(!twice, o->comm, PETSC_ERR_USER_INPUT,
-             "two points that are joined rigidly have nodes in common: join the whole to one of them");
-  for (PetscInt i = 0; i < last - first; i++)
-    if (column[i] >= 0) column[i] = n++;
-  *n_columns = n;
-  PetscFunctionReturn(0);
-}
-
-/* The rows of an eliminated set in Z, on the ranks that own them */
-static PetscErrorCode RigidSetRows(Operators o, const RigidSet *set, const PetscInt column[], PetscInt first_column)
-{
-  PetscInt first, last, to[6];
-
-  PetscFunctionBeginUser;
-  PetscCall(MatGetOwnershipRange(o->rigid_Z, &first, &last));
-  for (int k = 0; k < 6; k++)
-    to[k] = set->kept[k] >= first && set->kept[k] < last ? first_column + column[set->kept[k] - first] : -1;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, to, 6, MPIU_INT, MPI_MAX, o->comm));
   for (PetscInt i = 0; i < set->n; i++) {
-    const PetscInt row = set->unknown[i];
-
-    if (row < first || row >= last || RigidIsKept(set, i)) continue;
-    PetscCall(MatSetValues(o->rigid_Z, 1, &row, 6, to, &set->t[6 * i], INSERT_VALUES));
+    PetscCall(DependentsClaim(d, set->unknown[i], by));
+    if (!RigidIsKept(set, i)) PetscCall(DependentsFollow(d, set->unknown[i], 6, set->kept, &set->t[6 * i]));
   }
   PetscFunctionReturn(0);
 }
 
-/* Z and E of the sets */
-static PetscErrorCode RigidCreateSpaces(Operators o, PetscInt n_sets, const RigidSet set[])
-{
-  PetscInt first, last, n, n_columns, first_column, *column;
-  Mat     *spaces[2] = {&o->rigid_E, &o->rigid_Z};
-
-  PetscFunctionBeginUser;
-  PetscCall(RigidGetRange(o, &first, &last));
-  n = last - first;
-  PetscCall(PetscMalloc1(n, &column));
-  PetscCall(RigidCountColumns(o, n_sets, set, &n_columns, column));
-  for (int k = 0; k < 2; k++) {
-    PetscCall(MatCreateAIJ(o->comm, n, n_columns, PETSC_DETERMINE, PETSC_DETERMINE, k ? 6 : 1, NULL, k ? 6 : 0, NULL,
-                           spaces[k]));
-    PetscCall(MatGetOwnershipRangeColumn(*spaces[k], &first_column, NULL));
-    for (PetscInt i = 0; i < n; i++)
-      if (column[i] >= 0) PetscCall(MatSetValue(*spaces[k], first + i, first_column + column[i], 1, INSERT_VALUES));
-    for (PetscInt s = 0; s < n_sets && k; s++) PetscCall(RigidSetRows(o, &set[s], column, first_column));
-    PetscCall(MatAssemblyBegin(*spaces[k], MAT_FINAL_ASSEMBLY));
-    PetscCall(MatAssemblyEnd(*spaces[k], MAT_FINAL_ASSEMBLY));
-  }
-  PetscCall(PetscFree(column));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode OperatorsCreateRigid(Operators o)
+PetscErrorCode RigidSetsCreate(Operators o, PetscInt *n, RigidSet **sets)
 {
   const ModelScene *scene;
-  RigidSet         *set;
-  PetscInt          n = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(o->model, &scene));
-  PetscCall(PetscMalloc1(scene->n_points, &set));
+  PetscCall(PetscMalloc1(scene->n_points, sets));
+  *n = 0;
   for (PetscInt i = 0; i < scene->n_points; i++)
-    if (scene->points[i].rigid) {
-      o->rigid_name = scene->points[i].name;
-      PetscCall(RigidSetCreate(o, &scene->points[i], &set[n++]));
-    }
-  if (n) PetscCall(RigidCreateSpaces(o, n, set));
-  for (PetscInt s = 0; s < n; s++) PetscCall(PetscFree2(set[s].unknown, set[s].t));
-  PetscCall(PetscFree(set));
+    if (scene->points[i].rigid) PetscCall(RigidSetCreate(o, &scene->points[i], &(*sets)[(*n)++]));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsGetRigid(Operators o, Mat *Z, Mat *E)
+PetscErrorCode RigidSetsDestroy(PetscInt n, RigidSet *sets)
 {
   PetscFunctionBeginUser;
-  if (Z) *Z = o->rigid_Z;
-  if (E) *E = o->rigid_E;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode PencilTakeRigid(Pencil pencil)
-{
-  const Operators o = pencil->operators;
-
-  PetscFunctionBeginUser;
-  if (!o->rigid_Z) PetscFunctionReturn(0);
-  PetscCheck(!pencil->Zr, pencil->comm, PETSC_ERR_SUP,
-             "-points that are joined rigidly, by -%s_join rigid, are not supported with -contact_law constraint: use "
-             "-contact_law penalty",
-             o->rigid_name);
-  PetscCall(PetscObjectReference((PetscObject)o->rigid_Z));
-  PetscCall(PetscObjectReference((PetscObject)o->rigid_E));
-  pencil->Zr = o->rigid_Z;
-  pencil->E  = o->rigid_E;
+  for (PetscInt s = 0; s < n; s++) PetscCall(PetscFree2(sets[s].unknown, sets[s].t));
+  PetscCall(PetscFree(sets));
   PetscFunctionReturn(0);
 }

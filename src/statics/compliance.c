@@ -4,7 +4,7 @@
 
       K_a u = f - G'(l - kappa w) + S' D l,   K_a = K + kappa G'G + pins,
 
-   where K_a can be factored although contact alone holds a body. Where points are joined rigidly, u = Z q, K_a^-1 stands
+   where K_a can be factored although contact alone holds a body. Where displacements follow others, u = Z q, K_a^-1 stands
    for Z (Z'K_a Z)^-1 Z' everywhere, which forces of that constraint do not enter; so it does with planes of symmetry, where
    Z = S spans what is even and W has c O more (mirror.c). Multiplied by G, with forces l / kappa (m):
 
@@ -224,7 +224,7 @@ PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const 
   PetscCall(ComplianceFindKappa(K, rows, &c->kappa));
   PetscCall(ComplianceAugment(K, rows, c->kappa, PETSC_FALSE, NULL, &pencil.K));
   PetscCall(HoldCreate(operators, p, pencil.K, &c->hold));
-  PetscCall(OperatorsGetRigid(operators, &c->Z, &c->E));
+  PetscCall(OperatorsGetDependents(operators, &c->Z, &c->E));
   PetscCall(OperatorsGetEven(operators, &even));
   if (even) c->Z = even;
   PetscCall(PairRowsCreateOdd(operators, p, rows, &c->odd));

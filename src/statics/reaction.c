@@ -3,7 +3,8 @@
 
       reaction = sum K_e u_e + k u - load - contact force,
 
-   u = d where a motion prescribes it, and a spring pulls with -k u; forces of bushings and points are among K_e u_e.
+   u = d where a motion prescribes it, and a spring pulls with -k u; forces of bushings and points are among K_e u_e. What is
+   left at nodes that ties make follow others acts on these.
    Loads include the weight. In equilibrium reactions, springs, bushings to the ground, points and loads sum to zero;
    reactions.csv lists them all.
 */
@@ -30,6 +31,7 @@ static PetscErrorCode ReactionUnbalance(Statics s, Vec *local)
   PetscCall(OperatorsAddWeight(s->operators, s->p, part, weight));
   PetscCall(VecAXPY(*local, -1, part));
   PetscCall(VecDestroy(&part));
+  PetscCall(ContactPassForces(s->contact, *local));
   PetscFunctionReturn(0);
 }
 

@@ -1,7 +1,7 @@
 /*
    Rigid motions that nothing resists. The candidates are the six rigid motions of every body, made orthonormal in
-   diag(A); a combination r of them is free when r'A r vanishes, A = K + kappa G'G: no support, no spring and no pair
-   resists it.
+   diag(A); a combination r of them is free when r'A r + |r - Z E'r|^2 vanishes, A = K + kappa G'G: no support, no spring and
+   no pair resists it, and what follows others (ties, points that are joined rigidly) does so. The norm is that of diag(A).
 */
 #include "staticsimpl.h"
 #include <petscblaslapack.h>
@@ -157,8 +157,42 @@ static PetscErrorCode RigidCandidates(Operators operators, Mat A, PetscInt *n, V
   PetscFunctionReturn(0);
 }
 
-/* Eigenvalues ascending and vectors (in place) of the energies r_i'A r_j, [n * n] */
-static PetscErrorCode RigidEnergies(Mat A, PetscInt n, const Vec motion[], PetscReal energy[], PetscReal vectors[])
+/* Adds (c_i, c_j) in diag(A) to energies [n * n], c = r - Z E'r: by how much followers do not follow */
+static PetscErrorCode RigidAddParted(Operators operators, Mat A, PetscInt n, const Vec motion[], PetscReal energy[])
+{
+  Mat          Z, E;
+  PetscScalar *dot;
+  Vec          diagonal, image, q, *apart;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetDependents(operators, &Z, &E));
+  if (!Z) PetscFunctionReturn(0);
+  PetscCall(MatCreateVecs(A, &diagonal, &image));
+  PetscCall(MatCreateVecs(Z, &q, NULL));
+  PetscCall(VecDuplicateVecs(image, n, &apart));
+  PetscCall(MatGetDiagonal(A, diagonal));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(MatMultTranspose(E, motion[i], q));
+    PetscCall(MatMult(Z, q, apart[i]));
+    PetscCall(VecAYPX(apart[i], -1, motion[i]));
+  }
+  PetscCall(PetscMalloc1(n, &dot));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(VecPointwiseMult(image, diagonal, apart[i]));
+    PetscCall(VecMDot(image, n, apart, dot));
+    for (PetscInt j = 0; j < n; j++) energy[i * n + j] += PetscRealPart(dot[j]);
+  }
+  PetscCall(PetscFree(dot));
+  PetscCall(VecDestroyVecs(n, &apart));
+  PetscCall(VecDestroy(&diagonal));
+  PetscCall(VecDestroy(&image));
+  PetscCall(VecDestroy(&q));
+  PetscFunctionReturn(0);
+}
+
+/* Eigenvalues ascending and vectors (in place) of the energies r_i'A r_j and of what parts, [n * n] */
+static PetscErrorCode RigidEnergies(Operators operators, Mat A, PetscInt n, const Vec motion[], PetscReal energy[],
+                                    PetscReal vectors[])
 {
   PetscBLASInt N, size, info;
   PetscReal   *work;
@@ -171,6 +205,7 @@ static PetscErrorCode RigidEnergies(Mat A, PetscInt n, const Vec motion[], Petsc
     PetscCall(VecMDot(image, n, motion, &vectors[i * n]));
   }
   PetscCall(VecDestroy(&image));
+  PetscCall(RigidAddParted(operators, A, n, motion, vectors));
   PetscCall(PetscBLASIntCast(n, &N));
   PetscCall(PetscBLASIntCast(4 * n, &size));
   PetscCall(PetscMalloc1(4 * n, &work));
@@ -192,7 +227,7 @@ PetscErrorCode FreeMotionsCreate(Operators operators, const PetscReal p[], Mat A
   PetscCall(OperatorsGetBodies(operators, p, NULL, &M, NULL));
   PetscCall(RigidCandidates(operators, A, &n, &motion));
   PetscCall(PetscMalloc2(n, &energy, n * n, &vectors));
-  PetscCall(RigidEnergies(A, n, motion, energy, vectors));
+  PetscCall(RigidEnergies(operators, A, n, motion, energy, vectors));
   while (hold->n < n && energy[hold->n] < RIGID_FREE) hold->n++;
   if (hold->n) {
     PetscCall(VecDuplicateVecs(motion[0], hold->n, &hold->r));

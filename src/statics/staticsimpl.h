@@ -40,8 +40,8 @@ typedef struct {
   const PairRows *rows;
   PetscReal       kappa; /* N/m */
   Hold            hold;
-  ShiftInvert     inverse;          /* of K_a, or of Z'K_a Z where points are joined rigidly */
-  Mat             Z, E;             /* OperatorsGetRigid(); or OperatorsGetEven() and NULL */
+  ShiftInvert     inverse;          /* of K_a, or of Z'K_a Z where there is Z */
+  Mat             Z, E;             /* OperatorsGetDependents(); or OperatorsGetEven() and NULL */
   Mat             odd;              /* c O of mirror.c, added to W; NULL without planes of symmetry */
   Vec             reduced[2];       /* work where there is Z */
   PetscReal      *W, *V; /* [rows][rows] by columns, of all ranks */

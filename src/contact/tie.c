@@ -1,0 +1,323 @@
+/*
+   Ties: bodies whose meshes do not match, glued. Every node of the slave follows the point x(xi) of the master that it
+   is nearest to, its foot (foot.c), in all three directions,
+
+      u_s = sum_i w_i(xi) u_i + omega x (x_s - x(xi)),
+
+   with the weights w_i of the facet, of second order too, and omega, the turning of the facet there (kernels/arm.h): a gap
+   between the surfaces stays as it is and turns with the master, as a rigid arm does, so that rigid motions of both bodies are
+   exact. Forces on the slave act on the nodes of the facet by the transpose.
+
+   Where flat surfaces touch, displacements that are linear in x obey the tie. Uniform stress without traction on the surface is
+   exact on any two meshes; with traction where the slave's mesh refines the master's (sum_s w_i(x_s) int N_s dA = int N_i dA),
+   else only the total of the forces is, and stress is off beside the surface by an amount that vanishes with the mesh. Let
+   the finer of the two be the slave.
+
+   A direction in which a support holds the slave needs no equation where it holds the nodes of the facet as well.
+*/
+#include "contactimpl.h"
+#include "kernels/arm.h"
+
+#define TIE_SHARE   0.05 /* of the size of a facet: the largest distance where none is given */
+#define TIE_TOUCHES 1e-9 /* of that size: rounding of the places, no gap */
+
+static PetscErrorCode TieRead(OptionsItems PetscOptionsObject, void *owner, void *record)
+{
+  static const char *const far[]       = {"error", "free"};
+  const MPI_Comm           comm        = PetscOptionsObject->comm;
+  ContactTie              *tie         = record;
+  char                    *surfaces[3] = {NULL, NULL, NULL};
+  PetscInt                 n = 3, left = 0;
+  PetscBool                given;
+
+  PetscFunctionBeginUser;
+  (void)owner;
+  PetscCall(PetscOptionsStringArray("-surfaces", "slave,master: a set whose nodes follow, and a surface (required)",
+                                    "contact.h", surfaces, &n, NULL));
+  PetscCall(PetscOptionsReal("-distance", "largest distance of a node of the slave, m; default 5 % of the facet's size",
+                             "contact.h", tie->distance, &tie->distance, &given));
+  PetscCall(PetscOptionsEList("-far", "nodes farther off are an error, or stay free", "contact.h", far, 2, far[0],
+                              &left, NULL));
+  PetscCheck(n == 2 && surfaces[0] && surfaces[1], comm, PETSC_ERR_USER_INPUT,
+             "-%s_surfaces must be given, two names: slave,master", tie->name);
+  PetscCheck(strcmp(surfaces[0], surfaces[1]), comm, PETSC_ERR_USER_INPUT,
+             "-%s_surfaces names %s twice: a tie joins two surfaces", tie->name, surfaces[0]);
+  PetscCheck(!given || (tie->distance > 0 && isfinite(tie->distance)), comm, PETSC_ERR_USER_INPUT,
+             "-%s_distance %.6g must be finite and positive (m)", tie->name, (double)tie->distance);
+  tie->slave  = surfaces[0];
+  tie->master = surfaces[1];
+  tie->free   = left == 1 ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+const OptionsList ties_list = {"-ties", "surfaces glued to others, each the prefix of its -surfaces", "Tie",
+                               sizeof(ContactTie), TieRead};
+
+/* What fails over all ranks: the farthest node and where it is; a direction that a support holds of the slave alone */
+typedef struct {
+  PetscReal distance, x[3], held, held_x[3];
+} TieFailure;
+
+/* Takes a place that is worse than those before */
+static void FailureTake(PetscReal value, const PetscReal x[3], PetscReal *worst, PetscReal where[3])
+{
+  if (value <= *worst) return;
+  *worst = value;
+  for (int d = 0; d < 3; d++) where[d] = x[d];
+}
+
+/* The worst of all ranks */
+static PetscErrorCode FailureShare(MPI_Comm comm, PetscReal *value, PetscReal x[3])
+{
+  struct {
+    double value;
+    int    rank;
+  } worst = {*value, 0};
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &worst.rank));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm));
+  PetscCallMPI(MPI_Bcast(x, 3, MPIU_REAL, worst.rank, comm));
+  *value = worst.value;
+  PetscFunctionReturn(0);
+}
+
+/* The nodes that a link follows, with their matrices; those of no weight are left out */
+static PetscReal LinkSetMaster(const ContactSurface *surface, const ContactFoot *foot, ContactLink *link)
+{
+  const ContactFacet *facet = &surface->facet[foot->facet];
+  PetscReal           w[CONTACT_MAX_MASTER], A[CONTACT_MAX_MASTER][9], point[3], arm[3], length;
+
+  FacetWeights(facet->n, foot->natural, w);
+  FacetSum(facet->n, w, (const double(*)[3])facet->x, point);
+  for (int d = 0; d < 3; d++) arm[d] = link->x[d] - point[d];
+  length = Vec3Length(arm);
+  if (length < TIE_TOUCHES * facet->size) length = arm[0] = arm[1] = arm[2] = 0;
+  FacetArm(facet->n, (const double(*)[3])facet->x, foot->natural, arm, A);
+  for (int i = 0; i < facet->n; i++) {
+    PetscReal size = 0;
+
+    for (int k = 0; k < 9; k++) size += PetscAbsReal(A[i][k]);
+    if (size == 0) continue;
+    for (int d = 0; d < 3; d++) link->master[link->n_master][d] = facet->unknowns[i][d];
+    for (int k = 0; k < 9; k++) link->follow[link->n_master][k] = A[i][k];
+    link->weight[link->n_master]   = w[i];
+    link->corner[link->n_master++] = surface->vertex[facet->node[i]];
+  }
+  return length;
+}
+
+/* Whether it is a node of both surfaces, which needs no link */
+static PetscBool LinkIsCommon(const ContactLink *link)
+{
+  for (PetscInt i = 0; i < link->n_master; i++)
+    if (link->corner[i] == link->vertex && PetscAbsReal(link->weight[i] - 1) < 1e-9) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Drops the directions in which supports hold slave and master; whether they hold the slave alone in one */
+static PetscBool LinkDropHeld(ContactLink *link)
+{
+  PetscBool alone = PETSC_FALSE;
+
+  for (int d = 0; d < 3; d++) {
+    if (link->slave[d] >= 0) continue;
+    for (PetscInt i = 0; i < link->n_master; i++) {
+      if (link->weight[i] != 0 && link->master[i][d] >= 0) alone = PETSC_TRUE;
+      for (int e = 0; e < 3; e++) link->follow[i][3 * d + e] = 0;
+    }
+  }
+  return alone;
+}
+
+/* A tie as its links are made: what it has on this rank, and what fails */
+typedef struct {
+  const Mesh    *mesh;
+  ContactTie     tie; /* with the counts of this rank */
+  ContactSurface master;
+  TieFailure     failure;
+} TieWork;
+
+/* Whether there is a foot that is near enough */
+static PetscBool FootIsNear(const ContactTie *tie, const ContactSurface *master, const ContactFoot *foot)
+{
+  if (foot->facet < 0) return PETSC_FALSE;
+  return foot->distance <= (tie->distance > 0 ? tie->distance : TIE_SHARE * master->facet[foot->facet].size);
+}
+
+/* The link of local node v; none for one that is too far off, or common to both */
+static void LinkMake(TieWork *work, PetscInt v, ContactLink *link)
+{
+  ContactTie *tie = &work->tie;
+  ContactFoot foot;
+  PetscReal   length;
+
+  link->node     = v;
+  link->vertex   = work->mesh->number[v];
+  link->n_master = 0;
+  for (int d = 0; d < 3; d++) {
+    link->x[d]     = work->mesh->x[3 * v + d];
+    link->slave[d] = work->mesh->unknown[3 * v + d];
+  }
+  ContactFootFind(&work->master, link->x, &foot);
+  if (!FootIsNear(tie, &work->master, &foot)) {
+    tie->n_far++;
+    FailureTake(foot.distance, link->x, &work->failure.distance, work->failure.x);
+    return;
+  }
+  tie->n++;
+  length = LinkSetMaster(&work->master, &foot, link);
+  if (LinkIsCommon(link)) {
+    link->n_master = 0;
+    return;
+  }
+  tie->offset = PetscMax(tie->offset, length);
+  FailureTake(LinkDropHeld(link) ? 1 : 0, link->x, &work->failure.held, work->failure.held_x);
+}
+
+/* Raises the errors of one tie, whose counts are those of all ranks */
+static PetscErrorCode TieCheck(MPI_Comm comm, const ContactTie *tie, TieFailure *failure)
+{
+  char words[64] = "(5 % of a facet)";
+
+  PetscFunctionBeginUser;
+  if (tie->distance > 0) PetscCall(PetscSNPrintf(words, sizeof(words), "%.6g m", (double)tie->distance));
+  PetscCall(FailureShare(comm, &failure->distance, failure->x));
+  PetscCall(FailureShare(comm, &failure->held, failure->held_x));
+  PetscCheck(
+    tie->n_far == 0 || (tie->free && tie->n), comm, PETSC_ERR_USER_INPUT,
+    "tie %s: %" PetscInt_FMT " of %" PetscInt_FMT
+    " nodes of %s are farther from %s than -%s_distance %s; the one at %.6g, %.6g, %.6g m is %.6g m away; give a "
+    "larger one, a set of the nodes that touch, or -%s_far free",
+    tie->name, tie->n_far, tie->n + tie->n_far, tie->slave, tie->master, tie->name, words, (double)failure->x[0],
+    (double)failure->x[1], (double)failure->x[2], (double)failure->distance, tie->name);
+  PetscCheck(failure->held == 0, comm, PETSC_ERR_USER_INPUT,
+             "tie %s: a support or motion holds the node of %s at %.6g, %.6g, %.6g m in a direction in which the nodes "
+             "of %s beside it are free: let it hold both, or swap -%s_surfaces",
+             tie->name, tie->slave, (double)failure->held_x[0], (double)failure->held_x[1], (double)failure->held_x[2],
+             tie->master, tie->name);
+  if (tie->n_far)
+    PetscCall(PetscFPrintf(comm, stderr,
+                           "squeal: warning: tie %s: %" PetscInt_FMT " of %" PetscInt_FMT
+                           " nodes of %s are too far off %s, and stay free\n",
+                           tie->name, tie->n_far, tie->n + tie->n_far, tie->slave, tie->master));
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for nodes that a motion moves: what follows them would not be a linear function of the unknowns */
+static PetscErrorCode TieCheckMotions(Contact contact, const ContactTie *tie, const char set[])
+{
+  const Mesh *mesh;
+  PetscInt    n, *node, moved = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(contact->model, &mesh));
+  PetscCall(ModelGetSetNodes(contact->model, set, &n, &node));
+  for (PetscInt i = 0; i < 3 * n && mesh->prescribed; i++)
+    if (mesh->prescribed[3 * node[i / 3] + i % 3] != 0) moved = 1;
+  PetscCall(PetscFree(node));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPIU_INT, MPI_MAX, contact->comm));
+  PetscCheck(!moved, contact->comm, PETSC_ERR_SUP,
+             "tie %s: -motions move nodes of %s, which is not supported: move another set of that body", tie->name,
+             set);
+  PetscFunctionReturn(0);
+}
+
+/* Appends the links of one tie, of the slave nodes that this rank owns */
+static PetscErrorCode TieSetUp(Contact contact, PetscInt t)
+{
+  ContactTie *tie  = &contact->ties[t];
+  TieWork     work = {.tie = *tie};
+  PetscInt    n, *vertex;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(contact->model, &work.mesh));
+  PetscCall(ContactSurfaceCreate(contact, tie->master, &work.master));
+  PetscCall(ModelGetOwnedNodes(contact->model, tie->slave, &n, &vertex));
+  PetscCall(PetscRealloc(sizeof(ContactLink) * (size_t)(contact->n_links + n), &contact->links));
+  for (PetscInt i = 0; i < n; i++) {
+    ContactLink *link = &contact->links[contact->n_links];
+
+    link->tie = t;
+    LinkMake(&work, vertex[i], link);
+    if (link->n_master) contact->n_links++;
+  }
+  PetscCall(PetscFree(vertex));
+  PetscCall(ContactSurfaceDestroy(&work.master));
+  PetscCallMPI(MPI_Allreduce(&work.tie.n, &tie->n, 2, MPIU_INT, MPI_SUM, contact->comm));
+  PetscCallMPI(MPI_Allreduce(&work.tie.offset, &tie->offset, 1, MPIU_REAL, MPI_MAX, contact->comm));
+  PetscCall(TieCheck(contact->comm, tie, &work.failure));
+  PetscCall(TieCheckMotions(contact, tie, tie->slave));
+  PetscCall(TieCheckMotions(contact, tie, tie->master));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactTiesSetUp(Contact contact)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt t = 0; t < contact->n_ties; t++) PetscCall(TieSetUp(contact, t));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactGetTies(Contact contact, PetscInt *n, const ContactTie **ties)
+{
+  PetscFunctionBeginUser;
+  *n    = contact ? contact->n_ties : 0;
+  *ties = contact ? contact->ties : NULL;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactGetLinks(Contact contact, PetscInt *n, const ContactLink **links)
+{
+  PetscFunctionBeginUser;
+  *n     = contact->n_links;
+  *links = contact->links;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactTiesAddChecksum(Contact contact, Checksum c)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt t = 0; t < contact->n_ties; t++) {
+    const ContactTie *tie = &contact->ties[t];
+
+    PetscCall(ChecksumSetPart(c, "tie %s", tie->name));
+    PetscCall(ModelAddSetChecksum(contact->model, tie->slave, PETSC_FALSE, c));
+    PetscCall(ModelAddSetChecksum(contact->model, tie->master, PETSC_TRUE, c));
+    PetscCall(ChecksumAddReals(c, 1, &tie->distance));
+    PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){tie->free}));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactTiesView(Contact contact, PetscViewer viewer)
+{
+  const char *unit;
+
+  PetscFunctionBeginUser;
+  for (PetscInt t = 0; t < contact->n_ties; t++) {
+    const ContactTie *tie = &contact->ties[t];
+
+    PetscCall(ModelGetUnit(contact->model, "m", &unit));
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "tie %s: %" PetscInt_FMT " nodes of %s follow %s, the farthest %.6g %s off it\n",
+                                     tie->name, tie->n, tie->slave, tie->master, (double)tie->offset, unit));
+    if (tie->n_far)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " nodes of %s are farther off, and stay free\n",
+                                       tie->n_far, tie->slave));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactTiesDestroy(Contact contact)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt t = 0; t < contact->n_ties; t++) {
+    PetscCall(PetscFree(contact->ties[t].name));
+    PetscCall(PetscFree(contact->ties[t].slave));
+    PetscCall(PetscFree(contact->ties[t].master));
+  }
+  PetscCall(PetscFree(contact->ties));
+  PetscCall(PetscFree(contact->links));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,253 @@
+/*
+   Displacements that follow others: the nodes of points that are joined rigidly (rigid.c) and the slaves of ties
+   (contact/tie.c). With D the rows of the followers and E the injection of all others, q = E'u,
+
+      u = D u + E q = Z q,   Z = E + D E + D^2 E + ...,
+
+   which ends since no chain of followers comes back to where it began. Pencils are projected on Z, symmetric ones stay
+   symmetric; forces that Z'f = 0 leaves are those that hold the followers. A displacement that follows none but held ones
+   is 0.
+*/
+#include "dependents.h"
+
+PetscErrorCode DependentsClaim(Dependents *d, PetscInt unknown, PetscInt by)
+{
+  const PetscInt i = unknown - d->first;
+
+  PetscFunctionBeginUser;
+  if (i < 0 || i >= d->n || d->D) PetscFunctionReturn(0);
+  if (d->by[i] >= 0) d->conflict = PetscMax(d->conflict, d->by[i] * d->n_lists + by);
+  d->by[i] = by;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DependentsFollow(Dependents *d, PetscInt unknown, PetscInt n, const PetscInt column[],
+                                const PetscReal value[])
+{
+  const PetscInt i = unknown - d->first;
+
+  PetscFunctionBeginUser;
+  if (i < 0 || i >= d->n) PetscFunctionReturn(0);
+  if (!d->D) d->follows[i] = PETSC_TRUE;
+  for (PetscInt k = 0; k < n; k++) {
+    if (column[k] < 0 || value[k] == 0) continue;
+    if (!d->D)
+      d->count[i]++;
+    else
+      PetscCall(MatSetValue(d->D, unknown, column[k], value[k], INSERT_VALUES));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The rows of a node that follows the nodes of a facet */
+static PetscErrorCode LinkAddRows(const ContactLink *link, PetscInt by, Dependents *d)
+{
+  PetscReal value[3 * CONTACT_MAX_MASTER];
+
+  PetscFunctionBeginUser;
+  for (int e = 0; e < 3; e++) {
+    if (link->slave[e] < 0) continue;
+    for (PetscInt i = 0; i < 3 * link->n_master; i++) value[i] = link->follow[i / 3][3 * e + i % 3];
+    PetscCall(DependentsClaim(d, link->slave[e], by));
+    PetscCall(DependentsFollow(d, link->slave[e], 3 * link->n_master, &link->master[0][0], value));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* What follows what, of points, then of ties */
+static PetscErrorCode DependentsAddRows(Operators o, PetscInt n_sets, const RigidSet set[], Dependents *d)
+{
+  const ContactLink *link;
+  PetscInt           n;
+
+  PetscFunctionBeginUser;
+  for (PetscInt s = 0; s < n_sets; s++) PetscCall(RigidAddRows(&set[s], s, d));
+  PetscCall(ContactGetLinks(o->contact, &n, &link));
+  for (PetscInt l = 0; l < n; l++) PetscCall(LinkAddRows(&link[l], n_sets + link[l].tie, d));
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error for a node that two lists claim */
+static PetscErrorCode DependentsCheck(Operators o, PetscInt n_sets, const RigidSet set[], Dependents *d)
+{
+  const ContactTie *tie;
+  PetscInt          n, a, b;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetTies(o->contact, &n, &tie));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &d->conflict, 1, MPIU_INT, MPI_MAX, o->comm));
+  if (d->conflict < 0) PetscFunctionReturn(0);
+  a = d->conflict / d->n_lists - n_sets;
+  b = d->conflict % d->n_lists - n_sets;
+  PetscCheck(b >= 0, o->comm, PETSC_ERR_USER_INPUT,
+             "two points that are joined rigidly have nodes in common: join the whole to one of them");
+  PetscCheck(a >= 0, o->comm, PETSC_ERR_USER_INPUT,
+             "tie %s: nodes of %s are joined rigidly to point %s as well, and can follow one alone: swap -%s_surfaces, "
+             "or name sets without common nodes",
+             tie[b].name, tie[b].slave, set[a + n_sets].point->name, tie[b].name);
+  SETERRQ(
+    o->comm, PETSC_ERR_USER_INPUT,
+    "ties %s and %s: nodes of %s and %s are the same, and can follow one surface alone: swap the -surfaces of one, or "
+    "name sets without common nodes",
+    tie[a].name, tie[b].name, tie[a].slave, tie[b].slave);
+}
+
+/* D, empty, once its rows are counted */
+static PetscErrorCode DependentsCreate(Operators o, Dependents *d)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < d->n; i++) d->count[i] = PetscMin(d->count[i], d->n);
+  PetscCall(MatCreateAIJ(o->comm, d->n, d->n, PETSC_DETERMINE, PETSC_DETERMINE, 0, d->count, 0, d->count, &d->D));
+  PetscFunctionReturn(0);
+}
+
+/* E of what follows nothing */
+static PetscErrorCode DependentsInject(Operators o, const Dependents *d)
+{
+  PetscInt n = 0, column;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < d->n; i++) n += !d->follows[i];
+  PetscCall(MatCreateAIJ(o->comm, d->n, n, PETSC_DETERMINE, PETSC_DETERMINE, 1, NULL, 0, NULL, &o->E));
+  PetscCall(MatGetOwnershipRangeColumn(o->E, &column, NULL));
+  for (PetscInt i = 0; i < d->n; i++)
+    if (!d->follows[i]) PetscCall(MatSetValue(o->E, d->first + i, column++, 1, INSERT_VALUES));
+  PetscCall(MatAssemblyBegin(o->E, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(o->E, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+/* Z = E + D E + D^2 E + ...: no more of them than there are lists, where no list follows itself */
+static PetscErrorCode DependentsSum(Operators o, const Dependents *d)
+{
+  Mat       power = o->E, next;
+  PetscReal left  = 1;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatDuplicate(o->E, MAT_COPY_VALUES, &o->Z));
+  for (PetscInt k = 0; k <= d->n_lists && left > 0; k++) {
+    PetscCall(MatMatMult(d->D, power, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &next));
+    PetscCall(MatProductClear(next));
+    PetscCall(MatNorm(next, NORM_FROBENIUS, &left));
+    if (left > 0) PetscCall(MatAXPY(o->Z, 1, next, DIFFERENT_NONZERO_PATTERN));
+    if (power != o->E) PetscCall(MatDestroy(&power));
+    power = next;
+  }
+  PetscCall(MatDestroy(&power));
+  PetscCheck(
+    left == 0, o->comm, PETSC_ERR_USER_INPUT,
+    "%s go round in a circle, so that nodes follow themselves: of two surfaces that are tied, let the same one "
+    "be the slave everywhere",
+    o->dependent);
+  PetscFunctionReturn(0);
+}
+
+/* In words, who is there */
+static PetscErrorCode DependentsName(Operators o, PetscInt n_sets, const RigidSet set[])
+{
+  const ContactTie *tie;
+  PetscInt          n;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetTies(o->contact, &n, &tie));
+  if (n)
+    PetscCall(PetscSNPrintf(o->dependent, sizeof(o->dependent), "-ties %s%s", tie[0].name, n > 1 ? " and others" : ""));
+  else
+    PetscCall(PetscSNPrintf(o->dependent, sizeof(o->dependent), "-points that are joined rigidly, by -%s_join rigid,",
+                            set[0].point->name));
+  (void)n_sets;
+  PetscFunctionReturn(0);
+}
+
+/* Z and E from the rows */
+static PetscErrorCode DependentsResolve(Operators o, PetscInt n_sets, const RigidSet set[], Dependents *d)
+{
+  const Mesh *mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(o->model, &mesh));
+  d->first = mesh->first_own;
+  d->n     = mesh->n_own;
+  PetscCall(PetscCalloc3(d->n, &d->by, d->n, &d->count, d->n, &d->follows));
+  for (PetscInt i = 0; i < d->n; i++) d->by[i] = -1;
+  PetscCall(DependentsName(o, n_sets, set));
+  PetscCall(DependentsAddRows(o, n_sets, set, d));
+  PetscCall(DependentsCheck(o, n_sets, set, d));
+  PetscCall(DependentsCreate(o, d));
+  PetscCall(DependentsAddRows(o, n_sets, set, d));
+  PetscCall(MatAssemblyBegin(d->D, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(d->D, MAT_FINAL_ASSEMBLY));
+  PetscCall(DependentsInject(o, d));
+  PetscCall(DependentsSum(o, d));
+  PetscCall(MatDestroy(&d->D));
+  PetscCall(PetscFree3(d->by, d->count, d->follows));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsCreateDependents(Operators o)
+{
+  const ContactTie *tie;
+  RigidSet         *set;
+  PetscInt          n_sets, n_ties;
+
+  PetscFunctionBeginUser;
+  PetscCall(RigidSetsCreate(o, &n_sets, &set));
+  PetscCall(ContactGetTies(o->contact, &n_ties, &tie));
+  if (n_sets + n_ties)
+    PetscCall(DependentsResolve(o, n_sets, set, &(Dependents){.n_lists = n_sets + n_ties, .conflict = -1}));
+  PetscCall(RigidSetsDestroy(n_sets, set));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsGetDependents(Operators o, Mat *Z, Mat *E)
+{
+  PetscFunctionBeginUser;
+  if (Z) *Z = o->Z;
+  if (E) *E = o->E;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsCheckSpinningTies(Operators o, PetscInt part)
+{
+  const ContactTie *tie;
+  const Mesh       *mesh;
+  PetscInt          n_ties;
+  PetscBool        *on;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetTies(o->contact, &n_ties, &tie));
+  if (!n_ties) PetscFunctionReturn(0);
+  PetscCall(ModelGetMesh(o->model, &mesh));
+  PetscCall(OperatorsMarkPart(mesh, part, &on));
+  for (PetscInt t = 0; t < 2 * n_ties; t++) {
+    PetscInt  n, *node;
+    PetscBool spins = PETSC_FALSE;
+
+    PetscCall(ModelGetSetNodes(o->model, t % 2 ? tie[t / 2].master : tie[t / 2].slave, &n, &node));
+    for (PetscInt i = 0; i < n; i++)
+      if (on[node[i]]) spins = PETSC_TRUE;
+    PetscCall(PetscFree(node));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &spins, 1, MPIU_BOOL, MPI_LOR, o->comm));
+    PetscCheck(
+      !spins, o->comm, PETSC_ERR_SUP,
+      "tie %s has nodes of part %s, which -%s_spin turns: that is not supported; give both bodies one mesh there",
+      tie[t / 2].name, mesh->part[part], mesh->part[part]);
+  }
+  PetscCall(PetscFree(on));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilTakeDependents(Pencil pencil)
+{
+  const Operators o = pencil->operators;
+
+  PetscFunctionBeginUser;
+  if (!o->Z) PetscFunctionReturn(0);
+  PetscCheck(!pencil->Zr, pencil->comm, PETSC_ERR_SUP,
+             "%s are not supported with -contact_law constraint: use -contact_law penalty", o->dependent);
+  PetscCall(PetscObjectReference((PetscObject)o->Z));
+  PetscCall(PetscObjectReference((PetscObject)o->E));
+  pencil->Zr = o->Z;
+  pencil->E  = o->E;
+  PetscFunctionReturn(0);
+}
