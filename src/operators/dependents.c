@@ -117,23 +117,27 @@ static PetscErrorCode DependentsInject(Operators o, const Dependents *d)
   PetscFunctionReturn(0);
 }
 
-/* Z = E + D E + D^2 E + ...: no more of them than there are lists, where no list follows itself */
-static PetscErrorCode DependentsSum(Operators o, const Dependents *d)
+/* Raises an error where a chain of followers comes back to where it began: D^n y, of any numbers y, is then not 0 after as
+   many steps as there are lists */
+static PetscErrorCode DependentsCheckChains(Operators o, const Dependents *d)
 {
-  Mat       power = o->E, next;
-  PetscReal left  = 1;
+  PetscScalar *y;
+  PetscReal    left;
+  Vec          from, to;
 
   PetscFunctionBeginUser;
-  PetscCall(MatDuplicate(o->E, MAT_COPY_VALUES, &o->Z));
-  for (PetscInt k = 0; k <= d->n_lists && left > 0; k++) {
-    PetscCall(MatMatMult(d->D, power, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &next));
-    PetscCall(MatProductClear(next));
-    PetscCall(MatNorm(next, NORM_FROBENIUS, &left));
-    if (left > 0) PetscCall(MatAXPY(o->Z, 1, next, DIFFERENT_NONZERO_PATTERN));
-    if (power != o->E) PetscCall(MatDestroy(&power));
-    power = next;
+  PetscCall(MatCreateVecs(d->D, &from, &to));
+  PetscCall(VecGetArrayWrite(from, &y));
+  for (PetscInt i = 0; i < d->n; i++)
+    y[i] = 1 + PetscSqrtReal((PetscReal)(d->first + i + 2)); /* no row takes it to 0 */
+  PetscCall(VecRestoreArrayWrite(from, &y));
+  for (PetscInt k = 0; k <= d->n_lists; k++) {
+    PetscCall(MatMult(d->D, from, to));
+    PetscCall(VecSwap(from, to));
   }
-  PetscCall(MatDestroy(&power));
+  PetscCall(VecNorm(from, NORM_INFINITY, &left));
+  PetscCall(VecDestroy(&from));
+  PetscCall(VecDestroy(&to));
   PetscCheck(
     left == 0, o->comm, PETSC_ERR_USER_INPUT,
     "%s go round in a circle, so that nodes follow themselves: of two surfaces that are tied, let the same one "
@@ -142,8 +146,28 @@ static PetscErrorCode DependentsSum(Operators o, const Dependents *d)
   PetscFunctionReturn(0);
 }
 
+/* Z = E + D E + D^2 E + ... */
+static PetscErrorCode DependentsSum(Operators o, const Dependents *d)
+{
+  Mat       power = o->E, next;
+  PetscReal left  = 1;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatDuplicate(o->E, MAT_COPY_VALUES, &o->Z));
+  while (left > 0) {
+    PetscCall(MatMatMult(d->D, power, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &next));
+    PetscCall(MatProductClear(next));
+    PetscCall(MatNorm(next, NORM_FROBENIUS, &left));
+    if (left > 0) PetscCall(MatAXPY(o->Z, 1, next, DIFFERENT_NONZERO_PATTERN));
+    if (power != o->E) PetscCall(MatDestroy(&power));
+    power = next;
+  }
+  PetscCall(MatDestroy(&power));
+  PetscFunctionReturn(0);
+}
+
 /* In words, who is there */
-static PetscErrorCode DependentsName(Operators o, PetscInt n_sets, const RigidSet set[])
+static PetscErrorCode DependentsName(Operators o, const RigidSet set[])
 {
   const ContactTie *tie;
   PetscInt          n;
@@ -155,7 +179,6 @@ static PetscErrorCode DependentsName(Operators o, PetscInt n_sets, const RigidSe
   else
     PetscCall(PetscSNPrintf(o->dependent, sizeof(o->dependent), "-points that are joined rigidly, by -%s_join rigid,",
                             set[0].point->name));
-  (void)n_sets;
   PetscFunctionReturn(0);
 }
 
@@ -170,13 +193,14 @@ static PetscErrorCode DependentsResolve(Operators o, PetscInt n_sets, const Rigi
   d->n     = mesh->n_own;
   PetscCall(PetscCalloc3(d->n, &d->by, d->n, &d->count, d->n, &d->follows));
   for (PetscInt i = 0; i < d->n; i++) d->by[i] = -1;
-  PetscCall(DependentsName(o, n_sets, set));
+  PetscCall(DependentsName(o, set));
   PetscCall(DependentsAddRows(o, n_sets, set, d));
   PetscCall(DependentsCheck(o, n_sets, set, d));
   PetscCall(DependentsCreate(o, d));
   PetscCall(DependentsAddRows(o, n_sets, set, d));
   PetscCall(MatAssemblyBegin(d->D, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(d->D, MAT_FINAL_ASSEMBLY));
+  PetscCall(DependentsCheckChains(o, d));
   PetscCall(DependentsInject(o, d));
   PetscCall(DependentsSum(o, d));
   PetscCall(MatDestroy(&d->D));
