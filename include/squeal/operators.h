@@ -55,7 +55,7 @@ places (m) where they are not in the middle of the mesh: each parity is solved b
 .  -symmetry_rtol <1e-11>                - by which part of the largest entry of its row a matrix may differ from its mirror image
 .  -contact_mu <mu>                      - friction coefficient of K + mu H for loaded or dense matrices
 -  -operators_save <dir>                 - write K.bin, M.bin and, where there are any, C.bin, H.bin and the loads F.bin;
-                                          with the contact constraint the projected matrices, friction included in
+                                          with the contact constraint, ties or rigid points the projected ones, friction in
                                           K.bin and M.bin
 @*/
 PetscErrorCode OperatorsSetFromOptions(Operators operators);

@@ -6,7 +6,8 @@
    M, K symmetric; C damping, and of parts that spin the skew gyroscopic matrix; H the unsymmetric friction part per unit
    friction coefficient; all are sums of fixed matrices with monomials of the parameters for coefficients. Where an
    interface obeys the exact constraint N u = 0, the pencil is the projection Zl' (.) Zr with N Zr = 0 and (N - mu T) Zl
-   = 0; without constraints Zl = Zr = identity, and nothing is projected.
+   = 0; where displacements follow others (OperatorsGetDependents()), their Z is a factor of both. Without either Zl = Zr =
+   identity, and nothing is projected.
 
    A pencil has a point p of its own, as a PETSc object has its values: matrices that are handed out are formed at p when
    they are asked for, in place where the pattern allows, so that many points cost no new symbolic work. It owns the

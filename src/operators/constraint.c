@@ -8,10 +8,33 @@
 
       Zl = Zr + sum_i mu_i Zl_i,   Zl_i = F_i + G_i E,   F_i: n q1 at a slave,   G_i = -n t' from its master,
 
-   no master being slave of another pair. A becomes Zl' A Zr, and constraint forces drop out: a term c A of all unknowns
-   makes the terms c (Zr' A Zr) and c mu_i (Zl_i' A Zr) of the pencil. Open pairs are no constraints.
+   no master being slave of another pair. Displacements that follow others (dependents.c) are then filled in by P = Z E_d' of
+   these, E and E_d their injection: Zr = P (E + G P E), Zl_i = P (F_i + G_i P E). A becomes Zl' A Zr, and constraint
+   forces drop out: a term c A of all unknowns makes the terms c (Zr' A Zr) and c mu_i (Zl_i' A Zr) of the pencil. Open
+   pairs are no constraints.
 */
 #include "pencilimpl.h"
+
+/* Raises the error for a slave that follows others, of pairs of this rank */
+static PetscErrorCode ConstraintCheckFollowers(Pencil pencil, PetscInt n, const ContactPair **list)
+{
+  const Operators o = pencil->operators;
+  PetscInt        first, follows = 0;
+
+  PetscFunctionBeginUser;
+  if (!o->Z) PetscFunctionReturn(0);
+  PetscCall(MatGetOwnershipRange(o->E, &first, NULL));
+  for (PetscInt p = 0; p < n; p++)
+    for (int d = 0; d < 3; d++)
+      if (o->follows[list[p]->slave[d] - first]) follows = 1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &follows, 1, MPIU_INT, MPI_MAX, pencil->comm));
+  PetscCheck(
+    !follows, pencil->comm, PETSC_ERR_SUP,
+    "the contact constraint cannot eliminate a slave node that follows others, by %s: swap -contact_surfaces or use "
+    "-contact_law penalty",
+    o->dependent);
+  PetscFunctionReturn(0);
+}
 
 /* Eliminated pairs of this rank: closed, by their interface's law; checks that elimination is possible */
 static PetscErrorCode ConstrainedPairs(Pencil pencil, PetscInt *n, const ContactPair ***list,
@@ -36,6 +59,35 @@ static PetscErrorCode ConstrainedPairs(Pencil pencil, PetscInt *n, const Contact
   PetscCheck(!held, pencil->comm, PETSC_ERR_SUP,
              "the contact constraint cannot eliminate a slave node that a support holds: swap -contact_surfaces or use "
              "-contact_law penalty");
+  PetscCall(ConstraintCheckFollowers(pencil, *n, *list));
+  PetscFunctionReturn(0);
+}
+
+/* Marks of followers become marks of all that they follow */
+static PetscErrorCode MarksPass(Operators o, Vec marks)
+{
+  const PetscScalar one = 1e6;
+  const PetscInt   *column;
+  PetscScalar      *value;
+  PetscInt          first, last, n;
+  Vec               q;
+
+  PetscFunctionBeginUser;
+  if (!o->Z) PetscFunctionReturn(0);
+  PetscCall(MatCreateVecs(o->Z, &q, NULL));
+  PetscCall(MatGetOwnershipRange(o->Z, &first, &last));
+  PetscCall(VecGetArray(marks, &value));
+  for (PetscInt i = first; i < last; i++) {
+    if (value[i - first] == 0) continue;
+    PetscCall(MatGetRow(o->Z, i, &n, &column, NULL));
+    for (PetscInt k = 0; k < n; k++) PetscCall(VecSetValues(q, 1, &column[k], &one, INSERT_VALUES));
+    PetscCall(MatRestoreRow(o->Z, i, &n, &column, NULL));
+  }
+  PetscCall(VecRestoreArray(marks, &value));
+  PetscCall(VecAssemblyBegin(q));
+  PetscCall(VecAssemblyEnd(q));
+  PetscCall(MatMult(o->E, q, marks));
+  PetscCall(VecDestroy(&q));
   PetscFunctionReturn(0);
 }
 
@@ -61,6 +113,7 @@ static PetscErrorCode ConstraintCheckChains(Pencil pencil, PetscInt n, const Con
   PetscCall(VecAssemblyEnd(slaves));
   PetscCall(VecAssemblyBegin(masters));
   PetscCall(VecAssemblyEnd(masters));
+  PetscCall(MarksPass(pencil->operators, masters));
   PetscCall(VecPointwiseMult(masters, masters, slaves));
   PetscCall(VecAXPY(masters, 1, slaves));
   PetscCall(VecGetLocalSize(masters, &n_local));
@@ -72,8 +125,9 @@ static PetscErrorCode ConstraintCheckChains(Pencil pencil, PetscInt n, const Con
   PetscCall(VecDestroy(&masters));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &chain, 1, MPIU_INT, MPI_MAX, pencil->comm));
   PetscCheck(!chain, pencil->comm, PETSC_ERR_SUP,
-             "a node belongs to two constrained contact pairs; the constraint needs interfaces without common nodes: "
-             "use -contact_law penalty");
+             "a node belongs to two constrained contact pairs; the constraint needs interfaces without common nodes%s: "
+             "use -contact_law penalty",
+             pencil->operators->Z ? ", by way of nodes that follow others too" : "");
   PetscFunctionReturn(0);
 }
 
@@ -81,14 +135,19 @@ static PetscErrorCode ConstraintCheckChains(Pencil pencil, PetscInt n, const Con
    of the interface */
 static PetscErrorCode InjectionCreate(Pencil pencil, PetscInt n, const ContactPair **list, PetscInt interface, Mat *E)
 {
-  PetscInt n_local, first, last, column, *is_slave;
+  const Operators o = pencil->operators;
+  PetscInt        n_local, first, last, column, n_follow = 0;
+  PetscBool      *is_slave; /* or follows others */
 
   PetscFunctionBeginUser;
   PetscCall(MatGetOwnershipRange(pencil->base.term[0].A, &first, &last));
   n_local = last - first;
-  PetscCall(MatCreateAIJ(pencil->comm, n_local, n_local - n, PETSC_DETERMINE, PETSC_DETERMINE, 2, NULL, 0, NULL, E));
-  PetscCall(MatGetOwnershipRangeColumn(*E, &column, NULL));
   PetscCall(PetscCalloc1(n_local, &is_slave));
+  if (o->Z) PetscCall(PetscArraycpy(is_slave, o->follows, n_local));
+  for (PetscInt i = 0; i < n_local; i++) n_follow += is_slave[i];
+  PetscCall(
+    MatCreateAIJ(pencil->comm, n_local, n_local - n - n_follow, PETSC_DETERMINE, PETSC_DETERMINE, 2, NULL, 0, NULL, E));
+  PetscCall(MatGetOwnershipRangeColumn(*E, &column, NULL));
   for (PetscInt p = 0; p < n; p++, column += 2) {
     const ContactPair *pair = list[p];
 
@@ -96,7 +155,7 @@ static PetscErrorCode InjectionCreate(Pencil pencil, PetscInt n, const ContactPa
       const PetscScalar values[2]  = {interface < 0 ? pair->t[d] : pair->n[d], pair->b[d]};
       const PetscInt    columns[2] = {column, column + 1}, n_columns = interface < 0 ? 2 : 1;
 
-      is_slave[pair->slave[d] - first] = 1;
+      is_slave[pair->slave[d] - first] = PETSC_TRUE;
       if (interface >= 0 && pair->interface != interface) continue;
       PetscCall(MatSetValues(*E, 1, &pair->slave[d], n_columns, columns, values, INSERT_VALUES));
     }
@@ -136,18 +195,40 @@ static PetscErrorCode CouplingCreate(Pencil pencil, PetscInt n, const ContactPai
   PetscFunctionReturn(0);
 }
 
-/* Zr = E + G E (interface < 0), or Zl_i = F_i + G_i E */
+/* P X, where followers have what they follow; X itself without any */
+static PetscErrorCode NullSpaceFill(Operators o, Mat X, Mat *filled)
+{
+  Mat q;
+
+  PetscFunctionBeginUser;
+  if (!o->Z) {
+    PetscCall(PetscObjectReference((PetscObject)X));
+    *filled = X;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(MatTransposeMatMult(o->E, X, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &q));
+  PetscCall(MatMatMult(o->Z, q, MAT_INITIAL_MATRIX, PETSC_DEFAULT, filled));
+  PetscCall(MatProductClear(*filled));
+  PetscCall(MatDestroy(&q));
+  PetscFunctionReturn(0);
+}
+
+/* Zr = P (E + G P E) (interface < 0), or Zl_i = P (F_i + G_i P E) */
 static PetscErrorCode NullSpaceCreate(Pencil pencil, PetscInt n, const ContactPair **list, PetscInt interface, Mat *Z)
 {
-  Mat F = pencil->E, G;
+  Mat F = pencil->E, G, PE, sum;
 
   PetscFunctionBeginUser;
   if (interface >= 0) PetscCall(InjectionCreate(pencil, n, list, interface, &F));
   PetscCall(CouplingCreate(pencil, n, list, interface, &G));
-  PetscCall(MatMatMult(G, pencil->E, MAT_INITIAL_MATRIX, PETSC_DEFAULT, Z));
-  PetscCall(MatProductClear(*Z));
-  PetscCall(MatAXPY(*Z, 1, F, DIFFERENT_NONZERO_PATTERN));
+  PetscCall(NullSpaceFill(pencil->operators, pencil->E, &PE));
+  PetscCall(MatMatMult(G, PE, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &sum));
+  PetscCall(MatProductClear(sum));
+  PetscCall(MatAXPY(sum, 1, F, DIFFERENT_NONZERO_PATTERN));
+  PetscCall(NullSpaceFill(pencil->operators, sum, Z));
   if (interface >= 0) PetscCall(MatDestroy(&F));
+  PetscCall(MatDestroy(&PE));
+  PetscCall(MatDestroy(&sum));
   PetscCall(MatDestroy(&G));
   PetscFunctionReturn(0);
 }

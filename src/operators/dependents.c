@@ -191,7 +191,9 @@ static PetscErrorCode DependentsResolve(Operators o, PetscInt n_sets, const Rigi
   PetscCall(ModelGetMesh(o->model, &mesh));
   d->first = mesh->first_own;
   d->n     = mesh->n_own;
-  PetscCall(PetscCalloc3(d->n, &d->by, d->n, &d->count, d->n, &d->follows));
+  PetscCall(PetscCalloc1(d->n, &o->follows));
+  d->follows = o->follows;
+  PetscCall(PetscCalloc2(d->n, &d->by, d->n, &d->count));
   for (PetscInt i = 0; i < d->n; i++) d->by[i] = -1;
   PetscCall(DependentsName(o, set));
   PetscCall(DependentsAddRows(o, n_sets, set, d));
@@ -204,7 +206,7 @@ static PetscErrorCode DependentsResolve(Operators o, PetscInt n_sets, const Rigi
   PetscCall(DependentsInject(o, d));
   PetscCall(DependentsSum(o, d));
   PetscCall(MatDestroy(&d->D));
-  PetscCall(PetscFree3(d->by, d->count, d->follows));
+  PetscCall(PetscFree2(d->by, d->count));
   PetscFunctionReturn(0);
 }
 
@@ -266,9 +268,7 @@ PetscErrorCode PencilTakeDependents(Pencil pencil)
   const Operators o = pencil->operators;
 
   PetscFunctionBeginUser;
-  if (!o->Z) PetscFunctionReturn(0);
-  PetscCheck(!pencil->Zr, pencil->comm, PETSC_ERR_SUP,
-             "%s are not supported with -contact_law constraint: use -contact_law penalty", o->dependent);
+  if (!o->Z || pencil->Zr) PetscFunctionReturn(0);
   PetscCall(PetscObjectReference((PetscObject)o->Z));
   PetscCall(PetscObjectReference((PetscObject)o->E));
   pencil->Zr = o->Z;

@@ -8,7 +8,7 @@ typedef struct {
   PetscInt   first, n, n_lists; /* unknowns of this rank; points that are joined rigidly, then ties */
   PetscInt  *by;                /* [n] the one that claims an unknown, -1 for none */
   PetscInt  *count;             /* [n] entries of its row */
-  PetscBool *follows;           /* [n] */
+  PetscBool *follows;           /* [n] which do; the operators keep it */
   PetscInt   conflict;          /* two that claim the same one, a n_lists + b; -1 for none */
   Mat        D;
 } Dependents;

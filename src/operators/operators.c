@@ -275,6 +275,7 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   PetscCall(PetscFree(o->joint));
   PetscCall(MatDestroy(&o->Z));
   PetscCall(MatDestroy(&o->E));
+  PetscCall(PetscFree(o->follows));
   for (int i = 0; i < OPERATORS_MAX_PLANES; i++) PetscCall(MatDestroy(&o->mirror[i]));
   PetscCall(MatDestroy(&o->even));
   PetscCall(PetscFree(o->mu));

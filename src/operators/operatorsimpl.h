@@ -61,6 +61,7 @@ struct _p_Operators {
   Terms                terms;            /* of the bodies, in all unknowns; with loaded matrices friction too */
   PetscBool            symmetric;        /* K, M and C are symmetric without friction; always true for a model */
   Mat                  Z, E;             /* u = Z q, q = E'u where some displacements follow others; else NULL */
+  PetscBool           *follows;          /* [unknowns of this rank] which ones do */
   char                 dependent[160];   /* the option that makes them follow */
   Mat                  mirror[OPERATORS_MAX_PLANES]; /* R of each plane in all unknowns, made when asked for */
   Mat                  even;                         /* S of the vectors that are even in all planes, likewise */
