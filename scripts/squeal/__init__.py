@@ -2,7 +2,39 @@
 says what it holds."""
 
 import os
+import signal
+import sys
 
 # Before numpy and matplotlib are read: one BLAS thread, as squeal itself has it; pictures go to files, not to a screen
 os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
 os.environ["MPLBACKEND"] = "Agg"
+
+STOPPED = 130  # exit status after ^C, as of a shell
+
+
+def say_stopped():
+    """The line of ^C where the script does not say more."""
+    print(f"{os.path.basename(sys.argv[0])}: stopped", file=sys.stderr, flush=True)
+
+
+def interrupt(number, frame):
+    """^C while a module is read ends the script at once, since numpy makes another error of it; else as ever."""
+    while frame:
+        if frame.f_code.co_filename.startswith("<frozen importlib"):
+            say_stopped()
+            os._exit(STOPPED)
+        frame = frame.f_back
+    raise KeyboardInterrupt
+
+
+def end_uncaught(kind, error, trace):
+    """^C that the script itself does not look for, as before its work: one line."""
+    if issubclass(kind, KeyboardInterrupt):
+        say_stopped()
+        sys.exit(STOPPED)
+    sys.__excepthook__(kind, error, trace)
+
+
+sys.excepthook = end_uncaught
+if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # not where nohup or & ignores it
+    signal.signal(signal.SIGINT, interrupt)

@@ -7,7 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from .tables import STOPPED, BadInput
+from . import STOPPED
+from .tables import BadInput
 
 ROOT = Path(__file__).resolve().parents[2]
 

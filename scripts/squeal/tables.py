@@ -6,8 +6,7 @@ import math
 import os
 import sys
 
-
-STOPPED = 130  # exit status after ^C, as of a shell
+from . import STOPPED
 
 
 class BadInput(Exception):

@@ -8,15 +8,18 @@ import contextlib
 import csv
 import io
 import math
+import os
+import signal
+import subprocess
 import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy
-from drawing import drawn, fails, require, script
-from squeal import identify  # found by drawing
+from drawing import SCRIPTS, drawn, fails, require, script
+from squeal import STOPPED, identify  # found by drawing
 from squeal.frf_tables import Responses
-from squeal.tables import STOPPED, run, whole
+from squeal.tables import run, whole
 
 STEP, BLOW, MOMENTUM = 1.6e-5, 1.205e-3, -2e-6  # s, s, N s
 RADII, COUNT = {"rim": 0.12, "inner": 0.08}, 16
@@ -196,6 +199,17 @@ def test_whole(root):
     require(status == STOPPED == 130 and said.getvalue() == "response: stopped\n", f"^C: {status} {said.getvalue()!r}")
 
 
+def test_early_stop(root):
+    """^C while numpy is read, which makes an error of its own of it, ends a script with one line."""
+    (root / "early").mkdir()
+    (root / "early/numpy.py").write_text("import os, signal\ntry:\n    os.kill(os.getpid(), signal.SIGINT)\n"
+                                         "except KeyboardInterrupt:\n    raise ImportError from None\n")
+    ended = subprocess.run([SCRIPTS / "response", root], env=os.environ | {"PYTHONPATH": str(root / "early")},
+                           preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler), text=True,
+                           capture_output=True, check=False)
+    require((ended.returncode, ended.stderr) == (STOPPED, "response: stopped\n"), f"early ^C: {ended}")
+
+
 def test_picture(root):
     """plot/frf draws it: the largest outputs of many."""
     drawn("plot/frf", root / "long")
@@ -233,7 +247,7 @@ def test_bad(root):
 def main():
     """All tests, in folders of one root."""
     with tempfile.TemporaryDirectory() as folder:
-        for test in (test_windows, test_rest, test_decay, test_opened, test_whole, test_picture, test_bad):
+        for test in (test_windows, test_rest, test_decay, test_opened, test_whole, test_early_stop, test_picture, test_bad):
             test(Path(folder))
             print(f"ok     {test.__doc__.splitlines()[0]}", flush=True)
 
