@@ -192,8 +192,9 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
     d->history, &(HistorySource){d->model, d->layout, d->projector, d->n_interfaces, d->interfaces, results}, end, dt));
   PetscCall(TSSetUp(d->ts));
   PetscCall(DynamicsSetFilters(d));
-  PetscCall(d->restart ? DynamicsGoOn(d) : DynamicsStartState(d));
-  PetscCall(ExternalCheckLate(d->external, end, dt, PETSC_TRUE));
+  if (d->restart) PetscCall(DynamicsGoOn(d));
+  PetscCall(ExternalCheckLate(d->external, end, dt, LATE_ALL));
+  if (!d->restart) PetscCall(DynamicsStartState(d));
   if (!d->restart) PetscCall(DynamicsForget(d));
   if (d->restart) PetscCall(ResultsKeep(results, CHECKPOINT_FILE));
   if (d->shape[0]) PetscCall(ResultsKeepFolder(results, d->shape));

@@ -39,8 +39,7 @@ PetscErrorCode MapMarchCreate(Map map, MapBodies *bodies, PetscReal dt, PetscRea
   w->map    = map;
   w->bodies = bodies;
   w->dt     = dt;
-  w->n = (PetscInt)(map->window / map->dt + 0.5) * (PetscInt)(map->dt / dt + 0.5); /* windows alike with any step */
-  w->n_most = (PetscInt)(map->end / ((PetscReal)w->n * dt) + 1e-9);
+  MapCountWindows(map, dt, &w->n, &w->n_most);
   PetscCall(ReducedStateCreate(model, &w->state));
   PetscCall(ReducedStateCreate(model, &w->rest));
   PetscCall(ReducedReportCreate(model, &w->report));

@@ -83,9 +83,15 @@ PetscErrorCode MapCheckPrepared(Map map)
   PetscFunctionReturn(0);
 }
 
+void MapCountWindows(Map map, PetscReal dt, PetscInt *n_steps, PetscInt *n_windows)
+{
+  *n_steps   = (PetscInt)(map->window / map->dt + 0.5) * (PetscInt)(map->dt / dt + 0.5);
+  *n_windows = (PetscInt)(map->end / ((PetscReal)*n_steps * dt) + 1e-9);
+}
+
 PetscErrorCode MapCheckTimes(Map map)
 {
-  const PetscReal window = map->dt * PetscFloorReal(map->window / map->dt + 0.5);
+  PetscInt n_steps, n_windows;
 
   PetscFunctionBeginUser;
   PetscCheck(map->window >= 32 * map->dt && map->end >= 8 * map->window, map->comm, PETSC_ERR_USER_INPUT,
@@ -94,6 +100,7 @@ PetscErrorCode MapCheckTimes(Map map)
   PetscCheck(map->end <= MAP_MAX_STEPS * map->dt, map->comm, PETSC_ERR_USER_INPUT,
              "-ts_max_time %.6g s is %.3g steps of %.6g s; a point of a map takes at most %.0e", (double)map->end,
              (double)(map->end / map->dt), (double)map->dt, MAP_MAX_STEPS);
-  PetscCall(ReducedRefuseLate(map->reduced, window * PetscFloorReal(map->end / window + 1e-9), PETSC_FALSE));
+  MapCountWindows(map, map->dt, &n_steps, &n_windows);
+  PetscCall(ReducedRefuseLate(map->reduced, (PetscReal)n_windows * (PetscReal)n_steps * map->dt));
   PetscFunctionReturn(0);
 }

@@ -123,6 +123,10 @@ PETSC_INTERN PetscErrorCode MapCheck(Map map);
 PETSC_INTERN PetscErrorCode MapCheckPrepared(Map map);
 PETSC_INTERN PetscErrorCode MapCheckTimes(Map map);
 
+/* mapcheck.c - steps dt (s) of a window, which lasts as long with any dt that divides the map's step, and windows of a point at
+   most. Not collective. */
+PETSC_INTERN void MapCountWindows(Map map, PetscReal dt, PetscInt *n_steps, PetscInt *n_windows);
+
 /* mapmodes.c - pure: of n eigenvalues (rad/s) the fastest mode; into the row those that grow, fastest first */
 PETSC_INTERN void MapModesJudge(PetscInt n, const PetscReal sigma[], const PetscReal omega[], MapFastest *fastest);
 PETSC_INTERN void MapModesTake(PetscInt n, const PetscReal sigma[], const PetscReal omega[], MapPoint *row);

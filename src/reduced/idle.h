@@ -10,8 +10,8 @@
    message. Collective. */
 PETSC_INTERN PetscErrorCode ReducedRefuseIdle(MPI_Comm comm, Operators operators, const char why[]);
 
-/* ReducedRefuseLate - ExternalCheckLate() for a run to `end`, s. Collective. */
-PETSC_INTERN PetscErrorCode ReducedRefuseLate(ReducedRun reduced, PetscReal end, PetscBool goes_on);
+/* ReducedRefuseLate - impulses that are not before the last step of runs to `end` (s), which nothing goes on from. Collective. */
+PETSC_INTERN PetscErrorCode ReducedRefuseLate(ReducedRun reduced, PetscReal end);
 
 /* ReducedRefuseImpulses - -impulses, and what the command line says of each. Collective, after ReducedPrepare(). */
 PETSC_INTERN PetscErrorCode ReducedRefuseImpulses(ReducedRun reduced, const char why[]);

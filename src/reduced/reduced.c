@@ -179,6 +179,7 @@ static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
 
   PetscFunctionBeginUser;
   PetscCall(ReducedPrepare(r, results));
+  if (!r->run.restart) PetscCall(ExternalCheckLate(r->run.external, r->run.end, r->dt, LATE_COMMAND));
   PetscCheck(!r->verify || !r->run.restart, r->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_verify compares whole runs: leave it out of -dynamics_restart, or start anew");
   PetscCall(ReducedWeigh(r, r->compare));
@@ -191,14 +192,13 @@ static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
     r->dt));
   PetscCall(HistoryHasFields(r->run.history, &fields));
   if (!fields) PetscCall(ShiftInvertDestroy(&r->inverse));
-  if (r->run.restart) {
-    PetscCall(ReducedGoOn(r));
-  } else {
+  if (r->run.restart) PetscCall(ReducedGoOn(r));
+  PetscCall(ExternalCheckLate(r->run.external, r->run.end, r->dt, LATE_ALL));
+  if (!r->run.restart) {
     PetscCall(ReducedStart(r));
     PetscCall(ReducedStepperCreate(&r->model, r->dt, REDUCED_RTOL, &r->stepper));
     PetscCall(DynamicsForget(r->dynamics));
   }
-  PetscCall(ReducedRefuseLate(r, r->run.end, PETSC_TRUE));
   ReducedSetShown(r, PETSC_TRUE);
   PetscCall(ReducedTakePairs(r, PETSC_FALSE));
   PetscFunctionReturn(0);

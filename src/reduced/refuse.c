@@ -63,10 +63,10 @@ PetscErrorCode ReducedRefuseIdle(MPI_Comm comm, Operators operators, const char 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ReducedRefuseLate(ReducedRun r, PetscReal end, PetscBool goes_on)
+PetscErrorCode ReducedRefuseLate(ReducedRun r, PetscReal end)
 {
   PetscFunctionBeginUser;
-  PetscCall(ExternalCheckLate(r->run.external, end, r->dt, goes_on));
+  PetscCall(ExternalCheckLate(r->run.external, end, r->dt, LATE_NEVER));
   PetscFunctionReturn(0);
 }
 

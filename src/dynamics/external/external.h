@@ -93,10 +93,16 @@ typedef struct {
   PetscReal   x[3], impulse[3], time;
 } ExternalHit;
 
+/* Who is told of what comes when the run is over */
+typedef enum {
+  LATE_COMMAND, /* the command line, by an error */
+  LATE_ALL,     /* files too, by a warning */
+  LATE_NEVER    /* both, by an error: no restart goes on. Impulses alone */
+} LateJudge;
+
 /* ExternalCheckLate - impulses that are not before the last step of a run of steps dt to `end` (s), in which they act as a whole, and
-   loads and motions that do not begin before the end: an error where the command line says so, else a warning. Where no restart goes
-   on, impulses alone, an error. Collective. */
-PETSC_INTERN PetscErrorCode ExternalCheckLate(External external, PetscReal end, PetscReal dt, PetscBool goes_on);
+   loads and motions that do not begin before the end. Collective. */
+PETSC_INTERN PetscErrorCode ExternalCheckLate(External external, PetscReal end, PetscReal dt, LateJudge judge);
 
 /* ExternalIsHitting - whether an impulse acts in the step that ExternalAdvance() began. Not collective. */
 PETSC_INTERN PetscBool ExternalIsHitting(External external);

@@ -1,6 +1,7 @@
 /*
    What the scene prescribes for a time when the run is over. A restart may go on until it comes, so that for what a file
-   says there is a warning. It is an error where the command line says it, or where nothing can go on.
+   says there is a warning, after what a restart refuses. It is an error where the command line says it, before anything is solved,
+   or where nothing can go on.
 */
 #include "externalimpl.h"
 #include <squeal/options.h>
@@ -11,7 +12,7 @@ typedef struct {
   PetscReal   time, last;
 } Late;
 
-static PetscErrorCode LateCheck(External external, PetscBool goes_on, const Late *late)
+static PetscErrorCode LateCheck(External external, LateJudge judge, const Late *late)
 {
   char why[200];
 
@@ -20,9 +21,10 @@ static PetscErrorCode LateCheck(External external, PetscBool goes_on, const Late
   PetscCall(PetscSNPrintf(why, sizeof(why),
                           "must be before %.6g s, when %s: take an earlier one, or a longer -ts_max_time",
                           (double)late->last, late->why));
-  PetscCheck(goes_on, external->comm, PETSC_ERR_USER_INPUT, "-%s_%s %.6g: %s", late->name, late->option,
+  PetscCheck(judge != LATE_NEVER, external->comm, PETSC_ERR_USER_INPUT, "-%s_%s %.6g: %s", late->name, late->option,
              (double)late->time, why);
   PetscCall(OptionsRefuseOf(external->comm, late->name, late->option, why));
+  if (judge == LATE_COMMAND) PetscFunctionReturn(0);
   PetscCall(PetscFPrintf(external->comm, stderr,
                          "squeal: warning: %s at %.6g s is not before %.6g s, when %s: it comes when the run goes on "
                          "(-dynamics_restart)\n",
@@ -30,7 +32,7 @@ static PetscErrorCode LateCheck(External external, PetscBool goes_on, const Late
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ExternalCheckLate(External external, PetscReal end, PetscReal dt, PetscBool goes_on)
+PetscErrorCode ExternalCheckLate(External external, PetscReal end, PetscReal dt, LateJudge judge)
 {
   const PetscReal last = dt * (PetscCeilReal(end / dt * (1 - 1e-12)) - 1);
   Late            step = {.option = "time", .why = "the last step of the run begins", .last = last};
@@ -40,18 +42,18 @@ PetscErrorCode ExternalCheckLate(External external, PetscReal end, PetscReal dt,
   for (PetscInt i = 0; i < external->n_impulses; i++) {
     step.name = external->impulses[i].name;
     step.time = external->impulses[i].time;
-    PetscCall(LateCheck(external, goes_on, &step));
+    PetscCall(LateCheck(external, judge, &step));
   }
-  if (!goes_on) PetscFunctionReturn(0); /* maps know no delays */
+  if (judge == LATE_NEVER) PetscFunctionReturn(0); /* maps know no delays */
   for (PetscInt i = 0; i < external->n_loads; i++) {
     ramp.name = external->loads[i].name;
     ramp.time = external->loads[i].ramp.delay;
-    PetscCall(LateCheck(external, goes_on, &ramp));
+    PetscCall(LateCheck(external, judge, &ramp));
   }
   for (PetscInt i = 0; i < external->n_motions; i++) {
     ramp.name = external->motions[i].prescribed->name;
     ramp.time = external->motions[i].ramp.delay;
-    PetscCall(LateCheck(external, goes_on, &ramp));
+    PetscCall(LateCheck(external, judge, &ramp));
   }
   PetscFunctionReturn(0);
 }
