@@ -142,33 +142,6 @@ PetscErrorCode ReducedStepperSetDamping(ReducedStepper s)
   PetscFunctionReturn(0);
 }
 
-/* dy / dlambda of the pairs: with D = W - Cm' F P' / dt, (P'F P + D'H D) / 2; undamped W + P'F P / 2 */
-static PetscErrorCode StepperSetCompliance(ReducedStepper s)
-{
-  const ReducedModel *model = s->model;
-  const PetscInt      m = model->m, n = 3 * model->n_pairs;
-  PetscReal          *FP, *PFP, *D, *HD;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(m * n, &FP, n * n, &PFP, n * n, &D, n * n, &HD));
-  ReducedTimes(&(DenseBlock){s->F, m, m, 2 * m}, &(DenseBlock){model->P, m, n, m}, FP);
-  ReducedTimesTransposed(&(DenseBlock){model->P, m, n, m}, &(DenseBlock){FP, m, n, m}, PFP);
-  for (PetscInt j = 0; j < n; j++)
-    for (PetscInt i = 0; i < n; i++) s->W[i + n * j] = 2 * model->W[i + model->n_ports * j];
-  if (s->HW) {
-    ReducedTimes(&(DenseBlock){s->HC, n, m, n}, &(DenseBlock){FP, m, n, m}, HD);
-    for (PetscInt i = 0; i < n * n; i++) HD[i] = s->HW[i] - HD[i] / s->dt;
-    ReducedTimesTransposed(&(DenseBlock){model->Cm, m, n, m}, &(DenseBlock){FP, m, n, m}, D);
-    for (PetscInt i = 0; i < n * n; i++) D[i] = 0.5 * s->W[i] - D[i] / s->dt;
-    ReducedTimesTransposed(&(DenseBlock){D, n, n, n}, &(DenseBlock){HD, n, n, n}, s->W);
-  }
-  for (PetscInt j = 0; j < n; j++)
-    for (PetscInt i = 0; i <= j; i++)
-      s->W[i + n * j] = s->W[j + n * i] = 0.25 * (s->W[i + n * j] + s->W[j + n * i] + PFP[i + n * j] + PFP[j + n * i]);
-  PetscCall(PetscFree4(FP, PFP, D, HD));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ReducedStepperTakeFriction(ReducedStepper s)
 {
   const ReducedModel *model = s->model;
@@ -180,25 +153,61 @@ PetscErrorCode ReducedStepperTakeFriction(ReducedStepper s)
   PetscFunctionReturn(0);
 }
 
-/* R = HD / 2 and G = (F P - F Cm HD / dt) / 2 of unit forces at t_{n+1}, with D as above; undamped G = F P / 2 */
+/* G = F P / 2 of unit forces at t_{n+1}; damped R = H D / 2 = (H W - H Cm' F P / dt) / 2 */
 static PetscErrorCode StepperSetForces(ReducedStepper s)
 {
   const ReducedModel *model = s->model;
   const PetscInt      m = model->m, n = 3 * model->n_pairs;
-  const DenseBlock    F = {s->F, 2 * m, m, 2 * m};
-  PetscReal          *drag, *FD;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * m * n, &s->G));
-  ReducedTimes(&F, &(DenseBlock){model->P, m, n, m}, s->G);
+  ReducedTimes(&(DenseBlock){s->F, 2 * m, m, 2 * m}, &(DenseBlock){model->P, m, n, m}, s->G);
   for (PetscInt i = 0; i < 2 * m * n; i++) s->G[i] *= 0.5;
   if (!s->HW) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(n * n, &s->R));
-  PetscCall(PetscMalloc2(m * n, &drag, 2 * m * n, &FD));
   ReducedTimes(&(DenseBlock){s->HC, n, m, n}, &(DenseBlock){s->G, m, n, 2 * m}, s->R);
   for (PetscInt i = 0; i < n * n; i++) s->R[i] = 0.5 * s->HW[i] - s->R[i] / s->dt;
+  PetscFunctionReturn(0);
+}
+
+/* dy / dlambda of the pairs: with D = W - Cm' F P' / dt, (P'F P + D'H D) / 2; undamped W + P'F P / 2. G and R hold F P / 2
+   and H D / 2 */
+static PetscErrorCode StepperSetCompliance(ReducedStepper s)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * model->n_pairs;
+  const DenseBlock    half = {s->G, m, n, 2 * m};
+  PetscReal          *PFP, *D;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n * n, &PFP, n * n, &D));
+  ReducedTimesTransposed(&(DenseBlock){model->P, m, n, m}, &half, PFP);
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) s->W[i + n * j] = model->W[i + model->n_ports * j];
+  if (s->R) {
+    ReducedTimesTransposed(&(DenseBlock){model->Cm, m, n, m}, &half, D);
+    for (PetscInt i = 0; i < n * n; i++) D[i] = s->W[i] - 2 * D[i] / s->dt;
+    ReducedTimesTransposed(&(DenseBlock){D, n, n, n}, &(DenseBlock){s->R, n, n, n}, s->W);
+  }
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i <= j; i++)
+      s->W[i + n * j] = s->W[j + n * i] = 0.5 * (s->W[i + n * j] + s->W[j + n * i] + PFP[i + n * j] + PFP[j + n * i]);
+  PetscCall(PetscFree2(PFP, D));
+  PetscFunctionReturn(0);
+}
+
+/* G -= F Cm R / dt: forces on the modes of what R drags */
+static PetscErrorCode StepperAddDrag(ReducedStepper s)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * model->n_pairs;
+  PetscReal          *drag, *FD;
+
+  PetscFunctionBeginUser;
+  if (!s->R) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(m * n, &drag, 2 * m * n, &FD));
   ReducedTimes(&(DenseBlock){model->Cm, m, n, m}, &(DenseBlock){s->R, n, n, n}, drag);
-  ReducedTimes(&F, &(DenseBlock){drag, m, n, m}, FD);
+  ReducedTimes(&(DenseBlock){s->F, 2 * m, m, 2 * m}, &(DenseBlock){drag, m, n, m}, FD);
   for (PetscInt i = 0; i < 2 * m * n; i++) s->G[i] -= FD[i] / s->dt;
   PetscCall(PetscFree2(drag, FD));
   PetscFunctionReturn(0);
@@ -241,8 +250,9 @@ PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, Pet
   PetscCall(PetscCalloc3(n, &s->q, n, &s->dq, n, &s->slip));
   PetscCall(StepperSetResponse(s));
   PetscCall(ReducedStepperSetResidual(s));
-  PetscCall(StepperSetCompliance(s));
   PetscCall(StepperSetForces(s));
+  PetscCall(StepperSetCompliance(s));
+  PetscCall(StepperAddDrag(s));
   PetscCall(StepperSetLaws(s));
   PetscFunctionReturn(0);
 }
