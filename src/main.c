@@ -20,6 +20,7 @@ static PetscErrorCode Run(MPI_Comm comm)
 
   PetscFunctionBeginUser;
   PetscCall(ChainCreate(comm, &chain));
+  PetscCall(OptionsDropUnlisted(comm));
   PetscCall(OptionsCheckUnknown(comm, ReadAgain, NULL));
   PetscCall(OptionsCheckValues(comm));
   PetscCall(ChainCheckOptions(comm, &chain));

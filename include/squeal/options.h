@@ -51,6 +51,13 @@ typedef struct {
 PetscErrorCode OptionsReadList(MPI_Comm comm, const OptionsList *list, void *owner, PetscInt *n, void *records);
 
 /*@
+   OptionsDropUnlisted - a list on the command line, or in a later options file, stands in place of one in a file. What
+   files say of a name that is then in no list is taken out, with a warning; it is an error where the command line says it.
+   Collective; when every room has read its options.
+@*/
+PetscErrorCode OptionsDropUnlisted(MPI_Comm comm);
+
+/*@
    OptionsGetReals - reads an array of exactly n numbers between PetscOptionsBegin() and PetscOptionsEnd(). Collective.
 
    Input Parameters:

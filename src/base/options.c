@@ -11,6 +11,10 @@
 #define MAX_RECORDS 64   /* names in one list of the scene */
 #define MAX_LIST    4096 /* characters of a list of names */
 
+/* All lists of a scene */
+static const char *const lists[] = {"-parts",   "-supports", "-springs", "-dashpots", "-loads",  "-contacts", "-probes",
+                                    "-motions", "-impulses", "-circles", "-joints",   "-points", "-terms",    "-ties"};
+
 /* Whether a name can be a prefix: a letter, then letters, digits and underscores */
 static PetscBool NameIsIdentifier(const char name[])
 {
@@ -53,11 +57,8 @@ static PetscErrorCode GivenText(const char option[], size_t size, char text[])
 /* Raises an error for a name that the program's own options begin with, or that another list of the scene has too */
 static PetscErrorCode NameCheckFree(MPI_Comm comm, const char option[], const char name[])
 {
-  static const char *const own[]   = {"dynamics",  "frf", "model",  "modes",  "operators", "output",
-                                      "projector", "rig", "squeal", "static", "statics",   "sweep"};
-  static const char *const lists[] = {"-parts",    "-supports", "-springs", "-dashpots", "-loads",
-                                      "-contacts", "-probes",   "-motions", "-impulses", "-circles",
-                                      "-joints",   "-points",   "-terms",   "-ties"};
+  static const char *const own[] = {"dynamics",  "frf", "model",  "modes",  "operators", "output",
+                                    "projector", "rig", "squeal", "static", "statics",   "sweep"};
   char                     list[MAX_LIST];
   PetscBool                taken = PETSC_FALSE;
 
@@ -126,6 +127,87 @@ PetscErrorCode OptionsReadList(MPI_Comm comm, const OptionsList *list, void *own
     PetscCall(list->read(PetscOptionsObject, owner, record));
     PetscOptionsEnd();
   }
+  PetscFunctionReturn(0);
+}
+
+/* The names that options files give to each list, one after another */
+static PetscErrorCode FilesGetLists(MPI_Comm comm, char listed[][MAX_LIST])
+{
+  char **word, names[MAX_LIST];
+  int    n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscGetArgs(&n, &word));
+  for (int i = 1; i + 1 < n; i++) {
+    PetscOptions file;
+    PetscBool    given;
+
+    if (strncasecmp(word[i], "-options_file", 13)) continue;
+    PetscCall(PetscOptionsCreate(&file));
+    PetscCall(PetscOptionsInsertFile(comm, file, word[i + 1], PETSC_TRUE));
+    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(lists); k++) {
+      PetscCall(PetscOptionsGetString(file, NULL, lists[k], names, sizeof(names), &given));
+      if (given && listed[k][0]) PetscCall(PetscStrlcat(listed[k], ",", MAX_LIST));
+      if (given) PetscCall(PetscStrlcat(listed[k], names, MAX_LIST));
+    }
+    PetscCall(PetscOptionsDestroy(&file));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The first option of a name that nobody has read, with its dash; empty for none */
+static PetscErrorCode UnreadFind(const char name[], char option[MAX_NAME])
+{
+  const size_t length = strlen(name);
+  PetscInt     n;
+  char       **names, **values;
+
+  PetscFunctionBeginUser;
+  option[0] = '\0';
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  for (PetscInt i = 0; i < n && !option[0]; i++)
+    if (!strncasecmp(names[i], name, length) && names[i][length] == '_')
+      PetscCall(PetscSNPrintf(option, MAX_NAME, "-%s", names[i]));
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  PetscFunctionReturn(0);
+}
+
+/* Takes out what options files say of a name that `list` has no more, with a warning; the command line may not say it */
+static PetscErrorCode UnlistedDrop(MPI_Comm comm, const char list[], const char now[], const char name[])
+{
+  char option[MAX_NAME], text[MAX_LIST] = "", why[MAX_LIST];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(why, sizeof(why), "'%s' is not in %s %s, which stands in place of an options file's list",
+                          name, list, now));
+  PetscCall(UnreadFind(name, option));
+  while (option[0]) {
+    PetscCall(OptionsRefuse(comm, option, why));
+    if (text[0]) PetscCall(PetscStrlcat(text, ", ", sizeof(text)));
+    PetscCall(PetscStrlcat(text, option, sizeof(text)));
+    PetscCall(PetscOptionsClearValue(NULL, option));
+    PetscCall(UnreadFind(name, option));
+  }
+  if (text[0]) PetscCall(PetscFPrintf(comm, stderr, "squeal: warning: %s: not used are %s\n", why, text));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsDropUnlisted(MPI_Comm comm)
+{
+  char(*listed)[MAX_LIST], now[MAX_LIST], *name, *rest;
+  PetscInt n_unread;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsAllUsed(NULL, &n_unread));
+  if (!n_unread) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(PETSC_STATIC_ARRAY_LENGTH(lists), &listed));
+  PetscCall(FilesGetLists(comm, listed));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(lists); k++) {
+    PetscCall(GivenText(lists[k], sizeof(now), now));
+    for (name = strtok_r(listed[k], ", ", &rest); name; name = strtok_r(NULL, ", ", &rest))
+      if (!ListHolds(now, name)) PetscCall(UnlistedDrop(comm, lists[k], now, name));
+  }
+  PetscCall(PetscFree(listed));
   PetscFunctionReturn(0);
 }
 
