@@ -23,6 +23,23 @@ static PetscErrorCode ScopeNeedsStatics(const Scope *s, PetscBool *needs)
   PetscFunctionReturn(0);
 }
 
+/* What an interface reads of sliding that it does not do: of an axis without a rotation; in time of a speed without a direction */
+static PetscErrorCode ScopeCheckSliding(MPI_Comm comm, const Scope *s, const ContactInterface *c)
+{
+  const PetscBool turns = Vec3Dot(c->rotation, c->rotation) > 0 ? PETSC_TRUE : PETSC_FALSE;
+  char            straight[256], still[256];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(straight, sizeof(straight), "not used without -%s_rotation", c->name));
+  PetscCall(PetscSNPrintf(still, sizeof(still), "not used where nothing slides as told: give -%s_slip or -%s_rotation",
+                          c->name, c->name));
+  if (!turns) PetscCall(OptionsRefuseOf(comm, c->name, "center", straight));
+  if (s->transient && !turns && Vec3Dot(c->slip, c->slip) == 0)
+    PetscCall(
+      OptionsRefuseOf(comm, c->name, c->speed > 0 ? "speed ramp ramp_shape delay" : "ramp ramp_shape delay", still));
+  PetscFunctionReturn(0);
+}
+
 /* What an interface reads and this analysis has no use for */
 static PetscErrorCode ScopeCheckContact(MPI_Comm comm, const Scope *s, const ContactInterface *c)
 {
@@ -41,6 +58,7 @@ static PetscErrorCode ScopeCheckContact(MPI_Comm comm, const Scope *s, const Con
   PetscCall(PetscSNPrintf(given, sizeof(given), "not used beside -%s_rotation; give one", c->name));
   if (Vec3Dot(c->rotation, c->rotation) > 0 && Vec3Dot(c->slip, c->slip) > 0)
     PetscCall(OptionsRefuseOf(comm, c->name, "slip", given));
+  PetscCall(ScopeCheckSliding(comm, s, c));
   if (s->transient) {
     if (!constraint) PetscCall(OptionsRefuseOf(comm, c->name, "law", exact));
     PetscCall(OptionsRefuseOf(comm, c->name, "kn kn_per_area kt kt_per_area friction_damping force", exact));
@@ -170,9 +188,9 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
   for (PetscInt i = 0; i < scene->n_parts && !s->modes; i++)
     PetscCall(OptionsRefuseOf(comm, scene->parts[i].name, "spin", s->transient ? turning : unloaded));
   for (PetscInt i = 0; i < scene->n_probes && !s->transient && !s->frf; i++)
-    PetscCall(OptionsRefuseOf(comm, scene->probes[i].name, "at", no_probe));
+    PetscCall(OptionsRefuseOf(comm, scene->probes[i].name, "at part", no_probe));
   for (PetscInt i = 0; i < scene->n_circles && !s->transient && !s->frf; i++)
-    PetscCall(OptionsRefuseOf(comm, scene->circles[i].name, "radius", no_probe));
+    PetscCall(OptionsRefuseOf(comm, scene->circles[i].name, "radius count part face centre tolerance", no_probe));
   for (PetscInt i = 0; i < scene->n_loads && s->modes && !statics; i++)
     PetscCall(OptionsRefuseOf(comm, scene->loads[i].name, "force pressure set point moment", all));
   PetscFunctionReturn(0);
@@ -199,11 +217,16 @@ static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool st
 {
   const ContactInterface *interfaces = NULL;
   PetscInt                n          = 0;
+  PetscBool               identify   = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   if (s->model) PetscCall(ScopeCheckModel(comm, s, statics));
   if (s->contact) PetscCall(ContactGetInterfaces(s->contact, &n, &interfaces));
   for (PetscInt i = 0; i < n; i++) PetscCall(ScopeCheckContact(comm, s, &interfaces[i]));
+  for (PetscInt i = 0; i < n; i++) identify = identify || interfaces[i].identify ? PETSC_TRUE : PETSC_FALSE;
+  if (!identify) PetscCall(OptionsRefuse(comm, "-static_identify_steps", "not used without -..._kn identify"));
+  if (s->sweep || s->transient)
+    PetscCall(OptionsRefuse(comm, "-modes_filters", "written by -analysis modes and frf alone; leave it out"));
   if (s->transient || s->frf)
     PetscCall(OptionsRefuse(comm, "-symmetry", "used by -analysis modes, sweep and static alone; leave it out"));
   if (s->modes && !s->frf) PetscCall(ScopeCheckEigensolver(comm, s)); /* which takes both */

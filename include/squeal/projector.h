@@ -94,6 +94,9 @@ PetscErrorCode ContactProjectorGetTurning(ContactProjector projector, PetscInt i
 PetscErrorCode ContactProjectorGetWay(ContactProjector projector, PetscInt interface, const PetscReal t[2],
                                       PetscReal *way, PetscBool *turning);
 
+/*@ ContactProjectorGetDelay - when the sliding of an interface begins, s; 0 where nothing slides as told. Not collective. @*/
+PetscErrorCode ContactProjectorGetDelay(ContactProjector projector, PetscInt interface, PetscReal *delay);
+
 /*@ ContactProjectorGetNodes - local nodes (from 0) of contact surfaces on this rank, copies included, [n]
     (borrowed). Not collective. @*/
 PetscErrorCode ContactProjectorGetNodes(ContactProjector projector, PetscInt *n, const PetscInt **vertex);

@@ -193,7 +193,7 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscCall(TSSetUp(d->ts));
   PetscCall(DynamicsSetFilters(d));
   if (d->restart) PetscCall(DynamicsGoOn(d));
-  PetscCall(ExternalCheckLate(d->external, end, dt, LATE_ALL));
+  PetscCall(DynamicsCheckTimes(d, end, dt));
   if (!d->restart) PetscCall(DynamicsStartState(d));
   if (!d->restart) PetscCall(DynamicsForget(d));
   if (d->restart) PetscCall(ResultsKeep(results, CHECKPOINT_FILE));

@@ -35,6 +35,10 @@ PETSC_INTERN PetscErrorCode DynamicsGetRun(Dynamics dynamics, Results results, c
    and the run's is 0. Not collective. */
 PETSC_INTERN PetscErrorCode DynamicsSetEndless(Dynamics dynamics);
 
+/* DynamicsCheckTimes - what comes after the end of a run of steps dt, s: ExternalCheckLate(), sliding that begins there, and an
+   interval of checkpoints that is longer than the run, an error of the command line. Collective. */
+PETSC_INTERN PetscErrorCode DynamicsCheckTimes(Dynamics dynamics, PetscReal end, PetscReal dt);
+
 /* DynamicsGetStep - step and end of a run whose caller takes another `dt` where -ts_dt does not say one. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsGetStep(Dynamics dynamics, PetscReal dt, DynamicsRun *run);
 

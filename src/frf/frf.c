@@ -105,6 +105,8 @@ PetscErrorCode FrfSetFromOptions(Frf frf)
   PetscCall(PetscOptionsInt("-frf_max_steps", "most steps of the residual term", "frf.h", frf->max_steps,
                             &frf->max_steps, NULL));
   PetscOptionsEnd();
+  if (method == FRF_DIRECT)
+    PetscCall(OptionsRefuse(frf->comm, "-frf_rtol -frf_max_steps", "not used by -frf_method direct"));
   frf->method   = (FrfMethod)method;
   frf->n_places = MAX_PLACES;
   PetscCall(PetscCalloc1(MAX_PLACES, &frf->place));

@@ -15,9 +15,9 @@ static PetscErrorCode CheckIdle(Map map, const ModelScene *scene)
   PetscCall(ReducedRefuseIdle(map->comm, map->operators, nothing));
   PetscCall(OptionsRefuse(map->comm, "-dynamics_compare -dynamics_growth_rtol", nothing));
   for (PetscInt i = 0; i < scene->n_probes; i++)
-    PetscCall(OptionsRefuseOf(map->comm, scene->probes[i].name, "at", nothing));
+    PetscCall(OptionsRefuseOf(map->comm, scene->probes[i].name, "at part", nothing));
   for (PetscInt i = 0; i < scene->n_circles; i++)
-    PetscCall(OptionsRefuseOf(map->comm, scene->circles[i].name, "radius", nothing));
+    PetscCall(OptionsRefuseOf(map->comm, scene->circles[i].name, "radius count part face centre tolerance", nothing));
   PetscFunctionReturn(0);
 }
 

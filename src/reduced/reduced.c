@@ -193,7 +193,7 @@ static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
   PetscCall(HistoryHasFields(r->run.history, &fields));
   if (!fields) PetscCall(ShiftInvertDestroy(&r->inverse));
   if (r->run.restart) PetscCall(ReducedGoOn(r));
-  PetscCall(ExternalCheckLate(r->run.external, r->run.end, r->dt, LATE_ALL));
+  PetscCall(DynamicsCheckTimes(r->dynamics, r->run.end, r->dt));
   if (!r->run.restart) {
     PetscCall(ReducedStart(r));
     PetscCall(ReducedStepperCreate(&r->model, r->dt, REDUCED_RTOL, &r->stepper));

@@ -81,6 +81,8 @@ static PetscErrorCode ReadMethod(Sweep sweep, OptionsItems PetscOptionsObject)
   sweep->method = (SweepMethod)method;
   if (method != SWEEP_REAL)
     PetscCall(OptionsRefuse(sweep->comm, "-sweep_real_modes", "not used without -sweep_method real"));
+  if (method == SWEEP_FULL)
+    PetscCall(OptionsRefuse(sweep->comm, "-sweep_rtol -sweep_max_samples", "not used by -sweep_method full"));
   PetscFunctionReturn(0);
 }
 

@@ -96,6 +96,13 @@ PetscErrorCode ContactProjectorGetWay(ContactProjector p, PetscInt interface, co
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ContactProjectorGetDelay(ContactProjector p, PetscInt interface, PetscReal *delay)
+{
+  PetscFunctionBeginUser;
+  *delay = p->sliding[interface].slides ? p->sliding[interface].ramp.delay : 0;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactProjectorGetArms(ContactProjector p, ContactArms *arms)
 {
   PetscFunctionBeginUser;

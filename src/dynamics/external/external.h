@@ -104,6 +104,10 @@ typedef enum {
    loads and motions that do not begin before the end. Collective. */
 PETSC_INTERN PetscErrorCode ExternalCheckLate(External external, PetscReal end, PetscReal dt, LateJudge judge);
 
+/* ExternalCheckDelay - the same of something by its delay, s. Collective. */
+PETSC_INTERN PetscErrorCode ExternalCheckDelay(External external, const char name[], PetscReal delay, PetscReal end,
+                                               LateJudge judge);
+
 /* ExternalIsHitting - whether an impulse acts in the step that ExternalAdvance() began. Not collective. */
 PETSC_INTERN PetscBool ExternalIsHitting(External external);
 

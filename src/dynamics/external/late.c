@@ -32,11 +32,17 @@ static PetscErrorCode LateCheck(External external, LateJudge judge, const Late *
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ExternalCheckDelay(External external, const char name[], PetscReal delay, PetscReal end, LateJudge judge)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LateCheck(external, judge, &(Late){name, "delay", "the run ends", delay, end}));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ExternalCheckLate(External external, PetscReal end, PetscReal dt, LateJudge judge)
 {
   const PetscReal last = dt * (PetscCeilReal(end / dt * (1 - 1e-12)) - 1);
   Late            step = {.option = "time", .why = "the last step of the run begins", .last = last};
-  Late            ramp = {.option = "delay", .why = "the run ends", .last = end};
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < external->n_impulses; i++) {
@@ -46,14 +52,14 @@ PetscErrorCode ExternalCheckLate(External external, PetscReal end, PetscReal dt,
   }
   if (judge == LATE_NEVER) PetscFunctionReturn(0); /* maps know no delays */
   for (PetscInt i = 0; i < external->n_loads; i++) {
-    ramp.name = external->loads[i].name;
-    ramp.time = external->loads[i].ramp.delay;
-    PetscCall(LateCheck(external, judge, &ramp));
+    const TimedLoad *load = &external->loads[i];
+
+    PetscCall(ExternalCheckDelay(external, load->name, load->ramp.delay, end, judge));
   }
   for (PetscInt i = 0; i < external->n_motions; i++) {
-    ramp.name = external->motions[i].prescribed->name;
-    ramp.time = external->motions[i].ramp.delay;
-    PetscCall(LateCheck(external, judge, &ramp));
+    const Drive *motion = &external->motions[i];
+
+    PetscCall(ExternalCheckDelay(external, motion->prescribed->name, motion->ramp.delay, end, judge));
   }
   PetscFunctionReturn(0);
 }
