@@ -7,6 +7,7 @@ in turned axes:
           mass of C3D10 with 4 points as well, which moves these frequencies by up to 4e-3; squeal's, with 15 points, is exact.
           Hence tests/tetrahedra.py stands between them: with exact mass it must agree with squeal, with CalculiX's 4 points
           with CalculiX
+  ties    two boxes whose meshes do not match
   friction  a disc and a pad in sliding contact, of hex20, where modes flutter: complex eigenvalues, see
           scripts/squeal/disc_pad.py
 
@@ -146,6 +147,21 @@ def compare(folder, mesh, material):
     return judge(f"{mesh}, {material}: CalculiX, mass of 4 points", theirs, four_points) and kept
 
 
+def tied(folder):
+    """Whether all frequencies agree of two boxes whose meshes do not match, by a tie."""
+    boxes = "low:hex20:0,0,0:0.06,0.02,0.01:4,2,1", "top:hex20:0,0,0.01:0.06,0.02,0.02:6,3,1"
+    made([sys.executable, Path(__file__).resolve().parent / "boxes.py", "tied.msh", *boxes], folder)
+    words = ["-model_mesh", folder / "tied.msh", "-parts", "low,top", "-supports", "clamp", "-clamp_set", "low_bottom", "-ties", "glue",
+             "-glue_surfaces", "top_bottom,low_top", "-modes_target", 1, "-modes_count", COUNT]
+    for part, young in (("low", 210e9), ("top", 70e9)):
+        words += [f"-{part}_young", young, f"-{part}_poisson", 0.3, f"-{part}_density", DENSITY]
+    deck, _ = scene_deck(Options.of_words(words), folder / "tied.msh")
+    theirs = run_calculix(folder, deck_cards(deck))[0].imag[:COUNT] / (2 * np.pi)
+    made([sys.argv[2], "-n", 1, sys.argv[1], *words, "-output_dir", "out", "-output_fields", 0], folder)
+    ours = np.array([row["freq_hz"] for row in read_table(folder / "out/modes.csv", {"freq_hz": float})])
+    return judge("ties: squeal, CalculiX", ours, theirs)
+
+
 def friction(folder):
     """Whether all eigenvalues to 12 kHz agree, one by one, and some of them have left the imaginary axis."""
     mesh, mu = folder / "pair.msh", 0.6
@@ -171,6 +187,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
         folder = Path(name)
         kept = friction(folder)
+        kept &= tied(folder)
         for mesh, (geometry, options) in MESHES.items():
             (folder / f"{mesh}.geo").write_text(geometry)
             made(["gmsh", "-3", "-order", 2, *options.split(), "-format", "msh22", f"{mesh}.geo", "-o", f"{mesh}.msh"],

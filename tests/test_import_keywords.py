@@ -160,7 +160,12 @@ def not_taken(folder):
     for about, text in (("SURFACE BEHAVIOR", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TIED\n1e6\n" + pair),
                         ("CONTACT PAIR", pair.replace("=I\n", "=I, TIED\n"))):
         options, listed = sections(folder, "deck.inp", body + steel + rest + text)
-        check(f"{about}: tied is no contact", "contacts" not in options and sum("NOT TIED" in line for line in listed) == 1, listed)
+        check(f"{about}: tied is no contact, and a tie", "contacts" not in options and options.get("ties") == "i"
+              and options["i_surfaces"] == "s,t" and sum("nodes of S follow T" in line for line in listed) == 1, (options, listed))
+    tie = "*TIE, NAME=Glue, POSITION TOLERANCE=0.5, ADJUST=NO\nS, T\n"
+    options, listed = sections(folder, "deck.inp", body + steel + rest + tie)
+    check("TIE of nodes that are apart", options.get("ties") == "glue" and options["glue_surfaces"] == "s,t"
+          and float(options["glue_distance"]) == 0.0005 and options["glue_far"] == "free", options)
     _, listed = sections(folder, "deck.inp", f"*PART, NAME=P\n*NODE\n1, 0., 0., 0.\n*END PART\n{body}{steel}")
     check("a part without an instance is listed", any(line.startswith("deck.inp:1: *PART P: no") for line in listed), listed)
     nastran = "CELAS2,5,1.,7,3,,,0.04\nPBUSH,6,K,1.,2.,3.,4.\n,B,5.\nPELAS,7,1.,0.1\nENDDATA\n"
@@ -178,7 +183,11 @@ def not_taken(folder):
     name = next(iter(decks_others.Ansys.FILES))
     text = decks_others.Ansys.FILES[name].replace("ET,2,174", "ET,2,174\nKEYOPT,2,12,5")
     options, listed = sections(folder, name, text)
-    check("bonded contact of Ansys is none", "contacts" not in options and any("KEYOPT(12) = 5" in line for line in listed), listed)
+    check("bonded contact of Ansys is one mesh where nodes match", "contacts" not in options and "ties" not in options
+          and any("KEYOPT(12) = 5, bonded: " in line and "become those" in line for line in listed), (options, listed))
+    options, listed = sections(folder, name, text.replace("12,5", "12,4"))
+    check("contact of Ansys without separation is none", "contacts" not in options and "ties" not in options
+          and sum("KEYOPT(12) = 4" in line for line in listed) == 1, listed)
 
 
 def preloaded(folder):

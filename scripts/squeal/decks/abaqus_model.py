@@ -98,7 +98,20 @@ def do_spring(reader, scope, card):
 def do_tie(reader, scope, card):
     for place, fields in card.rows():
         slave, master = surface_pair(reader, scope, place, fields)
-        reader.deck.ties.append(Tie(card.options.get("NAME", "tie").strip('"'), slave, master, place))
+        name = card.options.get("NAME", "tie").strip('"')
+        reader.deck.ties.append(Tie(name, slave, master, place, f"*TIE {name}", tie_distance(card)))
+
+
+def tie_distance(card):
+    """POSITION TOLERANCE, 0 where it is not given."""
+    text = card.options.get("POSITION TOLERANCE", "0")
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value < float("inf"):
+        raise card.place.wrong(f"*TIE: POSITION TOLERANCE={text[:30]} must be a number, 0 or more")
+    return value
 
 
 def surface_pair(reader, scope, place, fields):
@@ -302,7 +315,8 @@ def finish(reader):
         if values is None:
             raise contact.place.wrong(f"there is no *SURFACE INTERACTION {interaction}")
         if tied or values.get("tied"):
-            reader.deck.note(contact.place, f"*CONTACT PAIR {contact.slave}, {contact.master}: tied, not in the scene: NOT TIED")
+            reader.deck.ties.append(Tie(contact.name, contact.slave, contact.master, contact.place,
+                                        f"*CONTACT PAIR {contact.slave}, {contact.master}, tied"))
             continue
         contact.mu, contact.stiffness = values.get("mu"), values.get("stiffness")
         reader.deck.contacts.append(contact)

@@ -3,7 +3,7 @@
 import numpy
 
 from .ansys_mesh import FACES
-from .deck import Axes, Contact, Load, Material, Section, Support, Turning
+from .deck import Axes, Contact, Load, Material, Section, Support, Tie, Turning
 from .faces import boundary_faces, faces_by_three
 
 KNOWN = {"MP", "MPDATA", "D", "F", "SF", "SFE", "ACEL", "MODOPT", "CMROTATE"}
@@ -207,6 +207,9 @@ def modes(deck, _, command):
     deck.modes = command.whole(2), command.real(3), command.real(4), command.place
 
 
+BONDED = 3, 5, 6  # values of KEYOPT(12)
+
+
 def behaviours(commands):
     """Number of a type of elements -> KEYOPT(12), what contact does where it is not 0: rough, without separation, bonded."""
     return {command.whole(1): command.whole(3) for command in commands
@@ -233,8 +236,12 @@ def read_contact(deck, mesh, values, behaviour):
             deck.surfaces[f"{kind}_{number}"] = numpy.concatenate(faces), place
         _, head, place = sides["contact"]
         kind = behaviour.get(int(head[0, 1]), 0)
+        if kind in BONDED:
+            deck.ties.append(Tie(f"bond_{number}", f"contact_{number}", f"target_{number}", place,
+                                 f"real constants {number}, KEYOPT(12) = {kind}, bonded"))
+            continue
         if kind:
-            deck.note(place, f"real constants {number}: KEYOPT(12) = {kind}, rough, bonded or without separation; not taken: NOT TIED")
+            deck.note(place, f"real constants {number}: KEYOPT(12) = {kind}, rough or without separation; not taken: NOT TIED")
             continue
         mu = values.get(int(head[0, 0]), {}).get("MU", (0.0, None))[0]
         deck.contacts.append(Contact(f"pair_{number}", f"contact_{number}", f"target_{number}", place, mu=mu))

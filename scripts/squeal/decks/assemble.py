@@ -7,7 +7,7 @@ import numpy
 
 from .deck import Material, Section, firsts_of
 from .faces import surface_nodes
-from .holders import add_contacts, add_loads, add_springs, add_supports
+from .holders import add_contacts, add_loads, add_springs, add_supports, add_ties
 from .names import Names
 
 CLOSE = 1e-6  # of the model's size: nodes that are nearer are in one place
@@ -56,19 +56,19 @@ def coincident(x, slaves, masters, limit):
 
 
 def merge_ties(deck, size):
-    """Makes one node of each slave node and the master node in its place; ties where one is missing are listed. Returns the
-    node that each one became."""
-    into = numpy.arange(deck.n_nodes)
-    for tie in deck.ties:
+    """Makes one node of each slave node and the master node in its place; ties where one is missing stay in the deck. Returns
+    the node that each one became."""
+    into, ties = numpy.arange(deck.n_nodes), deck.ties
+    deck.ties = []
+    for tie in ties:
         slaves, masters = (surface_nodes(deck, deck.surfaces[name][0]) for name in (tie.slave, tie.master))
         found = coincident(deck.x, slaves, masters, CLOSE * size)
         if (found < 0).any():
-            deck.note(tie.place, f"*TIE {tie.name}: {(found < 0).sum()} of {len(slaves)} nodes of {tie.slave} are not where "
-                                 f"{tie.master} has one; NOT TIED: the bodies are apart there; give both the same mesh where they touch")
+            deck.ties.append(tie)
             continue
         for slave, master in zip(slaves, found):
             into[into == into[slave]] = into[master]
-        deck.differ(tie.place, f"*TIE {tie.name}: {len(slaves)} nodes of {tie.slave} become those of {tie.master} in their place")
+        deck.differ(tie.place, f"{tie.words}: {len(slaves)} nodes of {tie.slave} become those of {tie.master} in their place")
     return into
 
 
@@ -237,6 +237,7 @@ def assemble(deck, size):
     add_springs(assembly)
     add_loads(assembly)
     add_contacts(assembly)
+    add_ties(assembly)
     assembly.all_sets()
     for block in deck.blocks:
         block.nodes = number[block.nodes]

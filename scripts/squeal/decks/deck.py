@@ -123,10 +123,13 @@ class Turning:
 
 @dataclass
 class Tie:
+    """Slave and master are names of surfaces; `words` say where it is from."""
     name: str
     slave: str
     master: str
     place: Place
+    words: str
+    distance: float = 0  # farther nodes stay free; 0: not said
 
 
 class Index:

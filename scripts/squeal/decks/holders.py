@@ -170,3 +170,21 @@ def add_contacts(assembly):
             hints.append('slip: "0,1,0"   the slave\'s sliding direction is not in the file: give it, or rotation: "x,y,z" in rad/s, '
                          'or where it holds by friction kt: its stiffness along the surface')
         assembly.add("contacts", contact.name, rows, hints)
+
+
+def add_ties(assembly):
+    """Surfaces of meshes that do not match, glued."""
+    deck, surfaces = assembly.deck, assembly.deck.surfaces
+    for tie in deck.ties:
+        empty = [name for name in (tie.slave, tie.master) if not len(surfaces[name][0])]
+        if empty:
+            deck.note(tie.place, f"{tie.words}: {empty[0]} has no faces; NOT TIED: the bodies stay apart")
+            continue
+        slave, master = (assembly.face_set(surfaces[name][0], name, "") for name in (tie.slave, tie.master))
+        rows = [("surfaces", f"{slave},{master}", f"{tie.place} slave,master")]
+        if tie.distance:
+            rows.append(("distance", ("length", (tie.distance,)), str(tie.place)))
+        rows.append(("far", "free", f"{tie.place} nodes that are farther off stay free, as there"))
+        assembly.add("ties", tie.name, rows)
+        deck.differ(tie.place, f"{tie.words}: nodes of {tie.slave} follow {tie.master} where they are; gaps stay as rigid arms, no node "
+                               "is moved on to the surface")

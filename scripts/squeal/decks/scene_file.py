@@ -3,7 +3,7 @@
 from ..tables import whole
 
 MOST_ALIKE = 3
-LISTS = ("parts", "supports", "springs", "motions", "loads", "contacts")
+LISTS = ("parts", "supports", "springs", "motions", "loads", "contacts", "ties")
 FACTORS = {"": lambda u: 1, "length": lambda u: u.length, "stress": lambda u: u.stress, "density": lambda u: u.density,
            "force": lambda u: u.force, "stiffness": lambda u: u.stiffness, "time": lambda u: u.time,
            "rate": lambda u: 1 / u.time, "stiffness_per_area": lambda u: u.stiffness_per_area}

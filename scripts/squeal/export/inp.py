@@ -100,6 +100,13 @@ def pair_cards(contact):
     return [f"*CONTACT PAIR, INTERACTION={contact.name}, TYPE=SURFACE TO SURFACE", f"{contact.slave}, {contact.master}"]
 
 
+def tie_cards(deck):
+    """Each node of the slave follows the facet below it; none is moved."""
+    for tie in deck.ties:
+        tolerance = f", POSITION TOLERANCE={real(tie.distance)}" if tie.distance else ""
+        yield from (f"*TIE, NAME={tie.name}, ADJUST=NO{tolerance}", f"{tie.slave}, {tie.master}")
+
+
 def frequency_cards(deck, perturbed=False):
     """The modes that are asked for: so many of a band, or the lowest."""
     count, low, high, _ = deck.modes
@@ -140,7 +147,7 @@ def step_cards(deck):
 
 def model_cards(deck):
     """All but supports, contact and steps."""
-    return [*node_cards(deck.x), *element_cards(deck), *set_cards(deck), *material_cards(deck), *spring_cards(deck)]
+    return [*node_cards(deck.x), *element_cards(deck), *set_cards(deck), *material_cards(deck), *spring_cards(deck), *tie_cards(deck)]
 
 
 def deck_cards(deck):

@@ -3,7 +3,7 @@ have is a note."""
 
 import numpy
 
-from ..decks.deck import Axes, Block, Contact, Deck, Load, Material, Place, Section, Spring, Support
+from ..decks.deck import Axes, Block, Contact, Deck, Load, Material, Place, Section, Spring, Support, Tie
 from ..decks.elements import EDGES, SHAPES
 from ..decks.faces import faces_by_three, nodes_by_kind
 from ..gmsh import DIMENSION, read_any
@@ -209,6 +209,22 @@ def add_contacts(build, sliding):
             build.notes.append(f"{owner}: CalculiX finds by itself which points slip and where to; squeal is told by _slip or _rotation")
 
 
+def add_ties(build):
+    """Surfaces that are glued; a slave without faces is listed."""
+    options, deck = build.options, build.deck
+    for owner in options.names("ties"):
+        names = options.names(f"{owner}_surfaces")
+        if len(names) != 2:
+            raise BadInput(f"{options.path}: {owner}_surfaces must name two: slave,master")
+        if not len(build.faces(names[0])):
+            build.notes.append(f"tie {owner}: {names[0]} has no faces; not in the deck, the bodies stay apart")
+            continue
+        slave, master = (build.surface(name, f"-{owner}_surfaces") for name in names)
+        deck.ties.append(Tie(owner, slave, master, Place(owner, 0), f"tie {owner}", options.number(f"{owner}_distance", "0")))
+        options.text(f"{owner}_far")
+        build.notes.append(f"tie {owner}: across a gap CalculiX has no arm that turns with the surface")
+
+
 def contact_stiffness(build, owner, slave):
     """Per area; None where contact is exact."""
     options = build.options
@@ -233,6 +249,7 @@ def scene_deck(options, mesh, count=0, sliding=False):
     for add in (add_materials, add_holders, add_loads):
         add(build)
     add_contacts(build, sliding)
+    add_ties(build)
     low, high = (options.numbers("modes_band", "0,0") + [0.0, 0.0])[:2]
     target = options.numbers("modes_target", "0")[:1] != [0.0]
     wanted = int(options.number("modes_count", "20")) if target else 20
