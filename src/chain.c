@@ -170,7 +170,7 @@ static PetscErrorCode ChainAssemble(Chain *chain)
     PetscCall(ChainSayUnits(chain));
     PetscCall(SquealStageEnd(SQUEAL_MODEL));
     PetscCall(SquealStageBegin(SQUEAL_CONTACT));
-    if (pairs) PetscCall(ContactSetUp(chain->contact));
+    PetscCall(pairs ? ContactSetUp(chain->contact) : ContactSetUpTies(chain->contact));
     PetscCall(SquealStageEnd(SQUEAL_CONTACT));
     PetscCall(ChainNeedsMatrices(chain, pairs, &matrices));
     if (!matrices) PetscCall(OperatorsOmitMatrices(chain->operators));

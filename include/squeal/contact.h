@@ -151,6 +151,10 @@ PetscErrorCode ContactSetFromOptions(Contact contact);
 @*/
 PetscErrorCode ContactSetUp(Contact contact);
 
+/*@ ContactSetUpTies - the part of ContactSetUp() that makes the links of the ties, for runs in time, whose pairs are not those of the
+    mesh. Collective; after ModelSetUp(). @*/
+PetscErrorCode ContactSetUpTies(Contact contact);
+
 /*@ ContactGetInterfaces - parameters (borrowed). Not collective. @*/
 PetscErrorCode ContactGetInterfaces(Contact contact, PetscInt *n, const ContactInterface **interfaces);
 

@@ -209,7 +209,7 @@ PetscErrorCode ContactSetUp(Contact contact)
     PetscCall(ContactPairInterface(contact, i));
     PetscCall(InterfaceCheckFaces(contact, &contact->interfaces[i]));
   }
-  PetscCall(ContactTiesSetUp(contact));
+  PetscCall(ContactSetUpTies(contact));
   PetscCallMPI(MPI_Allreduce(&contact->n_pairs, &contact->n_pairs_all, 1, MPIU_INT, MPI_SUM, contact->comm));
   PetscCall(EventEnd(EVENT_PAIR));
   PetscFunctionReturn(0);

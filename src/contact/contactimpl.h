@@ -23,9 +23,8 @@ struct _p_Contact {
 /* pair.c - appends the pairs of one interface to contact->pairs */
 PETSC_INTERN PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface);
 
-/* tie.c - the list of ties; the links of all of them. Collective. */
+/* tie.c - the list of ties. Collective. */
 extern const OptionsList    ties_list;
-PETSC_INTERN PetscErrorCode ContactTiesSetUp(Contact contact);
 PETSC_INTERN PetscErrorCode ContactTiesDestroy(Contact contact);
 /* tie.c - adds surfaces and distances; in words. Collective. */
 PETSC_INTERN PetscErrorCode ContactTiesAddChecksum(Contact contact, Checksum checksum);

@@ -252,7 +252,7 @@ static PetscErrorCode TieSetUp(Contact contact, PetscInt t)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactTiesSetUp(Contact contact)
+PetscErrorCode ContactSetUpTies(Contact contact)
 {
   PetscFunctionBeginUser;
   for (PetscInt t = 0; t < contact->n_ties; t++) PetscCall(TieSetUp(contact, t));

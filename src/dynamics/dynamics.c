@@ -141,28 +141,20 @@ static PetscErrorCode DynamicsChooseStep(Dynamics d, PetscReal *step, PetscReal 
 static PetscErrorCode DynamicsSetUpPoints(Dynamics d)
 {
   const ModelScene *scene;
+  const ContactTie *tie;
+  PetscInt          n_ties;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(d->model, &scene));
+  PetscCall(ContactGetTies(d->contact, &n_ties, &tie));
+  PetscCheck(!n_ties || d->b == 0.5, d->comm, PETSC_ERR_SUP,
+             "-ts_central_b %.6g is not supported with tie %s: take 0.5", (double)d->b, n_ties ? tie[0].name : "");
   for (PetscInt i = 0; i < scene->n_points && d->b != 0.5; i++)
     for (int j = -1; j < 6; j++)
       PetscCheck((j < 0 ? scene->points[i].mass : scene->points[i].inertia[j]) == 0 && !scene->points[i].rigid, d->comm,
                  PETSC_ERR_SUP, "-ts_central_b %.6g is not supported with the mass or rigid set of point %s: take 0.5",
                  (double)d->b, scene->points[i].name);
   PetscCall(BodiesSetPoints(d->bodies, d->surface.n, d->surface.vertex));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode DynamicsRefuseTies(Dynamics d)
-{
-  const ContactTie *tie;
-  PetscInt          n;
-
-  PetscFunctionBeginUser;
-  PetscCall(ContactGetTies(d->contact, &n, &tie));
-  PetscCheck(!n, d->comm, PETSC_ERR_SUP,
-             "-ties %s: -analysis transient knows no ties; take modes, frf or static, or give both bodies one mesh there",
-             n ? tie[0].name : "");
   PetscFunctionReturn(0);
 }
 
@@ -175,7 +167,6 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
              "-analysis transient needs a mesh: loaded matrices have no contact surfaces");
   d->results = results;
   if (!d->restart) PetscCall(DynamicsCheckEarlier(d));
-  PetscCall(DynamicsRefuseTies(d));
   PetscCall(ModelGetMesh(d->model, &d->mesh));
   d->n_elements = d->mesh->n_cells;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &d->n_elements, 1, MPIU_INT, MPI_SUM, d->comm));

@@ -223,6 +223,7 @@ PetscErrorCode BodiesDestroy(Bodies *bodies)
   PetscCall(PetscFree(b->swept));
   PetscCall(PetscFree(b->point));
   PetscCall(JointsDestroyRows(b));
+  PetscCall(TiedDestroy(&b->tied));
   PetscCall(PetscFree(b->frame));
   PetscCall(PetscFree(b->body));
   PetscCall(PetscFree2(b->layout.at, b->layout.step));

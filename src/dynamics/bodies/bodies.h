@@ -88,16 +88,16 @@ PetscErrorCode BodiesGetLayout(Bodies bodies, const Layout **layout);
     component in the local basis. Same call on all ranks that have the node. @*/
 PetscErrorCode BodiesHold(Bodies bodies, PetscInt vertex, PetscInt j);
 
-/*@ BodiesSetPoints - what the masses of points need, after the last BodiesHold(); contact [n_contact] are the nodes
+/*@ BodiesSetPoints - what the masses of points and ties need, after the last BodiesHold(); contact [n_contact] are the nodes
     that contact forces may act on. Collective. Errors: PETSC_ERR_SUP for a point with mass that has one of them, or a
-    node that a motion drives. @*/
+    node that a motion drives; for a tie that has one of these, or one that a support holds. @*/
 PetscErrorCode BodiesSetPoints(Bodies bodies, PetscInt n_contact, const PetscInt contact[]);
 
-/*@ BodiesMakeRigid - replaces what a state vector has at sets that are joined rigidly by the rigid motion next to it, after
-    BodiesSetPoints(). Collective. @*/
+/*@ BodiesMakeRigid - replaces what a state vector has at sets that are joined rigidly, and at nodes of ties, by the motion next
+    to it that these allow, after BodiesSetPoints(). Collective. @*/
 PetscErrorCode BodiesMakeRigid(Bodies bodies, PetscReal x[]);
 
-/*@ BodiesAddInertia - adds the inertial forces of points, and those that hold rigid sets together, to f, N, which holds
+/*@ BodiesAddInertia - adds the inertial forces of points, and those that hold rigid sets and ties together, to f, N, which holds
     all others but those of contact, complete at every copy: then minv f is the acceleration. Collective. @*/
 PetscErrorCode BodiesAddInertia(Bodies bodies, PetscReal f[]);
 

@@ -3,6 +3,7 @@
 
 #include "bodies.h"
 #include "kernels/stencil.h"
+#include <petscksp.h>
 
 /* Axis about which a body is swept, or an oblique one along which it is, at least on some rank; the same on all ranks.
    Without either its components are x, y, z */
@@ -77,6 +78,15 @@ typedef struct {
   PetscReal   *b;      /* [n][3][6] */
 } BodyJoint;
 
+/* The nodes of ties, those of all ranks on every rank */
+typedef struct {
+  PetscInt n, *number, *vertex; /* [n] global numbers, ascending; local nodes, -1 for none here */
+  PetscInt n_masters, *column;  /* [n] which master, -1 for a slave */
+  Mat      T;                   /* [3 n][3 n_masters] */
+  KSP      inverse;             /* (T'D T)^-1 */
+  Vec      q[2], x, mass;       /* work; kg, [3 n] */
+} Tied;
+
 /* Sums over ranks at shared nodes, in ascending order of the ranks, so that all copies are bitwise equal */
 typedef struct {
   MPI_Comm     comm;
@@ -107,6 +117,7 @@ struct _p_Bodies {
   BodyJoint   *joint;
   PetscReal   *joint_motion; /* [n_joints][6] of the last call */
   PetscReal   *reaction;     /* X of the points with mass, [6 n_heavy][6 n_heavy] */
+  Tied         tied;
   Shared       share;
   PetscBool    damped;  /* there is damping on some rank */
   PetscReal   *work[2]; /* [layout.n] each, for BodiesApply() and BodiesSetState() */
@@ -185,6 +196,11 @@ PETSC_INTERN void PointInertia(const Joint *point, PetscReal W[36]);
 /* rigidpoint.c - matrices of a rigid point; forces in the place of those on its nodes, f [layout n] */
 PETSC_INTERN PetscErrorCode RigidPointSetUp(Bodies bodies, BodyJoint *joint);
 PETSC_INTERN PetscErrorCode RigidPointsAdvance(Bodies bodies, PetscReal f[]);
+
+/* tiednode.c - matrices of ties, after the last BodiesHold(); forces in the place of those on their nodes, or motions */
+PETSC_INTERN PetscErrorCode TiedSetUp(Bodies bodies, PetscInt n_contact, const PetscInt contact[]);
+PETSC_INTERN PetscErrorCode TiedApply(Bodies bodies, PetscBool forces, PetscReal x[]);
+PETSC_INTERN PetscErrorCode TiedDestroy(Tied *tied);
 
 /* sharedvertices.c - Begin sends what x has at shared nodes, End replaces it by the sums */
 PETSC_INTERN PetscErrorCode SharedSetUp(Bodies bodies);

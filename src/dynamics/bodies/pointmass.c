@@ -174,6 +174,7 @@ PetscErrorCode BodiesSetPoints(Bodies b, PetscInt n_contact, const PetscInt cont
     PetscCall(PetscFree(S));
   }
   PetscCall(PetscFree(heavy));
+  PetscCall(TiedSetUp(b, n_contact, contact));
   PetscFunctionReturn(0);
 }
 
@@ -183,6 +184,7 @@ PetscErrorCode BodiesAddInertia(Bodies b, PetscReal f[])
 
   PetscFunctionBeginUser;
   PetscCall(RigidPointsAdvance(b, f));
+  PetscCall(TiedApply(b, PETSC_TRUE, f));
   if (!n) PetscFunctionReturn(0);
   PetscCall(JointsMotion(b, b->layout.minv, f));
   for (PetscInt m = 0, p = 0; m < b->n_joints; m++) {

@@ -118,5 +118,6 @@ PetscErrorCode BodiesMakeRigid(Bodies b, PetscReal x[])
 {
   PetscFunctionBeginUser;
   PetscCall(RigidPointsApply(b, PETSC_FALSE, x));
+  PetscCall(TiedApply(b, PETSC_FALSE, x));
   PetscFunctionReturn(0);
 }
