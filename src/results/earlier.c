@@ -68,7 +68,14 @@ static PetscErrorCode NameAdd(PetscInt *n, char ***names, const char name[])
 PetscErrorCode ResultsKeep(Results results, const char name[])
 {
   PetscFunctionBeginUser;
-  if (!NameIsIn(results->n_kept, results->kept, name)) PetscCall(NameAdd(&results->n_kept, &results->kept, name));
+  if (NameIsIn(results->n_kept, results->kept, name)) PetscFunctionReturn(0);
+  PetscCall(NameAdd(&results->n_kept, &results->kept, name));
+  for (PetscInt i = 0; i < results->n_earlier; i++) {
+    if (strcmp(results->earlier[i], name)) continue;
+    PetscCall(PetscFree(results->earlier[i]));
+    results->earlier[i] = results->earlier[--results->n_earlier];
+    break;
+  }
   PetscFunctionReturn(0);
 }
 
@@ -102,11 +109,10 @@ static PetscBool NameMayGo(Results results, const char name[])
   return PETSC_FALSE;
 }
 
-/* Whether the file of an earlier run goes when this one ends: not where this one wrote or needs it */
+/* Whether the file of an earlier run, which this one neither wrote nor needs, goes when this one ends */
 static PetscBool EarlierGoes(Results results, const char name[])
 {
-  if (results->keep_all || NameIsIn(results->n_kept, results->kept, name)) return PETSC_FALSE;
-  return NameMayGo(results, name);
+  return results->keep_all ? PETSC_FALSE : NameMayGo(results, name);
 }
 
 /* Takes the names off one line of an earlier scene.yaml */
@@ -116,7 +122,7 @@ static PetscErrorCode LineRead(Results results, char line[])
 
   PetscFunctionBeginUser;
   for (char *name = strtok_r(line, " \n", &rest); name; name = strtok_r(NULL, " \n", &rest))
-    if (!NameIsIn(results->n_earlier, results->earlier, name))
+    if (!NameIsIn(results->n_earlier, results->earlier, name) && !NameIsIn(results->n_kept, results->kept, name))
       PetscCall(NameAdd(&results->n_earlier, &results->earlier, name));
   PetscFunctionReturn(0);
 }
@@ -155,7 +161,6 @@ PetscErrorCode EarlierPrint(Results results, PetscBool ended, OutFile *file)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < results->n_earlier; i++) {
     PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", results->dir, results->earlier[i]));
-    if (NameIsIn(results->n_kept, results->kept, results->earlier[i])) continue;
     if ((ended && EarlierGoes(results, results->earlier[i])) || access(path, F_OK)) continue;
     PetscCall(OutFilePrint(file, "%s %s", begun ? "" : SCENE_STAY, results->earlier[i]));
     begun = PETSC_TRUE;

@@ -26,7 +26,7 @@ struct _p_Results {
   PetscBool fields;
   PetscInt  n_kept, n_earlier, n_notes;
   char    **kept;         /* names of files in the folder that belong to this run */
-  char    **earlier;      /* those that earlier runs wrote, on the first rank */
+  char    **earlier;      /* those that earlier runs wrote and this one does not keep, on the first rank */
   char    **note;         /* lines of scene.yaml */
   PetscBool keep_all;     /* nothing of earlier runs goes */
   PetscBool earlier_read; /* on the first rank: `earlier` is what their scene.yaml lists */
