@@ -231,6 +231,9 @@ static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool st
     PetscCall(OptionsRefuse(comm, "-symmetry", "used by -analysis modes, sweep and static alone; leave it out"));
   if (s->modes && !s->frf) PetscCall(ScopeCheckEigensolver(comm, s)); /* which takes both */
   if (s->transient) PetscCall(ScopeCheckIntegrator(comm, s));
+  if (s->transient)
+    PetscCall(OptionsRefuse(comm, "-modes_target -modes_count",
+                            "not used by -dynamics_model reduced, which compares the modes of -modes_band"));
   if (!s->transient && !s->modes) PetscCall(OptionsRefuse(comm, "-operators_mass", "not used by -analysis static"));
   if (!s->modes) PetscCall(OptionsRefuse(comm, "-operators_factors", "used by modes, sweeps and frequency responses"));
   PetscFunctionReturn(0);
