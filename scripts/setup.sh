@@ -84,14 +84,19 @@ check_blas()
   esac
 }
 
+# The kernels of OpenBLAS for wide registers, in quotes: the list of the program
+wide_kernels() { sed -n 's/^static const char \*const wide\[\] = {\(.*\)};$/\1/p' "$root/src/base/blas.c"; }
+
 # choose_kernels BLAS: OpenBLAS has old kernels, two to three times slower, for a processor newer than itself. Exports
-# OPENBLAS_CORETYPE for what this one can do, as `squeal -squeal_view` advises (src/base/blas.c); what is set already stays
+# OPENBLAS_CORETYPE for what this one can do, as `squeal -squeal_view` advises; what is set already stays
 choose_kernels()
 {
-  local kernels flags
+  local kernels flags wide
   [ -z "${OPENBLAS_CORETYPE-}" ] || return 0
   kernels=$(OPENBLAS_VERBOSE=2 LD_PRELOAD=$1 "$(type -P true)" 2>&1 | sed -n 's/^Core: //p')
-  case ${kernels,,} in '' | excavator | haswell | zen | skylakex | cooperlake | sapphirerapids) return 0 ;; esac
+  wide=$(wide_kernels)
+  case ${wide,,} in *"\"${kernels,,}\""*) return 0 ;; esac
+  [ -n "$kernels" ] || return 0
   flags=" $(sed -n 's/^flags[^:]*://p; /^flags/q' /proc/cpuinfo 2>/dev/null) "
   case $flags in
     *' avx512dq '*' avx512vl '*) export OPENBLAS_CORETYPE=SkylakeX ;;

@@ -83,6 +83,8 @@ def check_kernels(a):
     chosen = subprocess.run(["bash", "-c", choose, SOURCE / "scripts/setup.sh", a.squeal.parent], capture_output=True, text=True)
     a.check(done.returncode == 0 and chosen.stdout.split() == (list(advised.groups()) if advised else []),
             f"advised {advised and advised[1]}, chosen {chosen.stdout.strip()}", done)
+    known = subprocess.run(["bash", "-c", 'source "$0"; wide_kernels', SOURCE / "scripts/setup.sh"], capture_output=True, text=True)
+    a.check('"Haswell", ' in known.stdout and '"SkylakeX", ' in known.stdout, "scripts/setup.sh reads the program's list", known)
     shutil.rmtree(a.folder / "out")
 
 
@@ -114,6 +116,14 @@ def check_typos(a):
                 f"{options}: one line with '{words}'", done)
 
 
+def check_ranks(a):
+    """scripts/mpirun refuses what is no number of ranks, and what would stop the machine, with one line."""
+    for ranks in ("0", "x", "99999"):
+        done = a.ask("--version", ranks=ranks)
+        a.check(done.returncode == 2 and re.fullmatch(rf"mpirun: -n '{ranks}' must be .*\n", done.stderr) and not done.stdout,
+                f"-n {ranks}: one line", done)
+
+
 def main():
     squeal, mpirun = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
@@ -122,6 +132,7 @@ def main():
         check_kernels(a)
         check_list(a)
         check_typos(a)
+        check_ranks(a)
         left = [path.name for path in a.folder.iterdir()]
         a.check(not left, f"no file is left {left}", a.ask("--version"))
     if a.faults:
