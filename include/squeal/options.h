@@ -57,6 +57,10 @@ PetscErrorCode OptionsReadList(MPI_Comm comm, const OptionsList *list, void *own
 @*/
 PetscErrorCode OptionsDropUnlisted(MPI_Comm comm);
 
+/*@ OptionsDropOf - the same of all options -`name`_... that nobody has read; `why` begins the warning, and ends the error.
+    Collective. @*/
+PetscErrorCode OptionsDropOf(MPI_Comm comm, const char name[], const char why[]);
+
 /*@
    OptionsGetReals - reads an array of exactly n numbers between PetscOptionsBegin() and PetscOptionsEnd(). Collective.
 

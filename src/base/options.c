@@ -172,14 +172,11 @@ static PetscErrorCode UnreadFind(const char name[], char option[MAX_NAME])
   PetscFunctionReturn(0);
 }
 
-/* Takes out what options files say of a name that `list` has no more, with a warning; the command line may not say it */
-static PetscErrorCode UnlistedDrop(MPI_Comm comm, const char list[], const char now[], const char name[])
+PetscErrorCode OptionsDropOf(MPI_Comm comm, const char name[], const char why[])
 {
-  char option[MAX_NAME], text[MAX_LIST] = "", why[MAX_LIST];
+  char option[MAX_NAME], text[MAX_LIST] = "";
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(why, sizeof(why), "'%s' is not in %s %s, which stands in place of an options file's list",
-                          name, list, now));
   PetscCall(UnreadFind(name, option));
   while (option[0]) {
     PetscCall(OptionsRefuse(comm, option, why));
@@ -194,7 +191,7 @@ static PetscErrorCode UnlistedDrop(MPI_Comm comm, const char list[], const char 
 
 PetscErrorCode OptionsDropUnlisted(MPI_Comm comm)
 {
-  char(*listed)[MAX_LIST], now[MAX_LIST], *name, *rest;
+  char(*listed)[MAX_LIST], now[MAX_LIST], why[MAX_LIST], *name, *rest;
   PetscInt n_unread;
 
   PetscFunctionBeginUser;
@@ -204,8 +201,11 @@ PetscErrorCode OptionsDropUnlisted(MPI_Comm comm)
   PetscCall(FilesGetLists(comm, listed));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(lists); k++) {
     PetscCall(GivenText(lists[k], sizeof(now), now));
-    for (name = strtok_r(listed[k], ", ", &rest); name; name = strtok_r(NULL, ", ", &rest))
-      if (!ListHolds(now, name)) PetscCall(UnlistedDrop(comm, lists[k], now, name));
+    for (name = strtok_r(listed[k], ", ", &rest); name; name = strtok_r(NULL, ", ", &rest)) {
+      PetscCall(PetscSNPrintf(why, sizeof(why), "'%s' is not in %s %s, which stands in place of an options file's list",
+                              name, lists[k], now));
+      if (!ListHolds(now, name)) PetscCall(OptionsDropOf(comm, name, why));
+    }
   }
   PetscCall(PetscFree(listed));
   PetscFunctionReturn(0);

@@ -56,6 +56,7 @@ PetscErrorCode ModelSetFromOptions(Model model)
   PetscFunctionBeginUser;
   PetscCall(ModelReadSource(model, &is_rig));
   if (is_rig) PetscCall(RigSetFromOptions(model->comm, &model->rig));
+  if (!is_rig) PetscCall(OptionsDropOf(model->comm, "rig", "the mesh comes from a file, not from the built-in rig"));
   PetscCall(PetscOptionsHasName(NULL, NULL, parts_list.option, &given));
   if (!given && is_rig) PetscCall(PetscOptionsSetValue(NULL, parts_list.option, "disc,pad,beam"));
   PetscCall(OptionsReadList(model->comm, &parts_list, model, &scene->n_parts, &scene->parts));

@@ -311,6 +311,7 @@ PetscErrorCode GmshMeshRead(const char file[], GmshMesh *mesh, ReaderError *erro
       ReaderErrorSet(error, PETSC_ERR_FILE_READ,
                      "the file does not begin with $MeshFormat, as those of Gmsh do; scripts/import brings in others");
   }
+  if (r.file && ferror(r.file)) ReaderErrorSet(error, PETSC_ERR_FILE_READ, "%s", strerror(errno)); /* as of a folder */
   if (r.file) fclose(r.file);
   if (!mesh->n_elements) ReaderErrorSet(error, PETSC_ERR_FILE_READ, "the file holds no elements");
   PetscFunctionReturn(0);

@@ -10,6 +10,8 @@
 #define SLOWEST        15.  /* m/s: soft rubber */
 #define FASTEST        2e4  /* m/s: beyond beryllium and diamond, 12.9 and 18 km/s */
 #define LIGHTEST_SI    1e-2 /* kg/m^3 */
+#define LIGHTEST_GRAMS 1.5  /* g/cm^3: magnesium */
+#define HEAVIEST_GRAMS 25.  /* g/cm^3: osmium */
 #define HEAVIEST_TONNE 1e-6 /* t/mm^3; osmium has 2.3e-8 */
 #define LARGEST_SI     20.  /* m */
 #define SMALLEST_MM    0.5  /* mm */
@@ -86,6 +88,8 @@ static const char *PartDoubt(const Part *p, const PartExtent *e)
   if (p->density < HEAVIEST_TONNE) return "the density is in t/mm^3: give kg/m^3 (steel 7850), or the modulus in MPa";
   if (p->density < LIGHTEST_SI)
     return "the density is in kg/mm^3 or g/mm^3: give kg/m^3 with Pa and m, or t/mm^3 with MPa and mm";
+  if (speed > FASTEST && p->density > LIGHTEST_GRAMS && p->density < HEAVIEST_GRAMS)
+    return "the density is in g/cm^3: give kg/m^3 (steel 7850)";
   if (speed < SLOWEST) return "the modulus is in MPa or GPa: give Pa (steel 210e9)";
   if (PartSlowest(p) < SLOWEST) return "one of the moduli is in MPa or GPa: give all in Pa";
   if (longest > LARGEST_SI) return "the mesh is in mm: scale it to m, or give t/mm^3 and MPa";
