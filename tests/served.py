@@ -55,7 +55,7 @@ class Outcome:
 
     def __init__(self, status, stdout, stderr, several=False):
         self.status, self.stdout, self.stderr = status, stdout, stderr
-        lines = [line for line in stderr.split("\n") if line.strip()]
+        lines = [line for line in own_words(stderr).split("\n") if line.strip()]
         errors = [line for line in lines if not line.startswith("squeal: warning: ")]
         self.errors = several and [line for line in errors if not line.startswith(ENDED)] or errors
 
