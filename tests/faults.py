@@ -19,6 +19,11 @@ TOPS = ("src", "include", "tests", "scripts", "options", "meson.build", "meson_o
 FAULTS = (
     ("friction has the other sign in H", "src/operators/friction.c", "MatScale(WN, -1)", "MatScale(WN, 1)",
      "closed-1 preload"),
+    ("the arm of a tie turns the other way", "src/kernels/arm.h", "Vec3Cross(omega, g, moved)", "Vec3Cross(g, omega, moved)", "tie"),
+    ("a chain of ties ends after one step", "src/operators/dependents.c", "    if (left > 0) PetscCall(MatAXPY(o->Z",
+     "    if (left > 0 && power == o->E) PetscCall(MatAXPY(o->Z", "tie"),
+    ("forces on slaves of a tie do not reach supports", "src/contact/nodal.c",
+     "part[e] += link->follow[i][3 * d + e] * force[d];", "part[e] += 0 * force[d];", "tie"),
     ("0.99 mu in the cone of dynamics", "src/kernels/cone.h", ".mu = mu\n", ".mu = 0.99 * mu\n", "cone-1 project-1"),
     ("0.99 mu in the cone of statics", "src/kernels/coulomb.h", "-pair->mu * e[i] * law->P", "-0.99 * pair->mu * e[i] * law->P",
      "coulomb-1 static_stick"),
