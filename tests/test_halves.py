@@ -155,19 +155,20 @@ def points_apart(found, whole):
                for point in {row["point"] for row in whole})
 
 
-SWEEP = (f"-analysis sweep -sweep_parameter rub_mu -sweep_values 0.55,0.7 -sweep_rtol 1e-9 {PENALTY} {UNDAMPED} "
+SWEEP = (f"-analysis sweep -sweep_parameter rub_mu -sweep_values 0.55,0.7 {PENALTY} {UNDAMPED} "
          "-modes_band 500,28000")
+BASIS = "-sweep_rtol 1e-9"
 
 
 def sweeps(runs):
     """Sweeps of each parity against that of the whole: every eigenvalue, the onset and which parity it is of."""
-    whole = runs.rows("sweep_whole", "whole.msh", options=SWEEP, table="sweep")
+    whole = runs.rows("sweep_whole", "whole.msh", options=f"{SWEEP} {BASIS}", table="sweep")
     onsets = runs.table("sweep_whole", "onsets")
-    for name, more, ranks in (("sweep", "", 1), ("sweep2", "", 2), ("sweep_full", "-sweep_method full", 1)):
-        found = runs.rows(name, "whole.msh", options=f"{SWEEP} {more} -symmetry y", ranks=ranks, table="sweep")
+    for name, how, ranks in (("sweep", BASIS, 1), ("sweep2", BASIS, 2), ("sweep_full", "-sweep_method full", 1)):
+        found = runs.rows(name, "whole.msh", options=f"{SWEEP} {how} -symmetry y", ranks=ranks, table="sweep")
         yield f"{name}, {len(whole)} eigenvalues", points_apart(found, whole)
         yield f"{name}, modes of both parities", float({row["symmetry"] for row in found} != {"even", "odd"})
-        if more:
+        if how != BASIS:
             continue
         same = [float(row["critical_value"]) for row in runs.table(name, "onsets")
                 if row["confirmed"] == "1" and row["symmetry"] == "even"]
