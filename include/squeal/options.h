@@ -199,6 +199,10 @@ PetscErrorCode OptionsCheckUnknown(MPI_Comm comm, PetscErrorCode (*read_again)(M
 @*/
 PetscErrorCode OptionsCheckArguments(int argc, char *const argv[]);
 
+/*@ OptionsNamesFile - whether a word of the command line names an options file, and one of YAML whatever its ending. Not
+    collective. @*/
+PetscErrorCode OptionsNamesFile(const char name[], PetscBool *file, PetscBool *is_yaml);
+
 /*@ OptionsCheckFile - the same for one options file; YAML by its ending, or where is_yaml says so. Not collective. @*/
 PetscErrorCode OptionsCheckFile(const char file[], PetscBool is_yaml);
 

@@ -63,7 +63,8 @@ typedef struct {
   PetscInt   n_pairs;  /* local pairs */
   PetscInt   n_groups; /* groups that are closed at some points and open at others (penalty law only) */
   PetscInt  *group;    /* [n_pairs] -1 open, 0 closed, g = 1 .. n_groups closed as far as the parameter closed_g is 1 */
-  PetscBool *slips;    /* [n_pairs] of interfaces that hold by friction (-contact_kt): at its limit; NULL: all of them stick */
+  PetscBool *slips;    /* [n_pairs] of interfaces that hold by friction (-contact_kt): pairs at its limit, and those that -static_rows
+                          closed; NULL: all of them stick */
   PetscBool  has_forces; /* alike on all ranks: lambda_n is known; else -contact_force counts */
   PetscReal *lambda_n;   /* [n_pairs] normal forces, N, for the friction damping */
   Mat        geometric;  /* stiffness of all unknowns that the stress adds, symmetric; NULL for none */

@@ -10,8 +10,7 @@
 
 #define MAX_WORD 256
 
-/* Options that name a file: their value is read at once */
-static PetscErrorCode ArgumentNamesFile(const char name[], PetscBool *file, PetscBool *is_yaml)
+PetscErrorCode OptionsNamesFile(const char name[], PetscBool *file, PetscBool *is_yaml)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscStrcasecmp(name, "-options_file", file));
@@ -33,7 +32,7 @@ PetscErrorCode OptionsCheckArguments(int argc, char *const argv[])
                argv[i]);
     PetscCheck(!strchr(argv[i], '='), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "%s: write -NAME VALUE, with a space in place of =", argv[i]);
-    PetscCall(ArgumentNamesFile(argv[i], &file, &is_yaml));
+    PetscCall(OptionsNamesFile(argv[i], &file, &is_yaml));
     PetscCheck(!file || i + 1 < argc, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s has no value; give a file", argv[i]);
     if (i + 1 == argc) break;
     PetscCall(PetscOptionsValidKey(argv[i + 1], &is_next));

@@ -140,11 +140,13 @@ static PetscErrorCode FilesGetLists(MPI_Comm comm, char listed[][MAX_LIST])
   PetscCall(PetscGetArgs(&n, &word));
   for (int i = 1; i + 1 < n; i++) {
     PetscOptions file;
-    PetscBool    given;
+    PetscBool    given, is_file, is_yaml;
 
-    if (strncasecmp(word[i], "-options_file", 13)) continue;
+    PetscCall(OptionsNamesFile(word[i], &is_file, &is_yaml));
+    if (!is_file) continue;
     PetscCall(PetscOptionsCreate(&file));
-    PetscCall(PetscOptionsInsertFile(comm, file, word[i + 1], PETSC_TRUE));
+    PetscCall(is_yaml ? PetscOptionsInsertFileYAML(comm, file, word[i + 1], PETSC_TRUE)
+                      : PetscOptionsInsertFile(comm, file, word[i + 1], PETSC_TRUE));
     for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(lists); k++) {
       PetscCall(PetscOptionsGetString(file, NULL, lists[k], names, sizeof(names), &given));
       if (given && listed[k][0]) PetscCall(PetscStrlcat(listed[k], ",", MAX_LIST));
@@ -155,19 +157,40 @@ static PetscErrorCode FilesGetLists(MPI_Comm comm, char listed[][MAX_LIST])
   PetscFunctionReturn(0);
 }
 
+/* Whether an option without its dash, which begins with a name and _, is of another name of a list, which is longer */
+static PetscErrorCode OptionIsOfLonger(const char option[], size_t length, PetscBool *longer)
+{
+  char list[MAX_LIST];
+
+  PetscFunctionBeginUser;
+  *longer = PETSC_FALSE;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(lists); k++) {
+    char *name, *rest;
+
+    PetscCall(GivenText(lists[k], sizeof(list), list));
+    for (name = strtok_r(list, ", ", &rest); name; name = strtok_r(NULL, ", ", &rest))
+      if (strlen(name) > length && !strncasecmp(option, name, strlen(name)) && option[strlen(name)] == '_')
+        *longer = PETSC_TRUE;
+  }
+  PetscFunctionReturn(0);
+}
+
 /* The first option of a name that nobody has read, with its dash; empty for none */
 static PetscErrorCode UnreadFind(const char name[], char option[MAX_NAME])
 {
   const size_t length = strlen(name);
+  PetscBool    longer;
   PetscInt     n;
   char       **names, **values;
 
   PetscFunctionBeginUser;
   option[0] = '\0';
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
-  for (PetscInt i = 0; i < n && !option[0]; i++)
-    if (!strncasecmp(names[i], name, length) && names[i][length] == '_')
-      PetscCall(PetscSNPrintf(option, MAX_NAME, "-%s", names[i]));
+  for (PetscInt i = 0; i < n && !option[0]; i++) {
+    if (strncasecmp(names[i], name, length) || names[i][length] != '_') continue;
+    PetscCall(OptionIsOfLonger(names[i], length, &longer));
+    if (!longer) PetscCall(PetscSNPrintf(option, MAX_NAME, "-%s", names[i]));
+  }
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
   PetscFunctionReturn(0);
 }

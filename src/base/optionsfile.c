@@ -56,15 +56,14 @@ static PetscErrorCode YamlAddKey(YamlFile *f)
 static PetscErrorCode YamlCheckValue(const YamlFile *f, const char value[])
 {
   static const char *const nothing[] = {"", "~", "null", "Null", "NULL"};
-
-  const char     *last      = strrchr(f->key, '_');
-  const PetscBool is_number = last && last[1] && !last[1 + strspn(last + 1, "0123456789")] ? PETSC_TRUE : PETSC_FALSE;
+  const char              *last      = &f->key[f->level[f->depth - 1].prefix];
+  const PetscBool          is_number = last[0] && !last[strspn(last, "0123456789")] ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
   value += strspn(value, " \t\n");
   PetscCheck(value[0] || !is_number, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s:%zu: a value has a comma before %s: write 0.3 for 0,3, and several values in quotes, as \"0,3\"",
-             f->file, f->line, last + 1);
+             f->file, f->line, last);
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(nothing); i++)
     PetscCheck(strcmp(value, nothing[i]), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "%s:%zu: %s has no value; give one, or leave the key out", f->file, f->line, f->key);

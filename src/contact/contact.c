@@ -132,6 +132,9 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
   PetscCheck(c->kt == 0 || c->mu != 0, comm, PETSC_ERR_USER_INPUT,
              "-%s_kt%s %.6g does nothing without friction; give -%s_mu or leave it out", c->name,
              c->kt_per_area ? "_per_area" : "", (double)c->kt, c->name);
+  PetscCheck(c->kt == 0 || !c->damping, comm, PETSC_ERR_USER_INPUT,
+             "-%s_friction_damping does nothing where the contact holds by friction (-%s_kt%s); leave one out", c->name,
+             c->name, c->kt_per_area ? "_per_area" : "");
   PetscCheck(c->tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-%s_tolerance %.6g must be positive (m)", c->name,
              (double)c->tolerance);
   PetscCheck(c->force >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_force %.6g must not be negative (N)", c->name,
@@ -252,15 +255,9 @@ PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
     const ContactInterface *f         = &contact->interfaces[i];
     const PetscInt          flags[]   = {i, f->law, f->identify, f->damping};
-    const PetscReal         numbers[] = {f->mu,
-                                         f->mu_slope,
-                                         f->tolerance,
-                                         f->speed,
-                                 f->identify   ? 0
-                                         : f->per_area ? -f->kn
-                                                       : f->kn,
-                                 f->kt_per_area ? -f->kt : f->kt,
-                                         f->force};
+    const PetscReal         kn        = f->identify ? 0 : f->per_area ? -f->kn : f->kn;
+    const PetscReal         kt        = f->kt_per_area ? -f->kt : f->kt;
+    const PetscReal         numbers[] = {f->mu, f->mu_slope, f->tolerance, f->speed, kn, kt, f->force};
 
     PetscCall(ChecksumSetPart(c, "contact %s", f->name));
     PetscCall(ModelAddSetChecksum(contact->model, f->slave, PETSC_TRUE, c));

@@ -102,7 +102,9 @@ PetscErrorCode DynamicsSetFromOptions(Dynamics d)
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-ts_dt", &dt, &set));
   if (set) d->dt_asked = dt;
   if (set) PetscCall(OptionsRefuse(d->comm, "-ts_time_step", "the same as -ts_dt, which is given too; give one"));
-  if (d->dt_asked > 0) PetscCall(OptionsRefuse(d->comm, "-dynamics_step_fraction", "not used beside -ts_dt"));
+  if (d->dt_asked > 0)
+    PetscCall(OptionsRefuse(d->comm, "-dynamics_step_fraction",
+                            set ? "not used beside -ts_dt" : "not used beside -ts_time_step"));
   if (d->dt_asked == 0) PetscCall(OptionsRefuse(d->comm, "-dynamics_step_force", "not used without a -ts_dt"));
   PetscCheck(!PetscIsInfOrNanReal(d->dt_asked) && d->dt_asked >= 0, d->comm, PETSC_ERR_USER_INPUT,
              "-ts_dt %.6g must be a positive time (s)", (double)d->dt_asked);

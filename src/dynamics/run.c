@@ -33,14 +33,7 @@ PetscErrorCode DynamicsSetEndless(Dynamics d)
 
 PetscErrorCode DynamicsCheckTimes(Dynamics d, PetscReal end, PetscReal dt)
 {
-  const PetscReal n = PetscCeilReal(end / dt * (1 - 1e-12));
-  char            why[160];
-
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(why, sizeof(why),
-                          "longer than the run: no checkpoint would be kept before a signal; take at most %.0f steps",
-                          (double)n));
-  if ((PetscReal)d->checkpoint_interval > n) PetscCall(OptionsRefuse(d->comm, "-dynamics_checkpoint_interval", why));
   PetscCall(ExternalCheckLate(d->external, end, dt, LATE_ALL));
   for (PetscInt i = 0; i < d->n_interfaces; i++) {
     const ContactInterface *c = &d->interfaces[i];

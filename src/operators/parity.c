@@ -201,6 +201,8 @@ static PetscErrorCode ParityCopyState(Pencil whole, Pencil part)
   PetscCall(PetscArraycpy(part->parameters.p, whole->parameters.p, whole->parameters.n));
   PetscCall(PetscMalloc1(whole->n_pairs, &part->group));
   PetscCall(PetscArraycpy(part->group, whole->group, whole->n_pairs));
+  PetscCall(PetscMalloc1(whole->n_pairs, &part->slips));
+  PetscCall(PetscArraycpy(part->slips, whole->slips, whole->n_pairs));
   PetscCall(TermsAppend(&part->base, &whole->base));
   PetscCall(PencilGetMass(whole, &M));
   PetscCall(PetscObjectReference((PetscObject)M));

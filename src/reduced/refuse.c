@@ -15,8 +15,7 @@ PetscErrorCode ReducedRefuse(ReducedRun r)
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(r->run.model, &scene));
   PetscCall(ContactGetTies(r->run.contact, &n_ties, &tie));
-  PetscCheck(!n_ties, r->comm, PETSC_ERR_SUP,
-             "-ties %s: a reduced model knows no ties; -dynamics_model full does",
+  PetscCheck(!n_ties, r->comm, PETSC_ERR_SUP, "-ties %s: a reduced model knows no ties; -dynamics_model full does",
              n_ties ? tie[0].name : "");
   for (PetscInt i = 0; i < r->run.n_interfaces; i++) {
     PetscReal way;

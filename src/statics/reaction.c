@@ -40,9 +40,9 @@ static PetscErrorCode ReactionUnbalance(Statics s, Vec *local)
 static PetscErrorCode ReactionSum(Model model, const char set[], const PetscBool direction[3], Vec local,
                                   PetscReal sum[3])
 {
-  PetscScalar    *value;
-  PetscInt        n, *v;
-  MPI_Comm        comm;
+  PetscScalar *value;
+  PetscInt     n, *v;
+  MPI_Comm     comm;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetComm(model, &comm));

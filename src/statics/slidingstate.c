@@ -56,7 +56,7 @@ PetscErrorCode StaticsSolveSliding(Statics s, const PetscReal p[], SlidingState 
   state->has_forces = PETSC_TRUE;
   PetscCall(PetscMalloc1(state->n_pairs, &state->slips));
   for (PetscInt i = 0; i < state->n_pairs; i++)
-    state->slips[i] = s->state[i].status == CONTACT_SLIP && !s->rows.interface[s->rows.pair[i].interface].slides;
+    state->slips[i] = s->state[i].status != CONTACT_STICK && !s->rows.interface[s->rows.pair[i].interface].slides;
   PetscCall(PetscMalloc1(state->n_pairs, &state->lambda_n));
   for (PetscInt i = 0; i < state->n_pairs; i++) state->lambda_n[i] = s->state[i].lambda_n;
   state->n_parameters = s->n_parameters;

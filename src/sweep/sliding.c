@@ -187,9 +187,10 @@ PetscErrorCode SweepStatuses(Sweep sweep)
   }
   if (sweep->method == SWEEP_FULL) PetscFunctionReturn(0);
   PetscCall(StaticsIsAffine(sweep->statics, &affine));
-  PetscCheck(affine, sweep->comm, PETSC_ERR_SUP,
-             "-modes_contact static: pairs that hold by friction, friction damping, -static_geometric and -static_follower "
-             "change with the sliding state from point to point; give -sweep_method full");
+  PetscCheck(
+    affine, sweep->comm, PETSC_ERR_SUP,
+    "-modes_contact static: pairs that hold by friction, friction damping, -static_geometric and -static_follower "
+    "change with the sliding state from point to point; give -sweep_method full");
   for (PetscInt k = 0; k < grid->n_places; k++)
     PetscCall(SweepStatusSolve(sweep, &grid->place[k], &grid->place[k].status));
   PetscCall(ChangesBracket(sweep));

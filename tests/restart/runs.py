@@ -43,7 +43,7 @@ SCENES = {
 WATCHED = ("stays watched",)  # scenes with amplitudes of modes
 TABLES = ("transient.csv", "contact_pairs.csv", "circles.csv", "impulses.csv", "transient.xmf")
 RESTART = "-dynamics_restart"
-OFTEN, SELDOM = 200, 14000  # steps between checkpoints; a run has 14475
+OFTEN = 200  # steps between checkpoints
 PATIENCE = 240  # seconds
 
 
