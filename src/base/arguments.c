@@ -19,6 +19,14 @@ PetscErrorCode OptionsNamesFile(const char name[], PetscBool *file, PetscBool *i
   PetscFunctionReturn(0);
 }
 
+/* Whether a word has a control character, which would break the line of a message */
+static PetscBool WordHasControl(const char word[])
+{
+  for (const char *c = word; *c; c++)
+    if ((unsigned char)*c < ' ' || *c == 127) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 PetscErrorCode OptionsCheckArguments(int argc, char *const argv[])
 {
   PetscBool is_name, is_next, file, is_yaml;
@@ -26,6 +34,11 @@ PetscErrorCode OptionsCheckArguments(int argc, char *const argv[])
   PetscFunctionBeginUser;
   for (int i = 1; i < argc; i++) {
     PetscCall(PetscOptionsValidKey(argv[i], &is_name));
+    PetscCheck(
+      !WordHasControl(argv[i]), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+      "word %d of the command line has a character that cannot be printed where the name of an option is due: write "
+      "-NAME VALUE",
+      i);
     PetscCheck(is_name, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "'%s' belongs to no option: write -NAME VALUE, where VALUE is one word without spaces, and an options "
                "file as -options_file FILE",

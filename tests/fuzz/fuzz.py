@@ -35,6 +35,7 @@ import served  # noqa: E402
 from passed import Passed  # noqa: E402
 
 FINAL = {".csv", ".h5", ".xmf", ".bin"}
+INFINITE = 1e7  # times the lowest |lambda|: beside the inverse square of that one theirs is below rounding, as if there was no mass
 TOLERANCE = 1e-9
 
 
@@ -175,7 +176,8 @@ class Fuzz:
         got = [abs(complex(s, 2 * math.pi * f)) for s, f in zip(found["growth_rad_s"], found["freq_hz"])]
         floor = 1e-6 * max(expected)
         wanted = min(len(expected), 3)
-        if len(got) != wanted:
+        least = min(wanted, sum(value < INFINITE * expected[0] for value in expected)) if expected[0] else 0
+        if not least <= len(got) <= wanted:
             return f"{len(got)} modes, not {wanted}: {got} of {expected}"
         off = [(value, other) for value, other in zip(sorted(got), expected) if abs(value - other) > floor + 1e-6 * value]
         return f"eigenvalues {off} are not the lowest of the files: {expected}" if off else ""

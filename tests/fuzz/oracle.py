@@ -38,5 +38,9 @@ def read(path):
 
 
 def eigenvalues(K, M):
-    """kappa of K x = kappa M x."""
-    return np.sort_complex(np.linalg.eigvals(np.linalg.solve(M, K)))
+    """The finite kappa of K x = kappa M x; with M singular by inversion about a shift that is none of them."""
+    if np.linalg.matrix_rank(M) == len(M):
+        return np.sort_complex(np.linalg.eigvals(np.linalg.solve(M, K)))
+    shift = -0.123 * abs(K).max() / abs(M).max()
+    inverse = np.linalg.eigvals(np.linalg.solve(K - shift * M, M))
+    return np.sort_complex(shift + 1 / inverse[abs(inverse) > 1e-12 * abs(inverse).max()])
