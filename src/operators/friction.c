@@ -178,13 +178,10 @@ static PetscErrorCode HoldCreateWeights(Pencil pencil, const FrictionGroup *g, V
   PetscCall(MatCreateVecs(g->T, NULL, weights));
   PetscCall(VecGetOwnershipRange(*weights, &row, NULL));
   for (PetscInt i = 0; i < g->n; i++) {
-    const PetscInt p = g->pair[i];
+    const PetscInt  p     = g->pair[i];
+    const PetscReal holds = g->c->kt_per_area ? pairs[p].area : 1;
 
-    PetscCall(VecSetValue(*weights, row + i,
-                          pencil->slips[p]    ? 0
-                          : g->c->kt_per_area ? pairs[p].area
-                                              : 1,
-                          INSERT_VALUES));
+    if (!pencil->slips[p]) PetscCall(VecSetValue(*weights, row + i, holds, INSERT_VALUES));
   }
   PetscCall(VecAssemblyBegin(*weights));
   PetscCall(VecAssemblyEnd(*weights));
