@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Writes boxes, each of one kind of element and without nodes in common, as one Gmsh file.
 
-    boxes.py FILE NAME:KIND:x0,y0,z0:x1,y1,z1:nx,ny,nz [...] [--cylinder R]
+    boxes.py FILE NAME:KIND:x0,y0,z0:x1,y1,z1:nx,ny,nz [...] [--cylinder R] [--join NAME=SET,SET]
 
 Places in m, numbers of cells. A box makes the sets NAME (volume), NAME_left, NAME_right (least and largest x),
 NAME_front, NAME_back (y), NAME_bottom and NAME_top (z), and NAME_inside, the faces between the first two layers of
 cells along x. KIND as in tests/solids.py. --cylinder bends planes of equal z into cylinders, that of z = 0 to the
 radius R: with s = R + z and angle = y / R, y becomes s sin(angle), z s cos(angle) - R. --lean L,COT leans planes of x >= L
 above z = 0 over to the left, by z COT, and those before in proportion to x, so that what ends at L is a wedge.
+--join NAME=SET,SET makes a set of all faces of others.
 """
 
 import argparse
@@ -52,12 +53,15 @@ def main():
     parser.add_argument("boxes", nargs="+")
     parser.add_argument("--cylinder", type=float, metavar="R")
     parser.add_argument("--lean", default="0,0", metavar="L,COT")
+    parser.add_argument("--join", action="append", default=[], metavar="NAME=SET,SET")
     args = parser.parse_args()
     groups, x = [], {}
     for i, text in enumerate(args.boxes):
         more, places = box(text, 100000 * i)
         groups += more
         x.update(places)
+    for name, sets in (text.split("=") for text in args.join):
+        groups.append((2, name, [member for _, other, members in groups if other in sets.split(",") for member in members]))
     length, slope = map(float, args.lean.split(","))
     if slope:
         x = {p: np.array([a - max(z, 0) * slope * min(a / length, 1), y, z]) for p, (a, y, z) in x.items()}

@@ -117,27 +117,48 @@ static PetscErrorCode DependentsInject(Operators o, const Dependents *d)
   PetscFunctionReturn(0);
 }
 
-/* Raises an error where a chain of followers comes back to where it began: D^n y, of any numbers y, is then not 0 after as
-   many steps as there are lists */
+/* Keeps of y what follows some of what y has, which are never more; how many are left over all ranks */
+static PetscErrorCode ChainsShorten(const Dependents *d, Vec y, Vec product, PetscInt *left)
+{
+  const PetscScalar *to;
+  PetscScalar       *from;
+
+  PetscFunctionBeginUser;
+  *left = 0;
+  PetscCall(MatMult(d->D, y, product));
+  PetscCall(VecGetArrayRead(product, &to));
+  PetscCall(VecGetArray(y, &from));
+  for (PetscInt i = 0; i < d->n; i++) {
+    if (to[i] == 0) from[i] = 0;
+    *left += from[i] != 0;
+  }
+  PetscCall(VecRestoreArray(y, &from));
+  PetscCall(VecRestoreArrayRead(product, &to));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, left, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)y)));
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error where a chain of followers comes back to where it began: what is at the ends of chains is taken off
+   until none is left, or all that are follow one of themselves */
 static PetscErrorCode DependentsCheckChains(Operators o, const Dependents *d)
 {
   PetscScalar *y;
-  PetscReal    left;
-  Vec          from, to;
+  PetscInt     left, before;
+  Vec          from, product;
 
   PetscFunctionBeginUser;
-  PetscCall(MatCreateVecs(d->D, &from, &to));
+  PetscCall(MatCreateVecs(d->D, &from, &product));
   PetscCall(VecGetArrayWrite(from, &y));
   for (PetscInt i = 0; i < d->n; i++)
     y[i] = 1 + PetscSqrtReal((PetscReal)(d->first + i + 2)); /* no row takes it to 0 */
   PetscCall(VecRestoreArrayWrite(from, &y));
-  for (PetscInt k = 0; k <= d->n_lists; k++) {
-    PetscCall(MatMult(d->D, from, to));
-    PetscCall(VecSwap(from, to));
-  }
-  PetscCall(VecNorm(from, NORM_INFINITY, &left));
+  PetscCall(VecGetSize(from, &left));
+  do {
+    before = left;
+    PetscCall(ChainsShorten(d, from, product, &left));
+  } while (0 < left && left < before);
   PetscCall(VecDestroy(&from));
-  PetscCall(VecDestroy(&to));
+  PetscCall(VecDestroy(&product));
   PetscCheck(
     left == 0, o->comm, PETSC_ERR_USER_INPUT,
     "%s go round in a circle, so that nodes follow themselves: of two surfaces that are tied, let the same one "
@@ -167,23 +188,24 @@ static PetscErrorCode DependentsSum(Operators o, const Dependents *d)
 }
 
 /* In words, who is there */
-static PetscErrorCode DependentsName(Operators o, const RigidSet set[])
+static PetscErrorCode DependentsName(Operators o, PetscInt n_sets, const RigidSet set[])
 {
   const ContactTie *tie;
   PetscInt          n;
+  char              ties[80] = "", points[80] = "";
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetTies(o->contact, &n, &tie));
-  if (n)
-    PetscCall(PetscSNPrintf(o->dependent, sizeof(o->dependent), "-ties %s%s", tie[0].name, n > 1 ? " and others" : ""));
-  else
-    PetscCall(PetscSNPrintf(o->dependent, sizeof(o->dependent), "-points that are joined rigidly, by -%s_join rigid,",
-                            set[0].point->name));
+  if (n) PetscCall(PetscSNPrintf(ties, sizeof(ties), "-ties %s%s", tie[0].name, n > 1 ? " and others" : ""));
+  if (n_sets)
+    PetscCall(PetscSNPrintf(points, sizeof(points), "-points joined rigidly (%s%s)", set[0].point->name,
+                            n_sets > 1 ? " and others" : ""));
+  PetscCall(PetscSNPrintf(o->dependent, sizeof(o->dependent), "%s%s%s", ties, n && n_sets ? " or " : "", points));
   PetscFunctionReturn(0);
 }
 
-/* Z and E from the rows */
-static PetscErrorCode DependentsResolve(Operators o, PetscInt n_sets, const RigidSet set[], Dependents *d)
+/* Counts the rows, and checks that no two claim one */
+static PetscErrorCode DependentsCount(Operators o, PetscInt n_sets, const RigidSet set[], Dependents *d)
 {
   const Mesh *mesh;
 
@@ -195,9 +217,16 @@ static PetscErrorCode DependentsResolve(Operators o, PetscInt n_sets, const Rigi
   d->follows = o->follows;
   PetscCall(PetscCalloc2(d->n, &d->by, d->n, &d->count));
   for (PetscInt i = 0; i < d->n; i++) d->by[i] = -1;
-  PetscCall(DependentsName(o, set));
   PetscCall(DependentsAddRows(o, n_sets, set, d));
   PetscCall(DependentsCheck(o, n_sets, set, d));
+  PetscFunctionReturn(0);
+}
+
+/* Z and E from the rows, once they are counted */
+static PetscErrorCode DependentsResolve(Operators o, PetscInt n_sets, const RigidSet set[], Dependents *d)
+{
+  PetscFunctionBeginUser;
+  PetscCall(DependentsName(o, n_sets, set));
   PetscCall(DependentsCreate(o, d));
   PetscCall(DependentsAddRows(o, n_sets, set, d));
   PetscCall(MatAssemblyBegin(d->D, MAT_FINAL_ASSEMBLY));
@@ -206,7 +235,6 @@ static PetscErrorCode DependentsResolve(Operators o, PetscInt n_sets, const Rigi
   PetscCall(DependentsInject(o, d));
   PetscCall(DependentsSum(o, d));
   PetscCall(MatDestroy(&d->D));
-  PetscCall(PetscFree2(d->by, d->count));
   PetscFunctionReturn(0);
 }
 
@@ -219,8 +247,13 @@ PetscErrorCode OperatorsCreateDependents(Operators o)
   PetscFunctionBeginUser;
   PetscCall(RigidSetsCreate(o, &n_sets, &set));
   PetscCall(ContactGetTies(o->contact, &n_ties, &tie));
-  if (n_sets + n_ties)
-    PetscCall(DependentsResolve(o, n_sets, set, &(Dependents){.n_lists = n_sets + n_ties, .conflict = -1}));
+  if (n_sets + n_ties) {
+    Dependents d = {.n_lists = n_sets + n_ties, .conflict = -1};
+
+    PetscCall(DependentsCount(o, n_sets, set, &d));
+    if (!o->omit) PetscCall(DependentsResolve(o, n_sets, set, &d));
+    PetscCall(PetscFree2(d.by, d.count));
+  }
   PetscCall(RigidSetsDestroy(n_sets, set));
   PetscFunctionReturn(0);
 }

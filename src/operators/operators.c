@@ -102,7 +102,7 @@ PetscErrorCode OperatorsSetUp(Operators operators)
   PetscCall(EventBegin(EVENT_ASSEMBLE));
   if (operators->model) {
     PetscCall(OperatorsAssemble(operators));
-    if (!operators->omit) PetscCall(OperatorsCreateDependents(operators));
+    PetscCall(OperatorsCreateDependents(operators));
     PetscCall(OperatorsAddSpinParameters(operators));
     for (PetscInt i = 0; i < operators->parameters.n; i++) operators->parameters.list[i].body = PETSC_TRUE;
     PetscCall(OperatorsAddContactParameters(operators));
