@@ -91,13 +91,13 @@ typedef struct {
   PetscBool  slides;      /* every pair has a slip direction; known after ContactSetUp() */
 } ContactInterface;
 
-/* A tie: nodes of the slave follow the points of the master that they are nearest to (ContactLink) */
+/* A tie: nodes of the slave follow points of the master, their feet (ContactLink) */
 typedef struct {
   char     *name, *slave, *master; /* a set of nodes; a surface */
-  PetscReal distance;              /* nodes farther off find no foot, m; 0: 5 % of the size of the facet */
-  PetscBool free;                  /* these stay free, else they are an error */
-  PetscInt  n, n_far;              /* nodes that follow, and that stay free, over all ranks */
-  PetscReal offset;                /* largest distance of a node from its foot, m */
+  PetscReal distance;           /* nodes farther from their foot are too far off, m; 0: 5 % of the size of the facet */
+  PetscBool free;               /* these stay free, else they are an error */
+  PetscInt  n, n_common, n_far; /* nodes that follow, are nodes of both, are too far off, over all ranks */
+  PetscReal offset;             /* largest distance of a node from its foot, m */
 } ContactTie;
 
 /* A node that follows others, u = sum_i follow_i u_i: w_i times the identity where the surfaces touch, and more where a gap is
@@ -197,8 +197,8 @@ PetscErrorCode ContactNodalForces(Contact contact, const ContactState state[], V
 /*@ ContactGetTies - ties, none for NULL (borrowed). Not collective; after ContactSetFromOptions(). @*/
 PetscErrorCode ContactGetTies(Contact contact, PetscInt *n, const ContactTie **ties);
 
-/*@ ContactGetLinks - the nodes of this rank that ties make follow others, ordered by tie (borrowed). Not collective; after
-    ContactSetUp(). @*/
+/*@ ContactGetLinks - the nodes of this rank that ties make follow others, ordered by tie, none for NULL (borrowed). Not
+    collective; after ContactSetUp(). @*/
 PetscErrorCode ContactGetLinks(Contact contact, PetscInt *n, const ContactLink **links);
 
 /*@ ContactPassForces - of forces on all nodes, N, as in ContactNodalForces(), complete at every copy, moves those on nodes that

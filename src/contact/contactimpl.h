@@ -22,6 +22,8 @@ struct _p_Contact {
 
 /* pair.c - appends the pairs of one interface to contact->pairs */
 PETSC_INTERN PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface);
+/* pair.c - the largest value of all ranks, and its place, m. Collective. */
+PETSC_INTERN PetscErrorCode ContactShareWorst(MPI_Comm comm, PetscReal *value, PetscReal x[3]);
 
 /* tie.c - the list of ties. Collective. */
 extern const OptionsList    ties_list;

@@ -22,49 +22,57 @@ static PetscErrorCode PairAddForce(const ContactPair *pair, const ContactState *
   PetscFunctionReturn(0);
 }
 
-/* A vector of three zeros a node, ordered by the numbers of the nodes */
-static PetscErrorCode NodalCreate(Contact contact, Vec *forces)
+/* Three numbers a node, ordered by the numbers of the nodes, and the way to a local vector */
+typedef struct {
+  Vec        forces;
+  VecScatter way;
+} Nodal;
+
+static PetscErrorCode NodalCreate(Contact contact, Vec local, Nodal *nodal)
 {
   const Mesh *mesh;
   PetscInt    n_own = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(contact->model, &mesh));
-  for (PetscInt v = 0; v < mesh->n_nodes; v++) n_own += mesh->owned[v];
-  PetscCall(VecCreateMPI(contact->comm, 3 * n_own, PETSC_DETERMINE, forces));
-  PetscCall(VecSetBlockSize(*forces, 3));
-  PetscFunctionReturn(0);
-}
-
-/* Puts it, assembled, into a local vector, or adds it, and destroys it */
-static PetscErrorCode NodalMove(Contact contact, Vec *forces, InsertMode mode, Vec local)
-{
-  const Mesh *mesh;
-  VecScatter  scatter;
   IS          from;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
-  PetscCall(VecAssemblyBegin(*forces));
-  PetscCall(VecAssemblyEnd(*forces));
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) n_own += mesh->owned[v];
+  PetscCall(VecCreateMPI(contact->comm, 3 * n_own, PETSC_DETERMINE, &nodal->forces));
+  PetscCall(VecSetBlockSize(nodal->forces, 3));
   PetscCall(ISCreateBlock(PETSC_COMM_SELF, 3, mesh->n_nodes, mesh->number, PETSC_USE_POINTER, &from));
-  PetscCall(VecScatterCreate(*forces, from, local, NULL, &scatter));
-  PetscCall(VecScatterBegin(scatter, *forces, local, mode, SCATTER_FORWARD));
-  PetscCall(VecScatterEnd(scatter, *forces, local, mode, SCATTER_FORWARD));
-  PetscCall(VecScatterDestroy(&scatter));
+  PetscCall(VecScatterCreate(nodal->forces, from, local, NULL, &nodal->way));
   PetscCall(ISDestroy(&from));
-  PetscCall(VecDestroy(forces));
+  PetscFunctionReturn(0);
+}
+
+/* Assembles the forces and puts them into a local vector, or adds them */
+static PetscErrorCode NodalMove(const Nodal *nodal, InsertMode mode, Vec local)
+{
+  PetscFunctionBeginUser;
+  PetscCall(VecAssemblyBegin(nodal->forces));
+  PetscCall(VecAssemblyEnd(nodal->forces));
+  PetscCall(VecScatterBegin(nodal->way, nodal->forces, local, mode, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(nodal->way, nodal->forces, local, mode, SCATTER_FORWARD));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode NodalDestroy(Nodal *nodal)
+{
+  PetscFunctionBeginUser;
+  PetscCall(VecScatterDestroy(&nodal->way));
+  PetscCall(VecDestroy(&nodal->forces));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ContactNodalForces(Contact contact, const ContactState state[], Vec local)
 {
-  Vec forces;
+  Nodal nodal;
 
   PetscFunctionBeginUser;
-  PetscCall(NodalCreate(contact, &forces));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(PairAddForce(&contact->pairs[p], &state[p], forces));
-  PetscCall(NodalMove(contact, &forces, INSERT_VALUES, local));
+  PetscCall(NodalCreate(contact, local, &nodal));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(PairAddForce(&contact->pairs[p], &state[p], nodal.forces));
+  PetscCall(NodalMove(&nodal, INSERT_VALUES, local));
+  PetscCall(NodalDestroy(&nodal));
   PetscFunctionReturn(0);
 }
 
@@ -86,19 +94,31 @@ static PetscErrorCode LinkAddForce(const ContactLink *link, const PetscReal forc
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactPassForces(Contact contact, Vec local)
+/* Passes the forces on all slaves one step on; the largest that moves, N */
+static PetscErrorCode ForcesPass(Contact contact, const Nodal *nodal, Vec local, PetscReal *largest)
 {
   const PetscReal *force;
-  Vec              passed;
 
   PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < contact->n_ties; t++) { /* a slave of one may be a master of another */
-    PetscCall(NodalCreate(contact, &passed));
-    PetscCall(VecGetArrayRead(local, &force));
-    for (PetscInt l = 0; l < contact->n_links; l++)
-      PetscCall(LinkAddForce(&contact->links[l], &force[3 * contact->links[l].node], passed));
-    PetscCall(VecRestoreArrayRead(local, &force));
-    PetscCall(NodalMove(contact, &passed, ADD_VALUES, local));
-  }
+  PetscCall(VecSet(nodal->forces, 0));
+  PetscCall(VecGetArrayRead(local, &force));
+  for (PetscInt l = 0; l < contact->n_links; l++)
+    PetscCall(LinkAddForce(&contact->links[l], &force[3 * contact->links[l].node], nodal->forces));
+  PetscCall(VecRestoreArrayRead(local, &force));
+  PetscCall(NodalMove(nodal, ADD_VALUES, local));
+  PetscCall(VecNorm(nodal->forces, NORM_INFINITY, largest));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactPassForces(Contact contact, Vec local)
+{
+  PetscReal largest = 1;
+  Nodal     nodal;
+
+  PetscFunctionBeginUser;
+  if (!contact->n_ties) PetscFunctionReturn(0);
+  PetscCall(NodalCreate(contact, local, &nodal));
+  while (largest > 0) PetscCall(ForcesPass(contact, &nodal, local, &largest)); /* slaves of one may lead in another */
+  PetscCall(NodalDestroy(&nodal));
   PetscFunctionReturn(0);
 }

@@ -111,26 +111,35 @@ static PetscErrorCode SurfacesCheck(MPI_Comm comm, const ContactInterface *c, Pa
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ContactShareWorst(MPI_Comm comm, PetscReal *value, PetscReal x[3])
+{
+  struct {
+    double value;
+    int    rank;
+  } worst = {*value, 0};
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &worst.rank));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm));
+  PetscCallMPI(MPI_Bcast(x, 3, MPIU_REAL, worst.rank, comm));
+  *value = worst.value;
+  PetscFunctionReturn(0);
+}
+
 /* Raises the error for a node without partner, or where the slip that is given vanishes */
 static PetscErrorCode PartnerCheck(MPI_Comm comm, ContactInterface *c, PairFailure *failure)
 {
   const PetscBool given =
     Vec3Dot(c->slip, c->slip) > 0 || Vec3Dot(c->rotation, c->rotation) > 0 ? PETSC_TRUE : PETSC_FALSE;
-  struct {
-    double distance;
-    int    rank;
-  } worst = {failure->distance, 0};
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &worst.rank));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm));
-  PetscCallMPI(MPI_Bcast(failure->x, 3, MPIU_REAL, worst.rank, comm));
+  PetscCall(ContactShareWorst(comm, &failure->distance, failure->x));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failure->no_slip, 1, MPIU_REAL, MPI_MAX, comm));
-  PetscCheck(worst.distance <= c->tolerance, comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(failure->distance <= c->tolerance, comm, PETSC_ERR_USER_INPUT,
              "contact %s: the node of %s at %.6g, %.6g, %.6g m finds no partner on %s (nearest %.6g m away, "
              "-%s_tolerance is %.6g m); each node of the first of -%s_surfaces must lie on the second",
              c->name, c->slave, (double)failure->x[0], (double)failure->x[1], (double)failure->x[2], c->master,
-             worst.distance, c->name, (double)c->tolerance, c->name);
+             (double)failure->distance, c->name, (double)c->tolerance, c->name);
   PetscCall(SurfacesCheck(comm, c, failure));
   c->slides = failure->no_slip == 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(

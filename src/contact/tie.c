@@ -1,19 +1,23 @@
 /*
-   Ties: bodies whose meshes do not match, glued. Every node of the slave follows the point x(xi) of the master that it
-   is nearest to, its foot (foot.c), in all three directions,
+   Ties: bodies whose meshes do not match, glued. Every node of the slave follows one point x(xi) of the master, its foot,
+   in all three directions,
 
-      u_s = sum_i w_i(xi) u_i + omega x (x_s - x(xi)),
+      u_s = sum_i w_i(xi) u_i + omega x (x_s - x(xi)).
 
-   with the weights w_i of the facet, of second order too, and omega, the turning of the facet there (kernels/arm.h): a gap
-   between the surfaces stays as it is and turns with the master, as a rigid arm does, so that rigid motions of both bodies are
-   exact. Forces on the slave act on the nodes of the facet by the transpose.
+   The weights w_i are those of the facet, of second order too. omega is the turning of the facet there (kernels/arm.h). A
+   gap between the surfaces is a rigid arm, which turns with the master: rigid motions of both bodies are exact. Forces on
+   the slave act on the nodes of the facet by the transpose.
 
-   Where flat surfaces touch, displacements that are linear in x obey the tie. Uniform stress without traction on the surface is
-   exact on any two meshes; with traction where the slave's mesh refines the master's (sum_s w_i(x_s) int N_s dA = int N_i dA),
-   else only the total of the forces is, and stress is off beside the surface by an amount that vanishes with the mesh. Let
-   the finer of the two be the slave.
+   At its foot the normal of the master leads to the node. It is interpolated between the nodes of the surface (foot.c).
+   Where no normal does, the foot is the nearest point. -X_distance is the longest arm.
 
-   A direction in which a support holds the slave needs no equation where it holds the nodes of the facet as well.
+   Where flat surfaces touch, displacements that are linear in x obey the tie. Uniform stress along the surface is exact on
+   any two meshes. Traction on it is where the slave's mesh refines the master's: sum_s w_i(x_s) int N_s dA = int N_i dA.
+   Elsewhere its total is exact, and stress beside the surface is off by an amount that vanishes with the mesh. Let the
+   finer of the two be the slave.
+
+   Nodes of both surfaces need no equation. A direction in which a support holds the slave needs none where it holds the
+   nodes of the facet as well.
 */
 #include "contactimpl.h"
 #include "kernels/arm.h"
@@ -34,8 +38,9 @@ static PetscErrorCode TieRead(OptionsItems PetscOptionsObject, void *owner, void
   (void)owner;
   PetscCall(PetscOptionsStringArray("-surfaces", "slave,master: a set whose nodes follow, and a surface (required)",
                                     "contact.h", surfaces, &n, NULL));
-  PetscCall(PetscOptionsReal("-distance", "largest distance of a node of the slave, m; default 5 % of the facet's size",
-                             "contact.h", tie->distance, &tie->distance, &given));
+  PetscCall(PetscOptionsReal(
+    "-distance", "largest distance of a node of the slave from its foot, m; default 5 % of the facet's size",
+    "contact.h", tie->distance, &tie->distance, &given));
   PetscCall(PetscOptionsEList("-far", "nodes farther off are an error, or stay free", "contact.h", far, 2, far[0],
                               &left, NULL));
   PetscCheck(n == 2 && surfaces[0] && surfaces[1], comm, PETSC_ERR_USER_INPUT,
@@ -66,33 +71,27 @@ static void FailureTake(PetscReal value, const PetscReal x[3], PetscReal *worst,
   for (int d = 0; d < 3; d++) where[d] = x[d];
 }
 
-/* The worst of all ranks */
-static PetscErrorCode FailureShare(MPI_Comm comm, PetscReal *value, PetscReal x[3])
+/* The arm from a foot to a node, m; returns its length */
+static PetscReal FootGetArm(const ContactFacet *facet, const ContactFoot *foot, const PetscReal x[3], PetscReal arm[3])
 {
-  struct {
-    double value;
-    int    rank;
-  } worst = {*value, 0};
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &worst.rank));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm));
-  PetscCallMPI(MPI_Bcast(x, 3, MPIU_REAL, worst.rank, comm));
-  *value = worst.value;
-  PetscFunctionReturn(0);
-}
-
-/* The nodes that a link follows, with their matrices; those of no weight are left out */
-static PetscReal LinkSetMaster(const ContactSurface *surface, const ContactFoot *foot, ContactLink *link)
-{
-  const ContactFacet *facet = &surface->facet[foot->facet];
-  PetscReal           w[CONTACT_MAX_MASTER], A[CONTACT_MAX_MASTER][9], point[3], arm[3], length;
+  PetscReal w[CONTACT_MAX_MASTER], point[3], length;
 
   FacetWeights(facet->n, foot->natural, w);
   FacetSum(facet->n, w, (const double(*)[3])facet->x, point);
-  for (int d = 0; d < 3; d++) arm[d] = link->x[d] - point[d];
+  for (int d = 0; d < 3; d++) arm[d] = x[d] - point[d];
   length = Vec3Length(arm);
-  if (length < TIE_TOUCHES * facet->size) length = arm[0] = arm[1] = arm[2] = 0;
+  if (length < TIE_TOUCHES * facet->size) arm[0] = arm[1] = arm[2] = 0;
+  return length;
+}
+
+/* The nodes that a link follows, with their matrices; those of no weight are left out */
+static void LinkSetMaster(const ContactSurface *surface, const ContactFoot *foot, const PetscReal arm[3],
+                          ContactLink *link)
+{
+  const ContactFacet *facet = &surface->facet[foot->facet];
+  PetscReal           w[CONTACT_MAX_MASTER], A[CONTACT_MAX_MASTER][9];
+
+  FacetWeights(facet->n, foot->natural, w);
   FacetArm(facet->n, (const double(*)[3])facet->x, foot->natural, arm, A);
   for (int i = 0; i < facet->n; i++) {
     PetscReal size = 0;
@@ -104,7 +103,6 @@ static PetscReal LinkSetMaster(const ContactSurface *surface, const ContactFoot 
     link->weight[link->n_master]   = w[i];
     link->corner[link->n_master++] = surface->vertex[facet->node[i]];
   }
-  return length;
 }
 
 /* Whether it is a node of both surfaces, which needs no link */
@@ -138,19 +136,19 @@ typedef struct {
   TieFailure     failure;
 } TieWork;
 
-/* Whether there is a foot that is near enough */
-static PetscBool FootIsNear(const ContactTie *tie, const ContactSurface *master, const ContactFoot *foot)
+/* The longest arm that is allowed on a facet, m */
+static PetscReal TieReach(const ContactTie *tie, const ContactFacet *facet)
 {
-  if (foot->facet < 0) return PETSC_FALSE;
-  return foot->distance <= (tie->distance > 0 ? tie->distance : TIE_SHARE * master->facet[foot->facet].size);
+  return tie->distance > 0 ? tie->distance : TIE_SHARE * facet->size;
 }
 
 /* The link of local node v; none for one that is too far off, or common to both */
 static void LinkMake(TieWork *work, PetscInt v, ContactLink *link)
 {
-  ContactTie *tie = &work->tie;
-  ContactFoot foot;
-  PetscReal   length;
+  ContactTie         *tie = &work->tie;
+  const ContactFacet *facet;
+  ContactFoot         foot;
+  PetscReal           arm[3];
 
   link->node     = v;
   link->vertex   = work->mesh->number[v];
@@ -160,37 +158,46 @@ static void LinkMake(TieWork *work, PetscInt v, ContactLink *link)
     link->slave[d] = work->mesh->unknown[3 * v + d];
   }
   ContactFootFind(&work->master, link->x, &foot);
-  if (!FootIsNear(tie, &work->master, &foot)) {
+  facet = foot.facet < 0 ? NULL : &work->master.facet[foot.facet];
+  if (facet) foot.distance = FootGetArm(facet, &foot, link->x, arm);
+  if (!facet || foot.distance > TieReach(tie, facet)) {
     tie->n_far++;
     FailureTake(foot.distance, link->x, &work->failure.distance, work->failure.x);
     return;
   }
-  tie->n++;
-  length = LinkSetMaster(&work->master, &foot, link);
+  LinkSetMaster(&work->master, &foot, arm, link);
   if (LinkIsCommon(link)) {
+    tie->n_common++;
     link->n_master = 0;
     return;
   }
-  tie->offset = PetscMax(tie->offset, length);
+  tie->n++;
+  tie->offset = PetscMax(tie->offset, foot.distance);
   FailureTake(LinkDropHeld(link) ? 1 : 0, link->x, &work->failure.held, work->failure.held_x);
 }
 
 /* Raises the errors of one tie, whose counts are those of all ranks */
 static PetscErrorCode TieCheck(MPI_Comm comm, const ContactTie *tie, TieFailure *failure)
 {
-  char words[64] = "(5 % of a facet)";
+  const PetscInt all       = tie->n + tie->n_common + tie->n_far;
+  char           words[64] = "(5 % of a facet)";
 
   PetscFunctionBeginUser;
   if (tie->distance > 0) PetscCall(PetscSNPrintf(words, sizeof(words), "%.6g m", (double)tie->distance));
-  PetscCall(FailureShare(comm, &failure->distance, failure->x));
-  PetscCall(FailureShare(comm, &failure->held, failure->held_x));
+  PetscCall(ContactShareWorst(comm, &failure->distance, failure->x));
+  PetscCall(ContactShareWorst(comm, &failure->held, failure->held_x));
   PetscCheck(
-    tie->n_far == 0 || (tie->free && tie->n), comm, PETSC_ERR_USER_INPUT,
+    tie->n_far == 0 || (tie->free && tie->n + tie->n_common), comm, PETSC_ERR_USER_INPUT,
     "tie %s: %" PetscInt_FMT " of %" PetscInt_FMT
     " nodes of %s are farther from %s than -%s_distance %s; the one at %.6g, %.6g, %.6g m is %.6g m away; give a "
     "larger one, a set of the nodes that touch, or -%s_far free",
-    tie->name, tie->n_far, tie->n + tie->n_far, tie->slave, tie->master, tie->name, words, (double)failure->x[0],
-    (double)failure->x[1], (double)failure->x[2], (double)failure->distance, tie->name);
+    tie->name, tie->n_far, all, tie->slave, tie->master, tie->name, words, (double)failure->x[0], (double)failure->x[1],
+    (double)failure->x[2], (double)failure->distance, tie->name);
+  PetscCheck(tie->n || !tie->n_common, comm, PETSC_ERR_USER_INPUT,
+             "tie %s glues nothing: %" PetscInt_FMT
+             " nodes of %s are nodes of %s as well; leave it out, or give each body "
+             "nodes of its own there",
+             tie->name, tie->n_common, tie->slave, tie->master);
   PetscCheck(failure->held == 0, comm, PETSC_ERR_USER_INPUT,
              "tie %s: a support or motion holds the node of %s at %.6g, %.6g, %.6g m in a direction in which the nodes "
              "of %s beside it are free: let it hold both, or swap -%s_surfaces",
@@ -200,7 +207,7 @@ static PetscErrorCode TieCheck(MPI_Comm comm, const ContactTie *tie, TieFailure 
     PetscCall(PetscFPrintf(comm, stderr,
                            "squeal: warning: tie %s: %" PetscInt_FMT " of %" PetscInt_FMT
                            " nodes of %s are too far off %s, and stay free\n",
-                           tie->name, tie->n_far, tie->n + tie->n_far, tie->slave, tie->master));
+                           tie->name, tie->n_far, all, tie->slave, tie->master));
   PetscFunctionReturn(0);
 }
 
@@ -244,7 +251,7 @@ static PetscErrorCode TieSetUp(Contact contact, PetscInt t)
   }
   PetscCall(PetscFree(vertex));
   PetscCall(ContactSurfaceDestroy(&work.master));
-  PetscCallMPI(MPI_Allreduce(&work.tie.n, &tie->n, 2, MPIU_INT, MPI_SUM, contact->comm));
+  PetscCallMPI(MPI_Allreduce(&work.tie.n, &tie->n, 3, MPIU_INT, MPI_SUM, contact->comm));
   PetscCallMPI(MPI_Allreduce(&work.tie.offset, &tie->offset, 1, MPIU_REAL, MPI_MAX, contact->comm));
   PetscCall(TieCheck(contact->comm, tie, &work.failure));
   PetscCall(TieCheckMotions(contact, tie, tie->slave));
@@ -270,8 +277,8 @@ PetscErrorCode ContactGetTies(Contact contact, PetscInt *n, const ContactTie **t
 PetscErrorCode ContactGetLinks(Contact contact, PetscInt *n, const ContactLink **links)
 {
   PetscFunctionBeginUser;
-  *n     = contact->n_links;
-  *links = contact->links;
+  *n     = contact ? contact->n_links : 0;
+  *links = contact ? contact->links : NULL;
   PetscFunctionReturn(0);
 }
 
@@ -300,8 +307,11 @@ PetscErrorCode ContactTiesView(Contact contact, PetscViewer viewer)
 
     PetscCall(ModelGetUnit(contact->model, "m", &unit));
     PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "tie %s: %" PetscInt_FMT " nodes of %s follow %s, the farthest %.6g %s off it\n",
+                                     "tie %s: %" PetscInt_FMT " nodes of %s follow %s, the farthest %.6g %s off it",
                                      tie->name, tie->n, tie->slave, tie->master, (double)tie->offset, unit));
+    if (tie->n_common)
+      PetscCall(PetscViewerASCIIPrintf(viewer, " (%" PetscInt_FMT " are nodes of both)", tie->n_common));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
     if (tie->n_far)
       PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " nodes of %s are farther off, and stay free\n",
                                        tie->n_far, tie->slave));
