@@ -197,8 +197,12 @@ PETSC_INTERN void PointInertia(const Joint *point, PetscReal W[36]);
 PETSC_INTERN PetscErrorCode RigidPointSetUp(Bodies bodies, BodyJoint *joint);
 PETSC_INTERN PetscErrorCode RigidPointsAdvance(Bodies bodies, PetscReal f[]);
 
-/* tiednode.c - matrices of ties, after the last BodiesHold(); forces in the place of those on their nodes, or motions */
-PETSC_INTERN PetscErrorCode TiedSetUp(Bodies bodies, PetscInt n_contact, const PetscInt contact[]);
+/* What moves a local node besides its cells: bits */
+enum { BODIES_IN_CONTACT = 1, BODIES_AT_RIGID = 2, BODIES_AT_HEAVY = 4 };
+
+/* tiednode.c - matrices of ties, after the last BodiesHold(), where none of their nodes, whose bits are in mark [n_nodes],
+   moves otherwise; forces in the place of those on their nodes, or motions */
+PETSC_INTERN PetscErrorCode TiedSetUp(Bodies bodies, const unsigned char mark[]);
 PETSC_INTERN PetscErrorCode TiedApply(Bodies bodies, PetscBool forces, PetscReal x[]);
 PETSC_INTERN PetscErrorCode TiedDestroy(Tied *tied);
 

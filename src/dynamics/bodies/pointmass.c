@@ -34,13 +34,19 @@ PetscReal PointKinetic(const Joint *joint, const PetscReal q[6])
 /* What a node of a point with a mass must not be */
 enum { NODE_DRIVEN, NODE_IN_CONTACT, NODE_OF_RIGID, N_NODE_FAULTS };
 
-/* Whether a node is one of a point that is joined rigidly */
-static PetscBool NodeIsRigid(Bodies b, PetscInt v)
+/* Marks the local nodes [n_nodes] that contact forces act on, contact [n_contact], and those of points */
+static PetscErrorCode NodesMark(Bodies b, PetscInt n_contact, const PetscInt contact[], unsigned char **mark)
 {
-  for (PetscInt m = 0; m < b->n_joints; m++)
-    for (PetscInt k = 0; k < b->joint[m].n && b->joint[m].like->rigid; k++)
-      if (b->joint[m].vertex[k] == v) return PETSC_TRUE;
-  return PETSC_FALSE;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(b->mesh->n_nodes, mark));
+  for (PetscInt i = 0; i < n_contact; i++) (*mark)[contact[i]] |= BODIES_IN_CONTACT;
+  for (PetscInt m = 0; m < b->n_joints; m++) {
+    const BodyJoint *joint = &b->joint[m];
+
+    for (PetscInt i = 0; i < joint->n; i++)
+      (*mark)[joint->vertex[i]] |= joint->like->rigid ? BODIES_AT_RIGID : joint->heavy ? BODIES_AT_HEAVY : 0;
+  }
+  PetscFunctionReturn(0);
 }
 
 /* Whether a motion drives direction i % 3 of node i / 3 of a joint: it has no mass of its own, and no support holds it */
@@ -53,28 +59,26 @@ static PetscBool NodeIsDriven(Bodies b, const BodyJoint *joint, PetscInt i)
   return b->layout.minv[JointAt(&b->layout, joint, i)] == 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Which of the faults the local nodes of a joint have; contact [n_contact] = nodes that contact forces act on */
-static void PointFindFaults(Bodies b, const BodyJoint *joint, PetscInt n_contact, const PetscInt contact[],
-                            PetscInt fault[N_NODE_FAULTS])
+/* Which of the faults the local nodes of a joint have */
+static void PointFindFaults(Bodies b, const BodyJoint *joint, const unsigned char mark[], PetscInt fault[N_NODE_FAULTS])
 {
   for (PetscInt i = 0; i < 3 * joint->n; i++)
     if (NodeIsDriven(b, joint, i)) fault[NODE_DRIVEN] = 1;
   for (PetscInt i = 0; i < joint->n; i++) {
-    for (PetscInt k = 0; k < n_contact; k++)
-      if (contact[k] == joint->vertex[i]) fault[NODE_IN_CONTACT] = 1;
-    if (joint->heavy && NodeIsRigid(b, joint->vertex[i])) fault[NODE_OF_RIGID] = 1;
+    if (mark[joint->vertex[i]] & BODIES_IN_CONTACT) fault[NODE_IN_CONTACT] = 1;
+    if (joint->heavy && mark[joint->vertex[i]] & BODIES_AT_RIGID) fault[NODE_OF_RIGID] = 1;
   }
 }
 
 /* Raises an error for nodes of a point with a mass that a motion drives, or that contact forces act on */
-static PetscErrorCode PointCheckNodes(Bodies b, const BodyJoint *joint, PetscInt n_contact, const PetscInt contact[])
+static PetscErrorCode PointCheckNodes(Bodies b, const BodyJoint *joint, const unsigned char mark[])
 {
   PetscInt     fault[N_NODE_FAULTS] = {0};
   const Joint *like                 = joint->like;
   const char  *what                 = like->rigid ? "is joined rigidly" : "has a mass";
 
   PetscFunctionBeginUser;
-  PointFindFaults(b, joint, n_contact, contact, fault);
+  PointFindFaults(b, joint, mark, fault);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, fault, N_NODE_FAULTS, MPIU_INT, MPI_MAX, b->comm));
   PetscCheck(
     !fault[NODE_OF_RIGID], b->comm, PETSC_ERR_SUP,
@@ -155,14 +159,16 @@ static PetscErrorCode PointsGetReaction(Bodies b, const PetscInt heavy[], const 
 
 PetscErrorCode BodiesSetPoints(Bodies b, PetscInt n_contact, const PetscInt contact[])
 {
-  PetscInt  *heavy;
-  PetscReal *S;
+  PetscInt      *heavy;
+  PetscReal     *S;
+  unsigned char *mark;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(b->n_joints, &heavy));
+  PetscCall(NodesMark(b, n_contact, contact, &mark));
   for (PetscInt m = 0; m < b->n_joints; m++) {
     if (!b->joint[m].heavy && !b->joint[m].like->rigid) continue;
-    PetscCall(PointCheckNodes(b, &b->joint[m], n_contact, contact));
+    PetscCall(PointCheckNodes(b, &b->joint[m], mark));
     if (b->joint[m].like->rigid) PetscCall(RigidPointSetUp(b, &b->joint[m]));
     if (b->joint[m].heavy) heavy[b->n_heavy++] = m;
   }
@@ -174,7 +180,8 @@ PetscErrorCode BodiesSetPoints(Bodies b, PetscInt n_contact, const PetscInt cont
     PetscCall(PetscFree(S));
   }
   PetscCall(PetscFree(heavy));
-  PetscCall(TiedSetUp(b, n_contact, contact));
+  PetscCall(TiedSetUp(b, mark));
+  PetscCall(PetscFree(mark));
   PetscFunctionReturn(0);
 }
 

@@ -127,9 +127,8 @@ static PetscErrorCode TiedFactor(Bodies b, Tied *t)
 /* What a node of a tie must not be */
 enum { TIED_HELD, TIED_IN_CONTACT, TIED_AT_POINT, N_TIED_FAULTS };
 
-/* Which of the faults the local nodes have; contact [n_contact] = nodes that contact forces act on */
-static void TiedFindFaults(Bodies b, const Tied *t, PetscInt n_contact, const PetscInt contact[],
-                           PetscInt fault[N_TIED_FAULTS])
+/* Which of the faults the local nodes have */
+static void TiedFindFaults(Bodies b, const Tied *t, const unsigned char mark[], PetscInt fault[N_TIED_FAULTS])
 {
   for (PetscInt k = 0; k < t->n; k++) {
     const PetscInt v = t->vertex[k];
@@ -137,23 +136,20 @@ static void TiedFindFaults(Bodies b, const Tied *t, PetscInt n_contact, const Pe
     if (v < 0) continue;
     for (int j = 0; j < 3; j++)
       if (b->layout.minv[b->layout.at[v] + j * b->layout.step[v]] == 0) fault[TIED_HELD] = 1;
-    for (PetscInt i = 0; i < n_contact; i++)
-      if (contact[i] == v) fault[TIED_IN_CONTACT] = 1;
-    for (PetscInt m = 0; m < b->n_joints; m++)
-      for (PetscInt i = 0; i < b->joint[m].n && (b->joint[m].heavy || b->joint[m].like->rigid); i++)
-        if (b->joint[m].vertex[i] == v) fault[TIED_AT_POINT] = 1;
+    if (mark[v] & BODIES_IN_CONTACT) fault[TIED_IN_CONTACT] = 1;
+    if (mark[v] & (BODIES_AT_RIGID | BODIES_AT_HEAVY)) fault[TIED_AT_POINT] = 1;
   }
 }
 
 /* Raises the errors for nodes of ties that something else moves as well */
-static PetscErrorCode TiedCheckNodes(Bodies b, const Tied *t, PetscInt n_contact, const PetscInt contact[])
+static PetscErrorCode TiedCheckNodes(Bodies b, const Tied *t, const unsigned char mark[])
 {
   static const char *const what[N_TIED_FAULTS]  = {"supports or motions hold", "a contact surface has",
                                                    "a point that has a mass, or is joined rigidly, has"};
   PetscInt                 fault[N_TIED_FAULTS] = {0};
 
   PetscFunctionBeginUser;
-  TiedFindFaults(b, t, n_contact, contact, fault);
+  TiedFindFaults(b, t, mark, fault);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, fault, N_TIED_FAULTS, MPIU_INT, MPI_MAX, b->comm));
   for (int i = 0; i < N_TIED_FAULTS; i++)
     PetscCheck(
@@ -163,7 +159,7 @@ static PetscErrorCode TiedCheckNodes(Bodies b, const Tied *t, PetscInt n_contact
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode TiedSetUp(Bodies b, PetscInt n_contact, const PetscInt contact[])
+PetscErrorCode TiedSetUp(Bodies b, const unsigned char mark[])
 {
   Tied              *t = &b->tied;
   const ContactLink *own;
@@ -178,7 +174,7 @@ PetscErrorCode TiedSetUp(Bodies b, PetscInt n_contact, const PetscInt contact[])
   PetscCall(PetscMalloc2(n_links, &slave, CONTACT_MAX_MASTER * n_links, &master));
   if (n_links) {
     PetscCall(TiedFindNodes(b, n_links, links, t, slave, master));
-    PetscCall(TiedCheckNodes(b, t, n_contact, contact));
+    PetscCall(TiedCheckNodes(b, t, mark));
     PetscCall(TiedCountColumns(b, n_links, links, slave, master, t));
     PetscCall(TiedCreateMap(n_links, links, slave, master, t));
     PetscCall(TiedFactor(b, t));
