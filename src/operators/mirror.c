@@ -36,8 +36,9 @@ PetscErrorCode MirrorGetRow(Mat R, PetscInt row, PetscInt *column, PetscReal *si
 /* R becomes E' R E, in the unknowns that constraints leave */
 static PetscErrorCode MirrorProject(Pencil pencil, const ModelPlane *plane, Mat *R)
 {
-  PetscInt first, last, wrong = 0, column;
-  Mat      RE, projected;
+  const Operators o = pencil->operators;
+  PetscInt        first, last, wrong = 0, column;
+  Mat             RE, projected;
 
   PetscFunctionBeginUser;
   if (!pencil->E) PetscFunctionReturn(0);
@@ -55,10 +56,14 @@ static PetscErrorCode MirrorProject(Pencil pencil, const ModelPlane *plane, Mat 
     if (sign == 0) wrong = 1;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &wrong, 1, MPIU_INT, MPI_MAX, pencil->comm));
+  PetscCheck(!wrong || !o->Z, pencil->comm, PETSC_ERR_SUP,
+             "-symmetry %c: what %s leave is not its own mirror image: both surfaces of a tie must be, and -points "
+             "that are joined rigidly are not supported with it",
+             "xyz"[plane->axis], o->dependent);
   PetscCheck(!wrong, pencil->comm, PETSC_ERR_SUP,
-             "-symmetry %c: what constraints leave is not its own mirror image: %s", "xyz"[plane->axis],
-             pencil->operators->Z ? MIRROR_NO_DEPENDENTS
-                                  : "slip directions of -contact_law constraint must lie in the plane");
+             "-symmetry %c: what constraints leave is not its own mirror image: slip directions of -contact_law "
+             "constraint must lie in the plane",
+             "xyz"[plane->axis]);
   PetscFunctionReturn(0);
 }
 

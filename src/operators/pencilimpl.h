@@ -53,7 +53,7 @@ struct _p_Pencil {
 /* pairrows.c - forms both factors of the unsymmetric stiffness at the present point, where they are not there yet */
 PETSC_INTERN PetscErrorCode PencilFormFactors(Pencil pencil);
 
-#define MIRROR_NO_DEPENDENTS "-points that are joined rigidly and -ties are not supported with it"
+#define MIRROR_NO_DEPENDENTS "-points that are joined rigidly and -ties are not supported with it in statics"
 
 /* mirror.c - R of each plane in the unknowns of the pencil, once; raises an error where the scene is not its own image at
    the present point */
