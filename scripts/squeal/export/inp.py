@@ -103,8 +103,7 @@ def pair_cards(contact):
 def tie_cards(deck):
     """Each node of the slave follows the facet below it; none is moved."""
     for tie in deck.ties:
-        tolerance = f", POSITION TOLERANCE={real(tie.distance)}" if tie.distance else ""
-        yield from (f"*TIE, NAME={tie.name}, ADJUST=NO{tolerance}", f"{tie.slave}, {tie.master}")
+        yield from (f"*TIE, NAME={tie.name}, ADJUST=NO, POSITION TOLERANCE={real(tie.distance)}", f"{tie.slave}, {tie.master}")
 
 
 def frequency_cards(deck, perturbed=False):

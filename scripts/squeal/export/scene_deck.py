@@ -13,6 +13,7 @@ from .shares import face_shares, set_shares
 KINDS = {"tet4": "C3D4", "tet10": "C3D10", "wedge6": "C3D6", "wedge15": "C3D15", "hex8": "C3D8I", "hex20": "C3D20"}
 DIFFERS = {"C3D10": "C3D10 integrates its mass by 4 points alone, which moves frequencies; squeal's tet10 is exact",
            "C3D8I": "C3D8I has incompatible modes of its own, squeal's hex8 those of QM6"}
+TIE_SHARE = 0.05  # of the size of a facet: how far a tie reaches by itself (src/contact/tie.c)
 AXES = {"x": 0, "y": 1, "z": 2}
 
 
@@ -70,6 +71,10 @@ class Builder:
     def face_nodes(self, name):
         """All nodes of the faces of a set, by type, in Gmsh's order."""
         return [nodes for _, nodes in nodes_by_kind(self.deck, self.faces(name))]
+
+    def largest_face(self, name):
+        """Square root of the area of the largest face of a set."""
+        return max(face_shares(self.x[nodes], False).sum(axis=1).max() for nodes in self.face_nodes(name)) ** 0.5
 
     def edge_nodes(self, name):
         """The same of its edges: ends, and the middle of second order."""
@@ -220,9 +225,10 @@ def add_ties(build):
             build.notes.append(f"tie {owner}: {names[0]} has no faces; not in the deck, the bodies stay apart")
             continue
         slave, master = (build.surface(name, f"-{owner}_surfaces") for name in names)
-        deck.ties.append(Tie(owner, slave, master, Place(owner, 0), f"tie {owner}", options.number(f"{owner}_distance", "0")))
+        distance = options.number(f"{owner}_distance", "0") or TIE_SHARE * build.largest_face(master)
+        deck.ties.append(Tie(owner, slave, master, Place(owner, 0), f"tie {owner}", distance))
         options.text(f"{owner}_far")
-        build.notes.append(f"tie {owner}: across a gap CalculiX has no arm that turns with the surface")
+        build.notes.append(f"tie {owner}: reaches over {distance:.6g}; across a gap CalculiX has no arm that turns with the surface")
 
 
 def contact_stiffness(build, owner, slave):
