@@ -21,7 +21,7 @@ FAULTS = (
      "closed-1 preload"),
     ("pairs at the limit of friction hold as those that stick do", "src/operators/friction.c", "if (!pencil->slips[p])",
      "if (row >= 0)", "static_two_contacts"),
-    ("the arm of a tie turns the other way", "src/kernels/arm.h", "Vec3Cross(omega, g, moved)", "Vec3Cross(g, omega, moved)", "tie"),
+    ("the arm of a tie turns the other way", "src/kernels/arm.h", "Vec3Cross(omega, g, moved)", "Vec3Cross(g, omega, moved)", "tie arm-1"),
     ("a chain of ties ends after one step", "src/operators/dependents.c", "    if (left > 0) PetscCall(MatAXPY(o->Z",
      "    if (left > 0 && power == o->E) PetscCall(MatAXPY(o->Z", "tie"),
     ("forces on slaves of a tie do not reach supports", "src/contact/nodal.c",
