@@ -10,7 +10,8 @@
    elsewhere), and no point does by the estimate with all corrections so far (points.c).
 
    Corrections of one point tell little of the error at others. Before it ends, the points farthest from all others are
-   therefore looked at with the factors of the last one, a block solve each, which estimates the error from then on.
+   therefore looked at with the factors of the last one, a block solve each, which estimates the error from then on. Of two
+   points alone both are full solutions, which say nothing of what lies between: there the middle is looked at.
 */
 #include "greedywork.h"
 
@@ -75,24 +76,47 @@ static PetscErrorCode PointNext(GreedyWork *run, PetscInt *next)
   PetscFunctionReturn(0);
 }
 
+/* Place between the first two points, in the measure of PointDistance() */
+static void PointsMiddle(const GreedyWork *run, PetscReal middle[])
+{
+  const PetscInt   n = run->basis->reduced.n_parameters;
+  const PetscReal *a = run->points, *b = &run->points[n];
+
+  for (PetscInt k = 0; k < n; k++) middle[k] = run->scale[k] < 0 ? PetscSqrtReal(a[k] * b[k]) : 0.5 * (a[k] + b[k]);
+}
+
+/* Where to look: at the point farthest from all others; of two then at the middle, for right and for left vectors; NULL for
+   nowhere more */
+static const PetscReal *LookNext(const GreedyWork *run, PetscInt look, const PetscReal middle[])
+{
+  PetscReal farthest;
+  PetscInt  i;
+
+  i = PointFarthest(run, &farthest);
+  if (farthest > 0) return &run->points[i * run->basis->reduced.n_parameters];
+  return run->n == 2 && look < 3 ? middle : NULL;
+}
+
 /* Looks at the points farthest from all others with the factors of the last full solution */
 static PetscErrorCode PointsLook(GreedyWork *run)
 {
   Greedy *const   g         = run->greedy;
   const PetscInt  n_samples = g->n_samples, n_parameters = run->basis->reduced.n_parameters;
   const PetscReal drop = run->drop;
-  PetscReal       farthest, worst;
+  PetscReal       worst, *middle;
   PetscInt        n_added;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n_parameters, &middle));
+  if (run->n == 2) PointsMiddle(run, middle);
   g->looked  = PETSC_TRUE;
   run->first = n_samples - 1;
   run->drop  = PetscMin(drop, LOOK_DROP);
   for (int look = 0; look < GREEDY_LOOKS; look++) {
-    const PetscReal *p     = &run->points[PointFarthest(run, &farthest) * n_parameters];
+    const PetscReal *p     = LookNext(run, look, middle);
     ReducedModes     modes = {0};
 
-    if (farthest <= 0) break;
+    if (!p) break;
     run->sides = look % 2 ? CORRECT_LEFT : CORRECT_RIGHT;
     PetscCall(FactorKeep(run, p));
     PetscCall(StepApply(run, p, &modes, &n_added, &worst));
@@ -104,6 +128,7 @@ static PetscErrorCode PointsLook(GreedyWork *run)
   run->drop  = drop;
   for (PetscInt j = n_samples; j < g->n_samples; j++) PetscCall(PetscFree(g->sample[j].p));
   g->n_samples = n_samples;
+  PetscCall(PetscFree(middle));
   PetscFunctionReturn(0);
 }
 
