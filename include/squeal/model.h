@@ -205,11 +205,11 @@ PetscBool ModelMaterialIsSwept(Model model, PetscInt part, const ModelLines *lin
 PetscErrorCode ModelGetCell(Model model, PetscInt c, const Element **element, PetscInt nodes[], PetscReal x[]);
 
 /*@
-   ModelAddLoad - adds load i to a vector of ModelCreateNodal(), N. On a
-   surface f_v = F int N_v dA / A, on a set of other nodes F / n. The sum over all nodes, held ones included, is
-   F; a node has its full force on every rank that shares it. Collective.
+   ModelAddLoad - adds load i to a vector of ModelCreateNodal(), N, its force or pressure times factor[0], its moment times
+   factor[1]; NULL for 1, 1. On a surface f_v = F int N_v dA / A, on a set of other nodes F / n. The sum over all nodes, held
+   ones included, is F; a node has its full force on every rank that shares it. Collective.
 @*/
-PetscErrorCode ModelAddLoad(Model model, PetscInt i, Vec local);
+PetscErrorCode ModelAddLoad(Model model, PetscInt i, const PetscReal factor[2], Vec local);
 
 /*@
    ModelGetBodies - the pieces of the mesh that hang together by nodes: their number over all ranks, and that of each

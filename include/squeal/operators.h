@@ -23,7 +23,8 @@ typedef struct {
   PetscBool   closed;       /* lower itself is a value: alpha, beta, stiffness, viscosity, force may be 0 */
   PetscBool   body;         /* of parts, springs or dashpots, not of a contact */
   PetscBool   stressing; /* the stress of a spin depends on it, and was found with its value (OperatorsCheckMoved()) */
-  PetscBool   internal;  /* no option of the scene: how far a group of pairs is closed, see SlidingState */
+  PetscBool   state; /* the sliding state alone depends on it: size of a load, mu of a contact that holds by friction */
+  PetscBool   internal; /* no option of the scene: how far a group of pairs is closed, see SlidingState */
 } OperatorsParameter;
 
 /* Values of a part */
@@ -92,7 +93,8 @@ PetscErrorCode OperatorsGetSave(Operators operators, const char **folder);
    spins spin (rad/s), on which pencils alone depend; of each contact mu, kn (N/m, penalty), kt (N/m, holding by friction), and
    with friction damping mu_slope (s/m), force (N) and speed (m/s), or rotation (rad/s) where that is what was given; contact_mu
    for loaded or dense matrices with H, and what -terms name (borrowed). An interface of which nothing says along what it slides has
-   no mu. Not collective.
+   a mu only where it holds by friction. Then of each load force (N, the length of the vector) or pressure (Pa), and moment (N m,
+   likewise). Not collective.
 @*/
 PetscErrorCode OperatorsGetParameters(Operators operators, PetscInt *n, const OperatorsParameter **parameters);
 
@@ -169,6 +171,10 @@ PetscErrorCode OperatorsPrescribedForces(Operators operators, const PetscReal p[
 /*@ OperatorsAddWeight - adds the weight of all parts under -model_gravity, f_i = sum_j m_ij g at the densities of p, to
     a vector of ModelCreateNodal(), N; total is its sum over the bodies. Collective. @*/
 PetscErrorCode OperatorsAddWeight(Operators operators, const PetscReal p[], Vec local, PetscReal total[3]);
+
+/*@ OperatorsAddLoads - adds all loads, of the sizes that p gives them, to such a vector, N; size is a bound of the sum of
+    |force| over the unknowns. Collective. @*/
+PetscErrorCode OperatorsAddLoads(Operators operators, const PetscReal p[], Vec local, PetscReal *size);
 
 /*@ OperatorsTakeNodal - moves such a vector, complete at every node, to the unknowns. Collective. @*/
 PetscErrorCode OperatorsTakeNodal(Operators operators, Vec local, Vec u);

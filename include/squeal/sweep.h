@@ -44,7 +44,8 @@ PetscErrorCode SweepSetStatics(Sweep sweep, Statics statics);
 
    Options Database Keys:
 +  -sweep_parameter <name[,name]> - one or two options of the scene: young, density, alpha, beta of a part, stiffness of
-springs, viscosity of dashpots, mu, kn, speed, ... of a contact, e.g. pad_young,contact_mu
+springs, viscosity of dashpots, mu, kn, speed, ... of a contact, e.g. pad_young,contact_mu; about the sliding state also the size
+of a load: force (N, its length), pressure (Pa) or moment (N m)
 .  -sweep_values <first:last:n>   - n equal steps; first:last:n:log for equal ratios; or a list v1,v2,...
 .  -sweep_values_2 <values>       - those of the second parameter
 .  -sweep_link <name,name[:...]>  - parameters of one unit that take the value of the swept one among them, one link or,

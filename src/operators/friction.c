@@ -220,19 +220,20 @@ static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface
     {c->law == CONTACT_PENALTY,
      c->per_area ? "kn_per_area" : "kn",
      {.unit = c->per_area ? "N/m^3" : "N/m", .value = c->kn},
-     &q->kn                                                                                                      },
+     &q->kn                                                                                                                },
     {c->kt > 0,
      c->kt_per_area ? "kt_per_area" : "kt",
      {.unit = c->kt_per_area ? "N/m^3" : "N/m", .value = c->kt},
-     &q->kt                                                                                                      },
-    {c->damping,                 "mu_slope", {.unit = "s/m", .value = c->mu_slope, .lower = -INFINITY}, &q->slope},
-    {c->damping,                 "force",    {.unit = "N", .value = c->force, .closed = PETSC_TRUE},    &q->force},
-    {c->damping && turning > 0,  "rotation", {.unit = "rad/s", .value = turning},                       &q->speed},
-    {c->damping && turning <= 0, "speed",    {.unit = "m/s", .value = c->speed},                        &q->speed},
+     &q->kt                                                                                                                },
+    {!c->slides && c->kt > 0 && c->mu > 0, "mu",       {.unit = "", .value = c->mu, .state = PETSC_TRUE},         &q->grip },
+    {c->damping,                           "mu_slope", {.unit = "s/m", .value = c->mu_slope, .lower = -INFINITY}, &q->slope},
+    {c->damping,                           "force",    {.unit = "N", .value = c->force, .closed = PETSC_TRUE},    &q->force},
+    {c->damping && turning > 0,            "rotation", {.unit = "rad/s", .value = turning},                       &q->speed},
+    {c->damping && turning <= 0,           "speed",    {.unit = "m/s", .value = c->speed},                        &q->speed},
   };
 
   PetscFunctionBeginUser;
-  *q = (InterfaceParameters){-1, -1, -1, -1, -1, -1};
+  *q = (InterfaceParameters){-1, -1, -1, -1, -1, -1, -1};
   if (c->slides) PetscCall(OperatorsAddMu(o, c->name, c->mu, &q->mu));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(what); i++)
     if (what[i].there) PetscCall(ParametersAdd(&o->parameters, c->name, what[i].name, &what[i].like, what[i].index));

@@ -106,6 +106,7 @@ PetscErrorCode OperatorsSetUp(Operators operators)
     PetscCall(OperatorsAddSpinParameters(operators));
     for (PetscInt i = 0; i < operators->parameters.n; i++) operators->parameters.list[i].body = PETSC_TRUE;
     PetscCall(OperatorsAddContactParameters(operators));
+    PetscCall(OperatorsAddLoadParameters(operators));
   } else {
     PetscCall(OperatorsLoad(operators));
     if (operators->nodes[0]) PetscCall(CloudCreate(operators));
@@ -198,7 +199,7 @@ PetscErrorCode OperatorsGetInterface(Operators operators, const PetscReal p[], P
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetInterfaces(operators->contact, &n, &c));
-  *mu = q->mu < 0 ? c[interface].mu : value[q->mu];
+  *mu = q->mu >= 0 ? value[q->mu] : q->grip >= 0 ? value[q->grip] : c[interface].mu;
   *kn = q->kn < 0 ? INFINITY : value[q->kn];
   PetscFunctionReturn(0);
 }
@@ -272,6 +273,7 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   PetscCall(TermsDestroy(&o->spin));
   PetscCall(PetscFree(o->spin_of_part));
   PetscCall(PetscFree(o->interface));
+  PetscCall(PetscFree(o->load_size));
   PetscCall(PetscFree(o->joint));
   PetscCall(MatDestroy(&o->Z));
   PetscCall(MatDestroy(&o->E));

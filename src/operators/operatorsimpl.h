@@ -18,6 +18,7 @@ typedef enum { BODIES_K, BODIES_M, BODIES_C, N_BODIES_SUMS } BodiesSum;
 /* Indices of the parameters of an interface, -1 where there is none */
 typedef struct {
   PetscInt mu; /* none where nothing says along what it slides */
+  PetscInt grip; /* mu of one that holds by friction */
   PetscInt kn, kt, slope, force, speed;
 } InterfaceParameters;
 
@@ -25,6 +26,11 @@ typedef struct {
 typedef struct {
   PetscInt stiffness[6], viscosity[6], mass;
 } JointParameters;
+
+/* Indices of the sizes of a load, -1 where there is none: |F| or a pressure, |M| */
+typedef struct {
+  PetscInt force, moment;
+} LoadParameters;
 
 #define OPERATORS_MAX_PLANES 3
 #define MIRROR_ROUNDING      1e-11 /* of a row: matrices that differ by no more from their images are their own */
@@ -54,6 +60,7 @@ struct _p_Operators {
   Parameters           parameters;       /* at the values of the scene */
   PetscInt             n_mu, *mu;        /* parameters that are friction coefficients */
   InterfaceParameters *interface;        /* of each interface */
+  LoadParameters      *load_size;        /* of each load */
   JointParameters     *joint;            /* of each bushing, then of each point */
   PetscInt             n_local;          /* the first parameters are those of parts, springs and dashpots */
   PetscInt            *spin_of_part;     /* [parts] parameter, -1 for parts without; NULL for loaded matrices */
@@ -123,6 +130,9 @@ PETSC_INTERN PetscErrorCode OperatorsCreateDependents(Operators operators);
 /* pattern.c - empty matrices of all unknowns, preallocated for the couplings of the cells of one part: K of all
    directions, M (NULL for none) of a mass, lumped or not, which drops zeros that are added to it */
 PETSC_INTERN PetscErrorCode PatternCreate(Model model, PetscInt part, PetscBool lumped, Mat *K, Mat *M);
+
+/* load.c - sizes of the loads as parameters */
+PETSC_INTERN PetscErrorCode OperatorsAddLoadParameters(Operators operators);
 
 /* friction.c - parameters of the contact */
 PETSC_INTERN PetscErrorCode OperatorsAddContactParameters(Operators operators);

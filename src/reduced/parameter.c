@@ -1,6 +1,7 @@
 /* Parameters that reduced models are varied over: see parameter.h. Named as in sweeps; what acts on the bodies from outside
    comes first. */
 #include "parameter.h"
+#include "base/vec3.h"
 
 /* A name that is looked for */
 typedef struct {
@@ -41,16 +42,19 @@ static PetscErrorCode ParameterOfContact(const ContactInterface *c, PetscInt i, 
   PetscFunctionReturn(0);
 }
 
-/* Length of a force, or a pressure */
+/* A pressure, or the length of a force or moment; a load of both has no one size */
 static PetscErrorCode ParameterOfLoad(const Load *load, PetscInt i, ParameterSearch *search)
 {
-  const PetscReal force = hypot(hypot(load->force[0], load->force[1]), load->force[2]);
-  const PetscReal size  = load->is_pressure ? load->pressure : force;
+  const PetscReal force = load->is_pressure ? 0 : Vec3Length(load->force), moment = Vec3Length(load->moment);
 
-  const ReducedParameter p = {.unit = load->is_pressure ? "Pa" : "N", .kind = REDUCED_LOAD, .index = i, .value = size};
+  const ReducedParameter press = {.unit = "Pa", .kind = REDUCED_LOAD, .index = i, .value = load->pressure};
+  const ReducedParameter push  = {.unit = "N", .kind = REDUCED_LOAD, .index = i, .value = force};
+  const ReducedParameter turn  = {.unit = "N m", .kind = REDUCED_LOAD, .index = i, .value = moment};
 
   PetscFunctionBeginUser;
-  if (size != 0) PetscCall(ParameterTry(load->name, load->is_pressure ? "pressure" : "force", &p, search));
+  if (load->is_pressure) PetscCall(ParameterTry(load->name, "pressure", &press, search));
+  if (force > 0 && moment == 0) PetscCall(ParameterTry(load->name, "force", &push, search));
+  if (moment > 0 && force == 0) PetscCall(ParameterTry(load->name, "moment", &turn, search));
   PetscFunctionReturn(0);
 }
 

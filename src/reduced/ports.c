@@ -75,7 +75,7 @@ static PetscErrorCode PortsSetLoads(ReducedRun r)
   for (PetscInt i = 0; i < r->model.n_loads; i++) {
     PetscCall(ModelCreateNodal(r->run.model, &nodal));
     if (i < scene->n_loads)
-      PetscCall(ModelAddLoad(r->run.model, i, nodal));
+      PetscCall(ModelAddLoad(r->run.model, i, NULL, nodal));
     else
       PetscCall(OperatorsAddWeight(r->run.operators, r->p, nodal, total));
     PetscCall(PortSetNodal(r, nodal, i, r->others));

@@ -29,22 +29,16 @@ static PetscErrorCode LoadAddMotions(Operators operators, const PetscReal p[], V
 
 PetscErrorCode StaticsCreateLoad(Operators operators, const PetscReal p[], Vec *f, PetscReal *size)
 {
-  const ModelScene *scene;
-  const Mesh       *mesh;
-  Vec               local;
-  PetscReal         weight[3];
-  Model             model;
+  const Mesh *mesh;
+  Vec         local;
+  PetscReal   weight[3];
+  Model       model;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(operators, &model, NULL));
-  PetscCall(ModelGetScene(model, &scene));
   PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(ModelCreateNodal(model, &local));
-  *size = 0;
-  for (PetscInt i = 0; i < scene->n_loads; i++) {
-    PetscCall(ModelAddLoad(model, i, local));
-    *size += scene->loads[i].size;
-  }
+  PetscCall(OperatorsAddLoads(operators, p, local, size));
   PetscCall(OperatorsAddWeight(operators, p, local, weight));
   for (int d = 0; d < 3; d++) *size += PetscAbsReal(weight[d]);
   PetscCall(OperatorsCreateVec(operators, f));

@@ -13,9 +13,8 @@
 /* Internal forces minus loads and contact forces at all local nodes, three values each */
 static PetscErrorCode ReactionUnbalance(Statics s, Vec *local)
 {
-  PetscReal         weight[3];
-  Vec               part;
-  const ModelScene *scene;
+  PetscReal weight[3], size;
+  Vec       part;
 
   PetscFunctionBeginUser;
   PetscCall(ModelCreateNodal(s->model, local));
@@ -26,8 +25,7 @@ static PetscErrorCode ReactionUnbalance(Statics s, Vec *local)
   PetscCall(ContactNodalForces(s->contact, s->state, part));
   PetscCall(VecAXPY(*local, -1, part));
   PetscCall(VecSet(part, 0));
-  PetscCall(ModelGetScene(s->model, &scene));
-  for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(ModelAddLoad(s->model, i, part));
+  PetscCall(OperatorsAddLoads(s->operators, s->p, part, &size));
   PetscCall(OperatorsAddWeight(s->operators, s->p, part, weight));
   PetscCall(VecAXPY(*local, -1, part));
   PetscCall(VecDestroy(&part));

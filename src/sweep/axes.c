@@ -67,6 +67,8 @@ static PetscErrorCode AxisAdd(void *ctx, const char option[], const char name[],
   PetscCall(GridParameterFind(sweep->comm, sweep->operators, option, name, &index));
   PetscCall(AxisCheck(sweep, name));
   PetscCall(OperatorsGetParameters(sweep->operators, &n, &list));
+  PetscCheck(sweep->statics || !list[index].state, sweep->comm, PETSC_ERR_USER_INPUT,
+             "%s %s changes modes through the sliding state alone; give -modes_contact static", option, name);
   *unit = list[index].unit;
   PetscCall(PetscRealloc((size_t)(grid->n_moved[k] + 1) * sizeof(PetscInt), &grid->parameter[k]));
   grid->parameter[k][grid->n_moved[k]++] = index;

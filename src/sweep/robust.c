@@ -47,10 +47,13 @@ static PetscErrorCode BoxLink(Sweep sweep, const char name[], ParameterBox *box,
 
 static PetscErrorCode BoxRead(Sweep sweep, ParameterBox *box)
 {
-  char **names;
-  int    n;
+  const OperatorsParameter *list;
+  PetscInt                  n_list;
+  char                    **names;
+  int                       n;
 
   PetscFunctionBeginUser;
+  PetscCall(OperatorsGetParameters(sweep->operators, &n_list, &list));
   PetscCall(ValuesSplit(sweep->comm, "-sweep_uncertain", sweep->uncertain, ',', &n, &names));
   PetscCheck(n >= 1 && n <= SWEEP_MAX_UNCERTAIN, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_uncertain '%s' must name 1 to %d parameters", sweep->uncertain, SWEEP_MAX_UNCERTAIN);
@@ -62,6 +65,10 @@ static PetscErrorCode BoxRead(Sweep sweep, ParameterBox *box)
     const PetscReal percent = sweep->percent[sweep->n_percent == 1 ? 0 : k];
 
     PetscCall(GridParameterFind(sweep->comm, sweep->operators, "-sweep_uncertain", names[k], &box->parameter[k]));
+    PetscCheck(
+      !list[box->parameter[k]].state, sweep->comm, PETSC_ERR_USER_INPUT,
+      "-sweep_uncertain %s changes modes through the sliding state alone, which is held here; give -sweep_parameter %s",
+      names[k], names[k]);
     PetscCheck(percent > 0 && percent < 100, sweep->comm, PETSC_ERR_USER_INPUT,
                "-sweep_percent %.6g must lie between 0 and 100", (double)percent);
     PetscCall(BoxLink(sweep, names[k], box, k));

@@ -212,8 +212,9 @@ static PetscErrorCode ModeSensitivityRows(Sweep sweep, PetscInt point, const Pet
   PetscCall(PetscSNPrintf(row, sizeof(row), "%d,%.15g,%d,%.15g", (int)point + 1, (double)p[grid->parameter[0][0]],
                           (int)(sweep->first_branch + sweep->point[point].mode[near].branch) + 1,
                           (double)(cimag(modes->lambda[i]) / (2 * PETSC_PI))));
-  for (PetscInt j = 0; j < n && !parameters[j].internal; j++)
-    PetscCall(DerivativeRow(row, parameters[j].name, p[j], d[j], table));
+  for (PetscInt j = 0; j < n; j++)
+    if (!parameters[j].internal && !parameters[j].state)
+      PetscCall(DerivativeRow(row, parameters[j].name, p[j], d[j], table));
   for (PetscInt k = 0; k < grid->n_axes; k++) {
     PetscComplex sum = 0;
 

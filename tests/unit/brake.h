@@ -78,7 +78,7 @@ static inline PetscErrorCode ChainCreateLoads(const Chain *chain, Vec *f)
   PetscCall(VecSetOption(*f, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
   PetscCall(ModelCreateNodal(chain->model, &local));
   PetscCall(ModelGetScene(chain->model, &scene));
-  for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(ModelAddLoad(chain->model, i, local));
+  for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(ModelAddLoad(chain->model, i, NULL, local));
   PetscCall(ModelGetMesh(chain->model, &mesh));
   PetscCall(VecGetLocalSize(local, &n));
   PetscCall(VecGetArrayRead(local, &value));

@@ -157,7 +157,7 @@ static PetscErrorCode TestReaction(Chain *chain, int *failed)
   PetscCall(ModelCreateNodal(chain->model, &internal));
   PetscCall(OperatorsCreateVec(chain->operators, &u));
   PetscCall(VecDuplicate(u, &f));
-  PetscCall(ModelAddLoad(chain->model, 0, external));
+  PetscCall(ModelAddLoad(chain->model, 0, NULL, external));
   PetscCall(LocalRestrict(chain->model, external, f));
   PetscCall(Solve(K, f, u));
   PetscCall(OperatorsInternalForces(chain->operators, NULL, u, internal));

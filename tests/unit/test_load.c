@@ -35,7 +35,7 @@ static PetscErrorCode LoadGet(Model model, PetscInt i, PetscReal before, PetscIn
   PetscFunctionBeginUser;
   PetscCall(ModelCreateNodal(model, &local));
   PetscCall(VecSet(local, before));
-  PetscCall(ModelAddLoad(model, i, local));
+  PetscCall(ModelAddLoad(model, i, NULL, local));
   PetscCall(VecGetLocalSize(local, n_vertices));
   PetscCall(PetscMalloc1(*n_vertices, f));
   PetscCall(VecGetArrayRead(local, &values));

@@ -36,7 +36,7 @@ static PetscErrorCode TimedLoadGather(External external, PetscInt i, Vec local)
 
   PetscFunctionBeginUser;
   PetscCall(VecSet(local, 0));
-  PetscCall(ModelAddLoad(external->model, i, local));
+  PetscCall(ModelAddLoad(external->model, i, NULL, local));
   PetscCall(PetscMalloc2(layout->n_vertices, &vertex, 3 * layout->n_vertices, &f));
   PetscCall(VecGetArrayRead(local, &force));
   for (PetscInt v = 0; v < layout->n_vertices; v++) {

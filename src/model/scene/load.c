@@ -219,15 +219,19 @@ PetscErrorCode LoadView(const Load *load, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelAddLoad(Model model, PetscInt i, Vec local)
+PetscErrorCode ModelAddLoad(Model model, PetscInt i, const PetscReal factor[2], Vec local)
 {
+  Load      load;
   PetscReal area;
   Vec       forces;
 
   PetscFunctionBeginUser;
   PetscCheck(i >= 0 && i < model->scene.n_loads, model->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "load %" PetscInt_FMT " does not exist: there are %" PetscInt_FMT, i, model->scene.n_loads);
-  PetscCall(LoadCreateForces(model, &model->scene.loads[i], &forces, &area));
+  load = model->scene.loads[i];
+  if (factor) load.pressure *= factor[0];
+  for (int d = 0; d < 3 && factor; d++) load.force[d] *= factor[0], load.moment[d] *= factor[1];
+  PetscCall(LoadCreateForces(model, &load, &forces, &area));
   PetscCall(VecAXPY(local, 1, forces));
   PetscCall(VecDestroy(&forces));
   PetscFunctionReturn(0);

@@ -110,6 +110,7 @@ PetscErrorCode PointsScale(Pencil pencil, PetscInt n_points, const PetscReal poi
       high = PetscMax(high, points[i * n + k]);
     }
     scale[k] = low > 0 && high > RATIO_FROM * low ? -PetscLogReal(high / low) : high - low;
+    if (parameters[k].state) scale[k] = 0; /* no matrix depends on it */
     if (parameters[k].internal) scale[k] *= PetscSqrtReal((PetscReal)n_groups);
   }
   PetscFunctionReturn(0);
