@@ -33,14 +33,20 @@ PetscErrorCode ShiftInvertKeepsPattern(const ShiftInvert *si, const PencilMatric
   PetscFunctionReturn(0);
 }
 
-/* A += c X, in place where the pattern of A has that of X */
+/* A += c X, in place where the pattern of A has that of X. Also for c = 0 the pattern becomes that of both, since the same
+   matrix serves at other shifts; MatAXPY() does nothing then. */
 static PetscErrorCode ShiftInvertAdd(PetscReal c, Mat X, MatStructure pattern, Mat A)
 {
   PetscBool added;
+  Mat       zeros;
 
   PetscFunctionBeginUser;
   PetscCall(MatrixAdd(c, X, A, &added));
-  if (!added) PetscCall(MatAXPY(A, c, X, pattern));
+  if (!added && c != 0) PetscCall(MatAXPY(A, c, X, pattern));
+  if (added || c != 0) PetscFunctionReturn(0);
+  PetscCall(MatDuplicate(X, MAT_DO_NOT_COPY_VALUES, &zeros));
+  PetscCall(MatAXPY(A, 1, zeros, pattern));
+  PetscCall(MatDestroy(&zeros));
   PetscFunctionReturn(0);
 }
 

@@ -27,6 +27,7 @@
 /* Work of one solution */
 typedef struct {
   const DensePencil *pencil;
+  const PetscReal   *E;    /* [n * n] energy that rounding in K of the mesh scales with, or NULL */
   PetscInt           n, N; /* sizes of Q and of the standard problem */
   PetscReal          shift;
   PetscReal         *P, *B;   /* [n * n] factors of P; [N * N] */
@@ -220,13 +221,13 @@ PetscReal DensePencilNoise(const DensePencil *q, PetscInt n, const PetscComplex 
   return PETSC_MACHINE_EPSILON * PetscSqrtReal(sum_x) * PetscSqrtReal(sum_y);
 }
 
-/* Whether lambda is zero within rounding: of K, and of the shifted solution */
+/* Whether lambda is zero within rounding: of K, here and on the mesh, and of the shifted solution */
 static PetscErrorCode IsRigid(const Work *w, PetscComplex lambda, const PetscComplex x[], PetscBool *rigid)
 {
   const PetscInt  n      = w->n;
   const PetscReal square = cabs(lambda) * cabs(lambda), own = PETSC_MACHINE_EPSILON * w->shift * w->shift;
   PetscComplex   *Mx;
-  PetscReal       mass = 0;
+  PetscReal       mass = 0, mesh = 0;
 
   PetscFunctionBeginUser;
   *rigid = PETSC_FALSE;
@@ -235,7 +236,9 @@ static PetscErrorCode IsRigid(const Work *w, PetscComplex lambda, const PetscCom
   PetscCall(DenseTimes(&(DenseBlock){w->pencil->M, n, n, n}, PETSC_FALSE, 1, x, Mx));
   for (PetscInt k = 0; k < n; k++) mass += creal(conj(x[k]) * Mx[k]);
   PetscCall(PetscFree(Mx));
-  if (square * mass <= RIGID_FLOOR * (DensePencilNoise(w->pencil, n, x, x) + own * mass)) *rigid = PETSC_TRUE;
+  if (w->E) PetscCall(DenseEnergies(n, w->E, 1, x, &mesh));
+  mesh *= PETSC_MACHINE_EPSILON;
+  if (square * mass <= RIGID_FLOOR * (DensePencilNoise(w->pencil, n, x, x) + mesh + own * mass)) *rigid = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -297,7 +300,8 @@ static PetscErrorCode List(const Work *w, const ReducedWindow *window, PetscInt 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DensePencilEigen(const DensePencil *pencil, const ReducedWindow *window, ReducedModes *modes)
+PetscErrorCode DensePencilEigen(const DensePencil *pencil, const PetscReal E[], const ReducedWindow *window,
+                                ReducedModes *modes)
 {
   PetscInt      n, n_rigid, *list;
   PetscComplex *lambda;
@@ -306,6 +310,7 @@ PetscErrorCode DensePencilEigen(const DensePencil *pencil, const ReducedWindow *
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_REDUCED));
   PetscCall(WorkCreate(pencil, ShiftChoose(pencil, window), &w));
+  w.E = E;
   PetscCall(WorkSolve(&w, pencil->symmetric));
   PetscCall(PetscMalloc2(w.N, &list, w.N, &lambda));
   PetscCall(List(&w, window, list, lambda, &n, &n_rigid));

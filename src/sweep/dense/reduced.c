@@ -284,18 +284,21 @@ PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const R
 {
   const PetscInt n = reduced->n_used;
   DensePencil    pencil;
-  PetscReal     *Ms;
+  PetscReal     *Ms, *E = NULL;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n * n, &Ms));
   PetscCall(ReducedPencil(reduced, p, n, &pencil));
   PetscCall(SumSymmetric(reduced, p, Ms, &pencil.symmetric));
   PetscCall(ReducedCheckMass(reduced, p, Ms));
-  PetscCall(DensePencilEigen(&pencil, window, modes));
+  if (pencil.damped) PetscCall(PetscMalloc1(n * n, &E));
+  if (pencil.damped) RoundingEnergy(reduced, p, E);
+  PetscCall(DensePencilEigen(&pencil, E, window, modes));
   PetscCall(ModesSort(modes));
   PetscCall(ModesFinish(&pencil, Ms, modes));
   if (!pencil.damped) PetscCall(RoundingMarkRigid(reduced, p, window, modes));
   PetscCall(DensePencilDestroy(&pencil));
+  PetscCall(PetscFree(E));
   PetscCall(PetscFree(Ms));
   PetscFunctionReturn(0);
 }
