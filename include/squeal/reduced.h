@@ -15,6 +15,10 @@
    y the displacements at the ports (m): what is above the cut-off is massless, and damped as the bodies are (left
    undamped, growth would be wrong by percents). s changes 1e-8 of it at most.
 
+   Where displacements follow others, u = Z q (ties, points that are joined rigidly: OperatorsGetDependents()), K, M, D and V are
+   Z'K Z, Z'M Z, Z'D Z and Z'V: bodies that a tie joins are one. Phi and X are kept as Z Phi and Z X, of all unknowns. Nodes that
+   follow may have pairs, loads, probes and impulses.
+
    Step from t_n to t_{n+1} = t_n + dt. Forces act on the modes as means (p_n + p_{n+1}) / 2, and these answer exactly
    (exponential of the coupled first-order system: C need not be diagonal, and modes may be overdamped); q obeys its law in
    the mean. This is of second order in dt, exact in statics, and stable for every dt, since energy

@@ -97,11 +97,11 @@ static PetscErrorCode ReducedCountModes(ReducedRun r, const PencilMatrices *penc
 
 PetscErrorCode ReducedWeighModes(ReducedRun r)
 {
-  PencilMatrices pencil;
+  Mat M;
 
   PetscFunctionBeginUser;
-  PetscCall(PencilGetMatrices(r->bodies, &pencil));
-  PetscCall(BlockMultiply(pencil.M, r->Phi, r->MPhi));
+  PetscCall(PencilGetMass(r->bodies, &M));
+  PetscCall(BlockMultiply(M, r->Phi, r->MPhi));
   PetscFunctionReturn(0);
 }
 
@@ -160,14 +160,16 @@ static PetscErrorCode ReducedKeepAlike(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
-/* Vectors and frequencies from the solver of the modes */
-static PetscErrorCode ReducedTakeModes(ReducedRun r, Mat M)
+/* Vectors, of all unknowns, and frequencies from the solver of the modes */
+static PetscErrorCode ReducedTakeModes(ReducedRun r)
 {
   const Mode *mode;
   PetscInt    m, n_own;
+  Mat         M;
 
   PetscFunctionBeginUser;
   PetscCall(ModesGet(r->body_modes, &m, &mode));
+  PetscCall(PencilGetMass(r->bodies, &M));
   PetscCall(MatGetLocalSize(M, &n_own, NULL));
   PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, m, NULL, &r->Phi));
   PetscCall(PetscCalloc1(m, &r->model.omega2));
@@ -237,7 +239,7 @@ PetscErrorCode ReducedFindModes(ReducedRun r)
   PetscCall(ModesSetPencil(r->body_modes, r->bodies));
   PetscCall(ModesSetBand(r->body_modes, band));
   PetscCall(ModesSolve(r->body_modes));
-  PetscCall(ReducedTakeModes(r, pencil.M));
+  PetscCall(ReducedTakeModes(r));
   if (r->like) PetscCall(ReducedKeepAlike(r));
   PetscCall(ReducedCheckModes(r));
   PetscCall(ReducedSetDamping(r));

@@ -7,16 +7,10 @@
 
 PetscErrorCode ReducedRefuse(ReducedRun r)
 {
-  const char *const full = "-dynamics_model full does";
   const ModelScene *scene;
-  const ContactTie *tie;
-  PetscInt          n_ties;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(r->run.model, &scene));
-  PetscCall(ContactGetTies(r->run.contact, &n_ties, &tie));
-  PetscCheck(!n_ties, r->comm, PETSC_ERR_SUP, "-ties %s: a reduced model knows no ties; -dynamics_model full does",
-             n_ties ? tie[0].name : "");
   for (PetscInt i = 0; i < r->run.n_interfaces; i++) {
     PetscReal way;
     PetscBool turning;
@@ -27,11 +21,9 @@ PetscErrorCode ReducedRefuse(ReducedRun r)
                "other; take prescribed sliding, or -dynamics_model full",
                r->run.interfaces[i].name);
   }
-  PetscCheck(!scene->n_motions, r->comm, PETSC_ERR_SUP, "motion %s: a reduced model knows no prescribed motions; %s",
-             scene->n_motions ? scene->motions[0].name : "", full);
-  for (PetscInt i = 0; i < scene->n_points; i++)
-    PetscCheck(!scene->points[i].rigid, r->comm, PETSC_ERR_SUP,
-               "point %s: a reduced model knows no sets that are joined rigidly; %s", scene->points[i].name, full);
+  PetscCheck(!scene->n_motions, r->comm, PETSC_ERR_SUP,
+             "motion %s: a reduced model knows no prescribed motions; -dynamics_model full does",
+             scene->n_motions ? scene->motions[0].name : "");
   PetscCheck(r->run.n_interfaces, r->comm, PETSC_ERR_SUP,
              "-dynamics_model reduced needs -contacts: without them -analysis frf tells the response");
   PetscFunctionReturn(0);

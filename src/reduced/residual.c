@@ -1,7 +1,8 @@
 /*
    What the modes leave out: R = (1 - Phi Phi'M) (K - s M)^-1 (1 - M Phi Phi'), W = V'R V. The right-hand sides lose the modes
    before the solution and the solutions after it, so that neither the shift nor the modes that are nearly free show by
-   rounding. s = -(cut-off / 1e4)^2: of what lies above the cut-off it changes 1e-8 at most.
+   rounding. s = -(cut-off / 1e4)^2: of what lies above the cut-off it changes 1e-8 at most. Where displacements follow others,
+   u = Z q, Z (Z'(K - s M) Z)^-1 Z' stands for the inverse, and Phi = Z times the modes of q: all else is of all unknowns.
 */
 #include "reducedimpl.h"
 #include "solver/orthonormal.h"
@@ -38,9 +39,12 @@ static PetscErrorCode ComplementOf(Mat A, Mat B, Mat X)
 
 PetscErrorCode ReducedApplyResidual(ReducedRun r, Mat B, Mat X)
 {
+  Mat Z;
+
   PetscFunctionBeginUser;
+  PetscCall(OperatorsGetDependents(r->run.operators, &Z, NULL));
   PetscCall(ComplementOf(r->MPhi, r->Phi, B));
-  PetscCall(ShiftInvertApplyBlock(&r->inverse, PETSC_FALSE, B, X));
+  PetscCall(ShiftInvertApplyThrough(&r->inverse, Z, B, X));
   PetscCall(ComplementOf(r->Phi, r->MPhi, X));
   PetscFunctionReturn(0);
 }

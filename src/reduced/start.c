@@ -1,26 +1,58 @@
 /*
    The state at t = 0: at rest with the velocities of the parts, or the sliding state (statics.h) with its contact forces; on top of
    either the shape of a mode. Nodal values v become coordinates by Phi'M v; of what no mode below the cut-off moves, the
-   residual keeps no velocity: a motion is refused whose v'M v the modes do not hold, by Parseval |Phi'M v|^2 of it.
+   residual keeps no velocity: a motion is refused whose v'M v the modes do not hold, by Parseval |Phi'M v|^2 of it. Where
+   displacements follow others, u = Z q, v is that motion of theirs which is nearest in M, as in transients of the mesh:
+   Z (Z'M Z)^-1 Z'M v, which has the same coordinates.
 */
 #include "reducedimpl.h"
 #include "base/gather.h"
 
 #define START_SHARE 0.9 /* of v'M v that the modes must hold, at least */
 
-/* x'M x of all unknowns */
+/* y = M^-1 f by conjugate gradients: M is diagonal but for what follows others, and points with a mass */
+static PetscErrorCode StartDivide(Mat M, Vec f, Vec y)
+{
+  KSPConvergedReason reason;
+  KSP                ksp;
+  PC                 pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(KSPCreate(PetscObjectComm((PetscObject)M), &ksp));
+  PetscCall(KSPSetType(ksp, KSPCG));
+  PetscCall(KSPSetOperators(ksp, M, M));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCJACOBI));
+  PetscCall(KSPSetTolerances(ksp, 1e-12, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
+  PetscCall(KSPSolve(ksp, f, y));
+  PetscCall(KSPGetConvergedReason(ksp, &reason));
+  PetscCheck(reason > 0, PetscObjectComm((PetscObject)M), PETSC_ERR_NOT_CONVERGED, "mass of the start: reason %d",
+             (int)reason);
+  PetscCall(KSPDestroy(&ksp));
+  PetscFunctionReturn(0);
+}
+
+/* v'M v of the nearest motion v to x, (Z'M x)'(Z'M Z)^-1 Z'M x; x'M x where no displacements follow others */
 static PetscErrorCode StartWeigh(ReducedRun r, Vec x, PetscReal *square)
 {
   PencilMatrices pencil;
   PetscScalar    product;
-  Vec            Mx;
+  Vec            Mx, f, y;
+  Mat            M, Z;
 
   PetscFunctionBeginUser;
+  PetscCall(PencilGetMass(r->bodies, &M));
   PetscCall(PencilGetMatrices(r->bodies, &pencil));
+  PetscCall(OperatorsGetDependents(r->run.operators, &Z, NULL));
   PetscCall(VecDuplicate(x, &Mx));
-  PetscCall(MatMult(pencil.M, x, Mx));
-  PetscCall(VecDot(Mx, x, &product));
+  PetscCall(MatMult(M, x, Mx));
+  PetscCall(MatCreateVecs(pencil.M, &y, &f));
+  PetscCall(PencilProjectForce(r->bodies, PETSC_FALSE, Mx, f));
+  PetscCall(Z ? StartDivide(pencil.M, f, y) : VecCopy(x, y));
+  PetscCall(VecDot(f, y, &product));
   PetscCall(VecDestroy(&Mx));
+  PetscCall(VecDestroy(&f));
+  PetscCall(VecDestroy(&y));
   *square = PetscRealPart(product);
   PetscFunctionReturn(0);
 }

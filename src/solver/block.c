@@ -236,6 +236,26 @@ PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ShiftInvertApplyThrough(const ShiftInvert *si, Mat Z, Mat B, Mat X)
+{
+  Mat from, to, full;
+
+  PetscFunctionBeginUser;
+  if (!Z) {
+    PetscCall(ShiftInvertApplyBlock(si, PETSC_FALSE, B, X));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(MatTransposeMatMult(Z, B, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &from));
+  PetscCall(MatDuplicate(from, MAT_DO_NOT_COPY_VALUES, &to));
+  PetscCall(ShiftInvertApplyBlock(si, PETSC_FALSE, from, to));
+  PetscCall(MatMatMult(Z, to, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &full));
+  PetscCall(MatCopy(full, X, SAME_NONZERO_PATTERN));
+  PetscCall(MatDestroy(&full));
+  PetscCall(MatDestroy(&from));
+  PetscCall(MatDestroy(&to));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ShiftInvertApplyBoth(void *ctx, PetscInt n_right, Mat X)
 {
   const ShiftInvert *si = ctx;

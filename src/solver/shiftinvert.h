@@ -101,6 +101,8 @@ PETSC_INTERN PetscBool ShiftInvertShows(void);
 /* block.c - X = A^-1 B, or A^-T B, for dense B, X of the same size and any leading dimension: many right-hand sides at
    once. PETSC_ERR_LIB where a column does not solve its system: a library behaves otherwise than assumed */
 PETSC_INTERN PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X);
+/* X = Z A^-1 Z'B of all unknowns u = Z q, where A is a matrix of the q; A^-1 B where Z is NULL */
+PETSC_INTERN PetscErrorCode ShiftInvertApplyThrough(const ShiftInvert *si, Mat Z, Mat B, Mat X);
 /* X := A^-1 X for the first n_right columns, at least one, and A^-T X for the others, at least one, by one block of solves;
    ctx is a ShiftInvert with an update. As many steps of the eigensolver. */
 PETSC_INTERN PetscErrorCode ShiftInvertApplyBoth(void *ctx, PetscInt n_right, Mat X);

@@ -96,27 +96,6 @@ static PetscErrorCode ComplianceTakeRows(const Compliance *c, Mat R, Mat Y, Pets
   PetscFunctionReturn(0);
 }
 
-/* Y = K_a^-1 B */
-static PetscErrorCode ComplianceApplyBlock(Compliance *c, Mat B, Mat Y)
-{
-  Mat from, to, full;
-
-  PetscFunctionBeginUser;
-  if (!c->Z) {
-    PetscCall(ShiftInvertApplyBlock(&c->inverse, PETSC_FALSE, B, Y));
-    PetscFunctionReturn(0);
-  }
-  PetscCall(MatTransposeMatMult(c->Z, B, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &from));
-  PetscCall(MatDuplicate(from, MAT_DO_NOT_COPY_VALUES, &to));
-  PetscCall(ShiftInvertApplyBlock(&c->inverse, PETSC_FALSE, from, to));
-  PetscCall(MatMatMult(c->Z, to, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &full));
-  PetscCall(MatCopy(full, Y, SAME_NONZERO_PATTERN));
-  PetscCall(MatDestroy(&full));
-  PetscCall(MatDestroy(&from));
-  PetscCall(MatDestroy(&to));
-  PetscFunctionReturn(0);
-}
-
 /* u = K_a^-1 b */
 static PetscErrorCode ComplianceInvert(const Compliance *c, Vec b, Vec u)
 {
@@ -196,7 +175,7 @@ static PetscErrorCode ComplianceFormDense(Compliance *c)
     PetscCall(MatCreateDense(rows->comm, n_unknowns, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &B));
     PetscCall(BlockTakeColumns(Gt, first, B));
     PetscCall(MatDuplicate(B, MAT_DO_NOT_COPY_VALUES, &Y));
-    PetscCall(ComplianceApplyBlock(c, B, Y));
+    PetscCall(ShiftInvertApplyThrough(&c->inverse, c->Z, B, Y));
     PetscCall(ComplianceTakeRows(c, rows->G, Y, first, local[0]));
     if (rows->S) PetscCall(ComplianceTakeRows(c, rows->S, Y, first, local[1]));
     PetscCall(MatDestroy(&B));

@@ -37,7 +37,7 @@ def main():
     table = numpy.genfromtxt(Path(args.transient) / "transient.csv", delimiter=",", names=True)
     band = (frequency * (1 - args.band), frequency * (1 + args.band))
     found = fit_modes(table["time_s"], table[args.probe] - table[args.probe].mean(), band, 2)
-    nearest = min(found, key=lambda mode: abs(mode.freq - frequency), default=None)
+    nearest = min(found, key=lambda mode: abs(complex(mode.growth - growth, 2 * numpy.pi * (mode.freq - frequency))), default=None)
     closed = set(table["n_closed"])
     if nearest is None:
         print(f"no line in {band} Hz")

@@ -2,13 +2,17 @@
 """Compares transients of one scene by two models.
 
     verify/reduced.py agree FULL REDUCED COLUMN TOLERANCE
+    verify/reduced.py lift FIELDS SNAPSHOT TOLERANCE
 
 FULL and REDUCED are output folders whose rows need not stand at the same times; the largest difference of the column over the
-time that both have, the second interpolated linearly to the times of the first, is relative to the largest value."""
+time that both have, the second interpolated linearly to the times of the first, is relative to the largest value.
+
+FIELDS and SNAPSHOT are files with displacements of one mesh; the largest difference is relative to the largest displacement."""
 
 import sys
 from pathlib import Path
 
+import h5py
 import numpy
 
 
@@ -25,5 +29,12 @@ def agree(full, reduced, column, tolerance):
     return not (len(one) > 10 and miss < float(tolerance) * largest)
 
 
+def lift(fields, snapshot, tolerance):
+    one, other = (h5py.File(path)["VTKHDF/PointData/displacement_m"][()] for path in (fields, snapshot))
+    miss, largest = numpy.abs(one - other).max(), numpy.abs(one).max()
+    print(f"displacements of {len(one)} nodes: off by {miss:.3g} of {largest:.6g} m: {miss / largest:.1e}, may be {tolerance}")
+    return not 0 < miss < float(tolerance) * largest
+
+
 if __name__ == "__main__":
-    sys.exit({"agree": agree}[sys.argv[1]](*sys.argv[2:]))
+    sys.exit({"agree": agree, "lift": lift}[sys.argv[1]](*sys.argv[2:]))

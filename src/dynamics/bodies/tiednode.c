@@ -51,8 +51,8 @@ static PetscErrorCode TiedCountColumns(Bodies b, PetscInt n_links, const Contact
       if (t->column[master[CONTACT_MAX_MASTER * l + i]] < 0) leads = PETSC_TRUE;
   PetscCheck(
     !leads, b->comm, PETSC_ERR_SUP,
-    "-ties: nodes follow others that follow others themselves, which -analysis transient does not support: let "
-    "the body in the middle be the master of both");
+    "-ties: nodes follow others that follow others themselves, which -dynamics_model full does not support: let "
+    "the body in the middle be the master of both, or take -dynamics_model reduced");
   for (PetscInt k = 0; k < t->n; k++)
     if (t->column[k] == 0) t->column[k] = t->n_masters++;
   PetscFunctionReturn(0);
@@ -154,7 +154,8 @@ static PetscErrorCode TiedCheckNodes(Bodies b, const Tied *t, const unsigned cha
   for (int i = 0; i < N_TIED_FAULTS; i++)
     PetscCheck(
       !fault[i], b->comm, PETSC_ERR_SUP,
-      "-ties: %s nodes of slave or master, which -analysis transient does not support: use sets apart from them",
+      "-ties: %s nodes of slave or master, which -dynamics_model full does not support: use sets apart from them, or "
+      "-dynamics_model reduced",
       what[i]);
   PetscFunctionReturn(0);
 }
