@@ -24,6 +24,25 @@ FAULTS = (
     ("the arm of a tie turns the other way", "src/kernels/arm.h", "Vec3Cross(omega, g, moved)", "Vec3Cross(g, omega, moved)", "tie arm-1"),
     ("a chain of ties ends after one step", "src/operators/dependents.c", "    if (left > 0) PetscCall(MatAXPY(o->Z",
      "    if (left > 0 && power == o->E) PetscCall(MatAXPY(o->Z", "tie"),
+    ("loads on nodes that follow are lost in a reduced model", "src/reduced/ports.c",
+     "    PetscCall(PortSetNodal(r, nodal, i, r->others));\n",
+     """    Mat E;
+    Vec q, column;
+    PetscCall(PortSetNodal(r, nodal, i, r->others));
+    PetscCall(OperatorsGetDependents(r->run.operators, NULL, &E));
+    if (E) {
+      PetscCall(MatCreateVecs(E, &q, NULL));
+      PetscCall(MatDenseGetColumnVec(r->others, i, &column));
+      PetscCall(MatMultTranspose(E, column, q));
+      PetscCall(MatMult(E, q, column));
+      PetscCall(MatDenseRestoreColumnVec(r->others, i, &column));
+      PetscCall(VecDestroy(&q));
+    }
+""", "reduced_tie"),
+    ("tied bodies give way 1e-6 more above the modes", "src/reduced/residual.c", "&r->inverse, Z, B, X));",
+     "&r->inverse, Z, B, X));\n  if (Z) PetscCall(MatScale(X, 1 + 1e-6));", "reduced_tie"),
+    ("tied bodies that part at the start have all their energy", "src/reduced/start.c", "VecDot(f, y, &product)",
+     "VecDot(Mx, x, &product)", "reduced_tie"),
     ("forces on slaves of a tie do not reach supports", "src/contact/nodal.c",
      "part[e] += link->follow[i][3 * d + e] * force[d];", "part[e] += 0 * force[d];", "tie"),
     ("0.99 mu in the cone of dynamics", "src/kernels/cone.h", ".mu = mu\n", ".mu = 0.99 * mu\n", "cone-1 project-1"),

@@ -2,22 +2,37 @@
 """A transient on modes that goes on from a checkpoint ends with the same bytes as one that was never stopped: tables, states of pairs,
 snapshots; and another cut-off is refused. Factors on several ranks are the same to rounding only: there two runs that go on from
 the same checkpoint end with the same tables. Breaks when a number of the model, of the state, of the contact laws' factors or
-of the ledger is not kept.
+of the ledger is not kept. The scene is a small brake, or the block of tests/cases/reduced_tie.toml with its tied plate.
 
-    reduced.py SQUEAL LAUNCHER [--ranks 1]"""
+    reduced.py SQUEAL LAUNCHER [--ranks 1] [--scene brake]"""
 
 import argparse
+import shlex
 import shutil
+import subprocess
 import sys
 import tempfile
+import tomllib
 from pathlib import Path
 
 from runs import SOURCE, arrays, fail, outcome_of, starter
 
-OPTIONS = """-rig_disc_elements 8,24,1 -rig_pad_elements 4,4,2 -rig_beam_elements 5 -press_ramp 2e-4 -tap_time 3e-4 -contact_speed 0.02
-             -dynamics_cutoff 20e3 -dynamics_compare false -dynamics_live 0 -dynamics_checkpoint_interval 37
-             -dynamics_pairs_interval 1e-4 -dynamics_snapshot_interval 5e-4""".split()
+OPTIONS = """-press_ramp 2e-4 -tap_time 3e-4 -dynamics_compare false -dynamics_live 0 -dynamics_checkpoint_interval 37
+             -dynamics_pairs_interval 1e-4 -dynamics_snapshot_interval 5e-4"""
+BRAKE = """-rig_disc_elements 8,24,1 -rig_pad_elements 4,4,2 -rig_beam_elements 5 -contact_speed 0.02 -dynamics_cutoff 20e3"""
+TIED = """-options_file brake.yaml -analysis transient -dynamics_model reduced -dynamics_cutoff 40e3 -touch_speed 0.02 -impulses tap
+          -tap_at 0,0.02,0.032 -tap_part top -tap_impulse 1e-3,0,-1e-3 -output_fields 1"""
 TABLES = ("transient.csv", "contact_pairs.csv", "impulses.csv")
+
+
+def scene(name, folder):
+    """Options of a scene; what it needs is made in the folder."""
+    if name == "brake":
+        return ["-options_file", SOURCE / "options/massi2005_reduced.yaml", *BRAKE.split()]
+    case = tomllib.loads((SOURCE / "tests/cases/reduced_tie.toml").read_text(encoding="utf-8"))
+    (folder / "brake.yaml").write_text(case["file"]["brake.yaml"], encoding="utf-8")
+    subprocess.run([sys.executable, *shlex.split(case["make"][0].format(source=SOURCE))], cwd=folder, check=True)
+    return TIED.split()
 
 
 def main():
@@ -25,11 +40,12 @@ def main():
     parser.add_argument("squeal")
     parser.add_argument("launcher")
     parser.add_argument("--ranks", default="1")
+    parser.add_argument("--scene", choices=("brake", "tied"), default="brake")
     arguments = parser.parse_args()
     program = starter(arguments.squeal)
 
     def run(folder, *options):
-        words = ["-options_file", SOURCE / "options/massi2005_reduced.yaml", *OPTIONS, "-output_dir", folder, *options]
+        words = [*scene(arguments.scene, folder.parent), *OPTIONS.split(), "-output_dir", folder, *options]
         return outcome_of(program, folder.parent, words, int(arguments.ranks))
 
     with tempfile.TemporaryDirectory() as folder:
