@@ -26,8 +26,9 @@ static PetscErrorCode StartDivide(Mat M, Vec f, Vec y)
   PetscCall(KSPSetTolerances(ksp, 1e-12, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   PetscCall(KSPSolve(ksp, f, y));
   PetscCall(KSPGetConvergedReason(ksp, &reason));
-  PetscCheck(reason > 0, PetscObjectComm((PetscObject)M), PETSC_ERR_NOT_CONVERGED, "mass of the start: reason %d",
-             (int)reason);
+  PetscCheck(reason > 0, PetscObjectComm((PetscObject)M), PETSC_ERR_NOT_CONVERGED,
+             "the motion of tied bodies nearest to that of the start is not found: conjugate gradients end with %s",
+             KSPConvergedReasons[reason]);
   PetscCall(KSPDestroy(&ksp));
   PetscFunctionReturn(0);
 }
