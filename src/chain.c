@@ -161,6 +161,8 @@ static PetscErrorCode ChainAssemble(Chain *chain)
   if (transient) PetscCall(DynamicsNeedsPairs(chain->dynamics, &pairs));
   if (transient) PetscCall(ReducedIsAsked(chain->reduced, &reduced));
   if (reduced) PetscCall(OperatorsLump(chain->operators));
+  if (reduced && chain->contact)
+    PetscCall(ContactDampFriction(chain->contact)); /* of the mesh's modes that it is compared with */
   if (reduced) pairs = PETSC_TRUE;
   if (chain->model) {
     if (transient && !reduced) PetscCall(ModelKeepSlabs(chain->model));

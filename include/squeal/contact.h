@@ -151,6 +151,10 @@ PetscErrorCode ContactSetFromOptions(Contact contact);
 @*/
 PetscErrorCode ContactSetUp(Contact contact);
 
+/*@ ContactDampFriction - interfaces that slide at a stated speed have friction damping, as Coulomb's law in time does by itself;
+    before ContactSetUp(). Not collective. @*/
+PetscErrorCode ContactDampFriction(Contact contact);
+
 /*@ ContactSetUpTies - the part of ContactSetUp() that makes the links of the ties, for runs in time, whose pairs are not those of the
     mesh. Collective; after ModelSetUp(). @*/
 PetscErrorCode ContactSetUpTies(Contact contact);

@@ -147,6 +147,19 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ContactDampFriction(Contact contact)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < contact->n_interfaces; i++) {
+    ContactInterface *c     = &contact->interfaces[i];
+    const PetscBool   turns = Vec3Dot(c->rotation, c->rotation) > 0 ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool   moves = turns || (c->speed > 0 && Vec3Dot(c->slip, c->slip) > 0) ? PETSC_TRUE : PETSC_FALSE;
+
+    if (moves && (c->mu != 0 || c->mu_slope != 0)) c->damping = PETSC_TRUE;
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactSetFromOptions(Contact contact)
 {
   char *names[CONTACT_MAX];

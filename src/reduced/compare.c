@@ -1,6 +1,7 @@
 /*
    The error of the reduction before the run: eigenvalues of the reduced model about the sliding state, as they are and as the
-   steps see them (warp.c), beside those of the mesh in -modes_band, with the same pairs closed.
+   steps see them (warp.c), beside those of the mesh in -modes_band, with the same pairs closed. All have friction damping, as
+   Coulomb's law in time does.
 */
 #include "reducedimpl.h"
 #include "base/gather.h"
@@ -21,18 +22,18 @@ static PetscErrorCode CompareFindObstacle(ReducedRun r, const char **why)
 
     if (c->law != CONTACT_CONSTRAINT) *why = "the penalty law of the modes is not exact contact";
     if (!c->slides && c->mu > 0) *why = "nothing says along what the contact slides";
-    if (c->damping || c->mu_slope != 0) *why = "friction that depends on the speed";
   }
   PetscFunctionReturn(0);
 }
 
-/* The pairs of all ranks that are closed in the state */
+/* The pairs of all ranks that are closed in the state, and their normal forces */
 static PetscErrorCode CompareTakeClosed(ReducedRun r, const SlidingState *state)
 {
   PetscInt *group;
 
   PetscFunctionBeginUser;
   PetscCall(GatherRecords(r->comm, state->n_pairs, sizeof(*group), state->group, NULL, &group));
+  PetscCall(GatherRecords(r->comm, state->n_pairs, sizeof(*r->lambda_n), state->lambda_n, NULL, &r->lambda_n));
   PetscCall(PetscMalloc1(r->model.n_pairs, &r->closed));
   r->n_closed = 0;
   for (PetscInt i = 0; i < r->model.n_pairs; i++) {
@@ -119,10 +120,10 @@ PetscErrorCode ReducedCompare(ReducedRun r)
   PetscFunctionBeginUser;
   if (r->not_compared) PetscFunctionReturn(0);
   PetscCall(PetscMalloc2(n, &sigma, n, &omega));
-  PetscCall(ReducedLinearise(&r->model, r->closed, sigma, omega));
+  PetscCall(ReducedLineariseSliding(&r->model, r->closed, r->lambda_n, sigma, omega));
   for (PetscInt i = 0; i < r->n_compared; i++)
     CompareMatch(n, sigma, omega, r->compared[i].mesh, r->compared[i].reduced);
-  PetscCall(ReducedLineariseSteps(&r->model, r->dt, r->closed, sigma, omega));
+  PetscCall(ReducedLineariseSteps(&r->model, r->dt, r->closed, r->lambda_n, sigma, omega));
   for (PetscInt i = 0; i < r->n_compared; i++)
     CompareMatch(n, sigma, omega, r->compared[i].reduced, r->compared[i].steps);
   PetscCall(PetscFree2(sigma, omega));

@@ -320,6 +320,7 @@ PetscErrorCode ReducedDestroy(ReducedRun *reduced)
   PetscCall(ReducedForget(r));
   PetscCall(PetscFree(r->p));
   PetscCall(PetscFree(r->closed));
+  PetscCall(PetscFree(r->lambda_n));
   PetscCall(PetscFree(r->compared));
   PetscCall(PetscFree(r->growing));
   PetscCall(PetscFree(r->force));

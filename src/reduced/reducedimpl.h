@@ -92,7 +92,8 @@ struct _p_ReducedRun {
   const char     *not_compared; /* why; NULL where it is */
   PetscInt        n_closed, n_compared;
   ReducedPair    *compared;
-  PetscBool      *closed; /* [n_pairs] in the sliding state */
+  PetscBool      *closed;   /* [n_pairs] in the sliding state */
+  PetscReal      *lambda_n; /* [n_pairs] of it, N */
   PetscInt        n_growing;
   ReducedGrowing *growing;                /* fastest first */
   PetscReal       miss_model, miss_steps; /* largest error of growth of an unstable mode; what steps add, relative */
@@ -193,9 +194,9 @@ PETSC_INTERN PetscErrorCode ReducedWeighGrowth(ReducedRun reduced, PetscReal *of
 PETSC_INTERN PetscErrorCode ReducedWarnGrowth(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedGrowthView(ReducedRun reduced, PetscViewer viewer);
 
-/* warp.c - ReducedLinearise() as steps of length dt (s) see the model */
+/* warp.c - ReducedLineariseSliding() as steps of length dt (s) see the model */
 PETSC_INTERN PetscErrorCode ReducedLineariseSteps(const ReducedModel *model, PetscReal dt, const PetscBool closed[],
-                                                  PetscReal sigma[], PetscReal omega[]);
+                                                  const PetscReal lambda_n[], PetscReal sigma[], PetscReal omega[]);
 
 /* choose.c - the cut-off to begin with; the step where -ts_dt leaves it open; reduces and compares with the mesh, with another
    cut-off and step where the first ones do not do */

@@ -42,14 +42,14 @@ static void WarpModel(PetscReal dt, const ReducedModel *model, ReducedModel *war
 }
 
 PetscErrorCode ReducedLineariseSteps(const ReducedModel *model, PetscReal dt, const PetscBool closed[],
-                                     PetscReal sigma[], PetscReal omega[])
+                                     const PetscReal lambda_n[], PetscReal sigma[], PetscReal omega[])
 {
   ReducedModel warped;
 
   PetscFunctionBeginUser;
   PetscCall(ReducedModelCopy(model, &warped));
   WarpModel(dt, model, &warped);
-  PetscCall(ReducedLinearise(&warped, closed, sigma, omega));
+  PetscCall(ReducedLineariseSliding(&warped, closed, lambda_n, sigma, omega));
   for (PetscInt i = 0; i < 2 * model->m; i++) {
     const double complex s = 2 / dt * catanh(0.5 * dt * (sigma[i] + omega[i] * I));
 

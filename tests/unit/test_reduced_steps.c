@@ -110,7 +110,7 @@ static PetscErrorCode Distances(const Small *s, PetscReal dt, PetscReal *formula
 
   PetscFunctionBeginUser;
   PetscCall(StepEigen(s, dt, &n, &re, &im));
-  PetscCall(ReducedLineariseSteps(&s->model, dt, closed, sigma[0], omega[0]));
+  PetscCall(ReducedLineariseSteps(&s->model, dt, closed, NULL, sigma[0], omega[0]));
   PetscCall(ReducedLinearise(&s->model, closed, sigma[1], omega[1]));
   *formula = *smooth = 0;
   for (int i = 0; i < 2 * M_MODES; i++) {
