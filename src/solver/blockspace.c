@@ -109,19 +109,45 @@ PetscErrorCode BlockSpaceExtend(BlockSpace *s)
   PetscFunctionReturn(0);
 }
 
-/* The last block times the matrix of the right-hand side, in the columns of B from `first` on */
-static PetscErrorCode SpaceMultiply(const BlockSpace *s, PetscInt first, Mat B)
+/* The last block, into the columns of X from `first` on */
+static PetscErrorCode SpaceCopy(const BlockSpace *s, PetscInt first, Mat X)
 {
-  Mat M, x, b;
+  Mat v, x;
 
   PetscFunctionBeginUser;
-  PetscCall(STGetMatrix(s->st, 1, &M));
   PetscCall(BVSetActiveColumns(s->V, s->m, s->m + s->p));
-  PetscCall(BVGetMat(s->V, &x));
-  PetscCall(MatDenseGetSubMatrix(B, PETSC_DECIDE, PETSC_DECIDE, first, first + s->p, &b));
-  PetscCall(BlockMultiply(M, x, b));
-  PetscCall(MatDenseRestoreSubMatrix(B, &b));
-  PetscCall(BVRestoreMat(s->V, &x));
+  PetscCall(BVGetMat(s->V, &v));
+  PetscCall(MatDenseGetSubMatrix(X, PETSC_DECIDE, PETSC_DECIDE, first, first + s->p, &x));
+  PetscCall(MatCopy(v, x, SAME_NONZERO_PATTERN));
+  PetscCall(MatDenseRestoreSubMatrix(X, &x));
+  PetscCall(BVRestoreMat(s->V, &v));
+  PetscFunctionReturn(0);
+}
+
+/* n columns of X from `first` on := M times them */
+static PetscErrorCode ColumnsMultiply(Mat M, PetscInt first, PetscInt n, Mat X)
+{
+  Mat x;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatDenseGetSubMatrix(X, PETSC_DECIDE, PETSC_DECIDE, first, first + n, &x));
+  PetscCall(BlockMultiply(M, x, x));
+  PetscCall(MatDenseRestoreSubMatrix(X, &x));
+  PetscFunctionReturn(0);
+}
+
+/* X = the last blocks of both times the matrices of their right-hand sides; a matrix that is that of both is read once */
+static PetscErrorCode SpacesMultiply(const BlockSpace *right, const BlockSpace *left, Mat X)
+{
+  Mat M, Mt;
+
+  PetscFunctionBeginUser;
+  PetscCall(SpaceCopy(right, 0, X));
+  PetscCall(SpaceCopy(left, right->p, X));
+  PetscCall(STGetMatrix(right->st, 1, &M));
+  PetscCall(STGetMatrix(left->st, 1, &Mt));
+  PetscCall(ColumnsMultiply(M, 0, right->p + (M == Mt ? left->p : 0), X));
+  if (M != Mt) PetscCall(ColumnsMultiply(Mt, right->p, left->p, X));
   PetscFunctionReturn(0);
 }
 
@@ -152,8 +178,7 @@ PetscErrorCode BlockSpaceExtendBoth(BlockSpace *right, BlockSpace *left, BlockKr
   PetscCall(BVGetSizes(right->V, &n_local, NULL, NULL));
   PetscCall(PetscMalloc1(n_local * n, &x));
   PetscCall(MatCreateDense(PetscObjectComm((PetscObject)right->V), n_local, PETSC_DECIDE, PETSC_DETERMINE, n, x, &X));
-  PetscCall(SpaceMultiply(right, 0, X));
-  PetscCall(SpaceMultiply(left, n_right, X));
+  PetscCall(SpacesMultiply(right, left, X));
   PetscCall((*solve)(ctx, n_right, X));
   PetscCall(SpaceTakeColumns(right, 0, X));
   PetscCall(SpaceTakeColumns(left, n_right, X));

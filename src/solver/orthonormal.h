@@ -42,7 +42,7 @@ typedef struct {
 PETSC_INTERN PetscErrorCode BlockFactorise(BV V, PetscInt n, Mat M, BV W, BlockFactors *factors);
 /* blockproduct.c - columns first, first + 1, ... of a sparse A as the dense X, zeros where A has no more */
 PETSC_INTERN PetscErrorCode BlockTakeColumns(Mat A, PetscInt first, Mat X);
-/* Y = A X of dense X and Y */
+/* Y = A X of dense X and Y, which may be X */
 PETSC_INTERN PetscErrorCode BlockMultiply(Mat A, Mat X, Mat Y);
 /* Y[i] = A[i] X of n matrices, which costs less than one by one */
 PETSC_INTERN PetscErrorCode BlockMultiplyEach(PetscInt n, const Mat A[], Mat X, const Mat Y[]);
