@@ -177,6 +177,7 @@ PetscErrorCode ShiftInvertApplyRows(void *ctx, Mat rows, Mat X)
 
   PetscFunctionBeginUser;
   PetscCall(BlockGetFactor((KSP)ctx, &F));
+  PetscCall(BlockWiden(F, X));
   PetscCall(MatMatTransposeSolve(F, rows, X));
   PetscCall(BlockCount(X));
   PetscFunctionReturn(0);
