@@ -11,6 +11,9 @@
    regular, so what one pass does not resolve the next one does. A row of R is the size of its direction. Without M a pass measures
    what the next one needs while it has V at hand (panel.h).
 
+   A block that was measured to be nearly orthonormal may be left so: W = V C + Q R holds for any Q, and what the next block loses
+   by it, times |C| beside R, is measured again.
+
    Rounding in G, epsilon times W' M W, is as much beside one in the new block as its largest entry beside S S D. Where that is
    little enough for those who know V' M V, a pass is the last one. A loose V is projected on by C' = (V'MV)^-1 V' M W.
 */
@@ -30,7 +33,8 @@ typedef struct {
   PetscReal   *size, *spread; /* [m] S; D */
   PetscScalar *R;             /* [columns][columns] rows of R, before and after */
   PetscReal    norm;          /* of the longest column at the beginning */
-  PetscBool    clean; /* the block was orthonormal to a half before, so that it is now to rounding; or loosely is */
+  PetscBool
+    clean; /* the block was orthonormal to a half before, so that it is now to rounding; or loosely, or near enough */
 } BlockPass;
 
 /* The local rows of the active columns of a block; A is to be restored with it */
@@ -297,6 +301,18 @@ static PetscErrorCode PassForget(PetscInt n, BV W, BlockFactors *factors, BlockP
   PetscFunctionReturn(0);
 }
 
+/* How far [V W]'[V W] was measured to be from the identity */
+static PetscReal PassDeviation(PetscInt n, const BlockPass *pass)
+{
+  PetscReal most = 0;
+
+  for (PetscInt k = 0; k < pass->m * n; k++) most = PetscMax(most, PetscAbsReal(pass->C[k]));
+  for (PetscInt j = 0; j < pass->m; j++)
+    for (PetscInt i = 0; i < pass->m; i++)
+      most = PetscMax(most, PetscAbsReal(pass->T[j * pass->m + i] - (i == j ? 1 : 0)));
+  return most;
+}
+
 /* W := (W - V C) T with its factors */
 static PetscErrorCode PassRun(BV V, PetscInt n, Mat M, BV W, BlockFactors *factors, BlockPass *pass)
 {
@@ -308,6 +324,7 @@ static PetscErrorCode PassRun(BV V, PetscInt n, Mat M, BV W, BlockFactors *facto
   PetscCall(PassDecompose(PetscObjectComm((PetscObject)W), n, factors, pass));
   PassAccumulate(n, pass, factors);
   PetscCall(M ? PassApplyMass(V, n, W, pass) : PassApply(V, n, W, pass));
+  if (pass->measured && PassDeviation(n, pass) <= factors->enough) pass->clean = PETSC_TRUE;
   PetscCall(PassTrim(n, W, factors, pass));
   PetscFunctionReturn(0);
 }

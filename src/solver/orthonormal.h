@@ -33,7 +33,8 @@ typedef struct {
   PetscScalar *H;        /* [columns][ld] C in rows 0 .. n - 1, R in as many rows below as there are columns now */
   PetscReal    drop;     /* directions shorter than this beside the longest column are left out */
   PetscReal    loose;    /* how far, about, [V Q]'M[V Q] may be from the identity; zero: as far as rounding leaves it */
-  PetscReal   *gram;     /* [n * n] V'MV where V is loose, else NULL */
+  PetscReal  enough; /* the same as it is measured where there is no M: a block that is so far from it stays as it is */
+  PetscReal *gram;   /* [n * n] V'MV where V is loose, else NULL */
 } BlockFactors;
 
 /* W = V C + Q R for the active columns of W and the first n columns of V, which are orthonormal in M (the identity where
