@@ -37,11 +37,25 @@ static PetscErrorCode AddRowsRestore(AddRows *rows)
   PetscFunctionReturn(0);
 }
 
+/* Whether row i has the same columns in both, as most rows of the stiffness of a part have in a sum */
+static PetscBool RowsAreAlike(PetscInt i, const AddRows *X, const AddRows *A)
+{
+  const PetscInt n = X->ia[i + 1] - X->ia[i];
+
+  if (X->number || A->number || A->ia[i + 1] - A->ia[i] != n) return PETSC_FALSE;
+  return memcmp(&X->ja[X->ia[i]], &A->ja[A->ia[i]], (size_t)n * sizeof(*X->ja)) ? PETSC_FALSE : PETSC_TRUE;
+}
+
 /* a += c x of row i; with a NULL nothing is summed. Whether all entries of x have their place. */
 static PetscBool RowAdd(PetscInt i, PetscReal c, const AddRows *X, const PetscScalar x[], const AddRows *A,
                         PetscScalar a[])
 {
   PetscInt k = A->ia[i], j = X->ia[i];
+
+  if (RowsAreAlike(i, X, A)) {
+    for (PetscInt h = 0; a && h < X->ia[i + 1] - j; h++) a[k + h] += c * x[j + h];
+    return PETSC_TRUE;
+  }
 
   while (A->upper && j < X->ia[i + 1] && X->ja[j] < i) j++;
   for (; j < X->ia[i + 1]; j++, k++) {
@@ -79,7 +93,8 @@ static PetscErrorCode AddPartsGet(Mat A, PetscInt *n, AddRows part[2])
 
   PetscFunctionBeginUser;
   PetscCall(MatGetBlockSize(A, &block));
-  PetscCall(PetscObjectTypeCompareAny((PetscObject)A, &sequential, MATSEQAIJ, block == 1 ? MATSEQSBAIJ : MATSEQAIJ, ""));
+  PetscCall(
+    PetscObjectTypeCompareAny((PetscObject)A, &sequential, MATSEQAIJ, block == 1 ? MATSEQSBAIJ : MATSEQAIJ, ""));
   PetscCall(PetscObjectTypeCompare((PetscObject)A, MATMPIAIJ, &parallel));
   *n = sequential ? 1 : parallel ? 2 : 0;
   if (sequential) PetscCall(AddRowsGet(A, NULL, &part[0]));
