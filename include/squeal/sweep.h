@@ -8,6 +8,11 @@
    point costs one dense problem of the size of V. The points of the full solutions are chosen where the estimated error
    is largest, until it is below -sweep_rtol for every eigenvalue of the band at every point. The error is an estimate,
    not a bound; -sweep_verify compares it with full solutions at points that the basis has never seen.
+
+   Branches follow a mode from point to point by products of right and left vectors; an onset is where one of them becomes
+   unstable or stable again. On the basis steps are divided where products do not tell, and onsets are found to rounding.
+   -sweep_method full solves at the points alone: a branch ends where products do not tell, and an onset has an error that
+   reaches both of its points.
 */
 #pragma once
 
@@ -51,13 +56,13 @@ of a load: force (N, its length), pressure (Pa) or moment (N m)
 .  -sweep_link <name,name[:...]>  - parameters of one unit that take the value of the swept one among them, one link or,
 with : between, one for each swept parameter: inner_mu,outer_mu. Derivatives along a link are sums over its parameters;
 -sweep_uncertain moves all of a link, each by the same part of its own value
-.  -sweep_method <reduced>        - reduced; full solves every point in full; real projects on real modes
+.  -sweep_method <reduced>        - reduced; full solves every point in full, and nothing between; real projects on real modes
 .  -sweep_rtol <1e-6>             - largest estimated relative error of an eigenvalue
 .  -sweep_real_modes <80>         - number of frictionless modes that -sweep_method real projects on
 .  -sweep_max_samples <20>        - most full solutions; by itself as many as there are points and ends of brackets
 around changes of contact status, where these are more
 .  -sweep_verify <0>              - full solutions at this many points between those of the sweep: true errors
-.  -sweep_onsets <true>           - critical values of the first parameter, confirmed on the full problem
+.  -sweep_onsets <true>           - critical values of the first parameter, confirmed on the full problem (full: between points)
 .  -sweep_sensitivities <false>   - derivatives of every eigenvalue by every parameter
 .  -sweep_uncertain <names>       - parameters known to -sweep_percent only: which modes can become unstable
 .  -sweep_percent <percents>      - their uncertainty, one value for all names or one for each

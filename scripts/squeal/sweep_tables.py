@@ -49,7 +49,7 @@ class Study:
         path = folder / "sweep.csv"
         self.rows = read_table(path, SWEEP)
         labels = list(dict.fromkeys(row["label"] for row in self.rows))
-        for row in self.rows:  # -sweep_method full follows no modes: those of a label are drawn alike, below 0
+        for row in self.rows:  # no branches without left vectors: modes of a label are drawn alike, below 0
             row["branch"] = -1 - labels.index(row["label"]) if row["branch"] != row["branch"] else int(row["branch"])
         self.parameters = read_table(folder / "parameters.csv", PARAMETERS)
         onsets = folder / "onsets.csv"

@@ -2,29 +2,69 @@
    Full solutions: a sweep by brute force, one eigenvalue problem of the mesh per point, and the check of reduced
    results at points that the basis has never seen, half way between those of the sweep.
 */
-#include "sweepimpl.h"
+#include "follow.h"
 
-/* Modes at point i, about the sliding state there where statics tell it */
-static PetscErrorCode PointSolve(Sweep sweep, PetscInt i, const PetscReal p[])
+/* The modes that were found at place i of the line */
+static PetscErrorCode PointTake(Sweep sweep, PetscInt i, LinePoints *points)
 {
-  SlidingState state;
-  Pencil       pencil;
+  ReducedModes *found = &points->modes[i];
+  const Mode   *mode;
+  const char   *parity;
+  PetscInt      n;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesGet(sweep->modes, &n, &mode));
+  PetscCall(ReducedModesCreate(n, 0, found));
+  PetscCall(PetscMalloc1(n, &points->branch[i]));
+  PetscCall(PetscCalloc1(n, &points->parity[i]));
+  PetscCall(PetscCalloc1(n, &points->name[i]));
+  for (PetscInt k = 0; k < n; k++) {
+    found->lambda[k]     = CMPLX(mode[k].sigma, mode[k].omega);
+    found->product[k]    = CMPLX(mode[k].product[0], mode[k].product[1]);
+    found->error[k]      = mode[k].error;
+    found->rigid[k]      = mode[k].rigid;
+    points->branch[i][k] = -1;
+    PetscCall(ModesGetParity(sweep->modes, k, &parity));
+    if (parity) points->parity[i][k] = SweepFindParity(sweep, parity);
+    PetscCall(PetscStrncpy(points->name[i][k].text, mode[k].label, sizeof(points->name[i][k].text)));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Modes of the pencil at place i of the line, and, with left vectors, their branches */
+static PetscErrorCode PencilSolve(Sweep sweep, Pencil pencil, PetscInt i, LinePoints *points, Follow *follow)
+{
+  PetscBool nearest, left;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesSetPencil(sweep->modes, pencil));
+  PetscCall(SweepNameParities(sweep, pencil));
+  PetscCall(ModesSolveParities(sweep->modes));
+  PetscCall(PointTake(sweep, i, points));
+  PetscCall(ModesWant(sweep->modes, &nearest, &left));
+  if (left) PetscCall(FollowTake(sweep, pencil, i, points, follow));
+  PetscFunctionReturn(0);
+}
+
+/* Modes at place i of the line, about the sliding state there where statics tell it */
+static PetscErrorCode PointSolve(Sweep sweep, PetscInt i, LinePoints *points, Follow *follow)
+{
+  const PetscReal *p = &points->p[i * sweep->grid.n_parameters];
+  SlidingState     state;
+  Pencil           pencil;
 
   PetscFunctionBeginUser;
   if (!sweep->statics) {
     PetscCall(PencilSetParameters(sweep->pencil, p));
-    PetscCall(SweepNameParities(sweep, sweep->pencil));
-    PetscCall(ModesSolveParities(sweep->modes));
+    PetscCall(PencilSolve(sweep, sweep->pencil, i, points, follow));
     PetscFunctionReturn(0);
   }
   PetscCall(StaticsSolveSliding(sweep->statics, p, &state));
   PetscCall(StaticsRelease(sweep->statics));
-  PetscCall(SweepStatusTake(sweep, &state, &sweep->grid.place[i].status));
+  PetscCall(SweepStatusTake(sweep, &state, &sweep->grid.place[points->first + i].status));
   PetscCall(OperatorsLinearise(sweep->operators, &state, &pencil));
   PetscCall(SlidingStateDestroy(&state));
-  PetscCall(ModesSetPencil(sweep->modes, pencil));
-  PetscCall(SweepNameParities(sweep, pencil));
-  PetscCall(ModesSolveParities(sweep->modes));
+  PetscCall(PencilSolve(sweep, pencil, i, points, follow));
   PetscCall(ModesSetPencil(sweep->modes, NULL));
   PetscCall(PencilDestroy(&pencil));
   PetscFunctionReturn(0);
@@ -32,35 +72,27 @@ static PetscErrorCode PointSolve(Sweep sweep, PetscInt i, const PetscReal p[])
 
 PetscErrorCode SweepBrute(Sweep sweep)
 {
-  const PetscInt n_points = GridSize(&sweep->grid);
-  PetscReal     *p;
+  LinePoints points;
+  Follow     follow = {0};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
-  for (PetscInt i = 0; i < n_points; i++) {
-    SweepPoint *point = &sweep->point[i];
-    const Mode *mode;
+  PetscCall(PetscCalloc1(sweep->grid.n_places, &sweep->worst));
+  for (PetscInt line = 0; line < GridLines(&sweep->grid); line++) {
+    const PetscInt n_before = sweep->n_branches, first_event = sweep->events.n;
 
-    GridPoint(&sweep->grid, i, p);
-    PetscCall(PointSolve(sweep, i, p));
-    PetscCall(ModesGet(sweep->modes, &point->n, &mode));
-    PetscCall(PetscCalloc1(point->n, &point->mode));
-    for (PetscInt k = 0; k < point->n; k++) {
-      SweepMode  *m = &point->mode[k];
-      const char *parity;
-
-      PetscCall(ModesGetParity(sweep->modes, k, &parity));
-      m->parity    = parity ? SweepFindParity(sweep, parity) : 0;
-      m->sigma     = mode[k].sigma;
-      m->omega     = mode[k].omega;
-      m->error     = mode[k].error;
-      m->condition = mode[k].condition;
-      m->unstable  = ReducedIsUnstable(CMPLX(m->sigma, m->omega), PetscIsInfOrNanReal(m->error) ? 0 : m->error);
-      m->branch    = -1;
-      PetscCall(PetscStrncpy(m->label, mode[k].label, sizeof(m->label)));
-    }
+    PetscCall(LineCreate(sweep, line, &points));
+    PetscCall(PetscCalloc1(points.n, &points.name));
+    PetscCall(PetscCalloc1(points.n, &points.parity));
+    for (PetscInt i = 0; i < points.n; i++) PetscCall(PointSolve(sweep, i, &points, &follow));
+    PetscCall(LineFinish(sweep, n_before, first_event, &points));
+    PetscCall(LineDestroy(&points));
   }
-  PetscCall(PetscFree(p));
+  PetscCall(FollowDestroy(&follow));
+  if (sweep->onsets && sweep->n_branches) {
+    PetscCall(PetscCalloc1(PetscMax(1, sweep->events.n), &sweep->is_confirmed));
+    SweepSortOnsets(sweep);
+  }
+  PetscCall(SweepClassify(sweep));
   PetscFunctionReturn(0);
 }
 

@@ -43,6 +43,11 @@ PetscInt GridSize(const SweepGrid *grid)
   return grid->n_axes == 2 ? grid->n[0] * grid->n[1] : grid->n[0];
 }
 
+PetscInt GridLines(const SweepGrid *grid)
+{
+  return grid->n_axes == 2 ? grid->n[1] : 1;
+}
+
 PetscErrorCode GridCreatePlaces(SweepGrid *grid)
 {
   PetscFunctionBeginUser;

@@ -35,6 +35,7 @@ PetscErrorCode GridValuesParse(MPI_Comm comm, const char option[], const char te
 PetscErrorCode GridParameterFind(MPI_Comm comm, Operators operators, const char option[], const char name[],
                                  PetscInt *index);
 PetscInt       GridSize(const SweepGrid *grid);
+PetscInt       GridLines(const SweepGrid *grid);
 /* The points of the grid as places, all of status 0 */
 PetscErrorCode GridCreatePlaces(SweepGrid *grid);
 /* Makes `place` the k-th; leaves out the k-th, which is no point of the grid */

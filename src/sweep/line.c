@@ -6,32 +6,45 @@
 #include "line.h"
 #include "solver/dense.h"
 
-static PetscErrorCode PointsCreate(Sweep sweep, PetscInt line, LinePoints *points)
+PetscErrorCode LineCreate(Sweep sweep, PetscInt line, LinePoints *points)
 {
   const SweepGrid *grid         = &sweep->grid;
   const PetscInt   n_parameters = grid->n_parameters;
 
   PetscFunctionBeginUser;
+  *points       = (LinePoints){0};
   points->first = grid->at[line * grid->n[0]];
   points->n     = grid->at[(line + 1) * grid->n[0] - 1] + 1 - points->first;
-  PetscCall(PetscMalloc4(points->n, &points->value, points->n * n_parameters, &points->p, points->n, &points->modes,
+  PetscCall(PetscCalloc4(points->n, &points->value, points->n * n_parameters, &points->p, points->n, &points->modes,
                          points->n, &points->branch));
   for (PetscInt i = 0; i < points->n; i++) {
     points->value[i] = grid->place[points->first + i].value[0];
     GridFill(grid, &grid->place[points->first + i], &points->p[i * n_parameters]);
   }
+  PetscFunctionReturn(0);
+}
+
+/* A line with its modes on the reduced model */
+static PetscErrorCode LineSolve(Sweep sweep, PetscInt line, LinePoints *points)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LineCreate(sweep, line, points));
   PetscCall(PointsSolve(&sweep->groups, &sweep->basis.reduced, &sweep->window, points->n, points->p, points->modes));
   for (PetscInt i = 0; i < points->n; i++) PetscCall(PetscMalloc1(points->modes[i].n, &points->branch[i]));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode PointsDestroy(LinePoints *points)
+PetscErrorCode LineDestroy(LinePoints *points)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < points->n; i++) {
     PetscCall(ReducedModesDestroy(&points->modes[i]));
     PetscCall(PetscFree(points->branch[i]));
+    if (points->name) PetscCall(PetscFree(points->name[i]));
+    if (points->parity) PetscCall(PetscFree(points->parity[i]));
   }
+  PetscCall(PetscFree(points->name));
+  PetscCall(PetscFree(points->parity));
   PetscCall(PetscFree4(points->value, points->p, points->modes, points->branch));
   points->n = 0;
   PetscFunctionReturn(0);
@@ -96,6 +109,8 @@ static PetscErrorCode PointsKeep(Sweep sweep, const LinePoints *points)
       point->mode[k].noise     = modes->noise[k];
       point->mode[k].condition = cabs(modes->product[k]) > 0 ? 1 / cabs(modes->product[k]) : INFINITY;
       point->mode[k].branch    = points->branch[i][k];
+      if (points->parity) point->mode[k].parity = points->parity[i][k];
+      if (points->name) PetscCall(PetscStrncpy(point->mode[k].label, points->name[i][k].text, 32));
     }
   }
   PetscFunctionReturn(0);
@@ -137,17 +152,32 @@ static void LabelPoints(Sweep sweep, const LinePoints *points, PetscInt at[])
     for (PetscInt k = 0; k < points->modes[i].n; k++) {
       const PetscInt  b = points->branch[i][k], middle = points->n / 2;
       const PetscReal sigma = PetscAbsReal(creal(points->modes[i].lambda[k]));
-      const PetscBool nearer =
-        at[b] < 0 || PetscAbsInt(i - middle) < PetscAbsInt(at[b] - middle) ? PETSC_TRUE : PETSC_FALSE;
-      const PetscBool unnamed = sweep->label[b].text[0] ? PETSC_FALSE : PETSC_TRUE;
+      PetscBool       nearer, unnamed;
 
+      if (b < 0) continue;
+      nearer  = at[b] < 0 || PetscAbsInt(i - middle) < PetscAbsInt(at[b] - middle) ? PETSC_TRUE : PETSC_FALSE;
+      unnamed = sweep->label[b].text[0] ? PETSC_FALSE : PETSC_TRUE;
       if (sigma < sweep->label[b].growth || (sigma == sweep->label[b].growth && !(unnamed && nearer))) continue;
       at[b]                  = i;
       sweep->label[b].growth = sigma;
     }
 }
 
-/* Names the branches that are to be looked at at point i */
+/* Gives the branches that are to be looked at at point i the names of their modes there, known before */
+static PetscErrorCode PointTakeNames(Sweep sweep, const LinePoints *points, PetscInt i, const PetscInt at[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < points->modes[i].n; k++) {
+    const PetscInt b = points->branch[i][k];
+
+    if (b < 0 || at[b] != i) continue;
+    PetscCall(PetscStrncpy(sweep->label[b].text, points->name[i][k].text, sizeof(sweep->label[b].text)));
+    sweep->label[b].parity = points->parity[i][k];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Names the branches that are to be looked at at point i by their shapes */
 static PetscErrorCode PointLabel(Sweep sweep, const LinePoints *points, PetscInt i, const PetscInt at[])
 {
   const ReducedModes *modes = &points->modes[i];
@@ -181,7 +211,7 @@ PetscErrorCode SweepClassify(Sweep sweep)
       m->unstable = ReducedIsUnstable(lambda, isnan(m->error) ? 0 : m->error);
       m->numerical =
         !m->unstable && (isinf(m->error) || m->sigma > REDUCED_TINY * cabs(lambda)) ? PETSC_TRUE : PETSC_FALSE;
-      PetscCall(PetscStrncpy(m->label, sweep->label[m->branch].text, sizeof(m->label)));
+      if (m->branch >= 0) PetscCall(PetscStrncpy(m->label, sweep->label[m->branch].text, sizeof(m->label)));
     }
   PetscFunctionReturn(0);
 }
@@ -242,32 +272,40 @@ PetscErrorCode SweepLinesForget(Sweep sweep)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LineFinish(Sweep sweep, PetscInt first_new, PetscInt first_event, LinePoints *points)
+{
+  PetscInt *at;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscRealloc(sizeof(*sweep->label) * (size_t)PetscMax(1, sweep->n_branches), &sweep->label));
+  PetscCall(PetscArrayzero(sweep->label + first_new, sweep->n_branches - first_new));
+  PetscCall(PetscMalloc1(sweep->n_branches, &at));
+  LabelPoints(sweep, points, at);
+  for (PetscInt i = 0; i < points->n; i++)
+    PetscCall(points->name ? PointTakeNames(sweep, points, i, at) : PointLabel(sweep, points, i, at));
+  PetscCall(PetscFree(at));
+  PetscCall(PairsByLabel(sweep, first_event, points));
+  PetscCall(PointsKeep(sweep, points));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SweepLines(Sweep sweep)
 {
-  const PetscInt n_lines = sweep->grid.n_axes == 2 ? sweep->grid.n[1] : 1;
-  LinePoints     before  = {0}, points;
-  PetscInt      *at;
+  LinePoints before = {0}, points;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(sweep->grid.n_places, &sweep->worst));
-  for (PetscInt line = 0; line < n_lines; line++) {
+  for (PetscInt line = 0; line < GridLines(&sweep->grid); line++) {
     const PetscInt n_before = sweep->n_branches, first_event = sweep->events.n;
 
-    PetscCall(PointsCreate(sweep, line, &points));
+    PetscCall(LineSolve(sweep, line, &points));
     PetscCall(LineTrackSegments(sweep, &points));
     PetscCall(TrackBroadcast(sweep, first_event, &points));
     if (line) PetscCall(PointsLink(sweep, &before, n_before, first_event, &points));
-    PetscCall(PetscRealloc(sizeof(*sweep->label) * (size_t)PetscMax(1, sweep->n_branches), &sweep->label));
-    PetscCall(PetscArrayzero(sweep->label + n_before, sweep->n_branches - n_before));
-    PetscCall(PetscMalloc1(sweep->n_branches, &at));
-    LabelPoints(sweep, &points, at);
-    for (PetscInt i = 0; i < points.n; i++) PetscCall(PointLabel(sweep, &points, i, at));
-    PetscCall(PetscFree(at));
-    PetscCall(PairsByLabel(sweep, first_event, &points));
-    PetscCall(PointsKeep(sweep, &points));
-    PetscCall(PointsDestroy(&before));
+    PetscCall(LineFinish(sweep, n_before, first_event, &points));
+    PetscCall(LineDestroy(&before));
     before = points;
   }
-  PetscCall(PointsDestroy(&before));
+  PetscCall(LineDestroy(&before));
   PetscFunctionReturn(0);
 }

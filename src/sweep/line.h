@@ -9,8 +9,17 @@ typedef struct {
   PetscReal    *value;    /* [n] of the first parameter */
   PetscReal    *p;        /* [n][n_parameters] */
   ReducedModes *modes;    /* [n] */
-  PetscInt    **branch;   /* [n][modes] */
+  PetscInt    **branch;   /* [n][modes]; -1 where branches are not followed */
+  /* of a sweep in full, whose modes are without vectors; else NULL */
+  BranchName **name;   /* [n][modes] */
+  PetscInt   **parity; /* [n][modes] */
 } LinePoints;
+
+/* line.c - a line without its modes; names of the branches and the records of the points, numbers from first_new on and
+   events from first_event on being of this line */
+PETSC_INTERN PetscErrorCode LineCreate(Sweep sweep, PetscInt line, LinePoints *points);
+PETSC_INTERN PetscErrorCode LineFinish(Sweep sweep, PetscInt first_new, PetscInt first_event, LinePoints *points);
+PETSC_INTERN PetscErrorCode LineDestroy(LinePoints *points);
 
 /* segment.c - follows the branches along the line, from one change of contact status to the next, and across it.
    Not collective. */

@@ -185,6 +185,7 @@ static PetscErrorCode PartTakeNames(Sweep sweep, const Sweep part)
   PetscCall(PetscRealloc((size_t)PetscMax(1, sweep->n_branches + part->n_branches) * sizeof(*sweep->label),
                          &sweep->label));
   PetscCall(PetscArraycpy(&sweep->label[sweep->n_branches], part->label, part->n_branches));
+  for (PetscInt b = 0; b < part->n_branches; b++) sweep->label[sweep->n_branches + b].parity = part->parity;
   PetscCall(PetscRealloc((size_t)PetscMax(1, sweep->n_risks + part->n_risks) * sizeof(*sweep->risk), &sweep->risk));
   PetscCall(PetscArraycpy(&sweep->risk[sweep->n_risks], part->risk, part->n_risks));
   for (PetscInt i = 0; i < part->n_risks; i++) sweep->risk[sweep->n_risks + i].parity = part->parity;

@@ -286,7 +286,7 @@ PetscErrorCode SweepSolve(Sweep sweep, Results results)
   PetscCall(ModesSetPencil(sweep->modes, sweep->pencil));
   if (sweep->method == SWEEP_FULL) {
     PetscCall(SweepBrute(sweep));
-    PetscCall(Clock(sweep, 0, &since));
+    PetscCall(Clock(sweep, 1, &since));
     PetscFunctionReturn(0);
   }
   PetscCall(SweepNameParities(sweep, sweep->pencil)); /* each point has its own status among the parameters */

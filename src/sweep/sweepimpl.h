@@ -31,10 +31,11 @@ typedef struct {
   SweepMode *mode;
 } SweepPoint;
 
-/* Name of a branch, and its growth or decay where it was looked at, 1/s */
+/* Name of a branch, its growth or decay where it was looked at, 1/s, and its parity as in pencil.h */
 typedef struct {
   char      text[32];
   PetscReal growth;
+  PetscInt  parity;
 } BranchName;
 
 /* True errors at a point that the basis has never seen */
@@ -84,8 +85,9 @@ struct _p_Sweep {
   SweepPoint    *point;                 /* [places] */
   PetscReal     *worst;                 /* [places] largest estimated relative error, but for rounding */
   PetscInt       n_branches;
-  PetscBool      whole; /* the basis is the whole space */
-  BranchName    *label; /* [n_branches] */
+  PetscInt       n_broken; /* in full: branches of which it is not known where they go on */
+  PetscBool      whole;    /* the basis is the whole space */
+  BranchName    *label;    /* [n_branches] */
   BranchEvents   events;
   PetscBool     *is_confirmed; /* [onsets] on the full problem */
   SweepCheck    *check;        /* [n_checks] */
@@ -143,6 +145,9 @@ PETSC_INTERN PetscBool      SweepClosedRange(Sweep sweep, PetscInt *least, Petsc
 PETSC_INTERN PetscErrorCode SweepOnsets(Sweep sweep);
 /* Index of an event along the second axis */
 PETSC_INTERN PetscInt SweepEventLine(Sweep sweep, PetscInt e);
+/* onsetview.c - onsets, and the answer in one line; what they cost */
+PETSC_INTERN PetscErrorCode SweepViewOnsets(Sweep sweep, const OperatorsParameter *parameter, PetscViewer viewer);
+PETSC_INTERN PetscErrorCode SweepViewOnsetCost(Sweep sweep, PetscViewer viewer);
 /* brute.c - every point in full, without reduced model; the places of full solutions that check the reduced ones, and
    these */
 PETSC_INTERN PetscErrorCode SweepBrute(Sweep sweep);

@@ -5,8 +5,6 @@
 
 #define MAX_STRETCHES 12 /* of one contact status, that are listed */
 
-static const char *const kinds[] = {"lock-in", "lock-out", "divergence", "stable again"};
-
 /* The full solutions behind the basis */
 static PetscErrorCode SamplesView(Sweep sweep, const OperatorsParameter parameters[], PetscViewer viewer)
 {
@@ -72,14 +70,6 @@ static PetscErrorCode BranchesView(Sweep sweep, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
-/* Whether a point has an unstable mode */
-static PetscBool PointIsUnstable(const SweepPoint *point)
-{
-  for (PetscInt k = 0; k < point->n; k++)
-    if (point->mode[k].unstable) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
 /* Stretches of a line with one contact status: how many, or, with a viewer, pairs closed and ends of each */
 static PetscErrorCode StretchesView(Sweep sweep, PetscViewer viewer, PetscInt *n)
 {
@@ -132,94 +122,6 @@ static PetscErrorCode StatusView(Sweep sweep, PetscViewer viewer)
       viewer, "; %" PetscInt_FMT " static solutions, %" PetscInt_FMT " groups of pairs as further parameters",
       sweep->n_static, sweep->grid.n_groups));
   PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
-  PetscFunctionReturn(0);
-}
-
-/* Up to which value is it quiet? first = the onset nearest to the first value, or NULL. An unstable point before any
-   onset means that its onset was not located. */
-static PetscErrorCode AnswerView(Sweep sweep, const OperatorsParameter *parameter, const BranchEvent *first,
-                                 PetscViewer viewer)
-{
-  const PetscReal *value = sweep->grid.value[0];
-  const char      *unit = parameter->unit, *space = unit[0] ? " " : "";
-  PetscInt         i = 0;
-
-  PetscFunctionBeginUser;
-  while (i < sweep->grid.n[0] && !PointIsUnstable(&sweep->point[i])) i++;
-  if (i == 0)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "unstable already at %s = %.6g%s%s\n", parameter->name, (double)value[0],
-                                     space, unit));
-  else if (first &&
-           (i == sweep->grid.n[0] || PetscAbsReal(first->critical - value[0]) <= PetscAbsReal(value[i] - value[0])))
-    PetscCall(PetscViewerASCIIPrintf(viewer, "quiet from %s = %.6g to %.10g%s%s%s\n", parameter->name, (double)value[0],
-                                     (double)first->critical, space, unit,
-                                     first->kind == EVENT_JUMP ? ", where the contact status changes" : ""));
-  else if (i < sweep->grid.n[0])
-    PetscCall(PetscViewerASCIIPrintf(viewer, "unstable at %s = %.6g%s%s; where it becomes so was not located\n",
-                                     parameter->name, (double)value[i], space, unit));
-  else
-    PetscCall(PetscViewerASCIIPrintf(
-      viewer, "quiet from %s = %.6g to %.6g%s%s: no onset in the band with growth below %.6g 1/s\n", parameter->name,
-      (double)value[0], (double)value[i - 1], space, unit, (double)sweep->window.growth));
-  PetscFunctionReturn(0);
-}
-
-/* One onset */
-static PetscErrorCode EventView(Sweep sweep, PetscInt e, const OperatorsParameter *parameter, PetscViewer viewer)
-{
-  const BranchEvent *event = &sweep->events.event[e];
-
-  PetscFunctionBeginUser;
-  if (event->kind == EVENT_JUMP)
-    PetscCall(PetscViewerASCIIPrintf(
-      viewer, "  jump at %s = %.6g %s +- %.1e: contact status changes, and %s at %.2f Hz is unstable %s it\n",
-      parameter->name, (double)event->critical, parameter->unit, (double)event->error,
-      sweep->label[event->branch[0]].text, (double)(event->omega / (2 * PETSC_PI)), event->above ? "above" : "below"));
-  else
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s at %s = %.10g %s +- %.1e, %.2f Hz, %s%s\n", kinds[event->kind],
-                                     parameter->name, (double)event->critical, parameter->unit, (double)event->error,
-                                     (double)(event->omega / (2 * PETSC_PI)), sweep->label[event->branch[0]].text,
-                                     sweep->is_confirmed[e] ? "" : " (not confirmed on the full problem)"));
-  PetscFunctionReturn(0);
-}
-
-/* Onsets, and the answer in one line */
-static PetscErrorCode OnsetsView(Sweep sweep, const OperatorsParameter *parameter, PetscViewer viewer)
-{
-  const BranchEvent *first = NULL;
-
-  PetscFunctionBeginUser;
-  for (PetscInt e = 0; e < sweep->events.n; e++) {
-    const BranchEvent *event = &sweep->events.event[e];
-
-    if (!event->found) continue;
-    PetscCall(EventView(sweep, e, parameter, viewer));
-    if (SweepEventLine(sweep, e) == 0 && (!first || PetscAbsReal(event->critical - sweep->grid.value[0][0]) <
-                                                      PetscAbsReal(first->critical - sweep->grid.value[0][0])))
-      first = event;
-  }
-  if (sweep->grid.n_axes == 1) PetscCall(AnswerView(sweep, parameter, first, viewer));
-  PetscFunctionReturn(0);
-}
-
-/* What the onsets cost */
-static PetscErrorCode OnsetCostView(Sweep sweep, PetscViewer viewer)
-{
-  PetscInt n[3] = {0}, n_onsets = 0;
-
-  PetscFunctionBeginUser;
-  for (PetscInt e = 0; e < sweep->events.n; e++) {
-    const BranchEvent *event = &sweep->events.event[e];
-
-    n_onsets += event->kind != EVENT_JUMP;
-    n[0] += event->n_solved;
-    n[1] += event->n_followed;
-    n[2] += event->n_corrected;
-  }
-  PetscCall(PetscViewerASCIIPrintf(viewer,
-                                   "%" PetscInt_FMT " onsets: %" PetscInt_FMT " reduced eigenproblems, %" PetscInt_FMT
-                                   " modes followed, %" PetscInt_FMT " corrections on the full problem\n",
-                                   n_onsets, n[0], n[1], n[2]));
   PetscFunctionReturn(0);
 }
 
@@ -315,6 +217,24 @@ static PetscErrorCode ModelsView(Sweep sweep, const OperatorsParameter parameter
   PetscFunctionReturn(0);
 }
 
+/* How far branches were followed from point to point */
+static PetscErrorCode FollowView(Sweep sweep, PetscViewer viewer)
+{
+  PetscBool affine = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  if (!sweep->n_branches)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "branches and onsets: not followed without left vectors (-modes_left)\n"));
+  if (!sweep->n_broken) PetscFunctionReturn(0);
+  if (sweep->statics) PetscCall(StaticsIsAffine(sweep->statics, &affine));
+  PetscCall(
+    PetscViewerASCIIPrintf(viewer,
+                           "branches that end since the step is too large to tell which mode goes on: %" PetscInt_FMT
+                           "; finer -sweep_values%s follow them\n",
+                           sweep->n_broken, affine ? ", or -sweep_method reduced," : ""));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer)
 {
   const OperatorsParameter *parameters;
@@ -330,15 +250,16 @@ PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer)
   PetscCall(LinksView(sweep, parameters, viewer));
   PetscCall(StatusView(sweep, viewer));
   PetscCall(BranchesView(sweep, viewer));
-  if (sweep->is_confirmed) PetscCall(OnsetsView(sweep, &parameters[sweep->grid.parameter[0][0]], viewer));
+  if (sweep->is_confirmed) PetscCall(SweepViewOnsets(sweep, &parameters[sweep->grid.parameter[0][0]], viewer));
   PetscCall(ChecksView(sweep, viewer));
   PetscCall(RisksView(sweep, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer,
                                    "%" PetscInt_FMT " points, %" PetscInt_FMT " branches, %" PetscInt_FMT
                                    " unstable eigenvalues, %" PetscInt_FMT " more numerical only\n",
                                    GridSize(&sweep->grid), sweep->n_branches, n_unstable, n_numerical));
+  if (sweep->method == SWEEP_FULL) PetscCall(FollowView(sweep, viewer));
   PetscCall(ModelsView(sweep, parameters, viewer));
-  if (sweep->is_confirmed) PetscCall(OnsetCostView(sweep, viewer));
+  if (sweep->is_confirmed && sweep->method != SWEEP_FULL) PetscCall(SweepViewOnsetCost(sweep, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, "time: basis %.2f s, points %.2f s, onsets %.2f s, checks %.2f s",
                                    sweep->seconds[0], sweep->seconds[1], sweep->seconds[2], sweep->seconds[3]));
   if (sweep->statics) PetscCall(PetscViewerASCIIPrintf(viewer, ", contact status %.2f s", sweep->seconds[4]));

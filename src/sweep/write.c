@@ -38,16 +38,6 @@ static SymmetryColumn ParityOf(Sweep sweep, PetscInt parity)
   return column;
 }
 
-/* The parity of a branch: that of the last part that begins no later */
-static PetscInt BranchParity(Sweep sweep, PetscInt branch)
-{
-  PetscInt parity = 0;
-
-  for (PetscInt c = 1; c < sweep->n_parities; c++)
-    if (sweep->part[c] && sweep->part[c]->first_branch <= branch) parity = c;
-  return parity;
-}
-
 /* Distance of a point to the nearest onset of a branch, relative, or NaN. Growth near a lock-in goes as the square root
    of the distance of the parameter from its critical value, and so does the error bar there: hence it is listed. */
 static PetscReal OnsetDistance(Sweep sweep, PetscInt point, PetscInt branch)
@@ -113,7 +103,7 @@ static PetscErrorCode OnsetRows(Sweep sweep, ResultsTable table)
                               sweep->label[event->branch[0]].text, (double)event->error, (int)event->branch[0] + 1,
                               NumberOrEmpty(event->branch[1] < 0 ? NAN : event->branch[1] + 1).text,
                               (int)sweep->is_confirmed[e], SecondValue(sweep, SweepEventLine(sweep, e)).text,
-                              ParityOf(sweep, BranchParity(sweep, event->branch[0])).text));
+                              ParityOf(sweep, sweep->label[event->branch[0]].parity).text));
   }
   PetscFunctionReturn(0);
 }

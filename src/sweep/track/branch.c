@@ -16,9 +16,19 @@ static PetscErrorCode BranchRemember(Branch *branch, const ModeFrame *frame, Pet
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(branch->x, frame->X + i * frame->N, frame->N));
+  PetscCall(PetscArraycpy(branch->y, frame->Y + i * frame->N, frame->N));
   PetscCall(PetscArraycpy(branch->w, frame->W + i * frame->N, frame->N));
-  branch->omega  = cimag(frame->modes.lambda[i]);
+  branch->lambda = frame->modes.lambda[i];
   branch->joined = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Makes a branch that has the vectors of mode i */
+static PetscErrorCode BranchStart(Branch *branch, const ModeFrame *frame, PetscInt i)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(frame->N, &branch->x, frame->N, &branch->y, frame->N, &branch->w));
+  PetscCall(BranchRemember(branch, frame, i));
   PetscFunctionReturn(0);
 }
 
@@ -27,8 +37,7 @@ static PetscErrorCode BranchListAdd(BranchList *list, ModeFrame *frame, PetscInt
 {
   PetscFunctionBeginUser;
   PetscCall(PetscRealloc((list->n + 1) * sizeof(*list->branch), &list->branch));
-  PetscCall(PetscMalloc2(frame->N, &list->branch[list->n].x, frame->N, &list->branch[list->n].w));
-  PetscCall(BranchRemember(&list->branch[list->n], frame, i));
+  PetscCall(BranchStart(&list->branch[list->n], frame, i));
   frame->branch[i] = list->first + list->n++;
   PetscFunctionReturn(0);
 }
@@ -80,7 +89,7 @@ PetscErrorCode BranchListContinue(BranchList *list, const ModeFrame *a, ModeFram
   for (PetscInt i = 0; i < na; i++) {
     const Branch *branch = list->branch + a->branch[i] - list->first;
 
-    order[i] = branch->omega;
+    order[i] = cimag(branch->lambda);
     if (branch->joined) PetscCall(BranchScore(branch, b, score + i * nb));
   }
   PetscCall(MatchAssign(a, b, score, order, match));
@@ -95,10 +104,58 @@ PetscErrorCode BranchListContinue(BranchList *list, const ModeFrame *a, ModeFram
   PetscFunctionReturn(0);
 }
 
+/* Takes the vectors of entry m of a memory, with w^T x = 1 in the pencil of the frame */
+static PetscErrorCode BranchRecall(Branch *branch, const ModeFrame *frame, const ReducedModes *modes, PetscInt m)
+{
+  const PetscInt n = modes->size, N = frame->N;
+  PetscComplex   product;
+
+  PetscFunctionBeginUser;
+  branch->lambda = modes->lambda[m];
+  branch->joined = PETSC_TRUE;
+  StandardVector(&frame->form, branch->lambda, modes->x + m * n, branch->x);
+  StandardVector(&frame->form, branch->lambda, modes->y + m * n, branch->y);
+  PetscCall(StandardApply(&frame->form, STANDARD_B, PETSC_TRUE, 1, branch->y, branch->w));
+  product = DenseDot(N, branch->w, branch->x);
+  for (PetscInt k = 0; k < N && product != 0; k++) branch->w[k] /= product, branch->y[k] /= product;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BranchListResume(BranchList *list, PetscInt n_branches, const ModeFrame *a, const BranchMemory *memory)
+{
+  PetscFunctionBeginUser;
+  *list = (BranchList){.n = n_branches};
+  PetscCall(PetscCalloc1(PetscMax(1, n_branches), &list->branch));
+  for (PetscInt i = 0; i < a->modes.n; i++) PetscCall(BranchStart(&list->branch[a->branch[i]], a, i));
+  for (PetscInt m = 0; m < memory->modes.n; m++) {
+    Branch *branch = &list->branch[memory->branch[m]];
+
+    if (branch->x) PetscCall(BranchRecall(branch, a, &memory->modes, m));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BranchListSave(const BranchList *list, const ModeFrame *b, BranchMemory *memory)
+{
+  ReducedModes *modes = &memory->modes;
+
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < b->modes.n; j++) {
+    const Branch *branch = &list->branch[b->branch[j] - list->first];
+
+    if (!branch->joined) continue;
+    modes->lambda[modes->n]  = branch->lambda;
+    memory->branch[modes->n] = b->branch[j];
+    PetscCall(PetscArraycpy(modes->x + modes->n * modes->size, branch->x, modes->size));
+    PetscCall(PetscArraycpy(modes->y + modes->n++ * modes->size, branch->y, modes->size));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BranchListDestroy(BranchList *list)
 {
   PetscFunctionBeginUser;
-  for (PetscInt r = 0; r < list->n; r++) PetscCall(PetscFree2(list->branch[r].x, list->branch[r].w));
+  for (PetscInt r = 0; r < list->n; r++) PetscCall(PetscFree3(list->branch[r].x, list->branch[r].y, list->branch[r].w));
   PetscCall(PetscFree(list->branch));
   list->n = 0;
   PetscFunctionReturn(0);

@@ -157,9 +157,10 @@ PetscErrorCode MatchCreate(const ModeFrame *a, const ModeFrame *b, const Reduced
   PetscInt n;
 
   PetscFunctionBeginUser;
-  match->na = a->modes.n;
-  match->nb = b->modes.n;
-  n         = match->na + match->nb;
+  match->na    = a->modes.n;
+  match->nb    = b->modes.n;
+  match->least = 0;
+  n            = match->na + match->nb;
   PetscCall(PetscCalloc7(match->na * match->nb, &match->strength, match->na, &match->component_a, match->nb,
                          &match->component_b, n, &match->clusters_a, n, &match->clusters_b, n, &match->certain,
                          match->nb, &match->from));
@@ -203,10 +204,11 @@ static PetscBool BestPair(const Assignment *s, PetscInt *best_i, PetscInt *best_
 
   for (PetscInt i = 0; i < match->na; i++) {
     for (PetscInt j = 0; j < match->nb && !s->taken[i]; j++) {
-      const PetscReal score = s->score[i * match->nb + j] + (s->place_a[i] == s->place_b[j] ? PLACE : 0);
+      const PetscReal score   = s->score[i * match->nb + j] + (s->place_a[i] == s->place_b[j] ? PLACE : 0);
+      const PetscBool certain = match->certain[match->component_a[i]];
 
       if (match->from[j] >= 0 || match->component_a[i] != match->component_b[j] || score <= best) continue;
-      if (score - PLACE < LEAST && !match->certain[match->component_a[i]]) continue;
+      if (!certain && (score - PLACE < LEAST || match->strength[i * match->nb + j] < match->least)) continue;
       best = score, *best_i = i, *best_j = j;
     }
   }

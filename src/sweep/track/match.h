@@ -13,7 +13,8 @@ typedef struct {
   PetscInt  *clusters_a, *clusters_b;   /* [n_components] clusters of a, b in each */
   PetscBool *certain;                   /* [n_components] */
   PetscBool  all_certain;
-  PetscInt  *from; /* [nb] mode of a or -1; MatchAssign() */
+  PetscReal  least; /* strength below which modes of an uncertain component are not assigned; 0 until set */
+  PetscInt  *from;  /* [nb] mode of a or -1; MatchAssign() */
 } Match;
 
 /* match.c - window (may be NULL): a mode without partner is certain only when it left or entered the window */

@@ -55,7 +55,7 @@ void BranchLineSet(const BranchLine *line, PetscReal value, PetscReal p[]);
    grows. Where the match of two neighbouring points is ambiguous the interval is halved by further ReducedSolve(). */
 PetscErrorCode TrackLine(const Reduced *reduced, const BranchLine *line, const ReducedModes modes[], PetscInt *branch[],
                          PetscInt *n_branches, BranchEvents *events);
-/* Match of the modes of two points a, b that may differ in any parameter: from[i of b] = mode of a or -1; certain =
+/* step.c - match of the modes of two points a, b that may differ in any parameter: from[i of b] = mode of a or -1; certain =
    whether no match is ambiguous */
 PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const ReducedModes *a, const ReducedModes *b,
                           PetscInt from[], PetscBool *certain);
@@ -64,6 +64,31 @@ PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const Red
    only. p = all parameters at b */
 PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], const BranchPoint *a, BranchPoint *b,
                          BranchEvents *events);
+/* Vectors of branches whose modes cannot be told from others at a point, from before they joined them; made with room for
+   all modes and n = 0 */
+typedef struct {
+  ReducedModes modes;
+  PetscInt    *branch;
+} BranchMemory;
+
+/* Along a line, across a change of contact status, from one line to the next */
+typedef enum { STEP_SMOOTH, STEP_JUMP, STEP_LINK } StepKind;
+
+typedef struct {
+  StepKind             kind;
+  const ReducedWindow *window;
+  const PetscReal     *p[2]; /* all parameters at a and at b */
+  BranchPoint          a, b;
+  const BranchMemory  *before; /* of a */
+  BranchMemory        *after;  /* of b is appended */
+  PetscInt             n_branches;
+  PetscInt             n_broken; /* branches that end at a since the step is too large to tell where they go on */
+} PointStep;
+
+/* Branches of b from those of a, new ones from n_branches on, and events of the kind, where nothing is solved between the
+   points. The place of an onset is interpolated; its error reaches both points. What is uncertain ends. */
+PetscErrorCode TrackStep(const Reduced *reduced, PointStep *step, BranchEvents *events);
+/* change.c */
 PetscErrorCode BranchEventsDestroy(BranchEvents *events);
 
 /* onset.c - the critical value of an event on the reduced model, to rounding, and its estimated error; modes (may be

@@ -1,0 +1,143 @@
+/*
+   Branches of a sweep in full. Of each point the vectors are kept until the next one is solved, right and left ones, as
+   coordinates in an orthonormal basis of what they span. The vectors of the next point extend that basis, and the pencil of
+   that point between the vectors of the basis is a reduced model and, at these modes, without error: on it they are matched
+   as at any step of track/ (TrackStep()). The products of the earlier point have the damping that it has there, on which
+   those of real eigenvalues depend altogether, but the mass of the later one. In a grid each line begins at the first point
+   of the line before.
+
+   All vectors are those of all unknowns, since which of them an exact constraint eliminates may change from point to
+   point. Modes of different parity are never compared.
+*/
+#include "follow.h"
+
+/* The modes of a parity with their branches, list [n] being their indices in the point */
+static PetscErrorCode ParitySelect(const FollowPoint *point, PetscInt parity, PetscInt list[], ReducedModes *modes,
+                                   PetscInt branch[])
+{
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < point->modes.n; i++) {
+    if (point->parity[i] != parity) continue;
+    branch[n] = point->branch[i];
+    list[n++] = i;
+  }
+  PetscCall(ReducedModesSelect(&point->modes, n, list, modes));
+  PetscFunctionReturn(0);
+}
+
+/* Branches of one parity */
+static PetscErrorCode ParityStep(Sweep sweep, PetscInt parity, StepKind kind, const Reduced *reduced,
+                                 const FollowPoint *from, FollowPoint *point)
+{
+  ReducedModes a, b;
+  PetscInt    *list, *branch[2];
+  PointStep    step = {
+       .kind       = kind,
+       .window     = &sweep->window,
+       .p          = {(PetscReal[]){0, 1}, (PetscReal[]){1, 0}},
+       .before     = &from->memory,
+       .after      = &point->memory,
+       .n_branches = sweep->n_branches
+  };
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(from->modes.n + point->modes.n, &list, from->modes.n, &branch[0], point->modes.n, &branch[1]));
+  PetscCall(ParitySelect(from, parity, list, &a, branch[0]));
+  PetscCall(ParitySelect(point, parity, list, &b, branch[1]));
+  step.a = (BranchPoint){from->value, &a, branch[0]};
+  step.b = (BranchPoint){point->value, &b, branch[1]};
+  PetscCall(TrackStep(reduced, &step, &sweep->events));
+  for (PetscInt i = 0; i < b.n; i++) point->branch[list[i]] = branch[1][i];
+  sweep->n_branches = step.n_branches;
+  sweep->n_broken += step.n_broken;
+  PetscCall(ReducedModesDestroy(&a));
+  PetscCall(ReducedModesDestroy(&b));
+  PetscCall(PetscFree3(list, branch[0], branch[1]));
+  PetscFunctionReturn(0);
+}
+
+/* Branches of all modes of a point from those of another one (NULL: none), and events on the way */
+static PetscErrorCode PointFollow(Sweep sweep, Pencil pencil, StepKind kind, const FollowPoint *from,
+                                  FollowPoint *point)
+{
+  const PetscInt first_event = sweep->events.n, size = point->modes.size;
+  FollowPoint    before; /* in the basis of the point */
+  Reduced        reduced;
+
+  PetscFunctionBeginUser;
+  PetscCall(FollowModel(pencil, from, point, &reduced));
+  for (PetscInt k = 0; k < point->modes.n && !from; k++) point->branch[k] = sweep->n_branches++;
+  if (from) {
+    before = *from;
+    PetscCall(FollowMove(&from->modes, size, NULL, &before.modes));
+    PetscCall(FollowMove(&from->memory.modes, size, NULL, &before.memory.modes));
+    for (PetscInt c = 0; c < sweep->n_parities; c++) PetscCall(ParityStep(sweep, c, kind, &reduced, &before, point));
+    for (PetscInt e = first_event; e < sweep->events.n; e++) sweep->events.event[e].place = point->place;
+    PetscCall(ReducedModesDestroy(&before.modes));
+    PetscCall(ReducedModesDestroy(&before.memory.modes));
+  }
+  PetscCall(FollowModelDestroy(&reduced));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PointDestroy(FollowPoint **point)
+{
+  FollowPoint *p = *point;
+
+  PetscFunctionBeginUser;
+  if (!p) PetscFunctionReturn(0);
+  PetscCall(MatDestroy(&p->C));
+  PetscCall(BVDestroy(&p->vectors));
+  PetscCall(ReducedModesDestroy(&p->modes));
+  PetscCall(ReducedModesDestroy(&p->memory.modes));
+  PetscCall(PetscFree(p->memory.branch));
+  PetscCall(PetscFree2(p->branch, p->parity));
+  PetscCall(PetscFree(*point));
+  PetscFunctionReturn(0);
+}
+
+/* The point whose modes the eigensolver has just found */
+static PetscErrorCode PointCreate(Sweep sweep, const FollowPoint *from, PetscInt i, const LinePoints *points,
+                                  FollowPoint **point)
+{
+  const ReducedModes *found = &points->modes[i];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(point));
+  (*point)->place = points->first + i;
+  (*point)->value = points->value[i];
+  PetscCall(PetscMalloc2(found->n, &(*point)->branch, found->n, &(*point)->parity));
+  PetscCall(PetscArraycpy((*point)->parity, points->parity[i], found->n));
+  PetscCall(FollowRead(sweep, from, found, *point));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FollowTake(Sweep sweep, Pencil pencil, PetscInt i, LinePoints *points, Follow *follow)
+{
+  const SweepPlace *place = &sweep->grid.place[points->first + i];
+  FollowPoint      *from  = i ? follow->before : follow->first, *point;
+  StepKind          kind  = i ? STEP_SMOOTH : STEP_LINK;
+
+  PetscFunctionBeginUser;
+  if (i && place[-1].status != place->status) kind = STEP_JUMP;
+  PetscCall(PointCreate(sweep, from, i, points, &point));
+  PetscCall(PointFollow(sweep, pencil, kind, from, point));
+  PetscCall(FollowShrink(point));
+  PetscCall(PetscArraycpy(points->branch[i], point->branch, point->modes.n));
+  if (follow->before != follow->first) PetscCall(PointDestroy(&follow->before));
+  follow->before = point;
+  if (i || sweep->grid.n_axes == 1) PetscFunctionReturn(0);
+  PetscCall(PointDestroy(&follow->first));
+  follow->first = point;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FollowDestroy(Follow *follow)
+{
+  PetscFunctionBeginUser;
+  if (follow->before != follow->first) PetscCall(PointDestroy(&follow->before));
+  PetscCall(PointDestroy(&follow->first));
+  PetscFunctionReturn(0);
+}
