@@ -196,6 +196,17 @@ typedef struct {
   PetscBool       *taken; /* [na] */
 } Assignment;
 
+/* Whether of all modes i and j alone reach the least strength with each other: in a damped pair two may */
+static PetscBool MatchIsUnique(const Match *match, PetscInt i, PetscInt j)
+{
+  PetscInt n = 0;
+
+  if (match->least <= 0) return PETSC_TRUE;
+  for (PetscInt k = 0; k < match->nb; k++) n += match->strength[i * match->nb + k] >= match->least;
+  for (PetscInt k = 0; k < match->na; k++) n += match->strength[k * match->nb + j] >= match->least;
+  return match->strength[i * match->nb + j] >= match->least && n == 2 ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* The next pair to assign, the one of the largest score; false when there is none left */
 static PetscBool BestPair(const Assignment *s, PetscInt *best_i, PetscInt *best_j)
 {
@@ -208,7 +219,7 @@ static PetscBool BestPair(const Assignment *s, PetscInt *best_i, PetscInt *best_
       const PetscBool certain = match->certain[match->component_a[i]];
 
       if (match->from[j] >= 0 || match->component_a[i] != match->component_b[j] || score <= best) continue;
-      if (!certain && (score - PLACE < LEAST || match->strength[i * match->nb + j] < match->least)) continue;
+      if (!certain && (score - PLACE < LEAST || !MatchIsUnique(match, i, j))) continue;
       best = score, *best_i = i, *best_j = j;
     }
   }

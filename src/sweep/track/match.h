@@ -13,7 +13,7 @@ typedef struct {
   PetscInt  *clusters_a, *clusters_b;   /* [n_components] clusters of a, b in each */
   PetscBool *certain;                   /* [n_components] */
   PetscBool  all_certain;
-  PetscReal  least; /* strength below which modes of an uncertain component are not assigned; 0 until set */
+  PetscReal  least; /* modes of an uncertain component are assigned when they alone reach this strength; 0: as scores say */
   PetscInt  *from;  /* [nb] mode of a or -1; MatchAssign() */
 } Match;
 

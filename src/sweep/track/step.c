@@ -10,7 +10,7 @@
 #include "branch.h"
 #include "change.h"
 
-#define UNIQUE 0.5 /* strength that no second mode can have */
+#define UNIQUE 0.5 /* strength that no second mode has as long as products are real */
 
 /* Largest |lambda| of two points */
 static PetscReal ModesScale(const ReducedModes *a, const ReducedModes *b)
