@@ -104,19 +104,18 @@ PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], const Bran
   PetscFunctionReturn(0);
 }
 
-/* g of onset.c at a point, of n modes that are a pair, or several, at the other one */
-static PetscReal StepValue(const ModeFrame *f, PetscInt n, const PetscInt member[])
+/* g of onset.c at a point, of n modes that are a pair, or several, at the other one; m = their mean omega^2 */
+static PetscReal StepValue(const ModeFrame *f, PetscInt n, const PetscInt member[], PetscReal *m)
 {
-  PetscComplex mean = 0, square = 0;
+  const PetscComplex *lambda = f->modes.lambda;
+  PetscComplex        mean = 0, square = 0;
 
-  if (f->form.damped) return creal(f->modes.lambda[member[0]]);
-  for (PetscInt k = 0; k < n; k++) mean += StandardValue(&f->form, f->modes.lambda[member[k]]) / n;
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscComplex difference = StandardValue(&f->form, f->modes.lambda[member[k]]) - mean;
-
-    square += difference * difference;
-  }
-  return n > 1 ? -creal(square) : -creal(mean);
+  *m = PetscSqr(cimag(lambda[member[0]]));
+  if (f->form.damped) return creal(lambda[member[0]]);
+  for (PetscInt k = 0; k < n; k++) mean += StandardValue(&f->form, lambda[member[k]]) / n;
+  for (PetscInt k = 0; k < n; k++) square += cpow(StandardValue(&f->form, lambda[member[k]]) - mean, 2);
+  *m = creal(mean);
+  return n > 1 ? -creal(square) : -*m;
 }
 
 /* Where the event of mode i, unstable at u and not at s, lies: its zero of g, or half way where to [modes of u], the modes of
@@ -125,7 +124,7 @@ static PetscErrorCode StepPlace(const ModeFrame *u, const ModeFrame *s, PetscInt
                                 BranchEvent *event)
 {
   PetscInt *member, *partner, n = 0;
-  PetscReal t = 0.5, g[2];
+  PetscReal t = 0.5, g[2] = {0}, m[2] = {0};
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(u->modes.n, &member, u->modes.n, &partner));
@@ -134,13 +133,13 @@ static PetscErrorCode StepPlace(const ModeFrame *u, const ModeFrame *s, PetscInt
     if (to[k] < 0) to = NULL;
     if (to) member[n] = k, partner[n++] = to[k];
   }
-  g[0] = to ? StepValue(u, n, member) : 0;
-  g[1] = to ? StepValue(s, n, partner) : 0;
-  if (g[0] > 0 && g[1] <= 0) t = g[0] / (g[0] - g[1]);
+  if (to) g[0] = StepValue(u, n, member, &m[0]);
+  if (to) g[1] = StepValue(s, n, partner, &m[1]);
+  if (g[0] > 0) t = g[0] / (g[0] - PetscMin(g[1], 0)); /* growth at s is within its error */
   event->found    = PETSC_TRUE;
   event->critical = u->value + t * (s->value - u->value);
   event->error    = PetscMax(event->critical - event->lower, event->upper - event->critical);
-  if (to && event->omega > 0) event->omega += t * (cimag(s->modes.lambda[to[i]]) - event->omega);
+  if (to && event->omega > 0) event->omega = PetscSqrtReal(PetscMax(m[0] + t * (m[1] - m[0]), 0));
   PetscCall(PetscFree2(member, partner));
   PetscFunctionReturn(0);
 }
