@@ -147,7 +147,8 @@ PetscErrorCode BranchListSave(const BranchList *list, const ModeFrame *b, Branch
     modes->lambda[modes->n]  = branch->lambda;
     memory->branch[modes->n] = b->branch[j];
     PetscCall(PetscArraycpy(modes->x + modes->n * modes->size, branch->x, modes->size));
-    PetscCall(PetscArraycpy(modes->y + modes->n++ * modes->size, branch->y, modes->size));
+    PetscCall(PetscArraycpy(modes->y + modes->n * modes->size, branch->y, modes->size));
+    modes->n++;
   }
   PetscFunctionReturn(0);
 }

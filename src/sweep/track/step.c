@@ -125,21 +125,23 @@ static PetscErrorCode StepPlace(const ModeFrame *u, const ModeFrame *s, PetscInt
 {
   PetscInt *member, *partner, n = 0;
   PetscReal t = 0.5, g[2] = {0}, m[2] = {0};
+  PetscBool told = to ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(u->modes.n, &member, u->modes.n, &partner));
-  for (PetscInt k = 0; k < u->modes.n && to; k++) {
+  for (PetscInt k = 0; k < u->modes.n && told; k++) {
     if (k != i && (u->form.damped || u->cluster[k] != u->cluster[i])) continue;
-    if (to[k] < 0) to = NULL;
-    if (to) member[n] = k, partner[n++] = to[k];
+    if (to[k] < 0) told = PETSC_FALSE;
+    member[n]    = k;
+    partner[n++] = to[k];
   }
-  if (to) g[0] = StepValue(u, n, member, &m[0]);
-  if (to) g[1] = StepValue(s, n, partner, &m[1]);
+  if (told) g[0] = StepValue(u, n, member, &m[0]);
+  if (told) g[1] = StepValue(s, n, partner, &m[1]);
   if (g[0] > 0) t = g[0] / (g[0] - PetscMin(g[1], 0)); /* growth at s is within its error */
   event->found    = PETSC_TRUE;
   event->critical = u->value + t * (s->value - u->value);
   event->error    = PetscMax(event->critical - event->lower, event->upper - event->critical);
-  if (to && event->omega > 0) event->omega = PetscSqrtReal(PetscMax(m[0] + t * (m[1] - m[0]), 0));
+  if (told && event->omega > 0) event->omega = PetscSqrtReal(PetscMax(m[0] + t * (m[1] - m[0]), 0));
   PetscCall(PetscFree2(member, partner));
   PetscFunctionReturn(0);
 }
