@@ -151,6 +151,19 @@ static PetscErrorCode ChainNeedsMatrices(const Chain *chain, PetscBool pairs, Pe
   PetscFunctionReturn(0);
 }
 
+/* Modes of the mesh that a reduced transient is compared with have what friction damps in time */
+static PetscErrorCode ChainDampFriction(Chain *chain)
+{
+  PetscBool compared;
+
+  PetscFunctionBeginUser;
+  if (!chain->contact || chain->analysis != ANALYSIS_TRANSIENT) PetscFunctionReturn(0);
+  PetscCall(ReducedIsCompared(chain->reduced, &compared));
+  if (compared) PetscCall(ModesHaveBand(chain->modes, &compared));
+  if (compared) PetscCall(ContactDampFriction(chain->contact));
+  PetscFunctionReturn(0);
+}
+
 /* Model, pairs and terms */
 static PetscErrorCode ChainAssemble(Chain *chain)
 {
@@ -161,8 +174,7 @@ static PetscErrorCode ChainAssemble(Chain *chain)
   if (transient) PetscCall(DynamicsNeedsPairs(chain->dynamics, &pairs));
   if (transient) PetscCall(ReducedIsAsked(chain->reduced, &reduced));
   if (reduced) PetscCall(OperatorsLump(chain->operators));
-  if (reduced && chain->contact)
-    PetscCall(ContactDampFriction(chain->contact)); /* of the mesh's modes that it is compared with */
+  if (reduced) PetscCall(ChainDampFriction(chain));
   if (reduced) pairs = PETSC_TRUE;
   if (chain->model) {
     if (transient && !reduced) PetscCall(ModelKeepSlabs(chain->model));

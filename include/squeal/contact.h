@@ -151,8 +151,9 @@ PetscErrorCode ContactSetFromOptions(Contact contact);
 @*/
 PetscErrorCode ContactSetUp(Contact contact);
 
-/*@ ContactDampFriction - interfaces that slide at a stated speed have friction damping, as Coulomb's law in time does by itself;
-    before ContactSetUp(). Not collective. @*/
+/*@ ContactDampFriction - interfaces with friction that slide at a stated speed have friction damping in modes, as Coulomb's law in
+    time has by itself: as -contact_friction_damping does, with the parameters of the operators that belong to it. Before
+    ContactSetUp(). Not collective. @*/
 PetscErrorCode ContactDampFriction(Contact contact);
 
 /*@ ContactSetUpTies - the part of ContactSetUp() that makes the links of the ties, for runs in time, whose pairs are not those of the

@@ -186,6 +186,10 @@ PetscErrorCode ReducedSetFromOptions(ReducedRun reduced);
 /*@ ReducedIsAsked - whether the options ask for it. Not collective. @*/
 PetscErrorCode ReducedIsAsked(ReducedRun reduced, PetscBool *asked);
 
+/*@ ReducedIsCompared - whether a transient compares its eigenvalues with those of the mesh where there is a -modes_band. Not
+    collective. @*/
+PetscErrorCode ReducedIsCompared(ReducedRun run, PetscBool *compared);
+
 /*@ ReducedSetRooms - the run in time, of which loads, motions, histories and options are those of `dynamics` (referenced
     until ReducedDestroy()), and the solver of the mesh's modes. Not collective. @*/
 PetscErrorCode ReducedSetRooms(ReducedRun reduced, Dynamics dynamics, Modes modes);

@@ -155,7 +155,7 @@ PetscErrorCode ContactDampFriction(Contact contact)
     const PetscBool   turns = Vec3Dot(c->rotation, c->rotation) > 0 ? PETSC_TRUE : PETSC_FALSE;
     const PetscBool   moves = turns || (c->speed > 0 && Vec3Dot(c->slip, c->slip) > 0) ? PETSC_TRUE : PETSC_FALSE;
 
-    if (moves && (c->mu != 0 || c->mu_slope != 0)) c->damping = PETSC_TRUE;
+    if (moves && c->mu != 0) c->damping = PETSC_TRUE;
   }
   PetscFunctionReturn(0);
 }

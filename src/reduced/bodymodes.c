@@ -36,7 +36,7 @@ static PetscErrorCode ReducedCreatePencil(ReducedRun r)
     PetscBool is;
 
     PetscCall(ReducedUnitIsGyration(parameter[i].unit, &is));
-    still[i] = is ? 0 : p[i];
+    still[i] = is && parameter[i].body ? 0 : p[i]; /* a contact that turns is none of them */
   }
   PetscCall(PencilSetParameters(r->bodies, still));
   PetscCall(PetscFree(still));

@@ -22,6 +22,7 @@ static PetscErrorCode CompareFindObstacle(ReducedRun r, const char **why)
 
     if (c->law != CONTACT_CONSTRAINT) *why = "the penalty law of the modes is not exact contact";
     if (!c->slides && c->mu > 0) *why = "nothing says along what the contact slides";
+    if (!c->damping && c->mu_slope != 0) *why = "friction that depends on a speed which is not given";
   }
   PetscFunctionReturn(0);
 }

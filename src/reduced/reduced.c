@@ -63,6 +63,13 @@ PetscErrorCode ReducedIsAsked(ReducedRun r, PetscBool *asked)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ReducedIsCompared(ReducedRun r, PetscBool *compared)
+{
+  PetscFunctionBeginUser;
+  *compared = r->asked && r->compare ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ReducedSetRooms(ReducedRun r, Dynamics dynamics, Modes modes)
 {
   PetscFunctionBeginUser;

@@ -301,16 +301,15 @@ static PetscErrorCode PassForget(PetscInt n, BV W, BlockFactors *factors, BlockP
   PetscFunctionReturn(0);
 }
 
-/* How far [V W]'[V W] was measured to be from the identity */
-static PetscReal PassDeviation(PetscInt n, const BlockPass *pass)
+/* Whether [V W]'[V W] was measured to be the identity within `enough`; NaN is not */
+static PetscBool PassIsNear(PetscInt n, const BlockPass *pass, PetscReal enough)
 {
-  PetscReal most = 0;
-
-  for (PetscInt k = 0; k < pass->m * n; k++) most = PetscMax(most, PetscAbsReal(pass->C[k]));
+  for (PetscInt k = 0; k < pass->m * n; k++)
+    if (!(PetscAbsReal(pass->C[k]) <= enough)) return PETSC_FALSE;
   for (PetscInt j = 0; j < pass->m; j++)
     for (PetscInt i = 0; i < pass->m; i++)
-      most = PetscMax(most, PetscAbsReal(pass->T[j * pass->m + i] - (i == j ? 1 : 0)));
-  return most;
+      if (!(PetscAbsReal(pass->T[j * pass->m + i] - (i == j ? 1 : 0)) <= enough)) return PETSC_FALSE;
+  return PETSC_TRUE;
 }
 
 /* W := (W - V C) T with its factors */
@@ -324,7 +323,7 @@ static PetscErrorCode PassRun(BV V, PetscInt n, Mat M, BV W, BlockFactors *facto
   PetscCall(PassDecompose(PetscObjectComm((PetscObject)W), n, factors, pass));
   PassAccumulate(n, pass, factors);
   PetscCall(M ? PassApplyMass(V, n, W, pass) : PassApply(V, n, W, pass));
-  if (pass->measured && PassDeviation(n, pass) <= factors->enough) pass->clean = PETSC_TRUE;
+  if (pass->measured && PassIsNear(n, pass, factors->enough)) pass->clean = PETSC_TRUE;
   PetscCall(PassTrim(n, W, factors, pass));
   PetscFunctionReturn(0);
 }

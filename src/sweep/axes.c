@@ -55,6 +55,24 @@ static PetscErrorCode AxisCheck(Sweep sweep, const char name[])
   PetscFunctionReturn(0);
 }
 
+/* Raises the error for a load that presses where a stiffness is identified, which is that of the scene's own load */
+static PetscErrorCode AxisCheckLoad(Sweep sweep, const char option[], const char name[])
+{
+  const ContactInterface *interfaces;
+  PetscInt                n;
+  Contact                 contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(sweep->operators, NULL, &contact));
+  PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
+  for (PetscInt i = 0; i < n; i++)
+    PetscCheck(
+      !interfaces[i].identify, sweep->comm, PETSC_ERR_USER_INPUT,
+      "%s %s: -%s_kn identify presses with the load of the scene, not with that of each point; give the stiffness",
+      option, name, interfaces[i].name);
+  PetscFunctionReturn(0);
+}
+
 /* A parameter of axis k */
 static PetscErrorCode AxisAdd(void *ctx, const char option[], const char name[], PetscInt k, const char **unit)
 {
@@ -70,6 +88,7 @@ static PetscErrorCode AxisAdd(void *ctx, const char option[], const char name[],
   PetscCheck(sweep->statics || !list[index].state, sweep->comm, PETSC_ERR_USER_INPUT,
              "%s %s changes modes through the sliding state alone; give -modes_contact static", option, name);
   *unit = list[index].unit;
+  if (list[index].state && *unit[0]) PetscCall(AxisCheckLoad(sweep, option, name)); /* mu has no unit */
   PetscCall(PetscRealloc((size_t)(grid->n_moved[k] + 1) * sizeof(PetscInt), &grid->parameter[k]));
   grid->parameter[k][grid->n_moved[k]++] = index;
   grid->n_axes                           = PetscMax(grid->n_axes, k + 1);

@@ -58,6 +58,17 @@ static PetscErrorCode ParityStep(Sweep sweep, PetscInt parity, StepKind kind, co
   PetscFunctionReturn(0);
 }
 
+/* Gives all ranks what rank 0 found, from event n_before on: collective calls depend on it */
+static PetscErrorCode PointShare(Sweep sweep, PetscInt n_before, FollowPoint *point)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SweepShareEvents(sweep, n_before));
+  PetscCallMPI(MPI_Bcast(point->branch, (PetscMPIInt)point->modes.n, MPIU_INT, 0, sweep->comm));
+  PetscCall(ReducedModesBroadcast(sweep->comm, 0, &point->memory.modes));
+  PetscCallMPI(MPI_Bcast(point->memory.branch, (PetscMPIInt)point->memory.modes.n, MPIU_INT, 0, sweep->comm));
+  PetscFunctionReturn(0);
+}
+
 /* Branches of all modes of a point from those of another one (NULL: none), and events on the way */
 static PetscErrorCode PointFollow(Sweep sweep, Pencil pencil, StepKind kind, const FollowPoint *from,
                                   FollowPoint *point)
@@ -74,6 +85,7 @@ static PetscErrorCode PointFollow(Sweep sweep, Pencil pencil, StepKind kind, con
     PetscCall(FollowMove(&from->modes, size, NULL, &before.modes));
     PetscCall(FollowMove(&from->memory.modes, size, NULL, &before.memory.modes));
     for (PetscInt c = 0; c < sweep->n_parities; c++) PetscCall(ParityStep(sweep, c, kind, &reduced, &before, point));
+    PetscCall(PointShare(sweep, first_event, point));
     for (PetscInt e = first_event; e < sweep->events.n; e++) sweep->events.event[e].place = point->place;
     PetscCall(ReducedModesDestroy(&before.modes));
     PetscCall(ReducedModesDestroy(&before.memory.modes));

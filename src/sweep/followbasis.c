@@ -207,6 +207,7 @@ PetscErrorCode FollowShrink(FollowPoint *point)
   const PetscInt      size = point->modes.size, n = point->modes.n, n_all = n + point->memory.modes.n;
   const PetscComplex *from[4] = {point->modes.x, point->modes.y, point->memory.modes.x, point->memory.modes.y};
   PetscComplex       *Z, *to;
+  const MPI_Comm      comm = PetscObjectComm((PetscObject)point->vectors);
   PetscReal          *U;
   PetscInt            kept;
   BV                  shrunk;
@@ -220,14 +221,18 @@ PetscErrorCode FollowShrink(FollowPoint *point)
       to[2 * n_all * size] = cimag(from[k][i]);
     }
   PetscCall(DenseOrthonormalise(size, 4 * n_all, FOLLOW_DROP, Z, &kept));
+  PetscCallMPI(MPI_Bcast(&kept, 1, MPIU_INT, 0, comm)); /* collective calls depend on it */
   PetscCall(PetscMalloc1(kept * size, &U));
   for (PetscInt i = 0; i < kept * size; i++) U[i] = creal(Z[i]);
+  PetscCallMPI(MPI_Bcast(U, (PetscMPIInt)(kept * size), MPIU_REAL, 0, comm));
   PetscCall(BlockCreate(point->vectors, kept, &shrunk));
   PetscCall(BlockLift(point->vectors, size, kept, U, shrunk));
   PetscCall(BVDestroy(&point->vectors));
   point->vectors = shrunk;
   PetscCall(ModesTurn(kept, U, &point->modes));
   PetscCall(ModesTurn(kept, U, &point->memory.modes));
+  PetscCall(ReducedModesBroadcast(comm, 0, &point->modes));
+  PetscCall(ReducedModesBroadcast(comm, 0, &point->memory.modes));
   PetscCall(PetscFree(U));
   PetscCall(PetscFree(Z));
   PetscFunctionReturn(0);

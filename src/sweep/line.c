@@ -50,22 +50,30 @@ PetscErrorCode LineDestroy(LinePoints *points)
   PetscFunctionReturn(0);
 }
 
-/* Gives all ranks the branches and events of rank 0, from event n_before on */
-static PetscErrorCode TrackBroadcast(Sweep sweep, PetscInt n_before, LinePoints *points)
+PetscErrorCode SweepShareEvents(Sweep sweep, PetscInt n_before)
 {
   BranchEvents *events = &sweep->events;
-  PetscInt      n[2]   = {sweep->n_branches, events->n};
+  PetscInt      n[3]   = {sweep->n_branches, sweep->n_broken, events->n};
   PetscMPIInt   bytes;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Bcast(n, 2, MPIU_INT, 0, sweep->comm));
+  PetscCallMPI(MPI_Bcast(n, 3, MPIU_INT, 0, sweep->comm));
   sweep->n_branches = n[0];
+  sweep->n_broken   = n[1];
+  PetscCall(PetscRealloc(PetscMax(1, n[2]) * sizeof(BranchEvent), &events->event));
+  events->n = n[2];
+  PetscCall(PetscMPIIntCast((PetscInt)sizeof(BranchEvent) * (n[2] - n_before), &bytes));
+  if (bytes) PetscCallMPI(MPI_Bcast(&events->event[n_before], bytes, MPI_BYTE, 0, sweep->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Gives all ranks the branches and events of rank 0, from event n_before on */
+static PetscErrorCode TrackBroadcast(Sweep sweep, PetscInt n_before, LinePoints *points)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SweepShareEvents(sweep, n_before));
   for (PetscInt i = 0; i < points->n; i++)
     PetscCallMPI(MPI_Bcast(points->branch[i], (PetscMPIInt)points->modes[i].n, MPIU_INT, 0, sweep->comm));
-  PetscCall(PetscRealloc(PetscMax(1, n[1]) * sizeof(BranchEvent), &events->event));
-  events->n = n[1];
-  PetscCall(PetscMPIIntCast((PetscInt)sizeof(BranchEvent) * (n[1] - n_before), &bytes));
-  if (bytes) PetscCallMPI(MPI_Bcast(&events->event[n_before], bytes, MPI_BYTE, 0, sweep->comm));
   PetscFunctionReturn(0);
 }
 

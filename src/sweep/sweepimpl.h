@@ -122,6 +122,8 @@ PETSC_INTERN void SweepSortOnsets(Sweep sweep);
 /* line.c - solves the points of the grid line by line, follows the branches, names them */
 PETSC_INTERN PetscErrorCode SweepLines(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepLinesForget(Sweep sweep);
+/* Gives all ranks the number of branches and the events of rank 0, from event n_before on */
+PETSC_INTERN PetscErrorCode SweepShareEvents(Sweep sweep, PetscInt n_before);
 /* Largest estimated relative error of all places, but for rounding */
 PETSC_INTERN PetscReal SweepWorst(Sweep sweep);
 /* Names of all modes of a point from their shapes on the mesh */

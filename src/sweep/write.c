@@ -45,7 +45,7 @@ static PetscReal OnsetDistance(Sweep sweep, PetscInt point, PetscInt branch)
   const PetscReal value   = sweep->grid.value[0][point % sweep->grid.n[0]];
   PetscReal       nearest = NAN;
 
-  for (PetscInt e = 0; e < sweep->events.n; e++) {
+  for (PetscInt e = 0; e < sweep->events.n && sweep->onsets; e++) {
     const BranchEvent *event = &sweep->events.event[e];
     const PetscReal    distance =
       PetscAbsReal(value - event->critical) / PetscMax(PetscAbsReal(event->critical), PETSC_MACHINE_EPSILON);
@@ -206,10 +206,14 @@ static PetscErrorCode ModeSensitivityRows(Sweep sweep, PetscInt point, const Pet
     if (!parameters[j].internal && !parameters[j].state)
       PetscCall(DerivativeRow(row, parameters[j].name, p[j], d[j], table));
   for (PetscInt k = 0; k < grid->n_axes; k++) {
-    PetscComplex sum = 0;
+    PetscComplex sum   = 0;
+    PetscBool    loads = PETSC_TRUE; /* and the like, on which no matrix depends */
 
-    if (grid->n_moved[k] == 1) continue;
-    for (PetscInt m = 0; m < grid->n_moved[k]; m++) sum += d[grid->parameter[k][m]];
+    for (PetscInt m = 0; m < grid->n_moved[k]; m++) {
+      sum += d[grid->parameter[k][m]];
+      if (!parameters[grid->parameter[k][m]].state) loads = PETSC_FALSE;
+    }
+    if (grid->n_moved[k] == 1 || loads) continue;
     PetscCall(LinkName(grid, k, parameters, sizeof(name), name));
     PetscCall(DerivativeRow(row, name, p[grid->parameter[k][0]], sum, table));
   }

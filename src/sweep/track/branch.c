@@ -143,7 +143,8 @@ PetscErrorCode BranchListSave(const BranchList *list, const ModeFrame *b, Branch
   for (PetscInt j = 0; j < b->modes.n; j++) {
     const Branch *branch = &list->branch[b->branch[j] - list->first];
 
-    if (!branch->joined) continue;
+    if (!branch->joined || (b->form.damped && b->modes.rigid[j]))
+      continue; /* a double zero has other vectors (frame.c) */
     modes->lambda[modes->n]  = branch->lambda;
     memory->branch[modes->n] = b->branch[j];
     PetscCall(PetscArraycpy(modes->x + modes->n * modes->size, branch->x, modes->size));
