@@ -7,31 +7,9 @@
 */
 #include "reducedimpl.h"
 #include "base/gather.h"
+#include "solver/masssolve.h"
 
 #define START_SHARE 0.9 /* of v'M v that the modes must hold, at least */
-
-/* y = M^-1 f by conjugate gradients: M is diagonal but for what follows others, and points with a mass */
-static PetscErrorCode StartDivide(Mat M, Vec f, Vec y)
-{
-  KSPConvergedReason reason;
-  KSP                ksp;
-  PC                 pc;
-
-  PetscFunctionBeginUser;
-  PetscCall(KSPCreate(PetscObjectComm((PetscObject)M), &ksp));
-  PetscCall(KSPSetType(ksp, KSPCG));
-  PetscCall(KSPSetOperators(ksp, M, M));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCJACOBI));
-  PetscCall(KSPSetTolerances(ksp, 1e-12, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
-  PetscCall(KSPSolve(ksp, f, y));
-  PetscCall(KSPGetConvergedReason(ksp, &reason));
-  PetscCheck(reason > 0, PetscObjectComm((PetscObject)M), PETSC_ERR_NOT_CONVERGED,
-             "the motion of tied bodies nearest to that of the start is not found: conjugate gradients end with %s",
-             KSPConvergedReasons[reason]);
-  PetscCall(KSPDestroy(&ksp));
-  PetscFunctionReturn(0);
-}
 
 /* v'M v of the nearest motion v to x, (Z'M x)'(Z'M Z)^-1 Z'M x; x'M x where no displacements follow others */
 static PetscErrorCode StartWeigh(ReducedRun r, Vec x, PetscReal *square)
@@ -49,7 +27,7 @@ static PetscErrorCode StartWeigh(ReducedRun r, Vec x, PetscReal *square)
   PetscCall(MatMult(M, x, Mx));
   PetscCall(MatCreateVecs(pencil.M, &y, &f));
   PetscCall(PencilProjectForce(r->bodies, PETSC_FALSE, Mx, f));
-  PetscCall(Z ? StartDivide(pencil.M, f, y) : VecCopy(x, y));
+  PetscCall(Z ? MassSolve(pencil.M, f, y, "the motion of tied bodies nearest to that of the start") : VecCopy(x, y));
   PetscCall(VecDot(f, y, &product));
   PetscCall(VecDestroy(&Mx));
   PetscCall(VecDestroy(&f));

@@ -10,7 +10,7 @@
 */
 #include "staticsimpl.h"
 #include "kernels/facet.h"
-#include <petscksp.h>
+#include "solver/masssolve.h"
 
 /* Entries of M, rows and columns being global numbers of nodes */
 typedef struct {
@@ -82,28 +82,6 @@ static PetscErrorCode MassCreate(const Mesh *mesh, const ModelFaces *faces, Vec 
   PetscFunctionReturn(0);
 }
 
-/* M p = f by conjugate gradients; M is as well conditioned as a face's own, by its diagonal */
-static PetscErrorCode MassSolve(Mat M, Vec f, Vec p)
-{
-  KSPConvergedReason reason;
-  KSP                ksp;
-  PC                 pc;
-
-  PetscFunctionBeginUser;
-  PetscCall(KSPCreate(PetscObjectComm((PetscObject)M), &ksp));
-  PetscCall(KSPSetOperators(ksp, M, M));
-  PetscCall(KSPSetType(ksp, KSPCG));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCJACOBI));
-  PetscCall(KSPSetTolerances(ksp, 1e-13, PETSC_DEFAULT, PETSC_DEFAULT, 1000));
-  PetscCall(KSPSolve(ksp, f, p));
-  PetscCall(KSPGetConvergedReason(ksp, &reason));
-  PetscCheck(reason > 0, PetscObjectComm((PetscObject)M), PETSC_ERR_NOT_CONVERGED,
-             "the pressure of a surface does not converge: KSPConvergedReason %d", (int)reason);
-  PetscCall(KSPDestroy(&ksp));
-  PetscFunctionReturn(0);
-}
-
 /* Whether any face of a surface, on any rank, is of second order. Collective */
 static PetscErrorCode FacesHaveSecond(MPI_Comm comm, const ModelFaces *faces, PetscBool *have)
 {
@@ -145,7 +123,7 @@ PetscErrorCode PressureRecover(Model model, const char set[], Vec forces, PetscB
     PetscCall(VecDuplicate(forces, &pressure));
     PetscCall(FacesCount(mesh, &faces, count));
     PetscCall(MassCreate(mesh, &faces, count, &M));
-    PetscCall(MassSolve(M, forces, pressure));
+    PetscCall(MassSolve(M, forces, pressure, "the pressure of a surface"));
     PetscCall(VecCopy(pressure, forces));
     PetscCall(MatDestroy(&M));
     PetscCall(VecDestroy(&count));
