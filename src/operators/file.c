@@ -171,13 +171,8 @@ PetscErrorCode OperatorsLoad(Operators o)
   for (int i = 0; i < N_OPERATORS; i++) PetscCall(OperatorsReadMatrix(o, i, &A[i]));
   PetscCall(OperatorsCheckMatrices(o, A));
   if (!o->n_named) PetscCall(MassCheck(A[OPERATOR_M]));
-  for (int i = OPERATOR_K; i <= OPERATOR_C && o->symmetric; i++) {
-    PetscReal largest;
-
-    if (!A[i]) continue;
-    PetscCall(MatNorm(A[i], NORM_FROBENIUS, &largest));
-    PetscCall(MatIsSymmetric(A[i], MATRIX_SYMMETRIC * largest, &o->symmetric));
-  }
+  for (int i = OPERATOR_K; i <= OPERATOR_C && o->symmetric; i++)
+    if (A[i]) PetscCall(MatrixIsSymmetric(A[i], &o->symmetric));
   PetscCall(OperatorsAddMatrices(o, A));
   if (o->n_named) PetscCall(MatrixTermsAdd(o));
   for (PetscInt t = 0; t < o->terms.n && !o->symmetric; t++) o->terms.term[t].symmetric = PETSC_FALSE;

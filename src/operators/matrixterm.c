@@ -24,15 +24,25 @@ static PetscErrorCode MatrixSkewness(Mat A, PetscReal sign, PetscReal *part)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode MatrixIsSymmetric(Mat A, PetscBool *symmetric)
+{
+  PetscReal norm;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatNorm(A, NORM_FROBENIUS, &norm));
+  PetscCall(MatIsSymmetric(A, MATRIX_SYMMETRIC * norm, symmetric));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, symmetric, 1, MPIU_BOOL, MPI_LAND, PetscObjectComm((PetscObject)A)));
+  PetscFunctionReturn(0);
+}
+
 /* Whether it is symmetric; an error where it is not what the option says */
 static PetscErrorCode MatrixTermFindSymmetry(Operators o, MatrixTerm *term)
 {
   static const char *const words[] = {"any", "symmetric", "skew"};
-  PetscReal                part, largest;
+  PetscReal                part;
 
   PetscFunctionBeginUser;
-  PetscCall(MatNorm(term->A, NORM_FROBENIUS, &largest));
-  PetscCall(MatIsSymmetric(term->A, MATRIX_SYMMETRIC * largest, &term->even));
+  PetscCall(MatrixIsSymmetric(term->A, &term->even));
   if (term->symmetry == MATRIX_ANY) PetscFunctionReturn(0);
   PetscCall(MatrixSkewness(term->A, term->symmetry == MATRIX_SKEW ? -1 : 1, &part));
   PetscCheck(
