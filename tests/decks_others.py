@@ -19,7 +19,7 @@ class Nastran:
     """Two cubes in contact, the upper one given in a coordinate system that is turned by 90 degrees about z and moved."""
     # System 2 has its origin at (10, 0, 10), z along z, x along y: the place (a, b, c) is (10 - b, a, 10 + c)
     FILES = {"pair.bdf": "\n".join([
-        "SOL 103", "CEND", "BEGIN BULK",
+        "SOL 103", "CEND", "SPC = 1", "LOAD = 1", "BEGIN BULK",
         *(fixed("GRID", k, "", *(f"{v}." for v in place)) for k, place in enumerate(CORNERS, 1)),
         fixed("CORD2R", 2, 0, "10.", "0.", "10.", "10.", "0.", "20.") + "\n" + fixed("+", "10.", "1.", "10."),
         *(wide("GRID*", 10 + k, 2, *(f"{v}.0" for v in place)) for k, place in enumerate(CORNERS, 1)),
@@ -51,9 +51,40 @@ class Nastran:
              "force_force_force": "0,0,-3", "pressed_pressure_set": "pressed", "pressed_pressure_pressure": "3e6",
              "contacts": "contact_3", "contact_3_surfaces": "surface_2,surface_1", "contact_3_law": "constraint",
              "contact_3_mu": "0.35", "modes_band": "10,5000"}
-    LISTED = ["pair.bdf:31: differs: CHEXA", "pair.bdf:1: SOL", "pair.bdf:2: CEND", "pair.bdf:38: MAT1: GE", "pair.bdf:37: PSOLID 9",
-              "pair.bdf:47: CELAS2: between", "pair.bdf:52: PLOAD4: a pressure that varies", "pair.bdf:59: TEMPD"]
+    LISTED = ["pair.bdf:33: differs: CHEXA", "pair.bdf:1: SOL", "pair.bdf:2: CEND", "pair.bdf:40: MAT1: GE", "pair.bdf:39: PSOLID 9",
+              "pair.bdf:49: CELAS2: between", "pair.bdf:54: PLOAD4: a pressure that varies", "pair.bdf:61: TEMPD"]
     FORCES = {"force_force": (0, 0, -3), "pressed_pressure": (0, 0, -300)}
+
+
+class NastranCase:
+    """Case control that chooses, and the ways of writing cards: tabulators, kinds of fields mixed in a card, repeated cards, a file
+    whose name goes over two lines, lines that go on apart from their card."""
+    # System 7 by the grid points 1, 2, 4: (a, b, c) is (c, a, b). System 8 is a sphere's, whose axis goes through point 7
+    FILES = {"case.bdf": "\n".join([
+        "$ a comment", "SOL 103", "CEND", "TITLE = a case", "SPC = 4", "SUBCASE 1", "  LOAD = 9", "SUBCASE 2", "  METHOD = 3",
+        "  STATSUB(PRELOAD) = 1", "  MPC = 5", "BEGIN BULK", "include 'more_", "  grids.inc'",
+        "cord1r,7,1,2,4", "CORD2S,8,,10.,10.,0.,10.,10.,5.", ",20.,10.,0.",
+        fixed("CHEXA", 1, "", 1, 2, 3, 4, 5, 6).ljust(72) + "+H1", fixed("PSOLID", 1, 1).replace(" ", "\t", 1), fixed("+H1", 7, 8),
+        "MAT1*,1,," + repr(210e3 / 2.6) + ",.3", "*,3.-6", "PARAM,WTMASS,2.6-3",
+        "SPCADD,4,5,6", fixed("SPC1", 5, 123, 1, "THRU", 3, 4), "SPC,6,101,0", "SPC,6,8,1", "SPC1,7,123,5,6",
+        "LOAD,9,2.,3.,10,-1.,11,,,,", ",.5,12", fixed("FORCE", 10, 6, 0, "1.", "0.", "0.", "-1.0"), "FORCE,10,7,8,2.,-1.,0.,0.",
+        "FORCE1,10,5,1.,1,2", "GRAV,11,,981.,0.,0.,1.", fixed("PLOAD4", 12, 1, "3.", "", "", "", 5, 7), "PLOAD,12,2.,1,5,8,4",
+        "FORCE,13,6,0,1.,1.,1.,1.", "MOMENT,10,6,0,1.,1.,0.,0.", "SPOINT,101,THRU,102", "CPYRAM,9,1,1,2,3,4,5", "CQUAD4,10,2,1,2,3,4",
+        "EIGRL,3,,,7", "EIGRL,4,,,9", "ENDDATA", "what stands here is nothing"]) + "\n",
+        "more_grids.inc": "GRDSET\t\t7\n" + "\n".join(
+            ["GRID\t1\t0\t0.\t0.\t0.", "GRID,2,0,10.,0.,0.", "GRID,3,0,10.,10.,0.", " GRID,4,0,0.,10.,0. $ behind a blank",
+             "GRID,5,,0.,10.,0.", "=,*(1),=,=,=,*(10.)", "=,*(1),=,*(10.),==", "GRID*,8,,10.,10.", "*,0.,7", "GRID,2,0,10.,0.,0."]) + "\n"}
+    SCENE = {"model_gravity": "0,0,-1.962", "parts": "part_1", "part_1_young": "210e9", "part_1_poisson": "0.3", "part_1_density": "7800",
+             "supports": "support,support_2", "support_set": "support", "support_fix": "y", "support_2_set": "support_2", "support_2_fix": "xyz",
+             "loads": "force_force,force_2_force,force_3_force,pressed_pressure,pressed_2_pressure",
+             "force_force_set": "force", "force_force_force": "0,0,-6", "force_2_force_set": "force_2", "force_2_force_force": "0,0,-12",
+             "force_3_force_set": "force_3", "force_3_force_force": "6,0,0", "pressed_pressure_set": "pressed",
+             "pressed_pressure_pressure": "3e6", "pressed_2_pressure_set": "pressed_2", "pressed_2_pressure_pressure": "-2e6",
+             "modes_target": "1", "modes_count": "7"}
+    LISTED = ["case.bdf:8: differs: SUBCASE 2 of 2", "case.bdf:18: differs: CHEXA", "case.bdf:23: differs: PARAM WTMASS",
+              "case.bdf:2: SOL", "case.bdf:3: CEND", "case.bdf:4: TITLE: output", "case.bdf:11: MPC = 5", "case.bdf:28: SPC1 of set 7",
+              "case.bdf:37: FORCE of set 13", "case.bdf:38: MOMENT: a moment", "case.bdf:40: 1 CPYRAM", "case.bdf:41: CQUAD4",
+              "case.bdf:43: EIGRL 4"]
 
 
 class Ansys:
@@ -108,15 +139,19 @@ REFUSED = {"bdf": [
     (GRIDS.replace("GRID,3,", "GRID,2,") + HEXA + PROPERTY, "wrong.bdf:3: grid point 2 stands twice"),
     (GRIDS + HEXA.replace(",8\n", ",9\n") + PROPERTY, "wrong.bdf:9: grid point 9 is not in the file"),
     (GRIDS + HEXA.replace(",7,8\n", ",7\n") + PROPERTY, "wrong.bdf:9: CHEXA: field 11 is blank"),
-    (GRIDS + HEXA.replace(",8\n", ",8,9\n") + PROPERTY, "wrong.bdf:9: CHEXA with some of its nodes"),
+    (GRIDS + HEXA.replace(",8\n", ",8,9\n") + PROPERTY, "wrong.bdf:9: grid point 9 is not in the file"),
     (GRIDS.replace("10.,10.,0.", "10.,1x.,0.") + HEXA + PROPERTY, "wrong.bdf:3: GRID: field 5 '1x.' should be a number"),
     (GRIDS.replace("10.,10.,0.", "10.,nan,0.") + HEXA + PROPERTY, "wrong.bdf:3: GRID: field 5 'nan' should be a number"),
     (GRIDS + HEXA, "units are in doubt"),
-    (GRIDS + HEXA + PROPERTY.replace("PSOLID,1,", "PSOLID,2,"), "wrong.bdf:9: there is no PSOLID 1"),
-    (GRIDS + HEXA + "PSOLID,1,2\n", "wrong.bdf:11: PSOLID 1: there is no material 2"),
-    ("BEGIN BULK\n" + GRIDS + HEXA + PROPERTY, "BEGIN BULK has no ENDDATA: is the file cut off?"),
     (GRIDS + HEXA + PROPERTY + "SPC1,1,123,77\n", "wrong.bdf:13: grid point 77 is not in the file"),
-    (GRIDS + HEXA + PROPERTY + "GRDSET,,,,,,,,123\n", "wrong.bdf:13: GRDSET is not read"),
+    (GRIDS + HEXA + PROPERTY + "SPC1,1,123\n", "wrong.bdf:13: SPC1 names no grid point"),
+    (GRIDS + HEXA + PROPERTY + fixed("SPC1", 1, 123, *range(1, 7)).ljust(72) + "+A1\n+B2     7\n",
+     "wrong.bdf:14: this line goes on a line 'B2', and there is none"),
+    (GRIDS.replace("GRID,8,", "GRID,8,4") + HEXA + PROPERTY, "wrong.bdf:8: GRID: there is no coordinate system 4"),
+    (GRIDS + HEXA + PROPERTY.replace("2.1E5,,0.3", ",,0.3"), "wrong.bdf:12: MAT1 needs two of E, G and nu"),
+    ("=,1\n" + GRIDS + HEXA + PROPERTY, "wrong.bdf:1: a card that repeats the one before"),
+    ("CEND\nSPC = 1\nBEGIN BULK\n" + GRIDS + HEXA + PROPERTY + "SPC1,1,123,77\nENDDATA\n",
+     "wrong.bdf:16: grid point 77 is not in the file"),
     ("CHEXA,1,1\n", "there is no GRID"),
 ], "cdb": [
     (NBLOCK.replace("SOLID,8,8", "SOLID,8,9") + EBLOCK, "wrong.cdb:2: NBLOCK announces 9 nodes and has 8"),

@@ -85,6 +85,10 @@ def elements_of(members, motion):
     return found
 
 
+NASTRAN = {"CTETRA": (4, "01 12 20 03 13 23".split()), "CPENTA": (6, "01 12 20 03 14 25 34 45 53".split()),
+           "CHEXA": (8, "01 12 23 30 04 15 26 37 45 56 67 74".split())}
+
+
 def nastran_real(word):
     return float(re.sub(r"(?<=[\d.])[eEdD]?([-+]\d+)$", r"e\1", re.sub("[dD](?=[0-9])", "e", word))) if word else 0.0
 
@@ -94,7 +98,7 @@ def nastran_fields(text):
     found = []
     begin, end = re.search(r"(?im)^[ \t]*begin[ \t]+bulk.*$", text), re.search(r"(?im)^[ \t]*enddata\b", text)
     for line in text[begin.end() if begin else 0:end.start() if end else None].split("\n"):
-        line = line[:80].partition("$")[0] if "$" in line[:72] else line[:80]
+        line = line.partition("$")[0].expandtabs(8)
         if not line[:72].strip():
             continue
         if "," in line[:72]:
@@ -103,7 +107,7 @@ def nastran_fields(text):
         else:
             wide = 16 if "*" in line[:8] else 8
             head, words = line[:8].strip(), [line[at:at + wide].strip() for at in range(8, 72, wide)]
-        if line[0] in "+*, " and found:
+        if (line[0] in "+*," or not line[:8].partition(",")[0].strip()) and found:
             found[-1][1].extend(words)
         else:
             found.append((head.rstrip("*").strip().upper(), words))
@@ -124,8 +128,16 @@ def read_nastran(text):
                 systems[int(words[0])] = np.array([np.cross(y, z), y, z]), a, name.endswith("C")
     place = {int(words[0]): placed(systems[int(words[1] or 0)], [nastran_real(word) for word in words[2:5]])
              for name, words in fields if name == "GRID"}
-    corners = {"CTETRA": 4, "CPENTA": 6, "CHEXA": 8}
-    return [[place[int(word)] for word in words[2:] if word and int(word)] for name, words in fields if name in corners]
+    found = []
+    for name, words in fields:
+        if name in NASTRAN:
+            n, edges = NASTRAN[name]
+            nodes = [int(word) if word else 0 for word in (words[2:] + [""] * 20)[:n + len(edges)]]
+            made = any(nodes[n:])  # of second order, where a node that is left out is in the middle
+            found.append([place[node] for node in nodes[:n]] + [
+                place[node] if node else (np.array(place[nodes[int(a)]]) + place[nodes[int(b)]]) / 2
+                for node, (a, b) in zip(nodes[n:], edges) if made])
+    return found
 
 
 def placed(system, x):

@@ -13,11 +13,12 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from squeal.decks import abaqus_mesh, abaqus_model, ansys_model, nastran_loads, nastran_mesh, nastran_model
+from squeal.decks import abaqus_mesh, abaqus_model, ansys_model, nastran
 from squeal.decks.convert import convert, read_deck
 from squeal.decks.units import SYSTEMS
 from squeal.tables import BadInput
 
+import decks
 import decks_abaqus
 import decks_others
 import numpy as np
@@ -230,11 +231,54 @@ def closed_pipe(folder):
 
 
 def others(folder):
+    check_scene(folder, decks_others.NastranCase)
     for case in (decks_others.Nastran, decks_others.Ansys):
         check_scene(folder, case)
         check_forces(folder, case)
     for ending, cases in decks_others.REFUSED.items():
         check_refused(folder, ending, cases)
+
+
+def chosen(folder):
+    """--subcase; bulk data alone, of which the lowest set is taken and the others are said; a subcase that is not there."""
+    name, text = next(iter(decks_others.NastranCase.FILES.items()))
+    (folder / name).write_text(text)
+    convert(folder / name, "mm-t-s", folder / "scene", subcase=1)
+    check("--subcase 1 has the loads, and any method", "loads" in scene(folder, "scene")[0] and scene(folder, "scene")[0]["modes_count"] == "7")
+    try:
+        convert(folder / name, "mm-t-s", folder / "scene", subcase=3)
+        check("--subcase 3 is refused", False)
+    except BadInput as error:
+        check("--subcase 3 is refused", "case.bdf:6: there is no SUBCASE 3; those of the file are 1, 2" in str(error), error)
+    bulk = decks_others.GRIDS + decks_others.HEXA + decks_others.PROPERTY + "SPC1,1,123,1,2,3,4\nSPC1,3,123,5\nENDDATA\n"
+    options, listed = sections(folder, "deck.bdf", bulk)
+    check("bulk data alone: the lowest set", options.get("supports") == "support" and any(
+        line.startswith("deck.bdf:13: differs: no case control: SPC = 1 is taken, not 3") for line in listed), (options, listed))
+    options, listed = sections(folder, "deck.bdf", "CEND\nBEGIN BULK\n" + bulk)
+    check("case control without SPC holds nothing", "supports" not in options and
+          any(line.startswith("deck.bdf:15: SPC1 of set 1: case control has no SPC = 1") for line in listed), (options, listed))
+
+
+def middles(folder):
+    """Middles of straight edges that are left out are made where they were, once for all elements of an edge: of a box of hex20
+    without some, the same nodes as with all."""
+    solid = decks.Solid("hex20", folder, "--elements", "2,1,1")
+    whole = decks.nastran(solid, "free")
+    lines, random = [], np.random.default_rng(3)
+    for line in whole:
+        words = line.split(",")
+        if words[0] == "" and len(lines) and lines[-1].split(",")[0] in ("CHEXA", "") and len(words) > 5:
+            words = [word if k < 3 or random.random() < 0.6 else "" for k, word in enumerate(words)]
+        lines.append(",".join(words))
+    places = []
+    for text in (whole, lines):
+        (folder / "deck.bdf").write_text("\n".join(text))
+        deck = read_deck(folder / "deck.bdf")
+        places.append(np.concatenate([deck.x[block.nodes] for block in deck.blocks]))
+    used = len({node for block in deck.blocks for node in block.nodes.ravel().tolist()})
+    check("middles that are left out", lines != whole and np.allclose(*places, atol=1e-9) and used == len(solid.x),
+          (used, len(solid.x)))
+    check("middles that are left out are said", any("CHEXA without some" in text for text in deck.differs), deck.differs)
 
 
 def strict(folder):
@@ -255,7 +299,7 @@ def strict(folder):
 def page():
     """Every keyword that is read stands in the table of scripts/README.md."""
     text = (Path(__file__).resolve().parents[1] / "scripts/README.md").read_text().partition("## A brake from Abaqus")[2]
-    known = set(abaqus_mesh.CARDS) | set(abaqus_model.CARDS) | nastran_mesh.KNOWN | nastran_model.KNOWN | nastran_loads.KNOWN
+    known = set(abaqus_mesh.CARDS) | set(abaqus_model.CARDS) | nastran.KNOWN
     known |= ansys_model.KNOWN | {f"C3D{n}" for n in (4, 6, 10, 15, 20)} | set(SYSTEMS)
     missing = [word for word in sorted(known) if not re.search(rf"\b{word}\b", text)]
     check("every keyword stands in scripts/README.md", not missing, missing)
@@ -271,6 +315,8 @@ def main():
         preloaded(Path(name))
         closed_pipe(Path(name))
         strict(Path(name))
+        chosen(Path(name))
+        middles(Path(name))
     page()
     return 1 if FAILED else 0
 

@@ -5,8 +5,9 @@
   text.py       files as bytes; tables of numbers with commas or in columns, all at once, and line by line where one is wrong
   abaqus.py     Abaqus and CalculiX: keywords, parts and instances; abaqus_mesh.py nodes, elements, sets, surfaces;
                 abaqus_material.py materials and sections; abaqus_model.py holders, contact, loads, steps; springs.py
-  nastran.py    Nastran: cards in fields; nastran_mesh.py grid points and solids; nastran_model.py properties, materials,
-                supports; nastran_loads.py springs, loads, contact
+  nastran.py    Nastran: files; nastran_cards.py cards in fields; nastran_case.py case control, sets that act;
+                nastran_systems.py coordinate systems; nastran_mesh.py grid points and solids; nastran_model.py properties,
+                materials, supports; nastran_springs.py, nastran_loads.py, nastran_contact.py
   ansys.py      Ansys' archive: blocks and commands; ansys_mesh.py, ansys_model.py
   meshes.py     what meshio reads: Code_Aster's .med, .vtk, .vtu
   elastic.py    engineering constants of a stiffness
@@ -14,6 +15,7 @@
   assemble.py   a deck to named sets, parts and scene entries; ties merged; holders.py supports, springs, loads, contacts;
                 names.py names that squeal takes
   faces.py      faces of the cells: of sets of nodes, on the boundary, by their corners
+  middles.py    nodes in the middle of edges that are left out
   gmsh_file.py  the mesh as a file of Gmsh 4.1, binary
   scene_file.py the scene in YAML, with where each line comes from
   convert.py    the way from a file to these two

@@ -19,12 +19,16 @@ READERS = {".inp": read_abaqus, ".bdf": read_nastran, ".nas": read_nastran, ".da
            ".cdb": read_ansys, ".med": read_meshes, ".vtk": read_meshes, ".vtu": read_meshes}
 
 
-def read_deck(path):
-    """The deck of a file, by its ending."""
+def read_deck(path, subcase=None):
+    """The deck of a file, by its ending; of Nastran's of the subcase with that number."""
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise BadInput(f"{path}: files that end in '{path.suffix}' are not read; those in {', '.join(READERS)} are")
-    return reader(path)
+    if subcase is None:
+        return reader(path)
+    if reader is not read_nastran:
+        raise BadInput(f"--subcase {subcase}: {path} is no deck of Nastran")
+    return reader(path, subcase)
 
 
 def clean(text):
@@ -32,13 +36,13 @@ def clean(text):
     return re.sub(r"[^\x20-\x7e]", "?", text)
 
 
-def convert(path, units=None, output=None, strict=False):
+def convert(path, units=None, output=None, strict=False, subcase=None):
     """Writes OUTPUT.msh and OUTPUT.yaml; returns the lines to print."""
     chosen = named(units) if units else None
     output = output or Path(path.stem)
     if not output.parent.is_dir():
         raise BadInput(f"{output.parent}: no such folder; make it, or give --output another")
-    deck = read_deck(path)
+    deck = read_deck(path, subcase)
     if not deck.n_cells:
         raise BadInput(f"{path}:1: there are no volume elements that squeal has")
     give_sections(deck)

@@ -69,6 +69,8 @@ def surface_nodes(deck, faces):
 def faces_by_three(deck, three):
     """Faces (cell, face) with these three corners [n][3] among theirs, and which are none of a cell; of two cells that share
     one, the first."""
+    if not deck.blocks:
+        return numpy.zeros((len(three), 2), int), numpy.ones(len(three), bool)
     keys, faces = [], []
     for first, block in zip(deck.firsts(), deck.blocks):
         cells = numpy.arange(first, first + len(block.ids))

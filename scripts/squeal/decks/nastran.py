@@ -1,212 +1,90 @@
-"""Decks of Nastran: bulk data in fields of 8 (small) or 16 characters (large), or with commas (free). Cards of one name, width
-and length are read together."""
+"""Decks of Nastran: files, and what stands in them before the bulk data."""
 
 import re
 
-import numpy
-
 from ..tables import BadInput
-from . import nastran_loads, nastran_mesh, nastran_model
+from . import nastran_case, nastran_contact, nastran_loads, nastran_mesh, nastran_model, nastran_springs, nastran_systems
 from .deck import Deck, Place
-from .text import columns, line_starts, matrix_of, read_bytes
+from .nastran_cards import tables_of
+from .text import read_bytes
 
 DEEPEST = 10
-WIDTH = 16  # of the fields of a table
-# e.g. 1.5-3 for 1.5e-3
-REAL = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[eEdD]?([+-]\d{1,3})|[eEdD](\d{1,3}))?$")
-WHOLE = re.compile(r"[+-]?\d{1,15}$")
-
-
-class Table:
-    """Cards of one name with as many fields: characters [n][fields * 16] behind the name, and the line of each."""
-
-    def __init__(self, name, letters, lines, file):
-        self.name, self.letters, self.lines, self.file = name, letters, lines, file
-        self.width = letters.shape[1] // WIDTH
-
-    def __len__(self):
-        return len(self.lines)
-
-    def place(self, row):
-        return Place(self.file, int(self.lines[row]))
-
-    def wrong(self, row, column, word, what):
-        """The error for a field, which is the (column + 2)-th with the name."""
-        return self.place(row).wrong(f"{self.name}: field {column + 2} '{word}' should be {what}")
-
-    def part(self, first, last):
-        """Characters of fields first to last - 1; those beyond the end are blank."""
-        letters = self.letters[:, first * WIDTH:last * WIDTH]
-        missing = (last - first) * WIDTH - letters.shape[1]
-        return numpy.pad(letters, ((0, 0), (0, missing)), constant_values=ord(" ")) if missing else letters
-
-    def whole(self, first, last):
-        """Whole numbers [n][last - first]; blank is 0."""
-        def one(row, column, word):
-            if not WHOLE.match(word):
-                raise self.wrong(row, column + first, word, "a whole number")
-            return int(word)
-        return columns(self.part(first, last), WIDTH, int, one)
-
-    def real(self, first, last):
-        """Numbers [n][last - first]; blank is 0."""
-        def one(row, column, word):
-            return self.one_real(row, column + first, word)
-        return columns(self.part(first, last), WIDTH, float, one)
-
-    def one_real(self, row, column, word):
-        found = REAL.match(word)
-        value = float(f"{found[1]}e{found[2] or found[3] or 0}") if found else numpy.nan
-        if not abs(value) < 1e300:
-            raise self.wrong(row, column, word, "a number")
-        return value
-
-    def words(self, row):
-        """Fields of one card as text."""
-        text = self.letters[row].tobytes().decode("latin-1")
-        return [text[at:at + WIDTH].strip() for at in range(0, len(text), WIDTH)]
-
-
-def spread(letters, width):
-    """Fields of `width` characters in fields of WIDTH."""
-    n, k = len(letters), letters.shape[1] // width
-    found = numpy.full((n, k, WIDTH), ord(" "), numpy.uint8)
-    found[:, :, :width] = letters.reshape(n, k, width)
-    return found.reshape(n, k * WIDTH)
-
-
-def heads_of(matrix):
-    """Names of cards [n] in capitals, and which lines go on the card before them."""
-    names = numpy.ascontiguousarray(matrix[:, :8])
-    names[(names >= ord("a")) & (names <= ord("z"))] -= 32
-    return names, numpy.isin(names[:, 0], [ord(letter) for letter in "+*, "])
-
-
-def tables_of(data, first, file):
-    """Tables of bulk data that begins on line `first`."""
-    starts = line_starts(data)
-    letters = numpy.frombuffer(data, numpy.uint8)
-    if b"\t" in data:
-        line = first + data.count(b"\n", 0, data.index(b"\t"))
-        raise Place(file, line).wrong("a tabulator: write fields of 8 or 16 characters, or commas")
-    length = numpy.diff(starts) - 1
-    filled = numpy.flatnonzero(length > 0)
-    filled = filled[letters[starts[filled]] != ord("$")]
-    if not len(filled):
-        return []
-    matrix = matrix_of(data, starts, filled, 80)
-    blank = (matrix[:, :72] == ord(" ")).all(axis=1)
-    matrix, filled = matrix[~blank], filled[~blank]
-    names, goes_on = heads_of(matrix)
-    if goes_on.any() and goes_on[0]:
-        raise Place(file, first + int(filled[0])).wrong("a line that goes on a card, and there is none before it")
-    free = (matrix[:, :72] == ord(",")).any(axis=1)
-    comment = matrix[:, :72] == ord("$")
-    for row in numpy.flatnonzero(comment.any(axis=1)):
-        matrix[row, int(comment[row].argmax()):] = ord(" ")
-    owner = numpy.flatnonzero(~goes_on)
-    count = numpy.diff(numpy.append(owner, len(matrix)))
-    n_free = numpy.add.reduceat(free.astype(int), owner)
-    is_free = n_free > 0
-    large = (matrix[:, :8] == ord("*")).any(axis=1)
-    mixed = numpy.add.reduceat(large.astype(int), owner)
-    lines = first + filled
-    bad = numpy.flatnonzero(is_free & (n_free != count))
-    if len(bad):
-        raise Place(file, int(lines[owner[bad[0]]])).wrong("a card of which some lines have commas and others have not")
-    found = free_tables([(matrix[at:at + n], int(lines[at])) for at, n in zip(owner[is_free], count[is_free])], file)
-    bad = numpy.flatnonzero(~is_free & (mixed != 0) & (mixed != count))
-    if len(bad):
-        raise Place(file, int(lines[owner[bad[0]]])).wrong("small and large fields in one card")
-    kinds = numpy.stack([numpy.ascontiguousarray(names[owner]).view(numpy.int64)[:, 0], count, mixed > 0], axis=1)
-    kinds[is_free] = -1
-    unique, inverse = numpy.unique(kinds, axis=0, return_inverse=True)
-    for number, (name, n, is_large) in enumerate(unique.tolist()):
-        if n < 0:
-            continue
-        rows = owner[inverse.ravel() == number]
-        parts = [matrix[rows + k, 8:72] for k in range(n)]
-        text = numpy.array([name]).tobytes().decode("latin-1").strip().rstrip("*").strip()
-        found.append(Table(text, spread(numpy.hstack(parts), 16 if is_large else 8), lines[rows], file))
-    return sorted(found, key=lambda table: table.lines[0])
-
-
-def free_tables(cards, file):
-    """Tables of cards with commas: (lines as characters, number of the first line)."""
-    groups = {}
-    for matrix, line in cards:
-        fields = []
-        for k, row in enumerate(matrix):
-            words = row.tobytes().decode("latin-1").rstrip().split(",")
-            head, words = words[0].strip(), [word.strip() for word in words[1:]]
-            if k == 0:
-                name, most = head.upper().rstrip("*"), 4 if head.endswith("*") else 8
-            if len(words) > most + 1:
-                raise Place(file, line + k).wrong(f"{name}: {len(words)} fields behind the name, at most {most}")
-            words = words[:most]
-            if any(len(word) > WIDTH for word in words):
-                raise Place(file, line + k).wrong(f"{name}: a field of more than {WIDTH} characters")
-            fields += words + [""] * (most - len(words))
-        groups.setdefault((name, len(fields)), []).append((fields, line))
-    found = []
-    for (name, _), rows in groups.items():
-        text = "".join(word.ljust(WIDTH) for fields, _ in rows for word in fields).encode("latin-1")
-        letters = numpy.frombuffer(text, numpy.uint8).reshape(len(rows), -1)
-        found.append(Table(name, letters, numpy.array([line for _, line in rows]), file))
-    return found
-
-
-INCLUDE = re.compile(rb"^[ \t]*include[ \t]+['\"]?([^'\"\n]+)['\"]?[ \t]*$", re.IGNORECASE | re.MULTILINE)
-BEGIN = re.compile(rb"^[ \t]*begin[ \t]+bulk[^\n]*\n?", re.IGNORECASE | re.MULTILINE)
+KNOWN = (nastran_mesh.KNOWN | nastran_systems.KNOWN | nastran_model.KNOWN | nastran_loads.KNOWN | nastran_springs.KNOWN |
+         nastran_contact.KNOWN | nastran_case.KNOWN)
+# A name, in quotes perhaps over several lines
+INCLUDE = re.compile(rb"^[ \t]*include[ \t]*=?[ \t]*(?:'([^']{1,1000})'|\"([^\"]{1,1000})\"|([^'\"\n$]+))[^\n]*$", re.IGNORECASE | re.MULTILINE)
+BEGIN = re.compile(rb"^[ \t]*begin(?:[ \t]+bulk|[ \t]*$)[^\n]*\n?", re.IGNORECASE | re.MULTILINE)
 END = re.compile(rb"^[ \t]*enddata\b[^\n]*", re.IGNORECASE | re.MULTILINE)
 
 
-def read_tables(deck, path, depth=0):
-    """Tables of the bulk data of a file, and of those that it includes."""
+def included(path, text):
+    """The file that INCLUDE names, beside the one it stands in; \\ and capitals as on other systems."""
+    name = re.sub(r"\s*\n\s*", "", text.decode("latin-1")).strip().replace("\\", "/")
+    found = path.parent / name
+    if found.exists() or not found.parent.is_dir():
+        return found
+    alike = [other for other in found.parent.iterdir() if other.name.lower() == found.name.lower()]
+    return alike[0] if len(alike) == 1 else found
+
+
+def read_text(path, depth=0):
+    """Lines of a file with those that it includes in their places: pieces (bytes, file, first line)."""
     data = read_bytes(path)
-    begin, end = BEGIN.search(data), END.search(data)
-    if begin and not end:
-        raise Place(str(path), data.count(b"\n") + 1).wrong("BEGIN BULK has no ENDDATA: is the file cut off?")
-    first, last = begin.end() if begin else 0, end.start() if end else len(data)
-    if last < first:
-        raise Place(str(path), data.count(b"\n", 0, last) + 1).wrong("ENDDATA before BEGIN BULK")
-    if not end and not depth:
-        deck.note(Place(str(path), data.count(b"\n") + 1), "there is no ENDDATA: is the file whole?")
-    if begin:
-        list_case(deck, path, data[:begin.start()])
-    bulk = data[first:last]
-    found = []
-    for name in INCLUDE.finditer(bulk):
-        place = Place(str(path), data.count(b"\n", 0, first + name.start()) + 1)
+    pieces, at = [], 0
+    for name in INCLUDE.finditer(data):
+        place = Place(str(path), data.count(b"\n", 0, name.start()) + 1)
         if depth == DEEPEST:
             raise place.wrong("files include each other too deeply")
+        pieces.append((data[at:name.start()], str(path), data.count(b"\n", 0, at) + 1))
         try:
-            found += read_tables(deck, path.parent / name[1].decode("latin-1").strip(), depth + 1)
+            pieces += read_text(included(path, name[1] or name[2] or name[3]), depth + 1)
         except BadInput as error:
             raise (place.wrong(f"INCLUDE: {error}") if ":" not in str(error).split(" ")[0].rstrip(":") else error) from None
-    bulk = INCLUDE.sub(lambda match: b"$", bulk)
-    return found + tables_of(bulk, data.count(b"\n", 0, first) + 1, str(path))
+        at = name.end()
+    return [*pieces, (data[at:], str(path), data.count(b"\n", 0, at) + 1)]
 
 
-def list_case(deck, path, text):
-    """What stands before the bulk data says which supports and loads act, and what is computed: it is listed."""
-    for number, line in enumerate(text.decode("latin-1").split("\n"), 1):
-        word = line.strip()
-        if word and not word.startswith("$"):
-            deck.note(Place(str(path), number), f"{word.split()[0][:30]}: control, not read; all supports and loads are taken")
+def split_pieces(path, pieces):
+    """Pieces before the bulk data, and those of it; whether it has an end."""
+    begun = not any(BEGIN.search(data) for data, _, _ in pieces)
+    before, bulk = [], []
+    for data, file, first in pieces:
+        begin, end = None if begun else BEGIN.search(data), END.search(data)
+        if not begun and end and (not begin or end.start() < begin.start()):
+            raise Place(file, first + data.count(b"\n", 0, end.start())).wrong("ENDDATA before BEGIN BULK")
+        if not begun:
+            before.append((data[:begin.start()] if begin else data, file, first))
+        if begin:
+            begun, first, data = True, first + data.count(b"\n", 0, begin.end()), data[begin.end():]
+            end = END.search(data)
+        if begun:
+            bulk.append((data[:end.start()] if end else data, file, first))
+        if begun and end:
+            return before, bulk, True
+    return before, bulk, False
 
 
-def read_nastran(path):
-    """The deck of a file."""
+def read_nastran(path, subcase=None):
+    """The deck of a file; of several subcases the one with that number, else nastran_case.chosen_case chooses."""
     deck = Deck(path, "Nastran")
-    tables = read_tables(deck, path)
+    before, bulk, ended = split_pieces(path, read_text(path))
+    tables = [table for data, file, first in bulk for table in tables_of(data, first, file, KNOWN)]
     if not any(table.name == "GRID" for table in tables):
         raise BadInput(f"{path}:1: there is no GRID; is this a deck of Nastran?")
+    control = nastran_case.read_case(deck, before)
+    if not ended:
+        data, file, first = bulk[-1]
+        deck.note(Place(file, first + data.count(b"\n")), "there is no ENDDATA: is the file whole?")
     mesh = nastran_mesh.read_mesh(deck, tables)
-    nastran_model.read_model(deck, tables, mesh)
-    nastran_loads.read_acting(deck, tables, mesh)
+    if not deck.n_cells:
+        return deck
+    chosen = nastran_case.Chosen(deck, tables, control, subcase)
+    nastran_model.read_model(deck, tables, mesh, chosen)
+    nastran_springs.read_springs(deck, tables, mesh)
+    nastran_loads.read_loads(deck, tables, mesh, chosen)
+    nastran_contact.read_contact(deck, tables, mesh)
     for table in tables:
-        if table.name not in nastran_mesh.KNOWN | nastran_model.KNOWN | nastran_loads.KNOWN:
+        if table.name not in KNOWN:
             for row in range(len(table)):
-                deck.note(table.place(row), f"{table.name}: not understood")
+                deck.note(table.place(row), f"{table.name[:20]}: not understood")
     return deck

@@ -1,132 +1,115 @@
-"""Nastran: springs, loads, contact."""
+"""Nastran: forces, pressures, gravity of the sets of loads that act. Each card is a table of one row, with the factor of LOAD."""
 
 import numpy
 
-from .deck import Contact, Load, Spring
+from .deck import Load
 from .faces import faces_by_three
-from .nastran_mesh import named
-from .nastran_model import straight, table_whole
+from .nastran_case import LOADS
 
-KNOWN = {"CELAS1", "CELAS2", "PELAS", "CBUSH", "PBUSH", "FORCE", "PLOAD4", "GRAV", "BSURFS", "BCTABLE", "BCPROP"}
-
-
-def read_acting(deck, tables, mesh):
-    read_springs(deck, tables, mesh)
-    read_loads(deck, tables, mesh)
-    read_contact(deck, tables, mesh)
+KNOWN = set(LOADS)
+NOT_TAKEN = {"MOMENT": "a moment on a grid point; solids have no rotations", "SPCD": "a displacement given as a load",
+             "RFORCE": "a body that turns", "RFORCE1": "a body that turns", "TEMP": "a temperature", "TEMPD": "a temperature"}
 
 
-def property_values(tables, name, read):
-    """Number -> value of a property of springs."""
-    found = {}
-    for table in named(tables, name):
-        for row in range(len(table)):
-            number = int(table.whole(0, 1)[row, 0])
-            if number in found:
-                raise table.place(row).wrong(f"property {number} stands twice")
-            found[number] = read(table, row)
-    return found
+def read_loads(deck, tables, mesh, chosen):
+    for name, read in (("FORCE", force), ("FORCE1", force_along), ("PLOAD4", pressure), ("PLOAD", pressure_on_points), ("GRAV", gravity)):
+        for table, factor in chosen.loads_of(tables, name):
+            read(deck, mesh, table, factor)
+    for name in (name for name in LOADS if name not in ("FORCE", "FORCE1", "PLOAD4", "PLOAD", "GRAV")):
+        for table, _ in chosen.loads_of(tables, name):
+            deck.note(table.place(0), f"{name}: {NOT_TAKEN.get(name, 'a load that is not understood')}: not taken")
 
 
-def note_rest(deck, table, row, words, read):
-    """Lists what a card of springs has beside the stiffness."""
-    if any(words):
-        deck.note(table.place(row), f"{table.name}: only {read} read; {', '.join(filter(None, words))}: not taken")
+def add_force(deck, mesh, number, vector, place):
+    """A force on a grid point."""
+    nodes = mesh.known([number])
+    if not len(nodes):
+        deck.note(place, f"a force on the scalar point {number}: not taken")
+        return
+    deck.loads.append(Load("", place, nodes=mesh.nodes.need(nodes, "grid point", place), force=vector))
 
 
-def bar_stiffness(deck, table, row):
-    """K of PELAS."""
-    note_rest(deck, table, row, table.words(row)[2:], "K is")
-    return float(table.real(1, 2)[row, 0])
+def force(deck, mesh, table, factor):
+    """FORCE: set, grid point, system, factor, three components."""
+    place = table.place(0)
+    _, node, system = table.whole(0, 3)[0].tolist()
+    if system not in mesh.systems:
+        raise place.wrong(f"FORCE: there is no coordinate system {system}")
+    numbers = mesh.known([node])
+    x = deck.x[mesh.nodes.need(numbers, "grid point", place)[0]] if len(numbers) else numpy.zeros(3)
+    vector = factor * table.real(3, 4)[0, 0] * table.real(4, 7)[0] @ mesh.systems[system].directions(x)
+    add_force(deck, mesh, node, vector, place)
 
 
-def bush_stiffness(deck, table, row):
-    """K1 to K3 behind the word K of PBUSH; it may also have K4 to K6, damping behind B, loss factors behind GE."""
-    words = table.words(row)
-    at = words.index("K") if "K" in words else -1
-    note_rest(deck, table, row, words[1:max(at, 1)] + words[at + 4 if at >= 0 else 1:], "K1 to K3 are")
-    return table.real(at + 1, at + 4)[row] if at >= 0 else numpy.zeros(3)
+def force_along(deck, mesh, table, factor):
+    """FORCE1: set, grid point, force, two grid points that it goes along."""
+    place = table.place(0)
+    ends = deck.x[mesh.nodes.need(table.whole(3, 5)[0], "grid point", place)]
+    along = ends[1] - ends[0]
+    if not numpy.linalg.norm(along) > 0:
+        raise place.wrong("FORCE1: its two grid points are in one place")
+    add_force(deck, mesh, int(table.whole(1, 2)[0, 0]), factor * table.real(2, 3)[0, 0] * along / numpy.linalg.norm(along), place)
 
 
-def read_springs(deck, tables, mesh):
-    """CELAS1, CELAS2, CBUSH with one grid point, the other end of which is the ground."""
-    stiffness = property_values(tables, "PELAS", lambda table, row: bar_stiffness(deck, table, row))
-    for table in named(tables, "CELAS1", "CELAS2"):
-        for row, values in enumerate(table.whole(2, 6).tolist()):
-            place, number = table.place(row), int(table.whole(1, 2)[row, 0]) if table.name == "CELAS1" else 0
-            if table.name == "CELAS1" and number not in stiffness:
-                raise place.wrong(f"there is no PELAS {number}")
-            note_rest(deck, table, row, table.words(row)[6:], "the stiffness is")
-            value = stiffness[number] if table.name == "CELAS1" else float(table.real(1, 2)[row, 0])
-            ends = [(node, direction) for node, direction in (values[:2], values[2:]) if node]
-            if len(ends) != 1 or not 1 <= ends[0][1] <= 3:
-                deck.note(place, f"{table.name}: between two grid points, or of a rotation; `joints` of squeal may do this")
-                continue
-            along = numpy.zeros(3)
-            along[ends[0][1] - 1] = value
-            spring(deck, mesh, ends[0][0], along, place, table.name)
-    bushes = property_values(tables, "PBUSH", lambda table, row: bush_stiffness(deck, table, row))
-    for table in named(tables, "CBUSH"):
-        for row, (number, first, second) in enumerate(table.whole(1, 4).tolist()):
-            place = table.place(row)
-            if number not in bushes:
-                raise place.wrong(f"there is no PBUSH {number}")
-            words = table.words(row) + [""] * 8
-            if second or any(words[4:8]) and words[7] != "0":
-                deck.note(place, "CBUSH: between two grid points, or in axes of its own; `joints` of squeal may do this")
-            else:
-                spring(deck, mesh, first, bushes[number], place, "CBUSH")
+def gravity(deck, mesh, table, factor):
+    """GRAV: set, system, acceleration, its direction; several add up."""
+    place = table.place(0)
+    system = mesh.systems.get(int(table.whole(1, 2)[0, 0]))
+    if system is None or system.kind != "R":
+        deck.note(place, "GRAV: in a system that is not there, or not rectangular: not taken")
+        return
+    vector = factor * table.real(2, 3)[0, 0] * table.real(3, 6)[0] @ system.axes
+    deck.gravity = vector + (deck.gravity[0] if deck.gravity else 0), place
 
 
-def spring(deck, mesh, number, stiffness, place, name):
-    if (stiffness < 0).any():
-        raise place.wrong(f"{name}: the stiffness must not be negative")
-    nodes = mesh.nodes.need(numpy.array([number]), "grid point", place)
-    if straight(deck, mesh, nodes, place, name):
-        deck.springs.append(Spring(nodes, numpy.array(stiffness), "", place))
+def pressure_on_points(deck, mesh, table, factor):
+    """PLOAD: set, pressure, three or four corners of a face; it pushes where a right-hand screw about them goes."""
+    place = table.place(0)
+    numbers = [number for number in table.whole(2, 6)[0].tolist() if number]
+    corners = mesh.nodes.need(numpy.array(numbers, int), "grid point", place)
+    faces, missing = faces_by_three(deck, corners[None, :3]) if len(corners) > 2 else (None, numpy.array([True]))
+    if missing[0]:
+        deck.note(place, "PLOAD: its grid points are on no face of a solid: not taken")
+        return
+    cell, number = faces[0].tolist()
+    block, nodes = nodes_of(deck, cell)
+    a, b, c = deck.x[corners[:3]]
+    outward = numpy.cross(b - a, c - a) @ (deck.x[corners].mean(axis=0) - deck.x[nodes[:block.shape.n_corners]].mean(axis=0))
+    value = factor * table.real(1, 2)[0, 0] * (-1 if outward > 0 else 1)
+    deck.loads.append(Load("", place, faces=numpy.array([[cell, number]]), pressure=value))
 
 
-def read_loads(deck, tables, mesh):
-    for table in named(tables, "FORCE"):
-        for row, (_, node, system) in enumerate(table.whole(0, 3).tolist()):
-            place, factor, vector = table.place(row), table.real(3, 4)[row, 0], table.real(4, 7)[row]
-            nodes = mesh.nodes.need(numpy.array([node]), "grid point", place)
-            if system not in mesh.systems or mesh.systems[system].cylinder:
-                raise place.wrong(f"FORCE: there is no rectangular coordinate system {system}")
-            deck.loads.append(Load("", place, nodes=nodes, force=factor * vector @ mesh.systems[system].axes))
-    for table in named(tables, "PLOAD4"):
-        for row in range(len(table)):
-            pressure(deck, mesh, table, row)
-    for table in named(tables, "GRAV"):
-        for row in range(len(table)):
-            if deck.gravity or table.whole(1, 2)[row, 0]:
-                deck.note(table.place(row), "GRAV: a second one, or in a coordinate system: not taken")
-                continue
-            deck.gravity = table.real(2, 3)[row, 0] * table.real(3, 6)[row], table.place(row)
+def nodes_of(deck, cell):
+    """Block and nodes of an element."""
+    at = numpy.searchsorted(deck.firsts(), cell, side="right") - 1
+    return deck.blocks[at], deck.blocks[at].nodes[cell - deck.firsts()[at]]
 
 
-def pressure(deck, mesh, table, row):
+def pressure(deck, mesh, table, factor):
     """PLOAD4 on a face of a solid, by two of its corners; a tetrahedron's by one on it and the one that is not."""
-    words, place = table.words(row) + [""] * 16, table.place(row)
-    values = [table.one_real(row, at, words[at]) for at in (2, 3, 4, 5) if words[at]]
-    if not values or any(value != values[0] for value in values) or any(words[8:12]):
+    place = table.place(0)
+    words = table.words(0, 16)
+    values = [table.one_real(0, k, words[k]) for k in (2, 3, 4, 5) if words[k]]
+    along = any(table.one_real(0, k, words[k]) for k in (9, 10, 11) if words[k])
+    if not values or any(value != values[0] for value in values) or along:
         deck.note(place, "PLOAD4: a pressure that varies, or along a direction: not taken")
         return
     if words[6].upper() == "THRU" or not words[6]:
         deck.note(place, "PLOAD4 without a corner of the face: not taken")
         return
-    cell = int(mesh.cells.need(table.whole(1, 2)[row], "element", place)[0])
-    at = numpy.searchsorted(deck.firsts(), cell, side="right") - 1
-    block, local = deck.blocks[at], cell - deck.firsts()[at]
-    nodes = block.nodes[local]
-    numbers = [table.whole(k, k + 1)[row] for k in ((6, 7) if words[7] else (6,))]
+    cell, missing = mesh.cells.find(table.whole(1, 2)[0], "element")
+    if missing[0]:
+        deck.note(place, f"PLOAD4: element {words[1]} is no solid that squeal has: not taken")
+        return
+    block, nodes = nodes_of(deck, int(cell[0]))
+    numbers = [table.whole(k, k + 1)[0] for k in ((6, 7) if words[7] else (6,))]
     given = [int(mesh.nodes.need(number, "grid point", place)[0]) for number in numbers]
     if not set(given) <= set(nodes[:block.shape.n_corners].tolist()):
         raise place.wrong("PLOAD4: a grid point is no corner of the element")
     found = [number for number, face in enumerate(block.shape.faces()) if on_face(block.shape, nodes[face], given)]
     if len(found) != 1:
         raise place.wrong("PLOAD4: the grid points do not tell a face of the element")
-    deck.loads.append(Load("", place, faces=numpy.array([[cell, found[0]]]), pressure=values[0]))
+    deck.loads.append(Load("", place, faces=numpy.array([[int(cell[0]), found[0]]]), pressure=factor * values[0]))
 
 
 def on_face(shape, nodes, given):
@@ -138,49 +121,3 @@ def on_face(shape, nodes, given):
     if len(given) == 1:
         return triangle and given[0] in corners
     return not triangle and given[0] in corners and given[1] == corners[(corners.index(given[0]) + 2) % 4]
-
-
-def read_contact(deck, tables, mesh):
-    """BSURFS and BCPROP: surfaces; BCTABLE: pairs of them with friction."""
-    for table in named(tables, "BSURFS"):
-        for row in range(len(table)):
-            words = [table_whole(table, row, word) for word in table.words(row) if word]
-            if len(words) < 5 or (len(words) - 1) % 4:
-                raise table.place(row).wrong("BSURFS: a number, then an element and three corners of its face each")
-            rows = numpy.array(words[1:]).reshape(-1, 4)
-            corners = mesh.nodes.need(rows[:, 1:], "grid point", table.place(row))
-            add_surface(deck, words[0], surface_faces(deck, corners, table.place(row)), table.place(row))
-    for table in named(tables, "BCPROP"):
-        deck_note_all(deck, table, "BCPROP: surfaces of properties (shells): not understood")
-    for table in named(tables, "BCTABLE"):
-        for row in range(len(table)):
-            words, place = table.words(row) + [""] * 8, table.place(row)
-            for at in range(8, len(words) - 5, 8):
-                if not words[at]:
-                    continue
-                names = [str(table_whole(table, row, word)) for word in words[at:at + 2]]
-                for name in names:
-                    if f"SURFACE_{name}" not in deck.surfaces:
-                        raise place.wrong(f"BCTABLE: there is no BSURFS {name}")
-                mu = table.one_real(row, at + 3, words[at + 3]) if words[at + 3] else 0.0
-                deck.contacts.append(Contact(f"contact_{words[0]}", *(f"SURFACE_{name}" for name in names), place, mu=mu))
-
-
-def deck_note_all(deck, table, text):
-    for row in range(len(table)):
-        deck.note(table.place(row), text)
-
-
-def add_surface(deck, number, faces, place):
-    name = f"SURFACE_{number}"
-    if name in deck.surfaces:
-        faces = numpy.concatenate([deck.surfaces[name][0], faces])
-    deck.surfaces[name] = faces, place
-
-
-def surface_faces(deck, corners, place):
-    """Faces of solids with three of these corners."""
-    faces, missing = faces_by_three(deck, corners)
-    if missing.any():
-        raise place.wrong("BSURFS: three corners are on no face of an element")
-    return faces

@@ -1,10 +1,15 @@
-"""Nastran: coordinate systems, grid points, solid elements."""
+"""Nastran: grid points, solid elements."""
+
+from dataclasses import dataclass
 
 import numpy
 
 from .deck import Block, Index, shape_of
+from .middles import fill_middles
+from .nastran_cards import named
+from .nastran_systems import SPACE, solve_systems
 
-KNOWN = {"GRID", "CTETRA", "CPENTA", "CHEXA", "CORD2R", "CORD2C", "CORD1R", "CORD1C", "CORD1S", "CORD2S", "GRDSET", "SPOINT"}
+KNOWN = {"GRID", "GRDSET", "SPOINT", "CTETRA", "CPENTA", "CHEXA", "CPYRAM"}
 MOST = 10**9
 # Name -> corners, shapes of first and second order, order of Nastran's nodes in ours (second order)
 SOLIDS = {"CTETRA": (4, ("tet4", "tet10"), range(10)),
@@ -15,33 +20,27 @@ DIFFERS = {"hex8": "CHEXA of 8 nodes becomes hex8 of squeal, QM6, of incompatibl
            "wedge15": "CPENTA of 15 nodes: squeal may integrate it more exactly"}
 
 
-class System:
-    """Axes in rows, origin, and whether they are a cylinder's."""
-
-    def __init__(self, axes, origin, cylinder):
-        self.axes, self.origin, self.cylinder = axes, origin, cylinder
-
-    def places(self, x):
-        """Places in space of coordinates [n][3] in this system."""
-        if self.cylinder:
-            angle = numpy.radians(x[:, 1])
-            x = numpy.stack([x[:, 0] * numpy.cos(angle), x[:, 0] * numpy.sin(angle), x[:, 2]], axis=1)
-        return x @ self.axes + self.origin
-
-
-SPACE = System(numpy.eye(3), numpy.zeros(3), False)
-
-
 class Mesh:
     """Grid points and elements by their numbers, property and coordinate systems of each."""
 
     def __init__(self):
         self.nodes, self.cells, self.systems, self.turned = Index(), Index(), {0: SPACE}, {}
-        self.blocks = []  # (first cell, property numbers, table)
+        self.blocks = []  # (cells, property numbers)
+        self.scalar = set()  # numbers of SPOINT
+        self.held, self.waiting, self.fluids = [], {}, set()
+
+    def known(self, numbers):
+        """Those that are no scalar points, which are at no place."""
+        return numpy.array([number for number in numbers if number not in self.scalar], int)
 
 
-def named(tables, *names):
-    return [table for table in tables if table.name in names]
+@dataclass
+class Grid:
+    """Of all GRID: number, system, coordinates, system of displacements."""
+    ids: numpy.ndarray
+    systems: numpy.ndarray
+    x: numpy.ndarray
+    turned: numpy.ndarray
 
 
 def check_rows(table, least, most):
@@ -49,7 +48,7 @@ def check_rows(table, least, most):
     beyond = (table.part(most, max(table.width, most)) != ord(" ")).any(axis=1)
     if beyond.any():
         raise table.place(int(numpy.flatnonzero(beyond)[0])).wrong(f"{table.name} has more than {most} fields")
-    blank = (table.part(0, least).reshape(len(table), least, -1) == ord(" ")).all(axis=2)
+    blank = table.blank(0, least)
     if blank.any():
         row, column = numpy.argwhere(blank)[0]
         raise table.place(int(row)).wrong(f"{table.name}: field {column + 2} is blank")
@@ -62,67 +61,67 @@ def positive(table, ids, what):
         raise table.place(int(bad[0])).wrong(f"{table.name}: the number {ids[bad[0]]} of {what} is not positive, or too large")
 
 
-def read_systems(mesh, tables):
-    """CORD2R, CORD2C: three points in another system, which must be known before."""
-    waiting = [(table, row) for table in named(tables, "CORD2R", "CORD2C") for row in range(len(table))]
-    for table in named(tables, "CORD2R", "CORD2C"):
-        check_rows(table, 1, 16)
-        if table.width < 11:
-            raise table.place(0).wrong(f"{table.name}: the line with the third point is missing")
-    while waiting:
-        later = []
-        for table, row in waiting:
-            number, base = (int(value) for value in table.whole(0, 2)[row])
-            if base not in mesh.systems:
-                later.append((table, row))
-                continue
-            if number in mesh.systems:
-                raise table.place(row).wrong(f"coordinate system {number} stands twice")
-            mesh.systems[number] = new_system(table, row, mesh.systems[base])
-        if len(later) == len(waiting):
-            table, row = later[0]
-            raise table.place(row).wrong(f"{table.name}: there is no coordinate system {table.whole(1, 2)[row, 0]}")
-        waiting = later
-    for table in named(tables, "CORD1R", "CORD1C", "CORD1S", "CORD2S", "GRDSET", "SPOINT"):
-        raise table.place(0).wrong(f"{table.name} is not read, and without it the grid points are others; only CORD2R and CORD2C are")
+def once(tables, name):
+    """Tables of a card without rows that stand twice word for word, which Nastran takes for one."""
+    found, seen = named(tables, name), {}
+    ids = numpy.concatenate([table.whole(0, 1)[:, 0] for table in found])
+    unique, count = numpy.unique(ids, return_counts=True)
+    if (count == 1).all():
+        return found
+    kept_tables = []
+    for table in found:
+        numbers = table.whole(0, 1)[:, 0]
+        kept = numpy.ones(len(table), bool)
+        for row in numpy.flatnonzero(numpy.isin(numbers, unique[count > 1])).tolist():
+            words = table.words(row, 9)
+            first = seen.setdefault(int(numbers[row]), words)
+            kept[row] = first is words or first != words
+        kept_tables.append(table.rows(numpy.flatnonzero(kept)))
+    return kept_tables
 
 
-def new_system(table, row, base):
-    a, b, c = base.places(table.real(2, 11)[row].reshape(3, 3))
-    third = b - a
-    second = numpy.cross(third, c - a)
-    if not numpy.linalg.norm(second) > 0:
-        raise table.place(row).wrong(f"{table.name}: the three points are on a line")
-    third, second = third / numpy.linalg.norm(third), second / numpy.linalg.norm(second)
-    return System(numpy.array([numpy.cross(second, third), second, third]), a, table.name.endswith("C"))
+def defaults(tables):
+    """GRDSET: system, system of displacements, held directions of grid points where these are blank."""
+    found = 0, 0, ""
+    for table in named(tables, "GRDSET"):
+        for row in range(len(table)):
+            found = (int(table.whole(1, 2)[row, 0]), int(table.whole(5, 6)[row, 0]), table.words(row, 7)[6])
+    return found
 
 
 def read_grid(deck, mesh, tables):
     """GRID: number, system, x1 x2 x3, system of displacements, held directions."""
-    held = []
-    for table in named(tables, "GRID"):
+    base, turned_base, held_base = defaults(tables)
+    parts, found = [], once(tables, "GRID")
+    for table in found:
         check_rows(table, 1, 8)
-        ids, systems, x = table.whole(0, 1)[:, 0], table.whole(1, 2)[:, 0], table.real(2, 5)
+        ids, systems, turned = table.whole(0, 1)[:, 0], table.whole(1, 2)[:, 0], table.whole(5, 6)[:, 0]
         positive(table, ids, "a grid point")
         if table.width < 5:
             raise table.place(0).wrong("GRID: the line with the third coordinate is missing")
-        blank = (table.part(2, 5).reshape(len(table), 3, -1) == ord(" ")).all(axis=2).any(axis=1)
+        blank = table.blank(2, 5).any(axis=1)
         if blank.any():
             deck.note(table.place(int(blank.argmax())), f"GRID: {blank.sum()} grid points with a blank coordinate, which is 0")
-        x = x.copy()
-        for number in numpy.unique(systems).tolist():
-            rows = numpy.flatnonzero(systems == number)
-            if number not in mesh.systems:
-                raise table.place(int(rows[0])).wrong(f"GRID: there is no coordinate system {number}")
-            if number:
-                x[rows] = mesh.systems[number].places(x[rows])
-        at = deck.add_nodes(x)
-        mesh.nodes.add(ids, at, table.lines, table.file)
-        turned = table.whole(5, 6)[:, 0]
-        for row in numpy.flatnonzero(turned).tolist():
-            mesh.turned[int(at[row])] = int(turned[row])
-        held += [(int(at[row]), word, table.place(row)) for row, word in filled_words(table, 6)]
-    return held
+        systems[table.blank(1, 2)[:, 0]] = base
+        turned[table.blank(5, 6)[:, 0]] = turned_base
+        parts.append((ids, systems, table.real(2, 5), turned))
+    grid = Grid(*(numpy.concatenate(columns) for columns in zip(*parts)))
+    x, known, mesh.waiting = solve_systems(mesh, tables, grid)
+    at, first = deck.add_nodes(x), 0
+    for table in found:
+        rows = slice(first, first + len(table))
+        unknown = numpy.flatnonzero(~known[rows])
+        if len(unknown):
+            number = grid.systems[rows][unknown[0]]
+            raise table.place(int(unknown[0])).wrong(f"GRID: there is no coordinate system {number}" + (
+                ", or it hangs on one that is not there" if number in mesh.waiting else ""))
+        mesh.nodes.add(grid.ids[rows], at[rows], table.lines, table.file)
+        for row in numpy.flatnonzero(grid.turned[rows]).tolist():
+            mesh.turned[int(at[first + row])] = int(grid.turned[first + row])
+        words = dict(filled_words(table, 6))
+        mesh.held += [(int(at[first + row]), words.get(row, held_base), table.place(row))
+                      for row in (range(len(table)) if held_base else words)]
+        first += len(table)
 
 
 def filled_words(table, column):
@@ -132,42 +131,78 @@ def filled_words(table, column):
         yield row, letters[row].tobytes().decode("latin-1").strip()
 
 
+def read_scalars(mesh, tables):
+    """SPOINT: points with one freedom and no place."""
+    for table in named(tables, "SPOINT"):
+        for row in range(len(table)):
+            words = [word for word in table.words(row) if word]
+            if len(words) == 3 and words[1].upper() == "THRU" and words[0].isdigit() and words[2].isdigit():
+                mesh.scalar.update(range(int(words[0]), min(int(words[2]), int(words[0]) + 10**6) + 1))
+            else:
+                mesh.scalar.update(int(word) for word in words if word.isdigit())
+
+
+def read_fluids(mesh, tables):
+    """Properties of elements of a fluid."""
+    materials = {int(number) for table in named(tables, "MAT10") for number in table.whole(0, 1)[:, 0]}
+    for table in named(tables, "PSOLID"):
+        for row, (number, material) in enumerate(table.whole(0, 2).tolist()):
+            if table.words(row, 6)[5].upper() == "PFLUID" or material in materials:
+                mesh.fluids.add(number)
+
+
 def read_solids(deck, mesh, tables):
-    """CTETRA, CPENTA, CHEXA: number, property, nodes; of second order with all middles, or none."""
+    """CTETRA, CPENTA, CHEXA: number, property, nodes; of second order with middles."""
+    found = []
     for table in named(tables, *SOLIDS):
         corners, shapes, order = SOLIDS[table.name]
-        most = len(order)
-        check_rows(table, 2 + corners, 2 + most)
-        head, nodes = table.whole(0, 2), table.whole(2, 2 + most)
+        check_rows(table, 1, 2 + len(order))
+        missing = table.blank(2, 2 + corners)
+        if missing.any():
+            row, column = numpy.argwhere(missing)[0]
+            raise table.place(int(row)).wrong(f"{table.name}: field {column + 4} is blank")
+        head = table.whole(0, 2)
         positive(table, head[:, 0], "an element")
-        middles = nodes[:, corners:] != 0
-        second = middles.all(axis=1)
-        some = middles.any(axis=1) & ~second
-        if some.any():
-            raise table.place(int(numpy.flatnonzero(some)[0])).wrong(f"{table.name} with some of its nodes in the middle of edges "
-                                                                      "and not all: squeal has no such element")
-        for shape, rows in zip(shapes, (numpy.flatnonzero(~second), numpy.flatnonzero(second))):
+        owned = table.blank(1, 2)[:, 0]
+        head[owned, 1] = head[owned, 0]
+        fluid = numpy.isin(head[:, 1], list(mesh.fluids))
+        if fluid.any():
+            deck.note(table.place(int(fluid.argmax())), f"{fluid.sum()} {table.name} of a fluid: not taken")
+        nodes = table.whole(2, 2 + len(order))
+        second = (nodes[:, corners:] != 0).any(axis=1)
+        for shape, chosen in zip(shapes, (~second, second)):
+            rows = numpy.flatnonzero(chosen & ~fluid)
             if len(rows):
-                add_solids(deck, mesh, table, shape_of(shape), rows)
+                found.append(solids_of(deck, mesh, (table, rows), shape_of(shape), (head[rows], nodes[rows])))
+    fill_middles(deck, [block for block, *_ in found])
+    for block, properties, table, rows in found:
+        cells = deck.add_block(block)
+        mesh.cells.add(block.ids, cells, table.lines[rows], table.file)
+        mesh.blocks.append((cells, properties))
+    for table in named(tables, "CPYRAM"):
+        deck.note(table.place(0), f"{len(table)} CPYRAM: squeal has no pyramids; they are left out, and their places are empty")
 
 
-def add_solids(deck, mesh, table, shape, rows):
-    order = SOLIDS[table.name][2]
-    head, nodes = table.whole(0, 2)[rows], table.whole(2, 2 + len(order))[rows]
-    chosen = nodes[:, list(order)] if shape.second else nodes[:, :shape.n_nodes]
-    found = mesh.nodes.need(chosen, "grid point", lambda row: table.place(int(rows[row])))
-    cells = deck.add_block(Block(shape, table.name, head[:, 0], found, table.place(int(rows[0]))))
-    mesh.cells.add(head[:, 0], cells, table.lines[rows], table.file)
-    mesh.blocks.append((cells, head[:, 1]))
+def solids_of(deck, mesh, where, shape, values):
+    """(block, properties, table, rows) of elements of one shape; middles that are not there are -1."""
+    (table, rows), (head, nodes) = where, values
+    order = list(SOLIDS[table.name][2]) if shape.second else list(range(shape.n_nodes))
+    place = table.place(int(rows[0]))
+    chosen = nodes[:, order]
+    given = (chosen != 0) | (numpy.arange(len(order)) < shape.n_corners)
+    numbers = numpy.where(given, chosen, chosen[:, :1])
+    found = numpy.where(given, mesh.nodes.need(numbers, "grid point", lambda row: table.place(int(rows[row]))), -1)
     if shape.name in DIFFERS:
-        deck.differ(table.place(int(rows[0])), DIFFERS[shape.name])
+        deck.differ(place, DIFFERS[shape.name])
+    return Block(shape, table.name, head[:, 0], found, place), head[:, 1], table, rows
 
 
 def read_mesh(deck, tables):
-    """Systems, grid points and solids; what GRID holds goes on."""
+    """Systems, grid points and solids."""
     mesh = Mesh()
-    read_systems(mesh, tables)
-    mesh.held = read_grid(deck, mesh, tables)
+    read_scalars(mesh, tables)
+    read_fluids(mesh, tables)
+    read_grid(deck, mesh, tables)
     mesh.nodes.sorted("grid point")
     read_solids(deck, mesh, tables)
     mesh.cells.sorted("element")
