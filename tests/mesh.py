@@ -239,7 +239,7 @@ def section(name, *content):
 def entities_41(binary, nodes, groups):
     dimensions = [TYPES[elements.shape[1]][1] for elements in groups.values()]
     yield words(binary, ("Q", [dimensions.count(d) for d in range(4)]))
-    for dimension in (2, 3):
+    for dimension in (1, 2, 3):
         for tag, elements in enumerate(groups.values(), 1):
             if TYPES[elements.shape[1]][1] == dimension:
                 points = nodes[elements.ravel()]
@@ -248,7 +248,7 @@ def entities_41(binary, nodes, groups):
 
 
 def nodes_41(binary, nodes, tags, groups):
-    volume = next(tag for tag, elements in enumerate(groups.values(), 1) if elements.shape[1] == 8)
+    volume = next(tag for tag, elements in enumerate(groups.values(), 1) if TYPES[elements.shape[1]][1] == 3)
     yield words(binary, ("Q", [1, len(nodes), min(tags), max(tags)]))
     yield words(binary, ("i", [3, volume, 0]), ("Q", [len(nodes)]))
     yield from (words(binary, ("Q", [tag])) for tag in tags)

@@ -2,9 +2,11 @@
 of tests/fault/serve.c and inject.c, which say how."""
 
 import argparse
+import contextlib
 import errno
 import os
 import re
+import resource
 import shutil
 import signal
 import socket
@@ -21,6 +23,7 @@ LAUNCHER = Path(__file__).resolve().parents[1] / "scripts/mpirun"
 OPEN, WRITE, SYNC, RENAME, CLOSE, OWN, PETSC = (1 << bit for bit in range(7))
 FILES = OPEN | WRITE | SYNC | RENAME | CLOSE
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+PATIENCE = 5  # a run may take so many times its limit of processor time by the clock, since others work beside it
 ENDED = "squeal: error: stopped by SIGTERM"
 # What a process alone does not need, and costs half of its start: networks, and to look for devices
 LEAN = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_btl": "self", "OMPI_MCA_pml": "ob1", "OMPI_MCA_mtl": "^psm,psm2,ofi",
@@ -95,7 +98,9 @@ class Line:
         data = b"".join(os.fsencode(str(s) if not isinstance(s, bytes) else s) + b"\0" for s in strings)
         self.connection.sendall(struct.pack("i", len(data)) + data)
         child, late = self.read(), []
-        watch = threading.Timer(self.limit, lambda: (late.append(1), os.kill(child, signal.SIGKILL)))
+        with contextlib.suppress(ProcessLookupError):  # it may have ended already
+            resource.prlimit(child, resource.RLIMIT_CPU, (int(self.limit), int(self.limit) + 5))
+        watch = threading.Timer(PATIENCE * self.limit, lambda: (late.append(1), os.kill(child, signal.SIGKILL)))
         watch.start()
         status = self.read()
         watch.cancel()
@@ -127,7 +132,7 @@ class Served(Line):
     def join(self, work, words, ranks, environment=()):
         """The same on several ranks, each a child of the loop."""
         command = [LAUNCHER, "-n", str(ranks), self.library.with_name("join"), self.program, *words]
-        return finish(command, work, self.limit, {"SQUEAL_SERVED": self.socket, **dict(environment)})
+        return finish(command, work, PATIENCE * self.limit, {"SQUEAL_SERVED": self.socket, **dict(environment)})
 
     def end(self):
         self.connection.close()

@@ -9,8 +9,10 @@ from pathlib import Path
 import damage
 
 TESTS = Path(__file__).resolve().parents[1]
-sys.path.append(str(TESTS))
+sys.path += [str(TESTS), str(TESTS.parent / "scripts")]
+import mesh as meshes  # noqa: E402
 import served  # noqa: E402
+from squeal.gmsh import read_mesh  # noqa: E402
 
 BODIES = """
 parts: base,block
@@ -28,6 +30,49 @@ contacts: contact
 contact: {surfaces: "block_bottom,base_top", mu: 0.3, law: constraint, slip: "1,0,0", speed: 0.1}
 modes: {band: "0,3000", growth: 1000}
 sweep: {parameter: contact_mu, values: "0:0.6:4"}
+"""
+MAP = BRAKE + """
+model: {mesh: blocks.msh}
+analysis: map
+dynamics: {model: reduced, cutoff: 3000}
+map: {parameter: contact_mu, values: "0.2,0.5", window: 2e-3}
+ts: {max_time: 16e-3}
+impulses: tap
+tap: {at: "0.05,0.05,0.1", part: block, impulse: "0,0,1e-4"}
+"""
+# A coarse brake that squeals at mu 0.42, and its limit cycle in few steps
+CYCLE = """
+analysis: cycle
+cycle: {steps: 15, verify: false}
+model: {source: rig}
+rig: {disc_elements: "8,24,1", pad_elements: "4,4,2", beam_elements: 10}
+parts: disc,pad,beam
+disc: {young: 210e9, poisson: 0.3, density: 7800, alpha: 300, beta: 2e-7}
+pad: {young: 25.1e9, poisson: 0.3, density: 2500, alpha: 300, beta: 3e-7}
+beam: {young: 2100e9, poisson: 0.3, density: 78000, alpha: 300, beta: 2e-7}
+supports: hub
+hub: {set: disc_inner, fix: xyz}
+springs: rows
+rows: {set: beam_rows, stiffness: "0,8.422e6,0"}
+loads: press
+press: {set: beam_top, force: "0,0,-100", ramp: 1e-3}
+contacts: contact
+contact: {surfaces: "pad_face,disc_face", law: constraint, mu: 0.42, slip: "0,1,0", speed: 2}
+dynamics: {model: reduced, cutoff: 12e3, compare: false, live: 0}
+ts: {max_time: 30e-3}
+"""
+# A disc of two directions and a third mass, whose matrices depend on a speed w: powers 2 and -1
+AFFINE = """
+terms: m,k1,kr,kg,dr,dg
+m: {kind: mass, file: M.bin, symmetry: symmetric}
+k1: {kind: stiffness, file: K.bin, symmetry: symmetric}
+kr: {kind: stiffness, file: KR.bin, parameter: mu}
+kg: {kind: stiffness, dense: "0.01,0,0, 0,0.01,0, 0,0,0.02", parameter: speed, power: 2}
+dr: {kind: damping, dense: "0.25,0,0, 0,0.25,0, 0,0,0.1", parameter: speed, power: -1, scale: 0.5}
+dg: {kind: damping, file: DG.bin, parameter: speed, symmetry: skew}
+speed: 2
+mu: 0.3
+modes: {target: 0, count: 3}
 """
 BEAM = """
 parts: beam
@@ -67,6 +112,24 @@ def matrices(folder):
     spec.loader.exec_module(oracle)
     oracle.write(folder / "K.bin", [[2, 1, 0], [1, 3, 1], [0, 1, 4]])
     oracle.write(folder / "M.bin", [[1, 0.25, 0], [0.25, 1, 0], [0, 0, 2]])
+    oracle.write(folder / "KR.bin", [[0, 1, 0.5], [-1, 0, 0], [0, -0.25, 0]])
+    oracle.write(folder / "DG.bin", [[0, 0.1, 0], [-0.1, 0, 0.2], [0, -0.2, 0]])
+
+
+def second_order(folder, kind, version, binary):
+    """A bar of two elements at least, of a kind that solids.py makes; binary where each group has one type of element."""
+    name = f"{kind}{'b' if binary else 'a'}.msh"
+    subprocess.run([sys.executable, TESTS / "solids.py", kind, folder / name, "--elements", "2,1,1", "--format",
+                    "2.2" if binary else version], check=True, capture_output=True)
+    if binary:
+        meshes.TYPES |= {10: (11, 3), 27: (12, 3), 6: (9, 2), 9: (10, 2), 2: (1, 1), 3: (2, 2)}
+        x, sets = read_mesh(folder / name)
+        groups = {name: nodes for (name, _), nodes in sets.items()}
+        numbers = list(range(1, 1 + sum(map(len, groups.values()))))
+        meshes.write(folder / name, version, True, x, groups, list(range(1, 1 + len(x))), numbers)
+    damages = damage.BYTES + damage.TEXT_OF_BINARY if binary else damage.LINES
+    words = ("-options_file", "bar.yaml", "-model_mesh", name)
+    return Base(f"mesh {kind} {version}{' binary' if binary else ''}", damages, (name,), words)
 
 
 def transient(program, folder):
@@ -104,10 +167,26 @@ def sweep(program, folder):
     return words
 
 
+def of_map(program, folder):
+    """A map by its options, and one that was killed after its second chain, with what it kept."""
+    words = ("-options_file", "map.yaml")
+    command = [served.LAUNCHER, "-n", 1, program, *words, "-output_dir", "mapped"]
+    if not served.killed_at(command, "mapped/map_restart_chain_000001", folder):
+        raise SystemExit("the map was not killed in its second chain")
+    kept = Base("map kept", damage.BYTES, tuple(f"out/{path.name}" for path in sorted((folder / "mapped").glob("map_restart_*"))),
+                words, "map.csv")
+    kept.sealed, kept.folder = True, folder / "mapped"
+    return [Base("map", (*damage.LINES, damage.lines_shuffled), ("map.yaml",), words, "map.csv"), kept]
+
+
 def bases(program, folder):
     """All kinds of input, made in the folder."""
     (folder / "brake.yaml").write_text(BRAKE)
     (folder / "beam.yaml").write_text(BEAM)
+    (folder / "bar.yaml").write_text(BEAM.replace("beam", "bar").replace("set: root", "set: left"))
+    (folder / "map.yaml").write_text(MAP)
+    (folder / "cycle.yaml").write_text(CYCLE)
+    (folder / "affine.yaml").write_text(AFFINE)
     mesh(folder, "blocks.msh", "blocks", "--elements", "1,1,1")
     mesh(folder, "finer.msh", "blocks", "--elements", "2,2,2")
     matrices(folder)
@@ -122,6 +201,12 @@ def bases(program, folder):
         damages = damage.BYTES + damage.TEXT_OF_BINARY if binary else damage.LINES
         found.append(Base(f"mesh {version} {'binary' if binary else 'ascii'}", damages, (name,),
                           ("-options_file", "beam.yaml", "-model_mesh", name)))
+    found += [second_order(folder, *of) for of in (("tet10", "2.2", False), ("hex20", "4.1", False), ("wedge15", "4.1", False),
+                                                   ("tet10", "4.1", True), ("hex27", "2.2", True))]
+    found += [Base("affine files", damage.BYTES, ("K.bin", "KR.bin", "DG.bin", "M.bin"), ("-options_file", "affine.yaml")),
+              Base("affine", (*damage.LINES, damage.lines_shuffled), ("affine.yaml",), ("-options_file", "affine.yaml")),
+              *of_map(program, folder),
+              Base("cycle", (*damage.LINES, damage.lines_shuffled), ("cycle.yaml",), ("-options_file", "cycle.yaml"), "cycle.csv")]
     first = transient(program, folder)
     restart = Base("checkpoint", damage.BYTES, ("out/checkpoint.bin",), (*first, "-ts_max_steps", "90", "-dynamics_restart"),
                    "transient.csv")

@@ -116,15 +116,20 @@ static PetscErrorCode ReadNames(MeshReader *r, GmshMesh *mesh)
   PetscCall(PetscCalloc1(mesh->n_groups, &mesh->groups));
   for (PetscInt g = 0; g < mesh->n_groups && !r->error->code; g++) {
     GmshGroup *group = &mesh->groups[g];
-    int        dim, tag;
+    int        dim, tag, end = 0;
 
-    if (!fgets(line, sizeof(line), r->file) || sscanf(line, "%d %d \"%127[^\"]\"", &dim, &tag, group->name) != 3) {
+    if (!fgets(line, sizeof(line), r->file) ||
+        sscanf(line, "%d %d \"%127[^\"]\" %n", &dim, &tag, group->name, &end) != 3 || !end || line[end]) {
       ReaderErrorSet(r->error, PETSC_ERR_FILE_READ,
                      "line %" PetscInt_FMT " of $PhysicalNames is not: dimension tag \"name\"", g + 2);
       break;
     }
     group->dim = dim;
     group->tag = tag;
+    for (PetscInt k = 0; k < g; k++)
+      if (mesh->groups[k].dim == dim && mesh->groups[k].tag == tag)
+        ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "$PhysicalNames calls group %d of dimension %d '%s' and '%s'", tag,
+                       dim, mesh->groups[k].name, group->name);
   }
   if (r->version == 41) PetscFunctionReturn(0);
   mesh->n_entities = mesh->n_groups;
@@ -276,17 +281,16 @@ static PetscErrorCode ReadSection(MeshReader *r, const char line[], GmshMesh *me
     {"Nodes",         ReadNodes   },
     {"Elements",      ReadElements},
   };
-  char rest[512] = "";
+  PetscBool known = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   sscanf(line, "$%31s", r->section);
   for (size_t s = 0; s < PETSC_STATIC_ARRAY_LENGTH(sections); s++) {
-    if (!strcmp(r->section, sections[s].name)) PetscCall(sections[s].read(r, mesh));
+    if (strcmp(r->section, sections[s].name)) continue;
+    known = PETSC_TRUE;
+    PetscCall(sections[s].read(r, mesh));
   }
-  while (!r->error->code && strncmp(rest, "$End", 4)) {
-    if (!fgets(rest, sizeof(rest), r->file))
-      ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "the file ends within $%s", r->section);
-  }
+  ReadSectionEnd(r, known);
   PetscFunctionReturn(0);
 }
 

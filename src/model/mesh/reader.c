@@ -5,6 +5,8 @@
 
 #include <stdarg.h>
 
+static const char blanks[] = " \t\r\n";
+
 void ReaderErrorSet(ReaderError *error, PetscErrorCode code, const char format[], ...)
 {
   va_list values;
@@ -65,11 +67,15 @@ PetscInt ReadCount(MeshReader *r, int bytes)
 /* A count on a line of its own, which is text in binary files too */
 PetscInt ReadCountLine(MeshReader *r)
 {
-  char line[64];
+  char      line[64], *end;
+  long long n;
 
   if (r->error->code) return 0;
-  if (fgets(line, sizeof(line), r->file)) return CheckCount(r, strtoll(line, NULL, 10));
-  ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "section $%s is empty", r->section);
+  if (!fgets(line, sizeof(line), r->file)) line[0] = '\0';
+  n = strtoll(line, &end, 10);
+  if (end > line && !end[strspn(end, blanks)]) return CheckCount(r, n);
+  ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "section $%s does not begin with a count on a line of its own",
+                 r->section);
   return 0;
 }
 
@@ -84,4 +90,20 @@ void ReadReals(MeshReader *r, PetscInt n, PetscReal value[])
                      r->section);
     value[i] = x;
   }
+}
+
+void ReadSectionEnd(MeshReader *r, PetscBool known)
+{
+  char rest[512] = "", end[40];
+
+  while (!r->error->code && strncmp(rest, "$End", 4)) {
+    if (!fgets(rest, sizeof(rest), r->file))
+      ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "the file ends within $%s", r->section);
+    else if (known && rest[0] != '$' && rest[strspn(rest, blanks)])
+      ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "section $%s holds more than it announces", r->section);
+  }
+  (void)snprintf(end, sizeof(end), "$End%s", r->section);
+  rest[strcspn(rest, blanks)] = '\0';
+  if (strcmp(rest, end))
+    ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "section $%s ends in '%s', not in '%s'", r->section, rest, end);
 }

@@ -33,3 +33,6 @@ PETSC_INTERN PetscInt ReadTag(MeshReader *r, int bytes);     /* one that fits in
 PETSC_INTERN PetscInt ReadCount(MeshReader *r, int bytes);   /* one that the file can hold as many items as */
 PETSC_INTERN PetscInt ReadCountLine(MeshReader *r);          /* a count on a line of text, also in binary files */
 PETSC_INTERN void     ReadReals(MeshReader *r, PetscInt n, PetscReal value[]);
+
+/* Reads to the end of the section, which nothing else may come before where the section is known and has been read */
+PETSC_INTERN void ReadSectionEnd(MeshReader *r, PetscBool known);
